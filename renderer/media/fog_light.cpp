@@ -20,8 +20,8 @@ EddingtonSlab::EddingtonSlab(const SlabScattering& scattering, double depth, dou
   ALPENGLOW_ENSURE(depth, >=, 0.0);
   ALPENGLOW_ENSURE(mu0, >, 0.0);
   ALPENGLOW_ENSURE(scattering.chi_2, <, 1.0);
-  // Without any absorption e^(k tau) and e^(-k tau) are one solution; a millionth keeps them apart
-  // and takes a millionth of the light a unit of depth.
+  // Without any absorption e^(k tau) and e^(-k tau) are the same solution. An absorption of a
+  // millionth separates them, and removes a millionth of the light per unit of depth.
   constexpr double kMostAlbedo = 1.0 - 1e-6;
   const double w_true = std::min(scattering.albedo, kMostAlbedo);
   const double f = std::max(scattering.chi_2, 0.0);
@@ -31,13 +31,13 @@ EddingtonSlab::EddingtonSlab(const SlabScattering& scattering, double depth, dou
   depth_ = scale_ * depth;
   k_ = std::sqrt(3.0 * (1.0 - w) * (1.0 - w * g));
   slope_of_k_ = k_ / (1.0 - w * g);
-  // Where the beam falls as the diffuse light does, the particular solution has a pole that the
-  // boundary conditions cancel.
+  // If the beam decays like the diffuse light, the particular solution has a pole that the boundary
+  // conditions cancel.
   mu0_ = std::abs(k_ * mu0 - 1.0) < 1e-4 ? (1.0 - 1e-4) / k_ : mu0;
   const double source = w / (4.0 * kPi);
   particular_ = 3.0 * mu0_ * mu0_ * source * (1.0 + g - w * g) / (k_ * k_ * mu0_ * mu0_ - 1.0);
   particular_slope_ = 3.0 * mu0_ * ((1.0 - w) * particular_ - source);
-  // No diffuse light from above; the ground's reflection from below.
+  // Boundary conditions: no diffuse light from above, the ground's reflection from below.
   const double across = std::exp(-k_ * depth_);
   const double beam = std::exp(-depth_ / mu0_);
   const double top_falling = 1.0 + 2.0 / 3.0 * slope_of_k_;
@@ -66,8 +66,8 @@ double EddingtonSlab::BeamLeft(double slant_depth) const { return std::exp(-scal
 
 namespace {
 
-/// Sky light falls through fog as a beam of this zenith cosine would: the diffusivity factor 1.66
-/// of Elsasser (1942).
+/// Skylight is attenuated in fog like a beam of this zenith cosine: the diffusivity factor 1.66 of
+/// Elsasser (1942).
 constexpr double kSkyCosine = 0.6;
 constexpr int kGlowNodes = 65;
 
@@ -103,7 +103,8 @@ FogLight::FogLight(const LocalMedium& fog, const DiffuseLight& diffuse, const Fo
                     (static_cast<float>(std::max(to_sun_.z, 0.0)) * sun.in_air[band] + sky[band]);
   }
   sky_ = sky_.WithoutGround(ground_);
-  // The cosine that makes the layer as deep towards the sun as it is over a round planet.
+  // This is the cosine for which the plane layer is as deep towards the sun as the layer over a
+  // round planet.
   const FogLayer& layer = *fog.fog();
   const double slant =
       layer.ColumnToSpace({0.0, 0.0, bottom_m}, to_sun_) / layer.ColumnAbove(bottom_m);
@@ -160,7 +161,8 @@ FogLight::Scattered FogLight::At(const Look& look, double altitude_m, const Band
   const double direct = std::exp(-slant_depth);
   const double taken_along = std::exp(-peak_scale_ * slant_depth) - direct;
   const auto once = static_cast<float>(look.phase * direct + look.broad_phase * taken_along);
-  // Light that ends in the eye goes against the look: down where the look goes up.
+  // Light that reaches the eye travels against the viewing direction: downwards if the view goes
+  // upwards.
   const auto tilt = static_cast<float>(chi_[1] * look.down);
   const Place place = PlaceOf(altitude_m);
   return {once * sun + lit * (At(of_sun_.mean, place) + tilt * At(of_sun_.slope, place)),
@@ -182,7 +184,7 @@ BandLight FogLight::OnSurface(double altitude_m, double cos_up) const {
   BandLight irradiance =
       static_cast<float>(kPi) * (At(of_sun_.mean, place) + At(of_sky_.mean, place)) +
       tilt * (At(of_sun_.slope, place) + At(of_sky_.slope, place));
-  // The ground's light in it is part of the clear sky's irradiance of a slope already.
+  // The light of the ground is already part of the clear sky's irradiance of a slope.
   const auto twice = static_cast<float>(kPi * 0.5 * (1.0 - cos_up)) * SkyLeft(altitude_m);
   for (std::size_t band = 0; band < irradiance.count; ++band) {
     irradiance[band] = std::max(irradiance[band] - twice * ground_[band], 0.0F);

@@ -1,39 +1,40 @@
 // SPDX-License-Identifier: MIT
-// Light inside a plane layer of fog, scattered there any number of times: Eddington's approximation
-// with the forward peak taken out of the scattering.
+// This header computes the light that fog scatters, to all orders, under sun and sky. Fog is a
+// level layer over the lowest ground.
+//
+// EddingtonSlab computes multiple scattering in a plane layer: Eddington's approximation, with the
+// forward peak removed from the scattering.
 //
 //   I(tau, mu) = I0(tau) + I1(tau) mu                     mu > 0 downwards
 //   dI1/dtau / 3 = -(1 - w) I0 + w S / 4 pi  e^(-tau / mu0)
 //   dI0/dtau     = -(1 - w g) I1 + 3 w g mu0 S / 4 pi  e^(-tau / mu0)
 //
-// with no diffuse light from above, and the ground's reflection from below; after
+// The boundary conditions are no diffuse light from above, and the ground's reflection from below.
+// The forward peak is removed by
 //
 //   tau' = (1 - w f) tau,   w' = w (1 - f) / (1 - w f),   g' = (g - f) / (1 - f),   f = chi_2:
 //
-// Joseph, Wiscombe, Weinman (1976), "The delta-Eddington approximation
-// for radiative flux transfer", J. Atmos. Sci. 33, 2452. Shettle and
-// Weinman (1970), J. Atmos. Sci. 27, 1048, for the layer.
+// Joseph, Wiscombe, Weinman (1976), "The delta-Eddington approximation for radiative flux
+// transfer", J. Atmos. Sci. 33, 2452. For the layer, see Shettle and Weinman (1970), J. Atmos. Sci.
+// 27, 1048.
 //
-// Radiances from it: the first order is exact but for light that the forward peak has taken
-// along, which is scattered as by a lobe of the same mean cosine; the orders beyond it are w
-// (I0 + chi_1 I1 mu). Against a path tracer, over layers of optical depth 0.5 to 8, g = 0.8,
-// the sun at 9 and 37 degrees, looking from outside: off by 0.35 of the value root mean square,
-// between 0.4 and 2.5 of it at worst (tests/renderer/media/eddington_slab_test.cpp). It is an
-// approximation of what single scattering leaves out, where that is most of the light.
+// Radiances follow from this solution. The first order is exact, except for light in the forward
+// peak, which is scattered by a lobe with the same mean cosine; higher orders are w (I0 + chi_1 I1
+// mu). Compared with a path tracer, over layers of optical depth 0.5 to 8 with g = 0.8, the sun at
+// 9 and 37 degrees and a view from outside, the relative error is 0.35 root mean square; the result
+// is 0.4 to 2.5 of the value at worst (tests/renderer/media/eddington_slab_test.cpp). It
+// approximates the light that single scattering omits where that is most of the light.
 //
-// Fog under sun and sky: what it scatters, to all orders, as a level layer over the lowest ground.
+// FogLight evaluates
 //
-//   J = w [ p(cos) S e^-tau_s + p'(cos) S (e^-tau_s' - e^-tau_s)             sun: first order, and
-//   what
-//                                                                           the forward peak took
-//                                                                           along
-//         + sum chi_l L_lm Y_lm  e^(-tau' / 0.6)                             sky: first order
-//         + I0 + chi_1 I1 mu ]                                               all beyond
-//         (EddingtonSlab)
+//   J = w [ p(cos) S e^-tau_s                      sun: first order
+//         + p'(cos) S (e^-tau_s' - e^-tau_s)       sun: light in the forward peak
+//         + sum chi_l L_lm Y_lm  e^(-tau' / 0.6)   sky: first order
+//         + I0 + chi_1 I1 mu ]                     all higher orders (EddingtonSlab)
 //
-// tau_s the optical depth towards the sun, tau' without the forward peak, p' a lobe of the same
-// mean cosine as p. Light that the ground reflects under a clear sky is taken out of the moments
-// L_lm, for the layer has a ground of its own.
+// with the optical depth tau_s towards the sun, tau' without the forward peak, and a lobe p' with
+// the same mean cosine as p. Light that the ground reflects under a clear sky is removed from the
+// moments L_lm, because the layer has its own ground.
 #pragma once
 
 #include <vector>
@@ -43,23 +44,23 @@
 
 namespace alpenglow::renderer {
 
-/// What a layer scatters with.
+/// Scattering properties of a layer.
 struct SlabScattering {
   double albedo = 1.0;  // w, [0, 1]
   double chi_1 = 0.0;   // mean cosine of the phase function
-  double chi_2 = 0.0;   // its second Legendre coefficient, < 1: the share of the forward peak
+  double chi_2 = 0.0;   // its second Legendre coefficient, < 1: fraction in the forward peak
 };
 
 /// The diffuse field at a depth.
 struct SlabField {
-  double mean = 0.0;   // I0: of the radiance over all directions
-  double slope = 0.0;  // I1: of the radiance in mu
+  double mean = 0.0;   // I0: mean radiance over all directions
+  double slope = 0.0;  // I1: slope of the radiance in mu
 
   [[nodiscard]] double DownwardFlux() const;
   [[nodiscard]] double UpwardFlux() const;
 };
 
-/// Lit by a beam of unit irradiance across itself. Immutable.
+/// A plane layer lit by a beam of unit irradiance perpendicular to the beam. Immutable.
 class EddingtonSlab {
  public:
   /// @param depth  vertical optical depth of the layer, >= 0.
@@ -67,46 +68,49 @@ class EddingtonSlab {
   /// @param mu0  cosine between the beam and the vertical, in (0, 1].
   EddingtonSlab(const SlabScattering& scattering, double depth, double ground_albedo, double mu0);
 
-  /// @param depth  below the top of the layer, clamped to it. Fluxes of layers lit from above are
-  ///     right to 0.06 of what falls in, from a path tracer
-  ///     (tests/renderer/media/eddington_slab_test.cpp).
+  /// Returns the diffuse field. Fluxes of layers lit from above are within 0.06 of the incident
+  /// flux of a path tracer (tests/renderer/media/eddington_slab_test.cpp).
+  /// @param depth  below the top of the layer, clamped to it.
   [[nodiscard]] SlabField At(double depth) const;
 
-  /// What is left of the beam after a slant depth, with what the forward peak has taken along.
+  /// Returns the transmittance of the beam over a slant depth, including the light in the forward
+  /// peak.
   [[nodiscard]] double BeamLeft(double slant_depth) const;
 
  private:
-  double depth_;                       // scaled, as all below
-  double scale_, mu0_;                 // of depths
+  double depth_;                       // scaled, like all members below
+  double scale_, mu0_;                 // factor on depths; cosine of the beam
   double k_ = 0.0, slope_of_k_ = 0.0;  // I1 of e^(-k tau), relative to I0
   double particular_ = 0.0, particular_slope_ = 0.0;
-  double falling_ = 0.0, rising_ = 0.0;  // of e^(-k tau) and e^(-k (depth - tau))
+  double falling_ = 0.0, rising_ = 0.0;  // factors of e^(-k tau) and e^(-k (depth - tau))
 };
 
-/// The sun over fog; directions as those of DistantLight (lighting.h).
+/// The sun above fog; directions are those of DistantLight (lighting.h).
 struct FogSun {
   glm::dvec3 to_light, to_light_for_air;  // unit
-  BandLight in_air;  // what the air leaves of sunlight at the fog, of the disk over the horizon
+  BandLight in_air;  // transmittance of the air at the fog for sunlight above the horizon
 };
 
-/// For one position of the sun; per unit solar irradiance. Immutable. Refers to the fog.
+/// Light scattered by fog for one position of the sun, per unit solar irradiance. Immutable. Refers
+/// to the fog.
 class FogLight {
  public:
   /// @param fog  a LocalMedium that is fog.
-  /// @param bottom_m  altitude of the ground under it.
+  /// @param bottom_m  altitude of the ground below it.
   FogLight(const LocalMedium& fog, const DiffuseLight& diffuse, const FogSun& sun, double bottom_m);
 
-  /// A ray through the fog.
+  /// Precomputed values of a ray through the fog.
   struct Look {
     double phase, broad_phase;   // p and p' towards the sun [1/sr]
-    double down;                 // of the light that arrives: the look's zenith cosine
+    double down;                 // downward cosine of the arriving light: the look's zenith cosine
     std::vector<BandLight> sky;  // SkyMoments::Towards
   };
   [[nodiscard]] Look LookAlong(const glm::dvec3& look) const;
 
-  /// Scattered per unit of scattering [1/sr]: of the sun
-  /// itself and its glow in the fog, and of the sky.
-  /// @param sun  what air, terrain and volumes leave of sunlight; lit: without the air, in [0, 1].
+  /// Returns the light scattered per unit of scattering [1/sr]: from the sun with its glow in the
+  /// fog, and from the sky.
+  /// @param sun  transmittance of air, terrain and volumes for sunlight.
+  /// @param lit  the same without the air, in [0, 1].
   /// @param slant_depth  of the fog towards the sun.
   struct Scattered {
     BandLight of_sun, of_sky;
@@ -114,12 +118,13 @@ class FogLight {
   [[nodiscard]] Scattered At(const Look& look, double altitude_m, const BandLight& sun,
                              const BandLight& lit, double slant_depth) const;
 
-  /// What is left of light of the sky from above at an altitude, and of a beam after a slant depth,
-  /// each with what the forward peak takes along.
+  /// Return the transmittance of skylight from above to an altitude, and of a beam over a slant
+  /// depth; both include the light in the forward peak.
   [[nodiscard]] float SkyLeft(double altitude_m) const;
   [[nodiscard]] float BeamLeft(double slant_depth) const;
 
-  /// What the fog's own light brings to a surface [1]. @param cos_up  of its normal's zenith angle.
+  /// Returns the irradiance of a surface by the fog's own light [1].
+  /// @param cos_up  of its normal's zenith angle.
   [[nodiscard]] BandLight OnSurface(double altitude_m, double cos_up) const;
 
  private:
@@ -141,7 +146,7 @@ class FogLight {
   std::vector<double> chi_;
   PhaseFunction broad_;
   double extinction_per_m_, depth_;
-  double peak_scale_;  // of optical depths, without what the peak takes along
+  double peak_scale_;  // scales optical depths to exclude the forward peak
   SkyMoments sky_;     // without the ground
   BandLight ground_;   // radiance of the ground under a clear sky
   Glow of_sun_, of_sky_;

@@ -89,7 +89,7 @@ namespace {
 
 constexpr double kAboveMedia_m = 20000.0;
 
-// Of a list with one value, or one a band.
+// Returns the value of a band from a list with one value, or one per band.
 double ValueAt(const std::vector<double>& values, std::size_t band) {
   return values.size() == 1 ? values.front() : values[band];
 }
@@ -104,7 +104,7 @@ MediumOptics OpticsOf(const Volume& volume, const std::vector<double>& wavelengt
     optics.extinction_per_m[band] = extinction;
     optics.scattering_per_m[band] = extinction * albedo;
     optics.emission_per_m[band] = ValueAt(volume.emission_per_m, band);
-    // Kirchhoff: what absorbs shines.
+    // Kirchhoff's law: absorption implies emission.
     if (volume.temperature_k) {
       optics.emission_per_m[band] += extinction * (1.0 - albedo) *
                                      BlackBodyRadiance(wavelengths_nm[band], *volume.temperature_k);
@@ -188,7 +188,8 @@ double LocalMedium::ColumnTowards(const glm::dvec3& point, const glm::dvec3& dir
 
 namespace {
 
-/// Neither takes light nor gives any: to cut rays there would only round them.
+/// Returns whether a volume neither attenuates nor emits. Cutting rays at it would only add
+/// rounding errors.
 bool IsVoid(const Volume& volume) {
   const auto is_zero = [](double value) { return value == 0.0; };
   return std::all_of(volume.extinction_per_m.begin(), volume.extinction_per_m.end(), is_zero) &&

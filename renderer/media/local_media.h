@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: MIT
-// The density of fog over the whole scene: exp(-(h - base) / H) over the sphere, 1 throughout when
-// H is infinite; nothing above the top of the atmosphere.
-//
-// What stands in a scene's air: its volumes, and its fog; what each does to light.
+// This header provides the local media of a scene, its volumes and its fog, with their densities
+// and optical properties.
 //
 //   sigma_t = sum over bodies of density(p) extinction,      sigma_s = extinction albedo
 //
-// Bodies that overlap add up.
+// Overlapping bodies add up.
 //
-// This header also reads the shared text fog_layer.glsl as C++.
+// The density of fog over the whole scene is exp(-(h - base) / H) above the sphere, and 1
+// throughout if H is infinite. It is 0 above the top of the atmosphere.
+//
+// This header also provides the functions of the shared text fog_layer.glsl in C++.
 #pragma once
 
 #include <glm/vec3.hpp>
@@ -33,12 +34,12 @@ namespace alpenglow::shared {
 
 namespace alpenglow::renderer {
 
-/// Immutable. Directions are unit vectors in the frame of SceneGround, whose sphere has its centre
-/// at (0, 0, -R).
+/// A fog layer of exponential density. Immutable. Directions are unit vectors in the frame of
+/// SceneGround, whose sphere has its centre at (0, 0, -R).
 class FogLayer {
  public:
   /// @param scale_height_m  > 0; may be infinite.
-  /// @param top_m  of the atmosphere over the sphere.
+  /// @param top_m  of the atmosphere above the sphere.
   FogLayer(double base_m, double scale_height_m, double planet_radius_m, double top_m);
 
   [[nodiscard]] double base_m() const { return base_m_; }
@@ -50,31 +51,32 @@ class FogLayer {
     return DensityAtAltitude(AltitudeOf(point));
   }
 
-  /// The pieces of a line within [0, length_m] where density may be over 1e-9, in order; each
-  /// begins or ends where the line is lowest if it goes through there.
+  /// Returns the pieces of a line within [0, length_m] where the density may exceed 1e-9, in order.
+  /// If the lowest point of the line is among them, it is the end of one piece and the start of the
+  /// next.
   [[nodiscard]] std::vector<DensePiece> PiecesAlong(const glm::dvec3& origin,
                                                     const glm::dvec3& direction,
                                                     double length_m) const;
 
-  /// Integral of the density from an altitude to space [m], vertically.
+  /// Returns the integral of the density from an altitude vertically to space [m].
   [[nodiscard]] double ColumnAbove(double altitude_m) const;
-  /// Along a direction that does not meet the planet. Relative error below 1e-6.
+  /// Returns the column along a direction that does not meet the planet. Relative error below 1e-6.
   [[nodiscard]] double ColumnToSpace(const glm::dvec3& point, const glm::dvec3& direction) const;
 
  private:
   double base_m_, scale_height_m_, planet_radius_m_, top_m_;
-  double thin_m_;  // altitude over which density is below 1e-9
+  double thin_m_;  // density is below 1e-9 above this altitude
 };
 
-/// What density 1 does, band by band.
+/// Optical properties at density 1, band by band.
 struct MediumOptics {
   Bands<double> extinction_per_m;
   Bands<double> scattering_per_m;
-  Bands<double> emission_per_m;  // W m^-2 sr^-1 nm^-1 a metre
+  Bands<double> emission_per_m;  // W m^-2 sr^-1 nm^-1 per metre
   PhaseFunction phase;
 };
 
-/// A body of air and its optics.
+/// A body of air and its optical properties.
 struct LocalMedium {
   std::variant<LocalVolume, FogLayer> body;
   MediumOptics optics;
@@ -85,21 +87,21 @@ struct LocalMedium {
   [[nodiscard]] std::vector<DensePiece> PiecesAlong(const glm::dvec3& origin,
                                                     const glm::dvec3& direction,
                                                     double length_m) const;
-  /// Integral of the density towards a direction, to its end [m].
+  /// Returns the integral of the density along a direction to its end [m].
   [[nodiscard]] double ColumnTowards(const glm::dvec3& point, const glm::dvec3& direction) const;
 };
 
-/// Immutable; safe to ask from many threads.
+/// All local media of a scene. Immutable; safe to use from many threads.
 class LocalMedia {
  public:
-  /// Reads the grids of volumes. Throws InputError "volume N: ..." for those that cannot be read.
+  /// Reads the grids of volumes. Throws InputError "volume N: ..." for grids that cannot be read.
   LocalMedia(const Scene& scene, const SceneGround& ground, const Medium& medium);
-  /// Any bodies, each of `bands` bands; fog, if there is any, last, over ground at its base.
+  /// Takes any bodies, each of `bands` bands. Fog must be the last one; its ground is at its base.
   LocalMedia(std::vector<LocalMedium> all, std::size_t bands);
-  /// Some of them: the volumes or none, the fog or none.
+  /// Returns a subset: with or without the volumes, with or without the fog.
   [[nodiscard]] LocalMedia Only(bool volumes, bool fog) const;
 
-  /// The same without light of their own.
+  /// Returns the same media without emission.
   [[nodiscard]] LocalMedia WithoutGlow() const;
 
   [[nodiscard]] bool IsNothing() const { return all_.empty(); }
@@ -112,10 +114,10 @@ class LocalMedia {
     return !all_.empty() && all_.back().fog() != nullptr ? &all_.back() : nullptr;
   }
 
-  /// Altitude of the ground under the fog: its base, or the lowest ground if that is higher.
+  /// Altitude of the ground below the fog: its base, or the lowest ground if that is higher.
   [[nodiscard]] double fog_bottom_m() const { return fog_bottom_m_; }
 
-  /// Of everything that stands between a point and the end of a direction.
+  /// Returns the optical depth of all media from a point along a direction to its end.
   [[nodiscard]] Bands<double> OpticalDepthTowards(const glm::dvec3& point,
                                                   const glm::dvec3& direction) const;
 

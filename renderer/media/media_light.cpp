@@ -40,7 +40,7 @@ const LebedevRule& Lebedev() {
   return kRule;
 }
 
-/// Values at the middles of cells of the unit cube.
+/// Tabulates values at the centres of cells of the unit cube.
 template <typename Value>
 VolumeGrid Tabulated(const std::array<int, 3>& size, const Value& value) {
   const int rows = size[1] * size[2];
@@ -56,13 +56,13 @@ VolumeGrid Tabulated(const std::array<int, 3>& size, const Value& value) {
   return {size, std::move(values)};
 }
 
-/// A lamp as a volume sees it.
+/// A lamp that lights a volume.
 struct VolumeLamp {
   std::uint32_t number;
-  std::vector<VolumeGrid> depth;  // [band] of all between but the volume itself if it has no grid
+  std::vector<VolumeGrid> depth;  // [band] of the path; excludes the volume itself without grid
 };
 
-/// A volume under this sun.
+/// A volume with its light for one position of the sun.
 struct LitVolume {
   std::vector<double> chi;
   SkyMoments sky;
@@ -96,11 +96,11 @@ struct MediaLight::State {
 
   [[nodiscard]] std::size_t bands() const { return media.bands(); }
   [[nodiscard]] const FogLayer& fog_layer() const { return *media.fog()->fog(); }
-  /// What the air leaves of sunlight at a point.
+  /// Returns the transmittance of the air for sunlight at a point.
   [[nodiscard]] BandLight SunInAir(const glm::dvec3& point) const;
-  /// Of all volumes between a point and the sun.
+  /// Returns the optical depth of all volumes between a point and the sun.
   [[nodiscard]] Bands<double> VolumesToSun(const glm::dvec3& point) const;
-  /// Of the fog.
+  /// Returns the optical depth of the fog between a point and the sun.
   [[nodiscard]] double FogToSun(const glm::dvec3& point) const {
     return media.fog()->optics.extinction_per_m[0] * fog_layer().ColumnToSpace(point, sun.to_light);
   }
@@ -163,7 +163,7 @@ VolumeGrid MediaLight::State::SunColumns(const LocalVolume& volume) const {
 
 std::vector<VolumeLamp> MediaLight::State::LampsOf(const LocalVolume& volume) const {
   constexpr std::size_t kMost = 8;
-  constexpr double kDimmest = 1e-4;  // of the brightest
+  constexpr double kDimmest = 1e-4;  // relative to the brightest
   if (lamps == nullptr) return {};
   std::vector<std::pair<double, std::uint32_t>> bright;
   for (const std::uint32_t number : lamps->All()) {
@@ -207,7 +207,7 @@ VolumeLamp MediaLight::State::LampOf(const LocalVolume& volume, std::uint32_t nu
   return seen;
 }
 
-// Mean over directions of what volumes leave, weighted by the sky's radiance from there.
+// Returns the mean transmittance of the volumes over directions, weighted by the sky's radiance.
 std::vector<VolumeGrid> MediaLight::State::SkyLeft(const LocalVolume& volume,
                                                    const SkyMoments& sky) const {
   constexpr std::array<int, 3> kSize{8, 8, 8};
@@ -256,7 +256,7 @@ Bands<double> MediaLight::State::VolumesToSun(const glm::dvec3& point) const {
 
 namespace {
 
-/// The air along one ray, at knots so close that what lies between is a straight line.
+/// The air along one ray, at knots so close that values between them are linear.
 class AirOnRay {
  public:
   AirOnRay(const MediaLight::State& light, const glm::dvec3& origin, const glm::dvec3& direction)
@@ -270,11 +270,11 @@ class AirOnRay {
 
   struct Knot {
     bool is_known = false;
-    BandLight depth;  // of the air from the origin
-    BandLight sun;    // in the air, terrain and media aside
+    BandLight depth;  // of the air, from the origin
+    BandLight sun;    // in the air, without terrain and media
   };
 
-  /// What the air leaves of light from a distance, and of sunlight there.
+  /// Transmittance of the air over a distance, and sunlight at its end.
   struct Light {
     BandLight left, sun;
   };
@@ -390,7 +390,7 @@ class Sources {
     }
   }
 
-  // @param lit  the part of the sun's light that terrain and volumes let through.
+  // @param lit  fraction of sunlight that terrain and volumes let through.
   void AddFog(double altitude, double density, const BandLight& sun, const BandLight& lit,
               double fog_depth, BandLight& sum) const {
     const FogLight::Scattered fog = light_.fog->At(*look_, altitude, sun, lit, fog_depth);
@@ -422,7 +422,7 @@ const LocalMedia& MediaLight::media() const { return state_->media; }
 MarchedLight MediaLight::Along(const glm::dvec3& origin, const glm::dvec3& direction,
                                double length_m, const SunlitPath* sunlit, double tolerance) const {
   Sources sources(*state_, origin, direction, sunlit);
-  // Light of a lamp rises and falls over its distance from the ray.
+  // A lamp's light varies on the scale of its distance from the ray, so panels end there.
   std::vector<double> cuts;
   for (const LitVolume& volume : state_->volumes) {
     for (const VolumeLamp& seen : volume.lamps) {
@@ -459,7 +459,7 @@ SkyThroughFog MediaLight::SkyOnSurface(double altitude_m, double cos_up) const {
 
 namespace {
 
-/// A stretch of media within which light is taken to rise evenly.
+/// A stretch of media within which light is assumed to increase linearly.
 struct Stretch {
   double begin_m, end_m;
   BandLight first, last, weighted;  // transmittance at the ends; its integral

@@ -13,11 +13,11 @@ namespace {
 
 constexpr std::size_t kNodes = 7;
 
-/// Kronrod's seven nodes on [0, 1], the weights of both rules, and the integrals from 0 to each
-/// node of the polynomials that are 1 at one node and 0 at the others.
+/// Kronrod's seven nodes on [0, 1], the weights of both rules, and for each node the integrals from
+/// 0 to it of the polynomials that are 1 at one node and 0 at the others.
 struct KronrodRule {
   std::array<double, kNodes> node{}, weight{}, gauss_weight{};
-  std::array<std::array<double, kNodes>, kNodes> upto{};  // [node][of which]
+  std::array<std::array<double, kNodes>, kNodes> upto{};  // [node][polynomial]
 };
 
 KronrodRule MakeRule() {
@@ -57,11 +57,11 @@ const KronrodRule& Rule() {
   return kRule;
 }
 
-/// What a panel adds, as if it began at the eye.
+/// Contribution of a panel, as if it began at the eye.
 struct MarchPanel {
   double begin_m = 0.0, end_m = 0.0;
   Bands<double> light, depth, volume_depth, mean, mean_past_volumes;
-  double light_error = 0.0;  // of the band that is worst, absolute
+  double light_error = 0.0;  // of the worst band, absolute
   double depth_error = 0.0;
   double most_light = 0.0, most_depth = 0.0;
 };
@@ -150,8 +150,8 @@ class March {
     Take(middle, end_m, halvings + 1);
   }
 
-  // Extinction, or more, of the thickest band. But for grids densities rise or fall throughout a
-  // piece: what is largest is at an end.
+  // Returns an upper bound of the extinction in the thickest band. Outside grids, densities
+  // increase or decrease monotonically within a piece, so that the largest value is at an end.
   [[nodiscard]] double MostPerMetre(double begin_m, double end_m) const {
     const double inside = 1e-6 * (end_m - begin_m);
     double sum = 0.0;
@@ -167,8 +167,8 @@ class March {
     return sum;
   }
 
-  // Each panel may be wrong by the tolerance's part of what it adds, or by its share in length of
-  // what all have added so far.
+  // The error of a panel may be the tolerance times its own contribution, or times its share by
+  // length of the sum so far.
   [[nodiscard]] bool IsGood(const MarchPanel& panel) const {
     const double share = (panel.end_m - panel.begin_m) / whole_m_;
     const double most = std::max(panel.most_light, share * most_light_);
@@ -222,7 +222,8 @@ class March {
     return panel;
   }
 
-  // Optical depth of all and of volumes, by the weights of an integral over densities_.
+  // Returns the optical depths of all media and of volumes, with the weights of an integral over
+  // densities_.
   [[nodiscard]] std::pair<Bands<double>, Bands<double>> DepthUpto(
       const std::array<double, kNodes>& weights, double length, std::size_t count) const {
     std::pair<Bands<double>, Bands<double>> depth{Bands<double>(bands_), Bands<double>(bands_)};
@@ -278,7 +279,7 @@ class March {
   std::vector<std::vector<DensePiece>> pieces_;  // of each body
   std::vector<double> thickest_per_m_;
   std::vector<double> cuts_;
-  std::vector<double> largest_;    // densities of the piece at hand; 0: not there
+  std::vector<double> largest_;    // densities of the current piece; 0: not present
   std::vector<double> densities_;  // [node][body]
   Bands<double> passed_, passed_volumes_, light_;
   double whole_m_ = 0.0, most_light_ = 0.0, error_ = 0.0;
