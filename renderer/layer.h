@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Code of this layer names everything of the layers below without qualification.
+// This header makes the names of the layers below visible in this layer without qualification.
 #pragma once
 
 #include "lut/layer.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// skyseries: pictures of a scene through the day. A still is a series of one.
+// skyseries renders pictures of a scene through the day. A single picture is a series of one.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -24,8 +24,8 @@ bool IsTrack(const std::filesystem::path& file) {
   return HasExtension(file, ".gpx") || HasExtension(file, ".kml");
 }
 
-/// Where a path is: at its middle, which has most of it in sight. A flight over the built-in range
-/// begins at the view of the range.
+/// Returns the place of a path: its middle, from which most of it is visible. A flight over the
+/// built-in range begins at the view of the range.
 GeodeticPosition PlaceOfPath(const SkyseriesOptions& options) {
   if (IsTrack(*options.path)) {
     const std::vector<TrackPoint> points = ReadTrack(*options.path).points;
@@ -35,8 +35,8 @@ GeodeticPosition PlaceOfPath(const SkyseriesOptions& options) {
   return points[options.scene.dem ? points.size() / 2 : 0].pose.place;
 }
 
-/// Without a scene and without a place, a path says where; but over the built-in range at home that
-/// stays where it is.
+/// Returns the scene options. Without a scene file and without a place, the path gives the place,
+/// except for a path over the built-in range at its home, where the range stays at its place.
 SceneOptions OptionsOfScene(const SkyseriesOptions& options) {
   SceneOptions scene = options.scene;
   if (!options.path || scene.latitude || scene.longitude) return scene;
@@ -54,7 +54,7 @@ Scene SceneOf(const SkyseriesOptions& options) {
   return scene;
 }
 
-/// A track as a path; its ground is loaded for tracks that are not over the sea.
+/// Returns a track as a path; loads the ground unless the track's heights are above the sea.
 CameraPath PathOfTrack(const SkyseriesOptions& options, const Scene& scene) {
   const Track track = ReadTrack(*options.path);
   if (!track.note.empty())
@@ -125,7 +125,7 @@ Metadata MetadataOf(const Scene& scene, const std::optional<CameraPath>& path,
   return metadata;
 }
 
-/// Those that are typed.
+/// Returns the file name if one is given.
 std::optional<std::filesystem::path> FileOf(const std::optional<std::string>& name) {
   return name ? std::optional<std::filesystem::path>(*name) : std::nullopt;
 }
@@ -144,7 +144,7 @@ NotedPicture RenderFrame(const SceneRenderer& renderer, const Shot& shot,
   return {std::move(picture.image), std::move(notes)};
 }
 
-/// Of what pictures lack while the moon hides all of the sun.
+/// Warns about missing light in pictures during the totality of a solar eclipse.
 void WarnOfTotality(const SeriesSource& source, const std::vector<Frame>& frames) {
   const auto is_total = [&](const Frame& frame) {
     return source.has_moon && EclipseAt(source.PlaceOf(frame), frame.instant).disk.IsTotal();
@@ -206,7 +206,7 @@ int Run(const SkyseriesOptions& options) {
   settings.layers = LayersFromNames(options.layers);
   if (options.night_vision) settings.layers.push_back(PictureLayer::kScotopic);
   std::unique_ptr<SceneRenderer> loaded;
-  // Built for the first frame that needs it.
+  // The renderer is built for the first frame that needs it.
   const auto renderer = [&](Progress* progress) -> const SceneRenderer& {
     if (!loaded) loaded = Load(scene, progress);
     return *loaded;

@@ -75,7 +75,7 @@ struct TimesOptions {
   double every_min = 30.0;
 };
 
-/// The scene, or a place without terrain.
+/// Returns the scene, or a place without terrain.
 Scene SceneOf(const TimesOptions& options) {
   if (options.scene_file) return ReadScene(*options.scene_file);
   Scene scene;
@@ -86,7 +86,7 @@ Scene SceneOf(const TimesOptions& options) {
   return scene;
 }
 
-/// The place and the first day.
+/// Returns the place and the first day.
 EventDay FirstDayOf(const TimesOptions& options) {
   EventDay day;
   if (options.scene_file) {
@@ -101,7 +101,7 @@ EventDay FirstDayOf(const TimesOptions& options) {
   return day;
 }
 
-/// From the first noon on, by night as by day.
+/// Plots from the first noon on, by day and by night.
 void WritePlot(const TimesOptions& options, const EventDay& first) {
   const SceneRenderer renderer(SceneOf(options));
   const double span_s = 86400.0 * options.days, step_s = 60.0 * options.every_min;

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
-// `skyseries report`: speed against error of pictures, into a folder.
-//
-// `skyseries times`: sun and moon of a place, day by day.
+// This header adds two subcommands: `skyseries report` writes a report on the speed and error of
+// pictures into a folder, and `skyseries times` lists sun and moon at a place, day by day.
 #pragma once
 
 #include <functional>
@@ -11,12 +10,12 @@
 
 namespace alpenglow::renderer {
 
-/// Adds the subcommand, with common options of its own; where it is given, the program's own --out
-/// is not asked for. What runs it once the whole command line is parsed.
+/// Adds the subcommand, with its own common options; if it is given, the program's own --out is not
+/// required. Returns the function that runs it after the whole command line is parsed.
 [[nodiscard]] std::function<void()> AddPictureReportCommand(CLI::App& app);
 
-/// Adds the subcommand, with common options of its own; where it is given, the program's own --out
-/// is not asked for. What runs it once the whole command line is parsed.
+/// Adds the subcommand, with its own common options; if it is given, the program's own --out is not
+/// required. Returns the function that runs it after the whole command line is parsed.
 [[nodiscard]] std::function<void()> AddTimesCommand(CLI::App& app);
 
 }  // namespace alpenglow::renderer

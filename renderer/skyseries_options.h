@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The command line of skyseries. Included by its one translation unit (CLI11 is slow to compile).
+// This header defines the command line of skyseries. Only one translation unit includes it, because
+// CLI11 is slow to compile.
 #pragma once
 
 #include <fmt/format.h>
@@ -42,7 +43,7 @@ inline constexpr char kSkyseriesFooter[] =
     "  skyseries --dem N46E008.hgt --path walk.gpx --every 2s --out 'out/w.%04d.exr' --video "
     "walk.mp4";
 
-/// What is typed; texts are read later, against the scene.
+/// Options as typed; their texts are parsed later, against the scene.
 struct SkyseriesOptions {
   CommonOptions common;
   std::string scene_file;
@@ -276,14 +277,15 @@ inline void AddEffectOptions(CLI::App& app, SkyseriesOptions& options) {
   });
 }
 
-/// How many rays the pixels of a picture take.
+/// Sets the number of rays per pixel.
 inline void SetRays(const SkyseriesOptions& options, RenderSettings& settings) {
   if (options.samples) settings.samples_per_pixel = *options.samples;
   if (options.noise || !options.samples)
     settings.noise = RelativeErrorFromText(options.noise.value_or("2%"));
 }
 
-/// What the meter of a series looks at: 96 pixels along the longer side, with all effects.
+/// Returns the settings of the small picture that meters a series: 96 pixels along the longer side,
+/// with the effects of `settings`.
 inline RenderSettings PilotSettings(const RenderSettings& settings,
                                     const SkyseriesOptions& options) {
   constexpr int kLongSide = 96;
@@ -297,12 +299,12 @@ inline RenderSettings PilotSettings(const RenderSettings& settings,
   return pilot;
 }
 
-/// Whether each picture is to have only what it needs.
+/// Returns whether effects are chosen for each picture.
 inline bool ChoosesEffects(const SkyseriesOptions& options) {
   return options.max_error || options.effects.value_or("all") == "auto";
 }
 
-/// What pictures may have.
+/// Returns the effects that pictures may use.
 inline EffectSet EffectsOf(const SkyseriesOptions& options) {
   if (options.no_shafts) return EffectSet::All().Without(Effect::kShafts);
   return ChoosesEffects(options) ? EffectSet::All()
