@@ -12,7 +12,8 @@
 namespace alpenglow::renderer {
 namespace {
 
-/// A direction to the sun's disk, as its light is distributed over it.
+/// Returns a direction to a point of the sun's disk, drawn from the limb-darkened distribution of
+/// its light.
 glm::dvec3 TowardsDisk(const Lighting& light, std::array<double, 2> sample) {
   const glm::dvec3 side = glm::normalize(glm::cross(light.to_sun, glm::dvec3(0.3, -0.5, 0.8)));
   const double rho = light.sun_radius_rad * CircleOfLight(sample[0]);
@@ -21,7 +22,7 @@ glm::dvec3 TowardsDisk(const Lighting& light, std::array<double, 2> sample) {
                                               std::sin(angle) * glm::cross(light.to_sun, side)));
 }
 
-// Whether terrain may stand between the ground there and the sky.
+// Returns whether terrain can stand between the ground at the hit and the sky.
 bool SeesTerrain(const Hit& hit, const Lighting& light) {
   return hit.kind == HitKind::kTerrain && light.on_terrain && light.on_terrain->horizons();
 }
@@ -55,14 +56,14 @@ BandLight GroundLight::SentToSlopes(const SlopePlace& place, const GroundSources
   hit.kind = HitKind::kTerrain;
   hit.normal = hit.mesh_normal = hit.geometric_normal = place.normal;
   hit.point = hit.smooth_point =
-      place.point + 0.01 * cell_m * place.normal;  // nodes lie in the surface, not on it
+      place.point + 0.01 * cell_m * place.normal;  // the nodes of the slopes lie inside the surface
   hit.footprint_m = cell_m;
   const LocalSun sun = LocalSunAt(hit.point, light);
   BandLight irradiance =
       sky.Irradiance({hit.point, hit.normal, sun.up, sun.altitude_m, sun.mu_s_for_air});
   if (const auto direct = SunIrradiance(hit, from, sun, light.to_sun))
     irradiance = irradiance + *direct;
-  // Seen at 60 degrees, which stands for the mean over directions.
+  // The albedo for a view at 60 degrees stands for the mean over directions.
   return static_cast<float>(1.0 / kPi) *
          (PatchAt(hit, light, sun.up, 1.0).BodyAlbedo(0.5) * irradiance);
 }
@@ -74,9 +75,10 @@ LocalSun GroundLight::LocalSunAt(const glm::dvec3& point, const Lighting& light)
 double GroundLight::LitCosine(const Hit& hit, const Lighting& light, const LocalSun& sun,
                               const glm::dvec3& to_disk) const {
   const double cosine = glm::dot(hit.normal, to_disk);
-  // The smooth surface faces the sun or not. Whether the triangle does is no matter: the shadow ray
-  // starts on the smooth surface (TerrainHit::smooth_point) or meets the triangle, whose own normal
-  // would draw facets along the edge of shade (Hanika 2021, Ray Tracing Gems II, ch. 4).
+  // Test whether the smooth surface faces the sun. The geometric normal of the triangle does not
+  // matter: the shadow ray starts on the smooth surface (TerrainHit::smooth_point) or meets the
+  // triangle. Testing the triangle's own normal would draw facets along the edge of the shade
+  // (Hanika 2021, Ray Tracing Gems II, ch. 4).
   const bool faces =
       cosine > 0.0 && glm::dot(hit.mesh_normal, to_disk) > 0.0 && sun.visible_fraction > 0.0;
   const bool occluded =

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What a point of the ground sends towards the eye: light of the sun's disk, of the sky and of
-// lamps, reflected by what the ground is made of.
+// Radiance that a point of the ground sends towards the eye: light of the sun's disk, of the sky
+// and of lamps, reflected by the material of the ground.
 #pragma once
 
 #include <array>
@@ -19,22 +19,22 @@
 
 namespace alpenglow::renderer {
 
-/// A point of the ground as an eye meets it, whatever shines on it.
+/// A point of the ground as the eye sees it, independent of the illumination.
 struct SeenGround {
   GroundPatch patch;
-  Hit hit;            // with the normal of water where that is
-  BandLight albedo;   // of its body towards the eye
+  Hit hit;            // on water, with the normal of the water surface
+  BandLight albedo;   // albedo of the body of the material, towards the eye
   glm::dvec3 up;      // unit
   glm::dvec3 to_eye;  // unit
 };
 
-/// Light that leaves the ground towards the eye, of a distant light and its sky.
+/// Light of a distant source and of its sky that leaves the ground towards the eye.
 struct NaturalRadiance {
   BandLight radiance;            // W m^-2 sr^-1 nm^-1
-  float disk_visibility = 0.0F;  // the part of the disk that is seen, 0 to 1
+  float disk_visibility = 0.0F;  // visible fraction of the disk, 0 to 1
 };
 
-/// The ground of a scene, whatever air is over it.
+/// The ground of a scene, independent of the air over it.
 struct GroundParts {
   const SceneGround& ground;
   const SceneGeometry& geometry;
@@ -43,38 +43,40 @@ struct GroundParts {
   const GroundMaterial& material;
 };
 
-/// What shines on the ground.
+/// Light sources of the ground.
 struct GroundSources {
   const Lighting& light;
-  const MediaLight* media = nullptr;  // fog and volumes between sun, sky and ground; null: none
+  const MediaLight* media = nullptr;  // fog and volumes between sun, sky and ground; null: no media
 };
 
-/// Immutable, safe to share between threads. Refers to what it was made from.
+/// Immutable, safe to share between threads. Refers to the objects that it was made from.
 class GroundLight {
  public:
   GroundLight(const GroundParts& parts, const SunlitAir& air);
 
-  /// What terrain makes of the light of sky and sun, as far as the effects of the light say; null
-  /// where it makes nothing of it.
+  /// Returns the light of sky and sun on terrain, computed as far as the effects of the light
+  /// include it; null if terrain does not change that light.
   [[nodiscard]] std::shared_ptr<const TerrainLight> OnTerrain(const GroundSources& from) const;
 
-  /// @param hit  of terrain or planet; to_eye: unit. @param light  its surface and waves count.
+  /// @param hit  on terrain or planet. @param to_eye  unit. @param light  its surface and waves are
+  ///     used.
   [[nodiscard]] SeenGround SeenFrom(const Hit& hit, const glm::dvec3& to_eye,
                                     const Lighting& light) const;
 
-  /// What a light and its sky make it send towards the eye.
+  /// Returns the radiance towards the eye that a distant light and its sky cause.
   /// @param disk_sample  a point of the light's disk, uniform in the unit square: penumbrae average
   ///     over samples.
   [[nodiscard]] NaturalRadiance Natural(const SeenGround& seen, const GroundSources& from,
                                         std::array<double, 2> disk_sample) const;
 
-  /// The same of lamps, W m^-2 sr^-1 nm^-1. @param near  those that may light it.
+  /// Returns the radiance towards the eye that lamps cause, W m^-2 sr^-1 nm^-1. @param near  lamps
+  /// that can light the point.
   [[nodiscard]] BandLight OfLamps(const SeenGround& seen, const LampNodes& near) const;
 
-  /// Q and U of what water mirrors of sun and sky, in the axes of the picture: as of unpolarised
-  /// light, which that of the sky is not. A part p of it that is polarised changes what a wave near
-  /// Brewster's angle shows of it by up to p. Everything else that the ground sends counts as
-  /// unpolarised.
+  /// Returns Q and U of the light of sun and sky that water mirrors, in the axes of the picture.
+  /// The incident light is taken as unpolarised, although light of the sky is polarised. A degree
+  /// of polarisation p of the incident light changes the result for a wave near Brewster's angle by
+  /// up to p. All other light from the ground is taken as unpolarised.
   [[nodiscard]] PolarisedLight Polarised(const SeenGround& seen, const GroundSources& from,
                                          const PictureAxes& axes,
                                          std::array<double, 2> disk_sample) const;
@@ -82,27 +84,29 @@ class GroundLight {
   [[nodiscard]] LocalSun LocalSunAt(const glm::dvec3& point, const Lighting& light) const;
 
  private:
-  /// Cosine between the shading normal and a point of the disk, in whose direction it is asked; 0 where terrain or the planet
-  /// stands before it.
+  /// Returns the cosine between the shading normal and the direction to a point of the disk; 0
+  /// where terrain or the planet occludes that point.
   [[nodiscard]] double LitCosine(const Hit& hit, const Lighting& light, const LocalSun& sun,
                                  const glm::dvec3& to_disk) const;
-  /// Of the sun through the air, per unit solar irradiance [1]; nothing in the shade.
+  /// Returns the irradiance of the sun through the air, per unit solar irradiance [1]; no value in
+  /// the shade.
   [[nodiscard]] std::optional<BandLight> SunIrradiance(const Hit& hit, const GroundSources& from,
                                                        const LocalSun& sun,
                                                        const glm::dvec3& to_disk) const;
   [[nodiscard]] BandLight SkyIrradiance(const Hit& hit, const GroundSources& from,
                                         const LocalSun& sun) const;
-  /// What a slope sends to others, per unit solar irradiance [1/sr].
+  /// Returns the radiance that a slope sends to other slopes, per unit solar irradiance [1/sr].
   [[nodiscard]] BandLight SentToSlopes(const SlopePlace& place, const GroundSources& from,
                                        const TerrainLight& sky) const;
-  /// @param cosine  of eye and normal of the mesh.
+  /// @param cosine  between the direction to the eye and the normal of the mesh.
   [[nodiscard]] GroundPatch PatchAt(const Hit& hit, const Lighting& light, const glm::dvec3& up,
                                     double cosine) const;
-  /// Of the sky, and of slopes before it, in a glossy surface, per unit solar irradiance [1/sr].
+  /// Returns the radiance of the sky, and of the slopes in front of it, mirrored in a glossy
+  /// surface, per unit solar irradiance [1/sr].
   [[nodiscard]] BandLight Mirrored(const GroundPatch& patch, const Hit& hit,
                                    const glm::dvec3& to_eye, const Lighting& light,
                                    const LocalSun& sun) const;
-  /// What is seen of it in a mirrored ray.
+  /// Returns the radiance that arrives along a mirrored ray, per unit solar irradiance [1/sr].
   [[nodiscard]] BandLight SeenIn(const MirroredRay& ray, const Hit& hit, const Lighting& light,
                                  const LocalSun& sun) const;
 

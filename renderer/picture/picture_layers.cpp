@@ -24,10 +24,10 @@ LayerValues LightOf(const BandColour& colour, const PixelSum& rays) {
   return Rgb(colour, rays.Mean(kPart));
 }
 
-// Colour of a factor (albedo, transmittance) as it looks under the sun above the air, within [0,
-// 1]. Red light that has come far through air is more saturated than sRGB's red: its blue is
-// negative, down to -0.002 beside a red of 0.1. As light that is right (image.h); as a factor it
-// would turn light that it dims into its negative.
+// Returns the colour of a factor (albedo, transmittance) under the sun above the air, within [0,
+// 1]. Red light after a long path through air is more saturated than the red primary of sRGB: its
+// blue is negative, down to -0.002 beside a red of 0.1. A negative component is correct for light
+// (image.h). A negative factor would turn the light that it multiplies negative, so it is clamped.
 template <BandLight Shaded::*kPart>
 LayerValues FactorOf(const BandColour& colour, const PixelSum& rays) {
   const BandLight factor = rays.Mean(kPart);
@@ -85,7 +85,7 @@ LayerKind InColour(PictureLayer layer, const std::string& name,
   return {layer, name, {name + ".R", name + ".G", name + ".B"}, nullptr, of_rays};
 }
 
-// In the order of the enumeration.
+// Returns the kinds in the order of the enumeration.
 const std::vector<LayerKind>& LayerKinds() {
   using enum PictureLayer;
   static const std::vector<LayerKind> kKinds{

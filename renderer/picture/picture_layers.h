@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The layers that a picture may have besides its colours: one table of their names, channels and
-// values.
-//
-// From the rays of a pixel to the picture and its layers.
+// Layers that a picture can have besides its colours: one table of their names, channels and
+// values, and the writer that turns the rays of a pixel into the picture and its layers.
 #pragma once
 
 #include <array>
@@ -26,27 +24,28 @@ struct Hit;
 enum class PictureLayer {
   kDepth,          // [m], infinite in the sky
   kNormal,         // ENU, unit, with relief; zero in the sky
-  kAlbedo,         // 0 to 1, as a colour under the sun above the air
-  kInscatter,      // of sun and sky in air [cd/m^2]
-  kTransmittance,  // of air, fog and volumes, 0 to 1, as a colour under the sun above the air
+  kAlbedo,         // 0 to 1, colour under the sun above the air
+  kInscatter,      // light of sun and sky scattered by air [cd/m^2]
+  kTransmittance,  // of air, fog and volumes, 0 to 1, colour under the sun above the air
   kSunVisibility,  // 0 to 1
-  kLamps,          // all that comes from lamps [cd/m^2]
-  kVolumes,        // in fog and volumes, and what these emit [cd/m^2]
-  kScotopic,       // what rods see [scotopic cd/m^2]
-  kRays,           // how many the pixel took
-  // Of the mean radiance of the pixel's rays (image.h); behind a polariser, what it passes.
+  kLamps,          // all light that comes from lamps [cd/m^2]
+  kVolumes,        // light scattered by fog and volumes, and their emission [cd/m^2]
+  kScotopic,       // luminance for the rods of the eye [scotopic cd/m^2]
+  kRays,           // number of rays of the pixel
+  // Stokes layers of the mean radiance of the pixel's rays (image.h); with a polariser, of the
+  // light that it passes.
   kStokesQ,
   kStokesU,
   kPolarisation,
 };
 
-/// Whether the layer is one of image.h, made of Shaded::polarised.
+/// Returns whether the layer is a Stokes layer of image.h, computed from Shaded::polarised.
 [[nodiscard]] bool IsOfPolarisation(PictureLayer layer);
 
-/// Names of all layers, in their order.
+/// Returns the names of all layers, in the order of the enumeration.
 [[nodiscard]] const std::vector<std::string>& LayerNames();
 [[nodiscard]] std::string NameOf(PictureLayer layer);
-/// Throws InputError for a name that is not of LayerNames().
+/// Throws InputError for a name that is not in LayerNames().
 [[nodiscard]] PictureLayer LayerFromName(const std::string& name);
 [[nodiscard]] std::vector<PictureLayer> LayersFromNames(const std::vector<std::string>& names);
 
@@ -54,21 +53,22 @@ enum class PictureLayer {
 struct Shaded {
   BandLight radiance;  // W m^-2 sr^-1 nm^-1
   BandLight inscatter, transmittance, albedo;
-  BandLight lamps;    // of radiance, what comes from lamps
-  BandLight volumes;  // of radiance, what volumes and fog send of sun, sky and their own
-  /// Of radiance, Q and U in the axes of the picture; where asked for.
+  BandLight lamps;    // part of `radiance` that comes from lamps
+  BandLight volumes;  // part of `radiance` that fog and volumes scatter from sun and sky, or emit
+  /// Q and U of `radiance` in the axes of the picture; empty unless requested.
   std::optional<PolarisedLight> polarised = std::nullopt;
   float sun_visibility = 0.0F;
 };
 
-/// Rays of a pixel, which count alike.
+/// Sum over the rays of a pixel, which all have the same weight.
 struct PixelSum {
   BandLight radiance;
   int rays = 0;
-  /// Sums of the rest: only where layers ask for it, since most pictures have none.
+  /// Sums of the other members of Shaded; null unless layers need them, since most pictures have no
+  /// layers.
   std::shared_ptr<Shaded> parts = nullptr;
 
-  /// @param with_parts  of the first ray and all that follow.
+  /// @param with_parts  must be equal for all rays of the pixel.
   void Add(const Shaded& ray, bool with_parts);
   [[nodiscard]] BandLight MeanRadiance() const {
     return (1.0F / static_cast<float>(rays)) * radiance;
@@ -78,11 +78,12 @@ struct PixelSum {
   }
 };
 
-/// Values of a layer's channels in one pixel, as many as it has.
+/// Values of a layer's channels in one pixel; unused entries are 0.
 using LayerValues = std::array<float, 3>;
 
-/// How a layer gets its values. Of what stands in the middle of a pixel (a mean of two surfaces is
-/// the depth of neither), or the mean of its rays: one of the two is null.
+/// Describes how a layer gets its values: from the surface in the middle of a pixel (the mean depth
+/// of two surfaces is the depth of neither), or from the mean of the pixel's rays. One of the two
+/// functions is null.
 struct LayerKind {
   PictureLayer layer;
   std::string name;
@@ -93,30 +94,30 @@ struct LayerKind {
 
 [[nodiscard]] const LayerKind& KindOf(PictureLayer layer);
 
-/// How many rays the pixels of a picture took.
+/// Numbers of rays in a picture.
 struct RayCount {
-  std::uint64_t rays = 0;   // of all pixels
-  std::uint64_t least = 0;  // of a pixel
-  std::uint64_t most = 0;   // of a pixel
+  std::uint64_t rays = 0;   // sum over all pixels
+  std::uint64_t least = 0;  // smallest number in a pixel
+  std::uint64_t most = 0;   // largest number in a pixel
 };
 
-/// Puts the means of pixels into the picture.
+/// Writes the means of pixels into the picture.
 class PixelWriter {
  public:
-  /// A layer that is named twice is there once. Refers to `colour`.
+  /// A layer that is named twice is stored once. Refers to `colour`.
   PixelWriter(const BandColour& colour, int width, int height,
               const std::vector<PictureLayer>& layers);
 
-  /// Whether a layer is of what stands in the middle of a pixel: see WriteMiddle.
+  /// Returns whether a layer takes its values from the middle of a pixel (WriteMiddle).
   [[nodiscard]] bool AsksForMiddle() const;
 
-  /// Means of the rays. Not shared between pixels: rows may be written from any thread.
+  /// Writes the means of the rays. Pixels share no data, so rows may be written from any thread.
   void Write(int x, int y, const PixelSum& rays);
-  /// Layers of what stands in the middle.
+  /// Writes the layers that describe the surface in the middle of the pixel.
   void WriteMiddle(int x, int y, const Hit& hit);
 
   [[nodiscard]] Image Take();
-  /// Of the pixels that are written.
+  /// Returns the ray counts of the pixels written so far.
   [[nodiscard]] RayCount rays() const {
     return {rays_, least_ <= most_ ? least_.load() : 0, most_};
   }
@@ -124,7 +125,7 @@ class PixelWriter {
  private:
   struct Plane {
     const LayerKind& kind;
-    std::size_t first_channel;  // of image_.layers
+    std::size_t first_channel;  // index into image_.layers
   };
   void Set(const Plane& plane, int x, int y, const LayerValues& values);
 

@@ -12,11 +12,12 @@
 namespace alpenglow::renderer {
 namespace {
 
-constexpr float kSameLight = 2e-3F;  // of all that is seen there, and of transmittance
-constexpr double kSameReach = 4e-3;  // |r - 1| (1 - T)
+constexpr float kSameLight = 2e-3F;  // relative to SeenThrough(); absolute for transmittance
+constexpr double kSameReach = 4e-3;  // bound of |r - 1| (1 - T)
 
-/// What one sees at least through the air: itself, and of ground a part of what air without an end
-/// would send.
+/// Returns a lower bound of the radiance seen through the air: for sky, the light of the air
+/// itself; for ground, the radiance that air of infinite depth would send, at most four times the
+/// light of the air.
 float SeenThrough(const AirAlongRay& air, HitKind kind, std::size_t band) {
   const float light = air.inscatter[band];
   if (kind == HitKind::kSky) return light;
@@ -38,14 +39,15 @@ bool Agree(const AirAlongRay& a, const AirAlongRay& b, HitKind kind) {
   return true;
 }
 
-/// The same air, `ratio` times as far; nothing where that is too much to be told from its mean.
+/// Returns the air for a distance multiplied by `ratio`; no value where the distance changes too
+/// much to extrapolate from the mean of the air.
 std::optional<AirAlongRay> Reaching(AirAlongRay air, double ratio) {
   for (std::size_t band = 0; band < air.inscatter.count; ++band) {
     const float left = air.transmittance[band];
     if (!(std::abs(ratio - 1.0) * static_cast<double>(1.0F - left) <= kSameReach))
       return std::nullopt;
-    // T^r = T e^x with x = (r - 1) ln T, whose size kSameReach keeps below a hundredth where T > 0.2:
-    // the square is then exact to 2e-7 of T.
+    // T^r = T e^x with x = (r - 1) ln T. kSameReach keeps |x| below a hundredth where T > 0.2: the
+    // quadratic series is then exact to 2e-7 of T.
     const float x = static_cast<float>(ratio - 1.0) * std::log(std::max(left, 1e-30F));
     const float then = left * (std::abs(x) < 0.01F ? 1.0F + x * (1.0F + 0.5F * x) : std::exp(x));
     const float hidden = 1.0F - left;
@@ -134,7 +136,7 @@ std::optional<AirAlongRay> AirLattice::Before(const SharedAir& rays) {
   const auto place = frame_->camera().PlaceOf(rays.direction_sum);
   if (!place) return std::nullopt;
   const auto [x, y] = *place;
-  // Pixels around the rectangle are taken with the cells at its edge.
+  // Pixels around the rectangle use the cells at its edge.
   const auto cell = [](double along, int count) {
     return std::clamp(static_cast<int>(std::floor(along)), 0, count - 1);
   };
@@ -148,7 +150,7 @@ std::optional<AirAlongRay> AirLattice::Before(const SharedAir& rays) {
 
 namespace {
 
-/// Lamps that no ray comes near.
+/// Returns an empty tile, for pictures without lamps.
 const LampTile& DarkTile() {
   static const LampTile kDark;
   return kDark;
@@ -190,7 +192,8 @@ PixelLight::Ray PixelLight::Traced(int sample) {
 }
 
 void PixelLight::AddNewAir(std::size_t known) {
-  // The filter is symmetric: the mean of all its rays is known better than the mean of some.
+  // The filter is symmetric, so the direction of the pixel's centre is the exact mean over all
+  // rays. The mean over some of them is less accurate.
   if (airs_.size() == 1 && known == 0 && !frame_->moving.IsMoving()) {
     airs_.front().direction_sum = frame_->camera().Direction(x_ + 0.5, y_ + 0.5);
   }
@@ -209,7 +212,7 @@ void PixelLight::AddNewAir(std::size_t known) {
 void PixelLight::TakeUpTo(int rays) {
   if (rays <= sum_.rays) return;
   const std::size_t known = airs_.size();
-  thread_local std::vector<Ray> more;  // memory that all pixels of a thread use
+  thread_local std::vector<Ray> more;  // buffer reused by all pixels of a thread
   more.clear();
   for (int sample = sum_.rays; sample < rays; ++sample) more.push_back(Traced(sample));
   AddNewAir(known);

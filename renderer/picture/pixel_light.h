@@ -1,24 +1,25 @@
 // SPDX-License-Identifier: MIT
-// Air that neighbouring pixels share: computed at the corners of cells of 4 x 4 pixels, and in
-// between taken from them where the cell is as smooth as that.
+// The light of one pixel: its rays, the surfaces that they meet, and the air in front of these.
 //
-// Bilinear in the corners' light I, transmittance T and distance d. Ground at another distance than
-// the corners say, by a factor r, stands behind r times the air, as if that were alike all along:
+// Neighbouring pixels share air: it is computed at the corners of cells of 4 x 4 pixels and
+// interpolated between them where the cell is smooth enough.
+//
+// Light I, transmittance T and distance d are interpolated bilinearly between the corners. For
+// ground at a distance that differs from the interpolated one by a factor r, the air is
+// extrapolated as if it were uniform along the ray:
 //
 //   T_r = T^r,      I_r = I (1 - T^r) / (1 - T)
 //
-// A cell is shared when all its corners and its middle see the sky, or all see terrain, and what is
-// computed for its middle agrees with the corners in every band:
+// A cell is shared when all its corners and its middle see the sky, or all see terrain, and the air
+// computed for its middle agrees with the interpolated air in every band:
 //
 //   |dI| <= 2e-3 I before the sky, 2e-3 min(I / (1 - T), 4 I) before ground,      |dT| <= 2e-3,
 //
-// (and Q and U, where they are asked for, as I),
-// where I / (1 - T) is the brightness of air without an end; and ground in it where
-// |r - 1| (1 - T) <= 4e-3, so that what the last stretch of air has more or less than the rest of
-// it is less than 4e-3 of that. Everything else is computed for each pixel, as
-// everything is in a picture of equally many rays, and in fog and volumes.
-//
-// The light of one pixel: its rays, what they meet, and the air they look through.
+// where I / (1 - T) is the radiance of air of infinite depth. Q and U, where requested, have the
+// bound of I. Ground in a shared cell uses the shared air where |r - 1| (1 - T) <= 4e-3: an error
+// of the uniformity along the last stretch of air is then less than 4e-3 of the radiance of air of
+// infinite depth. All other air is computed for each pixel, and so is all air in a picture with a
+// fixed number of rays, and in fog and volumes.
 #pragma once
 
 #include <glm/vec2.hpp>
@@ -35,16 +36,16 @@ namespace alpenglow::renderer {
 
 struct SceneState;
 
-/// Of a rectangle of pixels; cells are computed when they are asked for, by one thread. Refers to
-/// scene and frame.
+/// Air of a rectangle of pixels. Cells are computed on demand, by one thread. Refers to scene and
+/// frame.
 class AirLattice {
  public:
   static constexpr int kCell = 4;  // pixels
 
-  /// @param x0, y0  first pixel. @param x1, y1  behind the last.
+  /// @param x0, y0  first pixel. @param x1, y1  one past the last pixel.
   AirLattice(const SceneState& scene, const PictureFrame& frame, int x0, int y0, int x1, int y1);
 
-  /// The air before rays of a pixel; nothing where it cannot be shared.
+  /// Returns the air in front of rays of a pixel; no value where it cannot be shared.
   [[nodiscard]] std::optional<AirAlongRay> Before(const SharedAir& rays);
 
  private:
@@ -57,47 +58,49 @@ class AirLattice {
 
   [[nodiscard]] const Corner& At(int column, int row);
   [[nodiscard]] Corner Computed(double x, double y) const;
-  /// Of what stands at a distance, at (x, y) within the picture.
+  /// Returns the interpolated air in front of a surface at a distance, at (x, y) within the picture.
   [[nodiscard]] std::optional<AirAlongRay> Between(int column, int row, double x, double y,
                                                    HitKind kind, double distance_m);
   [[nodiscard]] bool IsShared(int column, int row);
 
   const SceneState* scene_;
   const PictureFrame* frame_;
-  int x0_, y0_, columns_, rows_;  // of cells
+  int x0_, y0_, columns_, rows_;  // in cells
   std::vector<std::optional<Corner>> corners_;
   std::vector<Cell> cells_;
 };
 
 struct SceneState;
 
-/// Takes rays until it has as many as it is asked for; all count alike. Refers to scene, frame and
-/// lattice.
+/// Accumulates rays of one pixel up to a requested number; all rays have the same weight. Refers to
+/// scene, frame and lattice.
 class PixelLight {
  public:
-  /// @param most_rays  that it will ever be asked for. A pixel of a single one looks through its
-  ///     middle.
-  /// @param around  air that is shared with other pixels; null: none is.
-  /// @param expected_m  how far rays may go (SceneState::Trace).
+  /// @param most_rays  largest number of rays that will be requested. A pixel with a single ray
+  ///     looks through its middle.
+  /// @param around  air shared with other pixels; null: no sharing.
+  /// @param expected_m  expected length of the rays (SceneState::Trace).
   PixelLight(const SceneState& scene, const PictureFrame& frame, int x, int y, int most_rays,
              AirLattice* around = nullptr, double expected_m = 0.0);
 
-  /// More rays until there are so many. Air that earlier rays look through is not asked for again.
+  /// Adds rays until the pixel has `rays` of them. Air of earlier rays is reused.
   void TakeUpTo(int rays);
-  /// The first ray, through the middle of a pixel in which nothing but sky is seen.
+  /// Adds the first ray, through the middle of a pixel that sees only sky.
   void TakeOpenSky();
 
   [[nodiscard]] const PixelSum& sum() const { return sum_; }
-  /// Length of the last ray that met something, or what was expected [m].
+  /// Length of the last ray that met a surface, or the expected length [m].
   [[nodiscard]] double last_m() const { return last_m_; }
   [[nodiscard]] const RaySpread& spread() const { return spread_; }
 
-  /// The rays since it was last asked, without light from lamps and volumes: its glow in the air is
-  /// one value for all rays of a pixel, and near lamps very another one for the next.
+  /// Returns the rays added since the last call, without light from lamps and volumes: the airlight
+  /// of lamps has one value for all rays of a pixel, and near lamps it changes strongly from pixel
+  /// to pixel.
   [[nodiscard]] std::vector<SeenRay> NewRays() { return std::exchange(new_rays_, {}); }
-  /// The light of the air of rays that see the sky, to which the radiance of these is added.
+  /// Airlight of the rays that see the sky; the radiance in NewRays() of these rays is relative to it.
   [[nodiscard]] const std::optional<BandLight>& sky() const { return sky_; }
-  /// What is known of the mean radiance without that better than from its rays alone.
+  /// Replaces the mean radiance without lamps and volumes by a better estimate than the mean of the
+  /// pixel's own rays.
   void SetMeanRadiance(const BandLight& mean) {
     sum_.radiance = static_cast<float>(sum_.rays) * mean + glow_;
   }
@@ -106,7 +109,7 @@ class PixelLight {
   struct Ray {
     CameraRay ray;
     Hit hit;
-    std::size_t air;    // of airs_
+    std::size_t air;    // index into airs_
     glm::dvec2 offset;  // from the middle of the pixel
   };
   [[nodiscard]] Ray Traced(int sample);
@@ -125,7 +128,7 @@ class PixelLight {
   RaySpread spread_;
   std::vector<SeenRay> new_rays_;
   std::optional<BandLight> sky_;
-  BandLight glow_;  // sum of what new_rays_ are without
+  BandLight glow_;  // sum of the light from lamps and volumes that new_rays_ exclude
 };
 
 }  // namespace alpenglow::renderer

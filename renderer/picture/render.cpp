@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Pictures of what a scene needs: the pilot of effect_choice.h, with a scene's own pixels.
+// Renders pictures with the effects that a scene needs: runs the pilot of effect_choice.h with the
+// scene's own pixels.
 #include "renderer/picture/render.h"
 
 #include <optional>
@@ -67,7 +68,7 @@ const SceneState& SceneState::OnFewBands() const {
   return few_bands ? *few_bands : *this;
 }
 
-// Effects that have something to do.
+// Returns the effects that can change this picture.
 EffectSet SceneState::Present(const PictureFrame& frame) const {
   const auto without = [](EffectSet effects, bool is_there, EffectSet those) {
     if (is_there) return effects;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Pixels of a scene: their rays, what these see, and the air on the way.
+// Pixels of a scene: their rays, the surfaces that these meet, and the air in front of the surfaces.
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
@@ -20,7 +20,7 @@
 namespace alpenglow::renderer {
 namespace {
 
-/// A square of pixels that one thread works on, within a picture.
+/// A square of pixels within a picture, processed by one thread.
 struct Tile {
   static constexpr int kSide = 64;
   int x0, y0, x1, y1;
@@ -31,14 +31,14 @@ struct Tile {
   }
   [[nodiscard]] std::size_t Size() const { return Index(x0, y1); }
 
-  /// visit(x, y), row by row.
+  /// Calls visit(x, y) row by row.
   template <typename See>
   void Visit(const See& visit) const {
     for (int y = y0; y < y1; ++y) {
       for (int x = x0; x < x1; ++x) visit(x, y);
     }
   }
-  /// visit(Index of each of up to eight).
+  /// Calls visit(index) for each of up to eight neighbours.
   template <typename See>
   void VisitNeighbours(int x, int y, const See& visit) const {
     for (int v = y - 1; v <= y + 1; ++v) {
@@ -49,7 +49,7 @@ struct Tile {
   }
 };
 
-/// Mean of the relative variances of the neighbours of a pixel; its own where it has none.
+/// Returns the mean of the relative variances of a pixel's neighbours; its own if it has no neighbours.
 double VarianceAround(const std::vector<double>& variances, const Tile& tile, int x, int y) {
   double sum = 0.0;
   int neighbours = 0;
@@ -60,7 +60,8 @@ double VarianceAround(const std::vector<double>& variances, const Tile& tile, in
   return neighbours > 0 ? sum / neighbours : variances[tile.Index(x, y)];
 }
 
-/// Of all rays of the neighbours of a pixel as if they were of one.
+/// Returns the relative variance over the rays of all neighbours of a pixel, pooled as if they
+/// belonged to one pixel.
 double VarianceAmong(const std::vector<RaySpread>& spreads, const Tile& tile, int x, int y,
                      double floor) {
   RaySpread all;
@@ -68,16 +69,17 @@ double VarianceAmong(const std::vector<RaySpread>& spreads, const Tile& tile, in
   return all.RelativeVariance(floor);
 }
 
-/// Angle between unit vectors, from the chord: the arc cosine of a number near 1 has no digits left.
+/// Returns the angle between unit vectors, computed from the chord: the arc cosine of a number near
+/// 1 loses all digits.
 double AngleBetween(const glm::dvec3& a, const glm::dvec3& b) {
   return 2.0 * std::asin(std::min(0.5 * glm::length(a - b), 1.0));
 }
 
-/// How far a direction points from the middle of the sun, in its radii; nothing beside the disk and
-/// where the moon stands before it.
+/// Returns the angular distance of a direction from the centre of the sun, in solar radii; no value
+/// outside the disk and where the moon covers it.
 std::optional<double> PlaceOnSun(const glm::dvec3& direction, const glm::dvec3& to_sun,
                                  const glm::dvec3& to_moon, const Lighting& light) {
-  // A chord is no longer than its arc.
+  // A chord is never longer than its arc.
   if (glm::length(direction - to_sun) >= light.sun_radius_rad) return std::nullopt;
   const double rho = AngleBetween(direction, to_sun) / light.sun_radius_rad;
   if (rho >= 1.0) return std::nullopt;
@@ -86,11 +88,12 @@ std::optional<double> PlaceOnSun(const glm::dvec3& direction, const glm::dvec3& 
   return rho;
 }
 
-/// Each band of the disk stands where the air lifts it to, and shines through the bent ray's air.
+/// Returns the radiance of the refracted disk: each band of the disk is lifted by its own
+/// refraction, and attenuated by the air along the bent ray.
 BandLight BentSunDisk(const glm::dvec3& direction, const AirAlongRay& through,
                       const Lighting& light, const BentSight& bent, const Medium& medium) {
   BandLight disk(light.irradiance.count);
-  // The disk is not wider than a round one.
+  // The refracted disk is not wider than a circular one.
   if (glm::length(direction - light.to_sun) > 2.0 * light.sun_radius_rad) return disk;
   const double elevation = bent.ElevationOf(direction);
   const double per_sr = 1.0 / DiskSolidAngle(light.sun_radius_rad);
@@ -125,7 +128,7 @@ BandLight SceneState::SunDisk(const glm::dvec3& direction, const AirAlongRay& th
 
 namespace {
 
-/// @param turn  axis and angle. Rodrigues' formula.
+/// Rotates a direction by Rodrigues' formula. @param turn  axis times angle.
 glm::dvec3 Turned(const glm::dvec3& direction, const glm::dvec3& turn) {
   const double angle = glm::length(turn);
   if (angle == 0.0) return direction;
@@ -134,13 +137,13 @@ glm::dvec3 Turned(const glm::dvec3& direction, const glm::dvec3& turn) {
          (1.0 - std::cos(angle)) * glm::dot(axis, direction) * axis;
 }
 
-/// Mean while the shutter is open.
+/// Returns the mean radiance while the shutter is open.
 double MeanMoonRadiance(const MoonDisk& moon, const glm::dvec3& turn, const glm::dvec3& direction) {
   const double angle = glm::length(turn);
   if (angle == 0.0) return MoonRadiance(moon, direction);
   const double chord = glm::length(direction - moon.to_moon);
   if (chord > 0.5 * angle + moon.radius_rad) return 0.0;
-  // A twentieth of the disk from step to step.
+  // One step is a twentieth of the disk.
   const int steps = 1 + static_cast<int>(angle / (0.1 * moon.radius_rad));
   double sum = 0.0;
   for (int i = 0; i < steps; ++i)
@@ -148,11 +151,11 @@ double MeanMoonRadiance(const MoonDisk& moon, const glm::dvec3& turn, const glm:
   return sum / steps;
 }
 
-/// As BentSunDisk.
+/// Returns the radiance of the refracted moon (see BentSunDisk).
 BandLight BentMoon(const glm::dvec3& direction, const AirAlongRay& through, const Lighting& light,
                    const BentSight& bent) {
   BandLight seen(light.irradiance.count);
-  // The disk is not wider than a round one, nor its way.
+  // Neither the refracted disk nor its trail is wider than the unrefracted one.
   const double widest = 2.0 * light.moon->radius_rad + glm::length(light.moon_turn);
   if (glm::length(direction - light.moon->to_moon) > widest) return seen;
   MoonDisk moon = *light.moon;
@@ -173,7 +176,7 @@ BandLight BentMoon(const glm::dvec3& direction, const AirAlongRay& through, cons
 BandLight SceneState::MoonSeen(const glm::dvec3& direction, const AirAlongRay& through,
                                const PictureFrame& frame) const {
   const Lighting& light = frame.light;
-  // Before the sun its earthshine would stand out against a corona that is not there.
+  // During an eclipse, the earthshine of the moon would stand out, because the renderer has no corona.
   if (!light.moon || light.eclipse) return BandLight(light.irradiance.count);
   if (frame.bent) return BentMoon(direction, through, light, *frame.bent);
   const double radiance = MeanMoonRadiance(*light.moon, light.moon_turn, direction);
@@ -204,7 +207,7 @@ PolarisedLight SceneState::PolarisedGround(const Hit& hit, const CameraRay& ray,
 
 namespace {
 
-/// Behind the camera's polariser.
+/// Applies the camera's polariser.
 Shaded Polarised(const CameraRays& camera, const glm::dvec3& direction,
                  const PolarisedLight& inscatter, Shaded shaded) {
   const std::optional<glm::dvec3> passed = camera.PassedBy(direction);
@@ -350,8 +353,8 @@ void SceneState::AddTiles(const PictureFrame& frame, PixelWriter& writer) const 
   });
 }
 
-// First rays of the tile and of the pixels around it, which belong to others and are only asked
-// about noise and for what these rays see.
+// Traces first rays of the tile and of a border of pixels around it. Border pixels belong to other
+// tiles; they only provide the noise estimate and their rays.
 void SceneState::AddTile(const PictureFrame& frame, double floor, int x0, int y0,
                          const OpenSkyPixels& open_sky, PixelWriter& writer) const {
   const RenderSettings& settings = frame.settings;

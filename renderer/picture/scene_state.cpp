@@ -33,13 +33,14 @@ RecentSunlight::Made RecentSunlight::At(const glm::dvec3& to_sun, double sun_rad
 
 namespace {
 
-// By less than this share of the light that is there nobody sees whether another is.
+// A light below this fraction of the light already present is invisible.
 constexpr double kUnseenShare = 1e-4;
-// The sky without a moon.
+// Illuminance of the moonless night sky.
 constexpr double kNightSky_lux = 1e-3;
 
-/// With the stars westwards, but for what the moon goes back among them: 13.18 degrees a day
-/// (Meeus 1998, Astronomical Algorithms, chapter 47), here as if along the equator.
+/// Returns the rotation of the moon while the shutter is open: westwards with the stars, less its
+/// own motion among them of 13.18 degrees a day (Meeus 1998, Astronomical Algorithms, chapter 47),
+/// here taken along the equator.
 glm::dvec3 MoonTurn(double open_s, double latitude_rad, const CameraStand& stand) {
   constexpr double kBack_rad_per_s = 13.17640 / 86400.0 * kRadiansPerDegree;
   const glm::dvec3 pole =
@@ -70,8 +71,8 @@ double SceneState::Illuminance(const glm::dvec3& eye, const Lighting& light) con
 }
 
 LampPlan SceneState::PlanLamps(const PictureFrame& frame) const {
-  // Lamps are too dim to see where all that are left out together change a grey card in daylight
-  // by less than a thousandth.
+  // A lamp is negligible if all neglected lamps together change a grey card in daylight by less
+  // than a thousandth.
   constexpr double kGreyCard = 0.18;
   LampSettings lamp_settings = frame.settings.lamps;
   lamp_settings.floor_cd_per_m2 =
@@ -103,7 +104,7 @@ Lighting SceneState::LightingAt(const Shot& shot, const CameraStand& stand) cons
   Lighting light = LightingOf(sun, shot.instant, scene.place, medium, scene.ground.wetness);
   light.to_sun = stand.frame_from_enu * light.to_sun;
   light.to_sun_for_air = stand.frame_from_enu * light.to_sun_for_air;
-  if (!medium.follows_wgs84) return light;  // no other planet has this moon
+  if (!medium.follows_wgs84) return light;  // other planets have other moons
   const GeodeticPosition eye = EyeOf(shot);
   light.moon = ApparentMoonDisk(eye, shot.instant, sun.distance_au, GentleAirOf(medium));
   const EclipsedDisk disk = EclipsedDiskOf(sun, MoonAt(eye, shot.instant));
@@ -141,7 +142,7 @@ void SceneState::AddNight(const Shot& shot, const CameraStand& stand, double ear
       sun_lux > kUnseenShare * (moon_lux + kNightSky_lux) ||
       depression_rad < DepressionOfDarkAir(geometry.AltitudeOf(stand.eye), geometry.radius_m(),
                                            medium.atmosphere_height_m);
-  const double towns_lux = towns ? kPi * colour.Xyz(InDouble(*towns))[1] : 0.0;  // at most
+  const double towns_lux = towns ? kPi * colour.Xyz(InDouble(*towns))[1] : 0.0;  // upper bound
   if (kNightSky_lux + towns_lux < kUnseenShare * sun_lux) return;
   light.night = std::make_shared<NightLight>(
       NightSky(eye, shot.instant).InFrame(stand.frame_from_enu), models.whole().air, colour,
@@ -236,10 +237,10 @@ std::shared_ptr<const StarPixels> SceneState::StarsIn(const PictureFrame& frame,
       });
 }
 
-// The terrain in the light of the sun, and of the moon.
+// Computes the terrain's illumination by the sun and by the moon.
 void SceneState::LightTerrain(PictureFrame& frame) const {
   Prepare(frame.settings.progress, "light of slopes");
-  if (frame.Has(Effect::kHorizons)) (void)horizons->Get();  // made once, for all frames
+  if (frame.Has(Effect::kHorizons)) (void)horizons->Get();  // computed once, for all frames
   const Stopwatch watch;
   if (frame.light.shows)
     frame.light.on_terrain = frame.model->ground_light.OnTerrain(frame.ground_sources());
@@ -252,8 +253,8 @@ void SceneState::LightTerrain(PictureFrame& frame) const {
 }
 
 void SceneState::LightMedia(PictureFrame& frame) const {
-  // By the light of less than a millionth of a lux fog is what lamps make of it, unless it stands
-  // before a volume.
+  // Below a millionth of a lux of sunlight, only lamps light fog, unless fog stands in front of a
+  // volume.
   const bool has_volumes = frame.Has(Effect::kVolumes) && media.HasVolumes();
   const bool is_lit =
       frame.Has(Effect::kFogGlow) && (has_volumes || frame.moonlit || SunIlluminance(frame) > 1e-6);
@@ -273,7 +274,7 @@ void SceneState::LightMedia(PictureFrame& frame) const {
   }
 }
 
-// The same picture with fewer effects.
+// Returns the frame with fewer effects.
 PictureFrame SceneState::Reduced(PictureFrame frame, EffectSet effects) const {
   constexpr EffectSet kThatLightTerrain{Effect::kHorizons,  Effect::kBounce,  Effect::kSkylight,
                                         Effect::kShadows,   Effect::kFogGlow, Effect::kVolumes,

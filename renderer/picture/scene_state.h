@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Light of sun or moon in the air over one ground, made once for all pictures of one moment.
-//
-// What a SceneRenderer is made of: its parts, and what becomes of them in one picture.
+// The prepared scene behind SceneRenderer: its parts, and the steps that turn them into one
+// picture; and the cache of sunlight or moonlight in the air over one ground, which all pictures of
+// a moment share.
 #pragma once
 
 #include <array>
@@ -26,18 +26,18 @@
 
 namespace alpenglow::renderer {
 
-/// Keeps the last two that it has made: a frame of a series is metered small while the frame before
-/// it is developed, and drawn then. Safe to ask from many threads.
+/// Keeps the last two results: a frame of a series is metered in a small picture while the frame
+/// before it is developed, and rendered afterwards. Safe to call from many threads.
 class RecentSunlight {
  public:
   struct Made {
     std::shared_ptr<const TerrainSunlight> sunlight;
-    double made_in_s;  // of all threads together
+    double made_in_s;  // CPU time, summed over threads
   };
 
   /// Refers to the ground.
   explicit RecentSunlight(const SceneGround& ground) : ground_(ground) {}
-  /// @param to_sun  as TerrainSunlight takes it.
+  /// @param to_sun  as for TerrainSunlight.
   [[nodiscard]] Made At(const glm::dvec3& to_sun, double sun_radius_rad);
 
  private:
@@ -49,7 +49,7 @@ class RecentSunlight {
 
   const SceneGround& ground_;
   std::mutex asking_;
-  std::deque<Kept> kept_;  // the oldest first
+  std::deque<Kept> kept_;  // oldest first
 };
 
 class OpenSkyPixels;
@@ -59,7 +59,8 @@ struct SceneState {
       : SceneState(of, std::make_shared<SceneGround>(LoadGround(of, progress))) {}
   SceneState(const Scene& of, std::shared_ptr<const SceneGround> on)
       : SceneState(of, std::move(on), nullptr) {}
-  /// @param other  on the same ground, whose horizons and light in the air this one shares; or null.
+  /// @param other  a state on the same ground, to share its horizons and its light in the air; may
+  ///     be null.
   SceneState(const Scene& of, std::shared_ptr<const SceneGround> on, const SceneState* other)
       : scene(of),
         shared_ground(std::move(on)),
@@ -81,28 +82,30 @@ struct SceneState {
   [[nodiscard]] PictureFrame FrameAt(const Shot& shot, const RenderSettings& settings) const;
   void LightMedia(PictureFrame& frame) const;
   void LightTerrain(PictureFrame& frame) const;
-  /// Moonlight, the sky of the night, stars: what of them could show.
+  /// Adds moonlight and the night sky where they can be visible.
   void LightNight(PictureFrame& frame) const;
   [[nodiscard]] std::shared_ptr<const StarPixels> StarsIn(const PictureFrame& frame,
                                                           const Shot& shot) const;
-  /// What air, fog and a polariser leave of light from space at a place of the picture; nothing behind ground.
+  /// Returns the fraction of light from space that air, fog and a polariser let through at a place
+  /// of the picture; no value where ground is in front.
   [[nodiscard]] std::optional<BandLight> LeftOfSpace(const PictureFrame& frame, double x,
                                                      double y) const;
   [[nodiscard]] PictureFrame Reduced(PictureFrame frame, EffectSet effects) const;
   [[nodiscard]] Image Pixels(const PictureFrame& frame,
                              const std::vector<PixelPlace>& places) const;
   [[nodiscard]] CountedPicture Picture(const PictureFrame& frame) const;
-  /// Rows of a picture whose pixels take equally many rays.
+  /// Adds the rows of a picture with a fixed number of rays per pixel.
   void AddRows(const PictureFrame& frame, PixelWriter& writer) const;
-  /// Tiles of one whose pixels take what their noise asks for.
+  /// Adds the tiles of a picture whose pixels take as many rays as their noise requires.
   void AddTiles(const PictureFrame& frame, PixelWriter& writer) const;
   void AddTile(const PictureFrame& frame, double floor, int x0, int y0,
                const OpenSkyPixels& open_sky, PixelWriter& writer) const;
   void Write(const PictureFrame& frame, int x, int y, const PixelLight& pixel,
              PixelWriter& writer) const;
-  /// Of what is darker, noise counts as if it were so bright (effect_choice.h) [cd/m^2].
+  /// Returns the luminance floor of the relative noise: darker pixels count as if they had this
+  /// luminance (effect_choice.h) [cd/m^2].
   [[nodiscard]] double NoiseFloor(const PictureFrame& frame) const;
-  /// @param expected_m  how far the ray may go; 0: unknown.
+  /// @param expected_m  expected length of the ray; 0: unknown.
   [[nodiscard]] Hit Trace(const CameraRay& ray, const PictureFrame& frame,
                           double expected_m = 0.0) const {
     if (frame.bent && frame.bent->moves_ground) return OnBentRay(ray, frame, expected_m);
@@ -111,29 +114,29 @@ struct SceneState {
   [[nodiscard]] const SceneGeometry& Relief(const PictureFrame& frame) const {
     return frame.Has(Effect::kRelief) ? geometry : smooth_geometry;
   }
-  /// What a bent ray meets. Terrain is seen within 0.1' of where the ray equation has it.
+  /// Returns the hit of a bent ray. Terrain appears within 0.1' of the solution of the ray equation.
   [[nodiscard]] Hit OnBentRay(const CameraRay& ray, const PictureFrame& frame,
                               double expected_m) const;
   /// Returns the largest lift [rad] of terrain and the horizon.
   [[nodiscard]] double MostLift(const PictureFrame& frame, double eye_height_m) const;
-  /// Where it moves something in the picture by more than half a pixel; else null.
+  /// Returns the refraction if it moves something in the picture by more than half a pixel; else null.
   [[nodiscard]] std::shared_ptr<const BentSight> BentSightOf(const PictureFrame& frame,
                                                              const Shot& shot) const;
   [[nodiscard]] Shaded Shade(const Hit& hit, const SharedAir& through, const CameraRay& ray,
                              const PictureFrame& frame, const LampTile& near,
                              std::array<double, 2> disk_sample) const;
-  /// Shade() of a camera without a polariser, and without Shaded::polarised.
+  /// Computes Shade() without a polariser and without Shaded::polarised.
   [[nodiscard]] Shaded ShadedWithoutPolariser(const Hit& hit, const SharedAir& through,
                                               const CameraRay& ray, const PictureFrame& frame,
                                               const LampTile& near,
                                               std::array<double, 2> disk_sample) const;
-  /// Q and U of what the ground there sends, of sun and moon.
+  /// Returns Q and U of the light of sun and moon that the ground sends towards the eye.
   [[nodiscard]] PolarisedLight PolarisedGround(const Hit& hit, const CameraRay& ray,
                                                const PictureFrame& frame,
                                                std::array<double, 2> disk_sample) const;
   [[nodiscard]] BandLight SunDisk(const glm::dvec3& direction, const AirAlongRay& through,
                                   const PictureFrame& frame) const;
-  /// With the stars at the pixel, which rays do not meet.
+  /// Adds the light of stars at the pixel, which rays do not meet.
   [[nodiscard]] static PixelSum WithStars(const PictureFrame& frame, int x, int y, PixelSum rays);
   [[nodiscard]] BandLight MoonSeen(const glm::dvec3& direction, const AirAlongRay& through,
                                    const PictureFrame& frame) const;
@@ -142,10 +145,10 @@ struct SceneState {
   [[nodiscard]] SunPosition ApparentSun(const Shot& shot) const;  // see SceneRenderer
   [[nodiscard]] CameraStand StandOf(const Shot& shot) const;
   [[nodiscard]] Lighting LightingAt(const Shot& shot, const CameraStand& stand) const;
-  /// What shines besides the sun, where that is dim enough.
+  /// Adds the night sky and moonlight to `light` if the sun is dim enough.
   void AddNight(const Shot& shot, const CameraStand& stand, double earth_sun_au,
                 Lighting& light) const;
-  /// Of one light and the sky that it makes, on a level plane [lux].
+  /// Returns the illuminance of one light and its sky on a level plane [lux].
   [[nodiscard]] double IlluminanceBy(const DistantLight& source, const glm::dvec3& eye,
                                      const Lighting& light) const;
   [[nodiscard]] double SunIlluminance(const PictureFrame& frame) const;
@@ -154,9 +157,9 @@ struct SceneState {
   [[nodiscard]] LampPlan PlanLamps(const PictureFrame& frame) const;
 
   [[nodiscard]] EffectSet Present(const PictureFrame& frame) const;
-  /// The same scene on as many bands; nothing where nobody knows its air there.
+  /// Returns this scene with another number of bands; null if its medium is not known on those bands.
   [[nodiscard]] std::unique_ptr<SceneState> OnOtherBands(int bands) const;
-  /// The scene without its fine spectrum: itself where it has none.
+  /// Returns the scene without its fine spectrum; itself if it has no fine spectrum.
   [[nodiscard]] const SceneState& OnFewBands() const;
   [[nodiscard]] const SceneState& For(EffectSet effects) const {
     return effects.Has(Effect::kFineSpectrum) ? *this : OnFewBands();
@@ -174,7 +177,7 @@ struct SceneState {
   std::shared_ptr<RecentSunlight> recent_sunlight, recent_moonlight;
   GroundMaterial material;
   AirModels models;
-  std::optional<BandLight> towns;  // TownLight
+  std::optional<BandLight> towns;  // light of towns in the night sky (TownLight)
   mutable std::once_flag few_bands_asked;
   mutable std::unique_ptr<SceneState> few_bands;
 };

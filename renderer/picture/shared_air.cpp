@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Where bent rays of a picture lead, and whether that shows.
+// Computes the refracted rays of a picture, and whether their effect is visible; and the air along
+// its rays.
 #include "renderer/picture/shared_air.h"
 
 #include <algorithm>
@@ -41,7 +42,7 @@ const AirModel& AirModels::With(EffectSet effects) const {
 
 namespace {
 
-/// The direction in the same vertical plane that stands so high.
+/// Returns the direction in the same vertical plane at an elevation.
 glm::dvec3 AtElevation(const glm::dvec3& direction, const glm::dvec3& up, double elevation_rad) {
   const glm::dvec3 across = direction - glm::dot(direction, up) * up;
   const double length = glm::length(across);
@@ -53,13 +54,13 @@ double Elevation(const glm::dvec3& direction, const glm::dvec3& up) {
   return std::asin(std::clamp(glm::dot(direction, up), -1.0, 1.0));
 }
 
-/// How far chords of bent rays may lie beside them, seen from the eye. Beside exact rays, moonlit crests of one pixel
-/// are off by 2.8 % of their light in one pixel of a thousand at 0.04 pixels, by 1.0 % at 0.005, in 1.01 times the
-/// time.
+/// Largest distance between a chord and its bent ray, as an angle from the eye. Compared with exact
+/// rays, moonlit crests of one pixel are off by 2.8 % of their light in one pixel of a thousand at
+/// 0.04 pixels, and by 1.0 % at 0.005, for 1.01 times the time.
 constexpr double kOffPixels = 0.005, kLeastOff_rad = 1e-4 * kRadiansPerDegree / 60.0;
 
-/// How much flatter a disk is than round at its lower limb, or its colours apart at its
-/// rim [rad].
+/// Returns the larger of the flattening of a disk at its lower limb and the separation of its
+/// colours at the limb [rad].
 double ChangeOfDisk(const BentView& view, double elevation_rad, double radius_rad,
                     std::size_t bands) {
   const auto lift = [&](double elevation, std::size_t band) {
@@ -86,7 +87,7 @@ std::shared_ptr<const BentSight> SceneState::BentSightOf(const PictureFrame& fra
   const double half_pixel = 0.5 * camera.PixelAngle();
   const glm::dvec3 up = geometry.UpAt(camera.eye());
   const double height_m = std::max(geometry.AltitudeOf(camera.eye()), 0.0);
-  // The margin around the picture is that of what stands on its edge.
+  // The margin around the picture admits bodies that only touch its edge.
   const auto in_picture = [&](const glm::dvec3& direction, double margin_rad) {
     const auto at = camera.PlaceOf(direction);
     const double margin = margin_rad / camera.PixelAngle();
@@ -145,9 +146,9 @@ double SceneState::MostLift(const PictureFrame& frame, double eye_height_m) cons
 
 namespace {
 
-/// Whether the bare planet stands between the eye and terrain that a ray meets: it goes into the
-/// planet before, where no terrain covers it (a ray through a basin below the sphere is in free
-/// air). Inside the planet the air of the ground goes on.
+/// Returns whether the bare planet occludes the terrain that a ray meets: the ray enters the planet
+/// before it, where no terrain covers the planet (a ray through a basin below the sphere is in free
+/// air). Inside the planet the air of ground level continues.
 bool HiddenByPlanet(const SceneGeometry& geometry, const BentGroundRay& met, const BendingAir& air,
                     const glm::dvec3& foot, const glm::dvec3& up, const glm::dvec3& across,
                     const glm::dvec3& point) {
@@ -163,8 +164,8 @@ bool HiddenByPlanet(const SceneGeometry& geometry, const BentGroundRay& met, con
                                              (std::sin(inside) * across - 2.0 * sine * sine * up));
 }
 
-/// Whether a ray sinks all the way to a point that is not below the planet's sphere. The chord to it
-/// is not above the ray.
+/// Returns whether a ray descends all the way to a point that is not below the planet's sphere. The
+/// chord to the point is not above the ray.
 bool IsBeforeHorizon(const SceneGeometry& geometry, const CameraRay& ray, const glm::dvec3& point) {
   return geometry.AltitudeOf(point) >= 0.0 &&
          glm::dot(point - ray.origin, geometry.UpAt(point)) < 0.0;
@@ -206,7 +207,7 @@ Hit SceneState::OnBentRay(const CameraRay& ray, const PictureFrame& frame,
 
 namespace {
 
-/// The air along a ray as the effects of a picture have it.
+/// Air along a ray, with the effects of a picture.
 class AirTo {
  public:
   AirTo(const PictureFrame& frame, const SceneGeometry& geometry, const Medium& medium,
@@ -224,8 +225,8 @@ class AirTo {
     ray_ = {geometry.AltitudeOf(from), std::clamp(glm::dot(direction, up_), -1.0, 1.0),
             std::clamp(glm::dot(to_sun_, up_), -1.0, 1.0),
             std::clamp(glm::dot(direction, to_sun_), -1.0, 1.0)};
-    // The planet's own horizon ends a straight ray by itself, where a length would only add a
-    // rounding. Bent rays see the planet over that horizon too.
+    // A straight ray ends at the planet's own horizon by itself; a length would only add a rounding
+    // error. Bent rays also see the planet beyond that horizon.
     const bool is_bent = frame.bent && frame.bent->moves_ground;
     if (kind_ == HitKind::kTerrain || (kind_ == HitKind::kPlanet && is_bent))
       ray_.length_m = rays.length_m();
@@ -286,7 +287,8 @@ bool SharedAir::Takes(const Hit& hit, const glm::dvec3& direction, double widest
 
 std::size_t AirFor(const Hit& hit, const glm::dvec3& direction, const PictureFrame& frame,
                    std::vector<SharedAir>& airs) {
-  // All of a filter's width, and as far as the sky hardly bends where a camera turns.
+  // Rays share air across the full width of a filter, and while the camera turns by so little that
+  // the sky hardly changes.
   constexpr double kSameSky_rad = 0.01;
   const double widest_rad =
       3.0 * frame.filter.radius() * frame.camera().PixelAngle() + kSameSky_rad;
@@ -304,14 +306,14 @@ std::size_t AirFor(const Hit& hit, const glm::dvec3& direction, const PictureFra
 
 namespace {
 
-/// What of the light of the air arrives through media.
+/// Returns the light of the air that arrives through media.
 AirAlongRay ThroughMedia(const std::vector<MarchedPiece>& pieces, const AirTo& air,
                          const AirAlongRay& whole) {
   AirAlongRay left = whole;
   left.inscatter = DimmedByMedia(
       pieces, [&](double m) { return air(m).inscatter; }, whole.inscatter, Behind::kAll);
   if (!whole.polarised) return left;
-  // Q and U may fall with distance; what an analyser passes, I + Q and I + U, rises.
+  // Q and U can fall with distance, but the light behind an analyser, I + Q and I + U, increases.
   const auto dimmed = [&](BandLight PolarisedLight::*part) {
     const auto passed = [&](const AirAlongRay& lit) {
       return lit.inscatter + *lit.polarised.*part;
@@ -324,7 +326,7 @@ AirAlongRay ThroughMedia(const std::vector<MarchedPiece>& pieces, const AirTo& a
   return left;
 }
 
-/// Of a second light, in air and media. After the sun's.
+/// Adds the light of a second source in air and media. Call after adding the sun's.
 void AddSecondLight(const PictureFrame& frame, const SecondLight& second,
                     const SceneGeometry& geometry, const Medium& medium,
                     const glm::dvec3& direction, SharedAir& rays) {

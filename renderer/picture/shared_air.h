@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The air of a scene, solved, whole and without some of its parts.
-//
-// What stands between an eye and the ends of its rays: air, fog, volumes, and light of lamps in
-// them.
+// The air of a scene and the media along view rays: solved air, whole and without some of its
+// parts, fog, volumes, and the airlight of lamps.
 #pragma once
 
 #include <glm/vec3.hpp>
@@ -27,7 +25,8 @@
 
 namespace alpenglow::renderer {
 
-/// Air and what its light reaches, of all orders as hazy and thick air needs it (OptionsFor). Refers to the parts of the ground.
+/// Air with its single and multiple scattering, solved with the options for hazy and thick air
+/// (OptionsFor). Refers to the parts of the ground.
 struct AirModel {
   AirModel(const Medium& medium, const GroundParts& parts)
       : air(medium),
@@ -47,15 +46,15 @@ struct AirModel {
   GroundLight ground_light;
 };
 
-/// Safe to share between threads. Air that lacks a part is solved when it is first asked for. The
-/// air in front of lamps has all parts always.
+/// Safe to share between threads. Air that lacks a part is solved on first use. The air in front of
+/// lamps always has all parts.
 class AirModels {
  public:
   AirModels(const Medium& medium, const GroundParts& parts)
       : parts_(parts), whole_(medium, parts) {}
 
   [[nodiscard]] const AirModel& whole() const { return whole_; }
-  /// With those of molecules, aerosol and ozone that are among the effects.
+  /// Returns the air with only those of molecules, aerosol and ozone that are in `effects`.
   [[nodiscard]] const AirModel& With(EffectSet effects) const;
 
  private:
@@ -65,30 +64,30 @@ class AirModels {
   mutable std::map<EffectSet, std::unique_ptr<AirModel>> partial_;
 };
 
-/// What a light beside the sun makes of a picture, as if it were the sun.
+/// Light of a source besides the sun, treated as if that source were the sun.
 struct SecondLight {
   Lighting light;
-  BandLight by_sun;  // its irradiance, relative to the sun's
+  BandLight by_sun;  // irradiance relative to the sun's
   std::shared_ptr<const TerrainSunlight> sunlight;
   std::shared_ptr<const MediaLight> media;
 
   [[nodiscard]] GroundSources ground_sources() const { return {light, media.get()}; }
 };
 
-/// What bent rays show of the sun, of terrain and of a sea without it.
+/// Effect of refraction on the sun, on terrain and on the horizon of a sea without terrain.
 struct BentSight {
   BentView view;
   glm::dvec3 up;               // at the eye, unit
-  glm::dvec3 to_sun, to_moon;  // unit, as if there were no air
-  bool moves_ground = false;   // the farthest, or the horizon, by more than half a pixel
-  std::shared_ptr<const BentFan> fan = nullptr;  // rays to terrain; null: it moves none
+  glm::dvec3 to_sun, to_moon;  // unit, without refraction
+  bool moves_ground = false;   // moves the farthest terrain or the horizon by more than half a pixel
+  std::shared_ptr<const BentFan> fan = nullptr;  // rays to terrain; null: terrain does not move
 
   [[nodiscard]] double ElevationOf(const glm::dvec3& direction) const;
-  /// Where light of a band that is seen in a direction comes from, unit.
+  /// Returns the direction, unit, from which light of a band arrives that is seen in `direction`.
   [[nodiscard]] glm::dvec3 TrueDirection(const glm::dvec3& direction, std::size_t band) const;
 };
 
-/// What all pixels of a picture share. Copies share what took time to prepare.
+/// Data that all pixels of a picture share. Copies share the parts that take long to prepare.
 struct PictureFrame {
   RenderSettings settings;
   const AirModel* model;
@@ -98,13 +97,13 @@ struct PictureFrame {
   std::shared_ptr<const TerrainSunlight> sunlight;
   std::shared_ptr<const LampLight> lamps;
   std::shared_ptr<const LampPlan> plan;
-  std::shared_ptr<const MediaLight> media;  // null: no volumes, and fog is lit by lamps alone
+  std::shared_ptr<const MediaLight> media;  // null: no volumes, and only lamps light fog
   std::shared_ptr<const SecondLight> moonlit = nullptr;  // null: the moon lights nothing
-  std::shared_ptr<const NightLight> night = nullptr;     // null: the sky of the night does not show
-  std::shared_ptr<const StarPixels> stars = nullptr;     // null: none are seen
-  bool polarised = false;  // Stokes parameters are asked for, by a polariser or a layer
-  std::shared_ptr<const BentSight> bent = nullptr;        // null: it would move nothing
-  double sunlight_s = 0.0, plan_s = 0.0, slopes_s = 0.0;  // time that they took
+  std::shared_ptr<const NightLight> night = nullptr;     // null: the night sky is not visible
+  std::shared_ptr<const StarPixels> stars = nullptr;     // null: no visible stars
+  bool polarised = false;  // a polariser or a layer needs Stokes parameters
+  std::shared_ptr<const BentSight> bent = nullptr;        // null: refraction moves nothing
+  double sunlight_s = 0.0, plan_s = 0.0, slopes_s = 0.0;  // preparation times
 
   [[nodiscard]] bool Has(Effect effect) const { return settings.effects.Has(effect); }
   [[nodiscard]] const CameraRays& camera() const { return moving.middle(); }
@@ -112,42 +111,43 @@ struct PictureFrame {
   [[nodiscard]] bool HasLitFog() const { return media && media->media().fog() != nullptr; }
 };
 
-/// Rays of a pixel that look through the same air, to the same place but for an edge's width.
+/// Rays of a pixel that share one air: they end at the same place within the width of an edge.
 struct SharedAir {
   HitKind kind;
-  double first_distance_m;     // of the ray that began it
-  glm::dvec3 first_direction;  // of that ray, unit
-  glm::dvec3 direction_sum;    // of unit vectors
+  double first_distance_m;     // of the first ray
+  glm::dvec3 first_direction;  // of the first ray, unit
+  glm::dvec3 direction_sum;    // sum of unit vectors
   double distance_sum_m;
   int rays;
-  // Along the mean of their directions, to their mean distance:
+  // Values along the mean direction of the rays, to their mean distance:
   AirAlongRay air{};       // Q and U in the axes of the picture
-  BandLight fog{};         // what fog leaves of light from the end, unless `air` says so
-  BandLight lamp_light{};  // of lamps in the air, W m^-2 sr^-1 nm^-1
-  BandLight media{};       // of volumes and fog in sun and sky, W m^-2 sr^-1 nm^-1
-  std::vector<MarchedPiece> pieces{};  // of media on the way
+  BandLight fog{};         // fog transmittance of light from the end, unless `air` includes it
+  BandLight lamp_light{};  // airlight of lamps, W m^-2 sr^-1 nm^-1
+  BandLight media{};       // light of sun and sky scattered by volumes and fog, W m^-2 sr^-1 nm^-1
+  std::vector<MarchedPiece> pieces{};  // pieces of media along the ray
 
   [[nodiscard]] double length_m() const {
     return kind == HitKind::kSky ? std::numeric_limits<double>::infinity() : distance_sum_m / rays;
   }
 
-  /// @param widest_rad  between two rays that share air.
+  /// @param widest_rad  largest angle between two rays that share air.
   [[nodiscard]] bool Takes(const Hit& hit, const glm::dvec3& direction, double widest_rad) const;
 };
 
-/// Which of the airs of a pixel a ray looks through; makes a new one if none, or if airs
-/// are not shared.
-/// @param direction  CameraRay::through: air is as the middle of the lens sees it, beams in it too;
-///     LampLight::SeenBy spreads the glow about lamps.
+/// Returns the index of the air of a pixel that a ray looks through; adds a new one if no air fits,
+/// or if airs are not shared.
+/// @param direction  CameraRay::through: air and the beams in it are computed for the middle of the
+///     lens; LampLight::SeenBy spreads the glow around lamps.
 [[nodiscard]] std::size_t AirFor(const Hit& hit, const glm::dvec3& direction,
                                  const PictureFrame& frame, std::vector<SharedAir>& airs);
 
-/// Light of sun and sky in air and media along the mean of the rays, and what they leave.
+/// Computes the light of sun and sky in air and media along the mean of the rays, and the
+/// transmittance.
 void AddAir(const PictureFrame& frame, const SceneGeometry& geometry, const Medium& medium,
             SharedAir& rays);
 
-/// Light of lamps on the way, of pixel (x, y); and what
-/// fog leaves that only lamps light. After AddAir.
+/// Computes the airlight of lamps for pixel (x, y), and the transmittance of fog that only lamps
+/// light. Call after AddAir.
 void AddLamps(const PictureFrame& frame, int x, int y, SharedAir& rays);
 
 }  // namespace alpenglow::renderer

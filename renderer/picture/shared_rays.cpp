@@ -8,7 +8,7 @@
 
 namespace alpenglow::renderer {
 
-// Welford (1962), Technometrics 4, 419: nothing large is subtracted.
+// Welford (1962), Technometrics 4, 419: no subtraction of large sums.
 void RaySpread::Add(const std::array<double, 3>& rgb) {
   ++rays_;
   for (std::size_t c = 0; c < rgb.size(); ++c) {
@@ -46,9 +46,11 @@ int RaysForNoise(double relative_variance, double noise, int first, int most) {
 
 namespace {
 
-constexpr int kRaySteps = 512;  // of the filter's half: off by 2e-5 of its peak between them
+constexpr int kRaySteps = 512;  // steps over the filter's radius: linear interpolation is off by
+                                // 2e-5 of its peak
 
-// 0 at crests and in hollows; the mean of both differences, at most twice the lesser.
+// Returns 0 at crests and in hollows; else the mean of both differences, limited to twice the
+// smaller one.
 float LimitedSlope(float before, float here, float behind) {
   const float to = here - before, from = behind - here;
   if (to * from <= 0.0F) return 0.0F;
@@ -67,7 +69,7 @@ SharedRays::SharedRays(const PixelFilter& filter, int columns, int rows, std::si
   ALPENGLOW_ENSURE(radius_, <=, 0.5 * kReach);
   for (int i = 0; i < kRaySteps; ++i)
     filter_.push_back(static_cast<float>(filter.Weight(radius_ * i / kRaySteps)));
-  filter_.push_back(filter_.back());  // a box ends at its full height
+  filter_.push_back(filter_.back());  // a box filter ends at its full height
   expected_.assign(Index(0, rows), 0.0F);
   sums_.assign(expected_.size() * stride_, 0.0F);
   skies_.resize(expected_.size());
@@ -142,7 +144,7 @@ BandLight SharedRays::SkyAt(int column, int row) const {
 }
 
 BandLight SharedRays::Light(int column, int row) const {
-  constexpr float kMostOff = 0.25F;  // that both together leave light positive
+  constexpr float kMostOff = 0.25F;  // keeps light positive if both axes are corrected
   const std::size_t here = Index(column, row);
   const auto off = [&](std::size_t sum, int middle) {
     return std::clamp(Mean(here, sum) - static_cast<float>(middle), -kMostOff, kMostOff);

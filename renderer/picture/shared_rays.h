@@ -1,48 +1,51 @@
 // SPDX-License-Identifier: MIT
-// How many rays a pixel takes so that its noise is what was asked for.
+// Chooses how many rays a pixel takes for a requested noise, and combines the rays of neighbouring
+// pixels.
 //
-// Every pixel takes two rays first, but for those well over the skyline, of which one says as much
-// (sky_pixels.h). Where those of its eight neighbours would not ask for more even if all that
-// they differ by were noise, edges and gradients and all, there is nothing to be missed, and two are
-// enough to begin with: skies, haze, still water. Elsewhere more are taken before it is asked how
-// much noise there is. What these first rays say of it decides how many follow, once:
+// Every pixel first takes two rays; pixels well above the skyline take one, which gives the same
+// result (sky_pixels.h). Two first rays are enough where the eight neighbours would not require
+// more even if all differences between their rays were noise, edges and gradients included: such
+// pixels hide nothing (skies, haze, still water). Other pixels take more first rays before the
+// noise is estimated. The number of rays that follow is decided once, from the first rays:
 //
 //   s^2 = sum |c_i - m|^2 / (n - 1) / max(|m|, floor)^2     of the first n rays of a pixel, c in
 //                                                           linear R, G and B, m their mean
 //   e   = S n^-p,  S^2 the mean of s^2 of the neighbours    of a pixel that takes n rays
 //
-// p is 1/2 for rays by chance; stratified ones do better, 3/4 at an edge of terrain. The exponent
-// here is what pictures of terrain show from 4 to 64 rays.
+// p is 1/2 for random rays; stratified ones do better, 3/4 at an edge of terrain. The exponent used
+// here is the one that pictures of terrain show from 4 to 64 rays.
 //
-// A pixel does not ask its own rays but its eight neighbours'. Whoever stops where the own rays
-// happen to agree keeps those that have missed what is thin: the mean comes out biased (Kirk and
-// Arvo 1991, "Unbiased sampling techniques for image synthesis", SIGGRAPH). With the number known
-// before, the mean of any number of scrambled points is that of the pixel; and as the filter
-// reaches over the neighbours, so do their rays over the pixel. All rays count, for the pixels around
-// as well (shared_rays.h), which leaves 0.6 times the error that is asked for.
+// A pixel uses the variance of its eight neighbours, not of its own rays. Stopping where a pixel's
+// own rays happen to agree favours pixels whose rays missed thin features, and biases the mean
+// (Kirk and Arvo 1991, "Unbiased sampling techniques for image synthesis", SIGGRAPH). With the
+// number fixed in advance, the mean of any number of scrambled points is that of the pixel. As the
+// filter reaches over the neighbours, their rays also sample the pixel. All rays also count for the
+// pixels around them, which reduces the error to 0.6 times the requested one.
 //
-// Rays that count for every pixel whose filter they lie in.
+// Rays count for every pixel whose filter they lie in.
 //
-// A pixel spreads its rays as its filter w is (camera_rays.h), over three pixels each way: there
-// they are samples of its neighbours' filters, too. With n_q rays of each pixel q of a tile the
-// light of a pixel p is
+// A pixel distributes its rays like its filter w (camera_rays.h), over three pixels along each
+// axis: there they also sample the filters of its neighbours. With n_q rays of each pixel q of a
+// tile the light of a pixel p is
 //
 //   L_p = sum_r g(r) L_r / sum_r g(r) - s . o,     g(r) = w(r - p) / sum_q n_q w(r - q),
 //   o   = sum_r g(r) (r - p) / sum_r g(r)
 //
-// over all rays r: the balance heuristic of Veach, Guibas (1995), "Optimally combining sampling
-// techniques for Monte Carlo rendering", SIGGRAPH, by which no ray weighs much more than another. o
-// is how far these rays lie off the middle of the filter, s the change of light from pixel to pixel:
-// the limited difference of van Leer (1977), J. Comput. Phys. 23, 276, which is 0 at crests and never
-// over twice the difference to either neighbour, so that light does not become negative.
+// over all rays r. This is the balance heuristic of Veach, Guibas (1995), "Optimally combining
+// sampling techniques for Monte Carlo rendering", SIGGRAPH, which gives no ray much more weight
+// than another. o is the offset of these rays from the middle of the filter, s the change of light
+// from pixel to pixel: the limited difference of van Leer (1977), J. Comput. Phys. 23, 276, which
+// is 0 at crests and never over twice the difference to either neighbour, so that light does not
+// become negative.
 //
-// All rays of a pixel that meet the sky see one sky, that of the pixel (SharedAir), wherever they go:
-// what they say to a neighbour is that there is sky, not which. So L_r is the light beside that of
-// the sky of the ray's own pixel, and a pixel adds its own sky as often as there is one:
-// sum_r g(r) [r sees sky] / sum_r g(r). Else a sky that brightens from row to row by a quarter would
-// come out up to a fifth too bright above a ridge, whose pixels have many rays.
+// All rays of a pixel that meet the sky have one sky radiance, that of the pixel (SharedAir),
+// whatever their direction. To a neighbour they contribute only the fact that sky is visible, not
+// its radiance. So L_r is the light relative to the sky of the ray's own pixel, and a pixel adds
+// its own sky in proportion to its visible fraction: sum_r g(r) [r sees sky] / sum_r g(r).
+// Otherwise a sky whose radiance grows by a quarter from row to row would come out up to a fifth
+// too bright above a ridge, whose pixels have many rays.
 //
-// The same rays have 0.6 times the error of means of each pixel's own.
+// The combined rays have 0.6 times the error of the mean of each pixel's own rays.
 #pragma once
 
 #include <array>
@@ -61,32 +64,32 @@ class RaySpread {
   /// @param rgb  linear [cd/m^2].
   void Add(const std::array<double, 3>& rgb);
 
-  /// Those of another pixel counted with these, as if all were of one.
+  /// Merges the rays of another pixel, as if all belonged to one pixel.
   void Add(const RaySpread& other);
 
-  /// s^2 as above [1]; 0 of fewer than two rays and where there is no light.
+  /// Returns s^2 as above [1]; 0 for fewer than two rays and where there is no light.
   [[nodiscard]] double RelativeVariance(double floor_cd_per_m2) const;
 
  private:
   int rays_ = 0;
   std::array<double, 3> mean_{};
-  double squares_ = 0.0;  // of distances from the mean
+  double squares_ = 0.0;  // sum of squared distances from the mean
 };
 
-/// Rays that bring the error of a pixel to `noise`: a power of two times `first`, as such are
-/// spread best, in [first, most].
+/// Returns the number of rays that brings the error of a pixel to `noise`: a power of two times
+/// `first`, since such numbers are distributed best, in [first, most].
 /// @param relative_variance  S^2. @param noise  e, > 0. @param most  at least first.
 [[nodiscard]] int RaysForNoise(double relative_variance, double noise, int first, int most);
 
-/// What a ray saw, and where it went [pixels from the middle of its pixel].
+/// The radiance of a ray and its offset from the middle of its pixel [pixels].
 struct SeenRay {
   double right, down;
-  BandLight radiance;  // beside the sky of its pixel, where it sees the sky
+  BandLight radiance;  // relative to the sky of its pixel where it sees the sky
   bool sees_sky = false;
 };
 
-/// Of a rectangle of pixels. First it is told how many rays each will take, then the rays; then it
-/// is asked.
+/// Combines the rays of a rectangle of pixels. Call Expect() for the number of rays of each pixel,
+/// then Add() for the rays, then Light().
 class SharedRays {
  public:
   /// @param filter  at most three pixels wide.
@@ -94,16 +97,17 @@ class SharedRays {
 
   void Expect(int column, int row, int rays);
   void Add(int column, int row, const SeenRay& ray);
-  /// The sky of a pixel with rays that see it.
+  /// Sets the sky radiance of a pixel with rays that see it.
   void SetSky(int column, int row, const BandLight& sky);
 
-  /// The mean of a pixel that has rays. Where only those of its neighbours see the sky, it is theirs.
+  /// Returns the mean light of a pixel that has rays. If only rays of neighbours see the sky, their
+  /// sky is used.
   [[nodiscard]] BandLight Light(int column, int row) const;
 
  private:
-  static constexpr int kReach = 3;  // pixels each way whose filters a ray may lie in
+  static constexpr int kReach = 3;  // pixels along each axis whose filters a ray can lie in
   struct Weights {
-    int first;  // column or row
+    int first;  // first column or row
     std::array<float, kReach> of;
   };
   [[nodiscard]] Weights Around(double at, int end) const;
@@ -115,16 +119,16 @@ class SharedRays {
     return sums_[pixel * stride_ + sum] / sums_[pixel * stride_];
   }
 
-  /// The pixel's, else the mean of those around it, else none.
+  /// Returns the pixel's sky, else the mean sky of the pixels around it, else zero.
   [[nodiscard]] BandLight SkyAt(int column, int row) const;
 
-  // Sums of a pixel: of g, of g times the ray's column and row and whether it sees the sky, and from
+  // Each pixel stores sums of g, of g times the ray's column, row and sky visibility, and from
   // kLight on of g times its light, in blocks of four for vector instructions.
   static constexpr std::size_t kColumn = 1, kRow = 2, kSky = 3, kLight = 4;
   int columns_, rows_;
   std::size_t bands_, stride_;
   double radius_;
-  std::vector<float> filter_;  // over the distance, up to its radius
+  std::vector<float> filter_;  // filter weight over the distance, up to its radius
   std::vector<float> expected_;
   std::vector<float> sums_;
   std::vector<std::optional<BandLight>> skies_;

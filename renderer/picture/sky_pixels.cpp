@@ -11,7 +11,7 @@
 namespace alpenglow::renderer {
 namespace {
 
-/// Of the pixel around a place of the picture.
+/// Returns the solid angle of the pixel around a place of the picture.
 double SolidAngle(const CameraRays& camera, double x, double y) {
   const glm::dvec3 across = camera.Direction(x + 0.5, y) - camera.Direction(x - 0.5, y);
   const glm::dvec3 down = camera.Direction(x, y + 0.5) - camera.Direction(x, y - 0.5);
@@ -67,7 +67,7 @@ void StarPixels::AddTrail(const CameraRays& camera, const StarLight& light, cons
   for (std::size_t i = 0; i + 1 < light.way.size(); ++i) {
     const auto from = camera.PlaceOf(light.way[i]), to = camera.PlaceOf(light.way[i + 1]);
     if (!from || !to) continue;
-    // Over the seam of a panorama.
+    // Skip steps that cross the seam of a panorama.
     if (std::abs((*to)[0] - (*from)[0]) > 0.5 * width_ && camera.IsPanorama()) continue;
     AddStep(camera, {(*from)[0], (*from)[1]}, {(*to)[0], (*to)[1]},
             (1.0F / steps) * light.irradiance, left, hidden);
@@ -75,8 +75,8 @@ void StarPixels::AddTrail(const CameraRays& camera, const StarLight& light, cons
   if (pixels_.size() > known) directions_.push_back(light.direction);
 }
 
-// What air leaves changes little from end to end; where ground hides one of them it is asked for
-// everywhere.
+// Transmittance changes little from end to end of a step. If ground hides one end, it is evaluated
+// at every point.
 void StarPixels::AddStep(const CameraRays& camera, const Place& from, const Place& to,
                          const BandLight& irradiance, const Left& left, const Hidden& hidden) {
   const double length = std::hypot(to.x - from.x, to.y - from.y);
@@ -130,8 +130,9 @@ const BandLight* StarPixels::At(int x, int y) const {
 
 namespace {
 
-// A ray counts for pixels up to a filter's width away; and two pixels for what stands between the
-// azimuths of the skyline.
+// Returns the angular radius around a pixel that must be free of ground and disks: a ray counts for
+// pixels up to a filter's width away, and two pixels cover features between the azimuths of the
+// skyline.
 double AroundPixel(const PictureFrame& frame) {
   return (4.0 * frame.filter.radius() + 2.0) * frame.camera().PixelAngle();
 }
@@ -165,7 +166,7 @@ Skyline::Arc OpenSkyPixels::ArcAround(const glm::dvec3& up) const {
   const glm::dvec3 ahead = middle - glm::dot(middle, up) * up, side = glm::cross(up, ahead);
   double first = 0.0, last = 0.0;
   constexpr int kPlaces = 64;
-  constexpr double kAndSteps = 1.1;  // of the skyline
+  constexpr double kAndSteps = 1.1;  // margin for the azimuth steps of the skyline
   for (int i = 0; i <= kPlaces; ++i) {
     const double x = static_cast<double>(i) / kPlaces * width;
     const double y = static_cast<double>(i) / kPlaces * height;
@@ -178,7 +179,8 @@ Skyline::Arc OpenSkyPixels::ArcAround(const glm::dvec3& up) const {
       last = std::max(last, azimuth + beside);
     }
   }
-  // Near a vertical that is just outside azimuths go round between two places of the border.
+  // If the zenith or nadir is just outside the picture, the azimuth can turn by more than half a
+  // circle between two places of the border.
   if (last - first > kPi) return whole;
   return {Skyline::AzimuthOf(ahead, up) + first, last - first};
 }

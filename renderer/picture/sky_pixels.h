@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: MIT
-// Stars and planets in a picture: points whose light is spread over the pixels around them.
+// Stars and planets in a picture, and the pixels that see only sky.
 //
-// A light of illuminance E brings a pixel of the solid angle Omega the radiance w E / Omega, with w
-// from a bell of half a pixel's deviation over 5 x 5 pixels, whose sum is one: the illuminance in a
-// picture is that of the light whatever its size, and nothing twinkles as a star moves on. While a
-// shutter is open long the same light is spread along its way, evenly in time, in steps of half a
-// pixel.
+// Stars and planets are points whose light is spread over the pixels around them. A light of
+// illuminance E adds the radiance w E / Omega to a pixel of solid angle Omega. The weights w come
+// from a bell with a standard deviation of half a pixel over 5 x 5 pixels, whose sum is one: the
+// illuminance in a picture equals that of the light for any picture size, and a moving star does
+// not twinkle. During a long exposure the light is spread along its path, evenly in time, in steps
+// of half a pixel.
 //
-// Pixels in which nothing but sky is seen, without a ray: those well over the skyline, and not near
-// the sun or the moon.
-//
-// All rays of such a pixel see one sky, that of its middle (shared_rays.h), and so do all rays of its
-// neighbours that count for it. One ray through the middle says as much as many.
+// OpenSkyPixels finds the pixels that see only sky without tracing a ray: those well above the
+// skyline, and not near the sun or the moon. All rays of such a pixel have one sky radiance, that
+// of its middle (shared_rays.h), and so have all rays of its neighbours that count for it. One ray
+// through the middle gives the same result as many.
 #pragma once
 
 #include <array>
@@ -29,34 +29,35 @@
 namespace alpenglow::renderer {
 
 inline constexpr int kStarReach = 2;
-/// Shares of the pixels around the one that a place lies in, along one side; their sum is one.
+/// Weights of the pixels around the one that contains a place, along one axis; their sum is one.
 using StarBell = std::array<double, 2 * kStarReach + 1>;
 [[nodiscard]] StarBell StarBellAround(double place);
 
-/// Of one picture. Immutable.
+/// Stars of one picture. Immutable.
 class StarPixels {
  public:
-  /// What is left of light that falls in at a place of the picture; nothing where something stands
-  /// before it.
+  /// Returns the transmittance of light from space at a place of the picture; no value where
+  /// something occludes it.
   using Left = std::function<std::optional<BandLight>(double x, double y)>;
 
-  /// Whether something stands before a place of the picture; Left knows that too, but asks air.
+  /// Returns whether something occludes a place of the picture. Cheaper than Left, which also
+  /// computes air.
   using Hidden = std::function<bool(double x, double y)>;
 
   /// @param lights  brightest first.
   StarPixels(const CameraRays& camera, int width, int height, const std::vector<StarLight>& lights,
              const Left& left, const Hidden& hidden);
 
-  /// Radiance to add to a pixel, W m^-2 sr^-1 nm^-1; null: nothing.
+  /// Returns the radiance to add to a pixel, W m^-2 sr^-1 nm^-1; null: nothing to add.
   [[nodiscard]] const BandLight* At(int x, int y) const;
-  /// Of those that are in the picture, brightest first.
+  /// Directions of the lights within the picture, brightest first.
   [[nodiscard]] const std::vector<glm::dvec3>& directions() const { return directions_; }
 
  private:
   struct Place {
     double x, y;
   };
-  /// What a pixel within reach takes light of; nothing outside the picture.
+  /// Returns whether a place is near enough to light a pixel of the picture.
   [[nodiscard]] bool IsNear(const Place& place) const;
   void AddPoint(const CameraRays& camera, const StarLight& light, const Left& left);
   void AddTrail(const CameraRays& camera, const StarLight& light, const Left& left,
@@ -76,18 +77,20 @@ struct SceneState;
 /// Immutable, safe to share between threads. Refers to the frame.
 class OpenSkyPixels {
  public:
-  /// No pixel is of open sky where sky may be seen under ground, a lens blurs, or the camera moves.
+  /// No pixel counts as open sky where sky can be visible below ground, a lens blurs, or the camera
+  /// moves.
   OpenSkyPixels(const SceneState& scene, const PictureFrame& frame);
 
-  /// Returns whether all rays that count for a pixel see the sky, and no disk in it.
+  /// Returns whether all rays that count for a pixel see only sky, without a disk in it.
   [[nodiscard]] bool Has(int x, int y) const;
 
  private:
-  /// Returns the azimuths of the eye's vertical planes that the picture shows, and that lie around it.
+  /// Returns the range of azimuths that the picture, with a margin, covers.
   [[nodiscard]] Skyline::Arc ArcAround(const glm::dvec3& up) const;
 
   const PictureFrame& frame_;
-  double around_rad_;  // of the middle of a pixel: what its rays see lies within that
+  double around_rad_;  // angular radius around the middle of a pixel that contains everything its
+                       // rays see
   std::optional<Skyline> skyline_;
 };
 
