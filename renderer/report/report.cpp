@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Topics of the report: the air in front of terrain that is 1 to 100 km away.
+// Measures the topics of the report about air in front of terrain that is 1 to 100 km away.
 #include "renderer/report/report.h"
 
 #include <fmt/format.h>
@@ -19,7 +19,7 @@
 namespace alpenglow::renderer {
 namespace {
 
-// Lines of the plots.
+// Line styles of the plots.
 enum AirStyle {
   kAirPanels = 0,
   kUniform = 1,
@@ -29,8 +29,9 @@ enum AirStyle {
   kGrey = 5,
 };
 
-/// From an eye to a mountainside, both at or over the ground, with nothing of the planet between.
-/// Altitudes [m], of the eye and of the other end, as number i >= 1 of Halton's sequence has them.
+/// Returns segment number i >= 1 of Halton's sequence: from an eye to a mountainside, both on or
+/// above the ground, without the planet in between. The sequence gives the altitudes [m] of the eye
+/// and of the other end.
 ViewRay SegmentNumber(const Medium& medium, int i, const ReportRegime& regime) {
   if (regime.from_space) {
     ViewRay ray = GroundFromSpaceNumber(medium, i, regime);
@@ -86,7 +87,7 @@ JudgedRays JudgedTransmittances(const Medium& medium, int count) {
   return judged;
 }
 
-/// The same value for all bands: their mean.
+/// Returns the mean of the bands in every band.
 Bands<float> Grey(const Bands<float>& bands) {
   float sum = 0.0F;
   for (std::size_t band = 0; band < bands.count; ++band) sum += bands[band];
@@ -224,7 +225,7 @@ class Topic : public TopicWork {
               [&](const ViewRay& ray) { return table.LookupAlong(ray); });
   }
 
-  /// What all orders and the transmittance cost together, in words.
+  /// Describes the cost of all orders and the transmittance together.
   [[nodiscard]] std::string AllOrdersText() const {
     const DiffuseLight diffuse(medium_);
     const AerialPerspective aerial(air_, diffuse);

@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: MIT
-// Froxels, written anew from their publication, for the report to compare with: Hillaire (2020),
-// Computer Graphics Forum 39, 13, section 5.4.
+// The report `skyseries report` of speed and accuracy of pictures, measured against each other in
+// one run.
 //
-// The topics of the report of pictures, each measured on its own.
+// Topics, each measured on its own: aerial perspective and transmittance in front of terrain,
+// shafts, one lamp in fog, many lamps, whole pictures. Rows, folders and pages are those of
+// lut/report/report.h; WriteReport writes them.
 //
-// Speed and accuracy of pictures held against each other, in one run: `skyseries report`.
-//
-// Topics: aerial perspective and transmittance before terrain, shafts, one lamp in fog, many
-// lamps, whole pictures. Rows, folders and pages are those of lut/report/report.h;
-// WriteReport writes them.
+// Froxels are reimplemented from their publication for comparison: Hillaire (2020), Computer
+// Graphics Forum 39, 13, section 5.4.
 #pragma once
 
 #include <algorithm>
@@ -26,14 +25,14 @@
 
 namespace alpenglow::renderer {
 
-/// The slices of a volume of froxels that one ray goes through: what the air does up to each,
-/// linear between. Slice k of 32 ends at 128 km (k / 32)^2 and is marched to from the eye in
-/// 2 k steps.
+/// The slices of a froxel volume along one ray: inscatter and transmittance up to each slice,
+/// linear in between. Slice k of 32 ends at 128 km (k / 32)^2 and is marched to from the eye in 2 k
+/// steps.
 class FroxelColumn {
  public:
   static constexpr int kSlices = 32;
   static constexpr double kFarthest_m = 128e3;
-  static constexpr int kSide = 32;  // of the volume, across the picture
+  static constexpr int kSide = 32;  // froxels of the volume across the picture
 
   FroxelColumn(const AirIntegrator<float>& air, const ViewRay& ray) : slices_(kSlices + 1) {
     slices_[0] = {Bands<float>(air.bands()), Bands<float>(air.bands())};
@@ -75,29 +74,28 @@ class FroxelColumn {
   std::vector<AirAlongRay> slices_;
 };
 
-/// The air in front of terrain, in unbroken sunlight:
-/// light scattered on the way, and transmittance.
+/// Measures the air in front of terrain, in unoccluded sunlight: inscatter and transmittance.
 [[nodiscard]] ReportTopic MeasureAerialPerspective(const Medium& medium,
                                                    const ReportEffort& effort);
 [[nodiscard]] ReportTopic MeasureTransmittanceToTerrain(const Medium& medium,
                                                         const ReportEffort& effort);
 
-/// Light scattered once where terrain lets the sun into the air.
+/// Measures single scattering in air that terrain shades in part.
 [[nodiscard]] ReportTopic MeasureShafts(const ReportEffort& effort);
 
-/// Light of one lamp in the air, and of many.
+/// Measures the airlight of one lamp, and of many.
 [[nodiscard]] ReportTopic MeasureAirlight(const ReportEffort& effort);
 [[nodiscard]] ReportTopic MeasureManyLamps(const ReportEffort& effort);
 
-/// Whole pictures.
+/// Measures whole pictures.
 [[nodiscard]] ReportTopic MeasurePictures(const ReportEffort& effort);
 
-/// A runway at night in height fog, from 38 m over its approach: so many lamps in two rows along
-/// it, and the landing lights of an aeroplane when `with_beam`.
+/// Returns a runway at night in height fog, seen from 38 m over its approach: `lamps` lamps in two
+/// rows along it, and the landing lights of an aeroplane when `with_beam`.
 [[nodiscard]] Scene RunwayScene(int lamps, bool with_beam);
 
-/// Measures everything: a minute or two; `mediums` are those of the air before terrain. Stops
-/// between methods when the program is interrupted.
+/// Measures all topics, in one or two minutes; options.mediums apply to the air in front of
+/// terrain. Stops between methods when the program is interrupted.
 [[nodiscard]] Report MeasurePictureReport(const ReportOptions& options);
 
 }  // namespace alpenglow::renderer

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Topics of the report: the light of one lamp in the air, and of many.
+// Measures the topics of the report about the airlight of one lamp, and of many.
 #include <fmt/format.h>
 #include <oneapi/tbb/parallel_for.h>
 
@@ -20,7 +20,7 @@
 namespace alpenglow::renderer {
 namespace {
 
-// Lines of the plot of one lamp.
+// Line styles of the plot of one lamp.
 enum LampStyle {
   kHere = 0,
   kUniformNodes = 1,
@@ -94,7 +94,7 @@ class AirlightTopic {
     topic_.rows.push_back(std::move(row));
   }
 
-  /// For isotropic scattering in homogeneous air, which is all that it is for.
+  /// Adds the closed form for isotropic scattering in homogeneous air, the only case that it covers.
   void AddSun() {
     ReportRow row = Row("Sun et al. (2005)", "", MethodOrigin::kLiterature, kSun);
     row.in_summary = true;
@@ -166,7 +166,7 @@ class AirlightTopic {
   ReportTopic topic_;
 };
 
-// Lines of the plot of many lamps.
+// Line styles of the plot of many lamps.
 enum ManyStyle { kTree = 0, kAll = 1 };
 
 constexpr std::array<ReportRegime, 4> kCounts{{{"1", "1 lamp", {}},
@@ -175,7 +175,7 @@ constexpr std::array<ReportRegime, 4> kCounts{{{"1", "1 lamp", {}},
                                                {"1000", "1000 lamps", {}}}};
 constexpr std::array<int, 4> kLampCounts{1, 10, 100, 1000};
 
-/// What a picture's lamp light needs of a scene, without its sky.
+/// The parts of a scene that the lamp light of a picture needs, without its sky.
 struct LampStage {
   explicit LampStage(const Scene& of)
       : scene(of),
@@ -267,7 +267,7 @@ class ManyLampsTopic {
   [[nodiscard]] CameraRays CameraOf(std::size_t r) const {
     return {stages_[r]->scene.camera, kWidth, kHeight};
   }
-  /// To the ground below the eye [m].
+  /// Returns the distance to the level ground below the eye [m]; infinite for rays that do not descend.
   [[nodiscard]] double LengthOf(const glm::dvec3& direction) const {
     return direction.z < 0.0 ? eye_height_m_ / -direction.z
                              : std::numeric_limits<double>::infinity();
@@ -330,7 +330,7 @@ class ManyLampsTopic {
 
   const ReportEffort& effort_;
   std::vector<std::array<int, 2>> pixels_;
-  std::vector<std::unique_ptr<LampStage>> stages_;  // lamps refer to their grounds
+  std::vector<std::unique_ptr<LampStage>> stages_;  // owns the grounds that lamps refer to
   std::vector<std::unique_ptr<LampLight>> light_;
   double eye_height_m_ = 0.0;
   std::vector<std::vector<Bands<float>>> truth_;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Topic of the report: whole pictures, by samples of a pixel and nodes of the air.
+// Measures the topic of the report about whole pictures, by samples of a pixel and nodes of the air.
 #include <fmt/format.h>
 
 #include <unistd.h>
@@ -21,21 +21,21 @@
 namespace alpenglow::renderer {
 namespace {
 
-// Lines of the plot.
+// Line styles of the plot.
 enum PictureStyle { kSamples = 0, kNoise = 1, kPictureNodes = 2, kWithout = 5 };
 
 constexpr std::size_t kScenes = 4;
 struct SceneText {
   const char* key;
   const char* name;
-  const char* time;  // of the day of the range; of the night, of the runway
+  const char* time;  // time of the day of the range; of the night, of the runway
 };
 constexpr std::array<SceneText, kScenes> kSceneTexts{{{"noon", "Noon", "noon"},
                                                       {"sunset", "Sunset", "sunset-15m"},
                                                       {"twilight", "Twilight", "civil-dusk-10m"},
                                                       {"night", "Night with lamps", "noon+12h"}}};
 
-/// Memory of this program that is in the machine's, now [bytes]; 0 where no one tells.
+/// Returns the resident memory of this program [bytes]; 0 where the system does not report it.
 std::uint64_t ResidentBytes() {
   std::ifstream text("/proc/self/statm");
   std::uint64_t all = 0, resident = 0;
@@ -43,7 +43,7 @@ std::uint64_t ResidentBytes() {
   return resident * static_cast<std::uint64_t>(sysconf(_SC_PAGESIZE));
 }
 
-/// Processor time of all threads [s].
+/// Returns the processor time of all threads [s].
 double ProcessorSeconds() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
 
 class PicturesTopic {
@@ -143,11 +143,11 @@ class PicturesTopic {
     std::shared_ptr<const SceneRenderer> renderer;
     UtcInstant instant;
     Image reference{};
-    double frame_s = 0.0;  // what a picture prepares once
+    double frame_s = 0.0;  // time to prepare a picture
   };
 
-  /// The middle of a picture of the usual size, whose pixels are as narrow. The range takes seconds
-  /// to grow: tests of the report see its place without it.
+  /// Returns the middle of a picture of the usual size, with pixels of the usual angular size. The
+  /// range takes seconds to generate, so tests of the report see its place without it.
   static Scene Range(bool quick, int width) {
     Scene scene = SceneFromOptions({});
     constexpr double kWidthOfPictures = 1280.0;
@@ -157,7 +157,7 @@ class PicturesTopic {
     return scene;
   }
 
-  /// A scene made ready, and the time that takes.
+  /// Returns a prepared scene, and the time of its preparation.
   template <typename Make>
   static std::pair<std::shared_ptr<const SceneRenderer>, double> Once(const Make& make) {
     const double start = ProcessorSeconds();
@@ -208,7 +208,7 @@ class PicturesTopic {
     topic_.rows.push_back(std::move(row));
   }
 
-  /// Error of a picture, and its time without what is prepared once.
+  /// Measures the error of a picture, and its time without the preparation.
   void Measure(const JudgedScene& scene, const RenderSettings& settings,
                RegimeResult& result) const {
     std::vector<double> seconds;
@@ -221,7 +221,7 @@ class PicturesTopic {
     }
     std::sort(seconds.begin(), seconds.end());
     const bool shafts = settings.effects.Has(Effect::kShafts);
-    // Processors' clocks tick in microseconds: a small picture may take none.
+    // Processor clocks tick in microseconds, so a small picture can appear to take no time.
     result.time_s = std::max(seconds.front() - (shafts ? scene.frame_s : 0.0), 1e-6) / Pixels();
     result.time_spread = seconds.back() / seconds.front() - 1.0;
   }
@@ -236,7 +236,7 @@ class PicturesTopic {
 
   [[nodiscard]] double Pixels() const { return static_cast<double>(width_ * height_); }
 
-  /// What a picture prepares once: the time of a picture of one pixel.
+  /// Returns the preparation time of a picture: the time of a picture of one pixel.
   [[nodiscard]] double FrameSeconds(const JudgedScene& scene) const {
     RenderSettings settings = Settings(1);
     settings.width = settings.height = 1;
@@ -258,7 +258,8 @@ class PicturesTopic {
   ReportTopic topic_;
 };
 
-/// A lamp on a runway that points east: along it from its threshold, left of its middle.
+/// Returns a lamp of a runway that points east, placed along the runway from its threshold and left
+/// of its centreline.
 Light RunwayLamp(const GeodeticPosition& threshold, double along_m, double left_m, double height_m,
                  double candela) {
   constexpr double kRadius_m = 6371000.0;

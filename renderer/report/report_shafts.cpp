@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Topic of the report: light scattered once in air that terrain shades in part.
+// Measures the topic of the report about single scattering in air that terrain shades in part.
 #include <fmt/format.h>
 #include <oneapi/tbb/parallel_for.h>
 
@@ -21,7 +21,7 @@
 namespace alpenglow::renderer {
 namespace {
 
-// Lines of the plot.
+// Line styles of the plot.
 enum ShaftStyle { kHeights = 0, kMarch = 1, kProbes = 2, kUnbroken = 5 };
 
 constexpr std::array<ReportRegime, 4> kSuns{{{"15", "Sun at 15°", SunRange{15.0, 15.0}},
@@ -29,7 +29,7 @@ constexpr std::array<ReportRegime, 4> kSuns{{{"15", "Sun at 15°", SunRange{15.0
                                              {"3", "Sun at 3°", SunRange{3.0, 3.0}},
                                              {"1", "Sun at 1°", SunRange{1.0, 1.0}}}};
 
-/// The longest ray through the air that matters [m].
+/// Length of the longest relevant ray through the air [m].
 constexpr double kLongest_m = 2000e3;
 
 /// The picture under one sun, with the judge's answers.
@@ -37,16 +37,17 @@ struct JudgedView {
   ShaftView view;
   std::vector<double> length_m;
   std::vector<Bands<float>> truth;
-  std::vector<double> mean;  // of the picture, by band: what errors are relative to
+  std::vector<double> mean;  // of the picture, by band; errors are relative to it
 };
 
-/// Terrain, and an eye 300 m over it.
+/// Terrain, and an eye 300 m above it.
 struct ShaftPlace {
   Terrain terrain;
   double eye_height_m;
 };
 
-/// Ridges and saddles of 10 km, 40 km across: made at once, for tests.
+/// Returns ridges and saddles with a period of 10 km on a square of 40 km: quick to generate, for
+/// tests.
 ShaftPlace Waves() {
   constexpr std::uint32_t kSide = 81;
   constexpr float kExtent_m = 40e3F, kWave_m = 10e3F, kHeight_m = 900.0F;
@@ -66,7 +67,7 @@ ShaftPlace Waves() {
       mesh.triangles.push_back({corner + 1, corner + kSide + 1, corner + kSide});
     }
   }
-  mesh.normals.assign(mesh.positions.size(), {0.0F, 0.0F, 1.0F});  // not looked at
+  mesh.normals.assign(mesh.positions.size(), {0.0F, 0.0F, 1.0F});  // unused
   return {Terrain(std::move(mesh)), static_cast<double>(kHeight_m) + 300.0};
 }
 
@@ -214,7 +215,7 @@ class ShaftTopic {
     return RayOf(views_[r].view, i, views_[r].length_m[i]);
   }
 
-  /// Gauss panels on the lit stretches that `lit` finds.
+  /// Adds Gauss panels on the lit stretches that `lit` finds.
   template <typename Lit>
   void AddPanels(const Lit& lit, const AerialPerspective::Nodes& nodes, std::size_t r,
                  ReportRow& row) {
@@ -234,7 +235,7 @@ class ShaftTopic {
     row.at[r].samples = points / static_cast<double>(Pixels());
   }
 
-  /// Error on every pixel, time on every fourth.
+  /// Measures the error on every pixel, and the time on every fourth.
   template <typename Scatter>
   void Measure(std::size_t r, ReportRow& row, const Scatter& scatter) {
     const JudgedView& judged = views_[r];
@@ -264,11 +265,11 @@ class ShaftTopic {
   const ReportEffort& effort_;
   ShaftPlace ground_;
   AirIntegrator<float> air_;
-  DiffuseLight diffuse_;  // not looked at
+  DiffuseLight diffuse_;  // unused
   AerialPerspective aerial_;
   std::vector<JudgedView> views_;
-  std::vector<ShadowHeights> heights_;  // by view
-  std::vector<double> sweep_s_;         // to make them
+  std::vector<ShadowHeights> heights_;  // one for each view
+  std::vector<double> sweep_s_;         // time to build `heights_`
   double judge_s_ = 0.0;
   ReportTopic topic_;
 };
