@@ -40,12 +40,12 @@ std::optional<LineSpan> InUnitCube(const UnitLine& line, double length_m) {
   return LineSpan{begin, end};
 }
 
-// The sphere of radius 1/2 in the middle of the cube.
+// Returns the part of a line in the sphere of radius 1/2 in the middle of the cube.
 std::optional<LineSpan> InUnitBall(const UnitLine& line, double length_m) {
   const glm::dvec3 from = line.origin - 0.5;
   const double a = glm::dot(line.direction, line.direction);
   const double nearest = -glm::dot(from, line.direction) / a;
-  // The distance from the middle as a vector: its square has the digits that b^2 - 4 a c loses.
+  // Square the distance vector from the middle: b^2 - 4 a c would lose digits to cancellation.
   const glm::dvec3 off = from + nearest * line.direction;
   const double left = 0.25 - glm::dot(off, off);
   if (left <= 0.0) return std::nullopt;

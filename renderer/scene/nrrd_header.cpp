@@ -27,7 +27,7 @@ namespace fs = std::filesystem;
 
 constexpr std::size_t kLongestHeader = 1U << 20U;  // bytes
 
-// The first bytes of a file: more than a header has.
+// Reads the first bytes of a file, more than a header needs.
 std::string FirstBytes(const fs::path& file) {
   std::ifstream stream(file, std::ios::binary);
   std::string text(kLongestHeader, '\0');
@@ -38,7 +38,7 @@ std::string FirstBytes(const fs::path& file) {
   return text;
 }
 
-// Names of fields and of values are the same in whatever case.
+// Converts to lower case: names of fields and of values are case-insensitive.
 std::string Lower(std::string_view text) {
   std::string lower;
   for (const char c : text) {
@@ -67,7 +67,7 @@ std::optional<int> WholeNumber(std::string_view text) {
   return value;
 }
 
-// "(1,0,0) (0,1,0) (0,0,1)" as rows; empty if it is anything else.
+// Parses "(1,0,0) (0,1,0) (0,0,1)" into rows; empty for any other text.
 std::vector<std::array<double, 3>> VectorsOf(const std::string& value) {
   std::istringstream stream(value);
   std::vector<std::array<double, 3>> vectors;
@@ -82,7 +82,7 @@ std::vector<std::array<double, 3>> VectorsOf(const std::string& value) {
   return vectors;
 }
 
-/// A word of the format and what it stands for.
+/// A word of the format and its value.
 template <typename Value>
 struct Word {
   const char* name;
@@ -98,7 +98,7 @@ constexpr Word<NrrdHeader::Encoding> kEncodings[] = {{"raw", NrrdHeader::Encodin
                                                      {"gzip", NrrdHeader::Encoding::kGzip},
                                                      {"gz", NrrdHeader::Encoding::kGzip}};
 constexpr Word<bool> kEndians[] = {{"little", false}, {"big", true}};
-// The spaces. Each value says whether an axis runs against right, ahead (anterior) or up (superior).
+// The spaces. Each flag tells whether an axis points against right, ahead (anterior) or up (superior).
 constexpr Word<std::array<bool, 3>> kSpaces[] = {
     {"3d-right-handed", {false, false, false}},         {"ras", {false, false, false}},
     {"right-anterior-superior", {false, false, false}}, {"las", {true, false, false}},
@@ -133,7 +133,7 @@ class HeaderReader {
   }
 
  private:
-  // The next line; empty at the end of the text.
+  // Returns the next line; empty at the end of the text.
   std::optional<std::string_view> Line() {
     if (at_ >= text_.size()) return std::nullopt;
     const std::size_t end = text_.find('\n', at_);
@@ -153,7 +153,7 @@ class HeaderReader {
     if (line.front() == '#') return;
     const std::size_t colon = line.find(':');
     if (colon == std::string_view::npos) Fail("a line of the header without \":\"");
-    if (line.substr(colon, 2) == ":=") return;  // a key and a value of the user's own
+    if (line.substr(colon, 2) == ":=") return;  // user-defined key and value
     std::string field = Lower(Trimmed(line.substr(0, colon)));
     if (field == "datafile") field = "data file";
     if (field == "lineskip") field = "line skip";
@@ -227,7 +227,8 @@ class HeaderReader {
     return true;
   }
 
-  // Distances of samples, or the places of the first and the last of them: none may run backwards.
+  // Reads the spacing of the samples, or the positions of the first and the last sample; no axis
+  // may run backwards.
   void TakeAlongAxes(const std::string& field, const std::string& value) {
     const std::vector<std::string> words = WordsOf(value);
     if (words.size() != 3) Fail(fmt::format("{} are \"{}\"; they must be three", field, value));
@@ -281,7 +282,7 @@ class HeaderReader {
     }
   }
 
-  // Each axis of the file must run along one of space, and each along another one.
+  // Each axis of the file must run along a different axis of space.
   void Orient() {
     if (directions_.empty()) return;
     std::set<std::size_t> taken;
@@ -321,7 +322,7 @@ class HeaderReader {
   int line_ = 0, directions_line_ = 0;
   std::set<std::string> seen_;
   std::array<bool, 3> space_{};
-  std::map<std::string, std::array<double, 3>> along_;  // by field
+  std::map<std::string, std::array<double, 3>> along_;  // keyed by field name
   std::vector<std::array<double, 3>> directions_;
   NrrdHeader header_;
 };

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: MIT
-// Headers of NRRD files (http://teem.sourceforge.net/nrrd/format.html): lines "field: value" after
-// a line "NRRD000x", up to an empty line, which the data follow, or naming a file of their own.
+// Reads headers of NRRD files (http://teem.sourceforge.net/nrrd/format.html): lines "field: value"
+// after a line "NRRD000x", up to an empty line. The data follow, or are in a separate file that the
+// header names.
 //
-// Fields that describe data or say how to show them (content, number, units, labels, spacings,
-// thicknesses, space origin, ...) are passed over: a volume's place and size stand in its scene.
-// Every other field is understood or refused by its name.
+// Fields that describe data or their display (content, number, units, labels, spacings,
+// thicknesses, space origin, ...) are ignored: the scene gives the place and size of a volume. All
+// other fields are interpreted or rejected by name.
 #pragma once
 
 #include <array>
@@ -21,22 +22,22 @@ struct NrrdHeader {
   Type type = Type::kFloat;
   Encoding encoding = Encoding::kRaw;
   bool is_big_endian = false;
-  /// Along which axis of space (0 right, 1 ahead, 2 up) each axis of the file runs, and whether
-  /// against it.
+  /// Axis of space (0 right, 1 ahead, 2 up) along which each axis of the file runs, and whether it
+  /// runs in the opposite direction.
   std::array<std::size_t, 3> space_axis{0, 1, 2};
   std::array<bool, 3> is_reversed{};
 
   std::filesystem::path data_file;
-  std::size_t data_begin = 0;  // bytes of that file before the data and what is skipped
-  int line_skip = 0;           // lines before the data, or before they are unpacked
-  int byte_skip = 0;           // then bytes of the data; -1: all but the last ones
+  std::size_t data_begin = 0;  // bytes before the data and before the skipped lines and bytes
+  int line_skip = 0;           // lines to skip before the data, or before decompression
+  int byte_skip = 0;           // bytes to skip after that; -1: skip all but the last ones
 };
 
-/// Throws InputError "file: ..." or "file:line: ..." for what is no such header, for fields that
-/// are not known or stand twice, and for values that are not read: types other than float and
-/// uint8, three dimensions only, encodings other than raw and gzip, data in more than one file,
-/// axes that are not along those of space, samples at the corners of cells, values that are not
-/// one number a sample.
+/// Throws InputError "file: ..." or "file:line: ..." for text that is not such a header, for
+/// unknown or repeated fields, and for unsupported values: types other than float and uint8,
+/// numbers of dimensions other than three, encodings other than raw and gzip, data in more than one
+/// file, axes that are not along those of space, samples at the corners of cells, more than one
+/// number per sample.
 [[nodiscard]] NrrdHeader ReadNrrdHeader(const std::filesystem::path& file);
 
 }  // namespace alpenglow::renderer

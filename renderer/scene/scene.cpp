@@ -19,7 +19,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr double kHighestEye_m = 1e9;
-constexpr double kDeepestPlace_m = -12000.0;  // as PlaceFromDegrees
+constexpr double kDeepestPlace_m = -12000.0;  // the limit of PlaceFromDegrees
 constexpr double kLongestExposure_s = 43200.0;
 
 double Radians(double degrees) { return degrees * kRadiansPerDegree; }
@@ -30,7 +30,7 @@ double Required(const TomlTable& table, const std::string& key, double low, doub
   return *value;
 }
 
-/// Calls `read` and puts file and line of `key` before the message of its InputError.
+/// Calls `read` and prefixes the message of its InputError with file and line of `key`.
 template <typename Read>
 auto At(const TomlTable& table, const std::string& key, const Read& read) {
   try {
@@ -92,8 +92,8 @@ int BladesOf(const TomlTable& table) {
   return static_cast<int>(blades);
 }
 
-/// The smallest f-number that is accepted. Lenses in air end at 0.5 (the sine condition); a fifth of
-/// that leaves room for effects.
+/// The smallest accepted f-number. Lenses in air end at 0.5 (the sine condition); a fifth of that
+/// leaves room for exaggerated effects.
 constexpr double kWidestLens = 0.1;
 
 std::optional<ThinLens> LensOf(const TomlTable& table) {
@@ -121,8 +121,9 @@ std::optional<ThinLens> LensOf(const TomlTable& table) {
   return ThinLens{f_number, 1e-3 * *focal_length_mm, *focus_m, blades, Radians(rotation)};
 }
 
-/// Degrees that a sensor of `camera.sensor_width_mm` sees: behind the lens at f s / (s - f), where
-/// what is at the distance of focus s is sharp, or at f. Nothing when no sensor is given.
+/// Returns the field of view [degrees] of a sensor of `camera.sensor_width_mm`: it is f s / (s - f)
+/// behind the lens, where objects at the focus distance s are sharp, or f behind it without a focus
+/// distance. No value if no sensor is given.
 std::optional<double> FovOfSensor(const TomlTable& table, const std::optional<ThinLens>& lens) {
   const std::optional<double> width_mm = table.Number("sensor_width_mm", 0.1, 1e5);
   if (!width_mm) return std::nullopt;
@@ -131,8 +132,8 @@ std::optional<double> FovOfSensor(const TomlTable& table, const std::optional<Th
   return 2.0 * std::atan(0.5 * *width_mm / v) / kRadiansPerDegree;
 }
 
-/// The field of view: as it is given, as sensor and focal length make it, or 60 degrees. Said twice
-/// it may differ by as much as focusing and rounding make it differ.
+/// Returns the field of view: the given one, that of sensor and focal length, or 60 degrees. If
+/// both are given, they may differ by as much as focusing and rounding change it.
 double FovOf(const TomlTable& table, const std::optional<ThinLens>& lens) {
   constexpr double kSame = 0.05;
   const std::optional<double> given = table.Number("fov", 0.1, 360.0);
@@ -254,7 +255,7 @@ GroundCover::Kind CoverOf(const TomlTable& table) {
                                   fmt::join(names, ", ")));
 }
 
-/// Keys of [ground] that would have no effect under a cover are refused.
+/// Rejects keys of [ground] that have no effect with the chosen cover.
 void RequireCover(const TomlTable& table, const char* key, bool has_effect, const char* covers) {
   if (table.Has(key) && !has_effect)
     table.Fail(key, fmt::format("ground.{} is for {}; this is another cover", key, covers));
@@ -374,7 +375,7 @@ std::optional<double> TownZenithOf(const TomlTable& document) {
   return ZenithOfBortleClass(static_cast<int>(*bortle));
 }
 
-// Of drops when nothing is said.
+// Returns the phase function; by default that of droplets.
 PhaseFunction DropletPhaseOf(const TomlTable& table) {
   const std::optional<double> g = table.Number("g", -0.99, 0.99);
   const std::optional<double> droplet =
@@ -410,7 +411,7 @@ std::optional<Fog> FogOf(const TomlTable& document) {
   return fog;
 }
 
-// One value, or one for every wavelength.
+// Returns one value for every wavelength, from one value or a full list.
 std::vector<double> PerBand(const TomlTable& table, const std::string& key, double high,
                             std::size_t bands, double fallback) {
   const std::optional<std::vector<double>> values = table.Numbers(key, 0.0, high);

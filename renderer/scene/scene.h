@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What a picture is of: place, time, camera, air, ground, lamps; and the file that says so.
+// The description of a scene: place, time, camera, air, ground and lamps; and the reader of scene.toml.
 #pragma once
 
 #include <array>
@@ -19,7 +19,7 @@
 
 namespace alpenglow::renderer {
 
-/// A height over the ellipsoid or over the ground below.
+/// A height above the ellipsoid or above the ground.
 struct Height {
   double value_m = 2.0;
   bool above_ground = true;
@@ -27,35 +27,38 @@ struct Height {
   bool operator==(const Height&) const = default;
 };
 
-/// The lens, when it is more than a pinhole.
+/// A lens of finite aperture; cameras without one are pinholes.
 struct ThinLens {
   double f_number;
   double focal_length_m;
-  double focus_m;                   // distance of the plane across the view axis that is sharp
-  int blades = 0;                   // of the iris; 0: it is round
-  double blade_rotation_rad = 0.0;  // of a corner from the right, counterclockwise from behind
+  double focus_m;                   // distance to the plane of sharp focus, across the view axis
+  int blades = 0;                   // blades of the iris; 0: round
+  double blade_rotation_rad = 0.0;  // angle of a corner from the right, counterclockwise seen from
+                                    // behind
 };
 
-/// The eye stands at the scene's place.
+/// A camera; the eye is at the scene's place.
 struct Camera {
   Height height;
   double heading_rad = 0.0;             // clockwise from north
-  double pitch_rad = 0.0;               // up is positive
+  double pitch_rad = 0.0;               // positive is up
   double roll_rad = 0.0;                // clockwise seen from behind
-  double fov_rad = 1.0471975511965976;  // horizontal, 60 degrees; over 179 degrees: see below
+  double fov_rad = 1.0471975511965976;  // horizontal, default 60 degrees; over 179 degrees: see
+                                        // IsPanorama()
   std::optional<ThinLens> lens;
-  /// A linear polariser before the lens: its transmission axis, clockwise from the picture's
+  /// Transmission axis of a linear polariser in front of the lens, clockwise from the picture's
   /// vertical as seen from behind.
   std::optional<double> polariser_rad;
-  /// Seconds that the shutter is open for the sky: stars and the moon draw trails, the middle of
-  /// which is at the time of the picture. All else stands still.
+  /// Exposure time [s] of the sky: stars and the moon draw trails, the middle of which is at the
+  /// time of the picture. Everything else stands still.
   double shutter_s = 0.0;
 
-  /// 2 pi: a panorama, all directions; else a perspective of at most 179 degrees.
+  /// Returns whether the camera is a panorama of all directions (2 pi); else it is a perspective of
+  /// at most 179 degrees.
   [[nodiscard]] bool IsPanorama() const;
 };
 
-/// Where the ground comes from.
+/// Source of the ground geometry.
 struct TerrainSource {
   enum class Kind {
     kBuiltInRange,    // BuiltInRange
@@ -66,28 +69,29 @@ struct TerrainSource {
   Kind kind = Kind::kBuiltInRange;
   std::filesystem::path file;
   VoidPolicy voids = VoidPolicy::kFill;
-  UpAxis up = UpAxis::kZ;                                 // of the mesh
-  std::optional<GeodeticPosition> centre = std::nullopt;  // of the range; nothing: scene's place
-  std::uint32_t range_seed = 0;                           // of the range
-  bool is_default = true;  // nothing was said about the terrain: the range stands in for it
-  std::filesystem::path colour = {};      // over it, see ColourDrape; empty: none
-  std::filesystem::path land_cover = {};  // as colour, and not both
+  UpAxis up = UpAxis::kZ;                                 // up axis of the mesh
+  std::optional<GeodeticPosition> centre = std::nullopt;  // centre of the range; empty: the scene's
+                                                          // place
+  std::uint32_t range_seed = 0;                           // seed of the range
+  bool is_default = true;  // terrain was not specified: the range stands in for it
+  std::filesystem::path colour = {};      // image over the terrain, see ColourDrape; empty: none
+  std::filesystem::path land_cover = {};  // land cover map; excludes `colour`
 
-  /// The ground has relief finer than its triangles where they join samples of elevation. A mesh of
-  /// a file has only its own triangles.
+  /// Returns whether the ground has relief finer than its triangles, which then connect samples of
+  /// elevation. A mesh file has only its own triangles.
   [[nodiscard]] bool HasFineRelief() const { return kind != Kind::kMesh; }
 
-  /// What of both is given.
+  /// Returns `colour` or `land_cover`, whichever is given.
   [[nodiscard]] const std::filesystem::path& Drape() const {
     return colour.empty() ? land_cover : colour;
   }
 };
 
-/// What the ground is made of, and how it sends light on (reflectance.h).
+/// Material of the ground and its reflectance model (reflectance.h).
 struct GroundCover {
   enum class Kind {
     kMountain,    // forest, meadow, rock, snow by altitude and slope (MountainSurface); Lambertian
-    kLambert,     // one colour, even
+    kLambert,     // one colour, smooth
     kOrenNayar,   // one colour, rough
     kBlinnPhong,  // one colour under a glossy coat
     kWater,
@@ -95,12 +99,12 @@ struct GroundCover {
   };
   Kind kind = Kind::kMountain;
   std::array<double, 3> albedo{0.2, 0.2, 0.2};  // linear sRGB, of kLambert to kBlinnPhong
-  double roughness = 0.5;                       // of kOrenNayar and kBlinnPhong, see there
+  double roughness = 0.5;                       // of kOrenNayar and kBlinnPhong, see their classes
   double reflectance = 0.04;                    // of the coat at normal incidence
   double wind_m_per_s = 5.0;                    // over water
   double grain_diameter_m = 5e-4;               // of snow
   double wetness = 0.0;                         // of kMountain to kOrenNayar, see WetAlbedo
-  std::optional<double> sea_level_m;            // ground that is not higher is water
+  std::optional<double> sea_level_m;            // ground at or below this level is water
 };
 
 /// A lamp.
@@ -110,73 +114,75 @@ struct Light {
   double latitude_rad = 0.0;
   double longitude_rad = 0.0;
   Height height;
-  std::optional<double> intensity_cd;        // the largest; nothing: as the IES file says
-  double temperature_k = 3000.0;             // of the black body whose colour it has
-  double radius_m = 0.1;                     // of the luminous sphere that it is
-  std::optional<std::filesystem::path> ies;  // how its light is distributed, see ReadIes
+  std::optional<double> intensity_cd;        // maximum; empty: from the IES file
+  double temperature_k = 3000.0;             // of a black body with the lamp's colour
+  double radius_m = 0.1;                     // radius of the luminous sphere
+  std::optional<std::filesystem::path> ies;  // angular distribution of the light, see ReadIes
   double heading_rad = 0.0;                  // of the axis of a spot or of an IES file
   double pitch_rad = 0.0;
-  double inner_rad = 0.0;  // half angles of a spot: full inside the first, none outside the second
+  double inner_rad = 0.0;  // half angles of a spot: full intensity inside the first, none outside
+                           // the second
   double outer_rad = 0.0;
 };
 
-/// Fog of exponential density over the ellipsoid. It scatters the light of lamps once, that of sun
-/// and sky to all orders (FogLight).
+/// Fog of exponential density over the ellipsoid. Light of lamps is scattered once in it, light of
+/// sun and sky to all orders (FogLight).
 struct Fog {
-  double extinction_per_m = 0.0;        // at its base
+  double extinction_per_m = 0.0;        // at base_height_m
   double scale_height_m = 0.0;          // may be infinite
-  std::optional<double> base_height_m;  // over the ellipsoid; nothing: the ground under the eye
+  std::optional<double> base_height_m;  // over the ellipsoid; empty: the ground under the eye
   double albedo = 1.0;
   PhaseFunction phase;
 };
 
-/// A body of air of its own, see LocalVolume: smoke, a fog bank, a glowing gas. Lists hold one
+/// A local participating medium, see LocalVolume: smoke, a fog bank, a glowing gas. Lists hold one
 /// value, or one per wavelength of the medium.
 struct Volume {
   VolumePlacement::Shape shape = VolumePlacement::Shape::kBox;
   double latitude_rad = 0.0;
   double longitude_rad = 0.0;
-  Height height;                                // of its underside
+  Height height;                                // height of the underside
   std::array<double, 3> size_m{};               // across its heading, along it, up
   double heading_rad = 0.0;                     // clockwise from north
-  std::optional<double> scale_height_m;         // nothing: homogeneous, or a grid
+  std::optional<double> scale_height_m;         // empty: homogeneous, or a grid
   std::filesystem::path grid;                   // see ReadNrrd and ReadRawGrid; empty: none
   std::optional<std::array<int, 3>> grid_size;  // of a raw grid
-  std::vector<double> extinction_per_m{0.0};    // where density is 1
+  std::vector<double> extinction_per_m{0.0};    // at density 1
   std::vector<double> albedo{1.0};
-  std::vector<double> emission_per_m{0.0};  // W m^-2 sr^-1 nm^-1 a metre where density is 1
-  std::optional<double> temperature_k;      // glows as a black body as far as it absorbs
+  std::vector<double> emission_per_m{0.0};  // W m^-2 sr^-1 nm^-1 per metre at density 1
+  std::optional<double> temperature_k;      // of black-body emission by Kirchhoff's law; empty: none
   PhaseFunction phase;
 };
 
 struct Scene {
-  GeodeticPosition place;           // height 0
+  GeodeticPosition place;           // with height 0
   std::optional<std::string> zone;  // IANA name
   std::optional<UtcInstant> time;
   Camera camera;
-  Medium medium;  // "earth" when nothing is said
+  Medium medium;  // default: preset "earth"
   TerrainSource terrain;
   GroundCover ground;
   std::vector<Light> lights;
   std::optional<Fog> fog;
   std::vector<Volume> volumes;
-  /// Of the zenith of a moonless night over the lamps of towns [V magnitudes a square arcsecond];
-  /// nothing: there are none.
+  /// Brightness of the zenith on a moonless night with light pollution [V magnitudes per square
+  /// arcsecond]; empty: no light pollution.
   std::optional<double> town_zenith;
 };
 
-/// Reads scene.toml. Names of files in it are relative to it. Throws InputError "file:line: key
-/// ..." for unknown keys (with the nearest known one), wrong types, values out of range, a missing
-/// place, malformed text, and what ReadMedium refuses. Files of the terrain are not opened here.
+/// Reads scene.toml. File names in it are relative to it. Throws InputError "file:line: key ..."
+/// for unknown keys (with the nearest known one), wrong types, values out of range, a missing
+/// place, malformed text, and errors of ReadMedium. Files of the terrain are not opened here.
 [[nodiscard]] Scene ReadScene(const std::filesystem::path& file);
 
-/// As ReadScene, from text; `origin` stands in messages where the file's name would, and names of
-/// files are relative to `folder`.
+/// Reads a scene from text, like ReadScene. `origin` replaces the file's name in messages, and file
+/// names are relative to `folder`.
 [[nodiscard]] Scene SceneFromToml(std::string_view text, const std::string& origin,
                                   const std::filesystem::path& folder);
 
-/// Checked values of a camera: heading [-360, 360], pitch [-90, 90], roll [-180, 180], fov [0.1,
-/// 179] or 360, all in degrees. Throws InputError naming the value as `prefix`heading and so on.
+/// Returns a camera from checked values: heading [-360, 360], pitch [-90, 90], roll [-180, 180],
+/// fov [0.1, 179] or 360, all in degrees. Throws InputError that names the value with `prefix` in
+/// front ("heading" and so on).
 [[nodiscard]] Camera CameraFromDegrees(const Height& height, double heading, double pitch,
                                        double roll, double fov, const std::string& prefix = "");
 

@@ -15,13 +15,13 @@
 namespace alpenglow::renderer {
 namespace {
 
-// The file that a grid's header names, or the grid itself.
+// Returns the file that a grid's header names, or the grid itself.
 std::filesystem::path DataOfGrid(const Volume& volume) {
   if (volume.grid.empty() || volume.grid_size) return volume.grid;
   try {
     return ReadNrrdHeader(volume.grid).data_file;
   } catch (const InputError&) {
-    return volume.grid;  // the fault is told when the volume is read
+    return volume.grid;  // the error is reported when the volume is read
   }
 }
 
@@ -62,12 +62,13 @@ GeodeticPosition PlaceTyped(const SceneOptions& options) {
 
 GeodeticPosition Home() { return PlaceFromDegrees(kHomeLatitude, kHomeLongitude, 0.0); }
 
-/// The range comes to a place that is typed; nobody else moves.
+/// Returns the built-in range, moved to a place given on the command line, or else around
+/// kHomeLatitude and kHomeLongitude.
 TerrainSource RangeOf(const SceneOptions& options) {
   if (IsPlaceTyped(options)) return RangeSeenFrom(PlaceTyped(options));
   TerrainSource range;
   range.centre = Home();
-  range.is_default = false;  // nobody looks for other mountains there
+  range.is_default = false;  // so that no other terrain is searched for there
   return range;
 }
 
@@ -91,7 +92,8 @@ Height HeightFrom(const SceneOptions& options, const Height& fallback) {
   return fallback;
 }
 
-// Places that are typed or computed alike have the same: none of them lies where two meet.
+// Returns a seed that is equal for places given or computed with small differences: the cells are
+// offset so that such places do not fall on a cell border.
 std::uint32_t SeedAt(const GeodeticPosition& place) {
   constexpr double kCellsPerDegree = 100.0, kOffset = 0.5 + 1.0 / 3e3;
   const auto cell = [](double angle_rad) {

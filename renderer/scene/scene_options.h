@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The files that a scene is made from.
-//
-// A scene from the command line, for programs that are called without a scene file.
+// Builds a scene from command line options, for programs that are called without a scene file, and
+// lists the files of a scene.
 #pragma once
 
 #include <optional>
@@ -13,37 +12,37 @@
 
 namespace alpenglow::renderer {
 
-/// Every file that a scene names and that is read when it is rendered, under the name of its key.
+/// Returns every file that the scene names and that is read for rendering, with the name of its key.
 [[nodiscard]] std::vector<NamedFile> FilesOf(const Scene& scene);
 
-/// Latitude and longitude [degrees] where none are typed: of elevation models, and of the view of
-/// the built-in range that is centred there.
+/// Default latitude and longitude [degrees], for elevation models, and for the view of the built-in
+/// range centred there.
 inline constexpr double kHomeLatitude = 46.5;
 inline constexpr double kHomeLongitude = 8.0;
 
-/// What may be typed instead of a scene file; degrees and metres.
+/// Options that replace a scene file; degrees and metres.
 struct SceneOptions {
   std::optional<double> latitude, longitude;
   std::optional<double> heading, pitch, fov;
   std::optional<double> height_m, above_ground_m;
   std::optional<std::string> dem;
-  std::optional<std::string> atmosphere;  // a file, or the name of a preset
-  std::optional<int> bortle;              // ZenithOfBortleClass
+  std::optional<std::string> atmosphere;  // file, or name of a preset
+  std::optional<int> bortle;              // see ZenithOfBortleClass
 };
 
-/// The built-in range of a place: the place is that of its view. Places on the range around
-/// kHomeLatitude and kHomeLongitude have its mountains (seed 0), others their own: the same within a
-/// hundredth of a degree, and each time.
+/// Returns the built-in range whose view is at `place`. Places on the range around kHomeLatitude
+/// and kHomeLongitude get its mountains (seed 0). Other places get their own mountains, which are
+/// equal within a hundredth of a degree and in every run.
 [[nodiscard]] TerrainSource RangeSeenFrom(const GeodeticPosition& place);
 
-/// A place lies on the built-in range around kHomeLatitude and kHomeLongitude, or does not.
+/// Returns whether a place lies on the built-in range around kHomeLatitude and kHomeLongitude.
 [[nodiscard]] bool IsOnRangeAtHome(const GeodeticPosition& place);
 
-/// The eye stands at latitude and longitude, whatever the ground is. With `dem` it stands 2 m above
-/// the ground and looks north, horizontally, 60 degrees wide, unless said otherwise. Without it the
-/// built-in range is RangeSeenFrom the place, and height and directions of BuiltInRangeView hold
-/// unless said otherwise. The scene's time is noon (UTC) of 2026-06-21: the day of events when
-/// none is given. Throws InputError naming the option.
+/// Returns the scene with the eye at latitude and longitude, on any ground. With `dem` the default
+/// is 2 m above the ground, looking north, horizontally, 60 degrees wide. Without it the range is
+/// RangeSeenFrom the place, and height and directions default to BuiltInRangeView. The scene's time
+/// is noon (UTC) of 2026-06-21, which sets the day of events given without a date. Throws
+/// InputError naming the option.
 [[nodiscard]] Scene SceneFromOptions(const SceneOptions& options);
 
 }  // namespace alpenglow::renderer

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Files of densities: NRRD and raw.
+// Densities on a grid and their files: NRRD and raw.
 #include "renderer/scene/volume_grid.h"
 
 #include <fmt/format.h>
@@ -23,12 +23,12 @@
 namespace alpenglow::renderer {
 namespace {
 
-constexpr int kBlock = 4;  // samples a side
+constexpr int kBlock = 4;  // samples per side
 
-/// Where a line crosses the next of the planes `first + step k` of one axis.
+/// Finds the next crossing of a line with the planes `first + step k` of one axis.
 class PlaneWalk {
  public:
-  // `at` is the coordinate at t = begin, in units of planes.
+  // @param at  coordinate at t = begin, in units of planes.
   PlaneWalk(double at, double slope, double begin) : slope_(slope) {
     if (slope_ == 0.0) return;
     const double next = slope_ > 0.0 ? std::floor(at) + 1.0 : std::ceil(at) - 1.0;
@@ -44,7 +44,7 @@ class PlaneWalk {
   double step_ = 0.0;
 };
 
-/// Calls visit(begin, end) for the pieces of a line between planes at whole coordinates.
+/// Calls visit(begin, end) for the pieces of a line between planes at integer coordinates.
 template <typename Visit>
 void WalkPlanes(const glm::dvec3& origin, const glm::dvec3& direction, double begin, double end,
                 const Visit& visit) {
@@ -222,7 +222,7 @@ VolumeGrid FromBytes(const NrrdHeader& header, std::string_view data) {
   return {size, std::move(values)};
 }
 
-/// The stream of zlib, closed in any case.
+/// A zlib stream with automatic cleanup.
 class Inflater {
  public:
   Inflater() {
@@ -233,7 +233,7 @@ class Inflater {
   Inflater(const Inflater&) = delete;
   Inflater& operator=(const Inflater&) = delete;
 
-  /// The data that are packed, `most` bytes of them at most.
+  /// Returns the decompressed data, at most `most` bytes.
   std::string Unpacked(std::string packed, std::size_t most) {
     std::string data(most, '\0');
     std::size_t read = 0, written = 0;
@@ -245,7 +245,7 @@ class Inflater {
       const int status = inflate(&stream_, Z_NO_FLUSH);
       read += in - stream_.avail_in;
       written += out - stream_.avail_out;
-      if (status == Z_STREAM_END) {  // another may follow
+      if (status == Z_STREAM_END) {  // another member can follow
         inflateReset(&stream_);
       } else if (status != Z_OK) {
         throw InputError(fmt::format("the gzip data are damaged at byte {}", read));
@@ -284,13 +284,13 @@ std::string DataOf(const NrrdHeader& header) {
   }
   const auto skipped = static_cast<std::size_t>(header.byte_skip);
   if (header.encoding == NrrdHeader::Encoding::kGzip) {
-    // One byte more tells whether there are too many.
+    // One more byte reveals excess data.
     bytes = Inflater().Unpacked(std::move(bytes), wanted + skipped + 1);
   }
   return bytes.substr(std::min(bytes.size(), skipped));
 }
 
-// Values in the order of space: to the right fastest, up slowest.
+// Returns the values in the axis order of space: right fastest, up slowest.
 VolumeGrid InSpace(const NrrdHeader& header, const VolumeGrid& grid) {
   if (header.space_axis == std::array<std::size_t, 3>{0, 1, 2} &&
       header.is_reversed == std::array<bool, 3>{}) {
@@ -317,7 +317,7 @@ VolumeGrid InSpace(const NrrdHeader& header, const VolumeGrid& grid) {
   return {size, std::move(values)};
 }
 
-// Runs a step of reading, and names the file in its faults.
+// Runs a reading step and adds the file name to its errors.
 template <typename Read>
 VolumeGrid NamingItsFile(const fs::path& file, const Read& read) {
   try {

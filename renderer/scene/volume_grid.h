@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: MIT
-// Densities on a regular grid: smoke, clouds, whatever a box can hold.
+// Densities on a regular grid within a box: smoke, clouds or any other medium.
 //
-// Samples stand at the middles of nx x ny x nz equal cells of the unit cube; between them density
-// is trilinear, beyond the outermost it is as there. Along a straight line such a density is a
-// cubic between the planes of samples, so that two Gauss points a piece give its integral exactly.
+// Samples lie at the centres of nx x ny x nz equal cells of the unit cube; density is trilinear
+// between them and constant beyond the outermost ones. Along a straight line such a density is a
+// cubic between the planes of samples, so two Gauss points per piece give its integral exactly.
 //
-// Blocks of 4 samples a side know their largest density: rays pass over the empty ones, and marches
-// know how thick what lies ahead can be.
+// Blocks of 4 samples a side store their largest density: rays skip empty blocks, and ray marching
+// gets an upper bound of the density ahead.
 //
-// Files: NRRD (http://teem.sourceforge.net/nrrd/format.html), the part of it that a density needs.
+// Files: NRRD (http://teem.sourceforge.net/nrrd/format.html), the part of it that a density needs,
+// and raw.
 #pragma once
 
 #include <array>
@@ -27,28 +28,29 @@ class VolumeGrid {
  public:
   /// @param size    samples along x, y, z, each in [2, kMostGridSamples].
   /// @param values  x fastest, z slowest; finite and not negative.
-  /// Throws InputError that says what is wrong.
+  /// Throws InputError that states the error.
   VolumeGrid(const std::array<int, 3>& size, std::vector<float> values);
 
   [[nodiscard]] const std::array<int, 3>& size() const { return size_; }
   [[nodiscard]] const std::vector<float>& values() const { return values_; }
   [[nodiscard]] double largest() const { return largest_; }
 
-  /// Density at a point of the unit cube; coordinates are clamped to it.
+  /// Returns the density at a point of the unit cube; coordinates are clamped to the cube.
   [[nodiscard]] double At(const glm::dvec3& point) const;
 
-  /// A piece of a line and the largest density on it, or more.
+  /// An interval of a line and an upper bound of the density on it.
   struct Piece {
     double begin, end;
     double largest;
   };
-  /// The pieces of origin + t direction, t in [begin, end], where density may not be 0, in order:
-  /// one a block. The line's piece lies in the unit cube.
+  /// Returns the intervals of origin + t direction, t in [begin, end], where density can differ
+  /// from 0, in order: one per block. That part of the line must lie in the unit cube.
   [[nodiscard]] std::vector<Piece> PiecesAlong(const glm::dvec3& origin,
                                                const glm::dvec3& direction, double begin,
                                                double end) const;
 
-  /// Integral of density over t of that piece. Exact but for rounding: relative error below 1e-12.
+  /// Returns the integral of density over t from begin to end. Exact except for rounding: relative
+  /// error below 1e-12.
   [[nodiscard]] double Column(const glm::dvec3& origin, const glm::dvec3& direction, double begin,
                               double end) const;
 
@@ -71,13 +73,13 @@ class VolumeGrid {
 /// Throws InputError for a grid with a side outside of [2, kMostGridSamples].
 void CheckGridSize(const std::array<int, 3>& size);
 
-/// Reads an NRRD file: three axes, type float or uint8 (then 255 is density 1), encoding raw or
-/// gzip, data in the file or in another one that it names. Its space directions turn the samples so
+/// Reads an NRRD file: three axes, type float or uint8 (255 is density 1), encoding raw or gzip,
+/// data in the file or in another one that it names. Its space directions reorder the samples so
 /// that they run to the right, ahead and up. Throws InputError "file: ..." or "file:line: ..." for
-/// damaged data, and what ReadNrrdHeader refuses.
+/// damaged data, and errors of ReadNrrdHeader.
 [[nodiscard]] VolumeGrid ReadNrrd(const std::filesystem::path& file);
 
-/// Reads a file that is nothing but nx * ny * nz floats, little endian, x fastest. Throws
+/// Reads a file that consists only of nx * ny * nz floats, little endian, x fastest. Throws
 /// InputError "file: ..." when it has another length.
 [[nodiscard]] VolumeGrid ReadRawGrid(const std::filesystem::path& file,
                                      const std::array<int, 3>& size);
