@@ -18,7 +18,7 @@ constexpr int kLabelHeight = kGlyphHeight * kGlyphScale + 6;
 constexpr std::uint8_t kPaper = 24;
 constexpr std::uint8_t kInk = 200;
 
-/// Five rows of three pixels, top row first, '#' for ink; nothing for other characters.
+/// Returns five rows of three pixels, top row first, '#' for ink; empty for unsupported characters.
 std::string_view Glyph(char c) {
   switch (c) {
     case '0':
@@ -101,7 +101,7 @@ class Sheet {
   DisplayImage image_;
 };
 
-/// The mean of the pixels [x0, x1) x [y0, y1).
+/// Returns the mean of the pixels [x0, x1) x [y0, y1).
 std::array<float, 3> Mean(const Image& image, int x0, int x1, int y0, int y1) {
   std::array<double, 3> sum = {};
   for (int y = y0; y < y1; ++y) {

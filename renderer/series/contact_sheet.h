@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: MIT
-// All pictures of a series on one, small, with a line of text each.
-//
-// A keogram: of each picture of a series its middle column, side by side, so that one picture shows
-// how all of them follow each other (Eather, Mende, Judge 1976, J. Geophys. Res. 81, 3219).
+// Overviews of a series: a contact sheet of all pictures, each small and with a line of text; and a
+// keogram, which places the middle columns of the pictures side by side, so that one image shows
+// their course (Eather, Mende, Judge 1976, J. Geophys. Res. 81, 3219).
 #pragma once
 
 #include <string>
@@ -15,25 +14,25 @@ namespace alpenglow::renderer {
 
 inline constexpr int kThumbnailWidth = 320;
 
-/// The picture with its width reduced to `width` or less, pixels averaged in linear light; layers
-/// are left out. Pictures that are narrow enough stay as they are.
+/// Returns the picture with its width reduced to at most `width`, with pixels averaged in linear
+/// light and without layers. Pictures that are narrow enough are returned unchanged.
 [[nodiscard]] Image Reduced(const Image& image, int width);
 
 struct Thumbnail {
   DisplayImage image;
-  std::string label;  // digits, ':', '.', '+', '-' and spaces; others are left blank
+  std::string label;  // digits, ':', '.', '+', '-' and spaces; other characters are left blank
 };
 
-/// The thumbnails row by row, about as many columns as rows. All must have the same size.
+/// Returns the thumbnails row by row, in about as many columns as rows. All must have the same size.
 [[nodiscard]] DisplayImage ContactSheet(const std::vector<Thumbnail>& thumbnails);
 
-/// Grows by a column a picture.
+/// Grows by one column per picture.
 class Keogram {
  public:
-  /// Adds the middle column of a developed picture; all must be equally high.
+  /// Adds the middle column of a developed picture; all pictures must have the same height.
   void Add(const DisplayImage& picture);
 
-  /// As wide as pictures were added, one at least, and as high as they are.
+  /// Returns an image with one column per added picture, at least one, and with their height.
   [[nodiscard]] DisplayImage Image() const;
 
  private:

@@ -17,12 +17,12 @@
 namespace alpenglow::renderer {
 namespace {
 
-// In kTimesOfDay.
+// Indices into kTimesOfDay.
 constexpr std::size_t kSunrise = 3, kSunset = 5;
 constexpr const char* kEclipseFields =
     ",eclipse_first_contact,eclipse_second_contact,eclipse_deepest,eclipse_third_contact,"
     "eclipse_last_contact,eclipse_magnitude,eclipse_obscuration";
-// Of the table's columns, two lines of words over each.
+// Column heads of the table, in two lines.
 constexpr std::array<std::array<const char*, 2>, kTimesOfDay.size()> kHeads{{{"astr.", "dawn"},
                                                                              {"naut.", "dawn"},
                                                                              {"civil", "dawn"},
@@ -36,7 +36,7 @@ constexpr std::array<std::array<const char*, 2>, kTimesOfDay.size()> kHeads{{{"a
                                                                              {"moon", "tran."},
                                                                              {"moon", "set"}}};
 
-/// On the day of mean solar time, at whose noon the sun is up.
+/// Returns the visible eclipse of the mean solar day, which has the daylight in its middle.
 std::optional<SeenEclipse> EclipseOf(const EventDay& day, const DayTimes& times) {
   const UtcInstant midnight =
       MeanSolarMidnight(WrappedLongitude(day.place.longitude_rad), *day.around);
@@ -68,7 +68,7 @@ DayTimes TimesOf(const EventDay& day) {
   return times;
 }
 
-/// "04:25", of the zone or of UTC.
+/// Returns "04:25", in the zone or in UTC.
 std::string ClockTime(const std::optional<UtcInstant>& instant,
                       const std::optional<std::string>& zone) {
   if (!instant) return "--:--";
@@ -77,12 +77,12 @@ std::string ClockTime(const std::optional<UtcInstant>& instant,
   return (zone ? FormatInZone(rounded, *zone) : FormatUtc(rounded)).substr(11, 5);
 }
 
-/// "20:28:13", as above.
+/// Returns "20:28:13", in the zone or in UTC.
 std::string ClockSecond(const UtcInstant& instant, const std::optional<std::string>& zone) {
   return (zone ? FormatInZone(instant, *zone) : FormatUtc(instant)).substr(11, 8);
 }
 
-/// "eclipse of the sun: begins 19:33:04, total 20:28:21 to 20:30:05, deepest 20:29:13 ...".
+/// Returns "eclipse of the sun: begins 19:33:04, total 20:28:21 to 20:30:05, deepest 20:29:13 ...".
 std::string LineOf(const SeenEclipse& eclipse, const std::optional<std::string>& zone) {
   const SolarEclipse& whole = eclipse.whole;
   std::string text = "           eclipse of the sun: ";
@@ -102,7 +102,7 @@ std::string LineOf(const SeenEclipse& eclipse, const std::optional<std::string>&
   return text + "\n";
 }
 
-/// Fields of the CSV, each after its comma.
+/// Returns fields of the CSV, each with a comma in front.
 std::string FieldsOf(const std::optional<SeenEclipse>& eclipse) {
   if (!eclipse) return ",,,,,,,";
   const auto field = [](const SolarEclipse::Moment& moment) {
@@ -166,8 +166,8 @@ constexpr double kWidth = 960.0, kLeft = 70.0, kRight = 20.0, kTop = 48.0, kPlot
 constexpr int kPanels = 3;
 constexpr double kPlotHeight = kTop + kPanels * kPanelHeight + (kPanels - 1) * kPlotGap + kBottom;
 
-// Attributes instead of a style sheet, which not all readers of SVG know; colours of Okabe and Ito
-// as in svg_plot.h.
+// Attributes replace a style sheet, which not all SVG readers support; colours of Okabe and Ito, as
+// in svg_plot.h.
 constexpr char kSunColour[] = "#d55e00", kMoonColour[] = "#0072b2", kLightColour[] = "#b87f00",
                kEvColour[] = "#4b3fa7";
 
@@ -181,9 +181,9 @@ struct Curve {
 struct DayPanel {
   std::string title;
   std::vector<Curve> curves;
-  double step;       // smallest one between lines of the grid
-  bool logarithmic;  // values are powers of ten
-  double low, high;  // shown at least
+  double step;       // smallest step between grid lines
+  bool logarithmic;  // values are exponents of ten
+  double low, high;  // minimum range of the axis
   std::vector<LightLevel> levels = {};
 };
 
@@ -198,7 +198,7 @@ std::string PlotLineOf(double x0, double y0, double x1, double y1) {
       x0, y0, x1, y1);
 }
 
-/// The axis of time.
+/// The time axis.
 class TimeAxis {
  public:
   TimeAxis(const std::vector<PlottedMoment>& moments, const std::optional<std::string>& zone)
@@ -212,7 +212,7 @@ class TimeAxis {
   [[nodiscard]] std::string Local(const UtcInstant& instant) const {
     return zone_ ? FormatInZone(instant, *zone_) : FormatUtc(instant);
   }
-  /// Instants at round local times, and what they are called.
+  /// Returns instants at round local times, with their labels.
   [[nodiscard]] std::vector<std::pair<UtcInstant, std::string>> Ticks() const {
     const double step_s = Step();
     const std::string local = Local(first_);
@@ -222,7 +222,7 @@ class TimeAxis {
     const double before_s = std::fmod(clock_s, std::min(step_s, kSecondsPerDay));
     for (double at_s = before_s > 0.0 ? std::min(step_s, kSecondsPerDay) - before_s : 0.0;
          at_s <= span_s_; at_s += step_s) {
-      // Half a second more, against seconds that are cut off.
+      // Add half a second, because the text truncates seconds.
       const std::string text = Local(AddSeconds(first_, at_s + 0.5));
       ticks.emplace_back(AddSeconds(first_, at_s),
                          step_s < kSecondsPerDay ? text.substr(11, 5) : text.substr(5, 5));
@@ -246,7 +246,7 @@ class TimeAxis {
   double span_s_;
 };
 
-/// Darker behind the curves, the lower the sun is: day, three twilights, night.
+/// Returns the background of the curves, darker for a lower sun: day, three twilights, night.
 std::string BandsOfTwilight(const std::vector<PlottedMoment>& moments, const TimeAxis& time,
                             double top) {
   std::string text;
@@ -266,7 +266,7 @@ std::string BandsOfTwilight(const std::vector<PlottedMoment>& moments, const Tim
   return text;
 }
 
-/// The range of a panel, in whole steps that are at most eight.
+/// Range of a panel in multiples of the step, with at most eight steps.
 struct PlotRange {
   double low, high, step;
 
@@ -308,7 +308,7 @@ std::string CurveText(const Curve& curve, const std::vector<PlottedMoment>& mome
     }
     const double at_x = time.X(moment.instant), at_y = y(*value);
     run += fmt::format("{:.1f},{:.1f} ", at_x, at_y);
-    if (++points == 1)  // a frame alone is seen too
+    if (++points == 1)  // also marks an isolated frame
       text += fmt::format("<circle fill=\"{}\" cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"1.5\"/>\n",
                           curve.colour, at_x, at_y);
   }
@@ -330,7 +330,7 @@ std::string GridText(const DayPanel& panel, const PlotRange& range, const TimeAx
   return text;
 }
 
-/// A band or a line, and its name at the left.
+/// Returns a band or a line, with its name at the left.
 std::string LevelText(const LightLevel& level, const std::function<double(double)>& y) {
   const double high = y(std::log10(level.high_lx)), low = y(std::log10(level.low_lx));
   return fmt::format(

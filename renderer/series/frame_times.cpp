@@ -23,7 +23,7 @@ namespace {
 
 struct Conversion {
   int width = 0;
-  std::size_t length = 0;  // characters after the per cent sign
+  std::size_t length = 0;  // number of characters after the per cent sign
 };
 
 Conversion ConversionAt(const std::string& pattern, std::size_t at) {
@@ -93,7 +93,7 @@ std::filesystem::path FrameName::Folder() const {
 
 namespace {
 
-/// An instant at one end says of which day the event at the other end is.
+/// An instant at one end determines the day of the event at the other end.
 EventDay DayOfFrom(const TimesText& times, const EventDay& day) {
   EventDay of_from = day;
   if (!day.around && !IsDailyEvent(*times.to) && !IsDayText(*times.to)) {
@@ -107,7 +107,7 @@ UtcInstant EndOf(const TimesText& times, const EventDay& day, const UtcInstant& 
   const bool comes_daily = IsDailyEvent(*times.to) || IsClockTime(*times.to);
   if (SecondsBetween(from, to) > 0.0 || !comes_daily) return to;
   EventDay next = day;
-  // From noon: clocks may be set before the next one.
+  // Step from noon, because a clock change can lie before the next noon.
   next.around = AddSeconds(DayFromText(DateAt(*day.around, day), day), kSecondsPerDay);
   return InstantFromText(*times.to, next);
 }
@@ -128,9 +128,9 @@ double StepOf(const std::string& every) {
   return step_s;
 }
 
-/// How many steps fit into a span.
+/// Returns the number of steps that fit into a span.
 int StepsIn(double span_s, const std::string& every) {
-  constexpr double kRounding_s = 1e-6;  // of the event search and of sums of durations
+  constexpr double kRounding_s = 1e-6;  // rounding of the event search and of sums of durations
   const double steps = std::floor((span_s + kRounding_s) / StepOf(every));
   if (steps >= kMostFrames) {
     throw InputError(fmt::format("--every {} gives {:.0f} frames; there may be {}", every,
@@ -147,11 +147,11 @@ std::vector<UtcInstant> EverySeconds(const UtcInstant& from, double span_s,
   return instants;
 }
 
-/// A clock time of a day in the zone. Clocks that skip it or show it twice go on with the offset
-/// that they had before.
+/// Returns the instant of a clock time on a day in the zone. A clock time that is skipped or
+/// repeated by a clock change uses the offset before the change.
 UtcInstant ClockTimeOn(const std::string& date_and_clock, const std::string& zone,
                        const UtcInstant& before) {
-  constexpr std::size_t kOffsetAt = 19;  // in "2026-06-21T13:00:00+09:00"
+  constexpr std::size_t kOffsetAt = 19;  // position of the offset in "2026-06-21T13:00:00+09:00"
   try {
     return ParseInstant(date_and_clock, zone);
   } catch (const InputError&) {
@@ -159,7 +159,8 @@ UtcInstant ClockTimeOn(const std::string& date_and_clock, const std::string& zon
   }
 }
 
-/// Whole days of the calendar of a zone: clocks show the same at every frame.
+/// Returns whether `every` counts whole calendar days of a zone, so that clocks show the same time
+/// at every frame.
 bool IsOfCalendarDays(const std::string& every, const EventDay& day) {
   return day.zone && every.ends_with('d') && std::fmod(StepOf(every), kSecondsPerDay) == 0.0;
 }
@@ -172,7 +173,7 @@ std::vector<UtcInstant> EveryDays(const UtcInstant& from, double span_s, const s
   const std::string clock = FormatInZone(whole, *day.zone).substr(10, 9);  // "T13:00:00"
   const UtcInstant noon = DayFromText(DateAt(from, day), day);
   std::vector<UtcInstant> instants{from};
-  // A span of whole days is an hour longer or shorter where clocks are set in it.
+  // A span of whole days is an hour longer or shorter if it contains a clock change.
   const int most = StepsIn(span_s + 0.5 * kSecondsPerDay, every);
   for (int i = 1; i <= most; ++i) {
     const std::string date = DateAt(AddSeconds(noon, i * StepOf(every)), day);
@@ -189,7 +190,7 @@ bool IsOfEachDay(const TimesText& times) {
          std::fmod(StepOf(*times.every), kSecondsPerDay) == 0.0;
 }
 
-/// The event of `from` on its day and on those that follow, up to the day of `to`.
+/// Returns the event of `from` on its day and on the following days, up to the day of `to`.
 std::vector<UtcInstant> EventOfEachDay(const TimesText& times, const EventDay& day) {
   const auto [event, first] = TimeOfDayFromText(*times.from, DayOfFrom(times, day));
   if (!first.around) throw InputError("an event of each day needs a first day: give --date");
@@ -326,7 +327,7 @@ std::vector<Frame> FramesAlong(const CameraPath& path, const PathRate& rate,
                                const UtcInstant& start) {
   const double interval_s = FrameInterval(path, rate);
   const double length_s = path.end_s() - path.begin_s();
-  // A last frame that rounding puts after the path's end is one of the path.
+  // A last frame that rounding places after the end of the path still belongs to it.
   constexpr double kRounding = 1e-9;
   const double count =
       rate.count ? *rate.count : std::floor(length_s / interval_s * (1.0 + kRounding)) + 1.0;
@@ -343,7 +344,7 @@ std::vector<Frame> FramesAlong(const CameraPath& path, const PathRate& rate,
 }
 
 Shot ShotOf(const Frame& frame, const CameraPath& path, double shutter_s) {
-  // Straight ways between 16 steps miss a curve by less than a hundredth of its length.
+  // Straight segments between 16 steps miss a curve by less than a hundredth of its length.
   constexpr int kSteps = 17;
   Shot shot(frame.instant);
   shot.poses = path.PosesBetween(frame.path_s - 0.5 * shutter_s, frame.path_s + 0.5 * shutter_s,

@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Names of the frames of a series: "DIR/frame.%04d.exr".
-//
-// Which instants a series shows, from what people type (time_text.h).
-//
-// Frames of a series along a camera's path.
+// Frames of a series: their instants from text (time_text.h) or along a camera path, and their file
+// names "DIR/frame.%04d.exr".
 #pragma once
 
 #include <filesystem>
@@ -20,84 +17,85 @@
 
 namespace alpenglow::renderer {
 
-/// A pattern with at most one integer conversion, %d, or %4d and %04d, which fill up with zeros as
-/// ffmpeg does; %% is a per cent sign.
+/// A file name pattern with at most one integer conversion: %d, or %4d and %04d, which pad with
+/// zeros as in ffmpeg; %% is a per cent sign.
 class FrameName {
  public:
-  /// Throws InputError for other conversions, for more
-  /// than one, and for names that do not end in .exr.
+  /// Throws InputError for other conversions, for more than one, and for names that do not end in .exr.
   explicit FrameName(const std::string& pattern);
 
-  /// Whether frames of different numbers have different names.
+  /// Returns whether frames with different numbers have different names.
   [[nodiscard]] bool HasNumber() const { return has_number_; }
   [[nodiscard]] std::filesystem::path Exr(int number) const;
-  /// As Exr, with .png for .exr.
+  /// Returns the name of Exr() with .png instead of .exr.
   [[nodiscard]] std::filesystem::path Png(int number) const;
-  /// The list of the frames, in their folder: "DIR/frame.manifest.csv".
+  /// Returns the name of the list of frames, in their folder: "DIR/frame.manifest.csv".
   [[nodiscard]] std::filesystem::path Manifest() const;
-  /// The same for programs: "DIR/frame.manifest.json".
+  /// Returns the name of the list as JSON: "DIR/frame.manifest.json".
   [[nodiscard]] std::filesystem::path JsonManifest() const;
   [[nodiscard]] std::filesystem::path Folder() const;
 
  private:
-  std::string before_, after_;  // of the number
+  std::string before_, after_;  // text before and after the number
   bool has_number_ = false;
   int width_ = 0;
 };
 
-/// One picture of a series. Numbers count from 0.
+/// One picture of a series. Numbers start at 0.
 struct Frame {
   int number;
   UtcInstant instant;
-  double path_s = 0.0;  // where on the path of the camera, if there is one
+  double path_s = 0.0;  // position on the camera path, if there is one
 };
 
-/// The times of a series as typed. Either `at`, or `from` and `to` with `every` or `count`.
+/// The times of a series as given on the command line: either `at`, or `from` and `to` with `every`
+/// or `count`.
 struct TimesText {
   std::vector<std::string> at;
   std::optional<std::string> from, to;
-  std::optional<std::string> every;  // duration: frames from `from` on, while not after `to`
+  std::optional<std::string> every;  // duration: frames from `from` on, up to `to`
   std::optional<int> count;          // frames from `from` to `to`, both included
 };
 
-/// Frames in a series, at most.
+/// Largest number of frames in a series.
 inline constexpr int kMostFrames = 1000000;
 
-/// The frames. A `to` that is an event or a clock time and not after `from` is taken on the
-/// following day, so that "sunset" to "sunrise" and "22:00" to "02:00" are nights; a day of an
-/// `every` such as "1d" is one of the calendar, after which clocks of the zone show the same ("24h"
-/// is 24 hours; clocks that skip the time or show it twice go on with the offset before); an
-/// instant at one end says of which day the event at the other end is. Where `from` is an event and
-/// `every` whole days, each frame is the event of its own day, from that of `from` to that of `to`,
-/// which may be a day without a time; days without the event have no frame. Throws InputError for
-/// what InstantFromText refuses, a `to` before `from`, an `every` that is not positive, a `count`
-/// below 1, too many frames, no frame.
+/// Returns the frames. A `to` that is an event or a clock time and not after `from` is moved to the
+/// following day, so that "sunset" to "sunrise" and "22:00" to "02:00" are nights. A day in
+/// `every`, such as "1d", is a calendar day, after which clocks of the zone show the same time;
+/// "24h" is 24 hours. A clock time that is skipped or repeated by a clock change uses the offset
+/// before the change. An instant at one end determines the day of the event at the other end. If
+/// `from` is an event and `every` is whole days, each frame is the event of its own day, from the
+/// day of `from` to that of `to`, which may be a day without a time; days without the event have no
+/// frame. Throws InputError for errors of InstantFromText, a `to` before `from`, an `every` that is
+/// not positive, a `count` below 1, too many frames, no frame.
 [[nodiscard]] std::vector<Frame> FramesFromTimes(const TimesText& times, const EventDay& day);
 
-/// The frames whose numbers are in "A-B,C"; throws InputError for numbers that the series does not
-/// have and for other texts.
+/// Returns the frames whose numbers are in "A-B,C"; throws InputError for numbers outside the
+/// series and for other texts.
 [[nodiscard]] std::vector<Frame> SelectFrames(const std::vector<Frame>& frames,
                                               std::string_view ranges);
 
-/// How many frames, as typed: `every` (a duration of the path) or `count` (the path's ends
-/// included), else so many a second.
+/// The frame rate as given on the command line: `every` (a duration of the path) or `count` (both
+/// ends of the path included), else `per_second`.
 struct PathRate {
   std::optional<std::string> every;
   std::optional<int> count;
   double per_second = 25.0;
 };
 
-/// Seconds of the path between two frames. Throws InputError for an `every` that is not positive, a
-/// `count` below 1 and a rate that is not positive.
+/// Returns the seconds of the path between two frames. Throws InputError for an `every` that is not
+/// positive, a `count` below 1 and a rate that is not positive.
 [[nodiscard]] double FrameInterval(const CameraPath& path, const PathRate& rate);
 
-/// Frames from the first point of the path on. Their instants are the
-/// path's; where it has none, `start` is that of the first point.
-/// Throws InputError as FrameInterval and for more than kMostFrames.
+/// Returns frames from the first point of the path on. Their instants are those of the path; if it
+/// has none, `start` is the instant of its first point. Throws InputError like FrameInterval, and
+/// for more than kMostFrames.
 [[nodiscard]] std::vector<Frame> FramesAlong(const CameraPath& path, const PathRate& rate,
                                              const UtcInstant& start);
 
-/// The camera of a frame; with a shutter that is open for a time around it, its way in that time.
+/// Returns the camera of a frame; with an open shutter, its motion during the exposure, which is
+/// centred on the frame.
 [[nodiscard]] Shot ShotOf(const Frame& frame, const CameraPath& path, double shutter_s);
 
 }  // namespace alpenglow::renderer

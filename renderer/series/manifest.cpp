@@ -17,7 +17,7 @@
 namespace alpenglow::renderer {
 namespace {
 
-/// FNV-1a, 64 bits (Fowler, Noll, Vo).
+/// FNV-1a hash of 64 bits (Fowler, Noll, Vo).
 class Hash {
  public:
   void Add(std::string_view bytes) {

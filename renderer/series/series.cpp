@@ -38,27 +38,27 @@ constexpr char kToneCurve[] = "alpenglow.tone_curve";
 constexpr char kWhiteBalance[] = "alpenglow.white_balance";
 constexpr char kWhite_k[] = "alpenglow.white_k";
 constexpr char kWhiteRule[] = "alpenglow.white_balance_rule";
-constexpr double kPerMired = 1e6;  // of kelvins
+constexpr double kPerMired = 1e6;  // mireds are 1e6 / K
 
-/// How a frame is developed.
+/// Settings for developing a frame.
 struct Development {
-  Look look;  // settled
+  Look look;  // resolved for the frame
   double ev100;
-  std::string rule;        // of the exposure, in words
-  std::string white_rule;  // of a white balance that is smooth over the series
+  std::string rule;        // exposure rule as text
+  std::string white_rule;  // rule of a white balance that is smooth over the series
 };
 
-/// What a meter says of a small picture of a frame.
+/// Meter reading of a small picture of a frame.
 struct Reading {
   double ev100;
-  std::optional<double> white_mired;  // of auto and camera
+  std::optional<double> white_mired;  // for the white balances auto and camera
 };
 
 std::string LocalTime(const SeriesSource& source, const UtcInstant& instant) {
   return source.zone ? FormatInZone(instant, *source.zone) : "";
 }
 
-/// Settings, instant and their fingerprint: what the pixels of a frame depend on.
+/// Returns the values that affect the pixels of a frame: settings and instant, with their fingerprint.
 Metadata RenderMetadata(const SeriesSource& source, const Frame& frame) {
   Metadata metadata = source.settings;
   if (source.path) {
@@ -72,7 +72,7 @@ Metadata RenderMetadata(const SeriesSource& source, const Frame& frame) {
   return metadata;
 }
 
-/// A value of a file's header, or "" when there is no such file or value.
+/// Returns a value of a file's header, or "" if the file or the value is missing.
 std::string HeaderValue(const std::function<Metadata()>& read, const std::string& name) {
   try {
     const Metadata metadata = read();
@@ -83,7 +83,7 @@ std::string HeaderValue(const std::function<Metadata()>& read, const std::string
   }
 }
 
-/// What the files say of a frame; texts are empty before there is one.
+/// Values read from the files of a frame; texts are empty if there is no file.
 struct FoundFrame {
   std::string ev100, rule;
   std::optional<double> illuminance_lx;
@@ -110,7 +110,7 @@ Metadata NotesOf(const fs::path& exr) {
   return notes;
 }
 
-/// The picture, when it is whole and was made with these settings.
+/// Returns the picture in the file if it is intact and was made with these settings.
 std::optional<NotedPicture> KeptPicture(const fs::path& file,
                                         const std::string& render_fingerprint) {
   if (ExrValue(file, kRenderFingerprint) != render_fingerprint) return std::nullopt;
@@ -119,7 +119,7 @@ std::optional<NotedPicture> KeptPicture(const fs::path& file,
     if (FaultyValue(kept.image)) return std::nullopt;
     return kept;
   } catch (const InputError&) {
-    return std::nullopt;  // damaged: to be rendered again
+    return std::nullopt;  // damaged: render again
   }
 }
 
@@ -133,7 +133,7 @@ bool IsKeptPng(const fs::path& file, const std::string& fingerprint) {
   }
 }
 
-/// Everything that a frame's header says but its notes.
+/// Returns all metadata of a frame's header except its notes.
 Metadata FrameMetadata(const SeriesSource& source, const SeriesOutput& output, const Frame& frame,
                        const Development& development) {
   Metadata metadata = RenderMetadata(source, frame);
@@ -182,7 +182,7 @@ class Series {
     }
   }
 
-  /// @return whether the frame had to be rendered.
+  /// Renders or updates a frame. @return whether it was rendered.
   bool Make(const Frame& frame, Progress& progress) {
     const fs::path exr = output_.name.Exr(frame.number);
     const std::string wanted = RenderMetadata(source_, frame).at(kRenderFingerprint);
@@ -231,7 +231,7 @@ class Series {
     WriteTextAtomically(*output_.plot, SvgOfDay(moments, source_.zone));
   }
 
-  /// Both show the developed pictures, which are asked for one by one: they need not be held.
+  /// Video and keogram take the developed pictures one by one, so the series is never held in memory.
   void WriteVideoAndKeogram(const std::vector<Frame>& shown) const {
     if (!output_.video && !output_.keogram) return;
     Keogram keogram;
@@ -265,7 +265,7 @@ class Series {
     return {projection, across / image.width};
   }
 
-  /// Of a node of the splines, whose picture is small and rendered once for both.
+  /// Returns the reading of a spline node. Its small picture is rendered once for both splines.
   [[nodiscard]] const Reading& ReadingOf(const Frame& frame) {
     const auto known = readings_.find(frame.number);
     if (known != readings_.end()) return known->second;
@@ -276,8 +276,8 @@ class Series {
     return readings_[frame.number] = reading;
   }
 
-  /// The EV that the eye is adapted to. It follows from the nodes of the time before in which an eye would
-  /// forget the light of a whole day, so it does not depend on which frames are rendered.
+  /// Returns the EV to which the eye is adapted. It depends only on the nodes within the preceding
+  /// time in which an eye forgets the light of a whole day, not on which frames are rendered.
   [[nodiscard]] double AdaptedEv100(const Frame& frame, int frames_per_node) {
     constexpr double kForgotten_s =
         60.0 * (kBrightestEv100 - kDarkestEv100) / EyeAdaptation::kRegenerated_ev_per_min;
@@ -298,8 +298,9 @@ class Series {
     return adapted;
   }
 
-  /// Settled: white by the picture itself or, in a film, by the spline over mireds, in which steps
-  /// of colour look alike. A frame that is there says which white it has: it takes no pilots.
+  /// Returns the look with its white balance resolved: from the picture itself or, in a film, from
+  /// the spline over mireds, in which equal steps look equal. An existing frame stores its white
+  /// balance and needs no small picture.
   [[nodiscard]] Look LookOf(const Frame& frame, const Image& image, bool rendered) {
     if (!smooth_mired_) return Settled(output_.look, image, ViewOf(frame, image));
     Look look = output_.look;
@@ -345,8 +346,8 @@ class Series {
     return {look, Ev100By(rule, smooth_ev100_->At(frame), look), words, white};
   }
 
-  /// Of a frame that is there, where it was exposed and developed as this run would: it takes no
-  /// pilots.
+  /// Returns the EV100 stored in an existing frame if this run would expose and develop it in the
+  /// same way; it needs no small picture.
   [[nodiscard]] std::optional<double> KeptEv100(const Frame& frame, const Look& look,
                                                 const std::string& words) const {
     const Metadata kept = ReadExrMetadata(output_.name.Exr(frame.number));
@@ -358,7 +359,8 @@ class Series {
     return std::stod(kept.at(kEv100));
   }
 
-  /// As it is developed: with the eye's glare if asked for, balanced, by night as the eye sees it.
+  /// Returns the picture before tone mapping: with the eye's glare if requested, white-balanced,
+  /// and at night as the eye perceives it.
   [[nodiscard]] Image AsLookedAt(const Frame& frame, const Image& image, const Look& look) const {
     const PictureView view = ViewOf(frame, image);
     if (!output_.glare) return Seen(image, look, view);
@@ -384,7 +386,7 @@ class Series {
     found_[frame.number] = FoundIn(metadata);
   }
 
-  /// A frame that is there, developed.
+  /// Returns an existing frame, developed.
   [[nodiscard]] DisplayImage Shown(const Frame& frame) const {
     if (output_.png) return ReadPng(output_.name.Png(frame.number));
     const Development& development = developments_.at(frame.number);
@@ -402,7 +404,7 @@ class Series {
                            fmt::format("{} {:+.1f}", time, elevation_deg)});
   }
 
-  /// Frames of other runs (or machines) are looked up in their files.
+  /// Returns the values of a frame; frames of other runs (or machines) are read from their files.
   [[nodiscard]] FoundFrame FoundOf(const Frame& frame) const {
     const auto found = found_.find(frame.number);
     if (found != found_.end()) return found->second;
@@ -472,7 +474,7 @@ void CreateFolder(const fs::path& folder) {
   if (error) throw OutputError(fmt::format("{}: {}", folder.string(), error.message()));
 }
 
-/// What is made of the frames once they are there.
+/// Returns the files made from all frames.
 std::vector<NamedFile> MadeOfTheFrames(const SeriesOutput& output) {
   std::vector<NamedFile> files;
   const auto add = [&](const char* name, const std::optional<fs::path>& file) {
@@ -537,7 +539,7 @@ SeriesSummary RunSeries(const SeriesSource& source, const std::vector<Frame>& fr
   }
   Series series(source, frames, output);
   const std::size_t removed = output.resume ? RemoveLeftovers(output) : 0;
-  series.WriteManifest();  // before the work, so that a folder that takes no files is found out
+  series.WriteManifest();  // before rendering, to detect a folder that is not writable
   Progress progress("frames", selected.size(), output.progress);
   try {
     for (const Frame& frame : selected) {
@@ -552,7 +554,7 @@ SeriesSummary RunSeries(const SeriesSource& source, const std::vector<Frame>& fr
     try {
       series.WriteManifest();
     } catch (const OutputError&) {
-      // The first failure is the one to report.
+      // Report the first failure.
     }
     throw;
   }

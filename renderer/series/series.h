@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A series of pictures: rendered, exposed, written one by one, and taken up again where it stopped.
+// Renders a series of pictures: exposes and writes them one by one, and resumes an interrupted series.
 #pragma once
 
 #include <filesystem>
@@ -19,8 +19,8 @@
 
 namespace alpenglow::renderer {
 
-/// A picture, and what was found out about it while it was made: not part of what its pixels depend
-/// on, written into its file beside that, and kept when the picture is developed again.
+/// A picture with notes: values found during rendering. Notes do not identify the pixels; they are
+/// stored in the file in addition to its settings, and kept when the picture is developed again.
 struct NotedPicture {
   NotedPicture(Image picture, Metadata found = {})  // NOLINT: a picture without notes is one
       : image(std::move(picture)), notes(std::move(found)) {}
@@ -29,32 +29,34 @@ struct NotedPicture {
   Metadata notes;  // names begin with kNotePrefix
 };
 inline constexpr const char* kNotePrefix = "alpenglow.note.";
-/// Of sun and sky on level ground at the eye [lx], for the plot and the manifest.
+/// Name of the note with the illuminance of sun and sky on level ground at the eye [lx], for the
+/// plot and the manifest.
 inline constexpr const char* kIlluminanceNote = "alpenglow.note.illuminance_lx";
 
-/// What makes the pictures of a series.
+/// Source of the pictures of a series.
 struct SeriesSource {
-  /// Tells the progress what it prepares, and how much of the picture is done.
+  /// Renders a frame; reports its preparation steps and the finished part of the picture to the
+  /// progress.
   std::function<NotedPicture(const Frame&, Progress&)> render;
-  /// Of sun and sky on a horizontal plane at the eye, behind the camera's polariser [lux], for
-  /// ExposureRule::Kind::kIncident.
+  /// Returns the illuminance of sun and sky on a horizontal plane at the eye, behind the camera's
+  /// polariser [lux], for ExposureRule::Kind::kIncident.
   std::function<double(const Frame&)> illuminance;
-  /// Everything that the pixels depend on but the instant and the pose (SceneMetadata, size,
+  /// Everything that affects the pixels except the instant and the pose (SceneMetadata, size,
   /// samples, layers).
   Metadata settings;
   GeodeticPosition place;
   std::optional<std::string> zone;
-  std::optional<CameraPath> path;               // that Frame::path_s is on
+  std::optional<CameraPath> path;               // camera path of Frame::path_s
   Projection projection = Projection::kCamera;  // without a path
   double fov_rad = 0.0;                         // without a path
-  /// A small picture of a frame, for the meter of a series (smooth_meter.h); without it each frame is
-  /// metered by itself.
+  /// Returns a small picture of a frame, for the meter of a series (smooth_meter.h); without it
+  /// each frame is metered by itself.
   std::function<Image(const Frame&)> pilot = {};
-  bool has_moon = true;  // the earth's, which eclipses the sun
+  bool has_moon = true;  // the planet has the earth's moon, which can eclipse the sun
 
-  /// Share of the sun's light (550 nm) that the moon covers, [0, 1].
+  /// Returns the fraction of the sun's light (550 nm) that the moon covers, [0, 1].
   [[nodiscard]] double SunCovered(const Frame& frame) const;
-  /// Of the eye of a frame.
+  /// Returns the place of the eye in a frame.
   [[nodiscard]] GeodeticPosition PlaceOf(const Frame& frame) const {
     return path ? path->PoseAt(frame.path_s).place : place;
   }
@@ -64,46 +66,48 @@ struct SeriesSource {
   }
 };
 
-/// How the pictures are exposed and where they go.
+/// Exposure and destination of the pictures.
 struct SeriesOutput {
   FrameName name;
-  bool png = false;            // a developed picture beside every EXR
-  ExposureRule exposure = {};  // of every frame
+  bool png = false;            // write a developed picture next to every EXR
+  ExposureRule exposure = {};  // applies to every frame
   Look look = {};
   bool resume = false;
-  std::vector<NamedFile> inputs = {};  // that no file of the series may replace
+  std::vector<NamedFile> inputs = {};  // files that the series must not overwrite
   std::optional<std::filesystem::path> contact_sheet = std::nullopt;  // PNG
   ProgressStyle progress = ProgressStyle::kAuto;
-  bool glare = false;  // developed pictures have that of the eye (eye.h); the EXR never
+  bool glare = false;  // developed pictures have the glare of the eye (eye.h); EXRs never have it
   std::optional<std::filesystem::path> keogram = std::nullopt;  // PNG (contact_sheet.h)
   std::optional<std::filesystem::path> plot = std::nullopt;     // SVG (day_times.h)
   std::optional<std::filesystem::path> video = std::nullopt;    // video.h
   double video_frames_per_s = 25.0;
 };
 
-/// What was done for the selected frames.
+/// Numbers of processed frames.
 struct SeriesSummary {
   int rendered = 0;
   int kept = 0;             // intact, with the same settings
-  int developed = 0;        // pixels kept, exposure or curve changed: written again
-  std::size_t removed = 0;  // temporaries of runs that were killed
+  int developed = 0;        // pixels kept, exposure or tone curve changed: written again
+  std::size_t removed = 0;  // temporary files of runs that were killed
 };
 
-/// Renders `selected` of the frames of a series and writes an EXR each (with `png` a PNG too), and
-/// the manifest: a CSV of all `frames` with frame, file, utc, local_time, sun_azimuth_deg,
-/// sun_elevation_deg (without refraction), sun_covered (share of its light behind the moon), ev100; on a path also t_s, latitude, longitude, height_m,
-/// heading, pitch, roll and fov; and exposure, the rule (as ev100 empty until the frame exists);
-/// and the same as JSON (manifest.h). Contact sheet, keogram and video show the selected frames,
-/// the plot all that there are times of; they are made when the last of the selected is there.
+/// Renders `selected` of the frames of a series and writes an EXR for each (with `png` also a PNG),
+/// and the manifest: a CSV of all `frames` with frame, file, utc, local_time, sun_azimuth_deg,
+/// sun_elevation_deg (without refraction), sun_covered (fraction of the sun's light behind the
+/// moon), ev100; on a path also t_s, latitude, longitude, height_m, heading, pitch, roll and fov;
+/// and exposure, the exposure rule (like ev100, empty until the frame exists). A JSON manifest has
+/// the same content (manifest.h). Contact sheet, keogram and video show the selected frames, the
+/// plot shows all frames. They are written after the last selected frame.
 ///
-/// Files are written atomically, in folders that are created when they are missing. With `resume`
-/// a frame is rendered only if its file is missing, unreadable, or made with other settings: each
-/// file carries a fingerprint of its settings; and what killed runs left behind in the folders is
-/// removed (RemoveAbandonedTemporaries). Stops between frames when a signal has come
-/// (ThrowIfInterrupted), finished frames and the manifest kept.
+/// Files are written atomically, in folders that are created if they are missing. With `resume` a
+/// frame is rendered only if its file is missing, unreadable, or made with other settings: each
+/// file carries a fingerprint of its settings. Temporary files of killed runs are removed from the
+/// folders (RemoveAbandonedTemporaries). A signal stops the series between frames
+/// (ThrowIfInterrupted); finished frames and the manifest are kept.
 ///
-/// Throws OutputError, also for a video without an ffmpeg, before the first frame; InputError for several frames under a name without a number, and when a file
-/// of the series is one of its inputs.
+/// Throws OutputError, also for a video without an ffmpeg, before the first frame; InputError for
+/// several frames under a name without a number, and when a file of the series is one of its
+/// inputs.
 SeriesSummary RunSeries(const SeriesSource& source, const std::vector<Frame>& frames,
                         const std::vector<Frame>& selected, const SeriesOutput& output);
 

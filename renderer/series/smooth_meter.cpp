@@ -16,7 +16,8 @@ double SecondsAfter(const Frame& first, const Frame& frame, bool on_path) {
   return SecondsBetween(first.instant, frame.instant);
 }
 
-/// Of the uniform cubic B-spline, `t` in [0, 1] of the way from the second node to the third.
+/// Returns the weights of the uniform cubic B-spline, `t` in [0, 1] of the way from the second node
+/// to the third.
 std::array<double, 4> WeightsAt(double t) {
   const double u = 1.0 - t;
   return {u * u * u / 6.0, 2.0 / 3.0 - t * t * (1.0 - 0.5 * t), 2.0 / 3.0 - u * u * (1.0 - 0.5 * u),

@@ -49,10 +49,10 @@ bool IsDigit(char c) { return c >= '0' && c <= '9'; }
 
 struct EventText {
   std::string_view name;    // "civil-dusk"
-  std::string_view offset;  // "+20m", or nothing
+  std::string_view offset;  // "+20m", or empty
 };
 
-/// Cut at the last sign that a digit follows: names have signs too, but no digits.
+/// Splits at the last sign that a digit follows: names can contain signs, but no digits.
 EventText SplitEvent(std::string_view text) {
   for (std::size_t i = text.size(); i-- > 0;) {
     const bool sign = text[i] == '+' || text[i] == '-';
@@ -76,7 +76,7 @@ std::optional<int> DaysFromToday(std::string_view word) {
   return std::nullopt;
 }
 
-/// "1830" as "18:30", also with "Z" after it; nothing for other texts.
+/// Returns "18:30" for "1830", also with "Z" after it; no value for other texts.
 std::optional<std::string> FourDigitClockTime(std::string_view text) {
   const std::string_view zulu = text.ends_with('Z') ? "Z" : "";
   text.remove_suffix(zulu.size());
@@ -84,7 +84,7 @@ std::optional<std::string> FourDigitClockTime(std::string_view text) {
   return fmt::format("{}:{}{}", text.substr(0, 2), text.substr(2), zulu);
 }
 
-/// "18:00" for what people write instead: "6pm", "6:00 pm", "18h00", "18.00", "9:30"; nothing for
+/// Returns "18:00" for other notations: "6pm", "6:00 pm", "18h00", "18.00", "9:30"; no value for
 /// other texts.
 std::optional<std::string> ClockTimeMeant(std::string_view text) {
   const auto number = [&](std::size_t most) {
@@ -112,7 +112,7 @@ std::optional<std::string> ClockTimeMeant(std::string_view text) {
   return fmt::format("{:02}:{:02}", *hour, minute);
 }
 
-/// Refuses a clock time that is written otherwise than it is read, after a day or alone.
+/// Rejects a clock time in an unsupported notation, after a day or alone.
 void RefuseOtherClockTimes(std::string_view text) {
   const bool after_day = text.size() > kDateLength + 1 && IsDayText(text.substr(0, kDateLength));
   const std::string_view clock = after_day ? text.substr(kDateLength + 1) : text;
@@ -139,8 +139,8 @@ const UtcInstant& AroundOf(std::string_view text, const EventDay& day) {
   return *day.around;
 }
 
-/// Where the time begins in "tomorrow 18:30" and "2026-06-21 sunrise"; nothing where no day is
-/// before it, or only digits of an instant that ParseInstant reads.
+/// Returns the position of the space before the time in "tomorrow 18:30" and "2026-06-21 sunrise";
+/// no value if there is no day in front, or only the digits of an instant that ParseInstant reads.
 std::optional<std::size_t> EndOfDay(std::string_view text) {
   const std::size_t space = text.find(' ');
   if (space == std::string_view::npos || space + 1 == text.size()) return std::nullopt;
@@ -150,18 +150,19 @@ std::optional<std::size_t> EndOfDay(std::string_view text) {
   return space;
 }
 
-/// The sun is lowest then, but for the half minute by which noons are not evenly apart.
+/// Returns the middle between two noons. The sun is lowest then, within the half minute by which
+/// noons are unevenly spaced.
 std::optional<UtcInstant> FindMidnight(const GeodeticPosition& place, const UtcInstant& around) {
   const auto noon = FindSunEvent(SunEvent::kNoon, place, around);
   const auto next = FindSunEvent(SunEvent::kNoon, place, AddSeconds(around, kSecondsPerDay));
   return AddSeconds(noon.value(), 0.5 * SecondsBetween(noon.value(), next.value()));
 }
 
-/// The event that clocks of the place show on the date of `around`. Each comes 50 minutes later from
-/// day to day: once a month there is none.
+/// Returns the event that falls on the date of `around` by the clocks of the place. Each event
+/// comes 50 minutes later from day to day, so once a month a date has none.
 std::optional<UtcInstant> FindMoonEvent(MoonEvent event, const UtcInstant& around,
                                         const EventDay& day) {
-  constexpr double kBefore_s = 1.5 * kSecondsPerDay;  // the date may have begun a day before
+  constexpr double kBefore_s = 1.5 * kSecondsPerDay;  // the date can begin a day before
   const std::string date = DateAt(around, day);
   UtcInstant after = AddSeconds(around, -kBefore_s);
   while (true) {
@@ -179,7 +180,7 @@ std::optional<UtcInstant> FindEclipseEvent(EclipseEvent event, const UtcInstant&
   return eclipse ? InstantOf(event, *eclipse) : std::nullopt;
 }
 
-/// Why the sun does not cross the height of an event on a day.
+/// Explains why the sun does not cross the height of an event on a day.
 std::string WhyNot(SunEvent event, const EventDay& day) {
   const auto noon = FindSunEvent(SunEvent::kNoon, day.place, *day.around);
   const bool above = IsAboveEvent(event, day.place, noon.value());
@@ -218,7 +219,7 @@ UtcInstant DayFromText(std::string_view date, const EventDay& day) {
   if (const std::optional<int> days = DaysFromToday(date)) {
     const UtcInstant noon_today = DayFromText(DateAt(day.now, day), day);
     const UtcInstant near_noon = AddSeconds(noon_today, *days * kSecondsPerDay);
-    return DayFromText(DateAt(near_noon, day), day);  // clocks may have been set in between
+    return DayFromText(DateAt(near_noon, day), day);  // the clocks can change in between
   }
   if (date.size() != kDateLength) {
     throw InputError(

@@ -59,11 +59,11 @@ std::string CommentOf(const Metadata& metadata) {
 std::vector<std::string> ArgumentsOf(const fs::path& file, const VideoSettings& settings) {
   std::vector<std::string> arguments{
       "ffmpeg", "-hide_banner", "-loglevel", "error", "-nostdin", "-y",
-      // What comes in.
+      // Input.
       "-f", "rawvideo", "-pix_fmt", "rgb24", "-video_size",
       fmt::format("{}x{}", settings.width, settings.height), "-framerate",
       fmt::format("{}", settings.frames_per_s), "-i", "pipe:0",
-      // What goes out: 4:2:0 has even sides.
+      // Output: 4:2:0 needs even sides.
       "-vf",
       "pad=ceil(iw/2)*2:ceil(ih/2)*2,scale=out_color_matrix=bt709:out_range=tv,format=yuv420p",
       "-c:v", "libx264", "-crf", "17", "-colorspace", "bt709", "-color_primaries", "bt709",
@@ -76,8 +76,8 @@ std::vector<std::string> ArgumentsOf(const fs::path& file, const VideoSettings& 
   return arguments;
 }
 
-/// A process that reads frames from a socket, which tells without a signal when nobody reads any
-/// longer. It goes with the object.
+/// An ffmpeg process that reads frames from a socket: sending to a socket fails without a signal
+/// when the process has ended. The destructor kills the process.
 class Encoder {
  public:
   Encoder(const fs::path& program, std::vector<std::string> arguments, const fs::path& said)
@@ -104,13 +104,13 @@ class Encoder {
       const ssize_t count =
           send(feed_.number(), bytes.data() + sent, bytes.size() - sent, MSG_NOSIGNAL);
       if (count < 0 && errno == EINTR) continue;
-      if (count <= 0) Finish();  // it has ended, and says why
+      if (count <= 0) Finish();  // the process has ended and reports the reason
       if (count <= 0) throw OutputError("ffmpeg ended before the film did");
       sent += static_cast<std::size_t>(count);
     }
   }
 
-  /// Ends the film. Throws OutputError when ffmpeg did not make it.
+  /// Ends the film. Throws OutputError if ffmpeg failed.
   void Finish() {
     feed_ = Descriptor(-1);
     const int status = Wait();
@@ -120,7 +120,7 @@ class Encoder {
   }
 
  private:
-  // In a group of its own: a Ctrl-C is for us, who then end it.
+  // Uses a separate process group: Ctrl-C reaches only this program, which then ends ffmpeg.
   void Spawn(const fs::path& program, std::vector<std::string> arguments, int its_end) {
     std::vector<char*> pointers;
     for (std::string& argument : arguments) pointers.push_back(argument.data());
@@ -160,12 +160,12 @@ class Encoder {
     return last;
   }
 
-  fs::path said_;  // what it says goes there
+  fs::path said_;  // file of its standard error
   Descriptor feed_{-1};
   pid_t process_ = 0;
 };
 
-/// A file of what ffmpeg says, gone with the object.
+/// A temporary file for the messages of ffmpeg; the destructor removes it.
 class Notes {
  public:
   Notes() : name_((fs::temp_directory_path() / "alpenglow_ffmpeg_XXXXXX").string()) {
