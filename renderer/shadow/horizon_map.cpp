@@ -21,13 +21,13 @@ std::uint16_t Packed(double sine) {
       std::lround(std::clamp(share, 0.0, 1.0) * static_cast<double>(kSteps)));
 }
 
-/// The upper hull of a line as seen from its end, nearest point last.
+/// The upper convex hull of a line as seen from its end, nearest point last.
 class Hull {
  public:
   void Clear() { points_.clear(); }
 
-  /// Adds a point before all others. Tangent of the horizon's elevation from it; kNone without
-  /// others. Distances fall from point to point.
+  /// Adds a point in front of all others. Returns the tangent of the horizon's elevation from it;
+  /// kNone without other points. Distances decrease from point to point.
   [[nodiscard]] double TangentFrom(double distance, double height) {
     const Point here{distance, height};
     while (points_.size() >= 2 && !StandsOver(points_.back(), points_[points_.size() - 2], here))
@@ -45,7 +45,7 @@ class Hull {
   struct Point {
     double distance, height;
   };
-  // Whether p stands higher than q as seen from `eye`.
+  // Returns whether p appears higher than q from `eye`.
   static bool StandsOver(const Point& p, const Point& q, const Point& eye) {
     return (p.height - eye.height) * (q.distance - eye.distance) >
            (q.height - eye.height) * (p.distance - eye.distance);
@@ -53,8 +53,8 @@ class Hull {
   std::vector<Point> points_;
 };
 
-/// A grid walked along one direction: `along` counts steps of the axis that the direction is nearer
-/// to, lines lie side by side across it and shift by `shift` with every step.
+/// A sweep over a grid along one direction: `along` counts steps of the axis nearest to the
+/// direction; lines are adjacent across it and shift by `shift` with every step.
 class Sweep {
  public:
   Sweep(const HeightRaster& heights, double planet_radius_m, double azimuth)
@@ -68,7 +68,7 @@ class Sweep {
         forwards_((along_x_ ? x_ : y_) > 0.0),
         shift_(along_x_ ? y_ / x_ : x_ / y_),
         step_m_(heights.cell_m * std::sqrt(1.0 + shift_ * shift_)) {
-    // Line j passes `across` = j + shift along; all nodes lie between lines.
+    // Line j is at `across` = j + shift along; all nodes lie between lines.
     const double last = shift_ * (steps_ - 1);
     first_line_ = static_cast<int>(std::floor(std::min(0.0, -last)));
     const int last_line = static_cast<int>(std::ceil(std::max(0.0, -last))) + width_ - 1;
@@ -79,20 +79,21 @@ class Sweep {
     for (int line = 0; line < lines_; ++line) WalkLine(line, hull);
   }
 
-  /// Sine of the elevation at a node.
+  /// Returns the sine of the horizon's elevation at a node.
   [[nodiscard]] double SineAt(int column, int row) const {
     const int along = along_x_ ? column : row;
     const double across = (along_x_ ? row : column) - shift_ * along - first_line_;
     const int line = std::clamp(static_cast<int>(across), 0, lines_ - 2);
     const double share = across - line;
     const double low = Tangent(line, along), high = Tangent(line + 1, along);
-    // A line beyond the rim sees nothing: the other one stands for both.
+    // A line beyond the rim has no horizon: the other line is used for both.
     const double tangent = low <= Hull::kNone    ? high
                            : high <= Hull::kNone ? low
                                                  : low + share * (high - low);
     if (tangent <= Hull::kNone) return -1.0;
     const auto [x, y] = heights_.Place(column, row);
-    const double tilt = (x * x_ + y * y_) / radius_m_;  // of the vertical, against the frame's
+    const double tilt = (x * x_ + y * y_) / radius_m_;  // tilt of the local vertical against the
+                                                        // frame's z
     const double local = tangent + tilt * (1.0 + tangent * tangent);
     return local / std::sqrt(1.0 + local * local);
   }
@@ -116,7 +117,7 @@ class Sweep {
       const double high = share > 0.0 ? static_cast<double>(Height(along, node + 1)) : low;
       if (std::min(low, high) <= static_cast<double>(HeightRaster::kNothing)) continue;
       const double height = low + share * (high - low);
-      // Distances fall towards the end of the walk.
+      // Distances decrease towards the end of the sweep.
       const double distance = -step * step_m_;
       tangent_[static_cast<std::size_t>(line) * static_cast<std::size_t>(steps_) +
                static_cast<std::size_t>(along)] =

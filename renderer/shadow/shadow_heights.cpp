@@ -17,7 +17,7 @@
 namespace alpenglow::renderer {
 namespace {
 
-// Lower than any beam that terrain can cut off, and still finite: maps are interpolated.
+// Lower than any beam that terrain can block, but finite, because maps are interpolated.
 constexpr float kNoTerrain = -1e7F;
 
 struct Flat {
@@ -37,7 +37,7 @@ Flat BoundsAlong(const TriangleMesh& mesh, const glm::dvec3& sunwards, const glm
   return flat;
 }
 
-// Side of the square that two triangles cover in the mean, seen from above.
+// Returns the side of the square that two triangles cover on average, seen from above.
 double SpacingOf(const TriangleMesh& mesh) {
   double area_m2 = 0.0;
   for (const auto& triangle : mesh.triangles) {
@@ -49,7 +49,7 @@ double SpacingOf(const TriangleMesh& mesh) {
   return std::sqrt(2.0 * area_m2 / static_cast<double>(mesh.triangles.size()));
 }
 
-// The largest value wins in whatever order threads come.
+// Sets the maximum atomically: the result does not depend on the order of threads.
 void RaiseHeight(float& cell, float value) {
   std::atomic_ref<float> shared(cell);
   float known = shared.load(std::memory_order_relaxed);
@@ -57,7 +57,7 @@ void RaiseHeight(float& cell, float value) {
   }
 }
 
-/// A corner of a triangle: in cells along u and v, and metres up.
+/// A corner of a triangle: u and v in cells, z in metres.
 struct ShadowCorner {
   double u, v, z;
 };
@@ -86,14 +86,15 @@ ShadowHeights::ShadowHeights(const TriangleMesh& mesh, const glm::dvec3& to_sun,
   const double width = bounds.u_high - bounds.u_low;
   const double depth = bounds.v_high - bounds.v_low;
   const double extent = std::max(width, depth);
-  const double spacing = SpacingOf(mesh);  // 0 where all of it is upright
+  const double spacing = SpacingOf(mesh);  // 0 if all triangles are vertical
   const double own =
       std::min(spacing > 0.0 ? spacing / 1.5 : extent, extent / options.fewest_lines);
   const double wanted = options.cell_m > 0.0 ? options.cell_m : own;
-  // Seen along a sheet the extents have no area, and still no more cells than that.
+  // Seen along a vertical sheet the extents have no area, but the number of cells still has to be
+  // limited.
   const auto most = static_cast<double>(options.most_cells);
   cell_m_ = std::max({wanted, std::sqrt(width * depth / most), 4.0 * extent / most});
-  // A free line on every side.
+  // Leave one free line on every side.
   first_u_m_ = bounds.u_low - cell_m_;
   first_v_m_ = bounds.v_low - cell_m_;
   columns_ = static_cast<std::size_t>(std::ceil(width / cell_m_)) + 3;
@@ -112,8 +113,8 @@ std::size_t ShadowHeights::bytes() const {
   return bytes;
 }
 
-// Of the chord that a triangle cuts out of a line only the end of the higher beam can shade what
-// the triangle does not hide itself.
+// A triangle cuts a chord out of a line. Only the end of the chord with the higher beam can shade
+// points that the triangle itself does not occlude.
 void ShadowHeights::Deposit(const TriangleMesh& mesh) {
   const auto raise = [&](const ShadowCorner& a, const ShadowCorner& b) {
     for (std::size_t beam = 0; beam < kBeams; ++beam) {
@@ -203,10 +204,10 @@ void ShadowHeights::BuildPyramid() {
   }
 }
 
-/// A ray in cells of the map, going down the pyramid.
+/// Traverses the pyramid along a ray, in cells of the map.
 struct ShadowHeights::Walk {
   const ShadowHeights& map;
-  double u, v, u_slope, v_slope;  // in cells, and per metre of the ray
+  double u, v, u_slope, v_slope;  // position in cells, slopes in cells per metre of the ray
   std::array<double, kBeams> beam_at_eye{}, beam_slope{};
   SunlitPathBuilder builder;
 
@@ -229,7 +230,7 @@ struct ShadowHeights::Walk {
     return beam_at_eye[beam] + t * beam_slope[beam];
   }
 
-  // Keeps the part of [begin, end] where a + t b >= 0.
+  // Clips [begin, end] to the part where a + t b >= 0.
   static void KeepWhere(double a, double b, double& begin, double& end) {
     if (b == 0.0) {
       if (a < 0.0) end = begin;
@@ -259,7 +260,8 @@ struct ShadowHeights::Walk {
     builder.Add({end, length_m});
   }
 
-  // Block of 2^level cells a side; the first column of blocks goes on without end.
+  // Processes a block of 2^level cells a side; the first column of blocks is unbounded away from
+  // the sun.
   void Block(std::size_t level, std::size_t column, std::size_t row, double begin, double end) {
     if (level == 0) {
       Cell(column, row, begin, end);
@@ -281,7 +283,7 @@ struct ShadowHeights::Walk {
           half * static_cast<double>(2 * row + 1), begin, end);
   }
 
-  // The four children of a block, in the order in which the ray meets them.
+  // Visits the four children of a block in the order in which the ray meets them.
   void Split(std::size_t level, std::size_t column, std::size_t row, double middle_u,
              double middle_v, double begin, double end) {
     const auto crossing = [&](double from, double slope, double middle) {
@@ -301,7 +303,7 @@ struct ShadowHeights::Walk {
   void Child(std::size_t level, std::size_t column, std::size_t row, double begin, double end) {
     const std::size_t columns = level == 0 ? map.columns_ - 1 : map.levels_[level - 1].columns;
     const std::size_t rows = level == 0 ? map.lines_ - 1 : map.levels_[level - 1].rows;
-    if (column >= columns || row >= rows) {  // a rounding beyond the map's edge
+    if (column >= columns || row >= rows) {  // rounding beyond the map's edge
       builder.Add({begin, end});
       return;
     }
@@ -310,7 +312,7 @@ struct ShadowHeights::Walk {
 
   using Clearances = std::array<double, kBeams>;
 
-  // How far each beam passes over what cuts it off, at a place of a cell.
+  // Returns the clearance of each beam over the beam that terrain blocks, at a place in a cell.
   [[nodiscard]] Clearances ClearanceAt(std::size_t column, std::size_t row, double t) const {
     const double across = std::clamp(u + t * u_slope - static_cast<double>(column), 0.0, 1.0);
     const double along = std::clamp(v + t * v_slope - static_cast<double>(row), 0.0, 1.0);
@@ -328,8 +330,8 @@ struct ShadowHeights::Walk {
     return clearance;
   }
 
-  // Height of the disk's centre over the edge, in radii: between the last beam that passes, from
-  // the top of the disk down, and the first that does not.
+  // Returns the height of the disk's centre over the edge, in radii. It is interpolated between the
+  // last beam that passes, from the top of the disk down, and the first that does not.
   static double HeightFrom(const Clearances& clearance) {
     if (!(clearance[kBeams - 1] > 0.0)) return -1.0;
     std::size_t passes = kBeams - 1;
@@ -341,7 +343,7 @@ struct ShadowHeights::Walk {
     return HeightOver(passes) + share * (HeightOver(passes - 1) - HeightOver(passes));
   }
 
-  // Clearances run evenly through a cell; the light changes its course where one passes 0.
+  // Clearances are linear through a cell; the light has a kink where one of them passes 0.
   void Cell(std::size_t column, std::size_t row, double begin, double end) {
     const Clearances at_begin = ClearanceAt(column, row, begin);
     const Clearances at_end = ClearanceAt(column, row, end);
@@ -363,7 +365,7 @@ struct ShadowHeights::Walk {
     };
     for (std::size_t i = 0; i + 1 < stop.size(); ++i) {
       if (!(stop[i] < stop[i + 1])) continue;
-      // The kind of light is asked for in the middle, where rounding does not matter.
+      // Classify the light in the middle of the piece, where rounding does not matter.
       const double inside = height(0.5 * (stop[i] + stop[i + 1]));
       if (inside >= 1.0 || inside <= -1.0) {
         builder.Add({stop[i], stop[i + 1], inside, inside});
@@ -374,7 +376,7 @@ struct ShadowHeights::Walk {
   }
 };
 
-// c of the beams through a point.
+// Returns c of the beams through a point.
 ShadowHeights::Beams ShadowHeights::BeamsOf(const glm::dvec3& point) const {
   const double u = glm::dot(point, sunwards_);
   Beams through;
@@ -383,7 +385,7 @@ ShadowHeights::Beams ShadowHeights::BeamsOf(const glm::dvec3& point) const {
   return through;
 }
 
-// C between four nodes; before the first column that of the column.
+// Returns C interpolated between four nodes; in front of the first column, that of the first column.
 ShadowHeights::Beams ShadowHeights::HighestAt(double column, double line) const {
   const double along = std::max(column, 0.0);
   const std::size_t i = std::min(static_cast<std::size_t>(along), columns_ - 2);
@@ -401,8 +403,8 @@ ShadowHeights::Beams ShadowHeights::HighestAt(double column, double line) const 
   return between;
 }
 
-// Clearances grow from the lowest beam to the highest; where they pass 0 the edge cuts the disk.
-// Beyond the disk the nearer two beams are continued.
+// Clearances increase from the lowest beam to the highest; the edge cuts the disk where they pass
+// 0. Beyond the disk the two nearest beams are extrapolated.
 SunOverEdge ShadowHeights::Over(const glm::dvec3& ground) const {
   constexpr double kOwnCells = 1.0;
   constexpr SunOverEdge kNothing{1e7, 0.0};

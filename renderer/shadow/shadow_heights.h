@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Where terrain lets the sun into the air: the lit stretches of any ray, without tracing rays.
+// Sunlit stretches of any ray through the air over terrain, without tracing rays.
 //
 // Sunbeams are parallel. With u the horizontal distance towards the sun, v across and z up, all
 // points of one beam have the same
@@ -7,20 +7,20 @@
 //   c(u, z) = z cos(E) - u sin(E),      E the sun's elevation in the frame of the mesh,
 //
 // so that terrain q shades a point p of the same v when u_q > u_p and c_q >= c_p. The sweep finds
-// the highest beam that is cut off sunwards of every place,
+// the highest blocked beam on the sunward side of every place,
 //
 //   C(u, v) = max of c over terrain at u' >= u,
 //
-// on lines of constant v: the crossings of every triangle with every line are put into bins along
-// u, which keeps crests exactly where they are, and a running maximum from the sun's side does the
-// rest. It is done for beams from the bottom, the middle and the top of the sun's disk, and between
-// the heights that they reach a point sees a part of the disk. A pyramid of extremes over (u, v)
-// then lets a ray skip air that is wholly lit or wholly dark. The curvature of the planet is in the
-// mesh. (Shadow heights by a sweep: Timonen, Westerholm 2010, Computer Graphics Forum 29; pyramids
-// of extremes for shafts: Chen, Baran, Durand, Jarosz 2011, I3D.)
+// on lines of constant v. The crossings of every triangle with every line are put into bins along
+// u, which keeps crests exactly in place; then a running maximum is taken from the sun's side. The
+// sweep is done for beams from the bottom, the middle and the top of the sun's disk. A point
+// between the resulting heights sees a part of the disk. A pyramid of minima and maxima over (u, v)
+// lets a ray skip air that is fully lit or fully dark. The curvature of the planet is in the mesh.
+// (Shadow heights by a sweep: Timonen, Westerholm 2010, Computer Graphics Forum 29; pyramids of
+// extremes for shafts: Chen, Baran, Durand, Jarosz 2011, I3D.)
 //
-// For ground that is one surface over the plane. Under bridges and overhangs light passes where
-// this sees none: SunProbes (sunlit_path.h) follows rays there.
+// The ground must be a single surface over the plane. This method misses light under bridges and
+// overhangs: SunProbes (sunlit_path.h) traces rays there.
 #pragma once
 
 #include <array>
@@ -35,33 +35,34 @@
 
 namespace alpenglow::renderer {
 
-/// The sun's disk over the edge of terrain that cuts it, as a place of the ground sees it. Their
-/// ratio is the height of the disk's centre over that edge in radii of the disk, see
-/// SunlightOverEdge; interpolated apart they put the edge of a shadow where it lies between places.
+/// The position of the sun's disk relative to the terrain edge that cuts it, as seen from a place
+/// of the ground. The ratio of both members is the height of the disk's centre over that edge in
+/// radii of the disk, see SunlightOverEdge. Interpolating both members separately puts the edge of
+/// a shadow at its position between places.
 struct SunOverEdge {
-  double clearance_m;  // by how much the beam from the disk's centre passes over the edge; less
-                       // than 0 in its shade
-  double radius_m;     // what the disk's radius is there, not negative; 0 on the edge itself
+  double clearance_m;  // clearance of the beam from the disk's centre over the edge; negative in
+                       // its shade
+  double radius_m;     // radius of the disk at the edge, not negative; 0 on the edge itself
 
-  /// In radii, between -limit and limit.
+  /// Returns the ratio in radii, clamped to [-limit, limit].
   [[nodiscard]] double Radii(double limit) const {
     if (std::abs(clearance_m) >= limit * radius_m) return clearance_m < 0.0 ? -limit : limit;
     return clearance_m / radius_m;
   }
 };
 
-/// Immutable; safe to ask from many threads.
+/// Immutable; safe to use from many threads.
 class ShadowHeights {
  public:
   struct Options {
-    double cell_m = 0.0;  // distance of lines and bins; 0: two thirds of the mesh's spacing,
-                          // at most the extent over fewest_lines
-    double fewest_lines = 2048.0;                   // for large triangles have sharp edges, too
-    std::size_t most_cells = std::size_t{1} << 24;  // coarser cells rather than more than these
-    bool for_rays = true;  // whether Along() is asked, whose pyramid is a fifth of the memory
+    double cell_m = 0.0;  // distance of lines and bins; 0: two thirds of the mesh's spacing, at
+                          // most the extent over fewest_lines
+    double fewest_lines = 2048.0;                   // large triangles have sharp edges, too
+    std::size_t most_cells = std::size_t{1} << 24;  // limit; the cells become coarser to respect it
+    bool for_rays = true;  // enables Along(), whose pyramid takes a fifth of the memory
   };
 
-  /// The same for any number of threads.
+  /// The result does not depend on the number of threads.
   /// @param to_sun  unit vector in the frame of the mesh, z up.
   /// @param sun_radius_rad  angular radius of the disk, 0 for a point.
   ShadowHeights(const TriangleMesh& mesh, const glm::dvec3& to_sun, double sun_radius_rad,
@@ -69,31 +70,31 @@ class ShadowHeights {
   ShadowHeights(const TriangleMesh& mesh, const glm::dvec3& to_sun, double sun_radius_rad)
       : ShadowHeights(mesh, to_sun, sun_radius_rad, Options{}) {}
 
-  /// The stretches of a ray within [0, length_m] that the sun reaches; length_m may be infinite.
-  /// Throws InternalError where Options::for_rays said otherwise.
+  /// Returns the sunlit stretches of a ray within [0, length_m]; length_m must be finite. Throws
+  /// InternalError if Options::for_rays is false.
   [[nodiscard]] SunlitPath Along(const glm::dvec3& origin, const glm::dvec3& unit,
                                  double length_m) const;
 
-  /// What the ground there sees of the sun. Terrain within a cell counts as the place's own
-  /// surface: whether that faces the sun is its normal's to say.
+  /// Returns the visibility of the sun from a place of the ground. Terrain within a cell counts as
+  /// the place's own surface: the caller tests whether its normal faces the sun.
   [[nodiscard]] SunOverEdge Over(const glm::dvec3& ground) const;
 
-  /// Distance of lines and bins [m].
+  /// Returns the distance of lines and bins [m].
   [[nodiscard]] double cell_m() const { return cell_m_; }
-  /// Memory of the maps [bytes].
+  /// Returns the memory of the maps [bytes].
   [[nodiscard]] std::size_t bytes() const;
 
  private:
   // Beams from the bottom of the disk (0) to its top.
   static constexpr std::size_t kBeams = 3;
   using Beams = std::array<float, kBeams>;
-  // How far the disk's centre stands over an edge that cuts it at a beam, in radii.
+  // Returns the height of the disk's centre, in radii, over an edge that cuts the disk at a beam.
   static constexpr double HeightOver(std::size_t beam) {
     return 1.0 - 2.0 * static_cast<double>(beam) / static_cast<double>(kBeams - 1);
   }
   struct Extremes {
-    float highest_lower;  // C of the lowest beam: over it all is lit
-    float lowest_upper;   // C of the highest: under it all is dark
+    float highest_lower;  // C of the lowest beam: above it everything is lit
+    float lowest_upper;   // C of the highest beam: below it everything is dark
   };
   struct Level {
     std::size_t columns, rows;
@@ -113,7 +114,7 @@ class ShadowHeights {
   double first_u_m_ = 0.0, first_v_m_ = 0.0;
   std::size_t columns_ = 0, lines_ = 0;  // nodes along u, lines along v
   std::vector<Beams> highest_;           // C at the nodes, line by line
-  std::vector<Level> levels_;            // of 2^(level + 1) cells a side
+  std::vector<Level> levels_;            // level i has blocks of 2^(i + 1) cells a side
 };
 
 }  // namespace alpenglow::renderer

@@ -1,7 +1,7 @@
-// Sunlight that passes a straight edge which cuts the sun's disk (sunlit_path.h).
+// Fraction of sunlight that passes a straight edge across the sun's disk (sunlit_path.h).
 
-// Integral over the circular segment of a disk darkened towards its limb by w = 0.6: with x the
-// height of the disk's centre over the edge in radii,
+// Integral over the circular segment of a disk with limb darkening w = 0.6, where x is the height
+// of the disk's centre over the edge in radii:
 //
 //   ((1 - w) (pi - acos x + x sqrt(1 - x^2)) + w pi / 2 (x - x^3 / 3 + 2 / 3)) / (pi (1 - w / 3)).
 SHARED Number SunlightOverEdge(Number height) {

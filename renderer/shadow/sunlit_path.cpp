@@ -76,7 +76,7 @@ namespace {
 
 constexpr int kHalvings = 6;
 
-// Where `lit` changes between two distances at which it differs.
+// Returns the distance at which `lit` changes, between two distances where it differs.
 template <typename Lit>
 double Edge(double lit_m, double dark_m, const Lit& lit) {
   for (int step = 0; step < kHalvings; ++step) {
@@ -100,7 +100,7 @@ SunProbes::SunProbes(const Terrain& terrain, const glm::dvec3& to_sun, double su
   highest_c_m_ = u_high_m_ = v_high_m_ = -std::numeric_limits<double>::infinity();
   v_low_m_ = std::numeric_limits<double>::infinity();
   const glm::dvec3 above_bottom =
-      glm::normalize(upwards_ + std::tan(sun_radius_rad) * to_sun);  // across the lowest beams
+      glm::normalize(upwards_ + std::tan(sun_radius_rad) * to_sun);  // normal to the lowest beams
   for (const auto& position : terrain.mesh().positions) {
     const glm::dvec3 p = ToDouble(position);
     highest_c_m_ = std::max(highest_c_m_, glm::dot(p, above_bottom));
@@ -144,7 +144,7 @@ SunlitPath SunProbes::Along(const glm::dvec3& origin, const glm::dvec3& unit,
   };
   const auto lit = [&](double distance_m) { return sees(distance_m, to_sun_); };
   const auto free_of_edges = [&](double distance_m) { return sees(distance_m, bottom_of_sun_); };
-  // Probes are dense near the eye, where air and shadows count most.
+  // Probes are dense near the eye, where air and shadows contribute most.
   const auto probe_m = [&](int i) {
     constexpr double kStrength = 3.0;
     const double v = (i + 0.5) / probes_;
@@ -160,8 +160,8 @@ SunlitPath SunProbes::Along(const glm::dvec3& origin, const glm::dvec3& unit,
     const auto at = static_cast<std::size_t>(i);
     if (is_lit[at] == is_lit[at + 1]) continue;
     const bool rises = is_lit[at + 1] != 0;
-    // Half of the disk is seen at the edge; all of it at the end of the half shade, which is looked
-    // for up to the next change of light.
+    // Half of the disk is visible at the edge. All of it is visible at the end of the penumbra,
+    // which is searched up to the next change of light.
     const int step = rises ? 1 : -1;
     int last = rises ? i + 1 : i;
     const double edge_m = Edge(probe_m(last), probe_m(rises ? i : i + 1), lit);
