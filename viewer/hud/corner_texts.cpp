@@ -18,7 +18,7 @@ std::string StateText(const HudModel& model) {
   return std::string(model.recording ? "REC " : "") + (model.time.paused ? "PAUSED" : "");
 }
 
-// The state on a line of its own, and none where there is nothing to tell.
+// Returns the mode, and on a second line the state while recording or paused.
 Lines ModeLines(const HudModel& model) {
   Lines lines{model.flight.mode};
   if (model.recording || model.time.paused) lines.push_back(StateText(model));
@@ -104,7 +104,7 @@ double WidestOf(const Canvas& canvas, const Lines& lines) {
   return widest;
 }
 
-/// A corner: where its plate's own corner is, and which.
+/// A corner of the picture: the position of the plate's corner, and its side.
 struct Corner {
   glm::dvec2 at;
   bool right, lower;
@@ -141,7 +141,7 @@ void DrawLineOfMessage(const Canvas& canvas, const HudFrame& frame, double y,
   canvas.TextOnPlate({middle, y}, HudAlign::kMiddle, message.text, colour);
 }
 
-// What is said, in lines that fit, the lowest first.
+// Returns the messages in wrapped lines, the lowest line first.
 std::vector<HudMessage> LinesOfMessages(const Canvas& canvas, const HudFrame& frame,
                                         const std::vector<HudMessage>& messages) {
   const double widest = frame.width - canvas.Pixels(24.0);
@@ -197,7 +197,7 @@ void DrawCornerTexts(const Canvas& canvas, const HudFrame& frame, const CornerTe
 }
 
 void DrawMessages(const Canvas& canvas, const HudFrame& frame, const HudModel& model) {
-  constexpr double kLinesBelow = 3.8;  // the corners' texts of small pictures are lower
+  constexpr double kLinesBelow = 3.8;  // leaves space for the corner texts of small pictures
   double y = std::min(0.86 * frame.height, frame.height - kLinesBelow * canvas.LineHeight());
   if (model.flight.stall) DrawLineOfMessage(canvas, frame, 0.36 * frame.height, {"STALL", true});
   if (model.progress) {

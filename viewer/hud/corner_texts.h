@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What is told in words and numbers at the corners, and what is said once.
+// Texts of the instruments: status in the four corners, and transient messages.
 #pragma once
 
 #include <string>
@@ -13,18 +13,18 @@ namespace alpenglow::viewer {
 struct CornerTexts {
   std::vector<std::string> upper_left, upper_right, lower_left, lower_right;
 };
-/// Mode and autopilot; time, sun and moon; place; light and speed.
+/// Returns mode and autopilot; time, sun and moon; place; light and speed.
 [[nodiscard]] CornerTexts CornerTextsOf(const HudModel& model);
-/// The same for small pictures: a line or two each.
+/// Returns shorter texts for small pictures, of one or two lines each.
 [[nodiscard]] CornerTexts ShortCornerTextsOf(const HudModel& model);
 
-/// Where the plate of the upper right corner ends, the clock's [pixels from the upper edge].
+/// Returns the lower end of the upper right plate, which shows the clock [pixels from the upper edge].
 [[nodiscard]] double BottomOfClock(const Canvas& canvas, const HudFrame& frame,
                                    const CornerTexts& texts);
 
 void DrawCornerTexts(const Canvas& canvas, const HudFrame& frame, const CornerTexts& texts);
 
-/// Messages, progress of loading and warnings, in the lower middle.
+/// Draws messages, loading progress and warnings in the lower middle.
 void DrawMessages(const Canvas& canvas, const HudFrame& frame, const HudModel& model);
 
 }  // namespace alpenglow::viewer

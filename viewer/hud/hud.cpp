@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "viewer/hud/hud.h"
 
-// Only its numbers of keys.
+// GLFW is included for its key numbers alone.
 #define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>
 
@@ -67,13 +67,13 @@ HudInput HudKeys::Into(HudInput input) {
 
 namespace {
 
-/// What Dear ImGui remembers from frame to frame.
+/// Owns a Dear ImGui context, which persists from frame to frame.
 class Context {
  public:
   Context() : context_(ImGui::CreateContext()) {
     ImGui::SetCurrentContext(context_);
     ImGuiIO& io = ImGui::GetIO();
-    io.IniFilename = nullptr;  // nothing is written behind the pilot's back
+    io.IniFilename = nullptr;  // write no settings file
     io.LogFilename = nullptr;
     io.BackendFlags |= ImGuiBackendFlags_RendererHasVtxOffset;
     io.ConfigWindowsMoveFromTitleBarOnly = true;
@@ -82,7 +82,7 @@ class Context {
   Context(const Context&) = delete;
   Context& operator=(const Context&) = delete;
 
-  /// Dear ImGui works on one context at a time.
+  /// Makes this context current: Dear ImGui works on one context at a time.
   void MakeCurrent() const { ImGui::SetCurrentContext(context_); }
 
  private:
@@ -94,7 +94,7 @@ class Context {
 struct Hud::State {
   Context context;
   DrawListPainter painter;
-  bool laid_out = false;  // the last frame left something to draw
+  bool laid_out = false;  // the last frame produced something to draw
 };
 
 Hud::Hud(const HudSettings& settings)

@@ -1,12 +1,9 @@
 // SPDX-License-Identifier: MIT
-// What mouse and keyboard did since the last frame, as panels want it: no window is needed for it.
+// Head-up display on Dear ImGui: instruments over the picture, and panels.
 //
-// Keys of a window, as GLFW numbers them, gathered for panels.
-//
-// Head-up display: instruments over the picture, and panels. Dear ImGui underneath.
-//
-// Knows no window: what mouse and keyboard did comes as HudInput, so that pictures without a
-// display have instruments too, and tests click.
+// It does not use a window: mouse and keyboard input since the last frame arrives as HudInput,
+// which HudKeys collects from the GLFW keys of a window. So pictures without a display have
+// instruments too, and tests can click.
 #pragma once
 
 #include <array>
@@ -23,7 +20,7 @@
 
 namespace alpenglow::viewer {
 
-/// Keys that edit text or walk through panels.
+/// Keys that edit text or navigate panels.
 enum class HudKey {
   kTab,
   kLeft,
@@ -49,64 +46,67 @@ enum class HudKey {
 };
 
 struct HudPointer {
-  double x = 0.0, y = 0.0;  // pixels of the picture from its upper left corner
+  double x = 0.0, y = 0.0;  // pixels from the upper left corner of the picture
 };
 
 struct HudInput {
-  int width = 0, height = 0;               // of the picture [pixels]
+  int width = 0, height = 0;               // size of the picture [pixels]
   double seconds = 0.0;                    // since the last frame
-  std::optional<HudPointer> pointer = {};  // none outside of the window
-  std::array<bool, 3> buttons{};           // left, right, middle: held, or pressed and let go
-  double wheel = 0.0;                      // steps, away from who turns it
-  std::vector<HudKey> keys;                // held, or pressed and let go
+  std::optional<HudPointer> pointer = {};  // empty outside the window
+  std::array<bool, 3> buttons{};           // left, right, middle: held, or clicked since the last frame
+  double wheel = 0.0;                      // steps, positive away from the user
+  std::vector<HudKey> keys;                // held, or pressed and released since the last frame
   bool shift = false, control = false;
-  std::string text;  // typed, UTF-8
+  std::string text;  // typed text, UTF-8
 };
 
-/// Which of the keys that panels know are held, or were pressed and let go since the last frame.
+/// Collects the panel keys that are held, or were pressed and released since the last frame.
 class HudKeys {
  public:
-  /// @param glfw_key  GLFW_KEY_...; others than panels know are passed over.
-  /// @param is_down   false when it was let go; repeats count as down.
+  /// @param glfw_key  GLFW_KEY_...; keys that panels do not use are ignored.
+  /// @param is_down   false for a release; repeats count as down.
   void Note(int glfw_key, bool is_down);
-  /// All keys are up: the window no longer hears the keyboard.
+  /// Releases all keys, when the window loses the keyboard.
   void Release() { held_.clear(); }
 
-  /// Once a frame: the input with its keys, shift and control filled in.
+  /// Returns the input with its keys, shift and control filled in. Call once per frame.
   [[nodiscard]] HudInput Into(HudInput input);
 
  private:
-  std::vector<int> held_;     // of GLFW
+  std::vector<int> held_;     // GLFW keys
   std::vector<int> pressed_;  // since the last frame
 };
 
 struct HudSettings {
-  double scale = 1.0;  // pixels a unit, [0.5, 8]: 1 for 96 dots an inch
+  double scale = 1.0;  // pixels per unit, [0.5, 8]: 1 for 96 dots per inch
   HudThemeChoice theme = HudThemeChoice::kAuto;
-  std::optional<std::filesystem::path> font = {};  // TrueType; else InstalledFont (imgui_backend.h)
+  std::optional<std::filesystem::path> font = {};  // TrueType; default: InstalledFont (imgui_backend.h)
 };
 
-/// For pictures of other sizes than the window's: another Hud, so that panels stay where they are.
+/// Head-up display of one picture size. Pictures of other sizes than the window's use another Hud,
+/// so that panels keep their places.
 class Hud {
  public:
   /// An OpenGL context must be current, now and in all calls. Throws InputError for a scale out of
-  /// range and a font that is none.
+  /// range and a file that is not a font.
   explicit Hud(const HudSettings& settings = {});
   ~Hud();
   Hud(const Hud&) = delete;
   Hud& operator=(const Hud&) = delete;
 
-  /// Lays out instruments and panels for the picture's size, lets mouse and keyboard work on them,
-  /// and says what was asked for. Once a frame, before what was steered moves the eye.
-  /// @param strip  null until there is one.
+  /// Lays out instruments and panels for the picture's size, applies mouse and keyboard input to
+  /// them, and returns the requests of the panels. Call once per frame, before the controls move
+  /// the eye.
+  /// @param strip  null until it is computed.
   [[nodiscard]] HudRequest Update(const HudModel& model, const HudChoices& choices,
                                   const DayStrip* strip, const HudInput& input);
 
-  /// Draws what the last Update laid out over a framebuffer (0: the window) of its size. Nothing
-  /// while hidden. No depth test, blending or scissor test is left on.
+  /// Draws the layout of the last Update over a framebuffer (0: the window) of its size. Draws
+  /// nothing while hidden. Leaves depth test, blending and scissor test disabled.
   void Paint(GLuint framebuffer) const;
 
-  /// Whether, since the last Update, mouse or typing are the panels' and not the flight's.
+  /// Returns whether the panels, not the flight, receive the mouse or typed text, as of the last
+  /// Update.
   [[nodiscard]] bool WantsMouse() const;
   [[nodiscard]] bool WantsKeyboard() const;
 
@@ -114,14 +114,16 @@ class Hud {
   [[nodiscard]] bool visible() const { return visible_; }
   void Toggle(HudPanel panel) { panels_.Toggle(panel); }
   [[nodiscard]] bool IsOpen(HudPanel panel) const { return panels_.IsOpen(panel); }
-  /// Whether any was open: the key that leaves the program closes panels first.
+  /// Closes all panels and returns whether any was open: the key that leaves the program closes
+  /// panels first.
   bool ClosePanels() { return panels_.CloseAll(); }
   void ToggleMenu() { panels_.ToggleMenu(); }
 
   void SetTheme(HudThemeChoice choice) { choice_ = choice; }
   [[nodiscard]] HudThemeChoice theme_choice() const { return choice_; }
   [[nodiscard]] HudTheme theme() const { return theme_; }
-  /// Another display: letters are made anew. Throws InputError for a scale out of range.
+  /// Changes the scale for another display; glyphs are rasterised anew. Throws InputError for a
+  /// scale out of range.
   void SetScale(double scale);
   [[nodiscard]] double scale() const { return scale_; }
 

@@ -56,12 +56,12 @@ std::string CoordinateText(double angle_rad, char positive, char negative) {
   return fmt::format("{:.4f}° {}", std::abs(degrees), degrees < 0.0 ? negative : positive);
 }
 
-/// "-0" is 0.
+/// Rounds to an integer, and writes "0" for "-0".
 std::string Whole(double value) {
   return fmt::format("{:.0f}", std::round(value) == 0.0 ? 0.0 : value);
 }
 
-// In units of `unit_m`, or in large ones when it is many.
+// Converts to units of `unit_m`, or to larger units from `many` of them on.
 Quantity Scaled(double value_m, double unit_m, const char* unit, double many, double large_m,
                 const char* large) {
   if (std::abs(value_m) < many * unit_m) return {Whole(value_m / unit_m), unit, 1.0 / unit_m};

@@ -1,15 +1,16 @@
 // SPDX-License-Identifier: MIT
-// Colours of instruments and panels: bright ones for the day, red and amber ones that leave the eye
-// adapted to the dark. What is written has a plate or a panel behind it, and a contrast to it of 4.5
-// at least (Web Content Accessibility Guidelines 2.1, 1.4.3), whatever the picture is, up to white.
+// Data of instruments and panels: values shown in one frame, requests from panels, colours, and
+// number formats.
 //
-// All that instruments and panels show of one moment: plain values, filled anew for every frame.
+// HudModel holds plain values, refilled for every frame. Angles are in radians, azimuths and
+// headings clockwise from north, heights and speeds in SI. HudRequest holds the requests of one
+// frame: each value at most once, mostly none.
 //
-// Angles in radians, azimuths and headings clockwise from north, heights and speeds in SI.
+// The day theme has bright colours; the night theme is red and amber, which keeps the eye
+// dark-adapted. Text has a plate or a panel behind it, with a contrast of at least 4.5 (Web Content
+// Accessibility Guidelines 2.1, 1.4.3) over any picture, up to white.
 //
-// What was asked for in panels during one frame: each value at most once, most of the time none.
-//
-// Numbers as instruments write them: short, of even width, with units.
+// Number texts are short, of even width, and have units.
 #pragma once
 
 #include <array>
@@ -27,18 +28,19 @@ enum class HudThemeChoice { kAuto, kDay, kNight };
 using HudColour = std::array<float, 4>;
 
 struct HudColours {
-  HudColour text, quiet, accent, warning;  // what is written and drawn
-  HudColour shadow;                        // around it
-  HudColour plate;                         // behind it
+  HudColour text, quiet, accent, warning;  // of text and lines
+  HudColour shadow;                        // around text and lines
+  HudColour plate;                         // behind text and lines
   HudColour panel, control, active;        // of panels
 };
 [[nodiscard]] const HudColours& ColoursOf(HudTheme theme);
 
-/// The theme of a choice; kAuto takes the night's when the exposure falls below the end of civil
-/// twilight, EV 1, and the day's again above EV 3, so that no dusk flickers.
+/// Returns the theme for a choice. kAuto switches to the night theme when the exposure falls below
+/// the end of civil twilight, EV 1, and back to the day theme above EV 3, so that it does not
+/// flicker at dusk.
 [[nodiscard]] HudTheme ThemeFor(HudThemeChoice choice, double ev100, HudTheme before);
 
-/// Where the eye, or what carries it, is going.
+/// Direction of motion of the eye, or of its vehicle.
 struct HudDirection {
   double heading_rad = 0.0;
   double climb_rad = 0.0;  // above the horizontal plane
@@ -50,19 +52,19 @@ struct HudFlight {
   double pitch_rad = 0.0;
   double roll_rad = 0.0;                // clockwise seen from behind
   double fov_rad = 1.0471975511965976;  // horizontal
-  double horizon_dip_rad = 0.0;         // of the edge of the sea below the horizontal plane
+  double horizon_dip_rad = 0.0;         // dip of the sea horizon below the horizontal plane
   double ground_speed_m_per_s = 0.0;
   std::optional<double> air_speed_m_per_s = {};
-  double height_m = 0.0;  // over the ellipsoid, which stands for the sea
+  double height_m = 0.0;  // over the ellipsoid, which approximates sea level
   double above_ground_m = 0.0;
   double climb_m_per_s = 0.0;
-  std::optional<double> throttle = {};     // share, [0, 1]
+  std::optional<double> throttle = {};     // fraction, [0, 1]
   std::optional<double> load_factor = {};  // g
-  std::optional<HudDirection> path = {};   // none while standing
+  std::optional<HudDirection> path = {};   // empty at rest
   bool stall = false;
 };
 
-/// The values that are held.
+/// Held values.
 struct HudAutopilot {
   std::optional<double> heading_rad = {};
   std::optional<double> height_m = {};
@@ -73,15 +75,15 @@ struct HudTime {
   std::string utc;            // "2026-06-21 04:00:00Z"
   std::string local;          // "13:00:00"
   std::string zone;           // "UTC+9", "Asia/Tokyo"
-  double day_fraction = 0.5;  // of the day that the strip shows, [0, 1]
-  double rate = 1.0;          // seconds of the scene per second of the pilot
+  double day_fraction = 0.5;  // of the day shown in the strip, [0, 1]
+  double rate = 1.0;          // seconds of the scene per real second
   bool paused = false;
 };
 
 struct HudMoon {
   double azimuth_rad = 0.0;
   double elevation_rad = 0.0;
-  double lit_share = 1.0;  // of its disk
+  double lit_share = 1.0;  // fraction of the disk
 };
 
 struct HudSky {
@@ -93,12 +95,12 @@ struct HudSky {
 struct HudExposure {
   double ev100 = 15.0;
   bool locked = false;
-  double compensation_ev = 0.0;  // added to what the meter says; over 0 is brighter
+  double compensation_ev = 0.0;  // added to the meter's value; positive is brighter
   std::optional<double> cursor_luminance_cd_per_m2 = {};
   std::string tone_curve;              // one of HudChoices::tone_curves
-  std::string look;                    // one of HudChoices::looks; of the curve agx
+  std::string look;                    // one of HudChoices::looks; of the tone curve agx
   std::string white_balance;           // one of HudChoices::white_balances, or "5600 K"
-  std::optional<double> white_k = {};  // temperature of the light that is shown as white [K]
+  std::optional<double> white_k = {};  // temperature of the light that appears white [K]
 };
 
 struct HudAir {
@@ -106,17 +108,17 @@ struct HudAir {
   std::string mixture;               // one of HudChoices::mixtures
   double visibility_km = 50.0;       // of the air at altitude 0
   double visibility_here_km = 50.0;  // at the camera, also in fog
-  double aerosol_scale = 1.0;        // on what the mixture has
-  double ozone_du = 300.0;           // 0 where the air has none
+  double aerosol_scale = 1.0;        // factor on the aerosol of the mixture
+  double ozone_du = 300.0;           // 0 for air without ozone
   double ground_albedo = 0.1;
 };
 
 struct HudSpeed {
-  double frame_ms = 16.0;  // a typical one of the last second
+  double frame_ms = 16.0;  // typical time of a frame in the last second
   std::string quality;     // "auto: medium, 0.75x"
 };
 
-/// Something to be said once.
+/// A transient message.
 struct HudMessage {
   std::string text;
   bool is_warning = false;
@@ -124,7 +126,7 @@ struct HudMessage {
 
 struct HudProgress {
   std::string text;    // "loading N46E008.hgt"
-  double share = 0.0;  // done, [0, 1]
+  double share = 0.0;  // finished fraction, [0, 1]
 };
 
 enum class HudUnits { kMetric, kAviation };
@@ -151,23 +153,23 @@ struct HudLamp {
   bool is_on = true;
 };
 
-/// A row of a table: "sky view", "64 x 104", "0.2 %", ...; columns as in its heading.
+/// Cells of a table row: "sky view", "64 x 104", "0.2 %", ..., in the order of the heading.
 using HudRow = std::vector<std::string>;
 
-/// What panels offer and list; changes rarely.
+/// Options and lists of the panels; they rarely change.
 struct HudChoices {
-  std::vector<std::string> modes;     // of flight
+  std::vector<std::string> modes;     // flight modes
   std::vector<std::string> moments;   // "sunrise", "noon", "moonrise", ...
-  std::vector<std::string> planets;   // presets of the atmosphere
-  std::vector<std::string> mixtures;  // of aerosol; none: there is no list of them
+  std::vector<std::string> planets;   // atmosphere presets
+  std::vector<std::string> mixtures;  // aerosol mixtures; empty: no list
   std::vector<std::string> tone_curves, looks, white_balances;
   std::vector<std::string> qualities;  // "auto", "low", ...
   std::vector<HudLamp> lamps;
   HudRow table_heading;
-  std::vector<HudRow> tables;  // of the viewer: size, age, error
+  std::vector<HudRow> tables;  // tables of the viewer: size, age, error
 };
 
-/// Degrees and metres as they were typed; the panel keeps them in range.
+/// Degrees and metres as typed; the panel clamps the angles to their ranges.
 struct HudPlaceRequest {
   double latitude_deg = 0.0;   // [-90, 90]
   double longitude_deg = 0.0;  // [-180, 180]
@@ -175,8 +177,8 @@ struct HudPlaceRequest {
 };
 
 struct HudTimeRequest {
-  std::optional<std::string> instant = {};  // as typed; ParseInstant (time.h) is its judge
-  std::optional<double> day_fraction = {};  // a click into the strip of the day, [0, 1]
+  std::optional<std::string> instant = {};  // as typed; ParseInstant (time.h) validates it
+  std::optional<double> day_fraction = {};  // clicked position in the day strip, [0, 1]
   std::optional<std::string> moment = {};   // one of HudChoices::moments
   std::optional<double> rate = {};          // [-3600, 3600]
   std::optional<bool> paused = {};
@@ -191,13 +193,13 @@ struct HudAirRequest {
   std::optional<double> ground_albedo = {};
 };
 
-/// Hold a value, or let it go.
+/// A value to hold; empty: release.
 struct HudHold {
   std::optional<double> value = {};
 };
 
 struct HudLampRequest {
-  std::size_t lamp = 0;  // in HudChoices::lamps
+  std::size_t lamp = 0;  // index into HudChoices::lamps
   bool is_on = true;
 };
 
@@ -212,57 +214,59 @@ struct HudCaptureRequest {
 
 struct HudRequest {
   std::optional<HudPlaceRequest> place = {};
-  std::optional<std::string> named_place = {};  // as PlaceNamed (places.h) reads it
+  std::optional<std::string> named_place = {};  // resolved by PlaceNamed (places.h)
   HudTimeRequest time;
   HudAirRequest air;
   std::optional<HudLampRequest> lamp = {};
   std::optional<std::string> tone_curve = {};
   std::optional<std::string> look = {};
   std::optional<std::string> white_balance =
-      {};  // as WhiteBalanceFromText (white_balance.h) reads it
+      {};  // parsed by WhiteBalanceFromText (white_balance.h)
   std::optional<bool> exposure_locked = {};
-  std::optional<double> ev100 = {};  // and locked at it
+  std::optional<double> ev100 = {};  // also locks the exposure
   std::optional<double> compensation_ev = {};
   std::optional<std::string> quality = {};
   std::optional<std::string> mode = {};
-  std::optional<double> throttle = {};  // share, [0, 1]
+  std::optional<double> throttle = {};  // fraction, [0, 1]
   std::optional<HudHold> hold_heading_rad = {};
   std::optional<HudHold> hold_height_m = {};
   std::optional<HudHold> hold_speed_m_per_s = {};
   std::optional<HudCaptureRequest> capture = {};
-  std::optional<bool> record = {};  // begin or end
+  std::optional<bool> record = {};  // true: begin, false: end
   std::optional<HudUnits> units = {};
-  std::optional<HudThemeChoice> theme = {};  // done already by whoever drew the panel
+  std::optional<HudThemeChoice> theme = {};  // already applied by Hud
   bool quit = false;
 };
 
-/// "46.5000° N", "8.0000° W".
+/// Return "46.5000° N", "8.0000° W".
 [[nodiscard]] std::string LatitudeText(double latitude_rad);
 [[nodiscard]] std::string LongitudeText(double longitude_rad);
 
-/// "007": whole degrees in [0, 360).
+/// Returns "007": integer degrees in [0, 360).
 [[nodiscard]] std::string HeadingText(double heading_rad);
-/// "-0.8°".
+/// Returns "-0.8°".
 [[nodiscard]] std::string DegreesText(double angle_rad);
 
-/// A number, what it is counted in, and how many of these are one metre or one metre a second.
+/// A number, its unit, and the number of units in one metre or one metre per second.
 struct Quantity {
   std::string number, unit;
   double per_si = 1.0;
 };
-/// "3200 m".
+/// Returns "3200 m".
 [[nodiscard]] std::string Joined(const Quantity& quantity);
-/// Metric: m up to 100 km, km beyond. Aviation: feet up to 100 000, nautical miles beyond.
+/// Returns m up to 100 km and km beyond; in aviation units feet up to 100 000 and nautical miles
+/// beyond.
 [[nodiscard]] Quantity HeightText(double height_m, HudUnits units);
-/// Metric: km/h up to 10 000, km/s beyond. Aviation: knots up to 10 000, nautical miles a second.
+/// Returns km/h up to 10 000 and km/s beyond; in aviation units knots up to 10 000 and nautical miles
+/// per second beyond.
 [[nodiscard]] Quantity SpeedText(double speed_m_per_s, HudUnits units);
-/// Metric: m/s, with its sign. Aviation: feet a minute.
+/// Returns m/s, or feet per minute in aviation units, with sign.
 [[nodiscard]] Quantity ClimbText(double climb_m_per_s, HudUnits units);
 
-/// Three digits that count, without exponents from 0.0001 to 10 million: "8200 cd/m²".
+/// Returns three significant digits, without exponents from 0.0001 to 10 million: "8200 cd/m²".
 [[nodiscard]] std::string LuminanceText(double luminance_cd_per_m2);
 
-/// "x1", "x-60", "x0.5", "paused".
+/// Returns "x1", "x-60", "x0.5", "paused".
 [[nodiscard]] std::string RateText(double rate, bool paused);
 
 }  // namespace alpenglow::viewer

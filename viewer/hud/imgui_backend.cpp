@@ -33,7 +33,7 @@ void AddBuiltIn(ImFontAtlas& atlas, double scale) {
 void AddFile(ImFontAtlas& atlas, double scale, const std::filesystem::path& file) {
   static constexpr std::array<ImWchar, 7> kLetters{0x20, 0x17F, 0x370, 0x3FF, 0x400, 0x45F, 0};
   const auto height = static_cast<float>(std::round(kLetterHeight * scale));
-  // Dear ImGui would end the program for a file that is not there.
+  // Dear ImGui aborts the program if the file is missing.
   if (!std::filesystem::is_regular_file(file) ||
       atlas.AddFontFromFileTTF(file.c_str(), height, nullptr, kLetters.data()) == nullptr) {
     throw InputError(fmt::format("\"{}\" is no TrueType font", file.string()));
@@ -76,7 +76,7 @@ void ApplyColours(ImGuiStyle& style, const HudColours& colours) {
                          ImGuiCol_TitleBgCollapsed}) {
     style.Colors[part] = panel;
   }
-  // Frames stay as they are under the mouse: the grab of a slider differs from them.
+  // Frames keep their colour under the mouse, so that the grab of a slider stands out from them.
   for (const int part :
        {ImGuiCol_FrameBg, ImGuiCol_FrameBgHovered, ImGuiCol_FrameBgActive, ImGuiCol_Button,
         ImGuiCol_Header, ImGuiCol_TitleBgActive, ImGuiCol_ScrollbarGrab, ImGuiCol_TableHeaderBg}) {
@@ -153,7 +153,7 @@ void TellModifiers(ImGuiIO& io, const HudInput& input) {
 #endif
 }
 #else
-// Keys have the numbers of their names.
+// Key codes are mapped to themselves.
 void TellKey(ImGuiIO& io, int key, bool is_down) {
   io.KeyMap[key] = key;
   io.KeysDown[key] = is_down;
@@ -176,7 +176,7 @@ void TellMouse(ImGuiIO& io, const HudInput& input) {
 }  // namespace
 
 void TellInput(ImGuiIO& io, const HudInput& input) {
-  constexpr float kShortest_s = 1e-4F;  // Dear ImGui wants time to pass
+  constexpr float kShortest_s = 1e-4F;  // Dear ImGui requires a positive time step
   io.DisplaySize = {static_cast<float>(input.width), static_cast<float>(input.height)};
   io.DeltaTime = std::max(static_cast<float>(input.seconds), kShortest_s);
   TellMouse(io, input);
@@ -194,7 +194,7 @@ constexpr int kAtlasUnit = 0;
 
 const void* Offset(std::size_t bytes) { return reinterpret_cast<const void*>(bytes); }
 
-// Bytes that are drawn once.
+// Uploads data that are drawn once.
 template <typename Element>
 void Upload(GLenum target, const GlBuffer& buffer, const ImVector<Element>& elements) {
   glBindBuffer(target, buffer.id());
@@ -202,8 +202,8 @@ void Upload(GLenum target, const GlBuffer& buffer, const ImVector<Element>& elem
                GL_STREAM_DRAW);
 }
 
-// A rectangle from the upper left corner, for OpenGL, which counts from the lower left one. False
-// where nothing of it is in the picture.
+// Sets the scissor to a rectangle given from the upper left corner; OpenGL counts from the lower
+// left one. Returns false if the rectangle is outside the picture.
 bool Clip(const ImVec4& rectangle, const ImVec2& size) {
   const int left = std::max(static_cast<int>(rectangle.x), 0);
   const int top = std::max(static_cast<int>(rectangle.y), 0);

@@ -1,14 +1,12 @@
 // SPDX-License-Identifier: MIT
-// The letters of instruments and panels, made at the size at which they are read.
+// Backend of Dear ImGui: fonts, style, input and OpenGL drawing.
 //
-// Colours and sizes of panels, for the Dear ImGui context that is current.
+// Glyphs are rasterised at their display size. The style sets colours and sizes of panels in the
+// current Dear ImGui context. Input is passed in the form that Dear ImGui expects before and since
+// version 1.87. Triangle lists of Dear ImGui are drawn over the picture.
 //
-// Mouse and keyboard as Dear ImGui wants them told, in its versions before and since 1.87.
-//
-// Triangles that Dear ImGui has listed, drawn over the picture.
-//
-// Own code instead of imgui_impl_opengl3, which brings a second loader of OpenGL that wants
-// libGL.so.1: contexts without a display have none.
+// This code replaces imgui_impl_opengl3, which brings a second OpenGL loader that needs libGL.so.1.
+// Contexts without a display do not have that library.
 #pragma once
 
 #include <imgui.h>
@@ -23,19 +21,19 @@
 
 namespace alpenglow::viewer {
 
-/// DejaVu Sans where a package has put it (Debian: fonts-dejavu-core).
+/// Returns the DejaVu Sans font of an installed package (Debian: fonts-dejavu-core), if there is one.
 [[nodiscard]] std::optional<std::filesystem::path> InstalledFont();
 
-/// Empties the atlas and puts letters of Latin, Greek and Cyrillic into it: those of `font`, or
-/// without one those that Dear ImGui brings (Latin only, in whole multiples of 13 pixels). Throws
-/// InputError when the file is no TrueType font.
-/// @param scale  pixels a unit; letters are 14 units high.
+/// Empties the atlas and adds Latin, Greek and Cyrillic glyphs of `font`, or without one the
+/// built-in font of Dear ImGui (Latin only, in integer multiples of 13 pixels). Throws InputError
+/// if the file is not a TrueType font.
+/// @param scale  pixels per unit; letters are 14 units high.
 void LoadFont(ImFontAtlas& atlas, double scale, const std::optional<std::filesystem::path>& font);
 
-/// @param scale  pixels a unit.
+/// @param scale  pixels per unit.
 void ApplyStyle(HudTheme theme, double scale);
 
-/// Before each NewFrame.
+/// Call before each NewFrame.
 void TellInput(ImGuiIO& io, const HudInput& input);
 
 class DrawListPainter {
@@ -43,11 +41,11 @@ class DrawListPainter {
   /// An OpenGL context must be current, now and in all calls.
   DrawListPainter();
 
-  /// Letters and lines of the atlas go to the graphics card, in place of those before.
+  /// Replaces the atlas texture with glyphs and lines of `atlas`.
   void UploadAtlas(ImFontAtlas& atlas);
 
-  /// Blends the lists over what the framebuffer (0: the window) holds, in the order they have. No
-  /// depth test, blending or scissor test is left on, and no vertex array bound.
+  /// Blends the lists over the framebuffer (0: the window) in their order. Leaves depth test,
+  /// blending and scissor test disabled, and no vertex array bound.
   void Paint(const ImDrawData& data, GLuint framebuffer) const;
 
  private:

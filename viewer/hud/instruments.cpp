@@ -18,7 +18,7 @@ constexpr double kRounding = 3.0;     // units
 ImVec2 At(const glm::dvec2& point) {
   return {static_cast<float>(point.x), static_cast<float>(point.y)};
 }
-// Letters are sharp where they stand on whole pixels.
+// Snaps to integer pixels, where letters are sharp.
 ImVec2 OnPixel(const glm::dvec2& point) { return At({std::round(point.x), std::round(point.y)}); }
 
 }  // namespace
@@ -88,7 +88,8 @@ double Canvas::LeftOf(double x, HudAlign align, const std::string& text) const {
 void Canvas::Text(const glm::dvec2& at, HudAlign align, const std::string& text,
                   const HudColour& colour) const {
   const double margin = Pixels(3.0), left = LeftOf(at.x, align, text);
-  // As high as a line, so that the plates of two lines meet; the shadow needs room below.
+  // The plate has the height of a line, so that plates of adjacent lines meet; the shadow needs
+  // space below.
   const double top = at.y - 0.25 * (LineHeight() - static_cast<double>(ImGui::GetFontSize()));
   Plate({left - margin, std::round(top)},
         {left + WidthOf(text) + margin, std::round(top + LineHeight())});

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What instruments are drawn with: lines, letters and plates over a picture of any brightness.
-//
-// All instruments of a flight over one picture: which there are, and where they stand.
+// Instruments of a flight over a picture: their layout, and a canvas that draws lines, text and
+// plates legibly at any picture brightness.
 #pragma once
 
 #include <imgui.h>
@@ -16,10 +15,10 @@ namespace alpenglow::viewer {
 
 enum class HudAlign { kLeft, kMiddle, kRight };
 
-/// Lengths in units, which are pixels of a display of 96 dots an inch; places in pixels.
+/// Draws in units, which are pixels of a display of 96 dots per inch; positions are in pixels.
 class Canvas {
  public:
-  /// @param scale  pixels a unit.
+  /// @param scale  pixels per unit.
   Canvas(ImDrawList& list, const HudColours& colours, double scale)
       : list_(list), colours_(colours), scale_(static_cast<float>(scale)) {}
 
@@ -28,26 +27,26 @@ class Canvas {
   /// Height of a line of text [pixels].
   [[nodiscard]] double LineHeight() const;
   [[nodiscard]] double WidthOf(const std::string& text) const;
-  /// The text in lines no wider than that, broken at spaces.
+  /// Returns the text in lines of at most this width, broken at spaces.
   [[nodiscard]] std::vector<std::string> Wrapped(const std::string& text, double width_px) const;
 
-  /// With a shadow around it, so that it is seen on snow and on forest.
+  /// Shapes have a shadow around them, so that they are visible on snow and on forest.
   void Line(const glm::dvec2& from, const glm::dvec2& to, const HudColour& colour) const;
   void Ring(const glm::dvec2& centre, double radius_px, const HudColour& colour) const;
   void Disk(const glm::dvec2& centre, double radius_px, const HudColour& colour) const;
   void Triangle(const glm::dvec2& a, const glm::dvec2& b, const glm::dvec2& c,
                 const HudColour& colour) const;
-  /// On a plate of its own: the text is read over any picture.
-  /// @param at  its upper left corner, upper middle, or upper right corner.
+  /// Draws text on its own plate: it is legible over any picture.
+  /// @param at  upper left, upper middle, or upper right corner of the text.
   void Text(const glm::dvec2& at, HudAlign align, const std::string& text,
             const HudColour& colour) const;
-  /// The same where a plate is drawn already.
+  /// Draws text over an existing plate.
   void TextOnPlate(const glm::dvec2& at, HudAlign align, const std::string& text,
                    const HudColour& colour) const;
   void Plate(const glm::dvec2& from, const glm::dvec2& to) const;
   void Fill(const glm::dvec2& from, const glm::dvec2& to, const HudColour& colour) const;
 
-  /// Nothing is drawn outside of a rectangle while this lives.
+  /// Clips drawing to a rectangle during its lifetime.
   class Clip {
    public:
     Clip(const Canvas& canvas, const glm::dvec2& from, const glm::dvec2& to);
@@ -60,7 +59,7 @@ class Canvas {
   };
 
  private:
-  /// The left edge of a text [pixels].
+  /// Returns the left edge of a text [pixels].
   [[nodiscard]] double LeftOf(double x, HudAlign align, const std::string& text) const;
 
   ImDrawList& list_;
@@ -68,24 +67,24 @@ class Canvas {
   float scale_;
 };
 
-/// The colour as Dear ImGui packs it.
+/// Returns the colour in Dear ImGui's packed format.
 [[nodiscard]] ImU32 Packed(const HudColour& colour);
 
-/// The same, less opaque.
+/// Returns the colour with its opacity multiplied by `opacity`.
 [[nodiscard]] HudColour Faded(const HudColour& colour, double opacity);
 
-/// The picture [pixels].
+/// Size of the picture [pixels].
 struct HudFrame {
   int width = 0, height = 0;
-  int top = 0;  // height of what lies over its upper edge, the menu
+  int top = 0;  // height of the menu over its upper edge
 
   [[nodiscard]] glm::dvec2 middle() const { return {0.5 * width, 0.5 * height}; }
 };
 
-/// Draws them. Pictures of less than 800 x 540 units get numbers instead of tapes.
+/// Draws all instruments. Pictures of less than 800 x 540 units get numbers instead of tapes.
 void DrawInstruments(const Canvas& canvas, const HudFrame& frame, const HudModel& model);
 
-/// Height of the part of the picture that the clock needs, the menu's included [pixels].
+/// Returns the height that clock and menu cover at the upper edge [pixels].
 [[nodiscard]] int ClockHeight(const Canvas& canvas, const HudFrame& frame, const HudModel& model);
 
 }  // namespace alpenglow::viewer

@@ -17,10 +17,10 @@
 namespace alpenglow::viewer {
 namespace {
 
-constexpr double kItemWidth = 170.0;   // of sliders and lists [units]
+constexpr double kItemWidth = 170.0;   // width of sliders and lists [units]
 constexpr double kStripWidth = 440.0;  // units
 constexpr double kStripHeight = 64.0;  // units
-constexpr double kNightShare = 0.35;   // of the strip's brightness that the night's theme shows
+constexpr double kNightShare = 0.35;   // brightness of the day strip in the night theme
 
 float Pixels(const PanelView& view, double units) { return static_cast<float>(units * view.scale); }
 
@@ -89,14 +89,15 @@ std::optional<HudPlaceRequest> PlaceControls(const PanelView& view, PanelTyping&
                          height};
 }
 
-/// A value that can be held: its name, how many of its slider's units are one of SI, and the range.
+/// A value that can be held: its name, slider units per SI unit, and range.
 struct Holdable {
   const char* name;
   double per_si;
   SliderRange range;
 };
 
-// A check box that holds what the eye has now, and a slider for what is held. All in SI.
+// Draws a check box that holds the current value, and a slider for the held value. All values are
+// in SI.
 std::optional<HudHold> HoldControl(const Holdable& what, const std::optional<double>& held,
                                    double now) {
   const double shown = what.per_si * held.value_or(now);
@@ -139,7 +140,7 @@ void ShowRow(const HudRow& row) {
   }
 }
 
-// One of the names, or a light that is chosen by its temperature.
+// Draws a list of named white balances, and a slider for the colour temperature.
 HudRequest WithWhiteBalance(const PanelView& view, HudRequest request) {
   const HudExposure& exposure = view.model.exposure;
   request.white_balance =

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What stands on each panel: draws its controls into the window of Dear ImGui that is begun and
-// returns the request with what was asked for there.
+// Contents of each panel: functions that draw its controls into the current Dear ImGui window and
+// return the request with the user's changes.
 #pragma once
 
 #include <array>
@@ -12,25 +12,25 @@ namespace alpenglow::viewer {
 
 inline constexpr double kPanelMargin = 10.0;  // to the edges of the picture [units]
 
-/// What panels show.
+/// State that panels show.
 struct PanelView {
   const HudModel& model;
   const HudChoices& choices;
-  const DayStrip* strip;  // null until there is one
+  const DayStrip* strip;  // null until it is computed
   HudTheme theme;
   HudThemeChoice theme_choice;
-  double scale;       // pixels a unit
+  double scale;       // pixels per unit
   int width, height;  // of the picture [pixels]
-  int top;            // of it that panels leave free: menu and clock [pixels]
+  int top;            // height at the upper edge that panels avoid: menu and clock [pixels]
 };
 
-/// Texts and numbers that are typed before they are asked for.
+/// Typed texts and numbers before they are submitted.
 struct PanelTyping {
   std::array<char, 64> instant{}, place_name{};
   std::array<double, 3> place{};  // latitude and longitude [deg], height [m]
-  bool is_place_typed = false;    // else it follows the eye
+  bool is_place_typed = false;    // false: the fields follow the eye
   std::array<int, 2> picture_size{};
-  bool is_size_typed = false;  // else it is that of the picture
+  bool is_size_typed = false;  // false: the size of the picture
   bool with_hud = false;
 };
 

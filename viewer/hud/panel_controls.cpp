@@ -23,7 +23,7 @@ namespace {
 constexpr std::array<double, 6> kElevations_deg{80.0, 50.0, 28.0, 14.0, 6.0, 1.5};
 constexpr int kRows = kElevations_deg.size();
 
-/// Light along rays, in cd/m^2.
+/// Computes sky radiance along rays, in cd/m^2.
 class Sky {
  public:
   explicit Sky(const DayStripRequest& request)
@@ -33,7 +33,7 @@ class Sky {
         altitude_m_(std::max(request.place.height_m, 0.0)),
         horizon_rad_(SkyViewMap(medium_, altitude_m_, 1.0).horizon_zenith_angle_rad()) {}
 
-  /// @param elevation_deg  over the edge of the sea.
+  /// @param elevation_deg  above the sea horizon.
   [[nodiscard]] std::array<double, 3> LinearSrgb(double elevation_deg,
                                                  const SunPosition& sun) const {
     const double zenith_deg = horizon_rad_ / kRadiansPerDegree - elevation_deg;
@@ -60,7 +60,7 @@ class Sky {
   const Medium& medium_;
   BandColour colour_;
   double altitude_m_;
-  double horizon_rad_;  // its zenith angle
+  double horizon_rad_;  // zenith angle of the sea horizon
 };
 
 using Column = std::array<std::array<double, 3>, kRows>;
@@ -141,7 +141,7 @@ ImU32 Colour(const std::array<float, 3>& rgb, double brightness) {
   return ImGui::ColorConvertFloat4ToU32({share * rgb[0], share * rgb[1], share * rgb[2], 1.0F});
 }
 
-/// Where the strip lies [pixels].
+/// Rectangle of the strip [pixels].
 struct StripBox {
   ImVec2 from, size;
 
@@ -151,7 +151,7 @@ struct StripBox {
   }
 };
 
-// Colours run between the middles of columns and rows.
+// Draws the colours, interpolated between the centres of columns and rows.
 void DrawColours(ImDrawList& list, const DayStrip& strip, const StripBox& box, double brightness) {
   const auto colour = [&](int column, int row) {
     return Colour(strip.at(column, row), brightness);
@@ -176,14 +176,14 @@ void DrawHours(ImDrawList& list, const StripBox& box, ImU32 colour) {
     list.AddLine({foot.x, foot.y - mark}, foot, colour);
     const std::string text = fmt::format("{}", hour);
     const float half = 0.5F * ImGui::CalcTextSize(text.c_str()).x;
-    // Large letters are wider than a narrow strip.
+    // Large letters can be wider than a narrow strip.
     const float last = std::max(box.from.x + box.size.x - 2.0F * half, box.from.x);
     const float x = std::clamp(foot.x - half, box.from.x, last);
     list.AddText({x, foot.y}, ImGui::GetColorU32(ImGuiCol_Text), text.c_str());
   }
 }
 
-// The way of the sun: noon at the zenith would touch the upper edge.
+// Draws the path of the sun; noon at the zenith would touch the upper edge.
 void DrawSunPath(ImDrawList& list, const DayStrip& strip, const StripBox& box, ImU32 colour) {
   const auto point = [&](int column) {
     const double elevation = strip.sun_elevation_rad[static_cast<std::size_t>(column)];
@@ -200,7 +200,7 @@ void DrawNow(ImDrawList& list, double day_fraction, const StripBox& box) {
   list.AddLine(from, to, ImGui::GetColorU32(ImGuiCol_CheckMark), 2.0F);
 }
 
-// Time of day.
+// Returns the time of day.
 std::string ClockText(double day_fraction) {
   const auto minutes = std::lround(day_fraction * 24.0 * 60.0);
   return fmt::format("{:02d}:{:02d}", minutes / 60, minutes % 60);
@@ -270,7 +270,7 @@ std::optional<double> DayStripControl(const DayStrip* strip, double day_fraction
 
 namespace {
 
-// "Zürich Airport (LSZH, Kloten)": what it can be found by.
+// Returns the searchable names: "Zürich Airport (LSZH, Kloten)".
 std::string LabelOf(const NamedPlace& place) {
   const std::string both = place.code.empty() || place.also.empty() ? "" : ", ";
   const std::string others = place.code + both + place.also;
@@ -280,7 +280,7 @@ std::string LabelOf(const NamedPlace& place) {
 }  // namespace
 
 std::optional<std::string> PlaceSearch(std::array<char, 64>& typed, double width_px) {
-  constexpr float kLines = 6.5F;  // a half one shows that there are more
+  constexpr float kLines = 6.5F;  // a half line shows that the list continues
   const auto width = static_cast<float>(width_px);
   ImGui::SetNextItemWidth(width);
   const bool entered =

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: MIT
-// The colours of the sky through one day: what a pilot clicks on to choose the time.
+// Controls of the panels: each returns the user's choice in this frame, if any.
 //
-// Columns are instants, rows elevations over the horizon under the sun, the zenith above. Light
-// by AirIntegrator and DiffuseLight, without a moon. Each column is exposed between what a meter
-// would pick for it and a bright day, so that night is dark and yet dusk shows its colours:
+// DayStrip shows the colours of the sky through one day; a click on it chooses the time. Columns
+// are instants, rows are elevations above the horizon under the sun, the zenith on top. The light
+// is computed by AirIntegrator and DiffuseLight, without a moon. The exposure of each column lies
+// between its metered exposure and that of a bright day, so that night is dark while dusk shows its
+// colours:
 //
 //   EV = 0.8 EV(meter, mean luminance of the column) + 0.2 EV 14
 //
-// Controls that panels are made of: each tells what was chosen in this frame, if anything.
-//
-// The places that have names, in a list that typing makes shorter.
+// PlaceSearch lists the named places and filters them while typing.
 #pragma once
 
 #include <array>
@@ -29,18 +29,18 @@
 namespace alpenglow::viewer {
 
 struct DayStripRequest {
-  std::shared_ptr<const AirIntegrator<float>> air;  // not null; of one medium with `diffuse`
+  std::shared_ptr<const AirIntegrator<float>> air;  // not null; for the same medium as `diffuse`
   std::shared_ptr<const DiffuseLight> diffuse;      // not null
   GeodeticPosition place;
-  UtcInstant begin;  // of the 24 hours shown
+  UtcInstant begin;  // start of the 24 hours shown
   int columns = 96;  // >= 2
 };
 
 struct DayStrip {
   int columns = 0, rows = 0;
-  /// Codes of the display in [0, 1], row by row, the zenith first.
+  /// Display codes in [0, 1], row by row, the zenith first.
   std::vector<std::array<float, 3>> colours;
-  std::vector<double> sun_elevation_rad;  // apparent, a column
+  std::vector<double> sun_elevation_rad;  // apparent, one per column
   UtcInstant begin;
 
   [[nodiscard]] const std::array<float, 3>& at(int column, int row) const {
@@ -49,19 +49,19 @@ struct DayStrip {
   }
 };
 
-/// Column i shows the instant begin + (i + 1/2) / columns of 24 hours.
+/// Returns a strip in which column i shows the instant begin + (i + 1/2) / columns of 24 hours.
 [[nodiscard]] DayStrip MakeDayStrip(const DayStripRequest& request);
 
-/// Strips made on a thread of their own, redone when what they show has changed enough to be seen:
-/// the air, the day, or the place by more than half a degree or a tenth of its height.
+/// Computes strips on a separate thread, and again after a visible change: of the air, the day, or
+/// the place by more than half a degree or, in height, by a tenth and at least 200 m.
 class DayStrips {
  public:
   DayStrips() : job_(MakeDayStrip) {}
   void Want(const DayStripRequest& request);
-  /// The newest; null until there is one. Throws what making it threw.
+  /// Returns the newest strip; null until there is one. Rethrows exceptions of the computation.
   [[nodiscard]] const DayStrip* Newest();
   [[nodiscard]] bool Busy() const { return job_.Busy(); }
-  /// Waits for what was wanted last.
+  /// Waits for the last request.
   void Wait() { job_.Wait(); }
 
  private:
@@ -72,34 +72,34 @@ class DayStrips {
 
 struct SliderRange {
   double low, high;
-  const char* format;  // as Dear ImGui wants it, "%.0f km"
+  const char* format;  // in Dear ImGui's notation, "%.0f km"
   bool logarithmic = false;
 };
 
 [[nodiscard]] std::optional<double> Slider(const char* label, double value,
                                            const SliderRange& range);
-/// One of some names.
+/// Draws a list and returns the chosen name.
 [[nodiscard]] std::optional<std::string> NameList(const char* label, const std::string& current,
                                                   std::span<const std::string> names);
 [[nodiscard]] std::optional<bool> CheckBox(const char* label, bool is_on);
 
-/// Buttons in rows as wide as the panel: the one that was pressed.
+/// Draws buttons in rows of the panel's width and returns the index of the pressed one.
 [[nodiscard]] std::optional<std::size_t> ButtonRows(std::span<const std::string> names,
                                                     double row_width_px);
 
 struct StripLook {
   double width_px, height_px;
-  double brightness = 1.0;  // share of the colours' that is shown
+  double brightness = 1.0;  // factor on the displayed colours
 };
 
-/// The day's colours, its hours and the sun's way; the share of the day that is clicked on. With no
-/// strip yet its place is kept free.
+/// Draws the colours of the day, its hours and the path of the sun; returns the clicked fraction of
+/// the day. Without a strip its space stays empty.
 [[nodiscard]] std::optional<double> DayStripControl(const DayStrip* strip, double day_fraction,
                                                     const StripLook& look);
 
-/// A field for a part of a name and the list of places that have it, by name and best first
-/// (PlacesByName, places.h), into the window of Dear ImGui that is begun.
-/// @return  the name of the place that was clicked on, or of the first one when Enter was pressed.
+/// Draws a field for a part of a name and the list of matching places, the best match first and
+/// equal matches by name (PlacesByName, places.h), into the current Dear ImGui window.
+/// @return  the name of the clicked place, or of the first one when Enter was pressed.
 [[nodiscard]] std::optional<std::string> PlaceSearch(std::array<char, 64>& typed, double width_px);
 
 }  // namespace alpenglow::viewer

@@ -12,7 +12,7 @@ namespace alpenglow::viewer {
 namespace {
 
 constexpr double kColumnWidth = 400.0;  // units
-constexpr float kKeysShare = 0.40F;     // of a column
+constexpr float kKeysShare = 0.40F;     // fraction of a column
 
 ImVec4 Accent(HudTheme theme) {
   const HudColour& colour = ColoursOf(theme).accent;
@@ -39,10 +39,10 @@ void ShowSection(const ActionSection& section, float width, HudTheme theme) {
   ImGui::Spacing();
 }
 
-// Its heading and the space below count as two lines.
+// Counts heading and space below as two lines.
 std::size_t LinesOf(const ActionSection& section) { return section.rows.size() + 2; }
 
-// Columns of at most so many lines, but for sections that are longer.
+// Fills columns of at most `most_lines` lines; only a longer section exceeds this.
 HelpColumns Filled(const std::vector<ActionSection>& sections, std::size_t most_lines) {
   HelpColumns columns;
   std::size_t lines = 0;
@@ -86,7 +86,8 @@ void ShowKeyHelp(const PanelView& view) {
 
 namespace {
 
-/// Where a panel appears: this share of what is free, the same share of the panel put there.
+/// Placement of a new panel: the point at the fraction (x, y) of the panel lies at the same
+/// fraction of the free area.
 struct Placement {
   HudPanel panel;
   const char* name;
@@ -103,8 +104,8 @@ constexpr std::array<Placement, kHudPanels> kPlacements{
      {HudPanel::kHelp, "Help", 0.50F, 0.50F},
      {HudPanel::kLeave, "Leave", 0.50F, 0.50F}}};
 
-/// The part of the picture that panels may cover [pixels]: below the clock, but where letters are so
-/// large that less than a quarter of the picture would be left.
+/// The part of the picture that panels may cover [pixels]: below the clock. If large letters would
+/// leave less than a quarter of the picture, panels also cover the clock.
 struct FreeArea {
   ImVec2 from, size;
 
@@ -116,7 +117,7 @@ struct FreeArea {
   }
 };
 
-// Puts the window that is begun back into the area, unless a hand is moving it.
+// Moves the current window back into the area, unless the user is dragging it.
 void KeepInside(const FreeArea& area) {
   if (ImGui::IsMouseDown(ImGuiMouseButton_Left)) return;
   const ImVec2 at = ImGui::GetWindowPos(), size = ImGui::GetWindowSize();
@@ -128,7 +129,7 @@ void KeepInside(const FreeArea& area) {
   if (inside.x != at.x || inside.y != at.y) ImGui::SetWindowPos(inside);
 }
 
-/// A window of Dear ImGui: begun here, ended with it.
+/// A Dear ImGui window, begun in the constructor and ended in the destructor.
 class Shown {
  public:
   Shown(const char* name, bool* open)
@@ -146,7 +147,7 @@ class Shown {
   bool visible_;
 };
 
-// Enter leaves too, where no text is typed.
+// Returns whether the user confirms. Enter also confirms, unless text is typed.
 bool AskToLeave() {
   ImGui::TextUnformatted("Leave the flight? Enter leaves, Esc stays.");
   const bool enters = ImGui::IsKeyPressed(ImGuiKey_Enter, false) && !ImGui::GetIO().WantTextInput;
@@ -205,7 +206,7 @@ HudRequest Panels::DrawPanel(HudPanel panel, const PanelView& view, HudRequest r
       resized_ ? ImGuiCond_Always : ImGuiCond_Appearing, share);
   ImGui::SetNextWindowSizeConstraints({0.0F, 0.0F}, area.size);
   const Shown window(placement.name, &Open(panel));
-  // Until then Dear ImGui measures it and keeps where it is to appear.
+  // Before that Dear ImGui still measures the window and sets its initial position.
   constexpr int kMeasured = 3;
   int& frames = frames_[static_cast<std::size_t>(panel)];
   frames = ImGui::IsWindowAppearing() ? 0 : std::min(frames + 1, kMeasured);

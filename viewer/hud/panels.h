@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The keys, as the panel of help lists them: each action once, under the heading of its mode.
-//
-// Panels: what the pilot sets by mouse, and what is looked up; and the menu that opens them.
+// Panels with settings and information, the menu that opens them, and the help panel with the keys:
+// each action once, under the heading of its mode.
 #pragma once
 
 #include <array>
@@ -13,11 +12,11 @@
 
 namespace alpenglow::viewer {
 
-/// Draws them into the window of Dear ImGui that is begun, in as many columns as fit side by side.
+/// Draws the keys into the current Dear ImGui window, in as many columns as fit side by side.
 void ShowKeyHelp(const PanelView& view);
 
 using HelpColumns = std::vector<std::vector<ActionSection>>;
-/// The sections in their order in columns of which the longest is as short as it can be.
+/// Returns the sections in their order, in columns with the smallest possible maximum length.
 /// @param most_columns  >= 1.
 [[nodiscard]] HelpColumns InColumns(const std::vector<ActionSection>& sections,
                                     std::size_t most_columns);
@@ -35,16 +34,16 @@ enum class HudPanel {
 };
 inline constexpr std::size_t kHudPanels = 9;
 
-/// Which panels are open, and what is being typed into them. Works on the Dear ImGui context that
-/// is current, between its NewFrame and Render.
+/// Open panels, and the text being typed into them. Uses the current Dear ImGui context, between
+/// its NewFrame and Render.
 class Panels {
  public:
   void Toggle(HudPanel panel) { Open(panel) = !Open(panel); }
   [[nodiscard]] bool IsOpen(HudPanel panel) const { return open_[static_cast<std::size_t>(panel)]; }
-  /// Whether any was open.
+  /// Closes all panels and returns whether any was open.
   bool CloseAll();
   void ToggleMenu() { menu_ = !menu_; }
-  /// Pixels that the menu takes of the upper edge.
+  /// Returns the height of the menu at the upper edge [pixels].
   [[nodiscard]] int MenuHeight() const;
 
   [[nodiscard]] HudRequest Draw(const PanelView& view);
@@ -56,11 +55,11 @@ class Panels {
   [[nodiscard]] HudRequest Contents(HudPanel panel, const PanelView& view, HudRequest request);
 
   std::array<bool, kHudPanels> open_{};
-  std::array<int, kHudPanels> frames_{};  // since it appeared
+  std::array<int, kHudPanels> frames_{};  // since the panel appeared
   bool menu_ = false;
   PanelTyping typing_;
-  std::array<int, 2> picture_{};  // size of the last one [pixels]
-  bool resized_ = false;          // since the last frame: panels are placed anew
+  std::array<int, 2> picture_{};  // size of the last picture [pixels]
+  bool resized_ = false;          // since the last frame: panels are placed again
 };
 
 }  // namespace alpenglow::viewer

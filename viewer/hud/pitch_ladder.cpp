@@ -40,14 +40,14 @@ std::optional<glm::dvec2> HorizonView::PixelOf(const HudDirection& direction) co
 
 namespace {
 
-// Lengths in units.
-constexpr double kGap = 38.0;      // from the middle of a rung to where it begins
-constexpr double kRungEnd = 92.0;  // and to where it ends
-constexpr double kHook = 7.0;      // of a rung, towards the horizon
-constexpr double kMarker = 8.0;    // radius of the flight path's marker
+// Lengths in units:
+constexpr double kGap = 38.0;      // from the middle of a rung to its start
+constexpr double kRungEnd = 92.0;  // from the middle of a rung to its end
+constexpr double kHook = 7.0;      // length of a rung's hook, towards the horizon
+constexpr double kMarker = 8.0;    // radius of the flight path marker
 constexpr double kLargestRung_deg = 85.0;
 
-/// A line across the picture that is level in the world.
+/// A line in the picture that is level in the world.
 struct Level {
   glm::dvec2 middle, along, down;  // pixels; unit vectors
 };
@@ -70,7 +70,7 @@ void DrawDashed(const Canvas& canvas, const glm::dvec2& from, const glm::dvec2& 
   }
 }
 
-// One side of a rung: -1 left, 1 right.
+// Draws one side of a rung: -1 left, 1 right.
 void DrawHalfRung(const Canvas& canvas, const Level& level, double side, int degrees) {
   const HudColour& colour = canvas.colours().accent;
   const glm::dvec2 begin = level.middle + side * canvas.Pixels(kGap) * level.along;
@@ -87,7 +87,7 @@ void DrawHalfRung(const Canvas& canvas, const Level& level, double side, int deg
               side < 0.0 ? HudAlign::kRight : HudAlign::kLeft, fmt::format("{}", degrees), colour);
 }
 
-// Between the tapes, under the scale of bank and over the messages.
+// Returns whether a position is between the tapes, below the bank scale and above the messages.
 bool HasRoom(const HudFrame& frame, const glm::dvec2& at) {
   return std::abs(at.x / frame.width - 0.5) < 0.22 && at.y > 0.24 * frame.height &&
          at.y < 0.76 * frame.height;
@@ -119,7 +119,7 @@ void DrawHorizon(const Canvas& canvas, const HudFrame& frame, const HorizonView&
   }
 }
 
-// The edge of the sea, where that is not the horizontal plane's.
+// Marks the sea horizon where it is visibly below the horizontal plane.
 void DrawDip(const Canvas& canvas, const HudFrame& frame, const HorizonView& view,
              const HudFlight& flight) {
   constexpr double kWorthDrawing = 6.0;  // units
@@ -145,7 +145,7 @@ void DrawPath(const Canvas& canvas, const HorizonView& view, const HudFlight& fl
   }
 }
 
-// Where the eye looks.
+// Marks the view direction.
 void DrawWaterline(const Canvas& canvas, const HudFrame& frame) {
   const double arm = canvas.Pixels(10.0);
   const HudColour& colour = canvas.colours().quiet;
@@ -193,7 +193,7 @@ void DrawBankScale(const Canvas& canvas, const HudFrame& frame, const HudFlight&
     const double angle = mark * kRadiansPerDegree;
     canvas.Line(at(angle, radius), at(angle, radius + canvas.Pixels(large ? 10.0 : 6.0)), colour);
   }
-  // The sky turns against the wings: rolled to the right, up is to the left.
+  // The sky rotates against the wings: rolled to the right, up is to the left.
   constexpr double kFurthest_rad = 65.0 * kRadiansPerDegree;
   const double up =
       std::clamp(-std::remainder(flight.roll_rad, 2.0 * kPi), -kFurthest_rad, kFurthest_rad);

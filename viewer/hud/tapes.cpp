@@ -13,12 +13,13 @@
 namespace alpenglow::viewer {
 namespace {
 
-// Lengths in units.
-constexpr double kEdge = 10.0;          // from the edge of the picture to the heading's tape
-constexpr double kTapeWidth = 74.0;     // of speed and height
+// Lengths in units:
+constexpr double kEdge = 10.0;          // from the edge of the picture to the heading tape
+constexpr double kTapeWidth = 74.0;     // of the speed and height tapes
 constexpr double kTapeHalf = 120.0;     // half of their height, at most
-constexpr double kMarkDistance = 26.0;  // from mark to mark
-constexpr double kSpeedAt = 0.20;       // of the picture's width: the inner edges of the tapes
+constexpr double kMarkDistance = 26.0;  // between marks
+constexpr double kSpeedAt = 0.20;       // inner edges of the speed and height tapes, fraction of
+                                        // the picture's width
 constexpr double kHeightAt = 0.80;
 
 std::string HeadingLabel(int degrees) {
@@ -50,9 +51,9 @@ void DrawBoxed(const Canvas& canvas, const glm::dvec2& top, const std::string& t
 
 /// A scale on the left (-1) or right (1) side of the picture.
 struct Scale {
-  double side, inner_x;  // pixels
-  double value;          // of the mark in the middle
-  double step;           // from mark to mark
+  double side, inner_x;  // side -1 or 1; inner edge [pixels]
+  double value;          // at the middle of the tape
+  double step;           // between marks
   std::string unit;
   std::optional<double> held;
 };
@@ -110,7 +111,7 @@ void DrawScale(const Canvas& canvas, const HudFrame& frame, const Scale& scale,
               canvas.colours().quiet);
 }
 
-/// Where headings stand on their tape [pixels].
+/// Position of headings on their tape [pixels].
 class HeadingTape {
  public:
   HeadingTape(const Canvas& canvas, const HudFrame& frame, double heading_rad)
@@ -120,7 +121,7 @@ class HeadingTape {
         top_(frame.top + canvas.Pixels(kEdge)),
         bottom_(top_ + canvas.LineHeight() + canvas.Pixels(12.0)) {}
 
-  /// Beside the tape for what is not on it.
+  /// Returns the x position; headings outside the tape lie beside it.
   [[nodiscard]] double At(double heading_rad) const {
     constexpr double kHalfShown_rad = 30.0 * kRadiansPerDegree;
     return middle_ + std::remainder(heading_rad - heading_rad_, 2.0 * kPi) / kHalfShown_rad * half_;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Scales that run past a mark: heading, speed, height.
+// Tapes that scroll past a fixed mark: heading, speed, height.
 #pragma once
 
 #include "viewer/hud/hud_model.h"
@@ -7,19 +7,21 @@
 
 namespace alpenglow::viewer {
 
-/// Heading over the middle of the upper edge, 60 degrees of it, with a bug where it is held, a disk
-/// where the sun stands and a ring where the moon does.
+/// Draws 60 degrees of heading at the middle of the upper edge, with a bug at the held heading, a
+/// disk at the sun and a ring at the moon.
 void DrawHeadingTape(const Canvas& canvas, const HudFrame& frame, const HudModel& model);
-/// The same as a number.
+/// Draws the heading as a number.
 void DrawHeadingNumber(const Canvas& canvas, const HudFrame& frame, const HudModel& model);
 
-/// Speed on the left, height over the sea on the right, with climb and height over ground below.
+/// Draw speed on the left, and height above sea level on the right, with climb and height above
+/// ground below it.
 void DrawSpeedTape(const Canvas& canvas, const HudFrame& frame, const HudModel& model);
 void DrawHeightTape(const Canvas& canvas, const HudFrame& frame, const HudModel& model);
-/// The same as numbers.
+/// Draws speed and height as numbers.
 void DrawSpeedAndHeightNumbers(const Canvas& canvas, const HudFrame& frame, const HudModel& model);
 
-/// Distance of the marks of a scale around `value`: 1, 2 or 5 times a power of ten, at least `least`.
+/// Returns the distance of the marks of a scale around `value`: 1, 2 or 5 times a power of ten, at
+/// least `least`.
 [[nodiscard]] double MarkStep(double value, double least);
 
 }  // namespace alpenglow::viewer
