@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "viewer/input/action.h"
 
-// The names of keys alone.
+// GLFW is included for its key numbers alone.
 #define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>
 #include <fmt/format.h>
@@ -153,7 +153,7 @@ constexpr std::pair<std::string_view, int> kKeyNames[] = {
 
 bool IsLetterOrDigit(char c) { return (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9'); }
 
-/// "F3" and "Keypad 9": a word and a number.
+/// Returns the key of "F3" or "Keypad 9": a word and a number.
 std::optional<int> NumberedKey(std::string_view name) {
   const auto number = [&](std::string_view word) -> std::optional<int> {
     if (!name.starts_with(word) || name.size() == word.size()) return std::nullopt;
@@ -170,7 +170,7 @@ std::optional<int> NumberedKey(std::string_view name) {
 }
 
 std::optional<int> KeyFromName(std::string_view name) {
-  // GLFW counts letters and digits as ASCII does.
+  // GLFW numbers letters and digits as in ASCII.
   if (name.size() == 1 && IsLetterOrDigit(name[0])) return name[0];
   for (const auto& [known, key] : kKeyNames) {
     if (known == name) return key;
@@ -256,7 +256,7 @@ KeyChord KeyChordFromText(std::string_view text) {
 
 std::optional<Action> ActionOfKey(int key, int modifiers, FlightMode mode) {
   static const std::vector<Binding> bindings = AllBindings();
-  // Locks of capitals and of numbers are modifiers too.
+  // Caps Lock and Num Lock are modifiers too; ignore them.
   const int counted = modifiers & (kShiftKey | kControlKey | kAltKey);
   for (const Binding& binding : bindings) {
     if (Fits(binding, key, counted, mode)) return binding.row->action;

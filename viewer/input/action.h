@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
-// What a pilot can ask for, and with which keys: one table, read by the keyboard, by the help on
-// the screen and by the manual.
+// Actions of the pilot and their keys: one table for the keyboard, the help on the screen and the
+// manual.
 //
-// Keys are FlightGear's where it has them (its keyboard.xml); in the free camera W A S D, R F and
-// Q E move the eye, as in other viewers.
+// Keys follow FlightGear where it defines them (its keyboard.xml); in the free camera W A S D, R F
+// and Q E move the eye, as in other viewers.
 #pragma once
 
 #include <optional>
@@ -17,7 +17,7 @@
 namespace alpenglow::viewer {
 
 enum class Action {
-  // Modes, and where the eye is.
+  // Modes, and the position of the eye.
   kFreeMode,
   kAircraftMode,
   kTrackMode,
@@ -25,7 +25,7 @@ enum class Action {
   kPreviousMode,
   kCentre,
   kHigher,
-  // The window.
+  // Window.
   kHud,
   kNightTheme,
   kMouseMode,
@@ -33,7 +33,7 @@ enum class Action {
   kFullScreen,
   kHelp,
   kQuit,
-  // The eye of the free camera, while a key is held.
+  // Eye of the free camera, while a key is held.
   kForward,
   kBack,
   kLeft,
@@ -49,10 +49,10 @@ enum class Action {
   // Speed of free camera and track.
   kFaster,
   kSlower,
-  // The place along the track.
+  // Position along the track.
   kTrackAhead,
   kTrackBack,
-  // The aircraft, most of them while a key is held.
+  // Aircraft, mostly while a key is held.
   kNoseDown,
   kNoseUp,
   kBankLeft,
@@ -64,7 +64,7 @@ enum class Action {
   kBrake,
   kFasterFlight,
   kSlowerFlight,
-  // The autopilot.
+  // Autopilot.
   kHoldHeading,
   kHoldAltitude,
   kHoldClimb,
@@ -76,7 +76,7 @@ enum class Action {
   kBrighter,
   kDarker,
   kResetExposure,
-  // The view, the air and lights.
+  // View, air and lights.
   kNarrowerView,
   kWiderView,
   kResetView,
@@ -103,21 +103,20 @@ enum class Action {
   kToDusk,
   kToMoonrise,
   kToMoonset,
-  // Pictures and flights in files.
+  // Picture and flight files.
   kScreenshot,
   kScreenshotExr,
   kSaveFlight,
   kReplay,
 };
 
-/// In which flight modes a key does something.
+/// Flight modes in which a key has an effect.
 struct Modes {
   bool free, aircraft, track;
   [[nodiscard]] bool Has(FlightMode mode) const;
 };
 
-/// How a key acts: once when it goes down; again while the keyboard repeats it; as long as it is
-/// held.
+/// Trigger of a key: once when it goes down; also on keyboard repeats; as long as it is held.
 enum class Press { kOnce, kRepeating, kHeld };
 
 /// One line of the table.
@@ -127,10 +126,10 @@ struct ActionRow {
   Modes modes;
   std::string_view heading, does;
   std::string_view keys;             // "Page Up, Keypad 9"
-  std::string_view keys_in_cockpit;  // keys that it has with aircraft and track alone
+  std::string_view keys_in_cockpit;  // additional keys in aircraft and track modes
 };
 
-/// All lines, an action each, in the order of the enumeration.
+/// Returns all lines, one action each, in the order of the enumeration.
 [[nodiscard]] std::span<const ActionRow> ActionTable();
 [[nodiscard]] const ActionRow& RowOf(Action action);
 
@@ -139,10 +138,10 @@ struct ActionSection {
   std::string_view heading;
   std::span<const ActionRow> rows;
 };
-/// All lines: first what works everywhere, then mode by mode, then what is seen.
+/// Returns all lines: first the actions of all modes, then those of each mode, then those of the view.
 [[nodiscard]] std::vector<ActionSection> ActionSections();
 
-/// Modifiers, as GLFW counts them.
+/// Modifiers with GLFW's values.
 inline constexpr int kShiftKey = 1, kControlKey = 2, kAltKey = 4;
 
 /// A key with its modifiers. Keys are GLFW's numbers.
@@ -151,21 +150,22 @@ struct KeyChord {
   int modifiers;
   bool any_shift = false;  // "+" is "=" with or without Shift
 };
-/// "Shift+T", "Ctrl+H", "Page Up", "?". Throws InputError for a key that it does not know.
+/// Parses "Shift+T", "Ctrl+H", "Page Up", "?". Throws InputError for an unknown key.
 [[nodiscard]] KeyChord KeyChordFromText(std::string_view text);
 
-/// What a key does in a mode; nothing for most keys. Held keys act with Shift too, not with Ctrl or
-/// Alt.
+/// Returns the action of a key in a mode; no value for most keys. Held keys also act with Shift,
+/// but not with Ctrl or Alt.
 [[nodiscard]] std::optional<Action> ActionOfKey(int key, int modifiers, FlightMode mode);
 
-/// The number of the key that a keyboard prints `name` on (glfwGetKeyName): letters stand elsewhere
-/// on a French keyboard. `key` itself where the name is no letter and no digit.
+/// Returns the number of the key with the label `name` on the keyboard (glfwGetKeyName): letters
+/// have other positions on a French keyboard. Returns `key` if the name is neither a letter nor a
+/// digit.
 [[nodiscard]] int PrintedKey(int key, const char* name);
 
-/// "T, Keypad 9": all keys of a line.
+/// Returns "T, Keypad 9": all keys of a line.
 [[nodiscard]] std::string KeysText(const ActionRow& row);
 
-/// The table for the manual.
+/// Returns the table for the manual.
 [[nodiscard]] std::string ControlsMarkdown();
 
 }  // namespace alpenglow::viewer

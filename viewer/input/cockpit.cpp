@@ -99,7 +99,8 @@ void Cockpit::Advance(const PilotControls& controls, double seconds, const Groun
   if (pilot_.Replays() && pilot_.IsAtEndOfTrack()) EndReplay(ground);
 }
 
-// A replay's time goes as it went, stood or jumped; what people add to it stays.
+// During a replay the clock moves with the replayed time, including pauses and jumps; offsets set
+// by the user remain.
 void Cockpit::AdvanceClock(const std::optional<UtcInstant>& before, double seconds) {
   if (before) {
     clock_.Shift(SecondsBetween(*before, *pilot_.TrackUtc()));
@@ -120,7 +121,7 @@ void Cockpit::EndReplay(const GroundHeight& ground) {
 void Cockpit::Replay(std::shared_ptr<const CameraPath> flight, const GroundHeight& ground) {
   waits_.reset();
   clock_.Pause(false);
-  pilot_.PutAt(pilot_.eye(), ground);  // leaves another track
+  pilot_.PutAt(pilot_.eye(), ground);  // leaves the current track
   pilot_.SetTrack(std::move(flight), Pilot::Lens::kOfTrack);
   static_cast<void>(Enter(FlightMode::kTrack, ground));
 }
@@ -133,7 +134,7 @@ void Cockpit::FlyAgain(std::shared_ptr<const CameraPath> flown, const GroundHeig
 
 std::string Cockpit::Enter(FlightMode mode, const GroundHeight& ground) {
   if (const auto why_not = pilot_.Enter(mode, ground)) return *why_not;
-  // A track that knows the time sets the clock; from then on the clock runs along.
+  // A track with instants sets the clock; afterwards the clock runs along.
   if (const auto utc = pilot_.TrackUtc()) clock_.Set(*utc);
   return ModeNameOf(pilot_.mode());
 }
@@ -175,7 +176,7 @@ std::optional<std::string> Cockpit::DoFlight(Action action, const GroundHeight& 
     case Action::kPreviousMode: {
       const int step = action == Action::kNextMode ? 1 : -1;
       const FlightMode next = Stepped(pilot_.mode(), step);
-      // Without a track there are two modes to go around.
+      // Without a track the cycle has two modes.
       const bool skips = next == FlightMode::kTrack && !pilot_.HasTrack();
       return Enter(skips ? Stepped(next, step) : next, ground);
     }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Pilot and clock, and what actions do to them. What an action does to the picture or the program
-// is not done here.
+// Pilot and clock, and the actions that affect them. Actions that affect the picture or the program
+// are handled elsewhere.
 #pragma once
 
 #include <memory>
@@ -24,28 +24,30 @@ class Cockpit {
   [[nodiscard]] SceneClock& clock() { return clock_; }
   [[nodiscard]] const SceneClock& clock() const { return clock_; }
 
-  /// What it came to, in words for the screen (empty: nothing needs saying); nothing when the action
-  /// is none of flight and time.
+  /// Executes an action. Returns the result as text for the screen (empty: no message); no value if
+  /// the action concerns neither flight nor time.
   [[nodiscard]] std::optional<std::string> Do(Action action, const GroundHeight& ground,
                                               const MoonEventAfter& moon = {});
 
-  /// Moves the clock on to what the sky does next; says to what.
+  /// Moves the clock to the next occurrence of an event; returns its name, or a message if there is
+  /// none within a year.
   [[nodiscard]] std::string JumpTo(SkyEvent event, const MoonEventAfter& moon);
 
-  /// Flies to a place of the list: on the runway with the aircraft, over it otherwise.
+  /// Flies to a place of the list: with the aircraft onto the runway, otherwise above it.
   void GoTo(const NamedPlace& there, const GroundHeight& ground) {
     pilot_.PutAt(EyeAt(there, pilot_.eye(), ground), ground);
   }
 
-  /// Shows a flight as it was flown, with its field of view and, where it has instants, its time.
-  /// The free camera takes over where it ends.
+  /// Replays a recorded flight, with its field of view and, if it has instants, its time. The free
+  /// camera takes over at its end.
   void Replay(std::shared_ptr<const CameraPath> flight, const GroundHeight& ground);
-  /// The same of what this pilot has flown so far: whoever flies now goes on where it ends. Who
-  /// takes over before flies on from there.
+  /// Replays the flight of this pilot so far; at its end the pilot continues the present flight. A
+  /// pilot who takes over earlier continues from that point.
   void FlyAgain(std::shared_ptr<const CameraPath> flown, const GroundHeight& ground);
 
-  /// Lets real seconds pass, however many. Paused, aircraft, track and clock stand; the free camera
-  /// still flies, and one can look around. A flight at 4 times its speed takes the clock along.
+  /// Advances by any number of real seconds. While paused, aircraft, track and clock stand still;
+  /// the free camera still moves, and the view can turn. A flight at 4 times its speed also speeds
+  /// up the clock.
   void Advance(const PilotControls& controls, double seconds, const GroundHeight& ground);
 
  private:
@@ -59,7 +61,7 @@ class Cockpit {
 
   Pilot pilot_;
   SceneClock clock_;
-  std::optional<Pilot> waits_;  // to go on when FlyAgain has come to its end
+  std::optional<Pilot> waits_;  // resumes at the end of FlyAgain
 };
 
 }  // namespace alpenglow::viewer

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "viewer/input/controls.h"
 
-// The names of buttons and axes alone.
+// GLFW is included for its button and axis numbers alone.
 #define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>
 
@@ -54,12 +54,12 @@ double AxisOf(const GamepadState& gamepad, int axis) {
 bool IsDown(const GamepadState& gamepad, int button) {
   return gamepad.buttons[static_cast<std::size_t>(button)] == GLFW_PRESS;
 }
-/// 0 released, 1 pulled.
+/// Returns 0 for a released trigger, 1 for a pulled one.
 double TriggerOf(const GamepadState& gamepad, int axis) {
   return std::clamp(0.5 + 0.5 * AxisOf(gamepad, axis), 0.0, 1.0);
 }
 
-/// How often a button that has been held for so long has acted by now.
+/// Returns how many times a button held for `held_s` has acted so far.
 int TimesActed(double held_s) {
   constexpr double kDelay_s = 0.4, kEvery_s = 0.1;
   return held_s < kDelay_s ? 1 : 2 + static_cast<int>((held_s - kDelay_s) / kEvery_s);
@@ -70,7 +70,7 @@ int TimesActed(double held_s) {
 StickPlace Shaped(const StickPlace& raw, const ControlSettings& settings) {
   const double distance = std::hypot(raw.right, raw.down);
   if (distance <= settings.dead_zone) return {0.0, 0.0};
-  // Corners of a square stick reach over 1.
+  // In the corners of a square stick the distance exceeds 1.
   const double d =
       std::min((std::min(distance, 1.0) - settings.dead_zone) / (1.0 - settings.dead_zone), 1.0);
   const double bent = (1.0 - settings.expo) * d + settings.expo * d * d * d;
@@ -98,7 +98,7 @@ void Controls::MouseAt(double right, double down, double width_to_height) {
     const double moved_down = (down - mouse_->down) / std::max(width_to_height, 1e-3);
     const bool drags = mouse_mode_ == MouseMode::kCursor && dragging_;
     const bool looks = mouse_mode_ == MouseMode::kLook;
-    // A drag takes hold of the scene; looking turns the head, which can be inverted.
+    // A drag moves the scene; looking turns the head, which can be inverted.
     const double hold = drags ? -1.0 : looks ? 1.0 : 0.0;
     look_right_ += hold * moved_right;
     look_up_ -= (looks && settings_.invert_look_y ? -hold : hold) * moved_down;
@@ -173,7 +173,7 @@ void Controls::MoveControls(double seconds) {
   move(stick_.roll_right, Action::kBankRight, Action::kBankLeft);
   move(stick_.yaw_right, Action::kRudderRight, Action::kRudderLeft);
   move(stick_.brake, Action::kBrake, Action::kBrake);
-  // A lever stays where it is let go.
+  // The throttle lever stays where it is released.
   stick_.throttle_up = Pushed(Action::kThrottleUp, Action::kThrottleDown);
 }
 
@@ -194,7 +194,7 @@ void Controls::AddMouse(FlightMode mode, PilotControls& pilot) const {
 
 void Controls::AddGamepad(const GamepadState& gamepad, FlightMode mode, double seconds,
                           PilotControls& pilot) const {
-  constexpr double kLookPerSecond = 0.8;  // widths of the view
+  constexpr double kLookPerSecond = 0.8;  // view widths
   const auto stick = [&](int right_axis, int down_axis) {
     return Shaped({AxisOf(gamepad, right_axis), AxisOf(gamepad, down_axis)}, settings_);
   };
@@ -233,7 +233,7 @@ void Controls::PressButtons(const GamepadState& gamepad, FlightMode mode, double
     }
     const bool was_up = held_s == 0.0;
     const int acted = was_up ? 0 : TimesActed(held_s);
-    // The first frame counts for something, however short it is.
+    // The first frame always counts, however short it is.
     held_s += was_up ? 1e-9 : seconds;
     const bool repeats = RowOf(row.action).press == Press::kRepeating;
     const int times = repeats ? TimesActed(held_s) - acted : was_up ? 1 : 0;

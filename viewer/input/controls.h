@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: MIT
-// Keyboard, mouse and gamepad, from their events to what is asked for in a frame. No window is
-// needed: events come in as numbers.
+// Converts events of keyboard, mouse and gamepad into the intent of a frame. It needs no window:
+// events arrive as numbers.
 //
-// Held keys move a control like a hand does, in a quarter of a second from rest to its end and back.
-// A window that is not looked at flies on and hears nothing: while it is minimised, or another has
-// the keyboard, nothing is held, gamepads too, and controls go back to their middle; of what was pressed while it is
-// minimised, that which needs a picture is refused and said, movement is forgotten, and switches
-// (pause, autopilot, quit...) act at once. Nothing waits to act later.
+// Held keys move a control like a hand does, in a quarter of a second from rest to its end and
+// back. An unfocused window continues to fly without input: while it is minimised, or another
+// window has the keyboard, no key, button or gamepad control is held, and controls return to their
+// middle. Of the keys pressed while it is minimised, actions that need a picture are refused with a
+// message, movement is dropped, and switches (pause, autopilot, quit...) act at once. No input is
+// queued for later.
 #pragma once
 
 #include <array>
@@ -19,11 +20,11 @@
 
 namespace alpenglow::viewer {
 
-/// A drag with the left button looks around (kCursor); the mouse looks around without a button
-/// (kLook); the mouse is the stick, its middle the window's (kFly).
+/// kCursor: a drag with the left button looks around. kLook: the mouse looks around without a
+/// button. kFly: the mouse is the stick, centred on the middle of the window.
 enum class MouseMode { kCursor, kLook, kFly };
 
-/// A gamepad as GLFW maps it (GLFWgamepadstate): sticks in [-1, 1], down and right positive;
+/// A gamepad in GLFW's mapping (GLFWgamepadstate): sticks in [-1, 1], down and right positive;
 /// triggers from -1, released, to 1.
 struct GamepadState {
   std::array<unsigned char, 15> buttons{};
@@ -31,49 +32,54 @@ struct GamepadState {
 };
 
 struct ControlSettings {
-  double dead_zone = 0.12;     // of a stick's way that does nothing, in [0, 0.9]
-  double expo = 0.5;           // in [0, 1]: 0 is linear, 1 is the cube
-  bool invert_y = false;       // stick and mouse pushed forward lift the nose
-  bool invert_look_y = false;  // looking around: forward looks down
+  double dead_zone = 0.12;     // inactive fraction of a stick's range, in [0, 0.9]
+  double expo = 0.5;           // in [0, 1]: 0 is linear, 1 is cubic
+  bool invert_y = false;       // pushing stick or mouse forward lifts the nose
+  bool invert_look_y = false;  // looking around: pushing forward looks down
 };
 
-/// A stick's place with its dead zone cut out of the middle, by its distance from it, and the rest
-/// stretched to [0, 1] and bent: (1 - expo) d + expo d^3. The direction stays.
+/// The position of a stick. Shaped() removes a dead zone around the middle, by distance from it,
+/// and stretches the remaining distance d to [0, 1] with the curve (1 - expo) d + expo d^3. The
+/// direction is unchanged.
 struct StickPlace {
   double right, down;
 };
 [[nodiscard]] StickPlace Shaped(const StickPlace& raw, const ControlSettings& settings);
 
-/// A control that a hand moves: nearer to where it is pushed, `per_second` of its way at most.
+/// Returns the value of a control moved by a hand: it approaches `target` by at most `per_second`
+/// of its range per second.
 [[nodiscard]] double MovedToward(double value, double target, double per_second, double seconds);
 
-/// What happened in a frame.
+/// Input of one frame.
 struct Intent {
   PilotControls pilot;
   std::vector<Action> actions;  // in the order of the key presses
-  std::vector<Action> refused;  // pressed without a picture to act on; to be said
+  std::vector<Action> refused;  // pressed without a picture to act on; to be reported
 };
 
 class Controls {
  public:
-  /// Throws InputError, here and in Set, for a dead zone not in [0, 0.9] and an expo not in [0, 1].
+  /// This constructor and Set throw InputError for a dead zone not in [0, 0.9] and an expo not in
+  /// [0, 1].
   explicit Controls(const ControlSettings& settings = {}) { Set(settings); }
 
   /// @param change     GLFW_RELEASE, GLFW_PRESS or GLFW_REPEAT (0, 1, 2)
   /// @param modifiers  GLFW_MOD_SHIFT and so on
-  /// @param printed    PrintedKey: what is held goes by the place of the key, the rest by what is
-  ///                   printed on it
+  /// @param printed    PrintedKey: held actions use the position of the key, all others its printed
+  ///     label
   void Key(int key, int change, int modifiers, int printed);
   void Key(int key, int change, int modifiers) { Key(key, change, modifiers, key); }
-  /// The mouse's place in the window, from 0 to 1 to the right and down.
-  /// @param width_to_height  of the window: looking around counts in widths both ways
+  /// Sets the position of the mouse in the window, from 0 to 1 to the right and down.
+  /// @param width_to_height  aspect ratio of the window: looking around counts in widths along both
+  ///     axes
   void MouseAt(double right, double down, double width_to_height);
   void MouseButton(bool left_is_down) { dragging_ = left_is_down; }
-  /// Steps of the wheel, forward positive.
+  /// Adds steps of the wheel, forward positive.
   void Wheel(double steps) { wheel_ += steps; }
-  /// The instruments under the cursor took the mouse or the keyboard for themselves.
+  /// Ignores the mouse while instruments under the cursor use it.
   void IgnoreMouse(bool ignored) { mouse_is_ignored_ = ignored; }
-  /// Whether this window has the keyboard, and whether it is minimised; as often as one likes.
+  /// Set whether this window has the keyboard, and whether it is minimised; repeated calls are
+  /// harmless.
   void Focus(bool focused);
   void Minimise(bool minimised);
 
@@ -81,7 +87,8 @@ class Controls {
   [[nodiscard]] const ControlSettings& settings() const { return settings_; }
   void Set(const ControlSettings& settings);
 
-  /// What is asked for since the last call, `seconds` ago. kMouseMode is done here and told too.
+  /// Returns the input since the last call, `seconds` ago. kMouseMode is applied here and also
+  /// returned.
   [[nodiscard]] Intent Take(FlightMode mode, double seconds,
                             const std::optional<GamepadState>& gamepad = {});
 
@@ -108,7 +115,7 @@ class Controls {
   ControlSettings settings_;
   MouseMode mouse_mode_ = MouseMode::kCursor;
   std::vector<KeyEvent> events_;
-  std::map<int, Action> held_;  // key and what it does since it went down
+  std::map<int, Action> held_;  // key, and its action since it went down
   std::optional<Place> mouse_;
   bool dragging_ = false, focused_ = true, minimised_ = false, mouse_is_ignored_ = false;
   double wheel_ = 0.0, look_right_ = 0.0, look_up_ = 0.0;
