@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Work beside drawing: a thread that always works on what was asked for last.
+// Runs work on a background thread that always processes the latest request.
 #pragma once
 
 #include <condition_variable>
@@ -12,9 +12,9 @@
 
 namespace alpenglow::viewer {
 
-/// One thread and its newest request. What was asked for and not begun when something newer is
-/// asked for is never made; what is finished waits until it is taken or something newer is
-/// finished. The work runs on that thread alone unless it makes threads itself.
+/// One thread and its newest request. A newer request replaces one that has not begun. A finished
+/// result is kept until it is taken or a newer one is finished. The work runs on that thread alone
+/// unless it starts threads itself.
 template <typename Request, typename Result>
 class LatestJob {
  public:
@@ -39,14 +39,14 @@ class LatestJob {
     asked_.notify_all();
   }
 
-  /// The newest result since the last call, if any. Throws what the work threw.
+  /// Returns the newest result since the last call, if any. Rethrows exceptions of the work.
   [[nodiscard]] std::optional<Result> Take() {
     const std::scoped_lock lock(mutex_);
     if (failed_) std::rethrow_exception(std::exchange(failed_, nullptr));
     return std::exchange(finished_, std::nullopt);
   }
 
-  /// Waits until nothing is asked for or being made; then Take() has the newest.
+  /// Waits until no request is waiting or running; then Take() returns the newest result.
   void Wait() {
     std::unique_lock lock(mutex_);
     idle_.wait(lock, [this] { return !waiting_ && !working_; });
@@ -86,7 +86,7 @@ class LatestJob {
   std::optional<Result> finished_;
   std::exception_ptr failed_;
   bool working_ = false;
-  std::jthread thread_;  // last: it uses all above
+  std::jthread thread_;  // last, because it uses all members above
 };
 
 }  // namespace alpenglow::viewer
