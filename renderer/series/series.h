@@ -22,7 +22,7 @@ namespace alpenglow::renderer {
 /// A picture with notes: values found during rendering. Notes do not identify the pixels; they are
 /// stored in the file in addition to its settings, and kept when the picture is developed again.
 struct NotedPicture {
-  NotedPicture(Image picture, Metadata found = {})  // NOLINT: a picture without notes is one
+  NotedPicture(Image picture, Metadata found = {})  // NOLINT: implicit, notes are optional
       : image(std::move(picture)), notes(std::move(found)) {}
 
   Image image;
