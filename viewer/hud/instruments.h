@@ -24,7 +24,7 @@ class Canvas {
 
   [[nodiscard]] const HudColours& colours() const { return colours_; }
   [[nodiscard]] double Pixels(double units) const { return units * static_cast<double>(scale_); }
-  /// Height of a line of text [pixels].
+  /// Returns the height of a line of text [pixels].
   [[nodiscard]] double LineHeight() const;
   [[nodiscard]] double WidthOf(const std::string& text) const;
   /// Returns the text in lines of at most this width, broken at spaces.
