@@ -133,7 +133,7 @@ HudExposure ExposureOf(const Flythrough& flight) {
   return shown;
 }
 
-// In the words of the keys that enter them.
+// Returns the flight modes, named like the keys that select them.
 std::vector<Action> ModesOf(const Pilot& pilot) {
   std::vector<Action> modes{Action::kFreeMode, Action::kAircraftMode};
   if (pilot.HasTrack()) modes.push_back(Action::kTrackMode);
@@ -158,7 +158,8 @@ HudSettings SettingsOf(const Hud& hud) {
   return {.scale = hud.scale(), .theme = hud.theme_choice()};
 }
 
-// Of another Hud than that of the window, whose panels stay where they are and out of the picture.
+// Draws the instruments with a second Hud. The Hud of the window keeps its panels unchanged, and
+// none of them appears in the picture.
 void DrawInstruments(const RenderTarget& screen, const HudModel& model,
                      const HudSettings& settings) {
   Hud instruments(settings);
@@ -432,7 +433,8 @@ void FlightDeck::NoteFlight(double seconds) {
   if (std::exchange(replays_, replays) && !replays) Say("here the replay ends");
   elapsed_s_ += seconds;
   flown_s_ += replays ? 0.0 : seconds;
-  if (!flight_.KnowsGround()) return;  // a point inside the ground could not be rendered
+  if (!flight_.KnowsGround()) return;  // Skip these points: the renderer cannot render a point
+                                       // inside the ground.
   recorder_.Note(elapsed_s_, flight_.eye(), flight_.now());
   if (!replays) flown_.Note(flown_s_, flight_.eye(), flight_.now());
 }

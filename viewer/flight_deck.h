@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-// A flight with people: keys, mouse and gamepad, instruments and panels, messages; what they have
-// flown, to be written down and flown again.
+// Provides FlightDeck, the user interface of a flight: keyboard, mouse and gamepad input,
+// instruments, panels and messages. It also keeps a log of the flight, which can be saved and
+// replayed.
 #pragma once
 
 #include <deque>
@@ -23,39 +24,44 @@ class FlightDeck {
     bool shows_hud = true;
     ControlSettings controls;
   };
-  /// Refers to the flight, and to the recorder, which panels begin and end: it outlives the deck, so
-  /// that a flight is whole however the deck ends.
+  /// Keeps references to the flight and to the recorder. The panels start and stop the recorder. It
+  /// outlives the deck, so that the recorded flight is complete however the deck ends.
   FlightDeck(Flythrough& flight, FlightRecorder& recorder, const Settings& settings);
-  /// Finishes the pictures that were asked for, and says on standard error what nobody saw of them.
+  /// Finishes the requested pictures and writes their outcomes that were not yet displayed to
+  /// standard error.
   ~FlightDeck();
   FlightDeck(const FlightDeck&) = delete;
   FlightDeck& operator=(const FlightDeck&) = delete;
 
-  /// What hands and panels ask for, and the seconds that have passed. Once a frame, seen or not.
+  /// Applies the input of keyboard, mouse, gamepad and panels, and advances the flight by `seconds`
+  /// of real time. Call it once a frame, whether the frame is displayed or not.
   void Advance(const WindowEvents& events, const ImageSize& size, double seconds);
-  /// Does what panels asked for; what cannot be done is said on the screen.
+  /// Carries out the requests of the panels. Errors are displayed as messages on the screen.
   void Serve(const HudRequest& asked);
-  /// Paints the flight, and instruments over it.
+  /// Paints the flight and draws the instruments over it.
   void Paint(const Developer::Screen& screen, double seconds);
 
-  /// A developed picture with instruments, as the screen would show it, at once. Throws OutputError.
+  /// Writes a developed picture with instruments, as displayed on the screen. It is written before
+  /// the call returns. Throws OutputError.
   void WritePicture(const std::filesystem::path& file, const ImageSize& size);
 
-  /// The pilot leaves: at once, or when the pictures that were asked for are written; asked for
-  /// again, without those that are not painted yet.
+  /// Ends the flight: at once, or as soon as all requested pictures are written. A second call
+  /// drops the pictures that are not painted yet.
   void Leave();
-  /// Waits for the pictures after the window's display has gone, and says what came of them.
+  /// Waits for the pictures after the display of the window is lost, and writes their outcomes to
+  /// standard error.
   void FinishWithoutWindow();
 
-  /// Something to be said on the screen.
+  /// Displays a message on the screen.
   void Say(const std::string& text, bool is_warning = false);
 
-  /// Whether the pilot has left and all pictures are written.
+  /// Returns whether the user has left the flight and all pictures are written.
   [[nodiscard]] bool quit() const { return leaves_ && !pictures_.UnderWay(); }
   [[nodiscard]] MouseMode mouse_mode() const { return controls_.mouse_mode(); }
-  /// Whether the other of window and full screen was asked for since the last call.
+  /// Returns whether a change between window and full screen was requested since the last call.
   [[nodiscard]] bool TakeFullScreen() { return std::exchange(full_screen_, false); }
-  /// What the benchmark and tests ask for without hands.
+  /// Returns the values that the instruments display. The benchmark and the tests read them without
+  /// user input.
   [[nodiscard]] HudModel Model() const;
 
  private:
@@ -86,7 +92,7 @@ class FlightDeck {
   Flythrough& flight_;
   FlightRecorder& recorder_;
   double elapsed_s_ = 0.0, flown_s_ = 0.0;
-  FlightLog flown_;  // but for what was flown again
+  FlightLog flown_;  // without the replayed parts
   bool replays_ = false;
   Hud hud_;
   HudKeys keys_;

@@ -20,7 +20,7 @@
 namespace alpenglow::viewer {
 namespace {
 
-// The renderer's picture is begun when the eye has stood for so long.
+// The renderer starts its picture after the eye has been at rest for this time.
 constexpr double kStandsStill_s = 0.3;
 
 Eye EyeOfScene(const Scene& scene) {
@@ -35,7 +35,8 @@ std::optional<UtcInstant> MoonEventAfterwards(SkyEvent event, const GeodeticPosi
   return event == SkyEvent::kMoonset ? NextMoonset(place, after) : NextMoonrise(place, after);
 }
 
-// Of a square around a place that holds all land, 60 km at most: of less there are finer samples.
+// Returns the half width of a square around a place that contains all land, at most 60 km. A
+// smaller square has finer samples.
 double HalfWidthOfLand(const LandLattice& lattice, const GeodeticPosition& place) {
   constexpr double kMost_m = 60e3;
   const SampleSize size = SampleSizeAt(lattice, place.latitude_rad);
@@ -50,7 +51,7 @@ Look InDaylight(Look look) {
   return look;
 }
 
-// Refuses a medium of too many bands before it is solved.
+// Throws InputError for a medium with too many wavelengths, before it is solved.
 const Scene& Drawable(const Scene& scene) {
   static_cast<void>(AirBlockOf(scene.medium));
   return scene;
@@ -93,7 +94,7 @@ Flythrough::Flythrough(const Scene& scene, const UtcInstant& start,
       look_(settings.look) {
   if (settings.exposure.kind == ExposureRule::Kind::kFixed) {
     SetExposure(settings.exposure.ev100);
-    rule_of_exposure_ = {};  // once it is no longer locked
+    rule_of_exposure_ = {};  // applies once the exposure is unlocked
   }
   if (first_terrain_.kind == TerrainSource::Kind::kBuiltInRange && !first_terrain_.centre)
     first_terrain_.centre = scene.place;
@@ -404,14 +405,14 @@ void Flythrough::Paint(const Developer::Screen& screen, double seconds) {
   darkroom_.Print(painter_, view, *exposure_.ev100, screen);
 }
 
-// Time that runs 3600 times as fast gets as far in a quarter of a second.
+// A clock at 3600 times real time passes these 900 s in a quarter of a second.
 bool Flythrough::HasJumped() {
   constexpr double kJump_s = 900.0;
   const std::optional<UtcInstant> before = std::exchange(painted_at_, now());
   return before && std::abs(SecondsBetween(*before, now())) > kJump_s;
 }
 
-// Another picture, to which no eye has to adapt from the one before.
+// The next picture is unrelated to the previous one, so nothing adapts to it.
 void Flythrough::ForgetAdaptation() {
   if (!exposure_.locked) exposure_.ev100 = std::nullopt;
   white_ = std::nullopt;
@@ -426,7 +427,7 @@ void Flythrough::Settle(const ImageSize& size, int samples) {
 
 void Flythrough::Use(const Look& look) {
   if (look.white != look_.white) {
-    white_.reset();  // nothing adapts from one rule to another
+    white_.reset();  // a new rule takes effect without adaptation
     metered_.reset();
   }
   look_ = look;
@@ -441,7 +442,7 @@ double Flythrough::AdaptedTo(double metered_ev100, double seconds) {
   if (rule_of_exposure_.kind != ExposureRule::Kind::kEye) return metered_ev100;
   const UtcInstant before = adapted_at_.value_or(now());
   adapted_at_ = now();
-  // Whoever jumps over an hour has adapted for an hour.
+  // After a jump of an hour the eye has had an hour to adapt.
   return adaptation_.Follow(metered_ev100,
                             std::max(seconds, std::abs(SecondsBetween(before, now()))));
 }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// A scene flown through: pilot and clock, air and land as they follow, exposure, and the picture.
+// Provides Flythrough, an interactive flight through a scene: pilot and clock, atmosphere and land
+// that follow the eye, exposure, and painted pictures.
 #pragma once
 
 #include <filesystem>
@@ -23,153 +24,165 @@
 
 namespace alpenglow::viewer {
 
-/// Exposure that follows the meter like an eye: half
-/// way in 0.3 s. A first exposure is the metered one.
+/// Returns an EV that adapts to the metered EV, as an eye does: half way in 0.3 s. Without a value
+/// `before` it is the metered EV.
 [[nodiscard]] double AdaptedEv100(std::optional<double> before, double metered, double seconds);
 
 /// Throws InputError unless the file's name ends in .png or .exr.
 void RequirePictureName(const std::filesystem::path& file);
 
-/// White balance that follows the meter like that, in reciprocal temperature.
+/// Returns a white balance that adapts to the metered one in the same way, in reciprocal colour
+/// temperature.
 [[nodiscard]] WhiteBalance AdaptedWhite(const WhiteBalance& before, const WhiteBalance& metered,
                                         double seconds);
 
-/// How pictures of a flight are painted.
+/// Settings for the pictures of a flight.
 struct FlythroughSettings {
   LandSource land;
   QualityRule quality;
-  double frame_rate = 20.0;  // that automatic quality keeps
-  ImageSize size;            // of the first picture
-  /// Pictures are painted in parts of at most so many pixels a side; nothing: in one piece as far as
-  /// OpenGL draws them.
+  double frame_rate = 20.0;  // target of automatic quality
+  ImageSize size;            // size of the first picture
+  /// Pictures are painted in tiles of at most this many pixels a side. Without a value, pictures
+  /// that OpenGL can draw as a whole are not divided.
   std::optional<int> largest_part = {};
   ExposureRule exposure = {};  // metered, eye or fixed
   Look look = {};              // without local exposure and night vision
-  FirstAir first_air = {};  // solved beside the making of a window, the first frame is sooner there
+  FirstAir first_air = {};     // computed while the window is created, for an early first frame
 };
 
-/// Where the exposure comes from.
+/// Source of the exposure.
 struct FlightExposure {
   bool locked = false;
-  double compensation_ev = 0.0;  // over 0 is brighter
-  std::optional<double> ev100;   // as shown; nothing before the first picture
+  double compensation_ev = 0.0;  // positive values are brighter
+  std::optional<double> ev100;   // as displayed; nullopt before the first picture
 };
 
-/// How a picture is developed.
+/// Look and exposure with which a picture is developed.
 struct Development {
-  Look look;  // settled
+  Look look;  // with a definite white balance
   double ev100;
 };
 
-/// All that a picture of a flight depends on, besides the scene and settings that it began with: a
-/// copy, so that the flight may go on while the picture is made.
+/// Everything that determines a picture of a flight besides its first scene and its settings. It is
+/// a copy, so that the flight can continue while the picture is made.
 struct FlightMoment {
   Eye eye;
   UtcInstant now;
-  bool knows_ground = false;                   // else the eye is yet to be put over it
-  std::optional<double> waits_above_ground_m;  // as high, once it is known
-  TerrainSource terrain;          // the range that is there, where there is no other land
-  Medium planet;                  // without changes
-  AirChoice air;                  // changes of it
-  std::optional<Medium> sky_air;  // the changed one under the eye; nothing: that of the scene
+  bool knows_ground = false;                   // false: the eye is not yet placed over the ground
+  std::optional<double> waits_above_ground_m;  // height over the ground once that is known
+  TerrainSource terrain;          // the built-in mountain range in use, if there is no other land
+  Medium planet;                  // without the changes of `air`
+  AirChoice air;                  // changes of the planet's atmosphere
+  std::optional<Medium> sky_air;  // the changed medium under the eye; nullopt: that of the scene
   QualityRule quality;
-  Look look;                          // not settled
-  std::optional<WhiteBalance> white;  // as shown; nothing before the first picture
+  Look look;                          // its white balance may be automatic
+  std::optional<WhiteBalance> white;  // as displayed; nullopt before the first picture
   ExposureRule exposure_rule;
   FlightExposure exposure;
   bool landing_light = false;
 };
 
-/// Told between the parts of a picture that is being made, of the graphics card's work none longer
-/// than one ray a pixel: the share that is done [0, 1]. What it throws ends the picture.
+/// Receives the completed fraction [0, 1] between the steps of a picture that is being made. A step
+/// of the GPU is at most one ray per pixel. An exception of this function ends the picture.
 using PictureProgress = std::function<void(double share)>;
 
 class Flythrough {
  public:
-  /// Solves the air and begins to read the land: an OpenGL context must be current, now and in all
-  /// calls. Throws InputError for what the scene names and cannot be read, and a medium of more than
-  /// four wavelengths.
+  /// Solves the atmosphere and starts to read the land. An OpenGL context must be current here and
+  /// in all later calls. Throws InputError for files of the scene that cannot be read and for a
+  /// medium of more than four wavelengths.
   Flythrough(const Scene& scene, const UtcInstant& start, const FlythroughSettings& settings);
 
-  /// Puts the eye there. Without a height it keeps the one it had over the ground; it never comes
-  /// to stand in the ground. The built-in range comes along to a place off it; of a place that no
-  /// other land reaches there is a note.
+  /// Places the eye. If the placement has no height, the eye keeps its height over the ground. It
+  /// is never placed inside the ground. If the built-in mountain range does not reach the place, it
+  /// is moved there. If no other land reaches the place, a note is added.
   void Place(const EyePlacement& placement);
-  /// Puts the eye at a place of the list, by name. Land as in Place.
+  /// Places the eye at a named place of the list. Land is handled as in Place.
   void GoTo(const std::string& name);
-  /// The built-in range of a place, where the one that is there does not reach it: that of the
-  /// scene where it does, else RangeSeenFrom the place. Read beside drawing. No other land moves.
+  /// Selects the built-in mountain range for a place that the current one does not cover: the range
+  /// of the scene if that covers the place, otherwise RangeSeenFrom the place. It is read while
+  /// drawing continues. Other land is not moved.
   void BringRangeTo(const GeodeticPosition& place);
-  /// Puts an eye that counts its height from the ground at the height at which it will stay: waits
-  /// for the land there, but not for a range, whose ground under the view is known.
+  /// Puts an eye whose height is given above ground at its final height. Waits for the land there
+  /// to load, except for a built-in range, because its ground height at the view is known in
+  /// advance.
   void AwaitGround();
-  /// Flies along a path from its beginning.
+  /// Follows a path from its beginning.
   void Follow(const CameraPath& path);
-  /// Shows a flight as it was, and what was flown so far: see Cockpit.
+  /// Replay shows a recorded flight; FlyAgain shows the current flight from its beginning and
+  /// continues it afterwards. See Cockpit.
   void Replay(const CameraPath& flight);
   void FlyAgain(const CameraPath& flown);
-  /// Puts the eye and the time where a replay has them.
+  /// Sets eye and time to those of a replay frame.
   void Show(const ReplayFrame& frame);
 
-  /// Lets real seconds pass, with the controls held like this.
+  /// Advances the flight by a number of real seconds with constant controls.
   void Advance(const PilotControls& controls, double seconds);
-  /// What an action came to, in words; empty: nothing to say; nothing: it is for others.
+  /// Carries out an action. Returns a message about its result, which is empty if there is nothing
+  /// to report; nullopt if this class does not handle the action.
   std::optional<std::string> Do(Action action);
 
-  /// Moves the clock on to what the sky does next; says to what.
+  /// Advances the clock to the next such event of the sky. Returns a message that names it.
   [[nodiscard]] std::string JumpTo(SkyEvent event);
 
   void Use(const QualityRule& rule);
-  /// Another look, from the next picture on; its white balance is not settled.
+  /// Sets the look of the following pictures. Its white balance may be automatic.
   void Use(const Look& look);
   void Use(const AirChoice& choice);
-  /// Another planet by the name of a preset, with the changes that were made to the last one.
+  /// Uses the planet of a preset, with the changes that were made to the medium of the previous
+  /// planet.
   void UsePlanet(const std::string& preset);
   void LockExposure(bool locked) { exposure_.locked = locked; }
   void SetExposure(double ev100);
   void Compensate(double ev) { exposure_.compensation_ev = ev; }
 
-  /// A landing light ahead and below, or none.
+  /// Turns a landing light on or off. It points forward and is mounted below the eye.
   void SetLandingLight(bool is_on) { landing_light_ = is_on; }
-  /// Luminance of a picture of a frame or two ago [cd/m^2], at shares of its width and height from
-  /// the upper left; asked once a frame. Nothing outside.
+  /// Returns the luminance [cd/m^2] in a picture of one or two frames ago, at fractions of its
+  /// width and height from the upper left corner. Call it once a frame. Returns nullopt outside of
+  /// the picture.
   [[nodiscard]] std::optional<double> LuminanceAt(double right, double down);
   void LeavePicture() { spot_.Leave(); }
 
-  /// Paints onto a screen, exposed as the meter says. `seconds` since the last picture.
+  /// Paints onto a screen with the exposure of the meter. `seconds` is the time since the previous
+  /// picture.
   void Paint(const Developer::Screen& screen, double seconds);
-  /// What took the last picture, without waiting for the screen, for automatic quality.
+  /// Records the time that the last picture took without the wait for the screen. Automatic quality
+  /// uses it.
   void NoteFrame(double seconds);
 
-  /// Waits until all is there that a picture of this size needs.
-  /// @param samples  rays a pixel that it will have.
+  /// Waits until all data for a picture of this size are ready.
+  /// @param samples  rays per pixel of that picture.
   void Settle(const ImageSize& size, int samples = 1);
-  /// The linear picture of where the eye is, with all that belongs into it there. Of any size: what
-  /// OpenGL cannot draw in one piece is painted in parts. Throws OptionError when memory does not
-  /// hold it.
+  /// Returns the linear picture as seen by the eye, with everything that is visible there. Any size
+  /// is possible: a picture that OpenGL cannot draw as a whole is painted in tiles. Throws
+  /// OptionError if memory is insufficient.
   [[nodiscard]] Image Picture(const ImageSize& size, int samples,
                               const PictureProgress& progress = {});
-  /// Paints anew with several rays a pixel and writes what is seen: .png developed, .exr linear,
-  /// both with what made them in their headers. Throws OutputError.
+  /// Paints the view again with several rays per pixel and writes it: a .png is developed, an .exr
+  /// is linear. Both have the settings of the picture in their headers. Throws OutputError.
   void WritePicture(const std::filesystem::path& file, const ImageSize& size,
                     const PictureProgress& progress = {});
-  /// What the renderer would render: the scene from the eye, now, and where a scene cannot say what
-  /// the land is, of several elevation models, the land that is loaded around the eye.
+  /// Returns the scene for the renderer with the current eye and time. A scene file cannot describe
+  /// land of several elevation models; for those it holds the land that is loaded around the eye.
   [[nodiscard]] ReferenceScene SceneForRenderer() const;
-  /// What another flight of the same scene and settings needs in order to make the same pictures.
+  /// Returns everything that another flight with the same scene and settings needs to make the same
+  /// pictures.
   [[nodiscard]] FlightMoment Moment() const;
-  /// Pictures are those of that moment from here on.
+  /// Makes all following pictures show this moment.
   void TakeUp(const FlightMoment& moment);
-  /// The picture of WritePicture, developed onto a screen. @return how.
+  /// Paints the picture of WritePicture and develops it onto a screen. @return look and exposure.
   Development PaintStill(const Developer::Screen& screen, const PictureProgress& progress = {});
-  /// What made a picture of this size, but its exposure.
+  /// Returns the metadata of a picture of this size, without its exposure.
   [[nodiscard]] Metadata PictureHeader(const ImageSize& size) const;
-  /// How it was exposed and developed.
+  /// Returns the metadata of exposure and development.
   [[nodiscard]] Metadata ExposureHeader(const Development& development) const;
-  /// Writes pictures at even steps of the path, its ends included, and notes them down.
+  /// Writes pictures at equal time steps along the path, including both of its ends, and records
+  /// their points.
   void WriteReplay(const CameraPath& path, const std::vector<std::filesystem::path>& files,
                    const ImageSize& size, FlightRecorder& recorder);
-  /// A picture of a film, `seconds` after the one before: developed, the exposure adapted.
+  /// Returns a developed picture of a film, `seconds` after the previous one, with adapted
+  /// exposure.
   [[nodiscard]] DisplayImage Film(const ReplayFrame& frame, const ImageSize& size, double seconds);
 
   [[nodiscard]] Cockpit& cockpit() { return cockpit_; }
@@ -177,43 +190,47 @@ class Flythrough {
   [[nodiscard]] const Eye& eye() const { return cockpit_.pilot().eye(); }
   [[nodiscard]] const UtcInstant& now() const { return cockpit_.clock().now(); }
   [[nodiscard]] const Scene& scene() const { return scene_; }
-  /// With which another flight of this scene begins.
+  /// Returns the scene from which another flight starts.
   [[nodiscard]] const Scene& first_scene() const { return first_scene_; }
   [[nodiscard]] const FlythroughSettings& settings() const { return settings_; }
   [[nodiscard]] const Medium& medium() const { return medium_; }
   [[nodiscard]] const AirChoice& air_choice() const { return air_; }
   [[nodiscard]] const FlightExposure& exposure() const { return exposure_; }
-  /// As asked for: its white balance is not settled.
+  /// Returns the look as selected by the user; its white balance may be automatic.
   [[nodiscard]] const Look& look() const { return look_; }
-  /// Temperature of the light that is shown as white [K]; nothing before the first picture.
+  /// Returns the colour temperature of the light that is displayed as white [K]; nullopt before the
+  /// first picture.
   [[nodiscard]] std::optional<double> white_k() const;
-  /// What land and places give occasion to tell, each once.
+  /// Returns new notes about land and places. Each note is returned once.
   [[nodiscard]] std::vector<std::string> TakeNotes();
-  /// Height of the ground under a place; of the bare planet where there is no land, of the built-in
-  /// range about its view before it is made.
+  /// Returns a function for the height of the ground under a place. Without land it returns the
+  /// height of the bare planet. Near the view of the built-in mountain range it returns the known
+  /// height before the range is loaded.
   [[nodiscard]] GroundHeight Ground() const;
-  /// Whether the eye stands where it was put: over the ground there, or where there is none. Until
-  /// the land under a place is loaded it may be inside; from then on it never is.
+  /// Returns whether the ground under the eye has been known since the eye was placed, including
+  /// the case that there is no land. Until the land there is loaded, the eye may be inside the
+  /// ground; afterwards it never is.
   [[nodiscard]] bool KnowsGround() const { return knows_ground_; }
   [[nodiscard]] SkyPainter& painter() { return painter_; }
   [[nodiscard]] const SkyPainter& painter() const { return painter_; }
-  /// "auto: medium at 0.7x", "high", "reference, 16 rays a pixel".
+  /// Returns "auto: medium at 0.7x", "high", or "reference, 16 rays a pixel".
   [[nodiscard]] std::string QualityText() const;
   [[nodiscard]] const QualityRule& quality_rule() const { return rule_; }
   [[nodiscard]] std::string zone() const;
 
  private:
   [[nodiscard]] PaintedView ViewOf(const ImageSize& size) const;
-  /// Without land of several elevation models.
+  /// Returns the scene as seen by the eye, without land of several elevation models.
   [[nodiscard]] Scene SceneSeen() const;
   [[nodiscard]] PaintedQuality Painted() const;
-  /// The EV that the rule of exposure has it for, by the eye as it has adapted.
+  /// Returns the EV for the current rule of exposure, after the adaptation of the eye.
   [[nodiscard]] double AdaptedTo(double metered_ev100, double seconds);
   void Expose(const MeterReading& metered, double seconds);
-  /// The clock has jumped by over a quarter of an hour since the last frame.
+  /// Returns whether the clock has jumped by more than a quarter of an hour since the last frame.
   [[nodiscard]] bool HasJumped();
   void ForgetAdaptation();
-  /// Of a picture without a frame before it: as frames are, or as it is metered.
+  /// Returns the development of a picture without a preceding frame: that of the displayed frames
+  /// if there are any, otherwise the metered one.
   [[nodiscard]] Development DevelopmentOf(const Image& picture) const;
   [[nodiscard]] Image PaintedInParts(const PaintedView& whole, int samples,
                                      const PictureProgress& progress);
@@ -224,37 +241,37 @@ class Flythrough {
   void StandOnGround();
   void AimLandingLight();
   void ShowReference(const ImageSize& size);
-  /// The land that is loaded around the eye, for the renderer.
+  /// Returns a function that samples the loaded land around the eye for the renderer.
   [[nodiscard]] std::function<std::shared_ptr<const SceneGround>()> GroundAround() const;
-  Scene first_scene_;  // as it was given
+  Scene first_scene_;  // as passed to the constructor
   FlythroughSettings settings_;
   Scene scene_;
-  TerrainSource first_terrain_;  // of the scene as it was read
-  bool has_range_;               // and no other land
-  bool has_one_model_;           // not several elevation models, nor a folder of them
-  Medium medium_;                // of the preset or file, unchanged
+  TerrainSource first_terrain_;  // terrain of the original scene
+  bool has_range_;               // the land is the built-in range and nothing else
+  bool has_one_model_;           // neither several elevation models nor a folder of them
+  Medium medium_;                // unchanged medium of the preset or file
   AirChoice air_;
-  std::optional<Medium> sky_air_;  // changed, on the sphere under the eye that it had then
+  std::optional<Medium> sky_air_;  // changed, on the sphere under the eye when it was changed
   QualityRule rule_;
   AutoQuality auto_;
   PaintedQuality used_;
   Cockpit cockpit_;
-  Darkroom darkroom_;  // before the painter: both take their time to make, side by side
+  Darkroom darkroom_;  // constructed before the painter: both take long and run in parallel
   SkyPainter painter_;
   ExposureRule rule_of_exposure_;
-  Look look_;  // as asked for: its white balance is not settled
+  Look look_;  // as selected; its white balance may be automatic
   ExposureMeter meter_;
   SpotMeter spot_;
   FlightExposure exposure_;
   std::optional<MeterReading> metered_;
-  EyeAdaptation adaptation_;              // of the rule eye
-  std::optional<UtcInstant> adapted_at_;  // the moment that it followed last
+  EyeAdaptation adaptation_;              // for the exposure rule `eye`
+  std::optional<UtcInstant> adapted_at_;  // time of the last adaptation
   std::optional<UtcInstant> painted_at_;
-  std::optional<WhiteBalance> white_;  // as shown; nothing before the first picture
+  std::optional<WhiteBalance> white_;  // as displayed; nullopt before the first picture
   bool landing_light_ = false;
-  bool knows_ground_ = false;                   // under the eye, since it was put there
-  std::optional<double> waits_above_ground_m_;  // until then: how high it will stand over it
-  std::optional<Eye> put_at_;                   // over ground that is expected, by AwaitGround
+  bool knows_ground_ = false;                   // since the eye was placed
+  std::optional<double> waits_above_ground_m_;  // height over the ground once that is known
+  std::optional<Eye> put_at_;                   // the eye as placed by AwaitGround
   std::vector<std::string> notes_;
   std::unique_ptr<ReferencePicture> reference_;
   std::shared_ptr<const ReferenceScene> reference_scene_;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Pictures of a flight that are kept, and the moments that they show.
+// Defines the functions of Flythrough that write pictures and that save and restore moments of a
+// flight.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -17,11 +18,12 @@ namespace alpenglow::viewer {
 namespace {
 
 constexpr int kPictureSamples = 4;
-// Of a part of a picture, where the driver does not hold it whole: 0.7 GB.
+// Largest side of a tile, used if the driver cannot hold the whole picture: 0.7 GB.
 constexpr int kLargestPart = 4096;
 
-// Shares of the work that are done when the flight is there, when its scene is ready, and when all
-// light is painted: over the built-in range at 1280x720 they take 2, 3 and 3 s, and writing 0.3 s.
+// Completed fractions when the flight exists, when its scene is ready, and when all light is
+// painted. Over the built-in range at 1280x720 these steps take 2, 3 and 3 s, and writing takes
+// 0.3 s.
 constexpr double kBegunShare = 0.2;
 constexpr double kSettledShare = 0.5;
 constexpr double kPaintedShare = 0.95;
@@ -42,7 +44,7 @@ FlightMoment Flythrough::Moment() const {
 }
 
 void Flythrough::TakeUp(const FlightMoment& moment) {
-  // It stands where it stood, whatever of the land is loaded here.
+  // The eye keeps its position, whatever land is loaded here.
   const GroundHeight no_ground = [](const GeodeticPosition&) {
     return -std::numeric_limits<double>::infinity();
   };
@@ -89,7 +91,7 @@ Image Flythrough::PaintedInParts(const PaintedView& whole, int samples,
   const auto after_sample = [&](int sample) {
     ThrowIfInterrupted();
     if (!progress) return;
-    glFinish();  // what is asked of the graphics card is done before others have their turn
+    glFinish();  // completes the GPU's work before other threads use the GPU
     const double painted = (slices_before + sample) / slices;
     progress(kSettledShare + (kPaintedShare - kSettledShare) * painted);
   };
@@ -178,7 +180,7 @@ void Flythrough::WriteReplay(const CameraPath& path,
     const double along_s = (path.end_s() - path.begin_s()) * static_cast<double>(i) / steps;
     Show(ReplayAt(path, path.begin_s() + along_s));
     WritePicture(files[i], size);
-    recorder.Note(along_s, eye(), now());  // the ground there is loaded by now
+    recorder.Note(along_s, eye(), now());  // the ground at this place is loaded by now
   }
 }
 

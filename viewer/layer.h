@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Code of this layer names everything of the layers below without qualification.
+// Makes the names of all layers below visible in this layer without qualification.
 #pragma once
 
 #include "renderer/layer.h"

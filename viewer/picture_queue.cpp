@@ -24,7 +24,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The first numbered name that has no file with any of the extensions.
+/// Returns the first numbered name for which no file with any of the extensions exists.
 fs::path NextFree(const fs::path& folder, const char* stem,
                   std::initializer_list<const char*> extensions,
                   const std::vector<fs::path>& promised = {}) {
@@ -53,11 +53,12 @@ fs::path NextFlight(const fs::path& folder) {
 
 namespace {
 
-/// Ends a picture that is not wanted any more.
+/// Exception that ends a picture that is no longer wanted.
 struct Dropped {};
 
-// Linux has a priority for each thread, which the threads that it starts inherit: those of the
-// scene, and those of a driver that draws on the processor. A third of the weight of the window's.
+// Lowers the priority of this thread. On Linux each thread has its own priority, and the threads
+// that it starts inherit it: those of the scene, and those of a driver that renders on the CPU.
+// They get a third of the weight of the window's thread.
 void GiveWayToTheWindow() {
 #ifdef __linux__
   constexpr int kNice = 5;
@@ -65,7 +66,7 @@ void GiveWayToTheWindow() {
 #endif
 }
 
-// Pictures that are kept have all of the air and exact tables from the first on.
+// Written pictures use the complete atmosphere and exact tables from the start.
 FlythroughSettings WithoutDrafts(FlythroughSettings settings) {
   settings.first_air = {};
   return settings;
@@ -73,7 +74,7 @@ FlythroughSettings WithoutDrafts(FlythroughSettings settings) {
 
 }  // namespace
 
-/// A flight to be painted, in a context of its own.
+/// A flight that paints pictures in its own OpenGL context.
 struct PictureQueue::SecondFlight {
   HeadlessContext context;
   Flythrough flight;
@@ -150,7 +151,7 @@ std::vector<std::filesystem::path> PictureQueue::Files() const {
   return files;
 }
 
-// The lock is not held while instruments are drawn.
+// The lock is released while the instruments are drawn.
 void PictureQueue::DrawOverlay(std::unique_lock<std::mutex>& lock) {
   if (overlay_.developed == nullptr) return;
   const Image& developed = *overlay_.developed;
@@ -212,7 +213,7 @@ std::string PictureQueue::Make(const PictureRequest& request,
   } catch (const Dropped&) {
     return "it was left before it was painted";
   } catch (const std::exception& error) {
-    second.reset();  // whatever it is in the middle of
+    second.reset();  // the flight may be in an inconsistent state
     return error.what();
   } catch (...) {  // a signal
     second.reset();

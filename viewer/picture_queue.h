@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: MIT
-// Names of files that a key asks for.
+// Provides the file names of pictures and flights, and PictureQueue, which makes pictures while the
+// flight continues.
 //
-// Pictures that are made while the flight goes on.
-//
-// A thread with an OpenGL context of its own makes a second flight of the same scene, takes up the
-// moment of each request in turn, and paints, develops and writes its picture as WritePicture does.
-// The window's share of the machine is kept in two ways: on Linux this thread and those that it
-// starts run at a lower priority, and between two frames the graphics card gets no more than one
-// ray a pixel of a picture. The second flight takes as much memory as the first; it is there only
-// while there are requests.
+// A thread with its own OpenGL context creates a second flight of the same scene. For each request
+// it restores the moment of the request and paints, develops and writes the picture as WritePicture
+// does. Two measures keep the window responsive: on Linux this thread and the threads that it
+// starts run at a lower priority, and between two frames the GPU gets at most one ray per pixel of
+// a picture. The second flight needs as much memory as the first; it exists only while there are
+// requests.
 #pragma once
 
 #include <condition_variable>
@@ -27,68 +26,73 @@
 
 namespace alpenglow::viewer {
 
-/// The next free of skyview-0001, skyview-0002, ... in the folder: with neither a .png nor an .exr,
-/// so that both of one frame have one number.
-/// @param promised  files that are not there yet and will be.
+/// Returns the first of skyview-0001, skyview-0002, ... in the folder for which neither a .png nor
+/// an .exr exists, so that both files of one frame share one number.
+/// @param promised  files that do not exist yet and will be written.
 [[nodiscard]] std::filesystem::path NextScreenshot(
     const std::filesystem::path& folder, const std::vector<std::filesystem::path>& promised = {});
 
-/// The next free of flight-0001.csv, flight-0002.csv, ...: neither there nor being recorded into.
+/// Returns the first of flight-0001.csv, flight-0002.csv, ... that neither exists nor is being
+/// recorded.
 [[nodiscard]] std::filesystem::path NextFlight(const std::filesystem::path& folder);
 
-/// A picture that is asked for.
+/// Request for a picture.
 struct PictureRequest {
   FlightMoment moment;
   std::filesystem::path file;  // .png or .exr
   ImageSize size;
-  /// Draws instruments over a developed picture; empty: none. Called from NextFrame and Finish.
+  /// Draws instruments over a developed picture; an empty function draws none. It is called from
+  /// NextFrame and Finish.
   std::function<DisplayImage(const Image& developed)> instruments = {};
 };
 
-/// How a request ended.
+/// Outcome of a request.
 struct PictureOutcome {
   std::filesystem::path file;
-  std::string fault;  // why there is no file; empty: it is written
+  std::string fault;  // reason why there is no file; empty if the file is written
 };
 
-/// The picture that is being made.
+/// Progress of the picture that is being made.
 struct PictureUnderWay {
   std::filesystem::path file;
-  double share = 0.0;       // done, [0, 1]
-  std::size_t waiting = 0;  // behind it
+  double share = 0.0;       // completed fraction, [0, 1]
+  std::size_t waiting = 0;  // requests that follow
 };
 
-/// All calls come from one thread, which draws the window.
+/// Makes pictures in a second thread. All member functions are called from one thread, which draws
+/// the window.
 class PictureQueue {
  public:
-  /// Of a flight's first scene and its settings.
+  /// Takes the first scene and the settings of a flight.
   PictureQueue(const Scene& scene, const FlythroughSettings& settings);
-  /// Finishes what has been asked for, if it was not dropped.
+  /// Finishes all requests that were not dropped.
   ~PictureQueue();
   PictureQueue(const PictureQueue&) = delete;
   PictureQueue& operator=(const PictureQueue&) = delete;
 
-  /// Returns at once. Pictures are made in the order in which they are asked for.
+  /// Adds a request and returns at once. Pictures are made in the order of the requests.
   void Ask(PictureRequest request);
-  /// A frame of the window was drawn: the picture under way may go on to its next part.
+  /// Reports that the window has drawn a frame. The current picture may then continue with its next
+  /// part.
   void NextFrame();
-  /// Waits until all is written, without frames between.
+  /// Waits until all pictures are written. They continue without waiting for frames.
   void Finish();
-  /// The same when the window's OpenGL is lost: pictures with instruments are not written.
+  /// Finishes after the OpenGL context of the window is lost: pictures with instruments are not
+  /// written.
   void FinishWithoutWindow();
-  /// Gives up what is not painted yet.
+  /// Cancels the pictures that are not painted yet.
   void Drop();
 
-  /// What has ended since the last call.
+  /// Returns the outcomes since the last call.
   [[nodiscard]] std::vector<PictureOutcome> TakeOutcomes();
-  /// Nothing: all that was asked for has ended.
+  /// Returns the progress of the current picture; nullopt if no request is left.
   [[nodiscard]] std::optional<PictureUnderWay> UnderWay() const;
-  /// Files that are asked for and have not ended.
+  /// Returns the files of all requests that have not ended.
   [[nodiscard]] std::vector<std::filesystem::path> Files() const;
 
  private:
   struct SecondFlight;
-  /// What waits for the thread that draws.
+  /// A picture that waits for the drawing thread to add instruments.
   struct Overlay {
     const Image* developed = nullptr;
     std::optional<DisplayImage> drawn;
@@ -96,7 +100,7 @@ class PictureQueue {
   };
 
   void Run(const std::stop_token& stop);
-  /// @return why there is no file; empty: it is written.
+  /// @return the reason why there is no file; empty if the file is written.
   [[nodiscard]] std::string Make(const PictureRequest& request,
                                  std::unique_ptr<SecondFlight>& second);
   void Write(const PictureRequest& request, SecondFlight& second);
@@ -108,14 +112,14 @@ class PictureQueue {
   FlythroughSettings settings_;
   mutable std::mutex mutex_;
   std::condition_variable_any changed_;
-  std::deque<PictureRequest> requests_;  // the first is under way
+  std::deque<PictureRequest> requests_;  // the first one is being made
   std::vector<PictureOutcome> outcomes_;
   double share_ = 0.0;
   std::size_t frames_ = 0;       // drawn by the window so far
-  std::size_t used_frames_ = 0;  // so many of them had a part of a picture after them
+  std::size_t used_frames_ = 0;  // value of frames_ when the last part of a picture was started
   bool hurries_ = false, drops_ = false, has_window_ = true;
   Overlay overlay_;
-  std::jthread thread_;  // last: it uses all above
+  std::jthread thread_;  // last member, because it uses all others
 };
 
 }  // namespace alpenglow::viewer

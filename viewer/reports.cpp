@@ -48,7 +48,7 @@ Benchmark::~Benchmark() {
   if (drawn_ != nullptr) glDeleteSync(drawn_);
 }
 
-// With queries every frame is timed; else every second one, by finishes.
+// GPU timer queries time every frame. Without them glFinish times every second frame.
 bool Benchmark::NextFrame() {
   timer_.End();
   WaitForTheFrameBefore();
@@ -127,7 +127,7 @@ namespace {
 
 constexpr int kSamples = 16;
 
-/// One part of a picture at its best.
+/// A shortcut of the painter, and the setting that avoids it.
 struct Shortcut {
   const char* name;
   void (*perfect)(PaintSizes& sizes);
@@ -175,12 +175,12 @@ TimedPicture Paint(Flythrough& flight, const PaintedView& view, const PaintSizes
   return {painter.picture().Read(), best_ms};
 }
 
-/// One ray a pixel of the screen, or fewer and enlarged: linear light.
+/// A picture of linear light with one ray per pixel of the screen, or with fewer rays and enlarged.
 class OneRay {
  public:
   OneRay(SkyPainter& painter, const PaintedView& screen) : painter_(painter), screen_(screen) {}
 
-  /// @param scale  of the picture that is painted, to the screen.
+  /// @param scale  size of the painted picture relative to the screen.
   [[nodiscard]] TimedPicture At(double scale) {
     PaintedView painted = screen_;
     painted.width = std::max(static_cast<int>(std::lround(scale * screen_.width)), 1);
@@ -218,7 +218,8 @@ std::string Row(const std::string& name, const ViewDifference& is, const std::st
                      100.0 * is.at_99_percent, 100.0 * is.at_999_permille, time);
 }
 
-// A view that is painted at a share of its size and enlarged, beside the same of one ray a pixel.
+// Compares a view that is painted at a fraction of its size and enlarged with the view at one ray
+// per pixel.
 std::string FewerRays(Flythrough& flight, const PaintedView& view,
                       const std::vector<Channel>& edges, double scale) {
   flight.painter().Settle(view);

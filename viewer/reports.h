@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: MIT
-// Frame times of a scripted flight: what --benchmark prints.
+// Provides the reports of --benchmark and --explain.
 //
-// One line a pass, "name median_ms p95_ms p99_ms", and beside it "name.cpu", the time of the thread
-// that draws; "frame" is the whole frame, from one to the next. Where timing passes makes frames
-// slower (pass_timer.h), passes are timed in every second frame, and "frame" is of the others.
+// Benchmark measures the frame times of a scripted flight. It prints one line per pass, "name
+// median_ms p95_ms p99_ms", followed by "name.cpu", the time of the drawing thread. "frame" is the
+// whole frame, from the start of one to the start of the next. Where the timing of passes makes
+// frames slower (pass_timer.h), passes are timed in every second frame, and "frame" refers to the
+// other frames.
 //
-// What --explain prints: a view on the graphics card beside the renderer's, and each shortcut alone.
+// ExplainView compares a view on the GPU with that of the renderer, and reports the effect of each
+// shortcut alone.
 #pragma once
 
 #include <chrono>
@@ -20,38 +23,42 @@
 
 namespace alpenglow::viewer {
 
-/// Times that half of all, 95 % and 99 % do not exceed.
+/// Values that are not exceeded by 50 %, 95 % and 99 % of all values.
 struct Percentiles {
   double median, p95, p99;
 };
-/// The smallest value that at least that share of all does not exceed (nearest rank). At least one
-/// value.
+/// Returns the percentiles by nearest rank: each is the smallest value that is not exceeded by at
+/// least that fraction of all values. There must be at least one value.
 [[nodiscard]] Percentiles PercentilesOf(std::vector<double> values);
 
-/// An OpenGL context must be current while it lives.
+/// Measures frame times. An OpenGL context must be current during its lifetime.
 class Benchmark {
  public:
-  /// Seconds of the scene in a second.
+  /// Rate of the scene's clock: scene seconds per real second.
   static constexpr double kTimeRate = 60.0;
 
-  /// @param seconds  to fly for, > 0. What is drawn in the first of them, or the first quarter if
-  /// that is shorter, does not count: drivers compile shaders when they are first drawn with.
+  /// @param seconds  duration of the flight, > 0. Frames in the first second, or in the first
+  ///     quarter if that is shorter, are not counted, because drivers compile shaders at their
+  ///     first use.
   explicit Benchmark(double seconds, PassClock clock = TruthfulPassClock());
   ~Benchmark();
   Benchmark(const Benchmark&) = delete;
   Benchmark& operator=(const Benchmark&) = delete;
 
-  /// Ends a frame, waits until the frame before it is done, as a display with two pictures would,
-  /// and begins the next one. False when the time is over and at least one frame was timed.
+  /// Ends a frame, waits until the frame before it is complete, as a double-buffered display does,
+  /// and starts the next frame. Returns false when the time is over and at least one frame was
+  /// timed.
   [[nodiscard]] bool NextFrame();
-  /// Since the first frame began.
+  /// Returns the time since the start of the first frame.
   [[nodiscard]] double elapsed_s() const { return elapsed_s_; }
-  /// To be told of the passes of the frame.
+  /// Returns the timer to which the passes of a frame are reported.
   [[nodiscard]] PassTimer& timer() { return timer_; }
 
-  /// The lines, when NextFrame was false. "frame" is the last one.
+  /// Returns the lines of the report, of which "frame" is the last. Call it after NextFrame has
+  /// returned false.
   [[nodiscard]] std::string Text() const;
-  /// "812 frames, the worst of them 93.1 ms, 2.3 times the median, after 34.5 s".
+  /// Returns a line such as "812 frames, the worst of them 93.1 ms, 2.3 times the median, after
+  /// 34.5 s".
   [[nodiscard]] std::string WorstText() const;
 
  private:
@@ -69,19 +76,21 @@ class Benchmark {
   bool times_passes_ = false;
   int timed_frames_ = 0;
   GLsync drawn_ = nullptr;
-  std::vector<std::string> passes_;                         // in the order they were drawn first
-  std::map<std::string, std::vector<double>> ms_, cpu_ms_;  // by pass
+  std::vector<std::string> passes_;                         // in the order of their first draw
+  std::map<std::string, std::vector<double>> ms_, cpu_ms_;  // by name of the pass
   std::vector<double> frame_ms_;
   double worst_ms_ = 0.0, worst_at_s_ = 0.0;
 };
 
-/// The flight: at 250 m/s and the height it begins at, in circles of 5 km to the right.
+/// Returns a frame of the scripted flight: circles of 5 km radius to the right, at 250 m/s and at
+/// the initial height.
 [[nodiscard]] ReplayFrame BenchmarkFlight(const Eye& start, const UtcInstant& begin,
                                           double elapsed_s);
 
-/// A table of text: of the picture, and of each shortcut against its best setting, the mean, 99 % and
-/// 99.9 % of pixels (ViewDifference), and the time of a frame that it saves. The renderer's land is
-/// what the scene names, or of several elevation models what is loaded around the eye.
+/// Returns a text table of errors: of the picture against the renderer's, and of each shortcut
+/// against its best setting. Its columns are the mean, 99 % and 99.9 % of pixels (ViewDifference)
+/// and the frame time that the shortcut saves. The renderer uses the land that the scene names, or
+/// for several elevation models the land that is loaded around the eye.
 [[nodiscard]] std::string ExplainView(Flythrough& flight, const ImageSize& size);
 
 }  // namespace alpenglow::viewer

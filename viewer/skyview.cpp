@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// skyview: a flight through a scene, on the graphics card.
+// The program skyview: an interactive flight through a scene, rendered on the GPU.
 #include <fmt/format.h>
 
 #include <chrono>
@@ -34,7 +34,8 @@ LandSource LandOf(const SkyviewOptions& options, const Scene& scene) {
   return land;
 }
 
-/// Where one begins without a word about it: over the middle of the land that was named.
+/// Places the eye over the middle of the given elevation models if the command line does not give a
+/// position.
 void StandOverTheLand(const SkyviewOptions& options, SceneOptions& typed) {
   if (options.dem.empty() || (typed.latitude && typed.longitude)) return;
   LandSource land;
@@ -62,11 +63,11 @@ Scene SceneOf(const SkyviewOptions& options) {
   if (!options.dem.empty()) typed.dem = options.dem.front();
   StandOverTheLand(options, typed);
   Scene scene = SceneFromOptions(typed);
-  scene.time.reset();  // noon there (StartOf), not in Greenwich
+  scene.time.reset();  // StartOf uses noon at the place instead of noon in Greenwich
   return scene;
 }
 
-// Over the scene of a file, a place and directions that are typed move the eye.
+// A position and directions on the command line override the camera of a scene file.
 EyePlacement PlacementOf(const SkyviewOptions& options) {
   EyePlacement placement;
   if (options.scene_file.empty()) return placement;
@@ -82,16 +83,16 @@ UtcInstant StartOf(const SkyviewOptions& options, const Scene& scene) {
   if (!options.time && scene.time) return *scene.time;
   GeodeticPosition place = options.place ? PlaceNamed(*options.place).place
                                          : Placed({scene.place}, PlacementOf(options)).place;
-  place.height_m = 0.0;  // events are those of the place at sea level, as in skyseries
+  place.height_m = 0.0;  // as in skyseries, events are those at sea level
   const EventDay day{place, scene.zone, scene.time.value_or(ParseInstant("2026-06-21T12:00:00Z"))};
   return InstantFromText(options.time.value_or("noon"), day);
 }
 
-// A frame lasts a sixtieth of a second where nobody watches.
+// Without a display, a frame lasts 1/60 s of scene time.
 void PaintHeadless(const SkyviewOptions& options, Flythrough& flight, const ImageSize& size,
                    FlightRecorder& recorder) {
   constexpr double kFrame_s = 1.0 / 60.0;
-  if (options.record) flight.Settle(size);  // nothing is noted before the ground is known
+  if (options.record) flight.Settle(size);  // points are recorded only once the ground is known
   recorder.Note(0.0, flight.eye(), flight.now());
   for (int frame = 1; frame < options.frames; ++frame) {
     flight.Advance({}, kFrame_s);
@@ -106,10 +107,11 @@ void PaintHeadless(const SkyviewOptions& options, Flythrough& flight, const Imag
   }
 }
 
-/// The whole picture of a window.
+/// Returns the screen that covers the whole window.
 Developer::Screen ScreenOf(const Window& window) { return {0, window.width(), window.height()}; }
 
-/// While it is there, a display that goes lets flight and pictures come into their files.
+/// While this object exists, the flight and the pictures are written to their files if the display
+/// is lost.
 class LossOfDisplay {
  public:
   LossOfDisplay(Window& window, FlightRecorder& recorder, FlightDeck& deck)
@@ -171,7 +173,7 @@ void Fly(const SkyviewOptions& options, Flythrough& flight, Window& window,
   }
 }
 
-// The scripted flight, drawn into a window or, without one, into a picture of its size.
+// Draws the scripted flight into a window or, without a window, into a picture of the given size.
 void RunBenchmark(double seconds, Flythrough& flight, const ImageSize& size, Window* window) {
   const RenderTarget picture(size.width, size.height, {PixelFormat::kRgba8},
                              RenderTarget::Depth::kNone);
@@ -234,7 +236,8 @@ std::vector<NamedFile> OutputsOf(const SkyviewOptions& options) {
   return outputs;
 }
 
-/// Whatever would keep the pictures and the flight from their files, before the flight.
+/// Reports errors that would prevent the pictures and the flight from being written, before the
+/// flight starts.
 void RequireOutputs(const SkyviewOptions& options, const Scene& scene) {
   const std::vector<NamedFile> inputs = InputsOf(options, scene);
   for (const NamedFile& output : OutputsOf(options)) {
@@ -243,12 +246,12 @@ void RequireOutputs(const SkyviewOptions& options, const Scene& scene) {
   }
 }
 
-/// What the land has to tell.
+/// Writes the notes about the land to standard error.
 void SayNotes(Flythrough& flight) {
   for (const std::string& note : flight.TakeNotes()) Say(fmt::format("skyview: {}\n", note));
 }
 
-/// Whether nothing but linear pictures is asked for, which are put together of parts.
+/// Returns whether only linear pictures are requested; these can be assembled from tiles.
 bool PaintsInParts(const SkyviewOptions& options) {
   return !options.benchmark && !options.explain && options.hud != "on";
 }
@@ -263,9 +266,9 @@ int Run(const SkyviewOptions& options) {
   std::optional<CameraPath> path;
   if (options.replay) path = ReadFlight(*options.replay);
   RequireOutputs(options, scene);
-  std::future<FirstAir> first_air;  // made beside the window
+  std::future<FirstAir> first_air;  // computed while the window is being created
   if (!options.headless) first_air = std::async(std::launch::async, DraftOfAir, std::cref(scene));
-  // The context outlives what was made in it.
+  // Declared first: the context must outlive the objects that are created in it.
   const auto headless = options.headless ? std::make_unique<HeadlessContext>() : nullptr;
   const auto window =
       options.headless

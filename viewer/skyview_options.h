@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The command line of skyview. Included by its one translation unit (CLI11 is slow to compile).
+// Provides the command line of skyview. Only one translation unit includes this file, because CLI11
+// is slow to compile.
 #pragma once
 
 #include <optional>
@@ -24,14 +25,15 @@ inline constexpr char kSkyviewFooter[] =
     "  skyview --record flight.csv\n"
     "  skyview --replay flight.csv --headless --video flight.mp4";
 
-/// Refuses a rule of exposure that is not for pictures in flight; throws InputError.
+/// Returns the rule of exposure for a text. Throws InputError for a rule that pictures in flight do
+/// not support.
 [[nodiscard]] inline ExposureRule FlightExposureFromText(const std::string& text) {
   const ExposureRule rule = ExposureRuleFromText(text);
   if (rule.kind != ExposureRule::Kind::kIncident) return rule;
   throw InputError("skyview meters what it shows; incident is for skyseries");
 }
 
-/// What is typed; texts are read later, against the scene.
+/// Options as typed. Texts are interpreted later, with the scene.
 struct SkyviewOptions {
   CommonOptions common;
   std::string scene_file, size = "1280x720";
@@ -39,12 +41,12 @@ struct SkyviewOptions {
   std::optional<std::string> time, screenshot, record, replay, video, place, track;
   std::vector<std::string> dem;
   std::optional<double> benchmark;  // seconds
-  double fps = 30.0;                // of the film
+  double fps = 30.0;                // frame rate of the film
   int frames = 1;
   std::string vsync = "on", quality = "auto", hud = "auto", exposure = "auto", look = "photo",
               white_balance = "camera";
-  double frame_rate = 20.0;  // that automatic quality keeps
-  double hud_scale = 0.0;    // 0: as the desktop says
+  double frame_rate = 20.0;  // target of automatic quality
+  double hud_scale = 0.0;    // 0: the scale of the desktop
   bool invert_y = false, explain = false;
   bool fullscreen = false, headless = false;
 };

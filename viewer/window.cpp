@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "viewer/window.h"
 
-// libepoxy has the functions of OpenGL; GLFW must not declare them again.
+// libepoxy declares the functions of OpenGL; GLFW must not declare them again.
 #define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>
 
@@ -22,7 +22,7 @@
 namespace alpenglow::viewer {
 namespace {
 
-// x to the right, y upwards, both in [0, 1]; sRGB.
+// Colours of the icon: x to the right and y upwards, both in [0, 1]; sRGB.
 glm::dvec3 Sky(double y) {
   constexpr glm::dvec3 kZenith{28.0, 44.0, 96.0}, kGlow{255.0, 164.0, 112.0};
   return glm::mix(kGlow, kZenith, std::clamp(1.4 * (y - 0.25), 0.0, 1.0));
@@ -43,7 +43,7 @@ glm::dvec3 Rock(double x, double y) {
 }  // namespace
 
 std::vector<std::uint8_t> WindowIcon(int side) {
-  constexpr int kSamples = 4;  // a side of a pixel
+  constexpr int kSamples = 4;  // samples per side of a pixel
   std::vector<std::uint8_t> bytes;
   const double step = 1.0 / (kSamples * side);
   for (int row = 0; row < side; ++row) {
@@ -65,7 +65,7 @@ std::vector<std::uint8_t> WindowIcon(int side) {
 
 namespace {
 
-constexpr double kWait_s = 0.1;  // for events, while nothing is seen
+constexpr double kWait_s = 0.1;  // wait for events while the window is not visible
 
 std::string LastGlfwError() {
   const char* text = nullptr;
@@ -73,7 +73,7 @@ std::string LastGlfwError() {
   return code == GLFW_NO_ERROR || text == nullptr ? "GLFW gives no reason" : text;
 }
 
-/// The library, while it is used.
+/// Initialises GLFW during its lifetime.
 struct Glfw {
   Glfw() {
     if (glfwInit() != GLFW_TRUE) {
@@ -85,7 +85,7 @@ struct Glfw {
   Glfw& operator=(const Glfw&) = delete;
 };
 
-// A driver that cannot tell of its resets may refuse to be asked for it.
+// A driver that cannot report resets of the GPU may reject the request for such reports.
 GLFWwindow* NewestWindow(int width, int height, GLFWmonitor* monitor) {
   for (const GlVersion& version : kGlVersions) {
     for (const int robustness : {GLFW_LOSE_CONTEXT_ON_RESET, GLFW_NO_ROBUSTNESS}) {
@@ -116,7 +116,7 @@ struct Size {
   int width = 0, height = 0;
 };
 
-/// A rectangle of the desktop, in its units.
+/// A rectangle of the desktop, in desktop units.
 struct Rectangle {
   int x = 0, y = 0, width = 0, height = 0;
   [[nodiscard]] bool Holds(int right, int down) const {
@@ -139,7 +139,8 @@ Rectangle PlaceOf(GLFWmonitor* monitor) {
   return place;
 }
 
-/// The monitor that the window's middle is on; else the first one. Null where there is none.
+/// Returns the monitor that contains the centre of the window, otherwise the first monitor; null if
+/// there is none.
 GLFWmonitor* MonitorUnder(GLFWwindow* window) {
   const Rectangle place = PlaceOf(window);
   int count = 0;
@@ -180,11 +181,11 @@ void AppendUtf8(std::string& text, unsigned codepoint) {
 struct Window::State {
   Glfw glfw;
   GLFWwindow* window = nullptr;
-  WindowEvents events;             // since the last Poll, but for what follows
-  std::array<bool, 3> held{};      // buttons
-  Size picture, desktop;           // of the window, in pixels and in the desktop's units
-  PointerPlace pointer;            // in the desktop's units
-  bool pointer_is_inside = false;  // and not captured
+  WindowEvents events;             // since the last Poll, except for the members below
+  std::array<bool, 3> held{};      // state of the buttons
+  Size picture, desktop;           // size of the window in pixels and in desktop units
+  PointerPlace pointer;            // in desktop units
+  bool pointer_is_inside = false;  // the pointer is over the window and not captured
   bool captured = false;
   bool vsync = true;
   std::optional<Rectangle> before_fullscreen;
@@ -198,7 +199,7 @@ struct Window::State {
   State(const State&) = delete;
   State& operator=(const State&) = delete;
 
-  // The window that exists, for a program that is being ended.
+  // Returns the existing window, for the handler that ends the program.
   static State*& Existing() {
     static State* existing = nullptr;
     return existing;
@@ -262,13 +263,15 @@ struct Window::State {
 
   [[nodiscard]] bool HasPicture() const { return picture.width > 0 && picture.height > 0; }
 
-  // Asked once and told since: every question is an answer of the display waited for.
+  // Reads the sizes once; callbacks keep them up to date. Each query would wait for a reply of the
+  // display.
   void AskSizes() {
     glfwGetFramebufferSize(window, &picture.width, &picture.height);
     glfwGetWindowSize(window, &desktop.width, &desktop.height);
   }
 
-  // Where the pointer was told to be is in the desktop's units, which may be larger than pixels.
+  // Returns the position of the pointer in pixels. GLFW reports it in desktop units, which may be
+  // larger than pixels.
   [[nodiscard]] std::optional<PointerPlace> Pointer() const {
     const bool is_held = held[0] || held[1] || held[2];
     if (!pointer_is_inside && !captured && !is_held) return std::nullopt;
@@ -277,7 +280,8 @@ struct Window::State {
                         pointer.down * picture.height / desktop.height};
   }
 
-  // A desktop that counts in larger units has made the picture larger than was asked for.
+  // Resizes the window where desktop units are larger than pixels, because the picture is then
+  // larger than requested.
   void FitPicture(int width, int height) const {
     if (!HasPicture() || (picture.width == width && picture.height == height)) return;
     const auto fitted = [](int units, int pixels, int wanted) {
@@ -287,7 +291,8 @@ struct Window::State {
                       fitted(desktop.height, picture.height, height));
   }
 
-  // Xlib ends the program when its display has gone, and nothing can stop it but this.
+  // Xlib ends the program when the display is lost. This exit handler is the only place that can
+  // act before the end.
   static void AtExit() {
     constexpr int kLostDisplay = 5;
     if (Existing() == nullptr) return;
@@ -334,7 +339,7 @@ WindowEvents Window::Poll() {
   events.gamepad = FirstGamepad();
   events.minimised = events.minimised || !state_->HasPicture();
   events.close = glfwWindowShouldClose(state_->window) == GLFW_TRUE;
-  glfwSetWindowShouldClose(state_->window, GLFW_FALSE);  // told once each time that it is asked for
+  glfwSetWindowShouldClose(state_->window, GLFW_FALSE);  // each request to close is reported once
   return events;
 }
 
@@ -363,7 +368,7 @@ void Window::SetFullscreen(bool fullscreen) {
     glfwSetWindowMonitor(state_->window, nullptr, place.x, place.y, place.width, place.height,
                          GLFW_DONT_CARE);
   }
-  SetVsync(state_->vsync);  // some drivers forget it
+  SetVsync(state_->vsync);  // some drivers reset it
 }
 
 void Window::SetVsync(bool vsync) {
@@ -378,8 +383,9 @@ void Window::CapturePointer(bool captured) {
 }
 
 void Window::Swap() {
-  // Handlers run in the reverse of their order: once more, before what the first picture has made
-  // for the whole program goes while threads beside drawing still use it.
+  // Exit handlers run in reverse order. This second registration makes the handler run before the
+  // process-wide objects of the first picture are destroyed, while worker threads may still use
+  // them.
   static const int registered = std::atexit(State::AtExit);
   static_cast<void>(registered);
   glfwSwapBuffers(state_->window);
