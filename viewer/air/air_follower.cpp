@@ -30,7 +30,7 @@ constexpr std::array<Slot, AirTextures::kUnits> kSlots{{{"air_sky", GL_TEXTURE_2
                                                         {"air_phase", GL_TEXTURE_2D},
                                                         {"air_to_sun", GL_TEXTURE_2D}}};
 
-// In place where the texture has this size already.
+// Uploads texels. A texture that already has this size is overwritten in place.
 void UploadTexels(const GlTexture& texture, GLenum target, const AirTexels& texels,
                   bool same_size) {
   glBindTexture(target, texture.id());
@@ -51,7 +51,8 @@ void UploadTexels(const GlTexture& texture, GLenum target, const AirTexels& texe
   glTexParameteri(target, GL_TEXTURE_WRAP_R, GL_CLAMP_TO_EDGE);
 }
 
-// The aerosol's phase function twice: alone, and as the sky's rows have it, which AirTables bring.
+// Returns two rows with the aerosol's phase function: one for its own use, one that the sky_phase
+// of AirTables will replace.
 AirTexels WithRowOfSky(const AirTexels& phase) {
   AirTexels both(phase.width, 2);
   for (const int row : {0, 1})
@@ -59,8 +60,8 @@ AirTexels WithRowOfSky(const AirTexels& phase) {
   return both;
 }
 
-/// First texel of an axis and the width of all, in texture coordinates: n nodes from `first` on of
-/// `all`.
+/// Texture coordinates of an axis: centre of its first texel and distance to its last. The axis has
+/// n of `all` nodes, from node `first`.
 struct Axis {
   Axis(int first, int n, int all)
       : begin((static_cast<float>(first) + 0.5F) / static_cast<float>(all)),
@@ -156,10 +157,10 @@ void AirTextures::Bind(int first_unit, GLuint binding) const {
 
 namespace {
 
-constexpr double kMostChange = 1e-3;   // that is left alone while eye or sun move
-constexpr double kGreatChange = 5e-3;  // that does not wait
-constexpr double kJump = 0.1;          // that is not shown: small tables are made at once
-constexpr double kRest = 2.0;  // times what the last tables took: drawing needs the processor
+constexpr double kMostChange = 1e-3;   // change that is accepted while eye or sun move
+constexpr double kGreatChange = 5e-3;  // change that starts new tables without a rest
+constexpr double kJump = 0.1;          // change at which small tables are computed at once instead
+constexpr double kRest = 2.0;  // rest, in units of the last computation time: drawing needs the CPU
 
 AirEye EyeOf(const AirView& view) {
   const auto elevation = [](const glm::dvec3& to) {
@@ -181,7 +182,7 @@ double AirChange(const AirEye& made, const AirEye& now) {
   const double elevation = std::asin(std::clamp(now.mu_s, -1.0, 1.0)) / kRadiansPerDegree;
   const double turned =
       std::abs(std::asin(std::clamp(made.mu_s, -1.0, 1.0)) / kRadiansPerDegree - elevation);
-  // As measured by the test of this function.
+  // The coefficients were measured by the test of this function.
   const double per_degree = elevation < 0.0 ? 0.6 : 0.8 / (1.0 + elevation);
   const double rise = std::abs(now.altitude_m - made.altitude_m);
   const double layer =
@@ -236,7 +237,7 @@ void AirFollower::TakeFinished() {
   if (const auto made = maker_.Take()) Show(*made);
 }
 
-// Not at once: who moves a slider asks for other air in the next frame.
+// Wait before refining: while a slider moves, the medium changes every frame.
 void AirFollower::RefineDraft() {
   constexpr auto kPause = std::chrono::milliseconds(200);
   if (drafts_ == Drafts::kKept || air_->solution == AirSolution::kFull || solver_.Busy()) return;
@@ -248,8 +249,9 @@ AirFollower::Request AirFollower::Wanted(const AirView& view) const {
   return {air_, view, draft ? std::min(quality_, AirQuality::kLow) : quality_};
 }
 
-// Whether tables as wanted should be made now: at once for another medium or size, when they are
-// due while something moves, and exact ones when all stands still.
+// Returns whether tables for `wanted` should be computed now. A new medium or size starts at once.
+// While eye or sun move, tables are computed when the change is large enough; when both are at
+// rest, exact tables are computed.
 bool AirFollower::Asks(const Request& wanted) const {
   if (asked_ == wanted) return false;
   if (!asked_ || asked_->air != wanted.air || asked_->quality != wanted.quality) return true;
@@ -272,8 +274,8 @@ void AirFollower::Follow(const AirView& view, double seconds) {
   textures_.SetView(view.altitude_m, view.sun);
 }
 
-// The view under the sun of the moment in the middle of the time for which tables that are asked for now will be
-// shown.
+// Returns the view with the sun extrapolated to the middle of the period in which tables requested
+// now will be displayed.
 AirView AirFollower::Ahead(const AirView& view, double seconds) const {
   constexpr double kLongestFrame_s = 0.2, kShown = 1.2;
   const bool runs = seconds > 0.0 && seconds < kLongestFrame_s && view.sun != last_view_.sun;

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: MIT
-// The tables of air_tables.h on the graphics card, for air_tables.glsl.
+// Provides AirTextures, the tables of air_tables.h on the GPU for air_tables.glsl, and AirFollower,
+// which updates them for a moving eye and a moving sun.
 //
-// Keeps the tables of the air up with an eye that moves and a sun that does: made on a thread beside
-// drawing, asked for anew when they would be wrong by more than a shortcut may be, shown as soon as
-// they are there. Meanwhile the last ones serve, from the eye's own horizon and under its own sun.
+// AirFollower computes tables on a thread beside drawing. It requests new tables when the error of
+// the current ones would exceed the accepted error of a shortcut, and displays them as soon as they
+// are complete. Until then the previous tables are used with the current horizon and the current
+// sun.
 #pragma once
 
 #include <array>
@@ -22,14 +24,14 @@
 
 namespace alpenglow::viewer {
 
-/// Where a sun stands, as unit vectors in the frame of the eye, east, north, up, and where its straight
-/// rays light the air from (SunForAir of sun.h).
+/// Direction of a sun as unit vectors in the frame of the eye (east, north, up): where it is seen,
+/// and the direction from which straight rays illuminate the air (SunForAir of sun.h).
 struct SkySun {
   glm::dvec3 seen, for_air;
   bool operator==(const SkySun&) const = default;
 };
 
-/// `block AirTables` of air_tables.glsl.
+/// Mirrors the uniform block `AirTables` of air_tables.glsl.
 struct AirTablesBlock {
   glm::vec4 sun, sun_seen, frame, shell, ranges, crowding, columns;
   glm::vec4 sky_rows, through_rows, way_rows, extinction_rows, distances, phase_nodes;
@@ -38,10 +40,11 @@ struct AirTablesBlock {
 };
 static_assert(sizeof(AirTablesBlock) == 18 * sizeof(glm::vec4));
 
-/// Pieces of a shader that calls the functions of air_tables.glsl, after SharedTexts().
+/// Returns the pieces of a shader that calls the functions of air_tables.glsl; they follow
+/// SharedTexts().
 [[nodiscard]] std::vector<ShaderPiece> AirTableTexts();
 
-/// Belongs to the context that is current when it is made.
+/// Textures of the air's tables. They belong to the context that is current at their construction.
 class AirTextures {
  public:
   static constexpr int kUnits = 7;
@@ -51,65 +54,70 @@ class AirTextures {
   void Upload(const MediumTables& tables);
   void Upload(const AirTables& tables);
 
-  /// What is uploaded as an eye sees it that has moved since, by less than what asks for new tables:
-  /// rows count from its own horizon, azimuths from its own sun.
+  /// Adapts the uploaded tables to an eye that has since moved by less than a request for new
+  /// tables requires: rows start at the current horizon, azimuths at the current sun.
   void SetView(double altitude_m, const SkySun& sun);
 
-  /// Once a program: its samplers read from units first_unit to first_unit + kUnits - 1, its block
-  /// from `binding`.
+  /// Call once for each program: its samplers read from kUnits units, beginning with first_unit, its
+  /// block from `binding`.
   static void Prepare(const ShaderProgram& program, int first_unit, GLuint binding);
 
-  /// For draws of prepared programs.
+  /// Binds the textures and the block for draw calls of prepared programs.
   void Bind(int first_unit, GLuint binding) const;
 
  private:
   std::array<GlTexture, kUnits> texture_;
-  std::optional<AirTablesSize> size_;  // of what is uploaded
+  std::optional<AirTablesSize> size_;  // size of the uploaded tables
   GlBuffer block_;
   AirTablesBlock values_{};
 };
 
-/// What a frame sees of the air.
+/// View of one frame, as far as the air's tables depend on it.
 struct AirView {
-  double altitude_m;    // of the eye over the sphere that osculates the ellipsoid below it
-  double latitude_rad;  // of the eye
+  double altitude_m;    // altitude of the eye over the sphere that osculates the ellipsoid below it
+  double latitude_rad;  // latitude of the eye
   SkySun sun;
-  double ceiling_m = AirEye{}.ceiling_m;  // no land is higher
+  double ceiling_m = AirEye{}.ceiling_m;  // upper bound of the height of land
   bool operator==(const AirView&) const = default;
 };
 
-/// How wrong tables made for one eye are for another, roughly and relative to the light.
+/// Returns an estimate of the error, relative to the light, of tables that were made for one eye
+/// and are used for another.
 [[nodiscard]] double AirChange(const AirEye& made, const AirEye& now);
 
-/// To be used on the thread of the context that is current when it is made.
+/// Computes and displays the tables of the air. It must be used on the thread of the context that
+/// is current at its construction.
 class AirFollower {
  public:
-  /// A draft of the air is solved anew by this follower, or kept because another one solves it.
+  /// kRefined: this follower solves a draft of the atmosphere again in full; kKept: it uses the
+  /// draft, because another follower solves it.
   enum class Drafts { kRefined, kKept };
-  /// Makes small tables for the first frame before it returns, some milliseconds later.
+  /// Computes small tables for the first frame before it returns, which takes some milliseconds.
   AirFollower(std::shared_ptr<const SolvedAir> air, AirQuality quality, const AirView& first,
               Drafts drafts = Drafts::kRefined);
 
-  /// Another medium, solved beside drawing; shown when it is ready: a draft first, and what it
-  /// lacks when no other medium has been asked for meanwhile. Throws InputError at once for
-  /// one that Validate refuses or of more than four bands.
+  /// Replaces the medium, which is solved beside drawing and displayed when it is ready: first as a
+  /// draft, then in full if no other medium was requested meanwhile. Throws InputError at once for
+  /// a medium that Validate rejects or that has more than four bands.
   void Replace(const Medium& medium);
   void SetQuality(AirQuality quality);
 
-  /// Once a frame, before drawing: shows what is ready and asks for what is missing. Does not wait for
-  /// that; after a jump in time or place, of which AirChange says over a tenth, it makes small tables in
-  /// some milliseconds. While a sun runs, tables are made for where it will stand when they are shown.
-  /// @param seconds  since the last call; 0: nothing runs.
+  /// Displays completed tables and requests missing ones. Call it once a frame, before drawing. It
+  /// does not wait for the requests. After a jump in time or place with an AirChange above one
+  /// tenth it computes small tables, which takes some milliseconds. While the sun moves, tables are
+  /// computed for the position of the sun when they will be displayed.
+  /// @param seconds  since the last call; 0: the clock is stopped.
   void Follow(const AirView& view, double seconds = 0.0);
-  /// The same, but what Follow would show in the end is there when it returns: for pictures that
-  /// are kept.
+  /// Waits until the final tables of Follow are displayed. It is used for pictures that are written
+  /// to files.
   void Settle(const AirView& view);
 
-  /// What is shown.
+  /// Returns the displayed textures.
   [[nodiscard]] const AirTextures& textures() const { return textures_; }
   [[nodiscard]] const std::shared_ptr<const SolvedAir>& air() const { return shown_; }
   [[nodiscard]] const AirEye& eye() const { return eye_; }
-  /// Time that the tables shown took to make; 0 before the first that were made beside drawing.
+  /// Returns the computation time of the displayed tables; 0 until the first tables from the other
+  /// thread.
   [[nodiscard]] double making_s() const { return making_s_; }
 
  private:
@@ -140,13 +148,13 @@ class AirFollower {
   [[nodiscard]] Request Wanted(const AirView& view) const;
   [[nodiscard]] bool Asks(const Request& wanted) const;
 
-  std::shared_ptr<const SolvedAir> air_;  // to be shown next
+  std::shared_ptr<const SolvedAir> air_;  // displayed next
   std::shared_ptr<const SolvedAir> shown_;
   AirQuality quality_;
   Drafts drafts_;
   AirTextures textures_;
   AirEye eye_;
-  std::optional<Request> asked_;  // last
+  std::optional<Request> asked_;  // the last request
   AirView last_view_;
   double making_s_ = 0.0;
   Clock::time_point rests_until_{}, replaced_at_{};

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Light on the way to a point, for AirTables. A row of texels is one march: every ray of it meets
-// the same air, only the sun stands elsewhere, and what it has gathered up to each distance is kept.
+// Computes for AirTables the light scattered on the way to a point. A row of texels is one march:
+// all rays of a row pass through the same air and differ only in the direction of the sun. The
+// light gathered up to each distance is stored.
 #include "viewer/air/air_rows.h"
 
 #include <algorithm>
@@ -15,7 +16,7 @@
 namespace alpenglow::viewer {
 namespace {
 
-constexpr double kHair_rad = 1e-9;  // off the horizon, to the side of it that a row belongs to
+constexpr double kHair_rad = 1e-9;  // offset from the horizon to the side that a row belongs to
 
 AirRow RowAt(const AirMap& map, bool ground, double v, double range) {
   const double half_tangent = shared::AirHalfTangent<double>(v, std::tan(0.5 * range));
@@ -74,12 +75,12 @@ float TwilightAt(const AirMap& map, double mu_s, double nu, double distance_km) 
 
 namespace {
 
-/// A row of rays: where they enter the air, where they may first meet land and where they may last
-/// do so [m from the eye].
+/// A row of rays [m from the eye]: the distance at which they enter the air, the one at which they
+/// may first meet land, and the one at which they may last meet it.
 struct Reach {
   AirRow row;
   double begin_m, near_m, end_m;
-  std::vector<double> distance_m;  // of the nodes, from near_m on
+  std::vector<double> distance_m;  // distances of the nodes, from near_m on
 };
 
 Reach ReachOf(const AirMap& map, const AirRow& row, int distances) {
@@ -93,7 +94,7 @@ Reach ReachOf(const AirMap& map, const AirRow& row, int distances) {
               kMetresPerKilometre * near,
               kMetresPerKilometre * std::max(end, near + 1e-3),
               {}};
-  // The eye's own place has no way to it: a little beyond.
+  // At distance 0 the path has no length, so the first node lies a little beyond the eye.
   const double first = map.altitude > map.ceiling ? 0.0 : 0.05;
   for (int j = 0; j < distances; ++j) {
     const double w = j == 0 ? first / (distances - 1) : Unit(j, distances);
@@ -104,15 +105,15 @@ Reach ReachOf(const AirMap& map, const AirRow& row, int distances) {
   return reach;
 }
 
-/// Nodes of a rule along a ray, and where each of its pieces, from one distance to the next, ends
-/// among them.
+/// Quadrature nodes along a ray, and for each piece, which extends from one distance to the next,
+/// the index after its last node.
 struct PieceNodes {
   std::vector<RayNode> node;
   std::vector<std::size_t> end;
 };
 
 constexpr int kNodesOfAPiece = 3;
-constexpr int kNodesOfFirstPiece = 16;  // through all air above the ceiling
+constexpr int kNodesOfFirstPiece = 16;  // a piece through all air above the ceiling
 
 int NodesOfPiece(const Reach& reach, double to_m) {
   return to_m <= reach.near_m ? kNodesOfFirstPiece : kNodesOfAPiece;
@@ -127,7 +128,7 @@ void AddRule(double begin_m, double end_m, int count, std::vector<RayNode>& node
   }
 }
 
-// Only the ends of pieces.
+// Returns nodes without weight at the ends of the pieces only.
 PieceNodes EndsOf(const Reach& reach) {
   PieceNodes nodes;
   for (const double to : reach.distance_m) {
@@ -137,7 +138,7 @@ PieceNodes EndsOf(const Reach& reach) {
   return nodes;
 }
 
-// Closed by a node of no weight at the end of each piece.
+// Returns the nodes of all pieces. A node without weight closes each piece.
 PieceNodes NodesOf(const Reach& reach) {
   PieceNodes nodes;
   double from = reach.begin_m;
@@ -150,7 +151,7 @@ PieceNodes NodesOf(const Reach& reach) {
   return nodes;
 }
 
-// Only in the sun, without those.
+// Returns nodes in sunlight only, without closing nodes.
 PieceNodes LitNodesOf(const Reach& reach, const ShadowSpan& shadow) {
   PieceNodes nodes;
   double from = reach.begin_m;
@@ -173,14 +174,14 @@ glm::vec4 DepthOf(const AirConstants<float>& air, float rayleigh, float mie, flo
   return depth;
 }
 
-/// 1 - exp(-tau) that does not cancel.
+/// Returns 1 - exp(-tau) without cancellation.
 glm::vec4 Absorbed(const glm::vec4& tau) {
   glm::vec4 share;
   for (glm::length_t band = 0; band < 4; ++band) share[band] = -std::expm1(-tau[band]);
   return share;
 }
 
-/// One row of rays under a sun in the zenith, which leaves nothing of them dark.
+/// One row of rays under a sun in the zenith, so that no part of them is in the planet's shadow.
 class RowOfRays {
  public:
   RowOfRays(const AirIntegrator<float>& air, const AirEye& eye, const AirMap& map,
@@ -188,10 +189,10 @@ class RowOfRays {
       : air_(air), nodes_(std::move(nodes)), samples_(SamplesOf(eye, map, reach)) {}
 
   [[nodiscard]] const RaySamples<float>& samples() const { return samples_; }
-  /// After the last sample of each piece, which has no weight.
+  /// Returns for each piece the index after its last sample, which has no weight.
   [[nodiscard]] const std::vector<std::size_t>& ends() const { return nodes_.end; }
 
-  /// To every distance.
+  /// Returns the optical depths to all distances.
   [[nodiscard]] std::vector<glm::vec4> OpticalDepths() const {
     std::vector<glm::vec4> depths;
     for (const std::size_t end : nodes_.end) {
@@ -201,7 +202,7 @@ class RowOfRays {
     return depths;
   }
 
-  /// The samples of one piece.
+  /// Returns the samples of one piece.
   [[nodiscard]] RaySamples<float> Piece(std::size_t i) const {
     const std::size_t first = i == 0 ? 0 : nodes_.end[i - 1];
     const std::size_t count = nodes_.end[i] - 1 - first;
@@ -219,7 +220,7 @@ class RowOfRays {
   }
 
  private:
-  // Between samples nothing cancels, but they must be close.
+  // kBetweenSamples avoids cancellation, but the samples must be close together.
   [[nodiscard]] RaySamples<float> SamplesOf(const AirEye& eye, const AirMap& map,
                                             const Reach& reach) const {
     const double mu = reach.row.mu;
@@ -234,19 +235,19 @@ class RowOfRays {
   RaySamples<float> samples_;
 };
 
-/// Columns [km] from samples to the sun.
+/// Columns [km] between samples and the sun.
 struct SunColumns {
   std::vector<float> rayleigh, mie, ozone;
 };
 
-/// Light scattered once along the rays of one row, up to each distance.
+/// Single scattering along the rays of one row, up to each distance.
 class SingleOfRow {
  public:
   SingleOfRow(const AirIntegrator<float>& air, const AirPhases& phases, const AirEye& eye,
               const AirMap& map, const Reach& reach, const RowOfRays& rays)
       : air_(air), phases_(phases), eye_(eye), map_(map), reach_(reach), rays_(rays) {}
 
-  /// @param nu_seen  of where the sun is seen.
+  /// @param nu_seen  cosine between the ray and the direction in which the sun is seen.
   [[nodiscard]] std::vector<glm::vec4> Along(double nu, double nu_seen) const {
     const ViewRay ray{eye_.altitude_m, reach_.row.mu, eye_.mu_s, nu};
     const RayExtent extent{reach_.begin_m, reach_.end_m, RayEnd::kLength};
@@ -268,7 +269,7 @@ class SingleOfRow {
     return {row(samples.sun_rayleigh), row(samples.sun_mie), row(samples.sun_ozone)};
   }
 
-  // Of samples that were taken under another sun.
+  // Returns the columns for samples that were taken with another sun direction.
   [[nodiscard]] SunColumns SunOf(const RaySamples<float>& samples, double nu) const {
     const auto eye = static_cast<float>((map_.radius + map_.altitude) * eye_.mu_s);
     const auto radius = static_cast<float>(map_.radius);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What the tables of the air share while they are made: directions of their texels, values of four
-// bands, and what texels are divided by.
+// Provides functions that compute the tables of the air: directions of texels, values of four
+// bands, phase functions, and the twilight factor by which texels are divided.
 #pragma once
 
 #include <array>
@@ -13,13 +13,13 @@
 
 namespace alpenglow::viewer {
 
-/// Node i of n over [0, 1].
+/// Returns the position of node i of n in [0, 1].
 [[nodiscard]] inline double Unit(int i, int n) { return static_cast<double>(i) / (n - 1); }
 
 [[nodiscard]] glm::vec4 Vec4Of(const Bands<float>& bands);
 [[nodiscard]] glm::vec4 Vec4Of(const std::array<float, kMaxBands>& per_band, std::size_t bands);
 
-/// a / b, and 0 where either is not positive.
+/// Returns a / b, and 0 where either is not positive.
 [[nodiscard]] inline glm::vec4 Quotient(const glm::vec4& a, const glm::vec4& b) {
   glm::vec4 quotient(0.0F);
   for (glm::length_t band = 0; band < 4; ++band)
@@ -27,23 +27,24 @@ namespace alpenglow::viewer {
   return quotient;
 }
 
-/// A row of directions of one zenith angle [rad], with its cosine and sine.
+/// A row of directions with one zenith angle [rad], its cosine and its sine.
 struct AirRow {
   bool ground;
   double zenith_angle, mu, sine;
 };
 
-/// Rows from the horizon up to sky_range, then rows from the horizon down.
+/// Returns rows from the horizon up to sky_range, followed by rows from the horizon down.
 [[nodiscard]] std::vector<AirRow> RowsOf(const AirMap& map, int sky, double sky_range, int ground);
-/// Of columns, from the sun's.
+/// Returns the azimuths of columns from that of the sun.
 [[nodiscard]] std::vector<double> AzimuthsOf(int columns);
-/// Cosine between a direction and the sun.
+/// Returns the cosine between a direction and the sun.
 [[nodiscard]] double SunCosineOf(const AirRow& row, double mu_s, double azimuth);
 
-/// Phase functions as shaders read them.
+/// Phase functions as evaluated by shaders.
 class AirPhases {
  public:
-  /// @param nodes  of the aerosol, kept by the caller: as MediumTables::phase.
+  /// @param nodes  phase function of the aerosol, as in MediumTables::phase; the caller keeps it
+  ///     alive.
   explicit AirPhases(const AirTexels& nodes) : nodes_(nodes) {}
 
   [[nodiscard]] static float OfMolecules(double nu);
@@ -53,10 +54,10 @@ class AirPhases {
   const AirTexels& nodes_;
 };
 
-/// AirTwilight of air_map.glsl at a distance of a ray.
+/// Returns AirTwilight of air_map.glsl at a distance along a ray.
 [[nodiscard]] float TwilightAt(const AirMap& map, double mu_s, double nu, double distance_km);
 
-/// Fills single, diffuse and extinction; the rest must be there.
+/// Fills single, diffuse and extinction of the tables; all other members must be set.
 void FillWays(const AirIntegrator<float>& air, const DiffuseLight& diffuse, const AirPhases& phases,
               AirTables& tables);
 

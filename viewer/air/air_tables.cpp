@@ -15,7 +15,8 @@
 namespace alpenglow::viewer {
 namespace {
 
-// Angle below the horizontal at which rays from altitude h touch the sphere of altitude z <= h.
+// Returns the angle below the horizontal at which rays from altitude h are tangent to the sphere of
+// altitude z <= h.
 double DipTo(double z, double h, double radius) {
   const double depth = std::max(h - z, 0.0);
   const double r = radius + h;
@@ -36,7 +37,7 @@ AirMap::AirMap(const Medium& medium, double altitude_m, double ceiling_m, double
       ground_range(0.5 * kPi - horizon_dip),
       twilight_fall(twilight_fall_),
       twilight_reference(altitude > ceiling ? radius : radius + altitude) {
-  // From above all land, what is seen of its air is seen through all of the rest.
+  // An eye above all land sees the air below the ceiling through all of the air above it.
   const double layers = altitude * kMetresPerKilometre / medium.rayleigh_scale_height_m;
   sky_crowding = ground_crowding = altitude > ceiling ? 0.0 : 6.0 / (1.0 + layers) - 2.0;
 }
@@ -47,8 +48,9 @@ constexpr std::size_t kBands = 4;
 constexpr int kPhaseNodes = 4096;
 constexpr int kSunCosines = 256, kSunAltitudes = 64;
 
-// What molecules, aerosol and all else give in the direction of the sun, or in the one of its
-// azimuth that is nearest to it and sees air. Where that is dark, each as much as the others.
+// Returns the contributions of molecules, aerosol and everything else in the direction of the sun,
+// or in the nearest direction of its azimuth that passes through air. In bands without light there,
+// all three are equal.
 std::array<glm::vec4, 3> SkyMix(const AirIntegrator<float>& air, const SkyView& view,
                                 const AirMap& map, const AirPhases& phases, const AirEye& eye) {
   const double sun = eye.zenith_angle_seen_rad();
@@ -137,8 +139,8 @@ AirTexels ThroughTexels(const AirIntegrator<float>& air, const AirMap& map, cons
   return texels;
 }
 
-/// Shares of the two phase functions in what the air about the eye, or a little over the ground,
-/// scatters.
+/// Returns the fractions of the two phase functions in the light that air scatters at the altitude
+/// of the eye, at most 1500 m.
 std::array<glm::vec4, 2> SingleMix(const AirIntegrator<float>& air, const AirMap& map) {
   constexpr double kHighest = 1500.0;
   const Medium& medium = air.medium();
@@ -195,7 +197,7 @@ AirTablesSize AirTablesSizeOf(AirQuality quality, double altitude_m) {
       break;
   }
   AirTablesSize high = with(192, 1.5, 33, 65, 24);
-  // In deep dusk light falls by half within a pixel's height over the horizon.
+  // In deep dusk the light halves within the height of a pixel above the horizon.
   high.sky_rows = 288;
   return high;
 }
@@ -236,7 +238,7 @@ MediumTables MakeMediumTables(const AirIntegrator<float>& air, const BentBeam& b
     for (std::size_t band = 0; band < phase.size(); ++band)
       tables.phase.At(k, 0)[static_cast<glm::length_t>(band)] = static_cast<float>(phase[band]);
   }
-  constexpr double kHair = 1e-9;  // above the horizon
+  constexpr double kHair = 1e-9;  // offset above the horizon
   const double radius = air.medium().planet_radius_m / kMetresPerKilometre;
   const double top = air.medium().atmosphere_height_m / kMetresPerKilometre;
   for (int y = 0; y < kSunAltitudes; ++y) {

@@ -1,23 +1,24 @@
 // SPDX-License-Identifier: MIT
-// The air of one eye and one sun as tables that a graphics card interpolates: sky, light scattered
-// into a ray up to any distance on it, and transmittance. Per unit solar irradiance [1/sr]; texels
-// of four floats hold one value a band.
+// Provides the tables of the air for one eye and one sun, which the GPU interpolates: the sky,
+// light scattered into a ray up to any distance along it, and transmittance. Light is per unit
+// solar irradiance [1/sr]. Texels of four floats hold one value per band.
 //
-// What is stored changes little from texel to texel. Light of the sky is divided by a mix of phase
-// functions with the shares that they have near the sun,
+// The stored quantities vary little between texels. Light of the sky is divided by a mix of phase
+// functions with the fractions that they have near the sun,
 //
 //   L(direction) = sky(direction) [p_R(nu) m_R + p_M(nu) m_M + m_0],
 //
-// nu the cosine of the angle to where the sun is seen, so that an aureole is as sharp as the phase function at the pixel; p_M has with it the glow of light that
-// aerosol scatters more than once. Light on the way to a point is
-// divided by 1 - T as well, T the transmittance on that way: a mean source, which hardly changes
+// where nu is the cosine of the angle to the direction in which the sun is seen. An aureole is
+// therefore as sharp as the phase function at the pixel. Here p_M includes the glow of light that
+// aerosol scatters more than once. Light scattered on the way to a point is also divided by 1 - T,
+// where T is the transmittance along the way. The result is a mean source, which hardly changes
 // with distance,
 //
 //   S(direction, d) = single (1 - T) [p_R(nu) a_R + p_M(nu) a_M],
 //   D(direction, d) = diffuse (1 - T),   T = exp(-d extinction)
 //
-// S is sunlight scattered once where the planet's own shadow lets it in, terrain left out; D all
-// light scattered more than once. Axes: air_map.glsl.
+// S is sunlight scattered once outside of the planet's own shadow, without the shadows of terrain.
+// D is all light scattered more than once. air_map.glsl defines the axes.
 //
 // This header also reads the shared text air_map.glsl as C++.
 #pragma once
@@ -43,39 +44,40 @@ namespace alpenglow::shared {
 
 namespace alpenglow::viewer {
 
-/// The axes of one eye's tables. Angles in radians, lengths in km.
+/// Axes of the tables of one eye. Angles are in radians, lengths in km.
 struct AirMap {
-  /// @param ceiling_m  that no land exceeds.
+  /// @param ceiling_m  upper bound of the height of land.
   AirMap(const Medium& medium, double altitude_m, double ceiling_m, double twilight_fall_);
 
   double altitude, ceiling, top, radius;
-  double horizon_dip;         // of the horizon below the horizontal
+  double horizon_dip;         // angle of the horizon below the horizontal
   double sky_range;           // from the horizon up to the zenith or to the upper edge of the air
   double air_sky_range;       // up to the zenith or to where rays miss all land
   double ground_range;        // from the horizon down to the nadir
-  double twilight_fall;       // of DiffuseGrid
-  double twilight_reference;  // radius about where the light comes from
-  double sky_crowding, ground_crowding;  // of distances
+  double twilight_fall;       // twilight_fall of DiffuseGrid
+  double twilight_reference;  // approximate radius at which the light is scattered
+  double sky_crowding, ground_crowding;  // crowding of the distances
 };
 
 struct AirTablesSize {
-  int sky_columns, sky_rows, sky_ground_rows;  // of the sky
-  double sky_fineness;  // of the SkyView that it is read from: times the nodes of SkyViewSizeFor
-  int columns, rows, ground_rows, distances;  // of ways to a point
+  int sky_columns, sky_rows, sky_ground_rows;  // size of the table sky
+  double sky_fineness;  // node counts of its SkyView, relative to SkyViewSizeFor
+  int columns, rows, ground_rows, distances;  // size of the tables single and diffuse
   int extinction_rows, extinction_ground_rows, extinction_distances;
-  int through_rows, through_ground_rows;  // of TransmittanceToSpace
+  int through_rows, through_ground_rows;  // size of the table to_space
   bool operator==(const AirTablesSize&) const = default;
 };
 
-/// How fine tables are. Each step is about twice as exact and takes about twice as long to make.
+/// Resolution of tables. Each step halves the error approximately and doubles the computation time.
 enum class AirQuality { kFirst, kLow, kMedium, kHigh };
 
-/// From high up rows are longer, because the terminator crosses them, and ways through the air
-/// below short. kFirst is for a first frame that must not wait. No side of a texture is a power of
-/// two (gl_objects.h): qualities change while one flies.
+/// Returns the size of the tables. For a high eye there are more columns, because the terminator
+/// crosses the rows, and fewer distances, because paths through the air below are short. kFirst is
+/// for a first frame that must not wait. No side of a texture is a power of two (gl_objects.h),
+/// because the quality changes during a flight.
 [[nodiscard]] AirTablesSize AirTablesSizeOf(AirQuality quality, double altitude_m);
 
-/// Texels of four floats, x fastest.
+/// A table of texels of four floats, x fastest.
 struct AirTexels {
   AirTexels(int width_, int height_, int depth_ = 1)
       : width(width_),
@@ -95,51 +97,53 @@ struct AirTexels {
   }
 };
 
-/// Eye and sun that tables are for.
+/// Eye and sun of the tables.
 struct AirEye {
-  double altitude_m = 0.0;  // below 0: as at 0
-  double mu_s = 1.0;        // cosine of the zenith angle at the eye of the sun that lights the air
-  double ceiling_m = 9000.0;       // no land is higher
-  double lower_for_air_rad = 0.0;  // by how much that sun stands lower than where it is seen
+  double altitude_m = 0.0;         // values below 0 are treated as 0
+  double mu_s = 1.0;               // zenith cosine at the eye of the sun that illuminates the air
+  double ceiling_m = 9000.0;       // upper bound of the height of land
+  double lower_for_air_rad = 0.0;  // elevation of the sun as seen minus that of this sun
 
-  /// This cosine is of the sun where it is seen: aureoles are about it.
+  /// Returns the zenith angle at which the sun is seen. Aureoles are centred on it.
   [[nodiscard]] double zenith_angle_seen_rad() const;
 };
 
-/// Plain data; never changed once made.
+/// Tables for one eye and sun. They are plain data and never modified after their construction.
 struct AirTables {
   AirTablesSize size;
   AirEye eye;
   AirMap map;
   std::array<glm::vec4, 3> sky_mix;     // m_R, m_M, m_0
   std::array<glm::vec4, 2> single_mix;  // a_R, a_M
-  /// Phase function of whole rays: MediumTables::phase with the glow about the sun (DiffuseLight::GlowFactor).
+  /// Phase function for whole rays: MediumTables::phase with the glow around the sun
+  /// (DiffuseLight::GlowFactor).
   AirTexels sky_phase;
   AirTexels sky;         // [azimuth, row]: rows above the horizon, then rows below it
   AirTexels to_space;    // [row]: transmittance of whole rays, to space or to the bare ground
-  AirTexels extinction;  // [distance, row]: mean on the way [1/km]
+  AirTexels extinction;  // [distance, row]: mean along the path [1/km]
   AirTexels single;      // [azimuth, row, distance]
   AirTexels diffuse;
 };
 
-/// Throws InputError for a medium of more bands than a texel has.
+/// Throws InputError if the medium has more bands than a texel.
 void RequireFourBands(const Medium& medium);
 
-/// What depends on the medium alone.
+/// Tables that depend on the medium alone.
 struct MediumTables {
   /// Phase function of the aerosol, [node]: PhaseNode of phase.glsl, from forward to backward.
   AirTexels phase;
-  /// On the map of transmittance_map.glsl, [zenith cosine, altitude]: transmittance of straight rays
-  /// to space, by which air is lit, and over it what is left of the beam of a disk on ground and fog
-  /// (BentBeam::Left).
+  /// On the map of transmittance_map.glsl, [zenith cosine, altitude]: the first half of the rows
+  /// holds the transmittance of straight rays to space, by which air is illuminated. The second half
+  /// holds the transmitted fraction of the beam of a disk on ground and fog (BentBeam::Left).
   AirTexels to_sun;
 };
 
-/// @param beam  of the medium of `air`.
+/// @param beam  beam of the medium of `air`.
 [[nodiscard]] MediumTables MakeMediumTables(const AirIntegrator<float>& air, const BentBeam& beam);
 
-/// On the calling thread alone. `air`, `diffuse` and `medium` must be of one medium; neither is
-/// kept. Throws InputError for a medium of more than four bands.
+/// Computes the tables on the calling thread alone. `air`, `diffuse` and `medium` must belong to
+/// one medium; no reference to them is kept. Throws InputError for a medium of more than four
+/// bands.
 [[nodiscard]] AirTables MakeAirTables(const AirIntegrator<float>& air, const DiffuseLight& diffuse,
                                       const MediumTables& medium, const AirEye& eye,
                                       const AirTablesSize& size);

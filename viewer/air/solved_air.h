@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: MIT
-// What lights a sky.
-//
-// Air as a pilot changes it: visibility, aerosol, ozone, ground.
-//
-// A medium with all of its light: what every table of the viewer is made from.
+// Provides SolvedAir, a medium with all data that the tables of the viewer are computed from,
+// AirChoice, the changes of a medium by the user (visibility, aerosol, ozone, ground), and the
+// light sources of a sky.
 #pragma once
 
 #include <cstddef>
@@ -26,31 +24,35 @@ inline constexpr std::size_t kLightSources = 2;
   return source == LightSource::kSun ? LightSource::kMoon : LightSource::kSun;
 }
 
-/// Changes of a medium; what is left out stays.
+/// Changes of a medium; unset values keep those of the medium.
 struct AirChoice {
-  double aerosol = 1.0;                 // times as much as the medium has, [0, 1000]
-  std::optional<double> ozone_du;       // of the column, [0, 10000]
+  double aerosol = 1.0;                 // factor on the aerosol of the medium, [0, 1000]
+  std::optional<double> ozone_du;       // of the whole column, [0, 10000]
   std::optional<double> ground_albedo;  // [0, 1], in all bands
 };
 
-/// Throws InputError naming what is out of range.
+/// Returns the changed medium. Throws InputError that names the value out of range.
 [[nodiscard]] Medium Changed(Medium medium, const AirChoice& choice);
 
-/// Koschmieder's visibility at altitude 0 in the band nearest to 550 nm [m]; infinite in a vacuum.
+/// Returns Koschmieder's visibility at altitude 0 in the band nearest to 550 nm [m]; infinite in a
+/// vacuum.
 [[nodiscard]] double VisibilityOf(const Medium& medium);
-/// The same at an altitude, of molecules and aerosol there and of what else takes light.
+/// Returns Koschmieder's visibility at an altitude [m], from the extinction of molecules and
+/// aerosol there and of fog.
 /// @param more_per_m  extinction of fog [1/m].
 [[nodiscard]] double VisibilityAt(const Medium& medium, double altitude_m, double more_per_m);
-/// AirChoice::aerosol for a visibility [m]: 0 where molecules alone leave no more, 1000 at most.
+/// Returns AirChoice::aerosol for a visibility [m]: 0 where molecules alone already reduce it
+/// further, 1000 at most.
 [[nodiscard]] double AerosolForVisibility(const Medium& medium, double visibility_m);
-/// Of the column, in the band that absorbs most; 0 without ozone.
+/// Returns the ozone of the column in Dobson units, from the band that absorbs most; 0 without
+/// ozone.
 [[nodiscard]] double OzoneDobson(const Medium& medium);
 
-/// How well: a draft takes a third of the time; irradiance from its sky is good to 3 % by day, 6 %
-/// in twilight.
+/// Accuracy of a solution. A draft takes a third of the time; irradiance from its sky is accurate
+/// to 3 % by day and 6 % in twilight.
 enum class AirSolution { kDraft, kFull };
 
-/// Immutable, safe to share between threads.
+/// A solved medium. It is immutable and can be shared between threads.
 struct SolvedAir {
   Medium medium;
   AirSolution solution;
@@ -59,8 +61,8 @@ struct SolvedAir {
   MediumTables tables;
 };
 
-/// On the calling thread alone, so that drawing keeps the other processors. Throws InputError for a
-/// medium that Validate refuses or of more than four bands.
+/// Solves the medium on the calling thread alone, so that drawing keeps the other processors.
+/// Throws InputError for a medium that Validate rejects or that has more than four bands.
 [[nodiscard]] std::shared_ptr<const SolvedAir> SolveAir(const Medium& medium,
                                                         AirSolution solution = AirSolution::kFull);
 
