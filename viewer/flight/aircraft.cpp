@@ -12,14 +12,14 @@
 namespace alpenglow::viewer {
 namespace {
 
-constexpr double kWheels_m = 1.5;   // of the pilot's eye over the ground, standing
-constexpr double kHandsOff = 0.02;  // of the stick's way
+constexpr double kWheels_m = 1.5;   // height of the pilot's eye above the ground, standing
+constexpr double kHandsOff = 0.02;  // as a fraction of the stick's travel
 constexpr double kSeaDensity_kg_per_m3 = 1.225;
 
-/// Where and in what air it flies.
+/// Position and air around the aircraft.
 struct Surroundings {
   GeodeticPosition place;
-  glm::dvec3 up, north, east;  // of the ellipsoid, earth-fixed
+  glm::dvec3 up, north, east;  // at the ellipsoid, earth-fixed
   double gravity_m_per_s2, radius_m;
   StandardAir air;
 };
@@ -39,7 +39,8 @@ Surroundings SurroundingsAt(const Ellipsoid& ellipsoid, const Point<Ecef>& point
           StandardAirAt(place.height_m)};
 }
 
-/// `vector` without its part along a unit vector, at length 1; `otherwise` where nothing is left.
+/// Returns the part of `vector` perpendicular to a unit vector, normalised; `otherwise` if that
+/// part is zero.
 glm::dvec3 UnitAcross(const glm::dvec3& vector, const glm::dvec3& along,
                       const glm::dvec3& otherwise) {
   const glm::dvec3 across = vector - glm::dot(vector, along) * along;
@@ -74,7 +75,8 @@ double DragCoefficient(const AircraftKind& kind, double lift_coefficient, double
          20.0 * over * over * over * over;
 }
 
-/// Dynamic pressure times the wing's area [N], as far as the air comes from ahead.
+/// Returns the dynamic pressure times the area of the wing [N], for the part of the air flow from
+/// ahead.
 double PressureOnWing(const AircraftState& state, const AircraftKind& kind,
                       const Surroundings& here) {
   const double speed = glm::length(state.velocity.xyz);
@@ -99,7 +101,7 @@ glm::dvec3 Acceleration(const AircraftState& state, const AircraftKind& kind,
   const double pressure_N = PressureOnWing(state, kind, here);
   const double coefficient = LiftCoefficient(state, kind, here);
   const double drag = DragCoefficient(kind, coefficient, speed / here.air.sound_m_per_s);
-  // Drag is there from whichever side the air comes.
+  // Drag is independent of the direction of the air flow.
   const double drag_N = 0.5 * here.air.density_kg_per_m3 * speed * speed * kind.wing_area_m2 * drag;
   const glm::dvec3 force =
       state.throttle * ThrustAt(kind, here, speed) * state.ahead.xyz +
@@ -112,8 +114,8 @@ double Followed(double value, double target, double time_s, double step_s) {
   return target + (value - target) * std::exp(-step_s / time_s);
 }
 
-/// Load that keeps the path as steep as it is. At more than 60 degrees of bank wings would have to
-/// carry more than twice the weight: there the path bends down.
+/// Returns the load factor that keeps the path angle. A bank of more than 60 degrees would need
+/// more than twice the weight, so there the path bends down.
 double LoadOfSteadyPath(const AircraftState& state, const Surroundings& here) {
   const double cos_bank = std::cos(BankOf(state, here));
   const double cos_path = std::cos(PathOf(state, here));
@@ -125,19 +127,21 @@ double LoadOfSteadyPath(const AircraftState& state, const Surroundings& here) {
   return weight * share;
 }
 
-/// What is held of an angle when the stick is let go: nothing of a small one, and not too much.
+/// Returns the angle that is held when the stick is released: 0 for a small angle, otherwise the
+/// angle clamped to a maximum.
 double HeldAngle(double angle_rad, double level_deg, double most_deg) {
   if (std::abs(angle_rad) < level_deg * kRadiansPerDegree) return 0.0;
   return std::clamp(angle_rad, -most_deg * kRadiansPerDegree, most_deg * kRadiansPerDegree);
 }
 
-/// The computer between stick and wings.
+/// Output of the flight computer.
 struct Demand {
   double load, roll_rate_rad_per_s, held_path_rad, held_bank_rad;
   bool stalled;
 };
 
-/// What the speed lacks to 1.25 times the stall speed, in stall speeds.
+/// Returns the difference between 1.25 times the stall speed and the speed, in stall speeds, at
+/// least 0.
 double SpeedLacking(double wing_limit, double load) {
   constexpr double kSlowest = 1.25;
   return std::max(kSlowest - std::sqrt(wing_limit / std::max(load, 0.5)), 0.0);
@@ -147,13 +151,13 @@ void HoldPath(const AircraftState& state, const AircraftKind& kind, const Surrou
               double wing_limit, double step_s, Demand& demand) {
   constexpr double kPerSecond = 0.8, kSteeper_rad = 1.5, kForgetPerSecond = 4.0;
   const double speed = glm::length(state.velocity.xyz);
-  // What has no power glides: a path that is steeper by so much as the speed lacks.
+  // Without power the aircraft glides: the path is steeper in proportion to the missing speed.
   const double lacking = SpeedLacking(wing_limit, demand.load);
   const double path = std::max(state.held_path_rad - kSteeper_rad * lacking, -0.45 * kPi);
   const double back = kPerSecond * (path - PathOf(state, here)) * speed / kStandardGravity_m_per_s2;
   demand.load = std::clamp(demand.load + std::clamp(back, -1.0, 1.0), kind.least_load,
                            std::min(kind.most_load, wing_limit));
-  // A climb that cannot be held is forgotten, down to level flight.
+  // The held climb angle decays towards level flight if the aircraft cannot maintain it.
   demand.held_path_rad = state.held_path_rad > 0.0
                              ? state.held_path_rad * std::exp(-kForgetPerSecond * lacking * step_s)
                              : state.held_path_rad;
@@ -186,7 +190,8 @@ void DemandRoll(const AircraftState& state, const AircraftKind& kind, const Surr
   demand.held_bank_rad = HeldAngle(bank, 5.0, 45.0);
   if (std::abs(roll_right) >= kHandsOff) return;
   demand.held_bank_rad = state.held_bank_rad;
-  // There is no bank about a vertical path, and who pulls hard flies a figure.
+  // Do not hold the bank on a vertical path, where it is undefined, or while the stick is pulled
+  // hard for aerobatics.
   constexpr double kFigure = 0.5;
   if (std::abs(PathOf(state, here)) > kSteepest_rad || std::abs(stick.pitch_up) > kFigure) return;
   const double most = 0.5 * kind.roll_rate_rad_per_s;
@@ -194,7 +199,7 @@ void DemandRoll(const AircraftState& state, const AircraftKind& kind, const Surr
       std::clamp(kPerSecond * std::remainder(demand.held_bank_rad - bank, 2.0 * kPi), -most, most);
 }
 
-/// Hands, computer, servos and engine: what is asked for comes a little later.
+/// Applies stick, computer, servos and engine: the state follows the commands with a delay.
 AircraftState Commanded(const AircraftState& state, const AircraftKind& kind,
                         const Surroundings& here, const Stick& stick, double step_s) {
   constexpr double kThrottlePerSecond = 0.5, kMostSlip_rad = 10.0 * kRadiansPerDegree;
@@ -214,7 +219,8 @@ AircraftState Commanded(const AircraftState& state, const AircraftKind& kind,
   return next;
 }
 
-/// Midpoint rule: the error of a second's way is (step)^2 times the third derivative / 24.
+/// Integrates one step by the midpoint rule: the position error per second is (step)^2 times the
+/// third derivative / 24.
 AircraftState Moved(const AircraftState& state, const AircraftKind& kind,
                     const Ellipsoid& ellipsoid, double step_s) {
   AircraftState middle = state;
@@ -231,8 +237,8 @@ glm::dvec3 TurnedAbout(const glm::dvec3& axis, double angle_rad, const glm::dvec
          (1.0 - std::cos(angle_rad)) * glm::dot(axis, vector) * axis;
 }
 
-/// The nose goes after the path, like a weathercock; the wings come along without rolling
-/// (parallel transport), and roll as asked.
+/// Turns the nose towards the path, like a weathercock. The wings turn with it without rolling
+/// (parallel transport), and then roll at the commanded rate.
 AircraftState Pointed(const AircraftState& state, double step_s) {
   constexpr double kFastest_rad_per_s = 2.5, kSlowest_m_per_s = 1.0;
   AircraftState next = state;
@@ -251,13 +257,13 @@ AircraftState Pointed(const AircraftState& state, double step_s) {
   return next;
 }
 
-/// Upwards from the slope under a place.
+/// Returns the upward normal of the slope under a place.
 glm::dvec3 SlopeNormal(const Ellipsoid& ellipsoid, const Surroundings& here,
                        const GroundHeight& ground) {
   constexpr double kStep_m = 5.0;
   const LocalFrame frame(ellipsoid, here.place);
   const auto at = [&](double east_m, double north_m) {
-    // The point is so high that ground of up to 45 degrees lies under it.
+    // The sample point is high enough to be above ground of up to 45 degrees.
     return ground(frame.GeodeticFromEnu(Point<Enu>{{east_m, north_m, kStep_m}}));
   };
   const double east = (at(kStep_m, 0.0) - at(-kStep_m, 0.0)) / (2.0 * kStep_m);
@@ -265,8 +271,8 @@ glm::dvec3 SlopeNormal(const Ellipsoid& ellipsoid, const Surroundings& here,
   return glm::normalize(here.up - east * here.east - north * here.north);
 }
 
-/// What the ground leaves of a velocity: a hard touch bounces, friction brakes, what is slow and
-/// has no power stands.
+/// Returns the velocity after contact with the ground: a hard touchdown bounces, friction reduces
+/// the speed, and a slow aircraft without power stops.
 glm::dvec3 Braked(const AircraftState& state, const glm::dvec3& normal, bool hard, double brake,
                   double step_s) {
   constexpr double kBounce = 0.25, kRolling = 0.03, kBraking = 0.4, kScraping = 0.6;
@@ -285,7 +291,7 @@ glm::dvec3 Braked(const AircraftState& state, const glm::dvec3& normal, bool har
 AircraftState OnGround(const AircraftState& state, const Ellipsoid& ellipsoid,
                        const Surroundings& here, double ground_m, const GroundHeight& ground,
                        double brake, double step_s) {
-  constexpr double kHard_m_per_s = 3.0, kUpright = 0.87;  // 30 degrees
+  constexpr double kHard_m_per_s = 3.0, kUpright = 0.87;  // cosine of 30 degrees
   const glm::dvec3 normal = SlopeNormal(ellipsoid, here, ground);
   const bool hard = glm::dot(state.velocity.xyz, normal) < -kHard_m_per_s ||
                     glm::dot(state.up.xyz, normal) < kUpright ||
@@ -295,7 +301,7 @@ AircraftState OnGround(const AircraftState& state, const Ellipsoid& ellipsoid,
   lifted.height_m = ground_m + kWheels_m;
   next.place = EcefFromGeodetic(ellipsoid, lifted);
   next.velocity.xyz = Braked(state, normal, hard, brake, step_s);
-  // It settles on its wheels, and a new path begins level with the slope.
+  // The aircraft settles on its wheels, and its new path is parallel to the slope.
   next.ahead.xyz = UnitAcross(state.ahead.xyz, normal, state.ahead.xyz);
   const double share = 1.0 - std::exp(-step_s / 0.3);
   next.up.xyz = UnitAcross(state.up.xyz + share * normal, next.ahead.xyz, state.up.xyz);

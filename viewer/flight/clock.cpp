@@ -43,8 +43,9 @@ std::optional<SunEvent> SunEventOf(SkyEvent event) {
   }
 }
 
-/// Whether the sun of the day comes so high and so low that the event can happen, give or take 2
-/// degrees: its declination moves by 0.4 a day. Of a polar night, most days need no search.
+/// Returns whether the sun of the day reaches the elevations of the event, with a margin of 2
+/// degrees: its declination changes by 0.4 degrees a day. Most days of a polar night need no
+/// search.
 bool CanHappen(SunEvent event, const GeodeticPosition& place, const UtcInstant& day) {
   constexpr double kMargin_rad = 2.0 * kRadiansPerDegree, kTwilight_rad = -6.0 * kRadiansPerDegree;
   if (event == SunEvent::kNoon) return true;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The clock of the scene: it runs at a rate, stands, and jumps to what the sun and the moon do.
+// Provides the clock of the scene. It runs at a rate, pauses, and jumps to events of the sun and
+// the moon.
 #pragma once
 
 #include <array>
@@ -13,53 +14,56 @@
 
 namespace alpenglow::viewer {
 
-/// Seconds of the scene per second of the pilot, one step faster (+1) or slower (-1) than `rate`:
-/// ..., -60, -10, -1, 0, 1, 10, 60, ... up to 3600 either way.
+/// Returns the rate that is one step faster (+1) or slower (-1) than `rate`, in scene seconds per
+/// real second: ..., -60, -10, -1, 0, 1, 10, 60, ... up to 3600 in both directions.
 [[nodiscard]] double SteppedTimeRate(double rate, int step);
 
-/// What one waits for. Dawn and dusk are the civil ones (the sun 6 degrees below the horizon).
+/// Events of the sun and the moon. Dawn and dusk are the civil ones (the sun is 6 degrees below the
+/// horizon).
 enum class SkyEvent { kDawn, kSunrise, kNoon, kSunset, kDusk, kMoonrise, kMoonset };
 inline constexpr std::array<SkyEvent, 7> kSkyEvents{
     SkyEvent::kDawn, SkyEvent::kSunrise,  SkyEvent::kNoon,   SkyEvent::kSunset,
     SkyEvent::kDusk, SkyEvent::kMoonrise, SkyEvent::kMoonset};
-/// "dawn", "sunrise", ...
+/// Returns "dawn", "sunrise", ...
 [[nodiscard]] const char* NameOf(SkyEvent event);
 
-/// The next moonrise or moonset after an instant.
+/// Returns the next moonrise or moonset after an instant.
 using MoonEventAfter = std::function<std::optional<UtcInstant>(
     SkyEvent event, const GeodeticPosition& place, const UtcInstant& after)>;
 
-/// The next time that it happens at a place, more than a second after an instant; nothing when it
-/// does not happen within 366 days. `moon` says it of the moon; without it there is no moon.
-/// Instants of the sun as FindSunEvent has them.
+/// Returns the next occurrence of an event at a place, more than a second after an instant; nullopt
+/// if it does not occur within 366 days. `moon` finds events of the moon; without it there are
+/// none. Instants of the sun are those of FindSunEvent.
 [[nodiscard]] std::optional<UtcInstant> NextEvent(SkyEvent event, const GeodeticPosition& place,
                                                   const UtcInstant& after,
                                                   const MoonEventAfter& moon = {});
 
-/// The clock. It knows the years 1900 to 2100 and stops at their ends.
+/// Clock of the scene. Its range is the years 1900 to 2100; it stops at their ends.
 class SceneClock {
  public:
   explicit SceneClock(const UtcInstant& start) : now_(start) {}
 
   [[nodiscard]] const UtcInstant& now() const { return now_; }
-  /// Seconds per second; kept while the clock is paused.
+  /// Rate in seconds per second; it is kept while the clock is paused.
   [[nodiscard]] double rate() const { return rate_; }
   [[nodiscard]] bool paused() const { return paused_; }
 
-  /// Lets real seconds pass.
+  /// Advances the clock by a number of real seconds.
   void Advance(double seconds);
   void Pause(bool paused) { paused_ = paused; }
   void StepRate(int step) { rate_ = SteppedTimeRate(rate_, step); }
-  /// Throws InputError when the rate is not in [-3600, 3600].
+  /// Throws InputError if the rate is not in [-3600, 3600].
   void SetRate(double rate);
 
-  /// Moves the hands, paused or not.
+  /// Shifts the time, whether the clock is paused or not.
   void Shift(double seconds);
   void Set(const UtcInstant& instant);
-  /// To the next one; false, and nothing is moved, when there is none within 366 days.
+  /// Jumps to the next occurrence of the event. Returns false and changes nothing if there is none
+  /// within 366 days.
   bool JumpToNext(SkyEvent event, const GeodeticPosition& place, const MoonEventAfter& moon = {});
-  /// To what is typed, as InstantFromText has it (renderer/series/time_text.h); the day is that of
-  /// the hands in the zone, but "today" and "now" are of the machine's clock. Throws InputError.
+  /// Sets the time from a text, as InstantFromText (renderer/series/time_text.h). The day is that
+  /// of this clock in the zone, but "today" and "now" refer to the clock of the computer. Throws
+  /// InputError.
   void Type(const std::string& text, const GeodeticPosition& place, const std::string& zone);
 
  private:

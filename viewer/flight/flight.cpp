@@ -12,7 +12,8 @@
 namespace alpenglow::viewer {
 namespace {
 
-/// Through a telescope the head turns slowly: 45 degrees a second in a view of 60 degrees.
+/// Returns the turn rate. It is proportional to the field of view, so that a telescopic view turns
+/// slowly, up to 45 degrees a second at 60 degrees.
 double TurnRate(const Eye& eye) { return 0.75 * std::min(eye.fov_rad, 60.0 * kRadiansPerDegree); }
 
 }  // namespace
@@ -68,7 +69,7 @@ Eye Steer(const Eye& eye, const Steering& steering, const Ellipsoid& ellipsoid,
   if (glm::length(step) == 0.0) return moved;
   const LocalFrame here(ellipsoid, moved.place);
   const GeodeticPosition there = here.GeodeticFromEnu(Point<Enu>{step});
-  // North turns under a moving eye; the direction of flight does not.
+  // North changes direction along the path; the direction of flight does not.
   const Vector<Ecef> ahead = here.EcefFromEnu(
       Vector<Enu>{{std::sin(moved.heading_rad), std::cos(moved.heading_rad), 0.0}});
   moved.place = there;
@@ -95,7 +96,7 @@ Eye FreeFlight(const Eye& eye, const Steering& steering, const Ellipsoid& ellips
 }
 
 Eye Turned(const Eye& eye, double right_rad, double up_rad) {
-  // To the right as it is seen is to the right and down where the head is rolled.
+  // In a rolled view, a turn to the right changes both heading and pitch.
   const double c = std::cos(eye.roll_rad), s = std::sin(eye.roll_rad);
   Eye turned = eye;
   turned.heading_rad = std::remainder(eye.heading_rad + c * right_rad + s * up_rad, 2.0 * kPi);

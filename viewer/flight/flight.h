@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// An eye that flies: where it is, where it looks, how keys and mouse move it.
+// Provides the eye of an interactive flight: its position, its direction, and its motion under keys
+// and mouse.
 #pragma once
 
 #include <optional>
@@ -10,21 +11,21 @@
 
 namespace alpenglow::viewer {
 
-/// Who moves the eye: the pilot freely, wings and engine, or a track that is followed.
+/// Control of the eye: a free camera, an aircraft, or a track that is followed.
 enum class FlightMode { kFree, kAircraft, kTrack };
 
-/// The eye. Angles in radians.
+/// Position, direction and field of view of the eye. Angles are in radians.
 struct Eye {
   GeodeticPosition place;               // height over the ellipsoid
   double heading_rad = 0.0;             // clockwise from north
-  double pitch_rad = 0.0;               // up is positive
+  double pitch_rad = 0.0;               // positive upwards
   double roll_rad = 0.0;                // clockwise seen from behind
   double fov_rad = 1.0471975511965976;  // horizontal
 
   bool operator==(const Eye&) const = default;
 };
 
-/// Where an eye is put, as people type it; what is left out stays as it is.
+/// Position and direction for an eye, as typed by the user; unset values remain unchanged.
 struct EyePlacement {
   std::optional<double> latitude_deg = {};
   std::optional<double> longitude_deg = {};
@@ -32,10 +33,11 @@ struct EyePlacement {
   std::optional<double> heading_deg = {};
   std::optional<double> pitch_deg = {};
 };
-/// The eye put there. Throws InputError naming the option for values out of range.
+/// Returns the eye moved by a placement. Throws InputError that names the option of a value out of
+/// range.
 [[nodiscard]] Eye Placed(const Eye& eye, const EyePlacement& placement);
 
-/// What the pilot asks for, each in [-1, 1].
+/// Inputs for the free camera, each in [-1, 1].
 struct Steering {
   double forward = 0.0;
   double right = 0.0;
@@ -45,34 +47,34 @@ struct Steering {
   double roll_right = 0.0;
 };
 
-/// Unit vectors of the view in the frame (east, north, up) at the eye.
+/// Unit vectors of the view, in the frame (east, north, up) at the eye.
 struct ViewAxes {
   glm::dvec3 right, up, forward;
 };
 [[nodiscard]] ViewAxes AxesOf(const Eye& eye);
 
-/// Speed of a free flight [m/s] at a height over the ground: walking pace on the ground, a
-/// mountain's height in seconds above it, kilometres a second in orbit.
+/// Returns the speed of the free camera [m/s] at a height over the ground: walking pace at the
+/// ground, the height of a mountain in seconds above it, kilometres per second in orbit.
 [[nodiscard]] double SpeedAt(double above_ground_m);
 
-/// The eye after `seconds` of steering at SpeedAt(above_ground_m). Forward is along the view; the
-/// path follows the ellipsoid. Pitch stops at the vertical.
+/// Returns the eye after `seconds` of steering at SpeedAt(above_ground_m). Forward motion is along
+/// the view; the path follows the ellipsoid. Pitch is limited to the vertical.
 [[nodiscard]] Eye Steer(const Eye& eye, const Steering& steering, const Ellipsoid& ellipsoid,
                         double above_ground_m, double seconds);
 
-/// The eye after `seconds` of steering at `speed_factor` times SpeedAt its height over the ground,
-/// in steps of a 60th of a second at most: a long frame ends where short ones do, within 1 % of the
-/// way. It never comes nearer to the ground than 1.5 m.
+/// Returns the eye after `seconds` of steering at `speed_factor` times SpeedAt its height over the
+/// ground, in steps of at most 1/60 s. One long frame therefore ends where several short ones do,
+/// within 1 % of the distance. The eye stays at least 1.5 m above the ground.
 [[nodiscard]] Eye FreeFlight(const Eye& eye, const Steering& steering, const Ellipsoid& ellipsoid,
                              const GroundHeight& ground, double speed_factor, double seconds);
 
-/// The eye turned [rad] to the right and up as it sees them, rolled or not.
+/// Returns the eye turned to the right and upwards [rad] in its own frame, which may be rolled.
 [[nodiscard]] Eye Turned(const Eye& eye, double right_rad, double up_rad);
 
-/// The eye with its field of view times `factor`, kept in [1, 120] degrees.
+/// Returns the eye with its field of view multiplied by `factor` and clamped to [1, 120] degrees.
 [[nodiscard]] Eye Zoomed(const Eye& eye, double factor);
 
-/// The eye lifted to at least `clearance_m` over ground of height `ground_m`.
+/// Returns the eye raised to at least `clearance_m` above ground of height `ground_m`.
 [[nodiscard]] Eye KeptAbove(const Eye& eye, double ground_m, double clearance_m);
 
 }  // namespace alpenglow::viewer

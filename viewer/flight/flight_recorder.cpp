@@ -21,7 +21,8 @@ Eye EyeOf(const CameraPose& pose) {
 }
 
 bool IsDue(double elapsed_s, double last_s, double interval_s) {
-  // Frames of a sixtieth of a second come in threes, so that half of one is no reason to wait.
+  // Tolerance for frame times: a point may be recorded slightly early instead of one frame late. At
+  // 60 frames a second every third frame is recorded.
   constexpr double kEarly_s = 0.005;
   return elapsed_s >= last_s + interval_s - kEarly_s;
 }
@@ -29,10 +30,11 @@ bool IsDue(double elapsed_s, double last_s, double interval_s) {
 struct FlightRecorder::State {
   std::filesystem::path name;
   GrowingFile file;
-  std::optional<double> begin_s, last_s;  // of the first and the last point
+  std::optional<double> begin_s, last_s;  // times of the first and the last point
   double synced_s = 0.0;
   std::optional<std::string> fault;
-  // A disk may take longer than a frame; the lines are in the system's hands already.
+  // Sync runs in another thread, because a disk may take longer than a frame. The lines are already
+  // in the system's buffers.
   LatestJob<int, int> sync{[this](const int& request) {
     file.Sync();
     return request;

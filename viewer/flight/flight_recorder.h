@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Flights written down as camera paths, and flown again.
-//
-// All that has been flown so far, to be flown again or written down.
+// Provides FlightRecorder, which writes a flight to a file as a camera path, functions to replay
+// such a file, and FlightLog, which keeps the current flight in memory to replay or save it.
 #pragma once
 
 #include <cstddef>
@@ -20,84 +19,87 @@ namespace alpenglow::viewer {
 [[nodiscard]] CameraPose PoseOf(const Eye& eye);
 [[nodiscard]] Eye EyeOf(const CameraPose& pose);
 
-/// Whether so much has passed since the point noted last that another one is to be noted.
+/// Returns whether the next point is due, given the time of the last recorded point.
 [[nodiscard]] bool IsDue(double elapsed_s, double last_s, double interval_s);
 
-/// Takes down where the eye is, 25 times a second at most, as it flies: FILE.part has every line
-/// before the next frame is drawn and becomes FILE when the flight ends, however it ends. After a
-/// SIGKILL FILE.part stays with all that was flown, after a loss of power with all but the last two
-/// seconds. Takes as much memory for a day as for a minute.
+/// Records the eye of a flight at most 25 times a second. Each line is in FILE.part before the next
+/// frame is drawn, and FILE.part becomes FILE when the flight ends, however it ends. After a
+/// SIGKILL, FILE.part contains the whole flight; after a loss of power, all but the last two
+/// seconds. The memory use does not grow with the length of a flight.
 class FlightRecorder {
  public:
   static constexpr double kInterval_s = 0.04;
 
-  /// Takes nothing down until it begins.
+  /// Records nothing until Begin is called.
   FlightRecorder();
-  /// Begins FILE.part; says so when it finds one, of a flight that was cut short, and keeps that
-  /// under another name. Throws OutputError, also when another process records into the file.
+  /// Begins FILE.part. An existing FILE.part of an interrupted flight is kept under another name,
+  /// and a message names it. Throws OutputError, also if another process records into the file.
   explicit FlightRecorder(const std::filesystem::path& file);
-  /// Finishes what is not finished; says what fails.
+  /// Finishes the current file and reports errors as messages.
   ~FlightRecorder();
   FlightRecorder(const FlightRecorder&) = delete;
   FlightRecorder& operator=(const FlightRecorder&) = delete;
 
-  /// Begins another file, as the constructor does; finishes the one before.
+  /// Begins another file as the constructor does, and finishes the current one.
   void Begin(const std::filesystem::path& file);
 
-  /// @param elapsed_s  since any moment; the file counts from the first point. Passed over when the
-  /// last point is too near. Of a file that takes no more is told once, and the flight goes on
-  /// without it.
+  /// Records a point. The point is skipped if the last one is too recent. If the file cannot be
+  /// written, one message reports it and the flight continues without recording.
+  /// @param elapsed_s  since any fixed instant; times in the file start at the first point.
   void Note(double elapsed_s, const Eye& eye, const UtcInstant& now);
 
-  /// What is being recorded into; nothing: nothing is.
+  /// Returns the file that is being recorded; nullopt if there is none.
   [[nodiscard]] std::optional<std::filesystem::path> file() const;
 
-  /// Gives the file its name; before the first Note there is none, which is said. Returns whether
-  /// there is a file. Throws OutputError, also for lines that the file has not taken.
+  /// Renames FILE.part to FILE. If nothing was recorded there is no file, and a message reports
+  /// this. Returns whether the file exists. Throws OutputError, also for lines that could not be
+  /// written.
   bool Finish();
 
  private:
   struct State;
-  std::unique_ptr<State> state_;  // none: takes nothing down
+  std::unique_ptr<State> state_;  // null: nothing is recorded
 };
 
-/// A recorded flight, or any camera path. A FILE.part is one that was cut short, and so is said.
-/// Throws InputError as ReadCameraPath; names FILE.part where that is there and FILE is not.
+/// Reads a recorded flight or any camera path. A message reports that a FILE.part belongs to an
+/// interrupted flight. Throws InputError as ReadCameraPath does; its text names FILE.part if that
+/// exists and FILE does not.
 [[nodiscard]] CameraPath ReadFlight(const std::filesystem::path& file);
 
-/// What a frame of a replay shows.
+/// Content of one frame of a replay.
 struct ReplayFrame {
   double path_s;
   Eye eye;
-  std::optional<UtcInstant> now;  // nothing: as the viewer's clock goes on
+  std::optional<UtcInstant> now;  // nullopt: the clock of the viewer continues
 };
 [[nodiscard]] ReplayFrame ReplayAt(const CameraPath& path, double path_s);
 
-/// Names of the pictures of a replay: "out.%04d.png" by number, one name for one picture. Throws
-/// InputError for several pictures under one name.
+/// Returns the names of the pictures of a replay: numbered for a pattern "out.%04d.png", or one
+/// name for one picture. Throws InputError for several pictures under one name.
 [[nodiscard]] std::vector<std::filesystem::path> ReplayPictures(const std::string& pattern,
                                                                 int count);
 
-/// A flight in memory that does not grow without end: points as often as FlightRecorder has them,
-/// and every second one of them, from then on half as often, each time that there would be too
-/// many. Of a day there is one every 2.6 s.
+/// A flight in memory of limited size. It begins with the points of FlightRecorder. Each time the
+/// limit is reached it drops every second point and doubles the interval. After a day the interval
+/// is 2.6 s.
 class FlightLog {
  public:
   static constexpr std::size_t kMostPoints = std::size_t{1} << 16;  // 7 MB, 43 minutes of all
+                                                                    // points
   explicit FlightLog(std::size_t most_points = kMostPoints) : most_(most_points) {}
 
-  /// @param elapsed_s  of flying; grows.
+  /// @param elapsed_s  time of flight; it increases.
   void Note(double elapsed_s, const Eye& eye, const UtcInstant& now);
 
-  /// From the first Note to the last one, from 0 s on. Throws InputError when nothing has been
-  /// flown.
+  /// Returns the path from the first to the last Note; it starts at 0 s. Throws InputError if the
+  /// eye has not moved.
   [[nodiscard]] CameraPath Path() const;
 
  private:
   std::size_t most_;
   double interval_s_ = FlightRecorder::kInterval_s;
   std::vector<CameraPathPoint> points_;
-  std::optional<CameraPathPoint> last_;  // of points_ or after them
+  std::optional<CameraPathPoint> last_;  // the eye has left its first position
   bool has_flown_ = false;               // the eye has been anywhere but where it began
 };
 

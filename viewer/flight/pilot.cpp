@@ -27,7 +27,7 @@ double BankToward(double heading_rad, const AircraftReadout& now) {
 }
 
 double PathFor(double climb_m_per_s, double speed_m_per_s) {
-  constexpr double kSteepest = 0.2;  // sine
+  constexpr double kSteepest = 0.2;  // sine of the path angle
   return std::asin(std::clamp(climb_m_per_s / std::max(speed_m_per_s, 1.0), -kSteepest, kSteepest));
 }
 
@@ -117,7 +117,7 @@ void Autopilot::FlyPath(const AircraftReadout& now, double from_m, double step_s
 }
 
 double Autopilot::ThrottleUp(const AircraftReadout& now, double step_s) const {
-  constexpr double kPerSecond = 0.5;  // of a lever that is pushed
+  constexpr double kPerSecond = 0.5;  // rate of a fully pushed lever
   const double before = speed_before_m_per_s_.value_or(now.speed_m_per_s);
   const double acceleration = (now.speed_m_per_s - before) / step_s;
   const double lacking = *targets_.speed_m_per_s - now.speed_m_per_s;
@@ -142,10 +142,11 @@ Autopilot::Flown Autopilot::Fly(const AircraftState& state, const AircraftKind& 
 namespace {
 
 constexpr double kStep_s = 1.0 / 120.0;
-constexpr double kStanding_m = 1.5;  // of the eye over the ground
-// Of a replay, which goes as low as it was flown; less and rounding would show land from below.
+constexpr double kStanding_m = 1.5;  // minimum height of the eye above the ground
+// Minimum height in a replay, which goes as low as the recorded flight. With a smaller value,
+// rounding errors could show the land from below.
 constexpr double kReplayed_m = 0.1;
-constexpr double kOnGround_m = 15.0;  // so near to it a flight begins on its wheels
+constexpr double kOnGround_m = 15.0;  // below this height a flight begins on the wheels
 
 }  // namespace
 

@@ -1,22 +1,22 @@
 // SPDX-License-Identifier: MIT
-// What hands say to whatever flies, in one frame.
+// Provides Pilot, which moves the eye as a free camera, in an aircraft or along a track, the
+// controls of one frame, and an autopilot for the aircraft.
 //
-// An autopilot: it moves what the aircraft's own computer holds (aircraft.h), and the throttle.
+// The autopilot changes the path and bank that the aircraft's computer holds (aircraft.h), and the
+// throttle.
 //
 //   heading          tan(bank) = v (target - heading) / (4 s g), to 25 degrees, at 8 degrees/s
 //   height           climb = (target - height) / 6 s, to 6 degrees of path
 //   vertical speed   sin(path) = climb / v, at 2 degrees/s
 //   speed            throttle' = 0.07 (target - v) - 0.5 v', [1/s] for m/s
 //
-// It begins from where the aircraft is, so that engaging it jerks nothing. From level flight a new
-// heading is reached with an overshoot of less than 2 degrees, a new height of less than 5 m, a new
-// speed of less than 1 m/s.
+// It starts from the current state, so that it engages smoothly. From level flight it overshoots a
+// new heading by less than 2 degrees, a new height by less than 5 m, and a new speed by less than
+// 1 m/s.
 //
-// Who flies: the free camera, the aircraft or a track, one at a time; and where the eye is then.
-//
-// Real seconds come in, however many: aircraft fly them in steps of 1/120 s, and what is seen is
-// the state at the end of the last one carried on by the rest, so that neither flights nor their
-// smoothness depend on the frame rate.
+// Pilot accepts any number of real seconds. An aircraft flies in steps of 1/120 s. The displayed
+// state is that of the last step, continued by the remaining time, so that neither the flight nor
+// its smoothness depends on the frame rate.
 #pragma once
 
 #include <memory>
@@ -30,13 +30,14 @@
 namespace alpenglow::viewer {
 
 struct PilotControls {
-  Steering camera = {};  // the free camera
-  Stick stick = {};      // the aircraft
-  /// Looking around with the mouse or the right stick, in this frame: in widths of the view.
+  Steering camera = {};  // for the free camera
+  Stick stick = {};      // for the aircraft
+  /// Rotation of the view in this frame by the mouse or the right stick, in widths of the view.
   double look_right = 0.0, look_up = 0.0;
 };
 
-/// What is held; at most one of a heading and level wings, and of a height and a climb.
+/// Targets of the autopilot. At most one of heading and level wings is held, and at most one
+/// of height and climb.
 struct AutopilotTargets {
   std::optional<double> heading_rad = {}, height_m = {}, climb_m_per_s = {}, speed_m_per_s = {};
   bool level_wings = false;
@@ -44,7 +45,7 @@ struct AutopilotTargets {
   [[nodiscard]] bool HoldsAnything() const;
 };
 
-/// "HDG 270 ALT 1500 m SPD 60 m/s"; empty when nothing is held.
+/// Returns "HDG 270 ALT 1500 m SPD 60 m/s"; empty if nothing is held.
 [[nodiscard]] std::string TextOf(const AutopilotTargets& targets);
 
 class Autopilot {
@@ -53,12 +54,12 @@ class Autopilot {
 
   [[nodiscard]] const AutopilotTargets& targets() const { return targets_; }
   void Set(const AutopilotTargets& targets) { targets_ = targets; }
-  /// Begins to hold what the aircraft does now, or lets go of it.
+  /// Starts to hold the current value of the aircraft, or stops holding it.
   void Toggle(Hold hold, const AircraftReadout& now, double height_m);
   void Release() { targets_ = {}; }
 
-  /// The aircraft with what its computer is to hold, and what is left of the hands' wishes: a stick
-  /// that is moved against something held moves the target.
+  /// The state with the values that its computer should hold, and the remaining stick input: stick
+  /// input for a held quantity moves the target instead.
   struct Flown {
     AircraftState state;
     Stick stick;
@@ -75,75 +76,78 @@ class Autopilot {
   std::optional<double> speed_before_m_per_s_;
 };
 
-/// Where something flies to: heading clockwise from north, climb over the horizontal.
+/// Direction of motion: heading clockwise from north, climb angle above the horizontal.
 struct Course {
   double heading_rad, climb_rad;
 };
 
-/// For instruments, in every mode.
+/// Values for the instruments, in every mode.
 struct FlightReadout {
   FlightMode mode = FlightMode::kFree;
-  double speed_m_per_s = 0.0;           // over the ground, of the last frame
-  double vertical_speed_m_per_s = 0.0;  // up is positive
+  double speed_m_per_s = 0.0;           // over the ground, in the last frame
+  double vertical_speed_m_per_s = 0.0;  // positive upwards
   double above_ground_m = 0.0;
-  std::optional<Course> course;  // none while it stands
-  double speed_factor = 1.0;  // of the free camera; of the track's time; of the flight's (1 to 32)
+  std::optional<Course> course;  // nullopt while the eye is at rest
+  double speed_factor = 1.0;     // of the free camera, of track time, or of flight time (1 to 32)
   std::optional<AircraftReadout> aircraft;  // in aircraft mode
-  std::string_view aircraft_name;           // "" elsewhere
-  std::string autopilot;                    // as TextOf(AutopilotTargets)
+  std::string_view aircraft_name;           // "" in other modes
+  std::string autopilot;                    // TextOf(AutopilotTargets)
 };
 
 class Pilot {
  public:
-  /// A free camera.
+  /// Starts with a free camera.
   Pilot(const Eye& eye, const Ellipsoid& ellipsoid);
 
   [[nodiscard]] FlightMode mode() const { return mode_; }
   [[nodiscard]] const Eye& eye() const { return eye_; }
 
-  /// Changes the mode where the eye is; a track begins at its beginning, or where it was left. In
-  /// less than 15 m over the ground the aircraft stands on it. Returns why not, in words, or
-  /// nothing.
+  /// Changes the mode at the current position. A track starts at its beginning, or where it was
+  /// left. Less than 15 m above the ground, the aircraft stands on it. Returns the reason if the
+  /// mode cannot be entered, otherwise nullopt.
   [[nodiscard]] std::optional<std::string> Enter(FlightMode mode, const GroundHeight& ground);
-  /// Puts the eye somewhere else, in the mode that it is in; leaves a track for the free camera.
+  /// Moves the eye to another position in the current mode; the mode kTrack changes to the free
+  /// camera.
   void PutAt(const Eye& eye, const GroundHeight& ground);
-  /// Lifts the eye out of ground that has become known.
+  /// Raises the eye above ground whose height has become known.
   void KeepAbove(const GroundHeight& ground) { Show(ground); }
-  /// What kTrack follows, from its beginning, as fast as it is. Gives it up when there is none.
-  /// @param lens  whose field of view is seen: the eye's own, or that of the track (a replay)
+  /// Sets the track for kTrack, which starts at its beginning and in its own time. A null track
+  /// removes it.
+  /// @param lens  source of the field of view: the eye, or the track (a replay)
   enum class Lens { kOfEye, kOfTrack };
   void SetTrack(std::shared_ptr<const CameraPath> track, Lens lens = Lens::kOfEye);
   [[nodiscard]] bool HasTrack() const { return track_ != nullptr; }
-  /// Whether a track is followed through its own lens.
+  /// Returns whether a track is followed with its own field of view.
   [[nodiscard]] bool Replays() const {
     return mode_ == FlightMode::kTrack && track_lens_ == Lens::kOfTrack;
   }
   [[nodiscard]] bool IsAtEndOfTrack() const { return !track_ || track_s_ >= track_->end_s(); }
 
-  /// Lets real seconds pass. Where the ground has come up over the aircraft by more than 30 m (its
-  /// terrain was loaded), it flies on 150 m over it.
+  /// Advances by a number of real seconds. If the ground is more than 30 m above the aircraft
+  /// because its terrain was loaded, the flight continues 150 m above the ground.
   void Advance(const PilotControls& controls, double seconds, const GroundHeight& ground);
 
-  /// Faster (+1) or slower (-1), by half: the free camera 1/64 to 64, the track 1/8 to 64; the
-  /// aircraft by the double, 1 to 32. A time of 32 flies 32 s in a second.
+  /// Increases (+1) or decreases (-1) the speed by a factor of 1.5: for the free camera between
+  /// 1/64 and 64, for the track between 1/8 and 64. For the aircraft the factor is 2, between 1 and
+  /// 32. At 32 it flies 32 s in a second.
   void StepSpeed(int step);
-  /// How much faster than real time aircraft and track are flown; the scene's clock goes with it.
+  /// Returns the ratio of aircraft or track time to real time; the clock of the scene runs with it.
   [[nodiscard]] double time_factor() const;
-  /// Moves along the track, to its ends at most.
+  /// Moves along the track, at most to its ends.
   void SkipTrack(double seconds);
-  /// What the track says the time is; nothing elsewhere.
+  /// Returns the time according to the track; nullopt in other modes.
   [[nodiscard]] std::optional<UtcInstant> TrackUtc() const;
 
   void Zoom(double factor) { eye_ = Zoomed(eye_, factor); }
   void ResetView() { eye_.fov_rad = first_fov_rad_; }
-  /// Looks ahead, wings level; lets go of nothing else.
+  /// Turns the view ahead and levels wings and path; the autopilot keeps its targets.
   void Centre(const GroundHeight& ground);
-  /// Up by so much; in the aircraft with enough speed to fly on. A track stays where it is.
+  /// Raises the eye. An aircraft that is too slow gets enough speed to fly. A track does not move.
   void Lift(double height_m, const GroundHeight& ground);
 
-  /// Opens the throttle to a share, clamped to [0, 1], and lets go of the speed; in aircraft mode.
+  /// Sets the throttle, clamped to [0, 1], and stops holding the speed; in aircraft mode only.
   void SetThrottle(double share);
-  /// In aircraft mode; elsewhere nothing is held.
+  /// Starts or stops holding a value; in aircraft mode only.
   void ToggleHold(Autopilot::Hold hold);
   void ReleaseAutopilot() { autopilot_.Release(); }
   [[nodiscard]] Autopilot& autopilot() { return autopilot_; }
@@ -173,7 +177,7 @@ class Pilot {
   AircraftKind kind_ = kLightAircraft;
   AircraftState aircraft_, shown_;
   Autopilot autopilot_;
-  double rest_s_ = 0.0;  // not flown yet, less than a step
+  double rest_s_ = 0.0;  // time not yet flown, less than a step
 
   std::shared_ptr<const CameraPath> track_;
   Lens track_lens_ = Lens::kOfEye;

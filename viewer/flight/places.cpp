@@ -72,7 +72,8 @@ std::vector<NamedPlace> ReadPlaces() {
   return places;
 }
 
-/// What a letter of Latin-1, Latin Extended-A (two bytes of UTF-8) is without its accent.
+/// Returns the letters without accent for a letter of Latin-1 or Latin Extended-A (two bytes of
+/// UTF-8).
 std::string_view WithoutAccent(int code_point) {
   struct Range {
     int first, last;
@@ -96,7 +97,8 @@ std::string_view WithoutAccent(int code_point) {
   return "";
 }
 
-/// Letters and digits in lower case without accents; what lies between them is one blank.
+/// Returns letters and digits in lower case without accents; other characters between them become
+/// one blank.
 std::string Folded(std::string_view text) {
   std::string folded;
   for (std::size_t i = 0; i < text.size(); ++i) {
@@ -116,14 +118,16 @@ std::string Folded(std::string_view text) {
   return folded;
 }
 
-/// 0 the whole name, 1 its beginning, 2 the beginning of a word in it, 3 neither.
+/// Returns 0 for the whole name, 1 for its beginning, 2 for the beginning of a word in it, 3
+/// otherwise.
 int RankOf(const std::string& name, const std::string& text) {
   if (name == text) return 0;
   if (name.starts_with(text)) return 1;
   return name.find(" " + text) != std::string::npos ? 2 : 3;
 }
 
-/// A beginning of the other name counts less than one of the name.
+/// Returns the best rank of all names. The beginning of the alternative name ranks as the beginning
+/// of a word.
 int RankOf(const NamedPlace& place, const std::string& text) {
   const int of_other = RankOf(Folded(place.also), text);
   return std::min({RankOf(Folded(place.code), text), RankOf(Folded(place.name), text),
@@ -135,7 +139,7 @@ struct Ranked {
   const NamedPlace* place;
 };
 
-/// Best first, in the order of the list among equals.
+/// Returns the matching places, best first; places of equal rank keep the order of the list.
 std::vector<Ranked> RankedPlaces(std::string_view text) {
   constexpr int kNone = 3;
   const std::string folded = Folded(text);
@@ -248,7 +252,7 @@ LocalTime LocalTimeAt(const UtcInstant& instant, const std::string& zone) {
   constexpr std::string_view kByLongitude = "Etc/GMT";
   if (zone.starts_with(kByLongitude)) {
     local.zone = zone.substr(kByLongitude.size());
-    // POSIX counts westwards.
+    // In POSIX zone names the sign is positive to the west.
     for (char& c : local.zone) c = c == '-' ? '+' : c == '+' ? '-' : c;
     local.zone.insert(0, "UTC");
   }

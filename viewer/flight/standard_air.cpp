@@ -11,7 +11,7 @@
 namespace alpenglow::viewer {
 namespace {
 
-constexpr double kGasConstant_J_per_kmol_K = 8314.32;  // as the standard has it
+constexpr double kGasConstant_J_per_kmol_K = 8314.32;  // value of the standard
 constexpr double kMolarMass_kg_per_kmol = 28.9644;
 constexpr double kGas_J_per_kg_K = kGasConstant_J_per_kmol_K / kMolarMass_kg_per_kmol;
 constexpr double kHydrostatic_K_per_m = kStandardGravity_m_per_s2 / kGas_J_per_kg_K;
@@ -37,7 +37,7 @@ double PressureIn(const Layer& layer, double above_base_m) {
 
 using Layers = std::array<Layer, 8>;
 
-/// The last one has no lapse, so that the air thins out for ever.
+/// The last layer has no lapse rate, so that the density decreases without end.
 Layers LayersFromTheGround() {
   Layers layers{{{0.0, -0.0065},
                  {11000.0, 0.0},

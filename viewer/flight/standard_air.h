@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
-// Air that carries wings: the U.S. Standard Atmosphere 1976 (NOAA-S/T 76-1562), layers of constant
-// lapse rate up to 84.852 km of geopotential height:
+// Provides the air for the flight model: the U.S. Standard Atmosphere 1976 (NOAA-S/T 76-1562),
+// layers of constant lapse rate up to 84.852 km of geopotential height:
 //
 //   T = T_b + L_b (H - H_b)
 //   p = p_b (T_b / T)^(g0 M / (R* L_b)),   or p_b exp(-g0 M (H - H_b) / (R* T_b)) where L_b is 0
 //   H = r0 h / (r0 + h),                   r0 = 6356.766 km
 //
-// Heights over the ellipsoid are taken for heights over the sea: the sea is within 110 m of it.
+// Heights above the ellipsoid are used as heights above the sea, which is within 110 m of it.
 #pragma once
 
 namespace alpenglow::viewer {
@@ -16,8 +16,9 @@ struct StandardAir {
   double sound_m_per_s;  // speed of sound
 };
 
-/// The air at a height. Within 1e-4 of the published table, relative, from 0 to 80 km; below the
-/// sea the lowest layer is continued, above 86 km the density falls on with the last scale height.
+/// Returns the air at a height. The relative error against the published table is below 1e-4 from
+/// 0 to 80 km. Below the sea the lowest layer is continued; above 86 km the density continues to
+/// decrease with the last scale height.
 [[nodiscard]] StandardAir StandardAirAt(double height_m);
 
 }  // namespace alpenglow::viewer
