@@ -433,8 +433,8 @@ void FlightDeck::NoteFlight(double seconds) {
   if (std::exchange(replays_, replays) && !replays) Say("here the replay ends");
   elapsed_s_ += seconds;
   flown_s_ += replays ? 0.0 : seconds;
-  if (!flight_.KnowsGround()) return;  // Skip these points: the renderer cannot render a point
-                                       // inside the ground.
+  // The renderer cannot render points inside the ground.
+  if (!flight_.KnowsGround()) return;
   recorder_.Note(elapsed_s_, flight_.eye(), flight_.now());
   if (!replays) flown_.Note(flown_s_, flight_.eye(), flight_.now());
 }

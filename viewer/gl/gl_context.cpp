@@ -15,16 +15,17 @@
 namespace alpenglow::viewer {
 namespace {
 
-// libepoxy ends the process when it finds no libEGL; a missing library is the machine's condition.
+// libepoxy ends the process if libEGL is missing. This check throws an exception instead.
 void RequireEglLibrary() {
   void* library = dlopen("libEGL.so.1", RTLD_LAZY | RTLD_LOCAL);
   if (library == nullptr) {
     throw DisplayError("no OpenGL without a display here: libEGL.so.1 is not installed");
   }
-  // Kept open: the drivers behind it do not survive being unloaded.
+  // The library stays open, because the drivers loaded by it do not support being unloaded.
 }
 
-// Graphics cards come first, in EGL's order; then Mesa's surfaceless platform; then the default.
+// Returns the displays to try: first the GPUs in EGL's order, then Mesa's surfaceless platform,
+// then the default display.
 std::vector<EGLDisplay> CandidateDisplays() {
   std::vector<EGLDisplay> displays;
   if (epoxy_has_egl_extension(EGL_NO_DISPLAY, "EGL_EXT_device_enumeration") &&
@@ -82,7 +83,7 @@ struct HeadlessContext::State {
   State(EGLDisplay on, EGLContext made) : display(on), context(made) {}
   State(const State&) = delete;
   State& operator=(const State&) = delete;
-  // The display stays open: it is one for the whole process, and other contexts may be on it.
+  // The display stays open: the whole process shares it, and other contexts may use it.
   ~State() {
     eglMakeCurrent(display, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
     eglDestroyContext(display, context);
@@ -122,7 +123,7 @@ std::string GlDescription() {
 }
 
 void RequireContext() {
-  // libepoxy ends the process for a function that is not there.
+  // libepoxy ends the process if a missing function is called, so check for it first.
   const bool tells = epoxy_gl_version() >= 45 || epoxy_has_gl_extension("GL_KHR_robustness");
   if (tells && glGetGraphicsResetStatus() != GL_NO_ERROR) {
     throw DisplayError(

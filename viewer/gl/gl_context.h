@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
-// OpenGL core contexts, 3.3 or later: the newest the driver gives, probed downwards from 4.6.
+// Provides OpenGL core contexts, 3.3 or later, with the newest version that the driver supports;
+// versions are tried downwards from 4.6.
 //
-// Headless here (EGL, no display); with a window in window.h. All GL calls of this folder go to the
-// context that is current on the calling thread.
+// This file provides the headless context (EGL, no display); window.h provides the context of a
+// window. All GL calls of this folder use the context that is current on the calling thread.
 #pragma once
 
 #include <array>
@@ -11,22 +12,22 @@
 
 namespace alpenglow::viewer {
 
-/// A version of OpenGL, as asked of a driver.
+/// A version of OpenGL that is requested from a driver.
 struct GlVersion {
   int major;
   int minor;
 };
 
-/// Newest first; the last one is the oldest that the shaders are written for. Mesa's llvmpipe gives
-/// 4.5 and refuses 4.6, so that one refusal says little.
+/// Versions to request, newest first. The last one is the oldest that the shaders support. Mesa's
+/// llvmpipe supports 4.5 and rejects 4.6, so one rejection does not mean that OpenGL is missing.
 inline constexpr std::array<GlVersion, 8> kGlVersions{
     {{4, 6}, {4, 5}, {4, 4}, {4, 3}, {4, 2}, {4, 1}, {4, 0}, {3, 3}}};
 
-/// A context without any display: on a graphics card that EGL can reach, else Mesa's software one.
-/// Current on the thread that made it until it is destroyed.
+/// A context without a display: on a GPU that EGL can reach, otherwise on Mesa's software renderer.
+/// It is current on the thread that constructs it until it is destroyed.
 class HeadlessContext {
  public:
-  /// Throws DisplayError, with what was tried, when EGL is missing or gives no OpenGL 3.3.
+  /// Throws DisplayError that lists the attempts if EGL is missing or does not support OpenGL 3.3.
   HeadlessContext();
   ~HeadlessContext();
   HeadlessContext(const HeadlessContext&) = delete;
@@ -37,15 +38,16 @@ class HeadlessContext {
   std::unique_ptr<State> state_;
 };
 
-/// "OpenGL 4.5 (Core Profile) Mesa 22.3.6 on llvmpipe (...)" of the current context.
+/// Returns a description of the current context: "OpenGL 4.5 (Core Profile) Mesa 22.3.6 on llvmpipe
+/// (...)".
 [[nodiscard]] std::string GlDescription();
 
-/// Throws DisplayError when the context is lost: its graphics card or driver was reset. Only where
-/// the context was made to tell (OpenGL 4.5 or KHR_robustness).
+/// Throws DisplayError if the context is lost because the GPU or its driver was reset. Detection
+/// requires a context that reports resets (OpenGL 4.5 or KHR_robustness).
 void RequireContext();
 
-/// Throws InternalError naming `where` when GL has recorded an error since the last call;
-/// DisplayError when that is a lack of memory or a lost context.
+/// Throws an error if GL has recorded one since the last call: DisplayError for insufficient memory
+/// or a lost context, otherwise InternalError that names `where`.
 void CheckGl(const char* where);
 
 }  // namespace alpenglow::viewer

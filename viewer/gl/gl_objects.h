@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Names that OpenGL gives out, owned. Each lives no longer than the context it was made in.
-//
-// Draws into a part of what is bound.
-//
-// Sides of textures that change while one flies.
+// Provides owners of OpenGL object names, a scissor rectangle for its scope, and texture sizes that
+// are not powers of two. An object must not outlive the context in which it was created.
 #pragma once
 
 #include <epoxy/gl.h>
@@ -13,7 +10,7 @@
 
 namespace alpenglow::viewer {
 
-/// A name made by Kind::Make and given back by Kind::Free; moves, never copies.
+/// An object name that Kind::Make creates and Kind::Free releases. It can be moved but not copied.
 template <typename Kind>
 class GlObject {
  public:
@@ -94,12 +91,12 @@ using GlFramebuffer = GlObject<gl_kind::Framebuffer>;
 using GlQuery = GlObject<gl_kind::Query>;
 using GlProgram = GlObject<gl_kind::Program>;
 
-/// Pixels from a lower left one on.
+/// A rectangle of pixels; (x, y) is its lower left pixel.
 struct PixelBox {
   int x, y, width, height;
 };
 
-/// Draws reach pixels of the box alone, as long as it lives. Not within another.
+/// Restricts draw calls to the pixels of a box during its lifetime. Scissors cannot be nested.
 class Scissor {
  public:
   explicit Scissor(const PixelBox& box) {
@@ -111,9 +108,9 @@ class Scissor {
   Scissor& operator=(const Scissor&) = delete;
 };
 
-/// `side`, or one more where it is a power of two (but 1). Mesa's software driver compiles a program
-/// again when a side of a texture that it reads becomes a power of two, or ceases to be one: frames
-/// of 0.3 to 0.9 s, measured with its cache of programs off.
+/// Returns `side`, or one more if it is a power of two greater than 1. Mesa's software driver
+/// recompiles a program when a side of a texture that it reads becomes a power of two or ceases to
+/// be one. Such frames took 0.3 to 0.9 s, measured with its shader cache disabled.
 /// @param side  > 0.
 [[nodiscard]] constexpr int OffPowersOfTwo(int side) {
   return side > 1 && std::has_single_bit(static_cast<unsigned>(side)) ? side + 1 : side;

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: MIT
-// How long the passes of a frame take, on the graphics card and on the thread that asks for them.
+// Provides PassTimer, which measures the time of the passes of a frame on the GPU and on the
+// drawing thread.
 //
-// A graphics card is asked by timer queries (GL_TIME_ELAPSED), whose results are taken frames later
-// and wait for nothing. Software OpenGL answers such queries too, but not truthfully: Mesa's
-// llvmpipe leaves out the vertices, which it works on at once, and of a pass into several pictures
-// it told 108 ms of 200 (Mesa 22.3.6). There a pass is timed by the clock on the wall between two
-// glFinish, which keep passes from overlapping and so make the frame slower than it is.
+// On a GPU it uses timer queries (GL_TIME_ELAPSED), whose results are read some frames later
+// without waiting. Software OpenGL supports such queries too, but their results are wrong: Mesa's
+// llvmpipe omits the vertex stage, which runs at once, and for a pass with several outputs it
+// reported 108 ms of 200 (Mesa 22.3.6). There a pass is timed by wall clock between two glFinish
+// calls. They prevent passes from overlapping and thereby make the frame slower.
 #pragma once
 
 #include <chrono>
@@ -21,38 +22,38 @@ namespace alpenglow::viewer {
 
 enum class PassClock {
   kNone,      // passes are not timed
-  kQueries,   // timer queries: nothing waits
-  kFinishes,  // the clock on the wall between two glFinish
+  kQueries,   // timer queries, without waiting
+  kFinishes,  // wall clock between two glFinish calls
 };
-/// The one that is truthful on the driver of the current context.
+/// Returns the clock that is accurate on the driver of the current context.
 [[nodiscard]] PassClock TruthfulPassClock();
 
 struct PassTime {
   std::string pass;
-  double ms;      // on the graphics card
-  double cpu_ms;  // of the thread that draws
+  double ms;      // on the GPU
+  double cpu_ms;  // CPU time of the drawing thread
 };
 
-/// Passes follow each other and are not nested. One that is begun several times in a frame gives as
-/// many times.
+/// Times passes, which follow each other and are not nested. A pass that begins several times in a
+/// frame has one time for each.
 class PassTimer {
  public:
   explicit PassTimer(PassClock clock = PassClock::kNone) : clock_(clock) {}
   PassTimer(const PassTimer&) = delete;
   PassTimer& operator=(const PassTimer&) = delete;
 
-  /// Ends the pass before, if one is open.
+  /// Begins a pass and ends the previous one if it is open.
   void Begin(std::string_view pass);
-  /// Ends the open pass, if there is one.
+  /// Ends the open pass, if any.
   void End();
 
-  /// How passes are timed from here on. No pass is open.
+  /// Selects the clock for the following passes. No pass may be open.
   void SetClock(PassClock clock) { clock_ = clock; }
 
-  /// What is known of since the last call, in the order of the passes. Of queries that nobody takes,
-  /// the newest passes are left out.
+  /// Returns the times that became available since the last call, in the order of the passes. If
+  /// nobody calls Take, new passes are not timed once too many queries are pending.
   [[nodiscard]] std::vector<PassTime> Take();
-  /// The same, when everything that was drawn is done.
+  /// Waits until all drawing is complete, and returns the remaining times.
   [[nodiscard]] std::vector<PassTime> TakeAll();
 
  private:

@@ -16,7 +16,7 @@ namespace {
 
 int Parts(int whole, int part) { return (whole + part - 1) / part; }
 
-/// The first pixel of each part of a side, and its end.
+/// Returns the first pixel of each part of a side, and the end of the last part.
 std::vector<int> Cuts(int side, int largest) {
   const int step = std::min(kTileStep, largest);
   const int steps = Parts(side, step);
@@ -35,7 +35,7 @@ PictureTile WithRim(const PictureTile& tile, int rim, int width, int height) {
           std::min(tile.top + tile.height + rim, height) - top};
 }
 
-/// What Linux says is left for programs, without touching what others use.
+/// Returns the memory that Linux reports as available without taking memory from other programs.
 std::optional<double> SpareBytes() {
   std::ifstream meminfo("/proc/meminfo");
   std::string name;
@@ -46,7 +46,7 @@ std::optional<double> SpareBytes() {
   return std::nullopt;
 }
 
-// A driver may bound the bytes of a texture besides its sides.
+// A driver may limit the bytes of a texture in addition to its sides.
 bool HoldsTexture(int width, int height) {
   glTexImage2D(GL_PROXY_TEXTURE_2D, 0, GL_RGBA32F, width, height, 0, GL_RGBA, GL_FLOAT, nullptr);
   GLint held = 0;
@@ -90,7 +90,7 @@ TiledPicture::TiledPicture(int width, int height, int largest_side) {
   const std::vector<PictureTile> kept = is_one ? std::vector{PictureTile{0, 0, width, height}}
                                                : TilesOf(width, height, largest_side - 2 * rim);
   for (const PictureTile& tile : kept) tiles_.push_back({tile, WithRim(tile, rim, width, height)});
-  // Besides the picture, what writes it: halves, or bytes and their rows.
+  // Memory of the writers besides the picture: half floats, or bytes and their rows.
   constexpr int kBytesOfWriters = 8;
   RequireMemoryFor(width, height, static_cast<int>(sizeof(picture_.rgb[0])) + kBytesOfWriters);
   picture_ = Image(width, height);

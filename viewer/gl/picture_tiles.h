@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Pictures larger than a graphics card draws: painted tile by tile, each a part of the view.
+// Provides tiles for pictures that are larger than the GPU can draw. Each tile is a part of the
+// view.
 #pragma once
 
 #include <glm/vec4.hpp>
@@ -15,41 +16,42 @@ struct PictureTile {
   int left, top, width, height;
 };
 
-/// Row by row from the upper left corner: tiles that cover a picture once, none larger than
-/// largest_side x largest_side, as equal as they can be in steps of kTileStep from the lower left
-/// corner (of largest_side, where that is less). All arguments >= 1.
+/// Returns tiles that cover a picture once, row by row from the upper left corner. No tile is
+/// larger than largest_side x largest_side. Tiles are as equal as possible in steps of kTileStep
+/// (or of largest_side, if that is less) from the lower left corner. All arguments >= 1.
 inline constexpr int kTileStep = 120;
 [[nodiscard]] std::vector<PictureTile> TilesOf(int width, int height, int largest_side);
 
-/// Which part of the view a tile sees: (x, y, u, v), with positions in the whole view from (-1, -1),
-/// lower left, to (1, 1). A position p of the whole view is (p - (x, y)) * (u, v) in the tile's, and
-/// in clip space p.xy is (p.xy - (x, y) * p.w) * (u, v): a view u and v times as narrow, shifted by
-/// (x u, y v) of itself. The whole view is (0, 0, 1, 1).
+/// Returns the part of the view that a tile shows: (x, y, u, v), with positions in the whole view
+/// from (-1, -1), lower left, to (1, 1). A position p of the whole view is (p - (x, y)) * (u, v) in
+/// the view of the tile, and in clip space p.xy is (p.xy - (x, y) * p.w) * (u, v). The view is
+/// narrower by the factors u and v and shifted by (x u, y v) of itself. The whole view is (0, 0, 1,
+/// 1).
 [[nodiscard]] glm::dvec4 ViewOfTile(const PictureTile& tile, int width, int height);
 
-/// A picture put together.
+/// A picture assembled from tiles.
 ///
-/// What a painter interpolates between every few pixels (shafts, lamps' light: 2 to 6, 8) needs pixels
-/// on both sides: tiles are painted with a rim of their neighbours, and begin where such steps do in
-/// the whole picture.
+/// A painter interpolates some quantities between every few pixels (shafts every 2 to 6, light of
+/// lamps every 8) and needs pixels on both sides. Tiles are therefore painted with a rim that
+/// overlaps their neighbours, and their steps coincide with those of the whole picture.
 class TiledPicture {
  public:
   struct Tile {
     PictureTile kept, painted;
   };
 
-  /// @param largest_side  of what is painted. Throws OptionError when the picture would take more
-  /// memory than this machine has to spare.
+  /// @param largest_side  largest side of a painted tile.
+  /// Throws OptionError if the picture needs more memory than this machine has available.
   TiledPicture(int width, int height, int largest_side);
 
   [[nodiscard]] const std::vector<Tile>& tiles() const { return tiles_; }
-  /// Of what is painted for a tile.
+  /// Returns the view that is painted for a tile.
   [[nodiscard]] glm::dvec4 ViewOf(const Tile& tile) const {
     return ViewOfTile(tile.painted, picture_.width, picture_.height);
   }
-  /// What was painted for the tile, with its rim.
+  /// Stores the painted picture of a tile without its rim.
   void Put(const Tile& tile, const Image& painted);
-  /// The picture, once all tiles are put.
+  /// Returns the picture, once all tiles are stored.
   [[nodiscard]] Image Take() { return std::move(picture_); }
 
  private:
@@ -57,16 +59,17 @@ class TiledPicture {
   Image picture_;
 };
 
-/// Whether the driver of the current context draws a picture of this size, four floats a pixel, in
-/// one piece.
+/// Returns whether the driver of the current context can draw a picture of this size, with four
+/// floats per pixel, as a whole.
 [[nodiscard]] bool IsDrawable(int width, int height);
-/// Throws OptionError naming --size and the limits when it does not.
+/// Throws OptionError that names --size and the limits if the picture is not drawable.
 void RequireDrawable(int width, int height);
-/// The side of the largest square that is drawable, to a factor of two.
+/// Returns the side of the largest drawable square, to a factor of two.
 [[nodiscard]] int LargestSquareOfDriver();
 
-/// Throws OptionError naming --size when this machine has not `bytes_per_pixel` of memory to spare
-/// for each pixel. Only where the system tells (Linux).
+/// Throws OptionError that names --size if this machine does not have `bytes_per_pixel` of memory
+/// available for each pixel. It has no effect on systems that do not report available memory (all
+/// but Linux).
 void RequireMemoryFor(int width, int height, int bytes_per_pixel);
 
 }  // namespace alpenglow::viewer

@@ -27,7 +27,7 @@ const FormatRow& RowOf(PixelFormat format) {
   return kRows[static_cast<std::size_t>(format)];
 }
 
-// Memory is asked for here, and refused by the next error.
+// The allocation fails with a GL error, which CheckGl reports.
 void Allocate(const GlTexture& texture, int width, int height, const FormatRow& row) {
   GLint bound = 0;
   glGetIntegerv(GL_TEXTURE_BINDING_2D, &bound);
@@ -38,7 +38,7 @@ void Allocate(const GlTexture& texture, int width, int height, const FormatRow& 
   glBindTexture(GL_TEXTURE_2D, static_cast<GLuint>(bound));
 }
 
-// OpenGL's row 0 is the lowest.
+// Reverses the order of rows: row 0 of OpenGL is the lowest.
 template <typename Pixel>
 void TurnUpsideDown(std::vector<Pixel>& pixels, std::size_t row) {
   const std::size_t rows = pixels.size() / row;

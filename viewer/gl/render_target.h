@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Pictures that are drawn into and read from, on the graphics card.
-//
-// Pixels on their way back from the graphics card, without waiting for it.
+// Provides RenderTarget, a picture on the GPU that is drawn into and read, and PixelReader, which
+// reads pixels back from the GPU without waiting.
 #pragma once
 
 #include <array>
@@ -15,49 +14,50 @@
 
 namespace alpenglow::viewer {
 
-/// What a pixel of a picture is made of; all of them can be drawn into by OpenGL 3.3.
+/// Format of a pixel. OpenGL 3.3 can draw into all of them.
 enum class PixelFormat {
   kRgba32F,  // 16 bytes
-  kRgba16F,  // 8 bytes: eleven bits, up to 65504
-  kRgba8,    // 4 bytes, of [0, 1]: what a window has
+  kRgba16F,  // 8 bytes: eleven bits of precision, up to 65504
+  kRgba8,    // 4 bytes, values in [0, 1]: the format of a window
 };
 
-/// Textures of one size that are drawn into together, on request with a depth buffer.
+/// Textures of one size as the outputs of draw calls, with an optional depth buffer.
 class RenderTarget {
  public:
   enum class Depth { kNone, k32Bit };
-  /// One picture of kRgba32F.
+  /// Creates one picture of format kRgba32F.
   RenderTarget(int width, int height, Depth depth = Depth::kNone)
       : RenderTarget(width, height, {PixelFormat::kRgba32F}, depth) {}
-  /// Contents are undefined until drawn; what texture units are bound to stays. Throws DisplayError
-  /// when the graphics card has no memory for them.
+  /// Creates pictures with undefined contents. Texture bindings remain unchanged. Throws
+  /// DisplayError if the GPU has insufficient memory.
   /// @param width, height >= 1.
   /// @param formats of the outputs of the fragment stage at locations 0, 1, ...: up to eight; none
-  ///     where depth alone is wanted.
+  ///     if only depth is needed.
   RenderTarget(int width, int height, const std::vector<PixelFormat>& formats, Depth depth);
 
-  /// Draws go here from now on, over the whole picture, into all outputs.
+  /// Makes this the target of the following draw calls, over its whole area and with all outputs.
   void Bind() const;
   void BindTexture(int unit, std::size_t output = 0) const;
-  /// Of one made with depth.
+  /// Binds the depth texture; the target must have been created with depth.
   void BindDepth(int unit) const;
 
   [[nodiscard]] int width() const { return width_; }
   [[nodiscard]] int height() const { return height_; }
   [[nodiscard]] GLuint framebuffer() const { return framebuffer_.id(); }
 
-  /// Draws are tested against the depth of another target, of the same size, from now on.
+  /// Makes the following draw calls use the depth buffer of another target of equal size.
   void UseDepthOf(const RenderTarget& other) const;
 
-  /// Puts red, green and blue into the first output, row 0 at the top; another size than the
-  /// target's is an error.
+  /// Writes red, green and blue of an image into the first output; row 0 is the top. The image must
+  /// have the size of the target.
   void Write(const Image& image) const;
 
-  // What was drawn, row 0 at the top. Each waits until it is drawn.
-  /// Red, green and blue.
+  // These functions return the drawn contents, row 0 at the top. They wait until drawing is
+  // complete.
+  /// Returns red, green and blue.
   [[nodiscard]] Image Read() const;
   [[nodiscard]] std::vector<glm::vec4> ReadValues(std::size_t output = 0) const;
-  /// Red, green and blue of a developed picture, a byte each.
+  /// Returns red, green and blue of a developed picture, one byte each.
   [[nodiscard]] DisplayImage ReadBytes() const;
 
  private:
@@ -70,26 +70,26 @@ class RenderTarget {
   GlFramebuffer framebuffer_;
 };
 
-/// Makes a target anew when it is missing or of another size.
+/// Creates a target if it is missing or has a different size.
 template <typename Target>
 void Fit(std::optional<Target>& target, int width, int height) {
   if (target && target->width() == width && target->height() == height) return;
   target.emplace(width, height);
 }
 
-/// Makes a target of one output anew when it is missing or of another size.
+/// Creates a target with one output if it is missing or has a different size.
 inline void Fit(std::optional<RenderTarget>& target, int width, int height, PixelFormat format) {
   if (target && target->width() == width && target->height() == height) return;
   target.emplace(width, height, std::vector{format}, RenderTarget::Depth::kNone);
 }
 
-/// Filtering of a bound texture: linear or none, clamped at the edges.
+/// Sets the filter of a bound texture to linear or nearest, and clamps it at its edges.
 void ClampAndFilter(GLenum target, bool linear);
 
-/// Reads one rectangle after the other. An OpenGL context must be current in all calls.
+/// Reads one rectangle at a time. An OpenGL context must be current in all calls.
 class PixelReader {
  public:
-  /// Of a picture [pixels], row 0 at the bottom as OpenGL has it.
+  /// A rectangle of a picture [pixels]; row 0 is the bottom, as in OpenGL.
   struct Rectangle {
     int left, bottom, width, height;
   };
@@ -99,13 +99,14 @@ class PixelReader {
   PixelReader(const PixelReader&) = delete;
   PixelReader& operator=(const PixelReader&) = delete;
 
-  /// Begins to read red, green and blue of the first output; nothing while Busy().
+  /// Begins to read red, green and blue of the first output; has no effect while Busy().
   void Begin(const RenderTarget& picture, const Rectangle& part);
-  /// Gives up what was begun.
+  /// Cancels the pending read.
   void Forget();
-  /// Whether what was begun is not taken yet.
+  /// Returns whether a read is pending.
   [[nodiscard]] bool Busy() const { return arrives_ != nullptr; }
-  /// What was begun, once it has arrived: most often a frame or two later.
+  /// Returns the pixels of the pending read if they have arrived, which usually takes a frame or
+  /// two.
   [[nodiscard]] std::optional<std::vector<std::array<float, 3>>> Take();
 
  private:

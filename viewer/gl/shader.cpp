@@ -16,7 +16,7 @@
 namespace alpenglow::viewer {
 namespace {
 
-constexpr std::size_t kLinesOfAPiece = 100000;  // more than any piece has
+constexpr std::size_t kLinesOfAPiece = 100000;  // more lines than any piece has
 
 std::string LogOfShader(GLuint shader) {
   GLint length = 0;
@@ -36,14 +36,14 @@ std::string LogOfProgram(GLuint program) {
   return log;
 }
 
-// Takes `prefix` off the text, if it starts with it.
+// Removes `prefix` from the text if it starts with it, and returns whether it does.
 bool Take(std::string_view& text, std::string_view prefix) {
   if (text.substr(0, prefix.size()) != prefix) return false;
   text.remove_prefix(prefix.size());
   return true;
 }
 
-// Takes a number off the text; nothing if it starts with none.
+// Removes a leading number from the text and returns it; nullopt if there is none.
 std::optional<std::size_t> TakeNumber(std::string_view& text) {
   std::size_t number = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
@@ -52,7 +52,8 @@ std::optional<std::size_t> TakeNumber(std::string_view& text) {
   return number;
 }
 
-// One line of a driver's log, with name and line of our file where it starts with a place.
+// Returns a line of a driver's log, with a position at its start replaced by name and line of our
+// file.
 std::string NamedLine(std::string_view line, std::span<const ShaderPiece> pieces) {
   std::string_view rest = line;
   std::string_view kind;
@@ -63,13 +64,13 @@ std::string NamedLine(std::string_view line, std::span<const ShaderPiece> pieces
   const std::optional<std::size_t> place = has_place ? TakeNumber(rest) : std::nullopt;
   if (!place || *place / kLinesOfAPiece >= pieces.size()) return std::string(line);
   Take(rest, ")");
-  std::string_view column = rest;  // "(5)": left out
+  std::string_view column = rest;  // column number such as "(5)", which is omitted
   if (Take(column, "(") && TakeNumber(column) && Take(column, ")")) rest = column;
   return fmt::format("{}{}:{}{}", kind, pieces[*place / kLinesOfAPiece].name,
                      *place % kLinesOfAPiece, rest);
 }
 
-/// A compiled stage; the program keeps it alive once it is attached.
+/// A compiled shader stage. OpenGL keeps it alive while it is attached to a program.
 class Stage {
  public:
   Stage(GLenum kind, const std::vector<ShaderPiece>& pieces) : id_(glCreateShader(kind)) {
