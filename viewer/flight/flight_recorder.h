@@ -84,8 +84,7 @@ struct ReplayFrame {
 /// is 2.6 s.
 class FlightLog {
  public:
-  static constexpr std::size_t kMostPoints = std::size_t{1} << 16;  // 7 MB, 43 minutes of all
-                                                                    // points
+  static constexpr std::size_t kMostPoints = std::size_t{1} << 16;  // 7 MB, 43 min at full rate
   explicit FlightLog(std::size_t most_points = kMostPoints) : most_(most_points) {}
 
   /// @param elapsed_s  time of flight; it increases.
@@ -99,8 +98,8 @@ class FlightLog {
   std::size_t most_;
   double interval_s_ = FlightRecorder::kInterval_s;
   std::vector<CameraPathPoint> points_;
-  std::optional<CameraPathPoint> last_;  // the eye has left its first position
-  bool has_flown_ = false;               // the eye has been anywhere but where it began
+  std::optional<CameraPathPoint> last_;  // the last of points_ or a later one
+  bool has_flown_ = false;               // the eye has left its first position
 };
 
 }  // namespace alpenglow::viewer

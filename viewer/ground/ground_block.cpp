@@ -46,7 +46,7 @@ FlatRectangle CoveredPart(const ColourDrape& drape, const FlatRectangle& of) {
           (north - south) * step_y_m};
 }
 
-// At altitude 0 points of the frame are their own feet.
+// Points at altitude 0 are their own foot points, so the colours are sampled there.
 DrapeTexels::DrapeTexels(const ColourDrape& drape, const FlatRectangle& over, std::size_t most)
     : place(over), columns(most), rows(most) {
   const double step_x_m = over.width_m / static_cast<double>(columns);
@@ -83,10 +83,11 @@ DrapeTexels TexelsOf(const SceneDrape& drape) {
 
 namespace {
 
-// Lower than any ground.
+// A height below any ground.
 constexpr double kNoSea_m = -1e9;
 
-// What the shader's cover has at a step of the root of a cosine.
+// Returns the shader's table entry at a step of the square root of a cosine: the total mirrored
+// weight of a glossy cover, otherwise the balance of snow.
 double ByRootOfMu(const GroundMaterial& material, std::size_t node) {
   if (material.cover().kind != GroundCover::Kind::kBlinnPhong) return Snow::BalanceNodes()[node];
   const double root = static_cast<double>(node) / (Snow::kBalanceNodes - 1);

@@ -1,10 +1,8 @@
 // SPDX-License-Identifier: MIT
-// A ColourDrape resampled over a rectangle of the frame's plane, as a texture has it.
-//
-// The picture, of colours or land cover, that a scene lays over its terrain, and where it lies.
-//
-// What ground_light.glsl and ground_surface.glsl read of C++: uniform blocks byte for byte, as
-// uniform_blocks.h does it, textures, and the texts put together for what the ground is made of.
+// Provides the C++ side of ground_light.glsl and ground_surface.glsl: uniform blocks with identical
+// byte layout (as in uniform_blocks.h), textures, and the shader texts for the material of the
+// ground. It also provides the ColourDrape of a scene, a picture of colours or land cover over its
+// terrain, resampled to a texture over a rectangle of the frame's plane.
 #pragma once
 
 #include <array>
@@ -26,41 +24,44 @@
 
 namespace alpenglow::viewer {
 
-/// East and north in the frame of the ground [m].
+/// A rectangle in the frame of the ground, east and north [m].
 struct FlatRectangle {
   double west_m, south_m, width_m, depth_m;
 };
 
-/// Around all vertices.
+/// Returns the bounding rectangle of all vertices.
 [[nodiscard]] FlatRectangle RectangleOf(const TriangleMesh& mesh);
 
-/// What of a rectangle a picture covers, to a hundredth of its sides; all of it where that is
-/// nothing.
+/// Returns the part of a rectangle that the drape covers, to a hundredth of its sides; the whole
+/// rectangle if the drape covers none of it.
 [[nodiscard]] FlatRectangle CoveredPart(const ColourDrape& drape, const FlatRectangle& of);
 
-/// Row 0 is the southernmost; linear sRGB in 16 bits, and 65535 where there is a picture.
+/// Texels of a drape. Row 0 is the southernmost. Colours are linear sRGB in 16 bits; alpha is 65535
+/// where the drape has a colour.
 struct DrapeTexels {
   FlatRectangle place;
   std::size_t columns, rows;
   std::vector<std::array<std::uint16_t, 4>> rgba;
 
-  /// @param most  texels a side.
+  /// @param most  texels per side.
   DrapeTexels(const ColourDrape& drape, const FlatRectangle& over, std::size_t most);
 };
 
 struct SceneDrape {
-  std::shared_ptr<const ColourDrape> colours;  // null: the scene names none
-  FlatRectangle place{};                       // of the terrain, what it covers
+  std::shared_ptr<const ColourDrape> colours;  // null: the scene has no drape
+  FlatRectangle place{};                       // part of the terrain that the drape covers
 };
 
-/// @param ground  of the scene; its terrain, if it has none, is loaded for its frame and its rim.
+/// @param ground  ground of the scene. If it has no terrain, the terrain is loaded for its frame
+///     and its rim.
 [[nodiscard]] SceneDrape DrapeOf(const Scene& scene, const SceneGround& ground);
 
-/// Finer than the picture, so that edges stay where they are when it is interpolated once more; 4096
-/// texels a side at most, which take 180 MB. Only where there are colours.
+/// Resamples the drape with texels finer than its pixels, so that edges keep their position under
+/// another interpolation; at most 4096 texels per side, which take 180 MB. The drape must have
+/// colours.
 [[nodiscard]] DrapeTexels TexelsOf(const SceneDrape& drape);
 
-/// `block GroundLight` of ground_light.glsl.
+/// Mirrors the uniform block `GroundLight` of ground_light.glsl.
 struct GroundLightBlock {
   glm::vec4 sky_towards;
   glm::vec4 ground_view;
@@ -69,12 +70,12 @@ struct GroundLightBlock {
 static_assert(sizeof(GroundLightBlock) == 47 * sizeof(glm::vec4));
 static_assert(offsetof(GroundLightBlock, ground_view) == sizeof(glm::vec4));
 
-/// @param to_sun  unit, in the frame of the eye.
-/// @param pixel_angle_rad  between neighbouring pixels; larger: coarser detail.
+/// @param to_sun  unit vector in the frame of the eye.
+/// @param pixel_angle_rad  angle between neighbouring pixels; a larger angle gives coarser detail.
 [[nodiscard]] GroundLightBlock GroundLightBlockOf(const SkyTilt& tilt, const glm::dvec3& to_sun,
                                                   double pixel_angle_rad);
 
-/// `block GroundSurface` of ground_surface.glsl.
+/// Mirrors the uniform block `GroundSurface` of ground_surface.glsl.
 struct GroundSurfaceBlock {
   glm::vec4 cover_albedo, rough, coat, water, under_water, snow_y;
   glm::vec4 drape_red, drape_green, drape_blue, drape_place, drape_eye;
@@ -84,37 +85,38 @@ static_assert(sizeof(GroundSurfaceBlock) == 28 * sizeof(glm::vec4));
 static_assert(offsetof(GroundSurfaceBlock, drape_red) == 6 * sizeof(glm::vec4));
 static_assert(offsetof(GroundSurfaceBlock, by_root_mu) == 11 * sizeof(glm::vec4));
 
-/// What does not change with the eye.
+/// Returns the block with all values that do not depend on the eye.
 [[nodiscard]] GroundSurfaceBlock GroundSurfaceBlockOf(const GroundMaterial& material);
-/// With the place of a draped picture.
-/// @param eye_x_m, eye_y_m  of the eye in the frame of the ground.
+/// Returns the block with the rectangle of a drape.
+/// @param eye_x_m, eye_y_m  position of the eye in the frame of the ground.
 [[nodiscard]] GroundSurfaceBlock Draped(GroundSurfaceBlock block, const FlatRectangle& picture,
                                         double eye_x_m, double eye_y_m);
 
-/// The terrain of a scene.
+/// Properties of the terrain of a scene that select shader code.
 struct LandKind {
-  bool is_there;         // the planet goes on as its low land
+  bool is_there;         // the planet continues beyond it as low land
   bool has_fine_relief;  // TerrainSource::HasFineRelief
 };
 
-/// GroundRadiance and PlanetRadiance for this material; to be read after the shared texts,
-/// air_block, view_block, sun_light and TransmittanceToSun.
+/// Returns the shader texts of GroundRadiance and PlanetRadiance for this material. They follow the
+/// shared texts, air_block, view_block, sun_light and TransmittanceToSun.
 [[nodiscard]] std::vector<ShaderPiece> GroundTexts(const GroundMaterial& material,
                                                    const LandKind& land);
 
-/// The samplers of these texts.
+/// Textures of the samplers of these texts.
 class GroundTextures {
  public:
-  /// @param diffuse  of the air over the ground.
+  /// @param diffuse  light of the air over the ground.
   explicit GroundTextures(const DiffuseLight& diffuse);
 
-  /// The air over the ground has changed.
+  /// Updates the textures for another medium.
   void SetAir(const DiffuseLight& diffuse) const;
   void SetSeaMirror(LightSource source, const std::vector<BandTexel>& texels) const;
   void SetDrape(const DrapeTexels& texels) const;
 
-  /// Binds to three texture units from the first on, and the samplers of a program to them.
-  /// @param source  whose sky waves mirror.
+  /// Binds the textures to three units, beginning with `first_unit`, and assigns the samplers of a
+  /// program to them.
+  /// @param source  light source whose sky is mirrored by waves.
   void Bind(const ShaderProgram& program, int first_unit, LightSource source) const;
 
  private:

@@ -12,22 +12,23 @@
 namespace alpenglow::viewer {
 namespace {
 
-// How far the eye comes before other land is looked at, as a share of its half width.
+// Distance of the eye from the centre at which other land is requested, as a fraction of the half
+// width.
 constexpr double kNearMiddle = 0.4;
-// The sun moves this far before light is made anew [radii of its disk]: shade of a ridge 5 km away
-// moves by 5 m over level ground.
+// Motion of the sun after which light is computed again [radii of its disk]: the shadow of a ridge
+// 5 km away moves by 5 m over level ground.
 constexpr double kSunMoves = 0.2;
 
-// Drawing has the processor for this many times as long as light took to make.
+// Pause after a computation, in units of its duration; it keeps the CPU free for drawing.
 constexpr double kRest = 4.0;
-// Light is there after the time that it takes to make, and is shown until other light is there: by what
-// then stands in the middle it is made.
+// Light is displayed from the end of its computation until the next light is complete. It is
+// computed for the middle of that period, in units of the computation time after the request.
 constexpr double kShown = 1.0 + 0.5 * (1.0 + kRest);
 
-// What was made higher up is kept until the eye is that much lower.
+// A site that was made for a higher eye is kept until the eye is lower by this factor.
 constexpr double kLower = 1.25;
 
-// Whether a site for an eye at one height is, kept or made anew, as one for the other would be.
+// Returns whether eyes at both heights need the same site, whether it is kept or made anew.
 bool AreAlikeWide(const GroundExtent& extent, double a_m, double b_m) {
   return extent.HalfWidthUnder(a_m) == extent.HalfWidthUnder(b_m) &&
          extent.HalfWidthUnder(kLower * a_m) == extent.HalfWidthUnder(kLower * b_m);
@@ -52,7 +53,8 @@ bool IsNear(const SunPosition& asked, const SunPosition& wanted) {
   return AngleBetween(asked, wanted) < kSunMoves * wanted.angular_radius_rad;
 }
 
-// Returns whether time jumped: in a frame the sun moves by a tenth of this where time runs a thousand times as fast.
+// Returns whether time has jumped. At 1000 times real time the sun moves by a tenth of this limit
+// per frame.
 bool IsAJump(const GroundFollower::View& before, const GroundFollower::View& now) {
   constexpr double kLargestStep_rad = 1.0 * kRadiansPerDegree;
   return before.casts != now.casts || AngleBetween(before.by, now.by) > kLargestStep_rad;
@@ -83,9 +85,9 @@ std::array<float, 4> Over(const std::array<float, 4>& sky, const std::array<floa
   return over;
 }
 
-// Shares of the open sky's light on its slope that a vertex gets, of sky and slopes and of the sky
-// alone. The shaders multiply them by the open sky's light of the moment (GroundLightBlock), whatever the
-// source has done meanwhile.
+// Ratios of the light at a vertex to the light of the open sky on its slope: for sky and slopes
+// together, and for the sky alone. Shaders multiply them by the current light of the open sky
+// (GroundLightBlock), which follows the light source.
 struct SharesOfOpenSky {
   std::array<float, 4> all, sky;
 };
@@ -108,7 +110,7 @@ double GroundExtent::HalfWidthUnder(double height_m) const {
   return width_m;
 }
 
-/// Keeps the site between positions of the sun.
+/// Computes light on the land and keeps the site while the sun moves.
 class GroundFollower::Maker {
  public:
   Maker(GroundCover cover, std::shared_ptr<const ColourDrape> drape, const GroundExtent& extent)
@@ -148,7 +150,7 @@ class GroundFollower::Maker {
     return light;
   }
 
-  // The sea mirrors the sky where there is no land, too.
+  // The mirror is also computed without land, because the sea mirrors the sky there too.
   [[nodiscard]] std::vector<BandTexel> MirrorFor(const Request& request,
                                                  const SunPosition& disk) const {
     const Medium medium = OnOsculatingSphere(request.air->medium, request.view.eye.latitude_rad);
@@ -180,7 +182,7 @@ class GroundFollower::Maker {
                       std::shared_ptr<const BentBeam>(request.air, &request.air->beam),
                       std::shared_ptr<const DiffuseLight>(request.air, &request.air->diffuse)};
     SceneGround ground = GroundOf(*grid, LocalFrame(EllipsoidOf(medium), foot));
-    if (ground.terrain->mesh().triangles.empty()) return nullptr;  // nothing is loaded there yet
+    if (ground.terrain->mesh().triangles.empty()) return nullptr;  // no land is loaded there yet
     auto drape = drape_ ? drape_->In(ground.frame) : nullptr;
     site_ = std::make_shared<const GroundSite>(std::move(ground), cover_, std::move(drape), air);
     air_ = request.air;
@@ -202,7 +204,7 @@ class GroundFollower::Maker {
   GroundCover cover_;
   std::shared_ptr<const ColourDrape> drape_;
   GroundExtent extent_;
-  double half_width_m_ = 0.0;  // of the site
+  double half_width_m_ = 0.0;  // half width of the site
   std::shared_ptr<const GroundSite> site_;
   std::shared_ptr<const SolvedAir> air_;
   std::shared_ptr<const GroundSampler> ground_;
@@ -308,7 +310,8 @@ std::optional<LightOfVertices> GroundFollower::Light() const {
     light.reserve(vertices.size());
     for (const GroundVertex& vertex : VerticesIn(made.lit->site(), anchor, vertices)) {
       const SharesOfOpenSky by = SharesAt(vertex, made.lit->sky(), *made.open);
-      // Of a source that does not count yet, as it begins to: low, with slopes that it does not reach.
+      // A source that is not yet significant gets the ratios that it has when it becomes
+      // significant: it is low and does not light slopes.
       const std::array<float, 4> other =
           made.other ? SharesAt(vertex, *made.other, *made.other_open).all : by.sky;
       const bool sun_casts = made.casts == LightSource::kSun;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Keeps the light on the land up with a sun that moves and an eye that comes to other land: all of it
-// is made on a thread beside drawing.
+// Provides GroundFollower, which updates the light on the land for a moving sun and for an eye that
+// reaches other land. All of it is computed on a thread beside drawing.
 #pragma once
 
 #include <array>
@@ -18,66 +18,71 @@
 
 namespace alpenglow::viewer {
 
-/// The land whose light is made: as much as stands over its own valleys, and from high up as far as
-/// an eye sees it well.
+/// Extent of the land whose light is computed. It contains the land that rises above its own
+/// valleys and, for a high eye, the land that is clearly visible.
 struct GroundExtent {
   double half_width_m = 40e3;
-  int samples = 1024;  // a side, at most
+  int samples = 1024;  // maximum per side
 
-  /// [m] Under an eye at a height over the ellipsoid: at least 7 heights, as far as land that is seen
-  /// 8 degrees under the horizon, but at most four times the least, lest samples be too far apart.
-  /// In doublings, so that an eye that climbs needs other land but twice.
+  /// Returns the half width [m] for an eye at a height above the ellipsoid: at least 7 times the
+  /// height, which includes land that is seen 8 degrees below the horizon, but at most four times
+  /// half_width_m, so that samples are not too far apart. The width is doubled in steps, so that a
+  /// climbing eye needs other land only twice.
   [[nodiscard]] double HalfWidthUnder(double height_m) const;
 };
 
 class GroundFollower {
  public:
-  /// @param cover, drape  what the land is made of.
+  /// @param cover, drape  material of the land.
   GroundFollower(const GroundCover& cover, std::shared_ptr<const ColourDrape> drape,
                  const GroundExtent& extent);
 
-  /// The land is gone, and its light.
+  /// Removes the land and its light.
   void ForgetLand();
-  /// Other land, or more of it, as ShadeFollower has it. An empty function: none.
+  /// Sets other or additional land, as ShadeFollower does. An empty function removes it.
   void SetGround(GroundSampler sampler);
 
   struct View {
     GeodeticPosition eye;
     UtcInstant now;
-    LightSource casts;                                // what throws shadows
-    SunPosition by;                                   // that, apparent, seen from the eye
-    std::optional<SunPosition> other = std::nullopt;  // the other source, where it counts
+    LightSource casts;                                // source that casts shadows
+    SunPosition by;                                   // its apparent position, seen from the eye
+    std::optional<SunPosition> other = std::nullopt;  // the other source, if it is significant
   };
-  /// Once a frame: asks for what is missing, but leaves the processor to the drawing four times as
-  /// long as light takes to make. Under a sun that runs, light is made for where the sun will stand in
-  /// the middle of the time for which it is shown, and fades from one to the next. True when new light
-  /// is there.
+  /// Takes finished light and requests missing light. Call it once a frame. After each computation
+  /// it pauses for four times the computation time to keep the CPU free for drawing. While the sun
+  /// moves, light is computed for the position of the sun in the middle of its display period, and
+  /// is blended from one state to the next. Returns whether there is new light.
   /// @param seconds  since the last call.
   bool Follow(const std::shared_ptr<const SolvedAir>& air, const View& view, double seconds);
-  /// The same, but what Follow would have in the end is there when it returns.
+  /// Waits until the final light of Follow is available.
   bool Settle(const std::shared_ptr<const SolvedAir>& air, const View& view);
 
-  /// Light on the land around, of what throws shadows; null without land and before the first is there.
+  /// Returns the light of the shadow-casting source on the surrounding land; null without land and
+  /// before the first light is complete.
   [[nodiscard]] const std::shared_ptr<const LitGround>& lit() const { return made_.lit; }
-  /// What throws the shadows of that.
+  /// Returns the source that casts the shadows of lit().
   [[nodiscard]] LightSource casts() const { return made_.casts; }
-  /// The sky of a source over that land, and the open sky's light that belongs to it; nothing without lit(), or
-  /// of a source that did not count.
+  /// The sky of a source over the land of lit(), and the light of the open sky for which it was
+  /// computed. SkyOf returns nullopt without lit() and for a source that was not significant.
   struct SkyOfSource {
     std::shared_ptr<const GroundSky> sky;
     SkyTilt open;
   };
   [[nodiscard]] std::optional<SkyOfSource> SkyOf(LightSource source) const;
-  /// The light of vertices in the frame of any anchor; empty without lit().
+  /// Returns a function for the light of vertices in the frame of any anchor; nullopt without
+  /// lit().
   [[nodiscard]] std::optional<LightOfVertices> Light() const;
-  /// What waves show of the sky of a source over it (SeaMirror); empty where nothing mirrors and for one
-  /// that did not count.
+  /// Returns the sky of a source as mirrored by waves (SeaMirror); empty if nothing mirrors and for
+  /// a source that was not significant.
   [[nodiscard]] const std::vector<BandTexel>& sea_mirror(LightSource source) const {
     return made_.sea_mirrors[IndexOf(source)];
   }
-  /// Altitude of the open sky that the light of vertices is a share of: half the height of the land.
+  /// Returns the altitude of the open sky to which the light of vertices is relative: half the
+  /// height of the land.
   [[nodiscard]] double open_altitude_m() const { return made_.open_altitude_m; }
-  /// Time that the light took to make, without the land's horizons; 0 before the first.
+  /// Returns the computation time of the light, without the horizons of the land; 0 before the
+  /// first.
   [[nodiscard]] double making_s() const { return made_.making_s; }
 
  private:
@@ -85,13 +90,13 @@ class GroundFollower {
     std::shared_ptr<const SolvedAir> air;
     std::shared_ptr<const GroundSampler> ground;
     View view;
-    int land;  // counts up when land is gone
+    int land;  // incremented when land is removed
   };
   struct Made {
     LightSource casts = LightSource::kSun;
     std::shared_ptr<const LitGround> lit;
-    std::shared_ptr<const GroundSky> other;   // null: it does not count
-    std::optional<SkyTilt> open, other_open;  // the open sky of either
+    std::shared_ptr<const GroundSky> other;   // null: it is not significant
+    std::optional<SkyTilt> open, other_open;  // light of the open sky of each source
     std::array<std::vector<BandTexel>, kLightSources> sea_mirrors;
     double open_altitude_m = 0.0;
     double making_s = 0.0;
@@ -113,8 +118,8 @@ class GroundFollower {
   LatestJob<Request, Made> maker_;
 };
 
-/// Where the sources of light will stand after as many steps more as the one from `before` to `now`, but at
-/// most 10 degrees further on; those of `now` after a jump of time.
+/// Returns the view with the sources of light moved on by `steps` times their motion from `before`
+/// to `now`, at most 10 degrees. After a jump of time it returns `now`.
 [[nodiscard]] GroundFollower::View Ahead(const GroundFollower::View& before,
                                          const GroundFollower::View& now, double steps);
 

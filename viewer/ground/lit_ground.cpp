@@ -25,7 +25,7 @@ void MeshHeights::VisitCells(const Visit& visit) const {
   }
 }
 
-// Two triangles a cell in the mean.
+// A cell has two triangles on average.
 MeshHeights::MeshHeights(const TriangleMesh& mesh) : mesh_(mesh) {
   if (mesh.triangles.empty()) return;
   const FlatRectangle all = RectangleOf(mesh);
@@ -90,7 +90,8 @@ std::optional<double> MeshHeights::At(double x_m, double y_m) const {
 
 namespace {
 
-/// Work that libraries would spread over all processors, kept on one: the others draw.
+/// Runs work that libraries would spread over all processors on one thread, so that drawing keeps
+/// the others.
 template <typename Work>
 auto OnThisThread(const Work& work) {
   tbb::task_arena alone(1);

@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: MIT
-// Heights of a mesh that is one surface, quickly: the triangles over each cell of a grid.
+// Provides the light on the land for one position of the sun, vertex by vertex; the GPU
+// interpolates it over triangles. The parts are
+//   MeshHeights  fast heights of a mesh that is one surface, by a grid of triangles,
+//   GroundSite   land around the eye with everything that does not depend on the sun: triangles
+//   ready for rays, horizons, the mutual visibility of slopes, materials,
+//   GroundSky    light of sky and slopes, by TerrainLight,
+//   LitGround    the above with the edges of shadows, by ShadowHeights.
 //
-// Land around the eye and what does not change with the sun: triangles ready for rays, horizons,
-// what the slopes see of each other, materials.
+// Frame: east, north, up of a place near the eye (SceneGround::frame), metres. Altitudes are above
+// the sphere that osculates the ellipsoid there.
 //
-// Frame: east, north, up of a place near the eye (SceneGround::frame), metres. Altitudes are those
-// over the sphere that osculates the ellipsoid there.
-//
-// Light on the land for one position of the sun, vertex by vertex: what the graphics card
-// interpolates over its triangles.
-//
-// Sky and slopes as TerrainLight has them; the edge of shade by ShadowHeights. Both change slowly
-// over the ground but for the edges, which are interpolated as a height over them.
+// Light of sky and slopes and the edges of shadows vary slowly over the ground, except across the
+// edges. An edge is therefore interpolated as a height of the sun over it.
 #pragma once
 
 #include <algorithm>
@@ -38,12 +38,13 @@
 
 namespace alpenglow::viewer {
 
-/// Immutable; safe to ask from many threads. Refers to the mesh.
+/// Heights of a mesh. It is immutable and can be used by many threads. It refers to the mesh.
 class MeshHeights {
  public:
   explicit MeshHeights(const TriangleMesh& mesh);
 
-  /// z [m] of the triangle over a place, to the rounding of its corners; nothing beside the mesh.
+  /// Returns z [m] of the triangle at a place, to the rounding of its corners; nullopt outside of
+  /// the mesh.
   [[nodiscard]] std::optional<double> At(double x_m, double y_m) const;
 
  private:
@@ -57,38 +58,38 @@ class MeshHeights {
   const TriangleMesh& mesh_;
   double west_m_ = 0.0, south_m_ = 0.0, cell_m_ = 1.0;
   std::size_t columns_ = 0, rows_ = 0;
-  std::vector<std::uint32_t> first_;      // of a cell's triangles; one more than cells
-  std::vector<std::uint32_t> triangles_;  // cell by cell
+  std::vector<std::uint32_t> first_;      // first triangle of each cell; one entry more than cells
+  std::vector<std::uint32_t> triangles_;  // triangles, cell by cell
 };
 
-/// The air over the land: all of one medium on the sphere of the site.
+/// Solved air over the land: all members belong to one medium on the sphere of the site.
 struct SiteAir {
   std::shared_ptr<const AirIntegrator<float>> integrator;
   std::shared_ptr<const BentBeam> beam;
   std::shared_ptr<const DiffuseLight> diffuse;
 };
 
-/// The ground that an elevation model makes around a place; nothing stands on it. Works on the
+/// Returns the ground of an elevation model around a place, without objects on it. Works on the
 /// calling thread alone.
 [[nodiscard]] SceneGround GroundOf(const ElevationGrid& grid, const LocalFrame& frame);
 
 /// A vertex of the land in the frame of its site.
 struct GroundVertex {
   std::array<float, 3> position_m;
-  std::array<float, 3> normal;  // unit, of the mesh: without finer relief
-  float site_z_m;               // of the site's ground there
+  std::array<float, 3> normal;  // unit normal of the mesh, without finer relief
+  float site_z_m;               // height of the site's ground at this place
 };
 
 [[nodiscard]] inline glm::dvec3 InDoubles(const std::array<float, 3>& v) {
   return {static_cast<double>(v[0]), static_cast<double>(v[1]), static_cast<double>(v[2])};
 }
 
-/// Immutable; safe to ask from many threads.
+/// Land around the eye. It is immutable and can be used by many threads.
 class GroundSite {
  public:
-  /// Works on the calling thread alone: a second for a thousand samples a side.
-  /// @param ground  with terrain, in one surface.
-  /// @param cover  what it is made of; drape: colours over it, or null.
+  /// Works on the calling thread alone: a second for a thousand samples per side.
+  /// @param ground  ground with terrain that is one surface.
+  /// @param cover  material of the ground; drape: colours over it, or null.
   GroundSite(SceneGround ground, const GroundCover& cover, std::shared_ptr<const ColourDrape> drape,
              SiteAir air);
   GroundSite(const GroundSite&) = delete;
@@ -102,15 +103,16 @@ class GroundSite {
   [[nodiscard]] const SiteAir& air() const { return air_; }
   [[nodiscard]] const GroundLight& light() const { return light_; }
 
-  /// Null: the ground is not one surface.
+  /// Returns the horizons; null if the ground is not one surface.
   [[nodiscard]] std::shared_ptr<const TerrainHorizons> horizons() const { return horizons_.Get(); }
 
-  /// A vertex made ready for light of any sun. Meshes of another detail than the site's lie over
-  /// and under it; so that its shadow neither covers nor misses them, they have that of its ground.
+  /// Prepares a vertex for the light of any sun. Meshes of other detail than the site's lie partly
+  /// above and partly below it. Their shadows are therefore looked up at the height of the site's
+  /// ground.
   [[nodiscard]] GroundVertex Vertex(const std::array<float, 3>& position_m,
                                     const std::array<float, 3>& normal) const;
 
-  /// What terrain makes of the light of sky and sun: see GroundLight::OnTerrain.
+  /// Returns the light of sky and sun on the terrain: see GroundLight::OnTerrain.
   [[nodiscard]] std::shared_ptr<const TerrainLight> Under(const Lighting& light) const;
 
  private:
@@ -121,21 +123,22 @@ class GroundSite {
   LampLight no_lamps_;
   HorizonsOnDemand horizons_;
   MeshHeights heights_;
-  GroundLight light_;  // refers to all above
+  GroundLight light_;  // refers to all members above
 };
 
-/// What shines on it.
+/// Light on a vertex.
 struct LitVertex {
-  /// Beyond that many radii it is only the sign that matters; as far as that, heights place the
-  /// edges of shade between vertices.
+  /// Beyond this many radii only the sign of sun_x matters. Below it, sun_x locates the edges of
+  /// shadows between vertices.
   static constexpr double kMostRadii = 64.0;
 
   std::array<float, 4> sky;  // irradiance of sky and slopes per unit solar irradiance, by band
-  float sun_x;  // height of the disk's centre over the edge of terrain that cuts it [radii of the
-                // disk]: see SunlightOverEdge. The planet's own horizon is not among the edges.
+  float sun_x;  // height of the centre of the disk above the edge of terrain that cuts it [radii of
+                // the disk]: see SunlightOverEdge. The horizon of the planet is not one of these
+                // edges.
 };
 
-/// From one local frame to another of the same ellipsoid.
+/// Transforms from one local frame to another of the same ellipsoid.
 class SiteFromFrame {
  public:
   SiteFromFrame(const LocalFrame& site, const LocalFrame& frame);
@@ -148,7 +151,7 @@ class SiteFromFrame {
   glm::dvec3 origin_;
 };
 
-/// Vertices in another frame of the same ellipsoid, which have position_m and normal, made ready.
+/// Prepares vertices of another frame of the same ellipsoid. They have position_m and normal.
 template <typename Vertex>
 [[nodiscard]] std::vector<GroundVertex> VerticesIn(const GroundSite& site, const LocalFrame& frame,
                                                    std::span<const Vertex> vertices) {
@@ -166,8 +169,8 @@ template <typename Vertex>
   return four;
 }
 
-/// The light of the sky that a sun or moon makes over a site, and of its slopes. Immutable; safe to ask
-/// from many threads.
+/// Light of sky and slopes over a site for one sun or moon. It is immutable and can be used by many
+/// threads.
 class GroundSky {
  public:
   /// Works on the calling thread alone.
@@ -184,16 +187,18 @@ class GroundSky {
   Lighting light_;
 };
 
-/// Immutable; safe to ask from many threads.
+/// Light on the land for one position of the sun. It is immutable and can be used by many threads.
 class LitGround {
  public:
-  /// Places of a grid are asked, not rays: of 1024 samples a side 28 MB instead of 61.
+  /// Options for look-ups at places of a grid instead of along rays: for 1024 samples per side they
+  /// take 28 MB instead of 61.
   static constexpr ShadowHeights::Options kShadowOfVertices{.fewest_lines = 1.0, .for_rays = false};
   /// Works on the calling thread alone.
   /// @param light  the sun in the frame of the site.
-  /// @param shadow  how fine the shadow is: see ShadowHeights. Over the built-in range at cells of
-  ///     45 m, two thirds of its spacing, 0.5 to 0.9 % of places between vertices are lit or shaded
-  ///     wrongly, at cells of 90 m, prepared in half the time, 0.5 to 1.2 %.
+  /// @param shadow  resolution of the shadow: see ShadowHeights. Over the built-in range with cells
+  ///     of 45 m, two thirds of its spacing, 0.5 to 0.9 % of places between vertices are wrongly
+  ///     lit or shadowed. With cells of 90 m it is 0.5 to 1.2 %, and the preparation takes half the
+  ///     time.
   LitGround(std::shared_ptr<const GroundSite> site, Lighting light,
             const ShadowHeights::Options& shadow = kShadowOfVertices);
 
@@ -205,10 +210,11 @@ class LitGround {
     const TerrainLight::OnSlope on = sky_.On(vertex);
     return {InFourBands(on.sky + on.slopes), EdgeOver(vertex)};
   }
-  /// LitVertex::sun_x.
+  /// Returns LitVertex::sun_x.
   [[nodiscard]] float EdgeOver(const GroundVertex& vertex) const;
 
-  /// Of vertices in another frame of the same ellipsoid, which have position_m and normal.
+  /// Returns the light of vertices of another frame of the same ellipsoid. They have position_m and
+  /// normal.
   template <typename Vertex>
   [[nodiscard]] std::vector<LitVertex> LightIn(const LocalFrame& frame,
                                                std::span<const Vertex> vertices) const {

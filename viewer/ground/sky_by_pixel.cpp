@@ -23,7 +23,7 @@ void Clamp(GLenum target) {
   glTexParameteri(target, GL_TEXTURE_WRAP_R, GL_CLAMP_TO_EDGE);
 }
 
-// [level][azimuth][node][A, B][band], as the renderer has them, to rows of nodes.
+// Reorders the renderer's layout [level][azimuth][node][A, B][band] to rows of nodes.
 void UploadIntegrals(const GlTexture& texture, const OpenSky::Tables& tables) {
   constexpr std::size_t kNodes = OpenSky::kNodes, kRows = OpenSky::kLevels * kHorizonAzimuths;
   std::vector<float> texels(tables.integral.size());
@@ -48,7 +48,8 @@ void UploadLevels(const GlTexture& texture, const OpenSky::Tables& tables) {
   ClampAndFilter(GL_TEXTURE_2D, true);
 }
 
-// The largest light of a slope, by band: half floats keep what is some ten thousand times less.
+// Returns the largest light of a slope in each band. Half floats resolve values about ten thousand
+// times smaller.
 glm::vec4 UnitOf(const SlopeLight& slopes) {
   glm::vec4 most(1e-30F);
   for (std::size_t i = 0; i < slopes.light().size(); ++i) {
@@ -58,7 +59,7 @@ glm::vec4 UnitOf(const SlopeLight& slopes) {
   return most;
 }
 
-// The layers of azimuths come first, those of the weights after them.
+// The layers of azimuths come first, followed by the layers of their weights.
 void UploadSlopes(const GlTexture& texture, const SlopeLight& slopes, const glm::vec4& unit) {
   const SlopeViews& views = slopes.views();
   const std::size_t nodes = views.places().size();

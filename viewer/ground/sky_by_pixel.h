@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
-// The renderer's tables of the light on slopes between mountains (OpenSky, HorizonMap, SlopeLight) on the
-// graphics card, where shaders/sky_by_pixel.glsl works that light out for every pixel. Light that vertices have
-// and triangles interpolate is up to 10 % off at dusk, where a horizon hides the glow (tests/bench/README.md).
+// Provides SkyByPixel, the renderer's tables for the light on slopes between mountains (OpenSky,
+// HorizonMap, SlopeLight) on the GPU. shaders/sky_by_pixel.glsl evaluates them for every pixel.
+// Light that is interpolated between vertices has errors of up to 10 % at dusk, where a horizon
+// hides the glow (tests/bench/README.md).
 //
-// A pixel reads 56 texels a source, of half floats: this is for the high quality alone.
+// A pixel reads 56 texels of half floats per source, so only the high quality uses these tables.
 #pragma once
 
 #include <array>
@@ -19,7 +20,7 @@
 
 namespace alpenglow::viewer {
 
-/// `block SkyByPixel` of sky_by_pixel.glsl.
+/// Mirrors the uniform block `SkyByPixel` of sky_by_pixel.glsl.
 struct SkyByPixelBlock {
   glm::vec4 horizon_u, horizon_v, slope_u, slope_v, sky_moment, sky_place, slope_unit;
 };
@@ -27,20 +28,22 @@ static_assert(sizeof(SkyByPixelBlock) == 7 * sizeof(glm::vec4));
 
 class SkyByPixel {
  public:
-  /// Uploads the tables that belong to a source, and the terrain's where that is another.
+  /// Uploads the tables of a source, and those of the terrain if it has changed.
   void Use(LightSource source, const GroundFollower::SkyOfSource& sky);
-  /// There is no light of the source any more.
+  /// Removes the light of a source.
   void Forget(LightSource source) { of_source_[IndexOf(source)].reset(); }
   [[nodiscard]] bool Has(LightSource source) const {
     return of_source_[IndexOf(source)].has_value();
   }
 
-  /// A source's, which it must have. @param eye  the frame that pixels are in; to_disk: of the source, in it.
-  /// @param now  the open sky's light of the moment, at the altitude of that which Use was given.
+  /// Returns the block of a source, which must have tables. @param eye  frame of the pixels;
+  /// to_sun_for_air: direction to the source in this frame.
+  /// @param now  current light of the open sky, at the altitude of the one given to Use.
   [[nodiscard]] SkyByPixelBlock BlockOf(LightSource source, const LocalFrame& eye,
                                         const glm::dvec3& to_sun_for_air, const SkyTilt& now) const;
 
-  /// Binds four textures, from this unit on, and the samplers of a program to them.
+  /// Binds four textures, beginning with `first_unit`, and assigns the samplers of a program to
+  /// them.
   static constexpr int kUnits = 4;
   void Bind(const ShaderProgram& program, int first_unit, LightSource source) const;
 
@@ -52,12 +55,12 @@ class SkyByPixel {
   };
   void UploadHorizons(const TerrainHorizons& horizons);
 
-  std::shared_ptr<const TerrainHorizons> horizons_;  // that the texture has
+  std::shared_ptr<const TerrainHorizons> horizons_;  // horizons in the texture
   GlTexture horizon_texture_;
   std::array<std::optional<OfSource>, kLightSources> of_source_;
 };
 
-/// The text, to be read after that of the ground's light.
+/// Returns the shader text, which follows that of the ground's light.
 [[nodiscard]] std::vector<ShaderPiece> SkyByPixelTexts();
 
 }  // namespace alpenglow::viewer

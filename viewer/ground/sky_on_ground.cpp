@@ -48,7 +48,7 @@ std::vector<BandTexel> LevelSky::Of(const DiffuseLight& diffuse) {
   return texels;
 }
 
-// The sky's sectors do not lie symmetrically about the sun: the mean of both sides does.
+// The sectors of the sky are not symmetric about the sun, so the mean of both sides is used.
 std::vector<BandTexel> SeaMirror::Of(const OpenSky& sky, const DiffuseLight& diffuse,
                                      const Water& water, const glm::dvec3& to_sun) {
   const double mu_s = std::clamp(to_sun.z, -1.0, 1.0);
@@ -78,14 +78,15 @@ std::vector<BandTexel> SeaMirror::Of(const OpenSky& sky, const DiffuseLight& dif
 
 namespace {
 
-// A coarse table of the sky: what is taken from it are means over half of it.
+// A coarse table of the sky is sufficient, because only means over half of the sky are computed
+// from it.
 constexpr SkyViewSize kCoarseSky{.sky_rows = 20, .ground_rows = 5, .azimuths = 9, .ray_nodes = 8};
-constexpr std::size_t kSkyRows = 48;     // even in the sine of the elevation
-constexpr std::size_t kSkyColumns = 24;  // of half a turn from the sun's azimuth
+constexpr std::size_t kSkyRows = 48;     // equal steps in the sine of the elevation
+constexpr std::size_t kSkyColumns = 24;  // over half a turn from the azimuth of the sun
 
-/// A part of the sky on one side of the sun, and its mirror image.
+/// A part of the sky on one side of the sun, and its mirror image on the other side.
 struct SkyPart {
-  glm::vec3 towards, mirrored;  // unit: towards the sun, aside, upwards
+  glm::vec3 towards, mirrored;  // unit: towards the sun, to its side, upwards
   std::array<float, 4> light;   // radiance times solid angle
 };
 
@@ -121,7 +122,8 @@ std::array<float, 4> IrradianceOn(const std::vector<SkyPart>& parts, const glm::
   return sum;
 }
 
-// On the slope of these components; beyond all slopes as the light runs towards the rim.
+// Returns the irradiance on the slope with these components of the normal. Beyond all slopes it
+// extrapolates the trend at the rim.
 std::array<float, 4> NodeAt(const std::vector<SkyPart>& parts, float sunward, float up) {
   const float radius = std::hypot(sunward, up);
   const auto at = [&](float share) {

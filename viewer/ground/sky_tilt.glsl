@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
-// Where a slope lies in the table of the open sky's irradiance (sky_on_ground.h): even steps of its unit
-// normal's components towards the sun, -1 to 1, and upwards, 0 to 1. Both halves of the sky beside the sun
-// are alike, so that these two say all, and the irradiance is smooth in them.
+// Maps a slope to the table of the open sky's irradiance (sky_on_ground.h): equal steps of the
+// components of its unit normal towards the sun, -1 to 1, and upwards, 0 to 1. The sky is symmetric
+// about the azimuth of the sun, so these two components are sufficient, and the irradiance is a
+// smooth function of them.
 SHARED Number OpenSkyColumn(Number n_sunward) {
   return Number(4.0) * (min(max(n_sunward, Number(-1.0)), Number(1.0)) + Number(1.0));
 }
