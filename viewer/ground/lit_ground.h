@@ -3,7 +3,7 @@
 // interpolates it over triangles. The parts are
 //   MeshHeights  fast heights of a mesh that is one surface, by a grid of triangles,
 //   GroundSite   land around the eye with everything that does not depend on the sun: triangles
-//   ready for rays, horizons, the mutual visibility of slopes, materials,
+//                ready for rays, horizons, the mutual visibility of slopes, materials,
 //   GroundSky    light of sky and slopes, by TerrainLight,
 //   LitGround    the above with the edges of shadows, by ShadowHeights.
 //

@@ -33,7 +33,7 @@ glm::vec4 InFloats(const BandLight& light) {
   return values;
 }
 
-/// The four quantities, summed from the eye.
+/// The four quantities, summed from the eye on.
 using Sums = std::array<glm::vec4, kQuantities>;
 
 class FogMarch {
@@ -50,7 +50,8 @@ class FogMarch {
 
   [[nodiscard]] const FogLight& light() const { return light_; }
 
-  /// At shares i / (depths - 1) of what the fog takes away of the whole ray.
+  /// Returns the sums at fractions i / (depths - 1) of the light that the fog removes along the
+  /// whole ray.
   [[nodiscard]] std::vector<Sums> Along(const glm::dvec3& direction, int depths) const {
     const std::vector<Step> steps = StepsOf(direction);
     std::vector<Sums> nodes(static_cast<std::size_t>(depths), Sums{});
@@ -85,7 +86,7 @@ class FogMarch {
  private:
   struct Step {
     double middle_m;
-    double taken;  // of light, by the fog up to its end
+    double taken;  // fraction of light that the fog removes up to the end of this step
   };
 
   [[nodiscard]] glm::dvec3 Head(double bottom_m) const {
@@ -110,7 +111,8 @@ class FogMarch {
     return shared::DistanceDownTo(eye_.z, direction.z, 0.0, radius_m_);
   }
 
-  // So short that neither the fog's light nor its density changes much, as far as one can see.
+  // Returns steps up to the distance at which the fog is opaque, so short that neither the light in
+  // the fog nor its density changes much within one.
   [[nodiscard]] std::vector<Step> StepsOf(const glm::dvec3& direction) const {
     constexpr double kDepth = 0.1, kFall = 0.25, kOpaque = 12.0;
     constexpr double kShortest_m = 0.01;
@@ -142,7 +144,7 @@ class FogMarch {
     return steps;
   }
 
-  // Light scattered there and what the air in front leaves of it.
+  // Returns the light scattered at this step, attenuated by the air in front of it.
   [[nodiscard]] Sums SourceAt(const Step& step, const glm::dvec3& direction,
                               const FogLight::Look& look) const {
     const glm::dvec3 point = eye_ + step.middle_m * direction;
@@ -173,7 +175,8 @@ class FogMarch {
   FogLight light_;
 };
 
-// Sine of the elevation at a place of the axis in [0, 1]; dense at the horizontal.
+// Returns the sine of the elevation for a position in [0, 1] on the axis, which is dense at the
+// horizontal.
 double FogElevationSine(double unit) {
   const double root = 2.0 * unit - 1.0;
   return root * std::abs(root);
@@ -273,7 +276,7 @@ constexpr double kMetres = 1000.0;
 
 void Activate(int unit) { glActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(unit)); }
 
-// @param now  eye and sun, which may have moved since the map was made.
+// @param now  current eye and sun, which may differ from those of the map.
 FogBlock FogBlockOf(const FogMap& map, const FogView& now) {
   FogBlock block{};
   const double height_km = std::isinf(map.scale_height_m) ? 0.0 : map.scale_height_m / kMetres;
@@ -347,7 +350,7 @@ void SceneFog::SetSize(const FogMapSize& size) {
   air_ = nullptr;
 }
 
-// On one thread, so that drawing keeps the others.
+// Uses one thread, so that drawing keeps the others.
 void SceneFog::BeginIn(const std::shared_ptr<const SolvedAir>& air, double latitude_rad) {
   air_ = air;
   follower_.emplace([air, media = media_, size = size_, latitude_rad](const FogView& wanted) {

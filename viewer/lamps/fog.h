@@ -1,22 +1,20 @@
 // SPDX-License-Identifier: MIT
-// Light of sun and sky in a scene's fog around one eye, ready for interpolation by a graphics card:
-// FogLight (renderer/media/fog_light.h) summed along rays. Per unit solar irradiance.
+// Provides the light of sun and sky in a scene's fog: FogMap, its table around one eye,
+// FogFollower, which computes FogMaps for a moving eye and sun beside drawing, FogPainter, which
+// uploads them for fog_light.glsl, and SceneFog, which combines these and starts a new job for
+// another medium or map size.
 //
-// Along a ray light is kept over the share of light that the fog takes away,
+// A FogMap holds FogLight (renderer/media/fog_light.h) summed along rays, for interpolation on the
+// GPU. Values are per unit solar irradiance. Along a ray they are relative to the fraction of light
+// that the fog removes,
 //
 //   L(d) = (1 - T(d)) [p A + p' B + G + K],    T = exp(-tau(d)), of the fog alone
 //
-// A of the sun itself with the fog's phase function p, B of what its forward peak takes along with
-// the lobe p', G of the sun's glow in the fog, K of the sky. Tables are over the sine of the ray's
-// elevation, its azimuth from the sun and (1 - T(d)) / (1 - T(end)), where the ray ends at the bare
-// planet or in space. A, B and G are those of open ground: terrain does not shade them.
-//
-// A FogMap that follows eye and sun, made beside drawing.
-//
-// A FogMap on the graphics card, for fog_light.glsl.
-//
-// The fog of a scene on the graphics card: a FogMap that is made beside drawing, for other air and
-// other sizes by a job of its own.
+// A is the light of the sun itself, scattered with the fog's phase function p; B is the light in
+// its forward peak, scattered with the lobe p'; G is the glow of the sun in the fog; K is the light
+// of the sky. Tables are over the sine of the ray's elevation, its azimuth from the sun and
+// (1 - T(d)) / (1 - T(end)), where the ray ends at the bare planet or in space. A, B and G are for
+// open ground: terrain does not shade them.
 #pragma once
 
 #include <functional>
@@ -38,11 +36,11 @@
 
 namespace alpenglow::viewer {
 
-/// How fine a map is. Off from MediaLight by 0.1 % in the mean by day and 0.5 % with the sun on the
-/// horizon, where light in fog falls by e every few metres (99 %: 2 % and 5 %; fine: half of all).
-/// The time to make one grows with elevations times azimuths.
+/// Resolution of a map. Its mean difference from MediaLight is 0.1 % by day and 0.5 % with the sun
+/// on the horizon, where light in fog decreases by a factor e every few metres (99 %: 2 % and 5 %;
+/// kFineFog: half of all these). The computation time is proportional to elevations times azimuths.
 struct FogMapSize {
-  int elevations = 128;  // even: half of them over the horizon
+  int elevations = 128;  // even: half of them above the horizon
   int azimuths = 16;     // from 0 to pi
   int depths = 12;
 
@@ -51,54 +49,56 @@ struct FogMapSize {
 inline constexpr FogMapSize kCoarseFog{48, 12, 8};
 inline constexpr FogMapSize kFineFog{192, 24, 16};
 
-/// Sun and eye, east, north and up at the eye, on the sphere of the air's medium.
+/// Sun and eye in the frame east, north, up at the eye, on the sphere of the air's medium.
 struct FogView {
   double altitude_m = 0.0;
-  glm::dvec3 to_sun{0.0, 0.0, 1.0};  // unit, to where it is seen
+  glm::dvec3 to_sun{0.0, 0.0, 1.0};  // unit, to the sun as seen
   glm::dvec3 to_sun_for_air{0.0, 0.0,
-                            1.0};  // unit, to where it lights the sky from (SunForAir of sun.h)
+                            1.0};  // unit, from where it illuminates the sky (SunForAir of sun.h)
   double sun_radius_rad = 0.0046;
 };
 
-/// Immutable once made; no graphics card needed.
+/// Table of the light in fog. It is immutable and needs no GPU.
 struct FogMap {
   FogView view;
   FogMapSize size;
-  /// A, B, G and K, one after another: [((quantity * depths + depth) * azimuths + azimuth) *
-  /// elevations + elevation].
+  /// A, B, G and K in this order: [((quantity * depths + depth) * azimuths + azimuth) * elevations
+  /// + elevation].
   std::vector<glm::vec4> light;
-  /// What the fog's own light brings to level ground and what a surface that stands upright gets
-  /// more, at altitudes whose optical depth above is (i / last)^4 of the layer's: [row * kHeights +
-  /// i]. W/m^2 per W/m^2.
+  /// Irradiance of the fog's own light on level ground, and the additional irradiance on a vertical
+  /// surface, at altitudes with an optical depth above of (i / last)^4 of the layer's: [row *
+  /// kHeights + i]. W/m^2 per W/m^2.
   static constexpr int kHeights = 64;
   std::vector<glm::vec4> on_surface;
   double extinction_per_m, scale_height_m, base_m, top_m, radius_m;
-  double depth;       // of the layer, vertical
-  double peak_scale;  // of optical depths, without what the forward peak takes along
+  double depth;       // vertical optical depth of the layer
+  double peak_scale;  // factor on optical depths that excludes the forward peak
   PhaseFunction phase;
   double broad_g;
 };
 
-/// @param fog  of LocalMedia; bottom_m: altitude of the ground under it.
-/// @param air  of at most four bands.
-/// Errors of rays against MediaLight: tests/viewer/lamps/fog_map_test.cpp.
+/// @param fog  fog of LocalMedia; bottom_m: altitude of the ground below it.
+/// @param air  medium of at most four bands.
+/// tests/viewer/lamps/fog_map_test.cpp bounds the errors of rays against MediaLight.
 [[nodiscard]] FogMap MakeFogMap(const LocalMedium& fog, double bottom_m, const SunlitAir& air,
                                 const FogView& view, const FogMapSize& size = {});
 
-/// Whether light around this eye and under this sun is that of the map, but for a few per cent: the
-/// eye within a tenth of the fog's scale height, the sun within a tenth of a degree. What falls off
-/// faster, transmittance and the phase function towards the sun, is not in the map.
+/// Returns whether the map is valid for this eye and sun, to a few per cent: the eye is within a
+/// tenth of the fog's scale height, at most 100 m, and the sun within a tenth of a degree.
+/// Quantities that vary faster, transmittance and the phase function towards the sun, are not in
+/// the map.
 [[nodiscard]] bool Serves(const FogMap& map, const FogView& view);
 
 class FogFollower {
  public:
   using Make = std::function<FogMap(const FogView&)>;
-  /// @param make  called on a thread of this; what it refers to must outlive this.
+  /// @param make  called on a thread of this object; everything it refers to must outlive this
+  ///     object.
   explicit FogFollower(Make make) : job_(std::move(make)) {}
 
-  /// Takes in what is finished and asks for what is needed. True when map() is a new one.
+  /// Takes a finished map and requests a missing one. Returns whether map() is new.
   [[nodiscard]] bool Follow(const FogView& view);
-  /// Waits for a map for the view.
+  /// Waits for a map of the view.
   void Wait(const FogView& view);
   [[nodiscard]] const std::optional<FogMap>& map() const { return map_; }
 
@@ -107,32 +107,33 @@ class FogFollower {
   LatestJob<FogView, FogMap> job_;
 };
 
-/// `block Fog` of fog_light.glsl.
+/// Mirrors the uniform block `Fog` of fog_light.glsl.
 struct FogBlock {
   glm::vec4 layer, eye, sun, phase, map_size;
 };
 static_assert(sizeof(FogBlock) == 5 * sizeof(glm::vec4));
 
-/// Texts for a fragment stage, after SharedTexts(): FogTo(direction, distance_km) and the rest of
-/// fog_light.glsl. @param kind  of the fog's phase function.
+/// Returns texts for a fragment stage, which follow SharedTexts(): FogTo(direction, distance_km)
+/// and the rest of fog_light.glsl. @param kind  kind of the fog's phase function.
 [[nodiscard]] std::vector<ShaderPiece> FogTexts(PhaseKind kind);
 
-/// The same functions where there is no fog.
+/// Returns texts with these functions for scenes without fog.
 [[nodiscard]] std::vector<ShaderPiece> NoFogTexts();
 
-/// Where what fog reads is bound.
+/// Binding points of the fog's data.
 struct FogUnits {
   GLuint block = 9;
-  int first = 13;  // of two texture units
+  int first = 13;  // first of two texture units
 };
 
 class FogPainter {
  public:
   explicit FogPainter(const FogUnits& units) : units_(units) {}
   void Connect(const ShaderProgram& program) const;
-  /// Takes a map in.
+  /// Uploads a map.
   void Upload(const FogMap& map);
-  /// For the next draw of a program of FogTexts(). @param map  that was taken in last.
+  /// Binds everything for the next draw call of a program of FogTexts(). @param map  the last
+  /// uploaded map.
   void Bind(const FogMap& map, const FogView& now) const;
 
  private:
@@ -143,25 +144,25 @@ class FogPainter {
 
 class SceneFog {
  public:
-  /// @param media  the last of which is fog.
+  /// @param media  media whose last one is fog.
   SceneFog(LocalMedia media, const FogMapSize& size, const FogUnits& units);
 
-  /// Of maps from the next Follow or Settle on.
+  /// Sets the size of maps from the next Follow or Settle on.
   void SetSize(const FogMapSize& size);
 
-  /// Once a frame: takes over what is ready and asks for what is missing. Waits only for the first
-  /// map in an air.
-  /// @param sun  apparent, seen from the eye.
+  /// Takes a finished map and requests a missing one. Call it once a frame. It waits only for the
+  /// first map in a medium.
+  /// @param sun  apparent position, seen from the eye.
   void Follow(const std::shared_ptr<const SolvedAir>& air, const Eye& eye, const SunPosition& sun);
-  /// Waits for what the view needs.
+  /// Waits for the map of the view.
   void Settle(const std::shared_ptr<const SolvedAir>& air, const Eye& eye, const SunPosition& sun);
 
-  /// At an altitude [1/m].
+  /// Returns the extinction of the fog at an altitude [1/m].
   [[nodiscard]] double ExtinctionAt(double altitude_m) const;
 
-  /// Ties a program of FogTexts() to what it reads.
+  /// Connects a program of FogTexts() with the bound data.
   void Connect(const ShaderProgram& program) const { painter_.Connect(program); }
-  /// For the next draw of such a program. After Follow or Settle.
+  /// Binds everything for the next draw call of such a program. Call it after Follow or Settle.
   void Bind(const Eye& eye, const SunPosition& sun) const;
 
  private:
@@ -170,7 +171,7 @@ class SceneFog {
   std::shared_ptr<const LocalMedia> media_;
   FogMapSize size_;
   FogPainter painter_;
-  std::shared_ptr<const SolvedAir> air_;  // that maps are made in; null: none yet of this size
+  std::shared_ptr<const SolvedAir> air_;  // medium of the maps; null: no map of this size yet
   std::optional<FogFollower> follower_;
 };
 

@@ -18,7 +18,7 @@
 namespace alpenglow::viewer {
 namespace {
 
-constexpr double kDark = 1e-30;  // m^-1, of which logarithms are taken at least
+constexpr double kDark = 1e-30;  // lower bound for logarithms [m^-1]
 constexpr std::size_t kSlopeTerms = kGlowTerms - 1;
 using SlopeTerms = std::array<glm::vec4, kSlopeTerms>;
 
@@ -28,7 +28,7 @@ double DistanceAt(double texel) {
 }
 double RiseAt(double texel) { return shared::LampRiseFromUnit(texel / (kGlowRises - 1.0)); }
 
-/// A lamp in the plane of x, which is towards it, and z.
+/// A lamp in the x-z plane; x points towards it and z upwards.
 struct View {
   const LampGlow& glow;
   double distance_m, rise;
@@ -40,7 +40,7 @@ struct View {
   [[nodiscard]] Bands<double> OnLevel() const { return On({0.0, 0.0, 1.0}); }
 };
 
-/// What a slope has of the terms of LampGlowOnSlope.
+/// Returns the weights of a slope for the terms of LampGlowOnSlope.
 std::array<double, kSlopeTerms> TermsOf(const glm::dvec3& normal) {
   std::array<double, kSlopeTerms> of_term{};
   for (std::size_t k = 0; k < kSlopeTerms; ++k) {
@@ -52,14 +52,14 @@ std::array<double, kSlopeTerms> TermsOf(const glm::dvec3& normal) {
   return of_term;
 }
 
-/// A slope of the fit.
+/// A slope of the least-squares fit.
 struct Slope {
   glm::dvec3 normal;
   double weight;
   std::array<double, kSlopeTerms> of_term;
 };
 
-/// Half of all: light is even about the plane.
+/// Returns slopes on one side of the plane; light is symmetric about the plane.
 const std::vector<Slope>& FittedSlopes() {
   static const auto kSlopes = [] {
     constexpr int kTilts = 5, kTurns = 6;
@@ -79,7 +79,7 @@ const std::vector<Slope>& FittedSlopes() {
   return kSlopes;
 }
 
-/// The least squares' normal equations, but for what they are equal to.
+/// Returns the matrix of the normal equations of the least-squares fit.
 const std::vector<double>& FitMatrix() {
   static const auto kMatrix = [] {
     std::vector<double> matrix(kSlopeTerms * kSlopeTerms);
@@ -115,7 +115,7 @@ SlopeTerms FitOf(const View& view) {
   return terms;
 }
 
-/// Of level ground.
+/// Returns the logarithm of the light on level ground times the distance.
 glm::vec4 LogLevelOf(const View& view) {
   const Bands<double> level = view.OnLevel();
   glm::vec4 logs(static_cast<float>(std::log(kDark)));
@@ -143,7 +143,7 @@ std::vector<glm::vec4> SampledGlow(const LampGlow& glow) {
 
 namespace {
 
-/// One level. Places are columns and rows of its nodes.
+/// One level of a plan. Positions are columns and rows of its nodes.
 class PlanLevel {
  public:
   PlanLevel(const LampStage& stage, const Lamp& lamp, int level)
@@ -167,10 +167,12 @@ class PlanLevel {
   }
 
  private:
-  /// Of what the level before serves nothing is looked up here; edges within it count two steps
-  /// beyond it, interpolation reaches one step into it.
+  /// Half width of the central hole, whose nodes are not traced because the previous level is used
+  /// there. It is 4 steps smaller than the area of the previous level: edges affect nodes at a
+  /// distance of two steps, and interpolation reads one step into the area.
   static constexpr int kHole = kPlanReach_steps / 2 - 4;
-  /// Of an edge between two nodes: to a 64th of a step, as finely as texels hold it.
+  /// Bisections for an edge between two nodes. They locate it to a 64th of a step, the resolution
+  /// of texels.
   static constexpr int kBisections = 5;
   static constexpr float kNoEdge = -1.0F;
 
@@ -191,7 +193,8 @@ class PlanLevel {
     return !stage_.Shades(lamp_, place - stage_.AltitudeOf(place) * up, up);
   }
 
-  // Every second node each way; those between only where the ones around them differ.
+  // Traces every second node in both directions, and the nodes in between only if the ones around
+  // them differ.
   void TraceNodes() {
     EachNode([&](const glm::ivec2& at) {
       if (at.x % 2 == 0 && at.y % 2 == 0) is_lit_[NodeAt(at)] = IsLitAt(at);
@@ -203,8 +206,8 @@ class PlanLevel {
     });
   }
 
-  // Whether the traced nodes around another one, a ring more than the nearest, are all lit or all
-  // dark.
+  // Returns whether all traced nodes around another node are equally lit or in shadow. The
+  // neighbourhood is one ring larger than the nearest nodes.
   [[nodiscard]] bool AlikeAround(const glm::ivec2& at) const {
     const std::uint8_t first = is_lit_[NodeAt(at - at % 2)];
     const glm::ivec2 low = glm::max(at - at % 2 - 2, 0);
@@ -234,7 +237,8 @@ class PlanLevel {
     });
   }
 
-  /// Share of the way between two nodes at which light turns into shade or back; kNoEdge: nowhere.
+  /// Returns the fraction of the way between two nodes at which light changes to shadow or back;
+  /// kNoEdge if it does not.
   [[nodiscard]] float EdgeBetween(const glm::ivec2& from, const glm::ivec2& to) const {
     const bool begins_lit = is_lit_[NodeAt(from)] != 0, ends_lit = is_lit_[NodeAt(to)] != 0;
     if (begins_lit == ends_lit || IsInHole(to)) return kNoEdge;
@@ -247,7 +251,7 @@ class PlanLevel {
     return static_cast<float>(0.5 * (low + high));
   }
 
-  // The edge crosses a cell from side to side: twice where opposite corners are alike.
+  // The edge crosses a cell from side to side, and crosses it twice if opposite corners are equal.
   void MeasureCell(const glm::ivec2& cell) {
     std::vector<glm::dvec2> crossings;
     const auto add = [&](const glm::ivec2& from, std::size_t axis) {
@@ -281,8 +285,8 @@ class PlanLevel {
   double step_m_;
   int hole_;
   std::vector<std::uint8_t> is_lit_;
-  std::vector<float> from_edge_;               // steps
-  std::array<std::vector<float>, 2> to_edge_;  // to the next node east and north
+  std::vector<float> from_edge_;               // in steps
+  std::array<std::vector<float>, 2> to_edge_;  // edges on the way to the next node east and north
 };
 
 }  // namespace

@@ -1,23 +1,26 @@
 // SPDX-License-Identifier: MIT
-// What the air that a lamp lights brings to surfaces (renderer/lamp/lamp_tree.h), ready for
-// interpolation by a graphics card: six terms over distance and rise of the lamp.
+// Provides the light of lamps on the ground for interpolation by the GPU: SampledGlow, the light
+// that the illuminated air around a lamp brings to surfaces, LitPlan, the lit and shadowed ground
+// around a lamp, and LitPlanFollower, which computes the LitPlans of all lamps once, one by one,
+// beside drawing.
+//
+// SampledGlow tabulates LampGlow (renderer/lamp/lamp_tree.h) with six terms over distance and rise
+// of the lamp.
 //
 //   E(n) = exp(term 0) / d * LampGlowOnSlope(n, terms 1 to 5)             [m^-2], by band
 //
-// Term 0 is the logarithm of what level ground gets times the distance. The others, of
-// atmosphere/lamp/lamp_ray.glsl, are fitted by least squares to slopes of up to 60 degrees, gentle
-// ones before steep ones (the fourth power of the cosine).
+// Term 0 is the logarithm of the light on level ground times the distance. The other terms, defined
+// in atmosphere/lamp/lamp_ray.glsl, are fitted by least squares to slopes of up to 60 degrees.
+// Gentle slopes have larger weights than steep ones (the fourth power of the cosine).
 //
-// Where a lamp lights the ground around it: on plan, the signed distance to the edge of the shade
-// that terrain throws, found with the renderer's own shadow rays (LampStage::Shades).
-//
-// Shade ends at sides of triangles and at their shadows on others, along lines that are straight
-// for many steps of a lattice. The distance to a straight line is linear between nodes, so that the
-// edge is where it was found, far finer than the lattice; only corners are rounded (Green 2007,
-// "Improved Alpha-Tested Magnification for Vector Textures and Special Effects", SIGGRAPH courses).
-// Every level is twice as coarse and as wide as the one before, and empty where that one serves.
-//
-// The LitPlans of lamps, made one by one beside drawing, once.
+// A LitPlan is a horizontal map of the signed distance to the edge of the shadows of terrain, found
+// with the renderer's own shadow rays (LampStage::Shades). Shadows end at sides of triangles and at
+// the shadows of these sides on other triangles, along lines that are straight over many steps of a
+// lattice. The distance to a straight line is linear between nodes, so the edge is located far more
+// accurately than the spacing of the lattice; only corners are rounded (Green 2007, "Improved
+// Alpha-Tested Magnification for Vector Textures and Special Effects", SIGGRAPH courses). Every
+// level is twice as coarse and twice as wide as the previous one, and empty where the previous one
+// is used.
 #pragma once
 
 #include <cstdint>
@@ -32,54 +35,58 @@
 
 namespace alpenglow::viewer {
 
-/// Places of distances and rises are those of lamp_ray.glsl, each step of LampGlow in four.
+/// Size of the table. Distances and rises are spaced as in lamp_ray.glsl; each step of LampGlow is
+/// divided into four.
 inline constexpr int kGlowDistances = 61;
 inline constexpr int kGlowRises = 33;
 inline constexpr double kNearestGlow_m = 0.2;
 inline constexpr double kFarthestGlow_m = 2e4;
 inline constexpr int kGlowTerms = 6;
 
-/// [(term * kGlowRises + rise) * kGlowDistances + distance]; bands that there are not have level
-/// ground dark and slopes alike. At most four bands.
+/// Returns [(term * kGlowRises + rise) * kGlowDistances + distance]. Unused bands have no light on
+/// level ground and equal light on all slopes. At most four bands.
 [[nodiscard]] std::vector<glm::vec4> SampledGlow(const LampGlow& glow);
 
-/// Nodes of a side of a level; its middle one stands under the lamp.
+/// Nodes per side of a level; the middle one is below the lamp.
 inline constexpr int kPlanSide = 512;
-/// Between the nodes of the first level.
+/// Distance between nodes of the first level.
 inline constexpr double kPlanStep_m = 2.0;
-/// So far from the middle a level serves, to the east and to the north [its steps].
+/// Half width of the area in which a level is used, to the east and to the north [its steps].
 inline constexpr int kPlanReach_steps = kPlanSide / 2 - 2;
-/// Distances from the edge are cut off at so many steps.
+/// Distances from the edge are clamped to this many steps.
 inline constexpr double kPlanRange_steps = 2.0;
-/// The fifth level serves as far as 8 km.
+/// The fifth level is used up to 8 km.
 inline constexpr int kMostPlanLevels = 5;
 
 struct LitPlan {
   int levels = 0;
-  /// [(level * kPlanSide + row) * kPlanSide + column], rows to the north; 1 to 255 from
-  /// -kPlanRange_steps, dark, to kPlanRange_steps, lit; 128 is the edge.
+  /// [(level * kPlanSide + row) * kPlanSide + column], rows to the north. Values from 1 to 255
+  /// stand for -kPlanRange_steps (shadow) to kPlanRange_steps (lit); 128 is the edge.
   std::vector<std::uint8_t> texels;
 };
 
-/// Levels, from 1 to kMostPlanLevels, beyond which a lamp lights no ground by more than a
-/// thousandth of a lux, a hundredth of what the moon can.
+/// Returns the number of levels, from 1 to kMostPlanLevels. Beyond them the lamp illuminates no
+/// ground by more than a thousandth of a lux, a hundredth of the illuminance that the moon can
+/// reach.
 [[nodiscard]] int PlanLevelsOf(double candela);
 
-/// Takes 0.1 s a level: half a million rays where shade is intricate. `stage` has terrain.
+/// Computes a plan. It takes 0.1 s per level: half a million rays where shadows are intricate.
+/// `stage` must have terrain.
 [[nodiscard]] LitPlan LitPlanAround(const LampStage& stage, const Lamp& lamp, int levels);
 
 class LitPlanFollower {
  public:
-  /// Of a lamp by its number, from 0.
+  /// Returns the plan of a lamp with this number, from 0.
   using Make = std::function<LitPlan(std::size_t)>;
-  /// @param make  called on a thread of this; what it refers to must outlive this.
+  /// @param make  called on a thread of this object; everything it refers to must outlive this
+  ///     object.
   LitPlanFollower(std::size_t lamps, Make make) : lamps_(lamps), job_(std::move(make)) {}
 
-  /// Takes in what is finished and asks for the next.
+  /// Takes a finished plan and requests the next one.
   void Follow();
-  /// Waits for all of them.
+  /// Waits for all plans.
   void Settle();
-  /// Of the first lamps, as many as are finished.
+  /// Returns the finished plans, which are those of the first lamps.
   [[nodiscard]] const std::vector<LitPlan>& plans() const { return plans_; }
 
  private:

@@ -25,8 +25,8 @@ enum LampUnit {
   kLampPlanUnit
 };
 
-/// Cores fade and end at so many steps of the lattice from their lamp: beyond, light that falls as
-/// 1 / angle is straight enough between its points.
+/// Steps of the lattice from a lamp at which its core fades and ends. Farther away, light that is
+/// proportional to 1 / angle is approximately linear between lattice points.
 constexpr double kCoreBegin_steps = 2.0, kCoreEnd_steps = 8.0;
 
 std::string DefinesOf(const SceneLamps& shape, const LampQuality& quality) {
@@ -50,7 +50,8 @@ std::string DefinesOf(const SceneLamps& shape, const LampQuality& quality) {
         "#define LAMP_PLAN_RANGE {:.7f}\n",
         kPlanStep_m, kPlanReach_steps * kPlanStep_m, kPlanRange_steps);
   }
-  // Clear air brings less than a per cent of a lamp's light to the ground around it.
+  // In clear air less than one per cent of a lamp's light reaches the surrounding ground by
+  // scattering.
   const bool is_fine = quality.step == 1;
   if (!shape.glows().empty() && (is_fine || shape.HasFog())) text += "#define LAMP_GLOW_MAP\n";
   if (is_fine) text += "#define LAMP_GLOW_OF_SLOPES\n";
@@ -83,7 +84,7 @@ LampPainter::LampPainter(const SceneLamps& shape, const LampQuality& quality,
       WithViewerPieces(SharedTexts(), {"viewer/shaders/view_block.glsl"});
   std::vector<ShaderPiece> corners = texts;
   texts.insert(texts.end(), texts_.begin(), texts_.end());
-  // The last is of pixels.
+  // The last text is for pixels only, so it is omitted here.
   corners.insert(corners.end(), texts_.begin(), texts_.end() - 1);
   corners.push_back(ViewerPiece("viewer/shaders/lamps/lamp_corners.glsl"));
   if (quality.step > 1) {
@@ -178,7 +179,7 @@ void LampPainter::UploadShades(const SceneLamps& shape) {
   glTexParameteri(GL_TEXTURE_2D_ARRAY, GL_TEXTURE_WRAP_S, GL_REPEAT);
 }
 
-// Room for all of them, and those that are finished.
+// Allocates layers for all plans and uploads the finished ones.
 void LampPainter::UploadPlans(const SceneLamps& shape) {
   if (shape.PlanLayerCount() == 0) return;
   glActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(units_.first + kLampPlanUnit));

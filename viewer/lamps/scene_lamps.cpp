@@ -54,7 +54,8 @@ glm::vec4 InFloats(const Values& values, std::size_t count) {
   return bands;
 }
 
-/// Altitudes over the plane of a lamp's air count from `reference_m`.
+/// Packs lamps for the GPU. Altitudes above the plane of a lamp's air are relative to
+/// `reference_m`.
 class LampPacking {
  public:
   LampPacking(const LampView& view, double reference_m) : view_(view), reference_m_(reference_m) {}
@@ -82,13 +83,14 @@ class LampPacking {
   [[nodiscard]] glm::vec3 Turned(const glm::dvec3& of_ground) const {
     return view_.eye_from_ground * of_ground;
   }
-  /// Where beams begin light changes over less than around a lamp that shines evenly.
+  /// Returns the relative size of a lamp's core. Beams have a larger one, because their light
+  /// changes over smaller angles than that of a lamp that shines evenly.
   [[nodiscard]] static double CoreOf(const PlacedLamp& placed) {
     constexpr double kOfBeams = 2.0;
     if (placed.HoldsEye()) return 0.0;
     return placed.lamp.profile.kind == LampProfile::Kind::kIsotropic ? 1.0 : kOfBeams;
   }
-  /// Cosines at which a cone is full and dark.
+  /// Returns the cosines at which a cone has full intensity and none.
   [[nodiscard]] static glm::vec2 Edges(const LampProfile& profile) {
     return {std::cos(profile.inner_rad), std::cos(profile.outer_rad)};
   }
@@ -175,8 +177,9 @@ LampsBlock LampsBlockOf(std::vector<ChosenLamp> lamps, const std::vector<LampLay
 
 namespace {
 
-// What a lamp may add to a picture [cd/m^2]: its light in the air three degrees beside it, or on
-// ground a third of which it sends back, as far as that fills a pixel.
+// Returns the luminance that a lamp may add to a picture [cd/m^2]: that of its light in the air
+// three degrees from it, or of ground that reflects a third of its light, scaled by the part of a
+// pixel that the ground fills.
 double Promise(const LampNode& node, const LampView& view) {
   constexpr double kBeside = 0.05;
   const PlacedLamp& lamp = node.light;
@@ -187,7 +190,7 @@ double Promise(const LampNode& node, const LampView& view) {
   return std::max(in_air, 0.1 * lamp.candela / (height * height) * width * width);
 }
 
-// Of taking the node for the lamps below it.
+// Returns the error of using a node instead of the lamps below it.
 double ErrorOf(const LampNode& node) {
   if (!node.children) return 0.0;
   const double distance = std::max(node.light.distance_m - node.radius_m, 1.0);
@@ -262,7 +265,7 @@ int SceneLamps::PlanLayerCount() const {
 }
 
 std::vector<float> ShadeAround(const LampStage& stage, const glm::dvec3& place) {
-  // So close that crests of 45 m cells are not missed by much.
+  // These steps are short enough not to miss crests of 45 m cells by much.
   constexpr double kStep_m = 5.0, kMostSteps = 16.0;
   constexpr double kNothing = -1e6;
   const double ratio = std::pow(kFarthestShade_m / kNearestShade_m, 1.0 / (kShadeRings - 1));
@@ -325,7 +328,8 @@ PlacedLamp SceneLamps::Landing(const LampView& view) const {
   placed.candela = landing_->intensity_cd;
   placed.intensity = LampIntensity(landing_->temperature_k, landing_->intensity_cd,
                                    medium_.wavelengths_nm, colour_);
-  // Of a cone, to a tenth: it is what its air, spread evenly, brings to the ground.
+  // Mean over a cone, accurate to a tenth. It determines the light that the illuminated air, spread
+  // evenly, brings to the ground.
   placed.mean_share = 0.5 * (1.0 - std::cos(0.5 * (landing_->inner_rad + landing_->outer_rad)));
   return viewer::Before({view.eye_m, std::nullopt}, stage_, std::move(placed));
 }

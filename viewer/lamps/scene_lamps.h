@@ -1,14 +1,12 @@
 // SPDX-License-Identifier: MIT
-// Phase functions as shaders that are made for one kind call them.
+// Provides SceneLamps, the lamps of a scene and the landing light of the eye's own aircraft for a
+// moving eye. It selects the lamps, or the nodes that represent many lamps
+// (renderer/lamp/lamp_tree.h), for the loop of a shader, and packs them for lamp_light.glsl into a
+// uniform block of vec4 alone. It also provides phase functions as shader expressions.
 //
-// Lamps as lamp_light.glsl reads them: a uniform block of vec4 alone.
-//
-// Altitudes count from that of the lowest of eye and lamps, so that float holds fog of metres' scale
-// height under an eye kilometres above it. Densities are relative to those at each layer's base.
-//
-// The lamps of a scene and the landing light of the eye's own aircraft, as an eye that flies has
-// them: which of them, or of the nodes that stand for many (renderer/lamp/lamp_tree.h), are worth a
-// loop in a shader.
+// Altitudes are relative to the lowest of eye and lamps. Single precision is then sufficient for
+// fog with a scale height of metres under an eye kilometres above it. Densities are relative to
+// those at the base of each layer.
 #pragma once
 
 #include <array>
@@ -32,21 +30,21 @@
 
 namespace alpenglow::viewer {
 
-/// An expression over a cosine `c` and a vector `p` of parameters, ParametersOf(). Tables have
-/// none: what reads them has a texture.
+/// Returns an expression of a cosine `c` and a vector `p` of parameters, ParametersOf(). A shader
+/// reads a phase function of kind table from a texture instead.
 [[nodiscard]] std::string PhaseExpression(PhaseKind kind);
 [[nodiscard]] glm::vec4 ParametersOf(const PhaseFunction& phase);
 
-/// As many as the smallest uniform block that every OpenGL has room for can hold, and a loop in a
-/// shader should.
+/// Maximum number of lamps in the block. They fit into the smallest uniform block that every OpenGL
+/// supports, and are few enough for a loop in a shader.
 inline constexpr std::size_t kMostGpuLamps = 64;
 
-/// `struct Lamp` of lamp_light.glsl.
+/// Mirrors `struct Lamp` of lamp_light.glsl.
 struct GpuLamp {
   glm::vec4 position, intensity, axis, side, profile, up, at_eye, at_lamp, glow, shade;
 };
 
-/// `block Lamps` of lamp_light.glsl.
+/// Mirrors the uniform block `Lamps` of lamp_light.glsl.
 struct LampsBlock {
   glm::vec4 count, planet, falls, bases, molecules, aerosol, dimming, fog, mie_phase, fog_phase;
   glm::vec4 red, green, blue;
@@ -54,79 +52,80 @@ struct LampsBlock {
   std::array<GpuLamp, kMostGpuLamps> lamps;
 };
 static_assert(sizeof(LampsBlock) == (16 + 10 * kMostGpuLamps) * sizeof(glm::vec4));
-static_assert(sizeof(LampsBlock) <= 16384);  // GL_MAX_UNIFORM_BLOCK_SIZE is at least that
+static_assert(sizeof(LampsBlock) <= 16384);  // the minimum of GL_MAX_UNIFORM_BLOCK_SIZE
 
-/// From where lamps are seen, and how finely.
+/// View of the lamps: position, orientation and resolution.
 struct LampView {
   glm::dvec3 eye_m{0.0};  // in the frame of SceneGround
   glm::dmat3 eye_from_ground{
-      1.0};                 // turns directions of that frame into east, north, up at the eye
-  double altitude_m = 0.0;  // of the eye over the sphere
+      1.0};                 // rotates directions from that frame to east, north, up at the eye
+  double altitude_m = 0.0;  // of the eye above the sphere
   double pixel_angle_rad = 1e-3;
 };
 
-/// Of an eye anywhere; `ground` is the frame of SceneGround.
+/// Returns the view of an eye at any place; `ground` is the frame of SceneGround.
 [[nodiscard]] LampView LampViewFrom(const LocalFrame& ground, const GeodeticPosition& eye,
                                     double pixel_angle_rad);
 
-/// Layers of the texture of plans that are of a lamp; levels 0: none.
+/// Layers of a lamp's plan in the texture of plans; levels 0: no plan.
 struct PlanLayers {
   int first = 0, levels = 0;
 };
 
-/// A lamp of the block, and what its picture needs beside it.
+/// A lamp of the block and the indices of its tables.
 struct ChosenLamp {
-  const PlacedLamp* placed;  // before the eye of the view
+  const PlacedLamp* placed;  // lamp as placed for the eye of the view
   int table = 0;             // layer of its measured profile
-  int glow = 0;              // of what its air brings to surfaces
-  int shade = -1;            // of the terrain around it; -1: none
-  PlanLayers plan{};         // of where it lights the ground
+  int glow = 0;              // layer of the light that its air brings to surfaces
+  int shade = -1;            // layer of the terrain around it; -1: none
+  PlanLayers plan{};         // layers of the lit ground around it
 };
 
-/// @param layers  of LampStage: molecules, aerosol and perhaps fog.
-/// @param core_rad  angles from a lamp at which what is drawn of it by itself fades and ends; 0, 0:
-///     nothing is. Lamps that shine evenly come first in the block.
+/// @param layers  layers of LampStage: molecules, aerosol and optionally fog.
+/// @param core_rad  angles from a lamp at which its separately drawn core fades and ends; 0, 0 for
+///     no core. Lamps that shine evenly come first in the block.
 [[nodiscard]] LampsBlock LampsBlockOf(std::vector<ChosenLamp> lamps,
                                       const std::vector<LampLayer>& layers, const Medium& medium,
                                       const LampView& view, std::array<double, 2> core_rad);
 
-/// A spot that moves with the eye.
+/// A spotlight that moves with the eye.
 struct LandingLight {
   double intensity_cd = 400e3;
   double temperature_k = 3200.0;
-  double radius_m = 0.1;    // of the luminous sphere that it is
-  double inner_rad = 0.07;  // half angles: full inside, none outside
+  double radius_m = 0.1;    // radius of the luminous sphere
+  double inner_rad = 0.07;  // half angles: full intensity inside inner_rad, none outside outer_rad
   double outer_rad = 0.14;
   glm::dvec3 offset_m{0.0, 0.0, -1.5};  // from the eye, east, north, up
   glm::dvec3 axis{0.0, 1.0, 0.0};       // unit, east, north, up
 };
 
-/// A lamp itself, as the picture shows it.
+/// The disk of a directly visible lamp.
 struct LampDisk {
-  glm::vec4 towards;  // unit, in the frame of the eye; angular radius, without that of pixels [rad]
+  glm::vec4 towards;  // unit, in the frame of the eye; angular radius without that of a pixel [rad]
   glm::vec4 light;    // irradiance at the eye [W m^-2 nm^-1]
   glm::vec4 place;    // distance [m]; the rest unused
 };
 
-/// What a measured lamp's table has on the graphics card: uniform angles gamma over [0, pi] and C
-/// over a whole turn, its ends the same.
+/// Size of the GPU table of a measured lamp: equidistant angles gamma over [0, pi] and C over a
+/// whole turn, whose first and last columns are equal.
 inline constexpr int kLampGammas = 361;
 inline constexpr int kLampTurns = 73;
-/// Terrain around a lamp: the slope over which it is seen, over directions of the compass and
-/// distances from the first to the last in equal ratios.
+/// Terrain around a lamp: the slope above which the lamp is visible, over compass directions and
+/// over distances from the nearest to the farthest in equal ratios.
 inline constexpr int kShadeTurns = 96;
 inline constexpr int kShadeRings = 192;
 inline constexpr double kNearestShade_m = 1.0;
 inline constexpr double kFarthestShade_m = 2e4;
-/// As many layers as every OpenGL has; lamps beyond are not shaded.
+/// Texture layers that every OpenGL supports; terrain does not shade lamps beyond this number.
 inline constexpr std::size_t kMostShades = 256;
-/// The brightest so many lamps have a LitPlan, of up to 1.3 MB each.
+/// Number of the brightest lamps that have a LitPlan, of up to 1.3 MB each.
 inline constexpr std::size_t kMostPlans = 32;
 
 class SceneLamps {
  public:
-  /// Lights and fog of the scene. Reads the IES files of lamps. `ground` must outlive this. Throws
-  /// InputError naming the lamp for a lamp below the ground, and what ReadIes refuses.
+  /// Takes lights and fog of the scene and reads the IES files of lamps. `ground` must outlive this
+  /// object. Throws InputError that names the lamp if it is below the ground, and errors of
+  /// ReadIes.
   SceneLamps(const Scene& scene, const SceneGround& ground, const Medium& medium);
 
   void SetLandingLight(const std::optional<LandingLight>& light) { landing_ = light; }
@@ -135,22 +134,22 @@ class SceneLamps {
   [[nodiscard]] bool HasFog() const { return stage_.layers().size() > 2; }
   [[nodiscard]] const std::vector<LampLayer>& layers() const { return stage_.layers(); }
   [[nodiscard]] const Medium& medium() const { return medium_; }
-  /// Of the measured lamps, in the order of ChosenLamp::table.
+  /// Returns the profiles of the measured lamps, in the order of ChosenLamp::table.
   [[nodiscard]] const std::vector<LampProfile>& tables() const { return tables_; }
-  /// In the order of ChosenLamp::glow.
+  /// Returns the glows in the order of ChosenLamp::glow.
   [[nodiscard]] const std::vector<const LampGlow*>& glows() const { return glows_; }
 
-  /// Of each lamp, [ring * kShadeTurns + turn]; empty without terrain.
+  /// Returns the terrain around each lamp, [ring * kShadeTurns + turn]; empty without terrain.
   [[nodiscard]] const std::vector<std::vector<float>>& shades() const { return shades_; }
 
-  /// Ground that lamps light, in an order of its own, as many as are finished. Until then, and of
-  /// lamps that have none, shades() decide.
+  /// Returns the finished plans of lit ground, in their own order. shades() are used until a plan
+  /// is finished, and for lamps without a plan.
   [[nodiscard]] const std::vector<LitPlan>& plans() const { return plans_->plans(); }
-  /// Layers of all of them, finished or not.
+  /// Returns the number of layers of all plans, finished or not.
   [[nodiscard]] int PlanLayerCount() const;
-  /// Takes in what is finished and has more made, beside drawing.
+  /// Takes finished plans and requests the next one, beside drawing.
   void FollowPlans() { plans_->Follow(); }
-  /// Waits until all are there.
+  /// Waits until all plans are finished.
   void SettlePlans() { plans_->Settle(); }
 
   /// Everything that depends on the eye.
@@ -158,9 +157,9 @@ class SceneLamps {
     LampsBlock block;
     std::vector<LampDisk> disks;
   };
-  /// @param dimmest_cd_per_m2  lamps whose glow and light on the ground under them stay below this
-  ///     are left out.
-  /// @param most  lamps or nodes of the block, at most kMostGpuLamps.
+  /// @param dimmest_cd_per_m2  lamps are omitted if their glow and their light on the ground below
+  ///     them are darker than this luminance.
+  /// @param most  maximum number of lamps or nodes in the block, at most kMostGpuLamps.
   [[nodiscard]] InView Before(const LampView& view, std::array<double, 2> core_rad,
                               double dimmest_cd_per_m2, std::size_t most = kMostGpuLamps);
 
@@ -180,20 +179,22 @@ class SceneLamps {
   std::vector<const LampGlow*> glows_;
   std::map<const LampGlow*, int> number_of_glow_;
   std::vector<std::vector<float>> shades_;
-  /// A lamp that has a plan, and the first of its layers.
+  /// A lamp with a plan, and the first layer of the plan.
   struct PlannedLamp {
     std::uint32_t node;
     Lamp lamp;
     int first_layer, levels;
   };
   std::vector<PlannedLamp> planned_;
-  std::optional<LitPlanFollower> plans_;  // last: its thread reads what is above
+  std::optional<LitPlanFollower> plans_;  // last member, because its thread reads the ones above
 };
 
-/// What terrain up to a distance leaves of sight from a place: [ring * kShadeTurns + turn], the
-/// rise over the distance that a point there must have; turns count from east to north.
+/// Returns the visibility of a place over terrain up to a distance: [ring * kShadeTurns + turn],
+/// the rise over distance that a point must exceed to be visible. Turns are counted from east to
+/// north.
 [[nodiscard]] std::vector<float> ShadeAround(const LampStage& stage, const glm::dvec3& place);
-/// A measured profile at the angles of kLampGammas and kLampTurns, [turn * kLampGammas + gamma].
+/// Returns a measured profile at the angles of kLampGammas and kLampTurns, [turn * kLampGammas +
+/// gamma].
 [[nodiscard]] std::vector<float> SampledProfile(const LampProfile& profile);
 
 }  // namespace alpenglow::viewer
