@@ -16,7 +16,7 @@ constexpr GLsizeiptr kLightBytes = kChunkVertices * sizeof(ChunkLight);
 constexpr GLsizeiptr kTriangleBytes = kChunkIndices * sizeof(std::uint16_t);
 constexpr GLsizeiptr kWholeBytes = 16 * kTriangleBytes;
 
-// More room in a buffer, and what it held.
+// Reallocates a buffer to a larger size and copies its contents.
 void Enlarge(GlBuffer& buffer, GLsizeiptr before, GLsizeiptr after) {
   GlBuffer larger;
   glBindBuffer(GL_COPY_WRITE_BUFFER, larger.id());
@@ -148,7 +148,7 @@ std::vector<ChunkLight> LightOf(const LandChunk& chunk, const ChunkOrder& order)
 LitChunk Made(const ChunkKey& key, const ChunkOrder& order) {
   LandChunk chunk = MakeChunk(*order.heights, key, order.top, order.anchor);
   std::vector<ChunkLight> light = LightOf(chunk, order);
-  std::vector<ChunkVertex> vertices = std::exchange(chunk.vertices, {});  // for the card alone
+  std::vector<ChunkVertex> vertices = std::exchange(chunk.vertices, {});  // needed on the GPU only
   return {std::make_shared<const LandChunk>(std::move(chunk)), std::move(vertices),
           std::move(light)};
 }

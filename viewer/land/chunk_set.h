@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: MIT
-// Chunks on the graphics card: one buffer of vertices, two of their light, one of triangles.
+// Terrain chunks in memory and on the GPU: their buffers, their lighting and the set that is kept.
 //
-// Light of vertices that is made beside drawing and fades into what is shown.
-//
-// Making and lighting chunks, beside drawing.
-//
-// The chunks that are there, in memory and on the graphics card: all of one anchor.
+// ChunkBuffers holds one vertex buffer, two light buffers (the old and the new light) and one index
+// buffer. LightFade cross-fades from the old light of the vertices to a new one that a worker
+// thread computes. MakeChunks builds and lights chunks on that thread. ChunkSet holds all chunks
+// that share one anchor.
 #pragma once
 
 #include <algorithm>
@@ -24,34 +23,35 @@
 
 namespace alpenglow::viewer {
 
-/// Which of the two lights of a vertex.
+/// Selects one of the two light buffers of a vertex.
 enum class LightSide { kFirst, kSecond };
 [[nodiscard]] constexpr LightSide Other(LightSide side) {
   return side == LightSide::kFirst ? LightSide::kSecond : LightSide::kFirst;
 }
 
-/// Chunks in slots.
+/// Vertex, light and index buffers for many chunks, one slot per chunk.
 class ChunkBuffers {
  public:
-  /// @param slots  that are expected; more are made when they are needed, which copies all.
+  /// @param slots  expected number of chunks. If more are needed, larger buffers are allocated and
+  ///   all data is copied.
   explicit ChunkBuffers(int slots);
 
-  /// Puts a chunk into a free slot, its light on both sides.
+  /// Stores a chunk in a free slot, with this light on both sides, and returns the slot.
   [[nodiscard]] int Add(std::span<const ChunkVertex> vertices, std::span<const ChunkLight> light);
   void SetLight(int slot, LightSide side, std::span<const ChunkLight> light);
   void Remove(int slot) { free_.push_back(slot); }
 
-  /// A slot's chunk without the odd vertices of some sides.
+  /// A chunk in its slot. Along `coarse_sides` the odd vertices are left out.
   struct Drawn {
     int slot;
     const LandChunk* chunk;
     unsigned coarse_sides;
   };
-  /// Draws the chunks in this order, with the program in use. The light goes from `from` to the
-  /// other side.
+  /// Draws the chunks in this order with the program in use. The light fades from side `from` to
+  /// the other side.
   void Draw(std::span<const Drawn> chunks, LightSide from);
 
-  /// Of all slots, taken or not, and of triangles of whole chunks.
+  /// Returns the size [bytes] of all slots, used or not, and of the triangles of whole chunks.
   [[nodiscard]] std::size_t bytes() const;
 
  private:
@@ -62,45 +62,47 @@ class ChunkBuffers {
   int slots_ = 0;
   std::vector<int> free_;
   struct CutTriangles {
-    unsigned sides = ~0U;  // that the triangles of a slot were made for; none yet
-    int count = 0;         // of their indices
+    unsigned sides = ~0U;  // coarse sides of the slot's triangles; ~0: none yet
+    int count = 0;         // number of indices
   };
-  std::vector<CutTriangles> cut_;      // one a slot
-  std::array<int, 16> whole_count_{};  // indices of whole chunks, by coarse sides
+  std::vector<CutTriangles> cut_;      // one per slot
+  std::array<int, 16> whole_count_{};  // number of indices of whole chunks, by coarse sides
   GlBuffer vertices_, first_light_, second_light_, triangles_;
   GlVertexArray layout_;
 };
 
-/// Directions towards the disks before which vertices have their edges of shade, of the light that fades and
-/// of the one that is shown; nothing without such light.
+/// Directions to the sun or moon for which the shadow edges of the vertices were computed: for the
+/// light that fades out (`from`) and the light that fades in (`to`). Empty if a light has none.
 struct EdgesOfVertices {
   std::optional<Vector<Ecef>> from, to;
 };
 
-/// One light after another: the next begins when the one before is all there and shown. The first is
-/// shown at once.
+/// Sequence of lights of the vertices. A light starts to be computed when the previous one is
+/// complete and fully shown. The first light is shown without a fade.
 class LightFade {
  public:
-  /// To follow; asked again meanwhile, the newest follows.
+  /// Requests a light to follow the current one. A newer request replaces a pending one.
   void Ask(LightOfVertices light) { asked_ = std::move(light); }
-  /// Whether any light has been all there.
+  /// Returns whether any light has been completed.
   [[nodiscard]] bool HasShown() const { return lights_shown_ > 0; }
   [[nodiscard]] bool IsChanging() const { return asked_ || is_filling_ || share_ < 1.0; }
 
-  /// The light of vertices that are made now, and its number; empty before the first.
+  /// Light for newly made vertices (empty before the first request), and its number.
   [[nodiscard]] const std::optional<LightOfVertices>& light() const { return light_; }
   [[nodiscard]] int number() const { return number_; }
-  /// Whether the side that is not shown is being filled with it.
+  /// Returns whether the hidden side is being filled with light().
   [[nodiscard]] bool IsFilling() const { return is_filling_; }
 
-  /// What is shown goes from `from` to the other side by a share; `from` is the one to be filled.
+  /// The picture blends from side `from` to the other side with weight share(). Side `from` is the
+  /// one that the next light fills.
   [[nodiscard]] LightSide from() const { return from_; }
   [[nodiscard]] double share() const { return lights_shown_ > 1 ? share_ : 1.0; }
   [[nodiscard]] EdgesOfVertices edges() const {
     return {share() < 1.0 ? to_disk_[Index(from_)] : std::nullopt, to_disk_[Index(Other(from_))]};
   }
 
-  /// @param is_complete  whether all vertices have the light.
+  /// Advances the fade by a time.
+  /// @param is_complete  whether all vertices have the new light.
   void Advance(double seconds, bool is_complete) {
     share_ = std::min(share_ + seconds / std::max(filled_in_s_, 0.2), 1.0);
     if (is_filling_) filled_in_s_ += seconds;
@@ -110,7 +112,7 @@ class LightFade {
       share_ = 0.0;
       ++lights_shown_;
     }
-    // The side that is faded from must stay as it is until the fading ends.
+    // Side `from` must not change until the fade ends.
     if (!is_filling_ && asked_ && share_ == 1.0) Begin();
   }
 
@@ -127,72 +129,72 @@ class LightFade {
   }
 
   std::optional<LightOfVertices> light_, asked_;
-  std::array<std::optional<Vector<Ecef>>, 2> to_disk_;  // of the sides
+  std::array<std::optional<Vector<Ecef>>, 2> to_disk_;  // by side
   int number_ = 0;
   bool is_filling_ = false;
   int lights_shown_ = 0;
   LightSide from_ = LightSide::kSecond;
-  double share_ = 1.0;        // of the way to the other side
-  double filled_in_s_ = 0.0;  // the last one
+  double share_ = 1.0;        // weight of the other side
+  double filled_in_s_ = 0.0;  // time to fill the most recent light
 };
 
-/// Chunks that are to be made or lit anew, the most urgent first.
+/// Chunks to be made or relit, the most urgent first.
 struct ChunkOrder {
   std::shared_ptr<const LoadedHeights> heights;
   LandAnchor anchor;
   std::vector<ChunkKey> make;
   std::vector<std::shared_ptr<const LandChunk>> relight;
   int top = 0;                           // the coarsest level
-  std::optional<LightOfVertices> light;  // nothing before the first
+  std::optional<LightOfVertices> light;  // empty before the first light
   int light_number = 0;
   bool for_next_anchor = false;
 };
 
 struct LitChunk {
   std::shared_ptr<const LandChunk> chunk;
-  std::vector<ChunkVertex> vertices;  // empty where only the light is new
+  std::vector<ChunkVertex> vertices;  // empty if only the light is new
   std::vector<ChunkLight> light;
 };
 
-/// As far as an order was carried out.
+/// The part of a ChunkOrder that was carried out.
 struct MadeChunks {
   std::vector<LitChunk> made, relit;
   int light_number;
   bool for_next_anchor;
 };
 
-/// As many as take about 30 ms, so that what is asked for later need not wait for long.
+/// Makes chunks for about 30 ms, then returns, so that later requests do not wait long.
 [[nodiscard]] MadeChunks MakeChunks(const ChunkOrder& order);
 
 class ChunkSet {
  public:
   struct Kept {
     std::shared_ptr<const LandChunk> chunk;
-    int slot = -1;         // on the card; -1: nothing to draw
-    long last_wanted = 0;  // the frame
+    int slot = -1;         // on the GPU; -1: nothing to draw
+    long last_wanted = 0;  // frame number
     int light = 0;         // number of the light on the side that is being filled
   };
 
-  /// @param slots  chunks that are expected.
+  /// @param slots  expected number of chunks.
   ChunkSet(const LandAnchor& anchor, int slots) : anchor_(anchor), buffers_(slots) {}
 
   [[nodiscard]] const LandAnchor& anchor() const { return anchor_; }
   [[nodiscard]] std::size_t size() const { return chunks_.size(); }
   [[nodiscard]] bool Has(const ChunkKey& key) const { return chunks_.contains(key); }
-  /// Null: it is not there.
+  /// Returns null if the chunk is not in the set.
   [[nodiscard]] const Kept* Find(const ChunkKey& key) const;
-  /// Whether all have this light, and those that have not.
+  /// IsLitBy returns whether all chunks have this light, NotLitBy the chunks that do not have it.
   [[nodiscard]] bool IsLitBy(int light_number) const;
   [[nodiscard]] std::vector<std::shared_ptr<const LandChunk>> NotLitBy(int light_number) const;
 
-  /// Takes over what has been made; what is there already stays as it is.
+  /// Adds chunks that were made. Chunks that are already in the set stay unchanged.
   void Add(const std::vector<LitChunk>& made, int light_number, long frame);
-  /// Puts new light on a side, but for chunks that have gone meanwhile.
+  /// Stores new light on a side. Chunks that were removed meanwhile are skipped.
   void Relight(const std::vector<LitChunk>& relit, LightSide side, int light_number);
   void NoteWanted(const std::vector<WantedChunk>& wanted, long frame);
-  /// Where there are more than `most`, drops those that no frame of late has wanted.
+  /// If there are more than `most` chunks, removes those that no recent frame has wanted.
   void Evict(std::size_t most, long frame);
-  /// See ChunkBuffers.
+  /// Draws chunks, see ChunkBuffers::Draw.
   void Draw(std::span<const ChunkBuffers::Drawn> chunks, LightSide from) {
     buffers_.Draw(chunks, from);
   }

@@ -13,20 +13,20 @@ bool IsWhole(float height_m) {
   return std::isnan(height_m) || (height_m == std::round(height_m) && std::abs(height_m) < 32000);
 }
 
-// The binomial mean where both neighbours are there, else the middle alone.
+// Returns the binomial mean if both neighbours exist, otherwise the middle value.
 float Binomial(float before, float middle, float after) {
   const float mean = 0.25F * before + 0.5F * middle + 0.25F * after;
   return std::isnan(mean) ? middle : mean;
 }
 
-// One axis of a level, as indices of the finer one.
+// The samples of a level along one axis, as indices into the next finer level.
 struct Means {
   struct Mean {
     std::size_t middle;
     bool has_neighbours;
   };
   std::vector<Mean> of;
-  std::size_t finer;  // how many it is made of
+  std::size_t finer;  // number of samples of the finer level
 
   Means(int first_sample, int last_sample, int level)
       : finer(static_cast<std::size_t>(LevelAxis(first_sample, last_sample, level - 1).count())) {
@@ -42,7 +42,8 @@ struct Means {
   }
 };
 
-// Along the rows, then along the columns: on a rim means go along it, never across.
+// Averages along the rows, then along the columns. On a rim the mean is taken along it, never
+// across it.
 std::vector<float> Coarser(const LatticeBox& box, int level, const std::vector<float>& finer) {
   const Means columns(box.first_column, box.last_column, level);
   const Means rows(box.first_row, box.last_row, level);
@@ -108,7 +109,7 @@ HeightPyramid HeightPyramid::From(int level) const {
   return coarser;
 }
 
-// Bilinear, from the finest level.
+// Interpolates bilinearly in the finest level.
 float HeightPyramid::Between(int column, int row) const {
   const LevelAxis columns(box_.first_column, box_.last_column, finest_);
   const LevelAxis rows(box_.first_row, box_.last_row, finest_);

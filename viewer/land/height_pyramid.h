@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: MIT
-// The lattice that all levels of detail stand on: latitudes and longitudes in even steps.
+// The lattice of all levels of detail, and the heights of one tile at all levels.
 //
-// Level k has every 2^k-th sample of both axes, from the lattice's north-west corner, and its last
-// row and column whatever their numbers, so that every level ends at the same rim. A sample is
-// named by its column and row of level 0, a vertex of level k by i and j: column min(i 2^k, last).
+// The lattice has equal steps of latitude and longitude. Level k has every 2^k-th sample of both
+// axes, counted from the north-west corner of the lattice, and always its last row and column, so
+// that every level ends at the same rim. A sample is identified by its column and row of level 0, a
+// vertex of level k by i and j: column min(i 2^k, last).
 //
-// Heights of one tile at all levels of detail.
-//
-// A level is the binomial mean (1 2 1) of the next finer one along each axis. At a tile's rim only
-// along the rim, so that two tiles which share samples there agree on them at every level.
+// A level of a HeightPyramid is the binomial mean (1 2 1) of the next finer level along each axis.
+// On the rim of a tile the mean is taken along the rim only, so that two tiles that share samples
+// there have equal heights at every level.
 #pragma once
 
 #include <algorithm>
@@ -37,7 +37,7 @@ struct LatticeBox {
   }
 };
 
-/// A place between the samples, in columns and rows of level 0.
+/// A position between the samples, in columns and rows of level 0.
 struct LatticePlace {
   double column = 0.0, row = 0.0;
 };
@@ -47,7 +47,7 @@ struct LandLattice {
   double step_lon_rad = 0.0, step_lat_rad = 0.0;
   int last_column = 0, last_row = 0;
 
-  /// Of the vertices of a level.
+  /// Returns the index of the last vertex of a level.
   [[nodiscard]] int LastVertex(int last_sample, int level) const {
     return (last_sample + (1 << level) - 1) >> level;
   }
@@ -60,14 +60,15 @@ struct LandLattice {
     return std::clamp(j * (1 << level), 0, last_row);
   }
 
-  /// Where a sample lies; rows that a grid has beyond a pole lie on it.
+  /// Returns the position of a sample. Rows beyond a pole are moved to the pole.
   [[nodiscard]] GeodeticPosition PlaceOf(int column, int row, double height_m) const {
     constexpr double kPole = 0.5 * std::numbers::pi;
     return {std::clamp(north_rad - row * step_lat_rad, -kPole, kPole),
             west_rad + column * step_lon_rad, height_m};
   }
 
-  /// The turn of the longitude that comes nearest to the lattice's middle.
+  /// Returns the lattice position of a place. Of the equivalent longitudes (modulo 2 pi), it takes
+  /// the one nearest to the middle of the lattice.
   [[nodiscard]] LatticePlace At(double latitude_rad, double longitude_rad) const {
     const double middle = west_rad + 0.5 * last_column * step_lon_rad;
     const double east = std::remainder(longitude_rad - middle, 2.0 * std::numbers::pi);
@@ -75,7 +76,8 @@ struct LandLattice {
   }
 };
 
-/// Heights [m]; NaN: none. Whole metres take two bytes a sample, others four.
+/// Heights [m]; NaN where there is none. Heights that are all whole metres take two bytes per
+/// sample, others four.
 class HeightSamples {
  public:
   explicit HeightSamples(std::vector<float> height_m);
@@ -94,7 +96,8 @@ class HeightSamples {
   std::vector<std::int16_t> whole_m_;
 };
 
-/// The samples of a level along one axis of a box: multiples of 2^level, and the box's last.
+/// The samples of a level along one axis of a box: multiples of 2^level, and the last sample of the
+/// box.
 struct LevelAxis {
   int first = 0, last = -1, level = 0;
 
@@ -106,32 +109,32 @@ struct LevelAxis {
     return first > last ? 1 : ((last - first + (1 << level) - 1) >> level) + 1;
   }
   [[nodiscard]] int SampleOf(int index) const { return std::min(first + (index << level), last); }
-  /// Index of a sample that the level has.
+  /// Returns the index of a sample, which the level must have.
   [[nodiscard]] int IndexOf(int sample) const {
     return sample == last ? count() - 1 : (sample - first) >> level;
   }
 };
 
-/// Immutable. Levels may be left out from the finest on.
+/// Heights of one tile at all its levels of detail. Immutable. The finest levels may be left out.
 class HeightPyramid {
  public:
-  /// @param box      of the tile's samples.
-  /// @param level    of the heights that are given: the tile's own spacing is that of this level.
-  /// @param height_m rows from the north over the LevelAxis of columns and rows.
+  /// @param box       samples of the tile.
+  /// @param level     level of the given heights, whose spacing is that of the tile's own samples.
+  /// @param height_m  rows from the north, over the LevelAxis of columns and rows.
   HeightPyramid(const LatticeBox& box, int level, std::vector<float> height_m);
 
-  /// The same without the levels finer than this one.
+  /// Returns a copy without the levels finer than `level`.
   [[nodiscard]] HeightPyramid From(int level) const;
 
-  /// Height [m] at a sample of the box that `level` has; bilinear where the pyramid has nothing as
-  /// fine; NaN: none.
+  /// Returns the height [m] at a sample of the box that `level` has. If the pyramid has no level as
+  /// fine, the height is interpolated bilinearly. NaN: no height.
   [[nodiscard]] float At(int level, int column, int row) const;
 
   [[nodiscard]] const LatticeBox& box() const { return box_; }
-  /// The finest level that is there.
+  /// The finest level that is stored.
   [[nodiscard]] int finest() const { return finest_; }
   [[nodiscard]] std::size_t bytes() const;
-  /// What such a pyramid takes [bytes] at most, from this level on.
+  /// Returns the largest size [bytes] of such a pyramid if `level` is its finest level.
   [[nodiscard]] static std::size_t BytesOf(const LatticeBox& box, int level);
 
  private:
@@ -140,7 +143,7 @@ class HeightPyramid {
 
   LatticeBox box_;
   int finest_;
-  std::vector<std::shared_ptr<const HeightSamples>> levels_;  // [0] is finest_
+  std::vector<std::shared_ptr<const HeightSamples>> levels_;  // [0] is level finest_
 };
 
 }  // namespace alpenglow::viewer

@@ -13,12 +13,13 @@
 namespace alpenglow::viewer {
 namespace {
 
-// Vertices of a level with their normals. At level 0 these are the area-weighted means of the
-// triangles around as in SmoothNormals; at others the slopes of the next finer level, since the
-// means of triangles as wide as theirs would lose half of what the vertices can show.
+// Vertices of a level with their normals. At level 0 the normals are the area-weighted means of the
+// surrounding triangles, as in SmoothNormals. At other levels they are the slopes of the next finer
+// level: means over triangles of the level itself would lose half of the detail that its vertices
+// can show.
 class SurfacePatch {
  public:
-  // Vertices [first_i, first_i + side) x [first_j, first_j + side).
+  // Covers vertices [first_i, first_i + side) x [first_j, first_j + side).
   SurfacePatch(const LoadedHeights& heights, int level, int first_i, int first_j, int side,
                const LocalFrame& frame)
       : lattice_(heights.tiles().lattice()),
@@ -44,7 +45,7 @@ class SurfacePatch {
   }
   [[nodiscard]] float Height(int i, int j) const { return block_.at(i, j); }
 
-  // Whether the cell south-east of a vertex is cut from north-west to south-east.
+  // Returns whether the cell south-east of a vertex is cut from north-west to south-east.
   [[nodiscard]] bool IsFalling(int i, int j) const {
     const bool void_off_falling = !Has(i + 1, j) || !Has(i, j + 1);
     const bool void_off_rising = !Has(i, j) || !Has(i + 1, j + 1);
@@ -81,13 +82,14 @@ class SurfacePatch {
     }
   }
 
-  // Fall of the finer level around a vertex along one axis: height [m] over samples.
+  // Returns the rise of the finer level around a vertex along one axis [m] per sample.
   [[nodiscard]] double FinerRise(float before, float after, int samples) const {
     return samples > 0 ? static_cast<double>(after - before) / samples
                        : std::numeric_limits<double>::quiet_NaN();
   }
 
-  // Where a neighbour is missing the triangles' normal stays.
+  // Replaces normals by those of the finer level. If a neighbour is missing, the normal of the
+  // triangles stays.
   void TakeFinerSlopes(const LocalFrame& frame) {
     for (int j = first_j_; j < first_j_ + side_; ++j) {
       const double latitude = lattice_.PlaceOf(0, lattice_.RowOf(j, level_), 0.0).latitude_rad;
@@ -142,7 +144,7 @@ class SurfacePatch {
   std::vector<char> has_;
 };
 
-// The vertices of the next level at the ends of the edge that a vertex lies on.
+// The vertices of the next coarser level at the ends of the edge on which a vertex lies.
 struct Ends {
   std::array<int, 2> first, second;  // i, j
 };
@@ -193,7 +195,8 @@ class ChunkMaker {
         chunk_.coarse.push_back(LitVertex(coarse_, i, j));
   }
 
-  // What is not there lies nowhere; light is asked for it all the same.
+  // Returns a vertex for lighting. A missing vertex gets the default position: it is lit but not
+  // drawn.
   static LandVertex LitVertex(const SurfacePatch& patch, int i, int j) {
     if (!patch.Has(i, j)) return {};
     return {glm::vec3(patch.Position(i, j)), glm::vec3(patch.Normal(i, j))};
@@ -203,8 +206,8 @@ class ChunkMaker {
     return coarse_.Has(at[0], at[1]);
   }
 
-  // A vertex whose ends are not both there goes to the one that is, else to the nearest corner of
-  // its cell that is.
+  // Returns the ends of a vertex. If one of them is missing, both are the existing one, or else the
+  // nearest existing corner of the coarser cell.
   [[nodiscard]] Ends EndsOf(int i, int j) const {
     const auto halves = [&](int at, int last) {
       const bool at_rim = at % 2 != 0 && at == last;
@@ -263,7 +266,7 @@ class ChunkMaker {
     WidenParts(i - i0_, j - j0_, glm::min(position, coarse), glm::max(position, coarse));
   }
 
-  // A vertex on a border belongs to the parts on both sides.
+  // Extends the boxes of the parts. A vertex on a border belongs to the parts on both sides.
   void WidenParts(int i, int j, const glm::dvec3& low, const glm::dvec3& high) {
     constexpr int kAcross = kChunkCells / kChunkPart;
     for (int y = 0; y < kAcross; ++y) {
@@ -386,7 +389,7 @@ const std::vector<std::uint16_t>& WholeTriangles() {
 
 std::vector<std::uint16_t> WithCoarseSides(std::span<const std::uint16_t> triangles,
                                            std::span<const CoarseEnds> ends, unsigned sides) {
-  // An odd vertex at the lattice's rim is one of the coarser level.
+  // An odd vertex on the rim of the lattice also belongs to the coarser level.
   const auto is_coarse = [&](std::uint16_t vertex) {
     return !ends.empty() && ends[vertex].first == ends[vertex].second;
   };

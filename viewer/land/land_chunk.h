@@ -1,18 +1,18 @@
 // SPDX-License-Identifier: MIT
-// A square of one level of detail as triangles, ready to turn into the next coarser level.
+// A chunk: a square of one level of detail as triangles that can morph into the next coarser level.
 //
-// A chunk is kChunkCells cells wide. Each vertex has two of everything: its own, and what the next
-// coarser level has at its place: of a vertex that both levels share that level's own, else the
-// mean of the two ends of the coarser edge that it lies on. A vertex of share m between them is
-// mix(own, coarser, m); at m = 1 the chunk is the coarser level's surface, triangle for triangle
-// (save that level 0 cuts its cells along the diagonal that fits better, all others along the
-// falling one).
+// A chunk is kChunkCells cells wide. Each vertex has two positions, normals and lights: its own,
+// and those of the next coarser level at the same place. If both levels share the vertex, the
+// second is the coarser level's vertex, otherwise the mean of the two ends of the coarser edge on
+// which it lies. With morph weight m a vertex is mix(own, coarser, m). At m = 1 the chunk is the
+// surface of the coarser level, triangle for triangle (except that level 0 cuts its cells along the
+// diagonal that fits better, all other levels along the falling one).
 //
-// Normals come from the next finer level's slopes; those of level 0 are its own.
+// Normals come from the slopes of the next finer level. Level 0 uses its own.
 //
 // Strugar, F. (2009), Continuous distance-dependent level of detail for rendering heightmaps,
-// Journal of Graphics, GPU, and Game Tools 14 (4), 57-74; here the coarser position is not a
-// vertex that slides aside but a mean, which moves by less.
+// Journal of Graphics, GPU, and Game Tools 14 (4), 57-74. In that paper the coarser position is a
+// vertex that slides aside. Here it is a mean, which moves by less.
 #pragma once
 
 #include <array>
@@ -35,7 +35,8 @@ inline constexpr int kChunkSide = kChunkCells + 1;  // vertices
 inline constexpr int kChunkVertices = kChunkSide * kChunkSide;
 inline constexpr int kChunkIndices = 6 * kChunkCells * kChunkCells;  // at most
 
-/// Which chunk: vertices kChunkCells column .. kChunkCells (column + 1) of the level, and so south.
+/// Identifies a chunk: vertices kChunkCells column .. kChunkCells (column + 1) of the level from
+/// west to east, and likewise for rows from north to south.
 struct ChunkKey {
   int level = 0, column = 0, row = 0;
   auto operator<=>(const ChunkKey&) const = default;
@@ -49,7 +50,7 @@ struct ChunkKeyHash {
   }
 };
 
-/// A vertex as light falls on it: metres and unit normal in the anchor's frame.
+/// A vertex to be lit: position [m] and unit normal in the anchor's frame.
 struct LandVertex {
   glm::vec3 position_m{0.0F};
   glm::vec3 normal{0.0F, 0.0F, 1.0F};
@@ -57,44 +58,44 @@ struct LandVertex {
 
 /// Light at a vertex.
 struct VertexLight {
-  /// Irradiance of the sky that the sun makes, and of the one that the moon makes, in four bands, over
-  /// that of the open sky on the same slope (SkyTilt) under the same sun or moon.
+  /// Irradiance of the sky lit by the sun and of the sky lit by the moon, in four bands, divided by
+  /// the irradiance of the unoccluded sky on the same slope (SkyTilt) under the same sun or moon.
   std::array<float, 4> sky{1.0F, 1.0F, 1.0F, 1.0F}, moon_sky{1.0F, 1.0F, 1.0F, 1.0F};
-  /// Height of the centre of the disk that throws shadows over the edge of terrain that hides it, in
-  /// radii of the disk, a share of the disk between -1 and 1.
+  /// Elevation of the centre of the shadow-casting disk (sun or moon) above the terrain edge that
+  /// hides it, in radii of the disk. Part of the disk is visible between -1 and 1.
   float disk_x = 4.0F;
 };
 
 struct LightOfVertices {
-  /// The light of vertices in the frame of an anchor; called on another thread.
+  /// Computes the light of vertices in the frame of an anchor. Called on another thread.
   std::function<std::vector<VertexLight>(const LocalFrame&, std::span<const LandVertex>)> at;
-  /// Towards what throws the shadows in it; nothing: nothing moves.
+  /// Direction to the disk that casts the shadows in this light. Empty: the shadows do not move.
   std::optional<Vector<Ecef>> to_disk = std::nullopt;
 };
 
-/// Geometry of a vertex as land.vert.glsl reads it.
+/// Geometry of a vertex, in the layout of land.vert.glsl.
 struct ChunkVertex {
   std::array<float, 3> position_m, coarse_position_m;  // in the anchor's frame
-  std::array<float, 2> sample;                         // column and row from the anchor's
-  std::array<std::int16_t, 4> normal;                  // times 32767; the last: the level
-  std::array<std::int16_t, 4> coarse_normal;           // shorter than 32767 where it is a mean
+  std::array<float, 2> sample;                         // column and row relative to the anchor's
+  std::array<std::int16_t, 4> normal;                  // times 32767; the fourth is the level
+  std::array<std::int16_t, 4> coarse_normal;           // shorter than 32767 if it is a mean
 };
 static_assert(sizeof(ChunkVertex) == 48);
 
-/// Light of a vertex as land.vert.glsl reads it: half floats.
+/// Light of a vertex as half floats, in the layout of land.vert.glsl.
 struct ChunkLight {
   std::array<std::uint16_t, 4> sky, coarse_sky, moon_sky, coarse_moon_sky;
   std::array<std::uint16_t, 2> disk_x;  // own, coarser
 };
 static_assert(sizeof(ChunkLight) == 36);
 
-/// What a vertex becomes: two vertices of the next coarser level (the same twice where it is one of
-/// them), as indices into LandChunk::coarse.
+/// The two vertices of the next coarser level whose mean a vertex morphs into, as indices into
+/// LandChunk::coarse. Both are equal if the vertex is one of that level.
 struct CoarseEnds {
   std::uint8_t first, second;
 };
 
-/// Where vertices stand that a graphics card sees in single precision.
+/// Local frame of vertex positions. It keeps them small enough for single precision on the GPU.
 struct LandAnchor {
   LocalFrame frame;
   int column = 0, row = 0;  // a sample near the frame's origin
@@ -111,34 +112,36 @@ inline constexpr std::size_t kChunkParts = 16;
 struct LandChunk {
   ChunkKey key;
   std::vector<ChunkVertex> vertices;     // kChunkVertices, row by row from the north-west
-  std::vector<LandVertex> own, coarse;   // the same for light, and the coarser level's
-  std::vector<CoarseEnds> ends;          // one a vertex
+  std::vector<LandVertex> own, coarse;   // vertices for lighting: own, and of the coarser level
+  std::vector<CoarseEnds> ends;          // one per vertex
   std::vector<std::uint16_t> triangles;  // counter-clockwise seen from outside
   bool is_whole = false;                 // no cell is missing: triangles are WholeTriangles()
   glm::dvec3 low{0.0}, high{0.0};        // box around both surfaces, in the anchor's frame
   double highest_m = 0.0;                // over the ellipsoid
-  /// Boxes around parts of kChunkPart x kChunkPart cells, row by row; an empty one has low > high.
+  /// Boxes around parts of kChunkPart x kChunkPart cells, row by row. An empty box has low > high.
   std::array<ChunkBox, kChunkParts> parts;
 };
 
-/// @param top  the coarsest level: its vertices stay where they are.
+/// Builds the geometry of a chunk.
+/// @param top  the coarsest level. Its vertices do not morph.
 [[nodiscard]] LandChunk MakeChunk(const LoadedHeights& heights, const ChunkKey& key, int top,
                                   const LandAnchor& anchor);
 
-/// What a chunk takes in memory.
+/// Returns the size of a chunk in memory [bytes].
 [[nodiscard]] std::size_t BytesOf(const LandChunk& chunk);
 
-/// One a vertex. Where no light is made yet: as under the open sky.
+/// Returns the light of each vertex. Without `light` this is the light under the unoccluded sky.
 [[nodiscard]] std::vector<ChunkLight> LightOfChunk(const LandChunk& chunk, const LocalFrame& frame,
                                                    const std::optional<LightOfVertices>& light);
 
-/// Triangles of a whole chunk of a level other than 0.
+/// Returns the triangles of a whole chunk of a level other than 0.
 [[nodiscard]] const std::vector<std::uint16_t>& WholeTriangles();
 
-/// Sides of a chunk, to be added.
+/// Bits for the sides of a chunk; they can be combined.
 enum ChunkSideBit : unsigned { kNorthSide = 1, kEastSide = 2, kSouthSide = 4, kWestSide = 8 };
 
-/// The triangles without those vertices of these sides that the next coarser level does not have.
+/// Returns the triangles after removing the vertices of these sides that the next coarser level
+/// does not have.
 /// @param ends  LandChunk::ends; empty for a whole chunk.
 [[nodiscard]] std::vector<std::uint16_t> WithCoarseSides(std::span<const std::uint16_t> triangles,
                                                          std::span<const CoarseEnds> ends,

@@ -12,7 +12,7 @@
 
 namespace alpenglow::viewer {
 
-// Nodes are the middles of texels.
+// Nodes of the grid are at texel centres.
 PlaceOnGrid PlaceOnGridOf(const HeightRaster& grid, const LocalFrame& of_grid,
                           const LocalFrame& of_places) {
   const auto turned = [&](const glm::dvec3& axis) {
@@ -71,7 +71,8 @@ std::vector<ShaderPiece> Vertices() {
                            "viewer/shaders/land_block.glsl", "viewer/shaders/land.vert.glsl"});
 }
 
-// Depth from 1 at the nearest to 0 at infinity, which floats resolve evenly in proportion.
+// Returns whether depth can run from 1 at the near plane to 0 at infinity. A float depth buffer
+// then has a nearly constant relative precision.
 bool CanReverseDepth() {
   return epoxy_gl_version() >= 45 || epoxy_has_gl_extension("GL_ARB_clip_control");
 }
@@ -157,8 +158,8 @@ void LandPass::BindEdges(const ShaderProgram& program) {
   program.BindSampler("horizon_sines", kUnit);
 }
 
-// The disk stands higher now than when vertices got their edges of shade by this many of its radii, for the
-// old light and the new, seen from the anchor.
+// Returns how far the disk has risen since the shadow edges of the vertices were computed, in radii
+// of the disk, for the old light and the new one, as seen from the anchor.
 glm::vec4 LandPass::RisenSinceMade(const LocalFrame& anchor) const {
   const auto elevation = [&](const Vector<Ecef>& direction) {
     return std::asin(std::clamp(anchor.EnuFromEcef(direction).xyz.z, -1.0, 1.0));

@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: MIT
-// The horizon of terrain towards the sun of this moment, on the graphics card: where the sun has moved
-// on and the edges of shade that vertices have are those before another sun, the vertices take theirs
-// from it. It is coarser (HorizonMap: a node every few hundred metres, sixteen azimuths).
+// The passes that draw terrain: targets, uniform block, shader programs and depth mode.
 //
-// What the eye sees of the terrain, a pixel each: the first pass of a frame draws it, the picture
-// reads it.
+// HorizonTexture holds the sines of the terrain's horizon towards the current sun. When the sun has
+// moved since the shadow edges of the vertices were computed, they are replaced by edges from this
+// horizon. It is coarser (HorizonMap: one node every few hundred metres, sixteen azimuths).
 //
-// Where land stands in a picture of the screen's size, while its light is painted in a smaller one.
-//
-// The pass that draws land: its program, what the program reads, depth.
+// SurfaceMap holds the visible terrain per pixel. The first pass of a frame draws it, and the
+// picture pass reads it. LandOutline holds the depth of the terrain at the size of the screen, for
+// pictures whose lighting is rendered at a lower resolution.
 #pragma once
 
 #include <array>
@@ -30,18 +29,19 @@
 
 namespace alpenglow::viewer {
 
-/// Horizons around places of a frame.
+/// Terrain horizons for positions in a local frame.
 struct TerrainHorizon {
   std::shared_ptr<const HorizonMap> map;
   LocalFrame frame;
 };
 
-/// Where a place of a frame lies in a texture whose texels are the nodes of a grid: u and v are the products
-/// of these rows and (x, y, z, 1) [m].
+/// Linear map from a point of a frame to texture coordinates. The texels are the nodes of a grid; u
+/// and v are the dot products of these rows with (x, y, z, 1) [m].
 struct PlaceOnGrid {
   glm::vec4 u{0.0F}, v{0.0F};
 };
-/// @param grid  in the first frame; places are those of the second.
+/// Returns the map from points of the frame `of_places` to the texture of a grid.
+/// @param grid  in the frame `of_grid`.
 [[nodiscard]] PlaceOnGrid PlaceOnGridOf(const HeightRaster& grid, const LocalFrame& of_grid,
                                         const LocalFrame& of_places);
 
@@ -50,7 +50,7 @@ class HorizonTexture {
   void Use(const TerrainHorizon& horizon);
   [[nodiscard]] bool HasAny() const { return horizon_.has_value(); }
 
-  /// Where a place of an anchor's frame lies in the texture.
+  /// Returns the map from points of an anchor's frame to the texture.
   [[nodiscard]] PlaceOnGrid PlaceIn(const LocalFrame& anchor) const;
 
   /// Binds the sines of the horizon towards a direction to a texture unit.
@@ -60,18 +60,20 @@ class HorizonTexture {
   void Upload(double azimuth_rad);
 
   std::optional<TerrainHorizon> horizon_;
-  std::optional<double> azimuth_rad_;  // that the texture has
+  std::optional<double> azimuth_rad_;  // azimuth of the uploaded horizon
   GlTexture texture_;
 };
 
-/// Its depth is 0 where there is no land.
+/// The visible terrain per pixel. The depth is 0 where there is no terrain.
 class SurfaceMap : public RenderTarget {
  public:
   enum Output : std::size_t {
-    /// Four floats: normal in the eye's frame, octahedral (octahedral.glsl); height of the disk that
-    /// throws shadows over the terrain's edge, in its radii; distance [m], 0: no terrain.
+    /// Four floats: normal in the eye's frame, octahedral (octahedral.glsl); elevation of the
+    /// shadow-casting disk above the terrain's edge, in radii of the disk; distance [m], 0: no
+    /// terrain.
     kSurface,
-    /// Four half floats each: irradiance of the sun's sky and of the moon's in bands, as in VertexLight.
+    /// Four half floats each: irradiance of the sky lit by the sun and by the moon, in bands, as in
+    /// VertexLight.
     kSky,
     kMoonSky,
   };
@@ -83,23 +85,23 @@ class SurfaceMap : public RenderTarget {
                      Depth::k32Bit) {}
 };
 
-/// Depth alone, as the depth of a SurfaceMap: 0 where there is no land.
+/// Depth only, with the convention of a SurfaceMap: 0 where there is no terrain.
 class LandOutline : public RenderTarget {
  public:
   /// @param width, height >= 1.
   LandOutline(int width, int height) : RenderTarget(width, height, {}, Depth::k32Bit) {}
 };
 
-/// What the eye sees, as in view_block.glsl: axes in its frame (east, north, up).
+/// View as in view_block.glsl: axes in the eye's frame (east, north, up).
 struct LandView {
-  glm::dvec3 right{1.0, 0.0, 0.0};  // times the tangent of half the view's width
-  glm::dvec3 up{0.0, 0.0, 1.0};     // times the tangent of half its height
+  glm::dvec3 right{1.0, 0.0, 0.0};  // times the tangent of half the horizontal field of view
+  glm::dvec3 up{0.0, 0.0, 1.0};     // times the tangent of half the vertical one
   glm::dvec3 forward{0.0, 1.0, 0.0};
-  int rays = 1;              // that a pixel will have: for more, land is finer
-  double bends_per_m = 0.0;  // most curvature of rays, which lifts land
+  int rays = 1;              // rays per pixel; terrain is finer for more
+  double bends_per_m = 0.0;  // largest curvature of light rays, which raises land
 };
 
-/// `block Land` of land_block.glsl.
+/// Mirrors the uniform block `Land` of land_block.glsl.
 struct LandBlock {
   static constexpr std::size_t kMostLevels = 32;
   glm::vec4 eye_high, eye_low;
@@ -111,41 +113,42 @@ struct LandBlock {
 };
 static_assert(sizeof(LandBlock) == (11 + LandBlock::kMostLevels) * sizeof(glm::vec4));
 
-/// An eye and its axes in the frame of an anchor.
+/// The eye's position and axes in the frame of an anchor.
 struct EyeInAnchor {
   glm::dvec3 at, east, north, up;
 
   EyeInAnchor(const LocalFrame& anchor, const GeodeticPosition& eye);
-  /// From the eye's frame.
+  /// Rotates a vector from the eye's frame to the anchor's.
   [[nodiscard]] glm::dvec3 Turned(const glm::dvec3& v) const {
     return v.x * east + v.y * north + v.z * up;
   }
-  /// A point of the anchor's frame in the eye's.
+  /// Transforms a point of the anchor's frame to the eye's.
   [[nodiscard]] glm::dvec3 From(const glm::dvec3& point) const {
     const glm::dvec3 v = point - at;
     return {glm::dot(v, east), glm::dot(v, north), glm::dot(v, up)};
   }
 };
 
-/// A block without levels: vertices stay where they are. The picture's size is the viewport's.
-/// @param new_light  share of the new light.
+/// Returns a block without levels, in which vertices do not morph. The size of the picture is that
+/// of the viewport.
+/// @param new_light  weight of the new light.
 [[nodiscard]] LandBlock LandBlockOf(const EyeInAnchor& eye, double new_light);
 
-/// Edges of shade before the sun of this moment instead of those that vertices have (HorizonTexture).
+/// Shadow edges of the current sun (HorizonTexture), which replace those stored in the vertices.
 struct MomentaryEdges {
-  double share = 0.0;  // 0: those of the vertices alone
+  double share = 0.0;  // weight; 0: the vertices' shadow edges only
   Vector<Ecef> to_sun{};
   double sun_radius_rad = 0.0;
 };
 
-/// What is drawn of land: all that SurfaceMap holds, or its depth alone, into a LandOutline.
+/// Target of a terrain pass: all outputs of a SurfaceMap, or only depth into a LandOutline.
 enum class LandDrawn { kSurface, kOutline };
 
 class LandPass {
  public:
   LandPass();
 
-  /// Locations of the first attribute of the light that fades, and of the one that comes.
+  /// Location of the first attribute of the light that fades out, and of the one that fades in.
   static constexpr unsigned kOldLight = 5, kNewLight = 10;
   /// Attributes of land.vert.glsl, in the order of their locations.
   static constexpr std::array<const char*, 15> kAttributes{
@@ -158,21 +161,21 @@ class LandPass {
       "new_moon_sky",      "new_coarse_moon_sky",
       "new_disk_over_edge"};
 
-  /// Empties the bound SurfaceMap or LandOutline.
+  /// Clears the bound SurfaceMap or LandOutline.
   static void Clear(LandDrawn drawn);
   void Use(const TerrainHorizon& horizon) { horizon_.Use(horizon); }
   void Use(const MomentaryEdges& edges) { edges_ = edges; }
   void Use(const EdgesOfVertices& edges) { edges_of_vertices_ = edges; }
   [[nodiscard]] bool HasHorizon() const { return horizon_.HasAny(); }
 
-  /// Sets program and state and calls `draw`. The uniform block View must be bound to
-  /// `view_binding`. Texture unit 0 is used.
-  /// @param anchor  the frame of the vertices.
-  /// @param one_side  leave out triangles that face away.
+  /// Sets the program and the OpenGL state, then calls `draw`. The uniform block View must be bound
+  /// to `view_binding`. Texture unit 0 is used.
+  /// @param anchor    frame of the vertices.
+  /// @param one_side  whether triangles that face away are culled.
   void Run(LandDrawn drawn, LandBlock block, const LocalFrame& anchor, GLuint view_binding,
            bool one_side, const std::function<void()>& draw);
 
-  /// The text that says what depth is of the driver's context.
+  /// Returns the shader text for the depth mode that the current OpenGL context supports.
   [[nodiscard]] static ShaderPiece DepthText();
 
  private:
@@ -185,11 +188,11 @@ class LandPass {
   EdgesOfVertices edges_of_vertices_;
   bool reversed_depth_;
   GlBuffer block_;
-  mutable std::optional<ShaderProgram> surface_, outline_;  // made when they are first drawn with
+  mutable std::optional<ShaderProgram> surface_, outline_;  // created on first use
 };
 
-/// What land.frag.glsl and land_outline.frag.glsl are put together with.
-/// @param depth  LandPass::DepthText, or the other.
+/// Returns the shader texts that land.frag.glsl and land_outline.frag.glsl are built from.
+/// @param depth  text of a depth mode: LandPass::DepthText, or the other one.
 [[nodiscard]] std::vector<ShaderPiece> LandTexts(const ShaderPiece& depth);
 
 }  // namespace alpenglow::viewer

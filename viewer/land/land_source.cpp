@@ -20,7 +20,7 @@ namespace {
 constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
 constexpr double kPole = 0.5 * std::numbers::pi;
 
-// The mean of a row.
+// Returns the mean height of a row.
 float MeanOfRow(const ElevationGrid& grid, int row) {
   double sum = 0.0;
   for (int column = 0; column < grid.columns; ++column)
@@ -28,8 +28,8 @@ float MeanOfRow(const ElevationGrid& grid, int row) {
   return static_cast<float>(sum / grid.columns);
 }
 
-// A grid around the earth ends where it begins, and reaches the pole that it surrounds; heights,
-// if it has any, go along.
+// Closes a grid that spans all longitudes: repeats its first column at the end and adds a row at a
+// pole that its rim surrounds. If the grid has heights, they are extended as well.
 ElevationGrid Closed(ElevationGrid grid) {
   if (!grid.ClosesAroundTheEarth()) return grid;
   const auto reaches = [&](int row, double pole) {
@@ -113,9 +113,10 @@ void LandTiles::AddFile(const std::filesystem::path& file, bool is_from_folder) 
   tiles_.push_back(tile);
 }
 
-// Parts share the samples of their rims. Those of a grid around the earth end where it begins.
+// Adds the parts of a large file. Neighbouring parts share the samples of their rims. In a grid
+// that spans all longitudes, the last part ends on the first column.
 void LandTiles::AddParts(const LandTile& tile, const ElevationGrid& grid) {
-  constexpr int kSteps = 4096;  // along a side
+  constexpr int kSteps = 4096;  // per side
   const int last_column = grid.ClosesAroundTheEarth() ? grid.columns : grid.columns - 1;
   for (int row = 0; row < grid.rows - 1; row += kSteps) {
     for (int column = 0; column < last_column; column += kSteps) {
@@ -154,7 +155,7 @@ void LandTiles::AddFolder(const std::filesystem::path& folder) {
 void LandTiles::LayLattice() {
   const auto finest = std::min_element(
       extents_.begin(), extents_.end(), [](const ElevationGrid& a, const ElevationGrid& b) {
-        // Steps that differ by rounding alone are alike.
+        // Steps that differ only by rounding count as equal.
         if (std::abs(a.step_lat_rad - b.step_lat_rad) > 1e-6 * a.step_lat_rad)
           return a.step_lat_rad < b.step_lat_rad;
         return a.step_lon_rad < (1.0 - 1e-6) * b.step_lon_rad;
@@ -167,7 +168,7 @@ void LandTiles::LayLattice() {
 
 void LandTiles::PlaceTile(std::size_t index) {
   const ElevationGrid grid = PaddedExtent(extents_[index], tiles_[index].pads);
-  // Parts of one file stay side by side: all turn around the earth as the first one does.
+  // All parts of one file use the turn of longitude of its first part, so that they stay adjacent.
   const std::optional<GridWindow>& part = tiles_[index].part;
   const double east_rad = part ? part->first_column * grid.step_lon_rad : 0.0;
   const double turned_rad =
@@ -196,7 +197,7 @@ std::vector<int> LandTiles::Touching(const LatticeBox& box) const {
 
 namespace {
 
-// Whether a grid's samples are those of its tile one by one.
+// Returns whether the samples of a grid coincide with those of its tile.
 bool IsTile(const LandLattice& lattice, const LandTile& tile, const ElevationGrid& grid) {
   const auto like = [](double a, double b) { return std::abs(a - b) < 1e-2; };  // samples
   return tile.level == 0 && tile.box.last_column - tile.box.first_column == grid.columns - 1 &&
@@ -211,8 +212,8 @@ bool IsTile(const LandLattice& lattice, const LandTile& tile, const ElevationGri
               0.0);
 }
 
-// Heights of a grid at the samples that the lattice has of a tile. Samples that lie on the lattice
-// are taken as they are.
+// Returns the heights of a grid at the lattice samples of a tile. Samples on the lattice are copied
+// without interpolation.
 std::vector<float> OnLattice(const LandLattice& lattice, const LandTile& tile, ElevationGrid grid) {
   if (IsTile(lattice, tile, grid)) return std::move(grid.height_m);
   const LevelAxis columns(tile.box.first_column, tile.box.last_column, tile.level);
@@ -229,11 +230,12 @@ std::vector<float> OnLattice(const LandLattice& lattice, const LandTile& tile, E
     int low;
     double share;
   };
-  // Nearest sample within the rounding of steps, else between two.
+  // Picks the nearest sample if it is equal up to rounding of the steps, otherwise two to
+  // interpolate.
   const auto span = [](double place, int count) {
     const double nearest = std::round(place);
     const double snapped = std::abs(place - nearest) < 1e-2 ? nearest : place;
-    // The lattice may reach past the grid by the part of a sample that counts as on the lattice.
+    // The tile may exceed the grid by the tolerance for samples that count as on the lattice.
     const double inside = std::clamp(snapped, 0.0, count - 1.0);
     const double low = std::floor(inside);
     return Span{static_cast<int>(low), inside - low};

@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What is asked of a landscape: heights, how far loading is, figures.
-//
-// The chunks of a landscape: asked for, taken over, moved to another anchor.
+// Selection, morphing, loading and drawing of the terrain chunks around the eye.
 #include "viewer/land/landscape.h"
 
 #include <fmt/format.h>
@@ -20,16 +18,17 @@
 namespace alpenglow::viewer {
 namespace {
 
-constexpr double kReachTime_s = 0.7;  // that a level takes to come in
+constexpr double kReachTime_s = 0.7;  // time for a new level to reach its full range
 
-// How far the horizon lies from a height over a sphere a little larger than the earth [m].
+// Returns the distance of the horizon from a height, over a sphere a little larger than the earth
+// [m].
 double HorizonDistance(double height_m) {
   constexpr double kRadius_m = 6.4e6;
   const double above = std::max(height_m, 0.0);
   return std::sqrt(above * (above + 2.0 * kRadius_m));
 }
 
-// How far the farthest ground that may be seen [m].
+// Returns the distance of the farthest ground that may be visible [m].
 double SightFrom(double height_m) {
   constexpr double kHighestGround_m = 9000.0;
   return HorizonDistance(height_m) + HorizonDistance(kHighestGround_m);
@@ -66,8 +65,8 @@ LandEye Landscape::EyeAt(const GeodeticPosition& eye) const {
   return at;
 }
 
-// Gently, so that a zoom does not pop. From high above less land is near, and more of it can be
-// drawn finer.
+// Adapts the detail gradually, so that a zoom does not pop. From high above less land is near, so
+// more detail is affordable.
 void Landscape::FollowView(double seconds) {
   constexpr double kTime_s = 0.5;
   const double usual = std::tan(kPi / 6.0);
@@ -88,7 +87,7 @@ void Landscape::FindDemand(double seconds) {
   LetLevelsReach(seconds);
 }
 
-// A level that has come reaches out from the eye within a moment, from coarse to fine.
+// Extends the reach of each available level gradually, from coarse to fine.
 void Landscape::LetLevelsReach(double seconds) {
   for (std::size_t level = 0; level < reach_m_.size(); ++level) {
     const double full = detail_ * std::sqrt(eye_.size.column_m * eye_.size.row_m) *
@@ -108,7 +107,8 @@ EdgesOfVertices Landscape::edges() const { return mesh_ ? mesh_->edges() : fade_
 
 bool Landscape::IsRelighting() const { return mesh_ ? mesh_->IsRelighting() : fade_.IsChanging(); }
 
-// The ground about the eye is as high as any chunk near it, less its distance.
+// Updates the ceiling. The ground around the eye is as high as any chunk near it, minus its
+// distance.
 void Landscape::RaiseAbove(double seconds) {
   constexpr double kTime_s = 0.3;
   double highest = -1e9;
@@ -119,7 +119,8 @@ void Landscape::RaiseAbove(double seconds) {
   }
   if (highest < -1e8) return;
   const double share = ceiling_m_ ? 1.0 - std::exp(-seconds / kTime_s) : 1.0;
-  // lerp() ends where it should; a sum goes on by a rounding for ever, and Settle with it.
+  // lerp() reaches its end exactly. A running sum would keep changing by rounding, and Settle would
+  // not end.
   ceiling_m_ = std::lerp(ceiling_m_.value_or(highest), highest, share);
 }
 
@@ -141,7 +142,7 @@ void Landscape::ChooseDrawn() {
   const EyeInAnchor eye(set_->anchor().frame, eye_place_);
   farthest_m_ = FarthestOf(drawn_, eye);
   drawn_ = InView(std::move(drawn_), eye, view_);
-  constexpr double kHigh_m = 5000.0;  // over all ground about: little hides little
+  constexpr double kHigh_m = 5000.0;  // over all ground nearby; little is hidden from there
   if (over_ground_ && eye_.above_m < kHigh_m)
     drawn_ = WithoutHidden(drawn_, eye, view_.bends_per_m);
 }
@@ -201,14 +202,15 @@ void Landscape::WaitForWork() {
 
 bool Landscape::IsAllThere(std::size_t chunks_before) const {
   if (mesh_) return mesh_->IsRead() && !mesh_->IsRelighting();
-  if (!set_) return true;  // nothing will be: no land
+  if (!set_) return true;  // there is no land
   return set_->size() == chunks_before && !is_working_ && cache_.reading().empty() &&
          !fade_.IsChanging() && !next_set_;
 }
 
-// With all there, each ceiling follows from the one before, until one that has been comes again. It
-// need not be the last: coarse land may reach higher than the fine land in its place, so that under
-// the ceiling of the one the other is drawn, in turns. Then the lowest of them stays.
+// Once everything is loaded, each ceiling follows from the previous one, so the sequence of
+// ceilings becomes periodic. It need not converge: coarse land may be higher than the fine land
+// that replaces it, so that the two ceilings alternate. The lowest ceiling of the cycle is then
+// kept.
 void Landscape::Settle(const GeodeticPosition& eye, const LandView& view) {
   constexpr double kLong_s = 1e3;
   std::vector<std::optional<double>> ceilings;
@@ -236,7 +238,7 @@ LandBlock Landscape::Block() const {
                            eye_.size.column_m, eye_.size.row_m));
   block.eye_above.x = static_cast<float>(eye_.above_m);
   for (std::size_t level = 0; level < ranges_.size(); ++level) {
-    // Float's rounding must not leave a vertex on the line short of the end.
+    // Rounding to float must not leave a vertex at the end of the range with a weight below 1.
     const double end = 0.999 * ranges_[level].end_m;
     const double start = std::min(ranges_[level].start_m, 0.98 * end);
     block.turning[level] = end > 0.0 ? glm::vec4(glm::dvec4(start, 1.0 / (end - start), 0.0, 0.0))
@@ -250,7 +252,7 @@ void Landscape::DrawAll(LandDrawn what, GLuint view_binding) {
   if (mesh_) mesh_->Draw(pass_, what, eye_place_, view_binding);
   if (!set_ || drawn_.empty()) return;
   pass_.Use(fade_.edges());
-  // Over the ground no slope that faces away is seen before one that faces the eye.
+  // Seen from above the ground, back faces are always hidden, so they can be culled.
   pass_.Run(what, Block(), set_->anchor().frame, view_binding, over_ground_,
             [&] { set_->Draw(drawn_, fade_.from()); });
 }
@@ -316,7 +318,7 @@ LandProgress Landscape::Progress() const {
   if (!cache_.reading().empty())
     return {share, fmt::format("terrain: reading {} ({} of {})", cache_.reading(),
                                cache_.there() + 1, cache_.wanted())};
-  // What no tile is kept fine enough for does not come.
+  // Chunks for which no tile is kept fine enough never arrive, so they do not count as loading.
   if (there == demand_.wanted.size() || !is_working_) return {};
   return {share, fmt::format("terrain: {} of {} pieces", there, demand_.wanted.size())};
 }
@@ -353,7 +355,8 @@ LandAnchor Landscape::AnchorAt(const GeodeticPosition& eye) const {
   return {LocalFrame(ellipsoid_, {eye.latitude_rad, eye.longitude_rad, 0.0}), column, row};
 }
 
-// Of each level a disk about the eye, at most all; and what is kept a while longer.
+// Estimates the number of chunks: for each level a disk around the eye, at most the whole level,
+// and chunks that are kept for some time after their last use.
 int Landscape::ExpectedChunks(double detail) const {
   const double radius = 1.25 * detail / kChunkCells + 2.0;
   double chunks = 0.0;
@@ -371,7 +374,7 @@ std::unique_ptr<ChunkSet> Landscape::NewSet() const {
                                     std::min(ExpectedChunks(size_.detail), size_.most_chunks));
 }
 
-// A new set grows beside the old one and takes its place when it has all that is wanted.
+// Builds a new set next to the old one. The new set replaces it when it has all wanted chunks.
 void Landscape::MoveAnchor() {
   if (next_set_) {
     const bool has_all =
@@ -400,7 +403,7 @@ void Landscape::TakeChunks() {
 }
 
 std::vector<ChunkKey> Landscape::Missing(const ChunkSet& set) const {
-  constexpr std::size_t kMost = 48;  // so that taking them does not hold up a frame
+  constexpr std::size_t kMost = 48;  // limits the time that a frame spends on uploading
   std::vector<WantedChunk> missing;
   for (const WantedChunk& wanted : demand_.wanted)
     if (!set.Has(wanted.key)) missing.push_back(wanted);

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
-// The land around the eye: read, cut into levels of detail, lit and drawn, all but the drawing on
-// threads beside it.
+// The terrain around the eye: read, divided into levels of detail, lit and drawn. Everything except
+// drawing runs on worker threads.
 //
-// Every frame: Update, then Draw into a SurfaceMap. Near the eye stand the model's own samples, as
-// in MeshFromElevation; the farther, the coarser (level_ranges.h). Without land it draws nothing.
+// Every frame, call Update, then Draw into a SurfaceMap. Near the eye the surface has the samples
+// of the elevation model, as in MeshFromElevation; farther away it becomes coarser
+// (level_ranges.h). Without land, nothing is drawn.
 #pragma once
 
 #include <memory>
@@ -21,111 +22,113 @@
 
 namespace alpenglow::viewer {
 
-/// How much land is drawn and kept.
+/// Limits of the terrain that is drawn and kept in memory.
 struct LandSize {
   static constexpr double kLeastDetail = 64.0, kMostDetail = 1024.0;
-  /// Samples from the eye to where the second level begins. Triangles and chunks grow as its
-  /// square: 1,300 chunks at 96, over a square of 3601 samples. A view narrower than 60 degrees has
-  /// up to twice as much detail and one from high above up to three times, together `most_growth`
-  /// times: as many triangles are seen. Pictures of several rays a pixel have the root of their number
-  /// times as much. All this as far as `most_chunks` go.
+  /// Distance from the eye to the second level, in samples. The numbers of triangles and chunks
+  /// grow as its square: 1,300 chunks at 96, over a square of 3601 samples. A view narrower than 60
+  /// degrees has up to twice as much detail and a view from high above up to three times, together
+  /// at most `most_growth` times: the number of visible triangles stays about the same. For
+  /// pictures with several rays per pixel the detail is multiplied by the square root of their
+  /// number. All this is limited by `most_chunks`.
   double detail = 96.0;
   double most_growth = 4.0;
-  /// Of chunks that are kept, unless kLeastDetail takes more (2,500 at most). Beside heights they
-  /// take 51 kB each, 13 in memory and 38 on the card, whose buffers have room for up to a quarter
-  /// more: 2.4 GB. There are two sets of them for as long as it takes to make another about an eye
-  /// that has flown 100 km.
+  /// Largest number of chunks that are kept, unless kLeastDetail needs more (2,500 at most). In
+  /// addition to the heights a chunk takes 51 kB, 13 in memory and 38 on the GPU, where buffers may
+  /// be up to a quarter larger: 2.4 GB. There are two sets of chunks while a new set is made around
+  /// an eye that has flown 100 km.
   int most_chunks = 48000;
-  /// Of heights that are kept [bytes], see TileCache.
+  /// Size of the heights that are kept [bytes], see TileCache.
   std::size_t most_bytes = std::size_t{512} << 20;
 };
 
-/// Figures of the last frame.
+/// Statistics of the last frame.
 struct LandFigures {
   int chunks = 0, triangles = 0;  // drawn
   int kept_chunks = 0;
   std::size_t tile_bytes = 0, chunk_bytes = 0, card_bytes = 0;
 };
 
-/// How far loading is.
+/// Progress of loading.
 struct LandProgress {
-  double share = 1.0;  // 1: all there
-  std::string text;    // empty: nothing is being loaded
+  double share = 1.0;  // 1: complete
+  std::string text;    // empty if nothing is being loaded
 };
 
 class Landscape {
  public:
-  /// Reads headers of files, nothing else; throws InputError as LandTiles does, and for a detail
-  /// out of range. An OpenGL context must be current, here and in all calls.
+  /// Reads only the headers of files. Throws InputError as LandTiles does, and if the detail is out
+  /// of range. An OpenGL context must be current, here and in all calls.
   Landscape(const LandSource& source, const LandSize& size, const Ellipsoid& ellipsoid);
   ~Landscape();
   Landscape(const Landscape&) = delete;
   Landscape& operator=(const Landscape&) = delete;
 
-  /// Takes what has become ready, asks for what is missing, chooses what is drawn. Never waits.
-  /// Throws InputError when a file that was named by itself turns out damaged.
-  /// @param seconds  since the last call: what has come fades in.
+  /// Collects finished work, requests missing tiles and chunks, and chooses the chunks to draw.
+  /// Never waits. Throws InputError if a file that was named explicitly turns out to be damaged.
+  /// @param seconds  time since the last call, by which new levels and lights fade in.
   void Update(const GeodeticPosition& eye, const LandView& view, double seconds);
-  /// Waits until all that is wanted for this eye is there and as it will stay.
+  /// Waits until everything that this eye needs is loaded and no longer changes.
   void Settle(const GeodeticPosition& eye, const LandView& view);
-  /// Begins to read what lies around a place, before the first Update.
+  /// Starts to read the tiles around a place, before the first Update.
   void BeginReading(const GeodeticPosition& place);
-  /// Waits until KnowsGround of a place.
+  /// Waits until KnowsGround is true for a place.
   void AwaitGround(const GeodeticPosition& place);
-  /// Draws what the last Update chose into the bound SurfaceMap, over what is in it. The uniform
-  /// block View must be bound to `view_binding`.
+  /// Draws the chunks that the last Update chose into the bound SurfaceMap, which is cleared first.
+  /// The uniform block View must be bound to `view_binding`.
   void Draw(GLuint view_binding);
-  /// The same chunks once more, into the bound LandOutline: the view that was drawn last.
+  /// Draws the same chunks into the bound LandOutline, with the view of the last Update.
   void DrawOutline(GLuint view_binding);
 
-  /// Lights all vertices anew by this function, beside drawing; the old light fades into the new
-  /// when that is complete. Asked again meanwhile, it goes on with the newest after that.
+  /// Relights all vertices with this function on a worker thread. When the new light is complete,
+  /// the old one fades into it. If called again meanwhile, the most recent light follows.
   void Relight(LightOfVertices light);
-  /// Whether new light is on its way or fading in.
+  /// Returns whether a new light is being computed or is fading in.
   [[nodiscard]] bool IsRelighting() const;
 
-  /// What stands before suns, and for which of them: see HorizonTexture.
+  /// Terrain horizons, and the sun that they are evaluated for: see HorizonTexture.
   void Use(const TerrainHorizon& horizon) { pass_.Use(horizon); }
   void Use(const MomentaryEdges& edges) { pass_.Use(edges); }
   [[nodiscard]] bool HasHorizon() const { return pass_.HasHorizon(); }
   [[nodiscard]] EdgesOfVertices edges() const;
 
-  /// Height of the ground [m] that an eye at a place is over, the same as is drawn near the eye;
-  /// nothing where there is none or it is not loaded. Of a mesh with roofs it is the highest surface
-  /// that is not above the place.
+  /// Returns the height of the ground [m] under an eye at a place, equal to the surface drawn near
+  /// the eye. Empty if there is no ground or it is not loaded. For a mesh with roofs this is the
+  /// highest surface that is not above the place.
   [[nodiscard]] std::optional<double> GroundUnder(const GeodeticPosition& place) const;
-  /// The highest there, whatever the height of the place.
+  /// Returns the height of the highest surface at a place, independent of the place's own height.
   [[nodiscard]] std::optional<double> HighestGround(const GeodeticPosition& place) const;
-  /// Whether GroundUnder has said its last word: all land that a place has is loaded.
+  /// Returns whether the result of GroundUnder is final: all land at a place is loaded.
   [[nodiscard]] bool KnowsGround(const GeodeticPosition& place) const;
-  /// Whether any land reaches a place, loaded or not. A mesh reaches every place.
+  /// Returns whether any land covers a place, loaded or not. A mesh covers every place.
   [[nodiscard]] bool Reaches(const GeodeticPosition& place) const {
     return mesh_ || cache_.Reaches(place);
   }
-  /// Whether threads beside drawing are at work, for which the destructor would wait.
+  /// Returns whether worker threads are busy. The destructor waits for them.
   [[nodiscard]] bool IsWorking() const { return cache_.IsReading() || worker_.Busy(); }
-  /// Whether the land about the eye of the last Update is there as fine as it will be, and lit; or
-  /// the eye is beside all land.
+  /// Returns whether the land around the eye of the last Update has its final detail and is lit, or
+  /// there is no land under the eye.
   [[nodiscard]] bool HasCome() const;
-  /// LoadedHeights::SampledGrid or GridOverMesh of what is loaded now, for any thread.
+  /// Returns LoadedHeights::SampledGrid or GridOverMesh of the heights loaded now, callable on any
+  /// thread.
   [[nodiscard]] GroundSampler Sampler() const;
-  /// Another range of the finest level, see LandSize.
+  /// Changes the range of the finest level, see LandSize.
   void SetDetail(double detail, double most_growth) {
     size_.detail = detail;
     size_.most_growth = most_growth;
     cache_.SetDetail(detail);
   }
-  /// Counts up when heights have come: the Sampler may have changed.
+  /// Increases when heights have been loaded: then the Sampler may have changed.
   [[nodiscard]] int heights_version() const {
     return heights_version_ + (mesh_ && mesh_->IsRead() ? 1 : 0);
   }
 
   [[nodiscard]] LandProgress Progress() const;
-  /// The warnings, each once: tiles left out, voids, vertical datums, statements of a mesh's file that
-  /// are not read, and that the range is made up.
+  /// Returns the warnings, each once: tiles that were left out, voids, vertical datums, statements
+  /// in a mesh file that are not supported, and the fact that the range is procedural.
   [[nodiscard]] std::vector<std::string> TakeNotes();
   [[nodiscard]] LandFigures Figures() const;
-  /// No land that is loaded about the eye, in view or not, is farther from it [m].
+  /// Upper bound for the distance [m] from the eye to loaded land around it, in view or not.
   [[nodiscard]] double farthest_m() const { return farthest_m_; }
   [[nodiscard]] const LandTiles& tiles() const { return *tiles_; }
 
@@ -144,7 +147,7 @@ class Landscape {
   void AskForChunks();
   void AskForLight();
   [[nodiscard]] std::vector<ChunkKey> Missing(const ChunkSet& set) const;
-  /// All that a frame does but for choosing what of it is in view.
+  /// Does all work of a frame except the choice of the chunks in view.
   void Advance(const GeodeticPosition& eye, const LandView& view, double seconds);
   void FindAround();
   void ChooseDrawn();
@@ -156,7 +159,7 @@ class Landscape {
 
   std::shared_ptr<const LandTiles> tiles_;
   LandSize size_;
-  double detail_;  // for the view
+  double detail_;  // for the current view
   Ellipsoid ellipsoid_;
   ChunkTree tree_;
   TileCache cache_;
@@ -164,7 +167,7 @@ class Landscape {
   LandEye eye_;
   LandView view_;
   bool over_ground_ = false;
-  std::optional<double> ceiling_m_;  // of the ground about the eye, over the ellipsoid
+  std::optional<double> ceiling_m_;  // height of the ground around the eye, over the ellipsoid
   std::unique_ptr<ChunkSet> set_, next_set_;
   LandDemand demand_;
   std::vector<double> reach_m_;
@@ -179,7 +182,7 @@ class Landscape {
   std::vector<std::string> notes_;
   LandPass pass_;
   std::optional<MeshLand> mesh_;              // instead of tiles
-  LatestJob<ChunkOrder, MadeChunks> worker_;  // last: it uses all above
+  LatestJob<ChunkOrder, MadeChunks> worker_;  // last member: it uses those above
 };
 
 }  // namespace alpenglow::viewer

@@ -9,15 +9,15 @@
 namespace alpenglow::viewer {
 namespace {
 
-constexpr double kAhead = 1.25;       // chunks are wanted before they are due
-constexpr double kLatestStart = 0.9;  // of a level's turning, as a share of its end
+constexpr double kAhead = 1.25;       // chunks are requested before they are needed
+constexpr double kLatestStart = 0.9;  // of a level's morph range, as a fraction of its end
 
-// Of the part of a range beyond a place; 0 inside.
+// Returns the distance from a place to a range, 0 inside it.
 double Outside(double place, double first, double last) {
   return std::max({first - place, place - last, 0.0});
 }
 
-// Of a chunk's nearest point, along columns and rows [m].
+// Returns the distances to the nearest point of a chunk along columns and rows [m].
 glm::dvec2 Away(const ChunkKey& key, const LandEye& eye) {
   const double side = std::exp2(key.level) * kChunkCells;
   return {Outside(eye.at.column, key.column * side, (key.column + 1) * side) * eye.size.column_m,
@@ -129,7 +129,7 @@ class RangeDemand {
   }
 
  private:
-  // Children of what is not there yet are not wanted yet: coarse land comes first.
+  // Children are wanted only when their parent is loaded: coarse land comes first.
   void Split(const ChunkKey& parent) {
     if (parent.level == 0) return;
     const int level = parent.level - 1;
@@ -184,7 +184,7 @@ class Drawing {
     }
   }
 
-  // A neighbour of the same level is drawn where its parent is split.
+  // A neighbour of the same level is drawn if its parent is split.
   [[nodiscard]] unsigned CoarseSides(const ChunkKey& key) const {
     if (key.level == tree_.top()) return 0;
     const auto side = [&](int columns, int rows, unsigned bit) {
@@ -212,7 +212,7 @@ std::vector<LevelRange> RangesOf(const std::vector<double>& reach_m, const LandE
   std::vector<LevelRange> ranges(reach_m.size());
   constexpr double kFar = 1e30;
   ranges.back() = {kFar, kFar};
-  double most = std::numeric_limits<double>::infinity();  // of the next finer level's end
+  double most = std::numeric_limits<double>::infinity();  // bound for the next finer level's end
   for (std::size_t level = reach_m.size() - 1; level-- > 0;) {
     const double finer = std::max(std::min(reach_m[level], most), 0.0);
     const double diagonal = ChunkTree::Diagonal(static_cast<int>(level) + 1, eye);

@@ -1,16 +1,19 @@
 // SPDX-License-Identifier: MIT
-// Which chunks are drawn, and how far each has turned into the next coarser level.
+// Selection of the chunks to draw, and of the ranges over which levels morph into the next coarser
+// one.
 //
-// One distance rules both: d^2 = (columns from the eye)^2 + (rows from the eye)^2 + h^2 [m], h the
-// eye's height over all ground about. Chunks of level k + 1 nearer than end(k) are replaced by
-// their four of level k. Vertices of level k are their own up to start(k) and the coarser level's
-// from end(k) on. No cracks, and nothing pops:
-//   - where level k meets a chunk of level k + 1, that chunk is beyond end(k), so the finer
-//     side's vertices are the coarser level's;
-//   - start(k + 1) >= end(k) + the diagonal of a chunk of level k + 1, so the coarser side's are
-//     still their own.
-// end(k) is never beyond the nearest chunk that is wanted and not there yet, so both hold while
-// land is still being loaded.
+// One distance controls both: d^2 = (columns from the eye)^2 + (rows from the eye)^2 + h^2 [m],
+// where h is the height of the eye above all nearby ground. Chunks of level k + 1 nearer than
+// end(k) are replaced by their four children of level k. Vertices of level k have their own
+// position up to start(k) and that of the coarser level from end(k) on. There are no cracks and no
+// popping:
+//   - where level k meets a chunk of level k + 1, that chunk is beyond end(k), so the vertices on
+//     the finer side have the positions of the coarser level;
+//   - start(k + 1) >= end(k) + the diagonal of a chunk of level k + 1, so the vertices on the
+//     coarser side still have their own positions.
+//
+// end(k) is never beyond the nearest chunk that is wanted but not loaded yet, so both conditions
+// hold during loading.
 #pragma once
 
 #include <functional>
@@ -21,38 +24,39 @@
 
 namespace alpenglow::viewer {
 
-/// The eye among the samples.
+/// The eye's position on the lattice.
 struct LandEye {
   LatticePlace at;
-  SampleSize size;       // of a step there
+  SampleSize size;       // of one step at the eye
   double above_m = 0.0;  // h
-  double sight_m = 0.0;  // how far any ground may be seen
+  double sight_m = 0.0;  // largest distance of visible ground
 };
 
 struct LevelRange {
   double start_m = 0.0, end_m = 0.0;  // end 0: the level is not drawn
 };
 
-/// Levels of a lattice and its chunks, as numbers alone.
+/// The quadtree of chunks over a lattice. It holds no geometry.
 class ChunkTree {
  public:
   explicit ChunkTree(const LandTiles& tiles);
 
-  /// The coarsest level: its chunks are about as wide as two tiles, or one holds all land.
+  /// The coarsest level. Its chunks are about as wide as two tiles, or one chunk covers all land.
   [[nodiscard]] int top() const { return top_; }
-  /// The chunks of the coarsest level in sight, which stand for themselves.
+  /// Returns the visible chunks of the coarsest level, which are the roots of the tree.
   [[nodiscard]] std::vector<ChunkKey> Roots(const LandEye& eye) const;
-  /// Whether any tile touches the chunk.
+  /// Returns whether any tile touches the chunk.
   [[nodiscard]] bool Exists(const ChunkKey& key) const;
-  /// d of a chunk's nearest point [m].
+  /// Returns the distance d to the nearest point of a chunk [m].
   [[nodiscard]] static double Distance(const ChunkKey& key, const LandEye& eye);
-  /// The same without h: how far beside the eye.
+  /// Returns the horizontal distance (d without h) to the nearest point of a chunk [m].
   [[nodiscard]] static double Beside(const ChunkKey& key, const LandEye& eye);
-  /// Of a chunk of this level, aslant [m].
+  /// Returns the diagonal of a chunk of this level [m].
   [[nodiscard]] static double Diagonal(int level, const LandEye& eye);
-  /// The samples that making a chunk reads: its own and those around, of its level and the next.
+  /// Returns the samples that building a chunk reads: its own and those around it, of its level and
+  /// the next one.
   [[nodiscard]] LatticeBox Reads(const ChunkKey& key) const;
-  /// The four finer ones, as far as they exist.
+  /// Returns the up to four finer chunks that exist.
   [[nodiscard]] std::vector<ChunkKey> Children(const ChunkKey& key) const;
 
  private:
@@ -63,36 +67,37 @@ class ChunkTree {
   mutable std::unordered_map<ChunkKey, bool, ChunkKeyHash> exists_;
 };
 
-/// A chunk that should be there, and how soon: smaller is sooner.
+/// A chunk that should be loaded, and its priority: smaller is more urgent.
 struct WantedChunk {
   ChunkKey key;
   double urgency;
 };
 
-/// What is wanted for the eye, and how far each level may reach with what is there.
+/// The chunks that the eye needs, and the range that each level can reach with the loaded ones.
 struct LandDemand {
-  std::vector<WantedChunk> wanted;  // there or not
-  std::vector<double> reach_m;      // one a level: nothing is missing nearer than that
+  std::vector<WantedChunk> wanted;  // loaded or not
+  std::vector<double> reach_m;      // one per level: no chunk is missing nearer than this
 };
 
+/// Finds the chunks that the eye needs.
 /// @param detail    range of level 0 in samples.
 /// @param is_there  whether a chunk can be drawn.
 [[nodiscard]] LandDemand DemandOf(const ChunkTree& tree, const LandEye& eye, double detail,
                                   const std::function<bool(const ChunkKey&)>& is_there);
 
-/// The ranges that follow from how far levels may reach [m], at most their own range.
-/// @param reach_m  one a level.
+/// Returns the range of each level, from the distance that it can reach [m].
+/// @param reach_m  one per level, at most the level's own range.
 [[nodiscard]] std::vector<LevelRange> RangesOf(const std::vector<double>& reach_m,
                                                const LandEye& eye);
 
-/// A chunk that is drawn, and its sides where a coarser one is drawn.
+/// A chunk to draw, and its sides that touch a coarser chunk.
 struct DrawnChunk {
   ChunkKey key;
   double beside_m;
   unsigned coarse_sides;
 };
 
-/// All around the eye, in view or not, from near to far.
+/// Returns all chunks around the eye, in view or not, from near to far.
 /// @param is_there  whether a chunk of the coarsest level can be drawn.
 [[nodiscard]] std::vector<DrawnChunk> DrawnChunks(
     const ChunkTree& tree, const LandEye& eye, const std::vector<LevelRange>& ranges,

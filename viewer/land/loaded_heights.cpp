@@ -17,7 +17,7 @@ namespace {
 constexpr double kWholeTurn = 2.0 * std::numbers::pi;
 constexpr double kOnLattice = 1e-2;  // samples
 
-/// A range of one axis, in samples of the lattice.
+/// A range on one axis, in samples of the lattice.
 struct Range {
   double first, last, step;
 };
@@ -35,13 +35,13 @@ Range RowsOf(const LandLattice& lattice, const ElevationGrid& grid) {
   return {first, first + (grid.rows - 1) * step, step};
 }
 
-// Two ranges are near if they come within a step of each other.
+// Returns whether two ranges come within one step of each other.
 bool AreNear(const Range& a, const Range& b) {
   const double step = std::max(a.step, b.step) + kOnLattice;
   return a.first <= b.last + step && b.first <= a.last + step;
 }
 
-// Two ranges have a gap if the lattice has a sample between them and one step bridges it.
+// Returns whether the lattice has a sample between two ranges that are at most one step apart.
 bool HasGap(const Range& before, const Range& after, double step) {
   const double gap = after.first - before.last;
   return gap <= step + kOnLattice &&
@@ -81,7 +81,7 @@ ElevationGrid PaddedExtent(const ElevationGrid& grid, const TilePads& pads) {
 
 namespace {
 
-/// A place in rows and columns of a grid.
+/// A position in rows and columns of a grid.
 struct GridPlace {
   double row, column;
 };
@@ -93,14 +93,15 @@ GridPlace PlaceIn(const ElevationGrid& grid, double latitude_rad, double longitu
               std::remainder(longitude_rad - middle, kWholeTurn) / grid.step_lon_rad};
 }
 
-// A tile has what lies up to half a step beyond its rim: its samples stand for as much.
+// Returns whether a tile covers a place. Samples represent cells, so a tile extends half a step
+// beyond its outermost samples.
 bool Has(const ElevationGrid& grid, const GridPlace& at) {
   constexpr double kBeyond = 0.5 + kOnLattice;
   return at.row >= -kBeyond && at.column >= -kBeyond && at.row <= grid.rows - 1 + kBeyond &&
          at.column <= grid.columns - 1 + kBeyond;
 }
 
-/// The samples of other tiles around the pads of one.
+/// The samples of other tiles around the pads of one tile.
 class Rims {
  public:
   Rims(const LandTiles& tiles, int tile, const ElevationGrid& padded) {
@@ -109,7 +110,7 @@ class Rims {
     }
   }
 
-  /// The height of another tile; empty where none has one.
+  /// Returns the height from another tile; empty if no tile has one.
   [[nodiscard]] std::optional<double> At(double latitude_rad, double longitude_rad) const {
     for (const Rim& rim : rims_) {
       const GridPlace at = PlaceIn(rim.extent, latitude_rad, longitude_rad);
@@ -127,10 +128,11 @@ class Rims {
  private:
   struct Rim {
     ElevationGrid extent;
-    ElevationGrid heights;  // of the part of it that is needed
+    ElevationGrid heights;  // of the required part only
   };
 
-  // Adds the part of the other grid that both share, and a sample or two more.
+  // Adds the part of the other grid that overlaps the padded one, with a margin of one or two
+  // samples.
   void Add(const LandTiles& tiles, int other, const ElevationGrid& padded) {
     const ElevationGrid& extent = tiles.ExtentOf(other);
     const GridPlace first = PlaceIn(extent, padded.north_rad, padded.west_rad);
@@ -148,7 +150,7 @@ class Rims {
   struct Span {
     int first = 0, count = 0;
   };
-  // Samples of an axis from before one place to after another; none where it ends before them.
+  // Returns the samples of an axis around a range of positions; none if the axis does not reach it.
   static Span Between(double from, double to, int count) {
     if (to < -1.0 || from > count) return {};
     const double first = std::clamp(std::floor(from) - 1.0, 0.0, count - 2.0);
@@ -172,7 +174,7 @@ class Rims {
       if (tile.file.empty() || !CanBeCut(tile.file)) return std::nullopt;
       return ReadElevation(tile.file, voids, window).grid;
     } catch (const InputError&) {
-      return std::nullopt;  // it is told when the tile itself is read
+      return std::nullopt;  // reported when that tile itself is read
     }
   }
 
@@ -214,7 +216,7 @@ SampleSize SampleSizeAt(const LandLattice& lattice, double latitude_rad) {
   const double sine = std::sin(within);
   const double w2 = 1.0 - e2 * sine * sine;
   const double across = kWgs84.equatorial_radius_m / std::sqrt(w2);
-  // On a pole a column's step is nothing; a hundredth of it still tells columns apart.
+  // At a pole the step of a column vanishes. This lower bound keeps columns distinguishable.
   const double cosine = std::max(std::cos(within), 0.01);
   return {lattice.step_lon_rad * across * cosine, lattice.step_lat_rad * across * (1.0 - e2) / w2};
 }
@@ -248,7 +250,7 @@ HeightBlock LoadedHeights::Block(int level, int first_i, int first_j, int column
 std::optional<double> LoadedHeights::HeightUnder(double latitude_rad, double longitude_rad) const {
   const LandLattice& lattice = tiles_->lattice();
   const LatticePlace at = lattice.At(latitude_rad, longitude_rad);
-  constexpr double kRounding = 1e-6;  // samples: the rim itself belongs to the land
+  constexpr double kRounding = 1e-6;  // samples; the rim itself is land
   if (!(at.column >= -kRounding && at.column <= lattice.last_column + kRounding &&
         at.row >= -kRounding && at.row <= lattice.last_row + kRounding))
     return std::nullopt;
@@ -270,7 +272,7 @@ std::optional<ElevationGrid> LoadedHeights::SampledGrid(const GeodeticPosition& 
   const SampleSize size = SampleSizeAt(lattice, place.latitude_rad);
   const LatticePlace at = lattice.At(place.latitude_rad, place.longitude_rad);
   const double half_columns = half_width_m / size.column_m, half_rows = half_width_m / size.row_m;
-  // Of the land that there is: the lattice may end before.
+  // The window is limited to the lattice.
   const auto within = [](double middle, double half, int last_sample) {
     return std::min(middle + half, static_cast<double>(last_sample)) - std::max(middle - half, 0.0);
   };

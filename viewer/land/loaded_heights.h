@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
-// The function by which light and shade ask for the heights of the land around a place.
+// The heights that are loaded at one moment, and the pads between tiles that do not share a
+// lattice.
 //
-// Land between tiles that do not overlap and whose samples lie off the common lattice.
+// If the samples of two adjacent tiles lie off the common lattice, a lattice sample between the
+// last column of one tile and the first column of the next belongs to neither tile. Such a tile is
+// padded: it is extended by one of its own steps, with the heights of its neighbour there.
 //
-// A sample of the lattice between the last column of one tile and the first one of the next belongs
-// to no tile, unless one of them goes on: by one of its own steps, with the heights that its
-// neighbour has there.
-//
-// The heights that are loaded at one moment. Immutable; safe to read from many threads.
+// LoadedHeights is immutable and safe to read from many threads. GroundSampler is the function by
+// which the lighting and shadow code gets the heights around a place.
 #pragma once
 
 #include <cstddef>
@@ -24,26 +24,27 @@
 
 namespace alpenglow::viewer {
 
-/// The heights within half_width_m of a place, at most so many samples a side; empty where there is no
-/// land. A mesh gives the part that comes nearest to the place (GridOverMesh). Other threads call it.
+/// Returns the heights within half_width_m of a place, with at most most_samples per side; empty if
+/// there is no land. For a mesh it returns the part nearest to the place (GridOverMesh). Called on
+/// other threads.
 using GroundSampler = std::function<std::optional<ElevationGrid>(
     const GeodeticPosition& place, double half_width_m, int most_samples)>;
 
-/// The sides of tile `index` beyond which the lattice has samples that belong to no tile, although
-/// another tile begins within a step of it.
+/// Returns the sides of tile `index` on which the lattice has samples that belong to no tile,
+/// although another tile begins within one step.
 /// @param extents  of all tiles, without heights.
 [[nodiscard]] TilePads PadsOf(const LandLattice& lattice, const std::vector<ElevationGrid>& extents,
                               std::size_t index);
 
-/// A grid with one row or column more on each of these sides, without heights.
+/// Returns the grid with one more row or column on each padded side, without heights.
 [[nodiscard]] ElevationGrid PaddedExtent(const ElevationGrid& grid, const TilePads& pads);
 
-/// The grid of a tile with its heights and, on its pads, those of other tiles, linear between their
-/// samples. Where no other tile has any, the heights of the tile's own rim go on. Of the other
-/// files only rims are read, of files for which CanBeCut holds.
+/// Returns the grid of a tile with its heights and, on its pads, those of other tiles, interpolated
+/// linearly. Where no other tile has heights, the rim of the tile is repeated. For the other tiles
+/// only their rims are read, and only from files for which CanBeCut holds.
 [[nodiscard]] ElevationGrid WithPads(const LandTiles& tiles, int tile, const ElevationGrid& grid);
 
-/// Heights [m] of vertices of one level, rows from the north; NaN: none.
+/// Heights [m] of vertices of one level, rows from the north; NaN where there is none.
 struct HeightBlock {
   int first_i = 0, first_j = 0;
   int columns = 0, rows = 0;
@@ -56,7 +57,7 @@ struct HeightBlock {
 
 class LoadedHeights {
  public:
-  /// @param heights one a tile; null: not loaded.
+  /// @param heights  one per tile; null: not loaded.
   LoadedHeights(std::shared_ptr<const LandTiles> tiles,
                 std::vector<std::shared_ptr<const HeightPyramid>> heights)
       : tiles_(std::move(tiles)), heights_(std::move(heights)) {}
@@ -66,17 +67,17 @@ class LoadedHeights {
     return heights_;
   }
 
-  /// Vertices [first_i, first_i + columns) x [first_j, first_j + rows) of a level; beyond the
-  /// lattice its rim is continued.
+  /// Returns vertices [first_i, first_i + columns) x [first_j, first_j + rows) of a level. Beyond
+  /// the lattice its rim is repeated.
   [[nodiscard]] HeightBlock Block(int level, int first_i, int first_j, int columns, int rows) const;
 
-  /// Height of the ground [m] at a place, of the two triangles that the samples around it make;
-  /// nothing where no ground is loaded. As fine as what is loaded there.
+  /// Returns the height of the ground [m] at a place, on the two triangles of the cell around it,
+  /// from the finest heights loaded there. Empty where no ground is loaded.
   [[nodiscard]] std::optional<double> HeightUnder(double latitude_rad, double longitude_rad) const;
 
-  /// What lies within `half_width_m` of a place, at most `most_samples` a side: every 2^k-th sample
-  /// of the lattice, binomial means; all of a lattice that has no more. NaN where nothing is loaded;
-  /// nothing when no land is near.
+  /// Returns the heights within `half_width_m` of a place, at most `most_samples` per side: every
+  /// 2^k-th sample of the lattice, as binomial means. A lattice with no more than `most_samples` is
+  /// returned whole. NaN where nothing is loaded; empty if no land is near.
   [[nodiscard]] std::optional<ElevationGrid> SampledGrid(const GeodeticPosition& place,
                                                          double half_width_m,
                                                          int most_samples) const;
@@ -86,7 +87,7 @@ class LoadedHeights {
   std::vector<std::shared_ptr<const HeightPyramid>> heights_;
 };
 
-/// Metres along one column's and one row's step of a lattice at a latitude.
+/// Size [m] of one column's and one row's step of a lattice at a latitude.
 struct SampleSize {
   double column_m, row_m;
 };

@@ -15,7 +15,7 @@
 namespace alpenglow::viewer {
 namespace {
 
-/// A range to the east or to the north of a place [m].
+/// A range to the east or north of a place [m].
 struct Span {
   double low_m = std::numeric_limits<double>::infinity();
   double high_m = -std::numeric_limits<double>::infinity();
@@ -26,7 +26,7 @@ struct Span {
   }
   [[nodiscard]] double width_m() const { return high_m - low_m; }
 
-  /// The part of the range that is nearest to the place and at most so wide.
+  /// Returns the part of the range that is nearest to the place, at most 2 half_width_m wide.
   [[nodiscard]] Span Nearest(double half_width_m) const {
     if (width_m() <= 2.0 * half_width_m) return *this;
     const double middle_m = std::clamp(0.0, low_m + half_width_m, high_m - half_width_m);
@@ -34,7 +34,7 @@ struct Span {
   }
 };
 
-/// Metres of a radian at a latitude.
+/// Returns the length [m] of one radian of longitude and latitude at a latitude.
 SampleSize MetresOfRadian(double latitude_rad) {
   LandLattice one_radian;
   one_radian.step_lon_rad = 1.0;
@@ -47,7 +47,8 @@ struct Extent {
   Span east, north;
 };
 
-/// The box around a mesh. Its edges may be curved in latitude and longitude: their middles count.
+/// Returns the bounding box of a mesh. Its edges may be curved in latitude and longitude, so their
+/// midpoints are included.
 Extent ExtentOf(const Terrain& terrain, const LocalFrame& frame, const GeodeticPosition& place,
                 const SampleSize& radian) {
   const auto [low, high] = terrain.Bounds();

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Heights of a mesh on a grid of latitude and longitude, as light and shade of land ask for them.
-//
-// Land that is one mesh (OBJ): read, lit and drawn whole.
+// Terrain from a single mesh (OBJ): read, lit and drawn as a whole, and sampled on a grid of
+// latitude and longitude for the lighting and shadow code.
 #pragma once
 
 #include <memory>
@@ -23,11 +22,11 @@
 
 namespace alpenglow::viewer {
 
-/// Heights of the mesh's highest surface. The grid covers the mesh; where the mesh is wider than
-/// the square around the place, the grid is as wide as the square and lies where the mesh comes
-/// nearest to the place. A mesh of any size at any distance is sampled so.
+/// Samples the heights of the highest surface of a mesh. The grid covers the mesh. If the mesh is
+/// wider than the square around the place, the grid is as wide as the square and lies where the
+/// mesh is nearest to the place. This works for meshes of any size and distance.
 /// @param frame  of the mesh's coordinates.
-/// @return nothing where no two neighbouring samples could meet the mesh.
+/// @return empty if no two neighbouring samples could hit the mesh.
 [[nodiscard]] std::optional<ElevationGrid> GridOverMesh(const Terrain& terrain,
                                                         const LocalFrame& frame,
                                                         const GeodeticPosition& place,
@@ -35,11 +34,11 @@ namespace alpenglow::viewer {
 
 class MeshLand {
  public:
-  /// Begins to read a mesh.
+  /// Starts to read a mesh.
   MeshLand(const LandSource::Mesh& source, const Ellipsoid& ellipsoid);
 
-  /// Takes what has become ready. Throws InputError when the file cannot be read (ReadObj).
-  /// @param seconds  since the last call.
+  /// Collects finished work. Throws InputError if the file cannot be read (ReadObj).
+  /// @param seconds  time since the last call.
   void Update(double seconds);
   void Wait() {
     reader_.Wait();
@@ -52,14 +51,14 @@ class MeshLand {
   [[nodiscard]] bool IsRelighting() const { return fade_.IsChanging(); }
   [[nodiscard]] bool IsRead() const { return terrain_ != nullptr; }
 
-  /// viewer::GroundUnderEye, and the highest ground there.
+  /// Return viewer::GroundUnderEye, and the highest ground at the place.
   [[nodiscard]] std::optional<double> GroundUnder(const GeodeticPosition& place) const;
   [[nodiscard]] std::optional<double> HighestGround(const GeodeticPosition& place) const;
-  /// GridOverMesh of what is read now; any thread may call it, as long as it likes.
+  /// Returns GridOverMesh of the mesh loaded now. Any thread may call it, at any later time.
   [[nodiscard]] GroundSampler Sampler() const;
-  /// The warnings on the file, once (ObjMesh).
+  /// Returns the warnings about the file, once (ObjMesh).
   [[nodiscard]] std::vector<std::string> TakeNotes() { return std::exchange(notes_, {}); }
-  /// Of the vertices and triangles, here and on the card.
+  /// Returns the size of the vertices and triangles, in memory and on the GPU.
   [[nodiscard]] std::size_t bytes() const;
 
  private:

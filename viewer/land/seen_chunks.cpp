@@ -15,12 +15,13 @@ constexpr double kTurn = 2.0 * std::numbers::pi;
 
 double Along(const glm::dvec3& p) { return std::hypot(p.x, p.y); }
 
-// Clockwise from north, in parts of `bins` once around.
+// Returns the azimuth, clockwise from north, in units of 1/`bins` of the circle.
 double BinOf(const glm::dvec3& p, int bins) { return std::atan2(p.x, p.y) / kTurn * bins; }
 
 int Wrapped(int bin, int bins) { return ((bin % bins) + bins) % bins; }
 
-// The least elevation's tangent of a piece between two vertices, and how far it reaches.
+// Lower bound for the tangent of the elevation of the segment between two vertices, and its
+// farthest distance.
 struct Piece {
   double tangent, farthest_m;
 };
@@ -38,7 +39,7 @@ Piece LeastOf(const Skyline::Between& a, const Skyline::Between& b) {
 
 }  // namespace
 
-// Bins that a line covers whole, while its azimuth runs one way.
+// Collects the bins that a line covers completely, while its azimuth is monotonic.
 class Skyline::CrestMaker {
  public:
   void Add(double from, double to, const Piece& piece) {
@@ -89,7 +90,7 @@ void Skyline::Add(std::span<const Between> line) {
   double from = BinOf(line.front().one, kBins);
   for (std::size_t i = 1; i < line.size(); ++i) {
     const double to = from + std::remainder(BinOf(line[i].one, kBins) - from, kBins);
-    // A piece close by that turns far hides nothing, and the line goes on behind it.
+    // A nearby segment that spans a wide azimuth hides nothing. The line continues after it.
     constexpr double kWidest = kBins / 8.0;
     Piece piece = LeastOf(line[i - 1], line[i]);
     if (std::abs(to - from) > kWidest) piece.tangent = -1e30;
@@ -131,17 +132,19 @@ bool Skyline::Hides(const glm::dvec3& point, double radius_m, double highest_m) 
 
 namespace {
 
-/// No more than this rays of a curvature lift what stands at a distance [m].
+/// Returns an upper bound for the apparent rise [m], by rays of this curvature, of land at a
+/// distance.
 double MostRise(double bends_per_m, double distance_m) {
   return 0.5 * bends_per_m * distance_m * distance_m;
 }
 
-// Distance of a box's farthest corner from the eye.
+// Returns the distance of the farthest corner of a box from the eye.
 double FarthestCorner(const glm::dvec3& low, const glm::dvec3& high, const glm::dvec3& from) {
   return glm::length(glm::max(glm::abs(low - from), glm::abs(high - from)));
 }
 
-// The four sides of the view and what is before it, as planes through the eye; inside is positive.
+// The four side planes of the view frustum and a plane through the eye across the view direction.
+// Inside is positive.
 class ViewPyramid {
  public:
   ViewPyramid(const EyeInAnchor& eye, const LandView& view)
@@ -152,7 +155,7 @@ class ViewPyramid {
     planes_ = {wide * forward + right, wide * forward - right, high * forward + up,
                high * forward - up, forward};
   }
-  // Returns whether any of a box may be inside, lifted or not.
+  // Returns whether any point of a box may be inside, raised by refraction or not.
   [[nodiscard]] bool Touches(const glm::dvec3& low, const glm::dvec3& high) const {
     const double rise_m = MostRise(bends_per_m_, FarthestCorner(low, high, at_));
     return std::all_of(planes_.begin(), planes_.end(), [&](const glm::dvec3& plane) {
@@ -168,10 +171,10 @@ class ViewPyramid {
   std::array<glm::dvec3, 5> planes_;
 };
 
-// No vertex is missing.
+// Returns whether the chunk has all its triangles.
 bool IsFull(const LandChunk& chunk) { return chunk.triangles.size() == kChunkIndices; }
 
-// Lines of the surface along every eighth row and column of a chunk.
+// Adds lines of the surface along every eighth row and column of a chunk.
 void AddCrests(Skyline& skyline, const LandChunk& chunk, const EyeInAnchor& eye) {
   constexpr int kStride = kChunkCells / 2;
   const auto between = [&](int i, int j) {
@@ -194,20 +197,21 @@ void AddCrests(Skyline& skyline, const LandChunk& chunk, const EyeInAnchor& eye)
   }
 }
 
-// A part of a chunk, as the skyline may hide it.
+// A part of a chunk, with the bounds that Skyline::Hides needs.
 struct SeenPart {
-  std::size_t chunk;  // which of those in view
+  std::size_t chunk;  // index among the chunks in view
   glm::dvec3 middle;  // in the eye's frame
   double radius_m, highest_m, nearest_m;
 };
 
-// Crests that hide it are taken to be where they are, which is no higher than they look.
+// Returns the bounds of a part. Refraction raises the part but not the crests that may hide it,
+// which is conservative.
 SeenPart PartOf(const ChunkBox& box, std::size_t chunk, const EyeInAnchor& eye,
                 double bends_per_m) {
   const glm::dvec3 low(box.low), high(box.high);
   const glm::dvec3 middle = eye.From(0.5 * (low + high));
   const glm::dvec3 half = 0.5 * (high - low);
-  // The box leans in the eye's frame: its highest corner counts.
+  // The box is tilted in the eye's frame, so its highest corner is used.
   const glm::dvec3 rise = glm::abs(eye.up) * half;
   const double radius = std::hypot(half.x, half.y) + half.z * std::hypot(eye.up.x, eye.up.y);
   const double lifted_m = MostRise(bends_per_m, glm::length(middle) + radius);
@@ -215,7 +219,7 @@ SeenPart PartOf(const ChunkBox& box, std::size_t chunk, const EyeInAnchor& eye,
           Skyline::NearestOf(middle, radius)};
 }
 
-// Whether each chunk has a part that no nearer land hides.
+// Returns for each chunk whether it has a part that nearer land does not hide.
 std::vector<char> NotHidden(const std::vector<ChunkBuffers::Drawn>& chunks, const EyeInAnchor& eye,
                             double bends_per_m) {
   std::vector<SeenPart> parts;

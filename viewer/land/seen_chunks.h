@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
-// What near land hides of far land.
+// Visibility of chunks: view-frustum culling and occlusion by nearer land.
 //
-// Over a surface without overhangs, seen from above it, a line of sight that passes below a point
-// of the surface has gone into the ground before: all land behind a crest and lower than it, as
-// the eye sees both, is hidden. The skyline of what has been drawn so far is kept by azimuth.
-// (An occlusion horizon, after Downs, L. et al. (2001), Occlusion horizons for driving through
-// urban scenery, I3D 2001.)
+// If a surface has no overhangs and is seen from above, a line of sight that passes below a point
+// of the surface has entered the ground before. All land behind a crest that appears lower than the
+// crest is therefore hidden. The skyline of the chunks visited so far is kept by azimuth. (An
+// occlusion horizon, after Downs, L. et al. (2001), Occlusion horizons for driving through urban
+// scenery, I3D 2001.)
 //
-// Which chunks the eye may see. Never leaves one out by mistake; keeps their order.
+// Both tests are conservative: no visible chunk is culled. They keep the order of the chunks.
 #pragma once
 
 #include <array>
@@ -25,27 +25,28 @@ class Skyline {
  public:
   Skyline() { tangent_.fill(-1e30); }
 
-  /// A vertex of the surface lies between two points: on its way between levels of detail. East,
+  /// A vertex that morphs between levels of detail lies on the segment between two points. East,
   /// north, up of the eye [m].
   struct Between {
     glm::dvec3 one, other;
   };
-  /// Adds a line of the surface: what is farther than all of it may be hidden by it.
+  /// Adds a line of the surface. It may hide points that are farther than all of the line.
   void Add(std::span<const Between> line);
 
-  /// Whether all that lies within `radius_m` of a point and is no higher than `highest_m` over the
-  /// eye is hidden by lines that are nearer; never so by mistake. Ask in the order of the nearest
-  /// distances (NearestOf): lines that are nearer than one count for all that follow.
+  /// Returns whether everything within `radius_m` of a point and no higher than `highest_m` above
+  /// the eye is hidden by nearer lines. Conservative: never true for a visible point. Calls must be
+  /// in the order of nearest distances (NearestOf), since lines nearer than one point are applied
+  /// for all later points.
   [[nodiscard]] bool Hides(const glm::dvec3& point, double radius_m, double highest_m);
   [[nodiscard]] static double NearestOf(const glm::dvec3& point, double radius_m);
 
  private:
-  static constexpr int kBins = 1024;  // of azimuth, once around
+  static constexpr int kBins = 1024;  // bins of azimuth for the full circle
   struct Step {
     int bin;
     double tangent;
   };
-  // Of one line, as far as its azimuth runs one way.
+  // A part of one line over which the azimuth is monotonic.
   struct Crest {
     double farthest_m;
     std::vector<Step> steps;
@@ -56,20 +57,22 @@ class Skyline {
   class CrestMaker;
   void Raise(double up_to_m);
 
-  std::array<double, kBins> tangent_;  // of the skyline's elevation
+  std::array<double, kBins> tangent_;  // tangent of the skyline's elevation
   std::priority_queue<Crest> waiting_;
 };
 
-/// Those that may reach into the view, where they are or lifted by bent rays.
+/// Returns the chunks that may be in the view frustum, at their true position or raised by
+/// refraction.
 [[nodiscard]] std::vector<ChunkBuffers::Drawn> InView(std::vector<ChunkBuffers::Drawn> chunks,
                                                       const EyeInAnchor& eye, const LandView& view);
 
-/// Those that have a part which no nearer land hides (skyline.h), for an eye over the ground.
-/// @param bends_per_m  most curvature of rays.
+/// Returns the chunks with a part that nearer land does not hide (Skyline), for an eye above the
+/// ground.
+/// @param bends_per_m  largest curvature of light rays.
 [[nodiscard]] std::vector<ChunkBuffers::Drawn> WithoutHidden(
     const std::vector<ChunkBuffers::Drawn>& chunks, const EyeInAnchor& eye, double bends_per_m);
 
-/// No part of them is farther from the eye [m].
+/// Returns an upper bound for the distance of any part of the chunks from the eye [m].
 [[nodiscard]] double FarthestOf(const std::vector<ChunkBuffers::Drawn>& chunks,
                                 const EyeInAnchor& eye);
 

@@ -38,14 +38,14 @@ double TileCache::Distance(const LandTile& tile, const LandEye& eye) const {
       outside(eye.at.row, tile.box.first_row, tile.box.last_row) * eye.size.row_m, eye.above_m);
 }
 
-// The finest level that a chunk in reach reads of a tile, see DemandOf.
+// Returns the finest level of a tile that the chunks in reach need, see DemandOf.
 int TileCache::LevelWanted(const LandTile& tile, const LandEye& eye) const {
   const double distance = Distance(tile, eye);
   const double sample_m = std::sqrt(eye.size.column_m * eye.size.row_m);
   for (int level = 0; level < tree_.top(); ++level) {
     const double reach =
         1.3 * detail_ * sample_m * std::exp2(level) + 1.5 * ChunkTree::Diagonal(level + 1, eye);
-    if (distance <= reach) return std::max(level - 1, tile.level);  // for its normals
+    if (distance <= reach) return std::max(level - 1, tile.level);  // normals need one level finer
   }
   const double sight = std::max(eye.sight_m, eye.above_m);
   const bool in_sight = distance <= sight + 1.5 * ChunkTree::Diagonal(tree_.top(), eye);
@@ -66,7 +66,7 @@ void TileCache::Want(const LandEye& eye) {
   KeepWithinBounds(by_distance);
 }
 
-// Coarsens from the farthest inwards, each tile by a level at a time.
+// Coarsens tiles from the farthest inwards, each by one level per pass.
 void TileCache::KeepWithinBounds(const std::vector<std::size_t>& by_distance) {
   std::size_t sum = 0;
   const auto bytes = [&](std::size_t tile) {
@@ -105,7 +105,8 @@ bool TileCache::IsThere(std::size_t tile) const {
   return heights_[tile] && heights_[tile]->finest() <= level_wanted_[tile];
 }
 
-// A level more than is wanted stays, so that an eye on the line does not read a tile again.
+// One level more than wanted is kept, so that an eye near the boundary does not cause repeated
+// reads.
 void TileCache::Drop() {
   for (std::size_t tile = 0; tile < heights_.size(); ++tile) {
     if (!heights_[tile]) continue;
@@ -131,7 +132,7 @@ void TileCache::AskForNearest(const LandEye& eye) {
       ++there_;
       continue;
     }
-    // What has nothing at all comes before what is to become finer.
+    // Tiles without any heights have priority over tiles that need more detail.
     const double distance = Distance(tiles_->tiles()[tile], eye) + (heights_[tile] ? 1e7 : 0.0);
     if (!nearest || distance < least) {
       nearest = tile;
@@ -166,11 +167,11 @@ bool TileCache::CanMake(const ChunkKey& key) const {
 }
 
 std::vector<int> TileCache::TilesAround(const GeodeticPosition& place) const {
-  if (tiles_->tiles().empty()) return {};  // a lattice without steps
+  if (tiles_->tiles().empty()) return {};  // the lattice has no steps
   const LatticePlace at = tiles_->lattice().At(place.latitude_rad, place.longitude_rad);
   const int column = static_cast<int>(std::floor(at.column));
   const int row = static_cast<int>(std::floor(at.row));
-  // The samples that LoadedHeights::HeightUnder reads.
+  // These are the samples that LoadedHeights::HeightUnder reads.
   return tiles_->Touching({column - 1, row - 1, column + 2, row + 2});
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Tiles read and dropped by position, beside drawing, within a bound of memory.
+// A cache of tiles that are read on a worker thread and dropped by distance, within a memory limit.
 #pragma once
 
 #include <memory>
@@ -14,39 +14,41 @@ namespace alpenglow::viewer {
 
 class TileCache {
  public:
-  /// @param most_bytes  of heights that are kept. Beyond it far tiles are kept coarser than they
-  ///   would be drawn. The tile that is being read comes on top: twelve bytes a sample of it.
+  /// @param most_bytes  limit for the heights that are kept. Beyond it distant tiles are kept
+  ///   coarser than they would be drawn. The tile that is being read needs twelve bytes per sample
+  ///   in addition.
   TileCache(std::shared_ptr<const LandTiles> tiles, const ChunkTree& tree, std::size_t most_bytes);
 
   void SetDetail(double detail) { detail_ = detail; }
 
-  /// Takes what has been read, drops what is far, asks for what is near. Returns whether heights
-  /// have come. Throws InputError when a file that was named by itself cannot be read; what cannot
-  /// be read in a folder is noted and is no ground.
+  /// Collects tiles that were read, drops distant ones and requests near ones. Returns whether new
+  /// heights have arrived. Throws InputError if a file that was named explicitly cannot be read.
+  /// Unreadable files in a folder cause a note and have no ground.
   /// @param detail  as in DemandOf.
   bool Update(const LandEye& eye, double detail);
 
   [[nodiscard]] const std::shared_ptr<const LoadedHeights>& loaded() const { return loaded_; }
-  /// Whether all tiles that a chunk reads are there as fine as it needs them, or never will be.
+  /// Returns whether every tile that a chunk reads has the required detail, or will never be
+  /// available.
   [[nodiscard]] bool CanMake(const ChunkKey& key) const;
 
-  /// Whether a tile reaches a place.
+  /// Returns whether a tile covers a place.
   [[nodiscard]] bool Reaches(const GeodeticPosition& place) const {
     return !TilesAround(place).empty();
   }
-  /// Whether all tiles around a place have been read, however fine, or cannot be.
+  /// Returns whether every tile around a place has been read at some level, or cannot be read.
   [[nodiscard]] bool HasRead(const GeodeticPosition& place) const;
 
-  /// Tiles wanted for the eye, and how many of them are there.
+  /// Number of tiles that the eye needs, and number of those that are loaded.
   [[nodiscard]] int wanted() const { return wanted_; }
   [[nodiscard]] int there() const { return there_; }
-  /// The file that is being read, "" when none is; the built-in range is "the built-in range".
+  /// The file that is being read, "" if none is. For the built-in range it is "the built-in range".
   [[nodiscard]] const std::string& reading() const { return reading_; }
   [[nodiscard]] std::vector<std::string> TakeNotes() { return std::exchange(notes_, {}); }
-  /// Of heights that are kept.
+  /// Returns the size of the heights that are kept.
   [[nodiscard]] std::size_t bytes() const;
   [[nodiscard]] bool IsReading() const { return reader_.Busy(); }
-  /// Waits until nothing is being read.
+  /// Waits until the current read has ended.
   void Wait() { reader_.Wait(); }
 
  private:
@@ -57,7 +59,7 @@ class TileCache {
     int tile;
     std::shared_ptr<const HeightPyramid> heights;
     std::string note;
-    std::string failure;  // empty: read
+    std::string failure;  // empty if the tile was read
   };
   static constexpr int kNotWanted = 64;
 
@@ -73,7 +75,7 @@ class TileCache {
 
   std::shared_ptr<const LandTiles> tiles_;
   const ChunkTree& tree_;
-  double detail_ = 0.0;  // of the last update
+  double detail_ = 0.0;  // at the last update
   std::size_t most_bytes_;
   std::vector<std::shared_ptr<const HeightPyramid>> heights_;
   std::vector<char> has_failed_;
@@ -82,7 +84,7 @@ class TileCache {
   std::vector<std::string> notes_;
   std::string reading_;
   int wanted_ = 0, there_ = 0;
-  LatestJob<Order, Reading> reader_;  // last: it uses the tiles
+  LatestJob<Order, Reading> reader_;  // last member: it uses the tiles
 };
 
 }  // namespace alpenglow::viewer
