@@ -15,14 +15,14 @@ namespace {
 
 constexpr std::array<const char*, 4> kNames{"low", "medium", "high", "reference"};
 
-/// A way to paint, and about what it costs beside the others.
+/// A rendering configuration and its approximate relative cost.
 struct Step {
   PaintedQuality painted;
   double cost;
 };
 
-// By frames with llvmpipe on one thread over the built-in range at 1280x720 in the morning, where shafts
-// are few, lamps none and the view is wide: there what is left out first saves little.
+// Measured with llvmpipe on one thread over the built-in range at 1280x720 in the morning. That
+// view is wide and has few shafts and no lamps, so the first savings have little effect in it.
 constexpr std::array<Step, 12> kSteps{{{{Quality::kHigh, 1.0}, 1.7},
                                        {{Quality::kMedium, 1.0}, 0.53},
                                        {{Quality::kMedium, 0.8}, 0.46},
@@ -35,8 +35,8 @@ constexpr std::array<Step, 12> kSteps{{{{Quality::kHigh, 1.0}, 1.7},
                                        {{Quality::kLow, 0.4, Saving::kNearLand}, 0.19},
                                        {{Quality::kLow, 0.33, Saving::kNearLand}, 0.17},
                                        {{Quality::kLow, 0.25, Saving::kNearLand}, 0.15}}};
-// The first frames are the slowest already, for land arrives and programs are finished in them: it
-// begins with what nearly every machine draws in time, and has time for more at once.
+// The first frames are the slowest, since land arrives and programs are compiled. The start is
+// therefore a step that nearly every machine draws in time.
 constexpr int kFirstStep = 5;
 
 const Step& StepAt(int index) { return kSteps[static_cast<std::size_t>(index)]; }
@@ -98,7 +98,7 @@ void AutoQuality::Note(double frame_s) {
   int next = step_;
   if (usual_s > kTooLong * wanted_s_ && since_change_s_ >= kDown_s) {
     while (next < last && expected_s(next) > wanted_s_) ++next;
-    // A step up that was a mistake is not soon tried again.
+    // If the previous step up was too slow, wait longer before the next attempt.
     if (since_change_s_ < wait_up_s_) wait_up_s_ = std::min(2.0 * wait_up_s_, kLongestWait_s);
   } else if (since_change_s_ >= wait_up_s_) {
     while (next > 0 && expected_s(next - 1) < kRoom * wanted_s_) --next;
@@ -112,7 +112,7 @@ void AutoQuality::Note(double frame_s) {
 
 namespace {
 
-// At least two: with one, passes are left out and programs are others.
+// Returns at least two: with one, passes are omitted and other programs are used.
 int Scaled(int pixels, double scale) {
   return std::max(static_cast<int>(std::lround(pixels * scale)), 2);
 }

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
-// How well a picture is drawn, and who chooses it by the time that frames take.
-//
-// What a quality means for each part of a picture.
+// Quality of a picture: what each quality means for the parts of a picture, and the automatic
+// choice of a quality from frame times.
 #pragma once
 
 #include <cstddef>
@@ -16,27 +15,27 @@
 
 namespace alpenglow::viewer {
 
-/// Sizes of tables, meshes and passes, smallest first; kReference is the renderer's own picture,
-/// made beside drawing while the eye stands still.
+/// Sizes of tables, meshes and passes, smallest first. kReference is the renderer's own picture,
+/// made on a worker thread while the eye does not move.
 enum class Quality { kLow, kMedium, kHigh, kReference };
 
 [[nodiscard]] std::string NameOf(Quality quality);
 
-/// What a user asks for: a quality, or to choose one by time.
+/// The user's choice: a fixed quality, or automatic choice by frame time.
 struct QualityRule {
-  std::optional<Quality> fixed;  // nothing: automatic
+  std::optional<Quality> fixed;  // empty: automatic
 
   bool operator==(const QualityRule&) const = default;
 };
-/// "low", "medium", "high", "reference" or "auto"; throws InputError for another text.
+/// Parses "low", "medium", "high", "reference" or "auto". Throws InputError for another text.
 [[nodiscard]] QualityRule QualityRuleFromText(const std::string& text);
 
-/// What is left out of a picture of half the window's resolution before it becomes smaller; each has
-/// those before it.
+/// Features that are omitted from a picture of half the window's resolution before its resolution
+/// is reduced further. Each value includes the values before it.
 enum class Saving { kNone, kCoarseShafts, kFewLamps, kNearLand };
 
-/// A quality, and the share of the window's width and height at which light is painted; land has its
-/// edges, and stars and disks their places, at all of it (darkroom.h).
+/// A quality, and the scale of the window's width and height at which lighting is rendered. Edges
+/// of land, stars and disks are drawn at full resolution (darkroom.h).
 struct PaintedQuality {
   Quality quality = Quality::kHigh;
   double scale = 1.0;
@@ -44,33 +43,36 @@ struct PaintedQuality {
 
   bool operator==(const PaintedQuality&) const = default;
 };
-/// How a quality that was asked for is painted: kLow has light for every second pixel, across and
-/// down.
+/// Returns how a fixed quality is rendered: kLow computes lighting for every second pixel in both
+/// directions.
 [[nodiscard]] PaintedQuality PaintedAlways(Quality quality);
-/// "high", or "low, light at 0.5x, coarse shafts, few lamps".
+/// Returns a description: "high", or "low, light at 0.5x, coarse shafts, few lamps".
 [[nodiscard]] std::string TextOf(const PaintedQuality& painted);
 
-/// Chooses among steps of falling cost, from kHigh at full resolution to kLow at a quarter of it with
-/// every Saving, so that frames take about as long as wanted; it begins with kLow at half the resolution.
-/// What counts
-/// is the median of the last nine frames: one in which a driver finished a program says nothing. It
-/// goes down a step after half a second, and three frames, that take 1.15 times too long, several at
-/// once if they take much longer, and up after two seconds to the best step that would still take
-/// less than 0.85 of the time; a step that was too slow is not tried again before a time that
-/// doubles with each failure.
+/// Chooses among steps of decreasing cost, from kHigh at full resolution to kLow at a quarter of it
+/// with every Saving, so that frames take about the wanted time. It starts with kLow at half the
+/// resolution.
+///
+/// The median of the last nine frame times is used, since single frames in which a driver compiles
+/// a program are not representative. The cost is lowered if frames take more than 1.15 times the
+/// wanted time for half a second and at least three frames, by several steps if they take much
+/// longer. After two seconds it is raised to the best step that is expected to take less than 0.85
+/// of the wanted time. If a raised step turns out too slow, the waiting time before the next
+/// attempt doubles.
 class AutoQuality {
  public:
   /// @param wanted_frame_s  > 0
   explicit AutoQuality(double wanted_frame_s);
 
-  /// @param frame_s  the work of the frame just drawn, without waiting for the screen.
+  /// Records a frame.
+  /// @param frame_s  time of the work for the last frame, without waiting for the screen.
   void Note(double frame_s);
   [[nodiscard]] const PaintedQuality& painted() const;
 
  private:
   double wanted_s_;
   int step_;
-  std::deque<double> frames_s_;  // the last since the last change
+  std::deque<double> frames_s_;  // most recent frame times since the last change
   double since_change_s_ = 0.0;
   double wait_up_s_ = 2.0;
 };
@@ -84,14 +86,15 @@ struct PaintSizes {
   LampQuality lamps = kMediumLamps;
   std::size_t most_lamps = kMostGpuLamps;
   FogMapSize fog;
-  int dropped_octaves = 0;    // of the ground's detail
-  bool sky_by_pixel = false;  // SkyByPixel instead of light of vertices, once it is there
+  int dropped_octaves = 0;    // omitted octaves of the ground's detail
+  bool sky_by_pixel = false;  // SkyByPixel instead of vertex light, once it is ready
 };
 
-/// kReference is drawn as kHigh until the renderer's picture is there.
+/// Returns the sizes of a quality. kReference has the sizes of kHigh, which is shown until the
+/// renderer's picture is ready.
 [[nodiscard]] PaintSizes SizesOf(Quality quality);
-/// With what is left out. Rays of shafts and of the light of lamps are as far apart on the screen, at
-/// whatever scale light is painted.
+/// Returns the sizes of a quality with its savings. The rays of shafts and of lamp light keep their
+/// spacing on the screen at any scale of the lighting.
 [[nodiscard]] PaintSizes SizesOf(const PaintedQuality& painted);
 
 }  // namespace alpenglow::viewer

@@ -71,7 +71,8 @@ void Darkroom::PrintEnlarged(SkyPainter& painter, const PaintedView& view, doubl
   code_enlarger_.Enlarge(*codes_, *outline_, HalfViewOf(view), screen.framebuffer);
 }
 
-// Their edges are not where land has edges: around them light is enlarged before it is developed.
+// Draws disks and stars. Their edges differ from those of land, so around them the linear light is
+// upscaled before it is tone-mapped.
 void Darkroom::PrintBodies(SkyPainter& painter, const PaintedView& view, double ev100,
                            const Developer::Screen& screen, const std::vector<PixelBox>& boxes) {
   if (boxes.empty()) return;
@@ -84,8 +85,9 @@ void Darkroom::PrintBodies(SkyPainter& painter, const PaintedView& view, double 
   developer_.Develop(*light_, ev100, screen, bodies_);
 }
 
-// Drivers finish programs when they are drawn with, which takes tenths of a second: over one pixel
-// that is painted after, in the frames after the first, not when pictures become small.
+// Drivers finish compiling a program on its first draw, which takes tenths of a second. The
+// programs are therefore drawn once in the second and third frame, over one pixel that is
+// overwritten afterwards, instead of when the picture is first reduced.
 void Darkroom::MakeReady(SkyPainter& painter, const PaintedView& view, double ev100,
                          const Developer::Screen& screen) {
   constexpr PixelBox kOnePixel{0, 0, 1, 1};

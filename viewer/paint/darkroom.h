@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
-// Pictures painted smaller than the screen, on the screen: smooth where they are smooth, with the
-// edges of land where the screen has them (shaders/enlarge.frag.glsl).
+// Display of rendered pictures on a screen, which may be larger than the picture.
 //
-// From what a SkyPainter painted to what a screen shows. A picture smaller than the screen is
-// developed as small as it is and enlarged by the edges that land has on the screen: light costs by
-// what is painted, edges do not suffer.
+// Darkroom shows the picture that a SkyPainter rendered. If the picture is smaller than the screen,
+// it is tone-mapped at its own resolution and then upscaled by Enlarger, which interpolates smooth
+// areas and uses the edges of land at screen resolution (shaders/enlarge.frag.glsl). The cost of
+// lighting is that of the small picture, and edges stay sharp.
 #pragma once
 
 #include <glm/vec2.hpp>
@@ -24,20 +24,20 @@ namespace alpenglow::viewer {
 class Enlarger {
  public:
   enum class Shows {
-    kCodes,  // of a display: dithered to bytes
+    kCodes,  // display codes, dithered to bytes
     kLight   // linear light, for comparisons
   };
   explicit Enlarger(Shows shows);
 
-  /// Fills the framebuffer (0: the window), which has the outline's size.
-  /// @param small  with nearness of land (shaders/nearness.glsl) in its fourth component; of any
-  ///     size.
-  /// @param half_view  tangents of half the width and half the height of the view.
+  /// Fills the framebuffer (0: the window), which has the size of the outline.
+  /// @param small      of any size, with the inverse depth of land (shaders/nearness.glsl) in its
+  ///   fourth component.
+  /// @param half_view  tangents of half the horizontal and half the vertical field of view.
   void Enlarge(const RenderTarget& small, const LandOutline& outline, const glm::dvec2& half_view,
                GLuint framebuffer) const {
     Enlarge(small, outline, half_view, framebuffer, whole_);
   }
-  /// The pixels of an area alone.
+  /// Fills only the pixels of an area.
   void Enlarge(const RenderTarget& small, const LandOutline& outline, const glm::dvec2& half_view,
                GLuint framebuffer, const PassArea& area) const;
 
@@ -48,8 +48,8 @@ class Enlarger {
   DitherTexture dither_;
 };
 
-/// What enlarge.frag.glsl is put together with.
-/// @param depth  LandPass::DepthText, or the other.
+/// Returns the shader texts that enlarge.frag.glsl is built from.
+/// @param depth  text of a depth mode: LandPass::DepthText, or the other one.
 [[nodiscard]] std::vector<ShaderPiece> EnlargerTexts(Enlarger::Shows shows,
                                                      const ShaderPiece& depth);
 
@@ -62,12 +62,12 @@ class Darkroom {
   [[nodiscard]] Developer& developer() { return developer_; }
   [[nodiscard]] const Developer& developer() const { return developer_; }
 
-  /// Whether a view will be enlarged on a screen, with disks and stars as sharp as that: its picture is
-  /// to be painted without them.
+  /// Returns whether a view is upscaled on this screen. Its picture must then be rendered without
+  /// disks and stars, which are added at screen resolution.
   [[nodiscard]] static bool Enlarges(const PaintedView& view, const Developer::Screen& screen) {
     return view.width < screen.width || view.height < screen.height;
   }
-  /// Shows the picture that was painted last, of this view.
+  /// Shows the most recent picture, which must be of this view.
   void Print(SkyPainter& painter, const PaintedView& view, double ev100,
              const Developer::Screen& screen);
 
@@ -81,7 +81,7 @@ class Darkroom {
 
   Developer developer_;
   Enlarger code_enlarger_{Enlarger::Shows::kCodes}, light_enlarger_{Enlarger::Shows::kLight};
-  std::optional<RenderTarget> codes_, light_;  // of the picture's size; of the screen's
+  std::optional<RenderTarget> codes_, light_;  // at picture size; at screen size
   std::optional<LandOutline> outline_;
   PassArea bodies_;
   int prints_ = 0;

@@ -180,8 +180,8 @@ void Developer::UploadDraft() const {
   Upload(table_, ToneTable(look_.agx, kSide));
 }
 
-// The table takes half a second of both processors, which a first frame needs itself: it is asked for in the
-// second.
+// The table takes half a second on both processors, which the first frame needs itself. It is
+// therefore requested in the second frame.
 void Developer::TakeTable() const {
   if (!is_asked_ && !std::exchange(has_draft_, true)) return UploadDraft();
   if (!is_asked_) return MakeTable();

@@ -1,18 +1,17 @@
 // SPDX-License-Identifier: MIT
-// The exposure meter beside drawing: reads small copies of pictures without waiting for them.
+// Display of linear pictures on the GPU: exposure metering, white balance, tone mapping and dither.
 //
-// The luminance of the picture under the pointer.
+// ExposureMeter reads back small copies of pictures without waiting for them. SpotMeter reads the
+// luminance under the pointer. DitherTexture holds the tile of dither noise for
+// shaders/dither_tile.glsl.
 //
-// The tile of dither noise on the graphics card, for shaders/dither_tile.glsl.
+// ToneTable tabulates AgX in one of its looks as a 3D texture. One fetch replaces nine powers and
+// logarithms per pixel and the hue correction. It holds sRGB codes as a function of the exposed
+// colour (tone_curve.glsl), which is inside the gamut at that stage: kSide nodes per channel,
+// evenly spaced in its logarithm, from kLowestStop to kHighestStop relative to saturation. Colours
+// beyond the ends are clamped, since the curve is flat there.
 //
-// AgX in one of its looks as a table that a graphics card interpolates: nine powers and logarithms a
-// pixel, and its hue, are one fetch.
-//
-// Codes of sRGB over the exposed colour (tone_curve.glsl), which is inside the gamut by then: kSide
-// nodes a channel at even steps of its logarithm, from kLowestStop to kHighestStop over saturation.
-// Of colours beyond the ends the end is shown: there the curve is flat.
-//
-// Linear pictures made to look at, on the graphics card.
+// Developer applies all steps to a linear picture.
 #pragma once
 
 #include <array>
@@ -30,23 +29,25 @@
 
 namespace alpenglow::viewer {
 
-/// What a picture says of its light.
+/// Measurements of a picture for exposure and white balance.
 struct MeterReading {
-  double ev100;        // MeterEv100 of the picture as it is seen
-  WhiteBalance white;  // settled
+  double ev100;        // MeterEv100 of the picture after white balance
+  WhiteBalance white;  // resolved
 };
 
-/// Of a picture as a camera has it. @param look  not settled.
+/// Returns the reading of a picture of a perspective camera.
+/// @param look  white balance not yet resolved.
 [[nodiscard]] MeterReading ReadingOf(const Image& picture, const Look& look);
 
 class ExposureMeter {
  public:
-  /// Copies every so-manieth pixel, at most kLongSide a row, and begins to read them; nothing while
-  /// an earlier copy is still being read.
+  /// Copies every n-th pixel, at most kLongSide per row, and starts to read them back. Does nothing
+  /// while an earlier copy is being read.
   void LookAt(const RenderTarget& picture);
-  /// The reading of the copy, once it has arrived.
+  /// Returns the reading of the copy once it has arrived.
   [[nodiscard]] std::optional<MeterReading> Take(const Look& look);
-  /// Of a picture at once, waiting for the graphics card. Copies of earlier ones are not read any more.
+  /// Returns the reading of a picture immediately, waiting for the GPU. Pending copies are
+  /// discarded.
   [[nodiscard]] MeterReading Read(const RenderTarget& picture, const Look& look);
 
   static constexpr int kLongSide = 160;
@@ -58,13 +59,14 @@ class ExposureMeter {
   PixelReader reader_;
 };
 
-/// Asked once a frame, it never waits for the graphics card: what it tells is a frame or two old.
+/// Luminance under the pointer. It is called once per frame and never waits for the GPU; the value
+/// is one or two frames old.
 class SpotMeter {
  public:
-  /// [cd/m^2], at shares of width and height from the upper left, each in [0, 1). Nothing before the
-  /// first has arrived.
+  /// Returns the luminance [cd/m^2] at fractions of width and height from the upper left, each in
+  /// [0, 1). Empty until the first value has arrived.
   [[nodiscard]] std::optional<double> At(const RenderTarget& picture, double right, double down);
-  /// Nothing is pointed at.
+  /// Stops the measurement: the pointer is not over the picture.
   void Leave();
 
  private:
@@ -72,29 +74,29 @@ class SpotMeter {
   std::optional<double> luminance_;
 };
 
-/// DitherNoise (lut/picture/develop.h), four floats a pixel.
+/// DitherNoise (lut/picture/develop.h) as a texture, four floats per pixel.
 class DitherTexture {
  public:
   DitherTexture();
 
-  /// Tells a program, in use, the unit and the size [pixels] of what it fills.
+  /// Sets the texture unit and the size of the target [pixels] in a program, which must be in use.
   void Bind(const ShaderProgram& program, int unit, int width, int height) const;
 
  private:
   GlTexture noise_;
 };
 
-/// Error of trilinear interpolation for colours whose channels lie within three stops of each other,
-/// in codes of 8 bits: of photo half below 0.06, all but one in a hundred below 0.25, all below 0.9;
-/// of other looks, which clip a channel at an edge between nodes, half below 0.1, all but one in
-/// twenty below 0.5, all but one in a hundred below 3.
+/// AgX as a table of display codes. Error of trilinear interpolation for colours whose channels lie
+/// within three stops of each other, in 8-bit codes: for photo 50 % below 0.06, 99 % below 0.25,
+/// all below 0.9; for other looks, which clip a channel at an edge between nodes, 50 % below 0.1,
+/// 95 % below 0.5, 99 % below 3.
 class ToneTable {
  public:
   static constexpr int kSide = 96;
   static constexpr double kLowestStop = -13.5;
   static constexpr double kHighestStop = 5.0;
 
-  /// @param side  nodes a channel, >= 2; the stated errors are those of kSide.
+  /// @param side  nodes per channel, >= 2. The errors above are for kSide.
   explicit ToneTable(AgxLook look, int side = kSide);
 
   [[nodiscard]] int side() const { return side_; }
@@ -106,35 +108,35 @@ class ToneTable {
   std::vector<std::array<float, 3>> codes_;
 };
 
-/// White balance, exposure, gamut, tone curve and dither, as Seen and Develop (look.h) do them; local
-/// exposure and night vision are left out.
+/// Applies white balance, exposure, gamut mapping, tone curve and dither, as Seen and Develop
+/// (look.h) do. Local exposure and night vision are not applied.
 class Developer {
  public:
-  /// A picture that is developed before the table of its look is ready waits for it (kWait), so that it is exact, or
-  /// is shown by a coarse table at once, up to 9 codes off (kDraft).
+  /// Behaviour before the table of the look is ready: kWait waits for it and is exact, kDraft uses
+  /// a coarse table, with errors up to 9 codes.
   enum class FirstPictures { kWait, kDraft };
-  /// The table of the look is made beside drawing.
-  /// @param look  settled (look.h), here and below.
+  /// The table of the look is computed on a worker thread.
+  /// @param look  resolved (look.h), here and below.
   explicit Developer(const Look& look, FirstPictures first = FirstPictures::kWait);
 
-  /// Takes another look; what it has in common with the one in use costs nothing.
+  /// Changes the look. Parts that are equal in both looks are not recomputed.
   void Use(const Look& look);
   [[nodiscard]] const Look& look() const { return look_; }
 
-  /// Where a developed picture goes: a framebuffer (0: the window) and its size [pixels].
+  /// Target of the displayed picture: a framebuffer (0: the window) and its size [pixels].
   struct Screen {
     GLuint framebuffer;
     int width, height;
   };
-  /// Fills the screen; a picture of another size is scaled, bilinearly.
+  /// Fills the screen. A picture of another size is scaled bilinearly.
   void Develop(const RenderTarget& picture, double ev100, const Screen& screen) const {
     Develop(picture, ev100, screen, whole_);
   }
-  /// The pixels of an area alone.
+  /// Fills only the pixels of an area.
   void Develop(const RenderTarget& picture, double ev100, const Screen& screen,
                const PassArea& area) const;
-  /// Codes in [0, 1], not dithered, for an Enlarger: into a target of the picture's size, whose
-  /// fourth component it gets too.
+  /// Writes codes in [0, 1] without dither, for an Enlarger, to a target of the picture's size. The
+  /// fourth component of the picture is copied.
   void DevelopSmall(const RenderTarget& picture, double ev100, const RenderTarget& codes) const;
 
  private:
@@ -149,13 +151,13 @@ class Developer {
   PassArea whole_;
   GlTexture table_;
   FirstPictures first_;
-  mutable bool has_draft_ = false;         // of the look
-  mutable bool is_asked_ = false;          // whether its table is there or coming
-  mutable std::future<ToneTable> coming_;  // the table, until it is first used
+  mutable bool has_draft_ = false;         // of the current look
+  mutable bool is_asked_ = false;          // whether its table was requested
+  mutable std::future<ToneTable> coming_;  // the table, until it is uploaded
   DitherTexture dither_;
 };
 
-/// What develop.frag.glsl is put together with.
+/// Returns the shader texts that develop.frag.glsl is built from.
 [[nodiscard]] std::vector<ShaderPiece> DeveloperTexts(ToneCurve curve, bool dithers);
 
 }  // namespace alpenglow::viewer

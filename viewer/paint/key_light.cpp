@@ -14,9 +14,9 @@
 namespace alpenglow::viewer {
 namespace {
 
-// Over this elevation the sun brings more than a thousand times what the brightest moon does.
+// Above this elevation the sun contributes more than a thousand times the brightest moon.
 constexpr double kMoonDoesNotCount_rad = 1.0 * kRadiansPerDegree;
-// A sun that is lower lights no land: from 4 km the horizon is 2 degrees down.
+// Below this elevation the sun lights no land: from 4 km the horizon is 2 degrees down.
 constexpr double kSetOnLand_rad = -2.5 * kRadiansPerDegree;
 
 std::size_t GreenBand(const std::vector<double>& wavelengths_nm) {
@@ -27,7 +27,7 @@ std::size_t GreenBand(const std::vector<double>& wavelengths_nm) {
       wavelengths_nm.begin());
 }
 
-// Of unit irradiance above the air, on a level place.
+// Returns the irradiance of a level surface for unit irradiance above the atmosphere.
 BandLight LevelLight(const SolvedAir& air, double altitude_m, const SunPosition& disk) {
   const double mu = std::sin(disk.elevation_rad);
   const BandLight sky =
@@ -37,7 +37,7 @@ BandLight LevelLight(const SolvedAir& air, double altitude_m, const SunPosition&
   return sky + static_cast<float>(mu) * air.beam.Left(integrator, altitude_m, mu);
 }
 
-// What the moon leaves of the sun.
+// Returns the sunlight that the moon does not cover.
 KeyLight BesideMoon(const KeyLight& sun, const GeodeticPosition& eye, const UtcInstant& now,
                     const Medium& medium) {
   const EclipsedDisk disk = EclipsedDiskOf(sun.disk, MoonAt(eye, now));
@@ -69,7 +69,8 @@ KeyLight SunAsKey(const SunPosition& sun, const Medium& medium) {
 
 LightsOfSky LightsOfSkyAt(const GeodeticPosition& eye, const UtcInstant& now,
                           const SunPosition& sun, const SolvedAir& air) {
-  // A sky that is a ten-thousandth on a level place is a five-hundredth over the horizon under its light.
+  // A sky that contributes a ten-thousandth on a level surface contributes a five-hundredth near
+  // the horizon below its light.
   constexpr double kUnseenShare = 1e-4;
   const KeyLight whole_sun = SunAsKey(sun, air.medium);
   if (!air.medium.follows_wgs84) return {whole_sun, std::nullopt};

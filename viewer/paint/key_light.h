@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
-// What lights air and land of a picture: the sun, the moon, or both. The sun is what the moon leaves of
-// it: a whole picture is lit as its eye is.
+// The lights of the sky in a picture: the sun, the moon, or both.
 //
-// One of them throws the shadows: the sun until it has set on all land, 2.5 degrees down, then a moon
-// that counts.
+// In a solar eclipse the sunlight is what the moon leaves uncovered as seen from the eye, for the
+// whole picture. One light casts the shadows: the sun until it has set for all land, at 2.5 degrees
+// below the horizontal, then the moon if it is bright enough.
 #pragma once
 
 #include <glm/vec4.hpp>
@@ -17,8 +17,8 @@
 namespace alpenglow::viewer {
 
 struct KeyLight {
-  SunPosition disk;      // where it is seen from the eye, and how wide
-  glm::vec4 irradiance;  // above the air, one value a band [W m^-2 nm^-1]
+  SunPosition disk;      // apparent position from the eye, and radius
+  glm::vec4 irradiance;  // above the atmosphere, by band [W m^-2 nm^-1]
   bool is_moon = false;
 
   [[nodiscard]] LightSource source() const {
@@ -26,20 +26,23 @@ struct KeyLight {
   }
 };
 
-/// Without the moon before it. @param sun  apparent.
+/// Returns the sun as a light, not covered by the moon.
+/// @param sun  apparent.
 [[nodiscard]] KeyLight SunAsKey(const SunPosition& sun, const Medium& medium);
 
 struct LightsOfSky {
-  KeyLight key;                   // what throws shadows
-  std::optional<KeyLight> other;  // where it counts
+  KeyLight key;                   // casts the shadows
+  std::optional<KeyLight> other;  // if bright enough
 };
 
-/// Sun and moon. A light counts that brings over a ten-thousandth of what the other brings to a level
-/// place at the eye, in the band next to 555 nm. No other planet has this moon: there it is the sun.
+/// Returns the lights of the sky. A light is included if its contribution on a level surface at the
+/// eye, in the band nearest to 555 nm, exceeds a ten-thousandth of the other's. Planets other than
+/// the Earth have no moon; their only light is the sun.
 [[nodiscard]] LightsOfSky LightsOfSkyAt(const GeodeticPosition& eye, const UtcInstant& now,
                                         const SunPosition& sun, const SolvedAir& air);
 
-/// Of a light and the sky that it makes, on a level plane [lux]. @param colour  of the air's bands.
+/// Returns the illuminance [lux] of a level surface by a light and the sky that it lights.
+/// @param colour  of the medium's bands.
 [[nodiscard]] double LevelIlluminance(const KeyLight& key, const SolvedAir& air, double altitude_m,
                                       const BandColour& colour);
 

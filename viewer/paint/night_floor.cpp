@@ -49,7 +49,8 @@ NightFloorFollower::NightFloorFollower(const TownsOfScene& towns)
                               towns);
       }) {}
 
-// The sky may turn by an eighth of a degree, a tenth of a texel.
+// Returns whether the requested map is close enough. The sky may rotate by an eighth of a degree, a
+// tenth of a texel.
 bool NightFloorFollower::Suits(const Request& wanted) const {
   constexpr double kMostTurn_s = 30.0, kMostWay_rad = 2e-3, kMostRise_m = 1000.0;
   return asked_ && asked_->air == wanted.air &&

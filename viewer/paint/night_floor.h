@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Airglow, zodiacal light and faint stars behind the air, what the air scatters of them, and their
-// light on the ground: the renderer's NightLight as a map of the sky, made on a thread beside drawing.
-// Where sun and moon bring less than 10 lux.
+// The light of the night sky: airglow, zodiacal light and faint stars behind the atmosphere, their
+// scattered light, and their light on the ground. It is the renderer's NightLight as a map of the
+// sky, made on a worker thread, and used where sun and moon contribute less than 10 lux.
 #pragma once
 
 #include <glm/vec4.hpp>
@@ -18,37 +18,38 @@
 
 namespace alpenglow::viewer {
 
-/// One value a band.
+/// Sky radiance and irradiance by night, one value per band.
 struct NightFloor {
-  /// Columns of azimuth from north over east, rows of elevation from the nadir up, in the middle of
-  /// texels.
+  /// Columns are azimuths from north through east, rows are elevations from the nadir upwards, at
+  /// texel centres.
   static constexpr int kColumns = 256, kRows = 128;
 
-  std::vector<glm::vec4> above;  // from above the air, row by row [W m^-2 sr^-1 nm^-1]
+  std::vector<glm::vec4> above;  // radiance above the atmosphere, row by row [W m^-2 sr^-1 nm^-1]
   glm::vec4 scattered;           // NightLight::scattered
-  glm::vec4 level;               // on level ground [W m^-2 nm^-1]
+  glm::vec4 level;               // irradiance of level ground [W m^-2 nm^-1]
 };
 
-/// Lamps of towns, as the scene has them.
+/// Light pollution of the scene.
 struct TownsOfScene {
   std::optional<double> zenith = std::nullopt;  // Scene::town_zenith
-  double ground_m = 0.0;                        // where that is, over the ellipsoid, >= 0
+  double ground_m = 0.0;                        // height of that ground over the ellipsoid, >= 0
 };
 
 [[nodiscard]] NightFloor NightFloorOver(const GeodeticPosition& eye, const UtcInstant& now,
                                         const Medium& medium, const BandColour& colour,
                                         const TownsOfScene& towns = {});
 
-/// To be used on the thread of the context that is current when it is made.
+/// Keeps the map up to date. Must be used on the thread whose OpenGL context is current at
+/// construction.
 class NightFloorFollower {
  public:
   explicit NightFloorFollower(const TownsOfScene& towns);
 
-  /// Once a frame: takes over what is ready and asks for what is missing.
-  /// @param waits   until the map of the very instant is there.
+  /// Takes over a finished map and requests a new one if needed. Call it once per frame.
+  /// @param waits  whether to wait for the map of exactly this instant.
   void Follow(const PaintedView& view, const std::shared_ptr<const SolvedAir>& air, bool waits);
   [[nodiscard]] bool HasAny() const { return has_map_; }
-  /// For the next draw of a program of the night pass of picture.frag.glsl.
+  /// Sets the inputs of a program of the night pass of picture.frag.glsl for its next draw.
   void Bind(const ShaderProgram& program, int unit) const;
 
  private:

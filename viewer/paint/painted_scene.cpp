@@ -14,9 +14,10 @@
 namespace alpenglow::viewer {
 namespace {
 
-constexpr double kLong_s = 1e3;  // after which everything has faded in
+constexpr double kLong_s = 1e3;  // time after which all fades have ended
 
-// Lamps and fog stand on ground that is there before the first picture; a landing light needs none.
+// Returns the ground for lamps and fog, which must exist before the first picture. A landing light
+// does not need it.
 SceneGround LampGroundOf(const Scene& scene) {
   if (!scene.lights.empty() || scene.fog || scene.town_zenith) return LoadGround(scene);
   GeodeticPosition foot = scene.place;
@@ -165,7 +166,8 @@ void PaintedScene::KeepUpAir(const PaintedView& view, const LightsOfSky& lights,
   keep_up(*moon_air_, seen);
 }
 
-// A table takes 3 ms. At dusk light falls by 0.2 % while the sun sinks by kLeft_rad.
+// Computing a table takes 3 ms. At dusk the light decreases by 0.2 % while the sun sinks by
+// kLeft_rad.
 void PaintedScene::KeepUpOpenSkies(const LightsOfSky& lights, Pace pace) {
   constexpr double kLeft_rad = 3e-5;
   const double altitude_m = ground_.open_altitude_m();
@@ -185,8 +187,9 @@ void PaintedScene::KeepUpOpenSkies(const LightsOfSky& lights, Pace pace) {
   }
 }
 
-// Edges of shade that vertices have move with the height of the disk, but not with its azimuth. Behind by
-// 6 degrees they are worse than those of the map, whose azimuths are 22.5 degrees apart.
+// The shadow edges of vertices follow the elevation of the disk, but not its azimuth. If the
+// azimuth differs by 6 degrees, they are worse than those of the horizon map, whose azimuths are
+// 22.5 degrees apart.
 bool PaintedScene::HasEdgesNear(const Vector<Ecef>& to_light) const {
   constexpr double kNear_rad = 6.0 * kRadiansPerDegree;
   const EdgesOfVertices edges = land_->edges();

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// A scene as it is painted: its air, its land, the light on that, the shade in the air and the fog,
-// each made beside drawing and kept up with an eye that moves and a sun that does.
+// A scene prepared for drawing: its medium, terrain, terrain lighting, volumetric shadows and fog.
+// Each part is computed on worker threads and follows the moving eye and sun.
 #pragma once
 
 #include <array>
@@ -27,92 +27,97 @@
 
 namespace alpenglow::viewer {
 
-/// To be used on the thread of the context that is current when it is made.
-/// The air of a scene, as it is solved before there is a scene. Null: it is solved with it, in full.
+/// The solved medium of a scene, prepared before the PaintedScene. Null: PaintedScene solves it at
+/// full accuracy.
 using FirstAir = std::shared_ptr<const SolvedAir>;
-/// A draft. Throws what PaintedScene does for a medium.
+/// Returns a draft solution. Throws for a medium as the constructor of PaintedScene does.
 [[nodiscard]] FirstAir DraftOfAir(const Scene& scene);
 
+/// All parts of a scene that are needed to draw it. Must be used on the thread whose OpenGL context
+/// is current at construction.
 class PaintedScene {
  public:
-  /// A draft of the air is solved anew beside drawing; land is read beside drawing. Throws
-  /// InputError for a medium of more than four wavelengths and for land that is named and cannot be read.
+  /// If the medium is a draft, it is solved at full accuracy on a worker thread, and land is read
+  /// on another. Throws InputError for a medium with more than four wavelengths and for explicitly
+  /// named land that cannot be read.
   PaintedScene(const Scene& scene, const LandSource& land, const PaintedView& first,
                const PaintSizes& sizes, FirstAir first_air);
 
   void Use(const PaintSizes& sizes);
-  /// Other air; shown when it is solved.
+  /// Changes the medium. The new one is shown when it is solved.
   void Replace(const Medium& medium) { air_.Replace(medium); }
 
-  /// Other land of the same kind: what there was is gone at once, and its light and shade.
+  /// Changes the land to other land of the same kind. The previous land, its lighting and its
+  /// shadows disappear immediately.
   void Replace(const LandSource& land);
 
-  /// Shows no land until what is about the eye has come.
+  /// Shows no land until the land around the eye is loaded.
   void AwaitLand() { awaits_land_ = true; }
-  /// Whether land is still to come, at the start and after a change of place: then there is nothing
-  /// but sky.
+  /// Returns whether land is not shown yet, at the start and after a change of place. Only sky is
+  /// drawn then.
   [[nodiscard]] bool AwaitsLand() const { return awaits_land_; }
 
-  /// Takes over what has become ready and asks for what is missing. Never waits, but for the first
-  /// fog in other air or under a moon.
-  /// @param lights   seen from the eye.
-  /// @param seconds  since the last call.
+  /// Collects finished work and requests missing parts. It does not wait, except for the first fog
+  /// in a new medium or under a moon.
+  /// @param lights   as seen from the eye.
+  /// @param seconds  time since the last call.
   void Update(const PaintedView& view, const LightsOfSky& lights, double seconds);
-  /// Waits until all is there that the view needs.
-  /// @param samples  rays a pixel that will be painted.
+  /// Waits until everything that the view needs is complete.
+  /// @param samples  number of rays per pixel to be drawn.
   void Settle(const PaintedView& view, const LightsOfSky& lights, int samples);
 
   [[nodiscard]] const PaintSizes& sizes() const { return sizes_; }
   [[nodiscard]] const GeodeticPosition& place() const { return scene_.place; }
   [[nodiscard]] const Ellipsoid& ellipsoid() const { return ellipsoid_; }
-  /// What lamps and fog stand on.
+  /// The ground on which lamps and fog are placed.
   [[nodiscard]] const SceneGround& lamp_ground() const { return lamp_ground_; }
   [[nodiscard]] const SceneDrape& drape() const { return drape_; }
   [[nodiscard]] const GroundMaterial& material() const { return material_; }
-  /// As the sun lights it.
+  /// The medium lit by the sun.
   [[nodiscard]] const AirFollower& air() const { return air_; }
-  /// As a source does that counts.
+  /// The textures of the medium lit by a source, which must be one of the lights.
   [[nodiscard]] const AirTextures& air_textures(LightSource source) const {
     return source == LightSource::kMoon && moon_air_ ? moon_air_->textures() : air_.textures();
   }
   [[nodiscard]] const Landscape& land() const { return *land_; }
   [[nodiscard]] Landscape& land() { return *land_; }
-  /// Whether there is any, somewhere.
+  /// Returns whether the scene has land anywhere, and whether it has fine relief.
   [[nodiscard]] LandKind land_kind() const { return {has_land_, scene_.terrain.HasFineRelief()}; }
   [[nodiscard]] const GroundFollower& ground() const { return ground_; }
-  /// How the open sky of a source that counts lights slopes, at the moment that was updated or settled
-  /// last.
+  /// Directional variation of the unoccluded sky's irradiance under a source, which must be one of
+  /// the lights, at the last updated or settled instant.
   [[nodiscard]] const SkyTilt& OpenSky(LightSource source) const {
     return open_skies_[IndexOf(source)].value().light;
   }
   [[nodiscard]] const GroundTextures& ground_textures() const { return ground_textures_; }
-  /// Null: vertices have the sky's light of this source, by the quality or until the tables are there.
+  /// Returns null if vertices hold the sky irradiance of this source: because of the quality, or
+  /// until the tables are ready.
   [[nodiscard]] const SkyByPixel* sky_by_pixel(LightSource source) const {
     return sizes_.sky_by_pixel && sky_by_pixel_.Has(source) ? &sky_by_pixel_ : nullptr;
   }
   [[nodiscard]] const ShadeFollower& shade() const { return shade_; }
-  /// Whether terrain keeps light of the key from the air, and that is painted.
+  /// Returns whether terrain shadows the air from the key light, and that effect is drawn.
   [[nodiscard]] bool HasShade(const PaintedView& view, const KeyLight& key) const {
     return !awaits_land_ && sizes_.has_shafts && shade_.shade().Shades() &&
            shade_.IsOf(view.eye.place, key.disk);
   }
-  /// Whether the edges of terrain that land is painted with are all those before this source.
+  /// Returns whether all shadow edges on land belong to this source.
   [[nodiscard]] bool HasEdgesOf(LightSource source) const {
     return source == casts_ && (momentary_edges_ == 1.0 ? land_->HasHorizon() : has_edges_);
   }
-  /// As a source lights it. Null: none.
+  /// The fog lit by a source. Null: no fog.
   [[nodiscard]] const SceneFog* fog(LightSource source = LightSource::kSun) const {
     if (source == LightSource::kMoon && moon_fog_) return &*moon_fog_;
     return fog_ ? &*fog_ : nullptr;
   }
-  /// Nothing without fog.
+  /// Empty without fog.
   [[nodiscard]] std::optional<PhaseKind> fog_phase() const;
 
  private:
-  /// Followers keep up (Update) or wait until they have (Settle).
+  /// Followers either do their work in the background (Update) or complete it (Settle).
   enum class Pace { kFollow, kSettle };
   void KeepUpAir(const PaintedView& view, const LightsOfSky& lights, Pace pace, double seconds);
-  /// The open sky's light on slopes, and what it was made for.
+  /// Irradiance of the unoccluded sky on slopes, and the inputs it was computed for.
   struct OpenSkyOf {
     std::shared_ptr<const SolvedAir> air;
     double altitude_m, elevation_rad;
@@ -133,13 +138,13 @@ class PaintedScene {
   SceneGround lamp_ground_;
   SceneDrape drape_;
   GroundMaterial material_;
-  AirView sun_view_;                                // the last one that the sun counted in
-  AirFollower air_;                                 // of that
-  std::shared_ptr<const SolvedAir> known_air_;      // that ground_textures_ have
-  std::optional<AirIntegrator<float>> integrator_;  // of that
+  AirView sun_view_;                                // the last view in which the sun was a light
+  AirFollower air_;                                 // at sun_view_
+  std::shared_ptr<const SolvedAir> known_air_;      // the medium in ground_textures_
+  std::optional<AirIntegrator<float>> integrator_;  // of known_air_
   std::array<std::optional<OpenSkyOf>, kLightSources> open_skies_;
-  std::optional<AirFollower> moon_air_;           // once it counts
-  std::shared_ptr<const SolvedAir> moon_air_of_;  // that it was made for
+  std::optional<AirFollower> moon_air_;           // once the moon is a light
+  std::shared_ptr<const SolvedAir> moon_air_of_;  // the medium of moon_air_
   std::unique_ptr<Landscape> land_;
   std::vector<std::unique_ptr<Landscape>> leaving_;  // until their threads have ended
   GroundFollower ground_;
@@ -147,8 +152,8 @@ class PaintedScene {
   SkyByPixel sky_by_pixel_;
   ShadeFollower shade_;
   std::optional<SceneFog> fog_, moon_fog_;
-  LightSource casts_ = LightSource::kSun;  // what throws shadows
-  bool has_edges_ = false;                 // whether vertices have their edges of shade before it
+  LightSource casts_ = LightSource::kSun;  // the shadow-casting light
+  bool has_edges_ = false;                 // whether vertices have shadow edges for casts_
   double momentary_edges_ = 0.0;           // MomentaryEdges::share
   int heights_version_ = -1;
   bool awaits_land_;

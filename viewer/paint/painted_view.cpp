@@ -14,8 +14,8 @@
 namespace alpenglow::viewer {
 namespace {
 
-// Where a convex function is least between -1 and 1, to 1e-5: what it is there is then right to 1e-10
-// or so.
+// Returns the position of the minimum of a convex function between -1 and 1, to 1e-5. The minimum
+// value is then accurate to about 1e-10.
 template <typename Function>
 double LeastOf(const Function& function) {
   constexpr double kGolden = 0.6180339887498949;
@@ -47,7 +47,7 @@ LandView LandViewOf(const PaintedView& view, int samples) {
   return {half.x * axes.right, half.y * axes.up, axes.forward, samples};
 }
 
-// The same for all pixels.
+// The shift is equal for all pixels.
 glm::dvec2 ShiftOf(const PixelRay& ray, const PaintedView& view) {
   if (ray.of == 1) return glm::dvec2(0.0);
   const auto [x, y] = PixelSamples(0, 0, ray.of).Point(ray.number, SampleOf::kPixel);
@@ -65,7 +65,7 @@ std::optional<PixelBox> PixelsOfDisk(const glm::dvec3& direction, double radius_
   };
   const double x = pixel(axes.right, view.part.x * view.part.z, view.width);
   const double y = pixel(axes.up, view.part.y * view.part.w, view.height);
-  // Twice the radius: off the middle of the view disks are drawn out.
+  // Off the centre of the view, disks are stretched, so twice the radius is used.
   const double reach = 2.0 * radius_rad / PixelAngle(view) / along + 2.0;
   if (x < -reach || y < -reach || x > view.width + reach || y > view.height + reach)
     return std::nullopt;
@@ -78,8 +78,8 @@ double RadiusUnder(const Eye& eye, const Medium& medium) {
   return OnOsculatingSphere(medium, eye.place.latitude_rad).planet_radius_m / kMetresPerKilometre;
 }
 
-// A ray d goes under the horizon's cosine c <= 0 where d.z - c |d| < 0. That is convex over the
-// picture, and so is the least of a row over the rows.
+// A ray d is below the horizon with cosine c <= 0 where d.z - c |d| < 0. This function is convex
+// over the picture, and so is its minimum over each row as a function of the row.
 int RowsOfPlanet(const PaintedView& view, double radius_km) {
   const LandView axes = LandViewOf(view);
   const double altitude_km = std::max(view.eye.place.height_m, 0.0) / kMetresPerKilometre;
@@ -121,7 +121,8 @@ std::optional<LandBend> BendOf(const PaintedView& view, const Medium& medium,
 
 namespace {
 
-/// Nodes reach so many radii from the middle of the disk, which may move by the rest.
+/// The nodes extend to this many radii from the centre of the disk. The disk may move by the
+/// remainder.
 constexpr double kReach = 1.25;
 constexpr double kMostWay_rad = 1.0 / 60.0 * kRadiansPerDegree;
 
@@ -140,7 +141,7 @@ BentDisk BentDiskOf(const Medium& medium, double height_m, double elevation_rad,
                     double radius_rad) {
   const BendingAir air = GentleAirOf(medium);
   const double horizon_rad = GrazingElevation(air, height_m);
-  // Below the horizon nothing is seen of a disk.
+  // No part of a disk is visible below the horizon.
   const double first_rad = std::max(elevation_rad - kReach * radius_rad, horizon_rad);
   const double last_rad =
       std::max(elevation_rad + kReach * radius_rad, horizon_rad + 0.1 * radius_rad);
@@ -169,7 +170,7 @@ const BentDisk* BentDiskFollower::Follow(const std::shared_ptr<const SolvedAir>&
   constexpr double kLow_rad = 10.0 * kRadiansPerDegree;
   const double horizon_rad = GrazingElevation(GentleAirOf(air->medium), height_m);
   if (elevation_rad > kLow_rad || elevation_rad < horizon_rad - 2.0 * radius_rad) return nullptr;
-  // The horizon's own change counts: on it the air is thickest.
+  // The horizon changes with the eye's height as well. The air is densest there.
   const double height_step_m = 0.002 * std::max(height_m, 1.0);
   const bool suits = made_ && made_->air == air &&
                      std::abs(made_->height_m - height_m) < height_step_m &&

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-// A view that is painted: when, from where, in how many pixels, and where things are in it.
+// A view to be drawn: its time, place and size in pixels, and the positions of objects in it.
 //
-// Refraction of a view: it moves land and the horizon, or nothing that one could see.
-//
-// Air changes the disk of sun or moon near the horizon: it flattens it, spreads its colours and
-// dims its lower limb. Nodes of elevation across the disk, by the renderer's bent rays; shaders
-// interpolate (shaders/bent_disks.glsl).
+// BendOf describes atmospheric refraction of a view, or returns no refraction if its effect is not
+// visible. BentDisk describes the disk of the sun or moon near the horizon: refraction flattens it,
+// dispersion separates its colours, and extinction dims its lower limb. It has nodes of elevation
+// across the disk, computed with the renderer's refracted rays; shaders interpolate between them
+// (shaders/bent_disks.glsl).
 #pragma once
 
 #include <array>
@@ -25,73 +25,78 @@
 
 namespace alpenglow::viewer {
 
-/// When and from where a picture is painted.
+/// Time, position, camera and size of a picture.
 struct PaintedView {
   Eye eye;
   UtcInstant now;
-  int width, height;                    // of what is painted
-  glm::dvec4 part{0.0, 0.0, 1.0, 1.0};  // of the whole view that it is: ViewOfTile
+  int width, height;                    // of this part [pixels]
+  glm::dvec4 part{0.0, 0.0, 1.0, 1.0};  // part of the whole view, as in ViewOfTile
 };
 
-/// Angle between neighbouring pixels in the middle of the view [rad].
+/// Returns the angle between neighbouring pixels in the centre of the view [rad].
 [[nodiscard]] double PixelAngle(const PaintedView& view);
 
-/// Tangents of half the width and half the height of a view that is painted whole.
+/// Returns the tangents of half the horizontal and half the vertical field of view, for a view that
+/// is drawn whole.
 [[nodiscard]] glm::dvec2 HalfViewOf(const PaintedView& view);
 
-/// @param samples  rays a pixel.
+/// Returns the axes of the view.
+/// @param samples  number of rays per pixel.
 [[nodiscard]] LandView LandViewOf(const PaintedView& view, int samples = 1);
 
-/// One of a pixel's rays.
+/// One of the rays of a pixel.
 struct PixelRay {
   int number = 0, of = 1;
 };
-/// Where in its pixel it is, in half widths and heights of the picture: 0 for the only one, else
-/// spread evenly over the pixel.
+/// Returns the offset of a ray from the pixel centre, in half widths and heights of the picture. It
+/// is 0 for a single ray; otherwise the rays are spread evenly over the pixel.
 [[nodiscard]] glm::dvec2 ShiftOf(const PixelRay& ray, const PaintedView& view);
 
-/// Pixels that a disk of the sky may reach; nothing where none is in the view.
-/// @param direction  unit, east, north, up at the eye; radius_rad: angular.
+/// Returns the pixels that a disk in the sky may cover; empty if it is not in the view.
+/// @param direction  unit vector east, north, up at the eye.
+/// @param radius_rad  angular radius.
 [[nodiscard]] std::optional<PixelBox> PixelsOfDisk(const glm::dvec3& direction, double radius_rad,
                                                    const PaintedView& view);
 
-/// Of the planet's sphere under an eye [km].
+/// Returns the radius of the planet's osculating sphere under an eye [km].
 [[nodiscard]] double RadiusUnder(const Eye& eye, const Medium& medium);
 
-/// Rows from the lowest that hold all rays under the planet's horizon, and one more: above them is
-/// nothing but sky.
+/// Returns the number of rows, counted from the bottom, that hold all rays below the planet's
+/// horizon, plus one. Rows above them hold only sky.
 [[nodiscard]] int RowsOfPlanet(const PaintedView& view, double radius_km);
 
-/// Unit vector to the sun: east, north, up where it is seen from.
+/// Returns the unit vector to the sun: east, north, up at the observer.
 [[nodiscard]] glm::dvec3 DirectionToSun(const SunPosition& sun);
 
-/// Returns how air bends the rays of a view; nothing where neither the farthest land nor the planet's
-/// horizon moves by more than half a pixel.
-/// @param farthest_land_m  of the land about the eye, whatever part of a picture is painted.
+/// Returns the refraction of the rays of a view. Empty if it moves neither the farthest land nor
+/// the planet's horizon by more than half a pixel.
+/// @param farthest_land_m  distance of the farthest land around the eye, regardless of the part of
+///   the picture that is drawn.
 [[nodiscard]] std::optional<LandBend> BendOf(const PaintedView& view, const Medium& medium,
                                              double farthest_land_m);
 
-/// Values by band, node by node upwards.
+/// Refraction and extinction across a disk, as values per band at nodes from the bottom upwards.
 struct BentDisk {
-  static constexpr int kNodes = 13;  // 3.4' apart: between them lifts are within 0.05' of the rays'
+  static constexpr int kNodes = 13;  // 3.4' apart: interpolated lifts are within 0.05' of the rays'
 
-  double first_rad = 0.0, step_rad = 1.0;      // apparent elevations of the nodes
-  std::array<glm::vec4, kNodes> lift_rad{};    // apparent less true elevation
-  std::array<glm::vec4, kNodes> more_depth{};  // optical depth, more than if the ray were straight
+  double first_rad = 0.0, step_rad = 1.0;      // apparent elevation of the first node, spacing
+  std::array<glm::vec4, kNodes> lift_rad{};    // apparent minus true elevation
+  std::array<glm::vec4, kNodes> more_depth{};  // optical depth minus that of a straight ray
 
-  /// By how much the air shifts parts of the disk against each other [rad]: bands, and the lower
-  /// half against the upper.
+  /// Returns how far refraction shifts parts of the disk relative to each other [rad]: bands, and
+  /// the lower half relative to the upper.
   [[nodiscard]] double Change() const;
 };
 
-/// Some milliseconds. @param elevation_rad, radius_rad  of the disk, apparent.
+/// Computes the refraction of a disk, which takes some milliseconds.
+/// @param elevation_rad, radius_rad  of the disk, apparent.
 [[nodiscard]] BentDisk BentDiskOf(const Medium& medium, double height_m, double elevation_rad,
                                   double radius_rad);
 
-/// The same, kept while eye and disk stay about where they are.
+/// Keeps a BentDisk as long as eye and disk move little.
 class BentDiskFollower {
  public:
-  /// Null where the disk stands so high or so far under the horizon that it is round, or where no
+  /// Returns null if the disk is so high, or so far below the horizon, that it is round, or if no
   /// part of it moves by `half_pixel_rad`.
   [[nodiscard]] const BentDisk* Follow(const std::shared_ptr<const SolvedAir>& air, double height_m,
                                        double elevation_rad, double radius_rad,

@@ -47,7 +47,7 @@ std::vector<ShaderPiece> PictureTexts(const PictureKind& kind, const PictureStag
   };
   texts.push_back(DefinesOf(kind, stage));
   add(kind.fog ? FogTexts(*kind.fog) : NoFogTexts());
-  // What fog leaves of the sun on the ground is part of what the air leaves.
+  // On the ground, the transmittance of sunlight includes that of the fog above.
   if (kind.fog) {
     texts.push_back(
         {"fog on the ground", "#define BeamOfSun(h, mu) (BeamOfSun(h, mu) * FogSunLeft(h, mu))\n"});
@@ -71,14 +71,14 @@ void Upload(const GlBuffer& buffer, PictureBinding binding, const Block& block) 
   glBufferData(GL_UNIFORM_BUFFER, sizeof(block), &block, GL_DYNAMIC_DRAW);
 }
 
-// The frame of the ground's pattern, which a draped picture lies in too.
+// Returns the frame of the ground's pattern, in which a draped image also lies.
 LocalFrame PatternOf(const PaintedScene& scene) {
   GeodeticPosition origin = scene.place();
   origin.height_m = 0.0;
   return {scene.ellipsoid(), origin};
 }
 
-// In the pattern.
+// Returns the eye's point in the pattern's coordinates.
 GroundPoint OnPattern(const PaintedScene& scene, const glm::dvec3& eye, const UtcInstant& now) {
   const Medium& medium = scene.air().air()->medium;
   const GeodeticPosition& origin = scene.place();
@@ -123,7 +123,7 @@ GroundSurfaceBlock SurfaceAround(const PaintedScene& scene, const Eye& eye) {
   return Draped(cover, scene.drape().place, at.x, at.y);
 }
 
-// Straight rays: the planet looks as large as it is.
+// Sets the refraction of the view. Without refraction the planet appears with its true radius.
 void SetBend(ViewBlock& block, const std::optional<LandBend>& bend) {
   block.bend.x = block.eye.w;
   if (!bend) return;
@@ -186,7 +186,8 @@ void PictureBlocks::UploadGround(const PaintedScene& scene, const PaintedView& v
 
 namespace {
 
-// Fragments of depth 0 against that of the land: it is nearer, or there is none.
+// Fragments have depth 0 and are tested against the depth of land: either it is nearer (land), or
+// there is no land.
 GLenum DepthTestOf(PictureStage::Pass pass) {
   if (pass == PictureStage::Pass::kNight) return GL_ALWAYS;
   return pass == PictureStage::Pass::kLand ? GL_LESS : GL_EQUAL;

@@ -1,18 +1,14 @@
 // SPDX-License-Identifier: MIT
-// Where what programs of a picture read is bound: one number each, so that passes do not take each
-// other's places.
+// The shader programs of a picture: their bindings, shader texts and uniform blocks.
 //
-// What the fragment stages of a picture are put together from: one text, picture.frag.glsl, for
-// land, sky and disks, after texts for what there is in a scene.
+// Every uniform block and texture has a binding number of its own, so that passes do not overwrite
+// each other's bindings. The fragment stages share one text, picture.frag.glsl, for land, sky and
+// disks, preceded by texts that depend on the scene. There is one program per stage, created on
+// first use and kept.
 //
-// The uniform blocks of a picture: what its programs read of the air, the view and the ground, on
-// its way to the card.
-//
-// The programs of a picture, one a stage, made when a stage is first drawn with and kept.
-//
-// Drivers finish a program when it is drawn with, which takes tenths of a second. Stages that will
-// be needed later, when shade begins or ends, or a disk comes into view, are drawn with in the
-// first frames, over one pixel that is painted after.
+// Drivers finish compiling a program on its first draw, which takes tenths of a second. Stages that
+// will be needed later, when shadowing begins or ends or a disk comes into view, are therefore
+// drawn in the first frames, over one pixel that is overwritten afterwards.
 #pragma once
 
 #include <glm/vec2.hpp>
@@ -40,7 +36,7 @@
 
 namespace alpenglow::viewer {
 
-/// Of uniform blocks.
+/// Binding points of uniform blocks.
 enum PictureBinding : GLuint {
   kAirBinding,
   kViewBinding,
@@ -53,7 +49,7 @@ enum PictureBinding : GLuint {
   kFogBinding
 };
 
-/// Of textures.
+/// Texture units.
 enum PictureUnit {
   kSurfaceUnit,
   kSkyOnSurfaceUnit,
@@ -72,17 +68,17 @@ enum PictureUnit {
 inline constexpr LampUnits kLampUnits{kLampsBinding, kViewBinding, kSurfaceUnit, kLampUnit};
 inline constexpr FogUnits kFogUnits{kFogBinding, kFogUnit};
 
-/// One of the picture's programs. Sky is open above the horizon, see RowsOfPlanet.
+/// Identifies one program of the picture. kOpenSky is the sky above the horizon, see RowsOfPlanet.
 struct PictureStage {
   enum class Pass { kLand, kSky, kDisks, kOpenSky, kNight };
   Pass pass;
   bool has_shade = false, has_lamps = false;
-  bool sky_by_pixel = false;  // SkyByPixel, of land alone
+  bool sky_by_pixel = false;  // SkyByPixel, for land only
 
   auto operator<=>(const PictureStage&) const = default;
 };
 
-/// What the texts of a picture depend on.
+/// The properties of a scene that its shader texts depend on.
 struct PictureKind {
   const GroundMaterial& material;
   const LampPainter& lamps;
@@ -90,53 +86,55 @@ struct PictureKind {
   std::optional<PhaseKind> fog;  // its phase function
 };
 
-/// The texts that a stage of the picture is made of, but for picture.frag.glsl itself.
+/// Returns the texts of a stage that precede picture.frag.glsl.
 [[nodiscard]] std::vector<ShaderPiece> PictureTexts(const PictureKind& kind,
                                                     const PictureStage& stage);
 
-/// Those that they begin with: the view and the air.
+/// Returns the first of these texts: the view and the medium.
 [[nodiscard]] std::vector<ShaderPiece> AirTexts();
 
-/// Each call fills blocks and binds them (PictureBinding).
+/// The uniform blocks of a picture. Each call fills blocks and binds them (PictureBinding).
 class PictureBlocks {
  public:
   void UploadAir(const PaintedScene& scene, const Eye& eye);
-  /// @param ray  that is painted of each pixel.
+  /// @param ray  the ray of each pixel that is drawn.
   void UploadView(const PaintedScene& scene, const PaintedView& view, const KeyLight& key,
                   const PixelRay& ray) const;
   void UploadGround(const PaintedScene& scene, const PaintedView& view) const;
   void UploadGroundLight(const PaintedScene& scene, const PaintedView& view,
                          const KeyLight& light) const;
-  /// Nothing where vertices have the sky's light.
+  /// Does nothing if vertices hold the sky irradiance.
   void UploadSkyByPixel(const PaintedScene& scene, const PaintedView& view,
                         const KeyLight& light) const;
 
  private:
   GlBuffer air_, view_, ground_, ground_light_, ground_surface_, sky_by_pixel_;
-  // Of the air that was drawn last: colours of its bands take milliseconds.
+  // The block of the last medium is kept, since computing the colours of its bands takes
+  // milliseconds.
   std::shared_ptr<const SolvedAir> known_air_;
   AirBlock air_block_{};
 };
 
 class PicturePrograms {
  public:
-  /// Everything that programs read must outlive this.
+  /// The arguments must outlive this object.
   PicturePrograms(const PaintedScene& scene, const LampPainter& lamps, const ShaftPass& shafts);
 
-  /// Paints the whole viewport, but land only over land, and sky and disks only beside it: by the
-  /// depth of the target that is bound, which must be tested.
-  /// @param source  whose sky waves mirror; its air, blocks and maps are bound.
+  /// Draws the whole viewport. Land is drawn only over land, sky and disks only where there is no
+  /// land, by a test against the depth of the bound target. The depth test must be enabled.
+  /// @param source  the light whose sky is mirrored by water waves. Its air, blocks and maps must
+  ///   be bound.
   void Paint(const PictureStage& stage, LightSource source = LightSource::kSun);
-  /// Draws with a stage that Paint was not called for yet. Whether that was to be done.
+  /// Draws once with a stage that was not drawn yet, and returns whether this was necessary.
   bool MakeReady(const PictureStage& stage);
 
-  /// Whether any stage has been drawn with.
+  /// Returns whether any stage has been drawn.
   [[nodiscard]] bool HasPainted() const { return !ready_.empty(); }
 
-  /// For uniforms of the stage's own.
+  /// Returns the program of a stage, to set uniforms that only this stage has.
   [[nodiscard]] const ShaderProgram& Of(const PictureStage& stage);
 
-  /// The lamp painter is another.
+  /// Discards the programs with lamps, because the lamp painter has been replaced.
   void ForgetThoseWithLamps();
 
  private:
@@ -146,7 +144,7 @@ class PicturePrograms {
   const LampPainter& lamps_;
   const ShaftPass& shafts_;
   std::map<PictureStage, ShaderProgram> made_;
-  std::set<PictureStage> ready_;  // those that have been drawn with
+  std::set<PictureStage> ready_;  // stages that have been drawn
   GlVertexArray no_vertices_;
 };
 

@@ -14,7 +14,7 @@ namespace alpenglow::viewer {
 namespace {
 
 struct ReferenceStage {
-  int reduction;  // of width and height
+  int reduction;  // divisor of width and height
   int samples;
 };
 constexpr std::array<ReferenceStage, 5> kStages{{{4, 1}, {1, 1}, {1, 4}, {1, 16}, {1, 64}}};
@@ -31,12 +31,12 @@ std::unique_ptr<SceneRenderer> RendererOf(const ReferenceScene& of) {
                    : std::make_unique<SceneRenderer>(of.scene);
 }
 
-/// The renderer of the scene shown last.
+/// Holds the renderer of the most recent scene.
 class ReferencePicture::Renderers {
  public:
   const SceneRenderer& Of(const std::shared_ptr<const ReferenceScene>& of) {
     if (of_ != of) {
-      renderer_.reset();  // before the next one takes its memory
+      renderer_.reset();  // frees its memory first
       renderer_ = RendererOf(*of);
       of_ = of;
     }
@@ -105,7 +105,7 @@ const std::vector<float>& LayerOf(const Image& image, const std::string& name) {
   throw InternalError("the renderer's picture has no layer " + name);
 }
 
-/// Extremes of a layer around a pixel.
+/// Minimum and maximum of a layer in the neighbourhood of a pixel.
 struct LuminanceRange {
   float least, most;
 };
@@ -120,7 +120,8 @@ LuminanceRange RangeAround(const Image& image, const std::vector<float>& layer, 
   return range;
 }
 
-// Light of lamps changes beside a pixel by so much that a tenth of a pixel is a hundredth of it.
+// Returns whether lamp light changes so much next to a pixel that an offset of a tenth of a pixel
+// changes it by a hundredth.
 bool IsEdgeOfLamps(const Image& image, const std::vector<float>& lamps, int x, int y,
                    float floor_cd_per_m2) {
   constexpr float kStep = 0.2F;

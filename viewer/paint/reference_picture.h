@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: MIT
-// The renderer's own picture of a view, made beside drawing and refined while the view stays.
+// The renderer's own picture of a view, made on a worker thread and refined while the view does not
+// change, and the difference between it and the picture of the GPU away from edges.
 //
-// How far the picture on the graphics card is from the renderer's, edges aside.
-//
-// Of a pixel: PixelChange (effect_choice.h), the relative difference of linear radiance above the
-// floor of ChangeFloor. Left out are pixels beside an edge, where a hundredth of a pixel decides
-// what is seen: whose neighbours are of another kind, a tenth farther or nearer, or lit by more or
-// less of the sun's disk, or by a fifth more or less by lamps.
+// The difference of a pixel is PixelChange (effect_choice.h), the relative difference of linear
+// radiance above the floor of ChangeFloor. Pixels at an edge are excluded, because there a
+// hundredth of a pixel decides what is visible: pixels with neighbours of another kind, a tenth
+// farther or nearer, lit by more or less of the sun's disk, or lit a fifth more or less by lamps.
 #pragma once
 
 #include <functional>
@@ -25,18 +24,18 @@
 
 namespace alpenglow::viewer {
 
-/// What the renderer renders for a viewer.
+/// The scene that the renderer draws for a viewer.
 struct ReferenceScene {
   Scene scene;
-  /// The terrain, made when it is first needed; nothing: as the scene says.
+  /// Returns the terrain and is called on first use. Empty: the terrain is that of the scene.
   std::function<std::shared_ptr<const SceneGround>()> ground;
 };
 
 [[nodiscard]] std::unique_ptr<SceneRenderer> RendererOf(const ReferenceScene& scene);
 
-/// A renderer is prepared when a scene is first shown (seconds) and kept. Of a view there come a
-/// small picture of a ray a pixel, then full ones of 1, 4, 16 and 64. A view that changes stops
-/// what is being made of the old one.
+/// Renders reference pictures in the background. A renderer is prepared when a scene is first shown
+/// (seconds) and then kept. For each view it produces a small picture with one ray per pixel, then
+/// full ones with 1, 4, 16 and 64. When the view changes, rendering of the old view stops.
 class ReferencePicture {
  public:
   struct View {
@@ -47,15 +46,16 @@ class ReferencePicture {
   };
 
   ReferencePicture();
-  /// Stops what is being made.
+  /// Stops rendering.
   ~ReferencePicture();
 
-  /// The picture wanted. Two instants within `kSameTime_s` are one.
+  /// Requests a picture of a view. Instants that differ by less than `kSameTime_s` count as equal.
   void Show(const View& view);
-  /// A new picture of the view shown last, if one is ready. Throws what rendering threw.
+  /// Returns a new picture of the view shown last, if one is ready. Rethrows exceptions of the
+  /// rendering.
   [[nodiscard]] std::optional<Image> Take();
 
-  /// Rays a pixel of the best picture of this view so far; 0: none yet.
+  /// Number of rays per pixel of the best picture of this view so far; 0: none yet.
   [[nodiscard]] int samples() const { return samples_; }
 
   static constexpr double kSameTime_s = 20.0;  // the sun moves by a third of its radius
@@ -78,7 +78,7 @@ class ReferencePicture {
   std::stop_source stop_;
   std::size_t stage_ = 0;
   int samples_ = 0;
-  std::shared_ptr<Renderers> renderers_;  // used by the job alone
+  std::shared_ptr<Renderers> renderers_;  // used only by the job
   LatestJob<Request, std::optional<Made>> job_;
 };
 
@@ -87,17 +87,19 @@ struct ViewDifference {
   double at_99_percent = 0.0;
   double at_999_permille = 0.0;
   double worst = 0.0;
-  double edge_share = 0.0;  // of all pixels that were left out
+  double edge_share = 0.0;  // fraction of excluded pixels
 };
 
-/// Layers that the renderer's picture has; without that of lamps these have no edges.
+/// Returns the layers that the renderer's picture must have. The layer of lamps is optional;
+/// without it lamps cause no edges.
 [[nodiscard]] std::vector<PictureLayer> LayersOfEdges();
 
-/// Pixels of the renderer's picture that stand beside an edge, row by row.
+/// Returns which pixels of the renderer's picture are at an edge, row by row.
 [[nodiscard]] std::vector<bool> EdgesOf(const Image& judge);
 
-/// @param judge  the renderer's, with LayersOfEdges(). Throws InternalError for other sizes and for
-///     pictures that are nothing but edges.
+/// Returns the differences of a drawn picture from the reference.
+/// @param judge  the renderer's, with LayersOfEdges(). Throws InternalError if the sizes differ or
+///   all pixels are at edges.
 [[nodiscard]] ViewDifference DifferenceOf(const Image& judge, const Image& painted);
 
 }  // namespace alpenglow::viewer

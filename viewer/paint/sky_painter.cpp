@@ -28,7 +28,7 @@ ShaftPass ConnectedShafts(const PaintedScene& scene) {
   return pass;
 }
 
-// Draws are tested against depth and leave it: land over land, sky and disks beside it.
+// Enables the depth test without depth writes: land is drawn over land, sky and disks elsewhere.
 class BesideLand {
  public:
   BesideLand() {
@@ -43,7 +43,7 @@ class BesideLand {
   BesideLand& operator=(const BesideLand&) = delete;
 };
 
-// Draws are added to what is there, times a share.
+// Enables additive blending with a weight.
 class Adding {
  public:
   explicit Adding(double share) {
@@ -89,7 +89,7 @@ void SkyPainter::Update(const PaintedView& view, double seconds) {
   Begin("update");
   scene_.Update(view, lights, seconds);
   stars_.Follow(view, lights, *scene_.air().air());
-  // A jump into the night waits for its first map.
+  // After a jump in time into the night, wait for the first map.
   if (HasNightFloor()) night_floor_.Follow(view, scene_.air().air(), !night_floor_.HasAny());
 }
 
@@ -101,7 +101,7 @@ void SkyPainter::Settle(const PaintedView& view, int samples) {
 }
 
 void SkyPainter::PrepareLamps(const PaintedView& view) {
-  // Lamps dimmer than this are not seen beside what else there is.
+  // Lamps dimmer than this are invisible against other light.
   constexpr double kDimmest_cd_per_m2 = 1e-5;
   const LampView seen = LampViewFrom(scene_.lamp_ground().frame, view.eye.place, PixelAngle(view));
   const PaintSizes& sizes = scene_.sizes();
@@ -109,7 +109,7 @@ void SkyPainter::PrepareLamps(const PaintedView& view) {
   if (suits) lamp_painter_.SetStep(sizes.lamps.step);
   lamp_painter_.Prepare(lamps_, seen, kDimmest_cd_per_m2, sizes.most_lamps);
   if (lamp_painter_.IsDark() || suits) return;
-  // Programs of another quality, now that they are needed.
+  // Recreate the programs for another quality, now that they are needed.
   programs_.ForgetThoseWithLamps();
   lamp_painter_ = LampPainter(lamps_, sizes.lamps, kLampUnits);
   lamp_painter_.Prepare(lamps_, seen, kDimmest_cd_per_m2, sizes.most_lamps);
@@ -150,7 +150,7 @@ void SkyPainter::PaintLamps(const PaintedView& view) {
 
 namespace {
 
-// Disks that stand where they seem to.
+// Disk without refraction, drawn at its apparent position.
 constexpr BentDisk kUnbent{};
 
 void SendNodes(const ShaderProgram& program, const char* name,
@@ -172,7 +172,8 @@ void SendAir(const ShaderProgram& program, const BentDisk& sun, const BentDisk& 
 
 }  // namespace
 
-// A sun that the moon covers is drawn like the moon: their edges meet.
+// If the moon covers part of the sun, both disks use the same refraction, so that their edges
+// match.
 SkyPainter::DisksInAir SkyPainter::InAir(const SkyDisks& disks, const PaintedView& view) {
   const auto follow = [&](BentDiskFollower& follower, const glm::dvec3& apparent,
                           double radius) -> const BentDisk* {
@@ -210,7 +211,7 @@ void SkyPainter::DescribeDisks(const DisksInAir& seen) {
           seen.moon != nullptr ? *seen.moon : kUnbent);
 }
 
-// One stage is made ready a frame: each takes tenths of a second.
+// Prepares one stage per frame, since each takes tenths of a second.
 void SkyPainter::MakeOneReady(const PaintedView& view, bool has_shade, bool has_lamps) {
   using enum PictureStage::Pass;
   for (const PictureStage& stage :
@@ -222,19 +223,22 @@ void SkyPainter::MakeOneReady(const PaintedView& view, bool has_shade, bool has_
   stars_.MakeReady(view, scene_.fog(), scene_.fog_phase());
 }
 
-// The planet's horizon is that of straight rays over the planet as it looks.
+// Returns the number of rows below the horizon. The horizon is that of straight rays over a planet
+// with the apparent radius.
 int SkyPainter::RowsUnderHorizon(const PaintedView& view) const {
   const Medium& medium = scene_.air().air()->medium;
   const auto bend = BendOf(view, medium, scene_.land().farthest_m());
   return RowsOfPlanet(view, bend ? bend->look_radius_km : RadiusUnder(view.eye, medium));
 }
 
-// Rows that hold the planet's ground. Before land has come there is sky in its place.
+// Returns the number of rows with the planet's ground. Before land is loaded, sky is drawn in its
+// place.
 int SkyPainter::RowsOfGround(const PaintedView& view) const {
   return scene_.AwaitsLand() ? 0 : RowsUnderHorizon(view);
 }
 
-// Software drivers work out the planet of every pixel that a program has it for.
+// Draws the sky in two parts, since software drivers evaluate the planet for every pixel of a
+// program that includes it.
 void SkyPainter::PaintSky(const PaintedView& view, const Lit& lit) {
   using enum PictureStage::Pass;
   const int rows = RowsOfGround(view);
@@ -274,7 +278,7 @@ std::vector<PixelBox> SkyPainter::BodiesSeen(const PaintedView& view) {
   return boxes;
 }
 
-// The disk of the sun is the sun's, whatever lights the air.
+// Draws the disks. The sun's disk always uses sunlight, even if the moon lights the air.
 void SkyPainter::PaintDisks(const PaintedView& view, const PixelRay& ray) {
   const DisksInAir seen = InAir(DisksOf(view), view);
   const KeyLight sun = SunAsKey(seen.disks.sun, scene_.air().air()->medium);
@@ -304,7 +308,7 @@ void SkyPainter::PaintBodiesOver(const RenderTarget& target, const LandOutline& 
   CheckGl("SkyPainter::PaintBodiesOver");
 }
 
-// What programs read of one light of the sky.
+// Binds the inputs that depend on one light of the sky.
 void SkyPainter::BindLight(const PaintedView& view, const KeyLight& light, const PixelRay& ray) {
   blocks_.UploadView(scene_, view, light, ray);
   blocks_.UploadGroundLight(scene_, view, light);
@@ -331,7 +335,7 @@ void SkyPainter::PaintPicture(const PaintedView& view, double share) {
   PaintLandAndSky(view, lit);
 }
 
-// Without the nearness of land, which is there.
+// Adds the second light. The inverse depth of land in the fourth component is not written again.
 void SkyPainter::PaintOtherLight(const PaintedView& view, const PixelRay& ray) {
   const std::optional<KeyLight>& other = LightsOf(view).lights.other;
   if (!other) return;
@@ -355,7 +359,7 @@ void SkyPainter::PaintLampsOver(const PaintedView& view) {
   lamp_painter_.PaintOver(PixelAngle(view));
 }
 
-// In more light nobody sees a thousandth of a lux, or what a city sends.
+// In brighter light a thousandth of a lux is invisible, and so is light pollution.
 bool SkyPainter::HasNightFloor() const {
   constexpr double kMost_lux = 10.0, kMostOverTowns_lux = 1000.0;
   return stars_.sky_lux() > 0.0 && stars_.sky_lux() < (has_towns_ ? kMostOverTowns_lux : kMost_lux);

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: MIT
-// Pictures of sky and land on the graphics card: what the renderer computes is made beside drawing
-// as tables, maps and light of vertices, and the card interpolates.
+// Drawing of sky and land on the GPU. The renderer's quantities are computed on worker threads as
+// tables, maps and vertex lighting, and the GPU interpolates them.
 //
-// The passes of a frame: what the eye sees of the land (Landscape), what shade takes from rays
-// (ShaftPass), the glow of lamps (LampPainter), the linear picture, by night the sky's own light
-// (NightFloorFollower), the lamps and the stars (StarPainter) over it. Developer shows it. How far it is from SceneRenderer's: tests/bench/README.md, and `skyview --explain` of a
-// view.
+// The passes of a frame: the visible land (Landscape), the light that shadows remove along rays
+// (ShaftPass), the glow of lamps (LampPainter), the linear picture, by night the light of the night
+// sky (NightFloorFollower), then the lamps and stars (StarPainter). Developer displays the result.
+// Its difference from SceneRenderer is reported in tests/bench/README.md, and for one view by
+// `skyview --explain`.
 #pragma once
 
 #include <functional>
@@ -34,63 +35,66 @@ namespace alpenglow::viewer {
 
 class SkyPainter {
  public:
-  /// An OpenGL context must be current, now and in all calls. Throws what PaintedScene does, and
-  /// what SceneLamps does.
+  /// An OpenGL context must be current, now and in all calls. Throws as PaintedScene and SceneLamps
+  /// do.
   SkyPainter(const Scene& scene, const LandSource& land, const PaintedView& first,
              const PaintSizes& sizes, FirstAir first_air = {});
 
   void Use(const PaintSizes& sizes) { scene_.Use(sizes); }
-  /// Other air; shown when it is solved.
+  /// Changes the medium. The new one is shown when it is solved.
   void Replace(const Medium& medium) { scene_.Replace(medium); }
 
   /// See PaintedScene.
   void AwaitLand() { scene_.AwaitLand(); }
   [[nodiscard]] bool AwaitsLand() const { return scene_.AwaitsLand(); }
-  /// Other land of the same kind.
+  /// Changes the land to other land of the same kind.
   void Replace(const LandSource& land) { scene_.Replace(land); }
 
-  /// A lamp that moves with the eye; nothing: none.
+  /// Sets a lamp that moves with the eye; empty: none.
   void SetLandingLight(const std::optional<LandingLight>& light) { lamps_.SetLandingLight(light); }
 
-  /// Takes over what has become ready and asks for what is missing. Never waits.
-  /// @param seconds  since the last call.
+  /// Collects finished work and requests missing parts. It waits only where PaintedScene::Update
+  /// does, and for the first map of the night sky.
+  /// @param seconds  time since the last call.
   void Update(const PaintedView& view, double seconds);
-  /// Waits until all is there that the view needs.
-  /// @param samples  that will be painted.
+  /// Waits until everything that the view needs is complete.
+  /// @param samples  number of rays per pixel to be drawn.
   void Settle(const PaintedView& view, int samples = 1);
 
-  /// What a picture has of the sky's bodies: the disks of sun and moon, and stars.
+  /// Selects the celestial bodies in a picture: the disks of sun and moon, and stars.
   enum class Bodies { kAll, kStars, kNone };
-  /// Paints the linear picture of the view that was updated or settled last.
-  /// @param samples  rays a pixel, spread over it.
-  /// @param after_sample  called after each of them with their number so far; empty: nothing is.
+  /// Draws the linear picture of the view that was updated or settled last.
+  /// @param samples       rays per pixel, spread over the pixel.
+  /// @param after_sample  called after each ray with the number of rays so far; may be empty.
   void Paint(const PaintedView& view, int samples = 1, Bodies bodies = Bodies::kAll,
              const std::function<void(int)>& after_sample = {});
   /// Shows another picture of the view instead: linear, of any size.
   void Show(const Image& image);
 
-  /// Its fourth component is the nearness of land (shaders/nearness.glsl), if one ray a pixel was
-  /// painted.
+  /// The linear picture. Its fourth component is the inverse depth of land (shaders/nearness.glsl)
+  /// if one ray per pixel was drawn.
   [[nodiscard]] const RenderTarget& picture() const { return *picture_; }
-  /// Where the land of that picture stands.
+  /// Draws the depth of the land in that picture.
   void PaintOutline(const LandOutline& outline);
-  /// Pixels that the sky's bodies may reach in a picture of the view that was painted last, of any size.
+  /// Returns the pixels that celestial bodies may cover in a picture of any size of the view that
+  /// was drawn last.
   [[nodiscard]] std::vector<PixelBox> BodiesSeen(const PaintedView& view);
-  /// Adds them to such a picture, of one ray a pixel, beside the land of an outline of its size.
+  /// Adds the celestial bodies to such a picture with one ray per pixel, where an outline of its
+  /// size has no land.
   void PaintBodiesOver(const RenderTarget& target, const LandOutline& outline,
                        const PaintedView& view);
-  /// A pass of others in the same frame.
+  /// Starts the timing of a pass that other code draws in the same frame.
   void Time(const char* pass) const { Begin(pass); }
   void EndTime() const {
     if (timer_ != nullptr) timer_->End();
   }
-  /// Times of its passes are told to it; null: none.
+  /// Sets the timer that receives the times of the passes; null: none.
   void SetTimer(PassTimer* timer) { timer_ = timer; }
 
   [[nodiscard]] const Landscape& land() const { return scene_.land(); }
   [[nodiscard]] Landscape& land() { return scene_.land(); }
   [[nodiscard]] const AirFollower& air() const { return scene_.air(); }
-  /// Null: none.
+  /// Returns null if there is no fog.
   [[nodiscard]] const SceneFog* fog() const { return scene_.fog(); }
   [[nodiscard]] const GroundFollower& ground() const { return scene_.ground(); }
   [[nodiscard]] const ShadeFollower& shade() const { return scene_.shade(); }
@@ -100,13 +104,13 @@ class SkyPainter {
     SunPosition sun;
     MoonDisk moon;
   };
-  /// Disks where they truly stand, and what the air does to them; null: they are drawn where they
-  /// seem to be.
+  /// Disks at their true positions, with the refraction across them. Null: a disk is drawn at its
+  /// apparent position.
   struct DisksInAir {
     SkyDisks disks;
     const BentDisk *sun, *moon;
   };
-  /// What shines on a view.
+  /// The sun and the lights of the sky in a view.
   struct Shining {
     PaintedView view;
     SunPosition sun;
@@ -124,7 +128,7 @@ class SkyPainter {
   void PaintLand(const PaintedView& view);
   void PaintShafts(const PaintedView& view);
   void PaintLamps(const PaintedView& view);
-  /// What a picture is painted with.
+  /// The light and the options that a picture is drawn with.
   struct Lit {
     LightSource source;
     bool has_shade, has_lamps;
@@ -154,12 +158,12 @@ class SkyPainter {
   StarPainter stars_;
   NightFloorFollower night_floor_;
   bool has_towns_;
-  PicturePrograms programs_;  // of all above
+  PicturePrograms programs_;  // uses all members above
   PictureBlocks blocks_;
   BentDiskFollower bent_sun_, bent_moon_;
   std::optional<SurfaceMap> surface_;
   std::optional<RenderTarget> picture_;
-  std::optional<Shining> shining_;  // on the view asked for last
+  std::optional<Shining> shining_;  // for the most recent view
   PassTimer* timer_ = nullptr;
 };
 

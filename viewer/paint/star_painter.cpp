@@ -21,13 +21,14 @@ namespace {
 
 glm::vec4 FirstFour(const StarBell& bell) { return {bell[0], bell[1], bell[2], bell[3]}; }
 
-// Of pixels a plane one away has squares, which are seen at an angle and from farther away.
+// Returns the solid angle of a pixel. Pixels are squares on a plane at distance 1; off the axis
+// they are oblique and farther away, which gives the factor along^3.
 double PixelSolidAngle(const PaintedView& view, double along) {
   const double side = PixelAngle(view);
   return side * side * along * along * along;
 }
 
-/// The direction at another elevation.
+/// Returns the direction with the same azimuth at another elevation.
 glm::dvec3 AtElevation(const glm::dvec3& direction, double elevation_rad) {
   return DirectionFromAngles(elevation_rad, std::atan2(direction.x, direction.y)).xyz;
 }
@@ -39,7 +40,7 @@ double Elevation(const glm::dvec3& direction) {
 }  // namespace
 
 glm::dvec3 TowardsStar(const StarLight& light, const StarrySky& sky) {
-  constexpr double kHigh_sine = 0.35;  // from there on refraction changes by 2" in half a minute
+  constexpr double kHigh_sine = 0.35;  // above it refraction changes by 2" in half a minute
   const glm::dvec3& before = light.direction;
   if (sky.bent == nullptr || std::abs(before.z) > kHigh_sine) return sky.turn * before;
   const glm::dvec3 truly =
@@ -49,7 +50,7 @@ glm::dvec3 TowardsStar(const StarLight& light, const StarrySky& sky) {
 
 std::vector<StarPoint> StarPointsIn(const PaintedView& view, const StarrySky& sky) {
   const LandView axes = LandViewOf(view);
-  // Stars about the picture may be lifted into it.
+  // Stars just outside the picture may be raised into it by refraction.
   constexpr double kMostLift_rad = 0.1 * kRadiansPerDegree;
   const double reach = kStarReach + 2.0 * kMostLift_rad / PixelAngle(view);
   const auto place = [](double share, double part, int side) {
@@ -90,7 +91,7 @@ std::vector<StarPoint> StarPointsIn(const PaintedView& view, const StarrySky& sk
   return points;
 }
 
-// Rodrigues' rotation about the celestial pole, westwards.
+// Returns Rodrigues' rotation about the celestial pole, westwards.
 glm::dmat3 TurnOfSky(double latitude_rad, double seconds) {
   constexpr double kSiderealDay_s = 86164.0905;
   const double angle = -2.0 * kPi * seconds / kSiderealDay_s;
@@ -107,7 +108,7 @@ glm::dmat3 TurnOfSky(double latitude_rad, double seconds) {
 
 namespace {
 
-// Between two lists the sky turns as a whole, and the air is that of the list.
+// Limits for reusing a list: until then the sky rotates rigidly, with the refraction of the list.
 constexpr double kMostTurn_s = 30.0, kMostWay_rad = 2e-4, kMostRise_m = 200.0;
 
 const std::vector<VertexAttribute> kAttributes{{0, "star_corner"}, {1, "star_towards"},
@@ -129,7 +130,7 @@ bool StarPainter::IsNight(const PaintedView& view, const LightsOfSky& lights,
   constexpr double kSureDay_rad = 12.0 * kRadiansPerDegree;
   constexpr double kNightSky_lux = 1e-3;
   sky_lux_ = 0.0;
-  if (!air.medium.follows_wgs84) return false;  // another planet's sky has other stars
+  if (!air.medium.follows_wgs84) return false;  // stars are known for the Earth only
   if (!lights.key.is_moon && lights.key.disk.elevation_rad > kSureDay_rad) return false;
   if (!colour_ || colour_->wavelengths_nm() != air.medium.wavelengths_nm)
     colour_ = std::make_shared<const BandColour>(air.medium.wavelengths_nm);
@@ -204,7 +205,7 @@ void StarPainter::Draw(const std::vector<StarPoint>& points, const PaintedView& 
   glDisable(GL_BLEND);
 }
 
-// With a star without light or width.
+// The draw uses a star without light and size.
 void StarPainter::MakeReady(const PaintedView& view, const SceneFog* fog,
                             std::optional<PhaseKind> fog_phase) {
   if (program_) return;

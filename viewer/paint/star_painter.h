@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: MIT
-// Stars and planets of a view as the squares of pixels that their light falls on: the renderer's
-// bell (sky_pixels.h), which brings the same lux at every size.
+// Stars and planets of a view, drawn over the picture as small squares of pixels.
 //
-// Stars and planets over the picture, as the renderer has them (night_light.h, sky_pixels.h):
-// points whose lux does not depend on the size of the picture, through the air and behind land and
-// moon. Their list is made on a thread beside drawing and turns with the sky until the next; by day
-// there is none.
+// As in the renderer (night_light.h, sky_pixels.h) they are points whose illuminance does not
+// depend on the size of the picture: each is spread over pixels with the renderer's StarBell. They
+// are seen through the air and are hidden by land and moon. Their list is made on a worker thread
+// and rotates with the sky until the next list. By day there is none.
 #pragma once
 
 #include <glm/mat3x3.hpp>
@@ -30,60 +29,61 @@
 
 namespace alpenglow::viewer {
 
-/// As star.vert.glsl reads it, once a star.
+/// One star, in the layout of star.vert.glsl.
 struct StarPoint {
-  glm::vec4 corner;      // lowest pixel, from the left and from below; the pixel of its middle
-  glm::vec4 towards;     // unit, east, north, up at the eye
-  glm::vec4 light;       // irradiance above the air by the solid angle of a pixel, one value a band
+  glm::vec4 corner;      // lower left pixel; pixel of its centre
+  glm::vec4 towards;     // unit vector east, north, up at the eye
+  glm::vec4 light;       // irradiance above the air over solid angle of a pixel, per band
                          // [W m^-2 sr^-1 nm^-1]
-  glm::vec4 across, up;  // shares of the first four columns and rows
-  glm::vec4 last;        // and of the fifth of each
+  glm::vec4 across, up;  // weights of the first four columns and rows
+  glm::vec4 last;        // weights of the fifth column and row
 };
 
-/// The stars as they stand over an eye.
+/// The stars above an eye.
 struct StarrySky {
   const std::vector<StarLight>& lights;
-  glm::dmat3 turn;      // from the directions of the lights to where they are now
-  double faintest_lux;  // that is painted
-  glm::dvec3 to_moon;   // unit, before what it hides
+  glm::dmat3 turn;      // from the directions of the lights to the current ones
+  double faintest_lux;  // fainter stars are not drawn
+  glm::dvec3 to_moon;   // unit vector to the moon, which hides stars
   double moon_radius_rad;
   const BentView* bent =
-      nullptr;  // the air that lifted the lights; null: they are where they stand
+      nullptr;  // refraction that raised the lights; null: they have true directions
 };
 
-/// Where a star of such a sky is seen, unit: its true direction turns, and where it is now the air
-/// lifts it otherwise.
+/// Returns the unit vector to the apparent position of a star: its true direction is rotated, then
+/// refracted at its new elevation.
 [[nodiscard]] glm::dvec3 TowardsStar(const StarLight& light, const StarrySky& sky);
 
-/// Those that fall into the picture.
+/// Returns the stars that are in the picture.
 [[nodiscard]] std::vector<StarPoint> StarPointsIn(const PaintedView& view, const StarrySky& sky);
 
-/// How the sky turns in a time: of directions east, north, up at a latitude.
+/// Returns the rotation of the sky during a time, for directions east, north, up at a latitude.
 [[nodiscard]] glm::dmat3 TurnOfSky(double latitude_rad, double seconds);
 
-/// To be used on the thread of the context that is current when it is made.
+/// Draws the stars. Must be used on the thread whose OpenGL context is current at construction.
 class StarPainter {
  public:
   StarPainter();
 
-  /// Once a frame: takes over what is ready and asks for what is missing. Never waits.
+  /// Takes over a finished list and requests a new one if needed. Call it once per frame. Never
+  /// waits.
   void Follow(const PaintedView& view, const LightsOfSky& lights, const SolvedAir& air);
-  /// The same, but the list of the very instant is there when it returns.
+  /// Waits for the list of exactly this instant.
   void Settle(const PaintedView& view, const LightsOfSky& lights, const SolvedAir& air);
 
-  /// Of the sky that they stand in, on a level plane; 0 by day.
+  /// Illuminance of a level surface by the sky in which the stars are seen; 0 by day.
   [[nodiscard]] double sky_lux() const { return sky_lux_; }
-  /// Whether it is dark enough, and they are known.
+  /// Returns whether it is dark enough and the stars are known.
   [[nodiscard]] bool HasAny() const { return sky_lux_ > 0.0 && made_; }
-  /// Draws with their program, if nothing has yet: drivers finish it then, which takes tenths of a
-  /// second.
+  /// Draws once with the program if it has not been drawn yet. Drivers finish compiling it then,
+  /// which takes tenths of a second.
   void MakeReady(const PaintedView& view, const SceneFog* fog, std::optional<PhaseKind> fog_phase);
-  /// Pixels that they reach in a picture of a view.
+  /// Returns the pixels that stars cover in a picture of a view.
   [[nodiscard]] std::vector<PixelBox> Seen(const PaintedView& view, const MoonDisk& moon) const;
-  /// What tells where land hides them: the surface map, which has the size of the target, the pixel of a
-  /// star's middle; or the depth of the target, whose test is on, each pixel.
+  /// Source of occlusion by land: the surface map, which has the size of the target, at the pixel
+  /// of the star's centre; or the depth of the target for each pixel, if the depth test is enabled.
   enum class Land { kBySurface, kByDepth };
-  /// Adds them to the target that is bound. Surface map, air and blocks are bound.
+  /// Adds the stars to the bound target. Surface map, air and blocks must be bound.
   /// @param fog  null: none.
   void Paint(const PaintedView& view, const MoonDisk& moon, Land land, const SceneFog* fog,
              std::optional<PhaseKind> fog_phase);
@@ -93,7 +93,7 @@ class StarPainter {
     GeodeticPosition place;
     UtcInstant now;
     std::shared_ptr<const BandColour> colour;
-    Medium medium;  // that bends their light
+    Medium medium;  // refracts their light
   };
   struct Made {
     Request request;
@@ -111,9 +111,9 @@ class StarPainter {
 
   GlBuffer buffer_;
   GlVertexArray vertices_;
-  std::optional<ShaderProgram> program_;  // made when it is drawn with first
+  std::optional<ShaderProgram> program_;  // created on first draw
   std::shared_ptr<const BandColour> colour_;
-  double sky_lux_ = 0.0;  // of the sky that they stand in; 0: day
+  double sky_lux_ = 0.0;  // illuminance by the sky; 0: day
   std::optional<Request> asked_;
   std::optional<Made> made_;
   LatestJob<Request, Made> maker_;
