@@ -17,10 +17,10 @@
 namespace alpenglow::viewer {
 namespace {
 
-constexpr int kStride = 16;  // nodes between places that are found exactly
+constexpr int kStride = 16;  // nodes between exactly computed places
 
-/// Of a node: where its ground lies in the grid of elevations, and how far the ellipsoid under it
-/// lies below the plane of the frame.
+/// Position of a node's ground in the elevation grid, and depth of the ellipsoid under it below the
+/// plane of the frame.
 struct Place {
   double column, row, drop_m;
 
@@ -33,7 +33,7 @@ struct Place {
 };
 
 Place ExactPlace(const ElevationGrid& grid, const LocalFrame& frame, double x_m, double y_m) {
-  // The vertical through the node meets the ellipsoid where a second look at its height says.
+  // Finds where the vertical through the node meets the ellipsoid, with two iterations.
   double z_m = 0.0;
   GeodeticPosition at{};
   for (int look = 0; look < 2; ++look) {
@@ -46,7 +46,7 @@ Place ExactPlace(const ElevationGrid& grid, const LocalFrame& frame, double x_m,
           (grid.north_rad - at.latitude_rad) / grid.step_lat_rad, -z_m};
 }
 
-/// The samples as triangles.
+/// The surface of the samples as triangles.
 class Facets {
  public:
   explicit Facets(const ElevationGrid& grid) : grid_(grid) {
@@ -77,6 +77,7 @@ class Facets {
     return around;
   }
 
+  // Interpolates within a cell.
   // @param x, y  from the cell's north-western corner, east and south, in [0, 1].
   [[nodiscard]] float Between(int row, int column, float x, float y) const {
     const float* north = &grid_.height_m[grid_.index(row, column)];
@@ -96,7 +97,7 @@ class Facets {
   std::vector<std::uint8_t> falling_;  // whether a cell is cut from north-west to south-east
 };
 
-/// A coarse net of exact places.
+/// A coarse grid of exact places, between which positions are interpolated.
 struct Net {
   int side;
   std::vector<Place> places;
@@ -141,12 +142,12 @@ namespace {
 constexpr double kLowestSun_rad = -3.0 * kRadiansPerDegree;
 constexpr double kHighestSun_rad = 80.0 * kRadiansPerDegree;
 
-// Lower than any shade, and still finite: maps are interpolated.
+// Height below any shadow. It is finite because maps are interpolated.
 constexpr float kNoShade_m = -1e5F;
-// Shade counts where it stands this much over the ground: less is a matter of interpolation.
+// A shadow counts if it reaches this far above the ground. Smaller values are interpolation errors.
 constexpr float kLeastShade_m = 0.5F;
 
-/// A line of heights at even steps, between the nodes of a raster.
+/// Heights at even steps along a line, interpolated between the nodes of a raster.
 class Profile {
  public:
   Profile(const HeightRaster& raster, const glm::dvec2& first, const glm::dvec2& step)
@@ -189,7 +190,7 @@ float LowestOf(const HeightRaster& heights) {
   return lowest_m;
 }
 
-// Lays the nodes of the map over the raster.
+// Returns a map whose nodes cover the raster, without heights.
 ShadeMap EmptyMap(const HeightRaster& heights, const glm::dvec3& to_sun, int most_side) {
   ShadeMap map;
   map.to_sun = to_sun;
@@ -218,17 +219,17 @@ ShadeMap EmptyMap(const HeightRaster& heights, const glm::dvec3& to_sun, int mos
   return map;
 }
 
-/// What is the same for all lines.
+/// The inputs that all lines share.
 struct Sweep {
   const HeightRaster& heights;
   float lowest_m;
-  int steps;                    // of a cell along u: a crest is found within half a step
-  std::array<float, 3> fall_m;  // of each beam in a step
+  int steps;                    // per cell along u; a crest is found to half a step
+  std::array<float, 3> fall_m;  // descent of each beam per step
 
   void Line(int line, ShadeMap& map) const;
 };
 
-// From the sun's side on.
+// Sweeps one line, starting on the side of the sun.
 void Sweep::Line(int line, ShadeMap& map) const {
   const double v_m = map.first_v_m + map.cell_m * line;
   const glm::dvec3 first = map.first_u_m * map.sunwards + v_m * map.across;
@@ -236,7 +237,7 @@ void Sweep::Line(int line, ShadeMap& map) const {
   const Profile profile(heights, glm::dvec2(first), glm::dvec2(step));
   glm::vec2* nodes =
       &map.height[static_cast<std::size_t>(line) * static_cast<std::size_t>(map.columns)];
-  std::array<float, 3> shade_m;  // of beams from the bottom, the middle and the top of the disk
+  std::array<float, 3> shade_m;  // beams from the bottom, middle and top of the disk
   shade_m.fill(kNoShade_m);
   for (int i = (map.columns - 1) * steps; i >= 0; --i) {
     const float ground_m = profile.At(i);
@@ -250,7 +251,7 @@ void Sweep::Line(int line, ShadeMap& map) const {
   }
 }
 
-// Shade that reaches the first node goes on until it meets the ground.
+// Extends the box of the map to where shadows at the first node reach the lowest ground.
 void GoOnBeyond(float lowest_m, ShadeMap& map) {
   constexpr double kFarthest_m = 300e3;
   float highest_m = lowest_m;
@@ -273,7 +274,7 @@ ShadeMap ShadeMapOf(const HeightRaster& heights, const glm::dvec3& to_sun, doubl
   if (elevation < kLowestSun_rad || elevation > kHighestSun_rad || heights.z_m.empty()) return {};
   ShadeMap map = EmptyMap(heights, to_sun, most_side);
   map.height.resize(static_cast<std::size_t>(map.columns) * static_cast<std::size_t>(map.lines));
-  // Twice a cell of the map, and no less often than there are heights.
+  // At least two steps per cell of the map, and at least one per cell of the heights.
   const int steps = std::max(2, static_cast<int>(std::lround(map.cell_m / heights.cell_m)));
   Sweep sweep{heights, LowestOf(heights), steps, {}};
   for (std::size_t beam = 0; beam < 3; ++beam) {

@@ -1,19 +1,19 @@
 // SPDX-License-Identifier: MIT
-// Heights around an eye on an even grid of a local frame, from heights over latitude and longitude.
+// Height of terrain shadows in the air, which shaders need to find the shadowed stretches of a ray.
 //
-// How high the shade of terrain reaches into the air: what shaders need to find the dark stretches
-// of a ray.
-//
-// As ShadowHeights (renderer/shadow/shadow_heights.h), for a card and in a hurry. Over the plane of
-// u, the distance towards the sun, and v, across, the height of the shade of a beam is
+// HeightsAround resamples heights from latitude and longitude to an even grid of a local frame.
+// ShadeMap is a faster version of ShadowHeights (renderer/shadow/shadow_heights.h) for the GPU.
+// Over the plane of u, the distance towards the sun, and v, across it, the height of the shadow for
+// a beam is
 //
 //   Z(u, v) = max over u' >= u of z(u', v) - (u' - u) tan(E),     E the beam's elevation,
 //
-// found by one sweep along every line of constant v. Beams from the bottom, the middle and the top
-// of the sun's disk are kept as the middle's height and half the distance of the other two: a point
-// at z sees the disk's centre (z - Z) / half radii over the edge that cuts it (SunlightOverEdge,
-// sunlit_path.h). Unlike there heights are read from an even grid, bilinear, so that 10^6 places
-// take some 20 ms of one thread instead of a second for the triangles of a mesh.
+// found by one sweep along every line of constant v. The map holds the height for the beam from the
+// middle of the sun's disk, and half the height difference of the beams from its bottom and top: a
+// point at z sees the disk's centre (z - Z) / half radii above the edge that cuts it
+// (SunlightOverEdge, sunlit_path.h). ShadowHeights uses the triangles of a mesh and takes a second
+// for 10^6 places. Here the heights come from an even grid with bilinear interpolation, and 10^6
+// places take some 20 ms on one thread.
 #pragma once
 
 #include <glm/vec2.hpp>
@@ -27,28 +27,31 @@
 
 namespace alpenglow::viewer {
 
-/// The ground within `half_m` east, west, north and south of the frame's origin, side x side nodes,
-/// z in the frame: the curvature of the planet is in it. HeightRaster::kNothing where the grid has
-/// none. Samples are joined to triangles as MeshFromElevation joins them; places of nodes are found
-/// exactly every sixteenth node and linearly between, within a hundredth of a cell at 50 km below 80
-/// degrees of latitude. Twice as many nodes as samples keep crests that run between nodes.
-/// One thread. @param side  at least 2.
+/// Returns the ground within `half_m` east, west, north and south of the frame's origin, as side x
+/// side nodes with z in the frame, which includes the curvature of the planet.
+/// HeightRaster::kNothing where the grid has no height. Samples are joined to triangles as in
+/// MeshFromElevation. The positions of nodes are computed exactly for every sixteenth node and
+/// linearly in between, accurate to a hundredth of a cell at 50 km below 80 degrees of latitude.
+/// Twice as many nodes as samples preserve crests that run between nodes. Uses one thread.
+/// @param side  at least 2.
 [[nodiscard]] HeightRaster HeightsAround(const ElevationGrid& grid, const LocalFrame& frame,
                                          double half_m, int side);
 
-/// Immutable once made. Lengths in metres, in the frame of the heights, z up.
+/// Heights of the shadow of terrain for one direction of the sun. Immutable once made. Lengths in
+/// metres, in the frame of the heights, z up.
 struct ShadeMap {
-  glm::dvec3 to_sun{0.0};                   // that it was made for
+  glm::dvec3 to_sun{0.0};                   // direction of the sun
   glm::dvec3 sunwards{0.0}, across{0.0};    // horizontal unit vectors of u and v
   double first_u_m = 0.0, first_v_m = 0.0;  // of node (0, 0)
   double cell_m = 0.0;
-  int columns = 0, lines = 0;     // along u, along v; 0 where nothing is shaded
-  std::vector<glm::vec2> height;  // Z of the disk's middle and half the distance of its ends
+  int columns = 0, lines = 0;     // along u, along v; 0: nothing is shadowed
+  std::vector<glm::vec2> height;  // Z of the disk's middle, half of bottom minus top
 
-  /// Of the beams from the disk's middle: before the first node shade goes on to fall by this.
+  /// Tangent of the elevation of the beam from the disk's middle. Before the first node the shadow
+  /// continues to descend with it.
   double tangent = 0.0;
 
-  /// Outside this box nothing is shaded.
+  /// Outside this box nothing is shadowed.
   double low_u_m = 0.0, high_u_m = 0.0, low_v_m = 0.0, high_v_m = 0.0;
   double floor_m = 0.0, ceiling_m = 0.0;  // the floor is the lowest ground
 
@@ -59,13 +62,14 @@ struct ShadeMap {
   }
 };
 
-/// One thread. Nothing is shaded from a sun 3 degrees and more below the horizontal, whose beams
-/// pass high over any ground that lies on this side of the planet's horizon, nor under one at 80
-/// degrees and more, where only cliffs stand between the sun and the air beside them.
-/// Beyond the heights ground is taken to lie as low as the lowest of them.
-/// @param to_sun       unit vector in the frame of the heights.
-/// @param radius_rad   angular radius of the disk, >= 0.
-/// @param most_side    cells along the longer side at most; no finer than the heights are.
+/// Computes the map on one thread. The map is empty for a sun at 3 degrees or more below the
+/// horizontal, whose beams pass high above any ground on this side of the planet's horizon, and for
+/// a sun at 80 degrees or more, where only cliffs shadow the air next to them. Beyond the heights,
+/// the ground is assumed to be as low as the lowest of them.
+/// @param to_sun      unit vector in the frame of the heights.
+/// @param radius_rad  angular radius of the disk, >= 0.
+/// @param most_side   largest number of cells along the longer side. Cells are no smaller than
+///   those of the heights.
 [[nodiscard]] ShadeMap ShadeMapOf(const HeightRaster& heights, const glm::dvec3& to_sun,
                                   double radius_rad, int most_side);
 

@@ -18,8 +18,8 @@
 namespace alpenglow::viewer {
 namespace {
 
-// The component of a place along an axis of the map's frame, scaled and shifted, for places in the
-// frame of the eye.
+// Returns a row that maps a point in the eye's frame to its component along an axis of the map's
+// frame, scaled and shifted.
 glm::vec4 Row(const glm::dmat4& map_from_eye, const glm::dvec3& axis, double scale, double shift) {
   const auto along = [&](int column) {
     return scale * glm::dot(glm::dvec3(map_from_eye[column]), axis);
@@ -69,7 +69,7 @@ void ShadeTexture::Bind(const ShaderProgram& program, int unit, const glm::dmat4
   glUniform1i(program.Uniform("shade_map"), unit);
   const double across_u = 1.0 / (map.cell_m * map.columns);
   const double across_v = 1.0 / (map.cell_m * map.lines);
-  // Nodes are the middles of texels.
+  // Nodes are at texel centres.
   const auto u = [&](double u_m) { return (u_m - map.first_u_m + 0.5 * map.cell_m) * across_u; };
   const auto v = [&](double v_m) { return (v_m - map.first_v_m + 0.5 * map.cell_m) * across_v; };
   const auto set = [&](const char* name, const glm::vec4& row) {
@@ -135,17 +135,17 @@ void ShaftPass::Bind(const ShaderProgram& picture, int unit) const {
   glUniform1i(picture.Uniform("shaft_map"), unit);
   glUniform1i(picture.Uniform("fog_shaft_map"), unit + 1);
   const float step = 1.0F / static_cast<float>(scale_);
-  const float first = 0.5F + static_cast<float>(scale_ / 2);  // pixel that has the first ray
+  const float first = 0.5F + static_cast<float>(scale_ / 2);  // pixel of the first ray
   glUniform2f(picture.Uniform("shaft_place"), step, -first * step);
 }
 
 namespace {
 
-constexpr double kSunStep = 0.2;     // of the disk's radius
-constexpr double kPlaceStep = 0.2;   // of the ground's half width
-constexpr int kLinesOfAFrame = 256;  // two megabytes at a thousand columns
+constexpr double kSunStep = 0.2;     // fraction of the disk's radius
+constexpr double kPlaceStep = 0.2;   // fraction of the ground's half width
+constexpr int kLinesOfAFrame = 256;  // two megabytes for a thousand columns
 
-// Of the frame of one place in that of another, with the distance of their origins.
+// Returns the transformation from one local frame to another.
 glm::dmat4 BetweenFrames(const LocalFrame& to, const LocalFrame& from) {
   glm::dmat4 matrix(1.0);
   for (int axis = 0; axis < 3; ++axis) {
@@ -213,7 +213,7 @@ ShadeFollower::Request ShadeFollower::RequestFor(const GeodeticPosition& eye,
                                                  const SunPosition& sun) const {
   const LocalFrame here(ellipsoid_, eye);
   LocalFrame frame(ellipsoid_, {eye.latitude_rad, eye.longitude_rad, 0.0});
-  // Heights are kept as long as the eye is near the middle of them.
+  // Heights are kept while the eye is near their centre.
   if (asked_ && DistanceBetween(asked_->frame, frame) < kPlaceStep * size_.half_width_m)
     frame = asked_->frame;
   const Vector<Ecef> to_sun =
@@ -248,7 +248,7 @@ void ShadeFollower::Upload(int lines, int unit) {
 }
 
 void ShadeFollower::Follow(const GeodeticPosition& eye, const SunPosition& sun, int unit) {
-  // A sun that outruns the maps must not keep them from ever being shown.
+  // If the sun moves faster than maps are made, a finished map must still be shown.
   if (!maker_.Busy() && !coming_) Ask(eye, sun);
   if (!coming_) TakeFinished();
   Upload(kLinesOfAFrame, unit);

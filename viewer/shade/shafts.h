@@ -1,36 +1,33 @@
 // SPDX-License-Identifier: MIT
-// A ShadeMap on the graphics card, taken over line by line while the one before is in use.
+// Shafts: the volumetric shadows of terrain in the air.
 //
-// Shafts as a pass of their own: what shade takes from the rays of every few pixels, for the
-// picture to take between them.
+// ShadeTexture holds a ShadeMap on the GPU. A new map is uploaded line by line while the previous
+// one is in use.
 //
-// In every direction light that is missing runs smoothly over the picture but at the edges of
-// terrain, where it jumps with the distance that rays come. So the map holds both, and the picture
-// takes the mean of what its neighbours say that have come about as far as its own ray
+// ShaftPass renders the light that shadows remove from the ray of every few pixels, and the picture
+// interpolates between them. In any direction the removed light is smooth over the picture, except
+// at edges of terrain, where it jumps with the length of the ray. The map therefore holds both
+// values, and the picture averages those neighbours whose rays are about as long as its own
 // (shafts.glsl).
 //
-// Keeps the map of shade up with an eye that moves and a sun that does: made on a thread beside
-// drawing, sent to the card some lines a frame.
+// ShadeFollower updates the map for a moving eye and sun. Maps are made on a worker thread and
+// uploaded some lines per frame. A new map is requested when the sun has moved by a fifth of its
+// radius, when the eye has moved by a fifth of the map's half width, or when the ground has
+// changed. Until it is ready, the previous map is used. At sixty times real time this takes five
+// maps per second, each at most a third of a second late: the shadow lags by a third of the disk's
+// radius, which is less than the width of its edges, and moves in steps of a fifth. At a thousand
+// times real time it lags by five disks and moves in steps of three.
 //
-// A map is asked for anew when the sun has moved by a fifth of its radius, when the eye has come a
-// fifth of the map's half width, and when there is other ground. Until it is there the one before
-// serves. At sixty times the pace of time that is five maps a second, each a third of a second late
-// at most: shade lags by a third of the disk's radius, less than its edges are soft, and goes on in
-// steps of a fifth. At a thousand times it lags by five disks and goes in steps of three.
-//
-// How fine shafts are drawn.
-//
-// tests/bench/shade_error: the built-in range, 1280x720 on software OpenGL with two cores, which
-// others used too; errors against ShadowHeights as shares of the light of unshaded air, away from
-// edges, for the sun at 15 to 1 degrees before and behind the eye.
+// Accuracy and cost by tests/bench/shade_error: the built-in range, 1280x720 with software OpenGL
+// on two shared cores; errors relative to ShadowHeights as fractions of the light of unshadowed
+// air, away from edges, for the sun at 15 to 1 degrees in front of and behind the eye.
 //
 //             mean             99th percentile   map        pass
 //   low       0.15 - 0.6 %     1.5 - 6.7 %        13 ms       3.5 ms
 //   medium    0.09 - 0.35 %    1.1 - 3.5 %        25 ms       7 ms
 //   high      0.03 - 0.14 %    0.4 - 1.2 %       150 ms     120 ms
 //
-// The map is made on its own thread; the heights it is made from take 50, 90 and 360 ms more once a
-// place.
+// The map is made on its own thread. Its heights take another 50, 90 and 360 ms once per place.
 #pragma once
 
 #include <glm/mat4x4.hpp>
@@ -49,29 +46,29 @@
 
 namespace alpenglow::viewer {
 
-/// How finely rays are stepped through: shade_march.glsl.
+/// Resolution of ray marching in shade_march.glsl.
 struct ShadeSteps {
-  int pieces;  // of a ray's stretch, one look at the table of the air each
-  int steps;   // of a piece, one look at the map each
+  int pieces;  // per ray interval; one table fetch of the air each
+  int steps;   // per piece; one fetch of the map each
 };
 
 class ShadeTexture {
  public:
-  /// A map to take over; one that is being taken over is given up.
+  /// Starts to upload a map. An unfinished upload of another map is abandoned.
   void TakeOver(std::shared_ptr<const ShadeMap> map);
-  /// Sends up to so many of its lines, by way of a texture unit; once all are there the map is in use. Nothing to do: nothing
-  /// is done.
-  /// Returns whether a map came into use.
+  /// Uploads up to `most_lines` lines of the new map through a texture unit. When all lines are
+  /// uploaded, the map comes into use. Does nothing if there is no new map. Returns whether a map
+  /// came into use.
   bool Upload(int most_lines, int unit);
 
-  /// Whether there is a map in use, and it shades anything.
+  /// Returns whether a map is in use and it shadows anything.
   [[nodiscard]] bool Shades() const { return used_.map && !used_.map->ShadesNothing(); }
-  /// The map in use. Only where Shades().
+  /// Returns the map in use. Requires Shades().
   [[nodiscard]] const ShadeMap& map() const { return *used_.map; }
 
-  /// Gives the program in use what shade_march.glsl reads. Only where Shades().
-  /// @param map_from_eye  from metres in the frame (east, north, up) at the eye to those of the
-  ///                      frame of the map's heights.
+  /// Sets the inputs of shade_march.glsl in the program in use. Requires Shades().
+  /// @param map_from_eye  from metres in the frame (east, north, up) at the eye to metres in the
+  ///   frame of the map's heights.
   void Bind(const ShaderProgram& program, int unit, const glm::dmat4& map_from_eye,
             const ShadeSteps& steps) const;
 
@@ -84,31 +81,32 @@ class ShadeTexture {
   int lines_sent_ = 0;
 };
 
-/// Sizes of the pass.
+/// Resolution of the pass.
 struct ShaftDetail {
-  int scale;  // a ray for so many pixels across, and up
+  int scale;  // one ray per scale x scale pixels
   ShadeSteps steps;
 };
 
 class ShaftPass {
  public:
-  /// @param air  texts that say what View is and define SingleTo (shade_march.glsl) and SkyRadiance. Their blocks
-  ///             and samplers are for the caller to bind, in program().
-  /// @param has_fog  these are followed by FogTexts, and shade takes sunlight from fog, too.
+  /// @param air      texts that declare View and define SingleTo (shade_march.glsl) and
+  ///   SkyRadiance. The caller binds their blocks and samplers in program().
+  /// @param has_fog  whether FogTexts follow them. Shadows then also remove sunlight from fog.
   explicit ShaftPass(std::vector<ShaderPiece> air, bool has_fog = false);
 
   [[nodiscard]] const ShaderProgram& program() const { return program_; }
 
-  /// Paints for a picture of that size. Only where shade.Shades().
-  /// @param surface_unit  of a map of that size whose fourth component is the distance to terrain
-  ///                      [m], 0 where none is seen.
+  /// Renders the map of shafts for a picture of this size. Requires shade.Shades().
+  /// @param surface_unit  holds a map of this size whose fourth component is the distance to
+  ///   terrain [m], 0 where none is seen.
   /// @param shade_unit    free.
   void Paint(const ShadeTexture& shade, const glm::dmat4& map_from_eye, int width, int height,
              int surface_unit, int shade_unit, const ShaftDetail& detail);
 
-  /// Whether Paint has been called.
+  /// Returns whether Paint has been called.
   [[nodiscard]] bool HasMap() const { return map_.has_value(); }
-  /// Gives a program, which becomes the one in use, what shafts.glsl reads: from two units. After Paint.
+  /// Sets the inputs of shafts.glsl in a program, which becomes the one in use. The maps are bound
+  /// to two units. Requires an earlier Paint.
   void Bind(const ShaderProgram& picture, int unit) const;
 
  private:
@@ -119,46 +117,47 @@ class ShaftPass {
   int scale_ = 1;
 };
 
-/// Texts of the pass but its last, shafts.frag.glsl; parameters as of ShaftPass.
+/// Returns the texts of the pass that precede shafts.frag.glsl. The parameters are those of
+/// ShaftPass.
 [[nodiscard]] std::vector<ShaderPiece> ShaftPassTexts(std::vector<ShaderPiece> air, bool has_fog);
 
-/// What the fragment shader of a picture needs to ask TakenByShade.
+/// Returns the texts that a fragment shader of the picture needs to call TakenByShade.
 [[nodiscard]] std::vector<ShaderPiece> ShaftTexts();
 
 struct ShadeSize {
-  double half_width_m = 30e3;  // of the ground whose shade counts, around the eye
-  int samples = 1024;          // of it a side at most
-  int nodes_a_sample = 2;      // that they are read at: more keep crests that run between nodes
-  int cells = 1024;            // of the map a side at most
+  double half_width_m = 30e3;  // of the shadowing ground around the eye
+  int samples = 1024;          // of the ground, per side at most
+  int nodes_a_sample = 2;      // resampling factor; more preserve crests between nodes
+  int cells = 1024;            // of the map, per side at most
   bool operator==(const ShadeSize&) const = default;
 };
 
-/// To be used on the thread of the context that is current when it is made.
+/// Keeps the map of shadows up to date. Must be used on the thread whose OpenGL context is current
+/// at construction.
 class ShadeFollower {
  public:
   explicit ShadeFollower(const Ellipsoid& ellipsoid);
 
-  /// Other ground, or more of it. An empty function: none.
+  /// Sets the ground. An empty function means that there is none.
   void SetGround(GroundSampler sampler);
   void SetSize(const ShadeSize& size);
 
-  /// Once a frame, before drawing: takes over what is ready, by way of a texture unit, and asks for
-  /// what is missing. Never waits.
-  /// @param sun  apparent, seen from the eye.
+  /// Uploads finished maps through a texture unit and requests a new map if needed. Call it once
+  /// per frame, before drawing. Never waits.
+  /// @param sun  apparent, as seen from the eye.
   void Follow(const GeodeticPosition& eye, const SunPosition& sun, int unit);
-  /// The same, but what Follow would show in the end is there when it returns: for pictures that
-  /// are kept.
+  /// Waits for the final result of Follow. Used for pictures that are saved.
   void Settle(const GeodeticPosition& eye, const SunPosition& sun, int unit);
 
-  /// What is shown.
+  /// The map in use.
   [[nodiscard]] const ShadeTexture& shade() const { return texture_; }
-  /// Whether that is the shade of a sun or moon within three degrees of one: after a jump in time it is
-  /// of another for some frames.
+  /// Returns whether the map in use is for a sun or moon within three degrees of this one. After a
+  /// jump in time it differs for some frames.
   [[nodiscard]] bool IsOf(const GeodeticPosition& eye, const SunPosition& sun) const;
-  /// From metres in the frame (east, north, up) at an eye to those of the map's. Only where
-  /// shade().Shades().
+  /// Returns the transformation from metres in the frame (east, north, up) at an eye to metres in
+  /// the map's frame. Requires shade().Shades().
   [[nodiscard]] glm::dmat4 MapFromEye(const GeodeticPosition& eye) const;
-  /// Time that the map shown took to make; 0 before the first.
+  /// Computing time of the map in use; 0 before the first map.
   [[nodiscard]] double making_s() const { return used_ ? used_->making_s : 0.0; }
 
  private:
@@ -175,7 +174,7 @@ class ShadeFollower {
     ShadeMap map;
     double making_s;
   };
-  /// Makes maps; keeps heights between maps of the same ground.
+  /// Makes maps. It keeps the heights between maps of the same ground.
   class Maker;
 
   [[nodiscard]] Request RequestFor(const GeodeticPosition& eye, const SunPosition& sun) const;
@@ -199,7 +198,7 @@ struct ShadeQuality {
 };
 
 inline constexpr ShadeQuality kLowShade{{30e3, 512, 2, 768}, {6, {2, 6}}};
-/// A pass over kLowShade's map that looks at it 0.47 times as often: fewer rays and steps.
+/// A pass over the map of kLowShade with 0.47 times as many fetches: fewer rays and steps.
 inline constexpr ShaftDetail kCoarseShaftDetail{8, {2, 5}};
 inline constexpr ShadeQuality kMediumShade{{30e3, 1024, 2, 1024}, {5, {3, 6}}};
 inline constexpr ShadeQuality kHighShade{{30e3, 1500, 3, 2048}, {2, {6, 8}}};
