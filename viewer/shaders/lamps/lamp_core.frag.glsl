@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Light in the air around a lamp, added to the picture: what the lattice leaves to it.
+// Scattered light close to a lamp, which the lattice does not resolve, added to the picture.
 in vec2 screen;
 flat in int number;
 out vec4 picture;

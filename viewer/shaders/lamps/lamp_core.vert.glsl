@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The square of a lamp's core: lamp gl_InstanceID of the block.
+// The square of a lamp's core, for lamp gl_InstanceID of the block.
 out vec2 screen;
 flat out int number;
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
-// Squares around directions in the picture, for what lamps draw over it.
+// Squares around directions in the picture, for the parts of lamps that are drawn over it.
 
-// A corner (gl_VertexID 0 to 3 of a strip) of the square that holds all directions within an angle
-// [rad] of one; beside the picture where that lies behind the eye.
+// Returns a corner (gl_VertexID 0 to 3 of a strip) of the square that holds all directions within
+// an angle [rad] of `towards`, or a point outside the picture if that direction is behind the eye.
 vec4 LampCorner(vec3 towards, float angle) {
   vec2 size = vec2(length(view_right.xyz), length(view_up.xyz));
   float ahead = dot(towards, view_forward.xyz);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A lamp itself, never smaller than a pixel, added to the picture.
+// The disk of a lamp, at least as large as a pixel, added to the picture.
 in vec2 screen;
 flat in vec4 towards;
 flat in vec3 light;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// The square of a lamp itself, unless terrain hides its middle.
-in vec4 disk_towards;  // unit; angular radius [rad]
-in vec4 disk_light;    // irradiance at the eye, one value a band [W m^-2 nm^-1]
+// The square of a lamp's disk, unless terrain hides its centre.
+in vec4 disk_towards;  // unit vector; angular radius [rad]
+in vec4 disk_light;    // irradiance at the eye, one value per band [W m^-2 nm^-1]
 in vec4 disk_place;    // distance [m]
 out vec2 screen;
 flat out vec4 towards;
@@ -10,8 +10,8 @@ flat out vec3 light;
 uniform sampler2D surface_map;
 uniform float pixel_angle;  // [rad]
 
-// A lamp stands on terrain or just over it: of the pixels around its middle one at least must see
-// as far as to it.
+// A lamp stands on terrain or just above it. It is visible if the ray of at least one pixel around
+// its centre reaches as far as the lamp.
 bool IsHidden(vec2 screen, float distance_m) {
   ivec2 size = textureSize(surface_map, 0);
   ivec2 middle = ivec2(floor((0.5 * screen + 0.5) * vec2(size)));

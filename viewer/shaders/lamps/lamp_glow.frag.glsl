@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Light of lamps in the air at every LampStep()-th pixel, without that in their cores; and the
-// inverse of the distance at which the ray ends [1/m].
+// Scattered light of lamps at every LampStep()-th pixel, without the cores, and the inverse of the
+// distance at which the ray ends [1/m].
 out vec4 lattice;
 
 uniform sampler2D surface_map;

@@ -1,37 +1,38 @@
 // SPDX-License-Identifier: MIT
 // Light of lamps: LampsBlock of scene_lamps.h. Frame: east, north, up at the eye, which is the
-// origin; lengths are metres. One band a component.
+// origin. Lengths are in metres. One band per component.
 //
-// Light in the air, with a the angle at which it is scattered, t_c the place of the ray nearest to
-// the lamp and D its distance (atmosphere/lamp/airlight.h):
+// Scattered light in the air, with the scattering angle a, the point t_c of the ray nearest to the
+// lamp and its distance D (atmosphere/lamp/airlight.h):
 //
 //   L = I / D  integral of  sum over layers sigma rho p(cos a)  share  T  da,   t = t_c - D cot a
 //
-// by Gauss-Legendre in the logarithm of a, in which forward peaks of any width are as smooth as the
-// rest. The air of a lamp lies over the plane that touches the sphere between it and the eye.
+// The integral uses Gauss-Legendre nodes in the logarithm of a, in which forward peaks of any width
+// are as smooth as the rest. The air of a lamp is layered over the plane that touches the sphere
+// between the lamp and the eye.
 
 struct Lamp {
-  vec4 position;   // of its middle; radius within which the air scatters as there
+  vec4 position;   // of its centre; radius within which the air scatters as at the lamp
   vec4 intensity;  // in its brightest direction [W sr^-1 nm^-1]
-  vec4 axis;       // unit; kind of its profile
-  vec4 side;       // unit; layer of its table
-  vec4 profile;    // cosines inside which a cone is full and outside which it is dark; distance;
-                   // 1 where the eye is inside of the lamp
-  vec4 up;         // of its air; altitude of the eye
+  vec4 axis;       // unit vector; kind of its profile
+  vec4 side;       // unit vector; layer of its table
+  vec4 profile;    // cosines of the inner and outer angle of a cone; distance;
+                   // fourth: 1 if the eye is inside the lamp
+  vec4 up;         // vertical of its air; altitude of the eye
   vec4 at_eye;     // densities of molecules, aerosol, fog; altitude of the lamp
-  vec4 at_lamp;    // densities there; its own radius
+  vec4 at_lamp;    // densities at the lamp; its own radius
   vec4 glow;       // mean of its profile; layer of glow_map; size of its core, 0: none
-  vec4 shade;      // layer of lamp_shades, -1 without; first layer of lamp_plans, levels that it
-                   // has there
+  vec4 shade;      // layer of lamp_shades, -1: none; first layer and number of levels in
+                   // lamp_plans
 };
 
 layout(std140) uniform Lamps {
-  vec4 lamp_count;      // lamps; angles at which cores begin to fade and end [rad]; of the lamps,
-                        // those before the first that does not shine evenly
+  vec4 lamp_count;      // number of lamps; angles at which cores start to fade and end [rad];
+                        // number of isotropic lamps, which come first
   vec4 lamp_planet;     // radius; altitude of the eye [km]; pixels between rays of the lattice
   vec4 lamp_falls;      // inverse scale heights of molecules, aerosol, fog [1/m]
-  vec4 lamp_bases;      // altitudes at which their densities are 1 [m]
-  vec4 lamp_molecules;  // scattering where density is 1 [1/m]
+  vec4 lamp_bases;      // altitudes at which the densities are 1 [m]
+  vec4 lamp_molecules;  // scattering at density 1 [1/m]
   vec4 lamp_aerosol;    // scattering
   vec4 lamp_dimming;    // extinction of aerosol
   vec4 lamp_fog;        // scattering and extinction of fog
@@ -46,14 +47,14 @@ layout(std140) uniform Lamps {
 
 uniform vec2 lamp_gauss[LAMP_NODES];  // nodes in [0, 1] and weights
 #ifdef LAMP_TABLES
-uniform sampler2DArray lamp_tables;  // share over angles from the axis and around it
+uniform sampler2DArray lamp_tables;  // relative intensity by angle from the axis and around it
 #endif
 #ifdef LAMP_GLOW_MAP
-uniform sampler2DArray lamp_glow_map;  // irradiance by the air that a lamp lights; see ground_under_lamps.h
+uniform sampler2DArray lamp_glow_map;  // irradiance by the air around a lamp; see ground_under_lamps.h
 #endif
 #ifdef LAMP_SHADE
-uniform sampler2DArray lamp_shades;  // slopes over which a lamp is seen, by compass and distance
-uniform sampler2DArray lamp_plans;   // of the ground's distance from the edge of shade; see LitPlan
+uniform sampler2DArray lamp_shades;  // slope above which a lamp is visible, by azimuth and distance
+uniform sampler2DArray lamp_plans;   // distance of the ground from the shadow edge; see LitPlan
 #endif
 #ifdef LAMP_MIE_TABLE
 uniform sampler2D lamp_mie_table;  // over (a / pi)^(1/3)
@@ -73,7 +74,7 @@ float LampPhaseMie(float cosine, float angle) {
 #endif
 }
 
-// Logarithms of the densities at an altitude over the plane of a lamp.
+// Returns the logarithms of the densities at an altitude over the plane of a lamp.
 vec3 LampLogDensities(float z) {
   vec3 log_density = vec3(LayerLogDensity(z - lamp_bases.x, lamp_falls.x),
                           LayerLogDensity(z - lamp_bases.y, lamp_falls.y), 0.0);
@@ -83,7 +84,7 @@ vec3 LampLogDensities(float z) {
   return log_density;
 }
 
-// Between two places, by their densities and the logarithms of these.
+// Returns the columns between two points, from their densities and the logarithms of these.
 vec3 LampColumns(float span, vec3 log_from, vec3 from, vec3 log_to, vec3 to) {
   vec3 rises = log_from - log_to;
   vec3 columns = vec3(LampColumn(span, from.x, to.x, rises.x),
@@ -94,8 +95,8 @@ vec3 LampColumns(float span, vec3 log_from, vec3 from, vec3 log_to, vec3 to) {
   return columns;
 }
 
-// At most a depth that leaves nothing: depths of a wall of fog overflow, and their differences
-// would be none.
+// Returns the optical depth, at most a value of negligible transmittance. The depths of a wall of
+// fog would overflow, and their differences would be NaN.
 vec4 LampDepth(vec3 columns) {
   vec4 depth = lamp_molecules * columns.x + lamp_dimming * columns.y;
 #ifdef LAMP_FOG
@@ -104,8 +105,8 @@ vec4 LampDepth(vec3 columns) {
   return min(depth, vec4(1e4));
 }
 
-// exp(-depth), where bands differ by little: that of the second, times a power series. Off by
-// delta^3 / 96 where a band is deeper by delta.
+// Returns exp(-depth), for bands that differ little: exp of the second band times a power series.
+// The error is delta^3 / 96 in a band that is deeper by delta.
 vec4 LampLeft(vec4 depth) {
   vec4 quarter = 0.25 * (depth - depth.y);
   vec4 rest = 1.0 - quarter * (1.0 - 0.5 * quarter);
@@ -113,7 +114,8 @@ vec4 LampLeft(vec4 depth) {
   return exp(-depth.y) * rest * rest;
 }
 
-// Of its intensity, towards a direction given by its cosines to axis, side and side x axis.
+// Returns the fraction of the intensity in a direction, given by its cosines to axis, side and side
+// x axis.
 float LampShare(Lamp lamp, vec3 cosines) {
   int kind = int(lamp.axis.w + 0.5);
   float share = 1.0;
@@ -139,15 +141,15 @@ vec3 LampCosines(Lamp lamp, vec3 direction) {
               dot(direction, cross(lamp.side.xyz, lamp.axis.xyz)));
 }
 
-// In the frame of the terrain.
+// Returns a vector in the frame of the terrain.
 vec3 LampOfTerrain(vec3 way) {
   return vec3(dot(way, lamp_ground[0].xyz), dot(way, lamp_ground[1].xyz),
               dot(way, lamp_ground[2].xyz));
 }
 
-// How high a place, `way` from the lamp, stands over what terrain shades, in two thousandths of its
-// distance. It is compared with terrain up to a ring less far, and may be lower by one of these and
-// be lit: ground does not shade itself.
+// Returns the height of a point at `way` from the lamp above the shadow of terrain, in two
+// thousandths of its distance. The terrain up to one ring nearer is considered, and a point may be
+// one such unit lower and still be lit, so that ground does not shadow itself.
 float LampClearance(Lamp lamp, vec3 way) {
 #ifdef LAMP_SHADE
   if (lamp.shade.x < -0.5) return 1.0;
@@ -164,10 +166,11 @@ float LampClearance(Lamp lamp, vec3 way) {
 #endif
 }
 
-// Share of a lamp's light that terrain lets through.
+// Returns the fraction of a lamp's light that terrain lets through.
 float LampLit(Lamp lamp, vec3 way) { return clamp(LampClearance(lamp, way), 0.0, 1.0); }
 
-// The same of ground: whether it is on the lit side of the edge of shade, a ray's width across.
+// Returns this fraction for ground, from its distance to the shadow edge, which is blurred to the
+// width of a ray.
 float LampLitGround(Lamp lamp, vec3 way, float ray_width_m) {
 #ifdef LAMP_SHADE
   vec2 at = LampOfTerrain(way).xy;
@@ -184,7 +187,7 @@ float LampLitGround(Lamp lamp, vec3 way, float ray_width_m) {
 #endif
 }
 
-// The mean of that between two places, the clearance taken to change evenly.
+// Returns the mean of LampLit between two points, assuming that the clearance is linear.
 float LampLitBetween(float here, float there) {
   vec2 ends = vec2(here, there);
   vec2 over = clamp(ends, 0.0, 1.0);
@@ -193,8 +196,8 @@ float LampLitBetween(float here, float there) {
   return abs(apart) < 1e-3 ? over.x : (sums.x - sums.y) / apart;
 }
 
-// The angles of scattering between which a spot lights the ray; x > y where nowhere. The cosine to
-// its axis is a cos(angle - middle) along the ray.
+// Returns the range of scattering angles over which a spot lights the ray; x > y if there is none.
+// The cosine to its axis is a cos(angle - middle) along the ray.
 vec2 LampBeam(Lamp lamp, float along, float across, vec2 angles) {
   int kind = int(lamp.axis.w + 0.5);
   float edge = kind == LAMP_CONE ? lamp.profile.y : -1.0;
@@ -208,8 +211,8 @@ vec2 LampBeam(Lamp lamp, float along, float across, vec2 angles) {
               a > edge ? min(angles.y, middle + half_angle) : -1.0);
 }
 
-// Light that the air in front of a distance scatters from one lamp into the eye.
-// @param shaped  a constant: whether the lamp may shine otherwise than evenly, or hold the eye.
+// Returns the light that the air in front of a distance scatters from one lamp into the eye.
+// @param shaped  a constant: whether the lamp may be anisotropic or contain the eye.
 vec4 GlowOfLamp(Lamp lamp, vec3 direction, float distance_m, bool shaped) {
   float nearest = dot(lamp.position.xyz, direction);
   vec3 off = nearest * direction - lamp.position.xyz;
@@ -262,8 +265,8 @@ vec4 GlowOfLamp(Lamp lamp, vec3 direction, float distance_m, bool shaped) {
     if (shaped && !inside) weight *= LampShare(lamp, sine * across - cosine * along);
     vec4 light = (weight * source) * LampLeft(LampDepth(columns));
 #ifdef LAMP_SHADE
-    // A node stands for half the way to its neighbours, of which the edge of shade may cut a part:
-    // light does not jump where the edge passes a node.
+    // A node represents half the distance to its neighbours, of which the shadow edge may cut a
+    // part. The light is then continuous when the edge passes a node.
     float clear = LampClearance(lamp, t * direction - lamp.position.xyz);
     float middle = 0.5 * (clear_before + clear);
     sum += 0.5 * (i == 0 ? LampLitBetween(clear, clear) * light
@@ -281,14 +284,14 @@ vec4 GlowOfLamp(Lamp lamp, vec3 direction, float distance_m, bool shaped) {
   return lamp.intensity * (sum * (max(span, 0.0) * share / approach));
 }
 
-// 1 in the core of a lamp's light in the picture, 0 outside of it.
+// Returns 1 in the core of a lamp's scattered light in the picture, 0 outside it.
 float LampCore(Lamp lamp, vec3 direction) {
   float apart = length(direction - lamp.position.xyz / lamp.profile.z) / max(lamp.glow.z, 1e-9);
   float fade = clamp((lamp_count.z - apart) / (lamp_count.z - lamp_count.y), 0.0, 1.0);
   return fade * fade * fade * (10.0 - fade * (15.0 - 6.0 * fade));
 }
 
-// Of a lamp that the eye is in: the inside of its luminous sphere.
+// Returns the radiance of the inside of the luminous sphere, for a lamp that contains the eye.
 vec4 LampFromWithin(Lamp lamp, vec3 direction) {
   if (lamp.profile.w < 0.5) return vec4(0.0);
   float radius = lamp.at_lamp.w;
@@ -296,8 +299,9 @@ vec4 LampFromWithin(Lamp lamp, vec3 direction) {
          (LampShare(lamp, LampCosines(lamp, -direction)) / (3.14159265 * radius * radius));
 }
 
-// Light of all lamps scattered into the eye in front of a distance [W m^-2 sr^-1 nm^-1].
-// @param with_cores  1: all of it; 0: without what GlowOfCores draws.
+// Returns the light of all lamps scattered into the eye in front of a distance [W m^-2 sr^-1
+// nm^-1].
+// @param with_cores  1: all of it; 0: without the part that lamp_core.frag.glsl draws.
 vec4 LampGlowIn(vec3 direction, float distance_m, float with_cores) {
   vec4 sum = vec4(0.0);
   int even = int(lamp_count.w + 0.5);
@@ -315,14 +319,14 @@ vec4 LampGlowIn(vec3 direction, float distance_m, float with_cores) {
 }
 
 #ifdef LAMP_GLOW_MAP
-// A term of the map of a lamp's glow; `at` counts texels of one term.
+// Returns a term of the glow map of a lamp; `at` counts texels of one term.
 vec4 LampGlowTerm(Lamp lamp, vec2 at, float term) {
   vec2 size = vec2(textureSize(lamp_glow_map, 0).xy);
   vec2 place = (at + vec2(0.0, term * size.y / float(LAMP_GLOW_TERMS))) / size;
   return textureLod(lamp_glow_map, vec3(place, lamp.glow.y), 0.0);
 }
 
-// What the air that a lamp lights brings to a surface; see ground_under_lamps.h.
+// Returns the irradiance of a surface by the air that a lamp lights; see ground_under_lamps.h.
 vec4 LampAirOnSurface(Lamp lamp, vec3 towards, float distance_m, vec3 normal) {
   float sine = dot(towards, lamp.up.xyz);
   float up = dot(normal, lamp.up.xyz);
@@ -348,7 +352,8 @@ vec4 LampAirOnSurface(Lamp lamp, vec3 towards, float distance_m, vec3 normal) {
 }
 #endif
 
-// Irradiance of a surface by one lamp. @param shaped  as above.
+// Returns the irradiance of a surface by one lamp.
+// @param shaped  as in GlowOfLamp.
 vec4 LampOnGround(Lamp lamp, vec3 point_m, vec3 normal, float ray_width_m, bool shaped) {
   vec3 way = lamp.position.xyz - point_m;
   float far = max(length(way), lamp.at_lamp.w);
@@ -369,8 +374,10 @@ vec4 LampOnGround(Lamp lamp, vec3 point_m, vec3 normal, float ray_width_m, bool 
   return lamp.intensity * light;
 }
 
-// Irradiance of a surface by all lamps [W m^-2 nm^-1].
-// @param point_m  from the eye; normal: unit; ray_width_m: of the ray that ends there.
+// Returns the irradiance of a surface by all lamps [W m^-2 nm^-1].
+// @param point_m  from the eye.
+// @param normal  unit.
+// @param ray_width_m  of the ray that ends there.
 vec4 LampsOnGround(vec3 point_m, vec3 normal, float ray_width_m) {
   vec4 sum = vec4(0.0);
   int even = int(lamp_count.w + 0.5);

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
-// Light of lamps in the air of a picture [cd/m^2, linear sRGB], from the lattice of lamp_glow.frag
-// and what lamp_core.frag draws over the picture, or summed here.
+// Light of lamps scattered by the air in a picture [cd/m^2, linear sRGB], from the lattice of
+// lamp_glow.frag.glsl and the cores of lamp_core.frag.glsl, or summed here.
 
-// Where the ray of a pixel ends [m]: at terrain (distance of the surface map, 0: none), at the bare
-// planet, or nowhere.
+// Returns the distance at which the ray of a pixel ends [m]: at terrain (surface_m, 0: none), at
+// the bare planet, or nowhere.
 float LampRayEnd(vec3 direction, float surface_m) {
   float h = lamp_planet.y;
   bool planet = GroundClearance(h, direction.z, lamp_planet.x) > 0.0;
@@ -16,8 +16,8 @@ int LampStep() { return int(lamp_planet.z); }
 #if LAMP_LATTICE
 uniform sampler2D lamp_lattice;  // light; inverse of the distance at which the ray ends [1/m]
 
-// Rays whose ends lie in one plane, or in the sky, have inverse distances that are linear over the
-// picture. Where that of the pixel is not, those of its neighbours count that end nearest to it.
+// Rays that end on one plane, or in the sky, have inverse distances that are linear over the
+// picture. If that of the pixel does not fit, the neighbours whose rays end nearest to it are used.
 vec3 LampGlowRgb(vec3 direction, float end_m) {
   ivec2 pixel = ivec2(gl_FragCoord.xy);
   ivec2 corner = pixel / LampStep();
