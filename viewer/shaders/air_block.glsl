@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What the air is made of, and the sun above it: AirBlock of uniform_blocks.h. Vectors of four hold
-// one value a band; lengths are kilometres.
+// Optical properties of the medium: AirBlock of uniform_blocks.h. Vectors of four hold one value
+// per band. Lengths are in kilometres.
 layout(std140) uniform Air {
   vec4 rayleigh_scattering;  // per km at altitude 0
   vec4 mie_scattering;
@@ -11,8 +11,8 @@ layout(std140) uniform Air {
   vec4 green_from_bands;
   vec4 blue_from_bands;
   vec4 shell;        // radius of the planet, top of the air, scale heights of molecules and aerosol
-  vec4 ozone_layer;  // bottom, peak, top; 1 where it is smooth, 0 where it is a tent
-  vec4 deficit;      // of molecules near the ground: share, scale height
+  vec4 ozone_layer;  // bottom, peak, top; fourth: 1 for the smooth shape, 0 for the tent
+  vec4 deficit;      // deficit of molecules near the ground: fraction, scale height
   vec4 wavelengths;  // [um]
 };
 
@@ -26,20 +26,20 @@ float OzoneColumnUp(float h, float mu) {
   return TentColumnUp(h, mu, ozone_layer.x, ozone_layer.y, ozone_layer.z, RADIUS);
 }
 
-// Columns of molecules, aerosol and ozone [km] from altitude h upwards along mu >= 0 to space.
+// Returns the columns of molecules, aerosol and ozone [km] from altitude h along mu >= 0 to space.
 vec3 ColumnsUp(float h, float mu) {
   float molecules = (1.0 + deficit.x) * ExponentialColumnUp(h, mu, RAYLEIGH_HEIGHT, TOP, RADIUS);
   if (deficit.x > 0.0) molecules -= DeficitColumnUp(h, mu, deficit.x, deficit.y, RADIUS);
   return vec3(molecules, ExponentialColumnUp(h, mu, MIE_HEIGHT, TOP, RADIUS), OzoneColumnUp(h, mu));
 }
 
-// Columns of the whole line through its lowest point. Below the ground nobody uses them: they only
-// have to be finite.
+// Returns the columns from the lowest point of the line to space. Below the ground they are not
+// used and only have to be finite.
 vec3 ColumnsFromPerigee(float h, float mu) {
   return ColumnsUp(max(PerigeeAltitude(h, mu, RADIUS), -1.0), 0.0);
 }
 
-// Columns towards a sun that the ground does not hide.
+// Returns the columns towards a sun that the ground does not hide.
 vec3 ColumnsToSun(float h, float mu_s) {
   vec3 up = ColumnsUp(h, abs(mu_s));
   if (mu_s >= 0.0) return up;

@@ -1,25 +1,25 @@
 // SPDX-License-Identifier: MIT
-// The air of one eye and one sun, read from the tables of air_tables.h. Per unit solar irradiance
-// [1/sr]; one band a component; directions are unit vectors in the frame of the eye, east, north,
-// up; distances are kilometres from the eye.
+// Radiance and transmittance of the air for one eye and one sun, from the tables of air_tables.h.
+// Radiance is per unit solar irradiance [1/sr], one band per component. Directions are unit vectors
+// in the eye's frame (east, north, up); distances are in kilometres from the eye.
 
 // AirTablesBlock of air_follower.h.
 layout(std140) uniform AirTables {
   vec4 air_sun;       // unit vector to the sun that lights the air
-  vec4 air_sun_seen;  // and to where it is seen: there aureoles are
+  vec4 air_sun_seen;  // unit vector to the apparent sun, the centre of aureoles
   vec4 air_frame;     // horizontal unit vector to its azimuth; sine and cosine of the dip
-  vec4 air_shell;     // altitude that tables are for, ceiling of land, top of the air, radius [km]
-  vec4 air_ranges;    // tangents of half the ranges of rows: sky, ways above the horizon, below
-                      // it; 1: eye above the air
-  vec4 air_crowding;  // of distances, above and below the horizon
-  vec4 air_columns;   // first texel and texels of columns: sky; ways
-  vec4 air_sky_rows;  // the same of rows, above the horizon; below it
+  vec4 air_shell;     // altitude of the tables, ceiling of land, top of the air, radius [km]
+  vec4 air_ranges;    // tangents of half the ranges of rows: sky, aerial perspective above the
+                      // horizon, below it; fourth: 1 if the eye is above the air
+  vec4 air_crowding;  // of distances, above and below the horizon; twilight fall and reference
+  vec4 air_columns;   // first texel and number of columns: sky; aerial perspective
+  vec4 air_sky_rows;  // first texel and number of rows: above the horizon; below it
   vec4 air_through_rows;
   vec4 air_way_rows;
   vec4 air_extinction_rows;
-  vec4 air_distances;    // of distances: ways; extinction
-  vec4 air_phase_nodes;  // of the aerosol's phase function
-  vec4 air_sky_mix[3];   // what PhaseRayleigh, the aerosol's and 1 are multiplied by
+  vec4 air_distances;    // nodes of distance: scattering; extinction
+  vec4 air_phase_nodes;  // nodes of the aerosol's phase function
+  vec4 air_sky_mix[3];   // factors of PhaseRayleigh, of the aerosol's phase and of 1
   vec4 air_single_mix[2];
 };
 
@@ -28,16 +28,16 @@ uniform sampler1D air_through;
 uniform sampler2D air_extinction;
 uniform sampler3D air_single;
 uniform sampler3D air_diffuse;
-uniform sampler2D air_phase;  // of the aerosol; with the glow about the sun
-uniform sampler2D air_to_sun;  // of straight rays; over it that of the beam on ground and fog
+uniform sampler2D air_phase;  // row 0: phase of the aerosol; row 1: with the glow around the sun
+uniform sampler2D air_to_sun;  // row 0: straight rays; row 1: refracted beam for ground and fog
 
 struct AirTo {
-  vec4 single;   // sunlight scattered once, terrain left out
-  vec4 diffuse;  // all other light that the air scatters
+  vec4 single;   // single scattering of sunlight, without terrain shadows
+  vec4 diffuse;  // multiple scattering
   vec4 transmittance;
 };
 
-// sin^2 of half the angle to the sun that is seen.
+// Returns sin^2 of half the angle to the apparent sun.
 float HalfSineSquared(vec3 direction) {
   vec3 between = direction - air_sun_seen.xyz;
   return min(0.25 * dot(between, between), 1.0);
@@ -48,10 +48,11 @@ vec4 PhaseOfRow(float half_sine_squared, float row) {
   return textureLod(air_phase, vec2(node, row), 0.0);
 }
 vec4 AerosolPhase(float half_sine_squared) { return PhaseOfRow(half_sine_squared, 0.25); }
-// With the light that aerosol scatters more than once about the sun.
+// Returns the phase function including the light that aerosol scatters more than once around the
+// sun.
 vec4 AerosolPhaseOfSky(float half_sine_squared) { return PhaseOfRow(half_sine_squared, 0.75); }
 
-// Tangent of half the angle over the horizon.
+// Returns the tangent of half the elevation above the horizon.
 float HalfTangent(vec3 direction) {
   float flat_length = length(direction.xy);
   float up = direction.z * air_frame.w + flat_length * air_frame.z;
@@ -63,23 +64,24 @@ float ColumnOf(vec3 direction) {
   return AirColumn(0.5 - 0.5 * along / max(length(direction.xy), 1e-12));
 }
 
-// Texture coordinate of a row: `rows` as in the block.
+// Returns the texture coordinate of a row.
+// @param rows  first texel and number of rows above and below the horizon, as in the block.
 float RowOf(float half_tangent, float sky_range, vec4 rows) {
   bool ground = half_tangent < 0.0;
   float v = AirRow(abs(half_tangent), ground ? air_ranges.z : sky_range);
   return ground ? rows.z + rows.w * v : rows.x + rows.y * v;
 }
 
-// What texels are divided by, at distance d of a ray.
+// Returns the factor by which texels were divided, at distance d along a ray.
 float TwilightAt(vec3 direction, float d) {
   return AirTwilight(air_shell.x, air_sun.z, dot(direction, air_sun.xyz), d, air_crowding.z,
                      air_crowding.w, air_shell.w);
 }
 
-// Whether a direction passes above all air.
+// Returns whether a direction passes above all air.
 bool AboveAir(float half_tangent) { return air_ranges.w > 0.5 && half_tangent > air_ranges.x; }
 
-// The whole ray: to space, or to the bare planet with its lit ground.
+// Returns the radiance of the whole ray: to space, or to the bare planet with its lit ground.
 vec4 SkyRadiance(vec3 direction) {
   float rise = HalfTangent(direction);
   vec2 at = vec2(air_columns.x + air_columns.y * ColumnOf(direction),
@@ -92,14 +94,15 @@ vec4 SkyRadiance(vec3 direction) {
   return AboveAir(rise) ? vec4(0.0) : phases * textureLod(air_sky, at, 0.0);
 }
 
-// Of the whole view ray, to space or to the bare ground.
+// Returns the transmittance of the whole view ray, to space or to the bare ground.
 vec4 TransmittanceToSpace(vec3 direction) {
   float rise = HalfTangent(direction);
   float at = RowOf(rise, air_ranges.x, air_through_rows);
   return AboveAir(rise) ? vec4(1.0) : textureLod(air_through, at, 0.0);
 }
 
-// @param beam  0: straight rays; 1: beam.
+// Returns the transmittance to the sun.
+// @param beam  0: straight rays; 1: refracted beam.
 vec4 ToSun(float altitude_km, float mu_s, float beam) {
   float h = clamp(altitude_km, 0.0, air_shell.z);
   float x =
@@ -110,19 +113,20 @@ vec4 ToSun(float altitude_km, float mu_s, float beam) {
   return textureLod(air_to_sun, at, 0.0);
 }
 
-// By straight rays from a point at or above the ground [km] towards a sun that the planet does not
-// hide, which air and bare ground of the sky's table are lit by.
+// Returns the transmittance of straight rays from a point at or above the ground [km] to a sun that
+// the planet does not hide. It is used to light the air and the bare ground of the sky table.
 vec4 TransmittanceToSun(float altitude_km, float mu_s) { return ToSun(altitude_km, mu_s, 0.0); }
 
-// What is left there across the beams of a disk that is seen: BentBeam of atmosphere/ray/bent_view.h.
+// Returns the transmittance there for the refracted beam of the visible disk: BentBeam of
+// atmosphere/ray/bent_view.h.
 vec4 BeamOfSun(float altitude_km, float mu_s) { return ToSun(altitude_km, mu_s, 1.0); }
 
-// Where a point lies in the tables of ways, and what reaches the eye from there.
+// Position of a point in the aerial-perspective tables, and factors of the table values.
 struct AirWay {
-  vec3 at;  // in the 3-D tables
+  vec3 at;  // in the 3D tables
   vec4 transmittance;
-  vec4 scattered;           // by what texels are to be multiplied
-  float half_sine_squared;  // of the angle to the sun that is seen
+  vec4 scattered;           // factor of the texels
+  float half_sine_squared;  // of the angle to the apparent sun
 };
 
 AirWay WayTo(vec3 direction, float distance_km) {
@@ -157,12 +161,12 @@ vec4 SingleOf(AirWay way) {
   return phases * way.scattered * textureLod(air_single, way.at, 0.0);
 }
 
-// From the eye to a point.
+// Returns the light and transmittance of the air from the eye to a point.
 AirTo AirToPoint(vec3 direction, float distance_km) {
   AirWay way = WayTo(direction, distance_km);
   return AirTo(SingleOf(way), way.scattered * textureLod(air_diffuse, way.at, 0.0),
                way.transmittance);
 }
 
-// AirToPoint(direction, distance_km).single alone: light that comes from before a distance.
+// Returns AirToPoint(direction, distance_km).single.
 vec4 SingleTo(vec3 direction, float distance_km) { return SingleOf(WayTo(direction, distance_km)); }

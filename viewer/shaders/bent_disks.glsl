@@ -1,18 +1,19 @@
 // SPDX-License-Identifier: MIT
-// Disks of sun and moon near the horizon, band by band where air lifts them to, through the air of
-// bent rays: BentDisk of painted_view.h. The block View has the sun where it truly stands, and `moon`
-// (sun_light.glsl) the moon.
+// Refracted disks of sun and moon near the horizon, with dispersion and extinction per band:
+// BentDisk of painted_view.h. The block View must hold the true sun, and `moon` (sun_light.glsl)
+// the true moon.
 #define DISK_NODES 13
 
-// Nodes of the two disks one after the other, by elevation; a component is a band.
-uniform vec4 disk_lift[2 * DISK_NODES];   // apparent less true elevation [rad]
-uniform vec4 disk_depth[2 * DISK_NODES];  // optical depth, more than if the ray were straight
-uniform vec4 disk_nodes;  // of sun and moon: elevation of the first node [rad], nodes a radian
+// Nodes by elevation, first of the sun, then of the moon; one component per band.
+uniform vec4 disk_lift[2 * DISK_NODES];   // apparent minus true elevation [rad]
+uniform vec4 disk_depth[2 * DISK_NODES];  // optical depth minus that of a straight ray
+uniform vec4 disk_nodes;  // of sun and moon: elevation of the first node [rad], nodes per radian
 
 struct DiskAir {
   vec4 lift, depth;
 };
 
+// Returns the refraction and extinction at an elevation.
 // @param of  0: the sun; 1: the moon.
 DiskAir DiskAirAt(int of, float elevation) {
   vec2 nodes = of == 0 ? disk_nodes.xy : disk_nodes.zw;
@@ -24,8 +25,8 @@ DiskAir DiskAirAt(int of, float elevation) {
                  mix(disk_depth[node], disk_depth[node + 1], share));
 }
 
-// Both disks, per unit of the sun's irradiance [1/sr]: SunDiskRadiance and MoonRadiance of where each
-// band comes from.
+// Returns the radiance of both disks per unit of the sun's irradiance [1/sr]: for each band,
+// SunDiskRadiance and MoonRadiance in the true direction.
 vec4 BentDisks(vec3 direction, float width) {
   float level = length(direction.xy);
   float elevation = AngleOfSine(clamp(direction.z, -1.0, 1.0));

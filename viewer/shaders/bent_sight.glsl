@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
-// Where air that bends rays shows land and the bare planet (atmosphere/ray/bent_view.h), by what the
-// block View has of it. Without refraction everything is where it is.
+// Apparent positions of land and of the bare planet under refraction (atmosphere/ray/bent_view.h),
+// with the parameters of the block View. Without refraction, apparent and true positions are equal.
 //
-// Pixels, the air before them, fog and shafts go by apparent directions and true distances, as the
-// renderer's do; ground is lit and coloured where it truly is.
+// Pixels, the air in front of them, fog and shafts use apparent directions and true distances, as
+// in the renderer. Ground is lit and coloured at its true position.
 
 float LiftAt(float altitude_km, float distance_km) {
   return LandLift(EYE_ALTITUDE, altitude_km, distance_km, PLANET_RADIUS, BEND_TOP, BEND_USUAL,
@@ -11,14 +11,14 @@ float LiftAt(float altitude_km, float distance_km) {
                   bend_falls.z);
 }
 
-// Turned upwards by a small angle [rad], in the vertical plane; `level` is length(v.xy).
+// Returns v rotated upwards by a small angle [rad] in its vertical plane; `level` is length(v.xy).
 vec3 TurnedUp(vec3 v, float level, float angle) {
   float shrink = 0.5 * angle * angle;
   float nearer = level > 0.0 ? 1.0 - shrink - angle * v.z / level : 1.0;
   return vec3(nearer * v.xy, (1.0 - shrink) * v.z + angle * level);
 }
 
-// Where land at a place is seen, as far away. Metres from the eye.
+// Returns the apparent position of land, at the same distance. Metres from the eye.
 vec3 SeenAt(vec3 place) {
   if (BEND_USUAL == 0.0) return place;
   float distance_km = 1e-3 * length(place);
@@ -27,14 +27,14 @@ vec3 SeenAt(vec3 place) {
   return TurnedUp(place, length(place.xy), LiftAt(altitude, distance_km));
 }
 
-// Where land stands that is seen in a direction at a distance. Metres from the eye.
+// Returns the true position of land that appears in a direction at a distance. Metres from the eye.
 vec3 PlaceSeen(vec3 direction, float distance_m) {
   vec3 seen = distance_m * direction;
   if (BEND_USUAL == 0.0) return seen;
   float distance_km = 1e-3 * distance_m, level = length(direction.xy);
   float altitude = AltitudeAlongRay(EYE_ALTITUDE, direction.z, distance_km, PLANET_RADIUS);
   float rise = level * level * distance_km;
-  // It is lower than it seems, which changes the lift by little.
+  // The true altitude is lower than the apparent one, which changes the lift slightly.
   float lower = altitude - rise * LiftAt(altitude, distance_km);
   return TurnedUp(seen, distance_m * level, -LiftAt(lower, distance_km));
 }
@@ -44,13 +44,13 @@ bool SeesPlanet(vec3 direction) {
   return GroundClearance(EYE_ALTITUDE, direction.z, LOOK_RADIUS) > 0.0;
 }
 
-// How far away, where it is seen.
+// Returns the distance at which it is seen.
 float PlanetDistance(vec3 direction) {
   return DistanceDownTo(EYE_ALTITUDE, min(direction.z, -1e-9), 0.0, LOOK_RADIUS);
 }
 
-// The direction of the straight line to the planet's ground at a distance, in the vertical plane of
-// another; the horizon's for ground that is behind it.
+// Returns the direction of the straight line to the planet's ground at a distance, in the vertical
+// plane of `direction`. For ground behind the horizon it is the direction of the horizon.
 vec3 DirectionToGround(vec3 direction, float distance_km) {
   if (LOOK_RADIUS == PLANET_RADIUS) return direction;
   float h = EYE_ALTITUDE, d = max(distance_km, 1e-6);
@@ -59,14 +59,15 @@ vec3 DirectionToGround(vec3 direction, float distance_km) {
   return vec3(level / max(length(direction.xy), 1e-9) * direction.xy, mu);
 }
 
-// The ground of the planet that is seen in a direction. Metres from the eye.
+// Returns the position of the planet's ground that is seen in a direction. Metres from the eye.
 vec3 PlanetPlace(vec3 direction, float distance_km) {
   return 1e3 * distance_km * DirectionToGround(direction, distance_km);
 }
 
-// The straight line whose air and ground a table of the sky has for ground that is seen.
+// Returns the straight line under which the sky table holds the visible ground and the air before
+// it.
 vec3 StraightToPlanet(vec3 direction) {
-  // Just before the horizon, so that rounding never takes the ray for one of the sky.
+  // Stay slightly in front of the horizon, so that rounding never yields a ray of the sky.
   float reach = 0.99 * HorizonDistance(EYE_ALTITUDE, PLANET_RADIUS);
   return DirectionToGround(direction, min(PlanetDistance(direction), reach));
 }

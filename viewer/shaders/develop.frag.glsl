@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
-// The picture on a display: white balance, exposure, gamut, tone curve, dither, as Develop (image.h) does it. AgX
-// comes from its table (developer.h). Defined before this text: CURVE, a ToneCurve; DITHERS, 0 for
-// codes that enlarge.frag.glsl reads, else 1.
+// Tone mapping of the picture for a display: white balance, exposure, gamut, tone curve and dither,
+// as in Develop (look.h). AgX is read from its table (developer.h). Defined before this text:
+// CURVE, a ToneCurve; DITHERS, 0 for codes that enlarge.frag.glsl reads, else 1.
 uniform sampler2D linear_picture;  // any size
 uniform sampler3D tone_table;
-uniform vec2 stops;        // over saturation, at the first and the last node of the table
+uniform vec2 stops;        // relative to saturation, at the first and last node of the table
 uniform float exposure;
-uniform mat3 balance;      // linear sRGB as it is shown from linear sRGB
+uniform mat3 balance;      // white balance, linear sRGB to linear sRGB
 out vec4 display;
 
 #if CURVE == 0

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
-// Codes of a display as bytes, dithered as Develop (image.h) does it.
+// Quantises display codes to bytes with the dither of Develop (look.h).
 uniform sampler2D dither_noise;  // [codes]; a tile, row 0 at the top of the picture
 uniform vec2 screen_size;        // pixels
 
-// DitherNoise (lut/picture/develop.h).
+// Returns DitherNoise (lut/picture/develop.h).
 vec3 NoiseAt(ivec2 pixel) {
   ivec2 tile = textureSize(dither_noise, 0);
   uvec2 repetition = uvec2(pixel / tile);
@@ -12,7 +12,7 @@ vec3 NoiseAt(ivec2 pixel) {
   return texelFetch(dither_noise, (pixel + (shift & (tile - 1))) & (tile - 1), 0).rgb;
 }
 
-// Of codes in [0, 1] at the fragment's pixel.
+// Returns codes in [0, 1] dithered at the fragment's pixel.
 vec3 Dithered(vec3 codes) {
   ivec2 pixel = ivec2(gl_FragCoord.xy);
   vec3 noise = NoiseAt(ivec2(pixel.x, int(screen_size.y) - 1 - pixel.y));

@@ -1,22 +1,23 @@
 // SPDX-License-Identifier: MIT
-// A picture painted smaller than the screen, on the screen: between its four nearest pixels where
-// they lie on one surface with this one, and of the pixels at about this distance where an edge of
-// land runs between them, which `outline` has as sharp as the screen. DITHERS is 1 for codes of a
-// display, else 0.
-uniform sampler2D small_picture;  // nearness of land (nearness.glsl) in the fourth component
+// Upscales a picture that is smaller than the screen. Where the four nearest pixels lie on the same
+// surface as this fragment, they are interpolated bilinearly. At an edge of land, whose position
+// `outline` holds at screen resolution, the pixels at about the fragment's distance are used.
+// DITHERS is 1 for display codes, else 0.
+uniform sampler2D small_picture;  // inverse depth of land (nearness.glsl) in the fourth component
 uniform sampler2D outline;        // depth of LandOutline; of the screen's size
-uniform vec2 half_view;           // tangents of half the width and half the height of the view
+uniform vec2 half_view;           // tangents of half the horizontal and vertical field of view
 in vec2 screen;
 out vec4 shown;
 
-// Of pixels of these nearnesses, at a place between them where that of land is `own`.
+// Returns the weights of four pixels with inverse depths `near` for a place between them with
+// inverse depth `own`.
 vec4 WeightsAt(vec2 share, vec4 near, float own) {
   const float kEven = 0.02, kTolerance = 0.01;
   vec2 left = 1.0 - share;
   vec4 weight = vec4(left.x * left.y, share.x * left.y, left.x * share.y, share.x * share.y);
   float between = dot(weight, near);
   vec4 off = (near - own) / max(max(own, between), 1e-9);
-  // A thousandth each: one of them counts where all that lie nearer are of other land.
+  // A minimum weight of a thousandth lets a pixel count if all nearer ones belong to other land.
   vec4 alike = (weight + 1e-3) / (off * off + kTolerance * kTolerance);
   bool is_even = abs(between - own) <= kEven * own;
   return is_even ? weight : alike / dot(alike, vec4(1.0));

@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: MIT
-// Light of sun and sky in fog, from the map of fog.h, and what fog leaves of other light:
-// FogBlock of fog.h. Frame: east, north, up at the eye; lengths are kilometres; light is
-// per unit solar irradiance. Fog is grey.
+// Sunlight and skylight scattered by fog, from the map of fog.h, and the transmittance of fog:
+// FogBlock of fog.h. Frame: east, north, up at the eye. Lengths are in kilometres; light is per
+// unit solar irradiance. Fog is grey.
 #define FOG_STRETCHES 4
 
-const float kOutOfFog_km = 1e3;  // where rays that meet nothing end
+const float kOutOfFog_km = 1e3;  // length of rays that hit nothing
 
 layout(std140) uniform Fog {
-  vec4 fog_layer;  // extinction at the base [1/km]; scale height, 0 where it is homogeneous; base,
+  vec4 fog_layer;  // extinction at the base [1/km]; scale height, 0 if homogeneous; base,
                    // top of the air
-  vec4 fog_eye;  // altitude of the eye; radius of the planet; vertical optical depth of the layer;
-                 // scale of optical depths without what the forward peak takes along
-  vec4 fog_sun;  // unit; g of the lobe that the peak's light is scattered by
+  vec4 fog_eye;  // altitude of the eye; radius of the planet; vertical optical depth of
+                 // the layer; factor of optical depths without the forward peak
+  vec4 fog_sun;  // unit vector; g of the lobe that scatters the forward peak's light
   vec4 fog_phase;     // g, g of the second lobe, its weight, alpha
   vec4 fog_map_size;  // elevations, azimuths, depths
 };
@@ -23,20 +23,20 @@ float FogDensityAt(float h) {
   return fog_layer.y > 0.0 ? FogDensity(h - fog_layer.z, fog_layer.y) : h < fog_layer.w ? 1.0 : 0.0;
 }
 
-// Columns from altitude h, where mu >= 0 of the direction, to space.
+// Returns the column from altitude h to space, for a direction with mu >= 0.
 float FogColumnOut(float h, float mu) {
   if (fog_layer.y > 0.0) return FogColumnUp(h, mu, FogDensityAt(h), fog_layer.y, fog_eye.y);
   return h < fog_layer.w ? DistanceUpTo(h, mu, fog_layer.w, fog_eye.y) : 0.0;
 }
 
-// Of any direction that does not meet the planet.
+// Returns the column from altitude h to space, for any direction that does not hit the planet.
 float FogColumnToSpace(float h, float mu) {
   float out_of_it = FogColumnOut(h, abs(mu));
   if (mu >= 0.0) return out_of_it;
   return max(2.0 * FogColumnOut(PerigeeAltitude(h, mu, fog_eye.y), 0.0) - out_of_it, 0.0);
 }
 
-// Optical depth along a view ray.
+// Returns the optical depth along a view ray.
 float FogDepthTo(vec3 direction, float distance_km) {
   float h = fog_eye.x;
   float mu = direction.z;
@@ -47,7 +47,7 @@ float FogDepthTo(vec3 direction, float distance_km) {
                                      FogColumnOut(h_end, abs(mu_end)), FogColumnOut(perigee, 0.0));
 }
 
-// Of the whole ray, to the bare planet or to space.
+// Returns the optical depth of the whole ray, to the bare planet or to space.
 float FogDepthOfRay(vec3 direction) {
   if (GroundClearance(fog_eye.x, direction.z, fog_eye.y) <= 0.0)
     return fog_layer.x * FogColumnToSpace(fog_eye.x, direction.z);
@@ -55,7 +55,7 @@ float FogDepthOfRay(vec3 direction) {
   return FogDepthTo(direction, far);
 }
 
-// What fog leaves of light from a distance.
+// Returns the transmittance of the fog up to a distance.
 float FogTransmittance(vec3 direction, float distance_km) {
   return exp(-FogDepthTo(direction, distance_km));
 }
@@ -65,7 +65,7 @@ struct FogAlong {
   vec4 radiance;  // of sun and sky, scattered by the fog [1/sr]
 };
 
-// Place in one quantity of the map.
+// Returns the texture coordinates for one quantity of the map.
 vec3 FogPlace(vec3 direction, float taken) {
   float whole = 1.0 - exp(-FogDepthOfRay(direction));
   float share = clamp(taken / max(whole, 1e-9), 0.0, 1.0);
@@ -83,8 +83,8 @@ vec4 FogQuantity(vec3 place, float number) {
   return textureLod(fog_light_map, place + vec3(0.0, 0.0, 0.25 * number), 0.0);
 }
 
-// Of the sun alone, over a piece of ground that nothing shades; terrain that does takes away what
-// lies on the shaded stretches of the ray.
+// Returns the scattered light of the sun alone, above ground without shadows. Terrain shadows
+// remove the light that comes from shadowed stretches of the ray.
 vec4 FogSunTo(vec3 direction, float distance_km) {
   float taken = 1.0 - FogTransmittance(direction, distance_km);
   vec3 place = FogPlace(direction, taken);
@@ -104,7 +104,8 @@ FogAlong FogTo(vec3 direction, float distance_km) {
   return FogAlong(vec4(left), (1.0 - left) * source);
 }
 
-// Where the fog has taken so much along a ray, as if the ground were flat.
+// Returns the distance at which the fog reaches an optical depth along a ray, assuming a flat
+// ground.
 float FogDistanceOf(vec3 direction, float depth, float distance_km) {
   float per_km = fog_layer.x * FogDensityAt(fog_eye.x);
   float bend = fog_layer.y > 0.0 ? direction.z / fog_layer.y : 0.0;
@@ -116,20 +117,21 @@ float FogDistanceOf(vec3 direction, float depth, float distance_km) {
   return clamp(far, 0.0, distance_km);
 }
 
-// Light of the air up to a distance, L(d), arrives dimmed by the fog in front of where it is
-// scattered: sum of weight[i] L(distance_km[i]), the last of them the distance itself. On stretches
-// between, light is taken to rise evenly; what fog leaves, on the mean, is Simpson's rule. The last
-// stretch may reach to space, far beyond where the light rises and the fog ends: what it brings more
-// than `left` of it is at most `fade` of the light of the stretch before, as if the fog's share went
-// on to fall there as it fell before.
+// In-scattered light of the air up to a distance, L(d), is attenuated by the fog in front of the
+// place where it is scattered: sum of weight[i] L(distance_km[i]), where the last distance is that
+// of the ray. Within a stretch the light is assumed to increase linearly, and the mean
+// transmittance of the fog follows from Simpson's rule. The last stretch may reach to space, far
+// beyond the place where the light increases and the fog ends. Its contribution in excess of `left`
+// is at most `fade` times the light of the stretch before, as if the transmittance of the fog
+// continued to decrease there at the previous rate.
 struct FogStretches {
   vec4 distance_km;
-  vec4 weight;  // with no more than `left` of the last stretch
-  float rest;   // weight of the last stretch beyond that, by Simpson's rule
+  vec4 weight;  // with at most `left` for the last stretch
+  float rest;   // remaining weight of the last stretch, by Simpson's rule
   float fade;
 };
 
-// Of what is left between two distances at which it is a and b.
+// Returns the mean transmittance between two distances at which it is a and b.
 float FogMean(vec3 direction, float from_km, float to_km, float a, float b) {
   return (a + 4.0 * FogTransmittance(direction, 0.5 * (from_km + to_km)) + b) / 6.0;
 }
@@ -138,7 +140,7 @@ FogStretches FogStretchesTo(vec3 direction, float distance_km) {
   float left = FogTransmittance(direction, distance_km);
   vec4 ends;
   vec4 at;
-  // Downwards a ray is clear before it comes into fog, upwards after.
+  // A downward ray passes clear air before fog, an upward ray after it.
   vec3 shares = direction.z < 0.0 ? vec3(0.97, 0.5, 0.02) : vec3(0.5, 0.12, 0.015);
   for (int i = 0; i < 3; ++i) {
     at[i] = FogDistanceOf(direction, -log(left + shares[i] * (1.0 - left)), distance_km);
@@ -157,23 +159,25 @@ FogStretches FogStretchesTo(vec3 direction, float distance_km) {
   return FogStretches(at, mean - vec4(mean.yzw, 0.0), rest, fade);
 }
 
-// The light of the last stretch beyond `left`. @param all, light, before  light of the whole way and of
-// the ways to the ends of the two stretches before the last.
+// Returns the light of the last stretch in excess of `left`.
+// @param all, light, before  light of the whole path and up to the ends of the two stretches before
+//   the last.
 vec4 FogRest(FogStretches stretches, vec4 all, vec4 light, vec4 before) {
   return max(min(stretches.rest * (all - light), stretches.fade * (light - before)), vec4(0.0));
 }
 
-// What fog leaves of sunlight on the ground there; mu_s of a sun over the horizon.
+// Returns the transmittance of fog for sunlight at the ground; mu_s is of a sun above the horizon.
 float FogSunLeft(float h, float mu_s) {
   return exp(-fog_eye.w * fog_layer.x * FogColumnToSpace(h, mu_s));
 }
 
 float FogDepthAbove(float h) { return min(fog_layer.x * FogColumnOut(h, 1.0), fog_eye.z); }
 
-// What it leaves of the sky's irradiance.
+// Returns the transmittance of fog for the sky's irradiance.
 float FogSkyLeft(float h) { return exp(-fog_eye.w * FogDepthAbove(h) * 1.66666667); }
 
-// Irradiance by the fog's own light. @param cos_up  of the surface's normal.
+// Returns the irradiance of a surface by light that the fog scatters.
+// @param cos_up  of the surface's normal.
 vec4 FogOnSurface(float h, float cos_up) {
   float unit = sqrt(sqrt(FogDepthAbove(h) / max(fog_eye.z, 1e-9)));
   float x = TexelFromUnit(unit, float(textureSize(fog_surface_map, 0).x));

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
-// Sunlight in fog that terrain's shade takes from a ray, by steps through a ShadeMap: as MarchedShade
-// (shade_march.glsl) does it for air. If the ground were flat, the shares of the ray that steps take would grow
-// evenly: a low sun shines on the top of the fog, where rays come in;
-// how much they bring says FogSunTo (fog_light.glsl).
+// Sunlight in fog that terrain shadows remove from a ray, by marching through a ShadeMap as
+// MarchedShade (shade_march.glsl) does for air. For flat ground the steps' shares of the ray's
+// light increase linearly, because a low sun shines on the top of the fog, where rays enter.
+// FogSunTo (fog_light.glsl) gives the light of each step.
 
-// Light in fog changes within a valley, that in air over kilometres.
+// Light in fog varies within a valley, light in air over kilometres.
 const int kFogSteps = 4;
 
 vec4 MarchedFogShade(vec3 direction, float distance_km) {

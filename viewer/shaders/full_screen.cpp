@@ -28,7 +28,7 @@ ShaderProgram FullScreenProgram(const std::vector<ShaderPiece>& fragment) {
                        {{kSquare, "square"}});
 }
 
-// An attribute without an array is what glVertexAttrib says.
+// The attribute has no array, so its value is that of glVertexAttrib.
 void DrawFullScreen(const ShaderProgram& program, const GlVertexArray& no_vertices) {
   program.Use();
   glBindVertexArray(no_vertices.id());

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The viewer's own texts for shaders, by their names in the tree: "viewer/shaders/hud.frag.glsl".
-//
-// Passes over a whole picture, or over boxes of it: one fragment stage.
+// Passes over a whole picture or over boxes of it with one fragment stage, and the viewer's
+// embedded shader texts, named by their path in the tree: "viewer/shaders/hud.frag.glsl".
 #pragma once
 
 #include <optional>
@@ -16,26 +15,28 @@ namespace alpenglow::viewer {
 
 [[nodiscard]] ShaderPiece ViewerPiece(const std::string& name);
 
-/// These texts, and after them the viewer's of these names.
+/// Returns the texts followed by the viewer's texts of these names.
 [[nodiscard]] std::vector<ShaderPiece> WithViewerPieces(std::vector<ShaderPiece> texts,
                                                         const std::vector<std::string>& names);
 
-/// full_screen.vert.glsl and a fragment stage of these texts.
+/// Returns a program of full_screen.vert.glsl and a fragment stage of these texts.
 [[nodiscard]] ShaderProgram FullScreenProgram(const std::vector<ShaderPiece>& fragment);
 
-/// Draws into what is bound, over the whole viewport.
+/// Draws over the whole viewport of the bound target.
 void DrawFullScreen(const ShaderProgram& program, const GlVertexArray& no_vertices);
 
-/// Which pixels a pass fills: all, or those of some boxes. Thousands of boxes are one draw.
+/// The pixels that a pass fills: all, or those of some boxes. Thousands of boxes take one draw
+/// call.
 class PassArea {
  public:
-  /// @param width, height  of the viewport that is drawn into.
+  /// Restricts the pass to boxes.
+  /// @param width, height  of the viewport.
   void Set(std::span<const PixelBox> boxes, int width, int height);
 
   void Draw(const ShaderProgram& program) const;
 
  private:
-  std::optional<int> boxes_;  // nothing: all
+  std::optional<int> boxes_;  // number of boxes; empty: all pixels
   GlBuffer squares_;
   GlVertexArray layout_, no_vertices_;
 };

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// One triangle over the whole picture, or squares of it; `screen` runs from (-1, -1) to (1, 1) over the
-// picture.
+// One triangle over the whole picture, or squares in it. `screen` runs from (-1, -1) to (1, 1) over
+// the picture.
 in vec4 square;  // lower left and upper right corner; all 0: the triangle
 out vec2 screen;
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
-// What the ground is made of, and relief finer than the mesh, around the eye: what GroundBlock of
-// uniform_blocks.h says of it, put into ground_cover.glsl and lattice_noise.glsl.
+// Albedo of the ground around the eye, and relief finer than the mesh: GroundBlock of
+// uniform_blocks.h, with the functions of ground_cover.glsl and lattice_noise.glsl.
 //
-// Places are metres from the eye along the east, north and upward axes of the mesh. Of every octave
-// the eye's own place comes as a square of the lattice and a fraction of it, so that float holds
-// places thousands of kilometres from the origin of the pattern.
+// Positions are in metres from the eye along the east, north and upward axes of the mesh. For every
+// octave the eye's position is given as a lattice cell and a fraction of it, so that floats suffice
+// for places thousands of kilometres from the origin of the pattern.
 #define BROAD 0
 #define FINE 1
 #define RELIEF 2
@@ -20,11 +20,11 @@ layout(std140) uniform Ground {
   vec4 dry_meadow;
   vec4 rock;
   vec4 snow;
-  vec4 cover_lines;      // tree line, snow line [m]; octaves of the finest detail that are left out,
-                         // to save time; how much of the sun is in the south
-  vec4 green_lines;      // of leaves, bare trees, grass and broad-leaved woods [m]
-  ivec4 octave_cell[33]; // of the eye, east and north: by octave of all families, NoiseOctave
-  vec4 octave_place[33]; // fraction of the square, east and north; lean, east and north
+  vec4 cover_lines;      // tree line, snow line [m]; number of finest octaves that are omitted
+                         // to save time; extent to which the sun is in the south
+  vec4 green_lines;      // lines of leaves, bare trees, grass and broad-leaved woods [m]
+  ivec4 octave_cell[33]; // cell of the eye, east and north: NoiseOctave, octaves of all families
+  vec4 octave_place[33]; // fraction of the cell, east and north; lean, east and north
   vec4 mesh_east;        // axes of the mesh in the frame of the eye
   vec4 mesh_north;
   vec4 mesh_up;
@@ -46,13 +46,13 @@ int FirstOctave(int family) {
   return kBroadOctaves + kFineOctaves + kReliefOctaves + kGrainOctaves;
 }
 
-// A place in its cell of the lattice, and the hashes of the cell's corners.
+// A position in a cell of the lattice, and the hashes of the cell's corners.
 struct NoiseCell {
   vec2 place;
   uint sw, se, nw, ne;
 };
 
-// @param place  within and beyond `cell`, in cells.
+// @param place  relative to `cell`, in cells; may lie beyond it.
 NoiseCell NoiseCellAt(ivec2 cell, vec2 place, uint seed) {
   vec2 whole = floor(place);
   uvec2 at = uvec2(cell + ivec2(whole));
@@ -61,7 +61,7 @@ NoiseCell NoiseCellAt(ivec2 cell, vec2 place, uint seed) {
                    LatticePoint(at.x + 1u, at.y + 1u, seed));
 }
 
-// @param octave  of all families.
+// @param octave  index over all families.
 NoiseCell OctaveCell(vec3 offset, int octave, float wavelength, uint seed) {
   vec4 at = octave_place[octave];
   vec2 place = at.xy + (offset.xy + offset.z * at.zw) / wavelength;
@@ -73,16 +73,16 @@ vec2 SlopeOf(NoiseCell c) {
               SlopeOfHashesNorth(c.sw, c.se, c.nw, c.ne, c.place.x, c.place.y));
 }
 
-// How many octaves are summed: from waves of two footprints down OctaveShare is 0.
+// Returns the number of octaves to sum. For waves of two footprints and shorter, OctaveShare is 0.
 int OctavesKept(ivec4 of, float footprint) {
   float kept = ceil(log2(max(float(of.x) / (2.0 * footprint), 1.0)));
   return min(of.y, int(kept));
 }
 
-// What the finest detail is held to, with octaves left out.
+// Returns the footprint for the finest detail, enlarged for the omitted octaves.
 float DetailFootprint(float footprint) { return footprint * exp2(cover_lines.z); }
 
-// The octaves that a footprint keeps.
+// Returns the sum of the octaves that a footprint resolves.
 float DetailNoise(vec3 offset, int family, float footprint) {
   ivec4 of = NoiseOf(family);
   int octaves = OctavesKept(of, footprint);
@@ -100,7 +100,7 @@ float DetailNoise(vec3 offset, int family, float footprint) {
   return sum;
 }
 
-// Its derivatives to the east, north and upwards [1/m].
+// Returns the derivatives of DetailNoise to the east, north and upwards [1/m].
 vec3 DetailSlope(vec3 offset, int family, float footprint) {
   ivec4 of = NoiseOf(family);
   int octaves = OctavesKept(of, footprint);
@@ -118,8 +118,10 @@ vec3 DetailSlope(vec3 offset, int family, float footprint) {
   return sum;
 }
 
-// @param altitude [m]; tilt: components of the mesh's normal upwards and to the north; mapped: shares
-//     of a map of land cover, and whether there are any, 1 or 0.
+// Returns the albedo of the ground.
+// @param altitude  [m].
+// @param tilt  components of the mesh's normal upwards and to the north.
+// @param mapped  fractions of a land-cover map; fourth: 1 if there is a map, else 0.
 vec4 GroundAlbedo(vec3 offset, float altitude, vec2 tilt, float footprint, vec4 mapped) {
   float width = DetailFootprint(footprint);
   float broad = DetailNoise(offset, BROAD, width);
@@ -150,16 +152,17 @@ vec4 GroundAlbedo(vec3 offset, float altitude, vec2 tilt, float footprint, vec4 
   return albedo;
 }
 
-// The normal with the relief that the mesh does not have.
+// Returns the normal including the relief that the mesh does not have.
 vec3 DetailedNormal(vec3 offset, vec3 normal, float footprint) {
   vec3 slope = float(kReliefHeight_m) * DetailSlope(offset, RELIEF, DetailFootprint(footprint));
   vec3 tilt = -slope.x * mesh_east.xyz - slope.y * mesh_north.xyz - slope.z * mesh_up.xyz;
   return normalize(normal + tilt - dot(tilt, normal) * normal);
 }
 
-// Slopes to the east and north of the waves that a footprint resolves, and the slope variance of
-// the others: WavesAt of surface.h.
-// @param variance  of all waves; cosine: of the vertical and the eye.
+// Returns the slopes to the east and north of the waves that a footprint resolves, and the slope
+// variance of the other waves: WavesAt of surface.h.
+// @param variance  of all waves.
+// @param cosine  of the angle between the vertical and the eye.
 vec3 WavesAt(vec3 offset, float footprint, float variance, float cosine) {
   float width = DetailFootprint(footprint);
   ivec4 of = NoiseOf(WAVES);

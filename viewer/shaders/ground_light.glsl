@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: MIT
-// What the ground sends towards the eye, per unit solar irradiance [1/sr]: ground_light.h of the
-// renderer, with the light of sky and slopes, and the edges of shade, as LitGround interpolates
-// them. Lamps are apart.
+// Radiance of the ground towards the eye, per unit solar irradiance [1/sr], without lamps:
+// ground_light.h of the renderer, with the irradiance of sky and slopes and the shadow edges that
+// LitGround interpolates.
 
-// The open sky's light on surfaces of any tilt: GroundLightBlock of ground_block.h.
+// Irradiance of the unoccluded sky on surfaces of any tilt: GroundLightBlock of ground_block.h.
 layout(std140) uniform GroundLight {
   vec4 sky_towards;  // horizontal direction towards the sun
-  vec4 ground_view;  // angle of a pixel [rad]; 1: edges of terrain are those before this sun, else 0
+  vec4 ground_view;  // angle of a pixel [rad]; second: 1 if the shadow edges belong to this sun
   vec4 open_sky[OPEN_SKY_COLUMNS * OPEN_SKY_ROWS];  // nodes of SkyTilt, by band
 };
 
-// A place of the ground as its light and material see it.
+// A place on the ground, with the quantities that its lighting and material need.
 struct GroundPlace {
   vec3 up;
   float altitude;   // km
@@ -18,7 +18,7 @@ struct GroundPlace {
   vec3 offset;      // from the eye, east, north and upwards in the frame of the pattern [m]
 };
 
-// Components of a normal upwards and to the north.
+// Returns the components of a normal upwards and to the north.
 vec2 TiltOf(vec3 normal, vec3 up) { return vec2(dot(normal, up), dot(normal, mesh_north.xyz)); }
 
 // @param point  from the eye [m].
@@ -37,15 +37,16 @@ vec2 DiskOver(GroundPlace at, vec3 to_sun) {
                          sun.w);
 }
 
-// Light of the sun on a level across its beams: what of the disk stands over the planet's horizon,
-// over terrain and over the plane of the mesh there, through the air.
+// Returns the sun's irradiance on a plane perpendicular to its beams, attenuated by the air, for
+// the part of the disk above the planet's horizon, above terrain and above the local plane of the
+// mesh.
 vec4 SunAcross(GroundPlace at, vec3 mesh_normal, float sun_x) {
   vec2 disk = DiskOver(at, sun.xyz);
   float over_plane = dot(mesh_normal, sun.xyz) / sun.w;
   return disk.x * SunlightOverEdge(min(sun_x, over_plane)) * BeamOfSun(at.altitude, disk.y);
 }
 
-// The normal that light falls on: with the relief that the mesh does not have, where there is any.
+// Returns the normal for lighting, which includes relief finer than the mesh if there is any.
 vec3 NormalInLight(vec3 offset, vec3 mesh_normal, float footprint) {
 #if HAS_FINE_RELIEF
   return DetailedNormal(offset, mesh_normal, footprint);
@@ -54,7 +55,7 @@ vec3 NormalInLight(vec3 offset, vec3 mesh_normal, float footprint) {
 #endif
 }
 
-// The light of the open sky on a surface, at half the height of the land.
+// Returns the irradiance of the unoccluded sky on a surface, at half the height of the land.
 vec4 OpenSkyOnSlope(vec3 normal, vec3 up) {
   float u = OpenSkyColumn(dot(normal, sky_towards.xyz)), v = OpenSkyRow(dot(normal, up));
   int column = min(int(u), OPEN_SKY_COLUMNS - 2), row = min(int(v), OPEN_SKY_ROWS - 2);
@@ -64,12 +65,13 @@ vec4 OpenSkyOnSlope(vec3 normal, vec3 up) {
              mix(open_sky[high], open_sky[high + 1], right), v - float(row));
 }
 
-// Ground that a ray ends on, land or the planet beyond it, as all its light sees it.
+// Ground at the end of a ray, on land or on the planet beyond it, with the quantities for all
+// lights.
 struct SeenGround {
   GroundPlace at;
-  vec3 mesh_normal;  // unit, without finer relief
-  vec3 normal;       // with it
-  vec4 albedo;       // of the body of land
+  vec3 mesh_normal;  // unit, without the finer relief
+  vec3 normal;       // with the finer relief
+  vec4 albedo;       // diffuse albedo of land
   bool is_water;
 };
 
@@ -79,8 +81,9 @@ SeenGround WaterSeen(GroundPlace at, vec3 mesh_normal) {
   return SeenGround(at, mesh_normal, at.up, vec4(0.0), true);
 }
 
-// The terrain.
-// @param point_m  from the eye; mesh_normal, to_eye: unit.
+// Returns the ground of the terrain.
+// @param point_m  from the eye.
+// @param mesh_normal, to_eye  unit.
 SeenGround LandSeen(vec3 point_m, vec3 mesh_normal, vec3 to_eye) {
   GroundPlace at = GroundPlaceAt(point_m);
 #if GROUND_COVER == WATER_COVER
@@ -98,7 +101,8 @@ SeenGround LandSeen(vec3 point_m, vec3 mesh_normal, vec3 to_eye) {
 #endif
 }
 
-// The planet where there is no terrain: low land of the season beyond some, else of one albedo.
+// Returns the ground of the planet without terrain: seasonal low land beyond terrain, else a
+// constant albedo.
 SeenGround PlanetSeen(vec3 point_m, vec3 to_eye) {
   GroundPlace at = GroundPlaceAt(point_m);
 #if PLANET_IS_WATER
@@ -114,13 +118,15 @@ SeenGround PlanetSeen(vec3 point_m, vec3 to_eye) {
 #endif
 }
 
-// The light of the sky on what is seen, where terrain leaves this share of the open sky's: VertexLight (land_chunk.h).
+// Returns the irradiance of the sky if terrain leaves the fraction `share` of the unoccluded sky:
+// VertexLight (land_chunk.h).
 vec4 SkyByShare(SeenGround seen, vec4 share) {
   return share * OpenSkyOnSlope(seen.normal, seen.at.up);
 }
 
-// The light of sun and sky that ground sends.
-// @param sun_x  see LitVertex (lit_ground.h); sky_irradiance: on seen.normal.
+// Returns the radiance of ground lit by sun and sky.
+// @param sun_x  see LitVertex (lit_ground.h).
+// @param sky_irradiance  on seen.normal.
 vec4 SentOn(SeenGround seen, float sun_x, vec4 sky_irradiance, vec3 to_eye) {
   GroundPlace at = seen.at;
 #if MAY_BE_WATER
@@ -132,7 +138,7 @@ vec4 SentOn(SeenGround seen, float sun_x, vec4 sky_irradiance, vec3 to_eye) {
                        sky_irradiance, to_eye);
 }
 
-// The light that the ground's body sends of an irradiance without direction: of lamps, and at night.
+// Returns the diffuse radiance for an irradiance without direction, of lamps or at night.
 vec4 SentOfIrradiance(SeenGround seen, vec4 irradiance, vec3 to_eye) {
   float mu_eye = clamp(dot(seen.normal, to_eye), 1e-4, 1.0);
   vec4 albedo = CoverBodyAlbedo(seen.albedo, mu_eye);
@@ -142,7 +148,7 @@ vec4 SentOfIrradiance(SeenGround seen, vec4 irradiance, vec3 to_eye) {
   return albedo / 3.14159265359 * irradiance;
 }
 
-const float kNoEdge = 1e9;  // sun_x where no terrain stands before the sun
+const float kNoEdge = 1e9;  // value of sun_x if no terrain hides the sun
 
 vec4 SkyOnPlanet(SeenGround seen) { return LevelSky(dot(seen.at.up, sun_for_air.xyz)); }
 
@@ -156,7 +162,8 @@ vec4 PlanetRadiance(vec3 point_m, vec3 to_eye) {
   return SentOn(seen, kNoEdge, SkyOnPlanet(seen), to_eye);
 }
 
-// The light that the planet sends beyond an even one of the medium's albedo, which the sky's table has.
+// Returns the planet's radiance minus that of uniform ground with the medium's albedo, which the
+// sky table contains.
 vec4 PlanetBeyondEven(vec3 point_m, vec3 to_eye) {
   SeenGround seen = PlanetSeen(point_m, to_eye);
   vec4 sky = SkyOnPlanet(seen);

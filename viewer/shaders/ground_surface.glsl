@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
-// How surfaces of the ground send light on: reflectance.glsl with the values of one scene,
-// GroundSurface of ground_block.h. GROUND_COVER is a GroundCover::Kind, HAS_SEA, HAS_DRAPE and
-// HAS_LAND_COVER (of the drape) are 1 or 0: software drivers walk through both sides of every branch.
+// Reflection by surfaces of the ground: reflectance.glsl with the parameters of one scene,
+// GroundSurface of ground_block.h. GROUND_COVER is a GroundCover::Kind; HAS_SEA, HAS_DRAPE and
+// HAS_LAND_COVER (of the drape) are 1 or 0, because software drivers evaluate both sides of every
+// branch.
 #define MOUNTAIN_COVER 0
 #define LAMBERT_COVER 1
 #define OREN_NAYAR_COVER 2
@@ -11,63 +12,66 @@
 #define WATER_INDEX 1.34
 
 layout(std140) uniform GroundSurface {
-  vec4 cover_albedo;  // of a cover of one colour
+  vec4 cover_albedo;  // of a cover with one colour
   vec4 rough;         // RoughDiffuse: roughness, scale, mean albedo
   vec4 coat;          // Glossy: exponent, reflectance at normal incidence, normalisation
-  vec4 water;         // variance of slopes; the highest ground that is sea [m]; wetness of land
+  vec4 water;         // variance of slopes; highest ground that is sea [m]; wetness of land
   vec4 under_water;   // by band
   vec4 snow_y;        // by band
-  vec4 drape_red;     // albedo of colours by band
+  vec4 drape_red;     // albedo of the primary colours by band
   vec4 drape_green;
   vec4 drape_blue;
   vec4 drape_place;  // of the picture in the mesh's frame: west, south [m]; 1 / size [1/m]
-  vec4 drape_eye;    // of the eye there [m]
-  // At even steps of the root of a cosine: of snow the factor of a direction, of a coat the share of
-  // an even sky that it shows.
+  vec4 drape_eye;    // position of the eye in that frame [m]
+  // Values at even steps of the square root of a cosine: for snow the factor of a direction, for a
+  // coat the fraction of a uniform sky that it reflects.
   vec4 by_root_mu[17];
 };
 
 uniform sampler2D sea_mirror;  // SeaMirror of sky_on_ground.h
 uniform sampler2D level_sky;   // LevelSky of sky_on_ground.h
 #if HAS_DRAPE
-uniform sampler2D drape;  // linear sRGB, or shares of land cover; 1 where there is a picture
+uniform sampler2D drape;  // linear sRGB, or fractions of land cover; fourth: 1 inside the picture
 #endif
 
-// Cosines of normal and light, normal and eye, light and eye: AnglesBetween of reflectance.h.
+// Returns the cosines between normal and light, normal and eye, light and eye: AnglesBetween of
+// reflectance.h.
 vec3 ReflectionAngles(vec3 normal, vec3 to_light, vec3 to_eye) {
   return vec3(clamp(dot(normal, to_light), 1e-4, 1.0), clamp(dot(normal, to_eye), 1e-4, 1.0),
               clamp(dot(to_light, to_eye), -1.0, 1.0));
 }
 
-// Irradiance of the sky on a level at altitude 0, per unit solar irradiance. @param mu_s  of sun_for_air.
+// Returns the irradiance of the sky on a level surface at altitude 0, per unit solar irradiance.
+// @param mu_s  of sun_for_air.
 vec4 LevelSky(float mu_s) {
   float x = (AngleOfSine(clamp(mu_s, -1.0, 1.0)) - LEVEL_SKY_LOWEST) / LEVEL_SKY_RANGE;
   return texture(level_sky, vec2(TexelFromUnit(clamp(x, 0.0, 1.0), LEVEL_SKY_NODES), 0.5));
 }
 
-// @param variance  of the slopes that the normal does not show.
+// @param variance  of the slopes that the normal does not include.
 vec4 WaterBrdf(vec3 angles, float variance) {
   float glitter = WaveGlitter(angles.x, angles.y, angles.z, variance, WATER_INDEX);
   float through = WaterTransmitted(angles.x, WATER_INDEX) * WaterTransmitted(angles.y, WATER_INDEX);
   return vec4(glitter) + through / 3.14159265359 * under_water;
 }
 
-// What waves show of the sky [1/sr].
+// Returns the radiance of the sky reflected by waves [1/sr].
 vec4 SkyInWater(vec3 up, vec3 to_eye) {
   float mu_eye = clamp(dot(up, to_eye), 0.0, 1.0);
   float mu_s = dot(up, sun_for_air.xyz);
   vec3 flat_eye = to_eye - mu_eye * up;
   vec3 flat_sun = sun_for_air.xyz - mu_s * up;
   float lengths = max(length(flat_eye) * length(flat_sun), 1e-9);
-  float apart = clamp(dot(flat_eye, flat_sun) / lengths, -1.0, 1.0);  // eye and sun: opposite, 1
+  float apart = clamp(dot(flat_eye, flat_sun) / lengths, -1.0, 1.0);  // 1: eye opposite the sun
   vec2 unit = vec2(sqrt(0.5 * (1.0 + apart)), sqrt(mu_eye));
   vec2 texel = vec2(TexelFromUnit(unit.x, SEA_MIRROR_SIDE), TexelFromUnit(unit.y, SEA_MIRROR_SIDE));
   return texture(sea_mirror, texel) * LevelSky(mu_s);
 }
 
-// Radiance of water under a sun across whose beams the irradiance is `across`, and a sky.
-// @param offset  from the eye in the plane of the pattern [m]; footprint  across the ray [m];
-//     cosine  of eye and normal of the mesh.
+// Returns the radiance of water. `across` is the sun's irradiance perpendicular to its beams.
+// @param offset  from the eye in the plane of the pattern [m].
+// @param footprint  across the ray [m].
+// @param cosine  between the eye and the normal of the mesh.
 vec4 WaterRadiance(vec3 up, vec3 offset, float footprint, float cosine, vec4 across,
                    vec4 sky_irradiance, vec3 to_eye) {
   vec3 waves = WavesAt(offset, SeenFootprint(footprint, cosine), water.x, cosine);
@@ -114,7 +118,7 @@ vec4 GlossyBrdf(vec4 albedo, vec3 angles) {
   return vec4(lobe) + BodyUnderCoat(angles.x, angles.y, coat.y) * albedo;
 }
 
-// Of the land's cover, water apart.
+// Returns the BRDF of the land's cover, without water.
 vec4 CoverBrdf(vec4 albedo, vec3 angles) {
 #if GROUND_COVER == OREN_NAYAR_COVER
   return RoughBrdf(albedo, angles);
@@ -127,7 +131,8 @@ vec4 CoverBrdf(vec4 albedo, vec3 angles) {
 #endif
 }
 
-// Share of an even sky that is sent to the eye, but for what is mirrored.
+// Returns the fraction of a uniform sky that is reflected diffusely to the eye, without mirror
+// reflection.
 vec4 CoverBodyAlbedo(vec4 albedo, float mu_eye) {
 #if GROUND_COVER == OREN_NAYAR_COVER
   return RoughAlbedo(albedo, mu_eye);
@@ -140,7 +145,7 @@ vec4 CoverBodyAlbedo(vec4 albedo, float mu_eye) {
 #endif
 }
 
-// What a glossy coat shows of the sky, taken to be even.
+// Returns the radiance of the sky, assumed uniform, reflected by a glossy coat.
 vec4 SkyInCoat(float mu_eye, vec4 sky_irradiance) {
 #if GROUND_COVER == BLINN_PHONG_COVER
   return ByRootOf(mu_eye) / 3.14159265359 * sky_irradiance;
@@ -158,14 +163,15 @@ vec4 CoverRadiance(vec4 albedo, vec3 normal, vec4 across, vec4 sky_irradiance, v
 }
 
 #if HAS_DRAPE
-// What the drape shows there, and 1; 0 where it shows nothing.
-// @param offset  from the eye in the plane of the pattern [m]; altitude [m].
+// Returns the drape's value and 1, or 0 in the fourth component outside the drape.
+// @param offset  from the eye in the plane of the pattern [m].
+// @param altitude  [m].
 vec4 DrapeAt(vec3 offset, float altitude, float footprint) {
   vec2 foot = (offset.xy + drape_eye.xy) * (1e3 * RADIUS / (1e3 * RADIUS + altitude));
   vec2 at = (foot - drape_place.xy) * drape_place.zw;
   float level = log2(max(footprint * drape_place.z * float(textureSize(drape, 0).x), 1.0));
   vec4 shown = textureLod(drape, clamp(at, 0.0, 1.0), level);
-  shown.xyz /= max(shown.w, 1e-3);  // means over a picture's rim
+  shown.xyz /= max(shown.w, 1e-3);  // undo averaging across the picture's rim
   bool within = all(greaterThanEqual(at, vec2(0.0))) && all(lessThanEqual(at, vec2(1.0)));
   shown.w = within && shown.w > 0.5 ? 1.0 : 0.0;
 #if HAS_LAND_COVER
@@ -177,7 +183,7 @@ vec4 DrapeAt(vec3 offset, float altitude, float footprint) {
 vec4 DrapeAt(vec3 offset, float altitude, float footprint) { return vec4(0.0); }
 #endif
 
-// Whether it is water there.
+// Returns whether the place is water.
 bool IsWater(float altitude, vec4 drape_shown) {
 #if HAS_LAND_COVER
   if (drape_shown.w * IsMappedWater(drape_shown.x, drape_shown.y) > 0.5) return true;
@@ -185,8 +191,9 @@ bool IsWater(float altitude, vec4 drape_shown) {
   return altitude <= water.y;
 }
 
-// Albedo of the land's body there.
-// @param tilt  see GroundAlbedo; drape_shown  of DrapeAt.
+// Returns the diffuse albedo of the land.
+// @param tilt  see GroundAlbedo.
+// @param drape_shown  value of DrapeAt.
 vec4 LandAlbedo(vec3 offset, float altitude, vec2 tilt, float footprint, vec4 drape_shown) {
 #if GROUND_COVER == MOUNTAIN_COVER
   vec4 mapped = HAS_LAND_COVER == 1 ? drape_shown : vec4(0.0);

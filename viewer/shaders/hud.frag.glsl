@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Letters and lines: coverage from an atlas, colour from the corners.
+// Letters and lines: coverage from an atlas, colour interpolated from the corners.
 uniform sampler2D atlas;
 
 in vec2 atlas_at;

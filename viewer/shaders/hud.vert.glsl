@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Corners of the triangles of instruments and panels: pixels from the upper left corner.
+// Vertices of the triangles of instruments and panels, in pixels from the upper left corner.
 uniform vec2 picture_size;
 
 in vec2 place;

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
-// What the eye sees of the land.
+// Writes the visible land to a SurfaceMap.
 in vec3 facing;
 in vec4 sky_light, moon_sky_light;
 in float disk_height;
-// SurfaceMap of land_pass.h, the normal on the side that is seen.
+// Outputs of SurfaceMap of land_pass.h. The normal points to the visible side.
 layout(location = 0) out vec4 surface;
 layout(location = 1) out vec4 sky_irradiance;
 layout(location = 2) out vec4 moon_sky_irradiance;

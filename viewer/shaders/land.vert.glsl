@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
-// Land relative to the eye, on the way from its own level of detail to the next coarser one (see
-// viewer/land/level_ranges.h).
+// Vertices of land relative to the eye, morphed between their own level of detail and the next
+// coarser one (see viewer/land/level_ranges.h).
 in vec3 position;  // [m]
 in vec3 coarse_position;
 in vec2 sample_place;
-in vec4 normal;  // of any length; the level
+in vec4 normal;  // of any length; fourth: the level
 in vec4 coarse_normal;
-// ChunkLight of land_chunk.h, own and of the coarser level.
+// ChunkLight of land_chunk.h, of the vertex's own level and of the coarser level.
 in vec4 sky, coarse_sky, moon_sky, coarse_moon_sky;
 in vec2 disk_over_edge;
 in vec4 new_sky, new_coarse_sky, new_moon_sky, new_coarse_moon_sky;
@@ -14,11 +14,11 @@ in vec2 new_disk_over_edge;
 out vec3 facing;  // normal, in the eye's frame: east, north, up
 out vec4 sky_light, moon_sky_light;
 out float disk_height;
-out float sunk;  // [km]; over 0: the planet hides it
+out float sunk;  // [km]; positive: hidden by the planet
 
 vec3 InEyeFrame(vec3 v) { return vec3(dot(v, east.xyz), dot(v, north.xyz), dot(v, up.xyz)); }
 
-// 0: own, 1: the coarser level's.
+// Returns the morph weight: 0 for the own level, 1 for the coarser level.
 float Turned() {
   vec2 away = (sample_place - eye_sample.xy) * eye_sample.zw;
   vec2 range = turning[int(normal.w)].xy;
@@ -26,10 +26,11 @@ float Turned() {
   return clamp((d - range.x) * range.y, 0.0, 1.0);
 }
 
-// Sines of the horizon's elevation towards the sun of this moment: HorizonTexture.
+// Sines of the horizon's elevation towards the current sun: HorizonTexture.
 uniform sampler2D horizon_sines;
 
-// Height of the disk over that horizon, in its radii. Beyond the map no terrain stands before it.
+// Returns the elevation of the disk above that horizon, in its radii. Beyond the map no terrain
+// hides it.
 float DiskOverHorizonHere(vec3 at, vec3 from_eye) {
   vec2 place = vec2(dot(horizon_u, vec4(at, 1.0)), dot(horizon_v, vec4(at, 1.0)));
   if (any(lessThan(place, vec2(0.0))) || any(greaterThan(place, vec2(1.0)))) return 64.0;
@@ -37,8 +38,9 @@ float DiskOverHorizonHere(vec3 at, vec3 from_eye) {
   return (asin(dot(up_here, sun.xyz)) - asin(textureLod(horizon_sines, place, 0.0).x)) / sun.w;
 }
 
-// How far below all land, half a kilometre under the sphere, the ray to a place beyond the horizon
-// dips before it gets there. @param from_eye  as it is seen.
+// Returns how far the ray to a place beyond the horizon dips below all land, which is half a
+// kilometre under the sphere.
+// @param from_eye  apparent position.
 float SunkBehindPlanet(vec3 from_eye) {
   const float deepest_km = -0.5;
   float d = 1e-3 * length(from_eye);
@@ -50,7 +52,7 @@ float SunkBehindPlanet(vec3 from_eye) {
 void main() {
   const float nearest = 0.1;  // m
   float turned = Turned();
-  // At the ends exactly the one or the other: chunks that meet have the same vertices there.
+  // At weight 1 the coarse position is used exactly, so that adjacent chunks share vertices.
   vec3 at = turned == 1.0 ? coarse_position : mix(position, coarse_position, turned);
   vec3 from_eye = InEyeFrame((at - eye_high.xyz) - eye_low.xyz);
   facing = InEyeFrame(mix(normal.xyz, coarse_normal.xyz, turned));
@@ -67,7 +69,8 @@ void main() {
   float along_view = dot(from_eye_seen, view_forward.xyz);
   float width = dot(view_right.xyz, view_right.xyz);
   float height = dot(view_up.xyz, view_up.xyz);
-  // Only the near plane clips. Reversed depth is nearest / w; else the fragment stage writes it.
+  // The near plane is the only plane that clips. With reversed depth z is nearest / w; otherwise
+  // the fragment stage writes the depth.
   float z = eye_above.z > 0.0 ? nearest : along_view - 2.0 * nearest;
   vec2 seen = vec2(dot(from_eye_seen, view_right.xyz) / width,
                    dot(from_eye_seen, view_up.xyz) / height);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Depth alone of what the eye sees of the land.
+// Writes only the depth of the visible land.
 void main() {
   if (sunk > 0.0) discard;
   WriteDepth(Distance());

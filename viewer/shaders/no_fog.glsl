@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What stands for fog_light.glsl where there is no fog.
+// Replaces fog_light.glsl in scenes without fog.
 #define FOG_STRETCHES 1
 
 struct FogAlong {

@@ -1,20 +1,21 @@
 // SPDX-License-Identifier: MIT
-// The linear picture [cd/m^2, linear sRGB] under the sun or the moon, which the block View has as its
-// sun, and the nearness of land (nearness.glsl), in passes that
-// the depth of the land tells apart, for software drivers work through both sides of a branch.
-// Defined before this text:
-//   PASS      LAND_PASS: land and the air before it; SKY_PASS: sky and bare planet; OPEN_SKY_PASS:
-//             sky where no planet is; DISK_PASS: what the disks of sun and moon add;
-//             NIGHT_PASS: what the night's own sky adds to land, air and sky
+// The linear picture [cd/m^2, linear sRGB] lit by the sun or the moon, whichever the block View
+// holds as its sun, and the inverse depth of land (nearness.glsl). The passes are separated by the
+// depth test against land, because software drivers evaluate both sides of a branch. Defined before
+// this text:
+//   PASS          LAND_PASS: land and the air in front of it; SKY_PASS: sky and bare planet;
+//                 OPEN_SKY_PASS: sky above the planet; DISK_PASS: disks of sun and moon;
+//                 NIGHT_PASS: light of the night sky on land, air and sky
 //   HAS_SHADE, HAS_LAMPS, HAS_FOG
-//   SKY_BY_PIXEL  the sky's light on land is worked out here (sky_by_pixel.glsl), not by vertices
+//   SKY_BY_PIXEL  irradiance by the sky on land is computed here (sky_by_pixel.glsl), not by vertex
 in vec2 screen;
 out vec4 picture;
 
-uniform sampler2D surface_map;     // of land.frag.glsl
-uniform sampler2D sky_on_surface;  // of the same, that of this sun
+uniform sampler2D surface_map;     // output of land.frag.glsl
+uniform sampler2D sky_on_surface;  // output of land.frag.glsl for the current light
 
-// Light of the air before a distance as fog lets it through; `all` of the whole way, clear.
+// Returns the light of the air before a distance, attenuated by fog. `all` is that of the whole
+// path without fog.
 vec4 AirInFog(vec3 direction, float distance_km, vec4 all) {
 #if HAS_FOG
   FogStretches stretches = FogStretchesTo(direction, distance_km);
@@ -32,7 +33,8 @@ vec4 AirInFog(vec3 direction, float distance_km, vec4 all) {
 #endif
 }
 
-// What comes from a distance, and from the air and the fog on the way. Terrain shades neither.
+// Returns the light from a distance plus that of the air and fog on the path, without terrain
+// shadows.
 vec4 ThroughFog(vec3 direction, float distance_km, vec4 air, vec4 behind) {
 #if HAS_FOG
   FogAlong fog = FogTo(direction, distance_km);
@@ -42,8 +44,9 @@ vec4 ThroughFog(vec3 direction, float distance_km, vec4 air, vec4 behind) {
 #endif
 }
 
-// What shade takes of that. @param shaded_km  the distance on the map of shafts; single  light that TakenByShade
-// is a share of.
+// Returns the light that shadows remove on the path.
+// @param shaded_km  the distance stored in the map of shafts.
+// @param single  the light to which the fractions of TakenByShade refer.
 vec4 ShadeOnTheWay(vec3 direction, float distance_km, float shaded_km, vec4 single) {
   vec4 taken = vec4(0.0);
 #if HAS_SHADE
@@ -55,12 +58,14 @@ vec4 ShadeOnTheWay(vec3 direction, float distance_km, float shaded_km, vec4 sing
   return taken;
 }
 
-// Land as a texel of the surface map has it. @param place  where it truly stands, from the eye [m].
+// Returns the land in a texel of the surface map.
+// @param place  its true position, from the eye [m].
 SeenGround LandOf(vec4 surface, vec3 place, vec3 direction) {
   return LandSeen(place, UnitFromOctahedral(surface.xy), -direction);
 }
 
-// The light of ground under sun and sky, through the fog over it. @param sky  irradiance on seen.normal.
+// Returns the radiance of ground lit by sun and sky through the fog above it.
+// @param sky  irradiance on seen.normal.
 vec4 SunlitGround(SeenGround seen, float sun_x, vec4 sky, vec3 to_eye) {
 #if HAS_FOG
   float altitude = seen.at.altitude;
@@ -70,7 +75,7 @@ vec4 SunlitGround(SeenGround seen, float sun_x, vec4 sky, vec3 to_eye) {
 }
 
 #if HAS_LAMPS
-// The light of lamps that the ground sends back.
+// Returns the light of lamps that the ground reflects.
 // @param place  of the ground, from the eye [m].
 vec4 LampsReflected(SeenGround seen, vec3 place, vec3 direction) {
   vec4 irradiance = LampsOnGround(place, seen.normal, RAY_ANGLE * length(place));
@@ -79,8 +84,9 @@ vec4 LampsReflected(SeenGround seen, vec3 place, vec3 direction) {
 #endif
 
 #if PASS == LAND_PASS
-// The height of the disk over edges of shade, spread out so that an edge is as wide as the pixels that
-// it runs through. Across crests, where distances jump, there is no edge to see.
+// Returns the elevation of the disk above the shadow edge, scaled so that an edge is at least as
+// wide as the pixels that it crosses. Across crests, where distances are discontinuous, it is not
+// scaled.
 float OverSmoothEdge(vec4 surface) {
   float half_step = 0.5 * fwidth(surface.z);
   bool is_crest = fwidth(surface.w) > 0.3 * surface.w;
@@ -115,7 +121,7 @@ void main() {
 #endif
 
 #if PASS == SKY_PASS || PASS == OPEN_SKY_PASS
-// Whether the table of the sky has the planet's ground as it is.
+// True if the sky table holds the planet's ground without changes.
 #define PLANET_IS_PLAIN (!HAS_FOG && GROUND_COVER == MOUNTAIN_COVER && !PLANET_IS_WATER)
 
 vec4 PlanetThroughAir(vec3 direction) {
@@ -137,7 +143,7 @@ vec4 PlanetUnderLamps(vec3 direction) {
 #endif
 
 #if PASS == OPEN_SKY_PASS
-// The same as the horizon under it: what is seen there before land has come.
+// Returns the direction, raised to the horizon if it is below. This is drawn before land is loaded.
 vec3 NotUnderHorizon(vec3 direction) {
   float horizon = HorizonCosine(EYE_ALTITUDE, RADIUS);
   float level = length(direction.xy);
@@ -195,8 +201,8 @@ void main() {
 
 #if PASS == NIGHT_PASS
 uniform sampler2D night_sky;   // NightFloor of night_floor.h
-uniform vec4 night_scattered;  // what air without an end would send [W m^-2 sr^-1 nm^-1]
-uniform vec4 night_level;      // on level ground [W m^-2 nm^-1]
+uniform vec4 night_scattered;  // radiance of an infinite path of air [W m^-2 sr^-1 nm^-1]
+uniform vec4 night_level;      // irradiance of level ground [W m^-2 nm^-1]
 
 vec4 NightAbove(vec3 direction) {
   float elevation = AngleOfSine(clamp(direction.z, -1.0, 1.0));
@@ -204,7 +210,7 @@ vec4 NightAbove(vec3 direction) {
   return textureLod(night_sky, place + vec2(0.0, 0.5), 0.0);
 }
 
-// What ground sends back, which sees the part of an even sky that its tilt leaves.
+// Returns the light reflected by ground that sees the part of a uniform sky left by its tilt.
 vec4 NightReflected(SeenGround seen, vec3 to_eye) {
   vec4 level = 0.5 * (1.0 + dot(seen.normal, seen.at.up)) * night_level;
   return SentOfIrradiance(seen, level, to_eye);

@@ -1,27 +1,27 @@
 // SPDX-License-Identifier: MIT
-// Light of single scattering that terrain's shade takes from a ray, by steps through a ShadeMap
+// Single scattering that terrain shadows remove from a ray, by marching through a ShadeMap
 // (viewer/shade/shade_map.h).
 //
-// Needs vec4 SingleTo(vec3 direction, float distance_km): sunlight scattered once on the way to a
-// distance in unshaded air. Defined before this text: LEFT_BY_FOG(direction, distance_km), what fog leaves
-// of light from a distance.
+// Requires vec4 SingleTo(vec3 direction, float distance_km): single scattering of sunlight up to a
+// distance in unshadowed air. Defined before this text: LEFT_BY_FOG(direction, distance_km), the
+// transmittance of fog up to a distance.
 
-uniform sampler2D shade_map;  // height of the shade of the disk's middle, half that of its ends [m]
-// From metres around the eye (east, north, up, 1) to the map's coordinates and height in its frame.
+uniform sampler2D shade_map;  // shadow height of the disk's middle, half height of its penumbra [m]
+// These rows map metres around the eye (east, north, up, 1) to the map's coordinates and height.
 uniform vec4 shade_u, shade_v, shade_z;
-uniform vec2 shade_first;  // first coordinate along u that the map has, and how shade falls before
-uniform vec3 shade_low, shade_high;  // box that holds all shade, in these coordinates
-uniform int shade_pieces;            // of the stretch that may be shaded: one look at SingleTo each
-uniform int shade_steps;             // of a piece: one look at the map each
+uniform vec2 shade_first;  // first u coordinate of the map, and descent of the shadow before it
+uniform vec3 shade_low, shade_high;  // box that holds all shadows, in these coordinates
+uniform int shade_pieces;            // pieces of the shadowed stretch: one SingleTo each
+uniform int shade_steps;             // steps of a piece: one fetch of the map each
 
-// Keeps the part of a stretch where a + t b >= 0.
+// Returns the part of a stretch where a + t b >= 0.
 vec2 KeptWhere(vec2 stretch, float a, float b) {
   if (b == 0.0) return a < 0.0 ? vec2(1.0, 0.0) : stretch;
   float t = -a / b;
   return b > 0.0 ? vec2(max(stretch.x, t), stretch.y) : vec2(stretch.x, min(stretch.y, t));
 }
 
-// A ray in the map's coordinates: place at the eye, and change per metre.
+// A ray in the map's coordinates: position of the eye, and change per metre.
 struct ShadeRay {
   vec3 eye, slope;
 };
@@ -32,7 +32,8 @@ ShadeRay ShadeRayOf(vec3 direction) {
       vec3(dot(shade_u.xyz, direction), dot(shade_v.xyz, direction), dot(shade_z.xyz, direction)));
 }
 
-// The stretch [m] of a ray that may be shaded; empty where it ends before it begins.
+// Returns the stretch [m] of a ray that may be shadowed. It is empty if its end is before its
+// start.
 vec2 ShadeStretch(ShadeRay ray, float length_m) {
   vec2 stretch = vec2(0.0, length_m);
   stretch = KeptWhere(stretch, shade_high.z - ray.eye.z, -ray.slope.z);
@@ -43,7 +44,8 @@ vec2 ShadeStretch(ShadeRay ray, float length_m) {
   return KeptWhere(stretch, shade_high.y - ray.eye.y, -ray.slope.y);
 }
 
-// Height over the shade of the disk's middle, and half that of the disk's ends [m].
+// Returns the height above the shadow for the disk's middle, and half the height of the penumbra
+// [m].
 vec2 OverShade(ShadeRay ray, float t) {
   vec3 at = ray.eye + t * ray.slope;
   vec2 shade = textureLod(shade_map, at.xy, 0.0).xy;
@@ -51,35 +53,36 @@ vec2 OverShade(ShadeRay ray, float t) {
   return vec2(at.z - shade.x + fallen, shade.y);
 }
 
-// Integral of the sunlight over an edge, from the disk below it to a height x over it in radii:
-// of 0.5 + 0.7 x - 0.2 x^3, which is SunlightOverEdge (sunlit_path.h) within 0.01.
+// Integral of the sunlight over an edge, from a fully hidden disk to a disk at height x above it in
+// radii, with the integrand 0.5 + 0.7 x - 0.2 x^3, which is SunlightOverEdge (sunlit_path.h) within
+// 0.01.
 float SunlightUpTo(float x) {
   float s = clamp(x, -1.0, 1.0);
   return ((-0.05 * s * s + 0.35) * s + 0.5) * s + 0.2 + max(x - 1.0, 0.0);
 }
 
-// Mean share of sunlight that is missing between two places of a ray, heights running evenly.
+// Returns the mean fraction of sunlight that is missing between two points of a ray, with linear
+// heights.
 float MeanDarkness(vec2 from, vec2 to) {
   float radius = max(0.5 * (from.y + to.y), 0.01);
   float x = from.x / radius, y = to.x / radius;
   float middle = 0.5 * (x + y);
-  // Less apart the difference of the integrals has no digits left.
+  // For a smaller difference the integrals would cancel.
   float least = 0.01 * max(1.0, abs(middle));
   float apart = abs(y - x) < least ? least : y - x;
   return 1.0 - (SunlightUpTo(middle + 0.5 * apart) - SunlightUpTo(middle - 0.5 * apart)) / apart;
 }
 
-// Distance at which a share of the light of a stretch has come together, if a stretch that is as
-// long anew brings `left` times as much in its second half as in its first: light that thins out
-// exponentially.
+// Returns the distance at which a fraction of a stretch's light has accumulated. The second half of
+// the stretch contributes `left` times as much as the first half, with exponential decrease.
 float ShadeDistance(vec2 stretch, float share, float left) {
   float thinning = 1.0 - left * left;
   return mix(stretch.x, stretch.y, log(1.0 - share * thinning) / log(1.0 - thinning));
 }
 
-// Light [1/sr per unit irradiance] that shade takes from the ray on its way to a distance, as it arrives
-// through fog. Steps
-// bring about the same light each; how much a piece of them brings says SingleTo.
+// Returns the light [1/sr per unit irradiance] that shadows remove from the ray up to a distance,
+// attenuated by fog. Steps contribute about equal light; SingleTo gives the light of a piece of
+// them.
 vec4 MarchedShade(vec3 direction, float distance_km) {
   ShadeRay ray = ShadeRayOf(direction);
   vec2 stretch = ShadeStretch(ray, 1e3 * distance_km);

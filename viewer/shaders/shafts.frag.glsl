@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
-// What share of their single scattering shade takes from the rays of every shaft_scale-th pixel in
-// both directions; of rays that meet no terrain what share of all their light. Shares change less
-// from ray to ray than light does, and in full shade not at all. Defined before this text: HAS_FOG, 1 for
-// a second output, the share of the sunlight in fog.
+// The fraction of single scattering that shadows remove, for the rays of every shaft_scale-th pixel
+// in both directions. For rays that hit no terrain it is the fraction of all their light. Fractions
+// vary less from ray to ray than light does, and in full shadow not at all. Defined before this
+// text: HAS_FOG, 1 for a second output, the fraction of the sunlight in fog.
 
-uniform sampler2D surface_map;  // distance [m] in the fourth component, 0 where no terrain is seen
+uniform sampler2D surface_map;  // distance [m] in the fourth component, 0: no terrain
 uniform ivec2 picture_size;
 uniform int shaft_scale;
 

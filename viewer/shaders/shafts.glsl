@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-// What shade takes from the ray of a pixel, from the map that shafts.frag.glsl paints: between the
-// four nearest of its rays those count that have come about as far.
+// Light that shadows remove from the ray of a pixel, from the map of shafts.frag.glsl. Of the four
+// nearest rays in the map, those with about the same length are averaged.
 
 uniform sampler2D shaft_map, fog_shaft_map;
-uniform vec2 shaft_place;  // of a pixel on it: times x, plus y
+uniform vec2 shaft_place;  // from pixels to the map: factor, offset
 
-// What a map says that shade takes of light on the ray of this pixel up to a distance.
+// Returns the light that shadows remove up to a distance on this pixel's ray, from one of the maps.
 vec4 TakenOf(vec4 light, sampler2D map, float distance_km) {
   const float kTolerance = 0.05;  // of distances, as binary logarithms
   vec2 at = gl_FragCoord.xy * shaft_place.x + shaft_place.y;
@@ -21,17 +21,17 @@ vec4 TakenOf(vec4 light, sampler2D map, float distance_km) {
               clamp(log2(max(distance_km, 1e-6)), kNearest_log2_km, kFarthest_log2_km);
   vec4 weight = vec4((1.0 - share.x) * (1.0 - share.y), share.x * (1.0 - share.y),
                      (1.0 - share.x) * share.y, share.x * share.y);
-  // A millionth each: one of them counts where all that lie nearer have come too far or not enough.
+  // A minimum weight of a millionth lets a ray count if all nearer ones are too long or too short.
   weight = (weight + 1e-6) / (away * away + kTolerance * kTolerance);
   vec4 sum = weight.x * texel[0] + weight.y * texel[1] + weight.z * texel[2] + weight.w * texel[3];
   return sum / (weight.x + weight.y + weight.z + weight.w) * light;
 }
 
-// Light that terrain's shade takes from what AirToPoint says of single scattering up to a distance; where
-// the ray meets no terrain, from SkyRadiance.
+// Returns the light that terrain shadows remove from the single scattering of AirToPoint up to a
+// distance, or from SkyRadiance if the ray hits no terrain.
 vec4 TakenByShade(float distance_km, vec4 light) { return TakenOf(light, shaft_map, distance_km); }
 
-// What it takes from FogSunTo.
+// Returns the light that terrain shadows remove from FogSunTo.
 vec4 FogTakenByShade(float distance_km, vec4 light) {
   return TakenOf(light, fog_shaft_map, distance_km);
 }

@@ -1,42 +1,45 @@
 // SPDX-License-Identifier: MIT
-// The light that the sky and other slopes send to a surface between mountains, worked out for every pixel
-// as the renderer does it: OpenSky::Irradiance and SlopeLight::Irradiance, from the tables of sky_by_pixel.h.
+// Irradiance of a surface between mountains by the sky and by other slopes, computed per pixel as
+// in the renderer (OpenSky::Irradiance and SlopeLight::Irradiance) from the tables of
+// sky_by_pixel.h.
 #define SKY_AZIMUTHS 16
 
 layout(std140) uniform SkyByPixel {
-  vec4 horizon_u;   // from (x, y, z, 1) in the eye's frame [m] to a place of horizons_around
+  vec4 horizon_u;   // from (x, y, z, 1) in the eye's frame [m] to coordinates of horizons_around
   vec4 horizon_v;
-  vec4 slope_u;     // the same for light_of_slopes
+  vec4 slope_u;     // likewise for light_of_slopes
   vec4 slope_v;
-  vec4 sky_moment;  // the open sky's light of this moment over that of the tables, by band
-  vec4 sky_place;   // altitude [km] to the tables' levels and zenith cosine of the sun to their suns: what is
-                    // added before the one and the other are multiplied, in turn
-  vec4 slope_unit;  // what the light of slopes is stored in
+  vec4 sky_moment;  // current irradiance of the unoccluded sky relative to the tables, by band
+  vec4 sky_place;   // altitude [km] to the tables' levels, zenith cosine of the sun to their suns:
+                    // offset and factor of the altitude, offset and factor of the cosine
+  vec4 slope_unit;  // unit of the stored light of slopes
 };
 
-uniform sampler2DArray horizons_around;  // four azimuths a layer: SKY_LOWEST, 0, to 1, 1
+uniform sampler2DArray horizons_around;  // four azimuths per layer; SKY_LOWEST .. 1 stored as 0 .. 1
 uniform sampler2DArray sky_integrals;    // node; A and B of an azimuth; level
 uniform sampler2D level_irradiance;      // sun; level
-uniform sampler2DArray light_of_slopes;  // an azimuth each; then what it is weighed with, four a layer
+uniform sampler2DArray light_of_slopes;  // one azimuth per layer; then their weights, four per layer
 
-// Integral of sqrt(1 - s^2) by two Gauss nodes.
+// Returns the integral of sqrt(1 - s^2), with two Gauss nodes.
 float DiskAreaBetween(float low, float high) {
   float middle = 0.5 * (low + high), aside = 0.28867513 * (high - low);
   float a = middle - aside, b = middle + aside;
   return 0.5 * (high - low) * (sqrt(max(1.0 - a * a, 0.0)) + sqrt(max(1.0 - b * b, 0.0)));
 }
 
-// The texture coordinate of a place among n nodes: 0 is the middle of the first texel, 1 of the last.
+// Returns the texture coordinate among n nodes: 0 is the centre of the first texel, 1 of the last.
 float AmongNodes(float share, float n) {
   return (0.5 + clamp(share, 0.0, 1.0) * (n - 1.0)) / n;
 }
 
-// The light that has been summed up for a surface.
+// Accumulated irradiance of a surface.
 struct SkySum {
   vec4 sky, slopes;
 };
 
-// Adds what one azimuth brings. @param along  component of the normal along it; horizon: sine of the elevation.
+// Adds the contribution of one azimuth.
+// @param along  component of the normal along the azimuth.
+// @param horizon  sine of the horizon's elevation.
 void AddAzimuth(inout SkySum sum, int azimuth, float up, float along, float horizon, float level,
                 vec2 slope_place, float slope_weight) {
   float plane = -along * inversesqrt(up * up + 1e-12 + along * along);
@@ -52,7 +55,7 @@ void AddAzimuth(inout SkySum sum, int azimuth, float up, float along, float hori
                 textureLod(light_of_slopes, vec3(slope_place, float(azimuth)), 0.0);
 }
 
-// Irradiance per unit solar irradiance, of this moment's sky.
+// Returns the irradiance by the current sky, per unit solar irradiance.
 // @param point  from the eye [m].
 vec4 SkyAtPixel(GroundPlace at, vec3 point, vec3 normal) {
   vec4 place = vec4(point, 1.0);

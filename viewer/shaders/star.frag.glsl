@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A star's light in a pixel: added to the picture.
+// The light of a star in a pixel, which is added to the picture.
 flat in vec3 light;
 flat in vec4 across;
 flat in vec4 up;

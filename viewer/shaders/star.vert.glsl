@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The pixels that a star's light falls on, unless land hides its middle: StarPoint of
+// The square of pixels that a star covers, unless land hides its centre: StarPoint of
 // star_painter.h.
 in vec4 star_corner;
 in vec4 star_towards;
@@ -13,9 +13,9 @@ flat out vec4 up;
 flat out vec4 last;
 flat out vec2 corner;
 
-uniform sampler2D surface_map;  // of land.frag.glsl
+uniform sampler2D surface_map;  // output of land.frag.glsl
 uniform vec2 picture_size;      // [pixels]
-uniform bool surface_hides;     // the surface map is of that size; else the depth test hides stars
+uniform bool surface_hides;     // land hides stars by surface_map, of picture_size; else by depth
 
 bool IsHidden() {
   bool planet = SeesPlanet(star_towards.xyz);

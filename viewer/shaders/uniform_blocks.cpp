@@ -22,7 +22,7 @@ glm::vec4 PerKilometre(const std::vector<double>& per_m) {
   return GpuBandsOf(per_km);
 }
 
-// All octaves one after another, the eye's place in each.
+// Sets the octaves of all families in sequence, with the eye's position in each.
 void SetOctaves(GroundBlock& block, const GroundPoint& eye) {
   std::size_t i = 0;
   for (std::size_t family = 0; family < kGroundNoises; ++family) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// What shaders read of C++, byte for byte: uniform blocks in std140 layout, of vectors of four, so
-// that both sides agree on every offset (asserted here and asked of the driver by a test).
+// Uniform blocks shared by C++ and the shaders, in std140 layout. They consist of vectors of four,
+// so that offsets are equal on both sides (asserted here and checked against the driver by a test).
 #pragma once
 
 #include <array>
@@ -15,10 +15,11 @@
 
 namespace alpenglow::viewer {
 
-/// The viewer's bands: one component of a vec4 each. A medium may have fewer; the rest is dark.
+/// Number of bands: one component of a vec4 each. A medium may have fewer; the remaining ones are
+/// 0.
 inline constexpr std::size_t kGpuBands = 4;
 
-/// `block Air` of air_block.glsl. Lengths in km.
+/// Mirrors the uniform block `Air` of air_block.glsl. Lengths in km.
 struct AirBlock {
   glm::vec4 rayleigh_scattering, mie_scattering, mie_extinction, ozone_absorption, ground_albedo;
   glm::vec4 red_from_bands, green_from_bands, blue_from_bands;
@@ -28,7 +29,7 @@ static_assert(sizeof(AirBlock) == 12 * sizeof(glm::vec4));
 static_assert(offsetof(AirBlock, ground_albedo) == 4 * sizeof(glm::vec4));
 static_assert(offsetof(AirBlock, wavelengths) == 11 * sizeof(glm::vec4));
 
-/// `block View` of view_block.glsl.
+/// Mirrors the uniform block `View` of view_block.glsl.
 struct ViewBlock {
   glm::vec4 view_right, view_up, view_forward;
   glm::vec4 sun, sun_for_air, sun_irradiance;
@@ -38,7 +39,7 @@ struct ViewBlock {
 static_assert(sizeof(ViewBlock) == 10 * sizeof(glm::vec4));
 static_assert(offsetof(ViewBlock, eye) == 9 * sizeof(glm::vec4));
 
-/// `block Ground` of ground.glsl.
+/// Mirrors the uniform block `Ground` of ground.glsl.
 struct GroundBlock {
   glm::vec4 conifers, leaves, yellow_leaves, bare_trees, meadow, dry_meadow, rock, snow;
   glm::vec4 cover_lines, green_lines;
@@ -50,15 +51,15 @@ static_assert(sizeof(GroundBlock) == 79 * sizeof(glm::vec4));
 static_assert(offsetof(GroundBlock, octave_place) == 43 * sizeof(glm::vec4));
 static_assert(offsetof(GroundBlock, mesh_up) == 78 * sizeof(glm::vec4));
 
-/// Throws InputError when the medium has more than kGpuBands wavelengths.
+/// Returns the block of a medium. Throws InputError if it has more than kGpuBands wavelengths.
 [[nodiscard]] AirBlock AirBlockOf(const Medium& medium);
 
-/// Materials and noise around the eye. The axes of the mesh and the octaves left out are left to the
-/// caller.
-/// @param eye  where it is in the pattern, and the time of waves there.
+/// Returns the materials and the noise around the eye. The caller sets the axes of the mesh and the
+/// number of omitted octaves.
+/// @param eye  position in the pattern, and the time for its waves.
 [[nodiscard]] GroundBlock GroundBlockOf(const MountainSurface& surface, const GroundPoint& eye);
 
-/// One value a band, the rest 0.
+/// Return one value per band and 0 for the remaining components.
 [[nodiscard]] glm::vec4 GpuBandsOf(const std::vector<double>& per_band);
 [[nodiscard]] glm::vec4 GpuBandsOf(const BandLight& light);
 
