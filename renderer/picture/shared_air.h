@@ -79,7 +79,7 @@ struct BentSight {
   BentView view;
   glm::dvec3 up;               // at the eye, unit
   glm::dvec3 to_sun, to_moon;  // unit, without refraction
-  bool moves_ground = false;   // moves the farthest terrain or the horizon by more than half a pixel
+  bool moves_ground = false;  // moves the farthest terrain or the horizon by more than half a pixel
   std::shared_ptr<const BentFan> fan = nullptr;  // rays to terrain; null: terrain does not move
 
   [[nodiscard]] double ElevationOf(const glm::dvec3& direction) const;

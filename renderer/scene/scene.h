@@ -73,7 +73,7 @@ struct TerrainSource {
   std::optional<GeodeticPosition> centre = std::nullopt;  // centre of the range; empty: the scene's
                                                           // place
   std::uint32_t range_seed = 0;                           // seed of the range
-  bool is_default = true;  // terrain was not specified: the range stands in for it
+  bool is_default = true;                 // terrain was not specified: the range stands in for it
   std::filesystem::path colour = {};      // image over the terrain, see ColourDrape; empty: none
   std::filesystem::path land_cover = {};  // land cover map; excludes `colour`
 
@@ -150,7 +150,7 @@ struct Volume {
   std::vector<double> extinction_per_m{0.0};    // at density 1
   std::vector<double> albedo{1.0};
   std::vector<double> emission_per_m{0.0};  // W m^-2 sr^-1 nm^-1 per metre at density 1
-  std::optional<double> temperature_k;      // of black-body emission by Kirchhoff's law; empty: none
+  std::optional<double> temperature_k;  // of black-body emission by Kirchhoff's law; empty: none
   PhaseFunction phase;
 };
 

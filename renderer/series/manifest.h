@@ -58,8 +58,8 @@ struct ManifestEntry {
   GeodeticPosition place;                                 // of the eye
   std::optional<CameraPose> pose = {};                    // on a path
   std::optional<double> illuminance_lx = {}, ev100 = {};  // empty until the frame exists
-  std::string exposure = {};                              // exposure rule; empty until the frame exists
-  double sun_covered = 0.0;                               // fraction of the sun's light behind the moon
+  std::string exposure = {};  // exposure rule; empty until the frame exists
+  double sun_covered = 0.0;   // fraction of the sun's light behind the moon
 };
 
 /// Returns one JSON object: "program", "settings" (everything that affects the pixels except time

@@ -95,7 +95,8 @@ class SunProbes {
 
   const Terrain& terrain_;
   glm::dvec3 to_sun_, bottom_of_sun_;
-  glm::dvec3 sunwards_, across_, upwards_;  // upwards_: normal to the sunbeams, in their vertical plane
+  glm::dvec3 sunwards_, across_,
+      upwards_;  // upwards_: normal to the sunbeams, in their vertical plane
   double highest_c_m_ = 0.0, u_high_m_ = 0.0, v_low_m_ = 0.0, v_high_m_ = 0.0;
   int probes_;
 };

@@ -53,9 +53,9 @@ struct HudInput {
   int width = 0, height = 0;               // size of the picture [pixels]
   double seconds = 0.0;                    // since the last frame
   std::optional<HudPointer> pointer = {};  // empty outside the window
-  std::array<bool, 3> buttons{};           // left, right, middle: held, or clicked since the last frame
-  double wheel = 0.0;                      // steps, positive away from the user
-  std::vector<HudKey> keys;                // held, or pressed and released since the last frame
+  std::array<bool, 3> buttons{};  // left, right, middle: held, or clicked since the last frame
+  double wheel = 0.0;             // steps, positive away from the user
+  std::vector<HudKey> keys;       // held, or pressed and released since the last frame
   bool shift = false, control = false;
   std::string text;  // typed text, UTF-8
 };
@@ -80,7 +80,8 @@ class HudKeys {
 struct HudSettings {
   double scale = 1.0;  // pixels per unit, [0.5, 8]: 1 for 96 dots per inch
   HudThemeChoice theme = HudThemeChoice::kAuto;
-  std::optional<std::filesystem::path> font = {};  // TrueType; default: InstalledFont (imgui_backend.h)
+  std::optional<std::filesystem::path> font =
+      {};  // TrueType; default: InstalledFont (imgui_backend.h)
 };
 
 /// Head-up display of one picture size. Pictures of other sizes than the window's use another Hud,
