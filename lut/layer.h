@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Code of this layer names everything of the layers below without qualification.
+// This header lets code in namespace lut use all names of the layer below, atmosphere, without
+// qualification.
 #pragma once
 
 namespace alpenglow::atmosphere {}

@@ -29,7 +29,7 @@ struct SkyOptions {
   bool sun_disk = false, night_vision = false, compass = false;
 };
 
-/// A panorama ready to be rendered.
+/// Input of one panorama: the medium, the settings and the metadata of its output files.
 struct SkyJob {
   Medium medium;
   PanoramaSettings settings;
@@ -45,7 +45,8 @@ PanoramaSun SunFromAngles(const SkyOptions& options) {
   return sun;
 }
 
-// The sun stands where refraction shows it, and lights the air as in the pictures of skyseries.
+// Returns the sun at its apparent (refracted) position. The air is lit by a lower sun
+// (lower_for_air_rad), as in the images of skyseries.
 PanoramaSun SunFromTime(const GeodeticPosition& eye, const UtcInstant& instant,
                         const Medium& medium) {
   const SunPosition sun = ApparentSunAt(eye, instant, GentleAirOf(medium));
@@ -104,7 +105,7 @@ void Describe(SkyJob& job) {
   metadata["alpenglow.centre_azimuth_deg"] = Degrees(CentreAzimuth(settings.orientation));
 }
 
-/// The picture, and the light on a horizontal plane where it is seen from.
+/// The image, and the illuminance on a horizontal plane at the observer.
 struct RenderedSky {
   Image image;
   double illuminance_lux;
@@ -125,7 +126,8 @@ double Ev100Of(const RenderedSky& sky, const Image& seen, const ExposureRule& ru
       rule, MeterEv100(seen, kSunDiskLuminance_cd_per_m2, Projection::kLatitudeLongitude), look);
 }
 
-/// Whatever would keep the picture from its files, before the picture is made.
+/// Checks, before the image is rendered, that all output files can be written and that none of them
+/// replaces an input file.
 void RequireOutputs(const SkyOptions& options) {
   std::vector<NamedFile> outputs{{"--out", options.out}};
   if (options.png) outputs.push_back({"--png", *options.png});

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: MIT
-// `skylut sky`: panoramas for lighting.
+// This header declares the subcommand `skylut sky`, which renders panoramas for lighting.
 #pragma once
 
 #include "lut/program/command_line.h"
 
 namespace alpenglow::lut {
 
-/// Adds the subcommand; what runs it once the whole command line is parsed.
+/// Adds the subcommand and returns the function that runs it after the whole command line has been
+/// parsed.
 [[nodiscard]] Subcommand AddSkyCommand(CLI::App& app);
 
 }  // namespace alpenglow::lut

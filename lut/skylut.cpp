@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// skylut: tables of the sky. Builds, describes and evaluates them.
+// The program skylut builds, describes and evaluates tables of the sky.
 #include <optional>
 #include <string>
 #include <vector>
@@ -72,7 +72,7 @@ void AddEval(CLI::App& app, Options& options) {
   eval.footer("Example: skylut eval --cases cases.csv --out results.csv --method integral");
 }
 
-/// What CLI11 cannot say by itself: options that belong to one method.
+/// Checks option rules that CLI11 cannot express: options that are valid with one method only.
 void CheckMethod(const CLI::App& eval, const Options& options) {
   if (!eval.parsed() || options.method == "integral") return;
   if (options.samples) throw CLI::ValidationError("--samples", "needs --method integral");

@@ -31,7 +31,8 @@ struct BuildOptions {
   std::optional<int> lowest_sun_deg;
 };
 
-/// The layout of other programs, when one is asked for.
+/// Returns the options of the table layout of another program (Bruneton or takram), if one is
+/// requested.
 std::optional<ExchangeOptions> ExchangeOf(const BuildOptions& options) {
   if (options.layout == "native") return std::nullopt;
   ExchangeOptions exchange;
@@ -43,7 +44,7 @@ std::optional<ExchangeOptions> ExchangeOf(const BuildOptions& options) {
   return exchange;
 }
 
-/// What CLI11 cannot say by itself: options that contradict each other.
+/// Checks option rules that CLI11 cannot express: options that contradict each other.
 void CheckLayout(const BuildOptions& options) {
   if (const auto exchange = ExchangeOf(options)) {
     if (options.single_scattering_only) {
@@ -63,14 +64,16 @@ void CheckLayout(const BuildOptions& options) {
   }
 }
 
-/// Refuses an atmosphere that a file of this name in the folder would replace.
+/// Throws if the atmosphere file is the file `name` in the output folder, which would be
+/// overwritten.
 void RequireAtmosphereElsewhere(const BuildOptions& options, const char* name) {
   if (!options.atmosphere) return;
   RequireNoInput({"--out", std::filesystem::path(options.out) / name},
                  {{"--atmosphere", *options.atmosphere}});
 }
 
-/// One lobe for those who load tables, which hold no phase functions.
+/// Returns a warning for media whose aerosol has a tabulated phase function. The exported tables
+/// hold no phase functions, and the programs that load them use a single lobe.
 std::string LobeText(const Medium& medium) {
   if (medium.mie_phase.front().kind != PhaseKind::kTable) return "";
   const std::size_t middle = medium.wavelengths_nm.size() / 2;
@@ -88,7 +91,7 @@ void BuildExchangeTables(const BuildOptions& options, const ExchangeOptions& exc
   RequireAtmosphereElsewhere(options, kMediumFileName);
   const Medium medium =
       options.atmosphere ? MediumFromChoice(*options.atmosphere) : MediumPreset("bruneton2017");
-  MakeFolder(options.out);  // before the work
+  MakeFolder(options.out);  // before the tables are computed
   WriteExchangeTables(MakeExchangeTextures(medium, exchange, common.progress_style()), medium,
                       exchange, options.out);
   if (!IsTheMediumThatLoadersAssume(medium)) {
@@ -108,7 +111,7 @@ void Build(const BuildOptions& options, const CommonOptions& common) {
   const Medium medium =
       options.atmosphere ? MediumFromChoice(*options.atmosphere) : MediumPreset("earth");
   if (const auto max_error = RelativeErrorFromText(options.max_error.value_or(""))) {
-    MakeFolder(options.out);  // before the work
+    MakeFolder(options.out);  // before the tables are computed
     const TableChoice choice = ChooseTables(
         medium, {.max_error = *max_error,
                  .wanted = options.tables == "all" ? TablesWanted::kAll : TablesWanted::kSmallest});

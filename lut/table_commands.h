@@ -1,17 +1,19 @@
 // SPDX-License-Identifier: MIT
-// `skylut build`: tables of an atmosphere, into a folder.
-//
-// `skylut report`: speed against error, into a folder.
+// This header declares the subcommands `skylut build`, which writes the tables of an atmosphere to
+// a folder, and `skylut report`, which measures speed against error and writes the results to a
+// folder.
 #pragma once
 
 #include "lut/program/command_line.h"
 
 namespace alpenglow::lut {
 
-/// Adds the subcommand; what runs it once the whole command line is parsed.
+/// Adds the subcommand and returns the function that runs it after the whole command line has been
+/// parsed.
 [[nodiscard]] Subcommand AddBuildCommand(CLI::App& app);
 
-/// Adds the subcommand; what runs it once the whole command line is parsed.
+/// Adds the subcommand and returns the function that runs it after the whole command line has been
+/// parsed.
 [[nodiscard]] Subcommand AddReportCommand(CLI::App& app);
 
 }  // namespace alpenglow::lut
