@@ -19,11 +19,12 @@ constexpr int kTableCells = 4096;
 
 }  // namespace
 
-/// A call's arguments, and where the sun stands at every sample under every azimuth.
+/// Arguments of a call, and the position of the sun at every sample for every azimuth.
 struct DiffuseFan::Line {
   const RaySamples<float>& samples;
   std::size_t directions;
-  // [sample * directions + direction]; the sine of the sun's zenith angle of polarised light alone
+  // Index: [sample * directions + direction]. `sun_sine`, the sine of the sun's zenith angle, is
+  // filled for polarised light only.
   std::vector<float> position, twilight, cosine, sun_sine;
 };
 
@@ -51,7 +52,8 @@ const float* DiffuseFan::Values() const {
   return padded_.empty() ? light_.values().data() : padded_.data();
 }
 
-// Four bands. Where the medium has fewer left, lanes are filled with its last band.
+// Adds the light of four bands. If the medium has fewer bands left, the remaining lanes repeat its
+// last band.
 void DiffuseFan::AddBlock(const Line& line, std::size_t first_band, std::span<float> light) const {
   const Medium& medium = light_.medium();
   const DiffuseLightOptions& options = light_.options();
@@ -67,8 +69,8 @@ void DiffuseFan::AddBlock(const Line& line, std::size_t first_band, std::span<fl
   for (std::size_t s = 0; s < samples.count; ++s) {
     const float* position = &line.position[s * line.directions];
     const auto [least, most] = std::minmax_element(position, position + line.directions);
-    // The nodes that the taps read, at least four; node
-    // -1 and the one after the last are added below.
+    // Range of nodes that the taps read, at least four. Node -1 and the node after the last one are
+    // added below.
     const int low = std::clamp(static_cast<int>(*least) - 1, 0, options.sun_angles - 4);
     const int high = std::clamp(static_cast<int>(*most) + 2, low + 3, options.sun_angles - 1);
 

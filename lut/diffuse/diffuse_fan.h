@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: MIT
-// DiffuseLight along one view ray under many azimuths of the sun, for the price of a few.
+// This header provides DiffuseFan: DiffuseLight along one view ray for many azimuths of the sun, at
+// the cost of a few.
 //
-// All directions of one zenith angle share altitudes, columns and harmonics;
-// only the sun's angles differ. The moments are therefore interpolated in
-// altitude, and summed over degree, once a sample; what is left for each
-// azimuth is a cubic interpolation between a few nodes of the sun's angle.
+// All directions of one zenith angle share altitudes, columns and harmonics; only the sun's angles
+// differ. The moments are therefore interpolated in altitude, and summed over degree, once per
+// sample. For each azimuth there remains a cubic interpolation between a few nodes of the sun's
+// angle.
 #pragma once
 
 #include <span>
@@ -21,12 +22,15 @@ class DiffuseFan {
   /// Keeps a reference to `light`.
   explicit DiffuseFan(const DiffuseLight& light);
 
-  /// In-scattered light of orders two and up [1/sr]: [direction * bands + band].
-  /// @param samples  of a ray as `ray`, taken under a sun in the zenith (no part of it is dark).
-  /// @param ray      altitude, zenith cosine and the sun's at the observer; its nu is not used.
-  /// @param nus      of every direction, cosine between it and the sun.
-  /// As DiffuseLight::InscatterAlong of the same samples, to 1e-4 of the brightest, where that has
-  /// no forward peak apart; else of the degrees that it keeps.
+  /// Returns the in-scattered light of orders two and up [1/sr]: [direction * bands + band].
+  /// @param samples  samples along `ray`, taken with the sun in the zenith, so that no part is in
+  ///   shadow.
+  /// @param ray      altitude, zenith cosine and sun zenith cosine at the observer; its nu is not
+  ///   used.
+  /// @param nus      cosine of the angle between each direction and the sun.
+  /// Agrees with DiffuseLight::InscatterAlong of these samples to 1e-4 of the brightest value if
+  /// the forward peak is not treated separately. Otherwise the result covers only the degrees that
+  /// the moments keep.
   [[nodiscard]] std::vector<float> InscatterAlong(const RaySamples<float>& samples,
                                                   const ViewRay& ray,
                                                   std::span<const float> nus) const;
@@ -37,13 +41,13 @@ class DiffuseFan {
   [[nodiscard]] const float* Values() const;
 
   const DiffuseLight& light_;
-  std::size_t stride_;           // bands, rounded up to whole blocks
-  std::vector<float> padded_;    // the values of light_ at this stride; empty where it is theirs
+  std::size_t stride_;           // number of bands, rounded up to whole blocks
+  std::vector<float> padded_;    // values of light_ with stride_; empty if light_ already has it
   std::vector<double> chi_mie_;  // [l * bands + band]
-  std::vector<float> position_of_mu_s_;  // over [-1, 1]: among the nodes of the sun's angle
-  std::vector<float> twilight_of_mu_s_;  // TwilightOf at the same places
-  std::vector<float> twilight_;          // and at the nodes
-  std::vector<float> sun_sine_;          // of the nodes' zenith angles
+  std::vector<float> position_of_mu_s_;  // over [-1, 1]: position among the sun nodes
+  std::vector<float> twilight_of_mu_s_;  // TwilightOf at the same values of mu_s
+  std::vector<float> twilight_;          // TwilightOf at the nodes
+  std::vector<float> sun_sine_;          // sines of the nodes' sun zenith angles
 };
 
 }  // namespace alpenglow::lut

@@ -71,7 +71,7 @@ void FindSuns(const FanSuns& work) {
   }
 }
 
-// Catmull-Rom between the rows of four nodes.
+// Catmull-Rom interpolation between the rows of four nodes.
 void Gather(const FanGathering& work) {
   const auto orders = static_cast<std::size_t>(work.degree + 1);
   for (std::size_t k = 0; k < work.count; ++k) {

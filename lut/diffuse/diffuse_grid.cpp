@@ -20,8 +20,9 @@ DiffuseGrid GridOf(const Medium& medium, const DiffuseLightOptions& options) {
   grid.sun_width = static_cast<float>(sun.width());
   grid.first_asinh = static_cast<float>(sun.low());
   grid.cells_a_unit = static_cast<float>((options.sun_angles - 1) / (sun.high() - sun.low()));
-  // By a factor e a 1.25 degrees on earth; in proportion to radius over scale height elsewhere, but
-  // by 1e-6 at most.
+  // In earth's air moments fall by a factor e per 1.25 degrees. On other planets the rate is
+  // proportional to radius over scale height. The fall over the sun axis is limited to a factor
+  // 1e-6.
   const double fall = 46.0 / 796.0 * medium.planet_radius_m / medium.rayleigh_scale_height_m;
   grid.twilight_start = -0.03F;
   grid.twilight_width = 0.05F;

@@ -10,7 +10,7 @@
 namespace alpenglow::lut {
 namespace {
 
-/// A few samples of a ray, ready for the table: [.][sample].
+/// A few samples of a ray, prepared for look-ups in the table: [.][sample].
 constexpr std::size_t kChunk = BatchOf<float>::kLanes;
 struct Chunk {
   alignas(64) float altitude_cell[kChunk], sun_cell[kChunk];
@@ -18,7 +18,8 @@ struct Chunk {
   alignas(64) float harmonic[kLargestMoments][kChunk];
 };
 
-// Weights at the ends of an axis, where the node beyond is BeyondEnd of the last three.
+// Returns the weights at the ends of an axis, where the node beyond the end is BeyondEnd of the
+// last three nodes.
 template <typename T>
 Weights<T> Folded(const Weights<T>& w, const T& cell, const T& last) {
   using namespace shared;
@@ -64,7 +65,7 @@ struct Norms {
   float of[kLargestMoments];
 };
 
-// norm_lm of the real harmonics, l major (spherical_harmonics.h).
+// Returns norm_lm of the real harmonics, l major (spherical_harmonics.h).
 constexpr Norms FindNorms() {
   Norms norms{};
   for (std::size_t l = 0, i = 0; l <= kLargestDegree; ++l) {
@@ -139,14 +140,15 @@ struct Taps {
   float weight[16];
 };
 
-// Vectors of a node: the first kRows of those that are wanted and, after them, the ones from kFrom
-// on. Where the index-th of them begins.
+// A look-up reads the first kRows vectors of a node and those from kFrom on. Returns where the
+// index-th of these vectors begins.
 template <std::size_t kRows, std::size_t kFrom>
 constexpr std::size_t PlaceOf(std::size_t index) {
   return (index < kRows ? index : kFrom + index - kRows) * 8;
 }
 
-// Those vectors, summed over 16 nodes. Spelled out, so that the sums stay in registers.
+// Sums these vectors over 16 nodes. The expression is expanded at compile time so that the sums
+// stay in registers.
 template <std::size_t kRows, std::size_t kFrom, std::size_t kFirst, std::size_t... kIndex>
 void SumTapsAt(const Taps& taps, float* moments, std::index_sequence<kIndex...>) {
   Eight sum[sizeof...(kIndex)] = {(static_cast<void>(kIndex), Zero())...};
@@ -159,7 +161,7 @@ void SumTapsAt(const Taps& taps, float* moments, std::index_sequence<kIndex...>)
 }
 
 #ifdef ALPENGLOW_BATCHES
-// Sums two vectors at a time, where the processor has lanes for them.
+// Sums two vectors at a time, if the instruction set has enough lanes.
 template <std::size_t kRows, std::size_t kFrom, std::size_t kFirst, std::size_t... kIndex>
 void SumPairsOfTapsAt(const Taps& taps, float* moments, std::index_sequence<kIndex...>) {
   using Wide = BatchOf<float>::Type;
@@ -174,7 +176,7 @@ void SumPairsOfTapsAt(const Taps& taps, float* moments, std::index_sequence<kInd
 }
 #endif
 
-// All kCount of them, as many at a time as there are registers for.
+// Sums all kCount vectors, as many at a time as fit into registers.
 template <std::size_t kRows, std::size_t kFrom, std::size_t kCount, std::size_t kFirst = 0>
 void SumTaps(const Taps& taps, float* moments) {
   constexpr std::size_t kMost = 18;
@@ -194,7 +196,8 @@ void SumTaps(const Taps& taps, float* moments) {
     SumTaps<kRows, kFrom, kCount, kFirst + kHere>(taps, moments);
 }
 
-// Light that moments of degree kL send along the ray at a sample, before phase functions.
+// Returns the light that moments of degree kL scatter into the ray at a sample, before phase
+// functions.
 template <std::size_t kL, std::size_t... kPair>
 [[gnu::always_inline]] inline Eight LightOfDegree(const Chunk& chunk, std::size_t s,
                                                   const float* moments,
@@ -210,7 +213,7 @@ template <std::size_t kL, std::size_t... kPair>
   return light;
 }
 
-// What molecules send of polarised light; `tensor` is two vectors (PackedVectors).
+// Returns the polarised light that molecules scatter; `tensor` is two vectors (PackedVectors).
 Eight LightOfTensor(const Chunk& chunk, std::size_t s, const float* tensor,
                     const Eight& rayleigh_chi2) {
   const Eight second = LoadEight(tensor + 8);
@@ -222,12 +225,12 @@ Eight LightOfTensor(const Chunk& chunk, std::size_t s, const float* tensor,
   return light;
 }
 
-/// What molecules and aerosol scatter of the moments at a sample, per unit coefficient.
+/// Light of the moments scattered by molecules and by aerosol at a sample, per unit coefficient.
 struct Scattered {
   Eight rayleigh, mie;
 };
 
-/// Legendre coefficients of a block, for both halves of eight lanes.
+/// Legendre coefficients of a block, repeated in both halves of eight lanes.
 template <std::size_t kDegree>
 struct EightChi {
   Eight mie[kDegree + 1];
@@ -244,7 +247,8 @@ void AddDegree(const Chunk& chunk, std::size_t s, const float* moments,
   Add(light.mie, chi.mie[kL], of_degree);
 }
 
-// Light of the moments of rows 0, kStep, ... kLast. All that a node holds of them is read in one pass.
+// Returns the light of the moments of rows 0, kStep, ... kLast. All the values of a node that they
+// need are read in one pass.
 template <std::size_t kLast, std::size_t kStep, bool kPolarised, std::size_t kDegree>
 Scattered ScatteredByRows(const Chunk& chunk, std::size_t s, const Taps& taps,
                           const EightChi<kDegree>& chi) {
@@ -262,7 +266,7 @@ Scattered ScatteredByRows(const Chunk& chunk, std::size_t s, const Taps& taps,
   return light;
 }
 
-// Where molecules alone scatter.
+// Returns the scattered light where only molecules scatter.
 template <bool kPolarised, std::size_t kDegree>
 Scattered ScatteredByMolecules(const Chunk& chunk, std::size_t s, const Taps& taps,
                                const EightChi<kDegree>& chi) {
@@ -284,7 +288,7 @@ inline Four LoadFour(const float* from) {
   return four;
 }
 
-// The sum of both halves, where it is not negative.
+// Returns the sum of both halves, clamped to at least 0.
 Four SumOfHalves(const Eight& eight) {
   alignas(64) float halves[8];
   StoreEight(halves, eight);
@@ -292,7 +296,7 @@ Four SumOfHalves(const Eight& eight) {
   return sum > dark ? sum : dark;
 }
 
-// Values at a sample of the rows of a chunk.
+// Returns the values of a chunk's four rows at a sample.
 Four AtSample(const float (*rows)[kChunk], std::size_t s) {
   return Four{rows[0][s], rows[1][s], rows[2][s], rows[3][s]};
 }
@@ -320,12 +324,12 @@ Taps TapsOf(const DiffuseGrid& grid, const Chunk& chunk, std::size_t s, const fl
   return taps;
 }
 
-/// A block of bands with what every sample needs of it.
+/// A block of bands with the values that every sample needs.
 template <std::size_t kDegree>
 struct ReadyBlock {
   const DiffuseBlock& block;
   EightChi<kDegree> chi;
-  float most_aerosol;  // scattered by aerosol per molecules, largest of any band, at altitude 0
+  float most_aerosol;  // largest ratio of aerosol to molecular scattering over bands, at altitude 0
 
   explicit ReadyBlock(const DiffuseBlock& of_block) : block(of_block), most_aerosol(0.0F) {
     for (std::size_t l = 0; l <= kDegree; ++l) chi.mie[l] = Twice(block.chi[l]);
@@ -342,8 +346,8 @@ template <bool kPolarised, std::size_t kDegree>
 Four SourceAt(const DiffuseGrid& grid, const Chunk& chunk, std::size_t s,
               const RaySamples<float>& samples, std::size_t sample,
               const ReadyBlock<kDegree>& ready, const float* moments) {
-  // Shares of what molecules scatter below which aerosol needs no more moments than they do, or
-  // only those to degree 3.
+  // Aerosol-to-molecule ratios of scattering. Below the first, aerosol needs no more moments than
+  // molecules do; below the second, only the moments up to degree 3.
   constexpr float kNoAerosol = 3e-4F, kCoarseAerosol = 1e-3F;
   constexpr std::size_t kCoarseDegree = kDegree < 3 ? kDegree : 3;
   const Taps taps = TapsOf<PackedVectors(kDegree, kPolarised) * 8>(grid, chunk, s, moments);
@@ -386,7 +390,7 @@ void InscatterOfDegree(const DiffuseGrid& grid, const RaySamples<float>& samples
       }
       Four sum = LoadFour(light + b * kBlockBands);
       for (std::size_t s = 0; s < size; ++s) {
-        if (samples.weight[first + s] == 0.0F) continue;  // a place, not a node
+        if (samples.weight[first + s] == 0.0F) continue;  // a position, not a quadrature node
         sum += AtSample(attenuation, s) * SourceAt<kPolarised>(grid, chunk, s, samples, first + s,
                                                                ready, moments + b * block_stride);
       }
@@ -406,12 +410,12 @@ void Inscatter(const DiffuseGrid& grid, const RaySamples<float>& samples, float 
   });
 }
 
-// The clamped cosine's zonal coefficients: pi, 2 pi / 3, pi / 4, 0, -pi / 24, 0, pi / 64 ...
+// Zonal coefficients of the clamped cosine: pi, 2 pi / 3, pi / 4, 0, -pi / 24, 0, pi / 64 ...
 constexpr float kClampedCosine[kLargestDegree + 1] = {
     3.14159265F,    2.09439510F, 0.785398163F,  0.0F, -0.130899694F,  0.0F, 0.0490873852F, 0.0F,
     -0.0245436926F, 0.0F,        0.0143171540F, 0.0F, -0.00920388473F};
 
-// P_l(x), the first even l that moments to this degree lack.
+// Returns P_l(x) for the lowest even l above the degree of the moments.
 template <std::size_t kDegree>
 float FirstMissingLegendre(float x) {
   constexpr std::size_t kEven = kDegree / 2 * 2 + 2;
@@ -425,13 +429,13 @@ float FirstMissingLegendre(float x) {
   return now;
 }
 
-// Moments of a point summed over its nodes, times the factors of a surface.
+// Returns the moments of a point, summed over its nodes and multiplied by the factors of a surface.
 template <std::size_t kDegree>
 Eight SumOverNodes(const SurfacePoint& point, std::size_t node_floats, const float* moments,
                    const Eight* factor) {
   Eight light = Zero();
   for (std::size_t l = 0; l <= kDegree; ++l) {
-    if (l > 1 && l % 2 == 1) continue;  // the clamped cosine has none of these
+    if (l > 1 && l % 2 == 1) continue;  // the clamped cosine has no odd terms beyond l = 1
     for (std::size_t p = 0; p <= l / 2; ++p) {
       const std::size_t i = kPackedRow[l] + p;
       Eight moment = Zero();
@@ -444,9 +448,9 @@ Eight SumOverNodes(const SurfacePoint& point, std::size_t node_floats, const flo
   return light;
 }
 
-// The clamped cosine has no odd terms beyond l = 1, so what the series misses on a surface that
-// looks up (where the truth is known: `sky`) it misses on one that looks down. Between them it is
-// taken to follow the first even Legendre polynomial that is missing.
+// The clamped cosine has no odd terms beyond l = 1, so the truncation error of the series is equal
+// on a surface that faces up (where `sky` gives the true value) and on one that faces down. Between
+// them the error is assumed to follow the first even Legendre polynomial that the series lacks.
 template <std::size_t kDegree>
 void IrradianceOfDegree(const DiffuseGrid& grid, const SurfacePoint& point, std::size_t count,
                         const float* moments, const float* sky, float* irradiance) {
@@ -459,7 +463,7 @@ void IrradianceOfDegree(const DiffuseGrid& grid, const SurfacePoint& point, std:
   Eight factor[kPackedRow[kDegree + 1]];
   for (std::size_t l = 0; l <= kDegree; ++l) {
     const std::size_t first = l * (l + 1) / 2;
-    of_moment[first] -= missing * kNorm.of[first];  // the harmonic of the vertical
+    of_moment[first] -= missing * kNorm.of[first];  // subtracts the harmonic of the vertical
     if (grid.polarised) {
       for (std::size_t m = 1; m <= l; ++m) of_moment[first + m] *= SinePower(m, point.sun_sine);
     }

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
-// The loops of multiple_scattering.h and successive_orders.h, one table an instruction set.
+// This header declares the loops of multiple_scattering.h and successive_orders.h, as one function
+// table per instruction set.
 //
-// Moments are packed for lanes in blocks of four bands: a node holds,
-// for l = 0 ... degree, vectors of eight floats, (m, band) for m = 2p
-// and 2p + 1. The last vector of an even l is padded with zeros.
+// Moments are packed for lanes in blocks of four bands: a node holds, for l = 0 ... degree, vectors
+// of eight floats, (m, band) for m = 2p and 2p + 1. The last vector of an even l is padded with
+// zeros.
 #pragma once
 
 #include <array>
@@ -20,11 +21,12 @@ namespace alpenglow::lut {
 inline constexpr std::size_t kBlockBands = 4;
 inline constexpr std::size_t kLargestDegree = 12;
 inline constexpr std::size_t kLargestMoments = (kLargestDegree + 1) * (kLargestDegree + 2) / 2;
-/// Vectors of eight floats before the row l of a node; of a whole node: [degree + 1].
+/// Number of vectors of eight floats before row l of a node; entry [degree + 1] is the size of a
+/// whole node.
 constexpr std::size_t kPackedRow[kLargestDegree + 2] = {0,  1,  2,  4,  6,  9,  12,
                                                         16, 20, 25, 30, 36, 42, 49};
 
-/// Floats that begin at a multiple of 64 bytes.
+/// An array of floats that begins at a multiple of 64 bytes.
 class AlignedFloats {
  public:
   AlignedFloats() = default;
@@ -40,42 +42,43 @@ class AlignedFloats {
   std::vector<Line> lines_;
 };
 
-/// Vectors of eight floats of a node: of polarised light (polarised_light.h) two more, (T20, T21) and
-/// (T22, moment 00 again).
+/// Returns the number of vectors of eight floats in a node. Polarised light (polarised_light.h)
+/// needs two more, (T20, T21) and (T22, a copy of moment 00).
 constexpr std::size_t PackedVectors(std::size_t degree, bool polarised) {
   return kPackedRow[degree + 1] + (polarised ? 2 : 0);
 }
 
-/// Nodes of the table: altitude = top u^2; sun as DiffuseLight::SunCoordinate. Between sun nodes
+/// Nodes of the table: altitude = top u^2; sun as in DiffuseLight::SunCoordinate. Between sun nodes
 /// moments are interpolated after division by Twilight(mu_s), the usual fall of their light when
-/// the sun goes down, exp(-fall (x + sqrt(x^2 + width^2)) / 2) with x = start - mu_s; those of
-/// polarised light also by SinePower (polarised_light.h).
+/// the sun goes down, exp(-fall (x + sqrt(x^2 + width^2)) / 2) with x = start - mu_s. Moments of
+/// polarised light are also divided by SinePower (polarised_light.h).
 struct DiffuseGrid {
   std::size_t altitudes, suns, degree;
   bool polarised;
   float top_km;
-  float sun_centre, sun_width;      // of asinh
+  float sun_centre, sun_width;      // parameters of asinh
   float first_asinh, cells_a_unit;  // node = (asinh(...) - first_asinh) cells_a_unit
   float twilight_start, twilight_width, twilight_fall;
 };
 
-/// A point of a march: what the source there needs, whatever sun, band and order.
+/// A point of a march, with the values that its source needs for every sun, band and order.
 struct MarchPoint {
   std::array<std::uint32_t, 4> altitude_node;
   std::array<float, 4> altitude_weight;
   float mu, sine, distance_km, inverse_radius;  // 1 / distance from the planet's centre [1/km]
-  bool only_molecules;                          // too little aerosol to matter
+  bool only_molecules;                          // aerosol scatters too little to matter
   std::array<float, kLargestMoments> legendre;
 };
 
-/// What a point scatters into the ray for four bands: transmittance, weight and coefficient.
+/// Factors of the light that a point scatters into the ray, for four bands: transmittance, weight
+/// and coefficient.
 struct MarchLight {
   std::array<float, kBlockBands> rayleigh, mie;
 };
 
-/// A direction at a node's altitude, and the suns there.
+/// A direction at a node's altitude, with the sun angles and azimuths there.
 struct MarchDirection {
-  float mu, sine, radius_km;  // of the node
+  float mu, sine, radius_km;  // radius_km of the node
   const float* mu_s;          // [suns]
   const float* sine_s;
   const float* azimuth_cosine;  // [azimuths]
@@ -86,17 +89,17 @@ inline constexpr std::size_t kMostAzimuths = 32;
 /// Legendre coefficients of the aerosol's phase function, for four bands.
 using BlockChi = std::array<std::array<float, kBlockBands>, kLargestDegree + 1>;
 
-/// A block of bands as look-ups need it; coefficients per km.
+/// A block of bands in the form that look-ups need; coefficients per km.
 struct DiffuseBlock {
   std::array<float, kBlockBands> rayleigh, mie_scattering, mie_extinction, ozone;
-  std::array<float, kBlockBands> rayleigh_chi2;  // of the molecules: D / 10
+  std::array<float, kBlockBands> rayleigh_chi2;  // D / 10 of the molecules
   BlockChi chi;
 };
 
-/// Straight pieces of rays from one node in sunlight.
+/// Straight pieces of rays from one node that lie in sunlight.
 struct LitPieces {
   std::size_t count;         // multiple of 16
-  const float *begin, *end;  // km from the node; begin == end: nothing
+  const float *begin, *end;  // km from the node; begin == end: empty piece
   const float *nu, *mu_s;    // at the node
   float altitude_km, mu, radius_km;
   float extinction;           // at the ground [1/km], largest over bands
@@ -105,18 +108,18 @@ struct LitPieces {
   const float *node, *gauss;  // on [0, 1]
 };
 
-/// Points on them: [node * count + piece].
+/// Points on the lit pieces: [node * count + piece].
 struct LitPoints {
   float *weight, *altitude, *mu, *absolute_mu, *mu_s;
 };
 
-/// Where light on a surface is looked up: 16 nodes of the table and the weights of their moments,
-/// which are divided by Twilight.
+/// A point at which light on a surface is looked up: 16 nodes of the table and the weights of their
+/// moments, which are divided by Twilight.
 struct SurfacePoint {
   std::array<std::uint32_t, 16> node;
   std::array<float, 16> weight;
-  float sun_sine;                   // of its zenith angle
-  float normal_mu, normal_azimuth;  // cosines: to the vertical, of the azimuth from the sun's
+  float sun_sine;                   // sine of the sun's zenith angle
+  float normal_mu, normal_azimuth;  // cosines: angle to the vertical; azimuth from the sun's
 };
 
 struct ColumnPointers {
@@ -128,41 +131,42 @@ struct LayerHeights {
   float rayleigh, mie, deficit, deficit_height;
 };
 
-/// What scatters along marches, for four bands: the aerosol's chi_l, the molecules' chi_2.
+/// Legendre coefficients of scattering along marches, for four bands: the aerosol's chi_l, the
+/// molecules' chi_2.
 struct BlockShape {
   BlockChi mie;
   std::array<float, kBlockBands> rayleigh_chi2;
 };
 
 struct DiffuseKernel {
-  /// Light of the previous order that arrives along a march: adds to
-  /// arriving[((sun * azimuths) + azimuth) * 8 + half * 4 + band]; the two halves
-  /// are to be added. `rows` is room for (suns + 2) * (degree / 2 + 3) * 8 floats.
-  /// All begin at multiples of 64 bytes.
+  /// Adds the light of the previous order that arrives along a march to arriving[((sun * azimuths)
+  /// + azimuth) * 8 + half * 4 + band]. The caller adds the two halves. `rows` is scratch space for
+  /// (suns + 2) * (degree / 2 + 3) * 8 floats. All arrays begin at multiples of 64 bytes.
   void (*arrive)(const DiffuseGrid& grid, const MarchDirection& direction, const MarchPoint* points,
                  const MarchLight* lights, std::size_t count, const BlockShape& shape,
                  const float* previous, float* rows, float* arriving);
-  /// The same of a polarised grid: I, Q and U at [(((sun * azimuths) + azimuth) * 3 + stokes) * 8 +
-  /// half * 4 + band], in the frame of polarised_light.h.
+  /// Does the work of `arrive` for a polarised grid: adds I, Q and U at [(((sun * azimuths) +
+  /// azimuth) * 3 + stokes) * 8 + half * 4 + band], in the frame of polarised_light.h.
   void (*arrive_polarised)(const DiffuseGrid& grid, const MarchDirection& direction,
                            const MarchPoint* points, const MarchLight* lights, std::size_t count,
                            const BlockShape& shape, const float* previous, float* rows,
                            float* arriving);
   /// Places nodes on lit pieces.
   void (*place)(const LitPieces& pieces, const LitPoints& points);
-  /// Light scattered once along lit pieces without phase functions, of one band: rayleigh[piece],
-  /// mie[piece] per unit scattering coefficient at the ground.
+  /// Finds the light of one band that is scattered once along lit pieces, without phase functions:
+  /// rayleigh[piece], mie[piece] per unit scattering coefficient at the ground.
   void (*scatter)(const LitPieces& pieces, const LitPoints& points, const ColumnPointers& up,
                   const ColumnPointers& sun, const std::array<float, 6>& origin_and_perigee,
                   const std::array<float, 3>& extinction, const LayerHeights& layers,
                   float* rayleigh, float* mie);
-  /// Inscattered light along a sampled ray: light[block * 4 + band]. Moments are packed and divided
-  /// by Twilight: [((block * altitudes + altitude) * suns + sun) * node + i].
+  /// Finds the in-scattered light along a sampled ray: light[block * 4 + band]. Moments are packed
+  /// and divided by Twilight: [((block * altitudes + altitude) * suns + sun) * node + i].
   void (*inscatter)(const DiffuseGrid& grid, const RaySamples<float>& samples, float nu,
                     const DiffuseBlock* blocks, std::size_t count, const float* moments,
                     float* light);
-  /// Light of the table on a surface: irradiance[block * 4 + band]. `moments` as above, `sky` what
-  /// falls on a horizontal plane: [(block * nodes + node) * 4 + band].
+  /// Finds the light of the table on a surface: irradiance[block * 4 + band]. `moments` is laid out
+  /// as for `inscatter`; `sky` is the irradiance of a horizontal plane: [(block * nodes + node) * 4
+  /// + band].
   void (*irradiance)(const DiffuseGrid& grid, const SurfacePoint& point, std::size_t count,
                      const float* moments, const float* sky, float* irradiance);
 };

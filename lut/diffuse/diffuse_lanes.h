@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Eight floats at a time, and what marches and look-ups of diffuse light both find with them. A part
-// of diffuse_kernel.cpp, which is compiled once an instruction set.
+// This header provides vectors of eight floats and the functions that marches and look-ups of
+// diffuse light share. It is a part of diffuse_kernel.cpp, which is compiled once per instruction
+// set.
 #pragma once
 
 #include <cmath>
@@ -13,7 +14,7 @@
 namespace alpenglow::lut {
 namespace {
 
-// Lanes of work that comes by eights: at most eight, fewer where the processor has fewer.
+// Number of lanes of a vector: eight, or fewer if the instruction set has fewer.
 #ifdef ALPENGLOW_BATCHES
 constexpr std::size_t kWidth = BatchOf<float>::kLanes < 8 ? BatchOf<float>::kLanes : 8;
 using V = xsimd::make_sized_batch_t<float, kWidth>;
@@ -66,7 +67,7 @@ Eight Zero() {
 }
 
 #ifdef ALPENGLOW_BATCHES
-// a four times, b four times.
+// Returns a four times, then b four times.
 Eight Pair(float a, float b) {
   Eight value;
   if constexpr (kWidth == 8) {
@@ -115,8 +116,9 @@ T SunPosition(const DiffuseGrid& grid, const T& mu_s) {
   return (signed_asinh - T(grid.first_asinh)) * T(grid.cells_a_unit);
 }
 
-// A batch of half of this set's size is another set's type: what the compiler does not inline of it
-// would have that set's name. Its exponential is taken in lanes of this set.
+// A batch of half the width of this instruction set belongs to another set, and functions on it
+// that the compiler does not inline would carry the name of that set. Its exponential is therefore
+// computed in lanes of this set.
 template <typename T>
 T Exponential(const T& value) {
   using namespace shared;
@@ -148,7 +150,7 @@ T CosineOfAzimuth(const T& mu, const T& sine, const T& mu_s, const T& nu) {
   return min(max(cosine, T(-1.0F)), T(1.0F));
 }
 
-// Calls run with the degree as a constant.
+// Calls `run` with the degree as a compile-time constant.
 template <typename Run>
 void OfDegree(std::size_t degree, const Run& run) {
   switch (degree) {

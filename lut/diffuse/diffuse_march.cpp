@@ -17,8 +17,8 @@
 namespace alpenglow::lut {
 namespace {
 
-// Whether aerosol scatters less than 3e-4 of what molecules do, in every band: it then needs no
-// more moments than they.
+// Returns whether aerosol scatters less than 3e-4 of what molecules scatter, in every band. It then
+// needs no more moments than molecules do.
 bool OnlyMolecules(const AirConstants<float>& air, float rayleigh_density, float mie_density) {
   for (std::size_t band = 0; band < air.bands; ++band) {
     if (air.mie_scattering[band] * mie_density > 3e-4F * air.rayleigh[band] * rayleigh_density)
@@ -83,7 +83,7 @@ double DiffuseMarches::Nu(const March& march, std::size_t sun, std::size_t azimu
   return std::clamp(nu, -1.0, 1.0);
 }
 
-// Gauss nodes above and below the horizon, dense near it: mu - horizon = range v^2.
+// Places Gauss nodes above and below the horizon, dense near it: mu - horizon = range v^2.
 std::vector<March> DiffuseMarches::MarchesAt(std::size_t altitude,
                                              const DiffuseLightOptions& options) const {
   const double horizon = shared::HorizonCosine<double>(altitude_km_[altitude], radius_km_);
@@ -108,7 +108,8 @@ std::vector<March> DiffuseMarches::MarchesAt(std::size_t altitude,
 
 void DiffuseMarches::AddPoints(std::size_t altitude, const DiffuseLightOptions& options, double mu,
                                March& march) const {
-  // With the sun in the zenith no part of the ray is in shadow: one set of panels serves every sun.
+  // With the sun in the zenith no part of the ray is in shadow, so one set of panels serves every
+  // sun.
   const ViewRay ray{altitude_km_[altitude] * 1000.0, mu, 1.0, mu};
   const RaySamples<float> samples =
       air_->Sample(ray, {.nodes = options.ray_nodes, .split_ozone = false, .dark_samples = true});
@@ -173,7 +174,7 @@ struct Pieces {
   std::vector<double> begin, end;
 };
 
-// The stretches of [begin, end] before and after the planet's shadow, of every ray.
+// Returns, for every ray, the parts of [begin, end] before and after the planet's shadow.
 std::array<Pieces, 2> SunlitPieces(const DiffuseMarches& marches, std::size_t altitude,
                                    const March& march, double begin, double end) {
   const double r = marches.radius_km() + marches.altitude_km(altitude);
@@ -209,7 +210,7 @@ std::array<Pieces, 2> SunlitPieces(const DiffuseMarches& marches, std::size_t al
   return pieces;
 }
 
-/// Columns [km] of n points, in one piece of memory.
+/// Columns [km] of n points, in contiguous memory.
 struct ColumnStore {
   explicit ColumnStore(std::size_t n) : rayleigh(n), mie(n), ozone(n) {}
   AlignedFloats rayleigh, mie, ozone;
@@ -217,7 +218,7 @@ struct ColumnStore {
   [[nodiscard]] ColumnPointers Read() const { return {rayleigh.data(), mie.data(), ozone.data()}; }
 };
 
-// Upward columns at the node along |mu|, and at the perigee of the march.
+// Returns the upward columns at the node along |mu|, and at the perigee of the march.
 std::array<float, 6> OriginAndPerigee(const AirConstants<float>& air, float altitude_km,
                                       const March& march) {
   AlignedFloats altitude(kOrderLanes), mu(kOrderLanes);
@@ -232,7 +233,7 @@ std::array<float, 6> OriginAndPerigee(const AirConstants<float>& air, float alti
   return {c.rayleigh[0], c.mie[0], c.ozone[0], c.rayleigh[1], c.mie[1], c.ozone[1]};
 }
 
-/// Adds the light of sunlit pieces to a march's radiance.
+/// Adds the light of sunlit pieces to the radiance of a march.
 class PieceScatterer {
  public:
   PieceScatterer(const DiffuseMarches& marches, std::size_t altitude, const March& march,
@@ -287,7 +288,7 @@ class PieceScatterer {
   }
 
  private:
-  // Of the aerosol at an angle, from its Legendre coefficients.
+  // Evaluates the aerosol's phase function at an angle from its Legendre coefficients.
   void AddSeries(double nu) {
     const std::vector<double> legendre =
         LegendreSeries(static_cast<int>(marches_.grid().degree), nu);
@@ -339,7 +340,7 @@ class PieceScatterer {
   std::vector<float> node_, weight_, rayleigh_phase_, mie_phase_;
 };
 
-// Sunlight that the ground at the end of the march reflects.
+// Adds the sunlight that the ground at the end of the march reflects.
 void AddSunlitGround(const DiffuseMarches& marches, std::size_t altitude, const March& march,
                      std::vector<float>& radiance) {
   const AirIntegrator<float>& air = marches.air();

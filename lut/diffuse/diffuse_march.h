@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
-// Directions from the nodes of DiffuseLight's table and points along them: what successive orders
-// march along, whatever band and order.
+// This header provides the directions from the nodes of DiffuseLight's table and the points along
+// them. Successive orders march along these for every band and order.
 //
-// Sunlight scattered once, and reflected by the ground, that arrives at the nodes of DiffuseLight's
-// table: the first of the successive orders.
+// It also provides the first of the successive orders: sunlight that arrives at the nodes after one
+// scattering or after reflection by the ground.
 #pragma once
 
 #include <vector>
@@ -13,15 +13,15 @@
 
 namespace alpenglow::lut {
 
-/// One direction at one altitude, all suns and azimuths.
+/// One direction at one altitude, for all suns and azimuths.
 struct March {
   float mu = 0.0F, sine = 0.0F;
-  float solid_angle = 0.0F;  // of the direction and its mirror image, one azimuth of half a turn
+  float solid_angle = 0.0F;  // of the direction and its mirror image, per azimuth of half a turn
   std::array<float, kLargestMoments> legendre{};
   std::vector<MarchPoint> points;
   std::vector<std::array<float, 6>>
-      air;                     // of points: weight [km], densities, columns from the node
-  std::vector<double> panels;  // where the ray begins, is lowest (if between), ends [km]
+      air;                     // per point: weight [km], densities, columns from the node
+  std::vector<double> panels;  // distances where the ray begins, is lowest (if between), ends [km]
   bool hits_ground = false;
   double ground_distance_km = 0.0;
   Bands<float> ground_transmittance;
@@ -30,7 +30,8 @@ struct March {
 
 class DiffuseMarches {
  public:
-  /// @param chi  of what aerosol scatters: degree l of a band at [l * bands + band].
+  /// @param chi  Legendre coefficients of aerosol scattering: degree l of a band at [l * bands +
+  ///   band].
   DiffuseMarches(const AirIntegrator<float>& air, const DiffuseLightOptions& options,
                  const std::vector<double>& chi);
 
@@ -44,16 +45,16 @@ class DiffuseMarches {
   [[nodiscard]] const std::vector<March>& At(std::size_t altitude) const {
     return marches_[altitude];
   }
-  /// cos(m phi) of an azimuth.
+  /// Returns cos(m phi) of an azimuth.
   [[nodiscard]] float AzimuthCosine(std::size_t m, std::size_t azimuth) const {
     return azimuth_cosines_[m].data()[azimuth];
   }
-  /// sin(m phi) for m = 1, 2.
+  /// Returns sin(m phi) for m = 1, 2.
   [[nodiscard]] float AzimuthSine(std::size_t m, std::size_t azimuth) const {
     return azimuth_sines_[m - 1].data()[azimuth];
   }
   [[nodiscard]] MarchDirection Direction(std::size_t altitude, const March& march) const;
-  /// Cosine between a march and the sun.
+  /// Returns the cosine of the angle between a march and the sun.
   [[nodiscard]] double Nu(const March& march, std::size_t sun, std::size_t azimuth) const;
 
  private:
@@ -75,10 +76,10 @@ class DiffuseMarches {
   std::vector<std::vector<March>> marches_;
 };
 
-/// Per unit solar irradiance along one march: [(band * suns + sun) * azimuths + azimuth].
+/// Light along one march per unit solar irradiance: [(band * suns + sun) * azimuths + azimuth].
 struct SunlightOfMarch {
   std::vector<float> radiance;   // [1/sr]
-  std::vector<float> molecules;  // scattered by them, without phase function [1]
+  std::vector<float> molecules;  // light that molecules scatter, without phase function [1]
 };
 
 [[nodiscard]] SunlightOfMarch SunlightScatteredOnce(const DiffuseMarches& marches,

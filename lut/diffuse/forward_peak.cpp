@@ -13,22 +13,25 @@
 namespace alpenglow::lut {
 namespace {
 
-// Beyond it the peak of any dust or haze is narrower than half a degree of arc times its share.
+// Highest degree of the forward peak. Beyond it the peak of any dust or haze is narrower than half
+// a degree of arc times its share.
 constexpr int kLastDegree = 160;
 
-// Angles s in [0, 1], angle = pi s^2: dense where the peak is.
+// Number of angles = pi s^2 with s in [0, 1], dense near the peak.
 constexpr std::size_t kAngles = 256;
-// The glow about the sun fades away from 15 degrees on, where higher degrees are but a ripple, and
-// is over at this node, 30 degrees.
+// The glow about the sun fades out from 15 degrees, beyond which higher degrees are only a ripple,
+// and ends at this node, at 30 degrees.
 constexpr std::size_t kGlowAngles = 104;
 constexpr double kGlowFades_rad = 15.0 * kRadiansPerDegree;
-// Depths y = kDeepest u^2: light behind more has turned anywhere.
+// Number of depths y = kDeepest u^2. Light behind larger depths has lost its direction.
 constexpr std::size_t kDepths = 32;
 constexpr double kDeepest = 40.0;
-// The glow of more is that of so much: such air is thick, and needs its forward peak apart.
+// For larger depths the glow of this depth is used. Such air is thick and needs a separate forward
+// peak.
 constexpr float kDeepestGlow = 4.0F;
-constexpr std::size_t kGlowDepths = 12;  // deeper than that
-// Light of higher degrees that is scattered twice is narrower than two degrees.
+constexpr std::size_t kGlowDepths = 12;  // depths beyond kDeepestGlow
+// Highest degree of the glow. Light of higher degrees that is scattered twice is narrower than two
+// degrees.
 constexpr int kLastGlowDegree = 96;
 
 double AngleAt(std::size_t i) {
@@ -41,19 +44,19 @@ double DepthAt(std::size_t i) {
   return kDeepest * u * u;
 }
 
-// exp(-y) [(exp(chi y) - 1) / y - chi].
+// Returns exp(-y) [(exp(chi y) - 1) / y - chi].
 double HigherOrders(double chi, double y) {
   if (y * std::abs(chi) < 1e-4) return 0.5 * chi * chi * y * std::exp(-y);
   return (std::exp((chi - 1.0) * y) - std::exp(-y)) / y - chi * std::exp(-y);
 }
 
-// exp(-depth) (exp(peak) - 1), peak < depth: neither digits are lost nor does it overflow.
+// Returns exp(-depth) (exp(peak) - 1) for peak < depth without cancellation or overflow.
 float Gain(float peak, float depth) {
   if (peak < 1.0F) return std::exp(-depth) * std::expm1(peak);
   return std::exp(peak - depth) - std::exp(-depth);
 }
 
-/// Where a value stands between the nodes of a table.
+/// Position of a value between the nodes of a table.
 struct Place {
   std::size_t cell;
   float share;
@@ -75,7 +78,7 @@ Place PlaceOfDepth(float y) {
   return {cell, (squared - low * low) / (2.0F * low + 1.0F)};
 }
 
-/// How much of a shape is wanted; the rest holds nothing.
+/// Part of a shape that is filled; the rest is 0.
 struct ShapeSize {
   int last_degree;
   std::size_t angles, depths;
@@ -104,7 +107,7 @@ PeakShape ShapeOf(const PhaseFunction& phase, int degree, const ShapeSize& size)
   return shape;
 }
 
-// Light of higher degrees at the depths, at an angle.
+// Returns the light of higher degrees at one angle, for all depths.
 std::array<float, kDepths> HighAt(const PeakShape& shape, const Place& angle) {
   std::array<float, kDepths> high;
   for (std::size_t y = 0; y < kDepths; ++y) {
@@ -219,7 +222,7 @@ float ForwardPeak::SumAlong(std::size_t band, const RaySamples<float>& samples, 
       static_cast<float>(shared::PhaseMolecules(nu, Depolarisation(air_.medium(), band))) *
       air.rayleigh[band];
   const float mie = air.mie_scattering[band], f = share_[band];
-  // The formula less its value at y = 0, times exp(-depth).
+  // Returns the formula minus its value at y = 0, times exp(-depth).
   const auto formula = [&](float y, float depth, float of_gas, float of_aerosol) {
     const float clear = std::exp(-depth), more = Gain(f * y, depth);
     const float once = (y > 1e-4F ? more / y : f * clear) - f * (clear + more);
@@ -281,10 +284,11 @@ ForwardPeak::Way ForwardPeak::WayTo(const RaySamples<float>& samples) const {
 
 namespace {
 
-// Beyond it the peak of any dust or haze is narrower than half a degree of arc times its share.
+// Highest degree of the estimate. Beyond it the peak of any dust or haze is narrower than half a
+// degree of arc times its share.
 constexpr int kLastMissingDegree = 64;
 
-// P_l(nu) for l = 0 ... kLastMissingDegree.
+// Returns P_l(nu) for l = 0 ... kLastMissingDegree.
 std::vector<double> LegendreValues(double nu) {
   std::vector<double> values{1.0, nu};
   for (int l = 1; l < kLastMissingDegree; ++l) {
@@ -294,7 +298,8 @@ std::vector<double> LegendreValues(double nu) {
   return values;
 }
 
-// What |P_l(cos theta)| stays below: 1, and sqrt(2 / (pi (l + 1/2) sin theta)) (Bernstein).
+// Returns an upper bound of |P_l(cos theta)|: the smaller of 1 and sqrt(2 / (pi (l + 1/2) sin
+// theta)) (Bernstein).
 double Envelope(int l, double nu) {
   const double sine = std::sqrt(std::max(1.0 - nu * nu, 1e-12));
   return std::min(1.0, std::sqrt(2.0 / (kPi * (l + 0.5) * sine)));

@@ -1,46 +1,50 @@
 // SPDX-License-Identifier: MIT
-// Light that aerosol throws forward, in closed form beside moments of few degrees.
+// This header provides the light that aerosol scatters forward, in closed form, in addition to
+// moments of low degree.
 //
-// Delta-M (Wiscombe 1977, J. Atmos. Sci. 34, 1408): of every scattering by aerosol the share f =
-// chi of degree L + 1 counts as unscattered. Successive orders are solved in the air that is left,
+// Delta-M (Wiscombe 1977, J. Atmos. Sci. 34, 1408): of every scattering by aerosol the fraction f =
+// chi of degree L + 1 counts as unscattered. Successive orders are solved in the remaining medium,
 //
 //   extinction' = extinction - f scattering, scattering' = (1 - f) scattering,
 //   chi'_l = (chi_l - f) / (1 - f),
 //
-// whose phase function ends at degree L: nothing is truncated. The sun's beam of that air is
-// brighter than the true one by light that has turned little, T' - T = T (exp(f x) - 1) with x the
-// optical depth of scattering by aerosol towards the sun. DiffuseLight::values() hold it as diffuse
-// light from the sun's direction, so that they mean the same with and without this.
+// whose phase function ends at degree L, so nothing is truncated. The sun's beam in that medium is
+// brighter than the true beam by light that is deflected little, T' - T = T (exp(f x) - 1) with x
+// the optical depth of scattering by aerosol towards the sun. DiffuseLight::values() include it as
+// diffuse light from the sun's direction, so that they mean the same with and without delta-M.
 //
-// Rays are gathered in that air too. Light scattered once then has the exact phase function and, in
-// closed form, the peak of all orders (Nakajima, Tanaka 1988, J. Quant. Spectrosc. Radiat. Transf.
-// 40, 51, in small-angle approximation: Wentzel 1922; van de Hulst 1980, Multiple Light Scattering,
-// ch. 14): a path of n scatterings may have its large turn at any of them. With y the optical depth of scattering from the sun to the point and on to the eye degree l
-// of the aerosol's light is, where the first order has chi_l,
+// Radiance along view rays is also gathered in that medium. Light scattered once then has the exact
+// phase function and, in closed form, the peak of all orders (Nakajima, Tanaka 1988, J. Quant.
+// Spectrosc. Radiat. Transf. 40, 51, in small-angle approximation: Wentzel 1922; van de Hulst 1980,
+// Multiple Light Scattering, ch. 14): in a path of n scatterings any of them may be the one with a
+// large deflection. Let y be the optical depth of scattering from the sun to the point and on to
+// the eye. Degree l of the aerosol's light, for which the first order has chi_l, is then
 //
 //   (chi_l - f) exp(f y) + (exp(f y) - 1) / y    l <= L
 //   (exp(chi_l y) - 1) / y                       l > L
 //
-// times T sigma_M (2 l + 1)/(4 pi) P_l(nu), and that of molecules p_R exp(f y) instead of p_R. What is behind the end of the ray, seen through
-// that air, is brighter than through the true by T (exp(f y) - 1), y along the ray.
+// times T sigma_M (2 l + 1)/(4 pi) P_l(nu). The light of molecules has p_R exp(f y) instead of p_R.
+// Light from behind the end of the ray, seen through that medium, is brighter than through the true
+// one by T (exp(f y) - 1), with y along the ray.
 //
-// In thin air nothing is taken out of the moments, and degrees l <= L hold all light. What they
-// lack is the second line with T sigma_M before it, and only near the sun, where y is nearly the
-// same from end to end of a ray (GlowAboutTheSun).
+// In thin air nothing is removed from the moments, and degrees l <= L hold all their light. The
+// moments lack the second line times T sigma_M, and only near the sun, where y is nearly constant
+// along a ray (GlowAboutTheSun).
 //
-// How much light of orders two and up lies in degrees of the aerosol's phase function that
-// DiffuseLight does not keep: an estimate, for those who state an error.
+// The header also provides an estimate, for error statements, of the light of orders two and up in
+// degrees of the aerosol's phase function that DiffuseLight does not keep (MissingDegrees).
 //
-// Light that is deflected little stays near the beam, and along the way from the sun to a point and
-// on to the eye its degree l grows by exp(chi_l tau), tau being the optical depth of scattering by
-// aerosol along that way (small-angle approximation: Wentzel 1922; van de Hulst 1980, Multiple
+// Light that is deflected little stays near the beam. Along the path from the sun to a point and
+// on to the eye its degree l grows by exp(chi_l tau), where tau is the optical depth of scattering
+// by aerosol along that path (small-angle approximation: Wentzel 1922; van de Hulst 1980, Multiple
 // Light Scattering, ch. 14). Degrees above L therefore hold
 //
 //   A(nu) = integral of sigma_M T sum over l > L of (2 l + 1) / (4 pi) chi_l (exp(chi_l tau) - 1)
 //           P_l(nu) ds
 //
-// beside what is scattered once. A alternates in sign with the angle, and real paths blur where:
-// the estimate is |A| plus the envelope of its first term. 0 where no aerosol is.
+// in addition to light scattered once. A alternates in sign with the angle, and real paths blur the
+// angles of the sign changes, so the estimate is |A| plus the envelope of its first term. It is 0
+// where there is no aerosol.
 #pragma once
 
 #include <vector>
@@ -53,49 +57,50 @@
 
 namespace alpenglow::lut {
 
-/// The air that delta-M leaves.
+/// The medium after delta-M scaling.
 struct AirWithoutPeak {
   Medium medium;
-  std::vector<double> share;  // f of a band, in [0, 1)
+  std::vector<double> share;  // f per band, in [0, 1)
   std::vector<double> chi;    // chi'_l at [l * bands + band], l = 0 ... degree
 };
 
 [[nodiscard]] AirWithoutPeak WithoutPeak(const Medium& medium, int degree);
 
-/// One phase function: its degrees up to L, and light of higher degrees by depth.
+/// Shape of the peak of one phase function: the sum of its degrees up to L, and the light of higher
+/// degrees by depth.
 struct PeakShape {
-  std::vector<float> low;   // [angle]: of the phase function
+  std::vector<float> low;   // [angle]: phase function up to degree L
   std::vector<float> high;  // [angle * depths + depth], times exp(-y)
 };
 
-/// Light that thin air scatters more than once towards an eye that looks near the sun, beyond moments of
-/// some degree. Immutable.
+/// Light near the sun that thin air scatters more than once towards the eye, beyond moments of some
+/// degree. Immutable.
 class GlowAboutTheSun {
  public:
   GlowAboutTheSun(const Medium& medium, int degree);
 
-  /// Returns whether a direction of this cosine to the sun lies where there is any.
+  /// Returns whether a direction with this cosine to the sun lies within the glow.
   [[nodiscard]] static bool Reaches(double nu);
 
-  /// By what light scattered once by aerosol, without its phase function, is to be multiplied [1/sr].
-  /// @param column_km  of aerosol at its density on the ground: from the sun to the point and on to
-  ///   the eye.
+  /// Returns the factor of light scattered once by aerosol, without its phase function [1/sr].
+  /// @param column_km  aerosol column at the density on the ground: from the sun to the point and
+  ///   on to the eye.
   [[nodiscard]] Bands<float> FactorOf(double nu, float column_km) const;
 
  private:
   std::vector<float> scattering_per_km_;
-  std::vector<PeakShape> shapes_;  // one, or one a band
+  std::vector<PeakShape> shapes_;  // one for all bands, or one per band
 };
 
-/// Ready for look-ups. Immutable.
+/// The forward peak of all orders, prepared for look-ups. Immutable.
 class ForwardPeak {
  public:
   ForwardPeak(const Medium& medium, int degree);
 
-  /// T' - T from a point to the sun; 0 where the ground hides it.
+  /// Returns T' - T from a point to the sun; 0 where the ground hides the sun.
   [[nodiscard]] Bands<float> Beam(double altitude_m, double mu_s) const;
 
-  /// From the observer to the end of samples of the true air.
+  /// The path from the observer to the end of samples of the true medium.
   struct Way {
     Bands<float> clear;       // T
     Bands<float> more;        // T' - T
@@ -103,33 +108,35 @@ class ForwardPeak {
   };
   [[nodiscard]] Way WayTo(const RaySamples<float>& samples) const;
 
-  /// The sum of the formulas above along samples less what is scattered once [1/sr].
+  /// Returns the sum of the formulas above along samples, without light scattered once [1/sr].
   [[nodiscard]] Bands<float> Along(const RaySamples<float>& samples, double nu) const;
 
-  /// The same of samples behind the end of a way, seen from its beginning, less the sum as seen
-  /// from its end: what the peak brings from there.
+  /// Returns the additional radiance that reaches the start of `way` because of the peak from
+  /// samples beyond its end: the sum as seen from the start of `way`, minus the sum as seen from
+  /// its end.
   [[nodiscard]] Bands<float> Behind(const Way& way, const RaySamples<float>& samples,
                                     double nu) const;
 
   [[nodiscard]] const AirIntegrator<float>& air() const { return air_; }
 
  private:
-  /// Sum of formula(y + ahead) - formula(base y) along samples.
+  /// Returns the sum of formula(y + ahead) - formula(base y) along samples.
   [[nodiscard]] float SumAlong(std::size_t band, const RaySamples<float>& samples, double nu,
                                float ahead, float base) const;
 
   AirIntegrator<float> air_;
   int degree_;
-  std::vector<float> share_;       // f of a band
-  std::vector<PeakShape> shapes_;  // one, or one a band
+  std::vector<float> share_;       // f per band
+  std::vector<PeakShape> shapes_;  // one for all bands, or one per band
 };
 
 class MissingDegrees {
  public:
-  /// @param degree  the largest that is kept.
+  /// @param degree  the largest degree that is kept.
   MissingDegrees(const Medium& medium, int degree);
 
-  /// Of samples that AirIntegrator(medium) took [1/sr], per unit solar irradiance.
+  /// Returns the estimate for samples taken by AirIntegrator(medium) [1/sr], per unit solar
+  /// irradiance.
   [[nodiscard]] std::vector<double> Along(const AirConstants<float>& air,
                                           const RaySamples<float>& samples, double nu) const;
 

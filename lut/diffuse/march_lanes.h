@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Marches of one order's light to a node, and of sunlight scattered once. A part of
-// diffuse_kernel.cpp.
+// This header provides the marches that carry one order's light, and sunlight scattered once, to a
+// node. It is a part of diffuse_kernel.cpp.
 #pragma once
 
 #include <array>
@@ -13,8 +13,8 @@
 namespace alpenglow::lut {
 namespace {
 
-// Source of a march point per cos(m phi) at every sun node, altitude and degree summed: row
-// (1 + sun) of kRow vectors.
+// Finds the source of a march point per cos(m phi) at every sun node, summed over altitude and
+// degree: row (1 + sun) of kRow vectors.
 template <std::size_t kDegree, std::size_t kStep, std::size_t kLast, std::size_t kNode,
           std::size_t kRow>
 void ContractRows(const DiffuseGrid& grid, const MarchPoint& point, const Eight* factor,
@@ -41,8 +41,8 @@ void ContractRows(const DiffuseGrid& grid, const MarchPoint& point, const Eight*
   }
 }
 
-// Factors of moments in the source of a march point: [tap * vectors + vector]. Of polarised light
-// what molecules scatter is left to the tensor.
+// Finds the factors of moments in the source of a march point: [tap * vectors + vector]. For
+// polarised light, scattering by molecules is excluded; the tensor provides it.
 template <std::size_t kDegree, bool kPolarised>
 void FindFactors(const MarchPoint& point, const MarchLight& light, const BlockShape& shape,
                  Eight* factor) {
@@ -71,7 +71,7 @@ void FindFactors(const MarchPoint& point, const MarchLight& light, const BlockSh
   }
 }
 
-// A node beyond each end, so that every tap has four neighbours.
+// Adds a node beyond each end, so that every tap has four neighbours.
 template <std::size_t kRow>
 void AddEnds(std::size_t suns, float* rows) {
   constexpr std::size_t kStep = kRow * 8;
@@ -99,8 +99,8 @@ void Contract(const DiffuseGrid& grid, const MarchPoint& point, const MarchLight
   AddEnds<kPairs>(grid.suns, rows);
 }
 
-// The tensor at every sun node times what molecules scatter: (D/10 T20, D/10 T21) and (D/10 T22,
-// moment 00 Y00), in the last two vectors of each row.
+// Finds the tensor at every sun node times the molecules' factors: (D/10 T20, D/10 T21) and (D/10
+// T22, moment 00 Y00), in the last two vectors of each row.
 template <std::size_t kDegree>
 void ContractTensor(const DiffuseGrid& grid, const MarchPoint& point, const MarchLight& light,
                     const BlockShape& shape, const float* previous, float* rows) {
@@ -131,13 +131,13 @@ void ContractTensor(const DiffuseGrid& grid, const MarchPoint& point, const Marc
   }
 }
 
-/// Where the suns of all azimuths stand at a march point: neighbours and local azimuths.
+/// Positions of the suns of all azimuths at a march point: neighbouring nodes and local azimuths.
 template <std::size_t kPairs>
 struct AzimuthTaps {
   alignas(64) float cell[kMostAzimuths];
   alignas(64) float weight[4][kMostAzimuths];
   alignas(64) float cosine[2 * kPairs][kMostAzimuths];  // of m phi, times SinePower if polarised
-  alignas(64) float sine[2][kMostAzimuths];             // of phi and 2 phi, the same; if polarised
+  alignas(64) float sine[2][kMostAzimuths];             // phi, 2 phi, times SinePower; if polarised
 };
 
 // Multiplies cosines by powers of the sun's zenith sine, and finds the sines of azimuths.
@@ -220,7 +220,7 @@ void ArriveOfDegree(const DiffuseGrid& grid, const MarchDirection& direction,
   }
 }
 
-// Weights of four rows of suns, and where the first of them begins.
+// Weights of four rows of suns, and the start of the first row.
 struct SunRows {
   const float* row;
   V w0, w1, w2, w3;
@@ -237,7 +237,7 @@ Eight BetweenSuns(const SunRows& at, std::size_t vector) {
   return there;
 }
 
-// Adds what a march point's molecules send along one azimuth: I, Q and U.
+// Adds the light that molecules at a march point scatter along one azimuth: I, Q and U.
 template <std::size_t kPairs>
 void AddTensorLight(const MarchPoint& point, const TensorStokes<float>& stokes,
                     const AzimuthTaps<kPairs>& taps, std::size_t k, const SunRows& at,
@@ -316,7 +316,7 @@ void ArrivePolarised(const DiffuseGrid& grid, const MarchDirection& direction,
   });
 }
 
-// By the gentle stretch of ray_map.glsl: all pieces have as many nodes.
+// Places nodes by the gentle stretch of ray_map.glsl: all pieces have the same number of nodes.
 void Place(const LitPieces& pieces, const LitPoints& points) {
   using namespace shared;
   using Lanes = BatchOf<float>;

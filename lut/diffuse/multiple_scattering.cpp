@@ -31,7 +31,7 @@ double DiffuseLight::MuSFromCoordinate(double v) { return SunNodes().MuS(v); }
 namespace {
 
 void RequireNodes(const DiffuseLightOptions& options) {
-  constexpr int kMostRayNodes = 32;  // of RaySampling
+  constexpr int kMostRayNodes = 32;  // upper limit of RaySampling
   RequireInRange(options.zenith_nodes, 1, kMaxGaussNodes, "zenith_nodes");
   RequireInRange(options.azimuth_nodes, 1, static_cast<double>(kMostAzimuths), "azimuth_nodes");
   RequireInRange(options.ray_nodes, 1, kMostRayNodes, "ray_nodes");
@@ -41,7 +41,7 @@ void RequireNodes(const DiffuseLightOptions& options) {
   RequireInRange(options.later_ray_nodes, 1, kMostRayNodes, "later_ray_nodes");
 }
 
-// What the solver and the look-ups take for granted.
+// Checks the preconditions of the solver and of the look-ups.
 const Medium& Checked(const Medium& medium, const DiffuseLightOptions& options) {
   RequireInRange(options.altitudes, 4, 1024, "altitudes");
   RequireInRange(options.sun_angles, 4, 1024, "sun_angles");
@@ -61,7 +61,7 @@ const Medium& Checked(const Medium& medium, const DiffuseLightOptions& options) 
   return medium;
 }
 
-// Adds so many times the beam's light at a node to values there.
+// Adds `times` times the beam's light at a node to the values of the node.
 void AddBeam(const DiffuseLightOptions& options, const Bands<float>& beam, double mu_s, float times,
              bool polarised, float* value) {
   const Moments towards = LegendreTerms(options.degree, static_cast<float>(mu_s));
@@ -70,13 +70,13 @@ void AddBeam(const DiffuseLightOptions& options, const Bands<float>& beam, doubl
       *value += times * share * beam[band];
   };
   for (std::size_t i = 0; i < MomentCount(options.degree); ++i) add(towards[i]);
-  // Light without polarisation has T2m = L2m.
+  // Unpolarised light has T2m = L2m.
   for (std::size_t m = 0; polarised && m < kTensorMoments; ++m)
     add(towards[MomentIndex(2, static_cast<int>(m))]);
   add(static_cast<float>(std::max(mu_s, 0.0)));
 }
 
-// The values at all nodes with so many times the beam more.
+// Returns the values at all nodes plus `times` times the beam.
 std::vector<float> WithBeam(const Medium& medium, const DiffuseLightOptions& options, float times,
                             std::vector<float> values) {
   const ForwardPeak peak(medium, options.degree);
@@ -112,7 +112,7 @@ DiffuseLightOptions OptionsFor(const Medium& medium) {
   if (aerosol > 0.08) {
     options.degree = kMaxDegree;
     options.forward_peak = true;
-    // More azimuths than degrees, or the last of them pass for others.
+    // There must be more azimuths than degrees, to avoid aliasing of the highest degrees.
     options.azimuth_nodes = 14;
     options.later_azimuth_nodes = 13;
   }
@@ -120,7 +120,7 @@ DiffuseLightOptions OptionsFor(const Medium& medium) {
     options.altitudes = 24;
     options.later_ray_nodes = 8;
   }
-  // Errors of the nodes in one order add up over many.
+  // The quadrature errors of single orders accumulate over many orders.
   if (molecules > 0.4) {
     options.ray_nodes = 14;
     options.later_ray_nodes = 12;
@@ -277,7 +277,7 @@ Bands<float> DiffuseLight::GlowFactor(double nu, float column_km) const {
   return glow_ ? glow_->FactorOf(nu, column_km) : Bands<float>(bands_);
 }
 
-// The column is the mean over the aerosol in the sun.
+// The column is the mean over sunlit aerosol.
 Bands<float> DiffuseLight::GlowAlong(const RaySamples<float>& samples, double nu) const {
   float lit_km = 0.0F, column = 0.0F;
   for (std::size_t i = 0; i < samples.count; ++i) {
@@ -304,7 +304,7 @@ Bands<float> DiffuseLight::GroundLight(double mu_s) const {
   return light;
 }
 
-// Where the ray goes on: at its end, by the last of its samples.
+// Returns the continuation of the ray at its end, from the last of its samples.
 ViewRay DiffuseLight::RayBehind(const RaySamples<float>& samples, double nu) const {
   const std::size_t last = samples.count - 1;
   const double radius_m = medium_.planet_radius_m;
@@ -322,8 +322,8 @@ ViewRay DiffuseLight::RayBehind(const RaySamples<float>& samples, double nu) con
   return {altitude_m, there(mu, 1.0), there(static_cast<double>(samples.mu_s[last]), nu), nu};
 }
 
-// Of the light behind the end of samples, what the peak brings: from the ground, or, where they end
-// before, from the air and the ground that follow.
+// Returns the part of the light from behind the end of samples that the forward peak adds. It comes
+// from the ground or, if the samples end before it, from the air and the ground that follow.
 Bands<float> DiffuseLight::PeakBehind(const RaySamples<float>& samples, double nu,
                                       double nu_seen) const {
   Bands<float> light(bands_), closed(bands_);
@@ -444,7 +444,7 @@ std::array<Bands<float>, kTensorMoments> DiffuseLight::TensorAt(double altitude_
         }
       });
   if (!peak_) return tensor;
-  // Light without polarisation has T2m = L2m.
+  // Unpolarised light has T2m = L2m.
   const Bands<float> beam = peak_->Beam(altitude_m, mu_s);
   const Moments towards = LegendreTerms(2, static_cast<float>(mu_s));
   for (std::size_t m = 0; m < kTensorMoments; ++m) {
@@ -476,7 +476,7 @@ PolarisedLight DiffuseLight::PolarisationAlong(const RaySamples<float>& samples,
                           samples.rayleigh_density[s] * RayleighChi2(medium_, band);
       light.q[band] += share * (stokes.q20 * tensor(0) + stokes.q21 * cosine * tensor(1) +
                                 stokes.q22 * (2.0F * cosine * cosine - 1.0F) * tensor(2));
-      // h points to the side that the sun is not on where sines of azimuths are positive.
+      // If the sines of azimuths are positive, h points to the side away from the sun.
       light.u[band] -= share * (stokes.u21 * across * tensor(1) +
                                 stokes.u22 * 2.0F * across * cosine * tensor(2));
     }

@@ -17,7 +17,7 @@ double AzimuthCosineOrAhead(double mu, double mu_s, double nu) {
 PolarisedLight PolarisedOnce(const Medium& medium, const ScatteredOnce<float>& once,
                              const ViewRay& ray) {
   const double cosine = AzimuthCosineOrAhead(ray.mu, ray.mu_s, ray.nu);
-  // The sun's direction on l and h of polarised_light.h.
+  // Components of the sun's direction on l and h of polarised_light.h.
   const double in_l = ray.mu * cosine * SineOf(ray.mu_s) - SineOf(ray.mu) * ray.mu_s;
   const double in_h = -SineOf(cosine) * SineOf(ray.mu_s);
   PolarisedLight light{Bands<float>(once.rayleigh.count), Bands<float>(once.rayleigh.count)};

@@ -87,9 +87,9 @@ float AzimuthCosine(float mu, float mu_s, float nu) {
 
 namespace {
 
-// Cosines, ascending, between which the phase function is smooth and
-// as wide as the panel: the nodes of a table; else panels that
-// shrink towards the forward peak, so that g = 0.999 is resolved.
+// Returns the edges of panels, as ascending cosines. The phase function is smooth on the scale of
+// each panel: the panels of a table end at its nodes, others shrink towards the forward peak, so
+// that g = 0.999 is resolved.
 std::vector<double> PanelEdges(const PhaseFunction& phase) {
   std::vector<double> edges{-1.0};
   if (phase.kind == PhaseKind::kTable) {
@@ -106,9 +106,9 @@ std::vector<double> PanelEdges(const PhaseFunction& phase) {
   return edges;
 }
 
-/// Cosines with their weights; filled up with weights of 0 to a multiple of kLanes.
+/// Cosines with their weights; padded with weights of 0 to a multiple of kLanes.
 struct PhaseQuadrature {
-  static constexpr std::size_t kLanes = 8;  // nodes at once
+  static constexpr std::size_t kLanes = 8;  // nodes per vector
   std::vector<double> cosine, weight;
 };
 
@@ -128,7 +128,7 @@ PhaseQuadrature QuadratureOver(const std::vector<double>& edges, const GaussRule
   return quadrature;
 }
 
-/// The quadrature of all tables, and where its cosines lie in them.
+/// The quadrature that all tables share, and the positions of its cosines in a table.
 struct TableQuadrature {
   PhaseQuadrature rule;
   std::vector<double> position;
@@ -142,7 +142,7 @@ TableQuadrature MakeTableQuadrature() {
   return of_tables;
 }
 
-// Weights include the phase function.
+// Returns the quadrature; its weights include the phase function.
 PhaseQuadrature QuadratureOf(const PhaseFunction& phase) {
   if (phase.kind == PhaseKind::kTable) {
     static const TableQuadrature of_tables = MakeTableQuadrature();
@@ -172,7 +172,7 @@ std::vector<double> LegendreSeries(int degree, double nu) {
 }
 
 std::vector<double> LegendreCoefficients(const PhaseFunction& phase, int degree) {
-  constexpr std::size_t kLanes = PhaseQuadrature::kLanes;  // the recurrence of one waits for itself
+  constexpr std::size_t kLanes = PhaseQuadrature::kLanes;  // hides the latency of a recurrence
   const PhaseQuadrature rule = QuadratureOf(phase);
   std::vector<double> sums(kLanes * (static_cast<std::size_t>(degree) + 1), 0.0);
   for (std::size_t first = 0; first < rule.cosine.size(); first += kLanes) {

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-// Real spherical harmonics around the vertical, even in azimuth, and Legendre series of phase
-// functions.
+// This header provides real spherical harmonics around the vertical, even in azimuth, and Legendre
+// series of phase functions.
 //
 //   Y_lm(mu, phi) = norm_lm P_l^m(mu) cos(m phi),   0 <= m <= l
 //
-// orthonormal over the sphere, without the Condon-Shortley phase (it cancels between projection and
-// evaluation). Moments are stored l major: 00, 10, 11, 20, 21, 22, ...
+// They are orthonormal over the sphere, without the Condon-Shortley phase (it cancels between
+// projection and evaluation). Moments are stored l major: 00, 10, 11, 20, 21, 22, ...
 #pragma once
 
 #include <array>
@@ -20,9 +20,9 @@
 namespace alpenglow::lut {
 
 inline constexpr int kMaxDegree = 12;
-/// The degrees that light may have. Every kernel of diffuse light is compiled for each of them.
+/// Supported degrees of diffuse light. Every kernel of diffuse light is compiled for each of them.
 inline constexpr std::array kDegrees{2, 4, 6, 8, kMaxDegree};
-/// Throws InputError, which lists the degrees, when this is none of them.
+/// Throws InputError, which lists the supported degrees, if `degree` is none of them.
 void RequireDegree(int degree);
 
 [[nodiscard]] constexpr std::size_t MomentCount(int degree) {
@@ -35,11 +35,11 @@ inline constexpr std::size_t kMaxMoments = MomentCount(kMaxDegree);
 
 using Moments = std::array<float, kMaxMoments>;
 
-/// norm_lm.
+/// Returns norm_lm.
 [[nodiscard]] double HarmonicNorm(int l, int m);
 
-/// 2 pi integral of max(x, 0) P_l(x) dx: what a surface makes
-/// of moments of degree l (Ramamoorthi, Hanrahan 2001).
+/// 2 pi integral of max(x, 0) P_l(x) dx: factor by which a Lambertian surface convolves moments of
+/// degree l (Ramamoorthi, Hanrahan 2001).
 inline constexpr std::array<double, kMaxDegree + 1> kClampedCosine{kPi,
                                                                    2.0 * kPi / 3.0,
                                                                    kPi / 4.0,
@@ -54,27 +54,28 @@ inline constexpr std::array<double, kMaxDegree + 1> kClampedCosine{kPi,
                                                                    0.0,
                                                                    -3.0 * kPi / 1024.0};
 
-/// norm_lm P_l^m(mu) for l <= degree. @param mu in [-1, 1].
+/// Returns norm_lm P_l^m(mu) for l <= degree. @param mu in [-1, 1].
 [[nodiscard]] Moments LegendreTerms(int degree, float mu);
 
-/// cos(m phi) for m = 0 ... degree from cos(phi).
+/// Returns cos(m phi) for m = 0 ... degree from cos(phi).
 [[nodiscard]] std::array<float, kMaxDegree + 1> CosineMultiples(int degree, float cosine);
 
-/// Y_lm for l <= degree. @param cos_azimuth cos(phi).
+/// Returns Y_lm for l <= degree. @param cos_azimuth cos(phi).
 [[nodiscard]] Moments SphericalHarmonics(int degree, float mu, float cos_azimuth);
 
-/// Cosine of the azimuth between two directions of zenith cosines mu and mu_s with cosine nu
-/// between them; some value in [-1, 1] where one of them is vertical.
+/// Returns the cosine of the azimuth between two directions of zenith cosines mu and mu_s with
+/// cosine nu between them; an arbitrary value in [-1, 1] if one of them is vertical.
 [[nodiscard]] float AzimuthCosine(float mu, float mu_s, float nu);
 
-/// (2 l + 1) / (4 pi) P_l(nu) for l = 0 ... degree: what the coefficients below are multiplied by.
+/// Returns (2 l + 1) / (4 pi) P_l(nu) for l = 0 ... degree: the factors of the coefficients below.
 [[nodiscard]] std::vector<double> LegendreSeries(int degree, double nu);
 
-/// Legendre coefficients chi_l = 2 pi integral of p(x) P_l(x) dx, l = 0 ... degree; chi_0 = 1.
-/// Error below 1e-6 for |g| <= 0.999 and for tables.
+/// Returns the Legendre coefficients chi_l = 2 pi integral of p(x) P_l(x) dx, l = 0 ... degree;
+/// chi_0 = 1. The error is below 1e-6 for |g| <= 0.999 and for tables.
 [[nodiscard]] std::vector<double> LegendreCoefficients(const PhaseFunction& phase, int degree);
 
-/// The same of the medium's aerosol at every wavelength: chi_l of a band at [l * bands + band].
+/// Returns the Legendre coefficients of the medium's aerosol at every wavelength: chi_l of a band
+/// at [l * bands + band].
 [[nodiscard]] std::vector<double> MieLegendreCoefficients(const Medium& medium, int degree);
 
 }  // namespace alpenglow::lut

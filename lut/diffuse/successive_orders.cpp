@@ -17,13 +17,13 @@ namespace {
 
 using Light = glm::vec4;  // one value per band of a block
 
-/// Moments, packed, and sky irradiance at every node, divided by TwilightOf (and SinePower).
+/// Packed moments and sky irradiance at every node, divided by TwilightOf (and SinePower).
 struct Field {
   AlignedFloats moments;
   std::vector<Light> sky;
 };
 
-/// The nodes' layout.
+/// Memory layout of the nodes.
 struct Layout {
   explicit Layout(const DiffuseGrid& grid)
       : degree(grid.degree),
@@ -40,22 +40,22 @@ Light Of(const std::vector<double>& bands, std::size_t first_band) {
   return block;
 }
 
-/// Four bands of the light that arrives along a march, one a sun and azimuth; Q and U, in the frame
-/// of polarised_light.h, of polarised light alone.
+/// Four bands of the light that arrives along a march, one value per sun and azimuth. Q and U, in
+/// the frame of polarised_light.h, are present for polarised light only.
 struct MarchRadiance {
   MarchRadiance(std::size_t rays, bool polarised)
       : i(rays, Light(0.0F)), q(polarised ? rays : 0, Light(0.0F)), u(q) {}
   std::vector<Light> i, q, u;
 };
 
-/// Four bands along the marches of one set.
+/// Transport of four bands along the marches of one set.
 class Transport {
  public:
   Transport(const DiffuseMarches& marches, std::size_t first_band);
 
-  /// Moments of the light of the previous order that arrives at one altitude's nodes.
+  /// Finds the moments of the light of the previous order that arrives at one altitude's nodes.
   void NextOrder(std::size_t altitude, const Field& previous, Field& next) const;
-  /// The same of sunlight: radiance as SunlightScatteredOnce gives it.
+  /// Finds the moments of sunlight from the radiance that SunlightScatteredOnce returns.
   void Project(const March& march, std::size_t altitude, const SunlightOfMarch& sunlight,
                Field& field) const;
 
@@ -83,7 +83,7 @@ class Transport {
   std::vector<std::vector<Light>> ground_transmittance_;      // [altitude][march]
 };
 
-// Transmittance to a point of a march, its weight, and what scatters there.
+// Returns the transmittance to a point of a march, times its weight and scattering coefficients.
 MarchLight LightOf(const AirConstants<float>& air, std::size_t first_band,
                    const std::array<float, 6>& at) {
   MarchLight light{};
@@ -125,7 +125,7 @@ Transport::Transport(const DiffuseMarches& marches, std::size_t first_band)
   }
 }
 
-// Sums over azimuths with cos(m phi), or with sin(m phi) for m = 1, 2.
+// Sums radiance over azimuths with cos(m phi), or with sin(m phi) for m = 1, 2.
 Transport::Around Transport::Harmonics(const Light* radiance, float share, bool sines) const {
   Around around;
   const std::size_t last = sines ? 2 : layout_.degree;
@@ -152,8 +152,8 @@ void Transport::AddMoments(const March& march, const Around& around, float sun_s
   }
 }
 
-// The light of one zenith angle in T20, T21, T22 and once more in moment 00: with ll = (I + Q) / 2,
-// hh = (I - Q) / 2 and lh = U / 2, J gains ll l l^T + hh h h^T + lh (l h^T + h l^T).
+// Adds the light of one zenith angle to T20, T21, T22 and to the copy of moment 00: with ll = (I +
+// Q) / 2, hh = (I - Q) / 2 and lh = U / 2, J gains ll l l^T + hh h h^T + lh (l h^T + h l^T).
 void Transport::AddTensor(const March& march, const Around& i, const Around& q, const Around& u,
                           float sun_sine, float* moments) const {
   constexpr float kFactor = static_cast<float>(5.0 / (2.0 * kPi));
@@ -175,7 +175,8 @@ void Transport::AddTensor(const March& march, const Around& i, const Around& q, 
   }
 }
 
-// Radiance of all suns and azimuths along a march; azimuths stand for their mirror images too.
+// Projects the radiance of all suns and azimuths along a march. Azimuths also represent their
+// mirror images.
 void Transport::ProjectMarch(const March& march, std::size_t altitude,
                              const MarchRadiance& radiance, Field& field) const {
   for (std::size_t sun = 0; sun < layout_.suns; ++sun) {
@@ -194,7 +195,8 @@ void Transport::ProjectMarch(const March& march, std::size_t altitude,
   }
 }
 
-// Of the sun's light, unpolarised before molecules scatter it: J = E/2 P(sun).
+// Finds the polarisation of scattered sunlight, which is unpolarised before molecules scatter it: J
+// = E/2 P(sun).
 void Transport::PolariseSunlight(const March& march, const SunlightOfMarch& sunlight,
                                  MarchRadiance& radiance) const {
   const std::size_t rays = layout_.suns * marches_.azimuths();
@@ -229,7 +231,7 @@ void Transport::Project(const March& march, std::size_t altitude, const Sunlight
   ProjectMarch(march, altitude, radiance, field);
 }
 
-// Light of the previous order that the ground reflects into the march.
+// Adds the light of the previous order that the ground reflects into the march.
 void Transport::AddGroundLight(const March& march, const Light& reflected, const Field& previous,
                                std::vector<Light>& radiance) const {
   for (std::size_t ray = 0; ray < radiance.size(); ++ray) {
@@ -272,7 +274,7 @@ void Transport::NextOrder(std::size_t altitude, const Field& previous, Field& ne
   }
 }
 
-/// Four bands through all orders.
+/// Solution of four bands for all orders.
 class Block {
  public:
   /// @param later  the marches of the orders after the second.
@@ -312,9 +314,9 @@ class Block {
   Transport transport_, later_;
 };
 
-// Largest ratio over nodes of the isotropic moment of a part to that of the whole.
+// Returns the largest ratio over nodes of the isotropic moment of `part` to that of `whole`.
 double Block::LargestShare(const Field& part, const Field& whole) const {
-  constexpr float kNight = 1e-9F;  // nodes with less light do not hold up the rest
+  constexpr float kNight = 1e-9F;  // nodes with less light are ignored
   double largest = 0.0;
   for (std::size_t node = 0; node < layout_.nodes; ++node) {
     const Light share = Isotropic(part, node), of = Isotropic(whole, node);
@@ -326,9 +328,9 @@ double Block::LargestShare(const Field& part, const Field& whole) const {
   return largest;
 }
 
-// Adds (last + before) (q + q^2 + ...) for the ratio q of an order to the second one before it: over
-// bright ground orders come in pairs, light that the ground reflects and light that the air then
-// sends down again.
+// Adds (last + before) (q + q^2 + ...) for the ratio q of an order to the second one before it.
+// Over bright ground orders come in pairs: light that the ground reflects, and the part of it that
+// the air scatters down again.
 void Block::AddTail(const Field& last, const Field& before, const Field& second_before,
                     Field& total) const {
   constexpr float kLargest = 0.96F;
@@ -349,10 +351,10 @@ void Block::AddTail(const Field& last, const Field& before, const Field& second_
   }
 }
 
-// AddTail reads as many.
+// Number of orders that AddTail reads.
 constexpr int kFewestOrders = 3;
 
-// Light of clear and hazy air is summed with fewer.
+// Upper bound of the number of orders needed in clear and hazy air.
 constexpr int kOrdersOfThinAir = 16;
 
 void Accumulate(const Field& part, Field& total) {
@@ -387,8 +389,8 @@ Block::Sum Block::Solve(Field first_order) const {
     const double ratio_before = ratio;
     ratio = std::clamp(share / share_before, 0.0, 0.999);
     rest = share * ratio / (1.0 - ratio);
-    // In thick air all nodes soon fade alike, long before little is left: then what is not known of
-    // the rest is how far its ratio still moves.
+    // In thick air all nodes soon decay at one rate, long before the remaining light is small. The
+    // uncertainty of the rest is then the change of its ratio from order to order.
     if (orders > kOrdersOfThinAir)
       rest *= std::min(10.0 * std::abs(ratio - ratio_before) / (1.0 - ratio), 1.0);
   }
@@ -422,11 +424,12 @@ void Unpack(const DiffuseGrid& grid, const Field& field, std::size_t first_band,
   }
 }
 
-// Share of an aerosol's scattered sunlight that falls between the directions of the marches. They
-// stand 11 degrees of azimuth from the sun at least: of the dust of Mars they miss 41 % at 450 nm,
-// of a lobe of g = 0.8 6 %, of 0.7 1 %. [phase * suns + sun].
+// Returns the fraction of an aerosol's scattered sunlight that falls between the directions of the
+// marches: [phase * suns + sun]. These directions are at least 11 degrees of azimuth from the sun.
+// They miss 41 % of the light of the dust of Mars at 450 nm, 6 % of a lobe of g = 0.8 and 1 % of a
+// lobe of g = 0.7.
 std::vector<double> MissedShares(const DiffuseMarches& marches) {
-  constexpr double kNoise = 0.01;  // of the rule for phase functions that it resolves
+  constexpr double kNoise = 0.01;  // error of the quadrature for phase functions that it resolves
   const std::size_t phases = marches.air().medium().mie_phase.size();
   const std::size_t suns = marches.grid().suns;
   std::vector<double> shares(phases * suns, 1.0);
@@ -443,13 +446,15 @@ std::vector<double> MissedShares(const DiffuseMarches& marches) {
   return shares;
 }
 
-// Degree by degree, what is left of a beam spread by so much that moments show it without rings.
+// Returns the fraction of a beam's moments of degree l that is left after a blur which is just wide
+// enough for moments to represent it without ringing.
 float SpreadOf(std::size_t degree, std::size_t l) {
   const auto squared = [](std::size_t x) { return static_cast<float>(x * (x + 1)); };
   return std::exp(-2.3F * squared(l) / squared(degree + 1));
 }
 
-/// Light scattered once into a narrow peak, which the marches miss: it comes from the sun.
+/// Light scattered once into a narrow peak that the marches miss. It is added as light from the
+/// sun's direction.
 class MissedPeak {
  public:
   explicit MissedPeak(const DiffuseMarches& marches)
@@ -469,7 +474,7 @@ class MissedPeak {
   std::vector<float> twilight_;
 };
 
-// Irradiance of the peak on a plane that faces the sun.
+// Returns the irradiance of the peak on a plane that faces the sun.
 Bands<float> MissedPeak::PeakAt(std::size_t altitude, std::size_t sun) const {
   const AirIntegrator<float>& air = marches_.air();
   const Medium& medium = air.medium();
@@ -511,7 +516,7 @@ void MissedPeak::AddBand(const Bands<float>& peak, std::size_t node, std::size_t
       const float share = SpreadOf(layout.degree, l) *
                           towards[MomentIndex(static_cast<int>(l), static_cast<int>(m))] /
                           SinePowerOf(marches_.grid(), m, SunSine(marches_.mu_s(sun)));
-      // Light without polarisation has T2m = L2m.
+      // Unpolarised light has T2m = L2m.
       const bool twice = marches_.grid().polarised && (l == 2 || l == 0);
       const std::size_t again = PackedTensorIndex(layout.degree, l == 0 ? 3 : m);
       for (std::size_t lane = 0; lane < kBlockBands; ++lane) {
@@ -523,7 +528,7 @@ void MissedPeak::AddBand(const Bands<float>& peak, std::size_t node, std::size_t
   field.sky[node] += std::max(mu_s, 0.0F) * light;
 }
 
-// Orders after the second are smooth: fewer directions serve them.
+// Returns the options of the orders after the second. They are smooth, so fewer directions suffice.
 DiffuseLightOptions OfLaterOrders(DiffuseLightOptions options) {
   options.zenith_nodes = std::min(options.zenith_nodes, options.later_zenith_nodes);
   options.azimuth_nodes = std::min(options.azimuth_nodes, options.later_azimuth_nodes);
