@@ -21,8 +21,8 @@ namespace {
 constexpr int kSize = kDitherTileSize;
 constexpr int kCells = kSize * kSize;
 
-/// Gaussian of the distance on the torus, sigma 1.9 pixels (Ulichney's 1.5 leaves more low
-/// frequencies in tiles this small), in integers so that sums are exact.
+/// Returns a Gaussian of the distance on the torus, sigma 1.9 pixels (Ulichney's 1.5 leaves more
+/// low frequencies in tiles this small), in integers so that sums are exact.
 std::vector<int> DitherKernel() {
   std::vector<int> kernel(kCells);
   for (int y = 0; y < kSize; ++y) {
@@ -36,7 +36,7 @@ std::vector<int> DitherKernel() {
   return kernel;
 }
 
-/// A pattern of points on the torus and how crowded every cell is.
+/// A pattern of points on the torus, with the crowding of every cell.
 class Pattern {
  public:
   Pattern() : kernel_(DitherKernel()), crowding_(kCells, 0), set_(kCells, false) {}
@@ -60,7 +60,7 @@ class Pattern {
       }
     }
   }
-  /// The cell with `set` of the largest sign * crowding, the first of equal ones.
+  /// Returns the cell of state `set` with the largest sign * crowding; of equal cells the first.
   [[nodiscard]] int Extreme(bool set, int sign) const {
     int best = -1;
     for (int i = 0; i < kCells; ++i) {
@@ -77,10 +77,10 @@ class Pattern {
   std::vector<bool> set_;
 };
 
-/// A tenth of the cells at random. (Regular starts, lattices among them, survive the relaxation and
-/// correlate the tile with its shifted copies.)
+/// Returns a tenth of the cells, chosen at random. Regular starts, lattices among them, survive the
+/// relaxation and correlate the tile with its shifted copies.
 std::vector<int> FirstPoints() {
-  std::mt19937 random(20260621);  // the same sequence on every machine (ISO C++ [rand.predef])
+  std::mt19937 random(20260621);  // one sequence on every machine (ISO C++ [rand.predef])
   std::vector<int> cells;
   while (cells.size() < kCells / 10) {
     const auto cell = static_cast<int>(random() % kCells);
@@ -89,7 +89,7 @@ std::vector<int> FirstPoints() {
   return cells;
 }
 
-/// Moves points from clusters into voids until nothing improves.
+/// Moves points from clusters into voids until no move is an improvement.
 void Relax(Pattern& pattern) {
   for (int moves = 0; moves < kCells; ++moves) {
     const int cluster = pattern.TightestCluster();
@@ -112,8 +112,9 @@ std::vector<std::uint16_t> VoidAndCluster() {
     thinned.Remove(cell);
     rank[static_cast<std::size_t>(cell)] = static_cast<std::uint16_t>(left - 1);
   }
-  // Crowding by points plus crowding by gaps is the same everywhere, so the largest void of the
-  // points is also the tightest cluster of the gaps: one loop does both of Ulichney's last phases.
+  // The sum of crowding by points and crowding by gaps is equal in all cells, so the largest void
+  // of the points is also the tightest cluster of the gaps. One loop therefore does both of
+  // Ulichney's last phases.
   for (std::size_t points = first.size(); points < kCells; ++points) {
     const int cell = pattern.LargestVoid();
     pattern.Add(cell);
@@ -122,7 +123,8 @@ std::vector<std::uint16_t> VoidAndCluster() {
   return rank;
 }
 
-/// Inverse cumulative distribution of the triangle on (-1, 1). @param u in (0, 1).
+/// Returns the inverse cumulative distribution of the triangular distribution on (-1, 1). @param u
+/// in (0, 1).
 float Triangular(float u) {
   return u < 0.5F ? std::sqrt(2.0F * u) - 1.0F : 1.0F - std::sqrt(2.0F - 2.0F * u);
 }
@@ -164,21 +166,21 @@ std::uint8_t DitheredCode(float code, float noise) {
 
 namespace {
 
-constexpr float kLeastLight = 16.0F, kFullLight = 256.0F;  // of white
-constexpr float kEven = 0.4F;         // of the light, in its square: the limb is half as bright
-constexpr float kDarkestLimb = 0.4F;  // of the light four pixels farther in
-// Pixels: filters spread an edge over three or four.
+constexpr float kLeastLight = 16.0F, kFullLight = 256.0F;  // times white
+constexpr float kEven = 0.4F;         // of the light, in its square; the limb is half as bright
+constexpr float kDarkestLimb = 0.4F;  // fraction of the light four pixels farther in
+// Search distances [pixels]: filters spread an edge over three or four pixels.
 constexpr int kToLight = 4, kToBeside = 4;
-// Squares of 2 and 4 pixels, and of the knight's move that is nearest to each: in all directions
-// some pixel is about as far.
+// Squared radii near 2 and 4 pixels. They are squared lengths of knight's moves, so that in every
+// direction some pixel lies at about that distance.
 constexpr int kToLimb2 = 5, kToLight2 = 20;
-// An aureole rises towards its sun: from the farther pixels behind (over the root of kToFar2 away) to
-// the nearer ones it grows by a factor, and on to the pixel by about its square. More than kSteepest
-// is the edge of something else.
+// An aureole brightens towards its sun. From the farther background pixels (more than the root of
+// kToFar2 away) to the nearer ones it brightens by a factor, and from those to the pixel by about
+// the square of this factor. A factor above kSteepest indicates the edge of another object.
 constexpr int kToFar2 = 10;
 constexpr float kSteepest = 1.6F;
-// The far ends of a filter let a pixel that is not clipped have a little of the light, too: there it
-// is so much brighter than what lies behind.
+// The outer taps of a filter add a little of the light to some unclipped pixels too. Such a pixel
+// is brighter than its background by at least this factor.
 constexpr float kTouched = 1.25F;
 
 float LuminanceAt(const Image& image, int x, int y) {
@@ -186,7 +188,7 @@ float LuminanceAt(const Image& image, int x, int y) {
   return shared::Luminance(rgb[0], rgb[1], rgb[2]);
 }
 
-/// Whether a pixel stands in a square of four that is as bright.
+/// Returns whether a pixel belongs to a 2x2 square of pixels that are about as bright.
 bool IsEven(const Image& image, int x, int y, float light) {
   const auto bright = [&](int i, int j) { return LuminanceAt(image, i, j) >= kEven * light; };
   for (const int i : {x - 1, x + 1}) {
@@ -201,7 +203,7 @@ struct Pixel {
   int x, y;
 };
 
-/// Calls visit(pixel) for all within some pixels of a place.
+/// Calls visit(pixel) for all pixels at most `reach` rows and columns away from `at`.
 template <typename Visit>
 void Around(const Image& image, const Pixel& at, int reach, const Visit& visit) {
   for (int y = std::max(at.y - reach, 0); y <= std::min(at.y + reach, image.height - 1); ++y) {
@@ -216,7 +218,7 @@ struct EdgeLight {
   float luminance;
 };
 
-/// Within the root of `reach2`.
+/// Returns the brightest pixel within the square root of `reach2`.
 EdgeLight BrightestAround(const Image& image, const Pixel& at, int reach2) {
   EdgeLight light{at, LuminanceAt(image, at.x, at.y)};
   Around(image, at, kToLight, [&](const Pixel& pixel) {
@@ -231,7 +233,8 @@ struct EdgeDirection {
   float x, y;
 };
 
-/// Away from the light around a pixel, unit; zero where it lies on all sides alike.
+/// Returns the unit vector away from the light around a pixel; zero if the light is equal on all
+/// sides.
 EdgeDirection AwayFromLight(const Image& image, const Pixel& at) {
   EdgeDirection away{0.0F, 0.0F};
   Around(image, at, kToBeside, [&](const Pixel& pixel) {
@@ -244,7 +247,7 @@ EdgeDirection AwayFromLight(const Image& image, const Pixel& at) {
                        : EdgeDirection{0.0F, 0.0F};
 }
 
-/// Mean of colours.
+/// A weighted mean of colours.
 class MeanColour {
  public:
   void Add(const std::array<float, 3>& rgb, float weight) {
@@ -265,16 +268,19 @@ class MeanColour {
   float weights_ = 0.0F;
 };
 
-/// By what an aureole grows from the pixels behind, near and far, to the pixel itself.
+/// Returns the factor by which an aureole brightens from the background pixels, near and far, to
+/// the pixel itself.
 float RiseTowardsLight(const MeanColour& near, const MeanColour& far) {
   if (near.empty() || far.empty()) return 1.0F;
   const float rise = near.Luminance() / std::max(far.Luminance(), 1e-30F);
   return rise > 1.0F && rise < kSteepest ? rise * rise : 1.0F;
 }
 
-/// The colour of what is not clipped, as it would be at the pixel: the mean by nearness and, to the
-/// fourth power, by the cosine with the way from the light, with the rise of its aureole; by nearness
-/// alone where nothing lies that way; nothing where all is clipped.
+/// Returns the colour of the unclipped background, extrapolated to the pixel. It is a mean over
+/// unclipped pixels, weighted by proximity and by the fourth power of the cosine between their
+/// direction and the direction away from the light, times the rise of the aureole. If no pixel lies
+/// in that direction, the mean is weighted by proximity alone. Returns nullopt if all pixels are
+/// clipped.
 std::optional<std::array<float, 3>> Beside(const Image& image, const Pixel& at, float white) {
   const EdgeDirection away = AwayFromLight(image, at);
   MeanColour behind, around, near, far;
@@ -283,7 +289,7 @@ std::optional<std::array<float, 3>> Beside(const Image& image, const Pixel& at, 
     const auto dx = static_cast<float>(pixel.x - at.x), dy = static_cast<float>(pixel.y - at.y);
     const float distance2 = dx * dx + dy * dy;
     if (distance2 == 0.0F) return;
-    // What a filter mixes with the light counts only where nothing farther off is there.
+    // Pixels in which a filter mixes the light count only if there are none farther away.
     const bool mixed = distance2 < static_cast<float>(kToLimb2);
     const float weight = (mixed ? 1e-6F : 1.0F) / distance2;
     const float cosine = std::max(away.x * dx + away.y * dy, 0.0F) / std::sqrt(distance2);
@@ -334,7 +340,8 @@ void RequireFinite(const std::array<float, 3>& pixel, int x, int y) {
                                   pixel[0], pixel[1], pixel[2]));
 }
 
-/// Display light of a pixel; on the edge of a disk that is far brighter than white, of its parts.
+/// Returns the display light of a pixel. At the edge of a disk that is far brighter than white it
+/// is mixed from the display light of the disk and of its background.
 Rgb<float> DisplayLightAt(const Image& image, int x, int y, float scale, const Look& look) {
   const auto shown = [&](const std::array<float, 3>& rgb) {
     return DisplayLight(look.curve, rgb, scale, look.agx);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// EXR through OpenEXR 3 (https://openexr.com/en/latest/OpenEXRFileLayout.html).
+// This file reads and writes EXR through OpenEXR 3
+// (https://openexr.com/en/latest/OpenEXRFileLayout.html).
 #include "lut/picture/exr.h"
 
 #include <ImfArray.h>
@@ -32,14 +33,14 @@ namespace alpenglow::lut {
 namespace {
 
 constexpr std::uint32_t kMagic = 20000630;
-constexpr std::uint32_t kSeveralParts = 0x1000;  // of the version
+constexpr std::uint32_t kSeveralParts = 0x1000;  // flag in the version
 
 class HeaderReader {
  public:
   explicit HeaderReader(const std::filesystem::path& file)
       : file_(file), stream_(file, std::ios::binary), left_(std::filesystem::file_size(file)) {}
 
-  /// Nothing is said of files that are no OpenEXR files.
+  /// Checks the headers. Files that are not OpenEXR files pass.
   void Check() {
     if (left_ < 8 || Number() != kMagic) return;
     const bool several = (Number() & kSeveralParts) != 0;
@@ -71,7 +72,7 @@ class HeaderReader {
     return bytes[0] | bytes[1] << 8U | bytes[2] << 16U | std::uint32_t{bytes[3]} << 24U;
   }
 
-  /// Up to the next 0, which it takes too.
+  /// Returns the text up to the next 0 byte and consumes that byte.
   std::string Text() {
     constexpr std::size_t kLongest = 255;
     std::string text;
@@ -85,7 +86,7 @@ class HeaderReader {
   }
 
   void SkipAttribute(const std::string& name) {
-    static_cast<void>(Text());  // its type
+    static_cast<void>(Text());  // type of the attribute
     const std::uint32_t size = Number();
     Take(size, "attribute " + name);
     stream_.seekg(size, std::ios::cur);
@@ -104,8 +105,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A file whose every write is checked, the last one too: OpenEXR's own stream closes in a
-/// destructor, which cannot say that the disk is full.
+/// A file stream that checks every write including the last one. OpenEXR's own stream closes in a
+/// destructor, which cannot report that the disk is full.
 class CheckedStream : public Imf::OStream {
  public:
   explicit CheckedStream(const fs::path& name)
@@ -138,7 +139,7 @@ class CheckedStream : public Imf::OStream {
 Imf::Header HeaderOf(const Image& image, const Metadata& metadata, Projection projection) {
   Imf::Header header(image.width, image.height);
   header.compression() = Imf::ZIP_COMPRESSION;
-  constexpr int kLevel = 2;  // of floats, higher ones save 3 % of the bytes in half as long again
+  constexpr int kLevel = 2;  // for floats, higher ones save 3 % of the bytes in half as long again
   header.zipCompressionLevel() = kLevel;
   Imf::addWhiteLuminance(header, 1.0F);
   if (projection == Projection::kLatitudeLongitude) Imf::addEnvmap(header, Imf::ENVMAP_LATLONG);
@@ -154,7 +155,7 @@ Imf::Header HeaderOf(const Image& image, const Metadata& metadata, Projection pr
 }
 
 Imf::Slice SliceOf(const float* first, std::size_t stride, int width) {
-  // The frame buffer serves reading and writing, hence a pointer to what is not const.
+  // FrameBuffer serves both reading and writing, so it needs a pointer to non-const data.
   auto* bytes = reinterpret_cast<char*>(const_cast<float*>(first));
   return {Imf::FLOAT, bytes, stride * sizeof(float),
           stride * sizeof(float) * static_cast<std::size_t>(width)};
@@ -172,8 +173,8 @@ Imf::FrameBuffer FrameBufferOf(const Image& image) {
   return buffer;
 }
 
-// OpenEXR compresses blocks of lines in threads of its own: as many as the rest of the program may
-// use. The bytes do not depend on the number.
+// Sets the number of threads in which OpenEXR compresses blocks of lines to the number that the
+// rest of the program may use. The bytes do not depend on it.
 int CompressionThreads() {
   using oneapi::tbb::global_control;
   const auto threads =
@@ -195,7 +196,7 @@ void WritePixels(const fs::path& name, const Image& image, const Metadata& metad
   stream.Close();
 }
 
-/// Calls `read` and turns every fault that OpenEXR finds into an InputError that names the file.
+/// Calls `read` and converts every error of OpenEXR into an InputError that names the file.
 template <typename Result>
 Result Reading(const fs::path& file, const std::function<Result()>& read) {
   std::error_code error;
@@ -215,7 +216,8 @@ Result Reading(const fs::path& file, const std::function<Result()>& read) {
   }
 }
 
-/// The size, when every channel covers every pixel of it and the origin is (0, 0).
+/// Returns an empty image of the size in the header. Throws unless every channel covers every pixel
+/// and the origin is (0, 0).
 Image EmptyImageFor(const fs::path& file, const Imf::Header& header) {
   const Imath::Box2i window = header.dataWindow();
   const auto width = static_cast<std::int64_t>(window.max.x) - window.min.x + 1;

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: MIT
-// Headers of OpenEXR files, looked over before the library reads them: it takes the memory that an
-// attribute claims before it finds out that the file has no such text (two bytes of damage, two
-// gigabytes).
+// This header provides a check of OpenEXR headers before the library reads them. OpenEXR allocates
+// the memory that an attribute claims before it detects that the file is shorter: two damaged bytes
+// can cost two gigabytes.
 #pragma once
 
 #include <filesystem>
 
 namespace alpenglow::lut {
 
-/// Throws InputError naming the file when an attribute of its headers claims to reach beyond its
-/// end, or when a header has none. Says nothing about anything else: the library does.
+/// Throws InputError naming the file if an attribute of its headers extends beyond the end of the
+/// file, or if a header is not terminated. Other errors are left to the library.
 ///
 /// Layout of the file, "OpenEXR File Layout" (openexr.com): magic number and version, 4 bytes each;
 /// attributes: name and type, each ended by 0, size, 4 bytes, little-endian, value; a 0 ends a

@@ -43,7 +43,7 @@ double AdaptationOf(double mesopic) {
 
 MesopicLight MesopicLightOf(double photopic_cd_per_m2, double scotopic_cd_per_m2) {
   if (!(photopic_cd_per_m2 > 0.0 || scotopic_cd_per_m2 > 0.0)) return {0.0, 0.0};
-  // m - AdaptationOf(Mixed(m)) is not positive at 0 and not negative at 1.
+  // m - AdaptationOf(Mixed(m)) is <= 0 at 0 and >= 0 at 1.
   double low = 0.0;
   double high = 1.0;
   for (int i = 0; i < 40; ++i) {
@@ -97,7 +97,7 @@ using Plane = std::vector<std::array<float, 3>>;
 
 constexpr std::array<double, 9> kSpreads_px{0.0, 0.5, 1.0, 2.0, 4.0, 8.0, 16.0, 32.0, 64.0};
 
-/// Where light goes of a pixel beyond the edge: mirrored, so that none is lost.
+/// Returns the pixel to which light beyond the edge is mirrored, so that no light is lost.
 int Mirrored(int i, int count) {
   const int period = 2 * count;
   const int inside = ((i % period) + period) % period;
@@ -114,7 +114,7 @@ std::vector<float> GaussianTaps(double sigma_px) {
   return taps;
 }
 
-/// Blurs lines of `count` pixels, `step` apart, that begin at the multiples of `next`.
+/// Blurs lines of `count` pixels, `step` apart; the lines begin at multiples of `next`.
 void BlurLines(Plane& plane, int lines, std::size_t next, int count, std::size_t step,
                const std::vector<float>& taps) {
   const int reach = static_cast<int>(taps.size() / 2);
@@ -142,8 +142,8 @@ void Blur(Plane& plane, int width, int height, double sigma_px) {
   BlurLines(plane, width, 1, height, row, taps);
 }
 
-/// Between which of kSpreads_px a spread lies: the lower as a whole number, the share of the upper
-/// behind its point.
+/// Returns the position of a spread among kSpreads_px: the integer part is the index of the next
+/// lower one, the fractional part the weight of the next higher one.
 double LevelOf(double sigma_px) {
   const auto upper = std::upper_bound(kSpreads_px.begin(), kSpreads_px.end(), sigma_px);
   if (upper == kSpreads_px.end()) return static_cast<double>(kSpreads_px.size() - 1);
@@ -214,7 +214,8 @@ class Torus {
   [[nodiscard]] std::size_t height() const { return height_; }
   std::vector<Complex>& values() { return values_; }
 
-  /// Fourier's transform of rows and columns, without any factor. @param sign  of the exponent.
+  /// Applies the Fourier transform to rows and columns, without a factor. @param sign  sign of the
+  /// exponent.
   void Transform(double sign) {
     tbb::parallel_for(std::size_t{0}, height_, [&](std::size_t y) {
       TransformLine(values_.data() + y * width_, 1, width_, sign);
@@ -225,7 +226,7 @@ class Torus {
   }
 
  private:
-  // Cooley and Tukey (1965): in the order of mirrored bits, then pairs of halves.
+  // Cooley and Tukey (1965): bit-reversed order, then pairs of halves.
   static void TransformLine(Complex* first, std::size_t step, std::size_t count, double sign) {
     std::vector<Complex> line(count);
     const int bits = std::countr_zero(count);
@@ -252,8 +253,8 @@ class Torus {
   std::vector<Complex> values_;
 };
 
-/// What a pixel sends to others at a distance along both axes, as shares of its light; its own share
-/// is what is left.
+/// Returns the fractions of a pixel's light that it scatters to pixels at a distance along both
+/// axes. The fraction of the pixel itself is the remainder.
 Torus Spread(std::size_t width, std::size_t height, double pixel_rad) {
   Torus spread(width, height);
   double sent = 0.0;
@@ -282,7 +283,7 @@ double GlareOfEye(double angle_rad) {
 
 Image WithGlareOfEye(Image image, double pixel_rad) {
   ALPENGLOW_ENSURE(pixel_rad, >, 0.0);
-  // Twice as wide, so that nothing comes around the torus.
+  // The torus is at least twice as wide as the image, so that no light wraps around.
   const auto width = std::bit_ceil(2 * static_cast<std::size_t>(image.width));
   const auto height = std::bit_ceil(2 * static_cast<std::size_t>(image.height));
   Torus spread = Spread(width, height, pixel_rad);

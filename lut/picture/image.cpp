@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
-// PNG through libpng 1.6 (ISO/IEC 15948).
+// This file reads and writes PNG through libpng 1.6 (ISO/IEC 15948).
 //
-// libpng reports faults by longjmp. Nothing with a destructor lives in the functions that it jumps
-// out of: they are marked, and get plain pointers.
+// libpng reports errors by longjmp. Functions that it jumps out of are marked; they have no local
+// objects with destructors, and take plain pointers.
 #include "lut/picture/image.h"
 
 #include <fmt/format.h>
@@ -100,7 +100,7 @@ namespace fs = std::filesystem;
 
 using Bytes = std::vector<std::uint8_t>;
 
-/// The message of the fault that libpng jumps for.
+/// Message of the error for which libpng jumps.
 struct Fault {
   char text[200] = "unknown fault";
 };
@@ -127,7 +127,7 @@ bool IsAscii(const std::string& text) {
   return true;
 }
 
-/// Text chunks pointing into `metadata`: tEXt for ASCII, iTXt (UTF-8) for the rest.
+/// Returns text chunks that point into `metadata`: tEXt for ASCII, iTXt (UTF-8) for other text.
 std::vector<png_text> TextChunks(const Metadata& metadata) {
   std::vector<png_text> chunks;
   for (const auto& [name, value] : metadata) {
@@ -166,7 +166,7 @@ struct Reader {
   Reader& operator=(const Reader&) = delete;
 };
 
-/// libpng jumps out of here.
+/// libpng jumps out of this function.
 bool Encode(Writer& writer, const DisplayImage& image, png_text* chunks, int chunk_count,
             png_bytepp rows) {
   if (setjmp(png_jmpbuf(writer.png)) != 0) return false;
@@ -174,7 +174,7 @@ bool Encode(Writer& writer, const DisplayImage& image, png_text* chunks, int chu
                static_cast<png_uint_32>(image.height), 8, PNG_COLOR_TYPE_RGB, PNG_INTERLACE_NONE,
                PNG_COMPRESSION_TYPE_BASE, PNG_FILTER_TYPE_BASE);
   // Skies are smooth and dithered: differences to the left neighbour, and no long search for
-  // repetitions, make files of the same size in a quarter of the time.
+  // repetitions, make files of equal size in a quarter of the time.
   png_set_filter(writer.png, PNG_FILTER_TYPE_BASE, PNG_FILTER_SUB);
   png_set_compression_level(writer.png, 4);
   png_set_sRGB(writer.png, writer.info, PNG_sRGB_INTENT_PERCEPTUAL);
@@ -184,7 +184,7 @@ bool Encode(Writer& writer, const DisplayImage& image, png_text* chunks, int chu
   return true;
 }
 
-/// libpng jumps out of here.
+/// libpng jumps out of this function.
 bool DecodeHeader(Reader& reader, std::FILE* file) {
   if (setjmp(png_jmpbuf(reader.png)) != 0) return false;
   png_init_io(reader.png, file);
@@ -192,7 +192,7 @@ bool DecodeHeader(Reader& reader, std::FILE* file) {
   return true;
 }
 
-/// libpng jumps out of here. The rows stay in `info`.
+/// libpng jumps out of this function. The rows stay in `info`.
 bool DecodePixels(Reader& reader, std::FILE* file) {
   if (setjmp(png_jmpbuf(reader.png)) != 0) return false;
   png_set_user_limits(reader.png, kLargestImageSide, kLargestImageSide);

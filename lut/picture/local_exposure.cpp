@@ -27,7 +27,8 @@ Image WithHighlightsRolledOff(Image image, double ev100) {
 
 namespace {
 
-// log2 luminance; pixels without light have the darkest of the others, so that the base is smooth.
+// log2 luminance of every pixel. Pixels without light get the smallest value of the others, so that
+// the base is smooth.
 struct Stops {
   int width, height;
   std::vector<float> value;
@@ -79,7 +80,7 @@ class BilateralGrid {
     Blur(nx_ * ny_, nz_);
   }
 
-  /// The smoothed value at a pixel of this value.
+  /// Returns the smoothed value at a pixel with value `stop`.
   [[nodiscard]] float Slice(int x, int y, float stop) const {
     Cell sum;
     VisitCorners(x, y, stop, [&](std::size_t cell, float weight) {
@@ -94,7 +95,7 @@ class BilateralGrid {
     float value = 0.0F, weight = 0.0F;
   };
 
-  static constexpr float kMargin = 2.0F;  // cells around, for the blur
+  static constexpr float kMargin = 2.0F;  // additional cells at the borders, for the blur
   static int Cells(float length) { return static_cast<int>(length + 2.0F * kMargin) + 2; }
 
   template <typename Visit>
@@ -125,7 +126,7 @@ class BilateralGrid {
     });
   }
 
-  // (1, 4, 6, 4, 1) / 16 along one axis: a Gaussian of one cell.
+  // Blurs by (1, 4, 6, 4, 1) / 16 along one axis: a Gaussian of one cell.
   void Blur(int stride, int length) {
     const auto step = static_cast<std::size_t>(stride);
     const std::vector<Cell> before = cells_;
@@ -162,7 +163,7 @@ std::vector<float> BaseOf(const Stops& stops, const LocalExposureOptions& option
   return base;
 }
 
-/// Between the first and the last hundredth.
+/// Returns the range between the first and the last percentile.
 float RangeOf(std::vector<float> values) {
   const auto at = [&](double share) {
     const auto place = values.begin() +

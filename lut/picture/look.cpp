@@ -73,15 +73,15 @@ constexpr double kDayEv100 = 15.0;
 
 double LuminanceAt(double ev100) { return kMeterConstant / 100.0 * std::exp2(ev100); }
 
-/// The exposure that shows what the meter took for middle grey so many stops darker on the display
-/// than it prints it.
+/// Returns the exposure that shows the metered middle grey `stops` stops darker on the display than
+/// metered_ev100 does.
 double ShownDarker(double metered_ev100, double stops, const Look& look) {
   const auto shown = [&](double darker) {
     const double grey = LuminanceAt(-darker);
     return DisplayLight<double>(look.curve, {grey, grey, grey}, ExposureScale(0.0), look.agx)[1];
   };
   const double wanted = shown(0.0) * std::exp2(-stops);
-  double low = 0.0, high = stops;  // curves have a slope of 1 or more under grey
+  double low = 0.0, high = stops;  // below grey, curves have a slope of 1 or more
   while (shown(high) > wanted) high *= 2.0;
   for (int i = 0; i < 40; ++i) {
     const double middle = 0.5 * (low + high);
@@ -90,7 +90,7 @@ double ShownDarker(double metered_ev100, double stops, const Look& look) {
   return metered_ev100 + low;
 }
 
-/// Look.h has the formula and its sources.
+/// Returns the key k(L); look.h gives the formula and its sources.
 double KeyOf(double luminance_cd_per_m2) {
   constexpr double kRodsAlone_cd_per_m2 = 0.005;
   const double key = 1.03 - 2.0 / (2.0 + std::log10(luminance_cd_per_m2 + 1.0));
@@ -151,7 +151,7 @@ double IncidentEv100(double illuminance_lux) {
 
 namespace {
 
-/// Calls `refuse` unless the whole text is a number.
+/// Returns the number; calls `refuse` unless the whole text is a number.
 template <typename Number, typename Refuse>
 Number NumberFromText(std::string_view text, const Refuse& refuse) {
   Number number{};

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Exposure as photographers count it: EV at ISO 100, reflected-light meters of K = 12.5 (ISO 2720),
-// saturation-based sensitivity (ISO 12232).
+// This file implements photographic exposure: EV at ISO 100, reflected-light meters of K = 12.5
+// (ISO 2720), saturation-based sensitivity (ISO 12232).
 #include "lut/picture/metering.h"
 
 #include <fmt/format.h>
@@ -21,9 +21,9 @@
 namespace alpenglow::lut {
 namespace {
 
-// Rows of a sky share a bin and leave it together: 0.3 % of light.
+// Bins are narrow, 0.3 % of light, because the rows of a sky that share a bin leave it together.
 constexpr int kBinsPerStop = 256;
-constexpr int kLowestStop = -24;  // log2 cd/m^2; less than this is no light to meter
+constexpr int kLowestStop = -24;  // log2 cd/m^2; pixels with less are not metered
 constexpr int kHighestStop = 40;
 constexpr std::size_t kBins = (kHighestStop - kLowestStop) * kBinsPerStop;
 
@@ -33,12 +33,14 @@ constexpr double kPaper = 0.90, kGreyCard = 0.18;
 
 using Histogram = std::array<double, kBins>;
 
-/// Pixels of a row of latitudes stand for less of the sphere towards its poles.
+/// Returns the weight of a row: the solid angle of a latitude-longitude pixel decreases towards the
+/// poles.
 double WeightOfRow(int row, int rows, Projection projection) {
   return projection == Projection::kLatitudeLongitude ? std::sin(kPi * (row + 0.5) / rows) : 1.0;
 }
 
-/// Calls visit(rgb, luminance, weight) for every pixel that has light and is not the sun's disk.
+/// Calls visit(rgb, luminance, weight) for every pixel that has light and is not part of the sun's
+/// disk.
 template <typename Visit>
 void VisitLight(const Image& image, double ignore_above_cd_per_m2, Projection projection,
                 const Visit& visit) {
@@ -66,7 +68,7 @@ Histogram HistogramOf(const Image& image, double ignore_above_cd_per_m2, Project
   return histogram;
 }
 
-/// The bin that a share of all pixels lies below.
+/// Returns the bin at which the cumulative histogram reaches a fraction of all pixels.
 std::size_t BinAtShare(const Histogram& histogram, double share) {
   const double wanted = share * std::accumulate(histogram.begin(), histogram.end(), 0.0);
   double seen = 0.0;
@@ -75,7 +77,8 @@ std::size_t BinAtShare(const Histogram& histogram, double share) {
   return bin;
 }
 
-/// log2 of the mean luminance between two shares of the pixels; bins that a share cuts count in part.
+/// Returns log2 of the mean luminance between two fractions of the pixels. A bin that a fraction
+/// cuts counts in part.
 double MeanStop(const Histogram& histogram, double pixels, double low_share, double high_share) {
   const double low = low_share * pixels;
   const double high = high_share * pixels;
@@ -92,7 +95,8 @@ double MeanStop(const Histogram& histogram, double pixels, double low_share, dou
   return std::log2(sum / weight);
 }
 
-/// log2 luminance that a share of all pixels lies below; between the ends of a bin it is even.
+/// Returns log2 of the luminance below which a fraction of all pixels lies. Pixels are assumed
+/// uniform within a bin.
 double StopAtShare(const Histogram& histogram, double share) {
   const double wanted = share * std::accumulate(histogram.begin(), histogram.end(), 0.0);
   const std::size_t bin = BinAtShare(histogram, share);
@@ -102,8 +106,8 @@ double StopAtShare(const Histogram& histogram, double share) {
   return kLowestStop + (static_cast<double>(bin) + inside) / kBinsPerStop;
 }
 
-/// Without what stays black however the rest is exposed. Weights fade, so that no series of pictures
-/// jumps.
+/// Returns the histogram without pixels that stay black at the exposure of the rest. Weights fade
+/// gradually, so that exposure does not jump between the images of a series.
 Histogram WithoutBlack(Histogram histogram) {
   const std::size_t bright = BinAtShare(histogram, kBrightShare);
   for (std::size_t bin = 0; bin < bright; ++bin) {
@@ -113,7 +117,7 @@ Histogram WithoutBlack(Histogram histogram) {
   return histogram;
 }
 
-/// log2 luminance that is printed as middle grey.
+/// Returns log2 of the luminance that is printed as middle grey.
 double GreyStop(const Histogram& histogram, double pixels) {
   const double mean = MeanStop(histogram, pixels, kDarkShare, kBrightShare);
   return std::max(mean, StopAtShare(histogram, kBrightShare) - std::log2(kPaper / kGreyCard));
@@ -149,7 +153,8 @@ std::array<double, 3> MeteredColour(const Image& image, double ignore_above_cd_p
   double weights = 0.0;
   VisitLight(image, ignore_above_cd_per_m2, projection,
              [&](const std::array<float, 3>& pixel, double y, double weight) {
-               // A sixteenth of a stop at either end fades, so that no pixels come or go at once.
+               // A sixteenth of a stop at either end fades, so that single pixels do not enter or
+               // leave abruptly.
                constexpr double kFade_bins = kBinsPerStop / 16.0;
                const double bin = BinOf(y);
                const double counts = weight * std::clamp((bin - low) / kFade_bins + 0.5, 0.0, 1.0) *
@@ -167,7 +172,7 @@ namespace {
 
 using Triple = std::array<double, 3>;
 
-// Li et al. (2017), table of CAT16, and its inverse.
+// Matrix of CAT16 and its inverse. Li et al. (2017), table of CAT16.
 constexpr Matrix3 kConesFromXyz{{{0.401288, 0.650173, -0.051461},
                                  {-0.250268, 1.204414, 0.045854},
                                  {-0.002079, 0.048952, 0.953127}}};
@@ -197,7 +202,7 @@ Triple Planck(double kelvin) {
   return OfLuminanceOne(xyz);
 }
 
-// CIE 15:2018, section 4.1.2.
+// Returns XYZ of daylight, CIE 15:2018, section 4.1.2.
 Triple Daylight(double kelvin) {
   const double a = 1e3 / kelvin;
   const double x = kelvin <= 7000.0 ? 0.244063 + a * (0.09911 + a * (2.9678 - a * 4.6070))
@@ -206,7 +211,7 @@ Triple Daylight(double kelvin) {
   return {x / y, 1.0, (1.0 - x - y) / y};
 }
 
-// CIE 1960.
+// Returns uv chromaticity of CIE 1960.
 std::array<double, 2> Uv(const Triple& xyz) {
   const double sum = xyz[0] + 15.0 * xyz[1] + 3.0 * xyz[2];
   return {4.0 * xyz[0] / sum, 6.0 * xyz[1] / sum};

@@ -1,37 +1,38 @@
 // SPDX-License-Identifier: MIT
-// From exposed linear sRGB (1 saturates) to linear light of an sRGB display in [0, 1], channel by
-// channel: each function gives one channel and is called three times.
+// This text provides the tone curves: from exposed linear sRGB (1 saturates) to linear light of an
+// sRGB display in [0, 1]. Each function returns one channel and is called three times.
 //
 //   scene rgb --ExposedChannel--> exposed --InnerChannel--> no negative channel
 //     --PrintedChannel--> middle grey at 0.18 --curve--> display light --SrgbCode--> code value
 //
-// "linear" alone leaves PrintedChannel out: it shows what saturates.
+// Only "linear" omits PrintedChannel: it shows which values saturate.
 //
-// Colours outside the display's gamut (a negative channel) keep their
-// luminance and are mixed with the grey of that luminance until the
-// smallest channel is 0. All curves are finite for every finite input.
+// Colours outside the display's gamut (a negative channel) keep their luminance and are mixed with
+// the grey of that luminance until the smallest channel is 0. All curves are finite for every
+// finite input.
 
-// Relative luminance of linear sRGB. IEC 61966-2-1.
+// Returns the relative luminance of linear sRGB. IEC 61966-2-1.
 SHARED Number Luminance(Number red, Number green, Number blue) {
   return Number(0.2126) * red + Number(0.7152) * green + Number(0.0722) * blue;
 }
 
-// Far beyond white all curves are flat; the bound keeps squares finite in float.
+// Returns the exposed channel. Far beyond white all curves are flat; the bound keeps squares finite
+// in float.
 SHARED Number ExposedChannel(Number value, Number scale) {
   return min(max(value * scale, Number(-1.0e6)), Number(1.0e6));
 }
 
 // Mixes a channel with the grey of luminance y so that the smallest channel becomes 0. Colours of
-// no or negative luminance are black.
+// zero or negative luminance become black.
 SHARED Number InnerChannel(Number value, Number smallest, Number y) {
   Number share = max(y, Number(0.0)) / max(y - smallest, Number(1.0e-30));
   Number mixed = select(y > Number(0.0), y + (value - y) * share, Number(0.0));
   return max(select(smallest < Number(0.0), mixed, value), Number(0.0));
 }
 
-// What the meter took for middle grey, 12.5/100 2^EV, is 0.104 of saturation, 1.2 2^EV. Curves
-// with a shoulder print it at 0.18, as cameras do (standard output sensitivity, ISO 12232):
-// 0.18 * 1.2 * 100 / 12.5 = 1.728.
+// Metered middle grey, 12.5/100 2^EV, is 0.104 of saturation, 1.2 2^EV. Curves with a shoulder
+// print it at 0.18, as cameras do (standard output sensitivity, ISO 12232): 0.18 * 1.2 * 100 / 12.5
+// = 1.728.
 SHARED Number PrintedChannel(Number exposed) { return Number(1.728) * exposed; }
 
 // ---- AgX: Sobotka (2022), https://github.com/sobotka/AgX --------------------------------------
@@ -50,28 +51,29 @@ SHARED Number AgxInset(Number value, Number white_share) {
   return Number(0.8) * value + Number(0.2) * white_share;
 }
 
-// The share is what the inset leaves unchanged, so the inverse needs it alone.
+// The inset leaves the share unchanged, so the inverse needs only the share.
 SHARED Number AgxOutset(Number value, Number white_share) {
   return Number(1.25) * value - Number(0.25) * white_share;
 }
 
-// log2 of the channel over [-12.47393, 4.026069]:
-// from 10 stops below to 6.5 above middle grey 0.18.
+// Returns log2 of the channel over [-12.47393, 4.026069]: from 10 stops below to 6.5 above middle
+// grey 0.18.
 SHARED Number AgxLogCode(Number value) {
   Number stops = log(max(value, Number(1.0e-6))) * Number(1.4426950408889634);
   Number code = (stops + Number(12.47393)) / Number(16.499999);
   return min(max(code, Number(0.0)), Number(1.0));
 }
 
-// Stops from middle grey, at code 20/33, times a contrast.
+// Multiplies the distance [stops] from middle grey, at code 20/33, by a contrast.
 SHARED Number AgxContrast(Number code, Number contrast) {
   Number grey = Number(0.6060606060606061);
   return min(max(grey + (code - grey) * contrast, Number(0.0)), Number(1.0));
 }
 
-// Under middle grey this is AgxContrast. Over it the contrast fades, so that the encoding's white stays
-// where it is, 6.5 stops over grey, and bright skies keep their gradient: with x from 0 at grey to 1 at white,
-// c x / (1 + (c^3 - 1) x^3)^(1/3), which is within 1 % of c x up to 1.1 stops for c = 1.8.
+// This equals AgxContrast below middle grey. Above it the contrast fades, so that the white of the
+// encoding stays 6.5 stops over grey, and bright skies keep their gradient: with x from 0 at grey
+// to 1 at white, c x / (1 + (c^3 - 1) x^3)^(1/3), which is within 1 % of c x up to 1.1 stops for c
+// = 1.8.
 SHARED Number AgxContrastWithShoulder(Number code, Number contrast) {
   Number grey = Number(0.6060606060606061);
   Number x = max(code - grey, Number(0.0)) / (Number(1.0) - grey);
@@ -95,7 +97,7 @@ SHARED Number AgxSigmoid(Number code) {
   return min(max(display, Number(0.0)), Number(1.0));
 }
 
-// Display light from the codes, which are made for a display of exponent 2.2; code_share is
+// Returns display light from the codes, which are made for a display of exponent 2.2; code_share is
 // AgxWhiteShare of the three codes.
 SHARED Number AgxLight(Number code, Number code_share) {
   Number value = min(max(AgxOutset(code, code_share), Number(0.0)), Number(1.0));
@@ -103,9 +105,9 @@ SHARED Number AgxLight(Number code, Number code_share) {
          select(value > Number(1.0e-6), Number(1.0), Number(0.0));
 }
 
-// The toe of a print: in deep shade, where the sigmoid goes to black as a power of the scene's light,
-// display light is in proportion to that, a share of it. The toe ends over middle grey: it adds no more
-// than 0.18 of the share.
+// Adds the toe of a print. In deep shade the sigmoid approaches black as a power of the scene's
+// light; with the toe display light becomes proportional to scene light, by a factor `share`. The
+// toe saturates above middle grey: it adds at most 0.18 times the share.
 SHARED Number AgxWithToe(Number light, Number printed, Number share) {
   Number toe = share * printed / (Number(1.0) + printed / Number(0.18));
   return min(sqrt(light * light + toe * toe), Number(1.0));
@@ -113,7 +115,7 @@ SHARED Number AgxWithToe(Number light, Number printed, Number share) {
 
 // ---- ACES: fit of RRT and sRGB ODT by Hill (2016), published in Pettineo's BakingLab ------------
 //
-// A channel of the matrix product is one call with that row.
+// Each channel of the matrix product is one call with that row.
 
 SHARED Number RowTimes(Number a, Number b, Number c, Number red, Number green, Number blue) {
   return a * red + b * green + c * blue;
@@ -171,10 +173,9 @@ SHARED Number ReinhardLight(Number value, Number largest, Number y) {
   return min(max(inside, Number(0.0)), Number(1.0));
 }
 
-// ---- Khronos PBR Neutral tone mapper (2024), specification in
-// KhronosGroup/ToneMapping -----------
+// ---- Khronos PBR Neutral tone mapper (2024), specification in KhronosGroup/ToneMapping --
 //
-// Colours below 0.8 keep their hue and brightness but for the 0.04 that a dielectric reflects.
+// Colours below 0.8 keep their hue and brightness except for the 0.04 that a dielectric reflects.
 
 SHARED Number NeutralOffset(Number smallest) {
   return select(smallest < Number(0.08), smallest - Number(6.25) * smallest * smallest,
@@ -199,7 +200,7 @@ SHARED Number NeutralLight(Number value, Number largest, Number smallest) {
 // ---- The display
 // ---------------------------------------------------------------------------------
 
-// Code value in [0, 1] of linear light in [0, 1]. IEC 61966-2-1.
+// Returns the code value in [0, 1] of linear light in [0, 1]. IEC 61966-2-1.
 SHARED Number SrgbCode(Number light) {
   Number bounded = min(max(light, Number(0.0)), Number(1.0));
   Number curved = Number(1.055) * pow(max(bounded, Number(0.0031308)), Number(0.4166666666666667)) -
@@ -207,7 +208,7 @@ SHARED Number SrgbCode(Number light) {
   return select(bounded <= Number(0.0031308), Number(12.92) * bounded, curved);
 }
 
-// Linear light in [0, 1] of a code value in [0, 1]. IEC 61966-2-1.
+// Returns linear light in [0, 1] of a code value in [0, 1]. IEC 61966-2-1.
 SHARED Number SrgbLight(Number code) {
   Number bounded = min(max(code, Number(0.0)), Number(1.0));
   Number curved = pow((max(bounded, Number(0.04045)) + Number(0.055)) / Number(1.055), Number(2.4));

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Looks of AgX: how its picture is graded between the logarithm, the sigmoid and the display.
+// This header provides the tone curves of tone_curve.glsl in C++, and the looks of AgX: grades of
+// the image between the logarithm, the sigmoid and the display.
 //
 //   printed * 2^opening --inset, log2--> code
 //     --(code - grey) contrast + grey, grey = 20/33--> sigmoid --^power-->
@@ -7,32 +8,31 @@
 //
 // None, medium and high are the base, medium high and high contrast of the configuration that
 // Blender ships (Zhou 2023, https://github.com/EaryChow/AgX): contrasts 1, 1.2 and 1.4 of the
-// logarithm about middle grey, and saturation 0.95 of the last. Punchy is the look in Sobotka's own
-// (2022, https://github.com/sobotka/AgX): power 1.3, saturation 1.2.
+// logarithm about middle grey, and saturation 0.95 for the last. Punchy is the look in Sobotka's
+// configuration (2022, https://github.com/sobotka/AgX): power 1.3, saturation 1.2.
 //
-// Photo, the default, is opened by 0.6 stops and has a contrast of 1.8, so that shade by day, 2.5 stops
-// under what the meter took for grey, is black on the display (code 36) and sunlit snow, 1.3 over it,
-// is white (217). The contrast fades towards white (AgxContrastWithShoulder of tone_curve.glsl), and
-// deep shade is shown in proportion to the scene's light (AgxWithToe). Its vibrance gives a clear sky
-// at least the chroma which it has in the scene. Vibrance and outset are one spread s of the
-// codes about their grey, s = 1 + (1.25 (1 + vibrance) - 1) (1 - d), for a colour that is d of the
-// way from its grey to the border of the cube of codes: pale colours gain, and none is pushed over
-// the border. The hue of blue light is kept: channels that pass a curve one by one turn bright blue
-// skies towards violet, by 3 to 11 degrees of OKLab hue. Warm light keeps the curve's turn towards
-// yellow, which eyes know from bright lights (Bezold and Bruecke): the hue of the scene has the
-// weight m (2 - m) (1 - sin hue) / 2, where the sine is 1 at OKLab's yellow and -1 at its blue, and
-// 1 - m is the light's d: 0 at the border.
+// Photo, the default, brightens by 0.6 stops and has a contrast of 1.8, so that shade by day, 2.5
+// stops below metered grey, is black on the display (code 36) and sunlit snow, 1.3 stops above it,
+// is white (217). The contrast fades towards white (AgxContrastWithShoulder of tone_curve.glsl),
+// and deep shade is shown in proportion to the scene's light (AgxWithToe). Its vibrance gives a
+// clear sky at least the chroma which it has in the scene. Vibrance and outset are one spread s of
+// the codes about their grey, s = 1 + (1.25 (1 + vibrance) - 1) (1 - d), for a colour at the
+// fraction d of the distance from its grey to the border of the cube of codes: pale colours gain,
+// and none is moved beyond the border. The hue of blue light is kept: channels that pass a curve
+// one by one turn bright blue skies towards violet, by 3 to 11 degrees of OKLab hue. Warm light
+// keeps the curve's turn towards yellow, which the eye also sees in bright lights (Bezold and
+// Bruecke): the hue of the scene has the weight m (2 - m) (1 - sin hue) / 2, where the sine is 1 at
+// OKLab's yellow and -1 at its blue, and 1 - m is the light's d: 0 at the border.
 //
-// No look shows a tone with more than 1.3 times the chroma (OKLab) that its light has at the same
-// lightness: contrast alone would raise that of dark tones 2 to 4 times, and moonlit snow be orange.
+// No look shows a tone with more than 1.3 times the chroma (OKLab) that its light has at equal
+// lightness. Contrast alone would raise the chroma of dark tones 2 to 4 times and make moonlit snow
+// orange.
 //
 // A colour that then lies outside the display's gamut keeps its luminance and is mixed with the
 // grey of that luminance until it is inside.
 //
 // OKLab: lightness and two opponent colours of linear sRGB. Ottosson (2020), "A perceptual color
 // space for image processing", https://bottosson.github.io/posts/oklab.
-//
-// C++ reading of tone_curve.glsl, and the curves put together for a colour.
 #pragma once
 
 #include <algorithm>
@@ -49,23 +49,24 @@ namespace alpenglow::lut {
 
 enum class AgxLook { kPhoto, kNone, kPunchy, kMedium, kHigh };
 
-/// Most chroma on the display beside that of the scene at the same lightness.
+/// Largest ratio of the chroma on the display to that of the scene at equal lightness.
 inline constexpr double kMostChroma = 1.3;
 
 struct AgxGrade {
-  double opening_stops = 0.0;  // what the meter took for middle grey is printed brighter by
-  double contrast = 1.0;       // of the logarithm, about middle grey
+  double opening_stops = 0.0;  // brightening of metered middle grey
+  double contrast = 1.0;       // contrast of the logarithm, about middle grey
   bool has_shoulder = false;   // the contrast fades towards white (AgxContrastWithShoulder)
-  double toe = 0.0;    // share of the scene's light in deep shade (AgxWithToe, tone_curve.glsl)
-  double power = 1.0;  // of the codes
-  double saturation = 1.0;  // of the codes
-  double vibrance = 0.0;    // more saturation of pale colours
-  bool keeps_blue = false;  // the hue of blue light
+  double toe = 0.0;    // fraction of the scene's light in deep shade (AgxWithToe, tone_curve.glsl)
+  double power = 1.0;  // exponent of the codes
+  double saturation = 1.0;  // saturation of the codes
+  double vibrance = 0.0;    // additional saturation of pale colours
+  bool keeps_blue = false;  // whether blue light keeps its hue
 };
 
 [[nodiscard]] AgxGrade GradeOf(AgxLook look);
 
-/// "photo", "none", "punchy", "medium" or "high"; throws InputError for another name.
+/// Converts between a look and its name: "photo", "none", "punchy", "medium" or "high"; throws
+/// InputError for another name.
 [[nodiscard]] AgxLook AgxLookFromName(const std::string& name);
 [[nodiscard]] std::string NameOf(AgxLook look);
 [[nodiscard]] std::vector<std::string> AgxLookNames();
@@ -119,7 +120,7 @@ namespace alpenglow::lut {
 template <typename Real>
 using Rgb = std::array<Real, 3>;
 
-/// The colour without negative channels, of the same luminance (see tone_curve.glsl).
+/// Returns the colour without negative channels and with equal luminance (see tone_curve.glsl).
 template <typename Real>
 [[nodiscard]] Rgb<Real> InsideGamut(const Rgb<Real>& exposed) {
   const Real y = shared::Luminance(exposed[0], exposed[1], exposed[2]);
@@ -129,7 +130,7 @@ template <typename Real>
           shared::InnerChannel(exposed[2], smallest, y)};
 }
 
-/// Display light in [0, 1]: a colour outside is mixed with the grey of its luminance.
+/// Returns display light in [0, 1]: a colour outside is mixed with the grey of its luminance.
 template <typename Real>
 [[nodiscard]] Rgb<Real> InsideDisplay(const Rgb<Real>& light) {
   const Real y = std::clamp(shared::Luminance(light[0], light[1], light[2]), Real(0), Real(1));
@@ -144,8 +145,9 @@ template <typename Real>
   return inside;
 }
 
-/// How far a colour in [0, 1] is on the way from its grey to the border of the cube, in [0, 1]: never
-/// less than in truth, and without edges (the fourth-power norm over the channels, not the largest).
+/// Returns the fraction of the distance from its grey to the border of the cube at which a colour
+/// in [0, 1] lies, in [0, 1]. The result is smooth and never less than the true fraction, because
+/// it is the fourth-power norm over the channels instead of the largest channel.
 template <typename Real>
 [[nodiscard]] Real WayToBorder(const Rgb<Real>& colour, Real grey) {
   Real sum = Real(0);
@@ -157,7 +159,8 @@ template <typename Real>
   return std::min(std::sqrt(std::sqrt(sum)), Real(1));
 }
 
-/// Display light with the hue of a printed colour, `scene`, as far as that is blue (tone_mapping.h).
+/// Returns display light with the hue of a printed colour, `scene`, as far as that is blue (header
+/// of this file).
 [[nodiscard]] inline Rgb<double> WithBlueHueOf(const Oklab<double>& scene,
                                                const Rgb<double>& light) {
   const Oklab<double> shown = OklabOf(light);
@@ -173,8 +176,9 @@ template <typename Real>
       RgbOf(Oklab<double>{shown.lightness, chroma * a / length, chroma * b / length}));
 }
 
-/// Display light of less than kMostChroma times the chroma that the printed colour, `scene`, has at
-/// the same lightness (tone_mapping.h): without an edge, an eighth-power norm of both.
+/// Returns display light with less than kMostChroma times the chroma that the printed colour,
+/// `scene`, has at equal lightness (header of this file). The limit is smooth, an eighth-power norm
+/// of both.
 [[nodiscard]] inline Rgb<double> WithChromaNear(const Oklab<double>& scene,
                                                 const Rgb<double>& light) {
   const Oklab<double> shown = OklabOf(light);
@@ -189,7 +193,7 @@ template <typename Real>
   return InsideDisplay(RgbOf(Oklab<double>{shown.lightness, share * shown.a, share * shown.b}));
 }
 
-/// Codes with the saturation of a color decision list (ASC CDL).
+/// Returns codes with the saturation of a color decision list (ASC CDL).
 template <typename Real>
 [[nodiscard]] Rgb<Real> Saturated(const Rgb<Real>& code, Real saturation) {
   const Real y = shared::Luminance(code[0], code[1], code[2]);
@@ -199,7 +203,7 @@ template <typename Real>
   return saturated;
 }
 
-/// Codes that the outset spreads as far as tone_mapping.h has it, and over no border.
+/// Returns codes after outset and vibrance (header of this file); none is moved beyond the border.
 template <typename Real>
 [[nodiscard]] Rgb<Real> Vibrant(const Rgb<Real>& code, Real vibrance) {
   constexpr Real kOutset = Real(1.25);
@@ -211,7 +215,7 @@ template <typename Real>
   return vibrant;
 }
 
-/// Codes of the curve, graded.
+/// Returns the graded codes of the curve.
 template <typename Real>
 [[nodiscard]] Rgb<Real> AgxCodes(const Rgb<Real>& printed, const AgxGrade& grade) {
   const Real share = shared::AgxWhiteShare(printed[0], printed[1], printed[2]);
@@ -239,7 +243,7 @@ template <typename Real>
   Rgb<Real> light;
   for (std::size_t c = 0; c < 3; ++c)
     light[c] = shared::AgxWithToe(shared::AgxLight(code[c], code_share), printed[c], toe);
-  // Cube roots and their way back lose four bits, which float does not have to spare.
+  // Cube roots and their inverse lose four bits, which float cannot spare.
   const Oklab<double> scene = OklabOf(Rgb<double>{printed[0], printed[1], printed[2]});
   Rgb<double> shown{light[0], light[1], light[2]};
   if (grade.keeps_blue) shown = WithBlueHueOf(scene, shown);
@@ -276,8 +280,9 @@ template <typename Real>
           shared::NeutralLight(printed[2], largest, smallest)};
 }
 
-/// Linear display light in [0, 1] of a finite linear sRGB colour times `scale` (ExposureScale).
-/// @param look  of ToneCurve::kAgx; the other curves have none.
+/// Returns linear display light in [0, 1] of a finite linear sRGB colour times `scale`
+/// (ExposureScale).
+/// @param look  of ToneCurve::kAgx; the other curves have no looks.
 template <typename Real>
 [[nodiscard]] Rgb<Real> DisplayLight(ToneCurve curve, const Rgb<Real>& rgb, Real scale,
                                      AgxLook look = AgxLook::kPhoto) {
