@@ -22,7 +22,7 @@
 namespace alpenglow::lut {
 namespace {
 
-/// Value of the first line of /proc/cpuinfo with this key; "unknown" where there is none.
+/// Returns the value of the first line of /proc/cpuinfo with this key; "unknown" if there is none.
 std::string ProcessorText(const std::string& key) {
   std::ifstream text("/proc/cpuinfo");
   for (std::string line; std::getline(text, line);) {
@@ -33,7 +33,7 @@ std::string ProcessorText(const std::string& key) {
   return "unknown";
 }
 
-/// The widest of the vector instructions that the processor has.
+/// Returns the widest vector instruction set of the processor.
 std::string VectorInstructions() {
   std::istringstream flags(ProcessorText("flags"));
   std::string widest = "unknown";
@@ -51,7 +51,7 @@ std::string SystemText() {
   return fmt::format("{} {} ({})", name.sysname, name.release, name.machine);
 }
 
-/// The line of --version that says which SIMD the program uses.
+/// Returns the SIMD line of --version, which names the instruction set that the program uses.
 std::string SimdLine() {
   std::istringstream text(VersionText("skylut"));
   for (std::string line; std::getline(text, line);) {
@@ -134,7 +134,8 @@ Report MeasureReport(const ReportOptions& options) {
     add(measure, options.mediums);
   add(MeasureHardAir, options.hard_mediums);
   add(MeasurePanoramas, options.mediums);
-  // Mediums bend alike, as far as they bend gently.
+  // Refraction is measured for the first medium only: all media that refract gently give similar
+  // results.
   if (const Medium& first = options.mediums.front(); GentleAirOf(first).refractivity > 0.0)
     topics.emplace_back([&] { return MeasureRefraction(first, effort); });
   return MeasureTopics(Words(), options.quick, options.progress, topics);

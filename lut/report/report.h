@@ -1,14 +1,16 @@
 // SPDX-License-Identifier: MIT
-// Speed and accuracy held against each other, on the same rays, in one run: `skylut report`.
+// This header provides `skylut report`, which compares the speed and the accuracy of methods on
+// identical rays in one run.
 //
 // Every method of a topic (transmittance, light scattered once, all orders, panoramas, refraction)
-// answers the same rays, drawn once from the distribution of report_measure.h, by day, at sunset, in
-// civil and nautical twilight, and from space. Its error is the distance to a judge (judge.h, path_tracer.h); its cost is memory,
-// the time to get ready, and the time of one answer on one thread. Methods of the literature,
-// written anew from their publications (report_baselines.h), stand beside this library's.
+// is evaluated on one set of rays, drawn once from the distribution of report_measure.h, by day, at
+// sunset, in civil and nautical twilight, and from space. The error of a method is its difference
+// from the reference solution (judge.h, path_tracer.h). Its cost is memory, the build time, and the
+// time of one evaluation on one thread. Methods of the literature, reimplemented from their
+// publications (report_baselines.h), are listed beside this library's.
 //
-// What a topic asks, and of what, is the topic's own: those of pictures (renderer/report/report.h)
-// are written into folders of the same form.
+// Each topic defines its own quantities and rays. Topics of images (renderer/report/report.h) are
+// written into folders of the same form.
 #pragma once
 
 #include <array>
@@ -36,8 +38,9 @@ struct SunRange {
 struct ReportRegime {
   const char* key;
   const char* name;
-  std::optional<SunRange> sun;  // nothing: the sun plays no part
-  // Seen from kSpaceAltitude_m; the sun's elevation is then that at the lowest point of the ray.
+  std::optional<SunRange> sun;  // nullopt: independent of the sun
+  // The observer is at kSpaceAltitude_m. The sun's elevation is then that at the lowest point of
+  // the ray.
   bool from_space = false;
 };
 inline constexpr std::size_t kReportRegimes = 5;
@@ -50,99 +53,99 @@ inline constexpr std::array<ReportRegime, kReportRegimes> kRegimes = {{
 }};
 inline constexpr double kSpaceAltitude_m = 400e3;
 
-/// Of the errors of all rays and wavelengths of a regime.
+/// Statistics of the errors of all rays and wavelengths of a regime.
 struct ErrorStatistics {
   double median = 0.0, rms = 0.0, percentile_99 = 0.0, largest = 0.0;
-  /// The judge's own noise hides the error: rms is what it can be at most, about.
+  /// The noise of the reference hides the error: rms is an approximate upper bound.
   bool rms_is_bound = false;
-  /// Relative to each value itself, however dark, above kDarkestValue (report_measure.h). Rms and
-  /// percentile_99 count what is dark as brighter (DarkestRadiance).
+  /// Errors relative to each value itself, however dark, above kDarkestValue (report_measure.h).
+  /// For rms and percentile_99, dark values count as brighter (DarkestRadiance).
   double strict_rms = 0.0, strict_percentile_99 = 0.0;
 };
 
-/// A method in one regime.
+/// Result of a method in one regime.
 struct RegimeResult {
   ErrorStatistics error;
   double time_s = 0.0;       // of one answer (a ray, all wavelengths), fastest pass over the rays
-  double time_spread = 0.0;  // median pass over fastest pass, less 1: how noisy the machine was
-  double samples = 0.0;      // points that the air is looked at for an answer, mean; 0: a look-up
+  double time_spread = 0.0;  // median pass over fastest pass, minus 1: noise of the machine
+  double samples = 0.0;      // mean number of points of the air per answer; 0: a look-up
 
-  /// Not every method can answer under all conditions.
+  /// Returns whether the method was measured. Some methods do not support all conditions.
   [[nodiscard]] bool IsMeasured() const { return time_s > 0.0; }
 };
 
 enum class MethodOrigin { kOurs, kLiterature };
 
 struct ReportRow {
-  std::string series;     // methods that differ in size alone share a line in the plots
+  std::string series;     // methods that differ only in size share a line in the plots
   std::string parameter;  // size or number of steps
   MethodOrigin origin = MethodOrigin::kOurs;
-  int style = 0;            // of the line, see PlotSeries
-  bool in_summary = false;  // among the few that summary.md shows
+  int style = 0;            // style of the line, see PlotSeries
+  bool in_summary = false;  // whether summary.md shows the row
   std::uint64_t memory_bytes = 0;
-  double build_s = 0.0;  // to get ready, all threads; 0: nothing to do
+  double build_s = 0.0;  // time to prepare, all threads; 0: no preparation
   std::vector<RegimeResult> at =
-      std::vector<RegimeResult>(kReportRegimes);  // by the topic's regimes
+      std::vector<RegimeResult>(kReportRegimes);  // indexed by the topic's regimes
 
   [[nodiscard]] std::string Name() const {
     return parameter.empty() ? series : series + ", " + parameter;
   }
 };
 
-/// What errors are measured against.
+/// Reference solution against which errors are measured.
 struct ReportJudge {
-  std::string text;     // in words
+  std::string text;     // description
   double time_s = 0.0;  // of one answer, all threads
-  // Rms of its own standard errors, by regime; 0: none.
+  // Rms of its own standard errors, by regime; 0: no noise.
   std::vector<double> noise = std::vector<double>(kReportRegimes);
 };
 
-/// What is on the x axis of a topic's plot.
+/// Quantity on the x axis of a topic's plot.
 enum class CostAxis { kTimeOfAnswer, kTimeToBuild };
 
 struct ReportTopic {
   std::string key, title;
-  std::string what;        // what is asked of every method, in one or two sentences
-  std::string error_unit;  // what an error of 1 % means
+  std::string what;        // the quantity that methods compute, in one or two sentences
+  std::string error_unit;  // meaning of an error of 1 %
   std::string notes;       // about the methods
-  double wanted = 0.01;    // an error that nobody sees: 99 of 100 errors should be below it
+  double wanted = 0.01;    // an invisible error: 99 of 100 errors should be below it
   CostAxis cost = CostAxis::kTimeOfAnswer;
-  std::string answer = "ray";                   // what is answered
-  std::string everywhere = "whatever the sun";  // in all regimes, in words
-  std::string scene{};  // what else than the atmosphere was looked at; empty: nothing
+  std::string answer = "ray";                   // unit of evaluation
+  std::string everywhere = "whatever the sun";  // "in all regimes", in words of the topic
+  std::string scene{};                          // scene besides the atmosphere; empty: none
   std::vector<ReportRegime> regimes{kRegimes.begin(), kRegimes.end()};
   Medium medium{};
-  std::size_t rays = 0;  // answers asked for in each regime
+  std::size_t rays = 0;  // evaluations in each regime
   ReportJudge judge{};
   std::vector<ReportRow> rows{};
 };
 
 struct ReportOptions {
   std::vector<Medium> mediums;            // one section each
-  std::vector<Medium> hard_mediums = {};  // one section each of light of all orders
-  bool quick = false;                     // few rays, few methods, little care: for tests
+  std::vector<Medium> hard_mediums = {};  // one section each, all orders of scattering
+  bool quick = false;                     // few rays, few methods, low accuracy: for tests
   ProgressStyle progress = ProgressStyle::kQuiet;
 };
 
-/// What a report is of when it is asked for by name: the air of a file, or of the presets earth and
-/// (unless it is quick) hazy. Throws what ReadMedium does.
+/// Returns the media of a report: the atmosphere of a file, or the presets earth and (unless the
+/// report is quick) hazy. Throws the errors of ReadMedium.
 [[nodiscard]] std::vector<Medium> MediumsOfReport(const std::optional<std::string>& atmosphere_file,
                                                   bool quick);
 
-/// The dust of Mars, haze of optical depth 1 and molecules of optical depth 5: what a report that is
-/// neither quick nor of a file looks at besides.
+/// Returns the dust of Mars, haze of optical depth 1 and molecules of optical depth 5. A report
+/// that is neither quick nor about an atmosphere file includes them.
 [[nodiscard]] std::vector<Medium> HardMediums();
 
-/// The machine and the program, in words.
+/// Description of the machine and of the program.
 struct ReportMaker {
   std::string machine, system, program, compiler, date;
 };
 
-/// What a page says apart from its topics.
+/// Texts of a page apart from its topics.
 struct ReportWords {
   std::string title, lead;
-  std::string minute;   // what the section "In one minute" holds
-  std::string reading;  // how topics are asked, after what is said of plots and tables
+  std::string minute;   // text of the section "In one minute"
+  std::string reading;  // how topics are measured; follows the explanation of plots and tables
 };
 
 struct Report {
@@ -158,25 +161,27 @@ using MeasureTopic = std::function<ReportTopic()>;
 [[nodiscard]] Report MeasureTopics(ReportWords words, bool quick, ProgressStyle progress,
                                    const std::vector<MeasureTopic>& topics);
 
-/// Measures everything: some minutes. Stops between methods when the program is
+/// Measures all topics, which takes some minutes. Stops between methods if the program is
 /// interrupted.
 [[nodiscard]] Report MeasureReport(const ReportOptions& options);
 
-/// The plot of a topic's errors against cost, a panel a regime.
+/// Returns the plot of a topic's errors against cost, one panel per regime.
 [[nodiscard]] Plot PlotOfTopic(const ReportTopic& topic);
 
-/// Rows of a topic as CSV, one a method and regime, without the header line.
+/// Return the header line, and the rows of a topic as CSV, one per method and regime, without the
+/// header line.
 [[nodiscard]] std::string CsvHeader();
 [[nodiscard]] std::string CsvOfTopic(const ReportTopic& topic, const ReportMaker& maker);
 
-/// The few rows that a reader wants first, as tables in Markdown.
+/// Returns the most important rows as tables in Markdown.
 [[nodiscard]] std::string SummaryOf(const Report& report);
 
-/// The whole report as one page that needs no other file.
+/// Returns the whole report as one self-contained page.
 [[nodiscard]] std::string PageOf(const Report& report);
 
-/// Writes into the folder, which is made when missing: index.html, summary.md, a CSV a topic, an
-/// SVG a plot. Every file is written whole or not at all, index.html last. Throws OutputError.
+/// Writes into the folder, which is created if it is missing: index.html, summary.md, a CSV file
+/// per topic, an SVG file per plot. Every file is written atomically, index.html last. Throws
+/// OutputError.
 void WriteReport(const Report& report, const std::filesystem::path& folder);
 
 }  // namespace alpenglow::lut

@@ -20,7 +20,7 @@ namespace {
 
 float Kilometres(double metres) { return static_cast<float>(metres / kMetresPerKilometre); }
 
-/// Coefficients of one wavelength [1/km] and in float.
+/// Coefficients of one wavelength, in [1/km] and float.
 struct BandCoefficients {
   Extinction<float> extinction;
   float mie_scattering;
@@ -31,7 +31,8 @@ struct BandCoefficients {
                    PerKilometre(medium.ozone_absorption_per_m[band])},
         mie_scattering(PerKilometre(medium.mie_scattering_per_m[band])) {}
 
-  /// What a sample scatters towards the observer, of radiance one from everywhere.
+  /// Returns the light that a sample scatters towards the observer under radiance 1 from all
+  /// directions.
   [[nodiscard]] float ScatteredAt(const RaySamples<float>& samples, std::size_t i) const {
     const float view = OpticalDepthOf(
         extinction, {samples.view_rayleigh[i], samples.view_mie[i], samples.view_ozone[i]});
@@ -60,7 +61,7 @@ Bands<float> TransmittanceOf(const Medium& medium, float rayleigh_km, float mie_
   return result;
 }
 
-/// Relative to the peak.
+/// Returns the ozone density relative to the peak.
 float OzoneDensity(const OzoneLayer& layer, float altitude_km) {
   if (layer.shape == OzoneShape::kSmooth)
     return shared::SmoothOzoneDensity<float>(altitude_km, Kilometres(layer.top_m));
@@ -68,8 +69,8 @@ float OzoneDensity(const OzoneLayer& layer, float altitude_km) {
                                     Kilometres(layer.peak_m), Kilometres(layer.top_m));
 }
 
-/// Column [km] to space of an exponential layer; below the horizontal, twice the column at the
-/// perigee less the one behind the observer.
+/// Returns the column [km] to space of an exponential layer. Below the horizontal it is twice the
+/// column at the perigee minus the column behind the observer.
 float ChapmanColumn(ChapmanRule rule, float altitude, float mu, float scale_height, float radius) {
   const auto column = [&](float h, float cosine) {
     return scale_height * std::exp(-h / scale_height) *

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
-// What the literature does, written anew from the publications, for the report to compare with.
+// This header provides methods of the literature, reimplemented from the publications, for
+// comparison in the report.
 //
-// Every one is given this library's exact geometry, and where it needs columns that are not its
-// subject, this library's closed forms: the errors that are left are the method's own.
+// Every method uses this library's exact geometry, and this library's closed forms for columns that
+// are not its subject. The remaining errors are therefore those of the method itself.
 #pragma once
 
 #include <cstddef>
@@ -16,18 +17,18 @@
 
 namespace alpenglow::lut {
 
-/// Rules that march along a ray in steps.
+/// Rules for marching along a ray in steps.
 enum class MarchRule {
-  kMidpoint,   // equal steps, air taken from their middles
-  kTrapezoid,  // equal steps, air taken from both ends: Bruneton and Neyret (2008), 500 steps
-  kQuadratic,  // steps that grow with the square of their number, air taken at 0.3 of a step:
+  kMidpoint,   // equal steps, air sampled in their middles
+  kTrapezoid,  // equal steps, air sampled at both ends: Bruneton and Neyret (2008), 500 steps
+  kQuadratic,  // steps that grow with the square of their number, air sampled at 0.3 of a step:
                // Hillaire (2020), Computer Graphics Forum 39, 13
 };
 
-/// Nodes of the rule on [begin_m, end_m]; the trapezoid has steps + 1.
+/// Returns the nodes of the rule on [begin_m, end_m]; the trapezoid has steps + 1.
 [[nodiscard]] std::vector<RayNode> MarchNodes(MarchRule rule, int steps, const RayExtent& extent);
 
-/// Transmittance of a ray by a march through the densities, in float.
+/// Returns the transmittance of a ray by a march through the densities, in float.
 [[nodiscard]] Bands<float> MarchedTransmittance(const Medium& medium, const ViewRay& ray,
                                                 MarchRule rule, int steps);
 
@@ -43,15 +44,15 @@ enum class ChapmanRule {
 };
 [[nodiscard]] float ChapmanFunction(ChapmanRule rule, float x, float cos_chi);
 
-/// Transmittance to space with the exponential layers by a Chapman approximation, ozone by the
-/// closed form of this library. The ray must not meet the ground.
+/// Returns the transmittance to space. The exponential layers use a Chapman approximation, ozone
+/// uses the closed form of this library. The ray must not hit the ground.
 [[nodiscard]] Bands<float> ChapmanTransmittance(const AirIntegrator<float>& air, ChapmanRule rule,
                                                 const ViewRay& ray);
 
 /// Multiple scattering as in Hillaire (2020), A scalable and production ready sky and atmosphere
-/// rendering technique, Computer Graphics Forum 39, 13, section 5.5: light of order two, isotropic,
-/// gathered over the sphere around a point, times the geometric series that it would become in
-/// infinite air like that of the point,
+/// rendering technique, Computer Graphics Forum 39, 13, section 5.5. Light of order two is assumed
+/// isotropic, gathered over the sphere around a point, and multiplied by the geometric series of
+/// all orders in an infinite medium with the properties of that point,
 ///
 ///   psi = L_2 / (1 - f),   L_2 = mean of L' over directions,   f = mean of L_f over directions
 ///   L'  = integral of sigma_s T p_u lit T_sun dt + ground,     L_f = integral of sigma_s T dt
@@ -61,18 +62,19 @@ class IsotropicTable {
  public:
   struct Size {
     std::size_t side = 32;    // texels along both axes
-    int directions_side = 8;  // squared: directions, stratified over the sphere
-    int steps = 20;           // along each
+    int directions_side = 8;  // its square is the number of directions, stratified over the sphere
+    int steps = 20;           // steps along each direction
   };
   IsotropicTable(const Medium& medium, const Size& size);
 
-  /// In-scattered light of orders two and up along a ray [1/sr]; samples as for DiffuseLight.
+  /// Returns the in-scattered light of orders two and up along a ray [1/sr]; samples as for
+  /// DiffuseLight.
   [[nodiscard]] Bands<float> InscatterAlong(const RaySamples<float>& samples) const;
 
   [[nodiscard]] std::uint64_t bytes() const { return texels_.size() * sizeof(float); }
 
  private:
-  /// Light of order two, and of radiance one everywhere, from one direction.
+  /// Light from one direction: of order two, and under radiance 1 from all directions.
   struct Light {
     Bands<float> second, series;
   };

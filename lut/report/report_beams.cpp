@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
-// A topic of the report: transmittance from a point to the sun.
-//
-// A topic of the report: where a line of sight leads, bent by the air.
+// This file measures two topics of the report: transmittance from a point to the sun, and
+// refraction of a line of sight by the air.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -21,7 +20,7 @@
 namespace alpenglow::lut {
 namespace {
 
-// Lines of the plot.
+// Styles of the lines of the plot.
 enum TransmittanceStyle {
   kClosedForm = 0,
   kColumnMidpoint = 1,
@@ -57,7 +56,7 @@ class TransmittanceTopic : public TopicWork {
         [&](const ViewRay& ray) { return exact.TransmittanceToSpace(ray.altitude_m, ray.mu); });
   }
 
-  /// Many points at once, as the kernels of this library take them.
+  /// Evaluates many points at once, as the kernels of this library do.
   void AddClosedFormOfMany() {
     const AirIntegrator<float> air(medium_);
     ReportRow row{.series = "closed form, many at once",
@@ -125,7 +124,7 @@ class TransmittanceTopic : public TopicWork {
   }
 
  private:
-  std::vector<std::array<float, 3>> sigma_;  // [1/m] of molecules, aerosol, ozone, by wavelength
+  std::vector<std::array<float, 3>> sigma_;  // [1/m] for molecules, aerosol, ozone, by wavelength
 };
 
 }  // namespace
@@ -166,12 +165,13 @@ ReportTopic MeasureTransmittance(const Medium& medium, const ReportEffort& effor
 
 namespace {
 
-// Lines of the plot.
+// Styles of the lines of the plot.
 enum RefractionStyle { kTables = 0, kQuadrature = 1, kStraight = 5, kBennett = 6 };
 
 constexpr double kSunDiameter_rad = 32.0 / 60.0 * kRadiansPerDegree;
 
-/// Where eyes stand and how far up they look [degrees over the horizon of the ground].
+/// Ranges of the observer's height and of the view's elevation [degrees above the horizon of the
+/// ground].
 struct Sight {
   ReportRegime regime;
   double lowest_m, highest_m, lowest_deg, highest_deg;
@@ -180,11 +180,11 @@ constexpr std::array<Sight, 3> kSights{
     {{{"low", "From the ground, 0° to 5° up", {}}, 0.0, 2.0, 0.0, 5.0},
      {{"high", "From the ground, 5° to 90° up", {}}, 0.0, 2.0, 5.0, 90.0},
      {{"aloft", "From 1 to 12 km, 0° to 5° over the horizon", {}}, 1e3, 12e3, 0.0, 5.0}}};
-// Eyes of a regime: a table is of one height.
+// Number of observers of a regime. A table is valid for one height.
 constexpr std::size_t kEyes = 4;
 
-/// Bennett (1982), J. Navigation 35, 255, of an apparent elevation, as almanacs give it: from sea
-/// level, at 10 C and 1010 hPa.
+/// Returns the refraction at an apparent elevation by Bennett (1982), J. Navigation 35, 255, as in
+/// almanacs: from sea level, at 10 C and 1010 hPa.
 double BennettRefraction(double apparent_rad) {
   const double h_deg = apparent_rad / kRadiansPerDegree;
   return kRadiansPerDegree / 60.0 / std::tan((h_deg + 7.31 / (h_deg + 4.4)) * kRadiansPerDegree);
@@ -296,7 +296,7 @@ class RefractionTopic {
     ThrowIfInterrupted();
   }
 
-  /// @param refraction  function from regime and line to what it is lifted by [rad].
+  /// @param refraction  function from regime and line to the angle by which it is lifted [rad].
   template <typename Refraction>
   void Measure(ReportRow row, const Refraction& refraction) {
     for (std::size_t r = 0; r < kSights.size(); ++r) {

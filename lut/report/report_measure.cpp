@@ -41,7 +41,8 @@ void ForEveryStrictValue(const std::vector<JudgedRay>& rays, const Use& use) {
   }
 }
 
-// Rms of the judge's standard errors, each over a scale that `visit` gives.
+// Returns the rms of the reference's standard errors, each divided by a scale that `visit`
+// provides.
 template <typename Visit>
 double NoiseOver(const std::vector<JudgedRay>& rays, const Visit& visit) {
   double squares = 0.0;
@@ -55,13 +56,15 @@ double NoiseOver(const std::vector<JudgedRay>& rays, const Visit& visit) {
   return count == 0 ? 0.0 : std::sqrt(squares / static_cast<double>(count));
 }
 
-// Cosine of the zenith angle at which an eye in space sees a ray of that perigee.
+// Returns the cosine of the zenith angle at which an observer in space sees a ray with that
+// perigee.
 double CosineOfPerigee(double radius_m, double altitude_m, double perigee_m) {
   return -std::sqrt((altitude_m - perigee_m) * (2.0 * radius_m + altitude_m + perigee_m)) /
          (radius_m + altitude_m);
 }
 
-// The ray with the sun as its lowest point, `low_m` along it, has it.
+// Returns the ray with the sun at the regime's elevation as seen from its lowest point, `low_m`
+// along it.
 ViewRay WithSunAtLowest(const Medium& medium, ViewRay ray, double low_m, int i,
                         const ReportRegime& regime) {
   constexpr double kLow_deg = 5.0;
@@ -72,7 +75,7 @@ ViewRay WithSunAtLowest(const Medium& medium, ViewRay ray, double low_m, int i,
                                    : kLow_deg + (sun.highest_deg - kLow_deg) * (2.0 * share - 1.0);
   const double elevation = elevation_deg * kRadiansPerDegree, azimuth = kPi * Halton(i, 5);
   const double sine = std::sqrt((1.0 - ray.mu) * (1.0 + ray.mu));
-  // By what the vertical turns on the way to the lowest point.
+  // Angle by which the vertical turns along the ray to the lowest point.
   const double turn =
       std::atan2(low_m * sine, medium.planet_radius_m + ray.altitude_m + low_m * ray.mu);
   const double along = std::cos(elevation) * std::cos(azimuth), up = std::sin(elevation);
@@ -92,8 +95,8 @@ ViewRay LimbFromSpaceNumber(const Medium& medium, int i, const ReportRegime& reg
   return WithSunAtLowest(medium, ray, -(radius_m + ray.altitude_m) * ray.mu, i, regime);
 }
 
-// Where zenith light is compared with a ray's: the observer, or the lowest point of a ray from
-// above the air.
+// Returns the vertical ray whose light is compared with that of a ray: at the observer, or at the
+// lowest point of a ray from above the air.
 ViewRay ZenithOf(const Medium& medium, const ViewRay& ray) {
   if (ray.altitude_m <= medium.atmosphere_height_m)
     return {ray.altitude_m, 1.0, ray.mu_s, ray.mu_s};

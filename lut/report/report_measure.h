@@ -1,29 +1,30 @@
 // SPDX-License-Identifier: MIT
-// The rays of the report, drawn once and answered by a judge.
+// This header provides the rays of the report, drawn once and evaluated by the reference solution,
+// and the measurement of methods on them.
 //
-// Points of Halton's sequence (1960, Numer. Math. 2, 84), so that every run has the same rays and
-// few of them fill the space:
+// The rays are points of Halton's sequence (1960, Numer. Math. 2, 84), so that they are identical
+// in every run and few of them cover the space:
 //
 //   sun       elevation uniform over the regime
 //   observer  2 m, 1500 m or 10 km above the ground, a third each
 //   view      half of the rays anywhere in the sky (uniform in solid angle), a quarter within 10
-//             degrees above the horizontal, where the air is long, a quarter down to the ground
+//             degrees above the horizontal, where paths are long, a quarter down to the ground
 //   azimuth   uniform from towards the sun to away from it
 //
-// From space half of the views end on the ground and half pass it, up to 100 km; the sun is that of
-// the ray's lowest point, half of the time below 5 degrees.
+// From space half of the views end on the ground and half pass it, up to 100 km. The sun's
+// elevation is that at the ray's lowest point, half of the time below 5 degrees.
 //
-// Transmittance has beams to the sun instead: a point between the ground and the top in the sun's
-// light at the regime's elevation, dense in low air. In twilight, where beams come from below the
-// horizontal, the perigee of the beam is drawn so; where it would lie above the air, and from space,
-// the point is the top of the air.
+// Transmittance uses beams to the sun instead: from a point in sunlight between the ground and the
+// top, at the regime's elevation, with more points in low air. In twilight, where beams come from
+// below the horizontal, the perigee of the beam is drawn in this way. If the point would lie above
+// the air, and from space, the beam starts at the top of the air.
 //
-// Errors of radiance are relative. What is darker than a hundredth of the light that the air at the
-// zenith of the same place (from space: of the ray's lowest point) scatters once under the same sun
-// counts as if it were that bright: the air between the eye and a ground two metres away would else
-// rule every mean. Strict errors are relative to each value itself.
+// Errors of radiance are relative. The lower bound of the denominator is a hundredth of the light
+// that the air at the zenith of the observer (from space: of the ray's lowest point) scatters once
+// under the same sun. Otherwise the air between the eye and a ground two metres away would dominate
+// every mean. Strict errors are relative to each value itself.
 //
-// One row of the report: a method's errors on judged rays, and the time of its answers.
+// A row of the report holds the errors of a method on these rays, and the time of its evaluations.
 #pragma once
 
 #include <fmt/format.h>
@@ -46,23 +47,23 @@
 
 namespace alpenglow::lut {
 
-/// Part of the zenith's radiance below which errors are relative to that part.
+/// Fraction of the zenith's radiance that is the lower bound of the denominator of errors.
 inline constexpr double kDarkestPart = 0.01;
-/// Part of the sun's light below which no strict error is counted, and all light counts as so bright
-/// in the others.
+/// Fraction of the sun's light below which strict errors are not counted. For other errors it is
+/// the lower bound of all values.
 inline constexpr double kDarkestValue = 1e-12;
 
-/// A ray with the judge's answer.
+/// A ray with the reference value.
 struct JudgedRay {
   ViewRay ray;
   std::vector<double> truth;  // by wavelength
-  std::vector<double> sigma;  // one standard error; empty when the judge has none
-  std::vector<double> floor;  // errors are relative to at least this; empty: 0
+  std::vector<double> sigma;  // one standard error; empty if the reference has none
+  std::vector<double> floor;  // lower bound of the denominator of errors; empty: 0
 };
 
 enum class ErrorKind {
-  kAbsolute,  // of transmittance, in parts of the light above the air
-  kRelative,  // of radiance
+  kAbsolute,  // for transmittance, relative to the light above the air
+  kRelative,  // for radiance
 };
 
 struct JudgedRays {
@@ -71,65 +72,68 @@ struct JudgedRays {
   std::array<std::vector<JudgedRay>, kReportRegimes> rays;
 };
 
-/// Ray number i >= 1 of a regime, and the judge's answer to it.
+/// Functions that return ray number i >= 1 of a regime, and the reference value of a ray.
 using DrawRay = std::function<ViewRay(int i, const ReportRegime& regime)>;
 using AskJudge = std::function<JudgedRay(const ViewRay& ray)>;
 
-/// Asks the judge about `count` rays in each of kRegimes, in parallel, and notes what an answer
-/// takes. The text of the judge is left to the caller.
+/// Evaluates the reference for `count` rays in each of kRegimes, in parallel, and records the time
+/// of one evaluation. The caller sets the text of the judge.
 [[nodiscard]] JudgedRays JudgeRays(ErrorKind kind, int count, const DrawRay& draw,
                                    const AskJudge& ask);
 
-/// Elevation of the sun of ray number i [degrees], uniform over the regime.
+/// Returns the sun's elevation for ray number i [degrees], uniform over the regime.
 [[nodiscard]] double SunElevationNumber(int i, const ReportRegime& regime);
 
-/// Radiance, by wavelength, below which errors count as if it were that bright.
+/// Returns, by wavelength, the lower bound of the radiance to which errors are relative.
 [[nodiscard]] std::vector<double> DarkestRadiance(const Medium& medium, const ViewRay& ray);
 
-/// Beams to the sun and their transmittance, `count` a regime, by judge::OpticalDepthAlong.
+/// Returns beams to the sun and their transmittance, `count` per regime, by
+/// judge::OpticalDepthAlong.
 [[nodiscard]] JudgedRays JudgedSunbeams(const Medium& medium, int count);
 
-/// Views and light scattered once on the way, by judge::SingleScatteringAlong.
+/// Returns views and the light scattered once along them, by judge::SingleScatteringAlong.
 [[nodiscard]] JudgedRays JudgedSkyRays(const Medium& medium, int count);
 
-/// Views and light of all orders scattered on the way (without light from the ground at their
-/// end), by the path tracer with so many paths each.
+/// Returns views and the light of all orders scattered along them (without light from the ground at
+/// their end), by the path tracer with `paths` paths each.
 [[nodiscard]] JudgedRays TracedViews(const Medium& medium, int count, std::size_t paths);
 
-/// View number i >= 1 of the distribution above.
+/// Returns view number i >= 1 of the distribution above.
 [[nodiscard]] ViewRay ViewNumber(const Medium& medium, int i, const ReportRegime& regime);
-/// View from space down to the ground number i >= 1.
+/// Returns view number i >= 1 from space down to the ground.
 [[nodiscard]] ViewRay GroundFromSpaceNumber(const Medium& medium, int i,
                                             const ReportRegime& regime);
-/// Beam to the sun number i >= 1.
+/// Returns beam number i >= 1 to the sun.
 [[nodiscard]] ViewRay SunbeamNumber(const Medium& medium, int i, const ReportRegime& regime);
 
-/// Statistics of a method's answers, by wavelength, to the rays of a regime. The judge's noise is
-/// subtracted from the rms; where less than half of the noise is left, half of the noise is given
-/// as a bound: with some dozen rays no less can be told.
+/// Returns the statistics of a method's values, by wavelength, for the rays of a regime. The noise
+/// of the reference is subtracted from the rms. If less than half of the noise is left, half of the
+/// noise is returned as a bound, because some dozen rays do not allow a lower one.
 [[nodiscard]] ErrorStatistics StatisticsOf(const std::vector<JudgedRay>& rays, ErrorKind kind,
                                            const std::vector<std::vector<double>>& answers);
 
-/// Statistics of errors >= 0, of which a judge's noise makes a part; the strict ones are the same.
+/// Returns the statistics of errors >= 0, which contain the noise of the reference. The strict
+/// statistics have equal values.
 [[nodiscard]] ErrorStatistics StatisticsOfErrors(std::vector<double> errors, double noise);
 
-/// Rms of the judge's standard errors over rays and wavelengths, as StatisticsOf counts errors.
+/// Returns the rms of the reference's standard errors over rays and wavelengths, weighted as in
+/// StatisticsOf.
 [[nodiscard]] double NoiseOf(const std::vector<JudgedRay>& rays, ErrorKind kind);
 
-/// How much care a report takes.
+/// Numbers of rays, paths and passes of a report.
 struct ReportEffort {
   bool quick = false;
-  int rays = 400;             // of a regime, for judges without noise
-  int traced_rays = 36;       // of a regime, for the path tracer
-  std::size_t paths = 30000;  // of a traced ray
-  std::size_t passes = 7;     // at least so many over the rays of a regime
-  double seconds = 0.02;      // and at least for so long
+  int rays = 400;             // per regime, for references without noise
+  int traced_rays = 36;       // per regime, for the path tracer
+  std::size_t paths = 30000;  // per traced ray
+  std::size_t passes = 7;     // minimum over the rays of a regime
+  double seconds = 0.02;      // and minimum duration [s]
 
   [[nodiscard]] static ReportEffort Quick() { return {true, 40, 6, 2000, 3, 0.0}; }
 };
 
-/// Time that `make` takes, and what it made. Short work
-/// is done up to three times; the shortest counts.
+/// Returns the result of `make` and the time that it takes. Short work is done up to three times;
+/// the shortest time counts.
 template <typename Make>
 [[nodiscard]] auto Built(const Make& make) {
   using Clock = std::chrono::steady_clock;
@@ -144,7 +148,7 @@ template <typename Make>
   }
 }
 
-/// Times `pass`, which gives so many answers and returns something of them, on this thread, after
+/// Times `pass`, which computes `answers` values and returns a sum of them, on this thread, after
 /// one pass to warm up.
 template <typename Pass>
 void TimePasses(std::size_t answers, const ReportEffort& effort, const Pass& pass,
@@ -158,21 +162,21 @@ void TimePasses(std::size_t answers, const ReportEffort& effort, const Pass& pas
     passes.push_back(std::chrono::duration<double>(Clock::now() - start).count());
     all += passes.back();
   }
-  [[maybe_unused]] static volatile float kept;  // else a compiler may see that nobody asks
+  [[maybe_unused]] static volatile float kept;  // keeps the compiler from removing the work
   kept = sum;
   std::sort(passes.begin(), passes.end());
   result.time_s = passes.front() / static_cast<double>(answers);
   result.time_spread = passes[passes.size() / 2] / passes.front() - 1.0;
 }
 
-/// All values of some bands.
+/// Returns the values of all bands.
 template <typename Real>
 [[nodiscard]] std::vector<double> ValuesOf(const Bands<Real>& bands) {
   return {bands.value.begin(), bands.value.begin() + static_cast<std::ptrdiff_t>(bands.count)};
 }
 
-/// Fills in what `answer`, a function from ViewRay to Bands<>, is worth on the rays.
-/// @param samples  function from ViewRay to the number of points that an answer looks at.
+/// Measures errors and time of `answer`, a function from ViewRay to Bands<>, on the rays.
+/// @param samples  function from ViewRay to the number of points that an evaluation uses.
 template <typename Answer, typename Samples>
 [[nodiscard]] ReportRow Measured(ReportRow row, const JudgedRays& judged,
                                  const ReportEffort& effort, const Answer& answer,
@@ -198,7 +202,7 @@ template <typename Answer, typename Samples>
   return row;
 }
 
-/// A topic in the making: judged rays, and the rows measured on them.
+/// A topic during measurement: rays with reference values, and the rows measured on them.
 class TopicWork {
  public:
   TopicWork(const Medium& medium, const ReportEffort& effort, JudgedRays judged)
@@ -210,7 +214,7 @@ class TopicWork {
     rows_.push_back(Measured(std::move(row), judged_, effort_, answer, samples));
   }
 
-  /// Light scattered once by a march in steps; `style` is that of its line.
+  /// Measures light scattered once by a march in steps; `style` is the style of its line.
   void AddMarch(const AirIntegrator<float>& air, MarchRule rule, int steps, int style,
                 bool in_summary) {
     AddRow(
@@ -228,12 +232,12 @@ class TopicWork {
         [&](const ViewRay&) { return steps; });
   }
 
-  /// Adds what was measured elsewhere.
+  /// Adds a row that was measured elsewhere.
   void AddMeasured(ReportRow row) { rows_.push_back(std::move(row)); }
 
   [[nodiscard]] const JudgedRays& judged() const { return judged_; }
 
-  /// `words` with what was measured.
+  /// Returns `words` completed by the measured rows.
   [[nodiscard]] ReportTopic Finished(ReportTopic words) && {
     words.medium = medium_;
     words.rays = judged_.rays[0].size();
@@ -251,13 +255,14 @@ class TopicWork {
   std::vector<ReportRow> rows_;
 };
 
-/// The topics, each for one medium.
+/// Measure the topics, each for one medium.
 [[nodiscard]] ReportTopic MeasureTransmittance(const Medium& medium, const ReportEffort& effort);
 [[nodiscard]] ReportTopic MeasureSingleScattering(const Medium& medium, const ReportEffort& effort);
 [[nodiscard]] ReportTopic MeasureAllOrders(const Medium& medium, const ReportEffort& effort);
-/// Where light of all orders is hard: with fewer rays and methods, for paths are long there.
+/// Measures light of all orders in difficult media, with fewer rays and methods, because paths are
+/// long there.
 [[nodiscard]] ReportTopic MeasureHardAir(const Medium& medium, const ReportEffort& effort);
-/// Of one medium: the others bend alike.
+/// Measures refraction for one medium, because other media refract alike.
 [[nodiscard]] ReportTopic MeasureRefraction(const Medium& medium, const ReportEffort& effort);
 [[nodiscard]] ReportTopic MeasurePanoramas(const Medium& medium, const ReportEffort& effort);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The report as CSV, plots, Markdown and a page.
+// This file writes the report as CSV, plots, Markdown and an HTML page.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -17,10 +17,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A number as the CSV has it; the page carries the same text behind every rounded one.
+/// Formats a number for the CSV. The page stores this text behind every rounded number.
 std::string CsvNumber(double value) { return fmt::format("{:.6g}", value); }
 
-/// In quotation marks, as RFC 4180 wants them for commas.
+/// Returns the text in quotation marks, which RFC 4180 requires for commas.
 std::string CsvText(const std::string& text) {
   std::string quoted(1, '"');
   for (const char c : text) quoted.append(c == '"' ? 2 : 1, c);
@@ -28,7 +28,7 @@ std::string CsvText(const std::string& text) {
   return quoted;
 }
 
-/// Letters, digits and single dashes only, for names of files and anchors.
+/// Returns the text reduced to letters, digits and single dashes, for names of files and anchors.
 std::string FileKey(const std::string& text) {
   std::string key;
   for (const char c : text) {
@@ -38,7 +38,7 @@ std::string FileKey(const std::string& text) {
   return key;
 }
 
-/// "earth", "range, earth" or, where the scene is all that there is, "fog".
+/// Returns "earth", "range, earth" or, if there is only a scene, "fog".
 std::string PlaceName(const ReportTopic& topic) {
   if (topic.scene.empty()) return topic.medium.name;
   return topic.medium.name.empty() ? topic.scene : topic.scene + ", " + topic.medium.name;
@@ -48,7 +48,7 @@ std::string TopicKey(const ReportTopic& topic) {
   return topic.key + "." + FileKey(PlaceName(topic));
 }
 
-/// Of the atmosphere, where there is one.
+/// Returns the hash of the atmosphere, if there is one.
 std::string HashDigits(const ReportTopic& topic) {
   return topic.medium.name.empty() ? "" : fmt::format("{:016x}", MediumHash(topic.medium));
 }
@@ -67,7 +67,8 @@ PlotPoint PointOf(const ReportRow& row, double x, std::size_t regime) {
   return {x, error.rms, error.percentile_99, row.parameter};
 }
 
-/// One panel a regime; `cost` is the x of a row in a regime, not positive: no such point.
+/// Returns one panel per regime. `cost` returns the x value of a row in a regime; a value that is
+/// not positive means that there is no point.
 template <typename Cost>
 std::vector<PlotPanel> PanelsOf(const ReportTopic& topic, const Cost& cost) {
   std::vector<PlotPanel> panels;
@@ -98,7 +99,8 @@ std::string PlotSubtitle(const ReportTopic& topic) {
       topic.medium.wavelengths_nm.size() == 1 ? "" : "s");
 }
 
-/// The plot over samples, which no processor's speed is in; nothing where rows have none.
+/// Returns the plot over samples, which is independent of the processor's speed; nullopt if rows
+/// have no samples.
 std::optional<Plot> PlotOverSamples(const ReportTopic& topic) {
   const auto samples = [](const ReportRow& row, std::size_t regime) {
     return row.at[regime].samples;
@@ -117,7 +119,7 @@ std::optional<Plot> PlotOverSamples(const ReportTopic& topic) {
 std::string PlotFile(const ReportTopic& topic) { return TopicKey(topic) + ".svg"; }
 std::string SamplesPlotFile(const ReportTopic& topic) { return TopicKey(topic) + ".samples.svg"; }
 
-/// The aerosol's optical depth at the wavelength nearest to 550 nm, in words.
+/// Returns the aerosol's optical depth at the wavelength nearest to 550 nm, in words.
 std::string AerosolText(const Medium& medium) {
   std::size_t nearest = 0;
   const auto off = [&](std::size_t band) { return std::abs(medium.wavelengths_nm[band] - 550.0); };
@@ -142,7 +144,7 @@ std::string RmsText(const ErrorStatistics& error) {
                      QuantityText(error.rms, PlotUnit::kShare));
 }
 
-/// Rms and percentile, and the strict rms where it is another.
+/// Returns the rms and the percentile, and the strict rms if it differs.
 std::string ErrorText(const ErrorStatistics& error) {
   std::string text =
       fmt::format("{} / {}", RmsText(error), QuantityText(error.percentile_99, PlotUnit::kShare));
@@ -151,7 +153,7 @@ std::string ErrorText(const ErrorStatistics& error) {
   return text;
 }
 
-/// Time of an answer in the worst regime.
+/// Returns the time of an answer in the slowest regime.
 double SlowestAnswer(const ReportRow& row) {
   double slowest = 0.0;
   for (const RegimeResult& result : row.at) slowest = std::max(slowest, result.time_s);
@@ -164,7 +166,8 @@ double LargestPercentile99(const ReportRow& row) {
   return largest;
 }
 
-/// The fastest row of an origin that is wanted() in every regime; null when there is none.
+/// Returns the fastest row of an origin whose error is at most topic.wanted in every regime; null
+/// if there is none.
 const ReportRow* FastestWithin(const ReportTopic& topic, MethodOrigin origin) {
   const ReportRow* fastest = nullptr;
   for (const ReportRow& row : topic.rows) {
@@ -175,7 +178,7 @@ const ReportRow* FastestWithin(const ReportTopic& topic, MethodOrigin origin) {
   return fastest;
 }
 
-/// The row of an origin whose 99th percentile is the smallest in its worst regime.
+/// Returns the row of an origin whose 99th percentile in its worst regime is the smallest.
 const ReportRow* MostAccurate(const ReportTopic& topic, MethodOrigin origin) {
   const ReportRow* best = nullptr;
   for (const ReportRow& row : topic.rows) {
@@ -193,7 +196,7 @@ std::string CostText(const ReportTopic& topic, const ReportRow& row) {
   return text;
 }
 
-/// What the numbers of a topic say about one origin, in a sentence.
+/// Summarises the results of a topic for one origin, in a sentence.
 std::string FindingOf(const ReportTopic& topic, MethodOrigin origin) {
   const std::string wanted = QuantityText(topic.wanted, PlotUnit::kShare);
   if (const ReportRow* row = FastestWithin(topic, origin)) {
@@ -283,7 +286,7 @@ std::string JudgeText(const ReportTopic& topic) {
   return text;
 }
 
-/// Atmosphere and scene, in words.
+/// Returns a description of atmosphere and scene.
 std::string PlaceText(const ReportTopic& topic) {
   if (topic.medium.name.empty()) return topic.scene;
   const std::string place = "Atmosphere " + topic.medium.name + ": " + AerosolText(topic.medium);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// A topic of the report: the whole sphere around an observer under one sun.
+// This file measures a topic of the report: the whole sphere around an observer under one sun.
 #include <fmt/format.h>
 #include <oneapi/tbb/parallel_for.h>
 
@@ -17,7 +17,7 @@
 namespace alpenglow::lut {
 namespace {
 
-// Lines of the plot.
+// Styles of the lines of the plot.
 enum PanoramaStyle { kSkyViewRows = 0, kLatitudes = 1, kDirect = 2, kSkyView = 6 };
 
 constexpr std::size_t kSuns = 3;
@@ -36,7 +36,7 @@ double MuS(std::size_t regime, std::size_t sun) {
   return std::sin(kElevations_deg[regime][sun] * kRadiansPerDegree);
 }
 
-/// A direction, with the sun that shines.
+/// A direction and the index of the sun.
 struct Direction {
   std::size_t sun;
   double zenith_rad, azimuth_rad;
@@ -49,7 +49,8 @@ struct Direction {
   }
 };
 
-/// Uniform over the sphere; every other one within 10 degrees of the horizontal instead.
+/// Returns directions uniform over the sphere; every second one lies within 10 degrees of the
+/// horizontal instead.
 std::vector<Direction> Directions(int count) {
   std::vector<Direction> directions;
   constexpr double kGolden = 0.6180339887498949, kPlastic = 0.7548776662466927;
@@ -62,7 +63,8 @@ std::vector<Direction> Directions(int count) {
   return directions;
 }
 
-/// Light of a direction, evaluated: sky of all orders, and the lit ground behind the air.
+/// The light of a direction by direct evaluation: sky of all orders, and the lit ground behind the
+/// air.
 template <typename Real>
 class DirectSky {
  public:
@@ -179,7 +181,7 @@ class PanoramaTopic {
     });
   }
 
-  /// @param size  nothing: chosen by SkyViewSizeFor.
+  /// @param size  nullopt: chosen by SkyViewSizeFor.
   void AddSkyView(const std::optional<SkyViewSize>& size) {
     ReportRow row{.series = "sky view, one by one",
                   .parameter = size ? fmt::format("({} + {}) x {}", size->sky_rows,
@@ -210,7 +212,7 @@ class PanoramaTopic {
     });
   }
 
-  /// Wall time [s] of a whole picture, all threads, with the sun at 25 degrees.
+  /// Returns the wall time [s] of a whole image, all threads, with the sun at 25 degrees.
   [[nodiscard]] double PictureSeconds(int width) const {
     PanoramaSettings settings;
     settings.width = width;
@@ -250,7 +252,8 @@ class PanoramaTopic {
     }
   }
 
-  /// Over the directions of a sun: from space the zenith is black.
+  /// Returns the mean over the directions of a sun. It replaces the zenith, which is black from
+  /// space.
   [[nodiscard]] std::vector<double> MeanOf(std::size_t r, std::size_t sun) const {
     std::vector<double> mean(air_.bands(), 0.0);
     double count = 0.0;
@@ -264,7 +267,7 @@ class PanoramaTopic {
     return mean;
   }
 
-  /// Times look-ups as a panorama makes them, row by row.
+  /// Times look-ups row by row, as panoramas do them.
   void TimeRows(const SkyView& view, RegimeResult& result) const {
     constexpr std::size_t kRows = 32, kColumns = 256;
     std::vector<double> azimuth_rad;
@@ -280,7 +283,7 @@ class PanoramaTopic {
     TimePasses(kRows * kColumns, effort_, pass, result);
   }
 
-  /// @param make  table of a regime's sun.
+  /// @param make  makes the table of a sun of a regime.
   template <typename Make>
   void AddTables(ReportRow row, const Make& make) {
     const auto [first, seconds] = Built([&] { return make(0, 1); });
@@ -295,7 +298,7 @@ class PanoramaTopic {
     });
   }
 
-  /// @param answers  what answers directions in a regime.
+  /// @param answers  returns the function that evaluates directions in a regime.
   template <typename Answers>
   void Measure(ReportRow row, const Answers& answers) {
     for (std::size_t r = 0; r < kReportRegimes; ++r) {

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
-// A topic of the report: light scattered once along a view.
-//
-// A topic of the report: the light of all orders along a view.
+// This file measures two topics of the report: light scattered once along a view, and light of all
+// orders along a view.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -17,7 +16,7 @@
 namespace alpenglow::lut {
 namespace {
 
-// Lines of the plot.
+// Styles of the lines of the plot.
 enum SingleStyle {
   kGauss = 0,
   kMidpoint = 1,
@@ -128,7 +127,7 @@ ReportTopic MeasureSingleScattering(const Medium& medium, const ReportEffort& ef
 
 namespace {
 
-// Lines of the plot.
+// Styles of the lines of the plot.
 enum OrdersStyle {
   kDegree4 = 0,
   kIsotropic = 1,
@@ -145,7 +144,7 @@ int StyleOf(const DiffuseLightOptions& options) {
   return options.degree == 2 ? kDegree2 : options.degree == 4 ? kDegree4 : kDegree6;
 }
 
-// What a renderer takes: one set of samples for all orders.
+// Sampling of a renderer: one set of samples for all orders.
 constexpr Sampling kSampling{.nodes = 12, .split_ozone = false, .dark_samples = true};
 
 class OrdersTopic : public TopicWork {
@@ -166,7 +165,7 @@ class OrdersTopic : public TopicWork {
     AddOnSamples(std::move(row), sample, higher);
   }
 
-  /// The usual moments on the nodes of direct integration.
+  /// Adds the default moments on the nodes of direct integration.
   void AddDirect(DirectMode mode) {
     const auto [light, seconds] = Built([&] { return DiffuseLight(medium_); });
     const bool fast = mode == DirectMode::kFast;
@@ -235,7 +234,7 @@ class OrdersTopic : public TopicWork {
                medium_, options);
   }
 
-  /// As if each scattering left light unpolarised.
+  /// Adds a row that treats light as unpolarised after every scattering.
   void AddScalar(const DiffuseLightOptions& options) {
     AddMoments({.series = fmt::format("scalar light, moments to degree {}", options.degree),
                 .parameter = "",

@@ -21,7 +21,7 @@ constexpr double kLabelSize = 12.0, kNoteSize = 9.5;
 
 struct Box {
   double x0 = 0.0, y0 = 0.0, x1 = 0.0, y1 = 0.0;
-  double penalty = 0.0;  // of a place for a text: how far from what it names
+  double penalty = 0.0;  // for the place of a label: distance from the labelled point
 
   [[nodiscard]] double Overlap(const Box& other) const {
     const double width = std::min(x1, other.x1) - std::max(x0, other.x0);
@@ -34,7 +34,7 @@ bool Drawable(const PlotPoint& point) {
   return std::isfinite(point.x) && std::isfinite(point.y) && point.x > 0.0 && point.y > 0.0;
 }
 
-/// A logarithmic axis: whole decades that hold all values.
+/// A logarithmic axis whose range holds all values.
 struct Decades {
   double low = std::numeric_limits<double>::infinity();
   double high = -std::numeric_limits<double>::infinity();
@@ -43,7 +43,7 @@ struct Decades {
     low = std::min(low, std::log10(value));
     high = std::max(high, std::log10(value));
   }
-  /// Room of a tenth of a decade around the values.
+  /// Adds a margin of about a tenth of a decade around the values.
   void Close() {
     if (low > high) low = high = 0.0;
     low -= 0.12;
@@ -59,7 +59,7 @@ struct Decades {
   }
 };
 
-/// A panel's place on the sheet, and the axes that all panels share.
+/// Position of a panel on the sheet, and the axes that all panels share.
 struct Frame {
   Box area;
   Decades x, y;
@@ -72,10 +72,10 @@ struct Frame {
   }
 };
 
-/// Width of a text without a font at hand: a little more than that of bold Helvetica.
+/// Estimates the width of a text without font metrics: a little more than that of bold Helvetica.
 double TextWidth(const std::string& text, double size) {
   const auto letters = std::count_if(text.begin(), text.end(), [](char c) {
-    return (static_cast<unsigned char>(c) & 0xC0U) != 0x80U;  // of UTF-8, not its second bytes
+    return (static_cast<unsigned char>(c) & 0xC0U) != 0x80U;  // no continuation bytes of UTF-8
   });
   return 0.6 * size * static_cast<double>(letters);
 }
@@ -160,7 +160,7 @@ std::vector<PlotPoint> DrawablePoints(const PlotSeries& series) {
   return points;
 }
 
-/// Small ticks at 2, 3, ... 9 times the powers of ten of the x axis.
+/// Returns small ticks at 2, 3, ... 9 times the powers of ten of the x axis.
 std::string MinorTicks(const Frame& frame) {
   std::string text;
   for (int decade = static_cast<int>(std::floor(frame.x.low)); decade <= frame.x.high; ++decade) {
@@ -173,7 +173,7 @@ std::string MinorTicks(const Frame& frame) {
   return text;
 }
 
-/// Grid, ticks and frame of a panel. Every panel has its x ticks, the first its y ticks too.
+/// Returns grid, ticks and frame of a panel. Every panel has x ticks, the first panel also y ticks.
 std::string FrameText(const Frame& frame, const Plot& plot, bool first) {
   std::string text;
   const auto whole = [](double value) { return static_cast<int>(value); };
@@ -221,7 +221,7 @@ std::string SeriesText(const Frame& frame, const PlotSeries& series) {
   return text + "</g>\n";
 }
 
-/// Finds room for texts, one after the other: beside a point, away from what is drawn already.
+/// Places labels one after the other, each beside a point and away from everything drawn before.
 class Labels {
  public:
   Labels(const Frame& frame, const PlotPanel& panel) : frame_(frame) {
@@ -232,7 +232,7 @@ class Labels {
     }
   }
 
-  /// The text at the best of the places around the points.
+  /// Returns the text at the best of the places around the points.
   [[nodiscard]] std::string Place(const std::vector<PlotPoint>& points, const std::string& text,
                                   const std::string& kind, double size) {
     std::vector<Box> places;
@@ -244,7 +244,7 @@ class Labels {
     return Taken(places, kind, text, size);
   }
 
-  /// The text on the line across the panel at a height.
+  /// Returns the text placed on the line across the panel at height `y`.
   [[nodiscard]] std::string PlaceAlong(double y, const std::string& text) {
     const double size = 11.0, width = TextWidth(text, size);
     std::vector<Box> places;
@@ -272,7 +272,7 @@ class Labels {
       if (points[i].y_high)
         ink_.push_back({x - 1.0, frame_.Y(std::max(*points[i].y_high, points[i].y)), x + 1.0, y});
       if (i == 0) continue;
-      // A line is a row of small boxes.
+      // A line is represented by a row of small boxes.
       const double px = frame_.X(points[i - 1].x), py = frame_.Y(points[i - 1].y);
       const int pieces = 1 + static_cast<int>(std::hypot(x - px, y - py) / 5.0);
       for (int k = 1; k < pieces; ++k) {

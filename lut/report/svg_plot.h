@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
-// Log-log plots as SVG text: panels side by side, one line a series, named where it runs.
+// This header provides log-log plots as SVG text: panels side by side, one line per series,
+// labelled next to the line.
 //
-// Colours are those of Okabe and Ito (2008), Color Universal Design, told apart by colour-blind
-// readers, with a marker a series for print; lighter ones take over where the reader's system is
-// dark. The text stands alone as a file and inside a page.
+// Colours are those of Okabe and Ito (2008), Color Universal Design, which colour-blind readers can
+// distinguish, with one marker per series for print. Lighter colours are used if the reader's
+// system is in dark mode. The text works as a separate file and embedded in a page.
 #pragma once
 
 #include <optional>
@@ -16,19 +17,19 @@ struct PlotPoint {
   double x = 0.0, y = 0.0;  // > 0
   /// Top of a thin line above the point, for instance its 99th percentile.
   std::optional<double> y_high;
-  /// Written beside the first and the last point of a series, for instance its size.
+  /// Text beside the first and the last point of a series, for instance its size.
   std::string note;
 };
 
 struct PlotSeries {
   std::string name;
   int style = 0;       // colour and marker, in [0, kPlotStyles)
-  bool faint = false;  // hollow markers and a dashed line: what others do
+  bool faint = false;  // hollow markers and a dashed line: methods of others
   std::vector<PlotPoint> points;
 };
 inline constexpr int kPlotStyles = 7;
 
-/// A line across a panel at a height.
+/// A line across a panel at height `y`.
 struct PlotLevel {
   std::string name;
   double y = 0.0;
@@ -40,7 +41,7 @@ struct PlotPanel {
   std::vector<PlotLevel> levels;
 };
 
-/// How numbers of an axis are written; values are seconds, shares of one, counts or bytes.
+/// Format of the numbers of an axis; values are seconds, fractions of one, counts or bytes.
 enum class PlotUnit { kSeconds, kShare, kCount, kBytes };
 
 struct PlotAxis {
@@ -54,13 +55,14 @@ struct Plot {
   std::vector<PlotPanel> panels;  // at least one; all share both axes
 };
 
-/// "1.5 µs", "0.1 %", "32", "64 kB": two significant digits, powers of ten short.
+/// Formats a value: "1.5 µs", "0.1 %", "32", "64 kB": two significant digits, powers of ten short.
 [[nodiscard]] std::string QuantityText(double value, PlotUnit unit);
 
-/// `text` with the five characters that XML reserves written as entities.
+/// Returns `text` with the five characters that XML reserves written as entities.
 [[nodiscard]] std::string XmlText(const std::string& text);
 
-/// The plot as one <svg> element, 1080 wide. Points that are not positive and finite are left out.
+/// Returns the plot as one <svg> element, 1080 wide. Points that are not positive and finite are
+/// omitted.
 [[nodiscard]] std::string SvgOfPlot(const Plot& plot);
 
 }  // namespace alpenglow::lut
