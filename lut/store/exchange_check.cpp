@@ -26,8 +26,8 @@ namespace {
 namespace fs = std::filesystem;
 using Rgba = std::array<double, 4>;
 
-constexpr double kLargestMedian = 0.05;      // of the distance from our texels
-constexpr std::size_t kCheckedTexels = 600;  // of a texture of scattering
+constexpr double kLargestMedian = 0.05;      // relative difference from the texels of this program
+constexpr std::size_t kCheckedTexels = 600;  // per scattering texture
 
 std::optional<TexelFormat> FormatOfFolder(const fs::path& folder) {
   for (const TexelFormat format : {TexelFormat::kExr, TexelFormat::kBin, TexelFormat::kDat}) {
@@ -37,7 +37,8 @@ std::optional<TexelFormat> FormatOfFolder(const fs::path& folder) {
   return std::nullopt;
 }
 
-/// Layout and format. Only our own .exr of Bruneton's layout say so: the demo reads none.
+/// Returns layout and format. The only .exr files of Bruneton's layout are written by this program,
+/// because the demo reads none; they state their layout.
 ExchangeOptions OptionsOf(const fs::path& folder) {
   const std::optional<TexelFormat> format = FormatOfFolder(folder);
   if (!format) RefuseFile(folder, "has no scattering.exr, .bin or .dat");
@@ -84,7 +85,8 @@ std::vector<float> RawTexels(const fs::path& file, std::size_t texels, TexelType
   return values;
 }
 
-/// Loaders fill an alpha that is missing with 1, which only scattering cannot do without.
+/// Returns RGBA texels. Loaders replace a missing alpha by 1; only the texture scattering needs its
+/// alpha.
 std::vector<float> RgbaOf(const TableImageReader& image, bool needs_alpha) {
   if (needs_alpha || image.HasChannel("A")) {
     return image.Values({"R", "G", "B", "A"}, TexelTypes::kFloatOrHalf);
@@ -98,7 +100,8 @@ std::vector<float> RgbaOf(const TableImageReader& image, bool needs_alpha) {
   return rgba;
 }
 
-/// Rows in the order of the textures; three-atmosphere has the last one on top.
+/// Returns the rows in the order of the textures; files of three-atmosphere have the last row on
+/// top.
 std::vector<float> ImageTexels(const fs::path& file, const TextureShape& shape, bool reversed) {
   const TableImageReader image(file);
   const std::size_t rows = shape.height * shape.depth;
@@ -131,8 +134,9 @@ double Largest(const std::vector<double>& values) {
   return *std::max_element(values.begin(), values.end());
 }
 
-/// What no texel's red, green and blue may exceed. Scattering stands without its phase function, of
-/// which 1/(4 pi) is the mean: 4 pi times the radiance, itself never more than what the sun sends.
+/// Returns the upper bound of red, green and blue of a texel. Scattering is stored without its
+/// phase function, whose mean is 1/(4 pi), so its bound is 4 pi times the largest radiance, which
+/// is at most the irradiance of the sun.
 double HighestOf(const TextureShape& shape, const Medium& medium) {
   if (std::string_view(shape.name) == kTransmittanceShape.name) return 1.0;
   const double sun = Largest(medium.solar_irradiance);
@@ -146,7 +150,7 @@ std::array<ExchangeDescription::Channel, 4> ChannelRangesOf(const fs::path& file
   for (std::size_t c = 0; c < 4; ++c) ranges[c] = {texels[c], texels[c]};
   for (std::size_t i = 0; i < texels.size(); ++i) {
     const double value = texels[i];
-    // Alpha is used in scattering alone, and there a light like the others.
+    // Alpha is used only in scattering, where it holds light like the other channels.
     if (!std::isfinite(value) || (i % 4 < 3 && !(value >= 0.0 && value <= highest))) {
       RefuseFile(file, fmt::format("channel {} of texel {} is {}; it must lie in [0, {}]",
                                    "RGBA"[i % 4], i / 4, value, highest));
@@ -158,7 +162,7 @@ std::array<ExchangeDescription::Channel, 4> ChannelRangesOf(const fs::path& file
   return ranges;
 }
 
-/// Gathers texels and what we have in their places.
+/// Collects pairs of a texel and the value that this program computes for it.
 class Comparison {
  public:
   void Add(double value, double truth) { pairs_.push_back({value, truth}); }
@@ -182,13 +186,14 @@ class Comparison {
   std::vector<std::pair<double, double>> pairs_;
 };
 
-/// Our texels, one by one.
+/// Computes the texels of this program one by one.
 class Reference {
  public:
   Reference(const Medium& medium, double lowest_mu_s)
       : medium_(medium), air_(medium), quick_air_(medium), map_(MapOf(medium, lowest_mu_s)) {}
 
-  /// Scattered once, without phase functions: by molecules and by aerosol. Blue is the first band.
+  /// Light scattered once, without phase functions: by molecules and by aerosol. Blue is the first
+  /// band.
   struct Once {
     Rgba molecules, aerosol;
   };
@@ -212,7 +217,7 @@ class Reference {
   }
 
  private:
-  /// Nothing but the places of texels.
+  /// Returns a table that serves only for the positions of texels.
   static ScatteringTable MapOf(const Medium& medium, double lowest_mu_s) {
     const ScatteringTableSize& size = kExchangeScatteringSize;
     return {medium,
@@ -232,12 +237,12 @@ class Reference {
   ScatteringTable map_;
 };
 
-/// Texels all over a texture of scattering, always the same.
+/// Returns texels distributed over a scattering texture; every call returns one fixed set.
 std::vector<std::size_t> CheckedTexels() {
   const ScatteringTableSize& size = kExchangeScatteringSize;
   const std::size_t all = size.nu * size.mu_s * size.mu * size.altitudes;
   std::vector<std::size_t> texels;
-  // Multiples of the golden ratio are spread most evenly (Weyl 1916, Math. Ann. 77, 313).
+  // Multiples of the golden ratio are distributed most evenly (Weyl 1916, Math. Ann. 77, 313).
   for (std::size_t i = 0; i < kCheckedTexels; ++i) {
     const double x = static_cast<double>(i) * 0.6180339887498949;
     texels.push_back(static_cast<std::size_t>((x - std::floor(x)) * static_cast<double>(all)));
@@ -271,7 +276,7 @@ TexelErrors IrradianceErrors(const std::vector<float>& texels, const Reference& 
   return comparison.Errors();
 }
 
-/// Of the red light that aerosol scatters once, which scattering has in its alpha.
+/// Returns the errors of alpha in scattering, which holds the red light that aerosol scatters once.
 TexelErrors AlphaErrors(const std::vector<float>& scattering, const Reference& reference) {
   Comparison comparison;
   for (const std::size_t texel : CheckedTexels()) {
@@ -296,7 +301,7 @@ TexelErrors ScatteringErrors(std::string_view name, const std::vector<float>& te
   return comparison.Errors();
 }
 
-/// The lowest sun that the texels agree with best.
+/// Returns the lowest sun with which the texels agree best.
 double LowestSunIn(const std::vector<float>& scattering, const Medium& medium,
                    const DiffuseLight& light, const ExchangeOptions& options) {
   double best_deg = 0.0, least = std::numeric_limits<double>::infinity();
@@ -324,13 +329,13 @@ fs::path FileOf(const fs::path& folder, const TextureShape& shape, const Exchang
   return folder / (std::string(shape.name) + SuffixOf(*options.format));
 }
 
-/// What three-atmosphere can be told to do without.
+/// Returns whether three-atmosphere can be configured to work without the texture.
 bool IsOptional(const TextureShape& shape) {
   const std::string_view name = shape.name;
   return name == "higher_order_scattering" || name == "single_mie_scattering";
 }
 
-/// The files of a set, read, with their ranges.
+/// A texture read from a file, with its ranges.
 struct LoadedTexture {
   ExchangeDescription::Texture description;
   std::vector<float> texels;

@@ -34,7 +34,7 @@ constexpr TextureShape ScatteringShape(const char* name) {
           kScatteringSize.altitudes};
 }
 
-// Four orders of scattering: three of the light that is scattered once more.
+// Four orders of scattering in total: these are the three orders after the first.
 constexpr DiffuseLightOptions kFourOrders{.altitudes = 32,
                                           .sun_angles = 56,
                                           .degree = 6,
@@ -54,7 +54,7 @@ TexelFormat FormatOf(const ExchangeOptions& options) {
                                                                            : TexelFormat::kDat);
 }
 
-/// Red, green and blue are the bands from the longest wavelength to the shortest.
+/// Returns a texel. Red, green and blue are the bands from the longest wavelength to the shortest.
 std::array<float, 4> RgbaTexel(const Medium& medium, const Bands<float>& unit, bool times_sun,
                                float alpha) {
   std::array<float, 4> rgba{0.0F, 0.0F, 0.0F, alpha};
@@ -100,14 +100,14 @@ ExchangeTexture IrradianceTexture(const Medium& medium, const DiffuseLight& ligh
   return texture;
 }
 
-/// Orders 2 to 4 over the molecules' phase function,
-/// one row (a view angle at an altitude) at a time.
+/// Orders 2 to 4 divided by the molecules' phase function, one row (a view angle at an altitude) at
+/// a time.
 class HigherOrdersOfRays {
  public:
   HigherOrdersOfRays(const ScatteringTable& rays, const DiffuseLight& light)
       : rays_(rays), light_(light), air_(rays.medium()) {}
 
-  /// [(nu * mu_s + mu_s) * 3 + band]
+  /// Returns a row: [(nu * mu_s + mu_s) * 3 + band]
   [[nodiscard]] std::vector<float> Row(std::size_t row) const {
     const ScatteringTableSize& size = rays_.size();
     std::vector<float> values;
@@ -129,7 +129,7 @@ class HigherOrdersOfRays {
   AirIntegrator<float> air_;
 };
 
-/// scattering, higher_order_scattering, single_mie_scattering.
+/// Returns scattering, higher_order_scattering, single_mie_scattering.
 std::array<ExchangeTexture, 3> ScatteringTextures(const Medium& medium, const DiffuseLight& light,
                                                   double lowest_mu_s, ProgressStyle style) {
   const std::size_t rows = ScatteringTable::Rows(kScatteringSize);
@@ -163,7 +163,7 @@ std::array<ExchangeTexture, 3> ScatteringTextures(const Medium& medium, const Di
   return textures;
 }
 
-/// Rows from the last to the first.
+/// Returns the rows from the last to the first.
 std::vector<float> UpsideDown(const ExchangeTexture& texture) {
   std::vector<float> values;
   values.reserve(texture.rgba.size());

@@ -20,7 +20,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// What distinguishes one kind of table from another.
+/// Properties of a kind of table.
 struct Kind {
   const char* name;
   const char* quantity;
@@ -63,7 +63,8 @@ const Kind& KindOf(ScatteringAxes axes) {
   return axes == ScatteringAxes::kAzimuth ? kSingleScatteringByAzimuth : kSingleScattering;
 }
 
-/// Moments up to a degree, those of the tensor of polarised light, then the irradiance from above.
+/// Returns the kind with moments up to a degree, moments of the tensor of polarised light, then the
+/// irradiance from above.
 Kind MultipleScattering(int degree, bool polarised) {
   Kind kind{"multiple scattering",
             "diffuse light of all orders per unit solar irradiance: moments of its radiance on "
@@ -83,7 +84,7 @@ Kind MultipleScattering(int degree, bool polarised) {
   return kind;
 }
 
-// Whole nanometres as 0450nm, others as 0450,500nm.
+// Formats whole nanometres as 0450nm, others as 0450,500nm.
 std::string WavelengthText(double wavelength_nm) {
   std::string text = fmt::format("{:08.3f}", wavelength_nm);
   if (text.ends_with(".000")) return text.substr(0, text.size() - 4) + "nm";
@@ -213,7 +214,7 @@ std::vector<float> CheckedValues(const TableImageReader& image, const Kind& kind
   return values;
 }
 
-/// The text of a number as the writer put it; throws for anything else.
+/// Parses a number of a text attribute; throws for any other text.
 double NumberOf(const TableImageReader& image, const std::string& name) {
   const std::string text = image.Attribute(name);
   double value = 0.0;
@@ -224,7 +225,7 @@ double NumberOf(const TableImageReader& image, const std::string& name) {
   return value;
 }
 
-/// Faults that the tables themselves find (sizes, ranges) get the file's name.
+/// Adds the file's name to errors that the tables detect themselves (sizes, ranges).
 template <typename Make>
 auto NamingTheFile(const fs::path& file, const Make& make) {
   try {

@@ -55,7 +55,8 @@ void MakeFolder(const fs::path& folder) {
 void BuildTableFolder(const Medium& medium, const TableQuality& quality, TableOrders orders,
                       const fs::path& folder, ProgressStyle style) {
   MakeFolder(folder);
-  // What is left of an earlier build would speak for these tables. The new one comes last.
+  // Remove the file of an earlier build, because it would describe the new tables wrongly. The new
+  // file is written last.
   std::error_code error;
   fs::remove(folder / kMultipleScatteringFileName, error);
   WriteTable(folder / kTransmittanceFileName, TransmittanceTable(medium, quality.transmittance));
@@ -153,7 +154,7 @@ Bands<float> TableLookup::Transmittance(const ViewRay& ray) const {
 Bands<float> TableLookup::OpticalDepth(const ViewRay& ray) const {
   if (!tables_.transmittance) return air_.OpticalDepthAlong(ray);
   Bands<float> depth = tables_.transmittance->LookupAlong(ray);
-  // Transmittance that the table holds as 0 has the optical depth of the smallest float.
+  // A transmittance that the table stores as 0 gets the optical depth of the smallest float.
   constexpr float kSmallest = std::numeric_limits<float>::denorm_min();
   for (std::size_t band = 0; band < depth.count; ++band) {
     depth[band] = -std::log(std::max(depth[band], kSmallest));

@@ -32,11 +32,12 @@ namespace fs = std::filesystem;
 
 constexpr int kLongestSide = 1 << 20;
 
-// Deflate makes at most 1032 bytes of one: a file cannot hold more than this many times its size.
+// Deflate expands one byte to at most 1032 bytes: a file cannot hold more than this many times its
+// size.
 constexpr std::uint64_t kLargestExpansion = 1032;
 
-/// The rows that the library decompresses together: it takes memory for all of them, however few
-/// the image has.
+/// Returns the number of rows that the library decompresses together. It allocates memory for all
+/// of them, even if the image has fewer.
 std::uint64_t RowsOfAChunk(Imf::Compression compression) {
   switch (compression) {
     case Imf::NO_COMPRESSION:
@@ -56,7 +57,8 @@ std::uint64_t RowsOfAChunk(Imf::Compression compression) {
   }
 }
 
-/// Runs `read` and turns what the library throws, out of memory included, into an InputError.
+/// Runs `read` and converts every exception of the library, including out of memory, into an
+/// InputError.
 template <typename Read>
 auto NamingDamage(const fs::path& file, const Read& read) {
   try {
@@ -68,7 +70,7 @@ auto NamingDamage(const fs::path& file, const Read& read) {
   }
 }
 
-/// The channels of interleaved values of the file's type.
+/// Returns a frame buffer for the channels of interleaved values of the file's type.
 template <typename Value>
 Imf::FrameBuffer TableBufferOf(const Value* values, const std::vector<std::string>& channels,
                                std::size_t width) {
@@ -76,7 +78,7 @@ Imf::FrameBuffer TableBufferOf(const Value* values, const std::vector<std::strin
   const std::size_t stride = sizeof(Value) * channels.size();
   Imf::FrameBuffer buffer;
   for (std::size_t i = 0; i < channels.size(); ++i) {
-    // The library reads and writes through the same pointer type.
+    // The library uses one pointer type for both reading and writing.
     char* base = reinterpret_cast<char*>(const_cast<Value*>(values + i));
     buffer.insert(channels[i], Imf::Slice(kType, base, stride, stride * width));
   }

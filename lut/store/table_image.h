@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: MIT
-// OpenEXR images that hold tables: one part of scan lines, floats, ZIP, text attributes.
+// This header provides OpenEXR images that hold tables: one part of scan lines, floats, ZIP, text
+// attributes.
 //
-// Reading trusts nothing: what is damaged, truncated, foreign or larger than its file can hold is
-// refused with an InputError that names the file, before memory is taken.
+// Readers do not trust the file. A file that is damaged, truncated, of another format or that
+// claims more data than it can hold is refused with an InputError that names the file, before
+// memory is allocated.
 #pragma once
 
 #include <cstddef>
@@ -20,23 +22,23 @@ using TextAttributes = std::map<std::string, std::string>;
 enum class TexelType { kFloat, kHalf };
 enum class TexelTypes { kFloat, kFloatOrHalf };
 
-/// What an image is made of. Values are interleaved: (row * width + column) * channels + channel.
+/// Contents of an image. Values are interleaved: (row * width + column) * channels + channel.
 struct TableImage {
   std::size_t width;
   std::size_t height;
   std::vector<std::string> channels;
   std::span<const float> values;
   TextAttributes attributes;
-  TexelType type = TexelType::kFloat;  // in the file; half: rounded to the nearest
+  TexelType type = TexelType::kFloat;  // type in the file; half: rounded to the nearest
 };
 
-/// Writes whole or not at all (WriteFileAtomically). Throws OutputError naming the file.
+/// Writes the file atomically (WriteFileAtomically). Throws OutputError naming the file.
 void WriteTableImage(const std::filesystem::path& file, const TableImage& image);
 
-/// An image that was opened and whose header is sound.
+/// An open image whose header is valid.
 class TableImageReader {
  public:
-  /// Throws InputError for anything but an intact header of one part of scan lines at the origin.
+  /// Throws InputError unless the header is intact and has one part of scan lines at the origin.
   explicit TableImageReader(const std::filesystem::path& file);
   ~TableImageReader();
   TableImageReader(const TableImageReader&) = delete;
@@ -45,15 +47,15 @@ class TableImageReader {
   [[nodiscard]] const std::filesystem::path& file() const { return file_; }
   [[nodiscard]] std::size_t width() const;
   [[nodiscard]] std::size_t height() const;
-  /// Whether the first channel is half.
+  /// Returns whether the first channel is half.
   [[nodiscard]] bool IsHalf() const;
   [[nodiscard]] bool HasChannel(const std::string& name) const;
-  /// Whether there is such a text attribute.
+  /// Returns whether the text attribute exists.
   [[nodiscard]] bool Has(const std::string& name) const;
-  /// The text attribute; throws InputError when it is missing or of another type.
+  /// Returns the text attribute; throws InputError if it is missing or of another type.
   [[nodiscard]] std::string Attribute(const std::string& name) const;
-  /// Reads every value of these channels, interleaved in this order. Throws InputError when one is
-  /// missing, of another type or subsampled, when there are others, and when the file is cut short.
+  /// Reads every value of these channels, interleaved in this order. Throws InputError if one is
+  /// missing, of another type or subsampled, if there are others, and if the file is truncated.
   [[nodiscard]] std::vector<float> Values(const std::vector<std::string>& channels,
                                           TexelTypes types = TexelTypes::kFloat) const;
 
