@@ -1,4 +1,4 @@
-// Catmull-Rom weights of the four neighbours of a position, the node before the cell first; t in
+// Catmull-Rom weights of the four neighbours of a position, from the node before the cell on; t in
 // [0, 1] is the fraction of the cell.
 
 SHARED Number CubicWeight0(Number t) {
@@ -15,8 +15,8 @@ SHARED Number CubicWeight2(Number t) {
 
 SHARED Number CubicWeight3(Number t) { return Number(0.5) * t * t * (t - Number(1.0)); }
 
-// The value of a node beyond the end of the grid, from the last node and the two before it: the
-// parabola through the three goes on.
+// Returns the value of a node beyond the end of the grid from the last node and the two before it,
+// by the parabola through these three.
 SHARED Number BeyondEnd(Number last, Number before, Number second_before) {
   return Number(3.0) * (last - before) + second_before;
 }

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Cubic interpolation on a uniform grid: four neighbours and their Catmull-Rom weights.
+// This header provides cubic interpolation on a uniform grid: four neighbours and their Catmull-Rom
+// weights.
 #pragma once
 
 #include <algorithm>
@@ -19,19 +20,20 @@ namespace alpenglow::shared {
 
 namespace alpenglow::lut {
 
-/// The neighbours of a position; at the ends of the grid the missing neighbour continues the parabola
-/// through the last three (BeyondEnd), and has weight 0 here.
+/// The neighbours of a position. At the ends of the grid the missing neighbour is extrapolated by
+/// the parabola through the last three (BeyondEnd), and has weight 0 here.
 struct CubicTaps {
   std::array<std::size_t, 4> node;
   std::array<float, 4> weight;
 };
 
-/// Catmull-Rom weights of the four neighbours at a fraction t in [0, 1] of the cell.
+/// Returns the Catmull-Rom weights of the four neighbours at a fraction t in [0, 1] of the cell.
 [[nodiscard]] inline std::array<float, 4> CatmullRom(float t) {
   return {shared::CubicWeight0(t), shared::CubicWeight1(t), shared::CubicWeight2(t),
           shared::CubicWeight3(t)};
 }
 
+/// Returns the taps at a position.
 /// @param coordinate position in [0, 1] over n >= 2 nodes, clamped; linear between two nodes.
 [[nodiscard]] inline CubicTaps TapsAt(double coordinate, int n) {
   const double position = std::clamp(coordinate, 0.0, 1.0) * (n - 1);

@@ -1,11 +1,12 @@
-// Where a view ray lies in the four-dimensional scattering table, and back. Lengths in km. Read
-// after transmittance_map.glsl, which has the coordinates of altitude and of rays to space.
+// This text maps a view ray to its coordinates in the four-dimensional scattering table, and back.
+// Lengths are in km. It is included after transmittance_map.glsl, which provides the coordinates of
+// altitude and of rays to space.
 //
 //   r     as in the transmittance map
-//   mu    two halves that meet at the horizon: below 1/2 rays that hit the ground, by the distance
+//   mu    two halves, divided by the horizon: below 1/2 rays that hit the ground, by the distance
 //         d to it, u = (d - h) / (rho - h), 0 straight down, 1 at the horizon; above 1/2 rays to
-//         space, as in the transmittance map. The halves run away from the middle of the axis, so
-//         that no look-up mixes them.
+//         space, as in the transmittance map. Both halves begin at the middle of the axis and end
+//         at the horizon, so that no look-up mixes them.
 //   mu_s  by the distance to the top along the sunbeam from the ground,
 //         a = (d - d_min) / (d_max - d_min):
 //         u = max(1 - a / A, 0) / (1 + a), A = a of the lowest sun of the table
@@ -13,15 +14,16 @@
 //
 // After Bruneton and Neyret (2008), Computer Graphics Forum 27, 1079, and Bruneton (2017).
 
-// 0 straight down, 1 at the horizon. On the ground itself every ray has length 0: coordinate 0.
+// Returns 0 straight down, 1 at the horizon. On the ground itself every ray has length 0 and
+// coordinate 0.
 SHARED Number UnitFromGroundCosine(Length h, Number mu, Length R) {
   Length rho = HorizonDistance(h, R);
   Number x = (DistanceDownTo(h, mu, Length(0.0), R) - h) / max(rho - h, Length(1e-30));
   return select(h > Length(0.0), min(max(x, Number(0.0)), Number(1.0)), Number(0.0));
 }
 
-// The law of cosines, -mu = (rho^2 + d^2) / (2 r d): nothing cancels. On the ground
-// itself straight down.
+// Uses the law of cosines, -mu = (rho^2 + d^2) / (2 r d), which has no cancellation. On the ground
+// itself the ray points straight down.
 SHARED Number GroundCosineFromUnit(Number x, Length h, Length R) {
   Length rho = HorizonDistance(h, R);
   Length d = h + x * (rho - h);
@@ -29,8 +31,8 @@ SHARED Number GroundCosineFromUnit(Number x, Length h, Length R) {
   return select(h > Length(0.0), max(-down, Number(-1.0)), Number(-1.0));
 }
 
-// Texture coordinate on the mu axis of n texels (even, >= 4) from the unit of its half:
-// 1 for ground.
+// Returns the texture coordinate on the mu axis of n texels (even, >= 4) from the unit of its half;
+// `ground` is 1 for rays that hit the ground.
 SHARED Number MuTexelFromUnit(Number x, Number ground, Number n) {
   Number half_axis = Number(0.5) * TexelFromUnit(x, Number(0.5) * n);
   return select(ground > Number(0.5), Number(0.5) - half_axis, Number(0.5) + half_axis);
@@ -42,8 +44,8 @@ SHARED Number UnitFromMuTexel(Number u, Number n) {
   return UnitFromTexel(abs(Number(2.0) * u - Number(1.0)), Number(0.5) * n);
 }
 
-// Length of the sunbeam that meets the ground, in units in which the vertical one is 0 and
-// the horizontal 1.
+// Returns the length of the sunbeam that reaches the ground, in units in which the vertical one is
+// 0 and the horizontal one 1.
 SHARED Number SunbeamExcess(Number mu_s, Length top, Length R) {
   return (DistanceUpTo(Length(0.0), mu_s, top, R) - top) / SkyDistanceRange(Length(0.0), top, R);
 }
@@ -61,7 +63,8 @@ SHARED Number SunCosineFromUnit(Number x, Number mu_s_min, Length top, Length R)
 SHARED Number UnitFromScatteringCosine(Number nu) { return Number(0.5) * (nu + Number(1.0)); }
 SHARED Number ScatteringCosineFromUnit(Number x) { return Number(2.0) * x - Number(1.0); }
 
-// The cosine between view and sun that is possible for their zenith cosines, nearest to nu.
+// Returns the cosine between view and sun that is nearest to nu among those possible for their
+// zenith cosines.
 SHARED Number PossibleScatteringCosine(Number nu, Number mu, Number mu_s) {
   Number sines = sqrt(
       max((Number(1.0) - mu) * (Number(1.0) + mu) * (Number(1.0) - mu_s) * (Number(1.0) + mu_s),

@@ -17,11 +17,11 @@
 namespace alpenglow::lut {
 namespace {
 
-// Of the texels: errors of the integral stay far below those of the interpolation.
+// Sampling of the texels: errors of the integral stay far below those of the interpolation.
 constexpr Sampling kTexelSampling{.nodes = 16, .split_ozone = true, .dark_samples = false};
 
-// Keeps rays that graze the ground on their side of it: a thousand roundings, a millimetre of
-// perigee at most.
+// Keeps rays that graze the ground on their side of the horizon: a thousand rounding errors, a
+// millimetre of perigee at most.
 constexpr double kHorizonMargin = 1e-13;
 
 std::size_t RequireSize(const Medium& medium, const ScatteringTableSize& size) {
@@ -44,7 +44,7 @@ double RequireLowestSun(const Medium& medium, const std::optional<double>& lowes
 
 constexpr double kNoLength_km = 1e-9;
 
-// Of the azimuth table.
+// Returns the sun axis of the azimuth table.
 SunAxis AxisFrom(double lowest_mu_s) { return {-0.05, 0.04, lowest_mu_s}; }
 
 // Fourth root and fourth power.
@@ -164,12 +164,12 @@ ScatteringTable::AxisTaps ScatteringTable::AngleTaps(const Start& start, double 
   }
   const double sines = std::sqrt(
       std::max((1.0 - start.mu) * (1.0 + start.mu) * (1.0 - start.mu_s) * (1.0 + start.mu_s), 0.0));
-  // Where the azimuth is undefined every texel holds the same.
+  // If the azimuth is undefined, all texels hold one value.
   const double cosine =
       sines > 0.0 ? std::clamp((nu - start.mu * start.mu_s) / sines, -1.0, 1.0) : 1.0;
   const auto at = AxisPosition::FromUnit(std::acos(cosine) / kPi, size_.nu);
   AxisTaps taps{{}, CatmullRom(at.fraction)};
-  // Beyond both ends light is its own mirror image.
+  // Beyond both ends of the axis the light is mirrored.
   const std::size_t last = size_.nu - 1;
   taps.node = {at.low == 0 ? 1 : at.low - 1, at.low, at.low + 1,
                at.low + 2 > last ? last - 1 : at.low + 2};
@@ -186,7 +186,7 @@ double ScatteringTable::LengthOf(bool ground, double altitude_km, double mu_unit
 
 ScatteringTable::PlaneTaps ScatteringTable::TapsByLength(const Start& start) const {
   using namespace shared;
-  // Each half of the mu axis is an axis of its own; the lower one runs backwards.
+  // Each half of the mu axis is a separate axis; the lower one runs backwards.
   const std::size_t half = size_.mu / 2;
   const double mu_unit =
       start.ground ? UnitFromGroundCosine<double>(start.altitude_km, start.mu, radius_km_)
@@ -195,8 +195,8 @@ ScatteringTable::PlaneTaps ScatteringTable::TapsByLength(const Start& start) con
   const auto linear = AxisPosition::FromUnit(r_unit, size_.altitudes);
   const auto m = AxisPosition::FromUnit(mu_unit, half);
   AxisTaps r{{linear.low, linear.low + 1}, {linear.Weight(0), linear.Weight(1)}};
-  // Where neighbours have no length (rays to the ground from the ground, and on the top) there is
-  // nothing to bend the line by.
+  // The axis is cubic only where all neighbours have a length. Rays to the ground from the ground,
+  // and rays on the top, have none.
   if (axes_ == ScatteringAxes::kAzimuth && !start.ground && linear.low + 3 < size_.altitudes) {
     const CubicTaps taps = TapsAt(r_unit, static_cast<int>(size_.altitudes));
     r = {taps.node, taps.weight};
@@ -214,7 +214,7 @@ ScatteringTable::PlaneTaps ScatteringTable::TapsByLength(const Start& start) con
       there[k] = LengthOf(start.ground, h, x);
       if (there[k] > kNoLength_km) known += r.weight[k];
     }
-    // A texel of length 0 holds 0 and knows nothing: its neighbours in altitude speak for it.
+    // A texel of length 0 holds 0 and is not valid: its neighbours in altitude replace it.
     for (std::size_t k = 0; k < 4; ++k) {
       if (r.weight[k] == 0.0F || there[k] <= kNoLength_km) continue;
       const auto longer = static_cast<float>(here / there[k]);
@@ -244,8 +244,8 @@ ScatteredOnce<float> ScatteringTable::Interpolate(const Start& start, double nu)
       }
     }
   }
-  // Where a long ray speaks for a longer one, the sum may pass what light there is; between dark
-  // texels and bright ones a cubic may pass below 0.
+  // If the value of a shorter ray is extrapolated to a longer one, the sum may exceed the available
+  // light. Between dark and bright texels a cubic may fall below 0.
   ScatteredOnce<float> light{Bands<float>(bands), Bands<float>(bands)};
   const auto value = [&](float stored) {
     const float positive = std::max(stored, 0.0F);

@@ -1,23 +1,24 @@
 // SPDX-License-Identifier: MIT
-// Sunlight scattered once, tabulated over altitude, view, sun and the angle between them.
+// This header provides sunlight scattered once, tabulated over altitude, view, sun and the angle
+// between them.
 //
 //   texel = integral of sigma_s(h) T(observer to point) T(point to sun) ds   per unit irradiance
 //
-// for molecules and aerosol apart, per band, as float, without the phase
-// functions: those are applied at the look-up (AirIntegrator::Inscatter),
-// which keeps the aureole sharp. Two sets of axes:
+// for molecules and aerosol separately, per band, as float, without the phase functions: those are
+// applied at the look-up (AirIntegrator::Inscatter), which keeps the aureole sharp. There are two
+// sets of axes:
 //
 //   Bruneton   those of scattering_map.glsl, quadrilinear; angles nu that are impossible for a
 //              texel's mu and mu_s are moved to the nearest possible, so that interpolation never
-//              meets a made-up value. After Bruneton and Neyret (2008), Computer Graphics Forum 27,
-//              1079.
-//   azimuth    the same r and mu; the azimuth from the sun, 0 to pi in equal steps, in place of nu,
+//              uses an invented value. After Bruneton and Neyret (2008), Computer Graphics Forum
+//              27, 1079.
+//   azimuth    r and mu as above; the azimuth from the sun, 0 to pi in equal steps, in place of nu,
 //              so that no texel is wasted; the sun's zenith cosine dense around the terminator, as
-//              in DiffuseLight; cubic but for mu. Texels hold fourth roots: what falls by decades
-//              in twilight is then smooth. For programs of this project.
+//              in DiffuseLight; cubic except for mu. Texels hold fourth roots, so that light which
+//              falls by decades in twilight is smooth. For programs of this project.
 //
-// This header also reads the shared text scattering_map.glsl as C++, as templates over double,
-// float and SIMD batches. Lengths are kilometres there and metres in the table.
+// This header also includes the shared text scattering_map.glsl as C++ templates over double, float
+// and SIMD batches. Lengths are kilometres there and metres in the table.
 #pragma once
 
 #include <array>
@@ -46,43 +47,44 @@ namespace alpenglow::lut {
 struct ScatteringTableSize {
   std::size_t nu = 8;          // >= 2
   std::size_t mu_s = 32;       // >= 2
-  std::size_t mu = 128;        // even, >= 4: half of it above the horizon, half below
+  std::size_t mu = 128;        // even, >= 4: one half above the horizon, one below
   std::size_t altitudes = 32;  // >= 2
 };
 
 enum class ScatteringAxes { kBruneton, kAzimuth };
 
 struct ScatteringTableOptions {
-  ScatteringTableSize size;  // nu: number of azimuths where that is the axis
-  /// Zenith cosine of the lowest sun; without a value LowestUsefulSun() of the medium.
+  ScatteringTableSize size;  // nu: number of azimuths for ScatteringAxes::kAzimuth
+  /// Zenith cosine of the lowest sun; by default (nullopt) LowestUsefulSun() of the medium.
   std::optional<double> lowest_mu_s;
   ScatteringAxes axes = ScatteringAxes::kBruneton;
 };
 
-/// Zenith cosine of the sun below which no observer up to the top sees air that the sun lights:
-/// three times the dip of the horizon seen from the top below the horizontal, twice on the way of
-/// the view through the shell, once for the sunbeam.
+/// Returns the zenith cosine of the sun below which no observer up to the top sees sunlit air. The
+/// sun is then three times the dip of the horizon seen from the top below the horizontal: two dips
+/// are due to the view through the shell, one to the sunbeam.
 [[nodiscard]] double LowestUsefulSun(const Medium& medium);
 
 class ScatteringTable {
  public:
-  /// Integrates every texel in parallel; the same bytes for any number of threads. `progress`
-  /// advances by one per row, of which there are Rows(size). Stops between rows when the program is
-  /// interrupted. Throws InputError, with the size in bytes, for a size that is not allowed.
+  /// Integrates every texel in parallel; the bytes do not depend on the number of threads.
+  /// `progress` advances by one per row, of which there are Rows(size). Stops between rows if the
+  /// program is interrupted. Throws InputError, with the size in bytes, for a size that is not
+  /// allowed.
   explicit ScatteringTable(const Medium& medium, const ScatteringTableOptions& options = {},
                            Progress* progress = nullptr);
 
-  /// A table that was stored: texels as texels() gave them. Throws InputError unless there are as
-  /// many as the size says and all lie in [0, 1].
+  /// Restores a stored table: texels as returned by texels(). Throws InputError unless their number
+  /// matches the size and all lie in [0, 1].
   ScatteringTable(const Medium& medium, const ScatteringTableOptions& options,
                   std::vector<float> texels);
 
-  /// Light scattered once along the ray, interpolated; the factors of the two phase functions.
-  /// Never negative. Observers above the top are moved to where the ray enters. `transmittance`
-  /// stays empty: TransmittanceTable has it.
+  /// Returns the light scattered once along the ray, interpolated, as factors of the two phase
+  /// functions. It is never negative. Observers above the top are moved to where the ray enters.
+  /// `transmittance` stays empty: TransmittanceTable provides it.
   ///
   /// Rays that end at length_m are differences of two look-ups, as in Bruneton and Neyret (2008):
-  /// their absolute error is that of the whole rays, so short ones are better integrated.
+  /// their absolute error is that of the whole rays, so short ones should be integrated instead.
   ///
   /// Error of the radiance against the judge at the default size, earth, observers to 12 km, all
   /// directions, as rms over the rms of the radiance and as the median of relative errors: sun
@@ -105,21 +107,21 @@ class ScatteringTable {
   /// channel c = band for molecules and bands + band for aerosol; fourth roots on the azimuth axes.
   [[nodiscard]] const std::vector<float>& texels() const { return texels_; }
 
-  /// The ray a texel holds: it hits the ground in the lower half of the mu axis, and in the upper
-  /// half it does not, whatever the rounding.
+  /// Returns the ray of a texel. In the lower half of the mu axis it hits the ground, in the upper
+  /// half it misses the ground, regardless of rounding.
   [[nodiscard]] ViewRay RayOfTexel(std::size_t nu, std::size_t mu_s, std::size_t mu,
                                    std::size_t altitude) const;
 
  private:
-  /// Where a ray starts inside the shell, and whether it meets the ground.
+  /// Start of a ray inside the shell, and whether the ray hits the ground.
   struct Start {
     double altitude_km, mu, mu_s;
     bool ground;
   };
-  /// Texels of one axis that a position lies between.
+  /// Texels of one axis around a position.
   struct AxisTaps {
     std::array<std::size_t, 4> node{};
-    std::array<float, 4> weight{};  // those of no weight are not looked at
+    std::array<float, 4> weight{};  // texels of weight 0 are not read
   };
   /// A texel of the plane of altitude and view angle.
   struct PlaneTap {

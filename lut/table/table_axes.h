@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: MIT
-// An axis of the sun's zenith cosine that is dense where light changes fastest, at the terminator:
+// This header provides axes of tables: the sun's zenith cosine, dense where light changes fastest,
+// at the terminator:
 //
 //   mu_s = centre + width sinh(low + (high - low) v),   v in [0, 1], up to mu_s = 1
 //
-// Sizes of tables, checked before anything is allocated, and positions between their texels.
+// It also provides sizes of tables, checked before anything is allocated, and positions between
+// texels.
 #pragma once
 
 #include <algorithm>
@@ -26,18 +28,18 @@ class SunAxis {
         low_(std::asinh((lowest_mu_s - centre) / width)),
         high_(std::asinh((1.0 - centre) / width)) {}
 
-  /// v in [0, 1] between the ends, beyond them outside of it.
+  /// Returns v in [0, 1] between the ends of the axis; outside of [0, 1] beyond them.
   [[nodiscard]] double Coordinate(double mu_s) const {
     return (std::asinh((mu_s - centre_) / width_) - low_) / (high_ - low_);
   }
-  /// Its inverse, clamped to [-1, 1].
+  /// Returns the inverse of Coordinate, clamped to [-1, 1].
   [[nodiscard]] double MuS(double v) const {
     return std::clamp(centre_ + width_ * std::sinh(low_ + (high_ - low_) * v), -1.0, 1.0);
   }
 
   [[nodiscard]] double centre() const { return centre_; }
   [[nodiscard]] double width() const { return width_; }
-  /// asinh((mu_s - centre) / width) at the ends.
+  /// Return asinh((mu_s - centre) / width) at the ends.
   [[nodiscard]] double low() const { return low_; }
   [[nodiscard]] double high() const { return high_; }
 
@@ -45,32 +47,33 @@ class SunAxis {
   double centre_, width_, low_, high_;
 };
 
-/// A table above this is refused: 4 GiB.
+/// Largest allowed table: 4 GiB.
 inline constexpr std::uint64_t kLargestTable_bytes = std::uint64_t{1} << 32U;
 
 /// One axis of a table: its name and number of texels.
 struct TableAxis {
   std::string_view name;
   std::size_t texels;
-  std::size_t fewest;  // below this the axis cannot be interpolated
+  std::size_t fewest;  // shortest axis that can be interpolated
 };
 
-/// Size of the floats of a table [bytes]. Throws InputError that names the table and states the
-/// size when an axis is too short or the whole is above kLargestTable_bytes, and when the medium
-/// has more bands than kMaxBands.
+/// Returns the size of the floats of a table [bytes]. Throws InputError that names the table and
+/// states the size if an axis is too short or the whole is above kLargestTable_bytes, and if the
+/// medium has more bands than kMaxBands.
 std::uint64_t RequireTableSize(std::string_view table, const std::vector<TableAxis>& axes,
                                std::size_t values_per_texel, const Medium& medium);
 
-/// The position of a texel's centre on its axis: 0 at the first texel, 1 at the last.
+/// Returns the position of a texel's centre on its axis: 0 at the first texel, 1 at the last.
 [[nodiscard]] constexpr double UnitOf(std::size_t index, std::size_t texels) {
   return static_cast<double>(index) / static_cast<double>(texels - 1);
 }
 
 /// A position between two neighbouring texels of an axis.
 struct AxisPosition {
-  std::size_t low = 0;    // index of the lower texel; low + 1 is one of the axis, too
+  std::size_t low = 0;    // index of the lower texel; low + 1 is on the axis, too
   float fraction = 0.0F;  // in [0, 1], 0 at the lower texel
 
+  /// Returns the position on an axis.
   /// @param unit  0 at the centre of the first texel, 1 at that of the last; clamped, NaN to 0.
   static AxisPosition FromUnit(double unit, std::size_t texels) {
     const double clamped = unit > 0.0 ? (unit < 1.0 ? unit : 1.0) : 0.0;
@@ -80,7 +83,7 @@ struct AxisPosition {
     return {low, static_cast<float>(at - static_cast<double>(low))};
   }
 
-  /// Weight of the lower (0) or the upper (1) of the two texels.
+  /// Returns the weight of the lower (0) or the upper (1) of the two texels.
   [[nodiscard]] float Weight(std::size_t up) const { return up == 1 ? fraction : 1.0F - fraction; }
 };
 

@@ -109,8 +109,8 @@ Bands<float> TransmittanceTable::LookupAlong(const ViewRay& ray) const {
   const RayExtent extent = ExtentOf(ray, medium_.planet_radius_m, medium_.atmosphere_height_m);
   if (extent.begin_m == extent.end_m) return Constant(bands, 1.0F);
   if (extent.end == RayEnd::kSpace) return Lookup(ray.altitude_m, ray.mu);
-  // The way to space from one end over that from the other; backwards where the ray goes down, so
-  // that neither of them is taken through the ground.
+  // Divides the transmittance from one end to space by that from the other end. For rays that go
+  // down, the reversed direction is used, so that neither path passes through the ground.
   const double h = std::max(ray.altitude_m, 0.0) / kMetresPerKilometre;
   const auto at = [&](double distance_m, double sign) {
     const double d = distance_m / kMetresPerKilometre;

@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: MIT
-// Transmittance from a point to space, tabulated over altitude and view zenith cosine.
+// This header provides the transmittance from a point to space, tabulated over altitude and view
+// zenith cosine.
 //
 //   texel (i, j) = T(h_j, mu_i) per band, stored as float, rays to space only
 //
-// on the map of transmittance_map.glsl: columns run from the zenith to the horizon, rows from the
-// ground to the top. AirIntegrator gives the same numbers faster and better (see its header); the
-// table is for programs that load tables, and to be held against it.
+// The map is that of transmittance_map.glsl: columns run from the zenith to the horizon, rows from
+// the ground to the top. AirIntegrator computes this transmittance faster and more accurately (see
+// its header). The table is for programs that load tables, and for comparison with it.
 //
-// This header also reads the shared text transmittance_map.glsl as C++, as templates over double,
+// This header also includes the shared text transmittance_map.glsl as C++ templates over double,
 // float and SIMD batches. Lengths are kilometres there and metres in the table.
 #pragma once
 
@@ -38,24 +39,24 @@ struct TransmittanceTableSize {
 
 class TransmittanceTable {
  public:
-  /// Fills the table from closed forms in double, in parallel; the same bytes for any number of
-  /// threads. Throws InputError, with the size in bytes, for a size that is not allowed.
+  /// Fills the table from closed forms in double, in parallel; the bytes do not depend on the
+  /// number of threads. Throws InputError, with the size in bytes, for a size that is not allowed.
   explicit TransmittanceTable(const Medium& medium, const TransmittanceTableSize& size = {});
 
-  /// A table that was stored: texels as texels() gave them. Throws InputError unless there are as
-  /// many as the size says and all lie in [0, 1].
+  /// Restores a stored table: texels as returned by texels(). Throws InputError unless their number
+  /// matches the size and all lie in [0, 1].
   TransmittanceTable(const Medium& medium, const TransmittanceTableSize& size,
                      std::vector<float> texels);
 
-  /// Transmittance to space, bilinear; 0 where the ground is in the way, 1 for rays that miss the
-  /// air. Observers above the top are moved to where the ray enters.
+  /// Returns the transmittance to space, bilinear; 0 if the ground is in the way, 1 for rays that
+  /// miss the air. Observers above the top are moved to where the ray enters.
   ///
   /// Error at the default size, earth and bruneton2017, against the judge: below 4e-3 everywhere
   /// (rays near the horizon through the aerosol), 3e-4 rms.
   [[nodiscard]] Bands<float> Lookup(double altitude_m, double mu) const;
 
-  /// Transmittance from the observer to the end of the ray: a quotient of two look-ups, with their
-  /// error divided by the transmittance from the end of the ray to space.
+  /// Returns the transmittance from the observer to the end of the ray: a quotient of two look-ups.
+  /// Their error is divided by the transmittance from the end of the ray to space.
   [[nodiscard]] Bands<float> LookupAlong(const ViewRay& ray) const;
 
   [[nodiscard]] const Medium& medium() const { return medium_; }
@@ -66,14 +67,14 @@ class TransmittanceTable {
   /// texels()[(altitude * size().mu + mu) * bands + band].
   [[nodiscard]] const std::vector<float>& texels() const { return texels_; }
 
-  /// Where a texel lies.
+  /// Altitude and zenith cosine of a texel.
   struct Point {
     double altitude_m, mu;
   };
   [[nodiscard]] Point PointOfTexel(std::size_t mu, std::size_t altitude) const;
 
  private:
-  /// Inside the shell, for a ray that does not meet the ground.
+  /// Interpolates inside the shell, for a ray that does not hit the ground.
   [[nodiscard]] Bands<float> Interpolate(double altitude_km, double mu) const;
 
   Medium medium_;
