@@ -18,7 +18,7 @@ using TrainedTriple = std::array<double, 3>;
 using Rows = std::array<std::vector<double>, 3>;
 
 constexpr TrainedTriple kWhite{1.0, 1.0, 1.0};
-constexpr double kLuminance = 0.4;  // of a colour, relative to white
+constexpr double kLuminance = 0.4;  // luminance of a colour, relative to white
 
 double Dot(std::span<const double> a, std::span<const double> b) {
   double sum = 0.0;
@@ -26,7 +26,7 @@ double Dot(std::span<const double> a, std::span<const double> b) {
   return sum;
 }
 
-// Of FineWavelengths(), from the sums of BandColour, which are exact for the sun.
+// Derives rows over FineWavelengths() from the sums of BandColour, which are exact for the sun.
 Rows DeriveExactRows() {
   const std::vector<double> fine = FineWavelengths();
   const BandColour colour(fine);
@@ -52,7 +52,8 @@ const Rows& ExactRows() {
   return rows;
 }
 
-// Shares of light that is linear between the bands and constant beyond: where a fit starts from.
+// Returns the shares of light that is linear between the bands and constant beyond them: the start
+// of a fit.
 Rows BrokenLineShares(const std::vector<std::size_t>& set) {
   Rows rows;
   for (std::size_t c = 0; c < 3; ++c) {
@@ -88,7 +89,7 @@ double SquaredDifference(const TrainedTriple& xyz, double step_a, std::size_t a,
   return difference * difference;
 }
 
-// CIEDE2000 squared as a quadratic form around a colour.
+// Returns CIEDE2000 squared as a quadratic form around a colour.
 std::array<TrainedTriple, 3> MetricAt(const TrainedTriple& xyz) {
   constexpr double kStep = 1e-4;
   constexpr double kScale = 1.0 / (8.0 * kStep * kStep);
@@ -119,7 +120,7 @@ std::size_t FineIndex(double wavelength_nm) {
   return static_cast<std::size_t>(found - fine.begin());
 }
 
-// So many different multiples of `step` below `steps` times it, ascending.
+// Draws `count` different multiples of `step` below `steps` times `step`, ascending.
 std::vector<std::size_t> DrawSet(std::size_t count, std::size_t steps, std::size_t step,
                                  std::mt19937_64& engine) {
   std::set<std::size_t> drawn;
@@ -217,7 +218,7 @@ void BandTrainer::Accumulate(const SkySpectrum& spectrum, double weight) {
 // row summing to 0: the last band's change is minus the sum of the others'.
 std::vector<double> BandTrainer::Change(std::span<const double> products,
                                         std::span<const double> gradient) {
-  constexpr double kRidge = 1e-4;  // of CIEDE2000 squared; shares are of order 1
+  constexpr double kRidge = 1e-4;  // in units of CIEDE2000 squared; shares are of order 1
   const std::size_t all = gradient.size();
   const std::size_t bands = all / 3;
   const std::size_t each = bands - 1;

@@ -25,7 +25,7 @@ Medium MediumOfSky(const SkyConditions& conditions, const std::vector<double>& w
         conditions.aerosol_optical_depth_550 / medium.mie_scale_height_m *
         std::pow(wavelengths_nm[i] / 550.0, -conditions.angstrom_exponent);
     medium.mie_scattering_per_m[i] = albedo * medium.mie_extinction_per_m[i];
-    medium.ozone_absorption_per_m[i] *= conditions.ozone_dobson / 300.0;  // the presets' column
+    medium.ozone_absorption_per_m[i] *= conditions.ozone_dobson / 300.0;  // column of the presets
     medium.ground_albedo[i] =
         std::min(1.0, conditions.ground_albedo_scale * medium.ground_albedo[i]);
   }
@@ -33,7 +33,7 @@ Medium MediumOfSky(const SkyConditions& conditions, const std::vector<double>& w
   return medium;
 }
 
-// Uniform in [low, high), the same on every platform.
+// Draws uniformly in [low, high), with equal results on every platform.
 class Drawer {
  public:
   explicit Drawer(std::uint64_t seed) : engine_(seed) {}
@@ -81,7 +81,7 @@ ElevationRange SpectrumRangeOf(SkyRegime regime) {
   throw InternalError("no such regime of daylight");
 }
 
-// Half of the views within 10 degrees of the horizontal, where the air is long. Three of ten
+// Half of the views lie within 10 degrees of the horizontal, where paths are long. Three of ten
 // observers fly, the others stand.
 ViewRay DrawView(double elevation_deg, bool to_land, Drawer& draw) {
   const bool flies = draw.Uniform(0.0, 1.0) < 0.3;
@@ -119,12 +119,12 @@ std::vector<double> FineWavelengths() {
   return wavelengths_nm;
 }
 
-// As many wavelengths as an integrator takes.
+// A group of as many wavelengths as an integrator supports.
 struct SkySimulator::Part {
   Part(const Medium& medium, const DiffuseLightOptions& options)
       : air(medium), diffuse(medium, options) {}
 
-  // Of horizontal ground of the medium's albedo, lit by sun and sky.
+  // Returns the radiance of horizontal ground with the medium's albedo, lit by sun and sky.
   [[nodiscard]] Bands<float> GroundRadiance(const Point& point) const {
     const Bands<float> sun = air.TransmittanceToSpace(point.altitude_m, point.mu_s);
     Bands<float> radiance = diffuse.SkyIrradiance(point.altitude_m, point.mu_s);
@@ -223,7 +223,7 @@ std::vector<SkySpectrum> DrawSkySpectra(const SkyDrawing& drawing) {
     const SkySimulator simulator(DrawConditions(drawing.family, number, draw), drawing.diffuse);
     for (const SkyRegime regime : kSkyRegimes) {
       const ElevationRange range = SpectrumRangeOf(regime);
-      // Direct light has one spectrum a sun: three times as many suns.
+      // Direct light has only one spectrum per sun, so it gets three times as many suns.
       const int suns = regime == SkyRegime::kDirectSun ? 3 * drawing.suns : drawing.suns;
       for (int sun = 0; sun < suns; ++sun) {
         const double step = (range.high_deg - range.low_deg) / suns;

@@ -20,7 +20,7 @@ constexpr std::array kRayNodes{4, 6, 8, 10, 12, 16, 20, 24, 28, 32};
 constexpr std::array kAltitudes{4, 5, 6, 7, 8, 10, 12, 14, 17, 20, 24, 28, 34, 40};
 constexpr std::array kSunAngles{8, 10, 12, 14, 17, 20, 24, 28, 34, 40, 48, 56, 68, 80};
 
-// Sizes of the tables that are made when all are wanted, by bytes.
+// Sizes of the tables that are tried if all tables are wanted, by bytes.
 constexpr std::array kTransmittanceSizes{
     TransmittanceTableSize{32, 8},    TransmittanceTableSize{64, 16},
     TransmittanceTableSize{128, 32},  TransmittanceTableSize{128, 64},
@@ -32,28 +32,29 @@ constexpr std::array kSingleScatteringSizes{
     ScatteringTableSize{8, 32, 64, 64},   ScatteringTableSize{8, 32, 64, 96},
     ScatteringTableSize{10, 48, 64, 128}, ScatteringTableSize{10, 48, 96, 160}};
 
-// Standard error of path-traced views, at least: a quarter of it costs sixteen times as much.
+// Smallest standard error of path-traced views; a quarter of it takes sixteen times as long.
 constexpr double kLeastNoise = 1e-3;
-// The parts of the bound that the nodes along a ray may take, and with the other tables.
+// Fractions of the bound that the nodes along a ray may take, and the nodes together with the other
+// tables.
 constexpr double kShareOfNodes = 0.5;
 constexpr double kShareOfTables = 0.75;
 
-/// Whether look-ups stay under the bounds, and which kind is furthest off where they do not.
+/// Largest error of look-ups relative to the bounds, and the kind of view that has it.
 struct Verdict {
   double excess = 0.0;  // largest error over its bound
   ViewKind worst = ViewKind::kSky;
-  double error = 0.0;  // of that kind
+  double error = 0.0;  // error of the kind `worst`
 };
 
-/// What an rms may be, by kind.
+/// Upper bounds of the rms, by kind.
 using Bounds = std::array<double, kViewKinds.size()>;
 
 Verdict Judge(const JudgedViews& views, const TableLookup& tables, const Bounds& bounds,
               double enough) {
   Verdict verdict;
-  // From the last: irradiance is cheap to look up and rules most tables out.
+  // Start with the last kind: irradiance is cheap to look up and rules out most tables.
   for (std::size_t k = kViewKinds.size(); k-- > 0;) {
-    // A sample of views may miss the few that are far off: the bound is for those not seen, too.
+    // A sample of views may miss the few with large errors, and the bound applies to these, too.
     const double error = views.ErrorsOf(tables, kViewKinds[k]).rms_at_most;
     if (error / bounds[k] > verdict.excess) verdict = {error / bounds[k], kViewKinds[k], error};
     if (verdict.excess > enough) return verdict;
@@ -69,7 +70,7 @@ struct Grid {
   }
 };
 
-/// The grids to try, of the degrees that the finest solution has.
+/// Returns the grids to try, by size, with degrees up to that of the finest solution.
 std::vector<Grid> GridsBySize(int finest_degree) {
   std::vector<Grid> grids;
   for (const int degree : kDegrees) {
@@ -96,7 +97,8 @@ TableFolder Folder(const Medium& medium, DiffuseLight light, int ray_nodes) {
       fmt::format("max-error {:g} %: no tables reach it: {}", 100.0 * max_error, best));
 }
 
-/// What the truths leave of the bound. Throws where they leave nothing.
+/// Returns the part of the bound that remains after the error of the truth. Throws if nothing
+/// remains.
 Bounds BoundsOf(double max_error, const std::vector<TableChoice::Measured>& measured) {
   Bounds bounds{};
   for (std::size_t k = 0; k < measured.size(); ++k) {
@@ -128,7 +130,8 @@ int FewestNodes(const JudgedViews& views, const DiffuseLight& finest, const Boun
                                      100.0 * best.error, NameOf(best.worst)));
 }
 
-/// Gives `tables` the first of these tables under a share of the bounds.
+/// Returns `tables` with the first of these sizes whose error lies below the allowed fraction of
+/// the bounds.
 template <typename Sizes, typename Put>
 TableFolder WithSmallest(std::string_view name, const JudgedViews& views, const Bounds& bounds,
                          double max_error, const Sizes& sizes, const TableFolder& tables,
@@ -162,7 +165,7 @@ TableFolder WithAllTables(const JudgedViews& views, const Bounds& bounds, double
                       });
 }
 
-/// Replaces the finest light by the smallest that does.
+/// Replaces the finest light by the smallest table within the bounds.
 TableFolder WithSmallestLight(const JudgedViews& views, const Bounds& bounds, double max_error,
                               TableFolder tables) {
   const DiffuseLight finest = *tables.multiple_scattering;

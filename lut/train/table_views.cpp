@@ -25,17 +25,17 @@ constexpr DiffuseLightOptions kFinest{.altitudes = 40,
                                       .later_zenith_nodes = 10,
                                       .later_azimuth_nodes = 10,
                                       .later_ray_nodes = 10};
-// Along the rays of truths.
+// Sampling along the rays of true values.
 constexpr Sampling kFinestSampling{.nodes = 32, .split_ozone = true, .dark_samples = true};
 
 constexpr std::size_t kMostPaths = 400000;
 
 double Between(double low, double high, double share) { return low + (high - low) * share; }
 
-/// 2 m to 10 km, half of them below 140 m.
+/// Returns an altitude from 2 m to 10 km; half of them lie below 140 m.
 double AltitudeOf(double share) { return 2.0 * std::pow(5000.0, share); }
 
-/// Half of the views lie within 12 degrees above the horizontal.
+/// Returns a zenith angle; half of the views lie within 12 degrees above the horizontal.
 double SkyZenithOf(double share) {
   return share < 0.5 ? Between(0.0, 78.0, 2.0 * share) : Between(78.0, 89.9, 2.0 * share - 1.0);
 }
@@ -49,7 +49,7 @@ ViewRay RayOf(ViewKind kind, std::size_t i, const Medium& medium) {
     ViewRay ray = RayFromAngles(altitude_m, Between(60.0, 100.0, Halton(point, 3)), azimuth_deg,
                                 90.0 - Between(2.0, 90.0, sun));
     const RayExtent extent = ExtentOf(ray, medium.planet_radius_m, medium.atmosphere_height_m);
-    // Ends in the air, before the ground.
+    // The ray ends in the air, before the ground.
     ray.length_m = std::min(500.0 * std::pow(200.0, Halton(point, 11)), 0.999 * extent.end_m);
     return ray;
   }
@@ -65,7 +65,7 @@ double Length(const std::vector<double>& values) {
   return std::sqrt(squares);
 }
 
-/// |a - b| / |b|; 0 where both are 0.
+/// Returns |a - b| / |b|; 0 if both are 0.
 double RelativeDistance(const std::vector<double>& a, const std::vector<double>& b) {
   std::vector<double> difference(b.size());
   for (std::size_t band = 0; band < b.size(); ++band) difference[band] = a[band] - b[band];
