@@ -27,11 +27,12 @@
 namespace alpenglow::renderer {
 namespace {
 
-// U / K [m^(2 m)] of a main chain: slope 1 where this area to the power 3/8 drains.
+// U / K [m^(2 m)] of a main chain: the slope is 1 where the drained area to the power 3/8 has this
+// value.
 constexpr double kUpliftOverErodibility = 98.0;
 constexpr double kUpliftPerStep_m = 250.0;
 
-// One value a sample, of its place. Many threads.
+// Returns one value per sample, a function of its place. The function is called from many threads.
 template <typename Function>
 std::vector<float> Everywhere(const Land& grid, const Function& value_at) {
   std::vector<float> values(grid.index(grid.size, 0));
@@ -44,7 +45,7 @@ std::vector<float> Everywhere(const Land& grid, const Function& value_at) {
   return values;
 }
 
-// The range's grid at a part of its samples a side, without heights.
+// Returns the grid of the range with `size` samples per side, without heights.
 Land GridOf(int size) { return {size, 1e3 * kRangeSpacing_km * kRangeSize / size, {}}; }
 
 Rock RockOf(const Land& grid, std::uint32_t seed) {
@@ -64,7 +65,7 @@ Rock RockOf(const Land& grid, std::uint32_t seed) {
   return rock;
 }
 
-// A plain with less than a metre of roughness, to start from.
+// Returns the initial land: a plain with less than a metre of roughness.
 Land Plain(int size) {
   Land land = GridOf(size);
   for (int row = 0; row < size; ++row) {
@@ -75,8 +76,8 @@ Land Plain(int size) {
   return land;
 }
 
-// A value that other threads work out while this one goes on. Rivers are cut one after the other;
-// what the land is made of does not depend on them.
+// A value that other threads compute while this thread continues. Rivers are cut one after the
+// other, but the rock does not depend on them.
 template <typename Value>
 class Ahead {
  public:
@@ -104,7 +105,8 @@ void Erode(Land& land, const Rock& rock, int steps, std::uint32_t seed) {
   }
 }
 
-// Rivers find their way on a coarse grid, where a step reaches far, and cut it finer and finer.
+// Rivers form on a coarse grid, where each step reaches far, and are then cut on finer and finer
+// grids.
 Land ErodedLand(std::uint32_t seed) {
   const auto rock_of = [&](int size) { return [=] { return RockOf(GridOf(size), seed); }; };
   Ahead<Rock> first(rock_of(kRangeSize / 8)), second(rock_of(kRangeSize / 4)),
@@ -120,7 +122,8 @@ Land ErodedLand(std::uint32_t seed) {
   return land;
 }
 
-// What ice, gravel and soil do after the rivers: ribs on the faces, soft foreland, level valleys.
+// Applies the effects of ice, gravel and soil after the rivers: ribs on the faces, soft foreland,
+// level valleys.
 Land Finished(Land land, std::uint32_t seed) {
   const std::vector<float> alpine =
       Everywhere(land, [&](double x_km, double y_km) { return Alpine(x_km, y_km, seed); });
@@ -138,7 +141,7 @@ Land Finished(Land land, std::uint32_t seed) {
   return land;
 }
 
-// Height on the triangles under the view.
+// Returns the height on the triangles at the position of the view.
 double GroundUnderView(const Land& land) {
   const double row = 0.5 * (land.size - 1) - kRangeViewNorth_m / land.spacing_m;
   const double column = 0.5 * (land.size - 1) + kRangeViewEast_m / land.spacing_m;
@@ -151,7 +154,7 @@ double GroundUnderView(const Land& land) {
   return HeightOnTriangles(around, column - first_column, row - first_row).value();
 }
 
-// The crest of the foothills is raised until the view stands as high as that of seed 0.
+// Raises the crest of the foothills until the view is as high as that of seed 0.
 void RaiseView(Land& land) {
   const double missing_m = kRangeViewGround_m - GroundUnderView(land);
   const std::vector<float> raised_m = Everywhere(
@@ -159,19 +162,19 @@ void RaiseView(Land& land) {
   for (std::size_t i = 0; i < raised_m.size(); ++i) land.height_m[i] += raised_m[i];
 }
 
-// The whole range with its foreland, which falls to 0 at the rim.
+// Returns the whole range with its foreland, which falls to 0 at the rim.
 Land RangeLand(std::uint32_t seed) {
   Land land = Finished(ErodedLand(seed), seed);
   const std::vector<float> base_m = Everywhere(land, BaseHeight);
   for (std::size_t i = 0; i < base_m.size(); ++i) land.height_m[i] += base_m[i];
   if (seed != 0) RaiseView(land);
   static_cast<void>(
-      DrainAndFill(land, ScatteredSamples(land.size, 6)));  // ribs and bends have left some pits
+      DrainAndFill(land, ScatteredSamples(land.size, 6)));  // fills pits left by ribs and bends
   return land;
 }
 
-// Isolated, so that a thread that waits for its parts does not take up another task that waits for
-// the land.
+// The task is isolated, so that a thread that waits for its subtasks does not start another task
+// that waits for the land.
 Land MadeOrKept(std::uint32_t seed) {
   return tbb::this_task_arena::isolate([&] {
     if (seed != 0) return RangeLand(seed);
@@ -182,7 +185,8 @@ Land MadeOrKept(std::uint32_t seed) {
   });
 }
 
-// Seed 0 and the last other one stay for the process: they are the same wherever they stand.
+// The land of seed 0 and of the last other seed stay in memory: the heights do not depend on the
+// centre.
 std::shared_ptr<const Land> LandOf(std::uint32_t seed) {
   static std::mutex mutex;
   static std::array<std::pair<std::uint32_t, std::shared_ptr<const Land>>, 2> kept;
@@ -195,15 +199,15 @@ std::shared_ptr<const Land> LandOf(std::uint32_t seed) {
   return land;
 }
 
-// From here on a box of longitudes and latitudes is too
-// much of a wedge: the grid goes around the pole instead.
+// Beyond this latitude a box of longitudes and latitudes is too wedge-shaped: the grid goes around
+// the pole instead.
 constexpr double kPolarLatitude_rad = 89.3 * kRadiansPerDegree;
 
 bool IsPolar(const GeodeticPosition& centre) {
   return std::abs(centre.latitude_rad) > kPolarLatitude_rad;
 }
 
-// Radii of curvature along the meridian and across it [m].
+// Return the radii of curvature along the meridian and across it [m].
 double MeridianRadius(double latitude_rad) {
   const double e2 = kWgs84.flattening * (2.0 - kWgs84.flattening);
   const double sine = std::sin(latitude_rad);
@@ -216,8 +220,8 @@ double ParallelRadius(double latitude_rad) {
   return kWgs84.equatorial_radius_m * std::cos(latitude_rad) / std::sqrt(1.0 - e2 * sine * sine);
 }
 
-// East and north of the centre [m] <-> latitude and longitude, away from the poles: true lengths
-// along the centre's meridian and parallel.
+// Map between east and north of the centre [m] and latitude and longitude, away from the poles:
+// true lengths along the centre's meridian and parallel.
 class BoxMap {
  public:
   explicit BoxMap(const GeodeticPosition& centre)
@@ -229,8 +233,9 @@ class BoxMap {
     return {centre_.latitude_rad + north_m * rad_per_north_m_,
             centre_.longitude_rad + east_m * rad_per_east_m_, 0.0};
   }
-  // The centre that this map would have if a place were so far east and north of it. Each pass is
-  // closer by the factor that the radius of the meridian changes by on the way: under 1e-4.
+  // Returns the centre of the map for which `place` lies east_m east and north_m north of it. Each
+  // pass reduces the error by the relative change of the meridian's radius over that distance:
+  // under 1e-4.
   [[nodiscard]] static GeodeticPosition CentreSeenFrom(const GeodeticPosition& place, double east_m,
                                                        double north_m) {
     constexpr int kPasses = 5;
@@ -247,7 +252,8 @@ class BoxMap {
   double rad_per_north_m_;
 };
 
-// The same around a pole: azimuthal equidistant, its plane seen from above, x to longitude 90.
+// Map between east and north of the centre and latitude and longitude around a pole: azimuthal
+// equidistant, its plane seen from above, x to longitude 90.
 class PolarMap {
  public:
   explicit PolarMap(const GeodeticPosition& centre)
@@ -261,12 +267,12 @@ class PolarMap {
     const double latitude = hemisphere_ * (0.5 * kPi - glm::length(plane) / radius_m_);
     return {latitude, std::atan2(plane.x, -hemisphere_ * plane.y), 0.0};
   }
-  // East and north of the centre [m].
+  // Returns the position of a place east and north of the centre [m].
   [[nodiscard]] glm::dvec2 From(const GeodeticPosition& place) const {
     const glm::dvec2 step = PlaneOf(place) - centre_;
     return {glm::dot(step, East()), glm::dot(step, North())};
   }
-  // The centre that this map would have if a place were so far east and north of it.
+  // Returns the centre of the map for which `place` lies east_m east and north_m north of it.
   [[nodiscard]] static GeodeticPosition CentreSeenFrom(const GeodeticPosition& place, double east_m,
                                                        double north_m) {
     const double hemisphere = place.latitude_rad > 0.0 ? 1.0 : -1.0;
@@ -278,7 +284,7 @@ class PolarMap {
     return {hemisphere * (0.5 * kPi - centre_from_pole_m / radius_m),
             WrappedLongitude(place.longitude_rad - std::atan2(east_m, along_m)), 0.0};
   }
-  // How much the meridians turn clockwise from the centre's to a place's.
+  // Returns the clockwise angle from the centre's meridian to a place's meridian.
   [[nodiscard]] double Convergence(const GeodeticPosition& place) const {
     return -hemisphere_ * (place.longitude_rad - longitude_rad_);
   }
@@ -302,7 +308,7 @@ class PolarMap {
   glm::dvec2 centre_;
 };
 
-// Of a land without heights: the grid without heights; so the next one.
+// BoxGrid and PolarGrid return a grid without heights if the land has none.
 ElevationGrid BoxGrid(const Land& land, const GeodeticPosition& centre) {
   const BoxMap map(centre);
   const double half_m = 0.5 * land.spacing_m * (land.size - 1);
@@ -319,7 +325,8 @@ ElevationGrid BoxGrid(const Land& land, const GeodeticPosition& centre) {
   return grid;
 }
 
-// All longitudes from the pole to beyond the range; no ground outside it.
+// Returns a grid of all longitudes from the pole to beyond the range, without ground outside of the
+// range.
 ElevationGrid PolarGrid(const Land& land, const GeodeticPosition& centre) {
   constexpr double kRowSpacing_m = 100.0;
   constexpr int kColumns = 2048;
@@ -333,7 +340,7 @@ ElevationGrid PolarGrid(const Land& land, const GeodeticPosition& centre) {
   grid.step_lon_rad = 2.0 * kPi / kColumns;
   grid.step_lat_rad = kRowSpacing_m / radius_m;
   grid.west_rad = -kPi;
-  const double first = 0.5 * kPi - 0.5 * grid.step_lat_rad;  // half a step off the pole
+  const double first = 0.5 * kPi - 0.5 * grid.step_lat_rad;  // half a step from the pole
   grid.north_rad = centre.latitude_rad > 0.0 ? first : -first + (grid.rows - 1) * grid.step_lat_rad;
   if (land.height_m.empty()) return grid;
   grid.height_m.reserve(static_cast<std::size_t>(grid.rows) * kColumns);

@@ -30,12 +30,12 @@ struct GridPlace {
 };
 
 GridPlace PlaceIn(const ElevationGrid& grid, double latitude_rad, double longitude_rad) {
-  const double turn = 2.0 * std::numbers::pi / grid.step_lon_rad;  // columns once around
+  const double turn = 2.0 * std::numbers::pi / grid.step_lon_rad;  // columns in a full turn
   double column = (longitude_rad - grid.west_rad) / grid.step_lon_rad;
   column -= turn * std::floor(column / turn);
   const double row = (grid.north_rad - latitude_rad) / grid.step_lat_rad;
   const bool closed = grid.ClosesAroundTheEarth();
-  // A place on the first column may come out as one turn less an ulp.
+  // Rounding may give a place on the first column a whole turn minus an ulp.
   if (!closed && column > turn - 1e-6) column = 0.0;
   const double last_column = closed ? grid.columns : grid.columns - 1;
   constexpr double kRounding = 1e-6;  // samples: the rim itself belongs to the grid
@@ -44,7 +44,7 @@ GridPlace PlaceIn(const ElevationGrid& grid, double latitude_rad, double longitu
   return {row, column, is_inside};
 }
 
-// What the heights count from, if that is declared and not the ellipsoid.
+// Returns the vertical datum, if one is declared and it is not the ellipsoid.
 std::string VerticalDatumOf(const OGRSpatialReference& crs) {
   const char* const name = crs.GetAttrValue("VERT_CS");
   if (name == nullptr) return "";
@@ -89,7 +89,7 @@ ElevationModel ModelOf(ElevationRaster raster, VoidPolicy voids, const std::stri
   return model;
 }
 
-// The parts of a window on both sides of the last column of a grid around the earth.
+// Returns the parts of a window on both sides of the last column of a grid around the earth.
 std::vector<GridWindow> PartsOf(const GridWindow& window, int all_columns) {
   GridWindow before = window;
   before.columns = std::min(window.columns, all_columns - window.first_column);
@@ -100,7 +100,7 @@ std::vector<GridWindow> PartsOf(const GridWindow& window, int all_columns) {
   return {before, after};
 }
 
-// Two rasters of as many rows, side by side.
+// Joins two rasters with equal numbers of rows side by side.
 void Append(ElevationRaster& west, const ElevationRaster& east) {
   std::vector<float> height_m;
   const auto row_of = [](const ElevationRaster& of, int row) {

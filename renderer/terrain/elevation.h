@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Heights of the ground over a regular grid of geodetic coordinates (WGS84), and files that hold
-// them.
+// This header provides heights of the ground over a regular grid of geodetic coordinates (WGS84),
+// and reads them from files.
 //
 // Units: radians, metres above the ellipsoid. A void is a sample without data; it is NaN.
 #pragma once
@@ -22,7 +22,7 @@ struct ElevationGrid {
   double step_lat_rad = 0.0;  // positive: rows go south
   int columns = 0;
   int rows = 0;
-  std::vector<float> height_m;  // rows x columns; NaN where there is no ground (a void left open)
+  std::vector<float> height_m;  // rows x columns; NaN where there is no ground (an unfilled void)
 
   [[nodiscard]] std::size_t index(int row, int column) const {
     return static_cast<std::size_t>(row) * static_cast<std::size_t>(columns) +
@@ -33,16 +33,17 @@ struct ElevationGrid {
   [[nodiscard]] double LongitudeOfColumn(int column) const {
     return west_rad + column * step_lon_rad;
   }
-  /// Whether the columns go once around the earth, so
-  /// that the last one is the first one's neighbour.
+  /// Returns whether the columns go once around the earth, so that the last one is the first one's
+  /// neighbour.
   [[nodiscard]] bool ClosesAroundTheEarth() const;
-  /// Whether a place lies among the samples, void or not.
+  /// Returns whether a place lies among the samples, void or not.
   [[nodiscard]] bool Covers(double latitude_rad, double longitude_rad) const;
-  /// Bilinear height [m] at a place; nothing outside the grid or beside a void.
+  /// Returns the bilinear height [m] at a place; nullopt outside the grid or beside a void.
   [[nodiscard]] std::optional<double> HeightAt(double latitude_rad, double longitude_rad) const;
 };
 
-/// Some of the samples of a grid. Around the earth its columns may run past the last one.
+/// A part of the samples of a grid. If the grid goes around the earth, the columns may run past the
+/// last one.
 struct GridWindow {
   int first_column = 0, first_row = 0;
   int columns = 0, rows = 0;
@@ -53,40 +54,41 @@ enum class VoidPolicy { kFill, kLeaveOpen };
 struct ElevationModel {
   ElevationGrid grid;
   std::size_t voids = 0;         // samples without data in the file
-  std::size_t voids_filled = 0;  // of which were filled from their surroundings
-  /// What the file declares its heights to count from, as "EGM96 height"; empty where it declares
-  /// nothing, or the ellipsoid.
+  std::size_t voids_filled = 0;  // voids that were filled from their surroundings
+  /// Vertical datum that the file declares for its heights, as "EGM96 height"; empty if it declares
+  /// none, or the ellipsoid.
   std::string vertical_datum;
-  std::string unit_note;  // what is told about the unit of the heights; empty: nothing
+  std::string unit_note;  // note on the unit of the heights; empty: none
 };
 
-/// A line on voids, units and datum of a model, with the name of its file; empty without cause.
+/// Returns a line on voids, units and datum of a model, with the name of its file; empty if there
+/// is nothing to report.
 [[nodiscard]] std::string NoteOn(const ElevationModel& model, const std::string& file);
 
 /// Reads a digital elevation model: GeoTIFF, SRTM .hgt, USGS DEM; any coordinate system of the
 /// earth (resampled to geographic WGS84 unless its samples already lie on such a grid). Heights are
-/// in metres or feet; without a unit they are in feet on a map in feet, else in metres, which is
-/// noted where the map is not in metres. They are taken as above the ellipsoid, whatever vertical
-/// datum is declared. Voids are the declared nodata value, samples that a mask or an alpha band
-/// leaves out, NaN, and the values that are nodata by custom: -32768, -32767, -9999, the lowest
-/// float. kFill closes them with a membrane (Laplace's equation) spanned over their rims; places
-/// outside the footprint of a resampled file stay open. Throws InputError naming the file and the
-/// fault for no or a foreign coordinate system, a rotated or missing geotransform, several bands of
-/// heights, complex samples, latitudes over 90, one row or column, no valid sample, heights that no
-/// ground on earth has, damaged or truncated files.
+/// in metres or feet. Without a unit they are in feet on a map in feet, else in metres; unit_note
+/// reports this if the map is not in metres. They are interpreted as above the ellipsoid, whatever
+/// vertical datum is declared. Voids are the declared nodata value, samples that a mask or an alpha
+/// band excludes, NaN, and the customary nodata values -32768, -32767, -9999 and the lowest float.
+/// kFill fills them with a membrane (Laplace's equation) spanned over their rims; places outside
+/// the footprint of a resampled file stay open. Throws InputError naming the file and the fault for
+/// a coordinate system that is missing or not of the earth, a rotated or missing geotransform,
+/// several bands of heights, complex samples, latitudes over 90, one row or column, no valid
+/// sample, heights that no ground on earth has, damaged or truncated files.
 [[nodiscard]] ElevationModel ReadElevation(const std::filesystem::path& file, VoidPolicy voids);
 
-/// Reads those samples alone: at least 2 x 2 of the grid that ReadElevationExtent gives, of a file
-/// for which CanBeCut holds. They may be nothing but voids, which then stay open.
+/// Reads only the samples of `window`: at least 2 x 2 of the grid of ReadElevationExtent, from a
+/// file for which CanBeCut is true. They may all be voids, which then stay open.
 [[nodiscard]] ElevationModel ReadElevation(const std::filesystem::path& file, VoidPolicy voids,
                                            const GridWindow& window);
 
-/// A part of a file can be read alone where its samples lie on a grid of latitudes and longitudes,
-/// from west to east.
+/// Returns whether a part of the file can be read separately: its samples must lie on a grid of
+/// latitudes and longitudes, from west to east.
 [[nodiscard]] bool CanBeCut(const std::filesystem::path& file);
 
-/// The grid that ReadElevation makes of a file, without its heights, which are not read. Throws
-/// InputError as ReadElevation does, as far as it can tell without them.
+/// Returns the grid of ReadElevation without its heights, which are not read. Throws the
+/// InputErrors of ReadElevation that can be detected without heights.
 [[nodiscard]] ElevationGrid ReadElevationExtent(const std::filesystem::path& file);
 
 }  // namespace alpenglow::renderer

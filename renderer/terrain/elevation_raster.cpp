@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: MIT
-// A membrane over each void: Laplace's equation, from the coarsest pyramid level to the finest.
+// This file spans a membrane over each void: Laplace's equation, from the coarsest pyramid level to
+// the finest.
 //
-// Pulling averages the valid samples of 2 x 2 into one; pushing starts the voids of a level with
-// the coarser level's values, interpolated, and relaxes them (Gauss-Seidel with over-relaxation).
-// Long waves are settled where they are cheap, so a few sweeps a level are enough.
+// Pulling averages the valid samples of 2 x 2 into one. Pushing starts the voids of a level with
+// the interpolated values of the coarser level and relaxes them (Gauss-Seidel with
+// over-relaxation). Long waves converge on coarse levels, where sweeps are cheap, so a few sweeps
+// per level are enough.
 #include "renderer/terrain/elevation_raster.h"
 
 #include <fmt/format.h>
@@ -63,7 +65,8 @@ Dataset Open(const std::filesystem::path& file) {
   return dataset;
 }
 
-// A band of heights, and perhaps one that says where they are valid.
+// Returns whether there is one band of heights, possibly with an alpha band that marks valid
+// samples.
 bool HasOneBandOfHeights(GDALDataset& dataset) {
   const int bands = dataset.GetRasterCount();
   return bands == 1 ||
@@ -120,13 +123,14 @@ OGRSpatialReference ReadCrs(const std::filesystem::path& file, GDALDataset& data
   return crs;
 }
 
-/// The unit of heights, and what there is to say about it.
+/// The unit of heights, and a note on it.
 struct HeightUnit {
   double metres = 1.0;
-  std::string note;  // empty: nothing
+  std::string note;  // empty: none
 };
 
-// GDAL gives the vertical unit of a compound system and of USGS DEM files as the band's unit.
+// Returns the metres per unit. GDAL reports the vertical unit of a compound system and of USGS DEM
+// files as the band's unit.
 double MetresPerUnit(const std::filesystem::path& file, const std::string& unit) {
   static const std::pair<const char*, double> kUnits[] = {
       {"", 1.0},
@@ -152,8 +156,8 @@ double MetresPerUnit(const std::filesystem::path& file, const std::string& unit)
   RefuseFile(file, "has heights in '" + unit + "'; metres and feet are read");
 }
 
-// Heights without a unit are in feet on a map in feet, as surveys in feet write them, else in
-// metres; where the map is not in metres, this is told.
+// Returns the unit of heights. Without a declared unit it is feet on a map in feet, as in surveys
+// in feet, else metres, with a note if the map is not in metres.
 HeightUnit UnitOf(const std::filesystem::path& file, GDALRasterBand& band,
                   const OGRSpatialReference& crs) {
   const std::string unit = band.GetUnitType();
@@ -169,13 +173,13 @@ HeightUnit UnitOf(const std::filesystem::path& file, GDALRasterBand& band,
                       name, is_in_feet ? name : "metre")};
 }
 
-// Values that are nodata by custom though the file does not declare them.
+// Returns whether a value is customarily nodata, even if the file does not declare it.
 bool IsCustomaryVoid(double value) {
   return value == -32768.0 || value == -32767.0 || value == -9999.0 ||
          value == static_cast<double>(std::numeric_limits<float>::lowest());
 }
 
-// The values of a band within a window. Returns nothing if the file is damaged.
+// Returns the values of a band within a window; nullopt if the file is damaged.
 template <typename Value>
 std::optional<std::vector<Value>> ValuesIn(GDALRasterBand& band, const PixelWindow& window,
                                            GDALDataType type) {
@@ -200,7 +204,7 @@ std::vector<float> ReadSamples(const std::filesystem::path& file, GDALRasterBand
   return std::move(*samples);
 }
 
-// GDAL makes no mask of an alpha band of floats.
+// Reads an alpha band as a mask, because GDAL makes no mask of an alpha band of floats.
 std::vector<std::uint8_t> ReadAlpha(const std::filesystem::path& file, GDALRasterBand& alpha,
                                     const PixelWindow& window) {
   const std::optional<std::vector<float>> values = ValuesIn<float>(alpha, window, GDT_Float32);
@@ -211,7 +215,7 @@ std::vector<std::uint8_t> ReadAlpha(const std::filesystem::path& file, GDALRaste
   return mask;
 }
 
-// The file's mask or alpha band, 0 where a sample is invalid; empty without one.
+// Returns the file's mask or alpha band, 0 where a sample is invalid; empty if there is none.
 std::vector<std::uint8_t> ReadMask(const std::filesystem::path& file, GDALRasterBand& band,
                                    const PixelWindow& window) {
   GDALDataset& dataset = *band.GetDataset();
@@ -244,7 +248,7 @@ class Decoder {
   std::optional<float> nodata_;
 };
 
-// Turns raw samples into metres and NaN, in place; returns the number of voids.
+// Converts raw samples into metres and NaN, in place; returns the number of voids.
 std::size_t ConvertToMetres(const std::filesystem::path& file, GDALRasterBand& band,
                             const PixelWindow& window, double unit_m, std::vector<float>& samples) {
   const std::vector<std::uint8_t> mask = ReadMask(file, band, window);
@@ -317,7 +321,7 @@ constexpr double kOverRelaxation = 1.7;
 struct Level {
   int rows = 0;
   int columns = 0;
-  std::vector<double> height;  // NaN: void, until pushed
+  std::vector<double> height;  // NaN: a void that has not been pushed yet
 
   [[nodiscard]] std::size_t index(int row, int column) const {
     return static_cast<std::size_t>(row) * static_cast<std::size_t>(columns) +
@@ -354,7 +358,7 @@ Level Pull(const Level& fine) {
   return coarse;
 }
 
-// Bilinear value of the coarse level at the centre of a fine sample.
+// Returns the bilinear value of the coarse level at the centre of a fine sample.
 double Interpolate(const Level& coarse, int fine_row, int fine_column) {
   const double row = 0.5 * fine_row - 0.25;
   const double column = 0.5 * fine_column - 0.25;
@@ -381,7 +385,7 @@ std::vector<Sample> VoidsOf(const Level& level) {
   return voids;
 }
 
-// The mean of the neighbours that exist: at the raster's edge the membrane is free.
+// Returns the mean of the existing neighbours: at the raster's edge the membrane is free.
 double NeighbourMean(const Level& level, const Sample& at) {
   double sum = 0.0;
   int count = 0;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Steps of ReadElevation: a raster as its file has it, voids closed, resampled to geographic WGS84.
+// This header provides the steps of ReadElevation: reading a raster as stored in its file, filling
+// voids, resampling to geographic WGS84.
 #pragma once
 
 #include <cpl_error.h>
@@ -17,10 +18,11 @@
 
 namespace alpenglow::renderer {
 
-/// The most samples of a model: 1 GiB of heights.
+/// Largest number of samples of a model: 1 GiB of heights.
 inline constexpr std::int64_t kMostElevationSamples = std::int64_t{1} << 28;
 
-/// While it lives GDAL keeps its messages (CPLGetLastErrorMsg) instead of printing them.
+/// While an object of this class exists, GDAL stores its messages (CPLGetLastErrorMsg) instead of
+/// printing them.
 class QuietGdal {
  public:
   QuietGdal() {
@@ -40,7 +42,7 @@ struct ElevationRaster {
   OGRSpatialReference crs;               // x is east
   std::vector<float> height_m;           // rows x columns; NaN: void
   std::size_t voids = 0;
-  std::string unit_note;  // what is told about the unit of the heights; empty: nothing
+  std::string unit_note;  // note on the unit of the heights; empty: none
 
   [[nodiscard]] double CentreX(double column) const {
     return geotransform[0] + (column + 0.5) * geotransform[1];
@@ -50,38 +52,38 @@ struct ElevationRaster {
   }
 };
 
-/// Some of the pixels of a file.
+/// A part of the pixels of a file.
 struct PixelWindow {
   int column = 0, row = 0;
   int columns = 0, rows = 0;
 };
 
-/// Reads and checks a file, or a window of it, which must lie in it and may hold nothing but voids;
-/// throws InputError as ReadElevation does.
+/// Reads and checks a file, or a window of it, which must lie within the file and may contain only
+/// voids; throws InputError as ReadElevation does.
 [[nodiscard]] ElevationRaster ReadElevationRaster(
     const std::filesystem::path& file, const std::optional<PixelWindow>& window = std::nullopt);
 
-/// The same without samples, which are not read and not checked.
+/// Reads and checks a file without its samples, which are neither read nor checked.
 [[nodiscard]] ElevationRaster ReadElevationHeader(const std::filesystem::path& file);
 
-/// Closes the NaN samples of a rows x columns raster with a membrane: Laplace's equation with the
-/// rim as boundary (free at the raster's edge), so that a hole in a plane is closed by the plane.
-/// At least one sample must be valid. Returns how many were filled.
+/// Fills the NaN samples of a rows x columns raster with a membrane: Laplace's equation with the
+/// rim as boundary (free at the raster's edge), so that a hole in a plane is filled by the plane.
+/// At least one sample must be valid. Returns the number of filled samples.
 std::size_t FillVoids(std::vector<float>& height, int rows, int columns);
 
-/// Brings a raster onto a grid of latitudes and longitudes of about the same spacing. Samples are
-/// kept as they are where they lie on such a grid already; else bilinear, NaN outside the
-/// footprint. Throws InputError, naming `file`, for places that are not on the earth.
+/// Converts a raster to a grid of latitudes and longitudes of about equal spacing. Samples that
+/// already lie on such a grid are copied; otherwise they are interpolated bilinearly, with NaN
+/// outside the footprint. Throws InputError, naming `file`, for places that are not on the earth.
 [[nodiscard]] ElevationGrid GeographicGrid(const ElevationRaster& raster, const std::string& file);
 
-/// The pixels that are those samples of the raster's own grid; nothing where its samples do not lie
+/// Returns the pixels of those samples of the raster's own grid; nullopt if its samples do not lie
 /// on a grid of latitudes and longitudes or run westwards. The window may not run past the last
 /// column.
 [[nodiscard]] std::optional<PixelWindow> PixelsOf(const ElevationRaster& raster,
                                                   const GridWindow& window,
                                                   const std::string& file);
 
-/// That grid without heights, from a raster that may have none either.
+/// Returns the grid of GeographicGrid without heights; the raster may have none either.
 [[nodiscard]] ElevationGrid GeographicExtent(const ElevationRaster& raster,
                                              const std::string& file);
 

@@ -19,12 +19,12 @@ namespace {
 
 constexpr float kFillSlope_m = 1e-3F;  // sediment rises by this much from sample to sample
 
-// Heights above -20 km as numbers that sort like the heights.
+// Converts heights above -20 km to integers with equal sort order.
 std::uint32_t HeightKey(float height_m) {
   return std::bit_cast<std::uint32_t>(height_m + 20000.0F);
 }
 
-// The flood's order: by height, and then by sample.
+// Returns the sort key of the flood: by height, then by sample.
 std::uint64_t FloodKey(float height_m, std::size_t sample) {
   return (static_cast<std::uint64_t>(HeightKey(height_m)) << 32) | sample;
 }
@@ -39,8 +39,8 @@ struct Offset {
 constexpr std::array<Offset, 8> kNeighbours{
     {{-1, -1}, {-1, 0}, {-1, 1}, {0, -1}, {0, 1}, {1, -1}, {1, 0}, {1, 1}}};
 
-// Keys of all samples in ascending order, without comparing them: digit by digit, the lowest first
-// (radix sort; equal digits stay in the order of the samples that they come in).
+// Returns the keys of all samples in ascending order without comparisons: digit by digit, the
+// lowest first (radix sort; equal digits keep the order of their samples).
 std::vector<std::uint64_t> SortedKeys(const std::vector<float>& height_m) {
   constexpr int kDigitBits = 11;
   constexpr std::uint32_t kDigits = 1U << kDigitBits;
@@ -63,17 +63,17 @@ std::vector<std::uint64_t> SortedKeys(const std::vector<float>& height_m) {
   return keys;
 }
 
-// The flood that rises from the rim and visits every sample after one that it can flow to: in the
-// order of a queue of all samples that it has reached, lowest first. A sample that is reached
-// before its own height has passed, and is not filled, stands in the queue where it stands among
-// all samples, sorted; only the others (in basins) need a queue of their own.
+// A flood that rises from the rim and visits every sample after one that the sample can flow to.
+// The order is that of a queue of all reached samples, lowest first. A sample that is reached
+// before the flood has passed its own height, and is not filled, has its queue position in the
+// sorted list of all samples. Only the others (in basins) need a separate queue.
 class Flood {
  public:
   explicit Flood(Land& land) : land_(land), state_(land.height_m.size(), kUnreached) {
     order_.reserve(land.height_m.size());
   }
 
-  // Fills the land; every sample after the one that the flood came from.
+  // Fills the land and returns all samples, each after the one from which the flood reached it.
   std::vector<std::uint32_t> Run() {
     ReachRim();
     for (const std::uint64_t key : SortedKeys(land_.height_m)) {
@@ -88,10 +88,10 @@ class Flood {
   }
 
  private:
-  // One bit tells the two that wait for the flood.
+  // One bit marks the two states that wait for the flood.
   static constexpr std::uint8_t kWaiting = 0x80;
   static constexpr std::uint8_t kUnreached = kWaiting;
-  static constexpr std::uint8_t kPassed = kWaiting | 1;  // its own height is lower than the flood
+  static constexpr std::uint8_t kPassed = kWaiting | 1;  // the flood is above its own height
   static constexpr std::uint8_t kReached = 0;
   static constexpr std::uint8_t kInBasin = 1;
   static constexpr std::uint8_t kOnRim = 2;
@@ -150,9 +150,9 @@ class Flood {
   std::priority_queue<std::uint64_t, std::vector<std::uint64_t>, std::greater<>> basins_;
 };
 
-// Which neighbour every sample flows to: the steepest way among those that the flood has reached
-// before it. The rim keeps its own. Each side's neighbours are taken for a whole row at a time, in
-// loops that are made for vector instructions.
+// Finds the neighbour to which every sample flows: the steepest descent among neighbours that the
+// flood reached earlier. Samples of the rim are their own receivers. Neighbours in one direction
+// are processed for a whole row at a time, in loops that compilers can vectorise.
 class Receivers {
  public:
   Receivers(const Land& land, const ScatteredSamples& scattered, Drainage& drainage)
@@ -166,10 +166,10 @@ class Receivers {
   }
 
  private:
-  // Of a row without its ends: the slope to the best neighbour, and which one that is.
+  // For a row without its ends: the slope to the best neighbour, and the index of that neighbour.
   struct Best {
     std::vector<float> slope;
-    std::vector<std::uint32_t> neighbour;  // of kNeighbours
+    std::vector<std::uint32_t> neighbour;  // in kNeighbours
   };
 
   void FindOfRow(int row) const {
@@ -199,7 +199,7 @@ class Receivers {
     float* const best_slope = best.slope.data();
     std::uint32_t* const best_neighbour = best.neighbour.data();
     const std::size_t width = best.slope.size();
-    // Masks, because the compiler does not make lanes of conditions.
+    // Masks are used because the compiler does not vectorise conditions.
     for (std::size_t i = 0; i < width; ++i) {
       const float slope = (height[i] - next_height[i]) / distance[i];
       const std::uint32_t is_steeper = slope > best_slope[i] ? ~0U : 0U;
@@ -215,7 +215,7 @@ class Receivers {
   const Land& land_;
   const ScatteredSamples& scattered_;
   Drainage& drainage_;
-  std::vector<std::int32_t> rank_;  // in the flood's order
+  std::vector<std::int32_t> rank_;  // position in the flood's order
 };
 
 void AccumulateArea(Drainage& drainage, double spacing_m) {
@@ -226,18 +226,19 @@ void AccumulateArea(Drainage& drainage, double spacing_m) {
   }
 }
 
-// A^m with m = 3/8 from square roots alone, which IEEE arithmetic rounds the same everywhere.
+// Returns A^m with m = 3/8, computed from square roots only, which IEEE arithmetic rounds
+// identically everywhere.
 float StreamPower(float area_m2) {
   const float fourth_root = std::sqrt(std::sqrt(area_m2));
   return fourth_root * std::sqrt(fourth_root);
 }
 
-// What a step does to a sample before it is known how low its receiver has come to lie. Together,
-// because the rivers' order jumps about.
+// Values of a sample's step that do not depend on the new height of its receiver. They are stored
+// together because samples are visited in the scattered order of the rivers.
 struct Incision {
   float risen_m;
   float pull;
-  float steepest_m;  // over the receiver
+  float steepest_m;  // above the receiver
   std::uint32_t receiver;
 };
 
@@ -274,7 +275,7 @@ ScatteredSamples::ScatteredSamples(int size, std::uint32_t seed) : size_(size) {
       scatter(static_cast<std::size_t>(row) * width + static_cast<std::size_t>(column), row,
               column);
   });
-  // The last samples of a direction have no neighbour there: nobody asks for their distance.
+  // The last samples in a direction have no neighbour there; their distance is never read.
   const auto measure = [&](std::vector<float>& distances, std::size_t to_neighbour) {
     distances.resize(samples, 0.0F);
     tbb::parallel_for(std::size_t{0}, width, [&](std::size_t row) {
@@ -293,7 +294,7 @@ ScatteredSamples::ScatteredSamples(int size, std::uint32_t seed) : size_(size) {
 }
 
 const float* ScatteredSamples::Distances(std::size_t first, int rows, int columns) const {
-  // A distance is kept with the northern, or western, of its two samples.
+  // A distance is stored with the northern, or western, of its two samples.
   const bool is_kept_here = rows > 0 || (rows == 0 && columns > 0);
   const std::ptrdiff_t step = static_cast<std::ptrdiff_t>(rows) * size_ + columns;
   const std::vector<float>& kept = rows == 0                     ? to_east_
@@ -326,7 +327,7 @@ void ErodeOnce(Land& land, const Rock& rock, const ScatteredSamples& scattered) 
 void FillValleys(Land& land, float floor_slope, const std::vector<float>& deepest_m,
                  const ScatteredSamples& scattered) {
   constexpr float kRiverArea_m2 = 4e6F;
-  constexpr float kGravelPerRootArea = 8e-3F;  // depth [m] by the root of the drained area [m]
+  constexpr float kGravelPerRootArea = 8e-3F;  // depth [m] per root of the drained area [m]
   const Drainage drainage = DrainAndFill(land, scattered);
   std::vector<float> floor = land.height_m;
   for (const std::uint32_t sample : drainage.order) {
@@ -337,7 +338,7 @@ void FillValleys(Land& land, float floor_slope, const std::vector<float>& deepes
                               ? std::min(deepest_m[sample], kGravelPerRootArea * std::sqrt(area))
                               : deepest_m[sample];
     const float level = floor[receiver] + floor_slope * drainage.distance_m[sample];
-    // Never below where it flows to: gravel ends gently, not in a dam.
+    // The floor is never below that of its receiver, so that gravel ends gently and not in a dam.
     const float lowest = std::max(land.height_m[sample], floor[receiver]);
     floor[sample] = std::clamp(level, lowest, std::max(lowest, land.height_m[sample] + deepest));
   }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Any projection to a grid of latitudes and longitudes.
+// This file resamples a raster of any projection to a grid of latitudes and longitudes.
 #include <fmt/format.h>
 #include <ogr_spatialref.h>
 
@@ -18,10 +18,11 @@ namespace alpenglow::renderer {
 namespace {
 
 constexpr double kDegree = std::numbers::pi / 180.0;
-// How far [samples] a sample may lie from the ideal grid and still be taken as it is.
+// Largest distance [samples] of a sample from the ideal grid at which it is still copied without
+// resampling.
 constexpr double kOnGrid = 1e-3;
-// Exact transforms are taken at every 4th sample of a row, linear between: on a map of radius R
-// samples around a pole the row bends by 4^2 / (8 R), elsewhere by far less.
+// Every 4th sample of a row is transformed exactly, the others linearly between: on a map of radius
+// R samples around a pole the row bends by 4^2 / (8 R), elsewhere by far less.
 constexpr int kTransformStride = 4;
 
 struct DestroyTransformation {
@@ -38,7 +39,8 @@ OGRSpatialReference Wgs84Degrees() {
   return wgs84;
 }
 
-// Only the horizontal part: heights are taken as above the ellipsoid, whatever the vertical system.
+// Returns the horizontal part only: heights are interpreted as above the ellipsoid, whatever the
+// vertical system.
 OGRSpatialReference Horizontal(const OGRSpatialReference& crs) {
   OGRSpatialReference horizontal = crs;
   horizontal.StripVertical();
@@ -60,7 +62,7 @@ struct LonLat {  // degrees
   double lat;
 };
 
-// Nearest copy of a longitude to another [degrees].
+// Returns the copy of a longitude that is nearest to another one [degrees].
 double Unwrap(double lon, double near) { return lon - 360.0 * std::round((lon - near) / 360.0); }
 
 class Footprint {
@@ -71,7 +73,8 @@ class Footprint {
         wgs84_from_file_(MakeTransformation(Horizontal(raster.crs), Wgs84Degrees(), file)),
         geographic_(raster.crs.IsGeographic()) {}
 
-  // Where a sample lies. A geographic file may run over 180 degrees: its own longitude counts.
+  // Returns the position of a sample. Longitudes of a geographic file may run over 180 degrees and
+  // are kept.
   [[nodiscard]] LonLat At(double row, double column) const {
     double x = raster_.CentreX(column);
     double y = raster_.CentreY(row);
@@ -103,14 +106,14 @@ class Footprint {
   bool geographic_;
 };
 
-// Corner samples and steps, in degrees; rows may go either way.
+// Corner sample and steps, in degrees; rows may run north or south.
 struct RegularGrid {
   LonLat first;
   double step_lon;
   double step_lat;
 };
 
-// The grid that the corners span.
+// Returns the grid that the corners span.
 RegularGrid SpannedGrid(const Footprint& footprint, const ElevationRaster& raster) {
   const LonLat first = footprint.At(0, 0);
   const LonLat last = footprint.At(raster.rows - 1, raster.columns - 1);
@@ -118,7 +121,7 @@ RegularGrid SpannedGrid(const Footprint& footprint, const ElevationRaster& raste
           (last.lat - first.lat) / (raster.rows - 1)};
 }
 
-// Whether the samples lie on that grid; tried on a lattice over the raster.
+// Returns whether the samples lie on that grid, checked on a lattice over the raster.
 bool LiesOn(const RegularGrid& grid, const Footprint& footprint, const ElevationRaster& raster) {
   constexpr int kLattice = 8;
   if (grid.step_lon == 0.0 || grid.step_lat == 0.0) return false;
@@ -135,7 +138,7 @@ bool LiesOn(const RegularGrid& grid, const Footprint& footprint, const Elevation
   return true;
 }
 
-// Without heights.
+// Returns a grid without heights.
 ElevationGrid BareGrid(double west_deg, double north_deg, double step_lon_deg, double step_lat_deg,
                        int columns, int rows) {
   ElevationGrid grid;
@@ -152,7 +155,7 @@ void OpenHeights(ElevationGrid& grid) {
   grid.height_m.resize(grid.index(grid.rows, 0), std::numeric_limits<float>::quiet_NaN());
 }
 
-// The samples' own grid, running eastwards and southwards.
+// Returns the samples' own grid, running eastwards and southwards, without heights.
 ElevationGrid BareGridOf(const RegularGrid& from, const ElevationRaster& raster) {
   const double north =
       from.first.lat + (from.step_lat > 0.0 ? (raster.rows - 1) * from.step_lat : 0.0);
@@ -162,7 +165,7 @@ ElevationGrid BareGridOf(const RegularGrid& from, const ElevationRaster& raster)
                   raster.rows);
 }
 
-// The samples as they are, mirrored where the file runs south to north or east to west.
+// Copies the samples, mirrored if the file runs south to north or east to west.
 ElevationGrid TakeOver(const RegularGrid& from, const ElevationRaster& raster) {
   const bool south_up = from.step_lat > 0.0;
   const bool east_first = from.step_lon < 0.0;
@@ -185,7 +188,8 @@ struct Bounds {  // degrees
   double west, east, south, north;
 };
 
-// Bounds of the samples. A projection's extremes lie on the rim, unless it holds a pole.
+// Returns the bounds of the samples. The extremes of a projection lie on the rim, unless it
+// contains a pole.
 Bounds BoundsOf(const Footprint& footprint, const ElevationRaster& raster) {
   constexpr int kPieces = 64;
   const LonLat centre = footprint.At(0.5 * (raster.rows - 1), 0.5 * (raster.columns - 1));
@@ -203,7 +207,8 @@ Bounds BoundsOf(const Footprint& footprint, const ElevationRaster& raster) {
   return bounds;
 }
 
-// The smaller ground distance [degrees of latitude] between neighbours at the raster's centre.
+// Returns the smaller ground distance [degrees of latitude] between neighbours at the raster's
+// centre.
 double GroundStep(const Footprint& footprint, const ElevationRaster& raster) {
   const double row = 0.5 * (raster.rows - 1);
   const double column = 0.5 * (raster.columns - 1);
@@ -217,12 +222,12 @@ double GroundStep(const Footprint& footprint, const ElevationRaster& raster) {
 }
 
 float Mix(float from, float to, double fraction) {
-  if (fraction == 0.0) return from;  // a void beyond does not matter
+  if (fraction == 0.0) return from;  // the other value may be a void
   return static_cast<float>((1.0 - fraction) * static_cast<double>(from) +
                             fraction * static_cast<double>(to));
 }
 
-// Bilinear; NaN outside the samples and beside a void.
+// Returns the bilinear value; NaN outside the samples and beside a void.
 float SampleAt(const ElevationRaster& raster, double row, double column) {
   if (!(row >= 0.0 && column >= 0.0 && row <= raster.rows - 1 && column <= raster.columns - 1)) {
     return std::numeric_limits<float>::quiet_NaN();
@@ -237,14 +242,14 @@ float SampleAt(const ElevationRaster& raster, double row, double column) {
   return Mix(Mix(at(0, 0), at(0, 1), column - c), Mix(at(1, 0), at(1, 1), column - c), row - r);
 }
 
-// Pixel coordinates in the raster of the samples of one row of a grid.
+// Pixel coordinates in the raster for the samples of one row of a grid.
 class SourceCoordinates {
  public:
   SourceCoordinates(const ElevationRaster& raster, const std::string& file)
       : raster_(raster),
         file_from_wgs84_(MakeTransformation(Wgs84Degrees(), Horizontal(raster.crs), file)) {}
 
-  // Whether a place lies between the raster's samples.
+  // Returns whether a place lies between the raster's samples.
   [[nodiscard]] bool Holds(double lon_deg, double lat_deg) {
     double x = lon_deg;
     double y = lat_deg;
@@ -291,8 +296,8 @@ class SourceCoordinates {
   std::vector<double> x_, y_;
 };
 
-// A grid of the bounds with about `step` [degrees of latitude] between neighbours. Over a pole the
-// columns go once around and the first row lies half a step off the pole.
+// Returns a grid over the bounds with about `step` [degrees of latitude] between neighbours. If it
+// contains a pole, the columns go once around and the first row lies half a step from the pole.
 ElevationGrid GridOver(const Bounds& bounds, double step, bool north_pole, bool south_pole,
                        const std::string& file) {
   const bool closed = north_pole || south_pole;
@@ -348,7 +353,7 @@ std::optional<PixelWindow> PixelsOf(const ElevationRaster& raster, const GridWin
                                     const std::string& file) {
   const Footprint footprint(raster, file);
   const RegularGrid spanned = SpannedGrid(footprint, raster);
-  // A window of columns that go west would have to be mirrored.
+  // A window whose columns run west would have to be mirrored.
   if (!LiesOn(spanned, footprint, raster) || spanned.step_lon < 0.0) return std::nullopt;
   const int row =
       spanned.step_lat > 0.0 ? raster.rows - window.first_row - window.rows : window.first_row;

@@ -44,7 +44,7 @@ double BinomialMean(const Land& land, int row, int column) {
   return sum / 16.0;
 }
 
-// Visits every sample off the rim: visit(row, column). Many threads.
+// Visits every sample that is not on the rim from many threads: visit(row, column).
 template <typename Visit>
 void ForInside(int size, const Visit& visit) {
   tbb::parallel_for(1, std::max(size - 1, 1), [&](int row) {
@@ -123,7 +123,7 @@ Land Bent(const Land& land, double samples, double wavelength_km, std::uint32_t 
 
 namespace {
 
-// The chains strike east-north-east. `along` runs with them, `across` runs southwards over them.
+// The chains strike east-north-east. `along` runs along them, `across` runs southwards across them.
 struct StrikeFrame {
   double along_km;
   double across_km;
@@ -165,7 +165,7 @@ constexpr std::array<Summit, 7> kSummits{{
     {14.0, 30.0, 4.5, 1.0},
 }};
 
-// 1 in the middle, 0 from distance 1 on, smooth at both.
+// Returns 1 in the middle, 0 from distance 1 on, smooth at both.
 double Bump(double distance) {
   const double inside = std::max(0.0, 1.0 - distance * distance);
   return inside * inside;
@@ -176,7 +176,7 @@ double SmoothStep(double t) {
   return clamped * clamped * (3.0 - 2.0 * clamped);
 }
 
-// Chains wander and vary along their strike.
+// Returns the uplift of the chains, which meander and vary along their strike.
 double ChainUplift(const StrikeFrame& place, std::uint32_t range_seed) {
   double uplift = 0.0;
   for (std::size_t i = 0; i < kChains.size(); ++i) {
@@ -205,30 +205,30 @@ double SummitUplift(const StrikeFrame& place) {
   return uplift;
 }
 
-// 0 at the rim, 1 from `width_km` inwards.
+// Returns 0 at the rim, 1 from `width_km` inwards.
 double RimFade(double x_km, double y_km, double width_km) {
   return SmoothStep((kRangeHalfWidth_km - std::abs(x_km)) / width_km) *
          SmoothStep((kRangeHalfWidth_km - std::abs(y_km)) / width_km);
 }
 
-// The place that noise has moved: nothing in the range is straight.
+// Returns the place displaced by noise, so that nothing in the range is straight.
 StrikeFrame Warped(double x_km, double y_km, std::uint32_t seed) {
   const double warp_x = 5.5 * FractalNoise(x_km / 17.0, y_km / 17.0, 4, seed + 1);
   const double warp_y = 5.5 * FractalNoise(x_km / 17.0, y_km / 17.0, 4, seed + 2);
   return ToStrikeFrame(x_km + warp_x, y_km + warp_y);
 }
 
-// 0 in the northern foreland, 1 from the first chain on.
+// Returns 0 in the northern foreland, 1 from the first chain on.
 double South(const StrikeFrame& place) { return SmoothStep((place.across_km + 26.0) / 12.0); }
 
-// 1 from the view of the range northwards, where the ground is that of the first one, 0 from 9 km
-// south of it on.
+// Returns the weight of the ground of seed 0: 1 from 2 km south of the view northwards, 0 from 9 km
+// south of the view southwards.
 double ForelandShare(double y_km) {
   constexpr double kAlike_km = 2.0, kOther_km = 9.0;
   return SmoothStep((y_km - 1e-3 * kRangeViewNorth_m + kOther_km) / (kOther_km - kAlike_km));
 }
 
-// The value of a range, and that of the first one in the north.
+// Returns the value of a range, blended into the value of seed 0 in the northern foreland.
 template <typename Value>
 double OverForeland(double y_km, std::uint32_t seed, const Value& value_of) {
   const double foreland = seed == 0 ? 1.0 : ForelandShare(y_km);
@@ -292,7 +292,7 @@ bool IsWanted(const std::vector<float>& height_m, const WantedHeights& wanted) {
   return height_m.size() == wanted.count && FingerprintOf(height_m) == wanted.fingerprint;
 }
 
-// Nothing where the file is missing or is not what is wanted.
+// Returns the heights of a file; nullopt if the file is missing or has other contents.
 std::optional<std::vector<float>> Read(const fs::path& file, const WantedHeights& wanted) {
   std::error_code error;
   if (fs::file_size(file, error) != wanted.count * sizeof(float) || error) return std::nullopt;
@@ -321,7 +321,7 @@ void Keep(const fs::path& file, const WantedHeights& wanted, const std::vector<f
     RemoveOlder(file, wanted.name);
   } catch (const OutputError&) {
   } catch (const fs::filesystem_error&) {
-    // The next run makes them again.
+    // The next run generates the heights again.
   }
 }
 

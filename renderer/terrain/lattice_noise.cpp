@@ -7,13 +7,14 @@
 namespace alpenglow::renderer {
 namespace {
 
-/// A place in its cell of the lattice, and the hashes of the cell's corners.
+/// A position within its cell of the lattice, and the hashes of the cell's corners.
 struct Cell {
   double dx, dy;
   std::uint32_t south_west, south_east, north_west, north_east;
 
   Cell(double x, double y, std::uint32_t seed) {
-    // A conversion and a comparison: without SSE4 the library's floor is a call.
+    // A conversion and a comparison are used, because without SSE4 the library's floor is a
+    // function call.
     const auto floor_of = [](double value) {
       const auto truncated = static_cast<std::int32_t>(value);
       return truncated - (value < static_cast<double>(truncated) ? 1 : 0);
@@ -30,7 +31,7 @@ struct Cell {
     north_east = shared::LatticePoint(west + 1U, south + 1U, seed);
   }
 
-  /// A function of lattice_noise.glsl here.
+  /// Evaluates a function of lattice_noise.glsl at this position.
   template <typename Function>
   [[nodiscard]] double At(const Function& function) const {
     return function(south_west, south_east, north_west, north_east, dx, dy);

@@ -1,7 +1,8 @@
-// Gradient noise on a lattice of points with hashed gradients (lattice_noise.h). Whole numbers are
-// 32 bits that wrap; places within a cell are in cells.
+// This text provides gradient noise on a lattice of points with hashed gradients (lattice_noise.h).
+// Integers are 32 bits and wrap; positions within a cell are in cells.
 
-// Finaliser of MurmurHash3 (Appleby, public domain): every input bit moves every output bit.
+// This is the finaliser of MurmurHash3 (Appleby, public domain): every input bit affects every
+// output bit.
 SHARED_BITS Bits MixedBits(Bits bits) {
   bits ^= bits >> 16;
   bits *= 0x85ebca6bu;
@@ -11,17 +12,18 @@ SHARED_BITS Bits MixedBits(Bits bits) {
   return bits;
 }
 
-// The hash of a lattice point.
+// Returns the hash of a lattice point.
 SHARED_BITS Bits LatticePoint(Bits east, Bits north, Bits seed) {
   return MixedBits(east + MixedBits(north + MixedBits(seed + 0x9e3779b9u)));
 }
 
-// A component of its gradient, uniform in [-1, 1), from half of the hash: 2^-15 a step.
+// Returns a component of a lattice point's gradient, uniform in [-1, 1), from half of the hash, in
+// steps of 2^-15.
 SHARED Number GradientOfHalf(Number half_hash) {
   return half_hash * Number(3.0517578125e-5) - Number(1.0);
 }
 
-// What the gradient of a corner gives (dx, dy) away from it.
+// Returns the contribution of a corner's gradient at the offset (dx, dy) from the corner.
 SHARED Number CornerNoise(Bits corner, Number dx, Number dy) {
   return GradientOfHalf(Number(corner & 0xffffu)) * dx + GradientOfHalf(Number(corner >> 16)) * dy;
 }
@@ -34,20 +36,20 @@ SHARED Number NoiseFadeSlope(Number t) {
   return Number(30.0) * t * t * (t - Number(1.0)) * (t - Number(1.0));
 }
 
-// Values at the corners, weighted by u to the east and v to the north.
+// Returns the corner values weighted by u to the east and v to the north.
 SHARED Number NoiseBlend(Number u, Number v, Number sw, Number se, Number nw, Number ne) {
   return (Number(1.0) - v) * ((Number(1.0) - u) * sw + u * se) +
          v * ((Number(1.0) - u) * nw + u * ne);
 }
 
-// Noise at (dx, dy) in a cell, from the hashes of its corners.
+// Returns the noise at (dx, dy) in a cell, from the hashes of its corners.
 SHARED Number NoiseInCell(Bits sw, Bits se, Bits nw, Bits ne, Number dx, Number dy) {
   return NoiseBlend(NoiseFade(dx), NoiseFade(dy), CornerNoise(sw, dx, dy),
                     CornerNoise(se, dx - Number(1.0), dy), CornerNoise(nw, dx, dy - Number(1.0)),
                     CornerNoise(ne, dx - Number(1.0), dy - Number(1.0)));
 }
 
-// Its derivatives to the east and to the north, per cell.
+// NoiseSlopeEast and NoiseSlopeNorth return the derivatives to the east and to the north, per cell.
 SHARED Number NoiseSlopeEast(Bits sw, Bits se, Bits nw, Bits ne, Number dx, Number dy) {
   Number v = NoiseFade(dy);
   Number south = CornerNoise(se, dx - Number(1.0), dy) - CornerNoise(sw, dx, dy);
@@ -71,9 +73,9 @@ SHARED Number NoiseSlopeNorth(Bits sw, Bits se, Bits nw, Bits ne, Number dx, Num
          NoiseFadeSlope(dy) * (north - south);
 }
 
-// The same noise with fewer operations, for pictures; the range's heights hang on every bit of the
-// form above. Gradients are h * 2^-15 - 1, and the ones, weighted by the fades u and v, sum to
-// dx - u + dy - v.
+// Returns the noise of NoiseInCell with fewer operations, for images. The heights of the range use
+// NoiseInCell, because they depend on every bit of it. Gradients are h * 2^-15 - 1; the terms of
+// -1, weighted by the fades u and v, sum to dx - u + dy - v.
 SHARED Number CornerOfHash(Bits corner, Number dx, Number dy) {
   return Number(corner & 0xffffu) * dx + Number(corner >> 16) * dy;
 }

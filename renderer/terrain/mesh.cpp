@@ -90,7 +90,7 @@ class MeshBuilder {
     });
   }
 
-  // Every row by itself, and then one after the other.
+  // Makes the triangles of every row in parallel, then appends the rows in order.
   void AddCells() {
     std::vector<Triangles> of_row(static_cast<std::size_t>(std::max(grid_.rows - 1, 0)));
     const int last_column = closes_ ? grid_.columns : grid_.columns - 1;
@@ -101,7 +101,7 @@ class MeshBuilder {
     });
     std::size_t count = 0;
     for (const Triangles& triangles : of_row) count += triangles.size();
-    mesh_.triangles.reserve(count + 2 * static_cast<std::size_t>(grid_.columns));  // poles
+    mesh_.triangles.reserve(count + 2 * static_cast<std::size_t>(grid_.columns));  // and the poles
     for (const Triangles& triangles : of_row)
       mesh_.triangles.insert(mesh_.triangles.end(), triangles.begin(), triangles.end());
   }
@@ -110,8 +110,8 @@ class MeshBuilder {
     return vertex_of_sample_[grid_.index(row, column % grid_.columns)];
   }
 
-  // Two triangles along the diagonal that fits the surface better, so that crests and gullies that
-  // run diagonally stay whole; one where a corner is a void.
+  // Adds two triangles, split along the diagonal that fits the surface better, so that crests and
+  // gullies that run diagonally are preserved; one triangle if a corner is a void.
   void AddCell(int row, int column, Triangles& into) const {
     const std::uint32_t nw = VertexAt(row, column);
     const std::uint32_t ne = VertexAt(row, column + 1);
@@ -144,7 +144,7 @@ class MeshBuilder {
     return renderer::FallingDiagonalFits(around);
   }
 
-  // Left out: triangles at a void, and those that a row of samples at the pole has shrunk.
+  // Adds a triangle, except at a void and where a row of samples at the pole makes it degenerate.
   void AddTriangle(std::uint32_t a, std::uint32_t b, std::uint32_t c, Triangles& into) const {
     if (a == kNoVertex || b == kNoVertex || c == kNoVertex) return;
     const glm::dvec3& corner = position_m_[a];
@@ -154,7 +154,8 @@ class MeshBuilder {
     into.push_back({a, b, c});
   }
 
-  // A fan from the ring next to a pole to a vertex at the pole, of the ring's mean height.
+  // Adds a fan from the ring next to a pole to a vertex at the pole, which has the ring's mean
+  // height.
   void AddPole(int row, double pole_rad) {
     const double gap = std::abs(pole_rad - grid_.LatitudeOfRow(row));
     if (gap > 1.001 * grid_.step_lat_rad || gap < 1e-12) return;
@@ -178,7 +179,7 @@ class MeshBuilder {
 
   const ElevationGrid& grid_;
   const LocalFrame& frame_;
-  bool closes_;  // around the earth
+  bool closes_;  // whether the grid closes around the earth
   std::vector<std::uint32_t> vertex_of_sample_;
   std::vector<glm::dvec3> position_m_;
   TriangleMesh mesh_;
@@ -198,7 +199,7 @@ struct Corner {
   double x, y, z;  // x and y in cells
 };
 
-// The largest value wins in whatever order threads come.
+// Raises a cell to a value. The result does not depend on the order of threads.
 void Raise(float& cell, float value) {
   std::atomic_ref<float> shared(cell);
   float known = shared.load(std::memory_order_relaxed);
@@ -207,7 +208,7 @@ void Raise(float& cell, float value) {
 }
 
 HeightRaster EmptyRaster(const TriangleMesh& mesh, std::size_t most_nodes) {
-  constexpr double kFewestNodes = 512.0;  // a side
+  constexpr double kFewestNodes = 512.0;  // per side
   std::array<double, 2> low, high;
   low.fill(std::numeric_limits<double>::infinity());
   high.fill(-std::numeric_limits<double>::infinity());
@@ -239,7 +240,7 @@ HeightRaster EmptyRaster(const TriangleMesh& mesh, std::size_t most_nodes) {
   return raster;
 }
 
-// Heights at the nodes that a triangle covers, seen from above.
+// Writes heights at the nodes that a triangle covers, seen from above.
 void Deposit(const std::array<Corner, 3>& corner, HeightRaster& raster) {
   const auto [x_low, x_high] = std::minmax({corner[0].x, corner[1].x, corner[2].x});
   const auto [y_low, y_high] = std::minmax({corner[0].y, corner[1].y, corner[2].y});

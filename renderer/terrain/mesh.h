@@ -1,11 +1,8 @@
 // SPDX-License-Identifier: MIT
-// Which way four samples are cut into two triangles, and the height on these.
-//
-// A normal for each vertex: the mean of the normals of its triangles, weighted by their areas.
-//
-// The ground as triangles in a local frame.
-//
-// Heights of a mesh on a regular grid of its own frame.
+// This header provides the ground as triangles in a local frame. It contains the split of four
+// samples into two triangles and the height on these, normals for each vertex (means of the normals
+// of its triangles, weighted by their areas), and heights of a mesh on a regular grid in the mesh's
+// frame.
 #pragma once
 
 #include <array>
@@ -22,7 +19,7 @@
 
 namespace alpenglow::renderer {
 
-/// The axis of a mesh's file that points up. Wavefront OBJ has no rule.
+/// Axis of a mesh's file that points up. Wavefront OBJ does not specify it.
 enum class UpAxis {
   kZ,  // x east, y north, z up
   kY,  // x east, y up, z south
@@ -32,8 +29,8 @@ enum class UpAxis {
 /// corners are 5 (north-west), 6, 9 and 10 (south-east).
 using CellHeights = std::array<double, 16>;
 
-/// Whether the middle of the diagonal from north-west to south-east is nearer than the other's to
-/// the cubic height at the cell's centre; beside a void: false.
+/// Returns whether the middle of the diagonal from north-west to south-east is nearer to the cubic
+/// height at the cell's centre than the middle of the other diagonal; false beside a void.
 [[nodiscard]] inline bool FallingDiagonalFits(const CellHeights& around) {
   constexpr std::array<double, 4> kWeight{-1.0 / 16.0, 9.0 / 16.0, 9.0 / 16.0, -1.0 / 16.0};
   double centre = 0.0;
@@ -44,8 +41,8 @@ using CellHeights = std::array<double, 16>;
   return std::abs(falling - centre) < std::abs(rising - centre);
 }
 
-/// Height [m] on the triangle over a place in the cell, `east` and `south` of its north-west corner
-/// as shares of the cell; nothing beside a void.
+/// Returns the height [m] on the triangle over a place in the cell, `east` and `south` of its
+/// north-west corner as fractions of the cell; nullopt beside a void.
 [[nodiscard]] inline std::optional<double> HeightOnTriangles(const CellHeights& around, double east,
                                                              double south) {
   const double nw = around[5], ne = around[6], sw = around[9], se = around[10];
@@ -64,27 +61,27 @@ using CellHeights = std::array<double, 16>;
   return height;
 }
 
-/// Unit normals, one a position; (0, 0, 1) where a position belongs to no triangle.
+/// Returns unit normals, one per position; (0, 0, 1) if a position belongs to no triangle.
 [[nodiscard]] std::vector<std::array<float, 3>> SmoothNormals(
     const std::vector<glm::dvec3>& positions,
     const std::vector<std::array<std::uint32_t, 3>>& triangles);
 
 /// Triangles in the ENU frame of a LocalFrame [m], single precision: a position 100 km from the
-/// origin is rounded by up to 4 mm a coordinate.
+/// origin is rounded by up to 4 mm per coordinate.
 struct TriangleMesh {
   std::vector<std::array<float, 3>> positions;
-  std::vector<std::array<float, 3>> normals;            // unit, one a position
+  std::vector<std::array<float, 3>> normals;            // unit, one per position
   std::vector<std::array<std::uint32_t, 3>> triangles;  // counter-clockwise seen from outside
 };
 
-/// A position or a normal of a mesh in double precision.
+/// Converts a position or a normal of a mesh to double precision.
 [[nodiscard]] inline glm::dvec3 ToDouble(const std::array<float, 3>& v) {
   return {static_cast<double>(v[0]), static_cast<double>(v[1]), static_cast<double>(v[2])};
 }
 
-/// Every sample becomes a vertex, placed through ECEF, so curvature and
-/// ellipsoid are right. Beside a void triangles are left out. A grid
-/// that goes once around the earth is closed, and over a pole too.
+/// Makes a mesh of a grid. Every sample becomes a vertex, placed through ECEF, so that curvature
+/// and ellipsoid are correct. Triangles beside a void are omitted. A grid that goes once around the
+/// earth is closed, also over a pole.
 [[nodiscard]] TriangleMesh MeshFromElevation(const ElevationGrid& grid, const LocalFrame& frame);
 
 /// Heights z [m] over (x, y) = (first_x_m + column cell_m, first_y_m + row cell_m).
@@ -92,7 +89,7 @@ struct HeightRaster {
   double first_x_m = 0.0, first_y_m = 0.0;
   double cell_m = 0.0;
   int columns = 0, rows = 0;
-  std::vector<float> z_m;  // rows x columns; kNothing where no ground is
+  std::vector<float> z_m;  // rows x columns; kNothing where there is no ground
 
   static constexpr float kNothing = -1e30F;
 
@@ -106,16 +103,17 @@ struct HeightRaster {
   }
 };
 
-/// The cell of a grid that a place lies in, moved into the grid, and where.
+/// The cell of a grid that contains a place, after the place is clamped to the grid, and the
+/// position in the cell.
 struct GridCell {
   int column, row;  // the lower corner
   float x, y;       // in [0, 1]
 };
 [[nodiscard]] GridCell CellAt(const HeightRaster& raster, double x_m, double y_m);
 
-/// The uppermost surface of a mesh, at most `most_nodes` >= 4 nodes
-/// and none finer than the mesh itself (of a few large triangles:
-/// than a 512th of its extent). The same for any number of threads.
+/// Returns the uppermost surface of a mesh, with at most `most_nodes` >= 4 nodes and cells no finer
+/// than the mesh itself (for a few large triangles: than a 512th of its extent). The result does
+/// not depend on the number of threads.
 [[nodiscard]] HeightRaster RasterOf(const TriangleMesh& mesh, std::size_t most_nodes);
 
 }  // namespace alpenglow::renderer

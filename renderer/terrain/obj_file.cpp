@@ -33,7 +33,7 @@ std::string ReadText(const std::filesystem::path& file) {
   return std::move(text).str();
 }
 
-/// Turns a vector by a quarter about x, from y up to z up.
+/// Rotates a vector by a quarter turn about x, from y up to z up.
 template <typename Number>
 std::array<Number, 3> TurnedUp(const std::array<Number, 3>& v) {
   return {v[0], -v[2], v[1]};
@@ -44,7 +44,7 @@ void TurnUp(ObjText& text) {
   for (auto& normal : text.normals) normal = TurnedUp(normal);
 }
 
-/// The vector scaled to length 1, or 0 where it has no direction.
+/// Returns the vector scaled to length 1, or 0 if it has no direction.
 glm::dvec3 UnitOrZero(const std::array<double, 3>& v) {
   const double largest = std::max({std::abs(v[0]), std::abs(v[1]), std::abs(v[2])});
   const bool is_finite = std::isfinite(v[0]) && std::isfinite(v[1]) && std::isfinite(v[2]);
@@ -52,7 +52,7 @@ glm::dvec3 UnitOrZero(const std::array<double, 3>& v) {
   return glm::normalize(glm::dvec3(v[0], v[1], v[2]) / largest);
 }
 
-/// Faces of one kind.
+/// Number of faces of one kind, and the line of the first.
 struct FaceCount {
   std::size_t count = 0;
   std::size_t first_line = 0;
@@ -62,14 +62,14 @@ struct FaceCount {
   }
 };
 
-/// Vertices of the mesh: corners of faces at one position are one vertex if they also have one
+/// Vertices of the mesh. Corners of faces at one position share a vertex if they also have one
 /// normal. The first vertex of a position has the position's index.
 class VertexSplitter {
  public:
   /// The source of a corner's normal.
   struct Source {
     enum class Kind : std::uint32_t { kFile, kGroup } kind;
-    std::uint32_t number;  // of the normal in the file, or of the smoothing group
+    std::uint32_t number;  // index of the normal in the file, or of the smoothing group
   };
 
   explicit VertexSplitter(std::size_t positions) : first_(positions, kUnused) {
@@ -86,7 +86,7 @@ class VertexSplitter {
     if (is_new) found->second = Append(position);
     return found->second;
   }
-  /// A vertex that no other face has.
+  /// Returns a vertex that no other face uses.
   [[nodiscard]] std::uint32_t OwnVertexAt(std::uint32_t position) {
     if (first_[position] != kUnused) return Append(position);
     first_[position] = kOwn;
@@ -118,12 +118,12 @@ class VertexSplitter {
     return static_cast<std::uint32_t>(position_of_.size() - 1);
   }
 
-  std::vector<std::uint64_t> first_;  // key of a position's first vertex
+  std::vector<std::uint64_t> first_;  // keys of the positions' first vertices
   std::unordered_map<Corner, std::uint32_t, HashOfCorner> others_;
-  std::vector<std::uint32_t> position_of_;  // one a vertex
+  std::vector<std::uint32_t> position_of_;  // one per vertex
 };
 
-/// A mesh on the map, and how near it comes to the place of the scene [m].
+/// Extent of a mesh on the map, and its smallest distance from the place of the scene [m].
 struct MapExtent {
   glm::dvec2 low{std::numeric_limits<double>::infinity()};
   glm::dvec2 high{-std::numeric_limits<double>::infinity()};
@@ -142,7 +142,8 @@ struct MapExtent {
     }
   }
 
-  /// Nobody sees it: it is farther than mountains are seen, or under half a degree wide.
+  /// Returns whether the mesh is invisible: farther than mountains are visible, or under half a
+  /// degree wide.
   [[nodiscard]] bool IsFar() const {
     constexpr double kFarthestSeen_m = 200e3, kNear_m = 10e3, kWidths = 100.0;
     return nearest_m > kFarthestSeen_m ||
@@ -150,7 +151,7 @@ struct MapExtent {
   }
 };
 
-/// A warning on a mesh that lies far from the place; empty on others.
+/// Returns a warning if a mesh lies far from the place; empty otherwise.
 std::string TextOnFar(const TriangleMesh& mesh) {
   const MapExtent extent(mesh);
   if (!extent.IsFar()) return "";
@@ -202,7 +203,7 @@ class ObjMesher {
     return text_.corners[face.first + i];
   }
 
-  /// 0 where the file gives none.
+  /// Returns the normal of a corner; 0 if the file gives none.
   [[nodiscard]] glm::dvec3 NormalGiven(const ObjText::Face& face, std::size_t i) const {
     const std::uint32_t normal = CornerOf(face, i).normal;
     return normal == ObjText::kNone ? glm::dvec3(0.0) : normals_[normal];
@@ -276,9 +277,9 @@ class ObjMesher {
 
   const ObjText& text_;
   std::string name_;
-  std::vector<glm::dvec3> normals_;  // of the file, unit or 0
+  std::vector<glm::dvec3> normals_;  // normals of the file, unit or 0
   VertexSplitter vertices_;
-  std::vector<std::uint32_t> from_file_;  // the normal of a vertex, or kNone
+  std::vector<std::uint32_t> from_file_;  // index of the normal of a vertex, or kNone
   TriangleMesh mesh_;
   FaceCount without_area_, crossing_;
 };

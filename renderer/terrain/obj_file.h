@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Terrain from a Wavefront OBJ file.
+// This header provides terrain from a Wavefront OBJ file.
 #pragma once
 
 #include <filesystem>
@@ -11,17 +11,17 @@ namespace alpenglow::renderer {
 
 struct ObjMesh {
   TriangleMesh mesh;
-  std::string message;  // one line on what the file has that the mesh leaves out; empty: nothing
+  std::string message;  // one line on parts of the file that the mesh omits; empty: none
 };
 
 /// Reads a file whose coordinates are metres from the place of the scene. Polygons are cut into
-/// triangles of the same area. Normals are those of the file (vn) where it has any; else they are
-/// averaged over the triangles of a smoothing group, or of all without groups, and are those of the
-/// face after "s off". A triangle whose normals point to its back is turned over. Faces without
-/// area are left out. The message counts these, normals without a direction, polygons that cross
-/// themselves and statements that are not known, and says so where the mesh is so far from the
-/// place that its coordinates cannot be metres from there. Throws InputError, naming the file, for
-/// no triangles, and as ParseObj.
+/// triangles of equal total area. Normals are those of the file (vn) where it has any. Otherwise
+/// they are averaged over the triangles of a smoothing group, or of all triangles if there are no
+/// groups; after "s off" they are the normals of the faces. A triangle whose normals point to its
+/// back is reversed. Faces without area are omitted. The message counts these, normals without a
+/// direction, self-intersecting polygons and unknown statements, and states whether the mesh is so
+/// far from the place that its coordinates cannot be metres from there. Throws InputError, naming
+/// the file, if there are no triangles, and the errors of ParseObj.
 [[nodiscard]] ObjMesh ReadObj(const std::filesystem::path& file, UpAxis up = UpAxis::kZ);
 
 }  // namespace alpenglow::renderer

@@ -18,9 +18,10 @@ namespace {
 using Words = std::vector<std::string_view>;
 
 constexpr double kFarthest_m = 1e7;
-constexpr std::string_view kBlanks = " \t\v\f\x1a";  // the last one ends files of DOS
+constexpr std::string_view kBlanks = " \t\v\f\x1a";  // the last one ends DOS files
 
-/// Keywords that make no surface. Of those with a free text the end may be a backslash.
+/// Keywords that do not describe surfaces. Statements of the first list end with free text, which
+/// may end in a backslash.
 constexpr std::string_view kWithText[] = {"o", "g", "usemtl", "mtllib", "usemap", "maplib"};
 constexpr std::string_view kWithoutSurface[] = {
     "vt", "vp", "l", "p", "mg", "bevel", "c_interp", "d_interp", "lod", "shadow_obj", "trace_obj"};
@@ -35,7 +36,7 @@ std::string_view WithoutSign(std::string_view word) {
   return has_plus ? word.substr(1) : word;
 }
 
-/// The number that a word is; too small a one is 0.
+/// Returns the value of a number; 0 if it underflows.
 std::optional<double> NumberOf(std::string_view word) {
   const std::string_view digits = WithoutSign(word);
   const char* end = digits.data() + digits.size();
@@ -95,7 +96,7 @@ class ObjParser {
     return line.substr(0, line.find('#'));
   }
 
-  /// The words of a line and of those that continue it.
+  /// Returns the words of a line and of its continuation lines.
   Words NextStatement() {
     Words words = WordsOf(TakeLine());
     if (!words.empty() && IsOneOf(kWithText, words[0])) return words;
@@ -123,7 +124,7 @@ class ObjParser {
     read_.first_other = keyword;
   }
 
-  /// After the coordinates there may be a weight or a colour.
+  /// Reads a position. A weight or a colour may follow the coordinates.
   void ReadPosition(const Words& words) {
     if (words.size() < 4) Refuse("a vertex of fewer than 3 coordinates");
     std::array<float, 3> position{};
@@ -169,7 +170,7 @@ class ObjParser {
     read_.faces.push_back({first, static_cast<std::uint32_t>(count), smoothing_, line_});
   }
 
-  /// v, v/vt, v//vn or v/vt/vn; empty numbers at the end may be left out or not.
+  /// Parses v, v/vt, v//vn or v/vt/vn; trailing empty numbers may be omitted.
   ObjText::Corner CornerOf(std::string_view word) {
     std::array<std::string_view, 3> parts;
     std::size_t begin = 0;
@@ -185,7 +186,7 @@ class ObjParser {
     return {position, IndexOf(word, parts[2], "normal", read_.normals.size())};
   }
 
-  /// Counted from 0. What a file counts from its end counts from the statements so far.
+  /// Returns the index counted from 0. Negative indices count back from the statements read so far.
   std::uint32_t IndexOf(std::string_view corner, std::string_view word, const char* what,
                         std::size_t so_far) {
     const std::optional<long long> index = IntegerOf(word);
@@ -200,7 +201,7 @@ class ObjParser {
     return static_cast<std::uint32_t>(from_zero);
   }
 
-  /// A face may come before its vertices.
+  /// Checks the indices after reading, because a face may precede its vertices.
   void CheckIndices() {
     for (const ObjText::Face& face : read_.faces) {
       line_ = face.line;
@@ -224,7 +225,7 @@ class ObjParser {
   std::string_view rest_;
   const std::string& name_;
   std::size_t lines_taken_ = 0;
-  std::size_t line_ = 0;  // where the statement begins
+  std::size_t line_ = 0;  // first line of the statement
   std::uint32_t smoothing_ = ObjText::kNone;
   ObjText read_;
 };

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
-// The statements of a Wavefront OBJ file that describe polygons.
+// This header parses the statements of a Wavefront OBJ file that describe polygons.
 //
-// Read: v, vn, f, s; lines continued by a backslash; comments anywhere; any line ends; a byte-order
-// mark of UTF-8. Names, materials, texture coordinates, points and lines make no surface and are
-// passed over. Other statements, such as free-form surfaces, are counted.
+// Supported: v, vn, f, s; lines continued by a backslash; comments anywhere; any line ends; a
+// byte-order mark of UTF-8. Names, materials, texture coordinates, points and lines do not describe
+// surfaces and are skipped. Other statements, such as free-form surfaces, are counted.
 #pragma once
 
 #include <array>
@@ -23,7 +23,7 @@ struct ObjText {
     std::uint32_t normal;  // or kNone
   };
   struct Face {
-    std::size_t first;  // of its corners
+    std::size_t first;  // index of its first corner
     std::uint32_t corners;
     std::uint32_t smoothing;  // group; 0 after "s off"; kNone before any s
     std::size_t line;
@@ -32,16 +32,16 @@ struct ObjText {
   std::vector<std::array<float, 3>> positions;
   std::vector<std::array<double, 3>> normals;  // of any length, finite or not
   std::vector<Corner> corners;
-  std::vector<Face> faces;  // of 3 corners or more
+  std::vector<Face> faces;  // with 3 corners or more
 
-  std::size_t other_statements = 0;  // that are not known
+  std::size_t other_statements = 0;  // number of unknown statements
   std::size_t first_other_line = 0;
   std::string first_other;  // its keyword
 };
 
-/// Throws InputError, naming file and line, for what is no number, coordinates beyond 10,000 km,
-/// indices out of range, and faces of more than kMostPolygonCorners.
-/// @param name  of the file, for messages.
+/// Parses the text. Throws InputError, naming file and line, for invalid numbers, coordinates
+/// beyond 10,000 km, indices out of range, and faces of more than kMostPolygonCorners.
+/// @param name  name of the file, for messages.
 [[nodiscard]] ObjText ParseObj(std::string_view text, const std::string& name);
 
 }  // namespace alpenglow::renderer

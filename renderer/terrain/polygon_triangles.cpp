@@ -12,8 +12,8 @@
 namespace alpenglow::renderer {
 namespace {
 
-/// The sign of a b - c d without rounding: products are rounded in order, and where they are
-/// rounded to the same number their exact errors decide.
+/// Returns the exact sign of a b - c d. Rounding preserves the order of the products; if they are
+/// rounded to one number, their exact errors decide.
 int SignOfDifference(double a, double b, double c, double d) {
   const double first = a * b, second = c * d;
   if (first != second) return first > second ? 1 : -1;
@@ -21,7 +21,7 @@ int SignOfDifference(double a, double b, double c, double d) {
   return int{first_error > second_error} - int{first_error < second_error};
 }
 
-/// 1 where a, b, c turn left, -1 where they turn right, 0 where they are on a line.
+/// Returns 1 if a, b, c turn left, -1 if they turn right, 0 if they lie on a line.
 int Turn(const glm::dvec2& a, const glm::dvec2& b, const glm::dvec2& c) {
   return SignOfDifference(b.x - a.x, c.y - a.y, b.y - a.y, c.x - a.x);
 }
@@ -30,8 +30,8 @@ bool Cross(const glm::dvec2& a, const glm::dvec2& b, const glm::dvec2& c, const 
   return Turn(a, b, c) * Turn(a, b, d) < 0 && Turn(c, d, a) * Turn(c, d, b) < 0;
 }
 
-/// Newell's normal: twice the area that the polygon has seen along each axis. The parts of a
-/// figure of eight cancel; its largest part then stands for it.
+/// Returns Newell's normal: twice the area of the polygon seen along each axis. If the parts of a
+/// figure of eight cancel, its largest part is used instead.
 glm::dvec3 NormalOf(const std::vector<glm::dvec3>& corners) {
   constexpr double kCancelled = 1e-9;
   glm::dvec3 sum(0.0), largest(0.0);
@@ -43,8 +43,8 @@ glm::dvec3 NormalOf(const std::vector<glm::dvec3>& corners) {
   return glm::length(sum) > kCancelled * glm::length(largest) ? sum : largest;
 }
 
-/// The polygon seen along the axis that its normal is nearest to, from the side that it is wound
-/// counter-clockwise on.
+/// Returns the polygon projected along the axis nearest to its normal, seen from the side on which
+/// it is wound counter-clockwise.
 std::vector<glm::dvec2> Flattened(const std::vector<glm::dvec3>& corners) {
   const glm::dvec3 normal = NormalOf(corners);
   const glm::dvec3 size = glm::abs(normal);
@@ -84,9 +84,10 @@ bool CrossesItself(const std::vector<glm::dvec2>& at) {
   return false;
 }
 
-/// A ring of corners from which triangles are cut off. A corner whose triangle holds another corner
-/// is judged anew only when that one is gone, and from there on: so a triangle meets each corner
-/// once, and the time grows as the square of the corners.
+/// A ring of corners from which triangles are cut off. A corner whose triangle contains another
+/// corner is evaluated again only when that corner is removed, starting at that place in the ring.
+/// Each triangle is therefore tested against each corner once, and the time is quadratic in the
+/// number of corners.
 class EarCutter {
  public:
   EarCutter(const std::vector<glm::dvec3>& corners, const std::vector<glm::dvec2>& flat)
@@ -107,9 +108,9 @@ class EarCutter {
   }
 
  private:
-  /// The order in which corners are cut off, the best first.
+  /// Order in which corners are cut off, the best first.
   enum class Rank {
-    kGood,      // nothing else is in its triangle
+    kGood,      // the triangle contains nothing else
     kThin,      // as before, but its area may be due to rounding
     kFlat,      // the corner lies on a line with its neighbours
     kTouching,  // other corners lie on the triangle's edges
@@ -119,7 +120,7 @@ class EarCutter {
   struct Ear {
     Rank rank;
     double base2_m2;                // square of the edge that cutting makes
-    Rank otherwise = Rank::kGood;   // the rank by the corners before `covered`
+    Rank otherwise = Rank::kGood;   // rank by the corners before `covered`
     std::uint32_t covered = kNone;  // the first corner in the triangle
 
     bool operator<(const Ear& other) const {
@@ -147,7 +148,7 @@ class EarCutter {
     return Judged(i, {ear.rank, ear.base2_m2, IsThin(a, b, c) ? Rank::kThin : Rank::kGood}, 0);
   }
 
-  /// An ear by the corners from a place of the ring on.
+  /// Returns the ear after tests against the corners of the ring from `from` on.
   [[nodiscard]] Ear Judged(std::size_t i, Ear ear, std::size_t from) const {
     const Places triangle{Before(i), i, After(i)};
     const auto [a, b, c] = triangle;
@@ -165,12 +166,12 @@ class EarCutter {
   }
 
   [[nodiscard]] static bool IsThin(const glm::dvec2& a, const glm::dvec2& b, const glm::dvec2& c) {
-    constexpr double kThinnest = 1e-6;  // above the rounding of corners on a line
+    constexpr double kThinnest = 1e-6;  // above the rounding error of corners on a line
     const glm::dvec2 u = b - a, v = c - a;
     return u.x * v.y - u.y * v.x <= kThinnest * (glm::dot(u, u) + glm::dot(v, v));
   }
 
-  /// The rank that another corner leaves to a triangle: kGood where it is outside.
+  /// Returns the best rank that another corner allows for a triangle: kGood if it is outside.
   [[nodiscard]] Rank RankBeside(const Places& triangle, std::size_t other) const {
     int least = 1;
     for (std::size_t k = 0; k < 3; ++k) {
@@ -183,8 +184,9 @@ class EarCutter {
     return least > 0 ? Rank::kCovering : Rank::kTouching;
   }
 
-  /// A corner at the same place as one of the triangle's is in its way if an edge from it leads
-  /// into the triangle. An edge along one of the triangle's own is that of a slit.
+  /// Returns the rank for a corner that coincides with a corner of the triangle. It obstructs the
+  /// triangle if an edge from it leads into the triangle. An edge along an edge of the triangle
+  /// belongs to a slit and does not obstruct.
   [[nodiscard]] Rank RankOfTwin(const Places& triangle, std::size_t k, std::size_t twin) const {
     const glm::dvec2& here = At(triangle[k]);
     const glm::dvec2& next = At(triangle[(k + 1) % 3]);
@@ -200,7 +202,7 @@ class EarCutter {
     const std::array<std::uint32_t, 3> triangle{ring_[a], ring_[i], ring_[c]};
     if (!IsWithoutArea(corners_[triangle[0]], corners_[triangle[1]], corners_[triangle[2]]))
       cut_.triangles.push_back(triangle);
-    // A triangle wound the other way, larger than rounding makes it, is a loop of the polygon.
+    // A triangle of reversed winding that is larger than rounding errors is a loop of the polygon.
     if (ears_[i].rank == Rank::kReflex && !IsThin(At(c), At(i), At(a))) cut_.crosses_itself = true;
     ring_.erase(ring_.begin() + static_cast<std::ptrdiff_t>(i));
     ears_.erase(ears_.begin() + static_cast<std::ptrdiff_t>(i));
@@ -211,7 +213,7 @@ class EarCutter {
     Uncover(triangle[1], i);
   }
 
-  /// @param gone  the corner that was at a place of the ring.
+  /// @param gone  the corner that was at `place` in the ring.
   void Uncover(std::uint32_t gone, std::size_t place) {
     for (std::size_t i = 0; i < ears_.size(); ++i)
       if (ears_[i].covered == gone) ears_[i] = Judged(i, ears_[i], place);
@@ -219,8 +221,8 @@ class EarCutter {
 
   const std::vector<glm::dvec3>& corners_;
   const std::vector<glm::dvec2>& flat_;
-  std::vector<std::uint32_t> ring_;  // corners that are left, in order
-  std::vector<Ear> ears_;            // one a corner of the ring
+  std::vector<std::uint32_t> ring_;  // remaining corners, in order
+  std::vector<Ear> ears_;            // one per corner of the ring
   PolygonTriangles cut_;
 };
 

@@ -19,7 +19,8 @@
 namespace alpenglow::renderer {
 namespace {
 
-// Half an ulp of 1 in float, and the bound of n roundings in a row (Higham 2002, section 3.1).
+// Half an ulp of 1 in float, and the error bound of n successive roundings (Higham 2002, section
+// 3.1).
 constexpr double kUnitRoundoff = 0x1p-24;
 constexpr double Gamma(int n) { return n * kUnitRoundoff / (1.0 - n * kUnitRoundoff); }
 
@@ -37,7 +38,8 @@ struct Interval {
   double end;
 };
 
-// Where a ray is inside a box; nothing if it never is at a distance in [0, length].
+// Returns the interval of a ray inside a box; nullopt if it is never inside at a distance in [0,
+// length].
 std::optional<Interval> Clip(const Box& box, const glm::dvec3& origin, const glm::dvec3& unit,
                              double length_m) {
   Interval inside{0.0, length_m};
@@ -56,7 +58,7 @@ std::optional<Interval> Clip(const Box& box, const glm::dvec3& origin, const glm
   return inside;
 }
 
-// The gate in front of every ray: Embree aborts the process on what does not pass here.
+// Validates every ray, because Embree aborts the process for invalid ones.
 glm::dvec3 CheckedUnit(const glm::dvec3& origin, const glm::dvec3& direction) {
   if (!IsFinite(origin)) {
     throw InternalError(fmt::format("a ray starts at ({}, {}, {})", origin.x, origin.y, origin.z));
@@ -97,7 +99,7 @@ void CheckMesh(const TriangleMesh& mesh) {
   }
 }
 
-/// How far triangles reach, and the square of their longest edge.
+/// Bounding box of triangles, and the square of their longest edge.
 struct BoxReach {
   Box box;
   double longest2_m2 = 0.0;
@@ -131,7 +133,7 @@ BoxReach ReachOf(const TriangleMesh& mesh) {
       [](const BoxReach& a, const BoxReach& b) { return a.With(b); });
 }
 
-// Wide enough that a clipped ray starts off the triangles.
+// Widens the box so much that a clipped ray starts off the triangles.
 Box Widened(const Box& box) {
   const glm::dvec3 margin = 1.0 + 1e-5 * glm::max(glm::abs(box.low), glm::abs(box.high));
   return {box.low - margin, box.high + margin};
@@ -142,8 +144,8 @@ struct Corners {
   std::array<glm::dvec3, 3> normal;
 };
 
-// Weights of the corners at the place where the ray meets the triangle's plane, moved into the
-// triangle: a ray that grazes it in double may have met its edge in float.
+// Returns the weights of the corners at the intersection of the ray with the triangle's plane,
+// clamped to the triangle: a ray that misses it narrowly in double may have hit its edge in float.
 glm::dvec3 WeightsAt(const Corners& corners, const glm::dvec3& origin, const glm::dvec3& unit,
                      const RTCHit& found) {
   const glm::dvec3 u = corners.position[1] - corners.position[0];
@@ -176,7 +178,7 @@ TerrainHit HitAt(const Corners& corners, const glm::dvec3& origin, const glm::dv
     point += weight[k] * corners.position[static_cast<std::size_t>(k)];
     normal += side * weight[k] * corners.normal[static_cast<std::size_t>(k)];
   }
-  // How far the point lies under the tangent plane of each corner, weighted.
+  // Sum over the corners of the weighted distance of the point below their tangent planes.
   glm::dvec3 lift(0.0);
   for (int k = 0; k < 3; ++k) {
     const auto corner = static_cast<std::size_t>(k);
@@ -197,7 +199,7 @@ struct Terrain::Scene {
   RTCDevice device = nullptr;
   RTCScene scene = nullptr;
   std::mutex fault_mutex;
-  std::string fault;  // what Embree complained about
+  std::string fault;  // error message of Embree
 
   explicit Scene(TriangleMesh triangles) : mesh(std::move(triangles)) {
     CheckMesh(mesh);
@@ -220,8 +222,8 @@ struct Terrain::Scene {
   Scene& operator=(const Scene&) = delete;
 
   void Build() {
-    // Beyond this many triangles Embree's own copies of their corners are too much to keep (44
-    // bytes each); rays then fetch them from the mesh.
+    // Above this number of triangles Embree's own copies of their corners need too much memory (44
+    // bytes each); rays then fetch the corners from the mesh.
     constexpr std::size_t kManyTriangles = std::size_t{1} << 23;
     const bool many = mesh.triangles.size() > kManyTriangles;
     scene = rtcNewScene(device);
@@ -236,7 +238,7 @@ struct Terrain::Scene {
     rtcCommitScene(scene);
   }
 
-  // Embree reads the mesh's own memory, by 16 bytes at a time: past the last element, too.
+  // Embree reads the mesh's own memory 16 bytes at a time, also past the last element.
   template <typename Element>
   void ShareBuffer(RTCGeometry geometry, RTCBufferType type, RTCFormat format,
                    std::vector<Element>& elements) {
@@ -273,9 +275,10 @@ struct Terrain::Scene {
     return corners;
   }
 
-  // How far a point of a triangle may seem to lie off it when Embree looks: its coordinates are
-  // rounded to float, and the distance to the plane is a dot product of differences and a cross
-  // product of edges, 16 roundings of terms no longer than the longest edge.
+  // Returns a bound of the apparent distance of a triangle's point from the triangle in Embree's
+  // arithmetic: its coordinates are rounded to float, and the distance to the plane is a dot
+  // product of differences and a cross product of edges, 16 roundings of terms no longer than the
+  // longest edge.
   [[nodiscard]] double ErrorBound(const glm::dvec3& point) const {
     return kUnitRoundoff * (std::abs(point.x) + std::abs(point.y) + std::abs(point.z)) +
            Gamma(16) * longest_edge_m;
