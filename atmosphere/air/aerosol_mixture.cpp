@@ -24,7 +24,7 @@ struct Mixture {
   std::string name;
   double opac_scale_height_m = 0.0;
   std::vector<double> wavelength_nm, extinction_per_m, albedo, mean_cosine;
-  SpectralPhase phase;  // no wavelengths when OPAC's phase function is not in the tables
+  SpectralPhase phase;  // empty when OPAC's phase function is not in the tables
 };
 
 // Tops of the mixing layers [m]: OPAC's Table 5.
@@ -52,8 +52,8 @@ double Determinant(const std::array<double, 3>& a, const std::array<double, 3>& 
          c[0] * (a[1] * b[2] - a[2] * b[1]);
 }
 
-// How many times each tabulated mixture must be taken to have the particles of the polluted one:
-// Cramer's rule.
+// Returns the multiples of the tabulated mixtures that add up to the particles of the polluted
+// mixture, by Cramer's rule.
 std::array<double, 3> SharesOfPolluted() {
   std::array<std::array<double, 3>, 3> column{};
   for (std::size_t i = 0; i < column.size(); ++i) column[i] = kTabulated[i].number;
@@ -72,9 +72,10 @@ Mixture& Named(std::vector<Mixture>& mixtures, std::string_view name) {
                        [&](const Mixture& mixture) { return mixture.name == name; });
 }
 
-// The polluted mixture has no phase function in the tables, but the particles of three that have:
-// scattering coefficient times phase function is additive. It follows within 0.1 % (scattering and
-// mean cosine, which the tables have too), the tables' last digits being magnified.
+// The polluted mixture has no phase function in the tables, but it consists of the particles of
+// three mixtures that have one, and scattering coefficient times phase function is additive. The
+// result agrees within 0.1 % with the scattering and the mean cosine in the tables; the deviation
+// is the magnified rounding of their last digits.
 void AddPollutedPhase(std::vector<Mixture>& mixtures) {
   const std::array<double, 3> share = SharesOfPolluted();
   SpectralPhase phase = Named(mixtures, kTabulated[0].mixture).phase;
@@ -102,7 +103,7 @@ void AddPhases(std::vector<Mixture>& mixtures) {
   for (Mixture& mixture : mixtures) {
     const auto begin = std::find(names.begin(), names.end(), mixture.name) - names.begin();
     const auto count = static_cast<std::size_t>(
-        std::count(names.begin(), names.end(), mixture.name));  // rows of a mixture are neighbours
+        std::count(names.begin(), names.end(), mixture.name));  // rows of a mixture are contiguous
     const auto rows = [&](std::size_t column) {
       return std::span(columns[column]).subspan(static_cast<std::size_t>(begin), count);
     };
@@ -144,7 +145,8 @@ const Mixture& FindMixture(std::string_view name) {
                                fmt::join(AerosolMixtureNames(), ", ")));
 }
 
-// A power law between neighbours, and of the last two beyond the ends.
+// Interpolates by a power law between neighbours. Beyond the ends the power law of the nearest two
+// points is continued.
 double PowerLaw(const std::vector<double>& x, const std::vector<double>& y, double at) {
   const auto above = std::upper_bound(x.begin() + 1, x.end() - 1, at);
   const auto i = static_cast<std::size_t>(above - x.begin());
@@ -199,7 +201,7 @@ std::vector<PhaseFunction> AerosolMixturePhase(std::string_view name,
 }
 
 double CornetteShanksG(double mean_cosine) {
-  // 3 g (4 + g^2) / (5 (2 + g^2)) grows with g, by at least 0.9.
+  // 3 g (4 + g^2) / (5 (2 + g^2)) increases with g, with a slope of at least 0.9.
   double low = 0.0, high = 1.0;
   while (high - low > 1e-12) {
     const double g = 0.5 * (low + high);

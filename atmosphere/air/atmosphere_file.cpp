@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The reader of atmosphere.toml. ATMOSPHERE_FILE.md describes every key.
+// Implements the reader of atmosphere.toml. ATMOSPHERE_FILE.md describes every key.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -34,7 +34,7 @@ const Names kMieKeys{
     "scattering_per_m", "extinction_per_m",   "scale_height_m", "phase",      "g",
     "g_back",           "back_weight",        "alpha",          "phase_file", "phase_angles_deg",
     "phase_per_sr",     "droplet_diameter_um"};
-// Kinds of mie.phase that are no PhaseKind of their own, or need more than parameters.
+// Values of mie.phase that are not a PhaseKind, or that need more than parameters.
 constexpr const char* kFog = "fog";
 constexpr const char* kTabulated = "table";
 constexpr const char* kByMolecules = "molecules";
@@ -49,7 +49,7 @@ const Names kAerosolKeys{"visibility_m",
                          "mixture"};
 const Names kOzoneKeys{"absorption_per_m", "dobson", "profile", "bottom_m", "peak_m", "top_m"};
 
-// Refuses two keys of a table that say the same thing.
+// Throws if a table contains two keys that set the same quantity.
 void RequireOneOf(const TomlTable& table, const Names& keys) {
   std::string first;
   for (const std::string& key : keys) {
@@ -130,7 +130,8 @@ class AtmosphereFile {
                                          fmt::join(kWavelengthSetSizes, ", ")));
   }
 
-  // Ascending; remembers whether the lists of the file have to be reversed.
+  // Returns the wavelengths in ascending order, and stores whether the lists of the file must be
+  // reversed.
   std::optional<Values> Wavelengths() {
     if (!spectrum_) return std::nullopt;
     RequireOneOf(*spectrum_, {"wavelengths_nm", "bands"});
@@ -155,8 +156,8 @@ class AtmosphereFile {
     return values;
   }
 
-  // The preset on the file's wavelengths. Where it has no data its lists are left empty, for the
-  // file to fill.
+  // Returns the preset on the wavelengths of the file. Lists for which the preset has no data are
+  // left empty, to be filled from the file.
   Medium OnWavelengthsOfFile() {
     const std::optional<Values> wavelengths_nm = Wavelengths();
     Medium medium = MediumPreset(preset_);
@@ -175,7 +176,7 @@ class AtmosphereFile {
     return medium;
   }
 
-  // `target` has one value per wavelength, or none where the preset has no data.
+  // `target` has one value per wavelength, or is empty if the preset has no data.
   void ReadList(const TomlTable& table, const std::string& key, const Range& range, Values& target,
                 std::size_t count) const {
     std::optional<Values> values = table.Numbers(key, range.low, range.high);
@@ -220,7 +221,7 @@ class AtmosphereFile {
     ReadRefraction(medium);
   }
 
-  // Molecules whose density is given bend rays by it.
+  // If the file gives the density profile of the molecules, refraction follows that profile.
   void ReadRefraction(Medium& medium) const {
     if (rayleigh_->Has("scale_height_m") || rayleigh_->Has("deficit"))
       medium.refraction = RefractionBy::kMolecules;
@@ -280,8 +281,9 @@ class AtmosphereFile {
     if (equal) phases.resize(1);
   }
 
-  // Returns a lobe of this kind where the preset has another. A lobe of Cornette and Shanks may stand for the
-  // preset's table, with its mean cosine at 550 nm; any other needs a g of its own.
+  // Returns a lobe of this kind to replace the different kind of the preset. A Cornette-Shanks lobe
+  // may replace the preset's table and then has its mean cosine at 550 nm; any other lobe needs its
+  // own g.
   PhaseFunction LobeInsteadOf(PhaseKind of_preset, PhaseKind kind) const {
     if (kind == PhaseKind::kRayleigh || mie_->Has("g")) return {.kind = kind};
     const bool has_mixture = aerosol_ && aerosol_->Has("mixture");
@@ -312,8 +314,8 @@ class AtmosphereFile {
     return FogPhase(*diameter_um);
   }
 
-  // From a file beside this one, or from lists in this one: one for all wavelengths, or one after
-  // the other for every wavelength.
+  // Reads phase tables from a separate file, or from lists in this file: one table for all
+  // wavelengths, or one table per wavelength, concatenated.
   Phases TableOfFile(const Values& wavelengths_nm) const {
     const auto shared = [](PhaseTable table) {
       return PhaseFunction{.kind = PhaseKind::kTable,
@@ -365,7 +367,7 @@ class AtmosphereFile {
     }
   }
 
-  // One value for all wavelengths, or one per wavelength.
+  // Reads one value for all wavelengths, or one value per wavelength.
   void ReadParameter(const std::string& key, bool has_it, double PhaseFunction::*parameter,
                      Medium& medium) const {
     if (!mie_->Has(key)) return;
@@ -387,7 +389,7 @@ class AtmosphereFile {
     for (std::size_t i = 0; i < values.size(); ++i) phases[i].*parameter = values[i];
   }
 
-  // Share of scattering in the extinction of the preset's aerosol; empty where it has no data.
+  // Returns the single scattering albedo of the preset's aerosol; empty if the preset has no data.
   static Values ScatteringShare(const Medium& medium) {
     Values share;
     for (std::size_t i = 0; i < medium.mie_extinction_per_m.size(); ++i) {
@@ -396,7 +398,8 @@ class AtmosphereFile {
     return share;
   }
 
-  // Interpolated between the wavelengths in the logarithm of both; beyond them as lambda^-4.
+  // Interpolates the logarithm of the coefficient linearly in the logarithm of the wavelength;
+  // beyond the wavelengths the coefficient is extrapolated as lambda^-4.
   static double MoleculesAt550(const Medium& medium) {
     const Values& x = medium.wavelengths_nm;
     const Values& y = medium.rayleigh_scattering_per_m;
@@ -435,7 +438,8 @@ class AtmosphereFile {
                        [&](const std::string& key) { return aerosol_->Has(key); });
   }
 
-  // The mixture's spectrum, phase function and layer, and its own load unless the file gives one.
+  // Applies the spectrum, phase function and layer of the mixture, and its load unless the file
+  // gives one.
   void ReadMixture(const std::string& name, Medium& medium) const {
     const TomlTable& table = *aerosol_;
     const Names names = AerosolMixtureNames();
@@ -588,7 +592,7 @@ class AtmosphereFile {
   }
 
   TomlTable root_;
-  std::filesystem::path folder_;  // of the file: what names of other files are relative to
+  std::filesystem::path folder_;  // folder of the file; names of other files are relative to it
   std::string preset_;
   std::optional<TomlTable> planet_, spectrum_, rayleigh_, mie_, aerosol_, ozone_;
   bool reversed_ = false;

@@ -14,10 +14,10 @@ namespace {
 using Complex = std::complex<double>;
 
 struct Coefficients {
-  std::vector<Complex> a, b;  // from n = 1 on, at index n - 1
+  std::vector<Complex> a, b;  // orders n = 1, 2, ..., at index n - 1
 };
 
-// Logarithmic derivative of psi at m x, for n = 0 ... count.
+// Returns the logarithmic derivative of psi at m x, for n = 0 ... count.
 std::vector<Complex> LogarithmicDerivatives(Complex mx, std::size_t count) {
   const std::size_t start = std::max(count, static_cast<std::size_t>(std::ceil(std::abs(mx)))) + 16;
   std::vector<Complex> d(start + 1, Complex(0.0));
@@ -29,7 +29,7 @@ std::vector<Complex> LogarithmicDerivatives(Complex mx, std::size_t count) {
 }
 
 Coefficients CoefficientsOf(Complex index, double x) {
-  // Wiscombe (1980), Appl. Opt. 19, 1505: terms that matter.
+  // Number of significant terms: Wiscombe (1980), Appl. Opt. 19, 1505.
   const auto count = static_cast<std::size_t>(x + 4.05 * std::cbrt(x) + 2.0);
   const std::vector<Complex> d = LogarithmicDerivatives(index * x, count);
   double psi_before = std::cos(x), psi = std::sin(x);
@@ -52,7 +52,7 @@ Coefficients CoefficientsOf(Complex index, double x) {
   return coefficients;
 }
 
-/// Of the field across the plane of scattering, and in it.
+/// Amplitudes of the field perpendicular (s1) and parallel (s2) to the scattering plane.
 struct Amplitudes {
   Complex s1{0.0}, s2{0.0};
 };
@@ -73,7 +73,7 @@ Amplitudes AmplitudesAt(const Coefficients& c, double cosine) {
   return sum;
 }
 
-// Sum over n of 4/x^2 times what mean_cosine * scattering_efficiency consists of.
+// Returns the sum over n whose product with 4/x^2 is mean_cosine * scattering_efficiency.
 double ForwardSum(const Coefficients& c) {
   double sum = 0.0;
   for (std::size_t k = 0; k < c.a.size(); ++k) {
@@ -134,7 +134,7 @@ SphereScattering ScatterBySpheres(std::complex<double> index, const SizeDistribu
   all.per_sr.assign(angle_rad.size(), 0.0);
   for (const Ratio ratio : kRatios) (all.polarised.*ratio).assign(angle_rad.size(), 0.0);
   double area = 0.0;
-  // Uniform in log r: n(r) r^2 dr = n(r) r^3 d(log r).
+  // The radii are uniform in log r: n(r) r^2 dr = n(r) r^3 d(log r).
   for (int i = 0; i < kRadii; ++i) {
     const double radius = a * smallest * std::pow(spread / smallest, (i + 0.5) / kRadii);
     const double shadow =

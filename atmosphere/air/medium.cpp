@@ -83,8 +83,8 @@ Fault FaultOfExtinction(const Medium& medium) {
   return std::nullopt;
 }
 
-// The density must fall from the ground on: there the deficit may not fall faster than the rest,
-// and above it is then always the smaller of the two.
+// The density must decrease from the ground upwards. At the ground the deficit must not decrease
+// faster than the main term; above the ground its decrease is then always the smaller of the two.
 Fault FaultOfDeficit(const Medium& medium) {
   const MoleculeDeficit& deficit = medium.rayleigh_deficit;
   const double least = medium.rayleigh_scale_height_m * deficit.share / (1.0 + deficit.share);
@@ -138,7 +138,7 @@ Fault FaultOfScalars(const Medium& medium) {
   return std::nullopt;
 }
 
-/// A limit that another parameter sets, and why.
+/// A limit that depends on another parameter, and the reason for it.
 struct Limit {
   double value;
   std::string reason;
@@ -151,7 +151,7 @@ Fault OutOfLimits(const std::string& key, double value, const Limit& low, const 
                                       low.value, high.value)};
 }
 
-// Closed forms are series in scale height over radius.
+// The closed forms are series in scale height over radius.
 Fault FaultOfRadius(const Medium& medium) {
   const auto with = [](double factor, const char* key, double value) {
     return Limit{factor * value, fmt::format("with {} {}", key, value)};
@@ -171,7 +171,8 @@ Fault FaultOfRadius(const Medium& medium) {
                      {ranges::kPlanetRadius_m.high, ""});
 }
 
-// Columns of ozone and of the molecules' deficit end where these do, not at the top.
+// The closed forms for columns of ozone and of the molecules' deficit integrate each layer to its
+// own end, not to the top of the atmosphere.
 Fault FaultOfTop(const Medium& medium) {
   Limit low = {ranges::kAtmosphereTop_m.low, ""};
   const std::vector<double>& ozone = medium.ozone_absorption_per_m;
@@ -238,8 +239,8 @@ void AddPhase(const PhaseFunction& phase, Fnv1a& fnv) {
   if (phase.table) fnv.Add(phase.table->hash());
 }
 
-// Nothing is added for scalar light without depolarisation: such air has the hash that it had
-// before either was known.
+// Scalar light without depolarisation adds nothing to the hash, so such a medium keeps the hash
+// that it had before these two parameters existed.
 void AddPolarisation(const Medium& medium, Fnv1a& fnv) {
   const std::size_t bands = medium.wavelengths_nm.size();
   std::vector<double> depolarisation;
@@ -317,7 +318,7 @@ std::uint64_t MediumHash(const Medium& medium) {
   fnv.Add(medium.mie_scale_height_m);
   for (const PhaseFunction& phase : medium.mie_phase) {
     AddPhase(phase, fnv);
-    if (AllShareOnePhase(medium)) break;  // given once or once per wavelength: the same air
+    if (AllShareOnePhase(medium)) break;  // one phase for all, or equal phases, give the same hash
   }
   fnv.Add(medium.ozone_absorption_per_m);
   fnv.Add(medium.ozone.bottom_m);
@@ -351,7 +352,7 @@ std::string ListOf(const std::vector<double>& values) {
   return fmt::format("[{}]", fmt::join(values, ", "));
 }
 
-// One value when all wavelengths share the phase function, else one per wavelength.
+// Writes one value if all wavelengths share the phase function, else one value per wavelength.
 std::string ParameterLine(const char* key, double PhaseFunction::*parameter,
                           const std::vector<PhaseFunction>& phases) {
   std::vector<double> values;
@@ -359,7 +360,7 @@ std::string ParameterLine(const char* key, double PhaseFunction::*parameter,
   return fmt::format("{} = {}\n", key, ListOf(values));
 }
 
-// Tables of different angles at different wavelengths have no text.
+// Tables with different angles at different wavelengths cannot be written as text.
 std::string TableLines(const std::vector<PhaseFunction>& phases) {
   std::vector<double> values;
   for (const PhaseFunction& phase : phases) {

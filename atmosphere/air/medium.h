@@ -1,16 +1,17 @@
 // SPDX-License-Identifier: MIT
-// What the numbers of a medium may be: one place for the check of a medium and of its file.
-//
-// What the air is made of: three species over a spherical planet, on a wavelength set.
+// The medium of the atmosphere: three species over a spherical planet, on a wavelength set, with
+// the allowed ranges of its parameters and its text form.
 //
 //   molecules   sigma(h) = rayleigh_scattering [(1 + d) exp(-h / H_R) - d exp(-h / H_D)]
 //                                                                           scattering only
 //   aerosol     sigma(h) = mie_scattering      exp(-h / H_M)                scattering, absorption
 //   ozone       sigma(h) = ozone_absorption    layer(h)                     absorption only
 //
-// and nothing above the top. SI units except wavelengths [nm].
+// Above the top there is no medium. SI units except wavelengths [nm].
 //
-// A medium as the text of an atmosphere.toml: what files carry so that their medium can be rebuilt.
+// The ranges are defined once, for the check of a medium and for the reader of its file. A medium
+// can be written as the text of an atmosphere.toml: tables store this text so that their medium can
+// be rebuilt.
 #pragma once
 
 #include <cstddef>
@@ -32,47 +33,51 @@ struct Range {
 inline constexpr Range kWavelength_nm{200.0, 4000.0};
 inline constexpr Range kSolarIrradiance{0.0, 1e6};
 inline constexpr Range kAlbedo{0.0, 1.0};
-/// Up to an optical depth of 1e5 in a layer of 1 m.
+/// Coefficients up to an optical depth of 1e5 in a layer of 1 m.
 inline constexpr Range kCoefficient_per_m{0.0, 1e5};
-/// Beyond 1e8 m (40 % more than Jupiter) light along grazing rays is wrong by 0.1 % in double and 1
-/// % in float; below, what is allowed depends on the air (kLeastRadiusInScaleHeights and below).
+/// For radii beyond 1e8 m (40 % more than Jupiter) light along grazing rays is wrong by 0.1 % in
+/// double and 1 % in float. The lower limit depends on the air (kLeastRadiusInScaleHeights and
+/// below).
 inline constexpr Range kPlanetRadius_m{1e3, 1e8};
 inline constexpr Range kAtmosphereTop_m{1.0, 1e7};
-/// In a layer of 100 m sixteen nodes along a ray leave 0.2 % (rms) to 1 % of what is scattered
-/// once, and more in thinner ones. Fog is a medium of its own in pictures.
+/// In a layer of 100 m, sixteen nodes along a ray have an error of 0.2 % (rms) to 1 % of the single
+/// scattering, and more in thinner layers. Renderers treat fog as a separate medium.
 inline constexpr Range kScaleHeight_m{100.0, 2e5};
 inline constexpr Range kDeficit{0.0, 1.0};
 inline constexpr Range kDepolarisation{0.0, kLargestDepolarisation};
 inline constexpr Range kOzoneAltitude_m{0.0, 1e7};
 
-/// Radius over scale height. Columns are two terms of a series in its
-/// inverse (optical_depth.glsl) that leave 0.19 of its square: 3e-4
-/// of an optical depth here, at most 1e-3 of light scattered once.
+/// Radius over scale height. Columns are computed with two terms of a series in the inverse of this
+/// ratio (optical_depth.glsl), with an error of 0.19 of its square: 3e-4 of an optical depth here,
+/// at most 1e-3 of single scattering.
 inline constexpr double kLeastRadiusInScaleHeights = 25.0;
-/// The least distance from the peak of ozone to either end of its layer: single precision tells them
-/// apart, and the density between them has a slope.
+/// The least distance from the peak of ozone to either end of its layer: single precision can
+/// resolve it, and the density in between has a finite slope.
 inline constexpr double kLeastOzoneSide_m = 1.0;
-/// Radius over the top of a smooth layer of ozone, whose rule of nodes goes wrong by 5e-4 of its
-/// column here, by 1e-2 at half of it and by any amount beyond.
+/// Radius over the top of a smooth layer of ozone. The quadrature of this layer has an error of
+/// 5e-4 of the column at this ratio, 1e-2 at half of it and an unbounded error below that.
 inline constexpr double kLeastRadiusInSmoothOzone = 3.0;
 
-/// Top over the molecules' scale height. Nodes of diffuse light stand at equal steps of the root of
-/// the altitude: beyond this the lowest layer of air slips between them (2 % at 300, 10 % at 1200).
+/// Top over the molecules' scale height. Nodes of multiple scattering are uniform in the root of
+/// the altitude: beyond this ratio they do not resolve the lowest layer of air (2 % error at 300,
+/// 10 % at 1200).
 inline constexpr double kHighestTopInScaleHeights = 300.0;
-/// The top may cut off this much of a smooth layer of ozone (5e-7 of its column).
+/// The top of the atmosphere must be at least this fraction of the top of a smooth layer of ozone
+/// (cutting off 5e-7 of its column).
 inline constexpr double kEndOfSmoothOzone = 0.9;
-/// Scale heights of the deficit of molecules after which nothing is left of it (3e-4).
+/// Number of scale heights of the deficit of molecules after which the deficit is negligible
+/// (3e-4).
 inline constexpr double kEndOfDeficit = 8.0;
 
-/// Most bands of a medium: one each nanometre from 360 to 830 nm, and some.
+/// Maximum number of bands of a medium: one per nanometre from 360 to 830 nm, and some more.
 inline constexpr std::size_t kMostWavelengths = 512;
 
 }  // namespace alpenglow::atmosphere::ranges
 
 namespace alpenglow::atmosphere {
 
-/// What a single exponential has too much of near the ground, relative to the density there: air
-/// that cools upwards, as below 11 km on Earth, thins out more slowly than the air above it.
+/// The excess of a single exponential near the ground, relative to the density there: air that
+/// cools upwards, as below 11 km on Earth, thins out more slowly than the air above it.
 struct MoleculeDeficit {
   double share = 0.0;  // d, in [0, 1]
   double scale_height_m = 4000.0;
@@ -80,17 +85,18 @@ struct MoleculeDeficit {
   bool operator==(const MoleculeDeficit&) const = default;
 };
 
-/// How the refractivity falls off with height: as the density of the molecules, or as in the air of
-/// almanacs (kAlmanacLayers of atmosphere/sun/refraction.h), whose gradient near the ground is what
-/// lifts a low sun.
+/// Selects the height profile of the refractivity: the density of the molecules, or the standard
+/// air of almanacs (kAlmanacLayers of atmosphere/sun/refraction.h), whose gradient near the ground
+/// determines the refraction of a low sun.
 enum class RefractionBy { kMolecules, kAlmanacs };
 
-/// Tent: linear from 0 at the bottom to 1 at the peak to 0 at the top (Bruneton 2017).
-/// Smooth: (27/4 y (1 - y)^2)^4 with y = h / top and the peak at top / 3. A tent bends the light of
-/// twilight at its edges, which no quadrature with few nodes can follow; this does not.
+/// kTent: linear from 0 at the bottom to 1 at the peak to 0 at the top (Bruneton 2017). kSmooth:
+/// (27/4 y (1 - y)^2)^4 with y = h / top and the peak at top / 3. The kinks of a tent make kinks in
+/// the light of twilight, which no quadrature with few nodes can resolve; the smooth layer has
+/// none.
 enum class OzoneShape { kTent, kSmooth };
 
-/// Ozone's density relative to its peak, over altitude.
+/// Density profile of ozone over altitude, relative to its peak.
 struct OzoneLayer {
   double bottom_m = 10000.0;
   double peak_m = 25000.0;
@@ -100,19 +106,19 @@ struct OzoneLayer {
   bool operator==(const OzoneLayer&) const = default;
 };
 
-/// A smooth layer with its peak at `peak_m`. The default is that of the earth presets: peak at 22
-/// km, mean at 23.6 km, standard deviation 8.2 km.
+/// Returns a smooth layer with its peak at `peak_m`. The default is the layer of the earth presets:
+/// peak at 22 km, mean at 23.6 km, standard deviation 8.2 km.
 [[nodiscard]] OzoneLayer SmoothOzone(double peak_m = 22000.0);
 
-/// Height [m] of a layer of density 1 throughout that holds as much.
+/// Returns the height [m] of a layer of uniform density 1 with the same column.
 [[nodiscard]] double EquivalentDepth_m(const OzoneLayer& layer);
 
 /// Lists hold one value per wavelength.
 struct Medium {
   std::string name = "earth";
-  /// The ground is the WGS84 ellipsoid: a renderer replaces planet_radius_m by the radius of the
-  /// sphere that osculates it at the viewer. False when the planet is a sphere of exactly
-  /// planet_radius_m.
+  /// True if the ground is the WGS84 ellipsoid: a renderer then replaces planet_radius_m by the
+  /// radius of the sphere that osculates it at the viewer. False if the planet is a sphere of
+  /// exactly planet_radius_m.
   bool follows_wgs84 = true;
   double planet_radius_m = 6371008.7714;
   double atmosphere_height_m = 120000.0;  // top above the ground
@@ -124,55 +130,60 @@ struct Medium {
   std::vector<double> rayleigh_scattering_per_m;  // at altitude 0
   double rayleigh_scale_height_m = 8000.0;
   MoleculeDeficit rayleigh_deficit = {};
-  /// Of the molecules: of light scattered by 90 degrees, what vibrates in the plane of scattering
-  /// over what vibrates across it; one for all wavelengths, or one per wavelength, in [0, 1/2]. It
-  /// shapes their scattering; the coefficient is as given.
+  /// Depolarisation of the molecules: for light scattered by 90 degrees, the ratio of the component
+  /// polarised in the scattering plane to the component perpendicular to it; one for all
+  /// wavelengths, or one per wavelength, in [0, 1/2]. It shapes the phase function; the scattering
+  /// coefficient is used as given.
   std::vector<double> rayleigh_depolarisation{0.0};
-  /// It bends lines of sight and changes no light.
+  /// Refraction bends lines of sight and does not change the light.
   RefractionBy refraction = RefractionBy::kMolecules;
 
   std::vector<double> mie_scattering_per_m;  // at altitude 0
   std::vector<double> mie_extinction_per_m;  // at altitude 0, >= scattering
   double mie_scale_height_m = 1200.0;
-  /// Of the aerosol: one for all wavelengths, or one per wavelength, all of one kind.
+  /// Phase functions of the aerosol: one for all wavelengths, or one per wavelength, all of one
+  /// kind.
   std::vector<PhaseFunction> mie_phase{PhaseFunction{}};
 
   std::vector<double> ozone_absorption_per_m;  // at the peak of the layer
   OzoneLayer ozone;
 
-  /// Whether light scattered more than once is followed with its polarisation (molecules polarise,
-  /// aerosol and ground depolarise), as real light is, or as if each scattering left it
-  /// unpolarised, as renderers do. True of every preset but "bruneton2017".
+  /// True if multiple scattering is computed with polarisation (molecules polarise, aerosol and
+  /// ground depolarise), which is physically correct; false if light is treated as unpolarised
+  /// after each scattering, which is common in renderers. True of every preset but "bruneton2017".
   bool polarised = false;
 
   bool operator==(const Medium&) const = default;
 };
 
-/// Density of the molecules relative to altitude 0.
+/// Returns the density of the molecules relative to altitude 0.
 [[nodiscard]] double MoleculeDensity(const Medium& medium, double altitude_m);
-/// Column of the molecules over altitude 0 at their density there [m].
+/// Returns the column of the molecules above altitude 0, divided by their density at altitude 0
+/// [m].
 [[nodiscard]] double MoleculeColumn_m(const Medium& medium);
 
-/// The molecules' at the wavelength of this index.
+/// Returns the depolarisation of the molecules at the wavelength of this index.
 [[nodiscard]] inline double Depolarisation(const Medium& medium, std::size_t band) {
   const std::vector<double>& values = medium.rayleigh_depolarisation;
   return values.size() == 1 ? values.front() : values[band];
 }
 
-/// Values [1/sr] of the molecules' phase function, one per wavelength. @param cos_scattering  as
-/// for Phase().
+/// Returns the phase function of the molecules [1/sr], one value per wavelength.
+/// @param cos_scattering  as for Phase().
 [[nodiscard]] std::vector<double> RayleighPhaseValues(const Medium& medium, double cos_scattering);
 
-/// The aerosol's phase function at the wavelength of this index.
+/// Returns the aerosol's phase function at the wavelength of this index.
 [[nodiscard]] inline const PhaseFunction& MiePhase(const Medium& medium, std::size_t band) {
   return medium.mie_phase.size() == 1 ? medium.mie_phase.front() : medium.mie_phase[band];
 }
 
-/// Values [1/sr] of the aerosol's phase function, one per wavelength; evaluated once when all share
-/// it. @param cos_scattering  as for Phase().
+/// Returns the aerosol's phase function [1/sr], one value per wavelength; evaluated once if all
+/// wavelengths share it.
+/// @param cos_scattering  as for Phase().
 [[nodiscard]] std::vector<double> MiePhaseValues(const Medium& medium, double cos_scattering);
 
-/// A parameter out of range: its key in atmosphere.toml, and one line with key, value and range.
+/// A parameter out of range: its key in atmosphere.toml, and one line of text with key, value and
+/// range.
 struct MediumFault {
   std::string key;
   std::string text;
@@ -180,61 +191,65 @@ struct MediumFault {
   bool operator==(const MediumFault&) const = default;
 };
 
-/// The first parameter out of range, if there is one.
+/// Returns the first parameter out of range, if there is one.
 [[nodiscard]] std::optional<MediumFault> FindFault(const Medium& medium);
 
 /// Throws InputError naming the key, the value and the range of the first parameter out of range.
 void Validate(const Medium& medium);
 
-/// A 64-bit hash (FNV-1a over the bit patterns, -0 read as 0) of everything that a table depends
-/// on: all but the name and the refraction. Stable over programs, machines and versions.
+/// Returns a 64-bit hash (FNV-1a over the bit patterns, -0 read as 0) of everything that a table
+/// depends on: all parameters except the name and the refraction. It is stable over programs,
+/// machines and versions.
 [[nodiscard]] std::uint64_t MediumHash(const Medium& medium);
 
-/// The medium over the sphere that osculates the ellipsoid at a latitude, where its ground is one;
-/// unchanged where the planet is a sphere.
+/// Returns the medium over the sphere that osculates the ellipsoid at a latitude if follows_wgs84
+/// is set; returns it unchanged if the planet is a sphere.
 [[nodiscard]] Medium OnOsculatingSphere(Medium medium, double latitude_rad);
 
-/// One of "earth", "bruneton2017", "clear-mountain", "hazy", "mars", on the preset's own
-/// wavelengths
-/// ("bruneton2017": 680, 550, 440 nm of the publication, given ascending; the others: the four
-/// optimised bands) or, for all but "bruneton2017", on the ones given, ascending in [360, 830]
-/// where the tables behind them reach. Throws InputError for another name or wavelength. Every
-/// number's source is in medium_presets.cpp.
+/// Returns one of "earth", "bruneton2017", "clear-mountain", "hazy", "mars". Without wavelengths,
+/// "bruneton2017" has 680, 550, 440 nm of the publication, given ascending, and the others the four
+/// optimised bands. All but "bruneton2017" accept other wavelengths, ascending in [360, 830], the
+/// range of the underlying tables. Throws InputError for an unknown name or a wavelength out of
+/// range. The source of every number is in medium_presets.cpp.
 [[nodiscard]] Medium MediumPreset(std::string_view name);
 [[nodiscard]] Medium MediumPreset(std::string_view name, const std::vector<double>& wavelengths_nm);
 [[nodiscard]] std::vector<std::string> MediumPresetNames();
-/// Depolarisation of a preset's gas at these wavelengths in [200, 4000]: of dry air
-/// (AirDepolarisation), on "mars" of carbon dioxide.
+/// Returns the depolarisation of a preset's gas at these wavelengths in [200, 4000]: dry air
+/// (AirDepolarisation), or carbon dioxide for "mars".
 [[nodiscard]] std::vector<double> GasDepolarisation(std::string_view preset,
                                                     const std::vector<double>& wavelengths_nm);
-/// Phase functions of a preset's aerosol: one per wavelength, or, of "bruneton2017", one for all.
-/// @param wavelengths_nm  ascending; beyond the tables they are as at the tables' ends.
+/// Returns the phase functions of a preset's aerosol: one per wavelength, or one for all for
+/// "bruneton2017".
+/// @param wavelengths_nm  ascending; beyond the tables the values at the ends of the tables are
+/// used.
 [[nodiscard]] std::vector<PhaseFunction> AerosolPhase(std::string_view preset,
                                                       const std::vector<double>& wavelengths_nm);
-/// The same medium in polarised light, scattered by the gas of the preset.
+/// Returns the medium with polarised multiple scattering and the depolarisation of the preset's
+/// gas.
 [[nodiscard]] Medium InPolarisedLight(Medium medium, std::string_view preset);
-/// The same medium of round molecules in scalar light, as other renderers have it.
+/// Returns the medium with scalar multiple scattering and molecules without depolarisation, as in
+/// other renderers.
 [[nodiscard]] Medium InScalarLight(Medium medium);
 
-/// The wavelengths [nm] on which every preset but "bruneton2017" has data.
+/// Range of wavelengths [nm] in which every preset but "bruneton2017" has data.
 inline constexpr double kFirstPresetWavelength_nm = 360.0;
 inline constexpr double kLastPresetWavelength_nm = 830.0;
 
-/// Reads atmosphere.toml: a preset, changed by what the file gives (keys, units and meaning:
+/// Reads atmosphere.toml: a preset, modified by the values of the file (keys, units and meaning:
 /// ATMOSPHERE_FILE.md). Wavelengths may ascend or descend; descending ones are stored reversed,
-/// with every list of the file. Throws InputError "file:line: key ..." for unknown keys (with the
-/// nearest known one), wrong types, NaN, infinities, lists of unequal length, values out of range,
-/// keys that contradict each other or would have no effect, and malformed text. The name is the
-/// preset's, or "custom (from PRESET)" when the file changes anything.
+/// together with every list of the file. Throws InputError "file:line: key ..." for unknown keys
+/// (with the nearest known one), wrong types, NaN, infinities, lists of unequal length, values out
+/// of range, keys that contradict each other or would have no effect, and malformed text. The name
+/// of the medium is the preset's, or "custom (from PRESET)" if the file changes anything.
 [[nodiscard]] Medium ReadMedium(const std::filesystem::path& file);
 
-/// As ReadMedium, from text; `origin` stands in messages where the file's name would.
+/// Reads a medium like ReadMedium, from text; messages contain `origin` in place of the file name.
 [[nodiscard]] Medium MediumFromToml(std::string_view text, const std::string& origin);
 
-/// Every parameter, in the shortest digits that give the same double back:
-/// MediumHash(MediumFromToml(TomlFromMedium(m), "")) == MediumHash(m). The name is not in it.
-/// Throws InputError for a medium that no atmosphere.toml describes (a parameter set that its phase
-/// function does not have).
+/// Writes every parameter, in the shortest digits that give the same double back:
+/// MediumHash(MediumFromToml(TomlFromMedium(m), "")) == MediumHash(m). The name is not written.
+/// Throws InputError for a medium that atmosphere.toml cannot describe (a parameter is set that its
+/// phase function does not have).
 [[nodiscard]] std::string TomlFromMedium(const Medium& medium);
 
 }  // namespace alpenglow::atmosphere

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The atmospheres that are known by name, with the source of every number.
+// Defines the named atmospheres, with the source of every number.
 //
 // Aerosol of the earth presets: Angstrom (1929), tau(lambda) = tau(550) (lambda / 550 nm)^-a, in
 // one exponential layer; single scattering albedo and phase functions of OPAC mixtures at 80 %
@@ -42,12 +42,13 @@ struct Aerosol {
   double optical_depth_550;
   double angstrom_exponent;
   std::array<double, 3> single_scattering_albedo;  // at 450, 550, 650 nm
-  const char* mixture;                             // whose phase function it has
+  const char* mixture;                             // source of the phase function
 };
 
-// Albedos: OPAC. Optical depths are round numbers: earth a clean continental day, visibility near
-// 74 km (Koschmieder); clear-mountain the cleanest days of remote stations; hazy a summer day in
-// the lowlands, visibility near 22 km. Exponent 1.3: the usual mean over land (Angstrom 1929).
+// Albedos: OPAC. Optical depths are round numbers: "earth" is a clean continental day, visibility
+// near 74 km (Koschmieder); "clear-mountain" the cleanest days of remote stations; "hazy" a summer
+// day in the lowlands, visibility near 22 km. Exponent 1.3: the usual mean over land
+// (Angstrom 1929).
 constexpr Aerosol kEarthAerosols[] = {
     {"earth", 0.05, 1.3, {0.9304, 0.9253, 0.9186}, "continental_average"},
     {"clear-mountain", 0.02, 1.3, {0.9766, 0.9720, 0.9667}, "continental_clean"},
@@ -74,20 +75,22 @@ Medium Earth(const Aerosol& aerosol, const std::vector<double>& wavelengths_nm) 
   medium.name = aerosol.name;
   medium.follows_wgs84 = true;
   medium.planet_radius_m = kEarthMeanRadius_m;
-  medium.atmosphere_height_m = 120000.0;  // twilight needs air above 60 km
+  medium.atmosphere_height_m = 120000.0;  // twilight comes from air above 60 km
   medium.wavelengths_nm = wavelengths_nm;
   medium.solar_irradiance = Evaluate(wavelengths_nm, SolarIrradiance);
-  // A mixture of grass and soil, without the rise beyond 700 nm: 0.10 at 400 nm to 0.15 at 700 nm.
-  // A plausible mean, not a measurement.
+  // The ground is a mixture of grass and soil, without the rise beyond 700 nm: 0.10 at 400 nm to
+  // 0.15 at 700 nm. This is a plausible mean, not a measurement.
   const SampledFunction albedo({400.0, 700.0}, {0.10, 0.15});
   medium.ground_albedo = Evaluate(wavelengths_nm, albedo);
   medium.rayleigh_scattering_per_m = Evaluate(wavelengths_nm, RayleighScatteringAtSeaLevel);
-  // The density of the U.S. Standard Atmosphere (1976) within 10 % below 25 km and 22 % up to 55
-  // km, with its column, 8456 m: fitted to logarithms of density, those below 12 km counted twice.
-  // One exponential of 8 km is 2 times too dense at 40 km, where twilight comes from.
+  // This fit has the column of the U.S. Standard Atmosphere (1976), 8456 m, and its density within
+  // 10 % below 25 km and 22 % up to 55 km. It was fitted to logarithms of density, with double
+  // weight below 12 km. One exponential of 8 km is 2 times too dense at 40 km, the source of
+  // twilight.
   medium.rayleigh_scale_height_m = 6800.0;
   medium.rayleigh_deficit = {0.42, 2857.0};
-  // That density falls off too slowly near the ground: it would lift a sun on the horizon by 30'.
+  // The fitted density decreases too slowly near the ground: it would lift a sun on the horizon by
+  // 30'.
   medium.refraction = RefractionBy::kAlmanacs;
   AddAerosol(aerosol, medium);
   medium.ozone = SmoothOzone();
@@ -99,10 +102,10 @@ Medium Earth(const Aerosol& aerosol, const std::vector<double>& wavelengths_nm) 
 
 constexpr double kKingFactorOfCarbonDioxide = 1.15;  // Bodhaine et al. (1999)
 
-// Rayleigh scattering of carbon dioxide at the ground of Mars: refractivity 4.49e-4 and King factor
-// F = 1.15 (depolarisation 0.08) in (24 pi^3 / lambda^4 N^2) ((n^2 - 1)/(n^2 + 2))^2 F, for 610 Pa and
-// 210 K. The cross section at 532 nm, 1.32e-30 m^2, is 6 % above what Sneep and Ubachs (2005, JQSRT
-// 92, 293-310) measured; it is a two-hundredth of the dust.
+// Returns Rayleigh scattering of carbon dioxide at the ground of Mars: refractivity 4.49e-4 and
+// King factor F = 1.15 (depolarisation 0.08) in (24 pi^3 / lambda^4 N^2) ((n^2 - 1)/(n^2 + 2))^2 F,
+// for 610 Pa and 210 K. The cross section at 532 nm, 1.32e-30 m^2, is 6 % above the measurement of
+// Sneep and Ubachs (2005, JQSRT 92, 293-310); this scattering is a two-hundredth of the dust's.
 double RayleighScatteringOnMars(double wavelength_nm) {
   constexpr double kLoschmidt_per_m3 = 2.6867811e25;
   constexpr double kMolecules_per_m3 = 610.0 / (1.380649e-23 * 210.0);
@@ -120,7 +123,7 @@ struct MarsDust {
   SpectralPhase phase;
 };
 
-// Made, with sources, by tests/bench/mars_dust.cpp.
+// Reads the tables that tests/bench/mars_dust.cpp makes, with their sources.
 MarsDust ReadMarsDust() {
   const auto optics = atmosphere::ReadColumns("atmosphere/data/mars_dust.csv", {0, 1, 2});
   const auto rows = atmosphere::ReadColumns("atmosphere/data/mars_dust_phase.csv", {0, 1, 2});
@@ -143,13 +146,13 @@ std::vector<PhaseFunction> PhasesOfMarsDust(const std::vector<double>& wavelengt
   return phases;
 }
 
-// Mars on a clear day of its dusty season: dust of optical depth 0.5, mixed with the gas.
+// Returns Mars on a clear day of its dusty season: dust of optical depth 0.5, mixed with the gas.
 Medium Mars(const std::vector<double>& wavelengths_nm) {
   constexpr double kDistance_au = 1.524;      // semi-major axis of the orbit
   constexpr double kDustOpticalDepth = 0.5;   // Smith et al. (1997), Science 278, 1758-1765
   constexpr double kScaleHeight_m = 11000.0;  // R T / M g at 210 K; the dust is well mixed
   const MarsDust& dust = DustOfMars();
-  // Bright, dusty ground (Bell et al. 1999, Icarus 138, 25-35), rounded to 0.02.
+  // The ground is bright and dusty (Bell et al. 1999, Icarus 138, 25-35), rounded to 0.02.
   const SampledFunction ground({400.0, 500.0, 600.0, 700.0, 800.0}, {0.06, 0.08, 0.20, 0.28, 0.30});
   Medium medium;
   medium.name = "mars";
@@ -175,8 +178,8 @@ Medium Mars(const std::vector<double>& wavelengths_nm) {
   return medium;
 }
 
-// The constants of Bruneton, E. (2017), "Precomputed Atmospheric Scattering: a New Implementation",
-// that engines share; ascending here.
+// Returns the constants of Bruneton, E. (2017), "Precomputed Atmospheric Scattering: a New
+// Implementation", which many engines use, with wavelengths in ascending order.
 Medium Bruneton2017() {
   Medium medium;
   medium.name = "bruneton2017";
@@ -286,7 +289,8 @@ constexpr std::array<Row, 6> kRows{
     &Medium::rayleigh_scattering_per_m, &Medium::mie_scattering_per_m,
     &Medium::mie_extinction_per_m,      &Medium::ozone_absorption_per_m};
 
-/// The preset in a medium's name, if it has values at all wavelengths of the table's data.
+/// Returns the preset named in a medium's name, if that preset has values at all wavelengths of the
+/// tables.
 std::optional<std::string> PresetOf(const Medium& medium) {
   for (const std::string& preset : MediumPresetNames()) {
     if (preset == "bruneton2017") continue;
@@ -295,7 +299,7 @@ std::optional<std::string> PresetOf(const Medium& medium) {
   return std::nullopt;
 }
 
-/// Linear between wavelengths, constant beyond them.
+/// Interpolates linearly between wavelengths, constant beyond them.
 double Interpolated(const std::vector<double>& nm, const std::vector<double>& values, double at) {
   const auto above = std::upper_bound(nm.begin(), nm.end(), at);
   if (above == nm.begin()) return values.front();
@@ -305,7 +309,8 @@ double Interpolated(const std::vector<double>& nm, const std::vector<double>& va
   return values[i - 1] + share * (values[i] - values[i - 1]);
 }
 
-/// Factor by which a medium differs from its preset; nothing where that is none.
+/// Returns the ratios of a medium to its preset; std::nullopt if the preset is zero and the medium
+/// is not.
 std::optional<std::vector<double>> Factors(const std::vector<double>& medium,
                                            const std::vector<double>& preset) {
   std::vector<double> factors;
@@ -316,7 +321,7 @@ std::optional<std::vector<double>> Factors(const std::vector<double>& medium,
   return factors;
 }
 
-/// The gas's own where the medium has that.
+/// Returns the depolarisation of the preset's gas if the medium has it at its own wavelengths.
 std::vector<double> DepolarisationAt(const Medium& medium, const std::string& preset,
                                      const std::vector<double>& wavelengths_nm) {
   const std::vector<double>& here = medium.rayleigh_depolarisation;

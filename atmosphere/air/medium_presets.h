@@ -1,10 +1,6 @@
 // SPDX-License-Identifier: MIT
-// From the column of ozone, as weather services give it, to the coefficient at the peak of its
-// layer.
-//
-// A medium on other wavelengths than those it was given on.
-//
-// An atmosphere as people name it: a preset, or a file.
+// Functions that make a medium: from a preset or a file, on other wavelengths, and with an ozone
+// column in Dobson units, as weather services give it.
 #pragma once
 
 #include <filesystem>
@@ -15,22 +11,23 @@
 
 namespace alpenglow::atmosphere {
 
-/// Absorption coefficient at the peak of the layer [1/m] when its column is
-/// `column_dobson` (1 DU = 2.6867811e20 molecules per m^2): column times cross section
-/// over the depth of the layer.
-/// @param wavelength_nm  in [360, 830]; 0 where the cross section has no data.
+/// Returns the absorption coefficient at the peak of the layer [1/m] for a column of
+/// `column_dobson` (1 DU = 2.6867811e20 molecules per m^2): column times cross section over the
+/// equivalent depth of the layer.
+/// @param wavelength_nm  in [360, 830]; returns 0 where the cross section has no data.
 [[nodiscard]] double OzoneAbsorptionAtPeak(double column_dobson, const OzoneLayer& layer,
                                            double wavelength_nm);
 
-/// The medium on WavelengthSet(bands): the preset that it was made from (Medium::name) there, times
-/// what the medium differs from that preset by, linear between its wavelengths. Exact for a preset,
-/// and where the differences are factors of all wavelengths (ozone in Dobson units, visibility).
-/// Nothing where the preset is not known, has no values there, or has none of what the medium has.
+/// Returns the medium on WavelengthSet(bands): its preset (from Medium::name) on these bands, times
+/// the ratio of the medium to its preset, linear between the medium's wavelengths. The result is
+/// exact for an unmodified preset, and if the differences are factors common to all wavelengths
+/// (ozone in Dobson units, visibility). Returns std::nullopt if the preset is not known, has no
+/// values at these wavelengths, or is zero where the medium is not.
 [[nodiscard]] std::optional<Medium> OnBands(const Medium& medium, int bands);
 
-/// MediumPreset of a name that is one of MediumPresetNames, else ReadMedium of the file, whose name
-/// is relative to `folder`. Throws InputError as they do; for a word that is neither it names the
-/// nearest preset, or all.
+/// Returns MediumPreset of a name in MediumPresetNames, else ReadMedium of the file, whose name is
+/// relative to `folder`. Throws InputError as these two functions do; for a word that is neither,
+/// the message names the nearest preset, or all presets.
 [[nodiscard]] Medium MediumFromChoice(const std::string& preset_or_file,
                                       const std::filesystem::path& folder = {});
 

@@ -79,8 +79,8 @@ constexpr std::array<std::pair<std::string_view, PhaseKind>, 8> kPhaseNames{{
 
 double SchlickK(double g) { return g * (1.55 - 0.55 * g * g); }
 
-// 1/k - (1 - k^2)/(2 k^2) log((1 + k)/(1 - k)); near 0 by its series
-// sum of 2 k^(2n-1) / ((2n-1)(2n+1)), whose ten terms are exact to rounding for |k| < 0.1.
+// Returns 1/k - (1 - k^2)/(2 k^2) log((1 + k)/(1 - k)); near 0 by its series, the sum of 2
+// k^(2n-1) / ((2n-1)(2n+1)), whose ten terms are exact to rounding for |k| < 0.1.
 double MeanCosineOfSchlick(double k) {
   if (std::abs(k) < 0.1) {
     double sum = 0.0;
@@ -93,23 +93,24 @@ double MeanCosineOfSchlick(double k) {
   return (1.0 - (1.0 - k) * (1.0 + k) / k * std::atanh(k)) / k;
 }
 
-// Moments of the Henyey-Greenstein lobe are <c> = g,
-// <c^2> = (1 + 2 g^2)/3, <c^3> = (3 g + 2 g^3)/5.
+// The moments of the Henyey-Greenstein lobe are <c> = g, <c^2> = (1 + 2 g^2)/3,
+// <c^3> = (3 g + 2 g^3)/5.
 double MeanCosineOfDraine(double g, double alpha) {
   return g * (1.0 + alpha * (3.0 + 2.0 * g * g) / 5.0) / (1.0 + alpha * (1.0 + 2.0 * g * g) / 3.0);
 }
 
-// The cosine below which the Henyey-Greenstein lobe has the share (1 + s)/2 of its light. The usual
-// inversion with its division by g carried out, so that g = 0 is no special case.
+// Returns the cosine below which the Henyey-Greenstein lobe has the fraction (1 + s)/2 of its
+// light. This is the usual inversion with the division by g carried out, so that g = 0 is not a
+// special case.
 double HenyeyGreensteinQuantile(double s, double g) {
   const double x = 1.0 + g * s;
   return (2.0 * s + g * (3.0 + s * s) + 2.0 * g * g * s - g * g * g * (1.0 - s) * (1.0 + s)) /
          (2.0 * x * x);
 }
 
-// Integral of HenyeyGreensteinQuantile(s, g)^2 from -1 to s, for g in
-// [0, 1). The closed form divides by g^3; below 0.1 eight Gauss
-// points are exact to rounding (the integrand's pole is at -1/g).
+// Integral of HenyeyGreensteinQuantile(s, g)^2 from -1 to s, for g in [0, 1). The closed form
+// divides by g^3; below 0.1 eight Gauss points are exact to rounding (the integrand's pole is at
+// -1/g).
 double IntegratedSquareOfQuantile(double s, double g) {
   if (g < 0.1) {
     constexpr std::array<double, 4> kNode{0.1834346424956498, 0.5255324099163290,
@@ -135,9 +136,9 @@ double IntegratedSquareOfQuantile(double s, double g) {
   return (antiderivative(1.0 + g * s) - antiderivative(1.0 - g)) / (4.0 * g * g * g);
 }
 
-// With s, the quantile of the Henyey-Greenstein lobe, as the variable, Draine's density is
-// (1 + alpha c(s)^2) over its mean: between 1 and 2 up to a factor, whatever g. Newton with a
-// bracket converges in a few steps.
+// With the quantile s of the Henyey-Greenstein lobe as the variable, Draine's density is
+// (1 + alpha c(s)^2) over its mean: up to a constant factor between 1 and 2, for every g. Newton's
+// method with a bracket converges in a few steps.
 double SampleDraine(double u, double g, double alpha) {
   if (g < 0.0) return -SampleDraine(1.0 - u, -g, alpha);
   const double whole = 2.0 * (1.0 + alpha * (1.0 + 2.0 * g * g) / 3.0);
@@ -156,7 +157,7 @@ double SampleDraine(double u, double g, double alpha) {
   return HenyeyGreensteinQuantile(s, g);
 }
 
-// c^3 + 3 c = 4 (2 u - 1), by Cardano.
+// Solves c^3 + 3 c = 4 (2 u - 1) by Cardano's formula.
 double SampleRayleigh(double u) {
   const double half = 2.0 * (2.0 * u - 1.0);
   const double a = std::cbrt(half + std::copysign(std::sqrt(half * half + 1.0), half));

@@ -16,16 +16,15 @@
 //                      Jendersie, d'Eon (2023), "An Approximate Mie Scattering Function for Fog and
 //                      Cloud Rendering", SIGGRAPH talks
 //
-// A lobe that points backwards is the mirror image of the one that points forwards, and the
-// denominators are written as a sum of two terms that are never negative,
-// 1 + g^2 - 2 g c = (1 - |g|)^2 + 2 |g| (1 - |c|_g) with |c|_g = c sign(g): nothing cancels in
-// float however sharp the lobe and however near its axis.
+// A backward lobe is the mirror image of the forward lobe, and the denominators are written as a
+// sum of two terms that are never negative, 1 + g^2 - 2 g c = (1 - |g|)^2 + 2 |g| (1 - |c|_g) with
+// |c|_g = c sign(g). There is no cancellation in float, even for a sharp lobe near its axis.
 
 SHARED Number PhaseClampedCosine(Number cos_scattering) {
   return max(Number(-1.0), min(Number(1.0), cos_scattering));
 }
 
-// Of the cosine: its distance below the axis of the lobe, in [0, 2].
+// Returns the difference between 1 and the cosine to the axis of the lobe, in [0, 2].
 SHARED Number PhaseOffAxis(Number cos_scattering, Number g) {
   Number c = PhaseClampedCosine(cos_scattering);
   return select(g < Number(0.0), Number(1.0) + c, Number(1.0) - c);
@@ -44,7 +43,7 @@ SHARED Number PhaseRayleigh(Number cos_scattering) {
   return Number(0.0596831036594607509) * (Number(1.0) + c * c);
 }
 
-// The share of what molecules scatter that round ones would scatter so, D.
+// Returns D, the fraction of molecular scattering that has the Rayleigh phase function.
 SHARED Number RoundShare(Number depolarisation) {
   return (Number(1.0) - depolarisation) / (Number(1.0) + Number(0.5) * depolarisation);
 }
@@ -92,7 +91,7 @@ SHARED Number PhaseHenyeyGreensteinDraine(Number cos_scattering, Number g, Numbe
          draine_weight * PhaseDraine(cos_scattering, g_draine, alpha);
 }
 
-// Jendersie and d'Eon's fits to Lorenz-Mie theory for droplets of 1.5 to 5 and of 5 to 50
+// Fits of Jendersie and d'Eon to Lorenz-Mie theory for droplets of 1.5 to 5 and of 5 to 50
 // micrometres. @param d  diameter of the droplets [um].
 SHARED Number FogForwardG(Number d) {
   return select(d < Number(5.0), Number(0.0604931) * log(log(d)) + Number(0.940256),
@@ -123,8 +122,9 @@ SHARED Number PhaseFog(Number cos_scattering, Number d) {
                                      FogDraineWeight(d), FogDraineAlpha(d));
 }
 
-// Where nodes of a tabulated phase function stand, uniform in [0, 1] from forward to backward: dense
-// about the forward direction, and no inverse cosine is needed. From the square of the sine of half
-// the scattering angle; and that sine back.
+// Maps the scattering angle to the coordinate of a tabulated phase function, in [0, 1] from forward
+// to backward. The nodes are uniform in this coordinate: dense about the forward direction, and
+// computed without an inverse cosine. The input is the squared sine of half the scattering angle;
+// PhaseHalfSine is the inverse and returns that sine.
 SHARED Number PhaseNode(Number half_sine_squared) { return sqrt(sqrt(half_sine_squared)); }
 SHARED Number PhaseHalfSine(Number node) { return node * node; }

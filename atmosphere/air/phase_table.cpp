@@ -24,13 +24,13 @@ double AngleAt(double position) {
   return kPi * s * s * s;
 }
 
-// Solid angle per node: 2 pi sin(theta) d(theta)/ds ds.
+// Returns the solid angle per node: 2 pi sin(theta) d(theta)/ds ds.
 double Measure(double position) {
   const double s = position / kLastNode;
   return 6.0 * kPi * kPi * s * s * std::sin(kPi * s * s * s) / kLastNode;
 }
 
-// Over the first `share` of a cell, by four Gauss nodes.
+// Integrates over the first `share` of a cell, with four Gauss nodes.
 template <typename Function>
 double IntegralOverCell(std::size_t cell, double share, const Function& function) {
   const GaussRule& rule = GaussLegendre(4);
@@ -64,7 +64,7 @@ void RequireSamples(const std::vector<double>& angle_deg, const std::vector<doub
   }
 }
 
-// Slopes of the parabolas through three neighbours; 0 at both ends.
+// Returns the slopes of the parabolas through three neighbours; 0 at both ends.
 std::vector<double> SlopesOf(const std::vector<double>& x, const std::vector<double>& y) {
   std::vector<double> slope(x.size(), 0.0);
   for (std::size_t i = 1; i + 1 < x.size(); ++i) {
@@ -76,7 +76,7 @@ std::vector<double> SlopesOf(const std::vector<double>& x, const std::vector<dou
   return slope;
 }
 
-// The curve through the samples, at the nodes.
+// Evaluates the curve through the samples at the nodes.
 std::array<double, PhaseTable::kNodes> CurveAtNodes(const std::vector<double>& x,
                                                     const std::vector<double>& value) {
   std::vector<double> y;
@@ -131,7 +131,7 @@ double PhaseTable::At(double position) const {
 }
 
 double PhaseTable::Quantile(double u) const {
-  const double wanted = 1.0 - u;  // of the light, scattered by less than the angle
+  const double wanted = 1.0 - u;  // fraction of the light scattered by less than the angle
   const auto above = std::upper_bound(share_.begin() + 1, share_.end() - 1, wanted);
   const auto cell = static_cast<std::size_t>(above - share_.begin()) - 1;
   const auto value = [this](double position) { return At(position); };
@@ -292,7 +292,7 @@ class PhaseFileReader {
 
   std::string name_, text_;
   int line_ = 0;
-  std::vector<std::size_t> order_;                      // of kColumns in the file
+  std::vector<std::size_t> order_;                      // position of each of kColumns in the file
   std::map<double, std::map<double, double>> samples_;  // value by wavelength and angle
 };
 

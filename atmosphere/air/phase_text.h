@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The shared text phase.glsl, read as C++: alpenglow::shared::PhaseHenyeyGreenstein(0.3, 0.8) in
-// double, (0.3f, 0.8f) as the graphics card computes it.
+// The shared source phase.glsl, compiled as C++: alpenglow::shared::PhaseHenyeyGreenstein(0.3, 0.8)
+// in double, and (0.3f, 0.8f) as the GPU computes it.
 #pragma once
 
 #include "atmosphere/dialect/shared_math.h"
