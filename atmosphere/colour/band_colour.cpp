@@ -1,16 +1,18 @@
 // SPDX-License-Identifier: MIT
-// From bands to colour.
+// Computes colour from radiance in bands.
 //
-// With radiance L(lambda) = E(lambda) f(lambda), E the sun above the air, f is smooth where E is
-// not. The starting point takes f linear between the bands and constant beyond the outermost,
+// With radiance L(lambda) = E(lambda) f(lambda), where E is the solar irradiance above the air, f
+// is smooth although E is not. The initial matrix assumes that f is linear between the bands and
+// constant beyond the outermost,
 //
 //   XYZ_c = sum a_ci f_i,    a_ci = K integral of  cmf_c(lambda) E(lambda) hat_i(lambda)  d lambda,
 //
 // which is exact for the sun itself on any wavelength set: its white point never moves. With at
-// most sixteen bands a correction is added that makes the relative errors of XYZ least over a
-// family of daylight spectra; it keeps the sun exact and is as small as the family allows (ridge).
+// most sixteen bands a correction is added that minimises the relative errors of XYZ over a family
+// of daylight spectra. The correction keeps the sun exact, and a ridge term keeps it small.
 //
-// The default sets do better: their rows come from a file, trained on simulated skies.
+// The rows of the default sets are more accurate: they are read from a file and were trained on
+// simulated skies.
 #include "atmosphere/colour/band_colour.h"
 
 #include <algorithm>
@@ -26,7 +28,7 @@
 namespace alpenglow::atmosphere {
 namespace {
 
-// The file has seven decimals.
+// The sum deviates from 1 because the file has seven decimals.
 void ScaleToOne(std::vector<double>& share) {
   double sum = 0.0;
   for (const double value : share) sum += value;
@@ -71,10 +73,11 @@ using Triple = std::array<double, 3>;
 using Seen = std::array<double, 4>;  // X, Y, Z of the cones; scotopic luminance of the rods
 
 constexpr std::size_t kMostTrainedBands = 16;
-constexpr double kFirst_nm = 360.0;  // of the colour-matching functions
+constexpr double kFirst_nm = 360.0;  // range of the colour-matching functions
 constexpr double kLast_nm = 830.0;
 
-// Share of band i in the broken line through the bands, at a wavelength.
+// Returns the hat function of band i at a wavelength: its weight in linear interpolation between
+// the bands.
 double Hat(std::span<const double> nodes, std::size_t i, double at) {
   if (at <= nodes[i]) {
     if (i == 0) return 1.0;
@@ -84,14 +87,14 @@ double Hat(std::span<const double> nodes, std::size_t i, double at) {
   return std::max(0.0, (nodes[i + 1] - at) / (nodes[i + 1] - nodes[i]));
 }
 
-// The colour of the sun's light in one narrow interval, and its middle.
+// The colour of sunlight in one narrow interval of wavelengths, and the middle of that interval.
 struct Slice {
   double wavelength_nm;
   Seen seen;
 };
 
-// Colour-matching functions times the solar spectrum, integrated over steps of 5 nm by 0.5 nm
-// midpoints: daylight is smooth over 5 nm once it is divided by the sun.
+// Returns colour-matching functions times the solar spectrum, integrated over steps of 5 nm by the
+// midpoint rule in steps of 0.5 nm: daylight divided by sunlight is smooth over 5 nm.
 const std::vector<Slice>& SunlightSlices() {
   static const std::vector<Slice> slices = [] {
     constexpr double kStep_nm = 5.0;
@@ -124,9 +127,9 @@ Air AirAt(double wavelength_nm) {
           std::log(wavelength_nm / 550.0), OzoneCrossSection(wavelength_nm) * kOzoneColumn_per_m2};
 }
 
-// One spectrum of the family: sunlight after so many vertical columns of molecules, haze (optical
-// depth at 550 nm) and ozone; and if `path` is not 0, scattered by molecules and haze along a path
-// that may be so long that it saturates, and again by molecules.
+// One spectrum of the family: sunlight attenuated by a number of vertical columns of molecules,
+// haze (optical depth at 550 nm) and ozone. If `path` is not 0, the light is also scattered by
+// molecules and haze along a path, which may be long enough to saturate, and again by molecules.
 struct Daylight {
   double molecules, haze, exponent, ozone;
   double path, haze_source, again;
@@ -141,8 +144,8 @@ double RelativeToSun(const Daylight& light, const Air& air) {
   return -std::expm1(-light.path * source) * (1.0 + light.again * air.molecules) * attenuation;
 }
 
-// Sunlight from the zenith to the horizon; skies from the zenith to the horizon, from noon to a
-// twilight that has crossed the ozone layer almost along it.
+// The family contains sunlight from the zenith to the horizon, and skies from the zenith to the
+// horizon, from noon to twilight whose light has crossed the ozone layer almost along the layer.
 std::vector<Daylight> DaylightFamily() {
   std::vector<Daylight> family;
   for (const double exponent : {0.6, 1.4}) {
@@ -180,7 +183,7 @@ class NormalEquations {
       b_[i] += weight * row[i] * target;
     }
   }
-  // Keeps the system positive definite.
+  // Adds a ridge term, which keeps the system positive definite.
   void AddRidge(double ridge) {
     for (std::size_t i = 0; i < n_; ++i) a_[i * n_ + i] += ridge;
   }
@@ -192,7 +195,7 @@ class NormalEquations {
   std::vector<double> a_, b_;
 };
 
-// One spectrum of the family: true colour, and what the bands see of it.
+// One spectrum of the family: its true colour, and its values in the bands.
 struct Example {
   Seen seen;
   std::vector<double> bands;
@@ -242,8 +245,9 @@ double Dot(std::span<const double> a, std::span<const double> b) {
   return sum;
 }
 
-// The correction that trains a row on the examples. Errors count relative to the component, but not
-// below a fiftieth of the luminance: the blue of a deep red sun is not seen.
+// Returns a row plus the correction that fits it to the examples. Errors are relative to the
+// component, but at least to a fiftieth of the luminance: the blue component of a deep red sun is
+// not visible.
 BandRow Corrected(BandRow row, const std::vector<Example>& examples, std::size_t component) {
   constexpr double kWeightOfSun = 1e5;
   constexpr double kRidge = 1e-5;
@@ -269,7 +273,7 @@ void RequireAscending(const std::vector<double>& wavelengths_nm) {
   }
 }
 
-// The rows that make X, Y, Z and scotopic luminance of light relative to the sun.
+// Returns the rows that compute X, Y, Z and scotopic luminance from radiance relative to the sun.
 std::array<BandRow, 4> BandRowsOf(std::span<const double> wavelengths_nm) {
   std::array<BandRow, 4> rows;
   for (std::size_t c = 0; c < 4; ++c) rows[c] = Starting(wavelengths_nm, c);

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
-// The trained sets of bands: wavelengths, and the shares that make colour of them.
+// Trained sets of bands: their wavelengths, and the weights that compute colour from them.
 //
 //   X_c / X_c(sun) = sum_i share_ci f_i,    f_i = light at band i relative to the sun above the air
 //
-// from data/band_matrices.csv, which tests/bench/train_bands.cpp makes.
+// The weights are in data/band_matrices.csv, which tests/bench/train_bands.cpp makes.
 #pragma once
 
 #include <array>
@@ -19,7 +19,7 @@ struct TrainedBands {
 
 [[nodiscard]] const std::vector<TrainedBands>& TrainedBandSets();
 
-/// The trained set of exactly these wavelengths; null if there is none.
+/// Returns the trained set with exactly these wavelengths; null if there is none.
 [[nodiscard]] const TrainedBands* FindTrainedBands(std::span<const double> wavelengths_nm);
 
 }  // namespace alpenglow::atmosphere

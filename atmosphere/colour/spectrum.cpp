@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Published tables and the formulas on them. Colour is in spectrum.cpp and band_colour.cpp.
-//
-// sRGB, colour differences, and albedos from colours.
+// Implements published tables and the formulas based on them, sRGB, colour differences, and albedos
+// from colours. The conversion from bands to colour is in band_colour.cpp.
 #include "atmosphere/colour/spectrum.h"
 
 #include <fmt/format.h>
@@ -20,7 +19,7 @@
 namespace alpenglow::atmosphere {
 namespace {
 
-// Column `column` over column 0 of an embedded table.
+// Returns column `column` of an embedded table as a function of column 0.
 SampledFunction ReadTable(std::string_view file, int column, double shift_x = 0.0) {
   std::vector<std::vector<double>> columns = atmosphere::ReadColumns(file, {0, column});
   for (double& x : columns[0]) x += shift_x;
@@ -108,7 +107,7 @@ double RayleighScatteringAtSeaLevel(double wavelength_nm) {
 }
 
 double OzoneCrossSection(double wavelength_nm) {
-  // The table holds means over [x, x + 10) nm: they belong to x + 5.
+  // The table holds means over [x, x + 10) nm, so their wavelength is x + 5.
   static const SampledFunction table = ReadTable(kOzoneFile, 1, 5.0);
   return ValueInside(table, 360.0, 840.0, wavelength_nm);
 }
@@ -166,7 +165,7 @@ Triple Cross(const Triple& a, const Triple& b) {
   return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
 }
 
-// Columns of the inverse are the cross products of the rows over the determinant.
+// The columns of the inverse are the cross products of the rows, divided by the determinant.
 Matrix3 Inverse(const Matrix3& m) {
   const Triple columns[3] = {Cross(m[1], m[2]), Cross(m[2], m[0]), Cross(m[0], m[1])};
   const double determinant =
@@ -187,7 +186,7 @@ const Triple& WhiteD65() {
   return white;
 }
 
-// Columns are the primaries, scaled so that (1, 1, 1) is the white.
+// The columns are the primaries, scaled so that (1, 1, 1) is the white point.
 Matrix3 DeriveXyzFromLinearSrgb() {
   const Triple primaries[3] = {XyzFromChromaticity(0.64, 0.33), XyzFromChromaticity(0.30, 0.60),
                                XyzFromChromaticity(0.15, 0.06)};
@@ -206,7 +205,7 @@ struct Lab {
   double l, a, b;
 };
 
-// CIE 15:2018, with the exact constants (6/29)^3 and so on.
+// Implements CIE 15:2018, with the exact constants (6/29)^3 and so on.
 double LabCompanding(double ratio) {
   constexpr double kDelta = 6.0 / 29.0;
   return ratio > kDelta * kDelta * kDelta ? std::cbrt(ratio)
@@ -220,7 +219,7 @@ Lab LabFromXyz(const Triple& xyz, const Triple& white) {
   return {116.0 * y - 16.0, 500.0 * (x - y), 200.0 * (y - z)};
 }
 
-// sqrt(C^7 / (C^7 + 25^7))
+// Returns sqrt(C^7 / (C^7 + 25^7)).
 double ChromaShare(double chroma) {
   constexpr double k25To7 = 6103515625.0;
   const double power = std::pow(chroma, 7);
@@ -237,7 +236,8 @@ struct HuePair {
   double difference, mean;  // degrees
 };
 
-// Sharma et al. (2005), equations 10 and 14: the shorter way round.
+// Implements equations 10 and 14 of Sharma et al. (2005): the difference and mean along the shorter
+// arc.
 HuePair CompareHues(double hue_a, double hue_b, bool grey) {
   if (grey) return {0.0, hue_a + hue_b};
   const double difference = hue_b - hue_a;
@@ -250,7 +250,8 @@ HuePair CompareHues(double hue_a, double hue_b, bool grey) {
 double CosDegrees(double degrees) { return std::cos(degrees * kRadiansPerDegree); }
 double SinDegrees(double degrees) { return std::sin(degrees * kRadiansPerDegree); }
 
-// Sharma, Wu and Dalal (2005), Color Res. Appl. 30, 21-30, equations 2 to 22, all weights 1.
+// Implements Sharma, Wu and Dalal (2005), Color Res. Appl. 30, 21-30, equations 2 to 22, all
+// weights 1.
 double Ciede2000(const Lab& p, const Lab& q) {
   const double stretch =
       1.5 - 0.5 * ChromaShare(0.5 * (std::hypot(p.a, p.b) + std::hypot(q.a, q.b)));
@@ -278,8 +279,8 @@ double Ciede2000(const Lab& p, const Lab& q) {
 
 double Step(double x) { return 1.0 / (1.0 + std::exp(-x)); }
 
-// Reflectances of a red, a green and a blue surface that together reflect everything: smooth steps
-// at 485 and 593 nm, placed so that their colours are near the primaries of sRGB, within 0.05.
+// Returns the reflectances of a red, a green and a blue surface that add up to 1: smooth steps at
+// 485 and 593 nm, placed so that their colours are near the primaries of sRGB, within 0.05.
 Triple AlbedoBases(double wavelength_nm) {
   constexpr double kBlueEnd_nm = 485.0;
   constexpr double kRedStart_nm = 593.0;
@@ -289,8 +290,8 @@ Triple AlbedoBases(double wavelength_nm) {
   return {red, 1.0 - red - blue, blue};
 }
 
-// Shares of the bases from linear sRGB: the inverse of the bases' colours under equal-energy light,
-// whose white is scaled to D65 component by component.
+// Returns the matrix from linear sRGB to weights of the bases: the inverse of the bases' colours
+// under equal-energy light, whose white is scaled to D65 component by component.
 Matrix3 DeriveSharesFromLinearSrgb() {
   Matrix3 xyz{};
   for (double wavelength_nm = 360.0; wavelength_nm <= 830.0; wavelength_nm += 1.0) {
@@ -312,7 +313,8 @@ Matrix3 DeriveSharesFromLinearSrgb() {
   return Inverse(srgb);
 }
 
-// Colours of the bases under the sun above the air, relative to the sun's: one row a base.
+// Returns the colours of the bases under the sun above the air, relative to the sun's colour: one
+// row per basis.
 Matrix3 DeriveBasesUnderSun() {
   constexpr double kStep_nm = 0.5;
   Matrix3 xyz{};
@@ -333,8 +335,9 @@ Matrix3 DeriveBasesUnderSun() {
   return xyz;
 }
 
-// The bases at the bands of a trained set, changed as little as gives them the colours above
-// through the bands: with the shares M and the error e of a base, by M^T (M M^T)^-1 e.
+// Returns the bases at the bands of a trained set, with the smallest change that gives them the
+// above colours through the bands: with the weights M and the error e of a basis, the change is
+// M^T (M M^T)^-1 e.
 std::vector<Triple> AlbedoBasesInBands(const TrainedBands& set) {
   static const Matrix3 under_sun = DeriveBasesUnderSun();
   const std::size_t n = set.wavelengths_nm.size();

@@ -1,11 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Spectra on a wavelength set, published tables, and the way from bands to colour.
-//
-// The solar spectrum as published, for integrals that must resolve its lines.
-//
-// What glows.
-//
-// What water and ice do to light inside them.
+// Spectra on a wavelength set, published tables of spectra (sun, air, water, ice, black body), and
+// the conversion from bands to colour.
 #pragma once
 
 #include <array>
@@ -15,15 +10,15 @@
 
 namespace alpenglow::atmosphere {
 
-/// A published table: y over x, linear between its points.
+/// A published table of y over x, interpolated linearly between its points.
 class SampledFunction {
  public:
-  /// @param x strictly ascending, as long as y, at least one.
+  /// @param x strictly ascending, with the length of y, at least one point.
   SampledFunction(std::vector<double> x, std::vector<double> y);
 
-  /// Linear between the points, the end value beyond them.
+  /// Interpolates linearly between the points; returns the end values beyond them.
   [[nodiscard]] double operator()(double x) const;
-  /// Exact mean of the broken line over [low, high], low < high.
+  /// Returns the exact mean of the piecewise linear function over [low, high], low < high.
   [[nodiscard]] double Mean(double low, double high) const;
 
   [[nodiscard]] std::span<const double> x() const { return x_; }
@@ -33,73 +28,75 @@ class SampledFunction {
   std::vector<double> x_, y_;
 };
 
-/// Numbers of bands that WavelengthSet knows.
+/// Numbers of bands that WavelengthSet accepts.
 inline constexpr std::array<int, 7> kWavelengthSetSizes{3, 4, 5, 6, 8, 16, 40};
 
-/// Wavelengths [nm] of so many bands; throws InputError for a
-/// number that is not in kWavelengthSetSizes. 3 to 6 are optimised
-/// for colour (data/band_matrices.csv); 8, 16 and 40 are uniform.
+/// Returns the wavelengths [nm] of a set with this number of bands; throws InputError for a number
+/// that is not in kWavelengthSetSizes. Sets of 3 to 6 bands are optimised for colour
+/// (data/band_matrices.csv); sets of 8, 16 and 40 are uniform.
 [[nodiscard]] std::vector<double> WavelengthSet(int bands);
 
-/// Solar spectral irradiance at 1 au [W m^-2 nm^-1], mean over 10 nm around the wavelength. ASTM
-/// G173-03 (Gueymard). @param wavelength_nm in [300, 900], clamped to the ends of the table beyond.
+/// Returns the solar spectral irradiance at 1 au [W m^-2 nm^-1], mean over 10 nm around the
+/// wavelength. ASTM G173-03 (Gueymard).
+/// @param wavelength_nm in [300, 900], clamped to the ends of the table beyond.
 [[nodiscard]] double SolarIrradiance(double wavelength_nm);
 
-/// Rayleigh scattering coefficient of dry air at sea level, 288.15 K, 1013.25 hPa [1/m].
-/// Bodhaine et al. (1999), J. Atmos. Ocean. Tech. 16, 1854, equation 29; 360 ppm CO2.
+/// Returns the Rayleigh scattering coefficient of dry air at sea level, 288.15 K, 1013.25 hPa
+/// [1/m]. Bodhaine et al. (1999), J. Atmos. Ocean. Tech. 16, 1854, equation 29; 360 ppm CO2.
 /// @param wavelength_nm in [250, 4000].
 [[nodiscard]] double RayleighScatteringAtSeaLevel(double wavelength_nm);
 
-/// Ozone absorption cross section at 233 K [m^2 per molecule],
-/// linear in a 10 nm table, 0 outside it.
+/// Returns the ozone absorption cross section at 233 K [m^2 per molecule], linear in a 10 nm table,
+/// 0 outside it.
 [[nodiscard]] double OzoneCrossSection(double wavelength_nm);
 
-/// CIE 1931 2-degree colour-matching functions at a
-/// wavelength, linear in the 5 nm table, 0 outside.
+/// Returns the CIE 1931 2-degree colour-matching functions at a wavelength, linear in the 5 nm
+/// table, 0 outside it.
 [[nodiscard]] std::array<double, 3> ColourMatching(double wavelength_nm);
 
-/// CIE 1951 scotopic luminous efficiency, that of the rods, linear in the 10 nm table, 0 outside.
+/// Returns the CIE 1951 scotopic luminous efficiency (of the rods), linear in the 10 nm table, 0
+/// outside it.
 [[nodiscard]] double ScotopicEfficiency(double wavelength_nm);
 
 using Matrix3 = std::array<std::array<double, 3>, 3>;
-/// Linear sRGB (Rec. 709 primaries, D65) from CIE XYZ, and back. IEC 61966-2-1.
+/// Matrices from CIE XYZ to linear sRGB (Rec. 709 primaries, D65), and back. IEC 61966-2-1.
 [[nodiscard]] const Matrix3& LinearSrgbFromXyz();
 [[nodiscard]] const Matrix3& XyzFromLinearSrgb();
 [[nodiscard]] std::array<double, 3> operator*(const Matrix3& matrix,
                                               const std::array<double, 3>& vector);
 
-/// Colour of spectral radiance given in bands.
+/// Converts spectral radiance in bands to colour.
 ///
 /// XYZ [cd m^-2 when radiance is W m^-2 sr^-1 nm^-1; Y is luminance] is a 3 x N matrix times the
-/// bands. For the sets of WavelengthSet it is trained on simulated skies (data/band_matrices.csv,
-/// made by tests/bench/train_bands.cpp). For others it is the integral of the colour-matching
-/// functions over radiance, taken as the solar spectrum times a line broken at the bands; with at
-/// most 16 bands corrected to the least-squares fit, in relative XYZ, to a family of daylight
-/// spectra (sun through air, haze and ozone, and light scattered by them). The sun above the air
-/// has the same XYZ on every wavelength set, to 1e-4 (bands of the solar spectrum being those of
-/// SolarIrradiance).
+/// bands. For the sets of WavelengthSet the matrix is trained on simulated skies
+/// (data/band_matrices.csv, made by tests/bench/train_bands.cpp). For other sets it is the integral
+/// of the colour-matching functions over radiance, where radiance is the solar spectrum times a
+/// function that is linear between the bands. With at most 16 bands this matrix is corrected to the
+/// least-squares fit, in relative XYZ, to a family of daylight spectra (sun through air, haze and
+/// ozone, and light scattered by them). The sun above the air has the same XYZ on every wavelength
+/// set, to 1e-4 (if the bands of the solar spectrum are those of SolarIrradiance).
 ///
 /// Error of the sets of WavelengthSet, CIEDE2000 at equal exposure, bounds of the mean and of the
 /// 95th percentile: 3 bands 0.9 and 2.5, 4 bands 0.2 and 0.6, 5 bands 0.08 and 0.2, 6 bands 0.03
-/// and 0.08, 8 bands 0.03 and 0.1, 16 and 40 bands 0.02 and 0.05; of {450, 500, 590, 650}, which is
-/// not trained, 0.7 and 1.6. Against integration in 0.5 nm steps over 513 skies and suns of three
-/// atmospheres by single scattering (tests/atmosphere/colour/spectrum_test.cpp), and against 5 nm
-/// steps over skies of all orders, land, sun and ground from 60 degrees down to -10
+/// and 0.08, 8 bands 0.03 and 0.1, 16 and 40 bands 0.02 and 0.05; for {450, 500, 590, 650}, which
+/// is not trained, 0.7 and 1.6. The references are integration in 0.5 nm steps over 513 skies and
+/// suns of three atmospheres by single scattering (tests/atmosphere/colour/spectrum_test.cpp), and
+/// 5 nm steps over skies of all orders, land, sun and ground from 60 degrees down to -10
 /// (tests/lut/train/band_training_test.cpp).
 class BandColour {
  public:
   explicit BandColour(std::vector<double> wavelengths_nm);
 
-  /// @param radiance one value a band.
+  /// @param radiance one value per band.
   [[nodiscard]] std::array<double, 3> Xyz(std::span<const double> radiance) const;
   [[nodiscard]] std::array<double, 3> LinearSrgb(std::span<const double> radiance) const;
 
-  /// What the rods see [scotopic cd/m^2], by a row fitted to the family of daylight spectra. Error
-  /// over the skies and suns of the tests above, mean and 95th percentile: 3 bands 4 % and 8 %, 4
-  /// bands 1 % and 3.1 %, more 0.2 % and 0.3 %.
+  /// Returns the scotopic luminance [scotopic cd/m^2], the luminance for the rods, by a row fitted
+  /// to the family of daylight spectra. Error over the skies and suns of the tests above, mean and
+  /// 95th percentile: 3 bands 4 % and 8 %, 4 bands 1 % and 3.1 %, more bands 0.2 % and 0.3 %.
   [[nodiscard]] double ScotopicLuminance(std::span<const double> radiance) const;
 
-  /// Row-major 3 x N: linear sRGB [cd/m^2 per W m^-2 sr^-1 nm^-1] from bands.
+  /// Returns the row-major 3 x N matrix from bands to linear sRGB [cd/m^2 per W m^-2 sr^-1 nm^-1].
   [[nodiscard]] std::span<const double> linear_srgb_from_bands() const { return srgb_; }
   [[nodiscard]] const std::vector<double>& wavelengths_nm() const { return wavelengths_nm_; }
 
@@ -108,44 +105,44 @@ class BandColour {
   std::vector<double> xyz_, srgb_, scotopic_;
 };
 
-/// A spectral albedo in [0, 1] on the wavelengths whose colour under equal-energy light, its white
-/// scaled to (1, 1, 1), is the given linear sRGB: a mixture of a red, a green and a blue surface
-/// with smooth edges that together reflect everything (see spectrum.cpp). Greys come out flat. A
-/// colour more saturated than those surfaces is moved to the nearest mixture by clamping the shares
-/// to [0, 1].
+/// Returns a spectral albedo in [0, 1] on the wavelengths whose colour under equal-energy light,
+/// with white scaled to (1, 1, 1), is the given linear sRGB. The albedo is a mixture of a red, a
+/// green and a blue surface with smooth edges that add up to 1 (see spectrum.cpp). Greys have a
+/// flat albedo. A colour more saturated than these surfaces is moved to the nearest mixture by
+/// clamping the weights to [0, 1].
 ///
-/// On a set of WavelengthSet the three surfaces are changed as little as gives them, through
-/// BandColour and under the sun above the air, the colours that their spectra have there.
-/// In daylight (sun at 30 degrees) surfaces then keep their colour on four bands within a CIEDE2000
-/// of 0.3 in the mean and 0.6 at most, over 27 colours with channels 0.1 to 0.6
+/// On a set of WavelengthSet the three surfaces are changed as little as possible so that, through
+/// BandColour and under the sun above the air, they have the colours of their full spectra. In
+/// daylight (sun at 30 degrees) surfaces then keep their colour on four bands within a CIEDE2000 of
+/// 0.3 in the mean and 0.6 at most, over 27 colours with channels 0.1 to 0.6
 /// (tests/lut/train/band_training_test.cpp); at sunset 0.8, in twilight 2 in the mean.
 [[nodiscard]] std::vector<double> AlbedoFromLinearSrgb(const std::array<double, 3>& rgb,
                                                        std::span<const double> wavelengths_nm);
 
-/// Colour difference CIEDE2000 of two XYZ colours relative
-/// to `white` (CIE 142-2001; Sharma et al. 2005).
+/// Returns the colour difference CIEDE2000 of two XYZ colours relative to `white` (CIE 142-2001;
+/// Sharma et al. 2005).
 [[nodiscard]] double Ciede2000(const std::array<double, 3>& xyz_a,
                                const std::array<double, 3>& xyz_b,
                                const std::array<double, 3>& white);
 
-/// ASTM G173-03, extraterrestrial [W m^-2 nm^-1], 300 to 900 nm in steps of 0.5 and 1 nm.
+/// Returns the extraterrestrial solar spectrum of ASTM G173-03 [W m^-2 nm^-1], 300 to 900 nm in
+/// steps of 0.5 and 1 nm, for integrals that must resolve its lines.
 [[nodiscard]] const SampledFunction& SolarTable();
 
-/// Planck's spectral radiance [W m^-2 sr^-1 nm^-1]. Constants of CODATA 2018, which are exact.
+/// Returns Planck's spectral radiance [W m^-2 sr^-1 nm^-1]. The constants of CODATA 2018 are exact.
 [[nodiscard]] double BlackBodyRadiance(double wavelength_nm, double temperature_k);
 
-/// Absorption coefficient of pure water [1/m]: Pope, Fry (1997), Appl. Opt. 36, 8710, and from
-/// 730 nm Smith, Baker (1981), Appl. Opt. 20, 177; linear in a 10 nm table from 380 to 750 nm, its
-/// end values beyond.
+/// Returns the absorption coefficient of pure water [1/m]: Pope, Fry (1997), Appl. Opt. 36, 8710,
+/// and from 730 nm Smith, Baker (1981), Appl. Opt. 20, 177; linear in a 10 nm table from 380 to
+/// 750 nm, the end values beyond.
 [[nodiscard]] double WaterAbsorption(double wavelength_nm);
 
-/// Scattering coefficient of pure sea water [1/m], half of it backwards: 0.00288
-/// (lambda / 500 nm)^-4.32, Morel (1974), Optical Properties of Pure Water and
-/// Pure Sea Water.
+/// Returns the scattering coefficient of pure sea water [1/m], half of it backwards: 0.00288
+/// (lambda / 500 nm)^-4.32, Morel (1974), Optical Properties of Pure Water and Pure Sea Water.
 [[nodiscard]] double SeaWaterScattering(double wavelength_nm);
 
-/// Absorption coefficient of pure ice [1/m], 4 pi k / lambda: Warren, Brandt (2008), J. Geophys.
-/// Res. 113, D14220; k linear in a 10 nm table from 380 to 750 nm, its end values beyond.
+/// Returns the absorption coefficient of pure ice [1/m], 4 pi k / lambda: Warren, Brandt (2008), J.
+/// Geophys. Res. 113, D14220; k linear in a 10 nm table from 380 to 750 nm, the end values beyond.
 [[nodiscard]] double IceAbsorption(double wavelength_nm);
 
 }  // namespace alpenglow::atmosphere
