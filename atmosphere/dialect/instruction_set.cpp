@@ -16,7 +16,7 @@ namespace {
 std::vector<InstructionSet> FindAvailable() {
   std::vector<InstructionSet> sets{InstructionSet::kScalar, InstructionSet::kBaseline};
 #ifdef ALPENGLOW_X86_KERNELS
-  // The compiler's own test also asks the operating system whether it saves the wide registers.
+  // The compiler's test also checks that the operating system saves the wide registers.
   __builtin_cpu_init();
   const bool avx2 = __builtin_cpu_supports("avx2") != 0 && __builtin_cpu_supports("fma") != 0;
   if (avx2) sets.push_back(InstructionSet::kAvx2);
@@ -49,7 +49,7 @@ InstructionSet Named(std::string_view name) {
 
 InstructionSet FirstChoice() {
   const char* const name = std::getenv("ALPENGLOW_INSTRUCTION_SET");
-  const bool unset = name == nullptr || *name == '\0';  // as shells clear a variable for a command
+  const bool unset = name == nullptr || *name == '\0';  // a shell can only clear it
   return unset ? AvailableInstructionSets().back() : Named(name);
 }
 

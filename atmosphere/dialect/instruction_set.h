@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
-// Kernels: loops compiled once per instruction set, of which the program takes the best that the
-// processor has when it runs.
+// Kernels: loops that are compiled once per instruction set. At run time the program selects the
+// best version that the processor supports.
 //
 // How to write one, in atmosphere/ or lut/:
 //  1. name.h declares a table of function pointers and its choice:
 //       struct LightKernel { void (*scatter)(const LightConstants&, float* light); };
 //       ALPENGLOW_DECLARE_KERNEL(LightKernel);
-//     Arguments are plain data: arrays, pointers, aggregates; no class with functions of its own.
+//     Arguments are plain data: arrays, pointers, aggregates; no class with member functions.
 //  2. name_kernel.cpp includes atmosphere/ray/batch.h, keeps all of its functions in an unnamed
 //     namespace inside alpenglow, and ends with
 //       const LightKernel& KernelOf(KernelName<LightKernel, kThisSet>) {
@@ -16,10 +16,10 @@
 //  3. CMakeLists.txt: alpenglow_kernels(alpenglow_lut name_kernel.cpp)
 //  4. Callers: Kernel<LightKernel>().scatter(...)
 //
-// A kernel is linked several times into one program. Whatever is not in the unnamed namespace (an
+// A kernel is linked several times into one program. A function outside the unnamed namespace (an
 // inline function of a header that the compiler did not inline) becomes one weak symbol for the
-// whole program, perhaps with instructions that the processor lacks; the tests kernel_symbols.*
-// refuse objects with such symbols.
+// whole program, possibly with instructions that the processor lacks. The tests kernel_symbols.*
+// reject objects with such symbols.
 #pragma once
 
 #include <string_view>
@@ -27,27 +27,27 @@
 
 namespace alpenglow::atmosphere {
 
-/// Scalar kernels compute with one number at a time, so that tests can compare the others with them.
-/// Baseline is what the compiler assumes of every processor: SSE2 on x86-64, NEON on AArch64; where
-/// xsimd knows no such instructions, it is scalar too.
+/// Scalar kernels compute with one number at a time, as a reference for the others in tests.
+/// Baseline is the instruction set that the compiler assumes of every processor: SSE2 on x86-64,
+/// NEON on AArch64; on processors without support in xsimd it is scalar too.
 enum class InstructionSet { kScalar, kBaseline, kAvx2, kAvx512 };
 
-/// "scalar"; "sse2", "neon" or, on other processors, "baseline"; "avx2", "avx512".
+/// Returns "scalar"; "sse2", "neon" or, on other processors, "baseline"; "avx2", "avx512".
 [[nodiscard]] std::string_view NameOf(InstructionSet set);
 
-/// The sets that this program was built for and this
-/// processor and its operating system have, ascending.
+/// Returns the sets that this program was built for and that this processor and its operating
+/// system support, ascending.
 [[nodiscard]] const std::vector<InstructionSet>& AvailableInstructionSets();
 
-/// The set that kernels use: the last available one, or the one that the environment variable
-/// ALPENGLOW_INSTRUCTION_SET names. Throws InputError when that is not available.
+/// Returns the set that kernels use: the last available one, or the one named in the environment
+/// variable ALPENGLOW_INSTRUCTION_SET. Throws InputError if that set is not available.
 [[nodiscard]] InstructionSet CurrentInstructionSet();
 
-/// Makes the whole program use another available set while the object lives, so that sets can be
-/// held against each other. Samples made under one set are not to be read under another.
+/// Makes the whole program use another available set during the lifetime of the object, to compare
+/// sets. Samples made with one set must not be read with another.
 class InstructionSetScope {
  public:
-  /// Throws InputError when the set is not available.
+  /// Throws InputError if the set is not available.
   explicit InstructionSetScope(InstructionSet set);
   ~InstructionSetScope();
   InstructionSetScope(const InstructionSetScope&) = delete;
@@ -57,7 +57,8 @@ class InstructionSetScope {
   InstructionSet before_;
 };
 
-/// Names the table of one set in overloads of KernelOf, which the file of the kernel defines.
+/// Names the table of one set in overloads of KernelOf, which the source file of the kernel
+/// defines.
 template <typename Table, InstructionSet set>
 struct KernelName {};
 
@@ -73,7 +74,7 @@ struct KernelName {};
   [[nodiscard]] const Table& KernelOf(KernelName<Table, InstructionSet::kBaseline> name)
 #endif
 
-/// The table of the current set.
+/// Returns the table of the current set.
 template <typename Table>
 [[nodiscard]] const Table& Kernel() {
   switch (CurrentInstructionSet()) {

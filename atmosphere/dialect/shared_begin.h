@@ -1,21 +1,22 @@
 // SPDX-License-Identifier: MIT
-// Opens a shared text (*.glsl) for C++: the same text is read as double, float and SIMD batch here,
-// and as GLSL behind shared_prelude.glsl. No include guard: it is included before every shared
-// text.
+// Opens a shared source (*.glsl) in C++: the text is compiled here for double, float and SIMD
+// batches, and as GLSL behind shared_prelude.glsl. There is no include guard: this file is included
+// before every shared source.
 //
-// Rules of the dialect:
-//  1. Every literal wears its dimension: Number(2.0), Length(0.0).
-//  2. Values in, one value out: no out parameters, textures, uniforms, arrays or swizzles.
-//  3. No branch on data: select(condition, yes, no), both sides finite or unused. Loops have a
-//  count.
+// Rules of the shared language:
+//  1. Every literal has a dimension: Number(2.0), Length(0.0).
+//  2. Functions take values and return one value: no out parameters, textures, uniforms, arrays or
+//     swizzles.
+//  3. No branch on data: select(condition, yes, no), both sides finite or unused. The number of
+//     iterations of a loop is known before it starts.
 //  4. Altitude, not radius; differences of squares factored; the conjugate form of a quadratic
-//  root.
-//  5. Capital = ours, lower case = builtin of both languages.
+//     root.
+//  5. Names of Alpenglow are capitalised, builtins of both languages are in lower case.
 //  6. Whole numbers of 32 bits that wrap are Bits; a function of Bits alone is SHARED_BITS. A
-//  constant with a name is SHARED_CONSTANT, and a whole number.
+//     named constant is SHARED_CONSTANT, and a whole number.
 //  7. Kilometres inside the text (the range of float), metres in every public C++ signature.
 
-// Number(0.1) rounds a literal to the type that is being read: that is its purpose.
+// Number(0.1) intentionally rounds a literal to the type for which the text is compiled.
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Wfloat-conversion"
 

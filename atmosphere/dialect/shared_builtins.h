@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// The builtins of GLSL as C++, for float, double and, where a metre counts at 1e8 m, long double.
-// No include guard and no includes: shared_math.h reads it into alpenglow::shared, batch.h into the
-// unnamed namespace that the functions of a kernel need.
+// The builtins of GLSL as C++, for float, double and long double (needed where a metre must be
+// resolved at 1e8 m). There is no include guard and there are no includes: shared_math.h includes
+// this file in alpenglow::shared, batch.h in the unnamed namespace of a kernel's functions.
 
 using std::abs;
 using std::cos;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Closes what shared_begin.h opened.
+// Ends the region that shared_begin.h opened.
 #undef SHARED
 #undef SHARED_BITS
 #undef SHARED_CONSTANT

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The builtins of GLSL that shared texts use, for plain numbers. SIMD batches bring their own
-// overloads (xsimd), found by argument-dependent lookup.
+// The builtins of GLSL that shared sources use, for scalars. SIMD batches have their own overloads
+// (xsimd), found by argument-dependent lookup.
 #pragma once
 
 #include <cmath>

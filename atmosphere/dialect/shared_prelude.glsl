@@ -1,4 +1,4 @@
-// Opens shared texts for GLSL; the C++ twin is shared_begin.h.
+// Opens shared sources in GLSL; the C++ counterpart is shared_begin.h.
 #define SHARED
 #define SHARED_BITS
 #define SHARED_CONSTANT const
