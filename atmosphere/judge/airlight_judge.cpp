@@ -24,7 +24,7 @@ Extended Altitude(const LampAir& air, const Place& p) {
   return air.altitude_at_origin_m + air.up.x * p.x + air.up.y * p.y + air.up.z * p.z;
 }
 
-// Column of a layer over a length, from altitude a to altitude b.
+// Returns the column of a layer over a length, from altitude a to altitude b.
 Extended Column(const LampLayer& layer, Extended length, Extended a, Extended b) {
   const Extended h = layer.scale_height_m;
   if (std::isinf(layer.scale_height_m)) return length;
@@ -33,10 +33,10 @@ Extended Column(const LampLayer& layer, Extended length, Extended a, Extended b)
   return length * std::exp((layer.base_m - a) / h) * mean;
 }
 
-/// The ray, and the lamp's place relative to it.
+/// The ray, and the position of the lamp relative to it.
 struct Geometry {
-  Extended nearest, approach;  // along the ray, and from it
-  Place across;                // unit, from the lamp to the ray's nearest point
+  Extended nearest, approach;  // distance along the ray to the nearest point; its distance
+  Place across;                // unit vector, from the lamp to the ray's nearest point
 
   Geometry(const Lamp& lamp, const LampSegment& segment) {
     const glm::dvec3& o = segment.origin_m;
@@ -58,7 +58,8 @@ struct Geometry {
   }
 };
 
-// Steps of a factor of two away from a point, down to `finest`.
+// Appends points on both sides of `centre`, at distances that grow by a factor of two from
+// `finest`.
 void AppendLadder(Extended centre, Extended finest, Extended begin, Extended end,
                   std::vector<double>& points) {
   for (Extended step = finest; step < end - begin; step *= 2) {
@@ -69,8 +70,9 @@ void AppendLadder(Extended centre, Extended finest, Extended begin, Extended end
   if (centre > begin && centre < end) points.push_back(static_cast<double>(centre));
 }
 
-// Where the profile's smoothness ends is found by looking: signs of the cosine less the cone's are
-// followed in small steps of angle and bisected.
+// Appends the points at which the profile of the lamp is not smooth. They are found by search: the
+// sign of the difference between the cosine and the cosine of the cone is followed in small steps
+// of angle, and its changes are bisected.
 void AppendCone(const Lamp& lamp, const LampSegment& segment, const Geometry& geometry,
                 double cone_cosine, std::vector<double>& points) {
   const auto excess = [&](double theta) {

@@ -17,7 +17,7 @@ namespace {
 using Extended = long double;
 using Columns = std::array<double, 3>;  // molecules, aerosol, ozone [m]
 
-/// A straight line through the shell, by plain formulas in extended precision.
+/// A straight line through the shell, by direct formulas in extended precision.
 struct Line {
   Extended r, mu, radius;
 
@@ -55,9 +55,9 @@ Columns Densities(const Medium& medium, Extended altitude) {
   return {molecules, std::exp(-h / medium.mie_scale_height_m), ozone};
 }
 
-// Where the integrands along the line have a kink or bend hard: tent
-// edges, perigee, and a ladder of altitudes that brackets both scale
-// heights so that no layer hides between the nodes of a first panel.
+// Returns the points at which the integrands along the line have a kink or a large curvature: edges
+// of the ozone tent, the perigee, and a ladder of altitudes that brackets both scale heights, so
+// that no layer lies between the nodes of a first panel.
 std::vector<double> Breakpoints(const Medium& medium, const Line& line, double begin, double end) {
   std::vector<double> points{begin, end};
   const Extended perigee = line.Perigee();
@@ -73,10 +73,10 @@ std::vector<double> Breakpoints(const Medium& medium, const Line& line, double b
   return points;
 }
 
-// Where the sunbeam that meets the view line at distance t has its perigee at
-// altitude z: the line leaves the cylinder of radius R + z around the axis
-// from the planet's centre to the sun. The tent's edges make the integrand
-// there kink like (t - t0)^1.5, which no error estimate sees in time.
+// Appends the points t at which the sunbeam through the point has its perigee at altitude z: the
+// line leaves the cylinder of radius R + z around the axis from the planet's centre to the sun.
+// There the edges of the ozone tent make the integrand kink like (t - t0)^1.5, which error
+// estimates do not detect in time.
 void AppendSunPerigees(const Line& line, const ViewRay& ray, Extended z, double begin, double end,
                        std::vector<double>& points) {
   const Extended nu = ray.nu;
@@ -107,13 +107,14 @@ double TauAt(const Medium& medium, std::size_t band, std::span<const double> col
          medium.ozone_absorption_per_m[band] * columns[2];
 }
 
-// Hansen and Travis (1974), 2.15: a share D of round molecules' scattering, the rest alike all round.
+// Returns the phase function of Hansen and Travis (1974), 2.15: a fraction D of Rayleigh
+// scattering, and isotropic scattering for the rest.
 double PhaseOfMolecules(double depolarisation, double nu) {
   const double share = (1.0 - depolarisation) / (1.0 + 0.5 * depolarisation);
   return (0.75 * share * (1.0 + nu * nu) + 1.0 - share) / (4.0 * kPi);
 }
 
-// Columns from a point towards the sun, or nothing when the planet stands between.
+// Columns from a point towards the sun; not lit if the planet blocks the sun.
 struct SunPath {
   bool lit;
   Columns columns;
@@ -135,8 +136,9 @@ SunPath TowardsSun(const Medium& medium, const Line& view, const ViewRay& ray, d
   return {true, {columns.value[0], columns.value[1], columns.value[2]}};
 }
 
-// The stretch of a line that lies in the planet's shadow, a half-cylinder away from the sun: its
-// points are nearer to the axis than the planet is wide. ray.h has the same from another formula.
+// Returns the segment of a line in the planet's shadow, a half-cylinder away from the sun: the
+// distance of its points from the axis is less than the planet's radius. ray.h computes the same
+// segment with another formula.
 ShadowSpan DarkPart(const Line& line, const ViewRay& ray, const RayExtent& extent) {
   const Extended nu = ray.nu;
   const Extended sunwards = line.r * ray.mu_s;  // of the observer, from the planet's centre
@@ -315,7 +317,7 @@ double RayEquation::Height(const State& at) const {
   return std::hypot(at.x, at.y) - medium_.planet_radius_m;
 }
 
-// From far outside to the top, straight; the length of that.
+// Moves a ray from far outside in a straight line to the top of the air, and returns the distance.
 double RayEquation::EnterAir(State& at) const {
   const double radius = std::hypot(at.x, at.y);
   const double top = medium_.planet_radius_m + medium_.atmosphere_height_m;
@@ -333,7 +335,7 @@ RayEquation::State RayEquation::Slope(const State& at) const {
   const double height = Height(at);
   const double n = 1.0 + refractivity_ * Refracting(height);
   const double gradient =
-      refractivity_ * (Refracting(height + 0.5) - Refracting(height - 0.5));  // a metre up
+      refractivity_ * (Refracting(height + 0.5) - Refracting(height - 0.5));  // over one metre
   const double radius = std::hypot(at.x, at.y);
   return {at.p / n, at.q / n, gradient * at.x / radius, gradient * at.y / radius};
 }

@@ -15,7 +15,8 @@ struct Cubic {
   std::array<double, 4> weight;
 };
 
-// Lagrange's cubic through the four nodes 0, 1, ... count - 1 around x.
+// Returns the weights of Lagrange's cubic interpolation through the four nodes around x, out of
+// nodes 0, 1, ... count - 1.
 Cubic CubicAt(double x, int count) {
   const int first = std::clamp(static_cast<int>(x) - 1, 0, count - 4);
   const double t = x - first;
@@ -28,8 +29,8 @@ bool AnyAbove(const std::vector<double>& values, double limit) {
   return std::any_of(values.begin(), values.end(), [&](double value) { return value > limit; });
 }
 
-// F / sqrt(H r) for slant t = mu sqrt(r / 2H). With w = mu + q sqrt(2H / r) the exponential is
-// exp(-q^2 - 2 t q); 45 e-foldings reach below rounding.
+// Returns F / sqrt(H r) for slant t = mu sqrt(r / 2H). With w = mu + q sqrt(2H / r) the exponential
+// is exp(-q^2 - 2 t q); 45 e-foldings reach below rounding.
 double SlantIntegral(double radius_m, double t, double scale_height_m) {
   const GaussRule& rule = GaussLegendre(kMaxGaussNodes);
   const double last = 45.0 / (t + std::sqrt(t * t + 45.0));
@@ -38,7 +39,7 @@ double SlantIntegral(double radius_m, double t, double scale_height_m) {
   for (std::size_t i = 0; i < rule.node.size(); ++i) {
     const double q = last * rule.node[i];
     const double climb = q * (2.0 * t + q);
-    const double slope = 0.5 * step * climb / (t + q);  // climb of the line over its distance
+    const double slope = 0.5 * step * climb / (t + q);  // climb of the line divided by its distance
     sum += rule.weight[i] * last * std::exp(-climb) * (1.0 + climb * scale_height_m / radius_m) /
            std::sqrt(1.0 + slope * slope);
   }
@@ -58,7 +59,7 @@ ColumnTable::ColumnTable(const Medium& medium)
   if (deficit_share_ > 0.0) deficit_ = Tabulate(medium.rayleigh_deficit.scale_height_m);
 }
 
-// Radii are uniform in h / r, slants in t / (1 + t).
+// Tabulates F. Radii are uniform in h / r, slants in t / (1 + t).
 ColumnTable::Layer ColumnTable::Tabulate(double scale_height_m) const {
   Layer layer{scale_height_m, {}};
   for (int i = 0; i < kRadii; ++i) {
@@ -67,7 +68,8 @@ ColumnTable::Layer ColumnTable::Tabulate(double scale_height_m) const {
     const double radius = planet_radius_m_ / (1.0 - h_over_r);
     for (int j = 0; j < kSlants; ++j) {
       const double x = static_cast<double>(j) / (kSlants - 1);
-      // No slant is beyond the vertical line's; the table goes on so that cubics have nodes.
+      // The largest possible slant is vertical. The table extends beyond it to provide nodes for
+      // cubic interpolation.
       const double t = x / std::max(1.0 - x, 1e-9);
       layer.table.push_back(SlantIntegral(radius, t, scale_height_m) * (1.0 + t));
     }
@@ -97,7 +99,8 @@ double ColumnTable::Beyond(const Layer& layer, double radius_m, double s_m) cons
   return std::exp(-h / layer.scale_height_m) * sum / (1.0 + t) * root;
 }
 
-// A primitive of the tent's side (0: lower, rising; 1: upper, falling) at s in its span.
+// Returns an antiderivative of one side of the ozone tent (0: lower, rising; 1: upper, falling) at
+// s in the span of that side.
 double ColumnTable::OzoneSide(const Line& line, std::size_t side, double s_m) const {
   const double p = std::max(line.perigee_radius_m, 1.0);
   const double r = std::sqrt(p * p + s_m * s_m);
@@ -109,7 +112,8 @@ double ColumnTable::OzoneSide(const Line& line, std::size_t side, double s_m) co
   return ((planet_radius_m_ + ozone_.top_m) * s_m - of_radius) / (ozone_.top_m - ozone_.peak_m);
 }
 
-// The smooth layer between its bottom, or the perigee above it, and s.
+// Returns the column of the smooth ozone layer from its bottom, or from a perigee above the bottom,
+// to s.
 double ColumnTable::SmoothOzoneUpTo(const Line& line, double s_m) const {
   const GaussRule& rule = GaussLegendre(14);
   const double p = line.perigee_radius_m;

@@ -1,40 +1,43 @@
 // SPDX-License-Identifier: MIT
-// Random numbers of the path tracer: a function of (seed, batch, path, how many were drawn), so
-// that threads do not matter.
+// Sampling for the path tracer: random numbers, distances along segments of a path, columns of air
+// along straight lines, and the polarisation state of a path.
 //
-// Paths of a batch are the points of a Korobov lattice moved by a random shift (Cranley and
-// Patterson 1976, SIAM J. Numer. Anal. 13, 904), which spreads the first dimensions evenly; batches
-// are independent, and their scatter is the standard error. Later dimensions are independent
-// numbers of the generator SplitMix64 (Steele, Lea, Flood 2014, OOPSLA, 453).
+// A random number is a function of (seed, batch, path, number of earlier draws), so that results do
+// not depend on threads. The paths of a batch are the points of a Korobov lattice with a random
+// shift (Cranley and Patterson 1976, SIAM J. Numer. Anal. 13, 904), which distributes the first
+// dimensions evenly. Batches are independent, and their scatter is the standard error. Later
+// dimensions are independent numbers of the generator SplitMix64 (Steele, Lea, Flood 2014, OOPSLA,
+// 453).
 //
-// Where the path tracer looks along a straight piece of a path: rational maps of the distance
+// Distances along a straight segment of a path are sampled with rational maps
 //
 //   t = begin + length y,   y = v / (1 + k (1 - v)),   v in [0, 1]
 //
-// each dense at one of its ends (k = length / scale), combined by the balance heuristic.
+// Each map is dense at one of its ends (k = length / scale); the maps are combined by the balance
+// heuristic.
 //
-// Columns of air along straight lines, for the path tracer: thousands of times faster than
-// judge.cpp, and as independent as it is of the shared texts and closed forms.
+// Columns of air along straight lines are computed thousands of times faster than in judge.cpp, and
+// also without the shared sources and closed forms.
 //
-// A line is described by its perigee's distance p from the planet's centre; s
-// is the distance along it, counted from the perigee, mu = s / r its zenith
-// cosine. With y = r (w^2 - mu^2) / 2, the climb from radius r, nothing is
-// singular at the perigee, and an exponential layer's column outwards is
+// A line is described by the distance p of its perigee from the planet's centre; s is the distance
+// along the line, counted from the perigee, and mu = s / r its zenith cosine. In the variable
+// y = r (w^2 - mu^2) / 2, the climb from radius r, the integrand has no singularity at the perigee, and
+// an exponential layer's column outwards is
 //
 //   exp(-h / H) F(r, mu),   F = integral over w >= mu of
 //                               exp(-y / H) (r + y) / sqrt(1 + ((w^2 - mu^2) / 2w)^2) dw
 //
-// F is smooth and nearly the same for every altitude: a table of Gauss-Legendre integrals, read by
-// cubic interpolation. Ozone's tent is linear in r, so that its column is elementary:
-// integral of sqrt(s^2 + p^2) ds = (s r + p^2 ln((s + r) / p)) / 2; its smooth layer, a polynomial
-// of degree 12 in h, is integrated by 14 Gauss nodes.
+// F is smooth and nearly independent of altitude: it is a table of Gauss-Legendre integrals, read
+// by cubic interpolation. The ozone tent is linear in r, so that its column is elementary: integral
+// of sqrt(s^2 + p^2) ds = (s r + p^2 ln((s + r) / p)) / 2. The smooth ozone layer, a polynomial of
+// degree 12 in h, is integrated by 14 Gauss nodes.
 //
-// What an observer's polariser sees of light that arrives somewhere along a path that is followed
-// backwards: one row of weights over the light's Stokes parameters (I, Q, U, V) for each of I, Q, U
-// that the observer measures (the adjoint of polarised transfer).
+// The analyser represents the observer's polariser at a point of a path that is followed backwards:
+// one row of weights over the Stokes parameters (I, Q, U, V) of the light at this point, for each
+// of I, Q, U that the observer measures (the adjoint of polarised transfer).
 //
-// Stokes parameters of light that is seen in direction d (it travels along -d) refer to a unit
-// vector r across d: with s = d x r, Q = <E_r^2> - <E_s^2>, U = 2 <E_r E_s>.
+// Stokes parameters of light that is seen in direction d (it propagates along -d) refer to a unit
+// vector r perpendicular to d: with s = d x r, Q = <E_r^2> - <E_s^2>, U = 2 <E_r E_s>.
 #pragma once
 
 #include <algorithm>
@@ -60,7 +63,7 @@ class PathRandom {
         state_(Mixed(batch_key_ ^ (path + 1) * 0xD1B54A32D192ED03U)),
         path_(path) {}
 
-  /// Uniform in [0, 1).
+  /// Returns a number that is uniform in [0, 1).
   double Next() {
     state_ += kStep;
     const double independent = Fraction(Mixed(state_));
@@ -102,7 +105,7 @@ struct DistanceMap {
     const double y = v / (1.0 + k * (1.0 - v));
     return begin_m + length_m * (dense_at_end ? 1.0 - y : y);
   }
-  /// Expected points per metre at a distance.
+  /// Returns the expected number of points per metre at a distance.
   [[nodiscard]] double Density(double distance_m) const {
     const double from_begin = (distance_m - begin_m) / length_m;
     if (from_begin < 0.0 || from_begin > 1.0) return 0.0;
@@ -112,13 +115,13 @@ struct DistanceMap {
   }
 };
 
-/// The maps of one piece.
+/// The maps of one segment.
 class DistanceMaps {
  public:
   static constexpr std::size_t kMost = 5;
 
-  /// Pieces without length are passed over. @param scale_m  > 0; over what distance from the dense
-  /// end the points thin out.
+  /// Adds a map; segments without length are ignored.
+  /// @param scale_m  > 0; distance from the dense end over which the density of points decreases.
   void Add(double begin_m, double end_m, double scale_m, bool dense_at_end, int strata) {
     const double length = end_m - begin_m;
     if (!(length > 0.0)) return;
@@ -128,7 +131,7 @@ class DistanceMaps {
   [[nodiscard]] const DistanceMap* begin() const { return maps_.data(); }
   [[nodiscard]] const DistanceMap* end() const { return maps_.data() + count_; }
 
-  /// Length of the line that a point at this distance stands for.
+  /// Returns the length of line that a point at this distance represents.
   [[nodiscard]] double Weight(double distance_m) const {
     double density = 0.0;
     for (const DistanceMap& map : *this) density += map.Density(distance_m);
@@ -145,31 +148,32 @@ struct AirColumns {
   double rayleigh = 0.0, mie = 0.0, ozone = 0.0;
 };
 
-/// Columns along any line outside the planet. Relative error of an optical depth to space below
-/// 1e-6 (asserted).
+/// Computes columns along any line outside the planet. The relative error of an optical depth to
+/// space is below 1e-6 (asserted).
 class ColumnTable {
  public:
   explicit ColumnTable(const Medium& medium);
 
-  /// A line with its perigee at `perigee_radius_m` from the centre, and where ozone bends on it.
+  /// A line with its perigee at `perigee_radius_m` from the centre, and the points at which the
+  /// ozone profile has a kink on it.
   struct Line {
     double perigee_radius_m = 0.0;
     std::array<double, 3> ozone_edge_m{};    // s of the layer's bottom, peak, top
-    std::array<double, 2> ozone_offset_m{};  // primitives of its two sides at their lower edges
+    std::array<double, 2> ozone_offset_m{};  // antiderivatives at the lower edges of both sides
     double ozone_below_peak_m = 0.0;         // column of the whole lower side
   };
   [[nodiscard]] Line LineAt(double perigee_radius_m) const;
 
-  /// What lies beyond |s| on one side: of exponential layers that go on for ever; of ozone, what
-  /// lies between the perigee and s instead (with the sign of s).
+  /// Returns, for exponential layers of infinite extent, the column beyond |s| on one side; for
+  /// ozone, the column between the perigee and s (with the sign of s).
   [[nodiscard]] AirColumns Primitive(const Line& line, double s_m) const;
 
-  /// The column between s0 and s1 >= s0, given their primitives. A line from s0 < 0 to s1 > 0 must
-  /// have its perigee above the ground, and needs the primitive there.
+  /// Returns the column between s0 and s1 >= s0, given their primitives. A line from s0 < 0 to
+  /// s1 > 0 must have its perigee above the ground, and needs the primitive there.
   [[nodiscard]] static AirColumns Difference(double s0_m, const AirColumns& at_s0, double s1_m,
                                              const AirColumns& at_s1, const AirColumns& at_perigee);
 
-  /// The column between s0 and the top of the atmosphere.
+  /// Returns the column between s0 and the top of the atmosphere.
   [[nodiscard]] AirColumns ToSpace(double perigee_radius_m, double s0_m) const;
 
  private:
@@ -178,7 +182,7 @@ class ColumnTable {
 
   struct Layer {
     double scale_height_m = 0.0;
-    std::vector<double> table;  // F / sqrt(H r) (1 + t), t = mu sqrt(r / 2H); radius major
+    std::vector<double> table;  // F / sqrt(H r) (1 + t), t = mu sqrt(r / 2H); radius-major order
   };
   [[nodiscard]] Layer Tabulate(double scale_height_m) const;
   [[nodiscard]] double Beyond(const Layer& layer, double radius_m, double s_m) const;
@@ -193,37 +197,39 @@ class ColumnTable {
   double deficit_share_;
   Layer rayleigh_;
   Layer mie_;
-  Layer deficit_;  // without a share: empty
+  Layer deficit_;  // empty if the medium has no deficit
 };
 
-inline constexpr std::size_t kStokes = 3;  // that an observer measures
+inline constexpr std::size_t kStokes = 3;  // number of parameters that an observer measures
 
 struct Analyser {
   std::array<std::array<double, 4>, kStokes> row{};
 };
 
-/// A turn of a path by scattering: the plane of scattering, against the reference before.
+/// Rotation of the reference direction at a scattering event: the scattering plane, relative to the
+/// reference before it.
 struct PlaneTurn {
-  double cos_twice = 1.0, sin_twice = 0.0;  // of the angle from the reference into the plane
-  glm::dvec3 reference{};                   // after: in the plane of scattering
+  double cos_twice = 1.0, sin_twice = 0.0;  // of the angle from reference to scattering plane
+  glm::dvec3 reference{};                   // new reference, in the scattering plane
 };
 
-/// @param reference  across `direction`, of unit length. @param next  the direction after.
+/// @param reference  perpendicular to `direction`, of unit length. @param next  the direction after
+/// scattering.
 [[nodiscard]] inline PlaneTurn TurnOf(const glm::dvec3& direction, const glm::dvec3& reference,
                                       const glm::dvec3& next) {
   glm::dvec3 normal = glm::cross(direction, next);
-  // Straight on and straight back every plane is one of scattering.
+  // For exact forward and backward scattering every plane is a scattering plane.
   if (glm::dot(normal, normal) < 1e-24) normal = glm::cross(direction, reference);
   normal = glm::normalize(normal);
   const glm::dvec3 in_plane = glm::cross(normal, direction);
   const double cosine = glm::dot(reference, in_plane);
   const double sine = glm::dot(reference, normal);
-  const double square = cosine * cosine + sine * sine;  // 1 but for rounding
+  const double square = cosine * cosine + sine * sine;  // 1 except for rounding
   return {(cosine - sine) * (cosine + sine) / square, 2.0 * cosine * sine / square,
           glm::normalize(glm::cross(normal, next))};
 }
 
-/// For light before it was scattered by the turn.
+/// Returns the analyser for light before it was scattered by the turn.
 [[nodiscard]] inline Analyser Scattered(const Analyser& after, const PlaneTurn& turn,
                                         const ScatteringMatrix& m) {
   Analyser before;

@@ -21,25 +21,26 @@ namespace {
 
 using Vector = glm::dvec3;
 
-constexpr int kFirstStrata = 8;  // of each map along the first piece of a path
-constexpr int kLaterStrata = 4;  // of each map along the others
-// A path whose next piece promises less than this part of what its first piece did meets the
-// roulette; one that promises more than kSplitShare times as much is split. Without the latter the
-// weights of the hundreds of orders in thick air would drift apart (weight windows: Booth and
-// Hendricks 1984, Nucl. Technol./Fusion 5, 90).
+constexpr int kFirstStrata = 8;  // strata of each map along the first segment of a path
+constexpr int kLaterStrata = 4;  // strata of each map along later segments
+// If the expected contribution of the next segment is below kRouletteShare times that of the first
+// segment, the path undergoes Russian roulette; above kSplitShare times, it is split. Without
+// splitting, the weights of the hundreds of orders in thick air would diverge (weight windows:
+// Booth and Hendricks 1984, Nucl. Technol./Fusion 5, 90).
 constexpr double kRouletteShare = 0.2;
 constexpr double kSplitShare = 2.0;
 constexpr double kMostCopies = 8.0;
 
-// What directions are drawn by; depolarisation is in the weight.
+// Phase function from which directions are sampled; depolarisation is included in the weight.
 const PhaseFunction kMolecules{.kind = PhaseKind::kRayleigh};
 
 double Mean(std::span<const double> values) {
   return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
 }
 
-// Roughly how bright the sky is for air in twilight, 1 by day: a decade for 2.5 degrees of the
-// sun's depression, of which height takes back a part. Only tells where paths should go.
+// Returns an estimate of the brightness of the twilight sky, 1 by day: it falls by a decade for
+// 2.5 degrees of the sun's depression, and the dip of the horizon at a height compensates a part.
+// It is used only for importance sampling.
 double TwilightFactor(double altitude_m, double sine_of_sun, double planet_m) {
   constexpr double kFallPerRadian = 53.0;
   constexpr double kShareOfDip = 0.45;
@@ -47,10 +48,10 @@ double TwilightFactor(double altitude_m, double sine_of_sun, double planet_m) {
   return std::exp(kFallPerRadian * std::clamp(sine_of_sun + kShareOfDip * dip, -0.35, 0.0));
 }
 
-/// A straight piece of a path. s counts metres from the perigee of its line.
+/// A straight segment of a path. s is the distance [m] from the perigee of its line.
 struct Piece {
   Vector origin, direction;
-  double perigee_m = 0.0;  // radius
+  double perigee_m = 0.0;  // radius of the perigee
   double s0_m = 0.0;
   double length_m = 0.0;
   bool ends_on_ground = false;
@@ -63,7 +64,7 @@ struct Piece {
 
 double PerigeeRadius(double radius2, double s) { return std::sqrt(std::max(radius2 - s * s, 0.0)); }
 
-/// The medium made ready: what all paths share.
+/// Data precomputed from the medium, shared by all paths.
 class Scene {
  public:
   Scene(const Medium& medium, const Vector& sun)
@@ -94,7 +95,7 @@ class Scene {
            medium_.ozone_absorption_per_m[band] * columns.ozone;
   }
 
-  /// From a point inside the shell to the ground or the top.
+  /// Returns the segment from a point inside the shell to the ground or the top.
   [[nodiscard]] Piece PieceFrom(const Vector& origin, const Vector& direction) const;
   [[nodiscard]] DistanceMaps MapsOf(const Piece& piece, int strata) const;
 
@@ -114,7 +115,7 @@ class Scene {
   Medium medium_;
   Vector sun_;
   ColumnTable table_;
-  double rayleigh_per_m_, mie_per_m_;  // extinction at the ground, mean of the wavelengths
+  double rayleigh_per_m_, mie_per_m_;  // extinction at the ground, mean over the wavelengths
   double shadow_radius_m_;
 };
 
@@ -130,8 +131,8 @@ Piece Scene::PieceFrom(const Vector& origin, const Vector& direction) const {
   return piece;
 }
 
-// Of the planet with the air that sunbeams hardly cross: grazing beams above have an optical depth
-// under 1 at one wavelength at least.
+// Returns the radius of the planet plus the lower air that hardly transmits sunbeams: grazing beams
+// above it have an optical depth under 1 in at least one wavelength.
 double Scene::ShadowRadius() const {
   double low = planet_m(), high = top_m();
   while (high - low > 10.0) {
@@ -151,7 +152,8 @@ double Scene::FreePath(double radius_m) const {
   return 1.0 / std::max(extinction, 1e-300);
 }
 
-// How far the line goes from s outwards until extinction has fallen by about e.
+// Returns the distance along the line from s outwards over which extinction falls by about a factor
+// e.
 double Scene::ClimbDistance(double perigee_m, double s_m) const {
   const double s = std::abs(s_m);
   const double r = std::sqrt(perigee_m * perigee_m + s * s);
@@ -163,12 +165,12 @@ double Scene::ClimbDistance(double perigee_m, double s_m) const {
   return std::sqrt(s * s + height * (2.0 * r + height)) - s;
 }
 
-/// Where a line is in the planet's shadow: between two distances, if `end > begin`.
+/// Interval of distances in which a line is in the planet's shadow; empty unless `end > begin`.
 struct Shadow {
   double begin_m = 0.0, end_m = 0.0;
 };
 
-// Only tells where to look: light itself is tested point by point.
+// Returns the shadow for importance sampling; lighting is tested point by point.
 Shadow ShadowOn(const Piece& piece, const Vector& sun, double shadow_radius_m) {
   const double sun0 = glm::dot(piece.origin, sun);
   const double nu = glm::dot(piece.direction, sun);
@@ -227,7 +229,7 @@ Frame FrameAround(const Vector& z) {
   return {x, glm::cross(z, x), z};
 }
 
-// x towards the sun's azimuth, z up.
+// Returns a frame with x towards the sun's azimuth and z up.
 Frame LocalFrame(const Vector& point, const Vector& sun) {
   const Vector z = glm::normalize(point);
   const Vector across = glm::cross(z, sun);
@@ -236,8 +238,8 @@ Frame LocalFrame(const Vector& point, const Vector& sun) {
   return {glm::cross(y, z), y, z};
 }
 
-/// The glow of twilight: azimuths by a wrapped Cauchy distribution around the sun's, elevations
-/// dense above the geometric horizon.
+/// Distribution of directions for the glow of twilight: azimuths by a wrapped Cauchy distribution
+/// around the sun's azimuth, elevations dense above the geometric horizon.
 class Glow {
  public:
   Glow(const Vector& point, const Vector& sun, double planet_m)
@@ -269,12 +271,13 @@ class Glow {
   double horizon_;
 };
 
-/// Light gathered by one path, at every wavelength; of polarised light first I, then Q, then U.
+/// Light gathered by one path, at every wavelength; for polarised light in the order I, Q, U.
 struct Gathered {
   std::vector<double> total, single;
 };
 
-/// What the sun's light scattered into a piece is worth [1/sr], in the order of Gathered.
+/// Contribution of sunlight scattered into a segment, per scattering coefficient and unit
+/// irradiance [1/sr], in the order of Gathered.
 struct Responses {
   std::vector<double> molecules, aerosol;
 };
@@ -282,23 +285,23 @@ struct Responses {
 /// Follows paths, one at a time.
 class Tracer {
  public:
-  /// @param polarised  null: scalar light.
+  /// @param polarised  null for scalar light.
   Tracer(const Scene& scene, const PolarisedScattering* polarised, int max_order)
       : scene_(scene), polarised_(polarised), max_order_(max_order) {
     weight_.resize(scene.bands());
   }
 
-  /// Adds `factor` times the light that comes along the piece.
+  /// Adds `factor` times the light along the segment.
   void Follow(const Piece& first, double factor, PathRandom& random, Gathered& light);
 
  private:
   struct Point {
-    double distance_m, length_m;  // from the origin of the piece; of the line that it stands for
+    double distance_m, length_m;  // from the segment's origin; line represented by the point
     double rayleigh, mie;         // relative densities
     AirColumns view;
-    double share = 0.0;  // of scattered light that is expected, summed over wavelengths
+    double share = 0.0;  // expected scattered light, summed over wavelengths
   };
-  /// A path still to be followed from here.
+  /// A path that remains to be followed from a segment.
   struct Branch {
     Piece piece;
     int order;
@@ -308,7 +311,7 @@ class Tracer {
   };
   struct Copies {
     int count;
-    double factor;  // of their weights
+    double factor;  // factor of their weights
   };
   static constexpr std::size_t kGround = std::numeric_limits<std::size_t>::max();
 
@@ -335,16 +338,17 @@ class Tracer {
   const Scene& scene_;
   const PolarisedScattering* polarised_;
   int max_order_;
-  int order_ = 1;               // of the piece at hand
-  std::vector<double> weight_;  // of the path so far, for unpolarised light
-  // Of polarised light, by band; the first entry of the first row is 1, the rest is in the weight.
+  int order_ = 1;               // order of the current segment
+  std::vector<double> weight_;  // weight of the path so far, for unpolarised light
+  // Analyser of polarised light, by band; the first entry of the first row is 1, the other factors
+  // are in the weight.
   std::vector<Analyser> analyser_;
   Vector reference_{};
   std::vector<Branch> branches_;
   std::vector<Point> points_;
   AirColumns ground_view_;
   double ground_share_ = 0.0;
-  double first_shares_ = 0.0;  // sum of the shares of the first piece
+  double first_shares_ = 0.0;  // sum of the shares of the first segment
 };
 
 void Tracer::Follow(const Piece& first, double factor, PathRandom& random, Gathered& light) {
@@ -372,8 +376,9 @@ void Tracer::Follow(const Piece& first, double factor, PathRandom& random, Gathe
   }
 }
 
-// Up is upwards in the vertical plane of the view; with the view along +z or -z, as if it were
-// tilted towards +x a little. U counts with the opposite sign: see ViewDirection.
+// Returns the branch along the view. The reference direction is upwards in the vertical plane of
+// the view; if the view is along +z or -z, it is the limit for a view tilted slightly towards +x. U
+// has the opposite sign: see ViewDirection.
 Tracer::Branch Tracer::FirstBranch(const Piece& first, double factor) const {
   Branch branch{first, 1, std::vector<double>(scene_.bands(), factor), {}};
   if (polarised_ == nullptr) return branch;
@@ -395,7 +400,7 @@ double Tracer::ExpectedLight(const Piece& piece, double distance_m) const {
   return TwilightFactor(radius - scene_.planet_m(), towards_sun / radius, scene_.planet_m());
 }
 
-// Points along the piece, with columns from its origin.
+// Places points along the segment, with columns from its origin.
 void Tracer::Spread(const Piece& piece, int strata, double jitter) {
   points_.clear();
   const ColumnTable& table = scene_.table();
@@ -464,7 +469,7 @@ ScatteringMatrix Tracer::AerosolMatrix(std::size_t band, double mie_phase, doubl
   return SphereMatrix(spheres.size() == 1 ? spheres.front() : spheres[band], mie_phase, cosine);
 }
 
-// Sunlight scattered at one point.
+// Adds sunlight scattered at one point.
 void Tracer::GatherFromAir(const Piece& piece, const Point& point, const Responses& responses,
                            std::vector<double>& light) const {
   const Medium& medium = scene_.medium();
@@ -487,7 +492,7 @@ void Tracer::GatherFromAir(const Piece& piece, const Point& point, const Respons
   }
 }
 
-// Sunlight reflected where the piece ends.
+// Adds sunlight reflected at the end of the segment.
 void Tracer::GatherFromGround(const Piece& piece, std::vector<double>& light) {
   const Medium& medium = scene_.medium();
   const double towards_sun =
@@ -508,7 +513,7 @@ void Tracer::GatherFromGround(const Piece& piece, std::vector<double>& light) {
   }
 }
 
-// The point to continue from, in proportion to the shares.
+// Draws the point from which the path continues, with probabilities proportional to the shares.
 std::size_t Tracer::Draw(double u) const {
   double left = u * SumOfShares() - ground_share_;
   if (left < 0.0) return kGround;
@@ -528,7 +533,8 @@ double Tracer::SumOfShares() const {
   return sum;
 }
 
-// Roulette and splitting. @param promise  of the piece, beside that of the first.
+// Applies Russian roulette and splitting. @param promise  expected contribution of the segment,
+// relative to that of the first segment.
 Tracer::Copies Tracer::CopiesOf(double promise, double u) {
   if (promise < kRouletteShare) {
     const double survival = promise / kRouletteShare;
@@ -538,7 +544,8 @@ Tracer::Copies Tracer::CopiesOf(double promise, double u) {
   return {static_cast<int>(count), 1.0 / count};
 }
 
-// The next piece: from a point drawn in proportion to the shares, in a drawn direction.
+// Returns the next segment: from a point drawn with probability proportional to the shares, in a
+// sampled direction.
 Piece Tracer::Continue(const Piece& piece, PathRandom& random) {
   const Medium& medium = scene_.medium();
   const std::size_t drawn = Draw(random.Next());
@@ -550,7 +557,7 @@ Piece Tracer::Continue(const Piece& piece, PathRandom& random) {
   const AirColumns& view = at_ground ? ground_view_ : points_[drawn].view;
   for (std::size_t band = 0; band < weight_.size(); ++band) {
     weight_[band] *= std::exp(-scene_.OpticalDepth(band, view)) / probability;
-    // In air the scattering coefficient comes with the phase function, in TurnInAir.
+    // In air, TurnInAir applies the scattering coefficient together with the phase function.
     weight_[band] *= at_ground ? medium.ground_albedo[band] : points_[drawn].length_m;
   }
   const double distance = at_ground ? piece.length_m : points_[drawn].distance_m;
@@ -561,14 +568,15 @@ Piece Tracer::Continue(const Piece& piece, PathRandom& random) {
   return scene_.PieceFrom(from, direction);
 }
 
-/// How much of a mixture of directions is for the twilight glow, and for the aerosol's lobe around
-/// the sun. Any shares below 1 are right; these keep the weights even.
+/// Weights, in a mixture of directions, of the twilight glow and of the aerosol's lobe around the
+/// sun. The result is unbiased for any weights below 1; these values keep the path weights even.
 struct Guidance {
   double glow, aureole;
 };
 
-// Every guided turn spreads the weights by a factor: turns of high orders, of which thick air has
-// hundreds, are left to the phase function, so that the product of all factors is bounded.
+// Every guided turn increases the spread of the weights by a factor. At high orders
+// (thick air has hundreds) directions are sampled from the phase function only, so that the product
+// of all factors is bounded.
 Guidance GuidanceAt(const Scene& scene, const Vector& from, int order) {
   constexpr double kGuidedOrders = 3.0;
   const double fade = std::min(kGuidedOrders * kGuidedOrders / std::max(order * order, 1), 1.0);
@@ -579,7 +587,8 @@ Guidance GuidanceAt(const Scene& scene, const Vector& from, int order) {
   return {fade * glow, fade * aureole};
 }
 
-// A cosine drawn with the mean of the bands' phase functions by their shares, of any sum.
+// Samples a cosine from the mean of the bands' phase functions, weighted by shares that need not be
+// normalised.
 // @param choice, v  uniform in [0, 1).
 double SampleAerosol(const Medium& medium, const std::vector<double>& share, double choice,
                      double v) {
@@ -590,7 +599,7 @@ double SampleAerosol(const Medium& medium, const std::vector<double>& share, dou
   return SampleCosine(medium.mie_phase[band], v);
 }
 
-// Mean of the values by the shares.
+// Returns the mean of the values, weighted by the shares.
 double MeanBy(const std::vector<double>& share, const std::vector<double>& value) {
   return std::inner_product(share.begin(), share.end(), value.begin(), 0.0) /
          std::accumulate(share.begin(), share.end(), 0.0);
@@ -600,7 +609,7 @@ Vector Tracer::TurnInAir(const Piece& piece, const Point& point, const Vector& f
                          double u, double v) {
   const Medium& medium = scene_.medium();
   double by_molecules = 0.0, by_aerosol = 0.0;
-  std::vector<double> share(weight_.size());  // of the aerosol's scattering, by band
+  std::vector<double> share(weight_.size());  // share of each band in the aerosol's scattering
   for (std::size_t band = 0; band < weight_.size(); ++band) {
     by_molecules += weight_[band] * medium.rayleigh_scattering_per_m[band] * point.rayleigh;
     share[band] = weight_[band] * medium.mie_scattering_per_m[band] * point.mie;
@@ -648,7 +657,7 @@ Vector Tracer::TurnInAir(const Piece& piece, const Point& point, const Vector& f
   return direction;
 }
 
-// Of the analyser of one band; what it becomes for unpolarised light [1/(m sr)].
+// Applies a turn to the analyser of one band; returns its weight for unpolarised light [1/(m sr)].
 // @param molecules, aerosol  scattering coefficients [1/m].
 double Tracer::TurnAnalyser(std::size_t band, const PlaneTurn& turn, double molecules,
                             double aerosol, double mie_phase, double cosine) {
@@ -669,7 +678,8 @@ double Tracer::TurnAnalyser(std::size_t band, const PlaneTurn& turn, double mole
   return worth;
 }
 
-/// A direction drawn to see what falls on a plane, and cosine over density.
+/// A direction sampled for the irradiance of a plane, and its cosine divided by its probability
+/// density.
 struct PlaneDirection {
   Vector direction;
   double weight;
@@ -736,7 +746,7 @@ Estimate EstimateOf(const std::vector<Gathered>& batches) {
           std::move(single.error), batches.size() * kPathsPerBatch};
 }
 
-// Largest relative error of the radiance at a wavelength that has light.
+// Returns the largest relative error of the radiance over all wavelengths with non-zero radiance.
 double WorstError(const Estimate& estimate, std::size_t bands) {
   double worst = 0.0;
   for (std::size_t band = 0; band < bands; ++band) {
@@ -817,7 +827,8 @@ Vector SunDirection(double mu_s) {
   return {std::sqrt(std::max((1.0 - mu_s) * (1.0 + mu_s), 0.0)), 0.0, mu_s};
 }
 
-// The view direction with its zenith and scattering angles; the sun at x is not to the left of it.
+// Returns the view direction from its zenith and scattering angles; the sun is in the plane of x
+// and not to the left of the view.
 Vector ViewDirection(const ViewRay& ray) {
   const double sine = std::sqrt(std::max((1.0 - ray.mu) * (1.0 + ray.mu), 0.0));
   const double sun_sine = std::sqrt(std::max((1.0 - ray.mu_s) * (1.0 + ray.mu_s), 0.0));
@@ -828,7 +839,7 @@ Vector ViewDirection(const ViewRay& ray) {
   return {sine * cosine, sine * across, ray.mu};
 }
 
-// The part of the view ray inside the shell.
+// Returns the part of the view ray inside the shell.
 Piece ViewPiece(const Medium& medium, const ViewRay& ray, const RayExtent& extent) {
   Piece piece;
   const double radius = medium.planet_radius_m + std::max(ray.altitude_m, 0.0);
@@ -914,7 +925,7 @@ PathTracedIrradiance TraceIrradiance(const Medium& medium, double altitude_m, do
             if (drawn.weight <= 0.0) return;
             tracer.Follow(scene.PieceFrom(from, drawn.direction), drawn.weight, random, light);
           });
-  estimate.total.resize(scene.bands());  // Q and U of what falls from all sides mean nothing
+  estimate.total.resize(scene.bands());  // Q and U are not defined for irradiance
   estimate.total_error.resize(scene.bands());
   return {std::move(estimate.total), std::move(estimate.total_error), estimate.paths,
           estimate.converged};
