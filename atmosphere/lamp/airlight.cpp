@@ -15,7 +15,7 @@ namespace {
 
 constexpr double kSmallestApproach_m = 1e-12;
 
-/// A vector that lives on the stack.
+/// A vector of limited capacity with storage on the stack.
 template <typename Element, std::size_t kCapacity>
 class Few {
  public:
@@ -41,7 +41,7 @@ class Few {
   std::size_t count_ = 0;
 };
 
-/// Where the ray's distance to the lamp is that of the variable x, and what it sees there.
+/// The integrand along a ray, with the distance to the lamp parameterised by x.
 class LampRay {
  public:
   LampRay(const LampAir& air, const Lamp& lamp, const LampSegment& segment)
@@ -72,8 +72,8 @@ class LampRay {
   [[nodiscard]] double x_begin() const { return x_begin_; }
   [[nodiscard]] double x_end() const { return x_end_; }
 
-  // Where the ray enters and leaves the cone of half angle alpha about the lamp's axis. In the
-  // plane of ray and lamp the cosine to the axis is a cos(theta - phi).
+  // Adds the points at which the ray enters and leaves the cone of half angle alpha about the
+  // lamp's axis. In the plane of ray and lamp the cosine to the axis is a cos(theta - phi).
   template <typename Add>
   void AddCone(double cosine, const Add& add) const {
     const double a = std::hypot(across_.x, along_.x);
@@ -85,7 +85,7 @@ class LampRay {
       if (std::abs(theta) < 0.5 * kPi) add(std::asinh(std::tan(theta)));
     }
   }
-  // Where the ray is nearest to the lamp's axis.
+  // Adds the point at which the ray is nearest to the lamp's axis.
   template <typename Add>
   void AddAxis(const Add& add) const {
     const double phi = std::atan2(along_.x, across_.x);
@@ -96,7 +96,7 @@ class LampRay {
     return Profile(std::tanh(x), 1.0 / std::cosh(x)) > 0.0;
   }
 
-  // The integrand in x, in the middle band, of the layers that matter.
+  // Returns the integrand in x, in the middle band, for the significant layers only.
   [[nodiscard]] double Reference(double x) const {
     double value = 0.0;
     At(x, great_layers_, reference_, reference_ + 1,
@@ -116,7 +116,8 @@ class LampRay {
     return glm::normalize(glm::cross(direction, other));
   }
 
-  // Cosines of the ray and of the direction from the lamp to the nearest point, to the lamp's axes.
+  // Sets the cosines between the lamp's axes and the ray, and between the lamp's axes and the
+  // direction from the lamp to the nearest point.
   void SetPlane(const glm::dvec3& ray, const glm::dvec3& off) {
     const glm::dvec3 third = glm::cross(lamp_.side, lamp_.axis);
     along_ = {glm::dot(ray, lamp_.axis), glm::dot(ray, lamp_.side), glm::dot(ray, third)};
@@ -125,8 +126,8 @@ class LampRay {
 
   [[nodiscard]] double XOf(double t) const { return std::asinh((t - nearest_m_) / approach_m_); }
 
-  // The tail beyond holds less than 1e-9 of the light: d
-  // has grown by as much, or 45 optical depths lie behind.
+  // The tail beyond this end has less than 1e-9 of the light: d has increased by the inverse
+  // factor, or the optical depth is 45.
   [[nodiscard]] double HomogeneousEnd() const {
     double extinction = 0.0;
     for (const LampLayer& layer : air_.layers) {
@@ -142,8 +143,9 @@ class LampRay {
     return RelativeIntensity(lamp_.profile, sine * along_ + cosine * across_);
   }
 
-  // Layers that scatter at least a fiftieth of the densest one there, somewhere on the ray: for
-  // scouting, where the shape of the integrand is enough. Over fog it is the clear air's.
+  // Selects the layers that scatter at least a fiftieth as much as the densest one, at some height
+  // on the ray. They are used for scouting, which needs only the shape of the integrand. Above fog,
+  // the clear air is selected.
   void ChooseLayers(double begin_z, double end_z) {
     constexpr int kHeights = 4;
     std::array<bool, kMostLampLayers> is_great{};
@@ -162,7 +164,7 @@ class LampRay {
     }
   }
 
-  /// A layer's density relative to its base, and the logarithm of that.
+  /// A layer's density relative to its base, and its logarithm.
   struct Density {
     double log = 0.0, value = 1.0;
   };
@@ -215,7 +217,7 @@ class LampRay {
   double x_begin_ = 0.0, x_end_ = 0.0;
 };
 
-/// A piece of the ray with one maximum, ready for the map around it.
+/// A segment of the ray with one maximum, and the parameters of its map.
 struct Panel {
   double low, high;
   double mode, scale;
@@ -225,7 +227,7 @@ struct Panel {
 inline constexpr std::size_t kMostPanels = 48;
 using Panels = Few<Panel, kMostPanels>;
 
-/// The integrand at ascending points of one lit piece.
+/// The integrand at ascending points of one lit segment.
 class Scout {
  public:
   Scout(const LampRay& ray, double low, double high) : ray_(ray) {
@@ -244,7 +246,7 @@ class Scout {
 
   [[nodiscard]] std::size_t evaluations() const { return points_.size(); }
 
-  // None where no light is (no air, or 700 optical depths of it).
+  // Appends no panels if there is no light (no air, or an optical depth of 700).
   void AppendPanels(Panels& panels) const {
     const std::size_t last = points_.size() - 1;
     if (!(Content(0, last) > 0.0)) return;
@@ -265,20 +267,21 @@ class Scout {
   static constexpr double kThin = 0.35;
   static constexpr double kLeastStep = 1e-6;
 
-  // Profiles may have any number of maxima: the rest of the ray is one panel when many are found.
+  // Profiles may have any number of maxima: once many are found, the rest of the ray becomes one
+  // panel.
   static bool HasRoom(const Panels& panels) { return panels.size() + 16 < kMostPanels; }
 
   void InsertAt(double x) {
     if (points_.full()) return;
     std::size_t at = 0;
     while (at < points_.size() && points_[at].x < x) ++at;
-    // Panels need a width.
+    // A panel must have a non-zero width.
     const bool is_there = (at < points_.size() && points_[at].x - x < kLeastStep) ||
                           (at > 0 && x - points_[at - 1].x < kLeastStep);
     if (!is_there) points_.insert(at, {x, ray_.Reference(x)});
   }
 
-  // A maximum at an end may be the slope of a higher one just inside.
+  // A maximum at an end may be the slope of a higher maximum just inside.
   void LookBeside(double low, double high) {
     const std::size_t last = points_.size() - 1;
     const double step = 0.25 * (points_[1].x - points_[0].x);
@@ -287,8 +290,9 @@ class Scout {
     if (at_high) InsertAt(high - step);
   }
 
-  // Halves the steps beside maxima that fall by more than e to the next point: layers thinner than
-  // the spacing. Maxima that cannot hold much of the light are left as they are.
+  // Halves the steps next to maxima that fall by more than a factor e to the next point, because of
+  // layers thinner than the spacing. Maxima with a negligible fraction of the light are not
+  // refined.
   void Refine() {
     constexpr double kFall = 2.7;
     constexpr double kWorth = 3e-3;
@@ -322,7 +326,7 @@ class Scout {
     return best;
   }
 
-  // The highest point before the integrand has fallen by a third from it.
+  // Returns the highest point before the integrand has fallen by a third from it.
   [[nodiscard]] std::size_t Climb(std::size_t low) const {
     std::size_t best = low;
     for (std::size_t i = low + 1; i < points_.size(); ++i) {
@@ -332,7 +336,7 @@ class Scout {
     return best;
   }
 
-  // The lowest point after a maximum and before the next one that is worth a panel.
+  // Returns the lowest point between a maximum and the next one that needs its own panel.
   [[nodiscard]] std::size_t Descend(std::size_t mode) const {
     std::size_t lowest = mode;
     for (std::size_t i = mode + 1; i < points_.size(); ++i) {
@@ -347,8 +351,8 @@ class Scout {
     return points_[i].value > 0.0 ? std::log(points_[mode].value / points_[i].value) : kNothing;
   }
 
-  // How far from a maximum, towards `end`, the integrand has fallen by e^fall; or, when it does not
-  // fall as far, where that would be.
+  // Returns the distance from a maximum, towards `end`, at which the integrand has fallen by
+  // e^fall. If it does not fall this far, the distance is extrapolated.
   [[nodiscard]] double FallWidth(std::size_t mode, std::size_t end, double fall) const {
     double depth = 0.0;
     std::size_t i = mode;
@@ -357,7 +361,7 @@ class Scout {
       const double step = std::abs(points_[next].x - points_[i].x);
       const double next_depth = Depth(mode, next);
       const double here = std::abs(points_[i].x - points_[mode].x);
-      // To nothing at once: the edge of a beam, a power and not an exponential.
+      // An abrupt fall to zero is the edge of a beam, which follows a power and not an exponential.
       if (next == end && next_depth > depth + 6.0) break;
       if (next_depth >= fall) return here + step * (fall - depth) / (next_depth - depth);
       depth = next_depth;
@@ -368,9 +372,9 @@ class Scout {
     return depth > 0.1 ? std::min(width * fall / depth, 0.75 * fall * all) : 20.0 * all;
   }
 
-  // The scale of exp(-|x - mode| / s) to one side. A sech falls by e^2 at 2.7 of its scales, an
-  // exponential at 2. Far from the lamp every integrand falls as exp(-|x|): with whole scales the
-  // ends in v are smooth.
+  // Returns the scale s of exp(-|x - mode| / s) on one side. A sech falls by e^2 at 2.7 of its
+  // scales, an exponential at 2. Far from the lamp every integrand falls as exp(-|x|): if the scale
+  // is a whole number, the ends in v are smooth.
   [[nodiscard]] double Scale(std::size_t mode, std::size_t end) const {
     const double near = FallWidth(mode, end, 2.0) / 2.4;
     const double far = FallWidth(mode, end, 9.0) / 9.6;
@@ -389,8 +393,8 @@ class Scout {
     return sum;
   }
 
-  // Where the integrand, away from a maximum, begins to fall much more slowly than the map is made
-  // for, if there is light worth a panel beyond.
+  // Returns the point at which the integrand, away from a maximum, begins to fall much more slowly
+  // than the map assumes, if there is enough light beyond for a panel.
   [[nodiscard]] std::size_t Knee(std::size_t mode, std::size_t end, double scale) const {
     constexpr double kWorth = 3e-4;
     const double whole = Content(std::min(mode, end), std::max(mode, end));
@@ -413,7 +417,7 @@ class Scout {
     panels.push_back({points_[low].x, points_[high].x, mode, scale, Content(low, high)});
   }
 
-  // From a maximum down to one side.
+  // Appends the panels from a maximum down to one side.
   void AppendSide(std::size_t mode, std::size_t end, Panels& panels) const {
     while (mode != end) {
       const double scale = Scale(mode, end);
@@ -474,7 +478,7 @@ Cuts CutsOf(const LampRay& ray, const LampProfile& profile) {
   return cuts;
 }
 
-/// A panel in its own variable v.
+/// The limits of a panel in the variable v.
 struct MappedPanel {
   double low, high;
   explicit MappedPanel(const Panel& panel)
@@ -482,10 +486,11 @@ struct MappedPanel {
         high(std::tanh(0.5 * (panel.high - panel.mode) / panel.scale)) {}
 };
 
-// Gauss's error in a panel falls by the square of the sum of the semi-axes of the ellipse around
-// [low, high] that reaches the nearest singularity (Trefethen 2008, SIAM Review 50, 67, theorem
-// 4.5). The integrand's are those of sech and of the phase function, pi / 2 off the real x.
-// Each node goes where the most error is left.
+// The error of Gauss quadrature in a panel falls by the square of the sum of the semi-axes of the
+// ellipse around [low, high] that reaches the nearest singularity (Trefethen 2008, SIAM Review 50,
+// 67, theorem 4.5). The singularities of the integrand are those of sech and of the phase function,
+// at a distance of pi / 2 from the real x. Each node is assigned to the panel with the largest
+// remaining error.
 void ShareNodes(int nodes, Panels& panels) {
   std::array<double, kMostPanels> log_error{}, gain{};
   for (std::size_t i = 0; i < panels.size(); ++i) {
@@ -508,7 +513,7 @@ void ShareNodes(int nodes, Panels& panels) {
 }
 
 struct FoundPanels {
-  Panels panels;  // with their nodes
+  Panels panels;  // panels with their numbers of nodes
   std::size_t scouted = 0;
 };
 FoundPanels FindPanels(const LampRay& ray, const Lamp& lamp, int nodes) {
@@ -517,7 +522,7 @@ FoundPanels FindPanels(const LampRay& ray, const Lamp& lamp, int nodes) {
   const Cuts cuts = CutsOf(ray, lamp.profile);
   FoundPanels found;
   for (std::size_t i = 0; i + 1 < cuts.size(); ++i) {
-    constexpr double kNothing = 1e-12;  // of a piece, whose light is as little
+    constexpr double kNothing = 1e-12;  // width of a negligible segment, whose light is as small
     if (cuts[i + 1] - cuts[i] > kNothing && ray.IsLit(0.5 * (cuts[i] + cuts[i + 1]))) {
       const Scout scout(ray, cuts[i], cuts[i + 1]);
       scout.AppendPanels(found.panels);
@@ -561,8 +566,8 @@ AirlightEffort EffortOfAirlight(const LampAir& air, const Lamp& lamp, const Lamp
 
 namespace {
 
-// The cosine to a surface's normal, where it is positive, integrated around a cone of half angle
-// alpha whose axis is at cos_normal from the normal.
+// Returns the integral of the cosine to a surface's normal, where it is positive, around a cone of
+// half angle alpha whose axis is at cos_normal from the normal.
 double CosinesAround(double cos_alpha, double sin_alpha, double cos_normal) {
   const double sin_normal = std::sqrt(std::max(0.0, 1.0 - cos_normal * cos_normal));
   const double middle = cos_alpha * cos_normal;
@@ -576,8 +581,8 @@ double CosinesAround(double cos_alpha, double sin_alpha, double cos_normal) {
 }  // namespace
 
 Bands<double> AirlightOnSurface(const LampAir& air, double distance_m, double cos_normal) {
-  // Around the direction to the lamp radiance falls as 1 / sin(alpha), which the solid angle takes
-  // away; forward peaks of the phase function are as narrow as 0.1.
+  // Around the direction to the lamp radiance falls as 1 / sin(alpha), which the solid angle
+  // cancels; forward peaks of the phase function can be as narrow as 0.1.
   constexpr std::array<double, 4> kCuts{0.0, 0.1, 0.6, kPi};
   const GaussRule& rule = GaussLegendre(8);
   Lamp lamp;
@@ -602,7 +607,7 @@ Bands<double> AirlightOnSurface(const LampAir& air, double distance_m, double co
 }
 
 double SunFunction(double u, double v) {
-  // With xi = atan y the integrand is exp(-u y) / (1 + y^2); beyond u y = 40 nothing is left.
+  // With xi = atan y the integrand is exp(-u y) / (1 + y^2); beyond u y = 40 it is negligible.
   const double end = u > 0.0 ? std::min(v, std::atan(40.0 / u)) : v;
   const std::array<double, 3> panels{0.0, std::min(0.5 * end, std::atan(1.0 / std::max(u, 1e-3))),
                                      end};

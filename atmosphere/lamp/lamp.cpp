@@ -13,10 +13,10 @@
 namespace alpenglow::atmosphere {
 namespace {
 
-/// Where a value lies between the ascending points of a table.
+/// Interval of a table with ascending points that contains a value.
 struct Between {
   std::size_t low, high;
-  double share;  // of the higher one
+  double share;  // interpolation weight of the higher one
 };
 
 Between Find(const std::vector<double>& points, double x) {
@@ -27,7 +27,8 @@ Between Find(const std::vector<double>& points, double x) {
   return {high - 1, high, (x - points[high - 1]) / (points[high] - points[high - 1])};
 }
 
-// Around the axis the table goes on with its first column where it does not reach a whole turn.
+// If the table does not cover a whole turn around the axis, it is interpolated from its last to its
+// first column.
 Between FindAround(const std::vector<double>& points, double x) {
   const double past_last = x - points.back();
   const double gap = 2.0 * kPi - points.back();

@@ -1,17 +1,19 @@
 // SPDX-License-Identifier: MIT
 // Lamps, and the air around them.
 //
-// A lamp is a small luminous sphere: intensity I(direction) [cd or W/sr] over d^2, outside of its
-// radius. The air is a sum of layers, each of exponential density over a flat ground,
+// A lamp is a small luminous sphere: outside of its radius, its irradiance is I(direction)
+// [cd or W/sr] over d^2. The air is a sum of layers, each of exponential density over a flat
+// ground,
 //
 //   sigma(z) = sigma(0) exp(-z / H),          z = altitude_at_origin + up . p
 //
-// with H infinite for homogeneous fog. Over L kilometres the true ground falls L^2 / 8R below the
-// flat one that touches it in the middle: 2 m over 10 km. Columns along straight lines are closed:
+// with H infinite for homogeneous fog. Over L kilometres the curved ground falls L^2 / 8R below the
+// flat ground that touches it in the middle: 2 m over 10 km. Columns along straight lines have a
+// closed form:
 //
 //   integral from a to b of density = |b - a| (rho(a) - rho(b)) / ((z(b) - z(a)) / H)
 //
-// This header also reads the shared text lamp_ray.glsl as C++.
+// This header also compiles the shared source lamp_ray.glsl as C++.
 #pragma once
 
 #include <glm/vec3.hpp>
@@ -33,23 +35,23 @@ namespace alpenglow::shared {
 
 namespace alpenglow::atmosphere {
 
-/// Intensity measured over two angles, relative: gamma from the lamp's axis, C around it from its
-/// side vector towards side x axis: counterclockwise on a plan, that is for a lamp that shines down
-/// and is seen from above (ANSI/IESNA LM-63-2002, section 3, horizontal angles of type C). Linear
+/// Relative intensity tabulated over two angles: gamma from the lamp's axis, and C around the axis
+/// from its side vector towards side x axis. For a lamp that shines down and is seen from above, C
+/// is counterclockwise (ANSI/IESNA LM-63-2002, section 3, horizontal angles of type C). Linear
 /// between the angles, 0 beyond the last gamma.
 struct LampTable {
   std::vector<double> gamma_rad;  // ascending from >= 0 to <= pi, at least 2
-  std::vector<double> c_rad;      // ascending in [0, 2 pi], 0 first; one: the same all around
+  std::vector<double> c_rad;      // ascending in [0, 2 pi], 0 first; one value: rotational symmetry
   std::vector<double> intensity;  // [c * gamma_rad.size() + gamma], >= 0
 
   bool operator==(const LampTable&) const = default;
 };
 
-/// How a lamp's light is distributed over directions, relative to its intensity.
+/// Angular distribution of a lamp's light, relative to its intensity.
 struct LampProfile {
   enum class Kind {
     kIsotropic,
-    kCosinePower,  // cos^exponent of the angle to the axis, 0 behind
+    kCosinePower,  // cos^exponent of the angle to the axis, 0 behind the lamp
     kCone,         // 1 inside inner_rad, 0 outside outer_rad, smoothstep in the cosine between
     kTable,
   };
@@ -63,22 +65,22 @@ struct LampProfile {
 
 struct Lamp {
   glm::dvec3 position_m{0.0};
-  /// The air within this distance of the lamp scatters as at this distance: what makes the ray
-  /// through a lamp finite. 0 is a point.
+  /// Within this distance of the lamp the light scattered by the air is that at this distance,
+  /// which keeps the radiance of a ray through the lamp finite. 0 is a point.
   double radius_m = 0.0;
   LampProfile profile;
-  glm::dvec3 axis{0.0, 0.0, -1.0};  // unit
-  glm::dvec3 side{1.0, 0.0, 0.0};   // unit, across the axis: where C is 0 in a table
+  glm::dvec3 axis{0.0, 0.0, -1.0};  // unit vector
+  glm::dvec3 side{1.0, 0.0, 0.0};   // unit vector, perpendicular to the axis: C = 0 in a table
 };
 
-/// Intensity relative to the lamp's, towards a direction given by its cosines to axis, side and
-/// side x axis.
+/// Returns the intensity in a direction, relative to the lamp's intensity. The direction is given
+/// by its cosines to axis, side and side x axis.
 [[nodiscard]] double RelativeIntensity(const LampProfile& profile, const glm::dvec3& cosines);
-/// Towards a unit direction.
+/// Returns the relative intensity in a unit direction.
 [[nodiscard]] double RelativeIntensity(const Lamp& lamp, const glm::dvec3& direction);
 
-/// Throws InputError naming `prefix`.cone and so on for a profile that is none: angles not in
-/// order, tables of the wrong size, values negative or not finite.
+/// Throws InputError naming `prefix`.cone and so on for an invalid profile: angles not in order,
+/// tables of the wrong size, values negative or not finite.
 void Validate(const LampProfile& profile, const std::string& prefix);
 
 inline constexpr std::size_t kMostLampLayers = 4;
@@ -86,15 +88,16 @@ inline constexpr std::size_t kMostLampLayers = 4;
 /// One constituent of the air around lamps.
 struct LampLayer {
   double scale_height_m = std::numeric_limits<double>::infinity();  // > 0; infinite: homogeneous
-  double base_m = 0.0;             // altitude at which it has the coefficients below
+  double base_m = 0.0;             // altitude for which the coefficients below are given
   Bands<double> scattering_per_m;  // at its base
   Bands<double> extinction_per_m;  // at its base, >= scattering
   PhaseFunction phase;
 
-  /// Logarithm of the density relative to the base's; at most 80, see LayerLogDensity.
+  /// Returns the logarithm of the density relative to the density at the base; at most 80, see
+  /// LayerLogDensity.
   [[nodiscard]] double LogDensity(double altitude_m) const;
   [[nodiscard]] double Density(double altitude_m) const;
-  /// Column [m] of relative density along a straight line between two altitudes.
+  /// Returns the column [m] of relative density along a straight line between two altitudes.
   [[nodiscard]] double ColumnBetween(double length_m, double from_m, double to_m) const;
 };
 
@@ -108,17 +111,17 @@ struct LampAir {
   [[nodiscard]] double AltitudeOf(const glm::dvec3& point) const;
 };
 
-/// One layer of the same density everywhere, one band.
+/// Returns air with one layer of uniform density and one band.
 [[nodiscard]] LampAir HomogeneousAir(double scattering_per_m, double extinction_per_m,
                                      const PhaseFunction& phase);
 
-/// Transmittance of the straight line between two points, in every band. Relative error below 1e-12
-/// times the optical depth, or 1e-12.
+/// Returns the transmittance of the straight line between two points, in every band. Relative error
+/// below 1e-12 times the optical depth, or 1e-12.
 [[nodiscard]] Bands<double> TransmittanceBetween(const LampAir& air, const glm::dvec3& from,
                                                  const glm::dvec3& to);
 
-/// Column [m] over a length between points of relative densities rho_a and rho_b,
-/// rise_over_h = (z_b - z_a) / H scale heights apart.
+/// Returns the column [m] over a length between points of relative densities rho_a and rho_b, which
+/// are rise_over_h = (z_b - z_a) / H scale heights apart.
 [[nodiscard]] double ExponentialColumn(double length_m, double rho_a, double rho_b,
                                        double rise_over_h);
 

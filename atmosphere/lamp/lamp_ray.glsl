@@ -1,16 +1,17 @@
-// What an eye has of a lamp: how its light is spread over directions, columns of the air between
-// them, the soft disk that stands for a small one. Lengths in one unit, metres where lamps are.
+// Light of a lamp along a view ray: angular distributions, columns of the air between two points,
+// and the soft disk that represents a small lamp. All lengths have one unit, for lamps metres.
 
-// Logarithm of a density that falls exponentially over its base. Far below the base the layer is a
-// wall; e^80 of it can still be multiplied by what follows.
+// Returns the logarithm of a density that decreases exponentially above its base. Far below the
+// base the layer is opaque; the density is limited to e^80 so that later products stay finite.
 // @param fall  1 / scale height; 0 where the layer is homogeneous.
 SHARED Number LayerLogDensity(Length above_base, Number fall) {
   return min(-above_base * fall, Number(80.0));
 }
 
-// Integral of a density that is exponential in the altitude, along a straight line of this length
-// over a flat ground: rho_a and rho_b at its ends, b higher than a by this many scale heights. Near
-// 0, (1 - e^-x) / x over its trapezoid (1 + e^-x) / 2; the next term is 17 x^6 / 20160.
+// Returns the integral of a density that is exponential in the altitude, along a straight line of
+// this length over a flat ground: rho_a and rho_b are the densities at its ends, with b higher than
+// a by this many scale heights. Near 0, it is (1 - e^-x) / x over its trapezoid (1 + e^-x) / 2; the
+// next term is 17 x^6 / 20160.
 // @param span_over_rise  span / rise_over_h where that is not 0.
 SHARED Length LampColumnOver(Length span, Number rho_a, Number rho_b, Number rise_over_h,
                              Length span_over_rise) {
@@ -26,22 +27,23 @@ SHARED Length LampColumn(Length span, Number rho_a, Number rho_b, Number rise_ov
   return LampColumnOver(span, rho_a, rho_b, rise_over_h, span / divisor);
 }
 
-// Of a spot, relative: 1 inside, 0 outside, smooth in the cosine to its axis between.
+// Returns the relative intensity of a spot: 1 inside the inner cone, 0 outside the outer cone,
+// smooth in the cosine to its axis in between.
 SHARED Number SpotShare(Number cosine, Number cos_inner, Number cos_outer) {
   Number t = (cosine - cos_outer) / (cos_inner - cos_outer);
   t = min(max(t, Number(0.0)), Number(1.0));
   return t * t * (Number(3.0) - Number(2.0) * t);
 }
 
-// Share per solid angle [1/sr] of light that a soft disk of angular radius `radius` spreads around
-// its middle, `off` radii away: (1 - off^2)^2 over the disk integrates to pi / 3.
+// Returns the fraction per solid angle [1/sr] of the light of a soft disk of angular radius
+// `radius`, at `off` radii from its centre: (1 - off^2)^2 over the disk integrates to pi / 3.
 SHARED Number SoftDiskPerSr(Number off, Number radius) {
   Number inside = max(Number(1.0) - off * off, Number(0.0));
   return inside * inside * Number(0.95492965855137202) / (radius * radius);
 }
 
-// Places in a map of what the air around a lamp brings to surfaces (LampGlow): logarithmic in the
-// distance, linear in the sine of the lamp's elevation between 0, 0.04, 0.2, 0.6 and 1.
+// Coordinates in the map of irradiance by airlight of a lamp (LampGlow): logarithmic in the
+// distance, piecewise linear in the sine of the lamp's elevation between 0, 0.04, 0.2, 0.6 and 1.
 SHARED Number LampGlowUnit(Length distance, Length nearest, Length farthest) {
   return log(distance / nearest) / log(farthest / nearest);
 }
@@ -63,10 +65,11 @@ SHARED Number LampRiseFromUnit(Number unit) {
   return select(unit < Number(0.5), -a, a);
 }
 
-// What the air around a lamp brings to a slope, over what it brings to level ground: six terms, of
-// which the first is 1. Light comes from where the lamp is, so that slopes towards it and away from
-// it have their own.
-// @param towards, up  components of the unit normal: along the level way to the lamp, and upwards.
+// Returns the irradiance of a slope by airlight of a lamp, relative to the irradiance of level
+// ground: six terms, of which the first is 1. The light comes from around the lamp, so slopes
+// towards it and away from it have separate terms.
+// @param towards, up  components of the unit normal: along the horizontal direction to the lamp,
+// and upwards.
 SHARED Number LampGlowOnSlope(Number towards, Number up, Number steep, Number facing,
                               Number facing_twice, Number turned, Number turned_twice) {
   Number face = max(towards, Number(0.0));
