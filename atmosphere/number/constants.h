@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Constants of nature and of the solar system, with their sources. SI units.
-//
-// Acceleration of free fall, as standards have it.
+// Physical constants and constants of the solar system, with their sources. SI units.
 #pragma once
 
 #include <numbers>
@@ -29,12 +27,12 @@ inline constexpr double kSunAngularRadius_rad = 4.650471e-3;
 /// maximum with the 1931 observer is 683.002 at 555 nm.
 inline constexpr double kLuminousEfficacy_lm_per_W = 683.002;
 
-/// The scotopic maximum, at 507 nm [lm/W]. CIE 018:2019: it makes radiation of 540 THz as luminous
-/// in the dark as by day.
+/// Scotopic maximum of the luminous efficacy, at 507 nm [lm/W]. CIE 018:2019: with this value
+/// radiation of 540 THz has the same scotopic as photopic luminous efficacy.
 inline constexpr double kScotopicEfficacy_lm_per_W = 1700.0;
 
-/// Optical depth through which a black object is just seen against the horizon, -ln 0.02: the
-/// visibility times the extinction. Koschmieder (1924), Beitr. Phys. freien Atm. 12, 33.
+/// Optical depth through which a black object is just visible against the horizon, -ln 0.02: the
+/// product of visibility and extinction. Koschmieder (1924), Beitr. Phys. freien Atm. 12, 33.
 inline constexpr double kOpticalDepthOfVisibility = 3.912;
 
 inline constexpr double kStandardGravity_m_per_s2 = 9.80665;  // CGPM 1901

@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: MIT
-// The root of a continuous function between two points where its signs differ.
+// Numerical methods: bracketed roots, Gauss-Legendre rules with adaptive integration, small dense
+// systems of linear equations, Halton sequences and the hash FNV-1a.
 //
-// Gauss-Legendre rules, and adaptive integration built on them.
+// Halton sequences fill the unit interval evenly and are the same in every run: Halton (1960),
+// Numer. Math. 2, 84-90. The coordinates of a point in more dimensions are sequences of different
+// prime bases.
 //
-// Small dense systems of linear equations.
-//
-// Points that fill the unit interval evenly, the same in every run: Halton (1960), Numer. Math. 2,
-// 84-90. Coordinates of a point in more dimensions are sequences of different prime bases.
-//
-// FNV-1a, 64 bits (Fowler, Noll, Vo; draft-eastlake-fnv), over little-endian bytes; -0 reads as 0.
+// FNV-1a, 64 bits (Fowler, Noll, Vo; draft-eastlake-fnv), over little-endian bytes; -0 is read as
+// 0.
 #pragma once
 
 #include <algorithm>
@@ -23,10 +22,11 @@
 
 namespace alpenglow::atmosphere {
 
-/// A point within `tolerance` of a root of f in [low, high]; f(low) and f(high) have different
-/// signs or are 0. The tolerance must be larger than the rounding of the bounds. False position
-/// with the Illinois weights (Dowell and Jarratt 1971, BIT 11, 168-174); a step that did not halve
-/// the bracket is followed by a bisection, so the number of steps is bounded.
+/// Returns a point within `tolerance` of a root of the continuous function f in [low, high]; f(low)
+/// and f(high) have different signs or are 0. The tolerance must be larger than the rounding of the
+/// bounds. The method is false position with the Illinois weights (Dowell and Jarratt 1971, BIT 11,
+/// 168-174). A step that did not halve the bracket is followed by a bisection, so the number of
+/// steps is bounded.
 template <typename Function>
 [[nodiscard]] double BracketedRoot(const Function& f, double low, double high, double tolerance) {
   double f_low = f(low);
@@ -58,7 +58,7 @@ template <typename Function>
   return 0.5 * (low + high);
 }
 
-/// Nodes and weights on [0, 1]; integrates polynomials up to degree 2 n - 1 exactly.
+/// Nodes and weights on [0, 1]; the rule integrates polynomials up to degree 2 n - 1 exactly.
 struct GaussRule {
   std::vector<double> node;
   std::vector<double> weight;
@@ -66,9 +66,9 @@ struct GaussRule {
 
 inline constexpr int kMaxGaussNodes = 64;
 
-/// The rule of n nodes, 1 <= n <= kMaxGaussNodes, nodes ascending.
-/// Computed once by Newton's method on the Legendre recurrence
-/// (Abramowitz and Stegun 25.4.29); nodes and weights are right to 1e-15.
+/// Returns the rule of n nodes, 1 <= n <= kMaxGaussNodes, nodes ascending. Rules are computed once
+/// by Newton's method on the Legendre recurrence (Abramowitz and Stegun 25.4.29); nodes and weights
+/// are accurate to 1e-15.
 [[nodiscard]] const GaussRule& GaussLegendre(int n);
 
 /// Integral of a vector-valued function over consecutive panels, and an estimate of its error.
@@ -79,10 +79,10 @@ struct AdaptiveResult {
   bool converged = false;
 };
 
-/// Integrates f: double -> std::vector<double> (of `size` values) over [b0, b1], [b1, b2], ... of
-/// ascending breakpoints. Panels are halved, worst first, until the difference between the 10-point
-/// rule and its two halves, summed over panels, is below `relative_tolerance` times the largest
-/// component of the integral.
+/// Integrates f: double -> std::vector<double> (of `size` values) over the panels [b0, b1],
+/// [b1, b2], ... of ascending breakpoints. Panels are halved, worst first, until the difference
+/// between the 10-point rule and its two halves, summed over panels, is below `relative_tolerance`
+/// times the largest component of the integral.
 template <typename Function>
 [[nodiscard]] AdaptiveResult IntegrateAdaptively(const Function& f, std::size_t size,
                                                  std::span<const double> breakpoints,
@@ -139,7 +139,7 @@ template <typename Function>
     const double middle = 0.5 * (worst.low + worst.high);
     add(panel(worst.low, middle, apply(worst.low, middle)));
     add(panel(middle, worst.high, apply(middle, worst.high)));
-    // Sums of many differences drift; the true sum of errors is never negative.
+    // A sum of many differences drifts; the true sum of errors is never negative.
     error = std::max(error, 0.0);
   }
   result.panels = open.size();
@@ -149,14 +149,14 @@ template <typename Function>
   return result;
 }
 
-/// Solves a symmetric positive definite system by Cholesky's factorisation. Throws InternalError
-/// when a pivot is not positive.
+/// Solves a symmetric positive definite system by Cholesky's factorisation. Throws InternalError if
+/// a pivot is not positive.
 /// @param matrix  n x n, row-major; the lower triangle is read. n = right_side.size().
 [[nodiscard]] std::vector<double> SolvePositiveDefinite(std::vector<double> matrix,
                                                         std::vector<double> right_side);
 
-/// Point number i >= 0 of the sequence of a base >= 2:
-/// the digits of i mirrored at the point, in [0, 1).
+/// Returns point number i >= 0 of the sequence of a base >= 2: the digits of i mirrored at the
+/// radix point, in [0, 1).
 [[nodiscard]] constexpr double Halton(int i, int base) {
   double value = 0.0, digit = 1.0;
   for (; i > 0; i /= base) value += (digit /= base) * (i % base);
