@@ -1,16 +1,17 @@
 // SPDX-License-Identifier: MIT
-// For kernels only (instruction_set.h): the type in which a loop over samples is read, an xsimd
-// batch or, in the scalar set, the plain number; and the shared formulas in it.
+// The number type of kernels (instruction_set.h): a loop over samples is compiled with an xsimd
+// batch or, in the scalar set, with the plain number. The shared formulas are compiled for the same
+// type. Only kernels may include this header.
 //
-// All of it is in an unnamed namespace, against custom in a header, because the same names mean
-// other instructions in every object that includes it.
+// Unlike in other headers, all definitions are in an unnamed namespace, because the same names
+// stand for other instructions in every object file that includes it.
 #pragma once
 
 #ifndef ALPENGLOW_KERNEL_SET
 #error "batch.h is for files of alpenglow_kernels (.cmake/targets.cmake)"
 #endif
 
-// The build defines ALPENGLOW_BATCHES for every set but the scalar one.
+// The build defines ALPENGLOW_BATCHES for every set except the scalar one.
 #ifdef ALPENGLOW_BATCHES
 #include <xsimd/xsimd.hpp>
 #ifdef XSIMD_NO_SUPPORTED_ARCHITECTURE
@@ -42,7 +43,7 @@ struct PlainNumber {
 };
 
 #ifdef ALPENGLOW_BATCHES
-/// Loads and stores are aligned but for StoreAnywhere: rows begin at multiples of 64 bytes.
+/// Loads and stores are aligned, except StoreAnywhere: rows begin at multiples of 64 bytes.
 template <typename Real>
 struct BatchOf {
   using Type = xsimd::batch<Real>;
@@ -60,7 +61,8 @@ template <typename Real>
 using BatchOf = PlainNumber<Real>;
 #endif
 
-/// shared_math.h, shell.h and ray_map.h again, with the linkage that a kernel needs.
+/// Compiles the contents of shared_math.h, shell.h and ray_map.h again, with the linkage that a
+/// kernel needs.
 namespace shared {
 #include "atmosphere/dialect/shared_builtins.h"
 

@@ -16,15 +16,17 @@ namespace {
 constexpr double kHorizontal = 0.5 * kPi;
 constexpr int kSkyNodes = 256, kGroundNodes = 128;
 constexpr double kLittleMoreDepth_rad = 15.0 * kRadiansPerDegree;
-/// Where what is tabulated changes slowly to the next node: sizes of the air near the horizon.
+/// Scales on which the tabulated values change slowly between nodes: height and angle of the air
+/// near the horizon.
 constexpr double kRayLayer_m = 10e3, kWidest_rad = 0.3 * kRadiansPerDegree;
 
-/// Nodes at x = s (exp(u) - 1), u even from 0 to that of the last.
+/// Returns the position of a node: x = s (exp(u) - 1), u uniform from 0 to the value of the last
+/// node.
 double NodePlace(int node, int nodes, double scale, double last) {
   return scale * std::expm1(node * std::log1p(last / scale) / (nodes - 1));
 }
 
-/// Between which nodes a place lies: the lower one, and the share of the upper.
+/// Returns the nodes between which a position lies: the lower one, and the weight of the upper.
 std::pair<std::size_t, double> BetweenLogarithmicNodes(double place, int nodes, double scale,
                                                        double last) {
   const double at =
@@ -33,8 +35,8 @@ std::pair<std::size_t, double> BetweenLogarithmicNodes(double place, int nodes, 
   return {static_cast<std::size_t>(below), std::clamp(at - below, 0.0, 1.0)};
 }
 
-/// Of the molecules, in the band next to where the eye is most sensitive, relative to air at sea
-/// level.
+/// Returns the density of the molecules relative to air at sea level, in the band nearest to
+/// kHorizonWavelength_nm, the peak sensitivity of the eye.
 double RelativeDensity(const Medium& medium) {
   const auto off = [](double wavelength_nm) {
     return std::abs(wavelength_nm - kHorizonWavelength_nm);
@@ -110,7 +112,7 @@ BentView::BentView(const Medium& medium, double height_m)
       (1.0 + RefractivityAt(air_, height_m_)) * (air_.planet_radius_m + height_m_);
   for (int i = 0; i < kGroundNodes; ++i) {
     const double at_ground = NodePlace(i, kGroundNodes, ground_scale_rad_, kHorizontal);
-    // The eye's elevation from that at the ground, by their common invariant.
+    // The observer's elevation follows from the elevation at the ground by their common invariant.
     const double elevation =
         -std::acos(std::min(std::cos(at_ground) * at_ground_m / at_eye_m, 1.0));
     const BentRay ray(air_, elevation, height_m_);
@@ -182,14 +184,14 @@ namespace alpenglow::atmosphere {
 namespace {
 
 double LookRadius_m(const BendingAir& air, double height_m) {
-  const double height = std::max(height_m, 1.0);  // it hardly changes below
+  const double height = std::max(height_m, 1.0);  // the result hardly changes for lower observers
   const double dip = GrazingElevation(air, height);
   const double sine = std::sin(0.5 * dip);
   return height * std::cos(dip) / (2.0 * sine * sine);
 }
 
-// Share of the curvature at the ground that most rays to far land have, fitted to the ray equation
-// for eyes from the ground to 36,000 km.
+// Returns the ratio of the curvature of most rays to distant land to the curvature at the ground,
+// fitted to the ray equation for observers from the ground to 36,000 km.
 double UsualShare(double height_m, double upper_m, double top_m) {
   if (height_m > top_m) return 0.5 + 0.15 * std::exp(-(height_m - top_m) / (1.6 * upper_m));
   return std::clamp(0.98 - 0.122 * height_m / upper_m, 0.65, 0.9);
@@ -235,10 +237,11 @@ double MostLiftOfPlanet(const LandBend& bend, double eye_m, double farthest_land
 namespace {
 
 constexpr int kHeights = 18, kElevations = 40;
-constexpr double kTop_m = 40e3;  // the beam from over it has hardly met any air
-/// Light about the horizon changes over this angle: 10 km of air at 1900 km look as high.
+constexpr double kTop_m = 40e3;  // a beam that passes above it has met hardly any air
+/// Light near the horizon changes over this angle: 10 km of air at 1900 km have the same angular
+/// height.
 constexpr double kScale = 0.3 * kRadiansPerDegree;
-/// The last node lies beside the zenith, where the cosine of the elevation is 0.
+/// The last node is next to the zenith, where the cosine of the elevation is 0.
 constexpr double kHighest_rad = 89.9 * kRadiansPerDegree;
 
 double PlaceOf(double mu, double horizon_mu) {
@@ -250,14 +253,16 @@ double MuOf(double place, double horizon_mu) {
   return horizon_mu + kScale * std::expm1(place * std::log1p((1.0 - horizon_mu) / kScale));
 }
 
-/// Returns the nodes between which a place in [0, 1] lies: the lower one, and the share of the upper.
+/// Returns the nodes between which a position in [0, 1] lies: the lower one, and the weight of the
+/// upper.
 std::pair<std::size_t, double> BetweenUniformNodes(double place, int nodes) {
   const double at = place * (nodes - 1);
   const int below = std::clamp(static_cast<int>(at), 0, nodes - 2);
   return {static_cast<std::size_t>(below), std::clamp(at - below, 0.0, 1.0)};
 }
 
-/// Returns the logarithm of the solid angle of a small disk that is seen at an elevation, over that which it has truly.
+/// Returns the logarithm of the apparent solid angle of a small disk at an elevation, divided by
+/// its true solid angle.
 double LogSpread(const BendingAir& air, double elevation_rad, double height_m) {
   constexpr double kStep_rad = 1e-5;
   const double refraction = RefractionSeenAt(air, elevation_rad, height_m);

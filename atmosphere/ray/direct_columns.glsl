@@ -3,9 +3,10 @@
 //   column = H exp(-h/H) sqrt((R + h) / 2H) (1 + H/R) n(S) / (S (S + delta) q(S))
 //   S      = 1 + mu sqrt((R + h) / 2H),   delta = 5/8 H/R
 //
-// n / (S^2 q) is the function J0 of optical_depth.glsl as a rational (4/3) in 1/S, relative error
-// 2.2e-6. The factor (1 + H/R) S / (S + delta) replaces J2 / 2X: it is exact on vertical rays and
-// within (H/R)^2 on horizontal ones. The column agrees with ExponentialColumnToInfinity within 1e-4.
+// n / (S^2 q) is the function J0 of optical_depth.glsl as a rational function (4/3) in 1/S,
+// relative error 2.2e-6. The factor (1 + H/R) S / (S + delta) replaces J2 / 2X: it is exact on
+// vertical rays and within (H/R)^2 on horizontal ones. The column agrees with
+// ExponentialColumnToInfinity within 1e-4.
 
 // Numerator n of J0.
 SHARED Number DirectNumerator(Number S) {
@@ -23,21 +24,23 @@ SHARED Number DirectDenominator(Number S, Number delta) {
   return S * (S + delta) * q;
 }
 
-// Column per H exp(-h/H) (1 + H/R) sqrt((R + h) / 2H), from y = mu sqrt((R + h) / 2H), mu >= 0.
+// Returns the column divided by H exp(-h/H) (1 + H/R) sqrt((R + h) / 2H), from
+// y = mu sqrt((R + h) / 2H), mu >= 0.
 SHARED Number DirectColumnShape(Number y, Number delta) {
   Number S = Number(1.0) + y;
   return DirectNumerator(S) / DirectDenominator(S, delta);
 }
 
-// Distance from the low end of a panel at v in [0, 1], per length of the panel. The slope s there is
-// 1 for v itself; smaller slopes put the nodes near the low end. No exponential is needed.
+// Returns the distance from the low end of a panel at v in [0, 1], divided by the length of the
+// panel. A slope s = 1 gives v itself; smaller slopes move the nodes towards the low end. No
+// exponential is needed.
 SHARED Number DirectDistance(Number v, Number s) {
   Number square = v * v;
   Number bend = square * (Number(0.3) + Number(0.7) * square);
   return v * (s + (Number(1.0) - s) * bend);
 }
 
-// Derivative of DirectDistance by v.
+// Returns the derivative of DirectDistance by v.
 SHARED Number DirectSlope(Number v, Number s) {
   Number square = v * v;
   Number bend = square * (Number(0.9) + Number(3.5) * square);

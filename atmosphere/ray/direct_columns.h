@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// C++ reading of direct_columns.glsl: columns with one division, and the map of a panel.
+// Compiles direct_columns.glsl as C++: columns with one division, and the map of a panel.
 #pragma once
 
 #include "atmosphere/ray/shell.h"

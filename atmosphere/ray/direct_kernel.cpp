@@ -6,7 +6,7 @@
 namespace alpenglow::atmosphere {
 namespace {
 
-/// A group of `count` lanes in vectors.
+/// A group of `count` lanes, stored in SIMD vectors.
 template <std::size_t count>
 struct Lanes {
   using T = LaneVector<count>;
@@ -21,7 +21,7 @@ struct Lanes {
   }
 };
 
-/// Columns from the eye, from columns upwards to space: base + sign column.
+/// Terms that convert columns upwards to space into columns from the observer: base + sign column.
 struct ViewBase {
   ColumnSet<float> rising, falling;
 };
@@ -63,23 +63,23 @@ void FillLanes(const DirectAir& air, const DirectRule& rule, const TwoPanels& pa
   }
 }
 
-// @param sunlight  at the lanes of the group; null: all that the planet lets through.
+// @param sunlight  at the lanes of the group; null: unshadowed except by the planet.
 template <typename T>
 T SunlightOn(const PanelLanes<T>& panel, const float* sunlight) {
   return sunlight == nullptr ? panel(&DirectPanel::lit) : LoadLanes<T>(sunlight + panel.first);
 }
 
-/// Sums over the nodes of a ray, lane by lane, for each block of four bands: molecules and aerosol,
-/// and, of four rows, the same with the last polynomial.
+/// Sums over the nodes of a ray, lane by lane, for each block of four bands: molecules and aerosol
+/// and, with four rows, both again with the last polynomial.
 template <typename T, std::size_t rows>
 using LightLanes = std::array<std::array<std::array<T, kFour>, rows>, kMaxBands / kFour>;
 
-/// The factors that the light of a group is summed from.
+/// The factors whose products are summed to the light of a group.
 template <std::size_t count, std::size_t rows>
 struct LitLanes {
   using T = LaneVector<count>;
   static constexpr std::size_t kVectors = Lanes<count>::kVectors;
-  ColumnSet<T> columns[kVectors];  // from the sun to the eye
+  ColumnSet<T> columns[kVectors];  // from the sun to the observer
   T weight[kVectors][rows];
 
   LitLanes(const DirectRule& rule, const TwoPanels& panels, const float* sunlight,
@@ -218,7 +218,7 @@ void StoreGroup(const TwoPanels& panels, const float* sunlight, const Lanes<coun
   samples.count += count;
 }
 
-// Weightless samples up to whole SIMD lanes.
+// Adds weightless samples up to a multiple of the SIMD lanes.
 [[gnu::flatten]] void Pad(RaySamples<float>& samples) {
   using T = LaneVector<kHalf>;
   constexpr std::size_t kLanes = BatchOf<float>::kLanes;
@@ -263,8 +263,8 @@ void Sample(const DirectWork& work, RaySamples<float>& samples, ScatteredOnce<fl
   Pad(samples);
 }
 
-// Columns along a panel by 8 Gauss nodes of equal measure: within 1e-7 while the density changes by
-// less than e^6.
+// Returns columns along a panel by 8 Gauss nodes of equal measure: within 1e-7 while the density
+// changes by less than e^6.
 [[gnu::flatten]] ColumnSet<float> AlongPanel(const DirectAir& air, const DirectRule& eight,
                                              const DirectPanel& panel) {
   using namespace shared;

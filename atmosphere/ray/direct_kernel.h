@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The loops of direct_scattering.h over the lanes of a ray, one table an instruction set.
+// Kernels of direct_scattering.h: loops over the lanes of a ray, one table per instruction set.
 #pragma once
 
 #include <array>
@@ -11,36 +11,38 @@
 
 namespace alpenglow::atmosphere {
 
-/// A Gauss rule of n nodes over the lanes of a group, and at each node the Legendre polynomial P_(n-1),
-/// which turns the rule into one that gives 0 for polynomials of degree n - 2 and less.
+/// A Gauss rule of n nodes over the lanes of a group, and at each node the Legendre polynomial
+/// P_(n-1). With this factor the rule gives 0 for polynomials of degree n - 2 and less.
 struct DirectRule {
   alignas(64) std::array<float, kDirectLanes> node, weight, last_polynomial;
 };
 
 struct DirectRules {
-  /// By number of nodes up to kMostFewNodes, the same in both halves of the lanes.
+  /// Rules by number of nodes up to kMostFewNodes, repeated in both halves of the lanes.
   std::array<DirectRule, kMostFewNodes + 1> few;
   DirectRule fourteen;
-  DirectRule eight;  // of all lanes, in both halves: for columns along panels
+  DirectRule eight;  // over all lanes, in both halves: for columns along panels
 };
 
-/// Inputs from which light along a ray is found.
+/// Inputs for the light along a ray.
 struct DirectWork {
   const DirectAir& air;
   const DirectRules& rules;
   const DirectRay& ray;
-  const LaneLight* sunlight = nullptr;  // null: all that the planet lets through
+  const LaneLight* sunlight = nullptr;  // null: unshadowed except by the planet
 };
 
 struct DirectKernel {
-  /// Light of all groups. With `last`, the same sums with each weight times the last polynomial.
+  /// Sums the light of all groups. With `last`, the sums are also computed with each weight times
+  /// the last polynomial.
   void (*scatter)(const DirectWork& work, ScatteredOnce<float>& scattered,
                   ScatteredOnce<float>* last);
-  /// The nodes of all groups, dark ones too, after which rows are 0 up to whole SIMD lanes. Lanes 7
-  /// and 15 of a group have weight 0. With `scattered`, the light of `scatter` too.
+  /// Writes the nodes of all groups, including dark ones; the rest of each row is 0 up to a
+  /// multiple of the SIMD lanes. Lanes 7 and 15 of a group have weight 0. With `scattered`, the
+  /// light of `scatter` is computed too.
   void (*sample)(const DirectWork& work, RaySamples<float>& samples,
                  ScatteredOnce<float>* scattered);
-  /// Columns along all panels, by integration of densities [km].
+  /// Returns columns along all panels, by integration of densities [km].
   ColumnSet<float> (*along)(const DirectAir& air, const DirectRules& rules, const DirectRay& ray);
 };
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// For direct_kernel.cpp only: sixteen or eight lanes as vectors of the instruction set, and powers of
-// two in them.
+// Sixteen or eight lanes as vectors of the instruction set, and powers of two in these vectors.
+// Only direct_kernel.cpp may include this header.
 #pragma once
 
 #include <bit>
@@ -12,11 +12,11 @@
 namespace alpenglow::atmosphere {
 namespace {
 
-/// Bands that are summed over lanes together; kMaxBands is a multiple.
+/// Number of bands that are summed over lanes together; kMaxBands is a multiple.
 inline constexpr std::size_t kFour = 4;
 
 #ifdef ALPENGLOW_BATCHES
-/// The vector for groups of `count` lanes: as wide as the processor has it, at most `count`.
+/// The vector for groups of `count` lanes: as wide as the processor supports, at most `count`.
 template <std::size_t count>
 using LaneVector =
     xsimd::make_sized_batch_t<float,
@@ -30,7 +30,7 @@ template <typename A>
 void StoreLanes(float* to, const xsimd::batch<float, A>& value) {
   value.store_unaligned(to);
 }
-// Four sums over lanes, times four factors.
+// Stores four sums over lanes, times four factors.
 template <typename A>
 void StoreSums(const xsimd::batch<float, A>* value, const float* factor, float* to) {
   using Four = xsimd::make_sized_batch_t<float, kFour>;
@@ -53,7 +53,7 @@ template <typename A>
 bool AnyLane(const xsimd::batch_bool<float, A>& condition) {
   return xsimd::any(condition);
 }
-// value 2^n, where n is in the last bits of `shifted`.
+// Returns value 2^n, where n is in the low bits of `shifted`.
 template <typename A>
 xsimd::batch<float, A> TimesPowerOfTwo(const xsimd::batch<float, A>& value,
                                        const xsimd::batch<float, A>& shifted) {
@@ -84,13 +84,13 @@ float TimesPowerOfTwo(float value, float shifted) {
 template <typename T>
 constexpr std::size_t kLanesOf = sizeof(T) / sizeof(float);
 
-// 2^x for x < 100, relative error 3e-7. Below 2^-60 it stays there: products of three such numbers
-// are not subnormal, with which processors are slow.
+// Returns 2^x for x < 100, relative error 3e-7. Below 2^-60 the result is clamped: products of
+// three such numbers are then not subnormal, which would be slow.
 template <typename T>
 T PowerOfTwo(const T& x) {
   using namespace shared;
   const T rounding(
-      12582912.0F);  // 1.5 2^23: a sum with it has the next whole number in its last bits
+      12582912.0F);  // 1.5 2^23: adding it moves the nearest whole number into the low bits
   const T bounded = max(x, T(-60.0F));
   const T shifted = bounded + rounding;
   const T f = bounded - (shifted - rounding);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-// For direct_kernel.cpp only: places, densities and columns at the nodes of a vector of lanes
-// (formulas in direct_columns.glsl and direct_panels.h). Lengths are in km.
+// Positions, densities and columns at the nodes of a vector of lanes (formulas in
+// direct_columns.glsl and direct_panels.h). Only direct_kernel.cpp may include this header. Lengths
+// are in km.
 #pragma once
 
 #include "atmosphere/ray/direct_kernel.h"
@@ -19,7 +20,7 @@ namespace shared {
 
 constexpr std::size_t kHalf = kDirectLanes / 2;
 
-// Lanes that belong to the second panel of a group.
+// Factor 1 for lanes that belong to the second panel of a group, else 0.
 alignas(64) constexpr float kSecond[kDirectLanes] = {0, 0, 0, 0, 0, 0, 0, 0,
                                                      1, 1, 1, 1, 1, 1, 1, 1};
 alignas(64) constexpr float kEntryLane[kDirectLanes] = {0, 0, 0, 0, 0, 0, 0, 1};
@@ -32,7 +33,7 @@ struct TwoPanels {
   const DirectPanel& second;
 };
 
-/// The numbers of two panels in the lanes from `first` on.
+/// Reads the parameters of two panels into the lanes from `first` on.
 template <typename T>
 struct PanelLanes {
   const TwoPanels& panels;
@@ -51,7 +52,7 @@ struct PanelLanes {
   }
 };
 
-/// Where the nodes of a vector are.
+/// Positions of the nodes of a vector.
 template <typename T>
 struct NodePlaces {
   T position;  // upwards along the panel from its low end [km]
@@ -96,14 +97,15 @@ NodePlaces<T> PlacesOf(const DirectAir& air, const DirectRule& rule, const Panel
   return at;
 }
 
-/// Columns from points upwards along the ray (mu >= 0) and towards the height of the sun.
+/// Columns from points upwards along the ray (mu >= 0), and in a direction with the elevation of the
+/// sun.
 template <typename T>
 struct TwoColumns {
   T view, sun;
 };
 
-/// A layer at some altitudes: its density relative to the ground, and its column upwards over the
-/// shape of direct_columns.glsl.
+/// A layer at some altitudes: its density relative to the ground, and its upward column divided by
+/// the shape of direct_columns.glsl.
 template <typename T>
 struct LayerAt {
   const DirectLayer& layer;
@@ -114,7 +116,8 @@ struct LayerAt {
         density(PowerOfTwo<T>(altitude * T(of_layer.per_height))),
         scale(density * root_radius * T(of_layer.up_scale)) {}
 
-  /// Columns upwards, from mu sqrt(R + h) of two directions. They share a division.
+  /// Returns columns upwards, from mu sqrt(R + h) of two directions. Both columns share one
+  /// division.
   [[nodiscard]] TwoColumns<T> Up(const T& view_root, const T& sun_root) const {
     using namespace shared;
     const T delta(layer.delta), view = T(1.0F) + view_root * T(layer.root),
@@ -197,7 +200,7 @@ T OzoneAtPerigee(const DirectAir& air, const T& altitude) {
   return max(Polynomial<T>(air.ozone_fit.perigee, y), T(0.0F));
 }
 
-/// The columns and densities that light at the nodes of a vector depends on.
+/// The columns and densities that determine the light at the nodes of a vector.
 template <typename T>
 struct NodeAir {
   T rayleigh_density, mie_density;
@@ -225,7 +228,7 @@ NodeAir<T> AirUpwards(const DirectAir& air, const NodePlaces<T>& at) {
   return node;
 }
 
-/// Densities relative to the ground; of ozone relative to its peak.
+/// Densities relative to the ground; for ozone relative to its peak.
 template <typename T>
 struct NodeDensities {
   T rayleigh, mie, ozone;
@@ -249,8 +252,8 @@ NodeDensities<T> DensitiesAt(const DirectAir& air, const T& altitude) {
   return {rayleigh, density(air.mie), OzoneDensity<T>(air, altitude)};
 }
 
-// Sunbeams from below the horizontal pass their perigee. Those of points in the planet's shadow have
-// it below the ground: their columns only have to be finite.
+// Returns columns at the perigees of the sunbeams, for beams from below the horizontal. For points
+// in the planet's shadow the perigee is below the ground, and the columns only have to be finite.
 template <typename T>
 ColumnSet<T> ColumnsAtSunPerigee(const DirectAir& air, const NodePlaces<T>& at) {
   using namespace shared;
@@ -272,7 +275,7 @@ void PassPerigees(const DirectAir& air, const NodePlaces<T>& at, ColumnSet<T>& s
          ColumnToSun<T>(at.mu_s, sun.mie, low.mie), ColumnToSun<T>(at.mu_s, sun.ozone, low.ozone)};
 }
 
-// Takes from columns to space what they have above the top.
+// Subtracts the part above the top from columns to space.
 template <typename T>
 void CutAtTop(const DirectAir& air, const NodePlaces<T>& at, ColumnSet<T>& sun) {
   using namespace shared;

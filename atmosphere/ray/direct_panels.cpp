@@ -17,7 +17,7 @@ namespace {
 
 constexpr double kLog2OfE = 1.4426950408889634;
 
-/// A planet [km].
+/// Radius and top of a planet's atmosphere [km].
 struct Shell {
   double radius, top;
 };
@@ -36,7 +36,7 @@ DirectLayer LayerOf(double height, double share, const Shell& shell) {
           .beyond_root = real(root * root_top)};
 }
 
-/// Coordinates of the fit in [-1, 1], at the extrema of a Chebyshev polynomial.
+/// Returns the coordinates of the fit in [-1, 1], at the zeros of a Chebyshev polynomial.
 template <std::size_t n>
 std::array<double, n> ChebyshevPoints() {
   std::array<double, n> points;
@@ -45,7 +45,7 @@ std::array<double, n> ChebyshevPoints() {
   return points;
 }
 
-/// Least squares of a polynomial with `powers` terms.
+/// Returns the least-squares fit of a polynomial with `powers` terms.
 template <std::size_t powers, std::size_t n>
 std::array<double, powers> FitPolynomial(const std::array<double, n>& x,
                                          const std::array<double, n>& value,
@@ -71,7 +71,7 @@ using HeightRow = std::array<double, kHeightPoints>;
 using CosineRow = std::array<double, kCosinePoints>;
 using HeightPolynomial = std::array<double, kOzoneHeights>;
 
-// The polynomial in Y of (mu + k) column along one cosine.
+// Returns the polynomial in Y of (mu + k) column along one cosine.
 HeightPolynomial FitHeights(double mu, double factor, double ozone_top, double radius) {
   const HeightRow y = ChebyshevPoints<kHeightPoints>();
   HeightRow column, weight;
@@ -82,8 +82,8 @@ HeightPolynomial FitHeights(double mu, double factor, double ozone_top, double r
   return FitPolynomial<kOzoneHeights>(y, column, weight);
 }
 
-// The weight 1 / (mu + k) depends on U alone, so the fit is one in Y for each cosine, and then one
-// in U for each power of Y.
+// The weight 1 / (mu + k) depends on U alone, so the fit is first in Y for each cosine, and then in
+// U for each power of Y.
 OzoneFit FitOzone(double ozone_top, double radius) {
   constexpr double k = static_cast<double>(kOzoneCosine);
   const CosineRow u = ChebyshevPoints<kCosinePoints>();
@@ -133,16 +133,17 @@ void SetBands(const Medium& medium, DirectAir& air) {
   }
 }
 
-// 5e-4 on the planets of the presets. Columns leave twice the square of H/R; what single precision
-// leaves grows with the radius in scale heights to the power 3/2 (fitted to 3e7 and 8e7 m).
+// Returns the least error of a medium: 5e-4 on the planets of the presets. The error of columns is
+// twice the square of H/R; the rounding error of single precision grows with the radius in scale
+// heights to the power 3/2 (fitted to 3e7 and 8e7 m).
 double LeastError(double highest, double lowest, double radius) {
   const double flatness = highest / radius;
   return std::max({5e-4, 2.0 * flatness * flatness, 6e-10 * std::pow(radius / lowest, 1.5)});
 }
 
-// Optical depth above the top that a horizontal ray there would have.
+// Returns the optical depth above the top for a horizontal ray at the top.
 double DepthAboveTop(const Medium& medium, const DirectAir& air) {
-  constexpr double kLevel = 1.7724538509055159;  // sqrt(pi), of DirectColumnShape at y = 0
+  constexpr double kLevel = 1.7724538509055159;  // sqrt(pi), from DirectColumnShape at y = 0
   double depth = 0.0;
   for (std::size_t band = 0; band < air.bands; ++band) {
     const Extinction<double> extinction = ExtinctionAt<double>(medium, band);
@@ -176,11 +177,11 @@ DirectAir DirectAirOf(const Medium& medium) {
 
 namespace {
 
-/// A ray from where it enters the air [km].
+/// A ray from its entry into the air [km].
 struct Entry {
   double altitude, mu, mu_s, nu;
   double skipped;  // distance from the observer
-  double length;   // of the ray in the air
+  double length;   // length of the ray in the air
   RayEnd end;
 };
 
@@ -190,7 +191,8 @@ struct Dark {
   [[nodiscard]] bool Exists() const { return begin < end; }
 };
 
-// Moves an observer above the top to where the ray meets the air. Returns whether it does.
+// Moves an observer above the top to the point where the ray enters the air. Returns whether the
+// ray does.
 bool EnterAir(const DirectAir& air, Entry& entry) {
   if (entry.altitude <= air.top) return true;
   if (entry.mu >= 0.0 || shared::GroundClearance<double>(entry.altitude - air.top, entry.mu,
@@ -218,7 +220,7 @@ void FindEnd(const DirectAir& air, double length_m, Entry& entry) {
   entry.end = RayEnd::kLength;
 }
 
-// The formulas are those of PlanetShadow, here in double precision.
+// Returns the dark part by the formulas of PlanetShadow, here in double precision.
 Dark DarkOf(const DirectAir& air, const Entry& entry) {
   const double height = (air.radius + entry.altitude) * entry.mu_s;
   if (height > 0.0 && height + entry.length * entry.nu > 0.0) return {};
@@ -247,18 +249,18 @@ class PanelPlacer {
     PlaceMonotone(perigee, entry_.length, true, dark);
   }
 
-  // Seven nodes suffice for a single panel, but not where dense air hides its low end and sunbeams
-  // graze it, or the ray comes down to it.
+  // Returns whether seven nodes suffice for a single panel. They do not if dense air hides its low
+  // end and sunbeams graze that end, or if the ray descends to it.
   [[nodiscard]] bool FitsEightLanes() const {
     if (ray_.panels != 1) return false;
     const DirectPanel& panel = ray_.panel[0];
     const bool rises = panel.direction > 0.0F;
-    if (ray_.falls && rises) return false;  // behind the perigee
+    if (ray_.falls && rises) return false;  // the panel lies behind the perigee
     return !(panel.hard && (dark_.Exists() || panel.mu_s < 0.05F || !rises));
   }
 
  private:
-  // Cuts a stretch of monotone altitude at the edges of the shadow.
+  // Adds a segment of monotone altitude, cut at the edges of the shadow.
   void PlaceMonotone(double begin, double end, bool rises, bool dark) const {
     if (!(begin < end)) return;
     if (!dark_.Exists() || dark_.begin >= end || dark_.end <= begin) {
@@ -300,7 +302,7 @@ class PanelPlacer {
   }
 
   void SetMap(bool at_shadow, DirectPanel& panel) const {
-    constexpr float kThinning_km = 8.0F;  // of all air, about
+    constexpr float kThinning_km = 8.0F;  // approximate e-folding height of all air
     const float rise = at_shadow ? 12.0F : 10.0F;
     const float dense =
         std::max(air_.largest_extinction * std::exp(-panel.altitude / kThinning_km), 1e-20F);
@@ -316,7 +318,7 @@ class PanelPlacer {
   const DirectAir& air_;
   const Entry& entry_;
   Dark dark_;
-  double from_perigee_;  // of the entry, along the ray
+  double from_perigee_;  // distance from the entry, along the ray
   DirectRay& ray_;
 };
 

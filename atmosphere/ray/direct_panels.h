@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: MIT
-// A medium prepared for direct integration (direct_scattering.h): the constants of
-// direct_columns.glsl for each layer, and the columns of smooth ozone as polynomials.
+// Set-up of direct integration (direct_scattering.h): a medium prepared for it, and the panels of a
+// ray with the lanes that they use.
+//
+// The medium has the constants of direct_columns.glsl for each layer, and the columns of smooth
+// ozone as polynomials.
 //
 //   (|mu| + k) column(h, mu) = sum over a, q of  c_qa Y^a U^q,   a <= 12, q <= 5
 //   Y = 2 min(h, top) / top - 1,   U = 2 (1 + k) |mu| / (|mu| + k) - 1,   k = 0.12
 //
-// Lengths are in km. Extinctions carry a factor log2(e), because kernels use powers of two.
-//
-// Set-up of direct integration (direct_scattering.h): the panels of a ray and the lanes they take.
+// Lengths are in km. Extinctions contain a factor log2(e), because kernels use powers of two.
 //
 // A ray is cut at its perigee and at the edges of the planet's shadow. Each panel has a map of
 // direct_columns.glsl with the slope
@@ -16,7 +17,7 @@
 //
 // at its low end, where `half` is the distance to 10 km above that end (12 km behind the edge of a
 // shadow), or 14 optical depths if less, and kappa = 2, or 3 where sunbeams graze the low end. A
-// panel takes 7 nodes; a hard one, with more than 4 optical depths in `half` or in L, takes 14.
+// panel has 7 nodes; a hard one, with more than 4 optical depths in `half` or in L, has 14.
 #pragma once
 
 #include <array>
@@ -53,28 +54,28 @@ struct DirectAir {
   DirectLayer rayleigh, deficit, mie;
   float deficit_share;  // d of MoleculeDeficit
   bool has_deficit, has_ozone, smooth_ozone;
-  bool reaches_top;  // the columns above the top count
+  bool reaches_top;  // the columns above the top are not negligible
   float ozone_bottom, ozone_peak, ozone_top;
   OzoneFit ozone_fit;
   float largest_extinction;  // of molecules and aerosol at altitude 0 [1/km]
-  double least_error;        // relative, of light through these columns in single precision
+  double least_error;        // relative error of light by these columns in single precision
   std::size_t bands;
   std::array<float, kMaxBands> rayleigh_extinction, mie_extinction, ozone_extinction;  // log2(e)/km
   std::array<float, kMaxBands> rayleigh_scattering, mie_scattering;                    // 1/km
 };
 
-/// Takes 0.1 ms for a smooth layer of ozone.
+/// Prepares a medium; takes 0.1 ms for a smooth layer of ozone.
 [[nodiscard]] DirectAir DirectAirOf(const Medium& medium);
 
-/// A fast ray takes 7 nodes a panel, or fewer (DirectRay::few_nodes), 14 in hard ones; a normal ray
-/// takes 14 in all.
+/// A fast ray has 7 nodes per panel, or fewer (DirectRay::few_nodes), and 14 in hard panels; a
+/// normal ray has 14 in all panels.
 enum class DirectMode { kFast, kNormal };
 
 inline constexpr std::size_t kMostFewNodes = 7;
 inline constexpr std::size_t kManyNodes = 14;
 inline constexpr std::size_t kDirectLanes = 16;
 
-/// A stretch of a ray on which the altitude is monotone, as its low end sees it [km].
+/// A segment of a ray on which the altitude is monotone, described from its low end [km].
 struct DirectPanel {
   float altitude, radius;
   float inverse_radius;
@@ -88,17 +89,17 @@ struct DirectPanel {
   float begin;      // distance of the low end from the entry
   float direction;  // 1: the panel rises; -1: it falls
   float lit;        // 1 in sunlight, 0 in the shadow of the planet
-  float dense;      // extinction at the low end, about, largest of any band [1/km]
+  float dense;      // approximate extinction at the low end, largest of any band [1/km]
   bool hard;
 
-  /// Altitude at a position, without cancellation [km].
+  /// Returns the altitude at a position, without cancellation [km].
   [[nodiscard]] float AltitudeAt(float position) const;
 };
 
-/// Nodes in lanes: two panels of 7 in lanes 0 to 6 and 8 to 14, or one panel of 14 in both. Lane 7 is
-/// a weightless node at the entry, lane 15 one at the perigee.
+/// Assignment of nodes to lanes: two panels of 7 in lanes 0 to 6 and 8 to 14, or one panel of 14 in
+/// both. Lane 7 is a weightless node at the entry, lane 15 one at the perigee.
 struct DirectGroup {
-  std::size_t first, second;  // panels
+  std::size_t first, second;  // indices of panels
 
   [[nodiscard]] bool HasTwo() const { return first != second; }
 };
@@ -109,7 +110,7 @@ struct DirectRay {
   std::array<DirectGroup, kMostPanels> group;
   std::size_t panels = 0;
   std::size_t groups = 0;
-  std::size_t few_nodes = kMostFewNodes;  // of a panel that fills half of its group, in [1, 7]
+  std::size_t few_nodes = kMostFewNodes;  // of a panel in half of its group, in [1, 7]
   bool narrow = false;                    // one panel of few nodes: lanes 0 to 7 only
   bool falls = false;                     // the ray has a perigee behind its entry
   RayExtent extent;
@@ -124,8 +125,8 @@ struct LaneLight {
   alignas(64) std::array<float, DirectRay::kMostPanels * kDirectLanes> factor;
 };
 
-/// The nodes of a panel among the samples of its ray: node j in [0, count), in order from the low end
-/// up, is sample first + j, or one more from the eighth on.
+/// Positions of the nodes of a panel among the samples of its ray: node j in [0, count), in order
+/// from the low end up, is sample first + j, or first + j + 1 from the eighth node on.
 struct PanelNodes {
   std::size_t panel, count, first;
 
@@ -145,7 +146,8 @@ void VisitPanels(const DirectRay& ray, const Visit& visit) {
   }
 }
 
-/// @param dark  keeps the panels in the planet's shadow too.
+/// Places the panels of a ray.
+/// @param dark  also keeps the panels in the planet's shadow.
 [[nodiscard]] DirectRay DirectRayOf(const DirectAir& air, const ViewRay& ray, DirectMode mode,
                                     bool dark);
 

@@ -11,7 +11,7 @@
 namespace alpenglow::atmosphere {
 namespace {
 
-// P_degree(x), by the three-term recurrence.
+// Returns P_degree(x), by the three-term recurrence.
 double Legendre(std::size_t degree, double x) {
   double before = 0.0, now = 1.0;
   for (std::size_t n = 0; n < degree; ++n) {
@@ -59,7 +59,7 @@ ScatteredOnce<float> LightOf(std::size_t bands) {
   return light;
 }
 
-// r of the header.
+// Returns r of the header.
 double LastShare(const ScatteredOnce<float>& light, const ScatteredOnce<float>& last) {
   float largest = 0.0F;
   for (std::size_t band = 0; band < light.rayleigh.count; ++band) {
@@ -76,7 +76,8 @@ double ErrorOf(DirectMode mode, double least_error, double last_share) {
   return least_error + slope * last_share / (1.0 + bend * last_share);
 }
 
-// Set-up can place nodes on a valid ray without further checks. A ray with NaN is not valid.
+// Returns whether set-up can place nodes on a ray without further checks. A ray with NaN is not
+// valid.
 bool IsValid(const ViewRay& ray, double planet_radius_m) {
   return std::abs(ray.mu) <= 1.0 && std::abs(ray.mu_s) <= 1.0 && std::abs(ray.nu) <= 1.0 &&
          ray.length_m >= 0.0 && ray.altitude_m >= -0.5 * planet_radius_m && ray.altitude_m <= 1e12;

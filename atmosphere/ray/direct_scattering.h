@@ -2,11 +2,12 @@
 // Single scattering along a ray by direct integration: the same integral as AirIntegrator, several
 // times as fast, with 7 or 14 nodes in each panel of the ray.
 //
-// A ray costs one pass over 8 or 16 SIMD lanes. The set-up is scalar (direct_panels.h). All nodes
-// then find altitude, densities and columns at once, without exp, log or march: the map of a panel is
-// a polynomial, columns upwards are rational functions with one division (direct_columns.glsl), and
-// columns of smooth ozone are polynomials (direct_panels.h). Two weightless nodes, at the entry and at the
-// perigee, give the columns from which those along the ray follow by subtraction.
+// A ray costs one pass over 8 or 16 SIMD lanes. The set-up is scalar (direct_panels.h). Altitude,
+// densities and columns are then computed at all nodes at once, without exp, log or ray marching:
+// the map of a panel is a polynomial, columns upwards are rational functions with one division
+// (direct_columns.glsl), and columns of smooth ozone are polynomials (direct_panels.h). Two
+// weightless nodes, at the entry and at the perigee, give the columns from which the columns along
+// the ray follow by subtraction.
 //
 // Error against AirIntegrator, relative, rms over the rays of each regime of
 // tests/fixtures/direct_regimes.h, all presets:
@@ -14,12 +15,13 @@
 //   fast     0.7 %     7 nodes a panel, 14 in a hard one (earth: 0.39 %)
 //   normal   0.07 %   14 nodes a panel
 //
-// The error of one ray is estimated from the last Legendre coefficient that its nodes can tell:
+// The error of one ray is estimated from the last Legendre coefficient that its nodes can resolve:
 //
 //   error = e + c r / (1 + k r),   r = largest over bands of |light with P_(n-1)| / light
 //
-// with c = 1, k = 25 for fast and c = 2, k = 100 for normal, and e = 5e-4, more on planets of few or
-// very many scale heights (DirectAir::least_error). It holds for 95 % of rays.
+// with c = 1, k = 25 for fast and c = 2, k = 100 for normal, and e = 5e-4, more on planets of few
+// or very many scale heights (DirectAir::least_error). The estimate is an upper bound for 95 % of
+// rays.
 #pragma once
 
 #include "atmosphere/air/medium.h"
@@ -31,55 +33,60 @@ namespace alpenglow::atmosphere {
 
 struct DirectSampling {
   DirectMode mode = DirectMode::kNormal;
-  bool dark_samples = false;  // sample the air in the planet's shadow too (light of higher orders)
+  bool dark_samples = false;  // also in the planet's shadow (for multiple scattering)
 };
 
-/// Light and the relative error that 95 % of such rays keep, of each band before phase functions.
+/// Light, and a bound of its relative error that holds for 95 % of such rays, in each band before
+/// phase functions.
 struct EstimatedLight {
   ScatteredOnce<float> scattered;
   double error = 0.0;
 };
 
-/// Nodes of a ray and the light scattered once along them.
+/// Nodes of a ray and the single scattering along them.
 struct SampledLight {
   RaySamples<float> samples;
   ScatteredOnce<float> once;
 };
 
-/// A medium made ready. Immutable, safe to share between threads. Rays are those of AirIntegrator:
-/// whole ones and finite segments. They throw InputError as ExtentOf does.
+/// A medium prepared for direct integration. Immutable, safe to share between threads. Rays are the
+/// same as for AirIntegrator: whole rays and finite segments. Functions throw InputError as
+/// ExtentOf does.
 class DirectScattering {
  public:
   explicit DirectScattering(const Medium& medium);
 
-  /// The integrator for errors that the modes do not keep.
+  /// Returns the integrator for errors smaller than those of the modes.
   [[nodiscard]] const AirIntegrator<float>& reference() const { return reference_; }
 
-  /// Direct sunlight scattered once along the ray.
+  /// Returns the single scattering of direct sunlight along the ray.
   [[nodiscard]] ScatteredOnce<float> Scatter(const ViewRay& ray, DirectMode mode) const;
 
-  /// That light with an estimate of its error. The estimate takes a seventh more time.
+  /// Returns the single scattering with an estimate of its error. The estimate takes a seventh more
+  /// time.
   [[nodiscard]] EstimatedLight Estimate(const ViewRay& ray, DirectMode mode) const;
 
-  /// The light of the first of fast, normal and reference() that keeps a relative error.
+  /// Returns the light of the first of fast, normal and reference() whose relative error is small
+  /// enough.
   /// @param max_error  in [0, 1].
   [[nodiscard]] EstimatedLight ScatterWithin(const ViewRay& ray, double max_error) const;
 
-  /// The nodes of a ray with their weights and columns, for light of any order
-  /// (AirIntegrator::Scatter of them is Scatter). Lanes without a node have weight 0.
+  /// Returns the nodes of a ray with their weights and columns, for light of any order
+  /// (AirIntegrator::Scatter of them equals Scatter). Lanes without a node have weight 0.
   [[nodiscard]] RaySamples<float> Sample(const ViewRay& ray, const DirectSampling& sampling) const;
 
-  /// The panels of a ray, for those who choose DirectRay::few_nodes or weigh the nodes of panels.
+  /// Returns the panels of a ray, for callers that choose DirectRay::few_nodes or weight the nodes
+  /// of panels.
   [[nodiscard]] DirectRay Place(const ViewRay& ray, const DirectSampling& sampling) const;
-  /// @param sunlight  at the lanes of `placed`; null: all that the planet lets through.
+  /// @param sunlight  at the lanes of `placed`; null: unshadowed except by the planet.
   [[nodiscard]] ScatteredOnce<float> Scatter(const DirectRay& placed,
                                              const LaneLight* sunlight) const;
-  /// Returns that with the nodes; their RaySamples::lit is `sunlight`.
+  /// Returns the single scattering together with the nodes; their RaySamples::lit is `sunlight`.
   [[nodiscard]] SampledLight Sample(const DirectRay& placed, const LaneLight* sunlight) const;
 
-  /// Columns from end to end of a ray placed with dark samples [km], nothing subtracted, so that
-  /// short ways lose no digits: within 1e-6 where the altitude changes by less than six scale heights
-  /// on each panel, and a tent of ozone does not bend there.
+  /// Returns the columns from end to end of a ray placed with dark samples [km], without
+  /// subtraction, so that short segments lose no digits: within 1e-6 if the altitude changes by
+  /// less than six scale heights on each panel, and the panel contains no kink of an ozone tent.
   [[nodiscard]] ColumnSet<float> ColumnsAlong(const DirectRay& placed) const;
 
  private:

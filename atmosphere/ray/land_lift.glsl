@@ -1,16 +1,18 @@
-// By how much air lifts land: the angle at the eye between the ray that shows a place, and the
+// Lift of land by refraction: the angle at the observer between the ray from a place, and the
 // straight line to the place.
 //
-// Rays of the curvature k stand over their chord of length D by k D^2 t (1 - t) / 2 at its share t,
-// and leave it at the angle
+// A ray of curvature k has the height k D^2 t (1 - t) / 2 above its chord of length D at its
+// fraction t, and the angle between both at the observer is
 //
 //   D integral of k(t) (1 - t) from t = 0 to 1,
 //
-// summed here at the three nodes of Gauss and Jacobi, at the heights of a ray of one curvature that
-// is given. Above `top` rays are straight: then D is the length of the chord below it, at whose upper
-// end the ray stands over the chord by the angle at the eye times the way above.
+// which is computed with the three nodes of Gauss-Jacobi quadrature, at the heights of a ray with a
+// given constant curvature. Above `top` rays are straight: D is then the length of the chord below
+// it. At the upper end of this chord, the height of the ray above the chord is the angle at the
+// observer times the distance above.
 
-// Curvature of level rays [1/km] at an altitude: the sum of three layers, slope_i exp(-fall_i h).
+// Returns the curvature of level rays [1/km] at an altitude: the sum of three layers,
+// slope_i exp(-fall_i h).
 SHARED Number CurvatureAt(Length h, Number slope_1, Number slope_2, Number slope_3, Number fall_1,
                           Number fall_2, Number fall_3) {
   Length over = max(h, Length(-1.0));
@@ -18,15 +20,17 @@ SHARED Number CurvatureAt(Length h, Number slope_1, Number slope_2, Number slope
          slope_3 * exp(-fall_3 * over);
 }
 
-// How far the straight line from altitude h0 to h1, d long, goes above an altitude first.
+// Returns the length of the initial part of the straight line from altitude h0 to h1, of length d,
+// that lies above an altitude.
 SHARED Length WayAbove(Length h0, Length h1, Length d, Length top, Length R) {
   Number mu = ((h1 - h0) * (Number(2.0) * R + h0 + h1) - d * d) / (Number(2.0) * d * (R + h0));
   Length enters = DistanceDownTo(h0, min(mu, Number(0.0)), min(top, h0), R);
   return select(h0 > top, min(enters, d), Length(0.0));
 }
 
-// [rad]. @param h0, h1  altitudes of eye and place; d: between them, > 0 [km]; R: radius of the
-// planet; top: rays are straight above; usual: about the curvature of the ray [1/km].
+// Returns the lift [rad].
+// @param h0, h1  altitudes of observer and place; d: distance between them, > 0 [km]; R: radius of
+// the planet; top: rays are straight above; usual: approximate curvature of the ray [1/km].
 SHARED Number LandLift(Length h0, Length h1, Length d, Length R, Length top, Number usual,
                        Number slope_1, Number slope_2, Number slope_3, Number fall_1, Number fall_2,
                        Number fall_3) {

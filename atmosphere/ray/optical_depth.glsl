@@ -1,16 +1,16 @@
 // Columns (integrals of relative density along a ray) of the shells of the atmosphere, in km.
 //
-// Exponential layer, density exp(-h / H), upward ray of zenith cosine mu >= 0 from altitude
-// h to infinity:
+// Exponential layer, density exp(-h / H), upward ray of zenith cosine mu >= 0 from altitude h to
+// infinity:
 //
 //   column = H exp(-h/H) Ch(X, mu),   X = (R + h) / H
 //   Ch     = sqrt(X/2) [J0(y) + J2(y) / (2 X) + O(X^-2)],   y = mu sqrt(X/2)
 //   Jn(y)  = integral_0^inf p^n e^-p (y^2 + p)^-1/2 dp
 //
-// from expanding the altitude in the half-chord variable; J0 = sqrt(pi) erfcx(y) is the
-// first order of Chapman (1931) and Fitzmaurice (1964), and the series is that of Huestis
-// (2001), JQSRT 69, 709. The functions Jn know neither planet nor layer: one rational fit in
-// u = 1 / (1 + y) serves all.
+// This results from expanding the altitude in the half-chord variable; J0 = sqrt(pi) erfcx(y) is
+// the first order of Chapman (1931) and Fitzmaurice (1964), and the series is that of Huestis
+// (2001), JQSRT 69, 709. The functions Jn depend neither on the planet nor on the layer: one
+// rational fit in u = 1 / (1 + y) serves all.
 
 // J0 = u P / Q, rational (5/4) in u: relative error 1.7e-8.
 SHARED Number ColumnJ0Numerator(Number u) {
@@ -46,8 +46,8 @@ SHARED Number ColumnJ2Denominator(Number u) {
 
 SHARED Number ColumnJ2(Number u) { return u * ColumnJ2Numerator(u) / ColumnJ2Denominator(u); }
 
-// Ch(X, mu) for mu >= 0: the column in units of the vertical one. J0 + J2 / 2X over one
-// denominator, for divisions are what this costs.
+// Returns Ch(X, mu) for mu >= 0: the column divided by the vertical column. J0 + J2 / 2X has one
+// common denominator, because divisions dominate the cost.
 SHARED Number ChapmanUp(Number X, Number mu) {
   Number root = sqrt(Number(0.5) * X);
   Number u = Number(1.0) / (Number(1.0) + mu * root);
@@ -56,15 +56,15 @@ SHARED Number ChapmanUp(Number X, Number mu) {
   return root * u * (ColumnJ0Numerator(u) * q2 + ColumnJ2Numerator(u) * q0) / (q0 * q2);
 }
 
-// Column of the exponential layer from altitude h along mu >= 0 to infinity.
+// Returns the column of the exponential layer from altitude h along mu >= 0 to infinity.
 SHARED Length ExponentialColumnToInfinity(Length h, Number mu, Length H, Length R) {
   Number inverse = Number(1.0) / H;
   return H * exp(-h * inverse) * ChapmanUp((R + h) * inverse, mu);
 }
 
-// The same up to the top of the atmosphere (h <= top), above which there is nothing. The sine of
-// the zenith angle shrinks with the radius on the way up; its cosine comes from the chord,
-// without cancelling.
+// Returns the column of the exponential layer up to the top of the atmosphere (h <= top), above
+// which there is no air. The sine of the zenith angle decreases with the radius on the way up; its
+// cosine is computed from the chord, without cancellation.
 SHARED Length ExponentialColumnUp(Length h, Number mu, Length H, Length top, Length R) {
   Length a = (R + h) * mu;
   Length b = max((top - h) * (Number(2.0) * R + top + h), Length(0.0));
@@ -73,27 +73,27 @@ SHARED Length ExponentialColumnUp(Length h, Number mu, Length H, Length top, Len
   return max(ExponentialColumnToInfinity(h, mu, H, R) - beyond, Length(0.0));
 }
 
-// Density of the molecules relative to altitude 0, an exponential with a deficit near the ground:
-// (1 + d) exp(-h / H) - d exp(-h / H_D).
+// Returns the density of the molecules relative to altitude 0, an exponential with a deficit near
+// the ground: (1 + d) exp(-h / H) - d exp(-h / H_D).
 SHARED Number MoleculeDensity(Length h, Length H, Number d, Length H_D) {
   return (Number(1.0) + d) * exp(-h / H) - d * exp(-h / H_D);
 }
 
-// What the deficit takes from the column from altitude h along mu >= 0 to the top, above which
-// nothing of it is left.
+// Returns the reduction of the column from altitude h along mu >= 0 to the top by the deficit,
+// which is negligible above the top.
 SHARED Length DeficitColumnUp(Length h, Number mu, Number d, Length H_D, Length R) {
   return d * ExponentialColumnToInfinity(h, mu, H_D, R);
 }
 
-// Relative density of the ozone tent: 0 at the bottom, 1 at the peak, 0 at the top.
+// Returns the relative density of the ozone tent: 0 at the bottom, 1 at the peak, 0 at the top.
 SHARED Number TentDensity(Length h, Length bottom, Length peak, Length top) {
   Number rising = (h - bottom) / (peak - bottom);
   Number falling = (top - h) / (top - peak);
   return max(min(rising, falling), Number(0.0));
 }
 
-// Column of the tent between distances d0 <= d1 of a ray that does not leave one linear piece of
-// it: Gauss-Legendre with 3 nodes in the distance, in which the altitude is nearly a parabola.
+// Returns the column of the tent between distances d0 <= d1 of a ray that stays in one linear part
+// of it: Gauss-Legendre with 3 nodes in the distance, in which the altitude is nearly a parabola.
 SHARED Length TentPieceColumn(Length h, Number mu, Length d0, Length d1, Length bottom, Length peak,
                               Length top, Length R) {
   Length centre = Number(0.5) * (d0 + d1);
@@ -105,7 +105,7 @@ SHARED Length TentPieceColumn(Length h, Number mu, Length d0, Length d1, Length 
   return half_length * (Number(5.0) * (low + high) + Number(8.0) * middle) / Number(9.0);
 }
 
-// Column of the tent from altitude h along mu >= 0 to space.
+// Returns the column of the tent from altitude h along mu >= 0 to space.
 SHARED Length TentColumnUp(Length h, Number mu, Length bottom, Length peak, Length top, Length R) {
   Length d_bottom = select(h < bottom, DistanceUpTo(h, mu, max(h, bottom), R), Length(0.0));
   Length d_peak = select(h < peak, DistanceUpTo(h, mu, max(h, peak), R), Length(0.0));
@@ -114,8 +114,8 @@ SHARED Length TentColumnUp(Length h, Number mu, Length bottom, Length peak, Leng
          TentPieceColumn(h, mu, d_peak, d_top, bottom, peak, top, R);
 }
 
-// Relative density of the smooth layer of ozone, (27/4 y (1 - y)^2)^4 with y = h / top: 1 at
-// top / 3, 0 at the ground and from the top on.
+// Returns the relative density of the smooth layer of ozone, (27/4 y (1 - y)^2)^4 with y = h / top:
+// 1 at top / 3, 0 at the ground and from the top on.
 SHARED Number SmoothOzoneAt(Number y) {
   Number rest = max(Number(1.0) - y, Number(0.0));
   Number root = Number(6.75) * y * rest * rest;
@@ -125,14 +125,14 @@ SHARED Number SmoothOzoneAt(Number y) {
 
 SHARED Number SmoothOzoneDensity(Length h, Length top) { return SmoothOzoneAt(h / top); }
 
-// (sqrt(1 + 2 x) - 1) / x as a series: a square root and a division at every node would cost more
-// than all the rest. Relative error 7/8 x^4; x < 0.011 on Earth below 70 km.
+// Returns (sqrt(1 + 2 x) - 1) / x as a series: a square root and a division at every node would
+// cost more than all other operations. Relative error 7/8 x^4; x < 0.011 on Earth below 70 km.
 SHARED Number ClimbSeries(Number x) {
   return Number(1.0) - x * (Number(0.5) - x * (Number(0.5) - Number(0.625) * x));
 }
 
-// Altitude at distance d along a ray that climbs and falls by less than a hundredth of the radius,
-// without a square root. Relative error of the climb: 1e-8.
+// Returns the altitude at distance d along a ray that climbs and falls by less than a hundredth of
+// the radius, without a square root. Relative error of the climb: 1e-8.
 SHARED Length AltitudeNearby(Length h, Number mu, Length d, Length R) {
   Length r = R + h;
   Number inverse = Number(1.0) / r;
@@ -140,8 +140,8 @@ SHARED Length AltitudeNearby(Length h, Number mu, Length d, Length R) {
   return h + r * x * ClimbSeries(x);
 }
 
-// Twice the mean of that density at distances `middle - offset` and `middle + offset` of a ray,
-// where the altitude is h + r (sqrt(1 + 2 x) - 1), x = d (d + 2 r mu) / 2 r^2.
+// Returns twice the mean of the smooth density at distances `middle - offset` and `middle + offset`
+// of a ray, where the altitude is h + r (sqrt(1 + 2 x) - 1), x = d (d + 2 r mu) / 2 r^2.
 SHARED Number SmoothOzonePair(Length h, Number mu, Length middle, Length offset, Length top,
                               Length R) {
   Length r = R + h;
@@ -159,9 +159,9 @@ SHARED Number SmoothOzonePair(Length h, Number mu, Length middle, Length offset,
          SmoothOzoneAt(y + rise * x_far * ClimbSeries(x_far));
 }
 
-// Column of the smooth layer from altitude h along mu >= 0 to space: Gauss-Legendre with 10 nodes
-// in the distance, in which the density is a polynomial of degree 24 but for the curvature of order
-// 4. Relative error 3e-6, the most on the horizontal ray from the ground.
+// Returns the column of the smooth layer from altitude h along mu >= 0 to space: Gauss-Legendre
+// with 10 nodes in the distance, in which the density is a polynomial of degree 24 except for the
+// curvature of order 4. Relative error 3e-6, largest on the horizontal ray from the ground.
 SHARED Length SmoothOzoneColumnUp(Length h, Number mu, Length top, Length R) {
   Length d = select(h < top, DistanceUpTo(h, mu, max(h, top), R), Length(0.0));
   Length m = Number(0.5) * d;
@@ -178,7 +178,7 @@ SHARED Length SmoothOzoneColumnUp(Length h, Number mu, Length top, Length R) {
   return m * sum;
 }
 
-// Joins upward columns into the column from the origin of a ray (upward column c_origin at its
+// Combines upward columns into the column from the origin of a ray (upward column c_origin at its
 // |mu|) to a point on it (c_point at its |mu|): outward, inward, or through the perigee (upward
 // column c_perigee).
 SHARED Length ColumnBetween(Number mu_origin, Number mu_point, Length c_origin, Length c_point,
@@ -191,8 +191,8 @@ SHARED Length ColumnBetween(Number mu_origin, Number mu_point, Length c_origin, 
   return max(column, Length(0.0));
 }
 
-// Column towards a distant sun of zenith cosine mu_s, from the upward column at |mu_s| and, below
-// the horizontal, the one at the perigee.
+// Returns the column towards a distant sun of zenith cosine mu_s, from the upward column at |mu_s|
+// and, below the horizontal, the upward column at the perigee.
 SHARED Length ColumnToSun(Number mu_s, Length c_point, Length c_perigee) {
   return select(mu_s >= Number(0.0), c_point, max(Number(2.0) * c_perigee - c_point, Length(0.0)));
 }

@@ -25,7 +25,7 @@ void RequireFinite(const ViewRay& ray, double planet_radius_m) {
     throw InputError(fmt::format("length_m is {}; it must be >= 0", ray.length_m));
 }
 
-// Crossings of the line with the sphere of altitude z: distances, or nothing when it passes above.
+// Distances at which a line crosses the sphere of altitude z; none if it passes above.
 struct Crossings {
   bool exist;
   Extended near, far;
@@ -37,7 +37,7 @@ Crossings CrossAltitude(Extended h, Extended mu, Extended z, Extended radius) {
   const Extended discriminant = a * a - c;
   if (discriminant < 0) return {false, 0, 0};
   const Extended root = std::sqrt(discriminant);
-  // Conjugate roots: the one that does not cancel, and c over it.
+  // Conjugate roots: one root is computed without cancellation, the other is c over it.
   const Extended far_side = a > 0 ? -a - root : -a + root;
   const Extended other = far_side != 0 ? c / far_side : 0;
   return {true, std::min(far_side, other), std::max(far_side, other)};
@@ -61,7 +61,8 @@ ViewRay RayFromAngles(double altitude_m, double view_zenith_deg, double relative
 
 namespace {
 
-// Whether a ray of finite length stays in the shell by a metre and more, ground and top aside.
+// Returns whether a ray of finite length stays more than a metre inside the shell, away from ground
+// and top.
 bool EndsWellInside(const ViewRay& ray, double planet_radius_m, double atmosphere_height_m) {
   constexpr double kMargin_m = 1.0;
   if (!(ray.length_m < 1e6)) return false;
@@ -105,7 +106,8 @@ bool BringsLightOfGround(const ViewRay& ray, const RayExtent& extent) {
 }
 
 ShadowSpan PlanetShadow(const ViewRay& ray, const RayExtent& extent, double planet_radius_m) {
-  // The sun is above the plane through the planet's centre at both ends: no shadow between.
+  // If the sun is above the plane through the planet's centre at both ends, there is no shadow in
+  // between.
   const double height_m = (planet_radius_m + std::max(ray.altitude_m, 0.0)) * ray.mu_s;
   if (height_m + extent.begin_m * ray.nu > 0.0 && height_m + extent.end_m * ray.nu > 0.0) return {};
   const Extended h = std::max(ray.altitude_m, 0.0), mu = ray.mu, mu_s = ray.mu_s, nu = ray.nu;

@@ -6,7 +6,7 @@
 namespace alpenglow::atmosphere {
 namespace {
 
-/// The lengths of AirConstants, spread over lanes.
+/// The lengths of AirConstants, copied to all lanes.
 template <typename Real, typename T>
 struct ShellLengths {
   explicit ShellLengths(const AirConstants<Real>& air)
@@ -61,8 +61,8 @@ ColumnSet<T> ColumnsUp(const ShellLengths<Real, T>& shell, const T& h, const T& 
           OzoneColumnUp(shell, h, mu)};
 }
 
-// Points in the planet's shadow have perigees below the ground, whose columns nobody uses: they
-// only have to be finite.
+// Returns columns at the perigee. Points in the planet's shadow have perigees below the ground,
+// whose columns are not used: they only have to be finite.
 template <typename Real, typename T>
 ColumnSet<T> ColumnsAtPerigee(const ShellLengths<Real, T>& shell, const T& h, const T& mu) {
   using namespace shared;
@@ -121,7 +121,7 @@ T OzoneDensity(const ShellLengths<Real, T>& shell, const T& h) {
   return TentDensity<T>(h, shell.ozone_bottom, shell.ozone_peak, shell.ozone_top);
 }
 
-/// A ray over lanes.
+/// A ray, copied to all lanes.
 template <typename Real, typename T>
 struct RayInLanes {
   RayInLanes(const AirConstants<Real>& air, const RayEntry& entry)
@@ -135,7 +135,8 @@ struct RayInLanes {
   T h0, mu0, mu_s0, nu;
 };
 
-// Everything at lanes from the i-th sample on but the columns from the observer. Returns altitudes.
+// Fills all values at the lanes from the i-th sample on, except the columns from the observer.
+// Returns altitudes.
 template <typename Real, typename T>
 T FillButView(const RayInLanes<Real, T>& ray, std::size_t i, RaySamples<Real>& samples) {
   using namespace shared;
@@ -167,7 +168,8 @@ void Fill(const AirConstants<Real>& air, const RayEntry& entry, RaySamples<Real>
   const T zero(Real(0));
   const ColumnSet<T> perigee =
       entry.mu < 0.0 ? ColumnsAtPerigee(shell, ray.h0, ray.mu0) : ColumnSet<T>{zero, zero, zero};
-  // The last of a single load of samples is no sample, and stands at the entry.
+  // If all samples fit into one SIMD load with room to spare, the last lane is not a sample and
+  // lies at the entry.
   const bool entry_among_samples =
       samples.padded == Lanes::kLanes && samples.count < samples.padded;
   ColumnSet<T> origin = perigee;
@@ -187,7 +189,7 @@ void Fill(const AirConstants<Real>& air, const RayEntry& entry, RaySamples<Real>
   }
 }
 
-// Columns along the way from the sample before each one, to the lanes from the i-th sample on.
+// Returns the columns from the preceding to each sample, for the lanes from the i-th sample on.
 template <typename Real, typename T>
 void FillSteps(const RayInLanes<Real, T>& ray, const Real* before, std::size_t i,
                RaySamples<Real>& samples) {

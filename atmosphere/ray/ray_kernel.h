@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The loops of single_scattering.h over the samples of a ray, one table an instruction set.
+// Kernels of single_scattering.h: loops over the samples of a ray, one table per instruction set.
 #pragma once
 
 #include <array>
@@ -10,12 +10,12 @@
 
 namespace alpenglow::atmosphere {
 
-/// A medium as kernels read it: lengths in km, coefficients per km.
+/// A medium in the form that kernels use: lengths in km, coefficients per km.
 template <typename Real>
 struct AirConstants {
   Real radius, top;
   Real rayleigh_height, mie_height;
-  Real deficit, deficit_height;  // of molecules (MoleculeDeficit)
+  Real deficit, deficit_height;  // deficit of molecules (MoleculeDeficit)
   Real ozone_bottom, ozone_peak, ozone_top;
   bool smooth_ozone;
   bool mie_ends_below_top;  // its column beyond the top is below 1e-12 m
@@ -23,19 +23,19 @@ struct AirConstants {
   std::array<Real, kMaxBands> rayleigh, mie_scattering, mie_extinction, ozone;
 };
 
-/// Of a band [1/km].
+/// Returns the extinction coefficients of a band [1/km].
 template <typename Real>
 [[nodiscard]] Extinction<Real> ExtinctionAt(const AirConstants<Real>& air, std::size_t band) {
   return {air.rayleigh[band], air.mie_extinction[band], air.ozone[band]};
 }
 
-/// The observer, moved to where the ray enters the air; all distances count from here.
+/// The observer, moved to the entry of the ray into the air; all distances are counted from here.
 struct RayEntry {
   double altitude_km, mu, mu_s, nu;
 };
 
-/// A panel of a ray (ray_panels.h) and the Gauss rule
-/// for it, both rows padded with zeros to whole lanes.
+/// A panel of a ray (ray_panels.h) and its Gauss rule, both rows padded with zeros to a multiple of
+/// the lanes.
 template <typename Real>
 struct PanelRule {
   Real begin, end;
@@ -48,23 +48,25 @@ struct PanelRule {
 
 template <typename Real>
 struct RayKernel {
-  /// Numbers that one instruction takes: samples are padded to a multiple.
+  /// Number of lanes of the instruction set: samples are padded to a multiple.
   std::size_t lanes;
-  /// Distance, weight and lit of the samples of one panel, which follow those that are there.
+  /// Appends distance, weight and lit of the samples of one panel.
   void (*place)(const PanelRule<Real>& panel, RaySamples<Real>& samples);
-  /// Everything at the samples that depends on their position, from distance, weight and lit.
+  /// Computes everything at the samples that depends on their position, from distance, weight and
+  /// lit.
   void (*fill)(const AirConstants<Real>& air, const RayEntry& entry, RaySamples<Real>& samples);
-  /// The same by ViewColumns::kBetweenSamples.
+  /// Computes the same values as `fill`, with columns by ViewColumns::kBetweenSamples.
   void (*fill_between)(const AirConstants<Real>& air, const RayEntry& entry,
                        RaySamples<Real>& samples);
-  /// ScatteredOnce of all bands.
+  /// Computes ScatteredOnce of all bands.
   void (*scatter)(const AirConstants<Real>& air, const RaySamples<Real>& samples,
                   ScatteredOnce<Real>& scattered);
-  /// Columns of n points at altitudes [km] to space along zenith cosines; the directions must not
-  /// meet the ground. All arrays hold a multiple of `lanes` and begin at multiples of 64 bytes.
+  /// Computes columns of n points at altitudes [km] to space along zenith cosines; the directions
+  /// must not hit the ground. All arrays hold a multiple of `lanes` and begin at multiples of 64
+  /// bytes.
   void (*columns_to_space)(const AirConstants<Real>& air, std::size_t n, const Real* altitude,
                            const Real* mu, const ColumnSet<Real*>& columns);
-  /// The same for cosines in [0, 1].
+  /// Computes columns to space like `columns_to_space`, for cosines in [0, 1].
   void (*columns_up)(const AirConstants<Real>& air, std::size_t n, const Real* altitude,
                      const Real* mu, const ColumnSet<Real*>& columns);
 };

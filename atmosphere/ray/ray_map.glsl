@@ -1,21 +1,21 @@
-// Where along a ray the light is sampled, and where the planet's shadow lies on it. Lengths in one
-// unit, kilometres but where it is said otherwise; stretches in kilometres of air as deep as the
-// Earth's, into which shallower air is scaled (MapLengthsPerKm of ray_panels.h).
+// Positions of samples along a ray, and the planet's shadow on the ray. Lengths have one unit,
+// kilometres unless stated otherwise. Lengths for the stretch are in kilometres of air as deep as
+// the Earth's, to which shallower air is scaled (MapLengthsPerKm of ray_panels.h).
 //
-// A panel is a stretch of the ray on which the altitude is monotone; t is the distance from its
+// A panel is a segment of the ray on which the altitude is monotone; t is the distance from its
 // lower end. With v in [0, 1] of a Gauss rule,
 //
 //   t = length sinh(b v) / sinh(b),   b = 1.3 ln(2 length / half)
 //
-// where `half` is the distance to 10 km above the lower end, or 10
-// optical depths if less: beyond it nodes thin out exponentially, as
-// the air does. With g = exp(b v) this costs no further exponential.
+// where `half` is the distance to 10 km above the lower end, or 10 optical depths if less: beyond
+// it the density of nodes decreases exponentially, like that of the air. With g = exp(b v) this
+// needs no further exponential.
 //
-// A gentle stretch, 1.1 ln(2 length / half) and 12 km, has fewer nodes at the lower end: for panels
-// that get no more of them where that end is hard to integrate, and for those that begin behind an
-// edge of the planet's shadow, where sunlight comes back slowly. It is better than the rational map
-// t = length v / (1 + k (1 - v)), half of its nodes within 20 km or 8 optical depths: 12 nodes a
-// panel are wrong by (rms, earth and hazy)
+// A gentle stretch, 1.1 ln(2 length / half) and 12 km, has fewer nodes at the lower end. It is used
+// for panels whose lower end is hard to integrate and which get no additional nodes for it, and for
+// panels that begin behind an edge of the planet's shadow, where sunlight returns slowly. It is
+// more accurate than the rational map t = length v / (1 + k (1 - v)), with half of its nodes within
+// 20 km or 8 optical depths. The errors of 12 nodes a panel are (rms, earth and hazy)
 //
 //                                       rational           gentle
 //   sky, sun at 0 to 5 deg              3e-6    1e-4       7e-6    1e-4
@@ -23,9 +23,9 @@
 //   ground from 400 km, sun over 5 deg  2.3e-4  7e-3       4e-5    6e-4
 //   limb from 400 km, sun over 5 deg    3.1e-4  7.5e-3     5e-5    7e-4
 
-// Stretch b of a panel whose lower end has altitude z and zenith cosine mu >= 0 upwards; gentle is
-// 1 or 0. 0 where t is as good as length v: there sinh(b v) / sinh(b) differs from v by 1 %, and
-// would cancel in float.
+// Returns the stretch b of a panel whose lower end has altitude z and zenith cosine mu >= 0
+// upwards; gentle is 1 or 0. The result is 0 if t = length v is as good: there sinh(b v) / sinh(b)
+// differs from v by 1 %, and would cancel in float.
 // @param extinction  per kilometre at altitude 0, largest over bands.
 SHARED Number PanelStretch(Length z, Number mu, Length length, Number extinction, Number gentle,
                            Length R) {
@@ -37,27 +37,27 @@ SHARED Number PanelStretch(Length z, Number mu, Length length, Number extinction
   return select(b < Number(0.25), Number(0.0), b);
 }
 
-// length / sinh(b) from g = exp(b), b > 0.
+// Returns length / sinh(b) from g = exp(b), b > 0.
 SHARED Length StretchedScale(Length length, Number g) {
   return length / (Number(0.5) * (g - Number(1.0) / g));
 }
 
-// t from that scale and g = exp(b v).
+// Returns t from this scale and g = exp(b v).
 SHARED Length StretchedDistance(Length scale, Number g) {
   return scale * Number(0.5) * (g - Number(1.0) / g);
 }
 
-// dt / dv there.
+// Returns dt / dv at g = exp(b v).
 SHARED Length StretchedSlope(Length scale, Number b, Number g) {
   return scale * b * Number(0.5) * (g + Number(1.0) / g);
 }
 
 // The shadow is the half of a cylinder behind the planet. At distance t of the ray the squared
-// distance from its axis less R^2 is a t^2 + 2 b t + c, and sun + t nu the height over the plane
-// through the centre, across the axis: dark is where both are negative. a = 1 - nu^2, from where it
-// does not cancel.
+// distance from its axis minus R^2 is a t^2 + 2 b t + c, and sun + t nu is the height above the
+// plane through the centre perpendicular to the axis: the ray is dark where both are negative.
+// a = 1 - nu^2 must be computed without cancellation.
 
-// The ray runs along the axis: the cylinder has no ends on it.
+// Returns 1 if the ray is parallel to the axis, and therefore does not cross the cylinder.
 SHARED Number AlongShadow(Number a) { return select(a > Number(1e-14), Number(0.0), Number(1.0)); }
 
 SHARED Length ShadowSlope(Length h, Number mu, Number mu_s, Number nu, Length R) {
@@ -70,7 +70,7 @@ SHARED Length ShadowClearance(Length h, Number mu_s, Length R) {
   return (horizon - sun) * (horizon + sun);
 }
 
-// 1 if the ray, as a line without ends, has a dark piece: between ShadowBegin and ShadowEnd.
+// Returns 1 if the ray, as an infinite line, has a dark segment: between ShadowBegin and ShadowEnd.
 SHARED Number MeetsShadow(Length h, Number mu, Number mu_s, Number nu, Number a, Length R) {
   Length b = ShadowSlope(h, mu, mu_s, nu, R);
   Length c = ShadowClearance(h, mu_s, R);
@@ -79,7 +79,8 @@ SHARED Number MeetsShadow(Length h, Number mu, Number mu_s, Number nu, Number a,
   return select(max(clearance, height) < Number(0.0), Number(1.0), Number(0.0));
 }
 
-// Root of a t^2 + 2 b t + c that does not cancel, times a; the other root is c over it.
+// Returns the root of a t^2 + 2 b t + c that has no cancellation, times a; the other root is c over
+// it.
 SHARED Length ShadowRoot(Number a, Length b, Length c) {
   Length root = sqrt(max(b * b - a * c, Length(0.0)));
   return select(b > Length(0.0), -b - root, root - b);
@@ -90,7 +91,7 @@ SHARED Length ShadowOtherRoot(Length root, Length c) {
   return select(abs(root) > Length(0.0), c / divisor, Length(0.0));
 }
 
-// Distances at which a ray that MeetsShadow comes into it and leaves it.
+// Distances at which a ray with MeetsShadow enters and leaves the shadow.
 SHARED Length ShadowBegin(Length h, Number mu, Number mu_s, Number nu, Number a, Length R) {
   Length c = ShadowClearance(h, mu_s, R);
   Length root = ShadowRoot(a, ShadowSlope(h, mu, mu_s, nu, R), c);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// C++ reading of ray_map.glsl: the panels of a ray and the planet's shadow on it.
+// Compiles ray_map.glsl as C++: the panels of a ray and the planet's shadow on it.
 #pragma once
 
 #include "atmosphere/ray/shell.h"

@@ -31,7 +31,7 @@ class PanelEnds {
     for (std::size_t i = 0; i < crossings.count; ++i) Add(crossings.distance[i]);
   }
 
-  /// Ascending.
+  /// Returns the distances in ascending order.
   [[nodiscard]] std::span<const double> Sorted() {
     std::sort(distance_.begin(), distance_.begin() + count_);
     return {distance_.data(), count_};
@@ -43,9 +43,9 @@ class PanelEnds {
   std::size_t count_ = 0;
 };
 
-// Where the sunbeam that meets the ray at distance t has its perigee at altitude z: a cylinder of
-// radius R + z around the axis from the planet's centre to the sun. Only beams that come from below
-// the horizontal count.
+// Returns the points at which the sunbeam through the point at distance t of the ray has its
+// perigee at altitude z: these are the crossings of a cylinder of radius R + z around the axis from
+// the planet's centre to the sun. Only beams from below the horizontal have a perigee.
 LineCrossings SunPerigees(const RayEntry& entry, double z, double radius) {
   const double r = radius + entry.altitude_km;
   const double a = (1.0 - entry.nu) * (1.0 + entry.nu);
@@ -68,14 +68,15 @@ void AddTent(const RayEntry& entry, const OzoneLayer& ozone, double radius, Pane
   }
 }
 
-/// The dark part of a ray [km from the entry]; empty when begin == end.
+/// The dark part of a ray [km from the entry]; empty if begin == end.
 struct DarkSpan {
   double begin = 0.0, end = 0.0;
 };
 
 DarkSpan DarkSpanOf(const ViewRay& ray, const RayExtent& extent, const RayEntry& entry,
                     const Medium& medium) {
-  // The sun is above the plane through the planet's centre at both ends: no shadow between.
+  // If the sun is above the plane through the planet's centre at both ends, there is no shadow in
+  // between.
   const double height = (Kilometres(medium.planet_radius_m) + entry.altitude_km) * entry.mu_s;
   if (height > 0.0 && height + Kilometres(extent.end_m - extent.begin_m) * entry.nu > 0.0) {
     return {};
@@ -95,7 +96,7 @@ double LargestExtinctionPerKm(const Medium& medium) {
   return largest * kMetresPerKilometre;
 }
 
-// Vertical optical depth of a layer over that of all scattering, largest over bands.
+// Returns the vertical optical depth of a layer divided by that of both layers, largest over bands.
 double LargestShare(const std::vector<double>& of, const std::vector<double>& other) {
   double largest = 0.0;
   for (std::size_t band = 0; band < of.size(); ++band) {
@@ -105,17 +106,18 @@ double LargestShare(const std::vector<double>& of, const std::vector<double>& ot
   return largest;
 }
 
-/// What the lower end of a panel is to the light along it.
+/// Properties of the lower end of a panel that determine its number of nodes.
 struct LowerEnd {
   double altitude_km, cosine;  // altitude: of air as deep as the Earth's
   bool grazed;                 // by sunbeams from below the horizontal, or at the shadow
-  bool at_perigee;             // of the ray
-  bool ahead;                  // the ray comes down to it
+  bool at_perigee;             // the lower end is the perigee of the ray
+  bool ahead;                  // the ray descends to it
   bool from_above;             // and began in air too thin to hide anything
 };
 
-// Extra nodes in halves of the ordinary ones. A long way down through the air hides its lower end,
-// where the nodes are; above 50 km the air is too thin for that.
+// Returns the number of nodes: extra nodes are counted in halves of the ordinary number. A long
+// path down through the air hides its lower end, which has most nodes; above 50 km the air is too
+// thin for that.
 int NodesOf(const LowerEnd& low, int nodes) {
   int halves = low.grazed ? 3 : 2;
   const bool slanting = low.ahead && low.cosine < 0.3;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// C++ reading of shell.glsl and optical_depth.glsl: templates over double, float and SIMD batches.
-// Lengths are kilometres here; the classes above (single_scattering.h) take metres.
+// Compiles shell.glsl and optical_depth.glsl as C++: templates over double, float and SIMD batches.
+// Lengths are kilometres here; the classes based on them (single_scattering.h) take metres.
 #pragma once
 
 #include "atmosphere/dialect/shared_math.h"

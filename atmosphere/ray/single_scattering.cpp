@@ -17,8 +17,8 @@
 namespace alpenglow::atmosphere {
 namespace {
 
-// PhaseTable::Position in float, by the sine of half the angle from the nearer end, which keeps small angles
-// apart there.
+// Returns PhaseTable::Position in float, computed from the sine of half the angle to the nearer
+// end, which resolves small angles there.
 float PositionOf(double nu) {
   const double nearer = std::clamp(0.5 - 0.5 * std::abs(nu), 0.0, 0.5);
   const float share =
@@ -54,7 +54,7 @@ std::size_t RoundUp(std::size_t count, std::size_t lanes) {
   return (count + lanes - 1) / lanes * lanes;
 }
 
-/// The lengths and coefficients of a medium in km.
+/// Returns the lengths and coefficients of a medium in km.
 template <typename Real>
 AirConstants<Real> ConstantsOf(const Medium& medium) {
   const auto km = [](double metres) { return static_cast<Real>(metres / kMetresPerKilometre); };
@@ -86,7 +86,7 @@ AirConstants<Real> ConstantsOf(const Medium& medium) {
   return air;
 }
 
-/// Columns at up to kLength points, through the kernel.
+/// Computes columns at up to kLength points with the kernel.
 template <typename Real, std::size_t kLength = 16>
 struct ColumnRows {
   alignas(64) std::array<Real, kLength> altitude{}, mu{}, rayleigh, mie, ozone;
@@ -109,7 +109,7 @@ ColumnSet<Real> ColumnsBetween(Real mu_origin, Real mu_point, const ColumnSet<Re
       ColumnBetween<Real>(mu_origin, mu_point, origin.ozone, point.ozone, perigee.ozone)};
 }
 
-// Ends the rows after `count` samples, with weightless ones up to whole SIMD lanes.
+// Ends the rows after `count` samples, with weightless samples up to a multiple of the SIMD lanes.
 template <typename Real>
 void CloseSamples(std::size_t count, RaySamples<Real>& samples) {
   samples.count = count;
@@ -119,7 +119,7 @@ void CloseSamples(std::size_t count, RaySamples<Real>& samples) {
   }
 }
 
-/// Gauss rules of 1 to kMaxGaussNodes nodes as kernels read them, padded with zeros.
+/// Gauss rules of 1 to kMaxGaussNodes nodes in the form that kernels use, padded with zeros.
 template <typename Real>
 class RuleRows {
  public:
@@ -172,9 +172,9 @@ void PlaceSamples(const RayPanels& panels, RaySamples<Real>& samples) {
   CloseSamples(samples.count, samples);
 }
 
-// Column of a layer along [begin, end] km from the entry by 8 Gauss
-// nodes: exact to 1e-7 relative while the density is smooth and the
-// altitudes span less than 6 scale heights, however short the segment.
+// Returns the column of a layer along [begin, end] km from the entry by 8 Gauss nodes: exact to
+// 1e-7 relative while the density is smooth and the altitudes span less than 6 scale heights,
+// however short the segment.
 template <typename Density>
 double ShortColumn(const RayEntry& entry, double begin, double end, double radius,
                    const Density& density) {
@@ -188,7 +188,8 @@ double ShortColumn(const RayEntry& entry, double begin, double end, double radiu
   return sum * (end - begin);
 }
 
-// The same for the ozone tent, piece by piece: a rule across an edge of the tent is wrong by 1 %.
+// Returns the column of the ozone tent in the same way, for each linear part separately: a rule
+// across an edge of the tent has an error of 1 %.
 double ShortTentColumn(const RayEntry& entry, double length, double radius,
                        const OzoneLayer& tent) {
   const double bottom = tent.bottom_m / kMetresPerKilometre;
@@ -219,8 +220,8 @@ double ShortOzoneColumn(const RayEntry& entry, double length, double radius,
                      [top](double h) { return shared::SmoothOzoneDensity<double>(h, top); });
 }
 
-// Columns along a segment: the difference of two closed forms is good to 1e-7 of the whole column,
-// which is nothing for a short segment; those are integrated.
+// Returns the columns along a segment. The difference of two closed forms is accurate to 1e-7 of
+// the whole column, which is too inaccurate for a short segment; short segments are integrated.
 template <typename Real>
 ColumnSet<Real> SegmentColumns(const AirConstants<Real>& air, const Medium& medium,
                                const RayEntry& entry, double length) {
