@@ -1,15 +1,15 @@
-// How bright the disks of sun and moon are from place to place.
+// Brightness distributions over the disks of sun and moon.
 
-// Of the sun, relative to the mean of its disk, at rho radii from the centre, rho >= 0; beyond 1 as
-// at 1. Linear limb darkening of the visible, u = 0.6: Cox (2000), Allen's Astrophysical Quantities,
-// 14.7.
+// Returns the radiance of the sun relative to the mean of its disk, at rho radii from the centre,
+// rho >= 0; constant beyond 1. Linear limb darkening of the visible, u = 0.6: Cox (2000), Allen's
+// Astrophysical Quantities, 14.7.
 SHARED Number SunLimbDarkening(Number rho) {
   Number mu = sqrt(max(Number(1.0) - rho * rho, Number(0.0)));
   return (Number(1.0) - Number(0.6) * (Number(1.0) - mu)) / Number(0.8);
 }
 
-// A polynomial of degree 5 in mu, relative to its mean over the disk, which is the integral of
-// 2 mu times it.
+// Returns a polynomial of degree 5 in mu, divided by its mean over the disk, which is the integral
+// of 2 mu times the polynomial.
 SHARED Number LimbPolynomial(Number mu, Number a0, Number a1, Number a2, Number a3, Number a4,
                              Number a5) {
   Number here = a0 + mu * (a1 + mu * (a2 + mu * (a3 + mu * (a4 + mu * a5))));
@@ -18,9 +18,10 @@ SHARED Number LimbPolynomial(Number mu, Number a0, Number a1, Number a2, Number 
   return here / mean;
 }
 
-// The same in one wavelength: the disk is redder at its limb, which is brighter in the red. Neckel
-// (2005), Solar Physics 229, 13, three ranges from 0.3 to 1.1 um, beyond as at their ends; between
-// 0.37298 and 0.385 um, at the jump of Balmer's series, from one to the other.
+// Returns the relative radiance of the sun at one wavelength: the limb is redder than the centre,
+// so limb darkening is weaker in the red. Neckel (2005), Solar Physics 229, 13, three ranges from
+// 0.3 to 1.1 um, constant beyond their ends; between 0.37298 and 0.385 um, at the jump of Balmer's
+// series, linear from one range to the next.
 SHARED Number SunLimbDarkeningAt(Number rho, Number wavelength_um) {
   Number mu = sqrt(max(Number(1.0) - rho * rho, Number(0.0)));
   Number u = Number(1.0) / min(max(wavelength_um, Number(0.3)), Number(0.37298));
@@ -50,8 +51,9 @@ SHARED Number SunLimbDarkeningAt(Number rho, Number wavelength_um) {
   return select(wavelength_um < Number(0.42257), below, visible);
 }
 
-// Of dark, rough ground such as the moon's, by the cosines of the angles at which it is lit and
-// seen: the law of Lommel and Seeliger, 1/2 where both are one. 0 on the dark side.
+// Returns the brightness of dark, rough ground such as the moon's, by the law of Lommel and
+// Seeliger, from the cosines of the angles of incidence and of view; 1/2 where both are one, 0 on
+// the dark side.
 SHARED Number LommelSeeliger(Number mu_lit, Number mu_seen) {
   Number lit = max(mu_lit, Number(0.0));
   return lit / max(lit + max(mu_seen, Number(0.0)), Number(1e-6));

@@ -17,7 +17,7 @@ namespace {
 constexpr double kHour_s = 3600.0;
 constexpr double kTolerance_s = 0.01;
 
-// Of almanacs, see the header.
+// Radii used by almanacs, see the header.
 constexpr double kEarthEquator_m = 6378137.0;
 constexpr double kMountains_m = 0.2725076 * kEarthEquator_m;
 constexpr double kValleys_m = 0.272281 * kEarthEquator_m;
@@ -26,8 +26,9 @@ constexpr double kAuwers_rad = 959.63 / 3600.0 * kRadiansPerDegree;
 double MuAt(double rho) { return std::sqrt(std::max((1.0 - rho) * (1.0 + rho), 0.0)); }
 double RhoAt(double mu) { return std::sqrt(std::max((1.0 - mu) * (1.0 + mu), 0.0)); }
 
-/// Of the disk's light what comes from between two circles around its centre, low < high, and of
-/// each circle's the share that `passed` says: over mu, as 2 rho d rho = -2 mu d mu.
+/// Returns the light of the disk between two circles around its centre, low < high, where `passed`
+/// is the fraction of each circle that is not covered. The integral is over mu, as
+/// 2 rho d rho = -2 mu d mu.
 template <typename Passed>
 double LightBetween(double low, double high, double wavelength_nm, const Passed& passed) {
   constexpr int kNodes = 32;
@@ -35,7 +36,8 @@ double LightBetween(double low, double high, double wavelength_nm, const Passed&
   const double from = MuAt(high), width = MuAt(low) - from;
   double light = 0.0;
   for (int i = 0; i < kNodes; ++i) {
-    // Steps that shrink towards both ends, where the arc cosine has its square roots.
+    // This substitution makes the steps smaller towards both ends, where the arc cosine behaves
+    // like a square root.
     const double t = rule.node[i], step = t * t * (3.0 - 2.0 * t);
     const double mu = from + width * step, rho = RhoAt(mu);
     light += rule.weight[i] * 6.0 * t * (1.0 - t) * width * 2.0 * mu *
@@ -48,18 +50,18 @@ double LightBetween(double low, double high, double wavelength_nm) {
   return LightBetween(low, high, wavelength_nm, [](double) { return 1.0; });
 }
 
-/// Sun and moon from a place, some seconds after an instant.
+/// Sun and moon at a place, some seconds after an instant.
 class Pair {
  public:
   Pair(const GeodeticPosition& place, const UtcInstant& from) : place_(place), from_(from) {}
 
-  /// Square of the distance of the centres on the unit sphere.
+  /// Returns the squared distance of the centres on the unit sphere.
   [[nodiscard]] double Chord2(double after_s) const {
     const glm::dvec3 apart = SunIn(after_s).direction.xyz - MoonIn(after_s).direction.xyz;
     return glm::dot(apart, apart);
   }
 
-  /// How far the centres stand apart, over what they do at the contact of a kind [rad].
+  /// Returns the distance of the centres minus their distance at a kind of contact [rad].
   [[nodiscard]] double OverContact(double after_s, bool is_outer) const {
     const SunPosition sun = SunIn(after_s);
     const MoonPosition moon = MoonIn(after_s);
@@ -86,7 +88,7 @@ class Pair {
   UtcInstant from_;
 };
 
-/// When the centres stand nearest, if that is in [0, end).
+/// Returns the time of the least distance of the centres, if it is in [0, end).
 std::optional<double> NearestTime(const Pair& pair, double end_s) {
   const auto parting = [&](double time_s) {
     constexpr double kStep_s = 1.0;
@@ -110,7 +112,8 @@ double EclipsedDisk::CoveredArea() const {
   const double p = moon_radius, z = separation;
   if (!IsCovered()) return 0.0;
   if (z <= std::abs(1.0 - p)) return std::min(p * p, 1.0);
-  // Two circular segments over the common chord, each a sector less a triangle.
+  // The area consists of two circular segments over the common chord, each a sector minus a
+  // triangle.
   const double at_sun = std::acos(std::clamp((z * z + 1.0 - p * p) / (2.0 * z), -1.0, 1.0));
   const double at_moon = std::acos(std::clamp((z * z + p * p - 1.0) / (2.0 * z * p), -1.0, 1.0));
   return (at_sun - 0.5 * std::sin(2.0 * at_sun) +
@@ -156,7 +159,7 @@ double CoveredLight(const GeodeticPosition& place, const UtcInstant& instant) {
 std::optional<SolarEclipse> FindSolarEclipse(const GeodeticPosition& place, const UtcInstant& from,
                                              double within_s) {
   const Pair pair(place, from);
-  // The moon leaves the sun by 13 degrees a day, and parallax adds one.
+  // The moon moves away from the sun by 13 degrees a day, and parallax adds one degree.
   constexpr double kChordOfTwoDays = 0.5;
   if (pair.Chord2(0.5 * within_s) > kChordOfTwoDays * kChordOfTwoDays) return std::nullopt;
   const std::optional<double> nearest_s = NearestTime(pair, within_s);
@@ -166,7 +169,7 @@ std::optional<SolarEclipse> FindSolarEclipse(const GeodeticPosition& place, cons
     return pair.At(BracketedRoot(over, std::min(*nearest_s, far_s), std::max(*nearest_s, far_s),
                                  kTolerance_s));
   };
-  constexpr double kLongest_s = 4.0 * kHour_s;  // from the outer contacts to the maximum
+  constexpr double kLongest_s = 4.0 * kHour_s;  // from an outer contact to the maximum
   const double begin_s = *nearest_s - kLongest_s, end_s = *nearest_s + kLongest_s;
   SolarEclipse eclipse{contact(true, begin_s), pair.At(*nearest_s), contact(true, end_s),
                        std::nullopt};

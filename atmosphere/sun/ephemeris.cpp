@@ -31,17 +31,18 @@ BodyState ObserverOf(const BodyState& earth, const Point<Ecef>& place,
               gcrs_from_ecef * velocity_m_per_s * (kSecondsPerDay / kAstronomicalUnit_m)};
 }
 
-/// From the observer to the body as it was when the light left.
+/// Returns the vector from the observer to the body at the time when the light left it.
 glm::dvec3 LightPath_au(const BodyState& body, const BodyState& observer) {
   glm::dvec3 path = body.position_au - observer.position_au;
-  for (int step = 0; step < 2; ++step) {  // bodies move by 1e-4 of the path: twice leaves 1e-12
+  for (int step = 0; step < 2; ++step) {  // bodies move by 1e-4 of the path: error 1e-12
     const double light_days = glm::length(path) * kLightDaysPerAu;
     path = body.position_au - light_days * body.velocity_au_per_day - observer.position_au;
   }
   return path;
 }
 
-/// Direction in which an observer, moving so far from the sun, sees light that arrives along `path`.
+/// Returns the apparent direction of light that arrives along `path`, for a moving observer at a
+/// distance from the sun (aberration).
 glm::dvec3 Aberrated(const glm::dvec3& path_au, const glm::dvec3& velocity_au_per_day,
                      double sun_au) {
   const double distance_au = glm::length(path_au);
@@ -78,7 +79,7 @@ glm::dmat3 EcefFromGcrs(const UtcInstant& instant, double delta_t_s) {
   return {r[0][0], r[1][0], r[2][0], r[0][1], r[1][1], r[2][1], r[0][2], r[1][2], r[2][2]};
 }
 
-// Status 1 of eraEpv00, outside 1900-2100, only says that the error is no longer bounded by 0.02
+// Status 1 of eraEpv00, outside 1900-2100, only means that the error is no longer bounded by 0.02
 // arcseconds. TDB - TT, below 2 ms, moves the sun by 1e-4 arcseconds.
 EarthAndSun EarthAndSunAt(const UtcInstant& instant, double delta_t_s) {
   double heliocentric[2][3];
@@ -124,8 +125,9 @@ double Value(const Polynomial& polynomial, double centuries) {
                          [&](double sum, double next) { return sum * centuries + next; });
 }
 
-// Each as published for ELP plus what fits it to DE405 and DE406 (Chapront and Francou 2003, table
-// 3 and section 4.3); of perigee and node with what follows from the constants of the fit.
+// Each value is the one published for ELP plus the correction that fits it to DE405 and DE406
+// (Chapront and Francou 2003, table 3 and section 4.3); perigee and node also include the terms
+// that follow from the constants of the fit.
 constexpr Polynomial kMoonLongitude{Arcseconds(218.0, 18.0, 59.95571 - 0.07008),
                                     1732559343.73604 - 0.35106, -6.8084 - 0.03743,
                                     0.006604 - 0.00018865, -3.169e-5 - 1.024e-5};
@@ -139,7 +141,7 @@ constexpr Polynomial kEarthLongitude{Arcseconds(100.0, 27.0, 59.13885 - 0.00033)
                                      129597742.293 + 0.00732, -0.0202, 9e-6, 1.5e-7};
 constexpr Polynomial kPerihelion{Arcseconds(102.0, 56.0, 14.45766 - 0.00749), 1161.24342, 0.529265,
                                  -1.1814e-4, 1.1379e-5};
-// Of Mercury to Neptune, mean longitudes.
+// Mean longitudes of Mercury to Neptune.
 constexpr std::array<Polynomial, 8> kPlanets{{
     {Arcseconds(252.0, 15.0, 3.216919), 538101628.66888},
     {Arcseconds(181.0, 58.0, 44.758419), 210664136.45777},
@@ -150,15 +152,16 @@ constexpr std::array<Polynomial, 8> kPlanets{{
     {Arcseconds(314.0, 3.0, 4.354234), 1542482.57845},
     {Arcseconds(304.0, 20.0, 56.808371), 786547.897},
 }};
-constexpr double kPrecession = 5028.79695;  // a century [arcseconds]
-// Semi-major axis of DE405 over that of the series.
+constexpr double kPrecession = 5028.79695;  // per century [arcseconds]
+// Semi-major axis of DE405 divided by that of the series.
 constexpr double kScale = 384747.961370173 / 384747.980674318;
-// Of the ecliptic in the axes of DE405, which are those of the GCRS: Chapront, Chapront-Touze and
-// Francou (2002), Astronomy & Astrophysics 387, 700.
+// Orientation of the ecliptic in the axes of DE405, which are those of the GCRS: Chapront,
+// Chapront-Touze and Francou (2002), Astronomy & Astrophysics 387, 700.
 constexpr double kObliquity_rad = Arcseconds(23.0, 26.0, 21.40960) * kArcsecond;
 constexpr double kEquinox_rad = -0.05028 * kArcsecond;
 
-/// Multiples of these: D, F, l, l' of Delaunay, the planets, the longitude from a fixed equinox.
+/// Returns the arguments of the series: D, F, l, l' of Delaunay, the planets, the longitude from a
+/// fixed equinox. The terms use multiples of them.
 std::array<double, kArguments> ArgumentsAt(double centuries) {
   const double moon = Value(kMoonLongitude, centuries), earth = Value(kEarthLongitude, centuries);
   std::array<double, kArguments> all{
@@ -166,7 +169,7 @@ std::array<double, kArguments> ArgumentsAt(double centuries) {
       moon - Value(kPerigee, centuries), earth - Value(kPerihelion, centuries)};
   for (std::size_t i = 0; i < kPlanets.size(); ++i) all[4 + i] = Value(kPlanets[i], centuries);
   all[12] = moon + kPrecession * centuries;
-  // Whole turns, of which there are a thousand a century, would cost digits of each multiple.
+  // Whole turns, a thousand per century, would cost digits in each multiple.
   for (double& argument : all) argument = std::remainder(argument, 1296000.0) * kArcsecond;
   return all;
 }
@@ -198,7 +201,8 @@ const std::vector<Term>& Terms() {
   return kTerms;
 }
 
-/// Longitude beyond the mean one and latitude [arcseconds], distance [km].
+/// Returns the longitude minus the mean longitude, and the latitude [arcseconds], and the distance
+/// [km].
 std::array<double, 3> SumsAt(double centuries) {
   const std::array<double, kArguments> arguments = ArgumentsAt(centuries);
   std::array<double, 3> sums{};
@@ -210,8 +214,8 @@ std::array<double, 3> SumsAt(double centuries) {
   return sums;
 }
 
-/// From the ecliptic of the date to that of J2000.0: Laskar (1986), Astronomy & Astrophysics 157,
-/// 59, as ELP has it.
+/// Rotates from the ecliptic of the date to that of J2000.0: Laskar (1986), Astronomy &
+/// Astrophysics 157, 59, as used by ELP.
 glm::dvec3 OnEclipticOf2000(const glm::dvec3& date, double t) {
   const double p =
       t * (0.10180391e-4 + t * (0.47020439e-6 + t * (-0.5417367e-9 + t * -0.2507948e-11)));
@@ -247,7 +251,7 @@ BodyState MoonFromEarth(const TerrestrialTime& time) {
   const auto centuries = [&](double after_days) {
     return (time.day - kDayOf2000 + (time.part + after_days)) / kDaysOfCentury;
   };
-  // It serves the 1.3 seconds that the light takes, in which this errs by 0.2 m.
+  // The velocity is used for the 1.3 seconds of light time, in which its error is 0.2 m.
   constexpr double kMinute = 1.0 / 1440.0;
   const glm::dvec3 position = PositionAt(centuries(0.0));
   return {position, (PositionAt(centuries(kMinute)) - position) / kMinute};
@@ -256,9 +260,9 @@ BodyState MoonFromEarth(const TerrestrialTime& time) {
 namespace {
 
 struct Planet {
-  int number;                      // of eraPlan94
-  double magnitude;                // at 1 au from sun and earth, full
-  std::array<double, 3> by_phase;  // per degree of the phase angle, its square, its cube
+  int number;                      // number in eraPlan94
+  double magnitude;                // at 1 au from sun and earth, fully lit
+  std::array<double, 3> by_phase;  // per degree of phase angle, its square, its cube
   double colour_index;
 };
 
@@ -278,7 +282,8 @@ BodyState StateOf(int number, const EarthAndSun& bodies, const TerrestrialTime& 
           bodies.sun.velocity_au_per_day + glm::dvec3(pv[1][0], pv[1][1], pv[1][2])};
 }
 
-// Of the rings, by how far they are open; the pole of Saturn J2000: Archinal et al. (2018).
+// Returns the contribution of the rings to Saturn's magnitude, from their opening angle; the pole
+// of Saturn J2000: Archinal et al. (2018).
 double RingMagnitude(const glm::dvec3& from_earth) {
   constexpr double kRight = 40.589 * kRadiansPerDegree, kUp = 83.537 * kRadiansPerDegree;
   const glm::dvec3 pole(std::cos(kUp) * std::cos(kRight), std::cos(kUp) * std::sin(kRight),

@@ -16,15 +16,15 @@ namespace alpenglow::atmosphere {
 namespace {
 
 /// Sine and cosine of both angles, exact at multiples of 90 degrees, so that a pole lies on the
-/// axis and longitudes 180 and -180 are one meridian to the last bit.
+/// axis, and longitudes 180 and -180 are the same meridian to the last bit.
 struct Orientation {
   double latitude_degrees, longitude_degrees;
   double sin_latitude, cos_latitude, sin_longitude, cos_longitude;
 };
 
 Orientation OrientationOf(const GeodeticPosition& place) {
-  // pi / 2 in double divided by a degree in double may miss 90 by a rounding, and GeographicLib
-  // answers NaN beyond 90; anything more than a rounding is the caller's mistake.
+  // pi / 2 in double divided by a degree in double may differ from 90 by a rounding error, and
+  // GeographicLib returns NaN beyond 90. A larger excess is an error of the caller.
   constexpr double kRounding_degrees = 1e-12;
   Orientation result;
   const double latitude = place.latitude_rad / kRadiansPerDegree;
@@ -66,7 +66,7 @@ GeodeticPosition PlaceFromDegrees(double latitude, double longitude, double heig
     throw InputError(
         fmt::format("height_m is {}; it must be finite and at least -12000", height_m));
   }
-  // Wrapped in degrees, where it is exact: 190 and -170 become the same number.
+  // Longitudes are wrapped in degrees, where this is exact: 190 and -170 become the same number.
   const double wrapped = longitude > 180.0 ? longitude - 360.0 : longitude;
   return {latitude * kRadiansPerDegree, (wrapped == -180.0 ? 180.0 : wrapped) * kRadiansPerDegree,
           height_m};
@@ -93,8 +93,8 @@ GeodeticPosition GeodeticFromEcef(const Ellipsoid& ellipsoid, const Point<Ecef>&
 }
 
 double OsculatingRadius(const Ellipsoid& ellipsoid, double latitude_rad) {
-  // M = a (1 - e^2) / w^3, N = a / w with w^2 = 1 - e^2 sin^2(latitude); e^2 = f (2 - f). The mean
-  // over all azimuths of the radii of the normal sections is sqrt(M N) (Gauss).
+  // The radii are M = a (1 - e^2) / w^3 and N = a / w with w^2 = 1 - e^2 sin^2(latitude);
+  // e^2 = f (2 - f). The mean over all azimuths of the radii of the normal sections is sqrt(M N) (Gauss).
   const double f = ellipsoid.flattening;
   const double sine = std::sin(latitude_rad);
   return ellipsoid.equatorial_radius_m * (1.0 - f) / (1.0 - f * (2.0 - f) * sine * sine);

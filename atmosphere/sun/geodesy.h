@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: MIT
-// Places: geodetic <-> earth-centred earth-fixed (ECEF) <-> east-north-up (ENU), in double.
+// Conversion of places between geodetic, earth-centred earth-fixed (ECEF) and east-north-up (ENU)
+// coordinates, in double.
 //
-// Values remember their frame: Point<Ecef> - Point<Enu> does not compile. A difference of points is
-// a Vector of that frame. Arithmetic is GeographicLib's (Karney): error below 10 nm near the earth.
+// Values have their frame as a type: Point<Ecef> - Point<Enu> does not compile. A difference of
+// points is a Vector of that frame. Arithmetic is GeographicLib's (Karney): error below 10 nm near
+// the earth.
 #pragma once
 
 #include <glm/vec3.hpp>
@@ -40,7 +42,8 @@ struct Ellipsoid {
 /// WGS84 (NIMA TR8350.2, 2000).
 inline constexpr Ellipsoid kWgs84{6378137.0, 1.0 / 298.257223563};
 
-/// A place. Latitude in [-pi/2, pi/2], longitude any finite value, height above the ellipsoid.
+/// A place in geodetic coordinates. Latitude in [-pi/2, pi/2], longitude any finite value, height
+/// above the ellipsoid.
 struct GeodeticPosition {
   double latitude_rad = 0.0;
   double longitude_rad = 0.0;
@@ -49,29 +52,29 @@ struct GeodeticPosition {
   bool operator==(const GeodeticPosition&) const = default;
 };
 
-/// The same meridian in (-pi, pi]: -pi becomes pi, everything inside is returned unchanged. Throws
-/// InputError when it is not finite.
+/// Returns the longitude of the same meridian in (-pi, pi]: -pi becomes pi, values inside are
+/// returned unchanged. Throws InputError if it is not finite.
 [[nodiscard]] double WrappedLongitude(double longitude_rad);
 
-/// From degrees; throws InputError naming the key when latitude is not in [-90, 90], longitude not
-/// in [-180, 360], height not finite or below -12 km. The longitude is wrapped, so 180 and -180 are
-/// one place, and so are 190 and -170.
+/// Returns a place from degrees; throws InputError naming the key if latitude is not in [-90, 90],
+/// longitude not in [-180, 360], height not finite or below -12 km. The longitude is wrapped, so
+/// that 180 and -180 are one place, and so are 190 and -170.
 [[nodiscard]] GeodeticPosition PlaceFromDegrees(double latitude, double longitude, double height_m);
 
-/// Throws InputError when the latitude is outside [-pi/2, pi/2] or a coordinate is not finite, or
-/// when the ellipsoid is none.
+/// Throws InputError if the latitude is outside [-pi/2, pi/2], a coordinate is not finite, or the
+/// ellipsoid is invalid.
 [[nodiscard]] Point<Ecef> EcefFromGeodetic(const Ellipsoid& ellipsoid,
                                            const GeodeticPosition& place);
-/// The nearest point of the ellipsoid; at the centre of the earth, where many are as near, the
-/// north pole. NaN gives NaN.
+/// Returns the geodetic coordinates of a point. At the centre of the earth, where the nearest point
+/// of the ellipsoid is not unique, it returns the north pole. NaN gives NaN.
 [[nodiscard]] GeodeticPosition GeodeticFromEcef(const Ellipsoid& ellipsoid,
                                                 const Point<Ecef>& point);
 
-/// Radius of the sphere that osculates the ellipsoid at a latitude: the mean (Gaussian) radius
-/// sqrt(M N) of the meridian and prime-vertical curvatures [m].
+/// Returns the radius of the sphere that osculates the ellipsoid at a latitude: the mean (Gaussian)
+/// radius sqrt(M N) of the meridian and prime-vertical curvatures [m].
 [[nodiscard]] double OsculatingRadius(const Ellipsoid& ellipsoid, double latitude_rad);
 
-/// East, north, up at a place.
+/// The east-north-up frame at a place.
 class LocalFrame {
  public:
   LocalFrame(const Ellipsoid& ellipsoid, const GeodeticPosition& origin);
@@ -90,7 +93,7 @@ class LocalFrame {
   Ellipsoid ellipsoid_;
   GeodeticPosition origin_;
   Point<Ecef> origin_ecef_;
-  glm::dvec3 east_, north_, up_;  // in ECEF
+  glm::dvec3 east_, north_, up_;  // unit vectors in ECEF
 };
 
 }  // namespace alpenglow::atmosphere

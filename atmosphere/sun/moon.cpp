@@ -23,7 +23,7 @@ struct Filter {
   std::array<double, 3> d;
 };
 
-// Those of the 32 that lie near the smooth curve through all.
+// The filters, out of 32, that lie near the smooth curve through all.
 constexpr std::array<Filter, 9> kFilters{{
     {350.0, {-2.67511, -1.78539, 0.50612, -0.25578}, {0.34185, 0.01441, -0.01602}},
     {412.3, {-2.34185, -1.74337, 0.42156, -0.21512}, {0.36591, -0.05902, 0.00080}},
@@ -62,14 +62,14 @@ double MoonReflectance(double phase_angle_rad, double wavelength_nm) {
 
 namespace {
 
-// Geometric, as bodies move about the barycentre.
+// Returns the geometric state of the moon; bodies move about the barycentre.
 BodyState MoonOf(const BodyState& earth, const UtcInstant& instant, double delta_t_s) {
   const BodyState moon = MoonFromEarth(TerrestrialTimeAt(instant, delta_t_s));
   return {earth.position_au + moon.position_au,
           earth.velocity_au_per_day + moon.velocity_au_per_day};
 }
 
-/// Position angle on the sky of a direction, seen from another: from north over east.
+/// Returns the position angle on the sky of one direction, seen from another: from north over east.
 double PositionAngle(const glm::dvec3& of, const glm::dvec3& at) {
   const glm::dvec3 pole(0.0, 0.0, 1.0);
   const glm::dvec3 east = glm::cross(pole, at);
@@ -86,7 +86,7 @@ constexpr double kStep_s = 1200.0;
 constexpr double kMoonTolerance_s = 0.01;
 constexpr int kSteps = static_cast<int>(30.0 * kSecondsPerDay / kStep_s);
 
-/// How far the upper limb stands over the sea horizon [rad], some seconds after an instant.
+/// Elevation of the upper limb above the sea horizon [rad], some seconds after an instant.
 class LimbOverHorizon {
  public:
   LimbOverHorizon(const GeodeticPosition& place, const UtcInstant& from)
@@ -111,16 +111,17 @@ struct Sample {
   [[nodiscard]] bool IsAbove() const { return value >= 0.0; }
 };
 
-/// Where the parabola through three samples at even steps turns; the middle one if it does not.
+/// Returns the extremum of the parabola through three samples at uniform steps; the time of the
+/// middle sample if there is none.
 double TurnOf(const Sample& before, const Sample& here, const Sample& after) {
   const double bend = before.value - 2.0 * here.value + after.value;
   const double steps = bend != 0.0 ? 0.5 * (before.value - after.value) / bend : 0.0;
   return here.time_s + steps * kStep_s;
 }
 
-/// Samples of the step that follows `here`. Where the moon only just rises or sets, both may fall
-/// into one step, beside the highest or lowest place of its path, which the parabola finds within
-/// seconds.
+/// Returns the samples of the step that follows `here`. If the moon only just rises or sets, both
+/// events may be in one step, near the highest or lowest point of its path; the parabola finds this
+/// point within seconds, and it is added as a sample.
 std::vector<Sample> SamplesOfStep(const LimbOverHorizon& limb, const Sample& before,
                                   const Sample& here) {
   const double end_s = here.time_s + kStep_s;
@@ -163,7 +164,8 @@ MoonPosition MoonAt(const GeodeticPosition& place, const UtcInstant& instant, do
   const ApparentPlace seen = SeenFrom(place, ecef_from_gcrs, bodies, moon);
   const glm::dvec3 sun_au = bodies.sun.position_au - moon.position_au;
   const Vector<Ecef> to_sun{glm::normalize(ecef_from_gcrs * sun_au)};
-  // Not the way of the light about the barycentre: the observer flies along with the moon.
+  // This is the geometric vector, without light time about the barycentre: the observer moves along
+  // with the moon.
   const glm::dvec3 from_centre_m =
       ecef_from_gcrs * (moon.position_au - bodies.earth.position_au) * kAstronomicalUnit_m;
   const double distance_m = glm::length(from_centre_m - EcefFromGeodetic(kWgs84, place).xyz);
@@ -204,7 +206,8 @@ UtcInstant NextMoonTransit(const GeodeticPosition& place, const UtcInstant& afte
     const glm::dvec3 moon = MoonAt(place, AddSeconds(after, after_s)).direction.xyz;
     return WrappedLongitude(place.longitude_rad - std::atan2(moon.y, moon.x));
   };
-  // It grows but where it jumps, at the lower transit, from half a turn to minus that.
+  // The hour angle increases, except for the jump from half a turn to minus half a turn at the
+  // lower transit.
   double low_s = 0.0, low = hour_angle(low_s);
   while (true) {
     const double high_s = low_s + kStep_s, high = hour_angle(high_s);
@@ -240,14 +243,15 @@ namespace {
 
 constexpr double kWavelength_nm = 550.0;
 
-// Light of a sphere of Lommel and Seeliger, relative to that when full: 1 - sin(a/2) tan(a/2) ln cot(a/4).
+// Returns the light of a Lommel-Seeliger sphere, relative to full phase:
+// 1 - sin(a/2) tan(a/2) ln cot(a/4).
 double SpherePhase(double angle_rad) {
   if (angle_rad < 1e-6) return 1.0;
   const double half = 0.5 * angle_rad;
   return 1.0 + std::sin(half) * std::tan(half) * std::log(std::tan(0.5 * half));
 }
 
-// Of the earth at the moon, per unit of the sun's there.
+// Returns the irradiance of earthlight at the moon, relative to that of sunlight there.
 double EarthIrradiance(const MoonPosition& moon) {
   constexpr double kGeometricAlbedo = 0.37;
   const double angle = kPi - moon.phase_angle_rad;
@@ -256,7 +260,7 @@ double EarthIrradiance(const MoonPosition& moon) {
          kPi;
 }
 
-// Sunlight at the moon, per unit of that at the earth.
+// Returns the irradiance of sunlight at the moon, relative to that at the earth.
 double SunlightAt(const MoonPosition& moon, double earth_sun_au) {
   const double nearness = earth_sun_au / moon.sun_distance_au;
   return nearness * nearness;
@@ -298,7 +302,7 @@ MoonDisk ApparentMoonDisk(const GeodeticPosition& place, const UtcInstant& insta
 
 double MoonRadiance(const MoonDisk& moon, const glm::dvec3& direction) {
   if (glm::dot(direction, moon.to_moon) <= 0.0) return 0.0;
-  // Where on the disk, in radii; over half a degree parallel rays serve.
+  // Position on the disk, in radii; over half a degree, rays can be treated as parallel.
   const glm::dvec3 beside = direction - moon.to_moon;
   const glm::dvec3 at =
       (beside - glm::dot(beside, moon.to_moon) * moon.to_moon) / std::sin(moon.radius_rad);

@@ -18,8 +18,8 @@ namespace {
 constexpr double kOfMagnitude0_lux = 2.54e-6;
 
 struct Star {
-  glm::dvec3 direction;        // at J2000.0
-  glm::dvec3 motion_per_year;  // across it
+  glm::dvec3 direction;        // unit vector at J2000.0
+  glm::dvec3 motion_per_year;  // proper motion perpendicular to it
   double magnitude, colour_index;
 };
 
@@ -85,7 +85,8 @@ constexpr std::array<double, 19> kLongitudes_deg{0,  5,  10, 15,  20,  25,  30, 
                                                  60, 75, 90, 105, 120, 135, 150, 165, 180};
 constexpr std::array<double, 11> kLatitudes_deg{0, 5, 10, 15, 20, 25, 30, 45, 60, 75, 90};
 
-// 1e-8 W m^-2 sr^-1 um^-1. What stands blank near the sun is as at its edge here.
+// Table in 1e-8 W m^-2 sr^-1 um^-1. Cells near the sun that are empty in the source have the value
+// of the nearest cell at the edge.
 constexpr std::array<std::array<double, 11>, 19> kZodiacal{{
     {11500, 6780, 4740, 3140, 1610, 985, 640, 275, 150, 100, 77},
     {11500, 6780, 4740, 2940, 1540, 945, 625, 271, 150, 100, 77},
@@ -110,7 +111,7 @@ constexpr std::array<std::array<double, 11>, 19> kZodiacal{{
 
 struct GridCell {
   std::size_t low;
-  double share;  // of the next
+  double share;  // weight of the next node
 };
 
 template <std::size_t kCount>
@@ -120,17 +121,18 @@ GridCell GridCellAt(const std::array<double, kCount>& nodes, double x) {
   return {low, std::clamp((x - nodes[low]) / (nodes[low + 1] - nodes[low]), 0.0, 1.0)};
 }
 
-/// Difference of two angles, in [-pi, pi].
+/// Returns a difference of two angles, wrapped to [-pi, pi].
 double Turned(double angle_rad) { return std::remainder(angle_rad, 2.0 * kPi); }
 
-// From GCRS, whose axes are those of J2000.0 within 0.03 arcseconds; obliquity: IAU 2006.
+// Returns the rotation from GCRS, whose axes are those of J2000.0 within 0.03 arcseconds;
+// obliquity: IAU 2006.
 glm::dmat3 EclipticFromGcrs() {
   constexpr double kObliquity = 23.43928 * kRadiansPerDegree;
   const double c = std::cos(kObliquity), s = std::sin(kObliquity);
   return glm::transpose(glm::dmat3(1.0, 0.0, 0.0, 0.0, c, s, 0.0, -s, c));
 }
 
-// The Hipparcos and Tycho Catalogues (ESA SP-1200, 1997), volume 1, equation 1.5.11: rows.
+// The Hipparcos and Tycho Catalogues (ESA SP-1200, 1997), volume 1, equation 1.5.11, by rows.
 glm::dmat3 GalacticFromGcrs() {
   return glm::transpose(glm::dmat3(-0.0548755604, -0.8734370902, -0.4838350155,  //
                                    0.4941094279, -0.4448296300, 0.7469822445,    //
@@ -180,7 +182,7 @@ double Starlight(double longitude_rad, double latitude_rad) {
   const double disk =
       24.0 * (1.0 + 0.45 * std::cos(longitude_rad)) / std::hypot(std::sin(latitude_rad), 0.12);
   const double bulge = 400.0 * bell(l / 16.0) * bell((b + 5.0) / 6.0);
-  // The lane leaves the plane by 4 degrees towards Aquila, and ends at Deneb.
+  // The dust lane deviates from the galactic plane by 4 degrees towards Aquila, and ends at Deneb.
   const double middle = 1.0 + 3.0 * std::sin(std::clamp(l, -30.0, 90.0) * 2.0 * kRadiansPerDegree);
   const double along = bell((l - 25.0) / 45.0);
   const double dust = 1.0 - 0.7 * along * bell((b - middle) / 3.5);
@@ -215,7 +217,7 @@ NightRadiance NightSky::Towards(const glm::dvec3& direction, const glm::dvec3& u
   constexpr double kNanometresPerMicrometre = 1e3;
   constexpr double kSunAt500nm = 1.916;  // W m^-2 nm^-1: ASTM G173-03, mean over 10 nm
   const double mu = glm::dot(direction, up);
-  // Below the horizon, which only heights see, as at it.
+  // Directions below the horizon, visible only from a height, have the values of the horizon.
   const double sin_z = mu > 0.0 ? std::sqrt(std::max(1.0 - mu * mu, 0.0)) : 1.0;
   const Angles ecliptic = AnglesOf(ecliptic_from_frame_ * direction);
   const Angles galactic = AnglesOf(galactic_from_frame_ * direction);

@@ -11,7 +11,7 @@
 namespace alpenglow::atmosphere {
 namespace {
 
-/// n r less that at the ground [m].
+/// Returns n r minus its value at the ground [m].
 double OverGround(const BendingAir& air, double height_m) {
   double less = 0.0;
   for (const RefractivityLayer& layer : air.layers)
@@ -24,7 +24,8 @@ struct ValueAndSlope {
   double value, per_m;
 };
 
-/// Both have the same exponentials. Layers without a share are left out: few airs have all.
+/// Computes both together because they have the same exponentials. Layers with share 0 are skipped:
+/// few media have all.
 ValueAndSlope RefractivityAndSlopeAt(const BendingAir& air, double height_m) {
   double sum = 0.0, slope_sum = 0.0;
   for (const auto& [share, scale_height_m] : air.layers) {
@@ -58,8 +59,8 @@ double CurvaturePerMetreAt(const BendingAir& air, double height_m) {
 }
 
 bool GentlyBends(const BendingAir& air) {
-  // Looked for where layers may be steep; between the ground and the top r grows by less than a
-  // third.
+  // Heights at which layers may be steep are sampled; between the ground and the top r increases by
+  // less than a third.
   constexpr int kPlaces = 64;
   double steepest_per_m = 0.0;
   for (int i = 0; i < kPlaces; ++i) {
@@ -84,7 +85,7 @@ double BentRay::OverInvariant(double height_m) const {
          2.0 * here_m * half_sine * half_sine;
 }
 
-// By Newton's method: n r grows by at least a fifth of r.
+// Uses Newton's method, which converges because n r increases by at least a fifth of r.
 double BentRay::HeightWhere(double elevation_rad) const {
   const double q = invariant_m_ / std::cos(elevation_rad);
   const double over_radius_m = q - air_.planet_radius_m;
@@ -136,7 +137,7 @@ std::optional<double> BentRay::AngleToGround() const {
 double GrazingElevation(const BendingAir& air, double height_m) {
   const double height = std::max(height_m, 0.0);
   const double here_m = (1.0 + RefractivityAt(air, height)) * (air.planet_radius_m + height);
-  // acos(at the ground / here), without its cancellation near 1.
+  // This is acos(value at the ground / value here), without cancellation near 1.
   return -2.0 * std::asin(std::sqrt(0.5 * std::max(OverGround(air, height), 0.0) / here_m));
 }
 
@@ -163,10 +164,14 @@ struct RefractionAndSlope {
   double value, slope;
 };
 
-/// For air of 15 C and 1013.25 hPa: A cos e / (sin e + b / (sin e + c / (sin e + d))), the
-/// continued fraction of Marini (1972), Radio Science 7, 223-231, which is A cot e high up and
-/// finite at the horizon. The four constants were fitted to RefractionOfRay from sea level, which they
-/// miss by less than 0.04' from the horizon up; below it they go on smoothly.
+/// Returns refraction for air of 15 C and 1013.25 hPa:
+///
+///   A cos e / (sin e + b / (sin e + c / (sin e + d)))
+///
+/// This is the continued fraction of Marini (1972), Radio Science 7, 223-231, which is A cot e at
+/// high elevations and finite at the horizon. The four constants were fitted to RefractionOfRay from
+/// sea level: the difference is less than 0.04' from the horizon up; below it the function continues
+/// smoothly.
 RefractionAndSlope StandardRefraction(double elevation_rad) {
   constexpr double kA = 2.78291862e-4;
   constexpr double kB = 1.60741104e-3;
@@ -184,14 +189,15 @@ RefractionAndSlope StandardRefraction(double elevation_rad) {
 }
 
 // Refraction is observable down to the last ray of the sun's lower limb over a sea horizon,
-// 34' + 32' below the horizontal; the closed form goes there and a little beyond. Further down
-// no ray reaches the observer and refraction has no meaning, but a picture moves the sun by it
-// continuously. The light that remains, twilight, is that of air high up, which the geometric
-// direction describes: so the value fades to 0 until civil twilight ends.
+// 34' + 32' below the horizontal; the closed form extends a little beyond this. Further down no ray
+// reaches the observer and refraction has no meaning, but the position of the sun in a picture must
+// remain continuous. The light of twilight comes from air high up, which is described by the
+// geometric direction: therefore the value fades to 0 until civil twilight ends.
 constexpr double kFadeBegins_rad = -1.0 * kRadiansPerDegree;
 constexpr double kFadeEnds_rad = -6.0 * kRadiansPerDegree;
 
-/// Cubic that continues value and slope at kFadeBegins and is flat and 0 at kFadeEnds.
+/// Returns the cubic that continues value and slope at kFadeBegins and is 0 with slope 0 at
+/// kFadeEnds.
 double FadedRefraction(double elevation_rad) {
   static const RefractionAndSlope begin = StandardRefraction(kFadeBegins_rad);
   constexpr double kWidth = kFadeBegins_rad - kFadeEnds_rad;
@@ -207,7 +213,7 @@ double SmoothStep(double x) {
 }  // namespace
 
 BendingAir AlmanacAir(double earth_radius_m) {
-  constexpr double kTop_m = 120e3;  // bends by 1e-8 of the whole above
+  constexpr double kTop_m = 120e3;  // bending above it is 1e-8 of the whole
   return {.refractivity = RefractivityAtSeaLevel(kHorizonWavelength_nm),
           .layers = kAlmanacLayers,
           .top_m = kTop_m,
@@ -232,7 +238,7 @@ double RefractionFromHeight(const BendingAir& air, double true_elevation_rad, do
   const double on_horizon = RefractionSeenAt(air, horizon, height_m);
   const double last_seen = horizon - on_horizon;
   if (true_elevation_rad <= last_seen) {
-    constexpr double kFade_rad = 3.0 * kRadiansPerDegree;  // peaks are sunlit for most of that
+    constexpr double kFade_rad = 3.0 * kRadiansPerDegree;  // peaks are sunlit for most of it
     return SmoothStep(1.0 - (last_seen - true_elevation_rad) / kFade_rad) * on_horizon;
   }
   const auto apparent = ApparentElevation(air, true_elevation_rad, height_m);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// The day of the sun: a function of time is sampled every half hour of the local mean solar day,
-// its extrema are refined where they could hide a crossing, and each change of sign is narrowed
-// down.
+// Times of events of the sun: a function of time is sampled every half hour of the local mean solar
+// day, its extrema are refined where they could hide a crossing, and each change of sign is
+// located.
 #include "atmosphere/sun/sun.h"
 
 #include <algorithm>
@@ -58,11 +58,10 @@ Vector<Enu> DirectionFromAngles(double elevation_rad, double azimuth_rad) {
 VisibleDisk DiskOverHorizon(double mu_s, double horizon_mu, double radius_rad) {
   const double elevation = std::asin(std::clamp(mu_s, -1.0, 1.0));
   const double horizon = std::asin(std::clamp(horizon_mu, -1.0, 1.0));
-  const double x = (elevation - horizon) / radius_rad;  // centre over horizon, in radii
+  const double x = (elevation - horizon) / radius_rad;  // centre above horizon, in radii
   if (x >= 1.0) return {1.0, mu_s};
   if (x <= -1.0) return {0.0, mu_s};
-  // Segment of the unit disk on the side of the centre's
-  // height over the chord at distance x below it.
+  // The visible part is a segment of the unit disk above the chord at distance x below its centre.
   const double chord = std::sqrt(1.0 - x * x);
   const double area = kPi - std::acos(x) + x * chord;
   const double centroid = 2.0 / 3.0 * chord * chord * chord / area;  // above the disk's centre
@@ -80,9 +79,9 @@ double LimbDarkening(double rho, double wavelength_nm) {
   return shared::SunLimbDarkeningAt(rho, wavelength_nm / 1000.0);
 }
 
-// With u = 0.6 the light outside of the circle is mu^2 (1 + mu) / 2 of all: a cubic, by Newton from
-// above, where it is convex. Where mu is small it halves with each step, but then the root is lost
-// in 1 - mu^2.
+// With u = 0.6 the fraction of light outside of the circle is mu^2 (1 + mu) / 2: a cubic, solved by
+// Newton's method from above, where it is convex. For small mu each step only halves mu, but the
+// root is then negligible in 1 - mu^2.
 double CircleOfLight(double share) {
   const double twice = 2.0 * std::clamp(1.0 - share, 0.0, 1.0);
   double mu = 1.0;
@@ -112,14 +111,14 @@ constexpr std::array<std::pair<std::string_view, SunEvent>, 9> kNames = {{
     {"astronomical-dusk", SunEvent::kAstronomicalDusk},
 }};
 
-/// What crosses what, and in which direction.
+/// The crossing that defines an event: elevation, limb or centre, and direction.
 struct Crossing {
   double true_elevation_rad;
   bool of_upper_limb;
   bool rising;
 };
 
-/// For every event but noon.
+/// Returns the crossing of every event except noon.
 Crossing CrossingOf(SunEvent event, const GeodeticPosition& place) {
   const auto twilight = [](double degrees, bool rising) {
     return Crossing{degrees * kRadiansPerDegree, false, rising};
@@ -145,7 +144,7 @@ Crossing CrossingOf(SunEvent event, const GeodeticPosition& place) {
           event == SunEvent::kSunrise};
 }
 
-/// How far the sun stands above the height of a crossing [rad].
+/// Returns the elevation of the sun above the elevation of a crossing [rad].
 double HeightOver(const Crossing& crossing, const GeodeticPosition& place,
                   const UtcInstant& instant) {
   const SunPosition sun = SunAt(place, instant);
@@ -158,8 +157,8 @@ struct EventSample {
   [[nodiscard]] bool IsAbove() const { return value >= 0.0; }
 };
 
-/// The largest (or least) value of f between two times around it, by golden sections; stops as soon
-/// as the value has the other sign.
+/// Returns the largest (or least) value of f between two times, by golden-section search; stops as
+/// soon as the value has the other sign.
 template <typename Function>
 EventSample Extremum(const Function& f, double low_s, double high_s, bool largest) {
   const double ratio = 0.5 * (std::sqrt(5.0) - 1.0);
@@ -186,8 +185,8 @@ EventSample Extremum(const Function& f, double low_s, double high_s, bool larges
   return sign * left.value > sign * right.value ? left : right;
 }
 
-/// Samples from half an hour before the day to half an hour after it, ascending, dense enough that
-/// the sign changes at most once between two.
+/// Returns samples from half an hour before the day to half an hour after it, ascending, dense
+/// enough that the sign changes at most once between two.
 template <typename Function>
 std::vector<EventSample> Samples(const Function& f) {
   std::vector<EventSample> regular;
@@ -208,7 +207,7 @@ std::vector<EventSample> Samples(const Function& f) {
   return all;
 }
 
-/// First time in [0, one day) at which f changes its sign in the given direction.
+/// Returns the first time in [0, one day) at which f changes its sign in the given direction.
 template <typename Function>
 std::optional<double> FirstChange(const Function& f, bool rising) {
   const std::vector<EventSample> samples = Samples(f);

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
-// The rotation of the earth against atomic time, and leap seconds.
+// Instants, leap seconds, and the rotation of the earth relative to atomic time.
 //
-// Espenak, F. and Meeus, J. (2006), Five Millennium Canon of Solar
-// Eclipses, NASA/TP-2006-214141, section 2.3: polynomials of TT - UT1
-// in the year. Leap seconds are ERFA's table (IERS bulletin C).
+// Espenak, F. and Meeus, J. (2006), Five Millennium Canon of Solar Eclipses, NASA/TP-2006-214141,
+// section 2.3: polynomials of TT - UT1 in the year. Leap seconds are ERFA's table
+// (IERS bulletin C).
 #include "atmosphere/sun/time.h"
 
 #include <erfa.h>
@@ -37,7 +37,7 @@ constexpr int kDay_s = 86400;
 
 sys_days DayOf(int modified_julian_day) { return sys_days(days(modified_julian_day - kUnixEpoch)); }
 
-/// A time as written: what calendar and clock show, not yet where on earth.
+/// A time as written, with calendar and clock, before its offset from UTC is resolved.
 struct WrittenTime {
   sys_seconds second;  // calendar and clock, counted as if they were UTC; ":60" as ":59"
   bool is_leap_second = false;
@@ -45,7 +45,7 @@ struct WrittenTime {
   std::optional<seconds> offset;  // local minus UTC, 0 for Z
 };
 
-/// Reads the parts of ISO 8601 and complains about the first that is wrong.
+/// Reads the parts of ISO 8601 and reports the first that is wrong.
 class InstantReader {
  public:
   explicit InstantReader(std::string_view text) : text_(text), cursor_(text) {}
@@ -102,7 +102,7 @@ class InstantReader {
     written.second = sys_seconds(day) + std::chrono::hours(hour) + std::chrono::minutes(minute) +
                      seconds(std::min(second, 59));
     if (cursor_.Accept('.')) {
-      // More than nanoseconds, as some recorders write, could round up to the next second.
+      // More digits than nanoseconds, as some recorders write, could round up to the next second.
       constexpr std::size_t kDigits = 9;
       const std::string_view digits = cursor_.Run("0123456789").substr(0, kDigits);
       if (digits.empty()) Refuse("a fraction of a second has digits");
@@ -113,7 +113,8 @@ class InstantReader {
     return written;
   }
 
-  /// Offsets without it, "+0200" and "+02", are of ISO 8601 too, but of another of its forms.
+  /// Offsets without a colon, "+0200" and "+02", belong to another form of ISO 8601, which is
+  /// rejected.
   void RequireColonIn(std::string_view offset) const {
     const std::string_view digits = offset.substr(1);
     const bool is_number = digits.find_first_not_of("0123456789") == std::string_view::npos;
@@ -131,7 +132,7 @@ class InstantReader {
     int total_s = 3600 * Part("hour of the offset", 0, 15);
     if (!cursor_.Accept(':')) Refuse("expected : after the hour of the offset");
     total_s += 60 * Part("minute of the offset", 0, 59);
-    // Beyond ISO 8601: local mean times, in force until 1972 somewhere, have seconds.
+    // This extends ISO 8601: local mean times, in force until 1972 in some places, have seconds.
     if (cursor_.Accept(':')) total_s += Part("second of the offset", 0, 59);
     return seconds(west ? -total_s : total_s);
   }
@@ -140,7 +141,7 @@ class InstantReader {
   TextCursor cursor_;
 };
 
-/// "+09:00"; with seconds where there are any.
+/// Returns "+09:00"; with seconds if they are not zero.
 std::string OffsetText(seconds offset) {
   const std::int64_t size_s = std::abs(offset.count());
   std::string text =
@@ -213,7 +214,7 @@ UtcInstant Now() {
 }
 
 UtcInstant MeanSolarMidnight(double longitude_rad, const UtcInstant& around) {
-  const double ahead_s = longitude_rad / (2.0 * kPi) * kDay_s;  // of Greenwich
+  const double ahead_s = longitude_rad / (2.0 * kPi) * kDay_s;  // ahead of Greenwich
   const double local_day = std::floor((around.second_of_day + ahead_s) / kDay_s);
   const int day = around.modified_julian_day + static_cast<int>(local_day);
   return AddSeconds(UtcInstant{day, 0.0}, -ahead_s);
@@ -255,8 +256,8 @@ std::string FormatInZone(const UtcInstant& instant, const std::string& zone) {
 }
 
 UtcInstant AddSeconds(const UtcInstant& instant, double seconds) {
-  if (seconds == 0.0) return instant;  // stays inside a leap second
-  constexpr double kMost_s = 1e12;     // 30,000 years: days still fit an int, seconds keep 1e-4
+  if (seconds == 0.0) return instant;  // an instant inside a leap second is preserved
+  constexpr double kMost_s = 1e12;     // 30,000 years: days fit an int, seconds are precise to 1e-4
   RequireInRange(seconds, -kMost_s, kMost_s, "seconds");
   const double step_days = std::floor(seconds / kDay_s);
   const double total_s = instant.second_of_day + (seconds - step_days * kDay_s);
@@ -302,10 +303,11 @@ namespace {
 
 constexpr int kFirstDayOfUtc = 36934;          // 1960-01-01
 constexpr int kFirstDayOfLeapSeconds = 41317;  // 1972-01-01
-constexpr int kFirstDayUnknown = 61406;        // 2027-01-01, from which ERFA calls a date dubious
+constexpr int kFirstDayUnknown = 61406;        // 2027-01-01: ERFA reports later dates as dubious
 constexpr double kTtMinusTai_s = 32.184;       // IAU 1991 resolution A4
 
-/// In [1960, 2027). UTC ran at rates of its own until 1972, in steps of a second since.
+/// Returns TT - UTC in [1960, 2027). UTC had its own rates until 1972, and has had steps of a
+/// second since.
 double TtMinusUtc(int modified_julian_day, double second_of_day) {
   int year = 0;
   int month = 0;
@@ -315,11 +317,12 @@ double TtMinusUtc(int modified_julian_day, double second_of_day) {
   double tai_minus_utc_s = 0.0;
   const int status =
       eraDat(year, month, day, std::min(second_of_day / 86400.0, 1.0), &tai_minus_utc_s);
-  ALPENGLOW_ENSURE(status, >=, 0);  // positive: dubious, and its answer the best there is
+  ALPENGLOW_ENSURE(status, >=, 0);  // positive: dubious, but the best available result
   return tai_minus_utc_s + kTtMinusTai_s;
 }
 
-/// 1900 to 1961 and 2005 to 2150, held constant outside; the years between are not needed.
+/// Returns the polynomial for 1900 to 1961 and 2005 to 2150, held constant outside; the years
+/// between are not needed.
 double EspenakMeeus(double year) {
   const double y = std::clamp(year, 1900.0, 2150.0);
   if (y < 1920.0) {
@@ -368,8 +371,9 @@ double DeltaT(const UtcInstant& instant) {
   const double gap_s =
       (day < kFirstDayOfUtc ? TtMinusUtc(seam_day, 0.0) : TtMinusUtc(seam_day - 1, 86400.0)) -
       EspenakMeeus(seam_year);
-  // Before 1960 the polynomials are observations: the gap (0.03 s) fades within ten years. In 2027
-  // they are a forecast that came out 6 s too high; nothing says that the earth will catch up.
+  // Before 1960 the polynomials represent observations: the gap (0.03 s) fades within ten years. In
+  // 2027 they are a forecast that is 6 s too high; there is no indication that the earth's rotation
+  // will catch up, so the gap remains.
   const double share =
       day < kFirstDayOfUtc ? std::clamp(1.0 - (seam_year - year) / 10.0, 0.0, 1.0) : 1.0;
   return EspenakMeeus(year) + share * gap_s;

@@ -24,7 +24,7 @@ bool SkipName(TextCursor& cursor) {
   return cursor.Run(kLetters).size() >= 3;
 }
 
-/// "[+-]hh[:mm[:ss]]"; hours up to 167 as RFC 8536 allows.
+/// Reads "[+-]hh[:mm[:ss]]"; hours up to 167 as RFC 8536 allows.
 std::optional<seconds> ReadTime(TextCursor& cursor) {
   const bool negative = cursor.Accept('-');
   if (!negative) cursor.Accept('+');
@@ -38,7 +38,7 @@ std::optional<seconds> ReadTime(TextCursor& cursor) {
   return seconds(negative ? -total_s : total_s);
 }
 
-/// ",Mm.w.d[/time]"
+/// Reads ",Mm.w.d[/time]".
 std::optional<YearlyChange> ReadChange(TextCursor& cursor) {
   if (!cursor.Accept(',') || !cursor.Accept('M')) return std::nullopt;
   const std::optional<int> month = cursor.Number(1, 2);
@@ -115,10 +115,10 @@ const date::time_zone* Located(const std::string& name) {
   }
 }
 
-/// The last line of the zone's file. The date library reads only the table of changes, which ends
-/// in 2037, and would keep winter time ever after.
+/// Returns the last line of the zone's file. The date library reads only the table of changes,
+/// which ends in 2037, and would keep winter time ever after.
 std::optional<PosixZoneRule> LastRule(const std::string& name) {
-  // The folders in which the date library looks.
+  // These are the folders in which the date library searches.
   for (const char* folder : {"/usr/share/zoneinfo/", "/var/db/zoneinfo/"}) {
     std::ifstream file(folder + name, std::ios::binary);
     const std::string text{std::istreambuf_iterator<char>(file), {}};
@@ -137,15 +137,15 @@ TimeZone::TimeZone(const std::string& name)
 
 seconds TimeZone::OffsetAt(sys_seconds instant) const {
   const date::sys_info info = zone_->get_info(instant);
-  // The library says "for ever" by an end in the year 32767.
+  // The library represents an unlimited period by an end in the year 32767.
   const bool is_last =
       info.end > sys_seconds(std::chrono::sys_days(std::chrono::year(3000) / 1 / 1));
   return is_last && last_rule_ ? atmosphere::OffsetAt(*last_rule_, instant) : info.offset;
 }
 
 std::vector<seconds> TimeZone::OffsetsOf(sys_seconds local) const {
-  // Whatever applies is in force within a day of UTC = local: offsets are less than a day, and two
-  // changes are further apart.
+  // Every applicable offset is in force within a day of UTC = local: offsets are less than a day,
+  // and two changes are further apart.
   std::vector<seconds> found;
   for (const seconds shift : {-seconds(86400), seconds(86400)}) {
     const seconds offset = OffsetAt(local + shift);

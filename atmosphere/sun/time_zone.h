@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
-// The rule that a time zone follows after its last tabulated change, as the last line of a time
-// zone file writes it: "CET-1CEST,M3.5.0,M10.5.0/3" (RFC 8536 section 3.3, POSIX.1-2017 8.3 TZ).
+// Civil time: the offsets of clocks in a zone of the IANA database.
 //
-// Civil time: what clocks show in a zone of the IANA database.
+// After its last tabulated change a zone follows a rule, written in the last line of a time zone
+// file: "CET-1CEST,M3.5.0,M10.5.0/3" (RFC 8536 section 3.3, POSIX.1-2017 8.3 TZ).
 #pragma once
 
 #include <chrono>
@@ -13,9 +13,8 @@
 
 namespace alpenglow::atmosphere {
 
-/// A change every year: the `week`-th `weekday` (0 Sunday) of `month`,
-/// 5 meaning the last, at `time` after midnight of local time as it
-/// was before the change; `time` may be negative or over a day.
+/// A yearly change: the `week`-th `weekday` (0 Sunday) of `month`, where week 5 is the last, at
+/// `time` after midnight of the local time before the change; `time` may be negative or over a day.
 struct YearlyChange {
   unsigned month;
   unsigned week;
@@ -24,7 +23,7 @@ struct YearlyChange {
 };
 
 struct DaylightTime {
-  std::chrono::seconds offset;  // local minus UTC, during it
+  std::chrono::seconds offset;  // local minus UTC, during daylight time
   YearlyChange start;
   YearlyChange end;
 };
@@ -34,11 +33,11 @@ struct PosixZoneRule {
   std::optional<DaylightTime> daylight;
 };
 
-/// Nothing when `text` is not a rule, or one that counts days of the year (Jn, n), which no zone of
-/// the database uses.
+/// Returns the rule; std::nullopt if `text` is not a rule, or counts days of the year (Jn, n),
+/// which no zone of the database uses.
 [[nodiscard]] std::optional<PosixZoneRule> ParsePosixZoneRule(std::string_view text);
 
-/// Local time minus UTC.
+/// Returns local time minus UTC.
 [[nodiscard]] std::chrono::seconds OffsetAt(const PosixZoneRule& rule,
                                             std::chrono::sys_seconds instant);
 
@@ -52,18 +51,18 @@ namespace alpenglow::atmosphere {
 
 class TimeZone {
  public:
-  /// Throws InputError when the database of this machine has no such zone.
+  /// Throws InputError if the database of this machine has no such zone.
   explicit TimeZone(const std::string& name);
 
-  /// Local time minus UTC.
+  /// Returns local time minus UTC.
   [[nodiscard]] std::chrono::seconds OffsetAt(std::chrono::sys_seconds instant) const;
 
-  /// The offsets under which clocks show `local` (counted as if it were UTC): one as a rule, two
-  /// (ascending) when clocks are set back over it, none when they are set forward over it.
+  /// Returns the offsets for which clocks show `local` (counted as if it were UTC): normally one,
+  /// two (ascending) if clocks are set back over it, none if they are set forward over it.
   [[nodiscard]] std::vector<std::chrono::seconds> OffsetsOf(std::chrono::sys_seconds local) const;
 
  private:
-  const date::time_zone* zone_;             // owned by the database, which lives for ever
+  const date::time_zone* zone_;             // owned by the database, which is never destroyed
   std::optional<PosixZoneRule> last_rule_;  // after the last tabulated change
 };
 
