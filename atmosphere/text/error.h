@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Failures: the user's (InputError), the machine's (OutputError, DisplayError), ours
-// (InternalError). Nothing is repaired in silence, and every check stays in release builds.
+// Exceptions for failures caused by the user (InputError), the machine (OutputError, DisplayError)
+// or the program (InternalError). No fault is repaired silently, and every check stays in release
+// builds.
 #pragma once
 
 #include <filesystem>
@@ -11,26 +12,27 @@
 
 namespace alpenglow::atmosphere {
 
-/// The input is wrong. The message is one line: file,
-/// line or key, value, allowed range. Exit status 3.
+/// The input is wrong. The message is one line: file, line or key, value, allowed range. Exit
+/// status 3.
 class InputError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
 
-/// An option asks for what this machine cannot do; names it. Exit status 2.
+/// An option needs a capability that this machine lacks; the message names the option. Exit status
+/// 2.
 class OptionError : public InputError {
  public:
   using InputError::InputError;
 };
 
-/// An output could not be written; names the file. Exit status 4.
+/// An output could not be written; the message names the file. Exit status 4.
 class OutputError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
 
-/// There is no display, or its OpenGL is too old. Exit status 5.
+/// There is no display, or its OpenGL version is too old. Exit status 5.
 class DisplayError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
@@ -45,14 +47,14 @@ class InternalError : public std::logic_error {
 /// Throws the InputError "FILE: fault".
 [[noreturn]] void RefuseFile(const std::filesystem::path& file, std::string_view fault);
 
-/// The operating system's message on the call that has just failed (errno).
+/// Returns the operating system's message for the call that has just failed (errno).
 [[nodiscard]] std::string LastSystemError();
 
-/// Returns `value`, or throws InputError naming `name`
-/// when it is not in [low, high]; NaN is never in.
+/// Returns `value`, or throws InputError naming `name` if it is not in [low, high]; NaN is never in
+/// the range.
 double RequireInRange(double value, double low, double high, std::string_view name);
 
-/// A number as ALPENGLOW_ENSURE shows it: in the fewest digits that give the same value back.
+/// Formats a number for ALPENGLOW_ENSURE: in the fewest digits that give the same value back.
 [[nodiscard]] std::string EnsuredText(double value);
 [[nodiscard]] std::string EnsuredText(long long value);
 [[nodiscard]] std::string EnsuredText(unsigned long long value);
@@ -73,8 +75,8 @@ template <typename Value>
 
 }  // namespace alpenglow::atmosphere
 
-/// ALPENGLOW_ENSURE(row.size(), ==, width): throws
-/// InternalError with both values when it does not hold.
+/// ALPENGLOW_ENSURE(row.size(), ==, width): throws InternalError with both values if the claim does
+/// not hold.
 #define ALPENGLOW_ENSURE(left, op, right)                                                       \
   do {                                                                                          \
     const auto& ensure_left = (left);                                                           \

@@ -73,7 +73,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Levenshtein (1966).
+/// Computes the edit distance of Levenshtein (1966).
 std::size_t EditDistance(std::string_view a, std::string_view b) {
   std::vector<std::size_t> row(b.size() + 1);
   std::iota(row.begin(), row.end(), std::size_t{0});
@@ -116,7 +116,7 @@ void RequireShallowKeys(std::string_view text, const std::string& origin) {
 }
 
 toml::table Parse(std::string_view text, const std::string& origin) {
-  // A document in UTF-16, which is full of zero bytes, is not named as such by the parser.
+  // A document in UTF-16 is full of zero bytes, and the parser's message would not name this cause.
   if (text.find('\0') != std::string_view::npos) {
     throw InputError(fmt::format("{}:1: holds zero bytes; it must be UTF-8 text", origin));
   }

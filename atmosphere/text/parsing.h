@@ -1,11 +1,8 @@
 // SPDX-License-Identifier: MIT
-// The extension of a file's name, which says what is in the file.
+// Strict parsing: file extensions, short texts, embedded CSV tables, and TOML files.
 //
-// Reads a short text from left to right, the same in every locale.
-//
-// Tables of numbers that travel inside the library as CSV text.
-//
-// TOML files read strictly: what is not understood is refused, with file, line and key.
+// Short texts are read from left to right, independent of the locale. TOML files are read strictly:
+// unknown content is rejected, with file, line and key.
 //
 // Numbers that are NaN or infinite, values of another type, values out of range, duplicate and
 // unknown keys are InputErrors of the form "scene.toml:7: camera.fov is 400; it must lie in ...".
@@ -23,8 +20,8 @@
 
 namespace alpenglow::atmosphere {
 
-/// True if a name ends in an extension such as ".gpx", in whatever case: cameras and recorders
-/// write ".GPX" and ".TIF" too.
+/// Returns whether a name ends in an extension such as ".gpx", ignoring case: cameras and recorders
+/// also write ".GPX" and ".TIF".
 [[nodiscard]] inline bool HasExtension(const std::filesystem::path& file,
                                        std::string_view extension) {
   const auto lower = [](unsigned char letter) { return std::tolower(letter); };
@@ -42,14 +39,14 @@ class TextCursor {
   [[nodiscard]] std::string_view rest() const { return rest_; }
   [[nodiscard]] bool AtEnd() const { return rest_.empty(); }
 
-  /// Steps over `expected` if it comes next.
+  /// Skips `expected` if it comes next, and returns whether it did.
   bool Accept(char expected) {
     if (rest_.empty() || rest_.front() != expected) return false;
     rest_.remove_prefix(1);
     return true;
   }
 
-  /// Steps over all characters that come next and are in `set`; returns them.
+  /// Skips all following characters that are in `set`; returns them.
   std::string_view Run(std::string_view set) {
     const std::size_t length = std::min(rest_.find_first_not_of(set), rest_.size());
     const std::string_view run = rest_.substr(0, length);
@@ -57,8 +54,8 @@ class TextCursor {
     return run;
   }
 
-  /// Steps over a run of `fewest` to `most` decimal digits (at most 9) that is not followed by
-  /// another digit; returns its value, or nothing, and then steps nowhere.
+  /// Skips a run of `fewest` to `most` decimal digits (at most 9) that is not followed by another
+  /// digit, and returns its value; otherwise returns std::nullopt and skips nothing.
   std::optional<int> Number(std::size_t fewest, std::size_t most) {
     TextCursor ahead = *this;
     const std::string_view digits = ahead.Run("0123456789");
@@ -73,48 +70,50 @@ class TextCursor {
   std::string_view rest_;
 };
 
-/// Chosen columns of an embedded table: lines of '#', a line of names, then numbers. One list a
-/// column, in the order asked for. Throws InternalError for a field that is not a number.
-/// @param file  as EmbeddedText takes it.
+/// Returns the requested columns of an embedded table: lines that start with '#', a line of names,
+/// then numbers. One list per column, in the order requested. Throws InternalError for a field that
+/// is not a number.
+/// @param file  as for EmbeddedText.
 [[nodiscard]] std::vector<std::vector<double>> ReadColumns(std::string_view file,
                                                            const std::vector<int>& columns);
 
-/// One column of such a table as text.
+/// Returns one column of an embedded table as text.
 [[nodiscard]] std::vector<std::string> ReadTextColumn(std::string_view file, int column);
 
-/// The content of a text file. Throws InputError when it cannot be read or is over 16 MiB.
+/// Returns the content of a text file. Throws InputError if it cannot be read or is over 16 MiB.
 [[nodiscard]] std::string ReadTextFile(const std::filesystem::path& file);
 
-/// The one of `known` with the smallest edit distance to `name`, when it is small enough to be a
-/// slip of the hand; else nothing.
+/// Returns the element of `known` with the smallest edit distance to `name`, if the distance is
+/// small enough for a typing error; else std::nullopt.
 [[nodiscard]] std::optional<std::string> NearestName(std::string_view name,
                                                      const std::vector<std::string>& known);
 
 /// A table of a TOML document. Copies share the document.
 class TomlTable {
  public:
-  /// The whole document; `origin` stands in messages where the file's name would.
+  /// Reads the whole document; messages contain `origin` in place of the file name.
   TomlTable(std::string_view text, const std::string& origin);
 
-  /// Refuses every key but these, naming the nearest of them. To be called before values are read.
+  /// Throws for every key except these, naming the nearest of them. Must be called before values
+  /// are read.
   void AllowOnly(const std::vector<std::string>& keys) const;
 
   [[nodiscard]] bool Has(const std::string& key) const;
-  /// A number, integer or not, in [low, high].
+  /// Returns a number, integer or not, in [low, high].
   [[nodiscard]] std::optional<double> Number(const std::string& key, double low, double high) const;
-  /// A list of numbers in [low, high]; a single number is a list of one.
+  /// Returns a list of numbers in [low, high]; a single number is a list of one.
   [[nodiscard]] std::optional<std::vector<double>> Numbers(const std::string& key, double low,
                                                            double high) const;
   [[nodiscard]] std::optional<std::string> Text(const std::string& key) const;
   [[nodiscard]] std::optional<bool> Truth(const std::string& key) const;
   [[nodiscard]] std::optional<TomlTable> Table(const std::string& key) const;
-  /// The tables of [[key]]; none when the key is absent.
+  /// Returns the tables of [[key]]; empty if the key is absent.
   [[nodiscard]] std::vector<TomlTable> Tables(const std::string& key) const;
 
-  /// "camera.fov" of key fov in table camera.
+  /// Returns "camera.fov" for key fov in table camera.
   [[nodiscard]] std::string FullName(const std::string& key) const;
-  /// Throws InputError "origin:line: <fault>", the line that of the key, or of the table when it
-  /// has none of that name.
+  /// Throws InputError "origin:line: <fault>" with the line of the key, or of the table if it has
+  /// no such key.
   [[noreturn]] void Fail(const std::string& key, const std::string& fault) const;
 
  private:
