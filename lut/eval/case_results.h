@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// From a reader of cases to a file of results: in parallel, in the order of the cases, whole or not
-// at all, a few thousand cases at a time. Included by the sources that evaluate files.
+// Evaluates the cases of a reader in parallel and writes a file of results, in the order of the
+// cases, atomically, a few thousand cases at a time. Included by the sources that evaluate files.
 #pragma once
 
 #include <fmt/format.h>
@@ -22,16 +22,17 @@
 
 namespace alpenglow::lut {
 
-/// "id,wavelength,value,error" and a line end; the error to three digits, rounded up.
+/// Returns "id,wavelength,value,error" and a line end; the error has three digits, rounded up.
 [[nodiscard]] inline std::string ResultLine(std::string_view id, std::string_view wavelength_nm,
                                             const Estimate& estimate) {
   return fmt::format("{},{},{},{:.3g}\n", id, wavelength_nm, estimate.value,
                      1.005 * estimate.error);
 }
 
-/// @param reader   Next() gives an optional case; bytes() and bytes_read() how far it is.
+/// Evaluates all cases of a reader and writes the results.
+/// @param reader   Next() returns an optional case; bytes() and bytes_read() give the progress.
 /// @param prepare  called with every batch of cases before it is evaluated.
-/// @param lines    the result lines of a case; thread-safe.
+/// @param lines    returns the result lines of a case; thread-safe.
 template <typename Reader, typename Prepare, typename Lines>
 void WriteCaseResults(Reader& reader, const std::filesystem::path& results, ProgressStyle style,
                       const Prepare& prepare, const Lines& lines) {

@@ -100,12 +100,13 @@ std::optional<std::string> RefusalOfScalarLight(const Medium& medium) {
 }
 
 Estimates StokesOf(const Case& work, const Estimates& q, const Estimates& u) {
-  constexpr double kVertical = 1e-12;  // of the sine squared
+  constexpr double kVertical = 1e-12;  // limit of the squared sine
   const double azimuth = work.relative_azimuth_deg * kRadiansPerDegree;
   const double side = std::sin(azimuth) < 0.0 ? -1.0 : 1.0;
   const bool vertical = (1.0 - work.ray.mu) * (1.0 + work.ray.mu) < kVertical;
-  // Of the vertical view as if tilted towards the sun, U is 0 by symmetry, and Q turns by the
-  // azimuth with the picture, one way above and the other below.
+  // For a vertical view, treated as tilted towards the sun, U is 0 by symmetry, and Q rotates by
+  // the azimuth together with the picture, in one direction for upward and in the other for
+  // downward views.
   const double turn = work.ray.mu > 0.0 ? 2.0 * azimuth : -2.0 * azimuth;
   Estimates result(q.size());
   for (std::size_t band = 0; band < q.size(); ++band) {
@@ -220,7 +221,7 @@ class PathEvaluator final : public Evaluator {
   }
 
   [[nodiscard]] Estimates SkyIrradiance(const ViewRay& ray) const {
-    // Nothing shines down on a plane above the air but the sun itself.
+    // A plane above the air receives only direct sunlight from above.
     if (ray.altitude_m > medium_.atmosphere_height_m)
       return Estimates(medium_.wavelengths_nm.size());
     const auto traced = judge::TraceIrradiance(medium_, std::max(ray.altitude_m, 0.0), ray.mu_s,
@@ -270,7 +271,7 @@ class TableEvaluator final : public Evaluator {
   }
 
  private:
-  // The error grows by the distance to the values.
+  // Replaces the values of the integral and increases its error by the difference.
   [[nodiscard]] static Estimates WithValues(Estimates integral, const Estimates& values) {
     for (std::size_t band = 0; band < values.size(); ++band) {
       integral[band].error += std::abs(values[band].value - integral[band].value);
@@ -313,7 +314,7 @@ class TableEvaluator final : public Evaluator {
     throw InternalError("an unknown quantity");
   }
 
-  /// Adds what the ground at the end of the ray sends to the observer.
+  /// Adds the light that the ground at the end of the ray reflects to the observer.
   [[nodiscard]] Bands<float> WithGround(const ViewRay& ray, Bands<float> light,
                                         bool under_the_sky) const {
     const std::optional<double> mu_s = SunOnGround(medium(), ray);

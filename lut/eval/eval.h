@@ -1,32 +1,38 @@
 // SPDX-License-Identifier: MIT
-// Cases to evaluate, one a line of a CSV file:
+// Evaluation of cases by one of several methods, each value with an estimate of its error: the
+// implementation of `skylut eval`.
+//
+// Cases are lines of a CSV file, as read by CsvReader:
 //
 //   id,quantity,altitude_m,view_zenith_deg,relative_azimuth_deg,sun_zenith_deg,distance_m
 //
-// as CsvReader reads them. distance_m empty: the ray goes to the ground, whose light it brings, or
-// out of the top. Given: the segment stops there, or at the ground or the top if nearer, and light
-// that the ground reflects is left out even where the segment reaches it. relative_azimuth_deg in
-// (0, 180): the sun is to the left of the view, beyond (and below 0) to its right, which is another
-// sign of stokes_u. Cases of lamps have columns of their own: lamp_cases.h.
+// If distance_m is empty, the ray extends to the ground, whose light is included, or leaves the
+// atmosphere through the top. If it is given, the segment stops there, or at the ground or the top
+// if nearer, and light reflected by the ground is not included even if the segment reaches the
+// ground. For relative_azimuth_deg in (0, 180) the sun is to the left of the view, beyond
+// (and below 0) to its right, where stokes_u has the opposite sign. Cases of lamps have their own
+// columns: lamp_cases.h.
 //
-// Values of cases by one method, each with an estimate of its error: what `skylut eval` does.
+// Methods:
 //
 //   integral  AirIntegrator in double; light of all orders from DiffuseLight. The error is the
-//             difference between two numbers of nodes and what closed forms leave (bounds below).
-//             For errors below what these can do, the judge. Of light of higher orders: the
-//             differences to two coarser solutions (one alone can be small by luck), and what the
-//             degrees of the aerosol that moments do not keep would hold (forward_peak.h; in
-//             hazy air forward_peak.h gives that light itself), times 0.6, and 0.3 % of it. Of 384 values in air unseen by the calibration (clear, haze,
-//             dust, molecules, thick, over snow) 98 % are within it, at least 97 % in each; it is 3
-//             times the true error in the median.
-//   table     look-ups in stored tables; what they leave out, integrated on their number of nodes.
-//             The error is the distance to the integral.
-//   path-trace  the judge of multiple scattering. The error is one standard error.
+//             difference between two numbers of nodes plus the error of closed forms (bounds
+//             below). For smaller errors than that, the reference solution is used. The error of
+//             light of higher orders is 0.6 times the sum of the differences to two coarser
+//             solutions (one difference alone can be small by chance) and of the light in those
+//             degrees of the aerosol that the moments truncate (forward_peak.h; in hazy air
+//             forward_peak.h computes that light itself), plus 0.3 % of the light. Of 384 values
+//             in air that was not used for calibration (clear, haze, dust, molecules, thick, over
+//             snow) 98 % are within it, at least 97 % in each; it is 3 times the true error in the
+//             median.
+//   table     look-ups in stored tables; quantities that are not in them are integrated with the
+//             tables' number of nodes. The error is the difference to the integral.
+//   path-trace  the reference solution for multiple scattering. The error is one standard error.
 //
 // Radiances are per unit solar irradiance [1/sr], irradiances per unit solar irradiance [1].
 //
-// Light of lamps (quantity airlight) needs other columns and no atmosphere: such cases are a file
-// of their own (lamp_cases.h), and neither kind of file holds cases of the other.
+// Light of lamps (quantity airlight) needs other columns and no atmosphere. Such cases are in a
+// separate file (lamp_cases.h), and neither kind of file may contain cases of the other kind.
 #pragma once
 
 #include <cstddef>
@@ -49,15 +55,15 @@
 namespace alpenglow::lut {
 
 enum class Quantity {
-  kTransmittance,    // of the ray [1]
-  kOpticalDepth,     // of the ray [1]
-  kSingle,           // scattered once, and sunlight from the ground at the end of the ray [1/sr]
-  kInscatterSingle,  // scattered once [1/sr]
+  kTransmittance,    // transmittance of the ray [1]
+  kOpticalDepth,     // optical depth of the ray [1]
+  kSingle,           // single scattering, and sunlight from the ground at the end of the ray [1/sr]
+  kInscatterSingle,  // single scattering [1/sr]
   kTotal,            // all orders, and light from the ground at the end of the ray [1/sr]
-  kStokesQ,          // of all orders, as PolarisedLight [1/sr]
+  kStokesQ,          // of all orders, as in PolarisedLight [1/sr]
   kStokesU,
-  kIrradianceSun,  // of the direct sun on a horizontal plane [1]
-  kIrradianceSky,  // of the sky on a horizontal plane [1]
+  kIrradianceSun,  // direct sun on a horizontal plane [1]
+  kIrradianceSky,  // sky on a horizontal plane [1]
 };
 
 struct Case {
@@ -70,18 +76,19 @@ struct Case {
 
 class CaseReader {
  public:
-  /// Throws InputError, here and in Next(), for what CsvReader refuses and an unknown quantity.
+  /// Throws InputError, here and in Next(), for input that CsvReader rejects and an unknown
+  /// quantity.
   explicit CaseReader(const std::filesystem::path& file);
 
-  /// The next case, or nothing at the end.
+  /// Returns the next case; std::nullopt at the end.
   [[nodiscard]] std::optional<Case> Next();
 
-  /// An InputError "file:line: fault".
+  /// Throws an InputError "file:line: fault".
   [[noreturn]] void Fail(std::size_t line, const std::string& fault) const {
     lines_.Fail(line, fault);
   }
 
-  /// How far it is, for progress.
+  /// Number of bytes read and to read, for progress.
   [[nodiscard]] std::uint64_t bytes_read() const { return lines_.bytes_read(); }
   [[nodiscard]] std::uint64_t bytes() const { return lines_.bytes(); }
 
@@ -95,39 +102,38 @@ struct Estimate {
   double error = 0.0;
 };
 
-/// One a wavelength.
+/// One estimate per wavelength.
 using Estimates = std::vector<Estimate>;
 
 struct IntegralOptions {
-  int samples = 16;  // Gauss nodes a panel, in [2, 32]
-  /// Relative: chooses the samples of every case, and the judge where they do not suffice. Light of
-  /// higher orders has the error it has.
+  int samples = 16;  // Gauss nodes per panel, in [2, 32]
+  /// Relative error that determines the samples of every case, and the use of the reference
+  /// solution if they do not suffice. It does not affect the error of light of higher orders.
   std::optional<double> max_error;
 };
 
 struct PathTraceOptions {
-  double max_error = 0.005;  // relative: paths are added until one standard error is below it
-  std::size_t max_paths = std::size_t{1} << 22U;  // of a case; errors stay larger then
-  std::uint64_t seed = 1;                         // a case's value does not depend on others
+  double max_error = 0.005;  // relative error: paths are added until one standard error is below it
+  std::size_t max_paths = std::size_t{1} << 22U;  // maximum per case; larger errors remain after it
+  std::uint64_t seed = 1;                         // a case's value does not depend on other cases
 };
 
 inline constexpr int kFewestSamples = 2;
 inline constexpr int kMostSamples = 32;
 
-/// The smallest error that can be asked for: what the judge keeps.
+/// The smallest error that may be requested: the accuracy of the reference solution.
 inline constexpr double kSmallestMaxError = 1e-8;
 
-/// "0.2%" or "0.002"; nothing for another text and outside of
-/// [kSmallestMaxError, 1].
+/// Reads "0.2%" or "0.002"; std::nullopt for another text and outside of [kSmallestMaxError, 1].
 [[nodiscard]] std::optional<double> RelativeErrorFromText(std::string_view text);
-/// What is wrong with such a text, for the command line; empty when nothing is.
+/// Describes the fault of such a text, for the command line; empty if there is none.
 [[nodiscard]] std::string FaultOfRelativeError(const std::string& text);
 
-/// Relative error of closed-form optical depths (worst: rays that graze the top from outside),
-/// where the planet's radius is more than 120 times the scale heights; see medium.h.
+/// Relative error of closed-form optical depths (worst: rays that graze the top from outside), if
+/// the planet's radius is more than 120 times the scale heights; see medium.h.
 inline constexpr double kClosedFormError = 2e-5;
 
-/// The same over any planet.
+/// Returns this relative error for any planet.
 [[nodiscard]] double ClosedFormError(const Medium& medium);
 
 [[nodiscard]] constexpr bool NeedsLightOfAllOrders(Quantity quantity) {
@@ -138,26 +144,28 @@ inline constexpr double kClosedFormError = 2e-5;
   return quantity == Quantity::kStokesQ || quantity == Quantity::kStokesU;
 }
 
-/// Why a medium has neither; nothing when it has.
+/// Returns why a medium has no Stokes parameters; std::nullopt if it has.
 [[nodiscard]] std::optional<std::string> RefusalOfScalarLight(const Medium& medium);
 
-/// Of a case of either, from Q and U as PolarisedLight has them (the sun not to the right). Straight
-/// up and down the azimuth is that of the picture's upper edge: Q and U turn with it.
+/// Returns the estimates of a case of stokes_q or stokes_u, from Q and U as defined in
+/// PolarisedLight (the sun not to the right). For vertical views the azimuth is that of the
+/// picture's upper edge: Q and U rotate with it.
 [[nodiscard]] Estimates StokesOf(const Case& work, const Estimates& q, const Estimates& u);
 
-/// The sun's zenith cosine where a ray meets the ground; nothing when it does not, and for rays of
-/// a given length, which bring no light of the ground (BringsLightOfGround).
+/// Returns the sun's zenith cosine at the point where a ray hits the ground; std::nullopt if it
+/// does not, and for rays of a given length, which do not include light of the ground
+/// (BringsLightOfGround).
 [[nodiscard]] std::optional<double> SunOnGround(const Medium& medium, const ViewRay& ray);
 
-/// Thread-safe once prepared.
+/// Evaluates cases by one method. Thread-safe once prepared.
 class Evaluator {
  public:
   virtual ~Evaluator() = default;
 
   [[nodiscard]] virtual const Medium& medium() const = 0;
-  /// Why this method cannot give a quantity; nothing when it can.
+  /// Returns why this method cannot compute a quantity; std::nullopt if it can.
   [[nodiscard]] virtual std::optional<std::string> Refusal(Quantity quantity) const = 0;
-  /// Makes ready what these cases need (light of all orders takes seconds).
+  /// Prepares the data for these cases (light of all orders takes seconds).
   virtual void Prepare(std::span<const Case> cases) = 0;
   [[nodiscard]] virtual Estimates Evaluate(const Case& work) const = 0;
 };
@@ -165,18 +173,18 @@ class Evaluator {
 /// Throws InputError for more than kMaxBands wavelengths, and options out of range.
 [[nodiscard]] std::unique_ptr<Evaluator> MakeIntegralEvaluator(const Medium& medium,
                                                                const IntegralOptions& options = {});
-/// Refuses light of all orders where the tables hold single scattering only. Throws InputError for
-/// tables of different media.
+/// Makes an evaluator that rejects light of all orders if the tables hold single scattering only.
+/// Throws InputError for tables of different media.
 [[nodiscard]] std::unique_ptr<Evaluator> MakeTableEvaluator(TableFolder tables);
 
-/// Light scattered once or by all orders, and the sky's irradiance; refuses the other quantities.
-/// Throws InputError for options out of range.
+/// Makes an evaluator for single or multiple scattering and the sky's irradiance; it rejects the
+/// other quantities. Throws InputError for options out of range.
 [[nodiscard]] std::unique_ptr<Evaluator> MakePathTraceEvaluator(
     const Medium& medium, const PathTraceOptions& options = {});
 
 /// Evaluates every case of a file in parallel and writes "id,wavelength_nm,value,error" in the
-/// order of the cases, whole or not at all. Never holds more than a few thousand cases. Throws
-/// InputError naming file and line.
+/// order of the cases, atomically. It never holds more than a few thousand cases. Throws InputError
+/// naming file and line.
 void EvaluateFile(const std::filesystem::path& cases, const std::filesystem::path& results,
                   Evaluator& evaluator, ProgressStyle style);
 

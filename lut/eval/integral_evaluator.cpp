@@ -16,8 +16,9 @@
 namespace alpenglow::lut {
 namespace {
 
-// What closed forms leave in light scattered once, twice the worst stored case: for smaller errors
-// the judge takes over. Over small planets three times their error.
+// Error of closed forms in single scattering, twice that of the worst stored case; for smaller
+// errors the reference solution is used. For small planets it is three times the error of the
+// closed forms.
 constexpr double kFastPathFloor = 4e-6;
 
 double FastPathFloor(const Medium& medium) {
@@ -27,12 +28,12 @@ double FastPathFloor(const Medium& medium) {
   return std::max({kFastPathFloor, of_series, error > kClosedFormError ? 3.0 * error : 0.0});
 }
 
-// Numbers of nodes that a wanted error is sought with.
+// Numbers of nodes that are tried in order to reach a requested error.
 constexpr std::array<int, 6> kLadder{4, 8, 12, 16, 24, 32};
 
-// The coarser solutions that light of all orders is held against: two, for one difference can be
-// small by luck. They are coarse in what decides where: degree, altitudes and directions in haze,
-// nodes of later orders in thick air, suns in twilight.
+// The coarser solutions with which light of all orders is compared: two, because one difference can
+// be small by chance. They are coarse in the parameters that dominate the error: degree, altitudes
+// and directions in haze, nodes of later orders in thick air, suns in twilight.
 constexpr DiffuseLightOptions kCoarseLight{.altitudes = 12,
                                            .sun_angles = 28,
                                            .degree = 2,
@@ -50,9 +51,9 @@ constexpr DiffuseLightOptions kMiddlingLight{.altitudes = 12,
                                              .later_ray_nodes = 4,
                                              .tolerance = 3e-2};
 
-// How the error of light of higher orders follows from the two differences and the missing degrees:
-// calibrated on 342 values traced by paths, through clear air, haze, dust and molecules of optical
-// depths 0.1 to 5 (eval.h has the result).
+// Factors that compute the error of light of higher orders from the two differences and the
+// truncated degrees. They were calibrated on 342 path-traced values, in clear air, haze, dust and
+// molecules of optical depths 0.1 to 5 (eval.h has the result).
 constexpr double kShareOfDifferences = 0.6;
 constexpr double kFloorOfHigherOrders = 3e-3;
 
@@ -63,7 +64,8 @@ DiffuseLightOptions With(bool forward_peak, DiffuseLightOptions options) {
 
 double Sum(const Estimate& a) { return std::abs(a.value) + a.error; }
 
-/// Product of two estimates; errors add to first order, and beyond it where they are large.
+/// Returns the product of two estimates; to first order the relative errors add, and for large
+/// errors the product of errors is included.
 Estimate operator*(const Estimate& a, const Estimate& b) {
   return {a.value * b.value, Sum(a) * Sum(b) - std::abs(a.value * b.value)};
 }
@@ -83,7 +85,8 @@ Estimates operator+(const Estimates& a, const Estimates& b) {
   return Combined(a, b, [](const Estimate& x, const Estimate& y) { return x + y; });
 }
 
-/// Light that the ground sends along a ray of this transmittance, for an irradiance on it.
+/// Returns the light that the ground reflects along a ray of this transmittance, for an irradiance
+/// of the ground.
 Estimates FromGround(const Medium& medium, const Estimates& transmittance,
                      const Estimates& irradiance) {
   Estimates light = Combined(transmittance, irradiance,
@@ -164,7 +167,7 @@ class IntegralEvaluator final : public Evaluator {
   }
 
  private:
-  /// Whether the wanted relative error is below this one.
+  /// Returns whether the requested relative error is below this error.
   [[nodiscard]] bool NeedsJudge(double error) const {
     return options_.max_error && *options_.max_error < error;
   }
@@ -259,7 +262,7 @@ class IntegralEvaluator final : public Evaluator {
                       SunIrradiance(0.0, *mu_s) + SkyIrradiance(0.0, *mu_s));
   }
 
-  /// Both differences, and a floor.
+  /// Combines both differences and a floor into the error.
   [[nodiscard]] static Estimates Differences(const Bands<float>& fine, const Bands<float>& middling,
                                              const Bands<float>& coarse, double share) {
     Estimates result(fine.count);
@@ -287,7 +290,7 @@ class IntegralEvaluator final : public Evaluator {
     return result;
   }
 
-  // The error is that of the solutions' differences, and of the closed forms.
+  // The error is that of the differences between solutions, and of the closed forms.
   [[nodiscard]] Estimates Stokes(const Case& work) const {
     const ViewRay& ray = work.ray;
     const RaySamples<float> samples =
@@ -317,9 +320,9 @@ class IntegralEvaluator final : public Evaluator {
   }
 
   AirIntegrator<double> air_;
-  AirIntegrator<float> quick_air_;  // of the samples that diffuse light is gathered along
+  AirIntegrator<float> quick_air_;  // for the samples along which multiple scattering is gathered
   IntegralOptions options_;
-  double closed_form_error_, fast_path_floor_;  // relative
+  double closed_form_error_, fast_path_floor_;  // relative errors
   std::optional<DiffuseLight> fine_light_, middling_light_, coarse_light_;
   std::optional<MissingDegrees> missing_degrees_;
 };

@@ -43,8 +43,8 @@ enum LampColumn : std::size_t {
 
 constexpr double kFarthest_m = 1e9;
 
-// What the difference of two numbers of nodes does not see: the judge's own error, and the smallest
-// that nodes are trusted with.
+// Error that the difference of two numbers of nodes does not detect: that of the reference
+// solution; and the smallest error for which node counts are compared.
 constexpr double kFloor = 1e-9;
 constexpr double kSmallestByNodes = 1e-3;
 
@@ -146,7 +146,7 @@ Estimate EvaluateLamp(const LampCase& work, const IntegralOptions& options) {
     return estimate(with(options.samples),
                     with(std::max(2 * options.samples / 3, kFewestLampNodes)));
   }
-  // Two numbers of nodes may agree by chance; three that do are believed.
+  // Two numbers of nodes may agree by chance; agreement of three is accepted.
   double coarse = with(8);
   double last_difference = std::numeric_limits<double>::infinity();
   for (const int nodes : {12, 16, 24, 32, 48, 64}) {
