@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Options that every program has, and what a subcommand is. Included by the translation units that
-// parse a command line, and no others (CLI11 is slow to compile).
+// Command-line options common to every program, and the type of a subcommand. Only sources that
+// parse a command line include this header (CLI11 is slow to compile).
 #pragma once
 
 #include <fmt/format.h>
@@ -27,8 +27,8 @@ struct CommonOptions {
   }
 };
 
-/// What a subcommand does, with options of its own that it was parsed with. Each has a pair of
-/// files NAME_command.h and .cpp with `Subcommand AddNameCommand(CLI::App&)`.
+/// The function of a subcommand, with its own parsed options bound to it. Each subcommand has a
+/// pair of files NAME_command.h and .cpp with `Subcommand AddNameCommand(CLI::App&)`.
 using Subcommand = std::function<void(const CommonOptions&)>;
 
 /// Adds --atmosphere. `atmosphere` must outlive the parsing.
@@ -52,7 +52,7 @@ inline void AddCommonOptions(CLI::App& app, const std::string& program, CommonOp
   app.set_version_flag("--version", [program] { return VersionText(program); });
 }
 
-/// Refuses on the command line what `read` refuses.
+/// Returns a validator that rejects a text on the command line if `read` throws for it.
 [[nodiscard]] inline CLI::Validator ReadableBy(
     const std::function<void(const std::string&)>& read) {
   const auto fault = [read](const std::string& text) -> std::string {
@@ -66,7 +66,7 @@ inline void AddCommonOptions(CLI::App& app, const std::string& program, CommonOp
   return CLI::Validator(fault, "");
 }
 
-/// Long names of the options of a command and of the subcommands that were named.
+/// Returns the long names of the options of a command and of the subcommands that were named.
 [[nodiscard]] inline std::vector<std::string> OptionNamesOf(const CLI::App& app) {
   std::vector<std::string> names;
   for (const CLI::Option* option : app.get_options())
@@ -78,8 +78,9 @@ inline void AddCommonOptions(CLI::App& app, const std::string& program, CommonOp
   return names;
 }
 
-/// What is wrong with the first word, or with the first option that is unknown; empty when nothing
-/// is. To be asked before what else the parser complains of, which follows from it.
+/// Describes the fault of the first word, or of the first unknown option; empty if there is none.
+/// It must be called before other parser errors are reported, because they are consequences of this
+/// fault.
 [[nodiscard]] inline std::string FaultOfWords(const CLI::App& app, int argc, char** argv) {
   std::vector<std::string> commands;
   for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; }))
@@ -94,8 +95,8 @@ inline void AddCommonOptions(CLI::App& app, const std::string& program, CommonOp
   return "";
 }
 
-/// Parses. Gives an exit status when the program has nothing left to do: 0 after --help and
-/// --version, 2 when the command line is wrong.
+/// Parses the command line. Returns an exit status if the program has nothing left to do: 0 after
+/// --help and --version, 2 if the command line is wrong.
 inline std::optional<int> ParseCommandLine(CLI::App& app, int argc, char** argv) {
   try {
     app.parse(argc, argv);

@@ -12,7 +12,7 @@
 namespace alpenglow::lut {
 namespace {
 
-// Longer lines are not cases: a binary file, say, whose first line could be all of it.
+// Longer lines are rejected: in a binary file, for example, the first line could be the whole file.
 constexpr std::size_t kLongestLine = 4096;
 
 std::vector<std::string_view> FieldsOf(std::string_view line) {

@@ -37,7 +37,7 @@ std::string JsonString(std::string_view text) {
 
 namespace {
 
-// Of standard output: the first fault's number, 0 for none.
+// First error number of standard output, 0 for none.
 std::atomic<int> output_fault{0};
 
 void RememberOutputFault() {
@@ -70,8 +70,8 @@ void FlushStandardOutput() {
 void OccupyStandardDescriptors() noexcept {
   for (const int descriptor : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
     if (fcntl(descriptor, F_GETFD) != -1 || errno != EBADF) continue;
-    // Gets the lowest free number, which is this one. For reading only: a result that is printed to
-    // a closed standard output is still a fault.
+    // open() uses the lowest free number, which is this one. The descriptor is for reading only:
+    // printing a result to a closed standard output must still fail.
     static_cast<void>(open("/dev/null", O_RDONLY));
   }
 }
@@ -129,12 +129,12 @@ struct Progress::State {
   std::mutex mutex{};
   std::size_t done = 0;
   std::size_t skipped = 0;
-  double part = 0.0;              // of the next unit
-  std::string step{};             // that prepares it
-  std::set<std::string> named{};  // steps that have had their line
+  double part = 0.0;              // completed fraction of the next unit
+  std::string step{};             // current step of its preparation
+  std::set<std::string> named{};  // steps for which a line was written
   Clock::time_point step_start{};
-  double prepared_s = 0.0;         // before any unit was done: says nothing about the speed
-  std::size_t reported_steps = 0;  // of the resolution that the last line reported
+  double prepared_s = 0.0;         // before the first unit was done; not part of the speed
+  std::size_t reported_steps = 0;  // number of parts of the resolution in the last reported line
 
   [[nodiscard]] double ElapsedSeconds() const {
     return std::chrono::duration<double>(Clock::now() - start).count();
@@ -145,7 +145,7 @@ struct Progress::State {
     if (Worked() <= 0.0) return std::nullopt;
     return (ElapsedSeconds() - prepared_s) * (static_cast<double>(total - done) - part) / Worked();
   }
-  /// Of `whole` equal parts of the work, how many are complete.
+  /// Returns how many of `whole` equal parts of the work are complete.
   [[nodiscard]] std::size_t Complete(std::size_t whole) const {
     if (total == 0) return whole;
     return static_cast<std::size_t>((static_cast<double>(done) + part) *
@@ -167,7 +167,7 @@ struct Progress::State {
   void SetPart(double share) {
     if (done >= total) return;
     EndStep();
-    part = std::clamp(share, part, 1.0 - 1e-9);  // the whole is for Advance() to tell
+    part = std::clamp(share, part, 1.0 - 1e-9);  // completion of the unit is reported by Advance()
     constexpr std::chrono::seconds kBetweenLines(2);
     if (form == Form::kLines && Clock::now() - std::max(drawn, start) < kBetweenLines) return;
     Report();
@@ -187,7 +187,8 @@ struct Progress::State {
     if (form == Form::kLines && IsDue(20)) PrintLine();
     if (form == Form::kJson && IsDue(100)) PrintJson();
   }
-  /// Whether another of `resolution` equal parts of the work is complete since the last report.
+  /// Returns whether another of `resolution` equal parts of the work has been completed since the
+  /// last report.
   bool IsDue(std::size_t resolution) {
     const std::size_t steps = Complete(resolution);
     if (steps == reported_steps) return false;

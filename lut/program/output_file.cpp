@@ -31,41 +31,41 @@ namespace fs = std::filesystem;
   throw OutputError(fmt::format("{}: {}", target.string(), fault));
 }
 
-// FNV-1a (Fowler, Noll and Vo): names of machines as eight digits, whatever they are made of.
+// FNV-1a (Fowler, Noll and Vo): reduces names of machines, with any characters, to eight digits.
 std::uint32_t Hash(std::string_view text) {
   std::uint32_t hash = 2166136261U;
   for (const char c : text) hash = (hash ^ static_cast<unsigned char>(c)) * 16777619U;
   return hash;
 }
 
-/// "machine" as it stands in the names of temporaries.
+/// Returns the "machine" part of the names of temporaries.
 std::string MachineText() {
   std::array<char, 256> name{};
   gethostname(name.data(), name.size() - 1);
   return fmt::format("{:08x}", Hash(name.data()));
 }
 
-/// A name in the target's folder that no other process and no other thread uses:
+/// Returns a name in the target's folder that no other process or thread uses:
 /// .STEM.MACHINE-PROCESS-RUN-COUNT.part.EXTENSION. It is hidden, so that patterns like
-/// "frame.*.exr" do not find it, and keeps the extension, by which libraries choose formats.
+/// "frame.*.exr" do not match it, and keeps the extension, from which libraries choose the format.
 fs::path TemporaryName(const fs::path& target) {
   constexpr std::size_t kLongestStem = 100;            // names have at most 255 bytes
-  static const unsigned run = std::random_device{}();  // processes of equal numbers (containers)
+  static const unsigned run = std::random_device{}();  // containers may have equal process numbers
   static std::atomic<unsigned> count{0};
   return target.parent_path() /
          fmt::format(".{}.{}-{}-{:08x}-{}.part{}", target.stem().string().substr(0, kLongestStem),
                      MachineText(), getpid(), run, count++, target.extension().string());
 }
 
-/// Whether the name is one that TemporaryName gives on this machine.
+/// Returns whether the name has the form that TemporaryName gives on this machine.
 bool IsTemporaryOfThisMachine(const std::string& name) {
   static const std::regex form(R"(\..*\.([0-9a-f]{8})-[0-9]+-[0-9a-f]{8}-[0-9]+\.part(\..*)?)");
   std::smatch match;
   return std::regex_match(name, match, form) && match[1] == MachineText();
 }
 
-/// Creates the file and locks it. Not by mkstemp, whose files are private to the user whatever the
-/// umask says. @return its descriptor, negative when it cannot be created.
+/// Creates the file and locks it. mkstemp is not used, because its files are private to the user
+/// whatever the umask is. @return its descriptor, negative if it cannot be created.
 int CreateLocked(const fs::path& name) {
   for (;;) {
     const int file = open(name.c_str(), O_CREAT | O_EXCL | O_WRONLY | O_CLOEXEC, 0666);
@@ -74,11 +74,12 @@ int CreateLocked(const fs::path& name) {
     }
     std::error_code error;
     if (fs::exists(name, error)) return file;
-    close(file);  // was taken for abandoned before it was locked
+    close(file);  // another process removed it as abandoned before it was locked
   }
 }
 
-/// A file that goes with the object, locked as long as it lives: RemoveAbandonedTemporaries.
+/// A file that is deleted with the object, and locked during its lifetime:
+/// RemoveAbandonedTemporaries.
 class Temporary {
  public:
   explicit Temporary(const fs::path& target)
@@ -99,7 +100,7 @@ class Temporary {
   Descriptor file_;
 };
 
-/// Removes a temporary that no process holds locked, itself holding the lock meanwhile.
+/// Removes a temporary that no process has locked, and holds the lock while doing so.
 bool RemoveIfAbandoned(const fs::path& temporary) {
   const Descriptor file(open(temporary.c_str(), O_WRONLY | O_CLOEXEC));
   if (!file.valid() || flock(file.number(), LOCK_EX | LOCK_NB) != 0) return false;
@@ -135,7 +136,7 @@ void CallWriter(const fs::path& target, const fs::path& temporary,
 }  // namespace
 
 fs::path FinalName(const fs::path& target) {
-  constexpr int kMostLinks = 40;  // as the kernel
+  constexpr int kMostLinks = 40;  // limit of the kernel
   std::error_code error;
   fs::path real = target;
   for (int links = 0; links < kMostLinks && fs::is_symlink(real, error); ++links) {
@@ -156,8 +157,8 @@ void WriteFileAtomically(const fs::path& target,
   std::error_code error;
   fs::rename(temporary.name(), real, error);
   if (error) Fail(target, "cannot be written: " + error.message());
-  // The name itself reaches the disk with its folder; a folder that cannot be opened for reading
-  // has the file all the same.
+  // Flushing the folder makes the new name durable. If the folder cannot be opened for reading, the
+  // file is there nevertheless.
   const fs::path folder = real.has_parent_path() ? real.parent_path() : fs::path(".");
   const Descriptor descriptor(open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
   if (descriptor.valid()) fsync(descriptor.number());
@@ -195,7 +196,7 @@ bool Lock(int file) {
   do {
     status = flock(file, LOCK_EX | LOCK_NB);
   } while (status != 0 && errno == EINTR);
-  return status == 0 || errno != EWOULDBLOCK;  // a file system without locks has no second writer
+  return status == 0 || errno != EWOULDBLOCK;  // file systems without locks: one writer
 }
 
 }  // namespace
@@ -217,19 +218,19 @@ void GrowingFile::Fail(const std::string& fault) const {
   throw OutputError(fmt::format("{}: {}", part_.string(), fault));
 }
 
-// Opened, locked, and as long as it was before.
+// Opens and locks the file, and keeps its content.
 void GrowingFile::Open() {
   do {
     file_ = Descriptor(open(part_.c_str(), O_CREAT | O_WRONLY | O_APPEND | O_CLOEXEC, 0666));
     if (!file_.valid()) Fail("cannot be written: " + LastSystemError());
     if (!Lock(file_.number())) Fail("is being written by another process");
-  } while (!IsOurs());  // renamed by its writer before it was locked
+  } while (!IsOurs());  // its writer renamed it before it was locked
   struct stat status = {};
   fstat(file_.number(), &status);
   bytes_ = status.st_size;
 }
 
-// Whether the name is still that of the file that is open.
+// Returns whether the name still belongs to the open file.
 bool GrowingFile::IsOurs() const {
   struct stat opened = {}, named = {};
   return fstat(file_.number(), &opened) == 0 && stat(part_.c_str(), &named) == 0 &&
@@ -254,7 +255,7 @@ void GrowingFile::Append(std::string_view lines) {
     if (count < 0 && errno == EINTR) continue;
     if (count <= 0) {
       const std::string fault = LastSystemError();
-      static_cast<void>(!ftruncate(file_.number(), bytes_));  // a half line is no line
+      static_cast<void>(!ftruncate(file_.number(), bytes_));  // removes an incomplete line
       Fail("cannot be written: " + fault);
     }
     written += static_cast<std::size_t>(count);
@@ -276,7 +277,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Formats that somebody may hope for; a folder may well be called "tables.v2".
+// Extensions of known file formats; a folder may be called "tables.v2".
 constexpr std::array<std::string_view, 14> kExtensionsOfFiles{
     ".bin", ".csv",  ".dat", ".dds", ".exr", ".hdr",  ".jpg",
     ".ktx", ".ktx2", ".npy", ".png", ".tif", ".tiff", ".toml"};
@@ -285,7 +286,7 @@ constexpr std::array<std::string_view, 14> kExtensionsOfFiles{
 
 void RequireNoInput(const NamedFile& output, const std::vector<NamedFile>& inputs) {
   for (const NamedFile& input : inputs) {
-    std::error_code none;  // a file that is not there is not the same
+    std::error_code none;  // a missing file is not the same file
     if (!fs::equivalent(output.file, input.file, none)) continue;
     throw InputError(fmt::format("{} {} is the same file as {} {}; an input is not overwritten",
                                  output.name, output.file.string(), input.name,

@@ -1,14 +1,10 @@
 // SPDX-License-Identifier: MIT
-// File descriptors, owned.
+// Output files: owned descriptors, files that are written atomically, files that grow during a run,
+// and checks of output names before a run.
 //
-// Files that are written whole or not at all.
-//
-// Files that grow while work goes on, and get their names when it is done.
-//
-// Until then the lines stand in NAME.part, each in the system's hands as soon as it is appended: a
-// process that is killed leaves all of them, a machine that loses its power those of the last Sync.
-//
-// Names of outputs that are refused before the work.
+// A growing file gets its final name when the run is complete. Until then its lines are in
+// NAME.part, and each is passed to the operating system as soon as it is appended: if the process
+// is killed all lines remain, after a power failure those up to the last Sync.
 #pragma once
 
 #include <unistd.h>
@@ -24,7 +20,7 @@
 
 namespace alpenglow::lut {
 
-/// A descriptor that is closed whatever happens; a negative number is none.
+/// A file descriptor that is always closed by the destructor; a negative number means none.
 class Descriptor {
  public:
   explicit Descriptor(int number) : number_(number) {}
@@ -44,56 +40,60 @@ class Descriptor {
   int number_;
 };
 
-/// Writes a file whole or not at all: `write` gets the name of an empty temporary in the target's
-/// folder (mode from the umask, a name that no other process uses), which is flushed to the disk
-/// and renamed to `target` when `write` returns. Creates no folders; a symbolic link is followed; a
-/// target that exists and is no regular file (a folder, a device) is refused.
+/// Writes a file atomically: `write` receives the name of an empty temporary in the target's folder
+/// (mode from the umask, a name that no other process uses). When `write` returns, the temporary is
+/// flushed to the disk and renamed to `target`. Folders are not created; a symbolic link is
+/// followed; a target that exists and is not a regular file (a folder, a device) is rejected.
 ///
 /// On failure the temporary is removed. OutputError and filesystem_error from `write` become an
-/// OutputError that names the target; other exceptions pass.
+/// OutputError that names the target; other exceptions are passed on.
 void WriteFileAtomically(const std::filesystem::path& target,
                          const std::function<void(const std::filesystem::path&)>& write);
 
-/// As above, with the whole content given.
+/// Writes the given text to a file atomically.
 void WriteTextAtomically(const std::filesystem::path& target, std::string_view text);
 
-/// Throws the OutputError that writing there would end with (no such folder, no right, a folder of
-/// that name): before the work, so that it is not lost.
+/// Throws the OutputError with which writing to the target would fail (missing folder, missing
+/// permission, a folder with this name): to be called before the work, so that it is not lost.
 void RequireWritable(const std::filesystem::path& target);
 
-/// The name that content for `target` goes to: the end of a symbolic link. Throws OutputError for
-/// what exists and is no regular file.
+/// Returns the path to which content for `target` is written: the end of a symbolic link. Throws
+/// OutputError if it exists and is not a regular file.
 [[nodiscard]] std::filesystem::path FinalName(const std::filesystem::path& target);
 
-/// Removes the temporaries in a folder whose writers were killed, and no others: of this machine,
-/// by their names (a farm shares folders), and locked by nobody, as their writers keep them until
-/// they are done. File systems without locks keep theirs. Returns how many were removed.
+/// Removes the temporaries in a folder whose writers were killed, and no other files. A temporary
+/// is abandoned if its name is from this machine (a render farm shares folders) and no process has
+/// locked it; writers keep their lock until they are done. On file systems without locks nothing is
+/// removed. Returns the number of removed files.
 std::size_t RemoveAbandonedTemporaries(const std::filesystem::path& folder);
 
-/// Appended to and finished by one thread; another one may Sync.
+/// A file to which lines are appended. One thread appends and finishes; another may call Sync.
 class GrowingFile {
  public:
-  /// Begins TARGET.part. One that another process writes is an error; one whose writer was killed is
-  /// kept under the next free of TARGET.1.part, TARGET.2.part, ... Throws OutputError.
+  /// Creates TARGET.part. If another process is writing it, this is an error; if its writer was
+  /// killed, it is renamed to the first free name of TARGET.1.part, TARGET.2.part, ... Throws
+  /// OutputError.
   explicit GrowingFile(const std::filesystem::path& target);
-  /// What is not finished stays in the .part; one without a line goes.
+  /// Keeps the .part of an unfinished file, and removes it if it has no lines.
   ~GrowingFile();
   GrowingFile(const GrowingFile&) = delete;
   GrowingFile& operator=(const GrowingFile&) = delete;
 
-  /// Appends text that ends in a line's end. Throws OutputError; then nothing of it is in the file.
+  /// Appends text that ends with a line end. Throws OutputError; then none of the text is in the
+  /// file.
   void Append(std::string_view lines);
-  /// Brings what was appended to the disk; what fails is found again by Finish.
+  /// Flushes the appended text to the disk; a failure is detected again by Finish.
   void Sync() const noexcept;
-  /// Brings everything to the disk and gives the file its name; without a line there is no file.
-  /// Only once, and the last call. Throws OutputError; then the lines stay in the .part.
+  /// Flushes everything to the disk and gives the file its name; a file without lines is not
+  /// created. This must be the last call, and only be called once. Throws OutputError; then the
+  /// lines remain in the .part.
   void Finish();
 
   [[nodiscard]] const std::filesystem::path& part() const { return part_; }
-  /// Where a .part went that was there before.
+  /// Returns the new name of a .part that already existed.
   [[nodiscard]] const std::optional<std::filesystem::path>& kept() const { return kept_; }
 
-  /// TARGET.part
+  /// Returns TARGET.part.
   [[nodiscard]] static std::filesystem::path PartOf(const std::filesystem::path& target);
 
  private:
@@ -105,25 +105,26 @@ class GrowingFile {
   std::filesystem::path target_, part_;
   std::optional<std::filesystem::path> kept_;
   Descriptor file_{-1};
-  long long bytes_ = 0;  // of whole lines
+  long long bytes_ = 0;  // length of the complete lines
 };
 
-/// A file and what the user calls it: "--cases", "terrain.colour".
+/// A file and its name in the user's input: "--cases", "terrain.colour".
 struct NamedFile {
   std::string name;
   std::filesystem::path file;
 };
 
-/// Throws InputError when the output is one of the inputs, under whatever name: writing it would
-/// destroy what it is made from.
+/// Throws InputError if the output is one of the inputs, under any name: writing it would destroy
+/// the input.
 void RequireNoInput(const NamedFile& output, const std::vector<NamedFile>& inputs);
 
-/// What is wrong with the name of a file that is written with this extension (".exr"; empty: any),
-/// for the command line; empty when nothing is. "-" is no file's name.
+/// Describes the fault of the name of a file that is written with this extension
+/// (".exr"; empty: any), for the command line; empty if there is none. "-" is not a valid file
+/// name.
 [[nodiscard]] std::string FaultOfFileName(std::string_view name, std::string_view extension);
 
-/// The same for a folder of files: the name of a picture
-/// or a table file is no folder's, "-" is no folder's.
+/// Describes the fault of the name of a folder; names with the extension of a picture or a table
+/// file, and "-", are not valid.
 [[nodiscard]] std::string FaultOfFolderName(std::string_view name);
 
 }  // namespace alpenglow::lut

@@ -23,7 +23,8 @@
 namespace alpenglow::lut {
 namespace {
 
-/// A single letter stands for the options that begin with it.
+/// Returns the known options similar to a name; a single letter matches all options that begin with
+/// it.
 std::vector<std::string> OptionsLike(const std::string& name,
                                      const std::vector<std::string>& known) {
   if (name.size() != 1) {
@@ -63,14 +64,14 @@ std::string FaultOfUnknownOption(const std::string& option, const std::vector<st
 
 namespace {
 
-// What a signal handler may touch: a lock-free atomic.
+// A signal handler may only access a lock-free atomic.
 std::atomic<int> received_signal{0};
 static_assert(std::atomic<int>::is_always_lock_free);
 
 void RememberSignal(int signal) { received_signal.store(signal); }
 
-/// Unwinds the stack to RunProgram. No std::exception,
-/// so that no handler on the way takes it for a fault.
+/// Exception that unwinds the stack to RunProgram. It is not a std::exception, so that no handler
+/// on the way treats it as a fault.
 struct Stopped {
   int signal;
 };
@@ -92,7 +93,7 @@ int ReportFailure(const std::string& name, std::string message, int status) {
   return status;
 }
 
-// "avx512 (of scalar, sse2, avx2, avx512)".
+// Returns "avx512 (of scalar, sse2, avx2, avx512)".
 std::string SimdText() {
   std::string available;
   for (const InstructionSet set : AvailableInstructionSets()) {

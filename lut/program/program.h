@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Hints for words on a command line that the program does not know.
-//
-// What the three programs have in common: exit statuses, signals, version, threads; messages,
-// progress and atomic output have headers of their own, included here.
+// Functions common to the three programs: exit statuses, signals, version, threads, and hints for
+// unknown words on a command line. Messages, progress and atomic output have their own headers,
+// which are included here.
 #pragma once
 
 #include <functional>
@@ -15,37 +14,37 @@
 
 namespace alpenglow::lut {
 
-/// Describes the fault of a word that stands where a command or the name of a file may: it is
-/// neither, but nearly a command, or one that other programs have as a command ("help"). Empty for
-/// other words.
+/// Describes the fault of a word in the position of a command or a file name that is neither, but
+/// is similar to a command, or is a command in other programs ("help"). Empty for other words.
 [[nodiscard]] std::string FaultOfCommand(const std::string& word,
                                          const std::vector<std::string>& commands);
 
-/// Describes an option that the program does not have, "-o" or "--lattitude=3", and which
-/// of the known ones (long names without dashes) are like it.
+/// Describes an option that the program does not have, "-o" or "--lattitude=3", and similar known
+/// options (long names without dashes).
 [[nodiscard]] std::string FaultOfUnknownOption(const std::string& option,
                                                const std::vector<std::string>& known);
 
-/// Runs `body` and maps failures to exit statuses, one line on standard error each: OptionError 2,
-/// InputError 3, OutputError 4, DisplayError 5, stopped by SIGINT 130 or SIGTERM 143, anything else
-/// 70. Output that standard output did not take is an OutputError too. Installs handlers for SIGINT
-/// and SIGTERM that make Interrupted() true; the second signal of a kind ends the program at once.
-/// SIGXFSZ, SIGPIPE and SIGHUP are ignored: a file over the limit and a result that nobody reads
-/// are OutputErrors, and a terminal that goes away takes the messages with it, but not the work.
-/// Whoever closed standard error gets no messages, in no file either (OccupyStandardDescriptors).
+/// Runs `body` and maps failures to exit statuses, with one line on standard error each:
+/// OptionError 2, InputError 3, OutputError 4, DisplayError 5, stopped by SIGINT 130 or SIGTERM
+/// 143, anything else 70. Output that standard output did not accept is also an OutputError.
+/// Installs handlers for SIGINT and SIGTERM after which Interrupted() returns true; the second
+/// signal of a kind ends the program at once. SIGXFSZ, SIGPIPE and SIGHUP are ignored: a file over
+/// the limit and a result that nobody reads are OutputErrors, and if the terminal is closed,
+/// messages are dropped but the run continues. If standard error is closed, messages are dropped
+/// and are not written into any file (OccupyStandardDescriptors).
 int RunProgram(const std::string& name, const std::function<int()>& body);
 
-/// True once SIGINT or SIGTERM has arrived. Long loops ask it and call ThrowIfInterrupted between
-/// units of work.
+/// Returns true once SIGINT or SIGTERM has arrived. Long loops check it and call ThrowIfInterrupted
+/// between units of work.
 [[nodiscard]] bool Interrupted();
 void ThrowIfInterrupted();
 
-/// Program version, git describe, library versions, SIMD used: what --version prints.
+/// Returns program version, git describe, library versions and the SIMD set used, for --version.
 [[nodiscard]] std::string VersionText(const std::string& program);
-/// "alpenglow 0.1.0 (git describe)": what every output file carries.
+/// Returns "alpenglow 0.1.0 (git describe)", which is written into every output file.
 [[nodiscard]] std::string ProducerText();
 
-/// Uses `threads` threads (0: all) from here to the end of the object.
+/// Limits the program to `threads` threads (0: all) during the lifetime of the object.
 class ThreadLimit {
  public:
   /// Throws InputError for a negative number.
