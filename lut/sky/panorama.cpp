@@ -49,7 +49,7 @@ PolarisedRow::PolarisedRow(const AirIntegrator<float>& air, const DiffuseLight& 
   }
 }
 
-// Lagrange's cubic through the four nodes around.
+// Interpolates with Lagrange's cubic through the four surrounding nodes.
 PolarisedLight PolarisedRow::At(double azimuth_rad) const {
   const double turn = std::remainder(azimuth_rad, 2.0 * kPi) / kPi * kSteps;
   const int first = static_cast<int>(std::floor(turn));
@@ -85,7 +85,7 @@ constexpr std::array<std::pair<PanoramaOrientation, const char*>, 6> kNames{{
     {PanoramaOrientation::kGodot, "godot"},
 }};
 
-/// Where the pixels of a latitude-longitude picture look.
+/// View directions of the pixels of a latitude-longitude picture.
 struct PanoramaGrid {
   int width, height;
   double centre_azimuth_rad;
@@ -94,13 +94,14 @@ struct PanoramaGrid {
   [[nodiscard]] double Azimuth(double x) const {
     return centre_azimuth_rad + 2.0 * kPi * (x / width - 0.5);
   }
-  /// Of a pixel of a row [sr].
+  /// Returns the solid angle of a pixel of a row [sr].
   [[nodiscard]] double SolidAngle(int y) const {
     return 2.0 * kPi / width * (std::cos(ZenithAngle(y)) - std::cos(ZenithAngle(y + 1.0)));
   }
 };
 
-/// Row-major 3 x bands: linear sRGB [cd/m^2] from radiance per unit solar irradiance.
+/// Returns a row-major 3 x bands matrix: linear sRGB [cd/m^2] from radiance per unit solar
+/// irradiance.
 std::vector<float> SrgbFromRelative(const Medium& medium, double sun_distance) {
   const BandColour colour(medium.wavelengths_nm);
   const std::span<const double> matrix = colour.linear_srgb_from_bands();
@@ -126,7 +127,7 @@ double Luminance(const std::array<float, 3>& rgb) {
   return shared::Luminance<double>(double{rgb[0]}, double{rgb[1]}, double{rgb[2]});
 }
 
-/// Where the values of a layer stand in a picture.
+/// A layer and the position of its channels in a picture.
 struct LayerPlace {
   StokesLayer layer;
   std::size_t first_channel;
@@ -142,7 +143,7 @@ std::vector<LayerPlace> AddPanoramaLayers(const std::vector<StokesLayer>& layers
   return places;
 }
 
-/// Values of the layers in a pixel. @param q, u  linear sRGB.
+/// Writes the values of the layers in a pixel. @param q, u  linear sRGB.
 void SetLayers(const std::vector<LayerPlace>& places, std::size_t pixel,
                const std::array<float, 3>& q, const std::array<float, 3>& u, Image& image) {
   for (const LayerPlace& place : places) {
@@ -157,22 +158,22 @@ void SetLayers(const std::vector<LayerPlace>& places, std::size_t pixel,
   }
 }
 
-/// A piece of a pixel that lies on the disk.
+/// A part of a pixel that lies on the disk.
 struct DiskPiece {
   int x, y;
   double zenith_angle_rad;
-  double rho;     // from the disk's centre, in radii
-  double weight;  // of its solid angle
+  double rho;     // distance from the disk's centre, in radii
+  double weight;  // its solid angle
 };
 
-// Sine of half the angle between two directions, squared.
+// Returns the squared sine of half the angle between two directions.
 double HalfSine2(double zenith_a, double zenith_b, double azimuth) {
   const double across = std::sin(0.5 * (zenith_a - zenith_b));
   const double along = std::sin(0.5 * azimuth);
   return across * across + std::sin(zenith_a) * std::sin(zenith_b) * along * along;
 }
 
-/// Pieces of all pixels near the sun, small against its disk.
+/// Divides all pixels near the sun into parts that are small relative to its disk.
 std::vector<DiskPiece> PiecesOfDisk(const PanoramaGrid& grid, const PanoramaSun& sun) {
   constexpr int kPiecesPerRadius = 12;
   const double zenith = 0.5 * kPi - sun.elevation_rad;
@@ -207,7 +208,7 @@ std::vector<DiskPiece> PiecesOfDisk(const PanoramaGrid& grid, const PanoramaSun&
   return pieces;
 }
 
-/// The share of the disk's light that a piece has in each band.
+/// Returns the fraction of the disk's light in each part, in each band.
 std::vector<Bands<float>> SharesOf(const std::vector<DiskPiece>& pieces,
                                    const std::vector<double>& wavelengths_nm) {
   std::vector<Bands<float>> shares(pieces.size());
@@ -239,7 +240,7 @@ void DrawSunDisk(const AirIntegrator<float>& air, const PanoramaSettings& settin
   }
 }
 
-/// Five rows of five bits each, the left one highest.
+/// Bitmap of a letter: five rows of five bits, the leftmost bit highest.
 using Letter = std::array<unsigned, 5>;
 constexpr std::array<Letter, 4> kCompassLetters{{
     {0b10001, 0b11001, 0b10101, 0b10011, 0b10001},  // N
@@ -248,7 +249,7 @@ constexpr std::array<Letter, 4> kCompassLetters{{
     {0b10001, 0b10001, 0b10101, 0b10101, 0b01010},  // W
 }};
 
-// Twice as bright as the brightest pixel of the middle row, in letters 10 degrees high.
+// Paints the letters twice as bright as the brightest pixel of the middle row, 10 degrees high.
 void PaintCompass(const PanoramaGrid& grid, Image& image) {
   float ink = 1e-3F;
   for (int x = 0; x < grid.width; ++x) ink = std::max(ink, 2.0F * image.at(x, grid.height / 2)[1]);
@@ -268,7 +269,8 @@ void PaintCompass(const PanoramaGrid& grid, Image& image) {
   }
 }
 
-// A picture has time for a finer view than one that is built for every frame.
+// Returns a finer size: the computation time of a picture allows more than that of a view built for
+// every frame.
 SkyViewSize FineSize(const SkyViewSize& size) {
   return {size.sky_rows * 3 / 2, size.ground_rows * 3 / 2, 2 * size.azimuths - 1, 24};
 }

@@ -8,14 +8,15 @@ namespace {
 
 constexpr std::size_t kAtOnce = 64;
 
-/// Of some look-ups: Rayleigh's phase function, and where the aerosol's is in its table.
+/// Phase function values of a group of look-ups: Rayleigh's value, and the position of the
+/// aerosol's in its table.
 struct Angles {
   float rayleigh[kAtOnce], fraction[kAtOnce];
   std::int32_t node[kAtOnce];
 };
 
-// asin(s) from s^2: s times a polynomial of degree 5 in s^2, Chebyshev's interpolation of
-// asin(s) / s on [0, 1/2], error below 1e-6; beyond, the complement.
+// Returns asin(s) from s^2: s times a polynomial of degree 5 in s^2, Chebyshev interpolation of
+// asin(s) / s on [0, 1/2], error below 1e-6; beyond 1/2, by the complementary angle.
 inline float ArcSineOfRoot(float s2) {
   const bool large = s2 > 0.5F;
   const float x2 = large ? 1.0F - s2 : s2;
@@ -44,7 +45,7 @@ void FindAngles(const SkyRowWork& work, std::size_t first, std::size_t count, An
   }
 }
 
-/// Four floats that instructions take at once wherever a processor has them (gcc and clang).
+/// Four floats that are processed by one instruction on processors that support it (gcc and clang).
 using Four = float __attribute__((vector_size(16)));
 
 inline Four Load(const float* from) {

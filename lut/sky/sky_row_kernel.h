@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The innermost loop of SkyView, one table an instruction set: look-ups along a row of four bands.
+// The innermost loop of SkyView, one table per instruction set: look-ups along a row of four bands.
 #pragma once
 
 #include <cstddef>
@@ -10,25 +10,25 @@
 
 namespace alpenglow::lut {
 
-/// Coefficients of one node: R, M and D of four bands.
+/// Number of coefficients of one node: R, M and D of four bands.
 inline constexpr std::size_t kSkyNodeFloats = 12;
-/// The table of the aerosol's phase function: node k at the scattering angle pi (k / n)^2, k = 0
-/// ... n, four bands a node, linear between nodes.
+/// Size of the table of the aerosol's phase function: node k is at the scattering angle
+/// pi (k / n)^2, k = 0 ... n, with four bands per node, linear between nodes.
 inline constexpr int kSkyPhaseNodes = 1024;
 
 struct SkyRowWork {
-  const float* row;             // coefficients of the row, kSkyNodeFloats a column
+  const float* row;             // coefficients of the row, kSkyNodeFloats per column
   const float* phase;           // kSkyPhaseNodes + 1 nodes of 4 floats
-  const std::int32_t* cell;     // of every look-up: its first column
-  const float* weights;         // four a look-up
+  const std::int32_t* cell;     // first column of every look-up
+  const float* weights;         // four per look-up
   const float* half_sine2;      // sin^2 of half the azimuth
   float offset, scale;          // sin^2 of half the angle to the sun: offset + scale half_sine2
-  std::size_t count;            // look-ups
-  float* radiance;              // four floats a look-up
-  std::size_t radiance_stride;  // from one look-up to the next
+  std::size_t count;            // number of look-ups
+  float* radiance;              // four floats per look-up
+  std::size_t radiance_stride;  // distance from one look-up to the next
 };
 
-/// Four rows of `count` floats, `stride` apart, added with weights.
+/// Weighted sum of four rows of `count` floats, `stride` apart.
 struct SkyBlendWork {
   const float* rows;
   std::size_t stride, count;

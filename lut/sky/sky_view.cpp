@@ -21,7 +21,8 @@ namespace {
 
 constexpr std::size_t kViewLanes = 4;
 
-/// Weights of the four uniform cubic B-splines that reach a fraction t of a cell.
+/// Returns the weights of the four uniform cubic B-splines that are non-zero at a fraction t of a
+/// cell.
 std::array<float, 4> SplineWeights(double t) {
   const double s = 1.0 - t;
   const auto weight = [](double six_times) { return static_cast<float>(six_times / 6.0); };
@@ -29,7 +30,7 @@ std::array<float, 4> SplineWeights(double t) {
           weight(4.0 - 3.0 * s * s * (2.0 - s)), weight(t * t * t)};
 }
 
-/// A cell and the fraction of it, of a coordinate in [0, 1] over n nodes.
+/// Cell and fraction within it, for a coordinate in [0, 1] over n nodes.
 struct CellPosition {
   int cell;
   double fraction;
@@ -40,19 +41,19 @@ CellPosition PositionOf(double coordinate, int n) {
   return {cell, x - cell};
 }
 
-/// What lies between two neighbours of a line of nodes in memory, each of `width` floats.
+/// Memory layout of a line of nodes, each with `width` floats.
 struct Line {
-  float* first;        // the node before the first one
+  float* first;        // the extra node before the first one
   std::size_t stride;  // floats between neighbours
   std::size_t width;
-  int n;  // nodes, not counting one more at each end
+  int n;  // number of nodes, without the extra node at each end
   [[nodiscard]] float* node(int i) const {
     return first + stride * static_cast<std::size_t>(i + 1);
   }
 };
 
-// Solves c[i - 1] + 4 c[i] + c[i + 1] = 6 f[i] for i in [from, to] in place, c known at from - 1
-// and to + 1 (Thomas' algorithm).
+// Solves c[i - 1] + 4 c[i] + c[i + 1] = 6 f[i] for i in [from, to] in place, with c known at
+// from - 1 and to + 1 (Thomas' algorithm).
 void SolveTridiagonal(const Line& line, int from, int to) {
   if (from > to) return;
   std::vector<float> factor(static_cast<std::size_t>(to - from + 1));
@@ -64,8 +65,8 @@ void SolveTridiagonal(const Line& line, int from, int to) {
     const float* before = line.node(i - 1);
     for (std::size_t k = 0; k < line.width; ++k) c[k] = (6.0F * c[k] - before[k]) * f;
   }
-  // The first equation has its known neighbour in full; the others had it eliminated: c[i - 1]
-  // above was already the reduced right side.
+  // In the first equation the known neighbour is subtracted in full. In the others the neighbour is
+  // eliminated: c[i - 1] above was already the reduced right side.
   const float* after = line.node(to + 1);
   float* c = line.node(to);
   for (std::size_t k = 0; k < line.width; ++k)
@@ -78,15 +79,15 @@ void SolveTridiagonal(const Line& line, int from, int to) {
   }
 }
 
-// Coefficients in place of values, the third derivative continuous over the second node from each
-// end ("not a knot"): there c[1] = f[1] - (f[0] - 2 f[1] + f[2]) / 6.
+// Replaces values by coefficients, with the third derivative continuous at the second node from
+// each end ("not a knot"): there c[1] = f[1] - (f[0] - 2 f[1] + f[2]) / 6.
 void SplineOpenLine(const Line& line) {
   const int n = line.n;
   for (std::size_t k = 0; k < line.width; ++k) {
     const auto f = [&](int i) { return line.node(i)[k]; };
     const float first = (8.0F * f(1) - f(0) - f(2)) / 6.0F;
     const float last = (8.0F * f(n - 2) - f(n - 1) - f(n - 3)) / 6.0F;
-    line.node(-1)[k] = f(1);  // kept for c[0] = 6 f[1] - 4 c[1] - c[2]
+    line.node(-1)[k] = f(1);  // stored for c[0] = 6 f[1] - 4 c[1] - c[2]
     line.node(n)[k] = f(n - 2);
     line.node(1)[k] = first;
     line.node(n - 2)[k] = last;
@@ -101,11 +102,11 @@ void SplineOpenLine(const Line& line) {
   }
 }
 
-// The same for a line that goes on beyond each end as its mirror image.
+// Replaces values by coefficients for a line that continues beyond each end as its mirror image.
 void SplineMirroredLine(const Line& line) {
   const int n = line.n;
   std::vector<float> factor(static_cast<std::size_t>(n));
-  // 4 c[0] + 2 c[1] = 6 f[0] at the first end, likewise at the last.
+  // The equation is 4 c[0] + 2 c[1] = 6 f[0] at the first end, and correspondingly at the last.
   for (int i = 0; i < n; ++i) {
     const float lower = i == 0 ? 0.0F : i == n - 1 ? 2.0F : 1.0F;
     const float upper = i == 0 ? 2.0F : 1.0F;
@@ -127,7 +128,8 @@ void SplineMirroredLine(const Line& line) {
   std::copy_n(line.node(n - 2), line.width, line.node(n));
 }
 
-// The aerosol's phase function with the glow about the sun: a table for every four bands.
+// Returns the aerosol's phase function including the glow around the sun: a table for every four
+// bands.
 std::vector<std::vector<float>> PhaseTables(const AirIntegrator<float>& air,
                                             const DiffuseLight& diffuse, float column_km) {
   const std::size_t blocks = (air.bands() + kViewLanes - 1) / kViewLanes;
@@ -148,7 +150,7 @@ std::vector<std::vector<float>> PhaseTables(const AirIntegrator<float>& air,
 }  // namespace
 
 float GlowColumn_km(const AirIntegrator<float>& air, double altitude_m, double mu_s) {
-  constexpr double kHair = 1e-6;  // above the horizon
+  constexpr double kHair = 1e-6;  // small offset above the horizon
   const Medium& medium = air.medium();
   if (altitude_m >= medium.atmosphere_height_m) return 0.0F;
   const double h = std::max(altitude_m, 0.0);
@@ -157,7 +159,8 @@ float GlowColumn_km(const AirIntegrator<float>& air, double altitude_m, double m
   return air.ColumnsToSpace(h, std::max(mu_s, horizon + kHair))[1] * 1e-3F;
 }
 
-// Smallest sizes, of those tried with sky_error (tests/bench), that keep the stated error.
+// Returns the smallest size, of those tried with sky_error (tests/bench), that has the stated
+// error.
 SkyViewSize SkyViewSizeFor(const Medium& medium, double altitude_m, double mu_s) {
   constexpr double kHigh_m = 15e3;
   constexpr double kMidday = 0.15;  // sines of the sun's elevation
@@ -173,7 +176,7 @@ SkyViewSize SkyViewSizeFor(const Medium& medium, double altitude_m, double mu_s)
 
 namespace {
 
-/// Where an azimuth lies between columns.
+/// Position of an azimuth between columns, with interpolation weights.
 struct AzimuthTap {
   std::int32_t cell;
   std::array<float, 4> weights;
@@ -201,7 +204,8 @@ SkyAzimuths::SkyAzimuths(const SkyView& view, std::span<const double> azimuth_ra
 
 namespace {
 
-/// Light that Lambert ground sends up [1/sr], over the sun's zenith cosines that are in view.
+/// Light reflected upwards by Lambertian ground [1/sr], over the sun's zenith cosines on the
+/// visible ground.
 class GroundLight {
  public:
   GroundLight(const AirIntegrator<float>& air, const DiffuseLight& diffuse, double least_mu_s,
@@ -240,7 +244,7 @@ class GroundLight {
 
  private:
   static constexpr int kNodes = 128;
-  static constexpr double kOneNode = 1e-3;  // of the coordinate: light is a straight line over it
+  static constexpr double kOneNode = 1e-3;  // coordinate range in which light is linear
 
   std::size_t bands_;
   double least_, most_;
@@ -250,7 +254,7 @@ class GroundLight {
 
 }  // namespace
 
-/// Evaluates the nodes.
+/// Evaluates the nodes of a sky view.
 class SkyView::Builder {
  public:
   Builder(const AirIntegrator<float>& air, const DiffuseLight& diffuse, double altitude_m,
@@ -289,7 +293,8 @@ class SkyView::Builder {
   }
 
  private:
-  // The ground in view reaches as far as the horizon, a dip along the ground from the observer.
+  // The visible ground extends to the horizon, at a distance of `dip` along the ground from the
+  // observer.
   [[nodiscard]] GroundLight GroundInView(const AirIntegrator<float>& air,
                                          const DiffuseLight& diffuse) const {
     const double dip = view_.map_.horizon_zenith_angle_rad() - 0.5 * kPi;
@@ -306,7 +311,8 @@ class SkyView::Builder {
                                kSkyNodeFloats];
   }
 
-  // On the horizon the two sides differ: each row there is moved to its own by a hair.
+  // The two sides differ on the horizon: the zenith angle of each row there is moved slightly to
+  // its own side.
   void FillRow(double zenith_angle, int row, bool ground, bool on_horizon) {
     constexpr double kHair_rad = 1e-9;
     const double angle =
@@ -340,7 +346,8 @@ class SkyView::Builder {
     }
   }
 
-  // A sun in the zenith leaves no part of the ray dark: its samples serve every sun.
+  // With the sun in the zenith no part of the ray is in the planet's shadow: these samples are
+  // valid for every sun.
   void AddRest(double mu, const std::vector<float>& nus, int row) {
     const ViewRay under_zenith_sun{altitude_m_, mu, 1.0, mu};
     const RaySamples<float> samples =
@@ -377,7 +384,7 @@ class SkyView::Builder {
   double altitude_m_, mu_s_;
   SkyView& view_;
   GroundLight ground_light_;
-  std::vector<double> cosines_;  // of the columns' azimuths
+  std::vector<double> cosines_;  // cosines of the columns' azimuths
 };
 
 SkyView::SkyView(const AirIntegrator<float>& air, const DiffuseLight& diffuse, double altitude_m,
@@ -406,7 +413,7 @@ std::size_t SkyView::bytes() const {
   return floats * sizeof(float);
 }
 
-/// Where a zenith angle lies between rows.
+/// Position of a zenith angle between rows, with interpolation weights.
 struct SkyView::RowPosition {
   std::size_t first_row;
   std::array<float, 4> weights;
@@ -448,7 +455,7 @@ void SkyView::FillRow(double zenith_angle_rad, const SkyAzimuths& azimuths,
   }
 }
 
-// Of the row only the four nodes that are looked up are added.
+// This sums the four nodes of the look-up instead of the whole row.
 Bands<float> SkyView::Radiance(double zenith_angle_rad, double azimuth_rad) const {
   Bands<float> radiance(bands_);
   const std::optional<RowPosition> at = PositionOfRow(zenith_angle_rad);

@@ -9,13 +9,13 @@
 namespace alpenglow::lut {
 namespace {
 
-// Angle by which the horizontal is above the line that touches a sphere of radius r - depth.
+// Returns the angle from the horizontal down to the line that touches a sphere of radius r - depth.
 double DipTo(double depth_m, double r_m) {
   return std::atan2(std::sqrt(depth_m * (2.0 * r_m - depth_m)), r_m - depth_m);
 }
 
-// v of w = v + v^2 - v^3 in [0, 1], where w never
-// falls: Newton's method inside a shrinking bracket.
+// Returns v for w = v + v^2 - v^3 in [0, 1], where w is monotone: Newton's method inside a
+// shrinking bracket.
 double CoordinateOfEdgedAir(double w) {
   double low = 0.0, high = 1.0, v = w;
   for (int i = 0; i < 60 && high - low > 1e-15; ++i) {
@@ -28,12 +28,12 @@ double CoordinateOfEdgedAir(double w) {
   return v;
 }
 
-// Around the azimuth where the sun stands a little below the horizontal of the points of the
-// horizon, which lie a dip away from the observer along the ground: there the light on the limb
-// dies within a few degrees.
+// Returns columns that are dense around the azimuth where the sun is slightly below the horizontal
+// for points of the horizon, which lie a dip away from the observer along the ground: there the
+// light on the limb fades within a few degrees.
 AzimuthCrowd CrowdAtTerminator(double dip, double mu_s) {
-  constexpr double kDarkening = -0.045;  // sine of the sun's elevation where it is steepest
-  constexpr double kExtent_rad = 0.07;   // of the sun's elevation in which it happens
+  constexpr double kDarkening = -0.045;  // sine of the sun's elevation where the change is steepest
+  constexpr double kExtent_rad = 0.07;   // range of the sun's elevation in which the light fades
   const double sun_sine = std::sqrt(std::max(1.0 - mu_s * mu_s, 0.0));
   const double reach = std::sin(dip) * sun_sine;
   const double cosine = (kDarkening - std::cos(dip) * mu_s) / std::max(reach, 1e-9);
@@ -54,8 +54,8 @@ SkyViewMap::SkyViewMap(const Medium& medium, double altitude_m, double mu_s) {
   if (outside_) edge_ = 0.5 * kPi + DipTo(h - medium.atmosphere_height_m, r);
 
   const double layer = std::min(medium.mie_scale_height_m, medium.rayleigh_scale_height_m);
-  // The perigee rises by r (cos(dip - e) - cos(dip)) over the horizon: solved for one layer. A
-  // higher eye sees layers apart that are thinner than a pixel.
+  // The perigee rises by r (cos(dip - e) - cos(dip)) above the horizon: this is solved for one
+  // layer. For a higher observer the layers are thinner than a pixel.
   const double per_layer = std::sqrt(dip * dip + 2.0 * layer / r) - dip;
   sky_.a = outside_ ? 4.0 * per_layer : per_layer;
   sky_.b = std::asinh((horizon_ - edge_) / sky_.a);
@@ -66,8 +66,8 @@ SkyViewMap::SkyViewMap(const Medium& medium, double altitude_m, double mu_s) {
   ground_.b = std::acosh(1.0 + (kPi - horizon_) / ground_.a);
 }
 
-// At the air's upper edge paths through it shorten as the square root of the angle: nodes there are
-// quadratic in v, w = v + v^2 - v^3.
+// At the air's upper edge paths through the air shorten as the square root of the angle: nodes
+// there are quadratic in v, w = v + v^2 - v^3.
 double SkyViewMap::SkyZenithAngle(double v) const {
   const double w = outside_ ? v + v * v * (1.0 - v) : v;
   return horizon_ - sky_.a * std::sinh(sky_.b * w);
@@ -85,7 +85,7 @@ double SkyViewMap::SkyCoordinate(double zenith_angle_rad) const {
 
 double SkyViewMap::GroundCoordinate(double zenith_angle_rad) const {
   const double x = std::max(zenith_angle_rad - horizon_, 0.0) / ground_.a;
-  return std::log1p(x + std::sqrt(x * (2.0 + x))) / ground_.b;  // acosh(1 + x), for tiny x too
+  return std::log1p(x + std::sqrt(x * (2.0 + x))) / ground_.b;  // acosh(1 + x) for small x
 }
 
 double SkyViewMap::AzimuthIntegral(double azimuth_rad) const {
@@ -102,7 +102,7 @@ double SkyViewMap::AzimuthCoordinate(double azimuth_rad) const {
   return AzimuthIntegral(azimuth_rad) / half_turn_integral_;
 }
 
-// By bisection: the integral grows, and nodes are few.
+// Solved by bisection: the integral is monotone, and there are few nodes.
 double SkyViewMap::Azimuth(double x) const {
   const double wanted = x * half_turn_integral_;
   double low = 0.0, high = kPi;
