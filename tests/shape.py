@@ -24,7 +24,7 @@ LIMITS = {
     "types with more than 20 public methods": 7,
     "files over 500 lines": 9,
     "installed headers": 146,
-    "comment blocks that start without a subject, %": 19.3,
+    "comment blocks that start without a subject, %": 1.0,
 }
 LEAST_MEDIAN = 120  # lines of a file, in every layer
 # A sentence whose first word points at something that the reader must guess.
