@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Time of what a renderer asks of the air, per ray and per table. Run by hand; results are in
-// README.md.
+// Measures the time of computations in the air that a renderer needs, per ray and per table. Run by
+// hand; results are in README.md.
 #include <benchmark/benchmark.h>
 
 #include <algorithm>
@@ -19,7 +19,7 @@ namespace {
 
 ViewRay RayNumber(int i) { return RayFromAngles(1000.0, 20 + i % 69, i % 180, 60 + i % 29); }
 
-/// Rays of a sky by day and, from `sun_zenith_deg` on, of later hours.
+/// Returns rays of a sky, with zenith angles of the sun from `sun_zenith_deg` on.
 std::vector<ViewRay> Rays(int sun_zenith_deg) {
   std::vector<ViewRay> rays;
   for (int i = 0; i < 512; ++i) {
@@ -28,7 +28,7 @@ std::vector<ViewRay> Rays(int sun_zenith_deg) {
   return rays;
 }
 
-/// The set number state.range(0), or the best that there is.
+/// Returns instruction set number state.range(0), or the best available one.
 InstructionSet SetOf(benchmark::State& state) {
   const auto& sets = AvailableInstructionSets();
   const auto index = std::min(static_cast<std::size_t>(state.range(0)), sets.size() - 1);
@@ -44,7 +44,8 @@ void TransmittanceToSpace(benchmark::State& state) {
 }
 BENCHMARK(TransmittanceToSpace);
 
-// Three columns (molecules, aerosol, ozone) a point and direction; range 1: 0 upwards, 1 any angle.
+// Three columns (molecules, aerosol, ozone) per point and direction; range 1: 0 upwards, 1 any
+// angle.
 void ColumnsToSpace(benchmark::State& state) {
   const InstructionSetScope scope(SetOf(state));
   const AirIntegrator<float> air(MediumPreset("earth"));
@@ -75,7 +76,7 @@ BENCHMARK(SingleScatteringOfOneRay)
     ->ArgsProduct({{0, 1, 2, 3}, {8, 12}, {60, 91}})
     ->ArgNames({"set", "nodes", "sun_zenith"});
 
-// The same rays by direct integration; range 1: 0 fast, 1 normal.
+// Direct integration along the rays of SingleScatteringOfOneRay; range 1: 0 fast, 1 normal.
 void DirectScatteringOfOneRay(benchmark::State& state) {
   const InstructionSetScope scope(SetOf(state));
   const DirectScattering direct(MediumPreset("earth"));
@@ -88,7 +89,8 @@ BENCHMARK(DirectScatteringOfOneRay)
     ->ArgsProduct({{0, 1, 2, 3}, {0, 1}, {60, 91}})
     ->ArgNames({"set", "normal", "sun_zenith"});
 
-// 20 km of air in front of a mountain; argument: 0 AirIntegrator with 8 nodes, 1 fast, 2 normal.
+// A segment of 20 km of air in front of a mountain; argument: 0 AirIntegrator with 8 nodes, 1 fast,
+// 2 normal.
 void AirInFrontOfAMountain(benchmark::State& state) {
   const DirectScattering direct(MediumPreset("earth"));
   const AirIntegrator<float>& air = direct.reference();
@@ -121,7 +123,7 @@ void SingleScatteringByTheJudge(benchmark::State& state) {
 }
 BENCHMARK(SingleScatteringByTheJudge)->Unit(benchmark::kMicrosecond);
 
-// Argument: 1 polarised light, 0 scalar.
+// Argument: 1 polarised light, 0 scalar light.
 void DiffuseLightOfOneRay(benchmark::State& state) {
   const Medium earth = MediumPreset("earth");
   const Medium medium = state.range(0) == 1 ? earth : InScalarLight(earth);
@@ -142,8 +144,8 @@ SampledLight ByReference(const AirIntegrator<float>& air, const ViewRay& ray) {
   return light;
 }
 
-// Light of all orders from a direction of the sky; argument: 0 AirIntegrator with 12 nodes, 1 fast,
-// 2 normal.
+// All orders of scattering from a direction of the sky; argument: 0 AirIntegrator with 12 nodes, 1
+// fast, 2 normal.
 void AllOrdersOfOneRay(benchmark::State& state) {
   const Medium medium = MediumPreset("earth");
   const DirectScattering direct(medium);

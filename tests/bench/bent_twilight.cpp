@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
-// Light of twilight that bent rays of the sun bring (tests/fixtures/bent_twilight.h), against what
-// straight rays bring from a sun that is lifted by a share of its refraction (LiftForAir), and against
-// what they bring from where it is seen. Last, light of the sun on the ground by BentBeam and by the
-// straight ray along which the sun is seen.
+// Compares twilight by refracted rays of the sun (tests/fixtures/bent_twilight.h) with twilight by
+// straight rays, from a sun that is lifted by a fraction of its refraction (LiftForAir) and from
+// the apparent sun. It then compares sunlight on the ground by BentBeam and by the straight ray
+// from the apparent sun.
 #include <fmt/core.h>
 
 #include <array>
@@ -22,7 +22,7 @@ using alpenglow::tests::BentTwilight;
 
 struct View {
   const char* name;
-  double elevation_deg, azimuth_deg;  // from the sun
+  double elevation_deg, azimuth_deg;  // relative to the sun
 };
 
 constexpr std::array kViews{View{"zenith", 90.0, 0.0},     View{"45 towards", 45.0, 0.0},
@@ -36,10 +36,10 @@ glm::dvec3 Towards(double elevation_rad, double azimuth_rad) {
   return DirectionFromAngles(elevation_rad, azimuth_rad).xyz;
 }
 
-/// A rule by which a sun is lifted that lights the air.
+/// A rule that lifts the sun whose straight rays light the air.
 struct Rule {
   const char* name;
-  double share;  // of the refraction at sea level; negative: the sun as the eye sees it
+  double share;  // of the refraction at sea level; negative: the apparent sun
 };
 constexpr std::array kRules{Rule{"seen", -1.0}, Rule{"true", 0.0}, Rule{"0.15", 0.15},
                             Rule{"LiftForAir", 0.2}, Rule{"0.25", 0.25}};
@@ -49,7 +49,7 @@ double LiftBy(const Rule& rule, const BendingAir& air, double truly_rad, double 
   return rule.share / kRules[3].share * LiftForAir(air, truly_rad);
 }
 
-/// Of relative errors, in directions that bring a tenth of what the zenith does at least.
+/// Relative errors in directions with at least a tenth of the zenith's light.
 struct Errors {
   double squares = 0.0, worst = 0.0;
   int count = 0;
@@ -85,8 +85,8 @@ void CompareRules(const BentTwilight& twilight, double height_m, double elevatio
   fmt::print("\n");
 }
 
-/// Light of the sun on a place where it is seen at an elevation, over that of the bent ray: by the
-/// straight ray of that elevation, and by BentBeam.
+/// Prints errors of sunlight at a place with a given apparent elevation of the sun, relative to the
+/// refracted ray: by the straight ray of this elevation, and by BentBeam.
 void CompareBeam(const Medium& medium, double height_m, double apparent_deg) {
   const double apparent_rad = apparent_deg * kRadiansPerDegree, mu = std::sin(apparent_rad);
   const BandValues bent = BentTwilight(medium, height_m).Beam(apparent_rad, height_m);

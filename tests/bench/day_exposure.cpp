@@ -1,18 +1,19 @@
 // SPDX-License-Identifier: MIT
-// Does a day on the display go as its light does? Every minute of a day, small, developed by each rule
-// of exposure. Run by hand; results are in README.md.
+// Measures how the display follows the light of a day. Each minute of the day is rendered as a
+// small picture and tone-mapped by each exposure rule. Run by hand; results are in README.md.
 //
 //   day_exposure [DATE [SCENE [HEADING [FROM [TO]]]]]
 //
-// DATE is a day of UTC (2026-06-15); SCENE is "range" (the built-in range) or "bare" (sky and sea from
-// 3000 m); HEADING of the view [degrees]; FROM and TO are hours of the day (0, 24). Each minute is printed as CSV on standard output, the summary on standard error.
+// DATE is a day in UTC (2026-06-15). SCENE is "range" (the built-in range) or "bare" (sky and sea
+// from 3000 m). HEADING is that of the view [degrees]. FROM and TO are hours of the day (0, 24).
+// Each minute is printed as CSV on standard output, the summary on standard error.
 //
 // The light of a minute is the mean luminance of its picture without the sun's disk. Its law is the
-// display light of a grey picture of that luminance, exposed by the rule: what the display would do if
-// light came and went without moving in the picture. A step is the ratio of a minute to the one before,
-// less 1. A step counts as too large when it is over 3 % beyond that of the law in the same minute, or
-// beyond the law's largest of all minutes; and a minute as contrary when its light falls and its display rises, or the other way, by more than 0.1 % each, and
-// the law does not say so.
+// display light of a grey picture of this luminance, exposed by the rule: the display light if
+// light changed without moving in the picture. A step is the ratio of a minute to the previous one,
+// minus 1. A step is too large if it exceeds the step of the law in its minute by more than 3 %, or
+// the largest step of the law in all minutes. A minute is contrary if its light falls and its
+// display rises, or vice versa, by more than 0.1 % each, and the law does not do so.
 #include <fmt/core.h>
 
 #include <algorithm>
@@ -66,7 +67,7 @@ double MeanLuminance(const Image& picture) {
   return sum / pixels;
 }
 
-/// Mean display light [0, 1], before it is rounded to codes.
+/// Returns the mean display light [0, 1] before rounding to codes.
 double MeanDisplayLight(const Image& picture, double ev100, const Look& look) {
   const Image shown = look.rolls_off ? WithHighlightsRolledOff(picture, ev100) : picture;
   double sum = 0.0;
@@ -126,7 +127,7 @@ std::vector<double> ExposuresOf(const std::vector<Minute>& day, const Rule& rule
   return exposures;
 }
 
-/// Display light of a grey picture that is as bright.
+/// Returns the display light of a grey picture of equal mean luminance.
 double LawOf(const Minute& minute, const Rule& rule, const Look& look) {
   const auto light = static_cast<float>(minute.light);
   Image grey(1, 1);
@@ -145,7 +146,7 @@ struct Summary {
   std::string largest_at = "-", contrary_at = "-";
 };
 
-/// Light, display and law of a minute, as shares of the one before, less 1.
+/// Light, display and law of a minute, relative to the previous minute, minus 1.
 struct Step {
   double light = 0.0, shown = 0.0, law = 0.0;
 };

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// What leaving out effects changes and saves, as the pilot says and as it is, over whole pictures.
-// Run by hand; results are in README.md.
-//   effects_error [WIDTH HEIGHT [SCENE [pilot]]]         pilot: only what choosing costs
+// Measures the change of whole pictures and the time saved when effects are left out, and compares
+// both with the prediction of the pilot. Run by hand; results are in README.md.
+//   effects_error [WIDTH HEIGHT [SCENE [pilot]]]         pilot: only the cost of the choice
 #include <fmt/core.h>
 
 #include <cstdlib>
@@ -35,7 +35,7 @@ void MeasurePilot(const EffectScene& scene, const RenderSettings& settings) {
 void Measure(const EffectScene& scene, RenderSettings settings) {
   const SceneRenderer renderer(scene.scene);
   const RenderSettings everything = settings;
-  (void)renderer.Render(scene.instant, everything);  // what is made once for all pictures
+  (void)renderer.Render(scene.instant, everything);  // prepares data that all pictures share
   const Timed all = Render(renderer, scene, settings);
   fmt::print("\n{} ({:.2f} s with everything)\n", scene.name, all.seconds);
   fmt::print("{:<22}{:>19}{:>19}{:>19}\n", "without", "rms said, is %", "99 % said, is %",

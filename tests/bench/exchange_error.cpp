@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
-// Two sets of Bruneton's .dat files held against each other, table by table.
+// Compares two sets of Bruneton's .dat files, table by table.
 //   exchange_error OURS STOCK [LOWEST_SUN]
-// OURS of `skylut build --layout bruneton`, STOCK of the `precompute` of his demo, both for a
-// lowest sun of 102 (default) or 120 degrees from the zenith. Relative differences from STOCK, of
-// texels that hold more than a thousandth of the largest value of their row in the report.
+// OURS is written by `skylut build --layout bruneton`, STOCK by `precompute` of his demo, both for
+// a lowest sun of 102 (default) or 120 degrees from the zenith. Differences are relative to STOCK,
+// for texels with more than a thousandth of the largest value of their row in the report.
 #include <fmt/core.h>
 
 #include <algorithm>
@@ -38,7 +38,7 @@ Texels Read(const std::string& file, std::size_t texels) {
   return values;
 }
 
-/// Elevation of the sun of a texel of the scattering table, of its 32 columns.
+/// Returns the elevation of the sun [deg] of one of the 32 columns of the scattering table.
 double SunOfColumn(std::size_t column, double lowest_sun_deg) {
   constexpr double kPlanet_km = 6360.0, kTop_km = 60.0;
   const double mu_s = shared::SunCosineFromUnit<double>(
@@ -51,7 +51,7 @@ struct Pair {
   double ours, stock;
 };
 
-/// A line of the report.
+/// Prints a line of the report.
 void Print(const std::string& name, const std::vector<Pair>& pairs) {
   double largest = 0.0, ours = 0.0, stock = 0.0, squares = 0.0;
   for (const Pair& pair : pairs) largest = std::max(largest, pair.stock);
@@ -73,7 +73,7 @@ void Print(const std::string& name, const std::vector<Pair>& pairs) {
              quantile(0.5), quantile(0.99), quantile(1.0), 100.0 * (ours / stock - 1.0));
 }
 
-/// @param keep  of the number of a texel.
+/// @param keep  predicate of a texel's number.
 template <typename Keep>
 void Compare(const std::string& name, const Texels& ours, const Texels& stock, bool alpha,
              const Keep& keep) {

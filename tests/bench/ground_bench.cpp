@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Time of the light on the viewer's ground: a position of the sun prepared, and vertices lit, on
-// one thread. Run by hand; results are in README.md.
+// Measures the time of light on the viewer's ground on one thread: preparing a position of the sun,
+// and lighting vertices. Run by hand; results are in README.md.
 #include <benchmark/benchmark.h>
 #include <tbb/global_control.h>
 
@@ -61,7 +61,7 @@ void SkyOfASunPrepared(benchmark::State& state) {
 }
 BENCHMARK(SkyOfASunPrepared)->Unit(benchmark::kMillisecond);
 
-// By the distance of its lines [m].
+// The argument is the distance between lines [m].
 void ShadowPrepared(benchmark::State& state) {
   const tbb::global_control alone(tbb::global_control::max_allowed_parallelism, 1);
   const Lighting light = SunAt(10.0);

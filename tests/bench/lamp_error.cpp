@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
-// Error of airlight against the judge, by number of samples and rule: root mean square, 99th
-// percentile and maximum of the relative error over random lamps in homogeneous fog and in fog of
-// exponential density, and the time of an evaluation. Run by hand; results are in README.md.
+// Measures the error of airlight relative to the reference solution, by number of samples and
+// quadrature rule: root mean square, 99th percentile and maximum of the relative error over random
+// lamps in homogeneous fog and in fog of exponential density, and the time of an evaluation. Run by
+// hand; results are in README.md.
 #include <fmt/format.h>
 
 #include <algorithm>

@@ -1,17 +1,18 @@
 // SPDX-License-Identifier: MIT
-// Makes the tables of Martian dust that are in atmosphere/data:
+// Computes the tables of Martian dust in atmosphere/data:
 //
 //   mars_dust optics > atmosphere/data/mars_dust.csv
 //   mars_dust phase  > atmosphere/data/mars_dust_phase.csv
 //
-// Lorenz-Mie theory for the sizes that the Pathfinder camera saw, effective radius 1.7 um and
-// effective variance 0.25 (Markiewicz et al. 1999, J. Geophys. Res. 104, 9009-9018), refractive
-// index 1.5 + i k with the k that gives the single scattering albedo. To 30 degrees from the sun
-// the phase function is that of the spheres: it is diffraction, for which the shape of a particle
-// hardly matters and whose width grows with the wavelength. Dust is not round, and spheres scatter
-// too little sideways: beyond, the curve has the shape of the lobes seen from Gale crater
-// (Chen-Chen, Perez-Hoyos and Sanchez-Lavega 2019, Icarus 330, 16-29), attached at 30 degrees. The
-// whole is normalised.
+// The optics follow from Lorenz-Mie theory for the sizes measured with the Pathfinder camera,
+// effective radius 1.7 um and effective variance 0.25 (Markiewicz et al. 1999, J. Geophys. Res.
+// 104, 9009-9018), and from the refractive index 1.5 + i k, where k is chosen to give the single
+// scattering albedo. Up to 30 degrees from the sun, the phase function is that of spheres: it is
+// due to diffraction, which hardly depends on the shape of a particle and whose width grows with
+// the wavelength. Dust is not spherical, and spheres scatter too little light sideways. Beyond 30
+// degrees, the curve therefore has the shape of the lobes seen from Gale crater (Chen-Chen,
+// Perez-Hoyos and Sanchez-Lavega 2019, Icarus 330, 16-29), attached at 30 degrees. The whole curve
+// is normalised.
 #include <fmt/core.h>
 
 #include <cmath>
@@ -31,16 +32,17 @@ constexpr SizeDistribution kSizes{.effective_radius_um = 1.7, .effective_varianc
 constexpr double kRealIndex = 1.5;
 constexpr double kJoint_deg = 30.0;
 
-/// Single scattering albedo: ferric iron takes the blue. Representative
-/// of what the Pathfinder camera showed (Tomasko et al. 1999, J.
-/// Geophys. Res. 104, 8987-9007; Markiewicz et al. 1999), within 0.03.
+/// Single scattering albedo; ferric iron absorbs blue light. The values represent measurements of
+/// the Pathfinder camera (Tomasko et al. 1999, J. Geophys. Res. 104, 8987-9007; Markiewicz et al.
+/// 1999) within 0.03.
 struct Albedo {
   double wavelength_nm, albedo;
 };
 constexpr Albedo kAlbedos[] = {{440.0, 0.76}, {480.0, 0.80}, {530.0, 0.87}, {600.0, 0.94},
                                {670.0, 0.97}, {750.0, 0.97}, {830.0, 0.97}};
 
-/// Absorption makes particles darker the more of it they have, up to k = 0.1.
+/// Returns the refractive index for an albedo, which decreases with increasing absorption up to k =
+/// 0.1.
 std::complex<double> IndexOfAlbedo(const Albedo& at) {
   double low = 1e-5, high = 0.1;
   for (int step = 0; step < 30; ++step) {

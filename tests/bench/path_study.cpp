@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
-// The path tracer's time to half a percent, and what it says about the sum of single scattering and
-// DiffuseLight: error by regime over quasi-random rays. Run by hand: path_study
-// [times|irradiance|errors|rays], rays printing every ray of errors. Times are of all cores in use,
-// on a machine that does nothing else.
+// Measures the time of the path tracer to an error of half a percent, and the error of single
+// scattering plus DiffuseLight relative to it, by regime over quasi-random rays. Run by hand:
+// path_study [times|irradiance|errors|rays], where rays prints every ray of errors. Times are for
+// all cores of an otherwise idle machine.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -55,7 +55,7 @@ void PrintTimes() {
   }
 }
 
-// Irradiance of the sky on the ground: DiffuseLight against paths.
+// Prints the irradiance of the sky on the ground: DiffuseLight relative to traced paths.
 void PrintIrradiance() {
   fmt::print("\n| air | sun | error of irradiance, by wavelength | standard errors |\n");
   fmt::print("|---|---|---|---|\n");
@@ -89,8 +89,8 @@ struct Regime {
 ViewRay RayNumber(int i, const Regime& regime) {
   constexpr double kAltitudes_m[] = {2.0, 2.0, 3000.0, 10000.0};
   const double sun_deg = regime.low_deg + (regime.high_deg - regime.low_deg) * Halton(i, 2);
-  // A third of the views goes down to the ground or under the horizon, a third lies within 12
-  // degrees above the horizontal.
+  // A third of the views goes down to the ground or below the horizon; a third is within 12 degrees
+  // above the horizontal.
   const double share = Halton(i, 3);
   const double view_deg = i % 3 == 0   ? 92.0 + 60.0 * share
                           : i % 3 == 1 ? 78.0 + 12.0 * share

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Time of a phase function, per angle, and of the aerosol's in four bands, per ray. Run by hand.
+// Measures the time of a phase function per angle, and of the aerosol's phase functions in four
+// bands per ray. Run by hand.
 #include <benchmark/benchmark.h>
 
 #include "atmosphere/air/phase_table.h"
@@ -34,7 +35,7 @@ BENCHMARK_CAPTURE(Draw, CornetteShanks,
 BENCHMARK_CAPTURE(Draw, Fog, FogPhase(12.0));
 BENCHMARK_CAPTURE(Draw, Table, Dusty().mie_phase.front());
 
-// Phase functions applied to the scattered light of four bands.
+// Applies phase functions to the scattered light of four bands.
 void ApplyInFourBands(benchmark::State& state, const Medium& medium) {
   const AirIntegrator<float> air(medium);
   const ScatteredOnce<float> scattered = air.Scatter(air.Sample({2.0, 0.5, 0.7, 0.9}, {}));

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
-// Shafts on the graphics card over the built-in range: time of the map, of the pass and of taking
-// it between rays, and the error against ShadowHeights away from edges.
+// Measures shafts on the GPU over the built-in range: the time of the map, of the pass and of
+// interpolation between rays, and the error relative to ShadowHeights away from edges.
 //
-// Light that comes together exponentially, over 12 to 80 km, stands for the air; the share of it
-// that arrives is compared.
+// The air is replaced by light that accumulates exponentially, over 12 to 80 km. The fraction of
+// this light that arrives is compared.
 #include <epoxy/gl.h>
 #include <fmt/format.h>
 #include <tbb/parallel_for.h>
@@ -46,10 +46,10 @@ struct View {
   ElevationGrid grid;
   LocalFrame frame;
   Terrain terrain;
-  glm::dvec3 right, up, forward;  // as ViewBlock
+  glm::dvec3 right, up, forward;  // as in ViewBlock
   GeodeticPosition place;
   glm::dmat4 mesh_from_eye{1.0};
-  std::vector<float> distance_m;  // from the lowest row
+  std::vector<float> distance_m;  // starts with the lowest row
 };
 
 glm::dvec3 DirectionAt(const View& view, int x, int y) {
@@ -114,7 +114,7 @@ bool IsAtAnEdge(const View& view, int x, int y) {
   return false;
 }
 
-// Share of the light of a ray that comes from its lit pieces.
+// Returns the fraction of the light of a ray that comes from its sunlit segments.
 double LitShare(const SunlitPath& lit, double length_m) {
   const auto upto = [](double distance_m) {
     return 1.0 - std::exp(-1e-3 * distance_m / kReach_km);
@@ -132,7 +132,7 @@ double LitShare(const SunlitPath& lit, double length_m) {
   return sum / upto(length_m);
 }
 
-/// Lit shares from the lowest row on; -1 at edges.
+/// Returns the sunlit fractions, starting with the lowest row; -1 at edges.
 std::vector<double> Judge(const View& view, const glm::dvec3& to_sun) {
   const ShadowHeights heights(view.terrain.mesh(), to_sun, kSunRadius_rad);
   std::vector<double> shares(view.distance_m.size(), -1.0);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Time of the air in front of terrain, per pixel: aerial perspective at four bands, shafts by
-// shadow heights, shafts by 512 occlusion rays. Run by hand; results are in README.md.
+// Measures the time of the air in front of terrain, per pixel: aerial perspective at four bands,
+// shafts by shadow heights, shafts by 512 occlusion rays. Run by hand; results are in README.md.
 #include <benchmark/benchmark.h>
 
 #include "atmosphere/number/constants.h"
@@ -10,7 +10,7 @@
 namespace alpenglow::renderer {
 namespace {
 
-/// The built-in range with everything that a picture of it needs.
+/// The built-in range, and all data that a picture of it needs.
 struct World {
   World()
       : ground([] {
@@ -35,7 +35,7 @@ const World& TheWorld() {
   return kWorld;
 }
 
-/// A view, and how far its rays go: terrain only.
+/// A view and the lengths of its rays, which are infinite where a ray misses terrain.
 struct TerrainRays {
   explicit TerrainRays(double sun_deg)
       : view(ViewWithSun(TheWorld().ground.eye_height_m, 200.0, sun_deg, 64, 36)) {

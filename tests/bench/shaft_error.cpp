@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Error of shafts, and of one march of 512 occlusion rays a pixel, against 4096 occlusion rays. Run
-// by hand; results are in README.md.
+// Measures the errors of shafts, and of one march of 512 occlusion rays per pixel, relative to 4096
+// occlusion rays. Run by hand; results are in README.md.
 //   shaft_error [elevation model around 35.5 N 138.75 E]
 #include <fmt/core.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Time of a sky view: its building, and look-ups along rows. Run by hand.
+// Measures the time to build a sky view, and of look-ups along rows. Run by hand.
 #include <benchmark/benchmark.h>
 
 #include <cmath>
@@ -21,7 +21,7 @@ SkyView View(double altitude_m, double elevation_deg) {
 }
 
 void BuildOfSkyView(benchmark::State& state) {
-  static_cast<void>(Earth());  // is solved first
+  static_cast<void>(Earth());  // is solved before measuring
   for (auto unused : state) {
     benchmark::DoNotOptimize(
         View(static_cast<double>(state.range(0)), static_cast<double>(state.range(1))));
@@ -32,7 +32,7 @@ BENCHMARK(BuildOfSkyView)
     ->ArgNames({"altitude", "sun"})
     ->Unit(benchmark::kMillisecond);
 
-// Look-ups of four bands a second, on one core, along the rows of a panorama.
+// Look-ups of four bands per second, on one core, along the rows of a panorama.
 void LookUpsAlongRows(benchmark::State& state) {
   const SkyView view = View(2.0, 10.0);
   std::vector<double> from_sun;

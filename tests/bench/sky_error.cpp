@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Errors of SkyView over altitudes and suns, and what its building costs, as a table.
+// Prints a table of the errors of SkyView, and of the time to build it, for several altitudes and
+// elevations of the sun.
 //   sky_error [sky_rows ground_rows azimuths ray_nodes [preset]]
 #include <fmt/core.h>
 

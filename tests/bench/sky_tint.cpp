@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: MIT
-// Is the sky opposite a low sun too green, and what makes it so: bands, ozone, aerosol or ground?
+// Measures the green tint of the sky opposite a low sun, and its dependence on bands, ozone,
+// aerosol and ground.
 //
 //   sky_tint
 //
-// Colours of the clear sky from the ground, all orders of scattering, in the sun's vertical plane
-// away from it. Each line is an air, on so many wavelengths; its columns are views by elevation,
-// each with Duv, the signed distance from the black body's line in the CIE 1960 (u, v) diagram,
-// positive to the green (Ohno 2014, Leukos 10, 47-55). A phase of daylight at the same place of the
-// line has +0.003 (CIE 15:2018).
+// The program computes colours of the clear sky from the ground, with all orders of scattering, in
+// the vertical plane of the sun on the opposite side. Each line has one kind of air and a number of
+// wavelengths. Columns are views by elevation with Duv, the signed distance from the black-body
+// locus in the CIE 1960 (u, v) diagram, positive towards green (Ohno 2014, Leukos 10, 47-55). A
+// phase of daylight at an equal position of the locus has +0.003 (CIE 15:2018).
 #include <fmt/core.h>
 
 #include <algorithm>
@@ -40,7 +41,8 @@ Chromaticity ChromaticityOf(const std::array<double, 3>& xyz) {
   return {4.0 * xyz[0] / sum, 6.0 * xyz[1] / sum};
 }
 
-/// Of a spectrum [W m^-2 sr^-1 nm^-1] on fine wavelengths, by the observer's own functions.
+/// Returns the chromaticity of a spectrum [W m^-2 sr^-1 nm^-1] on fine wavelengths, with the colour
+/// matching functions.
 Chromaticity OfSpectrum(const std::vector<double>& wavelengths_nm,
                         const std::vector<double>& radiance) {
   std::array<double, 3> xyz{};
@@ -51,7 +53,7 @@ Chromaticity OfSpectrum(const std::vector<double>& wavelengths_nm,
   return ChromaticityOf(xyz);
 }
 
-/// Distance from the line of black bodies of 1,500 to 1e6 K, positive above it.
+/// Returns the distance from the locus of black bodies of 1,500 to 1e6 K, positive above it.
 double Duv(const Chromaticity& colour) {
   const std::vector<double> wavelengths_nm = FineWavelengths();
   double least = std::numeric_limits<double>::infinity();
@@ -68,13 +70,13 @@ double Duv(const Chromaticity& colour) {
   return sign * least;
 }
 
-/// What is not as in the preset.
+/// Differences from the preset.
 struct Change {
   std::string name;
-  double ozone = 1.0;           // times the preset's
-  double aerosol_depth = -1.0;  // at 550 nm; negative: the preset's own
+  double ozone = 1.0;           // relative to the preset
+  double aerosol_depth = -1.0;  // at 550 nm; negative: as in the preset
   double angstrom = 1.3;
-  double ground_albedo = 1.0;  // times the preset's
+  double ground_albedo = 1.0;  // relative to the preset
 };
 
 Medium Changed(const Change& change, const std::vector<double>& wavelengths_nm) {
@@ -91,7 +93,8 @@ Medium Changed(const Change& change, const std::vector<double>& wavelengths_nm) 
   return medium;
 }
 
-/// Skies of all elevations, one vector of bands each; by as many solvers as the bands need.
+/// Returns the sky at all elevations, one vector of bands each. Uses as many solvers as the bands
+/// need.
 std::vector<std::vector<double>> SkiesOf(const Change& change, double sun_deg,
                                          const std::vector<double>& wavelengths_nm) {
   std::vector<std::vector<double>> skies(kElevations_deg.size());

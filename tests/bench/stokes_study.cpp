@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
-// Polarised light by the path tracer: against the stored tables of Natraj, Li and Yung (2009) and
-// the stored cases on the sphere (both beside the repository, as the tests' are), what scalar light
-// is wrong by, what aerosol that does not depolarise changes, and how long it takes.
-// Run by hand: stokes_study [slab|sphere|aerosol|time].
+// Studies polarised light by the path tracer: its difference from the stored tables of Natraj, Li
+// and Yung (2009) and from the stored cases on the sphere (both in the shared folder that tests
+// use), the error of scalar light, the change due to aerosol that does not depolarise, and the
+// computing time. Run by hand: stokes_study [slab|sphere|aerosol|time].
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -23,7 +23,7 @@
 namespace alpenglow::atmosphere {
 namespace {
 
-/// Of many differences.
+/// Statistics of many differences.
 class Spread {
  public:
   void Add(double value) {
@@ -40,7 +40,7 @@ class Spread {
   double squares_ = 0.0, largest_ = 0.0;
 };
 
-/// Differences of I, Q and U from the truth, over I and over their standard errors.
+/// Differences of I, Q and U from the reference, relative to I and to their standard errors.
 struct Comparison {
   Spread i, polarised, in_errors, error_of_i, scalar;
 
@@ -82,13 +82,14 @@ slab::Row FromCells(const stored::Row& row) {
           stored::Number(row, "i"),   stored::Number(row, "q"),      stored::Number(row, "u")};
 }
 
-// Straight up and down the tracer's view has the sun ahead; other views have it at an azimuth.
+// For views straight up and down, the tracer has the sun straight ahead; for other views, at an
+// azimuth.
 slab::Stokes Ahead(const slab::Stokes& seen, bool down, double azimuth_deg) {
   const double twice = 2.0 * azimuth_deg * kRadiansPerDegree;
   return {seen.i, seen.q * std::cos(twice) + (down ? -seen.u : seen.u) * std::sin(twice), 0.0};
 }
 
-// Every 37th row of mu, mu0 >= 0.15.
+// Compares every 37th row with mu, mu0 >= 0.15.
 void PrintSlab() {
   fmt::print("\nSlabs of molecules, every 37th row with mu, mu0 >= 0.15\n\n");
   PrintHead();
@@ -111,7 +112,7 @@ void PrintSlab() {
   for (const auto& [name, comparison] : comparisons) comparison.Print(name);
 }
 
-// A case's azimuth beyond 180 degrees has the sun on the other side.
+// If the azimuth of a case is beyond 180 degrees, the sun is on the other side.
 slab::Stokes AsTraced(const stored::Row& row, const stored::Row& result) {
   const double zenith_deg = stored::Number(row, "vza_deg");
   const double azimuth_deg = stored::Number(row, "raz_deg");
@@ -149,14 +150,14 @@ void PrintSphere() {
   for (const auto& [name, comparison] : comparisons) comparison.Print(name);
 }
 
-/// An aerosol of spheres.
+/// An aerosol that consists of spheres.
 struct Spheres {
   const char* name;
   std::complex<double> index;
   SizeDistribution sizes;
 };
 
-/// A preset's load of aerosol, made of spheres.
+/// Air with the amount of aerosol of a preset, made of spheres.
 struct SphereAir {
   Medium medium;
   judge::PolarisedScattering scattering;
@@ -183,7 +184,7 @@ SphereAir AirWith(const char* preset, const Spheres& spheres) {
   return air;
 }
 
-/// What changes over I where the aerosol depolarises, by band.
+/// Change relative to I, by band, if the aerosol depolarises.
 struct Change {
   std::vector<Spread> i, polarised;
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
-// Memory that a picture over a large elevation model takes: writes a synthetic tile, renders over
-// it with shafts, prints the most memory that was resident at any time. Run by hand; results are in
+// Measures the memory for a picture over a large elevation model: writes a synthetic tile, renders
+// over it with shafts, and prints the maximum resident memory. Run by hand; results are in
 // README.md.
-//   tile_memory [samples a side, 3601 of SRTM's 1" tiles by default]
+//   tile_memory [samples per side; default 3601 as in 1" tiles of SRTM]
 #include <fmt/core.h>
 #include <sys/resource.h>
 
@@ -22,7 +22,7 @@
 namespace alpenglow::renderer {
 namespace {
 
-// Ranges up to 3 km high, as SRTM stores them: big-endian, row by row from the north.
+// Writes ranges up to 3 km high in the format of SRTM: big-endian, row by row from the north.
 void WriteTile(const std::filesystem::path& file, int side) {
   std::ofstream out(file, std::ios::binary);
   std::vector<char> row;
@@ -47,7 +47,7 @@ double PeakMegabytes() {
 
 int Main(int argc, char** argv) {
   const int side = argc > 1 ? std::atoi(argv[1]) : 3601;
-  // The name of an SRTM tile says where it lies.
+  // The name of an SRTM tile contains its position.
   const std::filesystem::path file = std::filesystem::temp_directory_path() / "N46E008.hgt";
   WriteTile(file, side);
   Scene scene;

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-// Trains the sets of bands and their colour matrices on simulated skies, and measures them on other
-// skies. Prints atmosphere/data/band_matrices.csv:
+// Trains the sets of bands and their colour matrices on simulated skies, and measures their errors
+// on other skies. It prints atmosphere/data/band_matrices.csv:
 //
 //   train_bands > atmosphere/data/band_matrices.csv
 //
-// A minute on two cores. Run again when the solar spectrum, the cross sections or the kind of
-// aerosol change, then change the checksum in tests/atmosphere/spectrum_test.cpp.
+// This takes a minute on two cores. Run it again when the solar spectrum, the cross sections or the
+// kind of aerosol change, then change the checksum in tests/atmosphere/colour/spectrum_test.cpp.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>

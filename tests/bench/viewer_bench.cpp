@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Time of the viewer's tables of the air: making them, and passes over whole pictures that read
-// them. Run by hand; LIBGL_ALWAYS_SOFTWARE=1 for software OpenGL.
+// Measures the time of the viewer's tables of the air: computing them, and passes over whole
+// pictures that read them. Run by hand; LIBGL_ALWAYS_SOFTWARE=1 selects software OpenGL.
 #include <benchmark/benchmark.h>
 #include <fmt/format.h>
 
@@ -32,7 +32,7 @@ AirTables Tables(AirQuality quality, double altitude_m) {
 }
 
 void MakingOfAirTables(benchmark::State& state) {
-  static_cast<void>(Phases());  // made first
+  static_cast<void>(Phases());  // computed before measuring
   for (auto unused : state) {
     benchmark::DoNotOptimize(
         Tables(static_cast<AirQuality>(state.range(0)), static_cast<double>(state.range(1))));
@@ -71,8 +71,8 @@ void MakingOfIntegrator(benchmark::State& state) {
 }
 BENCHMARK(MakingOfIntegrator)->Unit(benchmark::kMillisecond);
 
-// A picture of width x height that a statement of a unit vector `direction` and of a
-// distance `km` makes.
+// Draws a picture of width x height. `statement` computes a pixel from a unit vector `direction`
+// and a distance `km`.
 void Pass(benchmark::State& state, const std::string& statement, int width, int height) {
   const HeadlessContext context;
   AirTextures textures;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Errors of the tables of the viewer's air by eye, sun and quality, and the time that making them
-// takes. Run by hand: viewer_error QUALITY "ALTITUDES [m]" "ELEVATIONS OF THE SUN [deg]" MEDIUM
+// Measures the errors of the tables of the viewer's air by eye, sun and quality, and the time to
+// compute them. Run by hand: viewer_error QUALITY "ALTITUDES [m]" "ELEVATIONS OF THE SUN [deg]"
+// MEDIUM
 #include <fmt/format.h>
 
 #include <chrono>

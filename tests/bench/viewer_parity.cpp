@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
-// Pictures of the graphics card against the renderer's in fifteen views, edges aside. Run by hand;
-// results are in README.md.
+// Compares pictures of the viewer with pictures of the renderer in fifteen views, without edges.
+// Run by hand; results are in README.md.
 //   viewer_parity FOLDER [WIDTH HEIGHT [SAMPLES [VIEWS]]]
-// VIEWS are the numbers of views to be drawn, between commas: 1,2,15. Pictures of both go into the folder, those of
-// the renderer that are there already are read; and of the difference, white for a tenth.
+// VIEWS are the numbers of the views to draw, separated by commas: 1,2,15. Both pictures and their
+// difference (white is a tenth) are written to the folder. Existing pictures of the renderer are
+// read instead of rendered.
 #include <fmt/core.h>
 #include <fmt/format.h>
 
@@ -23,7 +24,7 @@
 namespace alpenglow::viewer {
 namespace {
 
-/// PixelChange of each pixel, in grey; those that are left out are blue.
+/// Returns the PixelChange of each pixel in grey; pixels that are left out are blue.
 Image DifferencePicture(const Image& judge, const Image& painted) {
   const std::vector<bool> edges = EdgesOf(judge);
   const double floor = ChangeFloor(judge);

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: MIT
-// What a frame of the viewer costs, in units of a pass that is made beside it in the same run: over
-// each pixel the sum of 32 looks into a texture of three dimensions, four floats each, interpolated.
-// Machines that are twice as slow, or busy, are slower at both, so that CTest can hold the ratio.
+// Measures the time of a viewer frame relative to a reference pass in the same run. The pass sums
+// 32 interpolated look-ups per pixel in a three-dimensional texture of four floats. Slow or busy
+// machines are slower at both, so CTest can limit the ratio.
 //   viewer_ratio
-// Prints each frame's time, ratio and limit; status 1 when a ratio exceeds its limit, 77 (skipped)
-// without software OpenGL, for graphics cards are faster than their drivers can be asked.
+// The program prints time, ratio and limit of each frame. The exit status is 1 if a ratio exceeds
+// its limit, and 77 (skipped) without software OpenGL, because graphics cards draw faster than
+// their drivers can be queried.
 #include <fmt/core.h>
 
 #include <algorithm>
@@ -83,10 +84,11 @@ struct View {
   const char* name;
   Scene scene;
   Quality quality;
-  double limit;  // of the frame's time over the reference pass's
+  double limit;  // of the ratio to the time of the reference pass
 };
 
-// Twice what was measured (README.md), so that only what is lost for good is found.
+// Limits are one and a half to two times the measured ratios (README.md), so that only lasting
+// losses are found.
 std::vector<View> Views() {
   Scene range = BareScene(2000.0, 160.0, -3.0, 60.0);
   range.terrain.kind = TerrainSource::Kind::kBuiltInRange;
@@ -96,7 +98,7 @@ std::vector<View> Views() {
           {"built-in range, low", range, Quality::kLow, 1.2}};
 }
 
-/// The least of several times: what others do on the machine only adds to it.
+/// The shortest of several times, because other load on the machine only adds time.
 struct Times {
   double frame_ms = 1e9, reference_ms = 1e9;
 };
@@ -153,7 +155,7 @@ int Run() {
 }  // namespace alpenglow::viewer
 
 int main() {
-  // Of Mesa's software OpenGL: one thread, for vertices have one only, however many pixels have.
+  // Mesa's software OpenGL gets one thread for pixels, because vertices have only one in any case.
   setenv("LP_NUM_THREADS", "1", 1);
   return alpenglow::viewer::Run();
 }
