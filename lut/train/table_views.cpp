@@ -156,13 +156,11 @@ JudgedViews::JudgedViews(const Medium& medium, const DiffuseLight& finest,
 ViewErrors ErrorsOfViews(std::vector<double> errors) {
   std::sort(errors.begin(), errors.end());
   const auto count = static_cast<double>(errors.size());
-  double squares = 0.0, fourths = 0.0;
-  for (const double error : errors) {
-    squares += error * error / count;
-    fourths += error * error * error * error / count;
-  }
+  const double rms = RmsOf(errors), squares = rms * rms;
+  double fourths = 0.0;
+  for (const double error : errors) fourths += error * error * error * error / count;
   const double standard_error = std::sqrt(std::max(fourths - squares * squares, 0.0) / count);
-  return {.rms = std::sqrt(squares),
+  return {.rms = rms,
           .rms_at_most = std::sqrt(squares + 3.0 * standard_error),
           .percentile_99 = errors[static_cast<std::size_t>(std::ceil(0.99 * (count - 1.0)))]};
 }
