@@ -26,7 +26,7 @@ file(WRITE "${OUTPUT}"
 #include <string_view>
 #include <utility>
 
-#include \"atmosphere/text/error.h\"
+#include \"atmosphere/base/error.h\"
 
 namespace alpenglow::${FOLDER} {
 std::string_view EmbeddedText(std::string_view name) {

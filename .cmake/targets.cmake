@@ -52,7 +52,7 @@ set(headers \"${headers}\")
 include(\"${PROJECT_SOURCE_DIR}/.cmake/install_headers.cmake\")")
 endfunction()
 
-# The instruction sets that kernels are compiled for (atmosphere/dialect/instruction_set.h), and their options.
+# The instruction sets that kernels are compiled for (atmosphere/shared_glsl/instruction_set.h), and their options.
 # Multiplication and addition may fuse where the processor has one instruction for both.
 set(ALPENGLOW_INSTRUCTION_SETS Scalar Baseline)
 if(CMAKE_SYSTEM_PROCESSOR MATCHES "^(x86_64|AMD64|amd64)$")

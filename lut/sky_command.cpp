@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "atmosphere/air/medium_presets.h"
+#include "atmosphere/medium/medium_presets.h"
 #include "atmosphere/ray/bent_view.h"
 #include "atmosphere/sun/sun.h"
 #include "lut/picture/look.h"

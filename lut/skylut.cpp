@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "atmosphere/air/medium_presets.h"
-#include "atmosphere/text/error.h"
+#include "atmosphere/medium/medium_presets.h"
+#include "atmosphere/base/error.h"
 #include "lut/eval/eval.h"
 #include "lut/eval/lamp_cases.h"
 #include "lut/program/command_line.h"

@@ -7,9 +7,9 @@
 #include <optional>
 #include <string>
 
-#include "atmosphere/air/aerosol_mixture.h"
-#include "atmosphere/air/medium.h"
-#include "atmosphere/air/medium_presets.h"
+#include "atmosphere/medium/aerosol_mixture.h"
+#include "atmosphere/medium/medium.h"
+#include "atmosphere/medium/medium_presets.h"
 #include "lut/eval/eval.h"
 #include "lut/program/output_file.h"
 #include "lut/report/report.h"

@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <memory>
 
-#include "atmosphere/number/constants.h"
+#include "atmosphere/math/constants.h"
 #include "atmosphere/sun/eclipse.h"
-#include "atmosphere/text/parsing.h"
+#include "atmosphere/base/parsing.h"
 #include "renderer/camera/track.h"
 #include "renderer/ground/scene_ground.h"
 #include "renderer/scene/scene_options.h"

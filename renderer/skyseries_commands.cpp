@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "atmosphere/air/medium.h"
-#include "atmosphere/number/constants.h"
+#include "atmosphere/medium/medium.h"
+#include "atmosphere/math/constants.h"
 #include "atmosphere/sun/moon.h"
 #include "atmosphere/sun/sun.h"
 #include "lut/picture/look.h"

@@ -1,4 +1,4 @@
-# A kernel's object (atmosphere/dialect/instruction_set.h) may define for the whole program only its own tables
+# A kernel's object (atmosphere/shared_glsl/instruction_set.h) may define for the whole program only its own tables
 # and templates that carry its instruction set in their names: a weak symbol of any other name could
 # be the copy that the linker takes for code that must run on every processor.
 #   cmake -DNM=nm -DOBJECTS=a.o;b.o -DOWN=avx2 -P kernel_symbols.cmake

@@ -88,7 +88,7 @@ def check_examples():
             ("lut/sky/panorama.h", "lut/embedded_text.h", 0),
             ("lut/picture/image.h", "lut/layer.h", 0),
             ("lut/sky_command.cpp", "lut/sky/panorama.h", 0),
-            ("lut/picture/image.h", "atmosphere/air/medium.h", 0)):
+            ("lut/picture/image.h", "atmosphere/medium/medium.h", 0)):
         found = list(includes_upwards(path, f'#include <vector>\n#include "{included}"\n', order))
         assert len(found) == expected, (path, included, found)
     assert len(list(foreign_namespaces("lut/sky/a.h", "namespace alpenglow::renderer {\n"))) == 1

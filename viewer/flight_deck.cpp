@@ -6,11 +6,11 @@
 #include <algorithm>
 #include <utility>
 
-#include "atmosphere/number/constants.h"
+#include "atmosphere/math/constants.h"
 #include "atmosphere/ray/bent_view.h"
 #include "atmosphere/sun/moon.h"
-#include "atmosphere/text/error.h"
-#include "atmosphere/text/parsing.h"
+#include "atmosphere/base/error.h"
+#include "atmosphere/base/parsing.h"
 #include "lut/picture/look.h"
 #include "lut/program/messages.h"
 #include "lut/program/output_file.h"

@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "atmosphere/sun/moon.h"
-#include "atmosphere/text/error.h"
+#include "atmosphere/base/error.h"
 #include "renderer/scene/scene_options.h"
 #include "renderer/terrain/built_in_range.h"
 #include "viewer/flight/places.h"

@@ -7,8 +7,8 @@
 #include <limits>
 #include <utility>
 
-#include "atmosphere/text/error.h"
-#include "atmosphere/text/parsing.h"
+#include "atmosphere/base/error.h"
+#include "atmosphere/base/parsing.h"
 #include "lut/program/program.h"
 #include "renderer/series/manifest.h"
 #include "viewer/flythrough.h"

@@ -13,7 +13,7 @@
 #include <string>
 #include <utility>
 
-#include "atmosphere/text/error.h"
+#include "atmosphere/base/error.h"
 #include "lut/program/output_file.h"
 #include "viewer/gl/gl_context.h"
 #include "viewer/gl/render_target.h"

@@ -11,8 +11,8 @@
 #include <utility>
 #include <vector>
 
-#include "atmosphere/number/constants.h"
-#include "atmosphere/text/error.h"
+#include "atmosphere/math/constants.h"
+#include "atmosphere/base/error.h"
 #include "renderer/picture/render.h"
 #include "viewer/paint/darkroom.h"
 #include "viewer/paint/reference_picture.h"

@@ -5,8 +5,8 @@
 #include <chrono>
 #include <future>
 
-#include "atmosphere/number/constants.h"
-#include "atmosphere/text/error.h"
+#include "atmosphere/math/constants.h"
+#include "atmosphere/base/error.h"
 #include "lut/program/output_file.h"
 #include "renderer/camera/track.h"
 #include "renderer/scene/scene_options.h"

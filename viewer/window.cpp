@@ -14,7 +14,7 @@
 #include <glm/vec3.hpp>
 #include <utility>
 
-#include "atmosphere/text/error.h"
+#include "atmosphere/base/error.h"
 #include "lut/program/messages.h"
 #include "viewer/gl/gl_context.h"
 #include "viewer/layer.h"

@@ -20,10 +20,10 @@
 #include <utility>
 
 #include "atmosphere/colour/spectrum.h"
-#include "atmosphere/number/constants.h"
-#include "atmosphere/number/numerics.h"
-#include "atmosphere/text/error.h"
-#include "atmosphere/text/parsing.h"
+#include "atmosphere/math/constants.h"
+#include "atmosphere/math/numerics.h"
+#include "atmosphere/base/error.h"
+#include "atmosphere/base/parsing.h"
 
 namespace alpenglow::atmosphere {
 namespace {

@@ -12,9 +12,9 @@
 #include <vector>
 
 #include "atmosphere/colour/band_colour.h"
-#include "atmosphere/number/constants.h"
-#include "atmosphere/text/error.h"
-#include "atmosphere/text/parsing.h"
+#include "atmosphere/math/constants.h"
+#include "atmosphere/base/error.h"
+#include "atmosphere/base/parsing.h"
 
 namespace alpenglow::atmosphere {
 namespace {

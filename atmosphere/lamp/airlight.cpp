@@ -6,9 +6,9 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 
-#include "atmosphere/number/constants.h"
-#include "atmosphere/number/numerics.h"
-#include "atmosphere/text/error.h"
+#include "atmosphere/math/constants.h"
+#include "atmosphere/math/numerics.h"
+#include "atmosphere/base/error.h"
 
 namespace alpenglow::atmosphere {
 namespace {

@@ -21,15 +21,15 @@
 #include <string>
 #include <vector>
 
-#include "atmosphere/air/phase.h"
-#include "atmosphere/dialect/shared_math.h"
+#include "atmosphere/medium/phase.h"
+#include "atmosphere/shared_glsl/shared_math.h"
 #include "atmosphere/ray/single_scattering.h"
 
 namespace alpenglow::shared {
 // clang-format off
-#include "atmosphere/dialect/shared_begin.h"
+#include "atmosphere/shared_glsl/shared_begin.h"
 #include "atmosphere/lamp/lamp_ray.glsl"
-#include "atmosphere/dialect/shared_end.h"
+#include "atmosphere/shared_glsl/shared_end.h"
 // clang-format on
 }  // namespace alpenglow::shared
 

@@ -22,7 +22,7 @@
 #include <cmath>
 #include <cstddef>
 
-#include "atmosphere/dialect/instruction_set.h"
+#include "atmosphere/shared_glsl/instruction_set.h"
 
 namespace alpenglow::atmosphere {
 namespace {
@@ -64,14 +64,14 @@ using BatchOf = PlainNumber<Real>;
 /// Compiles the contents of shared_math.h, shell.h and ray_map.h again, with the linkage that a
 /// kernel needs.
 namespace shared {
-#include "atmosphere/dialect/shared_builtins.h"
+#include "atmosphere/shared_glsl/shared_builtins.h"
 
 // clang-format off
-#include "atmosphere/dialect/shared_begin.h"
+#include "atmosphere/shared_glsl/shared_begin.h"
 #include "atmosphere/ray/shell.glsl"
 #include "atmosphere/ray/optical_depth.glsl"
 #include "atmosphere/ray/ray_map.glsl"
-#include "atmosphere/dialect/shared_end.h"
+#include "atmosphere/shared_glsl/shared_end.h"
 // clang-format on
 }  // namespace shared
 

@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "atmosphere/colour/spectrum.h"
-#include "atmosphere/number/numerics.h"
+#include "atmosphere/math/numerics.h"
 #include "atmosphere/ray/shell.h"
 
 namespace alpenglow::atmosphere {
@@ -173,9 +173,9 @@ std::optional<BentGroundRay> BentView::ToGround(double elevation_rad) const {
 
 namespace alpenglow::shared {
 // clang-format off
-#include "atmosphere/dialect/shared_begin.h"
+#include "atmosphere/shared_glsl/shared_begin.h"
 #include "atmosphere/ray/land_lift.glsl"
-#include "atmosphere/dialect/shared_end.h"
+#include "atmosphere/shared_glsl/shared_end.h"
 // clang-format on
 }  // namespace alpenglow::shared
 

@@ -36,7 +36,7 @@
 #include <optional>
 #include <vector>
 
-#include "atmosphere/air/medium.h"
+#include "atmosphere/medium/medium.h"
 #include "atmosphere/ray/single_scattering.h"
 #include "atmosphere/sun/refraction.h"
 

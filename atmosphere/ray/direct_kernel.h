@@ -5,7 +5,7 @@
 #include <array>
 #include <cstddef>
 
-#include "atmosphere/dialect/instruction_set.h"
+#include "atmosphere/shared_glsl/instruction_set.h"
 #include "atmosphere/ray/direct_panels.h"
 #include "atmosphere/ray/ray.h"
 

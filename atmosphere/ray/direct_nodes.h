@@ -12,9 +12,9 @@ namespace {
 
 namespace shared {
 // clang-format off
-#include "atmosphere/dialect/shared_begin.h"
+#include "atmosphere/shared_glsl/shared_begin.h"
 #include "atmosphere/ray/direct_columns.glsl"
-#include "atmosphere/dialect/shared_end.h"
+#include "atmosphere/shared_glsl/shared_end.h"
 // clang-format on
 }  // namespace shared
 

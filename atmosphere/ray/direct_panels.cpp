@@ -5,8 +5,8 @@
 #include <cmath>
 #include <vector>
 
-#include "atmosphere/number/constants.h"
-#include "atmosphere/number/numerics.h"
+#include "atmosphere/math/constants.h"
+#include "atmosphere/math/numerics.h"
 #include "atmosphere/ray/ray.h"
 #include "atmosphere/ray/ray_map.h"
 #include "atmosphere/ray/ray_panels.h"

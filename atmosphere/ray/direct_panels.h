@@ -23,7 +23,7 @@
 #include <array>
 #include <cstddef>
 
-#include "atmosphere/air/medium.h"
+#include "atmosphere/medium/medium.h"
 #include "atmosphere/ray/ray.h"
 
 namespace alpenglow::atmosphere {

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <utility>
 
-#include "atmosphere/number/numerics.h"
+#include "atmosphere/math/numerics.h"
 #include "atmosphere/ray/direct_kernel.h"
 
 namespace alpenglow::atmosphere {

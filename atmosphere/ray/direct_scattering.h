@@ -24,7 +24,7 @@
 // rays.
 #pragma once
 
-#include "atmosphere/air/medium.h"
+#include "atmosphere/medium/medium.h"
 #include "atmosphere/ray/direct_panels.h"
 #include "atmosphere/ray/ray.h"
 #include "atmosphere/ray/single_scattering.h"

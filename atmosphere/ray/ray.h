@@ -9,8 +9,8 @@
 #include <cstddef>
 #include <limits>
 
-#include "atmosphere/air/medium.h"
-#include "atmosphere/number/numerics.h"
+#include "atmosphere/medium/medium.h"
+#include "atmosphere/math/numerics.h"
 
 namespace alpenglow::atmosphere {
 

@@ -5,11 +5,11 @@
 #include <cmath>
 #include <span>
 
-#include "atmosphere/number/constants.h"
-#include "atmosphere/number/numerics.h"
+#include "atmosphere/math/constants.h"
+#include "atmosphere/math/numerics.h"
 #include "atmosphere/ray/ray_map.h"
 #include "atmosphere/ray/shell.h"
-#include "atmosphere/text/error.h"
+#include "atmosphere/base/error.h"
 
 namespace alpenglow::atmosphere {
 namespace {

@@ -3,13 +3,13 @@
 // Lengths are kilometres here; the classes based on them (single_scattering.h) take metres.
 #pragma once
 
-#include "atmosphere/dialect/shared_math.h"
+#include "atmosphere/shared_glsl/shared_math.h"
 
 namespace alpenglow::shared {
 // clang-format off
-#include "atmosphere/dialect/shared_begin.h"
+#include "atmosphere/shared_glsl/shared_begin.h"
 #include "atmosphere/ray/shell.glsl"
 #include "atmosphere/ray/optical_depth.glsl"
-#include "atmosphere/dialect/shared_end.h"
+#include "atmosphere/shared_glsl/shared_end.h"
 // clang-format on
 }  // namespace alpenglow::shared

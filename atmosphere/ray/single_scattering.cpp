@@ -6,13 +6,13 @@
 #include <iterator>
 #include <type_traits>
 
-#include "atmosphere/air/phase_table.h"
-#include "atmosphere/air/phase_text.h"
-#include "atmosphere/number/constants.h"
-#include "atmosphere/number/numerics.h"
+#include "atmosphere/medium/phase_table.h"
+#include "atmosphere/medium/phase_text.h"
+#include "atmosphere/math/constants.h"
+#include "atmosphere/math/numerics.h"
 #include "atmosphere/ray/ray_panels.h"
 #include "atmosphere/ray/shell.h"
-#include "atmosphere/text/error.h"
+#include "atmosphere/base/error.h"
 
 namespace alpenglow::atmosphere {
 namespace {

@@ -21,7 +21,7 @@
 #include <span>
 #include <vector>
 
-#include "atmosphere/air/medium.h"
+#include "atmosphere/medium/medium.h"
 #include "atmosphere/ray/ray.h"
 #include "atmosphere/ray/ray_kernel.h"
 

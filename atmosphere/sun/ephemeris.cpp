@@ -10,8 +10,8 @@
 #include <numeric>
 #include <vector>
 
-#include "atmosphere/number/constants.h"
-#include "atmosphere/text/parsing.h"
+#include "atmosphere/math/constants.h"
+#include "atmosphere/base/parsing.h"
 
 namespace alpenglow::atmosphere {
 namespace {

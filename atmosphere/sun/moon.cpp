@@ -7,12 +7,12 @@
 #include <glm/geometric.hpp>
 #include <vector>
 
-#include "atmosphere/number/constants.h"
-#include "atmosphere/number/numerics.h"
+#include "atmosphere/math/constants.h"
+#include "atmosphere/math/numerics.h"
 #include "atmosphere/sun/ephemeris.h"
 #include "atmosphere/sun/refraction.h"
 #include "atmosphere/sun/sun.h"
-#include "atmosphere/text/error.h"
+#include "atmosphere/base/error.h"
 
 namespace alpenglow::atmosphere {
 namespace {

@@ -29,8 +29,8 @@
 #include <cmath>
 #include <optional>
 
-#include "atmosphere/number/constants.h"
-#include "atmosphere/number/numerics.h"
+#include "atmosphere/math/constants.h"
+#include "atmosphere/math/numerics.h"
 
 namespace alpenglow::atmosphere {
 

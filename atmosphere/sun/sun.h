@@ -6,18 +6,18 @@
 #include <optional>
 #include <string_view>
 
-#include "atmosphere/dialect/shared_math.h"
+#include "atmosphere/shared_glsl/shared_math.h"
 #include "atmosphere/sun/geodesy.h"
 #include "atmosphere/sun/refraction.h"
 #include "atmosphere/sun/time.h"
 
 namespace alpenglow::shared {
 
-#include "atmosphere/dialect/shared_begin.h"
+#include "atmosphere/shared_glsl/shared_begin.h"
 //
 #include "atmosphere/sun/disk_light.glsl"
 //
-#include "atmosphere/dialect/shared_end.h"
+#include "atmosphere/shared_glsl/shared_end.h"
 
 }  // namespace alpenglow::shared
 

@@ -8,8 +8,8 @@
 #include <fstream>
 #include <iterator>
 
-#include "atmosphere/text/error.h"
-#include "atmosphere/text/parsing.h"
+#include "atmosphere/base/error.h"
+#include "atmosphere/base/parsing.h"
 
 namespace alpenglow::atmosphere {
 namespace {

@@ -5,7 +5,7 @@
 #include <array>
 #include <cmath>
 
-#include "atmosphere/number/constants.h"
+#include "atmosphere/math/constants.h"
 #include "lut/diffuse/diffuse_fan_kernel.h"
 #include "lut/diffuse/diffuse_grid.h"
 #include "lut/diffuse/spherical_harmonics.h"

@@ -6,7 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "atmosphere/dialect/instruction_set.h"
+#include "atmosphere/shared_glsl/instruction_set.h"
 #include "lut/layer.h"
 
 namespace alpenglow::lut {

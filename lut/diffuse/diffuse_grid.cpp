@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "atmosphere/air/phase_text.h"
+#include "atmosphere/medium/phase_text.h"
 
 namespace alpenglow::lut {
 

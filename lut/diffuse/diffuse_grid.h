@@ -2,7 +2,7 @@
 // This header provides the axes of DiffuseLight's table to code outside the kernels.
 #pragma once
 
-#include "atmosphere/air/medium.h"
+#include "atmosphere/medium/medium.h"
 #include "lut/diffuse/diffuse_kernel.h"
 #include "lut/diffuse/multiple_scattering.h"
 #include "lut/diffuse/polarised_light.h"

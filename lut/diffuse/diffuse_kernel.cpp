@@ -3,7 +3,7 @@
 
 #include <utility>
 
-#include "atmosphere/number/constants.h"
+#include "atmosphere/math/constants.h"
 #include "lut/diffuse/diffuse_lanes.h"
 #include "lut/diffuse/march_lanes.h"
 

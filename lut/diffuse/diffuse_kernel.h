@@ -12,7 +12,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "atmosphere/dialect/instruction_set.h"
+#include "atmosphere/shared_glsl/instruction_set.h"
 #include "atmosphere/ray/ray.h"
 #include "lut/layer.h"
 

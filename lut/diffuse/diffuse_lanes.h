@@ -94,9 +94,9 @@ struct Weights {
 namespace shared {
 using namespace atmosphere::shared;
 // clang-format off
-#include "atmosphere/dialect/shared_begin.h"
+#include "atmosphere/shared_glsl/shared_begin.h"
 #include "lut/table/cubic_taps.glsl"
-#include "atmosphere/dialect/shared_end.h"
+#include "atmosphere/shared_glsl/shared_end.h"
 // clang-format on
 }  // namespace shared
 

@@ -6,10 +6,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "atmosphere/air/phase.h"
-#include "atmosphere/air/phase_text.h"
-#include "atmosphere/number/constants.h"
-#include "atmosphere/number/numerics.h"
+#include "atmosphere/medium/phase.h"
+#include "atmosphere/medium/phase_text.h"
+#include "atmosphere/math/constants.h"
+#include "atmosphere/math/numerics.h"
 #include "atmosphere/ray/ray_panels.h"
 #include "atmosphere/ray/shell.h"
 #include "lut/diffuse/spherical_harmonics.h"

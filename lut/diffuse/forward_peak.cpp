@@ -6,8 +6,8 @@
 #include <cmath>
 #include <numeric>
 
-#include "atmosphere/air/phase_text.h"
-#include "atmosphere/number/constants.h"
+#include "atmosphere/medium/phase_text.h"
+#include "atmosphere/math/constants.h"
 #include "lut/diffuse/spherical_harmonics.h"
 
 namespace alpenglow::lut {

@@ -49,7 +49,7 @@
 
 #include <vector>
 
-#include "atmosphere/air/medium.h"
+#include "atmosphere/medium/medium.h"
 #include "atmosphere/ray/ray.h"
 #include "atmosphere/ray/ray_kernel.h"
 #include "atmosphere/ray/single_scattering.h"

@@ -6,11 +6,11 @@
 #include <algorithm>
 #include <cmath>
 
-#include "atmosphere/dialect/instruction_set.h"
-#include "atmosphere/number/constants.h"
-#include "atmosphere/number/numerics.h"
+#include "atmosphere/shared_glsl/instruction_set.h"
+#include "atmosphere/math/constants.h"
+#include "atmosphere/math/numerics.h"
 #include "atmosphere/ray/shell.h"
-#include "atmosphere/text/error.h"
+#include "atmosphere/base/error.h"
 #include "lut/diffuse/diffuse_grid.h"
 #include "lut/diffuse/successive_orders.h"
 #include "lut/table/cubic_taps.h"

@@ -29,7 +29,7 @@
 #include <optional>
 #include <vector>
 
-#include "atmosphere/air/medium.h"
+#include "atmosphere/medium/medium.h"
 #include "atmosphere/ray/single_scattering.h"
 #include "lut/diffuse/diffuse_kernel.h"
 #include "lut/diffuse/forward_peak.h"

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "atmosphere/number/constants.h"
+#include "atmosphere/math/constants.h"
 #include "lut/diffuse/diffuse_grid.h"
 
 namespace alpenglow::lut {

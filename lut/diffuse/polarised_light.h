@@ -36,7 +36,7 @@
 
 #include <cstddef>
 
-#include "atmosphere/air/medium.h"
+#include "atmosphere/medium/medium.h"
 #include "atmosphere/ray/ray.h"
 #include "lut/layer.h"
 

@@ -8,10 +8,10 @@
 #include <cmath>
 #include <numeric>
 
-#include "atmosphere/air/phase_table.h"
-#include "atmosphere/number/constants.h"
-#include "atmosphere/number/numerics.h"
-#include "atmosphere/text/error.h"
+#include "atmosphere/medium/phase_table.h"
+#include "atmosphere/math/constants.h"
+#include "atmosphere/math/numerics.h"
+#include "atmosphere/base/error.h"
 
 namespace alpenglow::lut {
 namespace {

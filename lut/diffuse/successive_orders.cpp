@@ -8,7 +8,7 @@
 #include <glm/common.hpp>
 #include <glm/vec4.hpp>
 
-#include "atmosphere/number/constants.h"
+#include "atmosphere/math/constants.h"
 #include "lut/diffuse/diffuse_march.h"
 #include "lut/diffuse/spherical_harmonics.h"
 

@@ -14,7 +14,7 @@
 #include <string_view>
 #include <vector>
 
-#include "atmosphere/text/error.h"
+#include "atmosphere/base/error.h"
 #include "lut/eval/eval.h"
 #include "lut/program/messages.h"
 #include "lut/program/output_file.h"

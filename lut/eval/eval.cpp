@@ -12,9 +12,9 @@
 #include <string_view>
 #include <vector>
 
-#include "atmosphere/judge/path_tracer.h"
-#include "atmosphere/number/constants.h"
-#include "atmosphere/text/error.h"
+#include "atmosphere/reference/path_tracer.h"
+#include "atmosphere/math/constants.h"
+#include "atmosphere/base/error.h"
 #include "lut/eval/case_results.h"
 #include "lut/program/program.h"
 #include "lut/store/table_folder.h"

@@ -45,7 +45,7 @@
 #include <string_view>
 #include <vector>
 
-#include "atmosphere/air/medium.h"
+#include "atmosphere/medium/medium.h"
 #include "atmosphere/ray/ray.h"
 #include "lut/layer.h"
 #include "lut/program/csv_reader.h"

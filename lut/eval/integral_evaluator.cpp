@@ -6,9 +6,9 @@
 #include <cmath>
 #include <string>
 
-#include "atmosphere/judge/judge.h"
-#include "atmosphere/number/constants.h"
-#include "atmosphere/text/error.h"
+#include "atmosphere/reference/judge.h"
+#include "atmosphere/math/constants.h"
+#include "atmosphere/base/error.h"
 #include "lut/diffuse/forward_peak.h"
 #include "lut/diffuse/multiple_scattering.h"
 #include "lut/eval/eval.h"

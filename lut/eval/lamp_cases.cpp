@@ -10,9 +10,9 @@
 #include <limits>
 #include <string_view>
 
-#include "atmosphere/judge/airlight_judge.h"
-#include "atmosphere/number/constants.h"
-#include "atmosphere/text/error.h"
+#include "atmosphere/reference/airlight_judge.h"
+#include "atmosphere/math/constants.h"
+#include "atmosphere/base/error.h"
 #include "lut/eval/case_results.h"
 
 namespace alpenglow::lut {

@@ -10,7 +10,7 @@
 #include <optional>
 #include <random>
 
-#include "atmosphere/text/error.h"
+#include "atmosphere/base/error.h"
 #include "lut/picture/local_exposure.h"
 #include "lut/picture/look.h"
 #include "lut/picture/tone_mapping.h"

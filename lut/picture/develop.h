@@ -36,14 +36,14 @@
 #include <optional>
 #include <vector>
 
-#include "atmosphere/dialect/shared_math.h"
+#include "atmosphere/shared_glsl/shared_math.h"
 #include "lut/picture/image.h"
 
 namespace alpenglow::shared {
 // clang-format off
-#include "atmosphere/dialect/shared_begin.h"
+#include "atmosphere/shared_glsl/shared_begin.h"
 #include "lut/picture/dither.glsl"
-#include "atmosphere/dialect/shared_end.h"
+#include "atmosphere/shared_glsl/shared_end.h"
 // clang-format on
 }  // namespace alpenglow::shared
 

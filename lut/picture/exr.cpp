@@ -24,7 +24,7 @@
 #include <string>
 #include <system_error>
 
-#include "atmosphere/text/error.h"
+#include "atmosphere/base/error.h"
 #include "lut/layer.h"
 #include "lut/picture/image.h"
 #include "lut/program/output_file.h"

@@ -10,8 +10,8 @@
 #include <complex>
 #include <vector>
 
-#include "atmosphere/number/constants.h"
-#include "atmosphere/text/error.h"
+#include "atmosphere/math/constants.h"
+#include "atmosphere/base/error.h"
 #include "lut/layer.h"
 #include "lut/picture/tone_mapping.h"
 

@@ -16,8 +16,8 @@
 #include <memory>
 #include <string_view>
 
-#include "atmosphere/number/constants.h"
-#include "atmosphere/text/error.h"
+#include "atmosphere/math/constants.h"
+#include "atmosphere/base/error.h"
 #include "lut/layer.h"
 #include "lut/program/output_file.h"
 

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <optional>
 
-#include "atmosphere/text/error.h"
+#include "atmosphere/base/error.h"
 #include "lut/picture/tone_mapping.h"
 
 namespace alpenglow::lut {

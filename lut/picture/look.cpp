@@ -8,7 +8,7 @@
 #include <cmath>
 #include <utility>
 
-#include "atmosphere/text/error.h"
+#include "atmosphere/base/error.h"
 #include "lut/layer.h"
 #include "lut/picture/eye.h"
 #include "lut/picture/metering.h"

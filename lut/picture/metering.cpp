@@ -13,8 +13,8 @@
 #include <numeric>
 
 #include "atmosphere/colour/spectrum.h"
-#include "atmosphere/number/constants.h"
-#include "atmosphere/text/error.h"
+#include "atmosphere/math/constants.h"
+#include "atmosphere/base/error.h"
 #include "lut/picture/image.h"
 #include "lut/picture/tone_mapping.h"
 

@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "atmosphere/text/error.h"
+#include "atmosphere/base/error.h"
 #include "lut/layer.h"
 #include "lut/program/program.h"
 

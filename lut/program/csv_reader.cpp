@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <charconv>
 
-#include "atmosphere/text/error.h"
+#include "atmosphere/base/error.h"
 #include "lut/layer.h"
 
 namespace alpenglow::lut {

@@ -17,7 +17,7 @@
 #include <set>
 #include <system_error>
 
-#include "atmosphere/text/error.h"
+#include "atmosphere/base/error.h"
 #include "lut/layer.h"
 
 namespace alpenglow::lut {

@@ -18,8 +18,8 @@
 #include <string>
 #include <system_error>
 
-#include "atmosphere/text/error.h"
-#include "atmosphere/text/parsing.h"
+#include "atmosphere/base/error.h"
+#include "atmosphere/base/parsing.h"
 #include "lut/layer.h"
 
 namespace alpenglow::lut {

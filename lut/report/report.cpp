@@ -13,7 +13,7 @@
 #include <sstream>
 #include <utility>
 
-#include "atmosphere/air/medium_presets.h"
+#include "atmosphere/medium/medium_presets.h"
 #include "atmosphere/ray/bent_view.h"
 #include "lut/program/program.h"
 #include "lut/report/report_measure.h"

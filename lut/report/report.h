@@ -22,7 +22,7 @@
 #include <string>
 #include <vector>
 
-#include "atmosphere/air/medium.h"
+#include "atmosphere/medium/medium.h"
 #include "lut/layer.h"
 #include "lut/program/messages.h"
 #include "lut/report/svg_plot.h"

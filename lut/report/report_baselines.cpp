@@ -8,10 +8,10 @@
 #include <numbers>
 #include <optional>
 
-#include "atmosphere/number/constants.h"
+#include "atmosphere/math/constants.h"
 #include "atmosphere/ray/ray.h"
 #include "atmosphere/ray/shell.h"
-#include "atmosphere/text/error.h"
+#include "atmosphere/base/error.h"
 #include "lut/eval/eval.h"
 #include "lut/table/table_axes.h"
 

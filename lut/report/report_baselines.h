@@ -10,7 +10,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "atmosphere/air/medium.h"
+#include "atmosphere/medium/medium.h"
 #include "atmosphere/ray/ray.h"
 #include "atmosphere/ray/single_scattering.h"
 #include "lut/layer.h"

@@ -9,9 +9,9 @@
 #include <cmath>
 #include <vector>
 
-#include "atmosphere/judge/judge.h"
-#include "atmosphere/number/constants.h"
-#include "atmosphere/number/numerics.h"
+#include "atmosphere/reference/judge.h"
+#include "atmosphere/math/constants.h"
+#include "atmosphere/math/numerics.h"
 #include "atmosphere/ray/bent_view.h"
 #include "lut/report/report_baselines.h"
 #include "lut/report/report_measure.h"

@@ -9,10 +9,10 @@
 #include <cmath>
 #include <utility>
 
-#include "atmosphere/judge/judge.h"
-#include "atmosphere/number/constants.h"
-#include "atmosphere/number/numerics.h"
-#include "atmosphere/text/error.h"
+#include "atmosphere/reference/judge.h"
+#include "atmosphere/math/constants.h"
+#include "atmosphere/math/numerics.h"
+#include "atmosphere/base/error.h"
 #include "lut/program/program.h"
 
 namespace alpenglow::lut {

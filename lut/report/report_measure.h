@@ -37,8 +37,8 @@
 #include <utility>
 #include <vector>
 
-#include "atmosphere/air/medium.h"
-#include "atmosphere/judge/path_tracer.h"
+#include "atmosphere/medium/medium.h"
+#include "atmosphere/reference/path_tracer.h"
 #include "atmosphere/ray/ray.h"
 #include "atmosphere/ray/single_scattering.h"
 #include "lut/program/program.h"

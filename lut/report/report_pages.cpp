@@ -7,7 +7,7 @@
 #include <map>
 #include <system_error>
 
-#include "atmosphere/text/error.h"
+#include "atmosphere/base/error.h"
 #include "lut/embedded_text.h"
 #include "lut/program/output_file.h"
 #include "lut/report/report.h"

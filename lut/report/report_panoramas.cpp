@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "atmosphere/number/constants.h"
+#include "atmosphere/math/constants.h"
 #include "lut/diffuse/multiple_scattering.h"
 #include "lut/eval/eval.h"
 #include "lut/report/report_baselines.h"

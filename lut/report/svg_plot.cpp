@@ -8,7 +8,7 @@
 #include <cmath>
 #include <limits>
 
-#include "atmosphere/text/error.h"
+#include "atmosphere/base/error.h"
 #include "lut/layer.h"
 
 namespace alpenglow::lut {

@@ -24,7 +24,7 @@
 #include <string>
 #include <vector>
 
-#include "atmosphere/number/constants.h"
+#include "atmosphere/math/constants.h"
 #include "atmosphere/ray/single_scattering.h"
 #include "lut/diffuse/multiple_scattering.h"
 #include "lut/diffuse/polarised_light.h"

@@ -7,10 +7,10 @@
 #include <limits>
 #include <utility>
 
-#include "atmosphere/number/constants.h"
+#include "atmosphere/math/constants.h"
 #include "atmosphere/ray/direct_scattering.h"
 #include "atmosphere/ray/shell.h"
-#include "atmosphere/text/error.h"
+#include "atmosphere/base/error.h"
 #include "lut/diffuse/diffuse_fan.h"
 #include "lut/diffuse/diffuse_grid.h"
 #include "lut/sky/sky_row_kernel.h"

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "atmosphere/number/constants.h"
+#include "atmosphere/math/constants.h"
 
 namespace alpenglow::lut {
 namespace {

@@ -22,7 +22,7 @@
 // stationary at the horizon, t(0) - t ~ sqrt(e): hence the cosh; its a is the dip.
 #pragma once
 
-#include "atmosphere/air/medium.h"
+#include "atmosphere/medium/medium.h"
 #include "lut/layer.h"
 
 namespace alpenglow::lut {

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "atmosphere/air/medium.h"
+#include "atmosphere/medium/medium.h"
 #include "lut/store/exchange_tables.h"
 
 namespace alpenglow::lut {

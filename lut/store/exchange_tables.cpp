@@ -12,10 +12,10 @@
 #include <fstream>
 #include <utility>
 
-#include "atmosphere/air/medium.h"
-#include "atmosphere/air/phase_text.h"
-#include "atmosphere/number/constants.h"
-#include "atmosphere/text/error.h"
+#include "atmosphere/medium/medium.h"
+#include "atmosphere/medium/phase_text.h"
+#include "atmosphere/math/constants.h"
+#include "atmosphere/base/error.h"
 #include "lut/program/program.h"
 #include "lut/store/table_folder.h"
 #include "lut/table/transmittance_table.h"

@@ -34,7 +34,7 @@
 #include <string_view>
 #include <vector>
 
-#include "atmosphere/air/medium.h"
+#include "atmosphere/medium/medium.h"
 #include "lut/diffuse/multiple_scattering.h"
 #include "lut/program/messages.h"
 #include "lut/store/table_image.h"

@@ -9,8 +9,8 @@
 #include <set>
 #include <sstream>
 
-#include "atmosphere/air/medium.h"
-#include "atmosphere/text/error.h"
+#include "atmosphere/medium/medium.h"
+#include "atmosphere/base/error.h"
 #include "lut/diffuse/diffuse_grid.h"
 #include "lut/program/program.h"
 #include "lut/store/table_image.h"

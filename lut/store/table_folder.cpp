@@ -8,7 +8,7 @@
 #include <limits>
 #include <system_error>
 
-#include "atmosphere/text/error.h"
+#include "atmosphere/base/error.h"
 
 namespace alpenglow::lut {
 

@@ -20,7 +20,7 @@
 #include <system_error>
 #include <type_traits>
 
-#include "atmosphere/text/error.h"
+#include "atmosphere/base/error.h"
 #include "lut/picture/exr.h"
 #include "lut/program/output_file.h"
 #include "lut/table/table_axes.h"

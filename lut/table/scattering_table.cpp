@@ -8,8 +8,8 @@
 #include <cmath>
 #include <limits>
 
-#include "atmosphere/number/constants.h"
-#include "atmosphere/text/error.h"
+#include "atmosphere/math/constants.h"
+#include "atmosphere/base/error.h"
 #include "lut/program/program.h"
 #include "lut/table/cubic_taps.h"
 #include "lut/table/table_axes.h"

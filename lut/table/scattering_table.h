@@ -27,7 +27,7 @@
 #include <optional>
 #include <vector>
 
-#include "atmosphere/air/medium.h"
+#include "atmosphere/medium/medium.h"
 #include "atmosphere/ray/ray.h"
 #include "atmosphere/ray/single_scattering.h"
 #include "lut/program/messages.h"
@@ -36,9 +36,9 @@
 
 namespace alpenglow::shared {
 // clang-format off
-#include "atmosphere/dialect/shared_begin.h"
+#include "atmosphere/shared_glsl/shared_begin.h"
 #include "lut/table/scattering_map.glsl"
-#include "atmosphere/dialect/shared_end.h"
+#include "atmosphere/shared_glsl/shared_end.h"
 // clang-format on
 }  // namespace alpenglow::shared
 

@@ -6,7 +6,7 @@
 #include <string>
 
 #include "atmosphere/ray/single_scattering.h"
-#include "atmosphere/text/error.h"
+#include "atmosphere/base/error.h"
 
 namespace alpenglow::lut {
 

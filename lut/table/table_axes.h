@@ -15,7 +15,7 @@
 #include <string_view>
 #include <vector>
 
-#include "atmosphere/air/medium.h"
+#include "atmosphere/medium/medium.h"
 #include "lut/layer.h"
 
 namespace alpenglow::lut {

@@ -7,9 +7,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "atmosphere/number/constants.h"
+#include "atmosphere/math/constants.h"
 #include "atmosphere/ray/ray.h"
-#include "atmosphere/text/error.h"
+#include "atmosphere/base/error.h"
 #include "lut/table/table_axes.h"
 
 namespace alpenglow::lut {

@@ -8,8 +8,8 @@
 #include <utility>
 
 #include "atmosphere/colour/spectrum.h"
-#include "atmosphere/number/numerics.h"
-#include "atmosphere/text/error.h"
+#include "atmosphere/math/numerics.h"
+#include "atmosphere/base/error.h"
 
 namespace alpenglow::lut {
 namespace {

@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-#include "atmosphere/air/medium.h"
+#include "atmosphere/medium/medium.h"
 #include "lut/diffuse/multiple_scattering.h"
 
 namespace alpenglow::lut {

@@ -8,7 +8,7 @@
 #include <cmath>
 #include <system_error>
 
-#include "atmosphere/text/error.h"
+#include "atmosphere/base/error.h"
 #include "lut/program/program.h"
 
 namespace alpenglow::lut {

@@ -6,11 +6,11 @@
 #include <algorithm>
 #include <cmath>
 
-#include "atmosphere/judge/judge.h"
-#include "atmosphere/judge/path_tracer.h"
-#include "atmosphere/number/constants.h"
-#include "atmosphere/number/numerics.h"
-#include "atmosphere/text/error.h"
+#include "atmosphere/reference/judge.h"
+#include "atmosphere/reference/path_tracer.h"
+#include "atmosphere/math/constants.h"
+#include "atmosphere/math/numerics.h"
+#include "atmosphere/base/error.h"
 #include "lut/program/program.h"
 
 namespace alpenglow::lut {

@@ -8,9 +8,9 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 
-#include "atmosphere/number/constants.h"
-#include "atmosphere/text/error.h"
-#include "atmosphere/text/parsing.h"
+#include "atmosphere/math/constants.h"
+#include "atmosphere/base/error.h"
+#include "atmosphere/base/parsing.h"
 #include "lut/program/csv_reader.h"
 #include "renderer/scene/scene.h"
 

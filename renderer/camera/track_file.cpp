@@ -9,8 +9,8 @@
 #include <cmath>
 #include <string_view>
 
-#include "atmosphere/text/error.h"
-#include "atmosphere/text/parsing.h"
+#include "atmosphere/base/error.h"
+#include "atmosphere/base/parsing.h"
 #include "renderer/camera/track_record.h"
 
 namespace alpenglow::renderer {

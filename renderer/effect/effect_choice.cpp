@@ -8,9 +8,9 @@
 #include <numbers>
 #include <numeric>
 
-#include "atmosphere/number/constants.h"
-#include "atmosphere/number/numerics.h"
-#include "atmosphere/text/error.h"
+#include "atmosphere/math/constants.h"
+#include "atmosphere/math/numerics.h"
+#include "atmosphere/base/error.h"
 #include "lut/program/program.h"
 
 namespace alpenglow::renderer {

@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <array>
 
-#include "atmosphere/text/error.h"
-#include "atmosphere/text/parsing.h"
+#include "atmosphere/base/error.h"
+#include "atmosphere/base/parsing.h"
 #include "lut/program/program.h"
 #include "renderer/layer.h"
 

@@ -11,8 +11,8 @@
 #include <mutex>
 
 #include "atmosphere/colour/spectrum.h"
-#include "atmosphere/number/constants.h"
-#include "atmosphere/text/error.h"
+#include "atmosphere/math/constants.h"
+#include "atmosphere/base/error.h"
 #include "renderer/ground/land_cover.h"
 #include "renderer/terrain/elevation_raster.h"
 

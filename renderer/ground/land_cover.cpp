@@ -7,7 +7,7 @@
 #include <cstddef>
 #include <span>
 
-#include "atmosphere/number/constants.h"
+#include "atmosphere/math/constants.h"
 
 namespace alpenglow::renderer {
 

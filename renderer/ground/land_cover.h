@@ -36,15 +36,15 @@
 #include <cstdint>
 #include <optional>
 
-#include "atmosphere/dialect/shared_math.h"
+#include "atmosphere/shared_glsl/shared_math.h"
 #include "atmosphere/sun/geodesy.h"
 #include "renderer/layer.h"
 
 namespace alpenglow::shared {
 // clang-format off
-#include "atmosphere/dialect/shared_begin.h"
+#include "atmosphere/shared_glsl/shared_begin.h"
 #include "renderer/ground/ground_cover.glsl"
-#include "atmosphere/dialect/shared_end.h"
+#include "atmosphere/shared_glsl/shared_end.h"
 // clang-format on
 }  // namespace alpenglow::shared
 

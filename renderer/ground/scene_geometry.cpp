@@ -9,7 +9,7 @@
 #include <glm/vec2.hpp>
 #include <limits>
 
-#include "atmosphere/number/constants.h"
+#include "atmosphere/math/constants.h"
 #include "atmosphere/ray/ray.h"
 
 namespace alpenglow::renderer {

@@ -37,7 +37,7 @@
 #include <variant>
 #include <vector>
 
-#include "atmosphere/air/medium.h"
+#include "atmosphere/medium/medium.h"
 #include "atmosphere/sun/refraction.h"
 #include "renderer/ground/scene_ground.h"
 #include "renderer/ground/surface.h"

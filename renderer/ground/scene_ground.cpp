@@ -8,8 +8,8 @@
 #include <glm/geometric.hpp>
 #include <utility>
 
-#include "atmosphere/number/constants.h"
-#include "atmosphere/text/error.h"
+#include "atmosphere/math/constants.h"
+#include "atmosphere/base/error.h"
 #include "renderer/shadow/sunlit_path.h"
 #include "renderer/terrain/built_in_range.h"
 #include "renderer/terrain/obj_file.h"

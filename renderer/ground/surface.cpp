@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "atmosphere/colour/spectrum.h"
-#include "atmosphere/number/constants.h"
+#include "atmosphere/math/constants.h"
 #include "renderer/ground/land_cover.h"
 #include "renderer/ground/reflectance.h"
 #include "renderer/terrain/lattice_noise.h"

@@ -11,9 +11,9 @@
 #include <glm/matrix.hpp>
 #include <limits>
 
-#include "atmosphere/number/constants.h"
-#include "atmosphere/number/numerics.h"
-#include "atmosphere/text/error.h"
+#include "atmosphere/math/constants.h"
+#include "atmosphere/math/numerics.h"
+#include "atmosphere/base/error.h"
 #include "renderer/ground/band_light.h"
 
 namespace alpenglow::renderer {

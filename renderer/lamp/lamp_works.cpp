@@ -5,9 +5,9 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 
-#include "atmosphere/judge/airlight_judge.h"
-#include "atmosphere/number/constants.h"
-#include "atmosphere/number/numerics.h"
+#include "atmosphere/reference/airlight_judge.h"
+#include "atmosphere/math/constants.h"
+#include "atmosphere/math/numerics.h"
 
 namespace alpenglow::renderer {
 namespace {

@@ -9,9 +9,9 @@
 
 #include "atmosphere/colour/spectrum.h"
 #include "atmosphere/lamp/lamp.h"
-#include "atmosphere/number/constants.h"
-#include "atmosphere/number/numerics.h"
-#include "atmosphere/text/error.h"
+#include "atmosphere/math/constants.h"
+#include "atmosphere/math/numerics.h"
+#include "atmosphere/base/error.h"
 #include "renderer/ground/scene_geometry.h"
 
 namespace alpenglow::renderer {

@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "atmosphere/air/medium.h"
+#include "atmosphere/medium/medium.h"
 #include "atmosphere/colour/spectrum.h"
 #include "atmosphere/lamp/lamp.h"
 #include "renderer/camera/camera_rays.h"

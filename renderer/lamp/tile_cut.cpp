@@ -10,7 +10,7 @@
 #include <unordered_map>
 
 #include "atmosphere/lamp/airlight.h"
-#include "atmosphere/number/constants.h"
+#include "atmosphere/math/constants.h"
 #include "renderer/lamp/placed_lamp.h"
 
 namespace alpenglow::renderer {

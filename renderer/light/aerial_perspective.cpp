@@ -5,13 +5,13 @@
 #include <array>
 #include <cmath>
 
-#include "atmosphere/number/constants.h"
-#include "atmosphere/number/numerics.h"
+#include "atmosphere/math/constants.h"
+#include "atmosphere/math/numerics.h"
 #include "atmosphere/ray/direct_columns.h"
 #include "atmosphere/ray/ray.h"
 #include "atmosphere/ray/ray_map.h"
 #include "atmosphere/ray/shell.h"
-#include "atmosphere/text/error.h"
+#include "atmosphere/base/error.h"
 
 namespace alpenglow::renderer {
 namespace {

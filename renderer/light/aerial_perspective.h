@@ -36,7 +36,7 @@
 #include <optional>
 #include <span>
 
-#include "atmosphere/number/numerics.h"
+#include "atmosphere/math/numerics.h"
 #include "atmosphere/ray/direct_scattering.h"
 #include "atmosphere/ray/single_scattering.h"
 #include "lut/diffuse/multiple_scattering.h"

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "atmosphere/colour/spectrum.h"
-#include "atmosphere/number/constants.h"
+#include "atmosphere/math/constants.h"
 #include "atmosphere/sun/ephemeris.h"
 #include "atmosphere/sun/night_sky.h"
 #include "atmosphere/sun/sun.h"

@@ -9,8 +9,8 @@
 #include <limits>
 #include <utility>
 
-#include "atmosphere/number/constants.h"
-#include "atmosphere/text/error.h"
+#include "atmosphere/math/constants.h"
+#include "atmosphere/base/error.h"
 
 namespace alpenglow::renderer {
 namespace {

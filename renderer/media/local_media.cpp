@@ -10,7 +10,7 @@
 #include <string>
 
 #include "atmosphere/colour/spectrum.h"
-#include "atmosphere/text/error.h"
+#include "atmosphere/base/error.h"
 #include "renderer/ground/scene_geometry.h"
 
 namespace alpenglow::renderer {

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <tuple>
 
-#include "atmosphere/number/numerics.h"
+#include "atmosphere/math/numerics.h"
 
 namespace alpenglow::renderer {
 namespace {

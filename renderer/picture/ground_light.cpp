@@ -6,7 +6,7 @@
 #include <glm/geometric.hpp>
 #include <limits>
 
-#include "atmosphere/number/constants.h"
+#include "atmosphere/math/constants.h"
 #include "atmosphere/sun/sun.h"
 
 namespace alpenglow::renderer {

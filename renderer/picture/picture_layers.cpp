@@ -6,7 +6,7 @@
 #include <algorithm>
 
 #include "atmosphere/colour/spectrum.h"
-#include "atmosphere/text/error.h"
+#include "atmosphere/base/error.h"
 #include "lut/picture/eye.h"
 #include "lut/picture/image.h"
 #include "renderer/ground/scene_geometry.h"

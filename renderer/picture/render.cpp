@@ -5,8 +5,8 @@
 
 #include <optional>
 
-#include "atmosphere/air/medium_presets.h"
-#include "atmosphere/text/error.h"
+#include "atmosphere/medium/medium_presets.h"
+#include "atmosphere/base/error.h"
 #include "renderer/camera/camera_rays.h"
 #include "renderer/picture/scene_state.h"
 

@@ -8,7 +8,7 @@
 #include <glm/geometric.hpp>
 #include <optional>
 
-#include "atmosphere/number/constants.h"
+#include "atmosphere/math/constants.h"
 #include "atmosphere/sun/sun.h"
 #include "lut/program/program.h"
 #include "renderer/effect/effect_choice.h"

@@ -6,7 +6,7 @@
 #include <glm/geometric.hpp>
 #include <utility>
 
-#include "atmosphere/number/constants.h"
+#include "atmosphere/math/constants.h"
 #include "atmosphere/sun/eclipse.h"
 #include "atmosphere/sun/ephemeris.h"
 #include "atmosphere/sun/sun.h"

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 
-#include "atmosphere/number/constants.h"
+#include "atmosphere/math/constants.h"
 #include "renderer/picture/scene_state.h"
 
 namespace alpenglow::renderer {

@@ -8,9 +8,9 @@
 #include <cmath>
 #include <vector>
 
-#include "atmosphere/judge/judge.h"
-#include "atmosphere/number/constants.h"
-#include "atmosphere/number/numerics.h"
+#include "atmosphere/reference/judge.h"
+#include "atmosphere/math/constants.h"
+#include "atmosphere/math/numerics.h"
 #include "lut/report/report_baselines.h"
 #include "lut/table/scattering_table.h"
 #include "lut/table/transmittance_table.h"

@@ -10,7 +10,7 @@
 #include <fstream>
 #include <memory>
 
-#include "atmosphere/number/constants.h"
+#include "atmosphere/math/constants.h"
 #include "lut/program/program.h"
 #include "renderer/effect/effect_choice.h"
 #include "renderer/picture/render.h"

@@ -6,7 +6,7 @@
 #include <glm/geometric.hpp>
 
 #include "atmosphere/lamp/lamp.h"
-#include "atmosphere/text/error.h"
+#include "atmosphere/base/error.h"
 
 namespace alpenglow::renderer {
 namespace {

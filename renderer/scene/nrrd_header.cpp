@@ -17,7 +17,7 @@
 #include <string_view>
 #include <vector>
 
-#include "atmosphere/text/error.h"
+#include "atmosphere/base/error.h"
 #include "renderer/layer.h"
 
 namespace alpenglow::renderer {

@@ -7,11 +7,11 @@
 #include <initializer_list>
 #include <limits>
 
-#include "atmosphere/air/medium_presets.h"
-#include "atmosphere/number/constants.h"
+#include "atmosphere/medium/medium_presets.h"
+#include "atmosphere/math/constants.h"
 #include "atmosphere/sun/night_sky.h"
-#include "atmosphere/text/error.h"
-#include "atmosphere/text/parsing.h"
+#include "atmosphere/base/error.h"
+#include "atmosphere/base/parsing.h"
 
 namespace alpenglow::renderer {
 namespace {

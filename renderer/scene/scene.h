@@ -10,7 +10,7 @@
 #include <string_view>
 #include <vector>
 
-#include "atmosphere/air/medium.h"
+#include "atmosphere/medium/medium.h"
 #include "atmosphere/sun/geodesy.h"
 #include "atmosphere/sun/time.h"
 #include "renderer/scene/local_volume.h"

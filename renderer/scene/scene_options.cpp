@@ -4,10 +4,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "atmosphere/air/medium_presets.h"
-#include "atmosphere/number/constants.h"
+#include "atmosphere/medium/medium_presets.h"
+#include "atmosphere/math/constants.h"
 #include "atmosphere/sun/night_sky.h"
-#include "atmosphere/text/error.h"
+#include "atmosphere/base/error.h"
 #include "renderer/scene/nrrd_header.h"
 #include "renderer/terrain/built_in_range.h"
 #include "renderer/terrain/lattice_noise.h"

@@ -16,7 +16,7 @@
 #include <string_view>
 #include <vector>
 
-#include "atmosphere/text/error.h"
+#include "atmosphere/base/error.h"
 #include "renderer/layer.h"
 #include "renderer/scene/nrrd_header.h"
 

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <string_view>
 
-#include "atmosphere/text/error.h"
+#include "atmosphere/base/error.h"
 
 namespace alpenglow::renderer {
 namespace {

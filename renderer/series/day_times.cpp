@@ -8,10 +8,10 @@
 #include <cmath>
 #include <functional>
 
-#include "atmosphere/number/constants.h"
+#include "atmosphere/math/constants.h"
 #include "atmosphere/sun/moon.h"
 #include "atmosphere/sun/sun.h"
-#include "atmosphere/text/error.h"
+#include "atmosphere/base/error.h"
 #include "lut/report/svg_plot.h"
 
 namespace alpenglow::renderer {

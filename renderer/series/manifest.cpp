@@ -6,11 +6,11 @@
 #include <fstream>
 #include <vector>
 
-#include "atmosphere/number/constants.h"
+#include "atmosphere/math/constants.h"
 #include "atmosphere/sun/eclipse.h"
 #include "atmosphere/sun/moon.h"
 #include "atmosphere/sun/sun.h"
-#include "atmosphere/text/error.h"
+#include "atmosphere/base/error.h"
 #include "lut/program/messages.h"
 #include "lut/program/program.h"
 

@@ -9,11 +9,11 @@
 #include <set>
 #include <system_error>
 
-#include "atmosphere/number/constants.h"
+#include "atmosphere/math/constants.h"
 #include "atmosphere/sun/eclipse.h"
 #include "atmosphere/sun/moon.h"
 #include "atmosphere/sun/sun.h"
-#include "atmosphere/text/error.h"
+#include "atmosphere/base/error.h"
 #include "lut/picture/eye.h"
 #include "lut/picture/look.h"
 #include "lut/program/program.h"

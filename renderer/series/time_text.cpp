@@ -10,12 +10,12 @@
 #include <utility>
 #include <vector>
 
-#include "atmosphere/number/constants.h"
+#include "atmosphere/math/constants.h"
 #include "atmosphere/sun/eclipse.h"
 #include "atmosphere/sun/moon.h"
 #include "atmosphere/sun/sun.h"
-#include "atmosphere/text/error.h"
-#include "atmosphere/text/parsing.h"
+#include "atmosphere/base/error.h"
+#include "atmosphere/base/parsing.h"
 
 namespace alpenglow::renderer {
 namespace {

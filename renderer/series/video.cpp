@@ -22,8 +22,8 @@
 #include <utility>
 #include <vector>
 
-#include "atmosphere/text/error.h"
-#include "atmosphere/text/parsing.h"
+#include "atmosphere/base/error.h"
+#include "atmosphere/base/parsing.h"
 #include "lut/program/output_file.h"
 #include "lut/program/program.h"
 

@@ -7,7 +7,7 @@
 #include <limits>
 #include <utility>
 
-#include "atmosphere/text/error.h"
+#include "atmosphere/base/error.h"
 
 namespace alpenglow::renderer {
 

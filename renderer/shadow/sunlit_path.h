@@ -17,14 +17,14 @@
 #include <optional>
 #include <vector>
 
-#include "atmosphere/dialect/shared_math.h"
+#include "atmosphere/shared_glsl/shared_math.h"
 #include "renderer/terrain/terrain.h"
 
 namespace alpenglow::shared {
 // clang-format off
-#include "atmosphere/dialect/shared_begin.h"
+#include "atmosphere/shared_glsl/shared_begin.h"
 #include "renderer/shadow/sunlight_over_edge.glsl"
-#include "atmosphere/dialect/shared_end.h"
+#include "atmosphere/shared_glsl/shared_end.h"
 // clang-format on
 }  // namespace alpenglow::shared
 

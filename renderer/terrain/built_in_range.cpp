@@ -17,8 +17,8 @@
 #include <utility>
 #include <vector>
 
-#include "atmosphere/number/constants.h"
-#include "atmosphere/text/error.h"
+#include "atmosphere/math/constants.h"
+#include "atmosphere/base/error.h"
 #include "renderer/terrain/erosion.h"
 #include "renderer/terrain/land.h"
 #include "renderer/terrain/lattice_noise.h"

@@ -22,7 +22,7 @@
 #include <utility>
 #include <vector>
 
-#include "atmosphere/text/error.h"
+#include "atmosphere/base/error.h"
 #include "renderer/layer.h"
 
 namespace alpenglow::renderer {

@@ -10,7 +10,7 @@
 #include <numbers>
 #include <vector>
 
-#include "atmosphere/text/error.h"
+#include "atmosphere/base/error.h"
 #include "renderer/layer.h"
 #include "renderer/terrain/elevation_raster.h"
 

@@ -10,13 +10,13 @@
 
 #include <cstdint>
 
-#include "atmosphere/dialect/shared_math.h"
+#include "atmosphere/shared_glsl/shared_math.h"
 
 namespace alpenglow::shared {
 // clang-format off
-#include "atmosphere/dialect/shared_begin.h"
+#include "atmosphere/shared_glsl/shared_begin.h"
 #include "renderer/terrain/lattice_noise.glsl"
-#include "atmosphere/dialect/shared_end.h"
+#include "atmosphere/shared_glsl/shared_end.h"
 // clang-format on
 }  // namespace alpenglow::shared
 

@@ -14,7 +14,7 @@
 #include <unordered_map>
 #include <utility>
 
-#include "atmosphere/text/error.h"
+#include "atmosphere/base/error.h"
 #include "renderer/terrain/mesh.h"
 #include "renderer/terrain/obj_text.h"
 #include "renderer/terrain/polygon_triangles.h"

@@ -8,7 +8,7 @@
 #include <cmath>
 #include <optional>
 
-#include "atmosphere/text/error.h"
+#include "atmosphere/base/error.h"
 #include "renderer/layer.h"
 #include "renderer/terrain/polygon_triangles.h"
 

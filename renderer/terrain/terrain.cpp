@@ -14,7 +14,7 @@
 #include <string>
 #include <utility>
 
-#include "atmosphere/text/error.h"
+#include "atmosphere/base/error.h"
 
 namespace alpenglow::renderer {
 namespace {

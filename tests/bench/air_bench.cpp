@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "atmosphere/dialect/instruction_set.h"
-#include "atmosphere/judge/judge.h"
+#include "atmosphere/shared_glsl/instruction_set.h"
+#include "atmosphere/reference/judge.h"
 #include "atmosphere/ray/direct_scattering.h"
 #include "atmosphere/ray/single_scattering.h"
 #include "lut/diffuse/multiple_scattering.h"

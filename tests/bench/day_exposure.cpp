@@ -25,7 +25,7 @@
 #include <string>
 #include <vector>
 
-#include "atmosphere/number/constants.h"
+#include "atmosphere/math/constants.h"
 #include "atmosphere/sun/moon.h"
 #include "atmosphere/sun/sun.h"
 #include "lut/picture/local_exposure.h"

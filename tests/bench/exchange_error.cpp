@@ -16,8 +16,8 @@
 #include <string>
 #include <vector>
 
-#include "atmosphere/number/constants.h"
-#include "atmosphere/text/error.h"
+#include "atmosphere/math/constants.h"
+#include "atmosphere/base/error.h"
 #include "lut/layer.h"
 #include "lut/table/scattering_table.h"
 

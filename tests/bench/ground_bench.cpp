@@ -4,7 +4,7 @@
 #include <benchmark/benchmark.h>
 #include <tbb/global_control.h>
 
-#include "atmosphere/number/constants.h"
+#include "atmosphere/math/constants.h"
 #include "atmosphere/sun/sun.h"
 #include "renderer/terrain/built_in_range.h"
 #include "viewer/ground/lit_ground.h"

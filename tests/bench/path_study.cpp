@@ -11,9 +11,9 @@
 #include <string_view>
 #include <vector>
 
-#include "atmosphere/judge/path_tracer.h"
-#include "atmosphere/number/constants.h"
-#include "atmosphere/number/numerics.h"
+#include "atmosphere/reference/path_tracer.h"
+#include "atmosphere/math/constants.h"
+#include "atmosphere/math/numerics.h"
 #include "lut/eval/eval.h"
 
 namespace alpenglow::lut {

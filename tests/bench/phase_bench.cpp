@@ -3,7 +3,7 @@
 // bands per ray. Run by hand.
 #include <benchmark/benchmark.h>
 
-#include "atmosphere/air/phase_table.h"
+#include "atmosphere/medium/phase_table.h"
 #include "atmosphere/ray/single_scattering.h"
 
 namespace alpenglow::atmosphere {

@@ -16,7 +16,7 @@
 #include <string>
 #include <vector>
 
-#include "atmosphere/number/constants.h"
+#include "atmosphere/math/constants.h"
 #include "renderer/shadow/shadow_heights.h"
 #include "renderer/terrain/built_in_range.h"
 #include "renderer/terrain/terrain.h"

@@ -3,7 +3,7 @@
 // shafts by shadow heights, shafts by 512 occlusion rays. Run by hand; results are in README.md.
 #include <benchmark/benchmark.h>
 
-#include "atmosphere/number/constants.h"
+#include "atmosphere/math/constants.h"
 #include "renderer/shadow/sunlit_path.h"
 #include "tests/fixtures/occlusion_march.h"
 

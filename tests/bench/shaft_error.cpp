@@ -4,7 +4,7 @@
 //   shaft_error [elevation model around 35.5 N 138.75 E]
 #include <fmt/core.h>
 
-#include "atmosphere/number/constants.h"
+#include "atmosphere/math/constants.h"
 #include "tests/fixtures/occlusion_march.h"
 
 int main(int argc, char** argv) {

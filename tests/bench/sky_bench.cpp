@@ -5,7 +5,7 @@
 #include <cmath>
 #include <vector>
 
-#include "atmosphere/number/constants.h"
+#include "atmosphere/math/constants.h"
 #include "lut/sky/panorama.h"
 #include "lut/sky/sky_view.h"
 #include "tests/fixtures/lit_air.h"

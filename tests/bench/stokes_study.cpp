@@ -13,10 +13,10 @@
 #include <string_view>
 #include <vector>
 
-#include "atmosphere/air/lorenz_mie.h"
-#include "atmosphere/air/phase_table.h"
-#include "atmosphere/judge/path_tracer.h"
-#include "atmosphere/number/constants.h"
+#include "atmosphere/medium/lorenz_mie.h"
+#include "atmosphere/medium/phase_table.h"
+#include "atmosphere/reference/path_tracer.h"
+#include "atmosphere/math/constants.h"
 #include "tests/fixtures/polarised_slab.h"
 #include "tests/fixtures/stored_cases.h"
 

@@ -14,7 +14,7 @@
 #include <string>
 #include <vector>
 
-#include "atmosphere/number/constants.h"
+#include "atmosphere/math/constants.h"
 #include "atmosphere/sun/time.h"
 #include "renderer/picture/render.h"
 #include "renderer/terrain/lattice_noise.h"

@@ -14,7 +14,7 @@
 #include <vector>
 
 #include "atmosphere/colour/spectrum.h"
-#include "atmosphere/text/error.h"
+#include "atmosphere/base/error.h"
 #include "lut/train/band_training.h"
 
 namespace alpenglow::lut {

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "atmosphere/air/medium.h"
+#include "atmosphere/medium/medium.h"
 #include "tests/fixtures/lit_air.h"
 #include "viewer/air/air_follower.h"
 #include "viewer/air/solved_air.h"

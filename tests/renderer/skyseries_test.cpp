@@ -12,7 +12,7 @@
 #include <sstream>
 
 #include "atmosphere/sun/time.h"
-#include "atmosphere/text/parsing.h"
+#include "atmosphere/base/parsing.h"
 #include "lut/picture/image.h"
 #include "tests/fixtures/bare_scene_folder.h"
 #include "tests/fixtures/lost_messages.h"

@@ -8,7 +8,7 @@
 #include <numeric>
 #include <sstream>
 
-#include "atmosphere/number/constants.h"
+#include "atmosphere/math/constants.h"
 #include "tests/viewer/shaders/headless.h"
 
 namespace alpenglow::viewer {

@@ -7,7 +7,7 @@
 
 #include <glm/geometric.hpp>
 
-#include "atmosphere/number/constants.h"
+#include "atmosphere/math/constants.h"
 #include "tests/fixtures/bare_scene.h"
 #include "tests/fixtures/temporary_folder.h"
 #include "tests/viewer/land/land_files.h"

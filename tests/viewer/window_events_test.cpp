@@ -6,7 +6,7 @@
 
 #include <cstdlib>
 
-#include "atmosphere/text/error.h"
+#include "atmosphere/base/error.h"
 #include "viewer/layer.h"
 #include "viewer/window.h"
 

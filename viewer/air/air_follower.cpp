@@ -8,7 +8,7 @@
 #include <tuple>
 #include <utility>
 
-#include "atmosphere/number/constants.h"
+#include "atmosphere/math/constants.h"
 #include "viewer/gl/gl_context.h"
 #include "viewer/gl/render_target.h"
 #include "viewer/shaders/full_screen.h"

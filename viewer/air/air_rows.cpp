@@ -8,9 +8,9 @@
 #include <cmath>
 #include <glm/exponential.hpp>
 
-#include "atmosphere/air/phase_text.h"
-#include "atmosphere/number/constants.h"
-#include "atmosphere/number/numerics.h"
+#include "atmosphere/medium/phase_text.h"
+#include "atmosphere/math/constants.h"
+#include "atmosphere/math/numerics.h"
 #include "lut/diffuse/diffuse_fan.h"
 
 namespace alpenglow::viewer {

@@ -7,7 +7,7 @@
 #include <glm/vec4.hpp>
 #include <vector>
 
-#include "atmosphere/number/constants.h"
+#include "atmosphere/math/constants.h"
 #include "atmosphere/ray/ray.h"
 #include "viewer/air/air_tables.h"
 

@@ -5,9 +5,9 @@
 #include <cmath>
 #include <utility>
 
-#include "atmosphere/air/phase_text.h"
-#include "atmosphere/number/constants.h"
-#include "atmosphere/text/error.h"
+#include "atmosphere/medium/phase_text.h"
+#include "atmosphere/math/constants.h"
+#include "atmosphere/base/error.h"
 #include "lut/sky/sky_view.h"
 #include "lut/table/transmittance_table.h"
 #include "viewer/air/air_rows.h"

@@ -7,9 +7,9 @@
 #include <cmath>
 #include <utility>
 
-#include "atmosphere/air/medium_presets.h"
-#include "atmosphere/number/constants.h"
-#include "atmosphere/text/error.h"
+#include "atmosphere/medium/medium_presets.h"
+#include "atmosphere/math/constants.h"
+#include "atmosphere/base/error.h"
 
 namespace alpenglow::viewer {
 namespace {

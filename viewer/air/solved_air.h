@@ -8,7 +8,7 @@
 #include <memory>
 #include <optional>
 
-#include "atmosphere/air/medium.h"
+#include "atmosphere/medium/medium.h"
 #include "viewer/air/air_tables.h"
 #include "viewer/layer.h"
 

@@ -5,10 +5,10 @@
 #include <array>
 #include <cmath>
 
-#include "atmosphere/number/constants.h"
+#include "atmosphere/math/constants.h"
 #include "atmosphere/sun/refraction.h"
 #include "atmosphere/sun/sun.h"
-#include "atmosphere/text/error.h"
+#include "atmosphere/base/error.h"
 #include "renderer/series/frame_times.h"
 
 namespace alpenglow::viewer {

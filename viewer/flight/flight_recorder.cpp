@@ -3,8 +3,8 @@
 
 #include <fmt/format.h>
 
-#include "atmosphere/text/error.h"
-#include "atmosphere/text/parsing.h"
+#include "atmosphere/base/error.h"
+#include "atmosphere/base/parsing.h"
 #include "lut/program/messages.h"
 #include "lut/program/output_file.h"
 #include "renderer/series/frame_times.h"

@@ -9,7 +9,7 @@
 #include <glm/geometric.hpp>
 #include <utility>
 
-#include "atmosphere/number/constants.h"
+#include "atmosphere/math/constants.h"
 #include "viewer/flight/flight_recorder.h"
 
 namespace alpenglow::viewer {

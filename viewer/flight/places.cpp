@@ -9,9 +9,9 @@
 #include <cmath>
 #include <utility>
 
-#include "atmosphere/number/constants.h"
-#include "atmosphere/text/error.h"
-#include "atmosphere/text/parsing.h"
+#include "atmosphere/math/constants.h"
+#include "atmosphere/base/error.h"
+#include "atmosphere/base/parsing.h"
 #include "viewer/embedded_text.h"
 
 namespace alpenglow::viewer {

@@ -5,7 +5,7 @@
 #include <array>
 #include <cmath>
 
-#include "atmosphere/number/constants.h"
+#include "atmosphere/math/constants.h"
 #include "viewer/layer.h"
 
 namespace alpenglow::viewer {

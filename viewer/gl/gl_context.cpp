@@ -9,7 +9,7 @@
 #include <optional>
 #include <vector>
 
-#include "atmosphere/text/error.h"
+#include "atmosphere/base/error.h"
 #include "viewer/layer.h"
 
 namespace alpenglow::viewer {

@@ -9,7 +9,7 @@
 #include <fstream>
 #include <optional>
 
-#include "atmosphere/text/error.h"
+#include "atmosphere/base/error.h"
 
 namespace alpenglow::viewer {
 namespace {

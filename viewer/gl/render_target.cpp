@@ -7,7 +7,7 @@
 #include <array>
 #include <utility>
 
-#include "atmosphere/text/error.h"
+#include "atmosphere/base/error.h"
 #include "viewer/gl/gl_context.h"
 
 namespace alpenglow::viewer {

@@ -8,7 +8,7 @@
 #include <optional>
 
 #include "atmosphere/embedded_text.h"
-#include "atmosphere/text/error.h"
+#include "atmosphere/base/error.h"
 #include "lut/embedded_text.h"
 #include "renderer/embedded_text.h"
 #include "viewer/layer.h"
@@ -99,9 +99,9 @@ class Stage {
 
 std::vector<ShaderPiece> SharedTexts() {
   std::vector<ShaderPiece> pieces;
-  for (const char* name : {"atmosphere/dialect/shared_prelude.glsl", "atmosphere/ray/shell.glsl",
+  for (const char* name : {"atmosphere/shared_glsl/shared_prelude.glsl", "atmosphere/ray/shell.glsl",
                            "atmosphere/ray/optical_depth.glsl", "atmosphere/ray/land_lift.glsl",
-                           "atmosphere/ray/ray_map.glsl", "atmosphere/air/phase.glsl",
+                           "atmosphere/ray/ray_map.glsl", "atmosphere/medium/phase.glsl",
                            "atmosphere/lamp/lamp_ray.glsl", "atmosphere/sun/disk_light.glsl"}) {
     pieces.push_back({name, std::string(atmosphere::EmbeddedText(name))});
   }

@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "atmosphere/colour/spectrum.h"
-#include "atmosphere/text/error.h"
+#include "atmosphere/base/error.h"
 #include "viewer/ground/ground_block.h"
 
 namespace alpenglow::viewer {

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "atmosphere/number/constants.h"
+#include "atmosphere/math/constants.h"
 #include "viewer/gl/render_target.h"
 #include "viewer/land/land_pass.h"
 #include "viewer/shaders/full_screen.h"

@@ -7,8 +7,8 @@
 #include <glm/vec3.hpp>
 #include <vector>
 
-#include "atmosphere/number/constants.h"
-#include "atmosphere/text/error.h"
+#include "atmosphere/math/constants.h"
+#include "atmosphere/base/error.h"
 #include "lut/sky/sky_view.h"
 #include "renderer/ground/band_light.h"
 

@@ -24,7 +24,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "atmosphere/dialect/shared_math.h"
+#include "atmosphere/shared_glsl/shared_math.h"
 #include "renderer/ground/band_light.h"
 #include "renderer/ground/reflectance.h"
 #include "renderer/light/open_sky.h"
@@ -60,9 +60,9 @@ struct SeaMirror {
 
 namespace alpenglow::shared {
 // clang-format off
-#include "atmosphere/dialect/shared_begin.h"
+#include "atmosphere/shared_glsl/shared_begin.h"
 #include "viewer/ground/sky_tilt.glsl"
-#include "atmosphere/dialect/shared_end.h"
+#include "atmosphere/shared_glsl/shared_end.h"
 // clang-format on
 }  // namespace alpenglow::shared
 

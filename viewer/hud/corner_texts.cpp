@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-#include "atmosphere/number/constants.h"
+#include "atmosphere/math/constants.h"
 #include "viewer/hud/hud_model.h"
 #include "viewer/layer.h"
 

@@ -11,7 +11,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "atmosphere/text/error.h"
+#include "atmosphere/base/error.h"
 #include "viewer/hud/imgui_backend.h"
 #include "viewer/hud/instruments.h"
 

@@ -11,7 +11,7 @@
 #include <limits>
 #include <utility>
 
-#include "atmosphere/text/error.h"
+#include "atmosphere/base/error.h"
 #include "viewer/gl/gl_context.h"
 #include "viewer/gl/render_target.h"
 #include "viewer/layer.h"

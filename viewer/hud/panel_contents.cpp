@@ -8,7 +8,7 @@
 #include <cmath>
 #include <utility>
 
-#include "atmosphere/number/constants.h"
+#include "atmosphere/math/constants.h"
 #include "lut/picture/image.h"
 #include "lut/picture/metering.h"
 #include "viewer/hud/hud_model.h"

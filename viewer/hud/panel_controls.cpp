@@ -8,10 +8,10 @@
 #include <cmath>
 
 #include "atmosphere/colour/spectrum.h"
-#include "atmosphere/number/constants.h"
+#include "atmosphere/math/constants.h"
 #include "atmosphere/ray/bent_view.h"
 #include "atmosphere/sun/sun.h"
-#include "atmosphere/text/error.h"
+#include "atmosphere/base/error.h"
 #include "lut/picture/image.h"
 #include "lut/picture/tone_mapping.h"
 #include "lut/sky/sky_view_map.h"

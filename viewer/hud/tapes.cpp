@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "atmosphere/number/constants.h"
+#include "atmosphere/math/constants.h"
 #include "viewer/hud/hud_model.h"
 #include "viewer/layer.h"
 

@@ -10,7 +10,7 @@
 #include <cstddef>
 #include <utility>
 
-#include "atmosphere/text/error.h"
+#include "atmosphere/base/error.h"
 
 namespace alpenglow::viewer {
 namespace {

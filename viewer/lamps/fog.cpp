@@ -9,10 +9,10 @@
 #include <glm/geometric.hpp>
 #include <utility>
 
-#include "atmosphere/number/constants.h"
+#include "atmosphere/math/constants.h"
 #include "atmosphere/ray/shell.h"
 #include "atmosphere/sun/sun.h"
-#include "atmosphere/text/error.h"
+#include "atmosphere/base/error.h"
 #include "renderer/ground/scene_geometry.h"
 #include "renderer/media/fog_light.h"
 #include "viewer/gl/gl_context.h"

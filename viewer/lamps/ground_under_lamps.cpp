@@ -12,8 +12,8 @@
 #include <utility>
 
 #include "atmosphere/lamp/lamp.h"
-#include "atmosphere/number/constants.h"
-#include "atmosphere/number/numerics.h"
+#include "atmosphere/math/constants.h"
+#include "atmosphere/math/numerics.h"
 
 namespace alpenglow::viewer {
 namespace {

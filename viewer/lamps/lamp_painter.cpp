@@ -5,9 +5,9 @@
 
 #include <array>
 
-#include "atmosphere/air/phase_table.h"
-#include "atmosphere/number/numerics.h"
-#include "atmosphere/text/error.h"
+#include "atmosphere/medium/phase_table.h"
+#include "atmosphere/math/numerics.h"
+#include "atmosphere/base/error.h"
 #include "viewer/gl/gl_context.h"
 #include "viewer/lamps/ground_under_lamps.h"
 #include "viewer/lamps/scene_lamps.h"

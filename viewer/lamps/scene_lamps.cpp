@@ -11,8 +11,8 @@
 #include <queue>
 
 #include "atmosphere/colour/spectrum.h"
-#include "atmosphere/number/constants.h"
-#include "atmosphere/text/error.h"
+#include "atmosphere/math/constants.h"
+#include "atmosphere/base/error.h"
 
 namespace alpenglow::viewer {
 

@@ -19,8 +19,8 @@
 #include <string>
 #include <vector>
 
-#include "atmosphere/air/medium.h"
-#include "atmosphere/air/phase.h"
+#include "atmosphere/medium/medium.h"
+#include "atmosphere/medium/phase.h"
 #include "atmosphere/colour/spectrum.h"
 #include "atmosphere/sun/geodesy.h"
 #include "renderer/lamp/lamp_tree.h"

@@ -7,7 +7,7 @@
 #include <glm/gtc/packing.hpp>
 #include <limits>
 
-#include "atmosphere/text/error.h"
+#include "atmosphere/base/error.h"
 #include "renderer/terrain/mesh.h"
 
 namespace alpenglow::viewer {

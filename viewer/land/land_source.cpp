@@ -9,8 +9,8 @@
 #include <limits>
 #include <numbers>
 
-#include "atmosphere/text/error.h"
-#include "atmosphere/text/parsing.h"
+#include "atmosphere/base/error.h"
+#include "atmosphere/base/parsing.h"
 #include "renderer/terrain/built_in_range.h"
 #include "viewer/land/loaded_heights.h"
 

@@ -8,7 +8,7 @@
 #include <optional>
 #include <utility>
 
-#include "atmosphere/text/error.h"
+#include "atmosphere/base/error.h"
 #include "renderer/terrain/mesh.h"
 
 namespace alpenglow::viewer {

@@ -7,7 +7,7 @@
 #include <glm/gtc/packing.hpp>
 #include <limits>
 
-#include "atmosphere/number/constants.h"
+#include "atmosphere/math/constants.h"
 #include "renderer/ground/scene_ground.h"
 #include "renderer/terrain/obj_file.h"
 #include "viewer/land/loaded_heights.h"

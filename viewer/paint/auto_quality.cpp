@@ -7,7 +7,7 @@
 #include <array>
 #include <cmath>
 
-#include "atmosphere/text/error.h"
+#include "atmosphere/base/error.h"
 #include "viewer/layer.h"
 
 namespace alpenglow::viewer {

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "atmosphere/number/constants.h"
+#include "atmosphere/math/constants.h"
 #include "renderer/light/night_light.h"
 #include "viewer/gl/render_target.h"
 #include "viewer/paint/picture_programs.h"

@@ -6,7 +6,7 @@
 #include <glm/geometric.hpp>
 #include <utility>
 
-#include "atmosphere/number/constants.h"
+#include "atmosphere/math/constants.h"
 #include "atmosphere/ray/bent_view.h"
 #include "renderer/media/local_media.h"
 #include "viewer/paint/picture_programs.h"

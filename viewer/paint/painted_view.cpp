@@ -5,7 +5,7 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 
-#include "atmosphere/number/constants.h"
+#include "atmosphere/math/constants.h"
 #include "atmosphere/ray/bent_view.h"
 #include "atmosphere/ray/shell.h"
 #include "renderer/camera/camera_rays.h"

@@ -15,7 +15,7 @@
 #include <memory>
 #include <optional>
 
-#include "atmosphere/air/medium.h"
+#include "atmosphere/medium/medium.h"
 #include "atmosphere/ray/bent_view.h"
 #include "atmosphere/sun/sun.h"
 #include "viewer/air/solved_air.h"

@@ -18,7 +18,7 @@
 #include <set>
 #include <vector>
 
-#include "atmosphere/air/phase.h"
+#include "atmosphere/medium/phase.h"
 #include "atmosphere/sun/sun.h"
 #include "renderer/ground/surface.h"
 #include "viewer/air/air_follower.h"

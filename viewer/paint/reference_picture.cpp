@@ -6,7 +6,7 @@
 #include <cmath>
 #include <utility>
 
-#include "atmosphere/text/error.h"
+#include "atmosphere/base/error.h"
 #include "renderer/effect/effect_choice.h"
 #include "viewer/flight/flight_recorder.h"
 

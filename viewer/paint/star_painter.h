@@ -15,7 +15,7 @@
 #include <utility>
 #include <vector>
 
-#include "atmosphere/air/medium.h"
+#include "atmosphere/medium/medium.h"
 #include "atmosphere/colour/spectrum.h"
 #include "atmosphere/ray/bent_view.h"
 #include "atmosphere/sun/moon.h"

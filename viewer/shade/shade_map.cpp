@@ -9,8 +9,8 @@
 #include <limits>
 #include <vector>
 
-#include "atmosphere/number/constants.h"
-#include "atmosphere/text/error.h"
+#include "atmosphere/math/constants.h"
+#include "atmosphere/base/error.h"
 #include "renderer/terrain/mesh.h"
 #include "viewer/gl/gl_objects.h"
 

@@ -7,8 +7,8 @@
 #include <glm/common.hpp>
 
 #include "atmosphere/colour/spectrum.h"
-#include "atmosphere/number/constants.h"
-#include "atmosphere/text/error.h"
+#include "atmosphere/math/constants.h"
+#include "atmosphere/base/error.h"
 #include "renderer/ground/land_cover.h"
 
 namespace alpenglow::viewer {

@@ -8,7 +8,7 @@
 #include <glm/vec4.hpp>
 #include <vector>
 
-#include "atmosphere/air/medium.h"
+#include "atmosphere/medium/medium.h"
 #include "renderer/ground/band_light.h"
 #include "renderer/ground/surface.h"
 #include "viewer/layer.h"

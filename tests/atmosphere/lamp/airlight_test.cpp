@@ -8,9 +8,9 @@
 #include <glm/geometric.hpp>
 #include <limits>
 
-#include "atmosphere/judge/airlight_judge.h"
-#include "atmosphere/number/constants.h"
-#include "atmosphere/number/numerics.h"
+#include "atmosphere/reference/airlight_judge.h"
+#include "atmosphere/math/constants.h"
+#include "atmosphere/math/numerics.h"
 #include "tests/fixtures/lamp_cases.h"
 
 namespace alpenglow::atmosphere {

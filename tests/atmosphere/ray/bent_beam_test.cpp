@@ -10,7 +10,7 @@
 #include <cmath>
 #include <vector>
 
-#include "atmosphere/judge/judge.h"
+#include "atmosphere/reference/judge.h"
 #include "tests/fixtures/bent_twilight.h"
 
 namespace alpenglow::atmosphere {

@@ -7,7 +7,7 @@
 #include <array>
 #include <cmath>
 
-#include "atmosphere/judge/judge.h"
+#include "atmosphere/reference/judge.h"
 
 namespace alpenglow::atmosphere {
 namespace {

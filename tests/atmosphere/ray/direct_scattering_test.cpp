@@ -10,11 +10,11 @@
 #include <string>
 #include <vector>
 
-#include "atmosphere/air/medium.h"
-#include "atmosphere/dialect/instruction_set.h"
+#include "atmosphere/medium/medium.h"
+#include "atmosphere/shared_glsl/instruction_set.h"
 #include "atmosphere/ray/direct_columns.h"
 #include "atmosphere/ray/ray.h"
-#include "atmosphere/text/error.h"
+#include "atmosphere/base/error.h"
 #include "tests/fixtures/direct_regimes.h"
 
 namespace alpenglow::atmosphere {

@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "atmosphere/judge/judge.h"
+#include "atmosphere/reference/judge.h"
 #include "atmosphere/ray/shell.h"
 
 namespace alpenglow::atmosphere {

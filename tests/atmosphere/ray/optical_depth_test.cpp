@@ -9,10 +9,10 @@
 #include <span>
 #include <vector>
 
-#include "atmosphere/air/medium.h"
+#include "atmosphere/medium/medium.h"
 #include "atmosphere/colour/spectrum.h"
-#include "atmosphere/dialect/instruction_set.h"
-#include "atmosphere/number/numerics.h"
+#include "atmosphere/shared_glsl/instruction_set.h"
+#include "atmosphere/math/numerics.h"
 #include "atmosphere/ray/ray.h"
 #include "atmosphere/ray/shell.h"
 #include "atmosphere/ray/single_scattering.h"

@@ -8,10 +8,10 @@
 #include <cmath>
 #include <vector>
 
-#include "atmosphere/judge/judge.h"
-#include "atmosphere/number/constants.h"
+#include "atmosphere/reference/judge.h"
+#include "atmosphere/math/constants.h"
 #include "atmosphere/ray/shell.h"
-#include "atmosphere/text/error.h"
+#include "atmosphere/base/error.h"
 #include "tests/fixtures/ray_regimes.h"
 #include "tests/fixtures/stored_cases.h"
 

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 
-#include "atmosphere/number/constants.h"
+#include "atmosphere/math/constants.h"
 
 namespace alpenglow::atmosphere {
 namespace {

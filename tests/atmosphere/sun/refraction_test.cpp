@@ -6,10 +6,10 @@
 
 #include <cmath>
 
-#include "atmosphere/number/constants.h"
+#include "atmosphere/math/constants.h"
 #include "atmosphere/ray/bent_view.h"
 #include "atmosphere/sun/sun.h"
-#include "atmosphere/text/error.h"
+#include "atmosphere/base/error.h"
 
 namespace alpenglow::atmosphere {
 namespace {

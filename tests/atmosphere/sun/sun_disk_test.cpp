@@ -7,8 +7,8 @@
 #include <array>
 #include <cmath>
 
-#include "atmosphere/number/constants.h"
-#include "atmosphere/number/numerics.h"
+#include "atmosphere/math/constants.h"
+#include "atmosphere/math/numerics.h"
 
 namespace alpenglow::atmosphere {
 namespace {

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <string>
 
-#include "atmosphere/number/constants.h"
+#include "atmosphere/math/constants.h"
 #include "atmosphere/sun/refraction.h"
 #include "atmosphere/sun/sun.h"
 

@@ -12,8 +12,8 @@
 #include <string>
 #include <vector>
 
-#include "atmosphere/number/constants.h"
-#include "atmosphere/text/error.h"
+#include "atmosphere/math/constants.h"
+#include "atmosphere/base/error.h"
 #include "tests/fixtures/places.h"
 
 namespace alpenglow::atmosphere {

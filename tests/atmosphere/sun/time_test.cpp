@@ -10,7 +10,7 @@
 #include <string>
 
 #include "atmosphere/sun/time_zone.h"
-#include "atmosphere/text/error.h"
+#include "atmosphere/base/error.h"
 #include "tests/fixtures/fault_of.h"
 
 namespace alpenglow::atmosphere {

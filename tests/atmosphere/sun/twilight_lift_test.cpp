@@ -6,7 +6,7 @@
 #include <array>
 #include <cmath>
 
-#include "atmosphere/number/constants.h"
+#include "atmosphere/math/constants.h"
 #include "atmosphere/sun/moon.h"
 #include "atmosphere/sun/refraction.h"
 #include "atmosphere/sun/sun.h"

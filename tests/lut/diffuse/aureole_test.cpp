@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "atmosphere/colour/spectrum.h"
-#include "atmosphere/number/constants.h"
+#include "atmosphere/math/constants.h"
 #include "atmosphere/ray/single_scattering.h"
 #include "lut/diffuse/multiple_scattering.h"
 #include "tests/fixtures/luminance.h"

@@ -9,7 +9,7 @@
 #include <cmath>
 #include <vector>
 
-#include "atmosphere/number/constants.h"
+#include "atmosphere/math/constants.h"
 #include "lut/diffuse/multiple_scattering.h"
 
 namespace alpenglow::lut {

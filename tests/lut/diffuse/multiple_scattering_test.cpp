@@ -9,11 +9,11 @@
 #include <string>
 #include <utility>
 
-#include "atmosphere/dialect/instruction_set.h"
-#include "atmosphere/judge/path_tracer.h"
-#include "atmosphere/number/constants.h"
-#include "atmosphere/number/numerics.h"
-#include "atmosphere/text/error.h"
+#include "atmosphere/shared_glsl/instruction_set.h"
+#include "atmosphere/reference/path_tracer.h"
+#include "atmosphere/math/constants.h"
+#include "atmosphere/math/numerics.h"
+#include "atmosphere/base/error.h"
 #include "tests/fixtures/small_light.h"
 #include "tests/fixtures/stored_cases.h"
 

@@ -8,8 +8,8 @@
 #include <map>
 #include <string>
 
-#include "atmosphere/judge/path_tracer.h"
-#include "atmosphere/number/constants.h"
+#include "atmosphere/reference/path_tracer.h"
+#include "atmosphere/math/constants.h"
 #include "lut/diffuse/multiple_scattering.h"
 #include "tests/fixtures/direct_regimes.h"
 #include "tests/fixtures/polarised_slab.h"

@@ -17,7 +17,7 @@
 #include <string>
 
 #include "atmosphere/colour/spectrum.h"
-#include "atmosphere/number/constants.h"
+#include "atmosphere/math/constants.h"
 #include "atmosphere/sun/sun.h"
 #include "lut/sky/panorama.h"
 #include "tests/fixtures/places.h"

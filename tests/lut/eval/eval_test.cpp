@@ -11,9 +11,9 @@
 #include <map>
 #include <sstream>
 
-#include "atmosphere/judge/path_tracer.h"
-#include "atmosphere/number/constants.h"
-#include "atmosphere/text/error.h"
+#include "atmosphere/reference/path_tracer.h"
+#include "atmosphere/math/constants.h"
+#include "atmosphere/base/error.h"
 #include "lut/program/program.h"
 #include "tests/fixtures/stored_cases.h"
 #include "tests/fixtures/temporary_folder.h"

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numeric>
 
-#include "atmosphere/number/constants.h"
+#include "atmosphere/math/constants.h"
 #include "lut/picture/tone_mapping.h"
 
 namespace alpenglow::lut {

@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "atmosphere/number/constants.h"
+#include "atmosphere/math/constants.h"
 #include "lut/layer.h"
 
 namespace alpenglow::lut {

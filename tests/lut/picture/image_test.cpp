@@ -13,7 +13,7 @@
 #include <cstring>
 #include <limits>
 
-#include "atmosphere/text/error.h"
+#include "atmosphere/base/error.h"
 #include "lut/layer.h"
 #include "lut/picture/develop.h"
 #include "tests/fixtures/temporary_folder.h"

@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "atmosphere/text/error.h"
+#include "atmosphere/base/error.h"
 #include "lut/picture/eye.h"
 #include "lut/picture/local_exposure.h"
 #include "lut/picture/tone_mapping.h"

@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "atmosphere/text/error.h"
+#include "atmosphere/base/error.h"
 #include "lut/picture/tone_mapping.h"
 
 namespace alpenglow::lut {

@@ -7,8 +7,8 @@
 #include <limits>
 #include <vector>
 
-#include "atmosphere/number/constants.h"
-#include "atmosphere/text/error.h"
+#include "atmosphere/math/constants.h"
+#include "atmosphere/base/error.h"
 #include "lut/picture/look.h"
 
 namespace alpenglow::lut {

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "atmosphere/text/error.h"
+#include "atmosphere/base/error.h"
 #include "lut/picture/look.h"
 #include "lut/picture/tone_mapping.h"
 

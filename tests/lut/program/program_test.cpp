@@ -18,7 +18,7 @@
 #include <thread>
 #include <vector>
 
-#include "atmosphere/text/error.h"
+#include "atmosphere/base/error.h"
 #include "lut/layer.h"
 #include "lut/program/output_file.h"
 #include "tests/fixtures/lost_messages.h"

@@ -11,7 +11,7 @@
 #include <regex>
 #include <set>
 
-#include "atmosphere/number/constants.h"
+#include "atmosphere/math/constants.h"
 #include "lut/diffuse/multiple_scattering.h"
 #include "lut/report/report_baselines.h"
 #include "lut/report/report_measure.h"

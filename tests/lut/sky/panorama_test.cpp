@@ -11,7 +11,7 @@
 
 #include "atmosphere/colour/spectrum.h"
 #include "atmosphere/sun/sun.h"
-#include "atmosphere/text/error.h"
+#include "atmosphere/base/error.h"
 #include "tests/fixtures/lit_air.h"
 #include "tests/fixtures/luminance.h"
 #include "tests/fixtures/sanitized.h"

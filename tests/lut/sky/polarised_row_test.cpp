@@ -8,8 +8,8 @@
 #include <cmath>
 #include <vector>
 
-#include "atmosphere/number/constants.h"
-#include "atmosphere/number/numerics.h"
+#include "atmosphere/math/constants.h"
+#include "atmosphere/math/numerics.h"
 #include "tests/fixtures/lit_air.h"
 
 namespace alpenglow::lut {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "atmosphere/colour/spectrum.h"
-#include "atmosphere/text/error.h"
+#include "atmosphere/base/error.h"
 #include "tests/fixtures/sanitized.h"
 #include "tests/fixtures/sky_view_errors.h"
 #include "tests/fixtures/small_light.h"

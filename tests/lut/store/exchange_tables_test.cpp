@@ -16,10 +16,10 @@
 #include <cstring>
 #include <random>
 
-#include "atmosphere/air/medium.h"
-#include "atmosphere/judge/judge.h"
-#include "atmosphere/judge/path_tracer.h"
-#include "atmosphere/text/error.h"
+#include "atmosphere/medium/medium.h"
+#include "atmosphere/reference/judge.h"
+#include "atmosphere/reference/path_tracer.h"
+#include "atmosphere/base/error.h"
 #include "lut/program/program.h"
 #include "lut/store/exchange_check.h"
 #include "tests/fixtures/temporary_folder.h"

@@ -24,8 +24,8 @@
 #include <functional>
 #include <vector>
 
-#include "atmosphere/air/medium.h"
-#include "atmosphere/text/error.h"
+#include "atmosphere/medium/medium.h"
+#include "atmosphere/base/error.h"
 #include "lut/store/table_image.h"
 #include "tests/fixtures/temporary_folder.h"
 

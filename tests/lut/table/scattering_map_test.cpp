@@ -6,7 +6,7 @@
 #include <cmath>
 #include <vector>
 
-#include "atmosphere/number/constants.h"
+#include "atmosphere/math/constants.h"
 #include "lut/embedded_text.h"
 
 namespace alpenglow::shared {

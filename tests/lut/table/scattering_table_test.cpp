@@ -7,8 +7,8 @@
 #include <cmath>
 #include <random>
 
-#include "atmosphere/judge/judge.h"
-#include "atmosphere/text/error.h"
+#include "atmosphere/reference/judge.h"
+#include "atmosphere/base/error.h"
 #include "lut/program/program.h"
 #include "tests/lut/table/table_errors.h"
 

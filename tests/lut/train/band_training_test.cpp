@@ -10,10 +10,10 @@
 #include <string>
 
 #include "atmosphere/colour/spectrum.h"
-#include "atmosphere/number/constants.h"
-#include "atmosphere/number/numerics.h"
+#include "atmosphere/math/constants.h"
+#include "atmosphere/math/numerics.h"
 #include "atmosphere/ray/ray.h"
-#include "atmosphere/text/error.h"
+#include "atmosphere/base/error.h"
 
 namespace alpenglow::lut {
 namespace {

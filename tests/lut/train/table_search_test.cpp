@@ -6,7 +6,7 @@
 
 #include <cmath>
 
-#include "atmosphere/text/error.h"
+#include "atmosphere/base/error.h"
 #include "tests/fixtures/sanitized.h"
 #include "tests/fixtures/temporary_folder.h"
 

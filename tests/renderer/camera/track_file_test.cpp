@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "atmosphere/number/constants.h"
+#include "atmosphere/math/constants.h"
 #include "tests/fixtures/fault_of.h"
 #include "tests/fixtures/temporary_folder.h"
 

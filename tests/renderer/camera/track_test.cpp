@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "atmosphere/number/constants.h"
+#include "atmosphere/math/constants.h"
 #include "tests/fixtures/fault_of.h"
 
 namespace alpenglow::renderer {

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 
-#include "atmosphere/judge/judge.h"
+#include "atmosphere/reference/judge.h"
 #include "atmosphere/ray/bent_view.h"
 
 namespace alpenglow::renderer {

@@ -13,8 +13,8 @@
 #include <vector>
 
 #include "atmosphere/colour/spectrum.h"
-#include "atmosphere/number/constants.h"
-#include "atmosphere/text/error.h"
+#include "atmosphere/math/constants.h"
+#include "atmosphere/base/error.h"
 #include "tests/fixtures/fault_of.h"
 #include "tests/fixtures/rough_land.h"
 #include "tests/fixtures/temporary_folder.h"

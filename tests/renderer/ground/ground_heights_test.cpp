@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "atmosphere/number/constants.h"
+#include "atmosphere/math/constants.h"
 
 namespace alpenglow::renderer {
 namespace {

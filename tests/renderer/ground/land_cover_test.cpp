@@ -6,7 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "atmosphere/colour/spectrum.h"
-#include "atmosphere/text/error.h"
+#include "atmosphere/base/error.h"
 #include "renderer/ground/surface.h"
 #include "tests/fixtures/class_map.h"
 #include "tests/fixtures/fault_of.h"

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <functional>
 
-#include "atmosphere/number/constants.h"
+#include "atmosphere/math/constants.h"
 #include "atmosphere/ray/bent_view.h"
 #include "renderer/picture/render.h"
 #include "renderer/terrain/mesh.h"

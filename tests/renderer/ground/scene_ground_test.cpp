@@ -13,8 +13,8 @@
 #include <vector>
 
 #include "atmosphere/colour/spectrum.h"
-#include "atmosphere/number/constants.h"
-#include "atmosphere/text/error.h"
+#include "atmosphere/math/constants.h"
+#include "atmosphere/base/error.h"
 #include "renderer/lamp/placed_lamp.h"
 #include "renderer/scene/scene_options.h"
 #include "tests/fixtures/bare_scene.h"

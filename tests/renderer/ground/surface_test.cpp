@@ -9,7 +9,7 @@
 #include <glm/geometric.hpp>
 
 #include "atmosphere/colour/spectrum.h"
-#include "atmosphere/number/constants.h"
+#include "atmosphere/math/constants.h"
 #include "renderer/ground/land_cover.h"
 
 namespace alpenglow::renderer {

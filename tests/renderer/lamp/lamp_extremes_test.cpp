@@ -7,7 +7,7 @@
 #include <glm/geometric.hpp>
 #include <vector>
 
-#include "atmosphere/judge/airlight_judge.h"
+#include "atmosphere/reference/airlight_judge.h"
 #include "renderer/lamp/lamp_light.h"
 #include "renderer/picture/render.h"
 #include "tests/fixtures/bare_scene.h"

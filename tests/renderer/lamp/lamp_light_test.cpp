@@ -8,9 +8,9 @@
 #include <glm/geometric.hpp>
 #include <limits>
 
-#include "atmosphere/judge/airlight_judge.h"
-#include "atmosphere/number/constants.h"
-#include "atmosphere/text/error.h"
+#include "atmosphere/reference/airlight_judge.h"
+#include "atmosphere/math/constants.h"
+#include "atmosphere/base/error.h"
 #include "renderer/lamp/placed_lamp.h"
 #include "renderer/picture/render.h"
 #include "tests/fixtures/bare_scene.h"

@@ -10,7 +10,7 @@
 #include <random>
 #include <vector>
 
-#include "atmosphere/number/constants.h"
+#include "atmosphere/math/constants.h"
 #include "tests/fixtures/ray_regimes.h"
 
 namespace alpenglow::renderer {

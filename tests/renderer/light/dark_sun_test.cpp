@@ -7,7 +7,7 @@
 #include <glm/geometric.hpp>
 #include <vector>
 
-#include "atmosphere/number/constants.h"
+#include "atmosphere/math/constants.h"
 #include "renderer/light/lighting.h"
 #include "renderer/picture/render.h"
 #include "tests/fixtures/bare_scene.h"

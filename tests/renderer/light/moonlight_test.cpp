@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "atmosphere/colour/spectrum.h"
-#include "atmosphere/number/constants.h"
+#include "atmosphere/math/constants.h"
 #include "atmosphere/sun/moon.h"
 #include "renderer/light/aerial_perspective.h"
 #include "renderer/light/night_light.h"

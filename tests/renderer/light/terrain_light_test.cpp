@@ -9,8 +9,8 @@
 #include <glm/geometric.hpp>
 #include <limits>
 
-#include "atmosphere/number/constants.h"
-#include "atmosphere/number/numerics.h"
+#include "atmosphere/math/constants.h"
+#include "atmosphere/math/numerics.h"
 #include "atmosphere/sun/sun.h"
 #include "lut/sky/sky_view.h"
 #include "renderer/ground/reflectance.h"

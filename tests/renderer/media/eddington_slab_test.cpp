@@ -9,8 +9,8 @@
 #include <glm/geometric.hpp>
 #include <glm/vec3.hpp>
 
-#include "atmosphere/air/phase.h"
-#include "atmosphere/number/constants.h"
+#include "atmosphere/medium/phase.h"
+#include "atmosphere/math/constants.h"
 #include "lut/diffuse/spherical_harmonics.h"
 #include "renderer/layer.h"
 

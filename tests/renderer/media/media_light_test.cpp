@@ -9,8 +9,8 @@
 
 #include "atmosphere/colour/spectrum.h"
 #include "atmosphere/lamp/airlight.h"
-#include "atmosphere/number/constants.h"
-#include "atmosphere/text/error.h"
+#include "atmosphere/math/constants.h"
+#include "atmosphere/base/error.h"
 #include "lut/diffuse/spherical_harmonics.h"
 #include "renderer/light/open_sky.h"
 #include "renderer/picture/render.h"

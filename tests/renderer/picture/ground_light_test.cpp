@@ -8,7 +8,7 @@
 #include <filesystem>
 #include <fstream>
 
-#include "atmosphere/number/constants.h"
+#include "atmosphere/math/constants.h"
 #include "renderer/picture/render.h"
 #include "tests/fixtures/bare_scene.h"
 #include "tests/fixtures/luminance.h"

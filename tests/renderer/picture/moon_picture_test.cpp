@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "atmosphere/number/constants.h"
+#include "atmosphere/math/constants.h"
 #include "atmosphere/sun/moon.h"
 #include "renderer/picture/render.h"
 #include "tests/fixtures/bare_scene.h"

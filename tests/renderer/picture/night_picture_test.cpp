@@ -7,7 +7,7 @@
 #include <glm/geometric.hpp>
 #include <vector>
 
-#include "atmosphere/number/constants.h"
+#include "atmosphere/math/constants.h"
 #include "atmosphere/sun/moon.h"
 #include "atmosphere/sun/night_sky.h"
 #include "renderer/picture/render.h"

@@ -5,11 +5,11 @@
 
 #include <cmath>
 
-#include "atmosphere/air/medium.h"
-#include "atmosphere/air/medium_presets.h"
+#include "atmosphere/medium/medium.h"
+#include "atmosphere/medium/medium_presets.h"
 #include "atmosphere/colour/spectrum.h"
-#include "atmosphere/number/constants.h"
-#include "atmosphere/text/error.h"
+#include "atmosphere/math/constants.h"
+#include "atmosphere/base/error.h"
 #include "lut/diffuse/multiple_scattering.h"
 #include "renderer/light/aerial_perspective.h"
 

@@ -8,8 +8,8 @@
 #include <cmath>
 #include <string>
 
-#include "atmosphere/number/constants.h"
-#include "atmosphere/text/error.h"
+#include "atmosphere/math/constants.h"
+#include "atmosphere/base/error.h"
 #include "renderer/effect/effect_choice.h"
 #include "renderer/picture/render.h"
 #include "tests/fixtures/bare_scene.h"

@@ -9,7 +9,7 @@
 #include <optional>
 #include <vector>
 
-#include "atmosphere/number/constants.h"
+#include "atmosphere/math/constants.h"
 #include "renderer/light/aerial_perspective.h"
 #include "renderer/picture/render.h"
 #include "tests/fixtures/bare_scene.h"

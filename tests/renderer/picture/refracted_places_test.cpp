@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "atmosphere/judge/judge.h"
+#include "atmosphere/reference/judge.h"
 #include "atmosphere/ray/bent_view.h"
 #include "atmosphere/sun/moon.h"
 #include "atmosphere/sun/night_sky.h"

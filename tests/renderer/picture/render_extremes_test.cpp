@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "atmosphere/colour/spectrum.h"
-#include "atmosphere/number/constants.h"
+#include "atmosphere/math/constants.h"
 #include "renderer/camera/camera_rays.h"
 #include "renderer/picture/render.h"
 #include "tests/fixtures/bare_scene.h"

@@ -8,10 +8,10 @@
 #include <filesystem>
 
 #include "atmosphere/colour/spectrum.h"
-#include "atmosphere/judge/judge.h"
-#include "atmosphere/number/constants.h"
+#include "atmosphere/reference/judge.h"
+#include "atmosphere/math/constants.h"
 #include "atmosphere/ray/bent_view.h"
-#include "atmosphere/text/error.h"
+#include "atmosphere/base/error.h"
 #include "lut/diffuse/multiple_scattering.h"
 #include "lut/picture/eye.h"
 #include "renderer/camera/camera_rays.h"

@@ -7,7 +7,7 @@
 #include <glm/geometric.hpp>
 #include <optional>
 
-#include "atmosphere/number/constants.h"
+#include "atmosphere/math/constants.h"
 #include "renderer/camera/camera_rays.h"
 #include "renderer/ground/scene_ground.h"
 #include "renderer/lamp/lamp_light.h"

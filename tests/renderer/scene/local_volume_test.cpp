@@ -16,8 +16,8 @@
 #include <vector>
 
 #include "atmosphere/colour/spectrum.h"
-#include "atmosphere/number/constants.h"
-#include "atmosphere/text/error.h"
+#include "atmosphere/math/constants.h"
+#include "atmosphere/base/error.h"
 #include "renderer/media/local_media.h"
 #include "renderer/scene/scene_options.h"
 #include "renderer/terrain/lattice_noise.h"

@@ -10,11 +10,11 @@
 #include <utility>
 #include <vector>
 
-#include "atmosphere/number/constants.h"
+#include "atmosphere/math/constants.h"
 #include "atmosphere/sun/geodesy.h"
 #include "atmosphere/sun/night_sky.h"
-#include "atmosphere/text/error.h"
-#include "atmosphere/text/parsing.h"
+#include "atmosphere/base/error.h"
+#include "atmosphere/base/parsing.h"
 #include "lut/picture/look.h"
 #include "renderer/scene/scene_options.h"
 #include "renderer/terrain/built_in_range.h"

@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "atmosphere/number/constants.h"
+#include "atmosphere/math/constants.h"
 #include "atmosphere/sun/moon.h"
 #include "lut/program/messages.h"
 #include "renderer/series/contact_sheet.h"

@@ -9,7 +9,7 @@
 #include <cstdlib>
 #include <sstream>
 
-#include "atmosphere/text/error.h"
+#include "atmosphere/base/error.h"
 #include "lut/picture/eye.h"
 #include "lut/program/program.h"
 #include "renderer/series/contact_sheet.h"

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "atmosphere/number/constants.h"
+#include "atmosphere/math/constants.h"
 #include "atmosphere/sun/sun.h"
 #include "lut/picture/look.h"
 #include "renderer/picture/render.h"

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "atmosphere/sun/moon.h"
-#include "atmosphere/text/error.h"
+#include "atmosphere/base/error.h"
 #include "tests/fixtures/event_days.h"
 #include "tests/fixtures/fault_of.h"
 

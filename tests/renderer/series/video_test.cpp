@@ -9,7 +9,7 @@
 #include <cstdlib>
 #include <thread>
 
-#include "atmosphere/text/error.h"
+#include "atmosphere/base/error.h"
 #include "tests/fixtures/temporary_folder.h"
 
 namespace alpenglow::renderer {

@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "atmosphere/number/constants.h"
+#include "atmosphere/math/constants.h"
 #include "tests/fixtures/rough_land.h"
 
 namespace alpenglow::renderer {

@@ -7,9 +7,9 @@
 #include <cmath>
 #include <filesystem>
 
-#include "atmosphere/number/constants.h"
+#include "atmosphere/math/constants.h"
 #include "atmosphere/sun/sun.h"
-#include "atmosphere/text/error.h"
+#include "atmosphere/base/error.h"
 #include "tests/fixtures/occlusion_march.h"
 #include "tests/fixtures/places.h"
 

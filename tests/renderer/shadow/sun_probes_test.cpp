@@ -8,7 +8,7 @@
 #include <limits>
 #include <random>
 
-#include "atmosphere/number/constants.h"
+#include "atmosphere/math/constants.h"
 #include "renderer/shadow/shadow_heights.h"
 
 namespace alpenglow::renderer {

@@ -9,7 +9,7 @@
 #include <glm/geometric.hpp>
 #include <vector>
 
-#include "atmosphere/number/constants.h"
+#include "atmosphere/math/constants.h"
 #include "renderer/terrain/land.h"
 #include "renderer/terrain/mesh.h"
 #include "renderer/terrain/terrain.h"

@@ -16,7 +16,7 @@
 #include <string>
 #include <vector>
 
-#include "atmosphere/text/error.h"
+#include "atmosphere/base/error.h"
 #include "renderer/layer.h"
 #include "tests/fixtures/places.h"
 

@@ -13,7 +13,7 @@
 #include <utility>
 #include <vector>
 
-#include "atmosphere/number/constants.h"
+#include "atmosphere/math/constants.h"
 
 namespace alpenglow::renderer {
 namespace {

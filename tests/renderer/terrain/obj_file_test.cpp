@@ -9,7 +9,7 @@
 #include <glm/geometric.hpp>
 #include <string>
 
-#include "atmosphere/text/error.h"
+#include "atmosphere/base/error.h"
 
 namespace alpenglow::renderer {
 namespace {

@@ -9,7 +9,7 @@
 #include <random>
 #include <string>
 
-#include "atmosphere/number/constants.h"
+#include "atmosphere/math/constants.h"
 #include "renderer/layer.h"
 
 namespace alpenglow::renderer {

@@ -12,8 +12,8 @@
 #include <thread>
 #include <vector>
 
-#include "atmosphere/number/constants.h"
-#include "atmosphere/text/error.h"
+#include "atmosphere/math/constants.h"
+#include "atmosphere/base/error.h"
 
 namespace alpenglow::renderer {
 namespace {

@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "atmosphere/colour/spectrum.h"
-#include "atmosphere/number/constants.h"
-#include "atmosphere/text/error.h"
+#include "atmosphere/math/constants.h"
+#include "atmosphere/base/error.h"
 #include "tests/viewer/air/air_judge.h"
 #include "tests/viewer/shaders/headless.h"
 

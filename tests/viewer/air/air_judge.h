@@ -7,7 +7,7 @@
 #include <cmath>
 #include <vector>
 
-#include "atmosphere/number/numerics.h"
+#include "atmosphere/math/numerics.h"
 #include "tests/fixtures/lit_air.h"
 #include "tests/fixtures/sky_view_errors.h"
 #include "tests/viewer/air/air_reading.h"

@@ -8,7 +8,7 @@
 #include <cmath>
 
 #include "atmosphere/colour/spectrum.h"
-#include "atmosphere/text/error.h"
+#include "atmosphere/base/error.h"
 #include "tests/viewer/air/air_judge.h"
 #include "viewer/gl/gl_objects.h"
 

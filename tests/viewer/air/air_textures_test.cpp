@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "atmosphere/number/numerics.h"
+#include "atmosphere/math/numerics.h"
 #include "tests/fixtures/lit_air.h"
 #include "tests/viewer/air/air_reading.h"
 #include "tests/viewer/shaders/gpu_values.h"

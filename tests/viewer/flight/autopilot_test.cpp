@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "atmosphere/number/constants.h"
+#include "atmosphere/math/constants.h"
 
 namespace alpenglow::viewer {
 namespace {

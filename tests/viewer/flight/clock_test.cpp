@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "atmosphere/sun/sun.h"
-#include "atmosphere/text/error.h"
+#include "atmosphere/base/error.h"
 
 namespace alpenglow::viewer {
 namespace {

@@ -3,8 +3,8 @@
 
 #include <gtest/gtest.h>
 
-#include "atmosphere/number/constants.h"
-#include "atmosphere/text/error.h"
+#include "atmosphere/math/constants.h"
+#include "atmosphere/base/error.h"
 
 namespace alpenglow::viewer {
 namespace {

@@ -7,7 +7,7 @@
 
 #include <csignal>
 
-#include "atmosphere/text/error.h"
+#include "atmosphere/base/error.h"
 #include "tests/fixtures/temporary_folder.h"
 
 namespace alpenglow::viewer {

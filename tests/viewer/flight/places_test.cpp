@@ -7,7 +7,7 @@
 #include <cmath>
 #include <set>
 
-#include "atmosphere/number/constants.h"
+#include "atmosphere/math/constants.h"
 #include "atmosphere/sun/time_zone.h"
 #include "tests/fixtures/fault_of.h"
 

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "atmosphere/text/error.h"
+#include "atmosphere/base/error.h"
 #include "tests/viewer/shaders/headless.h"
 #include "viewer/gl/gl_context.h"
 #include "viewer/gl/render_target.h"

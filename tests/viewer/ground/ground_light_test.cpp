@@ -10,7 +10,7 @@
 #include <functional>
 #include <glm/geometric.hpp>
 
-#include "atmosphere/number/numerics.h"
+#include "atmosphere/math/numerics.h"
 #include "lut/picture/image.h"
 #include "tests/fixtures/class_map.h"
 #include "tests/viewer/ground/rough_site.h"

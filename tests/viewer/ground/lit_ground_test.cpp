@@ -9,7 +9,7 @@
 #include <glm/geometric.hpp>
 #include <limits>
 
-#include "atmosphere/number/numerics.h"
+#include "atmosphere/math/numerics.h"
 #include "atmosphere/sun/sun.h"
 #include "tests/viewer/ground/rough_site.h"
 

@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <memory>
 
-#include "atmosphere/number/constants.h"
+#include "atmosphere/math/constants.h"
 #include "atmosphere/sun/sun.h"
 #include "tests/fixtures/rough_land.h"
 #include "tests/fixtures/small_light.h"

@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "atmosphere/colour/spectrum.h"
-#include "atmosphere/number/constants.h"
+#include "atmosphere/math/constants.h"
 #include "atmosphere/sun/sun.h"
 #include "lut/picture/image.h"
 #include "lut/sky/sky_view.h"

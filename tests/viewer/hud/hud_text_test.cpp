@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-#include "atmosphere/number/constants.h"
+#include "atmosphere/math/constants.h"
 #include "viewer/layer.h"
 
 namespace alpenglow::viewer {

@@ -8,7 +8,7 @@
 #include <functional>
 #include <glm/geometric.hpp>
 
-#include "atmosphere/number/constants.h"
+#include "atmosphere/math/constants.h"
 #include "tests/viewer/hud/hud_picture.h"
 #include "viewer/hud/pitch_ladder.h"
 #include "viewer/hud/tapes.h"

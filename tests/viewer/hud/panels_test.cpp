@@ -5,7 +5,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "atmosphere/number/constants.h"
+#include "atmosphere/math/constants.h"
 #include "tests/viewer/hud/hud_picture.h"
 
 namespace alpenglow::viewer {

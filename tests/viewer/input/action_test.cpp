@@ -10,7 +10,7 @@
 #include <fstream>
 #include <iterator>
 
-#include "atmosphere/text/error.h"
+#include "atmosphere/base/error.h"
 #include "tests/fixtures/places.h"
 
 namespace alpenglow::viewer {

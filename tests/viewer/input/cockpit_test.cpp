@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "atmosphere/number/constants.h"
+#include "atmosphere/math/constants.h"
 #include "viewer/input/controls.h"
 
 namespace alpenglow::viewer {

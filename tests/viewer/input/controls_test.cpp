@@ -8,7 +8,7 @@
 
 #include <cmath>
 
-#include "atmosphere/text/error.h"
+#include "atmosphere/base/error.h"
 
 namespace alpenglow::viewer {
 namespace {

@@ -9,7 +9,7 @@
 #include <cmath>
 
 #include "atmosphere/lamp/lamp.h"
-#include "atmosphere/number/constants.h"
+#include "atmosphere/math/constants.h"
 
 namespace alpenglow::viewer {
 namespace {

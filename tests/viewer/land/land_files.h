@@ -13,7 +13,7 @@
 #include <string>
 #include <vector>
 
-#include "atmosphere/number/constants.h"
+#include "atmosphere/math/constants.h"
 #include "tests/fixtures/rough_land.h"
 #include "tests/fixtures/temporary_folder.h"
 #include "viewer/land/land_source.h"

@@ -4,7 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "atmosphere/text/error.h"
+#include "atmosphere/base/error.h"
 #include "renderer/terrain/built_in_range.h"
 #include "renderer/terrain/terrain.h"
 #include "tests/viewer/land/land_files.h"

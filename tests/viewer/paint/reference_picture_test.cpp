@@ -6,7 +6,7 @@
 #include <chrono>
 #include <thread>
 
-#include "atmosphere/text/error.h"
+#include "atmosphere/base/error.h"
 #include "tests/fixtures/bare_scene.h"
 #include "viewer/flight/flight_recorder.h"
 

@@ -7,7 +7,7 @@
 #include <glm/geometric.hpp>
 #include <map>
 
-#include "atmosphere/number/constants.h"
+#include "atmosphere/math/constants.h"
 #include "atmosphere/sun/sun.h"
 #include "renderer/camera/camera_rays.h"
 #include "renderer/picture/sky_pixels.h"

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "atmosphere/number/numerics.h"
+#include "atmosphere/math/numerics.h"
 #include "lut/picture/tone_mapping.h"
 
 namespace alpenglow::viewer {

@@ -8,7 +8,7 @@
 #include <glm/geometric.hpp>
 #include <thread>
 
-#include "atmosphere/number/constants.h"
+#include "atmosphere/math/constants.h"
 #include "tests/viewer/shaders/headless.h"
 
 namespace alpenglow::viewer {

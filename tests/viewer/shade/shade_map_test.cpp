@@ -7,7 +7,7 @@
 #include <cmath>
 #include <vector>
 
-#include "atmosphere/number/constants.h"
+#include "atmosphere/math/constants.h"
 #include "renderer/terrain/mesh.h"
 #include "tests/fixtures/rough_land.h"
 #include "viewer/gl/gl_objects.h"

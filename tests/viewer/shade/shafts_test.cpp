@@ -7,7 +7,7 @@
 #include <cmath>
 #include <random>
 
-#include "atmosphere/number/constants.h"
+#include "atmosphere/math/constants.h"
 #include "renderer/shadow/shadow_heights.h"
 #include "renderer/terrain/mesh.h"
 #include "renderer/terrain/terrain.h"

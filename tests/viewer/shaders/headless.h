@@ -6,7 +6,7 @@
 
 #include <memory>
 
-#include "atmosphere/text/error.h"
+#include "atmosphere/base/error.h"
 #include "viewer/gl/gl_context.h"
 #include "viewer/layer.h"
 

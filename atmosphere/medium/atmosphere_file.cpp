@@ -1,0 +1,611 @@
+// SPDX-License-Identifier: MIT
+// Implements the reader of atmosphere.toml. ATMOSPHERE_FILE.md describes every key.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <utility>
+
+#include "atmosphere/medium/aerosol_mixture.h"
+#include "atmosphere/medium/medium.h"
+#include "atmosphere/medium/medium_presets.h"
+#include "atmosphere/medium/phase_table.h"
+#include "atmosphere/colour/spectrum.h"
+#include "atmosphere/math/constants.h"
+#include "atmosphere/base/error.h"
+#include "atmosphere/base/parsing.h"
+
+namespace alpenglow::atmosphere {
+namespace {
+
+using Names = std::vector<std::string>;
+using Values = std::vector<double>;
+using Phases = std::vector<PhaseFunction>;
+using ranges::Range;
+
+const Names kSections{"preset",   "polarised", "planet",  "spectrum",
+                      "rayleigh", "mie",       "aerosol", "ozone"};
+const Names kPlanetKeys{"radius_m", "follows_wgs84", "atmosphere_top_m", "ground_albedo"};
+const Names kSpectrumKeys{"wavelengths_nm", "bands", "solar_irradiance"};
+const Names kRayleighKeys{"scattering_per_m",       "scale_height_m", "deficit",
+                          "deficit_scale_height_m", "depolarisation", "refraction"};
+const Names kMieKeys{
+    "scattering_per_m", "extinction_per_m",   "scale_height_m", "phase",      "g",
+    "g_back",           "back_weight",        "alpha",          "phase_file", "phase_angles_deg",
+    "phase_per_sr",     "droplet_diameter_um"};
+// Values of mie.phase that are not a PhaseKind, or that need more than parameters.
+constexpr const char* kFog = "fog";
+constexpr const char* kTabulated = "table";
+constexpr const char* kByMolecules = "molecules";
+constexpr const char* kByAlmanacs = "almanacs";
+const Names kTableKeys{"phase_file", "phase_angles_deg", "phase_per_sr"};
+const Names kAerosolAmounts{"visibility_m", "turbidity", "optical_depth_550"};
+const Names kAerosolKeys{"visibility_m",
+                         "turbidity",
+                         "optical_depth_550",
+                         "angstrom_exponent",
+                         "single_scattering_albedo",
+                         "mixture"};
+const Names kOzoneKeys{"absorption_per_m", "dobson", "profile", "bottom_m", "peak_m", "top_m"};
+
+// Throws if a table contains two keys that set the same quantity.
+void RequireOneOf(const TomlTable& table, const Names& keys) {
+  std::string first;
+  for (const std::string& key : keys) {
+    if (!table.Has(key)) continue;
+    if (!first.empty()) {
+      table.Fail(key, fmt::format("{} is given beside {}; give one of them", table.FullName(key),
+                                  table.FullName(first)));
+    }
+    first = key;
+  }
+}
+
+void ReadNumber(const TomlTable& table, const std::string& key, const Range& range,
+                double& target) {
+  if (const auto number = table.Number(key, range.low, range.high)) target = *number;
+}
+
+class AtmosphereFile {
+ public:
+  AtmosphereFile(std::string_view text, const std::string& origin)
+      : root_(text, origin),
+        folder_(std::filesystem::path(origin).parent_path()),
+        preset_(PresetOf(root_)) {
+    planet_ = Section("planet", kPlanetKeys);
+    spectrum_ = Section("spectrum", kSpectrumKeys);
+    rayleigh_ = Section("rayleigh", kRayleighKeys);
+    mie_ = Section("mie", kMieKeys);
+    aerosol_ = Section("aerosol", kAerosolKeys);
+    ozone_ = Section("ozone", kOzoneKeys);
+  }
+
+  Medium Read() {
+    Medium medium = OnWavelengthsOfFile();
+    const Values scattering_share = ScatteringShare(medium);
+    medium = root_.Truth("polarised").value_or(medium.polarised)
+                 ? InPolarisedLight(std::move(medium), preset_)
+                 : InScalarLight(std::move(medium));
+    if (planet_) ReadPlanet(medium);
+    if (spectrum_) {
+      ReadList(*spectrum_, "solar_irradiance", ranges::kSolarIrradiance, medium.solar_irradiance,
+               medium.wavelengths_nm.size());
+    }
+    if (rayleigh_) ReadRayleigh(medium);
+    if (mie_) ReadMie(medium);
+    if (aerosol_) ReadAerosol(scattering_share, medium);
+    if (ozone_) ReadOzone(medium);
+    RequireComplete(medium);
+    RequireFaultless(medium);
+    if (medium != MediumPreset(preset_)) medium.name = fmt::format("custom (from {})", preset_);
+    return medium;
+  }
+
+ private:
+  static std::string PresetOf(const TomlTable& root) {
+    root.AllowOnly(kSections);
+    const std::string preset = root.Text("preset").value_or("earth");
+    const Names names = MediumPresetNames();
+    if (std::find(names.begin(), names.end(), preset) == names.end()) {
+      const auto nearest = NearestName(preset, names);
+      root.Fail("preset", fmt::format("preset is \"{}\"; it must be one of {}{}", preset,
+                                      fmt::join(names, ", "),
+                                      nearest ? "; did you mean " + *nearest + "?" : ""));
+    }
+    return preset;
+  }
+
+  std::optional<TomlTable> Section(const std::string& name, const Names& keys) const {
+    std::optional<TomlTable> section = root_.Table(name);
+    if (section) section->AllowOnly(keys);
+    return section;
+  }
+
+  Values SetOfBands(double bands) const {
+    for (const int count : kWavelengthSetSizes) {
+      if (bands == count) return WavelengthSet(count);
+    }
+    spectrum_->Fail("bands", fmt::format("spectrum.bands is {}; it must be one of {}", bands,
+                                         fmt::join(kWavelengthSetSizes, ", ")));
+  }
+
+  // Returns the wavelengths in ascending order, and stores whether the lists of the file must be
+  // reversed.
+  std::optional<Values> Wavelengths() {
+    if (!spectrum_) return std::nullopt;
+    RequireOneOf(*spectrum_, {"wavelengths_nm", "bands"});
+    if (const auto bands = spectrum_->Number("bands", 3.0, 40.0)) return SetOfBands(*bands);
+    const std::string key = "wavelengths_nm";
+    std::optional<Values> values =
+        spectrum_->Numbers(key, ranges::kWavelength_nm.low, ranges::kWavelength_nm.high);
+    if (!values) return std::nullopt;
+    if (values->empty() || values->size() > ranges::kMostWavelengths) {
+      spectrum_->Fail(key,
+                      fmt::format("spectrum.wavelengths_nm has {} values; it must have 1 to {}",
+                                  values->size(), ranges::kMostWavelengths));
+    }
+    reversed_ = values->front() > values->back();
+    if (reversed_) std::reverse(values->begin(), values->end());
+    for (std::size_t i = 1; i < values->size(); ++i) {
+      if ((*values)[i] > (*values)[i - 1]) continue;
+      spectrum_->Fail(key, fmt::format("spectrum.wavelengths_nm has {} beside {}; it must strictly "
+                                       "ascend or strictly descend",
+                                       (*values)[i - 1], (*values)[i]));
+    }
+    return values;
+  }
+
+  // Returns the preset on the wavelengths of the file. Lists for which the preset has no data are
+  // left empty, to be filled from the file.
+  Medium OnWavelengthsOfFile() {
+    const std::optional<Values> wavelengths_nm = Wavelengths();
+    Medium medium = MediumPreset(preset_);
+    if (!wavelengths_nm || *wavelengths_nm == medium.wavelengths_nm) return medium;
+    if (preset_ != "bruneton2017" && wavelengths_nm->front() >= kFirstPresetWavelength_nm &&
+        wavelengths_nm->back() <= kLastPresetWavelength_nm) {
+      return MediumPreset(preset_, *wavelengths_nm);
+    }
+    medium.wavelengths_nm = *wavelengths_nm;
+    for (Values* list : {&medium.solar_irradiance, &medium.ground_albedo,
+                         &medium.rayleigh_scattering_per_m, &medium.mie_scattering_per_m,
+                         &medium.mie_extinction_per_m, &medium.ozone_absorption_per_m}) {
+      list->clear();
+    }
+    medium.mie_phase = AerosolPhase(preset_, *wavelengths_nm);
+    return medium;
+  }
+
+  // `target` has one value per wavelength, or is empty if the preset has no data.
+  void ReadList(const TomlTable& table, const std::string& key, const Range& range, Values& target,
+                std::size_t count) const {
+    std::optional<Values> values = table.Numbers(key, range.low, range.high);
+    if (!values) return;
+    if (values->size() != count) {
+      table.Fail(key, fmt::format("{} has {} values; it must have {}, one per wavelength",
+                                  table.FullName(key), values->size(), count));
+    }
+    if (reversed_) std::reverse(values->begin(), values->end());
+    target = std::move(*values);
+  }
+
+  void ReadPlanet(Medium& medium) const {
+    const TomlTable& table = *planet_;
+    ReadNumber(table, "radius_m", ranges::kPlanetRadius_m, medium.planet_radius_m);
+    if (table.Has("radius_m")) medium.follows_wgs84 = false;
+    if (const auto follows = table.Truth("follows_wgs84")) medium.follows_wgs84 = *follows;
+    ReadNumber(table, "atmosphere_top_m", ranges::kAtmosphereTop_m, medium.atmosphere_height_m);
+    const auto albedo = table.Numbers("ground_albedo", ranges::kAlbedo.low, ranges::kAlbedo.high);
+    if (albedo && albedo->size() == 1) {
+      medium.ground_albedo.assign(medium.wavelengths_nm.size(), albedo->front());
+    } else {
+      ReadList(table, "ground_albedo", ranges::kAlbedo, medium.ground_albedo,
+               medium.wavelengths_nm.size());
+    }
+  }
+
+  void ReadRayleigh(Medium& medium) const {
+    ReadList(*rayleigh_, "scattering_per_m", ranges::kCoefficient_per_m,
+             medium.rayleigh_scattering_per_m, medium.wavelengths_nm.size());
+    ReadNumber(*rayleigh_, "scale_height_m", ranges::kScaleHeight_m,
+               medium.rayleigh_scale_height_m);
+    if (rayleigh_->Has("scale_height_m")) medium.rayleigh_deficit = {};
+    ReadNumber(*rayleigh_, "deficit", ranges::kDeficit, medium.rayleigh_deficit.share);
+    ReadNumber(*rayleigh_, "deficit_scale_height_m", ranges::kScaleHeight_m,
+               medium.rayleigh_deficit.scale_height_m);
+    if (rayleigh_->Has("deficit_scale_height_m") && medium.rayleigh_deficit.share == 0.0) {
+      rayleigh_->Fail("deficit_scale_height_m",
+                      "rayleigh.deficit_scale_height_m has no effect without rayleigh.deficit");
+    }
+    ReadDepolarisation(medium);
+    ReadRefraction(medium);
+  }
+
+  // If the file gives the density profile of the molecules, refraction follows that profile.
+  void ReadRefraction(Medium& medium) const {
+    if (rayleigh_->Has("scale_height_m") || rayleigh_->Has("deficit"))
+      medium.refraction = RefractionBy::kMolecules;
+    const auto name = rayleigh_->Text("refraction");
+    if (!name) return;
+    if (*name != kByMolecules && *name != kByAlmanacs) {
+      rayleigh_->Fail("refraction",
+                      fmt::format("rayleigh.refraction is \"{}\"; it must be one of {}, {}", *name,
+                                  kByMolecules, kByAlmanacs));
+    }
+    medium.refraction = *name == kByAlmanacs ? RefractionBy::kAlmanacs : RefractionBy::kMolecules;
+  }
+
+  void ReadDepolarisation(Medium& medium) const {
+    const std::string key = "depolarisation";
+    const auto values =
+        rayleigh_->Numbers(key, ranges::kDepolarisation.low, ranges::kDepolarisation.high);
+    if (values && values->size() == 1) {
+      medium.rayleigh_depolarisation = *values;
+    } else {
+      ReadList(*rayleigh_, key, ranges::kDepolarisation, medium.rayleigh_depolarisation,
+               medium.wavelengths_nm.size());
+    }
+  }
+
+  void ReadMie(Medium& medium) const {
+    const std::size_t count = medium.wavelengths_nm.size();
+    ReadList(*mie_, "scattering_per_m", ranges::kCoefficient_per_m, medium.mie_scattering_per_m,
+             count);
+    ReadList(*mie_, "extinction_per_m", ranges::kCoefficient_per_m, medium.mie_extinction_per_m,
+             count);
+    ReadNumber(*mie_, "scale_height_m", ranges::kScaleHeight_m, medium.mie_scale_height_m);
+    ReadPhase(medium);
+  }
+
+  void ReadPhase(Medium& medium) const {
+    Phases& phases = medium.mie_phase;
+    const std::optional<std::string> name = mie_->Text("phase");
+    RefuseKeysOfOtherPhases(name.value_or(""));
+    if (name == kFog) {
+      phases = {FogOfFile()};
+    } else if (name == kTabulated) {
+      phases = TableOfFile(medium.wavelengths_nm);
+    } else if (name || (mie_->Has("g") && phases.front().kind == PhaseKind::kTable)) {
+      const PhaseKind kind = name ? KindOf(*name) : PhaseKind::kCornetteShanks;
+      if (kind != phases.front().kind) phases = {LobeInsteadOf(phases.front().kind, kind)};
+    }
+    const PhaseKind kind = phases.front().kind;
+    const bool mixed = kind == PhaseKind::kHenyeyGreensteinDraine && name != kFog;
+    const bool two_lobes = mixed || kind == PhaseKind::kDoubleHenyeyGreenstein;
+    const bool has_g = kind != PhaseKind::kRayleigh && kind != PhaseKind::kTable;
+    ReadParameter("g", has_g && name != kFog, &PhaseFunction::g, medium);
+    ReadParameter("g_back", two_lobes, &PhaseFunction::g_back, medium);
+    ReadParameter("back_weight", two_lobes, &PhaseFunction::back_weight, medium);
+    ReadParameter("alpha", mixed || kind == PhaseKind::kDraine, &PhaseFunction::alpha, medium);
+    const bool equal = std::equal(phases.begin() + 1, phases.end(), phases.begin());
+    if (equal) phases.resize(1);
+  }
+
+  // Returns a lobe of this kind to replace the different kind of the preset. A Cornette-Shanks lobe
+  // may replace the preset's table and then has its mean cosine at 550 nm; any other lobe needs its
+  // own g.
+  PhaseFunction LobeInsteadOf(PhaseKind of_preset, PhaseKind kind) const {
+    if (kind == PhaseKind::kRayleigh || mie_->Has("g")) return {.kind = kind};
+    const bool has_mixture = aerosol_ && aerosol_->Has("mixture");
+    if (kind == PhaseKind::kCornetteShanks && of_preset == PhaseKind::kTable && !has_mixture) {
+      const double mean_cosine = MeanCosine(AerosolPhase(preset_, {550.0}).front());
+      return {.kind = kind, .g = CornetteShanksG(mean_cosine)};
+    }
+    mie_->Fail("phase",
+               fmt::format("mie.phase is \"{}\", not the preset's: give mie.g too, for a g "
+                           "of one phase function is not that of another",
+                           NameOf(kind)));
+  }
+
+  void RefuseKeysOfOtherPhases(const std::string& phase) const {
+    const auto refuse = [&](const std::string& key, const char* owner) {
+      if (mie_->Has(key) && phase != owner) {
+        mie_->Fail(key, fmt::format("mie.{} has no effect without phase = \"{}\"", key, owner));
+      }
+    };
+    refuse("droplet_diameter_um", kFog);
+    for (const std::string& key : kTableKeys) refuse(key, kTabulated);
+  }
+
+  PhaseFunction FogOfFile() const {
+    const auto diameter_um =
+        mie_->Number("droplet_diameter_um", kSmallestDroplet_um, kLargestDroplet_um);
+    if (!diameter_um) mie_->Fail("phase", "mie.phase is \"fog\": give mie.droplet_diameter_um too");
+    return FogPhase(*diameter_um);
+  }
+
+  // Reads phase tables from a separate file, or from lists in this file: one table for all
+  // wavelengths, or one table per wavelength, concatenated.
+  Phases TableOfFile(const Values& wavelengths_nm) const {
+    const auto shared = [](PhaseTable table) {
+      return PhaseFunction{.kind = PhaseKind::kTable,
+                           .table = std::make_shared<const PhaseTable>(std::move(table))};
+    };
+    if (const auto file = mie_->Text("phase_file")) {
+      RequireOneOf(*mie_, {"phase_file", "phase_angles_deg"});
+      const SpectralPhase spectral = ReadSpectralPhase(folder_ / *file);
+      Phases phases;
+      for (const double wavelength_nm : wavelengths_nm) {
+        phases.push_back(shared(spectral.At(wavelength_nm)));
+      }
+      return phases;
+    }
+    const auto angles = mie_->Numbers("phase_angles_deg", 0.0, 180.0);
+    const auto values = mie_->Numbers("phase_per_sr", 0.0, 1e12);
+    if (!angles || !values || angles->empty()) {
+      mie_->Fail("phase",
+                 "mie.phase is \"table\": give mie.phase_file too, or mie.phase_angles_deg "
+                 "and mie.phase_per_sr");
+    }
+    const std::size_t count = values->size() / angles->size();
+    if (values->size() % angles->size() != 0 || (count != 1 && count != wavelengths_nm.size())) {
+      mie_->Fail(
+          "phase_per_sr",
+          fmt::format("mie.phase_per_sr has {} values; it must have {}, one per angle, or {}, "
+                      "one per angle and wavelength",
+                      values->size(), angles->size(), angles->size() * wavelengths_nm.size()));
+    }
+    Phases phases;
+    try {
+      for (auto row = values->begin(); row != values->end();
+           row += static_cast<std::ptrdiff_t>(angles->size())) {
+        phases.push_back(
+            shared(PhaseTable(*angles, {row, row + static_cast<std::ptrdiff_t>(angles->size())})));
+      }
+    } catch (const InputError& error) {
+      mie_->Fail("phase_per_sr", std::string("mie.") + error.what());
+    }
+    if (reversed_) std::reverse(phases.begin(), phases.end());
+    return phases;
+  }
+
+  PhaseKind KindOf(const std::string& name) const {
+    try {
+      return PhaseKindFromName(name);
+    } catch (const InputError& error) {
+      mie_->Fail("phase", std::string("mie.") + error.what());
+    }
+  }
+
+  // Reads one value for all wavelengths, or one value per wavelength.
+  void ReadParameter(const std::string& key, bool has_it, double PhaseFunction::*parameter,
+                     Medium& medium) const {
+    if (!mie_->Has(key)) return;
+    Phases& phases = medium.mie_phase;
+    if (!has_it) {
+      mie_->Fail(
+          key, fmt::format("mie.{} has no effect: the phase function {} has no such parameter", key,
+                           NameOf(phases.front().kind)));
+    }
+    const Range range = key == "alpha" ? Range{0.0, 100.0} : Range{-1.0, 1.0};
+    Values values = *mie_->Numbers(key, range.low, range.high);
+    const std::size_t count = medium.wavelengths_nm.size();
+    if (values.size() == 1) {
+      values.resize(phases.size(), values.front());
+    } else {
+      ReadList(*mie_, key, range, values, count);
+      if (phases.size() != count) phases.resize(count, phases.front());
+    }
+    for (std::size_t i = 0; i < values.size(); ++i) phases[i].*parameter = values[i];
+  }
+
+  // Returns the single scattering albedo of the preset's aerosol; empty if the preset has no data.
+  static Values ScatteringShare(const Medium& medium) {
+    Values share;
+    for (std::size_t i = 0; i < medium.mie_extinction_per_m.size(); ++i) {
+      share.push_back(medium.mie_scattering_per_m[i] / medium.mie_extinction_per_m[i]);
+    }
+    return share;
+  }
+
+  // Interpolates the logarithm of the coefficient linearly in the logarithm of the wavelength;
+  // beyond the wavelengths the coefficient is extrapolated as lambda^-4.
+  static double MoleculesAt550(const Medium& medium) {
+    const Values& x = medium.wavelengths_nm;
+    const Values& y = medium.rayleigh_scattering_per_m;
+    const auto above = std::upper_bound(x.begin(), x.end(), 550.0);
+    const auto i = static_cast<std::size_t>(above - x.begin());
+    if (above == x.begin()) return y.front() * std::pow(x.front() / 550.0, 4);
+    if (above == x.end()) return y.back() * std::pow(x.back() / 550.0, 4);
+    if (y[i - 1] == 0.0 || y[i] == 0.0) return 0.0;
+    const double share = std::log(550.0 / x[i - 1]) / std::log(x[i] / x[i - 1]);
+    return y[i - 1] * std::pow(y[i] / y[i - 1], share);
+  }
+
+  double AerosolAt550(const Medium& medium) const {
+    const TomlTable& table = *aerosol_;
+    if (const auto depth = table.Number("optical_depth_550", 0.0, 100.0)) {
+      return *depth / medium.mie_scale_height_m;
+    }
+    RequireList(medium.rayleigh_scattering_per_m, "rayleigh.scattering_per_m");
+    const double molecules = MoleculesAt550(medium);
+    if (const auto turbidity = table.Number("turbidity", 1.0, 1000.0)) {
+      return (*turbidity - 1.0) * molecules * MoleculeColumn_m(medium) / medium.mie_scale_height_m;
+    }
+    const double visibility_m = *table.Number("visibility_m", 1.0, 1e7);
+    const double extinction = kOpticalDepthOfVisibility / visibility_m - molecules;
+    if (!(extinction >= 0.0)) {
+      table.Fail("visibility_m",
+                 fmt::format("aerosol.visibility_m is {}; the molecules alone limit "
+                             "it to {:.0f}",
+                             visibility_m, kOpticalDepthOfVisibility / molecules));
+    }
+    return extinction;
+  }
+
+  bool HasAmount() const {
+    return std::any_of(kAerosolAmounts.begin(), kAerosolAmounts.end(),
+                       [&](const std::string& key) { return aerosol_->Has(key); });
+  }
+
+  // Applies the spectrum, phase function and layer of the mixture, and its load unless the file
+  // gives one.
+  void ReadMixture(const std::string& name, Medium& medium) const {
+    const TomlTable& table = *aerosol_;
+    const Names names = AerosolMixtureNames();
+    if (std::find(names.begin(), names.end(), name) == names.end()) {
+      const auto nearest = NearestName(name, names);
+      table.Fail("mixture", fmt::format("aerosol.mixture is \"{}\"; it must be one of {}{}", name,
+                                        fmt::join(names, ", "),
+                                        nearest ? "; did you mean " + *nearest + "?" : ""));
+    }
+    if (table.Has("angstrom_exponent")) {
+      table.Fail("angstrom_exponent",
+                 "aerosol.angstrom_exponent has no effect: the mixture has a spectrum of its own");
+    }
+    for (const char* key : {"g", "g_back", "back_weight", "alpha"}) {
+      if (!mie_ || !mie_->Has(key) || mie_->Has("phase")) continue;
+      mie_->Fail(key, fmt::format("mie.{} has no effect: the mixture has a phase function of its "
+                                  "own; give mie.phase too",
+                                  key));
+    }
+    AerosolOptics optics = AerosolMixture(name, medium.wavelengths_nm);
+    if (!(mie_ && mie_->Has("scale_height_m"))) medium.mie_scale_height_m = optics.scale_height_m;
+    if (!(mie_ && mie_->Has("phase"))) medium.mie_phase = std::move(optics.phase);
+    const auto albedo = table.Number("single_scattering_albedo", 0.0, 1.0);
+    const double scale = HasAmount() ? AerosolAt550(medium) / optics.extinction_550_per_m : 1.0;
+    medium.mie_extinction_per_m = std::move(optics.extinction_per_m);
+    medium.mie_scattering_per_m = std::move(optics.scattering_per_m);
+    for (std::size_t i = 0; i < medium.wavelengths_nm.size(); ++i) {
+      medium.mie_extinction_per_m[i] *= scale;
+      medium.mie_scattering_per_m[i] *= scale;
+      if (albedo) medium.mie_scattering_per_m[i] = *albedo * medium.mie_extinction_per_m[i];
+    }
+  }
+
+  void ReadAerosol(Values scattering_share, Medium& medium) const {
+    const TomlTable& table = *aerosol_;
+    RequireOneOf(table, kAerosolAmounts);
+    if (!HasAmount() && !table.Has("mixture")) {
+      root_.Fail("aerosol", fmt::format("aerosol needs mixture or one of {}",
+                                        fmt::join(kAerosolAmounts, ", ")));
+    }
+    for (const char* key : {"scattering_per_m", "extinction_per_m"}) {
+      if (mie_ && mie_->Has(key)) {
+        mie_->Fail(key, fmt::format("mie.{} is given beside [aerosol]; give one of them", key));
+      }
+    }
+    if (const auto mixture = table.Text("mixture")) return ReadMixture(*mixture, medium);
+    if (const auto albedo = table.Number("single_scattering_albedo", 0.0, 1.0)) {
+      scattering_share.assign(medium.wavelengths_nm.size(), *albedo);
+    }
+    RequireList(scattering_share, "aerosol.single_scattering_albedo");
+    const double exponent = table.Number("angstrom_exponent", -1.0, 4.0).value_or(1.3);
+    const double at_550 = AerosolAt550(medium);
+    medium.mie_extinction_per_m.clear();
+    medium.mie_scattering_per_m.clear();
+    for (std::size_t i = 0; i < medium.wavelengths_nm.size(); ++i) {
+      const double extinction = at_550 * std::pow(medium.wavelengths_nm[i] / 550.0, -exponent);
+      medium.mie_extinction_per_m.push_back(extinction);
+      medium.mie_scattering_per_m.push_back(extinction * scattering_share[i]);
+    }
+  }
+
+  OzoneShape ShapeOfOzone(OzoneShape of_preset) const {
+    const TomlTable& table = *ozone_;
+    const bool edges = table.Has("bottom_m") || table.Has("top_m");
+    const auto name = table.Text("profile");
+    if (!name) return edges ? OzoneShape::kTent : of_preset;
+    if (*name == "tent") return OzoneShape::kTent;
+    if (*name != "smooth") {
+      table.Fail("profile",
+                 fmt::format("ozone.profile is \"{}\"; it must be one of smooth, tent", *name));
+    }
+    for (const char* edge : {"bottom_m", "top_m"}) {
+      if (table.Has(edge)) {
+        table.Fail(edge, fmt::format("ozone.{} has no effect: a smooth profile reaches from the "
+                                     "ground to three times ozone.peak_m",
+                                     edge));
+      }
+    }
+    return OzoneShape::kSmooth;
+  }
+
+  void ReadProfile(Medium& medium) const {
+    const TomlTable& table = *ozone_;
+    const OzoneLayer of_preset = medium.ozone;
+    OzoneLayer& ozone = medium.ozone;
+    const OzoneShape shape = ShapeOfOzone(of_preset.shape);
+    if (shape != of_preset.shape) {
+      ozone = shape == OzoneShape::kTent ? OzoneLayer{} : SmoothOzone();
+    }
+    ReadNumber(table, "bottom_m", ranges::kOzoneAltitude_m, ozone.bottom_m);
+    ReadNumber(table, "peak_m", ranges::kOzoneAltitude_m, ozone.peak_m);
+    ReadNumber(table, "top_m", ranges::kOzoneAltitude_m, ozone.top_m);
+    if (shape == OzoneShape::kSmooth) ozone = SmoothOzone(ozone.peak_m);
+    if (shape == of_preset.shape) return;
+    for (double& peak : medium.ozone_absorption_per_m) {
+      peak *= EquivalentDepth_m(of_preset) / EquivalentDepth_m(ozone);
+    }
+  }
+
+  void ReadOzone(Medium& medium) const {
+    const TomlTable& table = *ozone_;
+    RequireOneOf(table, {"absorption_per_m", "dobson"});
+    ReadProfile(medium);
+    if (!(medium.ozone.bottom_m < medium.ozone.top_m)) RequireFaultless(medium);
+    ReadList(table, "absorption_per_m", ranges::kCoefficient_per_m, medium.ozone_absorption_per_m,
+             medium.wavelengths_nm.size());
+    const auto dobson = table.Number("dobson", 0.0, 10000.0);
+    if (!dobson) return;
+    if (medium.wavelengths_nm.front() < kFirstPresetWavelength_nm) {
+      table.Fail("dobson", fmt::format("ozone.dobson needs cross sections, which are known from {} "
+                                       "nm on; give ozone.absorption_per_m",
+                                       kFirstPresetWavelength_nm));
+    }
+    medium.ozone_absorption_per_m.clear();
+    for (const double wavelength_nm : medium.wavelengths_nm) {
+      medium.ozone_absorption_per_m.push_back(
+          OzoneAbsorptionAtPeak(*dobson, medium.ozone, wavelength_nm));
+    }
+  }
+
+  void RequireList(const Values& list, const std::string& key) const {
+    if (!list.empty()) return;
+    spectrum_->Fail(
+        "wavelengths_nm",
+        fmt::format(
+            "spectrum.wavelengths_nm leaves the data of preset {} ({}); give {} "
+            "too",
+            preset_,
+            preset_ == "bruneton2017"
+                ? "440, 550 and 680 nm"
+                : fmt::format("{} to {} nm", kFirstPresetWavelength_nm, kLastPresetWavelength_nm),
+            key));
+  }
+
+  void RequireComplete(const Medium& medium) const {
+    RequireList(medium.solar_irradiance, "spectrum.solar_irradiance");
+    RequireList(medium.ground_albedo, "planet.ground_albedo");
+    RequireList(medium.rayleigh_scattering_per_m, "rayleigh.scattering_per_m");
+    RequireList(medium.mie_scattering_per_m, "mie.scattering_per_m");
+    RequireList(medium.mie_extinction_per_m, "mie.extinction_per_m");
+    RequireList(medium.ozone_absorption_per_m, "ozone.absorption_per_m");
+  }
+
+  void RequireFaultless(const Medium& medium) const {
+    const std::optional<MediumFault> fault = FindFault(medium);
+    if (!fault) return;
+    const std::size_t dot = fault->key.find('.');
+    const std::optional<TomlTable> section = root_.Table(fault->key.substr(0, dot));
+    (section ? *section : root_).Fail(fault->key.substr(dot + 1), fault->text);
+  }
+
+  TomlTable root_;
+  std::filesystem::path folder_;  // folder of the file; names of other files are relative to it
+  std::string preset_;
+  std::optional<TomlTable> planet_, spectrum_, rayleigh_, mie_, aerosol_, ozone_;
+  bool reversed_ = false;
+};
+
+}  // namespace
+
+Medium MediumFromToml(std::string_view text, const std::string& origin) {
+  return AtmosphereFile(text, origin).Read();
+}
+
+Medium ReadMedium(const std::filesystem::path& file) {
+  return MediumFromToml(ReadTextFile(file), file.string());
+}
+
+}  // namespace alpenglow::atmosphere

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: MIT
+// Functions that make a medium: from a preset or a file, on other wavelengths, and with an ozone
+// column in Dobson units, as weather services give it.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include "atmosphere/medium/medium.h"
+
+namespace alpenglow::atmosphere {
+
+/// Returns the absorption coefficient at the peak of the layer [1/m] for a column of
+/// `column_dobson` (1 DU = 2.6867811e20 molecules per m^2): column times cross section over the
+/// equivalent depth of the layer.
+/// @param wavelength_nm  in [360, 830]; returns 0 where the cross section has no data.
+[[nodiscard]] double OzoneAbsorptionAtPeak(double column_dobson, const OzoneLayer& layer,
+                                           double wavelength_nm);
+
+/// Returns the medium on WavelengthSet(bands): its preset (from Medium::name) on these bands, times
+/// the ratio of the medium to its preset, linear between the medium's wavelengths. The result is
+/// exact for an unmodified preset, and if the differences are factors common to all wavelengths
+/// (ozone in Dobson units, visibility). Returns std::nullopt if the preset is not known, has no
+/// values at these wavelengths, or is zero where the medium is not.
+[[nodiscard]] std::optional<Medium> OnBands(const Medium& medium, int bands);
+
+/// Returns MediumPreset of a name in MediumPresetNames, else ReadMedium of the file, whose name is
+/// relative to `folder`. Throws InputError as these two functions do; for a word that is neither,
+/// the message names the nearest preset, or all presets.
+[[nodiscard]] Medium MediumFromChoice(const std::string& preset_or_file,
+                                      const std::filesystem::path& folder = {});
+
+}  // namespace alpenglow::atmosphere

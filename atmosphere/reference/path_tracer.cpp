@@ -1,0 +1,934 @@
+// SPDX-License-Identifier: MIT
+#include "atmosphere/reference/path_tracer.h"
+
+#include <fmt/format.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <glm/vec3.hpp>
+#include <limits>
+#include <numeric>
+#include <span>
+
+#include "atmosphere/reference/path_sampling.h"
+#include "atmosphere/math/constants.h"
+#include "atmosphere/base/error.h"
+
+namespace alpenglow::atmosphere::judge {
+namespace {
+
+using Vector = glm::dvec3;
+
+constexpr int kFirstStrata = 8;  // strata of each map along the first segment of a path
+constexpr int kLaterStrata = 4;  // strata of each map along later segments
+// If the expected contribution of the next segment is below kRouletteShare times that of the first
+// segment, the path undergoes Russian roulette; above kSplitShare times, it is split. Without
+// splitting, the weights of the hundreds of orders in thick air would diverge (weight windows:
+// Booth and Hendricks 1984, Nucl. Technol./Fusion 5, 90).
+constexpr double kRouletteShare = 0.2;
+constexpr double kSplitShare = 2.0;
+constexpr double kMostCopies = 8.0;
+
+// Phase function from which directions are sampled; depolarisation is included in the weight.
+const PhaseFunction kMolecules{.kind = PhaseKind::kRayleigh};
+
+double Mean(std::span<const double> values) {
+  return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
+}
+
+// Returns an estimate of the brightness of the twilight sky, 1 by day: it falls by a decade for
+// 2.5 degrees of the sun's depression, and the dip of the horizon at a height compensates a part.
+// It is used only for importance sampling.
+double TwilightFactor(double altitude_m, double sine_of_sun, double planet_m) {
+  constexpr double kFallPerRadian = 53.0;
+  constexpr double kShareOfDip = 0.45;
+  const double dip = std::sqrt(2.0 * std::max(altitude_m, 0.0) / planet_m);
+  return std::exp(kFallPerRadian * std::clamp(sine_of_sun + kShareOfDip * dip, -0.35, 0.0));
+}
+
+/// A straight segment of a path. s is the distance [m] from the perigee of its line.
+struct Piece {
+  Vector origin, direction;
+  double perigee_m = 0.0;  // radius of the perigee
+  double s0_m = 0.0;
+  double length_m = 0.0;
+  bool ends_on_ground = false;
+
+  [[nodiscard]] double Radius(double distance_m) const {
+    const double s = s0_m + distance_m;
+    return std::sqrt(perigee_m * perigee_m + s * s);
+  }
+};
+
+double PerigeeRadius(double radius2, double s) { return std::sqrt(std::max(radius2 - s * s, 0.0)); }
+
+/// Data precomputed from the medium, shared by all paths.
+class Scene {
+ public:
+  Scene(const Medium& medium, const Vector& sun)
+      : medium_(medium),
+        sun_(sun),
+        table_(medium),
+        rayleigh_per_m_(Mean(medium.rayleigh_scattering_per_m)),
+        mie_per_m_(Mean(medium.mie_extinction_per_m)),
+        shadow_radius_m_(ShadowRadius()) {}
+
+  [[nodiscard]] const Medium& medium() const { return medium_; }
+  [[nodiscard]] const Vector& sun() const { return sun_; }
+  [[nodiscard]] const ColumnTable& table() const { return table_; }
+  [[nodiscard]] std::size_t bands() const { return medium_.wavelengths_nm.size(); }
+  [[nodiscard]] double planet_m() const { return medium_.planet_radius_m; }
+  [[nodiscard]] double top_m() const { return planet_m() + medium_.atmosphere_height_m; }
+  [[nodiscard]] bool has_aerosol() const { return mie_per_m_ > 0.0; }
+
+  [[nodiscard]] double RayleighDensity(double radius_m) const {
+    return MoleculeDensity(medium_, radius_m - planet_m());
+  }
+  [[nodiscard]] double MieDensity(double radius_m) const {
+    return std::exp(-(radius_m - planet_m()) / medium_.mie_scale_height_m);
+  }
+  [[nodiscard]] double OpticalDepth(std::size_t band, const AirColumns& columns) const {
+    return medium_.rayleigh_scattering_per_m[band] * columns.rayleigh +
+           medium_.mie_extinction_per_m[band] * columns.mie +
+           medium_.ozone_absorption_per_m[band] * columns.ozone;
+  }
+
+  /// Returns the segment from a point inside the shell to the ground or the top.
+  [[nodiscard]] Piece PieceFrom(const Vector& origin, const Vector& direction) const;
+  [[nodiscard]] DistanceMaps MapsOf(const Piece& piece, int strata) const;
+
+  [[nodiscard]] bool Lit(double radius_m, double towards_sun_m) const {
+    return towards_sun_m >= 0.0 ||
+           radius_m * radius_m - towards_sun_m * towards_sun_m >= planet_m() * planet_m();
+  }
+  [[nodiscard]] AirColumns ColumnsToSun(double radius_m, double towards_sun_m) const {
+    return table_.ToSpace(PerigeeRadius(radius_m * radius_m, towards_sun_m), towards_sun_m);
+  }
+
+ private:
+  [[nodiscard]] double ShadowRadius() const;
+  [[nodiscard]] double FreePath(double radius_m) const;
+  [[nodiscard]] double ClimbDistance(double perigee_m, double s_m) const;
+
+  Medium medium_;
+  Vector sun_;
+  ColumnTable table_;
+  double rayleigh_per_m_, mie_per_m_;  // extinction at the ground, mean over the wavelengths
+  double shadow_radius_m_;
+};
+
+Piece Scene::PieceFrom(const Vector& origin, const Vector& direction) const {
+  Piece piece{origin, direction};
+  const double radius2 = glm::dot(origin, origin);
+  piece.s0_m = glm::dot(origin, direction);
+  piece.perigee_m = PerigeeRadius(radius2, piece.s0_m);
+  piece.ends_on_ground = piece.s0_m < 0.0 && piece.perigee_m < planet_m();
+  const double end = piece.ends_on_ground ? planet_m() : top_m();
+  const double half = std::sqrt(std::max((end - piece.perigee_m) * (end + piece.perigee_m), 0.0));
+  piece.length_m = std::max((piece.ends_on_ground ? -half : half) - piece.s0_m, 0.0);
+  return piece;
+}
+
+// Returns the radius of the planet plus the lower air that hardly transmits sunbeams: grazing beams
+// above it have an optical depth under 1 in at least one wavelength.
+double Scene::ShadowRadius() const {
+  double low = planet_m(), high = top_m();
+  while (high - low > 10.0) {
+    const double middle = 0.5 * (low + high);
+    const AirColumns half = table_.ToSpace(middle, 0.0);
+    double clearest = std::numeric_limits<double>::infinity();
+    for (std::size_t band = 0; band < bands(); ++band)
+      clearest = std::min(clearest, 2.0 * OpticalDepth(band, half));
+    (clearest > 1.0 ? low : high) = middle;
+  }
+  return low;
+}
+
+double Scene::FreePath(double radius_m) const {
+  const double extinction =
+      rayleigh_per_m_ * RayleighDensity(radius_m) + mie_per_m_ * MieDensity(radius_m);
+  return 1.0 / std::max(extinction, 1e-300);
+}
+
+// Returns the distance along the line from s outwards over which extinction falls by about a factor
+// e.
+double Scene::ClimbDistance(double perigee_m, double s_m) const {
+  const double s = std::abs(s_m);
+  const double r = std::sqrt(perigee_m * perigee_m + s * s);
+  const double rayleigh = rayleigh_per_m_ * RayleighDensity(r) + 1e-300;
+  const double mie = mie_per_m_ * MieDensity(r);
+  const double height =
+      (rayleigh * medium_.rayleigh_scale_height_m + mie * medium_.mie_scale_height_m) /
+      (rayleigh + mie);
+  return std::sqrt(s * s + height * (2.0 * r + height)) - s;
+}
+
+/// Interval of distances in which a line is in the planet's shadow; empty unless `end > begin`.
+struct Shadow {
+  double begin_m = 0.0, end_m = 0.0;
+};
+
+// Returns the shadow for importance sampling; lighting is tested point by point.
+Shadow ShadowOn(const Piece& piece, const Vector& sun, double shadow_radius_m) {
+  const double sun0 = glm::dot(piece.origin, sun);
+  const double nu = glm::dot(piece.direction, sun);
+  const double a = 1.0 - nu * nu;
+  const double b = piece.s0_m - sun0 * nu;
+  const double c =
+      glm::dot(piece.origin, piece.origin) - sun0 * sun0 - shadow_radius_m * shadow_radius_m;
+  const double discriminant = b * b - a * c;
+  if (a < 1e-12 || discriminant <= 0.0) return {};
+  Shadow shadow{(-b - std::sqrt(discriminant)) / a, (-b + std::sqrt(discriminant)) / a};
+  const double terminator = -sun0 / nu;
+  if (nu > 0.0) shadow.end_m = std::min(shadow.end_m, terminator);
+  if (nu < 0.0) shadow.begin_m = std::max(shadow.begin_m, terminator);
+  if (nu == 0.0 && sun0 >= 0.0) return {};
+  return {std::max(shadow.begin_m, 0.0), std::min(shadow.end_m, piece.length_m)};
+}
+
+DistanceMaps Scene::MapsOf(const Piece& piece, int strata) const {
+  DistanceMaps maps;
+  const double length = piece.length_m;
+  const double near = FreePath(piece.Radius(0.0));
+  if (piece.s0_m >= 0.0) {
+    maps.Add(0.0, length, std::min(near, ClimbDistance(piece.perigee_m, piece.s0_m)), false,
+             strata);
+  } else {
+    const double lowest = std::min(-piece.s0_m, length);
+    const double scale = ClimbDistance(piece.perigee_m, piece.s0_m + lowest);
+    maps.Add(0.0, length, near, false, strata);
+    maps.Add(0.0, lowest, scale, true, strata);
+    maps.Add(lowest, length, scale, false, strata);
+  }
+  const Shadow shadow = ShadowOn(piece, sun_, shadow_radius_m_);
+  if (!(shadow.begin_m < shadow.end_m)) return maps;
+  maps.Add(shadow.end_m, length, ClimbDistance(piece.perigee_m, piece.s0_m + shadow.end_m), false,
+           strata);
+  if (piece.s0_m + shadow.begin_m < 0.0) {
+    maps.Add(0.0, shadow.begin_m, ClimbDistance(piece.perigee_m, piece.s0_m + shadow.begin_m), true,
+             strata);
+  }
+  return maps;
+}
+
+/// A right-handed frame around an axis.
+struct Frame {
+  Vector x, y, z;
+
+  [[nodiscard]] Vector Direction(double cosine, double azimuth) const {
+    const double sine = std::sqrt(std::max((1.0 - cosine) * (1.0 + cosine), 0.0));
+    return glm::normalize(sine * std::cos(azimuth) * x + sine * std::sin(azimuth) * y + cosine * z);
+  }
+};
+
+Frame FrameAround(const Vector& z) {
+  const Vector other = std::abs(z.x) < 0.7 ? Vector(1.0, 0.0, 0.0) : Vector(0.0, 1.0, 0.0);
+  const Vector x = glm::normalize(glm::cross(other, z));
+  return {x, glm::cross(z, x), z};
+}
+
+// Returns a frame with x towards the sun's azimuth and z up.
+Frame LocalFrame(const Vector& point, const Vector& sun) {
+  const Vector z = glm::normalize(point);
+  const Vector across = glm::cross(z, sun);
+  if (glm::dot(across, across) < 1e-12) return FrameAround(z);
+  const Vector y = glm::normalize(across);
+  return {glm::cross(y, z), y, z};
+}
+
+/// Distribution of directions for the glow of twilight: azimuths by a wrapped Cauchy distribution
+/// around the sun's azimuth, elevations dense above the geometric horizon.
+class Glow {
+ public:
+  Glow(const Vector& point, const Vector& sun, double planet_m)
+      : frame_(LocalFrame(point, sun)),
+        horizon_(-std::sqrt(
+            std::max(1.0 - planet_m * planet_m / std::max(glm::dot(point, point), 1.0), 0.0))) {}
+
+  [[nodiscard]] Vector Sample(double u, double v) const {
+    const double azimuth =
+        2.0 * std::atan((1.0 - kAzimuth) / (1.0 + kAzimuth) * std::tan(kPi * (u - 0.5)));
+    const double y = v / (1.0 + kElevation * (1.0 - v));
+    return frame_.Direction(horizon_ + (1.0 - horizon_) * y, azimuth);
+  }
+  [[nodiscard]] double Density(const Vector& direction) const {
+    const double mu = glm::dot(direction, frame_.z);
+    if (mu < horizon_) return 0.0;
+    const double y = (mu - horizon_) / (1.0 - horizon_);
+    const double fall = 1.0 + kElevation * y;
+    const double sine = std::sqrt(std::max((1.0 - mu) * (1.0 + mu), 1e-30));
+    const double cosine = std::clamp(glm::dot(direction, frame_.x) / sine, -1.0, 1.0);
+    return (1.0 + kElevation) / (fall * fall * (1.0 - horizon_)) * (1.0 - kAzimuth * kAzimuth) /
+           (2.0 * kPi * (1.0 + kAzimuth * kAzimuth - 2.0 * kAzimuth * cosine));
+  }
+
+ private:
+  static constexpr double kAzimuth = 0.6;
+  static constexpr double kElevation = 10.0;
+  Frame frame_;
+  double horizon_;
+};
+
+/// Light gathered by one path, at every wavelength; for polarised light in the order I, Q, U.
+struct Gathered {
+  std::vector<double> total, single;
+};
+
+/// Contribution of sunlight scattered into a segment, per scattering coefficient and unit
+/// irradiance [1/sr], in the order of Gathered.
+struct Responses {
+  std::vector<double> molecules, aerosol;
+};
+
+/// Follows paths, one at a time.
+class Tracer {
+ public:
+  /// @param polarised  null for scalar light.
+  Tracer(const Scene& scene, const PolarisedScattering* polarised, int max_order)
+      : scene_(scene), polarised_(polarised), max_order_(max_order) {
+    weight_.resize(scene.bands());
+  }
+
+  /// Adds `factor` times the light along the segment.
+  void Follow(const Piece& first, double factor, PathRandom& random, Gathered& light);
+
+ private:
+  struct Point {
+    double distance_m, length_m;  // from the segment's origin; line represented by the point
+    double rayleigh, mie;         // relative densities
+    AirColumns view;
+    double share = 0.0;  // expected scattered light, summed over wavelengths
+  };
+  /// A path that remains to be followed from a segment.
+  struct Branch {
+    Piece piece;
+    int order;
+    std::vector<double> weight;
+    std::vector<Analyser> analyser;
+    Vector reference{};
+  };
+  struct Copies {
+    int count;
+    double factor;  // factor of their weights
+  };
+  static constexpr std::size_t kGround = std::numeric_limits<std::size_t>::max();
+
+  void Spread(const Piece& piece, int strata, double jitter);
+  void Gather(const Piece& piece, std::vector<double>& light);
+  void GatherFromAir(const Piece& piece, const Point& point, const Responses& responses,
+                     std::vector<double>& light) const;
+  void GatherFromGround(const Piece& piece, std::vector<double>& light);
+  [[nodiscard]] double ExpectedLight(const Piece& piece, double distance_m) const;
+  [[nodiscard]] double SumOfShares() const;
+  [[nodiscard]] static Copies CopiesOf(double promise, double u);
+  [[nodiscard]] Piece Continue(const Piece& piece, PathRandom& random);
+  [[nodiscard]] std::size_t Draw(double u) const;
+  [[nodiscard]] Vector TurnInAir(const Piece& piece, const Point& point, const Vector& from,
+                                 double choice, double u, double v);
+  [[nodiscard]] Vector TurnAtGround(const Vector& from, double choice, double u, double v);
+  [[nodiscard]] Branch FirstBranch(const Piece& first, double factor) const;
+  [[nodiscard]] Responses ResponsesToSun(const Piece& piece) const;
+  [[nodiscard]] ScatteringMatrix AerosolMatrix(std::size_t band, double mie_phase,
+                                               double cosine) const;
+  [[nodiscard]] double TurnAnalyser(std::size_t band, const PlaneTurn& turn, double molecules,
+                                    double aerosol, double mie_phase, double cosine);
+
+  const Scene& scene_;
+  const PolarisedScattering* polarised_;
+  int max_order_;
+  int order_ = 1;               // order of the current segment
+  std::vector<double> weight_;  // weight of the path so far, for unpolarised light
+  // Analyser of polarised light, by band; the first entry of the first row is 1, the other factors
+  // are in the weight.
+  std::vector<Analyser> analyser_;
+  Vector reference_{};
+  std::vector<Branch> branches_;
+  std::vector<Point> points_;
+  AirColumns ground_view_;
+  double ground_share_ = 0.0;
+  double first_shares_ = 0.0;  // sum of the shares of the first segment
+};
+
+void Tracer::Follow(const Piece& first, double factor, PathRandom& random, Gathered& light) {
+  branches_.push_back(FirstBranch(first, factor));
+  while (!branches_.empty()) {
+    const Branch branch = std::move(branches_.back());
+    branches_.pop_back();
+    order_ = branch.order;
+    weight_ = branch.weight;
+    analyser_ = branch.analyser;
+    reference_ = branch.reference;
+    Spread(branch.piece, order_ == 1 ? kFirstStrata : kLaterStrata, random.Next());
+    Gather(branch.piece, order_ == 1 ? light.single : light.total);
+    if (order_ == 1) first_shares_ = SumOfShares();
+    if (order_ == max_order_ || first_shares_ <= 0.0) continue;
+    const Copies copies = CopiesOf(SumOfShares() / first_shares_, random.Next());
+    for (int copy = 0; copy < copies.count; ++copy) {
+      for (std::size_t band = 0; band < weight_.size(); ++band)
+        weight_[band] = branch.weight[band] * copies.factor;
+      analyser_ = branch.analyser;
+      reference_ = branch.reference;
+      const Piece next = Continue(branch.piece, random);
+      branches_.push_back({next, branch.order + 1, weight_, analyser_, reference_});
+    }
+  }
+}
+
+// Returns the branch along the view. The reference direction is upwards in the vertical plane of
+// the view; if the view is along +z or -z, it is the limit for a view tilted slightly towards +x. U
+// has the opposite sign: see ViewDirection.
+Tracer::Branch Tracer::FirstBranch(const Piece& first, double factor) const {
+  Branch branch{first, 1, std::vector<double>(scene_.bands(), factor), {}};
+  if (polarised_ == nullptr) return branch;
+  const Vector& view = first.direction;
+  const double across = std::hypot(view.x, view.y);
+  const Vector ahead = across > 0.0 ? Vector(view.x, view.y, 0.0) / across : Vector(1.0, 0.0, 0.0);
+  branch.reference = glm::normalize(Vector(0.0, 0.0, across) - view.z * ahead);
+  Analyser analyser;
+  analyser.row[0][0] = 1.0;
+  analyser.row[1][1] = 1.0;
+  analyser.row[2][2] = -1.0;
+  branch.analyser.assign(scene_.bands(), analyser);
+  return branch;
+}
+
+double Tracer::ExpectedLight(const Piece& piece, double distance_m) const {
+  const double radius = piece.Radius(distance_m);
+  const double towards_sun = glm::dot(piece.origin + distance_m * piece.direction, scene_.sun());
+  return TwilightFactor(radius - scene_.planet_m(), towards_sun / radius, scene_.planet_m());
+}
+
+// Places points along the segment, with columns from its origin.
+void Tracer::Spread(const Piece& piece, int strata, double jitter) {
+  points_.clear();
+  const ColumnTable& table = scene_.table();
+  const ColumnTable::Line line = table.LineAt(piece.perigee_m);
+  const double s1 = piece.s0_m + piece.length_m;
+  const AirColumns at_origin = table.Primitive(line, piece.s0_m);
+  const AirColumns at_perigee =
+      piece.s0_m < 0.0 && s1 > 0.0 ? table.Primitive(line, 0.0) : AirColumns{};
+  const auto columns_to = [&](double s) {
+    return ColumnTable::Difference(piece.s0_m, at_origin, s, table.Primitive(line, s), at_perigee);
+  };
+  const DistanceMaps maps = scene_.MapsOf(piece, strata);
+  for (const DistanceMap& map : maps) {
+    for (int i = 0; i < map.strata; ++i) {
+      const double distance = map.Distance((i + jitter) / map.strata);
+      const double radius = piece.Radius(distance);
+      points_.push_back({distance, maps.Weight(distance), scene_.RayleighDensity(radius),
+                         scene_.MieDensity(radius), columns_to(piece.s0_m + distance)});
+    }
+  }
+  if (piece.ends_on_ground) ground_view_ = columns_to(s1);
+}
+
+void Tracer::Gather(const Piece& piece, std::vector<double>& light) {
+  const Medium& medium = scene_.medium();
+  const Responses responses = ResponsesToSun(piece);
+  for (Point& point : points_) {
+    for (std::size_t band = 0; band < weight_.size(); ++band) {
+      point.share += weight_[band] * point.length_m *
+                     (medium.rayleigh_scattering_per_m[band] * point.rayleigh +
+                      medium.mie_scattering_per_m[band] * point.mie) *
+                     std::exp(-scene_.OpticalDepth(band, point.view));
+    }
+    point.share *= ExpectedLight(piece, point.distance_m);
+    GatherFromAir(piece, point, responses, light);
+  }
+  ground_share_ = 0.0;
+  if (piece.ends_on_ground) GatherFromGround(piece, light);
+}
+
+Responses Tracer::ResponsesToSun(const Piece& piece) const {
+  const std::size_t bands = weight_.size();
+  const double nu = std::clamp(glm::dot(piece.direction, scene_.sun()), -1.0, 1.0);
+  const std::vector<double> mie_phase = MiePhaseValues(scene_.medium(), nu);
+  if (polarised_ == nullptr) {
+    return {RayleighPhaseValues(scene_.medium(), nu), mie_phase};
+  }
+  const PlaneTurn turn = TurnOf(piece.direction, reference_, scene_.sun());
+  Responses responses{std::vector<double>(kStokes * bands), std::vector<double>(kStokes * bands)};
+  for (std::size_t band = 0; band < bands; ++band) {
+    const Analyser& after = analyser_[band];
+    const Analyser molecules =
+        Scattered(after, turn, RayleighMatrix(polarised_->depolarisation[band], nu));
+    const Analyser aerosol = Scattered(after, turn, AerosolMatrix(band, mie_phase[band], nu));
+    for (std::size_t k = 0; k < kStokes; ++k) {
+      responses.molecules[k * bands + band] = molecules.row[k][0];
+      responses.aerosol[k * bands + band] = aerosol.row[k][0];
+    }
+  }
+  return responses;
+}
+
+ScatteringMatrix Tracer::AerosolMatrix(std::size_t band, double mie_phase, double cosine) const {
+  const std::vector<SphereRatios>& spheres = polarised_->aerosol;
+  if (spheres.empty()) return {.a1 = mie_phase};
+  return SphereMatrix(spheres.size() == 1 ? spheres.front() : spheres[band], mie_phase, cosine);
+}
+
+// Adds sunlight scattered at one point.
+void Tracer::GatherFromAir(const Piece& piece, const Point& point, const Responses& responses,
+                           std::vector<double>& light) const {
+  const Medium& medium = scene_.medium();
+  const double radius = piece.Radius(point.distance_m);
+  const double towards_sun =
+      glm::dot(piece.origin + point.distance_m * piece.direction, scene_.sun());
+  if (!scene_.Lit(radius, towards_sun)) return;
+  const AirColumns sun = scene_.ColumnsToSun(radius, towards_sun);
+  const AirColumns both{point.view.rayleigh + sun.rayleigh, point.view.mie + sun.mie,
+                        point.view.ozone + sun.ozone};
+  const std::size_t bands = weight_.size();
+  for (std::size_t band = 0; band < bands; ++band) {
+    const double transmittance = std::exp(-scene_.OpticalDepth(band, both));
+    for (std::size_t k = band; k < light.size(); k += bands) {
+      const double scattered =
+          medium.rayleigh_scattering_per_m[band] * point.rayleigh * responses.molecules[k] +
+          medium.mie_scattering_per_m[band] * point.mie * responses.aerosol[k];
+      light[k] += weight_[band] * point.length_m * scattered * transmittance;
+    }
+  }
+}
+
+// Adds sunlight reflected at the end of the segment.
+void Tracer::GatherFromGround(const Piece& piece, std::vector<double>& light) {
+  const Medium& medium = scene_.medium();
+  const double towards_sun =
+      glm::dot(piece.origin + piece.length_m * piece.direction, scene_.sun());
+  const bool lit = towards_sun > 0.0;
+  const AirColumns sun = lit ? scene_.ColumnsToSun(scene_.planet_m(), towards_sun) : AirColumns{};
+  const double mu_s = lit ? std::min(towards_sun / scene_.planet_m(), 1.0) : 0.0;
+  const double expected = ExpectedLight(piece, piece.length_m);
+  for (std::size_t band = 0; band < weight_.size(); ++band) {
+    const double reflected = weight_[band] * medium.ground_albedo[band] *
+                             std::exp(-scene_.OpticalDepth(band, ground_view_));
+    ground_share_ += reflected * expected;
+    if (!lit) continue;
+    const double radiance = reflected * mu_s / kPi * std::exp(-scene_.OpticalDepth(band, sun));
+    light[band] += radiance;
+    for (std::size_t k = 1; k * weight_.size() < light.size(); ++k)
+      light[k * weight_.size() + band] += radiance * analyser_[band].row[k][0];
+  }
+}
+
+// Draws the point from which the path continues, with probabilities proportional to the shares.
+std::size_t Tracer::Draw(double u) const {
+  double left = u * SumOfShares() - ground_share_;
+  if (left < 0.0) return kGround;
+  std::size_t last = kGround;
+  for (std::size_t i = 0; i < points_.size(); ++i) {
+    if (points_[i].share <= 0.0) continue;
+    last = i;
+    left -= points_[i].share;
+    if (left < 0.0) break;
+  }
+  return last;
+}
+
+double Tracer::SumOfShares() const {
+  double sum = ground_share_;
+  for (const Point& point : points_) sum += point.share;
+  return sum;
+}
+
+// Applies Russian roulette and splitting. @param promise  expected contribution of the segment,
+// relative to that of the first segment.
+Tracer::Copies Tracer::CopiesOf(double promise, double u) {
+  if (promise < kRouletteShare) {
+    const double survival = promise / kRouletteShare;
+    return u < survival ? Copies{1, 1.0 / survival} : Copies{0, 0.0};
+  }
+  const double count = std::clamp(std::floor(promise / kSplitShare), 1.0, kMostCopies);
+  return {static_cast<int>(count), 1.0 / count};
+}
+
+// Returns the next segment: from a point drawn with probability proportional to the shares, in a
+// sampled direction.
+Piece Tracer::Continue(const Piece& piece, PathRandom& random) {
+  const Medium& medium = scene_.medium();
+  const std::size_t drawn = Draw(random.Next());
+  const double choice = random.Next();
+  const double u = random.Next();
+  const double v = random.Next();
+  const bool at_ground = drawn == kGround;
+  const double probability = (at_ground ? ground_share_ : points_[drawn].share) / SumOfShares();
+  const AirColumns& view = at_ground ? ground_view_ : points_[drawn].view;
+  for (std::size_t band = 0; band < weight_.size(); ++band) {
+    weight_[band] *= std::exp(-scene_.OpticalDepth(band, view)) / probability;
+    // In air, TurnInAir applies the scattering coefficient together with the phase function.
+    weight_[band] *= at_ground ? medium.ground_albedo[band] : points_[drawn].length_m;
+  }
+  const double distance = at_ground ? piece.length_m : points_[drawn].distance_m;
+  Vector from = piece.origin + distance * piece.direction;
+  if (at_ground) from *= scene_.planet_m() / glm::length(from);
+  const Vector direction = at_ground ? TurnAtGround(from, choice, u, v)
+                                     : TurnInAir(piece, points_[drawn], from, choice, u, v);
+  return scene_.PieceFrom(from, direction);
+}
+
+/// Weights, in a mixture of directions, of the twilight glow and of the aerosol's lobe around the
+/// sun. The result is unbiased for any weights below 1; these values keep the path weights even.
+struct Guidance {
+  double glow, aureole;
+};
+
+// Every guided turn increases the spread of the weights by a factor. At high orders
+// (thick air has hundreds) directions are sampled from the phase function only, so that the product
+// of all factors is bounded.
+Guidance GuidanceAt(const Scene& scene, const Vector& from, int order) {
+  constexpr double kGuidedOrders = 3.0;
+  const double fade = std::min(kGuidedOrders * kGuidedOrders / std::max(order * order, 1), 1.0);
+  const double mu_s = glm::dot(from, scene.sun()) / glm::length(from);
+  const double glow = 0.6 * std::clamp((0.05 - mu_s) / 0.1, 0.0, 1.0);
+  const double aureole =
+      scene.has_aerosol() ? 0.25 * std::clamp((mu_s + 0.15) / 0.1, 0.0, 1.0) : 0.0;
+  return {fade * glow, fade * aureole};
+}
+
+// Samples a cosine from the mean of the bands' phase functions, weighted by shares that need not be
+// normalised.
+// @param choice, v  uniform in [0, 1).
+double SampleAerosol(const Medium& medium, const std::vector<double>& share, double choice,
+                     double v) {
+  if (medium.mie_phase.size() == 1) return SampleCosine(medium.mie_phase.front(), v);
+  double left = choice * std::accumulate(share.begin(), share.end(), 0.0);
+  std::size_t band = 0;
+  while (band + 1 < share.size() && left >= share[band]) left -= share[band++];
+  return SampleCosine(medium.mie_phase[band], v);
+}
+
+// Returns the mean of the values, weighted by the shares.
+double MeanBy(const std::vector<double>& share, const std::vector<double>& value) {
+  return std::inner_product(share.begin(), share.end(), value.begin(), 0.0) /
+         std::accumulate(share.begin(), share.end(), 0.0);
+}
+
+Vector Tracer::TurnInAir(const Piece& piece, const Point& point, const Vector& from, double choice,
+                         double u, double v) {
+  const Medium& medium = scene_.medium();
+  double by_molecules = 0.0, by_aerosol = 0.0;
+  std::vector<double> share(weight_.size());  // share of each band in the aerosol's scattering
+  for (std::size_t band = 0; band < weight_.size(); ++band) {
+    by_molecules += weight_[band] * medium.rayleigh_scattering_per_m[band] * point.rayleigh;
+    share[band] = weight_[band] * medium.mie_scattering_per_m[band] * point.mie;
+    by_aerosol += share[band];
+  }
+  if (!(by_aerosol > 0.0)) std::fill(share.begin(), share.end(), 1.0);
+  const Guidance guidance = GuidanceAt(scene_, from, order_);
+  const double plain = 1.0 - guidance.glow - guidance.aureole;
+  const double molecules = plain * by_molecules / (by_molecules + by_aerosol);
+  const double aerosol = plain - molecules;
+  const Glow glow(from, scene_.sun(), scene_.planet_m());
+  const double azimuth = 2.0 * kPi * u;
+  Vector direction;
+  if (choice < guidance.glow) {
+    direction = glow.Sample(u, v);
+  } else if (choice < guidance.glow + guidance.aureole) {
+    const double rest = (choice - guidance.glow) / guidance.aureole;
+    direction = FrameAround(scene_.sun()).Direction(SampleAerosol(medium, share, rest, v), azimuth);
+  } else {
+    const double rest = choice - (guidance.glow + guidance.aureole + molecules);
+    const double cosine =
+        rest < 0.0 ? SampleCosine(kMolecules, v) : SampleAerosol(medium, share, rest / aerosol, v);
+    direction = FrameAround(piece.direction).Direction(cosine, azimuth);
+  }
+  const double cosine = std::clamp(glm::dot(direction, piece.direction), -1.0, 1.0);
+  const std::vector<double> rayleigh_phase = RayleighPhaseValues(medium, cosine);
+  const std::vector<double> mie_phase = MiePhaseValues(medium, cosine);
+  double density = molecules * Phase(kMolecules, cosine) + aerosol * MeanBy(share, mie_phase);
+  if (guidance.glow > 0.0) density += guidance.glow * glow.Density(direction);
+  if (guidance.aureole > 0.0) {
+    const double to_sun = std::clamp(glm::dot(direction, scene_.sun()), -1.0, 1.0);
+    density += guidance.aureole * MeanBy(share, MiePhaseValues(medium, to_sun));
+  }
+  PlaneTurn turn;
+  if (polarised_ != nullptr) turn = TurnOf(piece.direction, reference_, direction);
+  for (std::size_t band = 0; band < weight_.size(); ++band) {
+    const double by_air = medium.rayleigh_scattering_per_m[band] * point.rayleigh;
+    const double by_mie = medium.mie_scattering_per_m[band] * point.mie;
+    weight_[band] *= (polarised_ == nullptr
+                          ? by_air * rayleigh_phase[band] + by_mie * mie_phase[band]
+                          : TurnAnalyser(band, turn, by_air, by_mie, mie_phase[band], cosine)) /
+                     density;
+  }
+  reference_ = turn.reference;
+  return direction;
+}
+
+// Applies a turn to the analyser of one band; returns its weight for unpolarised light [1/(m sr)].
+// @param molecules, aerosol  scattering coefficients [1/m].
+double Tracer::TurnAnalyser(std::size_t band, const PlaneTurn& turn, double molecules,
+                            double aerosol, double mie_phase, double cosine) {
+  const Analyser by_molecules =
+      Scattered(analyser_[band], turn, RayleighMatrix(polarised_->depolarisation[band], cosine));
+  const Analyser by_aerosol =
+      Scattered(analyser_[band], turn, AerosolMatrix(band, mie_phase, cosine));
+  Analyser& sum = analyser_[band];
+  for (std::size_t k = 0; k < kStokes; ++k) {
+    for (std::size_t i = 0; i < 4; ++i)
+      sum.row[k][i] = molecules * by_molecules.row[k][i] + aerosol * by_aerosol.row[k][i];
+  }
+  const double worth = sum.row[0][0];
+  if (!(worth > 0.0)) return 0.0;
+  for (auto& row : sum.row) {
+    for (double& entry : row) entry /= worth;
+  }
+  return worth;
+}
+
+/// A direction sampled for the irradiance of a plane, and its cosine divided by its probability
+/// density.
+struct PlaneDirection {
+  Vector direction;
+  double weight;
+};
+
+PlaneDirection DirectionAbove(const Scene& scene, const Vector& from, const Vector& normal,
+                              int order, double choice, double u, double v) {
+  const bool faces_sky = glm::dot(from, normal) > 0.0;
+  const double share = faces_sky ? GuidanceAt(scene, from, order).glow : 0.0;
+  const Glow glow(from, scene.sun(), scene.planet_m());
+  const Vector direction = choice < share
+                               ? glow.Sample(u, v)
+                               : FrameAround(normal).Direction(std::sqrt(v), 2.0 * kPi * u);
+  const double cosine = std::max(glm::dot(direction, normal), 0.0);
+  double density = (1.0 - share) * cosine / kPi;
+  if (share > 0.0) density += share * glow.Density(direction);
+  return {direction, density > 0.0 ? cosine / density : 0.0};
+}
+
+Vector Tracer::TurnAtGround(const Vector& from, double choice, double u, double v) {
+  const PlaneDirection drawn =
+      DirectionAbove(scene_, from, glm::normalize(from), order_, choice, u, v);
+  for (double& weight : weight_) weight *= drawn.weight / kPi;
+  for (Analyser& analyser : analyser_) {
+    for (auto& row : analyser.row) row = {row[0]};  // the ground depolarises
+  }
+  reference_ = FrameAround(drawn.direction).x;
+  return drawn.direction;
+}
+
+/// Means over batches and their standard errors.
+struct Estimate {  // in the order of Gathered
+  std::vector<double> total, single, total_error, single_error;
+  std::size_t paths = 0;
+  bool converged = false;
+};
+
+struct Statistics {
+  std::vector<double> mean, error;
+};
+
+Statistics StatisticsOf(const std::vector<Gathered>& batches,
+                        std::vector<double> Gathered::*quantity) {
+  const double count = static_cast<double>(batches.size());
+  const std::size_t values = (batches.front().*quantity).size();
+  Statistics result{std::vector<double>(values, 0.0), std::vector<double>(values, 0.0)};
+  for (const Gathered& batch : batches) {
+    for (std::size_t k = 0; k < values; ++k) result.mean[k] += (batch.*quantity)[k] / count;
+  }
+  for (const Gathered& batch : batches) {
+    for (std::size_t k = 0; k < values; ++k) {
+      const double difference = (batch.*quantity)[k] - result.mean[k];
+      result.error[k] += difference * difference / (count * (count - 1.0));
+    }
+  }
+  for (double& error : result.error) error = std::sqrt(error);
+  return result;
+}
+
+Estimate EstimateOf(const std::vector<Gathered>& batches) {
+  Statistics total = StatisticsOf(batches, &Gathered::total);
+  Statistics single = StatisticsOf(batches, &Gathered::single);
+  return {std::move(total.mean), std::move(single.mean), std::move(total.error),
+          std::move(single.error), batches.size() * kPathsPerBatch};
+}
+
+// Returns the largest relative error of the radiance over all wavelengths with non-zero radiance.
+double WorstError(const Estimate& estimate, std::size_t bands) {
+  double worst = 0.0;
+  for (std::size_t band = 0; band < bands; ++band) {
+    if (estimate.total[band] > 0.0)
+      worst = std::max(worst, estimate.total_error[band] / estimate.total[band]);
+  }
+  return worst;
+}
+
+// Follows batches of paths until the error is small enough. `follow` follows one path.
+template <typename FollowPath>
+Estimate Run(const Scene& scene, const PolarisedScattering* polarised, const PathOptions& options,
+             const FollowPath& follow) {
+  constexpr std::size_t kFirstBatches = 32;
+  const std::size_t most =
+      std::max((options.max_paths + kPathsPerBatch - 1) / kPathsPerBatch, kFirstBatches);
+  const std::vector<double> zeros((polarised == nullptr ? 1 : kStokes) * scene.bands(), 0.0);
+  std::vector<Gathered> batches;
+  for (std::size_t wanted = kFirstBatches;;) {
+    const std::size_t done = batches.size();
+    batches.resize(wanted);
+    tbb::parallel_for(done, wanted, [&](std::size_t batch) {
+      if (options.stopped()) return;
+      Tracer tracer(scene, polarised, options.max_order);
+      Gathered sum{zeros, zeros};
+      for (std::size_t path = 0; path < kPathsPerBatch; ++path) {
+        PathRandom random(options.seed, batch, path);
+        follow(tracer, random, sum);
+      }
+      for (std::size_t k = 0; k < zeros.size(); ++k) {
+        sum.single[k] /= kPathsPerBatch;
+        sum.total[k] = sum.total[k] / kPathsPerBatch + sum.single[k];
+      }
+      batches[batch] = std::move(sum);
+    });
+    if (options.stopped()) return {zeros, zeros, zeros, zeros, 0, false};
+    Estimate estimate = EstimateOf(batches);
+    const double worst = WorstError(estimate, scene.bands());
+    estimate.converged = worst <= options.relative_error;
+    if (estimate.converged || wanted == most) return estimate;
+    const double ratio = worst / std::max(options.relative_error, 1e-9);
+    const double growth = std::clamp(1.1 * ratio * ratio, 1.25, 4.0);
+    wanted =
+        std::min(most, static_cast<std::size_t>(std::ceil(static_cast<double>(wanted) * growth)));
+  }
+}
+
+void RequireValid(const PathOptions& options) {
+  if (options.max_order < 1) {
+    throw InputError(fmt::format("max_order is {}; it must be 1 or more", options.max_order));
+  }
+  if (!(options.relative_error >= 0.0)) {
+    throw InputError(
+        fmt::format("relative_error is {}; it must be 0 or more", options.relative_error));
+  }
+}
+
+void RequireValid(const PolarisedScattering& scattering, std::size_t bands) {
+  if (scattering.depolarisation.size() != bands) {
+    throw InputError(fmt::format("depolarisation has {} values; {} wavelengths need one each",
+                                 scattering.depolarisation.size(), bands));
+  }
+  for (const double value : scattering.depolarisation)
+    RequireInRange(value, 0.0, kLargestDepolarisation, "depolarisation");
+  const std::size_t aerosols = scattering.aerosol.size();
+  if (aerosols > 1 && aerosols != bands) {
+    throw InputError(
+        fmt::format("aerosol has {} matrices; it must have none, one or {}", aerosols, bands));
+  }
+  for (const SphereRatios& ratios : scattering.aerosol) {
+    const std::size_t angles = ratios.a3.size();
+    if (angles < 2 || ratios.b1.size() != angles || ratios.b2.size() != angles)
+      throw InputError("aerosol has a matrix with fewer than 2 angles, or not the same for all");
+  }
+}
+
+Vector SunDirection(double mu_s) {
+  return {std::sqrt(std::max((1.0 - mu_s) * (1.0 + mu_s), 0.0)), 0.0, mu_s};
+}
+
+// Returns the view direction from its zenith and scattering angles; the sun is in the plane of x
+// and not to the left of the view.
+Vector ViewDirection(const ViewRay& ray) {
+  const double sine = std::sqrt(std::max((1.0 - ray.mu) * (1.0 + ray.mu), 0.0));
+  const double sun_sine = std::sqrt(std::max((1.0 - ray.mu_s) * (1.0 + ray.mu_s), 0.0));
+  const double product = sine * sun_sine;
+  const double cosine =
+      product > 0.0 ? std::clamp((ray.nu - ray.mu * ray.mu_s) / product, -1.0, 1.0) : 1.0;
+  const double across = std::sqrt(std::max((1.0 - cosine) * (1.0 + cosine), 0.0));
+  return {sine * cosine, sine * across, ray.mu};
+}
+
+// Returns the part of the view ray inside the shell.
+Piece ViewPiece(const Medium& medium, const ViewRay& ray, const RayExtent& extent) {
+  Piece piece;
+  const double radius = medium.planet_radius_m + std::max(ray.altitude_m, 0.0);
+  piece.direction = ViewDirection(ray);
+  piece.origin = Vector(0.0, 0.0, radius) + extent.begin_m * piece.direction;
+  piece.perigee_m = radius * std::sqrt(std::max((1.0 - ray.mu) * (1.0 + ray.mu), 0.0));
+  piece.s0_m = radius * ray.mu + extent.begin_m;
+  piece.length_m = extent.end_m - extent.begin_m;
+  piece.ends_on_ground = BringsLightOfGround(ray, extent);
+  return piece;
+}
+
+}  // namespace
+
+PolarisedScattering ScatteringOf(const Medium& medium) {
+  PolarisedScattering scattering;
+  for (std::size_t band = 0; band < medium.wavelengths_nm.size(); ++band)
+    scattering.depolarisation.push_back(Depolarisation(medium, band));
+  return scattering;
+}
+
+PathTracedRadiance TraceRadiance(const Medium& medium, const ViewRay& ray,
+                                 const PathOptions& options) {
+  Validate(medium);
+  if (medium.polarised) return TraceStokes(medium, ScatteringOf(medium), ray, options).i;
+  RequireValid(options);
+  const RayExtent extent = ExtentOf(ray, medium.planet_radius_m, medium.atmosphere_height_m);
+  const Scene scene(medium, SunDirection(ray.mu_s));
+  const Piece piece = ViewPiece(medium, ray, extent);
+  Estimate estimate =
+      Run(scene, nullptr, options, [&](Tracer& tracer, PathRandom& random, Gathered& light) {
+        tracer.Follow(piece, 1.0, random, light);
+      });
+  return {std::move(estimate.total),
+          std::move(estimate.single),
+          std::move(estimate.total_error),
+          std::move(estimate.single_error),
+          estimate.paths,
+          estimate.converged};
+}
+
+PathTracedStokes TraceStokes(const Medium& medium, const PolarisedScattering& scattering,
+                             const ViewRay& ray, const PathOptions& options) {
+  Validate(medium);
+  RequireValid(options);
+  RequireValid(scattering, medium.wavelengths_nm.size());
+  const RayExtent extent = ExtentOf(ray, medium.planet_radius_m, medium.atmosphere_height_m);
+  const Scene scene(medium, SunDirection(ray.mu_s));
+  const Piece piece = ViewPiece(medium, ray, extent);
+  const Estimate estimate =
+      Run(scene, &scattering, options, [&](Tracer& tracer, PathRandom& random, Gathered& light) {
+        tracer.Follow(piece, 1.0, random, light);
+      });
+  const auto part = [&](std::size_t k) {
+    const auto of = [&](const std::vector<double>& values) {
+      const auto begin = values.begin() + static_cast<std::ptrdiff_t>(k * scene.bands());
+      return std::vector<double>(begin, begin + static_cast<std::ptrdiff_t>(scene.bands()));
+    };
+    return PathTracedRadiance{of(estimate.total),       of(estimate.single),
+                              of(estimate.total_error), of(estimate.single_error),
+                              estimate.paths,           estimate.converged};
+  };
+  return {part(0), part(1), part(2)};
+}
+
+PathTracedIrradiance TraceIrradiance(const Medium& medium, double altitude_m, double mu_s,
+                                     PlaneSide side, const PathOptions& options) {
+  Validate(medium);
+  RequireValid(options);
+  RequireInRange(altitude_m, 0.0, medium.atmosphere_height_m, "altitude_m");
+  RequireInRange(mu_s, -1.0, 1.0, "mu_s (cosine of the sun zenith angle)");
+  const Scene scene(medium, SunDirection(mu_s));
+  const Vector from(0.0, 0.0, medium.planet_radius_m + altitude_m);
+  const Vector normal(0.0, 0.0, side == PlaneSide::kFromAbove ? 1.0 : -1.0);
+  const PolarisedScattering polarised = ScatteringOf(medium);
+  Estimate estimate =
+      Run(scene, medium.polarised ? &polarised : nullptr, options,
+          [&](Tracer& tracer, PathRandom& random, Gathered& light) {
+            const double choice = random.Next();
+            const double u = random.Next();
+            const double v = random.Next();
+            const PlaneDirection drawn = DirectionAbove(scene, from, normal, 0, choice, u, v);
+            if (drawn.weight <= 0.0) return;
+            tracer.Follow(scene.PieceFrom(from, drawn.direction), drawn.weight, random, light);
+          });
+  estimate.total.resize(scene.bands());  // Q and U are not defined for irradiance
+  estimate.total_error.resize(scene.bands());
+  return {std::move(estimate.total), std::move(estimate.total_error), estimate.paths,
+          estimate.converged};
+}
+
+}  // namespace alpenglow::atmosphere::judge

@@ -1,0 +1,514 @@
+// SPDX-License-Identifier: MIT
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <string>
+#include <vector>
+
+#include "atmosphere/medium/aerosol_mixture.h"
+#include "atmosphere/medium/medium.h"
+#include "atmosphere/colour/spectrum.h"
+#include "atmosphere/base/error.h"
+#include "tests/fixtures/fault_of.h"
+
+namespace alpenglow::atmosphere {
+namespace {
+
+using testing::HasSubstr;
+using testing::StartsWith;
+
+Medium Read(const std::string& text) { return MediumFromToml(text, "a.toml"); }
+
+std::string FileFaultOf(const std::string& text) {
+  return tests::FaultOf([&] { return Read(text); });
+}
+
+// The example of the manual: everything given, wavelengths from red to blue.
+constexpr const char* kComplete = R"(preset = "bruneton2017"
+[planet]
+radius_m = 6360000.0
+atmosphere_top_m = 60000.0              # height of the top above the ground
+ground_albedo = 0.1                     # one value or one per wavelength
+[spectrum]
+wavelengths_nm = [680.0, 550.0, 440.0]
+solar_irradiance = [1.474, 1.8504, 1.91198]        # W m^-2 nm^-1 at the top, 1 au
+[rayleigh]
+scattering_per_m = [5.802e-6, 13.558e-6, 33.1e-6]  # at the ground; one per wavelength
+scale_height_m = 8000.0
+[mie]
+scattering_per_m = [3.996e-6, 3.996e-6, 3.996e-6]
+extinction_per_m = [4.440e-6, 4.440e-6, 4.440e-6]
+scale_height_m = 1200.0
+phase = "cornette-shanks"
+g = 0.8
+[ozone]                                 # tent profile
+absorption_per_m = [0.650e-6, 1.881e-6, 0.085e-6]  # at the peak
+bottom_m = 10000.0
+peak_m = 25000.0
+top_m = 40000.0
+)";
+
+TEST(AtmosphereFile, NothingGivenIsTheEarth) {
+  EXPECT_EQ(Read(""), MediumPreset("earth"));
+  EXPECT_EQ(Read("# only a comment\n[planet]\n"), MediumPreset("earth"));
+  EXPECT_EQ(Read("\xef\xbb\xbfpreset = \"hazy\"\r\n"), MediumPreset("hazy"))
+      << "a byte order mark and CRLF are harmless";
+}
+
+TEST(AtmosphereFile, DescendingListsOfTheManualAreThePresetAscending) {
+  EXPECT_EQ(Read(kComplete), MediumPreset("bruneton2017"));
+}
+
+TEST(AtmosphereFile, AscendingAndDescendingFilesGiveTheSameMedium) {
+  const Medium ascending = Read(
+      "[spectrum]\nwavelengths_nm = [450, 550]\nsolar_irradiance = [2.0, 1.8]\n"
+      "[planet]\nground_albedo = [0.1, 0.2]\n");
+  const Medium descending = Read(
+      "[spectrum]\nwavelengths_nm = [550, 450]\nsolar_irradiance = [1.8, 2.0]\n"
+      "[planet]\nground_albedo = [0.2, 0.1]\n");
+  EXPECT_EQ(ascending, descending);
+  EXPECT_EQ(MediumHash(ascending), MediumHash(descending));
+  EXPECT_EQ(descending.ground_albedo, (std::vector<double>{0.1, 0.2}));
+}
+
+TEST(AtmosphereFile, EveryPhaseParameterOfADescendingFileIsReversed) {
+  const std::string spectrum = "preset = \"earth\"\n[spectrum]\nwavelengths_nm = ";
+  const std::string phase = "[mie]\nphase = \"double-henyey-greenstein\"\n";
+  const Medium ascending = Read(spectrum + "[450, 550, 650]\n" + phase +
+                                "g = [0.9, 0.8, 0.7]\ng_back = [-0.1, -0.2, -0.3]\n"
+                                "back_weight = [0.1, 0.2, 0.3]\n");
+  const Medium descending = Read(spectrum + "[650, 550, 450]\n" + phase +
+                                 "g = [0.7, 0.8, 0.9]\ng_back = [-0.3, -0.2, -0.1]\n"
+                                 "back_weight = [0.3, 0.2, 0.1]\n");
+  EXPECT_EQ(ascending, descending);
+  EXPECT_EQ(MediumHash(ascending), MediumHash(descending));
+  EXPECT_EQ(descending.mie_phase.front().g_back, -0.1) << "at 450 nm";
+}
+
+TEST(AtmosphereFile, ADescendingListMayBeTheOnlyOneOfAPhaseFunction) {
+  const auto with = [&](const char* wavelengths, const char* alpha) {
+    return Read(std::string("[spectrum]\nwavelengths_nm = ") + wavelengths +
+                "\n[mie]\nphase = \"draine\"\ng = 0.5\nalpha = " + alpha + "\n");
+  };
+  EXPECT_EQ(with("[450, 550, 650]", "[0.1, 0.2, 0.3]"), with("[650, 550, 450]", "[0.3, 0.2, 0.1]"));
+}
+
+TEST(AtmosphereFile, WhatIsNotGivenIsThePresets) {
+  const Medium medium = Read("preset = \"hazy\"\n[mie]\nscale_height_m = 2000\n");
+  Medium expected = MediumPreset("hazy");
+  expected.mie_scale_height_m = 2000.0;
+  expected.name = "custom (from hazy)";
+  EXPECT_EQ(medium, expected);
+}
+
+TEST(AtmosphereFile, BandsChooseTheWavelengths) {
+  for (const int bands : kWavelengthSetSizes) {
+    const Medium medium = Read("[spectrum]\nbands = " + std::to_string(bands) + "\n");
+    EXPECT_EQ(medium.wavelengths_nm, WavelengthSet(bands));
+  }
+  EXPECT_EQ(FileFaultOf("[spectrum]\nbands = 7\n"),
+            "a.toml:2: spectrum.bands is 7; it must be one of 3, 4, 5, 6, 8, 16, 40");
+  EXPECT_THAT(FileFaultOf("[spectrum]\nbands = 4\nwavelengths_nm = [500]\n"),
+              HasSubstr("give one of"));
+}
+
+TEST(AtmosphereFile, LightIsPolarisedByTheGasOfThePresetUnlessTheFileSaysOtherwise) {
+  EXPECT_TRUE(Read("").polarised);
+  EXPECT_FALSE(Read("preset = \"bruneton2017\"\n").polarised) << "as others have it";
+  EXPECT_EQ(Read("polarised = true\n"), MediumPreset("earth"));
+  for (const char* preset : {"earth", "mars", "bruneton2017"}) {
+    const auto read = [preset](const std::string& polarised) {
+      return Read("polarised = " + polarised + "\npreset = \"" + preset + "\"\n");
+    };
+    const Medium here = MediumPreset(preset);
+    EXPECT_EQ(MediumHash(read("true")), MediumHash(InPolarisedLight(here, preset))) << preset;
+    EXPECT_EQ(MediumHash(read("false")), MediumHash(InScalarLight(here))) << preset;
+  }
+  EXPECT_EQ(Read("[rayleigh]\ndepolarisation = 0.04\n").rayleigh_depolarisation,
+            std::vector<double>{0.04});
+  const Medium reversed = Read(
+      "polarised = false\n[spectrum]\nwavelengths_nm = [600, 500]\n"
+      "[rayleigh]\ndepolarisation = [0.01, 0.02]\n");
+  EXPECT_EQ(reversed.rayleigh_depolarisation, (std::vector<double>{0.02, 0.01}));
+  EXPECT_FALSE(reversed.polarised) << "a shape of scattering of its own";
+}
+
+TEST(AtmosphereFile, AGivenRadiusIsASphere) {
+  EXPECT_FALSE(Read("[planet]\nradius_m = 6371000\n").follows_wgs84);
+  EXPECT_TRUE(Read("[planet]\nradius_m = 6371000\nfollows_wgs84 = true\n").follows_wgs84);
+}
+
+TEST(AtmosphereFile, AScaleHeightAloneMakesMoleculesOneExponential) {
+  EXPECT_EQ(Read("[rayleigh]\nscale_height_m = 7000\n").rayleigh_deficit, MoleculeDeficit{});
+  const Medium both =
+      Read("[rayleigh]\nscale_height_m = 7000\ndeficit = 0.3\ndeficit_scale_height_m = 2500\n");
+  EXPECT_EQ(both.rayleigh_deficit, (MoleculeDeficit{0.3, 2500.0}));
+  EXPECT_NEAR(MoleculeColumn_m(both), 1.3 * 7000.0 - 0.3 * 2500.0, 1e-9);
+  EXPECT_NEAR(MoleculeDensity(both, 5000.0), 1.3 * std::exp(-5.0 / 7.0) - 0.3 * std::exp(-2.0),
+              1e-15);
+  EXPECT_THAT(FileFaultOf("[rayleigh]\nscale_height_m = 7000\ndeficit_scale_height_m = 2500\n"),
+              HasSubstr("no effect"));
+  EXPECT_THAT(FileFaultOf("[rayleigh]\ndeficit = 2\n"), HasSubstr("[0, 1]"));
+}
+
+TEST(AtmosphereFile, RaysBendAsInAlmanacsUnlessTheFileGivesTheDensity) {
+  EXPECT_EQ(Read("[rayleigh]\nrefraction = \"molecules\"\n").refraction, RefractionBy::kMolecules);
+  EXPECT_EQ(Read("[mie]\nscale_height_m = 1000\n").refraction, RefractionBy::kAlmanacs);
+  EXPECT_EQ(Read("[rayleigh]\nscale_height_m = 7000\n").refraction, RefractionBy::kMolecules);
+  EXPECT_EQ(Read("[rayleigh]\nscale_height_m = 7000\nrefraction = \"almanacs\"\n").refraction,
+            RefractionBy::kAlmanacs);
+  EXPECT_EQ(Read("preset = \"mars\"\n").refraction, RefractionBy::kMolecules);
+  EXPECT_THAT(FileFaultOf("[rayleigh]\nrefraction = \"none\"\n"), HasSubstr("molecules, almanacs"));
+}
+
+TEST(AtmosphereFile, VisibilityIsWhereContrastFallsToTwoPerCent) {
+  const Medium medium =
+      Read("[spectrum]\nwavelengths_nm = [550]\n[aerosol]\nvisibility_m = 23000\n");
+  const double extinction = medium.mie_extinction_per_m[0] + medium.rayleigh_scattering_per_m[0];
+  EXPECT_NEAR(std::exp(-23000.0 * extinction), 0.02, 1e-5) << "3.912 has four digits";
+  EXPECT_THAT(FileFaultOf("[aerosol]\nvisibility_m = 400000\n"),
+              HasSubstr("the molecules alone limit it to 340"));
+}
+
+TEST(AtmosphereFile, VisibilityDoesNotDependOnTheBands) {
+  const Medium one = Read("[spectrum]\nwavelengths_nm = [550]\n[aerosol]\nvisibility_m = 23000\n");
+  const Medium four =
+      Read("[spectrum]\nwavelengths_nm = [450, 500, 590, 650]\n[aerosol]\nvisibility_m = 23000\n");
+  const double at_550 = four.mie_extinction_per_m[1] * std::pow(550.0 / 500.0, -1.3);
+  EXPECT_NEAR(at_550, one.mie_extinction_per_m[0], 1e-4 * at_550)
+      << "molecules at 550 nm are interpolated between the bands";
+}
+
+TEST(AtmosphereFile, TurbidityIsTheOpticalDepthOverThatOfCleanAir) {
+  const Medium medium = Read("[spectrum]\nwavelengths_nm = [550]\n[aerosol]\nturbidity = 3\n");
+  const double aerosol = medium.mie_extinction_per_m[0] * medium.mie_scale_height_m;
+  const double molecules = medium.rayleigh_scattering_per_m[0] * MoleculeColumn_m(medium);
+  EXPECT_NEAR((aerosol + molecules) / molecules, 3.0, 1e-12);
+  EXPECT_THAT(FileFaultOf("[aerosol]\nturbidity = 0.5\n"), HasSubstr("[1, 1000]"));
+}
+
+TEST(AtmosphereFile, OpticalDepthAndExponentSetTheExtinctionAndKeepTheAlbedo) {
+  const Medium medium = Read(
+      "[spectrum]\nwavelengths_nm = [450, 550]\n[mie]\nscale_height_m = 2000\n"
+      "[aerosol]\noptical_depth_550 = 0.1\nangstrom_exponent = 0.5\n");
+  EXPECT_NEAR(medium.mie_extinction_per_m[1] * 2000.0, 0.1, 1e-15);
+  EXPECT_NEAR(medium.mie_extinction_per_m[0] / medium.mie_extinction_per_m[1],
+              std::pow(450.0 / 550.0, -0.5), 1e-12);
+  EXPECT_NEAR(medium.mie_scattering_per_m[1] / medium.mie_extinction_per_m[1], 0.9253, 1e-12);
+  const Medium grey = Read("[aerosol]\noptical_depth_550 = 0.1\nsingle_scattering_albedo = 1\n");
+  EXPECT_EQ(grey.mie_scattering_per_m, grey.mie_extinction_per_m);
+}
+
+TEST(AtmosphereFile, AerosolIsGivenInOneWayOnly) {
+  EXPECT_THAT(FileFaultOf("[aerosol]\nturbidity = 2\nvisibility_m = 23000\n"),
+              StartsWith("a.toml:2: aerosol.turbidity is given beside aerosol.visibility_m"));
+  EXPECT_THAT(FileFaultOf("[aerosol]\nangstrom_exponent = 1\n"),
+              HasSubstr("aerosol needs mixture or one of"));
+  EXPECT_THAT(FileFaultOf("[mie]\nscattering_per_m = [0, 0, 0, 0]\n[aerosol]\nturbidity = 2\n"),
+              StartsWith("a.toml:2: mie.scattering_per_m is given beside [aerosol]"));
+}
+
+TEST(AtmosphereFile, DobsonIsTheColumnOfTheLayer) {
+  const Medium thin = Read("[ozone]\ndobson = 150\n");
+  const Medium narrow = Read("[ozone]\ndobson = 300\nbottom_m = 20000\ntop_m = 35000\n");
+  const Medium earth = MediumPreset("earth");
+  for (std::size_t i = 0; i < earth.wavelengths_nm.size(); ++i) {
+    EXPECT_NEAR(thin.ozone_absorption_per_m[i], earth.ozone_absorption_per_m[i] / 2.0, 1e-18);
+    EXPECT_NEAR(narrow.ozone_absorption_per_m[i],
+                earth.ozone_absorption_per_m[i] * EquivalentDepth_m(earth.ozone) / 7500.0, 1e-18);
+  }
+  EXPECT_THAT(FileFaultOf("[ozone]\ndobson = 300\nabsorption_per_m = [0, 0, 0, 0]\n"),
+              HasSubstr("give one of them"));
+  EXPECT_THAT(FileFaultOf("[ozone]\ndobson = 300\nbottom_m = 40000\n"),
+              HasSubstr("ozone.peak_m is 25000; it must lie between"));
+}
+
+TEST(AtmosphereFile, OzoneHasTwoProfilesOfWhichTheEdgesMakeATent) {
+  const Medium earth = MediumPreset("earth");
+  EXPECT_EQ(Read("[ozone]\nprofile = \"tent\"\n").ozone, OzoneLayer{});
+  EXPECT_EQ(Read("[ozone]\nbottom_m = 12000\n").ozone, (OzoneLayer{12e3, 25e3, 40e3}));
+  EXPECT_EQ(Read("[ozone]\npeak_m = 20000\n").ozone, SmoothOzone(20000.0));
+  EXPECT_EQ(Read("preset = \"bruneton2017\"\n[ozone]\nprofile = \"smooth\"\n").ozone,
+            SmoothOzone());
+  const Medium tent = Read("[ozone]\nprofile = \"tent\"\n");
+  EXPECT_NEAR(tent.ozone_absorption_per_m[1] * 15000.0,
+              earth.ozone_absorption_per_m[1] * EquivalentDepth_m(earth.ozone), 1e-12)
+      << "another profile keeps the column";
+  EXPECT_THAT(FileFaultOf("[ozone]\nprofile = \"box\"\n"), HasSubstr("one of smooth, tent"));
+  EXPECT_THAT(FileFaultOf("[ozone]\nprofile = \"smooth\"\ntop_m = 60000\n"),
+              HasSubstr("ozone.top_m has no effect"));
+}
+
+TEST(AtmosphereFile, PhaseParametersBelongToTheirPhase) {
+  const Medium medium = Read(
+      "[mie]\nphase = \"double-henyey-greenstein\"\ng = 0.9\ng_back = -0.2\nback_weight = 0.1\n");
+  EXPECT_EQ(medium.mie_phase.front().kind, PhaseKind::kDoubleHenyeyGreenstein);
+  EXPECT_EQ(medium.mie_phase.front().g_back, -0.2);
+  EXPECT_EQ(Read("[mie]\ng = 0.7\n").mie_phase.front().g, 0.7);
+  EXPECT_EQ(Read("[mie]\nphase = \"rayleigh\"\n").mie_phase.front().kind, PhaseKind::kRayleigh);
+  EXPECT_THAT(FileFaultOf("[mie]\nalpha = 0.5\n"), StartsWith("a.toml:2: mie.alpha has no effect"));
+  EXPECT_THAT(FileFaultOf("[mie]\nphase = \"henyey-greenstein\"\n"), HasSubstr("give mie.g too"));
+  EXPECT_THAT(FileFaultOf("[mie]\nphase = \"mie\"\n"),
+              StartsWith("a.toml:2: mie.phase is \"mie\"; it must be one of rayleigh"));
+  EXPECT_EQ(FileFaultOf("[mie]\n\ng = 1.0\n"), "a.toml:3: mie.g is 1; it must lie in (-1, 1)");
+}
+
+// Files that were written when the presets of the earth had one lobe.
+TEST(AtmosphereFile, ALobeMayStandForTheTableOfAPreset) {
+  const Medium lobe = Read("[mie]\ng = 0.76\n");
+  EXPECT_EQ(lobe.mie_phase,
+            (std::vector<PhaseFunction>{{.kind = PhaseKind::kCornetteShanks, .g = 0.76}}));
+  EXPECT_EQ(Read("[mie]\nphase = \"cornette-shanks\"\ng = 0.76\n").mie_phase, lobe.mie_phase);
+  const Medium of_preset = Read("[mie]\nphase = \"cornette-shanks\"\n");
+  EXPECT_EQ(of_preset.mie_phase.size(), 1U);
+  EXPECT_NEAR(MeanCosine(of_preset.mie_phase.front()), 0.7034, 7e-4) << "OPAC's, at 550 nm";
+  const Medium infrared = Read(
+      "[spectrum]\nwavelengths_nm = [1000]\nsolar_irradiance = [0.7]\n[planet]\n"
+      "ground_albedo = [0.2]\n[rayleigh]\nscattering_per_m = [1e-6]\n[mie]\n"
+      "scattering_per_m = [1e-5]\nextinction_per_m = [1e-5]\n[ozone]\nabsorption_per_m = [0]\n");
+  EXPECT_EQ(infrared.mie_phase, AerosolPhase("earth", {1000.0})) << "as at 650 nm";
+}
+
+TEST(AtmosphereFile, PhaseParametersMayBeOnePerWavelength) {
+  const Medium medium = Read(
+      "[spectrum]\nwavelengths_nm = [650, 550, 450]\n[mie]\nphase = "
+      "\"double-henyey-greenstein\"\ng = [0.8, 0.85, 0.9]\ng_back = -0.2\nback_weight = 0.1\n");
+  ASSERT_EQ(medium.mie_phase.size(), 3U);
+  EXPECT_EQ(medium.mie_phase[0].g, 0.9) << "450 nm: lists that descend are stored ascending";
+  EXPECT_EQ(MiePhase(medium, 2).g, 0.8);
+  EXPECT_EQ(MiePhase(medium, 2).g_back, -0.2);
+  EXPECT_EQ(Read("[mie]\ng = [0.7, 0.7, 0.7, 0.7]\n").mie_phase.size(), 1U)
+      << "four times the same is one for all";
+  EXPECT_THAT(FileFaultOf("[mie]\ng = [0.7, 0.8]\n"),
+              StartsWith("a.toml:2: mie.g has 2 values; it must have 4, one per wavelength"));
+}
+
+TEST(AtmosphereFile, FogIsKnownByItsDroplets) {
+  const Medium medium = Read("[mie]\nphase = \"fog\"\ndroplet_diameter_um = 12\n");
+  EXPECT_EQ(medium.mie_phase.front(), FogPhase(12.0));
+  EXPECT_THAT(FileFaultOf("[mie]\nphase = \"fog\"\n"),
+              HasSubstr("give mie.droplet_diameter_um too"));
+  EXPECT_THAT(FileFaultOf("[mie]\nphase = \"fog\"\ndroplet_diameter_um = 60\n"),
+              StartsWith("a.toml:3: mie.droplet_diameter_um is 60; it must lie in [1.5, 50]"));
+  EXPECT_THAT(FileFaultOf("[mie]\ndroplet_diameter_um = 10\n"),
+              HasSubstr("no effect without phase = \"fog\""));
+  EXPECT_THAT(FileFaultOf("[mie]\nphase = \"fog\"\ndroplet_diameter_um = 12\ng = 0.8\n"),
+              HasSubstr("mie.g has no effect"));
+}
+
+TEST(AtmosphereFile, APhaseFunctionMayBeAFileBesideTheAtmosphere) {
+  const std::filesystem::path folder =
+      std::filesystem::path(testing::TempDir()) / "alpenglow_phase_file";
+  std::filesystem::create_directory(folder);
+  {
+    std::ofstream csv(folder / "dust.csv");
+    csv << "wavelength_nm,angle_deg,phase_per_sr\n";
+    for (const double wavelength : {400, 700}) {
+      for (int angle = 0; angle <= 180; angle += 3) {
+        const double c = std::cos(angle * 3.14159265358979 / 180.0);
+        csv << wavelength << ',' << angle << ','
+            << Phase({.kind = PhaseKind::kHenyeyGreenstein, .g = wavelength < 500 ? 0.3 : 0.5}, c)
+            << '\n';
+      }
+    }
+    std::ofstream(folder / "a.toml") << "[mie]\nphase = \"table\"\nphase_file = \"dust.csv\"\n";
+    std::ofstream(folder / "b.toml") << "[mie]\nphase = \"table\"\nphase_file = \"none.csv\"\n";
+  }
+  const Medium medium = ReadMedium(folder / "a.toml");
+  ASSERT_EQ(medium.mie_phase.size(), medium.wavelengths_nm.size());
+  const double at_445 = (445.0 - 400.0) / 300.0;
+  EXPECT_NEAR(MeanCosine(medium.mie_phase[0]), 0.3 + 0.2 * at_445, 1e-3)
+      << "linear between 400 and 700 nm";
+  EXPECT_THROW(static_cast<void>(ReadMedium(folder / "b.toml")), InputError);
+  std::filesystem::remove_all(folder);
+  EXPECT_THAT(FileFaultOf("[mie]\nphase = \"table\"\n"), HasSubstr("give mie.phase_file too"));
+  EXPECT_THAT(FileFaultOf("[mie]\nphase_file = \"x.csv\"\n"),
+              HasSubstr("no effect without phase = \"table\""));
+  EXPECT_THAT(
+      FileFaultOf("[mie]\nphase = \"table\"\nphase_angles_deg = [0, 45, 90, 135, 180]\n"
+                  "phase_per_sr = [0.08, 0.08]\n"),
+      StartsWith("a.toml:4: mie.phase_per_sr has 2 values; it must have 5, one per angle, or "
+                 "20, one per angle and wavelength"));
+  EXPECT_THAT(FileFaultOf("[mie]\nphase = \"table\"\nphase_angles_deg = [0, 45, 90, 135, 180]\n"
+                          "phase_per_sr = [1, 1, 1, 1, 1]\n"),
+              StartsWith("a.toml:4: mie.phase: the integral over the sphere is 12.566"));
+}
+
+TEST(AtmosphereFile, AMixtureBringsSpectrumLayerAndPhaseFunction) {
+  const Medium desert = Read("[aerosol]\nmixture = \"desert\"\n");
+  const AerosolOptics optics = AerosolMixture("desert", desert.wavelengths_nm);
+  EXPECT_EQ(desert.mie_extinction_per_m, optics.extinction_per_m);
+  EXPECT_EQ(desert.mie_scattering_per_m, optics.scattering_per_m);
+  EXPECT_EQ(desert.mie_scale_height_m, optics.scale_height_m);
+  EXPECT_EQ(desert.mie_phase, optics.phase);
+}
+
+TEST(AtmosphereFile, TheLoadOfAMixtureMayBeGivenInEveryWay) {
+  const std::string mixture = "mixture = \"maritime_clean\"\n";
+  const std::string green = "[spectrum]\nwavelengths_nm = [450, 550, 650]\n[aerosol]\n" + mixture;
+  const Medium own = Read(green);
+  const Medium thin = Read(green + "optical_depth_550 = 0.1\n");
+  EXPECT_NEAR(thin.mie_extinction_per_m[1] * thin.mie_scale_height_m, 0.1, 1e-15);
+  EXPECT_NEAR(thin.mie_extinction_per_m[0] / thin.mie_extinction_per_m[2],
+              own.mie_extinction_per_m[0] / own.mie_extinction_per_m[2], 1e-13)
+      << "the spectrum is the mixture's";
+  const Medium hazy = Read(green + "visibility_m = 20000\n");
+  EXPECT_NEAR(
+      std::exp(-20000.0 * (hazy.mie_extinction_per_m[1] + hazy.rayleigh_scattering_per_m[1])), 0.02,
+      1e-5)
+      << "Koschmieder: a black wall at the visibility keeps 2 % of its contrast";
+  const Medium turbid = Read(green + "turbidity = 3\n");
+  EXPECT_NEAR(turbid.mie_extinction_per_m[1] * turbid.mie_scale_height_m,
+              2.0 * turbid.rayleigh_scattering_per_m[1] * MoleculeColumn_m(turbid), 1e-12);
+  EXPECT_THAT(FileFaultOf("[aerosol]\n" + mixture + "angstrom_exponent = 1\n"),
+              StartsWith("a.toml:3: aerosol.angstrom_exponent has no effect"));
+  EXPECT_THAT(FileFaultOf("[aerosol]\nmixture = \"dessert\"\n"), HasSubstr("did you mean desert?"));
+  EXPECT_THAT(FileFaultOf("[mie]\ng = 0.7\n[aerosol]\n" + mixture),
+              StartsWith("a.toml:2: mie.g has no effect"));
+  const Medium fog =
+      Read("[mie]\nphase = \"fog\"\ndroplet_diameter_um = 10\n[aerosol]\n" + mixture);
+  EXPECT_EQ(fog.mie_phase.front(), FogPhase(10.0)) << "[mie] may say otherwise";
+}
+
+TEST(AtmosphereFile, WavelengthsBeyondTheDataOfThePresetNeedTheirLists) {
+  EXPECT_THAT(
+      FileFaultOf("[spectrum]\nwavelengths_nm = [550, 900]\n"),
+      StartsWith("a.toml:2: spectrum.wavelengths_nm leaves the data of preset earth (360 to "
+                 "830 nm); give spectrum.solar_irradiance too"));
+  EXPECT_THAT(FileFaultOf("preset = \"bruneton2017\"\n[spectrum]\nbands = 4\n"),
+              HasSubstr("(440, 550 and 680 nm); give spectrum.solar_irradiance too"));
+  const Medium infrared = Read(
+      "[spectrum]\nwavelengths_nm = [900]\nsolar_irradiance = [0.91]\n[planet]\nground_albedo = "
+      "0.3\n"
+      "[rayleigh]\nscattering_per_m = [1.56e-6]\n"
+      "[aerosol]\noptical_depth_550 = 0.1\nsingle_scattering_albedo = 0.9\n[ozone]\ndobson = "
+      "300\n");
+  EXPECT_EQ(infrared.wavelengths_nm, std::vector<double>{900.0});
+  EXPECT_EQ(infrared.ozone_absorption_per_m, std::vector<double>{0.0});
+  EXPECT_THAT(FileFaultOf("[spectrum]\nwavelengths_nm = [300]\nsolar_irradiance = [0.5]\n"
+                          "[ozone]\ndobson = 300\n"),
+              HasSubstr("give ozone.absorption_per_m"));
+}
+
+TEST(AtmosphereFile, UnknownKeysSuggestTheNearest) {
+  EXPECT_EQ(FileFaultOf("[planet]\nradius = 6e6\n"),
+            "a.toml:2: unknown key planet.radius; did you mean radius_m?");
+  EXPECT_EQ(FileFaultOf("[rayleigh]\n\nscatering_per_m = [1]\n"),
+            "a.toml:3: unknown key rayleigh.scatering_per_m; did you mean scattering_per_m?");
+  EXPECT_THAT(FileFaultOf("[planets]\n"), HasSubstr("unknown key planets; did you mean planet?"));
+  EXPECT_EQ(FileFaultOf("\npreset = \"earht\"\n"),
+            "a.toml:2: preset is \"earht\"; it must be one of earth, clear-mountain, hazy, mars, "
+            "bruneton2017; did you mean earth?");
+}
+
+struct BadInput {
+  const char* text;
+  const char* message;
+};
+
+TEST(AtmosphereFile, BadValuesAreRefusedWithFileLineKeyValueAndRange) {
+  const BadInput inputs[] = {
+      {"[planet]\nradius_m = \"big\"\n", "a.toml:2: planet.radius_m is the text \"big\""},
+      {"[planet]\nradius_m = true\n", "a.toml:2: planet.radius_m is true; it must be a number"},
+      {"[planet]\nradius_m = -1\n", "a.toml:2: planet.radius_m is -1; it must lie in [1000, "},
+      {"[planet]\nradius_m = nan\n", "a.toml:2: planet.radius_m is nan; it must lie in [1000, "},
+      {"[planet]\nradius_m = inf\n", "a.toml:2: planet.radius_m is inf; it must lie in [1000, "},
+      {"[planet]\nradius_m = 1e999\n", "a.toml:2: "},
+      {"[planet]\nradius_m = 30000\n",
+       "a.toml:2: planet.radius_m is 30000; with the smooth ozone layer of ozone.peak_m 22000 it "
+       "must lie in [198000, 100000000]"},
+      {"[planet]\natmosphere_top_m = 30000\n",
+       "a.toml:2: planet.atmosphere_top_m is 30000; with ozone up to 66000 it must lie in "
+       "[59400, "},
+      {"[mie]\nscale_height_m = 1\n",
+       "a.toml:2: mie.scale_height_m is 1; it must lie in [100, 200000]"},
+      {"[planet]\nradius_m = [1]\n", "a.toml:2: planet.radius_m is a list"},
+      {"[planet]\nradius_m = 2020-01-01\n", "a.toml:2: planet.radius_m is a date"},
+      {"[planet]\nground_albedo = 1.5\n", "a.toml:2: planet.ground_albedo is 1.5"},
+      {"[planet]\nground_albedo = [0.1, 0.2]\n",
+       "a.toml:2: planet.ground_albedo has 2 values; it must have 4, one per wavelength"},
+      {"[planet]\natmosphere_top_m = 0\n", "a.toml:2: planet.atmosphere_top_m is 0"},
+      {"planet = 3\n", "a.toml:1: planet is 3; it must be a table"},
+      {"[[planet]]\nradius_m = 1e6\n", "a.toml:1: planet is a list; it must be a table"},
+      {"polarised = 1\n", "a.toml:1: polarised is 1"},
+      {"[rayleigh]\ndepolarisation = 0.6\n", "a.toml:2: rayleigh.depolarisation is 0.6"},
+      {"[rayleigh]\ndepolarisation = [0.1, 0.2]\n",
+       "a.toml:2: rayleigh.depolarisation has 2 values; it must have 4"},
+      {"preset = 3\n", "a.toml:1: preset is 3; it must be text"},
+      {"[spectrum]\nwavelengths_nm = []\n", "a.toml:2: spectrum.wavelengths_nm has 0 values"},
+      {"[spectrum]\nwavelengths_nm = [500, 400, 600]\n", "a.toml:2: spectrum.wavelengths_nm has"},
+      {"[spectrum]\nwavelengths_nm = [500, 500]\n", "a.toml:2: spectrum.wavelengths_nm has 500"},
+      {"[spectrum]\nwavelengths_nm = [199]\n",
+       "a.toml:2: spectrum.wavelengths_nm[0] is 199; it must "
+       "lie in [200, 4000]"},
+      {"[spectrum]\nwavelengths_nm = [4001]\n", "a.toml:2: spectrum.wavelengths_nm[0] is 4001"},
+      {"[spectrum]\nwavelengths_nm = [\"red\"]\n",
+       "a.toml:2: spectrum.wavelengths_nm[0] is the text"},
+      {"[spectrum]\nsolar_irradiance = [1, 2, 3, nan]\n",
+       "a.toml:2: spectrum.solar_irradiance[3] is"},
+      {"[rayleigh]\nscattering_per_m = [1e-6, 1e-6, 1e-6]\n",
+       "a.toml:2: rayleigh.scattering_per_m has 3 values; it must have 4"},
+      {"[rayleigh]\nscattering_per_m = [-1e-6, 0, 0, 0]\n",
+       "a.toml:2: rayleigh.scattering_per_m[0] is -1e-06; it must lie in [0, 100000]"},
+      {"[rayleigh]\nscale_height_m = 0\n",
+       "a.toml:2: rayleigh.scale_height_m is 0; it must lie in [1"},
+      {"[mie]\nscattering_per_m = [1, 1, 1, 1]\n",
+       "a.toml:2: mie.scattering_per_m is 1 at 445 nm; it must not exceed mie.extinction_per_m"},
+      {"[mie]\nextinction_per_m = [0, 0, 0, 0]\n", "a.toml:1: mie.scattering_per_m is"},
+      {"[ozone]\nprofile = \"tent\"\npeak_m = 5000\n",
+       "a.toml:3: ozone.peak_m is 5000; it must lie between"},
+      {"[ozone]\ntop_m = 20000\n", "a.toml:1: ozone.peak_m is 25000; it must lie between"},
+      {"[ozone]\npeak_m = 1e-300\n", "a.toml:2: ozone.peak_m is 1e-300; it must lie between"},
+      {"[ozone]\nprofile = \"tent\"\nbottom_m = 24999.9\npeak_m = 25000\ntop_m = 40000\n",
+       "a.toml:4: ozone.peak_m is 25000; it must lie between ozone.bottom_m, 24999.9, and "
+       "ozone.top_m, 40000, 1 m or more from each"},
+      {"[ozone]\ndobson = -1\n", "a.toml:2: ozone.dobson is -1"},
+      {"a = 1\na = 2\n", "a.toml:2: not valid TOML"},
+      {"[planet]\n[planet]\n", "a.toml:2: not valid TOML"},
+      {"preset = \n", "a.toml:1: not valid TOML"},
+      {"preset = \"earth\n", "a.toml:1: not valid TOML"},
+      {"x = [[[[[[[[\n", "a.toml:"},
+      {"\xff\xfe", "a.toml:1: "},
+      {"preset = \"\xc3\x28\"\n", "a.toml:1: not valid TOML"},
+  };
+  // A contradiction with a value that the file does not give has the line of its section.
+  for (const BadInput& input : inputs) {
+    EXPECT_THAT(FileFaultOf(input.text), StartsWith(input.message)) << input.text;
+  }
+}
+
+TEST(AtmosphereFile, Utf16AndDeepNestingAreRefused) {
+  EXPECT_THAT(FileFaultOf(std::string("\xff\xfep\0r\0e\0", 8)), HasSubstr("UTF-8"));
+  EXPECT_THAT(FileFaultOf("x = " + std::string(100000, '[')),
+              StartsWith("a.toml:1: not valid TOML"));
+}
+
+TEST(AtmosphereFile, EveryTruncationOfAFileIsReadOrRefusedWithALine) {
+  const std::string whole = kComplete;
+  for (std::size_t length = 0; length < whole.size(); ++length) {
+    const std::string fault = FileFaultOf(whole.substr(0, length));
+    EXPECT_TRUE(fault == "no fault" || fault.rfind("a.toml:", 0) == 0) << length << ": " << fault;
+  }
+}
+
+TEST(AtmosphereFile, FilesAreReadAndNamedInFaults) {
+  const std::filesystem::path file =
+      std::filesystem::path(testing::TempDir()) / "alpenglow_atmosphere_file_test.toml";
+  std::ofstream(file) << kComplete;
+  EXPECT_EQ(ReadMedium(file), MediumPreset("bruneton2017"));
+  std::ofstream(file) << "\n[mie]\ng = 2\n";
+  try {
+    (void)ReadMedium(file);
+    FAIL() << "g = 2 was accepted";
+  } catch (const InputError& error) {
+    EXPECT_THAT(error.what(), StartsWith(file.string() + ":3: mie.g is 2"));
+  }
+  std::filesystem::remove(file);
+  EXPECT_THROW((void)ReadMedium(file), InputError);
+}
+
+}  // namespace
+}  // namespace alpenglow::atmosphere

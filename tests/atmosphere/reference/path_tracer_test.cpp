@@ -1,0 +1,296 @@
+// SPDX-License-Identifier: MIT
+#include "atmosphere/reference/path_tracer.h"
+
+#include <gtest/gtest.h>
+#include <tbb/global_control.h>
+
+#include <atomic>
+#include <cmath>
+#include <set>
+
+#include "atmosphere/reference/judge.h"
+#include "atmosphere/reference/path_sampling.h"
+#include "atmosphere/math/constants.h"
+#include "atmosphere/math/numerics.h"
+#include "atmosphere/base/error.h"
+#include "tests/fixtures/sanitized.h"
+#include "tests/fixtures/stored_cases.h"
+
+namespace alpenglow::atmosphere::judge {
+namespace {
+
+Medium WithoutAbsorption() {
+  Medium medium = MediumPreset("bruneton2017");
+  medium.mie_scattering_per_m = medium.mie_extinction_per_m;
+  std::fill(medium.ozone_absorption_per_m.begin(), medium.ozone_absorption_per_m.end(), 0.0);
+  std::fill(medium.ground_albedo.begin(), medium.ground_albedo.end(), 1.0);
+  return medium;
+}
+
+Medium Empty(double albedo) {
+  Medium medium = MediumPreset("bruneton2017");
+  for (auto* coefficient : {&medium.rayleigh_scattering_per_m, &medium.mie_scattering_per_m,
+                            &medium.mie_extinction_per_m, &medium.ozone_absorption_per_m})
+    std::fill(coefficient->begin(), coefficient->end(), 0.0);
+  std::fill(medium.ground_albedo.begin(), medium.ground_albedo.end(), albedo);
+  return medium;
+}
+
+TEST(ColumnTable, AgreesWithTheJudgeToOnePartInAMillion) {
+  for (const char* name : {"earth", "hazy", "bruneton2017", "mars"}) {
+    const Medium medium = MediumPreset(name);
+    const ColumnTable table(medium);
+    for (int i = 0; i < 200; ++i) {
+      const double altitude = medium.atmosphere_height_m * std::pow((i % 20) / 19.5, 2.0);
+      const double radius = medium.planet_radius_m + altitude;
+      const double horizon =
+          -std::sqrt(altitude * (radius + medium.planet_radius_m)) / radius + 1e-9;
+      const double mu = horizon + (1.0 - horizon) * std::pow(i / 20 / 9.0, 2.0);
+      const AirColumns columns =
+          table.ToSpace(radius * std::sqrt((1.0 - mu) * (1.0 + mu)), radius * mu);
+      const OpticalDepth truth = OpticalDepthAlong(medium, {altitude, mu, 1.0, mu});
+      for (std::size_t band = 0; band < truth.tau.size(); ++band) {
+        const double tau = medium.rayleigh_scattering_per_m[band] * columns.rayleigh +
+                           medium.mie_extinction_per_m[band] * columns.mie +
+                           medium.ozone_absorption_per_m[band] * columns.ozone;
+        EXPECT_NEAR(tau, truth.tau[band], 1e-6 * truth.tau[band] + 1e-12)
+            << name << " altitude " << altitude << " mu " << mu << ": cubic interpolation";
+      }
+    }
+  }
+}
+
+TEST(PathTracer, OrderOneIsTheIntegralOfTheJudge) {
+  constexpr std::size_t kPaths = tests::ScaledDown<std::size_t>(8000, 800);
+  const Medium medium = MediumPreset("bruneton2017");
+  int compared = 0;
+  for (const double sun_deg : {30.0, 85.0, 92.0, 96.0}) {
+    for (const double altitude : {0.0, 10000.0, 400000.0}) {
+      for (const double view_deg : {20.0, 88.0, 108.0, 140.0}) {
+        for (const double azimuth_deg : {10.0, 120.0}) {
+          const ViewRay ray = RayFromAngles(altitude, view_deg, azimuth_deg, sun_deg);
+          const SingleScattering truth = SingleScatteringAlong(medium, ray);
+          const PathTracedRadiance traced =
+              TraceRadiance(medium, ray, {.max_paths = kPaths, .max_order = 1});
+          for (std::size_t band = 0; band < traced.single.size(); ++band) {
+            const double expected = truth.inscatter[band] + truth.ground[band];
+            EXPECT_NEAR(traced.single[band], expected,
+                        4.0 * traced.single_standard_error[band] + 3e-6 * expected + 1e-15)
+                << altitude << " m, view " << view_deg << ", azimuth " << azimuth_deg << ", sun "
+                << sun_deg << ": four standard errors and the columns' error of 1e-6";
+            EXPECT_EQ(traced.single[band], traced.total[band]);
+            ++compared;
+          }
+        }
+      }
+    }
+  }
+  EXPECT_EQ(compared, 4 * 3 * 4 * 2 * 3);
+}
+
+// Brightness of the sky when every band is scattered its own way, against each band alone.
+TEST(PathTracer, BandsWithPhaseFunctionsOfTheirOwnAreTracedTogetherAsAlone) {
+  Medium medium = MediumPreset("hazy");
+  medium.mie_phase.clear();
+  for (const double g : {0.2, 0.4, 0.6, 0.85}) {
+    medium.mie_phase.push_back({.kind = PhaseKind::kHenyeyGreenstein, .g = g});
+  }
+  for (const double sun_deg : {40.0, 89.0}) {
+    const ViewRay ray = RayFromAngles(2.0, 70.0, 30.0, sun_deg);
+    const PathTracedRadiance together = TraceRadiance(medium, ray, {.max_paths = 8000});
+    for (std::size_t band = 0; band < 4; ++band) {
+      Medium alone = medium;
+      alone.mie_phase = {medium.mie_phase[band]};
+      const PathTracedRadiance other = TraceRadiance(alone, ray, {.seed = 5, .max_paths = 8000});
+      EXPECT_NEAR(together.total[band], other.total[band],
+                  4.0 * std::hypot(together.standard_error[band], other.standard_error[band]))
+          << "band " << band << ", sun " << sun_deg << ": four standard errors";
+    }
+  }
+}
+
+TEST(PathTracer, LightFromTheGroundAtTheEndOfASegmentIsLeftOut) {
+  const Medium medium = Empty(1.0);
+  ViewRay ray = RayFromAngles(1000.0, 180.0, 0.0, 60.0);
+  EXPECT_NEAR(TraceRadiance(medium, ray).total[0], 0.5 / kPi, 1e-9)
+      << "a white ground without air: cos 60 over pi";
+  ray.length_m = 999.0;
+  EXPECT_EQ(TraceRadiance(medium, ray).total[0], 0.0);
+}
+
+// Hard case 28.
+TEST(PathTracer, EmptyAirOverABlackPlanetIsBlack) {
+  const Medium medium = Empty(0.0);
+  for (const double view_deg : {0.0, 89.0, 150.0}) {
+    const auto traced = TraceRadiance(medium, RayFromAngles(1000.0, view_deg, 20.0, 40.0));
+    for (const double value : traced.total) EXPECT_EQ(value, 0.0);
+    for (const double error : traced.standard_error) EXPECT_EQ(error, 0.0);
+    EXPECT_TRUE(traced.converged);
+  }
+}
+
+// Hard case 43.
+TEST(PathTracer, IsTheSameForAnyNumberOfThreads) {
+  const Medium medium = MediumPreset("bruneton2017");
+  const ViewRay ray = RayFromAngles(2.0, 80.0, 40.0, 93.0);
+  std::vector<std::vector<double>> totals;
+  for (const std::size_t threads : {1U, 2U, 8U}) {
+    const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
+    totals.push_back(TraceRadiance(medium, ray, {.max_paths = 20000}).total);
+  }
+  EXPECT_EQ(totals[0], totals[1]);
+  EXPECT_EQ(totals[0], totals[2]);
+}
+
+TEST(PathTracer, StopsSoonWhenToldTo) {
+  PathOptions endless{.max_paths = std::size_t{1} << 40U, .relative_error = 0.0};
+  std::atomic<int> asked = 0;
+  endless.stopped = [&] { return ++asked > 40; };
+  const auto traced =
+      TraceRadiance(MediumPreset("bruneton2017"), RayFromAngles(0, 80, 0, 60), endless);
+  EXPECT_EQ(traced.paths, 0U);
+  EXPECT_FALSE(traced.converged);
+}
+
+TEST(PathTracer, StandardErrorsAreTheScatterOfOtherSeeds) {
+  constexpr int kSeeds = 40;
+  constexpr std::size_t kPaths = tests::ScaledDown<std::size_t>(8032, 512);
+  const Medium medium = MediumPreset("hazy");
+  const std::vector<double> suns_deg{50.0, 94.0};
+  for (const double sun_deg : tests::ScaledDown(suns_deg, {94.0})) {
+    const ViewRay ray = RayFromAngles(2.0, 75.0, 60.0, sun_deg);
+    double sum = 0.0, squares = 0.0, claimed = 0.0;
+    for (int seed = 0; seed < kSeeds; ++seed) {
+      const auto traced = TraceRadiance(
+          medium, ray,
+          {.seed = static_cast<std::uint64_t>(seed), .max_paths = kPaths, .relative_error = 0.0});
+      sum += traced.total[1] / kSeeds;
+      squares += traced.total[1] * traced.total[1] / kSeeds;
+      claimed += traced.standard_error[1] * traced.standard_error[1] / kSeeds;
+    }
+    const double scatter = (squares - sum * sum) * kSeeds / (kSeeds - 1);
+    EXPECT_GT(claimed / scatter, 0.5) << "chi-square of 39 degrees of freedom, 3 sigma: 0.6";
+    EXPECT_LT(claimed / scatter, 2.2) << "and 1.9";
+  }
+}
+
+// Hard case 30.
+TEST(PathTracer, WhatComesInLeavesThroughTheTopWithoutAbsorption) {
+  const Medium medium = WithoutAbsorption();
+  const double top = medium.planet_radius_m + medium.atmosphere_height_m;
+  const std::size_t bands = medium.wavelengths_nm.size();
+  // Shares of the light that meets the disk of the shell's radius, which is 1.
+  std::vector<double> leaves(bands, 0.0), error(bands, 0.0);
+  struct Panel {
+    double low, high;
+    int nodes;
+  };
+  // Over zones of the shell: mean of the flux through the top, times two for the sphere.
+  for (const Panel& panel : {Panel{-0.3, -0.05, 5}, {-0.05, 0.1, 6}, {0.1, 1.0, 8}}) {
+    const GaussRule& rule = GaussLegendre(panel.nodes);
+    for (std::size_t i = 0; i < rule.node.size(); ++i) {
+      const double width = panel.high - panel.low;
+      const auto flux =
+          TraceIrradiance(medium, medium.atmosphere_height_m, panel.low + width * rule.node[i],
+                          PlaneSide::kFromBelow, {.max_paths = 30000, .relative_error = 0.003});
+      for (std::size_t band = 0; band < bands; ++band) {
+        leaves[band] += 2.0 * width * rule.weight[i] * flux.value[band];
+        error[band] += std::pow(2.0 * width * rule.weight[i] * flux.standard_error[band], 2.0);
+      }
+    }
+  }
+  // Beams that pass the planet without meeting air or ground.
+  const GaussRule& rule = GaussLegendre(48);
+  for (std::size_t i = 0; i < rule.node.size(); ++i) {
+    const double b = medium.planet_radius_m + medium.atmosphere_height_m * rule.node[i];
+    const double mu = -std::sqrt((1.0 - b / top) * (1.0 + b / top));
+    const auto depth = OpticalDepthAlong(medium, {medium.atmosphere_height_m, mu, 1.0, mu});
+    for (std::size_t band = 0; band < bands; ++band) {
+      leaves[band] += rule.weight[i] * medium.atmosphere_height_m * 2.0 * b / (top * top) *
+                      std::exp(-depth.tau[band]);
+    }
+  }
+  for (std::size_t band = 0; band < bands; ++band) {
+    EXPECT_NEAR(leaves[band], 1.0, 0.005) << band;
+    EXPECT_NEAR(leaves[band], 1.0, 4.0 * std::sqrt(error[band]) + 2e-4)
+        << "band " << band << ": four standard errors, and the Gauss rules over the zones";
+  }
+}
+
+TEST(PathTracer, RefusesWhatIsNotARayOrAnOption) {
+  const Medium medium = MediumPreset("bruneton2017");
+  const ViewRay ray = RayFromAngles(0.0, 10.0, 0.0, 20.0);
+  EXPECT_THROW(TraceRadiance(medium, ray, {.max_order = 0}), InputError);
+  EXPECT_THROW(TraceRadiance(medium, ray, {.relative_error = -1.0}), InputError);
+  EXPECT_THROW(TraceRadiance(medium, ray, {.relative_error = std::nan("")}), InputError);
+  EXPECT_THROW(TraceRadiance(medium, {0.0, std::nan(""), 1.0, 1.0}), InputError);
+  EXPECT_THROW(TraceIrradiance(medium, -5.0, 0.5, PlaneSide::kFromAbove), InputError);
+  EXPECT_THROW(TraceIrradiance(medium, 0.0, 1.5, PlaneSide::kFromAbove), InputError);
+}
+
+// Rows of the stored cases with their errors: ours at most half a percent of the value.
+void ExpectStoredRadiance(const std::set<std::string>& ids) {
+  if (!stored::Available()) GTEST_SKIP() << "no stored cases at " << stored::Folder();
+  const auto media = stored::Media();
+  const auto results = stored::Results("multiple_results.csv");
+  std::size_t compared = 0;
+  for (const stored::Row& row : stored::Read("multiple.csv")) {
+    if (ids.count(row.at("id")) == 0) continue;
+    const Medium& medium = media.at(row.at("set"));
+    const auto traced =
+        TraceRadiance(medium, stored::RayOf(row), {.max_paths = 600000, .relative_error = 0.004});
+    for (const stored::Row& expected : results.at(row.at("id"))) {
+      const std::size_t band = stored::Band(medium, expected);
+      const double truth = stored::Number(expected, "total");
+      const double error =
+          std::hypot(stored::Number(expected, "std_err"), traced.standard_error[band]);
+      EXPECT_NEAR(traced.total[band], truth, 4.0 * error)
+          << row.at("id") << " " << medium.wavelengths_nm[band] << " nm: four standard errors";
+      EXPECT_LE(traced.standard_error[band], 0.005 * truth) << row.at("id");
+    }
+    ++compared;
+  }
+  EXPECT_EQ(compared, ids.size());
+}
+
+TEST(PathTracer, AgreesWithStoredSkiesByDay) {
+  ExpectStoredRadiance({"M000", "M004", "M008", "M020", "M024", "M028", "M040", "M132"});
+}
+TEST(PathTracer, AgreesWithStoredSkiesAtTheHorizonAndGround) {
+  ExpectStoredRadiance({"M012", "M016", "M032", "M036", "M044", "M048", "M052", "M056", "M060"});
+}
+TEST(PathTracer, AgreesWithStoredSkiesInTwilight) {
+  ExpectStoredRadiance({"M064", "M072", "M076", "M080", "M084", "M092", "M096", "M136"});
+}
+TEST(PathTracer, AgreesWithStoredViewsFromSpaceAndAerialPerspective) {
+  ExpectStoredRadiance({"M100", "M104", "M108", "M112", "M116", "M120", "M128", "M140"});
+}
+
+TEST(PathTracer, AgreesWithStoredIrradiance) {
+  if (!stored::Available()) GTEST_SKIP() << "no stored cases at " << stored::Folder();
+  const auto media = stored::Media();
+  const auto results = stored::Results("irradiance_results.csv");
+  int compared = 0;
+  for (const stored::Row& row : stored::Read("irradiance.csv")) {
+    const Medium& medium = media.at(row.at("set"));
+    const PlaneSide side =
+        row.at("quantity") == "irradiance_up" ? PlaneSide::kFromBelow : PlaneSide::kFromAbove;
+    const auto traced =
+        TraceIrradiance(medium, stored::Number(row, "h_m"),
+                        std::cos(stored::Number(row, "sza_deg") * kRadiansPerDegree), side,
+                        {.max_paths = 200000, .relative_error = 0.004});
+    EXPECT_TRUE(traced.converged) << row.at("id");
+    for (const stored::Row& expected : results.at(row.at("id"))) {
+      const std::size_t band = stored::Band(medium, expected);
+      const double error =
+          std::hypot(stored::Number(expected, "std_err"), traced.standard_error[band]);
+      EXPECT_NEAR(traced.value[band], stored::Number(expected, "irradiance"), 4.0 * error)
+          << row.at("id") << ": four standard errors";
+      ++compared;
+    }
+  }
+  EXPECT_EQ(compared, 15);
+}
+
+}  // namespace
+}  // namespace alpenglow::atmosphere::judge
