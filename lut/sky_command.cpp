@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "atmosphere/medium/medium_presets.h"
-#include "atmosphere/ray/bent_view.h"
-#include "atmosphere/sun/sun.h"
+#include "atmosphere/refraction/bent_view.h"
+#include "atmosphere/astronomy/sun.h"
 #include "lut/picture/look.h"
 #include "lut/program/output_file.h"
 #include "lut/sky/panorama.h"

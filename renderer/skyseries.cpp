@@ -6,7 +6,7 @@
 #include <memory>
 
 #include "atmosphere/math/constants.h"
-#include "atmosphere/sun/eclipse.h"
+#include "atmosphere/astronomy/eclipse.h"
 #include "atmosphere/base/parsing.h"
 #include "renderer/camera/track.h"
 #include "renderer/ground/scene_ground.h"

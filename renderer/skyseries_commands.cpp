@@ -9,8 +9,8 @@
 
 #include "atmosphere/medium/medium.h"
 #include "atmosphere/math/constants.h"
-#include "atmosphere/sun/moon.h"
-#include "atmosphere/sun/sun.h"
+#include "atmosphere/astronomy/moon.h"
+#include "atmosphere/astronomy/sun.h"
 #include "lut/picture/look.h"
 #include "lut/program/messages.h"
 #include "lut/program/output_file.h"

@@ -7,8 +7,8 @@
 #include <utility>
 
 #include "atmosphere/math/constants.h"
-#include "atmosphere/ray/bent_view.h"
-#include "atmosphere/sun/moon.h"
+#include "atmosphere/refraction/bent_view.h"
+#include "atmosphere/astronomy/moon.h"
 #include "atmosphere/base/error.h"
 #include "atmosphere/base/parsing.h"
 #include "lut/picture/look.h"

@@ -8,7 +8,7 @@
 #include <glm/geometric.hpp>
 #include <utility>
 
-#include "atmosphere/sun/moon.h"
+#include "atmosphere/astronomy/moon.h"
 #include "atmosphere/base/error.h"
 #include "renderer/scene/scene_options.h"
 #include "renderer/terrain/built_in_range.h"

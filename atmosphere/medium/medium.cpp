@@ -9,7 +9,7 @@
 #include "atmosphere/medium/phase_table.h"
 #include "atmosphere/medium/phase_text.h"
 #include "atmosphere/math/numerics.h"
-#include "atmosphere/sun/geodesy.h"
+#include "atmosphere/time_place/geodesy.h"
 #include "atmosphere/base/error.h"
 
 namespace alpenglow::atmosphere {

@@ -86,7 +86,7 @@ struct MoleculeDeficit {
 };
 
 /// Selects the height profile of the refractivity: the density of the molecules, or the standard
-/// air of almanacs (kAlmanacLayers of atmosphere/sun/refraction.h), whose gradient near the ground
+/// air of almanacs (kAlmanacLayers of atmosphere/refraction/refraction.h), whose gradient near the ground
 /// determines the refraction of a low sun.
 enum class RefractionBy { kMolecules, kAlmanacs };
 

@@ -8,7 +8,7 @@
 
 #include "atmosphere/math/constants.h"
 #include "atmosphere/math/numerics.h"
-#include "atmosphere/sun/refraction.h"
+#include "atmosphere/refraction/refraction.h"
 #include "atmosphere/base/error.h"
 
 namespace alpenglow::atmosphere::judge {

@@ -12,7 +12,7 @@
 #include "atmosphere/reference/judge.h"
 #include "atmosphere/math/constants.h"
 #include "atmosphere/math/numerics.h"
-#include "atmosphere/ray/bent_view.h"
+#include "atmosphere/refraction/bent_view.h"
 #include "lut/report/report_baselines.h"
 #include "lut/report/report_measure.h"
 #include "lut/table/transmittance_table.h"

@@ -14,8 +14,8 @@
 #include <string>
 #include <vector>
 
-#include "atmosphere/sun/geodesy.h"
-#include "atmosphere/sun/time.h"
+#include "atmosphere/time_place/geodesy.h"
+#include "atmosphere/time_place/time.h"
 #include "renderer/layer.h"
 
 namespace alpenglow::renderer {

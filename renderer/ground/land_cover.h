@@ -37,7 +37,7 @@
 #include <optional>
 
 #include "atmosphere/shared_glsl/shared_math.h"
-#include "atmosphere/sun/geodesy.h"
+#include "atmosphere/time_place/geodesy.h"
 #include "renderer/layer.h"
 
 namespace alpenglow::shared {

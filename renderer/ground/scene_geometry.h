@@ -38,7 +38,7 @@
 #include <vector>
 
 #include "atmosphere/medium/medium.h"
-#include "atmosphere/sun/refraction.h"
+#include "atmosphere/refraction/refraction.h"
 #include "renderer/ground/scene_ground.h"
 #include "renderer/ground/surface.h"
 #include "renderer/layer.h"

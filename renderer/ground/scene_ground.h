@@ -11,7 +11,7 @@
 #include <span>
 #include <string>
 
-#include "atmosphere/sun/geodesy.h"
+#include "atmosphere/time_place/geodesy.h"
 #include "lut/program/messages.h"
 #include "renderer/camera/camera_path.h"
 #include "renderer/camera/camera_rays.h"

@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "atmosphere/ray/single_scattering.h"
-#include "atmosphere/sun/time.h"
+#include "atmosphere/time_place/time.h"
 #include "renderer/ground/band_light.h"
 #include "renderer/ground/colour_drape.h"
 #include "renderer/ground/land_cover.h"

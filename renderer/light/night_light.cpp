@@ -9,9 +9,9 @@
 
 #include "atmosphere/colour/spectrum.h"
 #include "atmosphere/math/constants.h"
-#include "atmosphere/sun/ephemeris.h"
-#include "atmosphere/sun/night_sky.h"
-#include "atmosphere/sun/sun.h"
+#include "atmosphere/astronomy/ephemeris.h"
+#include "atmosphere/astronomy/night_sky.h"
+#include "atmosphere/astronomy/sun.h"
 
 namespace alpenglow::renderer {
 namespace {

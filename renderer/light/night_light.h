@@ -35,11 +35,11 @@
 #include <vector>
 
 #include "atmosphere/colour/spectrum.h"
-#include "atmosphere/ray/bent_view.h"
+#include "atmosphere/refraction/bent_view.h"
 #include "atmosphere/ray/single_scattering.h"
-#include "atmosphere/sun/geodesy.h"
-#include "atmosphere/sun/night_sky.h"
-#include "atmosphere/sun/time.h"
+#include "atmosphere/time_place/geodesy.h"
+#include "atmosphere/astronomy/night_sky.h"
+#include "atmosphere/time_place/time.h"
 #include "renderer/ground/band_light.h"
 
 namespace alpenglow::renderer {

@@ -7,8 +7,8 @@
 #include <limits>
 
 #include "atmosphere/math/constants.h"
-#include "atmosphere/sun/geodesy.h"
-#include "atmosphere/sun/sun.h"
+#include "atmosphere/time_place/geodesy.h"
+#include "atmosphere/astronomy/sun.h"
 #include "renderer/camera/camera_rays.h"
 
 namespace alpenglow::renderer {

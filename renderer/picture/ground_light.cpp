@@ -7,7 +7,7 @@
 #include <limits>
 
 #include "atmosphere/math/constants.h"
-#include "atmosphere/sun/sun.h"
+#include "atmosphere/astronomy/sun.h"
 
 namespace alpenglow::renderer {
 namespace {

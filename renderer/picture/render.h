@@ -23,8 +23,8 @@
 #include <string>
 #include <vector>
 
-#include "atmosphere/sun/sun.h"
-#include "atmosphere/sun/time.h"
+#include "atmosphere/astronomy/sun.h"
+#include "atmosphere/time_place/time.h"
 #include "lut/picture/image.h"
 #include "lut/program/messages.h"
 #include "renderer/camera/camera_path.h"

@@ -9,7 +9,7 @@
 #include <optional>
 
 #include "atmosphere/math/constants.h"
-#include "atmosphere/sun/sun.h"
+#include "atmosphere/astronomy/sun.h"
 #include "lut/program/program.h"
 #include "renderer/effect/effect_choice.h"
 #include "renderer/picture/picture_layers.h"

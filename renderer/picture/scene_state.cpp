@@ -7,9 +7,9 @@
 #include <utility>
 
 #include "atmosphere/math/constants.h"
-#include "atmosphere/sun/eclipse.h"
-#include "atmosphere/sun/ephemeris.h"
-#include "atmosphere/sun/sun.h"
+#include "atmosphere/astronomy/eclipse.h"
+#include "atmosphere/astronomy/ephemeris.h"
+#include "atmosphere/astronomy/sun.h"
 #include "lut/program/program.h"
 #include "renderer/effect/effect_choice.h"
 #include "renderer/ground/scene_geometry.h"

@@ -8,8 +8,8 @@
 #include <glm/geometric.hpp>
 
 #include "atmosphere/math/constants.h"
-#include "atmosphere/ray/bent_view.h"
-#include "atmosphere/sun/moon.h"
+#include "atmosphere/refraction/bent_view.h"
+#include "atmosphere/astronomy/moon.h"
 #include "renderer/light/picture_stokes.h"
 #include "renderer/picture/scene_state.h"
 

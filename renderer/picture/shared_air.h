@@ -10,7 +10,7 @@
 #include <mutex>
 #include <vector>
 
-#include "atmosphere/ray/bent_view.h"
+#include "atmosphere/refraction/bent_view.h"
 #include "atmosphere/ray/single_scattering.h"
 #include "lut/diffuse/multiple_scattering.h"
 #include "renderer/camera/camera_rays.h"

@@ -9,7 +9,7 @@
 
 #include "atmosphere/medium/medium_presets.h"
 #include "atmosphere/math/constants.h"
-#include "atmosphere/sun/night_sky.h"
+#include "atmosphere/astronomy/night_sky.h"
 #include "atmosphere/base/error.h"
 #include "atmosphere/base/parsing.h"
 

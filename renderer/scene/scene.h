@@ -11,8 +11,8 @@
 #include <vector>
 
 #include "atmosphere/medium/medium.h"
-#include "atmosphere/sun/geodesy.h"
-#include "atmosphere/sun/time.h"
+#include "atmosphere/time_place/geodesy.h"
+#include "atmosphere/time_place/time.h"
 #include "renderer/scene/local_volume.h"
 #include "renderer/terrain/elevation.h"
 #include "renderer/terrain/mesh.h"

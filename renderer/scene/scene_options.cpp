@@ -6,7 +6,7 @@
 
 #include "atmosphere/medium/medium_presets.h"
 #include "atmosphere/math/constants.h"
-#include "atmosphere/sun/night_sky.h"
+#include "atmosphere/astronomy/night_sky.h"
 #include "atmosphere/base/error.h"
 #include "renderer/scene/nrrd_header.h"
 #include "renderer/terrain/built_in_range.h"

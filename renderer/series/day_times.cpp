@@ -9,8 +9,8 @@
 #include <functional>
 
 #include "atmosphere/math/constants.h"
-#include "atmosphere/sun/moon.h"
-#include "atmosphere/sun/sun.h"
+#include "atmosphere/astronomy/moon.h"
+#include "atmosphere/astronomy/sun.h"
 #include "atmosphere/base/error.h"
 #include "lut/report/svg_plot.h"
 

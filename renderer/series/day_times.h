@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "atmosphere/sun/eclipse.h"
-#include "atmosphere/sun/time.h"
+#include "atmosphere/astronomy/eclipse.h"
+#include "atmosphere/time_place/time.h"
 #include "renderer/layer.h"
 #include "renderer/series/time_text.h"
 

@@ -8,7 +8,7 @@
 #include <cmath>
 
 #include "atmosphere/math/constants.h"
-#include "atmosphere/sun/geodesy.h"
+#include "atmosphere/time_place/geodesy.h"
 #include "atmosphere/base/error.h"
 #include "atmosphere/base/parsing.h"
 #include "renderer/ground/scene_ground.h"

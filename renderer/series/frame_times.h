@@ -9,7 +9,7 @@
 #include <string_view>
 #include <vector>
 
-#include "atmosphere/sun/time.h"
+#include "atmosphere/time_place/time.h"
 #include "renderer/camera/camera_path.h"
 #include "renderer/ground/scene_ground.h"
 #include "renderer/picture/render.h"

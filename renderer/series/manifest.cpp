@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "atmosphere/math/constants.h"
-#include "atmosphere/sun/eclipse.h"
-#include "atmosphere/sun/moon.h"
-#include "atmosphere/sun/sun.h"
+#include "atmosphere/astronomy/eclipse.h"
+#include "atmosphere/astronomy/moon.h"
+#include "atmosphere/astronomy/sun.h"
 #include "atmosphere/base/error.h"
 #include "lut/program/messages.h"
 #include "lut/program/program.h"

@@ -11,7 +11,7 @@
 #include <string_view>
 #include <vector>
 
-#include "atmosphere/sun/geodesy.h"
+#include "atmosphere/time_place/geodesy.h"
 #include "lut/picture/image.h"
 #include "renderer/camera/camera_path.h"
 #include "renderer/picture/render.h"

@@ -10,9 +10,9 @@
 #include <system_error>
 
 #include "atmosphere/math/constants.h"
-#include "atmosphere/sun/eclipse.h"
-#include "atmosphere/sun/moon.h"
-#include "atmosphere/sun/sun.h"
+#include "atmosphere/astronomy/eclipse.h"
+#include "atmosphere/astronomy/moon.h"
+#include "atmosphere/astronomy/sun.h"
 #include "atmosphere/base/error.h"
 #include "lut/picture/eye.h"
 #include "lut/picture/look.h"

@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "atmosphere/sun/geodesy.h"
+#include "atmosphere/time_place/geodesy.h"
 #include "lut/picture/image.h"
 #include "lut/picture/look.h"
 #include "lut/program/messages.h"

@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "atmosphere/sun/geodesy.h"
+#include "atmosphere/time_place/geodesy.h"
 #include "renderer/layer.h"
 #include "renderer/terrain/elevation.h"
 

@@ -13,7 +13,7 @@
 #include <optional>
 #include <vector>
 
-#include "atmosphere/sun/geodesy.h"
+#include "atmosphere/time_place/geodesy.h"
 #include "renderer/layer.h"
 #include "renderer/terrain/elevation.h"
 

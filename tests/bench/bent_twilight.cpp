@@ -9,9 +9,9 @@
 #include <cmath>
 #include <vector>
 
-#include "atmosphere/ray/bent_view.h"
-#include "atmosphere/sun/refraction.h"
-#include "atmosphere/sun/sun.h"
+#include "atmosphere/refraction/bent_view.h"
+#include "atmosphere/refraction/refraction.h"
+#include "atmosphere/astronomy/sun.h"
 #include "tests/fixtures/bent_twilight.h"
 
 namespace {

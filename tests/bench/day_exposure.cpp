@@ -26,8 +26,8 @@
 #include <vector>
 
 #include "atmosphere/math/constants.h"
-#include "atmosphere/sun/moon.h"
-#include "atmosphere/sun/sun.h"
+#include "atmosphere/astronomy/moon.h"
+#include "atmosphere/astronomy/sun.h"
 #include "lut/picture/local_exposure.h"
 #include "lut/picture/look.h"
 #include "lut/picture/tone_mapping.h"

@@ -5,7 +5,7 @@
 #include <tbb/global_control.h>
 
 #include "atmosphere/math/constants.h"
-#include "atmosphere/sun/sun.h"
+#include "atmosphere/astronomy/sun.h"
 #include "renderer/terrain/built_in_range.h"
 #include "viewer/ground/lit_ground.h"
 

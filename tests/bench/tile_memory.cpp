@@ -15,7 +15,7 @@
 #include <vector>
 
 #include "atmosphere/math/constants.h"
-#include "atmosphere/sun/time.h"
+#include "atmosphere/time_place/time.h"
 #include "renderer/picture/render.h"
 #include "renderer/terrain/lattice_noise.h"
 

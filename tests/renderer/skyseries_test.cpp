@@ -11,7 +11,7 @@
 #include <cstdlib>
 #include <sstream>
 
-#include "atmosphere/sun/time.h"
+#include "atmosphere/time_place/time.h"
 #include "atmosphere/base/parsing.h"
 #include "lut/picture/image.h"
 #include "tests/fixtures/bare_scene_folder.h"

@@ -6,8 +6,8 @@
 #include <cmath>
 
 #include "atmosphere/math/constants.h"
-#include "atmosphere/sun/refraction.h"
-#include "atmosphere/sun/sun.h"
+#include "atmosphere/refraction/refraction.h"
+#include "atmosphere/astronomy/sun.h"
 #include "atmosphere/base/error.h"
 #include "renderer/series/frame_times.h"
 

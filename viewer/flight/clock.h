@@ -8,8 +8,8 @@
 #include <optional>
 #include <string>
 
-#include "atmosphere/sun/geodesy.h"
-#include "atmosphere/sun/time.h"
+#include "atmosphere/time_place/geodesy.h"
+#include "atmosphere/time_place/time.h"
 #include "viewer/layer.h"
 
 namespace alpenglow::viewer {

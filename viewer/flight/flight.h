@@ -5,7 +5,7 @@
 
 #include <optional>
 
-#include "atmosphere/sun/geodesy.h"
+#include "atmosphere/time_place/geodesy.h"
 #include "renderer/camera/camera_path.h"
 #include "viewer/layer.h"
 

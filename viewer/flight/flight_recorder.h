@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "atmosphere/sun/time.h"
+#include "atmosphere/time_place/time.h"
 #include "renderer/camera/camera_path.h"
 #include "viewer/flight/flight.h"
 

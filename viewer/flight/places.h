@@ -10,7 +10,7 @@
 #include <string_view>
 #include <vector>
 
-#include "atmosphere/sun/time.h"
+#include "atmosphere/time_place/time.h"
 #include "viewer/flight/flight.h"
 
 namespace alpenglow::viewer {

@@ -100,9 +100,9 @@ class Stage {
 std::vector<ShaderPiece> SharedTexts() {
   std::vector<ShaderPiece> pieces;
   for (const char* name : {"atmosphere/shared_glsl/shared_prelude.glsl", "atmosphere/ray/shell.glsl",
-                           "atmosphere/ray/optical_depth.glsl", "atmosphere/ray/land_lift.glsl",
+                           "atmosphere/ray/optical_depth.glsl", "atmosphere/refraction/land_lift.glsl",
                            "atmosphere/ray/ray_map.glsl", "atmosphere/medium/phase.glsl",
-                           "atmosphere/lamp/lamp_ray.glsl", "atmosphere/sun/disk_light.glsl"}) {
+                           "atmosphere/lamp/lamp_ray.glsl", "atmosphere/astronomy/disk_light.glsl"}) {
     pieces.push_back({name, std::string(atmosphere::EmbeddedText(name))});
   }
   for (const char* name : {"lut/table/transmittance_map.glsl", "lut/table/scattering_map.glsl",

@@ -9,8 +9,8 @@
 
 #include "atmosphere/colour/spectrum.h"
 #include "atmosphere/math/constants.h"
-#include "atmosphere/ray/bent_view.h"
-#include "atmosphere/sun/sun.h"
+#include "atmosphere/refraction/bent_view.h"
+#include "atmosphere/astronomy/sun.h"
 #include "atmosphere/base/error.h"
 #include "lut/picture/image.h"
 #include "lut/picture/tone_mapping.h"

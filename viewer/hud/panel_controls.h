@@ -20,8 +20,8 @@
 #include <vector>
 
 #include "atmosphere/ray/single_scattering.h"
-#include "atmosphere/sun/geodesy.h"
-#include "atmosphere/sun/time.h"
+#include "atmosphere/time_place/geodesy.h"
+#include "atmosphere/time_place/time.h"
 #include "lut/diffuse/multiple_scattering.h"
 #include "viewer/job/latest_job.h"
 #include "viewer/layer.h"

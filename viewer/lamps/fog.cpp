@@ -11,7 +11,7 @@
 
 #include "atmosphere/math/constants.h"
 #include "atmosphere/ray/shell.h"
-#include "atmosphere/sun/sun.h"
+#include "atmosphere/astronomy/sun.h"
 #include "atmosphere/base/error.h"
 #include "renderer/ground/scene_geometry.h"
 #include "renderer/media/fog_light.h"

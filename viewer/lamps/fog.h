@@ -24,7 +24,7 @@
 #include <optional>
 #include <vector>
 
-#include "atmosphere/sun/sun.h"
+#include "atmosphere/astronomy/sun.h"
 #include "renderer/light/lighting.h"
 #include "renderer/media/local_media.h"
 #include "viewer/air/solved_air.h"

@@ -22,7 +22,7 @@
 #include "atmosphere/medium/medium.h"
 #include "atmosphere/medium/phase.h"
 #include "atmosphere/colour/spectrum.h"
-#include "atmosphere/sun/geodesy.h"
+#include "atmosphere/time_place/geodesy.h"
 #include "renderer/lamp/lamp_tree.h"
 #include "renderer/lamp/placed_lamp.h"
 #include "viewer/lamps/ground_under_lamps.h"

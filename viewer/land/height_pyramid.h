@@ -18,7 +18,7 @@
 #include <numbers>
 #include <vector>
 
-#include "atmosphere/sun/geodesy.h"
+#include "atmosphere/time_place/geodesy.h"
 #include "viewer/layer.h"
 
 namespace alpenglow::viewer {

@@ -25,7 +25,7 @@
 #include <span>
 #include <vector>
 
-#include "atmosphere/sun/geodesy.h"
+#include "atmosphere/time_place/geodesy.h"
 #include "viewer/land/loaded_heights.h"
 
 namespace alpenglow::viewer {

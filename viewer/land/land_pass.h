@@ -19,7 +19,7 @@
 #include <optional>
 #include <vector>
 
-#include "atmosphere/sun/geodesy.h"
+#include "atmosphere/time_place/geodesy.h"
 #include "renderer/shadow/horizon_map.h"
 #include "viewer/gl/gl_objects.h"
 #include "viewer/gl/render_target.h"

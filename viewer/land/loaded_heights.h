@@ -16,7 +16,7 @@
 #include <optional>
 #include <vector>
 
-#include "atmosphere/sun/geodesy.h"
+#include "atmosphere/time_place/geodesy.h"
 #include "renderer/terrain/elevation.h"
 #include "viewer/land/height_pyramid.h"
 #include "viewer/land/land_source.h"

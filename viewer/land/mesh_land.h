@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "atmosphere/sun/geodesy.h"
+#include "atmosphere/time_place/geodesy.h"
 #include "renderer/terrain/elevation.h"
 #include "renderer/terrain/terrain.h"
 #include "viewer/job/latest_job.h"

@@ -5,9 +5,9 @@
 #include <cmath>
 
 #include "atmosphere/math/constants.h"
-#include "atmosphere/ray/bent_view.h"
+#include "atmosphere/refraction/bent_view.h"
 #include "atmosphere/ray/single_scattering.h"
-#include "atmosphere/sun/eclipse.h"
+#include "atmosphere/astronomy/eclipse.h"
 #include "renderer/light/lighting.h"
 #include "viewer/shaders/uniform_blocks.h"
 

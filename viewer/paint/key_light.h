@@ -10,8 +10,8 @@
 #include <optional>
 
 #include "atmosphere/colour/spectrum.h"
-#include "atmosphere/sun/sun.h"
-#include "atmosphere/sun/time.h"
+#include "atmosphere/astronomy/sun.h"
+#include "atmosphere/time_place/time.h"
 #include "viewer/air/solved_air.h"
 
 namespace alpenglow::viewer {

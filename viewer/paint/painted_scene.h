@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "atmosphere/ray/single_scattering.h"
-#include "atmosphere/sun/sun.h"
+#include "atmosphere/astronomy/sun.h"
 #include "renderer/ground/scene_ground.h"
 #include "renderer/ground/surface.h"
 #include "renderer/scene/scene.h"

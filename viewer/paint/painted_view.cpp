@@ -6,7 +6,7 @@
 #include <glm/geometric.hpp>
 
 #include "atmosphere/math/constants.h"
-#include "atmosphere/ray/bent_view.h"
+#include "atmosphere/refraction/bent_view.h"
 #include "atmosphere/ray/shell.h"
 #include "renderer/camera/camera_rays.h"
 #include "viewer/air/air_rows.h"

@@ -16,8 +16,8 @@
 #include <optional>
 
 #include "atmosphere/medium/medium.h"
-#include "atmosphere/ray/bent_view.h"
-#include "atmosphere/sun/sun.h"
+#include "atmosphere/refraction/bent_view.h"
+#include "atmosphere/astronomy/sun.h"
 #include "viewer/air/solved_air.h"
 #include "viewer/flight/flight.h"
 #include "viewer/gl/gl_objects.h"

@@ -19,7 +19,7 @@
 #include <vector>
 
 #include "atmosphere/medium/phase.h"
-#include "atmosphere/sun/sun.h"
+#include "atmosphere/astronomy/sun.h"
 #include "renderer/ground/surface.h"
 #include "viewer/air/air_follower.h"
 #include "viewer/air/solved_air.h"

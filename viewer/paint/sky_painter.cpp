@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "atmosphere/ray/bent_view.h"
-#include "atmosphere/sun/eclipse.h"
-#include "atmosphere/sun/moon.h"
+#include "atmosphere/refraction/bent_view.h"
+#include "atmosphere/astronomy/eclipse.h"
+#include "atmosphere/astronomy/moon.h"
 #include "renderer/ground/scene_ground.h"
 #include "renderer/light/lighting.h"
 #include "viewer/gl/gl_context.h"

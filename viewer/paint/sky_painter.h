@@ -14,7 +14,7 @@
 #include <memory>
 #include <optional>
 
-#include "atmosphere/sun/moon.h"
+#include "atmosphere/astronomy/moon.h"
 #include "lut/picture/image.h"
 #include "renderer/scene/scene.h"
 #include "viewer/gl/gl_objects.h"

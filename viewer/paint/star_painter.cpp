@@ -7,8 +7,8 @@
 #include <limits>
 
 #include "atmosphere/math/constants.h"
-#include "atmosphere/sun/night_sky.h"
-#include "atmosphere/sun/sun.h"
+#include "atmosphere/astronomy/night_sky.h"
+#include "atmosphere/astronomy/sun.h"
 #include "renderer/picture/sky_pixels.h"
 #include "viewer/gl/gl_context.h"
 #include "viewer/lamps/fog.h"

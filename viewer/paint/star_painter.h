@@ -17,8 +17,8 @@
 
 #include "atmosphere/medium/medium.h"
 #include "atmosphere/colour/spectrum.h"
-#include "atmosphere/ray/bent_view.h"
-#include "atmosphere/sun/moon.h"
+#include "atmosphere/refraction/bent_view.h"
+#include "atmosphere/astronomy/moon.h"
 #include "renderer/light/night_light.h"
 #include "viewer/gl/gl_objects.h"
 #include "viewer/gl/shader.h"

@@ -20,7 +20,7 @@
 #include <glm/vec3.hpp>
 #include <vector>
 
-#include "atmosphere/sun/geodesy.h"
+#include "atmosphere/time_place/geodesy.h"
 #include "renderer/terrain/elevation.h"
 #include "renderer/terrain/mesh.h"
 #include "viewer/layer.h"

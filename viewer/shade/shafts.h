@@ -35,8 +35,8 @@
 #include <optional>
 #include <vector>
 
-#include "atmosphere/sun/geodesy.h"
-#include "atmosphere/sun/sun.h"
+#include "atmosphere/time_place/geodesy.h"
+#include "atmosphere/astronomy/sun.h"
 #include "viewer/gl/gl_objects.h"
 #include "viewer/gl/render_target.h"
 #include "viewer/gl/shader.h"

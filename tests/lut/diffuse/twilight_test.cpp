@@ -18,7 +18,7 @@
 
 #include "atmosphere/colour/spectrum.h"
 #include "atmosphere/math/constants.h"
-#include "atmosphere/sun/sun.h"
+#include "atmosphere/astronomy/sun.h"
 #include "lut/sky/panorama.h"
 #include "tests/fixtures/places.h"
 

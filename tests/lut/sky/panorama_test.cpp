@@ -10,7 +10,7 @@
 #include <tuple>
 
 #include "atmosphere/colour/spectrum.h"
-#include "atmosphere/sun/sun.h"
+#include "atmosphere/astronomy/sun.h"
 #include "atmosphere/base/error.h"
 #include "tests/fixtures/lit_air.h"
 #include "tests/fixtures/luminance.h"

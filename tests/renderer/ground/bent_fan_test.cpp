@@ -8,7 +8,7 @@
 #include <glm/geometric.hpp>
 
 #include "atmosphere/reference/judge.h"
-#include "atmosphere/ray/bent_view.h"
+#include "atmosphere/refraction/bent_view.h"
 
 namespace alpenglow::renderer {
 namespace {

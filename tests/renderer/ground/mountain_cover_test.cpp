@@ -8,7 +8,7 @@
 
 #include "atmosphere/colour/spectrum.h"
 #include "atmosphere/math/constants.h"
-#include "atmosphere/sun/time.h"
+#include "atmosphere/time_place/time.h"
 #include "renderer/ground/surface.h"
 
 namespace alpenglow::renderer {

@@ -7,7 +7,7 @@
 #include <functional>
 
 #include "atmosphere/math/constants.h"
-#include "atmosphere/ray/bent_view.h"
+#include "atmosphere/refraction/bent_view.h"
 #include "renderer/picture/render.h"
 #include "renderer/terrain/mesh.h"
 

@@ -6,7 +6,7 @@
 
 #include "atmosphere/colour/spectrum.h"
 #include "atmosphere/math/constants.h"
-#include "atmosphere/sun/moon.h"
+#include "atmosphere/astronomy/moon.h"
 #include "renderer/light/aerial_perspective.h"
 #include "renderer/light/night_light.h"
 #include "tests/fixtures/lit_air.h"

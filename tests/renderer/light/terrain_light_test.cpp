@@ -11,7 +11,7 @@
 
 #include "atmosphere/math/constants.h"
 #include "atmosphere/math/numerics.h"
-#include "atmosphere/sun/sun.h"
+#include "atmosphere/astronomy/sun.h"
 #include "lut/sky/sky_view.h"
 #include "renderer/ground/reflectance.h"
 #include "renderer/light/aerial_perspective.h"

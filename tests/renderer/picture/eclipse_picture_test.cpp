@@ -7,7 +7,7 @@
 #include <glm/geometric.hpp>
 
 #include "atmosphere/math/constants.h"
-#include "atmosphere/sun/eclipse.h"
+#include "atmosphere/astronomy/eclipse.h"
 #include "renderer/picture/render.h"
 #include "tests/fixtures/bare_scene.h"
 

@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "atmosphere/math/constants.h"
-#include "atmosphere/sun/moon.h"
+#include "atmosphere/astronomy/moon.h"
 #include "renderer/picture/render.h"
 #include "tests/fixtures/bare_scene.h"
 

@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "atmosphere/math/constants.h"
-#include "atmosphere/sun/moon.h"
-#include "atmosphere/sun/night_sky.h"
+#include "atmosphere/astronomy/moon.h"
+#include "atmosphere/astronomy/night_sky.h"
 #include "renderer/picture/render.h"
 #include "tests/fixtures/bare_scene.h"
 #include "tests/fixtures/luminance.h"

@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "atmosphere/math/constants.h"
-#include "atmosphere/sun/sun.h"
+#include "atmosphere/astronomy/sun.h"
 #include "tests/fixtures/bare_scene.h"
 
 namespace alpenglow::renderer {

@@ -6,9 +6,9 @@
 #include <cmath>
 
 #include "atmosphere/reference/judge.h"
-#include "atmosphere/ray/bent_view.h"
-#include "atmosphere/sun/moon.h"
-#include "atmosphere/sun/night_sky.h"
+#include "atmosphere/refraction/bent_view.h"
+#include "atmosphere/astronomy/moon.h"
+#include "atmosphere/astronomy/night_sky.h"
 #include "renderer/light/night_light.h"
 #include "renderer/picture/render.h"
 #include "tests/fixtures/bare_scene.h"

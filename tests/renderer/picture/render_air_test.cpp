@@ -5,7 +5,7 @@
 #include <cmath>
 #include <filesystem>
 
-#include "atmosphere/ray/bent_view.h"
+#include "atmosphere/refraction/bent_view.h"
 #include "renderer/camera/camera_rays.h"
 #include "renderer/picture/render.h"
 #include "tests/fixtures/bare_scene.h"

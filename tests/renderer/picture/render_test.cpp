@@ -10,7 +10,7 @@
 #include "atmosphere/colour/spectrum.h"
 #include "atmosphere/reference/judge.h"
 #include "atmosphere/math/constants.h"
-#include "atmosphere/ray/bent_view.h"
+#include "atmosphere/refraction/bent_view.h"
 #include "atmosphere/base/error.h"
 #include "lut/diffuse/multiple_scattering.h"
 #include "lut/picture/eye.h"

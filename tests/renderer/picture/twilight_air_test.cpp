@@ -6,7 +6,7 @@
 #include <array>
 #include <cmath>
 
-#include "atmosphere/sun/refraction.h"
+#include "atmosphere/refraction/refraction.h"
 #include "renderer/picture/render.h"
 #include "tests/fixtures/bare_scene.h"
 #include "tests/fixtures/bent_twilight.h"

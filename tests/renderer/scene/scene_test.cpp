@@ -11,8 +11,8 @@
 #include <vector>
 
 #include "atmosphere/math/constants.h"
-#include "atmosphere/sun/geodesy.h"
-#include "atmosphere/sun/night_sky.h"
+#include "atmosphere/time_place/geodesy.h"
+#include "atmosphere/astronomy/night_sky.h"
 #include "atmosphere/base/error.h"
 #include "atmosphere/base/parsing.h"
 #include "lut/picture/look.h"

@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "atmosphere/math/constants.h"
-#include "atmosphere/sun/moon.h"
+#include "atmosphere/astronomy/moon.h"
 #include "lut/program/messages.h"
 #include "renderer/series/contact_sheet.h"
 #include "renderer/series/day_times.h"

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "atmosphere/math/constants.h"
-#include "atmosphere/sun/sun.h"
+#include "atmosphere/astronomy/sun.h"
 #include "lut/picture/look.h"
 #include "renderer/picture/render.h"
 #include "renderer/series/smooth_meter.h"

@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "atmosphere/sun/moon.h"
+#include "atmosphere/astronomy/moon.h"
 #include "atmosphere/base/error.h"
 #include "tests/fixtures/event_days.h"
 #include "tests/fixtures/fault_of.h"

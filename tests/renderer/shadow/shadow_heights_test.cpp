@@ -8,7 +8,7 @@
 #include <filesystem>
 
 #include "atmosphere/math/constants.h"
-#include "atmosphere/sun/sun.h"
+#include "atmosphere/astronomy/sun.h"
 #include "atmosphere/base/error.h"
 #include "tests/fixtures/occlusion_march.h"
 #include "tests/fixtures/places.h"

@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "atmosphere/sun/sun.h"
+#include "atmosphere/astronomy/sun.h"
 #include "atmosphere/base/error.h"
 
 namespace alpenglow::viewer {

@@ -8,7 +8,7 @@
 #include <set>
 
 #include "atmosphere/math/constants.h"
-#include "atmosphere/sun/time_zone.h"
+#include "atmosphere/time_place/time_zone.h"
 #include "tests/fixtures/fault_of.h"
 
 namespace alpenglow::viewer {

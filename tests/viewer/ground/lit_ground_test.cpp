@@ -10,7 +10,7 @@
 #include <limits>
 
 #include "atmosphere/math/numerics.h"
-#include "atmosphere/sun/sun.h"
+#include "atmosphere/astronomy/sun.h"
 #include "tests/viewer/ground/rough_site.h"
 
 namespace alpenglow::viewer {

@@ -6,7 +6,7 @@
 #include <memory>
 
 #include "atmosphere/math/constants.h"
-#include "atmosphere/sun/sun.h"
+#include "atmosphere/astronomy/sun.h"
 #include "tests/fixtures/rough_land.h"
 #include "tests/fixtures/small_light.h"
 #include "viewer/ground/lit_ground.h"

@@ -8,7 +8,7 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 
-#include "atmosphere/sun/sun.h"
+#include "atmosphere/astronomy/sun.h"
 #include "renderer/terrain/obj_file.h"
 #include "renderer/terrain/terrain.h"
 #include "tests/viewer/land/headless_land.h"

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "atmosphere/ray/bent_view.h"
+#include "atmosphere/refraction/bent_view.h"
 #include "lut/picture/tone_mapping.h"
 #include "renderer/ground/scene_ground.h"
 #include "renderer/picture/render.h"

@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "atmosphere/math/constants.h"
-#include "atmosphere/sun/sun.h"
+#include "atmosphere/astronomy/sun.h"
 #include "renderer/light/night_light.h"
 
 namespace alpenglow::viewer {

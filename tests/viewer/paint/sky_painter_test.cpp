@@ -10,7 +10,7 @@
 #include <cmath>
 #include <limits>
 
-#include "atmosphere/sun/eclipse.h"
+#include "atmosphere/astronomy/eclipse.h"
 #include "renderer/ground/scene_ground.h"
 #include "renderer/picture/render.h"
 #include "tests/fixtures/bare_scene.h"

@@ -8,7 +8,7 @@
 #include <map>
 
 #include "atmosphere/math/constants.h"
-#include "atmosphere/sun/sun.h"
+#include "atmosphere/astronomy/sun.h"
 #include "renderer/camera/camera_rays.h"
 #include "renderer/picture/sky_pixels.h"
 #include "tests/fixtures/bare_scene.h"

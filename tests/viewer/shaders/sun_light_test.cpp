@@ -7,8 +7,8 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 
-#include "atmosphere/sun/moon.h"
-#include "atmosphere/sun/sun.h"
+#include "atmosphere/astronomy/moon.h"
+#include "atmosphere/astronomy/sun.h"
 #include "tests/viewer/shaders/gpu_values.h"
 #include "tests/viewer/shaders/headless.h"
 #include "viewer/shaders/full_screen.h"

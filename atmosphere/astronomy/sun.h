@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: MIT
+// The sun: its position, its rise, set and twilights, and its disk (the part above the horizon,
+// limb darkening). This header also compiles the shared source disk_light.glsl as C++.
+#pragma once
+
+#include <optional>
+#include <string_view>
+
+#include "atmosphere/shared_glsl/shared_math.h"
+#include "atmosphere/time_place/geodesy.h"
+#include "atmosphere/refraction/refraction.h"
+#include "atmosphere/time_place/time.h"
+
+namespace alpenglow::shared {
+
+#include "atmosphere/shared_glsl/shared_begin.h"
+//
+#include "atmosphere/astronomy/disk_light.glsl"
+//
+#include "atmosphere/shared_glsl/shared_end.h"
+
+}  // namespace alpenglow::shared
+
+namespace alpenglow::atmosphere {
+
+/// The sun seen from a place, without refraction (topocentric, apparent) unless a function states
+/// otherwise.
+struct SunPosition {
+  double elevation_rad;       // above the horizontal plane of the ellipsoid
+  double azimuth_rad;         // [0, 2 pi), from north over east
+  double distance_au;         // from the place
+  double angular_radius_rad;  // of the disk
+  Vector<Ecef> direction;     // unit vector from the place to the sun
+  /// The elevation of the sun whose straight rays light the air is lower by this (SunForAir).
+  double lower_for_air_rad = 0.0;
+};
+
+/// Returns the sun whose straight rays light the air like the refracted rays of the visible sun
+/// (LiftForAir of refraction.h). The visible sun is used for its disk, the centre of its aureole,
+/// shadows and light on the ground. The sun returned here is used for columns of air between the
+/// sun and the air, the planet's shadow in it, and multiple scattering.
+[[nodiscard]] SunPosition SunForAir(const SunPosition& seen);
+
+/// Returns the position of the sun. ERFA: IAU 2006/2000A precession-nutation, VSOP-type ephemeris
+/// (eraEpv00), aberration and parallax. Within 2 arcseconds of NREL SPA where delta-T is known.
+[[nodiscard]] SunPosition SunAt(const GeodeticPosition& place, const UtcInstant& instant);
+/// Returns the position of the sun for a given TT - UT1 [s] (published comparisons specify it).
+[[nodiscard]] SunPosition SunAt(const GeodeticPosition& place, const UtcInstant& instant,
+                                double delta_t_s);
+
+/// Returns the sun with refraction as seen from the place's height: SunAt, with its elevation
+/// raised by RefractionFromHeight (refraction.h). SunForAir of the result is raised by LiftForAir.
+/// `direction` remains without refraction.
+[[nodiscard]] SunPosition ApparentSunAt(const GeodeticPosition& place, const UtcInstant& instant);
+/// Returns the sun with refraction by any air that bends rays gently.
+[[nodiscard]] SunPosition ApparentSunAt(const GeodeticPosition& place, const UtcInstant& instant,
+                                        const BendingAir& air);
+
+/// Returns the unit vector of an elevation and azimuth.
+[[nodiscard]] Vector<Enu> DirectionFromAngles(double elevation_rad, double azimuth_rad);
+
+/// Air at the observer, for refraction.
+struct AirAtObserver {
+  double pressure_pa = 101325.0;
+  double temperature_k = 288.15;
+};
+
+/// Returns refraction [rad], apparent minus true elevation, as a function of the *true* elevation,
+/// for an observer on the ground; smooth and bounded for every elevation in [-pi/2, pi/2], 34' for
+/// a body seen at the horizontal, 0 from -6 degrees down. Model, source and error are in
+/// refraction.cpp; RefractionFromHeight (refraction.h) is for observers high above the sea. Throws
+/// InputError if the pressure is not in [0, 2e5] Pa or the temperature not in [150, 400] K.
+[[nodiscard]] double Refraction(double true_elevation_rad, const AirAtObserver& air = {});
+
+/// Events of the sun on a local solar day.
+enum class SunEvent {
+  kNoon,
+  kSunrise,
+  kSunset,
+  kCivilDawn,
+  kCivilDusk,
+  kNauticalDawn,
+  kNauticalDusk,
+  kAstronomicalDawn,
+  kAstronomicalDusk,
+};
+
+/// Returns the event named "noon", "sunrise", "civil-dusk" ...; std::nullopt for another name.
+[[nodiscard]] std::optional<SunEvent> SunEventFromName(std::string_view name);
+
+/// Returns the instant of the event on the local solar day (midnight to midnight of mean solar time
+/// at the longitude) that contains `around`; std::nullopt if it does not happen that day
+/// (polar day and night); the first if there are two. Rise and set: upper limb, refracted, seen
+/// over the sea horizon from the place's height (dip). Twilights: true centre at -6, -12,
+/// -18 degrees. Noon: centre in the meridian. Error of the search below 0.1 s.
+[[nodiscard]] std::optional<UtcInstant> FindSunEvent(SunEvent event, const GeodeticPosition& place,
+                                                     const UtcInstant& around);
+
+/// Returns whether the sun is above the elevation at which it rises and sets, or begins and ends a
+/// twilight (FindSunEvent), for an event other than noon. On a day without the event, the value at
+/// noon holds for the whole day.
+[[nodiscard]] bool IsAboveEvent(SunEvent event, const GeodeticPosition& place,
+                                const UtcInstant& instant);
+
+/// The part of a disk above the geometric horizon.
+struct VisibleDisk {
+  double fraction;        // visible fraction of its area, [0, 1]
+  double mu_s_effective;  // zenith cosine of the visible part's centre
+};
+
+/// Returns area and centre of the visible circular segment; the horizon is treated as a straight
+/// line over half a degree.
+/// @param mu_s        zenith cosine of the disk's centre, at the point.
+/// @param horizon_mu  zenith cosine of the horizon at the point.
+/// @param radius_rad  angular radius of the disk, > 0.
+[[nodiscard]] VisibleDisk DiskOverHorizon(double mu_s, double horizon_mu, double radius_rad);
+
+/// Returns the solid angle of a disk of angular radius a [sr]: 2 pi (1 - cos a).
+[[nodiscard]] double DiskSolidAngle(double radius_rad);
+
+/// Returns the radiance relative to the disk's mean at an angular distance from its centre
+/// (0 centre, 1 limb): (1 - u (1 - mu)) / (1 - u / 3), mu = sqrt(1 - rho^2), u = 0.6, the limb
+/// darkening of the visible. Cox (2000), Allen's Astrophysical Quantities, 14.7.
+[[nodiscard]] double LimbDarkening(double rho);
+
+/// Returns the relative radiance at one wavelength [nm]: Neckel (2005), Solar Physics 229, 13.
+/// Within 0.011 of the centre's radiance of the measurements of Neckel and Labs (1994) from 390 to
+/// 1050 nm, rho up to 0.995. Constant beyond the ends of [300, 1100] nm.
+[[nodiscard]] double LimbDarkening(double rho, double wavelength_nm);
+
+/// Returns the radius of the circle that contains a fraction of the disk's light, by
+/// LimbDarkening(rho). @param share  in [0, 1].
+[[nodiscard]] double CircleOfLight(double share);
+
+}  // namespace alpenglow::atmosphere

@@ -1,0 +1,249 @@
+// SPDX-License-Identifier: MIT
+#include "atmosphere/refraction/refraction.h"
+
+#include <erfa.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "atmosphere/math/constants.h"
+#include "atmosphere/refraction/bent_view.h"
+#include "atmosphere/astronomy/sun.h"
+#include "atmosphere/base/error.h"
+
+namespace alpenglow::atmosphere {
+namespace {
+
+constexpr double kDegree = kRadiansPerDegree;
+constexpr double kMinute = kRadiansPerDegree / 60.0;
+constexpr double kArcsecond_rad = kRadiansPerDegree / 3600.0;
+
+TEST(Refraction, IsTheAlmanacs34MinutesAtTheHorizon) {
+  EXPECT_NEAR(Refraction(-34.0 * kMinute) / kMinute, 34.0, 0.05) << "error of the closed form";
+  EXPECT_NEAR(RefractionOfRay(0.0, 0.0) / kMinute, 34.0, 0.001) << "the scale height is chosen so";
+  EXPECT_NEAR(RefractionFromHeight(-34.0 * kMinute, 0.0) / kMinute, 34.0, 0.001);
+}
+
+TEST(Refraction, ClosedFormIsTheRayFromTheGround) {
+  for (double apparent = 0.0; apparent < 90.0; apparent += apparent < 5.0 ? 0.05 : 0.5) {
+    const double ray = RefractionOfRay(apparent * kDegree, 0.0);
+    const double elevation = apparent * kDegree - ray;
+    EXPECT_NEAR(Refraction(elevation) / kMinute, ray / kMinute, 0.05) << apparent;
+    EXPECT_NEAR(RefractionFromHeight(elevation, 0.0), ray, 1e-11) << "the inverse finds the ray";
+  }
+}
+
+TEST(Refraction, FarFromTheHorizonItIsTheSeriesOfErfa) {
+  double a = 0.0;
+  double b = 0.0;
+  eraRefco(1013.25, 15.0, 0.0, 0.55, &a, &b);
+  for (double zenith = 0.0; zenith <= 75.0; zenith += 5.0) {
+    const double tangent = std::tan(zenith * kDegree);
+    const double series = a * tangent + b * tangent * tangent * tangent;
+    const double elevation = (90.0 - zenith) * kDegree - series;
+    EXPECT_NEAR(Refraction(elevation) / kArcsecond_rad, series / kArcsecond_rad, 0.5)
+        << "at 75 degrees the closed form is fitted to 0.3 arcseconds";
+  }
+}
+
+// Bennett, G. G. (1982), J. Navigation 35, 255-259, scaled to 15 C and 1013.25 hPa.
+double Bennett(double apparent_degrees) {
+  const double angle = apparent_degrees + 7.31 / (apparent_degrees + 4.4);
+  return kMinute / std::tan(angle * kDegree) * (1013.25 / 1010.0) * (283.15 / 288.15);
+}
+
+TEST(Refraction, NearTheHorizonItIsBennetts) {
+  for (double apparent = 0.0; apparent < 20.0; apparent += 0.25) {
+    const double bennett = Bennett(apparent);
+    EXPECT_NEAR(Refraction(apparent * kDegree - bennett) / kMinute, bennett / kMinute, 0.35)
+        << "at apparent " << apparent << " degrees; models of the air differ by 1 %";
+  }
+}
+
+/// Ratio of density to that at sea level in the U.S. Standard Atmosphere 1976 up to 32 km.
+double StandardDensity(double height_m) {
+  const double h = height_m * 6356766.0 / (6356766.0 + height_m);
+  const double rho_11 = std::pow(216.65 / 288.15, 4.255876);
+  if (h < 11000.0) return std::pow(1.0 - 0.0065 * h / 288.15, 4.255876);
+  const double rho_20 = rho_11 * std::exp(-9000.0 / 6341.62);
+  if (h < 20000.0) return rho_11 * std::exp(-(h - 11000.0) / 6341.62);
+  return rho_20 * std::pow(1.0 + (h - 20000.0) / 216650.0, -35.163195);
+}
+
+/// Bending along a ray by its definition, tan(psi) d ln n, with h = s^2 against the singularity of
+/// the horizontal ray. Shares nothing with the library.
+double RayThroughStandardAtmosphere(double apparent_rad, double eye_m = 0.0) {
+  const double radius = 6371008.7714;
+  const double n0 = 2.7782e-4;
+  const double at_eye = 1.0 + n0 * StandardDensity(eye_m);
+  const double invariant = at_eye * (radius + eye_m) * std::cos(apparent_rad);
+  const int steps = 20000;
+  const double width = std::sqrt(80e3 - eye_m) / steps;
+  double sum = 0.0;
+  for (int i = 0; i < steps; ++i) {
+    const double s = (i + 0.5) * width;
+    const double height = eye_m + s * s;
+    const double index = 1.0 + n0 * StandardDensity(height);
+    const double slope = n0 * (StandardDensity(height + 1.0) - StandardDensity(height - 1.0)) / 2.0;
+    const double q = index * (radius + height);
+    sum -=
+        slope / index * invariant / std::sqrt((q - invariant) * (q + invariant)) * 2.0 * s * width;
+  }
+  return sum;
+}
+
+TEST(Refraction, StandardAtmosphereBendsRaysAsMuch) {
+  for (const double apparent : {0.0, 0.25, 0.5, 1.0, 2.0, 5.0, 10.0, 45.0}) {
+    EXPECT_NEAR(RefractionOfRay(apparent * kDegree, 0.0) / kMinute,
+                RayThroughStandardAtmosphere(apparent * kDegree) / kMinute, 1.0)
+        << "its lapse rate gives 33.0' at the horizon, almanacs count 34'";
+  }
+}
+
+// Saemundsson, T. (1986), Sky and Telescope 72, 70, of a true elevation, at 10 C and 1010 hPa.
+double Saemundsson(double true_degrees) {
+  const double angle = true_degrees + 10.3 / (true_degrees + 5.11);
+  return 1.02 * kMinute / std::tan(angle * kDegree) * (1013.25 / 1010.0) * (283.15 / 288.15);
+}
+
+TEST(Refraction, OfATrueElevationItIsSaemundssons) {
+  for (double elevation = -0.5; elevation < 20.0; elevation += 0.25) {
+    EXPECT_NEAR(RefractionFromHeight(elevation * kDegree, 0.0) / kMinute,
+                Saemundsson(elevation) / kMinute, 0.35)
+        << elevation << " degrees; the formula is said to agree with Bennett's to 0.1'";
+  }
+}
+
+TEST(Refraction, TheAirOfTheEarthPresetsLiftsASunAsAlmanacsDo) {
+  for (const char* preset : {"earth", "clear-mountain", "hazy"}) {
+    const BendingAir air = GentleAirOf(MediumPreset(preset));
+    EXPECT_NEAR(RefractionSeenAt(air, 0.0, 0.0) / kMinute, 34.0, 0.5) << preset;
+    for (const double height_m : {0.0, 1e3, 3e3, 10e3}) {
+      const double horizon = GrazingElevation(air, height_m);
+      EXPECT_NEAR(-horizon / kMinute, SeaHorizonFrom(height_m).dip_rad / kMinute, 0.02);
+      for (const double over : {0.0, 0.1, 0.5, 1.0, 3.0, 10.0, 30.0}) {
+        const double apparent = horizon + over * kDegree;
+        EXPECT_NEAR(RefractionSeenAt(air, apparent, height_m) / kMinute,
+                    RefractionOfRay(apparent, height_m) / kMinute, 0.02)
+            << preset << " from " << height_m << " m, " << over
+            << " degrees over the horizon; densities of molecules differ by 1e-4";
+      }
+    }
+  }
+}
+
+TEST(Refraction, AloftRaysBendAsInTheStandardAtmosphere) {
+  for (const double height_m : {1e3, 3e3, 10e3}) {
+    for (const double apparent : {0.0, 0.5, 1.0, 3.0, 10.0}) {
+      EXPECT_NEAR(RefractionOfRay(apparent * kDegree, height_m) / kMinute,
+                  RayThroughStandardAtmosphere(apparent * kDegree, height_m) / kMinute, 0.7)
+          << "0.6' as kAlmanacLayers says, and 0.1' of other refractivities; " << height_m << " m, "
+          << apparent << " degrees";
+    }
+  }
+}
+
+TEST(Refraction, IsSmoothBoundedAndKeepsTheOrderOfElevations) {
+  for (const AirAtObserver& air : {AirAtObserver{}, AirAtObserver{2e5, 150.0}}) {
+    const double density = air.pressure_pa / 101325.0 * 288.15 / air.temperature_k;
+    const double step = 0.005;
+    double slope_before = 0.0;
+    for (double elevation = -90.0; elevation < 90.0; elevation += step) {
+      const double here = Refraction(elevation * kDegree, air);
+      const double slope =
+          (Refraction((elevation + step) * kDegree, air) - here) / (step * kDegree);
+      EXPECT_GE(here, 0.0);
+      EXPECT_LE(here, 46.0 * kMinute * density)
+          << elevation << ": it grows to 45.4' at -1.8 degrees before it fades";
+      EXPECT_GT(slope, -1.0) << elevation << ": a higher body would look lower";
+      EXPECT_NEAR(slope, slope_before, 0.003 * density) << elevation << ": a kink";
+      slope_before = slope;
+    }
+  }
+}
+
+TEST(Refraction, FadesToNothingWhereNoRayArrives) {
+  EXPECT_EQ(Refraction(-6.0 * kDegree), 0.0);
+  EXPECT_EQ(Refraction(-kPi / 2), 0.0);
+  EXPECT_NEAR(Refraction(-5.99 * kDegree), 0.0, 1e-3 * kMinute);
+  EXPECT_NEAR(Refraction(kPi / 2), 0.0, 1e-18) << "straight up nothing is bent";
+  EXPECT_NEAR(Refraction(-66.0 * kMinute) / kMinute, 41.0, 0.5)
+      << "the lower limb of the setting sun is lifted more than the upper: the disk is flat";
+}
+
+TEST(Refraction, GrowsWithTheDensityOfTheAir) {
+  const double standard = Refraction(0.1);
+  EXPECT_NEAR(Refraction(0.1, {50662.5, 288.15}), 0.5 * standard, 1e-15);
+  EXPECT_NEAR(Refraction(0.1, {101325.0, 2.0 * 144.075 * 1.25}), standard / 1.25, 1e-15);
+  EXPECT_EQ(Refraction(0.1, {0.0, 288.15}), 0.0) << "no air";
+  EXPECT_THROW((void)Refraction(0.1, {-1.0, 288.15}), InputError);
+  EXPECT_THROW((void)Refraction(0.1, {101325.0, 0.0}), InputError);
+  EXPECT_THROW((void)Refraction(0.1, {std::nan(""), 288.15}), InputError);
+}
+
+TEST(Refraction, DipOfTheSeaIsTheNauticalAlmanacs) {
+  // Bowditch (2017), American Practical Navigator, table 14: dip 1.76' sqrt(height in metres).
+  for (const double height : {2.0, 10.0, 100.0, 1000.0, 4000.0}) {
+    EXPECT_NEAR(SeaHorizonFrom(height).dip_rad / (1.76 * std::sqrt(height) * kMinute), 1.0, 0.02)
+        << height << " m; terrestrial refraction varies by more from day to day";
+  }
+  EXPECT_EQ(SeaHorizonFrom(0.0).dip_rad, 0.0);
+  EXPECT_EQ(SeaHorizonFrom(-430.0).dip_rad, 0.0) << "the shore of the Dead Sea";
+}
+
+TEST(Refraction, SunsetFromAMountainIsTheExplanatorySupplements) {
+  // Explanatory Supplement to the Astronomical Almanac (1992), section 9.31: rise and set at
+  // zenith distance 90 degrees 50' + 2.12' sqrt(height in metres).
+  for (const double height : {10.0, 100.0, 1000.0, 3776.0}) {
+    const double depression = -SeaHorizonFrom(height).true_elevation_rad / kMinute;
+    EXPECT_NEAR(depression, 34.0 + 2.12 * std::sqrt(height), 0.02 * depression) << height << " m";
+  }
+}
+
+TEST(Refraction, SeenFromSpaceTheHorizonIsGeometryAndTwiceTheRefraction) {
+  const double height = 400e3;
+  const SeaHorizon horizon = SeaHorizonFrom(height);
+  const double geometric = std::acos(kEarthMeanRadius_m / (kEarthMeanRadius_m + height));
+  EXPECT_NEAR(horizon.dip_rad, geometric, 0.3 * kDegree) << "n r instead of r at the ground";
+  EXPECT_NEAR((-horizon.dip_rad - horizon.true_elevation_rad) / kMinute, 68.0, 0.01);
+  EXPECT_EQ(RefractionFromHeight(0.0, height), 0.0) << "this ray never meets the air";
+}
+
+TEST(Refraction, FromAnyHeightItIsContinuousAndKeepsTheOrder) {
+  for (const double height : {0.0, 2.0, 900.0, 3776.0, 11e3, 400e3, 36e6}) {
+    const SeaHorizon horizon = SeaHorizonFrom(height);
+    const double step = 0.05;
+    double apparent_before = -kPi;
+    double before = 0.0;
+    for (double elevation = -90.0; elevation <= 90.0; elevation += step) {
+      const double refraction = RefractionFromHeight(elevation * kDegree, height);
+      EXPECT_GE(refraction, 0.0);
+      EXPECT_LE(refraction, 69.0 * kMinute);
+      EXPECT_GT(elevation * kDegree + refraction, apparent_before) << height << " " << elevation;
+      EXPECT_NEAR(refraction, before, step * kDegree)
+          << height << " m, " << elevation
+          << " degrees: who keeps the order loses less than the body climbs, from far out nearly "
+             "so";
+      apparent_before = elevation * kDegree + refraction;
+      before = refraction;
+    }
+    EXPECT_NEAR(RefractionFromHeight(horizon.true_elevation_rad + 1e-9, height),
+                -horizon.dip_rad - horizon.true_elevation_rad, 1e-8)
+        << "on the horizon";
+  }
+}
+
+TEST(ApparentSun, StandsHigherThanTheSunByTheRefractionFromTheEyesHeight) {
+  const UtcInstant evening = ParseInstant("2026-06-21T18:50:00Z");
+  for (const double height_m : {0.0, 10e3}) {
+    const GeodeticPosition eye = PlaceFromDegrees(47.0, 8.0, height_m);
+    const SunPosition sun = SunAt(eye, evening), apparent = ApparentSunAt(eye, evening);
+    EXPECT_EQ(apparent.elevation_rad,
+              sun.elevation_rad + RefractionFromHeight(sun.elevation_rad, height_m));
+    EXPECT_GT(apparent.elevation_rad, sun.elevation_rad);
+    EXPECT_EQ(apparent.azimuth_rad, sun.azimuth_rad);
+  }
+}
+
+}  // namespace
+}  // namespace alpenglow::atmosphere
