@@ -12,8 +12,8 @@
 #include "atmosphere/medium/medium_presets.h"
 #include "atmosphere/refraction/bent_view.h"
 #include "atmosphere/astronomy/sun.h"
-#include "lut/picture/look.h"
-#include "lut/program/output_file.h"
+#include "lut/image/look.h"
+#include "lut/cli/output_file.h"
 #include "lut/sky/panorama.h"
 
 namespace alpenglow::lut {

@@ -2,7 +2,7 @@
 // This header declares the subcommand `skylut sky`, which renders panoramas for lighting.
 #pragma once
 
-#include "lut/program/command_line.h"
+#include "lut/cli/command_line.h"
 
 namespace alpenglow::lut {
 

@@ -6,14 +6,14 @@
 
 #include "atmosphere/medium/medium_presets.h"
 #include "atmosphere/base/error.h"
-#include "lut/eval/eval.h"
-#include "lut/eval/lamp_cases.h"
-#include "lut/program/command_line.h"
-#include "lut/program/output_file.h"
-#include "lut/program/program.h"
+#include "lut/evaluate/eval.h"
+#include "lut/evaluate/lamp_cases.h"
+#include "lut/cli/command_line.h"
+#include "lut/cli/output_file.h"
+#include "lut/cli/program.h"
 #include "lut/sky_command.h"
-#include "lut/store/exchange_check.h"
-#include "lut/store/table_folder.h"
+#include "lut/table_io/exchange_check.h"
+#include "lut/table_io/table_folder.h"
 #include "lut/table_commands.h"
 
 namespace alpenglow::lut {

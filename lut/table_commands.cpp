@@ -10,12 +10,12 @@
 #include "atmosphere/medium/aerosol_mixture.h"
 #include "atmosphere/medium/medium.h"
 #include "atmosphere/medium/medium_presets.h"
-#include "lut/eval/eval.h"
-#include "lut/program/output_file.h"
+#include "lut/evaluate/eval.h"
+#include "lut/cli/output_file.h"
 #include "lut/report/report.h"
-#include "lut/store/exchange_tables.h"
-#include "lut/store/table_folder.h"
-#include "lut/train/table_search.h"
+#include "lut/table_io/exchange_tables.h"
+#include "lut/table_io/table_folder.h"
+#include "lut/table_search/table_search.h"
 
 namespace alpenglow::lut {
 namespace {

@@ -4,7 +4,7 @@
 // folder.
 #pragma once
 
-#include "lut/program/command_line.h"
+#include "lut/cli/command_line.h"
 
 namespace alpenglow::lut {
 

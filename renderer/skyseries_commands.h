@@ -5,7 +5,7 @@
 
 #include <functional>
 
-#include "lut/program/command_line.h"
+#include "lut/cli/command_line.h"
 #include "renderer/layer.h"
 
 namespace alpenglow::renderer {

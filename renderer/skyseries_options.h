@@ -10,10 +10,10 @@
 #include <string>
 #include <vector>
 
-#include "lut/eval/eval.h"
-#include "lut/picture/look.h"
-#include "lut/program/command_line.h"
-#include "lut/program/output_file.h"
+#include "lut/evaluate/eval.h"
+#include "lut/image/look.h"
+#include "lut/cli/command_line.h"
+#include "lut/cli/output_file.h"
 #include "renderer/camera/camera_rays.h"
 #include "renderer/camera/track.h"
 #include "renderer/picture/render.h"

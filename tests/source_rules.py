@@ -8,7 +8,7 @@
 - Namespaces: a source of a layer declares nothing in the namespace of another one.
 - The top level of the repository has only the known entries.
 - Every file that begins with an interpreter can be run.
-- Programs write to standard output and error only through lut/program/messages.h: fmt::print throws
+- Programs write to standard output and error only through lut/cli/messages.h: fmt::print throws
   where standard error takes nothing, which would end the work.
 
 Every rule is also run on small examples that break it, so that a rule that finds nothing is noticed.
@@ -71,7 +71,7 @@ def foreign_namespaces(path, text):
 
 
 def speech(path, text):
-    return [f"{path}: {words} does not go through lut/program/messages.h" for words in SPEECH if words in text]
+    return [f"{path}: {words} does not go through lut/cli/messages.h" for words in SPEECH if words in text]
 
 
 def check_examples():
@@ -79,16 +79,16 @@ def check_examples():
     order = {"atmosphere": ["base", "medium"], "lut": ["image", "sky"], "renderer": ["terrain"], "viewer": []}
     for path, included, expected in (
             ("lut/sky/panorama.h", "renderer/terrain/mesh.h", 1),  # a higher layer
-            ("lut/picture/image.h", "lut/sky/panorama.h", 1),  # a higher folder
-            ("lut/picture/image.h", "lut/sky_command.h", 1),  # the top
-            ("lut/picture/image.h", "lut/cellar/wine.h", 1),  # a folder that is not listed
-            ("lut/picture/image.h", "tests/fixtures/stored_cases.h", 1),
-            ("lut/picture/image.h", "alpenglow/renderer/terrain/mesh.h", 1),
-            ("lut/sky/panorama.h", "lut/picture/image.h", 0),
+            ("lut/image/image.h", "lut/sky/panorama.h", 1),  # a higher folder
+            ("lut/image/image.h", "lut/sky_command.h", 1),  # the top
+            ("lut/image/image.h", "lut/cellar/wine.h", 1),  # a folder that is not listed
+            ("lut/image/image.h", "tests/fixtures/stored_cases.h", 1),
+            ("lut/image/image.h", "alpenglow/renderer/terrain/mesh.h", 1),
+            ("lut/sky/panorama.h", "lut/image/image.h", 0),
             ("lut/sky/panorama.h", "lut/embedded_text.h", 0),
-            ("lut/picture/image.h", "lut/layer.h", 0),
+            ("lut/image/image.h", "lut/layer.h", 0),
             ("lut/sky_command.cpp", "lut/sky/panorama.h", 0),
-            ("lut/picture/image.h", "atmosphere/medium/medium.h", 0)):
+            ("lut/image/image.h", "atmosphere/medium/medium.h", 0)):
         found = list(includes_upwards(path, f'#include <vector>\n#include "{included}"\n', order))
         assert len(found) == expected, (path, included, found)
     assert len(list(foreign_namespaces("lut/sky/a.h", "namespace alpenglow::renderer {\n"))) == 1

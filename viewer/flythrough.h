@@ -10,8 +10,8 @@
 #include <string>
 #include <vector>
 
-#include "lut/picture/eye.h"
-#include "lut/picture/look.h"
+#include "lut/image/eye.h"
+#include "lut/image/look.h"
 #include "renderer/scene/scene.h"
 #include "viewer/air/solved_air.h"
 #include "viewer/flight/flight_recorder.h"

@@ -9,7 +9,7 @@
 
 #include "atmosphere/base/error.h"
 #include "atmosphere/base/parsing.h"
-#include "lut/program/program.h"
+#include "lut/cli/program.h"
 #include "renderer/series/manifest.h"
 #include "viewer/flythrough.h"
 #include "viewer/gl/picture_tiles.h"

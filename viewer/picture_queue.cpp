@@ -14,7 +14,7 @@
 #include <utility>
 
 #include "atmosphere/base/error.h"
-#include "lut/program/output_file.h"
+#include "lut/cli/output_file.h"
 #include "viewer/gl/gl_context.h"
 #include "viewer/gl/render_target.h"
 #include "viewer/layer.h"

@@ -7,7 +7,7 @@
 
 #include "atmosphere/math/constants.h"
 #include "atmosphere/base/error.h"
-#include "lut/program/output_file.h"
+#include "lut/cli/output_file.h"
 #include "renderer/camera/track.h"
 #include "renderer/scene/scene_options.h"
 #include "renderer/series/frame_times.h"

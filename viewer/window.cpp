@@ -15,7 +15,7 @@
 #include <utility>
 
 #include "atmosphere/base/error.h"
-#include "lut/program/messages.h"
+#include "lut/cli/messages.h"
 #include "viewer/gl/gl_context.h"
 #include "viewer/layer.h"
 

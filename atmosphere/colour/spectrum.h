@@ -82,7 +82,7 @@ using Matrix3 = std::array<std::array<double, 3>, 3>;
 /// is not trained, 0.7 and 1.6. The references are integration in 0.5 nm steps over 513 skies and
 /// suns of three atmospheres by single scattering (tests/atmosphere/colour/spectrum_test.cpp), and
 /// 5 nm steps over skies of all orders, land, sun and ground from 60 degrees down to -10
-/// (tests/lut/train/band_training_test.cpp).
+/// (tests/lut/table_search/band_training_test.cpp).
 class BandColour {
  public:
   explicit BandColour(std::vector<double> wavelengths_nm);
@@ -115,7 +115,7 @@ class BandColour {
 /// BandColour and under the sun above the air, they have the colours of their full spectra. In
 /// daylight (sun at 30 degrees) surfaces then keep their colour on four bands within a CIEDE2000 of
 /// 0.3 in the mean and 0.6 at most, over 27 colours with channels 0.1 to 0.6
-/// (tests/lut/train/band_training_test.cpp); at sunset 0.8, in twilight 2 in the mean.
+/// (tests/lut/table_search/band_training_test.cpp); at sunset 0.8, in twilight 2 in the mean.
 [[nodiscard]] std::vector<double> AlbedoFromLinearSrgb(const std::array<double, 3>& rgb,
                                                        std::span<const double> wavelengths_nm);
 

@@ -15,7 +15,7 @@
 
 #include "atmosphere/medium/medium_presets.h"
 #include "atmosphere/refraction/bent_view.h"
-#include "lut/program/program.h"
+#include "lut/cli/program.h"
 #include "lut/report/report_measure.h"
 #include "lut/version.h"
 

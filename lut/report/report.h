@@ -24,7 +24,7 @@
 
 #include "atmosphere/medium/medium.h"
 #include "lut/layer.h"
-#include "lut/program/messages.h"
+#include "lut/cli/messages.h"
 #include "lut/report/svg_plot.h"
 
 namespace alpenglow::lut {

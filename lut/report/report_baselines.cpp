@@ -12,8 +12,8 @@
 #include "atmosphere/ray/ray.h"
 #include "atmosphere/ray/shell.h"
 #include "atmosphere/base/error.h"
-#include "lut/eval/eval.h"
-#include "lut/table/table_axes.h"
+#include "lut/evaluate/eval.h"
+#include "lut/tables/table_axes.h"
 
 namespace alpenglow::lut {
 namespace {

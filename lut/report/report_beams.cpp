@@ -15,7 +15,7 @@
 #include "atmosphere/refraction/bent_view.h"
 #include "lut/report/report_baselines.h"
 #include "lut/report/report_measure.h"
-#include "lut/table/transmittance_table.h"
+#include "lut/tables/transmittance_table.h"
 
 namespace alpenglow::lut {
 namespace {

@@ -13,7 +13,7 @@
 #include "atmosphere/math/constants.h"
 #include "atmosphere/math/numerics.h"
 #include "atmosphere/base/error.h"
-#include "lut/program/program.h"
+#include "lut/cli/program.h"
 
 namespace alpenglow::lut {
 namespace {

@@ -41,7 +41,7 @@
 #include "atmosphere/reference/path_tracer.h"
 #include "atmosphere/ray/ray.h"
 #include "atmosphere/ray/single_scattering.h"
-#include "lut/program/program.h"
+#include "lut/cli/program.h"
 #include "lut/report/report.h"
 #include "lut/report/report_baselines.h"
 

@@ -9,7 +9,7 @@
 
 #include "atmosphere/base/error.h"
 #include "lut/embedded_text.h"
-#include "lut/program/output_file.h"
+#include "lut/cli/output_file.h"
 #include "lut/report/report.h"
 
 namespace alpenglow::lut {

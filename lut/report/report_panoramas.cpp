@@ -7,8 +7,8 @@
 #include <cmath>
 
 #include "atmosphere/math/constants.h"
-#include "lut/diffuse/multiple_scattering.h"
-#include "lut/eval/eval.h"
+#include "lut/multiple_scattering/multiple_scattering.h"
+#include "lut/evaluate/eval.h"
 #include "lut/report/report_baselines.h"
 #include "lut/report/report_measure.h"
 #include "lut/sky/panorama.h"

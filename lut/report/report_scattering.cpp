@@ -7,11 +7,11 @@
 #include <array>
 
 #include "atmosphere/ray/direct_scattering.h"
-#include "lut/diffuse/multiple_scattering.h"
+#include "lut/multiple_scattering/multiple_scattering.h"
 #include "lut/report/report_baselines.h"
 #include "lut/report/report_measure.h"
-#include "lut/store/table_folder.h"
-#include "lut/table/scattering_table.h"
+#include "lut/table_io/table_folder.h"
+#include "lut/tables/scattering_table.h"
 
 namespace alpenglow::lut {
 namespace {

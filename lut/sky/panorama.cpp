@@ -14,8 +14,8 @@
 #include "atmosphere/math/constants.h"
 #include "atmosphere/astronomy/sun.h"
 #include "atmosphere/base/error.h"
-#include "lut/picture/tone_mapping.h"
-#include "lut/program/program.h"
+#include "lut/image/tone_mapping.h"
+#include "lut/cli/program.h"
 
 namespace alpenglow::lut {
 namespace {

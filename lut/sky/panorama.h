@@ -26,9 +26,9 @@
 
 #include "atmosphere/math/constants.h"
 #include "atmosphere/ray/single_scattering.h"
-#include "lut/diffuse/multiple_scattering.h"
-#include "lut/diffuse/polarised_light.h"
-#include "lut/picture/image.h"
+#include "lut/multiple_scattering/multiple_scattering.h"
+#include "lut/multiple_scattering/polarised_light.h"
+#include "lut/image/image.h"
 #include "lut/sky/sky_view.h"
 
 namespace alpenglow::lut {

@@ -11,10 +11,10 @@
 #include "atmosphere/ray/direct_scattering.h"
 #include "atmosphere/ray/shell.h"
 #include "atmosphere/base/error.h"
-#include "lut/diffuse/diffuse_fan.h"
-#include "lut/diffuse/diffuse_grid.h"
+#include "lut/multiple_scattering/diffuse_fan.h"
+#include "lut/multiple_scattering/diffuse_grid.h"
 #include "lut/sky/sky_row_kernel.h"
-#include "lut/table/cubic_taps.h"
+#include "lut/tables/cubic_taps.h"
 
 namespace alpenglow::lut {
 namespace {

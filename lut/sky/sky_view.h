@@ -24,7 +24,7 @@
 #include <vector>
 
 #include "atmosphere/ray/single_scattering.h"
-#include "lut/diffuse/multiple_scattering.h"
+#include "lut/multiple_scattering/multiple_scattering.h"
 #include "lut/sky/sky_view_map.h"
 
 namespace alpenglow::lut {

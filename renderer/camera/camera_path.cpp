@@ -11,7 +11,7 @@
 #include "atmosphere/math/constants.h"
 #include "atmosphere/base/error.h"
 #include "atmosphere/base/parsing.h"
-#include "lut/program/csv_reader.h"
+#include "lut/cli/csv_reader.h"
 #include "renderer/scene/scene.h"
 
 namespace alpenglow::renderer {

@@ -41,7 +41,7 @@
 #include <string>
 #include <vector>
 
-#include "lut/picture/image.h"
+#include "lut/image/image.h"
 #include "renderer/camera/camera_rays.h"
 #include "renderer/effect/effects.h"
 #include "renderer/layer.h"

@@ -8,7 +8,7 @@
 
 #include "atmosphere/base/error.h"
 #include "atmosphere/base/parsing.h"
-#include "lut/program/program.h"
+#include "lut/cli/program.h"
 #include "renderer/layer.h"
 
 namespace alpenglow::renderer {

@@ -12,7 +12,7 @@
 #include <string>
 
 #include "atmosphere/time_place/geodesy.h"
-#include "lut/program/messages.h"
+#include "lut/cli/messages.h"
 #include "renderer/camera/camera_path.h"
 #include "renderer/camera/camera_rays.h"
 #include "renderer/layer.h"

@@ -11,7 +11,7 @@
 #include <numeric>
 
 #include "atmosphere/lamp/airlight.h"
-#include "lut/program/program.h"
+#include "lut/cli/program.h"
 #include "renderer/ground/band_light.h"
 #include "renderer/lamp/lamp_tree.h"
 #include "renderer/lamp/placed_lamp.h"

@@ -29,7 +29,7 @@
 #include <vector>
 
 #include "atmosphere/lamp/airlight.h"
-#include "lut/diffuse/spherical_harmonics.h"
+#include "lut/multiple_scattering/spherical_harmonics.h"
 #include "renderer/lamp/lamp_light.h"
 #include "renderer/lamp/placed_lamp.h"
 #include "renderer/layer.h"

@@ -39,7 +39,7 @@
 #include "atmosphere/math/numerics.h"
 #include "atmosphere/ray/direct_scattering.h"
 #include "atmosphere/ray/single_scattering.h"
-#include "lut/diffuse/multiple_scattering.h"
+#include "lut/multiple_scattering/multiple_scattering.h"
 #include "renderer/layer.h"
 #include "renderer/shadow/sunlit_path.h"
 

@@ -19,7 +19,7 @@
 #include "atmosphere/astronomy/moon.h"
 #include "atmosphere/astronomy/sun.h"
 #include "atmosphere/time_place/time.h"
-#include "lut/diffuse/multiple_scattering.h"
+#include "lut/multiple_scattering/multiple_scattering.h"
 #include "renderer/effect/effects.h"
 #include "renderer/ground/band_light.h"
 #include "renderer/ground/scene_geometry.h"

@@ -7,7 +7,7 @@
 
 #include "atmosphere/math/constants.h"
 #include "atmosphere/math/numerics.h"
-#include "lut/diffuse/spherical_harmonics.h"
+#include "lut/multiple_scattering/spherical_harmonics.h"
 #include "lut/sky/sky_view.h"
 
 namespace alpenglow::renderer {

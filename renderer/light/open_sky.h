@@ -26,7 +26,7 @@
 #include <vector>
 
 #include "atmosphere/ray/single_scattering.h"
-#include "lut/diffuse/multiple_scattering.h"
+#include "lut/multiple_scattering/multiple_scattering.h"
 #include "renderer/ground/band_light.h"
 #include "renderer/layer.h"
 #include "renderer/shadow/horizon_map.h"

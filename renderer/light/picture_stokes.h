@@ -10,7 +10,7 @@
 
 #include <glm/vec3.hpp>
 
-#include "lut/diffuse/polarised_light.h"
+#include "lut/multiple_scattering/polarised_light.h"
 #include "renderer/camera/camera_rays.h"
 #include "renderer/ground/band_light.h"
 

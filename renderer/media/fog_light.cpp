@@ -7,7 +7,7 @@
 
 #include "atmosphere/math/constants.h"
 #include "atmosphere/base/error.h"
-#include "lut/diffuse/spherical_harmonics.h"
+#include "lut/multiple_scattering/spherical_harmonics.h"
 #include "renderer/layer.h"
 
 namespace alpenglow::renderer {

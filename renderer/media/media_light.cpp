@@ -11,7 +11,7 @@
 #include <limits>
 #include <optional>
 
-#include "lut/diffuse/spherical_harmonics.h"
+#include "lut/multiple_scattering/spherical_harmonics.h"
 #include "renderer/media/fog_light.h"
 
 namespace alpenglow::renderer {

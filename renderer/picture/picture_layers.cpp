@@ -7,8 +7,8 @@
 
 #include "atmosphere/colour/spectrum.h"
 #include "atmosphere/base/error.h"
-#include "lut/picture/eye.h"
-#include "lut/picture/image.h"
+#include "lut/image/eye.h"
+#include "lut/image/image.h"
 #include "renderer/ground/scene_geometry.h"
 
 namespace alpenglow::renderer {

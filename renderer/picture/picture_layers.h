@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "atmosphere/colour/spectrum.h"
-#include "lut/picture/image.h"
+#include "lut/image/image.h"
 #include "renderer/ground/band_light.h"
 #include "renderer/ground/scene_geometry.h"
 #include "renderer/light/picture_stokes.h"

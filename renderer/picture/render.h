@@ -25,8 +25,8 @@
 
 #include "atmosphere/astronomy/sun.h"
 #include "atmosphere/time_place/time.h"
-#include "lut/picture/image.h"
-#include "lut/program/messages.h"
+#include "lut/image/image.h"
+#include "lut/cli/messages.h"
 #include "renderer/camera/camera_path.h"
 #include "renderer/camera/camera_rays.h"
 #include "renderer/effect/effect_choice.h"

@@ -10,7 +10,7 @@
 
 #include "atmosphere/math/constants.h"
 #include "atmosphere/astronomy/sun.h"
-#include "lut/program/program.h"
+#include "lut/cli/program.h"
 #include "renderer/effect/effect_choice.h"
 #include "renderer/picture/picture_layers.h"
 #include "renderer/picture/pixel_light.h"

@@ -10,7 +10,7 @@
 #include "atmosphere/astronomy/eclipse.h"
 #include "atmosphere/astronomy/ephemeris.h"
 #include "atmosphere/astronomy/sun.h"
-#include "lut/program/program.h"
+#include "lut/cli/program.h"
 #include "renderer/effect/effect_choice.h"
 #include "renderer/ground/scene_geometry.h"
 #include "renderer/light/lighting.h"

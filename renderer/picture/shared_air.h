@@ -12,7 +12,7 @@
 
 #include "atmosphere/refraction/bent_view.h"
 #include "atmosphere/ray/single_scattering.h"
-#include "lut/diffuse/multiple_scattering.h"
+#include "lut/multiple_scattering/multiple_scattering.h"
 #include "renderer/camera/camera_rays.h"
 #include "renderer/effect/effects.h"
 #include "renderer/ground/scene_geometry.h"

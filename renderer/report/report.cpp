@@ -12,8 +12,8 @@
 #include "atmosphere/math/constants.h"
 #include "atmosphere/math/numerics.h"
 #include "lut/report/report_baselines.h"
-#include "lut/table/scattering_table.h"
-#include "lut/table/transmittance_table.h"
+#include "lut/tables/scattering_table.h"
+#include "lut/tables/transmittance_table.h"
 #include "renderer/light/aerial_perspective.h"
 
 namespace alpenglow::renderer {

@@ -12,7 +12,7 @@
 #include <memory>
 #include <utility>
 
-#include "lut/program/program.h"
+#include "lut/cli/program.h"
 #include "renderer/lamp/lamp_light.h"
 #include "renderer/lamp/lamp_works.h"
 #include "renderer/report/report.h"

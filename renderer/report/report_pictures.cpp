@@ -11,7 +11,7 @@
 #include <memory>
 
 #include "atmosphere/math/constants.h"
-#include "lut/program/program.h"
+#include "lut/cli/program.h"
 #include "renderer/effect/effect_choice.h"
 #include "renderer/picture/render.h"
 #include "renderer/report/report.h"

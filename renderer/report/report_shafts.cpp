@@ -10,7 +10,7 @@
 #include <numbers>
 #include <vector>
 
-#include "lut/program/program.h"
+#include "lut/cli/program.h"
 #include "renderer/ground/scene_ground.h"
 #include "renderer/light/aerial_perspective.h"
 #include "renderer/light/occlusion_march.h"

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "lut/program/output_file.h"
+#include "lut/cli/output_file.h"
 #include "renderer/scene/scene.h"
 
 namespace alpenglow::renderer {

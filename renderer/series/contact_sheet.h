@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "lut/picture/image.h"
+#include "lut/image/image.h"
 #include "renderer/layer.h"
 
 namespace alpenglow::renderer {

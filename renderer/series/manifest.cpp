@@ -11,8 +11,8 @@
 #include "atmosphere/astronomy/moon.h"
 #include "atmosphere/astronomy/sun.h"
 #include "atmosphere/base/error.h"
-#include "lut/program/messages.h"
-#include "lut/program/program.h"
+#include "lut/cli/messages.h"
+#include "lut/cli/program.h"
 
 namespace alpenglow::renderer {
 namespace {

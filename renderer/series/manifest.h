@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "atmosphere/time_place/geodesy.h"
-#include "lut/picture/image.h"
+#include "lut/image/image.h"
 #include "renderer/camera/camera_path.h"
 #include "renderer/picture/render.h"
 #include "renderer/scene/scene.h"

@@ -24,8 +24,8 @@
 
 #include "atmosphere/base/error.h"
 #include "atmosphere/base/parsing.h"
-#include "lut/program/output_file.h"
-#include "lut/program/program.h"
+#include "lut/cli/output_file.h"
+#include "lut/cli/program.h"
 
 extern char** environ;
 

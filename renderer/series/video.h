@@ -5,7 +5,7 @@
 #include <filesystem>
 #include <functional>
 
-#include "lut/picture/image.h"
+#include "lut/image/image.h"
 #include "renderer/layer.h"
 
 namespace alpenglow::renderer {

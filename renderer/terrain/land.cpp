@@ -15,7 +15,7 @@
 
 #include "atmosphere/math/numerics.h"
 #include "atmosphere/base/error.h"
-#include "lut/program/output_file.h"
+#include "lut/cli/output_file.h"
 #include "renderer/layer.h"
 #include "renderer/terrain/lattice_noise.h"
 

@@ -12,7 +12,7 @@
 #include "atmosphere/reference/judge.h"
 #include "atmosphere/ray/direct_scattering.h"
 #include "atmosphere/ray/single_scattering.h"
-#include "lut/diffuse/multiple_scattering.h"
+#include "lut/multiple_scattering/multiple_scattering.h"
 
 namespace alpenglow::lut {
 namespace {

@@ -19,7 +19,7 @@
 #include "atmosphere/math/constants.h"
 #include "atmosphere/base/error.h"
 #include "lut/layer.h"
-#include "lut/table/scattering_table.h"
+#include "lut/tables/scattering_table.h"
 
 namespace alpenglow::lut {
 namespace {

@@ -14,7 +14,7 @@
 #include "atmosphere/reference/path_tracer.h"
 #include "atmosphere/math/constants.h"
 #include "atmosphere/math/numerics.h"
-#include "lut/eval/eval.h"
+#include "lut/evaluate/eval.h"
 
 namespace alpenglow::lut {
 namespace {

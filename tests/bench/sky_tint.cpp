@@ -24,8 +24,8 @@
 #include "atmosphere/math/constants.h"
 #include "atmosphere/ray/ray.h"
 #include "atmosphere/ray/single_scattering.h"
-#include "lut/diffuse/multiple_scattering.h"
-#include "lut/train/sky_spectra.h"
+#include "lut/multiple_scattering/multiple_scattering.h"
+#include "lut/table_search/sky_spectra.h"
 
 namespace alpenglow::lut {
 namespace {

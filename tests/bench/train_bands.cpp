@@ -15,7 +15,7 @@
 
 #include "atmosphere/colour/spectrum.h"
 #include "atmosphere/base/error.h"
-#include "lut/train/band_training.h"
+#include "lut/table_search/band_training.h"
 
 namespace alpenglow::lut {
 namespace {

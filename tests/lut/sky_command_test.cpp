@@ -9,7 +9,7 @@
 #include <cmath>
 #include <string>
 
-#include "lut/picture/image.h"
+#include "lut/image/image.h"
 #include "tests/fixtures/places.h"
 #include "tests/fixtures/temporary_folder.h"
 

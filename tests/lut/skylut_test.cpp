@@ -10,7 +10,7 @@
 #include <sstream>
 #include <vector>
 
-#include "lut/store/table_file.h"
+#include "lut/table_io/table_file.h"
 #include "tests/fixtures/lost_messages.h"
 #include "tests/fixtures/places.h"
 #include "tests/fixtures/sanitized.h"

@@ -13,7 +13,7 @@
 
 #include "atmosphere/time_place/time.h"
 #include "atmosphere/base/parsing.h"
-#include "lut/picture/image.h"
+#include "lut/image/image.h"
 #include "tests/fixtures/bare_scene_folder.h"
 #include "tests/fixtures/lost_messages.h"
 #include "tests/fixtures/places.h"

@@ -6,7 +6,7 @@
 
 #include <cmath>
 
-#include "lut/picture/image.h"
+#include "lut/image/image.h"
 #include "tests/fixtures/bare_scene_folder.h"
 #include "tests/fixtures/obj_texts.h"
 #include "tests/fixtures/places.h"

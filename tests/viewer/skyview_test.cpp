@@ -4,8 +4,8 @@
 #include <gtest/gtest.h>
 #include <sys/wait.h>
 
-#include "lut/picture/image.h"
-#include "lut/picture/look.h"
+#include "lut/image/image.h"
+#include "lut/image/look.h"
 #include "renderer/camera/camera_path.h"
 #include "tests/fixtures/bare_scene_folder.h"
 #include "tests/fixtures/lost_messages.h"

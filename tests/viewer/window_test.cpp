@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "lut/picture/image.h"
+#include "lut/image/image.h"
 #include "renderer/camera/camera_path.h"
 #include "tests/fixtures/bare_scene.h"
 #include "tests/fixtures/places.h"

@@ -11,7 +11,7 @@
 #include "atmosphere/medium/phase_text.h"
 #include "atmosphere/math/constants.h"
 #include "atmosphere/math/numerics.h"
-#include "lut/diffuse/diffuse_fan.h"
+#include "lut/multiple_scattering/diffuse_fan.h"
 
 namespace alpenglow::viewer {
 namespace {

@@ -9,7 +9,7 @@
 #include "atmosphere/math/constants.h"
 #include "atmosphere/base/error.h"
 #include "lut/sky/sky_view.h"
-#include "lut/table/transmittance_table.h"
+#include "lut/tables/transmittance_table.h"
 #include "viewer/air/air_rows.h"
 
 namespace alpenglow::viewer {

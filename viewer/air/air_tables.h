@@ -31,7 +31,7 @@
 #include "atmosphere/refraction/bent_view.h"
 #include "atmosphere/ray/shell.h"
 #include "atmosphere/ray/single_scattering.h"
-#include "lut/diffuse/multiple_scattering.h"
+#include "lut/multiple_scattering/multiple_scattering.h"
 #include "viewer/layer.h"
 
 namespace alpenglow::shared {

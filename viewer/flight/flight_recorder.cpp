@@ -5,8 +5,8 @@
 
 #include "atmosphere/base/error.h"
 #include "atmosphere/base/parsing.h"
-#include "lut/program/messages.h"
-#include "lut/program/output_file.h"
+#include "lut/cli/messages.h"
+#include "lut/cli/output_file.h"
 #include "renderer/series/frame_times.h"
 #include "viewer/job/latest_job.h"
 

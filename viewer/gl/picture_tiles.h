@@ -6,7 +6,7 @@
 #include <glm/vec4.hpp>
 #include <vector>
 
-#include "lut/picture/image.h"
+#include "lut/image/image.h"
 #include "viewer/layer.h"
 
 namespace alpenglow::viewer {

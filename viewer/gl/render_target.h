@@ -8,7 +8,7 @@
 #include <optional>
 #include <vector>
 
-#include "lut/picture/image.h"
+#include "lut/image/image.h"
 #include "viewer/gl/gl_objects.h"
 #include "viewer/layer.h"
 

@@ -9,8 +9,8 @@
 #include <utility>
 
 #include "atmosphere/math/constants.h"
-#include "lut/picture/image.h"
-#include "lut/picture/metering.h"
+#include "lut/image/image.h"
+#include "lut/image/metering.h"
 #include "viewer/hud/hud_model.h"
 #include "viewer/hud/panel_controls.h"
 

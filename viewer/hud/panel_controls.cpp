@@ -12,8 +12,8 @@
 #include "atmosphere/refraction/bent_view.h"
 #include "atmosphere/astronomy/sun.h"
 #include "atmosphere/base/error.h"
-#include "lut/picture/image.h"
-#include "lut/picture/tone_mapping.h"
+#include "lut/image/image.h"
+#include "lut/image/tone_mapping.h"
 #include "lut/sky/sky_view_map.h"
 #include "viewer/flight/places.h"
 

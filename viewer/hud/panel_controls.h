@@ -22,7 +22,7 @@
 #include "atmosphere/ray/single_scattering.h"
 #include "atmosphere/time_place/geodesy.h"
 #include "atmosphere/time_place/time.h"
-#include "lut/diffuse/multiple_scattering.h"
+#include "lut/multiple_scattering/multiple_scattering.h"
 #include "viewer/job/latest_job.h"
 #include "viewer/layer.h"
 

@@ -12,7 +12,7 @@
 
 #include "atmosphere/math/constants.h"
 #include "atmosphere/base/error.h"
-#include "lut/program/program.h"
+#include "lut/cli/program.h"
 #include "viewer/land/seen_chunks.h"
 
 namespace alpenglow::viewer {

@@ -12,8 +12,8 @@
 #include <utility>
 #include <vector>
 
-#include "lut/picture/develop.h"
-#include "lut/picture/tone_mapping.h"
+#include "lut/image/develop.h"
+#include "lut/image/tone_mapping.h"
 #include "viewer/gl/gl_context.h"
 #include "viewer/gl/render_target.h"
 #include "viewer/shaders/full_screen.h"

@@ -19,8 +19,8 @@
 #include <optional>
 #include <vector>
 
-#include "lut/picture/look.h"
-#include "lut/picture/tone_mapping.h"
+#include "lut/image/look.h"
+#include "lut/image/tone_mapping.h"
 #include "viewer/gl/gl_objects.h"
 #include "viewer/gl/render_target.h"
 #include "viewer/gl/shader.h"
@@ -74,7 +74,7 @@ class SpotMeter {
   std::optional<double> luminance_;
 };
 
-/// DitherNoise (lut/picture/develop.h) as a texture, four floats per pixel.
+/// DitherNoise (lut/image/develop.h) as a texture, four floats per pixel.
 class DitherTexture {
  public:
   DitherTexture();

@@ -14,7 +14,7 @@
 #include <stop_token>
 #include <vector>
 
-#include "lut/picture/image.h"
+#include "lut/image/image.h"
 #include "renderer/picture/picture_layers.h"
 #include "renderer/picture/render.h"
 #include "renderer/scene/scene.h"

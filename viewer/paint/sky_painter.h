@@ -15,7 +15,7 @@
 #include <optional>
 
 #include "atmosphere/astronomy/moon.h"
-#include "lut/picture/image.h"
+#include "lut/image/image.h"
 #include "renderer/scene/scene.h"
 #include "viewer/gl/gl_objects.h"
 #include "viewer/gl/pass_timer.h"

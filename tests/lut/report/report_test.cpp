@@ -12,7 +12,7 @@
 #include <set>
 
 #include "atmosphere/math/constants.h"
-#include "lut/diffuse/multiple_scattering.h"
+#include "lut/multiple_scattering/multiple_scattering.h"
 #include "lut/report/report_baselines.h"
 #include "lut/report/report_measure.h"
 #include "tests/fixtures/report_files.h"

@@ -11,7 +11,7 @@
 
 #include "atmosphere/medium/phase.h"
 #include "atmosphere/math/constants.h"
-#include "lut/diffuse/spherical_harmonics.h"
+#include "lut/multiple_scattering/spherical_harmonics.h"
 #include "renderer/layer.h"
 
 namespace alpenglow::renderer {

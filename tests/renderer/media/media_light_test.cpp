@@ -11,7 +11,7 @@
 #include "atmosphere/lamp/airlight.h"
 #include "atmosphere/math/constants.h"
 #include "atmosphere/base/error.h"
-#include "lut/diffuse/spherical_harmonics.h"
+#include "lut/multiple_scattering/spherical_harmonics.h"
 #include "renderer/light/open_sky.h"
 #include "renderer/picture/render.h"
 #include "tests/fixtures/bare_scene.h"

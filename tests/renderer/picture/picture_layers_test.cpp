@@ -10,7 +10,7 @@
 #include "atmosphere/colour/spectrum.h"
 #include "atmosphere/math/constants.h"
 #include "atmosphere/base/error.h"
-#include "lut/diffuse/multiple_scattering.h"
+#include "lut/multiple_scattering/multiple_scattering.h"
 #include "renderer/light/aerial_perspective.h"
 
 namespace alpenglow::renderer {

@@ -15,7 +15,7 @@
 #include "atmosphere/astronomy/night_sky.h"
 #include "atmosphere/base/error.h"
 #include "atmosphere/base/parsing.h"
-#include "lut/picture/look.h"
+#include "lut/image/look.h"
 #include "renderer/scene/scene_options.h"
 #include "renderer/terrain/built_in_range.h"
 #include "tests/fixtures/fault_of.h"

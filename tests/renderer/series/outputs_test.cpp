@@ -7,7 +7,7 @@
 
 #include "atmosphere/math/constants.h"
 #include "atmosphere/astronomy/moon.h"
-#include "lut/program/messages.h"
+#include "lut/cli/messages.h"
 #include "renderer/series/contact_sheet.h"
 #include "renderer/series/day_times.h"
 #include "renderer/series/manifest.h"

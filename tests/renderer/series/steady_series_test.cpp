@@ -6,7 +6,7 @@
 
 #include "atmosphere/math/constants.h"
 #include "atmosphere/astronomy/sun.h"
-#include "lut/picture/look.h"
+#include "lut/image/look.h"
 #include "renderer/picture/render.h"
 #include "renderer/series/smooth_meter.h"
 #include "tests/fixtures/bare_scene.h"

@@ -12,7 +12,7 @@
 
 #include "atmosphere/medium/phase_text.h"
 #include "atmosphere/math/constants.h"
-#include "lut/table/transmittance_table.h"
+#include "lut/tables/transmittance_table.h"
 #include "viewer/air/air_tables.h"
 
 namespace alpenglow::tests {

@@ -11,7 +11,7 @@
 #include <glm/geometric.hpp>
 
 #include "atmosphere/math/numerics.h"
-#include "lut/picture/image.h"
+#include "lut/image/image.h"
 #include "tests/fixtures/class_map.h"
 #include "tests/viewer/ground/rough_site.h"
 #include "tests/viewer/ground/sun_in_closed_form.h"

@@ -8,7 +8,7 @@
 #include "atmosphere/colour/spectrum.h"
 #include "atmosphere/math/constants.h"
 #include "atmosphere/astronomy/sun.h"
-#include "lut/picture/image.h"
+#include "lut/image/image.h"
 #include "lut/sky/sky_view.h"
 
 namespace alpenglow::viewer {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "lut/picture/tone_mapping.h"
+#include "lut/image/tone_mapping.h"
 #include "viewer/hud/hud_model.h"
 
 #include <gtest/gtest.h>

@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "atmosphere/refraction/bent_view.h"
-#include "lut/picture/tone_mapping.h"
+#include "lut/image/tone_mapping.h"
 #include "renderer/ground/scene_ground.h"
 #include "renderer/picture/render.h"
 #include "tests/fixtures/far_peak.h"

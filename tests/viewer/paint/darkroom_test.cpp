@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "lut/picture/tone_mapping.h"
+#include "lut/image/tone_mapping.h"
 #include "tests/fixtures/bare_scene.h"
 #include "tests/fixtures/parity_views.h"
 #include "tests/fixtures/sanitized.h"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Pictures of the graphics card against those of the renderer, pixel by pixel.
 #include "viewer/paint/sky_painter.h"
-#include "lut/picture/tone_mapping.h"
+#include "lut/image/tone_mapping.h"
 
 #include <fmt/format.h>
 #include <gdal_priv.h>

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "lut/picture/image.h"
+#include "lut/image/image.h"
 #include "tests/viewer/shaders/headless.h"
 
 namespace alpenglow::viewer {

@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "atmosphere/math/numerics.h"
-#include "lut/picture/tone_mapping.h"
+#include "lut/image/tone_mapping.h"
 
 namespace alpenglow::viewer {
 namespace {

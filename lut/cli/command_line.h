@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: MIT
+// Command-line options common to every program, and the type of a subcommand. Only sources that
+// parse a command line include this header (CLI11 is slow to compile).
+#pragma once
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "atmosphere/base/error.h"
+#include "lut/layer.h"
+#include "lut/cli/program.h"
+
+namespace alpenglow::lut {
+
+struct CommonOptions {
+  int threads = 0;
+  bool quiet = false;
+  std::string progress = "auto";
+
+  [[nodiscard]] ProgressStyle progress_style() const {
+    return quiet ? ProgressStyle::kQuiet : ProgressStyleFromName(progress);
+  }
+};
+
+/// The function of a subcommand, with its own parsed options bound to it. Each subcommand has a
+/// pair of files NAME_command.h and .cpp with `Subcommand AddNameCommand(CLI::App&)`.
+using Subcommand = std::function<void(const CommonOptions&)>;
+
+/// Adds --atmosphere. `atmosphere` must outlive the parsing.
+inline void AddAtmosphereOption(CLI::App& command, std::optional<std::string>& atmosphere) {
+  command.add_option("--atmosphere", atmosphere,
+                     "Atmosphere file (TOML) or preset: earth, hazy, clear-mountain, mars, "
+                     "bruneton2017; without it the preset earth");
+}
+
+/// Adds --threads, --quiet, --progress and --version. `options` must outlive the parsing.
+inline void AddCommonOptions(CLI::App& app, const std::string& program, CommonOptions& options) {
+  app.add_option("--threads", options.threads, "Threads to use; 0: all")
+      ->check(CLI::Range(0, 4096))
+      ->capture_default_str();
+  app.add_flag("--quiet", options.quiet,
+               "No progress and no summary on standard error; warnings stay");
+  app.add_option("--progress", options.progress,
+                 "Progress on standard error: auto, plain, json or quiet")
+      ->check(CLI::IsMember({"auto", "plain", "json", "quiet"}))
+      ->capture_default_str();
+  app.set_version_flag("--version", [program] { return VersionText(program); });
+}
+
+/// Returns a validator that rejects a text on the command line if `read` throws for it.
+[[nodiscard]] inline CLI::Validator ReadableBy(
+    const std::function<void(const std::string&)>& read) {
+  const auto fault = [read](const std::string& text) -> std::string {
+    try {
+      read(text);
+      return "";
+    } catch (const InputError& error) {
+      return error.what();
+    }
+  };
+  return CLI::Validator(fault, "");
+}
+
+/// Returns the long names of the options of a command and of the subcommands that were named.
+[[nodiscard]] inline std::vector<std::string> OptionNamesOf(const CLI::App& app) {
+  std::vector<std::string> names;
+  for (const CLI::Option* option : app.get_options())
+    names.insert(names.end(), option->get_lnames().begin(), option->get_lnames().end());
+  for (const CLI::App* command : app.get_subcommands()) {
+    const std::vector<std::string> more = OptionNamesOf(*command);
+    names.insert(names.end(), more.begin(), more.end());
+  }
+  return names;
+}
+
+/// Describes the fault of the first word, or of the first unknown option; empty if there is none.
+/// It must be called before other parser errors are reported, because they are consequences of this
+/// fault.
+[[nodiscard]] inline std::string FaultOfWords(const CLI::App& app, int argc, char** argv) {
+  std::vector<std::string> commands;
+  for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; }))
+    commands.push_back(command->get_name());
+  if (argc > 1) {
+    if (std::string fault = FaultOfCommand(argv[1], commands); !fault.empty()) return fault;
+  }
+  for (const std::string& word : app.remaining(true)) {
+    if (word.size() > 1 && word.starts_with('-'))
+      return FaultOfUnknownOption(word, OptionNamesOf(app));
+  }
+  return "";
+}
+
+/// Parses the command line. Returns an exit status if the program has nothing left to do: 0 after
+/// --help and --version, 2 if the command line is wrong.
+inline std::optional<int> ParseCommandLine(CLI::App& app, int argc, char** argv) {
+  try {
+    app.parse(argc, argv);
+    if (FaultOfWords(app, argc, argv).empty()) return std::nullopt;
+  } catch (const CLI::ParseError& error) {
+    const bool is_fault = error.get_exit_code() != 0;
+    if (!is_fault || FaultOfWords(app, argc, argv).empty()) return app.exit(error) == 0 ? 0 : 2;
+  }
+  Say(fmt::format("{}: {}\nRun with --help for more information.\n", app.get_name(),
+                  FaultOfWords(app, argc, argv)));
+  return 2;
+}
+
+}  // namespace alpenglow::lut

@@ -1,0 +1,311 @@
+// SPDX-License-Identifier: MIT
+#include "lut/cli/output_file.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <cerrno>
+#include <cstdint>
+#include <fstream>
+#include <random>
+#include <regex>
+#include <string>
+#include <system_error>
+
+#include "atmosphere/base/error.h"
+#include "atmosphere/base/parsing.h"
+#include "lut/layer.h"
+
+namespace alpenglow::lut {
+namespace {
+
+namespace fs = std::filesystem;
+
+[[noreturn]] void Fail(const fs::path& target, const std::string& fault) {
+  throw OutputError(fmt::format("{}: {}", target.string(), fault));
+}
+
+// FNV-1a (Fowler, Noll and Vo): reduces names of machines, with any characters, to eight digits.
+std::uint32_t Hash(std::string_view text) {
+  std::uint32_t hash = 2166136261U;
+  for (const char c : text) hash = (hash ^ static_cast<unsigned char>(c)) * 16777619U;
+  return hash;
+}
+
+/// Returns the "machine" part of the names of temporaries.
+std::string MachineText() {
+  std::array<char, 256> name{};
+  gethostname(name.data(), name.size() - 1);
+  return fmt::format("{:08x}", Hash(name.data()));
+}
+
+/// Returns a name in the target's folder that no other process or thread uses:
+/// .STEM.MACHINE-PROCESS-RUN-COUNT.part.EXTENSION. It is hidden, so that patterns like
+/// "frame.*.exr" do not match it, and keeps the extension, from which libraries choose the format.
+fs::path TemporaryName(const fs::path& target) {
+  constexpr std::size_t kLongestStem = 100;            // names have at most 255 bytes
+  static const unsigned run = std::random_device{}();  // containers may have equal process numbers
+  static std::atomic<unsigned> count{0};
+  return target.parent_path() /
+         fmt::format(".{}.{}-{}-{:08x}-{}.part{}", target.stem().string().substr(0, kLongestStem),
+                     MachineText(), getpid(), run, count++, target.extension().string());
+}
+
+/// Returns whether the name has the form that TemporaryName gives on this machine.
+bool IsTemporaryOfThisMachine(const std::string& name) {
+  static const std::regex form(R"(\..*\.([0-9a-f]{8})-[0-9]+-[0-9a-f]{8}-[0-9]+\.part(\..*)?)");
+  std::smatch match;
+  return std::regex_match(name, match, form) && match[1] == MachineText();
+}
+
+/// Creates the file and locks it. mkstemp is not used, because its files are private to the user
+/// whatever the umask is. @return its descriptor, negative if it cannot be created.
+int CreateLocked(const fs::path& name) {
+  for (;;) {
+    const int file = open(name.c_str(), O_CREAT | O_EXCL | O_WRONLY | O_CLOEXEC, 0666);
+    if (file < 0) return file;
+    while (flock(file, LOCK_EX) != 0 && errno == EINTR) {
+    }
+    std::error_code error;
+    if (fs::exists(name, error)) return file;
+    close(file);  // another process removed it as abandoned before it was locked
+  }
+}
+
+/// A file that is deleted with the object, and locked during its lifetime:
+/// RemoveAbandonedTemporaries.
+class Temporary {
+ public:
+  explicit Temporary(const fs::path& target)
+      : name_(TemporaryName(target)), file_(CreateLocked(name_)) {
+    if (!file_.valid()) Fail(target, "cannot be written: " + LastSystemError());
+  }
+  ~Temporary() {
+    std::error_code ignored;
+    fs::remove(name_, ignored);
+  }
+  Temporary(const Temporary&) = delete;
+  Temporary& operator=(const Temporary&) = delete;
+
+  [[nodiscard]] const fs::path& name() const { return name_; }
+
+ private:
+  fs::path name_;
+  Descriptor file_;
+};
+
+/// Removes a temporary that no process has locked, and holds the lock while doing so.
+bool RemoveIfAbandoned(const fs::path& temporary) {
+  const Descriptor file(open(temporary.c_str(), O_WRONLY | O_CLOEXEC));
+  if (!file.valid() || flock(file.number(), LOCK_EX | LOCK_NB) != 0) return false;
+  std::error_code error;
+  return fs::remove(temporary, error);
+}
+
+void FlushToDisk(const fs::path& file, const fs::path& target) {
+  const Descriptor descriptor(open(file.c_str(), O_RDONLY | O_CLOEXEC));
+  if (!descriptor.valid() || fsync(descriptor.number()) != 0) {
+    Fail(target, "cannot be written: " + LastSystemError());
+  }
+}
+
+void CallWriter(const fs::path& target, const fs::path& temporary,
+                const std::function<void(const fs::path&)>& write) {
+  const auto rethrow = [&](std::string fault) {
+    const std::string hidden = temporary.string();
+    if (const std::size_t at = fault.find(hidden); at != std::string::npos) {
+      throw OutputError(fault.replace(at, hidden.size(), target.string()));
+    }
+    Fail(target, fault);
+  };
+  try {
+    write(temporary);
+  } catch (const OutputError& error) {
+    rethrow(error.what());
+  } catch (const fs::filesystem_error& error) {
+    rethrow(error.code().message());
+  }
+}
+
+}  // namespace
+
+fs::path FinalName(const fs::path& target) {
+  constexpr int kMostLinks = 40;  // limit of the kernel
+  std::error_code error;
+  fs::path real = target;
+  for (int links = 0; links < kMostLinks && fs::is_symlink(real, error); ++links) {
+    real = real.parent_path() / fs::read_symlink(real, error);
+  }
+  if (real.filename().empty()) Fail(target, "is not the name of a file");
+  const fs::file_status status = fs::status(real, error);
+  if (fs::exists(status) && !fs::is_regular_file(status)) Fail(target, "is not a regular file");
+  return real;
+}
+
+void WriteFileAtomically(const fs::path& target,
+                         const std::function<void(const fs::path&)>& write) {
+  const fs::path real = FinalName(target);
+  const Temporary temporary(real);
+  CallWriter(target, temporary.name(), write);
+  FlushToDisk(temporary.name(), target);
+  std::error_code error;
+  fs::rename(temporary.name(), real, error);
+  if (error) Fail(target, "cannot be written: " + error.message());
+  // Flushing the folder makes the new name durable. If the folder cannot be opened for reading, the
+  // file is there nevertheless.
+  const fs::path folder = real.has_parent_path() ? real.parent_path() : fs::path(".");
+  const Descriptor descriptor(open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
+  if (descriptor.valid()) fsync(descriptor.number());
+}
+
+void WriteTextAtomically(const fs::path& target, std::string_view text) {
+  WriteFileAtomically(target, [&](const fs::path& name) {
+    std::ofstream file(name, std::ios::binary);
+    file.write(text.data(), static_cast<std::streamsize>(text.size()));
+    file.close();
+    if (!file) throw OutputError("cannot be written: " + LastSystemError());
+  });
+}
+
+void RequireWritable(const fs::path& target) { const Temporary probe(FinalName(target)); }
+
+std::size_t RemoveAbandonedTemporaries(const fs::path& folder) {
+  std::size_t removed = 0;
+  std::error_code error;
+  for (fs::directory_iterator entry(folder.empty() ? "." : folder, error), end; entry != end;
+       entry.increment(error)) {
+    const fs::path& file = entry->path();
+    if (!IsTemporaryOfThisMachine(file.filename().string())) continue;
+    if (RemoveIfAbandoned(file)) ++removed;
+  }
+  return removed;
+}
+
+namespace {
+
+namespace fs = std::filesystem;
+
+bool Lock(int file) {
+  int status = -1;
+  do {
+    status = flock(file, LOCK_EX | LOCK_NB);
+  } while (status != 0 && errno == EINTR);
+  return status == 0 || errno != EWOULDBLOCK;  // file systems without locks: one writer
+}
+
+}  // namespace
+
+fs::path GrowingFile::PartOf(const fs::path& target) { return target.string() + ".part"; }
+
+GrowingFile::GrowingFile(const fs::path& target)
+    : target_(FinalName(target)), part_(PartOf(target_)) {
+  Open();
+  if (bytes_ > 0) KeepAside();
+}
+
+GrowingFile::~GrowingFile() {
+  std::error_code ignored;
+  if (bytes_ == 0 && IsOurs()) fs::remove(part_, ignored);
+}
+
+void GrowingFile::Fail(const std::string& fault) const {
+  throw OutputError(fmt::format("{}: {}", part_.string(), fault));
+}
+
+// Opens and locks the file, and keeps its content.
+void GrowingFile::Open() {
+  do {
+    file_ = Descriptor(open(part_.c_str(), O_CREAT | O_WRONLY | O_APPEND | O_CLOEXEC, 0666));
+    if (!file_.valid()) Fail("cannot be written: " + LastSystemError());
+    if (!Lock(file_.number())) Fail("is being written by another process");
+  } while (!IsOurs());  // its writer renamed it before it was locked
+  struct stat status = {};
+  fstat(file_.number(), &status);
+  bytes_ = status.st_size;
+}
+
+// Returns whether the name still belongs to the open file.
+bool GrowingFile::IsOurs() const {
+  struct stat opened = {}, named = {};
+  return fstat(file_.number(), &opened) == 0 && stat(part_.c_str(), &named) == 0 &&
+         opened.st_ino == named.st_ino && opened.st_dev == named.st_dev;
+}
+
+void GrowingFile::KeepAside() {
+  int number = 1;
+  const auto aside = [&] { return fs::path(fmt::format("{}.{}.part", target_.string(), number)); };
+  while (fs::exists(aside())) ++number;
+  std::error_code error;
+  fs::rename(part_, aside(), error);
+  if (error) Fail("cannot be kept under another name: " + error.message());
+  kept_ = aside();
+  Open();
+}
+
+void GrowingFile::Append(std::string_view lines) {
+  std::size_t written = 0;
+  while (written < lines.size()) {
+    const ssize_t count = write(file_.number(), lines.data() + written, lines.size() - written);
+    if (count < 0 && errno == EINTR) continue;
+    if (count <= 0) {
+      const std::string fault = LastSystemError();
+      static_cast<void>(!ftruncate(file_.number(), bytes_));  // removes an incomplete line
+      Fail("cannot be written: " + fault);
+    }
+    written += static_cast<std::size_t>(count);
+  }
+  bytes_ += static_cast<long long>(lines.size());
+}
+
+void GrowingFile::Sync() const noexcept { static_cast<void>(!fdatasync(file_.number())); }
+
+void GrowingFile::Finish() {
+  if (bytes_ == 0) return;
+  if (fsync(file_.number()) != 0) Fail("cannot be written: " + LastSystemError());
+  std::error_code error;
+  fs::rename(part_, target_, error);
+  if (error) Fail(fmt::format("cannot be renamed to {}: {}", target_.string(), error.message()));
+}
+
+namespace {
+
+namespace fs = std::filesystem;
+
+// Extensions of known file formats; a folder may be called "tables.v2".
+constexpr std::array<std::string_view, 14> kExtensionsOfFiles{
+    ".bin", ".csv",  ".dat", ".dds", ".exr", ".hdr",  ".jpg",
+    ".ktx", ".ktx2", ".npy", ".png", ".tif", ".tiff", ".toml"};
+
+}  // namespace
+
+void RequireNoInput(const NamedFile& output, const std::vector<NamedFile>& inputs) {
+  for (const NamedFile& input : inputs) {
+    std::error_code none;  // a missing file is not the same file
+    if (!fs::equivalent(output.file, input.file, none)) continue;
+    throw InputError(fmt::format("{} {} is the same file as {} {}; an input is not overwritten",
+                                 output.name, output.file.string(), input.name,
+                                 input.file.string()));
+  }
+}
+
+std::string FaultOfFileName(std::string_view name, std::string_view extension) {
+  if (name == "-") return "\"-\" is no name of a file; nothing is written to standard output";
+  if (extension.empty() || HasExtension(name, extension)) return "";
+  return fmt::format("\"{}\" must end in {}, which is what is written", name, extension);
+}
+
+std::string FaultOfFolderName(std::string_view name) {
+  const bool file =
+      std::any_of(kExtensionsOfFiles.begin(), kExtensionsOfFiles.end(),
+                  [&](std::string_view extension) { return HasExtension(name, extension); });
+  if (!file && name != "-") return "";
+  return fmt::format("\"{}\" is no name of a folder, which files are written into", name);
+}
+
+}  // namespace alpenglow::lut

@@ -1,0 +1,191 @@
+// SPDX-License-Identifier: MIT
+// Evaluation of cases by one of several methods, each value with an estimate of its error: the
+// implementation of `skylut eval`.
+//
+// Cases are lines of a CSV file, as read by CsvReader:
+//
+//   id,quantity,altitude_m,view_zenith_deg,relative_azimuth_deg,sun_zenith_deg,distance_m
+//
+// If distance_m is empty, the ray extends to the ground, whose light is included, or leaves the
+// atmosphere through the top. If it is given, the segment stops there, or at the ground or the top
+// if nearer, and light reflected by the ground is not included even if the segment reaches the
+// ground. For relative_azimuth_deg in (0, 180) the sun is to the left of the view, beyond
+// (and below 0) to its right, where stokes_u has the opposite sign. Cases of lamps have their own
+// columns: lamp_cases.h.
+//
+// Methods:
+//
+//   integral  AirIntegrator in double; light of all orders from DiffuseLight. The error is the
+//             difference between two numbers of nodes plus the error of closed forms (bounds
+//             below). For smaller errors than that, the reference solution is used. The error of
+//             light of higher orders is 0.6 times the sum of the differences to two coarser
+//             solutions (one difference alone can be small by chance) and of the light in those
+//             degrees of the aerosol that the moments truncate (forward_peak.h; in hazy air
+//             forward_peak.h computes that light itself), plus 0.3 % of the light. Of 384 values
+//             in air that was not used for calibration (clear, haze, dust, molecules, thick, over
+//             snow) 98 % are within it, at least 97 % in each; it is 3 times the true error in the
+//             median.
+//   table     look-ups in stored tables; quantities that are not in them are integrated with the
+//             tables' number of nodes. The error is the difference to the integral.
+//   path-trace  the reference solution for multiple scattering. The error is one standard error.
+//
+// Radiances are per unit solar irradiance [1/sr], irradiances per unit solar irradiance [1].
+//
+// Light of lamps (quantity airlight) needs other columns and no atmosphere. Such cases are in a
+// separate file (lamp_cases.h), and neither kind of file may contain cases of the other kind.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "atmosphere/medium/medium.h"
+#include "atmosphere/ray/ray.h"
+#include "lut/layer.h"
+#include "lut/cli/csv_reader.h"
+#include "lut/cli/messages.h"
+#include "lut/table_io/table_folder.h"
+
+namespace alpenglow::lut {
+
+enum class Quantity {
+  kTransmittance,    // transmittance of the ray [1]
+  kOpticalDepth,     // optical depth of the ray [1]
+  kSingle,           // single scattering, and sunlight from the ground at the end of the ray [1/sr]
+  kInscatterSingle,  // single scattering [1/sr]
+  kTotal,            // all orders, and light from the ground at the end of the ray [1/sr]
+  kStokesQ,          // of all orders, as in PolarisedLight [1/sr]
+  kStokesU,
+  kIrradianceSun,  // direct sun on a horizontal plane [1]
+  kIrradianceSky,  // sky on a horizontal plane [1]
+};
+
+struct Case {
+  std::string id;
+  std::size_t line = 0;
+  Quantity quantity = Quantity::kTransmittance;
+  ViewRay ray;
+  double relative_azimuth_deg = 0.0;
+};
+
+class CaseReader {
+ public:
+  /// Throws InputError, here and in Next(), for input that CsvReader rejects and an unknown
+  /// quantity.
+  explicit CaseReader(const std::filesystem::path& file);
+
+  /// Returns the next case; std::nullopt at the end.
+  [[nodiscard]] std::optional<Case> Next();
+
+  /// Throws an InputError "file:line: fault".
+  [[noreturn]] void Fail(std::size_t line, const std::string& fault) const {
+    lines_.Fail(line, fault);
+  }
+
+  /// Number of bytes read and to read, for progress.
+  [[nodiscard]] std::uint64_t bytes_read() const { return lines_.bytes_read(); }
+  [[nodiscard]] std::uint64_t bytes() const { return lines_.bytes(); }
+
+ private:
+  CsvReader lines_;
+};
+
+/// A value and the method's own estimate of its error, in the same unit.
+struct Estimate {
+  double value = 0.0;
+  double error = 0.0;
+};
+
+/// One estimate per wavelength.
+using Estimates = std::vector<Estimate>;
+
+struct IntegralOptions {
+  int samples = 16;  // Gauss nodes per panel, in [2, 32]
+  /// Relative error that determines the samples of every case, and the use of the reference
+  /// solution if they do not suffice. It does not affect the error of light of higher orders.
+  std::optional<double> max_error;
+};
+
+struct PathTraceOptions {
+  double max_error = 0.005;  // relative error: paths are added until one standard error is below it
+  std::size_t max_paths = std::size_t{1} << 22U;  // maximum per case; larger errors remain after it
+  std::uint64_t seed = 1;                         // a case's value does not depend on other cases
+};
+
+inline constexpr int kFewestSamples = 2;
+inline constexpr int kMostSamples = 32;
+
+/// The smallest error that may be requested: the accuracy of the reference solution.
+inline constexpr double kSmallestMaxError = 1e-8;
+
+/// Reads "0.2%" or "0.002"; std::nullopt for another text and outside of [kSmallestMaxError, 1].
+[[nodiscard]] std::optional<double> RelativeErrorFromText(std::string_view text);
+/// Describes the fault of such a text, for the command line; empty if there is none.
+[[nodiscard]] std::string FaultOfRelativeError(const std::string& text);
+
+/// Relative error of closed-form optical depths (worst: rays that graze the top from outside), if
+/// the planet's radius is more than 120 times the scale heights; see medium.h.
+inline constexpr double kClosedFormError = 2e-5;
+
+/// Returns this relative error for any planet.
+[[nodiscard]] double ClosedFormError(const Medium& medium);
+
+[[nodiscard]] constexpr bool NeedsLightOfAllOrders(Quantity quantity) {
+  return quantity == Quantity::kTotal || quantity == Quantity::kIrradianceSky ||
+         quantity == Quantity::kStokesQ || quantity == Quantity::kStokesU;
+}
+[[nodiscard]] constexpr bool NeedsPolarisedLight(Quantity quantity) {
+  return quantity == Quantity::kStokesQ || quantity == Quantity::kStokesU;
+}
+
+/// Returns why a medium has no Stokes parameters; std::nullopt if it has.
+[[nodiscard]] std::optional<std::string> RefusalOfScalarLight(const Medium& medium);
+
+/// Returns the estimates of a case of stokes_q or stokes_u, from Q and U as defined in
+/// PolarisedLight (the sun not to the right). For vertical views the azimuth is that of the
+/// picture's upper edge: Q and U rotate with it.
+[[nodiscard]] Estimates StokesOf(const Case& work, const Estimates& q, const Estimates& u);
+
+/// Returns the sun's zenith cosine at the point where a ray hits the ground; std::nullopt if it
+/// does not, and for rays of a given length, which do not include light of the ground
+/// (BringsLightOfGround).
+[[nodiscard]] std::optional<double> SunOnGround(const Medium& medium, const ViewRay& ray);
+
+/// Evaluates cases by one method. Thread-safe once prepared.
+class Evaluator {
+ public:
+  virtual ~Evaluator() = default;
+
+  [[nodiscard]] virtual const Medium& medium() const = 0;
+  /// Returns why this method cannot compute a quantity; std::nullopt if it can.
+  [[nodiscard]] virtual std::optional<std::string> Refusal(Quantity quantity) const = 0;
+  /// Prepares the data for these cases (light of all orders takes seconds).
+  virtual void Prepare(std::span<const Case> cases) = 0;
+  [[nodiscard]] virtual Estimates Evaluate(const Case& work) const = 0;
+};
+
+/// Throws InputError for more than kMaxBands wavelengths, and options out of range.
+[[nodiscard]] std::unique_ptr<Evaluator> MakeIntegralEvaluator(const Medium& medium,
+                                                               const IntegralOptions& options = {});
+/// Makes an evaluator that rejects light of all orders if the tables hold single scattering only.
+/// Throws InputError for tables of different media.
+[[nodiscard]] std::unique_ptr<Evaluator> MakeTableEvaluator(TableFolder tables);
+
+/// Makes an evaluator for single or multiple scattering and the sky's irradiance; it rejects the
+/// other quantities. Throws InputError for options out of range.
+[[nodiscard]] std::unique_ptr<Evaluator> MakePathTraceEvaluator(
+    const Medium& medium, const PathTraceOptions& options = {});
+
+/// Evaluates every case of a file in parallel and writes "id,wavelength_nm,value,error" in the
+/// order of the cases, atomically. It never holds more than a few thousand cases. Throws InputError
+/// naming file and line.
+void EvaluateFile(const std::filesystem::path& cases, const std::filesystem::path& results,
+                  Evaluator& evaluator, ProgressStyle style);
+
+}  // namespace alpenglow::lut

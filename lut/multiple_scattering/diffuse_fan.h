@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: MIT
+// This header provides DiffuseFan: DiffuseLight along one view ray for many azimuths of the sun, at
+// the cost of a few.
+//
+// All directions of one zenith angle share altitudes, columns and harmonics; only the sun's angles
+// differ. The moments are therefore interpolated in altitude, and summed over degree, once per
+// sample. For each azimuth there remains a cubic interpolation between a few nodes of the sun's
+// angle.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "atmosphere/ray/ray.h"
+#include "atmosphere/ray/single_scattering.h"
+#include "lut/multiple_scattering/multiple_scattering.h"
+
+namespace alpenglow::lut {
+
+class DiffuseFan {
+ public:
+  /// Keeps a reference to `light`.
+  explicit DiffuseFan(const DiffuseLight& light);
+
+  /// Returns the in-scattered light of orders two and up [1/sr]: [direction * bands + band].
+  /// @param samples  samples along `ray`, taken with the sun in the zenith, so that no part is in
+  ///   shadow.
+  /// @param ray      altitude, zenith cosine and sun zenith cosine at the observer; its nu is not
+  ///   used.
+  /// @param nus      cosine of the angle between each direction and the sun.
+  /// Agrees with DiffuseLight::InscatterAlong of these samples to 1e-4 of the brightest value if
+  /// the forward peak is not treated separately. Otherwise the result covers only the degrees that
+  /// the moments keep.
+  [[nodiscard]] std::vector<float> InscatterAlong(const RaySamples<float>& samples,
+                                                  const ViewRay& ray,
+                                                  std::span<const float> nus) const;
+
+ private:
+  struct Line;
+  void AddBlock(const Line& line, std::size_t first_band, std::span<float> light) const;
+  [[nodiscard]] const float* Values() const;
+
+  const DiffuseLight& light_;
+  std::size_t stride_;           // number of bands, rounded up to whole blocks
+  std::vector<float> padded_;    // values of light_ with stride_; empty if light_ already has it
+  std::vector<double> chi_mie_;  // [l * bands + band]
+  std::vector<float> position_of_mu_s_;  // over [-1, 1]: position among the sun nodes
+  std::vector<float> twilight_of_mu_s_;  // TwilightOf at the same values of mu_s
+  std::vector<float> twilight_;          // TwilightOf at the nodes
+  std::vector<float> sun_sine_;          // sines of the nodes' sun zenith angles
+};
+
+}  // namespace alpenglow::lut

@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: MIT
+// This header provides the directions from the nodes of DiffuseLight's table and the points along
+// them. Successive orders march along these for every band and order.
+//
+// It also provides the first of the successive orders: sunlight that arrives at the nodes after one
+// scattering or after reflection by the ground.
+#pragma once
+
+#include <vector>
+
+#include "atmosphere/ray/single_scattering.h"
+#include "lut/multiple_scattering/diffuse_grid.h"
+
+namespace alpenglow::lut {
+
+/// One direction at one altitude, for all suns and azimuths.
+struct March {
+  float mu = 0.0F, sine = 0.0F;
+  float solid_angle = 0.0F;  // of the direction and its mirror image, per azimuth of half a turn
+  std::array<float, kLargestMoments> legendre{};
+  std::vector<MarchPoint> points;
+  std::vector<std::array<float, 6>>
+      air;                     // per point: weight [km], densities, columns from the node
+  std::vector<double> panels;  // distances where the ray begins, is lowest (if between), ends [km]
+  bool hits_ground = false;
+  double ground_distance_km = 0.0;
+  Bands<float> ground_transmittance;
+  std::vector<CubicTaps> ground_taps;  // [sun * azimuths + azimuth], for divided moments
+};
+
+class DiffuseMarches {
+ public:
+  /// @param chi  Legendre coefficients of aerosol scattering: degree l of a band at [l * bands +
+  ///   band].
+  DiffuseMarches(const AirIntegrator<float>& air, const DiffuseLightOptions& options,
+                 const std::vector<double>& chi);
+
+  [[nodiscard]] const AirIntegrator<float>& air() const { return *air_; }
+  [[nodiscard]] const DiffuseGrid& grid() const { return grid_; }
+  [[nodiscard]] const std::vector<double>& chi() const { return *chi_; }
+  [[nodiscard]] std::size_t azimuths() const { return azimuths_; }
+  [[nodiscard]] double altitude_km(std::size_t i) const { return altitude_km_[i]; }
+  [[nodiscard]] double mu_s(std::size_t sun) const { return mu_s_[sun]; }
+  [[nodiscard]] double radius_km() const { return radius_km_; }
+  [[nodiscard]] const std::vector<March>& At(std::size_t altitude) const {
+    return marches_[altitude];
+  }
+  /// Returns cos(m phi) of an azimuth.
+  [[nodiscard]] float AzimuthCosine(std::size_t m, std::size_t azimuth) const {
+    return azimuth_cosines_[m].data()[azimuth];
+  }
+  /// Returns sin(m phi) for m = 1, 2.
+  [[nodiscard]] float AzimuthSine(std::size_t m, std::size_t azimuth) const {
+    return azimuth_sines_[m - 1].data()[azimuth];
+  }
+  [[nodiscard]] MarchDirection Direction(std::size_t altitude, const March& march) const;
+  /// Returns the cosine of the angle between a march and the sun.
+  [[nodiscard]] double Nu(const March& march, std::size_t sun, std::size_t azimuth) const;
+
+ private:
+  [[nodiscard]] std::vector<March> MarchesAt(std::size_t altitude,
+                                             const DiffuseLightOptions& options) const;
+  void AddPoints(std::size_t altitude, const DiffuseLightOptions& options, double mu,
+                 March& march) const;
+  void AddGround(std::size_t altitude, March& march) const;
+
+  const AirIntegrator<float>* air_;
+  const std::vector<double>* chi_;
+  DiffuseGrid grid_;
+  double radius_km_;
+  std::size_t azimuths_;
+  std::vector<double> altitude_km_, mu_s_;
+  std::vector<float> mu_s_floats_, sine_s_;
+  std::array<AlignedFloats, kLargestDegree + 1> azimuth_cosines_;
+  std::array<AlignedFloats, 2> azimuth_sines_;
+  std::vector<std::vector<March>> marches_;
+};
+
+/// Light along one march per unit solar irradiance: [(band * suns + sun) * azimuths + azimuth].
+struct SunlightOfMarch {
+  std::vector<float> radiance;   // [1/sr]
+  std::vector<float> molecules;  // light that molecules scatter, without phase function [1]
+};
+
+[[nodiscard]] SunlightOfMarch SunlightScatteredOnce(const DiffuseMarches& marches,
+                                                    std::size_t altitude, const March& march,
+                                                    const DiffuseLightOptions& options);
+
+}  // namespace alpenglow::lut

@@ -1,0 +1,205 @@
+// SPDX-License-Identifier: MIT
+// This header provides light scattered more than once, as spherical-harmonic moments of the diffuse
+// radiance.
+//
+// By symmetry the diffuse radiance at a point depends on altitude h, sun zenith cosine mu_s and
+// direction. Its moments on real spherical harmonics around the local vertical, with azimuth
+// counted from the sun,
+//
+//   L_lm(h, mu_s) = integral of L(w) Y_lm(w) dw,   0 <= m <= l <= degree    (cos(m phi) terms only)
+//
+// are stored on a grid of (h, mu_s). Scattering is diagonal in them: a phase function with Legendre
+// coefficients chi_l gives the source
+//
+//   J(w) = sigma_R sum_lm chi^R_l L_lm Y_lm(w) + sigma_M sum_lm chi^M_l L_lm Y_lm(w),
+//
+// which is exact for molecules (chi^R = 1, 0, D/10; D as in phase.glsl) with l <= 2. If the
+// medium's light is polarised, three additional moments give the molecules' source
+// (polarised_light.h). The moments of all orders are found by successive orders: the radiance of
+// one order along directions of a Gauss grid split at the horizon is projected onto moments, which
+// give the source of the next. Light reflected by the (Lambertian) ground is part of every order.
+//
+// All values are per unit solar irradiance. Successive orders: e.g. Herman, Ben-David, Thome
+// (1994), Appl. Opt. 33, 1760. The use of moments over (altitude, sun angle) as a rendering table
+// comes from this project.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+#include "atmosphere/medium/medium.h"
+#include "atmosphere/ray/single_scattering.h"
+#include "lut/multiple_scattering/diffuse_kernel.h"
+#include "lut/multiple_scattering/forward_peak.h"
+#include "lut/multiple_scattering/polarised_light.h"
+#include "lut/multiple_scattering/spherical_harmonics.h"
+#include "lut/tables/table_axes.h"
+
+namespace alpenglow::lut {
+
+struct DiffuseLightOptions {
+  int altitudes = 18;     // nodes, quadratic in altitude, >= 4
+  int sun_angles = 32;    // nodes, dense around the terminator, >= 4
+  int degree = 6;         // largest l: 2, 4, 6, 8 or 12
+  int zenith_nodes = 14;  // directions above the horizon, and as many below, in [1, 64]
+  int azimuth_nodes = 8;  // over half a turn, in [1, 32]
+  int ray_nodes = 10;     // Gauss nodes along each direction, in [1, 32]
+  // Numbers of nodes for the orders after the second, which are smooth. They take effect only if
+  // they are smaller than the numbers above.
+  int later_zenith_nodes = 6;
+  int later_azimuth_nodes = 5;
+  int later_ray_nodes = 6;
+  int max_orders = 200;  // in [1, 10000]
+  // Largest fraction of the light that may be summed as a geometric series instead of being
+  // computed. In thick air: ten times the uncertainty of that sum.
+  double tolerance = 1e-2;
+  /// Computes exactly this number of orders of the diffuse light (1: scattered or reflected once)
+  /// and sums no rest. InscatterAlong then returns orders 2 to exact_orders + 1. Some table formats
+  /// are defined this way.
+  std::optional<int> exact_orders = std::nullopt;
+  /// Finds the light that aerosol scatters forward in closed form (forward_peak.h), for hazy and
+  /// thick air. It cannot be combined with exact_orders.
+  bool forward_peak = false;
+};
+
+/// Returns the default options in clear air. If aerosol scatters more than 8 % of a vertical beam,
+/// returns degree 12 with the forward peak in closed form; if all scattering takes more than 60 %,
+/// or molecules more than 33 %, more nodes.
+/// Radiances of all orders are then within 0.5 % (rms) of path tracing at an aerosol optical depth
+/// of 0.1, 2 % at 1 and in the dust of Mars, 1 % through molecules of optical depth 5.
+[[nodiscard]] DiffuseLightOptions OptionsFor(const Medium& medium);
+
+/// State of the end of a ray that ends in the air: more air follows, or an object hides it.
+enum class SegmentEnd { kOpen, kOpaque };
+
+/// Contents of the table and the state of the solver.
+struct SolvedOrders {
+  std::vector<float> values;  // indexed like DiffuseLight::values()
+  int orders = 0;             // largest number of orders computed for any band
+  bool converged = true;      // every band reached the tolerance within max_orders
+};
+
+/// Diffuse light of all orders. Immutable; look-ups are safe from many threads.
+class DiffuseLight {
+ public:
+  /// Solves for the medium. The result does not depend on the number of threads. Thick or
+  /// conservative air may need more than max_orders; converged() is then false.
+  explicit DiffuseLight(const Medium& medium, const DiffuseLightOptions& options = {});
+
+  /// Restores a stored solution: values, orders and converged as returned by the accessors. Throws
+  /// InputError unless the number of values matches the options and all values are finite.
+  DiffuseLight(const Medium& medium, const DiffuseLightOptions& options, SolvedOrders solved);
+
+  [[nodiscard]] const Medium& medium() const { return medium_; }
+  [[nodiscard]] bool converged() const { return converged_; }
+  [[nodiscard]] int orders() const { return orders_; }
+  [[nodiscard]] const DiffuseLightOptions& options() const { return options_; }
+  /// Returns the axes, for code that interpolates values() itself (diffuse_grid.h).
+  [[nodiscard]] const DiffuseGrid& grid() const { return grid_; }
+  [[nodiscard]] std::size_t bands() const { return bands_; }
+  [[nodiscard]] std::size_t moments() const { return moments_; }
+
+  /// Returns the in-scattered light of orders two and up along a sampled ray [1/sr].
+  /// The samples must include the dark ones (Sampling::dark_samples).
+  /// The result does not include light from the ground at the end of the ray. Beyond an open end it
+  /// includes only the light that aerosol scatters forward to the eye (forward_peak.h), not the
+  /// light of objects there.
+  [[nodiscard]] Bands<float> InscatterAlong(const RaySamples<float>& samples, double nu,
+                                            SegmentEnd end = SegmentEnd::kOpen) const {
+    return InscatterAlong(samples, nu, nu, end);
+  }
+  /// Returns the light for a sun whose apparent position differs from that of the sun that lights
+  /// the air (SunForAir of sun.h).
+  /// @param nu_seen  cosine between the ray and the apparent sun: light that aerosol scatters
+  ///   forward surrounds it.
+  [[nodiscard]] Bands<float> InscatterAlong(const RaySamples<float>& samples, double nu,
+                                            double nu_seen, SegmentEnd end) const;
+
+  /// Returns the part of InscatterAlong that the moments hold. DiffuseFan finds it for many
+  /// azimuths.
+  [[nodiscard]] Bands<float> InscatterByMoments(const RaySamples<float>& samples, double nu) const;
+
+  /// Returns the factor of the light that is added near the sun to the moments of thin air
+  /// (GlowAboutTheSun), over light scattered once by aerosol without its phase function [1/sr]; 0
+  /// with forward_peak or exact_orders.
+  /// @param column_km  as for GlowAboutTheSun::FactorOf.
+  [[nodiscard]] Bands<float> GlowFactor(double nu, float column_km) const;
+
+  /// Returns Q and U of this light, with signs as in PolarisedLight; 0 if light is not polarised.
+  [[nodiscard]] PolarisedLight PolarisationAlong(const RaySamples<float>& samples, double nu) const;
+
+  /// Returns the diffuse (sky and ground) irradiance on a surface [1], per unit solar irradiance.
+  /// @param normal_mu   cosine of the angle between the surface's normal and the vertical.
+  /// @param normal_cos_azimuth  cosine of the azimuth of the normal relative to the sun's.
+  /// It is computed from the moments by the clamped-cosine coefficients (Ramamoorthi, Hanrahan
+  /// 2001) and corrected for the truncation error on horizontal surfaces. The error of those is
+  /// within 2 % with earth's air.
+  [[nodiscard]] Bands<float> Irradiance(double altitude_m, double mu_s, double normal_mu,
+                                        double normal_cos_azimuth) const;
+
+  /// Returns the diffuse irradiance on a horizontal plane from above [1], which is integrated over
+  /// directions, not computed from the moments.
+  [[nodiscard]] Bands<float> SkyIrradiance(double altitude_m, double mu_s) const;
+
+  /// Returns the node values, for files and graphics cards: index ((altitude * sun_angles + sun) *
+  /// channels() + channel) * bands() + band. Channels: the moments, l major (00, 10, 11, 20, ...),
+  /// for polarised light T20, T21, T22 (polarised_light.h), then SkyIrradiance.
+  [[nodiscard]] const std::vector<float>& values() const { return values_; }
+  [[nodiscard]] std::size_t channels() const {
+    return moments_ + 1 + (medium_.polarised ? kTensorMoments : 0);
+  }
+
+  /// Returns all channels [channel * bands() + band] at coordinates in [0, 1] (below), by the
+  /// interpolation that every look-up uses: cubic, and between sun angles after division by the
+  /// usual fall of light in twilight and, for polarised light, by powers of the sun's zenith sine
+  /// (DiffuseGrid).
+  [[nodiscard]] std::vector<float> ValuesAt(double altitude_coordinate,
+                                            double sun_coordinate) const;
+
+  /// Node coordinates: altitude = top u^2, u in [0, 1]; zenith cosine of the sun on SunNodes().
+  [[nodiscard]] static const SunAxis& SunNodes();
+  [[nodiscard]] static double SunCoordinate(double mu_s);
+  [[nodiscard]] static double MuSFromCoordinate(double v);
+
+ private:
+  [[nodiscard]] std::vector<DiffuseBlock> BlocksOf() const;
+  [[nodiscard]] Bands<float> GlowAlong(const RaySamples<float>& samples, double nu) const;
+  [[nodiscard]] Bands<float> GroundLight(double mu_s) const;
+  [[nodiscard]] ViewRay RayBehind(const RaySamples<float>& samples, double nu) const;
+  [[nodiscard]] Bands<float> PeakBehind(const RaySamples<float>& samples, double nu,
+                                        double nu_seen) const;
+  /// Returns the values that are interpolated: values(), minus the beam of peak_ if that exists.
+  [[nodiscard]] const std::vector<float>& smooth() const { return peak_ ? smooth_ : values_; }
+  [[nodiscard]] AlignedFloats Packed() const;
+  [[nodiscard]] std::vector<float> PackedSky() const;
+  /// Calls visit(node, weight, sun) with the 16 nodes around a point; `sun` is the index of the
+  /// node's sun angle.
+  template <typename Visit>
+  void VisitNodes(double altitude_coordinate, double mu_s, const Visit& visit) const;
+  /// Returns T2m of polarised light.
+  [[nodiscard]] std::array<Bands<float>, kTensorMoments> TensorAt(double altitude_m,
+                                                                  double mu_s) const;
+  /// Returns the order m of a channel.
+  [[nodiscard]] std::size_t OrderOf(std::size_t channel) const;
+  [[nodiscard]] double AltitudeCoordinate(double altitude_m) const;
+
+  Medium medium_;
+  DiffuseLightOptions options_;
+  std::size_t bands_ = 0;
+  std::size_t moments_ = 0;
+  int orders_ = 0;
+  bool converged_ = false;
+  std::vector<float> values_;
+  DiffuseGrid grid_;
+  std::optional<ForwardPeak> peak_;
+  AirConstants<float> air_{};
+  std::optional<GlowAboutTheSun> glow_;  // only without forward_peak and exact_orders
+  std::vector<float> smooth_;
+  std::vector<DiffuseBlock> blocks_;
+  AlignedFloats packed_;           // a copy of the moments in the layout of the kernels
+  std::vector<float> packed_sky_;  // a copy of SkyIrradiance in that layout
+};
+
+}  // namespace alpenglow::lut

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: MIT
+#include "lut/multiple_scattering/polarised_light.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "atmosphere/math/constants.h"
+#include "lut/multiple_scattering/diffuse_grid.h"
+
+namespace alpenglow::lut {
+
+double AzimuthCosineOrAhead(double mu, double mu_s, double nu) {
+  const double sines = SineOf(mu) * SineOf(mu_s);
+  return sines < 1e-6 ? 1.0 : std::clamp((nu - mu * mu_s) / sines, -1.0, 1.0);
+}
+
+PolarisedLight PolarisedOnce(const Medium& medium, const ScatteredOnce<float>& once,
+                             const ViewRay& ray) {
+  const double cosine = AzimuthCosineOrAhead(ray.mu, ray.mu_s, ray.nu);
+  // Components of the sun's direction on l and h of polarised_light.h.
+  const double in_l = ray.mu * cosine * SineOf(ray.mu_s) - SineOf(ray.mu) * ray.mu_s;
+  const double in_h = -SineOf(cosine) * SineOf(ray.mu_s);
+  PolarisedLight light{Bands<float>(once.rayleigh.count), Bands<float>(once.rayleigh.count)};
+  for (std::size_t band = 0; band < once.rayleigh.count; ++band) {
+    const double share = 3.0 / (16.0 * kPi) * 10.0 *
+                         static_cast<double>(RayleighChi2(medium, band) * once.rayleigh[band]);
+    light.q[band] = static_cast<float>(share * (in_h - in_l) * (in_h + in_l));
+    light.u[band] = static_cast<float>(2.0 * share * in_l * in_h);
+  }
+  return light;
+}
+
+}  // namespace alpenglow::lut

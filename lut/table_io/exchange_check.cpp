@@ -1,0 +1,451 @@
+// SPDX-License-Identifier: MIT
+#include "lut/table_io/exchange_check.h"
+
+#include <fmt/format.h>
+#include <half.h>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <fstream>
+#include <iterator>
+#include <limits>
+#include <optional>
+
+#include "atmosphere/medium/phase_text.h"
+#include "atmosphere/math/constants.h"
+#include "atmosphere/base/error.h"
+#include "atmosphere/base/parsing.h"
+#include "lut/table_io/table_image.h"
+#include "lut/tables/transmittance_table.h"
+
+namespace alpenglow::lut {
+namespace {
+
+namespace fs = std::filesystem;
+using Rgba = std::array<double, 4>;
+
+constexpr double kLargestMedian = 0.05;      // relative difference from the texels of this program
+constexpr std::size_t kCheckedTexels = 600;  // per scattering texture
+
+std::optional<TexelFormat> FormatOfFolder(const fs::path& folder) {
+  for (const TexelFormat format : {TexelFormat::kExr, TexelFormat::kBin, TexelFormat::kDat}) {
+    std::error_code error;
+    if (fs::exists(folder / (std::string("scattering") + SuffixOf(format)), error)) return format;
+  }
+  return std::nullopt;
+}
+
+/// Returns layout and format. The only .exr files of Bruneton's layout are written by this program,
+/// because the demo reads none; they state their layout.
+ExchangeOptions OptionsOf(const fs::path& folder) {
+  const std::optional<TexelFormat> format = FormatOfFolder(folder);
+  if (!format) RefuseFile(folder, "has no scattering.exr, .bin or .dat");
+  ExchangeOptions options{.format = format};
+  if (*format == TexelFormat::kDat) {
+    options.layout = ExchangeLayout::kBruneton;
+    options.type = TexelType::kFloat;
+  } else if (*format == TexelFormat::kBin) {
+    options.type = TexelType::kHalf;
+  } else {
+    const TableImageReader image(folder / "scattering.exr");
+    options.type = image.IsHalf() ? TexelType::kHalf : TexelType::kFloat;
+    const bool bruneton = image.Has("alpenglow.layout") &&
+                          image.Attribute("alpenglow.layout").starts_with("bruneton");
+    if (bruneton) options.layout = ExchangeLayout::kBruneton;
+  }
+  return options;
+}
+
+float LittleEndianValue(const char* bytes, TexelType type) {
+  const auto byte = [&](unsigned i) {
+    return std::uint32_t{static_cast<unsigned char>(bytes[i])} << (8U * i);
+  };
+  if (type == TexelType::kFloat) return std::bit_cast<float>(byte(0) | byte(1) | byte(2) | byte(3));
+  half value;
+  value.setBits(static_cast<unsigned short>(byte(0) | byte(1)));
+  return value;
+}
+
+std::vector<float> RawTexels(const fs::path& file, std::size_t texels, TexelType type) {
+  const std::size_t size = type == TexelType::kHalf ? 2 : 4;
+  const std::uint64_t bytes = fs::file_size(file);
+  if (bytes != 4 * size * texels) {
+    RefuseFile(file, fmt::format("has {} bytes; such a table has {}", bytes, 4 * size * texels));
+  }
+  std::ifstream stream(file, std::ios::binary);
+  const std::string content{std::istreambuf_iterator<char>(stream), {}};
+  if (content.size() != bytes) RefuseFile(file, "cannot be read");
+  std::vector<float> values;
+  values.reserve(4 * texels);
+  for (std::size_t i = 0; i < 4 * texels; ++i) {
+    values.push_back(LittleEndianValue(&content[i * size], type));
+  }
+  return values;
+}
+
+/// Returns RGBA texels. Loaders replace a missing alpha by 1; only the texture scattering needs its
+/// alpha.
+std::vector<float> RgbaOf(const TableImageReader& image, bool needs_alpha) {
+  if (needs_alpha || image.HasChannel("A")) {
+    return image.Values({"R", "G", "B", "A"}, TexelTypes::kFloatOrHalf);
+  }
+  const std::vector<float> rgb = image.Values({"R", "G", "B"}, TexelTypes::kFloatOrHalf);
+  std::vector<float> rgba;
+  rgba.reserve(rgb.size() / 3 * 4);
+  for (std::size_t i = 0; i < rgb.size(); i += 3) {
+    rgba.insert(rgba.end(), {rgb[i], rgb[i + 1], rgb[i + 2], 1.0F});
+  }
+  return rgba;
+}
+
+/// Returns the rows in the order of the textures; files of three-atmosphere have the last row on
+/// top.
+std::vector<float> ImageTexels(const fs::path& file, const TextureShape& shape, bool reversed) {
+  const TableImageReader image(file);
+  const std::size_t rows = shape.height * shape.depth;
+  if (image.width() != shape.width || image.height() != rows) {
+    RefuseFile(file, fmt::format("is {} x {} texels; it must be {} x {}", image.width(),
+                                 image.height(), shape.width, rows));
+  }
+  std::vector<float> values = RgbaOf(image, std::string_view(shape.name) == "scattering");
+  const auto row = static_cast<std::ptrdiff_t>(4 * shape.width);
+  for (std::ptrdiff_t low = 0, high = static_cast<std::ptrdiff_t>(rows) - 1; reversed && low < high;
+       ++low, --high) {
+    std::swap_ranges(values.begin() + low * row, values.begin() + (low + 1) * row,
+                     values.begin() + high * row);
+  }
+  return values;
+}
+
+std::vector<float> TexelsOf(const fs::path& file, const TextureShape& shape,
+                            const ExchangeOptions& options) {
+  std::error_code error;
+  if (!fs::is_regular_file(file, error))
+    RefuseFile(file, "is missing; the whole set is not loaded");
+  if (options.format == TexelFormat::kExr) {
+    return ImageTexels(file, shape, options.layout == ExchangeLayout::kTakram);
+  }
+  return RawTexels(file, shape.width * shape.height * shape.depth, *options.type);
+}
+
+double Largest(const std::vector<double>& values) {
+  return *std::max_element(values.begin(), values.end());
+}
+
+/// Returns the upper bound of red, green and blue of a texel. Scattering is stored without its
+/// phase function, whose mean is 1/(4 pi), so its bound is 4 pi times the largest radiance, which
+/// is at most the irradiance of the sun.
+double HighestOf(const TextureShape& shape, const Medium& medium) {
+  if (std::string_view(shape.name) == kTransmittanceShape.name) return 1.0;
+  const double sun = Largest(medium.solar_irradiance);
+  return std::string_view(shape.name) == kIrradianceShape.name ? sun : 4.0 * kPi * sun;
+}
+
+std::array<ExchangeDescription::Channel, 4> ChannelRangesOf(const fs::path& file,
+                                                            const std::vector<float>& texels,
+                                                            double highest) {
+  std::array<ExchangeDescription::Channel, 4> ranges{};
+  for (std::size_t c = 0; c < 4; ++c) ranges[c] = {texels[c], texels[c]};
+  for (std::size_t i = 0; i < texels.size(); ++i) {
+    const double value = texels[i];
+    // Alpha is used only in scattering, where it holds light like the other channels.
+    if (!std::isfinite(value) || (i % 4 < 3 && !(value >= 0.0 && value <= highest))) {
+      RefuseFile(file, fmt::format("channel {} of texel {} is {}; it must lie in [0, {}]",
+                                   "RGBA"[i % 4], i / 4, value, highest));
+    }
+    ExchangeDescription::Channel& range = ranges[i % 4];
+    range.lowest = std::min(range.lowest, texels[i]);
+    range.highest = std::max(range.highest, texels[i]);
+  }
+  return ranges;
+}
+
+/// Collects pairs of a texel and the value that this program computes for it.
+class Comparison {
+ public:
+  void Add(double value, double truth) { pairs_.push_back({value, truth}); }
+
+  [[nodiscard]] TexelErrors Errors() const {
+    double largest = 0.0;
+    for (const auto& [value, truth] : pairs_) largest = std::max(largest, truth);
+    std::vector<double> errors;
+    for (const auto& [value, truth] : pairs_) {
+      if (truth > 1e-3 * largest) errors.push_back(std::abs(value / truth - 1.0));
+    }
+    if (errors.empty()) return {};
+    std::sort(errors.begin(), errors.end());
+    const auto at = [&](double share) {
+      return errors[static_cast<std::size_t>(share * static_cast<double>(errors.size() - 1))];
+    };
+    return {errors.size(), at(0.5), at(0.9), at(1.0)};
+  }
+
+ private:
+  std::vector<std::pair<double, double>> pairs_;
+};
+
+/// Computes the texels of this program one by one.
+class Reference {
+ public:
+  Reference(const Medium& medium, double lowest_mu_s)
+      : medium_(medium), air_(medium), quick_air_(medium), map_(MapOf(medium, lowest_mu_s)) {}
+
+  /// Light scattered once, without phase functions: by molecules and by aerosol. Blue is the first
+  /// band.
+  struct Once {
+    Rgba molecules, aerosol;
+  };
+  [[nodiscard]] Once ScatteredOnceAt(std::size_t texel) const {
+    const auto light = air_.Scatter(air_.Sample(RayOf(texel), {.nodes = 24}));
+    return {TimesSun(light.rayleigh), TimesSun(light.mie)};
+  }
+  [[nodiscard]] Rgba HigherOrdersAt(std::size_t texel, const DiffuseLight& light) const {
+    const ViewRay ray = RayOf(texel);
+    Rgba rgba = TimesSun(HigherOrdersAlong(quick_air_, light, ray));
+    for (double& value : rgba) value /= shared::PhaseRayleigh<double>(ray.nu);
+    return rgba;
+  }
+  template <typename Real>
+  [[nodiscard]] Rgba TimesSun(const Bands<Real>& unit) const {
+    Rgba rgba{};
+    for (std::size_t c = 0; c < 3; ++c) {
+      rgba[c] = static_cast<double>(unit[2 - c]) * medium_.solar_irradiance[2 - c];
+    }
+    return rgba;
+  }
+
+ private:
+  /// Returns a table that serves only for the positions of texels.
+  static ScatteringTable MapOf(const Medium& medium, double lowest_mu_s) {
+    const ScatteringTableSize& size = kExchangeScatteringSize;
+    return {medium,
+            {.size = size, .lowest_mu_s = lowest_mu_s},
+            std::vector<float>(6 * size.nu * size.mu_s * size.mu * size.altitudes)};
+  }
+  [[nodiscard]] ViewRay RayOf(std::size_t texel) const {
+    const ScatteringTableSize& size = kExchangeScatteringSize;
+    const std::size_t row = texel / (size.nu * size.mu_s);
+    return map_.RayOfTexel(texel / size.mu_s % size.nu, texel % size.mu_s, row % size.mu,
+                           row / size.mu);
+  }
+
+  Medium medium_;
+  AirIntegrator<double> air_;
+  AirIntegrator<float> quick_air_;
+  ScatteringTable map_;
+};
+
+/// Returns texels distributed over a scattering texture; every call returns one fixed set.
+std::vector<std::size_t> CheckedTexels() {
+  const ScatteringTableSize& size = kExchangeScatteringSize;
+  const std::size_t all = size.nu * size.mu_s * size.mu * size.altitudes;
+  std::vector<std::size_t> texels;
+  // Multiples of the golden ratio are distributed most evenly (Weyl 1916, Math. Ann. 77, 313).
+  for (std::size_t i = 0; i < kCheckedTexels; ++i) {
+    const double x = static_cast<double>(i) * 0.6180339887498949;
+    texels.push_back(static_cast<std::size_t>((x - std::floor(x)) * static_cast<double>(all)));
+  }
+  return texels;
+}
+
+TexelErrors TransmittanceErrors(const std::vector<float>& texels, const Medium& medium) {
+  const TransmittanceTable table(
+      medium, {.mu = kTransmittanceShape.width, .altitudes = kTransmittanceShape.height});
+  Comparison comparison;
+  for (std::size_t i = 0; i < texels.size(); ++i) {
+    if (i % 4 < 3) comparison.Add(texels[i], table.texels()[i / 4 * 3 + 2 - i % 4]);
+  }
+  return comparison.Errors();
+}
+
+TexelErrors IrradianceErrors(const std::vector<float>& texels, const Reference& reference,
+                             const DiffuseLight& light, const Medium& medium) {
+  Comparison comparison;
+  const auto unit = [](std::size_t i, std::size_t n) {
+    return static_cast<double>(i) / static_cast<double>(n - 1);
+  };
+  for (std::size_t i = 0; i < texels.size() / 4; ++i) {
+    const double h_m =
+        medium.atmosphere_height_m * unit(i / kIrradianceShape.width, kIrradianceShape.height);
+    const double mu_s = 2.0 * unit(i % kIrradianceShape.width, kIrradianceShape.width) - 1.0;
+    const Rgba ours = reference.TimesSun(light.SkyIrradiance(h_m, mu_s));
+    for (std::size_t c = 0; c < 3; ++c) comparison.Add(texels[4 * i + c], ours[c]);
+  }
+  return comparison.Errors();
+}
+
+/// Returns the errors of alpha in scattering, which holds the red light that aerosol scatters once.
+TexelErrors AlphaErrors(const std::vector<float>& scattering, const Reference& reference) {
+  Comparison comparison;
+  for (const std::size_t texel : CheckedTexels()) {
+    comparison.Add(scattering[4 * texel + 3], reference.ScatteredOnceAt(texel).aerosol[0]);
+  }
+  return comparison.Errors();
+}
+
+TexelErrors ScatteringErrors(std::string_view name, const std::vector<float>& texels,
+                             const Reference& reference, const DiffuseLight& light) {
+  Comparison comparison;
+  for (const std::size_t texel : CheckedTexels()) {
+    const Reference::Once once = reference.ScatteredOnceAt(texel);
+    const Rgba more = reference.HigherOrdersAt(texel, light);
+    for (std::size_t c = 0; c < 3; ++c) {
+      const double truth = name == "scattering"                ? once.molecules[c] + more[c]
+                           : name == "higher_order_scattering" ? more[c]
+                                                               : once.aerosol[c];
+      comparison.Add(texels[4 * texel + c], truth);
+    }
+  }
+  return comparison.Errors();
+}
+
+/// Returns the lowest sun with which the texels agree best.
+double LowestSunIn(const std::vector<float>& scattering, const Medium& medium,
+                   const DiffuseLight& light, const ExchangeOptions& options) {
+  double best_deg = 0.0, least = std::numeric_limits<double>::infinity();
+  for (const double angle_deg : {kDemoLowestSun_deg, kLowestSun_deg}) {
+    ExchangeOptions tried = options;
+    tried.lowest_sun_deg = angle_deg;
+    const Reference reference(medium, LowestSunOf(tried));
+    const double median = ScatteringErrors("scattering", scattering, reference, light).median;
+    if (median >= least) continue;
+    least = median;
+    best_deg = angle_deg;
+  }
+  return best_deg;
+}
+
+void RequireAgreement(const fs::path& file, const TexelErrors& errors, const Medium& medium) {
+  if (!(errors.median > kLargestMedian)) return;
+  RefuseFile(
+      file, fmt::format("is not of the atmosphere {}: its texels differ from those of this program "
+                        "by {:.2g} % in the median, and {:g} % are allowed",
+                        medium.name, 100.0 * errors.median, 100.0 * kLargestMedian));
+}
+
+fs::path FileOf(const fs::path& folder, const TextureShape& shape, const ExchangeOptions& options) {
+  return folder / (std::string(shape.name) + SuffixOf(*options.format));
+}
+
+/// Returns whether three-atmosphere can be configured to work without the texture.
+bool IsOptional(const TextureShape& shape) {
+  const std::string_view name = shape.name;
+  return name == "higher_order_scattering" || name == "single_mie_scattering";
+}
+
+/// A texture read from a file, with its ranges.
+struct LoadedTexture {
+  ExchangeDescription::Texture description;
+  std::vector<float> texels;
+};
+
+LoadedTexture Load(const fs::path& folder, const TextureShape& shape,
+                   const ExchangeOptions& options, const Medium& medium) {
+  const fs::path file = FileOf(folder, shape, options);
+  LoadedTexture loaded;
+  loaded.texels = TexelsOf(file, shape, options);
+  loaded.description.file = file;
+  loaded.description.shape = shape;
+  loaded.description.rgba = ChannelRangesOf(file, loaded.texels, HighestOf(shape, medium));
+  return loaded;
+}
+
+TexelErrors ErrorsOf(const LoadedTexture& texture, const Reference& reference,
+                     const DiffuseLight& light, const Medium& medium) {
+  const std::string_view name = texture.description.shape.name;
+  if (name == kTransmittanceShape.name) return TransmittanceErrors(texture.texels, medium);
+  if (name == kIrradianceShape.name) {
+    return IrradianceErrors(texture.texels, reference, light, medium);
+  }
+  return ScatteringErrors(name, texture.texels, reference, light);
+}
+
+std::string LineOf(const ExchangeDescription::Texture& texture) {
+  std::string text = fmt::format(
+      "  {:<12}{}\n              {} x {} x {} texels; from ours {:.2g} % (median), {:.2g} % (9th "
+      "decile), {:.2g} % (largest) of {}\n",
+      "texture", texture.file.filename().string(), texture.shape.width, texture.shape.height,
+      texture.shape.depth, 100.0 * texture.errors.median, 100.0 * texture.errors.ninth_decile,
+      100.0 * texture.errors.largest, texture.errors.texels);
+  for (std::size_t c = 0; c < 4; ++c) {
+    text += fmt::format("  channel     {} {:.6g} to {:.6g}\n", "RGBA"[c], texture.rgba[c].lowest,
+                        texture.rgba[c].highest);
+  }
+  return text;
+}
+
+}  // namespace
+
+std::optional<fs::path> ExchangeFolderOf(const fs::path& file_or_folder) {
+  if (FormatOfFolder(file_or_folder)) return file_or_folder;
+  const std::optional<TexelFormat> format = FormatOfFolder(file_or_folder.parent_path());
+  if (!format || !HasExtension(file_or_folder, SuffixOf(*format))) return std::nullopt;
+  for (const TextureShape& shape : ShapesOf(ExchangeLayout::kTakram)) {
+    if (file_or_folder.stem() == shape.name) return file_or_folder.parent_path();
+  }
+  return std::nullopt;
+}
+
+ExchangeDescription DescribeExchangeTables(const fs::path& folder) {
+  ExchangeDescription description;
+  description.options = OptionsOf(folder);
+  std::error_code error;
+  description.medium_is_assumed = !fs::exists(folder / kMediumFileName, error);
+  description.medium = description.medium_is_assumed ? MediumPreset("bruneton2017")
+                                                     : ReadMedium(folder / kMediumFileName);
+  if (IsTheMediumThatLoadersAssume(description.medium)) description.medium.name = "bruneton2017";
+  const Medium& medium = description.medium;
+  RequireThreeBands(medium);
+  ExchangeOptions& options = description.options;
+  std::vector<LoadedTexture> loaded;
+  for (const TextureShape& shape : ShapesOf(options.layout)) {
+    if (IsOptional(shape) && !fs::exists(FileOf(folder, shape, options), error)) {
+      description.absent.push_back(FileOf(folder, shape, options));
+      continue;
+    }
+    loaded.push_back(Load(folder, shape, options, medium));
+  }
+  const LoadedTexture& scattering = loaded[2];
+  const DiffuseLight light = FourOrdersOf(medium);
+  options.lowest_sun_deg = LowestSunIn(scattering.texels, medium, light, options);
+  const Reference reference(medium, LowestSunOf(options));
+  RequireAgreement(scattering.description.file, AlphaErrors(scattering.texels, reference), medium);
+  if (const auto fault = FaultOf(options)) RefuseFile(scattering.description.file, *fault);
+  for (LoadedTexture& texture : loaded) {
+    texture.description.errors = ErrorsOf(texture, reference, light, medium);
+    RequireAgreement(texture.description.file, texture.description.errors, medium);
+    description.textures.push_back(std::move(texture.description));
+  }
+  return description;
+}
+
+std::string DescriptionText(const fs::path& folder, const ExchangeDescription& description) {
+  const Medium& medium = description.medium;
+  const ExchangeOptions& options = description.options;
+  const bool takram = options.layout == ExchangeLayout::kTakram;
+  std::string text = fmt::format(
+      "{}\n"
+      "  layout      {}, {} {}\n"
+      "  lowest sun  {} degrees from the zenith (mu_s_min {:.6f}), by its texels\n"
+      "  atmosphere  {}, hash {:016x}{}\n"
+      "  units       W m^-2 nm^-1; scattering per steradian, without phase functions\n",
+      folder.string(), takram ? "takram (three-atmosphere)" : "bruneton (his demo)",
+      options.type == TexelType::kHalf ? "half" : "float",
+      std::string(SuffixOf(*options.format)).substr(1), *options.lowest_sun_deg,
+      LowestSunOf(options), medium.name, MediumHash(medium),
+      description.medium_is_assumed ? fmt::format(" (assumed: no {} beside them)", kMediumFileName)
+                                    : "");
+  if (!IsTheMediumThatLoadersAssume(medium)) {
+    text += "  programs with fixed constants assume bruneton2017: these need other constants\n";
+  }
+  for (const ExchangeDescription::Texture& texture : description.textures) text += LineOf(texture);
+  for (const fs::path& file : description.absent) {
+    text += fmt::format("  absent      {}: the loader must be told to do without\n",
+                        file.filename().string());
+  }
+  return text + "  every texel is finite and in its range\n";
+}
+
+}  // namespace alpenglow::lut

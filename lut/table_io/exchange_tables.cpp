@@ -1,0 +1,340 @@
+// SPDX-License-Identifier: MIT
+#include "lut/table_io/exchange_tables.h"
+
+#include <fmt/format.h>
+#include <half.h>
+#include <oneapi/tbb/parallel_for.h>
+
+#include <array>
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <fstream>
+#include <utility>
+
+#include "atmosphere/medium/medium.h"
+#include "atmosphere/medium/phase_text.h"
+#include "atmosphere/math/constants.h"
+#include "atmosphere/base/error.h"
+#include "lut/cli/program.h"
+#include "lut/table_io/table_folder.h"
+#include "lut/tables/transmittance_table.h"
+
+namespace alpenglow::lut {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr TransmittanceTableSize kTransmittanceSize{.mu = kTransmittanceShape.width,
+                                                    .altitudes = kTransmittanceShape.height};
+constexpr const ScatteringTableSize& kScatteringSize = kExchangeScatteringSize;
+
+constexpr TextureShape ScatteringShape(const char* name) {
+  return {name, kScatteringSize.nu * kScatteringSize.mu_s, kScatteringSize.mu,
+          kScatteringSize.altitudes};
+}
+
+// Four orders of scattering in total: these are the three orders after the first.
+constexpr DiffuseLightOptions kFourOrders{.altitudes = 32,
+                                          .sun_angles = 56,
+                                          .degree = 6,
+                                          .zenith_nodes = 14,
+                                          .azimuth_nodes = 10,
+                                          .ray_nodes = 12,
+                                          .exact_orders = 3};
+constexpr Sampling kHigherOrderSampling{.nodes = 12, .split_ozone = false, .dark_samples = true};
+
+TexelType TypeOf(const ExchangeOptions& options) {
+  return options.type.value_or(options.layout == ExchangeLayout::kTakram ? TexelType::kHalf
+                                                                         : TexelType::kFloat);
+}
+
+TexelFormat FormatOf(const ExchangeOptions& options) {
+  return options.format.value_or(options.layout == ExchangeLayout::kTakram ? TexelFormat::kExr
+                                                                           : TexelFormat::kDat);
+}
+
+/// Returns a texel. Red, green and blue are the bands from the longest wavelength to the shortest.
+std::array<float, 4> RgbaTexel(const Medium& medium, const Bands<float>& unit, bool times_sun,
+                               float alpha) {
+  std::array<float, 4> rgba{0.0F, 0.0F, 0.0F, alpha};
+  for (std::size_t c = 0; c < 3; ++c) {
+    const std::size_t band = 2 - c;
+    rgba[c] = unit[band] * (times_sun ? static_cast<float>(medium.solar_irradiance[band]) : 1.0F);
+  }
+  return rgba;
+}
+
+ExchangeTexture EmptyTexture(const TextureShape& shape) {
+  return {shape.name, shape.width, shape.height, shape.depth,
+          std::vector<float>(4 * shape.width * shape.height * shape.depth)};
+}
+
+void Put(ExchangeTexture& texture, std::size_t texel, const std::array<float, 4>& rgba) {
+  std::copy(rgba.begin(), rgba.end(), &texture.rgba[4 * texel]);
+}
+
+ExchangeTexture TransmittanceTexture(const Medium& medium) {
+  const TransmittanceTable table(medium, kTransmittanceSize);
+  ExchangeTexture texture = EmptyTexture(kTransmittanceShape);
+  for (std::size_t texel = 0; texel < texture.width * texture.height; ++texel) {
+    Bands<float> transmittance(3);
+    std::copy_n(&table.texels()[3 * texel], 3, transmittance.value.begin());
+    Put(texture, texel, RgbaTexel(medium, transmittance, false, 1.0F));
+  }
+  return texture;
+}
+
+ExchangeTexture IrradianceTexture(const Medium& medium, const DiffuseLight& light) {
+  ExchangeTexture texture = EmptyTexture(kIrradianceShape);
+  for (std::size_t y = 0; y < texture.height; ++y) {
+    const double h = medium.atmosphere_height_m * static_cast<double>(y) /
+                     static_cast<double>(texture.height - 1);
+    for (std::size_t x = 0; x < texture.width; ++x) {
+      const double mu_s =
+          2.0 * static_cast<double>(x) / static_cast<double>(texture.width - 1) - 1.0;
+      Put(texture, y * texture.width + x,
+          RgbaTexel(medium, light.SkyIrradiance(h, mu_s), true, 1.0F));
+    }
+  }
+  return texture;
+}
+
+/// Orders 2 to 4 divided by the molecules' phase function, one row (a view angle at an altitude) at
+/// a time.
+class HigherOrdersOfRays {
+ public:
+  HigherOrdersOfRays(const ScatteringTable& rays, const DiffuseLight& light)
+      : rays_(rays), light_(light), air_(rays.medium()) {}
+
+  /// Returns a row: [(nu * mu_s + mu_s) * 3 + band]
+  [[nodiscard]] std::vector<float> Row(std::size_t row) const {
+    const ScatteringTableSize& size = rays_.size();
+    std::vector<float> values;
+    values.reserve(size.nu * size.mu_s * 3);
+    for (std::size_t nu = 0; nu < size.nu; ++nu) {
+      for (std::size_t mu_s = 0; mu_s < size.mu_s; ++mu_s) {
+        const ViewRay ray = rays_.RayOfTexel(nu, mu_s, row % size.mu, row / size.mu);
+        const Bands<float> more = HigherOrdersAlong(air_, light_, ray);
+        const auto phase = static_cast<float>(shared::PhaseRayleigh<double>(ray.nu));
+        for (std::size_t band = 0; band < 3; ++band) values.push_back(more[band] / phase);
+      }
+    }
+    return values;
+  }
+
+ private:
+  const ScatteringTable& rays_;
+  const DiffuseLight& light_;
+  AirIntegrator<float> air_;
+};
+
+/// Returns scattering, higher_order_scattering, single_mie_scattering.
+std::array<ExchangeTexture, 3> ScatteringTextures(const Medium& medium, const DiffuseLight& light,
+                                                  double lowest_mu_s, ProgressStyle style) {
+  const std::size_t rows = ScatteringTable::Rows(kScatteringSize);
+  Progress progress("scattering", 2 * rows, style);
+  const ScatteringTable once(medium, {.size = kScatteringSize, .lowest_mu_s = lowest_mu_s},
+                             &progress);
+  const HigherOrdersOfRays higher(once, light);
+  const std::vector<TextureShape> shapes = ShapesOf(ExchangeLayout::kTakram);
+  std::array<ExchangeTexture, 3> textures{EmptyTexture(shapes[2]), EmptyTexture(shapes[3]),
+                                          EmptyTexture(shapes[4])};
+  const std::size_t width = textures[0].width;
+  tbb::parallel_for(std::size_t{0}, rows, [&](std::size_t row) {
+    if (Interrupted()) return;
+    const std::vector<float> more = higher.Row(row);
+    for (std::size_t x = 0; x < width; ++x) {
+      Bands<float> molecules(3), mie(3), orders(3);
+      const float* texel = &once.texels()[6 * (row * width + x)];
+      for (std::size_t band = 0; band < 3; ++band) {
+        orders[band] = more[3 * x + band];
+        molecules[band] = texel[band] + orders[band];
+        mie[band] = texel[3 + band];
+      }
+      const std::array<float, 4> mie_rgb = RgbaTexel(medium, mie, true, 1.0F);
+      Put(textures[0], row * width + x, RgbaTexel(medium, molecules, true, mie_rgb[0]));
+      Put(textures[1], row * width + x, RgbaTexel(medium, orders, true, 0.0F));
+      Put(textures[2], row * width + x, mie_rgb);
+    }
+    progress.Advance();
+  });
+  ThrowIfInterrupted();
+  return textures;
+}
+
+/// Returns the rows from the last to the first.
+std::vector<float> UpsideDown(const ExchangeTexture& texture) {
+  std::vector<float> values;
+  values.reserve(texture.rgba.size());
+  const std::size_t row = 4 * texture.width;
+  for (std::size_t y = texture.height * texture.depth; y-- > 0;) {
+    const auto begin = texture.rgba.begin() + static_cast<std::ptrdiff_t>(y * row);
+    values.insert(values.end(), begin, begin + static_cast<std::ptrdiff_t>(row));
+  }
+  return values;
+}
+
+void WriteExr(const fs::path& file, const ExchangeTexture& texture, const ExchangeOptions& options,
+              const Medium& medium) {
+  const bool reversed = options.layout == ExchangeLayout::kTakram;
+  const std::vector<float> values = reversed ? UpsideDown(texture) : texture.rgba;
+  const TableImage image{texture.width,
+                         texture.height * texture.depth,
+                         {"R", "G", "B", "A"},
+                         values,
+                         {{"alpenglow.layout", reversed ? "takram, rows reversed" : "bruneton"},
+                          {"alpenglow.texture", texture.name},
+                          {"alpenglow.lowestMuS", fmt::format("{}", LowestSunOf(options))},
+                          {"alpenglow.mediumHash", fmt::format("{:016x}", MediumHash(medium))},
+                          {"alpenglow.mediumName", medium.name},
+                          {"alpenglow.medium", TomlFromMedium(medium)},
+                          {"alpenglow.producer", ProducerText()}},
+                         TypeOf(options)};
+  WriteTableImage(file, image);
+}
+
+std::string LittleEndian(const std::vector<float>& values, TexelType type) {
+  std::string bytes;
+  const auto append = [&](std::uint32_t bits, unsigned size) {
+    for (unsigned i = 0; i < size; ++i) bytes.push_back(static_cast<char>(bits >> (8U * i) & 255U));
+  };
+  for (const float value : values) {
+    if (type == TexelType::kHalf) {
+      append(half(value).bits(), 2);
+    } else {
+      append(std::bit_cast<std::uint32_t>(value), 4);
+    }
+  }
+  return bytes;
+}
+
+std::string MediumText(const Medium& medium, const ExchangeOptions& options) {
+  return fmt::format(
+      "# What the tables beside this file were made for, by {}.\n"
+      "# Layout {}, {} texels, lowest sun {} degrees from the zenith (cosine {:.6f}); medium {}, "
+      "hash {:016x}.\n{}",
+      ProducerText(), options.layout == ExchangeLayout::kTakram ? "takram" : "bruneton",
+      TypeOf(options) == TexelType::kHalf ? "half" : "float", LowestSunAngle_deg(options),
+      LowestSunOf(options), medium.name, MediumHash(medium), TomlFromMedium(medium));
+}
+
+}  // namespace
+
+TexelType TexelTypeFromName(std::string_view name) {
+  if (name == "float") return TexelType::kFloat;
+  if (name == "half") return TexelType::kHalf;
+  throw InputError(fmt::format("type is \"{}\"; it must be float or half", name));
+}
+
+TexelFormat TexelFormatFromName(std::string_view name) {
+  if (name == "exr") return TexelFormat::kExr;
+  if (name == "bin") return TexelFormat::kBin;
+  if (name == "dat") return TexelFormat::kDat;
+  throw InputError(fmt::format("format is \"{}\"; it must be exr, bin or dat", name));
+}
+
+std::optional<std::string> FaultOf(const ExchangeOptions& options) {
+  const TexelFormat format = FormatOf(options);
+  const double sun_deg = LowestSunAngle_deg(options);
+  if (sun_deg != kDemoLowestSun_deg && sun_deg != kLowestSun_deg) {
+    return fmt::format("a lowest sun is 102 or 120 degrees from the zenith, not {}", sun_deg);
+  }
+  if (options.layout == ExchangeLayout::kTakram) {
+    if (format == TexelFormat::kDat) return "layout takram is exr or bin, not dat";
+    if (format == TexelFormat::kBin && TypeOf(options) == TexelType::kFloat) {
+      return "layout takram reads bin as half, not float";
+    }
+    if (sun_deg != kLowestSun_deg) return "layout takram has a lowest sun of 120 degrees";
+  } else {
+    if (format == TexelFormat::kBin) return "layout bruneton is dat or exr, not bin";
+    if (format == TexelFormat::kDat && TypeOf(options) == TexelType::kHalf) {
+      return "layout bruneton reads dat as float, not half";
+    }
+  }
+  return std::nullopt;
+}
+
+double LowestSunAngle_deg(const ExchangeOptions& options) {
+  return options.lowest_sun_deg.value_or(
+      options.layout == ExchangeLayout::kTakram ? kLowestSun_deg : kDemoLowestSun_deg);
+}
+
+double LowestSunOf(const ExchangeOptions& options) {
+  const double sun_deg = LowestSunAngle_deg(options);
+  return sun_deg == kLowestSun_deg ? -0.5 : std::cos(sun_deg / 180.0 * kPi);
+}
+
+void RequireThreeBands(const Medium& medium) {
+  if (medium.wavelengths_nm.size() == 3) return;
+  throw InputError(fmt::format(
+      "spectrum.wavelengths_nm has {} values; tables for other programs hold red, green and blue",
+      medium.wavelengths_nm.size()));
+}
+
+std::vector<TextureShape> ShapesOf(ExchangeLayout layout) {
+  std::vector<TextureShape> shapes{kTransmittanceShape, kIrradianceShape,
+                                   ScatteringShape("scattering")};
+  if (layout == ExchangeLayout::kTakram) {
+    shapes.push_back(ScatteringShape("higher_order_scattering"));
+    shapes.push_back(ScatteringShape("single_mie_scattering"));
+  }
+  return shapes;
+}
+
+const char* SuffixOf(TexelFormat format) {
+  switch (format) {
+    case TexelFormat::kExr:
+      return ".exr";
+    case TexelFormat::kBin:
+      return ".bin";
+    case TexelFormat::kDat:
+      return ".dat";
+  }
+  throw InternalError("an unknown format");
+}
+
+DiffuseLight FourOrdersOf(const Medium& medium) { return DiffuseLight(medium, kFourOrders); }
+
+Bands<float> HigherOrdersAlong(const AirIntegrator<float>& air, const DiffuseLight& light,
+                               const ViewRay& ray) {
+  return light.InscatterAlong(air.Sample(ray, kHigherOrderSampling), ray.nu);
+}
+
+bool IsTheMediumThatLoadersAssume(const Medium& medium) {
+  return MediumHash(medium) == MediumHash(MediumPreset("bruneton2017"));
+}
+
+std::vector<ExchangeTexture> MakeExchangeTextures(const Medium& medium,
+                                                  const ExchangeOptions& options,
+                                                  ProgressStyle style) {
+  RequireThreeBands(medium);
+  const DiffuseLight light = FourOrdersOf(medium);
+  std::vector<ExchangeTexture> textures{TransmittanceTexture(medium),
+                                        IrradianceTexture(medium, light)};
+  auto [scattering, higher, mie] = ScatteringTextures(medium, light, LowestSunOf(options), style);
+  textures.push_back(std::move(scattering));
+  if (options.layout == ExchangeLayout::kTakram) {
+    textures.push_back(std::move(higher));
+    textures.push_back(std::move(mie));
+  }
+  return textures;
+}
+
+void WriteExchangeTables(const std::vector<ExchangeTexture>& textures, const Medium& medium,
+                         const ExchangeOptions& options, const fs::path& folder) {
+  if (const auto fault = FaultOf(options)) throw InputError(*fault);
+  MakeFolder(folder);
+  const TexelFormat format = FormatOf(options);
+  for (const ExchangeTexture& texture : textures) {
+    const fs::path file = folder / (texture.name + SuffixOf(format));
+    if (format == TexelFormat::kExr) {
+      WriteExr(file, texture, options, medium);
+    } else {
+      WriteTextAtomically(file, LittleEndian(texture.rgba, TypeOf(options)));
+    }
+  }
+  WriteTextAtomically(folder / kMediumFileName, MediumText(medium, options));
+}
+
+}  // namespace alpenglow::lut

@@ -1,0 +1,208 @@
+// SPDX-License-Identifier: MIT
+#include "lut/table_io/table_folder.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <system_error>
+
+#include "atmosphere/base/error.h"
+
+namespace alpenglow::lut {
+
+namespace fs = std::filesystem;
+
+TableQuality TableQualityFromName(std::string_view name) {
+  if (name == "preview") {
+    return {{.mu = 128, .altitudes = 32},
+            {.nu = 6, .mu_s = 16, .mu = 32, .altitudes = 24},
+            {.altitudes = 14,
+             .sun_angles = 28,
+             .degree = 2,
+             .zenith_nodes = 8,
+             .azimuth_nodes = 6,
+             .ray_nodes = 8},
+            8};
+  }
+  if (name == "standard") {
+    return {{}, {.nu = 8, .mu_s = 32, .mu = 64, .altitudes = 48}, {}, 12};
+  }
+  if (name == "fine") {
+    return {{.mu = 512, .altitudes = 128},
+            {.nu = 10, .mu_s = 48, .mu = 96, .altitudes = 64},
+            {.altitudes = 32,
+             .sun_angles = 64,
+             .degree = 6,
+             .zenith_nodes = 14,
+             .azimuth_nodes = 12,
+             .ray_nodes = 14},
+            16};
+  }
+  throw InputError(fmt::format("quality is \"{}\"; it must be preview, standard or fine", name));
+}
+
+void MakeFolder(const fs::path& folder) {
+  std::error_code error;
+  fs::create_directories(folder, error);
+  if (error || !fs::is_directory(folder, error)) {
+    throw OutputError(fmt::format("{}: no such folder can be made: {}", folder.string(),
+                                  error ? error.message() : "it is a file"));
+  }
+}
+
+void BuildTableFolder(const Medium& medium, const TableQuality& quality, TableOrders orders,
+                      const fs::path& folder, ProgressStyle style) {
+  MakeFolder(folder);
+  // Remove the file of an earlier build, because it would describe the new tables wrongly. The new
+  // file is written last.
+  std::error_code error;
+  fs::remove(folder / kMultipleScatteringFileName, error);
+  WriteTable(folder / kTransmittanceFileName, TransmittanceTable(medium, quality.transmittance));
+  Progress progress("single scattering", ScatteringTable::Rows(quality.single_scattering), style);
+  WriteTable(folder / kSingleScatteringFileName, ScatteringTable(medium,
+                                                                 {.size = quality.single_scattering,
+                                                                  .lowest_mu_s = {},
+                                                                  .axes = ScatteringAxes::kAzimuth},
+                                                                 &progress));
+  if (orders == TableOrders::kSingleOnly) return;
+  WriteTable(folder / kMultipleScatteringFileName,
+             DiffuseLight(medium, quality.multiple_scattering), {.ray_nodes = quality.ray_nodes});
+}
+
+TableFolder ReadTableFolder(const fs::path& folder,
+                            const std::optional<std::uint64_t>& medium_hash) {
+  TableFolder tables;
+  std::optional<std::uint64_t> hash = medium_hash;
+  const auto of_medium = [&](const Medium& medium) {
+    tables.medium = medium;
+    hash = MediumHash(medium);
+  };
+  FolderUse use;
+  std::error_code error;
+  if (fs::exists(folder / kMultipleScatteringFileName, error)) {
+    StoredDiffuseLight stored = ReadDiffuseLight(folder / kMultipleScatteringFileName, hash);
+    use = stored.use;
+    tables.ray_nodes = use.ray_nodes;
+    tables.multiple_scattering = std::move(stored.light);
+    of_medium(tables.multiple_scattering->medium());
+  }
+  if (use.transmittance) {
+    tables.transmittance = ReadTransmittanceTable(folder / kTransmittanceFileName, hash);
+    of_medium(tables.transmittance->medium());
+  }
+  if (use.single_scattering) {
+    tables.single_scattering = ReadScatteringTable(folder / kSingleScatteringFileName, hash);
+    of_medium(tables.single_scattering->medium());
+  }
+  return tables;
+}
+
+std::string DescribeTables(const fs::path& file_or_folder) {
+  std::error_code error;
+  if (!fs::is_directory(file_or_folder, error)) {
+    return DescriptionText(file_or_folder, DescribeTable(file_or_folder));
+  }
+  std::string text;
+  for (const char* name :
+       {kTransmittanceFileName, kSingleScatteringFileName, kMultipleScatteringFileName}) {
+    const fs::path file = file_or_folder / name;
+    if (fs::exists(file, error)) text += DescriptionText(file, DescribeTable(file));
+  }
+  if (text.empty()) {
+    throw InputError(fmt::format("{}: has none of {}, {} and {}", file_or_folder.string(),
+                                 kTransmittanceFileName, kSingleScatteringFileName,
+                                 kMultipleScatteringFileName));
+  }
+  return text;
+}
+
+TableLookup::TableLookup(TableFolder tables) : tables_(std::move(tables)), air_(tables_.medium) {
+  const auto require_medium = [this](const auto& table) {
+    if (table && MediumHash(table->medium()) != MediumHash(tables_.medium)) {
+      throw InputError("the tables were made for different atmospheres");
+    }
+  };
+  require_medium(tables_.transmittance);
+  require_medium(tables_.single_scattering);
+  require_medium(tables_.multiple_scattering);
+}
+
+void TableLookup::ReplaceMultipleScattering(DiffuseLight light) {
+  tables_.multiple_scattering = std::move(light);
+}
+
+bool TableLookup::HasTableFor(const ViewRay& ray) const {
+  const Medium& air = tables_.medium;
+  return tables_.single_scattering &&
+         ExtentOf(ray, air.planet_radius_m, air.atmosphere_height_m).end != RayEnd::kLength;
+}
+
+const DiffuseLight& TableLookup::diffuse() const {
+  if (!tables_.multiple_scattering) {
+    throw InternalError("light of higher orders from tables of single scattering");
+  }
+  return *tables_.multiple_scattering;
+}
+
+Bands<float> TableLookup::Transmittance(const ViewRay& ray) const {
+  if (tables_.transmittance) return tables_.transmittance->LookupAlong(ray);
+  return air_.TransmittanceAlong(ray);
+}
+
+Bands<float> TableLookup::OpticalDepth(const ViewRay& ray) const {
+  if (!tables_.transmittance) return air_.OpticalDepthAlong(ray);
+  Bands<float> depth = tables_.transmittance->LookupAlong(ray);
+  // A transmittance that the table stores as 0 gets the optical depth of the smallest float.
+  constexpr float kSmallest = std::numeric_limits<float>::denorm_min();
+  for (std::size_t band = 0; band < depth.count; ++band) {
+    depth[band] = -std::log(std::max(depth[band], kSmallest));
+  }
+  return depth;
+}
+
+Bands<float> TableLookup::InscatterOnce(const ViewRay& ray) const {
+  if (HasTableFor(ray)) {
+    return air_.Inscatter(tables_.single_scattering->Lookup(ray), ray.nu);
+  }
+  const Sampling lit{.nodes = tables_.ray_nodes, .split_ozone = false, .dark_samples = false};
+  return air_.Inscatter(air_.Scatter(air_.Sample(ray, lit)), ray.nu);
+}
+
+Bands<float> TableLookup::InscatterOfAllOrders(const ViewRay& ray) const {
+  const Sampling all{.nodes = tables_.ray_nodes, .split_ozone = false, .dark_samples = true};
+  const RaySamples<float> samples = air_.Sample(ray, all);
+  Bands<float> light = tables_.single_scattering ? InscatterOnce(ray)
+                                                 : air_.Inscatter(air_.Scatter(samples), ray.nu);
+  const Bands<float> more = diffuse().InscatterAlong(samples, ray.nu);
+  for (std::size_t band = 0; band < light.count; ++band) light[band] += more[band];
+  return light;
+}
+
+PolarisedLight TableLookup::PolarisationOfAllOrders(const ViewRay& ray) const {
+  const Sampling all{.nodes = tables_.ray_nodes, .split_ozone = false, .dark_samples = true};
+  const RaySamples<float> samples = air_.Sample(ray, all);
+  PolarisedLight light = PolarisedOnce(tables_.medium, air_.Scatter(samples), ray);
+  const PolarisedLight more = diffuse().PolarisationAlong(samples, ray.nu);
+  for (std::size_t band = 0; band < light.q.count; ++band) {
+    light.q[band] += more.q[band];
+    light.u[band] += more.u[band];
+  }
+  return light;
+}
+
+Bands<float> TableLookup::SunIrradiance(double altitude_m, double mu_s) const {
+  if (mu_s <= 0.0) return Bands<float>(bands());
+  Bands<float> irradiance = Transmittance({altitude_m, mu_s, mu_s, 1.0});
+  for (std::size_t band = 0; band < irradiance.count; ++band) {
+    irradiance[band] *= static_cast<float>(mu_s);
+  }
+  return irradiance;
+}
+
+Bands<float> TableLookup::SkyIrradiance(double altitude_m, double mu_s) const {
+  return diffuse().SkyIrradiance(altitude_m, mu_s);
+}
+
+}  // namespace alpenglow::lut

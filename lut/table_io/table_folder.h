@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: MIT
+// This header provides a folder of the tables of one atmosphere: writing, reading and describing
+// it.
+//
+// It also provides light along rays from the tables of a folder. Quantities without a table are
+// integrated: columns in closed form, light scattered once on the folder's number of Gauss nodes.
+//
+// Segments that end in the air are integrated too, because the difference of two look-ups would
+// have the error of whole rays.
+//
+// All values are per unit solar irradiance. Light of higher orders is gathered along the ray from
+// the moments of multiple scattering, on the same nodes as light scattered once.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "lut/cli/messages.h"
+#include "lut/table_io/table_file.h"
+
+namespace alpenglow::lut {
+
+/// Resolution of the tables. Sizes and build times: skylut build --help.
+struct TableQuality {
+  TransmittanceTableSize transmittance;
+  ScatteringTableSize single_scattering;
+  DiffuseLightOptions multiple_scattering;
+  int ray_nodes = 12;
+};
+
+/// Orders of scattering that the tables of a folder contain.
+enum class TableOrders { kAll, kSingleOnly };
+
+/// Parses "preview", "standard" or "fine"; throws InputError for another name.
+[[nodiscard]] TableQuality TableQualityFromName(std::string_view name);
+
+/// Creates the folder if it is missing. Throws OutputError naming it.
+void MakeFolder(const std::filesystem::path& folder);
+
+/// Builds and writes every table, each file atomically; creates the folder if it is missing. Throws
+/// OutputError naming the file that could not be written.
+void BuildTableFolder(const Medium& medium, const TableQuality& quality, TableOrders orders,
+                      const std::filesystem::path& folder, ProgressStyle style);
+
+/// Tables of one medium. Quantities without a table are integrated where they are needed (see
+/// FolderUse).
+struct TableFolder {
+  Medium medium;
+  std::optional<TransmittanceTable> transmittance;
+  std::optional<ScatteringTable> single_scattering;
+  std::optional<DiffuseLight> multiple_scattering;
+  int ray_nodes = 12;
+};
+
+/// Reads the tables that the file of multiple scattering lists; the other two if that file is
+/// missing. Throws InputError if one of them is missing or bad, if they do not belong to the medium
+/// of medium_hash, or if they belong to different media.
+[[nodiscard]] TableFolder ReadTableFolder(const std::filesystem::path& folder,
+                                          const std::optional<std::uint64_t>& medium_hash = {});
+
+/// Returns DescriptionText of a table, or of every table in a folder. Throws InputError if there is
+/// none.
+[[nodiscard]] std::string DescribeTables(const std::filesystem::path& file_or_folder);
+
+/// Look-ups in the tables of a folder. Safe from many threads.
+class TableLookup {
+ public:
+  /// Throws InputError for tables of different media.
+  explicit TableLookup(TableFolder tables);
+
+  /// Replaces the table of multiple scattering by another one of the same medium.
+  void ReplaceMultipleScattering(DiffuseLight light);
+
+  [[nodiscard]] const Medium& medium() const { return tables_.medium; }
+  [[nodiscard]] const TableFolder& tables() const { return tables_; }
+  [[nodiscard]] std::size_t bands() const { return air_.bands(); }
+
+  /// Return transmittance and optical depth to the end of the ray.
+  [[nodiscard]] Bands<float> Transmittance(const ViewRay& ray) const;
+  [[nodiscard]] Bands<float> OpticalDepth(const ViewRay& ray) const;
+  /// Return the light that the air along the ray scatters towards the observer [1/sr]: once, and in
+  /// all orders (which needs the table of multiple scattering).
+  [[nodiscard]] Bands<float> InscatterOnce(const ViewRay& ray) const;
+  [[nodiscard]] Bands<float> InscatterOfAllOrders(const ViewRay& ray) const;
+  /// Returns Q and U of InscatterOfAllOrders; 0 if light is not polarised.
+  [[nodiscard]] PolarisedLight PolarisationOfAllOrders(const ViewRay& ray) const;
+  /// Return the irradiance on a horizontal plane [1]: the sun's, and the sky's (needs multiple
+  /// scattering).
+  [[nodiscard]] Bands<float> SunIrradiance(double altitude_m, double mu_s) const;
+  [[nodiscard]] Bands<float> SkyIrradiance(double altitude_m, double mu_s) const;
+
+ private:
+  [[nodiscard]] const DiffuseLight& diffuse() const;
+  [[nodiscard]] bool HasTableFor(const ViewRay& ray) const;
+
+  TableFolder tables_;
+  AirIntegrator<float> air_;
+};
+
+}  // namespace alpenglow::lut

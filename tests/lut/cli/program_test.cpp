@@ -1,0 +1,473 @@
+// SPDX-License-Identifier: MIT
+#include "lut/cli/program.h"
+
+#include <fcntl.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sys/resource.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <csignal>
+#include <cstdio>
+#include <fstream>
+#include <iterator>
+#include <sstream>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "atmosphere/base/error.h"
+#include "lut/layer.h"
+#include "lut/cli/output_file.h"
+#include "tests/fixtures/lost_messages.h"
+
+namespace alpenglow::lut {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::HasSubstr;
+
+struct Outcome {
+  int status;
+  std::string error_text;
+};
+
+Outcome RunBody(const std::function<int()>& body) {
+  testing::internal::CaptureStderr();
+  const int status = RunProgram("skytest", body);
+  return {status, testing::internal::GetCapturedStderr()};
+}
+
+std::size_t LinesOf(const std::string& text) {
+  return static_cast<std::size_t>(std::count(text.begin(), text.end(), '\n'));
+}
+
+std::string ContentOf(const fs::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(stream), {}};
+}
+
+std::size_t FilesIn(const fs::path& folder) {
+  return static_cast<std::size_t>(
+      std::distance(fs::directory_iterator(folder), fs::directory_iterator()));
+}
+
+class Folder : public testing::Test {
+ protected:
+  void SetUp() override {
+    std::string pattern = (fs::temp_directory_path() / "alpenglow_test_XXXXXX").string();
+    ASSERT_NE(mkdtemp(pattern.data()), nullptr);
+    folder_ = pattern;
+  }
+  void TearDown() override { fs::remove_all(folder_); }
+
+  fs::path folder_;
+};
+using AtomicFile = Folder;
+
+TEST(Program, StatusOfTheBodyIsTheStatusOfTheProgram) {
+  EXPECT_EQ(RunBody([] { return 0; }).status, 0);
+  EXPECT_EQ(RunBody([] { return 2; }).status, 2);
+}
+
+TEST(Program, EveryKindOfFailureHasItsStatusAndOneLine) {
+  const std::vector<std::pair<int, std::function<int()>>> cases = {
+      {2, []() -> int { throw OptionError("--size 99999x1"); }},
+      {3, []() -> int { throw InputError("x.toml:3: key g"); }},
+      {4, []() -> int { throw OutputError("out.exr"); }},
+      {5, []() -> int { throw DisplayError("OpenGL 2.1"); }},
+      {70, []() -> int { throw InternalError("two\nlines"); }},
+      {70, []() -> int { throw std::bad_alloc(); }},
+      {70, []() -> int { throw 7; }},
+  };
+  for (const auto& [status, body] : cases) {
+    const Outcome outcome = RunBody(body);
+    EXPECT_EQ(outcome.status, status);
+    EXPECT_EQ(LinesOf(outcome.error_text), 1U) << outcome.error_text;
+    EXPECT_THAT(outcome.error_text, testing::StartsWith("skytest: "));
+  }
+}
+
+// Hard case 45.
+TEST(Program, ASignalStopsTheWorkBetweenUnitsAndSetsTheStatus) {
+  for (const int signal : {SIGINT, SIGTERM}) {
+    int units = 0;
+    const Outcome outcome = RunBody([&] {
+      for (; units < 5; ++units) {
+        ThrowIfInterrupted();
+        if (units == 2) std::raise(signal);
+      }
+      return 0;
+    });
+    EXPECT_EQ(outcome.status, 128 + signal);
+    EXPECT_EQ(units, 3) << "the unit during which the signal came is finished";
+    EXPECT_TRUE(Interrupted());
+  }
+  EXPECT_EQ(RunBody([] { return Interrupted() ? 1 : 0; }).status, 0) << "a new run starts afresh";
+}
+
+TEST(Program, VersionNamesProgramReleaseAndLibraries) {
+  const std::string text = VersionText("skytest");
+  EXPECT_THAT(text, testing::StartsWith("skytest of alpenglow "));
+  EXPECT_THAT(text, HasSubstr("OpenEXR 3."));
+  EXPECT_THAT(text, HasSubstr("SIMD: "));
+  EXPECT_THAT(ProducerText(), testing::MatchesRegex("alpenglow [0-9.]+ \\(.+\\)"));
+}
+
+TEST(Program, ANegativeNumberOfThreadsIsRefused) {
+  EXPECT_THROW(ThreadLimit{-1}, InputError);
+  EXPECT_NO_THROW(ThreadLimit{0});
+}
+
+TEST(Program, ResultsThatStandardOutputDoesNotTakeAreStatus4AfterTheWork) {
+  const int full = open("/dev/full", O_WRONLY);
+  ASSERT_GE(full, 0);
+  std::fflush(stdout);
+  const int before = dup(STDOUT_FILENO);
+  dup2(full, STDOUT_FILENO);
+  bool done = false;
+  const Outcome outcome = RunBody([&] {
+    Print(std::string(100000, 'x'));  // more than a buffer holds
+    done = true;
+    return 0;
+  });
+  dup2(before, STDOUT_FILENO);
+  std::clearerr(stdout);
+  close(before);
+  close(full);
+  EXPECT_TRUE(done);
+  EXPECT_EQ(outcome.status, 4);
+  EXPECT_THAT(outcome.error_text, HasSubstr("standard output: cannot be written: No space left"));
+  EXPECT_EQ(RunBody([] { return 0; }).status, 0) << "the next run knows nothing of it";
+}
+
+TEST_F(AtomicFile, ContentArrivesWholeAndNothingElseStays) {
+  WriteTextAtomically(folder_ / "a.txt", "one");
+  WriteTextAtomically(folder_ / "a.txt", "two");
+  EXPECT_EQ(ContentOf(folder_ / "a.txt"), "two");
+  EXPECT_EQ(FilesIn(folder_), 1U);
+}
+
+TEST_F(AtomicFile, ModeFollowsTheUmask) {
+  const mode_t before = umask(022);
+  WriteTextAtomically(folder_ / "a.txt", "one");
+  umask(before);
+  struct stat status = {};
+  ASSERT_EQ(stat((folder_ / "a.txt").c_str(), &status), 0);
+  EXPECT_EQ(status.st_mode & 0777, 0644U);
+}
+
+// Hard case 45.
+TEST_F(AtomicFile, AFailedWriterLeavesTheOldFileAndNoTemporary) {
+  WriteTextAtomically(folder_ / "a.txt", "old");
+  const auto fail = [](const fs::path& name) {
+    std::ofstream(name) << "half";
+    throw OutputError(name.string() + ": the disk is full");
+  };
+  try {
+    WriteFileAtomically(folder_ / "a.txt", fail);
+    FAIL() << "the failure was swallowed";
+  } catch (const OutputError& error) {
+    EXPECT_EQ(error.what(), (folder_ / "a.txt").string() + ": the disk is full")
+        << "the user's name, not the temporary's";
+  }
+  EXPECT_EQ(ContentOf(folder_ / "a.txt"), "old");
+  EXPECT_EQ(FilesIn(folder_), 1U);
+}
+
+TEST_F(AtomicFile, OtherExceptionsPassAndLeaveNothing) {
+  EXPECT_THROW(
+      WriteFileAtomically(folder_ / "a.txt", [](const fs::path&) { throw InputError("x"); }),
+      InputError);
+  EXPECT_EQ(FilesIn(folder_), 0U);
+}
+
+// Hard case 46.
+TEST_F(AtomicFile, AMissingFolderIsAnOutputErrorThatNamesTheTarget) {
+  const fs::path target = folder_ / "missing" / "a.txt";
+  try {
+    WriteTextAtomically(target, "one");
+    FAIL() << "a folder was made up";
+  } catch (const OutputError& error) {
+    EXPECT_THAT(error.what(), HasSubstr(target.string()));
+  }
+}
+
+// Hard case 46.
+TEST_F(AtomicFile, AFolderRemovedWhileWritingIsAnOutputError) {
+  const fs::path folder = folder_ / "gone";
+  fs::create_directory(folder);
+  EXPECT_THROW(
+      WriteFileAtomically(folder / "a.txt", [&](const fs::path&) { fs::remove_all(folder); }),
+      OutputError);
+}
+
+/// While it lives, a superuser, who may write into read-only folders, has the rights of the user
+/// "nobody". Changes nothing for other users.
+class WithoutSuperuser {
+ public:
+  WithoutSuperuser() : was_superuser_(geteuid() == 0) {
+    constexpr uid_t kNobody = 65534;
+    if (was_superuser_ && seteuid(kNobody) != 0) throw std::runtime_error("seteuid failed");
+  }
+  ~WithoutSuperuser() {
+    if (was_superuser_ && seteuid(0) != 0) std::abort();
+  }
+  WithoutSuperuser(const WithoutSuperuser&) = delete;
+  WithoutSuperuser& operator=(const WithoutSuperuser&) = delete;
+
+ private:
+  bool was_superuser_;
+};
+
+// Hard case 46.
+TEST_F(AtomicFile, AReadOnlyFolderIsAnOutputError) {
+  fs::permissions(folder_, fs::perms::owner_read | fs::perms::owner_exec);
+  {
+    const WithoutSuperuser ordinary_rights;
+    EXPECT_THROW(WriteTextAtomically(folder_ / "a.txt", "one"), OutputError);
+  }
+  fs::permissions(folder_, fs::perms::owner_all);
+  EXPECT_FALSE(fs::exists(folder_ / "a.txt"));
+}
+
+TEST_F(AtomicFile, FoldersAndDevicesAreNotReplaced) {
+  EXPECT_THROW(WriteTextAtomically(folder_, "one"), OutputError);
+  EXPECT_THROW(WriteTextAtomically("/dev/null", "one"), OutputError);
+  EXPECT_TRUE(fs::is_character_file("/dev/null"));
+}
+
+TEST_F(AtomicFile, ASymbolicLinkIsFollowed) {
+  fs::create_directory(folder_ / "real");
+  fs::create_symlink(folder_ / "real" / "a.txt", folder_ / "link.txt");
+  WriteTextAtomically(folder_ / "link.txt", "one");
+  EXPECT_TRUE(fs::is_symlink(folder_ / "link.txt"));
+  EXPECT_EQ(ContentOf(folder_ / "real" / "a.txt"), "one");
+}
+
+// A file-size limit stands in for the full disk: write() fails in the same way, with EFBIG.
+// Hard case 46.
+TEST_F(AtomicFile, AFullDiskIsAnOutputErrorAndLeavesNothing) {
+  const fs::path target = folder_ / "a.txt";
+  rlimit before = {};
+  ASSERT_EQ(getrlimit(RLIMIT_FSIZE, &before), 0);
+  const Outcome outcome = RunBody([&] {
+    rlimit small = before;
+    small.rlim_cur = 1000;
+    setrlimit(RLIMIT_FSIZE, &small);
+    std::string fault;
+    try {
+      WriteTextAtomically(target, std::string(100000, 'x'));
+    } catch (const OutputError& error) {
+      fault = error.what();
+    }
+    setrlimit(RLIMIT_FSIZE, &before);
+    throw OutputError(fault);
+    return 0;
+  });
+  EXPECT_EQ(outcome.status, 4);
+  EXPECT_THAT(outcome.error_text, HasSubstr(target.string()));
+  EXPECT_EQ(FilesIn(folder_), 0U);
+}
+
+// Hard case 47.
+TEST_F(AtomicFile, WritersOfTheSameFileDoNotDisturbEachOther) {
+  const auto write = [&](char letter) {
+    for (int i = 0; i < 50; ++i) {
+      WriteTextAtomically(folder_ / "a.txt", std::string(5000, letter));
+    }
+  };
+  std::thread other(write, 'a');
+  write('b');
+  other.join();
+  const std::string content = ContentOf(folder_ / "a.txt");
+  EXPECT_EQ(content, std::string(5000, content.at(0))) << "one writer's content, unmixed";
+  EXPECT_EQ(FilesIn(folder_), 1U);
+}
+
+// Hard case 45.
+TEST_F(AtomicFile, WhatAKilledWriterLeavesIsRemovedAndWhatALivingOneWritesIsNot) {
+  tests::LeaveTemporaryOf(folder_ / "a.exr");
+  ASSERT_EQ(FilesIn(folder_), 1U);
+  std::size_t removed = 0, there = 0;
+  WriteFileAtomically(folder_ / "b.exr", [&](const fs::path& name) {
+    std::ofstream(name) << "b";
+    removed = RemoveAbandonedTemporaries(folder_);
+    there = FilesIn(folder_);
+  });
+  EXPECT_EQ(removed, 1U);
+  EXPECT_EQ(there, 1U) << "the living writer's";
+  EXPECT_EQ(ContentOf(folder_ / "b.exr"), "b");
+  EXPECT_EQ(RemoveAbandonedTemporaries(folder_ / "missing"), 0U);
+}
+
+TEST_F(AtomicFile, TemporariesOfOtherMachinesAndFilesOfOtherNamesAreNotRemoved) {
+  tests::LeaveTemporaryOf(folder_ / "a.exr");
+  const fs::path ours = *fs::directory_iterator(folder_);
+  std::string name = ours.filename().string();  // .a.MACHINE-...
+  name[3] = name[3] == '0' ? '1' : '0';
+  fs::rename(ours, folder_ / name);
+  for (const char* other : {".a.part.exr", "a.exr.part", ".hidden", "a.exr"}) {
+    std::ofstream(folder_ / other) << "x";
+  }
+  EXPECT_EQ(RemoveAbandonedTemporaries(folder_), 0U);
+  EXPECT_EQ(FilesIn(folder_), 5U);
+}
+
+TEST_F(AtomicFile, WhetherATargetCanBeWrittenIsKnownBeforeAndChangesNothing) {
+  WriteTextAtomically(folder_ / "a.txt", "old");
+  EXPECT_NO_THROW(RequireWritable(folder_ / "a.txt"));
+  EXPECT_NO_THROW(RequireWritable(folder_ / "b.txt"));
+  EXPECT_THROW(RequireWritable(folder_), OutputError);
+  EXPECT_THROW(RequireWritable(folder_ / "none" / "a.txt"), OutputError);
+  EXPECT_THROW(RequireWritable("/dev/null"), OutputError);
+  EXPECT_EQ(ContentOf(folder_ / "a.txt"), "old");
+  EXPECT_EQ(FilesIn(folder_), 1U);
+}
+
+TEST_F(AtomicFile, ANameThatIsNearlyTooLongStillHasATemporary) {
+  const fs::path target = folder_ / (std::string(250, 'n') + ".exr");  // of 255 bytes
+  WriteTextAtomically(target, "one");
+  EXPECT_EQ(ContentOf(target), "one");
+}
+
+using OutputName = Folder;
+
+TEST_F(OutputName, AnInputIsRecognisedUnderEveryName) {
+  std::ofstream(folder_ / "in.csv") << "x";
+  fs::create_symlink("in.csv", folder_ / "link.csv");
+  fs::create_directory(folder_ / "sub");
+  const std::vector<NamedFile> inputs{{"--cases", folder_ / "in.csv"}};
+  for (const fs::path& same :
+       {folder_ / "in.csv", folder_ / "link.csv", folder_ / "sub" / ".." / "in.csv"}) {
+    EXPECT_THROW(RequireNoInput({"--out", same}, inputs), InputError) << same;
+  }
+  EXPECT_NO_THROW(RequireNoInput({"--out", folder_ / "out.csv"}, inputs));
+  EXPECT_NO_THROW(RequireNoInput({"--out", folder_ / "o"}, {{"--cases", folder_ / "none"}}));
+}
+
+TEST_F(OutputName, TheExtensionSaysWhatIsWritten) {
+  EXPECT_EQ(FaultOfFileName("a/b.exr", ".exr"), "");
+  EXPECT_EQ(FaultOfFileName("a/b.EXR", ".exr"), "");
+  EXPECT_THAT(FaultOfFolderName("a/b.EXR"), HasSubstr("no name of a folder"));
+  EXPECT_THAT(FaultOfFileName("b.hdr", ".exr"), HasSubstr("must end in .exr"));
+  EXPECT_THAT(FaultOfFileName("-", ".exr"), HasSubstr("standard output"));
+  EXPECT_THAT(FaultOfFileName("-", ""), HasSubstr("standard output"));
+  EXPECT_EQ(FaultOfFileName("results", ""), "");
+  EXPECT_EQ(FaultOfFolderName("tables"), "");
+  EXPECT_EQ(FaultOfFolderName("tables.v2"), "");
+  EXPECT_EQ(FaultOfFolderName("."), "");
+  for (const char* file : {"t.dds", "t.exr", "-"}) EXPECT_NE(FaultOfFolderName(file), "") << file;
+}
+
+std::string ProgressText(ProgressStyle style, std::size_t total, std::size_t skipped = 0) {
+  testing::internal::CaptureStderr();
+  {
+    Progress progress("frames", total, style);
+    progress.Skip(skipped);
+    for (std::size_t i = skipped; i < total; ++i) progress.Advance();
+  }
+  return testing::internal::GetCapturedStderr();
+}
+
+TEST(Progress, PlainStyleIsALinePerFivePercent) {
+  const std::string text = ProgressText(ProgressStyle::kPlain, 1000);
+  EXPECT_EQ(LinesOf(text), 20U);
+  EXPECT_THAT(text, HasSubstr("frames: 5 % (50 of 1000)"));
+  EXPECT_THAT(text, HasSubstr("frames: 100 % (1000 of 1000)"));
+}
+
+TEST(Progress, OutsideATerminalAutoIsPlain) {
+  EXPECT_EQ(LinesOf(ProgressText(ProgressStyle::kAuto, 40)), 20U);
+}
+
+TEST(Progress, JsonIsOneObjectALineUpToTheTotal) {
+  const std::string text = ProgressText(ProgressStyle::kJson, 4);
+  std::istringstream lines(text);
+  std::string line;
+  int count = 0;
+  while (std::getline(lines, line)) {
+    ++count;
+    EXPECT_THAT(line, testing::MatchesRegex("\\{\"label\":\"frames\",\"done\":[0-9]+,\"total\":4,"
+                                            "\"elapsed_s\":[0-9.]+,\"eta_s\":[0-9.]+\\}"));
+  }
+  EXPECT_EQ(count, 4);
+  EXPECT_THAT(text, HasSubstr("\"done\":4"));
+}
+
+TEST(Progress, SkippedWorkSaysNothingAboutTheSpeed) {
+  testing::internal::CaptureStderr();
+  {
+    Progress progress("frames", 4, ProgressStyle::kJson);
+    progress.Skip(2);
+  }
+  EXPECT_THAT(testing::internal::GetCapturedStderr(), HasSubstr("\"done\":2,\"total\":4"));
+}
+
+std::string TextOfOneUnit(ProgressStyle style) {
+  testing::internal::CaptureStderr();
+  {
+    Progress progress("frames", 2, style);
+    progress.Prepare("terrain");
+    progress.Prepare("mesh");
+    progress.Prepare("terrain");
+    for (int quarter = 1; quarter <= 4; ++quarter) progress.Part(0.25 * quarter);
+    progress.Advance();
+  }
+  return testing::internal::GetCapturedStderr();
+}
+
+TEST(Progress, ALongUnitTellsWhatIsPreparedAndHowMuchOfItIsDone) {
+  const std::string json = TextOfOneUnit(ProgressStyle::kJson);
+  EXPECT_THAT(json, HasSubstr("{\"label\":\"frames\",\"step\":\"mesh\",\"elapsed_s\":"));
+  EXPECT_THAT(json, HasSubstr("{\"label\":\"frames\",\"done\":0,\"part\":0.250,\"total\":2,"));
+  EXPECT_THAT(json, HasSubstr("{\"label\":\"frames\",\"done\":1,\"total\":2,"));
+  EXPECT_EQ(LinesOf(json), 2U + 5U) << "two steps, four parts, the whole";
+}
+
+TEST(Progress, StepsAreNamedOnceAndShortUnitsKeepToTheirLine) {
+  EXPECT_EQ(TextOfOneUnit(ProgressStyle::kPlain).substr(0, 68),
+            "frames: preparing terrain\nframes: preparing mesh\nframes: 50 % (1 of ");
+}
+
+TEST(Progress, PartsOfUnitsNeverGoBack) {
+  testing::internal::CaptureStderr();
+  {
+    Progress progress("frames", 1, ProgressStyle::kJson);
+    progress.Part(0.5);
+    progress.Part(0.25);  // from a thread that was held up
+    progress.Part(0.75);
+  }
+  EXPECT_EQ(LinesOf(testing::internal::GetCapturedStderr()), 2U);
+}
+
+TEST(Progress, QuietSaysNothing) { EXPECT_EQ(ProgressText(ProgressStyle::kQuiet, 100), ""); }
+
+TEST(Progress, AdvancesFromManyThreadsAreAllCounted) {
+  testing::internal::CaptureStderr();
+  {
+    Progress progress("frames", 400, ProgressStyle::kPlain);
+    std::vector<std::thread> threads;
+    for (int t = 0; t < 4; ++t) {
+      threads.emplace_back([&] {
+        for (int i = 0; i < 100; ++i) progress.Advance();
+      });
+    }
+    for (std::thread& thread : threads) thread.join();
+  }
+  const std::string text = testing::internal::GetCapturedStderr();
+  EXPECT_EQ(LinesOf(text), 20U);
+  EXPECT_THAT(text, HasSubstr("100 % (400 of 400)"));
+}
+
+TEST(Progress, DurationsReadAsPeopleSayThem) {
+  EXPECT_EQ(DurationText(0.2), "0s");
+  EXPECT_EQ(DurationText(59.7), "1m00s");
+  EXPECT_EQ(DurationText(200.0), "3m20s");
+  EXPECT_EQ(DurationText(7500.0), "2h05m");
+}
+
+}  // namespace
+}  // namespace alpenglow::lut

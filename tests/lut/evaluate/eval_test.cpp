@@ -1,0 +1,699 @@
+// SPDX-License-Identifier: MIT
+#include "lut/evaluate/eval.h"
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <sstream>
+
+#include "atmosphere/reference/path_tracer.h"
+#include "atmosphere/math/constants.h"
+#include "atmosphere/base/error.h"
+#include "lut/cli/program.h"
+#include "tests/fixtures/stored_cases.h"
+#include "tests/fixtures/temporary_folder.h"
+
+namespace alpenglow::lut {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::HasSubstr;
+
+constexpr const char* kHeader =
+    "id,quantity,altitude_m,view_zenith_deg,relative_azimuth_deg,sun_zenith_deg,distance_m\n";
+
+class Eval : public TemporaryFolder {
+ protected:
+  void SetUp() override {
+    TemporaryFolder::SetUp();
+    cases_ = folder_ / "cases.csv";
+    results_ = folder_ / "results.csv";
+  }
+
+  /// id and wavelength -> value and error.
+  using Results = std::map<std::pair<std::string, double>, Estimate>;
+
+  [[nodiscard]] Results Evaluate(const std::string& text, Evaluator& evaluator) const {
+    WriteText(cases_, text);
+    EvaluateFile(cases_, results_, evaluator, ProgressStyle::kQuiet);
+    std::istringstream lines(ContentOf(results_));
+    std::string line;
+    std::getline(lines, line);
+    EXPECT_EQ(line, "id,wavelength_nm,value,error");
+    Results results;
+    while (std::getline(lines, line)) {
+      const std::vector<std::string> cells = stored::Cells(line);
+      EXPECT_EQ(cells.size(), 4U);
+      results[{cells[0], std::stod(cells[1])}] = {std::stod(cells[2]), std::stod(cells[3])};
+    }
+    return results;
+  }
+
+  void ExpectRefused(const std::string& text, const std::string& reason) const {
+    WriteText(cases_, text);
+    const auto evaluator = MakeIntegralEvaluator(MediumPreset("bruneton2017"));
+    try {
+      EvaluateFile(cases_, results_, *evaluator, ProgressStyle::kQuiet);
+      ADD_FAILURE() << "was evaluated: " << text;
+    } catch (const InputError& error) {
+      EXPECT_THAT(error.what(), testing::StartsWith(cases_.string() + ":"));
+      EXPECT_THAT(error.what(), HasSubstr(reason));
+    }
+    EXPECT_FALSE(fs::exists(results_)) << "no output after a refusal";
+  }
+
+  fs::path cases_, results_;
+};
+
+/// One stored case as a line for eval.
+std::string LineOf(const stored::Row& row, const std::string& quantity) {
+  return row.at("id") + "," + quantity + "," + row.at("h_m") + "," + row.at("vza_deg") + "," +
+         row.at("raz_deg") + "," + row.at("sza_deg") + "," +
+         (row.at("end") == "dist" ? row.at("dist_m") : "") + "\n";
+}
+
+struct Comparison {
+  int compared = 0;
+  int honest = 0;  // the true error is at most the estimate
+  double worst = 0.0;
+  std::string worst_id;
+  double squares = 0.0;
+
+  void Add(const std::string& id, const Estimate& estimate, double truth, double truth_error) {
+    const double error = std::abs(estimate.value - truth);
+    const double relative = truth == 0.0 ? (error == 0.0 ? 0.0 : 1.0) : error / std::abs(truth);
+    ++compared;
+    squares += relative * relative;
+    if (error <= estimate.error + truth_error) ++honest;
+    if (relative > worst) {
+      worst = relative;
+      worst_id = id;
+    }
+  }
+};
+
+/// Evaluates every stored case of a file and compares one column of its results.
+class StoredEval : public Eval {
+ protected:
+  void SetUp() override {
+    Eval::SetUp();
+    if (!stored::Available()) GTEST_SKIP() << "no stored cases at " << stored::Folder();
+  }
+
+  template <typename Keep>
+  [[nodiscard]] Comparison Compare(const std::string& name, const std::string& quantity,
+                                   const std::string& column, const IntegralOptions& options,
+                                   const Keep& keep) const {
+    return CompareBy([&](const Medium& medium) { return MakeIntegralEvaluator(medium, options); },
+                     name, quantity, column, keep);
+  }
+
+  /// @param make  the evaluator of a medium.
+  template <typename Make, typename Keep>
+  [[nodiscard]] Comparison CompareBy(const Make& make, const std::string& name,
+                                     const std::string& quantity, const std::string& column,
+                                     const Keep& keep) const {
+    Comparison comparison;
+    const std::vector<stored::Row> rows = stored::Read(name + ".csv");
+    const std::vector<stored::Row> expected = stored::Read(name + "_results.csv");
+    for (const auto& [set, medium] : stored::Media()) {
+      std::string text = kHeader;
+      std::map<std::string, bool> wanted;
+      for (const stored::Row& row : rows) {
+        if (row.at("set") != set || !keep(row)) continue;
+        text += LineOf(row, quantity);
+        wanted[row.at("id")] = true;
+      }
+      if (wanted.empty()) continue;
+      const auto evaluator = make(medium);
+      const Results results = Evaluate(text, *evaluator);
+      for (const stored::Row& row : expected) {
+        if (wanted.count(row.at("id")) == 0) continue;
+        const double error = row.count("std_err") == 1 ? 2.0 * stored::Number(row, "std_err") : 0.0;
+        comparison.Add(row.at("id"), results.at({row.at("id"), stored::Number(row, "lambda_nm")}),
+                       stored::Number(row, column), error);
+      }
+    }
+    return comparison;
+  }
+};
+
+bool All(const stored::Row&) { return true; }
+
+constexpr IntegralOptions WithMaxError(double error) { return {.samples = 16, .max_error = error}; }
+
+TEST_F(StoredEval, TransmittanceAndOpticalDepthAreWithinTheirEstimates) {
+  for (const char* quantity : {"transmittance", "optical_depth"}) {
+    const char* column = quantity[0] == 't' ? "transmittance" : "tau";
+    const Comparison fast = Compare("transmittance", quantity, column, {}, All);
+    EXPECT_GE(fast.compared, 300);
+    EXPECT_LT(fast.worst, 1e-5) << fast.worst_id << ": closed forms, 4e-7 of the optical depth";
+    EXPECT_EQ(fast.honest, fast.compared);
+    const Comparison judged = Compare("transmittance", quantity, column, WithMaxError(1e-8), All);
+    EXPECT_LT(judged.worst, 1e-8 * 10.0)
+        << judged.worst_id << ": the judge, times optical depths to 10";
+    EXPECT_EQ(judged.honest, judged.compared);
+  }
+}
+
+TEST_F(StoredEval, SingleScatteringIsWithinItsEstimate) {
+  const Comparison standard = Compare("single", "single", "total", {}, All);
+  EXPECT_GE(standard.compared, 450);
+  EXPECT_LT(standard.worst, 1e-4) << standard.worst_id;
+  EXPECT_LT(std::sqrt(standard.squares / standard.compared), 2e-6);
+  EXPECT_GE(standard.honest, 0.99 * standard.compared)
+      << "a difference of two rules can be small by luck";
+  const Comparison few = Compare("single", "single", "total", {.samples = 6, .max_error = {}}, All);
+  EXPECT_GE(few.honest, 0.97 * few.compared);
+  EXPECT_GT(few.worst, standard.worst) << "fewer samples cost accuracy";
+  const Comparison air = Compare("single", "inscatter_single", "inscatter", {}, All);
+  EXPECT_LT(air.worst, 1e-4) << air.worst_id;
+}
+
+TEST_F(StoredEval, WantedErrorIsKept) {
+  for (const double wanted : {1e-2, 1e-4, 1e-5}) {
+    const Comparison comparison = Compare("single", "single", "total", WithMaxError(wanted), All);
+    EXPECT_LT(comparison.worst, wanted) << comparison.worst_id;
+  }
+  // The judge takes a tenth of a second for some; a handful is enough here.
+  const Comparison judged =
+      Compare("single", "single", "total", WithMaxError(1e-7),
+              [](const stored::Row& row) { return row.at("tag") == "near the horizon"; });
+  EXPECT_GE(judged.compared, 30);
+  EXPECT_LT(judged.worst, 1e-7) << judged.worst_id;
+}
+
+TEST_F(StoredEval, LightOfAllOrdersAgreesWithPathTracing) {
+  const Comparison total = Compare("multiple", "total", "total", {}, [](const stored::Row& row) {
+    return row.at("set") == "earth" && row.at("tag") == "day";
+  });
+  EXPECT_GE(total.compared, 9);
+  EXPECT_LT(std::sqrt(total.squares / total.compared), 4e-3) << "half of it noise of the paths";
+  EXPECT_GE(total.honest, 0.9 * total.compared);
+  const Comparison sky = Compare(
+      "irradiance", "irradiance_sky", "irradiance", {},
+      [](const stored::Row& row) { return row.at("set") == "earth" && row.at("tag") == "ground"; });
+  EXPECT_GE(sky.compared, 6);
+  EXPECT_LT(sky.worst, 0.05) << "6 degrees after sunset; by day 1e-3";
+  EXPECT_GE(sky.honest, 0.8 * sky.compared);
+}
+
+TEST_F(StoredEval, ErrorsOfLightOfAllOrdersAreTrueInEveryKindOfStoredAir) {
+  const Comparison total = Compare("multiple", "total", "total", {}, All);
+  EXPECT_GE(total.compared, 120);
+  EXPECT_GE(total.honest, 0.95 * total.compared) << "the paths' two standard errors aside";
+}
+
+/// A kind of air that light does not leave easily, or only just beside the sun.
+struct HardAir {
+  const char* name;
+  Medium medium;
+  /// Radiances of kHardViews in every band, by paths, and their standard errors (skylut eval
+  /// --method path-trace, 60000 paths).
+  std::vector<std::vector<Estimate>> traced;
+};
+
+const std::array<ViewRay, 5> kHardViews{
+    RayFromAngles(2.0, 30.0, 60.0, 50.0), RayFromAngles(2.0, 80.0, 150.0, 60.0),
+    RayFromAngles(3000.0, 120.0, 20.0, 40.0), RayFromAngles(10e3, 85.0, 90.0, 70.0),
+    RayFromAngles(2.0, 60.0, 10.0, 65.0)};
+
+Medium WithAerosol(const std::vector<double>& depths, double scale_height_m, double albedo,
+                   double g) {
+  Medium medium = MediumPreset("earth", {450.0, 500.0, 550.0, 650.0});
+  medium.mie_scale_height_m = scale_height_m;
+  medium.mie_phase = {{.kind = PhaseKind::kHenyeyGreenstein, .g = g}};
+  for (std::size_t band = 0; band < depths.size(); ++band) {
+    medium.mie_extinction_per_m[band] = depths[band] / scale_height_m;
+    medium.mie_scattering_per_m[band] = albedo * medium.mie_extinction_per_m[band];
+  }
+  return medium;
+}
+
+std::vector<HardAir> HardAirs() {
+  Medium molecules = MediumPreset("bruneton2017");
+  for (std::size_t band = 0; band < 3; ++band) {
+    molecules.rayleigh_scattering_per_m[band] =
+        std::array{5.0, 2.0, 0.5}[band] / molecules.rayleigh_scale_height_m;
+    molecules.mie_scattering_per_m[band] = molecules.mie_extinction_per_m[band] = 0.0;
+  }
+  return {
+      {"haze",
+       WithAerosol({5.0, 3.0, 0.8, 0.5}, 1200.0, 0.95, 0.8),
+       {{{0.0789539, 0.00069}, {0.106456, 0.00049}, {0.0698606, 0.00013}, {0.0494575, 7.9e-05}},
+        {{0.0199114, 0.00043}, {0.0272168, 0.00045}, {0.0326819, 0.00028}, {0.0292122, 0.00032}},
+        {{0.0917973, 0.00082}, {0.08784, 0.00061}, {0.0543703, 0.00035}, {0.0483371, 0.00034}},
+        {{0.0417931, 0.00013}, {0.0281019, 8.1e-05}, {0.0175598, 6.1e-05}, {0.00930862, 4.4e-05}},
+        {{0.0374573, 0.00046}, {0.113874, 0.00068}, {0.568526, 0.00056}, {0.637439, 0.00037}}}},
+      {"molecules",
+       molecules,
+       {{{0.0518765, 0.00036}, {0.0758721, 0.0002}, {0.0479628, 7.6e-05}},
+        {{0.0201159, 0.00023}, {0.0373392, 0.00019}, {0.0813628, 0.00015}},
+        {{0.0765147, 0.00045}, {0.0612113, 0.00021}, {0.0370391, 7.3e-05}},
+        {{0.0594757, 0.00026}, {0.0688681, 0.00015}, {0.0641444, 0.00011}},
+        {{0.0221363, 0.0002}, {0.0424998, 0.00017}, {0.0652499, 0.0001}}}},
+      {"dust",
+       MediumPreset("mars", {450.0, 650.0}),
+       {{{0.0220467, 3.8e-05}, {0.0415077, 0.00012}},
+        {{0.022544, 8.2e-05}, {0.0509989, 0.00025}},
+        {{0.0172254, 0.00012}, {0.0589924, 0.00029}},
+        {{0.0244633, 5.5e-05}, {0.0497159, 0.0002}},
+        {{0.323481, 0.00096}, {0.472953, 0.0011}}}}};
+}
+
+// Two standard errors of the paths, 0.3 to 4 %, count beside the estimate.
+TEST_F(Eval, ErrorsOfLightOfAllOrdersAreTrueInHazeDustAndThickAir) {
+  Comparison all;
+  std::vector<double> shares;
+  for (const HardAir& air : HardAirs()) {
+    Comparison here;
+    const auto evaluator = MakeIntegralEvaluator(air.medium);
+    const Case prepared{"", 0, Quantity::kTotal, {}};
+    evaluator->Prepare({&prepared, 1});
+    for (std::size_t view = 0; view < kHardViews.size(); ++view) {
+      const Estimates found = evaluator->Evaluate({"", 0, Quantity::kTotal, kHardViews[view]});
+      for (std::size_t band = 0; band < found.size(); ++band) {
+        const Estimate& truth = air.traced[view][band];
+        here.Add(air.name, found[band], truth.value, 2.0 * truth.error);
+        shares.push_back(found[band].error / found[band].value);
+      }
+    }
+    EXPECT_GE(here.honest, 0.9 * here.compared) << air.name;
+    all.compared += here.compared;
+    all.honest += here.honest;
+  }
+  EXPECT_GE(all.honest, 0.95 * all.compared);
+  std::nth_element(shares.begin(), shares.begin() + shares.size() / 2, shares.end());
+  EXPECT_LT(shares[shares.size() / 2], 0.15) << "and are of use: the true errors are 4 % (rms)";
+}
+
+TEST_F(Eval, LightOfAllOrdersAgreesWithPathsOverTheSmallestAndTheLargestPlanet) {
+  for (const double radius_m : {25.0 * 8000.0, 1e8}) {
+    Medium medium = MediumPreset("bruneton2017");
+    medium.planet_radius_m = radius_m;
+    const auto evaluator = MakeIntegralEvaluator(medium);
+    const Case prepared{"", 0, Quantity::kTotal, {}};
+    evaluator->Prepare({&prepared, 1});
+    for (const ViewRay& ray :
+         {RayFromAngles(2.0, 40.0, 60.0, 30.0), RayFromAngles(2.0, 85.0, 100.0, 80.0),
+          RayFromAngles(2000.0, 110.0, 30.0, 60.0)}) {
+      const auto truth =
+          judge::TraceRadiance(medium, ray, {.max_paths = 20000, .relative_error = 2e-3});
+      const Estimates found = evaluator->Evaluate({"", 0, Quantity::kTotal, ray});
+      for (std::size_t band = 0; band < found.size(); ++band) {
+        EXPECT_NEAR(found[band].value, truth.total[band],
+                    4.0 * truth.standard_error[band] + 0.005 * truth.total[band])
+            << radius_m << ": four standard errors and twice the rms error over the earth";
+      }
+    }
+  }
+}
+
+std::unique_ptr<Evaluator> StandardTables(const Medium& medium) {
+  const TableQuality quality = TableQualityFromName("standard");
+  return MakeTableEvaluator(
+      {.medium = medium,
+       .transmittance = TransmittanceTable(medium, quality.transmittance),
+       .single_scattering =
+           ScatteringTable(medium, {.size = quality.single_scattering, .lowest_mu_s = {}}),
+       .multiple_scattering = DiffuseLight(medium, quality.multiple_scattering),
+       .ray_nodes = quality.ray_nodes});
+}
+
+// What skylut build --max-error makes of a percent:
+// moments, and rays integrated where they are asked for.
+std::unique_ptr<Evaluator> MomentsAlone(const Medium& medium) {
+  const TableQuality quality = TableQualityFromName("standard");
+  return MakeTableEvaluator(
+      {.medium = medium,
+       .transmittance = {},
+       .single_scattering = {},
+       .multiple_scattering = DiffuseLight(medium, quality.multiple_scattering),
+       .ray_nodes = quality.ray_nodes});
+}
+
+struct StoredKind {
+  const char *name, *quantity, *column, *tag;
+  double rms;
+};
+
+TEST_F(StoredEval, TablesAgreeWithEveryKindOfCaseAndKnowHowFarTheyAre) {
+  constexpr StoredKind kKinds[] = {
+      {"transmittance", "transmittance", "transmittance", "", 5e-3},  // to optical depths of 20
+      {"single", "single", "total", "day", 5e-4},
+      {"multiple", "total", "total", "day", 1e-3},
+      {"irradiance", "irradiance_sky", "irradiance", "ground", 6e-3},
+      // Far from the glow the stored single scattering is coarse: a tenth.
+      {"multiple", "total", "total", "twilight", 7e-2}};
+  for (const StoredKind& kind : kKinds) {
+    SCOPED_TRACE(fmt::format("{} {}", kind.quantity, kind.tag));
+    const auto keep = [&](const stored::Row& row) {
+      return row.at("set") == "earth" && (kind.tag[0] == '\0' || row.at("tag") == kind.tag);
+    };
+    const Comparison tables =
+        CompareBy(StandardTables, kind.name, kind.quantity, kind.column, keep);
+    EXPECT_GE(tables.compared, 6);
+    EXPECT_LT(std::sqrt(tables.squares / tables.compared), kind.rms) << tables.worst_id;
+    EXPECT_EQ(tables.honest, tables.compared) << "estimates of the error hold";
+  }
+}
+
+TEST_F(StoredEval, MomentsAndIntegratedRaysAgreeWithPathsInTwilightToo) {
+  constexpr StoredKind kKinds[] = {{"single", "single", "total", "twilight", 1e-3},
+                                   {"multiple", "total", "total", "day", 1e-3},
+                                   {"multiple", "total", "total", "twilight", 3e-3}};
+  for (const StoredKind& kind : kKinds) {
+    const Comparison tables =
+        CompareBy(MomentsAlone, kind.name, kind.quantity, kind.column, [&](const stored::Row& row) {
+          return row.at("set") == "earth" && row.at("tag") == kind.tag;
+        });
+    EXPECT_GE(tables.compared, 9);
+    EXPECT_LT(std::sqrt(tables.squares / tables.compared), kind.rms)
+        << kind.quantity << ' ' << kind.tag << ' ' << tables.worst_id;
+  }
+}
+
+TEST_F(Eval, StokesParametersAreThoseOfThePathsOnBothSidesOfTheSun) {
+  const Medium medium = InPolarisedLight(MediumPreset("bruneton2017"), "bruneton2017");
+  const auto integral = MakeIntegralEvaluator(medium);
+  const auto paths = MakePathTraceEvaluator(medium, {.max_error = 0.005, .max_paths = 1U << 14U});
+  std::string text = kHeader;
+  for (const char* quantity : {"stokes_q", "stokes_u", "total"}) {
+    text += fmt::format("{0}left,{0},0,60,70,50,\n{0}right,{0},0,60,-70,50,\n", quantity);
+    text += fmt::format("{0}up,{0},0,0,30,50,\n", quantity);
+  }
+  Results fast = Evaluate(text, *integral), slow = Evaluate(text, *paths);
+  for (const double band : {440.0, 550.0, 680.0}) {
+    for (const char* place : {"left", "right", "up"}) {
+      const double total = fast.at({fmt::format("total{}", place), band}).value;
+      for (const char* quantity : {"stokes_q", "stokes_u", "total"}) {
+        const std::string id = fmt::format("{}{}", quantity, place);
+        // Four standard errors, and the bound of 0.3 % that polarised light by day has.
+        EXPECT_NEAR(fast.at({id, band}).value, slow.at({id, band}).value,
+                    4.0 * slow.at({id, band}).error + 0.003 * total)
+            << id << " " << band;
+      }
+    }
+    const double left = fast.at({"stokes_uleft", band}).value;
+    EXPECT_EQ(fast.at({"stokes_uright", band}).value, -left);
+    EXPECT_GT(std::abs(left), 0.05 * fast.at({"totalleft", band}).value);
+    const double q = fast.at({"stokes_qup", band}).value, u = fast.at({"stokes_uup", band}).value;
+    EXPECT_NEAR(u / q, std::tan(60.0 * kRadiansPerDegree), 1e-6)
+        << "the picture's upper edge has turned by 30 degrees";
+  }
+}
+
+TEST_F(Eval, ScalarLightHasNoStokesParameters) {
+  for (const char* quantity : {"stokes_q", "stokes_u"}) {
+    ExpectRefused(std::string(kHeader) + "a," + quantity + ",0,60,70,50,\n",
+                  "needs polarised light");
+  }
+}
+
+TEST_F(Eval, IrradianceOfTheSunIsItsHeightTimesTheTransmittance) {
+  const auto evaluator = MakeIntegralEvaluator(MediumPreset("bruneton2017"));
+  const Results results = Evaluate(std::string(kHeader) +
+                                       "E,irradiance_sun,0,0,0,60,\n"
+                                       "T,transmittance,0,60,0,60,\n"
+                                       "N,irradiance_sun,0,0,0,91,\n",
+                                   *evaluator);
+  EXPECT_NEAR(results.at({"E", 550.0}).value, 0.5 * results.at({"T", 550.0}).value, 1e-12);
+  EXPECT_EQ(results.at({"N", 550.0}).value, 0.0) << "the sun is below the plane";
+}
+
+TEST_F(Eval, EdgesOfTheDefinitionsAreKept) {
+  const auto evaluator = MakeIntegralEvaluator(MediumPreset("bruneton2017"));
+  const Results results = Evaluate(std::string(kHeader) +
+                                       "along,single,0,90,0,45,\n"
+                                       "feet,single,0,91,0,45,\n"
+                                       "short,single,100,120,0,45,50\n"
+                                       "zero,transmittance,100,120,0,45,0\n"
+                                       "space,inscatter_single,4e5,20,0,45,\n"
+                                       "dark,inscatter_single,0,20,0,150,\n",
+                                   *evaluator);
+  EXPECT_GT(results.at({"along", 550.0}).value, 0.05) << "horizontal at altitude 0: sky";
+  EXPECT_NEAR(results.at({"feet", 550.0}).value, 0.0203, 0.002)
+      << "below the horizontal: only the ground, albedo 0.1 / pi times the sun";
+  EXPECT_LT(results.at({"short", 550.0}).value, 0.002) << "a segment leaves out the ground";
+  EXPECT_EQ(results.at({"zero", 550.0}).value, 1.0);
+  EXPECT_EQ(results.at({"space", 550.0}).value, 0.0);
+  EXPECT_EQ(results.at({"dark", 550.0}).value, 0.0);
+}
+
+/// Tables of single scattering only.
+TableFolder SmallTables(const Medium& medium) {
+  return {.medium = medium,
+          .transmittance = TransmittanceTable(medium, {.mu = 128, .altitudes = 32}),
+          .single_scattering = ScatteringTable(
+              medium, {.size = {.nu = 4, .mu_s = 8, .mu = 16, .altitudes = 8}, .lowest_mu_s = {}}),
+          .multiple_scattering = {}};
+}
+
+constexpr DiffuseLightOptions kSmallLight{.altitudes = 12, .sun_angles = 24, .degree = 2};
+
+TEST_F(Eval, ADistanceThatReachesTheGroundAndBeyondLeavesItsLightOut) {
+  const Medium medium = MediumPreset("bruneton2017");
+  std::string text = kHeader;
+  for (const char* quantity : {"single", "inscatter_single", "total"}) {
+    for (const char* distance : {"", "999.999", "1000", "1001", "1e9"}) {
+      text += fmt::format("{}-{},{},1000,180,0,40,{}\n", quantity, distance, quantity, distance);
+    }
+  }
+  const auto expect = [&](Evaluator& evaluator, double tolerance) {
+    const Results results = Evaluate(text, evaluator);
+    for (const std::string quantity : {"single", "inscatter_single", "total"}) {
+      const double air = results.at({quantity + "-999.999", 550.0}).value;
+      for (const char* distance : {"-1000", "-1001", "-1e9"}) {
+        EXPECT_NEAR(results.at({quantity + distance, 550.0}).value, air, tolerance * air)
+            << quantity << distance;
+      }
+      if (quantity == "inscatter_single") continue;
+      EXPECT_GT(results.at({quantity + "-", 550.0}).value, 2.0 * air)
+          << quantity << ": without a distance, the ground's light (0.02) is most of it";
+    }
+  };
+  const auto integral = MakeIntegralEvaluator(medium);
+  // A millimetre of the kilometre: a relative 1e-6, and ten times that for the nodes' rounding.
+  expect(*integral, 1e-5);
+  const auto judged = MakeIntegralEvaluator(medium, WithMaxError(1e-7));
+  expect(*judged, 1e-5);
+  // A look-up in stored tables takes the difference of two whole rays: some percent of the first
+  // kilometre; the ground's light would be several times the value.
+  TableFolder folder = SmallTables(medium);
+  folder.multiple_scattering.emplace(medium, kSmallLight);
+  const auto tables = MakeTableEvaluator(std::move(folder));
+  expect(*tables, 0.05);
+  // Four standard errors of 0.3 %, of two values.
+  const auto paths = MakePathTraceEvaluator(medium, {.max_error = 0.003});
+  expect(*paths, 4.0 * 0.003 * std::sqrt(2.0));
+}
+
+TEST_F(Eval, TablesSayHowFarTheyAreFromTheIntegral) {
+  const Medium medium = MediumPreset("bruneton2017");
+  TableFolder folder = SmallTables(medium);
+  folder.multiple_scattering.emplace(medium, kSmallLight);
+  const auto tables = MakeTableEvaluator(std::move(folder));
+  const auto integral = MakeIntegralEvaluator(medium);
+  std::string text = kHeader;
+  for (const char* quantity : {"transmittance", "optical_depth", "single", "inscatter_single",
+                               "total", "irradiance_sun", "irradiance_sky"}) {
+    text += fmt::format("{}-sky,{},1500,70,30,50,\n", quantity, quantity);
+    text += fmt::format("{}-ground,{},1500,110,30,50,\n", quantity, quantity);
+    text += fmt::format("{}-segment,{},1500,80,30,50,30000\n", quantity, quantity);
+  }
+  const Results looked_up = Evaluate(text, *tables);
+  const Results integrated = Evaluate(text, *integral);
+  ASSERT_EQ(looked_up.size(), integrated.size());
+  for (const auto& [key, truth] : integrated) {
+    const Estimate& estimate = looked_up.at(key);
+    EXPECT_LE(std::abs(estimate.value - truth.value), estimate.error + 1e-15) << key.first;
+    EXPECT_LT(estimate.error, 0.3 * truth.value + 1e-15) << key.first << ": a coarse table";
+  }
+}
+
+TEST_F(Eval, WhatTablesDoNotHoldIsRefusedWithItsLine) {
+  const Medium medium = MediumPreset("bruneton2017");
+  const auto tables = MakeTableEvaluator(SmallTables(medium));
+  WriteText(cases_, std::string(kHeader) + "a,single,0,10,0,10,\nb,total,0,10,0,10,\n");
+  try {
+    EvaluateFile(cases_, results_, *tables, ProgressStyle::kQuiet);
+    FAIL() << "was evaluated";
+  } catch (const InputError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("cases.csv:3: "));
+  }
+  TableFolder mixed = SmallTables(medium);
+  mixed.multiple_scattering.emplace(MediumPreset("earth"), kSmallLight);
+  EXPECT_THROW(static_cast<void>(MakeTableEvaluator(std::move(mixed))), InputError);
+}
+
+TEST_F(Eval, WhatAFolderLeavesOutIsIntegrated) {
+  const Medium medium = MediumPreset("bruneton2017");
+  const auto tables = MakeTableEvaluator({.medium = medium,
+                                          .transmittance = {},
+                                          .single_scattering = {},
+                                          .multiple_scattering = DiffuseLight(medium),
+                                          .ray_nodes = 12});
+  const auto integral = MakeIntegralEvaluator(medium);
+  std::string text = kHeader;
+  for (const char* quantity : {"transmittance", "optical_depth", "single", "inscatter_single",
+                               "total", "irradiance_sun", "irradiance_sky"}) {
+    text += fmt::format("{0}-sky,{0},1500,70,30,50,\n{0}-ground,{0},1500,110,30,50,\n", quantity);
+  }
+  const Results looked_up = Evaluate(text, *tables);
+  for (const auto& [key, truth] : Evaluate(text, *integral)) {
+    EXPECT_NEAR(looked_up.at(key).value, truth.value, 1e-3 * truth.value)
+        << key.first << ": twelve nodes on air whose ozone bends";
+  }
+}
+
+TEST_F(Eval, ColumnsComeInAnyOrderAndLinesEndAsTheyLike) {
+  const auto evaluator = MakeIntegralEvaluator(MediumPreset("bruneton2017"));
+  const Results results = Evaluate(
+      "\xEF\xBB\xBF"
+      "sun_zenith_deg,distance_m,quantity,id,view_zenith_deg,altitude_m,relative_azimuth_deg\r\n"
+      "50, ,transmittance, a b ,60,100,0\r\n"
+      "50,,transmittance,c,60,100,0",
+      *evaluator);
+  EXPECT_EQ(results.size(), 6U);
+  EXPECT_EQ(results.at({"a b", 440.0}).value, results.at({"c", 440.0}).value);
+}
+
+// Hard case 43.
+TEST_F(Eval, OrderOfResultsIsThatOfCasesForAnyNumberOfThreads) {
+  std::string text = kHeader;
+  for (int i = 0; i < 9000; ++i) {
+    text += fmt::format("{},transmittance,{},{},0,30,\n", i, i % 1000, i % 90);
+  }
+  WriteText(cases_, text);
+  const auto evaluator = MakeIntegralEvaluator(MediumPreset("bruneton2017"));
+  std::vector<std::string> contents;
+  for (const int threads : {1, 2, 8}) {
+    const ThreadLimit limit(threads);
+    EvaluateFile(cases_, results_, *evaluator, ProgressStyle::kQuiet);
+    contents.push_back(ContentOf(results_));
+  }
+  EXPECT_EQ(contents[1], contents[0]);
+  EXPECT_EQ(contents[2], contents[0]);
+  const std::vector<std::string> lines = [&] {
+    std::istringstream stream(contents[0]);
+    std::vector<std::string> all;
+    for (std::string line; std::getline(stream, line);) all.push_back(line);
+    return all;
+  }();
+  ASSERT_EQ(lines.size(), 1U + 3U * 9000U);
+  EXPECT_THAT(lines[1 + 3 * 5000], testing::StartsWith("5000,440,"));
+}
+
+TEST_F(Eval, BadCaseFilesAreRefusedWithTheirLine) {
+  const std::string header = kHeader;
+  ExpectRefused("", "is empty");
+  ExpectRefused(header, "has no lines");
+  ExpectRefused("id,quantity,altitude_m,view_zenith_deg,relative_azimuth_deg,sun_zenith_deg\n",
+                ":1: column distance_m is missing");
+  ExpectRefused(
+      "id,quantity,altitude_m,view_zenith_deg,relative_azimuth_deg,sun_zenith_deg,"
+      "distance_m,tag\n",
+      ":1: column \"tag\" is unknown");
+  ExpectRefused(
+      "id,id,quantity,altitude_m,view_zenith_deg,relative_azimuth_deg,sun_zenith_deg,"
+      "distance_m\n",
+      ":1: column id twice");
+  const std::string good = "a,transmittance,0,60,0,30,\n";
+  ExpectRefused(header + good + "b,transmittance,0,60,0,30\n", ":3: has 6 fields");
+  ExpectRefused(header + good + "b,transmittance,0,60,0,30,,\n", ":3: has 8 fields");
+  ExpectRefused(header + good + "\n", ":3: has 1 fields");
+  ExpectRefused(header + good + ",transmittance,0,60,0,30,\n", ":3: id is empty");
+  ExpectRefused(header + "b,airlight,0,60,0,30,\n", "quantity airlight has columns of its own");
+  ExpectRefused(header + "b,luminance,0,60,0,30,\n", "quantity is \"luminance\"");
+  for (const char* number : {"abc", "", "1,5", "1e999", "nan", "inf", "0x10", "5m", "--3", "1e"}) {
+    ExpectRefused(header + good + "b,transmittance," + number + ",60,0,30,\n", ":3: ");
+  }
+  ExpectRefused(header + "b,transmittance,-6371000,60,0,30,\n", ":2: altitude_m");
+  ExpectRefused(header + "b,transmittance,0,180.5,0,30,\n", ":2: view_zenith_deg");
+  ExpectRefused(header + "b,transmittance,0,60,720,30,\n", ":2: relative_azimuth_deg");
+  ExpectRefused(header + "b,transmittance,0,60,0,-1,\n", ":2: sun_zenith_deg");
+  ExpectRefused(header + "b,transmittance,0,60,0,30,-5\n", ":2: distance_m");
+  ExpectRefused(std::string(100000, 'x'), ":1: is longer than");
+}
+
+TEST_F(Eval, AMissingFileIsAnInputErrorAndAMissingFolderAnOutputError) {
+  const auto evaluator = MakeIntegralEvaluator(MediumPreset("bruneton2017"));
+  EXPECT_THROW(EvaluateFile(cases_, results_, *evaluator, ProgressStyle::kQuiet), InputError);
+  EXPECT_THROW(EvaluateFile(folder_, results_, *evaluator, ProgressStyle::kQuiet), InputError);
+  WriteText(cases_, std::string(kHeader) + "a,transmittance,0,60,0,30,\n");
+  EXPECT_THROW(EvaluateFile(cases_, folder_ / "none" / "r.csv", *evaluator, ProgressStyle::kQuiet),
+               OutputError);
+}
+
+TEST(RelativeError, IsReadAsANumberOrAPercentage) {
+  EXPECT_DOUBLE_EQ(RelativeErrorFromText("0.2%").value_or(0.0), 0.002);
+  EXPECT_DOUBLE_EQ(RelativeErrorFromText("1e-6").value_or(0.0), 1e-6);
+  for (const char* text : {"", "%", "0", "2", "101%", "nan", "-1%", "0.1%%", "1e-9", "half"}) {
+    EXPECT_FALSE(RelativeErrorFromText(text).has_value()) << text;
+  }
+}
+
+TEST(IntegralEvaluator, OptionsOutOfRangeAreRefused) {
+  const Medium medium = MediumPreset("bruneton2017");
+  EXPECT_THROW(MakeIntegralEvaluator(medium, {.samples = 1, .max_error = {}}), InputError);
+  EXPECT_THROW(MakeIntegralEvaluator(medium, {.samples = 33, .max_error = {}}), InputError);
+  EXPECT_THROW(MakeIntegralEvaluator(medium, {.samples = 16, .max_error = 1e-12}), InputError);
+  std::vector<double> wavelengths;
+  for (int i = 0; i < 41; ++i) wavelengths.push_back(400.0 + 5.0 * i);
+  EXPECT_THROW(MakeIntegralEvaluator(MediumPreset("earth", wavelengths)), InputError);
+}
+
+TEST_F(Eval, PathsGiveScatteredLightWithOneStandardErrorAndNothingElse) {
+  const Medium medium = MediumPreset("bruneton2017");
+  const auto paths = MakePathTraceEvaluator(medium, {.max_error = 0.003});
+  const auto integral = MakeIntegralEvaluator(medium, WithMaxError(1e-6));
+  const std::string cases = std::string(kHeader) +
+                            "sky,single,2,80,40,70,\nground,single,1000,130,40,70,\n"
+                            "air,inscatter_single,1000,130,40,70,\n"
+                            "dusk,single,2,80,40,95,\nspace,single,400000,100,40,70,\n";
+  const Results traced = Evaluate(cases, *paths);
+  const Results judged = Evaluate(cases, *integral);
+  ASSERT_EQ(traced.size(), 15U);
+  for (const auto& [key, estimate] : traced) {
+    const double truth = judged.at(key).value;
+    EXPECT_NEAR(estimate.value, truth, 4.0 * estimate.error + 1e-5 * truth)
+        << key.first << ": four standard errors; six digits are written";
+    EXPECT_LE(estimate.error, 0.0031 * truth) << key.first;
+  }
+  const Results alone = Evaluate(std::string(kHeader) + "dusk,total,2,80,40,95,\n", *paths);
+  const Results among = Evaluate(
+      std::string(kHeader) + "noon,irradiance_sky,2,0,0,20,\ndusk,total,2,80,40,95,\n", *paths);
+  EXPECT_EQ(alone.at({"dusk", 550.0}).value, among.at({"dusk", 550.0}).value)
+      << "a value does not depend on the other cases";
+  for (const Quantity quantity :
+       {Quantity::kTransmittance, Quantity::kOpticalDepth, Quantity::kIrradianceSun}) {
+    EXPECT_TRUE(paths->Refusal(quantity).has_value());
+  }
+}
+
+TEST_F(StoredEval, PathsAgreeWithStoredSkyIrradiance) {
+  const auto media = stored::Media();
+  const auto results = stored::Results("irradiance_results.csv");
+  int compared = 0;
+  for (const stored::Row& row : stored::Read("irradiance.csv")) {
+    if (row.at("quantity") != "irradiance_down") continue;
+    const auto paths = MakePathTraceEvaluator(media.at(row.at("set")));
+    const Results traced = Evaluate(kHeader + LineOf(row, "irradiance_sky"), *paths);
+    for (const stored::Row& expected : results.at(row.at("id"))) {
+      const Estimate& estimate = traced.at({row.at("id"), stored::Number(expected, "lambda_nm")});
+      EXPECT_NEAR(estimate.value, stored::Number(expected, "irradiance"),
+                  4.0 * std::hypot(estimate.error, stored::Number(expected, "std_err")))
+          << row.at("id") << ": four standard errors";
+      ++compared;
+    }
+  }
+  EXPECT_EQ(compared, 12);
+}
+
+}  // namespace
+}  // namespace alpenglow::lut

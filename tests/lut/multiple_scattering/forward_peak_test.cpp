@@ -1,0 +1,167 @@
+// SPDX-License-Identifier: MIT
+// Light of all orders in hazy and dusty air, where aerosol throws it forward.
+#include "lut/multiple_scattering/forward_peak.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <vector>
+
+#include "atmosphere/math/constants.h"
+#include "lut/multiple_scattering/multiple_scattering.h"
+
+namespace alpenglow::lut {
+namespace {
+
+Medium Haze(double scattering_per_m, double extinction_per_m) {
+  Medium medium = MediumPreset("bruneton2017");
+  medium.mie_scattering_per_m.assign(3, scattering_per_m);
+  medium.mie_extinction_per_m.assign(3, extinction_per_m);
+  medium.mie_phase = {{.kind = PhaseKind::kHenyeyGreenstein, .g = 0.8}};
+  return medium;
+}
+
+/// A view into the air, degrees and metres, and the radiance of paths in every band
+/// (skylut eval --method path-trace --max-error 0.25%).
+struct Traced {
+  double altitude_m, zenith_deg, azimuth_deg, sun_zenith_deg, length_m;
+  std::vector<double> radiance;
+};
+constexpr double kToSpace_m = 1e9;
+
+/// Relative errors of light of all orders.
+std::vector<double> ErrorsOf(const Medium& medium, const DiffuseLightOptions& options,
+                             const std::vector<Traced>& views) {
+  const DiffuseLight light(medium, options);
+  const AirIntegrator<float> air(medium);
+  std::vector<double> errors;
+  for (const Traced& view : views) {
+    ViewRay ray =
+        RayFromAngles(view.altitude_m, view.zenith_deg, view.azimuth_deg, view.sun_zenith_deg);
+    if (view.length_m < kToSpace_m) ray.length_m = view.length_m;
+    const auto samples = air.Sample(ray, {.nodes = 20, .split_ozone = true, .dark_samples = true});
+    const auto once = air.Inscatter(air.Scatter(samples), ray.nu);
+    const auto more = light.InscatterAlong(samples, ray.nu);
+    for (std::size_t band = 0; band < view.radiance.size(); ++band)
+      errors.push_back(static_cast<double>(once[band] + more[band]) / view.radiance[band] - 1.0);
+  }
+  return errors;
+}
+
+double Rms(const std::vector<double>& errors) {
+  double squares = 0.0;
+  for (const double error : errors) squares += error * error;
+  return std::sqrt(squares / static_cast<double>(errors.size()));
+}
+
+double Largest(const std::vector<double>& errors) {
+  double largest = 0.0;
+  for (const double error : errors) largest = std::max(largest, std::abs(error));
+  return largest;
+}
+
+// The usual options take seconds for thick air.
+DiffuseLightOptions WithFewSuns(DiffuseLightOptions options) {
+  options.sun_angles = 20;
+  return options;
+}
+
+TEST(ForwardPeak, TakesNoAbsorptionAwayAndEndsThePhaseFunction) {
+  const Medium mars = MediumPreset("mars");
+  const AirWithoutPeak rest = WithoutPeak(mars, 8);
+  const std::size_t bands = mars.wavelengths_nm.size();
+  for (std::size_t band = 0; band < bands; ++band) {
+    const double absorbed = mars.mie_extinction_per_m[band] - mars.mie_scattering_per_m[band];
+    EXPECT_NEAR(rest.medium.mie_extinction_per_m[band] - rest.medium.mie_scattering_per_m[band],
+                absorbed, 1e-12 * mars.mie_extinction_per_m[band]);
+    EXPECT_NEAR(rest.chi[band], 1.0, 1e-12) << "what is left scatters all that it takes";
+    EXPECT_NEAR(rest.chi[9 * bands + band], 0.0, 1e-12) << "the first degree that is not kept";
+    EXPECT_GT(rest.share[band], 0.1) << "of dust";
+  }
+}
+
+TEST(ForwardPeak, OfAirWithoutAerosolIsNothing) {
+  const Medium clear = Haze(0.0, 0.0);
+  const AirIntegrator<float> air(clear);
+  const ViewRay ray = RayFromAngles(2.0, 50.0, 10.0, 60.0);
+  const auto samples = air.Sample(ray, {.nodes = 12, .dark_samples = true});
+  const Bands<float> light = ForwardPeak(clear, 6).Along(samples, ray.nu);
+  for (std::size_t band = 0; band < 3; ++band) EXPECT_EQ(light[band], 0.0F);
+}
+
+TEST(ForwardPeak, HazeAgreesWithPathsToHalfAPercent) {
+  const Medium haze = Haze(7.992e-5, 8.88e-5);  // optical depth 0.1, the stored set haze20mix
+  const std::vector<double> errors =
+      ErrorsOf(haze, OptionsFor(haze),
+               {{2.0, 81.6667, 36.0, 57.5, kToSpace_m, {0.09896458, 0.08325672, 0.07381091}},
+                {3000.0, 52.0, 72.0, 71.25, kToSpace_m, {0.02162225, 0.00907426, 0.004418556}},
+                {2.0, 82.8889, 144.0, 78.125, kToSpace_m, {0.04227244, 0.03291204, 0.02312036}},
+                {2.0, 80.0, 5.07718, 80.0, kToSpace_m, {0.262923, 0.4881752, 0.7311241}},
+                {2.0, 70.0, 0.0, 80.0, kToSpace_m, {0.1260689, 0.1947047, 0.2745973}},
+                {1500.0, 89.5, 10.0, 80.0, 20000.0, {0.1167570, 0.2060016, 0.3049198}}});
+  EXPECT_LT(Rms(errors), 5e-3);
+  EXPECT_LT(Largest(errors), 2e-2);
+}
+
+TEST(ForwardPeak, HazeOfOpticalDepthOneAgreesWithPathsToTwoPercent) {
+  const Medium haze = Haze(7.5e-4, 8.333e-4);
+  const std::vector<double> errors =
+      ErrorsOf(haze, WithFewSuns(OptionsFor(haze)),
+               {{2.0, 81.6667, 36.0, 57.5, kToSpace_m, {0.1010557, 0.1168100, 0.1310469}},
+                {3000.0, 52.0, 72.0, 71.25, kToSpace_m, {0.02492177, 0.01273711, 0.008352072}},
+                {2.0, 80.0, 5.07718, 80.0, kToSpace_m, {0.04870897, 0.0826584, 0.1212603}},
+                {2.0, 70.0, 0.0, 80.0, kToSpace_m, {0.07335502, 0.1183075, 0.1695171}},
+                {2.0, 88.0, 0.0, 75.0, 5000.0, {0.05511213, 0.08170906, 0.1076473}}});
+  EXPECT_LT(Rms(errors), 2e-2);
+}
+
+TEST(ForwardPeak, DustOfMarsAgreesWithPathsToTwoPercent) {
+  const Medium mars = MediumPreset("mars");
+  const std::vector<double> errors = ErrorsOf(
+      mars, WithFewSuns(OptionsFor(mars)),
+      {{2.0, 81.6667, 36.0, 57.5, kToSpace_m, {0.06230871, 0.08721707, 0.1025269, 0.1209562}},
+       {3000.0, 52.0, 72.0, 71.25, kToSpace_m, {0.01229776, 0.01729666, 0.02030115, 0.02400659}},
+       {2.0, 80.0, 5.07718, 80.0, kToSpace_m, {1.391229, 1.363444, 1.333030, 1.265028}},
+       {2.0, 70.0, 0.0, 80.0, kToSpace_m, {0.2709998, 0.3192811, 0.3431749, 0.3703000}},
+       {2.0, 88.0, 0.0, 75.0, 5000.0, {0.0419125, 0.0502959, 0.0546645, 0.0593626}}});
+  EXPECT_LT(Rms(errors), 2e-2);
+}
+
+TEST(ThickAir, MoleculesOfOpticalDepthFiveAgreeWithPathsToOnePercent) {
+  Medium molecules = Haze(0.0, 0.0);
+  for (std::size_t band = 0; band < 3; ++band) {
+    molecules.rayleigh_scattering_per_m[band] =
+        std::array{0.5, 2.0, 5.0}[band] / molecules.rayleigh_scale_height_m;
+  }
+  const std::vector<double> errors =
+      ErrorsOf(molecules, WithFewSuns(OptionsFor(molecules)),
+               {{2.0, 81.6667, 36.0, 57.5, kToSpace_m, {0.09159932, 0.04034134, 0.02075372}},
+                {3000.0, 52.0, 72.0, 71.25, kToSpace_m, {0.03382878, 0.04194107, 0.03368006}},
+                {2.0, 82.8889, 144.0, 78.125, kToSpace_m, {0.03936788, 0.009450284, 0.005408709}},
+                {2.0, 20.0, 90.0, 30.0, kToSpace_m, {0.05234051, 0.1042153, 0.08256036}},
+                {10000.0, 120.0, 60.0, 60.0, 30000.0, {0.04138997, 0.07301351, 0.08362427}},
+                {2.0, 70.0, 0.0, 80.0, kToSpace_m, {0.0395654, 0.0103269, 0.005680471}}});
+  EXPECT_LT(Rms(errors), 1e-2);
+}
+
+TEST(ForwardPeak, ComesBackFromStoredValues) {
+  const Medium haze = Haze(7.992e-5, 8.88e-5);
+  const DiffuseLightOptions few{.altitudes = 8,
+                                .sun_angles = 12,
+                                .degree = 4,
+                                .zenith_nodes = 6,
+                                .azimuth_nodes = 6,
+                                .ray_nodes = 6,
+                                .forward_peak = true};
+  const DiffuseLight light(haze, few);
+  const DiffuseLight back(haze, few, {light.values(), light.orders(), light.converged()});
+  const AirIntegrator<float> air(haze);
+  const ViewRay ray = RayFromAngles(2.0, 60.0, 20.0, 70.0);
+  const auto samples = air.Sample(ray, {.nodes = 12, .dark_samples = true});
+  EXPECT_EQ(light.InscatterAlong(samples, ray.nu), back.InscatterAlong(samples, ray.nu));
+}
+
+}  // namespace
+}  // namespace alpenglow::lut

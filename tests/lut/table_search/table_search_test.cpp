@@ -1,0 +1,145 @@
+// SPDX-License-Identifier: MIT
+#include "lut/table_search/table_search.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "atmosphere/base/error.h"
+#include "tests/fixtures/sanitized.h"
+#include "tests/fixtures/temporary_folder.h"
+
+namespace alpenglow::lut {
+namespace {
+
+namespace fs = std::filesystem;
+
+const DiffuseLight& Small() {
+  static const DiffuseLight light(MediumPreset("bruneton2017"), {.altitudes = 9,
+                                                                 .sun_angles = 13,
+                                                                 .degree = 4,
+                                                                 .zenith_nodes = 6,
+                                                                 .azimuth_nodes = 4,
+                                                                 .ray_nodes = 6});
+  return light;
+}
+
+/// A solution that is good enough to choose from, and quick: its own errors do not count.
+const DiffuseLight& Quick() {
+  static const DiffuseLight light(MediumPreset("bruneton2017"), {});
+  return light;
+}
+
+/// The finest solution of the earth; it has one band under the sanitizers.
+const DiffuseLight& EarthFinest() {
+  static const DiffuseLight light = FinestDiffuseLight(
+      tests::kSanitized ? MediumPreset("earth", {550.0}) : MediumPreset("earth"));
+  return light;
+}
+
+TEST(TableSearch, ResamplingKeepsTheNodesThatStay) {
+  const DiffuseLight half = Resampled(Small(), 5, 7, 2);
+  EXPECT_EQ(half.values().size(), 5U * 7U * 7U * 3U) << "six moments and the irradiance";
+  const double v = 4.0 / 12.0;  // the fifth of 13 nodes, the third of 7
+  const std::vector<float> before = Small().ValuesAt(0.25, v), after = half.ValuesAt(0.25, v);
+  for (std::size_t i = 0; i < 18; ++i) EXPECT_NEAR(after[i], before[i], 1e-6F) << i;
+  for (std::size_t band = 0; band < 3; ++band) {
+    EXPECT_NEAR(after[18 + band], before[45 + band], 1e-6F) << "irradiance comes last";
+  }
+}
+
+TEST(TableSearch, ResamplingRefusesADegreeThatTheLightLacks) {
+  EXPECT_THROW(static_cast<void>(Resampled(Small(), 5, 7, 6)), InternalError) << "it has degree 4";
+}
+
+TEST(TableSearch, ChoosesNoDegreeThatTheFinestLightLacks) {
+  const TableChoice choice = ChooseTables(
+      Small(), {.max_error = 0.5, .views_of_a_kind = 4, .path_traced_views_of_a_kind = 0});
+  EXPECT_LE(choice.tables.multiple_scattering->options().degree, Small().options().degree);
+  for (const float value : choice.tables.multiple_scattering->values())
+    ASSERT_TRUE(std::isfinite(value));
+}
+
+TEST(TableSearch, AnErrorThatNothingReachesIsRefusedWithWhatIsBest) {
+  try {
+    static_cast<void>(ChooseTables(
+        Quick(), {.max_error = 1e-5, .views_of_a_kind = 8, .path_traced_views_of_a_kind = 0}));
+    FAIL() << "tables of floats on a grid reach 0.001 %";
+  } catch (const InputError& error) {
+    EXPECT_THAT(error.what(), testing::HasSubstr("max-error 0.001 %"));
+    EXPECT_THAT(error.what(), testing::HasSubstr("nodes along a ray leave"));
+  }
+  EXPECT_THROW(static_cast<void>(ChooseTables(Small(), {.max_error = 0.0})), InputError);
+}
+
+/// The promise: other views than those that the search saw are under the bound, too, held against
+/// the judge and, few of them, against paths.
+class ChosenTables : public TemporaryFolder {
+ protected:
+  static constexpr std::size_t kUnseen = 100000;
+  static constexpr std::size_t kUnseenViews = tests::ScaledDown<std::size_t>(200, 80);
+  /// The share of the bound that an rms may have: 80 views tell an rms to a twelfth.
+  static constexpr double kSampling = tests::ScaledDown(1.0, 1.0 + 1.0 / 12.0);
+  static TableSearch Search(double max_error, TablesWanted wanted = TablesWanted::kSmallest) {
+    return {.max_error = max_error,
+            .views_of_a_kind = tests::ScaledDown<std::size_t>(160, 80),
+            .path_traced_views_of_a_kind = tests::ScaledDown<std::size_t>(6, 1),
+            .wanted = wanted};
+  }
+};
+class SmallestTables : public ChosenTables, public testing::WithParamInterface<double> {};
+
+TEST_P(SmallestTables, AreUnderTheBoundOnViewsThatTheSearchDidNotSee) {
+  const double max_error = GetParam();
+  const Medium& medium = EarthFinest().medium();
+  const TableChoice choice = ChooseTables(EarthFinest(), Search(max_error));
+  WriteTables(choice, folder_);
+  const TableLookup stored(ReadTableFolder(folder_, MediumHash(medium)));
+  EXPECT_EQ(stored.tables().ray_nodes, choice.tables.ray_nodes);
+  EXPECT_FALSE(fs::exists(folder_ / kSingleScatteringFileName));
+  const JudgedViews unseen(medium, EarthFinest(), kUnseenViews, kUnseen);
+  for (const TableChoice::Measured& measured : choice.measured) {
+    EXPECT_LT(measured.errors.rms, max_error);
+    EXPECT_LT(measured.paths.Unexplained(), max_error);
+    const ViewErrors errors = unseen.ErrorsOf(stored, measured.kind);
+    EXPECT_LT(std::hypot(errors.rms, measured.paths.Unexplained()), kSampling * max_error)
+        << NameOf(measured.kind) << ":\n"
+        << ChoiceText(choice, max_error);
+  }
+  RecordProperty("bytes", static_cast<int>(choice.bytes));
+}
+
+INSTANTIATE_TEST_SUITE_P(Errors, SmallestTables,
+                         testing::Values(0.02, tests::ScaledDown(0.005, 0.04)));
+
+TEST_F(ChosenTables, AllThreeTogetherAreUnderTheBoundOnUnseenViewsToo) {
+  constexpr double kMaxError = 0.02;
+  const TableChoice choice = ChooseTables(EarthFinest(), Search(kMaxError, TablesWanted::kAll));
+  WriteTables(choice, folder_);
+  const TableLookup stored(ReadTableFolder(folder_));
+  ASSERT_TRUE(stored.tables().transmittance && stored.tables().single_scattering);
+  EXPECT_EQ(stored.tables().single_scattering->texels(), choice.tables.single_scattering->texels());
+  const JudgedViews unseen(EarthFinest().medium(), EarthFinest(), kUnseenViews, kUnseen);
+  for (const ViewKind kind : kViewKinds) {
+    EXPECT_LT(unseen.ErrorsOf(stored, kind).rms, kSampling * kMaxError)
+        << NameOf(kind) << ":\n"
+        << ChoiceText(choice, kMaxError);
+  }
+}
+
+TEST(TableSearch, ASmallerErrorTakesMoreMemory) {
+  const TableSearch coarse{
+      .max_error = 0.05, .views_of_a_kind = 32, .path_traced_views_of_a_kind = 0};
+  const TableSearch fine{
+      .max_error = 0.01, .views_of_a_kind = 32, .path_traced_views_of_a_kind = 0};
+  const TableChoice small = ChooseTables(Quick(), coarse), large = ChooseTables(Quick(), fine);
+  EXPECT_LT(small.bytes, large.bytes);
+  EXPECT_LE(small.tables.ray_nodes, large.tables.ray_nodes);
+  EXPECT_EQ(ChooseTables(Quick(), coarse).tables.multiple_scattering->values(),
+            small.tables.multiple_scattering->values())
+      << "the same search finds the same tables";
+}
+
+}  // namespace
+}  // namespace alpenglow::lut

@@ -1,0 +1,337 @@
+// SPDX-License-Identifier: MIT
+#include "lut/tables/scattering_table.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+#include "atmosphere/reference/judge.h"
+#include "atmosphere/base/error.h"
+#include "lut/cli/program.h"
+#include "tests/lut/tables/table_errors.h"
+
+namespace alpenglow::lut {
+namespace {
+
+constexpr ScatteringTableSize kStandard{.nu = 8, .mu_s = 32, .mu = 128, .altitudes = 32};
+constexpr ScatteringTableSize kTiny{.nu = 2, .mu_s = 4, .mu = 8, .altitudes = 4};
+
+constexpr ScatteringTableSize kSmall{.nu = 6, .mu_s = 12, .mu = 16, .altitudes = 8};
+
+// Built once a process: several tests look things up in them.
+const ScatteringTable& SmallTable() {
+  static const ScatteringTable table(MediumPreset("earth"), {.size = kSmall, .lowest_mu_s = {}});
+  return table;
+}
+const ScatteringTable& StandardTable() {
+  static const ScatteringTable table(MediumPreset("earth"), {.size = kStandard, .lowest_mu_s = {}});
+  return table;
+}
+
+const ScatteringTable& SmallAzimuthTable() {
+  static const ScatteringTable table(
+      MediumPreset("earth"), {.size = kSmall, .lowest_mu_s = {}, .axes = ScatteringAxes::kAzimuth});
+  return table;
+}
+
+TEST(ScatteringTable, LookupAtTexelsReturnsTheIntegralsOfTheirRays) {
+  const ScatteringTable& table = SmallTable();
+  const AirIntegrator<double> air(table.medium());
+  int compared = 0;
+  for (std::size_t altitude = 0; altitude < kSmall.altitudes; altitude += 2) {
+    for (std::size_t mu = 0; mu < kSmall.mu; mu += 3) {
+      for (std::size_t mu_s = 0; mu_s < kSmall.mu_s; mu_s += 2) {
+        for (std::size_t nu = 0; nu < kSmall.nu; nu += 3) {
+          const ViewRay ray = table.RayOfTexel(nu, mu_s, mu, altitude);
+          const auto truth = air.Scatter(air.Sample(ray, {.nodes = 16, .split_ozone = true}));
+          const float* texel =
+              &table
+                   .texels()[(((altitude * kSmall.mu + mu) * kSmall.nu + nu) * kSmall.mu_s + mu_s) *
+                             2 * air.bands()];
+          for (std::size_t band = 0; band < air.bands(); ++band) {
+            EXPECT_NEAR(texel[band], truth.rayleigh[band], 2e-4 * truth.rayleigh[band] + 1e-12)
+                << "a rounding of a grazing sunbeam's zenith cosine moves an optical depth of ten "
+                   "by 1e-4";
+            EXPECT_NEAR(texel[air.bands() + band], truth.mie[band], 2e-4 * truth.mie[band] + 1e-12);
+            ++compared;
+          }
+        }
+      }
+    }
+  }
+  EXPECT_GT(compared, 1000);
+}
+
+TEST(ScatteringTable, InterpolationIsExactAtTheNodes) {
+  const ScatteringTable& table = SmallTable();
+  const std::size_t bands = table.medium().wavelengths_nm.size();
+  int compared = 0;
+  for (std::size_t altitude = 1; altitude + 1 < kSmall.altitudes; altitude += 2) {
+    for (std::size_t mu = 1; mu < kSmall.mu; mu += 2) {
+      // At the horizon, the node is a nudge away from where the look-up takes the ray to be.
+      if (mu == kSmall.mu - 1) continue;
+      for (std::size_t mu_s = 0; mu_s < kSmall.mu_s; mu_s += 3) {
+        const ViewRay ray = table.RayOfTexel(2, mu_s, mu, altitude);
+        // Only where nu was not moved: elsewhere several texels hold the same ray.
+        if (std::abs(ray.nu - (2.0 * 2.0 / 5.0 - 1.0)) > 1e-15) continue;
+        const float* texel =
+            &table.texels()[(((altitude * kSmall.mu + mu) * kSmall.nu + 2) * kSmall.mu_s + mu_s) *
+                            2 * bands];
+        const ScatteredOnce<float> light = table.Lookup(ray);
+        ++compared;
+        for (std::size_t band = 0; band < bands; ++band) {
+          EXPECT_NEAR(light.rayleigh[band], texel[band], 1e-5F * texel[band] + 1e-12F)
+              << altitude << " " << mu << " " << mu_s;
+          EXPECT_NEAR(light.mie[band], texel[bands + band], 1e-5F * texel[bands + band] + 1e-12F);
+        }
+      }
+    }
+  }
+  EXPECT_GT(compared, 20);
+}
+
+struct Regime {
+  const char* name;
+  double highest_deg, lowest_deg;  // zenith angle of the sun
+  double relative_rms;             // bound, of the rms of the truth
+  double median;                   // bound, relative to each value
+};
+
+// Observers to 12 km, all directions; radiance with phase functions, all bands.
+void ExpectErrorsBelow(const ScatteringTable& table, const Regime& regime) {
+  const AirIntegrator<float> air(table.medium());
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> uniform(0.0, 1.0);
+  ErrorStatistics absolute, relative;
+  for (int i = 0; i < 150; ++i) {
+    const double u = uniform(random);
+    const double sun =
+        regime.highest_deg + (regime.lowest_deg - regime.highest_deg) * uniform(random);
+    const double view = 180.0 * uniform(random);
+    const ViewRay ray = RayFromAngles(12000.0 * u * u, view, 180.0 * uniform(random), sun);
+    const std::vector<double> truth = judge::SingleScatteringAlong(table.medium(), ray).inscatter;
+    const Bands<float> value = air.Inscatter(table.Lookup(ray), ray.nu);
+    for (std::size_t band = 0; band < value.count; ++band) {
+      absolute.Add(value[band], truth[band]);
+      if (truth[band] > 0.0) relative.Add(double{value[band]} / truth[band], 1.0);
+    }
+  }
+  EXPECT_LT(absolute.RelativeRms(), regime.relative_rms) << regime.name;
+  EXPECT_LT(relative.Quantile(0.5), regime.median) << regime.name;
+}
+
+TEST(ScatteringTable, ErrorAgainstTheJudgeIsBelowTheStatedBounds) {
+  for (const Regime& regime :
+       {Regime{"day", 0.0, 85.0, 0.01, 0.0025}, Regime{"sunset", 85.0, 90.0, 0.015, 0.008},
+        Regime{"civil twilight", 90.0, 96.0, 0.4, 0.15}}) {
+    ExpectErrorsBelow(StandardTable(), regime);
+  }
+}
+
+TEST(ScatteringTable, OnAzimuthsAndFourthRootsTwilightIsAsGoodAsDay) {
+  const ScatteringTable table(MediumPreset("earth"),
+                              {.size = {.nu = 8, .mu_s = 32, .mu = 64, .altitudes = 48},
+                               .lowest_mu_s = {},
+                               .axes = ScatteringAxes::kAzimuth});
+  EXPECT_LT(table.bytes(), StandardTable().bytes());
+  for (const Regime& regime :
+       {Regime{"day", 0.0, 85.0, 0.004, 0.0015}, Regime{"sunset", 85.0, 90.0, 0.005, 0.002},
+        Regime{"civil twilight", 90.0, 96.0, 0.008, 0.0045}}) {
+    ExpectErrorsBelow(table, regime);
+  }
+}
+
+TEST(ScatteringTable, OfAzimuthsIsExactAtTheNodesAndHoldsTheIntegrals) {
+  const ScatteringTable& table = SmallAzimuthTable();
+  const AirIntegrator<double> air(table.medium());
+  for (std::size_t altitude = 1; altitude + 1 < kSmall.altitudes; altitude += 2) {
+    for (std::size_t mu = 1; mu + 1 < kSmall.mu; mu += 2) {
+      for (std::size_t mu_s = 0; mu_s < kSmall.mu_s; mu_s += 3) {
+        for (std::size_t azimuth = 0; azimuth < kSmall.nu; ++azimuth) {
+          const ViewRay ray = table.RayOfTexel(azimuth, mu_s, mu, altitude);
+          const auto truth = air.Scatter(air.Sample(ray, {.nodes = 16, .split_ozone = true}));
+          const ScatteredOnce<float> light = table.Lookup(ray);
+          for (std::size_t band = 0; band < air.bands(); ++band) {
+            EXPECT_NEAR(light.rayleigh[band], truth.rayleigh[band],
+                        1e-3 * truth.rayleigh[band] + 1e-9)
+                << "the azimuth is known to a rounding of nu, near the sun its square root";
+            EXPECT_NEAR(light.mie[band], truth.mie[band], 1e-3 * truth.mie[band] + 1e-9);
+          }
+        }
+      }
+    }
+  }
+}
+
+// Hard case 23.
+TEST(ScatteringTable, OfAzimuthsIsNeverNegativeNeverNaN) {
+  std::mt19937 random(9);
+  std::uniform_real_distribution<double> uniform(0.0, 1.0);
+  for (int i = 0; i < 2000; ++i) {
+    const double u = uniform(random);
+    const ViewRay ray = RayFromAngles(150000.0 * u * u, 180.0 * uniform(random),
+                                      180.0 * uniform(random), 180.0 * uniform(random));
+    const ScatteredOnce<float> light = SmallAzimuthTable().Lookup(ray);
+    for (std::size_t band = 0; band < light.rayleigh.count; ++band) {
+      ASSERT_GE(light.rayleigh[band], 0.0F) << i;
+      ASSERT_LE(light.rayleigh[band], 1.0F) << i;
+      ASSERT_GE(light.mie[band], 0.0F) << i;
+      ASSERT_LE(light.mie[band], 1.0F) << i;
+    }
+  }
+  const ViewRay zenith{10.0, 1.0, 0.5, 0.5}, at_the_sun{10.0, 0.5, 0.5, 1.0};
+  EXPECT_GT(SmallAzimuthTable().Lookup(zenith).rayleigh[0], 0.0F);
+  EXPECT_GT(SmallAzimuthTable().Lookup(at_the_sun).mie[0], 0.0F);
+}
+
+// Hard case 11.
+TEST(ScatteringTable, SunInTheZenithIsRotationallySymmetric) {
+  const ScatteringTable& table = SmallTable();
+  for (const double zenith_deg : {10.0, 60.0, 89.0, 120.0}) {
+    const ViewRay first = RayFromAngles(1000.0, zenith_deg, 0.0, 0.0);
+    for (const double azimuth_deg : {37.0, 90.0, 180.0}) {
+      const ViewRay turned = RayFromAngles(1000.0, zenith_deg, azimuth_deg, 0.0);
+      const double same = table.Lookup(first).rayleigh[0];
+      EXPECT_NEAR(table.Lookup(turned).rayleigh[0], same, 1e-6 * same);
+    }
+  }
+}
+
+// Hard case 23.
+TEST(ScatteringTable, NeverNegativeNeverNaN) {
+  const ScatteringTable& table = SmallTable();
+  std::mt19937 random(4);
+  std::uniform_real_distribution<double> uniform(0.0, 1.0);
+  for (int i = 0; i < 20000; ++i) {
+    const double u = uniform(random);
+    ViewRay ray = RayFromAngles((i % 3 == 0 ? 1e6 : 1e5) * u * u - 500.0, 180.0 * uniform(random),
+                                360.0 * uniform(random), 180.0 * uniform(random));
+    if (i % 2 == 0) ray.length_m = 1e5 * uniform(random);
+    const ScatteredOnce<float> light = table.Lookup(ray);
+    for (std::size_t band = 0; band < light.rayleigh.count; ++band) {
+      ASSERT_GE(light.rayleigh[band], 0.0F) << i;  // NaN fails, too
+      ASSERT_GE(light.mie[band], 0.0F) << i;
+      ASSERT_LE(light.rayleigh[band], 1.0F) << i;
+      ASSERT_LE(light.mie[band], 1.0F) << i;
+    }
+  }
+}
+
+// Hard case 23.
+TEST(ScatteringTable, NightIsBlackBelowTheLowestUsefulSun) {
+  const ScatteringTable& table = SmallTable();
+  std::mt19937 random(5);
+  std::uniform_real_distribution<double> uniform(0.0, 1.0);
+  EXPECT_NEAR(table.lowest_mu_s(), std::cos(123.1 * 0.017453292519943295), 1e-3)
+      << "top at 120 km: the horizon dips 11.04 degrees";
+  for (int i = 0; i < 1000; ++i) {
+    const ViewRay ray = RayFromAngles(120000.0 * uniform(random), 180.0 * uniform(random),
+                                      180.0 * uniform(random), 123.2 + 50.0 * uniform(random));
+    EXPECT_EQ(table.Lookup(ray).rayleigh[0], 0.0F) << "no glow is left over";
+  }
+}
+
+// Hard case 6.
+TEST(ScatteringTable, ObserversAboveTheTopSeeWhatTheRaySeesWhereItEnters) {
+  const ScatteringTable& table = SmallTable();
+  EXPECT_EQ(table.Lookup(RayFromAngles(4e5, 60.0, 0.0, 30.0)).rayleigh[0], 0.0F) << "upwards";
+  EXPECT_EQ(table.Lookup(RayFromAngles(1e8, 120.0, 0.0, 30.0)).rayleigh[0], 0.0F) << "past it";
+  for (const double zenith_deg : {91.0, 100.0, 140.0, 180.0}) {
+    const ViewRay above = RayFromAngles(120000.0 + 1e-6, zenith_deg, 20.0, 40.0);
+    const ViewRay below = RayFromAngles(120000.0 - 1e-6, zenith_deg, 20.0, 40.0);
+    const double inside = table.Lookup(below).rayleigh[0];
+    EXPECT_NEAR(table.Lookup(above).rayleigh[0], inside, 1e-5 * inside) << zenith_deg;
+  }
+}
+
+TEST(ScatteringTable, ShortRaysToTheGroundAreRightFromAHandsBreadthUp) {
+  const ScatteringTable& table = StandardTable();
+  const AirIntegrator<double> air(table.medium());
+  for (const double altitude_m : {0.1, 1.7, 10.0, 50.0}) {
+    const ViewRay ray = RayFromAngles(altitude_m, 150.0, 60.0, 40.0);
+    const double truth =
+        air.Scatter(air.Sample(ray, {.nodes = 16, .split_ozone = true})).rayleigh[0];
+    EXPECT_NEAR(table.Lookup(ray).rayleigh[0], truth, 0.02 * truth)
+        << "the light per length hardly depends on the altitude here";
+  }
+}
+
+// Hard case 14.
+TEST(ScatteringTable, RaysThatEndAreDifferencesAndLengthZeroIsZero) {
+  const ScatteringTable& table = StandardTable();
+  const AirIntegrator<double> air(table.medium());
+  ViewRay ray = RayFromAngles(500.0, 80.0, 45.0, 50.0);
+  ray.length_m = 0.0;
+  EXPECT_EQ(table.Lookup(ray).rayleigh[0], 0.0F);
+  ViewRay whole = ray;
+  whole.length_m = std::numeric_limits<double>::infinity();
+  const double all = table.Lookup(whole).rayleigh[0];
+  for (const double length_m : {1000.0, 10000.0, 100000.0, 1e6}) {
+    ray.length_m = length_m;
+    const double truth =
+        air.Scatter(air.Sample(ray, {.nodes = 16, .split_ozone = true})).rayleigh[0];
+    EXPECT_NEAR(table.Lookup(ray).rayleigh[0], truth, 2.0 * 0.02 * all)
+        << "twice the day's error of whole rays";
+  }
+}
+
+// Hard case 38.
+TEST(ScatteringTable, TheSmallestTableWorks) {
+  const ScatteringTable table(
+      MediumPreset("bruneton2017"),
+      {.size = {.nu = 2, .mu_s = 2, .mu = 4, .altitudes = 2}, .lowest_mu_s = {}});
+  EXPECT_EQ(table.bytes(), 2U * 2U * 4U * 2U * 3U * 2U * sizeof(float));
+  for (double zenith = 0.0; zenith <= 180.0; zenith += 5.0) {
+    const float value = table.Lookup(RayFromAngles(500.0, zenith, 30.0, 40.0)).rayleigh[0];
+    EXPECT_GE(value, 0.0F);
+    EXPECT_LE(value, 1.0F);
+  }
+}
+
+// Hard case 38.
+TEST(ScatteringTable, SizesThatCannotBeAreRefusedWithTheirBytes) {
+  const Medium medium = MediumPreset("earth");
+  const auto build = [&](const ScatteringTableSize& size) {
+    const ScatteringTable table(medium, {.size = size, .lowest_mu_s = {}});
+  };
+  EXPECT_THROW(build({1, 32, 128, 32}), InputError);
+  EXPECT_THROW(build({8, 1, 128, 32}), InputError);
+  EXPECT_THROW(build({8, 32, 2, 32}), InputError);
+  EXPECT_THROW(build({8, 32, 5, 32}), InputError);
+  EXPECT_THROW(build({8, 32, 128, 1}), InputError);
+  try {
+    build({64, 256, 1024, 256});
+    FAIL() << "137 GB were allowed";
+  } catch (const InputError& error) {
+    EXPECT_THAT(error.what(), testing::HasSubstr("137438953472 bytes"));
+  }
+  EXPECT_THROW(ScatteringTable(medium, {.size = kTiny, .lowest_mu_s = 0.5}), InputError);
+}
+
+// Hard case 43.
+TEST(ScatteringTable, NumberOfThreadsDoesNotChangeAByte) {
+  const Medium medium = MediumPreset("earth");
+  const auto texels_with = [&](int threads) {
+    const ThreadLimit limit(threads);
+    return ScatteringTable(medium, {.size = kTiny, .lowest_mu_s = {}}).texels();
+  };
+  const std::vector<float> one = texels_with(1);
+  EXPECT_EQ(texels_with(2), one);
+  EXPECT_EQ(texels_with(8), one);
+}
+
+// Hard case 28.
+TEST(ScatteringTable, NoAirScattersNothing) {
+  Medium medium = MediumPreset("bruneton2017");
+  for (auto* list : {&medium.rayleigh_scattering_per_m, &medium.mie_scattering_per_m,
+                     &medium.mie_extinction_per_m, &medium.ozone_absorption_per_m}) {
+    list->assign(list->size(), 0.0);
+  }
+  const ScatteringTable table(medium, {.size = kTiny, .lowest_mu_s = {}});
+  EXPECT_EQ(table.Lookup(RayFromAngles(500.0, 45.0, 30.0, 40.0)).rayleigh[0], 0.0F);
+}
+
+}  // namespace
+}  // namespace alpenglow::lut
