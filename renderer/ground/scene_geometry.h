@@ -42,8 +42,8 @@
 #include "renderer/ground/scene_ground.h"
 #include "renderer/ground/surface.h"
 #include "renderer/layer.h"
-#include "renderer/shadow/shadow_heights.h"
-#include "renderer/shadow/sunlit_path.h"
+#include "renderer/visibility/shadow_heights.h"
+#include "renderer/visibility/sunlit_path.h"
 
 namespace alpenglow::renderer {
 

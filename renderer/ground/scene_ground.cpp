@@ -10,7 +10,7 @@
 
 #include "atmosphere/math/constants.h"
 #include "atmosphere/base/error.h"
-#include "renderer/shadow/sunlit_path.h"
+#include "renderer/visibility/sunlit_path.h"
 #include "renderer/terrain/built_in_range.h"
 #include "renderer/terrain/obj_file.h"
 

@@ -21,11 +21,11 @@
 #include <glm/vec3.hpp>
 #include <memory>
 
-#include "renderer/lamp/lamp_light.h"
-#include "renderer/light/lighting.h"
+#include "renderer/lamps/lamp_light.h"
+#include "renderer/illumination/lighting.h"
 #include "renderer/media/local_media.h"
 #include "renderer/media/media_march.h"
-#include "renderer/shadow/sunlit_path.h"
+#include "renderer/visibility/sunlit_path.h"
 
 namespace alpenglow::renderer {
 

@@ -11,10 +11,10 @@
 #include "renderer/ground/band_light.h"
 #include "renderer/ground/scene_geometry.h"
 #include "renderer/ground/surface.h"
-#include "renderer/lamp/lamp_light.h"
-#include "renderer/light/lighting.h"
-#include "renderer/light/picture_stokes.h"
-#include "renderer/light/terrain_light.h"
+#include "renderer/lamps/lamp_light.h"
+#include "renderer/illumination/lighting.h"
+#include "renderer/illumination/picture_stokes.h"
+#include "renderer/illumination/terrain_light.h"
 #include "renderer/media/media_light.h"
 
 namespace alpenglow::renderer {

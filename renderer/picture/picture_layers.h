@@ -15,7 +15,7 @@
 #include "lut/image/image.h"
 #include "renderer/ground/band_light.h"
 #include "renderer/ground/scene_geometry.h"
-#include "renderer/light/picture_stokes.h"
+#include "renderer/illumination/picture_stokes.h"
 
 namespace alpenglow::renderer {
 

@@ -29,9 +29,9 @@
 #include "lut/cli/messages.h"
 #include "renderer/camera/camera_path.h"
 #include "renderer/camera/camera_rays.h"
-#include "renderer/effect/effect_choice.h"
-#include "renderer/effect/effects.h"
-#include "renderer/lamp/lamp_light.h"
+#include "renderer/effects/effect_choice.h"
+#include "renderer/effects/effects.h"
+#include "renderer/lamps/lamp_light.h"
 #include "renderer/picture/picture_layers.h"
 #include "renderer/scene/scene.h"
 

@@ -11,7 +11,7 @@
 #include "atmosphere/math/constants.h"
 #include "atmosphere/astronomy/sun.h"
 #include "lut/cli/program.h"
-#include "renderer/effect/effect_choice.h"
+#include "renderer/effects/effect_choice.h"
 #include "renderer/picture/picture_layers.h"
 #include "renderer/picture/pixel_light.h"
 #include "renderer/picture/scene_state.h"

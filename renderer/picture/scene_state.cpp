@@ -11,10 +11,10 @@
 #include "atmosphere/astronomy/ephemeris.h"
 #include "atmosphere/astronomy/sun.h"
 #include "lut/cli/program.h"
-#include "renderer/effect/effect_choice.h"
+#include "renderer/effects/effect_choice.h"
 #include "renderer/ground/scene_geometry.h"
-#include "renderer/light/lighting.h"
-#include "renderer/light/night_light.h"
+#include "renderer/illumination/lighting.h"
+#include "renderer/illumination/night_light.h"
 
 namespace alpenglow::renderer {
 

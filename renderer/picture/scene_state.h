@@ -13,11 +13,11 @@
 #include <vector>
 
 #include "atmosphere/colour/spectrum.h"
-#include "renderer/effect/effect_choice.h"
+#include "renderer/effects/effect_choice.h"
 #include "renderer/ground/scene_geometry.h"
 #include "renderer/ground/scene_ground.h"
-#include "renderer/lamp/lamp_light.h"
-#include "renderer/light/lighting.h"
+#include "renderer/lamps/lamp_light.h"
+#include "renderer/illumination/lighting.h"
 #include "renderer/picture/ground_light.h"
 #include "renderer/picture/picture_layers.h"
 #include "renderer/picture/pixel_light.h"

@@ -10,7 +10,7 @@
 #include "atmosphere/math/constants.h"
 #include "atmosphere/refraction/bent_view.h"
 #include "atmosphere/astronomy/moon.h"
-#include "renderer/light/picture_stokes.h"
+#include "renderer/illumination/picture_stokes.h"
 #include "renderer/picture/scene_state.h"
 
 namespace alpenglow::renderer {

@@ -24,7 +24,7 @@
 #include "renderer/camera/camera_rays.h"
 #include "renderer/ground/band_light.h"
 #include "renderer/ground/skyline.h"
-#include "renderer/light/night_light.h"
+#include "renderer/illumination/night_light.h"
 
 namespace alpenglow::renderer {
 

@@ -14,7 +14,7 @@
 #include "lut/report/report_baselines.h"
 #include "lut/tables/scattering_table.h"
 #include "lut/tables/transmittance_table.h"
-#include "renderer/light/aerial_perspective.h"
+#include "renderer/illumination/aerial_perspective.h"
 
 namespace alpenglow::renderer {
 namespace {

@@ -20,7 +20,7 @@
 #include "lut/report/report_baselines.h"
 #include "lut/report/report_measure.h"
 #include "renderer/layer.h"
-#include "renderer/light/aerial_perspective.h"
+#include "renderer/illumination/aerial_perspective.h"
 #include "renderer/scene/scene.h"
 
 namespace alpenglow::renderer {

@@ -13,8 +13,8 @@
 #include <utility>
 
 #include "lut/cli/program.h"
-#include "renderer/lamp/lamp_light.h"
-#include "renderer/lamp/lamp_works.h"
+#include "renderer/lamps/lamp_light.h"
+#include "renderer/lamps/lamp_works.h"
 #include "renderer/report/report.h"
 
 namespace alpenglow::renderer {

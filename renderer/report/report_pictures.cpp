@@ -12,7 +12,7 @@
 
 #include "atmosphere/math/constants.h"
 #include "lut/cli/program.h"
-#include "renderer/effect/effect_choice.h"
+#include "renderer/effects/effect_choice.h"
 #include "renderer/picture/render.h"
 #include "renderer/report/report.h"
 #include "renderer/scene/scene_options.h"

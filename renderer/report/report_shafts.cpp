@@ -12,11 +12,11 @@
 
 #include "lut/cli/program.h"
 #include "renderer/ground/scene_ground.h"
-#include "renderer/light/aerial_perspective.h"
-#include "renderer/light/occlusion_march.h"
+#include "renderer/illumination/aerial_perspective.h"
+#include "renderer/illumination/occlusion_march.h"
 #include "renderer/report/report.h"
-#include "renderer/shadow/shadow_heights.h"
-#include "renderer/shadow/sunlit_path.h"
+#include "renderer/visibility/shadow_heights.h"
+#include "renderer/visibility/sunlit_path.h"
 
 namespace alpenglow::renderer {
 namespace {

@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "atmosphere/lamp/airlight.h"
-#include "renderer/lamp/lamp_works.h"
+#include "renderer/lamps/lamp_works.h"
 
 namespace alpenglow::renderer {
 namespace {

@@ -17,7 +17,7 @@
 #include <vector>
 
 #include "atmosphere/math/constants.h"
-#include "renderer/shadow/shadow_heights.h"
+#include "renderer/visibility/shadow_heights.h"
 #include "renderer/terrain/built_in_range.h"
 #include "renderer/terrain/terrain.h"
 #include "viewer/flight/flight.h"

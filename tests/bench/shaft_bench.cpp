@@ -4,7 +4,7 @@
 #include <benchmark/benchmark.h>
 
 #include "atmosphere/math/constants.h"
-#include "renderer/shadow/sunlit_path.h"
+#include "renderer/visibility/sunlit_path.h"
 #include "tests/fixtures/occlusion_march.h"
 
 namespace alpenglow::renderer {

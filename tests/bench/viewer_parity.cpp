@@ -14,7 +14,7 @@
 #include <filesystem>
 #include <string>
 
-#include "renderer/effect/effect_choice.h"
+#include "renderer/effects/effect_choice.h"
 #include "renderer/picture/render.h"
 #include "tests/fixtures/parity_views.h"
 #include "viewer/gl/gl_context.h"

@@ -111,7 +111,7 @@ std::vector<ShaderPiece> SharedTexts() {
   }
   for (const char* name :
        {"renderer/terrain/lattice_noise.glsl", "renderer/ground/ground_cover.glsl",
-        "renderer/ground/reflectance.glsl", "renderer/shadow/sunlight_over_edge.glsl",
+        "renderer/ground/reflectance.glsl", "renderer/visibility/sunlight_over_edge.glsl",
         "renderer/media/fog_layer.glsl"}) {
     pieces.push_back({name, std::string(renderer::EmbeddedText(name))});
   }

@@ -27,7 +27,7 @@
 #include "atmosphere/shared_glsl/shared_math.h"
 #include "renderer/ground/band_light.h"
 #include "renderer/ground/reflectance.h"
-#include "renderer/light/open_sky.h"
+#include "renderer/illumination/open_sky.h"
 #include "viewer/layer.h"
 
 namespace alpenglow::viewer {

@@ -25,7 +25,7 @@
 #include <vector>
 
 #include "atmosphere/astronomy/sun.h"
-#include "renderer/light/lighting.h"
+#include "renderer/illumination/lighting.h"
 #include "renderer/media/local_media.h"
 #include "viewer/air/solved_air.h"
 #include "viewer/flight/flight.h"

@@ -4,7 +4,7 @@
 // around a lamp, and LitPlanFollower, which computes the LitPlans of all lamps once, one by one,
 // beside drawing.
 //
-// SampledGlow tabulates LampGlow (renderer/lamp/lamp_tree.h) with six terms over distance and rise
+// SampledGlow tabulates LampGlow (renderer/lamps/lamp_tree.h) with six terms over distance and rise
 // of the lamp.
 //
 //   E(n) = exp(term 0) / d * LampGlowOnSlope(n, terms 1 to 5)             [m^-2], by band
@@ -28,8 +28,8 @@
 #include <glm/vec4.hpp>
 #include <vector>
 
-#include "renderer/lamp/lamp_tree.h"
-#include "renderer/lamp/placed_lamp.h"
+#include "renderer/lamps/lamp_tree.h"
+#include "renderer/lamps/placed_lamp.h"
 #include "viewer/job/latest_job.h"
 #include "viewer/layer.h"
 

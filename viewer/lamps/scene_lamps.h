@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Provides SceneLamps, the lamps of a scene and the landing light of the eye's own aircraft for a
 // moving eye. It selects the lamps, or the nodes that represent many lamps
-// (renderer/lamp/lamp_tree.h), for the loop of a shader, and packs them for lamp_light.glsl into a
+// (renderer/lamps/lamp_tree.h), for the loop of a shader, and packs them for lamp_light.glsl into a
 // uniform block of vec4 alone. It also provides phase functions as shader expressions.
 //
 // Altitudes are relative to the lowest of eye and lamps. Single precision is then sufficient for
@@ -23,8 +23,8 @@
 #include "atmosphere/medium/phase.h"
 #include "atmosphere/colour/spectrum.h"
 #include "atmosphere/time_place/geodesy.h"
-#include "renderer/lamp/lamp_tree.h"
-#include "renderer/lamp/placed_lamp.h"
+#include "renderer/lamps/lamp_tree.h"
+#include "renderer/lamps/placed_lamp.h"
 #include "viewer/lamps/ground_under_lamps.h"
 #include "viewer/layer.h"
 

@@ -20,7 +20,7 @@
 #include <vector>
 
 #include "atmosphere/time_place/geodesy.h"
-#include "renderer/shadow/horizon_map.h"
+#include "renderer/visibility/horizon_map.h"
 #include "viewer/gl/gl_objects.h"
 #include "viewer/gl/render_target.h"
 #include "viewer/gl/shader.h"

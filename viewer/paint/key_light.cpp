@@ -8,7 +8,7 @@
 #include "atmosphere/refraction/bent_view.h"
 #include "atmosphere/ray/single_scattering.h"
 #include "atmosphere/astronomy/eclipse.h"
-#include "renderer/light/lighting.h"
+#include "renderer/illumination/lighting.h"
 #include "viewer/shaders/uniform_blocks.h"
 
 namespace alpenglow::viewer {

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "atmosphere/math/constants.h"
-#include "renderer/light/night_light.h"
+#include "renderer/illumination/night_light.h"
 #include "viewer/gl/render_target.h"
 #include "viewer/paint/picture_programs.h"
 #include "viewer/shaders/uniform_blocks.h"

@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "atmosphere/base/error.h"
-#include "renderer/effect/effect_choice.h"
+#include "renderer/effects/effect_choice.h"
 #include "viewer/flight/flight_recorder.h"
 
 namespace alpenglow::viewer {

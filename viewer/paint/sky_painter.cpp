@@ -8,7 +8,7 @@
 #include "atmosphere/astronomy/eclipse.h"
 #include "atmosphere/astronomy/moon.h"
 #include "renderer/ground/scene_ground.h"
-#include "renderer/light/lighting.h"
+#include "renderer/illumination/lighting.h"
 #include "viewer/gl/gl_context.h"
 #include "viewer/gl/gl_objects.h"
 #include "viewer/paint/painted_view.h"

@@ -19,7 +19,7 @@
 #include "atmosphere/colour/spectrum.h"
 #include "atmosphere/refraction/bent_view.h"
 #include "atmosphere/astronomy/moon.h"
-#include "renderer/light/night_light.h"
+#include "renderer/illumination/night_light.h"
 #include "viewer/gl/gl_objects.h"
 #include "viewer/gl/shader.h"
 #include "viewer/job/latest_job.h"

@@ -2,7 +2,7 @@
 // Height of terrain shadows in the air, which shaders need to find the shadowed stretches of a ray.
 //
 // HeightsAround resamples heights from latitude and longitude to an even grid of a local frame.
-// ShadeMap is a faster version of ShadowHeights (renderer/shadow/shadow_heights.h) for the GPU.
+// ShadeMap is a faster version of ShadowHeights (renderer/visibility/shadow_heights.h) for the GPU.
 // Over the plane of u, the distance towards the sun, and v, across it, the height of the shadow for
 // a beam is
 //

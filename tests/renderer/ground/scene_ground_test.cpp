@@ -15,7 +15,7 @@
 #include "atmosphere/colour/spectrum.h"
 #include "atmosphere/math/constants.h"
 #include "atmosphere/base/error.h"
-#include "renderer/lamp/placed_lamp.h"
+#include "renderer/lamps/placed_lamp.h"
 #include "renderer/scene/scene_options.h"
 #include "tests/fixtures/bare_scene.h"
 #include "tests/fixtures/fault_of.h"

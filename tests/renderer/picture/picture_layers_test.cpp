@@ -11,7 +11,7 @@
 #include "atmosphere/math/constants.h"
 #include "atmosphere/base/error.h"
 #include "lut/multiple_scattering/multiple_scattering.h"
-#include "renderer/light/aerial_perspective.h"
+#include "renderer/illumination/aerial_perspective.h"
 
 namespace alpenglow::renderer {
 namespace {

@@ -10,7 +10,7 @@
 
 #include "atmosphere/math/constants.h"
 #include "atmosphere/base/error.h"
-#include "renderer/effect/effect_choice.h"
+#include "renderer/effects/effect_choice.h"
 #include "renderer/picture/render.h"
 #include "tests/fixtures/bare_scene.h"
 #include "tests/fixtures/effect_scenes.h"

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "atmosphere/math/constants.h"
-#include "renderer/light/aerial_perspective.h"
+#include "renderer/illumination/aerial_perspective.h"
 #include "renderer/picture/render.h"
 #include "tests/fixtures/bare_scene.h"
 #include "tests/fixtures/luminance.h"

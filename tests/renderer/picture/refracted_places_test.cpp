@@ -9,7 +9,7 @@
 #include "atmosphere/refraction/bent_view.h"
 #include "atmosphere/astronomy/moon.h"
 #include "atmosphere/astronomy/night_sky.h"
-#include "renderer/light/night_light.h"
+#include "renderer/illumination/night_light.h"
 #include "renderer/picture/render.h"
 #include "tests/fixtures/bare_scene.h"
 #include "tests/fixtures/luminance.h"

@@ -10,7 +10,7 @@
 #include "atmosphere/math/constants.h"
 #include "renderer/camera/camera_rays.h"
 #include "renderer/ground/scene_ground.h"
-#include "renderer/lamp/lamp_light.h"
+#include "renderer/lamps/lamp_light.h"
 #include "renderer/picture/render.h"
 #include "tests/fixtures/bare_scene.h"
 #include "tests/fixtures/temporary_folder.h"

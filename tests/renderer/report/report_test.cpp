@@ -9,7 +9,7 @@
 #include <cmath>
 #include <set>
 
-#include "renderer/lamp/lamp_works.h"
+#include "renderer/lamps/lamp_works.h"
 #include "tests/fixtures/report_files.h"
 #include "tests/fixtures/report_rows.h"
 #include "tests/fixtures/temporary_folder.h"

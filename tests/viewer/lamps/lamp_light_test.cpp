@@ -8,8 +8,8 @@
 #include <limits>
 #include <random>
 
-#include "renderer/lamp/lamp_light.h"
-#include "renderer/light/lighting.h"
+#include "renderer/lamps/lamp_light.h"
+#include "renderer/illumination/lighting.h"
 #include "tests/fixtures/bare_scene.h"
 #include "tests/viewer/lamps/ridge.h"
 #include "tests/viewer/shaders/gpu_values.h"

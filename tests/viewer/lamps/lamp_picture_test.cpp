@@ -12,7 +12,7 @@
 
 #include "atmosphere/ray/shell.h"
 #include "renderer/ground/band_light.h"
-#include "renderer/lamp/lamp_light.h"
+#include "renderer/lamps/lamp_light.h"
 #include "tests/fixtures/bare_scene.h"
 #include "tests/viewer/shaders/headless.h"
 #include "viewer/lamps/lamp_painter.h"

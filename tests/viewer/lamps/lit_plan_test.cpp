@@ -7,7 +7,7 @@
 #include <cmath>
 #include <random>
 
-#include "renderer/lamp/placed_lamp.h"
+#include "renderer/lamps/placed_lamp.h"
 #include "tests/fixtures/bare_scene.h"
 #include "tests/viewer/lamps/ridge.h"
 #include "viewer/lamps/ground_under_lamps.h"

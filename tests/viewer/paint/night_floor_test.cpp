@@ -7,7 +7,7 @@
 
 #include "atmosphere/math/constants.h"
 #include "atmosphere/astronomy/sun.h"
-#include "renderer/light/night_light.h"
+#include "renderer/illumination/night_light.h"
 
 namespace alpenglow::viewer {
 namespace {

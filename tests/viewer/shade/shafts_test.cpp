@@ -8,7 +8,7 @@
 #include <random>
 
 #include "atmosphere/math/constants.h"
-#include "renderer/shadow/shadow_heights.h"
+#include "renderer/visibility/shadow_heights.h"
 #include "renderer/terrain/mesh.h"
 #include "renderer/terrain/terrain.h"
 #include "tests/fixtures/rough_land.h"

@@ -1,0 +1,363 @@
+// SPDX-License-Identifier: MIT
+#include "renderer/effects/effect_choice.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <numeric>
+
+#include "atmosphere/math/constants.h"
+#include "atmosphere/math/numerics.h"
+#include "atmosphere/base/error.h"
+#include "lut/cli/program.h"
+
+namespace alpenglow::renderer {
+namespace {
+
+double Norm(const std::array<float, 3>& rgb) {
+  double sum = 0.0;
+  for (const float value : rgb) sum += static_cast<double>(value) * static_cast<double>(value);
+  return std::sqrt(sum);
+}
+
+// Returns the quantile of sorted values: the value that the fraction `share` does not exceed.
+double Quantile(const std::vector<double>& sorted, double share) {
+  const double last = static_cast<double>(sorted.size()) - 1.0;
+  const double rank = std::ceil(share * static_cast<double>(sorted.size())) - 1.0;
+  return sorted[static_cast<std::size_t>(std::clamp(rank, 0.0, last))];
+}
+
+}  // namespace
+
+double PixelChange(const std::array<float, 3>& a, const std::array<float, 3>& b,
+                   double floor_cd_per_m2) {
+  const std::array<float, 3> difference{b[0] - a[0], b[1] - a[1], b[2] - a[2]};
+  return Norm(difference) / std::max(0.5 * (Norm(a) + Norm(b)), floor_cd_per_m2);
+}
+
+double ChangeFloor(const Image& reference) {
+  constexpr double kStepsBelowMiddleGrey = 4.0;
+  const double ev100 = MeterEv100(reference, kSunDiskLuminance_cd_per_m2);
+  return kMeterConstant / 100.0 * std::exp2(ev100 - kStepsBelowMiddleGrey);
+}
+
+PictureChange ChangeOf(const Image& reference, const Image& other) {
+  ALPENGLOW_ENSURE(reference.rgb.size(), ==, other.rgb.size());
+  const double floor = ChangeFloor(reference);
+  std::vector<double> changes;
+  for (std::size_t i = 0; i < reference.rgb.size(); ++i) {
+    changes.push_back(PixelChange(reference.rgb[i], other.rgb[i], floor));
+  }
+  return ChangeEstimate::Of(std::move(changes)).seen;
+}
+
+ChangeEstimate ChangeEstimate::Of(std::vector<double> changes) {
+  constexpr double kStandardErrors = 3.0;
+  if (changes.empty()) return {};
+  std::sort(changes.begin(), changes.end());
+  const auto count = static_cast<double>(changes.size());
+  double squares = 0.0, fourths = 0.0;
+  for (const double d : changes) {
+    squares += d * d / count;
+    fourths += d * d * d * d / count;
+  }
+  const double error = std::sqrt(std::max(fourths - squares * squares, 0.0) / count);
+  const double rank_error = std::sqrt(0.99 * 0.01 / count);
+  return {{std::sqrt(squares), Quantile(changes, 0.99)},
+          {std::sqrt(squares + kStandardErrors * error),
+           Quantile(changes, 0.99 + kStandardErrors * rank_error)}};
+}
+
+namespace {
+
+constexpr double kPercentileFactor = 4.0;  // 99th percentile allowed, in budgets
+
+/// Returns the number of pixels of a picture's pilot grid.
+int PilotSize(int width, int height) {
+  constexpr double kLeast = 400.0, kMost = 2000.0, kShare = 1.0 / 512.0;
+  const double pixels = static_cast<double>(width) * height;
+  return static_cast<int>(std::min(std::clamp(kShare * pixels, kLeast, kMost), pixels));
+}
+
+PictureChange Worse(const PictureChange& a, const PictureChange& b) {
+  return {std::max(a.rms, b.rms), std::max(a.at_99_percent, b.at_99_percent)};
+}
+
+bool IsWithin(const ChangeEstimate& change, double max_error) {
+  return change.at_most.rms <= max_error &&
+         change.at_most.at_99_percent <= kPercentileFactor * max_error;
+}
+
+/// Returns the first pixels of a pilot's picture.
+Image FirstPixels(const Image& image, std::size_t count) {
+  Image first(static_cast<int>(count), 1);
+  std::copy_n(image.rgb.begin(), count, first.rgb.begin());
+  return first;
+}
+
+/// Compares pilot pictures with the reference, the pilot picture with all wanted effects.
+class Judge {
+ public:
+  Judge(const EffectPilot& pilot, EffectSet wanted, int repeats)
+      : pilot_(pilot),
+        repeats_(repeats),
+        everything_(Render(wanted)),
+        floor_(ChangeFloor(FirstPixels(everything_.image, pilot.groups.front().size()))) {}
+
+  struct Verdict {
+    ChangeEstimate change;  // the worst of the groups
+    ChangeEstimate whole;   // of the first group
+    double picture_s;
+  };
+
+  [[nodiscard]] Verdict On(EffectSet effects) const { return On(Render(effects)); }
+  [[nodiscard]] Verdict On(const PilotPicture& picture) const {
+    Verdict verdict{{}, {}, PictureSeconds(picture)};
+    std::size_t at = 0;
+    for (const auto& group : pilot_.groups) {
+      std::vector<double> changes;
+      for (std::size_t i = 0; i < group.size(); ++i, ++at) {
+        changes.push_back(PixelChange(everything_.image.rgb[at], picture.image.rgb[at], floor_));
+      }
+      const ChangeEstimate change = ChangeEstimate::Of(std::move(changes));
+      if (&group == &pilot_.groups.front()) verdict.whole = change;
+      verdict.change.seen = Worse(verdict.change.seen, change.seen);
+      verdict.change.at_most = Worse(verdict.change.at_most, change.at_most);
+    }
+    return verdict;
+  }
+
+  [[nodiscard]] double everything_s() const { return PictureSeconds(everything_); }
+
+ private:
+  [[nodiscard]] PilotPicture Render(EffectSet effects) const {
+    PilotPicture picture = pilot_.render(effects);
+    for (int i = 1; i < repeats_; ++i) {
+      picture.seconds = std::min(picture.seconds, pilot_.render(effects).seconds);
+    }
+    return picture;
+  }
+
+  [[nodiscard]] double PictureSeconds(const PilotPicture& picture) const {
+    return picture.seconds * pilot_.pixels_of_picture /
+           static_cast<double>(picture.image.rgb.size());
+  }
+
+  const EffectPilot& pilot_;
+  int repeats_;
+  PilotPicture everything_;
+  double floor_;
+};
+
+/// Leaves out effects within the budget, smallest change first.
+class Chooser {
+ public:
+  Chooser(const Judge& judge, EffectSet wanted, double max_error)
+      : judge_(judge),
+        max_error_(max_error),
+        effects_(wanted),
+        verdict_{{}, {}, judge.everything_s()} {}
+
+  /// @param candidates  sorted by change, smallest first.
+  void LeaveOut(const std::vector<EffectEstimate>& candidates) {
+    std::size_t tried = 0;
+    EffectSet fewer = effects_;
+    double sum = 0.0;
+    for (; tried < candidates.size(); ++tried) {  // while the sum stays within the budget
+      sum += candidates[tried].change.at_most.rms;
+      if (sum > max_error_) break;
+      fewer = fewer.Without(candidates[tried].effect);
+    }
+    if (!Try(fewer)) tried = 0;
+    for (; tried < candidates.size(); ++tried) Try(effects_.Without(candidates[tried].effect));
+  }
+
+  [[nodiscard]] EffectSet effects() const { return effects_; }
+  [[nodiscard]] const Judge::Verdict& verdict() const { return verdict_; }
+
+ private:
+  bool Try(EffectSet fewer) {
+    if (fewer == effects_) return true;
+    const Judge::Verdict verdict = judge_.On(fewer);
+    if (!IsWithin(verdict.change, max_error_)) return false;
+    effects_ = fewer;
+    verdict_ = verdict;
+    return true;
+  }
+
+  const Judge& judge_;
+  double max_error_;
+  EffectSet effects_;
+  Judge::Verdict verdict_;
+};
+
+std::vector<RefinementEstimate> Refine(const EffectPilot& pilot, const Judge& judge) {
+  std::vector<RefinementEstimate> estimates;
+  for (const Refinement& refinement : pilot.refinements) {
+    const Judge::Verdict with = judge.On(refinement.render());
+    estimates.push_back({refinement.name, with.change, with.picture_s - judge.everything_s()});
+  }
+  return estimates;
+}
+
+std::string Percent(double value) {
+  const double percent = 100.0 * value;
+  return percent == 0.0    ? "0 %"
+         : percent < 0.001 ? "< 0.001 %"
+         : percent < 1.0   ? fmt::format("{:.3f} %", percent)
+                           : fmt::format("{:.1f} %", percent);
+}
+
+std::string Line(const std::string& name, const ChangeEstimate& change, double cost_s, double all_s,
+                 const std::string& fate) {
+  return fmt::format("{:<20}{:>11}{:>11}{:>11}{:>10.3f} s{:>8.1f} %  {}\n", name,
+                     Percent(change.seen.rms), Percent(change.at_most.rms),
+                     Percent(change.seen.at_99_percent), cost_s, 100.0 * cost_s / all_s, fate);
+}
+
+}  // namespace
+
+std::vector<PixelPlace> PilotGrid(int width, int height, int count) {
+  const double side = std::sqrt(static_cast<double>(width) * height / count);
+  const int columns = std::clamp(static_cast<int>(std::lround(width / side)), 1, width);
+  const int rows = std::clamp(static_cast<int>(std::lround(height / side)), 1, height);
+  std::vector<PixelPlace> places;
+  for (int row = 0; row < rows; ++row) {
+    for (int column = 0; column < columns; ++column) {
+      const int number = 1 + row * columns + column;
+      const double x = (column + Halton(number, 2)) * width / columns;
+      const double y = (row + Halton(number, 3)) * height / rows;
+      places.push_back(
+          {std::min(static_cast<int>(x), width - 1), std::min(static_cast<int>(y), height - 1)});
+    }
+  }
+  return places;
+}
+
+std::vector<PixelPlace> PilotSpiral(int width, int height, const std::array<double, 2>& centre,
+                                    double radius, int count) {
+  constexpr double kGoldenAngle = std::numbers::pi * (3.0 - 2.2360679774997896964);
+  std::vector<PixelPlace> places;
+  for (int i = 0; i < count; ++i) {
+    const double r = radius * std::sqrt((i + 0.5) / count);
+    const double x = std::floor(centre[0] + r * std::cos(i * kGoldenAngle));
+    const double y = std::floor(centre[1] + r * std::sin(i * kGoldenAngle));
+    if (x >= 0.0 && x < width && y >= 0.0 && y < height)
+      places.push_back({static_cast<int>(x), static_cast<int>(y)});
+  }
+  return places;
+}
+
+PilotGroups PilotPixels(const CameraRays& camera, int width, int height, const glm::dvec3& to_sun,
+                        const std::vector<glm::dvec3>& lamps) {
+  constexpr double kAroundSun_rad = 3.0 * kRadiansPerDegree;
+  constexpr int kPixelsAroundSun = 48, kPixelsOfLamp = 3;
+  constexpr std::size_t kMostLamps = 64;
+  PilotGroups groups{PilotGrid(width, height, PilotSize(width, height))};
+  if (const auto sun = camera.PlaceOf(to_sun)) {
+    groups.push_back(
+        PilotSpiral(width, height, *sun, kAroundSun_rad / camera.PixelAngle(), kPixelsAroundSun));
+  }
+  std::vector<PixelPlace> near_lamps;
+  for (std::size_t i = 0; i < lamps.size(); i += lamps.size() / kMostLamps + 1) {
+    const auto lamp = camera.PlaceOf(lamps[i]);
+    if (!lamp) continue;
+    for (const PixelPlace& pixel : PilotSpiral(width, height, *lamp, 2.0, kPixelsOfLamp))
+      near_lamps.push_back(pixel);
+  }
+  groups.push_back(near_lamps);
+  std::erase_if(groups, [](const auto& group) { return group.empty(); });
+  return groups;
+}
+
+EffectSet EffectChoice::LeftOut() const {
+  EffectSet left_out;
+  for (const EffectEstimate& estimate : estimates) {
+    if (!estimate.kept) left_out = left_out.With(estimate.effect);
+  }
+  return left_out;
+}
+
+EffectChoice ChooseEffects(const EffectPilot& pilot, EffectSet wanted, const EffectBudget& budget) {
+  const Stopwatch watch;
+  const Judge judge(pilot, wanted, budget.explain ? 3 : 1);
+  EffectChoice choice;
+  choice.max_error = budget.max_error;
+  choice.all_s = judge.everything_s();
+  std::vector<EffectEstimate> candidates;
+  for (const Effect effect : wanted.List()) {
+    EffectEstimate estimate{effect, {}, {}};
+    estimate.present = pilot.present.Has(effect);
+    if (TextOf(effect).is_free && !budget.explain) continue;
+    if (estimate.present) {
+      const Judge::Verdict without = judge.On(wanted.Without(effect));
+      const double preparation_s = pilot.preparation_s(effect);
+      choice.all_s += preparation_s;
+      estimate.change = without.change;
+      estimate.whole = without.whole;
+      estimate.cost_s = judge.everything_s() - without.picture_s + preparation_s;
+      if (!TextOf(effect).is_free && IsWithin(estimate.change, budget.max_error))
+        candidates.push_back(estimate);
+    }
+    choice.estimates.push_back(estimate);
+  }
+  std::stable_sort(candidates.begin(), candidates.end(), [](const auto& a, const auto& b) {
+    return a.change.at_most.rms < b.change.at_most.rms;
+  });
+  Chooser chooser(judge, wanted, budget.max_error);
+  if (budget.leave_out) chooser.LeaveOut(candidates);
+  if (budget.explain) choice.refinements = Refine(pilot, judge);
+  choice.effects = chooser.effects();
+  choice.together = chooser.verdict().change;
+  choice.chosen_s = chooser.verdict().picture_s;
+  for (EffectEstimate& estimate : choice.estimates) {
+    estimate.kept = choice.effects.Has(estimate.effect);
+    if (estimate.kept) choice.chosen_s += pilot.preparation_s(estimate.effect);
+  }
+  for (const auto& group : pilot.groups) choice.pilot_pixels += group.size();
+  choice.pilot_s = watch.seconds();
+  return choice;
+}
+
+Metadata NotesOn(const EffectChoice& choice) {
+  std::vector<std::string> names;
+  for (const Effect effect : choice.LeftOut().List()) names.emplace_back(TextOf(effect).name);
+  const auto change = [](const PictureChange& of) {
+    return fmt::format("rms {}, 99th percentile {}", Percent(of.rms), Percent(of.at_99_percent));
+  };
+  return {
+      {"alpenglow.note.effects_left_out",
+       names.empty() ? "none" : fmt::format("{}", fmt::join(names, ","))},
+      {"alpenglow.note.effects_change", fmt::format("{} (at most {})", change(choice.together.seen),
+                                                    change(choice.together.at_most))}};
+}
+
+std::string ExplainText(const EffectChoice& choice) {
+  std::string text = fmt::format("{:<20}{:>11}{:>11}{:>11}{:>12}{:>10}\n", "without", "change rms",
+                                 "at most", "99 %", "saves", "of frame");
+  for (const EffectEstimate& estimate : choice.estimates) {
+    const EffectText& effect = TextOf(estimate.effect);
+    const std::string fate = !estimate.present ? "not in this scene"
+                             : !estimate.kept  ? fmt::format("left out: {}", effect.left_out)
+                             : effect.is_free  ? "kept, free"
+                                               : "kept";
+    text += Line(effect.name, estimate.change, estimate.cost_s, choice.all_s, fate);
+  }
+  text += Line("all left out", choice.together, choice.all_s - choice.chosen_s, choice.all_s,
+               fmt::format("budget {} rms, {} at 99 %", Percent(choice.max_error),
+                           Percent(kPercentileFactor * choice.max_error)));
+  if (!choice.refinements.empty()) {
+    text += fmt::format("{:<20}{:>11}{:>11}{:>11}{:>12}\n", "with", "", "", "", "costs");
+  }
+  for (const RefinementEstimate& more : choice.refinements)
+    text += Line(more.name, more.change, more.cost_s, choice.all_s, "not asked for");
+  text += fmt::format(
+      "pilot: {} pixels, {:.3f} s; the frame: {:.3f} s with everything, {:.3f} s as "
+      "chosen\n",
+      choice.pilot_pixels, choice.pilot_s, choice.all_s, choice.chosen_s);
+  return text;
+}
+
+}  // namespace alpenglow::renderer

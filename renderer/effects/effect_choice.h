@@ -1,0 +1,179 @@
+// SPDX-License-Identifier: MIT
+// This header measures the difference between two pictures of a scene, and chooses the effects that
+// a picture needs within a budget of change.
+//
+//   d = |b - a| / max((|a| + |b|) / 2, floor)          of a pixel; |.| over linear R, G and B
+//
+// The floor is a sixteenth of the luminance that the exposure meter maps to middle grey: in darker
+// pixels, a change of 1 % is less than half a code value of an 8-bit picture. d is 0 for equal
+// pixels, equals the relative error where that is small, and is 2 where only one picture has light.
+//
+// The measure ignores the position of a change in the picture, and hence its importance to a
+// viewer. It ignores that the two pictures may be exposed differently, that a slow gradient reveals
+// an edge which rough ground masks, and that viewers tolerate errors of hue more than errors of
+// lightness.
+//
+// The choice is made with a pilot: a few of the picture's own pixels are rendered with all effects,
+// and again without each one. Effects whose change is small are left out, smallest first, as long
+// as the pilot without all of them together stays within the budget:
+//
+//   rms of d at most the budget,    99th percentile of d at most four times the budget,
+//
+// Three standard errors are added to both numbers. They must hold for the picture as a whole and
+// also, separately and however small these are, for its lamps and for the surroundings of the sun.
+//
+// The pilot has one pixel in each cell of a grid over the picture, at a pseudo-random but
+// deterministic position in the cell. It therefore misses nothing larger than a cell. Smaller
+// features that are neither lamps nor near the sun are seen only if a pilot pixel happens to hit
+// them.
+//
+// The choice depends on pixels alone; the cost of effects is measured and reported, but not used.
+// Parts of the air that cost nothing are always kept (EffectText::is_free). Each frame of a series
+// chooses independently, so between neighbouring frames with different choices the picture changes
+// by the budget at most.
+#pragma once
+
+#include <array>
+#include <ctime>
+#include <functional>
+#include <glm/vec3.hpp>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "lut/image/image.h"
+#include "renderer/camera/camera_rays.h"
+#include "renderer/effects/effects.h"
+#include "renderer/layer.h"
+
+namespace alpenglow::renderer {
+
+struct PictureChange {
+  double rms = 0.0;            // root mean square of d
+  double at_99_percent = 0.0;  // 99th percentile of d
+};
+
+/// Returns the change d of a pixel, in [0, 2].
+[[nodiscard]] double PixelChange(const std::array<float, 3>& a, const std::array<float, 3>& b,
+                                 double floor_cd_per_m2);
+
+/// Returns the floor of a picture [cd/m^2]; the sun's disk is excluded from metering.
+[[nodiscard]] double ChangeFloor(const Image& reference);
+
+/// Returns the change over all pixels. Throws InternalError for pictures of different sizes.
+[[nodiscard]] PictureChange ChangeOf(const Image& reference, const Image& other);
+
+/// Estimate of the change of the whole picture from a sample of its pixels.
+struct ChangeEstimate {
+  PictureChange seen;     // in the sample
+  PictureChange at_most;  // plus three standard errors
+
+  [[nodiscard]] static ChangeEstimate Of(std::vector<double> changes);
+};
+
+struct PixelPlace {
+  int x, y;
+};
+
+/// Pixels of the pilot: the first group represents the whole picture, each other group a small
+/// feature.
+using PilotGroups = std::vector<std::vector<PixelPlace>>;
+
+/// Returns one pixel in each cell of a grid of about `count` square cells.
+[[nodiscard]] std::vector<PixelPlace> PilotGrid(int width, int height, int count);
+
+/// Returns about `count` pixels on a spiral within `radius` of a centre, which may lie outside the
+/// picture.
+[[nodiscard]] std::vector<PixelPlace> PilotSpiral(int width, int height,
+                                                  const std::array<double, 2>& centre,
+                                                  double radius, int count);
+
+/// Returns the groups of a picture: the grid, the surroundings of the sun, and the lamps.
+/// @param lamps  unit directions from the eye.
+[[nodiscard]] PilotGroups PilotPixels(const CameraRays& camera, int width, int height,
+                                      const glm::dvec3& to_sun,
+                                      const std::vector<glm::dvec3>& lamps);
+
+/// CPU time of all threads of the program together since construction; other programs on the
+/// machine do not count.
+class Stopwatch {
+ public:
+  [[nodiscard]] double seconds() const {
+    return static_cast<double>(std::clock() - begin_) / CLOCKS_PER_SEC;
+  }
+
+ private:
+  std::clock_t begin_ = std::clock();
+};
+
+/// The pilot's pixels, group after group, as a picture of one row, and the rendering time.
+struct PilotPicture {
+  Image image;
+  double seconds = 0.0;
+};
+
+/// A refinement that the picture does not use, but could.
+struct Refinement {
+  std::string name;
+  std::function<PilotPicture()> render;
+};
+
+struct EffectPilot {
+  PilotGroups groups;
+  std::function<PilotPicture(EffectSet)> render;
+  double pixels_of_picture = 0.0;
+  EffectSet present = EffectSet::All();  // other effects are inactive in this scene
+  std::vector<Refinement> refinements;   // estimated only if the choice is explained
+  /// Preparation time before any pixel [s]: shadows of terrain, the plan of lamps.
+  std::function<double(Effect)> preparation_s = [](Effect) { return 0.0; };
+};
+
+/// Estimate of an effect of a picture from the pilot.
+struct EffectEstimate {
+  Effect effect;
+  ChangeEstimate change;  // the worst of the groups
+  ChangeEstimate whole;   // in the picture as a whole
+  double cost_s = 0.0;    // of the picture, including preparation, summed over threads
+  bool kept = true;
+  bool present = true;  // false: inactive in this scene
+};
+
+/// Estimate of a refinement's change and cost.
+struct RefinementEstimate {
+  std::string name;
+  ChangeEstimate change;
+  double cost_s;
+};
+
+struct EffectBudget {
+  double max_error = 0.01;  // rms of d, in (0, 1]
+  /// Also estimates the parts of the air, which cost nothing and are always kept, and times each
+  /// pilot picture three times.
+  bool explain = false;
+  bool leave_out = true;  // false: all effects are kept and only estimated
+};
+
+struct EffectChoice {
+  EffectSet effects;  // effects to render
+  double max_error = 0.0;
+  std::vector<EffectEstimate> estimates;  // of the requested effects, in the order of Effect
+  ChangeEstimate together;                // change from leaving out all of `LeftOut()`
+  std::vector<RefinementEstimate> refinements;
+  // Times, summed over threads: the picture with all effects, the picture as chosen, and the pilot.
+  double all_s = 0.0, chosen_s = 0.0, pilot_s = 0.0;
+  std::size_t pilot_pixels = 0;
+
+  [[nodiscard]] EffectSet LeftOut() const;
+};
+
+/// @param wanted  the effects of the reference picture.
+[[nodiscard]] EffectChoice ChooseEffects(const EffectPilot& pilot, EffectSet wanted,
+                                         const EffectBudget& budget);
+
+/// Returns a table of a choice, with one line per effect.
+[[nodiscard]] std::string ExplainText(const EffectChoice& choice);
+
+/// Returns the metadata of a choice: the effects left out, and the resulting change of the picture.
+[[nodiscard]] Metadata NotesOn(const EffectChoice& choice);
+
+}  // namespace alpenglow::renderer

@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: MIT
+// This header describes the lighting of a scene at one time: direction, irradiance and visible part
+// of the sun, the moon, eclipses, the seasonal cover of the ground, and the night sky. All lights
+// that are distant enough to be directions have one form (DistantLight). Tables, terrain and fog
+// serve each of them alike, because the radiance of air lit from a direction is linear in the
+// irradiance.
+#pragma once
+
+#include <glm/vec3.hpp>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "atmosphere/medium/medium.h"
+#include "atmosphere/refraction/bent_view.h"
+#include "atmosphere/ray/single_scattering.h"
+#include "atmosphere/astronomy/eclipse.h"
+#include "atmosphere/time_place/geodesy.h"
+#include "atmosphere/astronomy/moon.h"
+#include "atmosphere/astronomy/sun.h"
+#include "atmosphere/time_place/time.h"
+#include "lut/multiple_scattering/multiple_scattering.h"
+#include "renderer/effects/effects.h"
+#include "renderer/ground/band_light.h"
+#include "renderer/ground/scene_geometry.h"
+#include "renderer/ground/surface.h"
+#include "renderer/layer.h"
+#include "renderer/illumination/night_light.h"
+#include "renderer/illumination/terrain_light.h"
+
+namespace alpenglow::renderer {
+
+/// The air of one medium, through which ground, fog and volumes are lit. Refers to all three
+/// members.
+struct SunlitAir {
+  const AirIntegrator<float>& air;
+  const BentBeam& beam;         // direct light of sun and moon
+  const DiffuseLight& diffuse;  // light of the sky
+
+  /// Returns the irradiance perpendicular to the beams of a disk whose irradiance above the air is
+  /// 1.
+  /// @param mu  see BentBeam::Left.
+  [[nodiscard]] Bands<float> BeamLeft(double altitude_m, double mu) const {
+    return beam.Left(air, altitude_m, mu);
+  }
+};
+
+/// Returns the unit direction (east, north, up of the eye) to the moon during a solar eclipse. It
+/// is lifted by the refraction of the sun's centre behind it, because the sun is drawn as a round
+/// disk and the moon's disk must be round too.
+[[nodiscard]] glm::dvec3 ToMoonBefore(const SunPosition& apparent_sun, const GeodeticPosition& eye,
+                                      const UtcInstant& instant);
+
+/// A light so distant that it shines everywhere from one direction. Where refraction lifts it, it
+/// lights the air from another direction (SunForAir of sun.h).
+struct DistantLight {
+  glm::dvec3 to_light;          // unit, to the visible centre of its disk
+  glm::dvec3 to_light_for_air;  // unit
+  double radius_rad;            // of the disk
+  BandLight irradiance;         // above the air, W m^-2 nm^-1
+};
+
+/// The sun partly covered by the moon at Lighting::moon.
+struct EclipsedSun {
+  EclipsedDisk disk;
+  BandLight whole;  // irradiance without the moon
+};
+
+/// Light in the air and on surfaces for one position of the sun.
+struct Lighting {
+  glm::dvec3 to_sun;          // unit, to where it is visible
+  glm::dvec3 to_sun_for_air;  // unit, from which its straight rays light the air
+  double sun_radius_rad;
+  BandLight irradiance;                         // of the sun above the air, W m^-2 nm^-1
+  MountainSurface surface;                      // with its seasonal cover
+  double sea_s = 0.0;                           // time of the waves, see SeaTime
+  std::optional<MoonDisk> moon = std::nullopt;  // visible disk
+  BandLight moon_colour = {};                   // reflectance relative to that at 550 nm
+  glm::dvec3 moon_turn{0.0};  // axis and angle [rad] of its motion while the shutter is open
+  std::optional<EclipsedSun> eclipse = std::nullopt;  // `irradiance` is then the uncovered part
+  /// The moon, if its light may be visible beside the sun's.
+  std::optional<DistantLight> moonlight = std::nullopt;
+  /// The night sky, if it may be visible beside the sun; null: it is not visible.
+  std::shared_ptr<const NightLight> night = nullptr;
+  /// False: the sun is so far below the horizon that its light is invisible.
+  bool shows = true;
+  EffectSet effects = EffectSet::All();
+  /// Light of sky and slopes on terrain; null: the ground receives the sky of a plain.
+  std::shared_ptr<const TerrainLight> on_terrain = nullptr;
+
+  /// Returns the irradiance of the sun above the air without the moon in front of it.
+  [[nodiscard]] const BandLight& WholeSun() const { return eclipse ? eclipse->whole : irradiance; }
+  /// Returns this lighting with the moon in front of the sun. Each band keeps the uncovered
+  /// fraction, with limb darkening, but at least that of the corona, a millionth of the whole sun
+  /// (Cox 2000, Allen's Astrophysical Quantities, 14.8: 0.6 to 1.5 over the solar cycle). In
+  /// totality there is no other light: scattering from sunlit air outside the shadow is neglected.
+  [[nodiscard]] Lighting EclipsedBy(const EclipsedDisk& disk,
+                                    const std::vector<double>& wavelengths_nm) const;
+  [[nodiscard]] DistantLight Sun() const {
+    return {to_sun, to_sun_for_air, sun_radius_rad, irradiance};
+  }
+  /// Returns sun and moon, each if it may be visible.
+  [[nodiscard]] std::vector<DistantLight> Lights() const;
+  /// Returns the same scene with a single light in place of the sun.
+  [[nodiscard]] Lighting By(const DistantLight& light) const;
+};
+
+/// Returns the lighting for the sun's position, with the seasonal cover of the ground at a place.
+/// @param wetness  see MountainSurface.
+[[nodiscard]] Lighting LightingOf(const SunPosition& sun, const UtcInstant& instant,
+                                  const GeodeticPosition& place, const Medium& medium,
+                                  double wetness = 0.0);
+
+/// Returns the moon's reflectance at the phase of the disk, relative to that at 550 nm.
+[[nodiscard]] BandLight MoonColour(const MoonDisk& moon, const std::vector<double>& wavelengths_nm);
+
+/// Returns the depression of the sun below an eye's horizontal [rad] at which it lights none of the
+/// air visible to the eye. The last visible air is at the top of the atmosphere, beyond the eye's
+/// horizon by the dip of the horizon seen from the top. The last sunlit air is at the top as well,
+/// a further dip away. One degree is added for refraction.
+[[nodiscard]] double DepressionOfDarkAir(double altitude_m, double radius_m,
+                                         double atmosphere_height_m);
+
+/// Returns moonlight at a place.
+/// @param disk  its direction is used.
+/// @param sun  irradiance of the sun there.
+/// @param earth_sun_au  distance of the place from the sun.
+[[nodiscard]] DistantLight MoonlightOf(const MoonDisk& disk, const GeodeticPosition& place,
+                                       const UtcInstant& instant, double earth_sun_au,
+                                       const BandLight& colour, const BandLight& sun);
+
+/// The sun at a point, without shadows of terrain.
+struct LocalSun {
+  double altitude_m;
+  glm::dvec3 up;
+  double mu_s_for_air;      // of DistantLight::to_light_for_air: for skylight
+  double visible_fraction;  // of the disk above the planet's horizon
+  double mu_s_effective;    // of the visible part
+};
+
+[[nodiscard]] LocalSun LocalSunAt(const SceneGeometry& geometry, const glm::dvec3& point,
+                                  const DistantLight& sun);
+
+}  // namespace alpenglow::renderer

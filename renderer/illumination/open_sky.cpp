@@ -1,0 +1,389 @@
+// SPDX-License-Identifier: MIT
+#include "renderer/illumination/open_sky.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+
+#include "atmosphere/math/constants.h"
+#include "atmosphere/math/numerics.h"
+#include "lut/multiple_scattering/spherical_harmonics.h"
+#include "lut/sky/sky_view.h"
+
+namespace alpenglow::renderer {
+namespace {
+
+// Returns the integrals of Y_l0 over the lower half of the sphere.
+Moments OverLowerHalf(int degree) {
+  Moments sum{};
+  const GaussRule& rule = GaussLegendre(8);
+  for (std::size_t i = 0; i < rule.node.size(); ++i) {
+    const Moments at = LegendreTerms(degree, -static_cast<float>(rule.node[i]));
+    for (int l = 0; l <= degree; ++l) {
+      sum[MomentIndex(l, 0)] +=
+          static_cast<float>(2.0 * kPi * rule.weight[i]) * at[MomentIndex(l, 0)];
+    }
+  }
+  return sum;
+}
+
+}  // namespace
+
+SkyMoments::SkyMoments(const DiffuseLight& diffuse, const glm::dvec3& up, const glm::dvec3& to_sun,
+                       std::vector<double> altitudes_m)
+    : up_(up),
+      to_sun_(to_sun),
+      mu_s_(std::clamp(glm::dot(up, to_sun), -1.0, 1.0)),
+      degree_(diffuse.options().degree),
+      bands_(diffuse.bands()),
+      altitudes_m_(std::move(altitudes_m)) {
+  const double top = diffuse.medium().atmosphere_height_m;
+  for (const double altitude : altitudes_m_) {
+    values_.push_back(diffuse.ValuesAt(std::sqrt(std::clamp(altitude / top, 0.0, 1.0)),
+                                       DiffuseLight::SunCoordinate(mu_s_)));
+  }
+}
+
+SkyMoments SkyMoments::WithoutGround(const BandLight& radiance) const {
+  SkyMoments less = *this;
+  const Moments half = OverLowerHalf(degree_);
+  for (std::vector<float>& values : less.values_) {
+    for (int l = 0; l <= degree_; ++l) {
+      for (std::size_t band = 0; band < bands_; ++band) {
+        values[MomentIndex(l, 0) * bands_ + band] -= half[MomentIndex(l, 0)] * radiance[band];
+      }
+    }
+  }
+  return less;
+}
+
+std::vector<BandLight> SkyMoments::Towards(const glm::dvec3& look,
+                                           const std::vector<double>& chi) const {
+  const auto mu = static_cast<float>(std::clamp(glm::dot(look, up_), -1.0, 1.0));
+  const auto nu = static_cast<float>(std::clamp(glm::dot(look, to_sun_), -1.0, 1.0));
+  Moments factor =
+      SphericalHarmonics(degree_, mu, AzimuthCosine(mu, static_cast<float>(mu_s_), nu));
+  for (int l = 0; l <= degree_; ++l) {
+    for (int m = 0; m <= l; ++m) {
+      factor[MomentIndex(l, m)] *= static_cast<float>(chi[static_cast<std::size_t>(l)]);
+    }
+  }
+  std::vector<BandLight> light;
+  for (const std::vector<float>& values : values_) {
+    BandLight& sum = light.emplace_back(bands_);
+    for (std::size_t i = 0; i < MomentCount(degree_); ++i) {
+      for (std::size_t band = 0; band < bands_; ++band) {
+        sum[band] += factor[i] * values[i * bands_ + band];
+      }
+    }
+    for (std::size_t band = 0; band < bands_; ++band) sum[band] = std::max(sum[band], 0.0F);
+  }
+  return light;
+}
+
+BandLight SkyMoments::At(const std::vector<BandLight>& of_altitudes, double altitude_m) const {
+  const auto above = std::upper_bound(altitudes_m_.begin(), altitudes_m_.end(), altitude_m);
+  if (above == altitudes_m_.begin()) return of_altitudes.front();
+  if (above == altitudes_m_.end()) return of_altitudes.back();
+  const auto high = static_cast<std::size_t>(above - altitudes_m_.begin());
+  const double share =
+      (altitude_m - altitudes_m_[high - 1]) / (altitudes_m_[high] - altitudes_m_[high - 1]);
+  return static_cast<float>(1.0 - share) * of_altitudes[high - 1] +
+         static_cast<float>(share) * of_altitudes[high];
+}
+
+namespace {
+
+constexpr float kSkySector = 2.0F * static_cast<float>(kPi) / static_cast<float>(kHorizonAzimuths);
+
+struct Directions {
+  Horizons x, y;
+};
+
+const Directions& SectorDirections() {
+  static const Directions directions = [] {
+    Directions d;
+    for (std::size_t i = 0; i < kHorizonAzimuths; ++i) {
+      d.x[i] = static_cast<float>(std::cos(HorizonAzimuth(i)));
+      d.y[i] = static_cast<float>(std::sin(HorizonAzimuth(i)));
+    }
+    return d;
+  }();
+  return directions;
+}
+
+/// Antiderivative of sqrt(1 - s^2) over [-1, 1], tabulated at even steps of s and interpolated
+/// linearly; the steps are small enough near the ends, where it bends.
+class HalfDiskArea {
+ public:
+  HalfDiskArea() {
+    for (std::size_t i = 0; i < kSteps + 1; ++i) {
+      const double s = 2.0 * static_cast<double>(i) / kSteps - 1.0;
+      area_[i] = static_cast<float>(0.5 * (std::asin(s) + s * std::sqrt(1.0 - s * s)));
+    }
+  }
+  [[nodiscard]] float At(float s) const {
+    const float at = std::clamp(0.5F * (s + 1.0F), 0.0F, 1.0F) * static_cast<float>(kSteps);
+    const std::size_t step = std::min(static_cast<std::size_t>(at), kSteps - 1);
+    return area_[step] + (at - static_cast<float>(step)) * (area_[step + 1] - area_[step]);
+  }
+
+ private:
+  static constexpr std::size_t kSteps = 512;
+  std::array<float, kSteps + 1> area_;
+};
+
+const HalfDiskArea& Area() {
+  static const HalfDiskArea area;
+  return area;
+}
+
+/// Interpolation position between nodes of the sine.
+struct NodeTap {
+  std::size_t node;
+  float share;
+};
+
+}  // namespace
+
+SurfaceSectors SectorsOf(const glm::dvec3& normal) {
+  const Directions& direction = SectorDirections();
+  SurfaceSectors sectors;
+  sectors.up = static_cast<float>(normal.z);
+  const auto x = static_cast<float>(normal.x), y = static_cast<float>(normal.y);
+  const float up2 = sectors.up * sectors.up + 1e-12F;
+  for (std::size_t i = 0; i < kHorizonAzimuths; ++i) {
+    const float along = direction.x[i] * x + direction.y[i] * y;
+    sectors.along[i] = along;
+    // The surface's plane intersects the azimuth at this elevation.
+    sectors.lowest[i] = -along / std::sqrt(up2 + along * along);
+    sectors.highest[i] = 1.0F;
+  }
+  if (sectors.up >= 0.0F) return sectors;
+  for (std::size_t i = 0; i < kHorizonAzimuths; ++i) {
+    sectors.highest[i] = -sectors.lowest[i];
+    sectors.lowest[i] = -1.0F;
+  }
+  return sectors;
+}
+
+float SectorIntegral(float up, float along, float low, float high) {
+  return 0.5F * up * (high * high - low * low) + along * (Area().At(high) - Area().At(low));
+}
+
+Horizons GroundShares(const SurfaceSectors& surface, const Horizons& horizons) {
+  const HalfDiskArea& area = Area();
+  Horizons shares;
+  for (std::size_t i = 0; i < kHorizonAzimuths; ++i) {
+    const float low = surface.lowest[i];
+    const float high = std::max(std::min(horizons[i], surface.highest[i]), low);
+    const float along = high > low ? area.At(high) - area.At(low) : 0.0F;
+    shares[i] =
+        std::max(0.5F * surface.up * (high * high - low * low) + surface.along[i] * along, 0.0F);
+  }
+  return shares;
+}
+
+OpenSky::OpenSky(const AirIntegrator<float>& air, const DiffuseLight& diffuse,
+                 const glm::dvec3& to_sun, const Extent& extent)
+    : bands_(air.bands()),
+      stride_((air.bands() + 3) / 4 * 4),
+      lowest_m_(std::max(extent.lowest_m, 0.0)),
+      highest_m_(std::max(extent.highest_m, lowest_m_ + 1.0)),
+      level_irradiance_(kLevels * kSuns * stride_, 0.0F),
+      integral_(kLevels * level_floats()) {
+  const double half = 1e-4 + extent.radius_m / air.medium().planet_radius_m;
+  first_mu_s_ = to_sun.z - half;
+  mu_s_step_ = 2.0 * half / static_cast<double>(kSuns - 1);
+  for (std::size_t i = 0; i < kLevels * kSuns; ++i) {
+    const double level = static_cast<double>(i / kSuns) / static_cast<double>(kLevels - 1);
+    const auto irradiance = diffuse.SkyIrradiance(
+        lowest_m_ + level * (highest_m_ - lowest_m_),
+        std::clamp(first_mu_s_ + static_cast<double>(i % kSuns) * mu_s_step_, -1.0, 1.0));
+    std::copy_n(irradiance.value.begin(), bands_, &level_irradiance_[i * stride_]);
+  }
+  // Compute three skies; the levels between them are interpolated linearly.
+  const double middle_m = 0.5 * (lowest_m_ + highest_m_);
+  const std::array<std::vector<float>, 3> table{TableAt(air, diffuse, lowest_m_, to_sun),
+                                                TableAt(air, diffuse, middle_m, to_sun),
+                                                TableAt(air, diffuse, highest_m_, to_sun)};
+  for (std::size_t level = 0; level < kLevels; ++level) {
+    const float at = 2.0F * static_cast<float>(level) / static_cast<float>(kLevels - 1);
+    const std::size_t first = at < 1.0F ? 0 : 1;
+    const float share = at - static_cast<float>(first);
+    float* into = &integral_[level * level_floats()];
+    for (std::size_t i = 0; i < level_floats(); ++i)
+      into[i] = table[first][i] + share * (table[first + 1][i] - table[first][i]);
+  }
+  KeepRadiances();
+}
+
+std::vector<float> OpenSky::TableAt(const AirIntegrator<float>& air, const DiffuseLight& diffuse,
+                                    double altitude_m, const glm::dvec3& to_sun) const {
+  constexpr std::size_t kParts = 6;  // per sector
+  constexpr std::array<double, 2> kGauss{0.2113248654051871, 0.7886751345948129};
+  const double mu_s = std::clamp(to_sun.z, -1.0, 1.0);
+  const SkyView view(air, diffuse, altitude_m, mu_s);
+  const double sun_azimuth = std::atan2(to_sun.y, to_sun.x);
+  std::vector<double> azimuths;
+  for (std::size_t i = 0; i < kHorizonAzimuths; ++i) {
+    for (std::size_t part = 0; part < kParts; ++part) {
+      const double within = (static_cast<double>(part) + 0.5) / kParts - 0.5;
+      azimuths.push_back(HorizonAzimuth(i) + within * static_cast<double>(kSkySector) -
+                         sun_azimuth);
+    }
+  }
+  const SkyAzimuths row_azimuths(view, azimuths);
+  std::vector<float> row(azimuths.size() * view.stride());
+  std::vector<float> table(level_floats(), 0.0F);
+  const double step = (1.0 - static_cast<double>(HorizonMap::kLowest)) / (kNodes - 1);
+  const Bands<float> level_plane = diffuse.SkyIrradiance(altitude_m, mu_s);
+  for (std::size_t node = kNodes - 1; node-- > 0;) {
+    for (std::size_t azimuth = 0; azimuth < kHorizonAzimuths; ++azimuth) {
+      const float* above = &table[(azimuth * kNodes + node + 1) * 2 * stride_];
+      std::copy_n(above, 2 * stride_, &table[(azimuth * kNodes + node) * 2 * stride_]);
+    }
+    for (const double part : kGauss) {
+      const double sine =
+          static_cast<double>(HorizonMap::kLowest) + (static_cast<double>(node) + part) * step;
+      view.FillRow(std::acos(sine), row_azimuths, row);
+      const auto a = static_cast<float>(0.5 * step * sine / kParts);
+      const auto b = static_cast<float>(0.5 * step * std::sqrt(1.0 - sine * sine) / kParts);
+      for (std::size_t i = 0; i < azimuths.size(); ++i) {
+        float* into = &table[(i / kParts * kNodes + node) * 2 * stride_];
+        const float* radiance = &row[i * view.stride()];
+        for (std::size_t band = 0; band < bands_; ++band) {
+          into[band] += a * radiance[band];
+          into[stride_ + band] += b * radiance[band];
+        }
+      }
+    }
+  }
+  for (std::size_t i = 0; i < table.size(); ++i) {
+    const std::size_t band = i % stride_;
+    if (band < bands_) table[i] /= std::max(level_plane[band], 1e-30F);
+  }
+  return table;
+}
+
+std::size_t OpenSky::Level(double altitude_m) const {
+  const double at =
+      (altitude_m - lowest_m_) / (highest_m_ - lowest_m_) * static_cast<double>(kLevels - 1);
+  return static_cast<std::size_t>(
+      std::lround(std::clamp(at, 0.0, static_cast<double>(kLevels - 1))));
+}
+
+Bands<float> OpenSky::LevelIrradiance(double altitude_m, double mu_s) const {
+  const auto tap = [](double at, std::size_t nodes) {
+    const double clamped = std::clamp(at, 0.0, static_cast<double>(nodes - 1));
+    const std::size_t node = std::min(static_cast<std::size_t>(clamped), nodes - 2);
+    return NodeTap{node, static_cast<float>(clamped - static_cast<double>(node))};
+  };
+  const NodeTap level =
+      tap((altitude_m - lowest_m_) / (highest_m_ - lowest_m_) * static_cast<double>(kLevels - 1),
+          kLevels);
+  const NodeTap sun = tap((mu_s - first_mu_s_) / mu_s_step_, kSuns);
+  const float* low = &level_irradiance_[(level.node * kSuns + sun.node) * stride_];
+  const float* high = low + kSuns * stride_;
+  Bands<float> irradiance(bands_);
+  for (std::size_t band = 0; band < bands_; ++band) {
+    const float a = low[band] + sun.share * (low[stride_ + band] - low[band]);
+    const float b = high[band] + sun.share * (high[stride_ + band] - high[band]);
+    irradiance[band] = a + level.share * (b - a);
+  }
+  return irradiance;
+}
+
+// The integral between two sines is the difference of the integrals above them. The weights of all
+// sectors are computed first, then four bands at a time, so that both loops vectorise.
+Bands<float> OpenSky::Irradiance(double altitude_m, double mu_s, const SurfaceSectors& surface,
+                                 const Horizons& horizons) const {
+  constexpr float kScale = static_cast<float>(kNodes - 1) / (1.0F - HorizonMap::kLowest);
+  constexpr float kLast = static_cast<float>(kNodes - 1);
+  std::array<float, kHorizonAzimuths> at, open;
+  for (std::size_t i = 0; i < kHorizonAzimuths; ++i) {
+    const float from = std::max(horizons[i], surface.lowest[i]);
+    at[i] = std::clamp((from - HorizonMap::kLowest) * kScale, 0.0F, kLast);
+    open[i] = from < surface.highest[i] ? kSkySector : 0.0F;
+  }
+  const float* table = &integral_[Level(altitude_m) * level_floats()];
+  std::array<float, kMaxBands + 4> sum{};
+  const auto add = [&](std::size_t azimuth, float place, float scale) {
+    const auto node = static_cast<std::size_t>(place);  // the last node has no sky above it
+    const float share = place - static_cast<float>(node);
+    const float* low = &table[(azimuth * kNodes + node) * 2 * stride_];
+    const float* high = low + (node + 1 < kNodes ? 2 * stride_ : 0);
+    const float up_low = scale * surface.up * (1.0F - share), up_high = scale * surface.up * share;
+    const float along_low = scale * surface.along[azimuth] * (1.0F - share);
+    const float along_high = scale * surface.along[azimuth] * share;
+    for (std::size_t block = 0; block < stride_; block += 4) {
+      for (std::size_t k = 0; k < 4; ++k) {
+        sum[block + k] += up_low * low[block + k] + up_high * high[block + k] +
+                          along_low * low[stride_ + block + k] +
+                          along_high * high[stride_ + block + k];
+      }
+    }
+  };
+  for (std::size_t i = 0; i < kHorizonAzimuths; ++i) {
+    if (open[i] <= 0.0F) continue;
+    add(i, at[i], open[i]);
+    if (surface.highest[i] < 1.0F) {
+      const float to = (surface.highest[i] - HorizonMap::kLowest) * kScale;
+      add(i, std::clamp(to, 0.0F, kLast), -open[i]);
+    }
+  }
+  Bands<float> irradiance = LevelIrradiance(altitude_m, mu_s);
+  for (std::size_t band = 0; band < bands_; ++band) irradiance[band] *= std::max(sum[band], 0.0F);
+  return irradiance;
+}
+
+// Radiance between two nodes is the difference of A over that of its weight; at low elevations B is
+// used, which does not vanish at the horizontal.
+void OpenSky::KeepRadiances() {
+  constexpr float kStep = (1.0F - HorizonMap::kLowest) / static_cast<float>(kNodes - 1);
+  radiance_.assign(kLevels * kHorizonAzimuths * kNodes * stride_, 0.0F);
+  for (std::size_t row = 0; row < kLevels * kHorizonAzimuths; ++row) {
+    for (std::size_t node = 0; node + 1 < kNodes; ++node) {
+      const float low = HorizonMap::kLowest + static_cast<float>(node) * kStep;
+      const float high = low + kStep;
+      const bool steep = low > 0.5F;
+      const float area =
+          steep ? 0.5F * (high * high - low * low) : Area().At(high) - Area().At(low);
+      const float* from = &integral_[((row * kNodes + node) * 2 + (steep ? 0 : 1)) * stride_];
+      float* into = &radiance_[(row * kNodes + node) * stride_];
+      for (std::size_t band = 0; band < bands_; ++band)
+        into[band] = (from[band] - from[2 * stride_ + band]) / area;
+    }
+    // Directions below the first step above the horizontal have the radiance of this step.
+    const auto first = static_cast<std::size_t>(std::ceil(-HorizonMap::kLowest / kStep));
+    float* of_row = &radiance_[row * kNodes * stride_];
+    for (std::size_t node = 0; node < first; ++node)
+      std::copy_n(of_row + first * stride_, stride_, of_row + node * stride_);
+  }
+}
+
+Bands<float> OpenSky::Radiance(double altitude_m, double mu_s, const glm::dvec3& direction) const {
+  constexpr float kScale = static_cast<float>(kNodes - 1) / (1.0F - HorizonMap::kLowest);
+  const float cell =
+      std::clamp((static_cast<float>(direction.z) - HorizonMap::kLowest) * kScale - 0.5F, 0.0F,
+                 static_cast<float>(kNodes - 2) - 1e-3F);
+  const auto node = static_cast<std::size_t>(cell);
+  const float up = cell - static_cast<float>(node);
+  const double turn = std::atan2(direction.y, direction.x) / (2.0 * kPi);
+  const double at = (turn - std::floor(turn)) * static_cast<double>(kHorizonAzimuths);
+  const auto along = static_cast<float>(at - std::floor(at));
+  const std::size_t sector = static_cast<std::size_t>(at) % kHorizonAzimuths;
+  const std::size_t next = (sector + 1) % kHorizonAzimuths;
+  const std::size_t level = Level(altitude_m) * kHorizonAzimuths;
+  const float* here = &radiance_[((level + sector) * kNodes + node) * stride_];
+  const float* there = &radiance_[((level + next) * kNodes + node) * stride_];
+  Bands<float> radiance = LevelIrradiance(altitude_m, mu_s);
+  for (std::size_t band = 0; band < bands_; ++band) {
+    const float a = here[band] + up * (here[stride_ + band] - here[band]);
+    const float b = there[band] + up * (there[stride_ + band] - there[band]);
+    radiance[band] *= std::max(a + along * (b - a), 0.0F);
+  }
+  return radiance;
+}
+
+}  // namespace alpenglow::renderer

@@ -1,0 +1,316 @@
+// SPDX-License-Identifier: MIT
+#include "renderer/lamps/lamp_tree.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+#include <glm/matrix.hpp>
+#include <limits>
+
+#include "atmosphere/math/constants.h"
+#include "atmosphere/math/numerics.h"
+#include "atmosphere/base/error.h"
+#include "renderer/ground/band_light.h"
+
+namespace alpenglow::renderer {
+namespace {
+
+constexpr int kDistances = 16;
+constexpr double kNearest_m = 0.2;
+constexpr double kFarthestGlow_m = 2e4;
+constexpr double kDarkest = 1e-250;  // lower limit of values in logarithms
+/// Sines of the lamp's elevation, dense near 0, where distant lamps on the ground are.
+constexpr std::array<double, 9> kSines{-1.0, -0.6, -0.2, -0.04, 0.0, 0.04, 0.2, 0.6, 1.0};
+constexpr int kElevations = static_cast<int>(kSines.size());
+
+double DistanceNumber(int i) {
+  return kNearest_m * std::pow(kFarthestGlow_m / kNearest_m, i / (kDistances - 1.0));
+}
+
+/// Returns the moments of the clamped cosine over those of Y_l0, so that E = sum of A_l L_lm Y_lm.
+double LobeOf(int l) {
+  switch (l) {
+    case 0:
+      return kPi;
+    case 1:
+      return 2.0 * kPi / 3.0;
+    case 2:
+      return kPi / 4.0;
+    case 4:
+      return -kPi / 24.0;
+    case 6:
+      return kPi / 64.0;
+    default:
+      return 0.0;
+  }
+}
+
+/// Directions around the direction to the lamp, over half a turn, because the light is symmetric
+/// about the vertical plane through the lamp. Weights are solid angles of both halves.
+struct Around {
+  double alpha, turn, weight;
+};
+const std::vector<Around>& Directions() {
+  static const auto kDirections = [] {
+    constexpr std::array<double, 6> kCuts{0.0, 0.05, 0.2, 0.6, 1.3, kPi};
+    constexpr int kTurns = 8;
+    const GaussRule& rule = GaussLegendre(3);
+    std::vector<Around> directions;
+    for (std::size_t piece = 0; piece + 1 < kCuts.size(); ++piece) {
+      const double width = kCuts[piece + 1] - kCuts[piece];
+      for (std::size_t i = 0; i < rule.node.size(); ++i) {
+        const double alpha = kCuts[piece] + width * rule.node[i];
+        for (int k = 0; k < kTurns; ++k) {
+          directions.push_back({alpha, kPi * (k + 0.5) / kTurns,
+                                rule.weight[i] * width * std::sin(alpha) * 2.0 * kPi / kTurns});
+        }
+      }
+    }
+    return directions;
+  }();
+  return kDirections;
+}
+
+/// Interpolation position of a value among the ascending points of an axis.
+struct GlowPlace {
+  int low;
+  double share;  // weight of the next point
+};
+GlowPlace GlowPlaceOf(double sine) {
+  int low = 0;
+  while (low + 2 < kElevations && sine >= kSines[static_cast<std::size_t>(low + 1)]) ++low;
+  const double from = kSines[static_cast<std::size_t>(low)];
+  const double to = kSines[static_cast<std::size_t>(low + 1)];
+  return {low, std::clamp((sine - from) / (to - from), 0.0, 1.0)};
+}
+
+/// Returns the harmonics of a normal about the direction to the lamp. `lift` is perpendicular to
+/// it, in the vertical plane.
+Moments HarmonicsOf(const glm::dvec3& normal, const glm::dvec3& towards, const glm::dvec3& lift) {
+  const double mu = std::clamp(glm::dot(normal, towards), -1.0, 1.0);
+  const glm::dvec3 aside = normal - mu * towards;
+  const double lengths = glm::length(lift) * glm::length(aside);
+  const double azimuth =
+      lengths > 1e-9 ? std::clamp(glm::dot(lift, aside) / lengths, -1.0, 1.0) : 1.0;
+  return SphericalHarmonics(LampGlow::kDegree, static_cast<float>(mu), static_cast<float>(azimuth));
+}
+
+double Facing(const Moments& lobe, const Moments& harmonics) {
+  float sum = 0.0F;
+  for (std::size_t k = 0; k < MomentCount(LampGlow::kDegree); ++k) sum += lobe[k] * harmonics[k];
+  return static_cast<double>(sum);
+}
+
+}  // namespace
+
+LampGlow::LampGlow(const std::vector<LampLayer>& layers, double lamp_altitude_m,
+                   double ground_altitude_m)
+    : lamp_altitude_m_(lamp_altitude_m),
+      ground_altitude_m_(ground_altitude_m),
+      lights_(static_cast<std::size_t>(kDistances * kElevations) *
+              layers.front().scattering_per_m.count) {
+  ALPENGLOW_ENSURE(ground_altitude_m, <=, lamp_altitude_m);
+  air_.layers = layers;
+  tbb::parallel_for(0, kDistances * kElevations, [&](int entry) {
+    const std::vector<Light> lights = LightAt(
+        DistanceNumber(entry / kElevations), kSines[static_cast<std::size_t>(entry % kElevations)]);
+    std::copy(lights.begin(), lights.end(),
+              lights_.begin() + entry * static_cast<std::ptrdiff_t>(lights.size()));
+  });
+}
+
+std::vector<LampGlow::Light> LampGlow::LightAt(double distance_m, double sine) const {
+  constexpr int kNodes = 8;
+  constexpr double kFar_m = 20e3;
+  const double cosine = std::sqrt(std::max(1.0 - sine * sine, 0.0));
+  const glm::dvec3 point(0.0, 0.0, lamp_altitude_m_ - distance_m * sine);
+  const glm::dvec3 towards(cosine, 0.0, sine), lift(-sine, 0.0, cosine), side(0.0, 1.0, 0.0);
+  const double ground_m = std::min(ground_altitude_m_, point.z);
+  Lamp lamp;
+  lamp.position_m = point + distance_m * towards;
+  const std::size_t bands = air_.bands();
+  std::vector<std::array<double, kMaxMoments>> sums(bands);
+  std::vector<double> on_level(bands);
+  for (const Around& around : Directions()) {
+    LampSegment segment;
+    segment.origin_m = point;
+    segment.direction =
+        std::cos(around.alpha) * towards +
+        std::sin(around.alpha) * (std::cos(around.turn) * lift + std::sin(around.turn) * side);
+    segment.end_m = 4.0 * distance_m + kFar_m;
+    const double fall = -segment.direction.z;
+    if (fall > 0.0) segment.end_m = std::min(segment.end_m, (point.z - ground_m) / fall);
+    if (!(segment.end_m > 0.0)) continue;
+    const Bands<double> radiance = Airlight(air_, lamp, segment, kNodes);
+    const Moments harmonics =
+        SphericalHarmonics(kDegree, static_cast<float>(std::cos(around.alpha)),
+                           static_cast<float>(std::cos(around.turn)));
+    for (std::size_t band = 0; band < bands; ++band) {
+      on_level[band] += around.weight * radiance[band] * std::max(-fall, 0.0);
+      for (std::size_t k = 0; k < MomentCount(kDegree); ++k)
+        sums[band][k] += around.weight * radiance[band] * static_cast<double>(harmonics[k]);
+    }
+  }
+  std::vector<Light> lights(bands);
+  const Moments upwards = HarmonicsOf({0.0, 0.0, 1.0}, towards, lift);
+  for (std::size_t band = 0; band < bands; ++band) {
+    const double mean = std::max(sums[band][0], kDarkest);
+    lights[band].log_mean = std::log(mean * distance_m);
+    for (int l = 0; l <= kDegree; ++l) {
+      for (int m = 0; m <= l; ++m) {
+        const std::size_t k = MomentIndex(l, m);
+        lights[band].lobe[k] = static_cast<float>(LobeOf(l) * sums[band][k] / mean);
+      }
+    }
+    lights[band].level = on_level[band] / mean - Facing(lights[band].lobe, upwards);
+  }
+  return lights;
+}
+
+Bands<double> LampGlow::On(const glm::dvec3& to_lamp, const glm::dvec3& normal,
+                           const glm::dvec3& up) const {
+  const double length = std::max(glm::length(to_lamp), 1e-6);
+  const double distance = std::clamp(length, kNearest_m, kFarthestGlow_m);
+  const glm::dvec3 towards = to_lamp / length;
+  const double sine = std::clamp(glm::dot(towards, up), -1.0, 1.0);
+  const Moments harmonics = HarmonicsOf(normal, towards, up - sine * towards);
+  const double u =
+      std::log(distance / kNearest_m) / std::log(kFarthestGlow_m / kNearest_m) * (kDistances - 1.0);
+  const int low = std::min(static_cast<int>(u), kDistances - 2);
+  const GlowPlace elevation = GlowPlaceOf(sine);
+  const double upwards = std::max(glm::dot(normal, up), 0.0);
+  const double levelness = upwards * upwards;
+  const double near = DistanceNumber(low);
+  const double share = (distance - near) / (DistanceNumber(low + 1) - near);
+  Bands<double> irradiance(air_.bands());
+  for (std::size_t band = 0; band < irradiance.count; ++band) {
+    double log_mean = 0.0, facing = 0.0;
+    for (const int i : {0, 1}) {
+      for (const int j : {0, 1}) {
+        const double weight =
+            (i == 0 ? 1.0 - share : share) * (j == 0 ? 1.0 - elevation.share : elevation.share);
+        const auto entry = static_cast<std::size_t>((low + i) * kElevations + elevation.low + j);
+        const Light& light = lights_[entry * irradiance.count + band];
+        log_mean += weight * light.log_mean;
+        facing += weight * (Facing(light.lobe, harmonics) + levelness * light.level);
+      }
+    }
+    irradiance[band] = std::exp(log_mean) / distance * std::max(facing, 0.0);
+  }
+  return irradiance;
+}
+
+LampTree::LampTree(std::vector<PlacedLamp> lamps, const LampEye& eye, const LampStage& stage) {
+  for (PlacedLamp& lamp : lamps) Add(ShiningOn(eye, stage, std::move(lamp)), stage);
+  lamps_ = nodes_.size();
+  LampNodes even;
+  for (std::uint32_t i = 0; i < lamps_; ++i) {
+    const bool is_even = Light(i).lamp.profile.kind == LampProfile::Kind::kIsotropic;
+    (is_even ? even : roots_).push_back(i);
+  }
+  if (!even.empty()) roots_.push_back(Join(std::move(even), eye, stage));
+  MakeGlows(stage);
+}
+
+LampNode& LampTree::Add(PlacedLamp placed, const LampStage& stage) {
+  LampNode node;
+  const double altitude_m = stage.AltitudeOf(placed.lamp.position_m);
+  for (const LampLayer& layer : placed.middle_air.layers) {
+    node.extinction_per_m += layer.extinction_per_m[0] * layer.Density(altitude_m);
+  }
+  node.light = std::move(placed);
+  nodes_.push_back(std::move(node));
+  return nodes_.back();
+}
+
+LampNodes LampTree::AlongLongestSide(LampNodes members) const {
+  glm::dvec3 low(std::numeric_limits<double>::infinity()), high(-low);
+  for (const std::uint32_t i : members) {
+    low = glm::min(low, Light(i).lamp.position_m);
+    high = glm::max(high, Light(i).lamp.position_m);
+  }
+  const glm::dvec3 size = high - low;
+  const int axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
+  std::sort(members.begin(), members.end(), [&](std::uint32_t a, std::uint32_t b) {
+    const double at_a = Light(a).lamp.position_m[axis];
+    const double at_b = Light(b).lamp.position_m[axis];
+    return at_a != at_b ? at_a < at_b : a < b;
+  });
+  return members;
+}
+
+std::uint32_t LampTree::Join(LampNodes members, const LampEye& eye, const LampStage& stage) {
+  if (members.size() == 1) return members.front();
+  members = AlongLongestSide(std::move(members));
+  const auto middle = members.begin() + static_cast<std::ptrdiff_t>(members.size() / 2);
+  const std::uint32_t left = Join({members.begin(), middle}, eye, stage);
+  const std::uint32_t right = Join({middle, members.end()}, eye, stage);
+  AddSum(members, eye, stage).children = {left, right};
+  return static_cast<std::uint32_t>(nodes_.size() - 1);
+}
+
+LampNode& LampTree::AddSum(const LampNodes& members, const LampEye& eye, const LampStage& stage) {
+  PlacedLamp sum;
+  sum.intensity = Bands<float>(stage.bands());
+  glm::dvec3 centre(0.0);
+  for (const std::uint32_t i : members) {
+    const PlacedLamp& light = Light(i);
+    sum.candela += light.candela;
+    centre += light.candela * light.lamp.position_m;
+    sum.lamp.radius_m = std::max(sum.lamp.radius_m, light.lamp.radius_m);
+    sum.intensity = sum.intensity + light.intensity;
+  }
+  sum.lamp.position_m = centre / sum.candela;
+  sum.above_ground_m = stage.HeightOverGround(sum.lamp.position_m);
+  sum = Before(eye, stage, std::move(sum));
+  glm::dmat3 moments(0.0);
+  double radius = 0.0;
+  for (const std::uint32_t i : members) {
+    const glm::dvec3 off = Light(i).lamp.position_m - sum.lamp.position_m;
+    moments += Light(i).candela / sum.candela * glm::outerProduct(off, off);
+    radius = std::max(radius, glm::length(off));
+  }
+  LampNode& node = Add(std::move(sum), stage);
+  node.moments = moments;
+  node.radius_m = radius;
+  return node;
+}
+
+void LampTree::StandBefore(const LampEye& eye, const LampStage& stage) {
+  for (std::size_t i = 0; i < nodes_.size(); ++i) {
+    PlacedLamp& light = nodes_[i].light;
+    light =
+        i < lamps_ ? ShiningOn(eye, stage, std::move(light)) : Before(eye, stage, std::move(light));
+  }
+}
+
+// Lamps at similar places share a table: altitudes within a tenth of the thinnest layer's scale
+// height, and heights above the ground within a fifth.
+void LampTree::MakeGlows(const LampStage& stage) {
+  double thinnest_m = std::numeric_limits<double>::infinity();
+  for (const LampLayer& layer : stage.layers())
+    thinnest_m = std::min(thinnest_m, layer.scale_height_m);
+  const double alike_m = std::clamp(0.1 * thinnest_m, 0.5, 100.0);
+  struct Stand {
+    double altitude_m, above_m;
+  };
+  std::vector<Stand> stands;
+  for (const LampNode& node : nodes_) {
+    const Stand here{stage.AltitudeOf(node.light.lamp.position_m), node.light.above_ground_m};
+    const auto same = std::find_if(stands.begin(), stands.end(), [&](const Stand& other) {
+      return std::abs(other.altitude_m - here.altitude_m) <= alike_m &&
+             std::abs(other.above_m - here.above_m) <= 0.2 * std::max(here.above_m, 0.5);
+    });
+    glow_of_node_.push_back(static_cast<std::size_t>(same - stands.begin()));
+    if (same != stands.end()) continue;
+    stands.push_back(here);
+    glows_.push_back(std::make_shared<const LampGlow>(stage.layers(), here.altitude_m,
+                                                      here.altitude_m - here.above_m));
+  }
+}
+
+}  // namespace alpenglow::renderer

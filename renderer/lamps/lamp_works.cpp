@@ -1,0 +1,152 @@
+// SPDX-License-Identifier: MIT
+#include "renderer/lamps/lamp_works.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+
+#include "atmosphere/reference/airlight_judge.h"
+#include "atmosphere/math/constants.h"
+#include "atmosphere/math/numerics.h"
+
+namespace alpenglow::renderer {
+namespace {
+
+double Logarithmic(double low, double high, double u) { return low * std::pow(high / low, u); }
+
+/// Adds molecules and a little haze at 550 nm, as in the default air at the ground.
+void AddClearAir(LampAir& air) {
+  LampLayer molecules = air.layers[0];
+  molecules.scale_height_m = 8000.0;
+  molecules.scattering_per_m[0] = molecules.extinction_per_m[0] = 1.2e-5;
+  molecules.phase = {.kind = PhaseKind::kRayleigh};
+  LampLayer haze = air.layers[0];
+  haze.scale_height_m = 1200.0;
+  haze.scattering_per_m[0] = 3.8e-5;
+  haze.extinction_per_m[0] = 4.2e-5;
+  air.layers.push_back(molecules);
+  air.layers.push_back(haze);
+}
+
+void MakeBeam(int i, Lamp& lamp) {
+  lamp.profile.kind = LampProfile::Kind::kCone;
+  lamp.profile.inner_rad = 0.05 + 0.3 * Halton(i, 17);
+  lamp.profile.outer_rad = 0.1 + 0.6 * Halton(i, 17);
+  const double z = 2.0 * Halton(i, 19) - 1.0;
+  const double azimuth = 2.0 * kPi * Halton(i, 23);
+  const double r = std::sqrt(1.0 - z * z);
+  lamp.axis = {r * std::cos(azimuth), r * std::sin(azimuth), z};
+  lamp.side = glm::normalize(glm::cross(lamp.axis, glm::dvec3(0.3, -0.5, 0.8)));
+}
+
+/// The ray relative to the lamp: its nearest point, and the distance there.
+struct Approach {
+  double nearest_m, distance_m;
+
+  explicit Approach(const LampWork& work) {
+    const glm::dvec3 to_lamp = work.lamp.position_m - work.segment.origin_m;
+    nearest_m = glm::dot(to_lamp, work.segment.direction);
+    distance_m =
+        std::max(glm::length(to_lamp - nearest_m * work.segment.direction), work.lamp.radius_m);
+  }
+  [[nodiscard]] double Sinh(double t) const { return (t - nearest_m) / distance_m; }
+};
+
+/// Returns the light scattered per metre of the ray.
+double SourceAt(const LampWork& work, const Approach& approach, double t) {
+  const glm::dvec3 point = work.segment.origin_m + t * work.segment.direction;
+  const double sinh = approach.Sinh(t);
+  const double squared = 1.0 + sinh * sinh;
+  double scattered = 0.0;
+  for (const LampLayer& layer : work.air.layers) {
+    scattered += layer.scattering_per_m[0] * layer.Density(work.air.AltitudeOf(point)) *
+                 Phase(layer.phase, -sinh / std::sqrt(squared));
+  }
+  return scattered * TransmittanceBetween(work.air, work.segment.origin_m, point)[0] *
+         TransmittanceBetween(work.air, point, work.lamp.position_m)[0] *
+         RelativeIntensity(work.lamp, glm::normalize(point - work.lamp.position_m)) /
+         (approach.distance_m * approach.distance_m * squared);
+}
+
+/// Position s on a ray as a function of a variable v, t = nearest + D s(v), and ds / dv.
+struct Mapped {
+  double s, slope;
+};
+double VariableOf(LampRule rule, double s) {
+  switch (rule) {
+    case LampRule::kUniform:
+      return s;
+    case LampRule::kEquiAngular:
+      return std::atan(s);
+    case LampRule::kHalfAngle:
+      return std::tanh(0.5 * std::asinh(s));
+    case LampRule::kAsinh:
+      return std::asinh(s);
+  }
+  return s;
+}
+Mapped FromVariable(LampRule rule, double v) {
+  switch (rule) {
+    case LampRule::kUniform:
+      return {v, 1.0};
+    case LampRule::kEquiAngular:
+      return {std::tan(v), 1.0 + std::tan(v) * std::tan(v)};
+    case LampRule::kHalfAngle: {
+      const double x = 2.0 * std::atanh(v);
+      return {std::sinh(x), std::cosh(x) * 2.0 / ((1.0 - v) * (1.0 + v))};
+    }
+    case LampRule::kAsinh:
+      return {std::sinh(v), std::cosh(v)};
+  }
+  return {v, 1.0};
+}
+
+}  // namespace
+
+LampWork LampWorkNumber(int i, const LampWorkKind& kind) {
+  LampWork work;
+  const double sigma = Logarithmic(1e-4, 0.1, Halton(i, 2));
+  const double length = Logarithmic(10.0, 1000.0, Halton(i, 3));
+  const double across = Logarithmic(0.1, 100.0, Halton(i, 5));
+  const double along = kind.through ? length * Halton(i, 7) : length * (1.4 * Halton(i, 7) - 0.2);
+  const double pitch = std::asin(2.0 * Halton(i, 11) - 1.0);
+  const double turn = 2.0 * kPi * Halton(i, 13);
+  work.air =
+      HomogeneousAir(0.9 * sigma, sigma, {.kind = PhaseKind::kHenyeyGreenstein, .g = kind.g});
+  work.air.layers[0].scale_height_m = kind.scale_height_m;
+  if (kind.clear_air) AddClearAir(work.air);
+  const glm::dvec3 forward(std::cos(pitch), 0.0, std::sin(pitch));
+  const glm::dvec3 lift(-std::sin(pitch), 0.0, std::cos(pitch));
+  const glm::dvec3 off = std::cos(turn) * lift + std::sin(turn) * glm::dvec3(0.0, 1.0, 0.0);
+  // The altitude at which sigma is given is the lowest of the test case.
+  work.segment = {glm::dvec3(0.0), forward, 0.0, length};
+  work.lamp.position_m = along * forward + (kind.through ? 0.0 : across) * off;
+  if (kind.through) work.lamp.radius_m = 0.1;
+  work.air.altitude_at_origin_m = -std::min({0.0, length * forward.z, work.lamp.position_m.z});
+  if (kind.beam) MakeBeam(i, work.lamp);
+  const judge::LampLight judged = judge::AirlightAlong(work.air, work.lamp, work.segment);
+  work.truth = judged.radiance[0];
+  work.converged = judged.converged;
+  return work;
+}
+
+double AirlightByRule(LampRule rule, const LampWork& work, int nodes) {
+  const Approach approach(work);
+  const double low = VariableOf(rule, approach.Sinh(work.segment.begin_m));
+  const double high = VariableOf(rule, approach.Sinh(work.segment.end_m));
+  double sum = 0.0;
+  const auto add = [&](double share, double weight) {
+    const Mapped at = FromVariable(rule, low + (high - low) * share);
+    sum += weight * (high - low) * at.slope * approach.distance_m *
+           SourceAt(work, approach, approach.nearest_m + approach.distance_m * at.s);
+  };
+  if (rule == LampRule::kUniform || rule == LampRule::kEquiAngular) {
+    for (int i = 0; i < nodes; ++i) add((i + 0.5) / nodes, 1.0 / nodes);
+  } else {
+    const GaussRule& gauss = GaussLegendre(nodes);
+    for (std::size_t i = 0; i < gauss.node.size(); ++i) add(gauss.node[i], gauss.weight[i]);
+  }
+  return sum;
+}
+
+}  // namespace alpenglow::renderer

@@ -1,0 +1,374 @@
+// SPDX-License-Identifier: MIT
+#include "renderer/illumination/terrain_light.h"
+
+#include <gtest/gtest.h>
+#include <tbb/global_control.h>
+
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <limits>
+
+#include "atmosphere/math/constants.h"
+#include "atmosphere/math/numerics.h"
+#include "atmosphere/astronomy/sun.h"
+#include "lut/sky/sky_view.h"
+#include "renderer/ground/reflectance.h"
+#include "renderer/illumination/aerial_perspective.h"
+#include "renderer/terrain/terrain.h"
+#include "tests/fixtures/lit_air.h"
+#include "tests/fixtures/rough_land.h"
+
+namespace alpenglow::renderer {
+namespace {
+
+const tests::LitAir& TheAir() {
+  static const tests::LitAir air(MediumPreset("bruneton2017"));
+  return air;
+}
+
+glm::dvec3 SunAtElevation(double degrees) {
+  return DirectionFromAngles(degrees * kRadiansPerDegree, 200.0 * kRadiansPerDegree).xyz;
+}
+
+const glm::dvec3 kUp(0.0, 0.0, 1.0);
+
+Horizons OpenTo(float sine) {
+  Horizons horizons;
+  horizons.fill(sine);
+  return horizons;
+}
+
+glm::dvec3 Leaning(double degrees, double azimuth_degrees) {
+  const double lean = degrees * kRadiansPerDegree, azimuth = azimuth_degrees * kRadiansPerDegree;
+  return {std::sin(lean) * std::cos(azimuth), std::sin(lean) * std::sin(azimuth), std::cos(lean)};
+}
+
+/// The sky's irradiance by midpoints in elevation's sine and azimuth.
+double IrradianceByQuadrature(const glm::dvec3& to_sun, double altitude_m, const glm::dvec3& normal,
+                              double from_sine) {
+  constexpr int kSines = 200, kAzimuths = 144;
+  const SkyView view(TheAir().air, TheAir().diffuse, altitude_m, to_sun.z);
+  const double sun = std::atan2(to_sun.y, to_sun.x);
+  double sum = 0.0;
+  for (int i = 0; i < kSines; ++i) {
+    const double share = (i + 0.5) / kSines;
+    const double sine = from_sine + (1.0 - from_sine) * share * share;  // dense low down
+    const double width = (1.0 - from_sine) * 2.0 * share / kSines;
+    const double cosine = std::sqrt(1.0 - sine * sine);
+    for (int k = 0; k < kAzimuths; ++k) {
+      const double azimuth = 2.0 * kPi * (k + 0.5) / kAzimuths;
+      const glm::dvec3 d(cosine * std::cos(azimuth), cosine * std::sin(azimuth), sine);
+      const double facing = glm::dot(normal, d);
+      if (facing > 0.0)
+        sum +=
+            static_cast<double>(view.Radiance(std::acos(sine), azimuth - sun)[1]) * facing * width;
+    }
+  }
+  return sum * 2.0 * kPi / kAzimuths;
+}
+
+TEST(OpenSky, OfAPlainIsTheIrradianceFromAbove) {
+  for (const double elevation : {60.0, 20.0, 3.0, -4.0}) {
+    const glm::dvec3 to_sun = SunAtElevation(elevation);
+    const OpenSky sky(TheAir().air, TheAir().diffuse, to_sun, {0.0, 3000.0, 5e4});
+    const auto open = sky.Irradiance(0.0, to_sun.z, SectorsOf(kUp), OpenTo(0.0F));
+    const auto known = TheAir().diffuse.SkyIrradiance(0.0, to_sun.z);
+    for (std::size_t band = 0; band < open.count; ++band) {
+      EXPECT_NEAR(open[band] / known[band], 1.0F, 0.02F)
+          << "sun at " << elevation << "; the two integrate in different nodes";
+    }
+  }
+}
+
+TEST(OpenSky, OnAnySlopeUnderAnyHorizonIsTheIntegralOverTheOpenPart) {
+  for (const double elevation : {40.0, 5.0}) {
+    const glm::dvec3 to_sun = SunAtElevation(elevation);
+    const OpenSky sky(TheAir().air, TheAir().diffuse, to_sun, {0.0, 3000.0, 5e4});
+    for (const double lean : {0.0, 30.0, 70.0}) {
+      for (const double azimuth : {10.0, 130.0, 260.0}) {
+        for (const double horizon : {0.0, 0.3}) {
+          const glm::dvec3 normal = Leaning(lean, azimuth);
+          const double expected = IrradianceByQuadrature(to_sun, 1500.0, normal, horizon);
+          const auto open = sky.Irradiance(1500.0, to_sun.z, SectorsOf(normal),
+                                           OpenTo(static_cast<float>(horizon)));
+          EXPECT_NEAR(static_cast<double>(open[1]) / expected, 1.0, 0.02)
+              << "sun " << elevation << ", leaning " << lean << " to " << azimuth << ", horizon "
+              << horizon << ": sectors of 22.5 degrees";
+        }
+      }
+    }
+  }
+}
+
+TEST(OpenSky, BehindAClosedHorizonIsDark) {
+  const glm::dvec3 to_sun = SunAtElevation(40.0);
+  const OpenSky sky(TheAir().air, TheAir().diffuse, to_sun, {0.0, 3000.0, 5e4});
+  for (const double lean : {0.0, 60.0}) {
+    const auto none = sky.Irradiance(500.0, to_sun.z, SectorsOf(Leaning(lean, 45.0)), OpenTo(1.0F));
+    EXPECT_EQ(none[0], 0.0F);
+  }
+}
+
+TEST(OpenSky, RadianceIsThatOfTheSky) {
+  const glm::dvec3 to_sun = SunAtElevation(40.0);
+  const OpenSky sky(TheAir().air, TheAir().diffuse, to_sun, {0.0, 3000.0, 5e4});
+  const SkyView view(TheAir().air, TheAir().diffuse, 0.0, to_sun.z);
+  for (const double sine : {0.05, 0.2, 0.5, 0.9}) {
+    for (const double azimuth : {0.3, 1.4, 2.9}) {  // away from the aureole
+      const double cosine = std::sqrt(1.0 - sine * sine);
+      const glm::dvec3 d(cosine * std::cos(azimuth), cosine * std::sin(azimuth), sine);
+      const double known = static_cast<double>(
+          view.Radiance(std::acos(sine), azimuth - std::atan2(to_sun.y, to_sun.x))[1]);
+      EXPECT_NEAR(static_cast<double>(sky.Radiance(0.0, to_sun.z, d)[1]) / known, 1.0, 0.05)
+          << "linear over sectors of 22.5 degrees";
+    }
+  }
+}
+
+TEST(SectorIntegral, IsTheIntegralOverAPartOfASector) {
+  for (const double low : {-0.9, -0.2, 0.0, 0.4}) {
+    for (const double high : {0.5, 0.97, 1.0}) {
+      double up = 0.0, along = 0.0;
+      for (int i = 0; i < 20000; ++i) {
+        const double s = low + (high - low) * (i + 0.5) / 20000;
+        up += s * (high - low) / 20000;
+        along += std::sqrt(1.0 - s * s) * (high - low) / 20000;
+      }
+      EXPECT_NEAR(static_cast<double>(SectorIntegral(0.6F, 0.8F, static_cast<float>(low),
+                                                     static_cast<float>(high))),
+                  0.6 * up + 0.8 * along, 1e-4);
+    }
+  }
+}
+
+/// Mountains with a grey ground, lit by sun and sky, and the slow way to light them: rays.
+class Mountains {
+ public:
+  explicit Mountains(double sun_degrees, float albedo)
+      : to_sun_(SunAtElevation(sun_degrees)),
+        albedo_(albedo),
+        terrain_(LandMesh(RoughLand, 129, 60.0)),
+        horizons_(std::make_shared<const TerrainHorizons>(terrain_.mesh(), TheAir().medium)),
+        light_(horizons_, TheAir().air, TheAir().diffuse, to_sun_),
+        view_(TheAir().air, TheAir().diffuse, 1500.0, to_sun_.z),
+        aerial_(TheAir().air, TheAir().diffuse) {
+    light_.AddSlopes(
+        TheAir().medium,
+        [this](const SlopePlace& place) {
+          const glm::dvec3 point = place.point + 2.0 * place.normal;
+          return Sent(Direct(point, place.normal, place.normal) +
+                      light_.Irradiance(At(point, place.normal)));
+        },
+        to_sun_.z);
+  }
+
+  [[nodiscard]] static SlopePoint At(const glm::dvec3& point, const glm::dvec3& normal,
+                                     double mu_s) {
+    return {point, normal, kUp, point.z, mu_s};
+  }
+  [[nodiscard]] SlopePoint At(const glm::dvec3& point, const glm::dvec3& normal) const {
+    return At(point, normal, to_sun_.z);
+  }
+  [[nodiscard]] const TerrainLight& light() const { return light_; }
+  [[nodiscard]] const glm::dvec3& to_sun() const { return to_sun_; }
+
+  [[nodiscard]] TerrainHit Ground(double x, double y) const {
+    return *terrain_.Intersect({x, y, 9000.0}, {0.0, 0.0, -1.0});
+  }
+
+  /// Of the sky, and of the ground in view, which the sky and the sun light.
+  struct ByRays {
+    double sky = 0.0, slopes = 0.0;
+  };
+  [[nodiscard]] ByRays IrradianceByRays(const TerrainHit& at, int rays, bool slopes) const {
+    const glm::dvec3 side = glm::normalize(glm::cross(at.normal, glm::dvec3(0.3, 0.5, 0.7)));
+    const glm::dvec3 other = glm::cross(at.normal, side);
+    ByRays sum;
+    for (int i = 0; i < rays; ++i) {
+      const double u = (i + 0.5) / rays, angle = 2.0 * kPi * Halton(i + 1, 2);
+      const glm::dvec3 d = std::sqrt(u) * (std::cos(angle) * side + std::sin(angle) * other) +
+                           std::sqrt(1.0 - u) * at.normal;
+      if (glm::dot(d, at.geometric_normal) <= 0.0) continue;
+      const glm::dvec3 from = at.smooth_point + 0.2 * at.geometric_normal;
+      const auto hit = terrain_.Intersect(from, d);
+      if (!hit) {
+        const double azimuth = std::atan2(d.y, d.x) - std::atan2(to_sun_.y, to_sun_.x);
+        const auto sky = view_.Radiance(std::acos(std::clamp(d.z, -1.0, 1.0)), azimuth);
+        sum.sky += kPi / rays * static_cast<double>(sky[1]);
+      } else if (slopes) {
+        BandLight irradiance = Direct(hit->smooth_point, hit->normal, hit->geometric_normal);
+        irradiance[1] += static_cast<float>(IrradianceByRays(*hit, 16, false).sky);
+        ViewRay ray{from.z, d.z, to_sun_.z, glm::dot(d, to_sun_)};
+        ray.length_m = hit->distance_m;
+        const AirAlongRay air = aerial_.Along(ray, AerialPerspective::Nodes{});
+        sum.slopes +=
+            kPi / rays *
+            static_cast<double>(air.inscatter[1] + air.transmittance[1] * Sent(irradiance)[1]);
+      }
+    }
+    return sum;
+  }
+
+ private:
+  [[nodiscard]] BandLight Direct(const glm::dvec3& point, const glm::dvec3& normal,
+                                 const glm::dvec3& geometric) const {
+    const double cosine = glm::dot(normal, to_sun_);
+    if (cosine <= 0.0 ||
+        terrain_.Occluded(point, geometric, to_sun_, std::numeric_limits<double>::infinity()))
+      return BandLight(TheAir().air.bands());
+    return static_cast<float>(cosine) * TheAir().air.TransmittanceToSpace(point.z, to_sun_.z);
+  }
+  [[nodiscard]] BandLight Sent(const BandLight& irradiance) const {
+    return static_cast<float>(static_cast<double>(albedo_) / kPi) * irradiance;
+  }
+
+  glm::dvec3 to_sun_;
+  float albedo_;
+  Terrain terrain_;
+  std::shared_ptr<const TerrainHorizons> horizons_;
+  TerrainLight light_;
+  SkyView view_;
+  AerialPerspective aerial_;
+};
+
+TEST(TerrainLight, IsThatOfRaysThatMeetSkyAndSlopes) {
+  // The error that TerrainLight states, and what it would be without horizons.
+  for (const auto& [albedo, bound] : {std::pair{0.15F, 0.04}, {0.8F, 0.09}}) {
+    const Mountains mountains(30.0, albedo);
+    double sum2 = 0.0, sum = 0.0, plain2 = 0.0;
+    constexpr int kPlaces = 24;
+    for (int i = 1; i <= kPlaces; ++i) {
+      const TerrainHit hit =
+          mountains.Ground(5000.0 * (Halton(i, 2) - 0.5), 5000.0 * (Halton(i, 3) - 0.5));
+      const Mountains::ByRays rays = mountains.IrradianceByRays(hit, 192, true);
+      const SlopePoint at = mountains.At(hit.smooth_point, hit.normal);
+      const double error =
+          static_cast<double>(mountains.light().Irradiance(at)[1]) / (rays.sky + rays.slopes) - 1.0;
+      const glm::dvec3 flat(hit.normal.x, hit.normal.y, 0.0);
+      const double azimuth =
+          glm::dot(glm::normalize(flat),
+                   glm::normalize(glm::dvec3(mountains.to_sun().x, mountains.to_sun().y, 0.0)));
+      const double plain =
+          static_cast<double>(TheAir().diffuse.Irradiance(hit.smooth_point.z, mountains.to_sun().z,
+                                                          hit.normal.z, azimuth)[1]) /
+              (rays.sky + rays.slopes) -
+          1.0;
+      sum += error / kPlaces;
+      sum2 += error * error / kPlaces;
+      plain2 += plain * plain / kPlaces;
+    }
+    EXPECT_LT(std::sqrt(sum2), bound) << "albedo " << albedo;
+    EXPECT_LT(std::abs(sum), 0.5 * bound) << "albedo " << albedo;
+    EXPECT_GT(std::sqrt(plain2), 3.0 * std::sqrt(sum2)) << "what horizons are for";
+  }
+}
+
+// Light between slopes has 0/0 for the depth of such air when it is divided by its extinction.
+TEST(TerrainLight, SlopesLightEachOtherThroughAirThatDimsNothing) {
+  Medium medium = TheAir().medium;
+  for (std::vector<double>* list : {&medium.rayleigh_scattering_per_m, &medium.mie_scattering_per_m,
+                                    &medium.mie_extinction_per_m, &medium.ozone_absorption_per_m})
+    std::fill(list->begin(), list->end(), 0.0);
+  const AirIntegrator<float> air(medium);
+  const DiffuseLight diffuse(medium, {.altitudes = 4, .sun_angles = 8, .degree = 2});
+  const Terrain terrain(LandMesh(RoughLand, 17, 480.0));
+  const auto horizons = std::make_shared<const TerrainHorizons>(terrain.mesh(), medium);
+  const glm::dvec3 to_sun = SunAtElevation(30.0);
+  TerrainLight light(horizons, air, diffuse, to_sun);
+  const auto one = [&](const SlopePlace&) {
+    BandLight sent(air.bands());
+    std::fill_n(sent.value.begin(), sent.count, 1.0F);
+    return sent;
+  };
+  light.AddSlopes(medium, one, to_sun.z);
+  float most = 0.0F;
+  for (int i = 0; i < 16; ++i) {
+    const auto hit =
+        terrain.Intersect({450.0 * (i - 8), 170.0 * (i - 8), 9000.0}, {0.0, 0.0, -1.0});
+    if (!hit) continue;
+    const BandLight irradiance =
+        light.Irradiance({hit->smooth_point, hit->normal, kUp, hit->smooth_point.z, to_sun.z});
+    for (std::size_t band = 0; band < irradiance.count; ++band) {
+      ASSERT_TRUE(std::isfinite(irradiance[band])) << i;
+      most = std::max(most, irradiance[band]);
+    }
+  }
+  EXPECT_GT(most, 0.0F) << "slopes must have been in view";
+}
+
+TEST(TerrainLight, IsTheSameForAnyNumberOfThreads) {
+  std::vector<float> made;
+  for (const std::size_t threads : {1U, 2U, 8U}) {
+    const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
+    const Mountains mountains(20.0, 0.5F);
+    const TerrainHit hit = mountains.Ground(321.0, -543.0);
+    made.push_back(mountains.light().Irradiance(mountains.At(hit.smooth_point, hit.normal))[1]);
+  }
+  EXPECT_EQ(made[0], made[1]);
+  EXPECT_EQ(made[0], made[2]);
+}
+
+TEST(TerrainLight, ShowsSkyOverTheHorizonAndGroundBelowIt) {
+  const Mountains mountains(30.0, 0.1F);
+  const TerrainHit hit = mountains.Ground(200.0, 100.0);
+  const SlopePoint at = mountains.At(hit.smooth_point, hit.normal);
+  const glm::dvec3 steep = glm::normalize(glm::dvec3(0.0, 0.3, 1.0));
+  const float sky = mountains.light().Radiance(at, steep)[2];
+  EXPECT_FLOAT_EQ(sky, mountains.light().sky().Radiance(at.altitude_m, at.mu_s, steep)[2]);
+  const glm::dvec3 below = glm::normalize(glm::dvec3(0.0, 1.0, -0.08));
+  EXPECT_GT(mountains.light().Radiance(at, below)[2], 0.0F);
+}
+
+// A sea of 32 km with a coast 300 m high, 10 km away in the east-north-east, that ends half way
+// between two azimuths of the horizons.
+double SeaBeforeACoast(double x_m, double y_m) {
+  const bool is_coast = x_m > 10e3 && y_m > 0.2 * x_m && y_m < 0.9 * x_m;
+  return is_coast ? 300.0 : 0.0;
+}
+
+TEST(TerrainLight, ASeaMirrorsAFarCoastWithoutEdges) {
+  constexpr double kEye_m = 60.0;
+  const Terrain terrain(LandMesh(SeaBeforeACoast, 129, 250.0));
+  const auto horizons = std::make_shared<const TerrainHorizons>(terrain.mesh(), TheAir().medium);
+  const glm::dvec3 to_sun = SunAtElevation(30.0);
+  TerrainLight light(horizons, TheAir().air, TheAir().diffuse, to_sun);
+  light.AddSlopes(
+      TheAir().medium,
+      [](const SlopePlace&) {
+        BandLight dark(TheAir().air.bands());
+        std::fill_n(dark.value.begin(), dark.count, 0.002F);
+        return dark;
+      },
+      to_sun.z);
+  const Water water(5.0, TheAir().medium.wavelengths_nm);
+  // What the water shows, of what it would show of the sky alone.
+  const auto share_of_sky = [&](double azimuth_deg, double distance_m) {
+    const double azimuth = azimuth_deg * kRadiansPerDegree;
+    const glm::dvec3 point(distance_m * std::cos(azimuth), distance_m * std::sin(azimuth), 0.0);
+    const glm::dvec3 to_eye = glm::normalize(glm::dvec3(0.0, 0.0, kEye_m) - point);
+    const SlopePoint at = Mountains::At(point, kUp, to_sun.z);
+    double shown = 0.0, sky = 0.0;
+    const MirroredRays mirrored = water.Mirrored(kUp, to_eye);
+    for (const MirroredRay& ray : mirrored.All()) {
+      shown += ray.weight * static_cast<double>(light.Radiance(at, ray.direction, ray.spread)[1]);
+      sky += ray.weight * static_cast<double>(light.SkyRadiance(at, ray.direction)[1]);
+    }
+    return shown / sky;
+  };
+  constexpr double kEdge = 0.02;  // what an eye sees in an even surface
+  for (double distance = 200.0; distance < 2000.0; distance *= 1.03) {
+    for (double azimuth = -10.0; azimuth < 60.0; azimuth += 0.5) {
+      const double here = share_of_sky(azimuth, distance);
+      EXPECT_NEAR(share_of_sky(azimuth + 0.5, distance), here, kEdge)
+          << "azimuth " << azimuth << ", " << distance << " m away";
+      EXPECT_NEAR(share_of_sky(azimuth, 1.01 * distance), here, kEdge)
+          << "azimuth " << azimuth << ", " << distance << " m away";
+    }
+  }
+  EXPECT_LT(share_of_sky(22.5, 600.0), 0.9) << "the coast is dark";
+  EXPECT_NEAR(share_of_sky(-45.0, 600.0), 1.0, 0.01) << "and there is none";
+}
+
+}  // namespace
+}  // namespace alpenglow::renderer
