@@ -9,7 +9,7 @@
 #include "atmosphere/astronomy/eclipse.h"
 #include "atmosphere/base/parsing.h"
 #include "renderer/camera/track.h"
-#include "renderer/ground/scene_ground.h"
+#include "renderer/surface/scene_ground.h"
 #include "renderer/scene/scene_options.h"
 #include "renderer/series/frame_times.h"
 #include "renderer/series/manifest.h"

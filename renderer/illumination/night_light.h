@@ -40,7 +40,7 @@
 #include "atmosphere/time_place/geodesy.h"
 #include "atmosphere/astronomy/night_sky.h"
 #include "atmosphere/time_place/time.h"
-#include "renderer/ground/band_light.h"
+#include "renderer/material/band_light.h"
 
 namespace alpenglow::renderer {
 

@@ -27,7 +27,7 @@
 
 #include "atmosphere/ray/single_scattering.h"
 #include "lut/multiple_scattering/multiple_scattering.h"
-#include "renderer/ground/band_light.h"
+#include "renderer/material/band_light.h"
 #include "renderer/layer.h"
 #include "renderer/visibility/horizon_map.h"
 

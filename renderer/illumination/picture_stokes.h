@@ -12,7 +12,7 @@
 
 #include "lut/multiple_scattering/polarised_light.h"
 #include "renderer/camera/camera_rays.h"
-#include "renderer/ground/band_light.h"
+#include "renderer/material/band_light.h"
 
 namespace alpenglow::renderer {
 

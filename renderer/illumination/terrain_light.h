@@ -24,9 +24,9 @@
 #include <span>
 #include <vector>
 
-#include "renderer/ground/band_light.h"
-#include "renderer/ground/reflectance.h"
-#include "renderer/ground/scene_ground.h"
+#include "renderer/material/band_light.h"
+#include "renderer/material/reflectance.h"
+#include "renderer/surface/scene_ground.h"
 #include "renderer/illumination/open_sky.h"
 #include "renderer/visibility/horizon_map.h"
 #include "renderer/terrain/mesh.h"

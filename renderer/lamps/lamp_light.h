@@ -26,7 +26,7 @@
 #include "atmosphere/lamp/lamp.h"
 #include "atmosphere/ray/single_scattering.h"
 #include "renderer/camera/camera_rays.h"
-#include "renderer/ground/scene_ground.h"
+#include "renderer/surface/scene_ground.h"
 #include "renderer/layer.h"
 #include "renderer/scene/scene.h"
 

@@ -14,7 +14,7 @@
 #include "atmosphere/math/constants.h"
 #include "atmosphere/math/numerics.h"
 #include "atmosphere/base/error.h"
-#include "renderer/ground/band_light.h"
+#include "renderer/material/band_light.h"
 
 namespace alpenglow::renderer {
 namespace {

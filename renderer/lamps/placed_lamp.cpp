@@ -12,7 +12,7 @@
 #include "atmosphere/math/constants.h"
 #include "atmosphere/math/numerics.h"
 #include "atmosphere/base/error.h"
-#include "renderer/ground/scene_geometry.h"
+#include "renderer/surface/scene_geometry.h"
 
 namespace alpenglow::renderer {
 namespace {

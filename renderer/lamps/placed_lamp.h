@@ -15,7 +15,7 @@
 #include "atmosphere/colour/spectrum.h"
 #include "atmosphere/lamp/lamp.h"
 #include "renderer/camera/camera_rays.h"
-#include "renderer/ground/scene_ground.h"
+#include "renderer/surface/scene_ground.h"
 #include "renderer/lamps/ies_file.h"
 #include "renderer/scene/scene.h"
 

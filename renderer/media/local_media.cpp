@@ -11,7 +11,7 @@
 
 #include "atmosphere/colour/spectrum.h"
 #include "atmosphere/base/error.h"
-#include "renderer/ground/scene_geometry.h"
+#include "renderer/surface/scene_geometry.h"
 
 namespace alpenglow::renderer {
 namespace {

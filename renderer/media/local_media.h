@@ -20,7 +20,7 @@
 #include "atmosphere/lamp/lamp.h"
 #include "atmosphere/ray/ray.h"
 #include "atmosphere/ray/shell.h"
-#include "renderer/ground/scene_ground.h"
+#include "renderer/surface/scene_ground.h"
 #include "renderer/scene/local_volume.h"
 #include "renderer/scene/scene.h"
 

@@ -17,7 +17,7 @@
 #include <span>
 #include <vector>
 
-#include "renderer/ground/band_light.h"
+#include "renderer/material/band_light.h"
 #include "renderer/media/local_media.h"
 
 namespace alpenglow::renderer {

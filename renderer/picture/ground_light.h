@@ -8,9 +8,9 @@
 #include <memory>
 #include <optional>
 
-#include "renderer/ground/band_light.h"
-#include "renderer/ground/scene_geometry.h"
-#include "renderer/ground/surface.h"
+#include "renderer/material/band_light.h"
+#include "renderer/surface/scene_geometry.h"
+#include "renderer/surface/surface.h"
 #include "renderer/lamps/lamp_light.h"
 #include "renderer/illumination/lighting.h"
 #include "renderer/illumination/picture_stokes.h"

@@ -9,7 +9,7 @@
 #include "atmosphere/base/error.h"
 #include "lut/image/eye.h"
 #include "lut/image/image.h"
-#include "renderer/ground/scene_geometry.h"
+#include "renderer/surface/scene_geometry.h"
 
 namespace alpenglow::renderer {
 namespace {

@@ -13,8 +13,8 @@
 
 #include "atmosphere/colour/spectrum.h"
 #include "lut/image/image.h"
-#include "renderer/ground/band_light.h"
-#include "renderer/ground/scene_geometry.h"
+#include "renderer/material/band_light.h"
+#include "renderer/surface/scene_geometry.h"
 #include "renderer/illumination/picture_stokes.h"
 
 namespace alpenglow::renderer {

@@ -12,7 +12,7 @@
 #include "atmosphere/astronomy/sun.h"
 #include "lut/cli/program.h"
 #include "renderer/effects/effect_choice.h"
-#include "renderer/ground/scene_geometry.h"
+#include "renderer/surface/scene_geometry.h"
 #include "renderer/illumination/lighting.h"
 #include "renderer/illumination/night_light.h"
 

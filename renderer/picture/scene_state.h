@@ -14,8 +14,8 @@
 
 #include "atmosphere/colour/spectrum.h"
 #include "renderer/effects/effect_choice.h"
-#include "renderer/ground/scene_geometry.h"
-#include "renderer/ground/scene_ground.h"
+#include "renderer/surface/scene_geometry.h"
+#include "renderer/surface/scene_ground.h"
 #include "renderer/lamps/lamp_light.h"
 #include "renderer/illumination/lighting.h"
 #include "renderer/picture/ground_light.h"

@@ -15,7 +15,7 @@
 #include "lut/multiple_scattering/multiple_scattering.h"
 #include "renderer/camera/camera_rays.h"
 #include "renderer/effects/effects.h"
-#include "renderer/ground/scene_geometry.h"
+#include "renderer/surface/scene_geometry.h"
 #include "renderer/lamps/lamp_light.h"
 #include "renderer/illumination/aerial_perspective.h"
 #include "renderer/media/media_light.h"

@@ -54,7 +54,7 @@
 #include <vector>
 
 #include "renderer/camera/camera_rays.h"
-#include "renderer/ground/band_light.h"
+#include "renderer/material/band_light.h"
 
 namespace alpenglow::renderer {
 

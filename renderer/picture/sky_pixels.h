@@ -22,8 +22,8 @@
 #include <vector>
 
 #include "renderer/camera/camera_rays.h"
-#include "renderer/ground/band_light.h"
-#include "renderer/ground/skyline.h"
+#include "renderer/material/band_light.h"
+#include "renderer/surface/skyline.h"
 #include "renderer/illumination/night_light.h"
 
 namespace alpenglow::renderer {

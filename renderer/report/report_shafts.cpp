@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "lut/cli/program.h"
-#include "renderer/ground/scene_ground.h"
+#include "renderer/surface/scene_ground.h"
 #include "renderer/illumination/aerial_perspective.h"
 #include "renderer/illumination/occlusion_march.h"
 #include "renderer/report/report.h"

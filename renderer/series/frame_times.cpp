@@ -11,7 +11,7 @@
 #include "atmosphere/time_place/geodesy.h"
 #include "atmosphere/base/error.h"
 #include "atmosphere/base/parsing.h"
-#include "renderer/ground/scene_ground.h"
+#include "renderer/surface/scene_ground.h"
 #include "renderer/layer.h"
 
 namespace alpenglow::renderer {

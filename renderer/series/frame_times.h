@@ -11,7 +11,7 @@
 
 #include "atmosphere/time_place/time.h"
 #include "renderer/camera/camera_path.h"
-#include "renderer/ground/scene_ground.h"
+#include "renderer/surface/scene_ground.h"
 #include "renderer/picture/render.h"
 #include "renderer/series/time_text.h"
 

@@ -12,9 +12,9 @@
 #include <memory>
 #include <vector>
 
-#include "renderer/ground/colour_drape.h"
-#include "renderer/ground/scene_ground.h"
-#include "renderer/ground/surface.h"
+#include "renderer/surface/colour_drape.h"
+#include "renderer/surface/scene_ground.h"
+#include "renderer/surface/surface.h"
 #include "renderer/scene/scene.h"
 #include "viewer/air/solved_air.h"
 #include "viewer/gl/gl_objects.h"

@@ -24,9 +24,9 @@
 #include <span>
 #include <vector>
 
-#include "renderer/ground/scene_geometry.h"
-#include "renderer/ground/scene_ground.h"
-#include "renderer/ground/surface.h"
+#include "renderer/surface/scene_geometry.h"
+#include "renderer/surface/scene_ground.h"
+#include "renderer/surface/surface.h"
 #include "renderer/lamps/lamp_light.h"
 #include "renderer/illumination/lighting.h"
 #include "renderer/illumination/terrain_light.h"

@@ -10,7 +10,7 @@
 #include "atmosphere/math/constants.h"
 #include "atmosphere/base/error.h"
 #include "lut/sky/sky_view.h"
-#include "renderer/ground/band_light.h"
+#include "renderer/material/band_light.h"
 
 namespace alpenglow::viewer {
 namespace {

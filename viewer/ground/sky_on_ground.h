@@ -25,8 +25,8 @@
 #include <vector>
 
 #include "atmosphere/shared_glsl/shared_math.h"
-#include "renderer/ground/band_light.h"
-#include "renderer/ground/reflectance.h"
+#include "renderer/material/band_light.h"
+#include "renderer/material/reflectance.h"
 #include "renderer/illumination/open_sky.h"
 #include "viewer/layer.h"
 

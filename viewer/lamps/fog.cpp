@@ -13,7 +13,7 @@
 #include "atmosphere/ray/shell.h"
 #include "atmosphere/astronomy/sun.h"
 #include "atmosphere/base/error.h"
-#include "renderer/ground/scene_geometry.h"
+#include "renderer/surface/scene_geometry.h"
 #include "renderer/media/fog_light.h"
 #include "viewer/gl/gl_context.h"
 #include "viewer/gl/render_target.h"

@@ -8,7 +8,7 @@
 #include <limits>
 
 #include "atmosphere/math/constants.h"
-#include "renderer/ground/scene_ground.h"
+#include "renderer/surface/scene_ground.h"
 #include "renderer/terrain/obj_file.h"
 #include "viewer/land/loaded_heights.h"
 

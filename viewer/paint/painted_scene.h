@@ -10,8 +10,8 @@
 
 #include "atmosphere/ray/single_scattering.h"
 #include "atmosphere/astronomy/sun.h"
-#include "renderer/ground/scene_ground.h"
-#include "renderer/ground/surface.h"
+#include "renderer/surface/scene_ground.h"
+#include "renderer/surface/surface.h"
 #include "renderer/scene/scene.h"
 #include "viewer/air/air_follower.h"
 #include "viewer/ground/ground_block.h"

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <utility>
 
-#include "renderer/ground/surface.h"
+#include "renderer/surface/surface.h"
 #include "viewer/air/air_follower.h"
 #include "viewer/air/air_rows.h"
 #include "viewer/gl/gl_objects.h"

@@ -20,7 +20,7 @@
 
 #include "atmosphere/medium/phase.h"
 #include "atmosphere/astronomy/sun.h"
-#include "renderer/ground/surface.h"
+#include "renderer/surface/surface.h"
 #include "viewer/air/air_follower.h"
 #include "viewer/air/solved_air.h"
 #include "viewer/gl/gl_objects.h"

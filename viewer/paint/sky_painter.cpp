@@ -7,7 +7,7 @@
 #include "atmosphere/refraction/bent_view.h"
 #include "atmosphere/astronomy/eclipse.h"
 #include "atmosphere/astronomy/moon.h"
-#include "renderer/ground/scene_ground.h"
+#include "renderer/surface/scene_ground.h"
 #include "renderer/illumination/lighting.h"
 #include "viewer/gl/gl_context.h"
 #include "viewer/gl/gl_objects.h"

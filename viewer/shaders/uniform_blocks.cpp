@@ -9,7 +9,7 @@
 #include "atmosphere/colour/spectrum.h"
 #include "atmosphere/math/constants.h"
 #include "atmosphere/base/error.h"
-#include "renderer/ground/land_cover.h"
+#include "renderer/material/land_cover.h"
 
 namespace alpenglow::viewer {
 namespace {

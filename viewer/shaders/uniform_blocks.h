@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "atmosphere/medium/medium.h"
-#include "renderer/ground/band_light.h"
-#include "renderer/ground/surface.h"
+#include "renderer/material/band_light.h"
+#include "renderer/surface/surface.h"
 #include "viewer/layer.h"
 
 namespace alpenglow::viewer {

@@ -13,7 +13,7 @@
 #include "atmosphere/math/numerics.h"
 #include "atmosphere/astronomy/sun.h"
 #include "lut/sky/sky_view.h"
-#include "renderer/ground/reflectance.h"
+#include "renderer/material/reflectance.h"
 #include "renderer/illumination/aerial_perspective.h"
 #include "renderer/terrain/terrain.h"
 #include "tests/fixtures/lit_air.h"

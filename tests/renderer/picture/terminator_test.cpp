@@ -9,7 +9,7 @@
 
 #include "atmosphere/math/constants.h"
 #include "renderer/camera/camera_rays.h"
-#include "renderer/ground/scene_ground.h"
+#include "renderer/surface/scene_ground.h"
 #include "renderer/lamps/lamp_light.h"
 #include "renderer/picture/render.h"
 #include "tests/fixtures/bare_scene.h"

@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <utility>
 
-#include "renderer/ground/scene_ground.h"
+#include "renderer/surface/scene_ground.h"
 #include "viewer/layer.h"
 
 namespace alpenglow::viewer {

@@ -8,7 +8,7 @@
 
 #include "atmosphere/refraction/bent_view.h"
 #include "lut/image/tone_mapping.h"
-#include "renderer/ground/scene_ground.h"
+#include "renderer/surface/scene_ground.h"
 #include "renderer/picture/render.h"
 #include "tests/fixtures/far_peak.h"
 #include "tests/fixtures/temporary_folder.h"

@@ -11,7 +11,7 @@
 #include <limits>
 
 #include "atmosphere/astronomy/eclipse.h"
-#include "renderer/ground/scene_ground.h"
+#include "renderer/surface/scene_ground.h"
 #include "renderer/picture/render.h"
 #include "tests/fixtures/bare_scene.h"
 #include "tests/fixtures/parity_views.h"

@@ -8,7 +8,7 @@
 
 #include <cstdlib>
 
-#include "renderer/ground/scene_ground.h"
+#include "renderer/surface/scene_ground.h"
 #include "tests/fixtures/bare_scene.h"
 #include "tests/fixtures/temporary_folder.h"
 #include "tests/viewer/ground/sun_in_closed_form.h"

@@ -20,8 +20,8 @@
 #include <span>
 #include <vector>
 
-#include "renderer/ground/band_light.h"
-#include "renderer/ground/scene_ground.h"
+#include "renderer/material/band_light.h"
+#include "renderer/surface/scene_ground.h"
 #include "renderer/scene/scene.h"
 
 namespace alpenglow::renderer {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "renderer/ground/skyline.h"
+#include "renderer/surface/skyline.h"
 
 #include <tbb/parallel_for.h>
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // What mountain ground looks like from near and far.
-#include "renderer/ground/surface.h"
+#include "renderer/surface/surface.h"
 
 #include <gtest/gtest.h>
 
@@ -10,7 +10,7 @@
 
 #include "atmosphere/colour/spectrum.h"
 #include "atmosphere/math/constants.h"
-#include "renderer/ground/land_cover.h"
+#include "renderer/material/land_cover.h"
 
 namespace alpenglow::renderer {
 namespace {

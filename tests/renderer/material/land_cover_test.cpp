@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
 // A map of land cover laid over terrain decides what grows where, and the season what lies on it.
-#include "renderer/ground/land_cover.h"
+#include "renderer/material/land_cover.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "atmosphere/colour/spectrum.h"
 #include "atmosphere/base/error.h"
-#include "renderer/ground/surface.h"
+#include "renderer/surface/surface.h"
 #include "tests/fixtures/class_map.h"
 #include "tests/fixtures/fault_of.h"
 #include "tests/fixtures/rough_land.h"

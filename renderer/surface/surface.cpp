@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "renderer/ground/surface.h"
+#include "renderer/surface/surface.h"
 
 #include <algorithm>
 #include <array>
@@ -10,8 +10,8 @@
 
 #include "atmosphere/colour/spectrum.h"
 #include "atmosphere/math/constants.h"
-#include "renderer/ground/land_cover.h"
-#include "renderer/ground/reflectance.h"
+#include "renderer/material/land_cover.h"
+#include "renderer/material/reflectance.h"
 #include "renderer/terrain/lattice_noise.h"
 
 namespace alpenglow::renderer {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Tabulated bent rays against the ray equation.
-#include "renderer/ground/scene_geometry.h"
+#include "renderer/surface/scene_geometry.h"
 
 #include <gtest/gtest.h>
 

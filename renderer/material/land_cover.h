@@ -43,7 +43,7 @@
 namespace alpenglow::shared {
 // clang-format off
 #include "atmosphere/shared_glsl/shared_begin.h"
-#include "renderer/ground/ground_cover.glsl"
+#include "renderer/material/ground_cover.glsl"
 #include "atmosphere/shared_glsl/shared_end.h"
 // clang-format on
 }  // namespace alpenglow::shared

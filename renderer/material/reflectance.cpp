@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "renderer/ground/reflectance.h"
+#include "renderer/material/reflectance.h"
 
 #include <algorithm>
 #include <cmath>

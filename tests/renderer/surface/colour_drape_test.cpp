@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "renderer/ground/colour_drape.h"
+#include "renderer/surface/colour_drape.h"
 
 #include <gdal_priv.h>
 #include <gmock/gmock.h>

@@ -21,7 +21,7 @@
 namespace alpenglow::shared {
 // clang-format off
 #include "atmosphere/shared_glsl/shared_begin.h"
-#include "renderer/ground/reflectance.glsl"
+#include "renderer/material/reflectance.glsl"
 #include "atmosphere/shared_glsl/shared_end.h"
 // clang-format on
 }  // namespace alpenglow::shared

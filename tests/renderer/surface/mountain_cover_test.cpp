@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Where mountains of the earth are green, grey and white, against what is known of them.
-#include "renderer/ground/land_cover.h"
+#include "renderer/material/land_cover.h"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,7 @@
 #include "atmosphere/colour/spectrum.h"
 #include "atmosphere/math/constants.h"
 #include "atmosphere/time_place/time.h"
-#include "renderer/ground/surface.h"
+#include "renderer/surface/surface.h"
 
 namespace alpenglow::renderer {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "renderer/ground/scene_ground.h"
+#include "renderer/surface/scene_ground.h"
 
 #include <fmt/format.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "renderer/ground/colour_drape.h"
+#include "renderer/surface/colour_drape.h"
 
 #include <fmt/format.h>
 #include <gdal_priv.h>
@@ -13,7 +13,7 @@
 #include "atmosphere/colour/spectrum.h"
 #include "atmosphere/math/constants.h"
 #include "atmosphere/base/error.h"
-#include "renderer/ground/land_cover.h"
+#include "renderer/material/land_cover.h"
 #include "renderer/terrain/elevation_raster.h"
 
 namespace alpenglow::renderer {

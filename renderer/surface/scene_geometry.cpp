@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "renderer/ground/scene_geometry.h"
+#include "renderer/surface/scene_geometry.h"
 
 #include <tbb/parallel_for.h>
 

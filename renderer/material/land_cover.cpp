@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "renderer/ground/land_cover.h"
+#include "renderer/material/land_cover.h"
 
 #include <algorithm>
 #include <array>

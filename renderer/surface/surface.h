@@ -13,10 +13,10 @@
 
 #include "atmosphere/ray/single_scattering.h"
 #include "atmosphere/time_place/time.h"
-#include "renderer/ground/band_light.h"
-#include "renderer/ground/colour_drape.h"
-#include "renderer/ground/land_cover.h"
-#include "renderer/ground/reflectance.h"
+#include "renderer/material/band_light.h"
+#include "renderer/surface/colour_drape.h"
+#include "renderer/material/land_cover.h"
+#include "renderer/material/reflectance.h"
 #include "renderer/scene/scene.h"
 
 namespace alpenglow::renderer {
