@@ -17,7 +17,7 @@
 #include "lut/sky/sky_view_map.h"
 #include "viewer/flight/places.h"
 #include "viewer/gl/picture_tiles.h"
-#include "viewer/paint/picture_programs.h"
+#include "viewer/passes/picture_programs.h"
 #include "viewer/picture_queue.h"
 #include "viewer/window.h"
 

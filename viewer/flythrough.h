@@ -16,11 +16,11 @@
 #include "viewer/air/solved_air.h"
 #include "viewer/flight/flight_recorder.h"
 #include "viewer/input/cockpit.h"
-#include "viewer/paint/auto_quality.h"
-#include "viewer/paint/darkroom.h"
-#include "viewer/paint/developer.h"
-#include "viewer/paint/reference_picture.h"
-#include "viewer/paint/sky_painter.h"
+#include "viewer/passes/auto_quality.h"
+#include "viewer/passes/darkroom.h"
+#include "viewer/passes/developer.h"
+#include "viewer/passes/reference_picture.h"
+#include "viewer/passes/sky_painter.h"
 
 namespace alpenglow::viewer {
 

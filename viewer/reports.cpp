@@ -14,8 +14,8 @@
 #include "atmosphere/math/constants.h"
 #include "atmosphere/base/error.h"
 #include "renderer/picture/render.h"
-#include "viewer/paint/darkroom.h"
-#include "viewer/paint/reference_picture.h"
+#include "viewer/passes/darkroom.h"
+#include "viewer/passes/reference_picture.h"
 
 namespace alpenglow::viewer {
 namespace {

@@ -18,8 +18,8 @@
 #include "renderer/picture/render.h"
 #include "tests/fixtures/parity_views.h"
 #include "viewer/gl/gl_context.h"
-#include "viewer/paint/reference_picture.h"
-#include "viewer/paint/sky_painter.h"
+#include "viewer/passes/reference_picture.h"
+#include "viewer/passes/sky_painter.h"
 
 namespace alpenglow::viewer {
 namespace {

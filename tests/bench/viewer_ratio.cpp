@@ -17,9 +17,9 @@
 #include "tests/fixtures/bare_scene.h"
 #include "viewer/gl/gl_context.h"
 #include "viewer/gl/pass_timer.h"
-#include "viewer/paint/auto_quality.h"
-#include "viewer/paint/darkroom.h"
-#include "viewer/paint/sky_painter.h"
+#include "viewer/passes/auto_quality.h"
+#include "viewer/passes/darkroom.h"
+#include "viewer/passes/sky_painter.h"
 #include "viewer/shaders/full_screen.h"
 
 namespace alpenglow::viewer {

@@ -20,7 +20,7 @@
 #include "viewer/air/solved_air.h"
 #include "viewer/gl/gl_objects.h"
 #include "viewer/gl/shader.h"
-#include "viewer/job/latest_job.h"
+#include "viewer/async/latest_job.h"
 
 namespace alpenglow::viewer {
 

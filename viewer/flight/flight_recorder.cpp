@@ -8,7 +8,7 @@
 #include "lut/cli/messages.h"
 #include "lut/cli/output_file.h"
 #include "renderer/series/frame_times.h"
-#include "viewer/job/latest_job.h"
+#include "viewer/async/latest_job.h"
 
 namespace alpenglow::viewer {
 

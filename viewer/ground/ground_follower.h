@@ -12,7 +12,7 @@
 #include "viewer/air/solved_air.h"
 #include "viewer/ground/lit_ground.h"
 #include "viewer/ground/sky_on_ground.h"
-#include "viewer/job/latest_job.h"
+#include "viewer/async/latest_job.h"
 #include "viewer/land/land_chunk.h"
 #include "viewer/shade/shafts.h"
 

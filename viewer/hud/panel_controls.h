@@ -23,7 +23,7 @@
 #include "atmosphere/time_place/geodesy.h"
 #include "atmosphere/time_place/time.h"
 #include "lut/multiple_scattering/multiple_scattering.h"
-#include "viewer/job/latest_job.h"
+#include "viewer/async/latest_job.h"
 #include "viewer/layer.h"
 
 namespace alpenglow::viewer {

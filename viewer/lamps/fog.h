@@ -31,7 +31,7 @@
 #include "viewer/flight/flight.h"
 #include "viewer/gl/gl_objects.h"
 #include "viewer/gl/shader.h"
-#include "viewer/job/latest_job.h"
+#include "viewer/async/latest_job.h"
 #include "viewer/layer.h"
 
 namespace alpenglow::viewer {

@@ -30,7 +30,7 @@
 
 #include "renderer/lamps/lamp_tree.h"
 #include "renderer/lamps/placed_lamp.h"
-#include "viewer/job/latest_job.h"
+#include "viewer/async/latest_job.h"
 #include "viewer/layer.h"
 
 namespace alpenglow::viewer {

@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-#include "viewer/job/latest_job.h"
+#include "viewer/async/latest_job.h"
 #include "viewer/land/chunk_set.h"
 #include "viewer/land/land_pass.h"
 #include "viewer/land/level_ranges.h"

@@ -12,7 +12,7 @@
 #include "atmosphere/time_place/geodesy.h"
 #include "renderer/terrain/elevation.h"
 #include "renderer/terrain/terrain.h"
-#include "viewer/job/latest_job.h"
+#include "viewer/async/latest_job.h"
 #include "viewer/land/chunk_set.h"
 #include "viewer/land/land_chunk.h"
 #include "viewer/land/land_pass.h"

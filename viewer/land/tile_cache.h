@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "viewer/job/latest_job.h"
+#include "viewer/async/latest_job.h"
 #include "viewer/land/level_ranges.h"
 #include "viewer/land/loaded_heights.h"
 

@@ -40,7 +40,7 @@
 #include "viewer/gl/gl_objects.h"
 #include "viewer/gl/render_target.h"
 #include "viewer/gl/shader.h"
-#include "viewer/job/latest_job.h"
+#include "viewer/async/latest_job.h"
 #include "viewer/land/loaded_heights.h"
 #include "viewer/shade/shade_map.h"
 

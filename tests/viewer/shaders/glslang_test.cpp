@@ -17,9 +17,9 @@
 #include "viewer/lamps/fog.h"
 #include "viewer/lamps/lamp_painter.h"
 #include "viewer/land/land_pass.h"
-#include "viewer/paint/darkroom.h"
-#include "viewer/paint/developer.h"
-#include "viewer/paint/picture_programs.h"
+#include "viewer/passes/darkroom.h"
+#include "viewer/passes/developer.h"
+#include "viewer/passes/picture_programs.h"
 #include "viewer/shade/shafts.h"
 #include "viewer/shaders/full_screen.h"
 

@@ -1,0 +1,172 @@
+// SPDX-License-Identifier: MIT
+// Pictures developed on the graphics card against Develop() of image.h.
+#include "viewer/passes/developer.h"
+
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <cmath>
+#include <cstdlib>
+#include <thread>
+
+#include "tests/viewer/shaders/headless.h"
+
+namespace alpenglow::viewer {
+namespace {
+
+constexpr int kFrameWidth = 96, kFrameHeight = 54;
+
+/// All hues over twelve stops around 2000 cd/m^2, and some colours out of the display's gamut.
+Image Colours() {
+  Image image(kFrameWidth, kFrameHeight);
+  for (int y = 0; y < kFrameHeight; ++y) {
+    for (int x = 0; x < kFrameWidth; ++x) {
+      const auto stop = static_cast<float>(12.0 * y / kFrameHeight - 8.0);
+      const auto hue = static_cast<float>(6.3 * x / kFrameWidth);
+      const float light = 2000.0F * std::exp2(stop);
+      image.at(x, y) = {light * (1.0F + 0.9F * std::cos(hue)),
+                        light * (1.0F + 0.6F * std::cos(hue + 2.0F)),
+                        light * (1.0F + 1.1F * std::cos(hue + 4.0F))};
+    }
+  }
+  return image;
+}
+
+using DeveloperTest = tests::Headless;
+
+TEST_F(DeveloperTest, EveryToneCurveIsThatOfTheRendererWithinOneCode) {
+  const Image image = Colours();
+  const double ev100 = MeterEv100(image, kSunDiskLuminance_cd_per_m2);
+  const RenderTarget picture(kFrameWidth, kFrameHeight, RenderTarget::Depth::kNone);
+  picture.Write(image);
+  const RenderTarget screen(kFrameWidth, kFrameHeight, RenderTarget::Depth::kNone);
+  Developer developer{Look{}};
+  for (const ToneCurve curve : {ToneCurve::kAgx, ToneCurve::kAces, ToneCurve::kReinhard,
+                                ToneCurve::kPbrNeutral, ToneCurve::kLinear}) {
+    developer.Use(Look{.curve = curve});
+    developer.Develop(picture, ev100, {screen.framebuffer(), kFrameWidth, kFrameHeight});
+    const DisplayImage judge = Develop(image, ev100, curve);
+    const Image codes = screen.Read();
+    int off_by_one = 0;
+    for (std::size_t i = 0; i < codes.rgb.size(); ++i) {
+      for (std::size_t c = 0; c < 3; ++c) {
+        const int code = static_cast<int>(std::lround(codes.rgb[i][c] * 255.0F));
+        ASSERT_LE(std::abs(code - judge.rgb[3 * i + c]), 1)
+            << "curve " << static_cast<int>(curve) << ", pixel " << i << ", channel " << c;
+        if (code != judge.rgb[3 * i + c]) ++off_by_one;
+      }
+    }
+    EXPECT_LT(off_by_one, kFrameWidth * kFrameHeight * 3 / 10)
+        << "a code falls to the other side as often as the tone table is off, by 0.06 of a code";
+  }
+}
+
+TEST_F(DeveloperTest, ADraftIsAFewCodesOffAndThenExact) {
+  const Image image = Colours();
+  const double ev100 = MeterEv100(image, kSunDiskLuminance_cd_per_m2);
+  const RenderTarget picture(kFrameWidth, kFrameHeight, RenderTarget::Depth::kNone);
+  picture.Write(image);
+  const RenderTarget screen(kFrameWidth, kFrameHeight, RenderTarget::Depth::kNone);
+  const DisplayImage judge = Develop(image, ev100, ToneCurve::kAgx);
+  const Developer developer(Look{}, Developer::FirstPictures::kDraft);
+  const auto most_off = [&] {
+    developer.Develop(picture, ev100, {screen.framebuffer(), kFrameWidth, kFrameHeight});
+    const Image codes = screen.Read();
+    int most = 0;
+    for (std::size_t i = 0; i < judge.rgb.size(); ++i) {
+      const int code = static_cast<int>(std::lround(codes.rgb[i / 3][i % 3] * 255.0F));
+      most = std::max(most, std::abs(code - judge.rgb[i]));
+    }
+    return most;
+  };
+  const int draft = most_off();
+  EXPECT_LE(draft, 9);
+  EXPECT_GT(draft, 1) << "or no draft is needed";
+  for (int i = 0; i < 6000 && most_off() > 1; ++i)
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+  EXPECT_LE(most_off(), 1);
+}
+
+TEST_F(DeveloperTest, LooksAndWhiteBalanceAreThoseOfTheRendererWithinOneCode) {
+  const Image image = Colours();
+  const RenderTarget picture(kFrameWidth, kFrameHeight, RenderTarget::Depth::kNone);
+  picture.Write(image);
+  const RenderTarget screen(kFrameWidth, kFrameHeight, RenderTarget::Depth::kNone);
+  Developer developer{Look{}};
+  for (const AgxLook agx : {AgxLook::kNone, AgxLook::kPunchy, AgxLook::kPhoto}) {
+    Look look{.agx = agx};
+    look.white = {WhiteBalance::Kind::kKelvin, 4000.0};
+    developer.Use(look);
+    developer.Develop(picture, 13.0, {screen.framebuffer(), kFrameWidth, kFrameHeight});
+    const DisplayImage judge = Develop(Seen(image, look), 13.0, look), shown = screen.ReadBytes();
+    for (std::size_t i = 0; i < judge.rgb.size(); ++i)
+      ASSERT_NEAR(shown.rgb[i], judge.rgb[i], 1) << NameOf(agx) << ", byte " << i;
+  }
+}
+
+TEST_F(DeveloperTest, APictureOfAnotherSizeFillsTheScreen) {
+  Image image(8, 8);
+  for (auto& pixel : image.rgb) pixel = {500.0F, 800.0F, 1000.0F};
+  const RenderTarget picture(8, 8, RenderTarget::Depth::kNone);
+  picture.Write(image);
+  const RenderTarget screen(kFrameWidth, kFrameHeight, RenderTarget::Depth::kNone);
+  Developer(Look{}).Develop(picture, 12.0, {screen.framebuffer(), kFrameWidth, kFrameHeight});
+  Image even(kFrameWidth, kFrameHeight);
+  for (auto& pixel : even.rgb) pixel = image.rgb[0];
+  const DisplayImage judge = Develop(even, 12.0, ToneCurve::kAgx), shown = screen.ReadBytes();
+  for (std::size_t i = 0; i < judge.rgb.size(); ++i)
+    ASSERT_NEAR(shown.rgb[i], judge.rgb[i], 1) << "byte " << i;
+}
+
+using ExposureMeterTest = tests::Headless;
+
+TEST_F(ExposureMeterTest, ReadsWhatTheRenderersMeterDoes) {
+  const Image image = Colours();
+  const RenderTarget picture(kFrameWidth, kFrameHeight, RenderTarget::Depth::kNone);
+  picture.Write(image);
+  ExposureMeter meter;
+  EXPECT_NEAR(meter.Read(picture, {}).ev100, MeterEv100(image, kSunDiskLuminance_cd_per_m2), 0.05)
+      << "the copy shows the same picture, enlarged";
+  const RenderTarget large(4 * ExposureMeter::kLongSide, 2 * ExposureMeter::kLongSide,
+                           RenderTarget::Depth::kNone);
+  Image many(large.width(), large.height());
+  for (int y = 0; y < many.height; ++y) {
+    for (int x = 0; x < many.width; ++x)
+      many.at(x, y) = image.at(x * kFrameWidth / many.width, y * kFrameHeight / many.height);
+  }
+  large.Write(many);
+  EXPECT_NEAR(meter.Read(large, {}).ev100, MeterEv100(many, kSunDiskLuminance_cd_per_m2), 0.05)
+      << "every fourth pixel of a smooth picture";
+}
+
+TEST_F(ExposureMeterTest, SettlesTheWhiteBalanceAsTheSeriesDoes) {
+  Image image(kFrameWidth, kFrameHeight);
+  const auto white = LinearSrgbFromXyz() * WhiteOfTemperature(4200.0);
+  for (auto& pixel : image.rgb) {
+    for (std::size_t c = 0; c < 3; ++c) pixel[c] = static_cast<float>(700.0 * white[c]);
+  }
+  const RenderTarget picture(kFrameWidth, kFrameHeight, RenderTarget::Depth::kNone);
+  picture.Write(image);
+  Look look;
+  look.white.kind = WhiteBalance::Kind::kAuto;
+  const MeterReading reading = ExposureMeter().Read(picture, look);
+  EXPECT_NEAR(*reading.white.kelvin, *Settled(look, image).white.kelvin, 1e-6);
+  EXPECT_NEAR(reading.ev100,
+              MeterEv100(Seen(image, Settled(look, image)), kSunDiskLuminance_cd_per_m2), 1e-9);
+}
+
+TEST_F(ExposureMeterTest, WhatIsLookedAtArrivesOnce) {
+  const RenderTarget picture(kFrameWidth, kFrameHeight, RenderTarget::Depth::kNone);
+  picture.Write(Colours());
+  ExposureMeter meter;
+  EXPECT_FALSE(meter.Take({}).has_value()) << "nothing was looked at";
+  meter.LookAt(picture);
+  glFinish();
+  const std::optional<MeterReading> arrived = meter.Take({});
+  ASSERT_TRUE(arrived.has_value());
+  EXPECT_EQ(arrived->ev100, meter.Read(picture, {}).ev100);
+  EXPECT_FALSE(meter.Take({}).has_value());
+}
+
+}  // namespace
+}  // namespace alpenglow::viewer

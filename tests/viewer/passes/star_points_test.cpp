@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: MIT
+#include "viewer/passes/star_painter.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <map>
+
+#include "atmosphere/math/constants.h"
+#include "atmosphere/astronomy/sun.h"
+#include "renderer/camera/camera_rays.h"
+#include "renderer/picture/sky_pixels.h"
+#include "tests/fixtures/bare_scene.h"
+
+namespace alpenglow::viewer {
+namespace {
+
+constexpr double kDegree = kRadiansPerDegree;
+
+PaintedView ViewOf(const Scene& scene, int width, int height) {
+  return {{scene.place, scene.camera.heading_rad, scene.camera.pitch_rad, scene.camera.roll_rad,
+           scene.camera.fov_rad},
+          {61058, 73800.0},
+          width,
+          height};
+}
+
+Scene SkyScene() { return BareScene(2000.0, 150.0, 20.0, 60.0); }
+
+StarLight StarAt(double elevation_deg, double azimuth_deg, double lux) {
+  BandLight light(4);
+  for (std::size_t band = 0; band < 4; ++band)
+    light[band] = static_cast<float>(lux * static_cast<double>(1 + band));
+  return {DirectionFromAngles(elevation_deg * kDegree, azimuth_deg * kDegree).xyz, light, lux};
+}
+
+std::vector<StarPoint> PointsOf(const PaintedView& view, const std::vector<StarLight>& lights,
+                                double faintest_lux = 0.0) {
+  const glm::dvec3 nadir(0.0, 0.0, -1.0);
+  return StarPointsIn(view, {lights, glm::dmat3(1.0), faintest_lux, nadir, 0.005});
+}
+
+double ShareOfColumn(const StarPoint& star, int i) {
+  return static_cast<double>(i < 4 ? star.across[i] : star.last.x);
+}
+double ShareOfRow(const StarPoint& star, int i) {
+  return static_cast<double>(i < 4 ? star.up[i] : star.last.y);
+}
+
+TEST(StarPoints, PixelsAreThoseOfTheRendererWithItsRadianceAtEverySize) {
+  const Scene scene = SkyScene();
+  const std::vector<StarLight> lights{StarAt(20.0, 150.0, 1e-6), StarAt(31.3, 128.7, 2e-6),
+                                      StarAt(9.1, 172.4, 5e-7)};
+  for (const auto& [width, height] : {std::pair{160, 90}, {640, 360}, {1280, 720}}) {
+    const StarPixels judge(
+        CameraRays(scene.camera, width, height), width, height, lights,
+        [](double, double) {
+          BandLight all(4);
+          for (std::size_t band = 0; band < 4; ++band) all[band] = 1.0F;
+          return all;
+        },
+        [](double, double) { return false; });
+    std::map<std::pair<int, int>, double> painted;
+    for (const StarPoint& star : PointsOf(ViewOf(scene, width, height), lights))
+      for (int row = 0; row < 5; ++row)
+        for (int column = 0; column < 5; ++column)
+          painted[{static_cast<int>(star.corner.x) + column,
+                   height - 1 - (static_cast<int>(star.corner.y) + row)}] +=
+              ShareOfColumn(star, column) * ShareOfRow(star, row) *
+              static_cast<double>(star.light.x);
+    EXPECT_EQ(painted.size(), 75U);
+    double brightest = 0.0;
+    for (const auto& [place, light] : painted) brightest = std::max(brightest, light);
+    for (const auto& [place, light] : painted) {
+      const BandLight* there = judge.At(place.first, place.second);
+      ASSERT_NE(there, nullptr) << place.first << ' ' << place.second;
+      EXPECT_NEAR(light, static_cast<double>((*there)[0]), 1e-4 * brightest)
+          << "solid angle of a pixel by its middle or by its sides: its width squared, 5e-5";
+    }
+  }
+}
+
+TEST(StarPoints, ThoseTooFaintBehindTheEyeOrBehindTheMoonAreLeftOut) {
+  const PaintedView view = ViewOf(SkyScene(), 320, 180);
+  EXPECT_EQ(PointsOf(view, {StarAt(20.0, 150.0, 1e-8)}, 2e-8).size(), 0U);
+  EXPECT_EQ(PointsOf(view, {StarAt(-20.0, 330.0, 1e-6)}).size(), 0U);
+  const StarLight star = StarAt(20.0, 150.0, 1e-6);
+  EXPECT_EQ(
+      StarPointsIn(view, {{star}, glm::dmat3(1.0), 0.0, StarAt(20.1, 150.1, 1.0).direction, 0.0045})
+          .size(),
+      0U);
+}
+
+TEST(StarPoints, TheSkyTurnsWestwardsAboutThePoleOnceASiderealDay) {
+  const double latitude = 46.5 * kDegree;
+  const glm::dvec3 pole(0.0, std::cos(latitude), std::sin(latitude));
+  EXPECT_NEAR(glm::length(TurnOfSky(latitude, 7000.0) * pole - pole), 0.0, 1e-14);
+  const glm::dvec3 south = DirectionFromAngles(30.0 * kDegree, 180.0 * kDegree).xyz;
+  EXPECT_LT((TurnOfSky(latitude, 600.0) * south).x, 0.0) << "west of the meridian later on";
+  EXPECT_NEAR(glm::length(TurnOfSky(latitude, 86164.0905) * south - south), 0.0, 1e-12);
+}
+
+TEST(StarPoints, AListOfHalfAMinuteAgoStandsWhereTheNextOneDoes) {
+  const GeodeticPosition place = PlaceFromDegrees(46.5, 8.0, 2000.0);
+  const BandColour colour({440.0, 490.0, 550.0, 630.0});
+  const BentView view(MediumPreset("earth"), place.height_m);
+  const auto before = StarLightsOver(place, {61058, 73800.0}, view, colour, 1.5);
+  const auto now = StarLightsOver(place, {61058, 73830.0}, view, colour, 1.5);
+  const glm::dmat3 turn = TurnOfSky(place.latitude_rad, 30.0);
+  ASSERT_EQ(before.size(), now.size());
+  int seen = 0;
+  for (std::size_t i = 0; i < now.size(); ++i) {
+    if (now[i].direction.z < 0.05) continue;
+    ++seen;
+    EXPECT_LT(glm::length(turn * before[i].direction - now[i].direction), 1e-4)
+        << "refraction changes by a tenth of how far a star rises, 7.5 minutes of arc, at 3 "
+           "degrees";
+  }
+  EXPECT_GT(seen, 5);
+}
+
+TEST(StarPoints, LowStarsOfAnOldListStandWhereTheNextOneHasThem) {
+  const BandColour colour({440.0, 490.0, 550.0, 630.0});
+  for (const double height_m : {2.0, 10e3}) {
+    const GeodeticPosition place = PlaceFromDegrees(46.5, 8.0, height_m);
+    const BentView view(MediumPreset("earth"), place.height_m);
+    const auto before = StarLightsOver(place, {61058, 73800.0}, view, colour, 5.0);
+    const auto now = StarLightsOver(place, {61058, 73830.0}, view, colour, 5.0);
+    const StarrySky sky{before, TurnOfSky(place.latitude_rad, 30.0), 0.0, {}, 0.0, &view};
+    int low = 0;
+    for (std::size_t i = 0; i < now.size(); ++i) {
+      const double over_rad = std::asin(now[i].direction.z) - view.horizon_rad();
+      if (over_rad < 0.0 || over_rad > 10.0 * kDegree) continue;
+      ++low;
+      EXPECT_LT(glm::length(TowardsStar(before[i], sky) - now[i].direction), 0.1 / 60.0 * kDegree)
+          << "a tenth of a minute of arc, as BentView; " << height_m << " m";
+    }
+    EXPECT_GT(low, 20);
+  }
+}
+
+}  // namespace
+}  // namespace alpenglow::viewer

@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: MIT
+#include "viewer/passes/reference_picture.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "atmosphere/base/error.h"
+
+namespace alpenglow::viewer {
+namespace {
+
+constexpr int kSide = 10;
+
+/// An even grey of land a kilometre away, all of it in the sun.
+Image EvenLand() {
+  Image image(kSide, kSide);
+  for (auto& pixel : image.rgb) pixel = {100.0F, 100.0F, 100.0F};
+  image.layers = {{kDepthChannel, std::vector<float>(kSide * kSide, 1000.0F)},
+                  {"sun_visibility.Y", std::vector<float>(kSide * kSide, 1.0F)}};
+  return image;
+}
+
+std::size_t At(int x, int y) { return static_cast<std::size_t>(y * kSide + x); }
+
+int CountOf(const std::vector<bool>& edges) {
+  int count = 0;
+  for (const bool is_edge : edges) count += is_edge ? 1 : 0;
+  return count;
+}
+
+TEST(ViewDifference, EvenLandHasNoEdges) { EXPECT_EQ(CountOf(EdgesOf(EvenLand())), 0); }
+
+TEST(ViewDifference, BesideARidgeASkylineAndAShadowPixelsAreEdges) {
+  Image ridge = EvenLand(), skyline = EvenLand(), shadow = EvenLand();
+  for (int y = 0; y < 5; ++y) {
+    for (int x = 0; x < kSide; ++x) {
+      ridge.layers[0].values[At(x, y)] = 1200.0F;
+      skyline.layers[0].values[At(x, y)] = INFINITY;
+      shadow.layers[1].values[At(x, y)] = 0.8F;
+    }
+  }
+  for (const Image& image : {ridge, skyline, shadow}) {
+    const std::vector<bool> edges = EdgesOf(image);
+    EXPECT_EQ(CountOf(edges), 2 * kSide) << "the rows on both sides";
+    EXPECT_TRUE(edges[At(3, 4)]);
+    EXPECT_TRUE(edges[At(3, 5)]);
+  }
+}
+
+TEST(ViewDifference, LandThatRecedesAndSkyAreNoEdges) {
+  Image image = EvenLand();
+  for (int y = 0; y < kSide; ++y) {
+    for (int x = 0; x < kSide; ++x)
+      image.layers[0].values[At(x, y)] = 1000.0F * std::pow(1.04F, static_cast<float>(y));
+  }
+  EXPECT_EQ(CountOf(EdgesOf(image)), 0);
+  image.layers[0].values.assign(kSide * kSide, INFINITY);
+  EXPECT_EQ(CountOf(EdgesOf(image)), 0);
+}
+
+TEST(ViewDifference, OfAKnownDifferenceHasTheKnownNumbers) {
+  const Image judge = EvenLand();
+  Image painted = judge;
+  EXPECT_EQ(DifferenceOf(judge, painted).worst, 0.0);
+  for (int i = 0; i < 50; ++i) painted.rgb[static_cast<std::size_t>(i)] = {101.0F, 101.0F, 101.0F};
+  const double one_percent = 1.0 / 100.5;
+  const ViewDifference half = DifferenceOf(judge, painted);
+  EXPECT_NEAR(half.mean, 0.5 * one_percent, 1e-7) << "half of the pixels; floats of 100";
+  EXPECT_NEAR(half.at_99_percent, one_percent, 1e-7);
+  EXPECT_NEAR(half.worst, one_percent, 1e-7);
+  EXPECT_EQ(half.edge_share, 0.0);
+}
+
+TEST(ViewDifference, WhatIsOffBesideAnEdgeDoesNotCount) {
+  Image judge = EvenLand();
+  judge.layers[0].values[At(5, 5)] = INFINITY;
+  Image painted = judge;
+  painted.rgb[At(4, 6)] = {0.0F, 0.0F, 0.0F};
+  const ViewDifference is = DifferenceOf(judge, painted);
+  EXPECT_EQ(is.worst, 0.0);
+  EXPECT_NEAR(is.edge_share, 0.09, 1e-12) << "a pixel and its neighbours of a hundred";
+}
+
+TEST(ViewDifference, WithoutLayersPicturesCannotBeCompared) {
+  const Image bare(kSide, kSide);
+  EXPECT_THROW(static_cast<void>(EdgesOf(bare)), InternalError);
+  EXPECT_THROW(static_cast<void>(DifferenceOf(EvenLand(), Image(3, 3))), InternalError);
+}
+
+}  // namespace
+}  // namespace alpenglow::viewer

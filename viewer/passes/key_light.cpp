@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: MIT
+#include "viewer/passes/key_light.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "atmosphere/math/constants.h"
+#include "atmosphere/refraction/bent_view.h"
+#include "atmosphere/ray/single_scattering.h"
+#include "atmosphere/astronomy/eclipse.h"
+#include "renderer/illumination/lighting.h"
+#include "viewer/shaders/uniform_blocks.h"
+
+namespace alpenglow::viewer {
+namespace {
+
+// Above this elevation the sun contributes more than a thousand times the brightest moon.
+constexpr double kMoonDoesNotCount_rad = 1.0 * kRadiansPerDegree;
+// Below this elevation the sun lights no land: from 4 km the horizon is 2 degrees down.
+constexpr double kSetOnLand_rad = -2.5 * kRadiansPerDegree;
+
+std::size_t GreenBand(const std::vector<double>& wavelengths_nm) {
+  const auto off = [](double nm) { return std::abs(nm - 555.0); };
+  return static_cast<std::size_t>(
+      std::min_element(wavelengths_nm.begin(), wavelengths_nm.end(),
+                       [&](double a, double b) { return off(a) < off(b); }) -
+      wavelengths_nm.begin());
+}
+
+// Returns the irradiance of a level surface for unit irradiance above the atmosphere.
+BandLight LevelLight(const SolvedAir& air, double altitude_m, const SunPosition& disk) {
+  const double mu = std::sin(disk.elevation_rad);
+  const BandLight sky =
+      air.diffuse.SkyIrradiance(altitude_m, std::sin(SunForAir(disk).elevation_rad));
+  if (mu <= 0.0) return sky;
+  const AirIntegrator<float> integrator(air.medium);
+  return sky + static_cast<float>(mu) * air.beam.Left(integrator, altitude_m, mu);
+}
+
+// Returns the sunlight that the moon does not cover.
+KeyLight BesideMoon(const KeyLight& sun, const GeodeticPosition& eye, const UtcInstant& now,
+                    const Medium& medium) {
+  const EclipsedDisk disk = EclipsedDiskOf(sun.disk, MoonAt(eye, now));
+  if (!disk.IsCovered()) return sun;
+  const Lighting whole = LightingOf(sun.disk, now, eye, medium);
+  return {sun.disk, GpuBandsOf(whole.EclipsedBy(disk, medium.wavelengths_nm).irradiance)};
+}
+
+SunPosition AsPosition(const DistantLight& moon, double earth_sun_au) {
+  SunPosition position{};
+  const auto elevation = [](const glm::dvec3& to) {
+    return std::asin(std::clamp(to.z, -1.0, 1.0));
+  };
+  position.elevation_rad = elevation(moon.to_light);
+  position.lower_for_air_rad = position.elevation_rad - elevation(moon.to_light_for_air);
+  position.azimuth_rad = std::atan2(moon.to_light.x, moon.to_light.y);
+  if (position.azimuth_rad < 0.0) position.azimuth_rad += 2.0 * kPi;
+  position.distance_au = earth_sun_au;
+  position.angular_radius_rad = moon.radius_rad;
+  return position;
+}
+
+}  // namespace
+
+KeyLight SunAsKey(const SunPosition& sun, const Medium& medium) {
+  const auto at_1_au = static_cast<float>(1.0 / (sun.distance_au * sun.distance_au));
+  return {sun, at_1_au * GpuBandsOf(medium.solar_irradiance)};
+}
+
+LightsOfSky LightsOfSkyAt(const GeodeticPosition& eye, const UtcInstant& now,
+                          const SunPosition& sun, const SolvedAir& air) {
+  // A sky that contributes a ten-thousandth on a level surface contributes a five-hundredth near
+  // the horizon below its light.
+  constexpr double kUnseenShare = 1e-4;
+  const KeyLight whole_sun = SunAsKey(sun, air.medium);
+  if (!air.medium.follows_wgs84) return {whole_sun, std::nullopt};
+  const KeyLight by_sun = BesideMoon(whole_sun, eye, now, air.medium);
+  if (sun.elevation_rad > kMoonDoesNotCount_rad) return {by_sun, std::nullopt};
+  const MoonDisk disk = ApparentMoonDisk(eye, now, sun.distance_au, GentleAirOf(air.medium));
+  BandLight solar(air.medium.wavelengths_nm.size());
+  for (std::size_t band = 0; band < solar.count; ++band)
+    solar[band] = whole_sun.irradiance[static_cast<glm::length_t>(band)];
+  const DistantLight moon = MoonlightOf(disk, eye, now, sun.distance_au,
+                                        MoonColour(disk, air.medium.wavelengths_nm), solar);
+  const KeyLight by_moon{AsPosition(moon, sun.distance_au), GpuBandsOf(moon.irradiance), true};
+  const double altitude_m = std::max(eye.height_m, 0.0);
+  const auto green = static_cast<glm::length_t>(GreenBand(air.medium.wavelengths_nm));
+  const auto brings = [&](const KeyLight& key) {
+    return static_cast<double>(key.irradiance[green]) *
+           static_cast<double>(
+               LevelLight(air, altitude_m, key.disk)[static_cast<std::size_t>(green)]);
+  };
+  const double of_sun = brings(by_sun), of_moon = brings(by_moon);
+  if (of_moon <= kUnseenShare * of_sun) return {by_sun, std::nullopt};
+  if (of_sun <= kUnseenShare * of_moon) return {by_moon, std::nullopt};
+  if (sun.elevation_rad < kSetOnLand_rad) return {by_moon, by_sun};
+  return {by_sun, by_moon};
+}
+
+double LevelIlluminance(const KeyLight& key, const SolvedAir& air, double altitude_m,
+                        const BandColour& colour) {
+  BandLight light = LevelLight(air, altitude_m, key.disk);
+  for (std::size_t band = 0; band < light.count; ++band)
+    light[band] *= key.irradiance[static_cast<glm::length_t>(band)];
+  return colour.Xyz(InDouble(light))[1];
+}
+
+}  // namespace alpenglow::viewer

@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: MIT
+#include "viewer/passes/night_floor.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "atmosphere/math/constants.h"
+#include "renderer/illumination/night_light.h"
+#include "viewer/gl/render_target.h"
+#include "viewer/passes/picture_programs.h"
+#include "viewer/shaders/uniform_blocks.h"
+
+namespace alpenglow::viewer {
+namespace {
+
+void Upload(const GlTexture& map, int unit, int columns, int rows,
+            const std::vector<glm::vec4>& texels) {
+  glActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(unit));
+  glBindTexture(GL_TEXTURE_2D, map.id());
+  glTexImage2D(GL_TEXTURE_2D, 0, GL_RGBA32F, columns, rows, 0, GL_RGBA, GL_FLOAT, texels.data());
+  ClampAndFilter(GL_TEXTURE_2D, true);
+  glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_S, GL_REPEAT);
+}
+
+}  // namespace
+
+NightFloor NightFloorOver(const GeodeticPosition& eye, const UtcInstant& now, const Medium& medium,
+                          const BandColour& colour, const TownsOfScene& towns) {
+  const AirIntegrator<float> air(OnOsculatingSphere(medium, eye.latitude_rad));
+  std::optional<BandLight> town_light;
+  if (towns.zenith) town_light = TownLight(*towns.zenith, towns.ground_m, air, colour);
+  const NightLight night(NightSky(eye, now), air, colour, {0.0, 0.0, 1.0},
+                         std::max(eye.height_m, 0.0), town_light);
+  NightFloor floor{{}, GpuBandsOf(night.scattered()), GpuBandsOf(night.OnSurface(1.0))};
+  for (int row = 0; row < NightFloor::kRows; ++row) {
+    const double elevation = kPi * ((row + 0.5) / NightFloor::kRows - 0.5);
+    for (int column = 0; column < NightFloor::kColumns; ++column) {
+      const double azimuth = 2.0 * kPi * (column + 0.5) / NightFloor::kColumns;
+      floor.above.push_back(GpuBandsOf(night.Above(DirectionFromAngles(elevation, azimuth).xyz)));
+    }
+  }
+  return floor;
+}
+
+NightFloorFollower::NightFloorFollower(const TownsOfScene& towns)
+    : maker_([towns](const Request& request) {
+        const Medium& medium = request.air->medium;
+        return NightFloorOver(request.place, request.now, medium, BandColour(medium.wavelengths_nm),
+                              towns);
+      }) {}
+
+// Returns whether the requested map is close enough. The sky may rotate by an eighth of a degree, a
+// tenth of a texel.
+bool NightFloorFollower::Suits(const Request& wanted) const {
+  constexpr double kMostTurn_s = 30.0, kMostWay_rad = 2e-3, kMostRise_m = 1000.0;
+  return asked_ && asked_->air == wanted.air &&
+         std::abs(SecondsBetween(asked_->now, wanted.now)) < kMostTurn_s &&
+         std::abs(asked_->place.latitude_rad - wanted.place.latitude_rad) < kMostWay_rad &&
+         std::abs(asked_->place.longitude_rad - wanted.place.longitude_rad) < kMostWay_rad &&
+         std::abs(asked_->place.height_m - wanted.place.height_m) < kMostRise_m;
+}
+
+void NightFloorFollower::Take(int unit) {
+  const std::optional<NightFloor> floor = maker_.Take();
+  if (!floor) return;
+  scattered_ = floor->scattered;
+  level_ = floor->level;
+  has_map_ = true;
+  Upload(map_, unit, NightFloor::kColumns, NightFloor::kRows, floor->above);
+}
+
+void NightFloorFollower::Follow(const PaintedView& view,
+                                const std::shared_ptr<const SolvedAir>& air, bool waits) {
+  const Request wanted{view.eye.place, view.now, air};
+  if (waits) maker_.Wait();
+  Take(kNightUnit);
+  if (waits || (!maker_.Busy() && !Suits(wanted))) {
+    asked_ = wanted;
+    maker_.Ask(wanted);
+  }
+  if (!waits) return;
+  maker_.Wait();
+  Take(kNightUnit);
+}
+
+void NightFloorFollower::Bind(const ShaderProgram& program, int unit) const {
+  program.BindSampler("night_sky", unit);
+  glActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(unit));
+  glBindTexture(GL_TEXTURE_2D, map_.id());
+  program.Use();
+  glUniform4fv(program.Uniform("night_scattered"), 1, &scattered_.x);
+  glUniform4fv(program.Uniform("night_level"), 1, &level_.x);
+}
+
+}  // namespace alpenglow::viewer

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: MIT
+// The light of the night sky: airglow, zodiacal light and faint stars behind the atmosphere, their
+// scattered light, and their light on the ground. It is the renderer's NightLight as a map of the
+// sky, made on a worker thread, and used where sun and moon contribute less than 10 lux.
+#pragma once
+
+#include <glm/vec4.hpp>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "atmosphere/colour/spectrum.h"
+#include "viewer/air/solved_air.h"
+#include "viewer/gl/gl_objects.h"
+#include "viewer/gl/shader.h"
+#include "viewer/async/latest_job.h"
+#include "viewer/passes/painted_view.h"
+
+namespace alpenglow::viewer {
+
+/// Sky radiance and irradiance by night, one value per band.
+struct NightFloor {
+  /// Columns are azimuths from north through east, rows are elevations from the nadir upwards, at
+  /// texel centres.
+  static constexpr int kColumns = 256, kRows = 128;
+
+  std::vector<glm::vec4> above;  // radiance above the atmosphere, row by row [W m^-2 sr^-1 nm^-1]
+  glm::vec4 scattered;           // NightLight::scattered
+  glm::vec4 level;               // irradiance of level ground [W m^-2 nm^-1]
+};
+
+/// Light pollution of the scene.
+struct TownsOfScene {
+  std::optional<double> zenith = std::nullopt;  // Scene::town_zenith
+  double ground_m = 0.0;                        // height of that ground over the ellipsoid, >= 0
+};
+
+[[nodiscard]] NightFloor NightFloorOver(const GeodeticPosition& eye, const UtcInstant& now,
+                                        const Medium& medium, const BandColour& colour,
+                                        const TownsOfScene& towns = {});
+
+/// Keeps the map up to date. Must be used on the thread whose OpenGL context is current at
+/// construction.
+class NightFloorFollower {
+ public:
+  explicit NightFloorFollower(const TownsOfScene& towns);
+
+  /// Takes over a finished map and requests a new one if needed. Call it once per frame.
+  /// @param waits  whether to wait for the map of exactly this instant.
+  void Follow(const PaintedView& view, const std::shared_ptr<const SolvedAir>& air, bool waits);
+  [[nodiscard]] bool HasAny() const { return has_map_; }
+  /// Sets the inputs of a program of the night pass of picture.frag.glsl for its next draw.
+  void Bind(const ShaderProgram& program, int unit) const;
+
+ private:
+  struct Request {
+    GeodeticPosition place;
+    UtcInstant now;
+    std::shared_ptr<const SolvedAir> air;
+  };
+
+  [[nodiscard]] bool Suits(const Request& wanted) const;
+  void Take(int unit);
+
+  GlTexture map_;
+  glm::vec4 scattered_{0.0F}, level_{0.0F};
+  bool has_map_ = false;
+  std::optional<Request> asked_;
+  LatestJob<Request, NightFloor> maker_;
+};
+
+}  // namespace alpenglow::viewer

@@ -1,0 +1,257 @@
+// SPDX-License-Identifier: MIT
+#include "viewer/passes/painted_scene.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <utility>
+
+#include "atmosphere/math/constants.h"
+#include "atmosphere/refraction/bent_view.h"
+#include "renderer/media/local_media.h"
+#include "viewer/passes/picture_programs.h"
+
+namespace alpenglow::viewer {
+namespace {
+
+constexpr double kLong_s = 1e3;  // time after which all fades have ended
+
+// Returns the ground for lamps and fog, which must exist before the first picture. A landing light
+// does not need it.
+SceneGround LampGroundOf(const Scene& scene) {
+  if (!scene.lights.empty() || scene.fog || scene.town_zenith) return LoadGround(scene);
+  GeodeticPosition foot = scene.place;
+  foot.height_m = 0.0;
+  return {LocalFrame(EllipsoidOf(scene.medium), foot), std::nullopt, 0.0, "", true};
+}
+
+Medium MediumAt(const Scene& scene) {
+  return OnOsculatingSphere(scene.medium, scene.place.latitude_rad);
+}
+
+LandSize LandSizeOf(const PaintSizes& sizes) {
+  LandSize size;
+  size.detail = sizes.land_detail;
+  size.most_growth = sizes.land_growth;
+  return size;
+}
+
+const KeyLight* OfSource(const LightsOfSky& lights, LightSource source) {
+  if (lights.key.source() == source) return &lights.key;
+  return lights.other && lights.other->source() == source ? &*lights.other : nullptr;
+}
+
+GroundFollower::View GroundViewOf(const PaintedView& view, const LightsOfSky& lights) {
+  GroundFollower::View seen{view.eye.place, view.now, lights.key.source(), lights.key.disk};
+  if (lights.other) seen.other = lights.other->disk;
+  return seen;
+}
+
+LandView LandIn(const PaintedView& view, const Medium& medium, int samples = 1) {
+  LandView seen = LandViewOf(view, samples);
+  seen.bends_per_m = -RefractivitySlopeAt(GentleAirOf(medium), 0.0);
+  return seen;
+}
+
+AirView AirViewOf(const Eye& eye, const SunPosition& sun) {
+  return {std::max(eye.place.height_m, 0.0),
+          eye.place.latitude_rad,
+          {DirectionToSun(sun), DirectionToSun(SunForAir(sun))}};
+}
+
+}  // namespace
+
+FirstAir DraftOfAir(const Scene& scene) { return SolveAir(MediumAt(scene), AirSolution::kDraft); }
+
+PaintedScene::PaintedScene(const Scene& scene, const LandSource& land, const PaintedView& first,
+                           const PaintSizes& sizes, FirstAir first_air)
+    : scene_(scene),
+      ellipsoid_(EllipsoidOf(scene.medium)),
+      sizes_(sizes),
+      has_land_(!land.IsEmpty()),
+      lamp_ground_(LampGroundOf(scene)),
+      drape_(DrapeOf(scene, lamp_ground_)),
+      material_(scene.ground, drape_.colours, scene.medium.wavelengths_nm),
+      sun_view_(AirViewOf(first.eye,
+                          ApparentSunAt(first.eye.place, first.now, GentleAirOf(MediumAt(scene))))),
+      air_(first_air ? std::move(first_air) : SolveAir(MediumAt(scene)), sizes.air, sun_view_),
+      land_(std::make_unique<Landscape>(land, LandSizeOf(sizes), ellipsoid_)),
+      ground_(scene.ground, drape_.colours, {}),
+      ground_textures_(air_.air()->diffuse),
+      shade_(ellipsoid_),
+      awaits_land_(has_land_) {
+  if (!land.range_centre) land_->BeginReading(first.eye.place);
+  if (scene.fog) {
+    for (std::optional<SceneFog>* fog : {&fog_, &moon_fog_})
+      fog->emplace(LocalMedia(scene, lamp_ground_, MediumAt(scene)).Only(false, true), sizes.fog,
+                   kFogUnits);
+  }
+  shade_.SetSize(sizes.shade.size);
+  if (drape_.colours) ground_textures_.SetDrape(TexelsOf(drape_));
+}
+
+void PaintedScene::Use(const PaintSizes& sizes) {
+  sizes_ = sizes;
+  if (fog_) fog_->SetSize(sizes.fog);
+  if (moon_fog_) moon_fog_->SetSize(sizes.fog);
+  air_.SetQuality(sizes.air);
+  shade_.SetSize(sizes.shade.size);
+  land_->SetDetail(sizes.land_detail, sizes.land_growth);
+}
+
+void PaintedScene::Replace(const LandSource& land) {
+  auto other = std::make_unique<Landscape>(land, LandSizeOf(sizes_), ellipsoid_);
+  leaving_.push_back(std::exchange(land_, std::move(other)));
+  heights_version_ = -1;
+  has_edges_ = false;
+  awaits_land_ = has_land_;
+  ground_.ForgetLand();
+  shade_.SetGround({});
+}
+
+void PaintedScene::TakeHeights() {
+  if (heights_version_ == land_->heights_version()) return;
+  heights_version_ = land_->heights_version();
+  const GroundSampler sampler = land_->Sampler();
+  ground_.SetGround(sampler);
+  shade_.SetGround(sampler);
+}
+
+void PaintedScene::TakeLight() {
+  if (const std::shared_ptr<const LitGround>& lit = ground_.lit())
+    land_->Use(TerrainHorizon{{lit->site().horizons(), &lit->site().horizons()->map()},
+                              lit->site().ground().frame});
+  if (std::optional<LightOfVertices> light = ground_.Light()) land_->Relight(std::move(*light));
+  for (const LightSource source : {LightSource::kSun, LightSource::kMoon}) {
+    if (ground_.sea_mirror(source).empty()) continue;
+    glActiveTexture(GL_TEXTURE0 + kUploadUnit);
+    ground_textures_.SetSeaMirror(source, ground_.sea_mirror(source));
+  }
+}
+
+void PaintedScene::TakeSkyByPixel() {
+  if (!sizes_.sky_by_pixel) return;
+  glActiveTexture(GL_TEXTURE0 + kUploadUnit);
+  for (const LightSource source : {LightSource::kSun, LightSource::kMoon}) {
+    if (const auto sky = ground_.SkyOf(source)) {
+      sky_by_pixel_.Use(source, *sky);
+    } else {
+      sky_by_pixel_.Forget(source);
+    }
+  }
+}
+
+void PaintedScene::KeepUpAir(const PaintedView& view, const LightsOfSky& lights, Pace pace,
+                             double seconds) {
+  const auto keep_up = [&](AirFollower& air, const AirView& seen) {
+    pace == Pace::kFollow ? air.Follow(seen, seconds) : air.Settle(seen);
+  };
+  const KeyLight* moon = OfSource(lights, LightSource::kMoon);
+  if (const KeyLight* sun = OfSource(lights, LightSource::kSun))
+    sun_view_ = AirViewOf(view.eye, sun->disk);
+  keep_up(air_, sun_view_);
+  if (known_air_ != air_.air()) {
+    known_air_ = air_.air();
+    integrator_.emplace(OnOsculatingSphere(known_air_->medium, view.eye.place.latitude_rad));
+    glActiveTexture(GL_TEXTURE0 + kUploadUnit);
+    ground_textures_.SetAir(known_air_->diffuse);
+  }
+  if (moon == nullptr) return;
+  const AirView seen = AirViewOf(view.eye, moon->disk);
+  if (!moon_air_ || moon_air_of_ != air_.air()) {
+    moon_air_.emplace(air_.air(), sizes_.air, seen, AirFollower::Drafts::kKept);
+    moon_air_of_ = air_.air();
+  }
+  moon_air_->SetQuality(sizes_.air);
+  keep_up(*moon_air_, seen);
+}
+
+// Computing a table takes 3 ms. At dusk the light decreases by 0.2 % while the sun sinks by
+// kLeft_rad.
+void PaintedScene::KeepUpOpenSkies(const LightsOfSky& lights, Pace pace) {
+  constexpr double kLeft_rad = 3e-5;
+  const double altitude_m = ground_.open_altitude_m();
+  for (const LightSource source : {LightSource::kSun, LightSource::kMoon}) {
+    const KeyLight* light = OfSource(lights, source);
+    if (light == nullptr) continue;
+    const double elevation_rad = SunForAir(light->disk).elevation_rad;
+    std::optional<OpenSkyOf>& sky = open_skies_[IndexOf(source)];
+    const double left_rad = pace == Pace::kSettle ? 0.0 : kLeft_rad;
+    if (sky && sky->air == known_air_ && sky->altitude_m == altitude_m &&
+        std::abs(sky->elevation_rad - elevation_rad) <= left_rad)
+      continue;
+    sky = OpenSkyOf{known_air_,
+                    altitude_m,
+                    elevation_rad,
+                    {*integrator_, known_air_->diffuse, altitude_m, std::sin(elevation_rad)}};
+  }
+}
+
+// The shadow edges of vertices follow the elevation of the disk, but not its azimuth. If the
+// azimuth differs by 6 degrees, they are worse than those of the horizon map, whose azimuths are
+// 22.5 degrees apart.
+bool PaintedScene::HasEdgesNear(const Vector<Ecef>& to_light) const {
+  constexpr double kNear_rad = 6.0 * kRadiansPerDegree;
+  const EdgesOfVertices edges = land_->edges();
+  const auto is_near = [&](const Vector<Ecef>& then) {
+    return glm::dot(then.xyz, to_light.xyz) > std::cos(kNear_rad);
+  };
+  return edges.to && is_near(*edges.to) && (!edges.from || is_near(*edges.from));
+}
+
+void PaintedScene::KeepUpEdges(const PaintedView& view, const KeyLight& key, double seconds) {
+  constexpr double kFades_s = 0.3;
+  casts_ = key.source();
+  const Vector<Ecef> to_light =
+      LocalFrame(ellipsoid_, view.eye.place).EcefFromEnu(Vector<Enu>{DirectionToSun(key.disk)});
+  has_edges_ = HasEdgesNear(to_light);
+  momentary_edges_ = has_edges_ ? std::max(momentary_edges_ - seconds / kFades_s, 0.0) : 1.0;
+  land_->Use(MomentaryEdges{momentary_edges_, to_light, key.disk.angular_radius_rad});
+}
+
+void PaintedScene::KeepUpFog(const PaintedView& view, const LightsOfSky& lights, Pace pace) {
+  if (!fog_) return;
+  const auto keep_up = [&](SceneFog& fog, const KeyLight& light) {
+    pace == Pace::kFollow ? fog.Follow(air_.air(), view.eye, light.disk)
+                          : fog.Settle(air_.air(), view.eye, light.disk);
+  };
+  if (const KeyLight* sun = OfSource(lights, LightSource::kSun)) keep_up(*fog_, *sun);
+  if (const KeyLight* moon = OfSource(lights, LightSource::kMoon)) keep_up(*moon_fog_, *moon);
+}
+
+void PaintedScene::Update(const PaintedView& view, const LightsOfSky& lights, double seconds) {
+  std::erase_if(leaving_, [](const auto& land) { return !land->IsWorking(); });
+  const SunPosition& casting = lights.key.disk;
+  KeepUpAir(view, lights, Pace::kFollow, seconds);
+  land_->Update(view.eye.place, LandIn(view, air_.air()->medium), seconds);
+  awaits_land_ = awaits_land_ && !land_->HasCome();
+  TakeHeights();
+  KeepUpEdges(view, lights.key, seconds);
+  if (ground_.Follow(air_.air(), GroundViewOf(view, lights), seconds)) TakeLight();
+  TakeSkyByPixel();
+  KeepUpOpenSkies(lights, Pace::kFollow);
+  if (sizes_.has_shafts) shade_.Follow(view.eye.place, casting, kShadeUnit);
+  KeepUpFog(view, lights, Pace::kFollow);
+}
+
+void PaintedScene::Settle(const PaintedView& view, const LightsOfSky& lights, int samples) {
+  KeepUpAir(view, lights, Pace::kSettle, 0.0);
+  land_->Settle(view.eye.place, LandIn(view, air_.air()->medium, samples));
+  TakeHeights();
+  if (ground_.Settle(air_.air(), GroundViewOf(view, lights))) {
+    TakeLight();
+    land_->Settle(view.eye.place, LandIn(view, air_.air()->medium, samples));
+  }
+  TakeSkyByPixel();
+  KeepUpOpenSkies(lights, Pace::kSettle);
+  KeepUpEdges(view, lights.key, kLong_s);
+  if (sizes_.has_shafts) shade_.Settle(view.eye.place, lights.key.disk, kShadeUnit);
+  KeepUpFog(view, lights, Pace::kSettle);
+  awaits_land_ = false;
+}
+
+std::optional<PhaseKind> PaintedScene::fog_phase() const {
+  return scene_.fog ? std::optional(scene_.fog->phase.kind) : std::nullopt;
+}
+
+}  // namespace alpenglow::viewer

@@ -1,0 +1,162 @@
+// SPDX-License-Identifier: MIT
+// A scene prepared for drawing: its medium, terrain, terrain lighting, volumetric shadows and fog.
+// Each part is computed on worker threads and follows the moving eye and sun.
+#pragma once
+
+#include <array>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "atmosphere/ray/single_scattering.h"
+#include "atmosphere/astronomy/sun.h"
+#include "renderer/surface/scene_ground.h"
+#include "renderer/surface/surface.h"
+#include "renderer/scene/scene.h"
+#include "viewer/air/air_follower.h"
+#include "viewer/ground/ground_block.h"
+#include "viewer/ground/ground_follower.h"
+#include "viewer/ground/sky_by_pixel.h"
+#include "viewer/ground/sky_on_ground.h"
+#include "viewer/lamps/fog.h"
+#include "viewer/land/landscape.h"
+#include "viewer/passes/auto_quality.h"
+#include "viewer/passes/key_light.h"
+#include "viewer/passes/painted_view.h"
+#include "viewer/shade/shafts.h"
+
+namespace alpenglow::viewer {
+
+/// The solved medium of a scene, prepared before the PaintedScene. Null: PaintedScene solves it at
+/// full accuracy.
+using FirstAir = std::shared_ptr<const SolvedAir>;
+/// Returns a draft solution. Throws for a medium as the constructor of PaintedScene does.
+[[nodiscard]] FirstAir DraftOfAir(const Scene& scene);
+
+/// All parts of a scene that are needed to draw it. Must be used on the thread whose OpenGL context
+/// is current at construction.
+class PaintedScene {
+ public:
+  /// If the medium is a draft, it is solved at full accuracy on a worker thread, and land is read
+  /// on another. Throws InputError for a medium with more than four wavelengths and for explicitly
+  /// named land that cannot be read.
+  PaintedScene(const Scene& scene, const LandSource& land, const PaintedView& first,
+               const PaintSizes& sizes, FirstAir first_air);
+
+  void Use(const PaintSizes& sizes);
+  /// Changes the medium. The new one is shown when it is solved.
+  void Replace(const Medium& medium) { air_.Replace(medium); }
+
+  /// Changes the land to other land of the same kind. The previous land, its lighting and its
+  /// shadows disappear immediately.
+  void Replace(const LandSource& land);
+
+  /// Shows no land until the land around the eye is loaded.
+  void AwaitLand() { awaits_land_ = true; }
+  /// Returns whether land is not shown yet, at the start and after a change of place. Only sky is
+  /// drawn then.
+  [[nodiscard]] bool AwaitsLand() const { return awaits_land_; }
+
+  /// Collects finished work and requests missing parts. It does not wait, except for the first fog
+  /// in a new medium or under a moon.
+  /// @param lights   as seen from the eye.
+  /// @param seconds  time since the last call.
+  void Update(const PaintedView& view, const LightsOfSky& lights, double seconds);
+  /// Waits until everything that the view needs is complete.
+  /// @param samples  number of rays per pixel to be drawn.
+  void Settle(const PaintedView& view, const LightsOfSky& lights, int samples);
+
+  [[nodiscard]] const PaintSizes& sizes() const { return sizes_; }
+  [[nodiscard]] const GeodeticPosition& place() const { return scene_.place; }
+  [[nodiscard]] const Ellipsoid& ellipsoid() const { return ellipsoid_; }
+  /// The ground on which lamps and fog are placed.
+  [[nodiscard]] const SceneGround& lamp_ground() const { return lamp_ground_; }
+  [[nodiscard]] const SceneDrape& drape() const { return drape_; }
+  [[nodiscard]] const GroundMaterial& material() const { return material_; }
+  /// The medium lit by the sun.
+  [[nodiscard]] const AirFollower& air() const { return air_; }
+  /// The textures of the medium lit by a source, which must be one of the lights.
+  [[nodiscard]] const AirTextures& air_textures(LightSource source) const {
+    return source == LightSource::kMoon && moon_air_ ? moon_air_->textures() : air_.textures();
+  }
+  [[nodiscard]] const Landscape& land() const { return *land_; }
+  [[nodiscard]] Landscape& land() { return *land_; }
+  /// Returns whether the scene has land anywhere, and whether it has fine relief.
+  [[nodiscard]] LandKind land_kind() const { return {has_land_, scene_.terrain.HasFineRelief()}; }
+  [[nodiscard]] const GroundFollower& ground() const { return ground_; }
+  /// Directional variation of the unoccluded sky's irradiance under a source, which must be one of
+  /// the lights, at the last updated or settled instant.
+  [[nodiscard]] const SkyTilt& OpenSky(LightSource source) const {
+    return open_skies_[IndexOf(source)].value().light;
+  }
+  [[nodiscard]] const GroundTextures& ground_textures() const { return ground_textures_; }
+  /// Returns null if vertices hold the sky irradiance of this source: because of the quality, or
+  /// until the tables are ready.
+  [[nodiscard]] const SkyByPixel* sky_by_pixel(LightSource source) const {
+    return sizes_.sky_by_pixel && sky_by_pixel_.Has(source) ? &sky_by_pixel_ : nullptr;
+  }
+  [[nodiscard]] const ShadeFollower& shade() const { return shade_; }
+  /// Returns whether terrain shadows the air from the key light, and that effect is drawn.
+  [[nodiscard]] bool HasShade(const PaintedView& view, const KeyLight& key) const {
+    return !awaits_land_ && sizes_.has_shafts && shade_.shade().Shades() &&
+           shade_.IsOf(view.eye.place, key.disk);
+  }
+  /// Returns whether all shadow edges on land belong to this source.
+  [[nodiscard]] bool HasEdgesOf(LightSource source) const {
+    return source == casts_ && (momentary_edges_ == 1.0 ? land_->HasHorizon() : has_edges_);
+  }
+  /// The fog lit by a source. Null: no fog.
+  [[nodiscard]] const SceneFog* fog(LightSource source = LightSource::kSun) const {
+    if (source == LightSource::kMoon && moon_fog_) return &*moon_fog_;
+    return fog_ ? &*fog_ : nullptr;
+  }
+  /// Empty without fog.
+  [[nodiscard]] std::optional<PhaseKind> fog_phase() const;
+
+ private:
+  /// Followers either do their work in the background (Update) or complete it (Settle).
+  enum class Pace { kFollow, kSettle };
+  void KeepUpAir(const PaintedView& view, const LightsOfSky& lights, Pace pace, double seconds);
+  /// Irradiance of the unoccluded sky on slopes, and the inputs it was computed for.
+  struct OpenSkyOf {
+    std::shared_ptr<const SolvedAir> air;
+    double altitude_m, elevation_rad;
+    SkyTilt light;
+  };
+  void KeepUpOpenSkies(const LightsOfSky& lights, Pace pace);
+  [[nodiscard]] bool HasEdgesNear(const Vector<Ecef>& to_light) const;
+  void KeepUpEdges(const PaintedView& view, const KeyLight& key, double seconds);
+  void KeepUpFog(const PaintedView& view, const LightsOfSky& lights, Pace pace);
+  void TakeHeights();
+  void TakeLight();
+  void TakeSkyByPixel();
+
+  Scene scene_;
+  Ellipsoid ellipsoid_;
+  PaintSizes sizes_;
+  bool has_land_;
+  SceneGround lamp_ground_;
+  SceneDrape drape_;
+  GroundMaterial material_;
+  AirView sun_view_;                                // the last view in which the sun was a light
+  AirFollower air_;                                 // at sun_view_
+  std::shared_ptr<const SolvedAir> known_air_;      // the medium in ground_textures_
+  std::optional<AirIntegrator<float>> integrator_;  // of known_air_
+  std::array<std::optional<OpenSkyOf>, kLightSources> open_skies_;
+  std::optional<AirFollower> moon_air_;           // once the moon is a light
+  std::shared_ptr<const SolvedAir> moon_air_of_;  // the medium of moon_air_
+  std::unique_ptr<Landscape> land_;
+  std::vector<std::unique_ptr<Landscape>> leaving_;  // until their threads have ended
+  GroundFollower ground_;
+  GroundTextures ground_textures_;
+  SkyByPixel sky_by_pixel_;
+  ShadeFollower shade_;
+  std::optional<SceneFog> fog_, moon_fog_;
+  LightSource casts_ = LightSource::kSun;  // the shadow-casting light
+  bool has_edges_ = false;                 // whether vertices have shadow edges for casts_
+  double momentary_edges_ = 0.0;           // MomentaryEdges::share
+  int heights_version_ = -1;
+  bool awaits_land_;
+};
+
+}  // namespace alpenglow::viewer

@@ -1,0 +1,184 @@
+// SPDX-License-Identifier: MIT
+#include "viewer/passes/painted_view.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+
+#include "atmosphere/math/constants.h"
+#include "atmosphere/refraction/bent_view.h"
+#include "atmosphere/ray/shell.h"
+#include "renderer/camera/camera_rays.h"
+#include "viewer/air/air_rows.h"
+
+namespace alpenglow::viewer {
+namespace {
+
+// Returns the position of the minimum of a convex function between -1 and 1, to 1e-5. The minimum
+// value is then accurate to about 1e-10.
+template <typename Function>
+double LeastOf(const Function& function) {
+  constexpr double kGolden = 0.6180339887498949;
+  double low = -1.0, high = 1.0;
+  while (high - low > 1e-5) {
+    const double width = kGolden * (high - low);
+    if (function(high - width) < function(low + width))
+      high = low + width;
+    else
+      low = high - width;
+  }
+  return 0.5 * (low + high);
+}
+
+}  // namespace
+
+double PixelAngle(const PaintedView& view) {
+  return 2.0 * std::tan(0.5 * view.eye.fov_rad) / (view.width * view.part.z);
+}
+
+glm::dvec2 HalfViewOf(const PaintedView& view) {
+  const double half_width = std::tan(0.5 * view.eye.fov_rad);
+  return {half_width, half_width * view.height / view.width};
+}
+
+LandView LandViewOf(const PaintedView& view, int samples) {
+  const ViewAxes axes = AxesOf(view.eye);
+  const glm::dvec2 half = HalfViewOf(view) / view.part.z;
+  return {half.x * axes.right, half.y * axes.up, axes.forward, samples};
+}
+
+// The shift is equal for all pixels.
+glm::dvec2 ShiftOf(const PixelRay& ray, const PaintedView& view) {
+  if (ray.of == 1) return glm::dvec2(0.0);
+  const auto [x, y] = PixelSamples(0, 0, ray.of).Point(ray.number, SampleOf::kPixel);
+  return {(2.0 * x - 1.0) / view.width, (2.0 * y - 1.0) / view.height};
+}
+
+std::optional<PixelBox> PixelsOfDisk(const glm::dvec3& direction, double radius_rad,
+                                     const PaintedView& view) {
+  const LandView axes = LandViewOf(view);
+  const double along = glm::dot(direction, axes.forward);
+  if (along <= 0.0) return std::nullopt;
+  const auto pixel = [&](const glm::dvec3& axis, double part, int side) {
+    const double at = glm::dot(direction, axis) / glm::dot(axis, axis) / along - part;
+    return 0.5 * side * (1.0 + at);
+  };
+  const double x = pixel(axes.right, view.part.x * view.part.z, view.width);
+  const double y = pixel(axes.up, view.part.y * view.part.w, view.height);
+  // Off the centre of the view, disks are stretched, so twice the radius is used.
+  const double reach = 2.0 * radius_rad / PixelAngle(view) / along + 2.0;
+  if (x < -reach || y < -reach || x > view.width + reach || y > view.height + reach)
+    return std::nullopt;
+  const int side = static_cast<int>(std::ceil(2.0 * reach)) + 1;
+  return PixelBox{static_cast<int>(std::floor(x - reach)), static_cast<int>(std::floor(y - reach)),
+                  side, side};
+}
+
+double RadiusUnder(const Eye& eye, const Medium& medium) {
+  return OnOsculatingSphere(medium, eye.place.latitude_rad).planet_radius_m / kMetresPerKilometre;
+}
+
+// A ray d is below the horizon with cosine c <= 0 where d.z - c |d| < 0. This function is convex
+// over the picture, and so is its minimum over each row as a function of the row.
+int RowsOfPlanet(const PaintedView& view, double radius_km) {
+  const LandView axes = LandViewOf(view);
+  const double altitude_km = std::max(view.eye.place.height_m, 0.0) / kMetresPerKilometre;
+  const double horizon = shared::HorizonCosine(altitude_km, radius_km);
+  const glm::dvec3 middle =
+      axes.forward + view.part.x * view.part.z * axes.right + view.part.y * view.part.w * axes.up;
+  const auto over_horizon = [&](double x, double y) {
+    const glm::dvec3 d = middle + x * axes.right + y * axes.up;
+    return d.z - horizon * glm::length(d);
+  };
+  const auto least_of_row = [&](double y) {
+    const auto of_row = [&](double x) { return over_horizon(x, y); };
+    return of_row(LeastOf(of_row));
+  };
+  double under = LeastOf(least_of_row), over = 1.0;
+  if (least_of_row(under) >= 0.0) return 0;
+  if (least_of_row(over) < 0.0) return view.height;
+  while (over - under > 1e-6) {
+    const double y = 0.5 * (under + over);
+    (least_of_row(y) < 0.0 ? under : over) = y;
+  }
+  return std::min(static_cast<int>(0.5 * (over + 1.0) * view.height) + 2, view.height);
+}
+
+glm::dvec3 DirectionToSun(const SunPosition& sun) {
+  return DirectionFromAngles(sun.elevation_rad, sun.azimuth_rad).xyz;
+}
+
+std::optional<LandBend> BendOf(const PaintedView& view, const Medium& medium,
+                               double farthest_land_m) {
+  BendingAir air = GentleAirOf(medium);
+  air.planet_radius_m = RadiusUnder(view.eye, medium) * kMetresPerKilometre;
+  const double height_m = std::max(view.eye.place.height_m, 0.0);
+  const LandBend bend = LandBendOf(air, height_m);
+  if (MostLiftOfPlanet(bend, height_m, farthest_land_m) <= 0.5 * PixelAngle(view))
+    return std::nullopt;
+  return bend;
+}
+
+namespace {
+
+/// The nodes extend to this many radii from the centre of the disk. The disk may move by the
+/// remainder.
+constexpr double kReach = 1.25;
+constexpr double kMostWay_rad = 1.0 / 60.0 * kRadiansPerDegree;
+
+}  // namespace
+
+double BentDisk::Change() const {
+  double between_bands = 0.0;
+  for (int band = 1; band < 4; ++band)
+    between_bands =
+        std::max(between_bands, std::abs(double{lift_rad.front()[band] - lift_rad.front()[0]}));
+  const double flatter = double{lift_rad.front().x} - double{lift_rad[kNodes / 2].x};
+  return std::max(flatter, between_bands);
+}
+
+BentDisk BentDiskOf(const Medium& medium, double height_m, double elevation_rad,
+                    double radius_rad) {
+  const BendingAir air = GentleAirOf(medium);
+  const double horizon_rad = GrazingElevation(air, height_m);
+  // No part of a disk is visible below the horizon.
+  const double first_rad = std::max(elevation_rad - kReach * radius_rad, horizon_rad);
+  const double last_rad =
+      std::max(elevation_rad + kReach * radius_rad, horizon_rad + 0.1 * radius_rad);
+  BentDisk disk{first_rad, (last_rad - first_rad) / (BentDisk::kNodes - 1), {}, {}};
+  for (std::size_t node = 0; node < BentDisk::kNodes; ++node) {
+    const double at_rad = first_rad + static_cast<double>(node) * disk.step_rad;
+    const BentLight light = BentLightOf(medium, air, at_rad, std::max(height_m, 0.0));
+    for (std::size_t band = 0; band < medium.wavelengths_nm.size(); ++band) {
+      const double more = RefractivityAtSeaLevel(medium.wavelengths_nm[band]) /
+                              RefractivityAtSeaLevel(kHorizonWavelength_nm) -
+                          1.0;
+      const auto component = static_cast<glm::length_t>(band);
+      disk.lift_rad[node][component] = static_cast<float>(
+          light.refraction_rad + more * air.refractivity * light.per_refractivity_rad);
+      disk.more_depth[node][component] =
+          static_cast<float>(medium.rayleigh_scattering_per_m[band] * light.molecules_m +
+                             medium.mie_extinction_per_m[band] * light.aerosol_m);
+    }
+  }
+  return disk;
+}
+
+const BentDisk* BentDiskFollower::Follow(const std::shared_ptr<const SolvedAir>& air,
+                                         double height_m, double elevation_rad, double radius_rad,
+                                         double half_pixel_rad) {
+  constexpr double kLow_rad = 10.0 * kRadiansPerDegree;
+  const double horizon_rad = GrazingElevation(GentleAirOf(air->medium), height_m);
+  if (elevation_rad > kLow_rad || elevation_rad < horizon_rad - 2.0 * radius_rad) return nullptr;
+  // The horizon changes with the eye's height as well. The air is densest there.
+  const double height_step_m = 0.002 * std::max(height_m, 1.0);
+  const bool suits = made_ && made_->air == air &&
+                     std::abs(made_->height_m - height_m) < height_step_m &&
+                     std::abs(made_->elevation_rad - elevation_rad) < kMostWay_rad;
+  if (!suits)
+    made_ = {air, height_m, elevation_rad,
+             BentDiskOf(air->medium, height_m, elevation_rad, radius_rad)};
+  return made_->disk.Change() > half_pixel_rad ? &made_->disk : nullptr;
+}
+
+}  // namespace alpenglow::viewer

@@ -1,0 +1,259 @@
+// SPDX-License-Identifier: MIT
+#include "viewer/passes/picture_programs.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "renderer/surface/surface.h"
+#include "viewer/air/air_follower.h"
+#include "viewer/air/air_rows.h"
+#include "viewer/gl/gl_objects.h"
+#include "viewer/ground/ground_block.h"
+#include "viewer/ground/sky_by_pixel.h"
+#include "viewer/lamps/fog.h"
+#include "viewer/passes/painted_view.h"
+#include "viewer/shade/shafts.h"
+#include "viewer/shaders/full_screen.h"
+
+namespace alpenglow::viewer {
+namespace {
+
+ShaderPiece DefinesOf(const PictureKind& kind, const PictureStage& stage) {
+  return {"stage",
+          fmt::format("#define LAND_PASS 0\n#define SKY_PASS 1\n#define DISK_PASS 2\n"
+                      "#define OPEN_SKY_PASS 3\n#define NIGHT_PASS 4\n"
+                      "#define PASS {}\n#define HAS_SHADE {}\n#define HAS_LAMPS {}\n"
+                      "#define HAS_FOG {}\n#define SKY_BY_PIXEL {}\n",
+                      static_cast<int>(stage.pass), stage.has_shade ? 1 : 0,
+                      stage.has_lamps ? 1 : 0, kind.fog ? 1 : 0, stage.sky_by_pixel ? 1 : 0)};
+}
+
+}  // namespace
+
+std::vector<ShaderPiece> AirTexts() {
+  std::vector<ShaderPiece> texts = WithViewerPieces(
+      SharedTexts(), {"viewer/shaders/view_block.glsl", "viewer/shaders/bent_sight.glsl"});
+  for (ShaderPiece& piece : AirTableTexts()) texts.push_back(std::move(piece));
+  return texts;
+}
+
+std::vector<ShaderPiece> PictureTexts(const PictureKind& kind, const PictureStage& stage) {
+  std::vector<ShaderPiece> texts = AirTexts();
+  const auto add = [&](std::vector<ShaderPiece> pieces) {
+    for (ShaderPiece& piece : pieces) texts.push_back(std::move(piece));
+  };
+  texts.push_back(DefinesOf(kind, stage));
+  add(kind.fog ? FogTexts(*kind.fog) : NoFogTexts());
+  // On the ground, the transmittance of sunlight includes that of the fog above.
+  if (kind.fog) {
+    texts.push_back(
+        {"fog on the ground", "#define BeamOfSun(h, mu) (BeamOfSun(h, mu) * FogSunLeft(h, mu))\n"});
+  }
+  add(WithViewerPieces({}, {"viewer/shaders/air_block.glsl", "viewer/shaders/octahedral.glsl",
+                            "viewer/shaders/nearness.glsl", "viewer/shaders/sun_light.glsl"}));
+  if (stage.pass == PictureStage::Pass::kDisks)
+    add(WithViewerPieces({}, {"viewer/shaders/bent_disks.glsl"}));
+  add(GroundTexts(kind.material, kind.land));
+  if (stage.sky_by_pixel) add(SkyByPixelTexts());
+  add(ShaftTexts());
+  add(stage.has_lamps ? kind.lamps.texts() : NoLampTexts());
+  return texts;
+}
+
+namespace {
+
+template <typename Block>
+void Upload(const GlBuffer& buffer, PictureBinding binding, const Block& block) {
+  glBindBufferBase(GL_UNIFORM_BUFFER, binding, buffer.id());
+  glBufferData(GL_UNIFORM_BUFFER, sizeof(block), &block, GL_DYNAMIC_DRAW);
+}
+
+// Returns the frame of the ground's pattern, in which a draped image also lies.
+LocalFrame PatternOf(const PaintedScene& scene) {
+  GeodeticPosition origin = scene.place();
+  origin.height_m = 0.0;
+  return {scene.ellipsoid(), origin};
+}
+
+// Returns the eye's point in the pattern's coordinates.
+GroundPoint OnPattern(const PaintedScene& scene, const glm::dvec3& eye, const UtcInstant& now) {
+  const Medium& medium = scene.air().air()->medium;
+  const GeodeticPosition& origin = scene.place();
+  const double radius =
+      medium.follows_wgs84 ? OsculatingRadius(kWgs84, origin.latitude_rad) : medium.planet_radius_m;
+  GroundPoint at{origin.longitude_rad * std::cos(origin.latitude_rad) * radius + eye.x,
+                 origin.latitude_rad * radius + eye.y, eye.z, 0.0};
+  at.up_m = eye.z;
+  at.sea_s = SeaTime(now);
+  return at;
+}
+
+GroundBlock GroundAround(const PaintedScene& scene, const PaintedView& view) {
+  const LocalFrame pattern = PatternOf(scene), here(scene.ellipsoid(), view.eye.place);
+  const MountainSurface surface(scene.air().air()->medium.wavelengths_nm,
+                                CoverInSeason(view.eye.place, view.now.modified_julian_day),
+                                scene.material().cover().wetness);
+  GroundBlock block = GroundBlockOf(
+      surface, OnPattern(scene, pattern.EnuFromGeodetic(view.eye.place).xyz, view.now));
+  const auto axis = [&](const glm::dvec3& of_pattern) {
+    return glm::vec4(here.EnuFromEcef(pattern.EcefFromEnu(Vector<Enu>{of_pattern})).xyz, 0.0);
+  };
+  block.cover_lines.z = static_cast<float>(scene.sizes().dropped_octaves);
+  block.mesh_east = axis({1.0, 0.0, 0.0});
+  block.mesh_north = axis({0.0, 1.0, 0.0});
+  block.mesh_up = axis({0.0, 0.0, 1.0});
+  return block;
+}
+
+GroundLightBlock LightAround(const PaintedScene& scene, const PaintedView& view,
+                             const KeyLight& light) {
+  GroundLightBlock block = GroundLightBlockOf(scene.OpenSky(light.source()),
+                                              DirectionToSun(light.disk), PixelAngle(view));
+  block.ground_view.y = scene.HasEdgesOf(light.source()) ? 1.0F : 0.0F;
+  return block;
+}
+
+GroundSurfaceBlock SurfaceAround(const PaintedScene& scene, const Eye& eye) {
+  const GroundSurfaceBlock cover = GroundSurfaceBlockOf(scene.material());
+  if (!scene.drape().colours) return cover;
+  const glm::dvec3 at = PatternOf(scene).EnuFromGeodetic(eye.place).xyz;
+  return Draped(cover, scene.drape().place, at.x, at.y);
+}
+
+// Sets the refraction of the view. Without refraction the planet appears with its true radius.
+void SetBend(ViewBlock& block, const std::optional<LandBend>& bend) {
+  block.bend.x = block.eye.w;
+  if (!bend) return;
+  const auto layers = [](const std::array<double, 3>& of) {
+    return glm::vec4(glm::dvec4(of[0], of[1], of[2], 0.0));
+  };
+  block.bend = glm::vec4(glm::dvec4(bend->look_radius_km, bend->top_km, bend->usual_per_km, 0.0));
+  block.bend_slopes = layers(bend->slope_per_km);
+  block.bend_falls = layers(bend->fall_per_km);
+}
+
+}  // namespace
+
+void PictureBlocks::UploadAir(const PaintedScene& scene, const Eye& eye) {
+  const std::shared_ptr<const SolvedAir>& air = scene.air().air();
+  if (known_air_ != air) air_block_ = AirBlockOf(air->medium);
+  known_air_ = air;
+  air_block_.shell.x = static_cast<float>(RadiusUnder(eye, air->medium));
+  Upload(air_, kAirBinding, air_block_);
+}
+
+void PictureBlocks::UploadView(const PaintedScene& scene, const PaintedView& view,
+                               const KeyLight& key, const PixelRay& ray) const {
+  const Medium& medium = scene.air().air()->medium;
+  const LandView axes = LandViewOf(view);
+  const glm::dvec2 shift = ShiftOf(ray, view);
+  const glm::dvec2 moved(view.part.x * view.part.z + shift.x, view.part.y * view.part.w + shift.y);
+  const double altitude_km = std::max(view.eye.place.height_m, 0.0) / kMetresPerKilometre;
+  ViewBlock block{};
+  block.view_right = {glm::vec3(axes.right), 0.0F};
+  block.view_up = {glm::vec3(axes.up), 0.0F};
+  block.view_forward = {glm::vec3(axes.forward), PixelAngle(view) / std::sqrt(ray.of)};
+  block.sun = {glm::vec3(DirectionToSun(key.disk)), key.disk.angular_radius_rad};
+  block.sun_for_air = {glm::vec3(DirectionToSun(SunForAir(key.disk))), 0.0F};
+  block.sun_irradiance = key.irradiance;
+  block.eye = {altitude_km, moved.x, moved.y, RadiusUnder(view.eye, medium)};
+  SetBend(block, BendOf(view, medium, scene.land().farthest_m()));
+  Upload(view_, kViewBinding, block);
+}
+
+void PictureBlocks::UploadGroundLight(const PaintedScene& scene, const PaintedView& view,
+                                      const KeyLight& light) const {
+  Upload(ground_light_, kGroundLightBinding, LightAround(scene, view, light));
+}
+
+void PictureBlocks::UploadSkyByPixel(const PaintedScene& scene, const PaintedView& view,
+                                     const KeyLight& light) const {
+  const SkyByPixel* sky = scene.sky_by_pixel(light.source());
+  if (sky == nullptr) return;
+  const LocalFrame eye(scene.ellipsoid(), view.eye.place);
+  Upload(sky_by_pixel_, kSkyByPixelBinding,
+         sky->BlockOf(light.source(), eye, DirectionToSun(SunForAir(light.disk)),
+                      scene.OpenSky(light.source())));
+}
+
+void PictureBlocks::UploadGround(const PaintedScene& scene, const PaintedView& view) const {
+  Upload(ground_, kGroundBinding, GroundAround(scene, view));
+  Upload(ground_surface_, kGroundSurfaceBinding, SurfaceAround(scene, view.eye));
+}
+
+namespace {
+
+// Fragments have depth 0 and are tested against the depth of land: either it is nearer (land), or
+// there is no land.
+GLenum DepthTestOf(PictureStage::Pass pass) {
+  if (pass == PictureStage::Pass::kNight) return GL_ALWAYS;
+  return pass == PictureStage::Pass::kLand ? GL_LESS : GL_EQUAL;
+}
+
+void ConnectBlocks(const ShaderProgram& program) {
+  program.BindBlock("Air", kAirBinding);
+  program.BindBlock("View", kViewBinding);
+  program.BindBlock("Ground", kGroundBinding);
+  program.BindBlock("GroundLight", kGroundLightBinding);
+  program.BindBlock("GroundSurface", kGroundSurfaceBinding);
+  program.BindBlock("SkyByPixel", kSkyByPixelBinding);
+}
+
+void ConnectMaps(const ShaderProgram& program) {
+  program.BindSampler("surface_map", kSurfaceUnit);
+  program.BindSampler("sky_on_surface", kSkyOnSurfaceUnit);
+  program.BindSampler("shaft_map", kShaftUnit);
+  program.BindSampler("fog_shaft_map", kFogShaftUnit);
+}
+
+}  // namespace
+
+PicturePrograms::PicturePrograms(const PaintedScene& scene, const LampPainter& lamps,
+                                 const ShaftPass& shafts)
+    : scene_(scene), lamps_(lamps), shafts_(shafts) {}
+
+ShaderProgram PicturePrograms::Made(const PictureStage& stage) const {
+  const PictureKind kind{scene_.material(), lamps_, scene_.land_kind(), scene_.fog_phase()};
+  ShaderProgram made = FullScreenProgram(
+      WithViewerPieces(PictureTexts(kind, stage), {"viewer/shaders/picture.frag.glsl"}));
+  ConnectBlocks(made);
+  ConnectMaps(made);
+  AirTextures::Prepare(made, kAirUnit, kTablesBinding);
+  if (stage.has_lamps) lamps_.Connect(made);
+  if (scene_.fog() != nullptr) scene_.fog()->Connect(made);
+  return made;
+}
+
+const ShaderProgram& PicturePrograms::Of(const PictureStage& stage) {
+  const auto found = made_.find(stage);
+  if (found != made_.end()) return found->second;
+  return made_.emplace(stage, Made(stage)).first->second;
+}
+
+void PicturePrograms::Paint(const PictureStage& stage, LightSource source) {
+  const ShaderProgram& program = Of(stage);
+  scene_.ground_textures().Bind(program, kGroundUnit, source);
+  if (stage.sky_by_pixel) scene_.sky_by_pixel(source)->Bind(program, kSkyByPixelUnit, source);
+  if (stage.has_shade) shafts_.Bind(program, kShaftUnit);
+  program.Use();
+  glDepthFunc(DepthTestOf(stage.pass));
+  DrawFullScreen(program, no_vertices_);
+  ready_.insert(stage);
+}
+
+bool PicturePrograms::MakeReady(const PictureStage& stage) {
+  if (ready_.contains(stage) || (stage.has_shade && !shafts_.HasMap())) return false;
+  const Scissor one_pixel({0, 0, 1, 1});
+  Paint(stage);
+  return true;
+}
+
+void PicturePrograms::ForgetThoseWithLamps() {
+  std::erase_if(made_, [](const auto& made) { return made.first.has_lamps; });
+  std::erase_if(ready_, [](const PictureStage& stage) { return stage.has_lamps; });
+}
+
+}  // namespace alpenglow::viewer

@@ -1,0 +1,151 @@
+// SPDX-License-Identifier: MIT
+// The shader programs of a picture: their bindings, shader texts and uniform blocks.
+//
+// Every uniform block and texture has a binding number of its own, so that passes do not overwrite
+// each other's bindings. The fragment stages share one text, picture.frag.glsl, for land, sky and
+// disks, preceded by texts that depend on the scene. There is one program per stage, created on
+// first use and kept.
+//
+// Drivers finish compiling a program on its first draw, which takes tenths of a second. Stages that
+// will be needed later, when shadowing begins or ends or a disk comes into view, are therefore
+// drawn in the first frames, over one pixel that is overwritten afterwards.
+#pragma once
+
+#include <glm/vec2.hpp>
+#include <map>
+#include <memory>
+#include <optional>
+#include <set>
+#include <vector>
+
+#include "atmosphere/medium/phase.h"
+#include "atmosphere/astronomy/sun.h"
+#include "renderer/surface/surface.h"
+#include "viewer/air/air_follower.h"
+#include "viewer/air/solved_air.h"
+#include "viewer/gl/gl_objects.h"
+#include "viewer/gl/shader.h"
+#include "viewer/ground/ground_block.h"
+#include "viewer/lamps/fog.h"
+#include "viewer/lamps/lamp_painter.h"
+#include "viewer/passes/key_light.h"
+#include "viewer/passes/painted_scene.h"
+#include "viewer/passes/painted_view.h"
+#include "viewer/shade/shafts.h"
+#include "viewer/shaders/uniform_blocks.h"
+
+namespace alpenglow::viewer {
+
+/// Binding points of uniform blocks.
+enum PictureBinding : GLuint {
+  kAirBinding,
+  kViewBinding,
+  kGroundBinding,
+  kGroundLightBinding,
+  kGroundSurfaceBinding,
+  kSkyByPixelBinding,
+  kTablesBinding,
+  kLampsBinding,
+  kFogBinding
+};
+
+/// Texture units.
+enum PictureUnit {
+  kSurfaceUnit,
+  kSkyOnSurfaceUnit,
+  kShaftUnit,
+  kFogShaftUnit,
+  kShadeUnit,
+  kUploadUnit,
+  kAirUnit,
+  kGroundUnit = kAirUnit + AirTextures::kUnits,
+  kLampUnit = kGroundUnit + 3,
+  kFogUnit = kLampUnit + 6,
+  kNightUnit = kFogUnit + 2,
+  kSkyByPixelUnit = kNightUnit + 1,
+};
+
+inline constexpr LampUnits kLampUnits{kLampsBinding, kViewBinding, kSurfaceUnit, kLampUnit};
+inline constexpr FogUnits kFogUnits{kFogBinding, kFogUnit};
+
+/// Identifies one program of the picture. kOpenSky is the sky above the horizon, see RowsOfPlanet.
+struct PictureStage {
+  enum class Pass { kLand, kSky, kDisks, kOpenSky, kNight };
+  Pass pass;
+  bool has_shade = false, has_lamps = false;
+  bool sky_by_pixel = false;  // SkyByPixel, for land only
+
+  auto operator<=>(const PictureStage&) const = default;
+};
+
+/// The properties of a scene that its shader texts depend on.
+struct PictureKind {
+  const GroundMaterial& material;
+  const LampPainter& lamps;
+  LandKind land;
+  std::optional<PhaseKind> fog;  // its phase function
+};
+
+/// Returns the texts of a stage that precede picture.frag.glsl.
+[[nodiscard]] std::vector<ShaderPiece> PictureTexts(const PictureKind& kind,
+                                                    const PictureStage& stage);
+
+/// Returns the first of these texts: the view and the medium.
+[[nodiscard]] std::vector<ShaderPiece> AirTexts();
+
+/// The uniform blocks of a picture. Each call fills blocks and binds them (PictureBinding).
+class PictureBlocks {
+ public:
+  void UploadAir(const PaintedScene& scene, const Eye& eye);
+  /// @param ray  the ray of each pixel that is drawn.
+  void UploadView(const PaintedScene& scene, const PaintedView& view, const KeyLight& key,
+                  const PixelRay& ray) const;
+  void UploadGround(const PaintedScene& scene, const PaintedView& view) const;
+  void UploadGroundLight(const PaintedScene& scene, const PaintedView& view,
+                         const KeyLight& light) const;
+  /// Does nothing if vertices hold the sky irradiance.
+  void UploadSkyByPixel(const PaintedScene& scene, const PaintedView& view,
+                        const KeyLight& light) const;
+
+ private:
+  GlBuffer air_, view_, ground_, ground_light_, ground_surface_, sky_by_pixel_;
+  // The block of the last medium is kept, since computing the colours of its bands takes
+  // milliseconds.
+  std::shared_ptr<const SolvedAir> known_air_;
+  AirBlock air_block_{};
+};
+
+class PicturePrograms {
+ public:
+  /// The arguments must outlive this object.
+  PicturePrograms(const PaintedScene& scene, const LampPainter& lamps, const ShaftPass& shafts);
+
+  /// Draws the whole viewport. Land is drawn only over land, sky and disks only where there is no
+  /// land, by a test against the depth of the bound target. The depth test must be enabled.
+  /// @param source  the light whose sky is mirrored by water waves. Its air, blocks and maps must
+  ///   be bound.
+  void Paint(const PictureStage& stage, LightSource source = LightSource::kSun);
+  /// Draws once with a stage that was not drawn yet, and returns whether this was necessary.
+  bool MakeReady(const PictureStage& stage);
+
+  /// Returns whether any stage has been drawn.
+  [[nodiscard]] bool HasPainted() const { return !ready_.empty(); }
+
+  /// Returns the program of a stage, to set uniforms that only this stage has.
+  [[nodiscard]] const ShaderProgram& Of(const PictureStage& stage);
+
+  /// Discards the programs with lamps, because the lamp painter has been replaced.
+  void ForgetThoseWithLamps();
+
+ private:
+  [[nodiscard]] ShaderProgram Made(const PictureStage& stage) const;
+
+  const PaintedScene& scene_;
+  const LampPainter& lamps_;
+  const ShaftPass& shafts_;
+  std::map<PictureStage, ShaderProgram> made_;
+  std::set<PictureStage> ready_;  // stages that have been drawn
+  GlVertexArray no_vertices_;
+};
+
+}  // namespace alpenglow::viewer

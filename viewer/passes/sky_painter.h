@@ -1,0 +1,170 @@
+// SPDX-License-Identifier: MIT
+// Drawing of sky and land on the GPU. The renderer's quantities are computed on worker threads as
+// tables, maps and vertex lighting, and the GPU interpolates them.
+//
+// The passes of a frame: the visible land (Landscape), the light that shadows remove along rays
+// (ShaftPass), the glow of lamps (LampPainter), the linear picture, by night the light of the night
+// sky (NightFloorFollower), then the lamps and stars (StarPainter). Developer displays the result.
+// Its difference from SceneRenderer is reported in tests/bench/README.md, and for one view by
+// `skyview --explain`.
+#pragma once
+
+#include <functional>
+#include <glm/vec3.hpp>
+#include <memory>
+#include <optional>
+
+#include "atmosphere/astronomy/moon.h"
+#include "lut/image/image.h"
+#include "renderer/scene/scene.h"
+#include "viewer/gl/gl_objects.h"
+#include "viewer/gl/pass_timer.h"
+#include "viewer/gl/render_target.h"
+#include "viewer/lamps/lamp_painter.h"
+#include "viewer/land/land_pass.h"
+#include "viewer/passes/auto_quality.h"
+#include "viewer/passes/key_light.h"
+#include "viewer/passes/night_floor.h"
+#include "viewer/passes/painted_scene.h"
+#include "viewer/passes/painted_view.h"
+#include "viewer/passes/picture_programs.h"
+#include "viewer/passes/star_painter.h"
+#include "viewer/shade/shafts.h"
+
+namespace alpenglow::viewer {
+
+class SkyPainter {
+ public:
+  /// An OpenGL context must be current, now and in all calls. Throws as PaintedScene and SceneLamps
+  /// do.
+  SkyPainter(const Scene& scene, const LandSource& land, const PaintedView& first,
+             const PaintSizes& sizes, FirstAir first_air = {});
+
+  void Use(const PaintSizes& sizes) { scene_.Use(sizes); }
+  /// Changes the medium. The new one is shown when it is solved.
+  void Replace(const Medium& medium) { scene_.Replace(medium); }
+
+  /// See PaintedScene.
+  void AwaitLand() { scene_.AwaitLand(); }
+  [[nodiscard]] bool AwaitsLand() const { return scene_.AwaitsLand(); }
+  /// Changes the land to other land of the same kind.
+  void Replace(const LandSource& land) { scene_.Replace(land); }
+
+  /// Sets a lamp that moves with the eye; empty: none.
+  void SetLandingLight(const std::optional<LandingLight>& light) { lamps_.SetLandingLight(light); }
+
+  /// Collects finished work and requests missing parts. It waits only where PaintedScene::Update
+  /// does, and for the first map of the night sky.
+  /// @param seconds  time since the last call.
+  void Update(const PaintedView& view, double seconds);
+  /// Waits until everything that the view needs is complete.
+  /// @param samples  number of rays per pixel to be drawn.
+  void Settle(const PaintedView& view, int samples = 1);
+
+  /// Selects the celestial bodies in a picture: the disks of sun and moon, and stars.
+  enum class Bodies { kAll, kStars, kNone };
+  /// Draws the linear picture of the view that was updated or settled last.
+  /// @param samples       rays per pixel, spread over the pixel.
+  /// @param after_sample  called after each ray with the number of rays so far; may be empty.
+  void Paint(const PaintedView& view, int samples = 1, Bodies bodies = Bodies::kAll,
+             const std::function<void(int)>& after_sample = {});
+  /// Shows another picture of the view instead: linear, of any size.
+  void Show(const Image& image);
+
+  /// The linear picture. Its fourth component is the inverse depth of land (shaders/nearness.glsl)
+  /// if one ray per pixel was drawn.
+  [[nodiscard]] const RenderTarget& picture() const { return *picture_; }
+  /// Draws the depth of the land in that picture.
+  void PaintOutline(const LandOutline& outline);
+  /// Returns the pixels that celestial bodies may cover in a picture of any size of the view that
+  /// was drawn last.
+  [[nodiscard]] std::vector<PixelBox> BodiesSeen(const PaintedView& view);
+  /// Adds the celestial bodies to such a picture with one ray per pixel, where an outline of its
+  /// size has no land.
+  void PaintBodiesOver(const RenderTarget& target, const LandOutline& outline,
+                       const PaintedView& view);
+  /// Starts the timing of a pass that other code draws in the same frame.
+  void Time(const char* pass) const { Begin(pass); }
+  void EndTime() const {
+    if (timer_ != nullptr) timer_->End();
+  }
+  /// Sets the timer that receives the times of the passes; null: none.
+  void SetTimer(PassTimer* timer) { timer_ = timer; }
+
+  [[nodiscard]] const Landscape& land() const { return scene_.land(); }
+  [[nodiscard]] Landscape& land() { return scene_.land(); }
+  [[nodiscard]] const AirFollower& air() const { return scene_.air(); }
+  /// Returns null if there is no fog.
+  [[nodiscard]] const SceneFog* fog() const { return scene_.fog(); }
+  [[nodiscard]] const GroundFollower& ground() const { return scene_.ground(); }
+  [[nodiscard]] const ShadeFollower& shade() const { return scene_.shade(); }
+
+ private:
+  struct SkyDisks {
+    SunPosition sun;
+    MoonDisk moon;
+  };
+  /// Disks at their true positions, with the refraction across them. Null: a disk is drawn at its
+  /// apparent position.
+  struct DisksInAir {
+    SkyDisks disks;
+    const BentDisk *sun, *moon;
+  };
+  /// The sun and the lights of the sky in a view.
+  struct Shining {
+    PaintedView view;
+    SunPosition sun;
+    std::shared_ptr<const SolvedAir> air;
+    LightsOfSky lights;
+  };
+  [[nodiscard]] const Shining& LightsOf(const PaintedView& view);
+  [[nodiscard]] SkyDisks DisksOf(const PaintedView& view);
+  [[nodiscard]] std::vector<PixelBox> DisksSeen(const PaintedView& view);
+  void PrepareLamps(const PaintedView& view);
+  [[nodiscard]] DisksInAir InAir(const SkyDisks& disks, const PaintedView& view);
+  void DescribeDisks(const DisksInAir& seen);
+  [[nodiscard]] int RowsUnderHorizon(const PaintedView& view) const;
+  void PaintSample(const PaintedView& view, Bodies bodies, const PixelRay& ray);
+  void PaintLand(const PaintedView& view);
+  void PaintShafts(const PaintedView& view);
+  void PaintLamps(const PaintedView& view);
+  /// The light and the options that a picture is drawn with.
+  struct Lit {
+    LightSource source;
+    bool has_shade, has_lamps;
+  };
+  void BindLight(const PaintedView& view, const KeyLight& light, const PixelRay& ray);
+  void BindMaps(const PaintedView& view, const KeyLight& light);
+  void PaintPicture(const PaintedView& view, double share);
+  void PaintOtherLight(const PaintedView& view, const PixelRay& ray);
+  void MakeOneReady(const PaintedView& view, bool has_shade, bool has_lamps);
+  void PaintSky(const PaintedView& view, const Lit& lit);
+  [[nodiscard]] bool HasLamps() const { return !scene_.AwaitsLand() && !lamp_painter_.IsDark(); }
+  [[nodiscard]] int RowsOfGround(const PaintedView& view) const;
+  void PaintLandAndSky(const PaintedView& view, const Lit& lit);
+  void PaintDisks(const PaintedView& view, const PixelRay& ray);
+  void PaintLampsOver(const PaintedView& view);
+  [[nodiscard]] bool HasNightFloor() const;
+  void PaintNightFloor(const PaintedView& view, double share);
+  void PaintStars(const PaintedView& view, const MoonDisk& moon);
+  void Begin(const char* pass) const {
+    if (timer_ != nullptr) timer_->Begin(pass);
+  }
+
+  PaintedScene scene_;
+  SceneLamps lamps_;
+  LampPainter lamp_painter_;
+  ShaftPass shaft_pass_;
+  StarPainter stars_;
+  NightFloorFollower night_floor_;
+  bool has_towns_;
+  PicturePrograms programs_;  // uses all members above
+  PictureBlocks blocks_;
+  BentDiskFollower bent_sun_, bent_moon_;
+  std::optional<SurfaceMap> surface_;
+  std::optional<RenderTarget> picture_;
+  std::optional<Shining> shining_;  // for the most recent view
+  PassTimer* timer_ = nullptr;
+};
+
+}  // namespace alpenglow::viewer

@@ -1,0 +1,243 @@
+// SPDX-License-Identifier: MIT
+#include "viewer/passes/star_painter.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <limits>
+
+#include "atmosphere/math/constants.h"
+#include "atmosphere/astronomy/night_sky.h"
+#include "atmosphere/astronomy/sun.h"
+#include "renderer/picture/sky_pixels.h"
+#include "viewer/gl/gl_context.h"
+#include "viewer/lamps/fog.h"
+#include "viewer/passes/picture_programs.h"
+#include "viewer/shaders/full_screen.h"
+#include "viewer/shaders/uniform_blocks.h"
+
+namespace alpenglow::viewer {
+namespace {
+
+glm::vec4 FirstFour(const StarBell& bell) { return {bell[0], bell[1], bell[2], bell[3]}; }
+
+// Returns the solid angle of a pixel. Pixels are squares on a plane at distance 1; off the axis
+// they are oblique and farther away, which gives the factor along^3.
+double PixelSolidAngle(const PaintedView& view, double along) {
+  const double side = PixelAngle(view);
+  return side * side * along * along * along;
+}
+
+/// Returns the direction with the same azimuth at another elevation.
+glm::dvec3 AtElevation(const glm::dvec3& direction, double elevation_rad) {
+  return DirectionFromAngles(elevation_rad, std::atan2(direction.x, direction.y)).xyz;
+}
+
+double Elevation(const glm::dvec3& direction) {
+  return std::asin(std::clamp(direction.z, -1.0, 1.0));
+}
+
+}  // namespace
+
+glm::dvec3 TowardsStar(const StarLight& light, const StarrySky& sky) {
+  constexpr double kHigh_sine = 0.35;  // above it refraction changes by 2" in half a minute
+  const glm::dvec3& before = light.direction;
+  if (sky.bent == nullptr || std::abs(before.z) > kHigh_sine) return sky.turn * before;
+  const glm::dvec3 truly =
+      sky.turn * AtElevation(before, sky.bent->TrueElevation(Elevation(before)));
+  return AtElevation(truly, sky.bent->LiftedElevationOf(Elevation(truly)));
+}
+
+std::vector<StarPoint> StarPointsIn(const PaintedView& view, const StarrySky& sky) {
+  const LandView axes = LandViewOf(view);
+  // Stars just outside the picture may be raised into it by refraction.
+  constexpr double kMostLift_rad = 0.1 * kRadiansPerDegree;
+  const double reach = kStarReach + 2.0 * kMostLift_rad / PixelAngle(view);
+  const auto place = [](double share, double part, int side) {
+    return 0.5 * side * (1.0 + share - part);
+  };
+  const auto place_of = [&](const glm::dvec3& towards, double margin) -> std::optional<glm::dvec2> {
+    const double along = glm::dot(towards, axes.forward);
+    if (along <= 1e-3) return std::nullopt;
+    const double x = place(glm::dot(towards, axes.right) / glm::dot(axes.right, axes.right) / along,
+                           view.part.x * view.part.z, view.width);
+    const double y = place(glm::dot(towards, axes.up) / glm::dot(axes.up, axes.up) / along,
+                           view.part.y * view.part.w, view.height);
+    const bool is_in =
+        x > -margin && x < view.width + margin && y > -margin && y < view.height + margin;
+    return is_in ? std::optional(glm::dvec2(x, y)) : std::nullopt;
+  };
+  std::vector<StarPoint> points;
+  for (const StarLight& light : sky.lights) {
+    if (light.lux < sky.faintest_lux) continue;
+    if (!place_of(sky.turn * light.direction, reach)) continue;
+    const glm::dvec3 towards = TowardsStar(light, sky);
+    const auto at = place_of(towards, kStarReach);
+    if (!at || glm::length(towards - sky.to_moon) < sky.moon_radius_rad) continue;
+    const double x = at->x, y = at->y, along = glm::dot(towards, axes.forward);
+    const StarBell across = StarBellAround(x), up = StarBellAround(y);
+    glm::vec4 radiance(0.0F);
+    const auto per_sr = static_cast<float>(1.0 / PixelSolidAngle(view, along));
+    for (std::size_t band = 0; band < light.irradiance.count; ++band)
+      radiance[static_cast<glm::length_t>(band)] = per_sr * light.irradiance[band];
+    points.push_back(
+        {{std::floor(x) - kStarReach, std::floor(y) - kStarReach, std::floor(x), std::floor(y)},
+         {glm::vec3(towards), 0.0F},
+         radiance,
+         FirstFour(across),
+         FirstFour(up),
+         {across[4], up[4], 0.0F, 0.0F}});
+  }
+  return points;
+}
+
+// Returns Rodrigues' rotation about the celestial pole, westwards.
+glm::dmat3 TurnOfSky(double latitude_rad, double seconds) {
+  constexpr double kSiderealDay_s = 86164.0905;
+  const double angle = -2.0 * kPi * seconds / kSiderealDay_s;
+  const glm::dvec3 pole(0.0, std::cos(latitude_rad), std::sin(latitude_rad));
+  glm::dmat3 turn(1.0);
+  for (const glm::length_t axis : {0, 1, 2}) {
+    glm::dvec3 unit(0.0);
+    unit[axis] = 1.0;
+    turn[axis] = std::cos(angle) * unit + std::sin(angle) * glm::cross(pole, unit) +
+                 (1.0 - std::cos(angle)) * glm::dot(pole, unit) * pole;
+  }
+  return turn;
+}
+
+namespace {
+
+// Limits for reusing a list: until then the sky rotates rigidly, with the refraction of the list.
+constexpr double kMostTurn_s = 30.0, kMostWay_rad = 2e-4, kMostRise_m = 200.0;
+
+const std::vector<VertexAttribute> kAttributes{{0, "star_corner"}, {1, "star_towards"},
+                                               {2, "star_light"},  {3, "star_across"},
+                                               {4, "star_up"},     {5, "star_last"}};
+
+}  // namespace
+
+StarPainter::StarPainter()
+    : maker_([](const Request& request) {
+        constexpr double kAll = std::numeric_limits<double>::infinity();
+        const BentView bent(request.medium, request.place.height_m);
+        return Made{request, bent,
+                    StarLightsOver(request.place, request.now, bent, *request.colour, kAll)};
+      }) {}
+
+bool StarPainter::IsNight(const PaintedView& view, const LightsOfSky& lights,
+                          const SolvedAir& air) {
+  constexpr double kSureDay_rad = 12.0 * kRadiansPerDegree;
+  constexpr double kNightSky_lux = 1e-3;
+  sky_lux_ = 0.0;
+  if (!air.medium.follows_wgs84) return false;  // stars are known for the Earth only
+  if (!lights.key.is_moon && lights.key.disk.elevation_rad > kSureDay_rad) return false;
+  if (!colour_ || colour_->wavelengths_nm() != air.medium.wavelengths_nm)
+    colour_ = std::make_shared<const BandColour>(air.medium.wavelengths_nm);
+  const double altitude_m = std::max(view.eye.place.height_m, 0.0);
+  double lux = kNightSky_lux + LevelIlluminance(lights.key, air, altitude_m, *colour_);
+  if (lights.other) lux += LevelIlluminance(*lights.other, air, altitude_m, *colour_);
+  if (lux <= kDaylight_lux) sky_lux_ = lux;
+  return sky_lux_ > 0.0;
+}
+
+void StarPainter::Ask(const PaintedView& view, const Medium& medium) {
+  asked_ = {view.eye.place, view.now, colour_, medium};
+  maker_.Ask(*asked_);
+}
+
+void StarPainter::Follow(const PaintedView& view, const LightsOfSky& lights, const SolvedAir& air) {
+  if (!IsNight(view, lights, air)) return;
+  if (std::optional<Made> made = maker_.Take()) made_ = std::move(made);
+  const GeodeticPosition& place = view.eye.place;
+  const auto suits = [&](const Request& asked) {
+    return asked.colour == colour_ && std::abs(SecondsBetween(asked.now, view.now)) < kMostTurn_s &&
+           std::abs(asked.place.latitude_rad - place.latitude_rad) < kMostWay_rad &&
+           std::abs(asked.place.longitude_rad - place.longitude_rad) < kMostWay_rad &&
+           std::abs(asked.place.height_m - place.height_m) < kMostRise_m;
+  };
+  if (!maker_.Busy() && !(asked_ && suits(*asked_))) Ask(view, air.medium);
+}
+
+void StarPainter::Settle(const PaintedView& view, const LightsOfSky& lights, const SolvedAir& air) {
+  if (!IsNight(view, lights, air)) return;
+  maker_.Wait();
+  Ask(view, air.medium);
+  maker_.Wait();
+  if (std::optional<Made> made = maker_.Take()) made_ = std::move(made);
+}
+
+void StarPainter::Connect(const SceneFog* fog, std::optional<PhaseKind> fog_phase) {
+  if (program_) return;
+  std::vector<ShaderPiece> texts = AirTexts();
+  for (ShaderPiece& piece : fog_phase ? FogTexts(*fog_phase) : NoFogTexts())
+    texts.push_back(std::move(piece));
+  program_.emplace(WithViewerPieces(std::move(texts), {"viewer/shaders/air_block.glsl",
+                                                       "viewer/shaders/star.vert.glsl"}),
+                   WithViewerPieces({}, {"viewer/shaders/star.frag.glsl"}), kAttributes);
+  program_->BindBlock("Air", kAirBinding);
+  program_->BindBlock("View", kViewBinding);
+  program_->BindSampler("surface_map", kSurfaceUnit);
+  AirTextures::Prepare(*program_, kAirUnit, kTablesBinding);
+  if (fog != nullptr) fog->Connect(*program_);
+}
+
+void StarPainter::Draw(const std::vector<StarPoint>& points, const PaintedView& view,
+                       Land land) const {
+  glBindVertexArray(vertices_.id());
+  glBindBuffer(GL_ARRAY_BUFFER, buffer_.id());
+  glBufferData(GL_ARRAY_BUFFER, static_cast<GLsizeiptr>(sizeof(StarPoint) * points.size()),
+               points.data(), GL_DYNAMIC_DRAW);
+  for (const VertexAttribute& attribute : kAttributes) {
+    glEnableVertexAttribArray(attribute.location);
+    glVertexAttribPointer(attribute.location, 4, GL_FLOAT, GL_FALSE, sizeof(StarPoint),
+                          reinterpret_cast<const void*>(attribute.location * sizeof(glm::vec4)));
+    glVertexAttribDivisor(attribute.location, 1);
+  }
+  program_->Use();
+  glUniform2f(program_->Uniform("picture_size"), static_cast<float>(view.width),
+              static_cast<float>(view.height));
+  glUniform1i(program_->Uniform("surface_hides"), land == Land::kBySurface ? 1 : 0);
+  glDepthFunc(GL_EQUAL);
+  glEnable(GL_BLEND);
+  glBlendFunc(GL_ONE, GL_ONE);
+  glDrawArraysInstanced(GL_TRIANGLE_STRIP, 0, 4, static_cast<GLsizei>(points.size()));
+  glDisable(GL_BLEND);
+}
+
+// The draw uses a star without light and size.
+void StarPainter::MakeReady(const PaintedView& view, const SceneFog* fog,
+                            std::optional<PhaseKind> fog_phase) {
+  if (program_) return;
+  Connect(fog, fog_phase);
+  Draw({StarPoint{}}, view, Land::kBySurface);
+}
+
+std::vector<StarPoint> StarPainter::PointsIn(const PaintedView& view, const MoonDisk& moon) const {
+  if (!HasAny()) return {};
+  const double faintest_lux = IlluminanceOf(FaintestStar(sky_lux_, PixelAngle(view)));
+  const glm::dmat3 turn =
+      TurnOfSky(view.eye.place.latitude_rad, SecondsBetween(made_->request.now, view.now));
+  return StarPointsIn(
+      view, {made_->lights, turn, faintest_lux, moon.to_moon, moon.radius_rad, &made_->bent});
+}
+
+std::vector<PixelBox> StarPainter::Seen(const PaintedView& view, const MoonDisk& moon) const {
+  constexpr int kSide = 2 * kStarReach + 1;
+  std::vector<PixelBox> boxes;
+  for (const StarPoint& point : PointsIn(view, moon))
+    boxes.push_back(
+        {static_cast<int>(point.corner.x), static_cast<int>(point.corner.y), kSide, kSide});
+  return boxes;
+}
+
+void StarPainter::Paint(const PaintedView& view, const MoonDisk& moon, Land land,
+                        const SceneFog* fog, std::optional<PhaseKind> fog_phase) {
+  const std::vector<StarPoint> points = PointsIn(view, moon);
+  if (points.empty()) return;
+  Connect(fog, fog_phase);
+  Draw(points, view, land);
+  CheckGl("StarPainter::Paint");
+}
+
+}  // namespace alpenglow::viewer

@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: MIT
+// Stars and planets of a view, drawn over the picture as small squares of pixels.
+//
+// They are points, as in the renderer (night_light.h, sky_pixels.h). Their illuminance does not
+// depend on the size of the picture: each is spread over pixels with the renderer's StarBell. They
+// are seen through the air and are hidden by land and moon. Their list is made on a worker thread
+// and rotates with the sky until the next list. By day there is none.
+#pragma once
+
+#include <glm/mat3x3.hpp>
+#include <glm/vec3.hpp>
+#include <glm/vec4.hpp>
+#include <memory>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "atmosphere/medium/medium.h"
+#include "atmosphere/colour/spectrum.h"
+#include "atmosphere/refraction/bent_view.h"
+#include "atmosphere/astronomy/moon.h"
+#include "renderer/illumination/night_light.h"
+#include "viewer/gl/gl_objects.h"
+#include "viewer/gl/shader.h"
+#include "viewer/async/latest_job.h"
+#include "viewer/lamps/fog.h"
+#include "viewer/passes/key_light.h"
+#include "viewer/passes/painted_view.h"
+
+namespace alpenglow::viewer {
+
+/// One star, in the layout of star.vert.glsl.
+struct StarPoint {
+  glm::vec4 corner;      // lower left pixel; pixel of its centre
+  glm::vec4 towards;     // unit vector east, north, up at the eye
+  glm::vec4 light;       // irradiance above the air over solid angle of a pixel, per band
+                         // [W m^-2 sr^-1 nm^-1]
+  glm::vec4 across, up;  // weights of the first four columns and rows
+  glm::vec4 last;        // weights of the fifth column and row
+};
+
+/// The stars above an eye.
+struct StarrySky {
+  const std::vector<StarLight>& lights;
+  glm::dmat3 turn;      // from the directions of the lights to the current ones
+  double faintest_lux;  // fainter stars are not drawn
+  glm::dvec3 to_moon;   // unit vector to the moon, which hides stars
+  double moon_radius_rad;
+  const BentView* bent =
+      nullptr;  // refraction that raised the lights; null: they have true directions
+};
+
+/// Returns the unit vector to the apparent position of a star: its true direction is rotated, then
+/// refracted at its new elevation.
+[[nodiscard]] glm::dvec3 TowardsStar(const StarLight& light, const StarrySky& sky);
+
+/// Returns the stars that are in the picture.
+[[nodiscard]] std::vector<StarPoint> StarPointsIn(const PaintedView& view, const StarrySky& sky);
+
+/// Returns the rotation of the sky during a time, for directions east, north, up at a latitude.
+[[nodiscard]] glm::dmat3 TurnOfSky(double latitude_rad, double seconds);
+
+/// Draws the stars. Must be used on the thread whose OpenGL context is current at construction.
+class StarPainter {
+ public:
+  StarPainter();
+
+  /// Takes over a finished list and requests a new one if needed. Call it once per frame. Never
+  /// waits.
+  void Follow(const PaintedView& view, const LightsOfSky& lights, const SolvedAir& air);
+  /// Waits for the list of exactly this instant.
+  void Settle(const PaintedView& view, const LightsOfSky& lights, const SolvedAir& air);
+
+  /// Illuminance of a level surface by the sky in which the stars are seen; 0 by day.
+  [[nodiscard]] double sky_lux() const { return sky_lux_; }
+  /// Returns whether it is dark enough and the stars are known.
+  [[nodiscard]] bool HasAny() const { return sky_lux_ > 0.0 && made_; }
+  /// Draws once with the program if it has not been drawn yet. Drivers finish compiling it then,
+  /// which takes tenths of a second.
+  void MakeReady(const PaintedView& view, const SceneFog* fog, std::optional<PhaseKind> fog_phase);
+  /// Returns the pixels that stars cover in a picture of a view.
+  [[nodiscard]] std::vector<PixelBox> Seen(const PaintedView& view, const MoonDisk& moon) const;
+  /// Source of occlusion by land: the surface map, which has the size of the target, at the pixel
+  /// of the star's centre; or the depth of the target for each pixel, if the depth test is enabled.
+  enum class Land { kBySurface, kByDepth };
+  /// Adds the stars to the bound target. Surface map, air and blocks must be bound.
+  /// @param fog  null: none.
+  void Paint(const PaintedView& view, const MoonDisk& moon, Land land, const SceneFog* fog,
+             std::optional<PhaseKind> fog_phase);
+
+ private:
+  struct Request {
+    GeodeticPosition place;
+    UtcInstant now;
+    std::shared_ptr<const BandColour> colour;
+    Medium medium;  // refracts their light
+  };
+  struct Made {
+    Request request;
+    BentView bent;
+    std::vector<StarLight> lights;
+  };
+
+  [[nodiscard]] bool IsNight(const PaintedView& view, const LightsOfSky& lights,
+                             const SolvedAir& air);
+  void Ask(const PaintedView& view, const Medium& medium);
+  void Connect(const SceneFog* fog, std::optional<PhaseKind> fog_phase);
+  [[nodiscard]] std::vector<StarPoint> PointsIn(const PaintedView& view,
+                                                const MoonDisk& moon) const;
+  void Draw(const std::vector<StarPoint>& points, const PaintedView& view, Land land) const;
+
+  GlBuffer buffer_;
+  GlVertexArray vertices_;
+  std::optional<ShaderProgram> program_;  // created on first draw
+  std::shared_ptr<const BandColour> colour_;
+  double sky_lux_ = 0.0;  // illuminance by the sky; 0: day
+  std::optional<Request> asked_;
+  std::optional<Made> made_;
+  LatestJob<Request, Made> maker_;
+};
+
+}  // namespace alpenglow::viewer
