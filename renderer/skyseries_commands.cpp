@@ -46,7 +46,7 @@ std::function<void()> AddPictureReportCommand(CLI::App& app) {
   const auto options = std::make_shared<PictureReportOptions>();
   CLI::App& report = *app.add_subcommand(
       "report",
-      "Measure the air before mountains, shafts, lamps and whole pictures against slow judges, "
+      "Measure the air before mountains, shafts, lamps and whole pictures against slow reference solutions, "
       "error against time: CSV, SVG plots, summary.md and a page, index.html.");
   report.preparse_callback([&app](std::size_t) { app.get_option("--out")->required(false); });
   report.add_option("--out", options->out, "Folder for the report; made when missing")

@@ -203,7 +203,7 @@ class OneRay {
   Enlarger enlarger_{Enlarger::Shows::kLight};
 };
 
-Image JudgeOf(const Flythrough& flight, const ImageSize& size) {
+Image ReferenceOf(const Flythrough& flight, const ImageSize& size) {
   RenderSettings settings;
   settings.width = size.width;
   settings.height = size.height;
@@ -238,9 +238,9 @@ std::string ExplainView(Flythrough& flight, const ImageSize& size) {
   const Quality quality = flight.quality_rule().fixed.value_or(Quality::kMedium);
   const PaintSizes sizes = SizesOf(quality);
   const PaintedView view{flight.eye(), flight.now(), size.width, size.height};
-  const Image judge = JudgeOf(flight, size);
+  const Image by_renderer = ReferenceOf(flight, size);
   const TimedPicture painted = Paint(flight, view, sizes);
-  const ViewDifference all = DifferenceOf(judge, painted.image);
+  const ViewDifference all = DifferenceOf(by_renderer, painted.image);
   std::string text = fmt::format(
       "quality {}, {}x{}, {} rays a pixel; {:.1f} % of pixels are edges and left out\n"
       "{:<26}{:>10}{:>11}{:>11}  {:>10}\n",
@@ -252,13 +252,13 @@ std::string ExplainView(Flythrough& flight, const ImageSize& size) {
     shortcut.perfect(better);
     const TimedPicture without = Paint(flight, view, better);
     Image reference = without.image;
-    reference.layers = judge.layers;
+    reference.layers = by_renderer.layers;
     text += Row(shortcut.name, DifferenceOf(reference, painted.image),
                 fmt::format("saves {:.1f}", without.frame_ms - painted.frame_ms));
   }
   flight.painter().Use(sizes);
   const double scale = PaintedAlways(quality).scale;
-  return scale < 1.0 ? text + FewerRays(flight, view, judge.layers, scale) : text;
+  return scale < 1.0 ? text + FewerRays(flight, view, by_renderer.layers, scale) : text;
 }
 
 }  // namespace alpenglow::viewer

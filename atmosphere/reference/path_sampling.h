@@ -16,7 +16,7 @@
 // Each map is dense at one of its ends (k = length / scale); the maps are combined by the balance
 // heuristic.
 //
-// Columns of air along straight lines are computed thousands of times faster than in judge.cpp, and
+// Columns of air along straight lines are computed thousands of times faster than in reference_solution.cpp, and
 // also without the shared sources and closed forms.
 //
 // A line is described by the distance p of its perigee from the planet's centre; s is the distance
@@ -52,7 +52,7 @@
 #include "atmosphere/medium/medium.h"
 #include "atmosphere/medium/phase.h"
 
-namespace alpenglow::atmosphere::judge {
+namespace alpenglow::atmosphere::reference {
 
 inline constexpr std::size_t kPathsPerBatch = 251;
 
@@ -243,4 +243,4 @@ struct PlaneTurn {
   return before;
 }
 
-}  // namespace alpenglow::atmosphere::judge
+}  // namespace alpenglow::atmosphere::reference solution

@@ -16,7 +16,7 @@
 #include "atmosphere/math/constants.h"
 #include "atmosphere/base/error.h"
 
-namespace alpenglow::atmosphere::judge {
+namespace alpenglow::atmosphere::reference {
 namespace {
 
 using Vector = glm::dvec3;
@@ -931,4 +931,4 @@ PathTracedIrradiance TraceIrradiance(const Medium& medium, double altitude_m, do
           estimate.converged};
 }
 
-}  // namespace alpenglow::atmosphere::judge
+}  // namespace alpenglow::atmosphere::reference solution

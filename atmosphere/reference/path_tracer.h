@@ -28,7 +28,7 @@
 #include "atmosphere/medium/phase.h"
 #include "atmosphere/ray/ray.h"
 
-namespace alpenglow::atmosphere::judge {
+namespace alpenglow::atmosphere::reference {
 
 struct PathOptions {
   std::uint64_t seed = 1;
@@ -103,4 +103,4 @@ struct PathTracedIrradiance {
                                                    double mu_s, PlaneSide side,
                                                    const PathOptions& options = {});
 
-}  // namespace alpenglow::atmosphere::judge
+}  // namespace alpenglow::atmosphere::reference solution

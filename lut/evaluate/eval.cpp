@@ -206,16 +206,16 @@ class PathEvaluator final : public Evaluator {
   [[nodiscard]] Estimates Evaluate(const Case& work) const override {
     if (work.quantity == Quantity::kIrradianceSky) return SkyIrradiance(work.ray);
     if (NeedsPolarisedLight(work.quantity)) return Stokes(work);
-    judge::PathOptions options = paths_;
+    reference::PathOptions options = paths_;
     if (work.quantity != Quantity::kTotal) options.max_order = 1;
     const bool air_only = work.quantity == Quantity::kInscatterSingle;
-    const auto traced = judge::TraceRadiance(air_only ? black_ground_ : medium_, work.ray, options);
+    const auto traced = reference::TraceRadiance(air_only ? black_ground_ : medium_, work.ray, options);
     return WithErrors(traced.total, traced.standard_error);
   }
 
  private:
   [[nodiscard]] Estimates Stokes(const Case& work) const {
-    const auto traced = judge::TraceStokes(medium_, judge::ScatteringOf(medium_), work.ray, paths_);
+    const auto traced = reference::TraceStokes(medium_, reference::ScatteringOf(medium_), work.ray, paths_);
     return StokesOf(work, WithErrors(traced.q.total, traced.q.standard_error),
                     WithErrors(traced.u.total, traced.u.standard_error));
   }
@@ -224,14 +224,14 @@ class PathEvaluator final : public Evaluator {
     // A plane above the air receives only direct sunlight from above.
     if (ray.altitude_m > medium_.atmosphere_height_m)
       return Estimates(medium_.wavelengths_nm.size());
-    const auto traced = judge::TraceIrradiance(medium_, std::max(ray.altitude_m, 0.0), ray.mu_s,
-                                               judge::PlaneSide::kFromAbove, paths_);
+    const auto traced = reference::TraceIrradiance(medium_, std::max(ray.altitude_m, 0.0), ray.mu_s,
+                                               reference::PlaneSide::kFromAbove, paths_);
     return WithErrors(traced.value, traced.standard_error);
   }
 
   Medium medium_;
   Medium black_ground_;
-  judge::PathOptions paths_;
+  reference::PathOptions paths_;
 };
 
 }  // namespace

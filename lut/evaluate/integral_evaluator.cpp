@@ -6,7 +6,7 @@
 #include <cmath>
 #include <string>
 
-#include "atmosphere/reference/judge.h"
+#include "atmosphere/reference/reference_solution.h"
 #include "atmosphere/math/constants.h"
 #include "atmosphere/base/error.h"
 #include "lut/multiple_scattering/forward_peak.h"
@@ -168,12 +168,12 @@ class IntegralEvaluator final : public Evaluator {
 
  private:
   /// Returns whether the requested relative error is below this error.
-  [[nodiscard]] bool NeedsJudge(double error) const {
+  [[nodiscard]] bool NeedsReference(double error) const {
     return options_.max_error && *options_.max_error < error;
   }
 
   [[nodiscard]] Estimates OpticalDepth(const ViewRay& ray) const {
-    if (NeedsJudge(closed_form_error_)) return JudgedOpticalDepth(ray);
+    if (NeedsReference(closed_form_error_)) return ReferenceOpticalDepth(ray);
     const Bands<double> depth = air_.OpticalDepthAlong(ray);
     Estimates result(depth.count);
     for (std::size_t band = 0; band < depth.count; ++band) {
@@ -182,9 +182,9 @@ class IntegralEvaluator final : public Evaluator {
     return result;
   }
 
-  [[nodiscard]] Estimates JudgedOpticalDepth(const ViewRay& ray) const {
+  [[nodiscard]] Estimates ReferenceOpticalDepth(const ViewRay& ray) const {
     Estimates result;
-    for (const double tau : judge::OpticalDepthAlong(medium(), ray).tau) {
+    for (const double tau : reference::OpticalDepthAlong(medium(), ray).tau) {
       result.push_back({tau, kSmallestMaxError * tau});
     }
     return result;
@@ -203,7 +203,7 @@ class IntegralEvaluator final : public Evaluator {
     const Estimates transmittance = exponential(result);
     if (!options_.max_error || WithinError(transmittance, *options_.max_error))
       return transmittance;
-    return exponential(JudgedOpticalDepth(ray));
+    return exponential(ReferenceOpticalDepth(ray));
   }
 
   [[nodiscard]] Bands<double> InscatterWith(const ViewRay& ray, int nodes) const {
@@ -234,10 +234,10 @@ class IntegralEvaluator final : public Evaluator {
         coarse = fine;
       }
     }
-    const judge::SingleScattering judged = judge::SingleScatteringAlong(medium(), ray);
+    const reference::RayRadiance reference = reference::SingleScatteringAlong(medium(), ray);
     Estimates result;
-    for (const double value : judged.inscatter) {
-      result.push_back({value, std::max(judged.error, kSmallestMaxError) * value});
+    for (const double value : reference.inscatter) {
+      result.push_back({value, std::max(reference.error, kSmallestMaxError) * value});
     }
     return result;
   }

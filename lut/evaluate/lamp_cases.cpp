@@ -10,7 +10,7 @@
 #include <limits>
 #include <string_view>
 
-#include "atmosphere/reference/airlight_judge.h"
+#include "atmosphere/reference/airlight_reference.h"
 #include "atmosphere/math/constants.h"
 #include "atmosphere/base/error.h"
 #include "lut/evaluate/case_results.h"
@@ -158,9 +158,9 @@ Estimate EvaluateLamp(const LampCase& work, const IntegralOptions& options) {
     coarse = found.value;
     last_difference = difference;
   }
-  const judge::LampLight judged = judge::AirlightAlong(work.air, work.lamp, work.segment);
-  const double value = judged.radiance[0];
-  return {value, std::max(judged.error, kFloor) * value};
+  const reference::LampLight reference = reference::AirlightAlong(work.air, work.lamp, work.segment);
+  const double value = reference.radiance[0];
+  return {value, std::max(reference.error, kFloor) * value};
 }
 
 void EvaluateLampFile(const std::filesystem::path& cases, const std::filesystem::path& results,

@@ -5,7 +5,7 @@
 // Every method of a topic (transmittance, light scattered once, all orders, panoramas, refraction)
 // is evaluated on one set of rays, drawn once from the distribution of report_measure.h, by day, at
 // sunset, in civil and nautical twilight, and from space. The error of a method is its difference
-// from the reference solution (judge.h, path_tracer.h). Its cost is memory, the build time, and the
+// from the reference solution (reference_solution.h, path_tracer.h). Its cost is memory, the build time, and the
 // time of one evaluation on one thread. Methods of the literature, reimplemented from their
 // publications (report_baselines.h), are listed beside this library's.
 //
@@ -93,7 +93,7 @@ struct ReportRow {
 };
 
 /// Reference solution against which errors are measured.
-struct ReportJudge {
+struct ReportReference {
   std::string text;     // description
   double time_s = 0.0;  // of one answer, all threads
   // Rms of its own standard errors, by regime; 0: no noise.
@@ -116,7 +116,7 @@ struct ReportTopic {
   std::vector<ReportRegime> regimes{kRegimes.begin(), kRegimes.end()};
   Medium medium{};
   std::size_t rays = 0;  // evaluations in each regime
-  ReportJudge judge{};
+  ReportReference reference{};
   std::vector<ReportRow> rows{};
 };
 

@@ -9,7 +9,7 @@
 #include <cmath>
 #include <vector>
 
-#include "atmosphere/reference/judge.h"
+#include "atmosphere/reference/reference_solution.h"
 #include "atmosphere/math/constants.h"
 #include "atmosphere/math/numerics.h"
 #include "atmosphere/refraction/bent_view.h"
@@ -34,7 +34,7 @@ enum TransmittanceStyle {
 class TransmittanceTopic : public TopicWork {
  public:
   TransmittanceTopic(const Medium& medium, const ReportEffort& effort)
-      : TopicWork(medium, effort, JudgedSunbeams(medium, effort.rays)) {
+      : TopicWork(medium, effort, ReferenceSunbeams(medium, effort.rays)) {
     for (std::size_t band = 0; band < medium.wavelengths_nm.size(); ++band) {
       sigma_.push_back({static_cast<float>(medium.rayleigh_scattering_per_m[band]),
                         static_cast<float>(medium.mie_extinction_per_m[band]),
@@ -64,9 +64,9 @@ class TransmittanceTopic : public TopicWork {
                   .style = kMany,
                   .in_summary = true};
     for (std::size_t r = 0; r < kReportRegimes; ++r) {
-      const std::vector<JudgedRay>& rays = judged().rays[r];
+      const std::vector<ReferenceRay>& rays = solution().rays[r];
       std::vector<float> altitudes_m, mu;
-      for (const JudgedRay& one : rays) {
+      for (const ReferenceRay& one : rays) {
         altitudes_m.push_back(static_cast<float>(one.ray.altitude_m));
         mu.push_back(static_cast<float>(one.ray.mu));
       }
@@ -85,7 +85,7 @@ class TransmittanceTopic : public TopicWork {
       TimePasses(rays.size(), effort_, pass, row.at[r]);
       std::vector<std::vector<double>> values;
       for (const Bands<float>& one : answers) values.push_back(ValuesOf(one));
-      row.at[r].error = StatisticsOf(rays, judged().kind, values);
+      row.at[r].error = StatisticsOf(rays, solution().kind, values);
     }
     AddMeasured(std::move(row));
   }
@@ -195,9 +195,9 @@ class RefractionTopic {
   RefractionTopic(const Medium& medium, const ReportEffort& effort)
       : medium_(medium), effort_(effort) {
     const auto start = std::chrono::steady_clock::now();
-    for (std::size_t r = 0; r < kSights.size(); ++r) Judge(r);
+    for (std::size_t r = 0; r < kSights.size(); ++r) SolveReference(r);
     const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - start;
-    judge_time_s_ = taken.count() / static_cast<double>(kSights.size() * Count());
+    reference_time_s_ = taken.count() / static_cast<double>(kSights.size() * Count());
   }
 
   void AddTables() {
@@ -254,10 +254,10 @@ class RefractionTopic {
     for (const Sight& sight : kSights) topic_.regimes.push_back(sight.regime);
     topic_.medium = medium_;
     topic_.rays = Count();
-    topic_.judge = {.text =
+    topic_.reference = {.text =
                         "the ray equation, by Runge and Kutta's fourth order, with Peck and "
                         "Reeder's refractivity",
-                    .time_s = judge_time_s_};
+                    .time_s = reference_time_s_};
     return std::move(topic_);
   }
 
@@ -281,8 +281,8 @@ class RefractionTopic {
             .at = std::vector<RegimeResult>(kSights.size())};
   }
 
-  void Judge(std::size_t r) {
-    const judge::RayEquation equation(medium_, judge::PeckAndReeder(kHorizonWavelength_nm));
+  void SolveReference(std::size_t r) {
+    const reference::RayEquation equation(medium_, reference::PeckAndReeder(kHorizonWavelength_nm));
     const Sight& sight = kSights[r];
     for (std::size_t i = 0; i < Count(); ++i) {
       Line line{i % kEyes, EyeHeight(r, i % kEyes), 0.0, 0.0};
@@ -318,7 +318,7 @@ class RefractionTopic {
   const Medium& medium_;
   const ReportEffort& effort_;
   std::array<std::vector<Line>, kSights.size()> lines_;
-  double judge_time_s_ = 0.0;
+  double reference_time_s_ = 0.0;
   ReportTopic topic_;
 };
 

@@ -9,7 +9,7 @@
 #include <cmath>
 #include <utility>
 
-#include "atmosphere/reference/judge.h"
+#include "atmosphere/reference/reference_solution.h"
 #include "atmosphere/math/constants.h"
 #include "atmosphere/math/numerics.h"
 #include "atmosphere/base/error.h"
@@ -20,9 +20,9 @@ namespace {
 
 /// Calls use(ray, band, scale) for every ray and wavelength; errors are divided by the scale.
 template <typename Use>
-void ForEveryValue(const std::vector<JudgedRay>& rays, ErrorKind kind, const Use& use) {
+void ForEveryValue(const std::vector<ReferenceRay>& rays, ErrorKind kind, const Use& use) {
   for (std::size_t i = 0; i < rays.size(); ++i) {
-    const JudgedRay& ray = rays[i];
+    const ReferenceRay& ray = rays[i];
     for (std::size_t band = 0; band < ray.truth.size(); ++band) {
       const double floor = ray.floor.empty() ? 0.0 : ray.floor[band];
       use(i, band,
@@ -33,7 +33,7 @@ void ForEveryValue(const std::vector<JudgedRay>& rays, ErrorKind kind, const Use
 
 /// Calls use(ray, band, value) for every ray and wavelength that strict errors count.
 template <typename Use>
-void ForEveryStrictValue(const std::vector<JudgedRay>& rays, const Use& use) {
+void ForEveryStrictValue(const std::vector<ReferenceRay>& rays, const Use& use) {
   for (std::size_t i = 0; i < rays.size(); ++i) {
     for (std::size_t band = 0; band < rays[i].truth.size(); ++band) {
       if (rays[i].truth[band] > kDarkestValue) use(i, band, rays[i].truth[band]);
@@ -44,7 +44,7 @@ void ForEveryStrictValue(const std::vector<JudgedRay>& rays, const Use& use) {
 // Returns the rms of the reference's standard errors, each divided by a scale that `visit`
 // provides.
 template <typename Visit>
-double NoiseOver(const std::vector<JudgedRay>& rays, const Visit& visit) {
+double NoiseOver(const std::vector<ReferenceRay>& rays, const Visit& visit) {
   double squares = 0.0;
   std::size_t count = 0;
   visit([&](std::size_t i, std::size_t band, double scale) {
@@ -110,22 +110,22 @@ ViewRay ZenithOf(const Medium& medium, const ViewRay& ray) {
 
 }  // namespace
 
-JudgedRays JudgeRays(ErrorKind kind, int count, const DrawRay& draw, const AskJudge& ask) {
-  JudgedRays result;
+ReferenceRays SolveReferenceRays(ErrorKind kind, int count, const DrawRay& draw, const SolveReference& ask) {
+  ReferenceRays result;
   result.kind = kind;
   const auto start = std::chrono::steady_clock::now();
   for (std::size_t r = 0; r < kReportRegimes; ++r) {
-    std::vector<JudgedRay>& rays = result.rays[r];
+    std::vector<ReferenceRay>& rays = result.rays[r];
     rays.resize(static_cast<std::size_t>(count));
     tbb::parallel_for(0, count, [&](int i) {
       if (Interrupted()) return;
       rays[static_cast<std::size_t>(i)] = ask(draw(i + 1, kRegimes[r]));
     });
     ThrowIfInterrupted();
-    result.judge.noise[r] = NoiseOf(rays, kind);
+    result.reference.noise[r] = NoiseOf(rays, kind);
   }
   const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - start;
-  result.judge.time_s = taken.count() / (static_cast<double>(kReportRegimes) * count);
+  result.reference.time_s = taken.count() / (static_cast<double>(kReportRegimes) * count);
   return result;
 }
 
@@ -135,7 +135,7 @@ double SunElevationNumber(int i, const ReportRegime& regime) {
 }
 
 std::vector<double> DarkestRadiance(const Medium& medium, const ViewRay& ray) {
-  std::vector<double> floor = judge::SingleScatteringAlong(medium, ZenithOf(medium, ray)).inscatter;
+  std::vector<double> floor = reference::SingleScatteringAlong(medium, ZenithOf(medium, ray)).inscatter;
   for (double& value : floor) value *= kDarkestPart;
   return floor;
 }
@@ -184,43 +184,43 @@ ViewRay SunbeamNumber(const Medium& medium, int i, const ReportRegime& regime) {
   return {altitude_m, mu, mu, 1.0};
 }
 
-JudgedRays JudgedSunbeams(const Medium& medium, int count) {
-  JudgedRays result = JudgeRays(
+ReferenceRays ReferenceSunbeams(const Medium& medium, int count) {
+  ReferenceRays result = SolveReferenceRays(
       ErrorKind::kAbsolute, count,
       [&](int i, const ReportRegime& regime) { return SunbeamNumber(medium, i, regime); },
       [&](const ViewRay& ray) {
-        const judge::OpticalDepth depth = judge::OpticalDepthAlong(medium, ray);
-        JudgedRay judged{ray, {}, {}, {}};
+        const reference::OpticalDepth depth = reference::OpticalDepthAlong(medium, ray);
+        ReferenceRay solution{ray, {}, {}, {}};
         for (const double tau : depth.tau)
-          judged.truth.push_back(depth.blocked ? 0.0 : std::exp(-tau));
-        return judged;
+          solution.truth.push_back(depth.blocked ? 0.0 : std::exp(-tau));
+        return solution;
       });
-  result.judge.text =
+  result.reference.text =
       "adaptive Gauss-Legendre quadrature in extended precision, relative error "
       "of the optical depth below 1e-10";
   return result;
 }
 
-JudgedRays JudgedSkyRays(const Medium& medium, int count) {
-  JudgedRays result = JudgeRays(
+ReferenceRays ReferenceSkyRays(const Medium& medium, int count) {
+  ReferenceRays result = SolveReferenceRays(
       ErrorKind::kRelative, count,
       [&](int i, const ReportRegime& regime) { return ViewNumber(medium, i, regime); },
       [&](const ViewRay& ray) {
-        return JudgedRay{ray,
-                         judge::SingleScatteringAlong(medium, ray).inscatter,
+        return ReferenceRay{ray,
+                         reference::SingleScatteringAlong(medium, ray).inscatter,
                          {},
                          DarkestRadiance(medium, ray)};
       });
-  result.judge.text =
+  result.reference.text =
       "adaptive Gauss-Legendre quadrature in extended precision, relative error "
       "below 1e-8";
   return result;
 }
 
-JudgedRays TracedViews(const Medium& medium, int count, std::size_t paths) {
-  judge::PathOptions options{.max_paths = paths, .relative_error = 0.0};
+ReferenceRays TracedViews(const Medium& medium, int count, std::size_t paths) {
+  reference::PathOptions options{.max_paths = paths, .relative_error = 0.0};
   options.stopped = Interrupted;
-  JudgedRays result = JudgeRays(
+  ReferenceRays result = SolveReferenceRays(
       ErrorKind::kRelative, count,
       [&](int i, const ReportRegime& regime) {
         ViewRay ray = ViewNumber(medium, i, regime);
@@ -229,19 +229,19 @@ JudgedRays TracedViews(const Medium& medium, int count, std::size_t paths) {
         return ray;
       },
       [&](const ViewRay& ray) {
-        judge::PathTracedRadiance traced = judge::TraceRadiance(medium, ray, options);
-        return JudgedRay{ray, std::move(traced.total), std::move(traced.standard_error),
+        reference::PathTracedRadiance traced = reference::TraceRadiance(medium, ray, options);
+        return ReferenceRay{ray, std::move(traced.total), std::move(traced.standard_error),
                          DarkestRadiance(medium, ray)};
       });
-  result.judge.text = fmt::format("backward path tracing of all orders, {} paths a ray", paths);
+  result.reference.text = fmt::format("backward path tracing of all orders, {} paths a ray", paths);
   return result;
 }
 
-double NoiseOf(const std::vector<JudgedRay>& rays, ErrorKind kind) {
+double NoiseOf(const std::vector<ReferenceRay>& rays, ErrorKind kind) {
   return NoiseOver(rays, [&](const auto& use) { ForEveryValue(rays, kind, use); });
 }
 
-ErrorStatistics StatisticsOf(const std::vector<JudgedRay>& rays, ErrorKind kind,
+ErrorStatistics StatisticsOf(const std::vector<ReferenceRay>& rays, ErrorKind kind,
                              const std::vector<std::vector<double>>& answers) {
   ALPENGLOW_ENSURE(answers.size(), ==, rays.size());
   std::vector<double> errors, strict;

@@ -54,7 +54,7 @@ inline constexpr double kDarkestPart = 0.01;
 inline constexpr double kDarkestValue = 1e-12;
 
 /// A ray with the reference value.
-struct JudgedRay {
+struct ReferenceRay {
   ViewRay ray;
   std::vector<double> truth;  // by wavelength
   std::vector<double> sigma;  // one standard error; empty if the reference has none
@@ -66,20 +66,20 @@ enum class ErrorKind {
   kRelative,  // for radiance
 };
 
-struct JudgedRays {
+struct ReferenceRays {
   ErrorKind kind = ErrorKind::kRelative;
-  ReportJudge judge;
-  std::array<std::vector<JudgedRay>, kReportRegimes> rays;
+  ReportReference reference;
+  std::array<std::vector<ReferenceRay>, kReportRegimes> rays;
 };
 
 /// Functions that return ray number i >= 1 of a regime, and the reference value of a ray.
 using DrawRay = std::function<ViewRay(int i, const ReportRegime& regime)>;
-using AskJudge = std::function<JudgedRay(const ViewRay& ray)>;
+using SolveReference = std::function<ReferenceRay(const ViewRay& ray)>;
 
 /// Evaluates the reference for `count` rays in each of kRegimes, in parallel, and records the time
 /// of one evaluation. The caller sets the text of the judge.
-[[nodiscard]] JudgedRays JudgeRays(ErrorKind kind, int count, const DrawRay& draw,
-                                   const AskJudge& ask);
+[[nodiscard]] ReferenceRays SolveReferenceRays(ErrorKind kind, int count, const DrawRay& draw,
+                                   const SolveReference& ask);
 
 /// Returns the sun's elevation for ray number i [degrees], uniform over the regime.
 [[nodiscard]] double SunElevationNumber(int i, const ReportRegime& regime);
@@ -88,15 +88,15 @@ using AskJudge = std::function<JudgedRay(const ViewRay& ray)>;
 [[nodiscard]] std::vector<double> DarkestRadiance(const Medium& medium, const ViewRay& ray);
 
 /// Returns beams to the sun and their transmittance, `count` per regime, by
-/// judge::OpticalDepthAlong.
-[[nodiscard]] JudgedRays JudgedSunbeams(const Medium& medium, int count);
+/// reference::OpticalDepthAlong.
+[[nodiscard]] ReferenceRays ReferenceSunbeams(const Medium& medium, int count);
 
-/// Returns views and the light scattered once along them, by judge::SingleScatteringAlong.
-[[nodiscard]] JudgedRays JudgedSkyRays(const Medium& medium, int count);
+/// Returns views and the light scattered once along them, by reference::SingleScatteringAlong.
+[[nodiscard]] ReferenceRays ReferenceSkyRays(const Medium& medium, int count);
 
 /// Returns views and the light of all orders scattered along them (without light from the ground at
 /// their end), by the path tracer with `paths` paths each.
-[[nodiscard]] JudgedRays TracedViews(const Medium& medium, int count, std::size_t paths);
+[[nodiscard]] ReferenceRays TracedViews(const Medium& medium, int count, std::size_t paths);
 
 /// Returns view number i >= 1 of the distribution above.
 [[nodiscard]] ViewRay ViewNumber(const Medium& medium, int i, const ReportRegime& regime);
@@ -109,7 +109,7 @@ using AskJudge = std::function<JudgedRay(const ViewRay& ray)>;
 /// Returns the statistics of a method's values, by wavelength, for the rays of a regime. The noise
 /// of the reference is subtracted from the rms. If less than half of the noise is left, half of the
 /// noise is returned as a bound, because some dozen rays do not allow a lower one.
-[[nodiscard]] ErrorStatistics StatisticsOf(const std::vector<JudgedRay>& rays, ErrorKind kind,
+[[nodiscard]] ErrorStatistics StatisticsOf(const std::vector<ReferenceRay>& rays, ErrorKind kind,
                                            const std::vector<std::vector<double>>& answers);
 
 /// Returns the statistics of errors >= 0, which contain the noise of the reference. The strict
@@ -118,7 +118,7 @@ using AskJudge = std::function<JudgedRay(const ViewRay& ray)>;
 
 /// Returns the rms of the reference's standard errors over rays and wavelengths, weighted as in
 /// StatisticsOf.
-[[nodiscard]] double NoiseOf(const std::vector<JudgedRay>& rays, ErrorKind kind);
+[[nodiscard]] double NoiseOf(const std::vector<ReferenceRay>& rays, ErrorKind kind);
 
 /// Numbers of rays, paths and passes of a report.
 struct ReportEffort {
@@ -178,22 +178,22 @@ template <typename Real>
 /// Measures errors and time of `answer`, a function from ViewRay to Bands<>, on the rays.
 /// @param samples  function from ViewRay to the number of points that an evaluation uses.
 template <typename Answer, typename Samples>
-[[nodiscard]] ReportRow Measured(ReportRow row, const JudgedRays& judged,
+[[nodiscard]] ReportRow Measured(ReportRow row, const ReferenceRays& solution,
                                  const ReportEffort& effort, const Answer& answer,
                                  const Samples& samples) {
   for (std::size_t r = 0; r < kReportRegimes; ++r) {
-    const std::vector<JudgedRay>& rays = judged.rays[r];
+    const std::vector<ReferenceRay>& rays = solution.rays[r];
     std::vector<std::vector<double>> answers;
     double points = 0.0;
-    for (const JudgedRay& one : rays) {
+    for (const ReferenceRay& one : rays) {
       answers.push_back(ValuesOf(answer(one.ray)));
       points += static_cast<double>(samples(one.ray));
     }
-    row.at[r].error = StatisticsOf(rays, judged.kind, answers);
+    row.at[r].error = StatisticsOf(rays, solution.kind, answers);
     row.at[r].samples = points / static_cast<double>(rays.size());
     const auto pass = [&] {
       float sum = 0.0F;
-      for (const JudgedRay& one : rays) sum += static_cast<float>(answer(one.ray)[0]);
+      for (const ReferenceRay& one : rays) sum += static_cast<float>(answer(one.ray)[0]);
       return sum;
     };
     TimePasses(rays.size(), effort, pass, row.at[r]);
@@ -205,13 +205,13 @@ template <typename Answer, typename Samples>
 /// A topic during measurement: rays with reference values, and the rows measured on them.
 class TopicWork {
  public:
-  TopicWork(const Medium& medium, const ReportEffort& effort, JudgedRays judged)
-      : medium_(medium), effort_(effort), judged_(std::move(judged)) {}
+  TopicWork(const Medium& medium, const ReportEffort& effort, ReferenceRays solution)
+      : medium_(medium), effort_(effort), reference_rays_(std::move(solution)) {}
 
   /// Measures a method; see Measured.
   template <typename Answer, typename Samples>
   void AddRow(ReportRow row, const Answer& answer, const Samples& samples) {
-    rows_.push_back(Measured(std::move(row), judged_, effort_, answer, samples));
+    rows_.push_back(Measured(std::move(row), reference_rays_, effort_, answer, samples));
   }
 
   /// Measures light scattered once by a march in steps; `style` is the style of its line.
@@ -235,13 +235,13 @@ class TopicWork {
   /// Adds a row that was measured elsewhere.
   void AddMeasured(ReportRow row) { rows_.push_back(std::move(row)); }
 
-  [[nodiscard]] const JudgedRays& judged() const { return judged_; }
+  [[nodiscard]] const ReferenceRays& solution() const { return reference_rays_; }
 
   /// Returns `words` completed by the measured rows.
   [[nodiscard]] ReportTopic Finished(ReportTopic words) && {
     words.medium = medium_;
-    words.rays = judged_.rays[0].size();
-    words.judge = judged_.judge;
+    words.rays = reference_rays_.rays[0].size();
+    words.reference = reference_rays_.reference;
     words.rows = std::move(rows_);
     return words;
   }
@@ -251,7 +251,7 @@ class TopicWork {
   const ReportEffort& effort_;
 
  private:
-  JudgedRays judged_;
+  ReferenceRays reference_rays_;
   std::vector<ReportRow> rows_;
 };
 

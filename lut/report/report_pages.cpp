@@ -270,15 +270,15 @@ std::string TableOf(const ReportTopic& topic) {
   return text + "</tbody></table></div>\n";
 }
 
-std::string JudgeText(const ReportTopic& topic) {
-  std::string text = fmt::format("Judge: {}; {} an answer.", topic.judge.text,
-                                 QuantityText(topic.judge.time_s, PlotUnit::kSeconds));
-  if (topic.judge.noise[0] > 0.0) {
+std::string ReferenceText(const ReportTopic& topic) {
+  std::string text = fmt::format("Reference: {}; {} an answer.", topic.reference.text,
+                                 QuantityText(topic.reference.time_s, PlotUnit::kSeconds));
+  if (topic.reference.noise[0] > 0.0) {
     text += " Its own standard error, rms:";
     for (std::size_t r = 0; r < topic.regimes.size(); ++r)
       text +=
           fmt::format("{} {} {}", r == 0 ? "" : ",",
-                      QuantityText(topic.judge.noise[r], PlotUnit::kShare), topic.regimes[r].key);
+                      QuantityText(topic.reference.noise[r], PlotUnit::kShare), topic.regimes[r].key);
     text +=
         "; subtracted from the rms errors (not from percentiles and maxima), of which none "
         "below half of it can be told.";
@@ -304,7 +304,7 @@ std::string SectionOf(const ReportTopic& topic) {
         SvgOfPlot(*plot) + "</figure></details>\n";
   }
   text += TableOf(topic);
-  return text + fmt::format("<p class=\"judge\">{}</p>\n</section>\n", XmlText(JudgeText(topic)));
+  return text + fmt::format("<p class=\"judge\">{}</p>\n</section>\n", XmlText(ReferenceText(topic)));
 }
 
 std::string CardsOf(const Report& report) {
@@ -401,7 +401,7 @@ std::string CsvHeader() {
   return "topic,scene,atmosphere,atmosphere_hash,series,parameter,origin,memory_bytes,build_s,"
          "regime,"
          "sun_low_deg,sun_high_deg,rays,samples,time_s,time_spread,error_median,error_rms,"
-         "error_rms_is_bound,error_99,error_max,error_strict_rms,error_strict_99,judge_noise,"
+         "error_rms_is_bound,error_99,error_max,error_strict_rms,error_strict_99,reference_noise,"
          "machine,made_by,date\n";
 }
 
@@ -425,7 +425,7 @@ std::string CsvOfTopic(const ReportTopic& topic, const ReportMaker& maker) {
                           at.error.rms_is_bound ? 1 : 0, CsvNumber(at.error.percentile_99),
                           CsvNumber(at.error.largest), CsvNumber(at.error.strict_rms));
       text += fmt::format("{},{},", CsvNumber(at.error.strict_percentile_99),
-                          CsvNumber(topic.judge.noise[r]));
+                          CsvNumber(topic.reference.noise[r]));
       text += fmt::format("{},{},{}\n", CsvText(maker.machine), CsvText(maker.program),
                           CsvText(maker.date));
     }
@@ -448,7 +448,7 @@ std::string SummaryOf(const Report& report) {
     for (const ReportRow& row : topic.rows) {
       if (row.in_summary) text += SummaryRow(row);
     }
-    if (topic.judge.noise[0] > 0.0) text += fmt::format("\n{}\n", JudgeText(topic));
+    if (topic.reference.noise[0] > 0.0) text += fmt::format("\n{}\n", ReferenceText(topic));
     text += "\n";
   }
   return text + fmt::format("{}; {}; {}; {}.\n", report.maker.machine, report.maker.program,

@@ -161,12 +161,12 @@ class PanoramaTopic {
         diffuse_(medium),
         direct_(medium, diffuse_, 12, false),
         directions_(Directions(effort.rays)) {
-    judged_.judge.text =
+    reference_rays_.reference.text =
         "direct evaluation in double with 32 Gauss nodes a panel, cut at ozone; "
         "light of higher orders is the same for all methods";
     const auto start = std::chrono::steady_clock::now();
-    for (std::size_t r = 0; r < kReportRegimes; ++r) Judge(r);
-    judged_.judge.time_s =
+    for (std::size_t r = 0; r < kReportRegimes; ++r) SolveReference(r);
+    reference_rays_.reference.time_s =
         std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count() /
         static_cast<double>(kReportRegimes * directions_.size());
   }
@@ -224,7 +224,7 @@ class PanoramaTopic {
   [[nodiscard]] ReportTopic Finished(ReportTopic words) && {
     words.medium = medium_;
     words.rays = directions_.size();
-    words.judge = judged_.judge;
+    words.reference = reference_rays_.reference;
     words.rows = std::move(rows_);
     return words;
   }
@@ -234,9 +234,9 @@ class PanoramaTopic {
     return one.Ray(MuS(r, one.sun), AltitudeOf(r));
   }
 
-  void Judge(std::size_t r) {
+  void SolveReference(std::size_t r) {
     const DirectSky<double> exact(medium_, diffuse_, 32, true);
-    std::vector<JudgedRay>& rays = judged_.rays[r];
+    std::vector<ReferenceRay>& rays = reference_rays_.rays[r];
     rays.resize(directions_.size());
     tbb::parallel_for(std::size_t{0}, directions_.size(), [&](std::size_t i) {
       const ViewRay ray = RayIn(r, directions_[i]);
@@ -260,7 +260,7 @@ class PanoramaTopic {
     for (std::size_t i = 0; i < directions_.size(); ++i) {
       if (directions_[i].sun != sun) continue;
       for (std::size_t band = 0; band < mean.size(); ++band)
-        mean[band] += judged_.rays[r][i].truth[band];
+        mean[band] += reference_rays_.rays[r][i].truth[band];
       ++count;
     }
     for (double& value : mean) value /= count;
@@ -305,7 +305,7 @@ class PanoramaTopic {
       const auto answer = answers(r);
       std::vector<std::vector<double>> values;
       for (const Direction& one : directions_) values.push_back(ValuesOf(answer(one)));
-      row.at[r].error = StatisticsOf(judged_.rays[r], judged_.kind, values);
+      row.at[r].error = StatisticsOf(reference_rays_.rays[r], reference_rays_.kind, values);
       const auto pass = [&] {
         float sum = 0.0F;
         for (const Direction& one : directions_) sum += answer(one)[0];
@@ -323,7 +323,7 @@ class PanoramaTopic {
   DiffuseLight diffuse_;
   DirectSky<float> direct_;
   std::vector<Direction> directions_;
-  JudgedRays judged_;
+  ReferenceRays reference_rays_;
   std::vector<ReportRow> rows_;
 };
 

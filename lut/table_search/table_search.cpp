@@ -49,7 +49,7 @@ struct Verdict {
 /// Upper bounds of the rms, by kind.
 using Bounds = std::array<double, kViewKinds.size()>;
 
-Verdict Judge(const JudgedViews& views, const TableLookup& tables, const Bounds& bounds,
+Verdict Assess(const ReferenceViews& views, const TableLookup& tables, const Bounds& bounds,
               double enough) {
   Verdict verdict;
   // Start with the last kind: irradiance is cheap to look up and rules out most tables.
@@ -115,14 +115,14 @@ Bounds BoundsOf(double max_error, const std::vector<TableChoice::Measured>& meas
   return bounds;
 }
 
-int FewestNodes(const JudgedViews& views, const DiffuseLight& finest, const Bounds& bounds,
+int FewestNodes(const ReferenceViews& views, const DiffuseLight& finest, const Bounds& bounds,
                 double max_error) {
   Verdict best;
   for (const double share : {kShareOfNodes, 1.0}) {
     for (const int nodes : kRayNodes) {
       ThrowIfInterrupted();
       const TableLookup tables(Folder(finest.medium(), finest, nodes));
-      best = Judge(views, tables, bounds, share);
+      best = Assess(views, tables, bounds, share);
       if (best.excess <= share) return nodes;
     }
   }
@@ -133,7 +133,7 @@ int FewestNodes(const JudgedViews& views, const DiffuseLight& finest, const Boun
 /// Returns `tables` with the first of these sizes whose error lies below the allowed fraction of
 /// the bounds.
 template <typename Sizes, typename Put>
-TableFolder WithSmallest(std::string_view name, const JudgedViews& views, const Bounds& bounds,
+TableFolder WithSmallest(std::string_view name, const ReferenceViews& views, const Bounds& bounds,
                          double max_error, const Sizes& sizes, const TableFolder& tables,
                          const Put& put) {
   Verdict best;
@@ -142,14 +142,14 @@ TableFolder WithSmallest(std::string_view name, const JudgedViews& views, const 
     TableFolder with = tables;
     put(with, size);
     const TableLookup lookup(std::move(with));
-    best = Judge(views, lookup, bounds, kShareOfTables);
+    best = Assess(views, lookup, bounds, kShareOfTables);
     if (best.excess <= kShareOfTables) return lookup.tables();
   }
   RefuseBound(max_error, fmt::format("the largest table of {} leaves {:.2g} % ({})", name,
                                      100.0 * best.error, NameOf(best.worst)));
 }
 
-TableFolder WithAllTables(const JudgedViews& views, const Bounds& bounds, double max_error,
+TableFolder WithAllTables(const ReferenceViews& views, const Bounds& bounds, double max_error,
                           const TableFolder& tables) {
   const TableFolder with_transmittance =
       WithSmallest("transmittance", views, bounds, max_error, kTransmittanceSizes, tables,
@@ -166,7 +166,7 @@ TableFolder WithAllTables(const JudgedViews& views, const Bounds& bounds, double
 }
 
 /// Replaces the finest light by the smallest table within the bounds.
-TableFolder WithSmallestLight(const JudgedViews& views, const Bounds& bounds, double max_error,
+TableFolder WithSmallestLight(const ReferenceViews& views, const Bounds& bounds, double max_error,
                               TableFolder tables) {
   const DiffuseLight finest = *tables.multiple_scattering;
   TableLookup lookup(std::move(tables));
@@ -175,7 +175,7 @@ TableFolder WithSmallestLight(const JudgedViews& views, const Bounds& bounds, do
     ThrowIfInterrupted();
     lookup.ReplaceMultipleScattering(
         Resampled(finest, grid.altitudes, grid.sun_angles, grid.degree));
-    best = Judge(views, lookup, bounds, 1.0);
+    best = Assess(views, lookup, bounds, 1.0);
     if (best.excess <= 1.0) return lookup.tables();
   }
   RefuseBound(max_error, fmt::format("the finest moments leave {:.2g} % ({})", 100.0 * best.error,
@@ -240,7 +240,7 @@ TableChoice ChooseTables(const Medium& medium, const TableSearch& search) {
 TableChoice ChooseTables(const DiffuseLight& finest, const TableSearch& search) {
   RequireInRange(search.max_error, 1e-8, 1.0, "max-error");
   const Medium& medium = finest.medium();
-  const JudgedViews views(medium, finest, search.views_of_a_kind, 0);
+  const ReferenceViews views(medium, finest, search.views_of_a_kind, 0);
   TableChoice choice;
   for (const ViewKind kind : kViewKinds) {
     choice.measured.push_back(

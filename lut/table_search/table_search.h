@@ -33,7 +33,7 @@ struct TableChoice {
   struct Measured {
     ViewKind kind;
     ViewErrors errors;
-    JudgedViews::PathCheck paths;  // check of the truth against path tracing
+    ReferenceViews::PathCheck paths;  // check of the truth against path tracing
   };
   TableFolder tables;
   std::uint64_t bytes = 0;  // of all texels

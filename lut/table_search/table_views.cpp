@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "atmosphere/reference/judge.h"
+#include "atmosphere/reference/reference_solution.h"
 #include "atmosphere/reference/path_tracer.h"
 #include "atmosphere/math/constants.h"
 #include "atmosphere/math/numerics.h"
@@ -81,14 +81,14 @@ double RmsOf(const std::vector<double>& values) {
   return values.empty() ? 0.0 : Length(values) / std::sqrt(static_cast<double>(values.size()));
 }
 
-JudgedView ViewJudge(const Medium& medium, const AirIntegrator<float>& air,
+ReferenceView ViewReference(const Medium& medium, const AirIntegrator<float>& air,
                      const DiffuseLight& finest, ViewKind kind, std::size_t i) {
-  JudgedView view{kind, RayOf(kind, i, medium), {}, {}};
+  ReferenceView view{kind, RayOf(kind, i, medium), {}, {}};
   if (kind == ViewKind::kIrradiance) {
     view.light = Values(finest.SkyIrradiance(view.ray.altitude_m, view.ray.mu_s));
     return view;
   }
-  judge::SingleScattering once = judge::SingleScatteringAlong(medium, view.ray);
+  reference::RayRadiance once = reference::SingleScatteringAlong(medium, view.ray);
   const Bands<float> more =
       finest.InscatterAlong(air.Sample(view.ray, kFinestSampling), view.ray.nu);
   view.light = std::move(once.inscatter);
@@ -99,7 +99,7 @@ JudgedView ViewJudge(const Medium& medium, const AirIntegrator<float>& air,
   return view;
 }
 
-double ErrorOf(const TableLookup& tables, const JudgedView& view) {
+double ErrorOf(const TableLookup& tables, const ReferenceView& view) {
   if (view.kind == ViewKind::kIrradiance) {
     return RelativeDistance(Values(tables.SkyIrradiance(view.ray.altitude_m, view.ray.mu_s)),
                             view.light);
@@ -141,13 +141,13 @@ DiffuseLight FinestDiffuseLight(const Medium& medium) {
   return DiffuseLight(medium, options);
 }
 
-JudgedViews::JudgedViews(const Medium& medium, const DiffuseLight& finest,
+ReferenceViews::ReferenceViews(const Medium& medium, const DiffuseLight& finest,
                          std::size_t views_of_a_kind, std::size_t first)
     : views_(kViewKinds.size() * views_of_a_kind) {
   const AirIntegrator<float> air(medium);
   tbb::parallel_for(std::size_t{0}, views_.size(), [&](std::size_t k) {
     if (Interrupted()) return;
-    views_[k] = ViewJudge(medium, air, finest, kViewKinds[k / views_of_a_kind],
+    views_[k] = ViewReference(medium, air, finest, kViewKinds[k / views_of_a_kind],
                           first + k % views_of_a_kind);
   });
   ThrowIfInterrupted();
@@ -165,9 +165,9 @@ ViewErrors ErrorsOfViews(std::vector<double> errors) {
           .percentile_99 = errors[static_cast<std::size_t>(std::ceil(0.99 * (count - 1.0)))]};
 }
 
-ViewErrors JudgedViews::ErrorsOf(const TableLookup& tables, ViewKind kind) const {
-  std::vector<const JudgedView*> views;
-  for (const JudgedView& view : views_) {
+ViewErrors ReferenceViews::ErrorsOf(const TableLookup& tables, ViewKind kind) const {
+  std::vector<const ReferenceView*> views;
+  for (const ReferenceView& view : views_) {
     if (view.kind == kind) views.push_back(&view);
   }
   std::vector<double> errors(views.size());
@@ -176,31 +176,31 @@ ViewErrors JudgedViews::ErrorsOf(const TableLookup& tables, ViewKind kind) const
   return ErrorsOfViews(std::move(errors));
 }
 
-double JudgedViews::PathCheck::Unexplained() const {
+double ReferenceViews::PathCheck::Unexplained() const {
   return std::sqrt(std::max(rms * rms - noise * noise, 0.0));
 }
 
-JudgedViews::PathCheck JudgedViews::HeldAgainstPaths(const Medium& medium, ViewKind kind,
+ReferenceViews::PathCheck ReferenceViews::HeldAgainstPaths(const Medium& medium, ViewKind kind,
                                                      std::size_t views,
                                                      double standard_error) const {
-  std::vector<const JudgedView*> all;
-  for (const JudgedView& view : views_) {
+  std::vector<const ReferenceView*> all;
+  for (const ReferenceView& view : views_) {
     if (view.kind == kind) all.push_back(&view);
   }
   views = std::min(views, all.size());
-  const judge::PathOptions options{
+  const reference::PathOptions options{
       .max_paths = kMostPaths, .relative_error = standard_error, .stopped = Interrupted};
   std::vector<double> errors, noises;
   for (std::size_t i = 0; i < views; ++i) {
-    const JudgedView& view = *all[i * all.size() / views];
+    const ReferenceView& view = *all[i * all.size() / views];
     std::vector<double> value, noise;
     if (kind == ViewKind::kIrradiance) {
-      auto traced = judge::TraceIrradiance(medium, view.ray.altitude_m, view.ray.mu_s,
-                                           judge::PlaneSide::kFromAbove, options);
+      auto traced = reference::TraceIrradiance(medium, view.ray.altitude_m, view.ray.mu_s,
+                                           reference::PlaneSide::kFromAbove, options);
       value = std::move(traced.value);
       noise = std::move(traced.standard_error);
     } else {
-      auto traced = judge::TraceRadiance(medium, view.ray, options);
+      auto traced = reference::TraceRadiance(medium, view.ray, options);
       value = std::move(traced.total);
       noise = std::move(traced.standard_error);
     }

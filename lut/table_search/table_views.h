@@ -4,7 +4,7 @@
 // There are four kinds: the sky by day (sun 2 to 90 degrees high), aerial perspective (segments of
 // 0.5 to 100 km by day), the sky in twilight (sun 2 degrees above to 6 below the horizon), and the
 // sky's irradiance on horizontal planes (sun -6 to 90 degrees); observers from 2 m to 10 km. The
-// truth of a view consists of the judge's single scattering and transmittance, and of a solution of
+// truth of a view consists of the reference solution's single scattering and transmittance, and of a solution of
 // the diffuse light that is finer than any table. HeldAgainstPaths compares that truth with the
 // path tracer.
 //
@@ -31,7 +31,7 @@ inline constexpr std::array kViewKinds{ViewKind::kSky, ViewKind::kAerialPerspect
 /// are compared. It takes seconds.
 [[nodiscard]] DiffuseLight FinestDiffuseLight(const Medium& medium);
 
-struct JudgedView {
+struct ReferenceView {
   ViewKind kind;
   ViewRay ray;  // for irradiance only the altitude and mu_s are used
   std::vector<double> light;
@@ -51,14 +51,14 @@ struct ViewErrors {
 [[nodiscard]] ViewErrors ErrorsOfViews(std::vector<double> errors);
 
 /// True values for a set of views. They do not depend on the number of threads.
-class JudgedViews {
+class ReferenceViews {
  public:
   /// @param first  number of the first view of a low-discrepancy sequence: sets [first, first +
   ///   views_of_a_kind) that do not overlap have no view in common.
-  JudgedViews(const Medium& medium, const DiffuseLight& finest, std::size_t views_of_a_kind,
+  ReferenceViews(const Medium& medium, const DiffuseLight& finest, std::size_t views_of_a_kind,
               std::size_t first);
 
-  [[nodiscard]] const std::vector<JudgedView>& views() const { return views_; }
+  [[nodiscard]] const std::vector<ReferenceView>& views() const { return views_; }
   [[nodiscard]] ViewErrors ErrorsOf(const TableLookup& tables, ViewKind kind) const;
 
   /// Comparison of the truth with path tracing, on views of a kind spread over the set.
@@ -72,7 +72,7 @@ class JudgedViews {
                                            double standard_error) const;
 
  private:
-  std::vector<JudgedView> views_;
+  std::vector<ReferenceView> views_;
 };
 
 }  // namespace alpenglow::lut

@@ -86,7 +86,7 @@ class ScatteringTable {
   /// Rays that end at length_m are differences of two look-ups, as in Bruneton and Neyret (2008):
   /// their absolute error is that of the whole rays, so short ones should be integrated instead.
   ///
-  /// Error of the radiance against the judge at the default size, earth, observers to 12 km, all
+  /// Error of the radiance against the reference solution at the default size, earth, observers to 12 km, all
   /// directions, as rms over the rms of the radiance and as the median of relative errors: sun
   /// above 5 degrees 1 % and 0.25 %, 5 to 0 degrees 1.5 % and 0.8 %, 0 to -6 degrees 40 % and 15 %.
   /// In twilight eight angles between view and sun are too few for the glow over the sun. On

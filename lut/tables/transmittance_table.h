@@ -51,7 +51,7 @@ class TransmittanceTable {
   /// Returns the transmittance to space, bilinear; 0 if the ground is in the way, 1 for rays that
   /// miss the air. Observers above the top are moved to where the ray enters.
   ///
-  /// Error at the default size, earth and bruneton2017, against the judge: below 4e-3 everywhere
+  /// Error at the default size, earth and bruneton2017, against the reference solution: below 4e-3 everywhere
   /// (rays near the horizon through the aerosol), 3e-4 rms.
   [[nodiscard]] Bands<float> Lookup(double altitude_m, double mu) const;
 

@@ -98,9 +98,9 @@ Image FirstPixels(const Image& image, std::size_t count) {
 }
 
 /// Compares pilot pictures with the reference, the pilot picture with all wanted effects.
-class Judge {
+class EffectComparison {
  public:
-  Judge(const EffectPilot& pilot, EffectSet wanted, int repeats)
+  EffectComparison(const EffectPilot& pilot, EffectSet wanted, int repeats)
       : pilot_(pilot),
         repeats_(repeats),
         everything_(Render(wanted)),
@@ -154,11 +154,11 @@ class Judge {
 /// Leaves out effects within the budget, smallest change first.
 class Chooser {
  public:
-  Chooser(const Judge& judge, EffectSet wanted, double max_error)
-      : judge_(judge),
+  Chooser(const EffectComparison& comparison, EffectSet wanted, double max_error)
+      : comparison_(comparison),
         max_error_(max_error),
         effects_(wanted),
-        verdict_{{}, {}, judge.everything_s()} {}
+        verdict_{{}, {}, comparison.everything_s()} {}
 
   /// @param candidates  sorted by change, smallest first.
   void LeaveOut(const std::vector<EffectEstimate>& candidates) {
@@ -175,29 +175,29 @@ class Chooser {
   }
 
   [[nodiscard]] EffectSet effects() const { return effects_; }
-  [[nodiscard]] const Judge::Verdict& verdict() const { return verdict_; }
+  [[nodiscard]] const EffectComparison::Verdict& verdict() const { return verdict_; }
 
  private:
   bool Try(EffectSet fewer) {
     if (fewer == effects_) return true;
-    const Judge::Verdict verdict = judge_.On(fewer);
+    const EffectComparison::Verdict verdict = comparison_.On(fewer);
     if (!IsWithin(verdict.change, max_error_)) return false;
     effects_ = fewer;
     verdict_ = verdict;
     return true;
   }
 
-  const Judge& judge_;
+  const EffectComparison& comparison_;
   double max_error_;
   EffectSet effects_;
-  Judge::Verdict verdict_;
+  EffectComparison::Verdict verdict_;
 };
 
-std::vector<RefinementEstimate> Refine(const EffectPilot& pilot, const Judge& judge) {
+std::vector<RefinementEstimate> Refine(const EffectPilot& pilot, const EffectComparison& comparison) {
   std::vector<RefinementEstimate> estimates;
   for (const Refinement& refinement : pilot.refinements) {
-    const Judge::Verdict with = judge.On(refinement.render());
-    estimates.push_back({refinement.name, with.change, with.picture_s - judge.everything_s()});
+    const EffectComparison::Verdict with = comparison.On(refinement.render());
+    estimates.push_back({refinement.name, with.change, with.picture_s - comparison.everything_s()});
   }
   return estimates;
 }
@@ -282,22 +282,22 @@ EffectSet EffectChoice::LeftOut() const {
 
 EffectChoice ChooseEffects(const EffectPilot& pilot, EffectSet wanted, const EffectBudget& budget) {
   const Stopwatch watch;
-  const Judge judge(pilot, wanted, budget.explain ? 3 : 1);
+  const EffectComparison comparison(pilot, wanted, budget.explain ? 3 : 1);
   EffectChoice choice;
   choice.max_error = budget.max_error;
-  choice.all_s = judge.everything_s();
+  choice.all_s = comparison.everything_s();
   std::vector<EffectEstimate> candidates;
   for (const Effect effect : wanted.List()) {
     EffectEstimate estimate{effect, {}, {}};
     estimate.present = pilot.present.Has(effect);
     if (TextOf(effect).is_free && !budget.explain) continue;
     if (estimate.present) {
-      const Judge::Verdict without = judge.On(wanted.Without(effect));
+      const EffectComparison::Verdict without = comparison.On(wanted.Without(effect));
       const double preparation_s = pilot.preparation_s(effect);
       choice.all_s += preparation_s;
       estimate.change = without.change;
       estimate.whole = without.whole;
-      estimate.cost_s = judge.everything_s() - without.picture_s + preparation_s;
+      estimate.cost_s = comparison.everything_s() - without.picture_s + preparation_s;
       if (!TextOf(effect).is_free && IsWithin(estimate.change, budget.max_error))
         candidates.push_back(estimate);
     }
@@ -306,9 +306,9 @@ EffectChoice ChooseEffects(const EffectPilot& pilot, EffectSet wanted, const Eff
   std::stable_sort(candidates.begin(), candidates.end(), [](const auto& a, const auto& b) {
     return a.change.at_most.rms < b.change.at_most.rms;
   });
-  Chooser chooser(judge, wanted, budget.max_error);
+  Chooser chooser(comparison, wanted, budget.max_error);
   if (budget.leave_out) chooser.LeaveOut(candidates);
-  if (budget.explain) choice.refinements = Refine(pilot, judge);
+  if (budget.explain) choice.refinements = Refine(pilot, comparison);
   choice.effects = chooser.effects();
   choice.together = chooser.verdict().change;
   choice.chosen_s = chooser.verdict().picture_s;

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 
-#include "atmosphere/reference/airlight_judge.h"
+#include "atmosphere/reference/airlight_reference.h"
 #include "atmosphere/math/constants.h"
 #include "atmosphere/math/numerics.h"
 
@@ -124,9 +124,9 @@ LampWork LampWorkNumber(int i, const LampWorkKind& kind) {
   if (kind.through) work.lamp.radius_m = 0.1;
   work.air.altitude_at_origin_m = -std::min({0.0, length * forward.z, work.lamp.position_m.z});
   if (kind.beam) MakeBeam(i, work.lamp);
-  const judge::LampLight judged = judge::AirlightAlong(work.air, work.lamp, work.segment);
-  work.truth = judged.radiance[0];
-  work.converged = judged.converged;
+  const reference::LampLight reference = reference::AirlightAlong(work.air, work.lamp, work.segment);
+  work.truth = reference.radiance[0];
+  work.converged = reference.converged;
   return work;
 }
 

@@ -22,7 +22,7 @@ struct LampWork {
   LampAir air;
   Lamp lamp;
   LampSegment segment;
-  double truth = 0.0;     // reference result of judge::AirlightAlong
+  double truth = 0.0;     // reference result of reference::AirlightAlong
   bool converged = true;  // whether the reference converged
 };
 

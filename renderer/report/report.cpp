@@ -8,7 +8,7 @@
 #include <cmath>
 #include <vector>
 
-#include "atmosphere/reference/judge.h"
+#include "atmosphere/reference/reference_solution.h"
 #include "atmosphere/math/constants.h"
 #include "atmosphere/math/numerics.h"
 #include "lut/report/report_baselines.h"
@@ -56,35 +56,35 @@ ViewRay SegmentNumber(const Medium& medium, int i, const ReportRegime& regime) {
   return ray;
 }
 
-JudgedRays JudgedSegments(const Medium& medium, int count) {
-  JudgedRays judged = JudgeRays(
+ReferenceRays ReferenceSegments(const Medium& medium, int count) {
+  ReferenceRays solution = SolveReferenceRays(
       ErrorKind::kRelative, count,
       [&](int i, const ReportRegime& regime) { return SegmentNumber(medium, i, regime); },
       [&](const ViewRay& ray) {
-        return JudgedRay{ray,
-                         judge::SingleScatteringAlong(medium, ray).inscatter,
+        return ReferenceRay{ray,
+                         reference::SingleScatteringAlong(medium, ray).inscatter,
                          {},
                          DarkestRadiance(medium, ray)};
       });
-  judged.judge.text =
+  solution.reference.text =
       "adaptive Gauss-Legendre quadrature in extended precision, relative error below 1e-8";
-  return judged;
+  return solution;
 }
 
-JudgedRays JudgedTransmittances(const Medium& medium, int count) {
-  JudgedRays judged = JudgeRays(
+ReferenceRays ReferenceTransmittances(const Medium& medium, int count) {
+  ReferenceRays solution = SolveReferenceRays(
       ErrorKind::kAbsolute, count,
       [&](int i, const ReportRegime& regime) { return SegmentNumber(medium, i, regime); },
       [&](const ViewRay& ray) {
-        JudgedRay answer{ray, {}, {}, {}};
-        for (const double tau : judge::OpticalDepthAlong(medium, ray).tau)
+        ReferenceRay answer{ray, {}, {}, {}};
+        for (const double tau : reference::OpticalDepthAlong(medium, ray).tau)
           answer.truth.push_back(std::exp(-tau));
         return answer;
       });
-  judged.judge.text =
+  solution.reference.text =
       "adaptive Gauss-Legendre quadrature in extended precision, relative error of the optical "
       "depth below 1e-10";
-  return judged;
+  return solution;
 }
 
 /// Returns the mean of the bands in every band.
@@ -108,8 +108,8 @@ DiffuseLightOptions NotLookedAt() {
 
 class Topic : public TopicWork {
  public:
-  Topic(const Medium& medium, const ReportEffort& effort, JudgedRays judged)
-      : TopicWork(medium, effort, std::move(judged)),
+  Topic(const Medium& medium, const ReportEffort& effort, ReferenceRays solution)
+      : TopicWork(medium, effort, std::move(solution)),
         air_(medium),
         diffuse_(medium, NotLookedAt()),
         aerial_(air_, diffuse_) {}
@@ -159,10 +159,10 @@ class Topic : public TopicWork {
         .in_summary = true,
         .memory_bytes = kColumns * FroxelColumn::kSlices * (air_.bands() + 1) * sizeof(float)};
     for (std::size_t r = 0; r < kReportRegimes; ++r) {
-      const std::vector<JudgedRay>& rays = judged().rays[r];
+      const std::vector<ReferenceRay>& rays = solution().rays[r];
       const auto [columns, seconds] = Built([&] {
         std::vector<FroxelColumn> made;
-        for (const JudgedRay& one : rays) made.emplace_back(air_, one.ray);
+        for (const ReferenceRay& one : rays) made.emplace_back(air_, one.ray);
         return made;
       });
       row.build_s = std::max(
@@ -175,7 +175,7 @@ class Topic : public TopicWork {
       };
       std::vector<std::vector<double>> answers;
       for (std::size_t i = 0; i < rays.size(); ++i) answers.push_back(ValuesOf(answer(i)));
-      row.at[r].error = StatisticsOf(rays, judged().kind, answers);
+      row.at[r].error = StatisticsOf(rays, solution().kind, answers);
       TimePasses(
           rays.size(), effort_,
           [&] {
@@ -229,13 +229,13 @@ class Topic : public TopicWork {
   [[nodiscard]] std::string AllOrdersText() const {
     const DiffuseLight diffuse(medium_);
     const AerialPerspective aerial(air_, diffuse);
-    const std::vector<JudgedRay>& rays = judged().rays[0];
+    const std::vector<ReferenceRay>& rays = solution().rays[0];
     RegimeResult result;
     TimePasses(
         rays.size(), effort_,
         [&] {
           float sum = 0.0F;
-          for (const JudgedRay& one : rays) sum += aerial.Along(one.ray, {}).inscatter[0];
+          for (const ReferenceRay& one : rays) sum += aerial.Along(one.ray, {}).inscatter[0];
           return sum;
         },
         result);
@@ -263,7 +263,7 @@ constexpr char kSegments[] =
 }  // namespace
 
 ReportTopic MeasureAerialPerspective(const Medium& medium, const ReportEffort& effort) {
-  Topic topic(medium, effort, JudgedSegments(medium, effort.rays));
+  Topic topic(medium, effort, ReferenceSegments(medium, effort.rays));
   for (const int nodes : {2, 3, 4, 6, 8})
     topic.AddPanels(fmt::format("at most {}", nodes), {.sky = nodes}, nodes == 2 || nodes == 4);
   topic.AddPanels("automatic", {}, true);
@@ -296,7 +296,7 @@ ReportTopic MeasureAerialPerspective(const Medium& medium, const ReportEffort& e
 }
 
 ReportTopic MeasureTransmittanceToTerrain(const Medium& medium, const ReportEffort& effort) {
-  Topic topic(medium, effort, JudgedTransmittances(medium, effort.rays));
+  Topic topic(medium, effort, ReferenceTransmittances(medium, effort.rays));
   topic.AddClosedForms();
   for (const int steps : {8, 32, 128}) topic.AddTransmittanceMarch(steps);
   topic.AddTransmittanceTable({});
@@ -321,7 +321,7 @@ ReportWords WordsOfReport() {
   return {
       .title = "Alpenglow: speed and accuracy of pictures",
       .lead =
-          "What a picture of terrain in real air is made of, each part held against a slow judge: "
+          "What a picture of terrain in real air is made of, each part held against a slow reference solution: "
           "the air before mountains, the shafts of light and shade in it, lamps in fog, and whole "
           "pictures. Methods of this library and of the literature answer the same questions in "
           "one run.",

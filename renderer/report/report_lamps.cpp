@@ -62,7 +62,7 @@ class AirlightTopic {
                     [](const LampWork& work) { return !work.converged || !(work.truth > 0.0); });
     }
     const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - start;
-    topic_.judge.time_s = taken.count() / static_cast<double>(kKinds) / count;
+    topic_.reference.time_s = taken.count() / static_cast<double>(kKinds) / count;
     topic_.rays = static_cast<std::size_t>(count);
   }
 
@@ -130,9 +130,9 @@ class AirlightTopic {
     topic_.regimes.assign(kFogs.begin(), kFogs.end());
     topic_.medium.name.clear();
     topic_.medium.wavelengths_nm = {550.0};
-    topic_.judge.text =
+    topic_.reference.text =
         "adaptive Gauss-Legendre quadrature in extended precision, relative error below 1e-9";
-    topic_.judge.noise.assign(kKinds, 0.0);
+    topic_.reference.noise.assign(kKinds, 0.0);
     return std::move(topic_);
   }
 
@@ -192,14 +192,14 @@ struct LampStage {
 class ManyLampsTopic {
  public:
   static constexpr int kWidth = 160, kHeight = 90;
-  static constexpr int kJudgeNodes = 32;
+  static constexpr int kReferenceNodes = 32;
 
   explicit ManyLampsTopic(const ReportEffort& effort) : effort_(effort) {
     for (int y = 1; y < kHeight; y += effort.quick ? 22 : 4) {
       for (int x = 1; x < kWidth; x += effort.quick ? 40 : 6) pixels_.push_back({x, y});
     }
     const std::size_t counts = effort.quick ? 3 : kLampCounts.size();
-    for (std::size_t r = 0; r < counts; ++r) Judge(r);
+    for (std::size_t r = 0; r < counts; ++r) SolveReference(r);
   }
 
   void AddTree(double share_of_error) {
@@ -257,9 +257,9 @@ class ManyLampsTopic {
                           kCounts.begin() + static_cast<std::ptrdiff_t>(stages_.size()));
     topic_.medium = stages_.front()->medium;
     topic_.rays = pixels_.size();
-    topic_.judge.text = fmt::format("every lamp by itself with {} nodes", kJudgeNodes);
-    topic_.judge.time_s = judge_s_ / static_cast<double>(stages_.size() * pixels_.size());
-    topic_.judge.noise.assign(stages_.size(), 0.0);
+    topic_.reference.text = fmt::format("every lamp by itself with {} nodes", kReferenceNodes);
+    topic_.reference.time_s = reference_s_ / static_cast<double>(stages_.size() * pixels_.size());
+    topic_.reference.noise.assign(stages_.size(), 0.0);
     return std::move(topic_);
   }
 
@@ -277,7 +277,7 @@ class ManyLampsTopic {
     return {direction, LengthOf(direction)};
   }
 
-  void Judge(std::size_t r) {
+  void SolveReference(std::size_t r) {
     stages_.push_back(std::make_unique<LampStage>(RunwayScene(kLampCounts[r], false)));
     const LampStage& stage = *stages_.back();
     eye_height_m_ = stage.ground.eye_height_m;
@@ -291,10 +291,10 @@ class ManyLampsTopic {
     std::vector<Bands<float>>& truth = truth_.emplace_back(pixels_.size(), Bands<float>(0));
     const auto start = std::chrono::steady_clock::now();
     tbb::parallel_for(std::size_t{0}, pixels_.size(), [&](std::size_t i) {
-      if (!Interrupted()) truth[i] = light_.back()->InAir(all, RayEnd(r, i), pixel, kJudgeNodes);
+      if (!Interrupted()) truth[i] = light_.back()->InAir(all, RayEnd(r, i), pixel, kReferenceNodes);
     });
     ThrowIfInterrupted();
-    judge_s_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    reference_s_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   }
 
   [[nodiscard]] ReportRow Row(const std::string& series, const std::string& parameter,
@@ -334,7 +334,7 @@ class ManyLampsTopic {
   std::vector<std::unique_ptr<LampLight>> light_;
   double eye_height_m_ = 0.0;
   std::vector<std::vector<Bands<float>>> truth_;
-  double tree_s_ = 0.0, judge_s_ = 0.0;
+  double tree_s_ = 0.0, reference_s_ = 0.0;
   ReportTopic topic_;
 };
 

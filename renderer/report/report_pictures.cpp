@@ -57,8 +57,8 @@ class PicturesTopic {
     load_s_ = std::max(range_s, runway_s);
     for (std::size_t r = 0; r < kScenes; ++r)
       scenes_.push_back({r + 1 < kScenes ? range : runway, InstantOf(r)});
-    for (JudgedScene& scene : scenes_) scene.frame_s = FrameSeconds(scene);
-    Judge();
+    for (ReferenceSceneCase& scene : scenes_) scene.frame_s = FrameSeconds(scene);
+    SolveReference();
   }
 
   void AddSamples(int samples) {
@@ -131,15 +131,15 @@ class PicturesTopic {
       topic_.regimes.push_back({kSceneTexts[r].key, kSceneTexts[r].name, SunOf(r)});
     topic_.medium = scenes_.front().renderer->medium();
     topic_.rays = static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_);
-    topic_.judge.text = fmt::format(
+    topic_.reference.text = fmt::format(
         "the same picture with {} samples a pixel, 16 nodes in the air and 24 for every lamp",
         ReferenceSamples());
-    topic_.judge.noise.assign(kScenes, 0.0);
+    topic_.reference.noise.assign(kScenes, 0.0);
     return std::move(topic_);
   }
 
  private:
-  struct JudgedScene {
+  struct ReferenceSceneCase {
     std::shared_ptr<const SceneRenderer> renderer;
     UtcInstant instant;
     Image reference{};
@@ -187,14 +187,14 @@ class PicturesTopic {
     return settings;
   }
 
-  void Judge() {
+  void SolveReference() {
     RenderSettings settings = Settings(ReferenceSamples());
     settings.air_nodes = 16;
     settings.lamps = {.nodes = 24, .share_of_error = 5e-4};
     const double start = ProcessorSeconds();
-    for (JudgedScene& scene : scenes_)
+    for (ReferenceSceneCase& scene : scenes_)
       scene.reference = scene.renderer->Render(scene.instant, settings);
-    topic_.judge.time_s = (ProcessorSeconds() - start) / (static_cast<double>(kScenes) * Pixels());
+    topic_.reference.time_s = (ProcessorSeconds() - start) / (static_cast<double>(kScenes) * Pixels());
   }
 
   void Add(ReportRow row, const RenderSettings& settings) {
@@ -209,7 +209,7 @@ class PicturesTopic {
   }
 
   /// Measures the error of a picture, and its time without the preparation.
-  void Measure(const JudgedScene& scene, const RenderSettings& settings,
+  void Measure(const ReferenceSceneCase& scene, const RenderSettings& settings,
                RegimeResult& result) const {
     std::vector<double> seconds;
     for (int pass = 0; pass < (effort_.quick ? 1 : 2); ++pass) {
@@ -237,7 +237,7 @@ class PicturesTopic {
   [[nodiscard]] double Pixels() const { return static_cast<double>(width_ * height_); }
 
   /// Returns the preparation time of a picture: the time of a picture of one pixel.
-  [[nodiscard]] double FrameSeconds(const JudgedScene& scene) const {
+  [[nodiscard]] double FrameSeconds(const ReferenceSceneCase& scene) const {
     RenderSettings settings = Settings(1);
     settings.width = settings.height = 1;
     double shortest = 0.0;
@@ -252,7 +252,7 @@ class PicturesTopic {
 
   const ReportEffort& effort_;
   int width_, height_;
-  std::vector<JudgedScene> scenes_;
+  std::vector<ReferenceSceneCase> scenes_;
   std::uint64_t range_bytes_ = 0;
   double load_s_ = 0.0;
   ReportTopic topic_;

@@ -32,8 +32,8 @@ constexpr std::array<ReportRegime, 4> kSuns{{{"15", "Sun at 15°", SunRange{15.0
 /// Length of the longest relevant ray through the air [m].
 constexpr double kLongest_m = 2000e3;
 
-/// The picture under one sun, with the judge's answers.
-struct JudgedView {
+/// The picture under one sun, with the reference solution's answers.
+struct ReferenceView {
   ShaftView view;
   std::vector<double> length_m;
   std::vector<Bands<float>> truth;
@@ -88,8 +88,8 @@ class ShaftTopic {
         air_(MediumPreset("earth")),
         diffuse_(air_.medium(), {.altitudes = 4, .sun_angles = 4, .degree = 2, .max_orders = 1}),
         aerial_(air_, diffuse_) {
-    for (const ReportRegime& sun : kSuns) Judge(sun.sun->lowest_deg);
-    topic_.judge.time_s = judge_s_ / static_cast<double>(kSuns.size() * Pixels());
+    for (const ReportRegime& sun : kSuns) SolveReference(sun.sun->lowest_deg);
+    topic_.reference.time_s = reference_s_ / static_cast<double>(kSuns.size() * Pixels());
   }
 
   void AddHeights(const std::string& parameter, const AerialPerspective::Nodes& nodes) {
@@ -159,49 +159,49 @@ class ShaftTopic {
     topic_.regimes.assign(kSuns.begin(), kSuns.end());
     topic_.medium = air_.medium();
     topic_.rays = Pixels();
-    topic_.judge.text = fmt::format("{} occlusion rays a pixel in eight marches of different steps",
+    topic_.reference.text = fmt::format("{} occlusion rays a pixel in eight marches of different steps",
                                     8 * MarchRays());
-    topic_.judge.noise.assign(kSuns.size(), 0.0);
+    topic_.reference.noise.assign(kSuns.size(), 0.0);
     return std::move(topic_);
   }
 
  private:
   [[nodiscard]] int MarchRays() const { return effort_.quick ? 64 : 512; }
 
-  void Judge(double sun_deg) {
-    JudgedView judged{effort_.quick ? ViewWithSun(ground_.eye_height_m, 200.0, sun_deg, 8, 5)
+  void SolveReference(double sun_deg) {
+    ReferenceView solution{effort_.quick ? ViewWithSun(ground_.eye_height_m, 200.0, sun_deg, 8, 5)
                                     : ViewWithSun(ground_.eye_height_m, 200.0, sun_deg, 24, 14),
                       {},
                       {},
                       std::vector<double>(air_.bands())};
-    const std::size_t pixels = judged.view.directions.size();
-    judged.truth.assign(pixels, Bands<float>(air_.bands()));
-    judged.length_m.resize(pixels);
+    const std::size_t pixels = solution.view.directions.size();
+    solution.truth.assign(pixels, Bands<float>(air_.bands()));
+    solution.length_m.resize(pixels);
     const auto start = std::chrono::steady_clock::now();
     tbb::parallel_for(std::size_t{0}, pixels, [&](std::size_t i) {
       if (Interrupted()) return;
-      judged.length_m[i] = LengthOf(judged.view, i, ground_.terrain);
-      const double nu = RayOf(judged.view, i, judged.length_m[i]).nu;
+      solution.length_m[i] = LengthOf(solution.view, i, ground_.terrain);
+      const double nu = RayOf(solution.view, i, solution.length_m[i]).nu;
       for (int k = 0; k < 8; ++k) {
         const Bands<float> light = air_.Inscatter(
-            MarchWithOcclusion(air_, judged.view, i, ground_.terrain, MarchRays(), (k + 0.5) / 8),
+            MarchWithOcclusion(air_, solution.view, i, ground_.terrain, MarchRays(), (k + 0.5) / 8),
             nu);
         for (std::size_t band = 0; band < light.count; ++band)
-          judged.truth[i][band] += light[band] / 8.0F;
+          solution.truth[i][band] += light[band] / 8.0F;
       }
     });
     ThrowIfInterrupted();
-    judge_s_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-    for (const Bands<float>& pixel : judged.truth) {
+    reference_s_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    for (const Bands<float>& pixel : solution.truth) {
       for (std::size_t band = 0; band < pixel.count; ++band)
-        judged.mean[band] += static_cast<double>(pixel[band]) / static_cast<double>(pixels);
+        solution.mean[band] += static_cast<double>(pixel[band]) / static_cast<double>(pixels);
     }
     auto [heights, seconds] = Built([&] {
-      return ShadowHeights(ground_.terrain.mesh(), judged.view.to_sun, judged.view.sun_radius_rad);
+      return ShadowHeights(ground_.terrain.mesh(), solution.view.to_sun, solution.view.sun_radius_rad);
     });
     heights_.push_back(std::move(heights));
     sweep_s_.push_back(seconds);
-    views_.push_back(std::move(judged));
+    views_.push_back(std::move(solution));
   }
 
   [[nodiscard]] static ReportRow Row(const std::string& series, const std::string& parameter,
@@ -238,15 +238,15 @@ class ShaftTopic {
   /// Measures the error on every pixel, and the time on every fourth.
   template <typename Scatter>
   void Measure(std::size_t r, ReportRow& row, const Scatter& scatter) {
-    const JudgedView& judged = views_[r];
+    const ReferenceView& solution = views_[r];
     const auto answer = [&](std::size_t i) { return air_.Inscatter(scatter(i), Ray(r, i).nu); };
     std::vector<Bands<float>> answers(Pixels(), Bands<float>(air_.bands()));
     tbb::parallel_for(std::size_t{0}, Pixels(), [&](std::size_t i) { answers[i] = answer(i); });
     std::vector<double> errors;
     for (std::size_t i = 0; i < Pixels(); ++i) {
       for (std::size_t band = 0; band < air_.bands(); ++band) {
-        errors.push_back(static_cast<double>(std::abs(answers[i][band] - judged.truth[i][band])) /
-                         judged.mean[band]);
+        errors.push_back(static_cast<double>(std::abs(answers[i][band] - solution.truth[i][band])) /
+                         solution.mean[band]);
       }
     }
     row.at[r].error = StatisticsOfErrors(std::move(errors), 0.0);
@@ -267,10 +267,10 @@ class ShaftTopic {
   AirIntegrator<float> air_;
   DiffuseLight diffuse_;  // unused
   AerialPerspective aerial_;
-  std::vector<JudgedView> views_;
+  std::vector<ReferenceView> views_;
   std::vector<ShadowHeights> heights_;  // one for each view
   std::vector<double> sweep_s_;         // time to build `heights_`
-  double judge_s_ = 0.0;
+  double reference_s_ = 0.0;
   ReportTopic topic_;
 };
 

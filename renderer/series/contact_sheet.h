@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Overviews of a series: a contact sheet of all pictures, each small and with a line of text; and a
 // keogram, which places the middle columns of the pictures side by side, so that one image shows
-// their course (Eather, Mende, Judge 1976, J. Geophys. Res. 81, 3219).
+// their course (Eather, Mende, Reference 1976, J. Geophys. Res. 81, 3219).
 #pragma once
 
 #include <string>

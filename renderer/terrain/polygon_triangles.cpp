@@ -145,11 +145,11 @@ class EarCutter {
     const int turn = Turn(a, b, c);
     if (turn < 0) return {Rank::kReflex, ear.base2_m2};
     if (turn == 0) return {Rank::kFlat, ear.base2_m2};
-    return Judged(i, {ear.rank, ear.base2_m2, IsThin(a, b, c) ? Rank::kThin : Rank::kGood}, 0);
+    return Evaluated(i, {ear.rank, ear.base2_m2, IsThin(a, b, c) ? Rank::kThin : Rank::kGood}, 0);
   }
 
   /// Returns the ear after tests against the corners of the ring from `from` on.
-  [[nodiscard]] Ear Judged(std::size_t i, Ear ear, std::size_t from) const {
+  [[nodiscard]] Ear Evaluated(std::size_t i, Ear ear, std::size_t from) const {
     const Places triangle{Before(i), i, After(i)};
     const auto [a, b, c] = triangle;
     const FlatBox base = BoxOf(At(a), At(c));
@@ -216,7 +216,7 @@ class EarCutter {
   /// @param gone  the corner that was at `place` in the ring.
   void Uncover(std::uint32_t gone, std::size_t place) {
     for (std::size_t i = 0; i < ears_.size(); ++i)
-      if (ears_[i].covered == gone) ears_[i] = Judged(i, ears_[i], place);
+      if (ears_[i].covered == gone) ears_[i] = Evaluated(i, ears_[i], place);
   }
 
   const std::vector<glm::dvec3>& corners_;

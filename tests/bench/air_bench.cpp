@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "atmosphere/shared_glsl/instruction_set.h"
-#include "atmosphere/reference/judge.h"
+#include "atmosphere/reference/reference_solution.h"
 #include "atmosphere/ray/direct_scattering.h"
 #include "atmosphere/ray/single_scattering.h"
 #include "lut/multiple_scattering/multiple_scattering.h"
@@ -115,13 +115,13 @@ void PreparationOfDirectScattering(benchmark::State& state) {
 }
 BENCHMARK(PreparationOfDirectScattering)->Unit(benchmark::kMicrosecond);
 
-void SingleScatteringByTheJudge(benchmark::State& state) {
+void SingleScatteringByTheReference(benchmark::State& state) {
   const Medium medium = MediumPreset("earth");
   int i = 0;
   for (auto unused : state)
-    benchmark::DoNotOptimize(judge::SingleScatteringAlong(medium, RayNumber(++i)));
+    benchmark::DoNotOptimize(reference::SingleScatteringAlong(medium, RayNumber(++i)));
 }
-BENCHMARK(SingleScatteringByTheJudge)->Unit(benchmark::kMicrosecond);
+BENCHMARK(SingleScatteringByTheReference)->Unit(benchmark::kMicrosecond);
 
 // Argument: 1 polarised light, 0 scalar light.
 void DiffuseLightOfOneRay(benchmark::State& state) {

@@ -30,9 +30,9 @@ void PrintNodes() {
 void PrintDirect(const Medium& medium, const alpenglow::tests::DirectRegime& regime) {
   const DirectScattering direct(medium);
   const AirIntegrator<float>& air = direct.reference();
-  const alpenglow::tests::JudgedRays judged = tests::JudgedRaysOf(regime, medium, 20001, 1500);
+  const alpenglow::tests::ReferenceRays reference = tests::ReferenceRaysOf(regime, medium, 20001, 1500);
   const auto print = [&](const char* method, const auto& scatter) {
-    const auto error = alpenglow::tests::ErrorsOf(judged, air, scatter);
+    const auto error = alpenglow::tests::ErrorsOf(reference, air, scatter);
     fmt::print("| {} | {} | {} | {:.1e} | {:.1e} | {:.1e} |\n", medium.name, regime.name, method,
                error.rms, error.percentile99, error.largest);
   };

@@ -21,7 +21,7 @@ using Work = LampWork;
 
 Work CheckedWork(int i, const LampWorkKind& kind) {
   Work work = LampWorkNumber(i, kind);
-  if (!work.converged && work.truth > 0.0) fmt::print("# the judge misses in case {}\n", i);
+  if (!work.converged && work.truth > 0.0) fmt::print("# the reference solution misses in case {}\n", i);
   return work;
 }
 

@@ -43,7 +43,7 @@ void PrintTimes() {
           RayFromAngles(2.0, view.zenith_deg, view.azimuth_deg, 90.0 - view.sun_deg);
       const auto start = std::chrono::steady_clock::now();
       const auto traced =
-          judge::TraceRadiance(medium, ray, {.max_paths = 2000000, .relative_error = 0.005});
+          reference::TraceRadiance(medium, ray, {.max_paths = 2000000, .relative_error = 0.005});
       const double seconds =
           std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
       fmt::print("| {} | {} | {} | {} | {} | {:.2f} |", name, view.sun_deg, view.zenith_deg,
@@ -67,7 +67,7 @@ void PrintIrradiance() {
       const Case sky{"", 0, Quantity::kIrradianceSky, {0.0, 1.0, mu_s, mu_s}};
       evaluator->Prepare({&sky, 1});
       const Estimates fast = evaluator->Evaluate(sky);
-      const auto truth = judge::TraceIrradiance(medium, 0.0, mu_s, judge::PlaneSide::kFromAbove,
+      const auto truth = reference::TraceIrradiance(medium, 0.0, mu_s, reference::PlaneSide::kFromAbove,
                                                 {.max_paths = 200000, .relative_error = 0.002});
       fmt::print("| {} | {} |", name, sun_deg);
       for (std::size_t band = 0; band < fast.size(); ++band)
@@ -109,7 +109,7 @@ std::vector<Row> Compare(const Medium& medium, const Evaluator& evaluator, const
     Row row{RayNumber(i, regime), {}, {}, {}};
     const Estimates fast = evaluator.Evaluate({"", 0, Quantity::kTotal, row.ray});
     const auto truth =
-        judge::TraceRadiance(medium, row.ray, {.max_paths = 300000, .relative_error = 0.001});
+        reference::TraceRadiance(medium, row.ray, {.max_paths = 300000, .relative_error = 0.001});
     for (std::size_t band = 0; band < truth.total.size(); ++band) {
       row.error.push_back(fast[band].value / truth.total[band] - 1.0);
       row.sigma.push_back(truth.standard_error[band] / truth.total[band]);
@@ -132,7 +132,7 @@ void PrintRow(const Row& row) {
 }
 
 void PrintErrors(bool every_ray) {
-  fmt::print("\n| air | sun | rays | rms error | largest | rms of the judge's standard error |\n");
+  fmt::print("\n| air | sun | rays | rms error | largest | rms of the reference solution's standard error |\n");
   fmt::print("|---|---|---|---|---|---|\n");
   for (const char* name : {"earth", "hazy"}) {
     const Medium medium = MediumPreset(name);

@@ -133,7 +133,7 @@ double LitShare(const SunlitPath& lit, double length_m) {
 }
 
 /// Returns the sunlit fractions, starting with the lowest row; -1 at edges.
-std::vector<double> Judge(const View& view, const glm::dvec3& to_sun) {
+std::vector<double> Reference(const View& view, const glm::dvec3& to_sun) {
   const ShadowHeights heights(view.terrain.mesh(), to_sun, kSunRadius_rad);
   std::vector<double> shares(view.distance_m.size(), -1.0);
   tbb::parallel_for(0, kHeight, [&](int y) {
@@ -225,12 +225,12 @@ class Picture {
   GlVertexArray no_vertices_;
 };
 
-void PrintErrors(const Image& image, const std::vector<double>& judge) {
+void PrintErrors(const Image& image, const std::vector<double>& reference) {
   std::vector<double> errors;
   double sum = 0.0;
   for (int y = 0; y < kHeight; ++y) {
     for (int x = 0; x < kWidth; ++x) {
-      const double share = judge[static_cast<std::size_t>(y * kWidth + x)];
+      const double share = reference[static_cast<std::size_t>(y * kWidth + x)];
       if (share < 0.0) continue;
       errors.push_back(std::abs(static_cast<double>(image.at(x, kHeight - 1 - y)[0]) - share));
       sum += errors.back();
@@ -256,7 +256,7 @@ void Compare() {
           std::atan2(view.forward.x, view.forward.y) + beside * kRadiansPerDegree;
       const glm::dvec3 to_sun =
           glm::normalize(InMesh(view, DirectionFromAngles(elevation, azimuth).xyz));
-      const std::vector<double> judge = Judge(view, to_sun);
+      const std::vector<double> reference = Reference(view, to_sun);
       for (const auto& [name, quality] :
            {std::pair{"low", kLowShade}, std::pair{"medium", kMediumShade},
             std::pair{"high", kHighShade}}) {
@@ -275,7 +275,7 @@ void Compare() {
             "{:2g} deg {:3g} beside {:6}: heights {:5.1f} ms map {:5.1f} ms pass {:6.1f} ms "
             "between {:4.1f} ms; ",
             degrees, beside, name, middle - begin, end - middle, times.pass_ms, times.between_ms);
-        PrintErrors(picture.Read(), judge);
+        PrintErrors(picture.Read(), reference);
       }
     }
   }

@@ -44,9 +44,9 @@ class Spread {
 struct Comparison {
   Spread i, polarised, in_errors, error_of_i, scalar;
 
-  void Add(const judge::PathTracedStokes& traced, std::size_t band, const slab::Stokes& truth,
+  void Add(const reference::PathTracedStokes& traced, std::size_t band, const slab::Stokes& truth,
            const slab::Stokes& errors) {
-    const auto one = [&](const judge::PathTracedRadiance& part, double value, double error) {
+    const auto one = [&](const reference::PathTracedRadiance& part, double value, double error) {
       const double difference = part.total[band] - value;
       const double sigma = std::hypot(part.standard_error[band], error);
       if (sigma > 1e-12 * truth.i) in_errors.Add(difference / sigma);  // else rounding
@@ -72,7 +72,7 @@ void PrintHead() {
       " scalar I |\n|---|---|---|---|---|---|---|\n");
 }
 
-judge::PolarisedScattering Molecules(const Medium& medium, double depolarisation) {
+reference::PolarisedScattering Molecules(const Medium& medium, double depolarisation) {
   return {std::vector<double>(medium.wavelengths_nm.size(), depolarisation)};
 }
 
@@ -100,9 +100,9 @@ void PrintSlab() {
     if (row.mu < 0.15 || row.mu0 < 0.15 || ++number % 37 != 0) continue;
     const Medium medium = slab::Layer(row.tau, row.albedo);
     const ViewRay ray = slab::RayOf(row);
-    const judge::PathOptions options{.seed = number, .max_paths = 400000, .relative_error = 0.001};
-    const auto traced = judge::TraceStokes(medium, Molecules(medium, 0.0), ray, options);
-    const double scalar = judge::TraceRadiance(medium, ray, options).total[0];
+    const reference::PathOptions options{.seed = number, .max_paths = 400000, .relative_error = 0.001};
+    const auto traced = reference::TraceStokes(medium, Molecules(medium, 0.0), ray, options);
+    const double scalar = reference::TraceRadiance(medium, ray, options).total[0];
     slab::Stokes truth = slab::Seen(row);
     if (row.mu == 1.0) truth = Ahead(truth, row.up, row.azimuth_deg);
     Comparison& all = comparisons[fmt::format("depth {}, albedo {}", row.tau, row.albedo)];
@@ -132,7 +132,7 @@ void PrintSphere() {
   for (const stored::Row& row : stored::Read("polarised.csv")) {
     const Medium& medium = media.at(row.at("set"));
     const auto traced =
-        judge::TraceStokes(medium, Molecules(medium, stored::Number(row, "depolarisation")),
+        reference::TraceStokes(medium, Molecules(medium, stored::Number(row, "depolarisation")),
                            stored::RayOf(row), {.max_paths = 2000000, .relative_error = 0.001});
     Comparison one;
     for (const stored::Row& result : results.at(row.at("id"))) {
@@ -160,7 +160,7 @@ struct Spheres {
 /// Air with the amount of aerosol of a preset, made of spheres.
 struct SphereAir {
   Medium medium;
-  judge::PolarisedScattering scattering;
+  reference::PolarisedScattering scattering;
 };
 
 SphereAir AirWith(const char* preset, const Spheres& spheres) {
@@ -189,10 +189,10 @@ struct Change {
   std::vector<Spread> i, polarised;
 
   void Add(const SphereAir& air, const ViewRay& ray) {
-    const judge::PathOptions options{.max_paths = 60000, .relative_error = 0.002};
-    const auto full = judge::TraceStokes(air.medium, air.scattering, ray, options);
+    const reference::PathOptions options{.max_paths = 60000, .relative_error = 0.002};
+    const auto full = reference::TraceStokes(air.medium, air.scattering, ray, options);
     const auto plain =
-        judge::TraceStokes(air.medium, {air.scattering.depolarisation}, ray, options);
+        reference::TraceStokes(air.medium, {air.scattering.depolarisation}, ray, options);
     for (std::size_t band = 0; band < i.size(); ++band) {
       const double whole = full.i.total[band];
       i[band].Add(plain.i.total[band] / whole - 1.0);
@@ -245,10 +245,10 @@ double Seconds(const Trace& trace) {
 void PrintTime() {
   const Medium medium = MediumPreset("earth");
   const ViewRay ray = RayFromAngles(2.0, 60.0, 90.0, 45.0);
-  const judge::PathOptions options{.max_paths = 200000, .relative_error = 0.0};
-  const double scalar = Seconds([&] { return judge::TraceRadiance(medium, ray, options); });
+  const reference::PathOptions options{.max_paths = 200000, .relative_error = 0.0};
+  const double scalar = Seconds([&] { return reference::TraceRadiance(medium, ray, options); });
   const double stokes =
-      Seconds([&] { return judge::TraceStokes(medium, Molecules(medium, 0.0279), ray, options); });
+      Seconds([&] { return reference::TraceStokes(medium, Molecules(medium, 0.0279), ray, options); });
   fmt::print("\n200 000 paths, four wavelengths: scalar {:.2f} s, polarised {:.2f} s\n", scalar,
              stokes);
 }

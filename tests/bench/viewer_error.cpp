@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "tests/viewer/air/air_judge.h"
+#include "tests/viewer/air/air_reference.h"
 
 namespace alpenglow::viewer {
 namespace {
@@ -28,14 +28,14 @@ void Study(const alpenglow::tests::LitAir& air, AirQuality quality, const AirEye
   const AirTables tables = MakeAirTables(air.air, air.diffuse, medium, eye, size);
   const std::chrono::duration<double, std::milli> time = std::chrono::steady_clock::now() - start;
   const alpenglow::tests::AirReading reading(tables, medium);
-  const alpenglow::tests::AirJudge judge(air, eye);
+  const alpenglow::tests::AirReference reference(air, eye);
   constexpr int kRays = 1500;
   fmt::print("{:9.0f} {:6.1f} {:>3}x{}x{:<3} {:7.2f} | {} | {} | {}\n", eye.altitude_m,
              std::asin(eye.mu_s) / kRadiansPerDegree, size.columns, size.rows + size.ground_rows,
              size.distances, time.count(),
-             TextOf(tests::SkyErrors(judge, reading, tables.map, kRays)),
-             TextOf(tests::WayErrors(judge, reading, tables.map, kRays)),
-             TextOf(tests::TransmittanceErrors(judge, reading, tables.map, kRays)));
+             TextOf(tests::SkyErrors(reference, reading, tables.map, kRays)),
+             TextOf(tests::WayErrors(reference, reading, tables.map, kRays)),
+             TextOf(tests::TransmittanceErrors(reference, reading, tables.map, kRays)));
 }
 
 std::vector<double> NumbersOf(const char* text) {

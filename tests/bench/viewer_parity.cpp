@@ -25,23 +25,23 @@ namespace alpenglow::viewer {
 namespace {
 
 /// Returns the PixelChange of each pixel in grey; pixels that are left out are blue.
-Image DifferencePicture(const Image& judge, const Image& painted) {
-  const std::vector<bool> edges = EdgesOf(judge);
-  const double floor = ChangeFloor(judge);
-  Image picture(judge.width, judge.height);
-  for (std::size_t i = 0; i < judge.rgb.size(); ++i) {
-    const auto change = static_cast<float>(PixelChange(judge.rgb[i], painted.rgb[i], floor));
+Image DifferencePicture(const Image& reference, const Image& painted) {
+  const std::vector<bool> edges = EdgesOf(reference);
+  const double floor = ChangeFloor(reference);
+  Image picture(reference.width, reference.height);
+  for (std::size_t i = 0; i < reference.rgb.size(); ++i) {
+    const auto change = static_cast<float>(PixelChange(reference.rgb[i], painted.rgb[i], floor));
     picture.rgb[i] = edges[i] ? std::array{0.0F, 0.0F, 1.0F} : std::array{change, change, change};
   }
   return picture;
 }
 
-Image JudgeOf(const ParityView& view, const RenderSettings& settings,
+Image ReferenceOf(const ParityView& view, const RenderSettings& settings,
               const std::filesystem::path& file) {
   if (std::filesystem::exists(file)) return ReadExr(file);
-  Image judge = SceneRenderer(view.scene).Render(view.instant, settings);
-  WriteExr(file, judge, {});
-  return judge;
+  Image reference = SceneRenderer(view.scene).Render(view.instant, settings);
+  WriteExr(file, reference, {});
+  return reference;
 }
 
 Image PaintedOf(const ParityView& view, const RenderSettings& settings) {
@@ -74,17 +74,17 @@ void Run(const std::filesystem::path& folder, const RenderSettings& settings,
     if (!views.empty() &&
         fmt::format(",{},", views).find(fmt::format(",{},", number)) == std::string::npos)
       continue;
-    const std::filesystem::path file = folder / fmt::format("judge-{}.exr", number);
-    const Image judge = JudgeOf(view, settings, file);
-    WritePng(folder / fmt::format("judge-{}.png", number),
-             Develop(judge, MeterEv100(judge, kSunDiskLuminance_cd_per_m2), ToneCurve::kAgx), {});
+    const std::filesystem::path file = folder / fmt::format("reference-{}.exr", number);
+    const Image reference = ReferenceOf(view, settings, file);
+    WritePng(folder / fmt::format("reference-{}.png", number),
+             Develop(reference, MeterEv100(reference, kSunDiskLuminance_cd_per_m2), ToneCurve::kAgx), {});
     const Image painted = PaintedOf(view, settings);
     WriteExr(folder / fmt::format("painted-{}.exr", number), painted, {});
     WritePng(folder / fmt::format("painted-{}.png", number),
-             Develop(painted, MeterEv100(judge, kSunDiskLuminance_cd_per_m2), ToneCurve::kAgx), {});
+             Develop(painted, MeterEv100(reference, kSunDiskLuminance_cd_per_m2), ToneCurve::kAgx), {});
     WritePng(folder / fmt::format("difference-{}.png", number),
-             TenfoldGrey(DifferencePicture(judge, painted)), {});
-    const ViewDifference is = DifferenceOf(judge, painted);
+             TenfoldGrey(DifferencePicture(reference, painted)), {});
+    const ViewDifference is = DifferenceOf(reference, painted);
     fmt::print(
         "{:<24} mean {:6.3f} %  p99 {:6.3f} %  p99.9 {:6.3f} %  worst {:7.2f} %  edges {:4.1f} %\n",
         view.name, 100.0 * is.mean, 100.0 * is.at_99_percent, 100.0 * is.at_999_permille,

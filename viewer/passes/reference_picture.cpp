@@ -135,35 +135,35 @@ std::vector<PictureLayer> LayersOfEdges() {
   return {PictureLayer::kDepth, PictureLayer::kSunVisibility, PictureLayer::kLamps};
 }
 
-std::vector<bool> EdgesOf(const Image& judge) {
+std::vector<bool> EdgesOf(const Image& reference) {
   constexpr float kNearer = 1.1F;
   constexpr float kShade = 0.1F;
-  const std::vector<float>& depth = LayerOf(judge, kDepthChannel);
-  const std::vector<float>& sun = LayerOf(judge, "sun_visibility.Y");
-  const std::vector<float>* lamps = FindLayer(judge, "lamps.G");
-  const auto floor = static_cast<float>(ChangeFloor(judge));
+  const std::vector<float>& depth = LayerOf(reference, kDepthChannel);
+  const std::vector<float>& sun = LayerOf(reference, "sun_visibility.Y");
+  const std::vector<float>* lamps = FindLayer(reference, "lamps.G");
+  const auto floor = static_cast<float>(ChangeFloor(reference));
   std::vector<bool> edges;
-  edges.reserve(judge.rgb.size());
-  for (int y = 0; y < judge.height; ++y) {
-    for (int x = 0; x < judge.width; ++x) {
-      const LuminanceRange distance = RangeAround(judge, depth, x, y);
-      const LuminanceRange light = RangeAround(judge, sun, x, y);
+  edges.reserve(reference.rgb.size());
+  for (int y = 0; y < reference.height; ++y) {
+    for (int x = 0; x < reference.width; ++x) {
+      const LuminanceRange distance = RangeAround(reference, depth, x, y);
+      const LuminanceRange light = RangeAround(reference, sun, x, y);
       const bool is_sky = std::isinf(distance.least);
       const bool is_even = is_sky || distance.most <= kNearer * distance.least;
-      const bool is_lamp = lamps != nullptr && IsEdgeOfLamps(judge, *lamps, x, y, floor);
+      const bool is_lamp = lamps != nullptr && IsEdgeOfLamps(reference, *lamps, x, y, floor);
       edges.push_back(!is_even || light.most - light.least > kShade || is_lamp);
     }
   }
   return edges;
 }
 
-ViewDifference DifferenceOf(const Image& judge, const Image& painted) {
-  ALPENGLOW_ENSURE(judge.rgb.size(), ==, painted.rgb.size());
-  const std::vector<bool> edges = EdgesOf(judge);
-  const double floor = ChangeFloor(judge);
+ViewDifference DifferenceOf(const Image& reference, const Image& painted) {
+  ALPENGLOW_ENSURE(reference.rgb.size(), ==, painted.rgb.size());
+  const std::vector<bool> edges = EdgesOf(reference);
+  const double floor = ChangeFloor(reference);
   std::vector<double> changes;
-  for (std::size_t i = 0; i < judge.rgb.size(); ++i) {
-    if (!edges[i]) changes.push_back(PixelChange(judge.rgb[i], painted.rgb[i], floor));
+  for (std::size_t i = 0; i < reference.rgb.size(); ++i) {
+    if (!edges[i]) changes.push_back(PixelChange(reference.rgb[i], painted.rgb[i], floor));
   }
   ALPENGLOW_ENSURE(changes.size(), >, 0U);
   std::sort(changes.begin(), changes.end());
@@ -174,7 +174,7 @@ ViewDifference DifferenceOf(const Image& judge, const Image& painted) {
     return changes[static_cast<std::size_t>(share * (count - 1.0))];
   };
   return {sum / count, quantile(0.99), quantile(0.999), changes.back(),
-          1.0 - count / static_cast<double>(judge.rgb.size())};
+          1.0 - count / static_cast<double>(reference.rgb.size())};
 }
 
 }  // namespace alpenglow::viewer

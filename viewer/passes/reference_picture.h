@@ -95,11 +95,11 @@ struct ViewDifference {
 [[nodiscard]] std::vector<PictureLayer> LayersOfEdges();
 
 /// Returns which pixels of the renderer's picture are at an edge, row by row.
-[[nodiscard]] std::vector<bool> EdgesOf(const Image& judge);
+[[nodiscard]] std::vector<bool> EdgesOf(const Image& reference);
 
 /// Returns the differences of a drawn picture from the reference.
-/// @param judge  the renderer's, with LayersOfEdges(). Throws InternalError if the sizes differ or
+/// @param reference solution  the renderer's, with LayersOfEdges(). Throws InternalError if the sizes differ or
 ///   all pixels are at edges.
-[[nodiscard]] ViewDifference DifferenceOf(const Image& judge, const Image& painted);
+[[nodiscard]] ViewDifference DifferenceOf(const Image& reference, const Image& painted);
 
 }  // namespace alpenglow::viewer

@@ -20,7 +20,7 @@ namespace {
 
 constexpr double kWavelength_nm = 550.0;
 
-// The judge goes over the sun's disk by chords at right angles to the line of the centres, and cuts
+// The reference solution goes over the sun's disk by chords at right angles to the line of the centres, and cuts
 // the moon's chord out of each: no circle around the sun's centre, no angle.
 double UncoveredByChords(const EclipsedDisk& disk, double wavelength_nm) {
   const auto clipped = [](double value, double most) { return std::clamp(value, -most, most); };
@@ -54,7 +54,7 @@ TEST(Eclipse, LightThatPassesTheMoonIsWhatIsSummedChordByChord) {
       for (const double wavelength_nm : tests::ScaledDown(wavelengths_nm, {400.0})) {
         EXPECT_NEAR(UncoveredLight(disk, wavelength_nm), UncoveredByChords(disk, wavelength_nm),
                     1e-6)
-            << radius << " " << separation << ": the ends of the judge's chords are square roots";
+            << radius << " " << separation << ": the ends of the reference solution's chords are square roots";
       }
     }
   }
@@ -88,8 +88,8 @@ TEST(Eclipse, TheLastThreadOfLightIsKnownToAPartInTenThousand) {
   constexpr double kRadius = 1.03;
   for (const double thread : {1e-2, 1e-3, 1e-4, 1e-5}) {
     const EclipsedDisk disk{kRadius, kRadius - 1.0 + thread};
-    const double judged = UncoveredByChords(disk, kWavelength_nm);
-    EXPECT_NEAR(UncoveredLight(disk, kWavelength_nm) / judged, 1.0, 1e-4) << thread;
+    const double reference = UncoveredByChords(disk, kWavelength_nm);
+    EXPECT_NEAR(UncoveredLight(disk, kWavelength_nm) / reference, 1.0, 1e-4) << thread;
   }
 }
 
@@ -153,7 +153,7 @@ struct Elements {
   double tan_f1 = 0.0046141, tan_f2 = 0.0045911;
 };
 
-// The judge: the shadow's cone in the plane through the earth's centre, Bessel's way.
+// The reference solution: the shadow's cone in the plane through the earth's centre, Bessel's way.
 class Besselian {
  public:
   Besselian(const City& city, double delta_t_s) : delta_t_s_(delta_t_s) {

@@ -13,7 +13,7 @@
 
 #include "atmosphere/medium/medium.h"
 #include "atmosphere/embedded_text.h"
-#include "atmosphere/reference/judge.h"
+#include "atmosphere/reference/reference_solution.h"
 #include "atmosphere/math/constants.h"
 #include "atmosphere/base/error.h"
 
@@ -260,7 +260,7 @@ TEST(Ciede2000, PublishedPairsHaveTheirDifferences) {
 }
 
 // Sunlight and skylight that the training family does not know: the
-// judge's single scattering through three atmospheres at 95 wavelengths,
+// reference solution's single scattering through three atmospheres at 95 wavelengths,
 // as it is and with more blue as from light scattered again.
 struct TestLight {
   SampledFunction relative_to_sun;
@@ -302,7 +302,7 @@ void AddLight(std::vector<double> values, std::vector<TestLight>& lights) {
 }
 
 void AddSky(const Medium& medium, const ViewRay& ray, std::vector<TestLight>& lights) {
-  std::vector<double> sky = judge::SingleScatteringAlong(medium, ray).inscatter;
+  std::vector<double> sky = reference::SingleScatteringAlong(medium, ray).inscatter;
   if (!(sky[40] > 1e-12)) return;
   AddLight(sky, lights);
   for (std::size_t i = 0; i < sky.size(); ++i) {
@@ -322,7 +322,7 @@ std::vector<TestLight> MakeTestLights() {
         }
       }
       if (elevation < 0.0) continue;
-      AddLight(judge::SunIrradiance(medium, 10.0, std::sin(Radians(elevation))), lights);
+      AddLight(reference::SunIrradiance(medium, 10.0, std::sin(Radians(elevation))), lights);
     }
   }
   return lights;
@@ -438,7 +438,7 @@ TEST(BandColour, SunAboveTheAirHasTheSameColourOnEveryWavelengthSet) {
 TEST(BandColour, WhitePointOfAGreySurfaceUnderADaySkyMovesLessThanTwoPerCentBetweenSets) {
   // Sun at 30 degrees through the default air, on white paper.
   const std::vector<double> relative =
-      judge::SunIrradiance(MediumPreset("earth", TestWavelengths()), 10.0, std::sin(Radians(30.0)));
+      reference::SunIrradiance(MediumPreset("earth", TestWavelengths()), 10.0, std::sin(Radians(30.0)));
   const SampledFunction light(TestWavelengths(), relative);
   const Triple truth = TrueXyz(light);
   for (const int bands : kWavelengthSetSizes) {

@@ -8,7 +8,7 @@
 #include <glm/geometric.hpp>
 #include <limits>
 
-#include "atmosphere/reference/airlight_judge.h"
+#include "atmosphere/reference/airlight_reference.h"
 #include "atmosphere/math/constants.h"
 #include "atmosphere/math/numerics.h"
 #include "tests/fixtures/lamp_cases.h"
@@ -33,9 +33,9 @@ LampSegment Along(const glm::dvec3& direction, double length_m) {
   return segment;
 }
 
-void ExpectNearTheJudge(const LampAir& air, const Lamp& lamp, const LampSegment& segment,
+void ExpectNearTheReference(const LampAir& air, const Lamp& lamp, const LampSegment& segment,
                         double tolerance, const std::string& what) {
-  const judge::LampLight truth = judge::AirlightAlong(air, lamp, segment);
+  const reference::LampLight truth = reference::AirlightAlong(air, lamp, segment);
   EXPECT_TRUE(truth.converged) << what;
   EXPECT_NEAR(Airlight(air, lamp, segment)[0] / truth.radiance[0], 1.0, tolerance) << what;
 }
@@ -64,7 +64,7 @@ ErrorsOfSixteen Measure(double g, double scale_height_m, int cases) {
                              Logarithmic(0.1, 100.0, Halton(i, 5)) * off);
     air.altitude_at_origin_m = -std::min({0.0, length * forward.z, lamp.position_m.z});
     const LampSegment segment = Along(forward, length);
-    const double truth = judge::AirlightAlong(air, lamp, segment).radiance[0];
+    const double truth = reference::AirlightAlong(air, lamp, segment).radiance[0];
     const double error = std::abs(Airlight(air, lamp, segment)[0] / truth - 1.0);
     squares += error * error;
     most = std::max(most, error);
@@ -107,20 +107,20 @@ TEST(Airlight, StoredCasesOnTheRayAndOffIt) {
   EXPECT_EQ(checked, 50);
 }
 
-TEST(AirlightJudge, AgreesWithTheStoredCases) {
+TEST(AirlightReference, AgreesWithTheStoredCases) {
   if (!stored::Available()) GTEST_SKIP() << "no stored cases at " << stored::Folder();
   for (const stored::LampCase& work : stored::LampCases()) {
-    const judge::LampLight found = judge::AirlightAlong(work.air, work.lamp, work.segment);
+    const reference::LampLight found = reference::AirlightAlong(work.air, work.lamp, work.segment);
     EXPECT_NEAR(found.radiance[0], work.radiance, 1e-9 * work.radiance) << work.id;
   }
 }
 
-TEST(AirlightJudge, TheThinLimitIsTheAngleThatTheSegmentFills) {
+TEST(AirlightReference, TheThinLimitIsTheAngleThatTheSegmentFills) {
   // Without extinction and for isotropic scattering the integral is sigma / (4 pi D) times the
   // angle under which the lamp sees the segment.
   const LampAir air = HomogeneousAir(1e-12, 1e-12, HenyeyGreenstein(0.0));
-  const judge::LampLight found =
-      judge::AirlightAlong(air, LampAt({5.0, 2.0, 0.0}), Along({1.0, 0.0, 0.0}, 12.0));
+  const reference::LampLight found =
+      reference::AirlightAlong(air, LampAt({5.0, 2.0, 0.0}), Along({1.0, 0.0, 0.0}, 12.0));
   const double angle = std::atan2(5.0, 2.0) + std::atan2(7.0, 2.0);
   EXPECT_NEAR(found.radiance[0] / (1e-12 / (4.0 * kPi * 2.0) * angle), 1.0, 1e-9);
 }
@@ -132,7 +132,7 @@ TEST(Airlight, SunsClosedFormIsTheIntegralForIsotropicFog) {
     const double length = i % 4 == 0 ? kInfinite : Logarithmic(5.0, 500.0, Halton(i, 7));
     const LampAir air = HomogeneousAir(sigma, sigma, HenyeyGreenstein(0.0));
     const double truth =
-        judge::AirlightAlong(air, LampAt({along, across, 0.0}), Along({1.0, 0.0, 0.0}, length))
+        reference::AirlightAlong(air, LampAt({along, across, 0.0}), Along({1.0, 0.0, 0.0}, length))
             .radiance[0];
     EXPECT_NEAR(AirlightOfSun2005(sigma, sigma, length, along, across) / truth, 1.0, 1e-7)
         << "differences of F lose what lies before the segment: case " << i;
@@ -151,13 +151,13 @@ TEST(Airlight, TheRayThroughTheLampIsFiniteAndRight) {
   Lamp lamp = LampAt({40.0, 0.0, 0.0});
   lamp.radius_m = 0.1;
   const LampSegment through = Along({1.0, 0.0, 0.0}, 100.0);
-  ExpectNearTheJudge(air, lamp, through, 1e-3, "through the centre of the lamp");
+  ExpectNearTheReference(air, lamp, through, 1e-3, "through the centre of the lamp");
   const double centre = Airlight(air, lamp, through)[0];
   lamp.position_m.y = 0.05;
   EXPECT_NEAR(Airlight(air, lamp, through)[0], centre, 1e-3 * centre) << "inside of the lamp";
   lamp.position_m.y = 1e-3;
   lamp.radius_m = 0.0;
-  ExpectNearTheJudge(air, lamp, through, 1e-3, "a point of light 1 mm from the ray");
+  ExpectNearTheReference(air, lamp, through, 1e-3, "a point of light 1 mm from the ray");
 }
 
 // Hard case 42.
@@ -166,11 +166,11 @@ TEST(Airlight, ALampAtTheEyeBehindItAndBeyondTheEndIsFiniteAndRight) {
   const LampSegment ahead = Along({1.0, 0.0, 0.0}, 50.0);
   Lamp lamp = LampAt({0.0, 0.0, 0.0});
   lamp.radius_m = 0.05;
-  ExpectNearTheJudge(air, lamp, ahead, 1e-3, "at the eye");
+  ExpectNearTheReference(air, lamp, ahead, 1e-3, "at the eye");
   lamp.position_m = {-5.0, 0.0, 0.0};
-  ExpectNearTheJudge(air, lamp, ahead, 1e-3, "behind");
+  ExpectNearTheReference(air, lamp, ahead, 1e-3, "behind");
   lamp.position_m = {80.0, 0.0, 0.0};
-  ExpectNearTheJudge(air, lamp, ahead, 1e-3, "beyond the end");
+  ExpectNearTheReference(air, lamp, ahead, 1e-3, "beyond the end");
 }
 
 // Hard case 14.
@@ -206,7 +206,7 @@ TEST(Airlight, ARayThatMissesTheBeamSeesNothing) {
   lamp.profile.outer_rad = 0.2;
   EXPECT_EQ(Airlight(air, lamp, Along({1.0, 0.0, 0.0}, 100.0))[0], 0.0);
   lamp.axis = {0.0, -1.0, 0.0};
-  ExpectNearTheJudge(air, lamp, Along({1.0, 0.0, 0.0}, 100.0), 1e-3, "across the beam");
+  ExpectNearTheReference(air, lamp, Along({1.0, 0.0, 0.0}, 100.0), 1e-3, "across the beam");
 }
 
 TEST(Airlight, AMeasuredTableShinesLikeTheConeThatItSamples) {
@@ -229,7 +229,7 @@ TEST(Airlight, AMeasuredTableShinesLikeTheConeThatItSamples) {
   const LampSegment segment = Along({1.0, 0.0, 0.0}, 100.0);
   EXPECT_NEAR(Airlight(air, table, segment)[0] / Airlight(air, cone, segment)[0], 1.0, 2e-3)
       << "linear between angles 0.3 degrees apart";
-  ExpectNearTheJudge(air, table, segment, 1e-3, "table");
+  ExpectNearTheReference(air, table, segment, 1e-3, "table");
 }
 
 TEST(Airlight, EveryBandHasItsOwnExtinction) {
@@ -249,7 +249,7 @@ TEST(Airlight, EveryBandHasItsOwnExtinction) {
   air.layers = {fog, molecules};
   const Lamp lamp = LampAt({60.0, 10.0, 15.0});
   const LampSegment segment = Along({1.0, 0.1, 0.2}, 150.0);
-  const judge::LampLight truth = judge::AirlightAlong(air, lamp, segment);
+  const reference::LampLight truth = reference::AirlightAlong(air, lamp, segment);
   const Bands<double> found = Airlight(air, lamp, segment);
   ASSERT_EQ(found.count, 3U);
   for (std::size_t band = 0; band < 3; ++band) {
@@ -271,7 +271,7 @@ TEST(Airlight, SurfacesCollectTheAirsLightFromTheirHemisphere) {
         const double high = kPi * std::pow((i + 1.0) / kSteps, 2.0);
         const double alpha = 0.5 * (low + high);
         const double radiance =
-            judge::AirlightAlong(air, lamp, Along({std::cos(alpha), std::sin(alpha), 0.0}, 2000.0))
+            reference::AirlightAlong(air, lamp, Along({std::cos(alpha), std::sin(alpha), 0.0}, 2000.0))
                 .radiance[0];
         for (int j = 0; j < kTurns; ++j) {
           const double phi = 2.0 * kPi * (j + 0.5) / kTurns;
@@ -306,7 +306,7 @@ TEST(Airlight, OverFogTheLightThatClearAirScattersIsFound) {
     for (const double climb : {0.05, 0.2}) {
       Lamp lamp = LampAt({distance, 23.0, -37.0});
       lamp.radius_m = 0.1;
-      ExpectNearTheJudge(air, lamp, Along({1.0, 0.0, climb}, 4.0 * distance + 20e3), 2e-3,
+      ExpectNearTheReference(air, lamp, Along({1.0, 0.0, climb}, 4.0 * distance + 20e3), 2e-3,
                          fmt::format("a lamp at {} m, a ray that climbs {}", distance, climb));
     }
   }

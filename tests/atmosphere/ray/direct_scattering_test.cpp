@@ -24,15 +24,15 @@ using tests::DirectRegime;
 using tests::DirectRegimes;
 using tests::ErrorsOf;
 using tests::ErrorSummary;
-using tests::JudgedRays;
-using tests::JudgedRaysOf;
+using tests::ReferenceRays;
+using tests::ReferenceRaysOf;
 
 constexpr int kFirst = 20001, kRays = 150;
 constexpr std::array kModes{DirectMode::kFast, DirectMode::kNormal};
 
 ErrorSummary ErrorOf(const Medium& medium, const DirectRegime& regime, DirectMode mode) {
   const DirectScattering direct(medium);
-  return ErrorsOf(JudgedRaysOf(regime, medium, kFirst, kRays), direct.reference(),
+  return ErrorsOf(ReferenceRaysOf(regime, medium, kFirst, kRays), direct.reference(),
                   [&](const ViewRay& ray) { return direct.Scatter(ray, mode); });
 }
 
@@ -80,10 +80,10 @@ struct Coverage {
 
 Coverage CoverageOf(const DirectScattering& direct, DirectMode mode, const DirectRegime& regime) {
   Coverage coverage;
-  const JudgedRays judged = JudgedRaysOf(regime, direct.reference().medium(), 50001, 100);
-  for (std::size_t i = 0; i < judged.rays.size(); ++i) {
-    const EstimatedLight light = direct.Estimate(judged.rays[i], mode);
-    const double error = ErrorOfRay(direct, light.scattered, judged.rays[i], judged.light[i]);
+  const ReferenceRays reference = ReferenceRaysOf(regime, direct.reference().medium(), 50001, 100);
+  for (std::size_t i = 0; i < reference.rays.size(); ++i) {
+    const EstimatedLight light = direct.Estimate(reference.rays[i], mode);
+    const double error = ErrorOfRay(direct, light.scattered, reference.rays[i], reference.light[i]);
     coverage.held += error <= light.error ? 1 : 0;
     ++coverage.rays;
   }
@@ -111,11 +111,11 @@ TEST(DirectScattering, ScatterWithinKeepsTheErrorOfNineteenOfTwentyRays) {
   for (const double stated : {1e-2, 2e-3, 6e-4, 1e-4}) {
     Coverage coverage;
     for (const DirectRegime& regime : DirectRegimes()) {
-      const JudgedRays judged = JudgedRaysOf(regime, medium, 70001, 60);
-      for (std::size_t i = 0; i < judged.rays.size(); ++i) {
-        const EstimatedLight light = direct.ScatterWithin(judged.rays[i], stated);
+      const ReferenceRays reference = ReferenceRaysOf(regime, medium, 70001, 60);
+      for (std::size_t i = 0; i < reference.rays.size(); ++i) {
+        const EstimatedLight light = direct.ScatterWithin(reference.rays[i], stated);
         EXPECT_LE(light.error, stated);
-        const double error = ErrorOfRay(direct, light.scattered, judged.rays[i], judged.light[i]);
+        const double error = ErrorOfRay(direct, light.scattered, reference.rays[i], reference.light[i]);
         coverage.held += error <= stated ? 1 : 0;
         ++coverage.rays;
       }

@@ -8,7 +8,7 @@
 #include <cmath>
 #include <vector>
 
-#include "atmosphere/reference/judge.h"
+#include "atmosphere/reference/reference_solution.h"
 #include "atmosphere/math/constants.h"
 #include "atmosphere/ray/shell.h"
 #include "atmosphere/base/error.h"
@@ -43,7 +43,7 @@ double LargestErrorUnderSun(double sun_elevation_deg, const Sampling& sampling) 
   double largest = 0.0;
   for (const ViewRay& ray : RaysUnderSun(sun_elevation_deg)) {
     const auto fast = Inscatter(air, ray, sampling);
-    const auto truth = judge::SingleScatteringAlong(medium, ray);
+    const auto truth = reference::SingleScatteringAlong(medium, ray);
     for (std::size_t band = 0; band < air.bands(); ++band) {
       if (truth.inscatter[band] < 1e-12) continue;
       largest = std::max(largest,
@@ -55,18 +55,18 @@ double LargestErrorUnderSun(double sun_elevation_deg, const Sampling& sampling) 
 
 constexpr Sampling kFine{.nodes = 16, .split_ozone = true, .dark_samples = false};
 
-TEST(SingleScattering, DayAgreesWithTheJudge) {
+TEST(SingleScattering, DayAgreesWithTheReference) {
   for (const double sun : {60.0, 20.0, 6.0}) {
     EXPECT_LT(LargestErrorUnderSun(sun, kFine), 1e-4)
         << "sun at " << sun << " degrees; 16 nodes a panel, tent split";
   }
 }
 
-TEST(SingleScattering, SunsetAgreesWithTheJudge) {
+TEST(SingleScattering, SunsetAgreesWithTheReference) {
   for (const double sun : {4.0, 1.0, 0.0}) EXPECT_LT(LargestErrorUnderSun(sun, kFine), 1e-4) << sun;
 }
 
-TEST(SingleScattering, TwilightAgreesWithTheJudge) {
+TEST(SingleScattering, TwilightAgreesWithTheReference) {
   for (const double sun : {-1.0, -4.0, -6.0})
     EXPECT_LT(LargestErrorUnderSun(sun, kFine), 1e-4) << sun;
 }
@@ -175,14 +175,14 @@ TEST(SingleScattering, RaysOfAnyKindHaveRoomForTheFinestSampling) {
 }
 
 // What ErrorOfRegime takes for the truth is right.
-TEST(SingleScattering, SixtyFourSamplesAreTheJudgeInEveryRegime) {
+TEST(SingleScattering, SixtyFourSamplesAreTheReferenceInEveryRegime) {
   const Medium medium = MediumPreset("hazy");
   const AirIntegrator<double> air(medium);
   for (const auto& sun : tests::kSunHeights) {
     for (const auto& view : tests::kRayViews) {
       for (const int i : {1, 2, 3}) {
         const ViewRay ray = tests::RayOfRegime(i, sun, view.view, medium);
-        const auto truth = judge::SingleScatteringAlong(medium, ray);
+        const auto truth = reference::SingleScatteringAlong(medium, ray);
         const auto fine = Inscatter(air, ray, {.nodes = 64});
         for (std::size_t band = 0; band < air.bands(); ++band) {
           EXPECT_NEAR(fine[band], truth.inscatter[band], 2e-6 * truth.inscatter[band] + 1e-14)
@@ -229,7 +229,7 @@ TEST(SingleScattering, OneMillimetreOfAirScattersTheRightSmallNumber) {
   const AirIntegrator<float> air(medium);
   const ViewRay ray{100.0, 0.1, 0.5, 0.3, 1e-3};
   const auto fast = Inscatter(air, ray, {});
-  const auto truth = judge::SingleScatteringAlong(medium, ray);
+  const auto truth = reference::SingleScatteringAlong(medium, ray);
   for (std::size_t band = 0; band < air.bands(); ++band) {
     EXPECT_NEAR(static_cast<double>(fast[band]) / truth.inscatter[band], 1.0, 2e-5) << "not noise";
   }
@@ -241,7 +241,7 @@ TEST(SingleScattering, ShortSegmentsKeepTheirOpticalDepth) {
   const AirIntegrator<double> air(medium);
   for (const double length : {1.0, 100.0, 10000.0}) {
     const ViewRay ray{500.0, 0.05, 0.5, 0.3, length};
-    const auto truth = judge::OpticalDepthAlong(medium, ray);
+    const auto truth = reference::OpticalDepthAlong(medium, ray);
     const auto fast = air.TransmittanceAlong(ray);
     for (std::size_t band = 0; band < air.bands(); ++band) {
       EXPECT_NEAR(-std::log(fast[band]) / truth.tau[band], 1.0, 1e-5) << length << " m";
@@ -291,12 +291,12 @@ TEST(SingleScattering, ColumnsSummedFromSampleToSampleAreThoseOfTheWholeWay) {
   }
 }
 
-TEST(SingleScattering, TransmittanceToSpaceAgreesWithTheJudgeAtEveryAngle) {
+TEST(SingleScattering, TransmittanceToSpaceAgreesWithTheReferenceAtEveryAngle) {
   const Medium medium = MediumPreset("earth");
   const AirIntegrator<float> air(medium);
   for (const double altitude : {0.0, 10.0, 3000.0, 30000.0, 80000.0}) {
     for (double mu = -0.3; mu <= 1.0; mu += 0.01) {
-      const auto truth = judge::OpticalDepthAlong(medium, {altitude, mu, 1.0, mu});
+      const auto truth = reference::OpticalDepthAlong(medium, {altitude, mu, 1.0, mu});
       const auto fast = air.TransmittanceToSpace(altitude, mu);
       for (std::size_t band = 0; band < air.bands(); ++band) {
         const double expected = truth.blocked ? 0.0 : std::exp(-truth.tau[band]);
@@ -370,7 +370,7 @@ TEST(SingleScattering, EveryBandHasThePhaseFunctionOfItsOwn) {
   const AirIntegrator<float> air(medium);
   for (const ViewRay& ray : RaysUnderSun(20.0)) {
     const auto light = Inscatter(air, ray, kFine);
-    const auto truth = judge::SingleScatteringAlong(medium, ray);
+    const auto truth = reference::SingleScatteringAlong(medium, ray);
     for (std::size_t band = 0; band < air.bands(); ++band) {
       EXPECT_NEAR(static_cast<double>(light[band]) / truth.inscatter[band], 1.0, 1e-4)
           << "16 nodes a panel";
@@ -427,7 +427,7 @@ ViewRay ThroughTheShadow(const Medium& medium, double depth_m) {
 }
 
 // Hard case 15.
-TEST(SingleScattering, ASegmentThroughThePlanetsShadowIsThatOfTheJudgeWithoutASeam) {
+TEST(SingleScattering, ASegmentThroughThePlanetsShadowIsThatOfTheReferenceWithoutASeam) {
   const Medium medium = MediumPreset("earth");
   const AirIntegrator<float> air(medium);
   for (const double depth_m : {-20e3, -100.0, -1.0, 1.0, 100.0, 3e3, 10e3, 18e3}) {
@@ -440,7 +440,7 @@ TEST(SingleScattering, ASegmentThroughThePlanetsShadowIsThatOfTheJudgeWithoutASe
                 1.0)
         << "the chord through a cylinder";
     const auto light = Inscatter(air, ray, kFine);
-    const auto truth = judge::SingleScatteringAlong(medium, ray);
+    const auto truth = reference::SingleScatteringAlong(medium, ray);
     for (std::size_t band = 0; band < air.bands(); ++band) {
       EXPECT_NEAR(static_cast<double>(light[band]) / truth.inscatter[band], 1.0, 2e-4)
           << depth_m << " m: 16 nodes a panel";
@@ -496,7 +496,7 @@ TEST(SingleScattering, ThickAirFadesToNothingWithoutFurtherEffort) {
     }
     const AirIntegrator<float> air(medium);
     for (const double mu : {1.0, 0.0}) {
-      const double truth = judge::OpticalDepthAlong(medium, {2.0, mu, 1.0, mu}).tau[0];
+      const double truth = reference::OpticalDepthAlong(medium, {2.0, mu, 1.0, mu}).tau[0];
       const double found = static_cast<double>(air.TransmittanceToSpace(2.0, mu)[0]);
       EXPECT_NEAR(found, std::exp(-truth), 2e-5 * std::max(truth, 1.0) * std::exp(-truth) + 1e-37)
           << depth << ", mu " << mu;
@@ -518,7 +518,7 @@ TEST(SingleScattering, ThickAirFadesToNothingWithoutFurtherEffort) {
   EXPECT_EQ(nodes, std::vector<std::size_t>(nodes.size(), nodes.front()));
 }
 
-/// Largest relative errors against the judge, of rays of all kinds.
+/// Largest relative errors against the reference solution, of rays of all kinds.
 struct EdgeErrors {
   double depth = 0.0, light = 0.0;
 };
@@ -534,8 +534,8 @@ EdgeErrors ErrorsAtTheEdge(const Medium& medium) {
                                    : 180.0 * tests::RadicalInverse(i, 2);
     const ViewRay ray = RayFromAngles(altitude, view, 180.0 * tests::RadicalInverse(i, 3),
                                       95.0 * tests::RadicalInverse(i, 5));
-    const judge::SingleScattering truth = judge::SingleScatteringAlong(medium, ray);
-    const std::vector<double> tau = judge::OpticalDepthAlong(medium, ray).tau;
+    const reference::RayRadiance truth = reference::SingleScatteringAlong(medium, ray);
+    const std::vector<double> tau = reference::OpticalDepthAlong(medium, ray).tau;
     const auto depth = air.OpticalDepthAlong(ray);
     const auto light = Inscatter(air, ray, kFine);
     for (std::size_t band = 0; band < air.bands(); ++band) {
@@ -550,7 +550,7 @@ EdgeErrors ErrorsAtTheEdge(const Medium& medium) {
 }
 
 // Hard case 31.
-TEST(SingleScattering, AtTheEdgesOfTheRangesOfAMediumTheJudgeAgrees) {
+TEST(SingleScattering, AtTheEdgesOfTheRangesOfAMediumTheReferenceAgrees) {
   const auto edge = [](const char* preset, const auto& make) {
     Medium medium = MediumPreset(preset);
     make(medium);
@@ -602,7 +602,7 @@ TEST(SingleScattering, TheSharpestLobesForwardsAndBackwardsAndNoneAreFinite) {
       for (const double azimuth : {0.0, 1.0, 90.0, 180.0}) {
         const ViewRay ray = RayFromAngles(2.0, 50.0, azimuth, 50.0);
         const auto light = Inscatter(air, ray, kFine);
-        const auto truth = judge::SingleScatteringAlong(medium, ray);
+        const auto truth = reference::SingleScatteringAlong(medium, ray);
         for (std::size_t band = 0; band < air.bands(); ++band) {
           EXPECT_NEAR(static_cast<double>(light[band]) / truth.inscatter[band], 1.0, 2e-3)
               << g << ' ' << azimuth << ": float keeps 1 - nu to 1e-7, the lobe is 1e-3 wide";

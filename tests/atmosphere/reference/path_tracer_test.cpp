@@ -8,7 +8,7 @@
 #include <cmath>
 #include <set>
 
-#include "atmosphere/reference/judge.h"
+#include "atmosphere/reference/reference_solution.h"
 #include "atmosphere/reference/path_sampling.h"
 #include "atmosphere/math/constants.h"
 #include "atmosphere/math/numerics.h"
@@ -16,7 +16,7 @@
 #include "tests/fixtures/sanitized.h"
 #include "tests/fixtures/stored_cases.h"
 
-namespace alpenglow::atmosphere::judge {
+namespace alpenglow::atmosphere::reference {
 namespace {
 
 Medium WithoutAbsorption() {
@@ -36,7 +36,7 @@ Medium Empty(double albedo) {
   return medium;
 }
 
-TEST(ColumnTable, AgreesWithTheJudgeToOnePartInAMillion) {
+TEST(ColumnTable, AgreesWithTheReferenceToOnePartInAMillion) {
   for (const char* name : {"earth", "hazy", "bruneton2017", "mars"}) {
     const Medium medium = MediumPreset(name);
     const ColumnTable table(medium);
@@ -60,7 +60,7 @@ TEST(ColumnTable, AgreesWithTheJudgeToOnePartInAMillion) {
   }
 }
 
-TEST(PathTracer, OrderOneIsTheIntegralOfTheJudge) {
+TEST(PathTracer, OrderOneIsTheIntegralOfTheReference) {
   constexpr std::size_t kPaths = tests::ScaledDown<std::size_t>(8000, 800);
   const Medium medium = MediumPreset("bruneton2017");
   int compared = 0;
@@ -69,7 +69,7 @@ TEST(PathTracer, OrderOneIsTheIntegralOfTheJudge) {
       for (const double view_deg : {20.0, 88.0, 108.0, 140.0}) {
         for (const double azimuth_deg : {10.0, 120.0}) {
           const ViewRay ray = RayFromAngles(altitude, view_deg, azimuth_deg, sun_deg);
-          const SingleScattering truth = SingleScatteringAlong(medium, ray);
+          const RayRadiance truth = SingleScatteringAlong(medium, ray);
           const PathTracedRadiance traced =
               TraceRadiance(medium, ray, {.max_paths = kPaths, .max_order = 1});
           for (std::size_t band = 0; band < traced.single.size(); ++band) {
@@ -293,4 +293,4 @@ TEST(PathTracer, AgreesWithStoredIrradiance) {
 }
 
 }  // namespace
-}  // namespace alpenglow::atmosphere::judge
+}  // namespace alpenglow::atmosphere::reference solution

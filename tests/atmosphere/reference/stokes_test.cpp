@@ -6,14 +6,14 @@
 #include <set>
 
 #include "atmosphere/medium/lorenz_mie.h"
-#include "atmosphere/reference/judge.h"
+#include "atmosphere/reference/reference_solution.h"
 #include "atmosphere/reference/path_tracer.h"
 #include "atmosphere/math/constants.h"
 #include "atmosphere/base/error.h"
 #include "tests/fixtures/polarised_slab.h"
 #include "tests/fixtures/stored_cases.h"
 
-namespace alpenglow::atmosphere::judge {
+namespace alpenglow::atmosphere::reference {
 namespace {
 
 PolarisedScattering RoundMolecules(const Medium& medium) {
@@ -56,7 +56,7 @@ TEST(PathTracedStokes, OrderOneVibratesAcrossThePlaneOfTheSunAsStrongAsRayleighS
   for (const double azimuth_deg : {0.0, 50.0, 140.0}) {
     for (const double view_deg : {0.0, 60.0, 150.0}) {
       const ViewRay ray = RayFromAngles(5000.0, view_deg, azimuth_deg, 70.0);
-      const SingleScattering round = SingleScatteringAlong(medium, ray);
+      const RayRadiance round = SingleScatteringAlong(medium, ray);
       const PathTracedStokes traced = TraceStokes(medium, {std::vector<double>(3, kDepolarisation)},
                                                   ray, {.max_paths = 8000, .max_order = 1});
       // Upwards in the picture and to the right, of the sun beside the view.
@@ -178,4 +178,4 @@ TEST(PathTracedStokes, AgreeWithStoredTwilightAndViewsFromSpace) {
 }
 
 }  // namespace
-}  // namespace alpenglow::atmosphere::judge
+}  // namespace alpenglow::atmosphere::reference solution

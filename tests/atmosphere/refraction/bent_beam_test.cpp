@@ -10,7 +10,7 @@
 #include <cmath>
 #include <vector>
 
-#include "atmosphere/reference/judge.h"
+#include "atmosphere/reference/reference_solution.h"
 #include "tests/fixtures/bent_twilight.h"
 
 namespace alpenglow::atmosphere {
@@ -33,7 +33,7 @@ TEST(BentBeam, IsWithinOnePerCentOfTheRayEquationInMolecules) {
   const Medium medium = EarthOfMolecules();
   const AirIntegrator<float> air(medium);
   const BentBeam beam(medium);
-  const judge::RayEquation equation(medium, judge::PeckAndReeder(kHorizonWavelength_nm));
+  const reference::RayEquation equation(medium, reference::PeckAndReeder(kHorizonWavelength_nm));
   for (const double height_m : kLitHeights_m) {
     for (const double elevation_deg : kSunElevations_deg) {
       constexpr double kStep = 2e-4;

@@ -7,13 +7,13 @@
 #include <array>
 #include <cmath>
 
-#include "atmosphere/reference/judge.h"
+#include "atmosphere/reference/reference_solution.h"
 
 namespace alpenglow::atmosphere {
 namespace {
 
-using judge::PeckAndReeder;
-using judge::RayEquation;
+using reference::PeckAndReeder;
+using reference::RayEquation;
 
 constexpr double kDegree = kRadiansPerDegree;
 constexpr double kMinute = kRadiansPerDegree / 60.0;
@@ -46,7 +46,7 @@ TEST(BentView, TheSettingDiskIsAsFlatAsByTheRayEquation) {
   for (const double height : {2.0, 3000.0, 12e3}) {
     const BentView view(medium, height);
     const double horizon = view.horizon_rad();
-    // The lower limb stands on the horizon, the upper where the judge finds what is as much higher.
+    // The lower limb stands on the horizon, the upper where the reference solution finds what is as much higher.
     const double lower = horizon + 1e-3 * kMinute;
     const double truly = lower - equation.Follow(lower, height).refraction_rad + kDiameter;
     double upper = lower + kDiameter;

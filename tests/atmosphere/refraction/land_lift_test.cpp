@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "atmosphere/reference/judge.h"
+#include "atmosphere/reference/reference_solution.h"
 #include "atmosphere/ray/shell.h"
 
 namespace alpenglow::atmosphere {
@@ -21,7 +21,7 @@ struct LandSight {
 
 /// Where a ray of the equation is after a way, seen from the eye.
 LandSight SightAlong(const Medium& medium, double elevation_rad, double eye_m, double way_m) {
-  const judge::RayEquation equation(medium, judge::PeckAndReeder(kHorizonWavelength_nm));
+  const reference::RayEquation equation(medium, reference::PeckAndReeder(kHorizonWavelength_nm));
   const auto end = equation.Follow(elevation_rad, eye_m, way_m);
   const double up_m = end.state.y - medium.planet_radius_m - eye_m;
   return {std::hypot(end.state.x, up_m),
@@ -91,7 +91,7 @@ TEST(LandLift, NothingIsLiftedWithoutAir) {
 
 TEST(LandLift, ThePlanetLooksAsWideAsBentRaysShowItsHorizon) {
   const Medium medium = MediumPreset("earth");
-  const judge::RayEquation equation(medium, judge::PeckAndReeder(kHorizonWavelength_nm));
+  const reference::RayEquation equation(medium, reference::PeckAndReeder(kHorizonWavelength_nm));
   for (const double eye_m : {2.0, 100.0, 3e3, 12e3, 400e3}) {
     const LandBend bend = LandBendOf(GentleAirOf(medium), eye_m);
     const double horizon_rad =

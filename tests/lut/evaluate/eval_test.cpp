@@ -154,10 +154,10 @@ TEST_F(StoredEval, TransmittanceAndOpticalDepthAreWithinTheirEstimates) {
     EXPECT_GE(fast.compared, 300);
     EXPECT_LT(fast.worst, 1e-5) << fast.worst_id << ": closed forms, 4e-7 of the optical depth";
     EXPECT_EQ(fast.honest, fast.compared);
-    const Comparison judged = Compare("transmittance", quantity, column, WithMaxError(1e-8), All);
-    EXPECT_LT(judged.worst, 1e-8 * 10.0)
-        << judged.worst_id << ": the judge, times optical depths to 10";
-    EXPECT_EQ(judged.honest, judged.compared);
+    const Comparison reference = Compare("transmittance", quantity, column, WithMaxError(1e-8), All);
+    EXPECT_LT(reference.worst, 1e-8 * 10.0)
+        << reference.worst_id << ": the reference solution, times optical depths to 10";
+    EXPECT_EQ(reference.honest, reference.compared);
   }
 }
 
@@ -180,12 +180,12 @@ TEST_F(StoredEval, WantedErrorIsKept) {
     const Comparison comparison = Compare("single", "single", "total", WithMaxError(wanted), All);
     EXPECT_LT(comparison.worst, wanted) << comparison.worst_id;
   }
-  // The judge takes a tenth of a second for some; a handful is enough here.
-  const Comparison judged =
+  // The reference solution takes a tenth of a second for some; a handful is enough here.
+  const Comparison reference =
       Compare("single", "single", "total", WithMaxError(1e-7),
               [](const stored::Row& row) { return row.at("tag") == "near the horizon"; });
-  EXPECT_GE(judged.compared, 30);
-  EXPECT_LT(judged.worst, 1e-7) << judged.worst_id;
+  EXPECT_GE(reference.compared, 30);
+  EXPECT_LT(reference.worst, 1e-7) << reference.worst_id;
 }
 
 TEST_F(StoredEval, LightOfAllOrdersAgreesWithPathTracing) {
@@ -303,7 +303,7 @@ TEST_F(Eval, LightOfAllOrdersAgreesWithPathsOverTheSmallestAndTheLargestPlanet) 
          {RayFromAngles(2.0, 40.0, 60.0, 30.0), RayFromAngles(2.0, 85.0, 100.0, 80.0),
           RayFromAngles(2000.0, 110.0, 30.0, 60.0)}) {
       const auto truth =
-          judge::TraceRadiance(medium, ray, {.max_paths = 20000, .relative_error = 2e-3});
+          reference::TraceRadiance(medium, ray, {.max_paths = 20000, .relative_error = 2e-3});
       const Estimates found = evaluator->Evaluate({"", 0, Quantity::kTotal, ray});
       for (std::size_t band = 0; band < found.size(); ++band) {
         EXPECT_NEAR(found[band].value, truth.total[band],
@@ -480,8 +480,8 @@ TEST_F(Eval, ADistanceThatReachesTheGroundAndBeyondLeavesItsLightOut) {
   const auto integral = MakeIntegralEvaluator(medium);
   // A millimetre of the kilometre: a relative 1e-6, and ten times that for the nodes' rounding.
   expect(*integral, 1e-5);
-  const auto judged = MakeIntegralEvaluator(medium, WithMaxError(1e-7));
-  expect(*judged, 1e-5);
+  const auto reference = MakeIntegralEvaluator(medium, WithMaxError(1e-7));
+  expect(*reference, 1e-5);
   // A look-up in stored tables takes the difference of two whole rays: some percent of the first
   // kilometre; the ground's light would be several times the value.
   TableFolder folder = SmallTables(medium);
@@ -657,10 +657,10 @@ TEST_F(Eval, PathsGiveScatteredLightWithOneStandardErrorAndNothingElse) {
                             "air,inscatter_single,1000,130,40,70,\n"
                             "dusk,single,2,80,40,95,\nspace,single,400000,100,40,70,\n";
   const Results traced = Evaluate(cases, *paths);
-  const Results judged = Evaluate(cases, *integral);
+  const Results reference = Evaluate(cases, *integral);
   ASSERT_EQ(traced.size(), 15U);
   for (const auto& [key, estimate] : traced) {
-    const double truth = judged.at(key).value;
+    const double truth = reference.at(key).value;
     EXPECT_NEAR(estimate.value, truth, 4.0 * estimate.error + 1e-5 * truth)
         << key.first << ": four standard errors; six digits are written";
     EXPECT_LE(estimate.error, 0.0031 * truth) << key.first;

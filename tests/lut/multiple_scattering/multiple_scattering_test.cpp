@@ -189,8 +189,8 @@ TEST(DiffuseLight, ExactlySoManyOrdersAreThoseOfPathsOfThatLength) {
     const DiffuseLight light(air, {.exact_orders = orders});
     EXPECT_EQ(light.orders(), orders);
     const Bands<float> more = light.InscatterAlong(samples, ray.nu);
-    const judge::PathTracedRadiance truth =
-        judge::TraceRadiance(air, ray, {.relative_error = 1e-3, .max_order = orders + 1});
+    const reference::PathTracedRadiance truth =
+        reference::TraceRadiance(air, ray, {.relative_error = 1e-3, .max_order = orders + 1});
     for (std::size_t band = 0; band < more.count; ++band) {
       EXPECT_NEAR(static_cast<double>(once[band] + more[band]) / truth.total[band], 1.0, 5e-3)
           << orders << " orders, band " << band << ": 4 standard errors and 0.1 % of the moments";
@@ -290,7 +290,7 @@ TEST(DiffuseLight, AirBeforeALowSunAgreesWithPathTracing) {
 }
 
 // Views that nobody tuned to: the weak places of coarse moments.
-TEST(DiffuseLight, HazeAgreesWithTheJudgeAtLowSunAndInTwilight) {
+TEST(DiffuseLight, HazeAgreesWithTheReferenceAtLowSunAndInTwilight) {
   struct View {
     double altitude_m, zenith_deg, azimuth_deg, sun_deg;
   };
@@ -307,7 +307,7 @@ TEST(DiffuseLight, HazeAgreesWithTheJudgeAtLowSunAndInTwilight) {
     const auto once = air.Inscatter(air.Scatter(samples), ray.nu);
     const auto more = light.InscatterAlong(samples, ray.nu);
     const auto truth =
-        judge::TraceRadiance(medium, ray, {.max_paths = 30000, .relative_error = 0.003});
+        reference::TraceRadiance(medium, ray, {.max_paths = 30000, .relative_error = 0.003});
     for (std::size_t band = 0; band < light.bands(); ++band) {
       const double tolerance = 0.02 * truth.total[band] + 3.0 * truth.standard_error[band];
       EXPECT_NEAR(static_cast<double>(once[band] + more[band]), truth.total[band], tolerance)
@@ -322,12 +322,12 @@ TEST(DiffuseLight, HorizontalSurfacesAtAnyAltitudeAreLitAsByThePathTracer) {
   for (const double altitude_m : {0.0, 3000.0, 12000.0}) {
     for (const double sun_deg : {40.0, 3.0, -5.0}) {
       const double mu_s = std::sin(sun_deg * kRadiansPerDegree);
-      for (const judge::PlaneSide side :
-           {judge::PlaneSide::kFromAbove, judge::PlaneSide::kFromBelow}) {
-        if (altitude_m == 0.0 && side == judge::PlaneSide::kFromBelow) continue;
-        const double up = side == judge::PlaneSide::kFromAbove ? 1.0 : -1.0;
+      for (const reference::PlaneSide side :
+           {reference::PlaneSide::kFromAbove, reference::PlaneSide::kFromBelow}) {
+        if (altitude_m == 0.0 && side == reference::PlaneSide::kFromBelow) continue;
+        const double up = side == reference::PlaneSide::kFromAbove ? 1.0 : -1.0;
         const auto found = light.Irradiance(altitude_m, mu_s, up, 1.0);
-        const auto truth = judge::TraceIrradiance(medium, altitude_m, mu_s, side,
+        const auto truth = reference::TraceIrradiance(medium, altitude_m, mu_s, side,
                                                   {.max_paths = 30000, .relative_error = 0.003});
         for (std::size_t band = 0; band < light.bands(); ++band) {
           const double tolerance = 0.02 * truth.value[band] + 3.0 * truth.standard_error[band];
@@ -505,7 +505,7 @@ TEST(DiffuseLight, APeakNarrowerThanTheDirectionsStillLightsTheGround) {
   const DiffuseLight light(mars);
   for (const double sun_zenith_deg : {20.0, 60.0}) {
     const double mu_s = std::cos(sun_zenith_deg * kRadiansPerDegree);
-    const auto truth = judge::TraceIrradiance(mars, 0.0, mu_s, judge::PlaneSide::kFromAbove,
+    const auto truth = reference::TraceIrradiance(mars, 0.0, mu_s, reference::PlaneSide::kFromAbove,
                                               {.max_paths = 100000, .relative_error = 4e-3});
     const Bands<float> found = light.SkyIrradiance(0.0, mu_s);
     for (std::size_t band = 0; band < found.count; ++band) {

@@ -181,8 +181,8 @@ TEST(PolarisedLight, AgreesWithPathsInDepolarisingAirAndHaze) {
   for (const ViewRay& ray :
        {RayFromAngles(0.0, 70.0, 90.0, 40.0), RayFromAngles(0.0, 40.0, 150.0, 85.0),
         RayFromAngles(9000.0, 120.0, 60.0, 60.0)}) {
-    const judge::PathTracedStokes traced = judge::TraceStokes(
-        medium, judge::ScatteringOf(medium), ray, {.max_paths = 16000, .relative_error = 0.003});
+    const reference::PathTracedStokes traced = reference::TraceStokes(
+        medium, reference::ScatteringOf(medium), ray, {.max_paths = 16000, .relative_error = 0.003});
     for (std::size_t band = 0; band < 2; ++band) {
       const Stokes found = sky.Along(ray, band);
       // Four standard errors and 0.3 %, the bound by day.
@@ -200,7 +200,7 @@ TEST(PolarisedLight, OfAirWithoutMoleculesIsScalarLight) {
   const Sky sky(medium, {});
   for (const double sun_deg : {1.0, 15.0, 40.0}) {
     const ViewRay ray = RayFromAngles(100.0, 80.0, 150.0, sun_deg);
-    const judge::PathTracedRadiance traced = judge::TraceRadiance(
+    const reference::PathTracedRadiance traced = reference::TraceRadiance(
         InScalarLight(medium), ray, {.max_paths = 8000, .relative_error = 0.003});
     const Stokes found = sky.Along(ray, 0);
     // Four standard errors, and 0.5 % of moments to degree 6.

@@ -110,7 +110,7 @@ TEST_F(ReportFiles, AFileWhereTheFolderShouldBeIsAnOutputError) {
 
 TEST(Report, EveryMethodTakesTimeAndTablesTakeMemory) {
   for (const ReportTopic& topic : QuickReport().topics) {
-    EXPECT_GT(topic.judge.time_s, 0.0);
+    EXPECT_GT(topic.reference.time_s, 0.0);
     for (const ReportRow& row : topic.rows) {
       EXPECT_EQ(row.memory_bytes > 0, row.build_s > 0.0) << row.Name();
       EXPECT_EQ(row.memory_bytes > 0, row.series.find("table") != std::string::npos ||
@@ -176,9 +176,9 @@ TEST(Report, MoreEffortIsLessError) {
   }
 }
 
-TEST(Report, NoiseOfTheJudgeIsTakenFromTheErrors) {
-  std::vector<JudgedRay> rays(4);
-  for (JudgedRay& ray : rays) ray = {{}, {2.0}, {0.02}, {}};
+TEST(Report, NoiseOfTheReferenceIsTakenFromTheErrors) {
+  std::vector<ReferenceRay> rays(4);
+  for (ReferenceRay& ray : rays) ray = {{}, {2.0}, {0.02}, {}};
   const auto statistics = [&](double off) {
     return StatisticsOf(rays, ErrorKind::kRelative, {{2.0 + off}, {2.0 - off}, {2.0 + off}, {2.0}});
   };
@@ -191,7 +191,7 @@ TEST(Report, NoiseOfTheJudgeIsTakenFromTheErrors) {
 }
 
 TEST(Report, DarkDirectionsCountAsAPartOfTheZenith) {
-  const std::vector<JudgedRay> rays{{{}, {1e-6}, {}, {1e-3}}};
+  const std::vector<ReferenceRay> rays{{{}, {1e-6}, {}, {1e-3}}};
   const ErrorStatistics errors = StatisticsOf(rays, ErrorKind::kRelative, {{1.1e-5}});
   EXPECT_NEAR(errors.largest, 0.01, 1e-9);
   EXPECT_NEAR(errors.strict_rms, 10.0, 1e-9) << "relative to the direction's own light";
@@ -239,7 +239,7 @@ TEST(ReportRays, FromSpaceTheSunStandsOverTheLowestPointOfTheRay) {
 }
 
 TEST(ReportBaselines, ChapmanApproximationsAreAsGoodAsPublished) {
-  // One exponential of 8 km, as the publications judge themselves; nothing but its height matters.
+  // One exponential of 8 km, as the publications reference solution themselves; nothing but its height matters.
   Medium medium = MediumPreset("earth");
   medium.rayleigh_scale_height_m = 8000.0;
   medium.rayleigh_deficit = {};

@@ -17,7 +17,7 @@
 #include <random>
 
 #include "atmosphere/medium/medium.h"
-#include "atmosphere/reference/judge.h"
+#include "atmosphere/reference/reference_solution.h"
 #include "atmosphere/reference/path_tracer.h"
 #include "atmosphere/base/error.h"
 #include "lut/cli/program.h"
@@ -282,12 +282,12 @@ std::vector<ExchangeTexture>* TakramSet::textures_ = nullptr;
 struct Once {
   Rgba molecules, aerosol;
 };
-Once JudgedOnce(const Medium& air, const Place& place) {
+Once ReferenceOnce(const Medium& air, const Place& place) {
   const ViewRay ray{place.altitude_m, place.mu, place.mu_s, place.nu};
   Medium no_haze_light = air;  // aerosol that takes light, but scatters none
   for (double& k : no_haze_light.mie_scattering_per_m) k = 0.0;
-  const auto all = judge::SingleScatteringAlong(air, ray).inscatter;
-  const auto molecules = judge::SingleScatteringAlong(no_haze_light, ray).inscatter;
+  const auto all = reference::SingleScatteringAlong(air, ray).inscatter;
+  const auto molecules = reference::SingleScatteringAlong(no_haze_light, ray).inscatter;
   const double nu = place.nu, g = 0.8;
   const double pi = std::acos(-1.0);
   const double rayleigh = 3.0 / (16.0 * pi) * (1.0 + nu * nu);
@@ -310,7 +310,7 @@ struct Errors {
   }
 };
 
-TEST_F(TakramSet, LightScatteredOnceIsThatOfTheJudge) {
+TEST_F(TakramSet, LightScatteredOnceIsThatOfTheReference) {
   const Raw scattering = Bin("scattering", 256, 128);
   const Raw higher = Bin("higher_order_scattering", 256, 128);
   const Raw mie = Bin("single_mie_scattering", 256, 128);
@@ -328,7 +328,7 @@ TEST_F(TakramSet, LightScatteredOnceIsThatOfTheJudge) {
     EXPECT_EQ(all[3], haze[0]) << "A is the red of the aerosol";
     EXPECT_EQ(more[3], 0.0);
     EXPECT_EQ(haze[3], 1.0);
-    const Once truth = JudgedOnce(air_, place);
+    const Once truth = ReferenceOnce(air_, place);
     for (std::size_t c = 0; c < 3; ++c) {
       // A half keeps 11 bits down to 6e-5, and steps of 6e-8 below.
       const double step = 6e-8 + all[c] / 2048.0 + more[c] / 2048.0;
@@ -355,8 +355,8 @@ TEST_F(TakramSet, HigherOrdersAreThoseOfPathsOfFourEvents) {
        {std::array{5 * 32 + 26, 80, 2}, {3 * 32 + 20, 100, 8}, {6 * 32 + 29, 115, 0}}) {
     const Place place = PlaceOf(x, y, z, -0.5);
     const ViewRay ray{place.altitude_m, place.mu, place.mu_s, place.nu};
-    const auto paths = judge::TraceRadiance(air_, ray, {.relative_error = 1e-3, .max_order = 4});
-    const auto once = judge::SingleScatteringAlong(air_, ray);
+    const auto paths = reference::TraceRadiance(air_, ray, {.relative_error = 1e-3, .max_order = 4});
+    const auto once = reference::SingleScatteringAlong(air_, ray);
     const Rgba texel = higher.At(static_cast<std::size_t>(x), static_cast<std::size_t>(y),
                                  static_cast<std::size_t>(z));
     const double phase = 3.0 / (16.0 * pi) * (1.0 + place.nu * place.nu);
@@ -375,7 +375,7 @@ TEST_F(TakramSet, IrradianceIsThatOfTheSkyScatteredUpToThreeTimes) {
   for (const auto& [x, y] : {std::array{40, 0}, {33, 3}, {60, 8}}) {
     const double altitude_m = 60000.0 * y / 15.0;
     const double mu_s = 2.0 * x / 63.0 - 1.0;
-    const auto paths = judge::TraceIrradiance(air_, altitude_m, mu_s, judge::PlaneSide::kFromAbove,
+    const auto paths = reference::TraceIrradiance(air_, altitude_m, mu_s, reference::PlaneSide::kFromAbove,
                                               {.relative_error = 2e-3, .max_order = 3});
     const Rgba texel = irradiance.At(static_cast<std::size_t>(x), static_cast<std::size_t>(y), 0);
     EXPECT_EQ(texel[3], 1.0);
@@ -387,7 +387,7 @@ TEST_F(TakramSet, IrradianceIsThatOfTheSkyScatteredUpToThreeTimes) {
   }
 }
 
-TEST_F(TakramSet, TransmittanceIsThatOfTheJudgeToAHalf) {
+TEST_F(TakramSet, TransmittanceIsThatOfTheReferenceToAHalf) {
   const Raw transmittance = Bin("transmittance", 256, 64);
   std::mt19937 random(2);
   for (int i = 0; i < 100; ++i) {
@@ -399,7 +399,7 @@ TEST_F(TakramSet, TransmittanceIsThatOfTheJudgeToAHalf) {
     const double mu = std::clamp(
         CosineOfDistance(d, rho * rho, kHorizon_km * kHorizon_km, r) + (x == 255 ? 1e-12 : 0.0),
         -1.0, 1.0);
-    const auto tau = judge::OpticalDepthAlong(air_, {(r - kPlanet_km) * 1000.0, mu, 1.0, mu});
+    const auto tau = reference::OpticalDepthAlong(air_, {(r - kPlanet_km) * 1000.0, mu, 1.0, mu});
     const Rgba texel =
         transmittance.At(static_cast<std::size_t>(x), static_cast<std::size_t>(y), 0);
     EXPECT_EQ(texel[3], 1.0);

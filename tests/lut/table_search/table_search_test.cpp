@@ -74,7 +74,7 @@ TEST(TableSearch, AnErrorThatNothingReachesIsRefusedWithWhatIsBest) {
 }
 
 /// The promise: other views than those that the search saw are under the bound, too, held against
-/// the judge and, few of them, against paths.
+/// the reference solution and, few of them, against paths.
 class ChosenTables : public TemporaryFolder {
  protected:
   static constexpr std::size_t kUnseen = 100000;
@@ -98,7 +98,7 @@ TEST_P(SmallestTables, AreUnderTheBoundOnViewsThatTheSearchDidNotSee) {
   const TableLookup stored(ReadTableFolder(folder_, MediumHash(medium)));
   EXPECT_EQ(stored.tables().ray_nodes, choice.tables.ray_nodes);
   EXPECT_FALSE(fs::exists(folder_ / kSingleScatteringFileName));
-  const JudgedViews unseen(medium, EarthFinest(), kUnseenViews, kUnseen);
+  const ReferenceViews unseen(medium, EarthFinest(), kUnseenViews, kUnseen);
   for (const TableChoice::Measured& measured : choice.measured) {
     EXPECT_LT(measured.errors.rms, max_error);
     EXPECT_LT(measured.paths.Unexplained(), max_error);
@@ -120,7 +120,7 @@ TEST_F(ChosenTables, AllThreeTogetherAreUnderTheBoundOnUnseenViewsToo) {
   const TableLookup stored(ReadTableFolder(folder_));
   ASSERT_TRUE(stored.tables().transmittance && stored.tables().single_scattering);
   EXPECT_EQ(stored.tables().single_scattering->texels(), choice.tables.single_scattering->texels());
-  const JudgedViews unseen(EarthFinest().medium(), EarthFinest(), kUnseenViews, kUnseen);
+  const ReferenceViews unseen(EarthFinest().medium(), EarthFinest(), kUnseenViews, kUnseen);
   for (const ViewKind kind : kViewKinds) {
     EXPECT_LT(unseen.ErrorsOf(stored, kind).rms, kSampling * kMaxError)
         << NameOf(kind) << ":\n"

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <random>
 
-#include "atmosphere/reference/judge.h"
+#include "atmosphere/reference/reference_solution.h"
 #include "atmosphere/base/error.h"
 #include "lut/cli/program.h"
 #include "tests/lut/tables/table_errors.h"
@@ -111,7 +111,7 @@ void ExpectErrorsBelow(const ScatteringTable& table, const Regime& regime) {
         regime.highest_deg + (regime.lowest_deg - regime.highest_deg) * uniform(random);
     const double view = 180.0 * uniform(random);
     const ViewRay ray = RayFromAngles(12000.0 * u * u, view, 180.0 * uniform(random), sun);
-    const std::vector<double> truth = judge::SingleScatteringAlong(table.medium(), ray).inscatter;
+    const std::vector<double> truth = reference::SingleScatteringAlong(table.medium(), ray).inscatter;
     const Bands<float> value = air.Inscatter(table.Lookup(ray), ray.nu);
     for (std::size_t band = 0; band < value.count; ++band) {
       absolute.Add(value[band], truth[band]);
@@ -122,7 +122,7 @@ void ExpectErrorsBelow(const ScatteringTable& table, const Regime& regime) {
   EXPECT_LT(relative.Quantile(0.5), regime.median) << regime.name;
 }
 
-TEST(ScatteringTable, ErrorAgainstTheJudgeIsBelowTheStatedBounds) {
+TEST(ScatteringTable, ErrorAgainstTheReferenceIsBelowTheStatedBounds) {
   for (const Regime& regime :
        {Regime{"day", 0.0, 85.0, 0.01, 0.0025}, Regime{"sunset", 85.0, 90.0, 0.015, 0.008},
         Regime{"civil twilight", 90.0, 96.0, 0.4, 0.15}}) {

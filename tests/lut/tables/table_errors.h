@@ -8,7 +8,7 @@
 
 namespace alpenglow::lut {
 
-/// Differences between a method and the judge on the same work.
+/// Differences between a method and the reference solution on the same work.
 class ErrorStatistics {
  public:
   void Add(double value, double truth) {

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <random>
 
-#include "atmosphere/reference/judge.h"
+#include "atmosphere/reference/reference_solution.h"
 #include "atmosphere/base/error.h"
 #include "lut/cli/program.h"
 #include "tests/lut/tables/table_errors.h"
@@ -15,8 +15,8 @@
 namespace alpenglow::lut {
 namespace {
 
-double JudgedTransmittance(const Medium& medium, const ViewRay& ray, std::size_t band) {
-  return std::exp(-judge::OpticalDepthAlong(medium, ray).tau[band]);
+double ReferenceTransmittance(const Medium& medium, const ViewRay& ray, std::size_t band) {
+  return std::exp(-reference::OpticalDepthAlong(medium, ray).tau[band]);
 }
 
 bool HitsGround(const Medium& medium, const ViewRay& ray) {
@@ -30,11 +30,11 @@ TEST(TransmittanceTable, TexelsAreTheTransmittanceOfTheirRays) {
   for (std::size_t row = 0; row < 7; ++row) {
     for (std::size_t column = 0; column < 9; ++column) {
       const auto point = table.PointOfTexel(column, row);
-      // The judge calls grazing rays blocked by its own rounding: it gets a nudge up.
+      // The reference solution calls grazing rays blocked by its own rounding: it gets a nudge up.
       const ViewRay ray{point.altitude_m, std::min(point.mu + 1e-12, 1.0), 1.0, 1.0};
       for (std::size_t band = 0; band < bands; ++band) {
         EXPECT_NEAR(table.texels()[(row * 9 + column) * bands + band],
-                    JudgedTransmittance(medium, ray, band), 2e-6)
+                    ReferenceTransmittance(medium, ray, band), 2e-6)
             << "closed form: 4e-7 of an optical depth of order 1, and one rounding to float";
         if (row + 1 < 7) {
           EXPECT_NEAR(table.Lookup(point.altitude_m, ray.mu)[band],
@@ -46,7 +46,7 @@ TEST(TransmittanceTable, TexelsAreTheTransmittanceOfTheirRays) {
   }
 }
 
-TEST(TransmittanceTable, ErrorAgainstTheJudgeIsBelowTheStatedBound) {
+TEST(TransmittanceTable, ErrorAgainstTheReferenceIsBelowTheStatedBound) {
   for (const char* preset : {"earth", "bruneton2017"}) {
     const Medium medium = MediumPreset(preset);
     const TransmittanceTable table(medium);
@@ -62,7 +62,7 @@ TEST(TransmittanceTable, ErrorAgainstTheJudgeIsBelowTheStatedBound) {
       const ViewRay ray{h, horizon + (1.0 - horizon) * v * v + 1e-9, 1.0, 1.0};
       const Bands<float> looked_up = table.Lookup(ray.altitude_m, ray.mu);
       for (std::size_t band = 0; band < looked_up.count; ++band) {
-        errors.Add(looked_up[band], JudgedTransmittance(medium, ray, band));
+        errors.Add(looked_up[band], ReferenceTransmittance(medium, ray, band));
       }
     }
     EXPECT_LT(errors.Max(), 4e-3) << preset << ": the bound in the header";
@@ -86,7 +86,7 @@ TEST(TransmittanceTable, SegmentsAreQuotients) {
       ASSERT_LE(looked_up[band], 1.0F);
       ViewRay beyond = ray;
       beyond.length_m = std::numeric_limits<double>::infinity();
-      const double truth = JudgedTransmittance(medium, ray, band);
+      const double truth = ReferenceTransmittance(medium, ray, band);
       // The way to space in the direction of the quotient: its smallness magnifies the error.
       const bool ground = HitsGround(medium, beyond);
       const double whole =

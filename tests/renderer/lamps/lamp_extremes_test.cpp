@@ -7,7 +7,7 @@
 #include <glm/geometric.hpp>
 #include <vector>
 
-#include "atmosphere/reference/airlight_judge.h"
+#include "atmosphere/reference/airlight_reference.h"
 #include "renderer/lamps/lamp_light.h"
 #include "renderer/picture/render.h"
 #include "tests/fixtures/bare_scene.h"
@@ -102,14 +102,14 @@ struct AirOf {
         .xyz;
   }
   /// The same by quadrature.
-  [[nodiscard]] double ByTheJudge(const glm::dvec3& direction) const {
+  [[nodiscard]] double ByTheReference(const glm::dvec3& direction) const {
     Lamp lamp;
     lamp.position_m = Place();
     lamp.radius_m = scene.lights[0].radius_m;
     LampAir fog = HomogeneousAir(0.01, 0.01, scene.fog->phase);
     fog.layers[0].scale_height_m = 30.0;
     const LampSegment segment{{0.0, 0.0, kEyeHeight_m}, direction, 0.0, 100.0};
-    return *scene.lights[0].intensity_cd * judge::AirlightAlong(fog, lamp, segment).radiance[0];
+    return *scene.lights[0].intensity_cd * reference::AirlightAlong(fog, lamp, segment).radiance[0];
   }
 
   Scene scene;
@@ -129,7 +129,7 @@ TEST(LampExtremes, ARayThroughALampAndOneAMillimetreBesideItAreFiniteAndRight) {
     const glm::dvec3 direction = glm::normalize(offset + glm::dvec3(beside_m, 0.0, 0.0));
     const double found = air.Along(direction);
     EXPECT_TRUE(std::isfinite(found)) << beside_m;
-    EXPECT_NEAR(found / air.ByTheJudge(direction), 1.0, 2e-3) << beside_m << " m; 32 nodes a panel";
+    EXPECT_NEAR(found / air.ByTheReference(direction), 1.0, 2e-3) << beside_m << " m; 32 nodes a panel";
   }
   EXPECT_GT(BrightestOf(Picture(scene)), 0.0) << "the lamp stands in the middle of the picture";
 }
@@ -142,7 +142,7 @@ TEST(LampExtremes, ALampBehindTheEyeIsNotSeenAndLightsTheFogBeforeIt) {
     const AirOf air(scene);
     const glm::dvec3 north(0.0, 1.0, 0.0);
     const double fog = air.Along(north);
-    EXPECT_NEAR(fog / air.ByTheJudge(north), 1.0, 2e-3) << behind_m << " m; 32 nodes a panel";
+    EXPECT_NEAR(fog / air.ByTheReference(north), 1.0, 2e-3) << behind_m << " m; 32 nodes a panel";
     // What is seen is that fog, no lamp: as bright as at the ray in the middle, give and take the
     // lobe of the fog.
     const double brightest = BrightestOf(Picture(scene));
@@ -175,7 +175,7 @@ TEST(LampExtremes, FogOverAHighBaseIsLitAsTheSameFogOverTheGround) {
     const glm::dvec3 direction = glm::normalize(glm::dvec3(0.1, 1.0, fall));
     const LampSegment segment{{0.0, 0.0, kEyeHeight_m}, direction, 0.0, 50.0};
     const LampRayEnd end{direction, 50.0};
-    const double truth = 100.0 * judge::AirlightAlong(fog, lamp, segment).radiance[0];
+    const double truth = 100.0 * reference::AirlightAlong(fog, lamp, segment).radiance[0];
     const Bands<float> bands = air.light.InAir(air.light.All(), end, 0.0, 32);
     const std::vector<double> values(
         bands.value.begin(), bands.value.begin() + static_cast<std::ptrdiff_t>(bands.count));

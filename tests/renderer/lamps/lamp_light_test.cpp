@@ -8,7 +8,7 @@
 #include <glm/geometric.hpp>
 #include <limits>
 
-#include "atmosphere/reference/airlight_judge.h"
+#include "atmosphere/reference/airlight_reference.h"
 #include "atmosphere/math/constants.h"
 #include "atmosphere/base/error.h"
 #include "renderer/lamps/placed_lamp.h"
@@ -119,7 +119,7 @@ TEST(LampLight, TheTemperatureColoursAndTheCandelaStays) {
   EXPECT_NEAR(colours[1][0] / colours[1][2], 1.0, 0.15) << "6500 K is white";
 }
 
-TEST(LampLight, LightInFogIsThatOfTheJudge) {
+TEST(LampLight, LightInFogIsThatOfTheReference) {
   Scene scene = NightScene();
   AddFog(scene, 0.01, 30.0);
   scene.lights = {LightAt(300.0, 10.0, 5.0, 1000.0)};
@@ -133,10 +133,10 @@ TEST(LampLight, LightInFogIsThatOfTheJudge) {
        {glm::dvec3(0.0, 1.0, -0.1), glm::dvec3(0.1, 1.0, 0.0), glm::dvec3(0.0, 1.0, -0.2)}) {
     LampRayEnd ray{glm::normalize(towards), 350.0};
     LampSegment segment{kEye, ray.direction, 0.0, ray.length_m};
-    const double expected = 1000.0 * judge::AirlightAlong(fog, lamp, segment).radiance[0];
+    const double expected = 1000.0 * reference::AirlightAlong(fog, lamp, segment).radiance[0];
     const double found = stage.Luminance(stage.light.InAir(stage.light.All(), ray, 0.0, 16));
     EXPECT_NEAR(found / expected, 1.0, 0.02)
-        << "molecules and aerosol, which the judge's fog does not have, add and take 1 per cent";
+        << "molecules and aerosol, which the reference solution's fog does not have, add and take 1 per cent";
   }
 }
 

@@ -94,12 +94,12 @@ TEST(MarchMedia, FogToTheHorizonIsOneMinusItsTransmittance) {
 }
 
 /// Front to back in steps so small that nothing can be wrong with them.
-struct Judged {
+struct ReferenceLight {
   double radiance = 0.0, transmittance = 1.0;
 };
-Judged Judge(const LocalMedia& media, const glm::dvec3& from, const glm::dvec3& way, double begin,
+ReferenceLight Reference(const LocalMedia& media, const glm::dvec3& from, const glm::dvec3& way, double begin,
              double end, int steps, const std::function<double(const glm::dvec3&)>& source) {
-  Judged judged;
+  ReferenceLight reference;
   const double step = (end - begin) / steps;
   for (int i = 0; i < steps; ++i) {
     const glm::dvec3 point = from + (begin + (i + 0.5) * step) * way;
@@ -108,10 +108,10 @@ Judged Judge(const LocalMedia& media, const glm::dvec3& from, const glm::dvec3& 
       per_m += medium.DensityAt(point) * medium.optics.extinction_per_m[0];
     }
     const double left = std::exp(-per_m * step);
-    judged.radiance += judged.transmittance * (1.0 - left) * source(point);
-    judged.transmittance *= left;
+    reference.radiance += reference.transmittance * (1.0 - left) * source(point);
+    reference.transmittance *= left;
   }
-  return judged;
+  return reference;
 }
 
 // Light with a shadow's edge in it, as bodies and terrain cast them.
@@ -138,12 +138,12 @@ TEST(MarchMedia, KeepsItsToleranceAgainstFineMidpointSums) {
     };
     for (int i = 0; i < 12; ++i) {
       const glm::dvec3 way = glm::normalize(glm::dvec3(0.02 * i - 0.1, 1.0, 0.13 - 0.025 * i));
-      const Judged judged = Judge(media, glm::dvec3(0.0), way, 0.0, 200.0, 160000, Striped);
+      const ReferenceLight reference = Reference(media, glm::dvec3(0.0), way, 0.0, 200.0, 160000, Striped);
       const MarchedLight light = MarchMedia(media, glm::dvec3(0.0), way, 200.0, source);
       worst =
-          std::max(worst, std::abs(static_cast<double>(light.radiance[0]) / judged.radiance - 1.0));
+          std::max(worst, std::abs(static_cast<double>(light.radiance[0]) / reference.radiance - 1.0));
       worst = std::max(
-          worst, std::abs(static_cast<double>(light.transmittance[0]) - judged.transmittance));
+          worst, std::abs(static_cast<double>(light.transmittance[0]) - reference.transmittance));
       worst_estimate = std::max(worst_estimate, light.error);
     }
   }

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "atmosphere/reference/judge.h"
+#include "atmosphere/reference/reference_solution.h"
 #include "atmosphere/refraction/bent_view.h"
 #include "atmosphere/astronomy/moon.h"
 #include "atmosphere/astronomy/night_sky.h"
@@ -22,7 +22,7 @@ constexpr double kTolerance = 0.1 * kArcminute;
 
 /// Where what is seen at an apparent elevation truly stands.
 double TrueElevation(const Medium& medium, double apparent_rad, double height_m) {
-  const judge::RayEquation equation(medium, judge::PeckAndReeder(kHorizonWavelength_nm));
+  const reference::RayEquation equation(medium, reference::PeckAndReeder(kHorizonWavelength_nm));
   return apparent_rad - equation.Follow(apparent_rad, height_m).refraction_rad;
 }
 

@@ -8,7 +8,7 @@
 #include <filesystem>
 
 #include "atmosphere/colour/spectrum.h"
-#include "atmosphere/reference/judge.h"
+#include "atmosphere/reference/reference_solution.h"
 #include "atmosphere/math/constants.h"
 #include "atmosphere/refraction/bent_view.h"
 #include "atmosphere/base/error.h"
@@ -28,7 +28,7 @@ const RenderSettings kSmall{
 
 using tests::Luminance;
 
-TEST(Render, SkyPixelIsSingleScatteringOfTheJudgePlusDiffuseLight) {
+TEST(Render, SkyPixelIsSingleScatteringOfTheReferencePlusDiffuseLight) {
   const SceneRenderer renderer(BareScene(1000.0, 180.0, 20.0, 40.0));
   const UtcInstant noon = ParseInstant("2026-06-21T10:00:00Z");
   const Image image = renderer.Render(noon, kSmall);
@@ -42,7 +42,7 @@ TEST(Render, SkyPixelIsSingleScatteringOfTheJudgePlusDiffuseLight) {
   for (const int x : {0, 8, 15}) {
     const glm::dvec3 d = camera.Direction(x + 0.5, 4.5);
     const ViewRay ray{1000.0, d.z, to_sun.z, d.x * to_sun.x + d.y * to_sun.y + d.z * to_sun.z};
-    const auto once = judge::SingleScatteringAlong(medium, ray);
+    const auto once = reference::SingleScatteringAlong(medium, ray);
     const auto more =
         diffuse.InscatterAlong(air.Sample(ray, {.nodes = 16, .dark_samples = true}), ray.nu);
     std::vector<double> radiance;

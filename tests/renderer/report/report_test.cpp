@@ -75,7 +75,7 @@ TEST_F(PictureReportFiles, LinesHaveAllColumnsAndEveryNumberIsOne) {
       auto value = ValuesByName(header, cells);
       for (const char* name :
            {"memory_bytes", "build_s", "rays", "samples", "time_s", "time_spread", "error_median",
-            "error_rms", "error_99", "error_max", "judge_noise"}) {
+            "error_rms", "error_99", "error_max", "reference_noise"}) {
         const double number = std::stod(value[name]);
         EXPECT_TRUE(std::isfinite(number) && number >= 0.0) << name << " in " << line;
       }
@@ -134,7 +134,7 @@ TEST(PictureReport, SamplesOfAirlightCountThoseThatOnlyLook) {
   for (const RegimeResult& at : row.at) EXPECT_GT(at.samples, 16.0);
 }
 
-TEST(LampWorks, RulesAgreeWithTheJudgeWhenTheyTakeManyPoints) {
+TEST(LampWorks, RulesAgreeWithTheReferenceWhenTheyTakeManyPoints) {
   for (int i = 1; i <= 40; ++i) {
     const LampWork work = LampWorkNumber(i, {.g = 0.5});
     EXPECT_NEAR(AirlightByRule(LampRule::kEquiAngular, work, 20000) / work.truth, 1.0, 1e-4);

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 
-#include "atmosphere/reference/judge.h"
+#include "atmosphere/reference/reference_solution.h"
 #include "atmosphere/refraction/bent_view.h"
 
 namespace alpenglow::renderer {
@@ -19,7 +19,7 @@ const glm::dvec3 kUp(0.0, 0.0, 1.0);
 TEST(BentFan, PlacesOnRaysAreThoseOfTheEquationAtEveryHeight) {
   const Medium medium = MediumPreset("earth");
   const double radius_m = medium.planet_radius_m;
-  const judge::RayEquation equation(medium, judge::PeckAndReeder(kHorizonWavelength_nm));
+  const reference::RayEquation equation(medium, reference::PeckAndReeder(kHorizonWavelength_nm));
   const BendingAir air = BendingAirOf(medium, kHorizonWavelength_nm);
   for (const double height_m : {2.0, 1000.0, 3000.0, 12e3, 110e3, 400e3}) {
     const glm::dvec3 eye(0.0, 0.0, height_m);

@@ -12,7 +12,7 @@
 #include "atmosphere/colour/spectrum.h"
 #include "atmosphere/math/constants.h"
 #include "atmosphere/base/error.h"
-#include "tests/viewer/air/air_judge.h"
+#include "tests/viewer/air/air_reference.h"
 #include "tests/viewer/shaders/headless.h"
 
 namespace alpenglow::viewer {
@@ -110,7 +110,7 @@ double ErrorOfOld(const AirEye& made, const AirEye& now) {
   const AirTables old = MakeAirTables(air.air, air.diffuse, medium, made, size);
   const AirMap map(air.medium, now.altitude_m, now.ceiling_m,
                    static_cast<double>(air.diffuse.grid().twilight_fall));
-  return tests::SkyErrors(tests::AirJudge(air, now), tests::AirReading(old, medium, now), map, 200)
+  return tests::SkyErrors(tests::AirReference(air, now), tests::AirReading(old, medium, now), map, 200)
       .Rms();
 }
 

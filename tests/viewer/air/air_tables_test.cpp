@@ -9,7 +9,7 @@
 
 #include "atmosphere/colour/spectrum.h"
 #include "atmosphere/base/error.h"
-#include "tests/viewer/air/air_judge.h"
+#include "tests/viewer/air/air_reference.h"
 #include "viewer/gl/gl_objects.h"
 
 namespace alpenglow::viewer {
@@ -43,14 +43,14 @@ void ExpectErrorsBelow(const tests::LitAir& air, const AirEye& eye, AirQuality q
   const MediumTables medium = MakeMediumTables(air.air, air.beam);
   const AirTables tables = TablesOf(air, eye, quality);
   const tests::AirReading reading(tables, medium);
-  const tests::AirJudge judge(air, eye);
+  const tests::AirReference reference(air, eye);
   const auto expect = [](const tests::AirErrors& errors, double bound, const char* what) {
     EXPECT_LT(errors.Rms(), bound) << what << ": a third more than measured";
     EXPECT_LT(errors.Percentile(99.0), 5.0 * bound) << what;
   };
-  expect(tests::SkyErrors(judge, reading, tables.map, kRays), bounds.sky, "sky");
-  expect(tests::WayErrors(judge, reading, tables.map, kRays), bounds.ways, "ways");
-  expect(tests::TransmittanceErrors(judge, reading, tables.map, kRays), bounds.transmittance,
+  expect(tests::SkyErrors(reference, reading, tables.map, kRays), bounds.sky, "sky");
+  expect(tests::WayErrors(reference, reading, tables.map, kRays), bounds.ways, "ways");
+  expect(tests::TransmittanceErrors(reference, reading, tables.map, kRays), bounds.transmittance,
          "transmittance");
 }
 
@@ -74,7 +74,7 @@ TEST(AirTables, HaveTheAureoleWhereTheSunIsSeen) {
   AirEye eye = EyeUnder(2500.0, -1.8);
   eye.lower_for_air_rad = 0.5 * kRadiansPerDegree;
   const MediumTables medium = MakeMediumTables(tests::Earth().air, tests::Earth().beam);
-  const tests::AirJudge judge(tests::Earth(), eye);
+  const tests::AirReference reference(tests::Earth(), eye);
   // Largest error of the sky within two degrees of the sun and of the horizon.
   const auto worst_of = [&](const AirTables& tables) {
     const tests::AirReading reading(tables, medium, eye);
@@ -83,7 +83,7 @@ TEST(AirTables, HaveTheAureoleWhereTheSunIsSeen) {
       for (const double azimuth_deg : {0.0, 0.3, 0.8, 2.0}) {
         const double angle = angle_deg * kRadiansPerDegree,
                      azimuth = azimuth_deg * kRadiansPerDegree;
-        const Bands<double> exact = judge.Sky(tables.map, angle, azimuth);
+        const Bands<double> exact = reference.Sky(tables.map, angle, azimuth);
         const glm::dvec4 read = reading.Sky(angle, azimuth);
         for (std::size_t band = 0; band < exact.count; ++band)
           worst =
@@ -131,14 +131,14 @@ TEST(AirTables, HaveAnAureoleAsSharpAsThePhaseFunction) {
   const MediumTables medium = MakeMediumTables(dusty.air, dusty.beam);
   const AirTables tables = TablesOf(dusty, eye, AirQuality::kLow);
   const tests::AirReading reading(tables, medium);
-  const tests::AirJudge judge(dusty, eye);
+  const tests::AirReference reference(dusty, eye);
   const double sun = std::asin(eye.mu_s) + tables.map.horizon_dip;
   for (int i = 1; i <= 60; ++i) {
     const double from_sun = kRadiansPerDegree * (0.27 + 10.0 * Halton(i, 2) * Halton(i, 2));
     const double turn = kPi * Halton(i, 3);
     const double angle = sun + from_sun * std::cos(turn);
     const double azimuth = from_sun * std::sin(turn) / std::cos(angle - tables.map.horizon_dip);
-    const Bands<double> exact = judge.Sky(tables.map, angle, azimuth);
+    const Bands<double> exact = reference.Sky(tables.map, angle, azimuth);
     const glm::dvec4 read = reading.Sky(angle, azimuth);
     for (std::size_t band = 0; band < exact.count; ++band) {
       EXPECT_NEAR(read[static_cast<glm::length_t>(band)] / exact[band], 1.0, 1.2e-2)

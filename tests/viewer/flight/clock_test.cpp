@@ -119,7 +119,7 @@ TEST(Clock, NoDayIsPassedOverOnTheWayToTheNextEvent) {
         Case{-67.0, 3000.0, "2026-12-25T12:00:00Z"}, Case{0.0, 0.0, "2026-12-25T12:00:00Z"}}) {
     const GeodeticPosition place = PlaceFromDegrees(latitude, 15.0, height_m);
     SceneClock clock = ClockAt(start);
-    // The judge searches every day.
+    // The reference solution searches every day.
     std::optional<UtcInstant> expected;
     for (int day = 0; !expected && day < 60; ++day) {
       expected = FindSunEvent(SunEvent::kSunset, place, AddSeconds(clock.now(), day * 86400.0));

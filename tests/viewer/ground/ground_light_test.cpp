@@ -204,11 +204,11 @@ std::vector<double> Differences(const LitGround& lit, const Lighting& light, dou
   std::vector<double> differences;
   for (std::size_t i = 0; i < cases.size(); ++i) {
     const GroundLight& ground = lit.site().light();
-    const NaturalRadiance judge = ground.Natural(
+    const NaturalRadiance reference = ground.Natural(
         ground.SeenFrom(cases[i].hit, cases[i].to_eye, light), {light, nullptr}, {0.0, 0.0});
     double sum = 0.0;
     for (const std::size_t band : {0U, 2U}) {
-      sum += static_cast<double>(judge.radiance[band]) /
+      sum += static_cast<double>(reference.radiance[band]) /
              static_cast<double>(lit.lighting().irradiance[band]);
     }
     differences.push_back(std::abs(static_cast<double>(gpu[i]) / sum - 1.0));
@@ -381,7 +381,7 @@ TEST_F(GroundOnGpu, ThePlanetBeyondIsTheRenderers) {
         EXPECT_LT(LightQuantile(differences, 0.5), elevation_deg > 0.0 ? 0.01 : 0.06)
             << elevation_deg << " " << eye_m;
         EXPECT_LT(LightQuantile(differences, 0.98), elevation_deg > 0.0 ? 0.07 : 0.12)
-            << "the judge's sky is linear between sectors of 22.5 degrees, and in twilight between "
+            << "the reference solution's sky is linear between sectors of 22.5 degrees, and in twilight between "
                "suns a degree apart";
       }
     }

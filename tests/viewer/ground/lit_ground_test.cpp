@@ -152,18 +152,18 @@ TEST(LitGround, VerticesInAFrameFarAwayAreTheSameVertices) {
   };
   const TriangleMesh& mesh = TheSite()->ground().terrain->mesh();
   std::vector<Framed> framed;
-  std::vector<LitVertex> judge;
+  std::vector<LitVertex> reference;
   for (std::size_t i = 0; i < mesh.positions.size(); i += 101) {
-    judge.push_back(lit.At(TheSite()->Vertex(mesh.positions[i], mesh.normals[i])));
+    reference.push_back(lit.At(TheSite()->Vertex(mesh.positions[i], mesh.normals[i])));
     const Point<Ecef> point = here.EcefFromEnu(Point<Enu>{InDoubles(mesh.positions[i])});
     const Vector<Ecef> normal = here.EcefFromEnu(Vector<Enu>{InDoubles(mesh.normals[i])});
     framed.push_back({there.EnuFromEcef(point).xyz, there.EnuFromEcef(normal).xyz});
   }
   const std::vector<LitVertex> light = lit.LightIn<Framed>(there, framed);
-  for (std::size_t i = 0; i < judge.size(); ++i) {
-    EXPECT_NEAR(light[i].sky[1] / judge[i].sky[1], 1.0F, 2e-3F) << "4 mm, in steps of altitude";
-    if (std::abs(judge[i].sun_x) > 4.0F) continue;
-    EXPECT_NEAR(light[i].sun_x, judge[i].sun_x, 0.3F);
+  for (std::size_t i = 0; i < reference.size(); ++i) {
+    EXPECT_NEAR(light[i].sky[1] / reference[i].sky[1], 1.0F, 2e-3F) << "4 mm, in steps of altitude";
+    if (std::abs(reference[i].sun_x) > 4.0F) continue;
+    EXPECT_NEAR(light[i].sun_x, reference[i].sun_x, 0.3F);
   }
 }
 

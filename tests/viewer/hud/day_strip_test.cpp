@@ -44,7 +44,7 @@ TEST(DayStrip, NoonIsBlueMidnightBlackAndDuskRedBelow) {
   EXPECT_GT(dusk[0], 1.3F * dusk[2]) << "the horizon under which the sun has gone";
 }
 
-// The judge: the table of the sky, and a day's exposure from its definition.
+// The reference solution: the table of the sky, and a day's exposure from its definition.
 TEST(DayStrip, ColoursAreThoseOfTheSky) {
   const DayStripRequest request = Alps();
   const DayStrip strip = MakeDayStrip(request);

@@ -416,12 +416,12 @@ TEST_F(LandscapePictures, WhatIsSettledDoesNotDependOnWhereTheEyeWasBefore) {
     SCOPED_TRACE(height_m);
     const LookOut eye{PlaceOfSample(200.3, 91.7, height_m), 2.8, -0.3};
     Landscape fresh(Folder(), {96.0}, kWgs84), flown(Folder(), {96.0}, kWgs84);
-    const auto judge = Settled(fresh, eye);
+    const auto reference = Settled(fresh, eye);
     LookOut higher = eye;
     higher.place.height_m += 100.0 * (i % 3);
     flown.Settle(higher.place, higher.View());
-    EXPECT_EQ(Settled(flown, eye), judge);
-    EXPECT_EQ(Settled(flown, eye), judge) << "nor on how often that is asked";
+    EXPECT_EQ(Settled(flown, eye), reference);
+    EXPECT_EQ(Settled(flown, eye), reference) << "nor on how often that is asked";
   }
 }
 

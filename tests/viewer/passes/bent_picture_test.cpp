@@ -38,7 +38,7 @@ Image Painted(const Scene& scene, const PaintedView& view) {
 
 using BentOnCard = tests::Headless;
 
-TEST_F(BentOnCard, LandIsDisplacedAsByTheFormulaThatIsJudged) {
+TEST_F(BentOnCard, LandIsDisplacedAsByTheFormulaThatIsReference) {
   const double eye_m = 3000.0;
   const LandBend bend = LandBendOf(GentleAirOf(MediumPreset("earth")), eye_m);
   const auto vec4_of = [](double x, double y, double z, double w) {
@@ -135,14 +135,14 @@ TEST_F(BentOnCard, ASettingSunAndTheSeaStandWhereTheRenderersDo) {
                           .filter = PixelFilter::Kind::kBox,
                           .air_nodes = 8,
                           .layers = {}};
-  const Image judge = SceneRenderer(scene).Render(now, settings);
+  const Image reference = SceneRenderer(scene).Render(now, settings);
   const auto luminance = [](const Image& picture, int x, int y) {
     const auto& rgb = picture.at(x, y);
     return shared::Luminance(rgb[0], rgb[1], rgb[2]);
   };
   float brightest = 0.0F;
   for (int y = 0; y < kDown; ++y)
-    for (int x = 0; x < kAcross; ++x) brightest = std::max(brightest, luminance(judge, x, y));
+    for (int x = 0; x < kAcross; ++x) brightest = std::max(brightest, luminance(reference, x, y));
   // Half of what the lower limb, dimmed by the air, has of the brightest.
   const auto is_sun = [&](const Image& picture, int x, int y) {
     return luminance(picture, x, y) > 0.2F * brightest;
@@ -150,7 +150,7 @@ TEST_F(BentOnCard, ASettingSunAndTheSeaStandWhereTheRenderersDo) {
   int in_both = 0, in_one = 0;
   for (int y = 0; y < kDown; ++y) {
     for (int x = 0; x < kAcross; ++x) {
-      const bool a = is_sun(painted, x, y), b = is_sun(judge, x, y);
+      const bool a = is_sun(painted, x, y), b = is_sun(reference, x, y);
       in_both += a && b ? 1 : 0;
       in_one += a != b ? 1 : 0;
     }

@@ -45,15 +45,15 @@ TEST_F(DeveloperTest, EveryToneCurveIsThatOfTheRendererWithinOneCode) {
                                 ToneCurve::kPbrNeutral, ToneCurve::kLinear}) {
     developer.Use(Look{.curve = curve});
     developer.Develop(picture, ev100, {screen.framebuffer(), kFrameWidth, kFrameHeight});
-    const DisplayImage judge = Develop(image, ev100, curve);
+    const DisplayImage reference = Develop(image, ev100, curve);
     const Image codes = screen.Read();
     int off_by_one = 0;
     for (std::size_t i = 0; i < codes.rgb.size(); ++i) {
       for (std::size_t c = 0; c < 3; ++c) {
         const int code = static_cast<int>(std::lround(codes.rgb[i][c] * 255.0F));
-        ASSERT_LE(std::abs(code - judge.rgb[3 * i + c]), 1)
+        ASSERT_LE(std::abs(code - reference.rgb[3 * i + c]), 1)
             << "curve " << static_cast<int>(curve) << ", pixel " << i << ", channel " << c;
-        if (code != judge.rgb[3 * i + c]) ++off_by_one;
+        if (code != reference.rgb[3 * i + c]) ++off_by_one;
       }
     }
     EXPECT_LT(off_by_one, kFrameWidth * kFrameHeight * 3 / 10)
@@ -67,15 +67,15 @@ TEST_F(DeveloperTest, ADraftIsAFewCodesOffAndThenExact) {
   const RenderTarget picture(kFrameWidth, kFrameHeight, RenderTarget::Depth::kNone);
   picture.Write(image);
   const RenderTarget screen(kFrameWidth, kFrameHeight, RenderTarget::Depth::kNone);
-  const DisplayImage judge = Develop(image, ev100, ToneCurve::kAgx);
+  const DisplayImage reference = Develop(image, ev100, ToneCurve::kAgx);
   const Developer developer(Look{}, Developer::FirstPictures::kDraft);
   const auto most_off = [&] {
     developer.Develop(picture, ev100, {screen.framebuffer(), kFrameWidth, kFrameHeight});
     const Image codes = screen.Read();
     int most = 0;
-    for (std::size_t i = 0; i < judge.rgb.size(); ++i) {
+    for (std::size_t i = 0; i < reference.rgb.size(); ++i) {
       const int code = static_cast<int>(std::lround(codes.rgb[i / 3][i % 3] * 255.0F));
-      most = std::max(most, std::abs(code - judge.rgb[i]));
+      most = std::max(most, std::abs(code - reference.rgb[i]));
     }
     return most;
   };
@@ -98,9 +98,9 @@ TEST_F(DeveloperTest, LooksAndWhiteBalanceAreThoseOfTheRendererWithinOneCode) {
     look.white = {WhiteBalance::Kind::kKelvin, 4000.0};
     developer.Use(look);
     developer.Develop(picture, 13.0, {screen.framebuffer(), kFrameWidth, kFrameHeight});
-    const DisplayImage judge = Develop(Seen(image, look), 13.0, look), shown = screen.ReadBytes();
-    for (std::size_t i = 0; i < judge.rgb.size(); ++i)
-      ASSERT_NEAR(shown.rgb[i], judge.rgb[i], 1) << NameOf(agx) << ", byte " << i;
+    const DisplayImage reference = Develop(Seen(image, look), 13.0, look), shown = screen.ReadBytes();
+    for (std::size_t i = 0; i < reference.rgb.size(); ++i)
+      ASSERT_NEAR(shown.rgb[i], reference.rgb[i], 1) << NameOf(agx) << ", byte " << i;
   }
 }
 
@@ -113,9 +113,9 @@ TEST_F(DeveloperTest, APictureOfAnotherSizeFillsTheScreen) {
   Developer(Look{}).Develop(picture, 12.0, {screen.framebuffer(), kFrameWidth, kFrameHeight});
   Image even(kFrameWidth, kFrameHeight);
   for (auto& pixel : even.rgb) pixel = image.rgb[0];
-  const DisplayImage judge = Develop(even, 12.0, ToneCurve::kAgx), shown = screen.ReadBytes();
-  for (std::size_t i = 0; i < judge.rgb.size(); ++i)
-    ASSERT_NEAR(shown.rgb[i], judge.rgb[i], 1) << "byte " << i;
+  const DisplayImage reference = Develop(even, 12.0, ToneCurve::kAgx), shown = screen.ReadBytes();
+  for (std::size_t i = 0; i < reference.rgb.size(); ++i)
+    ASSERT_NEAR(shown.rgb[i], reference.rgb[i], 1) << "byte " << i;
 }
 
 using ExposureMeterTest = tests::Headless;

@@ -34,11 +34,11 @@ TEST(NightFloor, BetweenTexelsTheSkyIsThatOfTheRenderer) {
   const Medium medium = MediumPreset("earth");
   const BandColour colour(medium.wavelengths_nm);
   const NightFloor floor = NightFloorOver(eye, now, medium, colour);
-  const NightLight judge(NightSky(eye, now),
+  const NightLight reference(NightSky(eye, now),
                          AirIntegrator<float>(OnOsculatingSphere(medium, eye.latitude_rad)), colour,
                          {0.0, 0.0, 1.0}, eye.height_m);
-  EXPECT_EQ(floor.scattered.x, judge.scattered()[0]);
-  EXPECT_EQ(floor.level.x, judge.OnSurface(1.0)[0]);
+  EXPECT_EQ(floor.scattered.x, reference.scattered()[0]);
+  EXPECT_EQ(floor.level.x, reference.OnSurface(1.0)[0]);
   double sum = 0.0;
   int count = 0;
   for (int row = NightFloor::kRows / 2; row + 1 < NightFloor::kRows; row += 3) {
@@ -51,7 +51,7 @@ TEST(NightFloor, BetweenTexelsTheSkyIsThatOfTheRenderer) {
       const double elevation = kPi * ((row + 1.0) / NightFloor::kRows - 0.5);
       const double azimuth = 2.0 * kPi * (column + 1.0) / NightFloor::kColumns;
       const auto is =
-          static_cast<double>(judge.Above(DirectionFromAngles(elevation, azimuth).xyz)[1]);
+          static_cast<double>(reference.Above(DirectionFromAngles(elevation, azimuth).xyz)[1]);
       EXPECT_NEAR(between, is, 0.08 * is) << "the lane of dust has edges within a texel";
       sum += std::abs(between / is - 1.0);
       ++count;

@@ -45,10 +45,10 @@ TEST(PaintedView, RowsOfThePlanetHoldAllItsRaysAndLittleElse) {
     for (const double pitch_deg : {-90.0, -40.0, -3.0, 0.0, 20.0, 70.0}) {
       for (const double roll_deg : {0.0, 30.0, 90.0, 180.0}) {
         const PaintedView view = ViewFrom(height_m, pitch_deg, roll_deg);
-        const int judge = RowsByRays(view), rows = RowsOfPlanet(view, kRadius_km);
-        EXPECT_GE(rows, judge) << height_m << " m, " << pitch_deg << ", " << roll_deg;
+        const int reference = RowsByRays(view), rows = RowsOfPlanet(view, kRadius_km);
+        EXPECT_GE(rows, reference) << height_m << " m, " << pitch_deg << ", " << roll_deg;
         // A row to spare, and what places between those asked add.
-        EXPECT_LE(rows, judge + 3) << height_m << " m, " << pitch_deg << ", " << roll_deg;
+        EXPECT_LE(rows, reference + 3) << height_m << " m, " << pitch_deg << ", " << roll_deg;
       }
     }
   }

@@ -34,7 +34,7 @@ constexpr double kPixelWidth = static_cast<double>(kViewWidth) / kScaled.width;
 // Rays of both fall on different places of rough ground: the fewer, the farther they are apart.
 constexpr int kSamples = 32;
 
-RenderSettings JudgeSettings(const PictureSize& size) {
+RenderSettings ReferenceSettings(const PictureSize& size) {
   RenderSettings settings;
   settings.width = size.width;
   settings.height = size.height;
@@ -58,7 +58,7 @@ class BothPrograms {
   explicit BothPrograms(const Scene& scene, const UtcInstant& first, PictureSize size = kScaled)
       : size_(size),
         ground_(std::make_shared<const SceneGround>(LoadGround(scene))),
-        judge_(scene, ground_),
+        reference_(scene, ground_),
         painter_(scene, LandSourceOf(scene), ViewOf(scene, ground_->eye_height_m, first, size),
                  SizesOf(Quality::kHigh)) {}
 
@@ -69,7 +69,7 @@ class BothPrograms {
     shot.poses = {PoseOf(view.eye)};
     painter_.Settle(view, kSamples);
     painter_.Paint(view, kSamples);
-    return DifferenceOf(judge_.Render(shot, JudgeSettings(size_)), painter_.picture().Read());
+    return DifferenceOf(reference_.Render(shot, ReferenceSettings(size_)), painter_.picture().Read());
   }
   ViewDifference Difference(const ParityView& view) {
     return Difference(ViewOf(view.scene, ground_->eye_height_m, view.instant));
@@ -78,7 +78,7 @@ class BothPrograms {
  private:
   PictureSize size_;
   std::shared_ptr<const SceneGround> ground_;
-  SceneRenderer judge_;
+  SceneRenderer reference_;
   SkyPainter painter_;
 };
 

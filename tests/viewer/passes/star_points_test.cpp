@@ -53,7 +53,7 @@ TEST(StarPoints, PixelsAreThoseOfTheRendererWithItsRadianceAtEverySize) {
   const std::vector<StarLight> lights{StarAt(20.0, 150.0, 1e-6), StarAt(31.3, 128.7, 2e-6),
                                       StarAt(9.1, 172.4, 5e-7)};
   for (const auto& [width, height] : {std::pair{160, 90}, {640, 360}, {1280, 720}}) {
-    const StarPixels judge(
+    const StarPixels reference(
         CameraRays(scene.camera, width, height), width, height, lights,
         [](double, double) {
           BandLight all(4);
@@ -73,7 +73,7 @@ TEST(StarPoints, PixelsAreThoseOfTheRendererWithItsRadianceAtEverySize) {
     double brightest = 0.0;
     for (const auto& [place, light] : painted) brightest = std::max(brightest, light);
     for (const auto& [place, light] : painted) {
-      const BandLight* there = judge.At(place.first, place.second);
+      const BandLight* there = reference.At(place.first, place.second);
       ASSERT_NE(there, nullptr) << place.first << ' ' << place.second;
       EXPECT_NEAR(light, static_cast<double>((*there)[0]), 1e-4 * brightest)
           << "solid angle of a pixel by its middle or by its sides: its width squared, 5e-5";

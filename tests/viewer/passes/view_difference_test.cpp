@@ -60,12 +60,12 @@ TEST(ViewDifference, LandThatRecedesAndSkyAreNoEdges) {
 }
 
 TEST(ViewDifference, OfAKnownDifferenceHasTheKnownNumbers) {
-  const Image judge = EvenLand();
-  Image painted = judge;
-  EXPECT_EQ(DifferenceOf(judge, painted).worst, 0.0);
+  const Image reference = EvenLand();
+  Image painted = reference;
+  EXPECT_EQ(DifferenceOf(reference, painted).worst, 0.0);
   for (int i = 0; i < 50; ++i) painted.rgb[static_cast<std::size_t>(i)] = {101.0F, 101.0F, 101.0F};
   const double one_percent = 1.0 / 100.5;
-  const ViewDifference half = DifferenceOf(judge, painted);
+  const ViewDifference half = DifferenceOf(reference, painted);
   EXPECT_NEAR(half.mean, 0.5 * one_percent, 1e-7) << "half of the pixels; floats of 100";
   EXPECT_NEAR(half.at_99_percent, one_percent, 1e-7);
   EXPECT_NEAR(half.worst, one_percent, 1e-7);
@@ -73,11 +73,11 @@ TEST(ViewDifference, OfAKnownDifferenceHasTheKnownNumbers) {
 }
 
 TEST(ViewDifference, WhatIsOffBesideAnEdgeDoesNotCount) {
-  Image judge = EvenLand();
-  judge.layers[0].values[At(5, 5)] = INFINITY;
-  Image painted = judge;
+  Image reference = EvenLand();
+  reference.layers[0].values[At(5, 5)] = INFINITY;
+  Image painted = reference;
   painted.rgb[At(4, 6)] = {0.0F, 0.0F, 0.0F};
-  const ViewDifference is = DifferenceOf(judge, painted);
+  const ViewDifference is = DifferenceOf(reference, painted);
   EXPECT_EQ(is.worst, 0.0);
   EXPECT_NEAR(is.edge_share, 0.09, 1e-12) << "a pixel and its neighbours of a hundred";
 }

@@ -76,7 +76,7 @@ TEST(ShadeMap, OfAWallFallsByTheTangentOfTheSun) {
 }
 
 /// The height of the shade over a place by looking at the land every few metres.
-double JudgedShade(const glm::dvec3& place, const glm::dvec3& to_sun, double rim_m) {
+double ReferenceShade(const glm::dvec3& place, const glm::dvec3& to_sun, double rim_m) {
   const double flat = std::hypot(to_sun.x, to_sun.y);
   double shade_m = -1e9;
   for (double away_m = 0.0;; away_m += 5.0) {
@@ -99,7 +99,7 @@ TEST(ShadeMap, IsTheHighestBeamThatRoughLandCutsOff) {
         const glm::dvec3 place = PlaceOf(map, column, line);
         if (std::max(std::abs(place.x), std::abs(place.y)) > kRim_m) continue;
         errors_m.push_back(std::abs(static_cast<double>(map.at(column, line).x) -
-                                    JudgedShade(place, to_sun, kRim_m)));
+                                    ReferenceShade(place, to_sun, kRim_m)));
       }
     }
     ASSERT_GT(errors_m.size(), 300U);

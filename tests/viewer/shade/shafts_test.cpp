@@ -74,7 +74,7 @@ std::vector<double> ErrorsUnder(double sun_degrees, const ShadeSteps& steps) {
   static const Terrain terrain(LandMesh(RoughLand, kSide, kCell_m));
   const double e = sun_degrees * kRadiansPerDegree;
   const glm::dvec3 to_sun(std::cos(e) * 0.8, std::cos(e) * 0.6, std::sin(e));
-  const ShadowHeights judge(terrain.mesh(), to_sun, kShaftSunRadius_rad);
+  const ShadowHeights reference(terrain.mesh(), to_sun, kShaftSunRadius_rad);
   const auto map = std::make_shared<ShadeMap>(ShadeMapOf(
       RasterOf(terrain.mesh(), std::size_t{1} << 18), to_sun, kShaftSunRadius_rad, 1024));
   const glm::dvec3 eye(-3000.0, 500.0, RoughLand(-3000.0, 500.0) + 300.0);
@@ -101,7 +101,7 @@ std::vector<double> ErrorsUnder(double sun_degrees, const ShadeSteps& steps) {
         points,
         [&](const ShaderProgram& program) { texture.Bind(program, 1, map_from_eye, steps); });
     for (std::size_t i = 0; i < rays.size(); ++i) {
-      const double expected = TakenOf(judge.Along(eye, rays[i].direction, rays[i].length_m),
+      const double expected = TakenOf(reference.Along(eye, rays[i].direction, rays[i].length_m),
                                       rays[i].length_m, kReach_km[band]);
       errors.push_back(std::abs(static_cast<double>(taken[i]) - expected));
     }

@@ -16,7 +16,7 @@
 #include "atmosphere/medium/medium.h"
 #include "atmosphere/ray/ray.h"
 
-namespace alpenglow::atmosphere::judge {
+namespace alpenglow::atmosphere::reference {
 
 /// Optical depth at every wavelength, from the observer to the end of the ray (ray.length_m, ground
 /// or top). Relative error below 1e-10 (asserted against stored cases to 1e-8 and against closed
@@ -29,7 +29,7 @@ struct OpticalDepth {
 [[nodiscard]] OpticalDepth OpticalDepthAlong(const Medium& medium, const ViewRay& ray);
 
 /// Single scattering for unit solar irradiance [1/sr], at every wavelength.
-struct SingleScattering {
+struct RayRadiance {
   std::vector<double> inscatter;      // light scattered once by the air, towards the observer
   std::vector<double> ground;         // sunlight reflected by the ground at the end of the ray
   std::vector<double> transmittance;  // of the ray
@@ -41,7 +41,7 @@ struct SingleScattering {
 /// stored cases agree to 1e-7. The sun is a point. The planet's shadow is sharp, and its edges are
 /// breakpoints of the quadrature. The ground is lit where mu_s >= 0 at its point. Reflected light
 /// is 0 if BringsLightOfGround returns false.
-[[nodiscard]] SingleScattering SingleScatteringAlong(const Medium& medium, const ViewRay& ray);
+[[nodiscard]] RayRadiance SingleScatteringAlong(const Medium& medium, const ViewRay& ray);
 
 /// Returns the direct solar irradiance on a horizontal plane at an altitude, per unit irradiance:
 /// mu_s T(mu_s), 0 if the sun is below the horizon of the plane or behind the planet.
@@ -90,4 +90,4 @@ class RayEquation {
   double refractivity_;
 };
 
-}  // namespace alpenglow::atmosphere::judge
+}  // namespace alpenglow::atmosphere::reference solution

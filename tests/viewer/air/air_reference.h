@@ -19,9 +19,9 @@ using namespace viewer;
 /// Relative errors, as of a sky view.
 using AirErrors = SkyViewErrors;
 
-class AirJudge {
+class AirReference {
  public:
-  AirJudge(const LitAir& air, const AirEye& eye)
+  AirReference(const LitAir& air, const AirEye& eye)
       : exact_(air.medium), air_(air), sky_(air.medium, air.diffuse), eye_(eye) {}
 
   /// Of the whole ray; in the band.
@@ -95,11 +95,11 @@ inline std::vector<LandPoint> LandPoints(const AirMap& map, int count) {
 }
 
 /// Of the light of all orders in all bands.
-inline AirErrors WayErrors(const AirJudge& judge, const AirReading& reading, const AirMap& map,
+inline AirErrors WayErrors(const AirReference& reference, const AirReading& reading, const AirMap& map,
                            const std::vector<LandPoint>& points) {
   AirErrors errors;
   for (const LandPoint& point : points) {
-    const AirToPoint exact = judge.To(map, point.angle, point.azimuth, point.distance_km);
+    const AirToPoint exact = reference.To(map, point.angle, point.azimuth, point.distance_km);
     const AirToPoint read = reading.To(point.angle, point.azimuth, point.distance_km);
     for (glm::length_t band = 0; band < 4; ++band) {
       const double light = exact.single[band] + exact.diffuse[band];
@@ -111,17 +111,17 @@ inline AirErrors WayErrors(const AirJudge& judge, const AirReading& reading, con
   return errors;
 }
 
-inline AirErrors WayErrors(const AirJudge& judge, const AirReading& reading, const AirMap& map,
+inline AirErrors WayErrors(const AirReference& reference, const AirReading& reading, const AirMap& map,
                            int count) {
-  return WayErrors(judge, reading, map, LandPoints(map, count));
+  return WayErrors(reference, reading, map, LandPoints(map, count));
 }
 
 /// Of transmittance, absolute.
-inline AirErrors TransmittanceErrors(const AirJudge& judge, const AirReading& reading,
+inline AirErrors TransmittanceErrors(const AirReference& reference, const AirReading& reading,
                                      const AirMap& map, int count) {
   AirErrors errors;
   for (const LandPoint& point : LandPoints(map, count)) {
-    const AirToPoint exact = judge.To(map, point.angle, point.azimuth, point.distance_km);
+    const AirToPoint exact = reference.To(map, point.angle, point.azimuth, point.distance_km);
     const AirToPoint read = reading.To(point.angle, point.azimuth, point.distance_km);
     for (glm::length_t band = 0; band < 4; ++band)
       errors.sorted.push_back(std::abs(read.transmittance[band] - exact.transmittance[band]));
@@ -131,7 +131,7 @@ inline AirErrors TransmittanceErrors(const AirJudge& judge, const AirReading& re
 }
 
 /// Relative to the radiance or to a thousandth of its mean, where that is more.
-inline AirErrors SkyErrors(const AirJudge& judge, const AirReading& reading, const AirMap& map,
+inline AirErrors SkyErrors(const AirReference& reference, const AirReading& reading, const AirMap& map,
                            int count) {
   std::vector<std::pair<double, double>> pairs;
   double mean = 0.0;
@@ -139,7 +139,7 @@ inline AirErrors SkyErrors(const AirJudge& judge, const AirReading& reading, con
     const double u = 2.0 * Halton(i, 2) - 1.001, azimuth = kPi * Halton(i, 3);
     const double v = i % 2 == 0 ? u : u * u * u;
     const double angle = 0.998 * v * (v > 0.0 ? map.sky_range : map.ground_range);
-    const Bands<double> exact = judge.Sky(map, angle, azimuth);
+    const Bands<double> exact = reference.Sky(map, angle, azimuth);
     const glm::dvec4 read = reading.Sky(angle, azimuth);
     for (std::size_t band = 0; band < exact.count; ++band) {
       pairs.emplace_back(exact[band], read[static_cast<glm::length_t>(band)]);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "atmosphere/reference/judge.h"
+#include "atmosphere/reference/reference_solution.h"
 
 #include <algorithm>
 #include <array>
@@ -11,7 +11,7 @@
 #include "atmosphere/refraction/refraction.h"
 #include "atmosphere/base/error.h"
 
-namespace alpenglow::atmosphere::judge {
+namespace alpenglow::atmosphere::reference {
 namespace {
 
 using Extended = long double;
@@ -183,7 +183,7 @@ OpticalDepth OpticalDepthAlong(const Medium& medium, const ViewRay& ray) {
   return {result.value, extent.end == RayEnd::kGround, result.error < 1e-10};
 }
 
-SingleScattering SingleScatteringAlong(const Medium& medium, const ViewRay& ray) {
+RayRadiance SingleScatteringAlong(const Medium& medium, const ViewRay& ray) {
   constexpr double kInnerTolerance = 1e-10;
   constexpr double kOuterTolerance = 1e-9;
   const std::size_t bands = medium.wavelengths_nm.size();
@@ -225,7 +225,7 @@ SingleScattering SingleScatteringAlong(const Medium& medium, const ViewRay& ray)
   };
   const AdaptiveResult scattered = IntegrateAdaptively(source, bands, points, kOuterTolerance);
 
-  SingleScattering result;
+  RayRadiance result;
   result.inscatter = scattered.value;
   result.error = scattered.error;
   result.converged = scattered.error < 1e-8;
@@ -347,4 +347,4 @@ RayEquation::State RayEquation::Stepped(const State& at, double step_m) const {
              k4);
 }
 
-}  // namespace alpenglow::atmosphere::judge
+}  // namespace alpenglow::atmosphere::reference solution

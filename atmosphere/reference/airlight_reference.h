@@ -8,7 +8,7 @@
 
 #include "atmosphere/lamp/airlight.h"
 
-namespace alpenglow::atmosphere::judge {
+namespace alpenglow::atmosphere::reference {
 
 struct LampLight {
   std::vector<double> radiance;  // for unit intensity [sr^-1 m^-2], one value per band
@@ -21,4 +21,4 @@ struct LampLight {
 [[nodiscard]] LampLight AirlightAlong(const LampAir& air, const Lamp& lamp,
                                       const LampSegment& segment);
 
-}  // namespace alpenglow::atmosphere::judge
+}  // namespace alpenglow::atmosphere::reference solution

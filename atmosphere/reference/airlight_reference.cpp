@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "atmosphere/reference/airlight_judge.h"
+#include "atmosphere/reference/airlight_reference.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,7 +7,7 @@
 
 #include "atmosphere/math/numerics.h"
 
-namespace alpenglow::atmosphere::judge {
+namespace alpenglow::atmosphere::reference {
 namespace {
 
 using Extended = long double;
@@ -162,4 +162,4 @@ LampLight AirlightAlong(const LampAir& air, const Lamp& lamp, const LampSegment&
   return {found.value, found.error, found.error < 1e-9};
 }
 
-}  // namespace alpenglow::atmosphere::judge
+}  // namespace alpenglow::atmosphere::reference solution
