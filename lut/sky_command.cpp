@@ -112,7 +112,7 @@ struct RenderedSky {
 };
 
 RenderedSky Rendered(const SkyJob& job, ProgressStyle style) {
-  const AirIntegrator<float> air(job.medium);
+  const SingleScattering<float> air(job.medium);
   const DiffuseLight diffuse(job.medium);
   Progress progress("rows", static_cast<std::size_t>(job.settings.height), style);
   return {RenderPanorama(air, diffuse, job.settings, [&] { progress.Advance(); }),

@@ -286,7 +286,7 @@ void FlightDeck::WantStrip() {
   const std::shared_ptr<const SolvedAir>& air = flight_.painter().air().air();
   const UtcInstant begin = AddSeconds(
       flight_.now(), -kSecondsPerDay * LocalTimeAt(flight_.now(), flight_.zone()).day_fraction);
-  strips_.Want({std::make_shared<const AirIntegrator<float>>(air->medium),
+  strips_.Want({std::make_shared<const SingleScattering<float>>(air->medium),
                 std::shared_ptr<const DiffuseLight>(air, &air->diffuse), flight_.eye().place,
                 begin});
 }

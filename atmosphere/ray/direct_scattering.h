@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Single scattering along a ray by direct integration: the same integral as AirIntegrator, several
+// Single scattering along a ray by direct integration: the same integral as SingleScattering, several
 // times as fast, with 7 or 14 nodes in each panel of the ray.
 //
 // A ray costs one pass over 8 or 16 SIMD lanes. The set-up is scalar (direct_panels.h). Altitude,
@@ -9,7 +9,7 @@
 // weightless nodes, at the entry and at the perigee, give the columns from which the columns along
 // the ray follow by subtraction.
 //
-// Error against AirIntegrator, relative, rms over the rays of each regime of
+// Error against SingleScattering, relative, rms over the rays of each regime of
 // tests/fixtures/direct_regimes.h, all presets:
 //
 //   fast     0.7 %     7 nodes a panel, 14 in a hard one (earth: 0.39 %)
@@ -50,14 +50,14 @@ struct SampledLight {
 };
 
 /// A medium prepared for direct integration. Immutable, safe to share between threads. Rays are the
-/// same as for AirIntegrator: whole rays and finite segments. Functions throw InputError as
+/// same as for SingleScattering: whole rays and finite segments. Functions throw InputError as
 /// ExtentOf does.
 class DirectScattering {
  public:
   explicit DirectScattering(const Medium& medium);
 
   /// Returns the integrator for errors smaller than those of the modes.
-  [[nodiscard]] const AirIntegrator<float>& reference() const { return reference_; }
+  [[nodiscard]] const SingleScattering<float>& reference() const { return reference_; }
 
   /// Returns the single scattering of direct sunlight along the ray.
   [[nodiscard]] ScatteredOnce<float> Scatter(const ViewRay& ray, DirectMode mode) const;
@@ -72,7 +72,7 @@ class DirectScattering {
   [[nodiscard]] EstimatedLight ScatterWithin(const ViewRay& ray, double max_error) const;
 
   /// Returns the nodes of a ray with their weights and columns, for light of any order
-  /// (AirIntegrator::Scatter of them equals Scatter). Lanes without a node have weight 0.
+  /// (SingleScattering::Scatter of them equals Scatter). Lanes without a node have weight 0.
   [[nodiscard]] RaySamples<float> Sample(const ViewRay& ray, const DirectSampling& sampling) const;
 
   /// Returns the panels of a ray, for callers that choose DirectRay::few_nodes or weight the nodes
@@ -90,7 +90,7 @@ class DirectScattering {
   [[nodiscard]] ColumnSet<float> ColumnsAlong(const DirectRay& placed) const;
 
  private:
-  AirIntegrator<float> reference_;
+  SingleScattering<float> reference_;
   DirectAir air_;
 };
 

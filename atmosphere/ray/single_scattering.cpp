@@ -271,7 +271,7 @@ Sampling SamplingForError(double max_error) {
 }
 
 template <typename Real>
-AirIntegrator<Real>::AirIntegrator(const Medium& medium) : medium_(medium), constants_{} {
+SingleScattering<Real>::SingleScattering(const Medium& medium) : medium_(medium), constants_{} {
   Validate(medium_);
   RequireInRange(static_cast<double>(bands()), 1.0, static_cast<double>(kMaxBands),
                  "number of spectrum.wavelengths_nm");
@@ -281,7 +281,7 @@ AirIntegrator<Real>::AirIntegrator(const Medium& medium) : medium_(medium), cons
 }
 
 template <typename Real>
-std::array<Real, 3> AirIntegrator<Real>::ColumnsToSpace(double altitude_m, double mu) const {
+std::array<Real, 3> SingleScattering<Real>::ColumnsToSpace(double altitude_m, double mu) const {
   const RayKernel<Real>& kernel = Kernel<RayKernel<Real>>();
   ColumnRows<Real> rows;
   rows.Set(0, altitude_m / kMetresPerKilometre, mu);
@@ -293,7 +293,7 @@ std::array<Real, 3> AirIntegrator<Real>::ColumnsToSpace(double altitude_m, doubl
 }
 
 template <typename Real>
-std::array<std::vector<Real>, 3> AirIntegrator<Real>::ColumnsToSpace(
+std::array<std::vector<Real>, 3> SingleScattering<Real>::ColumnsToSpace(
     std::span<const Real> altitudes_m, std::span<const Real> mu) const {
   ALPENGLOW_ENSURE(altitudes_m.size(), ==, mu.size());
   constexpr std::size_t kBlock = 128;
@@ -322,7 +322,7 @@ std::array<std::vector<Real>, 3> AirIntegrator<Real>::ColumnsToSpace(
 }
 
 template <typename Real>
-Bands<Real> AirIntegrator<Real>::TransmittanceToSpace(double altitude_m, double mu) const {
+Bands<Real> SingleScattering<Real>::TransmittanceToSpace(double altitude_m, double mu) const {
   const ViewRay ray{altitude_m, mu, 1.0, 1.0};
   if (mu < 0.0 || !(altitude_m >= 0.0 && altitude_m <= medium_.atmosphere_height_m)) {
     const RayExtent extent = ExtentOf(ray, medium_.planet_radius_m, medium_.atmosphere_height_m);
@@ -342,7 +342,7 @@ Bands<Real> AirIntegrator<Real>::TransmittanceToSpace(double altitude_m, double 
 }
 
 template <typename Real>
-ColumnSet<Real> AirIntegrator<Real>::ColumnsAlong(const ViewRay& ray) const {
+ColumnSet<Real> SingleScattering<Real>::ColumnsAlong(const ViewRay& ray) const {
   const RayExtent extent = ExtentOf(ray, medium_.planet_radius_m, medium_.atmosphere_height_m);
   const RayEntry entry = EntryOf(ray, extent, medium_);
   return SegmentColumns<Real>(constants_, medium_, entry,
@@ -350,7 +350,7 @@ ColumnSet<Real> AirIntegrator<Real>::ColumnsAlong(const ViewRay& ray) const {
 }
 
 template <typename Real>
-Bands<Real> AirIntegrator<Real>::OpticalDepthAlong(const ViewRay& ray) const {
+Bands<Real> SingleScattering<Real>::OpticalDepthAlong(const ViewRay& ray) const {
   const ColumnSet<Real> columns = ColumnsAlong(ray);
   const Real metres = static_cast<Real>(kMetresPerKilometre);
   Bands<Real> depth(bands());
@@ -361,7 +361,7 @@ Bands<Real> AirIntegrator<Real>::OpticalDepthAlong(const ViewRay& ray) const {
 }
 
 template <typename Real>
-Bands<Real> AirIntegrator<Real>::TransmittanceAlong(const ViewRay& ray) const {
+Bands<Real> SingleScattering<Real>::TransmittanceAlong(const ViewRay& ray) const {
   const Bands<Real> depth = OpticalDepthAlong(ray);
   Bands<Real> transmittance(bands());
   for (std::size_t band = 0; band < bands(); ++band) transmittance[band] = std::exp(-depth[band]);
@@ -369,7 +369,7 @@ Bands<Real> AirIntegrator<Real>::TransmittanceAlong(const ViewRay& ray) const {
 }
 
 template <typename Real>
-RaySamples<Real> AirIntegrator<Real>::Sample(const ViewRay& ray, const Sampling& sampling) const {
+RaySamples<Real> SingleScattering<Real>::Sample(const ViewRay& ray, const Sampling& sampling) const {
   RaySamples<Real> samples;
   samples.extent = ExtentOf(ray, medium_.planet_radius_m, medium_.atmosphere_height_m);
   const RayEntry entry = EntryOf(ray, samples.extent, medium_);
@@ -379,7 +379,7 @@ RaySamples<Real> AirIntegrator<Real>::Sample(const ViewRay& ray, const Sampling&
 }
 
 template <typename Real>
-RaySamples<Real> AirIntegrator<Real>::SampleAt(const ViewRay& ray,
+RaySamples<Real> SingleScattering<Real>::SampleAt(const ViewRay& ray,
                                                std::span<const RayNode> nodes) const {
   const RayExtent extent = ExtentOf(ray, medium_.planet_radius_m, medium_.atmosphere_height_m);
   return SampleAt(ray, extent, PlanetShadow(ray, extent, medium_.planet_radius_m), nodes,
@@ -387,7 +387,7 @@ RaySamples<Real> AirIntegrator<Real>::SampleAt(const ViewRay& ray,
 }
 
 template <typename Real>
-RaySamples<Real> AirIntegrator<Real>::SampleAt(const ViewRay& ray, const RayExtent& extent,
+RaySamples<Real> SingleScattering<Real>::SampleAt(const ViewRay& ray, const RayExtent& extent,
                                                const ShadowSpan& shadow,
                                                std::span<const RayNode> nodes,
                                                ViewColumns columns) const {
@@ -409,14 +409,14 @@ RaySamples<Real> AirIntegrator<Real>::SampleAt(const ViewRay& ray, const RayExte
 }
 
 template <typename Real>
-ScatteredOnce<Real> AirIntegrator<Real>::Scatter(const RaySamples<Real>& samples) const {
+ScatteredOnce<Real> SingleScattering<Real>::Scatter(const RaySamples<Real>& samples) const {
   ScatteredOnce<Real> scattered{Bands<Real>(bands()), Bands<Real>(bands())};
   Kernel<RayKernel<Real>>().scatter(constants_, samples, scattered);
   return scattered;
 }
 
 template <typename Real>
-Bands<Real> AirIntegrator<Real>::AerosolPhases(double nu) const {
+Bands<Real> SingleScattering<Real>::AerosolPhases(double nu) const {
   if constexpr (std::is_same_v<Real, float>) {
     if (!phase_nodes_.empty()) return phase_nodes_.At(nu);
   }
@@ -429,7 +429,7 @@ Bands<Real> AirIntegrator<Real>::AerosolPhases(double nu) const {
 }
 
 template <typename Real>
-Bands<Real> AirIntegrator<Real>::Inscatter(const ScatteredOnce<Real>& scattered, double nu) const {
+Bands<Real> SingleScattering<Real>::Inscatter(const ScatteredOnce<Real>& scattered, double nu) const {
   const std::vector<double>& depolarisation = medium_.rayleigh_depolarisation;
   Real rayleigh_phase = Real(0);
   Bands<Real> radiance = AerosolPhases(nu);
@@ -442,7 +442,7 @@ Bands<Real> AirIntegrator<Real>::Inscatter(const ScatteredOnce<Real>& scattered,
   return radiance;
 }
 
-template class AirIntegrator<float>;
-template class AirIntegrator<double>;
+template class SingleScattering<float>;
+template class SingleScattering<double>;
 
 }  // namespace alpenglow::atmosphere

@@ -47,10 +47,10 @@ class PhaseNodes {
 /// A medium prepared for evaluation in Real = float or double. Immutable, safe to share between
 /// threads.
 template <typename Real>
-class AirIntegrator {
+class SingleScattering {
  public:
   /// Throws InputError for a medium that Validate rejects or with more than kMaxBands wavelengths.
-  explicit AirIntegrator(const Medium& medium);
+  explicit SingleScattering(const Medium& medium);
 
   [[nodiscard]] const Medium& medium() const { return medium_; }
   [[nodiscard]] std::size_t bands() const { return medium_.wavelengths_nm.size(); }
@@ -106,7 +106,7 @@ class AirIntegrator {
   PhaseNodes phase_nodes_;  // for float, if phase functions are tables
 };
 
-extern template class AirIntegrator<float>;
-extern template class AirIntegrator<double>;
+extern template class SingleScattering<float>;
+extern template class SingleScattering<double>;
 
 }  // namespace alpenglow::atmosphere

@@ -280,7 +280,7 @@ BentBeam::BentBeam(const Medium& medium)
       aerosol_per_m_(medium.mie_extinction_per_m) {
   const BendingAir air = GentleAirOf(medium);
   if (air.refractivity == 0.0) return;
-  const AirIntegrator<double> straight(medium);
+  const SingleScattering<double> straight(medium);
   rows_.resize(kHeights);
   oneapi::tbb::parallel_for(0, kHeights, [&](int i) {
     const double share = static_cast<double>(i) / (kHeights - 1);
@@ -288,7 +288,7 @@ BentBeam::BentBeam(const Medium& medium)
   });
 }
 
-BentBeam::Row BentBeam::RowAt(const AirIntegrator<double>& straight, const BendingAir& air,
+BentBeam::Row BentBeam::RowAt(const SingleScattering<double>& straight, const BendingAir& air,
                               double height_m) {
   const Medium& medium = straight.medium();
   const auto densities = [&](double h_m) {
@@ -332,7 +332,7 @@ Bands<float> BentBeam::OverStraight(double altitude_m, double mu) const {
   return over;
 }
 
-Bands<float> BentBeam::Left(const AirIntegrator<float>& air, double altitude_m, double mu) const {
+Bands<float> BentBeam::Left(const SingleScattering<float>& air, double altitude_m, double mu) const {
   Bands<float> left = air.TransmittanceToSpace(altitude_m, mu);
   const Bands<float> over = OverStraight(altitude_m, mu);
   for (std::size_t band = 0; band < bands_; ++band) left[band] *= over[band];

@@ -163,7 +163,7 @@ class BentBeam {
   /// Returns the irradiance perpendicular to the beams of a sun with unit irradiance above the air.
   /// @param air  air of the medium.
   /// @param mu  apparent zenith cosine of the disk, not hidden by the planet.
-  [[nodiscard]] Bands<float> Left(const AirIntegrator<float>& air, double altitude_m,
+  [[nodiscard]] Bands<float> Left(const SingleScattering<float>& air, double altitude_m,
                                   double mu) const;
 
  private:
@@ -175,7 +175,7 @@ class BentBeam {
     double horizon_mu;
     std::vector<Node> nodes;
   };
-  [[nodiscard]] static Row RowAt(const AirIntegrator<double>& straight, const BendingAir& air,
+  [[nodiscard]] static Row RowAt(const SingleScattering<double>& straight, const BendingAir& air,
                                  double height_m);
   [[nodiscard]] Node At(double altitude_m, double mu) const;
 

@@ -319,8 +319,8 @@ class IntegralEvaluator final : public Evaluator {
                        coarse_light_->SkyIrradiance(altitude_m, mu_s), 1.0);
   }
 
-  AirIntegrator<double> air_;
-  AirIntegrator<float> quick_air_;  // for the samples along which multiple scattering is gathered
+  SingleScattering<double> air_;
+  SingleScattering<float> quick_air_;  // for the samples along which multiple scattering is gathered
   IntegralOptions options_;
   double closed_form_error_, fast_path_floor_;  // relative errors
   std::optional<DiffuseLight> fine_light_, middling_light_, coarse_light_;

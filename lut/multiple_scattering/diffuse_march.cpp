@@ -29,7 +29,7 @@ bool OnlyMolecules(const AirConstants<float>& air, float rayleigh_density, float
 
 }  // namespace
 
-DiffuseMarches::DiffuseMarches(const AirIntegrator<float>& air, const DiffuseLightOptions& options,
+DiffuseMarches::DiffuseMarches(const SingleScattering<float>& air, const DiffuseLightOptions& options,
                                const std::vector<double>& chi)
     : air_(&air),
       chi_(&chi),
@@ -343,7 +343,7 @@ class PieceScatterer {
 // Adds the sunlight that the ground at the end of the march reflects.
 void AddSunlitGround(const DiffuseMarches& marches, std::size_t altitude, const March& march,
                      std::vector<float>& radiance) {
-  const AirIntegrator<float>& air = marches.air();
+  const SingleScattering<float>& air = marches.air();
   const double r = marches.radius_km() + marches.altitude_km(altitude);
   const std::size_t rays = marches.grid().suns * marches.azimuths();
   for (std::size_t ray = 0; ray < rays; ++ray) {

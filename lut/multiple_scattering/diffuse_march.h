@@ -32,10 +32,10 @@ class DiffuseMarches {
  public:
   /// @param chi  Legendre coefficients of aerosol scattering: degree l of a band at [l * bands +
   ///   band].
-  DiffuseMarches(const AirIntegrator<float>& air, const DiffuseLightOptions& options,
+  DiffuseMarches(const SingleScattering<float>& air, const DiffuseLightOptions& options,
                  const std::vector<double>& chi);
 
-  [[nodiscard]] const AirIntegrator<float>& air() const { return *air_; }
+  [[nodiscard]] const SingleScattering<float>& air() const { return *air_; }
   [[nodiscard]] const DiffuseGrid& grid() const { return grid_; }
   [[nodiscard]] const std::vector<double>& chi() const { return *chi_; }
   [[nodiscard]] std::size_t azimuths() const { return azimuths_; }
@@ -64,7 +64,7 @@ class DiffuseMarches {
                  March& march) const;
   void AddGround(std::size_t altitude, March& march) const;
 
-  const AirIntegrator<float>* air_;
+  const SingleScattering<float>* air_;
   const std::vector<double>* chi_;
   DiffuseGrid grid_;
   double radius_km_;

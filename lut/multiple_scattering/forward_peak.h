@@ -117,14 +117,14 @@ class ForwardPeak {
   [[nodiscard]] Bands<float> Behind(const Way& way, const RaySamples<float>& samples,
                                     double nu) const;
 
-  [[nodiscard]] const AirIntegrator<float>& air() const { return air_; }
+  [[nodiscard]] const SingleScattering<float>& air() const { return air_; }
 
  private:
   /// Returns the sum of formula(y + ahead) - formula(base y) along samples.
   [[nodiscard]] float SumAlong(std::size_t band, const RaySamples<float>& samples, double nu,
                                float ahead, float base) const;
 
-  AirIntegrator<float> air_;
+  SingleScattering<float> air_;
   int degree_;
   std::vector<float> share_;       // f per band
   std::vector<PeakShape> shapes_;  // one for all bands, or one per band
@@ -135,7 +135,7 @@ class MissingDegrees {
   /// @param degree  the largest degree that is kept.
   MissingDegrees(const Medium& medium, int degree);
 
-  /// Returns the estimate for samples taken by AirIntegrator(medium) [1/sr], per unit solar
+  /// Returns the estimate for samples taken by SingleScattering(medium) [1/sr], per unit solar
   /// irradiance.
   [[nodiscard]] std::vector<double> Along(const AirConstants<float>& air,
                                           const RaySamples<float>& samples, double nu) const;

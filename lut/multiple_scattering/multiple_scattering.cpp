@@ -161,7 +161,7 @@ DiffuseLight::DiffuseLight(const Medium& medium, const DiffuseLightOptions& opti
   } else if (!options_.exact_orders) {
     glow_.emplace(medium_, options_.degree);
   }
-  air_ = AirIntegrator<float>(medium_).constants();
+  air_ = SingleScattering<float>(medium_).constants();
   blocks_ = BlocksOf();
   packed_ = Packed();
   packed_sky_ = PackedSky();
@@ -172,7 +172,7 @@ std::vector<DiffuseBlock> DiffuseLight::BlocksOf() const {
       options_.forward_peak
           ? WithoutPeak(medium_, options_.degree)
           : AirWithoutPeak{medium_, {}, MieLegendreCoefficients(medium_, options_.degree)};
-  const AirConstants<float> air = AirIntegrator<float>(scattering.medium).constants();
+  const AirConstants<float> air = SingleScattering<float>(scattering.medium).constants();
   const std::vector<double>& chi = scattering.chi;
   std::vector<DiffuseBlock> blocks((bands_ + kBlockBands - 1) / kBlockBands);
   for (std::size_t band = 0; band < bands_; ++band) {
@@ -457,7 +457,7 @@ std::array<Bands<float>, kTensorMoments> DiffuseLight::TensorAt(double altitude_
 PolarisedLight DiffuseLight::PolarisationAlong(const RaySamples<float>& samples, double nu) const {
   PolarisedLight light{Bands<float>(bands_), Bands<float>(bands_)};
   if (!medium_.polarised) return light;
-  const AirConstants<float> air = AirIntegrator<float>(medium_).constants();
+  const AirConstants<float> air = SingleScattering<float>(medium_).constants();
   for (std::size_t s = 0; s < samples.count; ++s) {
     const float mu = samples.mu[s], mu_s = samples.mu_s[s];
     const float sine = SunSine(static_cast<double>(mu));

@@ -476,7 +476,7 @@ class MissedPeak {
 
 // Returns the irradiance of the peak on a plane that faces the sun.
 Bands<float> MissedPeak::PeakAt(std::size_t altitude, std::size_t sun) const {
-  const AirIntegrator<float>& air = marches_.air();
+  const SingleScattering<float>& air = marches_.air();
   const Medium& medium = air.medium();
   const double altitude_m = 1000.0 * marches_.altitude_km(altitude), mu_s = marches_.mu_s(sun);
   Bands<float> peak = air.TransmittanceToSpace(altitude_m, mu_s);
@@ -543,7 +543,7 @@ SolvedOrders SolveSuccessiveOrders(const Medium& medium, const DiffuseLightOptio
       options.forward_peak
           ? WithoutPeak(medium, options.degree)
           : AirWithoutPeak{medium, {}, MieLegendreCoefficients(medium, options.degree)};
-  const AirIntegrator<float> air(rest.medium);
+  const SingleScattering<float> air(rest.medium);
   const DiffuseMarches marches(air, options, rest.chi);
   const DiffuseMarches later(air, OfLaterOrders(options), rest.chi);
   const std::size_t bands = medium.wavelengths_nm.size();

@@ -140,7 +140,7 @@ float ChapmanFunction(ChapmanRule rule, float x, float cos_chi) {
                         (x * c + std::sqrt(x * (1.47721F + 0.273828F * x * c * c)));
 }
 
-Bands<float> ChapmanTransmittance(const AirIntegrator<float>& air, ChapmanRule rule,
+Bands<float> ChapmanTransmittance(const SingleScattering<float>& air, ChapmanRule rule,
                                   const ViewRay& ray) {
   const Medium& medium = air.medium();
   const float h = Kilometres(ray.altitude_m), mu = static_cast<float>(ray.mu);

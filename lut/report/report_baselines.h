@@ -46,7 +46,7 @@ enum class ChapmanRule {
 
 /// Returns the transmittance to space. The exponential layers use a Chapman approximation, ozone
 /// uses the closed form of this library. The ray must not hit the ground.
-[[nodiscard]] Bands<float> ChapmanTransmittance(const AirIntegrator<float>& air, ChapmanRule rule,
+[[nodiscard]] Bands<float> ChapmanTransmittance(const SingleScattering<float>& air, ChapmanRule rule,
                                                 const ViewRay& ray);
 
 /// Multiple scattering as in Hillaire (2020), A scalable and production ready sky and atmosphere
@@ -81,7 +81,7 @@ class IsotropicTable {
   [[nodiscard]] Light GatherFrom(const ViewRay& ray) const;
   void FillTexel(std::size_t row, std::size_t column);
 
-  AirIntegrator<float> air_;
+  SingleScattering<float> air_;
   Size size_;
   std::vector<float> texels_;  // [(altitude * side + sun) * bands + band]
 };

@@ -48,17 +48,17 @@ class TransmittanceTopic : public TopicWork {
   }
 
   void AddClosedForms() {
-    const AirIntegrator<float> air(medium_);
+    const SingleScattering<float> air(medium_);
     Add({.series = "closed form", .parameter = "float", .style = kClosedForm, .in_summary = true},
         0, [&](const ViewRay& ray) { return air.TransmittanceToSpace(ray.altitude_m, ray.mu); });
-    const AirIntegrator<double> exact(medium_);
+    const SingleScattering<double> exact(medium_);
     Add({.series = "closed form", .parameter = "double", .style = kClosedForm}, 0,
         [&](const ViewRay& ray) { return exact.TransmittanceToSpace(ray.altitude_m, ray.mu); });
   }
 
   /// Evaluates many points at once, as the kernels of this library do.
   void AddClosedFormOfMany() {
-    const AirIntegrator<float> air(medium_);
+    const SingleScattering<float> air(medium_);
     ReportRow row{.series = "closed form, many at once",
                   .parameter = "float",
                   .style = kMany,
@@ -113,7 +113,7 @@ class TransmittanceTopic : public TopicWork {
   }
 
   void AddChapman(ChapmanRule rule) {
-    const AirIntegrator<float> air(medium_);
+    const SingleScattering<float> air(medium_);
     const bool schueler = rule == ChapmanRule::kSchueler;
     Add({.series = schueler ? "Schüler 2012" : "Golubev 2019",
          .parameter = "",

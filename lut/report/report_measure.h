@@ -215,7 +215,7 @@ class TopicWork {
   }
 
   /// Measures light scattered once by a march in steps; `style` is the style of its line.
-  void AddMarch(const AirIntegrator<float>& air, MarchRule rule, int steps, int style,
+  void AddMarch(const SingleScattering<float>& air, MarchRule rule, int steps, int style,
                 bool in_summary) {
     AddRow(
         {.series = rule == MarchRule::kMidpoint ? "uniform march" : "quadratic march",

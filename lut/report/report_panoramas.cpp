@@ -93,8 +93,8 @@ class DirectSky {
     }
   }
 
-  AirIntegrator<Real> air_;
-  AirIntegrator<float> quick_;
+  SingleScattering<Real> air_;
+  SingleScattering<float> quick_;
   const DiffuseLight& diffuse_;
   int nodes_;
   bool split_;
@@ -319,7 +319,7 @@ class PanoramaTopic {
 
   const Medium& medium_;
   const ReportEffort& effort_;
-  AirIntegrator<float> air_;
+  SingleScattering<float> air_;
   DiffuseLight diffuse_;
   DirectSky<float> direct_;
   std::vector<Direction> directions_;

@@ -82,7 +82,7 @@ class SingleTopic : public TopicWork {
   }
 
  private:
-  AirIntegrator<float> air_;
+  SingleScattering<float> air_;
   DirectScattering direct_;
 };
 
@@ -254,7 +254,7 @@ class OrdersTopic : public TopicWork {
     });
   }
 
-  AirIntegrator<float> air_;
+  SingleScattering<float> air_;
   DirectScattering direct_;
 };
 

@@ -22,7 +22,7 @@ namespace {
 
 constexpr int kSteps = 48;  // over half a turn
 
-PolarisedLight Along(const AirIntegrator<float>& air, const DiffuseLight& diffuse,
+PolarisedLight Along(const SingleScattering<float>& air, const DiffuseLight& diffuse,
                      const ViewRay& ray) {
   const RaySamples<float> samples = air.Sample(ray, {.nodes = 16, .dark_samples = true});
   PolarisedLight light{Bands<float>(air.bands()), Bands<float>(air.bands())};
@@ -38,7 +38,7 @@ PolarisedLight Along(const AirIntegrator<float>& air, const DiffuseLight& diffus
 
 }  // namespace
 
-PolarisedRow::PolarisedRow(const AirIntegrator<float>& air, const DiffuseLight& diffuse,
+PolarisedRow::PolarisedRow(const SingleScattering<float>& air, const DiffuseLight& diffuse,
                            double altitude_m, double mu_s, double zenith_angle_rad) {
   const double mu = std::cos(zenith_angle_rad);
   const double sines =
@@ -225,7 +225,7 @@ std::vector<Bands<float>> SharesOf(const std::vector<DiskPiece>& pieces,
   return shares;
 }
 
-void DrawSunDisk(const AirIntegrator<float>& air, const PanoramaSettings& settings,
+void DrawSunDisk(const SingleScattering<float>& air, const PanoramaSettings& settings,
                  const PanoramaGrid& grid, const std::vector<float>& srgb, Image& image) {
   const std::vector<DiskPiece> pieces = PiecesOfDisk(grid, settings.sun);
   const std::vector<Bands<float>> shares = SharesOf(pieces, air.medium().wavelengths_nm);
@@ -308,7 +308,7 @@ double CentreAzimuth(PanoramaOrientation orientation) {
   throw InternalError("an orientation without a centre");
 }
 
-Image RenderPanorama(const AirIntegrator<float>& air, const DiffuseLight& diffuse,
+Image RenderPanorama(const SingleScattering<float>& air, const DiffuseLight& diffuse,
                      const PanoramaSettings& settings, const std::function<void()>& row_done) {
   Image image(settings.width, settings.height);
   const double mu_s = std::sin(settings.sun.elevation_for_air_rad());
@@ -348,7 +348,7 @@ Image RenderPanorama(const AirIntegrator<float>& air, const DiffuseLight& diffus
   return image;
 }
 
-double HorizontalIlluminance(const AirIntegrator<float>& air, const DiffuseLight& diffuse,
+double HorizontalIlluminance(const SingleScattering<float>& air, const DiffuseLight& diffuse,
                              double altitude_m, const PanoramaSun& sun) {
   const Medium& medium = air.medium();
   const double h = std::max(altitude_m, 0.0);

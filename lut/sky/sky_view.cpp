@@ -130,7 +130,7 @@ void SplineMirroredLine(const Line& line) {
 
 // Returns the aerosol's phase function including the glow around the sun: a table for every four
 // bands.
-std::vector<std::vector<float>> PhaseTables(const AirIntegrator<float>& air,
+std::vector<std::vector<float>> PhaseTables(const SingleScattering<float>& air,
                                             const DiffuseLight& diffuse, float column_km) {
   const std::size_t blocks = (air.bands() + kViewLanes - 1) / kViewLanes;
   std::vector<std::vector<float>> tables(blocks,
@@ -149,7 +149,7 @@ std::vector<std::vector<float>> PhaseTables(const AirIntegrator<float>& air,
 
 }  // namespace
 
-float GlowColumn_km(const AirIntegrator<float>& air, double altitude_m, double mu_s) {
+float GlowColumn_km(const SingleScattering<float>& air, double altitude_m, double mu_s) {
   constexpr double kHair = 1e-6;  // small offset above the horizon
   const Medium& medium = air.medium();
   if (altitude_m >= medium.atmosphere_height_m) return 0.0F;
@@ -208,7 +208,7 @@ namespace {
 /// visible ground.
 class GroundLight {
  public:
-  GroundLight(const AirIntegrator<float>& air, const DiffuseLight& diffuse, double least_mu_s,
+  GroundLight(const SingleScattering<float>& air, const DiffuseLight& diffuse, double least_mu_s,
               double most_mu_s)
       : bands_(air.bands()),
         least_(DiffuseLight::SunCoordinate(least_mu_s)),
@@ -257,7 +257,7 @@ class GroundLight {
 /// Evaluates the nodes of a sky view.
 class SkyView::Builder {
  public:
-  Builder(const AirIntegrator<float>& air, const DiffuseLight& diffuse, double altitude_m,
+  Builder(const SingleScattering<float>& air, const DiffuseLight& diffuse, double altitude_m,
           double mu_s, SkyView& view)
       : air_(air),
         direct_(air.medium()),
@@ -295,7 +295,7 @@ class SkyView::Builder {
  private:
   // The visible ground extends to the horizon, at a distance of `dip` along the ground from the
   // observer.
-  [[nodiscard]] GroundLight GroundInView(const AirIntegrator<float>& air,
+  [[nodiscard]] GroundLight GroundInView(const SingleScattering<float>& air,
                                          const DiffuseLight& diffuse) const {
     const double dip = view_.map_.horizon_zenith_angle_rad() - 0.5 * kPi;
     const double sun = std::acos(mu_s_);
@@ -378,7 +378,7 @@ class SkyView::Builder {
     SplineOpenLine({Node(block, first_row, 0), width, width, rows});
   }
 
-  const AirIntegrator<float>& air_;
+  const SingleScattering<float>& air_;
   DirectScattering direct_;
   DiffuseFan fan_;
   double altitude_m_, mu_s_;
@@ -387,11 +387,11 @@ class SkyView::Builder {
   std::vector<double> cosines_;  // cosines of the columns' azimuths
 };
 
-SkyView::SkyView(const AirIntegrator<float>& air, const DiffuseLight& diffuse, double altitude_m,
+SkyView::SkyView(const SingleScattering<float>& air, const DiffuseLight& diffuse, double altitude_m,
                  double mu_s)
     : SkyView(air, diffuse, altitude_m, mu_s, SkyViewSizeFor(air.medium(), altitude_m, mu_s)) {}
 
-SkyView::SkyView(const AirIntegrator<float>& air, const DiffuseLight& diffuse, double altitude_m,
+SkyView::SkyView(const SingleScattering<float>& air, const DiffuseLight& diffuse, double altitude_m,
                  double mu_s, const SkyViewSize& size)
     : map_(air.medium(), altitude_m, mu_s),
       size_(size),

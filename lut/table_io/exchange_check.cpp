@@ -232,8 +232,8 @@ class Reference {
   }
 
   Medium medium_;
-  AirIntegrator<double> air_;
-  AirIntegrator<float> quick_air_;
+  SingleScattering<double> air_;
+  SingleScattering<float> quick_air_;
   ScatteringTable map_;
 };
 

@@ -126,7 +126,7 @@ class HigherOrdersOfRays {
  private:
   const ScatteringTable& rays_;
   const DiffuseLight& light_;
-  AirIntegrator<float> air_;
+  SingleScattering<float> air_;
 };
 
 /// Returns scattering, higher_order_scattering, single_mie_scattering.
@@ -296,7 +296,7 @@ const char* SuffixOf(TexelFormat format) {
 
 DiffuseLight FourOrdersOf(const Medium& medium) { return DiffuseLight(medium, kFourOrders); }
 
-Bands<float> HigherOrdersAlong(const AirIntegrator<float>& air, const DiffuseLight& light,
+Bands<float> HigherOrdersAlong(const SingleScattering<float>& air, const DiffuseLight& light,
                                const ViewRay& ray) {
   return light.InscatterAlong(air.Sample(ray, kHigherOrderSampling), ray.nu);
 }

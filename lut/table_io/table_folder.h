@@ -97,7 +97,7 @@ class TableLookup {
   [[nodiscard]] bool HasTableFor(const ViewRay& ray) const;
 
   TableFolder tables_;
-  AirIntegrator<float> air_;
+  SingleScattering<float> air_;
 };
 
 }  // namespace alpenglow::lut

@@ -151,7 +151,7 @@ struct SkySimulator::Part {
     return radiance;
   }
 
-  AirIntegrator<float> air;
+  SingleScattering<float> air;
   DiffuseLight diffuse;
 };
 

@@ -4,7 +4,7 @@
 //
 // Light is given relative to the sun above the air, f = L / E [1/sr] or E' / E [1], because f is
 // smooth over wavelengths where the sun's spectrum is not. It contains all orders of scattering
-// (AirIntegrator and DiffuseLight).
+// (SingleScattering and DiffuseLight).
 #pragma once
 
 #include <cstdint>

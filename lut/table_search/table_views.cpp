@@ -81,7 +81,7 @@ double RmsOf(const std::vector<double>& values) {
   return values.empty() ? 0.0 : Length(values) / std::sqrt(static_cast<double>(values.size()));
 }
 
-ReferenceView ViewReference(const Medium& medium, const AirIntegrator<float>& air,
+ReferenceView ViewReference(const Medium& medium, const SingleScattering<float>& air,
                      const DiffuseLight& finest, ViewKind kind, std::size_t i) {
   ReferenceView view{kind, RayOf(kind, i, medium), {}, {}};
   if (kind == ViewKind::kIrradiance) {
@@ -144,7 +144,7 @@ DiffuseLight FinestDiffuseLight(const Medium& medium) {
 ReferenceViews::ReferenceViews(const Medium& medium, const DiffuseLight& finest,
                          std::size_t views_of_a_kind, std::size_t first)
     : views_(kViewKinds.size() * views_of_a_kind) {
-  const AirIntegrator<float> air(medium);
+  const SingleScattering<float> air(medium);
   tbb::parallel_for(std::size_t{0}, views_.size(), [&](std::size_t k) {
     if (Interrupted()) return;
     views_[k] = ViewReference(medium, air, finest, kViewKinds[k / views_of_a_kind],

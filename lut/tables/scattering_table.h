@@ -5,7 +5,7 @@
 //   texel = integral of sigma_s(h) T(observer to point) T(point to sun) ds   per unit irradiance
 //
 // for molecules and aerosol separately, per band, as float, without the phase functions: those are
-// applied at the look-up (AirIntegrator::Inscatter), which keeps the aureole sharp. There are two
+// applied at the look-up (SingleScattering::Inscatter), which keeps the aureole sharp. There are two
 // sets of axes:
 //
 //   Bruneton   those of scattering_map.glsl, quadrilinear; angles nu that are impossible for a
@@ -143,7 +143,7 @@ class ScatteringTable {
   [[nodiscard]] std::size_t IndexOf(std::size_t nu, std::size_t mu_s, std::size_t mu,
                                     std::size_t altitude) const;
 
-  AirIntegrator<float> air_;
+  SingleScattering<float> air_;
   ScatteringTableSize size_;
   double lowest_mu_s_;
   ScatteringAxes axes_;

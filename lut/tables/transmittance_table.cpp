@@ -37,7 +37,7 @@ TransmittanceTable::TransmittanceTable(const Medium& medium, const Transmittance
       radius_km_(medium.planet_radius_m / kMetresPerKilometre),
       top_km_(medium.atmosphere_height_m / kMetresPerKilometre),
       texels_(RequireSize(medium, size)) {
-  const AirIntegrator<double> air(medium_);
+  const SingleScattering<double> air(medium_);
   const std::size_t bands = air.bands();
   tbb::parallel_for(std::size_t{0}, size_.altitudes, [&](std::size_t row) {
     for (std::size_t column = 0; column < size_.mu; ++column) {

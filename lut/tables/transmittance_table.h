@@ -5,7 +5,7 @@
 //   texel (i, j) = T(h_j, mu_i) per band, stored as float, rays to space only
 //
 // The map is that of transmittance_map.glsl: columns run from the zenith to the horizon, rows from
-// the ground to the top. AirIntegrator computes this transmittance faster and more accurately (see
+// the ground to the top. SingleScattering computes this transmittance faster and more accurately (see
 // its header). The table is for programs that load tables, and for comparison with it.
 //
 // This header also includes the shared text transmittance_map.glsl as C++ templates over double,

@@ -152,7 +152,7 @@ void SetEnd(const DirectRay& placed, const ColumnSet<float>& columns, RaySamples
 
 }  // namespace
 
-SegmentAir::SegmentAir(const AirIntegrator<float>& air)
+SegmentAir::SegmentAir(const SingleScattering<float>& air)
     : air_(air),
       direct_(air.medium()),
       haze_share_(LargestHazeShare(air.constants())),
@@ -254,7 +254,7 @@ struct Panel {
 
 }  // namespace
 
-AerialPerspective::AerialPerspective(const AirIntegrator<float>& air, const DiffuseLight& diffuse)
+AerialPerspective::AerialPerspective(const SingleScattering<float>& air, const DiffuseLight& diffuse)
     : air_(air), diffuse_(diffuse), segments_(air) {
   const Medium& medium = air.medium();
   for (std::size_t band = 0; band < medium.wavelengths_nm.size(); ++band) {

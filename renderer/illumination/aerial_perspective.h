@@ -115,7 +115,7 @@ template <typename Panel>
 /// to the arguments of its constructor.
 class SegmentAir {
  public:
-  explicit SegmentAir(const AirIntegrator<float>& air);
+  explicit SegmentAir(const SingleScattering<float>& air);
 
   /// Returns the panels of a ray, including dark ones. The other functions require a ray with
   /// panels whose extent ends at its length.
@@ -146,7 +146,7 @@ class SegmentAir {
   [[nodiscard]] int NodesFor(const DirectRay& placed, bool shafts) const;
   [[nodiscard]] ColumnSet<float> ColumnsAlong(const ViewRay& ray, const DirectRay& placed) const;
 
-  const AirIntegrator<float>& air_;
+  const SingleScattering<float>& air_;
   DirectScattering direct_;
   float haze_share_;  // fraction of the extinction at altitude 0, largest of any band
   float rayleigh_height_km_, mie_height_km_;
@@ -167,7 +167,7 @@ struct AirAlongRay {
 /// mean square; 5e-4 in clear air) and 5e-3 (at worst) of single scattering, 3e-7 of transmittance.
 class AerialPerspective {
  public:
-  AerialPerspective(const AirIntegrator<float>& air, const DiffuseLight& diffuse);
+  AerialPerspective(const SingleScattering<float>& air, const DiffuseLight& diffuse);
 
   /// Nodes per panel. Rays that end in the air (ViewRay::length_m) choose their number by their
   /// length and the haze.
@@ -212,7 +212,7 @@ class AerialPerspective {
                                          const ScatteredOnce<float>& once,
                                          bool higher_orders) const;
 
-  const AirIntegrator<float>& air_;
+  const SingleScattering<float>& air_;
   const DiffuseLight& diffuse_;
   SegmentAir segments_;
   double rayleigh_per_m_ = 0.0, mie_per_m_ = 0.0;  // largest extinction of any band at altitude 0

@@ -33,7 +33,7 @@ namespace alpenglow::renderer {
 /// The air of one medium, through which ground, fog and volumes are lit. Refers to all three
 /// members.
 struct SunlitAir {
-  const AirIntegrator<float>& air;
+  const SingleScattering<float>& air;
   const BentBeam& beam;         // direct light of sun and moon
   const DiffuseLight& diffuse;  // light of the sky
 

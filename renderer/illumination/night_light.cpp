@@ -33,7 +33,7 @@ BandLight LampsOfUnitLuminance(const BandColour& colour) {
 
 }  // namespace
 
-BandLight TownLight(double zenith, double ground_m, const AirIntegrator<float>& air,
+BandLight TownLight(double zenith, double ground_m, const SingleScattering<float>& air,
                     const BandColour& colour) {
   const double wanted = std::max(
       LuminanceOfSurfaceBrightness(zenith) - LuminanceOfSurfaceBrightness(kNaturalZenith), 0.0);
@@ -143,7 +143,7 @@ double AirglowSpectrum(double wavelength_nm) {
 
 }  // namespace
 
-NightLight::NightLight(const NightSky& sky, const AirIntegrator<float>& air,
+NightLight::NightLight(const NightSky& sky, const SingleScattering<float>& air,
                        const BandColour& colour, const glm::dvec3& up, double altitude_m,
                        const std::optional<BandLight>& towns)
     : sky_(sky), up_(up), altitude_m_(altitude_m) {

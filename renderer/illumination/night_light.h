@@ -47,7 +47,7 @@ namespace alpenglow::renderer {
 /// Returns J of light pollution [W m^-2 sr^-1 nm^-1].
 /// @param zenith  [V magnitudes per square arcsecond]; J is 0 if it is darker than kNaturalZenith.
 /// @param ground_m  altitude of the place with this zenith, >= 0.
-[[nodiscard]] BandLight TownLight(double zenith, double ground_m, const AirIntegrator<float>& air,
+[[nodiscard]] BandLight TownLight(double zenith, double ground_m, const SingleScattering<float>& air,
                                   const BandColour& colour);
 
 /// A star or planet at the top of the air.
@@ -96,7 +96,7 @@ class NightLight {
   /// @param sky  in the frame of the picture.
   /// @param up  unit, at the eye.
   /// @param towns  TownLight; empty: none.
-  NightLight(const NightSky& sky, const AirIntegrator<float>& air, const BandColour& colour,
+  NightLight(const NightSky& sky, const SingleScattering<float>& air, const BandColour& colour,
              const glm::dvec3& up, double altitude_m,
              const std::optional<BandLight>& towns = std::nullopt);
 

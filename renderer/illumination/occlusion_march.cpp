@@ -85,7 +85,7 @@ std::vector<float> OccludedSunlight(const ShaftView& view, const glm::dvec3& dir
   return light;
 }
 
-ScatteredOnce<float> MarchWithOcclusion(const AirIntegrator<float>& air, const ShaftView& view,
+ScatteredOnce<float> MarchWithOcclusion(const SingleScattering<float>& air, const ShaftView& view,
                                         std::size_t i, const Terrain& terrain, int count,
                                         double offset) {
   const ViewRay ray = RayOf(view, i, LengthOf(view, i, terrain));

@@ -56,7 +56,7 @@ struct DiskPoint {
 /// Returns single scattering along ray i, by `count` equal steps in a coordinate that is dense near
 /// the eye: t = length v / (1 + k (1 - v)), with half of the steps in the first 30 km.
 /// @param offset  of the points in their steps, in [0, 1); it also selects the points of the disk.
-[[nodiscard]] ScatteredOnce<float> MarchWithOcclusion(const AirIntegrator<float>& air,
+[[nodiscard]] ScatteredOnce<float> MarchWithOcclusion(const SingleScattering<float>& air,
                                                       const ShaftView& view, std::size_t i,
                                                       const Terrain& terrain, int count,
                                                       double offset = 0.5);

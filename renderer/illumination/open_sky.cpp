@@ -184,7 +184,7 @@ Horizons GroundShares(const SurfaceSectors& surface, const Horizons& horizons) {
   return shares;
 }
 
-OpenSky::OpenSky(const AirIntegrator<float>& air, const DiffuseLight& diffuse,
+OpenSky::OpenSky(const SingleScattering<float>& air, const DiffuseLight& diffuse,
                  const glm::dvec3& to_sun, const Extent& extent)
     : bands_(air.bands()),
       stride_((air.bands() + 3) / 4 * 4),
@@ -218,7 +218,7 @@ OpenSky::OpenSky(const AirIntegrator<float>& air, const DiffuseLight& diffuse,
   KeepRadiances();
 }
 
-std::vector<float> OpenSky::TableAt(const AirIntegrator<float>& air, const DiffuseLight& diffuse,
+std::vector<float> OpenSky::TableAt(const SingleScattering<float>& air, const DiffuseLight& diffuse,
                                     double altitude_m, const glm::dvec3& to_sun) const {
   constexpr std::size_t kParts = 6;  // per sector
   constexpr std::array<double, 2> kGauss{0.2113248654051871, 0.7886751345948129};

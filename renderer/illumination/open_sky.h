@@ -93,7 +93,7 @@ class OpenSky {
     double radius_m;             // greatest distance from the frame's origin
   };
   /// @param to_sun  unit, in the frame of the horizons.
-  OpenSky(const AirIntegrator<float>& air, const DiffuseLight& diffuse, const glm::dvec3& to_sun,
+  OpenSky(const SingleScattering<float>& air, const DiffuseLight& diffuse, const glm::dvec3& to_sun,
           const Extent& extent);
 
   /// Returns the irradiance per unit solar irradiance [1] from directions above the horizon, which
@@ -128,7 +128,7 @@ class OpenSky {
   }
 
  private:
-  [[nodiscard]] std::vector<float> TableAt(const AirIntegrator<float>& air,
+  [[nodiscard]] std::vector<float> TableAt(const SingleScattering<float>& air,
                                            const DiffuseLight& diffuse, double altitude_m,
                                            const glm::dvec3& to_sun) const;
   /// Returns the irradiance of a level plane.

@@ -168,7 +168,7 @@ class TerrainLight {
  public:
   /// Creates the light of the sky alone.
   /// @param horizons  null: a plain.
-  TerrainLight(std::shared_ptr<const TerrainHorizons> horizons, const AirIntegrator<float>& air,
+  TerrainLight(std::shared_ptr<const TerrainHorizons> horizons, const SingleScattering<float>& air,
                const DiffuseLight& diffuse, const glm::dvec3& to_sun);
 
   [[nodiscard]] const OpenSky& sky() const { return sky_; }

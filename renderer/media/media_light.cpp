@@ -83,7 +83,7 @@ void AddDepth(const MediumOptics& optics, double column, Bands<double>& depth) {
 struct MediaLight::State {
   LocalMedia media;
   const SceneGeometry& geometry;
-  const AirIntegrator<float>& air;
+  const SingleScattering<float>& air;
   const BentBeam& beam;
   const DiffuseLight& diffuse;
   const LampLight* lamps;

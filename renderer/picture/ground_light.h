@@ -111,7 +111,7 @@ class GroundLight {
                                  const LocalSun& sun) const;
 
   GroundParts parts_;
-  const AirIntegrator<float>& air_;
+  const SingleScattering<float>& air_;
   const BentBeam& beam_;
   const DiffuseLight& diffuse_;
 };

@@ -39,7 +39,7 @@ struct AirModel {
 
   [[nodiscard]] SunlitAir sunlit() const { return {air, beam, diffuse}; }
 
-  AirIntegrator<float> air;
+  SingleScattering<float> air;
   BentBeam beam;
   DiffuseLight diffuse;
   AerialPerspective aerial;

@@ -250,7 +250,7 @@ class Topic : public TopicWork {
     AddRow(std::move(row), answer, [](const ViewRay&) { return 0; });
   }
 
-  AirIntegrator<float> air_;
+  SingleScattering<float> air_;
   DiffuseLight diffuse_;
   AerialPerspective aerial_;
 };

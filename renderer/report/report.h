@@ -34,7 +34,7 @@ class FroxelColumn {
   static constexpr double kFarthest_m = 128e3;
   static constexpr int kSide = 32;  // froxels of the volume across the picture
 
-  FroxelColumn(const AirIntegrator<float>& air, const ViewRay& ray) : slices_(kSlices + 1) {
+  FroxelColumn(const SingleScattering<float>& air, const ViewRay& ray) : slices_(kSlices + 1) {
     slices_[0] = {Bands<float>(air.bands()), Bands<float>(air.bands())};
     for (std::size_t band = 0; band < air.bands(); ++band) slices_[0].transmittance[band] = 1.0F;
     const Medium& medium = air.medium();

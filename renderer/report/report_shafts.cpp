@@ -264,7 +264,7 @@ class ShaftTopic {
 
   const ReportEffort& effort_;
   ShaftPlace ground_;
-  AirIntegrator<float> air_;
+  SingleScattering<float> air_;
   DiffuseLight diffuse_;  // unused
   AerialPerspective aerial_;
   std::vector<ReferenceView> views_;

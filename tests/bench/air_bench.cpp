@@ -37,7 +37,7 @@ InstructionSet SetOf(benchmark::State& state) {
 }
 
 void TransmittanceToSpace(benchmark::State& state) {
-  const AirIntegrator<float> air(MediumPreset("earth"));
+  const SingleScattering<float> air(MediumPreset("earth"));
   int i = 0;
   for (auto unused : state)
     benchmark::DoNotOptimize(air.TransmittanceToSpace(1000.0, 0.01 * (++i % 100)));
@@ -48,7 +48,7 @@ BENCHMARK(TransmittanceToSpace);
 // angle.
 void ColumnsToSpace(benchmark::State& state) {
   const InstructionSetScope scope(SetOf(state));
-  const AirIntegrator<float> air(MediumPreset("earth"));
+  const SingleScattering<float> air(MediumPreset("earth"));
   constexpr std::size_t kPoints = 1024;
   std::vector<float> altitude_m(kPoints), mu(kPoints);
   for (std::size_t i = 0; i < kPoints; ++i) {
@@ -65,7 +65,7 @@ BENCHMARK(ColumnsToSpace)->ArgsProduct({{0, 1, 2, 3}, {0, 1}})->ArgNames({"set",
 
 void SingleScatteringOfOneRay(benchmark::State& state) {
   const InstructionSetScope scope(SetOf(state));
-  const AirIntegrator<float> air(MediumPreset("earth"));
+  const SingleScattering<float> air(MediumPreset("earth"));
   const Sampling sampling{.nodes = static_cast<int>(state.range(1))};
   const std::vector<ViewRay> rays = Rays(static_cast<int>(state.range(2)));
   std::size_t i = 0;
@@ -89,11 +89,11 @@ BENCHMARK(DirectScatteringOfOneRay)
     ->ArgsProduct({{0, 1, 2, 3}, {0, 1}, {60, 91}})
     ->ArgNames({"set", "normal", "sun_zenith"});
 
-// A segment of 20 km of air in front of a mountain; argument: 0 AirIntegrator with 8 nodes, 1 fast,
+// A segment of 20 km of air in front of a mountain; argument: 0 SingleScattering with 8 nodes, 1 fast,
 // 2 normal.
 void AirInFrontOfAMountain(benchmark::State& state) {
   const DirectScattering direct(MediumPreset("earth"));
-  const AirIntegrator<float>& air = direct.reference();
+  const SingleScattering<float>& air = direct.reference();
   const DirectMode mode = state.range(0) == 1 ? DirectMode::kFast : DirectMode::kNormal;
   std::vector<ViewRay> rays = Rays(60);
   for (ViewRay& ray : rays) {
@@ -127,7 +127,7 @@ BENCHMARK(SingleScatteringByTheReference)->Unit(benchmark::kMicrosecond);
 void DiffuseLightOfOneRay(benchmark::State& state) {
   const Medium earth = MediumPreset("earth");
   const Medium medium = state.range(0) == 1 ? earth : InScalarLight(earth);
-  const AirIntegrator<float> air(medium);
+  const SingleScattering<float> air(medium);
   const DiffuseLight light(medium);
   int i = 0;
   for (auto unused : state) {
@@ -138,18 +138,18 @@ void DiffuseLightOfOneRay(benchmark::State& state) {
 }
 BENCHMARK(DiffuseLightOfOneRay)->Arg(0)->Arg(1)->ArgName("polarised");
 
-SampledLight ByReference(const AirIntegrator<float>& air, const ViewRay& ray) {
+SampledLight ByReference(const SingleScattering<float>& air, const ViewRay& ray) {
   SampledLight light{air.Sample(ray, {.nodes = 12, .dark_samples = true}), {}};
   light.once = air.Scatter(light.samples);
   return light;
 }
 
-// All orders of scattering from a direction of the sky; argument: 0 AirIntegrator with 12 nodes, 1
+// All orders of scattering from a direction of the sky; argument: 0 SingleScattering with 12 nodes, 1
 // fast, 2 normal.
 void AllOrdersOfOneRay(benchmark::State& state) {
   const Medium medium = MediumPreset("earth");
   const DirectScattering direct(medium);
-  const AirIntegrator<float>& air = direct.reference();
+  const SingleScattering<float>& air = direct.reference();
   const DiffuseLight light(medium);
   const DirectMode mode = state.range(0) == 1 ? DirectMode::kFast : DirectMode::kNormal;
   int i = 0;

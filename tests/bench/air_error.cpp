@@ -29,7 +29,7 @@ void PrintNodes() {
 
 void PrintDirect(const Medium& medium, const alpenglow::tests::DirectRegime& regime) {
   const DirectScattering direct(medium);
-  const AirIntegrator<float>& air = direct.reference();
+  const SingleScattering<float>& air = direct.reference();
   const alpenglow::tests::ReferenceRays reference = tests::ReferenceRaysOf(regime, medium, 20001, 1500);
   const auto print = [&](const char* method, const auto& scatter) {
     const auto error = alpenglow::tests::ErrorsOf(reference, air, scatter);

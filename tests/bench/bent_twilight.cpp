@@ -90,7 +90,7 @@ void CompareRules(const BentTwilight& twilight, double height_m, double elevatio
 void CompareBeam(const Medium& medium, double height_m, double apparent_deg) {
   const double apparent_rad = apparent_deg * kRadiansPerDegree, mu = std::sin(apparent_rad);
   const BandValues bent = BentTwilight(medium, height_m).Beam(apparent_rad, height_m);
-  static const AirIntegrator<float> kAir(medium);
+  static const SingleScattering<float> kAir(medium);
   static const BentBeam kBeam(medium);
   const Bands<float> straight = kAir.TransmittanceToSpace(height_m, mu);
   const Bands<float> beam = kBeam.Left(kAir, height_m, mu);

@@ -16,7 +16,7 @@ constexpr GeodeticPosition kPlace{47.0 * kRadiansPerDegree, 11.0 * kRadiansPerDe
 
 std::shared_ptr<const GroundSite> NewSite() {
   static const Medium kMedium = OnOsculatingSphere(MediumPreset("earth"), kPlace.latitude_rad);
-  static const SiteAir kAir{std::make_shared<const AirIntegrator<float>>(kMedium),
+  static const SiteAir kAir{std::make_shared<const SingleScattering<float>>(kMedium),
                             std::make_shared<const BentBeam>(kMedium),
                             std::make_shared<const DiffuseLight>(kMedium)};
   static const ElevationGrid kRange = BuiltInRange(kPlace);

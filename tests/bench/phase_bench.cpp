@@ -37,7 +37,7 @@ BENCHMARK_CAPTURE(Draw, Table, Dusty().mie_phase.front());
 
 // Applies phase functions to the scattered light of four bands.
 void ApplyInFourBands(benchmark::State& state, const Medium& medium) {
-  const AirIntegrator<float> air(medium);
+  const SingleScattering<float> air(medium);
   const ScatteredOnce<float> scattered = air.Scatter(air.Sample({2.0, 0.5, 0.7, 0.9}, {}));
   int i = 0;
   for (auto unused : state) benchmark::DoNotOptimize(air.Inscatter(scattered, CosineNumber(++i)));

@@ -25,7 +25,7 @@ struct World {
         aerial(air, diffuse) {}
 
   SceneGround ground;
-  AirIntegrator<float> air;
+  SingleScattering<float> air;
   DiffuseLight diffuse;
   AerialPerspective aerial;
 };

@@ -12,7 +12,7 @@
 namespace alpenglow::lut {
 namespace {
 
-void Row(const AirIntegrator<float>& air, const DiffuseLight& diffuse, const DirectSky& direct,
+void Row(const SingleScattering<float>& air, const DiffuseLight& diffuse, const DirectSky& direct,
          double altitude_m, double elevation_deg, const SkyViewSize* fixed) {
   const double mu_s = std::sin(elevation_deg * kRadiansPerDegree);
   const SkyViewSize size =
@@ -41,7 +41,7 @@ int main(int argc, char** argv) {
             .ray_nodes = std::atoi(argv[4])};
   }
   const Medium medium = MediumPreset(argc > 5 ? argv[5] : "earth");
-  const AirIntegrator<float> air(medium);
+  const SingleScattering<float> air(medium);
   const DiffuseLight diffuse(medium);
   const DirectSky direct(medium, diffuse);
   for (const double altitude_m : {2.0, 10e3, 40e3, 400e3}) {

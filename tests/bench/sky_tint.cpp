@@ -103,7 +103,7 @@ std::vector<std::vector<double>> SkiesOf(const Change& change, double sun_deg,
     const std::vector<double> some(wavelengths_nm.begin() + static_cast<std::ptrdiff_t>(first),
                                    wavelengths_nm.begin() + static_cast<std::ptrdiff_t>(last));
     const Medium medium = Changed(change, some);
-    const AirIntegrator<float> air(medium);
+    const SingleScattering<float> air(medium);
     const DiffuseLight diffuse(medium);
     for (std::size_t view = 0; view < skies.size(); ++view) {
       const ViewRay ray = RayFromAngles(2.0, 90.0 - kElevations_deg[view], 180.0, 90.0 - sun_deg);

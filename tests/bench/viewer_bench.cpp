@@ -67,7 +67,7 @@ BENCHMARK(MakingOfMediumTables)->Unit(benchmark::kMillisecond);
 
 void MakingOfIntegrator(benchmark::State& state) {
   const Medium medium = MediumFromToml("[aerosol]\nmixture = \"desert\"\n", "dusty");
-  for (auto unused : state) benchmark::DoNotOptimize(AirIntegrator<float>(medium));
+  for (auto unused : state) benchmark::DoNotOptimize(SingleScattering<float>(medium));
 }
 BENCHMARK(MakingOfIntegrator)->Unit(benchmark::kMillisecond);
 

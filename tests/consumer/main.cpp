@@ -5,7 +5,7 @@
 #include <alpenglow/lut/picture/image.h>
 
 int main() {
-  const alpenglow::atmosphere::AirIntegrator<float> air(
+  const alpenglow::atmosphere::SingleScattering<float> air(
       alpenglow::atmosphere::MediumPreset("earth"));
   const float zenith = air.TransmittanceToSpace(0.0, 1.0)[0];
   const double rayleigh = alpenglow::lut::LegendreCoefficients(

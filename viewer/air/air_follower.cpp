@@ -171,7 +171,7 @@ AirEye EyeOf(const AirView& view) {
 }
 
 AirTables TablesOf(const SolvedAir& air, const AirView& view, AirQuality quality) {
-  const AirIntegrator<float> here(OnOsculatingSphere(air.medium, view.latitude_rad));
+  const SingleScattering<float> here(OnOsculatingSphere(air.medium, view.latitude_rad));
   return MakeAirTables(here, air.diffuse, air.tables, EyeOf(view),
                        AirTablesSizeOf(quality, view.altitude_m));
 }

@@ -184,7 +184,7 @@ glm::vec4 Absorbed(const glm::vec4& tau) {
 /// One row of rays under a sun in the zenith, so that no part of them is in the planet's shadow.
 class RowOfRays {
  public:
-  RowOfRays(const AirIntegrator<float>& air, const AirEye& eye, const AirMap& map,
+  RowOfRays(const SingleScattering<float>& air, const AirEye& eye, const AirMap& map,
             const Reach& reach, PieceNodes nodes)
       : air_(air), nodes_(std::move(nodes)), samples_(SamplesOf(eye, map, reach)) {}
 
@@ -230,7 +230,7 @@ class RowOfRays {
         map.altitude > map.ceiling ? ViewColumns::kFromSpace : ViewColumns::kBetweenSamples);
   }
 
-  const AirIntegrator<float>& air_;
+  const SingleScattering<float>& air_;
   PieceNodes nodes_;
   RaySamples<float> samples_;
 };
@@ -243,7 +243,7 @@ struct SunColumns {
 /// Single scattering along the rays of one row, up to each distance.
 class SingleOfRow {
  public:
-  SingleOfRow(const AirIntegrator<float>& air, const AirPhases& phases, const AirEye& eye,
+  SingleOfRow(const SingleScattering<float>& air, const AirPhases& phases, const AirEye& eye,
               const AirMap& map, const Reach& reach, const RowOfRays& rays)
       : air_(air), phases_(phases), eye_(eye), map_(map), reach_(reach), rays_(rays) {}
 
@@ -313,7 +313,7 @@ class SingleOfRow {
     return light;
   }
 
-  const AirIntegrator<float>& air_;
+  const SingleScattering<float>& air_;
   const AirPhases& phases_;
   const AirEye& eye_;
   const AirMap& map_;
@@ -323,7 +323,7 @@ class SingleOfRow {
 
 class WayBuilder {
  public:
-  WayBuilder(const AirIntegrator<float>& air, const DiffuseLight& diffuse, const AirPhases& phases,
+  WayBuilder(const SingleScattering<float>& air, const DiffuseLight& diffuse, const AirPhases& phases,
              AirTables& tables)
       : air_(air),
         fan_(diffuse),
@@ -406,7 +406,7 @@ class WayBuilder {
     return texels.At(static_cast<int>(x), y, static_cast<int>(z));
   }
 
-  const AirIntegrator<float>& air_;
+  const SingleScattering<float>& air_;
   DiffuseFan fan_;
   const AirPhases& phases_;
   AirTables& tables_;
@@ -415,7 +415,7 @@ class WayBuilder {
 
 }  // namespace
 
-void FillWays(const AirIntegrator<float>& air, const DiffuseLight& diffuse, const AirPhases& phases,
+void FillWays(const SingleScattering<float>& air, const DiffuseLight& diffuse, const AirPhases& phases,
               AirTables& tables) {
   WayBuilder(air, diffuse, phases, tables).Fill();
 }

@@ -51,7 +51,7 @@ constexpr int kSunCosines = 256, kSunAltitudes = 64;
 // Returns the contributions of molecules, aerosol and everything else in the direction of the sun,
 // or in the nearest direction of its azimuth that passes through air. In bands without light there,
 // all three are equal.
-std::array<glm::vec4, 3> SkyMix(const AirIntegrator<float>& air, const SkyView& view,
+std::array<glm::vec4, 3> SkyMix(const SingleScattering<float>& air, const SkyView& view,
                                 const AirMap& map, const AirPhases& phases, const AirEye& eye) {
   const double sun = eye.zenith_angle_seen_rad();
   const double horizon = view.map().horizon_zenith_angle_rad();
@@ -81,7 +81,7 @@ double CosineOfPhaseNode(int node) {
   return 1.0 - 2.0 * half_sine * half_sine;
 }
 
-AirTexels SkyPhase(const AirIntegrator<float>& air, const DiffuseLight& diffuse,
+AirTexels SkyPhase(const SingleScattering<float>& air, const DiffuseLight& diffuse,
                    const AirTexels& aerosol, const AirEye& eye) {
   const float column_km = GlowColumn_km(air, eye.altitude_m, eye.mu_s);
   AirTexels phase = aerosol;
@@ -121,7 +121,7 @@ AirTexels SkyTexels(const SkyView& view, const AirMap& map, const AirPhases& pha
   return texels;
 }
 
-SkyView ViewOf(const AirIntegrator<float>& air, const DiffuseLight& diffuse, const AirEye& eye,
+SkyView ViewOf(const SingleScattering<float>& air, const DiffuseLight& diffuse, const AirEye& eye,
                double fineness) {
   SkyViewSize size = SkyViewSizeFor(air.medium(), eye.altitude_m, eye.mu_s);
   for (int* nodes : {&size.sky_rows, &size.ground_rows, &size.azimuths})
@@ -130,7 +130,7 @@ SkyView ViewOf(const AirIntegrator<float>& air, const DiffuseLight& diffuse, con
       .WithSunSeenAt(eye.zenith_angle_seen_rad());
 }
 
-AirTexels ThroughTexels(const AirIntegrator<float>& air, const AirMap& map, const AirEye& eye,
+AirTexels ThroughTexels(const SingleScattering<float>& air, const AirMap& map, const AirEye& eye,
                         const AirTablesSize& size) {
   AirTexels texels(size.through_rows + size.through_ground_rows, 1);
   int x = 0;
@@ -141,7 +141,7 @@ AirTexels ThroughTexels(const AirIntegrator<float>& air, const AirMap& map, cons
 
 /// Returns the fractions of the two phase functions in the light that air scatters at the altitude
 /// of the eye, at most 1500 m.
-std::array<glm::vec4, 2> SingleMix(const AirIntegrator<float>& air, const AirMap& map) {
+std::array<glm::vec4, 2> SingleMix(const SingleScattering<float>& air, const AirMap& map) {
   constexpr double kHighest = 1500.0;
   const Medium& medium = air.medium();
   const double h = std::min(kMetresPerKilometre * map.altitude, kHighest);
@@ -202,7 +202,7 @@ AirTablesSize AirTablesSizeOf(AirQuality quality, double altitude_m) {
   return high;
 }
 
-AirTables MakeAirTables(const AirIntegrator<float>& air, const DiffuseLight& diffuse,
+AirTables MakeAirTables(const SingleScattering<float>& air, const DiffuseLight& diffuse,
                         const MediumTables& medium, const AirEye& eye, const AirTablesSize& size) {
   RequireFourBands(air.medium());
   const SkyView view = ViewOf(air, diffuse, eye, size.sky_fineness);
@@ -229,7 +229,7 @@ AirTables MakeAirTables(const AirIntegrator<float>& air, const DiffuseLight& dif
   return tables;
 }
 
-MediumTables MakeMediumTables(const AirIntegrator<float>& air, const BentBeam& beam) {
+MediumTables MakeMediumTables(const SingleScattering<float>& air, const BentBeam& beam) {
   using namespace shared;
   RequireFourBands(air.medium());
   MediumTables tables{AirTexels(kPhaseNodes, 1), AirTexels(kSunCosines, 2 * kSunAltitudes)};

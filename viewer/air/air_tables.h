@@ -139,12 +139,12 @@ struct MediumTables {
 };
 
 /// @param beam  beam of the medium of `air`.
-[[nodiscard]] MediumTables MakeMediumTables(const AirIntegrator<float>& air, const BentBeam& beam);
+[[nodiscard]] MediumTables MakeMediumTables(const SingleScattering<float>& air, const BentBeam& beam);
 
 /// Computes the tables on the calling thread alone. `air`, `diffuse` and `medium` must belong to
 /// one medium; no reference to them is kept. Throws InputError for a medium of more than four
 /// bands.
-[[nodiscard]] AirTables MakeAirTables(const AirIntegrator<float>& air, const DiffuseLight& diffuse,
+[[nodiscard]] AirTables MakeAirTables(const SingleScattering<float>& air, const DiffuseLight& diffuse,
                                       const MediumTables& medium, const AirEye& eye,
                                       const AirTablesSize& size);
 

@@ -85,7 +85,7 @@ double OzoneDobson(const Medium& medium) {
 std::shared_ptr<const SolvedAir> SolveAir(const Medium& medium, AirSolution solution) {
   constexpr DiffuseLightOptions kDraft{
       .altitudes = 12, .sun_angles = 24, .zenith_nodes = 8, .azimuth_nodes = 5, .ray_nodes = 6};
-  const AirIntegrator<float> air(medium);
+  const SingleScattering<float> air(medium);
   tbb::task_arena one_thread(1);
   return one_thread.execute([&] {
     BentBeam beam(medium);

@@ -74,7 +74,7 @@ double OpenAltitude_m(const GroundSite& site) {
 }
 
 SkyTilt OpenSkyUnder(const GroundSite& site, const SunPosition& disk) {
-  return {*site.air().integrator, *site.air().diffuse, OpenAltitude_m(site),
+  return {*site.air().single_scattering, *site.air().diffuse, OpenAltitude_m(site),
           std::sin(SunForAir(disk).elevation_rad)};
 }
 
@@ -156,10 +156,10 @@ class GroundFollower::Maker {
     const Medium medium = OnOsculatingSphere(request.air->medium, request.view.eye.latitude_rad);
     const GroundMaterial material(cover_, drape_, medium.wavelengths_nm);
     if (!material.HasGloss()) return {};
-    const AirIntegrator<float> integrator(medium);
+    const SingleScattering<float> single_scattering(medium);
     const DiffuseLight& diffuse = request.air->diffuse;
     const glm::dvec3 to_sun = Direction(SunForAir(disk));
-    const OpenSky sky(integrator, diffuse, to_sun, OpenSky::Extent{0.0, 1.0, 5e5});
+    const OpenSky sky(single_scattering, diffuse, to_sun, OpenSky::Extent{0.0, 1.0, 5e5});
     return SeaMirror::Of(sky, diffuse, material.water(), to_sun);
   }
 
@@ -178,7 +178,7 @@ class GroundFollower::Maker {
     GeodeticPosition foot = request.view.eye;
     foot.height_m = 0.0;
     const Medium medium = OnOsculatingSphere(request.air->medium, foot.latitude_rad);
-    const SiteAir air{std::make_shared<const AirIntegrator<float>>(medium),
+    const SiteAir air{std::make_shared<const SingleScattering<float>>(medium),
                       std::shared_ptr<const BentBeam>(request.air, &request.air->beam),
                       std::shared_ptr<const DiffuseLight>(request.air, &request.air->diffuse)};
     SceneGround ground = GroundOf(*grid, LocalFrame(EllipsoidOf(medium), foot));

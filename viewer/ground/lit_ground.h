@@ -64,7 +64,7 @@ class MeshHeights {
 
 /// Solved air over the land: all members belong to one medium on the sphere of the site.
 struct SiteAir {
-  std::shared_ptr<const AirIntegrator<float>> integrator;
+  std::shared_ptr<const SingleScattering<float>> single_scattering;
   std::shared_ptr<const BentBeam> beam;
   std::shared_ptr<const DiffuseLight> diffuse;
 };
@@ -97,7 +97,7 @@ class GroundSite {
 
   [[nodiscard]] const SceneGround& ground() const { return ground_; }
   [[nodiscard]] const SceneGeometry& geometry() const { return geometry_; }
-  [[nodiscard]] const Medium& medium() const { return air_.integrator->medium(); }
+  [[nodiscard]] const Medium& medium() const { return air_.single_scattering->medium(); }
 
   [[nodiscard]] const GroundMaterial& material() const { return material_; }
   [[nodiscard]] const SiteAir& air() const { return air_; }

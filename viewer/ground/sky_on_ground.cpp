@@ -143,7 +143,7 @@ std::array<float, 4> NodeAt(const std::vector<SkyPart>& parts, float sunward, fl
 
 }  // namespace
 
-SkyTilt::SkyTilt(const AirIntegrator<float>& air, const DiffuseLight& diffuse, double altitude_m,
+SkyTilt::SkyTilt(const SingleScattering<float>& air, const DiffuseLight& diffuse, double altitude_m,
                  double mu_s) {
   ALPENGLOW_ENSURE(air.bands(), <=, std::size_t{4});
   const std::vector<SkyPart> parts = PartsOf(SkyView(air, diffuse, altitude_m, mu_s, kCoarseSky));

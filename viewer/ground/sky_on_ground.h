@@ -75,7 +75,7 @@ struct SkyTilt {
   std::array<std::array<float, 4>, kColumns * kRows> nodes{};
 
   /// @param air, diffuse  of one medium; mu_s: zenith cosine of the sun or moon.
-  SkyTilt(const AirIntegrator<float>& air, const DiffuseLight& diffuse, double altitude_m,
+  SkyTilt(const SingleScattering<float>& air, const DiffuseLight& diffuse, double altitude_m,
           double mu_s);
 
   /// Returns the irradiance on a slope whose unit normal has these components upwards and towards

@@ -356,8 +356,8 @@ void SceneFog::BeginIn(const std::shared_ptr<const SolvedAir>& air, double latit
   follower_.emplace([air, media = media_, size = size_, latitude_rad](const FogView& wanted) {
     tbb::task_arena alone(1);
     return alone.execute([&] {
-      const AirIntegrator<float> integrator(OnOsculatingSphere(air->medium, latitude_rad));
-      return MakeFogMap(*media->fog(), media->fog_bottom_m(), {integrator, air->beam, air->diffuse},
+      const SingleScattering<float> single_scattering(OnOsculatingSphere(air->medium, latitude_rad));
+      return MakeFogMap(*media->fog(), media->fog_bottom_m(), {single_scattering, air->beam, air->diffuse},
                         wanted, size);
     });
   });

@@ -33,8 +33,8 @@ BandLight LevelLight(const SolvedAir& air, double altitude_m, const SunPosition&
   const BandLight sky =
       air.diffuse.SkyIrradiance(altitude_m, std::sin(SunForAir(disk).elevation_rad));
   if (mu <= 0.0) return sky;
-  const AirIntegrator<float> integrator(air.medium);
-  return sky + static_cast<float>(mu) * air.beam.Left(integrator, altitude_m, mu);
+  const SingleScattering<float> single_scattering(air.medium);
+  return sky + static_cast<float>(mu) * air.beam.Left(single_scattering, altitude_m, mu);
 }
 
 // Returns the sunlight that the moon does not cover.

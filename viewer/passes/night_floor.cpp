@@ -26,7 +26,7 @@ void Upload(const GlTexture& map, int unit, int columns, int rows,
 
 NightFloor NightFloorOver(const GeodeticPosition& eye, const UtcInstant& now, const Medium& medium,
                           const BandColour& colour, const TownsOfScene& towns) {
-  const AirIntegrator<float> air(OnOsculatingSphere(medium, eye.latitude_rad));
+  const SingleScattering<float> air(OnOsculatingSphere(medium, eye.latitude_rad));
   std::optional<BandLight> town_light;
   if (towns.zenith) town_light = TownLight(*towns.zenith, towns.ground_m, air, colour);
   const NightLight night(NightSky(eye, now), air, colour, {0.0, 0.0, 1.0},

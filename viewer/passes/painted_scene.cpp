@@ -152,7 +152,7 @@ void PaintedScene::KeepUpAir(const PaintedView& view, const LightsOfSky& lights,
   keep_up(air_, sun_view_);
   if (known_air_ != air_.air()) {
     known_air_ = air_.air();
-    integrator_.emplace(OnOsculatingSphere(known_air_->medium, view.eye.place.latitude_rad));
+    single_scattering_.emplace(OnOsculatingSphere(known_air_->medium, view.eye.place.latitude_rad));
     glActiveTexture(GL_TEXTURE0 + kUploadUnit);
     ground_textures_.SetAir(known_air_->diffuse);
   }
@@ -183,7 +183,7 @@ void PaintedScene::KeepUpOpenSkies(const LightsOfSky& lights, Pace pace) {
     sky = OpenSkyOf{known_air_,
                     altitude_m,
                     elevation_rad,
-                    {*integrator_, known_air_->diffuse, altitude_m, std::sin(elevation_rad)}};
+                    {*single_scattering_, known_air_->diffuse, altitude_m, std::sin(elevation_rad)}};
   }
 }
 

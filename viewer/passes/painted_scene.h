@@ -141,7 +141,7 @@ class PaintedScene {
   AirView sun_view_;                                // the last view in which the sun was a light
   AirFollower air_;                                 // at sun_view_
   std::shared_ptr<const SolvedAir> known_air_;      // the medium in ground_textures_
-  std::optional<AirIntegrator<float>> integrator_;  // of known_air_
+  std::optional<SingleScattering<float>> single_scattering_;  // of known_air_
   std::array<std::optional<OpenSkyOf>, kLightSources> open_skies_;
   std::optional<AirFollower> moon_air_;           // once the moon is a light
   std::shared_ptr<const SolvedAir> moon_air_of_;  // the medium of moon_air_

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Direct integration (atmosphere/ray/direct_scattering.h) against AirIntegrator.
+// Direct integration (atmosphere/ray/direct_scattering.h) against SingleScattering.
 #include "atmosphere/ray/direct_scattering.h"
 
 #include <gtest/gtest.h>
@@ -160,7 +160,7 @@ TEST(DirectScattering, EdgeRaysAreFiniteAndNotNegative) {
 TEST(DirectScattering, EdgeRaysAreWithinTenPercent) {
   const Medium medium = MediumPreset("earth");
   const DirectScattering direct(medium);
-  const AirIntegrator<double> fine(medium);
+  const SingleScattering<double> fine(medium);
   for (int i = 1; i <= 3000; ++i) {
     const ViewRay ray = EdgeRay(i);
     const auto truth = fine.Inscatter(fine.Scatter(fine.Sample(ray, {.nodes = 24})), ray.nu);
@@ -201,7 +201,7 @@ TEST(DirectScattering, SegmentOfLengthZeroIsExactlyNothing) {
 TEST(DirectScattering, OneMillimetreOfAirScattersTheRightSmallNumber) {
   const Medium medium = MediumPreset("earth");
   const DirectScattering direct(medium);
-  const AirIntegrator<double> fine(medium);
+  const SingleScattering<double> fine(medium);
   const ViewRay ray{100.0, 0.1, 0.5, 0.3, 1e-3};
   const auto truth = fine.Scatter(fine.Sample(ray, {}));
   const auto light = direct.Scatter(ray, DirectMode::kFast);
@@ -234,8 +234,8 @@ void ExpectColumns(const ColumnSet<float>& found, const ColumnSet<double>& truth
   EXPECT_NEAR(static_cast<double>(found.ozone), truth.ozone, 1e-3 * truth.ozone + 0.6);
 }
 
-// True when positions, weights and columns of samples are those of AirIntegrator at the same places.
-void ExpectSamplesOf(const AirIntegrator<double>& fine, const ViewRay& ray,
+// True when positions, weights and columns of samples are those of SingleScattering at the same places.
+void ExpectSamplesOf(const SingleScattering<double>& fine, const ViewRay& ray,
                      const RaySamples<float>& samples) {
   if (samples.count == 0) return;  // the ray meets no air
   std::vector<RayNode> nodes;
@@ -266,7 +266,7 @@ TEST(DirectScattering, SamplesStandWhereTheySayAndCoverTheRay) {
   for (const char* preset : {"earth", "bruneton2017"}) {
     const Medium medium = MediumPreset(preset);
     const DirectScattering direct(medium);
-    const AirIntegrator<double> fine(medium);
+    const SingleScattering<double> fine(medium);
     for (const DirectRegime& regime : DirectRegimes()) {
       SCOPED_TRACE(std::string(preset) + ", " + regime.name);
       for (int i = 1; i <= 20; ++i) {
@@ -294,7 +294,7 @@ TEST(DirectScattering, EndsOfRaysAreThoseOfExtentOf) {
 TEST(DirectScattering, ColumnsOfShortWaysKeepTheirDigits) {
   const Medium medium = MediumPreset("earth");
   const DirectScattering direct(medium);
-  const AirIntegrator<double> fine(medium);
+  const SingleScattering<double> fine(medium);
   for (int i = 1; i <= 400; ++i) {
     const double altitude = 200.0 + 3000.0 * Halton(i, 2);
     const double length = std::pow(10.0, 5.0 * Halton(i, 3));

@@ -86,8 +86,8 @@ std::vector<std::array<double, 2>> RaysToSpace(double radius_m) {
 
 TEST(OpticalDepth, ClosedFormColumnsAreThoseOfQuadrature) {
   const Medium medium = Earth();
-  const AirIntegrator<double> in_double(medium);
-  const AirIntegrator<float> in_float(medium);
+  const SingleScattering<double> in_double(medium);
+  const SingleScattering<float> in_float(medium);
   for (const auto& [altitude_m, mu] : RaysToSpace(medium.planet_radius_m)) {
     const Columns exact = ColumnsByQuadrature(medium, altitude_m, mu);
     const std::array<double, 3> wide = in_double.ColumnsToSpace(altitude_m, mu);
@@ -111,8 +111,8 @@ TEST(OpticalDepth, ClosedFormColumnsAreThoseOfQuadrature) {
 // Hard case 9.
 TEST(OpticalDepth, FloatIsRightAtEveryAltitudeAndAngleInEveryInstructionSet) {
   const Medium medium = Earth();
-  const AirIntegrator<double> in_double(medium);
-  const AirIntegrator<float> in_float(medium);
+  const SingleScattering<double> in_double(medium);
+  const SingleScattering<float> in_float(medium);
   std::vector<float> altitudes, cosines;
   for (float altitude_m = 0.0F; altitude_m <= 100e3F; altitude_m += 390.625F) {
     for (int i = 0; i <= 160; ++i) {
@@ -144,17 +144,17 @@ TEST(OpticalDepth, FloatIsRightAtEveryAltitudeAndAngleInEveryInstructionSet) {
 }
 
 double Transmittance(const Medium& medium, const ViewRay& ray) {
-  return AirIntegrator<double>(medium).TransmittanceAlong(ray)[0];
+  return SingleScattering<double>(medium).TransmittanceAlong(ray)[0];
 }
 
-double Radiance(const AirIntegrator<double>& air, const ViewRay& ray) {
+double Radiance(const SingleScattering<double>& air, const ViewRay& ray) {
   return air.Inscatter(air.Scatter(air.Sample(ray, {})), ray.nu)[0];
 }
 
 // Hard case 14.
 TEST(OpticalDepth, ASegmentOfLengthZeroHasNone) {
   const Medium medium = Earth();
-  const AirIntegrator<float> air(medium);
+  const SingleScattering<float> air(medium);
   for (const double mu : {1.0, 0.0, -0.01, -1.0}) {
     const ViewRay nothing{100.0, mu, 0.5, 0.3, 0.0};
     EXPECT_EQ(air.TransmittanceAlong(nothing)[0], 1.0F);
@@ -165,8 +165,8 @@ TEST(OpticalDepth, ASegmentOfLengthZeroHasNone) {
 // Hard case 14.
 TEST(OpticalDepth, AMillimetreHasTheRightSmallDepthAndLight) {
   const Medium medium = Earth();
-  const AirIntegrator<double> air(medium);
-  const AirIntegrator<float> in_float(medium);
+  const SingleScattering<double> air(medium);
+  const SingleScattering<float> in_float(medium);
   for (const double mu : {1.0, 0.0, -0.01, -1.0}) {
     const ViewRay ray{100.0, mu, 0.5, 0.3, 1e-3};
     const double density_r = MoleculeDensity(medium, 100.0);
@@ -189,7 +189,7 @@ TEST(OpticalDepth, AMillimetreHasTheRightSmallDepthAndLight) {
 // Hard case 5.
 TEST(OpticalDepth, OffTheLimbTheTransmittanceIsExactlyOneAndSpaceIsBlack) {
   const Medium medium = Earth();
-  const AirIntegrator<double> air(medium);
+  const SingleScattering<double> air(medium);
   for (const double altitude_m : {400e3, 35786e3, 1e8}) {
     const double r = medium.planet_radius_m + altitude_m;
     const double tangent = medium.planet_radius_m + medium.atmosphere_height_m + 1.0;
@@ -205,7 +205,7 @@ TEST(OpticalDepth, OffTheLimbTheTransmittanceIsExactlyOneAndSpaceIsBlack) {
 // Hard case 5.
 TEST(OpticalDepth, FromSpaceTheLimbShines) {
   const Medium medium = Earth();
-  const AirIntegrator<double> air(medium);
+  const SingleScattering<double> air(medium);
   for (const double altitude_m : {400e3, 35786e3, 1e8}) {
     const double r = medium.planet_radius_m + altitude_m;
     const double tangent = medium.planet_radius_m + 20e3;
@@ -220,7 +220,7 @@ TEST(OpticalDepth, FromSpaceTheLimbShines) {
 // Hard case 8.
 TEST(OpticalDepth, ARayThatGrazesTheTopFromOutsideIsClearAndDark) {
   const Medium medium = Earth();
-  const AirIntegrator<double> air(medium);
+  const SingleScattering<double> air(medium);
   const double r = medium.planet_radius_m + 400e3;
   const double r_top = medium.planet_radius_m + medium.atmosphere_height_m;
   double mu = -std::sqrt((r - r_top) * (r + r_top)) / r;
@@ -236,7 +236,7 @@ TEST(OpticalDepth, ARayThatGrazesTheTopFromOutsideIsClearAndDark) {
 // Hard case 4.
 TEST(OpticalDepth, IsContinuousThroughTheTop) {
   const Medium medium = Earth();
-  const AirIntegrator<double> air(medium);
+  const SingleScattering<double> air(medium);
   const double zenith_at_noon = Radiance(air, {2.0, 1.0, 0.9, 0.9});
   for (const double mu : {-1.0, -0.5, -0.19, -0.17, 0.0, 1.0}) {
     const auto at = [&](double offset_m) {
@@ -252,7 +252,7 @@ TEST(OpticalDepth, IsContinuousThroughTheTop) {
 // Hard case 7.
 TEST(OpticalDepth, OneUlpAcrossTheHorizonLightDoesNotJump) {
   const Medium medium = Earth();
-  const AirIntegrator<double> air(medium);
+  const SingleScattering<double> air(medium);
   for (const double altitude_m : {0.01, 1.7, 1000.0, 11000.0, 60000.0, 400e3}) {
     const double horizon =
         shared::HorizonCosine(altitude_m / 1000.0, medium.planet_radius_m / 1000.0);
@@ -271,7 +271,7 @@ TEST(OpticalDepth, OneUlpAcrossTheHorizonLightDoesNotJump) {
 // Hard case 6.
 TEST(OpticalDepth, AClimbIntoSpaceIsContinuous) {
   const Medium medium = Earth();
-  const AirIntegrator<double> air(medium);
+  const SingleScattering<double> air(medium);
   for (const double mu : {1.0, 0.2, 0.0, -0.02, -0.3, -1.0}) {
     double before = Radiance(air, {1.7, mu, 0.5, 0.3});
     double peak = before;
@@ -289,7 +289,7 @@ TEST(OpticalDepth, AClimbIntoSpaceIsContinuous) {
 // Hard case 11.
 TEST(OpticalDepth, ASunAtTheZenithLightsAllAzimuthsAlike) {
   const Medium medium = Earth();
-  const AirIntegrator<double> air(medium);
+  const SingleScattering<double> air(medium);
   for (const double view_zenith : {0.0, 30.0, 60.0, 89.0}) {
     const double north = Radiance(air, RayFromAngles(2.0, view_zenith, 0.0, 0.0));
     for (const double azimuth : {33.0, 90.0, 180.0, 301.0}) {
@@ -304,7 +304,7 @@ TEST(OpticalDepth, TheViewAtTheSunAndAwayFromItIsFiniteForTheSharpestLobe) {
   Medium medium = Earth();
   for (const double g : {0.999, -0.999}) {
     medium.mie_phase.front().g = g;
-    const AirIntegrator<double> air(medium);
+    const SingleScattering<double> air(medium);
     for (const double nu : {1.0, -1.0}) {
       const double radiance = Radiance(air, {2.0, nu * 0.5, 0.5, nu});
       EXPECT_TRUE(std::isfinite(radiance)) << g << " " << nu;
@@ -316,7 +316,7 @@ TEST(OpticalDepth, TheViewAtTheSunAndAwayFromItIsFiniteForTheSharpestLobe) {
 // Hard case 2.
 TEST(OpticalDepth, AnObserverBelowTheSphereSeesTheSkyOfTheGround) {
   const Medium medium = Earth();
-  const AirIntegrator<double> air(medium);
+  const SingleScattering<double> air(medium);
   for (const double altitude_m : {-430.0, -11000.0}) {
     for (const double mu : {1.0, 0.1, 0.0}) {
       EXPECT_EQ(Radiance(air, {altitude_m, mu, 0.5, 0.3}), Radiance(air, {0.0, mu, 0.5, 0.3}));

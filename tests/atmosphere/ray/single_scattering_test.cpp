@@ -19,7 +19,7 @@ namespace alpenglow::atmosphere {
 namespace {
 
 template <typename Real>
-Bands<Real> Inscatter(const AirIntegrator<Real>& air, const ViewRay& ray,
+Bands<Real> Inscatter(const SingleScattering<Real>& air, const ViewRay& ray,
                       const Sampling& sampling) {
   return air.Inscatter(air.Scatter(air.Sample(ray, sampling)), ray.nu);
 }
@@ -39,7 +39,7 @@ std::vector<ViewRay> RaysUnderSun(double sun_elevation_deg) {
 
 double LargestErrorUnderSun(double sun_elevation_deg, const Sampling& sampling) {
   const Medium medium = MediumPreset("bruneton2017");
-  const AirIntegrator<float> air(medium);
+  const SingleScattering<float> air(medium);
   double largest = 0.0;
   for (const ViewRay& ray : RaysUnderSun(sun_elevation_deg)) {
     const auto fast = Inscatter(air, ray, sampling);
@@ -82,7 +82,7 @@ TEST(SingleScattering, StoredCasesThatAreNotLimbRaysAgreeToOnePartInTenThousand)
     const RayExtent extent = ExtentOf(ray, medium.planet_radius_m, medium.atmosphere_height_m);
     const bool limb = ray.mu < 0.0 && extent.end == RayEnd::kSpace;
     if (limb) continue;
-    const AirIntegrator<float> air(medium);
+    const SingleScattering<float> air(medium);
     const auto fast = Inscatter(air, ray, kFine);
     for (const stored::Row& expected : results.at(row.at("id"))) {
       const double truth = stored::Number(expected, "inscatter");
@@ -137,7 +137,7 @@ TEST(SingleScattering, ALayerOfAHundredMetresIsSampledAsTheEarthsAir) {
     medium.mie_scattering_per_m[band] = medium.mie_extinction_per_m[band] = 0.0;
     medium.ozone_absorption_per_m[band] = 0.0;
   }
-  const AirIntegrator<double> air(medium);
+  const SingleScattering<double> air(medium);
   for (const double zenith_deg : {10.0, 60.0, 82.0, 94.0, 130.0}) {
     for (const double sun_deg : {20.0, 78.0, 88.0}) {
       const ViewRay ray =
@@ -153,7 +153,7 @@ TEST(SingleScattering, ALayerOfAHundredMetresIsSampledAsTheEarthsAir) {
 
 TEST(SingleScattering, RaysOfAnyKindHaveRoomForTheFinestSampling) {
   const Medium medium = MediumPreset("bruneton2017");
-  const AirIntegrator<double> air(medium);
+  const SingleScattering<double> air(medium);
   const Sampling finest{.nodes = 32, .split_ozone = true, .dark_samples = true};
   std::size_t most = 0;
   for (const double altitude_m : {10.0, 12e3, 30e3, 59e3, 400e3}) {
@@ -177,7 +177,7 @@ TEST(SingleScattering, RaysOfAnyKindHaveRoomForTheFinestSampling) {
 // What ErrorOfRegime takes for the truth is right.
 TEST(SingleScattering, SixtyFourSamplesAreTheReferenceInEveryRegime) {
   const Medium medium = MediumPreset("hazy");
-  const AirIntegrator<double> air(medium);
+  const SingleScattering<double> air(medium);
   for (const auto& sun : tests::kSunHeights) {
     for (const auto& view : tests::kRayViews) {
       for (const int i : {1, 2, 3}) {
@@ -196,8 +196,8 @@ TEST(SingleScattering, SixtyFourSamplesAreTheReferenceInEveryRegime) {
 // Hard case 9.
 TEST(SingleScattering, FloatAgreesWithDouble) {
   const Medium medium = MediumPreset("earth");
-  const AirIntegrator<float> single(medium);
-  const AirIntegrator<double> twice(medium);
+  const SingleScattering<float> single(medium);
+  const SingleScattering<double> twice(medium);
   for (const double sun : {60.0, 6.0, 1.0, -3.0}) {
     for (const ViewRay& ray : RaysUnderSun(sun)) {
       const auto f = Inscatter(single, ray, kFine);
@@ -212,7 +212,7 @@ TEST(SingleScattering, FloatAgreesWithDouble) {
 
 // Hard case 14.
 TEST(SingleScattering, SegmentOfLengthZeroIsExactlyNothing) {
-  const AirIntegrator<float> air(MediumPreset("earth"));
+  const SingleScattering<float> air(MediumPreset("earth"));
   const ViewRay ray{100.0, 0.1, 0.5, 0.3, 0.0};
   const auto scattered = air.Scatter(air.Sample(ray, {}));
   const auto transmittance = air.TransmittanceAlong(ray);
@@ -226,7 +226,7 @@ TEST(SingleScattering, SegmentOfLengthZeroIsExactlyNothing) {
 // Hard case 14.
 TEST(SingleScattering, OneMillimetreOfAirScattersTheRightSmallNumber) {
   const Medium medium = MediumPreset("earth");
-  const AirIntegrator<float> air(medium);
+  const SingleScattering<float> air(medium);
   const ViewRay ray{100.0, 0.1, 0.5, 0.3, 1e-3};
   const auto fast = Inscatter(air, ray, {});
   const auto truth = reference::SingleScatteringAlong(medium, ray);
@@ -238,7 +238,7 @@ TEST(SingleScattering, OneMillimetreOfAirScattersTheRightSmallNumber) {
 TEST(SingleScattering, ShortSegmentsKeepTheirOpticalDepth) {
   // The difference of two closed forms would have no right digit here; the integral has.
   const Medium medium = MediumPreset("bruneton2017");
-  const AirIntegrator<double> air(medium);
+  const SingleScattering<double> air(medium);
   for (const double length : {1.0, 100.0, 10000.0}) {
     const ViewRay ray{500.0, 0.05, 0.5, 0.3, length};
     const auto truth = reference::OpticalDepthAlong(medium, ray);
@@ -251,7 +251,7 @@ TEST(SingleScattering, ShortSegmentsKeepTheirOpticalDepth) {
 
 TEST(SingleScattering, ColumnsSummedFromSampleToSampleAreThoseOfTheWholeWay) {
   const Medium medium = MediumPreset("earth");
-  const AirIntegrator<double> air(medium);
+  const SingleScattering<double> air(medium);
   const auto columns_between = [&](const ViewRay& ray, std::size_t steps) {
     std::vector<RayNode> nodes;
     for (std::size_t i = 1; i <= steps; ++i) {
@@ -293,7 +293,7 @@ TEST(SingleScattering, ColumnsSummedFromSampleToSampleAreThoseOfTheWholeWay) {
 
 TEST(SingleScattering, TransmittanceToSpaceAgreesWithTheReferenceAtEveryAngle) {
   const Medium medium = MediumPreset("earth");
-  const AirIntegrator<float> air(medium);
+  const SingleScattering<float> air(medium);
   for (const double altitude : {0.0, 10.0, 3000.0, 30000.0, 80000.0}) {
     for (double mu = -0.3; mu <= 1.0; mu += 0.01) {
       const auto truth = reference::OpticalDepthAlong(medium, {altitude, mu, 1.0, mu});
@@ -308,7 +308,7 @@ TEST(SingleScattering, TransmittanceToSpaceAgreesWithTheReferenceAtEveryAngle) {
 
 // Hard case 10.
 TEST(SingleScattering, ZenithAndNadirViewsDoNotDependOnAzimuth) {
-  const AirIntegrator<float> air(MediumPreset("earth"));
+  const SingleScattering<float> air(MediumPreset("earth"));
   for (const double view : {0.0, 180.0}) {
     const auto one = Inscatter(air, RayFromAngles(5000.0, view, 0.0, 50.0), kFine);
     const auto other = Inscatter(air, RayFromAngles(5000.0, view, 137.0, 50.0), kFine);
@@ -320,7 +320,7 @@ TEST(SingleScattering, ZenithAndNadirViewsDoNotDependOnAzimuth) {
 // Hard case 4.
 TEST(SingleScattering, TopOfTheAtmosphereIsCrossedWithoutAJump) {
   const Medium medium = MediumPreset("earth");
-  const AirIntegrator<float> air(medium);
+  const SingleScattering<float> air(medium);
   const double top = medium.atmosphere_height_m;
   for (const double view : {95.0, 100.0, 120.0, 180.0}) {
     const auto below = Inscatter(air, RayFromAngles(top - 1e-6, view, 40.0, 60.0), kFine);
@@ -332,7 +332,7 @@ TEST(SingleScattering, TopOfTheAtmosphereIsCrossedWithoutAJump) {
 }
 
 TEST(SingleScattering, MarchOfManyStepsComesToTheSameLight) {
-  const AirIntegrator<float> air(MediumPreset("bruneton2017"));
+  const SingleScattering<float> air(MediumPreset("bruneton2017"));
   for (const double sun_elevation_deg : {30.0, -3.0}) {
     const ViewRay ray = RayFromAngles(1500.0, 80.0, 20.0, 90.0 - sun_elevation_deg);
     const RayExtent extent = air.Sample(ray, kFine).extent;
@@ -359,7 +359,7 @@ TEST(SingleScattering, MoreWavelengthsThanItHoldsAreRefused) {
       list->push_back(list->back());
     }
   }
-  EXPECT_THROW(AirIntegrator<float>{medium}, InputError);
+  EXPECT_THROW(SingleScattering<float>{medium}, InputError);
 }
 
 // The desert's dust: a table at every wavelength.
@@ -367,7 +367,7 @@ Medium Dusty() { return MediumFromToml("[aerosol]\nmixture = \"desert\"\n", "dus
 
 TEST(SingleScattering, EveryBandHasThePhaseFunctionOfItsOwn) {
   const Medium medium = Dusty();
-  const AirIntegrator<float> air(medium);
+  const SingleScattering<float> air(medium);
   for (const ViewRay& ray : RaysUnderSun(20.0)) {
     const auto light = Inscatter(air, ray, kFine);
     const auto truth = reference::SingleScatteringAlong(medium, ray);
@@ -376,7 +376,7 @@ TEST(SingleScattering, EveryBandHasThePhaseFunctionOfItsOwn) {
           << "16 nodes a panel";
       Medium shared = medium;
       shared.mie_phase = {medium.mie_phase[band]};
-      EXPECT_EQ(light[band], Inscatter(AirIntegrator<float>(shared), ray, kFine)[band]);
+      EXPECT_EQ(light[band], Inscatter(SingleScattering<float>(shared), ray, kFine)[band]);
     }
   }
 }
@@ -384,8 +384,8 @@ TEST(SingleScattering, EveryBandHasThePhaseFunctionOfItsOwn) {
 // Dust has a peak a degree wide, continental air a wider one.
 TEST(SingleScattering, PhaseFunctionsReadInFloatAreThoseOfTheirTables) {
   for (const Medium& medium : {Dusty(), MediumPreset("mars"), MediumPreset("earth")}) {
-    const AirIntegrator<float> fast(medium);
-    const AirIntegrator<double> exact(medium);
+    const SingleScattering<float> fast(medium);
+    const SingleScattering<double> exact(medium);
     for (int i = 0; i <= 3600; ++i) {
       const double share = i / 3600.0;  // more about the sun
       const double nu = std::cos(kPi * share * share);
@@ -404,7 +404,7 @@ TEST(SingleScattering, PhaseFunctionsReadInFloatAreThoseOfTheirTables) {
 TEST(SingleScattering, LookingAtTheSunWithASharpPhaseFunctionIsFinite) {
   Medium medium = MediumPreset("earth");
   medium.mie_phase = {{.kind = PhaseKind::kHenyeyGreenstein, .g = 0.999}};
-  const AirIntegrator<float> air(medium);
+  const SingleScattering<float> air(medium);
   for (const double nu : {1.0, -1.0}) {
     const ViewRay ray{2.0, nu * 0.5, 0.5, nu};
     const auto light = Inscatter(air, ray, kFine);
@@ -429,7 +429,7 @@ ViewRay ThroughTheShadow(const Medium& medium, double depth_m) {
 // Hard case 15.
 TEST(SingleScattering, ASegmentThroughThePlanetsShadowIsThatOfTheReferenceWithoutASeam) {
   const Medium medium = MediumPreset("earth");
-  const AirIntegrator<float> air(medium);
+  const SingleScattering<float> air(medium);
   for (const double depth_m : {-20e3, -100.0, -1.0, 1.0, 100.0, 3e3, 10e3, 18e3}) {
     const ViewRay ray = ThroughTheShadow(medium, depth_m);
     const ShadowSpan shadow =
@@ -451,7 +451,7 @@ TEST(SingleScattering, ASegmentThroughThePlanetsShadowIsThatOfTheReferenceWithou
 // Hard case 15.
 TEST(SingleScattering, WhereTheShadowOpensInASegmentItsLightDoesNotJump) {
   const Medium medium = MediumPreset("earth");
-  const AirIntegrator<float> air(medium);
+  const SingleScattering<float> air(medium);
   // A millimetre of depth is 226 m of shadow; air there is lit through 38 optical depths and more.
   const auto before = Inscatter(air, ThroughTheShadow(medium, -1e-3), kFine);
   const auto after = Inscatter(air, ThroughTheShadow(medium, 1e-3), kFine);
@@ -459,7 +459,7 @@ TEST(SingleScattering, WhereTheShadowOpensInASegmentItsLightDoesNotJump) {
     EXPECT_NEAR(after[band] / before[band], 1.0F, 1e-4F) << "panels begin and end elsewhere";
   }
   // Cut in two anywhere, in the light, on the edges of the shadow and in it, it is the same.
-  const AirIntegrator<double> fine(medium);
+  const SingleScattering<double> fine(medium);
   const ViewRay whole = ThroughTheShadow(medium, 3e3);
   const ShadowSpan shadow =
       PlanetShadow(whole, {0.0, whole.length_m, RayEnd::kLength}, medium.planet_radius_m);
@@ -494,7 +494,7 @@ TEST(SingleScattering, ThickAirFadesToNothingWithoutFurtherEffort) {
       medium.mie_extinction_per_m[band] = depth / medium.mie_scale_height_m;
       medium.mie_scattering_per_m[band] = 0.9 * medium.mie_extinction_per_m[band];
     }
-    const AirIntegrator<float> air(medium);
+    const SingleScattering<float> air(medium);
     for (const double mu : {1.0, 0.0}) {
       const double truth = reference::OpticalDepthAlong(medium, {2.0, mu, 1.0, mu}).tau[0];
       const double found = static_cast<double>(air.TransmittanceToSpace(2.0, mu)[0]);
@@ -524,7 +524,7 @@ struct EdgeErrors {
 };
 
 EdgeErrors ErrorsAtTheEdge(const Medium& medium) {
-  const AirIntegrator<double> air(medium);
+  const SingleScattering<double> air(medium);
   EdgeErrors errors;
   for (int i = 1; i <= 48; ++i) {
     const double top = medium.atmosphere_height_m;
@@ -598,7 +598,7 @@ TEST(SingleScattering, TheSharpestLobesForwardsAndBackwardsAndNoneAreFinite) {
     for (const PhaseKind kind : {PhaseKind::kHenyeyGreenstein, PhaseKind::kCornetteShanks}) {
       Medium medium = MediumPreset("bruneton2017");
       medium.mie_phase.front() = {.kind = kind, .g = g};
-      const AirIntegrator<float> air(medium);
+      const SingleScattering<float> air(medium);
       for (const double azimuth : {0.0, 1.0, 90.0, 180.0}) {
         const ViewRay ray = RayFromAngles(2.0, 50.0, azimuth, 50.0);
         const auto light = Inscatter(air, ray, kFine);

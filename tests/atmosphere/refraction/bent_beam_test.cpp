@@ -31,7 +31,7 @@ Medium EarthOfMolecules() {
 
 TEST(BentBeam, IsWithinOnePerCentOfTheRayEquationInMolecules) {
   const Medium medium = EarthOfMolecules();
-  const AirIntegrator<float> air(medium);
+  const SingleScattering<float> air(medium);
   const BentBeam beam(medium);
   const reference::RayEquation equation(medium, reference::PeckAndReeder(kHorizonWavelength_nm));
   for (const double height_m : kLitHeights_m) {
@@ -58,7 +58,7 @@ TEST(BentBeam, IsWithinOnePerCentOfTheRayEquationInMolecules) {
 
 TEST(BentBeam, IsWithinTwoPerCentOfBentRaysInAllAir) {
   const Medium medium = EarthOfThreeBands();
-  const AirIntegrator<float> air(medium);
+  const SingleScattering<float> air(medium);
   const BentBeam beam(medium);
   for (const double height_m : kLitHeights_m) {
     const tests::BentTwilight rays(medium, height_m);
@@ -76,7 +76,7 @@ TEST(BentBeam, IsWithinTwoPerCentOfBentRaysInAllAir) {
 
 TEST(BentBeam, BetweenItsNodesIsWithinThreePerCentOfBentRays) {
   const Medium medium = EarthOfThreeBands();
-  const AirIntegrator<float> air(medium);
+  const SingleScattering<float> air(medium);
   const BentBeam beam(medium);
   for (const double height_m : {20.0, 200.0, 700.0, 1500.0, 5500.0, 11e3}) {
     const tests::BentTwilight rays(medium, height_m);
@@ -98,7 +98,7 @@ TEST(BentBeam, FadesSmoothlyWhileTheSunSinks) {
   // itself at most from each to the next, or by 1e-3 high up where it hardly falls.
   constexpr double kMinute = kRadiansPerDegree / 60.0;
   const Medium medium = EarthOfThreeBands();
-  const AirIntegrator<float> air(medium);
+  const SingleScattering<float> air(medium);
   const BentBeam beam(medium);
   for (const double height_m : kLitHeights_m) {
     const auto log_at = [&](double minutes) {
@@ -118,7 +118,7 @@ TEST(BentBeam, FadesSmoothlyWhileTheSunSinks) {
 TEST(BentBeam, IsThatOfStraightRaysWhereNothingBends) {
   Medium medium = EarthOfThreeBands();
   medium.rayleigh_scattering_per_m.assign(3, 0.0);
-  const AirIntegrator<float> air(medium);
+  const SingleScattering<float> air(medium);
   EXPECT_EQ(BentBeam(medium).Left(air, 100.0, 0.01), air.TransmittanceToSpace(100.0, 0.01));
 }
 

@@ -20,7 +20,7 @@ namespace {
 
 template <typename Real>
 std::vector<double> LightOfManyRays() {
-  const AirIntegrator<Real> air(MediumPreset("earth"));
+  const SingleScattering<Real> air(MediumPreset("earth"));
   std::vector<double> light;
   for (const double altitude : {2.0, 10e3, 400e3}) {
     for (const double view : {10.0, 60.0, 89.0, 95.0, 110.0, 170.0}) {

@@ -53,7 +53,7 @@ class AureoleAir {
 
  private:
   Medium medium_;
-  AirIntegrator<float> air_;
+  SingleScattering<float> air_;
   DiffuseLight diffuse_;
 };
 

@@ -23,7 +23,7 @@ double NuOf(double mu, double mu_s, double azimuth_rad) {
 
 void ExpectDiffuseLightOfEveryAzimuth(const Medium& medium) {
   const DiffuseLight light(medium, kSmall);
-  const AirIntegrator<float> air(medium);
+  const SingleScattering<float> air(medium);
   const DiffuseFan fan(light);
   for (const double altitude_m : {0.0, 10e3, 400e3}) {
     for (const double mu : {1.0, 0.3, -0.35, -1.0}) {

@@ -35,7 +35,7 @@ constexpr double kToSpace_m = 1e9;
 std::vector<double> ErrorsOf(const Medium& medium, const DiffuseLightOptions& options,
                              const std::vector<Traced>& views) {
   const DiffuseLight light(medium, options);
-  const AirIntegrator<float> air(medium);
+  const SingleScattering<float> air(medium);
   std::vector<double> errors;
   for (const Traced& view : views) {
     ViewRay ray =
@@ -84,7 +84,7 @@ TEST(ForwardPeak, TakesNoAbsorptionAwayAndEndsThePhaseFunction) {
 
 TEST(ForwardPeak, OfAirWithoutAerosolIsNothing) {
   const Medium clear = Haze(0.0, 0.0);
-  const AirIntegrator<float> air(clear);
+  const SingleScattering<float> air(clear);
   const ViewRay ray = RayFromAngles(2.0, 50.0, 10.0, 60.0);
   const auto samples = air.Sample(ray, {.nodes = 12, .dark_samples = true});
   const Bands<float> light = ForwardPeak(clear, 6).Along(samples, ray.nu);
@@ -157,7 +157,7 @@ TEST(ForwardPeak, ComesBackFromStoredValues) {
                                 .forward_peak = true};
   const DiffuseLight light(haze, few);
   const DiffuseLight back(haze, few, {light.values(), light.orders(), light.converged()});
-  const AirIntegrator<float> air(haze);
+  const SingleScattering<float> air(haze);
   const ViewRay ray = RayFromAngles(2.0, 60.0, 20.0, 70.0);
   const auto samples = air.Sample(ray, {.nodes = 12, .dark_samples = true});
   EXPECT_EQ(light.InscatterAlong(samples, ray.nu), back.InscatterAlong(samples, ray.nu));

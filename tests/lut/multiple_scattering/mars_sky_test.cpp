@@ -32,7 +32,7 @@ class MarsSky : public testing::Test {
 
   // Solved once for all tests.
   inline static const Medium medium_ = MediumPreset("mars");
-  inline static const AirIntegrator<float> air_{medium_};
+  inline static const SingleScattering<float> air_{medium_};
   inline static const DiffuseLight diffuse_{medium_};
 };
 

@@ -137,9 +137,9 @@ TEST(DiffuseLight, EveryBandHasThePhaseFunctionOfItsOwn) {
   const DiffuseLight light(medium, few_orders);
   const ViewRay ray{2.0, 0.5, 0.7, 0.9};
   const auto inscatter = [&ray](const Medium& air, const DiffuseLight& diffuse) {
-    const AirIntegrator<float> integrator(air);
+    const SingleScattering<float> single_scattering(air);
     return diffuse.InscatterAlong(
-        integrator.Sample(ray, {.nodes = 8, .split_ozone = false, .dark_samples = true}), ray.nu);
+        single_scattering.Sample(ray, {.nodes = 8, .split_ozone = false, .dark_samples = true}), ray.nu);
   };
   for (std::size_t band = 0; band < 4; ++band) {
     Medium shared = medium;
@@ -181,10 +181,10 @@ TEST(DiffuseLight, IsTheSameForAnyNumberOfThreads) {
 TEST(DiffuseLight, ExactlySoManyOrdersAreThoseOfPathsOfThatLength) {
   const Medium air = MediumPreset("bruneton2017");
   const ViewRay ray = RayFromAngles(1000.0, 60.0, 90.0, 50.0);
-  const AirIntegrator<float> integrator(air);
+  const SingleScattering<float> single_scattering(air);
   const RaySamples<float> samples =
-      integrator.Sample(ray, {.nodes = 16, .split_ozone = false, .dark_samples = true});
-  const Bands<float> once = integrator.Inscatter(integrator.Scatter(samples), ray.nu);
+      single_scattering.Sample(ray, {.nodes = 16, .split_ozone = false, .dark_samples = true});
+  const Bands<float> once = single_scattering.Inscatter(single_scattering.Scatter(samples), ray.nu);
   for (const int orders : {1, 3}) {
     const DiffuseLight light(air, {.exact_orders = orders});
     EXPECT_EQ(light.orders(), orders);
@@ -254,7 +254,7 @@ void ExpectStoredTotals(const std::string& tag_filter, const std::set<std::strin
     if (row.at("tag") != tag_filter || !sets.contains(set)) continue;
     const Medium& medium = media.at(set);
     const DiffuseLight& light = lights.try_emplace(set, medium).first->second;
-    const AirIntegrator<float> air(medium);
+    const SingleScattering<float> air(medium);
     const ViewRay ray = stored::RayOf(row);
     const auto samples = air.Sample(ray, {.nodes = 16, .split_ozone = true, .dark_samples = true});
     if (samples.extent.end == RayEnd::kGround) continue;
@@ -296,7 +296,7 @@ TEST(DiffuseLight, HazeAgreesWithTheReferenceAtLowSunAndInTwilight) {
   };
   const Medium medium = MediumPreset("hazy");
   const DiffuseLight light(medium);
-  const AirIntegrator<float> air(medium);
+  const SingleScattering<float> air(medium);
   for (const View& view : {View{3000.0, 84.0, 20.0, 4.0},
                            {2.0, 82.0, 170.0, 2.0},
                            {2.0, 40.0, 60.0, -2.0},
@@ -345,7 +345,7 @@ TEST(DiffuseLight, IsNeverNegative) {
   for (const char* name : {"hazy", "clear-mountain"}) {
     const Medium medium = MediumPreset(name);
     const DiffuseLight light(medium, tests::kSmallLight);
-    const AirIntegrator<float> air(medium);
+    const SingleScattering<float> air(medium);
     for (const double altitude_m : {0.0, 9000.0, 70000.0}) {
       for (double sun_deg = -20.0; sun_deg <= 90.0; sun_deg += 11.0) {
         const double mu_s = std::sin(sun_deg * kRadiansPerDegree);
@@ -410,7 +410,7 @@ TEST(DiffuseLight, IsTheSameWithEveryInstructionSet) {
   const auto both = [&] {
     const DiffuseLight light(medium, tests::kSmallLight);
     const auto samples =
-        AirIntegrator<float>(medium).Sample(ray, {.nodes = 12, .dark_samples = true});
+        SingleScattering<float>(medium).Sample(ray, {.nodes = 12, .dark_samples = true});
     return std::tuple(light.values(), light.InscatterAlong(samples, ray.nu),
                       light.Irradiance(900.0, 0.1, 0.8, -0.3));
   };

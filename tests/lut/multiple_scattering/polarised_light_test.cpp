@@ -54,8 +54,8 @@ class Sky {
     return fine_air_.TransmittanceAlong(ray)[band] * medium.ground_albedo[band] / kPi * irradiance;
   }
 
-  AirIntegrator<float> air_;
-  AirIntegrator<double> fine_air_;
+  SingleScattering<float> air_;
+  SingleScattering<double> fine_air_;
   DiffuseLight light_;
 };
 
@@ -235,7 +235,7 @@ TEST(PolarisedLight, OfDirectIntegrationIsThatOfTheReference) {
   const Medium medium = MediumPreset("earth");
   ASSERT_TRUE(medium.polarised);
   const DirectScattering direct(medium), scalar(InScalarLight(medium));
-  const AirIntegrator<float>& air = direct.reference();
+  const SingleScattering<float>& air = direct.reference();
   for (const tests::DirectRegime& regime : tests::DirectRegimes()) {
     for (int i = 1; i <= 20; ++i) {
       const ViewRay ray = regime.ray(i, medium);

@@ -64,7 +64,7 @@ class Daylight {
   }
 
  private:
-  AirIntegrator<float> air_;
+  SingleScattering<float> air_;
   DiffuseLight diffuse_;
 };
 

@@ -243,7 +243,7 @@ TEST(ReportBaselines, ChapmanApproximationsAreAsGoodAsPublished) {
   Medium medium = MediumPreset("earth");
   medium.rayleigh_scale_height_m = 8000.0;
   medium.rayleigh_deficit = {};
-  const AirIntegrator<double> air(medium);
+  const SingleScattering<double> air(medium);
   const double radius_m = air.medium().planet_radius_m;
   for (const double mu : {0.0, 0.02, 0.1, 0.3, 1.0}) {
     const double column_m = air.ColumnsToSpace(0.0, mu)[0];
@@ -260,7 +260,7 @@ TEST(ReportBaselines, ChapmanApproximationsAreAsGoodAsPublished) {
 
 TEST(ReportBaselines, FiveHundredTrapezoidsKnowTheSameAir) {
   for (const char* name : {"earth", "bruneton2017"}) {
-    const AirIntegrator<float> air(MediumPreset(name));
+    const SingleScattering<float> air(MediumPreset(name));
     for (const double mu : {0.05, 0.2, 1.0}) {
       const Bands<float> closed = air.TransmittanceToSpace(0.0, mu);
       const Bands<float> march =

@@ -21,7 +21,7 @@ constexpr double kElevations_deg[] = {90.0, 60.0, 10.0, 1.0, -1.0, -4.0, -10.0};
 /// The default atmosphere, its light of higher orders solved once.
 struct Air {
   Medium medium = MediumPreset("earth");
-  AirIntegrator<float> air{medium};
+  SingleScattering<float> air{medium};
   DiffuseLight diffuse{medium};
   DirectSky direct{medium, diffuse};
 
@@ -82,7 +82,7 @@ TEST(SkyView, ErrorsStayBelowThreePerMilleInTheMean) {
 
 TEST(SkyView, OfHazeIsAsRight) {
   const Medium medium = MediumPreset("hazy");
-  const AirIntegrator<float> air(medium);
+  const SingleScattering<float> air(medium);
   const DiffuseLight diffuse(medium);
   const DirectSky direct(medium, diffuse);
   for (const double altitude_m : {2.0, 10e3}) {
@@ -189,8 +189,8 @@ TEST(SkyView, ARowIsItsLookUps) {
 TEST(SkyView, AnyNumberOfBandsIsTheBandsOneByOne) {
   const Medium all = MediumPreset("earth", WavelengthSet(6));
   const Medium one = MediumPreset("earth", {all.wavelengths_nm[4]});
-  const SkyView view(AirIntegrator<float>(all), DiffuseLight(all, tests::kSmallLight), 2.0, 0.5);
-  const SkyView single(AirIntegrator<float>(one), DiffuseLight(one, tests::kSmallLight), 2.0, 0.5);
+  const SkyView view(SingleScattering<float>(all), DiffuseLight(all, tests::kSmallLight), 2.0, 0.5);
+  const SkyView single(SingleScattering<float>(one), DiffuseLight(one, tests::kSmallLight), 2.0, 0.5);
   EXPECT_EQ(view.stride(), 8U);
   const float expected = single.Radiance(1.0, 0.7)[0];
   EXPECT_NEAR(view.Radiance(1.0, 0.7)[4], expected, 1e-3F * expected)

@@ -38,7 +38,7 @@ const ScatteringTable& SmallAzimuthTable() {
 
 TEST(ScatteringTable, LookupAtTexelsReturnsTheIntegralsOfTheirRays) {
   const ScatteringTable& table = SmallTable();
-  const AirIntegrator<double> air(table.medium());
+  const SingleScattering<double> air(table.medium());
   int compared = 0;
   for (std::size_t altitude = 0; altitude < kSmall.altitudes; altitude += 2) {
     for (std::size_t mu = 0; mu < kSmall.mu; mu += 3) {
@@ -101,7 +101,7 @@ struct Regime {
 
 // Observers to 12 km, all directions; radiance with phase functions, all bands.
 void ExpectErrorsBelow(const ScatteringTable& table, const Regime& regime) {
-  const AirIntegrator<float> air(table.medium());
+  const SingleScattering<float> air(table.medium());
   std::mt19937 random(3);
   std::uniform_real_distribution<double> uniform(0.0, 1.0);
   ErrorStatistics absolute, relative;
@@ -145,7 +145,7 @@ TEST(ScatteringTable, OnAzimuthsAndFourthRootsTwilightIsAsGoodAsDay) {
 
 TEST(ScatteringTable, OfAzimuthsIsExactAtTheNodesAndHoldsTheIntegrals) {
   const ScatteringTable& table = SmallAzimuthTable();
-  const AirIntegrator<double> air(table.medium());
+  const SingleScattering<double> air(table.medium());
   for (std::size_t altitude = 1; altitude + 1 < kSmall.altitudes; altitude += 2) {
     for (std::size_t mu = 1; mu + 1 < kSmall.mu; mu += 2) {
       for (std::size_t mu_s = 0; mu_s < kSmall.mu_s; mu_s += 3) {
@@ -248,7 +248,7 @@ TEST(ScatteringTable, ObserversAboveTheTopSeeWhatTheRaySeesWhereItEnters) {
 
 TEST(ScatteringTable, ShortRaysToTheGroundAreRightFromAHandsBreadthUp) {
   const ScatteringTable& table = StandardTable();
-  const AirIntegrator<double> air(table.medium());
+  const SingleScattering<double> air(table.medium());
   for (const double altitude_m : {0.1, 1.7, 10.0, 50.0}) {
     const ViewRay ray = RayFromAngles(altitude_m, 150.0, 60.0, 40.0);
     const double truth =
@@ -261,7 +261,7 @@ TEST(ScatteringTable, ShortRaysToTheGroundAreRightFromAHandsBreadthUp) {
 // Hard case 14.
 TEST(ScatteringTable, RaysThatEndAreDifferencesAndLengthZeroIsZero) {
   const ScatteringTable& table = StandardTable();
-  const AirIntegrator<double> air(table.medium());
+  const SingleScattering<double> air(table.medium());
   ViewRay ray = RayFromAngles(500.0, 80.0, 45.0, 50.0);
   ray.length_m = 0.0;
   EXPECT_EQ(table.Lookup(ray).rayleigh[0], 0.0F);

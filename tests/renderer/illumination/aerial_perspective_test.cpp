@@ -27,9 +27,9 @@ DiffuseLightOptions Coarse() {
 
 struct Air {
   explicit Air(const Medium& medium)
-      : integrator(medium), diffuse(medium, Coarse()), aerial(integrator, diffuse) {}
+      : single_scattering(medium), diffuse(medium, Coarse()), aerial(single_scattering, diffuse) {}
 
-  AirIntegrator<float> integrator;
+  SingleScattering<float> single_scattering;
   DiffuseLight diffuse;
   AerialPerspective aerial;
 };
@@ -71,7 +71,7 @@ std::vector<ViewRay> RaysBetweenMountains(std::size_t count, double planet_radiu
 }
 
 Bands<float> Once(const Air& air, const ViewRay& ray, const SunlitPath* sunlit) {
-  return air.integrator.Inscatter(air.aerial.Once(ray, sunlit, {}), ray.nu);
+  return air.single_scattering.Inscatter(air.aerial.Once(ray, sunlit, {}), ray.nu);
 }
 
 struct Error {
@@ -80,7 +80,7 @@ struct Error {
 
 Error OverMountains(const Medium& medium) {
   const Air air(medium);
-  const AirIntegrator<double> exact(medium);
+  const SingleScattering<double> exact(medium);
   const auto rays = RaysBetweenMountains(2000, medium.planet_radius_m);
   Error error;
   for (const ViewRay& ray : rays) {
@@ -116,12 +116,12 @@ TEST(AerialPerspective, ClearAirToAHundredKilometresIsRightToATwentiethOfAPercen
 
 TEST(AerialPerspective, GroundThroughHazeFromSpaceIsRightToATenthOfAPercent) {
   const Air air(MediumPreset("hazy"));
-  const AirIntegrator<double> exact(air.integrator.medium());
+  const SingleScattering<double> exact(air.single_scattering.medium());
   double squares = 0.0;
   int values = 0;
   for (int i = 1; i <= 200; ++i) {
     const ViewRay ray = tests::RayOfRegime(i, tests::kSunHeights[0], tests::RayView::kSpaceDown,
-                                           air.integrator.medium());
+                                           air.single_scattering.medium());
     const auto truth = exact.Inscatter(exact.Scatter(exact.Sample(ray, {.nodes = 64})), ray.nu);
     const Bands<float> found = Once(air, ray, nullptr);
     for (std::size_t band = 0; band < truth.count; ++band, ++values)
@@ -142,7 +142,7 @@ TEST(AerialPerspective, HazeIsRightToATenthOfAPercent) {
 
 // Light scattered once where it is known at every point of the ray how much sun there is.
 double MarchSum(const Air& air, const ViewRay& ray, const SunlitPath& sunlit) {
-  const Medium& medium = air.integrator.medium();
+  const Medium& medium = air.single_scattering.medium();
   const RayExtent extent = ExtentOf(ray, medium.planet_radius_m, medium.atmosphere_height_m);
   constexpr int kSteps = 500;
   double sum = 0.0;
@@ -157,10 +157,10 @@ double MarchSum(const Air& air, const ViewRay& ray, const SunlitPath& sunlit) {
       nodes.push_back(
           {piece.begin_m + length_m * v / bend, length_m * (1.0 + k) / (bend * bend) / kSteps});
     }
-    RaySamples<float> samples = air.integrator.SampleAt(ray, nodes);
+    RaySamples<float> samples = air.single_scattering.SampleAt(ray, nodes);
     for (std::size_t i = 0; i < nodes.size(); ++i)
       samples.lit[i] *= static_cast<float>(SunlightAt(sunlit, nodes[i].distance_m));
-    const auto light = air.integrator.Inscatter(air.integrator.Scatter(samples), ray.nu);
+    const auto light = air.single_scattering.Inscatter(air.single_scattering.Scatter(samples), ray.nu);
     for (std::size_t band = 0; band < light.count; ++band) sum += static_cast<double>(light[band]);
   }
   return sum;
@@ -279,7 +279,7 @@ TEST(AerialPerspective, OfHazeIsWithinHalfAPercentOfPathsAndHasNothingOfWhatIsBe
   haze.mie_scattering_per_m.assign(3, 7.992e-5);
   haze.mie_extinction_per_m.assign(3, 8.88e-5);
   haze.mie_phase = {{.kind = PhaseKind::kHenyeyGreenstein, .g = 0.8}};
-  const AirIntegrator<float> air(haze);
+  const SingleScattering<float> air(haze);
   const DiffuseLight diffuse(haze, OptionsFor(haze));
   ASSERT_TRUE(diffuse.options().forward_peak);
   const AerialPerspective aerial(air, diffuse);

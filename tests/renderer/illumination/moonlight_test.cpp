@@ -163,7 +163,7 @@ double SkyLuminance(const NightLight& light, const glm::dvec3& direction,
 double Magnitudes(double cd_per_m2) { return -2.5 * std::log10(cd_per_m2 / 10.8e4); }
 
 TEST(NightLight, TheZenithOverTownsIsAsBrightAsTheirClassOfBortleHasIt) {
-  const AirIntegrator<float>& air = tests::Earth().air;
+  const SingleScattering<float>& air = tests::Earth().air;
   const BandColour colour(tests::Earth().medium.wavelengths_nm);
   const glm::dvec3 up(0.0, 0.0, 1.0);
   // The pole of the galaxy stands high, the ecliptic low.
@@ -177,7 +177,7 @@ TEST(NightLight, TheZenithOverTownsIsAsBrightAsTheirClassOfBortleHasIt) {
 }
 
 TEST(NightLight, OfTownsRisesToTheHorizonReddensItAndLightsTheGround) {
-  const AirIntegrator<float>& air = tests::Earth().air;
+  const SingleScattering<float>& air = tests::Earth().air;
   const BandColour colour(tests::Earth().medium.wavelengths_nm);
   const glm::dvec3 up(0.0, 0.0, 1.0);
   const NightSky sky(PlaceFromDegrees(46.5, 8.0, 0.0), ParseInstant("2026-04-17T23:30:00Z"));

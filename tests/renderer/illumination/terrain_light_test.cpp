@@ -270,7 +270,7 @@ TEST(TerrainLight, SlopesLightEachOtherThroughAirThatDimsNothing) {
   for (std::vector<double>* list : {&medium.rayleigh_scattering_per_m, &medium.mie_scattering_per_m,
                                     &medium.mie_extinction_per_m, &medium.ozone_absorption_per_m})
     std::fill(list->begin(), list->end(), 0.0);
-  const AirIntegrator<float> air(medium);
+  const SingleScattering<float> air(medium);
   const DiffuseLight diffuse(medium, {.altitudes = 4, .sun_angles = 8, .degree = 2});
   const Terrain terrain(LandMesh(RoughLand, 17, 480.0));
   const auto horizons = std::make_shared<const TerrainHorizons>(terrain.mesh(), medium);

@@ -29,7 +29,7 @@ struct SolvedAir {
   explicit SolvedAir(const Medium& medium) : air(medium), beam(medium), diffuse(medium) {}
   [[nodiscard]] SunlitAir sunlit() const { return {air, beam, diffuse}; }
 
-  AirIntegrator<float> air;
+  SingleScattering<float> air;
   BentBeam beam;
   DiffuseLight diffuse;
 };

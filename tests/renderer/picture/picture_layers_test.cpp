@@ -54,7 +54,7 @@ TEST(PictureLayers, FactorsOfTheReddestLightAreNotNegative) {
 /// The sky of a medium from 100 km up, towards 8.5 degrees below the horizontal and 84 degrees
 /// beside the sun, which is 15 degrees down: what ozone leaves in the planet's shadow.
 std::vector<double> DeepTwilight(const Medium& medium) {
-  const AirIntegrator<float> air(medium);
+  const SingleScattering<float> air(medium);
   const DiffuseLight diffuse(medium);
   const double down = -8.5 * kRadiansPerDegree, sun = -15.0 * kRadiansPerDegree;
   const double nu = std::sin(down) * std::sin(sun) +

@@ -44,7 +44,7 @@ TEST(Polariser, HalvesLightThatIsNotPolarisedToTheLastBit) {
 
 TEST(Polariser, AirThatIsNotAskedForPolarisationHasNoneAndTheSameLight) {
   const Medium earth = MediumPreset("earth", {450.0, 650.0});
-  const AirIntegrator<float> air(earth);
+  const SingleScattering<float> air(earth);
   const DiffuseLight diffuse(earth, {.altitudes = 6, .sun_angles = 8, .degree = 2});
   const AerialPerspective aerial(air, diffuse);
   const ViewRay ray = RayFromAngles(2.0, 60.0, 80.0, 70.0);

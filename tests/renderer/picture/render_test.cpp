@@ -35,7 +35,7 @@ TEST(Render, SkyPixelIsSingleScatteringOfTheReferencePlusDiffuseLight) {
   const SunPosition sun = renderer.ApparentSun(noon);
   const Medium& medium = renderer.medium();
   const DiffuseLight diffuse(medium);
-  const AirIntegrator<float> air(medium);
+  const SingleScattering<float> air(medium);
   const BandColour colour(medium.wavelengths_nm);
   const CameraRays camera(CameraFromDegrees({1000.0, false}, 180.0, 20.0, 0.0, 40.0), 16, 9);
   const glm::dvec3 to_sun = DirectionFromAngles(sun.elevation_rad, sun.azimuth_rad).xyz;
@@ -279,7 +279,7 @@ TEST(Render, SunIrradianceInThePictureOfTheDiskIsThatOfTheSun) {
   const double pixel = std::pow(CameraRays(at_sun.camera, 100, 100).PixelAngle(), 2);
   double illuminance = 0.0;
   for (const auto& rgb : image.rgb) illuminance += Luminance(rgb) * pixel;
-  const AirIntegrator<float> air(renderer.medium());
+  const SingleScattering<float> air(renderer.medium());
   const SunPosition sun = renderer.ApparentSun(ParseInstant("2026-06-21T11:30:00Z"));
   const auto transmittance = air.TransmittanceToSpace(2.0, std::sin(sun.elevation_rad));
   std::vector<double> direct;

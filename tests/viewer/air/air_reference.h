@@ -65,7 +65,7 @@ class AirReference {
     return std::clamp(mu * mu_s + sines * std::cos(azimuth), -1.0, 1.0);
   }
 
-  AirIntegrator<double> exact_;
+  SingleScattering<double> exact_;
   const LitAir& air_;
   DirectSky sky_;
   AirEye eye_;

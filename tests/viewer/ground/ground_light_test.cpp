@@ -56,7 +56,7 @@ void Bind(const ShaderProgram& program, const char* name, GLuint binding, const 
 
 SkyTilt OpenSkyOver(const LitGround& lit) {
   const SiteAir& air = lit.site().air();
-  return {*air.integrator, *air.diffuse, 1000.0, lit.lighting().to_sun.z};
+  return {*air.single_scattering, *air.diffuse, 1000.0, lit.lighting().to_sun.z};
 }
 
 /// What the shaders read for an eye over the origin of the site.
@@ -248,7 +248,7 @@ std::vector<double> PlanetDifferences(const LitGround& lit, double eye_m) {
   Lighting light = lit.lighting();
   const SiteAir& air = lit.site().air();
   light.on_terrain =
-      std::make_shared<const TerrainLight>(nullptr, *air.integrator, *air.diffuse, light.to_sun);
+      std::make_shared<const TerrainLight>(nullptr, *air.single_scattering, *air.diffuse, light.to_sun);
   return Differences(lit, light, eye_m, PlanetCases(lit, eye_m),
                      {"PlanetRadiance(" + kPoint + ", " + kToEye + ")", false,
                       [eye_m](const Case& c) { return PlaceOf(c, eye_m, {}); }});

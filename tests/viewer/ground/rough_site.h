@@ -31,7 +31,7 @@ inline std::shared_ptr<const GroundSite> RoughSite(const GroundCover& cover = {}
                                                    const std::filesystem::path& land_cover = {}) {
   const Medium medium = OnOsculatingSphere(MediumPreset("earth"), kRoughPlace.latitude_rad);
   SiteAir air;
-  air.integrator = std::make_shared<const AirIntegrator<float>>(medium);
+  air.single_scattering = std::make_shared<const SingleScattering<float>>(medium);
   air.beam = std::make_shared<const BentBeam>(Unbending(medium));
   air.diffuse = std::make_shared<const DiffuseLight>(medium, kSmallLight);
   SceneGround ground{LocalFrame(kWgs84, kRoughPlace), Terrain(LandMesh(RoughLand, 129, 60.0)), 0.0,

@@ -16,8 +16,8 @@ namespace {
 
 /// Air of four bands with all of its light, solved once.
 struct Air {
-  std::shared_ptr<const AirIntegrator<float>> air =
-      std::make_shared<AirIntegrator<float>>(MediumPreset("earth"));
+  std::shared_ptr<const SingleScattering<float>> air =
+      std::make_shared<SingleScattering<float>>(MediumPreset("earth"));
   std::shared_ptr<const DiffuseLight> diffuse =
       std::make_shared<DiffuseLight>(MediumPreset("earth"));
 };

@@ -35,7 +35,7 @@ struct Stage {
   }();
   SceneGround ground = LoadGround(scene);
   SceneGeometry geometry{ground, scene.medium, false};
-  AirIntegrator<float> air{scene.medium};
+  SingleScattering<float> air{scene.medium};
   BentBeam beam{scene.medium};
   DiffuseLight diffuse{scene.medium};
 

@@ -17,7 +17,7 @@ TEST(NightFloor, LampsOfTownsAreInTheAirAsTheRendererHasThem) {
   const UtcInstant now{61058, 73800.0};
   const Medium medium = MediumPreset("earth");
   const BandColour colour(medium.wavelengths_nm);
-  const AirIntegrator<float> air(OnOsculatingSphere(medium, eye.latitude_rad));
+  const SingleScattering<float> air(OnOsculatingSphere(medium, eye.latitude_rad));
   const NightFloor dark = NightFloorOver(eye, now, medium, colour);
   const NightFloor city = NightFloorOver(eye, now, medium, colour, {18.0, 400.0});
   const BandLight towns = TownLight(18.0, 400.0, air, colour);
@@ -35,7 +35,7 @@ TEST(NightFloor, BetweenTexelsTheSkyIsThatOfTheRenderer) {
   const BandColour colour(medium.wavelengths_nm);
   const NightFloor floor = NightFloorOver(eye, now, medium, colour);
   const NightLight reference(NightSky(eye, now),
-                         AirIntegrator<float>(OnOsculatingSphere(medium, eye.latitude_rad)), colour,
+                         SingleScattering<float>(OnOsculatingSphere(medium, eye.latitude_rad)), colour,
                          {0.0, 0.0, 1.0}, eye.height_m);
   EXPECT_EQ(floor.scattered.x, reference.scattered()[0]);
   EXPECT_EQ(floor.level.x, reference.OnSurface(1.0)[0]);
