@@ -113,10 +113,10 @@ struct RenderedSky {
 
 RenderedSky Rendered(const SkyJob& job, ProgressStyle style) {
   const SingleScattering<float> air(job.medium);
-  const DiffuseLight diffuse(job.medium);
+  const MultipleScattering multiple_scattering(job.medium);
   Progress progress("rows", static_cast<std::size_t>(job.settings.height), style);
-  return {RenderPanorama(air, diffuse, job.settings, [&] { progress.Advance(); }),
-          HorizontalIlluminance(air, diffuse, job.settings.altitude_m, job.settings.sun)};
+  return {RenderPanorama(air, multiple_scattering, job.settings, [&] { progress.Advance(); }),
+          HorizontalIlluminance(air, multiple_scattering, job.settings.altitude_m, job.settings.sun)};
 }
 
 double Ev100Of(const RenderedSky& sky, const Image& seen, const ExposureRule& rule,

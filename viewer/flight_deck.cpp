@@ -287,7 +287,7 @@ void FlightDeck::WantStrip() {
   const UtcInstant begin = AddSeconds(
       flight_.now(), -kSecondsPerDay * LocalTimeAt(flight_.now(), flight_.zone()).day_fraction);
   strips_.Want({std::make_shared<const SingleScattering<float>>(air->medium),
-                std::shared_ptr<const DiffuseLight>(air, &air->diffuse), flight_.eye().place,
+                std::shared_ptr<const MultipleScattering>(air, &air->multiple_scattering), flight_.eye().place,
                 begin});
 }
 

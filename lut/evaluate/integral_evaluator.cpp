@@ -34,13 +34,13 @@ constexpr std::array<int, 6> kLadder{4, 8, 12, 16, 24, 32};
 // The coarser solutions with which light of all orders is compared: two, because one difference can
 // be small by chance. They are coarse in the parameters that dominate the error: degree, altitudes
 // and directions in haze, nodes of later orders in thick air, suns in twilight.
-constexpr DiffuseLightOptions kCoarseLight{.altitudes = 12,
+constexpr MultipleScatteringOptions kCoarseLight{.altitudes = 12,
                                            .sun_angles = 28,
                                            .degree = 2,
                                            .zenith_nodes = 8,
                                            .azimuth_nodes = 6,
                                            .ray_nodes = 8};
-constexpr DiffuseLightOptions kMiddlingLight{.altitudes = 12,
+constexpr MultipleScatteringOptions kMiddlingLight{.altitudes = 12,
                                              .sun_angles = 22,
                                              .degree = 4,
                                              .zenith_nodes = 9,
@@ -57,7 +57,7 @@ constexpr DiffuseLightOptions kMiddlingLight{.altitudes = 12,
 constexpr double kShareOfDifferences = 0.6;
 constexpr double kFloorOfHigherOrders = 3e-3;
 
-DiffuseLightOptions With(bool forward_peak, DiffuseLightOptions options) {
+MultipleScatteringOptions With(bool forward_peak, MultipleScatteringOptions options) {
   options.forward_peak = forward_peak;
   return options;
 }
@@ -323,7 +323,7 @@ class IntegralEvaluator final : public Evaluator {
   SingleScattering<float> quick_air_;  // for the samples along which multiple scattering is gathered
   IntegralOptions options_;
   double closed_form_error_, fast_path_floor_;  // relative errors
-  std::optional<DiffuseLight> fine_light_, middling_light_, coarse_light_;
+  std::optional<MultipleScattering> fine_light_, middling_light_, coarse_light_;
   std::optional<MissingDegrees> missing_degrees_;
 };
 

@@ -10,8 +10,8 @@
 //
 // whose phase function ends at degree L, so nothing is truncated. The sun's beam in that medium is
 // brighter than the true beam by light that is deflected little, T' - T = T (exp(f x) - 1) with x
-// the optical depth of scattering by aerosol towards the sun. DiffuseLight::values() include it as
-// diffuse light from the sun's direction, so that they mean the same with and without delta-M.
+// the optical depth of scattering by aerosol towards the sun. MultipleScattering::values() include it as
+// multiply scattered light from the sun's direction, so that they mean the same with and without delta-M.
 //
 // Radiance along view rays is also gathered in that medium. Light scattered once then has the exact
 // phase function and, in closed form, the peak of all orders (Nakajima, Tanaka 1988, J. Quant.
@@ -32,7 +32,7 @@
 // along a ray (GlowAboutTheSun).
 //
 // The header also provides an estimate, for error statements, of the light of orders two and up in
-// degrees of the aerosol's phase function that DiffuseLight does not keep (MissingDegrees).
+// degrees of the aerosol's phase function that MultipleScattering does not keep (MissingDegrees).
 //
 // Light that is deflected little stays near the beam. Along the path from the sun to a point and
 // on to the eye its degree l grows by exp(chi_l tau), where tau is the optical depth of scattering

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: MIT
 // This header provides the marches that carry one order's light, and sunlight scattered once, to a
-// node. It is a part of diffuse_kernel.cpp.
+// node. It is a part of moment_kernel.cpp.
 #pragma once
 
 #include <array>
 #include <cstddef>
 
 #include "atmosphere/ray/ray.h"
-#include "lut/multiple_scattering/diffuse_lanes.h"
-#include "lut/multiple_scattering/polarised_light.h"
+#include "lut/multiple_scattering/moment_lanes.h"
+#include "lut/multiple_scattering/polarised_scattering.h"
 
 namespace alpenglow::lut {
 namespace {
@@ -17,7 +17,7 @@ namespace {
 // degree: row (1 + sun) of kRow vectors.
 template <std::size_t kDegree, std::size_t kStep, std::size_t kLast, std::size_t kNode,
           std::size_t kRow>
-void ContractRows(const DiffuseGrid& grid, const MarchPoint& point, const Eight* factor,
+void ContractRows(const MomentGrid& grid, const MarchPoint& point, const Eight* factor,
                   const float* previous, float* rows) {
   constexpr std::size_t kPairs = kDegree / 2 + 1;
   constexpr std::size_t kMoments = kPackedRow[kDegree + 1];
@@ -85,7 +85,7 @@ void AddEnds(std::size_t suns, float* rows) {
 }
 
 template <std::size_t kDegree>
-void Contract(const DiffuseGrid& grid, const MarchPoint& point, const MarchLight& light,
+void Contract(const MomentGrid& grid, const MarchPoint& point, const MarchLight& light,
               const BlockShape& shape, const float* previous, float* rows) {
   constexpr std::size_t kPairs = kDegree / 2 + 1;
   constexpr std::size_t kNode = kPackedRow[kDegree + 1];
@@ -102,7 +102,7 @@ void Contract(const DiffuseGrid& grid, const MarchPoint& point, const MarchLight
 // Finds the tensor at every sun node times the molecules' factors: (D/10 T20, D/10 T21) and (D/10
 // T22, moment 00 Y00), in the last two vectors of each row.
 template <std::size_t kDegree>
-void ContractTensor(const DiffuseGrid& grid, const MarchPoint& point, const MarchLight& light,
+void ContractTensor(const MomentGrid& grid, const MarchPoint& point, const MarchLight& light,
                     const BlockShape& shape, const float* previous, float* rows) {
   constexpr std::size_t kNode = PackedVectors(kDegree, true);
   constexpr std::size_t kRow = kDegree / 2 + 3;
@@ -156,7 +156,7 @@ void ScaleAzimuths(const V& mu_s, const V& cosine, std::size_t k, AzimuthTaps<kP
 }
 
 template <std::size_t kPairs>
-void FindTaps(const DiffuseGrid& grid, const MarchDirection& direction, const MarchPoint& point,
+void FindTaps(const MomentGrid& grid, const MarchDirection& direction, const MarchPoint& point,
               std::size_t sun, AzimuthTaps<kPairs>& taps) {
   const float mu_s0 = direction.mu_s[sun];
   const V flat(direction.mu * mu_s0), sines(direction.sine * direction.sine_s[sun]);
@@ -190,7 +190,7 @@ void FindTaps(const DiffuseGrid& grid, const MarchDirection& direction, const Ma
 }
 
 template <std::size_t kDegree>
-void ArriveOfDegree(const DiffuseGrid& grid, const MarchDirection& direction,
+void ArriveOfDegree(const MomentGrid& grid, const MarchDirection& direction,
                     const MarchPoint* points, const MarchLight* lights, std::size_t count,
                     const BlockShape& shape, const float* previous, float* rows, float* arriving) {
   constexpr std::size_t kPairs = kDegree / 2 + 1;
@@ -260,7 +260,7 @@ void AddTensorLight(const MarchPoint& point, const TensorStokes<float>& stokes,
 }
 
 template <std::size_t kDegree>
-void ArrivePolarisedOfDegree(const DiffuseGrid& grid, const MarchDirection& direction,
+void ArrivePolarisedOfDegree(const MomentGrid& grid, const MarchDirection& direction,
                              const MarchPoint* points, const MarchLight* lights, std::size_t count,
                              const BlockShape& shape, const float* previous, float* rows,
                              float* arriving) {
@@ -298,7 +298,7 @@ void ArrivePolarisedOfDegree(const DiffuseGrid& grid, const MarchDirection& dire
   }
 }
 
-void Arrive(const DiffuseGrid& grid, const MarchDirection& direction, const MarchPoint* points,
+void Arrive(const MomentGrid& grid, const MarchDirection& direction, const MarchPoint* points,
             const MarchLight* lights, std::size_t count, const BlockShape& shape,
             const float* previous, float* rows, float* arriving) {
   OfDegree(grid.degree, [&](auto degree) {
@@ -307,7 +307,7 @@ void Arrive(const DiffuseGrid& grid, const MarchDirection& direction, const Marc
   });
 }
 
-void ArrivePolarised(const DiffuseGrid& grid, const MarchDirection& direction,
+void ArrivePolarised(const MomentGrid& grid, const MarchDirection& direction,
                      const MarchPoint* points, const MarchLight* lights, std::size_t count,
                      const BlockShape& shape, const float* previous, float* rows, float* arriving) {
   OfDegree(grid.degree, [&](auto degree) {

@@ -11,26 +11,26 @@
 #include "atmosphere/math/numerics.h"
 #include "atmosphere/ray/shell.h"
 #include "atmosphere/base/error.h"
-#include "lut/multiple_scattering/diffuse_grid.h"
+#include "lut/multiple_scattering/moment_grid.h"
 #include "lut/multiple_scattering/successive_orders.h"
 #include "lut/tables/cubic_taps.h"
 
 namespace alpenglow::lut {
 
-const SunAxis& DiffuseLight::SunNodes() {
+const SunAxis& MultipleScattering::SunNodes() {
   static const SunAxis axis(-0.05, 0.10, -0.55);
   return axis;
 }
 
-double DiffuseLight::SunCoordinate(double mu_s) {
+double MultipleScattering::SunCoordinate(double mu_s) {
   return std::clamp(SunNodes().Coordinate(mu_s), 0.0, 1.0);
 }
 
-double DiffuseLight::MuSFromCoordinate(double v) { return SunNodes().MuS(v); }
+double MultipleScattering::MuSFromCoordinate(double v) { return SunNodes().MuS(v); }
 
 namespace {
 
-void RequireNodes(const DiffuseLightOptions& options) {
+void RequireNodes(const MultipleScatteringOptions& options) {
   constexpr int kMostRayNodes = 32;  // upper limit of RaySampling
   RequireInRange(options.zenith_nodes, 1, kMaxGaussNodes, "zenith_nodes");
   RequireInRange(options.azimuth_nodes, 1, static_cast<double>(kMostAzimuths), "azimuth_nodes");
@@ -42,7 +42,7 @@ void RequireNodes(const DiffuseLightOptions& options) {
 }
 
 // Checks the preconditions of the solver and of the look-ups.
-const Medium& Checked(const Medium& medium, const DiffuseLightOptions& options) {
+const Medium& Checked(const Medium& medium, const MultipleScatteringOptions& options) {
   RequireInRange(options.altitudes, 4, 1024, "altitudes");
   RequireInRange(options.sun_angles, 4, 1024, "sun_angles");
   RequireDegree(options.degree);
@@ -62,7 +62,7 @@ const Medium& Checked(const Medium& medium, const DiffuseLightOptions& options) 
 }
 
 // Adds `times` times the beam's light at a node to the values of the node.
-void AddBeam(const DiffuseLightOptions& options, const Bands<float>& beam, double mu_s, float times,
+void AddBeam(const MultipleScatteringOptions& options, const Bands<float>& beam, double mu_s, float times,
              bool polarised, float* value) {
   const Moments towards = LegendreTerms(options.degree, static_cast<float>(mu_s));
   const auto add = [&](float share) {
@@ -77,10 +77,10 @@ void AddBeam(const DiffuseLightOptions& options, const Bands<float>& beam, doubl
 }
 
 // Returns the values at all nodes plus `times` times the beam.
-std::vector<float> WithBeam(const Medium& medium, const DiffuseLightOptions& options, float times,
+std::vector<float> WithBeam(const Medium& medium, const MultipleScatteringOptions& options, float times,
                             std::vector<float> values) {
   const ForwardPeak peak(medium, options.degree);
-  const DiffuseGrid grid = GridOf(medium, options);
+  const MomentGrid grid = GridOf(medium, options);
   const std::size_t floats = values.size() / (grid.altitudes * grid.suns);
   for (std::size_t node = 0; node < grid.altitudes * grid.suns; ++node) {
     const double u =
@@ -92,7 +92,7 @@ std::vector<float> WithBeam(const Medium& medium, const DiffuseLightOptions& opt
   return values;
 }
 
-SolvedOrders Solved(const Medium& medium, const DiffuseLightOptions& options) {
+SolvedOrders Solved(const Medium& medium, const MultipleScatteringOptions& options) {
   SolvedOrders solved = SolveSuccessiveOrders(Checked(medium, options), options);
   if (options.forward_peak)
     solved.values = WithBeam(medium, options, 1.0F, std::move(solved.values));
@@ -101,14 +101,14 @@ SolvedOrders Solved(const Medium& medium, const DiffuseLightOptions& options) {
 
 }  // namespace
 
-DiffuseLightOptions OptionsFor(const Medium& medium) {
+MultipleScatteringOptions OptionsFor(const Medium& medium) {
   const auto thickest = [](const std::vector<double>& per_m, double scale_height_m) {
     return scale_height_m * *std::max_element(per_m.begin(), per_m.end());
   };
   const double aerosol = thickest(medium.mie_scattering_per_m, medium.mie_scale_height_m);
   const double molecules =
       thickest(medium.rayleigh_scattering_per_m, medium.rayleigh_scale_height_m);
-  DiffuseLightOptions options;
+  MultipleScatteringOptions options;
   if (aerosol > 0.08) {
     options.degree = kMaxDegree;
     options.forward_peak = true;
@@ -133,10 +133,10 @@ DiffuseLightOptions OptionsFor(const Medium& medium) {
   return options;
 }
 
-DiffuseLight::DiffuseLight(const Medium& medium, const DiffuseLightOptions& options)
-    : DiffuseLight(medium, options, Solved(medium, options)) {}
+MultipleScattering::MultipleScattering(const Medium& medium, const MultipleScatteringOptions& options)
+    : MultipleScattering(medium, options, Solved(medium, options)) {}
 
-DiffuseLight::DiffuseLight(const Medium& medium, const DiffuseLightOptions& options,
+MultipleScattering::MultipleScattering(const Medium& medium, const MultipleScatteringOptions& options,
                            SolvedOrders solved)
     : medium_(Checked(medium, options)),
       options_(options),
@@ -167,16 +167,16 @@ DiffuseLight::DiffuseLight(const Medium& medium, const DiffuseLightOptions& opti
   packed_sky_ = PackedSky();
 }
 
-std::vector<DiffuseBlock> DiffuseLight::BlocksOf() const {
+std::vector<MomentBlock> MultipleScattering::BlocksOf() const {
   const AirWithoutPeak scattering =
       options_.forward_peak
           ? WithoutPeak(medium_, options_.degree)
           : AirWithoutPeak{medium_, {}, MieLegendreCoefficients(medium_, options_.degree)};
   const AirConstants<float> air = SingleScattering<float>(scattering.medium).constants();
   const std::vector<double>& chi = scattering.chi;
-  std::vector<DiffuseBlock> blocks((bands_ + kBlockBands - 1) / kBlockBands);
+  std::vector<MomentBlock> blocks((bands_ + kBlockBands - 1) / kBlockBands);
   for (std::size_t band = 0; band < bands_; ++band) {
-    DiffuseBlock& block = blocks[band / kBlockBands];
+    MomentBlock& block = blocks[band / kBlockBands];
     const std::size_t lane = band % kBlockBands;
     block.rayleigh[lane] = air.rayleigh[band];
     block.mie_scattering[lane] = air.mie_scattering[band];
@@ -189,7 +189,7 @@ std::vector<DiffuseBlock> DiffuseLight::BlocksOf() const {
   return blocks;
 }
 
-AlignedFloats DiffuseLight::Packed() const {
+AlignedFloats MultipleScattering::Packed() const {
   const std::size_t nodes = grid_.altitudes * grid_.suns;
   const std::size_t stride = PackedVectors(grid_.degree, grid_.polarised) * 8;
   const std::vector<float> twilight = TwilightAtNodes(grid_);
@@ -214,7 +214,7 @@ AlignedFloats DiffuseLight::Packed() const {
   return packed;
 }
 
-std::vector<float> DiffuseLight::PackedSky() const {
+std::vector<float> MultipleScattering::PackedSky() const {
   const std::size_t nodes = grid_.altitudes * grid_.suns;
   const std::vector<float> twilight = TwilightAtNodes(grid_);
   std::vector<float> packed(blocks_.size() * nodes * kBlockBands);
@@ -228,12 +228,12 @@ std::vector<float> DiffuseLight::PackedSky() const {
   return packed;
 }
 
-double DiffuseLight::AltitudeCoordinate(double altitude_m) const {
+double MultipleScattering::AltitudeCoordinate(double altitude_m) const {
   return std::sqrt(std::clamp(altitude_m / medium_.atmosphere_height_m, 0.0, 1.0));
 }
 
 template <typename Visit>
-void DiffuseLight::VisitNodes(double altitude_coordinate, double mu_s, const Visit& visit) const {
+void MultipleScattering::VisitNodes(double altitude_coordinate, double mu_s, const Visit& visit) const {
   const CubicTaps row = TapsAt(altitude_coordinate, options_.altitudes);
   const CubicTaps column = SunTaps(grid_, mu_s);
   for (std::size_t a = 0; a < 4; ++a) {
@@ -246,16 +246,16 @@ void DiffuseLight::VisitNodes(double altitude_coordinate, double mu_s, const Vis
   }
 }
 
-Bands<float> DiffuseLight::InscatterByMoments(const RaySamples<float>& samples, double nu) const {
+Bands<float> MultipleScattering::InscatterByMoments(const RaySamples<float>& samples, double nu) const {
   alignas(64) std::array<float, kMaxBands + kBlockBands> light{};
-  Kernel<DiffuseKernel>().inscatter(grid_, samples, static_cast<float>(nu), blocks_.data(),
+  Kernel<MomentKernel>().inscatter(grid_, samples, static_cast<float>(nu), blocks_.data(),
                                     blocks_.size(), packed_.data(), light.data());
   Bands<float> sum(bands_);
   std::copy_n(light.begin(), bands_, sum.value.begin());
   return sum;
 }
 
-Bands<float> DiffuseLight::InscatterAlong(const RaySamples<float>& samples, double nu,
+Bands<float> MultipleScattering::InscatterAlong(const RaySamples<float>& samples, double nu,
                                           double nu_seen, SegmentEnd end) const {
   Bands<float> light = InscatterByMoments(samples, nu);
   if (samples.count == 0) return light;
@@ -273,12 +273,12 @@ Bands<float> DiffuseLight::InscatterAlong(const RaySamples<float>& samples, doub
   return light;
 }
 
-Bands<float> DiffuseLight::GlowFactor(double nu, float column_km) const {
+Bands<float> MultipleScattering::GlowFactor(double nu, float column_km) const {
   return glow_ ? glow_->FactorOf(nu, column_km) : Bands<float>(bands_);
 }
 
 // The column is the mean over sunlit aerosol.
-Bands<float> DiffuseLight::GlowAlong(const RaySamples<float>& samples, double nu) const {
+Bands<float> MultipleScattering::GlowAlong(const RaySamples<float>& samples, double nu) const {
   float lit_km = 0.0F, column = 0.0F;
   for (std::size_t i = 0; i < samples.count; ++i) {
     const float lit = samples.weight[i] * samples.lit[i] * samples.mie_density[i];
@@ -293,7 +293,7 @@ Bands<float> DiffuseLight::GlowAlong(const RaySamples<float>& samples, double nu
   return glow;
 }
 
-Bands<float> DiffuseLight::GroundLight(double mu_s) const {
+Bands<float> MultipleScattering::GroundLight(double mu_s) const {
   Bands<float> light = SkyIrradiance(0.0, mu_s);
   const Bands<float> sun =
       mu_s > 0.0 ? peak_->air().TransmittanceToSpace(0.0, mu_s) : Bands<float>(bands_);
@@ -305,7 +305,7 @@ Bands<float> DiffuseLight::GroundLight(double mu_s) const {
 }
 
 // Returns the continuation of the ray at its end, from the last of its samples.
-ViewRay DiffuseLight::RayBehind(const RaySamples<float>& samples, double nu) const {
+ViewRay MultipleScattering::RayBehind(const RaySamples<float>& samples, double nu) const {
   const std::size_t last = samples.count - 1;
   const double radius_m = medium_.planet_radius_m;
   const double from_m = 1000.0 * static_cast<double>(samples.altitude[last]);
@@ -324,7 +324,7 @@ ViewRay DiffuseLight::RayBehind(const RaySamples<float>& samples, double nu) con
 
 // Returns the part of the light from behind the end of samples that the forward peak adds. It comes
 // from the ground or, if the samples end before it, from the air and the ground that follow.
-Bands<float> DiffuseLight::PeakBehind(const RaySamples<float>& samples, double nu,
+Bands<float> MultipleScattering::PeakBehind(const RaySamples<float>& samples, double nu,
                                       double nu_seen) const {
   Bands<float> light(bands_), closed(bands_);
   if (samples.extent.end == RayEnd::kSpace) return light;
@@ -350,7 +350,7 @@ Bands<float> DiffuseLight::PeakBehind(const RaySamples<float>& samples, double n
   return light;
 }
 
-Bands<float> DiffuseLight::Irradiance(double altitude_m, double mu_s, double normal_mu,
+Bands<float> MultipleScattering::Irradiance(double altitude_m, double mu_s, double normal_mu,
                                       double normal_cos_azimuth) const {
   const CubicTaps row = TapsAt(AltitudeCoordinate(altitude_m), options_.altitudes);
   const double x = (mu_s - SunNodes().centre()) / SunNodes().width();
@@ -367,7 +367,7 @@ Bands<float> DiffuseLight::Irradiance(double altitude_m, double mu_s, double nor
     }
   }
   alignas(64) std::array<float, kMaxBands + kBlockBands> light{};
-  Kernel<DiffuseKernel>().irradiance(grid_, point, blocks_.size(), packed_.data(),
+  Kernel<MomentKernel>().irradiance(grid_, point, blocks_.size(), packed_.data(),
                                      packed_sky_.data(), light.data());
   Bands<float> irradiance(bands_);
   std::copy_n(light.begin(), bands_, irradiance.value.begin());
@@ -382,7 +382,7 @@ Bands<float> DiffuseLight::Irradiance(double altitude_m, double mu_s, double nor
   return irradiance;
 }
 
-Bands<float> DiffuseLight::SkyIrradiance(double altitude_m, double mu_s) const {
+Bands<float> MultipleScattering::SkyIrradiance(double altitude_m, double mu_s) const {
   Bands<float> irradiance(bands_);
   VisitNodes(AltitudeCoordinate(altitude_m), mu_s,
              [&](const float* node, float weight, std::size_t) {
@@ -399,7 +399,7 @@ Bands<float> DiffuseLight::SkyIrradiance(double altitude_m, double mu_s) const {
   return irradiance;
 }
 
-std::vector<float> DiffuseLight::ValuesAt(double altitude_coordinate, double sun_coordinate) const {
+std::vector<float> MultipleScattering::ValuesAt(double altitude_coordinate, double sun_coordinate) const {
   std::vector<float> sum(channels() * bands_, 0.0F);
   const double mu_s = MuSFromCoordinate(sun_coordinate);
   const float here = SunSine(mu_s);
@@ -420,7 +420,7 @@ std::vector<float> DiffuseLight::ValuesAt(double altitude_coordinate, double sun
   return sum;
 }
 
-std::size_t DiffuseLight::OrderOf(std::size_t channel) const {
+std::size_t MultipleScattering::OrderOf(std::size_t channel) const {
   if (channel + 1 == channels()) return 0;
   if (channel >= moments_) return channel - moments_;
   std::size_t l = 0;
@@ -428,7 +428,7 @@ std::size_t DiffuseLight::OrderOf(std::size_t channel) const {
   return channel - l * (l + 1) / 2;
 }
 
-std::array<Bands<float>, kTensorMoments> DiffuseLight::TensorAt(double altitude_m,
+std::array<Bands<float>, kTensorMoments> MultipleScattering::TensorAt(double altitude_m,
                                                                 double mu_s) const {
   std::array<Bands<float>, kTensorMoments> tensor;
   tensor.fill(Bands<float>(bands_));
@@ -454,7 +454,7 @@ std::array<Bands<float>, kTensorMoments> DiffuseLight::TensorAt(double altitude_
   return tensor;
 }
 
-PolarisedLight DiffuseLight::PolarisationAlong(const RaySamples<float>& samples, double nu) const {
+PolarisedLight MultipleScattering::PolarisationAlong(const RaySamples<float>& samples, double nu) const {
   PolarisedLight light{Bands<float>(bands_), Bands<float>(bands_)};
   if (!medium_.polarised) return light;
   const AirConstants<float> air = SingleScattering<float>(medium_).constants();

@@ -15,7 +15,7 @@
 //
 // which is exact for molecules (chi^R = 1, 0, D/10; D as in phase.glsl) with l <= 2. If the
 // medium's light is polarised, three additional moments give the molecules' source
-// (polarised_light.h). The moments of all orders are found by successive orders: the radiance of
+// (polarised_scattering.h). The moments of all orders are found by successive orders: the radiance of
 // one order along directions of a Gauss grid split at the horizon is projected onto moments, which
 // give the source of the next. Light reflected by the (Lambertian) ground is part of every order.
 //
@@ -31,15 +31,15 @@
 
 #include "atmosphere/medium/medium.h"
 #include "atmosphere/ray/single_scattering.h"
-#include "lut/multiple_scattering/diffuse_kernel.h"
+#include "lut/multiple_scattering/moment_kernel.h"
 #include "lut/multiple_scattering/forward_peak.h"
-#include "lut/multiple_scattering/polarised_light.h"
+#include "lut/multiple_scattering/polarised_scattering.h"
 #include "lut/multiple_scattering/spherical_harmonics.h"
 #include "lut/tables/table_axes.h"
 
 namespace alpenglow::lut {
 
-struct DiffuseLightOptions {
+struct MultipleScatteringOptions {
   int altitudes = 18;     // nodes, quadratic in altitude, >= 4
   int sun_angles = 32;    // nodes, dense around the terminator, >= 4
   int degree = 6;         // largest l: 2, 4, 6, 8 or 12
@@ -55,7 +55,7 @@ struct DiffuseLightOptions {
   // Largest fraction of the light that may be summed as a geometric series instead of being
   // computed. In thick air: ten times the uncertainty of that sum.
   double tolerance = 1e-2;
-  /// Computes exactly this number of orders of the diffuse light (1: scattered or reflected once)
+  /// Computes exactly this number of orders of the multiply scattered light (1: scattered or reflected once)
   /// and sums no rest. InscatterAlong then returns orders 2 to exact_orders + 1. Some table formats
   /// are defined this way.
   std::optional<int> exact_orders = std::nullopt;
@@ -69,35 +69,35 @@ struct DiffuseLightOptions {
 /// or molecules more than 33 %, more nodes.
 /// Radiances of all orders are then within 0.5 % (rms) of path tracing at an aerosol optical depth
 /// of 0.1, 2 % at 1 and in the dust of Mars, 1 % through molecules of optical depth 5.
-[[nodiscard]] DiffuseLightOptions OptionsFor(const Medium& medium);
+[[nodiscard]] MultipleScatteringOptions OptionsFor(const Medium& medium);
 
 /// State of the end of a ray that ends in the air: more air follows, or an object hides it.
 enum class SegmentEnd { kOpen, kOpaque };
 
 /// Contents of the table and the state of the solver.
 struct SolvedOrders {
-  std::vector<float> values;  // indexed like DiffuseLight::values()
+  std::vector<float> values;  // indexed like MultipleScattering::values()
   int orders = 0;             // largest number of orders computed for any band
   bool converged = true;      // every band reached the tolerance within max_orders
 };
 
-/// Diffuse light of all orders. Immutable; look-ups are safe from many threads.
-class DiffuseLight {
+/// Multiply scattered light of all orders. Immutable; look-ups are safe from many threads.
+class MultipleScattering {
  public:
   /// Solves for the medium. The result does not depend on the number of threads. Thick or
   /// conservative air may need more than max_orders; converged() is then false.
-  explicit DiffuseLight(const Medium& medium, const DiffuseLightOptions& options = {});
+  explicit MultipleScattering(const Medium& medium, const MultipleScatteringOptions& options = {});
 
   /// Restores a stored solution: values, orders and converged as returned by the accessors. Throws
   /// InputError unless the number of values matches the options and all values are finite.
-  DiffuseLight(const Medium& medium, const DiffuseLightOptions& options, SolvedOrders solved);
+  MultipleScattering(const Medium& medium, const MultipleScatteringOptions& options, SolvedOrders solved);
 
   [[nodiscard]] const Medium& medium() const { return medium_; }
   [[nodiscard]] bool converged() const { return converged_; }
   [[nodiscard]] int orders() const { return orders_; }
-  [[nodiscard]] const DiffuseLightOptions& options() const { return options_; }
-  /// Returns the axes, for code that interpolates values() itself (diffuse_grid.h).
-  [[nodiscard]] const DiffuseGrid& grid() const { return grid_; }
+  [[nodiscard]] const MultipleScatteringOptions& options() const { return options_; }
+  /// Returns the axes, for code that interpolates values() itself (moment_grid.h).
+  [[nodiscard]] const MomentGrid& grid() const { return grid_; }
   [[nodiscard]] std::size_t bands() const { return bands_; }
   [[nodiscard]] std::size_t moments() const { return moments_; }
 
@@ -117,7 +117,7 @@ class DiffuseLight {
   [[nodiscard]] Bands<float> InscatterAlong(const RaySamples<float>& samples, double nu,
                                             double nu_seen, SegmentEnd end) const;
 
-  /// Returns the part of InscatterAlong that the moments hold. DiffuseFan finds it for many
+  /// Returns the part of InscatterAlong that the moments hold. AzimuthFan finds it for many
   /// azimuths.
   [[nodiscard]] Bands<float> InscatterByMoments(const RaySamples<float>& samples, double nu) const;
 
@@ -145,7 +145,7 @@ class DiffuseLight {
 
   /// Returns the node values, for files and graphics cards: index ((altitude * sun_angles + sun) *
   /// channels() + channel) * bands() + band. Channels: the moments, l major (00, 10, 11, 20, ...),
-  /// for polarised light T20, T21, T22 (polarised_light.h), then SkyIrradiance.
+  /// for polarised light T20, T21, T22 (polarised_scattering.h), then SkyIrradiance.
   [[nodiscard]] const std::vector<float>& values() const { return values_; }
   [[nodiscard]] std::size_t channels() const {
     return moments_ + 1 + (medium_.polarised ? kTensorMoments : 0);
@@ -154,7 +154,7 @@ class DiffuseLight {
   /// Returns all channels [channel * bands() + band] at coordinates in [0, 1] (below), by the
   /// interpolation that every look-up uses: cubic, and between sun angles after division by the
   /// usual fall of light in twilight and, for polarised light, by powers of the sun's zenith sine
-  /// (DiffuseGrid).
+  /// (MomentGrid).
   [[nodiscard]] std::vector<float> ValuesAt(double altitude_coordinate,
                                             double sun_coordinate) const;
 
@@ -164,7 +164,7 @@ class DiffuseLight {
   [[nodiscard]] static double MuSFromCoordinate(double v);
 
  private:
-  [[nodiscard]] std::vector<DiffuseBlock> BlocksOf() const;
+  [[nodiscard]] std::vector<MomentBlock> BlocksOf() const;
   [[nodiscard]] Bands<float> GlowAlong(const RaySamples<float>& samples, double nu) const;
   [[nodiscard]] Bands<float> GroundLight(double mu_s) const;
   [[nodiscard]] ViewRay RayBehind(const RaySamples<float>& samples, double nu) const;
@@ -186,18 +186,18 @@ class DiffuseLight {
   [[nodiscard]] double AltitudeCoordinate(double altitude_m) const;
 
   Medium medium_;
-  DiffuseLightOptions options_;
+  MultipleScatteringOptions options_;
   std::size_t bands_ = 0;
   std::size_t moments_ = 0;
   int orders_ = 0;
   bool converged_ = false;
   std::vector<float> values_;
-  DiffuseGrid grid_;
+  MomentGrid grid_;
   std::optional<ForwardPeak> peak_;
   AirConstants<float> air_{};
   std::optional<GlowAboutTheSun> glow_;  // only without forward_peak and exact_orders
   std::vector<float> smooth_;
-  std::vector<DiffuseBlock> blocks_;
+  std::vector<MomentBlock> blocks_;
   AlignedFloats packed_;           // a copy of the moments in the layout of the kernels
   std::vector<float> packed_sky_;  // a copy of SkyIrradiance in that layout
 };

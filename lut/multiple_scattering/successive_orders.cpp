@@ -9,7 +9,7 @@
 #include <glm/vec4.hpp>
 
 #include "atmosphere/math/constants.h"
-#include "lut/multiple_scattering/diffuse_march.h"
+#include "lut/multiple_scattering/moment_march.h"
 #include "lut/multiple_scattering/spherical_harmonics.h"
 
 namespace alpenglow::lut {
@@ -25,7 +25,7 @@ struct Field {
 
 /// Memory layout of the nodes.
 struct Layout {
-  explicit Layout(const DiffuseGrid& grid)
+  explicit Layout(const MomentGrid& grid)
       : degree(grid.degree),
         suns(grid.suns),
         nodes(grid.altitudes * grid.suns),
@@ -41,7 +41,7 @@ Light Of(const std::vector<double>& bands, std::size_t first_band) {
 }
 
 /// Four bands of the light that arrives along a march, one value per sun and azimuth. Q and U, in
-/// the frame of polarised_light.h, are present for polarised light only.
+/// the frame of polarised_scattering.h, are present for polarised light only.
 struct MarchRadiance {
   MarchRadiance(std::size_t rays, bool polarised)
       : i(rays, Light(0.0F)), q(polarised ? rays : 0, Light(0.0F)), u(q) {}
@@ -51,7 +51,7 @@ struct MarchRadiance {
 /// Transport of four bands along the marches of one set.
 class Transport {
  public:
-  Transport(const DiffuseMarches& marches, std::size_t first_band);
+  Transport(const MomentMarches& marches, std::size_t first_band);
 
   /// Finds the moments of the light of the previous order that arrives at one altitude's nodes.
   void NextOrder(std::size_t altitude, const Field& previous, Field& next) const;
@@ -73,7 +73,7 @@ class Transport {
   void AddGroundLight(const March& march, const Light& reflected, const Field& previous,
                       std::vector<Light>& radiance) const;
 
-  const DiffuseMarches& marches_;
+  const MomentMarches& marches_;
   Layout layout_;
   std::size_t first_band_;
   Light albedo_;
@@ -97,7 +97,7 @@ MarchLight LightOf(const AirConstants<float>& air, std::size_t first_band,
   return light;
 }
 
-Transport::Transport(const DiffuseMarches& marches, std::size_t first_band)
+Transport::Transport(const MomentMarches& marches, std::size_t first_band)
     : marches_(marches),
       layout_(marches.grid()),
       first_band_(first_band),
@@ -246,7 +246,7 @@ void Transport::AddGroundLight(const March& march, const Light& reflected, const
 void Transport::NextOrder(std::size_t altitude, const Field& previous, Field& next) const {
   const std::size_t rays = layout_.suns * marches_.azimuths();
   const std::size_t stokes = polarised() ? 3 : 1;
-  const DiffuseKernel& kernel = Kernel<DiffuseKernel>();
+  const MomentKernel& kernel = Kernel<MomentKernel>();
   const auto arrive = polarised() ? kernel.arrive_polarised : kernel.arrive;
   AlignedFloats rows((layout_.suns + 2) * (layout_.degree / 2 + 3) * 8);
   MarchRadiance radiance(rays, polarised());
@@ -278,8 +278,8 @@ void Transport::NextOrder(std::size_t altitude, const Field& previous, Field& ne
 class Block {
  public:
   /// @param later  the marches of the orders after the second.
-  Block(const DiffuseMarches& marches, const DiffuseMarches& later,
-        const DiffuseLightOptions& options, std::size_t first_band)
+  Block(const MomentMarches& marches, const MomentMarches& later,
+        const MultipleScatteringOptions& options, std::size_t first_band)
       : options_(options),
         layout_(marches.grid()),
         twilight_(TwilightAtNodes(marches.grid())),
@@ -308,7 +308,7 @@ class Block {
   void AddTail(const Field& last, const Field& before, const Field& second_before,
                Field& total) const;
 
-  const DiffuseLightOptions& options_;
+  const MultipleScatteringOptions& options_;
   Layout layout_;
   std::vector<float> twilight_;
   Transport transport_, later_;
@@ -399,8 +399,8 @@ Block::Sum Block::Solve(Field first_order) const {
   return {std::move(total), orders, rest <= options_.tolerance || share == 0.0};
 }
 
-// Values of one block of bands in the order of DiffuseLight::values().
-void Unpack(const DiffuseGrid& grid, const Field& field, std::size_t first_band, std::size_t bands,
+// Values of one block of bands in the order of MultipleScattering::values().
+void Unpack(const MomentGrid& grid, const Field& field, std::size_t first_band, std::size_t bands,
             std::vector<float>& values) {
   const Layout layout(grid);
   const std::vector<float> twilight = TwilightAtNodes(grid);
@@ -428,7 +428,7 @@ void Unpack(const DiffuseGrid& grid, const Field& field, std::size_t first_band,
 // marches: [phase * suns + sun]. These directions are at least 11 degrees of azimuth from the sun.
 // They miss 41 % of the light of the dust of Mars at 450 nm, 6 % of a lobe of g = 0.8 and 1 % of a
 // lobe of g = 0.7.
-std::vector<double> MissedShares(const DiffuseMarches& marches) {
+std::vector<double> MissedShares(const MomentMarches& marches) {
   constexpr double kNoise = 0.01;  // error of the quadrature for phase functions that it resolves
   const std::size_t phases = marches.air().medium().mie_phase.size();
   const std::size_t suns = marches.grid().suns;
@@ -457,7 +457,7 @@ float SpreadOf(std::size_t degree, std::size_t l) {
 /// sun's direction.
 class MissedPeak {
  public:
-  explicit MissedPeak(const DiffuseMarches& marches)
+  explicit MissedPeak(const MomentMarches& marches)
       : marches_(marches),
         shares_(MissedShares(marches)),
         twilight_(TwilightAtNodes(marches.grid())) {}
@@ -469,7 +469,7 @@ class MissedPeak {
                Field& field) const;
   [[nodiscard]] Bands<float> PeakAt(std::size_t altitude, std::size_t sun) const;
 
-  const DiffuseMarches& marches_;
+  const MomentMarches& marches_;
   std::vector<double> shares_;
   std::vector<float> twilight_;
 };
@@ -529,7 +529,7 @@ void MissedPeak::AddBand(const Bands<float>& peak, std::size_t node, std::size_t
 }
 
 // Returns the options of the orders after the second. They are smooth, so fewer directions suffice.
-DiffuseLightOptions OfLaterOrders(DiffuseLightOptions options) {
+MultipleScatteringOptions OfLaterOrders(MultipleScatteringOptions options) {
   options.zenith_nodes = std::min(options.zenith_nodes, options.later_zenith_nodes);
   options.azimuth_nodes = std::min(options.azimuth_nodes, options.later_azimuth_nodes);
   options.ray_nodes = std::min(options.ray_nodes, options.later_ray_nodes);
@@ -538,14 +538,14 @@ DiffuseLightOptions OfLaterOrders(DiffuseLightOptions options) {
 
 }  // namespace
 
-SolvedOrders SolveSuccessiveOrders(const Medium& medium, const DiffuseLightOptions& options) {
+SolvedOrders SolveSuccessiveOrders(const Medium& medium, const MultipleScatteringOptions& options) {
   const AirWithoutPeak rest =
       options.forward_peak
           ? WithoutPeak(medium, options.degree)
           : AirWithoutPeak{medium, {}, MieLegendreCoefficients(medium, options.degree)};
   const SingleScattering<float> air(rest.medium);
-  const DiffuseMarches marches(air, options, rest.chi);
-  const DiffuseMarches later(air, OfLaterOrders(options), rest.chi);
+  const MomentMarches marches(air, options, rest.chi);
+  const MomentMarches later(air, OfLaterOrders(options), rest.chi);
   const std::size_t bands = medium.wavelengths_nm.size();
   std::vector<Block> blocks;
   std::vector<Field> first;

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-// This header provides the solver that fills the table of DiffuseLight: successive orders of
+// This header provides the solver that fills the table of MultipleScattering: successive orders of
 // scattering in a spherical atmosphere.
 //
 // At every node (altitude, sun angle) the radiance of one order is marched through the previous
 // order's moments, along directions of a Gauss grid split at the horizon, and projected onto
-// moments. Kernels process four bands at a time (diffuse_kernel.h). Sunlight scattered once is
-// integrated over the lit pieces of each direction (diffuse_march.h). Light scattered more often is
+// moments. Kernels process four bands at a time (moment_kernel.h). Sunlight scattered once is
+// integrated over the lit pieces of each direction (moment_march.h). Light scattered more often is
 // smooth, so fewer directions serve it from the third step on. When the orders have become a
 // geometric series, each in proportion to the second one before it, the rest of the series is
 // summed in closed form.
@@ -17,6 +17,6 @@ namespace alpenglow::lut {
 
 /// Solves for all orders. The result does not depend on the number of threads.
 [[nodiscard]] SolvedOrders SolveSuccessiveOrders(const Medium& medium,
-                                                 const DiffuseLightOptions& options);
+                                                 const MultipleScatteringOptions& options);
 
 }  // namespace alpenglow::lut

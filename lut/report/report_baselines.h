@@ -68,7 +68,7 @@ class IsotropicTable {
   IsotropicTable(const Medium& medium, const Size& size);
 
   /// Returns the in-scattered light of orders two and up along a ray [1/sr]; samples as for
-  /// DiffuseLight.
+  /// MultipleScattering.
   [[nodiscard]] Bands<float> InscatterAlong(const RaySamples<float>& samples) const;
 
   [[nodiscard]] std::uint64_t bytes() const { return texels_.size() * sizeof(float); }

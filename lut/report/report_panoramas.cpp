@@ -68,13 +68,13 @@ std::vector<Direction> Directions(int count) {
 template <typename Real>
 class DirectSky {
  public:
-  DirectSky(const Medium& medium, const DiffuseLight& diffuse, int nodes, bool split_ozone)
-      : air_(medium), quick_(medium), diffuse_(diffuse), nodes_(nodes), split_(split_ozone) {}
+  DirectSky(const Medium& medium, const MultipleScattering& multiple_scattering, int nodes, bool split_ozone)
+      : air_(medium), quick_(medium), multiple_scattering_(multiple_scattering), nodes_(nodes), split_(split_ozone) {}
 
   [[nodiscard]] Bands<Real> Radiance(const ViewRay& ray) const {
     Bands<Real> light = air_.Inscatter(
         air_.Scatter(air_.Sample(ray, {.nodes = nodes_, .split_ozone = split_})), ray.nu);
-    const Bands<float> rest = diffuse_.InscatterAlong(
+    const Bands<float> rest = multiple_scattering_.InscatterAlong(
         quick_.Sample(ray, {.nodes = nodes_, .dark_samples = true}), ray.nu);
     for (std::size_t band = 0; band < light.count; ++band) light[band] += Real{rest[band]};
     if (const auto mu_s = SunOnGround(air_.medium(), ray)) AddGround(ray, *mu_s, light);
@@ -85,7 +85,7 @@ class DirectSky {
   void AddGround(const ViewRay& ray, double mu_s, Bands<Real>& light) const {
     const Bands<Real> through = air_.TransmittanceAlong(ray);
     const Bands<Real> sun = air_.TransmittanceToSpace(0.0, mu_s);
-    const Bands<float> sky = diffuse_.SkyIrradiance(0.0, mu_s);
+    const Bands<float> sky = multiple_scattering_.SkyIrradiance(0.0, mu_s);
     const Real cosine = static_cast<Real>(std::max(mu_s, 0.0));
     for (std::size_t band = 0; band < light.count; ++band) {
       const Real reflected = static_cast<Real>(air_.medium().ground_albedo[band] / kPi);
@@ -95,7 +95,7 @@ class DirectSky {
 
   SingleScattering<Real> air_;
   SingleScattering<float> quick_;
-  const DiffuseLight& diffuse_;
+  const MultipleScattering& multiple_scattering_;
   int nodes_;
   bool split_;
 };
@@ -158,8 +158,8 @@ class PanoramaTopic {
       : medium_(medium),
         effort_(effort),
         air_(medium),
-        diffuse_(medium),
-        direct_(medium, diffuse_, 12, false),
+        multiple_scattering_(medium),
+        direct_(medium, multiple_scattering_, 12, false),
         directions_(Directions(effort.rays)) {
     reference_rays_.reference.text =
         "direct evaluation in double with 32 Gauss nodes a panel, cut at ozone; "
@@ -190,8 +190,8 @@ class PanoramaTopic {
                   .style = kSkyView,
                   .in_summary = !size.has_value()};
     const auto view = [&](std::size_t r, std::size_t sun) {
-      return size ? SkyView(air_, diffuse_, AltitudeOf(r), MuS(r, sun), *size)
-                  : SkyView(air_, diffuse_, AltitudeOf(r), MuS(r, sun));
+      return size ? SkyView(air_, multiple_scattering_, AltitudeOf(r), MuS(r, sun), *size)
+                  : SkyView(air_, multiple_scattering_, AltitudeOf(r), MuS(r, sun));
     };
     AddTables(row, view);
     row = rows_.back();
@@ -218,7 +218,7 @@ class PanoramaTopic {
     settings.width = width;
     settings.height = width / 2;
     settings.sun.elevation_rad = 25.0 * kRadiansPerDegree;
-    return Built([&] { return RenderPanorama(air_, diffuse_, settings); }).second;
+    return Built([&] { return RenderPanorama(air_, multiple_scattering_, settings); }).second;
   }
 
   [[nodiscard]] ReportTopic Finished(ReportTopic words) && {
@@ -235,7 +235,7 @@ class PanoramaTopic {
   }
 
   void SolveReference(std::size_t r) {
-    const DirectSky<double> exact(medium_, diffuse_, 32, true);
+    const DirectSky<double> exact(medium_, multiple_scattering_, 32, true);
     std::vector<ReferenceRay>& rays = reference_rays_.rays[r];
     rays.resize(directions_.size());
     tbb::parallel_for(std::size_t{0}, directions_.size(), [&](std::size_t i) {
@@ -320,7 +320,7 @@ class PanoramaTopic {
   const Medium& medium_;
   const ReportEffort& effort_;
   SingleScattering<float> air_;
-  DiffuseLight diffuse_;
+  MultipleScattering multiple_scattering_;
   DirectSky<float> direct_;
   std::vector<Direction> directions_;
   ReferenceRays reference_rays_;

@@ -139,7 +139,7 @@ enum OrdersStyle {
   kDirectNodes = 7
 };
 
-int StyleOf(const DiffuseLightOptions& options) {
+int StyleOf(const MultipleScatteringOptions& options) {
   if (options.forward_peak) return kForwardPeak;
   return options.degree == 2 ? kDegree2 : options.degree == 4 ? kDegree4 : kDegree6;
 }
@@ -167,7 +167,7 @@ class OrdersTopic : public TopicWork {
 
   /// Adds the default moments on the nodes of direct integration.
   void AddDirect(DirectMode mode) {
-    const auto [light, seconds] = Built([&] { return DiffuseLight(medium_); });
+    const auto [light, seconds] = Built([&] { return MultipleScattering(medium_); });
     const bool fast = mode == DirectMode::kFast;
     AddOnSamples(
         {.series = "moments on direct nodes",
@@ -219,9 +219,9 @@ class OrdersTopic : public TopicWork {
         [&](const RaySamples<float>& samples, double) { return table.InscatterAlong(samples); });
   }
 
-  void AddDiffuse(const DiffuseLightOptions& options) {
-    const DiffuseLightOptions usual, needed = OptionsFor(medium_);
-    const auto is_like = [&](const DiffuseLightOptions& other) {
+  void AddMultipleScattering(const MultipleScatteringOptions& options) {
+    const MultipleScatteringOptions usual, needed = OptionsFor(medium_);
+    const auto is_like = [&](const MultipleScatteringOptions& other) {
       return options.forward_peak == other.forward_peak && options.degree == other.degree &&
              options.altitudes == other.altitudes && options.sun_angles == other.sun_angles;
     };
@@ -235,7 +235,7 @@ class OrdersTopic : public TopicWork {
   }
 
   /// Adds a row that treats light as unpolarised after every scattering.
-  void AddScalar(const DiffuseLightOptions& options) {
+  void AddScalar(const MultipleScatteringOptions& options) {
     AddMoments({.series = fmt::format("scalar light, moments to degree {}", options.degree),
                 .parameter = "",
                 .style = kScalar,
@@ -244,8 +244,8 @@ class OrdersTopic : public TopicWork {
   }
 
  private:
-  void AddMoments(ReportRow row, const Medium& medium, const DiffuseLightOptions& options) {
-    const auto [light, seconds] = Built([&] { return DiffuseLight(medium, options); });
+  void AddMoments(ReportRow row, const Medium& medium, const MultipleScatteringOptions& options) {
+    const auto [light, seconds] = Built([&] { return MultipleScattering(medium, options); });
     row.parameter = fmt::format("{} x {}", options.altitudes, options.sun_angles);
     row.memory_bytes = light.values().size() * sizeof(float);
     row.build_s = seconds;
@@ -292,21 +292,21 @@ ReportTopic MeasureAllOrders(const Medium& medium, const ReportEffort& effort) {
   if (medium.polarised) topic.AddScalar({});
   for (const DirectMode mode : {DirectMode::kFast, DirectMode::kNormal}) topic.AddDirect(mode);
   for (const int degree : {2, 4, 6}) {
-    DiffuseLightOptions options;
+    MultipleScatteringOptions options;
     const bool usual = degree == options.degree;
     options.degree = degree;
-    const DiffuseLightOptions same = options;
+    const MultipleScatteringOptions same = options;
     options.altitudes = 12;
     options.sun_angles = 24;
-    if (degree == 2 || !effort.quick) topic.AddDiffuse(options);
-    if (usual || !effort.quick) topic.AddDiffuse(same);
+    if (degree == 2 || !effort.quick) topic.AddMultipleScattering(options);
+    if (usual || !effort.quick) topic.AddMultipleScattering(same);
     options.altitudes = 28;
     options.sun_angles = 56;
-    if (usual && !effort.quick) topic.AddDiffuse(options);
+    if (usual && !effort.quick) topic.AddMultipleScattering(options);
   }
-  if (!effort.quick) topic.AddDiffuse(TableQualityFromName("fine").multiple_scattering);
-  if (const DiffuseLightOptions needed = OptionsFor(medium); needed.forward_peak)
-    topic.AddDiffuse(needed);
+  if (!effort.quick) topic.AddMultipleScattering(TableQualityFromName("fine").multiple_scattering);
+  if (const MultipleScatteringOptions needed = OptionsFor(medium); needed.forward_peak)
+    topic.AddMultipleScattering(needed);
   return std::move(topic).Finished(WordsOfAllOrders());
 }
 
@@ -333,8 +333,8 @@ ReportTopic MeasureHardAir(const Medium& medium, const ReportEffort& effort) {
   OrdersTopic topic(medium, fewer);
   topic.AddNothing();
   topic.AddIsotropic({}, true);
-  topic.AddDiffuse({});
-  topic.AddDiffuse(OptionsFor(medium));
+  topic.AddMultipleScattering({});
+  topic.AddMultipleScattering(OptionsFor(medium));
   return std::move(topic).Finished(WordsOfAllOrders());
 }
 

@@ -22,13 +22,13 @@ namespace {
 
 constexpr int kSteps = 48;  // over half a turn
 
-PolarisedLight Along(const SingleScattering<float>& air, const DiffuseLight& diffuse,
+PolarisedLight Along(const SingleScattering<float>& air, const MultipleScattering& multiple_scattering,
                      const ViewRay& ray) {
   const RaySamples<float> samples = air.Sample(ray, {.nodes = 16, .dark_samples = true});
   PolarisedLight light{Bands<float>(air.bands()), Bands<float>(air.bands())};
   if (samples.count == 0 || !air.medium().polarised) return light;
   light = PolarisedOnce(air.medium(), air.Scatter(samples), ray);
-  const PolarisedLight more = diffuse.PolarisationAlong(samples, ray.nu);
+  const PolarisedLight more = multiple_scattering.PolarisationAlong(samples, ray.nu);
   for (std::size_t band = 0; band < air.bands(); ++band) {
     light.q[band] += more.q[band];
     light.u[band] += more.u[band];
@@ -38,14 +38,14 @@ PolarisedLight Along(const SingleScattering<float>& air, const DiffuseLight& dif
 
 }  // namespace
 
-PolarisedRow::PolarisedRow(const SingleScattering<float>& air, const DiffuseLight& diffuse,
+PolarisedRow::PolarisedRow(const SingleScattering<float>& air, const MultipleScattering& multiple_scattering,
                            double altitude_m, double mu_s, double zenith_angle_rad) {
   const double mu = std::cos(zenith_angle_rad);
   const double sines =
       std::sin(zenith_angle_rad) * std::sqrt(std::max((1.0 - mu_s) * (1.0 + mu_s), 0.0));
   for (int k = 0; k <= kSteps; ++k) {
     const double nu = std::clamp(mu * mu_s + sines * std::cos(kPi * k / kSteps), -1.0, 1.0);
-    nodes_.push_back(Along(air, diffuse, {std::max(altitude_m, 0.0), mu, mu_s, nu}));
+    nodes_.push_back(Along(air, multiple_scattering, {std::max(altitude_m, 0.0), mu, mu_s, nu}));
   }
 }
 
@@ -308,11 +308,11 @@ double CentreAzimuth(PanoramaOrientation orientation) {
   throw InternalError("an orientation without a centre");
 }
 
-Image RenderPanorama(const SingleScattering<float>& air, const DiffuseLight& diffuse,
+Image RenderPanorama(const SingleScattering<float>& air, const MultipleScattering& multiple_scattering,
                      const PanoramaSettings& settings, const std::function<void()>& row_done) {
   Image image(settings.width, settings.height);
   const double mu_s = std::sin(settings.sun.elevation_for_air_rad());
-  const SkyView view = SkyView(air, diffuse, settings.altitude_m, mu_s,
+  const SkyView view = SkyView(air, multiple_scattering, settings.altitude_m, mu_s,
                                settings.view_size.value_or(FineSize(
                                    SkyViewSizeFor(air.medium(), settings.altitude_m, mu_s))))
                            .WithSunSeenAt(0.5 * kPi - settings.sun.elevation_rad);
@@ -324,7 +324,7 @@ Image RenderPanorama(const SingleScattering<float>& air, const DiffuseLight& dif
   const std::vector<float> srgb = SrgbFromRelative(air.medium(), settings.sun.distance);
   const std::vector<LayerPlace> layers = AddPanoramaLayers(settings.layers, image);
   const auto add_polarisation = [&](int y) {
-    const PolarisedRow row(air, diffuse, settings.altitude_m, mu_s, grid.ZenithAngle(y + 0.5));
+    const PolarisedRow row(air, multiple_scattering, settings.altitude_m, mu_s, grid.ZenithAngle(y + 0.5));
     for (int x = 0; x < grid.width; ++x) {
       const PolarisedLight light = row.At(from_sun[static_cast<std::size_t>(x)]);
       SetLayers(layers, static_cast<std::size_t>(y) * from_sun.size() + static_cast<std::size_t>(x),
@@ -348,7 +348,7 @@ Image RenderPanorama(const SingleScattering<float>& air, const DiffuseLight& dif
   return image;
 }
 
-double HorizontalIlluminance(const SingleScattering<float>& air, const DiffuseLight& diffuse,
+double HorizontalIlluminance(const SingleScattering<float>& air, const MultipleScattering& multiple_scattering,
                              double altitude_m, const PanoramaSun& sun) {
   const Medium& medium = air.medium();
   const double h = std::max(altitude_m, 0.0);
@@ -357,7 +357,7 @@ double HorizontalIlluminance(const SingleScattering<float>& air, const DiffuseLi
   const VisibleDisk disk = DiskOverHorizon(mu_s, horizon, sun.angular_radius_rad);
   const double mu = disk.mu_s_effective;
   const Bands<float> direct = air.TransmittanceToSpace(h, mu);
-  const Bands<float> sky = diffuse.SkyIrradiance(h, std::sin(sun.elevation_for_air_rad()));
+  const Bands<float> sky = multiple_scattering.SkyIrradiance(h, std::sin(sun.elevation_for_air_rad()));
   std::vector<double> light;
   for (std::size_t band = 0; band < sky.count; ++band) {
     light.push_back(medium.solar_irradiance[band] / (sun.distance * sun.distance) *

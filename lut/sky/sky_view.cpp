@@ -11,8 +11,8 @@
 #include "atmosphere/ray/direct_scattering.h"
 #include "atmosphere/ray/shell.h"
 #include "atmosphere/base/error.h"
-#include "lut/multiple_scattering/diffuse_fan.h"
-#include "lut/multiple_scattering/diffuse_grid.h"
+#include "lut/multiple_scattering/azimuth_fan.h"
+#include "lut/multiple_scattering/moment_grid.h"
 #include "lut/sky/sky_row_kernel.h"
 #include "lut/tables/cubic_taps.h"
 
@@ -131,14 +131,14 @@ void SplineMirroredLine(const Line& line) {
 // Returns the aerosol's phase function including the glow around the sun: a table for every four
 // bands.
 std::vector<std::vector<float>> PhaseTables(const SingleScattering<float>& air,
-                                            const DiffuseLight& diffuse, float column_km) {
+                                            const MultipleScattering& multiple_scattering, float column_km) {
   const std::size_t blocks = (air.bands() + kViewLanes - 1) / kViewLanes;
   std::vector<std::vector<float>> tables(blocks,
                                          std::vector<float>(kViewLanes * (kSkyPhaseNodes + 1)));
   for (std::size_t k = 0; k <= kSkyPhaseNodes; ++k) {
     const double x = static_cast<double>(k) / kSkyPhaseNodes;
     const double nu = std::cos(kPi * x * x);
-    const Bands<float> phase = air.AerosolPhases(nu), glow = diffuse.GlowFactor(nu, column_km);
+    const Bands<float> phase = air.AerosolPhases(nu), glow = multiple_scattering.GlowFactor(nu, column_km);
     for (std::size_t lane = 0; lane < blocks * kViewLanes; ++lane) {
       const std::size_t band = std::min(lane, phase.count - 1);
       tables[lane / kViewLanes][kViewLanes * k + lane % kViewLanes] = phase[band] + glow[band];
@@ -208,16 +208,16 @@ namespace {
 /// visible ground.
 class GroundLight {
  public:
-  GroundLight(const SingleScattering<float>& air, const DiffuseLight& diffuse, double least_mu_s,
+  GroundLight(const SingleScattering<float>& air, const MultipleScattering& multiple_scattering, double least_mu_s,
               double most_mu_s)
       : bands_(air.bands()),
-        least_(DiffuseLight::SunCoordinate(least_mu_s)),
-        most_(DiffuseLight::SunCoordinate(most_mu_s)),
+        least_(MultipleScattering::SunCoordinate(least_mu_s)),
+        most_(MultipleScattering::SunCoordinate(most_mu_s)),
         nodes_(most_ - least_ < kOneNode ? 4 : kNodes) {
     for (int i = 0; i < nodes_; ++i) {
       const double v = least_ + (most_ - least_) * i / (nodes_ - 1);
-      const double mu_s = DiffuseLight::MuSFromCoordinate(v);
-      Bands<float> irradiance = diffuse.SkyIrradiance(0.0, mu_s);
+      const double mu_s = MultipleScattering::MuSFromCoordinate(v);
+      Bands<float> irradiance = multiple_scattering.SkyIrradiance(0.0, mu_s);
       if (mu_s > 0.0) {
         const Bands<float> sun = air.TransmittanceToSpace(0.0, mu_s);
         for (std::size_t band = 0; band < bands_; ++band)
@@ -232,7 +232,7 @@ class GroundLight {
 
   [[nodiscard]] Bands<float> At(double mu_s) const {
     const double width = std::max(most_ - least_, 1e-12);
-    const CubicTaps taps = TapsAt((DiffuseLight::SunCoordinate(mu_s) - least_) / width, nodes_);
+    const CubicTaps taps = TapsAt((MultipleScattering::SunCoordinate(mu_s) - least_) / width, nodes_);
     Bands<float> light(bands_);
     for (std::size_t tap = 0; tap < 4; ++tap) {
       const float* node = &light_[taps.node[tap] * bands_];
@@ -257,15 +257,15 @@ class GroundLight {
 /// Evaluates the nodes of a sky view.
 class SkyView::Builder {
  public:
-  Builder(const SingleScattering<float>& air, const DiffuseLight& diffuse, double altitude_m,
+  Builder(const SingleScattering<float>& air, const MultipleScattering& multiple_scattering, double altitude_m,
           double mu_s, SkyView& view)
       : air_(air),
         direct_(air.medium()),
-        fan_(diffuse),
+        fan_(multiple_scattering),
         altitude_m_(altitude_m),
         mu_s_(std::clamp(mu_s, -1.0, 1.0)),
         view_(view),
-        ground_light_(GroundInView(air, diffuse)) {
+        ground_light_(GroundInView(air, multiple_scattering)) {
     for (int k = 0; k < view.size_.azimuths; ++k) {
       cosines_.push_back(
           std::cos(view.map_.Azimuth(static_cast<double>(k) / (view.size_.azimuths - 1))));
@@ -296,10 +296,10 @@ class SkyView::Builder {
   // The visible ground extends to the horizon, at a distance of `dip` along the ground from the
   // observer.
   [[nodiscard]] GroundLight GroundInView(const SingleScattering<float>& air,
-                                         const DiffuseLight& diffuse) const {
+                                         const MultipleScattering& multiple_scattering) const {
     const double dip = view_.map_.horizon_zenith_angle_rad() - 0.5 * kPi;
     const double sun = std::acos(mu_s_);
-    return {air, diffuse, std::cos(std::min(sun + dip, kPi)), std::cos(std::max(sun - dip, 0.0))};
+    return {air, multiple_scattering, std::cos(std::min(sun + dip, kPi)), std::cos(std::max(sun - dip, 0.0))};
   }
 
   [[nodiscard]] std::size_t Columns() const {
@@ -380,18 +380,18 @@ class SkyView::Builder {
 
   const SingleScattering<float>& air_;
   DirectScattering direct_;
-  DiffuseFan fan_;
+  AzimuthFan fan_;
   double altitude_m_, mu_s_;
   SkyView& view_;
   GroundLight ground_light_;
   std::vector<double> cosines_;  // cosines of the columns' azimuths
 };
 
-SkyView::SkyView(const SingleScattering<float>& air, const DiffuseLight& diffuse, double altitude_m,
+SkyView::SkyView(const SingleScattering<float>& air, const MultipleScattering& multiple_scattering, double altitude_m,
                  double mu_s)
-    : SkyView(air, diffuse, altitude_m, mu_s, SkyViewSizeFor(air.medium(), altitude_m, mu_s)) {}
+    : SkyView(air, multiple_scattering, altitude_m, mu_s, SkyViewSizeFor(air.medium(), altitude_m, mu_s)) {}
 
-SkyView::SkyView(const SingleScattering<float>& air, const DiffuseLight& diffuse, double altitude_m,
+SkyView::SkyView(const SingleScattering<float>& air, const MultipleScattering& multiple_scattering, double altitude_m,
                  double mu_s, const SkyViewSize& size)
     : map_(air.medium(), altitude_m, mu_s),
       size_(size),
@@ -401,10 +401,10 @@ SkyView::SkyView(const SingleScattering<float>& air, const DiffuseLight& diffuse
   RequireInRange(size.sky_rows, 5, 4096, "sky_rows");
   RequireInRange(size.ground_rows, 5, 4096, "ground_rows");
   RequireInRange(size.azimuths, 3, 4096, "azimuths");
-  ALPENGLOW_ENSURE(diffuse.bands(), ==, bands_);
-  auto phases = PhaseTables(air, diffuse, GlowColumn_km(air, altitude_m, mu_s));
+  ALPENGLOW_ENSURE(multiple_scattering.bands(), ==, bands_);
+  auto phases = PhaseTables(air, multiple_scattering, GlowColumn_km(air, altitude_m, mu_s));
   for (std::size_t i = 0; i < blocks_.size(); ++i) blocks_[i].phase = std::move(phases[i]);
-  Builder(air, diffuse, altitude_m, mu_s, *this).Fill();
+  Builder(air, multiple_scattering, altitude_m, mu_s, *this).Fill();
 }
 
 std::size_t SkyView::bytes() const {

@@ -201,7 +201,7 @@ class Reference {
     const auto light = air_.Scatter(air_.Sample(RayOf(texel), {.nodes = 24}));
     return {TimesSun(light.rayleigh), TimesSun(light.mie)};
   }
-  [[nodiscard]] Rgba HigherOrdersAt(std::size_t texel, const DiffuseLight& light) const {
+  [[nodiscard]] Rgba HigherOrdersAt(std::size_t texel, const MultipleScattering& light) const {
     const ViewRay ray = RayOf(texel);
     Rgba rgba = TimesSun(HigherOrdersAlong(quick_air_, light, ray));
     for (double& value : rgba) value /= shared::PhaseRayleigh<double>(ray.nu);
@@ -261,7 +261,7 @@ TexelErrors TransmittanceErrors(const std::vector<float>& texels, const Medium& 
 }
 
 TexelErrors IrradianceErrors(const std::vector<float>& texels, const Reference& reference,
-                             const DiffuseLight& light, const Medium& medium) {
+                             const MultipleScattering& light, const Medium& medium) {
   Comparison comparison;
   const auto unit = [](std::size_t i, std::size_t n) {
     return static_cast<double>(i) / static_cast<double>(n - 1);
@@ -286,7 +286,7 @@ TexelErrors AlphaErrors(const std::vector<float>& scattering, const Reference& r
 }
 
 TexelErrors ScatteringErrors(std::string_view name, const std::vector<float>& texels,
-                             const Reference& reference, const DiffuseLight& light) {
+                             const Reference& reference, const MultipleScattering& light) {
   Comparison comparison;
   for (const std::size_t texel : CheckedTexels()) {
     const Reference::Once once = reference.ScatteredOnceAt(texel);
@@ -303,7 +303,7 @@ TexelErrors ScatteringErrors(std::string_view name, const std::vector<float>& te
 
 /// Returns the lowest sun with which the texels agree best.
 double LowestSunIn(const std::vector<float>& scattering, const Medium& medium,
-                   const DiffuseLight& light, const ExchangeOptions& options) {
+                   const MultipleScattering& light, const ExchangeOptions& options) {
   double best_deg = 0.0, least = std::numeric_limits<double>::infinity();
   for (const double angle_deg : {kDemoLowestSun_deg, kLowestSun_deg}) {
     ExchangeOptions tried = options;
@@ -353,7 +353,7 @@ LoadedTexture Load(const fs::path& folder, const TextureShape& shape,
 }
 
 TexelErrors ErrorsOf(const LoadedTexture& texture, const Reference& reference,
-                     const DiffuseLight& light, const Medium& medium) {
+                     const MultipleScattering& light, const Medium& medium) {
   const std::string_view name = texture.description.shape.name;
   if (name == kTransmittanceShape.name) return TransmittanceErrors(texture.texels, medium);
   if (name == kIrradianceShape.name) {
@@ -408,7 +408,7 @@ ExchangeDescription DescribeExchangeTables(const fs::path& folder) {
     loaded.push_back(Load(folder, shape, options, medium));
   }
   const LoadedTexture& scattering = loaded[2];
-  const DiffuseLight light = FourOrdersOf(medium);
+  const MultipleScattering light = FourOrdersOf(medium);
   options.lowest_sun_deg = LowestSunIn(scattering.texels, medium, light, options);
   const Reference reference(medium, LowestSunOf(options));
   RequireAgreement(scattering.description.file, AlphaErrors(scattering.texels, reference), medium);

@@ -35,7 +35,7 @@ constexpr TextureShape ScatteringShape(const char* name) {
 }
 
 // Four orders of scattering in total: these are the three orders after the first.
-constexpr DiffuseLightOptions kFourOrders{.altitudes = 32,
+constexpr MultipleScatteringOptions kFourOrders{.altitudes = 32,
                                           .sun_angles = 56,
                                           .degree = 6,
                                           .zenith_nodes = 14,
@@ -85,7 +85,7 @@ ExchangeTexture TransmittanceTexture(const Medium& medium) {
   return texture;
 }
 
-ExchangeTexture IrradianceTexture(const Medium& medium, const DiffuseLight& light) {
+ExchangeTexture IrradianceTexture(const Medium& medium, const MultipleScattering& light) {
   ExchangeTexture texture = EmptyTexture(kIrradianceShape);
   for (std::size_t y = 0; y < texture.height; ++y) {
     const double h = medium.atmosphere_height_m * static_cast<double>(y) /
@@ -104,7 +104,7 @@ ExchangeTexture IrradianceTexture(const Medium& medium, const DiffuseLight& ligh
 /// a time.
 class HigherOrdersOfRays {
  public:
-  HigherOrdersOfRays(const ScatteringTable& rays, const DiffuseLight& light)
+  HigherOrdersOfRays(const ScatteringTable& rays, const MultipleScattering& light)
       : rays_(rays), light_(light), air_(rays.medium()) {}
 
   /// Returns a row: [(nu * mu_s + mu_s) * 3 + band]
@@ -125,12 +125,12 @@ class HigherOrdersOfRays {
 
  private:
   const ScatteringTable& rays_;
-  const DiffuseLight& light_;
+  const MultipleScattering& light_;
   SingleScattering<float> air_;
 };
 
 /// Returns scattering, higher_order_scattering, single_mie_scattering.
-std::array<ExchangeTexture, 3> ScatteringTextures(const Medium& medium, const DiffuseLight& light,
+std::array<ExchangeTexture, 3> ScatteringTextures(const Medium& medium, const MultipleScattering& light,
                                                   double lowest_mu_s, ProgressStyle style) {
   const std::size_t rows = ScatteringTable::Rows(kScatteringSize);
   Progress progress("scattering", 2 * rows, style);
@@ -294,9 +294,9 @@ const char* SuffixOf(TexelFormat format) {
   throw InternalError("an unknown format");
 }
 
-DiffuseLight FourOrdersOf(const Medium& medium) { return DiffuseLight(medium, kFourOrders); }
+MultipleScattering FourOrdersOf(const Medium& medium) { return MultipleScattering(medium, kFourOrders); }
 
-Bands<float> HigherOrdersAlong(const SingleScattering<float>& air, const DiffuseLight& light,
+Bands<float> HigherOrdersAlong(const SingleScattering<float>& air, const MultipleScattering& light,
                                const ViewRay& ray) {
   return light.InscatterAlong(air.Sample(ray, kHigherOrderSampling), ray.nu);
 }
@@ -309,7 +309,7 @@ std::vector<ExchangeTexture> MakeExchangeTextures(const Medium& medium,
                                                   const ExchangeOptions& options,
                                                   ProgressStyle style) {
   RequireThreeBands(medium);
-  const DiffuseLight light = FourOrdersOf(medium);
+  const MultipleScattering light = FourOrdersOf(medium);
   std::vector<ExchangeTexture> textures{TransmittanceTexture(medium),
                                         IrradianceTexture(medium, light)};
   auto [scattering, higher, mie] = ScatteringTextures(medium, light, LowestSunOf(options), style);

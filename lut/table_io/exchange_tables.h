@@ -100,9 +100,9 @@ inline constexpr ScatteringTableSize kExchangeScatteringSize{
 
 /// Return the light scattered two to four times [1/sr], for unit solar irradiance. These are the
 /// orders that the tables contain.
-[[nodiscard]] DiffuseLight FourOrdersOf(const Medium& medium);
+[[nodiscard]] MultipleScattering FourOrdersOf(const Medium& medium);
 [[nodiscard]] Bands<float> HigherOrdersAlong(const SingleScattering<float>& air,
-                                             const DiffuseLight& light, const ViewRay& ray);
+                                             const MultipleScattering& light, const ViewRay& ray);
 
 /// One texture in the layout of those programs: texel (x, y, z) is rgba[4 * ((z * height + y) *
 /// width + x)], with 3-D textures stacked along the rows.

@@ -11,7 +11,7 @@
 
 #include "atmosphere/medium/medium.h"
 #include "atmosphere/base/error.h"
-#include "lut/multiple_scattering/diffuse_grid.h"
+#include "lut/multiple_scattering/moment_grid.h"
 #include "lut/cli/program.h"
 #include "lut/table_io/table_image.h"
 
@@ -65,14 +65,14 @@ const Kind& KindOf(ScatteringAxes axes) {
 
 /// Returns the kind with moments up to a degree, moments of the tensor of polarised light, then the
 /// irradiance from above.
-Kind MultipleScattering(int degree, bool polarised) {
+Kind MultipleScatteringKind(int degree, bool polarised) {
   Kind kind{"multiple scattering",
             "diffuse light of all orders per unit solar irradiance: moments of its radiance on "
             "real spherical harmonics L_lm (azimuth from the sun), and irradiance E from above",
             "1",
             "mu_s h",
             "column = mu_s (lowest sun to zenith), row = altitude (ground to top)",
-            kDiffuseLightMapVersion,
+            kMultipleScatteringMapVersion,
             {},
             -100.0,
             100.0};
@@ -283,7 +283,7 @@ bool YesOf(const TableImageReader& image, const std::string& name) {
 }
 
 std::string SunCosinesText(std::size_t columns, bool polarised) {
-  DiffuseGrid grid{};
+  MomentGrid grid{};
   grid.suns = columns;
   grid.polarised = polarised;
   std::string text;
@@ -315,20 +315,20 @@ FolderUse UseOf(const TableImageReader& image) {
   RefuseFile(image.file(), fmt::format("alpenglow.tables is \"{}\"", tables));
 }
 
-StoredDiffuseLight DiffuseLightOf(const TableImageReader& image,
+StoredMultipleScattering MultipleScatteringOf(const TableImageReader& image,
                                   const std::optional<std::uint64_t>& medium_hash) {
   const int degree = IntegerOf(image, "alpenglow.degree", 0, 1 << 20);
   NamingTheFile(image.file(), [&] { RequireDegree(degree); });
-  RequireKind(image, MultipleScattering(degree, false));
+  RequireKind(image, MultipleScatteringKind(degree, false));
   const Medium medium = MediumOf(image);
-  const Kind kind = MultipleScattering(degree, medium.polarised);
+  const Kind kind = MultipleScatteringKind(degree, medium.polarised);
   RequireMedium(image, medium, medium_hash);
   const std::vector<std::size_t> sizes = SizesOf(image, 2);
   RequireWindow(image, sizes[0], sizes[1]);
   if (image.Attribute("alpenglow.sunCosines") != SunCosinesText(sizes[0], medium.polarised)) {
     RefuseFile(image.file(), "alpenglow.sunCosines are not the nodes of this program");
   }
-  DiffuseLightOptions options;
+  MultipleScatteringOptions options;
   options.sun_angles = static_cast<int>(sizes[0]);
   options.altitudes = static_cast<int>(sizes[1]);
   options.degree = degree;
@@ -338,7 +338,7 @@ StoredDiffuseLight DiffuseLightOf(const TableImageReader& image,
                       YesOf(image, "alpenglow.converged")};
   const FolderUse use = UseOf(image);
   return NamingTheFile(image.file(), [&] {
-    return StoredDiffuseLight{DiffuseLight(medium, options, std::move(solved)), use};
+    return StoredMultipleScattering{MultipleScattering(medium, options, std::move(solved)), use};
   });
 }
 
@@ -381,11 +381,11 @@ void WriteTable(const fs::path& file, const ScatteringTable& table) {
              table.texels(), std::move(attributes)});
 }
 
-void WriteTable(const fs::path& file, const DiffuseLight& light, const FolderUse& use) {
-  const DiffuseLightOptions& options = light.options();
+void WriteTable(const fs::path& file, const MultipleScattering& light, const FolderUse& use) {
+  const MultipleScatteringOptions& options = light.options();
   const auto columns = static_cast<std::size_t>(options.sun_angles);
   const auto rows = static_cast<std::size_t>(options.altitudes);
-  const Kind kind = MultipleScattering(options.degree, light.medium().polarised);
+  const Kind kind = MultipleScatteringKind(options.degree, light.medium().polarised);
   TextAttributes attributes = AttributesOf(kind, light.medium(), {columns, rows});
   attributes["alpenglow.degree"] = std::to_string(options.degree);
   attributes["alpenglow.orders"] = std::to_string(light.orders());
@@ -408,9 +408,9 @@ ScatteringTable ReadScatteringTable(const fs::path& file,
   return ScatteringTableOf(TableImageReader(file), medium_hash);
 }
 
-StoredDiffuseLight ReadDiffuseLight(const fs::path& file,
+StoredMultipleScattering ReadMultipleScattering(const fs::path& file,
                                     const std::optional<std::uint64_t>& medium_hash) {
-  return DiffuseLightOf(TableImageReader(file), medium_hash);
+  return MultipleScatteringOf(TableImageReader(file), medium_hash);
 }
 
 Medium ReadMediumOfTable(const fs::path& file) { return MediumOf(TableImageReader(file)); }
@@ -433,9 +433,9 @@ TableDescription DescribeTable(const fs::path& file) {
   } else if (description.kind == kSingleScattering.name) {
     const ScatteringTable table = ScatteringTableOf(image, {});
     describe(KindOf(table.axes()), table.medium(), table.texels());
-  } else if (description.kind == MultipleScattering(0, false).name) {
-    const DiffuseLight light = DiffuseLightOf(image, {}).light;
-    describe(MultipleScattering(light.options().degree, light.medium().polarised), light.medium(),
+  } else if (description.kind == MultipleScatteringKind(0, false).name) {
+    const MultipleScattering light = MultipleScatteringOf(image, {}).light;
+    describe(MultipleScatteringKind(light.options().degree, light.medium().polarised), light.medium(),
              light.values());
   } else {
     RefuseFile(file,

@@ -8,7 +8,7 @@
 //                                                               or mu_s nu as mu_s azimuth: see
 //                                                               ScatteringAxes
 //   multiple scattering L00.0450nm, L10 ..., E.0450nm ...       columns mu_s, rows h
-//                       of polarised light T20, T21, T22 too (polarised_light.h)
+//                       of polarised light T20, T21, T22 too (polarised_scattering.h)
 //
 // The files hold 32-bit floats, ZIP, first row = ground. Text attributes alpenglow.*: kind,
 // quantity, units, axes, axisSizes, layout, mapVersion, mediumHash, mediumName, medium (a whole
@@ -35,10 +35,10 @@
 namespace alpenglow::lut {
 
 /// Versions of the maps of transmittance_map.glsl and scattering_map.glsl, and of the nodes of
-/// DiffuseLight. Readers refuse tables of other versions.
+/// MultipleScattering. Readers refuse tables of other versions.
 inline constexpr int kTransmittanceMapVersion = 1;
 inline constexpr int kScatteringMapVersion = 1;
-inline constexpr int kDiffuseLightMapVersion = 1;
+inline constexpr int kMultipleScatteringMapVersion = 1;
 
 /// Names in a folder of tables.
 inline constexpr const char* kTransmittanceFileName = "transmittance.exr";
@@ -56,16 +56,16 @@ struct FolderUse {
   bool operator==(const FolderUse&) const = default;
 };
 
-/// Diffuse light as stored in a file.
-struct StoredDiffuseLight {
-  DiffuseLight light;
+/// Multiply scattered light as stored in a file.
+struct StoredMultipleScattering {
+  MultipleScattering light;
   FolderUse use;
 };
 
 /// Write the file atomically. Throw OutputError naming the file.
 void WriteTable(const std::filesystem::path& file, const TransmittanceTable& table);
 void WriteTable(const std::filesystem::path& file, const ScatteringTable& table);
-void WriteTable(const std::filesystem::path& file, const DiffuseLight& light,
+void WriteTable(const std::filesystem::path& file, const MultipleScattering& light,
                 const FolderUse& use = {});
 
 /// @param medium_hash  hash of the medium for which the table must have been made; nullopt: any
@@ -74,7 +74,7 @@ void WriteTable(const std::filesystem::path& file, const DiffuseLight& light,
     const std::filesystem::path& file, const std::optional<std::uint64_t>& medium_hash = {});
 [[nodiscard]] ScatteringTable ReadScatteringTable(
     const std::filesystem::path& file, const std::optional<std::uint64_t>& medium_hash = {});
-[[nodiscard]] StoredDiffuseLight ReadDiffuseLight(
+[[nodiscard]] StoredMultipleScattering ReadMultipleScattering(
     const std::filesystem::path& file, const std::optional<std::uint64_t>& medium_hash = {});
 
 /// Returns the medium a table was made for, checked against its hash; reads no texels.

@@ -68,7 +68,7 @@ void BuildTableFolder(const Medium& medium, const TableQuality& quality, TableOr
                                                                  &progress));
   if (orders == TableOrders::kSingleOnly) return;
   WriteTable(folder / kMultipleScatteringFileName,
-             DiffuseLight(medium, quality.multiple_scattering), {.ray_nodes = quality.ray_nodes});
+             MultipleScattering(medium, quality.multiple_scattering), {.ray_nodes = quality.ray_nodes});
 }
 
 TableFolder ReadTableFolder(const fs::path& folder,
@@ -82,7 +82,7 @@ TableFolder ReadTableFolder(const fs::path& folder,
   FolderUse use;
   std::error_code error;
   if (fs::exists(folder / kMultipleScatteringFileName, error)) {
-    StoredDiffuseLight stored = ReadDiffuseLight(folder / kMultipleScatteringFileName, hash);
+    StoredMultipleScattering stored = ReadMultipleScattering(folder / kMultipleScatteringFileName, hash);
     use = stored.use;
     tables.ray_nodes = use.ray_nodes;
     tables.multiple_scattering = std::move(stored.light);
@@ -129,7 +129,7 @@ TableLookup::TableLookup(TableFolder tables) : tables_(std::move(tables)), air_(
   require_medium(tables_.multiple_scattering);
 }
 
-void TableLookup::ReplaceMultipleScattering(DiffuseLight light) {
+void TableLookup::ReplaceMultipleScattering(MultipleScattering light) {
   tables_.multiple_scattering = std::move(light);
 }
 
@@ -139,7 +139,7 @@ bool TableLookup::HasTableFor(const ViewRay& ray) const {
          ExtentOf(ray, air.planet_radius_m, air.atmosphere_height_m).end != RayEnd::kLength;
 }
 
-const DiffuseLight& TableLookup::diffuse() const {
+const MultipleScattering& TableLookup::multiple_scattering() const {
   if (!tables_.multiple_scattering) {
     throw InternalError("light of higher orders from tables of single scattering");
   }
@@ -175,7 +175,7 @@ Bands<float> TableLookup::InscatterOfAllOrders(const ViewRay& ray) const {
   const RaySamples<float> samples = air_.Sample(ray, all);
   Bands<float> light = tables_.single_scattering ? InscatterOnce(ray)
                                                  : air_.Inscatter(air_.Scatter(samples), ray.nu);
-  const Bands<float> more = diffuse().InscatterAlong(samples, ray.nu);
+  const Bands<float> more = multiple_scattering().InscatterAlong(samples, ray.nu);
   for (std::size_t band = 0; band < light.count; ++band) light[band] += more[band];
   return light;
 }
@@ -184,7 +184,7 @@ PolarisedLight TableLookup::PolarisationOfAllOrders(const ViewRay& ray) const {
   const Sampling all{.nodes = tables_.ray_nodes, .split_ozone = false, .dark_samples = true};
   const RaySamples<float> samples = air_.Sample(ray, all);
   PolarisedLight light = PolarisedOnce(tables_.medium, air_.Scatter(samples), ray);
-  const PolarisedLight more = diffuse().PolarisationAlong(samples, ray.nu);
+  const PolarisedLight more = multiple_scattering().PolarisationAlong(samples, ray.nu);
   for (std::size_t band = 0; band < light.q.count; ++band) {
     light.q[band] += more.q[band];
     light.u[band] += more.u[band];
@@ -202,7 +202,7 @@ Bands<float> TableLookup::SunIrradiance(double altitude_m, double mu_s) const {
 }
 
 Bands<float> TableLookup::SkyIrradiance(double altitude_m, double mu_s) const {
-  return diffuse().SkyIrradiance(altitude_m, mu_s);
+  return multiple_scattering().SkyIrradiance(altitude_m, mu_s);
 }
 
 }  // namespace alpenglow::lut

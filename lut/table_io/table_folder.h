@@ -27,7 +27,7 @@ namespace alpenglow::lut {
 struct TableQuality {
   TransmittanceTableSize transmittance;
   ScatteringTableSize single_scattering;
-  DiffuseLightOptions multiple_scattering;
+  MultipleScatteringOptions multiple_scattering;
   int ray_nodes = 12;
 };
 
@@ -51,7 +51,7 @@ struct TableFolder {
   Medium medium;
   std::optional<TransmittanceTable> transmittance;
   std::optional<ScatteringTable> single_scattering;
-  std::optional<DiffuseLight> multiple_scattering;
+  std::optional<MultipleScattering> multiple_scattering;
   int ray_nodes = 12;
 };
 
@@ -72,7 +72,7 @@ class TableLookup {
   explicit TableLookup(TableFolder tables);
 
   /// Replaces the table of multiple scattering by another one of the same medium.
-  void ReplaceMultipleScattering(DiffuseLight light);
+  void ReplaceMultipleScattering(MultipleScattering light);
 
   [[nodiscard]] const Medium& medium() const { return tables_.medium; }
   [[nodiscard]] const TableFolder& tables() const { return tables_; }
@@ -93,7 +93,7 @@ class TableLookup {
   [[nodiscard]] Bands<float> SkyIrradiance(double altitude_m, double mu_s) const;
 
  private:
-  [[nodiscard]] const DiffuseLight& diffuse() const;
+  [[nodiscard]] const MultipleScattering& multiple_scattering() const;
   [[nodiscard]] bool HasTableFor(const ViewRay& ray) const;
 
   TableFolder tables_;

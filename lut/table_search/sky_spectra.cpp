@@ -121,13 +121,13 @@ std::vector<double> FineWavelengths() {
 
 // A group of as many wavelengths as an integrator supports.
 struct SkySimulator::Part {
-  Part(const Medium& medium, const DiffuseLightOptions& options)
-      : air(medium), diffuse(medium, options) {}
+  Part(const Medium& medium, const MultipleScatteringOptions& options)
+      : air(medium), multiple_scattering(medium, options) {}
 
   // Returns the radiance of horizontal ground with the medium's albedo, lit by sun and sky.
   [[nodiscard]] Bands<float> GroundRadiance(const Point& point) const {
     const Bands<float> sun = air.TransmittanceToSpace(point.altitude_m, point.mu_s);
-    Bands<float> radiance = diffuse.SkyIrradiance(point.altitude_m, point.mu_s);
+    Bands<float> radiance = multiple_scattering.SkyIrradiance(point.altitude_m, point.mu_s);
     for (std::size_t band = 0; band < air.bands(); ++band) {
       radiance[band] += sun[band] * static_cast<float>(std::max(0.0, point.mu_s));
       radiance[band] *= static_cast<float>(air.medium().ground_albedo[band] / kPi);
@@ -139,7 +139,7 @@ struct SkySimulator::Part {
     const RaySamples<float> samples =
         air.Sample(ray, {.nodes = 12, .split_ozone = false, .dark_samples = true});
     Bands<float> radiance = air.Inscatter(air.Scatter(samples), ray.nu);
-    const Bands<float> more = diffuse.InscatterAlong(samples, ray.nu);
+    const Bands<float> more = multiple_scattering.InscatterAlong(samples, ray.nu);
     for (std::size_t band = 0; band < air.bands(); ++band) radiance[band] += more[band];
     if (samples.extent.end == RayEnd::kSpace) return radiance;
     const Bands<float> ground =
@@ -152,7 +152,7 @@ struct SkySimulator::Part {
   }
 
   SingleScattering<float> air;
-  DiffuseLight diffuse;
+  MultipleScattering multiple_scattering;
 };
 
 namespace {
@@ -165,7 +165,7 @@ void Append(const Bands<float>& bands, std::vector<double>& values) {
 
 }  // namespace
 
-SkySimulator::SkySimulator(const SkyConditions& conditions, const DiffuseLightOptions& options) {
+SkySimulator::SkySimulator(const SkyConditions& conditions, const MultipleScatteringOptions& options) {
   const std::vector<double> all = FineWavelengths();
   static_assert(kFineCount % kMaxBands == 0);
   for (auto first = all.begin(); first != all.end(); first += kMaxBands) {
@@ -184,7 +184,7 @@ std::vector<double> SkySimulator::Radiance(const ViewRay& ray) const {
 
 std::vector<double> SkySimulator::SkyIrradiance(double altitude_m, double mu_s) const {
   std::vector<double> values;
-  for (const auto& part : parts_) Append(part->diffuse.SkyIrradiance(altitude_m, mu_s), values);
+  for (const auto& part : parts_) Append(part->multiple_scattering.SkyIrradiance(altitude_m, mu_s), values);
   return values;
 }
 
@@ -220,7 +220,7 @@ std::vector<SkySpectrum> DrawSkySpectra(const SkyDrawing& drawing) {
   Drawer draw(drawing.seed);
   std::vector<SkySpectrum> spectra;
   for (int number = 0; number < drawing.atmospheres; ++number) {
-    const SkySimulator simulator(DrawConditions(drawing.family, number, draw), drawing.diffuse);
+    const SkySimulator simulator(DrawConditions(drawing.family, number, draw), drawing.multiple_scattering);
     for (const SkyRegime regime : kSkyRegimes) {
       const ElevationRange range = SpectrumRangeOf(regime);
       // Direct light has only one spectrum per sun, so it gets three times as many suns.

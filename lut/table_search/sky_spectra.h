@@ -4,7 +4,7 @@
 //
 // Light is given relative to the sun above the air, f = L / E [1/sr] or E' / E [1], because f is
 // smooth over wavelengths where the sun's spectrum is not. It contains all orders of scattering
-// (SingleScattering and DiffuseLight).
+// (SingleScattering and MultipleScattering).
 #pragma once
 
 #include <cstdint>
@@ -58,8 +58,8 @@ struct SkyDrawing {
   int suns = 4;    // per regime and atmosphere
   int views = 12;  // per sun: a quarter of them end at land 2 to 150 km away
   SkyFamily family;
-  /// Options of diffuse light; colour needs less accuracy than radiance.
-  DiffuseLightOptions diffuse{.altitudes = 14,
+  /// Options of multiply scattered light; colour needs less accuracy than radiance.
+  MultipleScatteringOptions multiple_scattering{.altitudes = 14,
                               .sun_angles = 28,
                               .degree = 2,
                               .zenith_nodes = 6,
@@ -71,7 +71,7 @@ struct SkyDrawing {
 /// Simulation of one atmosphere at FineWavelengths().
 class SkySimulator {
  public:
-  SkySimulator(const SkyConditions& conditions, const DiffuseLightOptions& options);
+  SkySimulator(const SkyConditions& conditions, const MultipleScatteringOptions& options);
   ~SkySimulator();
   SkySimulator(const SkySimulator&) = delete;
   SkySimulator& operator=(const SkySimulator&) = delete;

@@ -84,7 +84,7 @@ std::vector<Grid> GridsBySize(int finest_degree) {
   return grids;
 }
 
-TableFolder Folder(const Medium& medium, DiffuseLight light, int ray_nodes) {
+TableFolder Folder(const Medium& medium, MultipleScattering light, int ray_nodes) {
   return {.medium = medium,
           .transmittance = {},
           .single_scattering = {},
@@ -115,7 +115,7 @@ Bounds BoundsOf(double max_error, const std::vector<TableChoice::Measured>& meas
   return bounds;
 }
 
-int FewestNodes(const ReferenceViews& views, const DiffuseLight& finest, const Bounds& bounds,
+int FewestNodes(const ReferenceViews& views, const MultipleScattering& finest, const Bounds& bounds,
                 double max_error) {
   Verdict best;
   for (const double share : {kShareOfNodes, 1.0}) {
@@ -168,7 +168,7 @@ TableFolder WithAllTables(const ReferenceViews& views, const Bounds& bounds, dou
 /// Replaces the finest light by the smallest table within the bounds.
 TableFolder WithSmallestLight(const ReferenceViews& views, const Bounds& bounds, double max_error,
                               TableFolder tables) {
-  const DiffuseLight finest = *tables.multiple_scattering;
+  const MultipleScattering finest = *tables.multiple_scattering;
   TableLookup lookup(std::move(tables));
   Verdict best;
   for (const Grid& grid : GridsBySize(finest.options().degree)) {
@@ -210,7 +210,7 @@ void RemoveOld(const fs::path& file) {
 
 }  // namespace
 
-DiffuseLight Resampled(const DiffuseLight& light, int altitudes, int sun_angles, int degree) {
+MultipleScattering Resampled(const MultipleScattering& light, int altitudes, int sun_angles, int degree) {
   ALPENGLOW_ENSURE(degree, <=, light.options().degree);
   const std::size_t moments = MomentCount(degree);
   const auto share = [](int i, int n) { return static_cast<double>(i) / (n - 1); };
@@ -225,19 +225,19 @@ DiffuseLight Resampled(const DiffuseLight& light, int altitudes, int sun_angles,
       solved.values.insert(solved.values.end(), all.end() - rest, all.end());
     }
   }
-  DiffuseLightOptions options = light.options();
+  MultipleScatteringOptions options = light.options();
   options.altitudes = altitudes;
   options.sun_angles = sun_angles;
   options.degree = degree;
-  return DiffuseLight(light.medium(), options, std::move(solved));
+  return MultipleScattering(light.medium(), options, std::move(solved));
 }
 
 TableChoice ChooseTables(const Medium& medium, const TableSearch& search) {
   RequireInRange(search.max_error, 1e-8, 1.0, "max-error");
-  return ChooseTables(FinestDiffuseLight(medium), search);
+  return ChooseTables(FinestMultipleScattering(medium), search);
 }
 
-TableChoice ChooseTables(const DiffuseLight& finest, const TableSearch& search) {
+TableChoice ChooseTables(const MultipleScattering& finest, const TableSearch& search) {
   RequireInRange(search.max_error, 1e-8, 1.0, "max-error");
   const Medium& medium = finest.medium();
   const ReferenceViews views(medium, finest, search.views_of_a_kind, 0);
@@ -266,7 +266,7 @@ TableChoice ChooseTables(const DiffuseLight& finest, const TableSearch& search) 
 
 std::string ChoiceText(const TableChoice& choice, double max_error) {
   const TableFolder& tables = choice.tables;
-  const DiffuseLightOptions& grid = tables.multiple_scattering->options();
+  const MultipleScatteringOptions& grid = tables.multiple_scattering->options();
   std::string text =
       fmt::format("for errors below {:g} %: {} bytes\n", 100.0 * max_error, choice.bytes);
   text += "  transmittance          ";

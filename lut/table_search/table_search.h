@@ -44,11 +44,11 @@ struct TableChoice {
 /// InputError, with the best error, if no tables reach the bound.
 [[nodiscard]] TableChoice ChooseTables(const Medium& medium, const TableSearch& search);
 /// Finds the smallest tables from an existing finest solution.
-[[nodiscard]] TableChoice ChooseTables(const DiffuseLight& finest, const TableSearch& search);
+[[nodiscard]] TableChoice ChooseTables(const MultipleScattering& finest, const TableSearch& search);
 
 /// Returns a table with fewer nodes and moments than the solution it is resampled from.
 /// @param degree  at most the degree of `light`; InternalError otherwise.
-[[nodiscard]] DiffuseLight Resampled(const DiffuseLight& light, int altitudes, int sun_angles,
+[[nodiscard]] MultipleScattering Resampled(const MultipleScattering& light, int altitudes, int sun_angles,
                                      int degree);
 
 /// Returns sizes, bytes and errors as text.

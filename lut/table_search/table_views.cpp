@@ -16,7 +16,7 @@
 namespace alpenglow::lut {
 namespace {
 
-constexpr DiffuseLightOptions kFinest{.altitudes = 40,
+constexpr MultipleScatteringOptions kFinest{.altitudes = 40,
                                       .sun_angles = 80,
                                       .degree = 8,
                                       .zenith_nodes = 16,
@@ -82,7 +82,7 @@ double RmsOf(const std::vector<double>& values) {
 }
 
 ReferenceView ViewReference(const Medium& medium, const SingleScattering<float>& air,
-                     const DiffuseLight& finest, ViewKind kind, std::size_t i) {
+                     const MultipleScattering& finest, ViewKind kind, std::size_t i) {
   ReferenceView view{kind, RayOf(kind, i, medium), {}, {}};
   if (kind == ViewKind::kIrradiance) {
     view.light = Values(finest.SkyIrradiance(view.ray.altitude_m, view.ray.mu_s));
@@ -129,19 +129,19 @@ std::string_view NameOf(ViewKind kind) {
   throw InternalError("an unknown kind of view");
 }
 
-DiffuseLight FinestDiffuseLight(const Medium& medium) {
-  const DiffuseLightOptions needed = OptionsFor(medium);
-  DiffuseLightOptions options = kFinest;
+MultipleScattering FinestMultipleScattering(const Medium& medium) {
+  const MultipleScatteringOptions needed = OptionsFor(medium);
+  MultipleScatteringOptions options = kFinest;
   options.forward_peak = needed.forward_peak;
   options.degree = std::max(options.degree, needed.degree);
   options.azimuth_nodes = std::max(options.azimuth_nodes, needed.azimuth_nodes);
   options.later_zenith_nodes = std::max(options.later_zenith_nodes, needed.later_zenith_nodes);
   options.later_azimuth_nodes = std::max(options.later_azimuth_nodes, needed.later_azimuth_nodes);
   options.later_ray_nodes = std::max(options.later_ray_nodes, needed.later_ray_nodes);
-  return DiffuseLight(medium, options);
+  return MultipleScattering(medium, options);
 }
 
-ReferenceViews::ReferenceViews(const Medium& medium, const DiffuseLight& finest,
+ReferenceViews::ReferenceViews(const Medium& medium, const MultipleScattering& finest,
                          std::size_t views_of_a_kind, std::size_t first)
     : views_(kViewKinds.size() * views_of_a_kind) {
   const SingleScattering<float> air(medium);

@@ -5,7 +5,7 @@
 // 0.5 to 100 km by day), the sky in twilight (sun 2 degrees above to 6 below the horizon), and the
 // sky's irradiance on horizontal planes (sun -6 to 90 degrees); observers from 2 m to 10 km. The
 // truth of a view consists of the reference solution's single scattering and transmittance, and of a solution of
-// the diffuse light that is finer than any table. HeldAgainstPaths compares that truth with the
+// the multiply scattered light that is finer than any table. HeldAgainstPaths compares that truth with the
 // path tracer.
 //
 // The error of a view is |difference| over |truth|, lengths of vectors over the bands, or the
@@ -29,7 +29,7 @@ inline constexpr std::array kViewKinds{ViewKind::kSky, ViewKind::kAerialPerspect
 
 /// Returns the finest solution, from which the moments of tables are resampled and with which they
 /// are compared. It takes seconds.
-[[nodiscard]] DiffuseLight FinestDiffuseLight(const Medium& medium);
+[[nodiscard]] MultipleScattering FinestMultipleScattering(const Medium& medium);
 
 struct ReferenceView {
   ViewKind kind;
@@ -55,7 +55,7 @@ class ReferenceViews {
  public:
   /// @param first  number of the first view of a low-discrepancy sequence: sets [first, first +
   ///   views_of_a_kind) that do not overlap have no view in common.
-  ReferenceViews(const Medium& medium, const DiffuseLight& finest, std::size_t views_of_a_kind,
+  ReferenceViews(const Medium& medium, const MultipleScattering& finest, std::size_t views_of_a_kind,
               std::size_t first);
 
   [[nodiscard]] const std::vector<ReferenceView>& views() const { return views_; }

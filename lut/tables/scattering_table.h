@@ -14,7 +14,7 @@
 //              27, 1079.
 //   azimuth    r and mu as above; the azimuth from the sun, 0 to pi in equal steps, in place of nu,
 //              so that no texel is wasted; the sun's zenith cosine dense around the terminator, as
-//              in DiffuseLight; cubic except for mu. Texels hold fourth roots, so that light which
+//              in MultipleScattering; cubic except for mu. Texels hold fourth roots, so that light which
 //              falls by decades in twilight is smooth. For programs of this project.
 //
 // This header also includes the shared text scattering_map.glsl as C++ templates over double, float

@@ -254,8 +254,8 @@ struct Panel {
 
 }  // namespace
 
-AerialPerspective::AerialPerspective(const SingleScattering<float>& air, const DiffuseLight& diffuse)
-    : air_(air), diffuse_(diffuse), segments_(air) {
+AerialPerspective::AerialPerspective(const SingleScattering<float>& air, const MultipleScattering& multiple_scattering)
+    : air_(air), multiple_scattering_(multiple_scattering), segments_(air) {
   const Medium& medium = air.medium();
   for (std::size_t band = 0; band < medium.wavelengths_nm.size(); ++band) {
     rayleigh_per_m_ = std::max(rayleigh_per_m_, medium.rayleigh_scattering_per_m[band]);
@@ -352,7 +352,7 @@ PolarisedLight AerialPerspective::Polarised(const RaySamples<float>& samples, co
   if (!air_.medium().polarised) return light;
   light = PolarisedOnce(air_.medium(), once, ray);
   if (!higher_orders) return light;
-  const PolarisedLight more = diffuse_.PolarisationAlong(samples, ray.nu);
+  const PolarisedLight more = multiple_scattering_.PolarisationAlong(samples, ray.nu);
   for (std::size_t band = 0; band < air_.bands(); ++band) {
     light.q[band] += more.q[band];
     light.u[band] += more.u[band];
@@ -366,13 +366,13 @@ AirAlongRay AerialPerspective::Sum(const SampledLight& light, const ViewRay& ray
   const auto& [samples, once] = light;
   const double nu_seen = nodes.nu_seen.value_or(ray.nu);
   const auto direct = air_.Inscatter(once, nu_seen);
-  const auto diffuse = nodes.higher_orders
-                           ? diffuse_.InscatterAlong(samples, ray.nu, nu_seen, SegmentEnd::kOpaque)
+  const auto multiple_scattering = nodes.higher_orders
+                           ? multiple_scattering_.InscatterAlong(samples, ray.nu, nu_seen, SegmentEnd::kOpaque)
                            : Bands<float>(air_.bands());
   AirAlongRay air{Bands<float>(air_.bands()), Bands<float>(air_.bands())};
   const std::size_t last = samples.count - 1;
   for (std::size_t band = 0; band < air_.bands(); ++band) {
-    air.inscatter[band] = std::max(direct[band], 0.0F) + diffuse[band];
+    air.inscatter[band] = std::max(direct[band], 0.0F) + multiple_scattering[band];
     const float depth = OpticalDepthOf(
         ExtinctionAt(air_per_km, band),
         {samples.view_rayleigh[last], samples.view_mie[last], samples.view_ozone[last]});

@@ -167,7 +167,7 @@ struct AirAlongRay {
 /// mean square; 5e-4 in clear air) and 5e-3 (at worst) of single scattering, 3e-7 of transmittance.
 class AerialPerspective {
  public:
-  AerialPerspective(const SingleScattering<float>& air, const DiffuseLight& diffuse);
+  AerialPerspective(const SingleScattering<float>& air, const MultipleScattering& multiple_scattering);
 
   /// Nodes per panel. Rays that end in the air (ViewRay::length_m) choose their number by their
   /// length and the haze.
@@ -213,7 +213,7 @@ class AerialPerspective {
                                          bool higher_orders) const;
 
   const SingleScattering<float>& air_;
-  const DiffuseLight& diffuse_;
+  const MultipleScattering& multiple_scattering_;
   SegmentAir segments_;
   double rayleigh_per_m_ = 0.0, mie_per_m_ = 0.0;  // largest extinction of any band at altitude 0
 };

@@ -35,7 +35,7 @@ namespace alpenglow::renderer {
 struct SunlitAir {
   const SingleScattering<float>& air;
   const BentBeam& beam;         // direct light of sun and moon
-  const DiffuseLight& diffuse;  // light of the sky
+  const MultipleScattering& multiple_scattering;  // light of the sky
 
   /// Returns the irradiance perpendicular to the beams of a disk whose irradiance above the air is
   /// 1.

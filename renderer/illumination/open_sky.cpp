@@ -29,18 +29,18 @@ Moments OverLowerHalf(int degree) {
 
 }  // namespace
 
-SkyMoments::SkyMoments(const DiffuseLight& diffuse, const glm::dvec3& up, const glm::dvec3& to_sun,
+SkyMoments::SkyMoments(const MultipleScattering& multiple_scattering, const glm::dvec3& up, const glm::dvec3& to_sun,
                        std::vector<double> altitudes_m)
     : up_(up),
       to_sun_(to_sun),
       mu_s_(std::clamp(glm::dot(up, to_sun), -1.0, 1.0)),
-      degree_(diffuse.options().degree),
-      bands_(diffuse.bands()),
+      degree_(multiple_scattering.options().degree),
+      bands_(multiple_scattering.bands()),
       altitudes_m_(std::move(altitudes_m)) {
-  const double top = diffuse.medium().atmosphere_height_m;
+  const double top = multiple_scattering.medium().atmosphere_height_m;
   for (const double altitude : altitudes_m_) {
-    values_.push_back(diffuse.ValuesAt(std::sqrt(std::clamp(altitude / top, 0.0, 1.0)),
-                                       DiffuseLight::SunCoordinate(mu_s_)));
+    values_.push_back(multiple_scattering.ValuesAt(std::sqrt(std::clamp(altitude / top, 0.0, 1.0)),
+                                       MultipleScattering::SunCoordinate(mu_s_)));
   }
 }
 
@@ -184,7 +184,7 @@ Horizons GroundShares(const SurfaceSectors& surface, const Horizons& horizons) {
   return shares;
 }
 
-OpenSky::OpenSky(const SingleScattering<float>& air, const DiffuseLight& diffuse,
+OpenSky::OpenSky(const SingleScattering<float>& air, const MultipleScattering& multiple_scattering,
                  const glm::dvec3& to_sun, const Extent& extent)
     : bands_(air.bands()),
       stride_((air.bands() + 3) / 4 * 4),
@@ -197,16 +197,16 @@ OpenSky::OpenSky(const SingleScattering<float>& air, const DiffuseLight& diffuse
   mu_s_step_ = 2.0 * half / static_cast<double>(kSuns - 1);
   for (std::size_t i = 0; i < kLevels * kSuns; ++i) {
     const double level = static_cast<double>(i / kSuns) / static_cast<double>(kLevels - 1);
-    const auto irradiance = diffuse.SkyIrradiance(
+    const auto irradiance = multiple_scattering.SkyIrradiance(
         lowest_m_ + level * (highest_m_ - lowest_m_),
         std::clamp(first_mu_s_ + static_cast<double>(i % kSuns) * mu_s_step_, -1.0, 1.0));
     std::copy_n(irradiance.value.begin(), bands_, &level_irradiance_[i * stride_]);
   }
   // Compute three skies; the levels between them are interpolated linearly.
   const double middle_m = 0.5 * (lowest_m_ + highest_m_);
-  const std::array<std::vector<float>, 3> table{TableAt(air, diffuse, lowest_m_, to_sun),
-                                                TableAt(air, diffuse, middle_m, to_sun),
-                                                TableAt(air, diffuse, highest_m_, to_sun)};
+  const std::array<std::vector<float>, 3> table{TableAt(air, multiple_scattering, lowest_m_, to_sun),
+                                                TableAt(air, multiple_scattering, middle_m, to_sun),
+                                                TableAt(air, multiple_scattering, highest_m_, to_sun)};
   for (std::size_t level = 0; level < kLevels; ++level) {
     const float at = 2.0F * static_cast<float>(level) / static_cast<float>(kLevels - 1);
     const std::size_t first = at < 1.0F ? 0 : 1;
@@ -218,12 +218,12 @@ OpenSky::OpenSky(const SingleScattering<float>& air, const DiffuseLight& diffuse
   KeepRadiances();
 }
 
-std::vector<float> OpenSky::TableAt(const SingleScattering<float>& air, const DiffuseLight& diffuse,
+std::vector<float> OpenSky::TableAt(const SingleScattering<float>& air, const MultipleScattering& multiple_scattering,
                                     double altitude_m, const glm::dvec3& to_sun) const {
   constexpr std::size_t kParts = 6;  // per sector
   constexpr std::array<double, 2> kGauss{0.2113248654051871, 0.7886751345948129};
   const double mu_s = std::clamp(to_sun.z, -1.0, 1.0);
-  const SkyView view(air, diffuse, altitude_m, mu_s);
+  const SkyView view(air, multiple_scattering, altitude_m, mu_s);
   const double sun_azimuth = std::atan2(to_sun.y, to_sun.x);
   std::vector<double> azimuths;
   for (std::size_t i = 0; i < kHorizonAzimuths; ++i) {
@@ -237,7 +237,7 @@ std::vector<float> OpenSky::TableAt(const SingleScattering<float>& air, const Di
   std::vector<float> row(azimuths.size() * view.stride());
   std::vector<float> table(level_floats(), 0.0F);
   const double step = (1.0 - static_cast<double>(HorizonMap::kLowest)) / (kNodes - 1);
-  const Bands<float> level_plane = diffuse.SkyIrradiance(altitude_m, mu_s);
+  const Bands<float> level_plane = multiple_scattering.SkyIrradiance(altitude_m, mu_s);
   for (std::size_t node = kNodes - 1; node-- > 0;) {
     for (std::size_t azimuth = 0; azimuth < kHorizonAzimuths; ++azimuth) {
       const float* above = &table[(azimuth * kNodes + node + 1) * 2 * stride_];

@@ -2,7 +2,7 @@
 // This header provides skylight at a place: its moments for scattering by any phase function
 // (SkyMoments), and its irradiance of surfaces whose horizon hides a part of it (OpenSky).
 //
-// SkyMoments keeps the moments of DiffuseLight, from which a phase function with coefficients chi_l
+// SkyMoments keeps the moments of MultipleScattering, from which a phase function with coefficients chi_l
 // scatters
 //
 //   J(look) = sum over l, m of  chi_l L_lm Y_lm(look)
@@ -38,7 +38,7 @@ namespace alpenglow::renderer {
 class SkyMoments {
  public:
   /// @param up, to_sun  unit vectors. @param altitudes_m  ascending.
-  SkyMoments(const DiffuseLight& diffuse, const glm::dvec3& up, const glm::dvec3& to_sun,
+  SkyMoments(const MultipleScattering& multiple_scattering, const glm::dvec3& up, const glm::dvec3& to_sun,
              std::vector<double> altitudes_m);
 
   [[nodiscard]] double mu_s() const { return mu_s_; }
@@ -93,7 +93,7 @@ class OpenSky {
     double radius_m;             // greatest distance from the frame's origin
   };
   /// @param to_sun  unit, in the frame of the horizons.
-  OpenSky(const SingleScattering<float>& air, const DiffuseLight& diffuse, const glm::dvec3& to_sun,
+  OpenSky(const SingleScattering<float>& air, const MultipleScattering& multiple_scattering, const glm::dvec3& to_sun,
           const Extent& extent);
 
   /// Returns the irradiance per unit solar irradiance [1] from directions above the horizon, which
@@ -129,7 +129,7 @@ class OpenSky {
 
  private:
   [[nodiscard]] std::vector<float> TableAt(const SingleScattering<float>& air,
-                                           const DiffuseLight& diffuse, double altitude_m,
+                                           const MultipleScattering& multiple_scattering, double altitude_m,
                                            const glm::dvec3& to_sun) const;
   /// Returns the irradiance of a level plane.
   [[nodiscard]] Bands<float> LevelIrradiance(double altitude_m, double mu_s) const;

@@ -8,7 +8,7 @@ namespace alpenglow::renderer {
 namespace {
 
 /// Returns the vertical across a view, and the axis to the right of it. A view straight up or down
-/// is treated as tilted towards the sun's azimuth, as in polarised_light.h.
+/// is treated as tilted towards the sun's azimuth, as in polarised_scattering.h.
 PictureAxes VerticalAxes(const glm::dvec3& view, const glm::dvec3& up, const glm::dvec3& to_sun) {
   const double mu = glm::dot(view, up), mu_s = glm::dot(to_sun, up);
   const glm::dvec3 level = view - mu * up, level_sun = to_sun - mu_s * up;

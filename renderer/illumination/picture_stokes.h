@@ -10,7 +10,7 @@
 
 #include <glm/vec3.hpp>
 
-#include "lut/multiple_scattering/polarised_light.h"
+#include "lut/multiple_scattering/polarised_scattering.h"
 #include "renderer/camera/camera_rays.h"
 #include "renderer/material/band_light.h"
 
@@ -23,7 +23,7 @@ struct Analyser {
 [[nodiscard]] Analyser AnalyserAlong(const glm::dvec3& p, const PictureAxes& axes);
 
 /// Returns polarised light scattered in the air, whose Stokes parameters refer to the vertical
-/// plane (polarised_light.h), in the axes of the picture.
+/// plane (polarised_scattering.h), in the axes of the picture.
 /// @param view, up, to_sun  unit vectors; up is the vertical.
 [[nodiscard]] PolarisedLight InAxes(const PolarisedLight& of_vertical, const glm::dvec3& view,
                                     const glm::dvec3& up, const glm::dvec3& to_sun,

@@ -318,10 +318,10 @@ TerrainHorizons::TerrainHorizons(const HeightRaster& heights, const TriangleMesh
 }
 
 TerrainLight::TerrainLight(std::shared_ptr<const TerrainHorizons> horizons,
-                           const SingleScattering<float>& air, const DiffuseLight& diffuse,
+                           const SingleScattering<float>& air, const MultipleScattering& multiple_scattering,
                            const glm::dvec3& to_sun)
     : horizons_(std::move(horizons)),
-      sky_(air, diffuse, to_sun, horizons_ ? horizons_->extent() : OpenSky::Extent{0.0, 1.0, 5e5}) {
+      sky_(air, multiple_scattering, to_sun, horizons_ ? horizons_->extent() : OpenSky::Extent{0.0, 1.0, 5e5}) {
 }
 
 void TerrainLight::AddSlopes(const Medium& medium, const SlopeLight::Outgoing& outgoing,

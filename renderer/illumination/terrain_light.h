@@ -169,7 +169,7 @@ class TerrainLight {
   /// Creates the light of the sky alone.
   /// @param horizons  null: a plain.
   TerrainLight(std::shared_ptr<const TerrainHorizons> horizons, const SingleScattering<float>& air,
-               const DiffuseLight& diffuse, const glm::dvec3& to_sun);
+               const MultipleScattering& multiple_scattering, const glm::dvec3& to_sun);
 
   [[nodiscard]] const OpenSky& sky() const { return sky_; }
   [[nodiscard]] const TerrainHorizons* horizons() const { return horizons_.get(); }

@@ -83,7 +83,7 @@ std::vector<double> AltitudesOver(double bottom_m, const FogLayer& layer) {
 
 }  // namespace
 
-FogLight::FogLight(const LocalMedium& fog, const DiffuseLight& diffuse, const FogSun& sun,
+FogLight::FogLight(const LocalMedium& fog, const MultipleScattering& diffuse, const FogSun& sun,
                    double bottom_m)
     : fog_(fog),
       to_sun_(sun.to_light),

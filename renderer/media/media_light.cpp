@@ -85,7 +85,7 @@ struct MediaLight::State {
   const SceneGeometry& geometry;
   const SingleScattering<float>& air;
   const BentBeam& beam;
-  const DiffuseLight& diffuse;
+  const MultipleScattering& multiple_scattering;
   const LampLight* lamps;
   DistantLight sun;
   std::vector<LitVolume> volumes;
@@ -119,7 +119,7 @@ MediaLight::State::State(LocalMedia of, const SceneGeometry& over, const SunlitA
       geometry(over),
       air(in.air),
       beam(in.beam),
-      diffuse(in.diffuse),
+      multiple_scattering(in.multiple_scattering),
       lamps(with),
       sun(light.Sun()) {
   for (const LocalMedium& medium : media.all()) {
@@ -129,7 +129,7 @@ MediaLight::State::State(LocalMedia of, const SceneGeometry& over, const SunlitA
   const double scale = fog_layer().scale_height_m();
   const double bottom = media.fog_bottom_m();
   const glm::dvec3 head(0.0, 0.0, bottom + (std::isinf(scale) ? 0.0 : scale));
-  fog.emplace(*media.fog(), diffuse, FogSun{sun.to_light, sun.to_light_for_air, SunInAir(head)},
+  fog.emplace(*media.fog(), multiple_scattering, FogSun{sun.to_light, sun.to_light_for_air, SunInAir(head)},
               bottom);
 }
 
@@ -144,9 +144,9 @@ LitVolume MediaLight::State::Light(const LocalMedium& medium) const {
   const LocalVolume& volume = *medium.volume();
   const double low = geometry.AltitudeOf(volume.FrameFromUnit({0.5, 0.5, 0.0}));
   const double high = geometry.AltitudeOf(volume.FrameFromUnit({0.5, 0.5, 1.0}));
-  const SkyMoments sky(diffuse, geometry.UpAt(volume.Middle()), sun.to_light_for_air,
+  const SkyMoments sky(multiple_scattering, geometry.UpAt(volume.Middle()), sun.to_light_for_air,
                        {low, 0.5 * (low + high), high});
-  LitVolume lit{LegendreCoefficients(medium.optics.phase, diffuse.options().degree), sky,
+  LitVolume lit{LegendreCoefficients(medium.optics.phase, multiple_scattering.options().degree), sky,
                 std::nullopt, SkyLeft(volume, sky), LampsOf(volume)};
   if (volume.grid() != nullptr) lit.sun_column.emplace(SunColumns(volume));
   return lit;
@@ -212,7 +212,7 @@ std::vector<VolumeGrid> MediaLight::State::SkyLeft(const LocalVolume& volume,
                                                    const SkyMoments& sky) const {
   constexpr std::array<int, 3> kSize{8, 8, 8};
   const LebedevRule& rule = Lebedev();
-  const std::vector<double> all(static_cast<std::size_t>(diffuse.options().degree) + 1, 1.0);
+  const std::vector<double> all(static_cast<std::size_t>(multiple_scattering.options().degree) + 1, 1.0);
   std::array<BandLight, 26> weight;
   BandLight sum(bands());
   for (std::size_t i = 0; i < weight.size(); ++i) {

@@ -3,7 +3,7 @@
 // transmittance of local media.
 //
 // Volumes scatter light once. Sunlight arrives through the air (BentBeam), the terrain's shadow,
-// and every volume and the fog on its path. Skylight is given by its moments (DiffuseLight) and the
+// and every volume and the fog on its path. Skylight is given by its moments (MultipleScattering) and the
 // phase function, and attenuated by the mean transmittance of the volumes over 26 directions. Light
 // that a volume scatters again is neglected. Columns towards the sun through a gridded volume are
 // taken from a grid of at most 64 samples per side; the error is 2 % of the sun's light in
@@ -36,7 +36,7 @@ struct SkyThroughFog {
 };
 
 /// Light in local media for one position of the sun. Immutable, safe to use from many threads.
-/// Refers to geometry, air, diffuse light and lamps.
+/// Refers to geometry, air, multiply scattered light and lamps.
 class MediaLight {
  public:
   /// @param lamps  light volumes; null: none.

@@ -30,7 +30,7 @@ bool SeesTerrain(const Hit& hit, const Lighting& light) {
 }  // namespace
 
 GroundLight::GroundLight(const GroundParts& parts, const SunlitAir& air)
-    : parts_(parts), air_(air.air), beam_(air.beam), diffuse_(air.diffuse) {}
+    : parts_(parts), air_(air.air), beam_(air.beam), multiple_scattering_(air.multiple_scattering) {}
 
 std::shared_ptr<const TerrainLight> GroundLight::OnTerrain(const GroundSources& from) const {
   const Lighting& light = from.light;
@@ -38,7 +38,7 @@ std::shared_ptr<const TerrainLight> GroundLight::OnTerrain(const GroundSources& 
   const std::shared_ptr<const TerrainHorizons> horizons =
       light.effects.Has(Effect::kHorizons) ? parts_.horizons.Get() : nullptr;
   if (!horizons && !parts_.material.HasGloss()) return nullptr;
-  auto on_terrain = std::make_shared<TerrainLight>(horizons, air_, diffuse_, light.to_sun_for_air);
+  auto on_terrain = std::make_shared<TerrainLight>(horizons, air_, multiple_scattering_, light.to_sun_for_air);
   if (horizons && light.effects.Has(Effect::kBounce)) {
     on_terrain->AddSlopes(
         air_.medium(),
@@ -101,7 +101,7 @@ BandLight GroundLight::SkyIrradiance(const Hit& hit, const GroundSources& from,
       SeesTerrain(hit, light)
           ? light.on_terrain->Irradiance(
                 {hit.smooth_point, hit.normal, sun.up, sun.altitude_m, sun.mu_s_for_air})
-          : diffuse_.Irradiance(sun.altitude_m, sun.mu_s_for_air, normal_mu, azimuth);
+          : multiple_scattering_.Irradiance(sun.altitude_m, sun.mu_s_for_air, normal_mu, azimuth);
   if (from.media == nullptr) return clear;
   const SkyThroughFog fog = from.media->SkyOnSurface(sun.altitude_m, normal_mu);
   return fog.left * clear + fog.added;

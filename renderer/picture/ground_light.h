@@ -113,7 +113,7 @@ class GroundLight {
   GroundParts parts_;
   const SingleScattering<float>& air_;
   const BentBeam& beam_;
-  const DiffuseLight& diffuse_;
+  const MultipleScattering& multiple_scattering_;
 };
 
 }  // namespace alpenglow::renderer

@@ -56,7 +56,7 @@ double SceneState::IlluminanceBy(const DistantLight& source, const glm::dvec3& e
   const auto direct = static_cast<float>(sun.visible_fraction * std::max(sun.mu_s_effective, 0.0));
   const BandLight irradiance =
       direct * models.whole().sunlit().BeamLeft(sun.altitude_m, sun.mu_s_effective) +
-      models.whole().diffuse.SkyIrradiance(sun.altitude_m, sun.mu_s_for_air);
+      models.whole().multiple_scattering.SkyIrradiance(sun.altitude_m, sun.mu_s_for_air);
   return colour.Xyz(InDouble(source.irradiance * irradiance))[1];
 }
 

@@ -31,17 +31,17 @@ struct AirModel {
   AirModel(const Medium& medium, const GroundParts& parts)
       : air(medium),
         beam(medium),
-        diffuse(medium, OptionsFor(medium)),
-        aerial(air, diffuse),
+        multiple_scattering(medium, OptionsFor(medium)),
+        aerial(air, multiple_scattering),
         ground_light(parts, sunlit()) {}
   AirModel(const AirModel&) = delete;
   AirModel& operator=(const AirModel&) = delete;
 
-  [[nodiscard]] SunlitAir sunlit() const { return {air, beam, diffuse}; }
+  [[nodiscard]] SunlitAir sunlit() const { return {air, beam, multiple_scattering}; }
 
   SingleScattering<float> air;
   BentBeam beam;
-  DiffuseLight diffuse;
+  MultipleScattering multiple_scattering;
   AerialPerspective aerial;
   GroundLight ground_light;
 };

@@ -97,8 +97,8 @@ Bands<float> Grey(const Bands<float>& bands) {
   return grey;
 }
 
-DiffuseLightOptions NotLookedAt() {
-  DiffuseLightOptions coarse;
+MultipleScatteringOptions NotLookedAt() {
+  MultipleScatteringOptions coarse;
   coarse.altitudes = 4;
   coarse.sun_angles = 4;
   coarse.degree = 2;
@@ -111,8 +111,8 @@ class Topic : public TopicWork {
   Topic(const Medium& medium, const ReportEffort& effort, ReferenceRays solution)
       : TopicWork(medium, effort, std::move(solution)),
         air_(medium),
-        diffuse_(medium, NotLookedAt()),
-        aerial_(air_, diffuse_) {}
+        multiple_scattering_(medium, NotLookedAt()),
+        aerial_(air_, multiple_scattering_) {}
 
   void AddPanels(const std::string& parameter, const AerialPerspective::Nodes& nodes,
                  bool in_summary) {
@@ -227,8 +227,8 @@ class Topic : public TopicWork {
 
   /// Describes the cost of all orders and the transmittance together.
   [[nodiscard]] std::string AllOrdersText() const {
-    const DiffuseLight diffuse(medium_);
-    const AerialPerspective aerial(air_, diffuse);
+    const MultipleScattering multiple_scattering(medium_);
+    const AerialPerspective aerial(air_, multiple_scattering);
     const std::vector<ReferenceRay>& rays = solution().rays[0];
     RegimeResult result;
     TimePasses(
@@ -251,7 +251,7 @@ class Topic : public TopicWork {
   }
 
   SingleScattering<float> air_;
-  DiffuseLight diffuse_;
+  MultipleScattering multiple_scattering_;
   AerialPerspective aerial_;
 };
 

@@ -86,8 +86,8 @@ class ShaftTopic {
       : effort_(effort),
         ground_(effort.quick ? Waves() : OverTheRange()),
         air_(MediumPreset("earth")),
-        diffuse_(air_.medium(), {.altitudes = 4, .sun_angles = 4, .degree = 2, .max_orders = 1}),
-        aerial_(air_, diffuse_) {
+        multiple_scattering_(air_.medium(), {.altitudes = 4, .sun_angles = 4, .degree = 2, .max_orders = 1}),
+        aerial_(air_, multiple_scattering_) {
     for (const ReportRegime& sun : kSuns) SolveReference(sun.sun->lowest_deg);
     topic_.reference.time_s = reference_s_ / static_cast<double>(kSuns.size() * Pixels());
   }
@@ -265,7 +265,7 @@ class ShaftTopic {
   const ReportEffort& effort_;
   ShaftPlace ground_;
   SingleScattering<float> air_;
-  DiffuseLight diffuse_;  // unused
+  MultipleScattering multiple_scattering_;  // unused
   AerialPerspective aerial_;
   std::vector<ReferenceView> views_;
   std::vector<ShadowHeights> heights_;  // one for each view

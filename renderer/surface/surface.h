@@ -117,7 +117,7 @@ class GroundMaterial;
 /// The reflection of the ground at a place.
 class GroundPatch {
  public:
-  /// @param albedo  of the diffuse body; not used for water and snow.
+  /// @param albedo  of the multiple_scattering body; not used for water and snow.
   GroundPatch(const GroundMaterial& material, GroundCover::Kind kind, BandLight albedo)
       : material_(material), kind_(kind), albedo_(std::move(albedo)) {}
   /// Creates a patch of water.

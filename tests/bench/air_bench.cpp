@@ -124,11 +124,11 @@ void SingleScatteringByTheReference(benchmark::State& state) {
 BENCHMARK(SingleScatteringByTheReference)->Unit(benchmark::kMicrosecond);
 
 // Argument: 1 polarised light, 0 scalar light.
-void DiffuseLightOfOneRay(benchmark::State& state) {
+void MultipleScatteringOfOneRay(benchmark::State& state) {
   const Medium earth = MediumPreset("earth");
   const Medium medium = state.range(0) == 1 ? earth : InScalarLight(earth);
   const SingleScattering<float> air(medium);
-  const DiffuseLight light(medium);
+  const MultipleScattering light(medium);
   int i = 0;
   for (auto unused : state) {
     const ViewRay ray = RayNumber(++i);
@@ -136,7 +136,7 @@ void DiffuseLightOfOneRay(benchmark::State& state) {
         light.InscatterAlong(air.Sample(ray, {.nodes = 12, .dark_samples = true}), ray.nu));
   }
 }
-BENCHMARK(DiffuseLightOfOneRay)->Arg(0)->Arg(1)->ArgName("polarised");
+BENCHMARK(MultipleScatteringOfOneRay)->Arg(0)->Arg(1)->ArgName("polarised");
 
 SampledLight ByReference(const SingleScattering<float>& air, const ViewRay& ray) {
   SampledLight light{air.Sample(ray, {.nodes = 12, .dark_samples = true}), {}};
@@ -150,7 +150,7 @@ void AllOrdersOfOneRay(benchmark::State& state) {
   const Medium medium = MediumPreset("earth");
   const DirectScattering direct(medium);
   const SingleScattering<float>& air = direct.reference();
-  const DiffuseLight light(medium);
+  const MultipleScattering light(medium);
   const DirectMode mode = state.range(0) == 1 ? DirectMode::kFast : DirectMode::kNormal;
   int i = 0;
   for (auto unused : state) {
@@ -165,11 +165,11 @@ void AllOrdersOfOneRay(benchmark::State& state) {
 }
 BENCHMARK(AllOrdersOfOneRay)->DenseRange(0, 2)->ArgName("method");
 
-void BuildOfDiffuseLight(benchmark::State& state) {
+void BuildOfMultipleScattering(benchmark::State& state) {
   const Medium medium = MediumPreset("earth");
-  for (auto unused : state) benchmark::DoNotOptimize(DiffuseLight(medium));
+  for (auto unused : state) benchmark::DoNotOptimize(MultipleScattering(medium));
 }
-BENCHMARK(BuildOfDiffuseLight)->Unit(benchmark::kMillisecond)->UseRealTime();
+BENCHMARK(BuildOfMultipleScattering)->Unit(benchmark::kMillisecond)->UseRealTime();
 
 }  // namespace
 }  // namespace alpenglow::lut

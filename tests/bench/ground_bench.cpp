@@ -18,7 +18,7 @@ std::shared_ptr<const GroundSite> NewSite() {
   static const Medium kMedium = OnOsculatingSphere(MediumPreset("earth"), kPlace.latitude_rad);
   static const SiteAir kAir{std::make_shared<const SingleScattering<float>>(kMedium),
                             std::make_shared<const BentBeam>(kMedium),
-                            std::make_shared<const DiffuseLight>(kMedium)};
+                            std::make_shared<const MultipleScattering>(kMedium)};
   static const ElevationGrid kRange = BuiltInRange(kPlace);
   return std::make_shared<const GroundSite>(GroundOf(kRange, LocalFrame(kWgs84, kPlace)),
                                             GroundCover{}, nullptr, kAir);

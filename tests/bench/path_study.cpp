@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Measures the time of the path tracer to an error of half a percent, and the error of single
-// scattering plus DiffuseLight relative to it, by regime over quasi-random rays. Run by hand:
+// scattering plus MultipleScattering relative to it, by regime over quasi-random rays. Run by hand:
 // path_study [times|irradiance|errors|rays], where rays prints every ray of errors. Times are for
 // all cores of an otherwise idle machine.
 #include <fmt/format.h>
@@ -55,7 +55,7 @@ void PrintTimes() {
   }
 }
 
-// Prints the irradiance of the sky on the ground: DiffuseLight relative to traced paths.
+// Prints the irradiance of the sky on the ground: MultipleScattering relative to traced paths.
 void PrintIrradiance() {
   fmt::print("\n| air | sun | error of irradiance, by wavelength | standard errors |\n");
   fmt::print("|---|---|---|---|\n");

@@ -21,12 +21,12 @@ struct World {
           return LoadGround(scene);
         }()),
         air(MediumPreset("earth")),
-        diffuse(air.medium()),
-        aerial(air, diffuse) {}
+        multiple_scattering(air.medium()),
+        aerial(air, multiple_scattering) {}
 
   SceneGround ground;
   SingleScattering<float> air;
-  DiffuseLight diffuse;
+  MultipleScattering multiple_scattering;
   AerialPerspective aerial;
 };
 

@@ -16,7 +16,7 @@ namespace {
 using tests::Earth;
 
 SkyView View(double altitude_m, double elevation_deg) {
-  return SkyView(Earth().air, Earth().diffuse, altitude_m,
+  return SkyView(Earth().air, Earth().multiple_scattering, altitude_m,
                  std::sin(elevation_deg * kRadiansPerDegree));
 }
 
@@ -64,7 +64,7 @@ void Panorama(benchmark::State& state) {
   PanoramaSettings settings;
   settings.sun.elevation_rad = 10.0 * kRadiansPerDegree;
   for (auto unused : state)
-    benchmark::DoNotOptimize(RenderPanorama(Earth().air, Earth().diffuse, settings));
+    benchmark::DoNotOptimize(RenderPanorama(Earth().air, Earth().multiple_scattering, settings));
 }
 BENCHMARK(Panorama)->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime();
 

@@ -12,13 +12,13 @@
 namespace alpenglow::lut {
 namespace {
 
-void Row(const SingleScattering<float>& air, const DiffuseLight& diffuse, const DirectSky& direct,
+void Row(const SingleScattering<float>& air, const MultipleScattering& multiple_scattering, const DirectSky& direct,
          double altitude_m, double elevation_deg, const SkyViewSize* fixed) {
   const double mu_s = std::sin(elevation_deg * kRadiansPerDegree);
   const SkyViewSize size =
       fixed != nullptr ? *fixed : SkyViewSizeFor(air.medium(), altitude_m, mu_s);
   const std::clock_t start = std::clock();
-  const SkyView view(air, diffuse, altitude_m, mu_s, size);
+  const SkyView view(air, multiple_scattering, altitude_m, mu_s, size);
   const double ms = 1e3 * static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
   const SkyViewErrors errors = ErrorsOf(view, direct, altitude_m, mu_s, 3000);
   fmt::print(
@@ -42,10 +42,10 @@ int main(int argc, char** argv) {
   }
   const Medium medium = MediumPreset(argc > 5 ? argv[5] : "earth");
   const SingleScattering<float> air(medium);
-  const DiffuseLight diffuse(medium);
-  const DirectSky direct(medium, diffuse);
+  const MultipleScattering multiple_scattering(medium);
+  const DirectSky direct(medium, multiple_scattering);
   for (const double altitude_m : {2.0, 10e3, 40e3, 400e3}) {
     for (const double elevation_deg : {60.0, 10.0, 1.0, -1.0, -4.0, -10.0})
-      Row(air, diffuse, direct, altitude_m, elevation_deg, fixed ? &size : nullptr);
+      Row(air, multiple_scattering, direct, altitude_m, elevation_deg, fixed ? &size : nullptr);
   }
 }

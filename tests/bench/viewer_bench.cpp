@@ -27,7 +27,7 @@ const MediumTables& Phases() {
 }
 
 AirTables Tables(AirQuality quality, double altitude_m) {
-  return MakeAirTables(Earth().air, Earth().diffuse, Phases(), {altitude_m, 0.3},
+  return MakeAirTables(Earth().air, Earth().multiple_scattering, Phases(), {altitude_m, 0.3},
                        AirTablesSizeOf(quality, altitude_m));
 }
 

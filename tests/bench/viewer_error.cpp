@@ -25,7 +25,7 @@ void Study(const alpenglow::tests::LitAir& air, AirQuality quality, const AirEye
   const MediumTables medium = MakeMediumTables(air.air, air.beam);
   const AirTablesSize size = AirTablesSizeOf(quality, eye.altitude_m);
   const auto start = std::chrono::steady_clock::now();
-  const AirTables tables = MakeAirTables(air.air, air.diffuse, medium, eye, size);
+  const AirTables tables = MakeAirTables(air.air, air.multiple_scattering, medium, eye, size);
   const std::chrono::duration<double, std::milli> time = std::chrono::steady_clock::now() - start;
   const alpenglow::tests::AirReading reading(tables, medium);
   const alpenglow::tests::AirReference reference(air, eye);

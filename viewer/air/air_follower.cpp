@@ -109,7 +109,7 @@ void AirTextures::Upload(const AirTables& tables) {
   upload(kThrough, tables.to_space);
   upload(kExtinction, tables.extinction);
   upload(kSingle, tables.single);
-  upload(kDiffuse, tables.diffuse);
+  upload(kDiffuse, tables.multiple_scattering);
   const AirMap& map = tables.map;
   const AirTablesSize& size = tables.size;
   values_.shell = {map.altitude, map.ceiling, map.top, map.radius};
@@ -172,7 +172,7 @@ AirEye EyeOf(const AirView& view) {
 
 AirTables TablesOf(const SolvedAir& air, const AirView& view, AirQuality quality) {
   const SingleScattering<float> here(OnOsculatingSphere(air.medium, view.latitude_rad));
-  return MakeAirTables(here, air.diffuse, air.tables, EyeOf(view),
+  return MakeAirTables(here, air.multiple_scattering, air.tables, EyeOf(view),
                        AirTablesSizeOf(quality, view.altitude_m));
 }
 

@@ -11,7 +11,7 @@
 #include "atmosphere/medium/phase_text.h"
 #include "atmosphere/math/constants.h"
 #include "atmosphere/math/numerics.h"
-#include "lut/multiple_scattering/diffuse_fan.h"
+#include "lut/multiple_scattering/azimuth_fan.h"
 
 namespace alpenglow::viewer {
 namespace {
@@ -323,10 +323,10 @@ class SingleOfRow {
 
 class WayBuilder {
  public:
-  WayBuilder(const SingleScattering<float>& air, const DiffuseLight& diffuse, const AirPhases& phases,
+  WayBuilder(const SingleScattering<float>& air, const MultipleScattering& multiple_scattering, const AirPhases& phases,
              AirTables& tables)
       : air_(air),
-        fan_(diffuse),
+        fan_(multiple_scattering),
         phases_(phases),
         tables_(tables),
         azimuths_(AzimuthsOf(tables.size.columns)) {}
@@ -377,7 +377,7 @@ class WayBuilder {
       for (std::size_t x = 0; x < nus.size(); ++x) {
         for (std::size_t band = 0; band < bands; ++band)
           sum[x][static_cast<glm::length_t>(band)] += piece[x * bands + band];
-        Texel(tables_.diffuse, x, y, j) = Quotient(sum[x], absorbed[j]);
+        Texel(tables_.multiple_scattering, x, y, j) = Quotient(sum[x], absorbed[j]);
       }
     }
   }
@@ -388,7 +388,7 @@ class WayBuilder {
       for (std::size_t x = 0; x < nus.size(); ++x) {
         const float twilight = TwilightAt(tables_.map, tables_.eye.mu_s, nus[x], source_km);
         Texel(tables_.single, x, y, j) /= twilight;
-        Texel(tables_.diffuse, x, y, j) /= twilight;
+        Texel(tables_.multiple_scattering, x, y, j) /= twilight;
       }
     }
   }
@@ -407,7 +407,7 @@ class WayBuilder {
   }
 
   const SingleScattering<float>& air_;
-  DiffuseFan fan_;
+  AzimuthFan fan_;
   const AirPhases& phases_;
   AirTables& tables_;
   std::vector<double> azimuths_;
@@ -415,9 +415,9 @@ class WayBuilder {
 
 }  // namespace
 
-void FillWays(const SingleScattering<float>& air, const DiffuseLight& diffuse, const AirPhases& phases,
+void FillWays(const SingleScattering<float>& air, const MultipleScattering& multiple_scattering, const AirPhases& phases,
               AirTables& tables) {
-  WayBuilder(air, diffuse, phases, tables).Fill();
+  WayBuilder(air, multiple_scattering, phases, tables).Fill();
 }
 
 }  // namespace alpenglow::viewer

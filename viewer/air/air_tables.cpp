@@ -81,12 +81,12 @@ double CosineOfPhaseNode(int node) {
   return 1.0 - 2.0 * half_sine * half_sine;
 }
 
-AirTexels SkyPhase(const SingleScattering<float>& air, const DiffuseLight& diffuse,
+AirTexels SkyPhase(const SingleScattering<float>& air, const MultipleScattering& multiple_scattering,
                    const AirTexels& aerosol, const AirEye& eye) {
   const float column_km = GlowColumn_km(air, eye.altitude_m, eye.mu_s);
   AirTexels phase = aerosol;
   for (int k = 0; k < phase.width; ++k)
-    phase.At(k, 0) += Vec4Of(diffuse.GlowFactor(CosineOfPhaseNode(k), column_km));
+    phase.At(k, 0) += Vec4Of(multiple_scattering.GlowFactor(CosineOfPhaseNode(k), column_km));
   return phase;
 }
 
@@ -121,12 +121,12 @@ AirTexels SkyTexels(const SkyView& view, const AirMap& map, const AirPhases& pha
   return texels;
 }
 
-SkyView ViewOf(const SingleScattering<float>& air, const DiffuseLight& diffuse, const AirEye& eye,
+SkyView ViewOf(const SingleScattering<float>& air, const MultipleScattering& multiple_scattering, const AirEye& eye,
                double fineness) {
   SkyViewSize size = SkyViewSizeFor(air.medium(), eye.altitude_m, eye.mu_s);
   for (int* nodes : {&size.sky_rows, &size.ground_rows, &size.azimuths})
     *nodes = static_cast<int>(std::lround(fineness * *nodes));
-  return SkyView(air, diffuse, eye.altitude_m, eye.mu_s, size)
+  return SkyView(air, multiple_scattering, eye.altitude_m, eye.mu_s, size)
       .WithSunSeenAt(eye.zenith_angle_seen_rad());
 }
 
@@ -202,13 +202,13 @@ AirTablesSize AirTablesSizeOf(AirQuality quality, double altitude_m) {
   return high;
 }
 
-AirTables MakeAirTables(const SingleScattering<float>& air, const DiffuseLight& diffuse,
+AirTables MakeAirTables(const SingleScattering<float>& air, const MultipleScattering& multiple_scattering,
                         const MediumTables& medium, const AirEye& eye, const AirTablesSize& size) {
   RequireFourBands(air.medium());
-  const SkyView view = ViewOf(air, diffuse, eye, size.sky_fineness);
+  const SkyView view = ViewOf(air, multiple_scattering, eye, size.sky_fineness);
   const AirMap map(air.medium(), eye.altitude_m, eye.ceiling_m,
-                   static_cast<double>(diffuse.grid().twilight_fall));
-  AirTexels sky_phase = SkyPhase(air, diffuse, medium.phase, eye);
+                   static_cast<double>(multiple_scattering.grid().twilight_fall));
+  AirTexels sky_phase = SkyPhase(air, multiple_scattering, medium.phase, eye);
   const AirPhases phases(medium.phase), sky_phases(sky_phase);
   const std::array<glm::vec4, 3> mix = SkyMix(air, view, map, sky_phases, eye);
   AirTexels sky = SkyTexels(view, map, sky_phases, eye, mix, size);
@@ -225,7 +225,7 @@ AirTables MakeAirTables(const SingleScattering<float>& air, const DiffuseLight& 
       AirTexels(size.extinction_distances, size.extinction_rows + size.extinction_ground_rows),
       AirTexels(size.columns, rows, size.distances),
       AirTexels(size.columns, rows, size.distances)};
-  FillWays(air, diffuse, phases, tables);
+  FillWays(air, multiple_scattering, phases, tables);
   return tables;
 }
 

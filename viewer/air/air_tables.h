@@ -54,7 +54,7 @@ struct AirMap {
   double sky_range;           // from the horizon up to the zenith or to the upper edge of the air
   double air_sky_range;       // up to the zenith or to where rays miss all land
   double ground_range;        // from the horizon down to the nadir
-  double twilight_fall;       // twilight_fall of DiffuseGrid
+  double twilight_fall;       // twilight_fall of MomentGrid
   double twilight_reference;  // approximate radius at which the light is scattered
   double sky_crowding, ground_crowding;  // crowding of the distances
 };
@@ -116,13 +116,13 @@ struct AirTables {
   std::array<glm::vec4, 3> sky_mix;     // m_R, m_M, m_0
   std::array<glm::vec4, 2> single_mix;  // a_R, a_M
   /// Phase function for whole rays: MediumTables::phase with the glow around the sun
-  /// (DiffuseLight::GlowFactor).
+  /// (MultipleScattering::GlowFactor).
   AirTexels sky_phase;
   AirTexels sky;         // [azimuth, row]: rows above the horizon, then rows below it
   AirTexels to_space;    // [row]: transmittance of whole rays, to space or to the bare ground
   AirTexels extinction;  // [distance, row]: mean along the path [1/km]
   AirTexels single;      // [azimuth, row, distance]
-  AirTexels diffuse;
+  AirTexels multiple_scattering;
 };
 
 /// Throws InputError if the medium has more bands than a texel.
@@ -141,10 +141,10 @@ struct MediumTables {
 /// @param beam  beam of the medium of `air`.
 [[nodiscard]] MediumTables MakeMediumTables(const SingleScattering<float>& air, const BentBeam& beam);
 
-/// Computes the tables on the calling thread alone. `air`, `diffuse` and `medium` must belong to
+/// Computes the tables on the calling thread alone. `air`, `multiple_scattering` and `medium` must belong to
 /// one medium; no reference to them is kept. Throws InputError for a medium of more than four
 /// bands.
-[[nodiscard]] AirTables MakeAirTables(const SingleScattering<float>& air, const DiffuseLight& diffuse,
+[[nodiscard]] AirTables MakeAirTables(const SingleScattering<float>& air, const MultipleScattering& multiple_scattering,
                                       const MediumTables& medium, const AirEye& eye,
                                       const AirTablesSize& size);
 

@@ -83,7 +83,7 @@ double OzoneDobson(const Medium& medium) {
 }
 
 std::shared_ptr<const SolvedAir> SolveAir(const Medium& medium, AirSolution solution) {
-  constexpr DiffuseLightOptions kDraft{
+  constexpr MultipleScatteringOptions kDraft{
       .altitudes = 12, .sun_angles = 24, .zenith_nodes = 8, .azimuth_nodes = 5, .ray_nodes = 6};
   const SingleScattering<float> air(medium);
   tbb::task_arena one_thread(1);
@@ -92,7 +92,7 @@ std::shared_ptr<const SolvedAir> SolveAir(const Medium& medium, AirSolution solu
     MediumTables tables = MakeMediumTables(air, beam);
     return std::make_shared<const SolvedAir>(SolvedAir{
         medium, solution, std::move(beam),
-        DiffuseLight(medium, solution == AirSolution::kDraft ? kDraft : DiffuseLightOptions{}),
+        MultipleScattering(medium, solution == AirSolution::kDraft ? kDraft : MultipleScatteringOptions{}),
         std::move(tables)});
   });
 }

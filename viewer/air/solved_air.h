@@ -57,7 +57,7 @@ struct SolvedAir {
   Medium medium;
   AirSolution solution;
   BentBeam beam;
-  DiffuseLight diffuse;
+  MultipleScattering multiple_scattering;
   MediumTables tables;
 };
 

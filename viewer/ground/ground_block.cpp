@@ -172,15 +172,15 @@ std::vector<ShaderPiece> GroundTexts(const GroundMaterial& material, const LandK
           ViewerPiece("viewer/shaders/ground_light.glsl")};
 }
 
-GroundTextures::GroundTextures(const DiffuseLight& diffuse) {
-  SetAir(diffuse);
+GroundTextures::GroundTextures(const MultipleScattering& multiple_scattering) {
+  SetAir(multiple_scattering);
   const std::vector<BandTexel> black(SeaMirror::kSide * SeaMirror::kSide);
   for (const LightSource source : {LightSource::kSun, LightSource::kMoon})
     SetSeaMirror(source, black);
 }
 
-void GroundTextures::SetAir(const DiffuseLight& diffuse) const {
-  Upload(level_sky_, LevelSky::kNodes, 1, LevelSky::Of(diffuse));
+void GroundTextures::SetAir(const MultipleScattering& multiple_scattering) const {
+  Upload(level_sky_, LevelSky::kNodes, 1, LevelSky::Of(multiple_scattering));
 }
 
 void GroundTextures::SetSeaMirror(LightSource source, const std::vector<BandTexel>& texels) const {

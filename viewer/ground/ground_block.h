@@ -106,11 +106,11 @@ struct LandKind {
 /// Textures of the samplers of these texts.
 class GroundTextures {
  public:
-  /// @param diffuse  light of the air over the ground.
-  explicit GroundTextures(const DiffuseLight& diffuse);
+  /// @param multiple_scattering  light of the air over the ground.
+  explicit GroundTextures(const MultipleScattering& multiple_scattering);
 
   /// Updates the textures for another medium.
-  void SetAir(const DiffuseLight& diffuse) const;
+  void SetAir(const MultipleScattering& multiple_scattering) const;
   void SetSeaMirror(LightSource source, const std::vector<BandTexel>& texels) const;
   void SetDrape(const DrapeTexels& texels) const;
 

@@ -74,7 +74,7 @@ double OpenAltitude_m(const GroundSite& site) {
 }
 
 SkyTilt OpenSkyUnder(const GroundSite& site, const SunPosition& disk) {
-  return {*site.air().single_scattering, *site.air().diffuse, OpenAltitude_m(site),
+  return {*site.air().single_scattering, *site.air().multiple_scattering, OpenAltitude_m(site),
           std::sin(SunForAir(disk).elevation_rad)};
 }
 
@@ -157,10 +157,10 @@ class GroundFollower::Maker {
     const GroundMaterial material(cover_, drape_, medium.wavelengths_nm);
     if (!material.HasGloss()) return {};
     const SingleScattering<float> single_scattering(medium);
-    const DiffuseLight& diffuse = request.air->diffuse;
+    const MultipleScattering& multiple_scattering = request.air->multiple_scattering;
     const glm::dvec3 to_sun = Direction(SunForAir(disk));
-    const OpenSky sky(single_scattering, diffuse, to_sun, OpenSky::Extent{0.0, 1.0, 5e5});
-    return SeaMirror::Of(sky, diffuse, material.water(), to_sun);
+    const OpenSky sky(single_scattering, multiple_scattering, to_sun, OpenSky::Extent{0.0, 1.0, 5e5});
+    return SeaMirror::Of(sky, multiple_scattering, material.water(), to_sun);
   }
 
   std::shared_ptr<const GroundSite> SiteFor(const Request& request) {
@@ -180,7 +180,7 @@ class GroundFollower::Maker {
     const Medium medium = OnOsculatingSphere(request.air->medium, foot.latitude_rad);
     const SiteAir air{std::make_shared<const SingleScattering<float>>(medium),
                       std::shared_ptr<const BentBeam>(request.air, &request.air->beam),
-                      std::shared_ptr<const DiffuseLight>(request.air, &request.air->diffuse)};
+                      std::shared_ptr<const MultipleScattering>(request.air, &request.air->multiple_scattering)};
     SceneGround ground = GroundOf(*grid, LocalFrame(EllipsoidOf(medium), foot));
     if (ground.terrain->mesh().triangles.empty()) return nullptr;  // no land is loaded there yet
     auto drape = drape_ ? drape_->In(ground.frame) : nullptr;

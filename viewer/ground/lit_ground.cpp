@@ -128,7 +128,7 @@ GroundSite::GroundSite(SceneGround ground, const GroundCover& cover,
       horizons_(ground_, medium()),
       heights_(TerrainOf(ground_).mesh()),
       light_({ground_, geometry_, no_lamps_, horizons_, material_},
-             {*air_.single_scattering, *air_.beam, *air_.diffuse}) {
+             {*air_.single_scattering, *air_.beam, *air_.multiple_scattering}) {
   ALPENGLOW_ENSURE(ground_.is_one_surface, ==, true);
   OnThisThread([&] { (void)horizons_.Get(); });
 }

@@ -66,7 +66,7 @@ class MeshHeights {
 struct SiteAir {
   std::shared_ptr<const SingleScattering<float>> single_scattering;
   std::shared_ptr<const BentBeam> beam;
-  std::shared_ptr<const DiffuseLight> diffuse;
+  std::shared_ptr<const MultipleScattering> multiple_scattering;
 };
 
 /// Returns the ground of an elevation model around a place, without objects on it. Works on the

@@ -33,26 +33,26 @@ BandLight Shown(const OpenSky& sky, const Water& water, double mu_s, const glm::
 
 }  // namespace
 
-BandLight LevelSky::Under(const DiffuseLight& diffuse, double sun_elevation_rad) {
-  return diffuse.SkyIrradiance(0.0, std::sin(std::max(sun_elevation_rad, kLowest_rad)));
+BandLight LevelSky::Under(const MultipleScattering& multiple_scattering, double sun_elevation_rad) {
+  return multiple_scattering.SkyIrradiance(0.0, std::sin(std::max(sun_elevation_rad, kLowest_rad)));
 }
 
-std::vector<BandTexel> LevelSky::Of(const DiffuseLight& diffuse) {
+std::vector<BandTexel> LevelSky::Of(const MultipleScattering& multiple_scattering) {
   std::vector<BandTexel> texels;
   texels.reserve(kNodes);
   for (std::size_t i = 0; i < kNodes; ++i) {
     const double elevation_rad =
         kLowest_rad + kRange_rad * static_cast<double>(i) / static_cast<double>(kNodes - 1);
-    texels.push_back(TexelOf(Under(diffuse, elevation_rad)));
+    texels.push_back(TexelOf(Under(multiple_scattering, elevation_rad)));
   }
   return texels;
 }
 
 // The sectors of the sky are not symmetric about the sun, so the mean of both sides is used.
-std::vector<BandTexel> SeaMirror::Of(const OpenSky& sky, const DiffuseLight& diffuse,
+std::vector<BandTexel> SeaMirror::Of(const OpenSky& sky, const MultipleScattering& multiple_scattering,
                                      const Water& water, const glm::dvec3& to_sun) {
   const double mu_s = std::clamp(to_sun.z, -1.0, 1.0);
-  const BandLight level = diffuse.SkyIrradiance(0.0, mu_s);
+  const BandLight level = multiple_scattering.SkyIrradiance(0.0, mu_s);
   const double flat = std::hypot(to_sun.x, to_sun.y);
   const glm::dvec3 sunward =
       flat > 1e-9 ? glm::dvec3(to_sun.x, to_sun.y, 0.0) / flat : glm::dvec3(1.0, 0.0, 0.0);
@@ -143,10 +143,10 @@ std::array<float, 4> NodeAt(const std::vector<SkyPart>& parts, float sunward, fl
 
 }  // namespace
 
-SkyTilt::SkyTilt(const SingleScattering<float>& air, const DiffuseLight& diffuse, double altitude_m,
+SkyTilt::SkyTilt(const SingleScattering<float>& air, const MultipleScattering& multiple_scattering, double altitude_m,
                  double mu_s) {
   ALPENGLOW_ENSURE(air.bands(), <=, std::size_t{4});
-  const std::vector<SkyPart> parts = PartsOf(SkyView(air, diffuse, altitude_m, mu_s, kCoarseSky));
+  const std::vector<SkyPart> parts = PartsOf(SkyView(air, multiple_scattering, altitude_m, mu_s, kCoarseSky));
   for (std::size_t row = 0; row < kRows; ++row) {
     for (std::size_t column = 0; column < kColumns; ++column) {
       const float sunward = static_cast<float>(column) / 4.0F - 1.0F;

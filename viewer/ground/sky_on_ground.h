@@ -42,9 +42,9 @@ struct LevelSky {
   static constexpr double kLowest_rad = -0.35, kRange_rad = 1.93;
 
   /// Returns the table. The relative error between nodes is below 2e-3.
-  [[nodiscard]] static std::vector<BandTexel> Of(const DiffuseLight& diffuse);
+  [[nodiscard]] static std::vector<BandTexel> Of(const MultipleScattering& multiple_scattering);
   /// Returns the exact value.
-  [[nodiscard]] static BandLight Under(const DiffuseLight& diffuse, double sun_elevation_rad);
+  [[nodiscard]] static BandLight Under(const MultipleScattering& multiple_scattering, double sun_elevation_rad);
 };
 
 /// Mirrored radiance [1/sr] relative to LevelSky; a row has one mu_eye.
@@ -52,7 +52,7 @@ struct SeaMirror {
   static constexpr std::size_t kSide = 48;
 
   /// @param sky  sky of the same sun.
-  [[nodiscard]] static std::vector<BandTexel> Of(const OpenSky& sky, const DiffuseLight& diffuse,
+  [[nodiscard]] static std::vector<BandTexel> Of(const OpenSky& sky, const MultipleScattering& multiple_scattering,
                                                  const Water& water, const glm::dvec3& to_sun);
 };
 
@@ -74,8 +74,8 @@ struct SkyTilt {
   /// Nodes beyond n_sunward^2 + n_up^2 = 1 belong to no slope and are extrapolated from slopes.
   std::array<std::array<float, 4>, kColumns * kRows> nodes{};
 
-  /// @param air, diffuse  of one medium; mu_s: zenith cosine of the sun or moon.
-  SkyTilt(const SingleScattering<float>& air, const DiffuseLight& diffuse, double altitude_m,
+  /// @param air, multiple_scattering  of one medium; mu_s: zenith cosine of the sun or moon.
+  SkyTilt(const SingleScattering<float>& air, const MultipleScattering& multiple_scattering, double altitude_m,
           double mu_s);
 
   /// Returns the irradiance on a slope whose unit normal has these components upwards and towards

@@ -46,7 +46,7 @@ class Sky {
     const RaySamples<float> samples = request_.air->Sample(ray, {.dark_samples = true});
     const Bands<float> once = request_.air->Inscatter(request_.air->Scatter(samples), nu_seen);
     const Bands<float> more =
-        request_.diffuse->InscatterAlong(samples, ray.nu, nu_seen, SegmentEnd::kOpen);
+        request_.multiple_scattering->InscatterAlong(samples, ray.nu, nu_seen, SegmentEnd::kOpen);
     std::vector<double> radiance(once.count);
     for (std::size_t band = 0; band < once.count; ++band) {
       radiance[band] = static_cast<double>(once[band] + more[band]) *
@@ -89,7 +89,7 @@ bool LooksTheSame(const DayStripRequest& a, const DayStripRequest& b) {
       std::max(std::abs(a.place.latitude_rad - b.place.latitude_rad),
                std::abs(std::remainder(a.place.longitude_rad - b.place.longitude_rad, 2.0 * kPi)) *
                    std::cos(a.place.latitude_rad));
-  return a.air == b.air && a.diffuse == b.diffuse && a.columns == b.columns && a.begin == b.begin &&
+  return a.air == b.air && a.multiple_scattering == b.multiple_scattering && a.columns == b.columns && a.begin == b.begin &&
          apart_rad < kAngle_rad &&
          std::abs(a.place.height_m - b.place.height_m) <
              std::max(kHeight_m, kShareOfHeight * std::abs(a.place.height_m));

@@ -3,7 +3,7 @@
 //
 // DayStrip shows the colours of the sky through one day; a click on it chooses the time. Columns
 // are instants, rows are elevations above the horizon under the sun, the zenith on top. The light
-// is computed by SingleScattering and DiffuseLight, without a moon. The exposure of each column lies
+// is computed by SingleScattering and MultipleScattering, without a moon. The exposure of each column lies
 // between its metered exposure and that of a bright day, so that night is dark while dusk shows its
 // colours:
 //
@@ -29,8 +29,8 @@
 namespace alpenglow::viewer {
 
 struct DayStripRequest {
-  std::shared_ptr<const SingleScattering<float>> air;  // not null; for the same medium as `diffuse`
-  std::shared_ptr<const DiffuseLight> diffuse;      // not null
+  std::shared_ptr<const SingleScattering<float>> air;  // not null; for the same medium as `multiple_scattering`
+  std::shared_ptr<const MultipleScattering> multiple_scattering;      // not null
   GeodeticPosition place;
   UtcInstant begin;  // start of the 24 hours shown
   int columns = 96;  // >= 2

@@ -45,7 +45,7 @@ class FogMarch {
         view_(view),
         radius_m_(air.air.medium().planet_radius_m),
         eye_(0.0, 0.0, std::max(view.altitude_m, 0.0)),
-        light_(fog, air.diffuse, {view.to_sun, view.to_sun_for_air, SunInAir(Head(bottom_m))},
+        light_(fog, air.multiple_scattering, {view.to_sun, view.to_sun_for_air, SunInAir(Head(bottom_m))},
                bottom_m) {}
 
   [[nodiscard]] const FogLight& light() const { return light_; }
@@ -357,7 +357,7 @@ void SceneFog::BeginIn(const std::shared_ptr<const SolvedAir>& air, double latit
     tbb::task_arena alone(1);
     return alone.execute([&] {
       const SingleScattering<float> single_scattering(OnOsculatingSphere(air->medium, latitude_rad));
-      return MakeFogMap(*media->fog(), media->fog_bottom_m(), {single_scattering, air->beam, air->diffuse},
+      return MakeFogMap(*media->fog(), media->fog_bottom_m(), {single_scattering, air->beam, air->multiple_scattering},
                         wanted, size);
     });
   });

@@ -31,7 +31,7 @@ std::size_t GreenBand(const std::vector<double>& wavelengths_nm) {
 BandLight LevelLight(const SolvedAir& air, double altitude_m, const SunPosition& disk) {
   const double mu = std::sin(disk.elevation_rad);
   const BandLight sky =
-      air.diffuse.SkyIrradiance(altitude_m, std::sin(SunForAir(disk).elevation_rad));
+      air.multiple_scattering.SkyIrradiance(altitude_m, std::sin(SunForAir(disk).elevation_rad));
   if (mu <= 0.0) return sky;
   const SingleScattering<float> single_scattering(air.medium);
   return sky + static_cast<float>(mu) * air.beam.Left(single_scattering, altitude_m, mu);

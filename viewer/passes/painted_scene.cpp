@@ -77,7 +77,7 @@ PaintedScene::PaintedScene(const Scene& scene, const LandSource& land, const Pai
       air_(first_air ? std::move(first_air) : SolveAir(MediumAt(scene)), sizes.air, sun_view_),
       land_(std::make_unique<Landscape>(land, LandSizeOf(sizes), ellipsoid_)),
       ground_(scene.ground, drape_.colours, {}),
-      ground_textures_(air_.air()->diffuse),
+      ground_textures_(air_.air()->multiple_scattering),
       shade_(ellipsoid_),
       awaits_land_(has_land_) {
   if (!land.range_centre) land_->BeginReading(first.eye.place);
@@ -154,7 +154,7 @@ void PaintedScene::KeepUpAir(const PaintedView& view, const LightsOfSky& lights,
     known_air_ = air_.air();
     single_scattering_.emplace(OnOsculatingSphere(known_air_->medium, view.eye.place.latitude_rad));
     glActiveTexture(GL_TEXTURE0 + kUploadUnit);
-    ground_textures_.SetAir(known_air_->diffuse);
+    ground_textures_.SetAir(known_air_->multiple_scattering);
   }
   if (moon == nullptr) return;
   const AirView seen = AirViewOf(view.eye, moon->disk);
@@ -183,7 +183,7 @@ void PaintedScene::KeepUpOpenSkies(const LightsOfSky& lights, Pace pace) {
     sky = OpenSkyOf{known_air_,
                     altitude_m,
                     elevation_rad,
-                    {*single_scattering_, known_air_->diffuse, altitude_m, std::sin(elevation_rad)}};
+                    {*single_scattering_, known_air_->multiple_scattering, altitude_m, std::sin(elevation_rad)}};
   }
 }
 

@@ -321,7 +321,7 @@ std::unique_ptr<Evaluator> StandardTables(const Medium& medium) {
        .transmittance = TransmittanceTable(medium, quality.transmittance),
        .single_scattering =
            ScatteringTable(medium, {.size = quality.single_scattering, .lowest_mu_s = {}}),
-       .multiple_scattering = DiffuseLight(medium, quality.multiple_scattering),
+       .multiple_scattering = MultipleScattering(medium, quality.multiple_scattering),
        .ray_nodes = quality.ray_nodes});
 }
 
@@ -333,7 +333,7 @@ std::unique_ptr<Evaluator> MomentsAlone(const Medium& medium) {
       {.medium = medium,
        .transmittance = {},
        .single_scattering = {},
-       .multiple_scattering = DiffuseLight(medium, quality.multiple_scattering),
+       .multiple_scattering = MultipleScattering(medium, quality.multiple_scattering),
        .ray_nodes = quality.ray_nodes});
 }
 
@@ -454,7 +454,7 @@ TableFolder SmallTables(const Medium& medium) {
           .multiple_scattering = {}};
 }
 
-constexpr DiffuseLightOptions kSmallLight{.altitudes = 12, .sun_angles = 24, .degree = 2};
+constexpr MultipleScatteringOptions kSmallLight{.altitudes = 12, .sun_angles = 24, .degree = 2};
 
 TEST_F(Eval, ADistanceThatReachesTheGroundAndBeyondLeavesItsLightOut) {
   const Medium medium = MediumPreset("bruneton2017");
@@ -536,7 +536,7 @@ TEST_F(Eval, WhatAFolderLeavesOutIsIntegrated) {
   const auto tables = MakeTableEvaluator({.medium = medium,
                                           .transmittance = {},
                                           .single_scattering = {},
-                                          .multiple_scattering = DiffuseLight(medium),
+                                          .multiple_scattering = MultipleScattering(medium),
                                           .ray_nodes = 12});
   const auto integral = MakeIntegralEvaluator(medium);
   std::string text = kHeader;

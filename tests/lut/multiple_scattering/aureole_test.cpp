@@ -28,14 +28,14 @@ ViewRay BesideTheSun(double sun_deg, double from_sun_deg) {
 class AureoleAir {
  public:
   /// Light of higher orders is a tenth of the aureole: small options do for its brightness.
-  explicit AureoleAir(const Medium& medium, const DiffuseLightOptions& options = tests::kSmallLight)
-      : medium_(medium), air_(medium), diffuse_(medium, options) {}
+  explicit AureoleAir(const Medium& medium, const MultipleScatteringOptions& options = tests::kSmallLight)
+      : medium_(medium), air_(medium), multiple_scattering_(medium, options) {}
 
   /// Light of all orders, per unit solar irradiance [1/sr].
   [[nodiscard]] Bands<float> Radiance(const ViewRay& ray) const {
     const auto samples = air_.Sample(ray, {.nodes = 12, .dark_samples = true});
     Bands<float> light = air_.Inscatter(air_.Scatter(samples), ray.nu);
-    const Bands<float> more = diffuse_.InscatterAlong(samples, ray.nu);
+    const Bands<float> more = multiple_scattering_.InscatterAlong(samples, ray.nu);
     for (std::size_t band = 0; band < light.count; ++band) light[band] += more[band];
     return light;
   }
@@ -54,7 +54,7 @@ class AureoleAir {
  private:
   Medium medium_;
   SingleScattering<float> air_;
-  DiffuseLight diffuse_;
+  MultipleScattering multiple_scattering_;
 };
 
 // Scattered once in plane layers, seen as high as the sun: every path through the air has the same

@@ -32,9 +32,9 @@ struct Traced {
 constexpr double kToSpace_m = 1e9;
 
 /// Relative errors of light of all orders.
-std::vector<double> ErrorsOf(const Medium& medium, const DiffuseLightOptions& options,
+std::vector<double> ErrorsOf(const Medium& medium, const MultipleScatteringOptions& options,
                              const std::vector<Traced>& views) {
-  const DiffuseLight light(medium, options);
+  const MultipleScattering light(medium, options);
   const SingleScattering<float> air(medium);
   std::vector<double> errors;
   for (const Traced& view : views) {
@@ -63,7 +63,7 @@ double Largest(const std::vector<double>& errors) {
 }
 
 // The usual options take seconds for thick air.
-DiffuseLightOptions WithFewSuns(DiffuseLightOptions options) {
+MultipleScatteringOptions WithFewSuns(MultipleScatteringOptions options) {
   options.sun_angles = 20;
   return options;
 }
@@ -148,15 +148,15 @@ TEST(ThickAir, MoleculesOfOpticalDepthFiveAgreeWithPathsToOnePercent) {
 
 TEST(ForwardPeak, ComesBackFromStoredValues) {
   const Medium haze = Haze(7.992e-5, 8.88e-5);
-  const DiffuseLightOptions few{.altitudes = 8,
+  const MultipleScatteringOptions few{.altitudes = 8,
                                 .sun_angles = 12,
                                 .degree = 4,
                                 .zenith_nodes = 6,
                                 .azimuth_nodes = 6,
                                 .ray_nodes = 6,
                                 .forward_peak = true};
-  const DiffuseLight light(haze, few);
-  const DiffuseLight back(haze, few, {light.values(), light.orders(), light.converged()});
+  const MultipleScattering light(haze, few);
+  const MultipleScattering back(haze, few, {light.values(), light.orders(), light.converged()});
   const SingleScattering<float> air(haze);
   const ViewRay ray = RayFromAngles(2.0, 60.0, 20.0, 70.0);
   const auto samples = air.Sample(ray, {.nodes = 12, .dark_samples = true});

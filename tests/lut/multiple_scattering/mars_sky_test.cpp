@@ -19,7 +19,7 @@ class MarsSky : public testing::Test {
   // Linear sRGB of the sky, sun included in no pixel.
   // Angles in degrees: elevations, azimuth from the sun.
   std::array<double, 3> Sky(double sun_deg, double elevation_deg, double azimuth_deg) const {
-    const SkyView view(air_, diffuse_, 2.0, std::sin(sun_deg * kRadiansPerDegree));
+    const SkyView view(air_, multiple_scattering_, 2.0, std::sin(sun_deg * kRadiansPerDegree));
     const Bands<float> sky =
         view.Radiance((90.0 - elevation_deg) * kRadiansPerDegree, azimuth_deg * kRadiansPerDegree);
     std::vector<double> radiance;
@@ -33,7 +33,7 @@ class MarsSky : public testing::Test {
   // Solved once for all tests.
   inline static const Medium medium_ = MediumPreset("mars");
   inline static const SingleScattering<float> air_{medium_};
-  inline static const DiffuseLight diffuse_{medium_};
+  inline static const MultipleScattering multiple_scattering_{medium_};
 };
 
 TEST_F(MarsSky, DustHasAPhaseFunctionAtEveryWavelength) {

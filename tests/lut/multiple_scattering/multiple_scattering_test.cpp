@@ -58,53 +58,53 @@ TEST(SphericalHarmonics, AreOrthonormalOverTheSphere) {
   }
 }
 
-TEST(DiffuseLight, SunCoordinateAndItsInverseAgree) {
+TEST(MultipleScattering, SunCoordinateAndItsInverseAgree) {
   for (double v = 0.0; v <= 1.0; v += 0.01) {
-    EXPECT_NEAR(DiffuseLight::SunCoordinate(DiffuseLight::MuSFromCoordinate(v)), v, 1e-12);
+    EXPECT_NEAR(MultipleScattering::SunCoordinate(MultipleScattering::MuSFromCoordinate(v)), v, 1e-12);
   }
 }
 
 // Hard case 28.
-TEST(DiffuseLight, EmptyAirOverABlackPlanetIsDark) {
+TEST(MultipleScattering, EmptyAirOverABlackPlanetIsDark) {
   Medium medium = MediumPreset("bruneton2017");
   for (std::size_t band = 0; band < medium.wavelengths_nm.size(); ++band) {
     medium.rayleigh_scattering_per_m[band] = medium.mie_scattering_per_m[band] = 0.0;
     medium.mie_extinction_per_m[band] = medium.ozone_absorption_per_m[band] =
         medium.ground_albedo[band] = 0.0;
   }
-  const DiffuseLight light(medium, tests::kSmallLight);
+  const MultipleScattering light(medium, tests::kSmallLight);
   EXPECT_TRUE(light.converged());
   for (const float value : light.values()) EXPECT_EQ(value, 0.0F);
 }
 
-TEST(DiffuseLight, ComesBackFromItsValues) {
+TEST(MultipleScattering, ComesBackFromItsValues) {
   const Medium air = MediumPreset("bruneton2017");
-  const DiffuseLight light(air, tests::kSmallLight);
-  const DiffuseLight back(air, tests::kSmallLight,
+  const MultipleScattering light(air, tests::kSmallLight);
+  const MultipleScattering back(air, tests::kSmallLight,
                           {light.values(), light.orders(), light.converged()});
   EXPECT_EQ(back.orders(), light.orders());
   EXPECT_EQ(back.SkyIrradiance(500.0, 0.3), light.SkyIrradiance(500.0, 0.3));
-  EXPECT_THROW(DiffuseLight(air, {}, {light.values(), 1, true}), InputError) << "of other options";
+  EXPECT_THROW(MultipleScattering(air, {}, {light.values(), 1, true}), InputError) << "of other options";
   std::vector<float> broken = light.values();
   broken[7] = std::nanf("");
-  EXPECT_THROW(DiffuseLight(air, tests::kSmallLight, {broken, 1, true}), InputError);
+  EXPECT_THROW(MultipleScattering(air, tests::kSmallLight, {broken, 1, true}), InputError);
 }
 
 /// The constructor's message on kSmallLight with one option changed.
 template <typename Value>
-std::string RefusalOf(Value DiffuseLightOptions::*option, Value value) {
-  DiffuseLightOptions options = tests::kSmallLight;
+std::string RefusalOf(Value MultipleScatteringOptions::*option, Value value) {
+  MultipleScatteringOptions options = tests::kSmallLight;
   options.*option = value;
   try {
-    const DiffuseLight light(MediumPreset("bruneton2017"), options);
+    const MultipleScattering light(MediumPreset("bruneton2017"), options);
   } catch (const InputError& error) {
     return error.what();
   }
   return "";
 }
 
-TEST(DiffuseLight, NumbersOfNodesOutOfRangeAreRefusedByName) {
-  using Options = DiffuseLightOptions;
+TEST(MultipleScattering, NumbersOfNodesOutOfRangeAreRefusedByName) {
+  using Options = MultipleScatteringOptions;
   const std::pair<int Options::*, std::string> counts[] = {
       {&Options::zenith_nodes, "zenith_nodes"},
       {&Options::azimuth_nodes, "azimuth_nodes"},
@@ -120,13 +120,13 @@ TEST(DiffuseLight, NumbersOfNodesOutOfRangeAreRefusedByName) {
   EXPECT_EQ(RefusalOf(&Options::tolerance, -0.5).find("tolerance is -0.5"), 0U);
 }
 
-TEST(DiffuseLight, EveryBandHasThePhaseFunctionOfItsOwn) {
+TEST(MultipleScattering, EveryBandHasThePhaseFunctionOfItsOwn) {
   Medium medium = MediumPreset("hazy");
   medium.mie_phase.clear();
   for (const double g : {0.5, 0.6, 0.7, 0.8}) {
     medium.mie_phase.push_back({.kind = PhaseKind::kHenyeyGreenstein, .g = g});
   }
-  const DiffuseLightOptions few_orders{.altitudes = tests::kSmallLight.altitudes,
+  const MultipleScatteringOptions few_orders{.altitudes = tests::kSmallLight.altitudes,
                                        .sun_angles = tests::kSmallLight.sun_angles,
                                        .degree = tests::kSmallLight.degree,
                                        .zenith_nodes = tests::kSmallLight.zenith_nodes,
@@ -134,17 +134,17 @@ TEST(DiffuseLight, EveryBandHasThePhaseFunctionOfItsOwn) {
                                        .ray_nodes = tests::kSmallLight.ray_nodes,
                                        .max_orders = 4,
                                        .tolerance = 1e-9};
-  const DiffuseLight light(medium, few_orders);
+  const MultipleScattering light(medium, few_orders);
   const ViewRay ray{2.0, 0.5, 0.7, 0.9};
-  const auto inscatter = [&ray](const Medium& air, const DiffuseLight& diffuse) {
+  const auto inscatter = [&ray](const Medium& air, const MultipleScattering& multiple_scattering) {
     const SingleScattering<float> single_scattering(air);
-    return diffuse.InscatterAlong(
+    return multiple_scattering.InscatterAlong(
         single_scattering.Sample(ray, {.nodes = 8, .split_ozone = false, .dark_samples = true}), ray.nu);
   };
   for (std::size_t band = 0; band < 4; ++band) {
     Medium shared = medium;
     shared.mie_phase = {medium.mie_phase[band]};
-    const DiffuseLight alone(shared, few_orders);
+    const MultipleScattering alone(shared, few_orders);
     EXPECT_EQ(inscatter(medium, light)[band], inscatter(shared, alone)[band]) << "band " << band;
   }
 }
@@ -167,18 +167,18 @@ TEST(LegendreCoefficients, OfATableAreThoseOfItsBrokenLine) {
 }
 
 // Hard case 43.
-TEST(DiffuseLight, IsTheSameForAnyNumberOfThreads) {
+TEST(MultipleScattering, IsTheSameForAnyNumberOfThreads) {
   const Medium medium = MediumPreset("bruneton2017");
   std::vector<std::vector<float>> values;
   for (const std::size_t threads : {1U, 2U, 8U}) {
     const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
-    values.push_back(DiffuseLight(medium, tests::kSmallLight).values());
+    values.push_back(MultipleScattering(medium, tests::kSmallLight).values());
   }
   EXPECT_EQ(values[0], values[1]);
   EXPECT_EQ(values[0], values[2]);
 }
 
-TEST(DiffuseLight, ExactlySoManyOrdersAreThoseOfPathsOfThatLength) {
+TEST(MultipleScattering, ExactlySoManyOrdersAreThoseOfPathsOfThatLength) {
   const Medium air = MediumPreset("bruneton2017");
   const ViewRay ray = RayFromAngles(1000.0, 60.0, 90.0, 50.0);
   const SingleScattering<float> single_scattering(air);
@@ -186,7 +186,7 @@ TEST(DiffuseLight, ExactlySoManyOrdersAreThoseOfPathsOfThatLength) {
       single_scattering.Sample(ray, {.nodes = 16, .split_ozone = false, .dark_samples = true});
   const Bands<float> once = single_scattering.Inscatter(single_scattering.Scatter(samples), ray.nu);
   for (const int orders : {1, 3}) {
-    const DiffuseLight light(air, {.exact_orders = orders});
+    const MultipleScattering light(air, {.exact_orders = orders});
     EXPECT_EQ(light.orders(), orders);
     const Bands<float> more = light.InscatterAlong(samples, ray.nu);
     const reference::PathTracedRadiance truth =
@@ -198,12 +198,12 @@ TEST(DiffuseLight, ExactlySoManyOrdersAreThoseOfPathsOfThatLength) {
   }
 }
 
-TEST(DiffuseLight, TenNodesScatterSunlightOnceInHazeToATenthOfAPercent) {
+TEST(MultipleScattering, TenNodesScatterSunlightOnceInHazeToATenthOfAPercent) {
   const Medium hazy = MediumPreset("hazy");
-  DiffuseLightOptions options{.ray_nodes = 32, .exact_orders = 1};
-  const DiffuseLight truth(hazy, options);
+  MultipleScatteringOptions options{.ray_nodes = 32, .exact_orders = 1};
+  const MultipleScattering truth(hazy, options);
   options.ray_nodes = 10;
-  const DiffuseLight light(hazy, options);
+  const MultipleScattering light(hazy, options);
   double squares = 0.0;
   int values = 0;
   for (int altitude = 0; altitude < options.altitudes; ++altitude) {
@@ -223,7 +223,7 @@ TEST(DiffuseLight, TenNodesScatterSunlightOnceInHazeToATenthOfAPercent) {
 }
 
 // Hard case 29.
-TEST(DiffuseLight, ThickConservativeAirConvergesOrSaysThatItDoesNot) {
+TEST(MultipleScattering, ThickConservativeAirConvergesOrSaysThatItDoesNot) {
   Medium medium = MediumPreset("bruneton2017");
   for (std::size_t band = 0; band < medium.wavelengths_nm.size(); ++band) {
     medium.mie_scattering_per_m[band] = medium.mie_extinction_per_m[band] =
@@ -231,12 +231,12 @@ TEST(DiffuseLight, ThickConservativeAirConvergesOrSaysThatItDoesNot) {
     medium.ground_albedo[band] = 1.0;
     medium.ozone_absorption_per_m[band] = 0.0;
   }
-  DiffuseLightOptions few = tests::kSmallLight;
+  MultipleScatteringOptions few = tests::kSmallLight;
   few.max_orders = 5;
-  EXPECT_FALSE(DiffuseLight(medium, few).converged());
-  DiffuseLightOptions many = tests::kSmallLight;
+  EXPECT_FALSE(MultipleScattering(medium, few).converged());
+  MultipleScatteringOptions many = tests::kSmallLight;
   many.max_orders = 2000;
-  const DiffuseLight light(medium, many);
+  const MultipleScattering light(medium, many);
   EXPECT_TRUE(light.converged());
   for (const float value : light.values()) EXPECT_TRUE(std::isfinite(value));
 }
@@ -246,14 +246,14 @@ void ExpectStoredTotals(const std::string& tag_filter, const std::set<std::strin
                         double relative_tolerance, int at_least) {
   const auto media = stored::Media();
   const auto results = stored::Results("multiple_results.csv");
-  std::map<std::string, DiffuseLight> lights;
+  std::map<std::string, MultipleScattering> lights;
   int compared = 0;
   double squares = 0.0;
   for (const stored::Row& row : stored::Read("multiple.csv")) {
     const std::string set = row.at("set");
     if (row.at("tag") != tag_filter || !sets.contains(set)) continue;
     const Medium& medium = media.at(set);
-    const DiffuseLight& light = lights.try_emplace(set, medium).first->second;
+    const MultipleScattering& light = lights.try_emplace(set, medium).first->second;
     const SingleScattering<float> air(medium);
     const ViewRay ray = stored::RayOf(row);
     const auto samples = air.Sample(ray, {.nodes = 16, .split_ozone = true, .dark_samples = true});
@@ -272,30 +272,30 @@ void ExpectStoredTotals(const std::string& tag_filter, const std::set<std::strin
   EXPECT_LT(std::sqrt(squares / compared), relative_tolerance) << tag_filter;
 }
 
-TEST(DiffuseLight, DaylightAgreesWithPathTracingToAnEighthOfAPercent) {
+TEST(MultipleScattering, DaylightAgreesWithPathTracingToAnEighthOfAPercent) {
   if (!stored::Available()) GTEST_SKIP() << "no stored cases at " << stored::Folder();
   ExpectStoredTotals("day", {"earth", "earth_a03", "rayleigh"}, 1.25e-3, 9);
 }
 
-TEST(DiffuseLight, TwilightAgreesWithPathTracingToOnePercent) {
+TEST(MultipleScattering, TwilightAgreesWithPathTracingToOnePercent) {
   if (!stored::Available()) GTEST_SKIP() << "no stored cases at " << stored::Folder();
   // Includes two hazy rays with the sun 10 degrees down, where the stored sigma is 0.6 %.
   ExpectStoredTotals("twilight", {"earth", "earth_a03", "rayleigh", "spec5"}, 1e-2, 9);
 }
 
-TEST(DiffuseLight, AirBeforeALowSunAgreesWithPathTracing) {
+TEST(MultipleScattering, AirBeforeALowSunAgreesWithPathTracing) {
   if (!stored::Available()) GTEST_SKIP() << "no stored cases at " << stored::Folder();
   // The glow around the sun of light scattered twice by aerosol is narrower than degree 6.
   ExpectStoredTotals("aerial perspective", {"earth", "haze20mix", "spec5"}, 1.5e-2, 9);
 }
 
 // Views that nobody tuned to: the weak places of coarse moments.
-TEST(DiffuseLight, HazeAgreesWithTheReferenceAtLowSunAndInTwilight) {
+TEST(MultipleScattering, HazeAgreesWithTheReferenceAtLowSunAndInTwilight) {
   struct View {
     double altitude_m, zenith_deg, azimuth_deg, sun_deg;
   };
   const Medium medium = MediumPreset("hazy");
-  const DiffuseLight light(medium);
+  const MultipleScattering light(medium);
   const SingleScattering<float> air(medium);
   for (const View& view : {View{3000.0, 84.0, 20.0, 4.0},
                            {2.0, 82.0, 170.0, 2.0},
@@ -316,9 +316,9 @@ TEST(DiffuseLight, HazeAgreesWithTheReferenceAtLowSunAndInTwilight) {
   }
 }
 
-TEST(DiffuseLight, HorizontalSurfacesAtAnyAltitudeAreLitAsByThePathTracer) {
+TEST(MultipleScattering, HorizontalSurfacesAtAnyAltitudeAreLitAsByThePathTracer) {
   const Medium medium = MediumPreset("earth");
-  const DiffuseLight light(medium);
+  const MultipleScattering light(medium);
   for (const double altitude_m : {0.0, 3000.0, 12000.0}) {
     for (const double sun_deg : {40.0, 3.0, -5.0}) {
       const double mu_s = std::sin(sun_deg * kRadiansPerDegree);
@@ -341,10 +341,10 @@ TEST(DiffuseLight, HorizontalSurfacesAtAnyAltitudeAreLitAsByThePathTracer) {
 }
 
 // Hard case 23.
-TEST(DiffuseLight, IsNeverNegative) {
+TEST(MultipleScattering, IsNeverNegative) {
   for (const char* name : {"hazy", "clear-mountain"}) {
     const Medium medium = MediumPreset(name);
-    const DiffuseLight light(medium, tests::kSmallLight);
+    const MultipleScattering light(medium, tests::kSmallLight);
     const SingleScattering<float> air(medium);
     for (const double altitude_m : {0.0, 9000.0, 70000.0}) {
       for (double sun_deg = -20.0; sun_deg <= 90.0; sun_deg += 11.0) {
@@ -366,16 +366,16 @@ TEST(DiffuseLight, IsNeverNegative) {
 }
 
 // Ramamoorthi and Hanrahan's sum, written out; what the series misses follows P_8.
-TEST(DiffuseLight, SlopesAreLitByTheClampedCosineOfTheMoments) {
+TEST(MultipleScattering, SlopesAreLitByTheClampedCosineOfTheMoments) {
   const Medium medium = MediumPreset("earth");
-  DiffuseLightOptions options = tests::kSmallLight;
+  MultipleScatteringOptions options = tests::kSmallLight;
   options.degree = 6;
-  const DiffuseLight light(medium, options);
+  const MultipleScattering light(medium, options);
   const std::array<double, 7> cosine{kPi, 2 * kPi / 3, kPi / 4, 0.0, -kPi / 24, 0.0, kPi / 64};
   const double mu_s = 0.2;
   const double altitude_m = 1700.0;
   const auto values = light.ValuesAt(std::sqrt(altitude_m / medium.atmosphere_height_m),
-                                     DiffuseLight::SunCoordinate(mu_s));
+                                     MultipleScattering::SunCoordinate(mu_s));
   const Moments upward = SphericalHarmonics(6, 1.0F, 1.0F);
   for (const double tilt_deg : {0.0, 20.0, 55.0, 90.0, 130.0, 180.0}) {
     for (const double azimuth : {-1.0, -0.2, 0.7}) {
@@ -404,11 +404,11 @@ TEST(DiffuseLight, SlopesAreLitByTheClampedCosineOfTheMoments) {
   }
 }
 
-TEST(DiffuseLight, IsTheSameWithEveryInstructionSet) {
+TEST(MultipleScattering, IsTheSameWithEveryInstructionSet) {
   const Medium medium = MediumPreset("hazy");
   const ViewRay ray = RayFromAngles(2.0, 70.0, 30.0, 88.0);
   const auto both = [&] {
-    const DiffuseLight light(medium, tests::kSmallLight);
+    const MultipleScattering light(medium, tests::kSmallLight);
     const auto samples =
         SingleScattering<float>(medium).Sample(ray, {.nodes = 12, .dark_samples = true});
     return std::tuple(light.values(), light.InscatterAlong(samples, ray.nu),
@@ -430,17 +430,17 @@ TEST(DiffuseLight, IsTheSameWithEveryInstructionSet) {
   }
 }
 
-TEST(DiffuseLight, SkyIrradianceAgreesWithPathTracing) {
+TEST(MultipleScattering, SkyIrradianceAgreesWithPathTracing) {
   if (!stored::Available()) GTEST_SKIP() << "no stored cases at " << stored::Folder();
   const auto media = stored::Media();
   const auto results = stored::Results("irradiance_results.csv");
-  std::map<std::string, DiffuseLight> lights;
+  std::map<std::string, MultipleScattering> lights;
   int compared = 0;
   for (const stored::Row& row : stored::Read("irradiance.csv")) {
     if (row.at("quantity") != "irradiance_down") continue;
     const std::string set = row.at("set");
     const Medium& medium = media.at(set);
-    const DiffuseLight& light = lights.try_emplace(set, medium).first->second;
+    const MultipleScattering& light = lights.try_emplace(set, medium).first->second;
     const auto irradiance = light.SkyIrradiance(
         stored::Number(row, "h_m"), std::cos(stored::Number(row, "sza_deg") * kRadiansPerDegree));
     for (const stored::Row& expected : results.at(row.at("id"))) {
@@ -455,7 +455,7 @@ TEST(DiffuseLight, SkyIrradianceAgreesWithPathTracing) {
 }
 
 // Hard case 31.
-TEST(DiffuseLight, ThinnestAndThickestLayersGiveLight) {
+TEST(MultipleScattering, ThinnestAndThickestLayersGiveLight) {
   for (const auto& [rayleigh_m, mie_m] : {std::pair{200.0, 100.0},
                                           {8000.0, 100.0},
                                           {8000.0, 200e3},
@@ -470,7 +470,7 @@ TEST(DiffuseLight, ThinnestAndThickestLayersGiveLight) {
     }
     medium.rayleigh_scale_height_m = rayleigh_m;
     medium.mie_scale_height_m = mie_m;
-    const DiffuseLight light(medium, tests::kSmallLight);
+    const MultipleScattering light(medium, tests::kSmallLight);
     for (const float value : light.values()) EXPECT_TRUE(std::isfinite(value));
     // What falls on the ground is no more than sun and nothing less than none.
     const auto sky = light.SkyIrradiance(0.0, 0.7);
@@ -482,17 +482,17 @@ TEST(DiffuseLight, ThinnestAndThickestLayersGiveLight) {
 }
 
 // Hard case 29.
-TEST(DiffuseLight, AtAnOpticalDepthOfFiftyItIsFiniteAndSaysWhenOrdersAreMissing) {
+TEST(MultipleScattering, AtAnOpticalDepthOfFiftyItIsFiniteAndSaysWhenOrdersAreMissing) {
   Medium medium = MediumPreset("bruneton2017");
   for (std::size_t band = 0; band < medium.wavelengths_nm.size(); ++band) {
     medium.mie_extinction_per_m[band] = 50.0 / medium.mie_scale_height_m;
     medium.mie_scattering_per_m[band] = 0.99 * medium.mie_extinction_per_m[band];
   }
-  DiffuseLightOptions options = tests::kSmallLight;
+  MultipleScatteringOptions options = tests::kSmallLight;
   std::vector<float> brightest;
   for (const int orders : {5, 400, 800}) {
     options.max_orders = orders;
-    const DiffuseLight light(medium, options);
+    const MultipleScattering light(medium, options);
     EXPECT_EQ(light.converged(), orders > 5) << orders;
     for (const float value : light.values()) EXPECT_TRUE(std::isfinite(value));
     brightest.push_back(light.SkyIrradiance(1e4, 0.7)[0]);
@@ -500,9 +500,9 @@ TEST(DiffuseLight, AtAnOpticalDepthOfFiftyItIsFiniteAndSaysWhenOrdersAreMissing)
   EXPECT_EQ(brightest[1], brightest[2]) << "what has converged asks for no further orders";
 }
 
-TEST(DiffuseLight, APeakNarrowerThanTheDirectionsStillLightsTheGround) {
+TEST(MultipleScattering, APeakNarrowerThanTheDirectionsStillLightsTheGround) {
   const Medium mars = MediumPreset("mars", {450.0, 650.0});
-  const DiffuseLight light(mars);
+  const MultipleScattering light(mars);
   for (const double sun_zenith_deg : {20.0, 60.0}) {
     const double mu_s = std::cos(sun_zenith_deg * kRadiansPerDegree);
     const auto truth = reference::TraceIrradiance(mars, 0.0, mu_s, reference::PlaneSide::kFromAbove,

@@ -55,17 +55,17 @@ double TrueElevation(double apparent_rad) {
 /// Illuminance [lx] of a horizontal plane on the ground.
 class Daylight {
  public:
-  explicit Daylight(const Medium& medium) : air_(medium), diffuse_(medium) {}
+  explicit Daylight(const Medium& medium) : air_(medium), multiple_scattering_(medium) {}
 
   [[nodiscard]] double Lux(double true_elevation_rad) const {
     PanoramaSun sun;
     sun.elevation_rad = true_elevation_rad;
-    return HorizontalIlluminance(air_, diffuse_, 0.0, sun) + kNightSky_lux;
+    return HorizontalIlluminance(air_, multiple_scattering_, 0.0, sun) + kNightSky_lux;
   }
 
  private:
   SingleScattering<float> air_;
-  DiffuseLight diffuse_;
+  MultipleScattering multiple_scattering_;
 };
 
 /// The same column of molecules in one exponential.

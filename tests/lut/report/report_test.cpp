@@ -38,7 +38,7 @@ const ReportRow& RowOf(const std::string& topic, const std::string& name) {
 }
 
 std::string UsualMoments() {
-  const DiffuseLightOptions usual;
+  const MultipleScatteringOptions usual;
   return fmt::format("moments to degree {}, {} x {}", usual.degree, usual.altitudes,
                      usual.sun_angles);
 }

@@ -26,7 +26,7 @@ using tests::Earth;
 using tests::Luminance;
 
 Image Panorama(const PanoramaSettings& settings) {
-  return RenderPanorama(Earth().air, Earth().diffuse, settings);
+  return RenderPanorama(Earth().air, Earth().multiple_scattering, settings);
 }
 
 PanoramaSettings SunAtDegrees(double elevation, double azimuth) {
@@ -160,7 +160,7 @@ TEST(Panorama, LightsAHorizontalPlaneAsTheSkyDoes) {
     const Image image = Panorama(SunAtDegrees(elevation_deg, 120.0));
     const double expected = LuminanceOf(
         Earth().medium,
-        Earth().diffuse.SkyIrradiance(2.0, std::sin(elevation_deg * kRadiansPerDegree)));
+        Earth().multiple_scattering.SkyIrradiance(2.0, std::sin(elevation_deg * kRadiansPerDegree)));
     EXPECT_NEAR(IlluminanceFromAbove(image), expected, 0.02 * expected)
         << "sun at " << elevation_deg << ": the pixels of the aureole are 1.4 degrees wide, and "
         << "the table of irradiance is interpolated between its nodes";
@@ -168,7 +168,7 @@ TEST(Panorama, LightsAHorizontalPlaneAsTheSkyDoes) {
 }
 
 TEST(Panorama, PixelsAreTheLightOfTheirDirections) {
-  const DirectSky direct(Earth().medium, Earth().diffuse);
+  const DirectSky direct(Earth().medium, Earth().multiple_scattering);
   for (const double altitude_m : {2.0, 10e3, 400e3}) {
     for (const double elevation_deg : {60.0, 10.0, 1.0, -4.0, -10.0}) {
       PanoramaSettings settings = SunAtDegrees(elevation_deg, 10.0);

@@ -24,7 +24,7 @@ RaySamples<float> SamplesOf(const LitAir& lit, const ViewRay& ray) {
 double RadianceOf(const LitAir& lit, const ViewRay& ray, std::size_t band) {
   const RaySamples<float> samples = SamplesOf(lit, ray);
   return double{lit.air.Inscatter(lit.air.Scatter(samples), ray.nu)[band]} +
-         double{lit.diffuse.InscatterAlong(samples, ray.nu)[band]};
+         double{lit.multiple_scattering.InscatterAlong(samples, ray.nu)[band]};
 }
 
 /// Q or U of all orders, of a view to the right of the sun.
@@ -32,7 +32,7 @@ double Evaluated(const LitAir& lit, const ViewRay& ray, std::size_t band,
                  Bands<float> PolarisedLight::*part) {
   const RaySamples<float> samples = SamplesOf(lit, ray);
   const PolarisedLight once = PolarisedOnce(lit.medium, lit.air.Scatter(samples), ray);
-  const PolarisedLight more = lit.diffuse.PolarisationAlong(samples, ray.nu);
+  const PolarisedLight more = lit.multiple_scattering.PolarisationAlong(samples, ray.nu);
   return double{(once.*part)[band]} + double{(more.*part)[band]};
 }
 
@@ -44,7 +44,7 @@ TEST(PolarisedRow, GoesThroughTheLightOfItsDirectionsOnBothSidesOfTheSun) {
       double worst = 0.0;
       for (int i = 1; i <= 24; ++i) {
         const double zenith = kPi * Halton(i, 2), azimuth = kPi * Halton(i, 3);
-        const PolarisedRow row(lit.air, lit.diffuse, altitude_m, mu_s, zenith);
+        const PolarisedRow row(lit.air, lit.multiple_scattering, altitude_m, mu_s, zenith);
         const double nu = std::cos(zenith) * mu_s +
                           std::sin(zenith) * std::sqrt(1.0 - mu_s * mu_s) * std::cos(azimuth);
         const ViewRay ray{altitude_m, std::cos(zenith), mu_s, nu};

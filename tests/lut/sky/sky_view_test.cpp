@@ -22,15 +22,15 @@ constexpr double kElevations_deg[] = {90.0, 60.0, 10.0, 1.0, -1.0, -4.0, -10.0};
 struct Air {
   Medium medium = MediumPreset("earth");
   SingleScattering<float> air{medium};
-  DiffuseLight diffuse{medium};
-  DirectSky direct{medium, diffuse};
+  MultipleScattering multiple_scattering{medium};
+  DirectSky direct{medium, multiple_scattering};
 
   static const Air& Earth() {
     static const Air air;
     return air;
   }
   [[nodiscard]] SkyView View(double altitude_m, double elevation_deg) const {
-    return SkyView(air, diffuse, altitude_m, Sine(elevation_deg));
+    return SkyView(air, multiple_scattering, altitude_m, Sine(elevation_deg));
   }
   static double Sine(double degrees) { return std::sin(degrees * kRadiansPerDegree); }
 };
@@ -83,12 +83,12 @@ TEST(SkyView, ErrorsStayBelowThreePerMilleInTheMean) {
 TEST(SkyView, OfHazeIsAsRight) {
   const Medium medium = MediumPreset("hazy");
   const SingleScattering<float> air(medium);
-  const DiffuseLight diffuse(medium);
-  const DirectSky direct(medium, diffuse);
+  const MultipleScattering multiple_scattering(medium);
+  const DirectSky direct(medium, multiple_scattering);
   for (const double altitude_m : {2.0, 10e3}) {
     for (const double elevation_deg : {60.0, 1.0, -4.0}) {
       const double mu_s = Air::Sine(elevation_deg);
-      const SkyView view(air, diffuse, altitude_m, mu_s);
+      const SkyView view(air, multiple_scattering, altitude_m, mu_s);
       EXPECT_LT(ErrorsOf(view, direct, altitude_m, mu_s, 300).Rms(), 0.003)
           << altitude_m << " m, sun at " << elevation_deg;
     }
@@ -189,8 +189,8 @@ TEST(SkyView, ARowIsItsLookUps) {
 TEST(SkyView, AnyNumberOfBandsIsTheBandsOneByOne) {
   const Medium all = MediumPreset("earth", WavelengthSet(6));
   const Medium one = MediumPreset("earth", {all.wavelengths_nm[4]});
-  const SkyView view(SingleScattering<float>(all), DiffuseLight(all, tests::kSmallLight), 2.0, 0.5);
-  const SkyView single(SingleScattering<float>(one), DiffuseLight(one, tests::kSmallLight), 2.0, 0.5);
+  const SkyView view(SingleScattering<float>(all), MultipleScattering(all, tests::kSmallLight), 2.0, 0.5);
+  const SkyView single(SingleScattering<float>(one), MultipleScattering(one, tests::kSmallLight), 2.0, 0.5);
   EXPECT_EQ(view.stride(), 8U);
   const float expected = single.Radiance(1.0, 0.7)[0];
   EXPECT_NEAR(view.Radiance(1.0, 0.7)[4], expected, 1e-3F * expected)
@@ -279,7 +279,7 @@ TEST(SkyView, TwilightHasNoStepsFromMinuteToMinute) {
 TEST(SkyView, TooFewNodesAreRefused) {
   const Air& earth = Air::Earth();
   const auto refuse = [&](const SkyViewSize& size) {
-    const SkyView view(earth.air, earth.diffuse, 0.0, 1.0, size);
+    const SkyView view(earth.air, earth.multiple_scattering, 0.0, 1.0, size);
   };
   EXPECT_THROW(refuse({.sky_rows = 4}), InputError);
   EXPECT_THROW(refuse({.ground_rows = 4}), InputError);

@@ -139,8 +139,8 @@ TEST_F(TableFile, SingleScatteringByAzimuthComesBackWithItsAxes) {
   EXPECT_THAT(DescriptionText(file, DescribeTable(file)), HasSubstr("mu_s azimuth mu r"));
 }
 
-const DiffuseLight& Light() {
-  static const DiffuseLight light(MediumPreset("bruneton2017"), {.altitudes = 5,
+const MultipleScattering& Light() {
+  static const MultipleScattering light(MediumPreset("bruneton2017"), {.altitudes = 5,
                                                                  .sun_angles = 6,
                                                                  .degree = 2,
                                                                  .zenith_nodes = 4,
@@ -149,11 +149,11 @@ const DiffuseLight& Light() {
   return light;
 }
 
-TEST_F(TableFile, DiffuseLightComesBackBitForBit) {
+TEST_F(TableFile, MultipleScatteringComesBackBitForBit) {
   const fs::path file = folder_ / "multiple.exr";
   const FolderUse use{.ray_nodes = 9, .transmittance = false, .single_scattering = true};
   WriteTable(file, Light(), use);
-  const StoredDiffuseLight back = ReadDiffuseLight(file, MediumHash(Light().medium()));
+  const StoredMultipleScattering back = ReadMultipleScattering(file, MediumHash(Light().medium()));
   EXPECT_EQ(back.use, use);
   EXPECT_EQ(back.light.values(), Light().values());
   EXPECT_EQ(back.light.orders(), Light().orders());
@@ -167,25 +167,25 @@ TEST_F(TableFile, DiffuseLightComesBackBitForBit) {
   }
 }
 
-TEST_F(TableFile, PolarisedDiffuseLightComesBackBitForBitAndIsNeverReadAsScalar) {
+TEST_F(TableFile, PolarisedMultipleScatteringComesBackBitForBitAndIsNeverReadAsScalar) {
   const fs::path file = folder_ / "polarised.exr";
-  const DiffuseLight light(InPolarisedLight(Light().medium(), "bruneton2017"), Light().options());
+  const MultipleScattering light(InPolarisedLight(Light().medium(), "bruneton2017"), Light().options());
   WriteTable(file, light);
-  const StoredDiffuseLight back = ReadDiffuseLight(file, MediumHash(light.medium()));
+  const StoredMultipleScattering back = ReadMultipleScattering(file, MediumHash(light.medium()));
   EXPECT_EQ(back.light.values(), light.values());
   EXPECT_TRUE(back.light.medium().polarised);
   const std::string text = DescriptionText(file, DescribeTable(file));
   EXPECT_THAT(text, HasSubstr("T22.0550nm"));
-  EXPECT_THROW(static_cast<void>(ReadDiffuseLight(file, MediumHash(Light().medium()))), InputError);
+  EXPECT_THROW(static_cast<void>(ReadMultipleScattering(file, MediumHash(Light().medium()))), InputError);
   const fs::path scalar = folder_ / "scalar.exr";
   WriteTable(scalar, Light());
-  EXPECT_THROW(static_cast<void>(ReadDiffuseLight(scalar, MediumHash(light.medium()))), InputError);
+  EXPECT_THROW(static_cast<void>(ReadMultipleScattering(scalar, MediumHash(light.medium()))), InputError);
 }
 
-TEST_F(TableFile, DiffuseLightOfAnotherAtmosphereOrWithOtherAttributesIsRefused) {
+TEST_F(TableFile, MultipleScatteringOfAnotherAtmosphereOrWithOtherAttributesIsRefused) {
   const fs::path file = folder_ / "multiple.exr";
   WriteTable(file, Light());
-  EXPECT_THROW(static_cast<void>(ReadDiffuseLight(file, MediumHash(MediumPreset("earth")))),
+  EXPECT_THROW(static_cast<void>(ReadMultipleScattering(file, MediumHash(MediumPreset("earth")))),
                InputError);
   EXPECT_THROW(static_cast<void>(ReadTransmittanceTable(file)), InputError);
   const Imf::Header header = Imf::InputFile(file.c_str()).header();
@@ -201,7 +201,7 @@ TEST_F(TableFile, DiffuseLightOfAnotherAtmosphereOrWithOtherAttributesIsRefused)
     Imf::Header changed = header;
     changed.insert(name, Imf::StringAttribute(text));
     WriteImage(changed);
-    EXPECT_THROW(static_cast<void>(ReadDiffuseLight(bad_)), InputError) << name << " = " << text;
+    EXPECT_THROW(static_cast<void>(ReadMultipleScattering(bad_)), InputError) << name << " = " << text;
   }
 }
 
@@ -213,7 +213,7 @@ TEST_F(TableFile, LightOfADegreeThatIsKeptNoLongerIsRefusedWithTheDegrees) {
     header.insert("alpenglow.degree", Imf::StringAttribute(degree));
     WriteImage(header);
     try {
-      static_cast<void>(ReadDiffuseLight(bad_));
+      static_cast<void>(ReadMultipleScattering(bad_));
       FAIL() << degree;
     } catch (const InputError& error) {
       EXPECT_THAT(error.what(), HasSubstr(bad_.string()));

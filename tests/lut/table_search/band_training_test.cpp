@@ -20,7 +20,7 @@ namespace {
 
 using Triple = std::array<double, 3>;
 
-constexpr DiffuseLightOptions kSmallSolution{.altitudes = 12,
+constexpr MultipleScatteringOptions kSmallSolution{.altitudes = 12,
                                              .sun_angles = 24,
                                              .degree = 2,
                                              .zenith_nodes = 5,
@@ -34,7 +34,7 @@ std::vector<SkySpectrum> FreshSkies() {
   drawing.atmospheres = 3;
   drawing.suns = 3;
   drawing.views = 8;
-  drawing.diffuse = kSmallSolution;
+  drawing.multiple_scattering = kSmallSolution;
   return DrawSkySpectra(drawing);
 }
 
@@ -177,7 +177,7 @@ TEST(SkySpectra, AreTheSameEveryTimeAndOfEveryRegime) {
   drawing.atmospheres = 1;
   drawing.suns = 1;
   drawing.views = 2;
-  drawing.diffuse = kSmallSolution;
+  drawing.multiple_scattering = kSmallSolution;
   const std::vector<SkySpectrum> first = DrawSkySpectra(drawing);
   const std::vector<SkySpectrum> second = DrawSkySpectra(drawing);
   ASSERT_EQ(first.size(), second.size());

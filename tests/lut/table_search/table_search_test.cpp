@@ -15,8 +15,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-const DiffuseLight& Small() {
-  static const DiffuseLight light(MediumPreset("bruneton2017"), {.altitudes = 9,
+const MultipleScattering& Small() {
+  static const MultipleScattering light(MediumPreset("bruneton2017"), {.altitudes = 9,
                                                                  .sun_angles = 13,
                                                                  .degree = 4,
                                                                  .zenith_nodes = 6,
@@ -26,20 +26,20 @@ const DiffuseLight& Small() {
 }
 
 /// A solution that is good enough to choose from, and quick: its own errors do not count.
-const DiffuseLight& Quick() {
-  static const DiffuseLight light(MediumPreset("bruneton2017"), {});
+const MultipleScattering& Quick() {
+  static const MultipleScattering light(MediumPreset("bruneton2017"), {});
   return light;
 }
 
 /// The finest solution of the earth; it has one band under the sanitizers.
-const DiffuseLight& EarthFinest() {
-  static const DiffuseLight light = FinestDiffuseLight(
+const MultipleScattering& EarthFinest() {
+  static const MultipleScattering light = FinestMultipleScattering(
       tests::kSanitized ? MediumPreset("earth", {550.0}) : MediumPreset("earth"));
   return light;
 }
 
 TEST(TableSearch, ResamplingKeepsTheNodesThatStay) {
-  const DiffuseLight half = Resampled(Small(), 5, 7, 2);
+  const MultipleScattering half = Resampled(Small(), 5, 7, 2);
   EXPECT_EQ(half.values().size(), 5U * 7U * 7U * 3U) << "six moments and the irradiance";
   const double v = 4.0 / 12.0;  // the fifth of 13 nodes, the third of 7
   const std::vector<float> before = Small().ValuesAt(0.25, v), after = half.ValuesAt(0.25, v);

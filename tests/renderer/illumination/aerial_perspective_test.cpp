@@ -16,8 +16,8 @@
 namespace alpenglow::renderer {
 namespace {
 
-DiffuseLightOptions Coarse() {
-  DiffuseLightOptions options;
+MultipleScatteringOptions Coarse() {
+  MultipleScatteringOptions options;
   options.altitudes = 6;
   options.sun_angles = 8;
   options.degree = 2;
@@ -27,10 +27,10 @@ DiffuseLightOptions Coarse() {
 
 struct Air {
   explicit Air(const Medium& medium)
-      : single_scattering(medium), diffuse(medium, Coarse()), aerial(single_scattering, diffuse) {}
+      : single_scattering(medium), multiple_scattering(medium, Coarse()), aerial(single_scattering, multiple_scattering) {}
 
   SingleScattering<float> single_scattering;
-  DiffuseLight diffuse;
+  MultipleScattering multiple_scattering;
   AerialPerspective aerial;
 };
 
@@ -280,9 +280,9 @@ TEST(AerialPerspective, OfHazeIsWithinHalfAPercentOfPathsAndHasNothingOfWhatIsBe
   haze.mie_extinction_per_m.assign(3, 8.88e-5);
   haze.mie_phase = {{.kind = PhaseKind::kHenyeyGreenstein, .g = 0.8}};
   const SingleScattering<float> air(haze);
-  const DiffuseLight diffuse(haze, OptionsFor(haze));
-  ASSERT_TRUE(diffuse.options().forward_peak);
-  const AerialPerspective aerial(air, diffuse);
+  const MultipleScattering multiple_scattering(haze, OptionsFor(haze));
+  ASSERT_TRUE(multiple_scattering.options().forward_peak);
+  const AerialPerspective aerial(air, multiple_scattering);
   struct Traced {
     ViewRay ray;
     std::array<double, 3> radiance;
@@ -301,8 +301,8 @@ TEST(AerialPerspective, OfHazeIsWithinHalfAPercentOfPathsAndHasNothingOfWhatIsBe
     to_a_mountain.length_m = 3000.0;
     const RaySamples<float> way =
         aerial.Sample(to_a_mountain, nullptr, AerialPerspective::Nodes{}).samples;
-    const Bands<float> open = diffuse.InscatterAlong(way, view.ray.nu);
-    const Bands<float> hidden = diffuse.InscatterAlong(way, view.ray.nu, SegmentEnd::kOpaque);
+    const Bands<float> open = multiple_scattering.InscatterAlong(way, view.ray.nu);
+    const Bands<float> hidden = multiple_scattering.InscatterAlong(way, view.ray.nu, SegmentEnd::kOpaque);
     for (std::size_t band = 0; band < 3; ++band) {
       EXPECT_LT(hidden[band], open[band]);
       EXPECT_GT(hidden[band], 0.0F);

@@ -93,7 +93,7 @@ double ExtinctionOf(const tests::LitAir& air) {
 TEST(Moonlight, LightsTheSkyAsMeasuredOnMaunaKea) {
   const tests::LitAir air(AirOfMaunaKea());
   const BandColour colour(air.medium.wavelengths_nm);
-  const AerialPerspective aerial(air.air, air.diffuse);
+  const AerialPerspective aerial(air.air, air.multiple_scattering);
   ASSERT_NEAR(ExtinctionOf(air), kExtinction, 0.01);
   for (const double phase_deg : {20.0, 60.0, 90.0}) {
     const BandLight moonlight = MoonlightOf(MoonAtPhase(phase_deg), air.medium);
@@ -121,7 +121,7 @@ TEST(Moonlight, AFullMoonOverheadIsAQuarterToAThirdOfALux) {
   const BandColour colour(earth.medium.wavelengths_nm);
   const BandLight moonlight = MoonlightOf(MoonAtPhase(5.0), earth.medium);
   const BandLight on_ground =
-      earth.air.TransmittanceToSpace(0.0, 1.0) + earth.diffuse.SkyIrradiance(0.0, 1.0);
+      earth.air.TransmittanceToSpace(0.0, 1.0) + earth.multiple_scattering.SkyIrradiance(0.0, 1.0);
   const double lux = colour.Xyz(InDouble(moonlight * on_ground))[1];
   EXPECT_GT(lux, 0.25);
   EXPECT_LT(lux, 0.32);

@@ -48,7 +48,7 @@ glm::dvec3 Leaning(double degrees, double azimuth_degrees) {
 double IrradianceByQuadrature(const glm::dvec3& to_sun, double altitude_m, const glm::dvec3& normal,
                               double from_sine) {
   constexpr int kSines = 200, kAzimuths = 144;
-  const SkyView view(TheAir().air, TheAir().diffuse, altitude_m, to_sun.z);
+  const SkyView view(TheAir().air, TheAir().multiple_scattering, altitude_m, to_sun.z);
   const double sun = std::atan2(to_sun.y, to_sun.x);
   double sum = 0.0;
   for (int i = 0; i < kSines; ++i) {
@@ -71,9 +71,9 @@ double IrradianceByQuadrature(const glm::dvec3& to_sun, double altitude_m, const
 TEST(OpenSky, OfAPlainIsTheIrradianceFromAbove) {
   for (const double elevation : {60.0, 20.0, 3.0, -4.0}) {
     const glm::dvec3 to_sun = SunAtElevation(elevation);
-    const OpenSky sky(TheAir().air, TheAir().diffuse, to_sun, {0.0, 3000.0, 5e4});
+    const OpenSky sky(TheAir().air, TheAir().multiple_scattering, to_sun, {0.0, 3000.0, 5e4});
     const auto open = sky.Irradiance(0.0, to_sun.z, SectorsOf(kUp), OpenTo(0.0F));
-    const auto known = TheAir().diffuse.SkyIrradiance(0.0, to_sun.z);
+    const auto known = TheAir().multiple_scattering.SkyIrradiance(0.0, to_sun.z);
     for (std::size_t band = 0; band < open.count; ++band) {
       EXPECT_NEAR(open[band] / known[band], 1.0F, 0.02F)
           << "sun at " << elevation << "; the two integrate in different nodes";
@@ -84,7 +84,7 @@ TEST(OpenSky, OfAPlainIsTheIrradianceFromAbove) {
 TEST(OpenSky, OnAnySlopeUnderAnyHorizonIsTheIntegralOverTheOpenPart) {
   for (const double elevation : {40.0, 5.0}) {
     const glm::dvec3 to_sun = SunAtElevation(elevation);
-    const OpenSky sky(TheAir().air, TheAir().diffuse, to_sun, {0.0, 3000.0, 5e4});
+    const OpenSky sky(TheAir().air, TheAir().multiple_scattering, to_sun, {0.0, 3000.0, 5e4});
     for (const double lean : {0.0, 30.0, 70.0}) {
       for (const double azimuth : {10.0, 130.0, 260.0}) {
         for (const double horizon : {0.0, 0.3}) {
@@ -103,7 +103,7 @@ TEST(OpenSky, OnAnySlopeUnderAnyHorizonIsTheIntegralOverTheOpenPart) {
 
 TEST(OpenSky, BehindAClosedHorizonIsDark) {
   const glm::dvec3 to_sun = SunAtElevation(40.0);
-  const OpenSky sky(TheAir().air, TheAir().diffuse, to_sun, {0.0, 3000.0, 5e4});
+  const OpenSky sky(TheAir().air, TheAir().multiple_scattering, to_sun, {0.0, 3000.0, 5e4});
   for (const double lean : {0.0, 60.0}) {
     const auto none = sky.Irradiance(500.0, to_sun.z, SectorsOf(Leaning(lean, 45.0)), OpenTo(1.0F));
     EXPECT_EQ(none[0], 0.0F);
@@ -112,8 +112,8 @@ TEST(OpenSky, BehindAClosedHorizonIsDark) {
 
 TEST(OpenSky, RadianceIsThatOfTheSky) {
   const glm::dvec3 to_sun = SunAtElevation(40.0);
-  const OpenSky sky(TheAir().air, TheAir().diffuse, to_sun, {0.0, 3000.0, 5e4});
-  const SkyView view(TheAir().air, TheAir().diffuse, 0.0, to_sun.z);
+  const OpenSky sky(TheAir().air, TheAir().multiple_scattering, to_sun, {0.0, 3000.0, 5e4});
+  const SkyView view(TheAir().air, TheAir().multiple_scattering, 0.0, to_sun.z);
   for (const double sine : {0.05, 0.2, 0.5, 0.9}) {
     for (const double azimuth : {0.3, 1.4, 2.9}) {  // away from the aureole
       const double cosine = std::sqrt(1.0 - sine * sine);
@@ -150,9 +150,9 @@ class Mountains {
         albedo_(albedo),
         terrain_(LandMesh(RoughLand, 129, 60.0)),
         horizons_(std::make_shared<const TerrainHorizons>(terrain_.mesh(), TheAir().medium)),
-        light_(horizons_, TheAir().air, TheAir().diffuse, to_sun_),
-        view_(TheAir().air, TheAir().diffuse, 1500.0, to_sun_.z),
-        aerial_(TheAir().air, TheAir().diffuse) {
+        light_(horizons_, TheAir().air, TheAir().multiple_scattering, to_sun_),
+        view_(TheAir().air, TheAir().multiple_scattering, 1500.0, to_sun_.z),
+        aerial_(TheAir().air, TheAir().multiple_scattering) {
     light_.AddSlopes(
         TheAir().medium,
         [this](const SlopePlace& place) {
@@ -250,7 +250,7 @@ TEST(TerrainLight, IsThatOfRaysThatMeetSkyAndSlopes) {
           glm::dot(glm::normalize(flat),
                    glm::normalize(glm::dvec3(mountains.to_sun().x, mountains.to_sun().y, 0.0)));
       const double plain =
-          static_cast<double>(TheAir().diffuse.Irradiance(hit.smooth_point.z, mountains.to_sun().z,
+          static_cast<double>(TheAir().multiple_scattering.Irradiance(hit.smooth_point.z, mountains.to_sun().z,
                                                           hit.normal.z, azimuth)[1]) /
               (rays.sky + rays.slopes) -
           1.0;
@@ -271,11 +271,11 @@ TEST(TerrainLight, SlopesLightEachOtherThroughAirThatDimsNothing) {
                                     &medium.mie_extinction_per_m, &medium.ozone_absorption_per_m})
     std::fill(list->begin(), list->end(), 0.0);
   const SingleScattering<float> air(medium);
-  const DiffuseLight diffuse(medium, {.altitudes = 4, .sun_angles = 8, .degree = 2});
+  const MultipleScattering multiple_scattering(medium, {.altitudes = 4, .sun_angles = 8, .degree = 2});
   const Terrain terrain(LandMesh(RoughLand, 17, 480.0));
   const auto horizons = std::make_shared<const TerrainHorizons>(terrain.mesh(), medium);
   const glm::dvec3 to_sun = SunAtElevation(30.0);
-  TerrainLight light(horizons, air, diffuse, to_sun);
+  TerrainLight light(horizons, air, multiple_scattering, to_sun);
   const auto one = [&](const SlopePlace&) {
     BandLight sent(air.bands());
     std::fill_n(sent.value.begin(), sent.count, 1.0F);
@@ -332,7 +332,7 @@ TEST(TerrainLight, ASeaMirrorsAFarCoastWithoutEdges) {
   const Terrain terrain(LandMesh(SeaBeforeACoast, 129, 250.0));
   const auto horizons = std::make_shared<const TerrainHorizons>(terrain.mesh(), TheAir().medium);
   const glm::dvec3 to_sun = SunAtElevation(30.0);
-  TerrainLight light(horizons, TheAir().air, TheAir().diffuse, to_sun);
+  TerrainLight light(horizons, TheAir().air, TheAir().multiple_scattering, to_sun);
   light.AddSlopes(
       TheAir().medium,
       [](const SlopePlace&) {

@@ -26,12 +26,12 @@ const glm::dvec3 kToSun(0.6 * std::cos(kSunElevation), 0.8 * std::cos(kSunElevat
 
 /// Air, solved.
 struct SolvedAir {
-  explicit SolvedAir(const Medium& medium) : air(medium), beam(medium), diffuse(medium) {}
-  [[nodiscard]] SunlitAir sunlit() const { return {air, beam, diffuse}; }
+  explicit SolvedAir(const Medium& medium) : air(medium), beam(medium), multiple_scattering(medium) {}
+  [[nodiscard]] SunlitAir sunlit() const { return {air, beam, multiple_scattering}; }
 
   SingleScattering<float> air;
   BentBeam beam;
-  DiffuseLight diffuse;
+  MultipleScattering multiple_scattering;
 };
 
 /// Air and ground around an eye over the bare ellipsoid, in three bands.
@@ -102,9 +102,9 @@ TEST(MediaLight, ThinVolumeScattersSunAndSkyOnce) {
   to.mu = 0.0;
   to.length_m = 300.0;
   const BandLight view = stage.air.air.TransmittanceAlong(to);
-  const SkyMoments sky(stage.air.diffuse, stage.geometry.UpAt(there), kToSun, {50.0});
+  const SkyMoments sky(stage.air.multiple_scattering, stage.geometry.UpAt(there), kToSun, {50.0});
   const BandLight from_sky =
-      sky.Towards(look, LegendreCoefficients(optics.phase, stage.air.diffuse.options().degree))[0];
+      sky.Towards(look, LegendreCoefficients(optics.phase, stage.air.multiple_scattering.options().degree))[0];
   for (std::size_t band = 0; band < 3; ++band) {
     const double expected =
         optics.scattering_per_m[band] * 20.0 *
@@ -118,7 +118,7 @@ TEST(MediaLight, ThinVolumeScattersSunAndSkyOnce) {
 
 TEST(SkyMoments, IsotropicScatteringForgetsWhereLightCameFrom) {
   const Stage& stage = TheStage();
-  const SkyMoments sky(stage.air.diffuse, {0.0, 0.0, 1.0}, kToSun, {0.0, 1000.0});
+  const SkyMoments sky(stage.air.multiple_scattering, {0.0, 0.0, 1.0}, kToSun, {0.0, 1000.0});
   const std::vector<double> isotropic{1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0};
   const BandLight up = sky.Towards({0.0, 0.0, 1.0}, isotropic)[0];
   const BandLight along = sky.Towards({1.0, 0.0, 0.0}, isotropic)[0];
@@ -225,7 +225,7 @@ TEST(MediaLight, WhiteFogOverBlackGroundKeepsTheEnergyOfSunAndSky) {
                        stage.light);
   const double mu_s = kToSun.z;
   const BandLight sun = air.sunlit().BeamLeft(60.0, mu_s);
-  const BandLight sky = air.diffuse.SkyIrradiance(0.0, mu_s);
+  const BandLight sky = air.multiple_scattering.SkyIrradiance(0.0, mu_s);
   const SkyThroughFog below = lit.SkyOnSurface(0.0, 1.0);
   const SkyThroughFog above = lit.SkyOnSurface(5e4, -1.0);
   const BandLight beam = lit.SunLeft({0.0, 0.0, 0.0}, kToSun);

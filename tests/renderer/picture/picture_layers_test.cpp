@@ -55,11 +55,11 @@ TEST(PictureLayers, FactorsOfTheReddestLightAreNotNegative) {
 /// beside the sun, which is 15 degrees down: what ozone leaves in the planet's shadow.
 std::vector<double> DeepTwilight(const Medium& medium) {
   const SingleScattering<float> air(medium);
-  const DiffuseLight diffuse(medium);
+  const MultipleScattering multiple_scattering(medium);
   const double down = -8.5 * kRadiansPerDegree, sun = -15.0 * kRadiansPerDegree;
   const double nu = std::sin(down) * std::sin(sun) +
                     std::cos(down) * std::cos(sun) * std::cos(84.0 * kRadiansPerDegree);
-  const AirAlongRay seen = AerialPerspective(air, diffuse)
+  const AirAlongRay seen = AerialPerspective(air, multiple_scattering)
                                .Along({100e3, std::sin(down), std::sin(sun), nu}, {.sky = 12});
   std::vector<double> radiance;
   for (std::size_t band = 0; band < seen.inscatter.count; ++band) {

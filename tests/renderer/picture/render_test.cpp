@@ -28,13 +28,13 @@ const RenderSettings kSmall{
 
 using tests::Luminance;
 
-TEST(Render, SkyPixelIsSingleScatteringOfTheReferencePlusDiffuseLight) {
+TEST(Render, SkyPixelIsSingleScatteringOfTheReferencePlusMultipleScattering) {
   const SceneRenderer renderer(BareScene(1000.0, 180.0, 20.0, 40.0));
   const UtcInstant noon = ParseInstant("2026-06-21T10:00:00Z");
   const Image image = renderer.Render(noon, kSmall);
   const SunPosition sun = renderer.ApparentSun(noon);
   const Medium& medium = renderer.medium();
-  const DiffuseLight diffuse(medium);
+  const MultipleScattering multiple_scattering(medium);
   const SingleScattering<float> air(medium);
   const BandColour colour(medium.wavelengths_nm);
   const CameraRays camera(CameraFromDegrees({1000.0, false}, 180.0, 20.0, 0.0, 40.0), 16, 9);
@@ -44,7 +44,7 @@ TEST(Render, SkyPixelIsSingleScatteringOfTheReferencePlusDiffuseLight) {
     const ViewRay ray{1000.0, d.z, to_sun.z, d.x * to_sun.x + d.y * to_sun.y + d.z * to_sun.z};
     const auto once = reference::SingleScatteringAlong(medium, ray);
     const auto more =
-        diffuse.InscatterAlong(air.Sample(ray, {.nodes = 16, .dark_samples = true}), ray.nu);
+        multiple_scattering.InscatterAlong(air.Sample(ray, {.nodes = 16, .dark_samples = true}), ray.nu);
     std::vector<double> radiance;
     for (std::size_t band = 0; band < medium.wavelengths_nm.size(); ++band) {
       radiance.push_back((once.inscatter[band] + static_cast<double>(more[band])) *

@@ -107,9 +107,9 @@ double ErrorOfOld(const AirEye& made, const AirEye& now) {
   const tests::LitAir& air = tests::Earth();
   const MediumTables medium = MakeMediumTables(air.air, air.beam);
   const AirTablesSize size = AirTablesSizeOf(AirQuality::kHigh, now.altitude_m);
-  const AirTables old = MakeAirTables(air.air, air.diffuse, medium, made, size);
+  const AirTables old = MakeAirTables(air.air, air.multiple_scattering, medium, made, size);
   const AirMap map(air.medium, now.altitude_m, now.ceiling_m,
-                   static_cast<double>(air.diffuse.grid().twilight_fall));
+                   static_cast<double>(air.multiple_scattering.grid().twilight_fall));
   return tests::SkyErrors(tests::AirReference(air, now), tests::AirReading(old, medium, now), map, 200)
       .Rms();
 }
@@ -136,8 +136,8 @@ TEST(SolvedAirDraft, IsGoodEnoughForAMoment) {
     const Medium medium = MediumPreset(name);
     const auto full = SolveAir(medium), draft = SolveAir(medium, AirSolution::kDraft);
     for (const double mu_s : {1.0, 0.5, 0.1, -0.05}) {
-      const Bands<float> exact = full->diffuse.SkyIrradiance(0.0, mu_s);
-      const Bands<float> quick = draft->diffuse.SkyIrradiance(0.0, mu_s);
+      const Bands<float> exact = full->multiple_scattering.SkyIrradiance(0.0, mu_s);
+      const Bands<float> quick = draft->multiple_scattering.SkyIrradiance(0.0, mu_s);
       for (std::size_t band = 0; band < exact.count; ++band)
         EXPECT_NEAR(quick[band] / exact[band], 1.0F, mu_s > 0.0 ? 0.03F : 0.06F)
             << name << ", sun " << mu_s;

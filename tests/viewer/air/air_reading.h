@@ -38,7 +38,7 @@ inline glm::dvec4 Linear(const AirTexels& texels, double x, double y = 0.0, doub
 }
 
 struct AirToPoint {
-  glm::dvec4 single, diffuse, transmittance;
+  glm::dvec4 single, multiple_scattering, transmittance;
 };
 
 class AirReading {
@@ -103,7 +103,7 @@ class AirReading {
     return {Mix(angle, azimuth, medium_.phase,
                 {tables_.single_mix[0], tables_.single_mix[1], glm::vec4(0.0F)}) *
                 absorbed * Linear(tables_.single, x, y, z),
-            absorbed * Linear(tables_.diffuse, x, y, z), glm::exp(-tau)};
+            absorbed * Linear(tables_.multiple_scattering, x, y, z), glm::exp(-tau)};
   }
 
  private:

@@ -22,7 +22,7 @@ using AirErrors = SkyViewErrors;
 class AirReference {
  public:
   AirReference(const LitAir& air, const AirEye& eye)
-      : exact_(air.medium), air_(air), sky_(air.medium, air.diffuse), eye_(eye) {}
+      : exact_(air.medium), air_(air), sky_(air.medium, air.multiple_scattering), eye_(eye) {}
 
   /// Of the whole ray; in the band.
   [[nodiscard]] Bands<double> Sky(const AirMap& map, double angle, double azimuth) const {
@@ -38,15 +38,15 @@ class AirReference {
     const double nu_seen = SeenCosineOf(ray.mu, azimuth);
     const Bands<double> single = exact_.Inscatter(
         exact_.Scatter(exact_.Sample(ray, {.nodes = 32, .split_ozone = true})), nu_seen);
-    const Bands<float> diffuse =
-        air_.diffuse.InscatterAlong(air_.air.Sample(ray, {.nodes = 32, .dark_samples = true}),
+    const Bands<float> multiple_scattering =
+        air_.multiple_scattering.InscatterAlong(air_.air.Sample(ray, {.nodes = 32, .dark_samples = true}),
                                     ray.nu, nu_seen, SegmentEnd::kOpen);
     const Bands<double> left = exact_.TransmittanceAlong(ray);
     AirToPoint to{glm::dvec4(0.0), glm::dvec4(0.0), glm::dvec4(1.0)};
     for (std::size_t band = 0; band < left.count; ++band) {
       const auto i = static_cast<glm::length_t>(band);
       to.single[i] = single[band];
-      to.diffuse[i] = static_cast<double>(diffuse[band]);
+      to.multiple_scattering[i] = static_cast<double>(multiple_scattering[band]);
       to.transmittance[i] = left[band];
     }
     return to;
@@ -102,9 +102,9 @@ inline AirErrors WayErrors(const AirReference& reference, const AirReading& read
     const AirToPoint exact = reference.To(map, point.angle, point.azimuth, point.distance_km);
     const AirToPoint read = reading.To(point.angle, point.azimuth, point.distance_km);
     for (glm::length_t band = 0; band < 4; ++band) {
-      const double light = exact.single[band] + exact.diffuse[band];
+      const double light = exact.single[band] + exact.multiple_scattering[band];
       if (light > 0.0)
-        errors.sorted.push_back(std::abs(read.single[band] + read.diffuse[band] - light) / light);
+        errors.sorted.push_back(std::abs(read.single[band] + read.multiple_scattering[band] - light) / light);
     }
   }
   std::sort(errors.sorted.begin(), errors.sorted.end());

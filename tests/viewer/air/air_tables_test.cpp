@@ -27,7 +27,7 @@ AirEye EyeUnder(double altitude_m, double elevation_deg) {
 }
 
 AirTables TablesOf(const tests::LitAir& air, const AirEye& eye, AirQuality quality) {
-  return MakeAirTables(air.air, air.diffuse, MakeMediumTables(air.air, air.beam), eye,
+  return MakeAirTables(air.air, air.multiple_scattering, MakeMediumTables(air.air, air.beam), eye,
                        AirTablesSizeOf(quality, eye.altitude_m));
 }
 
@@ -168,7 +168,7 @@ TEST(AirTables, AreFiniteAndNotNegativeForEveryEyeAndSun) {
       ExpectSound(tables.to_space, "to_space");
       ExpectSound(tables.extinction, "extinction");
       ExpectSound(tables.single, "single");
-      ExpectSound(tables.diffuse, "diffuse");
+      ExpectSound(tables.multiple_scattering, "diffuse");
     }
   }
 }
@@ -178,7 +178,7 @@ TEST(AirTables, OfMarsAreFiniteAndNotNegative) {
   for (const double altitude_m : {0.0, 30e3, 400e3}) {
     const AirTables tables = TablesOf(mars, EyeUnder(altitude_m, 0.1), AirQuality::kFirst);
     for (const AirTexels* texels :
-         {&tables.sky, &tables.extinction, &tables.single, &tables.diffuse})
+         {&tables.sky, &tables.extinction, &tables.single, &tables.multiple_scattering})
       ExpectSound(*texels, "of Mars");
   }
 }

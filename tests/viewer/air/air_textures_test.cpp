@@ -26,7 +26,7 @@ constexpr GLuint kBinding = 5;
 struct BothTables {
   BothTables(double altitude_m, double mu_s)
       : medium(MakeMediumTables(tests::Earth().air, tests::Earth().beam)),
-        tables(MakeAirTables(tests::Earth().air, tests::Earth().diffuse, medium, {altitude_m, mu_s},
+        tables(MakeAirTables(tests::Earth().air, tests::Earth().multiple_scattering, medium, {altitude_m, mu_s},
                              AirTablesSizeOf(AirQuality::kLow, altitude_m))),
         reading(tables, medium) {
     textures.Upload(medium);
@@ -151,18 +151,18 @@ void ExpectWaysOfCpu(double altitude_m, double mu_s, double tolerance) {
   const auto value = [&](const char* member) {
     return both.OnGpu(fmt::format("AirToPoint(vec3(a[0], a[1], a[2]), a[3]).{}.y", member), points);
   };
-  const auto single = value("single"), diffuse = value("diffuse"), left = value("transmittance");
+  const auto single = value("single"), multiple_scattering = value("diffuse"), left = value("transmittance");
   const auto single_to = both.OnGpu("SingleTo(vec3(a[0], a[1], a[2]), a[3]).y", points);
   for (std::size_t i = 0; i < looks.size(); ++i) {
     const tests::AirToPoint exact =
         both.reading.To(looks[i].angle, looks[i].azimuth, looks[i].distance_km);
     // On short ways 1 - T cancels in float: allowed are 3e-6 of an endless way's light.
-    const double light = exact.single[1] + exact.diffuse[1];
+    const double light = exact.single[1] + exact.multiple_scattering[1];
     const double error = tolerance * light + 3e-6 * light / (1.0 - exact.transmittance[1]) + 1e-15;
     EXPECT_NEAR(single[i], exact.single[1], error)
         << "angle " << looks[i].angle << ", azimuth " << looks[i].azimuth << ", "
         << looks[i].distance_km << " km";
-    EXPECT_NEAR(diffuse[i], exact.diffuse[1], error);
+    EXPECT_NEAR(multiple_scattering[i], exact.multiple_scattering[1], error);
     EXPECT_NEAR(left[i], exact.transmittance[1], tolerance);
     EXPECT_EQ(single_to[i], single[i]);
   }
@@ -199,13 +199,13 @@ TEST_F(AirTexturesOnGpu, AnEyeThatHasMovedSeesThemFromItsOwnHorizonUnderItsOwnSu
     points.push_back({d.x, d.y, d.z, static_cast<float>(look.distance_km)});
   }
   const auto sky = both.OnGpu("SkyRadiance(vec3(a[0], a[1], a[2])).y", points);
-  const auto diffuse = both.OnGpu("AirToPoint(vec3(a[0], a[1], a[2]), a[3]).diffuse.y", points);
+  const auto multiple_scattering = both.OnGpu("AirToPoint(vec3(a[0], a[1], a[2]), a[3]).diffuse.y", points);
   for (std::size_t i = 0; i < looks.size(); ++i) {
     const double seen = reading.Sky(looks[i].angle, looks[i].azimuth)[1];
     EXPECT_NEAR(sky[i], seen, 2e-3 * seen) << looks[i].angle << ", " << looks[i].azimuth;
     const double light =
-        reading.To(looks[i].angle, looks[i].azimuth, looks[i].distance_km).diffuse[1];
-    EXPECT_NEAR(diffuse[i], light, 2e-3 * light + 1e-7) << looks[i].angle;
+        reading.To(looks[i].angle, looks[i].azimuth, looks[i].distance_km).multiple_scattering[1];
+    EXPECT_NEAR(multiple_scattering[i], light, 2e-3 * light + 1e-7) << looks[i].angle;
   }
 }
 

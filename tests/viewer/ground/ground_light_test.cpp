@@ -56,18 +56,18 @@ void Bind(const ShaderProgram& program, const char* name, GLuint binding, const 
 
 SkyTilt OpenSkyOver(const LitGround& lit) {
   const SiteAir& air = lit.site().air();
-  return {*air.single_scattering, *air.diffuse, 1000.0, lit.lighting().to_sun.z};
+  return {*air.single_scattering, *air.multiple_scattering, 1000.0, lit.lighting().to_sun.z};
 }
 
 /// What the shaders read for an eye over the origin of the site.
 class Blocks {
  public:
   Blocks(const LitGround& lit, const Lighting& light, double eye_m)
-      : lit_(lit), eye_m_(eye_m), textures_(*lit.site().air().diffuse) {
+      : lit_(lit), eye_m_(eye_m), textures_(*lit.site().air().multiple_scattering) {
     if (const ColourDrape* drape = lit.site().material().drape())
       textures_.SetDrape(DrapeTexels(*drape, Picture(), 256));
     textures_.SetSeaMirror(LightSource::kSun,
-                           SeaMirror::Of(light.on_terrain->sky(), *lit.site().air().diffuse,
+                           SeaMirror::Of(light.on_terrain->sky(), *lit.site().air().multiple_scattering,
                                          lit.site().material().water(), lit.lighting().to_sun));
   }
 
@@ -248,7 +248,7 @@ std::vector<double> PlanetDifferences(const LitGround& lit, double eye_m) {
   Lighting light = lit.lighting();
   const SiteAir& air = lit.site().air();
   light.on_terrain =
-      std::make_shared<const TerrainLight>(nullptr, *air.single_scattering, *air.diffuse, light.to_sun);
+      std::make_shared<const TerrainLight>(nullptr, *air.single_scattering, *air.multiple_scattering, light.to_sun);
   return Differences(lit, light, eye_m, PlanetCases(lit, eye_m),
                      {"PlanetRadiance(" + kPoint + ", " + kToEye + ")", false,
                       [eye_m](const Case& c) { return PlaceOf(c, eye_m, {}); }});

@@ -18,8 +18,8 @@ namespace {
 struct Air {
   std::shared_ptr<const SingleScattering<float>> air =
       std::make_shared<SingleScattering<float>>(MediumPreset("earth"));
-  std::shared_ptr<const DiffuseLight> diffuse =
-      std::make_shared<DiffuseLight>(MediumPreset("earth"));
+  std::shared_ptr<const MultipleScattering> multiple_scattering =
+      std::make_shared<MultipleScattering>(MediumPreset("earth"));
 };
 const Air& Earth() {
   static const Air earth;
@@ -27,7 +27,7 @@ const Air& Earth() {
 }
 
 DayStripRequest Alps() {
-  DayStripRequest request{Earth().air, Earth().diffuse, PlaceFromDegrees(46.0, 8.0, 500.0), {}, 24};
+  DayStripRequest request{Earth().air, Earth().multiple_scattering, PlaceFromDegrees(46.0, 8.0, 500.0), {}, 24};
   request.begin = ParseInstant("2026-03-19T23:28:00Z");  // midnight of the mean sun
   return request;
 }
@@ -52,7 +52,7 @@ TEST(DayStrip, ColoursAreThoseOfTheSky) {
   for (const int column : {7, 12, 18}) {
     const SunPosition sun =
         ApparentSunAt(request.place, AddSeconds(request.begin, 3600.0 * (column + 0.5)));
-    const SkyView view(*request.air, *request.diffuse, request.place.height_m,
+    const SkyView view(*request.air, *request.multiple_scattering, request.place.height_m,
                        std::sin(sun.elevation_rad));
     const double dip =
         std::acos(medium.planet_radius_m / (medium.planet_radius_m + request.place.height_m));

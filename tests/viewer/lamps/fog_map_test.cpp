@@ -37,9 +37,9 @@ struct Stage {
   SceneGeometry geometry{ground, scene.medium, false};
   SingleScattering<float> air{scene.medium};
   BentBeam beam{scene.medium};
-  DiffuseLight diffuse{scene.medium};
+  MultipleScattering multiple_scattering{scene.medium};
 
-  [[nodiscard]] SunlitAir sunlit() const { return {air, beam, diffuse}; }
+  [[nodiscard]] SunlitAir sunlit() const { return {air, beam, multiple_scattering}; }
 
   [[nodiscard]] Lighting Under(const glm::dvec3& to_sun) const {
     SunPosition sun;

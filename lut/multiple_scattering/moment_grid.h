@@ -1,33 +1,33 @@
 // SPDX-License-Identifier: MIT
-// This header provides the axes of DiffuseLight's table to code outside the kernels.
+// This header provides the axes of MultipleScattering's table to code outside the kernels.
 #pragma once
 
 #include "atmosphere/medium/medium.h"
-#include "lut/multiple_scattering/diffuse_kernel.h"
+#include "lut/multiple_scattering/moment_kernel.h"
 #include "lut/multiple_scattering/multiple_scattering.h"
-#include "lut/multiple_scattering/polarised_light.h"
+#include "lut/multiple_scattering/polarised_scattering.h"
 #include "lut/tables/cubic_taps.h"
 
 namespace alpenglow::lut {
 
-[[nodiscard]] DiffuseGrid GridOf(const Medium& medium, const DiffuseLightOptions& options);
+[[nodiscard]] MomentGrid GridOf(const Medium& medium, const MultipleScatteringOptions& options);
 
 /// Returns the divisor of moments before they are interpolated between sun angles, in (0, 1].
-[[nodiscard]] float TwilightOf(const DiffuseGrid& grid, double mu_s);
+[[nodiscard]] float TwilightOf(const MomentGrid& grid, double mu_s);
 
 /// Returns the sun nodes around mu_s and their weights, for moments that are not divided by
 /// TwilightOf.
-[[nodiscard]] CubicTaps SunTaps(const DiffuseGrid& grid, double mu_s);
+[[nodiscard]] CubicTaps SunTaps(const MomentGrid& grid, double mu_s);
 
 /// Returns TwilightOf at every sun node.
-[[nodiscard]] std::vector<float> TwilightAtNodes(const DiffuseGrid& grid);
+[[nodiscard]] std::vector<float> TwilightAtNodes(const MomentGrid& grid);
 
 /// Returns the molecules' Legendre coefficient of degree 2: D / 10.
 [[nodiscard]] float RayleighChi2(const Medium& medium, std::size_t band);
 
-/// Returns the zenith cosine of a sun node. The nodes are those of DiffuseLight::SunNodes(), except
+/// Returns the zenith cosine of a sun node. The nodes are those of MultipleScattering::SunNodes(), except
 /// that for polarised light the last one lies close to the zenith.
-[[nodiscard]] double MuSOfNode(const DiffuseGrid& grid, std::size_t sun);
+[[nodiscard]] double MuSOfNode(const MomentGrid& grid, std::size_t sun);
 
 /// Returns the sine of an angle in [0, pi] from its cosine.
 [[nodiscard]] double SineOf(double cosine);
@@ -36,7 +36,7 @@ namespace alpenglow::lut {
 
 /// Returns the factor that restores a moment of order m which was divided at a node: SinePower for
 /// polarised light, else 1.
-[[nodiscard]] inline float SinePowerOf(const DiffuseGrid& grid, std::size_t m, float sun_sine) {
+[[nodiscard]] inline float SinePowerOf(const MomentGrid& grid, std::size_t m, float sun_sine) {
   return grid.polarised ? SinePower(m, sun_sine) : 1.0F;
 }
 

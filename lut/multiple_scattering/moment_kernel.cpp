@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
-#include "lut/multiple_scattering/diffuse_kernel.h"
+#include "lut/multiple_scattering/moment_kernel.h"
 
 #include <utility>
 
 #include "atmosphere/math/constants.h"
-#include "lut/multiple_scattering/diffuse_lanes.h"
+#include "lut/multiple_scattering/moment_lanes.h"
 #include "lut/multiple_scattering/march_lanes.h"
 
 namespace alpenglow::lut {
@@ -101,7 +101,7 @@ void VisitHarmonics(const T& mu, const T& sine, const T& cosine, const Visit& vi
 }
 
 template <std::size_t kDegree>
-void Prepare(const DiffuseGrid& grid, const RaySamples<float>& samples, std::size_t first, float nu,
+void Prepare(const MomentGrid& grid, const RaySamples<float>& samples, std::size_t first, float nu,
              Chunk& chunk) {
   using namespace shared;
   using Lanes = BatchOf<float>;
@@ -302,7 +302,7 @@ Four AtSample(const float (*rows)[kChunk], std::size_t s) {
 }
 
 template <std::size_t kNode>
-Taps TapsOf(const DiffuseGrid& grid, const Chunk& chunk, std::size_t s, const float* moments) {
+Taps TapsOf(const MomentGrid& grid, const Chunk& chunk, std::size_t s, const float* moments) {
   const auto first_altitude = static_cast<int>(chunk.altitude_cell[s]) - 1;
   const auto first_sun = static_cast<int>(chunk.sun_cell[s]) - 1;
   const auto last_altitude = static_cast<int>(grid.altitudes) - 1;
@@ -327,11 +327,11 @@ Taps TapsOf(const DiffuseGrid& grid, const Chunk& chunk, std::size_t s, const fl
 /// A block of bands with the values that every sample needs.
 template <std::size_t kDegree>
 struct ReadyBlock {
-  const DiffuseBlock& block;
+  const MomentBlock& block;
   EightChi<kDegree> chi;
   float most_aerosol;  // largest ratio of aerosol to molecular scattering over bands, at altitude 0
 
-  explicit ReadyBlock(const DiffuseBlock& of_block) : block(of_block), most_aerosol(0.0F) {
+  explicit ReadyBlock(const MomentBlock& of_block) : block(of_block), most_aerosol(0.0F) {
     for (std::size_t l = 0; l <= kDegree; ++l) chi.mie[l] = Twice(block.chi[l]);
     chi.rayleigh2 = Twice(block.rayleigh_chi2);
     for (std::size_t band = 0; band < kBlockBands; ++band) {
@@ -343,7 +343,7 @@ struct ReadyBlock {
 };
 
 template <bool kPolarised, std::size_t kDegree>
-Four SourceAt(const DiffuseGrid& grid, const Chunk& chunk, std::size_t s,
+Four SourceAt(const MomentGrid& grid, const Chunk& chunk, std::size_t s,
               const RaySamples<float>& samples, std::size_t sample,
               const ReadyBlock<kDegree>& ready, const float* moments) {
   // Aerosol-to-molecule ratios of scattering. Below the first, aerosol needs no more moments than
@@ -364,8 +364,8 @@ Four SourceAt(const DiffuseGrid& grid, const Chunk& chunk, std::size_t s,
 }
 
 template <std::size_t kDegree, bool kPolarised>
-void InscatterOfDegree(const DiffuseGrid& grid, const RaySamples<float>& samples, float nu,
-                       const DiffuseBlock* blocks, std::size_t count, const float* moments,
+void InscatterOfDegree(const MomentGrid& grid, const RaySamples<float>& samples, float nu,
+                       const MomentBlock* blocks, std::size_t count, const float* moments,
                        float* light) {
   using namespace shared;
   using Lanes = BatchOf<float>;
@@ -399,8 +399,8 @@ void InscatterOfDegree(const DiffuseGrid& grid, const RaySamples<float>& samples
   }
 }
 
-void Inscatter(const DiffuseGrid& grid, const RaySamples<float>& samples, float nu,
-               const DiffuseBlock* blocks, std::size_t count, const float* moments, float* light) {
+void Inscatter(const MomentGrid& grid, const RaySamples<float>& samples, float nu,
+               const MomentBlock* blocks, std::size_t count, const float* moments, float* light) {
   OfDegree(grid.degree, [&](auto degree) {
     if (grid.polarised) {
       InscatterOfDegree<degree(), true>(grid, samples, nu, blocks, count, moments, light);
@@ -452,7 +452,7 @@ Eight SumOverNodes(const SurfacePoint& point, std::size_t node_floats, const flo
 // on a surface that faces up (where `sky` gives the true value) and on one that faces down. Between
 // them the error is assumed to follow the first even Legendre polynomial that the series lacks.
 template <std::size_t kDegree>
-void IrradianceOfDegree(const DiffuseGrid& grid, const SurfacePoint& point, std::size_t count,
+void IrradianceOfDegree(const MomentGrid& grid, const SurfacePoint& point, std::size_t count,
                         const float* moments, const float* sky, float* irradiance) {
   const float mu = point.normal_mu;
   const float missing = FirstMissingLegendre<kDegree>(mu);
@@ -490,7 +490,7 @@ void IrradianceOfDegree(const DiffuseGrid& grid, const SurfacePoint& point, std:
   }
 }
 
-void Irradiance(const DiffuseGrid& grid, const SurfacePoint& point, std::size_t count,
+void Irradiance(const MomentGrid& grid, const SurfacePoint& point, std::size_t count,
                 const float* moments, const float* sky, float* irradiance) {
   OfDegree(grid.degree, [&](auto degree) {
     IrradianceOfDegree<degree()>(grid, point, count, moments, sky, irradiance);
@@ -499,8 +499,8 @@ void Irradiance(const DiffuseGrid& grid, const SurfacePoint& point, std::size_t 
 
 }  // namespace
 
-const DiffuseKernel& KernelOf(KernelName<DiffuseKernel, kThisSet> /*name*/) {
-  static constexpr DiffuseKernel kernel{Arrive,  ArrivePolarised, Place,
+const MomentKernel& KernelOf(KernelName<MomentKernel, kThisSet> /*name*/) {
+  static constexpr MomentKernel kernel{Arrive,  ArrivePolarised, Place,
                                         Scatter, Inscatter,       Irradiance};
   return kernel;
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "lut/multiple_scattering/diffuse_march.h"
+#include "lut/multiple_scattering/moment_march.h"
 
 #include <tbb/parallel_for.h>
 
@@ -29,7 +29,7 @@ bool OnlyMolecules(const AirConstants<float>& air, float rayleigh_density, float
 
 }  // namespace
 
-DiffuseMarches::DiffuseMarches(const SingleScattering<float>& air, const DiffuseLightOptions& options,
+MomentMarches::MomentMarches(const SingleScattering<float>& air, const MultipleScatteringOptions& options,
                                const std::vector<double>& chi)
     : air_(&air),
       chi_(&chi),
@@ -66,7 +66,7 @@ DiffuseMarches::DiffuseMarches(const SingleScattering<float>& air, const Diffuse
                     [&](std::size_t i) { marches_[i] = MarchesAt(i, options); });
 }
 
-MarchDirection DiffuseMarches::Direction(std::size_t altitude, const March& march) const {
+MarchDirection MomentMarches::Direction(std::size_t altitude, const March& march) const {
   return {march.mu,
           march.sine,
           static_cast<float>(radius_km_ + altitude_km_[altitude]),
@@ -76,7 +76,7 @@ MarchDirection DiffuseMarches::Direction(std::size_t altitude, const March& marc
           azimuths_};
 }
 
-double DiffuseMarches::Nu(const March& march, std::size_t sun, std::size_t azimuth) const {
+double MomentMarches::Nu(const March& march, std::size_t sun, std::size_t azimuth) const {
   const double mu = static_cast<double>(march.mu);
   const double nu = mu * mu_s_[sun] + SineOf(mu) * SineOf(mu_s_[sun]) *
                                           static_cast<double>(AzimuthCosine(1, azimuth));
@@ -84,8 +84,8 @@ double DiffuseMarches::Nu(const March& march, std::size_t sun, std::size_t azimu
 }
 
 // Places Gauss nodes above and below the horizon, dense near it: mu - horizon = range v^2.
-std::vector<March> DiffuseMarches::MarchesAt(std::size_t altitude,
-                                             const DiffuseLightOptions& options) const {
+std::vector<March> MomentMarches::MarchesAt(std::size_t altitude,
+                                             const MultipleScatteringOptions& options) const {
   const double horizon = shared::HorizonCosine<double>(altitude_km_[altitude], radius_km_);
   const GaussRule& rule = GaussLegendre(options.zenith_nodes);
   std::vector<March> marches;
@@ -106,7 +106,7 @@ std::vector<March> DiffuseMarches::MarchesAt(std::size_t altitude,
   return marches;
 }
 
-void DiffuseMarches::AddPoints(std::size_t altitude, const DiffuseLightOptions& options, double mu,
+void MomentMarches::AddPoints(std::size_t altitude, const MultipleScatteringOptions& options, double mu,
                                March& march) const {
   // With the sun in the zenith no part of the ray is in shadow, so one set of panels serves every
   // sun.
@@ -143,7 +143,7 @@ void DiffuseMarches::AddPoints(std::size_t altitude, const DiffuseLightOptions& 
   if (march.hits_ground) AddGround(altitude, march);
 }
 
-void DiffuseMarches::AddGround(std::size_t altitude, March& march) const {
+void MomentMarches::AddGround(std::size_t altitude, March& march) const {
   const double mu = static_cast<double>(march.mu);
   const double r = radius_km_ + altitude_km_[altitude];
   march.ground_transmittance =
@@ -152,7 +152,7 @@ void DiffuseMarches::AddGround(std::size_t altitude, March& march) const {
     for (std::size_t k = 0; k < azimuths_; ++k) {
       const double mu_s = std::clamp(
           (r * mu_s_[j] + march.ground_distance_km * Nu(march, j, k)) / radius_km_, -1.0, 1.0);
-      CubicTaps taps = TapsAt(DiffuseLight::SunCoordinate(mu_s), static_cast<int>(grid_.suns));
+      CubicTaps taps = TapsAt(MultipleScattering::SunCoordinate(mu_s), static_cast<int>(grid_.suns));
       const float twilight = TwilightOf(grid_, mu_s);
       for (float& weight : taps.weight) weight *= twilight;
       march.ground_taps.push_back(taps);
@@ -175,7 +175,7 @@ struct Pieces {
 };
 
 // Returns, for every ray, the parts of [begin, end] before and after the planet's shadow.
-std::array<Pieces, 2> SunlitPieces(const DiffuseMarches& marches, std::size_t altitude,
+std::array<Pieces, 2> SunlitPieces(const MomentMarches& marches, std::size_t altitude,
                                    const March& march, double begin, double end) {
   const double r = marches.radius_km() + marches.altitude_km(altitude);
   const double h_m = marches.altitude_km(altitude) * 1000.0;
@@ -236,8 +236,8 @@ std::array<float, 6> OriginAndPerigee(const AirConstants<float>& air, float alti
 /// Adds the light of sunlit pieces to the radiance of a march.
 class PieceScatterer {
  public:
-  PieceScatterer(const DiffuseMarches& marches, std::size_t altitude, const March& march,
-                 const DiffuseLightOptions& options)
+  PieceScatterer(const MomentMarches& marches, std::size_t altitude, const March& march,
+                 const MultipleScatteringOptions& options)
       : marches_(marches),
         air_(marches.air().constants()),
         altitude_km_(static_cast<float>(marches.altitude_km(altitude))),
@@ -304,7 +304,7 @@ class PieceScatterer {
     const std::size_t points = lit.count * lit.nodes;
     AlignedFloats weight(points), altitude(points), mu(points), absolute_mu(points), mu_s(points);
     const LitPoints at{weight.data(), altitude.data(), mu.data(), absolute_mu.data(), mu_s.data()};
-    const DiffuseKernel& kernel = Kernel<DiffuseKernel>();
+    const MomentKernel& kernel = Kernel<MomentKernel>();
     const RayKernel<float>& rays = Kernel<RayKernel<float>>();
     kernel.place(lit, at);
     ColumnStore up(points), sun(points);
@@ -331,7 +331,7 @@ class PieceScatterer {
     }
   }
 
-  const DiffuseMarches& marches_;
+  const MomentMarches& marches_;
   const AirConstants<float>& air_;
   float altitude_km_;
   const March& march_;
@@ -341,7 +341,7 @@ class PieceScatterer {
 };
 
 // Adds the sunlight that the ground at the end of the march reflects.
-void AddSunlitGround(const DiffuseMarches& marches, std::size_t altitude, const March& march,
+void AddSunlitGround(const MomentMarches& marches, std::size_t altitude, const March& march,
                      std::vector<float>& radiance) {
   const SingleScattering<float>& air = marches.air();
   const double r = marches.radius_km() + marches.altitude_km(altitude);
@@ -363,8 +363,8 @@ void AddSunlitGround(const DiffuseMarches& marches, std::size_t altitude, const 
 
 }  // namespace
 
-SunlightOfMarch SunlightScatteredOnce(const DiffuseMarches& marches, std::size_t altitude,
-                                      const March& march, const DiffuseLightOptions& options) {
+SunlightOfMarch SunlightScatteredOnce(const MomentMarches& marches, std::size_t altitude,
+                                      const March& march, const MultipleScatteringOptions& options) {
   const std::size_t values = marches.air().bands() * marches.grid().suns * marches.azimuths();
   SunlightOfMarch light{std::vector<float>(values, 0.0F), std::vector<float>(values, 0.0F)};
   const PieceScatterer scatterer(marches, altitude, march, options);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "lut/multiple_scattering/diffuse_fan.h"
+#include "lut/multiple_scattering/azimuth_fan.h"
 
 #include <gtest/gtest.h>
 
@@ -10,7 +10,7 @@
 namespace alpenglow::lut {
 namespace {
 
-constexpr DiffuseLightOptions kSmall{.altitudes = 10,
+constexpr MultipleScatteringOptions kSmall{.altitudes = 10,
                                      .sun_angles = 24,
                                      .degree = 4,
                                      .zenith_nodes = 6,
@@ -21,10 +21,10 @@ double NuOf(double mu, double mu_s, double azimuth_rad) {
   return mu * mu_s + std::sqrt((1.0 - mu * mu) * (1.0 - mu_s * mu_s)) * std::cos(azimuth_rad);
 }
 
-void ExpectDiffuseLightOfEveryAzimuth(const Medium& medium) {
-  const DiffuseLight light(medium, kSmall);
+void ExpectMultipleScatteringOfEveryAzimuth(const Medium& medium) {
+  const MultipleScattering light(medium, kSmall);
   const SingleScattering<float> air(medium);
-  const DiffuseFan fan(light);
+  const AzimuthFan fan(light);
   for (const double altitude_m : {0.0, 10e3, 400e3}) {
     for (const double mu : {1.0, 0.3, -0.35, -1.0}) {
       for (const double mu_s : {1.0, 0.9, 0.1, -0.1, -0.6, -1.0}) {
@@ -58,17 +58,17 @@ void ExpectDiffuseLightOfEveryAzimuth(const Medium& medium) {
   }
 }
 
-class DiffuseFanOf : public testing::TestWithParam<int> {};
+class AzimuthFanOf : public testing::TestWithParam<int> {};
 
-TEST_P(DiffuseFanOf, BandsIsTheDiffuseLightOfEveryAzimuth) {
-  ExpectDiffuseLightOfEveryAzimuth(InScalarLight(MediumPreset("earth", WavelengthSet(GetParam()))));
+TEST_P(AzimuthFanOf, BandsIsTheMultipleScatteringOfEveryAzimuth) {
+  ExpectMultipleScatteringOfEveryAzimuth(InScalarLight(MediumPreset("earth", WavelengthSet(GetParam()))));
 }
 
-TEST_P(DiffuseFanOf, BandsIsThePolarisedLightOfEveryAzimuth) {
-  ExpectDiffuseLightOfEveryAzimuth(MediumPreset("earth", WavelengthSet(GetParam())));
+TEST_P(AzimuthFanOf, BandsIsThePolarisedLightOfEveryAzimuth) {
+  ExpectMultipleScatteringOfEveryAzimuth(MediumPreset("earth", WavelengthSet(GetParam())));
 }
 
-INSTANTIATE_TEST_SUITE_P(AnyNumber, DiffuseFanOf, testing::Values(3, 4, 6));
+INSTANTIATE_TEST_SUITE_P(AnyNumber, AzimuthFanOf, testing::Values(3, 4, 6));
 
 }  // namespace
 }  // namespace alpenglow::lut

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Polarised light of all orders against published tables, stored cases and the path tracer.
-#include "lut/multiple_scattering/polarised_light.h"
+#include "lut/multiple_scattering/polarised_scattering.h"
 
 #include <gtest/gtest.h>
 
@@ -24,7 +24,7 @@ using slab::Stokes;
 /// Light along rays of one medium, ground at their ends included.
 class Sky {
  public:
-  Sky(const Medium& medium, const DiffuseLightOptions& options)
+  Sky(const Medium& medium, const MultipleScatteringOptions& options)
       : air_(medium), fine_air_(medium), light_(medium, options) {}
 
   [[nodiscard]] Stokes Along(const ViewRay& ray, std::size_t band) const {
@@ -56,7 +56,7 @@ class Sky {
 
   SingleScattering<float> air_;
   SingleScattering<double> fine_air_;
-  DiffuseLight light_;
+  MultipleScattering light_;
 };
 
 Medium Polarised(Medium medium) {
@@ -81,12 +81,12 @@ struct Errors {
 
 // Twice the suns and the nodes along rays, and more of them for later orders: the usual numbers
 // leave more in layers that are thinner than real air.
-constexpr DiffuseLightOptions kFine{.sun_angles = 64,
+constexpr MultipleScatteringOptions kFine{.sun_angles = 64,
                                     .ray_nodes = 20,
                                     .later_zenith_nodes = 10,
                                     .later_azimuth_nodes = 6,
                                     .later_ray_nodes = 14};
-DiffuseLightOptions Fine(const Medium&) { return kFine; }
+MultipleScatteringOptions Fine(const Medium&) { return kFine; }
 
 /// @param options  of a layer's medium.
 template <typename Rows, typename Options>
@@ -152,7 +152,7 @@ TEST(PolarisedLight, AgreesWithStoredSkiesOnTheSphere) {
     Medium medium = Polarised(media.at(row.at("set")));
     medium.rayleigh_depolarisation = {stored::Number(row, "depolarisation")};
     const auto sky =
-        skies.try_emplace(row.at("set") + row.at("depolarisation"), medium, DiffuseLightOptions{});
+        skies.try_emplace(row.at("set") + row.at("depolarisation"), medium, MultipleScatteringOptions{});
     const double side = stored::Number(row, "raz_deg") > 180.0 ? -1.0 : 1.0;
     const double view_deg = stored::Number(row, "vza_deg");
     const bool vertical = view_deg == 0.0 || view_deg == 180.0;
@@ -212,7 +212,7 @@ TEST(PolarisedLight, OfAirWithoutMoleculesIsScalarLight) {
 }
 
 TEST(PolarisedLight, ValuesAtNodesAreTheNodesAndSurfacesSeeTheSky) {
-  const DiffuseLight light(InPolarisedLight(MediumPreset("bruneton2017"), "bruneton2017"),
+  const MultipleScattering light(InPolarisedLight(MediumPreset("bruneton2017"), "bruneton2017"),
                            tests::kSmallLight);
   const auto suns = static_cast<std::size_t>(tests::kSmallLight.sun_angles);
   const std::size_t row = light.channels() * light.bands();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "lut/multiple_scattering/diffuse_grid.h"
+#include "lut/multiple_scattering/moment_grid.h"
 
 #include <algorithm>
 #include <cmath>
@@ -8,9 +8,9 @@
 
 namespace alpenglow::lut {
 
-DiffuseGrid GridOf(const Medium& medium, const DiffuseLightOptions& options) {
-  const SunAxis& sun = DiffuseLight::SunNodes();
-  DiffuseGrid grid{};
+MomentGrid GridOf(const Medium& medium, const MultipleScatteringOptions& options) {
+  const SunAxis& sun = MultipleScattering::SunNodes();
+  MomentGrid grid{};
   grid.altitudes = static_cast<std::size_t>(options.altitudes);
   grid.suns = static_cast<std::size_t>(options.sun_angles);
   grid.degree = static_cast<std::size_t>(options.degree);
@@ -30,7 +30,7 @@ DiffuseGrid GridOf(const Medium& medium, const DiffuseLightOptions& options) {
   return grid;
 }
 
-float TwilightOf(const DiffuseGrid& grid, double mu_s) {
+float TwilightOf(const MomentGrid& grid, double mu_s) {
   const double x = static_cast<double>(grid.twilight_start) - mu_s;
   const double width = static_cast<double>(grid.twilight_width);
   return static_cast<float>(std::exp(-0.5 * static_cast<double>(grid.twilight_fall) *
@@ -41,8 +41,8 @@ float RayleighChi2(const Medium& medium, std::size_t band) {
   return 0.1F * static_cast<float>(shared::RoundShare(Depolarisation(medium, band)));
 }
 
-double MuSOfNode(const DiffuseGrid& grid, std::size_t sun) {
-  const double mu_s = DiffuseLight::MuSFromCoordinate(static_cast<double>(sun) /
+double MuSOfNode(const MomentGrid& grid, std::size_t sun) {
+  const double mu_s = MultipleScattering::MuSFromCoordinate(static_cast<double>(sun) /
                                                       static_cast<double>(grid.suns - 1));
   return grid.polarised ? std::min(mu_s, kHighestPolarisedSun) : mu_s;
 }
@@ -51,22 +51,22 @@ double SineOf(double cosine) { return std::sqrt(std::max((1.0 - cosine) * (1.0 +
 
 float SunSine(double mu_s) { return static_cast<float>(SineOf(mu_s)); }
 
-CubicTaps SunTaps(const DiffuseGrid& grid, double mu_s) {
+CubicTaps SunTaps(const MomentGrid& grid, double mu_s) {
   const int suns = static_cast<int>(grid.suns);
-  CubicTaps taps = TapsAt(DiffuseLight::SunCoordinate(mu_s), suns);
+  CubicTaps taps = TapsAt(MultipleScattering::SunCoordinate(mu_s), suns);
   const float here = TwilightOf(grid, mu_s);
   for (std::size_t tap = 0; tap < 4; ++tap) {
     const double v = static_cast<double>(taps.node[tap]) / (suns - 1);
-    taps.weight[tap] *= here / TwilightOf(grid, DiffuseLight::MuSFromCoordinate(v));
+    taps.weight[tap] *= here / TwilightOf(grid, MultipleScattering::MuSFromCoordinate(v));
   }
   return taps;
 }
 
-std::vector<float> TwilightAtNodes(const DiffuseGrid& grid) {
+std::vector<float> TwilightAtNodes(const MomentGrid& grid) {
   std::vector<float> twilight;
   for (std::size_t sun = 0; sun < grid.suns; ++sun) {
     const double v = static_cast<double>(sun) / static_cast<double>(grid.suns - 1);
-    twilight.push_back(TwilightOf(grid, DiffuseLight::MuSFromCoordinate(v)));
+    twilight.push_back(TwilightOf(grid, MultipleScattering::MuSFromCoordinate(v)));
   }
   return twilight;
 }

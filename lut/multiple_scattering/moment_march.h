@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// This header provides the directions from the nodes of DiffuseLight's table and the points along
+// This header provides the directions from the nodes of MultipleScattering's table and the points along
 // them. Successive orders march along these for every band and order.
 //
 // It also provides the first of the successive orders: sunlight that arrives at the nodes after one
@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "atmosphere/ray/single_scattering.h"
-#include "lut/multiple_scattering/diffuse_grid.h"
+#include "lut/multiple_scattering/moment_grid.h"
 
 namespace alpenglow::lut {
 
@@ -28,15 +28,15 @@ struct March {
   std::vector<CubicTaps> ground_taps;  // [sun * azimuths + azimuth], for divided moments
 };
 
-class DiffuseMarches {
+class MomentMarches {
  public:
   /// @param chi  Legendre coefficients of aerosol scattering: degree l of a band at [l * bands +
   ///   band].
-  DiffuseMarches(const SingleScattering<float>& air, const DiffuseLightOptions& options,
+  MomentMarches(const SingleScattering<float>& air, const MultipleScatteringOptions& options,
                  const std::vector<double>& chi);
 
   [[nodiscard]] const SingleScattering<float>& air() const { return *air_; }
-  [[nodiscard]] const DiffuseGrid& grid() const { return grid_; }
+  [[nodiscard]] const MomentGrid& grid() const { return grid_; }
   [[nodiscard]] const std::vector<double>& chi() const { return *chi_; }
   [[nodiscard]] std::size_t azimuths() const { return azimuths_; }
   [[nodiscard]] double altitude_km(std::size_t i) const { return altitude_km_[i]; }
@@ -59,14 +59,14 @@ class DiffuseMarches {
 
  private:
   [[nodiscard]] std::vector<March> MarchesAt(std::size_t altitude,
-                                             const DiffuseLightOptions& options) const;
-  void AddPoints(std::size_t altitude, const DiffuseLightOptions& options, double mu,
+                                             const MultipleScatteringOptions& options) const;
+  void AddPoints(std::size_t altitude, const MultipleScatteringOptions& options, double mu,
                  March& march) const;
   void AddGround(std::size_t altitude, March& march) const;
 
   const SingleScattering<float>* air_;
   const std::vector<double>* chi_;
-  DiffuseGrid grid_;
+  MomentGrid grid_;
   double radius_km_;
   std::size_t azimuths_;
   std::vector<double> altitude_km_, mu_s_;
@@ -82,8 +82,8 @@ struct SunlightOfMarch {
   std::vector<float> molecules;  // light that molecules scatter, without phase function [1]
 };
 
-[[nodiscard]] SunlightOfMarch SunlightScatteredOnce(const DiffuseMarches& marches,
+[[nodiscard]] SunlightOfMarch SunlightScatteredOnce(const MomentMarches& marches,
                                                     std::size_t altitude, const March& march,
-                                                    const DiffuseLightOptions& options);
+                                                    const MultipleScatteringOptions& options);
 
 }  // namespace alpenglow::lut

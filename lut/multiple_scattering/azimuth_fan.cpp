@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
-#include "lut/multiple_scattering/diffuse_fan.h"
+#include "lut/multiple_scattering/azimuth_fan.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 
 #include "atmosphere/math/constants.h"
-#include "lut/multiple_scattering/diffuse_fan_kernel.h"
-#include "lut/multiple_scattering/diffuse_grid.h"
+#include "lut/multiple_scattering/azimuth_fan_kernel.h"
+#include "lut/multiple_scattering/moment_grid.h"
 #include "lut/multiple_scattering/spherical_harmonics.h"
 #include "lut/tables/cubic_taps.h"
 
@@ -20,7 +20,7 @@ constexpr int kTableCells = 4096;
 }  // namespace
 
 /// Arguments of a call, and the position of the sun at every sample for every azimuth.
-struct DiffuseFan::Line {
+struct AzimuthFan::Line {
   const RaySamples<float>& samples;
   std::size_t directions;
   // Index: [sample * directions + direction]. `sun_sine`, the sine of the sun's zenith angle, is
@@ -28,7 +28,7 @@ struct DiffuseFan::Line {
   std::vector<float> position, twilight, cosine, sun_sine;
 };
 
-DiffuseFan::DiffuseFan(const DiffuseLight& light)
+AzimuthFan::AzimuthFan(const MultipleScattering& light)
     : light_(light),
       stride_((light.bands() + kLanes - 1) / kLanes * kLanes),
       chi_mie_(MieLegendreCoefficients(light.medium(), light.options().degree)),
@@ -41,22 +41,22 @@ DiffuseFan::DiffuseFan(const DiffuseLight& light)
   for (int i = 0; i <= kTableCells; ++i) {
     const double mu_s = 2.0 * i / kTableCells - 1.0;
     position_of_mu_s_.push_back(
-        static_cast<float>(DiffuseLight::SunCoordinate(mu_s) * (light.options().sun_angles - 1)));
+        static_cast<float>(MultipleScattering::SunCoordinate(mu_s) * (light.options().sun_angles - 1)));
     twilight_of_mu_s_.push_back(TwilightOf(light.grid(), mu_s));
   }
   for (std::size_t sun = 0; sun < light.grid().suns; ++sun)
     sun_sine_.push_back(SunSine(MuSOfNode(light.grid(), sun)));
 }
 
-const float* DiffuseFan::Values() const {
+const float* AzimuthFan::Values() const {
   return padded_.empty() ? light_.values().data() : padded_.data();
 }
 
 // Adds the light of four bands. If the medium has fewer bands left, the remaining lanes repeat its
 // last band.
-void DiffuseFan::AddBlock(const Line& line, std::size_t first_band, std::span<float> light) const {
+void AzimuthFan::AddBlock(const Line& line, std::size_t first_band, std::span<float> light) const {
   const Medium& medium = light_.medium();
-  const DiffuseLightOptions& options = light_.options();
+  const MultipleScatteringOptions& options = light_.options();
   const RaySamples<float>& samples = line.samples;
   const std::size_t bands = light_.bands();
   const bool polarised = medium.polarised;
@@ -64,7 +64,7 @@ void DiffuseFan::AddBlock(const Line& line, std::size_t first_band, std::span<fl
   const auto suns = static_cast<std::size_t>(options.sun_angles);
   const auto orders = static_cast<std::size_t>(options.degree) + 1;
   const double top_km = medium.atmosphere_height_m / kMetresPerKilometre;
-  const DiffuseFanKernel& kernel = Kernel<DiffuseFanKernel>();
+  const AzimuthFanKernel& kernel = Kernel<AzimuthFanKernel>();
   std::vector<float> rows((suns + 2) * orders * kLanes);
   for (std::size_t s = 0; s < samples.count; ++s) {
     const float* position = &line.position[s * line.directions];
@@ -145,9 +145,9 @@ void DiffuseFan::AddBlock(const Line& line, std::size_t first_band, std::span<fl
   }
 }
 
-std::vector<float> DiffuseFan::InscatterAlong(const RaySamples<float>& samples, const ViewRay& ray,
+std::vector<float> AzimuthFan::InscatterAlong(const RaySamples<float>& samples, const ViewRay& ray,
                                               std::span<const float> nus) const {
-  const DiffuseFanKernel& kernel = Kernel<DiffuseFanKernel>();
+  const AzimuthFanKernel& kernel = Kernel<AzimuthFanKernel>();
   Line line{samples,
             nus.size(),
             std::vector<float>(samples.count * nus.size()),

@@ -42,17 +42,17 @@ class AlignedFloats {
   std::vector<Line> lines_;
 };
 
-/// Returns the number of vectors of eight floats in a node. Polarised light (polarised_light.h)
+/// Returns the number of vectors of eight floats in a node. Polarised light (polarised_scattering.h)
 /// needs two more, (T20, T21) and (T22, a copy of moment 00).
 constexpr std::size_t PackedVectors(std::size_t degree, bool polarised) {
   return kPackedRow[degree + 1] + (polarised ? 2 : 0);
 }
 
-/// Nodes of the table: altitude = top u^2; sun as in DiffuseLight::SunCoordinate. Between sun nodes
+/// Nodes of the table: altitude = top u^2; sun as in MultipleScattering::SunCoordinate. Between sun nodes
 /// moments are interpolated after division by Twilight(mu_s), the usual fall of their light when
 /// the sun goes down, exp(-fall (x + sqrt(x^2 + width^2)) / 2) with x = start - mu_s. Moments of
-/// polarised light are also divided by SinePower (polarised_light.h).
-struct DiffuseGrid {
+/// polarised light are also divided by SinePower (polarised_scattering.h).
+struct MomentGrid {
   std::size_t altitudes, suns, degree;
   bool polarised;
   float top_km;
@@ -90,7 +90,7 @@ inline constexpr std::size_t kMostAzimuths = 32;
 using BlockChi = std::array<std::array<float, kBlockBands>, kLargestDegree + 1>;
 
 /// A block of bands in the form that look-ups need; coefficients per km.
-struct DiffuseBlock {
+struct MomentBlock {
   std::array<float, kBlockBands> rayleigh, mie_scattering, mie_extinction, ozone;
   std::array<float, kBlockBands> rayleigh_chi2;  // D / 10 of the molecules
   BlockChi chi;
@@ -138,16 +138,16 @@ struct BlockShape {
   std::array<float, kBlockBands> rayleigh_chi2;
 };
 
-struct DiffuseKernel {
+struct MomentKernel {
   /// Adds the light of the previous order that arrives along a march to arriving[((sun * azimuths)
   /// + azimuth) * 8 + half * 4 + band]. The caller adds the two halves. `rows` is scratch space for
   /// (suns + 2) * (degree / 2 + 3) * 8 floats. All arrays begin at multiples of 64 bytes.
-  void (*arrive)(const DiffuseGrid& grid, const MarchDirection& direction, const MarchPoint* points,
+  void (*arrive)(const MomentGrid& grid, const MarchDirection& direction, const MarchPoint* points,
                  const MarchLight* lights, std::size_t count, const BlockShape& shape,
                  const float* previous, float* rows, float* arriving);
   /// Does the work of `arrive` for a polarised grid: adds I, Q and U at [(((sun * azimuths) +
-  /// azimuth) * 3 + stokes) * 8 + half * 4 + band], in the frame of polarised_light.h.
-  void (*arrive_polarised)(const DiffuseGrid& grid, const MarchDirection& direction,
+  /// azimuth) * 3 + stokes) * 8 + half * 4 + band], in the frame of polarised_scattering.h.
+  void (*arrive_polarised)(const MomentGrid& grid, const MarchDirection& direction,
                            const MarchPoint* points, const MarchLight* lights, std::size_t count,
                            const BlockShape& shape, const float* previous, float* rows,
                            float* arriving);
@@ -161,16 +161,16 @@ struct DiffuseKernel {
                   float* rayleigh, float* mie);
   /// Finds the in-scattered light along a sampled ray: light[block * 4 + band]. Moments are packed
   /// and divided by Twilight: [((block * altitudes + altitude) * suns + sun) * node + i].
-  void (*inscatter)(const DiffuseGrid& grid, const RaySamples<float>& samples, float nu,
-                    const DiffuseBlock* blocks, std::size_t count, const float* moments,
+  void (*inscatter)(const MomentGrid& grid, const RaySamples<float>& samples, float nu,
+                    const MomentBlock* blocks, std::size_t count, const float* moments,
                     float* light);
   /// Finds the light of the table on a surface: irradiance[block * 4 + band]. `moments` is laid out
   /// as for `inscatter`; `sky` is the irradiance of a horizontal plane: [(block * nodes + node) * 4
   /// + band].
-  void (*irradiance)(const DiffuseGrid& grid, const SurfacePoint& point, std::size_t count,
+  void (*irradiance)(const MomentGrid& grid, const SurfacePoint& point, std::size_t count,
                      const float* moments, const float* sky, float* irradiance);
 };
 
-ALPENGLOW_DECLARE_KERNEL(DiffuseKernel);
+ALPENGLOW_DECLARE_KERNEL(MomentKernel);
 
 }  // namespace alpenglow::lut

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
-#include "lut/multiple_scattering/diffuse_fan_kernel.h"
+#include "lut/multiple_scattering/azimuth_fan_kernel.h"
 
 #include "atmosphere/ray/batch.h"
-#include "lut/multiple_scattering/polarised_light.h"
+#include "lut/multiple_scattering/polarised_scattering.h"
 
 namespace alpenglow::lut {
 namespace {
@@ -106,8 +106,8 @@ void Gather(const FanGathering& work) {
 
 }  // namespace
 
-const DiffuseFanKernel& KernelOf(KernelName<DiffuseFanKernel, kThisSet> /*name*/) {
-  static constexpr DiffuseFanKernel kernel{Contract, FindSuns, Gather};
+const AzimuthFanKernel& KernelOf(KernelName<AzimuthFanKernel, kThisSet> /*name*/) {
+  static constexpr AzimuthFanKernel kernel{Contract, FindSuns, Gather};
   return kernel;
 }
 

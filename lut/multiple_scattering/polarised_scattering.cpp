@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-#include "lut/multiple_scattering/polarised_light.h"
+#include "lut/multiple_scattering/polarised_scattering.h"
 
 #include <algorithm>
 #include <cmath>
 
 #include "atmosphere/math/constants.h"
-#include "lut/multiple_scattering/diffuse_grid.h"
+#include "lut/multiple_scattering/moment_grid.h"
 
 namespace alpenglow::lut {
 
@@ -17,7 +17,7 @@ double AzimuthCosineOrAhead(double mu, double mu_s, double nu) {
 PolarisedLight PolarisedOnce(const Medium& medium, const ScatteredOnce<float>& once,
                              const ViewRay& ray) {
   const double cosine = AzimuthCosineOrAhead(ray.mu, ray.mu_s, ray.nu);
-  // Components of the sun's direction on l and h of polarised_light.h.
+  // Components of the sun's direction on l and h of polarised_scattering.h.
   const double in_l = ray.mu * cosine * SineOf(ray.mu_s) - SineOf(ray.mu) * ray.mu_s;
   const double in_h = -SineOf(cosine) * SineOf(ray.mu_s);
   PolarisedLight light{Bands<float>(once.rayleigh.count), Bands<float>(once.rayleigh.count)};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// This header provides DiffuseFan: DiffuseLight along one view ray for many azimuths of the sun, at
+// This header provides AzimuthFan: MultipleScattering along one view ray for many azimuths of the sun, at
 // the cost of a few.
 //
 // All directions of one zenith angle share altitudes, columns and harmonics; only the sun's angles
@@ -17,10 +17,10 @@
 
 namespace alpenglow::lut {
 
-class DiffuseFan {
+class AzimuthFan {
  public:
   /// Keeps a reference to `light`.
-  explicit DiffuseFan(const DiffuseLight& light);
+  explicit AzimuthFan(const MultipleScattering& light);
 
   /// Returns the in-scattered light of orders two and up [1/sr]: [direction * bands + band].
   /// @param samples  samples along `ray`, taken with the sun in the zenith, so that no part is in
@@ -28,7 +28,7 @@ class DiffuseFan {
   /// @param ray      altitude, zenith cosine and sun zenith cosine at the observer; its nu is not
   ///   used.
   /// @param nus      cosine of the angle between each direction and the sun.
-  /// Agrees with DiffuseLight::InscatterAlong of these samples to 1e-4 of the brightest value if
+  /// Agrees with MultipleScattering::InscatterAlong of these samples to 1e-4 of the brightest value if
   /// the forward peak is not treated separately. Otherwise the result covers only the degrees that
   /// the moments keep.
   [[nodiscard]] std::vector<float> InscatterAlong(const RaySamples<float>& samples,
@@ -40,7 +40,7 @@ class DiffuseFan {
   void AddBlock(const Line& line, std::size_t first_band, std::span<float> light) const;
   [[nodiscard]] const float* Values() const;
 
-  const DiffuseLight& light_;
+  const MultipleScattering& light_;
   std::size_t stride_;           // number of bands, rounded up to whole blocks
   std::vector<float> padded_;    // values of light_ with stride_; empty if light_ already has it
   std::vector<double> chi_mie_;  // [l * bands + band]

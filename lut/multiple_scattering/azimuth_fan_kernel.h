@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// This header declares the loops of DiffuseFan over samples, sun angles and azimuths, which process
+// This header declares the loops of AzimuthFan over samples, sun angles and azimuths, which process
 // four bands at a time.
 #pragma once
 
@@ -20,7 +20,7 @@ struct FanContraction {
   std::size_t sun_stride;     // floats between nodes of the sun's angle
   std::size_t moment_stride;  // floats between moments
   int degree;
-  std::size_t tensor;    // channel of T20 (polarised_light.h); 0 if light is unpolarised
+  std::size_t tensor;    // channel of T20 (polarised_scattering.h); 0 if light is unpolarised
   const float* factors;  // four per moment: source per moment
   float* rows;           // [(sun * (degree + 1) + m) * 4]
 };
@@ -54,12 +54,12 @@ struct FanGathering {
   float* light;  // four per direction
 };
 
-struct DiffuseFanKernel {
+struct AzimuthFanKernel {
   void (*contract)(const FanContraction& work);
   void (*find_suns)(const FanSuns& work);
   void (*gather)(const FanGathering& work);
 };
 
-ALPENGLOW_DECLARE_KERNEL(DiffuseFanKernel);
+ALPENGLOW_DECLARE_KERNEL(AzimuthFanKernel);
 
 }  // namespace alpenglow::lut

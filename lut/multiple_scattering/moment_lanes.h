@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // This header provides vectors of eight floats and the functions that marches and look-ups of
-// diffuse light share. It is a part of diffuse_kernel.cpp, which is compiled once per instruction
+// multiply scattered light share. It is a part of moment_kernel.cpp, which is compiled once per instruction
 // set.
 #pragma once
 
@@ -9,7 +9,7 @@
 #include <type_traits>
 
 #include "atmosphere/ray/batch.h"
-#include "lut/multiple_scattering/diffuse_kernel.h"
+#include "lut/multiple_scattering/moment_kernel.h"
 
 namespace alpenglow::lut {
 namespace {
@@ -107,7 +107,7 @@ Weights<T> Cubic(const T& t) {
 }
 
 template <typename T>
-T SunPosition(const DiffuseGrid& grid, const T& mu_s) {
+T SunPosition(const MomentGrid& grid, const T& mu_s) {
   using namespace shared;
   const T x = (mu_s - T(grid.sun_centre)) * T(1.0F / grid.sun_width);
   const T magnitude = abs(x);
@@ -134,7 +134,7 @@ T Exponential(const T& value) {
 }
 
 template <typename T>
-T Twilight(const DiffuseGrid& grid, const T& mu_s) {
+T Twilight(const MomentGrid& grid, const T& mu_s) {
   using namespace shared;
   const T x = T(grid.twilight_start) - mu_s;
   const T width(grid.twilight_width);
