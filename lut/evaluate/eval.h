@@ -20,8 +20,8 @@
 //             below). For smaller errors than that, the reference solution is used. The error of
 //             light of higher orders is 0.6 times the sum of the differences to two coarser
 //             solutions (one difference alone can be small by chance) and of the light in those
-//             degrees of the aerosol that the moments truncate (forward_peak.h; in hazy air
-//             forward_peak.h computes that light itself), plus 0.3 % of the light. Of 384 values
+//             degrees of the aerosol that the moments truncate (delta_m.h; in hazy air
+//             delta_m.h computes that light itself), plus 0.3 % of the light. Of 384 values
 //             in air that was not used for calibration (clear, haze, dust, molecules, thick, over
 //             snow) 98 % are within it, at least 97 % in each; it is 3 times the true error in the
 //             median.

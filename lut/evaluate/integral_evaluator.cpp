@@ -9,7 +9,7 @@
 #include "atmosphere/reference/reference_solution.h"
 #include "atmosphere/math/constants.h"
 #include "atmosphere/base/error.h"
-#include "lut/multiple_scattering/forward_peak.h"
+#include "lut/multiple_scattering/delta_m.h"
 #include "lut/multiple_scattering/multiple_scattering.h"
 #include "lut/evaluate/eval.h"
 
@@ -57,8 +57,8 @@ constexpr MultipleScatteringOptions kMiddlingLight{.altitudes = 12,
 constexpr double kShareOfDifferences = 0.6;
 constexpr double kFloorOfHigherOrders = 3e-3;
 
-MultipleScatteringOptions With(bool forward_peak, MultipleScatteringOptions options) {
-  options.forward_peak = forward_peak;
+MultipleScatteringOptions With(bool delta_m, MultipleScatteringOptions options) {
+  options.delta_m = delta_m;
   return options;
 }
 
@@ -137,10 +137,10 @@ class IntegralEvaluator final : public Evaluator {
       return;
     }
     fine_light_.emplace(medium(), OptionsFor(medium()));
-    const bool forward_peak = fine_light_->options().forward_peak;
-    coarse_light_.emplace(medium(), With(forward_peak, kCoarseLight));
-    middling_light_.emplace(medium(), With(forward_peak, kMiddlingLight));
-    if (!forward_peak) missing_degrees_.emplace(medium(), fine_light_->options().degree);
+    const bool delta_m = fine_light_->options().delta_m;
+    coarse_light_.emplace(medium(), With(delta_m, kCoarseLight));
+    middling_light_.emplace(medium(), With(delta_m, kMiddlingLight));
+    if (!delta_m) missing_degrees_.emplace(medium(), fine_light_->options().degree);
   }
 
   [[nodiscard]] Estimates Evaluate(const Case& work) const override {
@@ -324,7 +324,7 @@ class IntegralEvaluator final : public Evaluator {
   IntegralOptions options_;
   double closed_form_error_, fast_path_floor_;  // relative errors
   std::optional<MultipleScattering> fine_light_, middling_light_, coarse_light_;
-  std::optional<MissingDegrees> missing_degrees_;
+  std::optional<TruncationError> missing_degrees_;
 };
 
 }  // namespace

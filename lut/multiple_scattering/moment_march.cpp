@@ -254,7 +254,7 @@ class PieceScatterer {
         for (const double depolarisation : medium.rayleigh_depolarisation) {
           rayleigh_phase_.push_back(static_cast<float>(shared::PhaseMolecules(nu, depolarisation)));
         }
-        if (options.forward_peak) {
+        if (options.delta_m) {
           AddSeries(nu);
         } else {
           const Bands<float> phases = marches.air().AerosolPhases(nu);

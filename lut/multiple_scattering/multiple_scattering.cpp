@@ -46,7 +46,7 @@ const Medium& Checked(const Medium& medium, const MultipleScatteringOptions& opt
   RequireInRange(options.altitudes, 4, 1024, "altitudes");
   RequireInRange(options.sun_angles, 4, 1024, "sun_angles");
   RequireDegree(options.degree);
-  if (options.forward_peak && options.exact_orders)
+  if (options.delta_m && options.exact_orders)
     throw InputError("forward_peak sums all orders; exact_orders wants some");
   RequireNodes(options);
   RequireInRange(options.max_orders, 1, 10000, "max_orders");
@@ -79,7 +79,7 @@ void AddBeam(const MultipleScatteringOptions& options, const Bands<float>& beam,
 // Returns the values at all nodes plus `times` times the beam.
 std::vector<float> WithBeam(const Medium& medium, const MultipleScatteringOptions& options, float times,
                             std::vector<float> values) {
-  const ForwardPeak peak(medium, options.degree);
+  const DeltaM peak(medium, options.degree);
   const MomentGrid grid = GridOf(medium, options);
   const std::size_t floats = values.size() / (grid.altitudes * grid.suns);
   for (std::size_t node = 0; node < grid.altitudes * grid.suns; ++node) {
@@ -94,7 +94,7 @@ std::vector<float> WithBeam(const Medium& medium, const MultipleScatteringOption
 
 SolvedOrders Solved(const Medium& medium, const MultipleScatteringOptions& options) {
   SolvedOrders solved = SolveSuccessiveOrders(Checked(medium, options), options);
-  if (options.forward_peak)
+  if (options.delta_m)
     solved.values = WithBeam(medium, options, 1.0F, std::move(solved.values));
   return solved;
 }
@@ -111,7 +111,7 @@ MultipleScatteringOptions OptionsFor(const Medium& medium) {
   MultipleScatteringOptions options;
   if (aerosol > 0.08) {
     options.degree = kMaxDegree;
-    options.forward_peak = true;
+    options.delta_m = true;
     // There must be more azimuths than degrees, to avoid aliasing of the highest degrees.
     options.azimuth_nodes = 14;
     options.later_azimuth_nodes = 13;
@@ -155,7 +155,7 @@ MultipleScattering::MultipleScattering(const Medium& medium, const MultipleScatt
     if (!std::isfinite(value)) throw InputError("diffuse light: a value is not finite");
   }
   grid_ = GridOf(medium_, options_);
-  if (options_.forward_peak) {
+  if (options_.delta_m) {
     peak_.emplace(medium_, options_.degree);
     smooth_ = WithBeam(medium_, options_, -1.0F, values_);
   } else if (!options_.exact_orders) {
@@ -168,10 +168,10 @@ MultipleScattering::MultipleScattering(const Medium& medium, const MultipleScatt
 }
 
 std::vector<MomentBlock> MultipleScattering::BlocksOf() const {
-  const AirWithoutPeak scattering =
-      options_.forward_peak
+  const DeltaScaledMedium scattering =
+      options_.delta_m
           ? WithoutPeak(medium_, options_.degree)
-          : AirWithoutPeak{medium_, {}, MieLegendreCoefficients(medium_, options_.degree)};
+          : DeltaScaledMedium{medium_, {}, MieLegendreCoefficients(medium_, options_.degree)};
   const AirConstants<float> air = SingleScattering<float>(scattering.medium).constants();
   const std::vector<double>& chi = scattering.chi;
   std::vector<MomentBlock> blocks((bands_ + kBlockBands - 1) / kBlockBands);
@@ -328,7 +328,7 @@ Bands<float> MultipleScattering::PeakBehind(const RaySamples<float>& samples, do
                                       double nu_seen) const {
   Bands<float> light(bands_), closed(bands_);
   if (samples.extent.end == RayEnd::kSpace) return light;
-  const ForwardPeak::Way way = peak_->WayTo(samples);
+  const DeltaM::Way way = peak_->WayTo(samples);
   const ViewRay ray = RayBehind(samples, nu);
   if (samples.extent.end == RayEnd::kGround) {
     light = GroundLight(ray.mu_s);
@@ -339,7 +339,7 @@ Bands<float> MultipleScattering::PeakBehind(const RaySamples<float>& samples, do
     light = InscatterByMoments(after, nu);
     closed = peak_->Behind(way, after, nu_seen);
     if (after.extent.end == RayEnd::kGround) {
-      const ForwardPeak::Way further = peak_->WayTo(after);
+      const DeltaM::Way further = peak_->WayTo(after);
       const Bands<float> ground = GroundLight(RayBehind(after, nu).mu_s);
       for (std::size_t band = 0; band < bands_; ++band)
         light[band] += (further.clear[band] + further.more[band]) * ground[band];

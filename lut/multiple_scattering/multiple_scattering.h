@@ -32,7 +32,7 @@
 #include "atmosphere/medium/medium.h"
 #include "atmosphere/ray/single_scattering.h"
 #include "lut/multiple_scattering/moment_kernel.h"
-#include "lut/multiple_scattering/forward_peak.h"
+#include "lut/multiple_scattering/delta_m.h"
 #include "lut/multiple_scattering/polarised_scattering.h"
 #include "lut/multiple_scattering/spherical_harmonics.h"
 #include "lut/tables/table_axes.h"
@@ -59,9 +59,9 @@ struct MultipleScatteringOptions {
   /// and sums no rest. InscatterAlong then returns orders 2 to exact_orders + 1. Some table formats
   /// are defined this way.
   std::optional<int> exact_orders = std::nullopt;
-  /// Finds the light that aerosol scatters forward in closed form (forward_peak.h), for hazy and
+  /// Finds the light that aerosol scatters forward in closed form (delta_m.h), for hazy and
   /// thick air. It cannot be combined with exact_orders.
-  bool forward_peak = false;
+  bool delta_m = false;
 };
 
 /// Returns the default options in clear air. If aerosol scatters more than 8 % of a vertical beam,
@@ -104,7 +104,7 @@ class MultipleScattering {
   /// Returns the in-scattered light of orders two and up along a sampled ray [1/sr].
   /// The samples must include the dark ones (Sampling::dark_samples).
   /// The result does not include light from the ground at the end of the ray. Beyond an open end it
-  /// includes only the light that aerosol scatters forward to the eye (forward_peak.h), not the
+  /// includes only the light that aerosol scatters forward to the eye (delta_m.h), not the
   /// light of objects there.
   [[nodiscard]] Bands<float> InscatterAlong(const RaySamples<float>& samples, double nu,
                                             SegmentEnd end = SegmentEnd::kOpen) const {
@@ -193,7 +193,7 @@ class MultipleScattering {
   bool converged_ = false;
   std::vector<float> values_;
   MomentGrid grid_;
-  std::optional<ForwardPeak> peak_;
+  std::optional<DeltaM> peak_;
   AirConstants<float> air_{};
   std::optional<GlowAboutTheSun> glow_;  // only without forward_peak and exact_orders
   std::vector<float> smooth_;

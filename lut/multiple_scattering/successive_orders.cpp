@@ -539,10 +539,10 @@ MultipleScatteringOptions OfLaterOrders(MultipleScatteringOptions options) {
 }  // namespace
 
 SolvedOrders SolveSuccessiveOrders(const Medium& medium, const MultipleScatteringOptions& options) {
-  const AirWithoutPeak rest =
-      options.forward_peak
+  const DeltaScaledMedium rest =
+      options.delta_m
           ? WithoutPeak(medium, options.degree)
-          : AirWithoutPeak{medium, {}, MieLegendreCoefficients(medium, options.degree)};
+          : DeltaScaledMedium{medium, {}, MieLegendreCoefficients(medium, options.degree)};
   const SingleScattering<float> air(rest.medium);
   const MomentMarches marches(air, options, rest.chi);
   const MomentMarches later(air, OfLaterOrders(options), rest.chi);
@@ -554,7 +554,7 @@ SolvedOrders SolveSuccessiveOrders(const Medium& medium, const MultipleScatterin
     first.push_back(blocks.back().Empty());
   }
   std::optional<MissedPeak> peak;
-  if (!options.forward_peak) peak.emplace(marches);
+  if (!options.delta_m) peak.emplace(marches);
   tbb::parallel_for(std::size_t{0}, marches.grid().altitudes, [&](std::size_t altitude) {
     for (std::size_t block = 0; block < blocks.size(); ++block)
       if (peak) peak->Add(altitude, block * kBlockBands, first[block]);

@@ -140,7 +140,7 @@ enum OrdersStyle {
 };
 
 int StyleOf(const MultipleScatteringOptions& options) {
-  if (options.forward_peak) return kForwardPeak;
+  if (options.delta_m) return kForwardPeak;
   return options.degree == 2 ? kDegree2 : options.degree == 4 ? kDegree4 : kDegree6;
 }
 
@@ -222,12 +222,12 @@ class OrdersTopic : public TopicWork {
   void AddMultipleScattering(const MultipleScatteringOptions& options) {
     const MultipleScatteringOptions usual, needed = OptionsFor(medium_);
     const auto is_like = [&](const MultipleScatteringOptions& other) {
-      return options.forward_peak == other.forward_peak && options.degree == other.degree &&
+      return options.delta_m == other.delta_m && options.degree == other.degree &&
              options.altitudes == other.altitudes && options.sun_angles == other.sun_angles;
     };
     const bool in_summary = is_like(usual) || is_like(needed);
     AddMoments({.series = fmt::format("moments to degree {}{}", options.degree,
-                                      options.forward_peak ? ", forward peak apart" : ""),
+                                      options.delta_m ? ", forward peak apart" : ""),
                 .parameter = "",
                 .style = StyleOf(options),
                 .in_summary = in_summary},
@@ -305,7 +305,7 @@ ReportTopic MeasureAllOrders(const Medium& medium, const ReportEffort& effort) {
     if (usual && !effort.quick) topic.AddMultipleScattering(options);
   }
   if (!effort.quick) topic.AddMultipleScattering(TableQualityFromName("fine").multiple_scattering);
-  if (const MultipleScatteringOptions needed = OptionsFor(medium); needed.forward_peak)
+  if (const MultipleScatteringOptions needed = OptionsFor(medium); needed.delta_m)
     topic.AddMultipleScattering(needed);
   return std::move(topic).Finished(WordsOfAllOrders());
 }

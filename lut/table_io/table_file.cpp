@@ -332,7 +332,7 @@ StoredMultipleScattering MultipleScatteringOf(const TableImageReader& image,
   options.sun_angles = static_cast<int>(sizes[0]);
   options.altitudes = static_cast<int>(sizes[1]);
   options.degree = degree;
-  options.forward_peak = YesOf(image, "alpenglow.forwardPeak");
+  options.delta_m = YesOf(image, "alpenglow.forwardPeak");
   SolvedOrders solved{CheckedValues(image, kind, medium),
                       IntegerOf(image, "alpenglow.orders", 1, 1 << 20),
                       YesOf(image, "alpenglow.converged")};
@@ -389,7 +389,7 @@ void WriteTable(const fs::path& file, const MultipleScattering& light, const Fol
   TextAttributes attributes = AttributesOf(kind, light.medium(), {columns, rows});
   attributes["alpenglow.degree"] = std::to_string(options.degree);
   attributes["alpenglow.orders"] = std::to_string(light.orders());
-  attributes["alpenglow.forwardPeak"] = options.forward_peak ? "yes" : "no";
+  attributes["alpenglow.forwardPeak"] = options.delta_m ? "yes" : "no";
   attributes["alpenglow.converged"] = light.converged() ? "yes" : "no";
   attributes["alpenglow.sunCosines"] = SunCosinesText(columns, light.medium().polarised);
   attributes["alpenglow.rayNodes"] = std::to_string(use.ray_nodes);

@@ -132,7 +132,7 @@ std::string_view NameOf(ViewKind kind) {
 MultipleScattering FinestMultipleScattering(const Medium& medium) {
   const MultipleScatteringOptions needed = OptionsFor(medium);
   MultipleScatteringOptions options = kFinest;
-  options.forward_peak = needed.forward_peak;
+  options.delta_m = needed.delta_m;
   options.degree = std::max(options.degree, needed.degree);
   options.azimuth_nodes = std::max(options.azimuth_nodes, needed.azimuth_nodes);
   options.later_zenith_nodes = std::max(options.later_zenith_nodes, needed.later_zenith_nodes);

@@ -273,7 +273,7 @@ TEST(AerialPerspective, IsContinuousInTheDistanceFromNothingToTheEndOfTheAir) {
   }
 }
 
-// Radiances of paths, as in forward_peak_test.cpp.
+// Radiances of paths, as in delta_m_test.cpp.
 TEST(AerialPerspective, OfHazeIsWithinHalfAPercentOfPathsAndHasNothingOfWhatIsBehindItsEnd) {
   Medium haze = MediumPreset("bruneton2017");
   haze.mie_scattering_per_m.assign(3, 7.992e-5);
@@ -281,7 +281,7 @@ TEST(AerialPerspective, OfHazeIsWithinHalfAPercentOfPathsAndHasNothingOfWhatIsBe
   haze.mie_phase = {{.kind = PhaseKind::kHenyeyGreenstein, .g = 0.8}};
   const SingleScattering<float> air(haze);
   const MultipleScattering multiple_scattering(haze, OptionsFor(haze));
-  ASSERT_TRUE(multiple_scattering.options().forward_peak);
+  ASSERT_TRUE(multiple_scattering.options().delta_m);
   const AerialPerspective aerial(air, multiple_scattering);
   struct Traced {
     ViewRay ray;

@@ -32,7 +32,7 @@
 // along a ray (GlowAboutTheSun).
 //
 // The header also provides an estimate, for error statements, of the light of orders two and up in
-// degrees of the aerosol's phase function that MultipleScattering does not keep (MissingDegrees).
+// degrees of the aerosol's phase function that MultipleScattering does not keep (TruncationError).
 //
 // Light that is deflected little stays near the beam. Along the path from the sun to a point and
 // on to the eye its degree l grows by exp(chi_l tau), where tau is the optical depth of scattering
@@ -58,13 +58,13 @@
 namespace alpenglow::lut {
 
 /// The medium after delta-M scaling.
-struct AirWithoutPeak {
+struct DeltaScaledMedium {
   Medium medium;
   std::vector<double> share;  // f per band, in [0, 1)
   std::vector<double> chi;    // chi'_l at [l * bands + band], l = 0 ... degree
 };
 
-[[nodiscard]] AirWithoutPeak WithoutPeak(const Medium& medium, int degree);
+[[nodiscard]] DeltaScaledMedium WithoutPeak(const Medium& medium, int degree);
 
 /// Shape of the peak of one phase function: the sum of its degrees up to L, and the light of higher
 /// degrees by depth.
@@ -93,9 +93,9 @@ class GlowAboutTheSun {
 };
 
 /// The forward peak of all orders, prepared for look-ups. Immutable.
-class ForwardPeak {
+class DeltaM {
  public:
-  ForwardPeak(const Medium& medium, int degree);
+  DeltaM(const Medium& medium, int degree);
 
   /// Returns T' - T from a point to the sun; 0 where the ground hides the sun.
   [[nodiscard]] Bands<float> Beam(double altitude_m, double mu_s) const;
@@ -130,10 +130,10 @@ class ForwardPeak {
   std::vector<PeakShape> shapes_;  // one for all bands, or one per band
 };
 
-class MissingDegrees {
+class TruncationError {
  public:
   /// @param degree  the largest degree that is kept.
-  MissingDegrees(const Medium& medium, int degree);
+  TruncationError(const Medium& medium, int degree);
 
   /// Returns the estimate for samples taken by SingleScattering(medium) [1/sr], per unit solar
   /// irradiance.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "lut/multiple_scattering/forward_peak.h"
+#include "lut/multiple_scattering/delta_m.h"
 
 #include <algorithm>
 #include <array>
@@ -119,10 +119,10 @@ std::array<float, kDepths> HighAt(const PeakShape& shape, const Place& angle) {
 
 }  // namespace
 
-AirWithoutPeak WithoutPeak(const Medium& medium, int degree) {
+DeltaScaledMedium WithoutPeak(const Medium& medium, int degree) {
   const std::size_t bands = medium.wavelengths_nm.size();
   const auto last = static_cast<std::size_t>(degree) + 1;
-  AirWithoutPeak air{medium, {}, MieLegendreCoefficients(medium, degree + 1)};
+  DeltaScaledMedium air{medium, {}, MieLegendreCoefficients(medium, degree + 1)};
   for (std::size_t band = 0; band < bands; ++band) {
     const double share = std::max(air.chi[last * bands + band], 0.0);
     const double peak_per_m = share * medium.mie_scattering_per_m[band];
@@ -185,14 +185,14 @@ Bands<float> GlowAboutTheSun::FactorOf(double nu, float column_km) const {
   return factor;
 }
 
-ForwardPeak::ForwardPeak(const Medium& medium, int degree) : air_(medium), degree_(degree) {
+DeltaM::DeltaM(const Medium& medium, int degree) : air_(medium), degree_(degree) {
   const std::vector<double> share = WithoutPeak(medium, degree).share;
   share_.assign(share.begin(), share.end());
   for (const PhaseFunction& phase : medium.mie_phase)
     shapes_.push_back(ShapeOf(phase, degree, {kLastDegree, kAngles, kDepths}));
 }
 
-Bands<float> ForwardPeak::Beam(double altitude_m, double mu_s) const {
+Bands<float> DeltaM::Beam(double altitude_m, double mu_s) const {
   const Medium& medium = air_.medium();
   const RayExtent extent =
       ExtentOf({altitude_m, mu_s, 1.0, 1.0}, medium.planet_radius_m, medium.atmosphere_height_m);
@@ -208,7 +208,7 @@ Bands<float> ForwardPeak::Beam(double altitude_m, double mu_s) const {
   return beam;
 }
 
-float ForwardPeak::SumAlong(std::size_t band, const RaySamples<float>& samples, double nu,
+float DeltaM::SumAlong(std::size_t band, const RaySamples<float>& samples, double nu,
                             float ahead, float base) const {
   const AirConstants<float>& air = air_.constants();
   const Place angle = PlaceOfAngle(nu);
@@ -248,14 +248,14 @@ float ForwardPeak::SumAlong(std::size_t band, const RaySamples<float>& samples, 
   return sum;
 }
 
-Bands<float> ForwardPeak::Along(const RaySamples<float>& samples, double nu) const {
+Bands<float> DeltaM::Along(const RaySamples<float>& samples, double nu) const {
   Bands<float> light(air_.bands());
   for (std::size_t band = 0; band < light.count; ++band)
     light[band] = SumAlong(band, samples, nu, 0.0F, 0.0F);
   return light;
 }
 
-Bands<float> ForwardPeak::Behind(const Way& way, const RaySamples<float>& samples,
+Bands<float> DeltaM::Behind(const Way& way, const RaySamples<float>& samples,
                                  double nu) const {
   Bands<float> light(air_.bands());
   for (std::size_t band = 0; band < light.count; ++band)
@@ -263,7 +263,7 @@ Bands<float> ForwardPeak::Behind(const Way& way, const RaySamples<float>& sample
   return light;
 }
 
-ForwardPeak::Way ForwardPeak::WayTo(const RaySamples<float>& samples) const {
+DeltaM::Way DeltaM::WayTo(const RaySamples<float>& samples) const {
   const AirConstants<float>& air = air_.constants();
   float rayleigh = 0.0F, mie = 0.0F;
   for (std::size_t i = 0; i < samples.count; ++i) {
@@ -307,12 +307,12 @@ double Envelope(int l, double nu) {
 
 }  // namespace
 
-MissingDegrees::MissingDegrees(const Medium& medium, int degree)
+TruncationError::TruncationError(const Medium& medium, int degree)
     : bands_(medium.wavelengths_nm.size()),
       degree_(degree),
       chi_(MieLegendreCoefficients(medium, kLastMissingDegree)) {}
 
-std::vector<double> MissingDegrees::Along(const AirConstants<float>& air,
+std::vector<double> TruncationError::Along(const AirConstants<float>& air,
                                           const RaySamples<float>& samples, double nu) const {
   std::vector<double> legendre = LegendreValues(nu);
   legendre.push_back(Envelope(degree_ + 1, nu));
@@ -322,7 +322,7 @@ std::vector<double> MissingDegrees::Along(const AirConstants<float>& air,
   return light;
 }
 
-double MissingDegrees::AlongBand(const AirConstants<float>& air, std::size_t band,
+double TruncationError::AlongBand(const AirConstants<float>& air, std::size_t band,
                                  const RaySamples<float>& samples,
                                  const std::vector<double>& legendre) const {
   const double scattering = static_cast<double>(air.mie_scattering[band]);

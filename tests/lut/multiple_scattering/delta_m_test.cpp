@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Light of all orders in hazy and dusty air, where aerosol throws it forward.
-#include "lut/multiple_scattering/forward_peak.h"
+#include "lut/multiple_scattering/delta_m.h"
 
 #include <gtest/gtest.h>
 
@@ -68,9 +68,9 @@ MultipleScatteringOptions WithFewSuns(MultipleScatteringOptions options) {
   return options;
 }
 
-TEST(ForwardPeak, TakesNoAbsorptionAwayAndEndsThePhaseFunction) {
+TEST(DeltaM, TakesNoAbsorptionAwayAndEndsThePhaseFunction) {
   const Medium mars = MediumPreset("mars");
-  const AirWithoutPeak rest = WithoutPeak(mars, 8);
+  const DeltaScaledMedium rest = WithoutPeak(mars, 8);
   const std::size_t bands = mars.wavelengths_nm.size();
   for (std::size_t band = 0; band < bands; ++band) {
     const double absorbed = mars.mie_extinction_per_m[band] - mars.mie_scattering_per_m[band];
@@ -82,16 +82,16 @@ TEST(ForwardPeak, TakesNoAbsorptionAwayAndEndsThePhaseFunction) {
   }
 }
 
-TEST(ForwardPeak, OfAirWithoutAerosolIsNothing) {
+TEST(DeltaM, OfAirWithoutAerosolIsNothing) {
   const Medium clear = Haze(0.0, 0.0);
   const SingleScattering<float> air(clear);
   const ViewRay ray = RayFromAngles(2.0, 50.0, 10.0, 60.0);
   const auto samples = air.Sample(ray, {.nodes = 12, .dark_samples = true});
-  const Bands<float> light = ForwardPeak(clear, 6).Along(samples, ray.nu);
+  const Bands<float> light = DeltaM(clear, 6).Along(samples, ray.nu);
   for (std::size_t band = 0; band < 3; ++band) EXPECT_EQ(light[band], 0.0F);
 }
 
-TEST(ForwardPeak, HazeAgreesWithPathsToHalfAPercent) {
+TEST(DeltaM, HazeAgreesWithPathsToHalfAPercent) {
   const Medium haze = Haze(7.992e-5, 8.88e-5);  // optical depth 0.1, the stored set haze20mix
   const std::vector<double> errors =
       ErrorsOf(haze, OptionsFor(haze),
@@ -105,7 +105,7 @@ TEST(ForwardPeak, HazeAgreesWithPathsToHalfAPercent) {
   EXPECT_LT(Largest(errors), 2e-2);
 }
 
-TEST(ForwardPeak, HazeOfOpticalDepthOneAgreesWithPathsToTwoPercent) {
+TEST(DeltaM, HazeOfOpticalDepthOneAgreesWithPathsToTwoPercent) {
   const Medium haze = Haze(7.5e-4, 8.333e-4);
   const std::vector<double> errors =
       ErrorsOf(haze, WithFewSuns(OptionsFor(haze)),
@@ -117,7 +117,7 @@ TEST(ForwardPeak, HazeOfOpticalDepthOneAgreesWithPathsToTwoPercent) {
   EXPECT_LT(Rms(errors), 2e-2);
 }
 
-TEST(ForwardPeak, DustOfMarsAgreesWithPathsToTwoPercent) {
+TEST(DeltaM, DustOfMarsAgreesWithPathsToTwoPercent) {
   const Medium mars = MediumPreset("mars");
   const std::vector<double> errors = ErrorsOf(
       mars, WithFewSuns(OptionsFor(mars)),
@@ -146,7 +146,7 @@ TEST(ThickAir, MoleculesOfOpticalDepthFiveAgreeWithPathsToOnePercent) {
   EXPECT_LT(Rms(errors), 1e-2);
 }
 
-TEST(ForwardPeak, ComesBackFromStoredValues) {
+TEST(DeltaM, ComesBackFromStoredValues) {
   const Medium haze = Haze(7.992e-5, 8.88e-5);
   const MultipleScatteringOptions few{.altitudes = 8,
                                 .sun_angles = 12,
@@ -154,7 +154,7 @@ TEST(ForwardPeak, ComesBackFromStoredValues) {
                                 .zenith_nodes = 6,
                                 .azimuth_nodes = 6,
                                 .ray_nodes = 6,
-                                .forward_peak = true};
+                                .delta_m = true};
   const MultipleScattering light(haze, few);
   const MultipleScattering back(haze, few, {light.values(), light.orders(), light.converged()});
   const SingleScattering<float> air(haze);
