@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "atmosphere/medium/medium_presets.h"
-#include "atmosphere/refraction/bent_view.h"
+#include "atmosphere/refraction/refracted_view.h"
 #include "atmosphere/astronomy/sun.h"
 #include "lut/image/look.h"
 #include "lut/cli/output_file.h"

@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "atmosphere/math/constants.h"
-#include "atmosphere/refraction/bent_view.h"
+#include "atmosphere/refraction/refracted_view.h"
 #include "atmosphere/astronomy/moon.h"
 #include "atmosphere/base/error.h"
 #include "atmosphere/base/parsing.h"

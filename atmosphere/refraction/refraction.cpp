@@ -70,14 +70,14 @@ bool GentlyBends(const BendingAir& air) {
   return steepest_per_m * air.planet_radius_m < 0.8;
 }
 
-BentRay::BentRay(const BendingAir& air, double elevation_rad, double height_m)
+RefractedRay::RefractedRay(const BendingAir& air, double elevation_rad, double height_m)
     : air_(air),
       elevation_rad_(elevation_rad),
       height_m_(std::max(height_m, 0.0)),
       invariant_m_((1.0 + RefractivityAt(air, height_m_)) * (air.planet_radius_m + height_m_) *
                    std::cos(elevation_rad)) {}
 
-double BentRay::OverInvariant(double height_m) const {
+double RefractedRay::OverInvariant(double height_m) const {
   const double here_m =
       (1.0 + RefractivityAt(air_, height_m_)) * (air_.planet_radius_m + height_m_);
   const double half_sine = std::sin(0.5 * elevation_rad_);
@@ -86,7 +86,7 @@ double BentRay::OverInvariant(double height_m) const {
 }
 
 // Uses Newton's method, which converges because n r increases by at least a fifth of r.
-double BentRay::HeightWhere(double elevation_rad) const {
+double RefractedRay::HeightWhere(double elevation_rad) const {
   const double q = invariant_m_ / std::cos(elevation_rad);
   const double over_radius_m = q - air_.planet_radius_m;
   double height_m = over_radius_m;
@@ -101,12 +101,12 @@ double BentRay::HeightWhere(double elevation_rad) const {
   return height_m;
 }
 
-double BentRay::ElevationAt(double height_m) const {
+double RefractedRay::ElevationAt(double height_m) const {
   const double q = (1.0 + RefractivityAt(air_, height_m)) * (air_.planet_radius_m + height_m);
   return 2.0 * std::asin(std::sqrt(std::clamp(0.5 * OverInvariant(height_m) / q, 0.0, 1.0)));
 }
 
-double BentRay::Bending(double low_rad, double high_rad) const {
+double RefractedRay::Bending(double low_rad, double high_rad) const {
   if (!(low_rad < high_rad)) return 0.0;
   const GaussRule& rule = GaussLegendre(32);
   double sum = 0.0;
@@ -119,14 +119,14 @@ double BentRay::Bending(double low_rad, double high_rad) const {
   return sum * (high_rad - low_rad);
 }
 
-double BentRay::MetresPerRadian(double elevation_rad, double height_m) const {
+double RefractedRay::MetresPerRadian(double elevation_rad, double height_m) const {
   const auto [refractivity, per_m] = RefractivityAndSlopeAt(air_, height_m);
   const double growth = 1.0 + refractivity + per_m * (air_.planet_radius_m + height_m);
   const double cosine = std::cos(elevation_rad);
   return invariant_m_ / (cosine * cosine * growth);
 }
 
-std::optional<double> BentRay::AngleToGround() const {
+std::optional<double> RefractedRay::AngleToGround() const {
   if (elevation_rad_ >= 0.0 || OverInvariant(0.0) < 0.0) return std::nullopt;
   const double at_ground = ElevationAt(0.0);
   const double at_eye = -elevation_rad_;
@@ -143,7 +143,7 @@ double GrazingElevation(const BendingAir& air, double height_m) {
 
 double RefractionSeenAt(const BendingAir& air, double apparent_elevation_rad, double height_m) {
   const double elevation = std::max(apparent_elevation_rad, GrazingElevation(air, height_m));
-  return BentRay(air, elevation, height_m).BendingToSpace();
+  return RefractedRay(air, elevation, height_m).BendingToSpace();
 }
 
 std::optional<double> ApparentElevation(const BendingAir& air, double true_elevation_rad,

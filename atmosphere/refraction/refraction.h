@@ -84,10 +84,10 @@ struct BendingAir {
 [[nodiscard]] bool GentlyBends(const BendingAir& air);
 
 /// A ray, defined by the line of sight of an observer.
-class BentRay {
+class RefractedRay {
  public:
   /// @param elevation_rad  apparent elevation of the line of sight, at the height.
-  BentRay(const BendingAir& air, double elevation_rad, double height_m);
+  RefractedRay(const BendingAir& air, double elevation_rad, double height_m);
 
   /// Returns the height [m] at which the rising ray has a (positive) elevation, to a micrometre.
   [[nodiscard]] double HeightWhere(double elevation_rad) const;
@@ -207,7 +207,7 @@ struct SeaHorizon {
 /// 3 km is within 5 % (rms over directions) of that of refracted rays while the sun is up, 6 % down
 /// to -4 degrees and 17 % down to -8, where blue is brighter and red, whose light comes through
 /// lower air, darker. These figures exclude the sky up to 10 degrees over the horizon opposite a
-/// sun that has set, where single scattering ends. tests/bench/bent_twilight.cpp compares values of
+/// sun that has set, where single scattering ends. tests/bench/refracted_twilight.cpp compares values of
 /// the lift.
 [[nodiscard]] double LiftForAir(const BendingAir& air, double true_elevation_rad);
 

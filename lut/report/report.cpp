@@ -14,7 +14,7 @@
 #include <utility>
 
 #include "atmosphere/medium/medium_presets.h"
-#include "atmosphere/refraction/bent_view.h"
+#include "atmosphere/refraction/refracted_view.h"
 #include "lut/cli/program.h"
 #include "lut/report/report_measure.h"
 #include "lut/version.h"

@@ -12,7 +12,7 @@
 #include "atmosphere/reference/reference_solution.h"
 #include "atmosphere/math/constants.h"
 #include "atmosphere/math/numerics.h"
-#include "atmosphere/refraction/bent_view.h"
+#include "atmosphere/refraction/refracted_view.h"
 #include "lut/report/report_baselines.h"
 #include "lut/report/report_measure.h"
 #include "lut/tables/transmittance_table.h"
@@ -202,8 +202,8 @@ class RefractionTopic {
 
   void AddTables() {
     ReportRow row = Row("tables of one height", kTables);
-    std::vector<BentView> views;
-    const auto [one, seconds] = Built([&] { return BentView(medium_, 0.0); });
+    std::vector<RefractedView> views;
+    const auto [one, seconds] = Built([&] { return RefractedView(medium_, 0.0); });
     row.build_s = seconds;
     row.memory_bytes = one.bytes();
     for (std::size_t r = 0; r < kSights.size(); ++r)

@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "atmosphere/medium/medium.h"
-#include "atmosphere/refraction/bent_view.h"
+#include "atmosphere/refraction/refracted_view.h"
 #include "atmosphere/ray/single_scattering.h"
 #include "atmosphere/astronomy/eclipse.h"
 #include "atmosphere/time_place/geodesy.h"
@@ -34,12 +34,12 @@ namespace alpenglow::renderer {
 /// members.
 struct SunlitAir {
   const SingleScattering<float>& air;
-  const BentBeam& beam;         // direct light of sun and moon
+  const RefractedBeam& beam;         // direct light of sun and moon
   const MultipleScattering& multiple_scattering;  // light of the sky
 
   /// Returns the irradiance perpendicular to the beams of a disk whose irradiance above the air is
   /// 1.
-  /// @param mu  see BentBeam::Left.
+  /// @param mu  see RefractedBeam::Left.
   [[nodiscard]] Bands<float> BeamLeft(double altitude_m, double mu) const {
     return beam.Left(air, altitude_m, mu);
   }

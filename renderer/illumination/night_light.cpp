@@ -47,7 +47,7 @@ BandLight TownLight(double zenith, double ground_m, const SingleScattering<float
 
 namespace {
 
-glm::dvec3 Refracted(const glm::dvec3& enu, const BentView& view) {
+glm::dvec3 Refracted(const glm::dvec3& enu, const RefractedView& view) {
   const double elevation = std::asin(std::clamp(enu.z, -1.0, 1.0));
   return DirectionFromAngles(view.LiftedElevationOf(elevation), std::atan2(enu.x, enu.y)).xyz;
 }
@@ -85,7 +85,7 @@ double FaintestStar(double lux, double pixel_angle_rad) {
 }
 
 std::vector<StarLight> StarLightsOver(const GeodeticPosition& eye, const UtcInstant& instant,
-                                      const BentView& view, const BandColour& colour,
+                                      const RefractedView& view, const BandColour& colour,
                                       double faintest, const OpenShutter& shutter) {
   const LocalFrame local(kWgs84, eye);
   std::vector<StarLight> lights;

@@ -35,7 +35,7 @@
 #include <vector>
 
 #include "atmosphere/colour/spectrum.h"
-#include "atmosphere/refraction/bent_view.h"
+#include "atmosphere/refraction/refracted_view.h"
 #include "atmosphere/ray/single_scattering.h"
 #include "atmosphere/time_place/geodesy.h"
 #include "atmosphere/astronomy/night_sky.h"
@@ -86,7 +86,7 @@ inline constexpr double kDaylight_lux = 5000.0;
 /// east, north, up at the eye, refracted (without dispersion). While the shutter is open, planets
 /// move with the stars (they are off by 0.2 arcseconds a minute).
 [[nodiscard]] std::vector<StarLight> StarLightsOver(const GeodeticPosition& eye,
-                                                    const UtcInstant& instant, const BentView& view,
+                                                    const UtcInstant& instant, const RefractedView& view,
                                                     const BandColour& colour, double faintest,
                                                     const OpenShutter& shutter = {});
 

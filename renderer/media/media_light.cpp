@@ -84,7 +84,7 @@ struct MediaLight::State {
   LocalMedia media;
   const SceneGeometry& geometry;
   const SingleScattering<float>& air;
-  const BentBeam& beam;
+  const RefractedBeam& beam;
   const MultipleScattering& multiple_scattering;
   const LampLight* lamps;
   DistantLight sun;

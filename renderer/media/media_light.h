@@ -2,7 +2,7 @@
 // This header computes the light of sun, sky and lamps in local media (volumes and fog), and the
 // transmittance of local media.
 //
-// Volumes scatter light once. Sunlight arrives through the air (BentBeam), the terrain's shadow,
+// Volumes scatter light once. Sunlight arrives through the air (RefractedBeam), the terrain's shadow,
 // and every volume and the fog on its path. Skylight is given by its moments (MultipleScattering) and the
 // phase function, and attenuated by the mean transmittance of the volumes over 26 directions. Light
 // that a volume scatters again is neglected. Columns towards the sun through a gridded volume are

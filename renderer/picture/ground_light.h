@@ -112,7 +112,7 @@ class GroundLight {
 
   GroundParts parts_;
   const SingleScattering<float>& air_;
-  const BentBeam& beam_;
+  const RefractedBeam& beam_;
   const MultipleScattering& multiple_scattering_;
 };
 

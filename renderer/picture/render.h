@@ -7,7 +7,7 @@
 // osculates the ellipsoid there, so the altitude of a point is its distance from that sphere. The
 // sun stands at its refracted direction: disk, light on the ground and light in the air use this
 // one, apparent direction. Where the effect of refraction is visible, the disk and the horizon of a
-// sea without terrain follow refracted rays instead (BentSight).
+// sea without terrain follow refracted rays instead (RefractedViewRays).
 //
 // Each pixel traces rays against the terrain, distributed by PixelFilter and PixelSamples. A single
 // ray goes through the middle of the pixel; with RenderSettings::noise, shared_rays.h chooses the

@@ -90,8 +90,8 @@ std::optional<double> PlaceOnSun(const glm::dvec3& direction, const glm::dvec3& 
 
 /// Returns the radiance of the refracted disk: each band of the disk is lifted by its own
 /// refraction, and attenuated by the air along the bent ray.
-BandLight BentSunDisk(const glm::dvec3& direction, const AirAlongRay& through,
-                      const Lighting& light, const BentSight& bent, const Medium& medium) {
+BandLight RefractedSunDisk(const glm::dvec3& direction, const AirAlongRay& through,
+                      const Lighting& light, const RefractedViewRays& bent, const Medium& medium) {
   BandLight disk(light.irradiance.count);
   // The refracted disk is not wider than a circular one.
   if (glm::length(direction - light.to_sun) > 2.0 * light.sun_radius_rad) return disk;
@@ -114,7 +114,7 @@ BandLight BentSunDisk(const glm::dvec3& direction, const AirAlongRay& through,
 BandLight SceneState::SunDisk(const glm::dvec3& direction, const AirAlongRay& through,
                               const PictureFrame& frame) const {
   const Lighting& light = frame.light;
-  if (frame.bent) return BentSunDisk(direction, through, light, *frame.bent, medium);
+  if (frame.bent) return RefractedSunDisk(direction, through, light, *frame.bent, medium);
   const glm::dvec3& to_moon = light.moon ? light.moon->to_moon : light.to_sun;
   const auto rho = PlaceOnSun(direction, light.to_sun, to_moon, light);
   if (!rho) return BandLight(light.irradiance.count);
@@ -151,9 +151,9 @@ double MeanMoonRadiance(const MoonDisk& moon, const glm::dvec3& turn, const glm:
   return sum / steps;
 }
 
-/// Returns the radiance of the refracted moon (see BentSunDisk).
-BandLight BentMoon(const glm::dvec3& direction, const AirAlongRay& through, const Lighting& light,
-                   const BentSight& bent) {
+/// Returns the radiance of the refracted moon (see RefractedSunDisk).
+BandLight RefractedMoon(const glm::dvec3& direction, const AirAlongRay& through, const Lighting& light,
+                   const RefractedViewRays& bent) {
   BandLight seen(light.irradiance.count);
   // Neither the refracted disk nor its trail is wider than the unrefracted one.
   const double widest = 2.0 * light.moon->radius_rad + glm::length(light.moon_turn);
@@ -178,7 +178,7 @@ BandLight SceneState::MoonSeen(const glm::dvec3& direction, const AirAlongRay& t
   const Lighting& light = frame.light;
   // During an eclipse, the earthshine of the moon would stand out, because the renderer has no corona.
   if (!light.moon || light.eclipse) return BandLight(light.irradiance.count);
-  if (frame.bent) return BentMoon(direction, through, light, *frame.bent);
+  if (frame.bent) return RefractedMoon(direction, through, light, *frame.bent);
   const double radiance = MeanMoonRadiance(*light.moon, light.moon_turn, direction);
   if (radiance == 0.0) return BandLight(light.irradiance.count);
   return static_cast<float>(radiance) *

@@ -164,7 +164,7 @@ PictureFrame SceneState::FrameAt(const Shot& shot, const RenderSettings& setting
   frame.light.effects = settings.effects;
   frame.polarised = camera.middle().HasPolariser() ||
                     std::any_of(settings.layers.begin(), settings.layers.end(), IsOfPolarisation);
-  if (frame.Has(Effect::kRefraction)) frame.bent = BentSightOf(frame, shot);
+  if (frame.Has(Effect::kRefraction)) frame.bent = RefractedViewRaysOf(frame, shot);
   if (frame.Has(Effect::kShafts) && frame.light.shows) {
     Prepare(settings.progress, "shadows");
     const auto made = recent_sunlight->At(frame.light.to_sun, frame.light.sun_radius_rad);
@@ -219,7 +219,7 @@ std::shared_ptr<const StarPixels> SceneState::StarsIn(const PictureFrame& frame,
   const glm::dmat3 frame_from_enu = StandOf(shot).frame_from_enu;
   std::vector<StarLight> lights;
   const double pixel_rad = frame.camera().PixelAngle();
-  const BentView view(medium, geometry.AltitudeOf(frame.camera().eye()));
+  const RefractedView view(medium, geometry.AltitudeOf(frame.camera().eye()));
   for (StarLight& light :
        StarLightsOver(EyeOf(shot), shot.instant, view, colour, FaintestStar(lux, pixel_rad),
                       OpenFor(scene.camera.shutter_s, pixel_rad))) {

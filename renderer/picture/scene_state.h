@@ -108,19 +108,19 @@ struct SceneState {
   /// @param expected_m  expected length of the ray; 0: unknown.
   [[nodiscard]] Hit Trace(const CameraRay& ray, const PictureFrame& frame,
                           double expected_m = 0.0) const {
-    if (frame.bent && frame.bent->moves_ground) return OnBentRay(ray, frame, expected_m);
+    if (frame.bent && frame.bent->moves_ground) return OnRefractedRay(ray, frame, expected_m);
     return Relief(frame).Trace(ray.origin, ray.direction, frame.camera().PixelAngle());
   }
   [[nodiscard]] const SceneGeometry& Relief(const PictureFrame& frame) const {
     return frame.Has(Effect::kRelief) ? geometry : smooth_geometry;
   }
   /// Returns the hit of a bent ray. Terrain appears within 0.1' of the solution of the ray equation.
-  [[nodiscard]] Hit OnBentRay(const CameraRay& ray, const PictureFrame& frame,
+  [[nodiscard]] Hit OnRefractedRay(const CameraRay& ray, const PictureFrame& frame,
                               double expected_m) const;
   /// Returns the largest lift [rad] of terrain and the horizon.
   [[nodiscard]] double MostLift(const PictureFrame& frame, double eye_height_m) const;
   /// Returns the refraction if it moves something in the picture by more than half a pixel; else null.
-  [[nodiscard]] std::shared_ptr<const BentSight> BentSightOf(const PictureFrame& frame,
+  [[nodiscard]] std::shared_ptr<const RefractedViewRays> RefractedViewRaysOf(const PictureFrame& frame,
                                                              const Shot& shot) const;
   [[nodiscard]] Shaded Shade(const Hit& hit, const SharedAir& through, const CameraRay& ray,
                              const PictureFrame& frame, const LampTile& near,

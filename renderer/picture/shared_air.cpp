@@ -8,7 +8,7 @@
 #include <glm/geometric.hpp>
 
 #include "atmosphere/math/constants.h"
-#include "atmosphere/refraction/bent_view.h"
+#include "atmosphere/refraction/refracted_view.h"
 #include "atmosphere/astronomy/moon.h"
 #include "renderer/illumination/picture_stokes.h"
 #include "renderer/picture/scene_state.h"
@@ -61,7 +61,7 @@ constexpr double kOffPixels = 0.005, kLeastOff_rad = 1e-4 * kRadiansPerDegree / 
 
 /// Returns the larger of the flattening of a disk at its lower limb and the separation of its
 /// colours at the limb [rad].
-double ChangeOfDisk(const BentView& view, double elevation_rad, double radius_rad,
+double ChangeOfDisk(const RefractedView& view, double elevation_rad, double radius_rad,
                     std::size_t bands) {
   const auto lift = [&](double elevation, std::size_t band) {
     return elevation - view.TrueElevation(elevation, band);
@@ -73,15 +73,15 @@ double ChangeOfDisk(const BentView& view, double elevation_rad, double radius_ra
 
 }  // namespace
 
-double BentSight::ElevationOf(const glm::dvec3& direction) const {
+double RefractedViewRays::ElevationOf(const glm::dvec3& direction) const {
   return Elevation(direction, up);
 }
 
-glm::dvec3 BentSight::TrueDirection(const glm::dvec3& direction, std::size_t band) const {
+glm::dvec3 RefractedViewRays::TrueDirection(const glm::dvec3& direction, std::size_t band) const {
   return AtElevation(direction, up, view.TrueElevation(ElevationOf(direction), band));
 }
 
-std::shared_ptr<const BentSight> SceneState::BentSightOf(const PictureFrame& frame,
+std::shared_ptr<const RefractedViewRays> SceneState::RefractedViewRaysOf(const PictureFrame& frame,
                                                          const Shot& shot) const {
   const CameraRays& camera = frame.camera();
   const double half_pixel = 0.5 * camera.PixelAngle();
@@ -120,8 +120,8 @@ std::shared_ptr<const BentSight> SceneState::BentSightOf(const PictureFrame& fra
   const glm::dmat3 frame_from_enu = StandOf(shot).frame_from_enu;
   const SunPosition sun = SunAt(EyeOf(shot), shot.instant);
   const MoonPosition moon = MoonAt(EyeOf(shot), shot.instant);
-  auto bent = std::make_shared<BentSight>(
-      BentSight{BentView(medium, height_m), up,
+  auto bent = std::make_shared<RefractedViewRays>(
+      RefractedViewRays{RefractedView(medium, height_m), up,
                 frame_from_enu * DirectionFromAngles(sun.elevation_rad, sun.azimuth_rad).xyz,
                 frame_from_enu * DirectionFromAngles(moon.elevation_rad, moon.azimuth_rad).xyz});
   const auto moves = [&](const glm::dvec3& to_disk, double radius_rad) {
@@ -132,7 +132,7 @@ std::shared_ptr<const BentSight> SceneState::BentSightOf(const PictureFrame& fra
                           (may_see_moon && moves(light.moon->to_moon, light.moon->radius_rad));
   const bool moves_sea = may_see_sea && bent->view.horizon_rad() - geometric_rad > half_pixel;
   if (moves_terrain) {
-    bent->fan = std::make_shared<BentFan>(bent->view.air(), camera.eye(), up,
+    bent->fan = std::make_shared<RefractedFan>(bent->view.air(), camera.eye(), up,
                                           geometry.FarthestFrom(camera.eye()));
   }
   bent->moves_ground = !geometry.HasTerrain() || moves_terrain;
@@ -149,7 +149,7 @@ namespace {
 /// Returns whether the bare planet occludes the terrain that a ray meets: the ray enters the planet
 /// before it, where no terrain covers the planet (a ray through a basin below the sphere is in free
 /// air). Inside the planet the air of ground level continues.
-bool HiddenByPlanet(const SceneGeometry& geometry, const BentGroundRay& met, const BendingAir& air,
+bool HiddenByPlanet(const SceneGeometry& geometry, const RefractedGroundRay& met, const BendingAir& air,
                     const glm::dvec3& foot, const glm::dvec3& up, const glm::dvec3& across,
                     const glm::dvec3& point) {
   const glm::dvec3 from_centre = point + glm::dvec3(0.0, 0.0, geometry.radius_m());
@@ -173,9 +173,9 @@ bool IsBeforeHorizon(const SceneGeometry& geometry, const CameraRay& ray, const 
 
 }  // namespace
 
-Hit SceneState::OnBentRay(const CameraRay& ray, const PictureFrame& frame,
+Hit SceneState::OnRefractedRay(const CameraRay& ray, const PictureFrame& frame,
                           double expected_m) const {
-  const BentSight& bent = *frame.bent;
+  const RefractedViewRays& bent = *frame.bent;
   Hit hit;
   if (geometry.HasTerrain()) {
     const double off_rad = std::max(kOffPixels * frame.camera().PixelAngle(), kLeastOff_rad);
@@ -226,7 +226,7 @@ class AirTo {
             std::clamp(glm::dot(to_sun_, up_), -1.0, 1.0),
             std::clamp(glm::dot(direction, to_sun_), -1.0, 1.0)};
     // A straight ray ends at the planet's own horizon by itself; a length would only add a rounding
-    // error. Bent rays also see the planet beyond that horizon.
+    // error. Refracted rays also see the planet beyond that horizon.
     const bool is_bent = frame.bent && frame.bent->moves_ground;
     if (kind_ == HitKind::kTerrain || (kind_ == HitKind::kPlanet && is_bent))
       ray_.length_m = rays.length_m();

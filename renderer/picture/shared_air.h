@@ -10,7 +10,7 @@
 #include <mutex>
 #include <vector>
 
-#include "atmosphere/refraction/bent_view.h"
+#include "atmosphere/refraction/refracted_view.h"
 #include "atmosphere/ray/single_scattering.h"
 #include "lut/multiple_scattering/multiple_scattering.h"
 #include "renderer/camera/camera_rays.h"
@@ -40,7 +40,7 @@ struct AirModel {
   [[nodiscard]] SunlitAir sunlit() const { return {air, beam, multiple_scattering}; }
 
   SingleScattering<float> air;
-  BentBeam beam;
+  RefractedBeam beam;
   MultipleScattering multiple_scattering;
   AerialPerspective aerial;
   GroundLight ground_light;
@@ -75,12 +75,12 @@ struct SecondLight {
 };
 
 /// Effect of refraction on the sun, on terrain and on the horizon of a sea without terrain.
-struct BentSight {
-  BentView view;
+struct RefractedViewRays {
+  RefractedView view;
   glm::dvec3 up;               // at the eye, unit
   glm::dvec3 to_sun, to_moon;  // unit, without refraction
   bool moves_ground = false;  // moves the farthest terrain or the horizon by more than half a pixel
-  std::shared_ptr<const BentFan> fan = nullptr;  // rays to terrain; null: terrain does not move
+  std::shared_ptr<const RefractedFan> fan = nullptr;  // rays to terrain; null: terrain does not move
 
   [[nodiscard]] double ElevationOf(const glm::dvec3& direction) const;
   /// Returns the direction, unit, from which light of a band arrives that is seen in `direction`.
@@ -102,7 +102,7 @@ struct PictureFrame {
   std::shared_ptr<const NightLight> night = nullptr;     // null: the night sky is not visible
   std::shared_ptr<const StarPixels> stars = nullptr;     // null: no visible stars
   bool polarised = false;  // a polariser or a layer needs Stokes parameters
-  std::shared_ptr<const BentSight> bent = nullptr;        // null: refraction moves nothing
+  std::shared_ptr<const RefractedViewRays> bent = nullptr;        // null: refraction moves nothing
   double sunlight_s = 0.0, plan_s = 0.0, slopes_s = 0.0;  // preparation times
 
   [[nodiscard]] bool Has(Effect effect) const { return settings.effects.Has(effect); }

@@ -83,7 +83,7 @@ double SineOfGrazing(const BendingAir& air, double height_m) {
 
 // Nodes are densest around the ray that grazes the ground, within the angle that half a scale
 // height subtends at the far end of a ray.
-BentFan::BentFan(const BendingAir& air, const glm::dvec3& eye, const glm::dvec3& up, double reach_m)
+RefractedFan::RefractedFan(const BendingAir& air, const glm::dvec3& eye, const glm::dvec3& up, double reach_m)
     : air_(air),
       up_(up),
       height_m_(AltitudeOverSphere(eye, air.planet_radius_m)),
@@ -101,7 +101,7 @@ BentFan::BentFan(const BendingAir& air, const glm::dvec3& eye, const glm::dvec3&
   });
 }
 
-double BentFan::EntersAir(double sine) const {
+double RefractedFan::EntersAir(double sine) const {
   const double bends_below_m = kScaleHeightsThatBend * air_.UpperScaleHeight();
   const double over_m = height_m_ - bends_below_m;
   if (over_m <= 0.0) return 0.0;
@@ -111,7 +111,7 @@ double BentFan::EntersAir(double sine) const {
   return -radius_m * sine - std::sqrt(enters);
 }
 
-void BentFan::FillRow(double sine, float* row) const {
+void RefractedFan::FillRow(double sine, float* row) const {
   const double enters_m = EntersAir(sine);
   if (!(enters_m < reach_m_)) return;
   const PlaneOfRay plane(air_, height_m_, sine);
@@ -125,23 +125,23 @@ void BentFan::FillRow(double sine, float* row) const {
   }
 }
 
-double BentFan::RowOf(double sine) const {
+double RefractedFan::RowOf(double sine) const {
   const double u = std::asinh((sine - grazing_sine_) / scale_);
   return std::clamp((u - first_) / (last_ - first_), 0.0, 1.0) * (kElevations - 1);
 }
 
-double BentFan::ChordFrom(double along_m, double off_rad) const {
+double RefractedFan::ChordFrom(double along_m, double off_rad) const {
   const double b = 4.0 * off_rad / std::max(most_curvature_per_m_, 1e-15);
   return 0.5 * b + std::sqrt(0.25 * b * b + 2.0 * b * along_m);
 }
 
-double BentFan::EndOfChord(double off_rad) const {
+double RefractedFan::EndOfChord(double off_rad) const {
   return 2.0 * off_rad / std::max(most_curvature_per_m_, 1e-15);
 }
 
 // A refracted ray never lies above its initial direction, and this line does not lie above the
 // parabola, up to terms of third order.
-double BentFan::SinksBelow(const FanRay& ray, double height_m) const {
+double RefractedFan::SinksBelow(const FanRay& ray, double height_m) const {
   constexpr double kMargin = 1.05;
   const double a = (1.0 - ray.sine() * ray.sine()) / (2.0 * (air_.planet_radius_m + height_m_));
   const double over_m = height_m_ - height_m;
@@ -152,12 +152,12 @@ double BentFan::SinksBelow(const FanRay& ray, double height_m) const {
 
 // Gently bending air bends rays less than the ground curves: the sine of a rising ray keeps
 // growing.
-double BentFan::RisesAbove(const FanRay& ray, double height_m) const {
+double RefractedFan::RisesAbove(const FanRay& ray, double height_m) const {
   if (ray.sine() <= 0.0) return std::numeric_limits<double>::infinity();
   return std::max(height_m - height_m_, 0.0) / ray.sine();
 }
 
-FanRay::FanRay(const BentFan& fan, const glm::dvec3& origin, const glm::dvec3& direction)
+FanRay::FanRay(const RefractedFan& fan, const glm::dvec3& origin, const glm::dvec3& direction)
     : fan_(&fan),
       origin_(origin),
       direction_(direction),
@@ -166,20 +166,20 @@ FanRay::FanRay(const BentFan& fan, const glm::dvec3& origin, const glm::dvec3& d
   const glm::dvec3 across = fan.up_ - sine_ * direction;
   across_ = across / std::max(glm::length(across), 1e-9);  // rays to or from the zenith do not bend
   const double row = fan.RowOf(sine_);
-  const int below = std::min(static_cast<int>(row), BentFan::kElevations - 2);
+  const int below = std::min(static_cast<int>(row), RefractedFan::kElevations - 2);
   share_ = static_cast<float>(row - below);
-  row_ = &fan.g_per_m_[static_cast<std::size_t>(below) * (BentFan::kDistances + 1)];
+  row_ = &fan.g_per_m_[static_cast<std::size_t>(below) * (RefractedFan::kDistances + 1)];
 }
 
 glm::dvec3 FanRay::At(double along_m) const {
   const glm::dvec3 straight = origin_ + along_m * direction_;
   const double in_air_m = along_m - enters_m_;
   if (!(in_air_m > 0.0)) return straight;
-  const double node = BentFan::kDistances * std::sqrt(std::min(in_air_m / fan_->reach_m_, 1.0));
-  const int before = std::min(static_cast<int>(node), BentFan::kDistances - 1);
+  const double node = RefractedFan::kDistances * std::sqrt(std::min(in_air_m / fan_->reach_m_, 1.0));
+  const int before = std::min(static_cast<int>(node), RefractedFan::kDistances - 1);
   const auto way = static_cast<float>(node - before);
   const float* here = row_ + before;
-  const float* next = here + BentFan::kDistances + 1;
+  const float* next = here + RefractedFan::kDistances + 1;
   const float g = (1.0F - way) * (here[0] + share_ * (next[0] - here[0])) +
                   way * (here[1] + share_ * (next[1] - here[1]));
   return straight - in_air_m * in_air_m * static_cast<double>(g) * across_;

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
-// This header provides the geometry of a scene: refracted rays of one eye (BentFan), intersections
+// This header provides the geometry of a scene: refracted rays of one eye (RefractedFan), intersections
 // of camera rays with terrain or planet (SceneGeometry), and sunlit stretches of rays
 // (TerrainSunlight).
 //
-// BentFan tabulates rays through air that refracts them. The ray equation
+// RefractedFan tabulates rays through air that refracts them. The ray equation
 //
 //   dt/ds = (grad n - (t grad n) t) / n          t is the unit direction
 //
@@ -47,22 +47,22 @@
 
 namespace alpenglow::renderer {
 
-class BentFan;
+class RefractedFan;
 
 /// A ray of a fan. Refers to the fan.
 class FanRay {
  public:
-  FanRay(const BentFan& fan, const glm::dvec3& origin, const glm::dvec3& direction);
+  FanRay(const RefractedFan& fan, const glm::dvec3& origin, const glm::dvec3& direction);
 
   /// Returns the point of the ray at a distance along its initial direction [m].
   [[nodiscard]] glm::dvec3 At(double along_m) const;
-  [[nodiscard]] const BentFan& fan() const { return *fan_; }
+  [[nodiscard]] const RefractedFan& fan() const { return *fan_; }
   [[nodiscard]] const glm::dvec3& direction() const { return direction_; }
   /// Returns the sine of the elevation at the eye.
   [[nodiscard]] double sine() const { return sine_; }
 
  private:
-  const BentFan* fan_;
+  const RefractedFan* fan_;
   glm::dvec3 origin_, direction_, across_;
   double sine_;
   double enters_m_;
@@ -71,11 +71,11 @@ class FanRay {
 };
 
 /// A table of refracted rays from one eye. Immutable, safe to share between threads.
-class BentFan {
+class RefractedFan {
  public:
   /// @param eye, up  in the frame; `up` is a unit vector.
   /// @param reach_m  > 0: greatest distance at which points are evaluated.
-  BentFan(const BendingAir& air, const glm::dvec3& eye, const glm::dvec3& up, double reach_m);
+  RefractedFan(const BendingAir& air, const glm::dvec3& eye, const glm::dvec3& up, double reach_m);
 
   /// Returns the length of the longest chord from a distance that stays within `off_rad` of the
   /// ray.

@@ -229,7 +229,7 @@ AirTables MakeAirTables(const SingleScattering<float>& air, const MultipleScatte
   return tables;
 }
 
-MediumTables MakeMediumTables(const SingleScattering<float>& air, const BentBeam& beam) {
+MediumTables MakeMediumTables(const SingleScattering<float>& air, const RefractedBeam& beam) {
   using namespace shared;
   RequireFourBands(air.medium());
   MediumTables tables{AirTexels(kPhaseNodes, 1), AirTexels(kSunCosines, 2 * kSunAltitudes)};

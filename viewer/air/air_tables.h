@@ -28,7 +28,7 @@
 #include <vector>
 
 #include "atmosphere/medium/medium.h"
-#include "atmosphere/refraction/bent_view.h"
+#include "atmosphere/refraction/refracted_view.h"
 #include "atmosphere/ray/shell.h"
 #include "atmosphere/ray/single_scattering.h"
 #include "lut/multiple_scattering/multiple_scattering.h"
@@ -134,12 +134,12 @@ struct MediumTables {
   AirTexels phase;
   /// On the map of transmittance_map.glsl, [zenith cosine, altitude]: the first half of the rows
   /// holds the transmittance of straight rays to space, by which air is illuminated. The second half
-  /// holds the transmitted fraction of the beam of a disk on ground and fog (BentBeam::Left).
+  /// holds the transmitted fraction of the beam of a disk on ground and fog (RefractedBeam::Left).
   AirTexels to_sun;
 };
 
 /// @param beam  beam of the medium of `air`.
-[[nodiscard]] MediumTables MakeMediumTables(const SingleScattering<float>& air, const BentBeam& beam);
+[[nodiscard]] MediumTables MakeMediumTables(const SingleScattering<float>& air, const RefractedBeam& beam);
 
 /// Computes the tables on the calling thread alone. `air`, `multiple_scattering` and `medium` must belong to
 /// one medium; no reference to them is kept. Throws InputError for a medium of more than four

@@ -88,7 +88,7 @@ std::shared_ptr<const SolvedAir> SolveAir(const Medium& medium, AirSolution solu
   const SingleScattering<float> air(medium);
   tbb::task_arena one_thread(1);
   return one_thread.execute([&] {
-    BentBeam beam(medium);
+    RefractedBeam beam(medium);
     MediumTables tables = MakeMediumTables(air, beam);
     return std::make_shared<const SolvedAir>(SolvedAir{
         medium, solution, std::move(beam),

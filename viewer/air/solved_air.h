@@ -56,7 +56,7 @@ enum class AirSolution { kDraft, kFull };
 struct SolvedAir {
   Medium medium;
   AirSolution solution;
-  BentBeam beam;
+  RefractedBeam beam;
   MultipleScattering multiple_scattering;
   MediumTables tables;
 };

@@ -179,7 +179,7 @@ class GroundFollower::Maker {
     foot.height_m = 0.0;
     const Medium medium = OnOsculatingSphere(request.air->medium, foot.latitude_rad);
     const SiteAir air{std::make_shared<const SingleScattering<float>>(medium),
-                      std::shared_ptr<const BentBeam>(request.air, &request.air->beam),
+                      std::shared_ptr<const RefractedBeam>(request.air, &request.air->beam),
                       std::shared_ptr<const MultipleScattering>(request.air, &request.air->multiple_scattering)};
     SceneGround ground = GroundOf(*grid, LocalFrame(EllipsoidOf(medium), foot));
     if (ground.terrain->mesh().triangles.empty()) return nullptr;  // no land is loaded there yet

@@ -65,7 +65,7 @@ class MeshHeights {
 /// Solved air over the land: all members belong to one medium on the sphere of the site.
 struct SiteAir {
   std::shared_ptr<const SingleScattering<float>> single_scattering;
-  std::shared_ptr<const BentBeam> beam;
+  std::shared_ptr<const RefractedBeam> beam;
   std::shared_ptr<const MultipleScattering> multiple_scattering;
 };
 

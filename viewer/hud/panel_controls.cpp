@@ -9,7 +9,7 @@
 
 #include "atmosphere/colour/spectrum.h"
 #include "atmosphere/math/constants.h"
-#include "atmosphere/refraction/bent_view.h"
+#include "atmosphere/refraction/refracted_view.h"
 #include "atmosphere/astronomy/sun.h"
 #include "atmosphere/base/error.h"
 #include "lut/image/image.h"

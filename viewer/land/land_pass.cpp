@@ -67,7 +67,7 @@ constexpr GLuint kLandBinding = 8;
 
 std::vector<ShaderPiece> Vertices() {
   return WithViewerPieces(SharedTexts(),
-                          {"viewer/shaders/view_block.glsl", "viewer/shaders/bent_sight.glsl",
+                          {"viewer/shaders/view_block.glsl", "viewer/shaders/refracted_view_rays.glsl",
                            "viewer/shaders/land_block.glsl", "viewer/shaders/land.vert.glsl"});
 }
 

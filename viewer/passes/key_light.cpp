@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "atmosphere/math/constants.h"
-#include "atmosphere/refraction/bent_view.h"
+#include "atmosphere/refraction/refracted_view.h"
 #include "atmosphere/ray/single_scattering.h"
 #include "atmosphere/astronomy/eclipse.h"
 #include "renderer/illumination/lighting.h"

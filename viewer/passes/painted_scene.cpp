@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "atmosphere/math/constants.h"
-#include "atmosphere/refraction/bent_view.h"
+#include "atmosphere/refraction/refracted_view.h"
 #include "renderer/media/local_media.h"
 #include "viewer/passes/picture_programs.h"
 

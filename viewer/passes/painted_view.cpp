@@ -6,7 +6,7 @@
 #include <glm/geometric.hpp>
 
 #include "atmosphere/math/constants.h"
-#include "atmosphere/refraction/bent_view.h"
+#include "atmosphere/refraction/refracted_view.h"
 #include "atmosphere/ray/shell.h"
 #include "renderer/camera/camera_rays.h"
 #include "viewer/air/air_rows.h"
@@ -128,7 +128,7 @@ constexpr double kMostWay_rad = 1.0 / 60.0 * kRadiansPerDegree;
 
 }  // namespace
 
-double BentDisk::Change() const {
+double RefractedDisk::Change() const {
   double between_bands = 0.0;
   for (int band = 1; band < 4; ++band)
     between_bands =
@@ -137,7 +137,7 @@ double BentDisk::Change() const {
   return std::max(flatter, between_bands);
 }
 
-BentDisk BentDiskOf(const Medium& medium, double height_m, double elevation_rad,
+RefractedDisk RefractedDiskOf(const Medium& medium, double height_m, double elevation_rad,
                     double radius_rad) {
   const BendingAir air = GentleAirOf(medium);
   const double horizon_rad = GrazingElevation(air, height_m);
@@ -145,10 +145,10 @@ BentDisk BentDiskOf(const Medium& medium, double height_m, double elevation_rad,
   const double first_rad = std::max(elevation_rad - kReach * radius_rad, horizon_rad);
   const double last_rad =
       std::max(elevation_rad + kReach * radius_rad, horizon_rad + 0.1 * radius_rad);
-  BentDisk disk{first_rad, (last_rad - first_rad) / (BentDisk::kNodes - 1), {}, {}};
-  for (std::size_t node = 0; node < BentDisk::kNodes; ++node) {
+  RefractedDisk disk{first_rad, (last_rad - first_rad) / (RefractedDisk::kNodes - 1), {}, {}};
+  for (std::size_t node = 0; node < RefractedDisk::kNodes; ++node) {
     const double at_rad = first_rad + static_cast<double>(node) * disk.step_rad;
-    const BentLight light = BentLightOf(medium, air, at_rad, std::max(height_m, 0.0));
+    const RefractedLight light = RefractedLightOf(medium, air, at_rad, std::max(height_m, 0.0));
     for (std::size_t band = 0; band < medium.wavelengths_nm.size(); ++band) {
       const double more = RefractivityAtSeaLevel(medium.wavelengths_nm[band]) /
                               RefractivityAtSeaLevel(kHorizonWavelength_nm) -
@@ -164,7 +164,7 @@ BentDisk BentDiskOf(const Medium& medium, double height_m, double elevation_rad,
   return disk;
 }
 
-const BentDisk* BentDiskFollower::Follow(const std::shared_ptr<const SolvedAir>& air,
+const RefractedDisk* RefractedDiskFollower::Follow(const std::shared_ptr<const SolvedAir>& air,
                                          double height_m, double elevation_rad, double radius_rad,
                                          double half_pixel_rad) {
   constexpr double kLow_rad = 10.0 * kRadiansPerDegree;
@@ -177,7 +177,7 @@ const BentDisk* BentDiskFollower::Follow(const std::shared_ptr<const SolvedAir>&
                      std::abs(made_->elevation_rad - elevation_rad) < kMostWay_rad;
   if (!suits)
     made_ = {air, height_m, elevation_rad,
-             BentDiskOf(air->medium, height_m, elevation_rad, radius_rad)};
+             RefractedDiskOf(air->medium, height_m, elevation_rad, radius_rad)};
   return made_->disk.Change() > half_pixel_rad ? &made_->disk : nullptr;
 }
 

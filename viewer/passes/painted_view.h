@@ -2,10 +2,10 @@
 // A view to be drawn: its time, place and size in pixels, and the positions of objects in it.
 //
 // BendOf describes atmospheric refraction of a view, or returns no refraction if its effect is not
-// visible. BentDisk describes the disk of the sun or moon near the horizon: refraction flattens it,
+// visible. RefractedDisk describes the disk of the sun or moon near the horizon: refraction flattens it,
 // dispersion separates its colours, and extinction dims its lower limb. It has nodes of elevation
 // across the disk, computed with the renderer's refracted rays; shaders interpolate between them
-// (shaders/bent_disks.glsl).
+// (shaders/refracted_disks.glsl).
 #pragma once
 
 #include <array>
@@ -16,7 +16,7 @@
 #include <optional>
 
 #include "atmosphere/medium/medium.h"
-#include "atmosphere/refraction/bent_view.h"
+#include "atmosphere/refraction/refracted_view.h"
 #include "atmosphere/astronomy/sun.h"
 #include "viewer/air/solved_air.h"
 #include "viewer/flight/flight.h"
@@ -76,7 +76,7 @@ struct PixelRay {
                                              double farthest_land_m);
 
 /// Refraction and extinction across a disk, as values per band at nodes from the bottom upwards.
-struct BentDisk {
+struct RefractedDisk {
   static constexpr int kNodes = 13;  // 3.4' apart: interpolated lifts are within 0.05' of the rays'
 
   double first_rad = 0.0, step_rad = 1.0;      // apparent elevation of the first node, spacing
@@ -90,15 +90,15 @@ struct BentDisk {
 
 /// Computes the refraction of a disk, which takes some milliseconds.
 /// @param elevation_rad, radius_rad  of the disk, apparent.
-[[nodiscard]] BentDisk BentDiskOf(const Medium& medium, double height_m, double elevation_rad,
+[[nodiscard]] RefractedDisk RefractedDiskOf(const Medium& medium, double height_m, double elevation_rad,
                                   double radius_rad);
 
-/// Keeps a BentDisk as long as eye and disk move little.
-class BentDiskFollower {
+/// Keeps a RefractedDisk as long as eye and disk move little.
+class RefractedDiskFollower {
  public:
   /// Returns null if the disk is so high, or so far below the horizon, that it is round, or if no
   /// part of it moves by `half_pixel_rad`.
-  [[nodiscard]] const BentDisk* Follow(const std::shared_ptr<const SolvedAir>& air, double height_m,
+  [[nodiscard]] const RefractedDisk* Follow(const std::shared_ptr<const SolvedAir>& air, double height_m,
                                        double elevation_rad, double radius_rad,
                                        double half_pixel_rad);
 
@@ -106,7 +106,7 @@ class BentDiskFollower {
   struct Made {
     std::shared_ptr<const SolvedAir> air;
     double height_m, elevation_rad;
-    BentDisk disk;
+    RefractedDisk disk;
   };
   std::optional<Made> made_;
 };

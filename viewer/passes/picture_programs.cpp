@@ -35,7 +35,7 @@ ShaderPiece DefinesOf(const PictureKind& kind, const PictureStage& stage) {
 
 std::vector<ShaderPiece> AirTexts() {
   std::vector<ShaderPiece> texts = WithViewerPieces(
-      SharedTexts(), {"viewer/shaders/view_block.glsl", "viewer/shaders/bent_sight.glsl"});
+      SharedTexts(), {"viewer/shaders/view_block.glsl", "viewer/shaders/refracted_view_rays.glsl"});
   for (ShaderPiece& piece : AirTableTexts()) texts.push_back(std::move(piece));
   return texts;
 }
@@ -55,7 +55,7 @@ std::vector<ShaderPiece> PictureTexts(const PictureKind& kind, const PictureStag
   add(WithViewerPieces({}, {"viewer/shaders/air_block.glsl", "viewer/shaders/octahedral.glsl",
                             "viewer/shaders/nearness.glsl", "viewer/shaders/sun_light.glsl"}));
   if (stage.pass == PictureStage::Pass::kDisks)
-    add(WithViewerPieces({}, {"viewer/shaders/bent_disks.glsl"}));
+    add(WithViewerPieces({}, {"viewer/shaders/refracted_disks.glsl"}));
   add(GroundTexts(kind.material, kind.land));
   if (stage.sky_by_pixel) add(SkyByPixelTexts());
   add(ShaftTexts());

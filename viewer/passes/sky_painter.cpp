@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "atmosphere/refraction/bent_view.h"
+#include "atmosphere/refraction/refracted_view.h"
 #include "atmosphere/astronomy/eclipse.h"
 #include "atmosphere/astronomy/moon.h"
 #include "renderer/surface/scene_ground.h"
@@ -151,18 +151,18 @@ void SkyPainter::PaintLamps(const PaintedView& view) {
 namespace {
 
 // Disk without refraction, drawn at its apparent position.
-constexpr BentDisk kUnbent{};
+constexpr RefractedDisk kUnbent{};
 
 void SendNodes(const ShaderProgram& program, const char* name,
-               const std::array<glm::vec4, BentDisk::kNodes>& of_sun,
-               const std::array<glm::vec4, BentDisk::kNodes>& of_moon) {
-  std::array<glm::vec4, 2 * BentDisk::kNodes> both{};
+               const std::array<glm::vec4, RefractedDisk::kNodes>& of_sun,
+               const std::array<glm::vec4, RefractedDisk::kNodes>& of_moon) {
+  std::array<glm::vec4, 2 * RefractedDisk::kNodes> both{};
   std::copy(of_sun.begin(), of_sun.end(), both.begin());
-  std::copy(of_moon.begin(), of_moon.end(), both.begin() + BentDisk::kNodes);
+  std::copy(of_moon.begin(), of_moon.end(), both.begin() + RefractedDisk::kNodes);
   glUniform4fv(program.Uniform(name), static_cast<GLsizei>(both.size()), &both.front().x);
 }
 
-void SendAir(const ShaderProgram& program, const BentDisk& sun, const BentDisk& moon) {
+void SendAir(const ShaderProgram& program, const RefractedDisk& sun, const RefractedDisk& moon) {
   SendNodes(program, "disk_lift", sun.lift_rad, moon.lift_rad);
   SendNodes(program, "disk_depth", sun.more_depth, moon.more_depth);
   glUniform4f(program.Uniform("disk_nodes"), static_cast<float>(sun.first_rad),
@@ -175,16 +175,16 @@ void SendAir(const ShaderProgram& program, const BentDisk& sun, const BentDisk& 
 // If the moon covers part of the sun, both disks use the same refraction, so that their edges
 // match.
 SkyPainter::DisksInAir SkyPainter::InAir(const SkyDisks& disks, const PaintedView& view) {
-  const auto follow = [&](BentDiskFollower& follower, const glm::dvec3& apparent,
-                          double radius) -> const BentDisk* {
+  const auto follow = [&](RefractedDiskFollower& follower, const glm::dvec3& apparent,
+                          double radius) -> const RefractedDisk* {
     if (!PixelsOfDisk(apparent, radius, view)) return nullptr;
     return follower.Follow(scene_.air().air(), view.eye.place.height_m,
                            std::asin(std::clamp(apparent.z, -1.0, 1.0)), radius,
                            0.5 * PixelAngle(view));
   };
   const GeodeticPosition& place = view.eye.place;
-  DisksInAir seen{disks, follow(bent_sun_, DirectionToSun(disks.sun), disks.sun.angular_radius_rad),
-                  follow(bent_moon_, disks.moon.to_moon, disks.moon.radius_rad)};
+  DisksInAir seen{disks, follow(refracted_sun_, DirectionToSun(disks.sun), disks.sun.angular_radius_rad),
+                  follow(refracted_moon_, disks.moon.to_moon, disks.moon.radius_rad)};
   const MoonPosition moon = MoonAt(place, view.now);
   if (EclipsedDiskOf(disks.sun, moon).IsCovered()) seen.moon = seen.sun;
   if (seen.sun != nullptr) seen.disks.sun = SunAt(place, view.now);

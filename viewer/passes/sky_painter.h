@@ -108,7 +108,7 @@ class SkyPainter {
   /// apparent position.
   struct DisksInAir {
     SkyDisks disks;
-    const BentDisk *sun, *moon;
+    const RefractedDisk *sun, *moon;
   };
   /// The sun and the lights of the sky in a view.
   struct Shining {
@@ -160,7 +160,7 @@ class SkyPainter {
   bool has_towns_;
   PicturePrograms programs_;  // uses all members above
   PictureBlocks blocks_;
-  BentDiskFollower bent_sun_, bent_moon_;
+  RefractedDiskFollower refracted_sun_, refracted_moon_;
   std::optional<SurfaceMap> surface_;
   std::optional<RenderTarget> picture_;
   std::optional<Shining> shining_;  // for the most recent view

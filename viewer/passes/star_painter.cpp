@@ -120,7 +120,7 @@ const std::vector<VertexAttribute> kAttributes{{0, "star_corner"}, {1, "star_tow
 StarPainter::StarPainter()
     : maker_([](const Request& request) {
         constexpr double kAll = std::numeric_limits<double>::infinity();
-        const BentView bent(request.medium, request.place.height_m);
+        const RefractedView bent(request.medium, request.place.height_m);
         return Made{request, bent,
                     StarLightsOver(request.place, request.now, bent, *request.colour, kAll)};
       }) {}

@@ -17,7 +17,7 @@
 
 #include "atmosphere/medium/medium.h"
 #include "atmosphere/colour/spectrum.h"
-#include "atmosphere/refraction/bent_view.h"
+#include "atmosphere/refraction/refracted_view.h"
 #include "atmosphere/astronomy/moon.h"
 #include "renderer/illumination/night_light.h"
 #include "viewer/gl/gl_objects.h"
@@ -46,7 +46,7 @@ struct StarrySky {
   double faintest_lux;  // fainter stars are not drawn
   glm::dvec3 to_moon;   // unit vector to the moon, which hides stars
   double moon_radius_rad;
-  const BentView* bent =
+  const RefractedView* bent =
       nullptr;  // refraction that raised the lights; null: they have true directions
 };
 
@@ -97,7 +97,7 @@ class StarPainter {
   };
   struct Made {
     Request request;
-    BentView bent;
+    RefractedView bent;
     std::vector<StarLight> lights;
   };
 

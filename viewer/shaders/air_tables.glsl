@@ -117,8 +117,8 @@ vec4 ToSun(float altitude_km, float mu_s, float beam) {
 // the planet does not hide. It is used to light the air and the bare ground of the sky table.
 vec4 TransmittanceToSun(float altitude_km, float mu_s) { return ToSun(altitude_km, mu_s, 0.0); }
 
-// Returns the transmittance there for the refracted beam of the visible disk: BentBeam of
-// atmosphere/refraction/bent_view.h.
+// Returns the transmittance there for the refracted beam of the visible disk: RefractedBeam of
+// atmosphere/refraction/refracted_view.h.
 vec4 BeamOfSun(float altitude_km, float mu_s) { return ToSun(altitude_km, mu_s, 1.0); }
 
 // Position of a point in the aerial-perspective tables, and factors of the table values.

@@ -10,7 +10,7 @@
 #include "atmosphere/astronomy/moon.h"
 #include "atmosphere/refraction/refraction.h"
 #include "atmosphere/astronomy/sun.h"
-#include "tests/fixtures/bent_twilight.h"
+#include "tests/fixtures/refracted_twilight.h"
 
 namespace alpenglow::atmosphere {
 namespace {
@@ -31,7 +31,7 @@ struct SkyErrors {
   Bands worst{};
   double rms = 0.0;  // of all bands
 
-  SkyErrors(const tests::BentTwilight& air, double truly_deg, double lift_rad) {
+  SkyErrors(const tests::RefractedTwilight& air, double truly_deg, double lift_rad) {
     for (const auto& [elevation, azimuth] : kViews) {
       const glm::dvec3 view = Towards(elevation, azimuth);
       const auto bent = air.Radiance(view, Towards(truly_deg, 0.0), true);
@@ -47,8 +47,8 @@ struct SkyErrors {
   }
 };
 
-TEST(LiftForAir, GivesAnEveningSkyTheLightOfBentRays) {
-  const tests::BentTwilight air(MediumPreset("earth", {450.0, 550.0, 650.0}));
+TEST(LiftForAir, GivesAnEveningSkyTheLightOfRefractedRays) {
+  const tests::RefractedTwilight air(MediumPreset("earth", {450.0, 550.0, 650.0}));
   for (const double truly_deg : {1.0, -1.5, -3.0}) {
     const double lift = LiftForAir(air.air(), truly_deg * kRadiansPerDegree);
     const SkyErrors errors(air, truly_deg, lift);
@@ -59,7 +59,7 @@ TEST(LiftForAir, GivesAnEveningSkyTheLightOfBentRays) {
 }
 
 TEST(LiftForAir, ServesAirBetterThanTheRefractionThatIsSeen) {
-  const tests::BentTwilight air(MediumPreset("earth", {450.0, 550.0, 650.0}));
+  const tests::RefractedTwilight air(MediumPreset("earth", {450.0, 550.0, 650.0}));
   constexpr double kTruly_deg = -1.0;
   const double lift = LiftForAir(air.air(), kTruly_deg * kRadiansPerDegree);
   const double seen = RefractionFromHeight(air.air(), kTruly_deg * kRadiansPerDegree, 0.0);
@@ -67,8 +67,8 @@ TEST(LiftForAir, ServesAirBetterThanTheRefractionThatIsSeen) {
       << "from where it is seen, the sun lights the air by a third too much";
 }
 
-TEST(LiftForAir, GivesDuskMoreOfTheLightOfBentRaysThanNoLift) {
-  const tests::BentTwilight air(MediumPreset("earth", {450.0, 550.0, 650.0}));
+TEST(LiftForAir, GivesDuskMoreOfTheLightOfRefractedRaysThanNoLift) {
+  const tests::RefractedTwilight air(MediumPreset("earth", {450.0, 550.0, 650.0}));
   for (const double truly_deg : {-5.0, -6.5, -8.0}) {
     const double lift = LiftForAir(air.air(), truly_deg * kRadiansPerDegree);
     const Bands with = SkyErrors(air, truly_deg, lift).worst,

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Land and the edge of a planet as shaders lift them, against the ray equation.
-#include "atmosphere/refraction/bent_view.h"
+#include "atmosphere/refraction/refracted_view.h"
 
 #include <gtest/gtest.h>
 
@@ -89,7 +89,7 @@ TEST(LandLift, NothingIsLiftedWithoutAir) {
   EXPECT_NEAR(bend.look_radius_km, bend.radius_km, 1e-3) << "a metre";
 }
 
-TEST(LandLift, ThePlanetLooksAsWideAsBentRaysShowItsHorizon) {
+TEST(LandLift, ThePlanetLooksAsWideAsRefractedRaysShowItsHorizon) {
   const Medium medium = MediumPreset("earth");
   const reference::RayEquation equation(medium, reference::PeckAndReeder(kHorizonWavelength_nm));
   for (const double eye_m : {2.0, 100.0, 3e3, 12e3, 400e3}) {

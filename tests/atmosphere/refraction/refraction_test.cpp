@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "atmosphere/math/constants.h"
-#include "atmosphere/refraction/bent_view.h"
+#include "atmosphere/refraction/refracted_view.h"
 #include "atmosphere/astronomy/sun.h"
 #include "atmosphere/base/error.h"
 

@@ -30,7 +30,7 @@ struct SolvedAir {
   [[nodiscard]] SunlitAir sunlit() const { return {air, beam, multiple_scattering}; }
 
   SingleScattering<float> air;
-  BentBeam beam;
+  RefractedBeam beam;
   MultipleScattering multiple_scattering;
 };
 

@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "atmosphere/reference/reference_solution.h"
-#include "atmosphere/refraction/bent_view.h"
+#include "atmosphere/refraction/refracted_view.h"
 #include "atmosphere/astronomy/moon.h"
 #include "atmosphere/astronomy/night_sky.h"
 #include "renderer/illumination/night_light.h"
@@ -34,7 +34,7 @@ TEST(RefractedPlaces, TheSunIsWhereTheRayEquationOfThePicturesAirHasIt) {
     for (int minutes = 0; minutes < 60; minutes += 6) {
       const UtcInstant instant = AddSeconds(ParseInstant("2026-06-21T18:26:00Z"), 60.0 * minutes);
       const double apparent = renderer.ApparentSun(instant).elevation_rad;
-      if (apparent < BentView(renderer.medium(), height_m).horizon_rad() + kArcminute) continue;
+      if (apparent < RefractedView(renderer.medium(), height_m).horizon_rad() + kArcminute) continue;
       ++seen;
       EXPECT_NEAR(TrueElevation(renderer.medium(), apparent, height_m),
                   SunAt(eye, instant).elevation_rad, kTolerance)
@@ -51,7 +51,7 @@ TEST(RefractedPlaces, StarsAreWhereTheRayEquationOfThePicturesAirHasThem) {
   constexpr double kFaintest = 4.5;
   for (const double height_m : {2.0, 3000.0}) {
     const GeodeticPosition eye = PlaceFromDegrees(46.5, 8.0, height_m);
-    const BentView view(medium, height_m);
+    const RefractedView view(medium, height_m);
     const LocalFrame local(kWgs84, eye);
     const auto stars = StarsAt(instant, kFaintest);
     auto lights = StarLightsOver(eye, instant, view, colour, kFaintest);

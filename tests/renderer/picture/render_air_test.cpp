@@ -5,7 +5,7 @@
 #include <cmath>
 #include <filesystem>
 
-#include "atmosphere/refraction/bent_view.h"
+#include "atmosphere/refraction/refracted_view.h"
 #include "renderer/camera/camera_rays.h"
 #include "renderer/picture/render.h"
 #include "tests/fixtures/bare_scene.h"
@@ -107,7 +107,7 @@ TEST(RenderAir, TheSeaHidesTheFootOfMountainsBehindItsHorizon) {
   settings.layers = {PictureLayer::kDepth};
   const Image image = renderer.Render(ParseInstant("2026-06-21T10:00:00Z"), settings);
   const CameraRays camera(scene.camera, 5, 200);
-  const double dip = -BentView(renderer.medium(), 10.0).horizon_rad();
+  const double dip = -RefractedView(renderer.medium(), 10.0).horizon_rad();
   int mountains = 0;
   for (int y = 0; y < 200; ++y) {
     const double depth_m =

@@ -10,7 +10,7 @@
 #include "atmosphere/colour/spectrum.h"
 #include "atmosphere/reference/reference_solution.h"
 #include "atmosphere/math/constants.h"
-#include "atmosphere/refraction/bent_view.h"
+#include "atmosphere/refraction/refracted_view.h"
 #include "atmosphere/base/error.h"
 #include "lut/multiple_scattering/multiple_scattering.h"
 #include "lut/image/eye.h"
@@ -202,7 +202,7 @@ TEST(Render, SkyMeetsTheSeaAtTheDipOfTheHorizon) {
   }
 }
 
-TEST(Render, AirLiftsTheHorizonOfTheSeaToWhereBentRaysMeetIt) {
+TEST(Render, AirLiftsTheHorizonOfTheSeaToWhereRefractedRaysMeetIt) {
   constexpr double kHeight_m = 10000.0;
   const Scene scene = BareScene(kHeight_m, 0.0, -3.0, 2.0);
   const SceneRenderer renderer(scene);
@@ -213,7 +213,7 @@ TEST(Render, AirLiftsTheHorizonOfTheSeaToWhereBentRaysMeetIt) {
                                 .layers = {PictureLayer::kDepth}};
   const CameraRays camera(scene.camera, settings.width, settings.height);
   const Image image = renderer.Render(ParseInstant("2026-06-21T11:30:00Z"), settings);
-  const double horizon_rad = BentView(renderer.medium(), kHeight_m).horizon_rad();
+  const double horizon_rad = RefractedView(renderer.medium(), kHeight_m).horizon_rad();
   for (int y = 0; y < settings.height; ++y) {
     const double elevation = std::asin(camera.Direction(4.5, y + 0.5).z);
     const float depth = image.layers[0].values[static_cast<std::size_t>(y) * 8 + 4];
@@ -249,7 +249,7 @@ TEST(Render, TheDiskOfASettingSunIsFlat) {
     }
     return area / (0.25 * kPi * (right - left) * (right - left));  // of an ellipse
   };
-  const BentView view(renderer.medium(), 20.0);
+  const RefractedView view(renderer.medium(), 20.0);
   const double middle = view.TrueElevation(sun.elevation_rad), radius = sun.angular_radius_rad;
   const double flat =
       (view.ApparentElevationOf(middle + radius) - view.ApparentElevationOf(middle - radius)) /

@@ -62,7 +62,7 @@ TEST(SharedRays, OfASlopeAreNearlyWhatTheMiddleSees) {
   EXPECT_LT(std::sqrt(squares / ((kSide - 2) * (kSide - 2))), 0.05);
 }
 
-TEST(SharedRays, AreNearlyTheFilterOfABentLightWhereManyCome) {
+TEST(SharedRays, AreNearlyTheFilterOfARefractedLightWhereManyCome) {
   // The mean of x^2 over the filter is x^2 and its variance, 0.186 for each axis. 2000 rays and those
   // of neighbours are good for 0.02.
   const PixelFilter filter(PixelFilter::Kind::kBlackmanHarris);

@@ -9,7 +9,7 @@
 #include "atmosphere/refraction/refraction.h"
 #include "renderer/picture/render.h"
 #include "tests/fixtures/bare_scene.h"
-#include "tests/fixtures/bent_twilight.h"
+#include "tests/fixtures/refracted_twilight.h"
 #include "tests/fixtures/luminance.h"
 
 namespace alpenglow::renderer {
@@ -88,11 +88,11 @@ TEST(TwilightAir, DarkensWithoutAStepWhileTheSunSets) {
   }
 }
 
-TEST(LowSun, LightsLevelGroundByItsBentBeam) {
+TEST(LowSun, LightsLevelGroundByItsRefractedBeam) {
   const SceneRenderer renderer(BareScene(2.0, 0.0, -90.0, 1.0));
   const Medium& medium = renderer.medium();
   const BandColour colour(medium.wavelengths_nm);
-  const tests::BentTwilight rays(medium);
+  const tests::RefractedTwilight rays(medium);
   RenderSettings settings{.width = 1, .height = 1, .samples_per_pixel = 16, .layers = {}};
   settings.effects = settings.effects.Without(Effect::kSkylight).Without(Effect::kNightSky);
   for (const char* time :
@@ -105,7 +105,7 @@ TEST(LowSun, LightsLevelGroundByItsBentBeam) {
                     std::sin(sun.elevation_rad) * medium.ground_albedo[band] / kPi;
     EXPECT_NEAR(tests::Luminance(renderer.Render(evening, settings).at(0, 0)) / colour.Xyz(sent)[1],
                 1.0, 0.03)
-        << "BentBeam is within 2 %; 16 places of the disk stand for it; at "
+        << "RefractedBeam is within 2 %; 16 places of the disk stand for it; at "
         << sun.elevation_rad / kRadiansPerDegree << " degrees";
   }
 }

@@ -7,7 +7,7 @@
 #include <functional>
 
 #include "atmosphere/math/constants.h"
-#include "atmosphere/refraction/bent_view.h"
+#include "atmosphere/refraction/refracted_view.h"
 #include "renderer/picture/render.h"
 #include "renderer/terrain/mesh.h"
 
@@ -129,7 +129,7 @@ TEST(SceneGeometry, WhatTheGroundIsMadeOfIsLookedUpWhereTheRayMeetsItAndLitOnThe
 
 // Long chords are below their rays, so that they meet more of the ground; short ones show what is
 // there.
-TEST(SceneGeometry, LongChordsOfBentRaysMeetWhatShortOnesMeet) {
+TEST(SceneGeometry, LongChordsOfRefractedRaysMeetWhatShortOnesMeet) {
   const LocalFrame frame(kWgs84, {0.8, 0.1, 0.0});
   ElevationGrid grid;
   grid.rows = grid.columns = 121;
@@ -150,7 +150,7 @@ TEST(SceneGeometry, LongChordsOfBentRaysMeetWhatShortOnesMeet) {
   const Medium medium = OnOsculatingSphere(MediumPreset("earth"), 0.8);
   const SceneGeometry solid(solid_ground, medium, false), pieces(ground, medium, false);
   const glm::dvec3 eye(0.0, 0.0, kEye_m);
-  const BentFan fan(BendingAirOf(medium, kHorizonWavelength_nm), eye, {0.0, 0.0, 1.0},
+  const RefractedFan fan(BendingAirOf(medium, kHorizonWavelength_nm), eye, {0.0, 0.0, 1.0},
                     pieces.FarthestFrom(eye));
   int met = 0, other = 0;
   double expected_m = 0.0;

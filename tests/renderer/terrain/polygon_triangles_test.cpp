@@ -120,7 +120,7 @@ TEST(PolygonTriangles, APolygonMayTouchItselfAtASlitAndAtACorner) {
   ExpectItsArea(touching, "a corner on an edge");
 }
 
-TEST(PolygonTriangles, ABentPolygonIsCoveredOnce) {
+TEST(PolygonTriangles, ARefractedPolygonIsCoveredOnce) {
   const Corners bent{{0, 0, 0}, {10, 0, 3}, {6, 4, -1}, {10, 10, 0}, {4, 6, 2}, {0, 10, 1}};
   const PolygonTriangles cut = TrianglesOfPolygon(bent);
   EXPECT_EQ(cut.triangles.size(), 4U);

@@ -232,7 +232,7 @@ TEST_F(AirTexturesOnGpu, TransmittanceToTheSunIsThatOfTheIntegrator) {
   }
 }
 
-TEST_F(AirTexturesOnGpu, BeamOfTheSunIsThatOfBentBeam) {
+TEST_F(AirTexturesOnGpu, BeamOfTheSunIsThatOfRefractedBeam) {
   const BothTables both(0.0, 0.5);
   const auto points = PlacesUnderTheSun(both.tables.map.radius);
   const auto on_gpu = both.OnGpu("BeamOfSun(a[0], a[1]).y", points);

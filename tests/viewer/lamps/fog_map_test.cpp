@@ -36,7 +36,7 @@ struct Stage {
   SceneGround ground = LoadGround(scene);
   SceneGeometry geometry{ground, scene.medium, false};
   SingleScattering<float> air{scene.medium};
-  BentBeam beam{scene.medium};
+  RefractedBeam beam{scene.medium};
   MultipleScattering multiple_scattering{scene.medium};
 
   [[nodiscard]] SunlitAir sunlit() const { return {air, beam, multiple_scattering}; }

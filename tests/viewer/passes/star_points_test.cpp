@@ -104,7 +104,7 @@ TEST(StarPoints, TheSkyTurnsWestwardsAboutThePoleOnceASiderealDay) {
 TEST(StarPoints, AListOfHalfAMinuteAgoStandsWhereTheNextOneDoes) {
   const GeodeticPosition place = PlaceFromDegrees(46.5, 8.0, 2000.0);
   const BandColour colour({440.0, 490.0, 550.0, 630.0});
-  const BentView view(MediumPreset("earth"), place.height_m);
+  const RefractedView view(MediumPreset("earth"), place.height_m);
   const auto before = StarLightsOver(place, {61058, 73800.0}, view, colour, 1.5);
   const auto now = StarLightsOver(place, {61058, 73830.0}, view, colour, 1.5);
   const glm::dmat3 turn = TurnOfSky(place.latitude_rad, 30.0);
@@ -124,7 +124,7 @@ TEST(StarPoints, LowStarsOfAnOldListStandWhereTheNextOneHasThem) {
   const BandColour colour({440.0, 490.0, 550.0, 630.0});
   for (const double height_m : {2.0, 10e3}) {
     const GeodeticPosition place = PlaceFromDegrees(46.5, 8.0, height_m);
-    const BentView view(MediumPreset("earth"), place.height_m);
+    const RefractedView view(MediumPreset("earth"), place.height_m);
     const auto before = StarLightsOver(place, {61058, 73800.0}, view, colour, 5.0);
     const auto now = StarLightsOver(place, {61058, 73830.0}, view, colour, 5.0);
     const StarrySky sky{before, TurnOfSky(place.latitude_rad, 30.0), 0.0, {}, 0.0, &view};
@@ -134,7 +134,7 @@ TEST(StarPoints, LowStarsOfAnOldListStandWhereTheNextOneHasThem) {
       if (over_rad < 0.0 || over_rad > 10.0 * kDegree) continue;
       ++low;
       EXPECT_LT(glm::length(TowardsStar(before[i], sky) - now[i].direction), 0.1 / 60.0 * kDegree)
-          << "a tenth of a minute of arc, as BentView; " << height_m << " m";
+          << "a tenth of a minute of arc, as RefractedView; " << height_m << " m";
     }
     EXPECT_GT(low, 20);
   }

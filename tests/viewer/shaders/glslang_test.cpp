@@ -72,7 +72,7 @@ TEST_F(Glslang, AcceptsTheShadersOfLandShaftsAndDisplay) {
   ExpectAccepted(ShaftPassTexts(std::move(in_fog), true), "shafts.frag.glsl");
   std::vector<ShaderPiece> land = SharedTexts();
   land.push_back(view);
-  land.push_back(ViewerPiece("viewer/shaders/bent_sight.glsl"));
+  land.push_back(ViewerPiece("viewer/shaders/refracted_view_rays.glsl"));
   land.push_back(ViewerPiece("viewer/shaders/land_block.glsl"));
   ExpectAccepted(land, "land.vert.glsl");
   for (const char* depth : {"reversed", "logarithmic"}) {

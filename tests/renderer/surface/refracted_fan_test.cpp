@@ -8,7 +8,7 @@
 #include <glm/geometric.hpp>
 
 #include "atmosphere/reference/reference_solution.h"
-#include "atmosphere/refraction/bent_view.h"
+#include "atmosphere/refraction/refracted_view.h"
 
 namespace alpenglow::renderer {
 namespace {
@@ -16,7 +16,7 @@ namespace {
 constexpr double kMinute = kRadiansPerDegree / 60.0;
 const glm::dvec3 kUp(0.0, 0.0, 1.0);
 
-TEST(BentFan, PlacesOnRaysAreThoseOfTheEquationAtEveryHeight) {
+TEST(RefractedFan, PlacesOnRaysAreThoseOfTheEquationAtEveryHeight) {
   const Medium medium = MediumPreset("earth");
   const double radius_m = medium.planet_radius_m;
   const reference::RayEquation equation(medium, reference::PeckAndReeder(kHorizonWavelength_nm));
@@ -25,8 +25,8 @@ TEST(BentFan, PlacesOnRaysAreThoseOfTheEquationAtEveryHeight) {
     const glm::dvec3 eye(0.0, 0.0, height_m);
     const double horizon_m = std::sqrt(height_m * (2.0 * radius_m + height_m));
     const double reach_m = horizon_m + 400e3;
-    const BentFan fan(air, eye, kUp, reach_m);
-    const double horizon_rad = BentView(medium, height_m).horizon_rad();
+    const RefractedFan fan(air, eye, kUp, reach_m);
+    const double horizon_rad = RefractedView(medium, height_m).horizon_rad();
     for (const double over_minutes : {0.1, 5.0, 30.0, 300.0}) {
       const double elevation = horizon_rad + over_minutes * kMinute;
       const glm::dvec3 towards(0.0, std::cos(elevation), std::sin(elevation));
@@ -47,20 +47,20 @@ TEST(BentFan, PlacesOnRaysAreThoseOfTheEquationAtEveryHeight) {
   }
 }
 
-TEST(BentFan, WithoutAirARayIsStraight) {
+TEST(RefractedFan, WithoutAirARayIsStraight) {
   BendingAir air = BendingAirOf(MediumPreset("earth"), kHorizonWavelength_nm);
   air.refractivity = 0.0;
   const glm::dvec3 eye(0.0, 0.0, 1000.0);
-  const BentFan fan(air, eye, kUp, 100e3);
+  const RefractedFan fan(air, eye, kUp, 100e3);
   const glm::dvec3 towards = glm::normalize(glm::dvec3(0.3, 0.9, -0.02));
   EXPECT_LT(glm::length(FanRay(fan, eye, towards).At(90e3) - eye - 90e3 * towards), 1e-6)
       << "the rounding of places of 90 km";
 }
 
-TEST(BentFan, ChordsAreNotAboveTheirRayAndNoFartherOffThanAskedFor) {
+TEST(RefractedFan, ChordsAreNotAboveTheirRayAndNoFartherOffThanAskedFor) {
   const BendingAir air = BendingAirOf(MediumPreset("earth"), kHorizonWavelength_nm);
   const glm::dvec3 eye(0.0, 0.0, 500.0);
-  const BentFan fan(air, eye, kUp, 200e3);
+  const RefractedFan fan(air, eye, kUp, 200e3);
   constexpr double kOff_rad = 0.1 * kMinute;
   for (const double elevation : {-0.01, -0.005, 0.0, 0.01, 0.1}) {
     const FanRay ray(fan, eye, {0.0, std::cos(elevation), std::sin(elevation)});
@@ -83,10 +83,10 @@ TEST(BentFan, ChordsAreNotAboveTheirRayAndNoFartherOffThanAskedFor) {
   }
 }
 
-TEST(BentFan, RaysAreBelowAndAboveTheHeightsThatTheyAreSaidToBe) {
+TEST(RefractedFan, RaysAreBelowAndAboveTheHeightsThatTheyAreSaidToBe) {
   const BendingAir air = BendingAirOf(MediumPreset("earth"), kHorizonWavelength_nm);
   const glm::dvec3 eye(0.0, 0.0, 1400.0);
-  const BentFan fan(air, eye, kUp, 200e3);
+  const RefractedFan fan(air, eye, kUp, 200e3);
   const auto height_at = [&](const FanRay& ray, double along_m) {
     return glm::length(ray.At(along_m) + glm::dvec3(0.0, 0.0, air.planet_radius_m)) -
            air.planet_radius_m;

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "atmosphere/refraction/bent_view.h"
+#include "atmosphere/refraction/refracted_view.h"
 #include "lut/image/tone_mapping.h"
 #include "renderer/surface/scene_ground.h"
 #include "renderer/picture/render.h"
@@ -36,9 +36,9 @@ Image Painted(const Scene& scene, const PaintedView& view) {
   return painter.picture().Read();
 }
 
-using BentOnCard = tests::Headless;
+using RefractedOnCard = tests::Headless;
 
-TEST_F(BentOnCard, LandIsDisplacedAsByTheFormulaThatIsReference) {
+TEST_F(RefractedOnCard, LandIsDisplacedAsByTheFormulaThatIsReference) {
   const double eye_m = 3000.0;
   const LandBend bend = LandBendOf(GentleAirOf(MediumPreset("earth")), eye_m);
   const auto vec4_of = [](double x, double y, double z, double w) {
@@ -56,7 +56,7 @@ TEST_F(BentOnCard, LandIsDisplacedAsByTheFormulaThatIsReference) {
                        eye_m / 1000.0, bend.radius_km) +
            "#define LOOK_RADIUS bend.x\n#define BEND_TOP bend.y\n"
            "#define BEND_USUAL bend.z\n"});
-  pieces.push_back(ViewerPiece("viewer/shaders/bent_sight.glsl"));
+  pieces.push_back(ViewerPiece("viewer/shaders/refracted_view_rays.glsl"));
   std::vector<tests::Arguments<float>> places;
   for (const float away_m : {5e3F, 50e3F, 100e3F, 200e3F})
     for (const float rise_m : {-5000.0F, -3000.0F, 500.0F}) places.push_back({away_m, rise_m});
@@ -79,13 +79,13 @@ TEST_F(BentOnCard, LandIsDisplacedAsByTheFormulaThatIsReference) {
   }
 }
 
-TEST(BentDisk, BetweenNodesItIsThatOfTheRays) {
+TEST(RefractedDisk, BetweenNodesItIsThatOfTheRays) {
   const Medium medium = MediumPreset("earth");
   constexpr double kRadius = 16.0 * kArcMinute;
   for (const double height_m : {2.0, 10e3}) {
-    const BentView rays(medium, height_m);
+    const RefractedView rays(medium, height_m);
     const double middle = rays.horizon_rad() + 18.0 * kArcMinute;
-    const BentDisk disk = BentDiskOf(medium, height_m, middle, kRadius);
+    const RefractedDisk disk = RefractedDiskOf(medium, height_m, middle, kRadius);
     for (double beside = -16.0; beside <= 16.0; beside += 1.7) {
       const double elevation = middle + beside * kArcMinute;
       const double at = (elevation - disk.first_rad) / disk.step_rad;
@@ -97,16 +97,16 @@ TEST(BentDisk, BetweenNodesItIsThatOfTheRays) {
                                       double{disk.lift_rad[below + 1][of]}, share);
         EXPECT_NEAR(lift / kArcMinute,
                     (elevation - rays.TrueElevation(elevation, band)) / kArcMinute, 0.1)
-            << "0.05' between nodes; the tables of BentView are good to 0.1'; " << height_m;
+            << "0.05' between nodes; the tables of RefractedView are good to 0.1'; " << height_m;
       }
     }
   }
 }
 
-TEST(BentDisk, HighDisksAndWideViewsHaveRoundOnes) {
+TEST(RefractedDisk, HighDisksAndWideViewsHaveRoundOnes) {
   const auto air = SolveAir(MediumPreset("earth"), AirSolution::kDraft);
   constexpr double kRadius = 16.0 * kArcMinute;
-  BentDiskFollower follower;
+  RefractedDiskFollower follower;
   EXPECT_EQ(follower.Follow(air, 2.0, 0.3, kRadius, 0.0), nullptr) << "17 degrees up";
   EXPECT_NE(follower.Follow(air, 2.0, 0.005, kRadius, kArcMinute), nullptr);
   EXPECT_EQ(follower.Follow(air, 2.0, 0.005, kRadius, 6.0 * kArcMinute), nullptr)
@@ -123,7 +123,7 @@ TEST(ViewBend, IsOffWhereNothingMovesByHalfAPixel) {
   EXPECT_TRUE(BendOf(ViewFrom(high, noon, 640, 360), medium, 0.0)) << "the horizon is, by 12'";
 }
 
-TEST_F(BentOnCard, ASettingSunAndTheSeaStandWhereTheRenderersDo) {
+TEST_F(RefractedOnCard, ASettingSunAndTheSeaStandWhereTheRenderersDo) {
   Scene scene = BareScene(20.0, 306.0, 0.15, 1.2);
   scene.ground.kind = GroundCover::Kind::kWater;
   constexpr int kAcross = 64, kDown = 48;
@@ -159,9 +159,9 @@ TEST_F(BentOnCard, ASettingSunAndTheSeaStandWhereTheRenderersDo) {
   EXPECT_LT(in_one, in_both / 20) << "pixels on its rim; a round one differs in a seventh";
 }
 
-using BentPeak = tests::HeadlessWith<TemporaryFolder>;
+using RefractedPeak = tests::HeadlessWith<TemporaryFolder>;
 
-TEST_F(BentPeak, BehindTheGeometricHorizonStandsWhereTheRayEquationHasIt) {
+TEST_F(RefractedPeak, BehindTheGeometricHorizonStandsWhereTheRayEquationHasIt) {
   const Medium medium =
       OnOsculatingSphere(MediumPreset("earth"), BareScene(0.0, 0.0, 0.0, 1.0).place.latitude_rad);
   const UtcInstant noon = ParseInstant("2026-06-21T11:30:00Z");

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Light of the sun's disk on ground at any height, against the ray equation and against integration
 // along bent rays.
-#include "atmosphere/refraction/bent_view.h"
+#include "atmosphere/refraction/refracted_view.h"
 
 #include <gtest/gtest.h>
 
@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "atmosphere/reference/reference_solution.h"
-#include "tests/fixtures/bent_twilight.h"
+#include "tests/fixtures/refracted_twilight.h"
 
 namespace alpenglow::atmosphere {
 namespace {
@@ -29,10 +29,10 @@ Medium EarthOfMolecules() {
   return medium;
 }
 
-TEST(BentBeam, IsWithinOnePerCentOfTheRayEquationInMolecules) {
+TEST(RefractedBeam, IsWithinOnePerCentOfTheRayEquationInMolecules) {
   const Medium medium = EarthOfMolecules();
   const SingleScattering<float> air(medium);
-  const BentBeam beam(medium);
+  const RefractedBeam beam(medium);
   const reference::RayEquation equation(medium, reference::PeckAndReeder(kHorizonWavelength_nm));
   for (const double height_m : kLitHeights_m) {
     for (const double elevation_deg : kSunElevations_deg) {
@@ -56,12 +56,12 @@ TEST(BentBeam, IsWithinOnePerCentOfTheRayEquationInMolecules) {
   }
 }
 
-TEST(BentBeam, IsWithinTwoPerCentOfBentRaysInAllAir) {
+TEST(RefractedBeam, IsWithinTwoPerCentOfRefractedRaysInAllAir) {
   const Medium medium = EarthOfThreeBands();
   const SingleScattering<float> air(medium);
-  const BentBeam beam(medium);
+  const RefractedBeam beam(medium);
   for (const double height_m : kLitHeights_m) {
-    const tests::BentTwilight rays(medium, height_m);
+    const tests::RefractedTwilight rays(medium, height_m);
     for (const double elevation_deg : kSunElevations_deg) {
       const double seen = elevation_deg * kRadiansPerDegree;
       const tests::BandValues expected = rays.Beam(seen, height_m);
@@ -74,12 +74,12 @@ TEST(BentBeam, IsWithinTwoPerCentOfBentRaysInAllAir) {
   }
 }
 
-TEST(BentBeam, BetweenItsNodesIsWithinThreePerCentOfBentRays) {
+TEST(RefractedBeam, BetweenItsNodesIsWithinThreePerCentOfRefractedRays) {
   const Medium medium = EarthOfThreeBands();
   const SingleScattering<float> air(medium);
-  const BentBeam beam(medium);
+  const RefractedBeam beam(medium);
   for (const double height_m : {20.0, 200.0, 700.0, 1500.0, 5500.0, 11e3}) {
-    const tests::BentTwilight rays(medium, height_m);
+    const tests::RefractedTwilight rays(medium, height_m);
     const double horizon_rad = GrazingElevation(GentleAirOf(medium), height_m);
     for (const double over_deg : {0.3, 0.5, 1.1, 3.0, 20.0}) {
       const double seen = horizon_rad + over_deg * kRadiansPerDegree;
@@ -93,13 +93,13 @@ TEST(BentBeam, BetweenItsNodesIsWithinThreePerCentOfBentRays) {
   }
 }
 
-TEST(BentBeam, FadesSmoothlyWhileTheSunSinks) {
+TEST(RefractedBeam, FadesSmoothlyWhileTheSunSinks) {
   // A sun that sinks by a minute of arc: what is left falls by a share that changes by a tenth of
   // itself at most from each to the next, or by 1e-3 high up where it hardly falls.
   constexpr double kMinute = kRadiansPerDegree / 60.0;
   const Medium medium = EarthOfThreeBands();
   const SingleScattering<float> air(medium);
-  const BentBeam beam(medium);
+  const RefractedBeam beam(medium);
   for (const double height_m : kLitHeights_m) {
     const auto log_at = [&](double minutes) {
       return std::log(
@@ -115,16 +115,16 @@ TEST(BentBeam, FadesSmoothlyWhileTheSunSinks) {
   }
 }
 
-TEST(BentBeam, IsThatOfStraightRaysWhereNothingBends) {
+TEST(RefractedBeam, IsThatOfStraightRaysWhereNothingBends) {
   Medium medium = EarthOfThreeBands();
   medium.rayleigh_scattering_per_m.assign(3, 0.0);
   const SingleScattering<float> air(medium);
-  EXPECT_EQ(BentBeam(medium).Left(air, 100.0, 0.01), air.TransmittanceToSpace(100.0, 0.01));
+  EXPECT_EQ(RefractedBeam(medium).Left(air, 100.0, 0.01), air.TransmittanceToSpace(100.0, 0.01));
 }
 
-TEST(BentBeam, StaysBelowThatOfStraightRaysAtAnyHeight) {
+TEST(RefractedBeam, StaysBelowThatOfStraightRaysAtAnyHeight) {
   const Medium medium = EarthOfThreeBands();
-  const BentBeam beam(medium);
+  const RefractedBeam beam(medium);
   for (const double height_m : {-50.0, 0.0, 9e3, 39e3, 41e3, 99e3, 400e3}) {
     for (const double mu : {-1.0, -0.05, 0.0, 0.01, 0.3, 1.0}) {
       const Bands<float> over = beam.OverStraight(height_m, mu);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Compares twilight by refracted rays of the sun (tests/fixtures/bent_twilight.h) with twilight by
+// Compares twilight by refracted rays of the sun (tests/fixtures/refracted_twilight.h) with twilight by
 // straight rays, from a sun that is lifted by a fraction of its refraction (LiftForAir) and from
-// the apparent sun. It then compares sunlight on the ground by BentBeam and by the straight ray
+// the apparent sun. It then compares sunlight on the ground by RefractedBeam and by the straight ray
 // from the apparent sun.
 #include <fmt/core.h>
 
@@ -9,16 +9,16 @@
 #include <cmath>
 #include <vector>
 
-#include "atmosphere/refraction/bent_view.h"
+#include "atmosphere/refraction/refracted_view.h"
 #include "atmosphere/refraction/refraction.h"
 #include "atmosphere/astronomy/sun.h"
-#include "tests/fixtures/bent_twilight.h"
+#include "tests/fixtures/refracted_twilight.h"
 
 namespace {
 
 using namespace alpenglow::atmosphere;
 using alpenglow::tests::BandValues;
-using alpenglow::tests::BentTwilight;
+using alpenglow::tests::RefractedTwilight;
 
 struct View {
   const char* name;
@@ -62,7 +62,7 @@ struct Errors {
   [[nodiscard]] double Rms() const { return std::sqrt(squares / count); }
 };
 
-void CompareRules(const BentTwilight& twilight, double height_m, double elevation_deg) {
+void CompareRules(const RefractedTwilight& twilight, double height_m, double elevation_deg) {
   const double truly_rad = elevation_deg * kRadiansPerDegree;
   std::array<Errors, kRules.size()> errors;
   BandValues zenith;
@@ -86,12 +86,12 @@ void CompareRules(const BentTwilight& twilight, double height_m, double elevatio
 }
 
 /// Prints errors of sunlight at a place with a given apparent elevation of the sun, relative to the
-/// refracted ray: by the straight ray of this elevation, and by BentBeam.
+/// refracted ray: by the straight ray of this elevation, and by RefractedBeam.
 void CompareBeam(const Medium& medium, double height_m, double apparent_deg) {
   const double apparent_rad = apparent_deg * kRadiansPerDegree, mu = std::sin(apparent_rad);
-  const BandValues bent = BentTwilight(medium, height_m).Beam(apparent_rad, height_m);
+  const BandValues bent = RefractedTwilight(medium, height_m).Beam(apparent_rad, height_m);
   static const SingleScattering<float> kAir(medium);
-  static const BentBeam kBeam(medium);
+  static const RefractedBeam kBeam(medium);
   const Bands<float> straight = kAir.TransmittanceToSpace(height_m, mu);
   const Bands<float> beam = kBeam.Left(kAir, height_m, mu);
   const auto error = [&](const Bands<float>& light, std::size_t band) {
@@ -109,7 +109,7 @@ void CompareBeam(const Medium& medium, double height_m, double apparent_deg) {
 int main() {
   const Medium medium = MediumPreset("earth", {450.0, 550.0, 650.0});
   for (const double height_m : {0.0, 3000.0, 11000.0}) {
-    const BentTwilight twilight(medium, height_m);
+    const RefractedTwilight twilight(medium, height_m);
     for (const double elevation_deg : kElevations_deg)
       CompareRules(twilight, height_m, elevation_deg);
   }

@@ -16,7 +16,7 @@
 //
 //   R' / (R' + h) = cos(dip).
 //
-// BentBeam gives sunlight on ground, fog and volumes along refracted rays, relative to straight
+// RefractedBeam gives sunlight on ground, fog and volumes along refracted rays, relative to straight
 // rays. If a disk is seen at an elevation e, a surface perpendicular to its beams receives
 //
 //   E = E_0 T(h, e) F(h, e),  F = exp(-more optical depth) (de / de_true) cos(e) / cos(e_true)
@@ -28,7 +28,7 @@
 //
 // F is tabulated over sqrt(h) and over log(1 + (sin e - sin of the horizon) / s). Elevations are
 // apparent elevations of the disk's centre at the receiver. Ozone is neglected, as in
-// BentView::MoreOpticalDepth.
+// RefractedView::MoreOpticalDepth.
 #pragma once
 
 #include <cstddef>
@@ -49,14 +49,14 @@ namespace alpenglow::atmosphere {
 [[nodiscard]] BendingAir GentleAirOf(const Medium& medium);
 
 /// A ray that ends on the ground.
-struct BentGroundRay {
+struct RefractedGroundRay {
   double angle_rad;      // at the planet's centre, between the observer and the end of the ray
   double elevation_rad;  // > 0, elevation of the observer's line of sight there, seen from the
                          // ground
 };
 
 /// Changes by the air to light from outside, seen in a direction, at kHorizonWavelength_nm.
-struct BentLight {
+struct RefractedLight {
   double refraction_rad = 0.0;
   double per_refractivity_rad = 0.0;          // its derivative with respect to N
   double molecules_m = 0.0, aerosol_m = 0.0;  // columns in excess of straight rays; 0 from 15 deg
@@ -65,16 +65,16 @@ struct BentLight {
 /// Computes the changes, in some hundred microseconds.
 /// @param air  GentleAirOf(medium).
 /// @param elevation_rad  from the horizon up.
-[[nodiscard]] BentLight BentLightOf(const Medium& medium, const BendingAir& air,
+[[nodiscard]] RefractedLight RefractedLightOf(const Medium& medium, const BendingAir& air,
                                     double elevation_rad, double height_m);
 
 /// Tables for an observer at one height. Immutable. All elevations are apparent unless they are
 /// called true. Directions below the horizon have the values of the sky at the horizon.
-class BentView {
+class RefractedView {
  public:
   /// There is no refraction if BendingAirOf(medium) does not bend rays gently.
   /// @param height_m  over the sphere; negative values are treated as 0.
-  BentView(const Medium& medium, double height_m);
+  RefractedView(const Medium& medium, double height_m);
 
   /// Returns the elevation of the ground's horizon [rad], <= 0.
   [[nodiscard]] double horizon_rad() const { return horizon_rad_; }
@@ -102,10 +102,10 @@ class BentView {
   [[nodiscard]] double MoreOpticalDepth(double elevation_rad, std::size_t band) const;
 
   /// Returns the end of a ray on the ground; std::nullopt for rays to the sky.
-  [[nodiscard]] std::optional<BentGroundRay> ToGround(double elevation_rad) const;
+  [[nodiscard]] std::optional<RefractedGroundRay> ToGround(double elevation_rad) const;
 
  private:
-  using Node = BentLight;
+  using Node = RefractedLight;
   [[nodiscard]] Node At(double elevation_rad) const;
 
   BendingAir air_;
@@ -148,16 +148,16 @@ struct LandBend {
 [[nodiscard]] double MostLiftOfPlanet(const LandBend& bend, double eye_m, double farthest_land_m);
 
 /// Refracted sunlight in one medium, at any height. Immutable.
-class BentBeam {
+class RefractedBeam {
  public:
   /// The beam is that of straight rays if the air of the medium does not bend rays gently
-  /// (GentleAirOf of bent_view.h).
-  explicit BentBeam(const Medium& medium);
+  /// (GentleAirOf of refracted_view.h).
+  explicit RefractedBeam(const Medium& medium);
 
   /// Returns F, by band. Below the horizon it is the value at the horizon, above the air the value
   /// at its top. Irradiance of the beam is within 2 % of an integration along refracted rays from
   /// 0.1 degrees up at 0, 3 and 8 km, and within 3 % from 0.3 degrees over the horizon between the
-  /// table's heights (tests/atmosphere/refraction/bent_beam_test.cpp).
+  /// table's heights (tests/atmosphere/refraction/refracted_beam_test.cpp).
   [[nodiscard]] Bands<float> OverStraight(double altitude_m, double mu) const;
 
   /// Returns the irradiance perpendicular to the beams of a sun with unit irradiance above the air.

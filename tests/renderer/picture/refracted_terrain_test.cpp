@@ -18,9 +18,9 @@ using tests::SceneOf;
 constexpr double kMinute = kRadiansPerDegree / 60.0;
 const UtcInstant kNoon = ParseInstant("2026-06-21T11:30:00Z");
 
-using BentTerrain = TemporaryFolder;
+using RefractedTerrain = TemporaryFolder;
 
-TEST_F(BentTerrain, APeakBehindTheGeometricHorizonStandsWhereTheRayEquationHasIt) {
+TEST_F(RefractedTerrain, APeakBehindTheGeometricHorizonStandsWhereTheRayEquationHasIt) {
   const Medium medium =
       OnOsculatingSphere(MediumPreset("earth"), BareScene(0.0, 0.0, 0.0, 1.0).place.latitude_rad);
   const double radius_m = medium.planet_radius_m;
@@ -51,13 +51,13 @@ TEST_F(BentTerrain, APeakBehindTheGeometricHorizonStandsWhereTheRayEquationHasIt
     const auto rows = far_pixels(renderer.Render(kNoon, settings));
     ASSERT_FALSE(rows.empty()) << "refraction shows it: " << peak.distance_m << " m";
     const double top = std::asin(camera.Direction(30.5, rows.front()).z);
-    EXPECT_NEAR(top / kMinute, expected / kMinute, 0.15) << "0.1' of BentPath, and half a pixel";
+    EXPECT_NEAR(top / kMinute, expected / kMinute, 0.15) << "0.1' of RefractedPath, and half a pixel";
     settings.effects = settings.effects.Without(Effect::kRefraction);
     EXPECT_TRUE(far_pixels(renderer.Render(kNoon, settings)).empty());
   }
 }
 
-TEST_F(BentTerrain, PicturesInWhichItMovesLessThanHalfAPixelAreThoseOfStraightRays) {
+TEST_F(RefractedTerrain, PicturesInWhichItMovesLessThanHalfAPixelAreThoseOfStraightRays) {
   const FarPeak peak{20.0, 40e3, 1500.0};  // lifted by 1.2'
   const double radius_m = MediumPreset("earth").planet_radius_m;
   const SceneRenderer renderer(SceneOf(peak, 1.0, 6.0, radius_m, folder_));

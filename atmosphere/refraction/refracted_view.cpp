@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "atmosphere/refraction/bent_view.h"
+#include "atmosphere/refraction/refracted_view.h"
 
 #include <oneapi/tbb/parallel_for.h>
 
@@ -67,9 +67,9 @@ BendingAir GentleAirOf(const Medium& medium) {
   return air;
 }
 
-BentLight BentLightOf(const Medium& medium, const BendingAir& air, double elevation_rad,
+RefractedLight RefractedLightOf(const Medium& medium, const BendingAir& air, double elevation_rad,
                       double height_m) {
-  BentLight light;
+  RefractedLight light;
   light.refraction_rad = RefractionSeenAt(air, elevation_rad, height_m);
   constexpr double kStep = 1e-2;
   BendingAir thicker = air;
@@ -84,13 +84,13 @@ BentLight BentLightOf(const Medium& medium, const BendingAir& air, double elevat
   const auto aerosol = [&](double h_m) { return std::exp(-h_m / medium.mie_scale_height_m); };
   BendingAir still = air;
   still.refractivity = 0.0;
-  const BentRay bent(air, elevation_rad, height_m), straight(still, elevation_rad, height_m);
+  const RefractedRay bent(air, elevation_rad, height_m), straight(still, elevation_rad, height_m);
   light.molecules_m = bent.ColumnToSpace(molecules) - straight.ColumnToSpace(molecules);
   light.aerosol_m = bent.ColumnToSpace(aerosol) - straight.ColumnToSpace(aerosol);
   return light;
 }
 
-BentView::BentView(const Medium& medium, double height_m)
+RefractedView::RefractedView(const Medium& medium, double height_m)
     : air_(GentleAirOf(medium)), height_m_(std::max(height_m, 0.0)) {
   const double of_molecules = air_.refractivity / RefractivityAtSeaLevel(kHorizonWavelength_nm);
   for (std::size_t band = 0; band < medium.wavelengths_nm.size(); ++band) {
@@ -105,7 +105,7 @@ BentView::BentView(const Medium& medium, double height_m)
   ground_scale_rad_ = std::clamp(-horizon_rad_, 1e-5, kWidest_rad);
   for (int i = 0; i < kSkyNodes; ++i) {
     const double over = NodePlace(i, kSkyNodes, sky_scale_rad_, kHorizontal - horizon_rad_);
-    sky_.push_back(BentLightOf(medium, air_, horizon_rad_ + over, height_m_));
+    sky_.push_back(RefractedLightOf(medium, air_, horizon_rad_ + over, height_m_));
   }
   const double at_ground_m = (1.0 + air_.refractivity) * air_.planet_radius_m;
   const double at_eye_m =
@@ -115,12 +115,12 @@ BentView::BentView(const Medium& medium, double height_m)
     // The observer's elevation follows from the elevation at the ground by their common invariant.
     const double elevation =
         -std::acos(std::min(std::cos(at_ground) * at_ground_m / at_eye_m, 1.0));
-    const BentRay ray(air_, elevation, height_m_);
+    const RefractedRay ray(air_, elevation, height_m_);
     bending_.push_back(ray.Bending(at_ground, std::min(-elevation, ray.ElevationAt(air_.top_m))));
   }
 }
 
-BentView::Node BentView::At(double elevation_rad) const {
+RefractedView::Node RefractedView::At(double elevation_rad) const {
   const auto [below, share] = BetweenLogarithmicNodes(elevation_rad - horizon_rad_, kSkyNodes,
                                                       sky_scale_rad_, kHorizontal - horizon_rad_);
   const Node &a = sky_[below], &b = sky_[below + 1];
@@ -131,16 +131,16 @@ BentView::Node BentView::At(double elevation_rad) const {
           between(&Node::molecules_m), between(&Node::aerosol_m)};
 }
 
-double BentView::TrueElevation(double elevation_rad, std::size_t band) const {
+double RefractedView::TrueElevation(double elevation_rad, std::size_t band) const {
   const Node node = At(elevation_rad);
   return elevation_rad - node.refraction_rad - more_refractivity_[band] * node.per_refractivity_rad;
 }
 
-double BentView::TrueElevation(double elevation_rad) const {
+double RefractedView::TrueElevation(double elevation_rad) const {
   return elevation_rad - At(elevation_rad).refraction_rad;
 }
 
-double BentView::ApparentElevationOf(double true_elevation_rad) const {
+double RefractedView::ApparentElevationOf(double true_elevation_rad) const {
   const double on_horizon = At(horizon_rad_).refraction_rad;
   if (true_elevation_rad <= horizon_rad_ - on_horizon) return horizon_rad_;
   const auto error = [&](double elevation) {
@@ -150,23 +150,23 @@ double BentView::ApparentElevationOf(double true_elevation_rad) const {
                        true_elevation_rad + on_horizon + 1e-9, 1e-10);
 }
 
-double BentView::LiftedElevationOf(double true_elevation_rad) const {
+double RefractedView::LiftedElevationOf(double true_elevation_rad) const {
   const double below_rad = TrueElevation(horizon_rad_) - true_elevation_rad;
   return ApparentElevationOf(true_elevation_rad) - std::max(below_rad, 0.0);
 }
 
-double BentView::MoreOpticalDepth(double elevation_rad, std::size_t band) const {
+double RefractedView::MoreOpticalDepth(double elevation_rad, std::size_t band) const {
   const Node node = At(elevation_rad);
   return molecules_per_m_[band] * node.molecules_m + aerosol_per_m_[band] * node.aerosol_m;
 }
 
-std::optional<BentGroundRay> BentView::ToGround(double elevation_rad) const {
+std::optional<RefractedGroundRay> RefractedView::ToGround(double elevation_rad) const {
   if (elevation_rad >= horizon_rad_) return std::nullopt;
-  const double at_ground = BentRay(air_, elevation_rad, height_m_).ElevationAt(0.0);
+  const double at_ground = RefractedRay(air_, elevation_rad, height_m_).ElevationAt(0.0);
   const auto [below, share] =
       BetweenLogarithmicNodes(at_ground, kGroundNodes, ground_scale_rad_, kHorizontal);
   const double bending = bending_[below] + share * (bending_[below + 1] - bending_[below]);
-  return BentGroundRay{-elevation_rad - at_ground + bending, at_ground};
+  return RefractedGroundRay{-elevation_rad - at_ground + bending, at_ground};
 }
 
 }  // namespace alpenglow::atmosphere
@@ -273,7 +273,7 @@ double LogSpread(const BendingAir& air, double elevation_rad, double height_m) {
 
 }  // namespace
 
-BentBeam::BentBeam(const Medium& medium)
+RefractedBeam::RefractedBeam(const Medium& medium)
     : bands_(medium.wavelengths_nm.size()),
       top_m_(std::min(medium.atmosphere_height_m, kTop_m)),
       molecules_per_m_(medium.rayleigh_scattering_per_m),
@@ -288,7 +288,7 @@ BentBeam::BentBeam(const Medium& medium)
   });
 }
 
-BentBeam::Row BentBeam::RowAt(const SingleScattering<double>& straight, const BendingAir& air,
+RefractedBeam::Row RefractedBeam::RowAt(const SingleScattering<double>& straight, const BendingAir& air,
                               double height_m) {
   const Medium& medium = straight.medium();
   const auto densities = [&](double h_m) {
@@ -300,13 +300,13 @@ BentBeam::Row BentBeam::RowAt(const SingleScattering<double>& straight, const Be
     const double elevation = std::min(std::asin(std::min(mu, 1.0)), kHighest_rad);
     const std::array<double, 3> less = straight.ColumnsToSpace(height_m, std::sin(elevation));
     row.nodes.push_back(
-        {BentRay(air, elevation, height_m).ColumnToSpace(densities) - glm::dvec2(less[0], less[1]),
+        {RefractedRay(air, elevation, height_m).ColumnToSpace(densities) - glm::dvec2(less[0], less[1]),
          LogSpread(air, elevation, height_m)});
   }
   return row;
 }
 
-BentBeam::Node BentBeam::At(double altitude_m, double mu) const {
+RefractedBeam::Node RefractedBeam::At(double altitude_m, double mu) const {
   const auto mix = [](const auto& a, const auto& b, double share) { return a + share * (b - a); };
   const double height = std::clamp(altitude_m / top_m_, 0.0, 1.0);
   const auto [row, up] = BetweenUniformNodes(std::sqrt(height), kHeights);
@@ -321,7 +321,7 @@ BentBeam::Node BentBeam::At(double altitude_m, double mu) const {
   return {mix(below.more_m, above.more_m, up), mix(below.log_spread, above.log_spread, up)};
 }
 
-Bands<float> BentBeam::OverStraight(double altitude_m, double mu) const {
+Bands<float> RefractedBeam::OverStraight(double altitude_m, double mu) const {
   Bands<float> over(bands_);
   const Node node = rows_.empty() ? Node{glm::dvec2(0.0), 0.0} : At(altitude_m, mu);
   for (std::size_t band = 0; band < bands_; ++band) {
@@ -332,7 +332,7 @@ Bands<float> BentBeam::OverStraight(double altitude_m, double mu) const {
   return over;
 }
 
-Bands<float> BentBeam::Left(const SingleScattering<float>& air, double altitude_m, double mu) const {
+Bands<float> RefractedBeam::Left(const SingleScattering<float>& air, double altitude_m, double mu) const {
   Bands<float> left = air.TransmittanceToSpace(altitude_m, mu);
   const Bands<float> over = OverStraight(altitude_m, mu);
   for (std::size_t band = 0; band < bands_; ++band) left[band] *= over[band];

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Bent rays against the ray equation.
-#include "atmosphere/refraction/bent_view.h"
+// Refracted rays against the ray equation.
+#include "atmosphere/refraction/refracted_view.h"
 
 #include <gtest/gtest.h>
 
@@ -20,10 +20,10 @@ constexpr double kMinute = kRadiansPerDegree / 60.0;
 
 constexpr std::array kHeights_m{0.0, 2.0, 100.0, 3000.0, 12e3, 40e3, 110e3, 400e3, 36e6};
 
-TEST(BentView, ApparentElevationIsThatOfTheRayEquationFromTheHorizonUpAtEveryHeight) {
+TEST(RefractedView, ApparentElevationIsThatOfTheRayEquationFromTheHorizonUpAtEveryHeight) {
   const Medium medium = MediumPreset("earth");
   for (const double height : kHeights_m) {
-    const BentView view(medium, height);
+    const RefractedView view(medium, height);
     for (const double over : {0.01, 0.1, 0.3, 1.0, 4.0, 15.0, 60.0}) {
       const double elevation = view.horizon_rad() + over * kDegree;
       for (const std::size_t band : {std::size_t{0}, medium.wavelengths_nm.size() - 1}) {
@@ -39,12 +39,12 @@ TEST(BentView, ApparentElevationIsThatOfTheRayEquationFromTheHorizonUpAtEveryHei
   }
 }
 
-TEST(BentView, TheSettingDiskIsAsFlatAsByTheRayEquation) {
+TEST(RefractedView, TheSettingDiskIsAsFlatAsByTheRayEquation) {
   const Medium medium = MediumPreset("earth");
   const RayEquation equation(medium, PeckAndReeder(kHorizonWavelength_nm));
   constexpr double kDiameter = 32.0 * kMinute;
   for (const double height : {2.0, 3000.0, 12e3}) {
-    const BentView view(medium, height);
+    const RefractedView view(medium, height);
     const double horizon = view.horizon_rad();
     // The lower limb stands on the horizon, the upper where the reference solution finds what is as much higher.
     const double lower = horizon + 1e-3 * kMinute;
@@ -58,8 +58,8 @@ TEST(BentView, TheSettingDiskIsAsFlatAsByTheRayEquation) {
   }
 }
 
-TEST(BentView, TheUpperRimIsGreenAndBlueByTheDispersionOfAir) {
-  const BentView view(MediumPreset("earth", {450.0, 550.0, 650.0}), 2.0);
+TEST(RefractedView, TheUpperRimIsGreenAndBlueByTheDispersionOfAir) {
+  const RefractedView view(MediumPreset("earth", {450.0, 550.0, 650.0}), 2.0);
   // Young (2000), Optics and Photonics News 11(3), 31-37: at the horizon green is lifted by some 10
   // to 20 arcseconds over red.
   const double red_to_green =
@@ -70,11 +70,11 @@ TEST(BentView, TheUpperRimIsGreenAndBlueByTheDispersionOfAir) {
   EXPECT_GT(green_to_blue, red_to_green);
 }
 
-TEST(BentView, TheHorizonLiesWhereRaysOfTheEquationJustMissTheGround) {
+TEST(RefractedView, TheHorizonLiesWhereRaysOfTheEquationJustMissTheGround) {
   const Medium medium = MediumPreset("earth");
   const RayEquation equation(medium, PeckAndReeder(kHorizonWavelength_nm));
   for (const double height : {2.0, 100.0, 3000.0, 12e3, 400e3}) {
-    const BentView view(medium, height);
+    const RefractedView view(medium, height);
     const double little = 0.02 * kMinute;
     EXPECT_FALSE(equation.Follow(view.horizon_rad() + little, height).is_ground) << height;
     EXPECT_TRUE(equation.Follow(view.horizon_rad() - little, height).is_ground) << height;
@@ -90,9 +90,9 @@ TEST(BentView, TheHorizonLiesWhereRaysOfTheEquationJustMissTheGround) {
   }
 }
 
-TEST(BentView, GroundNearByIsWhereStraightRaysFindIt) {
+TEST(RefractedView, GroundNearByIsWhereStraightRaysFindIt) {
   const Medium medium = MediumPreset("earth");
-  const BentView view(medium, 2.0);
+  const RefractedView view(medium, 2.0);
   for (const double degrees : {-10.0, -45.0, -89.0}) {
     const double range_m = view.ToGround(degrees * kDegree)->angle_rad * medium.planet_radius_m;
     EXPECT_NEAR(range_m, 2.0 / std::tan(-degrees * kDegree), 1e-3) << degrees << ": a millimetre";
@@ -100,41 +100,41 @@ TEST(BentView, GroundNearByIsWhereStraightRaysFindIt) {
   EXPECT_FALSE(view.ToGround(0.01)) << "the sky";
 }
 
-TEST(BentView, TheSunShinesThroughTheColumnOfTheBentRay) {
+TEST(RefractedView, TheSunShinesThroughTheColumnOfTheRefractedRay) {
   const Medium medium = MediumPreset("earth");
   const RayEquation equation(medium, PeckAndReeder(kHorizonWavelength_nm)), straight(medium, 0.0);
   Medium clear = medium;
   clear.mie_extinction_per_m.assign(medium.wavelengths_nm.size(), 0.0);
   for (const double height : {2.0, 3000.0, 40e3}) {
-    const BentView view(clear, height);
+    const RefractedView view(clear, height);
     for (const double over : {0.01, 0.5, 2.0, 6.0}) {
       const double elevation = view.horizon_rad() + over * kDegree;
-      const double bent_m = equation.Follow(elevation, height).column_m;
-      const double more_m = bent_m - straight.Follow(elevation, height).column_m;
+      const double refracted_m = equation.Follow(elevation, height).column_m;
+      const double more_m = refracted_m - straight.Follow(elevation, height).column_m;
       EXPECT_NEAR(view.MoreOpticalDepth(elevation, 0) / medium.rayleigh_scattering_per_m[0], more_m,
-                  0.002 * bent_m)
+                  0.002 * refracted_m)
           << height << " m, " << over << " degrees over the horizon";
     }
   }
 }
 
-TEST(BentView, NoAirBendsNothing) {
+TEST(RefractedView, NoAirBendsNothing) {
   Medium medium = MediumPreset("earth");
   for (double& scattering : medium.rayleigh_scattering_per_m) scattering = 0.0;
-  const BentView view(medium, 1000.0);
+  const RefractedView view(medium, 1000.0);
   EXPECT_EQ(view.TrueElevation(0.3, 0), 0.3);
   EXPECT_NEAR(view.horizon_rad(),
               -std::acos(medium.planet_radius_m / (medium.planet_radius_m + 1000.0)), 1e-12);
   EXPECT_EQ(view.MoreOpticalDepth(0.0, 0), 0.0);
 }
 
-TEST(BentView, AirThatWouldTrapRaysIsTakenToBendNone) {
+TEST(RefractedView, AirThatWouldTrapRaysIsTakenToBendNone) {
   Medium medium = MediumPreset("earth");
   medium.rayleigh_scale_height_m = 500.0;
   medium.rayleigh_deficit = {};
   medium.refraction = RefractionBy::kMolecules;
   EXPECT_FALSE(GentlyBends(BendingAirOf(medium, 550.0)));
-  EXPECT_EQ(BentView(medium, 2.0).TrueElevation(0.0, 0), 0.0);
+  EXPECT_EQ(RefractedView(medium, 2.0).TrueElevation(0.0, 0), 0.0);
 }
 
 }  // namespace

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Refracted disks of sun and moon near the horizon, with dispersion and extinction per band:
-// BentDisk of painted_view.h. The block View must hold the true sun, and `moon` (sun_light.glsl)
+// RefractedDisk of painted_view.h. The block View must hold the true sun, and `moon` (sun_light.glsl)
 // the true moon.
 #define DISK_NODES 13
 
@@ -27,7 +27,7 @@ DiskAir DiskAirAt(int of, float elevation) {
 
 // Returns the radiance of both disks per unit of the sun's irradiance [1/sr]: for each band,
 // SunDiskRadiance and MoonRadiance in the true direction.
-vec4 BentDisks(vec3 direction, float width) {
+vec4 RefractedDisks(vec3 direction, float width) {
   float level = length(direction.xy);
   float elevation = AngleOfSine(clamp(direction.z, -1.0, 1.0));
   DiskAir of_sun = DiskAirAt(0, elevation), of_moon = DiskAirAt(1, elevation);
