@@ -264,8 +264,8 @@ void Compare() {
         const HeightRaster heights = HeightsAround(
             view.grid, view.frame, 36e3, quality.size.nodes_a_sample * quality.size.samples);
         const double middle = Milliseconds();
-        const auto map = std::make_shared<ShadeMap>(
-            ShadeMapOf(heights, to_sun, kSunRadius_rad, quality.size.cells));
+        const auto map = std::make_shared<SunShadowMap>(
+            SunShadowMapOf(heights, to_sun, kSunRadius_rad, quality.size.cells));
         const double end = Milliseconds();
         ShadeTexture shade;
         shade.TakeOver(map);

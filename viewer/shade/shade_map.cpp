@@ -175,7 +175,7 @@ class Profile {
   float x_, y_, dx_, dy_;
 };
 
-void Widen(ShadeMap& map, double u_m, double v_m, double height_m) {
+void Widen(SunShadowMap& map, double u_m, double v_m, double height_m) {
   map.low_u_m = std::min(map.low_u_m, u_m - map.cell_m);
   map.high_u_m = std::max(map.high_u_m, u_m + map.cell_m);
   map.low_v_m = std::min(map.low_v_m, v_m - map.cell_m);
@@ -191,8 +191,8 @@ float LowestOf(const HeightRaster& heights) {
 }
 
 // Returns a map whose nodes cover the raster, without heights.
-ShadeMap EmptyMap(const HeightRaster& heights, const glm::dvec3& to_sun, int most_side) {
-  ShadeMap map;
+SunShadowMap EmptyMap(const HeightRaster& heights, const glm::dvec3& to_sun, int most_side) {
+  SunShadowMap map;
   map.to_sun = to_sun;
   const double flat = std::hypot(to_sun.x, to_sun.y);
   map.sunwards = glm::dvec3(to_sun.x, to_sun.y, 0.0) / flat;
@@ -226,11 +226,11 @@ struct Sweep {
   int steps;                    // per cell along u; a crest is found to half a step
   std::array<float, 3> fall_m;  // descent of each beam per step
 
-  void Line(int line, ShadeMap& map) const;
+  void Line(int line, SunShadowMap& map) const;
 };
 
 // Sweeps one line, starting on the side of the sun.
-void Sweep::Line(int line, ShadeMap& map) const {
+void Sweep::Line(int line, SunShadowMap& map) const {
   const double v_m = map.first_v_m + map.cell_m * line;
   const glm::dvec3 first = map.first_u_m * map.sunwards + v_m * map.across;
   const glm::dvec3 step = map.cell_m / steps * map.sunwards;
@@ -252,7 +252,7 @@ void Sweep::Line(int line, ShadeMap& map) const {
 }
 
 // Extends the box of the map to where shadows at the first node reach the lowest ground.
-void GoOnBeyond(float lowest_m, ShadeMap& map) {
+void GoOnBeyond(float lowest_m, SunShadowMap& map) {
   constexpr double kFarthest_m = 300e3;
   float highest_m = lowest_m;
   for (int line = 0; line < map.lines; ++line) {
@@ -266,13 +266,13 @@ void GoOnBeyond(float lowest_m, ShadeMap& map) {
 
 }  // namespace
 
-ShadeMap ShadeMapOf(const HeightRaster& heights, const glm::dvec3& to_sun, double radius_rad,
+SunShadowMap SunShadowMapOf(const HeightRaster& heights, const glm::dvec3& to_sun, double radius_rad,
                     int most_side) {
   ALPENGLOW_ENSURE(std::abs(glm::length(to_sun) - 1.0), <, 1e-6);
   ALPENGLOW_ENSURE(most_side, >=, 2);
   const double elevation = std::asin(std::clamp(to_sun.z, -1.0, 1.0));
   if (elevation < kLowestSun_rad || elevation > kHighestSun_rad || heights.z_m.empty()) return {};
-  ShadeMap map = EmptyMap(heights, to_sun, most_side);
+  SunShadowMap map = EmptyMap(heights, to_sun, most_side);
   map.height.resize(static_cast<std::size_t>(map.columns) * static_cast<std::size_t>(map.lines));
   // At least two steps per cell of the map, and at least one per cell of the heights.
   const int steps = std::max(2, static_cast<int>(std::lround(map.cell_m / heights.cell_m)));

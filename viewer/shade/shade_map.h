@@ -2,7 +2,7 @@
 // Height of terrain shadows in the air, which shaders need to find the shadowed stretches of a ray.
 //
 // HeightsAround resamples heights from latitude and longitude to an even grid of a local frame.
-// ShadeMap is a faster version of ShadowHeights (renderer/visibility/shadow_heights.h) for the GPU.
+// SunShadowMap is a faster version of ShadowHeights (renderer/visibility/shadow_heights.h) for the GPU.
 // Over the plane of u, the distance towards the sun, and v, across it, the height of the shadow for
 // a beam is
 //
@@ -39,7 +39,7 @@ namespace alpenglow::viewer {
 
 /// Heights of the shadow of terrain for one direction of the sun. Immutable once made. Lengths in
 /// metres, in the frame of the heights, z up.
-struct ShadeMap {
+struct SunShadowMap {
   glm::dvec3 to_sun{0.0};                   // direction of the sun
   glm::dvec3 sunwards{0.0}, across{0.0};    // horizontal unit vectors of u and v
   double first_u_m = 0.0, first_v_m = 0.0;  // of node (0, 0)
@@ -70,7 +70,7 @@ struct ShadeMap {
 /// @param radius_rad  angular radius of the disk, >= 0.
 /// @param most_side   largest number of cells along the longer side. Cells are no smaller than
 ///   those of the heights.
-[[nodiscard]] ShadeMap ShadeMapOf(const HeightRaster& heights, const glm::dvec3& to_sun,
+[[nodiscard]] SunShadowMap SunShadowMapOf(const HeightRaster& heights, const glm::dvec3& to_sun,
                                   double radius_rad, int most_side);
 
 }  // namespace alpenglow::viewer

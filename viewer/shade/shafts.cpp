@@ -27,14 +27,14 @@ glm::vec4 Row(const glm::dmat4& map_from_eye, const glm::dvec3& axis, double sca
   return {along(0), along(1), along(2), along(3) + shift};
 }
 
-void Allocate(const ShadeMap& map) {
+void Allocate(const SunShadowMap& map) {
   glTexImage2D(GL_TEXTURE_2D, 0, GL_RG32F, map.columns, map.lines, 0, GL_RG, GL_FLOAT, nullptr);
   ClampAndFilter(GL_TEXTURE_2D, true);
 }
 
 }  // namespace
 
-void ShadeTexture::TakeOver(std::shared_ptr<const ShadeMap> map) {
+void ShadeTexture::TakeOver(std::shared_ptr<const SunShadowMap> map) {
   ALPENGLOW_ENSURE(map != nullptr, ==, true);
   coming_.map = std::move(map);
   lines_sent_ = 0;
@@ -42,7 +42,7 @@ void ShadeTexture::TakeOver(std::shared_ptr<const ShadeMap> map) {
 
 bool ShadeTexture::Upload(int most_lines, int unit) {
   if (!coming_.map) return false;
-  const ShadeMap& map = *coming_.map;
+  const SunShadowMap& map = *coming_.map;
   if (!map.ShadesNothing()) {
     glActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(unit));
     glBindTexture(GL_TEXTURE_2D, coming_.texture.id());
@@ -63,7 +63,7 @@ bool ShadeTexture::Upload(int most_lines, int unit) {
 void ShadeTexture::Bind(const ShaderProgram& program, int unit, const glm::dmat4& map_from_eye,
                         const ShadeSteps& steps) const {
   ALPENGLOW_ENSURE(Shades(), ==, true);
-  const ShadeMap& map = *used_.map;
+  const SunShadowMap& map = *used_.map;
   glActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(unit));
   glBindTexture(GL_TEXTURE_2D, used_.texture.id());
   glUniform1i(program.Uniform("shade_map"), unit);
@@ -173,9 +173,9 @@ class ShadeFollower::Maker {
   std::shared_ptr<const Made> operator()(const Request& request) {
     const auto begin = std::chrono::steady_clock::now();
     if (!IsKept(request)) Keep(request);
-    ShadeMap map =
-        heights_ ? ShadeMapOf(*heights_, request.to_sun, request.sun_radius_rad, request.size.cells)
-                 : ShadeMap{};
+    SunShadowMap map =
+        heights_ ? SunShadowMapOf(*heights_, request.to_sun, request.sun_radius_rad, request.size.cells)
+                 : SunShadowMap{};
     const std::chrono::duration<double> took = std::chrono::steady_clock::now() - begin;
     return std::make_shared<const Made>(
         Made{request.frame, request.to_sun, std::move(map), took.count()});

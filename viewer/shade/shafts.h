@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Shafts: the volumetric shadows of terrain in the air.
 //
-// ShadeTexture holds a ShadeMap on the GPU. A new map is uploaded line by line while the previous
+// ShadeTexture holds a SunShadowMap on the GPU. A new map is uploaded line by line while the previous
 // one is in use.
 //
 // ShaftPass renders the light that shadows remove from the ray of every few pixels, and the picture
@@ -55,7 +55,7 @@ struct ShadeSteps {
 class ShadeTexture {
  public:
   /// Starts to upload a map. An unfinished upload of another map is abandoned.
-  void TakeOver(std::shared_ptr<const ShadeMap> map);
+  void TakeOver(std::shared_ptr<const SunShadowMap> map);
   /// Uploads up to `most_lines` lines of the new map through a texture unit. When all lines are
   /// uploaded, the map comes into use. Does nothing if there is no new map. Returns whether a map
   /// came into use.
@@ -64,7 +64,7 @@ class ShadeTexture {
   /// Returns whether a map is in use and it shadows anything.
   [[nodiscard]] bool Shades() const { return used_.map && !used_.map->ShadesNothing(); }
   /// Returns the map in use. Requires Shades().
-  [[nodiscard]] const ShadeMap& map() const { return *used_.map; }
+  [[nodiscard]] const SunShadowMap& map() const { return *used_.map; }
 
   /// Sets the inputs of shade_march.glsl in the program in use. Requires Shades().
   /// @param map_from_eye  from metres in the frame (east, north, up) at the eye to metres in the
@@ -75,7 +75,7 @@ class ShadeTexture {
  private:
   struct Held {
     GlTexture texture;
-    std::shared_ptr<const ShadeMap> map;
+    std::shared_ptr<const SunShadowMap> map;
   };
   Held used_, coming_;
   int lines_sent_ = 0;
@@ -171,7 +171,7 @@ class ShadeFollower {
   struct Made {
     LocalFrame frame;
     glm::dvec3 to_sun;  // in the frame
-    ShadeMap map;
+    SunShadowMap map;
     double making_s;
   };
   /// Makes maps. It keeps the heights between maps of the same ground.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Sunlight in fog that terrain shadows remove from a ray, by marching through a ShadeMap as
+// Sunlight in fog that terrain shadows remove from a ray, by marching through a SunShadowMap as
 // MarchedShade (shade_march.glsl) does for air. For flat ground the steps' shares of the ray's
 // light increase linearly, because a low sun shines on the top of the fog, where rays enter.
 // FogSunTo (fog_light.glsl) gives the light of each step.

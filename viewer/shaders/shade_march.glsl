@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Single scattering that terrain shadows remove from a ray, by marching through a ShadeMap
+// Single scattering that terrain shadows remove from a ray, by marching through a SunShadowMap
 // (viewer/shade/shade_map.h).
 //
 // Requires vec4 SingleTo(vec3 direction, float distance_km): single scattering of sunlight up to a

@@ -39,26 +39,26 @@ HeightRaster Raster(const Height& height, int side, double cell_m) {
 }
 
 /// Of a node, in the frame of the heights.
-glm::dvec3 PlaceOf(const ShadeMap& map, int column, int line) {
+glm::dvec3 PlaceOf(const SunShadowMap& map, int column, int line) {
   return (map.first_u_m + map.cell_m * column) * map.sunwards +
          (map.first_v_m + map.cell_m * line) * map.across;
 }
 
-TEST(ShadeMap, HasNoSideThatIsAPowerOfTwoWhileTheSunTurns) {
+TEST(SunShadowMap, HasNoSideThatIsAPowerOfTwoWhileTheSunTurns) {
   const auto wall = [](double x, double) { return std::abs(x) < 60.0 ? 800.0 : 0.0; };
   const HeightRaster heights = Raster(wall, 65, 50.0);
   for (double azimuth_deg = 0.0; azimuth_deg < 90.0; azimuth_deg += 1.0) {
-    const ShadeMap map = ShadeMapOf(heights, SunAtDegrees(10.0, azimuth_deg), kSunRadius_rad, 64);
+    const SunShadowMap map = SunShadowMapOf(heights, SunAtDegrees(10.0, azimuth_deg), kSunRadius_rad, 64);
     EXPECT_EQ(map.columns, OffPowersOfTwo(map.columns)) << azimuth_deg;
     EXPECT_EQ(map.lines, OffPowersOfTwo(map.lines)) << azimuth_deg;
   }
 }
 
-TEST(ShadeMap, OfAWallFallsByTheTangentOfTheSun) {
+TEST(SunShadowMap, OfAWallFallsByTheTangentOfTheSun) {
   const auto wall = [](double x, double) { return std::abs(x) < 60.0 ? 800.0 : 0.0; };
   const HeightRaster heights = Raster(wall, 401, 50.0);
   for (const double degrees : {2.0, 10.0, 40.0}) {
-    const ShadeMap map = ShadeMapOf(heights, SunAtDegrees(degrees, 0.0), kSunRadius_rad, 1024);
+    const SunShadowMap map = SunShadowMapOf(heights, SunAtDegrees(degrees, 0.0), kSunRadius_rad, 1024);
     const double slope = std::tan(degrees * kRadiansPerDegree);
     const int line = map.lines / 2;
     for (int column = 1; column < map.columns - 1; ++column) {
@@ -86,13 +86,13 @@ double ReferenceShade(const glm::dvec3& place, const glm::dvec3& to_sun, double 
   }
 }
 
-TEST(ShadeMap, IsTheHighestBeamThatRoughLandCutsOff) {
+TEST(SunShadowMap, IsTheHighestBeamThatRoughLandCutsOff) {
   constexpr int kSide = 241;
   constexpr double kCell_m = 60.0, kRim_m = 0.5 * kCell_m * (kSide - 1);
   const HeightRaster heights = Raster(RoughLand, kSide, kCell_m);
   for (const double degrees : {15.0, 3.0, -1.0}) {
     const glm::dvec3 to_sun = SunAtDegrees(degrees, 35.0);
-    const ShadeMap map = ShadeMapOf(heights, to_sun, kSunRadius_rad, 1024);
+    const SunShadowMap map = SunShadowMapOf(heights, to_sun, kSunRadius_rad, 1024);
     std::vector<double> errors_m;
     for (int line = 4; line < map.lines; line += 9) {
       for (int column = 4; column < map.columns; column += 9) {
@@ -109,24 +109,24 @@ TEST(ShadeMap, IsTheHighestBeamThatRoughLandCutsOff) {
   }
 }
 
-TEST(ShadeMap, OfGentleLandUnderAHighSunIsNone) {
+TEST(SunShadowMap, OfGentleLandUnderAHighSunIsNone) {
   const auto hills = [](double x, double y) {
     return 100.0 * (1.0 + std::cos(1e-3 * x)) * std::exp(-5e-8 * (x * x + y * y));
   };
-  EXPECT_TRUE(ShadeMapOf(Raster(hills, 201, 100.0), SunAtDegrees(50.0, 20.0), kSunRadius_rad, 512)
+  EXPECT_TRUE(SunShadowMapOf(Raster(hills, 201, 100.0), SunAtDegrees(50.0, 20.0), kSunRadius_rad, 512)
                   .ShadesNothing());
-  EXPECT_FALSE(ShadeMapOf(Raster(hills, 201, 100.0), SunAtDegrees(5.0, 20.0), kSunRadius_rad, 512)
+  EXPECT_FALSE(SunShadowMapOf(Raster(hills, 201, 100.0), SunAtDegrees(5.0, 20.0), kSunRadius_rad, 512)
                    .ShadesNothing());
   for (const double degrees : {-5.0, 85.0, 90.0}) {
     EXPECT_TRUE(
-        ShadeMapOf(Raster(hills, 201, 100.0), SunAtDegrees(degrees, 20.0), kSunRadius_rad, 512)
+        SunShadowMapOf(Raster(hills, 201, 100.0), SunAtDegrees(degrees, 20.0), kSunRadius_rad, 512)
             .ShadesNothing());
   }
 }
 
-TEST(ShadeMap, ItsBoxHoldsAllShade) {
+TEST(SunShadowMap, ItsBoxHoldsAllShade) {
   const auto hill = [](double x, double y) { return 900.0 * std::exp(-1e-7 * (x * x + y * y)); };
-  const ShadeMap map = ShadeMapOf(Raster(hill, 301, 100.0), SunAtDegrees(6.0, 200.0), 0.0046, 512);
+  const SunShadowMap map = SunShadowMapOf(Raster(hill, 301, 100.0), SunAtDegrees(6.0, 200.0), 0.0046, 512);
   ASSERT_FALSE(map.ShadesNothing());
   for (int line = 0; line < map.lines; ++line) {
     for (int column = 0; column < map.columns; ++column) {

@@ -75,7 +75,7 @@ std::vector<double> ErrorsUnder(double sun_degrees, const ShadeSteps& steps) {
   const double e = sun_degrees * kRadiansPerDegree;
   const glm::dvec3 to_sun(std::cos(e) * 0.8, std::cos(e) * 0.6, std::sin(e));
   const ShadowHeights reference(terrain.mesh(), to_sun, kShaftSunRadius_rad);
-  const auto map = std::make_shared<ShadeMap>(ShadeMapOf(
+  const auto map = std::make_shared<SunShadowMap>(SunShadowMapOf(
       RasterOf(terrain.mesh(), std::size_t{1} << 18), to_sun, kShaftSunRadius_rad, 1024));
   const glm::dvec3 eye(-3000.0, 500.0, RoughLand(-3000.0, 500.0) + 300.0);
   const std::vector<Ray> rays = RaysFrom(eye, terrain, 400);
@@ -136,8 +136,8 @@ TEST_F(Shafts, TakeWhatTheRenderersShadowHeightsTake) {
 
 TEST_F(Shafts, OfARayThroughAHoleInTheLandEndAtItsLowestGround) {
   const double e = 8.0 * kRadiansPerDegree;
-  const auto map = std::make_shared<ShadeMap>(
-      ShadeMapOf(RasterOf(LandMesh(RoughLand, kSide, kCell_m), std::size_t{1} << 18),
+  const auto map = std::make_shared<SunShadowMap>(
+      SunShadowMapOf(RasterOf(LandMesh(RoughLand, kSide, kCell_m), std::size_t{1} << 18),
                  {std::cos(e), 0.0, std::sin(e)}, kShaftSunRadius_rad, 1024));
   ShadeTexture texture;
   texture.TakeOver(map);
@@ -282,8 +282,8 @@ TEST_F(Shafts, OfEveryFourthPixelAreTakenBetweenRaysThatComeAsFar) {
     return 1000.0 + 1400.0 * std::exp(-1e-6 * ((x + 1500.0) * (x + 1500.0) + 0.3 * y * y));
   };
   ShadeTexture shade;
-  shade.TakeOver(std::make_shared<ShadeMap>(
-      ShadeMapOf(RasterOf(LandMesh(land, 201, 150.0), std::size_t{1} << 16),
+  shade.TakeOver(std::make_shared<SunShadowMap>(
+      SunShadowMapOf(RasterOf(LandMesh(land, 201, 150.0), std::size_t{1} << 16),
                  {-std::cos(0.09), 0.0, std::sin(0.09)}, kShaftSunRadius_rad, 512)));
   shade.Upload(100000, 1);
   ASSERT_TRUE(shade.Shades());
@@ -313,14 +313,14 @@ TEST_F(Shafts, AMapIsInUseOnceAllOfItIsThere) {
   EXPECT_FALSE(shade.Shades());
   shade.Upload(10, 1);
   EXPECT_FALSE(shade.Shades()) << "nothing was asked for";
-  const auto map = std::make_shared<ShadeMap>(
-      ShadeMapOf(heights, {std::cos(0.1), 0.0, std::sin(0.1)}, kShaftSunRadius_rad, 64));
+  const auto map = std::make_shared<SunShadowMap>(
+      SunShadowMapOf(heights, {std::cos(0.1), 0.0, std::sin(0.1)}, kShaftSunRadius_rad, 64));
   shade.TakeOver(map);
   shade.Upload(map->lines - 1, 1);
   EXPECT_FALSE(shade.Shades());
   shade.Upload(map->lines, 1);
   ASSERT_TRUE(shade.Shades());
-  shade.TakeOver(std::make_shared<ShadeMap>());  // night
+  shade.TakeOver(std::make_shared<SunShadowMap>());  // night
   EXPECT_TRUE(shade.Shades()) << "not yet";
   shade.Upload(1, 1);
   EXPECT_FALSE(shade.Shades());
