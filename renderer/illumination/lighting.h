@@ -26,7 +26,7 @@
 #include "renderer/surface/surface.h"
 #include "renderer/layer.h"
 #include "renderer/illumination/night_light.h"
-#include "renderer/illumination/terrain_light.h"
+#include "renderer/illumination/terrain_irradiance.h"
 
 namespace alpenglow::renderer {
 
@@ -86,7 +86,7 @@ struct Lighting {
   bool shows = true;
   EffectSet effects = EffectSet::All();
   /// Light of sky and slopes on terrain; null: the ground receives the sky of a plain.
-  std::shared_ptr<const TerrainLight> on_terrain = nullptr;
+  std::shared_ptr<const TerrainIrradiance> on_terrain = nullptr;
 
   /// Returns the irradiance of the sun above the air without the moon in front of it.
   [[nodiscard]] const BandLight& WholeSun() const { return eclipse ? eclipse->whole : irradiance; }

@@ -39,7 +39,7 @@
 
 #include <vector>
 
-#include "renderer/illumination/open_sky.h"
+#include "renderer/illumination/occluded_sky.h"
 #include "renderer/media/local_media.h"
 
 namespace alpenglow::renderer {

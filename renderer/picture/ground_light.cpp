@@ -32,13 +32,13 @@ bool SeesTerrain(const Hit& hit, const Lighting& light) {
 GroundLight::GroundLight(const GroundParts& parts, const SunlitAir& air)
     : parts_(parts), air_(air.air), beam_(air.beam), multiple_scattering_(air.multiple_scattering) {}
 
-std::shared_ptr<const TerrainLight> GroundLight::OnTerrain(const GroundSources& from) const {
+std::shared_ptr<const TerrainIrradiance> GroundLight::OnTerrain(const GroundSources& from) const {
   const Lighting& light = from.light;
   if (!light.effects.Has(Effect::kSkylight)) return nullptr;
   const std::shared_ptr<const TerrainHorizons> horizons =
       light.effects.Has(Effect::kHorizons) ? parts_.horizons.Get() : nullptr;
   if (!horizons && !parts_.material.HasGloss()) return nullptr;
-  auto on_terrain = std::make_shared<TerrainLight>(horizons, air_, multiple_scattering_, light.to_sun_for_air);
+  auto on_terrain = std::make_shared<TerrainIrradiance>(horizons, air_, multiple_scattering_, light.to_sun_for_air);
   if (horizons && light.effects.Has(Effect::kBounce)) {
     on_terrain->AddSlopes(
         air_.medium(),
@@ -49,7 +49,7 @@ std::shared_ptr<const TerrainLight> GroundLight::OnTerrain(const GroundSources& 
 }
 
 BandLight GroundLight::SentToSlopes(const SlopePlace& place, const GroundSources& from,
-                                    const TerrainLight& sky) const {
+                                    const TerrainIrradiance& sky) const {
   const Lighting& light = from.light;
   const double cell_m = sky.horizons()->views().heights().cell_m;
   Hit hit;

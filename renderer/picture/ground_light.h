@@ -14,7 +14,7 @@
 #include "renderer/lamps/lamp_light.h"
 #include "renderer/illumination/lighting.h"
 #include "renderer/illumination/picture_stokes.h"
-#include "renderer/illumination/terrain_light.h"
+#include "renderer/illumination/terrain_irradiance.h"
 #include "renderer/media/media_light.h"
 
 namespace alpenglow::renderer {
@@ -56,7 +56,7 @@ class GroundLight {
 
   /// Returns the light of sky and sun on terrain, computed as far as the effects of the light
   /// include it; null if terrain does not change that light.
-  [[nodiscard]] std::shared_ptr<const TerrainLight> OnTerrain(const GroundSources& from) const;
+  [[nodiscard]] std::shared_ptr<const TerrainIrradiance> OnTerrain(const GroundSources& from) const;
 
   /// @param hit  on terrain or planet. @param to_eye  unit. @param light  its surface and waves are
   ///     used.
@@ -97,7 +97,7 @@ class GroundLight {
                                         const LocalSun& sun) const;
   /// Returns the radiance that a slope sends to other slopes, per unit solar irradiance [1/sr].
   [[nodiscard]] BandLight SentToSlopes(const SlopePlace& place, const GroundSources& from,
-                                       const TerrainLight& sky) const;
+                                       const TerrainIrradiance& sky) const;
   /// @param cosine  between the direction to the eye and the normal of the mesh.
   [[nodiscard]] GroundPatch PatchAt(const Hit& hit, const Lighting& light, const glm::dvec3& up,
                                     double cosine) const;

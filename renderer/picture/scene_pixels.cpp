@@ -344,7 +344,7 @@ void SceneState::AddTiles(const PictureFrame& frame, PixelWriter& writer) const 
   const int columns = (settings.width + Tile::kSide - 1) / Tile::kSide;
   const int tiles = columns * ((settings.height + Tile::kSide - 1) / Tile::kSide);
   const double floor = NoiseFloor(frame);
-  const OpenSkyPixels open_sky(*this, frame);
+  const OccludedSkyPixels open_sky(*this, frame);
   std::atomic<int> done{0};
   tbb::parallel_for(0, tiles, [&](int i) {
     const int x0 = i % columns * Tile::kSide, y0 = i / columns * Tile::kSide;
@@ -356,7 +356,7 @@ void SceneState::AddTiles(const PictureFrame& frame, PixelWriter& writer) const 
 // Traces first rays of the tile and of a border of pixels around it. Border pixels belong to other
 // tiles; they only provide the noise estimate and their rays.
 void SceneState::AddTile(const PictureFrame& frame, double floor, int x0, int y0,
-                         const OpenSkyPixels& open_sky, PixelWriter& writer) const {
+                         const OccludedSkyPixels& open_sky, PixelWriter& writer) const {
   const RenderSettings& settings = frame.settings;
   const int first = settings.samples_per_pixel, most = std::max(kMostRaysForNoise, first);
   const int fewest = std::min(first, kFewestRaysForNoise);
@@ -377,7 +377,7 @@ void SceneState::AddTile(const PictureFrame& frame, double floor, int x0, int y0
     PixelLight& pixel = pixels.emplace_back(*this, frame, x, y, most, lattice, expected_m);
     is_done.push_back(open_sky.Has(x, y));
     if (is_done.back()) {
-      pixel.TakeOpenSky();
+      pixel.TakeOccludedSky();
     } else {
       pixel.TakeUpTo(fewest);
     }

@@ -52,7 +52,7 @@ class RecentSunlight {
   std::deque<Kept> kept_;  // oldest first
 };
 
-class OpenSkyPixels;
+class OccludedSkyPixels;
 
 struct SceneState {
   SceneState(const Scene& of, Progress* progress)
@@ -99,7 +99,7 @@ struct SceneState {
   /// Adds the tiles of a picture whose pixels take as many rays as their noise requires.
   void AddTiles(const PictureFrame& frame, PixelWriter& writer) const;
   void AddTile(const PictureFrame& frame, double floor, int x0, int y0,
-               const OpenSkyPixels& open_sky, PixelWriter& writer) const;
+               const OccludedSkyPixels& open_sky, PixelWriter& writer) const;
   void Write(const PictureFrame& frame, int x, int y, const PixelLight& pixel,
              PixelWriter& writer) const;
   /// Returns the luminance floor of the relative noise: darker pixels count as if they had this

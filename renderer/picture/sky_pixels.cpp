@@ -139,7 +139,7 @@ double AroundPixel(const PictureFrame& frame) {
 
 }  // namespace
 
-OpenSkyPixels::OpenSkyPixels(const SceneState& scene, const PictureFrame& frame)
+OccludedSkyPixels::OccludedSkyPixels(const SceneState& scene, const PictureFrame& frame)
     : frame_(frame), around_rad_(AroundPixel(frame)) {
   const CameraRays& camera = frame.camera();
   const bool is_solid = scene.ground.is_solid || !scene.geometry.HasTerrain();
@@ -153,7 +153,7 @@ OpenSkyPixels::OpenSkyPixels(const SceneState& scene, const PictureFrame& frame)
   skyline_.emplace(up, ArcAround(up), 0.5 * camera.PixelAngle(), sees_sky);
 }
 
-Skyline::Arc OpenSkyPixels::ArcAround(const glm::dvec3& up) const {
+Skyline::Arc OccludedSkyPixels::ArcAround(const glm::dvec3& up) const {
   const CameraRays& camera = frame_.camera();
   const int width = frame_.settings.width, height = frame_.settings.height;
   const Skyline::Arc whole{0.0, 2.0 * kPi};
@@ -185,7 +185,7 @@ Skyline::Arc OpenSkyPixels::ArcAround(const glm::dvec3& up) const {
   return {Skyline::AzimuthOf(ahead, up) + first, last - first};
 }
 
-bool OpenSkyPixels::Has(int x, int y) const {
+bool OccludedSkyPixels::Has(int x, int y) const {
   if (!skyline_) return false;
   const glm::dvec3 middle = frame_.camera().Direction(x + 0.5, y + 0.5);
   const auto is_near = [&](const glm::dvec3& to_disk, double radius_rad) {

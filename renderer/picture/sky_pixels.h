@@ -8,7 +8,7 @@
 // not twinkle. During a long exposure the light is spread along its path, evenly in time, in steps
 // of half a pixel.
 //
-// OpenSkyPixels finds the pixels that see only sky without tracing a ray: those well above the
+// OccludedSkyPixels finds the pixels that see only sky without tracing a ray: those well above the
 // skyline, and not near the sun or the moon. All rays of such a pixel have one sky radiance, that
 // of its middle (shared_rays.h), and so have all rays of its neighbours that count for it. One ray
 // through the middle gives the same result as many.
@@ -75,11 +75,11 @@ struct PictureFrame;
 struct SceneState;
 
 /// Immutable, safe to share between threads. Refers to the frame.
-class OpenSkyPixels {
+class OccludedSkyPixels {
  public:
   /// No pixel counts as open sky where sky can be visible below ground, a lens blurs, or the camera
   /// moves.
-  OpenSkyPixels(const SceneState& scene, const PictureFrame& frame);
+  OccludedSkyPixels(const SceneState& scene, const PictureFrame& frame);
 
   /// Returns whether all rays that count for a pixel see only sky, without a disk in it.
   [[nodiscard]] bool Has(int x, int y) const;

@@ -107,7 +107,7 @@ void Upload(const GlTexture& texture, std::size_t columns, std::size_t rows,
 
 }  // namespace
 
-GroundLightBlock GroundLightBlockOf(const SkyTilt& tilt, const glm::dvec3& to_sun,
+GroundLightBlock GroundLightBlockOf(const SkyIrradianceGradient& tilt, const glm::dvec3& to_sun,
                                     double pixel_angle_rad) {
   const double flat = std::max(std::hypot(to_sun.x, to_sun.y), 1e-9);
   GroundLightBlock block{
@@ -165,8 +165,8 @@ std::vector<ShaderPiece> GroundTexts(const GroundMaterial& material, const LandK
                        material.drape() != nullptr && material.drape()->IsLandCover() ? 1 : 0,
                        planet_is_water ? 1 : 0, land.is_there ? 1 : 0, land.has_fine_relief ? 1 : 0,
                        LevelSky::kLowest_rad, LevelSky::kRange_rad, LevelSky::kNodes,
-                       SeaMirror::kSide, SkyTilt::kColumns, SkyTilt::kRows)},
-          ViewerPiece("viewer/ground/sky_tilt.glsl"),
+                       SeaMirror::kSide, SkyIrradianceGradient::kColumns, SkyIrradianceGradient::kRows)},
+          ViewerPiece("viewer/ground/sky_irradiance_gradient.glsl"),
           ViewerPiece("viewer/shaders/ground.glsl"),
           ViewerPiece("viewer/shaders/ground_surface.glsl"),
           ViewerPiece("viewer/shaders/ground_light.glsl")};

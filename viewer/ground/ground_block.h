@@ -65,14 +65,14 @@ struct SceneDrape {
 struct GroundLightBlock {
   glm::vec4 sky_towards;
   glm::vec4 ground_view;
-  std::array<glm::vec4, SkyTilt::kColumns * SkyTilt::kRows> open_sky;
+  std::array<glm::vec4, SkyIrradianceGradient::kColumns * SkyIrradianceGradient::kRows> open_sky;
 };
 static_assert(sizeof(GroundLightBlock) == 47 * sizeof(glm::vec4));
 static_assert(offsetof(GroundLightBlock, ground_view) == sizeof(glm::vec4));
 
 /// @param to_sun  unit vector in the frame of the eye.
 /// @param pixel_angle_rad  angle between neighbouring pixels; a larger angle gives coarser detail.
-[[nodiscard]] GroundLightBlock GroundLightBlockOf(const SkyTilt& tilt, const glm::dvec3& to_sun,
+[[nodiscard]] GroundLightBlock GroundLightBlockOf(const SkyIrradianceGradient& tilt, const glm::dvec3& to_sun,
                                                   double pixel_angle_rad);
 
 /// Mirrors the uniform block `GroundSurface` of ground_surface.glsl.

@@ -69,11 +69,11 @@ SunPosition After(double steps, const SunPosition& before, const SunPosition& no
 }
 
 double OpenAltitude_m(const GroundSite& site) {
-  const OpenSky::Extent& extent = site.horizons()->extent();
+  const OccludedSkyIrradiance::Extent& extent = site.horizons()->extent();
   return std::max(0.5 * (extent.lowest_m + extent.highest_m), 0.0);
 }
 
-SkyTilt OpenSkyUnder(const GroundSite& site, const SunPosition& disk) {
+SkyIrradianceGradient OccludedSkyUnder(const GroundSite& site, const SunPosition& disk) {
   return {*site.air().single_scattering, *site.air().multiple_scattering, OpenAltitude_m(site),
           std::sin(SunForAir(disk).elevation_rad)};
 }
@@ -88,16 +88,16 @@ std::array<float, 4> Over(const std::array<float, 4>& sky, const std::array<floa
 // Ratios of the light at a vertex to the light of the open sky on its slope: for sky and slopes
 // together, and for the sky alone. Shaders multiply them by the current light of the open sky
 // (GroundLightBlock), which follows the light source.
-struct SharesOfOpenSky {
+struct SharesOfOccludedSky {
   std::array<float, 4> all, sky;
 };
-SharesOfOpenSky SharesAt(const GroundVertex& vertex, const GroundSky& sky, const SkyTilt& open) {
+SharesOfOccludedSky SharesAt(const GroundVertex& vertex, const GroundSky& sky, const SkyIrradianceGradient& open) {
   const glm::dvec3 normal = InDoubles(vertex.normal), to_sun = sky.lighting().to_sun;
   const glm::dvec3 up = sky.site().geometry().UpAt(InDoubles(vertex.position_m));
   const double flat = std::max(std::hypot(to_sun.x, to_sun.y), 1e-9);
   const double towards = (normal.x * to_sun.x + normal.y * to_sun.y) / flat;
   const std::array<float, 4> on_slope = open.On(glm::dot(normal, up), towards);
-  const TerrainLight::OnSlope on = sky.On(vertex);
+  const TerrainIrradiance::OnSlope on = sky.On(vertex);
   return {Over(InFourBands(on.sky + on.slopes), on_slope), Over(InFourBands(on.sky), on_slope)};
 }
 
@@ -129,10 +129,10 @@ class GroundFollower::Maker {
     if (site) {
       made.lit = std::make_shared<const LitGround>(site, LightingBy(view.by, view, *site));
       made.open_altitude_m = OpenAltitude_m(*site);
-      made.open = OpenSkyUnder(*site, view.by);
+      made.open = OccludedSkyUnder(*site, view.by);
       if (view.other) {
         made.other = std::make_shared<const GroundSky>(site, LightingBy(*view.other, view, *site));
-        made.other_open = OpenSkyUnder(*site, *view.other);
+        made.other_open = OccludedSkyUnder(*site, *view.other);
       }
     }
     made.making_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
@@ -159,7 +159,7 @@ class GroundFollower::Maker {
     const SingleScattering<float> single_scattering(medium);
     const MultipleScattering& multiple_scattering = request.air->multiple_scattering;
     const glm::dvec3 to_sun = Direction(SunForAir(disk));
-    const OpenSky sky(single_scattering, multiple_scattering, to_sun, OpenSky::Extent{0.0, 1.0, 5e5});
+    const OccludedSkyIrradiance sky(single_scattering, multiple_scattering, to_sun, OccludedSkyIrradiance::Extent{0.0, 1.0, 5e5});
     return SeaMirror::Of(sky, multiple_scattering, material.water(), to_sun);
   }
 
@@ -309,7 +309,7 @@ std::optional<LightOfVertices> GroundFollower::Light() const {
     std::vector<VertexLight> light;
     light.reserve(vertices.size());
     for (const GroundVertex& vertex : VerticesIn(made.lit->site(), anchor, vertices)) {
-      const SharesOfOpenSky by = SharesAt(vertex, made.lit->sky(), *made.open);
+      const SharesOfOccludedSky by = SharesAt(vertex, made.lit->sky(), *made.open);
       // A source that is not yet significant gets the ratios that it has when it becomes
       // significant: it is low and does not light slopes.
       const std::array<float, 4> other =

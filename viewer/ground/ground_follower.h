@@ -67,7 +67,7 @@ class GroundFollower {
   /// computed. SkyOf returns nullopt without lit() and for a source that was not significant.
   struct SkyOfSource {
     std::shared_ptr<const GroundSky> sky;
-    SkyTilt open;
+    SkyIrradianceGradient open;
   };
   [[nodiscard]] std::optional<SkyOfSource> SkyOf(LightSource source) const;
   /// Returns a function for the light of vertices in the frame of any anchor; nullopt without
@@ -96,7 +96,7 @@ class GroundFollower {
     LightSource casts = LightSource::kSun;
     std::shared_ptr<const LitGround> lit;
     std::shared_ptr<const GroundSky> other;   // null: it is not significant
-    std::optional<SkyTilt> open, other_open;  // light of the open sky of each source
+    std::optional<SkyIrradianceGradient> open, other_open;  // light of the open sky of each source
     std::array<std::vector<BandTexel>, kLightSources> sea_mirrors;
     double open_altitude_m = 0.0;
     double making_s = 0.0;

@@ -140,7 +140,7 @@ GroundVertex GroundSite::Vertex(const std::array<float, 3>& position_m,
   return {position_m, normal, z_m ? static_cast<float>(*z_m) : position_m[2]};
 }
 
-std::shared_ptr<const TerrainLight> GroundSite::Under(const Lighting& light) const {
+std::shared_ptr<const TerrainIrradiance> GroundSite::Under(const Lighting& light) const {
   return light_.OnTerrain({light, nullptr});
 }
 
@@ -177,7 +177,7 @@ GroundSky::GroundSky(std::shared_ptr<const GroundSite> site, Lighting light)
   ALPENGLOW_ENSURE(site_->medium().wavelengths_nm.size(), <=, LitVertex{}.sky.size());
 }
 
-TerrainLight::OnSlope GroundSky::On(const GroundVertex& vertex) const {
+TerrainIrradiance::OnSlope GroundSky::On(const GroundVertex& vertex) const {
   const SceneGeometry& geometry = site_->geometry();
   const glm::dvec3 point = InDoubles(vertex.position_m);
   const glm::dvec3 up = geometry.UpAt(point);

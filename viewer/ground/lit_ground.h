@@ -4,7 +4,7 @@
 //   MeshHeights  fast heights of a mesh that is one surface, by a grid of triangles,
 //   GroundSite   land around the eye with everything that does not depend on the sun: triangles
 //                ready for rays, horizons, the mutual visibility of slopes, materials,
-//   GroundSky    light of sky and slopes, by TerrainLight,
+//   GroundSky    light of sky and slopes, by TerrainIrradiance,
 //   LitGround    the above with the edges of shadows, by ShadowHeights.
 //
 // Frame: east, north, up of a place near the eye (SceneGround::frame), metres. Altitudes are above
@@ -29,7 +29,7 @@
 #include "renderer/surface/surface.h"
 #include "renderer/lamps/lamp_light.h"
 #include "renderer/illumination/lighting.h"
-#include "renderer/illumination/terrain_light.h"
+#include "renderer/illumination/terrain_irradiance.h"
 #include "renderer/picture/ground_light.h"
 #include "renderer/scene/scene.h"
 #include "renderer/visibility/shadow_heights.h"
@@ -113,7 +113,7 @@ class GroundSite {
                                     const std::array<float, 3>& normal) const;
 
   /// Returns the light of sky and sun on the terrain: see GroundLight::OnTerrain.
-  [[nodiscard]] std::shared_ptr<const TerrainLight> Under(const Lighting& light) const;
+  [[nodiscard]] std::shared_ptr<const TerrainIrradiance> Under(const Lighting& light) const;
 
  private:
   SiteAir air_;
@@ -180,7 +180,7 @@ class GroundSky {
   [[nodiscard]] const Lighting& lighting() const { return light_; }
   [[nodiscard]] const GroundSite& site() const { return *site_; }
 
-  [[nodiscard]] TerrainLight::OnSlope On(const GroundVertex& vertex) const;
+  [[nodiscard]] TerrainIrradiance::OnSlope On(const GroundVertex& vertex) const;
 
  private:
   std::shared_ptr<const GroundSite> site_;
@@ -207,7 +207,7 @@ class LitGround {
   [[nodiscard]] const GroundSite& site() const { return sky_.site(); }
 
   [[nodiscard]] LitVertex At(const GroundVertex& vertex) const {
-    const TerrainLight::OnSlope on = sky_.On(vertex);
+    const TerrainIrradiance::OnSlope on = sky_.On(vertex);
     return {InFourBands(on.sky + on.slopes), EdgeOver(vertex)};
   }
   /// Returns LitVertex::sun_x.

@@ -24,8 +24,8 @@ void Clamp(GLenum target) {
 }
 
 // Reorders the renderer's layout [level][azimuth][node][A, B][band] to rows of nodes.
-void UploadIntegrals(const GlTexture& texture, const OpenSky::Tables& tables) {
-  constexpr std::size_t kNodes = OpenSky::kNodes, kRows = OpenSky::kLevels * kHorizonAzimuths;
+void UploadIntegrals(const GlTexture& texture, const OccludedSkyIrradiance::Tables& tables) {
+  constexpr std::size_t kNodes = OccludedSkyIrradiance::kNodes, kRows = OccludedSkyIrradiance::kLevels * kHorizonAzimuths;
   std::vector<float> texels(tables.integral.size());
   for (std::size_t row = 0; row < kRows; ++row) {
     for (std::size_t node = 0; node < kNodes; ++node) {
@@ -36,21 +36,21 @@ void UploadIntegrals(const GlTexture& texture, const OpenSky::Tables& tables) {
   }
   glBindTexture(GL_TEXTURE_2D_ARRAY, texture.id());
   glTexImage3D(GL_TEXTURE_2D_ARRAY, 0, GL_RGBA16F, static_cast<GLsizei>(kNodes), 2 * kAzimuths,
-               static_cast<GLsizei>(OpenSky::kLevels), 0, GL_RGBA, GL_FLOAT, texels.data());
+               static_cast<GLsizei>(OccludedSkyIrradiance::kLevels), 0, GL_RGBA, GL_FLOAT, texels.data());
   Clamp(GL_TEXTURE_2D_ARRAY);
 }
 
-void UploadLevels(const GlTexture& texture, const OpenSky::Tables& tables) {
+void UploadLevels(const GlTexture& texture, const OccludedSkyIrradiance::Tables& tables) {
   glBindTexture(GL_TEXTURE_2D, texture.id());
-  glTexImage2D(GL_TEXTURE_2D, 0, GL_RGBA32F, static_cast<GLsizei>(OpenSky::kSuns),
-               static_cast<GLsizei>(OpenSky::kLevels), 0, GL_RGBA, GL_FLOAT,
+  glTexImage2D(GL_TEXTURE_2D, 0, GL_RGBA32F, static_cast<GLsizei>(OccludedSkyIrradiance::kSuns),
+               static_cast<GLsizei>(OccludedSkyIrradiance::kLevels), 0, GL_RGBA, GL_FLOAT,
                tables.level_irradiance.data());
   ClampAndFilter(GL_TEXTURE_2D, true);
 }
 
 // Returns the largest light of a slope in each band. Half floats resolve values about ten thousand
 // times smaller.
-glm::vec4 UnitOf(const SlopeLight& slopes) {
+glm::vec4 UnitOf(const TerrainInterreflection& slopes) {
   glm::vec4 most(1e-30F);
   for (std::size_t i = 0; i < slopes.light().size(); ++i) {
     float& of_band = most[static_cast<glm::length_t>(i % kFour)];
@@ -60,7 +60,7 @@ glm::vec4 UnitOf(const SlopeLight& slopes) {
 }
 
 // The layers of azimuths come first, followed by the layers of their weights.
-void UploadSlopes(const GlTexture& texture, const SlopeLight& slopes, const glm::vec4& unit) {
+void UploadSlopes(const GlTexture& texture, const TerrainInterreflection& slopes, const glm::vec4& unit) {
   const SlopeViews& views = slopes.views();
   const std::size_t nodes = views.places().size();
   std::vector<float> texels(nodes * (kHorizonAzimuths + kWeightLayers) * kFour);
@@ -104,7 +104,7 @@ void SkyByPixel::Use(LightSource source, const GroundFollower::SkyOfSource& sky)
   std::optional<OfSource>& of = of_source_[IndexOf(source)];
   if (of && of->sky.sky == sky.sky) return;
   of = OfSource{sky, {}, {}, {}, {}};
-  const TerrainLight& light = *sky.sky->lighting().on_terrain;
+  const TerrainIrradiance& light = *sky.sky->lighting().on_terrain;
   glPixelStorei(GL_UNPACK_ALIGNMENT, 4);
   if (const auto horizons = sky.sky->site().horizons(); horizons_ != horizons) {
     horizons_ = horizons;
@@ -117,7 +117,7 @@ void SkyByPixel::Use(LightSource source, const GroundFollower::SkyOfSource& sky)
 }
 
 SkyByPixelBlock SkyByPixel::BlockOf(LightSource source, const LocalFrame& eye,
-                                    const glm::dvec3& to_sun_for_air, const SkyTilt& now) const {
+                                    const glm::dvec3& to_sun_for_air, const SkyIrradianceGradient& now) const {
   const OfSource& of = *of_source_[IndexOf(source)];
   const GroundSky& sky = *of.sky.sky;
   const LocalFrame& site = sky.site().ground().frame;
@@ -129,13 +129,13 @@ SkyByPixelBlock SkyByPixel::BlockOf(LightSource source, const LocalFrame& eye,
     const auto i = static_cast<std::size_t>(band);
     block.sky_moment[band] = light_then[i] > 0.0F ? light_now[i] / light_then[i] : 0.0F;
   }
-  const OpenSky::Tables tables = sky.lighting().on_terrain->sky().tables();
+  const OccludedSkyIrradiance::Tables tables = sky.lighting().on_terrain->sky().tables();
   const double mu_s_now = site.EnuFromEcef(eye.EcefFromEnu(Vector<Enu>{to_sun_for_air})).xyz.z;
   const double moved = sky.lighting().to_sun_for_air.z - mu_s_now;
   block.sky_place = {-tables.lowest_m / kMetresPerKilometre,
                      kMetresPerKilometre / (tables.highest_m - tables.lowest_m),
                      moved - tables.first_mu_s,
-                     1.0 / (tables.mu_s_step * static_cast<double>(OpenSky::kSuns - 1))};
+                     1.0 / (tables.mu_s_step * static_cast<double>(OccludedSkyIrradiance::kSuns - 1))};
   return block;
 }
 
@@ -161,7 +161,7 @@ std::vector<ShaderPiece> SkyByPixelTexts() {
   return {{"sky by pixel",
            fmt::format("#define SKY_LOWEST ({:.9f})\n#define SKY_NODES {}.0\n"
                        "#define SKY_LEVELS {}.0\n#define SKY_SUNS {}.0\n",
-                       HorizonMap::kLowest, OpenSky::kNodes, OpenSky::kLevels, OpenSky::kSuns)},
+                       HorizonMap::kLowest, OccludedSkyIrradiance::kNodes, OccludedSkyIrradiance::kLevels, OccludedSkyIrradiance::kSuns)},
           ViewerPiece("viewer/shaders/sky_by_pixel.glsl")};
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Provides SkyByPixel, the renderer's tables for the light on slopes between mountains (OpenSky,
-// HorizonMap, SlopeLight) on the GPU. shaders/sky_by_pixel.glsl evaluates them for every pixel.
+// Provides SkyByPixel, the renderer's tables for the light on slopes between mountains (OccludedSkyIrradiance,
+// HorizonMap, TerrainInterreflection) on the GPU. shaders/sky_by_pixel.glsl evaluates them for every pixel.
 // Light that is interpolated between vertices has errors of up to 10 % at dusk, where a horizon
 // hides the glow (tests/bench/README.md).
 //
@@ -40,7 +40,7 @@ class SkyByPixel {
   /// to_sun_for_air: direction to the source in this frame.
   /// @param now  current light of the open sky, at the altitude of the one given to Use.
   [[nodiscard]] SkyByPixelBlock BlockOf(LightSource source, const LocalFrame& eye,
-                                        const glm::dvec3& to_sun_for_air, const SkyTilt& now) const;
+                                        const glm::dvec3& to_sun_for_air, const SkyIrradianceGradient& now) const;
 
   /// Binds four textures, beginning with `first_unit`, and assigns the samplers of a program to
   /// them.

@@ -23,7 +23,7 @@ BandTexel TexelOf(const BandLight& light) {
   return texel;
 }
 
-BandLight Shown(const OpenSky& sky, const Water& water, double mu_s, const glm::dvec3& to_eye) {
+BandLight Shown(const OccludedSkyIrradiance& sky, const Water& water, double mu_s, const glm::dvec3& to_eye) {
   BandLight sum(sky.bands());
   const MirroredRays mirrored = water.Mirrored(kUp, to_eye);
   for (const MirroredRay& ray : mirrored.All())
@@ -49,7 +49,7 @@ std::vector<BandTexel> LevelSky::Of(const MultipleScattering& multiple_scatterin
 }
 
 // The sectors of the sky are not symmetric about the sun, so the mean of both sides is used.
-std::vector<BandTexel> SeaMirror::Of(const OpenSky& sky, const MultipleScattering& multiple_scattering,
+std::vector<BandTexel> SeaMirror::Of(const OccludedSkyIrradiance& sky, const MultipleScattering& multiple_scattering,
                                      const Water& water, const glm::dvec3& to_sun) {
   const double mu_s = std::clamp(to_sun.z, -1.0, 1.0);
   const BandLight level = multiple_scattering.SkyIrradiance(0.0, mu_s);
@@ -143,7 +143,7 @@ std::array<float, 4> NodeAt(const std::vector<SkyPart>& parts, float sunward, fl
 
 }  // namespace
 
-SkyTilt::SkyTilt(const SingleScattering<float>& air, const MultipleScattering& multiple_scattering, double altitude_m,
+SkyIrradianceGradient::SkyIrradianceGradient(const SingleScattering<float>& air, const MultipleScattering& multiple_scattering, double altitude_m,
                  double mu_s) {
   ALPENGLOW_ENSURE(air.bands(), <=, std::size_t{4});
   const std::vector<SkyPart> parts = PartsOf(SkyView(air, multiple_scattering, altitude_m, mu_s, kCoarseSky));
@@ -155,9 +155,9 @@ SkyTilt::SkyTilt(const SingleScattering<float>& air, const MultipleScattering& m
   }
 }
 
-std::array<float, 4> SkyTilt::On(double n_up, double n_sunward) const {
-  const auto u = static_cast<float>(shared::OpenSkyColumn(n_sunward));
-  const auto v = static_cast<float>(shared::OpenSkyRow(n_up));
+std::array<float, 4> SkyIrradianceGradient::On(double n_up, double n_sunward) const {
+  const auto u = static_cast<float>(shared::OccludedSkyColumn(n_sunward));
+  const auto v = static_cast<float>(shared::OccludedSkyRow(n_up));
   const auto column = std::min(static_cast<std::size_t>(u), kColumns - 2);
   const auto row = std::min(static_cast<std::size_t>(v), kRows - 2);
   const float right = u - static_cast<float>(column), above = v - static_cast<float>(row);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Provides tables of the sky's light: LevelSky, the irradiance on level ground, SeaMirror, the sky
-// as mirrored by waves, and SkyTilt, the irradiance of the open sky on slopes.
+// as mirrored by waves, and SkyIrradianceGradient, the irradiance of the open sky on slopes.
 //
 // SeaMirror tabulates what Water::Mirrored sums ray by ray, over the zenith cosine of the eye and
 // its azimuth from that of the sun. Nodes are equidistant in sqrt(mu_eye), and therefore dense for
@@ -9,7 +9,7 @@
 // LevelSky at altitude 0 under the same sun. At places with another elevation of the sun the sky
 // has the same distribution, scaled with the irradiance on level ground there.
 //
-// SkyTilt tabulates for one position of the sun
+// SkyIrradianceGradient tabulates for one position of the sun
 //
 //   E(n) = integral of L(w) max(n.w, 0)   over the directions w above the horizontal
 //
@@ -27,7 +27,7 @@
 #include "atmosphere/shared_glsl/shared_math.h"
 #include "renderer/material/band_light.h"
 #include "renderer/material/reflectance.h"
-#include "renderer/illumination/open_sky.h"
+#include "renderer/illumination/occluded_sky.h"
 #include "viewer/layer.h"
 
 namespace alpenglow::viewer {
@@ -52,7 +52,7 @@ struct SeaMirror {
   static constexpr std::size_t kSide = 48;
 
   /// @param sky  sky of the same sun.
-  [[nodiscard]] static std::vector<BandTexel> Of(const OpenSky& sky, const MultipleScattering& multiple_scattering,
+  [[nodiscard]] static std::vector<BandTexel> Of(const OccludedSkyIrradiance& sky, const MultipleScattering& multiple_scattering,
                                                  const Water& water, const glm::dvec3& to_sun);
 };
 
@@ -61,21 +61,21 @@ struct SeaMirror {
 namespace alpenglow::shared {
 // clang-format off
 #include "atmosphere/shared_glsl/shared_begin.h"
-#include "viewer/ground/sky_tilt.glsl"
+#include "viewer/ground/sky_irradiance_gradient.glsl"
 #include "atmosphere/shared_glsl/shared_end.h"
 // clang-format on
 }  // namespace alpenglow::shared
 
 namespace alpenglow::viewer {
 
-struct SkyTilt {
+struct SkyIrradianceGradient {
   static constexpr std::size_t kColumns = 9, kRows = 5;
   /// Irradiance per unit solar irradiance [1] in four bands, row by row; linear between nodes.
   /// Nodes beyond n_sunward^2 + n_up^2 = 1 belong to no slope and are extrapolated from slopes.
   std::array<std::array<float, 4>, kColumns * kRows> nodes{};
 
   /// @param air, multiple_scattering  of one medium; mu_s: zenith cosine of the sun or moon.
-  SkyTilt(const SingleScattering<float>& air, const MultipleScattering& multiple_scattering, double altitude_m,
+  SkyIrradianceGradient(const SingleScattering<float>& air, const MultipleScattering& multiple_scattering, double altitude_m,
           double mu_s);
 
   /// Returns the irradiance on a slope whose unit normal has these components upwards and towards

@@ -175,12 +175,12 @@ void PaintedScene::KeepUpOpenSkies(const LightsOfSky& lights, Pace pace) {
     const KeyLight* light = OfSource(lights, source);
     if (light == nullptr) continue;
     const double elevation_rad = SunForAir(light->disk).elevation_rad;
-    std::optional<OpenSkyOf>& sky = open_skies_[IndexOf(source)];
+    std::optional<OccludedSkyOf>& sky = open_skies_[IndexOf(source)];
     const double left_rad = pace == Pace::kSettle ? 0.0 : kLeft_rad;
     if (sky && sky->air == known_air_ && sky->altitude_m == altitude_m &&
         std::abs(sky->elevation_rad - elevation_rad) <= left_rad)
       continue;
-    sky = OpenSkyOf{known_air_,
+    sky = OccludedSkyOf{known_air_,
                     altitude_m,
                     elevation_rad,
                     {*single_scattering_, known_air_->multiple_scattering, altitude_m, std::sin(elevation_rad)}};

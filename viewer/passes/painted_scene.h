@@ -86,7 +86,7 @@ class PaintedScene {
   [[nodiscard]] const GroundFollower& ground() const { return ground_; }
   /// Directional variation of the unoccluded sky's irradiance under a source, which must be one of
   /// the lights, at the last updated or settled instant.
-  [[nodiscard]] const SkyTilt& OpenSky(LightSource source) const {
+  [[nodiscard]] const SkyIrradianceGradient& OccludedSkyIrradiance(LightSource source) const {
     return open_skies_[IndexOf(source)].value().light;
   }
   [[nodiscard]] const GroundTextures& ground_textures() const { return ground_textures_; }
@@ -118,10 +118,10 @@ class PaintedScene {
   enum class Pace { kFollow, kSettle };
   void KeepUpAir(const PaintedView& view, const LightsOfSky& lights, Pace pace, double seconds);
   /// Irradiance of the unoccluded sky on slopes, and the inputs it was computed for.
-  struct OpenSkyOf {
+  struct OccludedSkyOf {
     std::shared_ptr<const SolvedAir> air;
     double altitude_m, elevation_rad;
-    SkyTilt light;
+    SkyIrradianceGradient light;
   };
   void KeepUpOpenSkies(const LightsOfSky& lights, Pace pace);
   [[nodiscard]] bool HasEdgesNear(const Vector<Ecef>& to_light) const;
@@ -142,7 +142,7 @@ class PaintedScene {
   AirFollower air_;                                 // at sun_view_
   std::shared_ptr<const SolvedAir> known_air_;      // the medium in ground_textures_
   std::optional<SingleScattering<float>> single_scattering_;  // of known_air_
-  std::array<std::optional<OpenSkyOf>, kLightSources> open_skies_;
+  std::array<std::optional<OccludedSkyOf>, kLightSources> open_skies_;
   std::optional<AirFollower> moon_air_;           // once the moon is a light
   std::shared_ptr<const SolvedAir> moon_air_of_;  // the medium of moon_air_
   std::unique_ptr<Landscape> land_;

@@ -110,7 +110,7 @@ GroundBlock GroundAround(const PaintedScene& scene, const PaintedView& view) {
 
 GroundLightBlock LightAround(const PaintedScene& scene, const PaintedView& view,
                              const KeyLight& light) {
-  GroundLightBlock block = GroundLightBlockOf(scene.OpenSky(light.source()),
+  GroundLightBlock block = GroundLightBlockOf(scene.OccludedSkyIrradiance(light.source()),
                                               DirectionToSun(light.disk), PixelAngle(view));
   block.ground_view.y = scene.HasEdgesOf(light.source()) ? 1.0F : 0.0F;
   return block;
@@ -176,7 +176,7 @@ void PictureBlocks::UploadSkyByPixel(const PaintedScene& scene, const PaintedVie
   const LocalFrame eye(scene.ellipsoid(), view.eye.place);
   Upload(sky_by_pixel_, kSkyByPixelBinding,
          sky->BlockOf(light.source(), eye, DirectionToSun(SunForAir(light.disk)),
-                      scene.OpenSky(light.source())));
+                      scene.OccludedSkyIrradiance(light.source())));
 }
 
 void PictureBlocks::UploadGround(const PaintedScene& scene, const PaintedView& view) const {

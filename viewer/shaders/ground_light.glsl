@@ -7,7 +7,7 @@
 layout(std140) uniform GroundLight {
   vec4 sky_towards;  // horizontal direction towards the sun
   vec4 ground_view;  // angle of a pixel [rad]; second: 1 if the shadow edges belong to this sun
-  vec4 open_sky[OPEN_SKY_COLUMNS * OPEN_SKY_ROWS];  // nodes of SkyTilt, by band
+  vec4 open_sky[OPEN_SKY_COLUMNS * OPEN_SKY_ROWS];  // nodes of SkyIrradianceGradient, by band
 };
 
 // A place on the ground, with the quantities that its lighting and material need.
@@ -56,8 +56,8 @@ vec3 NormalInLight(vec3 offset, vec3 mesh_normal, float footprint) {
 }
 
 // Returns the irradiance of the unoccluded sky on a surface, at half the height of the land.
-vec4 OpenSkyOnSlope(vec3 normal, vec3 up) {
-  float u = OpenSkyColumn(dot(normal, sky_towards.xyz)), v = OpenSkyRow(dot(normal, up));
+vec4 OccludedSkyOnSlope(vec3 normal, vec3 up) {
+  float u = OccludedSkyColumn(dot(normal, sky_towards.xyz)), v = OccludedSkyRow(dot(normal, up));
   int column = min(int(u), OPEN_SKY_COLUMNS - 2), row = min(int(v), OPEN_SKY_ROWS - 2);
   int low = row * OPEN_SKY_COLUMNS + column, high = low + OPEN_SKY_COLUMNS;
   float right = u - float(column);
@@ -121,7 +121,7 @@ SeenGround PlanetSeen(vec3 point_m, vec3 to_eye) {
 // Returns the irradiance of the sky if terrain leaves the fraction `share` of the unoccluded sky:
 // VertexLight (land_chunk.h).
 vec4 SkyByShare(SeenGround seen, vec4 share) {
-  return share * OpenSkyOnSlope(seen.normal, seen.at.up);
+  return share * OccludedSkyOnSlope(seen.normal, seen.at.up);
 }
 
 // Returns the radiance of ground lit by sun and sky.

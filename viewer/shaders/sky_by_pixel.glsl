@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Irradiance of a surface between mountains by the sky and by other slopes, computed per pixel as
-// in the renderer (OpenSky::Irradiance and SlopeLight::Irradiance) from the tables of
+// in the renderer (OccludedSkyIrradiance::Irradiance and TerrainInterreflection::Irradiance) from the tables of
 // sky_by_pixel.h.
 #define SKY_AZIMUTHS 16
 

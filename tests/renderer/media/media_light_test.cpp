@@ -12,7 +12,7 @@
 #include "atmosphere/math/constants.h"
 #include "atmosphere/base/error.h"
 #include "lut/multiple_scattering/spherical_harmonics.h"
-#include "renderer/illumination/open_sky.h"
+#include "renderer/illumination/occluded_sky.h"
 #include "renderer/picture/render.h"
 #include "tests/fixtures/bare_scene.h"
 #include "tests/fixtures/noise_grid.h"

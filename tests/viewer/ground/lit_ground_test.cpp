@@ -207,8 +207,8 @@ TEST(LitGround, ReliefChangesTheSkysLightAsTheOpenSkys) {
     const LitGround lit(TheSite(), tests::RoughSun(*TheSite(), elevation_deg));
     const glm::dvec3& to_sun = lit.lighting().to_sun;
     const glm::dvec3 sunward = glm::normalize(glm::dvec3(to_sun.x, to_sun.y, 0.0));
-    const OpenSky::Extent& extent = TheSite()->horizons()->extent();
-    const SkyTilt tilt(*TheSite()->air().single_scattering, *TheSite()->air().multiple_scattering,
+    const OccludedSkyIrradiance::Extent& extent = TheSite()->horizons()->extent();
+    const SkyIrradianceGradient tilt(*TheSite()->air().single_scattering, *TheSite()->air().multiple_scattering,
                        0.5 * (extent.lowest_m + extent.highest_m), to_sun.z);
     const auto open = [&](const glm::dvec3& n) {
       return static_cast<double>(tilt.On(n.z, glm::dot(n, sunward))[1]);

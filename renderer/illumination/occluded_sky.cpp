@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "renderer/illumination/open_sky.h"
+#include "renderer/illumination/occluded_sky.h"
 
 #include <algorithm>
 #include <cmath>
@@ -184,7 +184,7 @@ Horizons GroundShares(const SurfaceSectors& surface, const Horizons& horizons) {
   return shares;
 }
 
-OpenSky::OpenSky(const SingleScattering<float>& air, const MultipleScattering& multiple_scattering,
+OccludedSkyIrradiance::OccludedSkyIrradiance(const SingleScattering<float>& air, const MultipleScattering& multiple_scattering,
                  const glm::dvec3& to_sun, const Extent& extent)
     : bands_(air.bands()),
       stride_((air.bands() + 3) / 4 * 4),
@@ -218,7 +218,7 @@ OpenSky::OpenSky(const SingleScattering<float>& air, const MultipleScattering& m
   KeepRadiances();
 }
 
-std::vector<float> OpenSky::TableAt(const SingleScattering<float>& air, const MultipleScattering& multiple_scattering,
+std::vector<float> OccludedSkyIrradiance::TableAt(const SingleScattering<float>& air, const MultipleScattering& multiple_scattering,
                                     double altitude_m, const glm::dvec3& to_sun) const {
   constexpr std::size_t kParts = 6;  // per sector
   constexpr std::array<double, 2> kGauss{0.2113248654051871, 0.7886751345948129};
@@ -266,14 +266,14 @@ std::vector<float> OpenSky::TableAt(const SingleScattering<float>& air, const Mu
   return table;
 }
 
-std::size_t OpenSky::Level(double altitude_m) const {
+std::size_t OccludedSkyIrradiance::Level(double altitude_m) const {
   const double at =
       (altitude_m - lowest_m_) / (highest_m_ - lowest_m_) * static_cast<double>(kLevels - 1);
   return static_cast<std::size_t>(
       std::lround(std::clamp(at, 0.0, static_cast<double>(kLevels - 1))));
 }
 
-Bands<float> OpenSky::LevelIrradiance(double altitude_m, double mu_s) const {
+Bands<float> OccludedSkyIrradiance::LevelIrradiance(double altitude_m, double mu_s) const {
   const auto tap = [](double at, std::size_t nodes) {
     const double clamped = std::clamp(at, 0.0, static_cast<double>(nodes - 1));
     const std::size_t node = std::min(static_cast<std::size_t>(clamped), nodes - 2);
@@ -296,7 +296,7 @@ Bands<float> OpenSky::LevelIrradiance(double altitude_m, double mu_s) const {
 
 // The integral between two sines is the difference of the integrals above them. The weights of all
 // sectors are computed first, then four bands at a time, so that both loops vectorise.
-Bands<float> OpenSky::Irradiance(double altitude_m, double mu_s, const SurfaceSectors& surface,
+Bands<float> OccludedSkyIrradiance::Irradiance(double altitude_m, double mu_s, const SurfaceSectors& surface,
                                  const Horizons& horizons) const {
   constexpr float kScale = static_cast<float>(kNodes - 1) / (1.0F - HorizonMap::kLowest);
   constexpr float kLast = static_cast<float>(kNodes - 1);
@@ -339,7 +339,7 @@ Bands<float> OpenSky::Irradiance(double altitude_m, double mu_s, const SurfaceSe
 
 // Radiance between two nodes is the difference of A over that of its weight; at low elevations B is
 // used, which does not vanish at the horizontal.
-void OpenSky::KeepRadiances() {
+void OccludedSkyIrradiance::KeepRadiances() {
   constexpr float kStep = (1.0F - HorizonMap::kLowest) / static_cast<float>(kNodes - 1);
   radiance_.assign(kLevels * kHorizonAzimuths * kNodes * stride_, 0.0F);
   for (std::size_t row = 0; row < kLevels * kHorizonAzimuths; ++row) {
@@ -362,7 +362,7 @@ void OpenSky::KeepRadiances() {
   }
 }
 
-Bands<float> OpenSky::Radiance(double altitude_m, double mu_s, const glm::dvec3& direction) const {
+Bands<float> OccludedSkyIrradiance::Radiance(double altitude_m, double mu_s, const glm::dvec3& direction) const {
   constexpr float kScale = static_cast<float>(kNodes - 1) / (1.0F - HorizonMap::kLowest);
   const float cell =
       std::clamp((static_cast<float>(direction.z) - HorizonMap::kLowest) * kScale - 0.5F, 0.0F,

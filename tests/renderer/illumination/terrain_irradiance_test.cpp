@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "renderer/illumination/terrain_light.h"
+#include "renderer/illumination/terrain_irradiance.h"
 
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
@@ -68,10 +68,10 @@ double IrradianceByQuadrature(const glm::dvec3& to_sun, double altitude_m, const
   return sum * 2.0 * kPi / kAzimuths;
 }
 
-TEST(OpenSky, OfAPlainIsTheIrradianceFromAbove) {
+TEST(OccludedSkyIrradiance, OfAPlainIsTheIrradianceFromAbove) {
   for (const double elevation : {60.0, 20.0, 3.0, -4.0}) {
     const glm::dvec3 to_sun = SunAtElevation(elevation);
-    const OpenSky sky(TheAir().air, TheAir().multiple_scattering, to_sun, {0.0, 3000.0, 5e4});
+    const OccludedSkyIrradiance sky(TheAir().air, TheAir().multiple_scattering, to_sun, {0.0, 3000.0, 5e4});
     const auto open = sky.Irradiance(0.0, to_sun.z, SectorsOf(kUp), OpenTo(0.0F));
     const auto known = TheAir().multiple_scattering.SkyIrradiance(0.0, to_sun.z);
     for (std::size_t band = 0; band < open.count; ++band) {
@@ -81,10 +81,10 @@ TEST(OpenSky, OfAPlainIsTheIrradianceFromAbove) {
   }
 }
 
-TEST(OpenSky, OnAnySlopeUnderAnyHorizonIsTheIntegralOverTheOpenPart) {
+TEST(OccludedSkyIrradiance, OnAnySlopeUnderAnyHorizonIsTheIntegralOverTheOpenPart) {
   for (const double elevation : {40.0, 5.0}) {
     const glm::dvec3 to_sun = SunAtElevation(elevation);
-    const OpenSky sky(TheAir().air, TheAir().multiple_scattering, to_sun, {0.0, 3000.0, 5e4});
+    const OccludedSkyIrradiance sky(TheAir().air, TheAir().multiple_scattering, to_sun, {0.0, 3000.0, 5e4});
     for (const double lean : {0.0, 30.0, 70.0}) {
       for (const double azimuth : {10.0, 130.0, 260.0}) {
         for (const double horizon : {0.0, 0.3}) {
@@ -101,18 +101,18 @@ TEST(OpenSky, OnAnySlopeUnderAnyHorizonIsTheIntegralOverTheOpenPart) {
   }
 }
 
-TEST(OpenSky, BehindAClosedHorizonIsDark) {
+TEST(OccludedSkyIrradiance, BehindAClosedHorizonIsDark) {
   const glm::dvec3 to_sun = SunAtElevation(40.0);
-  const OpenSky sky(TheAir().air, TheAir().multiple_scattering, to_sun, {0.0, 3000.0, 5e4});
+  const OccludedSkyIrradiance sky(TheAir().air, TheAir().multiple_scattering, to_sun, {0.0, 3000.0, 5e4});
   for (const double lean : {0.0, 60.0}) {
     const auto none = sky.Irradiance(500.0, to_sun.z, SectorsOf(Leaning(lean, 45.0)), OpenTo(1.0F));
     EXPECT_EQ(none[0], 0.0F);
   }
 }
 
-TEST(OpenSky, RadianceIsThatOfTheSky) {
+TEST(OccludedSkyIrradiance, RadianceIsThatOfTheSky) {
   const glm::dvec3 to_sun = SunAtElevation(40.0);
-  const OpenSky sky(TheAir().air, TheAir().multiple_scattering, to_sun, {0.0, 3000.0, 5e4});
+  const OccludedSkyIrradiance sky(TheAir().air, TheAir().multiple_scattering, to_sun, {0.0, 3000.0, 5e4});
   const SkyView view(TheAir().air, TheAir().multiple_scattering, 0.0, to_sun.z);
   for (const double sine : {0.05, 0.2, 0.5, 0.9}) {
     for (const double azimuth : {0.3, 1.4, 2.9}) {  // away from the aureole
@@ -170,7 +170,7 @@ class Mountains {
   [[nodiscard]] SlopePoint At(const glm::dvec3& point, const glm::dvec3& normal) const {
     return At(point, normal, to_sun_.z);
   }
-  [[nodiscard]] const TerrainLight& light() const { return light_; }
+  [[nodiscard]] const TerrainIrradiance& light() const { return light_; }
   [[nodiscard]] const glm::dvec3& to_sun() const { return to_sun_; }
 
   [[nodiscard]] TerrainHit Ground(double x, double y) const {
@@ -227,13 +227,13 @@ class Mountains {
   float albedo_;
   Terrain terrain_;
   std::shared_ptr<const TerrainHorizons> horizons_;
-  TerrainLight light_;
+  TerrainIrradiance light_;
   SkyView view_;
   AerialPerspective aerial_;
 };
 
-TEST(TerrainLight, IsThatOfRaysThatMeetSkyAndSlopes) {
-  // The error that TerrainLight states, and what it would be without horizons.
+TEST(TerrainIrradiance, IsThatOfRaysThatMeetSkyAndSlopes) {
+  // The error that TerrainIrradiance states, and what it would be without horizons.
   for (const auto& [albedo, bound] : {std::pair{0.15F, 0.04}, {0.8F, 0.09}}) {
     const Mountains mountains(30.0, albedo);
     double sum2 = 0.0, sum = 0.0, plain2 = 0.0;
@@ -265,7 +265,7 @@ TEST(TerrainLight, IsThatOfRaysThatMeetSkyAndSlopes) {
 }
 
 // Light between slopes has 0/0 for the depth of such air when it is divided by its extinction.
-TEST(TerrainLight, SlopesLightEachOtherThroughAirThatDimsNothing) {
+TEST(TerrainIrradiance, SlopesLightEachOtherThroughAirThatDimsNothing) {
   Medium medium = TheAir().medium;
   for (std::vector<double>* list : {&medium.rayleigh_scattering_per_m, &medium.mie_scattering_per_m,
                                     &medium.mie_extinction_per_m, &medium.ozone_absorption_per_m})
@@ -275,7 +275,7 @@ TEST(TerrainLight, SlopesLightEachOtherThroughAirThatDimsNothing) {
   const Terrain terrain(LandMesh(RoughLand, 17, 480.0));
   const auto horizons = std::make_shared<const TerrainHorizons>(terrain.mesh(), medium);
   const glm::dvec3 to_sun = SunAtElevation(30.0);
-  TerrainLight light(horizons, air, multiple_scattering, to_sun);
+  TerrainIrradiance light(horizons, air, multiple_scattering, to_sun);
   const auto one = [&](const SlopePlace&) {
     BandLight sent(air.bands());
     std::fill_n(sent.value.begin(), sent.count, 1.0F);
@@ -297,7 +297,7 @@ TEST(TerrainLight, SlopesLightEachOtherThroughAirThatDimsNothing) {
   EXPECT_GT(most, 0.0F) << "slopes must have been in view";
 }
 
-TEST(TerrainLight, IsTheSameForAnyNumberOfThreads) {
+TEST(TerrainIrradiance, IsTheSameForAnyNumberOfThreads) {
   std::vector<float> made;
   for (const std::size_t threads : {1U, 2U, 8U}) {
     const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
@@ -309,7 +309,7 @@ TEST(TerrainLight, IsTheSameForAnyNumberOfThreads) {
   EXPECT_EQ(made[0], made[2]);
 }
 
-TEST(TerrainLight, ShowsSkyOverTheHorizonAndGroundBelowIt) {
+TEST(TerrainIrradiance, ShowsSkyOverTheHorizonAndGroundBelowIt) {
   const Mountains mountains(30.0, 0.1F);
   const TerrainHit hit = mountains.Ground(200.0, 100.0);
   const SlopePoint at = mountains.At(hit.smooth_point, hit.normal);
@@ -327,12 +327,12 @@ double SeaBeforeACoast(double x_m, double y_m) {
   return is_coast ? 300.0 : 0.0;
 }
 
-TEST(TerrainLight, ASeaMirrorsAFarCoastWithoutEdges) {
+TEST(TerrainIrradiance, ASeaMirrorsAFarCoastWithoutEdges) {
   constexpr double kEye_m = 60.0;
   const Terrain terrain(LandMesh(SeaBeforeACoast, 129, 250.0));
   const auto horizons = std::make_shared<const TerrainHorizons>(terrain.mesh(), TheAir().medium);
   const glm::dvec3 to_sun = SunAtElevation(30.0);
-  TerrainLight light(horizons, TheAir().air, TheAir().multiple_scattering, to_sun);
+  TerrainIrradiance light(horizons, TheAir().air, TheAir().multiple_scattering, to_sun);
   light.AddSlopes(
       TheAir().medium,
       [](const SlopePlace&) {

@@ -6,7 +6,7 @@
 // outwards from the nodes of a coarse grid along kHorizonAzimuths directions, in growing steps, and
 // keeps for each direction a few nodes that represent the ground in view. A strip between one
 // elevation and the next higher one is weighted by the light that it would bring, and the kept
-// nodes are at equal fractions of the total weight. For one position of the sun, SlopeLight
+// nodes are at equal fractions of the total weight. For one position of the sun, TerrainInterreflection
 // evaluates once the outgoing light of all nodes, and sums it for every node and direction. The air
 // in between dims this light and adds its own, which is assumed to be that of the sky above the
 // horizon there. A point of the picture weights the directions by its own normal and horizon. Light
@@ -27,7 +27,7 @@
 #include "renderer/material/band_light.h"
 #include "renderer/material/reflectance.h"
 #include "renderer/surface/scene_ground.h"
-#include "renderer/illumination/open_sky.h"
+#include "renderer/illumination/occluded_sky.h"
 #include "renderer/visibility/horizon_map.h"
 #include "renderer/terrain/mesh.h"
 
@@ -79,7 +79,7 @@ class SlopeViews {
 };
 
 /// Light between slopes for one position of the sun. Immutable; safe to use from many threads.
-class SlopeLight {
+class TerrainInterreflection {
  public:
   /// Returns the light from sun and sky that a place reflects, as radiance per unit solar
   /// irradiance [1/sr], the same in all directions.
@@ -87,8 +87,8 @@ class SlopeLight {
 
   /// The result does not depend on the number of threads.
   /// @param mu_s  zenith cosine of the sun at the frame's origin.
-  SlopeLight(const SlopeViews& views, const Medium& medium, const Outgoing& outgoing,
-             const OpenSky& sky, double mu_s);
+  TerrainInterreflection(const SlopeViews& views, const Medium& medium, const Outgoing& outgoing,
+             const OccludedSkyIrradiance& sky, double mu_s);
 
   /// Returns the irradiance [1] from other ground, below the horizons.
   [[nodiscard]] BandLight Irradiance(const glm::dvec3& point, const SurfaceSectors& surface,
@@ -122,14 +122,14 @@ class TerrainHorizons {
   [[nodiscard]] const HorizonMap& map() const { return map_; }
   [[nodiscard]] const SlopeViews& views() const { return views_; }
   /// Extent of the ground; altitudes are above the frame's plane.
-  [[nodiscard]] const OpenSky::Extent& extent() const { return extent_; }
+  [[nodiscard]] const OccludedSkyIrradiance::Extent& extent() const { return extent_; }
 
  private:
   TerrainHorizons(const HeightRaster& heights, const TriangleMesh& mesh, const Medium& medium);
 
   HorizonMap map_;
   SlopeViews views_;
-  OpenSky::Extent extent_;
+  OccludedSkyIrradiance::Extent extent_;
 };
 
 /// The horizons of a scene, computed on first use, because not every picture needs them.
@@ -164,20 +164,20 @@ struct SlopePoint {
 /// over rough mountains with the sun at 30 degrees: root mean square below 4 % with an albedo of
 /// 0.15 (without horizons, from the moments of the light: more than three times as much), below 9 %
 /// with 0.8. The error of the mean is less than half of that.
-class TerrainLight {
+class TerrainIrradiance {
  public:
   /// Creates the light of the sky alone.
   /// @param horizons  null: a plain.
-  TerrainLight(std::shared_ptr<const TerrainHorizons> horizons, const SingleScattering<float>& air,
+  TerrainIrradiance(std::shared_ptr<const TerrainHorizons> horizons, const SingleScattering<float>& air,
                const MultipleScattering& multiple_scattering, const glm::dvec3& to_sun);
 
-  [[nodiscard]] const OpenSky& sky() const { return sky_; }
+  [[nodiscard]] const OccludedSkyIrradiance& sky() const { return sky_; }
   [[nodiscard]] const TerrainHorizons* horizons() const { return horizons_.get(); }
   /// Null before AddSlopes.
-  [[nodiscard]] const SlopeLight* slopes() const { return slopes_ ? &*slopes_ : nullptr; }
+  [[nodiscard]] const TerrainInterreflection* slopes() const { return slopes_ ? &*slopes_ : nullptr; }
 
   /// Adds the light between slopes. Needs horizons.
-  void AddSlopes(const Medium& medium, const SlopeLight::Outgoing& outgoing, double mu_s);
+  void AddSlopes(const Medium& medium, const TerrainInterreflection::Outgoing& outgoing, double mu_s);
 
   /// Irradiance per unit solar irradiance [1].
   struct OnSlope {
@@ -201,8 +201,8 @@ class TerrainLight {
 
  private:
   std::shared_ptr<const TerrainHorizons> horizons_;
-  OpenSky sky_;
-  std::optional<SlopeLight> slopes_;
+  OccludedSkyIrradiance sky_;
+  std::optional<TerrainInterreflection> slopes_;
 };
 
 }  // namespace alpenglow::renderer

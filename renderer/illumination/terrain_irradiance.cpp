@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "renderer/illumination/terrain_light.h"
+#include "renderer/illumination/terrain_irradiance.h"
 
 #include <tbb/parallel_for.h>
 
@@ -140,12 +140,12 @@ void SlopeViews::Walk(std::size_t node, std::size_t azimuth, const Medium& mediu
 }
 
 /// The four nodes around a point.
-struct SlopeLight::Neighbours {
+struct TerrainInterreflection::Neighbours {
   std::array<const float*, 4> light;
   std::array<std::size_t, 4> node;
   std::array<float, 4> share;
 
-  Neighbours(const SlopeLight& of, const glm::dvec3& point) {
+  Neighbours(const TerrainInterreflection& of, const glm::dvec3& point) {
     const HeightRaster& heights = of.views_.heights();
     const GridCell cell = CellAt(heights, point.x, point.y);
     const std::size_t first = heights.index(cell.column, cell.row);
@@ -158,8 +158,8 @@ struct SlopeLight::Neighbours {
   }
 };
 
-SlopeLight::SlopeLight(const SlopeViews& views, const Medium& medium, const Outgoing& outgoing,
-                       const OpenSky& sky, double mu_s)
+TerrainInterreflection::TerrainInterreflection(const SlopeViews& views, const Medium& medium, const Outgoing& outgoing,
+                       const OccludedSkyIrradiance& sky, double mu_s)
     : views_(views),
       bands_(medium.wavelengths_nm.size()),
       stride_((bands_ + 3) / 4 * 4),
@@ -195,7 +195,7 @@ SlopeLight::SlopeLight(const SlopeViews& views, const Medium& medium, const Outg
   Gather(sent, through, air);
 }
 
-void SlopeLight::Gather(const std::vector<float>& sent, const std::vector<float>& through,
+void TerrainInterreflection::Gather(const std::vector<float>& sent, const std::vector<float>& through,
                         const std::vector<float>& air) {
   tbb::parallel_for(0, views_.heights().rows, [&](int row) {
     for (int column = 0; column < views_.heights().columns; ++column) {
@@ -220,7 +220,7 @@ void SlopeLight::Gather(const std::vector<float>& sent, const std::vector<float>
   });
 }
 
-BandLight SlopeLight::Irradiance(const glm::dvec3& point, const SurfaceSectors& surface,
+BandLight TerrainInterreflection::Irradiance(const glm::dvec3& point, const SurfaceSectors& surface,
                                  const Horizons& horizons) const {
   const Neighbours around(*this, point);
   Horizons scale = GroundShares(surface, horizons);
@@ -249,7 +249,7 @@ BandLight SlopeLight::Irradiance(const glm::dvec3& point, const SurfaceSectors& 
   return irradiance;
 }
 
-BandLight SlopeLight::Radiance(const glm::dvec3& point, const BetweenAzimuths& azimuth,
+BandLight TerrainInterreflection::Radiance(const glm::dvec3& point, const BetweenAzimuths& azimuth,
                                double horizon, const BandLight& beyond) const {
   const Neighbours around(*this, point);
   BandLight radiance(bands_);
@@ -317,26 +317,26 @@ TerrainHorizons::TerrainHorizons(const HeightRaster& heights, const TriangleMesh
   }
 }
 
-TerrainLight::TerrainLight(std::shared_ptr<const TerrainHorizons> horizons,
+TerrainIrradiance::TerrainIrradiance(std::shared_ptr<const TerrainHorizons> horizons,
                            const SingleScattering<float>& air, const MultipleScattering& multiple_scattering,
                            const glm::dvec3& to_sun)
     : horizons_(std::move(horizons)),
-      sky_(air, multiple_scattering, to_sun, horizons_ ? horizons_->extent() : OpenSky::Extent{0.0, 1.0, 5e5}) {
+      sky_(air, multiple_scattering, to_sun, horizons_ ? horizons_->extent() : OccludedSkyIrradiance::Extent{0.0, 1.0, 5e5}) {
 }
 
-void TerrainLight::AddSlopes(const Medium& medium, const SlopeLight::Outgoing& outgoing,
+void TerrainIrradiance::AddSlopes(const Medium& medium, const TerrainInterreflection::Outgoing& outgoing,
                              double mu_s) {
   slopes_.emplace(horizons_->views(), medium, outgoing, sky_, mu_s);
 }
 
-TerrainLight::OnSlope TerrainLight::On(const SlopePoint& at) const {
+TerrainIrradiance::OnSlope TerrainIrradiance::On(const SlopePoint& at) const {
   const SurfaceSectors surface = SectorsOf(AtPlace(at.normal, at.up));
   const Horizons horizons = horizons_->map().At(at.point);
   const BandLight sky = sky_.Irradiance(at.altitude_m, at.mu_s, surface, horizons);
   return {sky, slopes_ ? slopes_->Irradiance(at.point, surface, horizons) : BandLight(sky.count)};
 }
 
-BandLight TerrainLight::SkyRadiance(const SlopePoint& at, const glm::dvec3& direction) const {
+BandLight TerrainIrradiance::SkyRadiance(const SlopePoint& at, const glm::dvec3& direction) const {
   return sky_.Radiance(at.altitude_m, at.mu_s, AtPlace(direction, at.up));
 }
 
@@ -344,7 +344,7 @@ namespace {
 
 // Returns the fraction of a direction's spread that lies below a horizon.
 double GroundShare(double sine, const Spread& spread, double horizon) {
-  constexpr double kSharpest = 0.011;  // a step of OpenSky; neither sky nor horizons are finer
+  constexpr double kSharpest = 0.011;  // a step of OccludedSkyIrradiance; neither sky nor horizons are finer
   const double range = std::max(spread.below + spread.above, kSharpest);
   const double lowest = sine + 0.5 * (spread.above - spread.below - range);
   const double within = std::clamp((horizon - lowest) / range, 0.0, 1.0);
@@ -354,7 +354,7 @@ double GroundShare(double sine, const Spread& spread, double horizon) {
 
 }  // namespace
 
-BandLight TerrainLight::Radiance(const SlopePoint& at, const glm::dvec3& direction,
+BandLight TerrainIrradiance::Radiance(const SlopePoint& at, const glm::dvec3& direction,
                                  const Spread& spread) const {
   const glm::dvec3 here = AtPlace(direction, at.up);
   const BandLight sky = sky_.Radiance(at.altitude_m, at.mu_s, here);

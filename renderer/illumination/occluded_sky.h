@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: MIT
 // This header provides skylight at a place: its moments for scattering by any phase function
-// (SkyMoments), and its irradiance of surfaces whose horizon hides a part of it (OpenSky).
+// (SkyMoments), and its irradiance of surfaces whose horizon hides a part of it (OccludedSkyIrradiance).
 //
 // SkyMoments keeps the moments of MultipleScattering, from which a phase function with coefficients chi_l
 // scatters
 //
 //   J(look) = sum over l, m of  chi_l L_lm Y_lm(look)
 //
-// OpenSky integrates the sky over the directions that a surface sees. From azimuth p and elevation
+// OccludedSkyIrradiance integrates the sky over the directions that a surface sees. From azimuth p and elevation
 // e, a surface of normal n = (n_h(p) along the azimuth, n_z up) receives L (n_z sin e + n_h cos e).
 // The open part of one azimuth, above the sine s of the horizon, contributes
 //
@@ -85,7 +85,7 @@ struct SurfaceSectors {
 
 /// Irradiance from the visible part of the sky, for one position of the sun. Immutable; safe to use
 /// from many threads.
-class OpenSky {
+class OccludedSkyIrradiance {
  public:
   /// Extent of the ground.
   struct Extent {
@@ -93,7 +93,7 @@ class OpenSky {
     double radius_m;             // greatest distance from the frame's origin
   };
   /// @param to_sun  unit, in the frame of the horizons.
-  OpenSky(const SingleScattering<float>& air, const MultipleScattering& multiple_scattering, const glm::dvec3& to_sun,
+  OccludedSkyIrradiance(const SingleScattering<float>& air, const MultipleScattering& multiple_scattering, const glm::dvec3& to_sun,
           const Extent& extent);
 
   /// Returns the irradiance per unit solar irradiance [1] from directions above the horizon, which
