@@ -42,9 +42,9 @@ SHARED Number SoftDiskPerSr(Number off, Number radius) {
   return inside * inside * Number(0.95492965855137202) / (radius * radius);
 }
 
-// Coordinates in the map of irradiance by airlight of a lamp (LampGlow): logarithmic in the
+// Coordinates in the map of irradiance by airlight of a lamp (LampAirlightIrradiance): logarithmic in the
 // distance, piecewise linear in the sine of the lamp's elevation between 0, 0.04, 0.2, 0.6 and 1.
-SHARED Number LampGlowUnit(Length distance, Length nearest, Length farthest) {
+SHARED Number LampAirlightUnit(Length distance, Length nearest, Length farthest) {
   return log(distance / nearest) / log(farthest / nearest);
 }
 
@@ -70,7 +70,7 @@ SHARED Number LampRiseFromUnit(Number unit) {
 // towards it and away from it have separate terms.
 // @param towards, up  components of the unit normal: along the horizontal direction to the lamp,
 // and upwards.
-SHARED Number LampGlowOnSlope(Number towards, Number up, Number steep, Number facing,
+SHARED Number LampAirlightOnSlope(Number towards, Number up, Number steep, Number facing,
                               Number facing_twice, Number turned, Number turned_twice) {
   Number face = max(towards, Number(0.0));
   Number turn = max(-towards, Number(0.0));

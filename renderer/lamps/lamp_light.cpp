@@ -147,7 +147,7 @@ Bands<float> LampLight::OnSurface(const LampNodes& lamps, const LitPoint& at) co
     const double distance = std::max(glm::length(to_lamp), placed.lamp.radius_m);
     const glm::dvec3 towards = to_lamp / distance;
     const double cosine = glm::dot(at.normal, towards);
-    const LampGlow& glow = state_->tree.GlowOf(index);
+    const LampAirlightIrradiance& glow = state_->tree.GlowOf(index);
     sum = sum + Scaled(placed.intensity,
                        glow.On(distance * towards, at.normal, state_->stage.UpAt(at.point)),
                        placed.mean_share);

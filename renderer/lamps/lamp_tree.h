@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // This header provides the tree of a scene's lamps, and the irradiance of surfaces from the air
-// that a lamp lights (LampGlow).
+// that a lamp lights (LampAirlightIrradiance).
 //
-// LampGlow integrates lamp -> air -> surface, in air of exponential density over level ground:
+// LampAirlightIrradiance integrates lamp -> air -> surface, in air of exponential density over level ground:
 //
 //   E(n) = integral over directions d with n.d > 0 of  L(d) n.d,    L = Airlight from the surface
 //
@@ -37,13 +37,13 @@
 namespace alpenglow::renderer {
 
 /// Irradiance from the air around an isotropic lamp of intensity 1 at one altitude. Immutable.
-class LampGlow {
+class LampAirlightIrradiance {
  public:
   /// Degree of the moments.
   static constexpr int kDegree = 6;
 
   /// @param ground_altitude_m  at the lamp's foot, not above it.
-  LampGlow(const std::vector<LampLayer>& layers, double lamp_altitude_m, double ground_altitude_m);
+  LampAirlightIrradiance(const std::vector<LampLayer>& layers, double lamp_altitude_m, double ground_altitude_m);
 
   /// Returns the irradiance of a surface [m^-2], in every band. Its error against quadrature over
   /// the hemisphere, in fog of scale heights of 25 to 100 m up to 4 optical depths from the lamp,
@@ -89,7 +89,7 @@ class LampTree {
   [[nodiscard]] std::size_t lamps() const { return lamps_; }
   [[nodiscard]] const LampNodes& roots() const { return roots_; }
   /// Returns the irradiance table of the air that the node lights.
-  [[nodiscard]] const LampGlow& GlowOf(std::uint32_t node) const {
+  [[nodiscard]] const LampAirlightIrradiance& GlowOf(std::uint32_t node) const {
     return *glows_[glow_of_node_[node]];
   }
 
@@ -109,7 +109,7 @@ class LampTree {
   std::vector<LampNode> nodes_;  // the scene's lamps, followed by the clusters
   std::size_t lamps_ = 0;
   LampNodes roots_;
-  std::vector<std::shared_ptr<const LampGlow>> glows_;
+  std::vector<std::shared_ptr<const LampAirlightIrradiance>> glows_;
   std::vector<std::size_t> glow_of_node_;
 };
 

@@ -14,7 +14,7 @@
 
 #include "lut/cli/program.h"
 #include "renderer/lamps/lamp_light.h"
-#include "renderer/lamps/lamp_works.h"
+#include "renderer/lamps/lamp_test_cases.h"
 #include "renderer/report/report.h"
 
 namespace alpenglow::renderer {
@@ -36,8 +36,8 @@ constexpr std::array<ReportRegime, kKinds> kFogs{{{"isotropic", "Homogeneous, is
                                                   {"height-fog", "Height fog, H 30 m", {}},
                                                   {"beam", "Beam in height fog", {}},
                                                   {"through", "Ray through the lamp", {}}}};
-const std::array<LampWorkKind, kKinds>& Kinds() {
-  static const std::array<LampWorkKind, kKinds> kinds{
+const std::array<LampTestKind, kKinds>& Kinds() {
+  static const std::array<LampTestKind, kKinds> kinds{
       {{.g = 0.0},
        {.g = 0.8},
        {.g = 0.8, .scale_height_m = 30.0, .clear_air = true},
@@ -55,11 +55,11 @@ class AirlightTopic {
       works_[k].resize(static_cast<std::size_t>(count));
       tbb::parallel_for(0, count, [&](int i) {
         if (!Interrupted())
-          works_[k][static_cast<std::size_t>(i)] = LampWorkNumber(i + 1, Kinds()[k]);
+          works_[k][static_cast<std::size_t>(i)] = LampTestCaseNumber(i + 1, Kinds()[k]);
       });
       ThrowIfInterrupted();
       std::erase_if(works_[k],
-                    [](const LampWork& work) { return !work.converged || !(work.truth > 0.0); });
+                    [](const LampTestCase& work) { return !work.converged || !(work.truth > 0.0); });
     }
     const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - start;
     topic_.reference.time_s = taken.count() / static_cast<double>(kKinds) / count;
@@ -71,11 +71,11 @@ class AirlightTopic {
         Row("panels around the light", fmt::format("{} nodes", nodes), MethodOrigin::kOurs, kHere);
     row.in_summary = nodes == 12 || nodes == 16;
     for (std::size_t k = 0; k < kKinds; ++k) {
-      Measure(k, row, [&](const LampWork& work) {
+      Measure(k, row, [&](const LampTestCase& work) {
         return Airlight(work.air, work.lamp, work.segment, nodes)[0];
       });
       double points = 0.0;
-      for (const LampWork& work : works_[k]) {
+      for (const LampTestCase& work : works_[k]) {
         const AirlightEffort effort = EffortOfAirlight(work.air, work.lamp, work.segment, nodes);
         points += effort.scouted + effort.integrated;
       }
@@ -88,7 +88,7 @@ class AirlightTopic {
     ReportRow row = Row(series, fmt::format("{} points", nodes), MethodOrigin::kLiterature, style);
     row.in_summary = nodes == 64;
     for (std::size_t k = 0; k < kKinds; ++k) {
-      Measure(k, row, [&](const LampWork& work) { return AirlightByRule(rule, work, nodes); });
+      Measure(k, row, [&](const LampTestCase& work) { return AirlightByRule(rule, work, nodes); });
       row.at[k].samples = nodes;
     }
     topic_.rows.push_back(std::move(row));
@@ -98,7 +98,7 @@ class AirlightTopic {
   void AddSun() {
     ReportRow row = Row("Sun et al. (2005)", "", MethodOrigin::kLiterature, kSun);
     row.in_summary = true;
-    Measure(0, row, [](const LampWork& work) {
+    Measure(0, row, [](const LampTestCase& work) {
       const glm::dvec3 to_lamp = work.lamp.position_m - work.segment.origin_m;
       const double along = glm::dot(to_lamp, work.segment.direction);
       const LampLayer& layer = work.air.layers[0];
@@ -147,14 +147,14 @@ class AirlightTopic {
   template <typename Answer>
   void Measure(std::size_t k, ReportRow& row, const Answer& answer) {
     std::vector<double> errors;
-    for (const LampWork& work : works_[k])
+    for (const LampTestCase& work : works_[k])
       errors.push_back(std::abs(answer(work) / work.truth - 1.0));
     row.at[k].error = StatisticsOfErrors(std::move(errors), 0.0);
     TimePasses(
         works_[k].size(), effort_,
         [&] {
           double sum = 0.0;
-          for (const LampWork& work : works_[k]) sum += answer(work);
+          for (const LampTestCase& work : works_[k]) sum += answer(work);
           return static_cast<float>(sum);
         },
         row.at[k]);
@@ -162,7 +162,7 @@ class AirlightTopic {
   }
 
   const ReportEffort& effort_;
-  std::array<std::vector<LampWork>, kKinds> works_;
+  std::array<std::vector<LampTestCase>, kKinds> works_;
   ReportTopic topic_;
 };
 

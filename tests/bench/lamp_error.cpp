@@ -12,15 +12,15 @@
 #include <vector>
 
 #include "atmosphere/lamp/airlight.h"
-#include "renderer/lamps/lamp_works.h"
+#include "renderer/lamps/lamp_test_cases.h"
 
 namespace alpenglow::renderer {
 namespace {
 
-using Work = LampWork;
+using Work = LampTestCase;
 
-Work CheckedWork(int i, const LampWorkKind& kind) {
-  Work work = LampWorkNumber(i, kind);
+Work CheckedWork(int i, const LampTestKind& kind) {
+  Work work = LampTestCaseNumber(i, kind);
   if (!work.converged && work.truth > 0.0) fmt::print("# the reference solution misses in case {}\n", i);
   return work;
 }
@@ -76,7 +76,7 @@ int main(int argc, char** argv) {
   const int cases = argc > 1 ? std::atoi(argv[1]) : 3000;
   struct Kind {
     const char* name;
-    LampWorkKind of;
+    LampTestKind of;
   };
   const std::vector<Kind> kinds{
       {"g 0", {.g = 0.0}},

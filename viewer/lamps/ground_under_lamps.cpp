@@ -30,7 +30,7 @@ double RiseAt(double texel) { return shared::LampRiseFromUnit(texel / (kGlowRise
 
 /// A lamp in the x-z plane; x points towards it and z upwards.
 struct View {
-  const LampGlow& glow;
+  const LampAirlightIrradiance& glow;
   double distance_m, rise;
 
   [[nodiscard]] Bands<double> On(const glm::dvec3& normal) const {
@@ -40,14 +40,14 @@ struct View {
   [[nodiscard]] Bands<double> OnLevel() const { return On({0.0, 0.0, 1.0}); }
 };
 
-/// Returns the weights of a slope for the terms of LampGlowOnSlope.
+/// Returns the weights of a slope for the terms of LampAirlightOnSlope.
 std::array<double, kSlopeTerms> TermsOf(const glm::dvec3& normal) {
   std::array<double, kSlopeTerms> of_term{};
   for (std::size_t k = 0; k < kSlopeTerms; ++k) {
     std::array<double, kSlopeTerms> one{};
     one[k] = 1.0;
     of_term[k] =
-        shared::LampGlowOnSlope(normal.x, normal.z, one[0], one[1], one[2], one[3], one[4]) - 1.0;
+        shared::LampAirlightOnSlope(normal.x, normal.z, one[0], one[1], one[2], one[3], one[4]) - 1.0;
   }
   return of_term;
 }
@@ -128,7 +128,7 @@ glm::vec4 LogLevelOf(const View& view) {
 
 }  // namespace
 
-std::vector<glm::vec4> SampledGlow(const LampGlow& glow) {
+std::vector<glm::vec4> SampledGlow(const LampAirlightIrradiance& glow) {
   constexpr std::size_t kTerm = std::size_t{kGlowDistances} * kGlowRises;
   std::vector<glm::vec4> texels(kGlowTerms * kTerm);
   tbb::parallel_for(std::size_t{0}, kTerm, [&](std::size_t at) {
@@ -298,8 +298,8 @@ int PlanLevelsOf(double candela) {
   return static_cast<int>(std::clamp(levels, 1.0, double{kMostPlanLevels}));
 }
 
-LitPlan LitPlanAround(const LampStage& stage, const Lamp& lamp, int levels) {
-  LitPlan plan;
+LampShadowField LampShadowFieldAround(const LampStage& stage, const Lamp& lamp, int levels) {
+  LampShadowField plan;
   plan.levels = levels;
   for (int number = 0; number < levels; ++number) {
     const PlanLevel level(stage, lamp, number);
@@ -309,13 +309,13 @@ LitPlan LitPlanAround(const LampStage& stage, const Lamp& lamp, int levels) {
   return plan;
 }
 
-void LitPlanFollower::Follow() {
+void LampShadowFieldFollower::Follow() {
   if (plans_.size() == lamps_ || job_.Busy()) return;
-  if (std::optional<LitPlan> made = job_.Take()) plans_.push_back(std::move(*made));
+  if (std::optional<LampShadowField> made = job_.Take()) plans_.push_back(std::move(*made));
   if (plans_.size() < lamps_) job_.Ask(plans_.size());
 }
 
-void LitPlanFollower::Settle() {
+void LampShadowFieldFollower::Settle() {
   for (Follow(); plans_.size() < lamps_; Follow()) job_.Wait();
 }
 

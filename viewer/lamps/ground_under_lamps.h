@@ -1,19 +1,19 @@
 // SPDX-License-Identifier: MIT
 // Provides the light of lamps on the ground for interpolation by the GPU: SampledGlow, the light
-// that the illuminated air around a lamp brings to surfaces, LitPlan, the lit and shadowed ground
-// around a lamp, and LitPlanFollower, which computes the LitPlans of all lamps once, one by one,
+// that the illuminated air around a lamp brings to surfaces, LampShadowField, the lit and shadowed ground
+// around a lamp, and LampShadowFieldFollower, which computes the LitPlans of all lamps once, one by one,
 // beside drawing.
 //
-// SampledGlow tabulates LampGlow (renderer/lamps/lamp_tree.h) with six terms over distance and rise
+// SampledGlow tabulates LampAirlightIrradiance (renderer/lamps/lamp_tree.h) with six terms over distance and rise
 // of the lamp.
 //
-//   E(n) = exp(term 0) / d * LampGlowOnSlope(n, terms 1 to 5)             [m^-2], by band
+//   E(n) = exp(term 0) / d * LampAirlightOnSlope(n, terms 1 to 5)             [m^-2], by band
 //
 // Term 0 is the logarithm of the light on level ground times the distance. The other terms, defined
 // in atmosphere/lamp/lamp_ray.glsl, are fitted by least squares to slopes of up to 60 degrees.
 // Gentle slopes have larger weights than steep ones (the fourth power of the cosine).
 //
-// A LitPlan is a horizontal map of the signed distance to the edge of the shadows of terrain, found
+// A LampShadowField is a horizontal map of the signed distance to the edge of the shadows of terrain, found
 // with the renderer's own shadow rays (LampStage::Shades). Shadows end at sides of triangles and at
 // the shadows of these sides on other triangles, along lines that are straight over many steps of a
 // lattice. The distance to a straight line is linear between nodes, so the edge is located far more
@@ -35,7 +35,7 @@
 
 namespace alpenglow::viewer {
 
-/// Size of the table. Distances and rises are spaced as in lamp_ray.glsl; each step of LampGlow is
+/// Size of the table. Distances and rises are spaced as in lamp_ray.glsl; each step of LampAirlightIrradiance is
 /// divided into four.
 inline constexpr int kGlowDistances = 61;
 inline constexpr int kGlowRises = 33;
@@ -45,7 +45,7 @@ inline constexpr int kGlowTerms = 6;
 
 /// Returns [(term * kGlowRises + rise) * kGlowDistances + distance]. Unused bands have no light on
 /// level ground and equal light on all slopes. At most four bands.
-[[nodiscard]] std::vector<glm::vec4> SampledGlow(const LampGlow& glow);
+[[nodiscard]] std::vector<glm::vec4> SampledGlow(const LampAirlightIrradiance& glow);
 
 /// Nodes per side of a level; the middle one is below the lamp.
 inline constexpr int kPlanSide = 512;
@@ -58,7 +58,7 @@ inline constexpr double kPlanRange_steps = 2.0;
 /// The fifth level is used up to 8 km.
 inline constexpr int kMostPlanLevels = 5;
 
-struct LitPlan {
+struct LampShadowField {
   int levels = 0;
   /// [(level * kPlanSide + row) * kPlanSide + column], rows to the north. Values from 1 to 255
   /// stand for -kPlanRange_steps (shadow) to kPlanRange_steps (lit); 128 is the edge.
@@ -72,27 +72,27 @@ struct LitPlan {
 
 /// Computes a plan. It takes 0.1 s per level: half a million rays where shadows are intricate.
 /// `stage` must have terrain.
-[[nodiscard]] LitPlan LitPlanAround(const LampStage& stage, const Lamp& lamp, int levels);
+[[nodiscard]] LampShadowField LampShadowFieldAround(const LampStage& stage, const Lamp& lamp, int levels);
 
-class LitPlanFollower {
+class LampShadowFieldFollower {
  public:
   /// Returns the plan of a lamp with this number, from 0.
-  using Make = std::function<LitPlan(std::size_t)>;
+  using Make = std::function<LampShadowField(std::size_t)>;
   /// @param make  called on a thread of this object; everything it refers to must outlive this
   ///     object.
-  LitPlanFollower(std::size_t lamps, Make make) : lamps_(lamps), job_(std::move(make)) {}
+  LampShadowFieldFollower(std::size_t lamps, Make make) : lamps_(lamps), job_(std::move(make)) {}
 
   /// Takes a finished plan and requests the next one.
   void Follow();
   /// Waits for all plans.
   void Settle();
   /// Returns the finished plans, which are those of the first lamps.
-  [[nodiscard]] const std::vector<LitPlan>& plans() const { return plans_; }
+  [[nodiscard]] const std::vector<LampShadowField>& plans() const { return plans_; }
 
  private:
   std::size_t lamps_;
-  std::vector<LitPlan> plans_;
-  LatestJob<std::size_t, LitPlan> job_;
+  std::vector<LampShadowField> plans_;
+  LatestJob<std::size_t, LampShadowField> job_;
 };
 
 }  // namespace alpenglow::viewer

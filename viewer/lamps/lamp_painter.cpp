@@ -18,7 +18,7 @@ namespace {
 
 enum LampUnit {
   kLampTablesUnit,
-  kLampGlowUnit,
+  kLampAirlightUnit,
   kLampMieUnit,
   kLampLatticeUnit,
   kLampShadeUnit,
@@ -89,7 +89,7 @@ LampPainter::LampPainter(const SceneLamps& shape, const LampQuality& quality,
   corners.push_back(ViewerPiece("viewer/shaders/lamps/lamp_corners.glsl"));
   if (quality.step > 1) {
     glow_program_.emplace(
-        FullScreenProgram(WithViewerPieces(texts, {"viewer/shaders/lamps/lamp_glow.frag.glsl"})));
+        FullScreenProgram(WithViewerPieces(texts, {"viewer/shaders/lamps/lamp_airlight.frag.glsl"})));
     core_program_.emplace(WithViewerPieces(corners, {"viewer/shaders/lamps/lamp_core.vert.glsl"}),
                           WithViewerPieces(texts, {"viewer/shaders/lamps/lamp_core.frag.glsl"}));
     Connect(*glow_program_);
@@ -120,7 +120,7 @@ void LampPainter::Connect(const ShaderProgram& program) const {
   program.BindBlock("View", units_.view_block);
   program.BindSampler("surface_map", units_.surface);
   program.BindSampler("lamp_tables", units_.first + kLampTablesUnit);
-  program.BindSampler("lamp_glow_map", units_.first + kLampGlowUnit);
+  program.BindSampler("lamp_glow_map", units_.first + kLampAirlightUnit);
   program.BindSampler("lamp_mie_table", units_.first + kLampMieUnit);
   program.BindSampler("lamp_shades", units_.first + kLampShadeUnit);
   program.BindSampler("lamp_plans", units_.first + kLampPlanUnit);
@@ -154,11 +154,11 @@ void LampPainter::UploadTables(const SceneLamps& shape) {
 void LampPainter::UploadGlows(const SceneLamps& shape) {
   if (shape.glows().empty()) return;
   std::vector<glm::vec4> texels;
-  for (const LampGlow* glow : shape.glows()) {
+  for (const LampAirlightIrradiance* glow : shape.glows()) {
     const std::vector<glm::vec4> terms = SampledGlow(*glow);
     texels.insert(texels.end(), terms.begin(), terms.end());
   }
-  glActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(units_.first + kLampGlowUnit));
+  glActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(units_.first + kLampAirlightUnit));
   glBindTexture(GL_TEXTURE_2D_ARRAY, glows_.id());
   glTexImage3D(GL_TEXTURE_2D_ARRAY, 0, GL_RGBA32F, kGlowDistances, kGlowTerms * kGlowRises,
                static_cast<GLsizei>(shape.glows().size()), 0, GL_RGBA, GL_FLOAT, texels.data());
@@ -190,7 +190,7 @@ void LampPainter::UploadPlans(const SceneLamps& shape) {
     ClampAndFilter(GL_TEXTURE_2D_ARRAY, true);
   }
   for (; uploaded_plans_ < shape.plans().size(); ++uploaded_plans_) {
-    const LitPlan& plan = shape.plans()[uploaded_plans_];
+    const LampShadowField& plan = shape.plans()[uploaded_plans_];
     glTexSubImage3D(GL_TEXTURE_2D_ARRAY, 0, 0, 0, uploaded_layers_, kPlanSide, kPlanSide,
                     plan.levels, GL_RED, GL_UNSIGNED_BYTE, plan.texels.data());
     uploaded_layers_ += plan.levels;
@@ -232,7 +232,7 @@ void LampPainter::Bind() const {
     glBindTexture(target, texture.id());
   };
   bind(kLampTablesUnit, GL_TEXTURE_2D_ARRAY, tables_);
-  bind(kLampGlowUnit, GL_TEXTURE_2D_ARRAY, glows_);
+  bind(kLampAirlightUnit, GL_TEXTURE_2D_ARRAY, glows_);
   bind(kLampMieUnit, GL_TEXTURE_2D, mie_table_);
   bind(kLampShadeUnit, GL_TEXTURE_2D_ARRAY, shades_);
   bind(kLampPlanUnit, GL_TEXTURE_2D_ARRAY, plans_);

@@ -3,7 +3,7 @@
 //
 //   Prepare          selects lamps for a view
 //   PaintGlow        their light in the air at every few pixels, unless it is summed for each pixel
-//   Bind             for the program that has texts(): LampsOnGround and LampGlowRgb in the picture
+//   Bind             for the program that has texts(): LampsOnGround and LampAirlightRgb in the picture
 //   PaintOver        adds the disks of lamps and the bright cores of their light to the picture
 //
 // tests/viewer/lamps/lamp_light_test.cpp bounds the errors against LampLight without shadows of
@@ -11,7 +11,7 @@
 // horizon around each (ShadeAround), to 2e-3 of the distance in height, a hundredth of a turn in
 // azimuth and a twentieth of the distance along it. Between two nodes of the quadrature the
 // shadowed part of the ray is omitted. The lit ground comes from the renderer's shadow rays, which
-// are traced beside drawing (LitPlan); until they are finished, that horizon is used.
+// are traced beside drawing (LampShadowField); until they are finished, that horizon is used.
 #pragma once
 
 #include <optional>
@@ -38,7 +38,7 @@ inline constexpr LampQuality kMediumLamps{5, 6};
 inline constexpr LampQuality kHighLamps{12, 1};
 
 /// Returns texts for a fragment stage, which follow SharedTexts() and view_block.glsl:
-/// LampsOnGround(point_m, normal, ray_width_m), LampGlowRgb(direction, end_m),
+/// LampsOnGround(point_m, normal, ray_width_m), LampAirlightRgb(direction, end_m),
 /// LampRayEnd(direction, surface_m).
 /// @param shape  lamps that determine the features of the shaders: tables, fog, phase functions.
 [[nodiscard]] std::vector<ShaderPiece> LampTexts(const SceneLamps& shape,

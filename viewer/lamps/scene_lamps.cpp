@@ -237,7 +237,7 @@ SceneLamps::SceneLamps(const Scene& scene, const SceneGround& ground, const Medi
   }
   PlanBrightest();
   for (std::uint32_t i = 0; i < tree_.nodes().size(); ++i) {
-    const LampGlow* glow = &tree_.GlowOf(i);
+    const LampAirlightIrradiance* glow = &tree_.GlowOf(i);
     if (number_of_glow_.try_emplace(glow, static_cast<int>(glows_.size())).second) {
       glows_.push_back(glow);
     }
@@ -256,7 +256,7 @@ void SceneLamps::PlanBrightest() {
     planned_.push_back({node, placed.lamp, PlanLayerCount(), PlanLevelsOf(placed.candela)});
   }
   plans_.emplace(planned_.size(), [this](std::size_t i) {
-    return LitPlanAround(stage_, planned_[i].lamp, planned_[i].levels);
+    return LampShadowFieldAround(stage_, planned_[i].lamp, planned_[i].levels);
   });
 }
 

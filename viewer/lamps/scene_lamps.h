@@ -118,7 +118,7 @@ inline constexpr double kNearestShade_m = 1.0;
 inline constexpr double kFarthestShade_m = 2e4;
 /// Texture layers that every OpenGL supports; terrain does not shade lamps beyond this number.
 inline constexpr std::size_t kMostShades = 256;
-/// Number of the brightest lamps that have a LitPlan, of up to 1.3 MB each.
+/// Number of the brightest lamps that have a LampShadowField, of up to 1.3 MB each.
 inline constexpr std::size_t kMostPlans = 32;
 
 class SceneLamps {
@@ -137,14 +137,14 @@ class SceneLamps {
   /// Returns the profiles of the measured lamps, in the order of ChosenLamp::table.
   [[nodiscard]] const std::vector<LampProfile>& tables() const { return tables_; }
   /// Returns the glows in the order of ChosenLamp::glow.
-  [[nodiscard]] const std::vector<const LampGlow*>& glows() const { return glows_; }
+  [[nodiscard]] const std::vector<const LampAirlightIrradiance*>& glows() const { return glows_; }
 
   /// Returns the terrain around each lamp, [ring * kShadeTurns + turn]; empty without terrain.
   [[nodiscard]] const std::vector<std::vector<float>>& shades() const { return shades_; }
 
   /// Returns the finished plans of lit ground, in their own order. shades() are used until a plan
   /// is finished, and for lamps without a plan.
-  [[nodiscard]] const std::vector<LitPlan>& plans() const { return plans_->plans(); }
+  [[nodiscard]] const std::vector<LampShadowField>& plans() const { return plans_->plans(); }
   /// Returns the number of layers of all plans, finished or not.
   [[nodiscard]] int PlanLayerCount() const;
   /// Takes finished plans and requests the next one, beside drawing.
@@ -176,8 +176,8 @@ class SceneLamps {
   std::optional<LandingLight> landing_;
   std::vector<LampProfile> tables_;
   std::vector<int> table_of_lamp_;
-  std::vector<const LampGlow*> glows_;
-  std::map<const LampGlow*, int> number_of_glow_;
+  std::vector<const LampAirlightIrradiance*> glows_;
+  std::map<const LampAirlightIrradiance*, int> number_of_glow_;
   std::vector<std::vector<float>> shades_;
   /// A lamp with a plan, and the first layer of the plan.
   struct PlannedLamp {
@@ -186,7 +186,7 @@ class SceneLamps {
     int first_layer, levels;
   };
   std::vector<PlannedLamp> planned_;
-  std::optional<LitPlanFollower> plans_;  // last member, because its thread reads the ones above
+  std::optional<LampShadowFieldFollower> plans_;  // last member, because its thread reads the ones above
 };
 
 /// Returns the visibility of a place over terrain up to a distance: [ring * kShadeTurns + turn],

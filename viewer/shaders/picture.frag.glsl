@@ -115,7 +115,7 @@ void main() {
 #if HAS_LAMPS
   vec4 left = air.transmittance * FogTransmittance(direction, distance_km);
   picture.rgb += LampRgb(left * LampsReflected(seen, place, direction)) +
-                 LampGlowRgb(direction, LampRayEnd(direction, surface.w));
+                 LampAirlightRgb(direction, LampRayEnd(direction, surface.w));
 #endif
 }
 #endif
@@ -179,7 +179,7 @@ void main() {
 #endif
   picture = vec4(LinearSrgb(sun_irradiance * radiance), 0.0);
 #if HAS_LAMPS
-  picture.rgb += LampGlowRgb(direction, LampRayEnd(direction, 0.0));
+  picture.rgb += LampAirlightRgb(direction, LampRayEnd(direction, 0.0));
 #if PASS == SKY_PASS
   if (planet) picture.rgb += LampRgb(PlanetUnderLamps(direction));
 #endif

@@ -69,7 +69,7 @@ GlowError ErrorOver(const ErrorOf& error_of) {
   for (const double scale_height : {25.0, 100.0}) {
     const LampAir air = FogUnderClearAir(4.3e-3, scale_height);
     for (const double height : {0.35, 6.0, 24.0}) {
-      const LampGlow glow(air.layers, height, 0.0);
+      const LampAirlightIrradiance glow(air.layers, height, 0.0);
       for (const double distance : {5.0, 20.0, 60.0, 200.0, 600.0}) {
         Lamp lamp;
         lamp.position_m = {distance, 0.0, height};
@@ -87,8 +87,8 @@ GlowError ErrorOver(const ErrorOf& error_of) {
 constexpr glm::dvec3 kUpwards(0.0, 0.0, 1.0);
 constexpr glm::dvec3 kPoint(0.0, 0.0, 1e-3);
 
-TEST(LampGlow, LevelGroundGetsWhatTheHemisphereSends) {
-  const GlowError error = ErrorOver([](const LampAir& air, const LampGlow& glow, const Lamp& lamp) {
+TEST(LampAirlightIrradiance, LevelGroundGetsWhatTheHemisphereSends) {
+  const GlowError error = ErrorOver([](const LampAir& air, const LampAirlightIrradiance& glow, const Lamp& lamp) {
     return glow.On(lamp.position_m - kPoint, kUpwards, kUpwards)[0] /
                OverTheHemisphere(air, lamp, kPoint, kUpwards) -
            1.0;
@@ -97,8 +97,8 @@ TEST(LampGlow, LevelGroundGetsWhatTheHemisphereSends) {
   EXPECT_LT(error.most, 0.18);
 }
 
-TEST(LampGlow, WallsGetWhatTheirHemisphereSends) {
-  const GlowError error = ErrorOver([](const LampAir& air, const LampGlow& glow, const Lamp& lamp) {
+TEST(LampAirlightIrradiance, WallsGetWhatTheirHemisphereSends) {
+  const GlowError error = ErrorOver([](const LampAir& air, const LampAirlightIrradiance& glow, const Lamp& lamp) {
     double worst = 0.0, brightest = 0.0;
     for (const glm::dvec3& normal :
          {glm::dvec3(1.0, 0.0, 0.2), glm::dvec3(0.3, 1.0, 0.2), glm::dvec3(-1.0, 0.0, 0.5)}) {
@@ -115,9 +115,9 @@ TEST(LampGlow, WallsGetWhatTheirHemisphereSends) {
   EXPECT_LT(error.most, 0.18);
 }
 
-TEST(LampGlow, IsWhatHomogeneousAirGivesWhereTheGroundIsFar) {
+TEST(LampAirlightIrradiance, IsWhatHomogeneousAirGivesWhereTheGroundIsFar) {
   const LampAir air = HomogeneousAir(4e-3, 4e-3, {.kind = PhaseKind::kHenyeyGreenstein, .g = 0.5});
-  const LampGlow glow(air.layers, 5000.0, 0.0);
+  const LampAirlightIrradiance glow(air.layers, 5000.0, 0.0);
   for (const double cosine : {1.0, 0.5, 0.0}) {
     const glm::dvec3 normal(cosine, std::sqrt(1.0 - cosine * cosine), 0.0);
     const double found = glow.On({30.0, 0.0, 0.0}, normal, kUpwards)[0];
@@ -125,9 +125,9 @@ TEST(LampGlow, IsWhatHomogeneousAirGivesWhereTheGroundIsFar) {
   }
 }
 
-TEST(LampGlow, IsFiniteEverywhere) {
+TEST(LampAirlightIrradiance, IsFiniteEverywhere) {
   const LampAir air = FogUnderClearAir(0.05, 5.0);
-  const LampGlow glow(air.layers, 3.0, 3.0);
+  const LampAirlightIrradiance glow(air.layers, 3.0, 3.0);
   for (const double distance : {0.0, 1e-3, 0.2, 7.0, 3e3, 1e5}) {
     for (const glm::dvec3& towards : {kUpwards, -kUpwards, glm::dvec3(1.0, 0.0, 0.0)}) {
       const double found = glow.On(distance * towards, kUpwards, kUpwards)[0];

@@ -9,7 +9,7 @@
 #include <cmath>
 #include <set>
 
-#include "renderer/lamps/lamp_works.h"
+#include "renderer/lamps/lamp_test_cases.h"
 #include "tests/fixtures/report_files.h"
 #include "tests/fixtures/report_rows.h"
 #include "tests/fixtures/temporary_folder.h"
@@ -136,7 +136,7 @@ TEST(PictureReport, SamplesOfAirlightCountThoseThatOnlyLook) {
 
 TEST(LampWorks, RulesAgreeWithTheReferenceWhenTheyTakeManyPoints) {
   for (int i = 1; i <= 40; ++i) {
-    const LampWork work = LampWorkNumber(i, {.g = 0.5});
+    const LampTestCase work = LampTestCaseNumber(i, {.g = 0.5});
     EXPECT_NEAR(AirlightByRule(LampRule::kEquiAngular, work, 20000) / work.truth, 1.0, 1e-4);
     EXPECT_NEAR(AirlightByRule(LampRule::kHalfAngle, work, 64) / work.truth, 1.0, 1e-3);
     EXPECT_NEAR(AirlightByRule(LampRule::kAsinh, work, 64) / work.truth, 1.0, 1e-3);

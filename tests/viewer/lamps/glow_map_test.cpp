@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What a map of a lamp's glow says of slopes, against LampGlow.
+// What a map of a lamp's glow says of slopes, against LampAirlightIrradiance.
 #include "viewer/lamps/ground_under_lamps.h"
 
 #include <gtest/gtest.h>
@@ -38,7 +38,7 @@ std::vector<LampLayer> LightFog() {
 
 /// A lamp's glow and its map, at one texel.
 struct Texel {
-  const LampGlow& glow;
+  const LampAirlightIrradiance& glow;
   const std::vector<glm::vec4>& map;
   int distance, rise;
 
@@ -52,7 +52,7 @@ struct Texel {
   }
   [[nodiscard]] double ByMap(const glm::dvec3& normal) const {
     return std::exp(Term(0)) / Far() *
-           shared::LampGlowOnSlope(normal.x, normal.z, Term(1), Term(2), Term(3), Term(4), Term(5));
+           shared::LampAirlightOnSlope(normal.x, normal.z, Term(1), Term(2), Term(3), Term(4), Term(5));
   }
   [[nodiscard]] double ByGlow(const glm::dvec3& normal) const {
     const double sine = shared::LampRiseFromUnit(rise / (kGlowRises - 1.0));
@@ -66,7 +66,7 @@ struct SlopeDeviation {
 
 /// Over slopes between two tilts, the lamp 20 m to 2 km away; relative to what the slope gets, but
 /// at least a tenth of what the slope of them does that gets most.
-SlopeDeviation OverSlopes(const LampGlow& glow, const std::vector<glm::vec4>& map,
+SlopeDeviation OverSlopes(const LampAirlightIrradiance& glow, const std::vector<glm::vec4>& map,
                           std::array<double, 2> tilts_deg, std::array<int, 2> rises) {
   constexpr int kTilts = 4, kTurns = 12;
   SlopeDeviation deviation;
@@ -101,8 +101,8 @@ SlopeDeviation OverSlopes(const LampGlow& glow, const std::vector<glm::vec4>& ma
 
 constexpr std::array<int, 2> kAllRises{4, 28};  // sines of -0.6 to 0.6
 
-TEST(GlowMap, LevelGroundGetsWhatItGets) {
-  const LampGlow glow(ClearAir(), 1500.0, 1494.0);
+TEST(LampAirlightMap, LevelGroundGetsWhatItGets) {
+  const LampAirlightIrradiance glow(ClearAir(), 1500.0, 1494.0);
   const std::vector<glm::vec4> map = SampledGlow(glow);
   for (int distance = 0; distance <= 48; distance += 6) {
     for (int rise = 16; rise < kGlowRises; rise += 3) {
@@ -112,8 +112,8 @@ TEST(GlowMap, LevelGroundGetsWhatItGets) {
   }
 }
 
-TEST(GlowMap, SlopesInClearAirGetWhatLampGlowSays) {
-  const LampGlow glow(ClearAir(), 1500.0, 1494.0);
+TEST(LampAirlightMap, SlopesInClearAirGetWhatLampAirlightSays) {
+  const LampAirlightIrradiance glow(ClearAir(), 1500.0, 1494.0);
   const std::vector<glm::vec4> map = SampledGlow(glow);
   const SlopeDeviation gentle = OverSlopes(glow, map, {0.0, 30.0}, kAllRises);
   const SlopeDeviation steep = OverSlopes(glow, map, {30.0, 60.0}, kAllRises);
@@ -123,8 +123,8 @@ TEST(GlowMap, SlopesInClearAirGetWhatLampGlowSays) {
   EXPECT_LT(steep.most, 0.6) << "at 60 degrees, turned from the lamp";
 }
 
-TEST(GlowMap, SlopesInLightFogGetWhatLampGlowSays) {
-  const LampGlow glow(LightFog(), 6.0, 0.0);
+TEST(LampAirlightMap, SlopesInLightFogGetWhatLampAirlightSays) {
+  const LampAirlightIrradiance glow(LightFog(), 6.0, 0.0);
   const std::vector<glm::vec4> map = SampledGlow(glow);
   const std::array<int, 2> level{15, 17};  // the lamp stands about as high as the slope
   const SlopeDeviation gentle = OverSlopes(glow, map, {0.0, 30.0}, level);

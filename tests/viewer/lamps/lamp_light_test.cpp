@@ -151,7 +151,7 @@ Deviation GlowDeviation(const BothLamps& both, bool near_lamps = true) {
   constexpr int kBand = 2;
   const auto rays = Rays(both, 400, near_lamps);
   const std::vector<float> gpu =
-      both.OnGpu("LampGlowIn(vec3(a[0], a[1], a[2]), a[3], 1.0)[2]", rays);
+      both.OnGpu("LampAirlightIn(vec3(a[0], a[1], a[2]), a[3], 1.0)[2]", rays);
   std::vector<double> truth;
   for (const auto& ray : rays) {
     const LampRayEnd end{DirectionOf(ray), double{ray[3]}};
@@ -183,7 +183,7 @@ TEST_F(LampsOnTheCard, FogFarBelowItsBaseIsAWallWithoutLight) {
   scene.fog->base_height_m = 5000.0;
   const BothLamps both(scene);
   const auto rays = Rays(both, 100);
-  for (const float glow : both.OnGpu("LampGlowIn(vec3(a[0], a[1], a[2]), a[3], 1.0)[2]", rays)) {
+  for (const float glow : both.OnGpu("LampAirlightIn(vec3(a[0], a[1], a[2]), a[3], 1.0)[2]", rays)) {
     EXPECT_EQ(glow, 0.0F);
   }
   for (const float lit :
@@ -209,7 +209,7 @@ TEST_F(LampsOnTheCard, AnEyeInsideALampSeesAsTheRenderer) {
   const BothLamps both(scene);
   const auto rays = Rays(both, 100);
   const std::vector<float> gpu =
-      both.OnGpu("LampGlowIn(vec3(a[0], a[1], a[2]), a[3], 1.0)[2]", rays);
+      both.OnGpu("LampAirlightIn(vec3(a[0], a[1], a[2]), a[3], 1.0)[2]", rays);
   for (std::size_t i = 0; i < rays.size(); ++i) {
     const glm::dvec3 direction = DirectionOf(rays[i]);
     const LampRayEnd end{direction, double{rays[i][3]}};
@@ -266,9 +266,9 @@ TEST_F(LampsOnTheCard, GroundUnderLampsAsTheRenderer) {
   const BothLamps clear(Night(6.0, 0.0, 1.0)), fog(Night(6.0, 0.004, 25.0));
   EXPECT_LT(GroundDeviation(clear, false).p99, 0.01);
   const Deviation level = GroundDeviation(fog, false), slopes = GroundDeviation(fog, true);
-  EXPECT_LT(level.mean, 0.01) << "its light in the fog comes from a map of LampGlow";
+  EXPECT_LT(level.mean, 0.01) << "its light in the fog comes from a map of LampAirlightIrradiance";
   EXPECT_LT(level.p99, 0.08);
-  EXPECT_LT(slopes.mean, 0.04) << "six terms of light in the fog; LampGlow itself is off by 18 %";
+  EXPECT_LT(slopes.mean, 0.04) << "six terms of light in the fog; LampAirlightIrradiance itself is off by 18 %";
   EXPECT_LT(slopes.p99, 0.2);
 }
 
@@ -297,7 +297,7 @@ TEST_F(LampsOnTheCard, ARidgeHidesALampFromGroundAndAirBehindIt) {
     EXPECT_EQ(lit[i], points[i][1] > 100.0F) << "the ridge stands between";
   }
   const std::vector<float> near =
-      both.OnGpu("LampGlowIn(vec3(0.0, 1.0, 0.0), 100.0, 1.0)[2]", points);
+      both.OnGpu("LampAirlightIn(vec3(0.0, 1.0, 0.0), 100.0, 1.0)[2]", points);
   std::vector<tests::Arguments<float>> ways;
   for (int i = 0; i < 24; ++i) {
     const double elevation = 0.4 + 0.02 * i;
@@ -305,7 +305,7 @@ TEST_F(LampsOnTheCard, ARidgeHidesALampFromGroundAndAirBehindIt) {
                     static_cast<float>(std::sin(elevation)), 0.0F, 0.0F, 0.0F});
   }
   const std::vector<float> over =
-      both.OnGpu("LampGlowIn(vec3(a[0], a[1], a[2]), 1e9, 1.0)[2]", ways);
+      both.OnGpu("LampAirlightIn(vec3(a[0], a[1], a[2]), 1e9, 1.0)[2]", ways);
   const auto truth = [&](const glm::dvec3& way, double length_m) {
     return double{both.light.InAir(both.light.All(), {way, length_m}, kLitPixel_rad, 32)[2]};
   };

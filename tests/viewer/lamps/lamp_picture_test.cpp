@@ -33,7 +33,7 @@ in vec2 screen;
 out vec4 picture;
 void main() {
   vec3 direction = normalize(view_forward.xyz + screen.x * view_right.xyz + screen.y * view_up.xyz);
-  picture = vec4(LampGlowRgb(direction, LampRayEnd(direction, 0.0)), 1.0);
+  picture = vec4(LampAirlightRgb(direction, LampRayEnd(direction, 0.0)), 1.0);
 }
 )";
 

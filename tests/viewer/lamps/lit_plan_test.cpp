@@ -31,7 +31,7 @@ struct Valley {
 };
 
 /// Of a level, from the edge of shade [m], as a shader interpolates it.
-double FromEdge(const LitPlan& plan, int level, const glm::dvec3& from_lamp) {
+double FromEdge(const LampShadowField& plan, int level, const glm::dvec3& from_lamp) {
   const double step_m = std::ldexp(kPlanStep_m, level);
   const double x = from_lamp.x / step_m + kPlanSide / 2.0,
                y = from_lamp.y / step_m + kPlanSide / 2.0;
@@ -46,7 +46,7 @@ double FromEdge(const LitPlan& plan, int level, const glm::dvec3& from_lamp) {
 }
 
 /// Of places that lie between two distances from the lamp, east or north, those on the wrong side.
-double WrongShare(const Valley& valley, const LitPlan& plan, int level, double from_m,
+double WrongShare(const Valley& valley, const LampShadowField& plan, int level, double from_m,
                   double to_m) {
   std::mt19937 random(2);
   std::uniform_real_distribution<> east(-590.0, 590.0), north(-590.0, 590.0);
@@ -62,18 +62,18 @@ double WrongShare(const Valley& valley, const LitPlan& plan, int level, double f
   return wrong / 5000.0;
 }
 
-TEST(LitPlan, GroundIsOnTheSideOfTheEdgeThatShadowRaysSay) {
+TEST(LampShadowField, GroundIsOnTheSideOfTheEdgeThatShadowRaysSay) {
   const Valley valley;
-  const LitPlan plan = LitPlanAround(valley.stage, valley.lamp, 2);
+  const LampShadowField plan = LampShadowFieldAround(valley.stage, valley.lamp, 2);
   constexpr double kReach_m = kPlanReach_steps * kPlanStep_m;
   // Triangles are 10 m wide: the edge turns by a corner every few of them, which is rounded.
   EXPECT_LT(WrongShare(valley, plan, 0, 0.0, kReach_m), 2e-3);
   EXPECT_LT(WrongShare(valley, plan, 1, kReach_m, 2.0 * kReach_m), 4e-3);
 }
 
-TEST(LitPlan, TheEdgeBehindAStraightRidgeIsWithinCentimetres) {
+TEST(LampShadowField, TheEdgeBehindAStraightRidgeIsWithinCentimetres) {
   const Valley valley;
-  const LitPlan plan = LitPlanAround(valley.stage, valley.lamp, 1);
+  const LampShadowField plan = LampShadowFieldAround(valley.stage, valley.lamp, 1);
   for (double east_m = -160.0; east_m < 220.0; east_m += 17.3) {
     // The slope towards the lamp begins at the crest.
     const glm::dvec3 place(east_m, 150.0, 0.0);
@@ -81,7 +81,7 @@ TEST(LitPlan, TheEdgeBehindAStraightRidgeIsWithinCentimetres) {
   }
 }
 
-TEST(LitPlan, HasAsManyLevelsAsTheLampsLightReaches) {
+TEST(LampShadowField, HasAsManyLevelsAsTheLampsLightReaches) {
   EXPECT_EQ(PlanLevelsOf(1.0), 1);
   EXPECT_EQ(PlanLevelsOf(200.0), 1) << "a millilux is at 447 m, the first level ends at 508 m";
   EXPECT_EQ(PlanLevelsOf(600.0), 2) << "775 m";
@@ -89,11 +89,11 @@ TEST(LitPlan, HasAsManyLevelsAsTheLampsLightReaches) {
   EXPECT_EQ(PlanLevelsOf(1e9), kMostPlanLevels);
 }
 
-TEST(LitPlanFollower, MakesEveryPlanOnceAndInOrder) {
+TEST(LampShadowFieldFollower, MakesEveryPlanOnceAndInOrder) {
   std::atomic<int> made = 0;
-  LitPlanFollower follower(5, [&](std::size_t number) {
+  LampShadowFieldFollower follower(5, [&](std::size_t number) {
     ++made;
-    return LitPlan{static_cast<int>(number), {}};
+    return LampShadowField{static_cast<int>(number), {}};
   });
   EXPECT_TRUE(follower.plans().empty()) << "nothing is made before it is asked for";
   follower.Settle();
@@ -104,8 +104,8 @@ TEST(LitPlanFollower, MakesEveryPlanOnceAndInOrder) {
   EXPECT_EQ(made, 5);
 }
 
-TEST(LitPlanFollower, NoLampsAreSettledAtOnce) {
-  LitPlanFollower follower(0, [](std::size_t) { return LitPlan{}; });
+TEST(LampShadowFieldFollower, NoLampsAreSettledAtOnce) {
+  LampShadowFieldFollower follower(0, [](std::size_t) { return LampShadowField{}; });
   follower.Settle();
   EXPECT_TRUE(follower.plans().empty());
 }

@@ -54,7 +54,7 @@ uniform sampler2DArray lamp_glow_map;  // irradiance by the air around a lamp; s
 #endif
 #ifdef LAMP_SHADE
 uniform sampler2DArray lamp_shades;  // slope above which a lamp is visible, by azimuth and distance
-uniform sampler2DArray lamp_plans;   // distance of the ground from the shadow edge; see LitPlan
+uniform sampler2DArray lamp_plans;   // distance of the ground from the shadow edge; see LampShadowField
 #endif
 #ifdef LAMP_MIE_TABLE
 uniform sampler2D lamp_mie_table;  // over (a / pi)^(1/3)
@@ -156,7 +156,7 @@ float LampClearance(Lamp lamp, vec3 way) {
   vec3 at = LampOfTerrain(way);
   float far = max(length(at.xy), LAMP_SHADE_NEAREST);
   vec2 size = vec2(textureSize(lamp_shades, 0).xy);
-  float ring = LampGlowUnit(far, LAMP_SHADE_NEAREST, LAMP_SHADE_FARTHEST) - 1.0 / (size.y - 1.0);
+  float ring = LampAirlightUnit(far, LAMP_SHADE_NEAREST, LAMP_SHADE_FARTHEST) - 1.0 / (size.y - 1.0);
   float turn = atan(at.y, at.x) * 0.159154943 + 0.5 / size.x;
   float slope =
       textureLod(lamp_shades, vec3(turn, TexelFromUnit(ring, size.y), lamp.shade.x), 0.0).x;
@@ -302,7 +302,7 @@ vec4 LampFromWithin(Lamp lamp, vec3 direction) {
 // Returns the light of all lamps scattered into the eye in front of a distance [W m^-2 sr^-1
 // nm^-1].
 // @param with_cores  1: all of it; 0: without the part that lamp_core.frag.glsl draws.
-vec4 LampGlowIn(vec3 direction, float distance_m, float with_cores) {
+vec4 LampAirlightIn(vec3 direction, float distance_m, float with_cores) {
   vec4 sum = vec4(0.0);
   int even = int(lamp_count.w + 0.5);
   for (int i = 0; i < even; ++i) {
@@ -320,7 +320,7 @@ vec4 LampGlowIn(vec3 direction, float distance_m, float with_cores) {
 
 #ifdef LAMP_GLOW_MAP
 // Returns a term of the glow map of a lamp; `at` counts texels of one term.
-vec4 LampGlowTerm(Lamp lamp, vec2 at, float term) {
+vec4 LampAirlightTerm(Lamp lamp, vec2 at, float term) {
   vec2 size = vec2(textureSize(lamp_glow_map, 0).xy);
   vec2 place = (at + vec2(0.0, term * size.y / float(LAMP_GLOW_TERMS))) / size;
   return textureLod(lamp_glow_map, vec3(place, lamp.glow.y), 0.0);
@@ -332,17 +332,17 @@ vec4 LampAirOnSurface(Lamp lamp, vec3 towards, float distance_m, vec3 normal) {
   float up = dot(normal, lamp.up.xyz);
   vec2 size = vec2(textureSize(lamp_glow_map, 0).xy) / vec2(1.0, LAMP_GLOW_TERMS);
   float far = clamp(distance_m, LAMP_GLOW_NEAREST, LAMP_GLOW_FARTHEST);
-  vec2 unit = vec2(LampGlowUnit(far, LAMP_GLOW_NEAREST, LAMP_GLOW_FARTHEST), LampRiseUnit(sine));
+  vec2 unit = vec2(LampAirlightUnit(far, LAMP_GLOW_NEAREST, LAMP_GLOW_FARTHEST), LampRiseUnit(sine));
   vec2 at = vec2(TexelFromUnit(unit.x, size.x), TexelFromUnit(unit.y, size.y)) * size;
-  vec4 level = exp(LampGlowTerm(lamp, at, 0.0)) / far;
+  vec4 level = exp(LampAirlightTerm(lamp, at, 0.0)) / far;
 #ifdef LAMP_GLOW_OF_SLOPES
   vec3 flat_way = towards - sine * lamp.up.xyz;
   float tilt = dot(normal, flat_way) / max(length(flat_way), 1e-6);
-  vec4 steep = LampGlowTerm(lamp, at, 1.0);
-  vec4 facing = LampGlowTerm(lamp, at, 2.0), facing_twice = LampGlowTerm(lamp, at, 3.0);
-  vec4 turned = LampGlowTerm(lamp, at, 4.0), turned_twice = LampGlowTerm(lamp, at, 5.0);
+  vec4 steep = LampAirlightTerm(lamp, at, 1.0);
+  vec4 facing = LampAirlightTerm(lamp, at, 2.0), facing_twice = LampAirlightTerm(lamp, at, 3.0);
+  vec4 turned = LampAirlightTerm(lamp, at, 4.0), turned_twice = LampAirlightTerm(lamp, at, 5.0);
   for (int band = 0; band < 4; ++band) {
-    level[band] *= LampGlowOnSlope(tilt, up, steep[band], facing[band], facing_twice[band],
+    level[band] *= LampAirlightOnSlope(tilt, up, steep[band], facing[band], facing_twice[band],
                                    turned[band], turned_twice[band]);
   }
   return level;

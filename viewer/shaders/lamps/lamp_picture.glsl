@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Light of lamps scattered by the air in a picture [cd/m^2, linear sRGB], from the lattice of
-// lamp_glow.frag.glsl and the cores of lamp_core.frag.glsl, or summed here.
+// lamp_airlight.frag.glsl and the cores of lamp_core.frag.glsl, or summed here.
 
 // Returns the distance at which the ray of a pixel ends [m]: at terrain (surface_m, 0: none), at
 // the bare planet, or nowhere.
@@ -18,7 +18,7 @@ uniform sampler2D lamp_lattice;  // light; inverse of the distance at which the 
 
 // Rays that end on one plane, or in the sky, have inverse distances that are linear over the
 // picture. If that of the pixel does not fit, the neighbours whose rays end nearest to it are used.
-vec3 LampGlowRgb(vec3 direction, float end_m) {
+vec3 LampAirlightRgb(vec3 direction, float end_m) {
   ivec2 pixel = ivec2(gl_FragCoord.xy);
   ivec2 corner = pixel / LampStep();
   vec2 share = vec2(pixel - corner * LampStep()) / float(LampStep());
@@ -37,5 +37,5 @@ vec3 LampGlowRgb(vec3 direction, float end_m) {
   return weight.x * a.rgb + weight.y * b.rgb + weight.z * c.rgb + weight.w * d.rgb;
 }
 #else
-vec3 LampGlowRgb(vec3 direction, float end_m) { return LampRgb(LampGlowIn(direction, end_m, 1.0)); }
+vec3 LampAirlightRgb(vec3 direction, float end_m) { return LampRgb(LampAirlightIn(direction, end_m, 1.0)); }
 #endif

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "renderer/lamps/lamp_works.h"
+#include "renderer/lamps/lamp_test_cases.h"
 
 #include <algorithm>
 #include <cmath>
@@ -43,7 +43,7 @@ void MakeBeam(int i, Lamp& lamp) {
 struct Approach {
   double nearest_m, distance_m;
 
-  explicit Approach(const LampWork& work) {
+  explicit Approach(const LampTestCase& work) {
     const glm::dvec3 to_lamp = work.lamp.position_m - work.segment.origin_m;
     nearest_m = glm::dot(to_lamp, work.segment.direction);
     distance_m =
@@ -53,7 +53,7 @@ struct Approach {
 };
 
 /// Returns the light scattered per metre of the ray.
-double SourceAt(const LampWork& work, const Approach& approach, double t) {
+double SourceAt(const LampTestCase& work, const Approach& approach, double t) {
   const glm::dvec3 point = work.segment.origin_m + t * work.segment.direction;
   const double sinh = approach.Sinh(t);
   const double squared = 1.0 + sinh * sinh;
@@ -103,8 +103,8 @@ Mapped FromVariable(LampRule rule, double v) {
 
 }  // namespace
 
-LampWork LampWorkNumber(int i, const LampWorkKind& kind) {
-  LampWork work;
+LampTestCase LampTestCaseNumber(int i, const LampTestKind& kind) {
+  LampTestCase work;
   const double sigma = Logarithmic(1e-4, 0.1, Halton(i, 2));
   const double length = Logarithmic(10.0, 1000.0, Halton(i, 3));
   const double across = Logarithmic(0.1, 100.0, Halton(i, 5));
@@ -130,7 +130,7 @@ LampWork LampWorkNumber(int i, const LampWorkKind& kind) {
   return work;
 }
 
-double AirlightByRule(LampRule rule, const LampWork& work, int nodes) {
+double AirlightByRule(LampRule rule, const LampTestCase& work, int nodes) {
   const Approach approach(work);
   const double low = VariableOf(rule, approach.Sinh(work.segment.begin_m));
   const double high = VariableOf(rule, approach.Sinh(work.segment.end_m));

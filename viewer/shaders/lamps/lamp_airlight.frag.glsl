@@ -12,5 +12,5 @@ void main() {
   vec3 direction = ViewDirection(screen);
   ivec2 texel = min(ivec2(at), textureSize(surface_map, 0) - 1);
   float end_m = LampRayEnd(direction, texelFetch(surface_map, texel, 0).w);
-  lattice = vec4(LampRgb(LampGlowIn(direction, end_m, 0.0)), 1.0 / end_m);
+  lattice = vec4(LampRgb(LampAirlightIn(direction, end_m, 0.0)), 1.0 / end_m);
 }

@@ -9,7 +9,7 @@
 namespace alpenglow::renderer {
 
 /// Properties that a set of test cases shares.
-struct LampWorkKind {
+struct LampTestKind {
   double g = 0.8;                                                   // Henyey-Greenstein
   double scale_height_m = std::numeric_limits<double>::infinity();  // of the fog
   bool beam = false;                                                // a cone, not isotropic
@@ -18,7 +18,7 @@ struct LampWorkKind {
 };
 
 /// A lamp, a ray and the air around them.
-struct LampWork {
+struct LampTestCase {
   LampAir air;
   Lamp lamp;
   LampSegment segment;
@@ -29,7 +29,7 @@ struct LampWork {
 /// Returns test case i >= 1: extinction 1e-4 to 0.1 per metre at the lowest point, distance of the
 /// lamp from the ray 0.1 to 100 m, segments of 10 to 1000 m, and the lamp beside, before or behind
 /// the segment.
-[[nodiscard]] LampWork LampWorkNumber(int i, const LampWorkKind& kind);
+[[nodiscard]] LampTestCase LampTestCaseNumber(int i, const LampTestKind& kind);
 
 /// Rule for integrating the light of a lamp along a ray, in one band.
 enum class LampRule {
@@ -41,6 +41,6 @@ enum class LampRule {
 };
 
 /// Integrates a test case with a rule over its whole segment, which must be finite.
-[[nodiscard]] double AirlightByRule(LampRule rule, const LampWork& work, int nodes);
+[[nodiscard]] double AirlightByRule(LampRule rule, const LampTestCase& work, int nodes);
 
 }  // namespace alpenglow::renderer
