@@ -130,15 +130,15 @@ std::optional<std::filesystem::path> FileOf(const std::optional<std::string>& na
   return name ? std::optional<std::filesystem::path>(*name) : std::nullopt;
 }
 
-NotedPicture RenderFrame(const SceneRenderer& renderer, const Shot& shot,
+NotedPicture RenderFrame(const SceneRenderer& renderer, const CameraSample& camera_sample,
                          const RenderSettings& settings, const SkyseriesOptions& options) {
   if (!ChoosesEffects(options) && !options.explain) {
-    CountedPicture picture = renderer.RenderCounted(shot, settings);
+    CountedPicture picture = renderer.RenderCounted(camera_sample, settings);
     return {std::move(picture.image), NotesOn(picture.rays, settings)};
   }
-  ChosenPicture picture = renderer.RenderWithin(shot, settings, BudgetOf(options));
+  ChosenPicture picture = renderer.RenderWithin(camera_sample, settings, BudgetOf(options));
   if (options.explain)
-    Print(fmt::format("{}\n{}\n", FormatUtc(shot.instant), ExplainText(picture.choice)));
+    Print(fmt::format("{}\n{}\n", FormatUtc(camera_sample.instant), ExplainText(picture.choice)));
   Metadata notes = NotesOn(picture.choice);
   notes.merge(NotesOn(picture.rays, settings));
   return {std::move(picture.image), std::move(notes)};
@@ -211,21 +211,21 @@ int Run(const SkyseriesOptions& options) {
     if (!loaded) loaded = Load(scene, progress);
     return *loaded;
   };
-  const auto shot = [&](const Frame& frame) {
-    return path ? ShotOf(frame, *path, options.shutter * FrameInterval(*path, RateOf(options)))
-                : Shot(frame.instant);
+  const auto camera_sample = [&](const Frame& frame) {
+    return path ? CameraSampleOf(frame, *path, options.shutter * FrameInterval(*path, RateOf(options)))
+                : CameraSample(frame.instant);
   };
   const SeriesSource source{
       [&](const Frame& frame, Progress& progress) {
         settings.progress = &progress;
-        NotedPicture picture = RenderFrame(renderer(&progress), shot(frame), settings, options);
+        NotedPicture picture = RenderFrame(renderer(&progress), camera_sample(frame), settings, options);
         picture.notes[kIlluminanceNote] =
-            fmt::format("{:.6g}", renderer(nullptr).Illuminance(shot(frame)));
+            fmt::format("{:.6g}", renderer(nullptr).Illuminance(camera_sample(frame)));
         return picture;
       },
       [&](const Frame& frame) {
         const double behind_filter = scene.camera.polariser_rad ? 0.5 : 1.0;
-        return behind_filter * renderer(nullptr).Illuminance(shot(frame));
+        return behind_filter * renderer(nullptr).Illuminance(camera_sample(frame));
       },
       MetadataOf(scene, path, settings, options),
       scene.place,
@@ -234,7 +234,7 @@ int Run(const SkyseriesOptions& options) {
       scene.camera.IsPanorama() ? Projection::kLatitudeLongitude : Projection::kCamera,
       scene.camera.fov_rad,
       [&](const Frame& frame) {
-        return renderer(nullptr).Render(shot(frame), PilotSettings(settings, options));
+        return renderer(nullptr).Render(camera_sample(frame), PilotSettings(settings, options));
       },
       scene.medium.follows_wgs84};
   WarnOfTotality(source, selected);

@@ -7,7 +7,7 @@
 #include <glm/geometric.hpp>
 #include <glm/vec2.hpp>
 
-#include "renderer/picture/scene_state.h"
+#include "renderer/picture/prepared_scene.h"
 
 namespace alpenglow::renderer {
 namespace {
@@ -64,7 +64,7 @@ std::optional<AirAlongRay> Reaching(AirAlongRay air, double ratio) {
 
 }  // namespace
 
-AirLattice::AirLattice(const SceneState& scene, const PictureFrame& frame, int x0, int y0, int x1,
+AirInterpolationGrid::AirInterpolationGrid(const PreparedScene& scene, const FrameContext& frame, int x0, int y0, int x1,
                        int y1)
     : scene_(&scene),
       frame_(&frame),
@@ -75,21 +75,21 @@ AirLattice::AirLattice(const SceneState& scene, const PictureFrame& frame, int x
       corners_(static_cast<std::size_t>((columns_ + 1) * (rows_ + 1))),
       cells_(static_cast<std::size_t>(columns_ * rows_), Cell::kUnknown) {}
 
-AirLattice::Corner AirLattice::Computed(double x, double y) const {
+AirInterpolationGrid::Corner AirInterpolationGrid::Computed(double x, double y) const {
   const CameraRay ray = frame_->camera().MiddleRay(x, y);
   const Hit hit = scene_->Trace(ray, *frame_);
-  SharedAir air{hit.kind, hit.distance_m, ray.through, ray.through, hit.distance_m, 1};
+  SharedSegmentAir air{hit.kind, hit.distance_m, ray.through, ray.through, hit.distance_m, 1};
   AddAir(*frame_, scene_->geometry, scene_->medium, air);
   return {hit.kind, hit.distance_m, air.air};
 }
 
-const AirLattice::Corner& AirLattice::At(int column, int row) {
+const AirInterpolationGrid::Corner& AirInterpolationGrid::At(int column, int row) {
   std::optional<Corner>& corner = corners_[static_cast<std::size_t>(row * (columns_ + 1) + column)];
   if (!corner) corner = Computed(x0_ + kCell * column, y0_ + kCell * row);
   return *corner;
 }
 
-std::optional<AirAlongRay> AirLattice::Between(int column, int row, double x, double y,
+std::optional<AirAlongRay> AirInterpolationGrid::Between(int column, int row, double x, double y,
                                                HitKind kind, double distance_m) {
   const double u = (x - x0_) / kCell - column, v = (y - y0_) / kCell - row;
   const std::array<double, 4> share{(1.0 - u) * (1.0 - v), u * (1.0 - v), (1.0 - u) * v, u * v};
@@ -115,7 +115,7 @@ std::optional<AirAlongRay> AirLattice::Between(int column, int row, double x, do
   return kind == HitKind::kSky ? sum : Reaching(sum, distance_m / corners_m);
 }
 
-bool AirLattice::IsShared(int column, int row) {
+bool AirInterpolationGrid::IsShared(int column, int row) {
   Cell& cell = cells_[static_cast<std::size_t>(row * columns_ + column)];
   if (cell != Cell::kUnknown) return cell == Cell::kShared;
   cell = Cell::kRough;
@@ -131,7 +131,7 @@ bool AirLattice::IsShared(int column, int row) {
   return cell == Cell::kShared;
 }
 
-std::optional<AirAlongRay> AirLattice::Before(const SharedAir& rays) {
+std::optional<AirAlongRay> AirInterpolationGrid::Before(const SharedSegmentAir& rays) {
   if (rays.kind == HitKind::kPlanet || frame_->media) return std::nullopt;
   const auto place = frame_->camera().PlaceOf(rays.direction_sum);
   if (!place) return std::nullopt;
@@ -157,7 +157,7 @@ const LampTile& DarkTile() {
 }
 
 CameraRay RayOf(const PixelSamples& samples, int sample, const glm::dvec2& at,
-                const PictureFrame& frame) {
+                const FrameContext& frame) {
   std::array<double, 2> lens{};
   double time = 0.0;
   if (frame.camera().HasLens()) lens = samples.Point(sample, SampleOf::kLens);
@@ -167,8 +167,8 @@ CameraRay RayOf(const PixelSamples& samples, int sample, const glm::dvec2& at,
 
 }  // namespace
 
-PixelLight::PixelLight(const SceneState& scene, const PictureFrame& frame, int x, int y,
-                       int most_rays, AirLattice* around, double expected_m)
+PixelLight::PixelLight(const PreparedScene& scene, const FrameContext& frame, int x, int y,
+                       int most_rays, AirInterpolationGrid* around, double expected_m)
     : scene_(&scene),
       frame_(&frame),
       x_(x),

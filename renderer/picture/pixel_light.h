@@ -29,24 +29,24 @@
 
 #include "renderer/camera/camera_rays.h"
 #include "renderer/picture/picture_layers.h"
-#include "renderer/picture/shared_air.h"
-#include "renderer/picture/shared_rays.h"
+#include "renderer/picture/segment_air.h"
+#include "renderer/picture/shared_samples.h"
 
 namespace alpenglow::renderer {
 
-struct SceneState;
+struct PreparedScene;
 
 /// Air of a rectangle of pixels. Cells are computed on demand, by one thread. Refers to scene and
 /// frame.
-class AirLattice {
+class AirInterpolationGrid {
  public:
   static constexpr int kCell = 4;  // pixels
 
   /// @param x0, y0  first pixel. @param x1, y1  one past the last pixel.
-  AirLattice(const SceneState& scene, const PictureFrame& frame, int x0, int y0, int x1, int y1);
+  AirInterpolationGrid(const PreparedScene& scene, const FrameContext& frame, int x0, int y0, int x1, int y1);
 
   /// Returns the air in front of rays of a pixel; no value where it cannot be shared.
-  [[nodiscard]] std::optional<AirAlongRay> Before(const SharedAir& rays);
+  [[nodiscard]] std::optional<AirAlongRay> Before(const SharedSegmentAir& rays);
 
  private:
   struct Corner {
@@ -63,14 +63,14 @@ class AirLattice {
                                                    HitKind kind, double distance_m);
   [[nodiscard]] bool IsShared(int column, int row);
 
-  const SceneState* scene_;
-  const PictureFrame* frame_;
+  const PreparedScene* scene_;
+  const FrameContext* frame_;
   int x0_, y0_, columns_, rows_;  // in cells
   std::vector<std::optional<Corner>> corners_;
   std::vector<Cell> cells_;
 };
 
-struct SceneState;
+struct PreparedScene;
 
 /// Accumulates rays of one pixel up to a requested number; all rays have the same weight. Refers to
 /// scene, frame and lattice.
@@ -79,9 +79,9 @@ class PixelLight {
   /// @param most_rays  largest number of rays that will be requested. A pixel with a single ray
   ///     looks through its middle.
   /// @param around  air shared with other pixels; null: no sharing.
-  /// @param expected_m  expected length of the rays (SceneState::Trace).
-  PixelLight(const SceneState& scene, const PictureFrame& frame, int x, int y, int most_rays,
-             AirLattice* around = nullptr, double expected_m = 0.0);
+  /// @param expected_m  expected length of the rays (PreparedScene::Trace).
+  PixelLight(const PreparedScene& scene, const FrameContext& frame, int x, int y, int most_rays,
+             AirInterpolationGrid* around = nullptr, double expected_m = 0.0);
 
   /// Adds rays until the pixel has `rays` of them. Air of earlier rays is reused.
   void TakeUpTo(int rays);
@@ -116,14 +116,14 @@ class PixelLight {
   void AddNewAir(std::size_t known);
   void Add(const Ray& seen);
 
-  const SceneState* scene_;
-  const PictureFrame* frame_;
+  const PreparedScene* scene_;
+  const FrameContext* frame_;
   int x_, y_;
   bool through_middle_;
-  AirLattice* around_;
+  AirInterpolationGrid* around_;
   double last_m_;
   PixelSamples samples_;
-  std::vector<SharedAir> airs_;
+  std::vector<SharedSegmentAir> airs_;
   PixelSum sum_;
   RaySpread spread_;
   std::vector<SeenRay> new_rays_;

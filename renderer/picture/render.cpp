@@ -8,7 +8,7 @@
 #include "atmosphere/medium/medium_presets.h"
 #include "atmosphere/base/error.h"
 #include "renderer/camera/camera_rays.h"
-#include "renderer/picture/scene_state.h"
+#include "renderer/picture/prepared_scene.h"
 
 namespace alpenglow::renderer {
 
@@ -25,42 +25,42 @@ void ValidateSettings(const RenderSettings& settings) {
 }
 
 SceneRenderer::SceneRenderer(const Scene& scene, Progress* progress)
-    : state_(std::make_unique<SceneState>(scene, progress)) {}
+    : state_(std::make_unique<PreparedScene>(scene, progress)) {}
 SceneRenderer::SceneRenderer(const Scene& scene, std::shared_ptr<const SceneGround> ground)
-    : state_(std::make_unique<SceneState>(scene, std::move(ground))) {}
+    : state_(std::make_unique<PreparedScene>(scene, std::move(ground))) {}
 SceneRenderer::~SceneRenderer() = default;
 
 const Medium& SceneRenderer::medium() const { return state_->medium; }
 double SceneRenderer::eye_height_m() const { return state_->ground.eye_height_m; }
 const std::string& SceneRenderer::terrain_message() const { return state_->ground.message; }
 
-SunPosition SceneRenderer::ApparentSun(const Shot& shot) const { return state_->ApparentSun(shot); }
+SunPosition SceneRenderer::ApparentSun(const CameraSample& camera_sample) const { return state_->ApparentSun(camera_sample); }
 
-double SceneRenderer::Illuminance(const Shot& shot) const {
-  const CameraStand stand = state_->StandOf(shot);
-  return state_->Illuminance(stand.eye, state_->LightingAt(shot, stand));
+double SceneRenderer::Illuminance(const CameraSample& camera_sample) const {
+  const CameraStand stand = state_->StandOf(camera_sample);
+  return state_->Illuminance(stand.eye, state_->LightingAt(camera_sample, stand));
 }
 
-Image SceneRenderer::Render(const Shot& shot, const RenderSettings& settings) const {
-  return RenderCounted(shot, settings).image;
+Image SceneRenderer::Render(const CameraSample& camera_sample, const RenderSettings& settings) const {
+  return RenderCounted(camera_sample, settings).image;
 }
 
-CountedPicture SceneRenderer::RenderCounted(const Shot& shot,
+CountedPicture SceneRenderer::RenderCounted(const CameraSample& camera_sample,
                                             const RenderSettings& settings) const {
   ValidateSettings(settings);
-  const SceneState& state = state_->For(settings.effects);
-  return state.Picture(state.FrameAt(shot, settings));
+  const PreparedScene& state = state_->For(settings.effects);
+  return state.Picture(state.FrameAt(camera_sample, settings));
 }
 
-std::unique_ptr<SceneState> SceneState::OnOtherBands(int bands) const {
+std::unique_ptr<PreparedScene> PreparedScene::OnOtherBands(int bands) const {
   const std::optional<Medium> other = OnBands(scene.medium, bands);
   if (!other) return nullptr;
   Scene same = scene;
   same.medium = *other;
-  return std::make_unique<SceneState>(same, shared_ground, this);
+  return std::make_unique<PreparedScene>(same, shared_ground, this);
 }
 
-const SceneState& SceneState::OnFewBands() const {
+const PreparedScene& PreparedScene::OnFewBands() const {
   constexpr int kFew = 4;
   std::call_once(few_bands_asked, [&] {
     if (medium.wavelengths_nm.size() > kFew) few_bands = OnOtherBands(kFew);
@@ -69,7 +69,7 @@ const SceneState& SceneState::OnFewBands() const {
 }
 
 // Returns the effects that can change this picture.
-EffectSet SceneState::Present(const PictureFrame& frame) const {
+EffectSet PreparedScene::Present(const FrameContext& frame) const {
   const auto without = [](EffectSet effects, bool is_there, EffectSet those) {
     if (is_there) return effects;
     for (const Effect effect : those.List()) effects = effects.Without(effect);
@@ -92,16 +92,16 @@ EffectSet SceneState::Present(const PictureFrame& frame) const {
   return without(present, &OnFewBands() != this, {Effect::kFineSpectrum});
 }
 
-ChosenPicture SceneRenderer::RenderWithin(const Shot& shot, const RenderSettings& settings,
+ChosenPicture SceneRenderer::RenderWithin(const CameraSample& camera_sample, const RenderSettings& settings,
                                           const EffectBudget& budget) const {
   ValidateSettings(settings);
-  const SceneState& whole = state_->For(settings.effects);
-  const PictureFrame frame = whole.FrameAt(shot, settings);
-  std::optional<PictureFrame> on_few_bands;
+  const PreparedScene& whole = state_->For(settings.effects);
+  const FrameContext frame = whole.FrameAt(camera_sample, settings);
+  std::optional<FrameContext> on_few_bands;
   const auto with = [&](EffectSet effects) {
-    const SceneState& state = state_->For(effects);
+    const PreparedScene& state = state_->For(effects);
     if (&state == &whole) return whole.Reduced(frame, effects);
-    if (!on_few_bands) on_few_bands.emplace(state.FrameAt(shot, settings));
+    if (!on_few_bands) on_few_bands.emplace(state.FrameAt(camera_sample, settings));
     return state.Reduced(*on_few_bands, effects);
   };
   EffectPilot pilot;
@@ -114,7 +114,7 @@ ChosenPicture SceneRenderer::RenderWithin(const Shot& shot, const RenderSettings
       PilotPixels(frame.camera(), settings.width, settings.height, frame.light.to_sun, points);
   std::vector<PixelPlace> places;
   for (const auto& group : pilot.groups) places.insert(places.end(), group.begin(), group.end());
-  const auto timed = [&](const SceneState& state, const PictureFrame& of) {
+  const auto timed = [&](const PreparedScene& state, const FrameContext& of) {
     const Stopwatch watch;
     Image image = state.Pixels(of, places);
     return PilotPicture{std::move(image), watch.seconds()};
@@ -131,17 +131,17 @@ ChosenPicture SceneRenderer::RenderWithin(const Shot& shot, const RenderSettings
   pilot.present = whole.Present(frame);
   const auto refine = [&](const char* name, const auto& change) {
     pilot.refinements.push_back({name, [&, change] {
-                                   PictureFrame finer = frame;
+                                   FrameContext finer = frame;
                                    change(finer.settings);
                                    return timed(whole, finer);
                                  }});
   };
   refine("16 air nodes", [](RenderSettings& finer) { finer.air_nodes = 16; });
   refine("air of each ray", [](RenderSettings& finer) { finer.share_air = false; });
-  const std::unique_ptr<SceneState> more_bands = budget.explain ? whole.OnOtherBands(16) : nullptr;
+  const std::unique_ptr<PreparedScene> more_bands = budget.explain ? whole.OnOtherBands(16) : nullptr;
   if (more_bands && frame.model->air.bands() < 16) {
     pilot.refinements.push_back(
-        {"16 bands", [&] { return timed(*more_bands, more_bands->FrameAt(shot, settings)); }});
+        {"16 bands", [&] { return timed(*more_bands, more_bands->FrameAt(camera_sample, settings)); }});
   }
   EffectChoice choice = ChooseEffects(pilot, settings.effects, budget);
   CountedPicture picture = state_->For(choice.effects).Picture(with(choice.effects));

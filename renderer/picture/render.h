@@ -10,7 +10,7 @@
 // sea without terrain follow refracted rays instead (RefractedViewRays).
 //
 // Each pixel traces rays against the terrain, distributed by PixelFilter and PixelSamples. A single
-// ray goes through the middle of the pixel; with RenderSettings::noise, shared_rays.h chooses the
+// ray goes through the middle of the pixel; with RenderSettings::noise, shared_samples.h chooses the
 // number of rays. Then AerialPerspective computes the air along the mean of the rays that meet the
 // same surface: single scattering where terrain and planet let the sun in, multiple scattering
 // everywhere. Terrain beyond the planet's own horizon is not visible.
@@ -48,7 +48,7 @@ struct RenderSettings {
   int height = 720;
   int samples_per_pixel = 4;  // rays, in [1, 1024]; powers of two are distributed best
   /// Relative noise of a pixel, in [1e-8, 1]: pixels take as many rays as it requires
-  /// (shared_rays.h), at most kMostRaysForNoise. Empty: all pixels take samples_per_pixel.
+  /// (shared_samples.h), at most kMostRaysForNoise. Empty: all pixels take samples_per_pixel.
   std::optional<double> noise = std::nullopt;
   PixelFilter::Kind filter = PixelFilter::Kind::kBlackmanHarris;
   int air_nodes = 12;  // Gauss nodes along a ray to the sky
@@ -72,8 +72,8 @@ class RenderingStopped : public std::exception {
 };
 
 /// Time and camera of a picture.
-struct Shot {
-  Shot(const UtcInstant& at) : instant(at) {}  // NOLINT: the camera of the scene
+struct CameraSample {
+  CameraSample(const UtcInstant& at) : instant(at) {}  // NOLINT: the camera of the scene
 
   UtcInstant instant;
   /// Replaces the camera of the scene, with the same lens: one pose, or several at even steps of
@@ -92,7 +92,7 @@ struct Shot {
 void ValidateSettings(const RenderSettings& settings);
 
 struct SceneGround;
-struct SceneState;
+struct PreparedScene;
 
 /// A picture and its ray counts.
 struct CountedPicture {
@@ -121,21 +121,21 @@ class SceneRenderer {
   /// Returns the picture as linear sRGB in cd/m^2. The bytes do not depend on the number of
   /// threads. Throws InputError for a size out of [1, 16384] and for an eye at an impossible place,
   /// RenderingStopped when settings.stop requests it; stops early when Interrupted().
-  [[nodiscard]] Image Render(const Shot& shot, const RenderSettings& settings) const;
-  [[nodiscard]] CountedPicture RenderCounted(const Shot& shot,
+  [[nodiscard]] Image Render(const CameraSample& camera_sample, const RenderSettings& settings) const;
+  [[nodiscard]] CountedPicture RenderCounted(const CameraSample& camera_sample,
                                              const RenderSettings& settings) const;
 
   /// Renders with the subset of settings.effects that the picture needs (effect_choice.h). The
   /// choice does not depend on the number of threads; the times in it are measured in this run.
-  [[nodiscard]] ChosenPicture RenderWithin(const Shot& shot, const RenderSettings& settings,
+  [[nodiscard]] ChosenPicture RenderWithin(const CameraSample& camera_sample, const RenderSettings& settings,
                                            const EffectBudget& budget) const;
 
   /// Returns the illuminance of all distant lights and the sky on a horizontal plane at the eye,
   /// without terrain [lux].
-  [[nodiscard]] double Illuminance(const Shot& shot) const;
+  [[nodiscard]] double Illuminance(const CameraSample& camera_sample) const;
 
   /// Returns the sun as seen from the eye with refraction, where the picture shows it.
-  [[nodiscard]] SunPosition ApparentSun(const Shot& shot) const;
+  [[nodiscard]] SunPosition ApparentSun(const CameraSample& camera_sample) const;
 
   /// Returns the medium on the osculating sphere.
   [[nodiscard]] const Medium& medium() const;
@@ -145,7 +145,7 @@ class SceneRenderer {
   [[nodiscard]] const std::string& terrain_message() const;
 
  private:
-  std::unique_ptr<SceneState> state_;
+  std::unique_ptr<PreparedScene> state_;
 };
 
 }  // namespace alpenglow::renderer

@@ -14,7 +14,7 @@
 #include "renderer/effects/effect_choice.h"
 #include "renderer/picture/picture_layers.h"
 #include "renderer/picture/pixel_light.h"
-#include "renderer/picture/scene_state.h"
+#include "renderer/picture/prepared_scene.h"
 #include "renderer/picture/sky_pixels.h"
 
 namespace alpenglow::renderer {
@@ -111,8 +111,8 @@ BandLight RefractedSunDisk(const glm::dvec3& direction, const AirAlongRay& throu
 
 }  // namespace
 
-BandLight SceneState::SunDisk(const glm::dvec3& direction, const AirAlongRay& through,
-                              const PictureFrame& frame) const {
+BandLight PreparedScene::SunDisk(const glm::dvec3& direction, const AirAlongRay& through,
+                              const FrameContext& frame) const {
   const Lighting& light = frame.light;
   if (frame.bent) return RefractedSunDisk(direction, through, light, *frame.bent, medium);
   const glm::dvec3& to_moon = light.moon ? light.moon->to_moon : light.to_sun;
@@ -173,8 +173,8 @@ BandLight RefractedMoon(const glm::dvec3& direction, const AirAlongRay& through,
 
 }  // namespace
 
-BandLight SceneState::MoonSeen(const glm::dvec3& direction, const AirAlongRay& through,
-                               const PictureFrame& frame) const {
+BandLight PreparedScene::MoonSeen(const glm::dvec3& direction, const AirAlongRay& through,
+                               const FrameContext& frame) const {
   const Lighting& light = frame.light;
   // During an eclipse, the earthshine of the moon would stand out, because the renderer has no corona.
   if (!light.moon || light.eclipse) return BandLight(light.irradiance.count);
@@ -185,14 +185,14 @@ BandLight SceneState::MoonSeen(const glm::dvec3& direction, const AirAlongRay& t
          (light.moon_colour * (light.irradiance * through.transmittance));
 }
 
-PixelSum SceneState::WithStars(const PictureFrame& frame, int x, int y, PixelSum rays) {
+PixelSum PreparedScene::WithStars(const FrameContext& frame, int x, int y, PixelSum rays) {
   const BandLight* star = frame.stars ? frame.stars->At(x, y) : nullptr;
   if (star != nullptr) rays.radiance = rays.radiance + static_cast<float>(rays.rays) * *star;
   return rays;
 }
 
-PolarisedLight SceneState::PolarisedGround(const Hit& hit, const CameraRay& ray,
-                                           const PictureFrame& frame,
+PolarisedLight PreparedScene::PolarisedGround(const Hit& hit, const CameraRay& ray,
+                                           const FrameContext& frame,
                                            std::array<double, 2> disk_sample) const {
   const GroundLight& ground_light = frame.model->ground_light;
   const PictureAxes axes = frame.camera().AxesAt(ray.through);
@@ -223,8 +223,8 @@ Shaded Polarised(const CameraRays& camera, const glm::dvec3& direction,
 
 }  // namespace
 
-Shaded SceneState::Shade(const Hit& hit, const SharedAir& through, const CameraRay& ray,
-                         const PictureFrame& frame, const LampTile& near,
+Shaded PreparedScene::Shade(const Hit& hit, const SharedSegmentAir& through, const CameraRay& ray,
+                         const FrameContext& frame, const LampTile& near,
                          std::array<double, 2> disk_sample) const {
   Shaded shaded = ShadedWithoutPolariser(hit, through, ray, frame, near, disk_sample);
   if (!frame.polarised) return shaded;
@@ -237,8 +237,8 @@ Shaded SceneState::Shade(const Hit& hit, const SharedAir& through, const CameraR
   return Polarised(frame.camera(), ray.through, inscatter, std::move(shaded));
 }
 
-Shaded SceneState::ShadedWithoutPolariser(const Hit& hit, const SharedAir& through,
-                                          const CameraRay& ray, const PictureFrame& frame,
+Shaded PreparedScene::ShadedWithoutPolariser(const Hit& hit, const SharedSegmentAir& through,
+                                          const CameraRay& ray, const FrameContext& frame,
                                           const LampTile& near,
                                           std::array<double, 2> disk_sample) const {
   Shaded shaded;
@@ -290,7 +290,7 @@ Shaded SceneState::ShadedWithoutPolariser(const Hit& hit, const SharedAir& throu
   return shaded;
 }
 
-Image SceneState::Pixels(const PictureFrame& frame, const std::vector<PixelPlace>& places) const {
+Image PreparedScene::Pixels(const FrameContext& frame, const std::vector<PixelPlace>& places) const {
   const int count = static_cast<int>(places.size());
   const int rays = frame.settings.samples_per_pixel;
   PixelWriter writer(colour, count, 1, {});
@@ -305,7 +305,7 @@ Image SceneState::Pixels(const PictureFrame& frame, const std::vector<PixelPlace
   return writer.Take();
 }
 
-CountedPicture SceneState::Picture(const PictureFrame& frame) const {
+CountedPicture PreparedScene::Picture(const FrameContext& frame) const {
   PixelWriter writer(colour, frame.settings.width, frame.settings.height, frame.settings.layers);
   ThrowIfInterrupted();
   if (frame.settings.noise) {
@@ -318,7 +318,7 @@ CountedPicture SceneState::Picture(const PictureFrame& frame) const {
   return {writer.Take(), writer.rays()};
 }
 
-void SceneState::AddRows(const PictureFrame& frame, PixelWriter& writer) const {
+void PreparedScene::AddRows(const FrameContext& frame, PixelWriter& writer) const {
   const int rays = frame.settings.samples_per_pixel;
   std::atomic<int> rows{0};
   tbb::parallel_for(0, frame.settings.height, [&](int y) {
@@ -333,13 +333,13 @@ void SceneState::AddRows(const PictureFrame& frame, PixelWriter& writer) const {
   });
 }
 
-double SceneState::NoiseFloor(const PictureFrame& frame) const {
+double PreparedScene::NoiseFloor(const FrameContext& frame) const {
   constexpr int kPixels = 400;
   return ChangeFloor(
       Pixels(frame, PilotGrid(frame.settings.width, frame.settings.height, kPixels)));
 }
 
-void SceneState::AddTiles(const PictureFrame& frame, PixelWriter& writer) const {
+void PreparedScene::AddTiles(const FrameContext& frame, PixelWriter& writer) const {
   const RenderSettings& settings = frame.settings;
   const int columns = (settings.width + Tile::kSide - 1) / Tile::kSide;
   const int tiles = columns * ((settings.height + Tile::kSide - 1) / Tile::kSide);
@@ -355,7 +355,7 @@ void SceneState::AddTiles(const PictureFrame& frame, PixelWriter& writer) const 
 
 // Traces first rays of the tile and of a border of pixels around it. Border pixels belong to other
 // tiles; they only provide the noise estimate and their rays.
-void SceneState::AddTile(const PictureFrame& frame, double floor, int x0, int y0,
+void PreparedScene::AddTile(const FrameContext& frame, double floor, int x0, int y0,
                          const OccludedSkyPixels& open_sky, PixelWriter& writer) const {
   const RenderSettings& settings = frame.settings;
   const int first = settings.samples_per_pixel, most = std::max(kMostRaysForNoise, first);
@@ -365,8 +365,8 @@ void SceneState::AddTile(const PictureFrame& frame, double floor, int x0, int y0
   const Tile asked{std::max(x0 - 1, 0), std::max(y0 - 1, 0), std::min(tile.x1 + 1, settings.width),
                    std::min(tile.y1 + 1, settings.height)};
   const auto stopped = [&] { return Interrupted() || settings.stop.stop_requested(); };
-  AirLattice air(*this, frame, x0, y0, tile.x1, tile.y1);
-  AirLattice* const lattice = settings.share_air && settings.share_air_of_pixels ? &air : nullptr;
+  AirInterpolationGrid air(*this, frame, x0, y0, tile.x1, tile.y1);
+  AirInterpolationGrid* const lattice = settings.share_air && settings.share_air_of_pixels ? &air : nullptr;
   std::vector<PixelLight> pixels;
   std::vector<RaySpread> spreads;
   std::vector<bool> is_done;
@@ -402,7 +402,7 @@ void SceneState::AddTile(const PictureFrame& frame, double floor, int x0, int y0
                                                   *settings.noise, begun, most)
                                    : begun);
   });
-  SharedRays shared(frame.filter, asked.x1 - asked.x0, asked.y1 - asked.y0,
+  SharedSampleFilter shared(frame.filter, asked.x1 - asked.x0, asked.y1 - asked.y0,
                     medium.wavelengths_nm.size());
   asked.Visit(
       [&](int x, int y) { shared.Expect(x - asked.x0, y - asked.y0, wanted[asked.Index(x, y)]); });
@@ -425,7 +425,7 @@ void SceneState::AddTile(const PictureFrame& frame, double floor, int x0, int y0
   });
 }
 
-void SceneState::Write(const PictureFrame& frame, int x, int y, const PixelLight& pixel,
+void PreparedScene::Write(const FrameContext& frame, int x, int y, const PixelLight& pixel,
                        PixelWriter& writer) const {
   writer.Write(x, y, WithStars(frame, x, y, pixel.sum()));
   if (!writer.AsksForMiddle()) return;

@@ -6,7 +6,7 @@
 #include <glm/geometric.hpp>
 
 #include "atmosphere/math/constants.h"
-#include "renderer/picture/scene_state.h"
+#include "renderer/picture/prepared_scene.h"
 
 namespace alpenglow::renderer {
 namespace {
@@ -133,13 +133,13 @@ namespace {
 // Returns the angular radius around a pixel that must be free of ground and disks: a ray counts for
 // pixels up to a filter's width away, and two pixels cover features between the azimuths of the
 // skyline.
-double AroundPixel(const PictureFrame& frame) {
+double AroundPixel(const FrameContext& frame) {
   return (4.0 * frame.filter.radius() + 2.0) * frame.camera().PixelAngle();
 }
 
 }  // namespace
 
-OccludedSkyPixels::OccludedSkyPixels(const SceneState& scene, const PictureFrame& frame)
+OccludedSkyPixels::OccludedSkyPixels(const PreparedScene& scene, const FrameContext& frame)
     : frame_(frame), around_rad_(AroundPixel(frame)) {
   const CameraRays& camera = frame.camera();
   const bool is_solid = scene.ground.is_solid || !scene.geometry.HasTerrain();

@@ -10,7 +10,7 @@
 //
 // OccludedSkyPixels finds the pixels that see only sky without tracing a ray: those well above the
 // skyline, and not near the sun or the moon. All rays of such a pixel have one sky radiance, that
-// of its middle (shared_rays.h), and so have all rays of its neighbours that count for it. One ray
+// of its middle (shared_samples.h), and so have all rays of its neighbours that count for it. One ray
 // through the middle gives the same result as many.
 #pragma once
 
@@ -71,15 +71,15 @@ class StarPixels {
   std::vector<glm::dvec3> directions_;
 };
 
-struct PictureFrame;
-struct SceneState;
+struct FrameContext;
+struct PreparedScene;
 
 /// Immutable, safe to share between threads. Refers to the frame.
 class OccludedSkyPixels {
  public:
   /// No pixel counts as open sky where sky can be visible below ground, a lens blurs, or the camera
   /// moves.
-  OccludedSkyPixels(const SceneState& scene, const PictureFrame& frame);
+  OccludedSkyPixels(const PreparedScene& scene, const FrameContext& frame);
 
   /// Returns whether all rays that count for a pixel see only sky, without a disk in it.
   [[nodiscard]] bool Has(int x, int y) const;
@@ -88,7 +88,7 @@ class OccludedSkyPixels {
   /// Returns the range of azimuths that the picture, with a margin, covers.
   [[nodiscard]] Skyline::Arc ArcAround(const glm::dvec3& up) const;
 
-  const PictureFrame& frame_;
+  const FrameContext& frame_;
   double around_rad_;  // angular radius around the middle of a pixel that contains everything its
                        // rays see
   std::optional<Skyline> skyline_;

@@ -343,13 +343,13 @@ std::vector<Frame> FramesAlong(const CameraPath& path, const PathRate& rate,
   return frames;
 }
 
-Shot ShotOf(const Frame& frame, const CameraPath& path, double shutter_s) {
+CameraSample CameraSampleOf(const Frame& frame, const CameraPath& path, double shutter_s) {
   // Straight segments between 16 steps miss a curve by less than a hundredth of its length.
   constexpr int kSteps = 17;
-  Shot shot(frame.instant);
-  shot.poses = path.PosesBetween(frame.path_s - 0.5 * shutter_s, frame.path_s + 0.5 * shutter_s,
+  CameraSample camera_sample(frame.instant);
+  camera_sample.poses = path.PosesBetween(frame.path_s - 0.5 * shutter_s, frame.path_s + 0.5 * shutter_s,
                                  shutter_s > 0.0 ? kSteps : 1);
-  return shot;
+  return camera_sample;
 }
 
 }  // namespace alpenglow::renderer

@@ -96,6 +96,6 @@ struct PathRate {
 
 /// Returns the camera of a frame; with an open shutter, its motion during the exposure, which is
 /// centred on the frame.
-[[nodiscard]] Shot ShotOf(const Frame& frame, const CameraPath& path, double shutter_s);
+[[nodiscard]] CameraSample CameraSampleOf(const Frame& frame, const CameraPath& path, double shutter_s);
 
 }  // namespace alpenglow::renderer

@@ -167,38 +167,38 @@ TEST_F(Skyview, ABenchmarkPrintsTimesAndNothingElse) {
 
 TEST_F(Skyview, InstrumentsAreInAPictureOnlyWhereTheyAreAskedFor) {
   if (!tests::HasOpenGl()) GTEST_SKIP() << "EGL gives no OpenGL here";
-  const std::string shot = InFolder("s.toml") + " --headless --size 320x240 --screenshot ";
-  ASSERT_EQ(Run(shot + InFolder("bare.png")).status, 0);
-  ASSERT_EQ(Run(shot + InFolder("off.png") + " --hud off").status, 0);
-  ASSERT_EQ(Run(shot + InFolder("on.png") + " --hud on").status, 0);
+  const std::string camera_sample = InFolder("s.toml") + " --headless --size 320x240 --screenshot ";
+  ASSERT_EQ(Run(camera_sample + InFolder("bare.png")).status, 0);
+  ASSERT_EQ(Run(camera_sample + InFolder("off.png") + " --hud off").status, 0);
+  ASSERT_EQ(Run(camera_sample + InFolder("on.png") + " --hud on").status, 0);
   EXPECT_EQ(ReadPng(InFolder("bare.png")).rgb, ReadPng(InFolder("off.png")).rgb);
   EXPECT_NE(ReadPng(InFolder("bare.png")).rgb, ReadPng(InFolder("on.png")).rgb);
-  const Outcome linear = Run(shot + InFolder("on.exr") + " --hud on");
+  const Outcome linear = Run(camera_sample + InFolder("on.exr") + " --hud on");
   EXPECT_EQ(linear.status, 3) << "instruments are no light";
   EXPECT_THAT(linear.error, HasSubstr("on.exr"));
 }
 
 TEST_F(Skyview, OfAQualityThatThereIsNotItSaysSo) {
   if (!tests::HasOpenGl()) GTEST_SKIP() << "EGL gives no OpenGL here";
-  const std::string shot = InFolder("s.toml") + " --headless --size 16x9 --screenshot ";
-  const Outcome wrong = Run(shot + InFolder("a.png") + " --quality best");
+  const std::string camera_sample = InFolder("s.toml") + " --headless --size 16x9 --screenshot ";
+  const Outcome wrong = Run(camera_sample + InFolder("a.png") + " --quality best");
   EXPECT_EQ(wrong.status, 3);
   EXPECT_THAT(wrong.error, HasSubstr("best"));
-  ASSERT_EQ(Run(shot + InFolder("low.exr") + " --quality low").status, 0);
+  ASSERT_EQ(Run(camera_sample + InFolder("low.exr") + " --quality low").status, 0);
   EXPECT_EQ(ReadExrMetadata(InFolder("low.exr")).at("alpenglow.quality"), "low");
 }
 
 TEST_F(Skyview, ToTheEyeDuskIsDarkAndThePictureSaysHowItWasExposed) {
   if (!tests::HasOpenGl()) GTEST_SKIP() << "EGL gives no OpenGL here";
-  const auto shot = [&](const std::string& name, const std::string& options) {
+  const auto camera_sample = [&](const std::string& name, const std::string& options) {
     const Outcome outcome =
         Run(InFolder("s.toml") + " --headless --quality low --size 16x9 --time " + "civil-dusk " +
             options + " --screenshot " + InFolder(name));
     EXPECT_EQ(outcome.status, 0) << outcome.error;
     return ReadPngMetadata(InFolder(name));
   };
-  const Metadata camera = shot("auto.png", "");
-  const Metadata eye = shot("eye.png", "--exposure eye");
+  const Metadata camera = camera_sample("auto.png", "");
+  const Metadata eye = camera_sample("eye.png", "--exposure eye");
   EXPECT_EQ(camera.at("alpenglow.exposure"), "metered");
   EXPECT_EQ(eye.at("alpenglow.exposure"), "eye");
   EXPECT_EQ(eye.at("alpenglow.exposure_rule"), RuleInWords({ExposureRule::Kind::kEye}));
@@ -211,7 +211,7 @@ TEST_F(Skyview, ToTheEyeDuskIsDarkAndThePictureSaysHowItWasExposed) {
   }
   EXPECT_NEAR(std::stod(eye.at("alpenglow.ev100")), EyeEv100(metered, {}), 2e-4)
       << "the functions of the series; four digits are written";
-  const Metadata asked = shot("asked.png", "--exposure 7.5 --look punchy --white-balance 4000");
+  const Metadata asked = camera_sample("asked.png", "--exposure 7.5 --look punchy --white-balance 4000");
   EXPECT_EQ(asked.at("alpenglow.exposure"), "fixed");
   EXPECT_EQ(asked.at("alpenglow.ev100"), "7.5000");
   EXPECT_EQ(asked.at("alpenglow.tone_curve"), "agx, punchy");
@@ -340,8 +340,8 @@ TEST_F(Skyview, HelpNamesEveryOptionAndAnExample) {
 // Hard case 49.
 TEST_F(Skyview, WithoutADisplayAnOpenGlOlderThan33IsRefusedWithStatusFive) {
   if (!tests::HasOpenGl()) GTEST_SKIP() << "EGL gives no OpenGL here";
-  const std::string shot = " s.toml --headless --size 16x9 --screenshot a.png";
-  if (Run(shot).error.find("Mesa") == std::string::npos) {
+  const std::string camera_sample = " s.toml --headless --size 16x9 --screenshot a.png";
+  if (Run(camera_sample).error.find("Mesa") == std::string::npos) {
     GTEST_SKIP() << "only Mesa's drivers can be told to be old";
   }
   // Leaks are not looked for: the driver that is refused leaves some bytes behind and is unloaded,
@@ -366,7 +366,7 @@ class SkyviewLand : public tests::LandFolder {
   }
 
   /// Of 8 to 8.1 degrees east, 46.6 to 46.7 north and beyond.
-  [[nodiscard]] Outcome Shot(const std::string& arguments,
+  [[nodiscard]] Outcome CameraSample(const std::string& arguments,
                              const std::string& name = "a.png") const {
     return RunCommand(std::string("env -u DISPLAY -u WAYLAND_DISPLAY '") + tests::kSkyview +
                       "' --headless --size 32x18 --quality low --screenshot " + name + " " +
@@ -376,19 +376,19 @@ class SkyviewLand : public tests::LandFolder {
 
 TEST_F(SkyviewLand, SeveralModelsAreOneLand) {
   const std::string both = "--dem west.tif --dem east.tif --pitch -20";
-  const Outcome outcome = Shot(both);
+  const Outcome outcome = CameraSample(both);
   EXPECT_EQ(outcome.status, 0) << outcome.error;
   const std::string height = ReadPngMetadata(folder_ / "a.png").at("alpenglow.camera_height");
   EXPECT_GT(std::stod(height), 300.0) << "over the ground in the middle of both: " << height;
-  const Outcome beside = Shot(both + " --latitude 47.5 --longitude 8 --altitude 3000");
+  const Outcome beside = CameraSample(both + " --latitude 47.5 --longitude 8 --altitude 3000");
   EXPECT_EQ(beside.status, 0) << "land may be far from the eye: " << beside.error;
 }
 
 TEST_F(SkyviewLand, AFlightThatBeginsOverTheGroundIsRecordedReplayedAndRenderedThere) {
-  Outcome outcome = Shot("--dem west.tif --pitch -20 --time noon --record f.csv --frames 4");
+  Outcome outcome = CameraSample("--dem west.tif --pitch -20 --time noon --record f.csv --frames 4");
   ASSERT_EQ(outcome.status, 0) << outcome.error;
   const DisplayImage flown = ReadPng(folder_ / "a.png");
-  outcome = Shot("--dem west.tif --replay f.csv --frames 2", "r.%04d.png");
+  outcome = CameraSample("--dem west.tif --replay f.csv --frames 2", "r.%04d.png");
   ASSERT_EQ(outcome.status, 0) << outcome.error;
   const DisplayImage replayed = ReadPng(folder_ / "r.0001.png");
   ASSERT_EQ(replayed.rgb.size(), flown.rgb.size());
@@ -403,7 +403,7 @@ TEST_F(SkyviewLand, AFlightThatBeginsOverTheGroundIsRecordedReplayedAndRenderedT
 }
 
 TEST_F(SkyviewLand, WithAModelAndAPlaceItBeginsAtNoonOfThePlaceAndSaysWhatIsMissing) {
-  const Outcome outcome = Shot("--dem west.tif --place RJTT");
+  const Outcome outcome = CameraSample("--dem west.tif --place RJTT");
   ASSERT_EQ(outcome.status, 0) << outcome.error;
   EXPECT_EQ(ReadPngMetadata(folder_ / "a.png").at("alpenglow.time").substr(0, 15),
             "2026-06-21T02:4")
@@ -439,7 +439,7 @@ TEST_F(SkyviewLand, WhatIsLeftOutOfAFolderIsSaid) {
   std::filesystem::create_directory(folder_ / "land");
   tests::WriteTile(folder_ / "land/west.tif", 0, 0);
   WriteText(folder_ / "land/broken.tif", "not a picture at all");
-  const Outcome outcome = Shot("--dem land");
+  const Outcome outcome = CameraSample("--dem land");
   EXPECT_EQ(outcome.status, 0) << outcome.error;
   EXPECT_THAT(outcome.error, HasSubstr("broken.tif"));
 }

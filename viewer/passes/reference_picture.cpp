@@ -57,11 +57,11 @@ ReferencePicture::ReferencePicture()
         settings.height = std::max(view.height / request.reduction, 1);
         settings.samples_per_pixel = request.samples;
         settings.stop = request.stop;
-        Shot shot(view.now);
-        shot.poses = {PoseOf(view.eye)};
+        CameraSample camera_sample(view.now);
+        camera_sample.poses = {PoseOf(view.eye)};
         try {
           const SceneRenderer& renderer = renderers->Of(view.of);
-          return Made{renderer.Render(shot, settings), request.samples, request.stop};
+          return Made{renderer.Render(camera_sample, settings), request.samples, request.stop};
         } catch (const RenderingStopped&) {
           return std::nullopt;
         }

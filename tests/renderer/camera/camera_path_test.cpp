@@ -143,8 +143,8 @@ TEST(PathFrames, AreSpacedAsAskedFor) {
   EXPECT_EQ(FramesAlong(path, {.every = "2s", .count = {}}, start).size(), 6U);
   EXPECT_THROW((void)FramesAlong(path, {.every = "0s", .count = {}}, start), InputError);
   EXPECT_THROW((void)FramesAlong(path, {.every = {}, .count = 0}, start), InputError);
-  const Shot still = ShotOf(counted[5], path, 0.0);
-  const Shot blurred = ShotOf(counted[5], path, 0.5);
+  const CameraSample still = CameraSampleOf(counted[5], path, 0.0);
+  const CameraSample blurred = CameraSampleOf(counted[5], path, 0.5);
   EXPECT_EQ(still.poses.size(), 1U);
   EXPECT_EQ(blurred.middle()->place.height_m, still.middle()->place.height_m)
       << "the shutter is open around the instant of the frame";

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "renderer/picture/shared_rays.h"
+#include "renderer/picture/shared_samples.h"
 
 #include <gtest/gtest.h>
 

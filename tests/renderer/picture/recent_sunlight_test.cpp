@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "renderer/picture/scene_state.h"
+#include "renderer/picture/prepared_scene.h"
 
 #include <gtest/gtest.h>
 

@@ -33,12 +33,12 @@ RenderSettings Settings(int width, int height, std::vector<PictureLayer> layers 
 using tests::Luminance;
 
 /// From another camera at the place of a bare scene; angles in degrees.
-Shot ShotFrom(double height_m, double pitch, double roll, double fov) {
+CameraSample CameraSampleFrom(double height_m, double pitch, double roll, double fov) {
   const Camera camera = CameraFromDegrees({}, 40.0, pitch, roll, 60.0);
-  Shot shot(kExtremeNoon);
-  shot.poses = {{PlaceFromDegrees(46.5, 8.0, height_m), camera.heading_rad, camera.pitch_rad,
+  CameraSample camera_sample(kExtremeNoon);
+  camera_sample.poses = {{PlaceFromDegrees(46.5, 8.0, height_m), camera.heading_rad, camera.pitch_rad,
                  camera.roll_rad, fov * kRadiansPerDegree}};
-  return shot;
+  return camera_sample;
 }
 
 void ExpectLightEverywhere(const Image& image) {
@@ -68,8 +68,8 @@ TEST(RenderExtremes, AClimbToOrbitIsContinuousFromPictureToPicture) {
     double peak = 0.0;
     std::vector<double> seen;
     for (double height_m = lowest_m; height_m < 400e3; height_m *= 1.01) {
-      const Shot shot = ShotFrom(height_m, pitch, 0.0, 0.1);
-      seen.push_back(Luminance(renderer.Render(shot, Settings(1, 1)).at(0, 0)));
+      const CameraSample camera_sample = CameraSampleFrom(height_m, pitch, 0.0, 0.1);
+      seen.push_back(Luminance(renderer.Render(camera_sample, Settings(1, 1)).at(0, 0)));
       peak = std::max(peak, seen.back());
       if (seen.size() < 3) continue;
       const double* last = &seen.back();
@@ -112,7 +112,7 @@ TEST_F(RenderExtremesFiles, BelowTheSeaTheSkyIsThatOfTheShoreAndNothingIsBlack) 
     }
     // The walls, the rim and what is over it, and the floor.
     for (const double pitch : {0.0, -60.0}) {
-      const Shot down = ShotFrom(renderer.eye_height_m(), pitch, 0.0, 60.0);
+      const CameraSample down = CameraSampleFrom(renderer.eye_height_m(), pitch, 0.0, 60.0);
       ExpectLightEverywhere(renderer.Render(down, Settings(12, 8)));
     }
     EXPECT_GT(renderer.Illuminance(kExtremeNoon), 90e3) << "lux";
@@ -223,9 +223,9 @@ TEST(RenderExtremes, PicturesOfOnePixelAndOneColumnArePartsOfWiderOnes) {
   for (const double fov : {1.0, 60.0, 179.0}) {
     for (const double roll : {0.0, 90.0}) {
       // A third of a picture that is three times as wide.
-      const Shot narrow = ShotFrom(100.0, 10.0, roll, FovOf(TanHalf(fov) / 3.0));
+      const CameraSample narrow = CameraSampleFrom(100.0, 10.0, roll, FovOf(TanHalf(fov) / 3.0));
       const Image three =
-          renderer.Render(ShotFrom(100.0, 10.0, roll, fov), Settings(3, 5, {PictureLayer::kDepth}));
+          renderer.Render(CameraSampleFrom(100.0, 10.0, roll, fov), Settings(3, 5, {PictureLayer::kDepth}));
       const Image column = renderer.Render(narrow, Settings(1, 5));
       for (int y = 0; y < 5; ++y) {
         const bool sky = std::isinf(three.layers[0].values[static_cast<std::size_t>(3 * y + 1)]);
@@ -243,9 +243,9 @@ TEST(RenderExtremes, ACameraOnItsSideSeesRowsAsColumns) {
   constexpr int kPixels = 9;
   constexpr double kFov = 10.0;
   const SceneRenderer renderer(BareScene(100.0, 40.0, 30.0, 60.0));
-  const Shot upright = ShotFrom(100.0, 30.0, 0.0, FovOf(kPixels * TanHalf(kFov)));
+  const CameraSample upright = CameraSampleFrom(100.0, 30.0, 0.0, FovOf(kPixels * TanHalf(kFov)));
   const Image row = renderer.Render(upright, Settings(kPixels, 1));
-  const Image column = renderer.Render(ShotFrom(100.0, 30.0, 90.0, kFov), Settings(1, kPixels));
+  const Image column = renderer.Render(CameraSampleFrom(100.0, 30.0, 90.0, kFov), Settings(1, kPixels));
   for (int i = 0; i < kPixels; ++i) {
     for (std::size_t c = 0; c < 3; ++c) {
       EXPECT_NEAR(column.at(0, i)[c] / row.at(kPixels - 1 - i, 0)[c], 1.0F, 1e-4F)
@@ -264,7 +264,7 @@ TEST(RenderExtremes, SixteenThousandColumnsAreSmoothAndAPanoramaCloses) {
     const bool closes = fov == 360.0;
     // Of two rows of a panorama the upper one looks 45 degrees up.
     const Image image = closes ? renderer.Render(kExtremeNoon, Settings(kWidth, 2))
-                               : renderer.Render(ShotFrom(100.0, 20.0, 0.0, fov), wide);
+                               : renderer.Render(CameraSampleFrom(100.0, 20.0, 0.0, fov), wide);
     ExpectLightEverywhere(image);
     for (int x = 0; x < (closes ? kWidth : kWidth - 1); ++x) {
       EXPECT_NEAR(Luminance(image.at((x + 1) % kWidth, 0)) / Luminance(image.at(x, 0)), 1.0, 0.01)

@@ -107,14 +107,14 @@ TEST(Render, AnEyeOnAPathSeesWhatOneThatStandsThereSees) {
   // 80 km apart: the frame's vertical is tilted by 0.7 degrees against the eye's.
   const UtcInstant evening = ParseInstant("2026-06-21T18:40:00Z");
   const SceneRenderer from(BareScene(1000.0, 0.0, 0.0, 40.0));
-  Shot shot(evening);
-  shot.poses = {PoseAt(46.0, 8.8, 3000.0, 300.0, 4.0)};
+  CameraSample camera_sample(evening);
+  camera_sample.poses = {PoseAt(46.0, 8.8, 3000.0, 300.0, 4.0)};
   Scene there = BareScene(3000.0, 300.0, 4.0, 40.0);
   there.place = PlaceFromDegrees(46.0, 8.8, 0.0);
   const SceneRenderer at(there);
-  EXPECT_LT(MostRelativeDifference(from.Render(shot, kSmall), at.Render(evening, kSmall)), 2e-3)
+  EXPECT_LT(MostRelativeDifference(from.Render(camera_sample, kSmall), at.Render(evening, kSmall)), 2e-3)
       << "the sphere that osculates 80 km away, 2 m of altitude";
-  EXPECT_NEAR(from.Illuminance(shot) / at.Illuminance(evening), 1.0, 1e-3);
+  EXPECT_NEAR(from.Illuminance(camera_sample) / at.Illuminance(evening), 1.0, 1e-3);
 }
 
 TEST(Render, AMovingCameraSeesTheMeanOfWhatItPasses) {
@@ -128,7 +128,7 @@ TEST(Render, AMovingCameraSeesTheMeanOfWhatItPasses) {
     at.fov_rad = 8.0 * kRadiansPerDegree;  // half a degree a pixel
     return at;
   };
-  Shot blurred(noon);
+  CameraSample blurred(noon);
   // Up from the sea over the horizon, by 16 steps of half a degree.
   for (int i = 0; i <= 16; ++i) blurred.poses.push_back(pose(-4.0 + 0.5 * i));
   const Image found = renderer.Render(blurred, settings);
@@ -136,7 +136,7 @@ TEST(Render, AMovingCameraSeesTheMeanOfWhatItPasses) {
   constexpr int kStills = 32;
   settings.samples_per_pixel = 16;
   for (int i = 0; i < kStills; ++i) {
-    Shot still(noon);
+    CameraSample still(noon);
     still.poses = {pose(-4.0 + 8.0 * (i + 0.5) / kStills)};
     const Image image = renderer.Render(still, settings);
     for (std::size_t k = 0; k < mean.size(); ++k) mean[k] += Luminance(image.rgb[k]) / kStills;
@@ -157,13 +157,13 @@ TEST(Render, LensFilterAndPathGiveTheSameBytesForAnyNumberOfThreads) {
   lamp.height = {18.0, false};
   lamp.intensity_cd = 1000.0;
   const SceneRenderer renderer(scene);
-  Shot shot(ParseInstant("2026-06-21T02:40:00Z"));
-  shot.poses = {PoseAt(46.5, 8.0, 20.0, 118.0, 0.0), PoseAt(46.5, 8.00001, 21.0, 124.0, 1.0)};
+  CameraSample camera_sample(ParseInstant("2026-06-21T02:40:00Z"));
+  camera_sample.poses = {PoseAt(46.5, 8.0, 20.0, 118.0, 0.0), PoseAt(46.5, 8.00001, 21.0, 124.0, 1.0)};
   RenderSettings settings = kSmall;
   settings.samples_per_pixel = 7;
   settings.layers = {PictureLayer::kDepth, PictureLayer::kLamps};
   const Image image =
-      tests::SameForAnyNumberOfThreads([&] { return renderer.Render(shot, settings); });
+      tests::SameForAnyNumberOfThreads([&] { return renderer.Render(camera_sample, settings); });
   double lamps = 0.0;
   for (const float value : image.layers[1].values) lamps += static_cast<double>(value);
   EXPECT_GT(lamps, 0.0) << "the lamp is in the picture";
@@ -171,11 +171,11 @@ TEST(Render, LensFilterAndPathGiveTheSameBytesForAnyNumberOfThreads) {
 
 TEST(Render, AnEyeBelowTheGroundOrTooFarAwayIsRefused) {
   const SceneRenderer renderer(BareScene(1000.0, 0.0, 0.0, 40.0));
-  Shot shot(ParseInstant("2026-06-21T11:30:00Z"));
-  shot.poses = {PoseAt(46.5, 8.0, -5.0, 0.0, 0.0)};
-  EXPECT_THROW((void)renderer.Render(shot, kSmall), InputError);
-  shot.poses = {PoseAt(52.5, 8.0, 100.0, 0.0, 0.0)};
-  EXPECT_THROW((void)renderer.Render(shot, kSmall), InputError);
+  CameraSample camera_sample(ParseInstant("2026-06-21T11:30:00Z"));
+  camera_sample.poses = {PoseAt(46.5, 8.0, -5.0, 0.0, 0.0)};
+  EXPECT_THROW((void)renderer.Render(camera_sample, kSmall), InputError);
+  camera_sample.poses = {PoseAt(52.5, 8.0, 100.0, 0.0, 0.0)};
+  EXPECT_THROW((void)renderer.Render(camera_sample, kSmall), InputError);
 }
 
 // Hard case 20.

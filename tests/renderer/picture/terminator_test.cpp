@@ -76,7 +76,7 @@ constexpr double kEdge = 0.03;
 
 TEST_F(Terminator, SunlightEndsWhereTheRoundBodyTurnsAway) {
   const SceneRenderer renderer(scene_);
-  const Shot evening(ParseInstant("2026-06-21T17:30:00Z"));
+  const CameraSample evening(ParseInstant("2026-06-21T17:30:00Z"));
   const RenderSettings settings{.width = 96,
                                 .height = 54,
                                 .samples_per_pixel = 1,

@@ -40,9 +40,9 @@ TEST(ReferencePicture, EndsAsTheRenderersPictureOf64Rays) {
   settings.width = 16;
   settings.height = 8;
   settings.samples_per_pixel = 64;
-  Shot shot(view.now);
-  shot.poses = {PoseOf(view.eye)};
-  EXPECT_EQ(made.rgb, SceneRenderer(of->scene).Render(shot, settings).rgb);
+  CameraSample camera_sample(view.now);
+  camera_sample.poses = {PoseOf(view.eye)};
+  EXPECT_EQ(made.rgb, SceneRenderer(of->scene).Render(camera_sample, settings).rgb);
 }
 
 TEST(ReferencePicture, OfAViewThatHasChangedNothingIsShown) {

@@ -65,11 +65,11 @@ class BothPrograms {
   ViewDifference Difference(PaintedView view) {
     view.width = size_.width;
     view.height = size_.height;
-    Shot shot(view.now);
-    shot.poses = {PoseOf(view.eye)};
+    CameraSample camera_sample(view.now);
+    camera_sample.poses = {PoseOf(view.eye)};
     painter_.Settle(view, kSamples);
     painter_.Paint(view, kSamples);
-    return DifferenceOf(reference_.Render(shot, ReferenceSettings(size_)), painter_.picture().Read());
+    return DifferenceOf(reference_.Render(camera_sample, ReferenceSettings(size_)), painter_.picture().Read());
   }
   ViewDifference Difference(const ParityView& view) {
     return Difference(ViewOf(view.scene, ground_->eye_height_m, view.instant));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "renderer/picture/shared_rays.h"
+#include "renderer/picture/shared_samples.h"
 
 #include <algorithm>
 #include <cmath>
@@ -60,7 +60,7 @@ float LimitedSlope(float before, float here, float behind) {
 
 }  // namespace
 
-SharedRays::SharedRays(const PixelFilter& filter, int columns, int rows, std::size_t bands)
+SharedSampleFilter::SharedSampleFilter(const PixelFilter& filter, int columns, int rows, std::size_t bands)
     : columns_(columns),
       rows_(rows),
       bands_(bands),
@@ -75,11 +75,11 @@ SharedRays::SharedRays(const PixelFilter& filter, int columns, int rows, std::si
   skies_.resize(expected_.size());
 }
 
-void SharedRays::Expect(int column, int row, int rays) {
+void SharedSampleFilter::Expect(int column, int row, int rays) {
   expected_[Index(column, row)] = static_cast<float>(rays);
 }
 
-SharedRays::Weights SharedRays::Around(double at, int end) const {
+SharedSampleFilter::Weights SharedSampleFilter::Around(double at, int end) const {
   Weights weights{static_cast<int>(std::lround(at)) - kReach / 2, {}};
   for (int i = 0; i < kReach; ++i) {
     const int pixel = weights.first + i;
@@ -93,7 +93,7 @@ SharedRays::Weights SharedRays::Around(double at, int end) const {
   return weights;
 }
 
-void SharedRays::Add(int column, int row, const SeenRay& ray) {
+void SharedSampleFilter::Add(int column, int row, const SeenRay& ray) {
   const double x = column + ray.right, y = row + ray.down;
   const Weights across = Around(x, columns_), along = Around(y, rows_);
   alignas(16) std::array<float, kLight + kMaxBands> values{
@@ -124,11 +124,11 @@ void SharedRays::Add(int column, int row, const SeenRay& ray) {
   }
 }
 
-void SharedRays::SetSky(int column, int row, const BandLight& sky) {
+void SharedSampleFilter::SetSky(int column, int row, const BandLight& sky) {
   skies_[Index(column, row)] = sky;
 }
 
-BandLight SharedRays::SkyAt(int column, int row) const {
+BandLight SharedSampleFilter::SkyAt(int column, int row) const {
   if (const auto& own = skies_[Index(column, row)]) return *own;
   BandLight sum(bands_);
   float skies = 0.0F;
@@ -143,7 +143,7 @@ BandLight SharedRays::SkyAt(int column, int row) const {
   return skies > 0.0F ? (1.0F / skies) * sum : sum;
 }
 
-BandLight SharedRays::Light(int column, int row) const {
+BandLight SharedSampleFilter::Light(int column, int row) const {
   constexpr float kMostOff = 0.25F;  // keeps light positive if both axes are corrected
   const std::size_t here = Index(column, row);
   const auto off = [&](std::size_t sum, int middle) {

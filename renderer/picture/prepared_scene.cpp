@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "renderer/picture/scene_state.h"
+#include "renderer/picture/prepared_scene.h"
 
 #include <algorithm>
 #include <cmath>
@@ -50,7 +50,7 @@ glm::dvec3 MoonTurn(double open_s, double latitude_rad, const CameraStand& stand
 
 }  // namespace
 
-double SceneState::IlluminanceBy(const DistantLight& source, const glm::dvec3& eye,
+double PreparedScene::IlluminanceBy(const DistantLight& source, const glm::dvec3& eye,
                                  const Lighting& light) const {
   const LocalSun sun = models.whole().ground_light.LocalSunAt(eye, light.By(source));
   const auto direct = static_cast<float>(sun.visible_fraction * std::max(sun.mu_s_effective, 0.0));
@@ -60,17 +60,17 @@ double SceneState::IlluminanceBy(const DistantLight& source, const glm::dvec3& e
   return colour.Xyz(InDouble(source.irradiance * irradiance))[1];
 }
 
-double SceneState::SunIlluminance(const PictureFrame& frame) const {
+double PreparedScene::SunIlluminance(const FrameContext& frame) const {
   return IlluminanceBy(frame.light.Sun(), frame.camera().eye(), frame.light);
 }
 
-double SceneState::Illuminance(const glm::dvec3& eye, const Lighting& light) const {
+double PreparedScene::Illuminance(const glm::dvec3& eye, const Lighting& light) const {
   double lux = light.night ? colour.Xyz(InDouble(light.night->OnSurface(1.0)))[1] : 0.0;
   for (const DistantLight& source : light.Lights()) lux += IlluminanceBy(source, eye, light);
   return lux;
 }
 
-LampPlan SceneState::PlanLamps(const PictureFrame& frame) const {
+LampPlan PreparedScene::PlanLamps(const FrameContext& frame) const {
   // A lamp is negligible if all neglected lamps together change a grey card in daylight by less
   // than a thousandth.
   constexpr double kGreyCard = 0.18;
@@ -85,54 +85,54 @@ LampPlan SceneState::PlanLamps(const PictureFrame& frame) const {
       });
 }
 
-GeodeticPosition SceneState::EyeOf(const Shot& shot) const {
-  if (const auto pose = shot.middle()) return pose->place;
+GeodeticPosition PreparedScene::EyeOf(const CameraSample& camera_sample) const {
+  if (const auto pose = camera_sample.middle()) return pose->place;
   return {scene.place.latitude_rad, scene.place.longitude_rad, ground.eye_height_m};
 }
 
-SunPosition SceneState::ApparentSun(const Shot& shot) const {
-  return ApparentSunAt(EyeOf(shot), shot.instant, GentleAirOf(medium));
+SunPosition PreparedScene::ApparentSun(const CameraSample& camera_sample) const {
+  return ApparentSunAt(EyeOf(camera_sample), camera_sample.instant, GentleAirOf(medium));
 }
 
-CameraStand SceneState::StandOf(const Shot& shot) const {
-  const auto pose = shot.middle();
+CameraStand PreparedScene::StandOf(const CameraSample& camera_sample) const {
+  const auto pose = camera_sample.middle();
   return pose ? StandAt(ground, pose->place) : StandOfScene(ground);
 }
 
-Lighting SceneState::LightingAt(const Shot& shot, const CameraStand& stand) const {
-  const SunPosition sun = ApparentSun(shot);
-  Lighting light = LightingOf(sun, shot.instant, scene.place, medium, scene.ground.wetness);
+Lighting PreparedScene::LightingAt(const CameraSample& camera_sample, const CameraStand& stand) const {
+  const SunPosition sun = ApparentSun(camera_sample);
+  Lighting light = LightingOf(sun, camera_sample.instant, scene.place, medium, scene.ground.wetness);
   light.to_sun = stand.frame_from_enu * light.to_sun;
   light.to_sun_for_air = stand.frame_from_enu * light.to_sun_for_air;
   if (!medium.follows_wgs84) return light;  // other planets have other moons
-  const GeodeticPosition eye = EyeOf(shot);
-  light.moon = ApparentMoonDisk(eye, shot.instant, sun.distance_au, GentleAirOf(medium));
-  const EclipsedDisk disk = EclipsedDiskOf(sun, MoonAt(eye, shot.instant));
+  const GeodeticPosition eye = EyeOf(camera_sample);
+  light.moon = ApparentMoonDisk(eye, camera_sample.instant, sun.distance_au, GentleAirOf(medium));
+  const EclipsedDisk disk = EclipsedDiskOf(sun, MoonAt(eye, camera_sample.instant));
   if (disk.IsCovered()) {
     light = light.EclipsedBy(disk, medium.wavelengths_nm);
-    light.moon->to_moon = ToMoonBefore(sun, eye, shot.instant);
+    light.moon->to_moon = ToMoonBefore(sun, eye, camera_sample.instant);
   }
   light.moon->to_moon = stand.frame_from_enu * light.moon->to_moon;
   light.moon->to_moon_for_air = stand.frame_from_enu * light.moon->to_moon_for_air;
   light.moon->to_sun = stand.frame_from_enu * light.moon->to_sun;
   light.moon_turn = MoonTurn(scene.camera.shutter_s, eye.latitude_rad, stand);
-  AddNight(shot, stand, sun.distance_au, light);
+  AddNight(camera_sample, stand, sun.distance_au, light);
   return light;
 }
 
-std::optional<BandLight> SceneState::TownsOf() const {
+std::optional<BandLight> PreparedScene::TownsOf() const {
   if (!scene.town_zenith) return std::nullopt;
   const double ground_m = std::max(GroundHeightUnder(ground, scene.place), 0.0);
   return TownLight(*scene.town_zenith, ground_m, models.whole().air, colour);
 }
 
-void SceneState::AddNight(const Shot& shot, const CameraStand& stand, double earth_sun_au,
+void PreparedScene::AddNight(const CameraSample& camera_sample, const CameraStand& stand, double earth_sun_au,
                           Lighting& light) const {
   light.moon_colour = MoonColour(*light.moon, medium.wavelengths_nm);
   const double sun_lux = Illuminance(stand.eye, light);
   if (sun_lux > kDaylight_lux) return;
-  const GeodeticPosition eye = EyeOf(shot);
-  const DistantLight moonlight = MoonlightOf(*light.moon, eye, shot.instant, earth_sun_au,
+  const GeodeticPosition eye = EyeOf(camera_sample);
+  const DistantLight moonlight = MoonlightOf(*light.moon, eye, camera_sample.instant, earth_sun_au,
                                              light.moon_colour, light.WholeSun());
   const double moon_lux = IlluminanceBy(moonlight, stand.eye, light);
   if (moon_lux > kUnseenShare * (sun_lux + kNightSky_lux)) light.moonlight = moonlight;
@@ -145,18 +145,18 @@ void SceneState::AddNight(const Shot& shot, const CameraStand& stand, double ear
   const double towns_lux = towns ? kPi * colour.Xyz(InDouble(*towns))[1] : 0.0;  // upper bound
   if (kNightSky_lux + towns_lux < kUnseenShare * sun_lux) return;
   light.night = std::make_shared<NightLight>(
-      NightSky(eye, shot.instant).InFrame(stand.frame_from_enu), models.whole().air, colour,
+      NightSky(eye, camera_sample.instant).InFrame(stand.frame_from_enu), models.whole().air, colour,
       geometry.UpAt(stand.eye), geometry.AltitudeOf(stand.eye), towns);
 }
 
-PictureFrame SceneState::FrameAt(const Shot& shot, const RenderSettings& settings) const {
+FrameContext PreparedScene::FrameAt(const CameraSample& camera_sample, const RenderSettings& settings) const {
   const MovingCamera camera =
-      CameraOn(ground, scene.camera, shot.poses, settings.width, settings.height);
-  PictureFrame frame{settings,
+      CameraOn(ground, scene.camera, camera_sample.poses, settings.width, settings.height);
+  FrameContext frame{settings,
                      &models.With(settings.effects),
                      camera,
                      PixelFilter(settings.filter),
-                     LightingAt(shot, StandOf(shot)),
+                     LightingAt(camera_sample, StandOf(camera_sample)),
                      std::make_shared<TerrainSunlight>(),
                      std::make_shared<LampLight>(lamps.SeenBy(camera.middle())),
                      std::make_shared<LampPlan>(),
@@ -164,7 +164,7 @@ PictureFrame SceneState::FrameAt(const Shot& shot, const RenderSettings& setting
   frame.light.effects = settings.effects;
   frame.polarised = camera.middle().HasPolariser() ||
                     std::any_of(settings.layers.begin(), settings.layers.end(), IsOfPolarisation);
-  if (frame.Has(Effect::kRefraction)) frame.bent = RefractedViewRaysOf(frame, shot);
+  if (frame.Has(Effect::kRefraction)) frame.bent = RefractedViewRaysOf(frame, camera_sample);
   if (frame.Has(Effect::kShafts) && frame.light.shows) {
     Prepare(settings.progress, "shadows");
     const auto made = recent_sunlight->At(frame.light.to_sun, frame.light.sun_radius_rad);
@@ -180,11 +180,11 @@ PictureFrame SceneState::FrameAt(const Shot& shot, const RenderSettings& setting
   LightNight(frame);
   LightMedia(frame);
   LightTerrain(frame);
-  if (frame.Has(Effect::kStars)) frame.stars = StarsIn(frame, shot);
+  if (frame.Has(Effect::kStars)) frame.stars = StarsIn(frame, camera_sample);
   return frame;
 }
 
-void SceneState::LightNight(PictureFrame& frame) const {
+void PreparedScene::LightNight(FrameContext& frame) const {
   frame.night = nullptr;
   frame.moonlit = nullptr;
   if (frame.Has(Effect::kNightSky)) frame.night = frame.light.night;
@@ -198,12 +198,12 @@ void SceneState::LightNight(PictureFrame& frame) const {
   frame.moonlit = std::make_shared<SecondLight>(std::move(moon));
 }
 
-std::optional<BandLight> SceneState::LeftOfSpace(const PictureFrame& frame, double x,
+std::optional<BandLight> PreparedScene::LeftOfSpace(const FrameContext& frame, double x,
                                                  double y) const {
   const CameraRay ray = frame.camera().MiddleRay(x, y);
   const Hit hit = Trace(ray, frame);
   if (hit.kind != HitKind::kSky) return std::nullopt;
-  SharedAir air{hit.kind, hit.distance_m, ray.through, ray.through, hit.distance_m, 1};
+  SharedSegmentAir air{hit.kind, hit.distance_m, ray.through, ray.through, hit.distance_m, 1};
   AddAir(frame, geometry, medium, air);
   const BandLight fog =
       frame.lamps->FogTransmittance(ray.through, frame.HasLitFog() ? 0.0 : air.length_m());
@@ -211,17 +211,17 @@ std::optional<BandLight> SceneState::LeftOfSpace(const PictureFrame& frame, doub
   return frame.camera().HasPolariser() ? 0.5F * left : left;
 }
 
-std::shared_ptr<const StarPixels> SceneState::StarsIn(const PictureFrame& frame,
-                                                      const Shot& shot) const {
+std::shared_ptr<const StarPixels> PreparedScene::StarsIn(const FrameContext& frame,
+                                                      const CameraSample& camera_sample) const {
   const double lux = Illuminance(frame.camera().eye(), frame.light);
   if (!frame.light.moon || lux > kDaylight_lux) return nullptr;
   const MoonDisk& moon = *frame.light.moon;
-  const glm::dmat3 frame_from_enu = StandOf(shot).frame_from_enu;
+  const glm::dmat3 frame_from_enu = StandOf(camera_sample).frame_from_enu;
   std::vector<StarLight> lights;
   const double pixel_rad = frame.camera().PixelAngle();
   const RefractedView view(medium, geometry.AltitudeOf(frame.camera().eye()));
   for (StarLight& light :
-       StarLightsOver(EyeOf(shot), shot.instant, view, colour, FaintestStar(lux, pixel_rad),
+       StarLightsOver(EyeOf(camera_sample), camera_sample.instant, view, colour, FaintestStar(lux, pixel_rad),
                       OpenFor(scene.camera.shutter_s, pixel_rad))) {
     light.direction = frame_from_enu * light.direction;
     for (glm::dvec3& direction : light.way) direction = frame_from_enu * direction;
@@ -238,7 +238,7 @@ std::shared_ptr<const StarPixels> SceneState::StarsIn(const PictureFrame& frame,
 }
 
 // Computes the terrain's illumination by the sun and by the moon.
-void SceneState::LightTerrain(PictureFrame& frame) const {
+void PreparedScene::LightTerrain(FrameContext& frame) const {
   Prepare(frame.settings.progress, "light of slopes");
   if (frame.Has(Effect::kHorizons)) (void)horizons->Get();  // computed once, for all frames
   const Stopwatch watch;
@@ -252,7 +252,7 @@ void SceneState::LightTerrain(PictureFrame& frame) const {
   frame.slopes_s = watch.seconds();
 }
 
-void SceneState::LightMedia(PictureFrame& frame) const {
+void PreparedScene::LightMedia(FrameContext& frame) const {
   // Below a millionth of a lux of sunlight, only lamps light fog, unless fog stands in front of a
   // volume.
   const bool has_volumes = frame.Has(Effect::kVolumes) && media.HasVolumes();
@@ -275,7 +275,7 @@ void SceneState::LightMedia(PictureFrame& frame) const {
 }
 
 // Returns the frame with fewer effects.
-PictureFrame SceneState::Reduced(PictureFrame frame, EffectSet effects) const {
+FrameContext PreparedScene::Reduced(FrameContext frame, EffectSet effects) const {
   constexpr EffectSet kThatLightTerrain{Effect::kHorizons,  Effect::kBounce,  Effect::kSkylight,
                                         Effect::kShadows,   Effect::kFogGlow, Effect::kVolumes,
                                         Effect::kMolecules, Effect::kAerosol, Effect::kOzone};

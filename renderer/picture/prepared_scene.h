@@ -22,7 +22,7 @@
 #include "renderer/picture/picture_layers.h"
 #include "renderer/picture/pixel_light.h"
 #include "renderer/picture/render.h"
-#include "renderer/picture/shared_air.h"
+#include "renderer/picture/segment_air.h"
 
 namespace alpenglow::renderer {
 
@@ -54,14 +54,14 @@ class RecentSunlight {
 
 class OccludedSkyPixels;
 
-struct SceneState {
-  SceneState(const Scene& of, Progress* progress)
-      : SceneState(of, std::make_shared<SceneGround>(LoadGround(of, progress))) {}
-  SceneState(const Scene& of, std::shared_ptr<const SceneGround> on)
-      : SceneState(of, std::move(on), nullptr) {}
+struct PreparedScene {
+  PreparedScene(const Scene& of, Progress* progress)
+      : PreparedScene(of, std::make_shared<SceneGround>(LoadGround(of, progress))) {}
+  PreparedScene(const Scene& of, std::shared_ptr<const SceneGround> on)
+      : PreparedScene(of, std::move(on), nullptr) {}
   /// @param other  a state on the same ground, to share its horizons and its light in the air; may
   ///     be null.
-  SceneState(const Scene& of, std::shared_ptr<const SceneGround> on, const SceneState* other)
+  PreparedScene(const Scene& of, std::shared_ptr<const SceneGround> on, const PreparedScene* other)
       : scene(of),
         shared_ground(std::move(on)),
         ground(*shared_ground),
@@ -79,89 +79,89 @@ struct SceneState {
         models(medium, {ground, geometry, lamps, *horizons, material}),
         towns(TownsOf()) {}
 
-  [[nodiscard]] PictureFrame FrameAt(const Shot& shot, const RenderSettings& settings) const;
-  void LightMedia(PictureFrame& frame) const;
-  void LightTerrain(PictureFrame& frame) const;
+  [[nodiscard]] FrameContext FrameAt(const CameraSample& camera_sample, const RenderSettings& settings) const;
+  void LightMedia(FrameContext& frame) const;
+  void LightTerrain(FrameContext& frame) const;
   /// Adds moonlight and the night sky where they can be visible.
-  void LightNight(PictureFrame& frame) const;
-  [[nodiscard]] std::shared_ptr<const StarPixels> StarsIn(const PictureFrame& frame,
-                                                          const Shot& shot) const;
+  void LightNight(FrameContext& frame) const;
+  [[nodiscard]] std::shared_ptr<const StarPixels> StarsIn(const FrameContext& frame,
+                                                          const CameraSample& camera_sample) const;
   /// Returns the fraction of light from space that air, fog and a polariser let through at a place
   /// of the picture; no value where ground is in front.
-  [[nodiscard]] std::optional<BandLight> LeftOfSpace(const PictureFrame& frame, double x,
+  [[nodiscard]] std::optional<BandLight> LeftOfSpace(const FrameContext& frame, double x,
                                                      double y) const;
-  [[nodiscard]] PictureFrame Reduced(PictureFrame frame, EffectSet effects) const;
-  [[nodiscard]] Image Pixels(const PictureFrame& frame,
+  [[nodiscard]] FrameContext Reduced(FrameContext frame, EffectSet effects) const;
+  [[nodiscard]] Image Pixels(const FrameContext& frame,
                              const std::vector<PixelPlace>& places) const;
-  [[nodiscard]] CountedPicture Picture(const PictureFrame& frame) const;
+  [[nodiscard]] CountedPicture Picture(const FrameContext& frame) const;
   /// Adds the rows of a picture with a fixed number of rays per pixel.
-  void AddRows(const PictureFrame& frame, PixelWriter& writer) const;
+  void AddRows(const FrameContext& frame, PixelWriter& writer) const;
   /// Adds the tiles of a picture whose pixels take as many rays as their noise requires.
-  void AddTiles(const PictureFrame& frame, PixelWriter& writer) const;
-  void AddTile(const PictureFrame& frame, double floor, int x0, int y0,
+  void AddTiles(const FrameContext& frame, PixelWriter& writer) const;
+  void AddTile(const FrameContext& frame, double floor, int x0, int y0,
                const OccludedSkyPixels& open_sky, PixelWriter& writer) const;
-  void Write(const PictureFrame& frame, int x, int y, const PixelLight& pixel,
+  void Write(const FrameContext& frame, int x, int y, const PixelLight& pixel,
              PixelWriter& writer) const;
   /// Returns the luminance floor of the relative noise: darker pixels count as if they had this
   /// luminance (effect_choice.h) [cd/m^2].
-  [[nodiscard]] double NoiseFloor(const PictureFrame& frame) const;
+  [[nodiscard]] double NoiseFloor(const FrameContext& frame) const;
   /// @param expected_m  expected length of the ray; 0: unknown.
-  [[nodiscard]] Hit Trace(const CameraRay& ray, const PictureFrame& frame,
+  [[nodiscard]] Hit Trace(const CameraRay& ray, const FrameContext& frame,
                           double expected_m = 0.0) const {
     if (frame.bent && frame.bent->moves_ground) return OnRefractedRay(ray, frame, expected_m);
     return Relief(frame).Trace(ray.origin, ray.direction, frame.camera().PixelAngle());
   }
-  [[nodiscard]] const SceneGeometry& Relief(const PictureFrame& frame) const {
+  [[nodiscard]] const SceneGeometry& Relief(const FrameContext& frame) const {
     return frame.Has(Effect::kRelief) ? geometry : smooth_geometry;
   }
   /// Returns the hit of a bent ray. Terrain appears within 0.1' of the solution of the ray equation.
-  [[nodiscard]] Hit OnRefractedRay(const CameraRay& ray, const PictureFrame& frame,
+  [[nodiscard]] Hit OnRefractedRay(const CameraRay& ray, const FrameContext& frame,
                               double expected_m) const;
   /// Returns the largest lift [rad] of terrain and the horizon.
-  [[nodiscard]] double MostLift(const PictureFrame& frame, double eye_height_m) const;
+  [[nodiscard]] double MostLift(const FrameContext& frame, double eye_height_m) const;
   /// Returns the refraction if it moves something in the picture by more than half a pixel; else null.
-  [[nodiscard]] std::shared_ptr<const RefractedViewRays> RefractedViewRaysOf(const PictureFrame& frame,
-                                                             const Shot& shot) const;
-  [[nodiscard]] Shaded Shade(const Hit& hit, const SharedAir& through, const CameraRay& ray,
-                             const PictureFrame& frame, const LampTile& near,
+  [[nodiscard]] std::shared_ptr<const RefractedViewRays> RefractedViewRaysOf(const FrameContext& frame,
+                                                             const CameraSample& camera_sample) const;
+  [[nodiscard]] Shaded Shade(const Hit& hit, const SharedSegmentAir& through, const CameraRay& ray,
+                             const FrameContext& frame, const LampTile& near,
                              std::array<double, 2> disk_sample) const;
   /// Computes Shade() without a polariser and without Shaded::polarised.
-  [[nodiscard]] Shaded ShadedWithoutPolariser(const Hit& hit, const SharedAir& through,
-                                              const CameraRay& ray, const PictureFrame& frame,
+  [[nodiscard]] Shaded ShadedWithoutPolariser(const Hit& hit, const SharedSegmentAir& through,
+                                              const CameraRay& ray, const FrameContext& frame,
                                               const LampTile& near,
                                               std::array<double, 2> disk_sample) const;
   /// Returns Q and U of the light of sun and moon that the ground sends towards the eye.
   [[nodiscard]] PolarisedLight PolarisedGround(const Hit& hit, const CameraRay& ray,
-                                               const PictureFrame& frame,
+                                               const FrameContext& frame,
                                                std::array<double, 2> disk_sample) const;
   [[nodiscard]] BandLight SunDisk(const glm::dvec3& direction, const AirAlongRay& through,
-                                  const PictureFrame& frame) const;
+                                  const FrameContext& frame) const;
   /// Adds the light of stars at the pixel, which rays do not meet.
-  [[nodiscard]] static PixelSum WithStars(const PictureFrame& frame, int x, int y, PixelSum rays);
+  [[nodiscard]] static PixelSum WithStars(const FrameContext& frame, int x, int y, PixelSum rays);
   [[nodiscard]] BandLight MoonSeen(const glm::dvec3& direction, const AirAlongRay& through,
-                                   const PictureFrame& frame) const;
+                                   const FrameContext& frame) const;
   [[nodiscard]] std::optional<BandLight> TownsOf() const;
-  [[nodiscard]] GeodeticPosition EyeOf(const Shot& shot) const;
-  [[nodiscard]] SunPosition ApparentSun(const Shot& shot) const;  // see SceneRenderer
-  [[nodiscard]] CameraStand StandOf(const Shot& shot) const;
-  [[nodiscard]] Lighting LightingAt(const Shot& shot, const CameraStand& stand) const;
+  [[nodiscard]] GeodeticPosition EyeOf(const CameraSample& camera_sample) const;
+  [[nodiscard]] SunPosition ApparentSun(const CameraSample& camera_sample) const;  // see SceneRenderer
+  [[nodiscard]] CameraStand StandOf(const CameraSample& camera_sample) const;
+  [[nodiscard]] Lighting LightingAt(const CameraSample& camera_sample, const CameraStand& stand) const;
   /// Adds the night sky and moonlight to `light` if the sun is dim enough.
-  void AddNight(const Shot& shot, const CameraStand& stand, double earth_sun_au,
+  void AddNight(const CameraSample& camera_sample, const CameraStand& stand, double earth_sun_au,
                 Lighting& light) const;
   /// Returns the illuminance of one light and its sky on a level plane [lux].
   [[nodiscard]] double IlluminanceBy(const DistantLight& source, const glm::dvec3& eye,
                                      const Lighting& light) const;
-  [[nodiscard]] double SunIlluminance(const PictureFrame& frame) const;
+  [[nodiscard]] double SunIlluminance(const FrameContext& frame) const;
   /// See SceneRenderer.
   [[nodiscard]] double Illuminance(const glm::dvec3& eye, const Lighting& light) const;
-  [[nodiscard]] LampPlan PlanLamps(const PictureFrame& frame) const;
+  [[nodiscard]] LampPlan PlanLamps(const FrameContext& frame) const;
 
-  [[nodiscard]] EffectSet Present(const PictureFrame& frame) const;
+  [[nodiscard]] EffectSet Present(const FrameContext& frame) const;
   /// Returns this scene with another number of bands; null if its medium is not known on those bands.
-  [[nodiscard]] std::unique_ptr<SceneState> OnOtherBands(int bands) const;
+  [[nodiscard]] std::unique_ptr<PreparedScene> OnOtherBands(int bands) const;
   /// Returns the scene without its fine spectrum; itself if it has no fine spectrum.
-  [[nodiscard]] const SceneState& OnFewBands() const;
-  [[nodiscard]] const SceneState& For(EffectSet effects) const {
+  [[nodiscard]] const PreparedScene& OnFewBands() const;
+  [[nodiscard]] const PreparedScene& For(EffectSet effects) const {
     return effects.Has(Effect::kFineSpectrum) ? *this : OnFewBands();
   }
 
@@ -179,7 +179,7 @@ struct SceneState {
   AirModels models;
   std::optional<BandLight> towns;  // light of towns in the night sky (TownLight)
   mutable std::once_flag few_bands_asked;
-  mutable std::unique_ptr<SceneState> few_bands;
+  mutable std::unique_ptr<PreparedScene> few_bands;
 };
 
 }  // namespace alpenglow::renderer

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Computes the refracted rays of a picture, and whether their effect is visible; and the air along
 // its rays.
-#include "renderer/picture/shared_air.h"
+#include "renderer/picture/segment_air.h"
 
 #include <algorithm>
 #include <cmath>
@@ -11,7 +11,7 @@
 #include "atmosphere/refraction/refracted_view.h"
 #include "atmosphere/astronomy/moon.h"
 #include "renderer/illumination/picture_stokes.h"
-#include "renderer/picture/scene_state.h"
+#include "renderer/picture/prepared_scene.h"
 
 namespace alpenglow::renderer {
 namespace {
@@ -81,8 +81,8 @@ glm::dvec3 RefractedViewRays::TrueDirection(const glm::dvec3& direction, std::si
   return AtElevation(direction, up, view.TrueElevation(ElevationOf(direction), band));
 }
 
-std::shared_ptr<const RefractedViewRays> SceneState::RefractedViewRaysOf(const PictureFrame& frame,
-                                                         const Shot& shot) const {
+std::shared_ptr<const RefractedViewRays> PreparedScene::RefractedViewRaysOf(const FrameContext& frame,
+                                                         const CameraSample& camera_sample) const {
   const CameraRays& camera = frame.camera();
   const double half_pixel = 0.5 * camera.PixelAngle();
   const glm::dvec3 up = geometry.UpAt(camera.eye());
@@ -117,9 +117,9 @@ std::shared_ptr<const RefractedViewRays> SceneState::RefractedViewRaysOf(const P
   const bool may_see_sea = !geometry.HasTerrain() && horizon_in_picture(geometric_rad);
   const bool moves_terrain = geometry.HasTerrain() && MostLift(frame, height_m) > half_pixel;
   if (!may_see_sun && !may_see_moon && !may_see_sea && !moves_terrain) return nullptr;
-  const glm::dmat3 frame_from_enu = StandOf(shot).frame_from_enu;
-  const SunPosition sun = SunAt(EyeOf(shot), shot.instant);
-  const MoonPosition moon = MoonAt(EyeOf(shot), shot.instant);
+  const glm::dmat3 frame_from_enu = StandOf(camera_sample).frame_from_enu;
+  const SunPosition sun = SunAt(EyeOf(camera_sample), camera_sample.instant);
+  const MoonPosition moon = MoonAt(EyeOf(camera_sample), camera_sample.instant);
   auto bent = std::make_shared<RefractedViewRays>(
       RefractedViewRays{RefractedView(medium, height_m), up,
                 frame_from_enu * DirectionFromAngles(sun.elevation_rad, sun.azimuth_rad).xyz,
@@ -139,7 +139,7 @@ std::shared_ptr<const RefractedViewRays> SceneState::RefractedViewRaysOf(const P
   return moves_disk || moves_sea || moves_terrain ? bent : nullptr;
 }
 
-double SceneState::MostLift(const PictureFrame& frame, double eye_height_m) const {
+double PreparedScene::MostLift(const FrameContext& frame, double eye_height_m) const {
   const LandBend bend = LandBendOf(GentleAirOf(medium), eye_height_m);
   return MostLiftOfPlanet(bend, eye_height_m, geometry.FarthestFrom(frame.camera().eye()));
 }
@@ -173,7 +173,7 @@ bool IsBeforeHorizon(const SceneGeometry& geometry, const CameraRay& ray, const 
 
 }  // namespace
 
-Hit SceneState::OnRefractedRay(const CameraRay& ray, const PictureFrame& frame,
+Hit PreparedScene::OnRefractedRay(const CameraRay& ray, const FrameContext& frame,
                           double expected_m) const {
   const RefractedViewRays& bent = *frame.bent;
   Hit hit;
@@ -210,8 +210,8 @@ namespace {
 /// Air along a ray, with the effects of a picture.
 class AirTo {
  public:
-  AirTo(const PictureFrame& frame, const SceneGeometry& geometry, const Medium& medium,
-        const SharedAir& rays, const glm::dvec3& direction, const Lighting& light,
+  AirTo(const FrameContext& frame, const SceneGeometry& geometry, const Medium& medium,
+        const SharedSegmentAir& rays, const glm::dvec3& direction, const Lighting& light,
         const TerrainSunlight& sunlight)
       : frame_(frame),
         sunlight_(sunlight),
@@ -265,7 +265,7 @@ class AirTo {
   }
 
  private:
-  const PictureFrame& frame_;
+  const FrameContext& frame_;
   const TerrainSunlight& sunlight_;
   bool is_lit_;
   HitKind kind_;
@@ -278,21 +278,21 @@ class AirTo {
 
 }  // namespace
 
-bool SharedAir::Takes(const Hit& hit, const glm::dvec3& direction, double widest_rad) const {
+bool SharedSegmentAir::Takes(const Hit& hit, const glm::dvec3& direction, double widest_rad) const {
   constexpr double kSameDistance = 0.01;
   if (hit.kind != kind || glm::length(direction - first_direction) > widest_rad) return false;
   return kind == HitKind::kSky ||
          std::abs(hit.distance_m - first_distance_m) <= kSameDistance * first_distance_m;
 }
 
-std::size_t AirFor(const Hit& hit, const glm::dvec3& direction, const PictureFrame& frame,
-                   std::vector<SharedAir>& airs) {
+std::size_t AirFor(const Hit& hit, const glm::dvec3& direction, const FrameContext& frame,
+                   std::vector<SharedSegmentAir>& airs) {
   // Rays share air across the full width of a filter, and while the camera turns by so little that
   // the sky hardly changes.
   constexpr double kSameSky_rad = 0.01;
   const double widest_rad =
       3.0 * frame.filter.radius() * frame.camera().PixelAngle() + kSameSky_rad;
-  auto known = std::find_if(airs.begin(), airs.end(), [&](const SharedAir& shared) {
+  auto known = std::find_if(airs.begin(), airs.end(), [&](const SharedSegmentAir& shared) {
     return frame.settings.share_air && shared.Takes(hit, direction, widest_rad);
   });
   if (known == airs.end()) {
@@ -327,9 +327,9 @@ AirAlongRay ThroughMedia(const std::vector<MarchedPiece>& pieces, const AirTo& a
 }
 
 /// Adds the light of a second source in air and media. Call after adding the sun's.
-void AddSecondLight(const PictureFrame& frame, const SecondLight& second,
+void AddSecondLight(const FrameContext& frame, const SecondLight& second,
                     const SceneGeometry& geometry, const Medium& medium,
-                    const glm::dvec3& direction, SharedAir& rays) {
+                    const glm::dvec3& direction, SharedSegmentAir& rays) {
   const AirTo air(frame, geometry, medium, rays, direction, second.light, *second.sunlight);
   AirAlongRay lit = air(std::numeric_limits<double>::infinity());
   if (second.media) {
@@ -344,8 +344,8 @@ void AddSecondLight(const PictureFrame& frame, const SecondLight& second,
 
 }  // namespace
 
-void AddAir(const PictureFrame& frame, const SceneGeometry& geometry, const Medium& medium,
-            SharedAir& rays) {
+void AddAir(const FrameContext& frame, const SceneGeometry& geometry, const Medium& medium,
+            SharedSegmentAir& rays) {
   constexpr double kAll = std::numeric_limits<double>::infinity();
   const glm::dvec3 direction = glm::normalize(rays.direction_sum);
   const AirTo air(frame, geometry, medium, rays, direction, frame.light, *frame.sunlight);
@@ -362,7 +362,7 @@ void AddAir(const PictureFrame& frame, const SceneGeometry& geometry, const Medi
   if (frame.moonlit) AddSecondLight(frame, *frame.moonlit, geometry, medium, direction, rays);
 }
 
-void AddLamps(const PictureFrame& frame, int x, int y, SharedAir& rays) {
+void AddLamps(const FrameContext& frame, int x, int y, SharedSegmentAir& rays) {
   const glm::dvec3 direction = glm::normalize(rays.direction_sum);
   rays.fog = frame.lamps->FogTransmittance(direction, frame.HasLitFog() ? 0.0 : rays.length_m());
   rays.lamp_light = BandLight(rays.media.count);

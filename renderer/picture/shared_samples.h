@@ -38,7 +38,7 @@
 // is 0 at crests and never over twice the difference to either neighbour, so that light does not
 // become negative.
 //
-// All rays of a pixel that meet the sky have one sky radiance, that of the pixel (SharedAir),
+// All rays of a pixel that meet the sky have one sky radiance, that of the pixel (SharedSegmentAir),
 // whatever their direction. To a neighbour they contribute only the fact that sky is visible, not
 // its radiance. So L_r is the light relative to the sky of the ray's own pixel, and a pixel adds
 // its own sky in proportion to its visible fraction: sum_r g(r) [r sees sky] / sum_r g(r).
@@ -90,10 +90,10 @@ struct SeenRay {
 
 /// Combines the rays of a rectangle of pixels. Call Expect() for the number of rays of each pixel,
 /// then Add() for the rays, then Light().
-class SharedRays {
+class SharedSampleFilter {
  public:
   /// @param filter  at most three pixels wide.
-  SharedRays(const PixelFilter& filter, int columns, int rows, std::size_t bands);
+  SharedSampleFilter(const PixelFilter& filter, int columns, int rows, std::size_t bands);
 
   void Expect(int column, int row, int rays);
   void Add(int column, int row, const SeenRay& ray);

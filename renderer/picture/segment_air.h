@@ -88,7 +88,7 @@ struct RefractedViewRays {
 };
 
 /// Data that all pixels of a picture share. Copies share the parts that take long to prepare.
-struct PictureFrame {
+struct FrameContext {
   RenderSettings settings;
   const AirModel* model;
   MovingCamera moving;
@@ -112,7 +112,7 @@ struct PictureFrame {
 };
 
 /// Rays of a pixel that share one air: they end at the same place within the width of an edge.
-struct SharedAir {
+struct SharedSegmentAir {
   HitKind kind;
   double first_distance_m;     // of the first ray
   glm::dvec3 first_direction;  // of the first ray, unit
@@ -139,15 +139,15 @@ struct SharedAir {
 /// @param direction  CameraRay::through: air and the beams in it are computed for the middle of the
 ///     lens; LampLight::SeenBy spreads the glow around lamps.
 [[nodiscard]] std::size_t AirFor(const Hit& hit, const glm::dvec3& direction,
-                                 const PictureFrame& frame, std::vector<SharedAir>& airs);
+                                 const FrameContext& frame, std::vector<SharedSegmentAir>& airs);
 
 /// Computes the light of sun and sky in air and media along the mean of the rays, and the
 /// transmittance.
-void AddAir(const PictureFrame& frame, const SceneGeometry& geometry, const Medium& medium,
-            SharedAir& rays);
+void AddAir(const FrameContext& frame, const SceneGeometry& geometry, const Medium& medium,
+            SharedSegmentAir& rays);
 
 /// Computes the airlight of lamps for pixel (x, y), and the transmittance of fog that only lamps
 /// light. Call after AddAir.
-void AddLamps(const PictureFrame& frame, int x, int y, SharedAir& rays);
+void AddLamps(const FrameContext& frame, int x, int y, SharedSegmentAir& rays);
 
 }  // namespace alpenglow::renderer

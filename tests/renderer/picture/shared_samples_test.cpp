@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "renderer/picture/shared_rays.h"
+#include "renderer/picture/shared_samples.h"
 
 #include <gtest/gtest.h>
 
@@ -13,10 +13,10 @@ namespace {
 constexpr int kSide = 7;
 
 /// Pixels of a square, each with some rays where its filter sends them, that see light(x, y).
-SharedRays Seen(PixelFilter::Kind kind, int rays,
+SharedSampleFilter Seen(PixelFilter::Kind kind, int rays,
                 const std::function<double(double, double)>& light) {
   const PixelFilter filter(kind);
-  SharedRays shared(filter, kSide, kSide, 2);
+  SharedSampleFilter shared(filter, kSide, kSide, 2);
   std::minstd_rand random(7);
   std::uniform_real_distribution<double> uniform(0.0, 1.0);
   const auto rays_at = [&](int x, int y) { return rays * (1 + (x + y) % 3); };
@@ -36,10 +36,10 @@ SharedRays Seen(PixelFilter::Kind kind, int rays,
   return shared;
 }
 
-TEST(SharedRays, OfEvenLightAreThatLight) {
+TEST(SharedSampleFilter, OfEvenLightAreThatLight) {
   for (const auto kind : {PixelFilter::Kind::kBox, PixelFilter::Kind::kGaussian,
                           PixelFilter::Kind::kBlackmanHarris}) {
-    const SharedRays shared = Seen(kind, 1, [](double, double) { return 3.0; });
+    const SharedSampleFilter shared = Seen(kind, 1, [](double, double) { return 3.0; });
     for (int y = 0; y < kSide; ++y) {
       for (int x = 0; x < kSide; ++x) {
         EXPECT_NEAR(shared.Light(x, y)[0], 3.0, 1e-5) << x << ' ' << y;
@@ -49,10 +49,10 @@ TEST(SharedRays, OfEvenLightAreThatLight) {
   }
 }
 
-TEST(SharedRays, OfASlopeAreNearlyWhatTheMiddleSees) {
+TEST(SharedSampleFilter, OfASlopeAreNearlyWhatTheMiddleSees) {
   // A ray alone is off by 0.43 pixels rms, four rays by 0.22 and, shared, by about 0.15; what the
   // slope to the neighbours leaves of it is of second order: their own rays are off as well.
-  const SharedRays shared = Seen(PixelFilter::Kind::kBlackmanHarris, 4,
+  const SharedSampleFilter shared = Seen(PixelFilter::Kind::kBlackmanHarris, 4,
                                  [](double x, double y) { return 20.0 + x - 0.5 * y; });
   double squares = 0.0;
   for (int y = 1; y + 1 < kSide; ++y) {
@@ -62,7 +62,7 @@ TEST(SharedRays, OfASlopeAreNearlyWhatTheMiddleSees) {
   EXPECT_LT(std::sqrt(squares / ((kSide - 2) * (kSide - 2))), 0.05);
 }
 
-TEST(SharedRays, AreNearlyTheFilterOfARefractedLightWhereManyCome) {
+TEST(SharedSampleFilter, AreNearlyTheFilterOfARefractedLightWhereManyCome) {
   // The mean of x^2 over the filter is x^2 and its variance, 0.186 for each axis. 2000 rays and those
   // of neighbours are good for 0.02.
   const PixelFilter filter(PixelFilter::Kind::kBlackmanHarris);
@@ -70,18 +70,18 @@ TEST(SharedRays, AreNearlyTheFilterOfARefractedLightWhereManyCome) {
   constexpr int kParts = 1000;
   for (int i = 0; i < kParts; ++i)
     variance += std::pow(filter.Offset((i + 0.5) / kParts), 2) / kParts;
-  const SharedRays shared = Seen(PixelFilter::Kind::kBlackmanHarris, 2000,
+  const SharedSampleFilter shared = Seen(PixelFilter::Kind::kBlackmanHarris, 2000,
                                  [](double x, double) { return std::pow(x - 3.0, 2); });
   EXPECT_NEAR(shared.Light(3, 3)[0], variance, 0.02);
   EXPECT_NEAR(shared.Light(2, 3)[0], 1.0 + variance, 0.03);
 }
 
-TEST(SharedRays, ShareWhereTheSkyIsButNotWhichSky) {
+TEST(SharedSampleFilter, ShareWhereTheSkyIsButNotWhichSky) {
   // Each row has its own sky, a quarter brighter than the row above, and the lowest rows many rays.
   const auto sky_of = [](int row) { return static_cast<float>(std::pow(1.25, row)); };
   const auto rays_of = [](int row) { return row < 4 ? 4 : 256; };
   const PixelFilter filter(PixelFilter::Kind::kBlackmanHarris);
-  SharedRays shared(filter, kSide, kSide, 1);
+  SharedSampleFilter shared(filter, kSide, kSide, 1);
   std::minstd_rand random(7);
   std::uniform_real_distribution<double> uniform(0.0, 1.0);
   for (int y = 0; y < kSide; ++y) {
@@ -104,8 +104,8 @@ TEST(SharedRays, ShareWhereTheSkyIsButNotWhichSky) {
   EXPECT_NEAR(shared.Light(3, 5)[0], around, 1e-5F) << "has no sky of its own";
 }
 
-TEST(SharedRays, StayPositiveBesideALightAMillionTimesAsBright) {
-  const SharedRays shared = Seen(PixelFilter::Kind::kBlackmanHarris, 4,
+TEST(SharedSampleFilter, StayPositiveBesideALightAMillionTimesAsBright) {
+  const SharedSampleFilter shared = Seen(PixelFilter::Kind::kBlackmanHarris, 4,
                                  [](double x, double) { return x > 3.2 ? 1e6 : 1.0; });
   for (int y = 0; y < kSide; ++y) {
     for (int x = 0; x < kSide; ++x) EXPECT_GT(shared.Light(x, y)[0], 0.5F) << x << ' ' << y;
