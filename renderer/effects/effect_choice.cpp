@@ -75,7 +75,7 @@ namespace {
 constexpr double kPercentileFactor = 4.0;  // 99th percentile allowed, in budgets
 
 /// Returns the number of pixels of a picture's pilot grid.
-int PilotSize(int width, int height) {
+int PreviewSize(int width, int height) {
   constexpr double kLeast = 400.0, kMost = 2000.0, kShare = 1.0 / 512.0;
   const double pixels = static_cast<double>(width) * height;
   return static_cast<int>(std::min(std::clamp(kShare * pixels, kLeast, kMost), pixels));
@@ -100,7 +100,7 @@ Image FirstPixels(const Image& image, std::size_t count) {
 /// Compares pilot pictures with the reference, the pilot picture with all wanted effects.
 class EffectComparison {
  public:
-  EffectComparison(const EffectPilot& pilot, EffectSet wanted, int repeats)
+  EffectComparison(const EffectPreview& pilot, EffectSet wanted, int repeats)
       : pilot_(pilot),
         repeats_(repeats),
         everything_(Render(wanted)),
@@ -113,7 +113,7 @@ class EffectComparison {
   };
 
   [[nodiscard]] Verdict On(EffectSet effects) const { return On(Render(effects)); }
-  [[nodiscard]] Verdict On(const PilotPicture& picture) const {
+  [[nodiscard]] Verdict On(const PreviewPicture& picture) const {
     Verdict verdict{{}, {}, PictureSeconds(picture)};
     std::size_t at = 0;
     for (const auto& group : pilot_.groups) {
@@ -132,22 +132,22 @@ class EffectComparison {
   [[nodiscard]] double everything_s() const { return PictureSeconds(everything_); }
 
  private:
-  [[nodiscard]] PilotPicture Render(EffectSet effects) const {
-    PilotPicture picture = pilot_.render(effects);
+  [[nodiscard]] PreviewPicture Render(EffectSet effects) const {
+    PreviewPicture picture = pilot_.render(effects);
     for (int i = 1; i < repeats_; ++i) {
       picture.seconds = std::min(picture.seconds, pilot_.render(effects).seconds);
     }
     return picture;
   }
 
-  [[nodiscard]] double PictureSeconds(const PilotPicture& picture) const {
+  [[nodiscard]] double PictureSeconds(const PreviewPicture& picture) const {
     return picture.seconds * pilot_.pixels_of_picture /
            static_cast<double>(picture.image.rgb.size());
   }
 
-  const EffectPilot& pilot_;
+  const EffectPreview& pilot_;
   int repeats_;
-  PilotPicture everything_;
+  PreviewPicture everything_;
   double floor_;
 };
 
@@ -193,7 +193,7 @@ class Chooser {
   EffectComparison::Verdict verdict_;
 };
 
-std::vector<RefinementEstimate> Refine(const EffectPilot& pilot, const EffectComparison& comparison) {
+std::vector<RefinementEstimate> Refine(const EffectPreview& pilot, const EffectComparison& comparison) {
   std::vector<RefinementEstimate> estimates;
   for (const Refinement& refinement : pilot.refinements) {
     const EffectComparison::Verdict with = comparison.On(refinement.render());
@@ -219,7 +219,7 @@ std::string Line(const std::string& name, const ChangeEstimate& change, double c
 
 }  // namespace
 
-std::vector<PixelPlace> PilotGrid(int width, int height, int count) {
+std::vector<PixelPlace> PreviewGrid(int width, int height, int count) {
   const double side = std::sqrt(static_cast<double>(width) * height / count);
   const int columns = std::clamp(static_cast<int>(std::lround(width / side)), 1, width);
   const int rows = std::clamp(static_cast<int>(std::lround(height / side)), 1, height);
@@ -250,12 +250,12 @@ std::vector<PixelPlace> PilotSpiral(int width, int height, const std::array<doub
   return places;
 }
 
-PilotGroups PilotPixels(const CameraRays& camera, int width, int height, const glm::dvec3& to_sun,
+PreviewGroups PreviewPixels(const CameraRays& camera, int width, int height, const glm::dvec3& to_sun,
                         const std::vector<glm::dvec3>& lamps) {
   constexpr double kAroundSun_rad = 3.0 * kRadiansPerDegree;
   constexpr int kPixelsAroundSun = 48, kPixelsOfLamp = 3;
   constexpr std::size_t kMostLamps = 64;
-  PilotGroups groups{PilotGrid(width, height, PilotSize(width, height))};
+  PreviewGroups groups{PreviewGrid(width, height, PreviewSize(width, height))};
   if (const auto sun = camera.PlaceOf(to_sun)) {
     groups.push_back(
         PilotSpiral(width, height, *sun, kAroundSun_rad / camera.PixelAngle(), kPixelsAroundSun));
@@ -280,7 +280,7 @@ EffectSet EffectChoice::LeftOut() const {
   return left_out;
 }
 
-EffectChoice ChooseEffects(const EffectPilot& pilot, EffectSet wanted, const EffectBudget& budget) {
+EffectChoice ChooseEffects(const EffectPreview& pilot, EffectSet wanted, const EffectBudget& budget) {
   const Stopwatch watch;
   const EffectComparison comparison(pilot, wanted, budget.explain ? 3 : 1);
   EffectChoice choice;

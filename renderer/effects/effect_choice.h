@@ -77,10 +77,10 @@ struct PixelPlace {
 
 /// Pixels of the pilot: the first group represents the whole picture, each other group a small
 /// feature.
-using PilotGroups = std::vector<std::vector<PixelPlace>>;
+using PreviewGroups = std::vector<std::vector<PixelPlace>>;
 
 /// Returns one pixel in each cell of a grid of about `count` square cells.
-[[nodiscard]] std::vector<PixelPlace> PilotGrid(int width, int height, int count);
+[[nodiscard]] std::vector<PixelPlace> PreviewGrid(int width, int height, int count);
 
 /// Returns about `count` pixels on a spiral within `radius` of a centre, which may lie outside the
 /// picture.
@@ -90,7 +90,7 @@ using PilotGroups = std::vector<std::vector<PixelPlace>>;
 
 /// Returns the groups of a picture: the grid, the surroundings of the sun, and the lamps.
 /// @param lamps  unit directions from the eye.
-[[nodiscard]] PilotGroups PilotPixels(const CameraRays& camera, int width, int height,
+[[nodiscard]] PreviewGroups PreviewPixels(const CameraRays& camera, int width, int height,
                                       const glm::dvec3& to_sun,
                                       const std::vector<glm::dvec3>& lamps);
 
@@ -107,7 +107,7 @@ class Stopwatch {
 };
 
 /// The pilot's pixels, group after group, as a picture of one row, and the rendering time.
-struct PilotPicture {
+struct PreviewPicture {
   Image image;
   double seconds = 0.0;
 };
@@ -115,12 +115,12 @@ struct PilotPicture {
 /// A refinement that the picture does not use, but could.
 struct Refinement {
   std::string name;
-  std::function<PilotPicture()> render;
+  std::function<PreviewPicture()> render;
 };
 
-struct EffectPilot {
-  PilotGroups groups;
-  std::function<PilotPicture(EffectSet)> render;
+struct EffectPreview {
+  PreviewGroups groups;
+  std::function<PreviewPicture(EffectSet)> render;
   double pixels_of_picture = 0.0;
   EffectSet present = EffectSet::All();  // other effects are inactive in this scene
   std::vector<Refinement> refinements;   // estimated only if the choice is explained
@@ -167,7 +167,7 @@ struct EffectChoice {
 };
 
 /// @param wanted  the effects of the reference picture.
-[[nodiscard]] EffectChoice ChooseEffects(const EffectPilot& pilot, EffectSet wanted,
+[[nodiscard]] EffectChoice ChooseEffects(const EffectPreview& pilot, EffectSet wanted,
                                          const EffectBudget& budget);
 
 /// Returns a table of a choice, with one line per effect.

@@ -104,20 +104,20 @@ ChosenPicture SceneRenderer::RenderWithin(const CameraSample& camera_sample, con
     if (!on_few_bands) on_few_bands.emplace(state.FrameAt(camera_sample, settings));
     return state.Reduced(*on_few_bands, effects);
   };
-  EffectPilot pilot;
+  EffectPreview pilot;
   std::vector<glm::dvec3> points = frame.lamps->Directions();
   if (frame.stars) {
     const auto& stars = frame.stars->directions();
     points.insert(points.end(), stars.begin(), stars.end());
   }
   pilot.groups =
-      PilotPixels(frame.camera(), settings.width, settings.height, frame.light.to_sun, points);
+      PreviewPixels(frame.camera(), settings.width, settings.height, frame.light.to_sun, points);
   std::vector<PixelPlace> places;
   for (const auto& group : pilot.groups) places.insert(places.end(), group.begin(), group.end());
   const auto timed = [&](const PreparedScene& state, const FrameContext& of) {
     const Stopwatch watch;
     Image image = state.Pixels(of, places);
-    return PilotPicture{std::move(image), watch.seconds()};
+    return PreviewPicture{std::move(image), watch.seconds()};
   };
   pilot.render = [&](EffectSet effects) { return timed(state_->For(effects), with(effects)); };
   pilot.pixels_of_picture = static_cast<double>(settings.width) * settings.height;

@@ -336,7 +336,7 @@ void PreparedScene::AddRows(const FrameContext& frame, PixelWriter& writer) cons
 double PreparedScene::NoiseFloor(const FrameContext& frame) const {
   constexpr int kPixels = 400;
   return ChangeFloor(
-      Pixels(frame, PilotGrid(frame.settings.width, frame.settings.height, kPixels)));
+      Pixels(frame, PreviewGrid(frame.settings.width, frame.settings.height, kPixels)));
 }
 
 void PreparedScene::AddTiles(const FrameContext& frame, PixelWriter& writer) const {

@@ -13,9 +13,9 @@ namespace {
 using testing::HasSubstr;
 
 /// A picture of grey pixels that each missing effect darkens by a share.
-struct GreyPilot {
-  explicit GreyPilot(std::map<Effect, double> darkens) : darkens_(std::move(darkens)) {
-    pilot.groups = {PilotGrid(160, 90, 400)};
+struct GreyPreview {
+  explicit GreyPreview(std::map<Effect, double> darkens) : darkens_(std::move(darkens)) {
+    pilot.groups = {PreviewGrid(160, 90, 400)};
     pilot.pixels_of_picture = 160.0 * 90.0;
     pilot.render = [this](EffectSet effects) {
       ++rendered;
@@ -23,13 +23,13 @@ struct GreyPilot {
       for (const auto& [effect, share] : darkens_) {
         if (!effects.Has(effect)) value *= 1.0 - share;
       }
-      PilotPicture picture{Image(static_cast<int>(pilot.groups[0].size()), 1), 1.0};
+      PreviewPicture picture{Image(static_cast<int>(pilot.groups[0].size()), 1), 1.0};
       for (auto& rgb : picture.image.rgb) rgb.fill(static_cast<float>(value));
       return picture;
     };
   }
 
-  EffectPilot pilot;
+  EffectPreview pilot;
   int rendered = 0;
 
  private:
@@ -39,7 +39,7 @@ struct GreyPilot {
 constexpr EffectSet kThree{Effect::kSky, Effect::kShafts, Effect::kRelief};
 
 TEST(EffectChoice, SmallChangesAreLeftOutAndLargeOnesKept) {
-  GreyPilot grey({{Effect::kSky, 0.5}, {Effect::kShafts, 0.004}, {Effect::kRelief, 0.003}});
+  GreyPreview grey({{Effect::kSky, 0.5}, {Effect::kShafts, 0.004}, {Effect::kRelief, 0.003}});
   const EffectChoice choice = ChooseEffects(grey.pilot, kThree, {.max_error = 0.01});
   EXPECT_EQ(choice.effects, EffectSet({Effect::kSky}));
   EXPECT_EQ(choice.LeftOut(), EffectSet({Effect::kShafts, Effect::kRelief}));
@@ -47,24 +47,24 @@ TEST(EffectChoice, SmallChangesAreLeftOutAndLargeOnesKept) {
 }
 
 TEST(EffectChoice, ChangesThatAreSmallAloneButNotTogetherAreNotAllLeftOut) {
-  GreyPilot grey({{Effect::kSky, 0.006}, {Effect::kShafts, 0.007}, {Effect::kRelief, 0.002}});
+  GreyPreview grey({{Effect::kSky, 0.006}, {Effect::kShafts, 0.007}, {Effect::kRelief, 0.002}});
   const EffectChoice choice = ChooseEffects(grey.pilot, kThree, {.max_error = 0.01});
   EXPECT_EQ(choice.LeftOut(), EffectSet({Effect::kSky, Effect::kRelief})) << "smallest first";
   EXPECT_LE(choice.together.at_most.rms, 0.01);
 }
 
 TEST(EffectChoice, ChangesThatCancelMayBeLeftOutTogether) {
-  GreyPilot grey({{Effect::kSky, 0.009}, {Effect::kShafts, -0.008}});
+  GreyPreview grey({{Effect::kSky, 0.009}, {Effect::kShafts, -0.008}});
   EXPECT_EQ(ChooseEffects(grey.pilot, kThree, {.max_error = 0.01}).LeftOut(), kThree)
       << "what is rendered decides, not a sum of sizes";
 }
 
 TEST(EffectChoice, APixelInAHundredMayChangeByFourBudgetsAndNotMore) {
   const auto left_out = [](double change) {
-    GreyPilot grey({{Effect::kShafts, 0.0}});
+    GreyPreview grey({{Effect::kShafts, 0.0}});
     const auto render = grey.pilot.render;
     grey.pilot.render = [&, render](EffectSet effects) {
-      PilotPicture picture = render(effects);
+      PreviewPicture picture = render(effects);
       if (effects.Has(Effect::kShafts)) return picture;
       for (std::size_t i = 0; i < picture.image.rgb.size(); i += 40)
         picture.image.rgb[i].fill(static_cast<float>(100.0 * (1.0 - change)));
@@ -79,11 +79,11 @@ TEST(EffectChoice, APixelInAHundredMayChangeByFourBudgetsAndNotMore) {
 }
 
 TEST(EffectChoice, ASmallGroupCountsAlone) {
-  GreyPilot grey({{Effect::kLights, 0.0}});
+  GreyPreview grey({{Effect::kLights, 0.0}});
   grey.pilot.groups.push_back({{3, 4}, {5, 6}});
   grey.pilot.render = [&](EffectSet effects) {
     const std::size_t whole = grey.pilot.groups[0].size();
-    PilotPicture picture{Image(static_cast<int>(whole) + 2, 1), 1.0};
+    PreviewPicture picture{Image(static_cast<int>(whole) + 2, 1), 1.0};
     for (auto& rgb : picture.image.rgb) rgb.fill(100.0F);
     if (!effects.Has(Effect::kLights)) picture.image.rgb[whole].fill(90.0F);
     return picture;
@@ -95,7 +95,7 @@ TEST(EffectChoice, ASmallGroupCountsAlone) {
 }
 
 TEST(EffectChoice, WhatCostsNothingIsKeptAndWhatIsNotThereIsNotRendered) {
-  GreyPilot grey({{Effect::kSky, 0.5}});
+  GreyPreview grey({{Effect::kSky, 0.5}});
   grey.pilot.present = EffectSet::All().Without(Effect::kLights);
   const EffectSet wanted{Effect::kSky, Effect::kLights, Effect::kOzone};
   const EffectChoice choice = ChooseEffects(grey.pilot, wanted, {.max_error = 0.01});
@@ -105,10 +105,10 @@ TEST(EffectChoice, WhatCostsNothingIsKeptAndWhatIsNotThereIsNotRendered) {
 
 TEST(EffectChoice, TheChoiceDoesNotDependOnTheClock) {
   for (const double slow : {1e-3, 1.0}) {
-    GreyPilot grey({{Effect::kSky, 0.006}, {Effect::kShafts, 0.007}});
+    GreyPreview grey({{Effect::kSky, 0.006}, {Effect::kShafts, 0.007}});
     const auto render = grey.pilot.render;
     grey.pilot.render = [&, render](EffectSet effects) {
-      PilotPicture picture = render(effects);
+      PreviewPicture picture = render(effects);
       picture.seconds = effects.Has(Effect::kSky) ? slow : 1.0 / slow;
       return picture;
     };
@@ -118,7 +118,7 @@ TEST(EffectChoice, TheChoiceDoesNotDependOnTheClock) {
 }
 
 TEST(EffectChoice, ExplainingKeepsAllThatItIsToldToAndHasALineForEach) {
-  GreyPilot grey({{Effect::kSky, 0.5}, {Effect::kShafts, 0.004}});
+  GreyPreview grey({{Effect::kSky, 0.5}, {Effect::kShafts, 0.004}});
   const EffectChoice choice =
       ChooseEffects(grey.pilot, kThree.With(Effect::kOzone),
                     {.max_error = 0.01, .explain = true, .leave_out = false});
@@ -130,9 +130,9 @@ TEST(EffectChoice, ExplainingKeepsAllThatItIsToldToAndHasALineForEach) {
 }
 
 TEST(EffectChoice, WhatMoreWouldChangeIsToldAndNotDone) {
-  GreyPilot grey({{Effect::kSky, 0.5}});
+  GreyPreview grey({{Effect::kSky, 0.5}});
   grey.pilot.refinements.push_back({"finer", [&] {
-                                      PilotPicture picture = grey.pilot.render(kThree);
+                                      PreviewPicture picture = grey.pilot.render(kThree);
                                       for (auto& rgb : picture.image.rgb) rgb.fill(101.0F);
                                       picture.seconds *= 3.0;
                                       return picture;
@@ -146,10 +146,10 @@ TEST(EffectChoice, WhatMoreWouldChangeIsToldAndNotDone) {
   EXPECT_TRUE(ChooseEffects(grey.pilot, kThree, {.max_error = 0.01}).refinements.empty());
 }
 
-TEST(PilotGrid, HasAPixelInEveryCellAndNoneTwice) {
+TEST(PreviewGrid, HasAPixelInEveryCellAndNoneTwice) {
   for (const auto [width, height] : {std::array{1280, 720}, {96, 54}, {1, 1}, {1, 300}, {7, 5}}) {
     std::set<std::pair<int, int>> seen;
-    const auto places = PilotGrid(width, height, std::min(400, width * height));
+    const auto places = PreviewGrid(width, height, std::min(400, width * height));
     for (const PixelPlace& place : places) {
       EXPECT_TRUE(place.x >= 0 && place.x < width && place.y >= 0 && place.y < height);
       seen.insert({place.x, place.y});
