@@ -33,7 +33,7 @@ BandLight LampsOfUnitLuminance(const BandColour& colour) {
 
 }  // namespace
 
-BandLight TownLight(double zenith, double ground_m, const SingleScattering<float>& air,
+BandLight Skyglow(double zenith, double ground_m, const SingleScattering<float>& air,
                     const BandColour& colour) {
   const double wanted = std::max(
       LuminanceOfSurfaceBrightness(zenith) - LuminanceOfSurfaceBrightness(kNaturalZenith), 0.0);

@@ -3,7 +3,7 @@
 // stars and planets, and the light of a moonless night sky above the air (night_sky.h) with its
 // scattering by air and fog.
 //
-// TownLight models light pollution by the brightness that it adds to the zenith. Endless lamps all
+// Skyglow models light pollution by the brightness that it adds to the zenith. Endless lamps all
 // around emit the radiance L uniformly upwards, and air that scatters equally in all directions
 // scatters it once. Along a ray of transmittance T the result is
 //
@@ -47,7 +47,7 @@ namespace alpenglow::renderer {
 /// Returns J of light pollution [W m^-2 sr^-1 nm^-1].
 /// @param zenith  [V magnitudes per square arcsecond]; J is 0 if it is darker than kNaturalZenith.
 /// @param ground_m  altitude of the place with this zenith, >= 0.
-[[nodiscard]] BandLight TownLight(double zenith, double ground_m, const SingleScattering<float>& air,
+[[nodiscard]] BandLight Skyglow(double zenith, double ground_m, const SingleScattering<float>& air,
                                   const BandColour& colour);
 
 /// A star or planet at the top of the air.
@@ -95,7 +95,7 @@ class NightLight {
  public:
   /// @param sky  in the frame of the picture.
   /// @param up  unit, at the eye.
-  /// @param towns  TownLight; empty: none.
+  /// @param towns  Skyglow; empty: none.
   NightLight(const NightSky& sky, const SingleScattering<float>& air, const BandColour& colour,
              const glm::dvec3& up, double altitude_m,
              const std::optional<BandLight>& towns = std::nullopt);

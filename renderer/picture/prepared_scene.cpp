@@ -120,10 +120,10 @@ Lighting PreparedScene::LightingAt(const CameraSample& camera_sample, const Came
   return light;
 }
 
-std::optional<BandLight> PreparedScene::TownsOf() const {
+std::optional<BandLight> PreparedScene::SkyglowOf() const {
   if (!scene.town_zenith) return std::nullopt;
   const double ground_m = std::max(GroundHeightUnder(ground, scene.place), 0.0);
-  return TownLight(*scene.town_zenith, ground_m, models.whole().air, colour);
+  return Skyglow(*scene.town_zenith, ground_m, models.whole().air, colour);
 }
 
 void PreparedScene::AddNight(const CameraSample& camera_sample, const CameraStand& stand, double earth_sun_au,

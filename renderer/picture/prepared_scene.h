@@ -77,7 +77,7 @@ struct PreparedScene {
                                : std::make_shared<RecentSunlight>(ground)),
         material(scene.ground, ColourDrape::Of(scene, ground), medium.wavelengths_nm),
         models(medium, {ground, geometry, lamps, *horizons, material}),
-        towns(TownsOf()) {}
+        towns(SkyglowOf()) {}
 
   [[nodiscard]] FrameContext FrameAt(const CameraSample& camera_sample, const RenderSettings& settings) const;
   void LightMedia(FrameContext& frame) const;
@@ -140,7 +140,7 @@ struct PreparedScene {
   [[nodiscard]] static PixelSum WithStars(const FrameContext& frame, int x, int y, PixelSum rays);
   [[nodiscard]] BandLight MoonSeen(const glm::dvec3& direction, const AirAlongRay& through,
                                    const FrameContext& frame) const;
-  [[nodiscard]] std::optional<BandLight> TownsOf() const;
+  [[nodiscard]] std::optional<BandLight> SkyglowOf() const;
   [[nodiscard]] GeodeticPosition EyeOf(const CameraSample& camera_sample) const;
   [[nodiscard]] SunPosition ApparentSun(const CameraSample& camera_sample) const;  // see SceneRenderer
   [[nodiscard]] CameraStand StandOf(const CameraSample& camera_sample) const;
@@ -177,7 +177,7 @@ struct PreparedScene {
   std::shared_ptr<RecentSunlight> recent_sunlight, recent_moonlight;
   GroundMaterial material;
   AirModels models;
-  std::optional<BandLight> towns;  // light of towns in the night sky (TownLight)
+  std::optional<BandLight> towns;  // light of towns in the night sky (Skyglow)
   mutable std::once_flag few_bands_asked;
   mutable std::unique_ptr<PreparedScene> few_bands;
 };

@@ -90,14 +90,14 @@ void SkyPainter::Update(const PaintedView& view, double seconds) {
   scene_.Update(view, lights, seconds);
   stars_.Follow(view, lights, *scene_.air().air());
   // After a jump in time into the night, wait for the first map.
-  if (HasNightFloor()) night_floor_.Follow(view, scene_.air().air(), !night_floor_.HasAny());
+  if (HasNightSkyMap()) night_floor_.Follow(view, scene_.air().air(), !night_floor_.HasAny());
 }
 
 void SkyPainter::Settle(const PaintedView& view, int samples) {
   scene_.Settle(view, LightsOf(view).lights, samples);
   lamps_.SettlePlans();
   stars_.Settle(view, LightsOf(view).lights, *scene_.air().air());
-  if (HasNightFloor()) night_floor_.Follow(view, scene_.air().air(), true);
+  if (HasNightSkyMap()) night_floor_.Follow(view, scene_.air().air(), true);
 }
 
 void SkyPainter::PrepareLamps(const PaintedView& view) {
@@ -360,12 +360,12 @@ void SkyPainter::PaintLampsOver(const PaintedView& view) {
 }
 
 // In brighter light a thousandth of a lux is invisible, and so is light pollution.
-bool SkyPainter::HasNightFloor() const {
+bool SkyPainter::HasNightSkyMap() const {
   constexpr double kMost_lux = 10.0, kMostOverTowns_lux = 1000.0;
   return stars_.sky_lux() > 0.0 && stars_.sky_lux() < (has_towns_ ? kMostOverTowns_lux : kMost_lux);
 }
 
-void SkyPainter::PaintNightFloor(const PaintedView& view, double share) {
+void SkyPainter::PaintNightSkyMap(const PaintedView& view, double share) {
   Begin("night sky");
   const BesideLand any_depth;
   const Adding adding(share);
@@ -393,7 +393,7 @@ void SkyPainter::PaintSample(const PaintedView& view, Bodies bodies, const Pixel
   PaintLamps(view);
   PaintPicture(view, 1.0 / ray.of);
   PaintOtherLight(view, ray);
-  if (HasNightFloor() && night_floor_.HasAny()) PaintNightFloor(view, 1.0 / ray.of);
+  if (HasNightSkyMap() && night_floor_.HasAny()) PaintNightSkyMap(view, 1.0 / ray.of);
   if (bodies == Bodies::kAll) PaintDisks(view, ray);
 }
 

@@ -4,7 +4,7 @@
 //
 // The passes of a frame: the visible land (Landscape), the light that shadows remove along rays
 // (ShaftPass), the glow of lamps (LampPainter), the linear picture, by night the light of the night
-// sky (NightFloorFollower), then the lamps and stars (StarPainter). Developer displays the result.
+// sky (NightSkyMapFollower), then the lamps and stars (StarPainter). Developer displays the result.
 // Its difference from SceneRenderer is reported in tests/bench/README.md, and for one view by
 // `skyview --explain`.
 #pragma once
@@ -24,7 +24,7 @@
 #include "viewer/land/land_pass.h"
 #include "viewer/passes/auto_quality.h"
 #include "viewer/passes/key_light.h"
-#include "viewer/passes/night_floor.h"
+#include "viewer/passes/night_sky_map.h"
 #include "viewer/passes/painted_scene.h"
 #include "viewer/passes/painted_view.h"
 #include "viewer/passes/picture_programs.h"
@@ -144,8 +144,8 @@ class SkyPainter {
   void PaintLandAndSky(const PaintedView& view, const Lit& lit);
   void PaintDisks(const PaintedView& view, const PixelRay& ray);
   void PaintLampsOver(const PaintedView& view);
-  [[nodiscard]] bool HasNightFloor() const;
-  void PaintNightFloor(const PaintedView& view, double share);
+  [[nodiscard]] bool HasNightSkyMap() const;
+  void PaintNightSkyMap(const PaintedView& view, double share);
   void PaintStars(const PaintedView& view, const MoonDisk& moon);
   void Begin(const char* pass) const {
     if (timer_ != nullptr) timer_->Begin(pass);
@@ -156,7 +156,7 @@ class SkyPainter {
   LampPainter lamp_painter_;
   ShaftPass shaft_pass_;
   StarPainter stars_;
-  NightFloorFollower night_floor_;
+  NightSkyMapFollower night_floor_;
   bool has_towns_;
   PicturePrograms programs_;  // uses all members above
   PictureBlocks blocks_;

@@ -200,7 +200,7 @@ void main() {
 #endif
 
 #if PASS == NIGHT_PASS
-uniform sampler2D night_sky;   // NightFloor of night_floor.h
+uniform sampler2D night_sky;   // NightSkyMap of night_sky_map.h
 uniform vec4 night_scattered;  // radiance of an infinite path of air [W m^-2 sr^-1 nm^-1]
 uniform vec4 night_level;      // irradiance of level ground [W m^-2 nm^-1]
 

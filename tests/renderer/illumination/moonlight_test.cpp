@@ -170,7 +170,7 @@ TEST(NightLight, TheZenithOverTownsIsAsBrightAsTheirClassOfBortleHasIt) {
   const NightSky sky(PlaceFromDegrees(46.5, 8.0, 0.0), ParseInstant("2026-04-17T23:30:00Z"));
   for (int bortle = 1; bortle <= 9; ++bortle) {
     const NightLight light(sky, air, colour, up, 0.0,
-                           TownLight(ZenithOfBortleClass(bortle), 0.0, air, colour));
+                           Skyglow(ZenithOfBortleClass(bortle), 0.0, air, colour));
     EXPECT_NEAR(Magnitudes(SkyLuminance(light, up, colour)), ZenithOfBortleClass(bortle), 0.1)
         << bortle;
   }
@@ -181,7 +181,7 @@ TEST(NightLight, OfTownsRisesToTheHorizonReddensItAndLightsTheGround) {
   const BandColour colour(tests::Earth().medium.wavelengths_nm);
   const glm::dvec3 up(0.0, 0.0, 1.0);
   const NightSky sky(PlaceFromDegrees(46.5, 8.0, 0.0), ParseInstant("2026-04-17T23:30:00Z"));
-  const NightLight city(sky, air, colour, up, 0.0, TownLight(18.0, 0.0, air, colour));
+  const NightLight city(sky, air, colour, up, 0.0, Skyglow(18.0, 0.0, air, colour));
   const auto luminance = [&](double zenith_deg) {
     const double z = zenith_deg * kRadiansPerDegree;
     return SkyLuminance(city, {0.0, std::sin(z), std::cos(z)}, colour);

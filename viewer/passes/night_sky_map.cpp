@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "viewer/passes/night_floor.h"
+#include "viewer/passes/night_sky_map.h"
 
 #include <algorithm>
 #include <cmath>
@@ -24,34 +24,34 @@ void Upload(const GlTexture& map, int unit, int columns, int rows,
 
 }  // namespace
 
-NightFloor NightFloorOver(const GeodeticPosition& eye, const UtcInstant& now, const Medium& medium,
-                          const BandColour& colour, const TownsOfScene& towns) {
+NightSkyMap NightSkyMapOver(const GeodeticPosition& eye, const UtcInstant& now, const Medium& medium,
+                          const BandColour& colour, const SceneSkyglow& towns) {
   const SingleScattering<float> air(OnOsculatingSphere(medium, eye.latitude_rad));
   std::optional<BandLight> town_light;
-  if (towns.zenith) town_light = TownLight(*towns.zenith, towns.ground_m, air, colour);
+  if (towns.zenith) town_light = Skyglow(*towns.zenith, towns.ground_m, air, colour);
   const NightLight night(NightSky(eye, now), air, colour, {0.0, 0.0, 1.0},
                          std::max(eye.height_m, 0.0), town_light);
-  NightFloor floor{{}, GpuBandsOf(night.scattered()), GpuBandsOf(night.OnSurface(1.0))};
-  for (int row = 0; row < NightFloor::kRows; ++row) {
-    const double elevation = kPi * ((row + 0.5) / NightFloor::kRows - 0.5);
-    for (int column = 0; column < NightFloor::kColumns; ++column) {
-      const double azimuth = 2.0 * kPi * (column + 0.5) / NightFloor::kColumns;
+  NightSkyMap floor{{}, GpuBandsOf(night.scattered()), GpuBandsOf(night.OnSurface(1.0))};
+  for (int row = 0; row < NightSkyMap::kRows; ++row) {
+    const double elevation = kPi * ((row + 0.5) / NightSkyMap::kRows - 0.5);
+    for (int column = 0; column < NightSkyMap::kColumns; ++column) {
+      const double azimuth = 2.0 * kPi * (column + 0.5) / NightSkyMap::kColumns;
       floor.above.push_back(GpuBandsOf(night.Above(DirectionFromAngles(elevation, azimuth).xyz)));
     }
   }
   return floor;
 }
 
-NightFloorFollower::NightFloorFollower(const TownsOfScene& towns)
+NightSkyMapFollower::NightSkyMapFollower(const SceneSkyglow& towns)
     : maker_([towns](const Request& request) {
         const Medium& medium = request.air->medium;
-        return NightFloorOver(request.place, request.now, medium, BandColour(medium.wavelengths_nm),
+        return NightSkyMapOver(request.place, request.now, medium, BandColour(medium.wavelengths_nm),
                               towns);
       }) {}
 
 // Returns whether the requested map is close enough. The sky may rotate by an eighth of a degree, a
 // tenth of a texel.
-bool NightFloorFollower::Suits(const Request& wanted) const {
+bool NightSkyMapFollower::Suits(const Request& wanted) const {
   constexpr double kMostTurn_s = 30.0, kMostWay_rad = 2e-3, kMostRise_m = 1000.0;
   return asked_ && asked_->air == wanted.air &&
          std::abs(SecondsBetween(asked_->now, wanted.now)) < kMostTurn_s &&
@@ -60,16 +60,16 @@ bool NightFloorFollower::Suits(const Request& wanted) const {
          std::abs(asked_->place.height_m - wanted.place.height_m) < kMostRise_m;
 }
 
-void NightFloorFollower::Take(int unit) {
-  const std::optional<NightFloor> floor = maker_.Take();
+void NightSkyMapFollower::Take(int unit) {
+  const std::optional<NightSkyMap> floor = maker_.Take();
   if (!floor) return;
   scattered_ = floor->scattered;
   level_ = floor->level;
   has_map_ = true;
-  Upload(map_, unit, NightFloor::kColumns, NightFloor::kRows, floor->above);
+  Upload(map_, unit, NightSkyMap::kColumns, NightSkyMap::kRows, floor->above);
 }
 
-void NightFloorFollower::Follow(const PaintedView& view,
+void NightSkyMapFollower::Follow(const PaintedView& view,
                                 const std::shared_ptr<const SolvedAir>& air, bool waits) {
   const Request wanted{view.eye.place, view.now, air};
   if (waits) maker_.Wait();
@@ -83,7 +83,7 @@ void NightFloorFollower::Follow(const PaintedView& view,
   Take(kNightUnit);
 }
 
-void NightFloorFollower::Bind(const ShaderProgram& program, int unit) const {
+void NightSkyMapFollower::Bind(const ShaderProgram& program, int unit) const {
   program.BindSampler("night_sky", unit);
   glActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(unit));
   glBindTexture(GL_TEXTURE_2D, map_.id());

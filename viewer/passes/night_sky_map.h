@@ -19,7 +19,7 @@
 namespace alpenglow::viewer {
 
 /// Sky radiance and irradiance by night, one value per band.
-struct NightFloor {
+struct NightSkyMap {
   /// Columns are azimuths from north through east, rows are elevations from the nadir upwards, at
   /// texel centres.
   static constexpr int kColumns = 256, kRows = 128;
@@ -30,20 +30,20 @@ struct NightFloor {
 };
 
 /// Light pollution of the scene.
-struct TownsOfScene {
+struct SceneSkyglow {
   std::optional<double> zenith = std::nullopt;  // Scene::town_zenith
   double ground_m = 0.0;                        // height of that ground over the ellipsoid, >= 0
 };
 
-[[nodiscard]] NightFloor NightFloorOver(const GeodeticPosition& eye, const UtcInstant& now,
+[[nodiscard]] NightSkyMap NightSkyMapOver(const GeodeticPosition& eye, const UtcInstant& now,
                                         const Medium& medium, const BandColour& colour,
-                                        const TownsOfScene& towns = {});
+                                        const SceneSkyglow& towns = {});
 
 /// Keeps the map up to date. Must be used on the thread whose OpenGL context is current at
 /// construction.
-class NightFloorFollower {
+class NightSkyMapFollower {
  public:
-  explicit NightFloorFollower(const TownsOfScene& towns);
+  explicit NightSkyMapFollower(const SceneSkyglow& towns);
 
   /// Takes over a finished map and requests a new one if needed. Call it once per frame.
   /// @param waits  whether to wait for the map of exactly this instant.
@@ -66,7 +66,7 @@ class NightFloorFollower {
   glm::vec4 scattered_{0.0F}, level_{0.0F};
   bool has_map_ = false;
   std::optional<Request> asked_;
-  LatestJob<Request, NightFloor> maker_;
+  LatestJob<Request, NightSkyMap> maker_;
 };
 
 }  // namespace alpenglow::viewer
