@@ -527,7 +527,7 @@ void FlightDeck::WritePicture(const std::filesystem::path& file, const ImageSize
   WritePng(file, screen.ReadBytes(), header);
 }
 
-void FlightDeck::Paint(const Developer::Screen& screen, double seconds) {
+void FlightDeck::Paint(const ToneMapPass::Screen& screen, double seconds) {
   flight_.Paint(screen, seconds);
   flight_.painter().Time("hud");
   hud_.Paint(screen.framebuffer);

@@ -39,7 +39,7 @@ class FlightDeck {
   /// Carries out the requests of the panels. Errors are displayed as messages on the screen.
   void Serve(const HudRequest& asked);
   /// Paints the flight and draws the instruments over it.
-  void Paint(const Developer::Screen& screen, double seconds);
+  void Paint(const ToneMapPass::Screen& screen, double seconds);
 
   /// Writes a developed picture with instruments, as displayed on the screen. It is written before
   /// the call returns. Throws OutputError.

@@ -85,8 +85,8 @@ Flythrough::Flythrough(const Scene& scene, const UtcInstant& start,
       auto_(1.0 / settings.frame_rate),
       used_(Painted()),
       cockpit_(EyeOfScene(scene), EllipsoidOf(scene.medium), start),
-      darkroom_(InDaylight(settings.look), settings.first_air ? Developer::FirstPictures::kDraft
-                                                              : Developer::FirstPictures::kWait),
+      darkroom_(InDaylight(settings.look), settings.first_air ? ToneMapPass::FirstPictures::kDraft
+                                                              : ToneMapPass::FirstPictures::kWait),
       painter_(scene, settings.land,
                {EyeOfScene(scene), start, settings.size.width, settings.size.height},
                SizesOf(used_.quality), settings.first_air),
@@ -376,7 +376,7 @@ std::optional<double> Flythrough::LuminanceAt(double right, double down) {
   return std::nullopt;
 }
 
-void Flythrough::Paint(const Developer::Screen& screen, double seconds) {
+void Flythrough::Paint(const ToneMapPass::Screen& screen, double seconds) {
   const PaintedQuality wanted = Painted();
   if (wanted != used_) painter_.Use(SizesOf(wanted));
   used_ = wanted;
@@ -394,7 +394,7 @@ void Flythrough::Paint(const Developer::Screen& screen, double seconds) {
   if (!has_reference) {
     painter_.Paint(
         view, 1,
-        Darkroom::Enlarges(view, screen) ? SkyPainter::Bodies::kNone : SkyPainter::Bodies::kAll);
+        DisplayPass::Upscales(view, screen) ? SkyPainter::Bodies::kNone : SkyPainter::Bodies::kAll);
   }
   ShowReference({screen.width, screen.height});
   if (const std::optional<MeterReading> metered = meter_.Take(look_)) metered_ = metered;

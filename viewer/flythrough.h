@@ -17,8 +17,8 @@
 #include "viewer/flight/flight_recorder.h"
 #include "viewer/input/cockpit.h"
 #include "viewer/passes/auto_quality.h"
-#include "viewer/passes/darkroom.h"
-#include "viewer/passes/developer.h"
+#include "viewer/passes/display_pass.h"
+#include "viewer/passes/tone_map_pass.h"
 #include "viewer/passes/reference_picture.h"
 #include "viewer/passes/sky_painter.h"
 
@@ -146,7 +146,7 @@ class Flythrough {
 
   /// Paints onto a screen with the exposure of the meter. `seconds` is the time since the previous
   /// picture.
-  void Paint(const Developer::Screen& screen, double seconds);
+  void Paint(const ToneMapPass::Screen& screen, double seconds);
   /// Records the time that the last picture took without the wait for the screen. Automatic quality
   /// uses it.
   void NoteFrame(double seconds);
@@ -172,7 +172,7 @@ class Flythrough {
   /// Makes all following pictures show this moment.
   void TakeUp(const FlightMoment& moment);
   /// Paints the picture of WritePicture and develops it onto a screen. @return look and exposure.
-  Development PaintStill(const Developer::Screen& screen, const PictureProgress& progress = {});
+  Development PaintStill(const ToneMapPass::Screen& screen, const PictureProgress& progress = {});
   /// Returns the metadata of a picture of this size, without its exposure.
   [[nodiscard]] Metadata PictureHeader(const ImageSize& size) const;
   /// Returns the metadata of exposure and development.
@@ -256,7 +256,7 @@ class Flythrough {
   AutoQuality auto_;
   PaintedQuality used_;
   Cockpit cockpit_;
-  Darkroom darkroom_;  // constructed before the painter: both take long and run in parallel
+  DisplayPass darkroom_;  // constructed before the painter: both take long and run in parallel
   SkyPainter painter_;
   ExposureRule rule_of_exposure_;
   Look look_;  // as selected; its white balance may be automatic

@@ -144,7 +144,7 @@ Metadata Flythrough::ExposureHeader(const Development& development) const {
           {"alpenglow.white_balance", NameOf(development.look.white)}};
 }
 
-Development Flythrough::PaintStill(const Developer::Screen& screen,
+Development Flythrough::PaintStill(const ToneMapPass::Screen& screen,
                                    const PictureProgress& progress) {
   const ImageSize size{screen.width, screen.height};
   const Image image = Picture(size, kPictureSamples, progress);

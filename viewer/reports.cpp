@@ -14,7 +14,7 @@
 #include "atmosphere/math/constants.h"
 #include "atmosphere/base/error.h"
 #include "renderer/picture/render.h"
-#include "viewer/passes/darkroom.h"
+#include "viewer/passes/display_pass.h"
 #include "viewer/passes/reference_picture.h"
 
 namespace alpenglow::viewer {
@@ -175,7 +175,7 @@ TimedPicture Paint(Flythrough& flight, const PaintedView& view, const PaintSizes
   return {painter.picture().Read(), best_ms};
 }
 
-/// A picture of linear light with one ray per pixel of the screen, or with fewer rays and enlarged.
+/// A picture of linear light with one ray per pixel of the screen, or with fewer rays and upscaled.
 class OneRay {
  public:
   OneRay(SkyPainter& painter, const PaintedView& screen) : painter_(painter), screen_(screen) {}
@@ -193,14 +193,14 @@ class OneRay {
   void Show(const PaintedView& painted) {
     painter_.Paint(painted, 1, SkyPainter::Bodies::kStars);
     painter_.PaintOutline(outline_);
-    enlarger_.Enlarge(painter_.picture(), outline_, HalfViewOf(painted), light_.framebuffer());
+    enlarger_.Upscale(painter_.picture(), outline_, HalfViewOf(painted), light_.framebuffer());
   }
 
   SkyPainter& painter_;
   PaintedView screen_;
-  LandOutline outline_{screen_.width, screen_.height};
+  DepthPrepass outline_{screen_.width, screen_.height};
   RenderTarget light_{screen_.width, screen_.height};
-  Enlarger enlarger_{Enlarger::Shows::kLight};
+  Upscaler enlarger_{Upscaler::Shows::kLight};
 };
 
 Image ReferenceOf(const Flythrough& flight, const ImageSize& size) {
@@ -218,7 +218,7 @@ std::string Row(const std::string& name, const ViewDifference& is, const std::st
                      100.0 * is.at_99_percent, 100.0 * is.at_999_permille, time);
 }
 
-// Compares a view that is painted at a fraction of its size and enlarged with the view at one ray
+// Compares a view that is painted at a fraction of its size and upscaled with the view at one ray
 // per pixel.
 std::string FewerRays(Flythrough& flight, const PaintedView& view,
                       const std::vector<Channel>& edges, double scale) {

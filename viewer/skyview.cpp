@@ -108,7 +108,7 @@ void PaintHeadless(const SkyviewOptions& options, Flythrough& flight, const Imag
 }
 
 /// Returns the screen that covers the whole window.
-Developer::Screen ScreenOf(const Window& window) { return {0, window.width(), window.height()}; }
+ToneMapPass::Screen ScreenOf(const Window& window) { return {0, window.width(), window.height()}; }
 
 /// While this object exists, the flight and the pictures are written to their files if the display
 /// is lost.
@@ -177,7 +177,7 @@ void Fly(const SkyviewOptions& options, Flythrough& flight, Window& window,
 void RunBenchmark(double seconds, Flythrough& flight, const ImageSize& size, Window* window) {
   const RenderTarget picture(size.width, size.height, {PixelFormat::kRgba8},
                              RenderTarget::Depth::kNone);
-  const Developer::Screen screen{window == nullptr ? picture.framebuffer() : 0, size.width,
+  const ToneMapPass::Screen screen{window == nullptr ? picture.framebuffer() : 0, size.width,
                                  size.height};
   flight.Settle(size);
   const Eye start = flight.eye();

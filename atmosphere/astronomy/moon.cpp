@@ -262,8 +262,8 @@ double EarthIrradiance(const MoonPosition& moon) {
 
 // Returns the irradiance of sunlight at the moon, relative to that at the earth.
 double SunlightAt(const MoonPosition& moon, double earth_sun_au) {
-  const double nearness = earth_sun_au / moon.sun_distance_au;
-  return nearness * nearness;
+  const double inverse_depth = earth_sun_au / moon.sun_distance_au;
+  return inverse_depth * inverse_depth;
 }
 
 }  // namespace

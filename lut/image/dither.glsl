@@ -1,4 +1,4 @@
-// This text provides the dither noise of 8-bit images (develop.h).
+// This text provides the dither noise of 8-bit images (development.h).
 
 // Returns the place in the tile at which a repetition of it begins: column in the lowest bits, row
 // eight bits up. It is 0 at the origin.

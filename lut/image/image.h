@@ -104,7 +104,7 @@ inline constexpr double kSunDiskLuminance_cd_per_m2 = 1e6;
 
 enum class ToneCurve { kAgx, kAces, kReinhard, kPbrNeutral, kLinear };
 
-/// 8-bit sRGB of the exposed image, dithered by triangular blue noise of +-1 code (develop.h;
+/// 8-bit sRGB of the exposed image, dithered by triangular blue noise of +-1 code (development.h;
 /// identical in every run). For out-of-gamut colours see tone_curve.glsl.
 struct DisplayImage {
   int width = 0;

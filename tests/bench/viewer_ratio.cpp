@@ -18,7 +18,7 @@
 #include "viewer/gl/gl_context.h"
 #include "viewer/gl/pass_timer.h"
 #include "viewer/passes/auto_quality.h"
-#include "viewer/passes/darkroom.h"
+#include "viewer/passes/display_pass.h"
 #include "viewer/passes/sky_painter.h"
 #include "viewer/shaders/full_screen.h"
 
@@ -113,7 +113,7 @@ Times TimesOf(const View& view) {
                             static_cast<int>(scale * kWidth), static_cast<int>(scale * kHeight)};
   SkyPainter painter(view.scene, LandSourceOf(view.scene), painted, SizesOf(view.quality));
   painter.Settle(painted);
-  Darkroom darkroom(Look{});
+  DisplayPass darkroom(Look{});
   const RenderTarget screen(kWidth, kHeight, {PixelFormat::kRgba8}, RenderTarget::Depth::kNone);
   const auto draw = [&] {
     constexpr double kEv100 = 13.0;

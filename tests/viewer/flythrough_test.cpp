@@ -91,7 +91,7 @@ class ShownFrames {
       : flight_(flight), screen_(64, 36, {PixelFormat::kRgba8}, RenderTarget::Depth::kNone) {
     flight_.AwaitGround();
   }
-  /// The next frame, as it was painted: its fourth component is the nearness of land.
+  /// The next frame, as it was painted: its fourth component is the inverse depth of land.
   [[nodiscard]] Image Next() {
     constexpr double kFrame_s = 0.05;
     flight_.Advance({}, kFrame_s);

@@ -17,7 +17,7 @@ constexpr GLsizeiptr kTriangleBytes = kChunkIndices * sizeof(std::uint16_t);
 constexpr GLsizeiptr kWholeBytes = 16 * kTriangleBytes;
 
 // Reallocates a buffer to a larger size and copies its contents.
-void Enlarge(GlBuffer& buffer, GLsizeiptr before, GLsizeiptr after) {
+void Upscale(GlBuffer& buffer, GLsizeiptr before, GLsizeiptr after) {
   GlBuffer larger;
   glBindBuffer(GL_COPY_WRITE_BUFFER, larger.id());
   glBufferData(GL_COPY_WRITE_BUFFER, after, nullptr, GL_DYNAMIC_DRAW);
@@ -54,7 +54,7 @@ void DescribeLight(const GlBuffer& buffer, GLuint first_location) {
 }  // namespace
 
 ChunkBuffers::ChunkBuffers(int slots) {
-  Enlarge(triangles_, 0, kWholeBytes);
+  Upscale(triangles_, 0, kWholeBytes);
   for (unsigned sides = 0; sides < whole_count_.size(); ++sides) {
     const std::vector<std::uint16_t> triangles = WithCoarseSides(WholeTriangles(), {}, sides);
     whole_count_[sides] = static_cast<int>(triangles.size());
@@ -64,10 +64,10 @@ ChunkBuffers::ChunkBuffers(int slots) {
 }
 
 void ChunkBuffers::Grow(int slots) {
-  Enlarge(vertices_, slots_ * kVertexBytes, slots * kVertexBytes);
-  Enlarge(first_light_, slots_ * kLightBytes, slots * kLightBytes);
-  Enlarge(second_light_, slots_ * kLightBytes, slots * kLightBytes);
-  Enlarge(triangles_, kWholeBytes + slots_ * kTriangleBytes, kWholeBytes + slots * kTriangleBytes);
+  Upscale(vertices_, slots_ * kVertexBytes, slots * kVertexBytes);
+  Upscale(first_light_, slots_ * kLightBytes, slots * kLightBytes);
+  Upscale(second_light_, slots_ * kLightBytes, slots * kLightBytes);
+  Upscale(triangles_, kWholeBytes + slots_ * kTriangleBytes, kWholeBytes + slots * kTriangleBytes);
   for (int slot = slots; slot-- > slots_;) free_.push_back(slot);
   cut_.resize(static_cast<std::size_t>(slots));
   slots_ = slots;

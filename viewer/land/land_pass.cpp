@@ -123,7 +123,7 @@ const ShaderProgram& LandPass::ProgramOf(LandDrawn drawn) const {
   std::optional<ShaderProgram>& program = is_surface ? surface_ : outline_;
   if (!program) {
     program.emplace(LandProgram(is_surface ? "viewer/shaders/land.frag.glsl"
-                                           : "viewer/shaders/land_outline.frag.glsl"));
+                                           : "viewer/shaders/depth_prepass.frag.glsl"));
   }
   return *program;
 }
@@ -131,7 +131,7 @@ const ShaderProgram& LandPass::ProgramOf(LandDrawn drawn) const {
 std::vector<ShaderPiece> LandTexts(const ShaderPiece& depth) {
   std::vector<ShaderPiece> texts =
       WithViewerPieces({}, {"viewer/shaders/view_block.glsl", "viewer/shaders/land_block.glsl",
-                            "viewer/shaders/octahedral.glsl", "viewer/shaders/nearness.glsl"});
+                            "viewer/shaders/octahedral.glsl", "viewer/shaders/inverse_depth.glsl"});
   texts.push_back(depth);
   return WithViewerPieces(std::move(texts), {"viewer/shaders/land_seen.glsl"});
 }

@@ -5,8 +5,8 @@
 // moved since the shadow edges of the vertices were computed, they are replaced by edges from this
 // horizon. It is coarser (HorizonMap: one node every few hundred metres, sixteen azimuths).
 //
-// SurfaceMap holds the visible terrain per pixel. The first pass of a frame draws it, and the
-// picture pass reads it. LandOutline holds the depth of the terrain at the size of the screen, for
+// GBuffer holds the visible terrain per pixel. The first pass of a frame draws it, and the
+// picture pass reads it. DepthPrepass holds the depth of the terrain at the size of the screen, for
 // pictures whose lighting is rendered at a lower resolution.
 #pragma once
 
@@ -65,7 +65,7 @@ class HorizonTexture {
 };
 
 /// The visible terrain per pixel. The depth is 0 where there is no terrain.
-class SurfaceMap : public RenderTarget {
+class GBuffer : public RenderTarget {
  public:
   enum Output : std::size_t {
     /// Four floats: normal in the eye's frame, octahedral (octahedral.glsl); elevation of the
@@ -79,17 +79,17 @@ class SurfaceMap : public RenderTarget {
   };
 
   /// @param width, height >= 1.
-  SurfaceMap(int width, int height)
+  GBuffer(int width, int height)
       : RenderTarget(width, height,
                      {PixelFormat::kRgba32F, PixelFormat::kRgba16F, PixelFormat::kRgba16F},
                      Depth::k32Bit) {}
 };
 
-/// Depth only, with the convention of a SurfaceMap: 0 where there is no terrain.
-class LandOutline : public RenderTarget {
+/// Depth only, with the convention of a GBuffer: 0 where there is no terrain.
+class DepthPrepass : public RenderTarget {
  public:
   /// @param width, height >= 1.
-  LandOutline(int width, int height) : RenderTarget(width, height, {}, Depth::k32Bit) {}
+  DepthPrepass(int width, int height) : RenderTarget(width, height, {}, Depth::k32Bit) {}
 };
 
 /// View as in view_block.glsl: axes in the eye's frame (east, north, up).
@@ -141,7 +141,7 @@ struct MomentaryEdges {
   double sun_radius_rad = 0.0;
 };
 
-/// Target of a terrain pass: all outputs of a SurfaceMap, or only depth into a LandOutline.
+/// Target of a terrain pass: all outputs of a GBuffer, or only depth into a DepthPrepass.
 enum class LandDrawn { kSurface, kOutline };
 
 class LandPass {
@@ -161,7 +161,7 @@ class LandPass {
       "new_moon_sky",      "new_coarse_moon_sky",
       "new_disk_over_edge"};
 
-  /// Clears the bound SurfaceMap or LandOutline.
+  /// Clears the bound GBuffer or DepthPrepass.
   static void Clear(LandDrawn drawn);
   void Use(const TerrainHorizon& horizon) { horizon_.Use(horizon); }
   void Use(const MomentaryEdges& edges) { edges_ = edges; }
@@ -191,7 +191,7 @@ class LandPass {
   mutable std::optional<ShaderProgram> surface_, outline_;  // created on first use
 };
 
-/// Returns the shader texts that land.frag.glsl and land_outline.frag.glsl are built from.
+/// Returns the shader texts that land.frag.glsl and depth_prepass.frag.glsl are built from.
 /// @param depth  text of a depth mode: LandPass::DepthText, or the other one.
 [[nodiscard]] std::vector<ShaderPiece> LandTexts(const ShaderPiece& depth);
 

@@ -2,7 +2,7 @@
 // The terrain around the eye: read, divided into levels of detail, lit and drawn. Everything except
 // drawing runs on worker threads.
 //
-// Every frame, call Update, then Draw into a SurfaceMap. Near the eye the surface has the samples
+// Every frame, call Update, then Draw into a GBuffer. Near the eye the surface has the samples
 // of the elevation model, as in MeshFromElevation; farther away it becomes coarser
 // (level_ranges.h). Without land, nothing is drawn.
 #pragma once
@@ -74,10 +74,10 @@ class Landscape {
   void BeginReading(const GeodeticPosition& place);
   /// Waits until KnowsGround is true for a place.
   void AwaitGround(const GeodeticPosition& place);
-  /// Draws the chunks that the last Update chose into the bound SurfaceMap, which is cleared first.
+  /// Draws the chunks that the last Update chose into the bound GBuffer, which is cleared first.
   /// The uniform block View must be bound to `view_binding`.
   void Draw(GLuint view_binding);
-  /// Draws the same chunks into the bound LandOutline, with the view of the last Update.
+  /// Draws the same chunks into the bound DepthPrepass, with the view of the last Update.
   void DrawOutline(GLuint view_binding);
 
   /// Relights all vertices with this function on a worker thread. When the new light is complete,

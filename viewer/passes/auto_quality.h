@@ -35,7 +35,7 @@ struct QualityRule {
 enum class Saving { kNone, kCoarseShafts, kFewLamps, kNearLand };
 
 /// A quality, and the scale of the window's width and height at which lighting is rendered. Edges
-/// of land, stars and disks are drawn at full resolution (darkroom.h).
+/// of land, stars and disks are drawn at full resolution (display_pass.h).
 struct PaintedQuality {
   Quality quality = Quality::kHigh;
   double scale = 1.0;

@@ -53,7 +53,7 @@ std::vector<ShaderPiece> PictureTexts(const PictureKind& kind, const PictureStag
         {"fog on the ground", "#define BeamOfSun(h, mu) (BeamOfSun(h, mu) * FogSunLeft(h, mu))\n"});
   }
   add(WithViewerPieces({}, {"viewer/shaders/air_block.glsl", "viewer/shaders/octahedral.glsl",
-                            "viewer/shaders/nearness.glsl", "viewer/shaders/sun_light.glsl"}));
+                            "viewer/shaders/inverse_depth.glsl", "viewer/shaders/sun_light.glsl"}));
   if (stage.pass == PictureStage::Pass::kDisks)
     add(WithViewerPieces({}, {"viewer/shaders/refracted_disks.glsl"}));
   add(GroundTexts(kind.material, kind.land));

@@ -124,10 +124,10 @@ void SkyPainter::PaintLand(const PaintedView& view) {
   } else {
     scene_.land().Draw(kViewBinding);
   }
-  surface_->BindTexture(kSurfaceUnit, SurfaceMap::kSurface);
+  surface_->BindTexture(kSurfaceUnit, GBuffer::kSurface);
 }
 
-void SkyPainter::PaintOutline(const LandOutline& outline) {
+void SkyPainter::PaintOutline(const DepthPrepass& outline) {
   Begin("outline");
   outline.Bind();
   if (scene_.AwaitsLand()) return LandPass::Clear(LandDrawn::kOutline);
@@ -295,7 +295,7 @@ void SkyPainter::PaintDisks(const PaintedView& view, const PixelRay& ray) {
   }
 }
 
-void SkyPainter::PaintBodiesOver(const RenderTarget& target, const LandOutline& outline,
+void SkyPainter::PaintBodiesOver(const RenderTarget& target, const DepthPrepass& outline,
                                  const PaintedView& view) {
   target.Bind();
   target.UseDepthOf(outline);
@@ -317,7 +317,7 @@ void SkyPainter::BindLight(const PaintedView& view, const KeyLight& light, const
 }
 
 void SkyPainter::BindMaps(const PaintedView& view, const KeyLight& light) {
-  surface_->BindTexture(kSkyOnSurfaceUnit, light.is_moon ? SurfaceMap::kMoonSky : SurfaceMap::kSky);
+  surface_->BindTexture(kSkyOnSurfaceUnit, light.is_moon ? GBuffer::kMoonSky : GBuffer::kSky);
   if (scene_.fog() != nullptr) scene_.fog(light.source())->Bind(view.eye, light.disk);
 }
 

@@ -4,7 +4,7 @@
 //
 // The passes of a frame: the visible land (Landscape), the light that shadows remove along rays
 // (ShaftPass), the glow of lamps (LampPainter), the linear picture, by night the light of the night
-// sky (NightSkyMapFollower), then the lamps and stars (StarPainter). Developer displays the result.
+// sky (NightSkyMapFollower), then the lamps and stars (StarPainter). ToneMapPass displays the result.
 // Its difference from SceneRenderer is reported in tests/bench/README.md, and for one view by
 // `skyview --explain`.
 #pragma once
@@ -71,17 +71,17 @@ class SkyPainter {
   /// Shows another picture of the view instead: linear, of any size.
   void Show(const Image& image);
 
-  /// The linear picture. Its fourth component is the inverse depth of land (shaders/nearness.glsl)
+  /// The linear picture. Its fourth component is the inverse depth of land (shaders/inverse_depth.glsl)
   /// if one ray per pixel was drawn.
   [[nodiscard]] const RenderTarget& picture() const { return *picture_; }
   /// Draws the depth of the land in that picture.
-  void PaintOutline(const LandOutline& outline);
+  void PaintOutline(const DepthPrepass& outline);
   /// Returns the pixels that celestial bodies may cover in a picture of any size of the view that
   /// was drawn last.
   [[nodiscard]] std::vector<PixelBox> BodiesSeen(const PaintedView& view);
   /// Adds the celestial bodies to such a picture with one ray per pixel, where an outline of its
   /// size has no land.
-  void PaintBodiesOver(const RenderTarget& target, const LandOutline& outline,
+  void PaintBodiesOver(const RenderTarget& target, const DepthPrepass& outline,
                        const PaintedView& view);
   /// Starts the timing of a pass that other code draws in the same frame.
   void Time(const char* pass) const { Begin(pass); }
@@ -161,7 +161,7 @@ class SkyPainter {
   PicturePrograms programs_;  // uses all members above
   PictureBlocks blocks_;
   RefractedDiskFollower refracted_sun_, refracted_moon_;
-  std::optional<SurfaceMap> surface_;
+  std::optional<GBuffer> surface_;
   std::optional<RenderTarget> picture_;
   std::optional<Shining> shining_;  // for the most recent view
   PassTimer* timer_ = nullptr;

@@ -79,7 +79,7 @@ int OctavesKept(ivec4 of, float footprint) {
   return min(of.y, int(kept));
 }
 
-// Returns the footprint for the finest detail, enlarged for the omitted octaves.
+// Returns the footprint for the finest detail, upscaled for the omitted octaves.
 float DetailFootprint(float footprint) { return footprint * exp2(cover_lines.z); }
 
 // Returns the sum of the octaves that a footprint resolves.

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
-// Writes the visible land to a SurfaceMap.
+// Writes the visible land to a GBuffer.
 in vec3 facing;
 in vec4 sky_light, moon_sky_light;
 in float disk_height;
-// Outputs of SurfaceMap of land_pass.h. The normal points to the visible side.
+// Outputs of GBuffer of land_pass.h. The normal points to the visible side.
 layout(location = 0) out vec4 surface;
 layout(location = 1) out vec4 sky_irradiance;
 layout(location = 2) out vec4 moon_sky_irradiance;

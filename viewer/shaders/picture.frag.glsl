@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The linear picture [cd/m^2, linear sRGB] lit by the sun or the moon, whichever the block View
-// holds as its sun, and the inverse depth of land (nearness.glsl). The passes are separated by the
+// holds as its sun, and the inverse depth of land (inverse_depth.glsl). The passes are separated by the
 // depth test against land, because software drivers evaluate both sides of a branch. Defined before
 // this text:
 //   PASS          LAND_PASS: land and the air in front of it; SKY_PASS: sky and bare planet;
@@ -111,7 +111,7 @@ void main() {
   vec4 radiance = ThroughFog(direction, distance_km, air.single + air.diffuse, ground) -
                   ShadeOnTheWay(direction, distance_km, distance_km, air.single);
   float along_m = surface.w * dot(direction, view_forward.xyz);
-  picture = vec4(LinearSrgb(sun_irradiance * radiance), Nearness(along_m));
+  picture = vec4(LinearSrgb(sun_irradiance * radiance), InverseDepth(along_m));
 #if HAS_LAMPS
   vec4 left = air.transmittance * FogTransmittance(direction, distance_km);
   picture.rgb += LampRgb(left * LampsReflected(seen, place, direction)) +

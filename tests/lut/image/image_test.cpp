@@ -15,7 +15,7 @@
 
 #include "atmosphere/base/error.h"
 #include "lut/layer.h"
-#include "lut/image/develop.h"
+#include "lut/image/development.h"
 #include "tests/fixtures/temporary_folder.h"
 
 namespace alpenglow::lut {

@@ -85,14 +85,14 @@ class LandscapePictures : public HeadlessLand {
     map_->Bind();
     land.Draw(kView);
     CheckGl("draw");
-    return map_->ReadValues(SurfaceMap::kSurface);
+    return map_->ReadValues(GBuffer::kSurface);
   }
   [[nodiscard]] std::vector<glm::vec4> Settled(Landscape& land, const LookOut& eye) const {
     land.Settle(eye.place, eye.View());
     return Draw(land, eye);
   }
 
-  std::optional<SurfaceMap> map_;
+  std::optional<GBuffer> map_;
 };
 
 struct Misses {
@@ -363,7 +363,7 @@ TEST_F(LandscapePictures, NewLightTakesThePlaceOfTheOldWhenAllOfItIsThere) {
   land.Settle(eye.place, eye.View());
   EXPECT_FALSE(land.IsRelighting());
   EXPECT_NEAR(middle().z, -2.0F, 1e-3F);
-  const glm::vec4 sky = PixelAt(map_->ReadValues(SurfaceMap::kSky), kWidth / 2, kHeight - 11);
+  const glm::vec4 sky = PixelAt(map_->ReadValues(GBuffer::kSky), kWidth / 2, kHeight - 11);
   EXPECT_NEAR(sky.x, 0.1F, 2e-4F);
   EXPECT_NEAR(sky.w, 0.4F, 4e-4F);
 }

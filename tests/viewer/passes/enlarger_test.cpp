@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Small pictures on large screens.
-#include "viewer/passes/darkroom.h"
+#include "viewer/passes/display_pass.h"
 
 #include <gtest/gtest.h>
 
@@ -20,7 +20,7 @@ constexpr glm::dvec2 kHalfView{0.577, 0.325};
 
 /// A screen with a hill before a mountain under a sky, whose edges run between pixels of the small
 /// picture.
-class EnlargerTest : public tests::Headless {
+class UpscalerTest : public tests::Headless {
  protected:
   enum class Seen { kSky, kMountain, kHill };
   static constexpr double kHill_m = 500.0, kMountain_m = 800.0;
@@ -33,16 +33,16 @@ class EnlargerTest : public tests::Headless {
   [[nodiscard]] static std::array<float, 4> PixelOf(Seen seen) {
     switch (seen) {
       case Seen::kHill:
-        return {0.1F, 0.5F, 0.2F, NearnessAt(kHill_m)};
+        return {0.1F, 0.5F, 0.2F, InverseDepthAt(kHill_m)};
       case Seen::kMountain:
-        return {0.3F, 0.3F, 0.4F, NearnessAt(kMountain_m)};
+        return {0.3F, 0.3F, 0.4F, InverseDepthAt(kMountain_m)};
       case Seen::kSky:
         break;
     }
     return {0.5F, 0.7F, 0.9F, 0.0F};
   }
-  /// Of nearness.glsl.
-  [[nodiscard]] static float NearnessAt(double along_view_m) {
+  /// Of inverse_depth.glsl.
+  [[nodiscard]] static float InverseDepthAt(double along_view_m) {
     return static_cast<float>(100.0 / along_view_m);
   }
 
@@ -57,30 +57,30 @@ class EnlargerTest : public tests::Headless {
     }
   }
   /// Depth as reversed_depth.glsl has it: 0.1 m is 1.
-  static void FillDepth(const LandOutline& outline,
-                        const std::function<float(int x, int y)>& nearness) {
+  static void FillDepth(const DepthPrepass& outline,
+                        const std::function<float(int x, int y)>& inverse_depth) {
     outline.Bind();
     for (int y = 0; y < outline.height(); ++y) {
       for (int x = 0; x < outline.width(); ++x) {
         const Scissor one({x, y, 1, 1});
-        const float depth = 1e-3F * nearness(x, y);
+        const float depth = 1e-3F * inverse_depth(x, y);
         glClearBufferfv(GL_DEPTH, 0, &depth);
       }
     }
   }
-  [[nodiscard]] static Image Enlarged(const RenderTarget& small, const LandOutline& outline) {
+  [[nodiscard]] static Image Upscaled(const RenderTarget& small, const DepthPrepass& outline) {
     const RenderTarget light(kPrintWidth, kPrintHeight);
-    Enlarger(Enlarger::Shows::kLight).Enlarge(small, outline, kHalfView, light.framebuffer());
+    Upscaler(Upscaler::Shows::kLight).Upscale(small, outline, kHalfView, light.framebuffer());
     return light.Read();
   }
 };
 
-TEST_F(EnlargerTest, EdgesOfLandAreAsSharpAsTheScreen) {
+TEST_F(UpscalerTest, EdgesOfLandAreAsSharpAsTheScreen) {
   const RenderTarget small(kPrintWidth / kSmaller, kPrintHeight / kSmaller);
   Fill(small, [](int x, int y) { return PixelOf(At(kSmaller * (x + 0.5), kSmaller * (y + 0.5))); });
-  const LandOutline outline(kPrintWidth, kPrintHeight);
+  const DepthPrepass outline(kPrintWidth, kPrintHeight);
   FillDepth(outline, [](int x, int y) { return PixelOf(At(x + 0.5, y + 0.5))[3]; });
-  const Image shown = Enlarged(small, outline);
+  const Image shown = Upscaled(small, outline);
   int wrong = 0;
   for (int y = 0; y < kPrintHeight; ++y) {
     for (int x = 0; x < kPrintWidth; ++x) {
@@ -95,18 +95,18 @@ TEST_F(EnlargerTest, EdgesOfLandAreAsSharpAsTheScreen) {
          "a hundredth is what pixels beyond an edge still count";
 }
 
-TEST_F(EnlargerTest, OnOneSurfaceLightIsInterpolated) {
-  const LandOutline outline(kPrintWidth, kPrintHeight);
+TEST_F(UpscalerTest, OnOneSurfaceLightIsInterpolated) {
+  const DepthPrepass outline(kPrintWidth, kPrintHeight);
   const RenderTarget small(kPrintWidth / kSmaller, kPrintHeight / kSmaller);
-  // Level ground: nearness falls to 0 at the horizon, here the upper rim of the picture.
-  const auto nearness = [](double y) { return static_cast<float>(2.0 * (1.0 - y / kPrintHeight)); };
+  // Level ground: inverse depth falls to 0 at the horizon, here the upper rim of the picture.
+  const auto inverse_depth = [](double y) { return static_cast<float>(2.0 * (1.0 - y / kPrintHeight)); };
   for (const bool is_land : {false, true}) {
     Fill(small, [&](int x, int y) {
       const auto light = static_cast<float>(kSmaller * (x + 0.5) + 3.0 * kSmaller * (y + 0.5));
-      return std::array{light, 0.0F, 0.0F, is_land ? nearness(kSmaller * (y + 0.5)) : 0.0F};
+      return std::array{light, 0.0F, 0.0F, is_land ? inverse_depth(kSmaller * (y + 0.5)) : 0.0F};
     });
-    FillDepth(outline, [&](int, int y) { return is_land ? nearness(y + 0.5) : 0.0F; });
-    const Image shown = Enlarged(small, outline);
+    FillDepth(outline, [&](int, int y) { return is_land ? inverse_depth(y + 0.5) : 0.0F; });
+    const Image shown = Upscaled(small, outline);
     for (int y = kSmaller; y < kPrintHeight - kSmaller; ++y) {
       for (int x = kSmaller; x < kPrintWidth - kSmaller; ++x) {
         ASSERT_NEAR(shown.at(x, kPrintHeight - 1 - y)[0], x + 0.5 + 3.0 * (y + 0.5), 1e-3)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "viewer/passes/developer.h"
+#include "viewer/passes/tone_map_pass.h"
 
 #include <gtest/gtest.h>
 

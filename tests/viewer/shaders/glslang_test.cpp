@@ -17,8 +17,8 @@
 #include "viewer/lamps/fog.h"
 #include "viewer/lamps/lamp_painter.h"
 #include "viewer/land/land_pass.h"
-#include "viewer/passes/darkroom.h"
-#include "viewer/passes/developer.h"
+#include "viewer/passes/display_pass.h"
+#include "viewer/passes/tone_map_pass.h"
 #include "viewer/passes/picture_programs.h"
 #include "viewer/shade/shafts.h"
 #include "viewer/shaders/full_screen.h"
@@ -57,7 +57,7 @@ TEST_F(Glslang, AcceptsTheShadersOfLandShaftsAndDisplay) {
   ExpectAccepted({}, "hud.frag.glsl");
   for (int curve = 0; curve < 5; ++curve) {
     for (const bool dithers : {false, true})
-      ExpectAccepted(DeveloperTexts(static_cast<ToneCurve>(curve), dithers), "develop.frag.glsl");
+      ExpectAccepted(ToneMapPassTexts(static_cast<ToneCurve>(curve), dithers), "tone_map.frag.glsl");
   }
   const ShaderPiece single = {
       "air",
@@ -77,10 +77,10 @@ TEST_F(Glslang, AcceptsTheShadersOfLandShaftsAndDisplay) {
   ExpectAccepted(land, "land.vert.glsl");
   for (const char* depth : {"reversed", "logarithmic"}) {
     const ShaderPiece depth_text = ViewerPiece(fmt::format("viewer/shaders/{}_depth.glsl", depth));
-    for (const char* drawn : {"land.frag.glsl", "land_outline.frag.glsl"})
+    for (const char* drawn : {"land.frag.glsl", "depth_prepass.frag.glsl"})
       ExpectAccepted(LandTexts(depth_text), drawn);
-    for (const auto shows : {Enlarger::Shows::kCodes, Enlarger::Shows::kLight})
-      ExpectAccepted(EnlargerTexts(shows, depth_text), "enlarge.frag.glsl");
+    for (const auto shows : {Upscaler::Shows::kCodes, Upscaler::Shows::kLight})
+      ExpectAccepted(UpscalerTexts(shows, depth_text), "upscale.frag.glsl");
   }
 }
 

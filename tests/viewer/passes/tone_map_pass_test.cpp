@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Pictures developed on the graphics card against Develop() of image.h.
-#include "viewer/passes/developer.h"
+#include "viewer/passes/tone_map_pass.h"
 
 #include <gtest/gtest.h>
 
@@ -32,15 +32,15 @@ Image Colours() {
   return image;
 }
 
-using DeveloperTest = tests::Headless;
+using ToneMapPassTest = tests::Headless;
 
-TEST_F(DeveloperTest, EveryToneCurveIsThatOfTheRendererWithinOneCode) {
+TEST_F(ToneMapPassTest, EveryToneCurveIsThatOfTheRendererWithinOneCode) {
   const Image image = Colours();
   const double ev100 = MeterEv100(image, kSunDiskLuminance_cd_per_m2);
   const RenderTarget picture(kFrameWidth, kFrameHeight, RenderTarget::Depth::kNone);
   picture.Write(image);
   const RenderTarget screen(kFrameWidth, kFrameHeight, RenderTarget::Depth::kNone);
-  Developer developer{Look{}};
+  ToneMapPass developer{Look{}};
   for (const ToneCurve curve : {ToneCurve::kAgx, ToneCurve::kAces, ToneCurve::kReinhard,
                                 ToneCurve::kPbrNeutral, ToneCurve::kLinear}) {
     developer.Use(Look{.curve = curve});
@@ -61,14 +61,14 @@ TEST_F(DeveloperTest, EveryToneCurveIsThatOfTheRendererWithinOneCode) {
   }
 }
 
-TEST_F(DeveloperTest, ADraftIsAFewCodesOffAndThenExact) {
+TEST_F(ToneMapPassTest, ADraftIsAFewCodesOffAndThenExact) {
   const Image image = Colours();
   const double ev100 = MeterEv100(image, kSunDiskLuminance_cd_per_m2);
   const RenderTarget picture(kFrameWidth, kFrameHeight, RenderTarget::Depth::kNone);
   picture.Write(image);
   const RenderTarget screen(kFrameWidth, kFrameHeight, RenderTarget::Depth::kNone);
   const DisplayImage reference = Develop(image, ev100, ToneCurve::kAgx);
-  const Developer developer(Look{}, Developer::FirstPictures::kDraft);
+  const ToneMapPass developer(Look{}, ToneMapPass::FirstPictures::kDraft);
   const auto most_off = [&] {
     developer.Develop(picture, ev100, {screen.framebuffer(), kFrameWidth, kFrameHeight});
     const Image codes = screen.Read();
@@ -87,12 +87,12 @@ TEST_F(DeveloperTest, ADraftIsAFewCodesOffAndThenExact) {
   EXPECT_LE(most_off(), 1);
 }
 
-TEST_F(DeveloperTest, LooksAndWhiteBalanceAreThoseOfTheRendererWithinOneCode) {
+TEST_F(ToneMapPassTest, LooksAndWhiteBalanceAreThoseOfTheRendererWithinOneCode) {
   const Image image = Colours();
   const RenderTarget picture(kFrameWidth, kFrameHeight, RenderTarget::Depth::kNone);
   picture.Write(image);
   const RenderTarget screen(kFrameWidth, kFrameHeight, RenderTarget::Depth::kNone);
-  Developer developer{Look{}};
+  ToneMapPass developer{Look{}};
   for (const AgxLook agx : {AgxLook::kNone, AgxLook::kPunchy, AgxLook::kPhoto}) {
     Look look{.agx = agx};
     look.white = {WhiteBalance::Kind::kKelvin, 4000.0};
@@ -104,13 +104,13 @@ TEST_F(DeveloperTest, LooksAndWhiteBalanceAreThoseOfTheRendererWithinOneCode) {
   }
 }
 
-TEST_F(DeveloperTest, APictureOfAnotherSizeFillsTheScreen) {
+TEST_F(ToneMapPassTest, APictureOfAnotherSizeFillsTheScreen) {
   Image image(8, 8);
   for (auto& pixel : image.rgb) pixel = {500.0F, 800.0F, 1000.0F};
   const RenderTarget picture(8, 8, RenderTarget::Depth::kNone);
   picture.Write(image);
   const RenderTarget screen(kFrameWidth, kFrameHeight, RenderTarget::Depth::kNone);
-  Developer(Look{}).Develop(picture, 12.0, {screen.framebuffer(), kFrameWidth, kFrameHeight});
+  ToneMapPass(Look{}).Develop(picture, 12.0, {screen.framebuffer(), kFrameWidth, kFrameHeight});
   Image even(kFrameWidth, kFrameHeight);
   for (auto& pixel : even.rgb) pixel = image.rgb[0];
   const DisplayImage reference = Develop(even, 12.0, ToneCurve::kAgx), shown = screen.ReadBytes();
@@ -126,7 +126,7 @@ TEST_F(ExposureMeterTest, ReadsWhatTheRenderersMeterDoes) {
   picture.Write(image);
   ExposureMeter meter;
   EXPECT_NEAR(meter.Read(picture, {}).ev100, MeterEv100(image, kSunDiskLuminance_cd_per_m2), 0.05)
-      << "the copy shows the same picture, enlarged";
+      << "the copy shows the same picture, upscaled";
   const RenderTarget large(4 * ExposureMeter::kLongSide, 2 * ExposureMeter::kLongSide,
                            RenderTarget::Depth::kNone);
   Image many(large.width(), large.height());

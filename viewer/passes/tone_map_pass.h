@@ -11,7 +11,7 @@
 // evenly spaced in its logarithm, from kLowestStop to kHighestStop relative to saturation. Colours
 // beyond the ends are clamped, since the curve is flat there.
 //
-// Developer applies all steps to a linear picture.
+// ToneMapPass applies all steps to a linear picture.
 #pragma once
 
 #include <array>
@@ -74,7 +74,7 @@ class SpotMeter {
   std::optional<double> luminance_;
 };
 
-/// DitherNoise (lut/image/develop.h) as a texture, four floats per pixel.
+/// DitherNoise (lut/image/development.h) as a texture, four floats per pixel.
 class DitherTexture {
  public:
   DitherTexture();
@@ -110,14 +110,14 @@ class ToneTable {
 
 /// Applies white balance, exposure, gamut mapping, tone curve and dither, as Seen and Develop
 /// (look.h) do. Local exposure and night vision are not applied.
-class Developer {
+class ToneMapPass {
  public:
   /// Behaviour before the table of the look is ready: kWait waits for it and is exact, kDraft uses
   /// a coarse table, with errors up to 9 codes.
   enum class FirstPictures { kWait, kDraft };
   /// The table of the look is computed on a worker thread.
   /// @param look  resolved (look.h), here and below.
-  explicit Developer(const Look& look, FirstPictures first = FirstPictures::kWait);
+  explicit ToneMapPass(const Look& look, FirstPictures first = FirstPictures::kWait);
 
   /// Changes the look. Parts that are equal in both looks are not recomputed.
   void Use(const Look& look);
@@ -135,7 +135,7 @@ class Developer {
   /// Fills only the pixels of an area.
   void Develop(const RenderTarget& picture, double ev100, const Screen& screen,
                const PassArea& area) const;
-  /// Writes codes in [0, 1] without dither, for an Enlarger, to a target of the picture's size. The
+  /// Writes codes in [0, 1] without dither, for an Upscaler, to a target of the picture's size. The
   /// fourth component of the picture is copied.
   void DevelopSmall(const RenderTarget& picture, double ev100, const RenderTarget& codes) const;
 
@@ -157,7 +157,7 @@ class Developer {
   DitherTexture dither_;
 };
 
-/// Returns the shader texts that develop.frag.glsl is built from.
-[[nodiscard]] std::vector<ShaderPiece> DeveloperTexts(ToneCurve curve, bool dithers);
+/// Returns the shader texts that tone_map.frag.glsl is built from.
+[[nodiscard]] std::vector<ShaderPiece> ToneMapPassTexts(ToneCurve curve, bool dithers);
 
 }  // namespace alpenglow::viewer

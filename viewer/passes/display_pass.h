@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 // Display of rendered pictures on a screen, which may be larger than the picture.
 //
-// Darkroom shows the picture that a SkyPainter rendered. If the picture is smaller than the screen,
-// it is tone-mapped at its own resolution and then upscaled by Enlarger, which interpolates smooth
-// areas and uses the edges of land at screen resolution (shaders/enlarge.frag.glsl). The cost of
+// DisplayPass shows the picture that a SkyPainter rendered. If the picture is smaller than the screen,
+// it is tone-mapped at its own resolution and then upscaled by Upscaler, which interpolates smooth
+// areas and uses the edges of land at screen resolution (shaders/upscale.frag.glsl). The cost of
 // lighting is that of the small picture, and edges stay sharp.
 #pragma once
 
@@ -15,30 +15,30 @@
 #include "viewer/gl/render_target.h"
 #include "viewer/gl/shader.h"
 #include "viewer/land/land_pass.h"
-#include "viewer/passes/developer.h"
+#include "viewer/passes/tone_map_pass.h"
 #include "viewer/passes/sky_painter.h"
 #include "viewer/shaders/full_screen.h"
 
 namespace alpenglow::viewer {
 
-class Enlarger {
+class Upscaler {
  public:
   enum class Shows {
     kCodes,  // display codes, dithered to bytes
     kLight   // linear light, for comparisons
   };
-  explicit Enlarger(Shows shows);
+  explicit Upscaler(Shows shows);
 
   /// Fills the framebuffer (0: the window), which has the size of the outline.
-  /// @param small      of any size, with the inverse depth of land (shaders/nearness.glsl) in its
+  /// @param small      of any size, with the inverse depth of land (shaders/inverse_depth.glsl) in its
   ///   fourth component.
   /// @param half_view  tangents of half the horizontal and half the vertical field of view.
-  void Enlarge(const RenderTarget& small, const LandOutline& outline, const glm::dvec2& half_view,
+  void Upscale(const RenderTarget& small, const DepthPrepass& outline, const glm::dvec2& half_view,
                GLuint framebuffer) const {
-    Enlarge(small, outline, half_view, framebuffer, whole_);
+    Upscale(small, outline, half_view, framebuffer, whole_);
   }
   /// Fills only the pixels of an area.
-  void Enlarge(const RenderTarget& small, const LandOutline& outline, const glm::dvec2& half_view,
+  void Upscale(const RenderTarget& small, const DepthPrepass& outline, const glm::dvec2& half_view,
                GLuint framebuffer, const PassArea& area) const;
 
  private:
@@ -48,41 +48,41 @@ class Enlarger {
   DitherTexture dither_;
 };
 
-/// Returns the shader texts that enlarge.frag.glsl is built from.
+/// Returns the shader texts that upscale.frag.glsl is built from.
 /// @param depth  text of a depth mode: LandPass::DepthText, or the other one.
-[[nodiscard]] std::vector<ShaderPiece> EnlargerTexts(Enlarger::Shows shows,
+[[nodiscard]] std::vector<ShaderPiece> UpscalerTexts(Upscaler::Shows shows,
                                                      const ShaderPiece& depth);
 
-class Darkroom {
+class DisplayPass {
  public:
-  explicit Darkroom(const Look& look,
-                    Developer::FirstPictures first = Developer::FirstPictures::kWait)
+  explicit DisplayPass(const Look& look,
+                    ToneMapPass::FirstPictures first = ToneMapPass::FirstPictures::kWait)
       : developer_(look, first) {}
 
-  [[nodiscard]] Developer& developer() { return developer_; }
-  [[nodiscard]] const Developer& developer() const { return developer_; }
+  [[nodiscard]] ToneMapPass& developer() { return developer_; }
+  [[nodiscard]] const ToneMapPass& developer() const { return developer_; }
 
   /// Returns whether a view is upscaled on this screen. Its picture must then be rendered without
   /// disks and stars, which are added at screen resolution.
-  [[nodiscard]] static bool Enlarges(const PaintedView& view, const Developer::Screen& screen) {
+  [[nodiscard]] static bool Upscales(const PaintedView& view, const ToneMapPass::Screen& screen) {
     return view.width < screen.width || view.height < screen.height;
   }
   /// Shows the most recent picture, which must be of this view.
   void Print(SkyPainter& painter, const PaintedView& view, double ev100,
-             const Developer::Screen& screen);
+             const ToneMapPass::Screen& screen);
 
  private:
-  void PrintEnlarged(SkyPainter& painter, const PaintedView& view, double ev100,
-                     const Developer::Screen& screen);
+  void DrawUpscaled(SkyPainter& painter, const PaintedView& view, double ev100,
+                     const ToneMapPass::Screen& screen);
   void PrintBodies(SkyPainter& painter, const PaintedView& view, double ev100,
-                   const Developer::Screen& screen, const std::vector<PixelBox>& boxes);
+                   const ToneMapPass::Screen& screen, const std::vector<PixelBox>& boxes);
   void MakeReady(SkyPainter& painter, const PaintedView& view, double ev100,
-                 const Developer::Screen& screen);
+                 const ToneMapPass::Screen& screen);
 
-  Developer developer_;
-  Enlarger code_enlarger_{Enlarger::Shows::kCodes}, light_enlarger_{Enlarger::Shows::kLight};
+  ToneMapPass developer_;
+  Upscaler code_enlarger_{Upscaler::Shows::kCodes}, light_enlarger_{Upscaler::Shows::kLight};
   std::optional<RenderTarget> codes_, light_;  // at picture size; at screen size
-  std::optional<LandOutline> outline_;
+  std::optional<DepthPrepass> outline_;
   PassArea bodies_;
   int prints_ = 0;
 };

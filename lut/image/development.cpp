@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "lut/image/develop.h"
+#include "lut/image/development.h"
 
 #include <fmt/format.h>
 #include <oneapi/tbb/parallel_for.h>

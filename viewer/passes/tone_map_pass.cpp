@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "viewer/passes/developer.h"
+#include "viewer/passes/tone_map_pass.h"
 
 #include <fmt/format.h>
 #include <oneapi/tbb/parallel_for.h>
@@ -12,7 +12,7 @@
 #include <utility>
 #include <vector>
 
-#include "lut/image/develop.h"
+#include "lut/image/development.h"
 #include "lut/image/tone_mapping.h"
 #include "viewer/gl/gl_context.h"
 #include "viewer/gl/render_target.h"
@@ -132,11 +132,11 @@ ToneTable::ToneTable(AgxLook look, int side) : side_(side) {
 
 namespace {
 
-enum DeveloperUnit { kPicture, kDither, kTable };
+enum ToneMapPassUnit { kPicture, kDither, kTable };
 
 ShaderProgram ProgramOf(ToneCurve curve, bool dithers) {
   ShaderProgram program = FullScreenProgram(
-      WithViewerPieces(DeveloperTexts(curve, dithers), {"viewer/shaders/develop.frag.glsl"}));
+      WithViewerPieces(ToneMapPassTexts(curve, dithers), {"viewer/shaders/tone_map.frag.glsl"}));
   program.BindSampler("linear_picture", kPicture);
   program.BindSampler("tone_table", kTable);
   glUniform2f(program.Uniform("stops"), static_cast<float>(ToneTable::kLowestStop),
@@ -150,19 +150,19 @@ void Upload(const GlTexture& texture, const ToneTable& table) {
   glTexImage3D(GL_TEXTURE_3D, 0, GL_RGBA32F, table.side(), table.side(), table.side(), 0, GL_RGB,
                GL_FLOAT, table.codes().data());
   ClampAndFilter(GL_TEXTURE_3D, true);
-  CheckGl("Developer");
+  CheckGl("ToneMapPass");
 }
 
 }  // namespace
 
-std::vector<ShaderPiece> DeveloperTexts(ToneCurve curve, bool dithers) {
+std::vector<ShaderPiece> ToneMapPassTexts(ToneCurve curve, bool dithers) {
   std::vector<ShaderPiece> texts = SharedTexts();
   texts.push_back({"curve", fmt::format("#define CURVE {}\n#define DITHERS {}\n",
                                         static_cast<int>(curve), dithers ? 1 : 0)});
   return WithViewerPieces(std::move(texts), {"viewer/shaders/dither_tile.glsl"});
 }
 
-Developer::Developer(const Look& look, FirstPictures first)
+ToneMapPass::ToneMapPass(const Look& look, FirstPictures first)
     : look_(look),
       program_(ProgramOf(look.curve, true)),
       small_program_(ProgramOf(look.curve, false)),
@@ -170,19 +170,19 @@ Developer::Developer(const Look& look, FirstPictures first)
   if (first_ == FirstPictures::kWait) MakeTable();
 }
 
-void Developer::MakeTable() const {
+void ToneMapPass::MakeTable() const {
   is_asked_ = true;
   coming_ = std::async(std::launch::async, [look = look_.agx] { return ToneTable(look); });
 }
 
-void Developer::UploadDraft() const {
+void ToneMapPass::UploadDraft() const {
   constexpr int kSide = 24;
   Upload(table_, ToneTable(look_.agx, kSide));
 }
 
 // The table takes half a second on both processors, which the first frame needs itself. It is
 // therefore requested in the second frame.
-void Developer::TakeTable() const {
+void ToneMapPass::TakeTable() const {
   if (!is_asked_ && !std::exchange(has_draft_, true)) return UploadDraft();
   if (!is_asked_) return MakeTable();
   if (!coming_.valid()) return;
@@ -192,7 +192,7 @@ void Developer::TakeTable() const {
   Upload(table_, coming_.get());
 }
 
-void Developer::Use(const Look& look) {
+void ToneMapPass::Use(const Look& look) {
   const Look before = std::exchange(look_, look);
   if (look.curve != before.curve) {
     program_ = ProgramOf(look.curve, true);
@@ -203,7 +203,7 @@ void Developer::Use(const Look& look) {
   if (first_ == FirstPictures::kWait) MakeTable();
 }
 
-void Developer::Fill(const ShaderProgram& program, const RenderTarget& picture, double ev100,
+void ToneMapPass::Fill(const ShaderProgram& program, const RenderTarget& picture, double ev100,
                      const Screen& screen, const PassArea& area) const {
   TakeTable();
   glBindFramebuffer(GL_FRAMEBUFFER, screen.framebuffer);
@@ -222,15 +222,15 @@ void Developer::Fill(const ShaderProgram& program, const RenderTarget& picture, 
     rows[i] = static_cast<GLfloat>(balance[i / 3][i % 3]);
   glUniformMatrix3fv(program.Uniform("balance"), 1, GL_TRUE, rows.data());
   area.Draw(program);
-  CheckGl("Developer::Develop");
+  CheckGl("ToneMapPass::Develop");
 }
 
-void Developer::Develop(const RenderTarget& picture, double ev100, const Screen& screen,
+void ToneMapPass::Develop(const RenderTarget& picture, double ev100, const Screen& screen,
                         const PassArea& area) const {
   Fill(program_, picture, ev100, screen, area);
 }
 
-void Developer::DevelopSmall(const RenderTarget& picture, double ev100,
+void ToneMapPass::DevelopSmall(const RenderTarget& picture, double ev100,
                              const RenderTarget& codes) const {
   Fill(small_program_, picture, ev100, {codes.framebuffer(), codes.width(), codes.height()},
        whole_);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Tone mapping of the picture for a display: white balance, exposure, gamut, tone curve and dither,
-// as in Develop (look.h). AgX is read from its table (developer.h). Defined before this text:
-// CURVE, a ToneCurve; DITHERS, 0 for codes that enlarge.frag.glsl reads, else 1.
+// as in Develop (look.h). AgX is read from its table (tone_map_pass.h). Defined before this text:
+// CURVE, a ToneCurve; DITHERS, 0 for codes that upscale.frag.glsl reads, else 1.
 uniform sampler2D linear_picture;  // any size
 uniform sampler3D tone_table;
 uniform vec2 stops;        // relative to saturation, at the first and last node of the table

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Windows whose light is painted small.
-#include "viewer/passes/darkroom.h"
+#include "viewer/passes/display_pass.h"
 
 #include <gtest/gtest.h>
 
@@ -18,7 +18,7 @@
 namespace alpenglow::viewer {
 namespace {
 
-class DarkroomTest : public tests::HeadlessTile {
+class DisplayPassTest : public tests::HeadlessTile {
  protected:
   static constexpr ImageSize kScreen{480, 270};
 
@@ -40,7 +40,7 @@ class DarkroomTest : public tests::HeadlessTile {
 };
 
 // The sun stands over a ridge.
-TEST_F(DarkroomTest, LowQualityShowsWhatMediumDoes) {
+TEST_F(DisplayPassTest, LowQualityShowsWhatMediumDoes) {
   const DisplayImage low = Shown(Quality::kLow), medium = Shown(Quality::kMedium);
   ASSERT_EQ(low.rgb.size(), medium.rgb.size());
   std::vector<int> off;
@@ -84,11 +84,11 @@ class SmallPictures : public tests::Headless {
     painter.Settle(view);
     const RenderTarget screen(kScreen.width, kScreen.height, {PixelFormat::kRgba8},
                               RenderTarget::Depth::kNone);
-    const Developer::Screen on{screen.framebuffer(), kScreen.width, kScreen.height};
+    const ToneMapPass::Screen on{screen.framebuffer(), kScreen.width, kScreen.height};
     painter.Paint(
         view, 1,
-        Darkroom::Enlarges(view, on) ? SkyPainter::Bodies::kNone : SkyPainter::Bodies::kAll);
-    Darkroom(Look{}).Print(painter, view, window.ev100, on);
+        DisplayPass::Upscales(view, on) ? SkyPainter::Bodies::kNone : SkyPainter::Bodies::kAll);
+    DisplayPass(Look{}).Print(painter, view, window.ev100, on);
     return screen.ReadBytes();
   }
   static LandingLight LandingLightOf(const Eye& eye) {

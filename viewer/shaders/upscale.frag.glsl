@@ -3,8 +3,8 @@
 // surface as this fragment, they are interpolated bilinearly. At an edge of land, whose position
 // `outline` holds at screen resolution, the pixels at about the fragment's distance are used.
 // DITHERS is 1 for display codes, else 0.
-uniform sampler2D small_picture;  // inverse depth of land (nearness.glsl) in the fourth component
-uniform sampler2D outline;        // depth of LandOutline; of the screen's size
+uniform sampler2D small_picture;  // inverse depth of land (inverse_depth.glsl) in the fourth component
+uniform sampler2D outline;        // depth of DepthPrepass; of the screen's size
 uniform vec2 half_view;           // tangents of half the horizontal and vertical field of view
 in vec2 screen;
 out vec4 shown;
@@ -39,7 +39,7 @@ vec4 SmallAt(vec2 screen, float own) {
 void main() {
   float slant = length(vec3(screen * half_view, 1.0));
   float depth = texelFetch(outline, ivec2(gl_FragCoord.xy), 0).x;
-  vec4 found = SmallAt(screen, NearnessOfDepth(depth, slant));
+  vec4 found = SmallAt(screen, InverseDepthOf(depth, slant));
 #if DITHERS
   shown = vec4(Dithered(found.rgb), 1.0);
 #else
