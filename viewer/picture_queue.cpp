@@ -67,7 +67,7 @@ void GiveWayToTheWindow() {
 }
 
 // Written pictures use the complete atmosphere and exact tables from the start.
-FlythroughSettings WithoutDrafts(FlythroughSettings settings) {
+FlightSessionSettings WithoutDrafts(FlightSessionSettings settings) {
   settings.first_air = {};
   return settings;
 }
@@ -77,10 +77,10 @@ FlythroughSettings WithoutDrafts(FlythroughSettings settings) {
 /// A flight that paints pictures in its own OpenGL context.
 struct PictureQueue::SecondFlight {
   HeadlessContext context;
-  Flythrough flight;
+  FlightSession flight;
 };
 
-PictureQueue::PictureQueue(const Scene& scene, const FlythroughSettings& settings)
+PictureQueue::PictureQueue(const Scene& scene, const FlightSessionSettings& settings)
     : scene_(scene),
       settings_(WithoutDrafts(settings)),
       thread_([this](const std::stop_token& stop) { Run(stop); }) {}
@@ -189,7 +189,7 @@ void PictureQueue::Note(double share) {
 }
 
 void PictureQueue::Write(const PictureRequest& request, SecondFlight& second) {
-  Flythrough& flight = second.flight;
+  FlightSession& flight = second.flight;
   const auto progress = [this](double share) { Note(share); };
   flight.TakeUp(request.moment);
   if (!request.instruments) return flight.WritePicture(request.file, request.size, progress);
@@ -207,7 +207,7 @@ std::string PictureQueue::Make(const PictureRequest& request,
   try {
     Note(0.0);
     if (!second)
-      second.reset(new SecondFlight{{}, Flythrough(scene_, request.moment.now, settings_)});
+      second.reset(new SecondFlight{{}, FlightSession(scene_, request.moment.now, settings_)});
     Write(request, *second);
     return "";
   } catch (const Dropped&) {

@@ -22,7 +22,7 @@
 #include <thread>
 #include <vector>
 
-#include "viewer/flythrough.h"
+#include "viewer/flight_session.h"
 
 namespace alpenglow::viewer {
 
@@ -64,7 +64,7 @@ struct PictureUnderWay {
 class PictureQueue {
  public:
   /// Takes the first scene and the settings of a flight.
-  PictureQueue(const Scene& scene, const FlythroughSettings& settings);
+  PictureQueue(const Scene& scene, const FlightSessionSettings& settings);
   /// Finishes all requests that were not dropped.
   ~PictureQueue();
   PictureQueue(const PictureQueue&) = delete;
@@ -109,7 +109,7 @@ class PictureQueue {
   void DrawOverlay(std::unique_lock<std::mutex>& lock);
 
   Scene scene_;
-  FlythroughSettings settings_;
+  FlightSessionSettings settings_;
   mutable std::mutex mutex_;
   std::condition_variable_any changed_;
   std::deque<PictureRequest> requests_;  // the first one is being made

@@ -166,7 +166,7 @@ double LeastMs(const std::function<void()>& draw) {
   return least_ms;
 }
 
-TimedPicture Paint(Flythrough& flight, const PaintedView& view, const PaintSizes& sizes) {
+TimedPicture Paint(FlightSession& flight, const PaintedView& view, const PaintSizes& sizes) {
   SkyPainter& painter = flight.painter();
   painter.Use(sizes);
   painter.Settle(view);
@@ -203,7 +203,7 @@ class OneRay {
   Upscaler enlarger_{Upscaler::Shows::kLight};
 };
 
-Image ReferenceOf(const Flythrough& flight, const ImageSize& size) {
+Image ReferenceOf(const FlightSession& flight, const ImageSize& size) {
   RenderSettings settings;
   settings.width = size.width;
   settings.height = size.height;
@@ -220,7 +220,7 @@ std::string Row(const std::string& name, const ViewDifference& is, const std::st
 
 // Compares a view that is painted at a fraction of its size and upscaled with the view at one ray
 // per pixel.
-std::string FewerRays(Flythrough& flight, const PaintedView& view,
+std::string FewerRays(FlightSession& flight, const PaintedView& view,
                       const std::vector<Channel>& edges, double scale) {
   flight.painter().Settle(view);
   OneRay of_view(flight.painter(), view);
@@ -233,7 +233,7 @@ std::string FewerRays(Flythrough& flight, const PaintedView& view,
 
 }  // namespace
 
-std::string ExplainView(Flythrough& flight, const ImageSize& size) {
+std::string ExplainView(FlightSession& flight, const ImageSize& size) {
   flight.Settle(size);
   const Quality quality = flight.quality_rule().fixed.value_or(Quality::kMedium);
   const PaintSizes sizes = SizesOf(quality);

@@ -18,7 +18,7 @@
 #include <vector>
 
 #include "viewer/flight/flight_recorder.h"
-#include "viewer/flythrough.h"
+#include "viewer/flight_session.h"
 #include "viewer/gl/pass_timer.h"
 
 namespace alpenglow::viewer {
@@ -91,6 +91,6 @@ class Benchmark {
 /// against its best setting. Its columns are the mean, 99 % and 99.9 % of pixels (ViewDifference)
 /// and the frame time that the shortcut saves. The renderer uses the land that the scene names, or
 /// for several elevation models the land that is loaded around the eye.
-[[nodiscard]] std::string ExplainView(Flythrough& flight, const ImageSize& size);
+[[nodiscard]] std::string ExplainView(FlightSession& flight, const ImageSize& size);
 
 }  // namespace alpenglow::viewer

@@ -14,8 +14,8 @@
 #include "renderer/series/video.h"
 #include "viewer/flight/flight_recorder.h"
 #include "viewer/flight/places.h"
-#include "viewer/flight_deck.h"
-#include "viewer/flythrough.h"
+#include "viewer/viewer_app.h"
+#include "viewer/flight_session.h"
 #include "viewer/gl/gl_context.h"
 #include "viewer/gl/picture_tiles.h"
 #include "viewer/gl/render_target.h"
@@ -89,7 +89,7 @@ UtcInstant StartOf(const SkyviewOptions& options, const Scene& scene) {
 }
 
 // Without a display, a frame lasts 1/60 s of scene time.
-void PaintHeadless(const SkyviewOptions& options, Flythrough& flight, const ImageSize& size,
+void PaintHeadless(const SkyviewOptions& options, FlightSession& flight, const ImageSize& size,
                    FlightRecorder& recorder) {
   constexpr double kFrame_s = 1.0 / 60.0;
   if (options.record) flight.Settle(size);  // points are recorded only once the ground is known
@@ -100,7 +100,7 @@ void PaintHeadless(const SkyviewOptions& options, Flythrough& flight, const Imag
   }
   if (options.hud == "on") {
     FlightRecorder none;
-    FlightDeck deck(flight, none, {options.hud_scale > 0.0 ? options.hud_scale : 1.0, true, {}});
+    ViewerApp deck(flight, none, {options.hud_scale > 0.0 ? options.hud_scale : 1.0, true, {}});
     deck.WritePicture(*options.screenshot, size);
   } else {
     flight.WritePicture(*options.screenshot, size);
@@ -114,7 +114,7 @@ ToneMapPass::Screen ScreenOf(const Window& window) { return {0, window.width(), 
 /// is lost.
 class LossOfDisplay {
  public:
-  LossOfDisplay(Window& window, FlightRecorder& recorder, FlightDeck& deck)
+  LossOfDisplay(Window& window, FlightRecorder& recorder, ViewerApp& deck)
       : window_(window), recorder_(recorder) {
     window.AtLostDisplay([&recorder, &deck] {
       try {
@@ -136,12 +136,12 @@ class LossOfDisplay {
   FlightRecorder& recorder_;
 };
 
-void Fly(const SkyviewOptions& options, Flythrough& flight, Window& window,
+void Fly(const SkyviewOptions& options, FlightSession& flight, Window& window,
          FlightRecorder& recorder) {
   using Clock = std::chrono::steady_clock;
   int frames = 0;
   const double scale = options.hud_scale > 0.0 ? options.hud_scale : window.content_scale();
-  FlightDeck deck(flight, recorder,
+  ViewerApp deck(flight, recorder,
                   {scale,
                    options.hud != "off",
                    {.invert_y = options.invert_y, .invert_look_y = options.invert_y}});
@@ -174,7 +174,7 @@ void Fly(const SkyviewOptions& options, Flythrough& flight, Window& window,
 }
 
 // Draws the scripted flight into a window or, without a window, into a picture of the given size.
-void RunBenchmark(double seconds, Flythrough& flight, const ImageSize& size, Window* window) {
+void RunBenchmark(double seconds, FlightSession& flight, const ImageSize& size, Window* window) {
   const RenderTarget picture(size.width, size.height, {PixelFormat::kRgba8},
                              RenderTarget::Depth::kNone);
   const ToneMapPass::Screen screen{window == nullptr ? picture.framebuffer() : 0, size.width,
@@ -199,7 +199,7 @@ void RunBenchmark(double seconds, Flythrough& flight, const ImageSize& size, Win
 }
 
 void WriteFilm(const SkyviewOptions& options, const CameraPath& path, const ImageSize& size,
-               Flythrough& flight) {
+               FlightSession& flight) {
   const double length_s = path.end_s() - path.begin_s();
   const int frames = 1 + static_cast<int>(length_s * options.fps);
   const VideoSettings settings{
@@ -247,7 +247,7 @@ void RequireOutputs(const SkyviewOptions& options, const Scene& scene) {
 }
 
 /// Writes the notes about the land to standard error.
-void SayNotes(Flythrough& flight) {
+void SayNotes(FlightSession& flight) {
   for (const std::string& note : flight.TakeNotes()) Say(fmt::format("skyview: {}\n", note));
 }
 
@@ -278,7 +278,7 @@ int Run(const SkyviewOptions& options) {
   if (!options.common.quiet) Say(fmt::format("skyview: {}\n", GlDescription()));
   if (window) RequireDrawable(std::max(window->width(), 1), std::max(window->height(), 1));
   if (headless && !PaintsInParts(options)) RequireDrawable(size.width, size.height);
-  Flythrough flight(
+  FlightSession flight(
       scene, start,
       {LandOf(options, scene), QualityRuleFromText(options.quality), options.frame_rate, size,
        std::nullopt, FlightExposureFromText(options.exposure), LookOf(options),

@@ -23,8 +23,8 @@ class PictureQueueTest : public tests::HeadlessTile {
     return SceneOverTile(tests::PlaceOfSample(120.0, 200.0, 0.0),
                          CameraFromDegrees({3500.0, false}, 330.0, -8.0, 7.0, 75.0));
   }
-  [[nodiscard]] static FlythroughSettings SettingsFor(const Scene& scene) {
-    FlythroughSettings settings;
+  [[nodiscard]] static FlightSessionSettings SettingsFor(const Scene& scene) {
+    FlightSessionSettings settings;
     settings.land = LandSourceOf(scene);
     settings.quality = {Quality::kLow};
     settings.size = kSize;
@@ -46,9 +46,9 @@ class PictureQueueTest : public tests::HeadlessTile {
 // The flight goes to another place, time, air and exposure as soon as the picture is asked for.
 TEST_F(PictureQueueTest, APictureIsThatOfItsMomentWhateverFollows) {
   const Scene scene = Mountains();
-  const FlythroughSettings settings = SettingsFor(scene);
+  const FlightSessionSettings settings = SettingsFor(scene);
   const RenderTarget screen(kSize.width, kSize.height, RenderTarget::Depth::kNone);
-  Flythrough flight(scene, Evening(), settings);
+  FlightSession flight(scene, Evening(), settings);
   flight.Settle(kSize);
   AirChoice haze;
   haze.aerosol = 2.0;
@@ -68,7 +68,7 @@ TEST_F(PictureQueueTest, APictureIsThatOfItsMomentWhateverFollows) {
     flight.Paint({screen.framebuffer(), kSize.width, kSize.height}, 0.1);
   }
   for (const PictureOutcome& outcome : queue.TakeOutcomes()) EXPECT_EQ(outcome.fault, "");
-  Flythrough resting(scene, Evening(), settings);
+  FlightSession resting(scene, Evening(), settings);
   resting.Use(haze);
   resting.SetExposure(12.0);
   resting.WritePicture(File("resting.exr"), kSize);
@@ -83,9 +83,9 @@ TEST_F(PictureQueueTest, APictureIsThatOfItsMomentWhateverFollows) {
 
 TEST_F(PictureQueueTest, FramesAreDrawnBetweenThePartsOfAPicture) {
   const Scene scene = Mountains();
-  const FlythroughSettings settings = SettingsFor(scene);
+  const FlightSessionSettings settings = SettingsFor(scene);
   PictureQueue queue(scene, settings);
-  Flythrough flight(scene, Evening(), settings);
+  FlightSession flight(scene, Evening(), settings);
   queue.Ask({flight.Moment(), File("picture.png"), kSize});
   std::set<double> shares;
   int frames = 0;
@@ -107,9 +107,9 @@ TEST_F(PictureQueueTest, FramesAreDrawnBetweenThePartsOfAPicture) {
 
 TEST_F(PictureQueueTest, AFolderThatIsGoneIsToldAndTheNextPictureIsWritten) {
   const Scene scene = Mountains();
-  const FlythroughSettings settings = SettingsFor(scene);
+  const FlightSessionSettings settings = SettingsFor(scene);
   PictureQueue queue(scene, settings);
-  Flythrough flight(scene, Evening(), settings);
+  FlightSession flight(scene, Evening(), settings);
   queue.Ask({flight.Moment(), File("gone") / "picture.png", kSize});
   queue.Ask({flight.Moment(), File("picture.png"), kSize});
   const std::vector<PictureOutcome> outcomes = DrawUntilEnd(queue);
@@ -121,8 +121,8 @@ TEST_F(PictureQueueTest, AFolderThatIsGoneIsToldAndTheNextPictureIsWritten) {
 
 TEST_F(PictureQueueTest, AQueueThatGoesHasWrittenWhatWasAskedFor) {
   const Scene scene = Mountains();
-  const FlythroughSettings settings = SettingsFor(scene);
-  Flythrough flight(scene, Evening(), settings);
+  const FlightSessionSettings settings = SettingsFor(scene);
+  FlightSession flight(scene, Evening(), settings);
   {
     PictureQueue queue(scene, settings);
     queue.Ask({flight.Moment(), File("picture.png"), kSize});
@@ -132,8 +132,8 @@ TEST_F(PictureQueueTest, AQueueThatGoesHasWrittenWhatWasAskedFor) {
 
 TEST_F(PictureQueueTest, WithoutAWindowPicturesWithInstrumentsAreNotWritten) {
   const Scene scene = Mountains();
-  const FlythroughSettings settings = SettingsFor(scene);
-  Flythrough flight(scene, Evening(), settings);
+  const FlightSessionSettings settings = SettingsFor(scene);
+  FlightSession flight(scene, Evening(), settings);
   PictureQueue queue(scene, settings);
   const auto no_instruments = [](const Image&) {
     ADD_FAILURE() << "drawn into a window that has gone";

@@ -18,7 +18,7 @@ static_assert(kShiftKey == GLFW_MOD_SHIFT && kControlKey == GLFW_MOD_CONTROL &&
               kAltKey == GLFW_MOD_ALT);
 
 constexpr Modes kAll{true, true, true}, kFree{true, false, false}, kAircraft{false, true, false},
-    kTrack{false, false, true}, kCockpit{false, true, true}, kNotAircraft{true, false, true};
+    kTrack{false, false, true}, kFlightController{false, true, true}, kNotAircraft{true, false, true};
 constexpr Press kOnce = Press::kOnce, kAgain = Press::kRepeating, kHeld = Press::kHeld;
 constexpr std::string_view kAllKeys = "Everywhere", kCameraKeys = "Free camera",
                            kSpeedKeys = "Free camera and track", kTrackKeys = "Track",
@@ -200,7 +200,7 @@ std::vector<Binding> AllBindings() {
     for (const std::string_view key : SplitAtCommas(row.keys))
       bindings.push_back({KeyChordFromText(key), &row, row.modes});
     for (const std::string_view key : SplitAtCommas(row.keys_in_cockpit))
-      bindings.push_back({KeyChordFromText(key), &row, kCockpit});
+      bindings.push_back({KeyChordFromText(key), &row, kFlightController});
   }
   return bindings;
 }

@@ -8,7 +8,7 @@
 
 #include "atmosphere/math/constants.h"
 #include "atmosphere/base/error.h"
-#include "viewer/flythrough.h"
+#include "viewer/flight_session.h"
 
 namespace alpenglow::viewer {
 namespace {

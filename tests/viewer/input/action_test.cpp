@@ -30,7 +30,7 @@ TEST(Action, EveryActionHasItsLineInTheTable) {
   }
 }
 
-/// All keys that the table names: chord, row, and whether in the cockpit alone.
+/// All keys that the table names: chord, row, and whether in the flight controller alone.
 template <typename Visit>
 void ForEachKey(const Visit& visit) {
   for (const ActionRow& row : ActionTable()) {

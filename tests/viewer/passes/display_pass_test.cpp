@@ -12,7 +12,7 @@
 #include "tests/fixtures/parity_views.h"
 #include "tests/fixtures/sanitized.h"
 #include "tests/viewer/land/headless_land.h"
-#include "viewer/flythrough.h"
+#include "viewer/flight_session.h"
 #include "viewer/passes/auto_quality.h"
 
 namespace alpenglow::viewer {
@@ -25,11 +25,11 @@ class DisplayPassTest : public tests::HeadlessTile {
   [[nodiscard]] DisplayImage Shown(Quality quality) const {
     const Scene scene = SceneOverTile(tests::PlaceOfSample(225.0, 215.0, 0.0),
                                       CameraFromDegrees({2200.0, false}, 303.0, 0.0, 7.0, 50.0));
-    FlythroughSettings settings;
+    FlightSessionSettings settings;
     settings.land = LandSourceOf(scene);
     settings.quality = {quality};
     settings.size = kScreen;
-    Flythrough flight(scene, ParseInstant("2026-06-21T18:40:00Z"), settings);
+    FlightSession flight(scene, ParseInstant("2026-06-21T18:40:00Z"), settings);
     flight.Settle(kScreen);
     flight.SetExposure(15.0);
     const RenderTarget screen(kScreen.width, kScreen.height, {PixelFormat::kRgba8},

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Defines the functions of Flythrough that write pictures and that save and restore moments of a
+// Defines the functions of FlightSession that write pictures and that save and restore moments of a
 // flight.
 #include <fmt/format.h>
 
@@ -11,7 +11,7 @@
 #include "atmosphere/base/parsing.h"
 #include "lut/cli/program.h"
 #include "renderer/series/manifest.h"
-#include "viewer/flythrough.h"
+#include "viewer/flight_session.h"
 #include "viewer/gl/picture_tiles.h"
 
 namespace alpenglow::viewer {
@@ -36,14 +36,14 @@ void RequirePictureName(const std::filesystem::path& file) {
       fmt::format("\"{}\" is no picture's name; it must end in .png or .exr", file.string()));
 }
 
-FlightMoment Flythrough::Moment() const {
+FlightMoment FlightSession::Moment() const {
   return {eye(),          now(),         knows_ground_, waits_above_ground_m_,
           scene_.terrain, medium_,       air_,          sky_air_,
           rule_,          look_,         white_,        rule_of_exposure_,
           exposure_,      landing_light_};
 }
 
-void Flythrough::TakeUp(const FlightMoment& moment) {
+void FlightSession::TakeUp(const FlightMoment& moment) {
   // The eye keeps its position, whatever land is loaded here.
   const GroundHeight no_ground = [](const GeodeticPosition&) {
     return -std::numeric_limits<double>::infinity();
@@ -68,7 +68,7 @@ void Flythrough::TakeUp(const FlightMoment& moment) {
   landing_light_ = moment.landing_light;
 }
 
-Image Flythrough::Picture(const ImageSize& size, int samples, const PictureProgress& progress) {
+Image FlightSession::Picture(const ImageSize& size, int samples, const PictureProgress& progress) {
   const Quality quality = rule_.fixed.value_or(Quality::kHigh);
   painter_.Use(SizesOf(quality));
   if (progress) progress(kBegunShare);
@@ -80,7 +80,7 @@ Image Flythrough::Picture(const ImageSize& size, int samples, const PictureProgr
   return image;
 }
 
-Image Flythrough::PaintedInParts(const PaintedView& whole, int samples,
+Image FlightSession::PaintedInParts(const PaintedView& whole, int samples,
                                  const PictureProgress& progress) {
   const int largest = IsDrawable(whole.width, whole.height)
                           ? std::max(whole.width, whole.height)
@@ -106,7 +106,7 @@ Image Flythrough::PaintedInParts(const PaintedView& whole, int samples,
   return picture.Take();
 }
 
-Metadata Flythrough::PictureHeader(const ImageSize& size) const {
+Metadata FlightSession::PictureHeader(const ImageSize& size) const {
   RenderSettings settings;
   settings.width = size.width;
   settings.height = size.height;
@@ -119,7 +119,7 @@ Metadata Flythrough::PictureHeader(const ImageSize& size) const {
   return metadata;
 }
 
-Development Flythrough::DevelopmentOf(const Image& picture) const {
+Development FlightSession::DevelopmentOf(const Image& picture) const {
   Look look = look_;
   if (white_ && exposure_.ev100) {
     look.white = *white_;
@@ -131,7 +131,7 @@ Development Flythrough::DevelopmentOf(const Image& picture) const {
   return {look, exposure_.ev100.value_or(metered - exposure_.compensation_ev)};
 }
 
-Metadata Flythrough::ExposureHeader(const Development& development) const {
+Metadata FlightSession::ExposureHeader(const Development& development) const {
   const ExposureRule rule = exposure_.locked
                                 ? ExposureRule{ExposureRule::Kind::kFixed, development.ev100}
                                 : rule_of_exposure_;
@@ -144,7 +144,7 @@ Metadata Flythrough::ExposureHeader(const Development& development) const {
           {"alpenglow.white_balance", NameOf(development.look.white)}};
 }
 
-Development Flythrough::PaintStill(const ToneMapPass::Screen& screen,
+Development FlightSession::PaintStill(const ToneMapPass::Screen& screen,
                                    const PictureProgress& progress) {
   const ImageSize size{screen.width, screen.height};
   const Image image = Picture(size, kPictureSamples, progress);
@@ -157,7 +157,7 @@ Development Flythrough::PaintStill(const ToneMapPass::Screen& screen,
   return development;
 }
 
-void Flythrough::WritePicture(const std::filesystem::path& file, const ImageSize& size,
+void FlightSession::WritePicture(const std::filesystem::path& file, const ImageSize& size,
                               const PictureProgress& progress) {
   RequirePictureName(file);
   Image image = Picture(size, kPictureSamples, progress);
@@ -171,7 +171,7 @@ void Flythrough::WritePicture(const std::filesystem::path& file, const ImageSize
   }
 }
 
-void Flythrough::WriteReplay(const CameraPath& path,
+void FlightSession::WriteReplay(const CameraPath& path,
                              const std::vector<std::filesystem::path>& files, const ImageSize& size,
                              FlightRecorder& recorder) {
   const double steps = std::max(static_cast<double>(files.size()) - 1.0, 1.0);
@@ -184,7 +184,7 @@ void Flythrough::WriteReplay(const CameraPath& path,
   }
 }
 
-DisplayImage Flythrough::Film(const ReplayFrame& frame, const ImageSize& size, double seconds) {
+DisplayImage FlightSession::Film(const ReplayFrame& frame, const ImageSize& size, double seconds) {
   Show(frame);
   Image image = Picture(size, kPictureSamples);
   Expose(ReadingOf(image, look_), seconds);
@@ -192,7 +192,7 @@ DisplayImage Flythrough::Film(const ReplayFrame& frame, const ImageSize& size, d
   return Develop(Balanced(std::move(image), look.white), *exposure_.ev100, look);
 }
 
-Scene Flythrough::SceneSeen() const {
+Scene FlightSession::SceneSeen() const {
   Scene seen = scene_;
   seen.place = eye().place;
   seen.place.height_m = 0.0;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Provides Flythrough, an interactive flight through a scene: pilot and clock, atmosphere and land
+// Provides FlightSession, an interactive flight through a scene: pilot and clock, atmosphere and land
 // that follow the eye, exposure, and painted pictures.
 #pragma once
 
@@ -15,7 +15,7 @@
 #include "renderer/scene/scene.h"
 #include "viewer/air/solved_air.h"
 #include "viewer/flight/flight_recorder.h"
-#include "viewer/input/cockpit.h"
+#include "viewer/input/flight_controller.h"
 #include "viewer/passes/auto_quality.h"
 #include "viewer/passes/display_pass.h"
 #include "viewer/passes/tone_map_pass.h"
@@ -37,7 +37,7 @@ void RequirePictureName(const std::filesystem::path& file);
                                         double seconds);
 
 /// Settings for the pictures of a flight.
-struct FlythroughSettings {
+struct FlightSessionSettings {
   LandSource land;
   QualityRule quality;
   double frame_rate = 20.0;  // target of automatic quality
@@ -86,12 +86,12 @@ struct FlightMoment {
 /// of the GPU is at most one ray per pixel. An exception of this function ends the picture.
 using PictureProgress = std::function<void(double share)>;
 
-class Flythrough {
+class FlightSession {
  public:
   /// Solves the atmosphere and starts to read the land. An OpenGL context must be current here and
   /// in all later calls. Throws InputError for files of the scene that cannot be read and for a
   /// medium of more than four wavelengths.
-  Flythrough(const Scene& scene, const UtcInstant& start, const FlythroughSettings& settings);
+  FlightSession(const Scene& scene, const UtcInstant& start, const FlightSessionSettings& settings);
 
   /// Places the eye. If the placement has no height, the eye keeps its height over the ground. It
   /// is never placed inside the ground. If the built-in mountain range does not reach the place, it
@@ -110,7 +110,7 @@ class Flythrough {
   /// Follows a path from its beginning.
   void Follow(const CameraPath& path);
   /// Replay shows a recorded flight; FlyAgain shows the current flight from its beginning and
-  /// continues it afterwards. See Cockpit.
+  /// continues it afterwards. See FlightController.
   void Replay(const CameraPath& flight);
   void FlyAgain(const CameraPath& flown);
   /// Sets eye and time to those of a replay frame.
@@ -185,14 +185,14 @@ class Flythrough {
   /// exposure.
   [[nodiscard]] DisplayImage Film(const ReplayFrame& frame, const ImageSize& size, double seconds);
 
-  [[nodiscard]] Cockpit& cockpit() { return cockpit_; }
-  [[nodiscard]] const Cockpit& cockpit() const { return cockpit_; }
+  [[nodiscard]] FlightController& cockpit() { return cockpit_; }
+  [[nodiscard]] const FlightController& cockpit() const { return cockpit_; }
   [[nodiscard]] const Eye& eye() const { return cockpit_.pilot().eye(); }
   [[nodiscard]] const UtcInstant& now() const { return cockpit_.clock().now(); }
   [[nodiscard]] const Scene& scene() const { return scene_; }
   /// Returns the scene from which another flight starts.
   [[nodiscard]] const Scene& first_scene() const { return first_scene_; }
-  [[nodiscard]] const FlythroughSettings& settings() const { return settings_; }
+  [[nodiscard]] const FlightSessionSettings& settings() const { return settings_; }
   [[nodiscard]] const Medium& medium() const { return medium_; }
   [[nodiscard]] const AirChoice& air_choice() const { return air_; }
   [[nodiscard]] const FlightExposure& exposure() const { return exposure_; }
@@ -244,7 +244,7 @@ class Flythrough {
   /// Returns a function that samples the loaded land around the eye for the renderer.
   [[nodiscard]] std::function<std::shared_ptr<const SceneGround>()> GroundAround() const;
   Scene first_scene_;  // as passed to the constructor
-  FlythroughSettings settings_;
+  FlightSessionSettings settings_;
   Scene scene_;
   TerrainSource first_terrain_;  // terrain of the original scene
   bool has_range_;               // the land is the built-in range and nothing else
@@ -255,7 +255,7 @@ class Flythrough {
   QualityRule rule_;
   AutoQuality auto_;
   PaintedQuality used_;
-  Cockpit cockpit_;
+  FlightController cockpit_;
   DisplayPass darkroom_;  // constructed before the painter: both take long and run in parallel
   SkyPainter painter_;
   ExposureRule rule_of_exposure_;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Provides FlightDeck, the user interface of a flight: keyboard, mouse and gamepad input,
+// Provides ViewerApp, the user interface of a flight: keyboard, mouse and gamepad input,
 // instruments, panels and messages. It also keeps a log of the flight, which can be saved and
 // replayed.
 #pragma once
@@ -9,7 +9,7 @@
 #include <string>
 
 #include "viewer/flight/flight_recorder.h"
-#include "viewer/flythrough.h"
+#include "viewer/flight_session.h"
 #include "viewer/hud/hud.h"
 #include "viewer/input/controls.h"
 #include "viewer/picture_queue.h"
@@ -17,7 +17,7 @@
 
 namespace alpenglow::viewer {
 
-class FlightDeck {
+class ViewerApp {
  public:
   struct Settings {
     double hud_scale = 1.0;
@@ -26,12 +26,12 @@ class FlightDeck {
   };
   /// Keeps references to the flight and to the recorder. The panels start and stop the recorder. It
   /// outlives the deck, so that the recorded flight is complete however the deck ends.
-  FlightDeck(Flythrough& flight, FlightRecorder& recorder, const Settings& settings);
+  ViewerApp(FlightSession& flight, FlightRecorder& recorder, const Settings& settings);
   /// Finishes the requested pictures and writes their outcomes that were not yet displayed to
   /// standard error.
-  ~FlightDeck();
-  FlightDeck(const FlightDeck&) = delete;
-  FlightDeck& operator=(const FlightDeck&) = delete;
+  ~ViewerApp();
+  ViewerApp(const ViewerApp&) = delete;
+  ViewerApp& operator=(const ViewerApp&) = delete;
 
   /// Applies the input of keyboard, mouse, gamepad and panels, and advances the flight by `seconds`
   /// of real time. Call it once a frame, whether the frame is displayed or not.
@@ -89,7 +89,7 @@ class FlightDeck {
   template <typename Work>
   void Try(const Work& work);
 
-  Flythrough& flight_;
+  FlightSession& flight_;
   FlightRecorder& recorder_;
   double elapsed_s_ = 0.0, flown_s_ = 0.0;
   FlightLog flown_;  // without the replayed parts

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "viewer/flight_deck.h"
+#include "viewer/viewer_app.h"
 
 #include <fmt/format.h>
 
@@ -41,7 +41,7 @@ const char* NameOf(FlightMode mode) {
   return "free camera";
 }
 
-HudFlight FlightOf(const Flythrough& flight) {
+HudFlight FlightOf(const FlightSession& flight) {
   const Eye& eye = flight.eye();
   const FlightReadout readout = flight.cockpit().pilot().Readout(flight.Ground());
   HudFlight shown;
@@ -70,7 +70,7 @@ HudFlight FlightOf(const Flythrough& flight) {
   return shown;
 }
 
-HudTime TimeOf(const Flythrough& flight) {
+HudTime TimeOf(const FlightSession& flight) {
   const SceneClock& clock = flight.cockpit().clock();
   const LocalTime local = LocalTimeAt(clock.now(), flight.zone());
   HudTime time;
@@ -83,7 +83,7 @@ HudTime TimeOf(const Flythrough& flight) {
   return time;
 }
 
-HudSky SkyOf(const Flythrough& flight) {
+HudSky SkyOf(const FlightSession& flight) {
   const BendingAir air = GentleAirOf(flight.medium());
   const SunPosition sun = ApparentSunAt(flight.eye().place, flight.now(), air);
   const MoonPosition moon = ApparentMoonAt(flight.eye().place, flight.now(), air);
@@ -91,7 +91,7 @@ HudSky SkyOf(const Flythrough& flight) {
           HudMoon{moon.azimuth_rad, moon.elevation_rad, moon.IlluminatedFraction()}};
 }
 
-HudAir AirOf(const Flythrough& flight) {
+HudAir AirOf(const FlightSession& flight) {
   const Medium air = Changed(flight.medium(), flight.air_choice());
   HudAir shown;
   shown.planet = flight.medium().name;
@@ -120,7 +120,7 @@ std::string WhiteBalanceOf(const Look& look) {
   return fmt::format("{:.0f} K", look.white.kelvin.value_or(kDaylight_k));
 }
 
-HudExposure ExposureOf(const Flythrough& flight) {
+HudExposure ExposureOf(const FlightSession& flight) {
   const FlightExposure& exposure = flight.exposure();
   HudExposure shown;
   shown.ev100 = exposure.ev100.value_or(15.0);
@@ -140,7 +140,7 @@ std::vector<Action> ModesOf(const Pilot& pilot) {
   return modes;
 }
 
-std::vector<HudRow> TablesOf(const Flythrough& flight) {
+std::vector<HudRow> TablesOf(const FlightSession& flight) {
   const SkyPainter& painter = flight.painter();
   const LandFigures land = painter.land().Figures();
   const auto ms = [](double seconds) { return fmt::format("{:.0f} ms", 1e3 * seconds); };
@@ -190,7 +190,7 @@ std::string TextOf(const PictureOutcome& outcome) {
 
 }  // namespace
 
-FlightDeck::FlightDeck(Flythrough& flight, FlightRecorder& recorder, const Settings& settings)
+ViewerApp::ViewerApp(FlightSession& flight, FlightRecorder& recorder, const Settings& settings)
     : flight_(flight),
       recorder_(recorder),
       hud_({.scale = settings.hud_scale}),
@@ -199,29 +199,29 @@ FlightDeck::FlightDeck(Flythrough& flight, FlightRecorder& recorder, const Setti
   if (!settings.shows_hud) hud_.ToggleVisible();
 }
 
-FlightDeck::~FlightDeck() {
+ViewerApp::~ViewerApp() {
   pictures_.Finish();
   SayOutcomes();
 }
 
-void FlightDeck::FinishWithoutWindow() {
+void ViewerApp::FinishWithoutWindow() {
   pictures_.FinishWithoutWindow();
   SayOutcomes();
 }
 
-void FlightDeck::SayOutcomes() {
+void ViewerApp::SayOutcomes() {
   for (const PictureOutcome& outcome : pictures_.TakeOutcomes())
     lut::Say(fmt::format("skyview: {}\n", TextOf(outcome)));
 }
 
-void FlightDeck::Say(const std::string& text, bool is_warning) {
+void ViewerApp::Say(const std::string& text, bool is_warning) {
   constexpr std::size_t kMost = 6;
   messages_.push_back({text, 0.0, is_warning});
   if (messages_.size() > kMost) messages_.pop_front();
 }
 
 template <typename Work>
-void FlightDeck::Try(const Work& work) {
+void ViewerApp::Try(const Work& work) {
   try {
     work();
   } catch (const InputError& fault) {
@@ -231,7 +231,7 @@ void FlightDeck::Try(const Work& work) {
   }
 }
 
-void FlightDeck::Age(double seconds) {
+void ViewerApp::Age(double seconds) {
   for (Message& message : messages_) message.age_s += seconds;
   while (!messages_.empty() && messages_.front().age_s > kMessage_s) messages_.pop_front();
   for (const std::string& note : flight_.TakeNotes()) Say(note);
@@ -239,7 +239,7 @@ void FlightDeck::Age(double seconds) {
   frame_ms_ += kMemory * (1e3 * seconds - frame_ms_);
 }
 
-HudModel FlightDeck::Model() const {
+HudModel ViewerApp::Model() const {
   HudModel model;
   model.flight = FlightOf(flight_);
   model.autopilot = AutopilotOf(flight_.cockpit().pilot());
@@ -265,7 +265,7 @@ HudModel FlightDeck::Model() const {
   return model;
 }
 
-HudChoices FlightDeck::Choices() const {
+HudChoices ViewerApp::Choices() const {
   HudChoices choices;
   for (const Action mode : ModesOf(flight_.cockpit().pilot()))
     choices.modes.emplace_back(RowOf(mode).does);
@@ -281,7 +281,7 @@ HudChoices FlightDeck::Choices() const {
   return choices;
 }
 
-void FlightDeck::WantStrip() {
+void ViewerApp::WantStrip() {
   if (!hud_.IsOpen(HudPanel::kPlaceAndTime)) return;
   const std::shared_ptr<const SolvedAir>& air = flight_.painter().air().air();
   const UtcInstant begin = AddSeconds(
@@ -291,7 +291,7 @@ void FlightDeck::WantStrip() {
                 begin});
 }
 
-void FlightDeck::Advance(const WindowEvents& events, const ImageSize& size, double seconds) {
+void ViewerApp::Advance(const WindowEvents& events, const ImageSize& size, double seconds) {
   Age(seconds);
   TellOfPictures();
   WantStrip();
@@ -322,7 +322,7 @@ void FlightDeck::Advance(const WindowEvents& events, const ImageSize& size, doub
                                  : std::nullopt;
 }
 
-void FlightDeck::Do(Action action, const ImageSize& size) {
+void ViewerApp::Do(Action action, const ImageSize& size) {
   Try([&] {
     if (const auto said = flight_.Do(action)) {
       if (!said->empty()) Say(*said);
@@ -370,7 +370,7 @@ void FlightDeck::Do(Action action, const ImageSize& size) {
   });
 }
 
-void FlightDeck::AskForPicture(const HudCaptureRequest& asked) {
+void ViewerApp::AskForPicture(const HudCaptureRequest& asked) {
   const bool is_exr = asked.kind == HudPictureKind::kExr;
   const ImageSize size{asked.width, asked.height};
   std::filesystem::path file = NextScreenshot(".", pictures_.Files());
@@ -389,19 +389,19 @@ void FlightDeck::AskForPicture(const HudCaptureRequest& asked) {
                  }});
 }
 
-void FlightDeck::TellOfPictures() {
+void ViewerApp::TellOfPictures() {
   pictures_.NextFrame();
   for (const PictureOutcome& outcome : pictures_.TakeOutcomes())
     Say(TextOf(outcome), !outcome.fault.empty());
 }
 
-void FlightDeck::Leave() {
+void ViewerApp::Leave() {
   if (leaves_) return pictures_.Drop();
   leaves_ = true;
   if (pictures_.UnderWay()) Say("leaving when the pictures are written; leave again to drop them");
 }
 
-void FlightDeck::Record(bool records) {
+void ViewerApp::Record(bool records) {
   if (!records) {
     const std::optional<std::filesystem::path> file = recorder_.file();
     const bool is_written = recorder_.Finish();
@@ -415,20 +415,20 @@ void FlightDeck::Record(bool records) {
   Say(fmt::format("recording into {}", file.filename().string()));
 }
 
-void FlightDeck::SaveFlight() {
+void ViewerApp::SaveFlight() {
   const CameraPath path = flown_.Path();
   const std::filesystem::path file = NextFlight(".");
   WriteTextAtomically(file, TextOf(path));
   Say(fmt::format("{} is written: {:.0f} s", file.filename().string(), path.end_s()));
 }
 
-void FlightDeck::FlyAgain() {
+void ViewerApp::FlyAgain() {
   const CameraPath path = flown_.Path();
   flight_.FlyAgain(path);
   Say(fmt::format("this flight again, {:.0f} s; then it goes on", path.end_s()));
 }
 
-void FlightDeck::NoteFlight(double seconds) {
+void ViewerApp::NoteFlight(double seconds) {
   const bool replays = flight_.cockpit().pilot().Replays();
   if (std::exchange(replays_, replays) && !replays) Say("here the replay ends");
   elapsed_s_ += seconds;
@@ -439,7 +439,7 @@ void FlightDeck::NoteFlight(double seconds) {
   if (!replays) flown_.Note(flown_s_, flight_.eye(), flight_.now());
 }
 
-void FlightDeck::ServeTime(const HudTimeRequest& asked) {
+void ViewerApp::ServeTime(const HudTimeRequest& asked) {
   SceneClock& clock = flight_.cockpit().clock();
   if (asked.instant) clock.Type(*asked.instant, flight_.eye().place, flight_.zone());
   if (asked.day_fraction) {
@@ -453,7 +453,7 @@ void FlightDeck::ServeTime(const HudTimeRequest& asked) {
   }
 }
 
-void FlightDeck::ServeAir(const HudAirRequest& asked) {
+void ViewerApp::ServeAir(const HudAirRequest& asked) {
   if (asked.planet) flight_.UsePlanet(*asked.planet);
   AirChoice choice = flight_.air_choice();
   if (asked.visibility_km)
@@ -465,7 +465,7 @@ void FlightDeck::ServeAir(const HudAirRequest& asked) {
     flight_.Use(choice);
 }
 
-void FlightDeck::ServeLook(const HudRequest& asked) {
+void ViewerApp::ServeLook(const HudRequest& asked) {
   Look look = flight_.look();
   if (asked.tone_curve) look.curve = ToneCurveFromName(*asked.tone_curve);
   if (asked.look) look.agx = AgxLookFromName(*asked.look);
@@ -473,7 +473,7 @@ void FlightDeck::ServeLook(const HudRequest& asked) {
   if (look != flight_.look()) flight_.Use(look);
 }
 
-void FlightDeck::ServeFlight(const HudRequest& asked) {
+void ViewerApp::ServeFlight(const HudRequest& asked) {
   Pilot& pilot = flight_.cockpit().pilot();
   for (const Action mode : ModesOf(pilot)) {
     if (asked.mode == RowOf(mode).does) Say(flight_.Do(mode).value_or(""));
@@ -487,12 +487,12 @@ void FlightDeck::ServeFlight(const HudRequest& asked) {
     pilot.autopilot().Set(targets);
 }
 
-void FlightDeck::SetLandingLight(bool is_on) {
+void ViewerApp::SetLandingLight(bool is_on) {
   landing_light_ = is_on;
   flight_.SetLandingLight(is_on);
 }
 
-void FlightDeck::Serve(const HudRequest& asked) {
+void ViewerApp::Serve(const HudRequest& asked) {
   Try([&] {
     if (asked.place) {
       flight_.Place(
@@ -516,7 +516,7 @@ void FlightDeck::Serve(const HudRequest& asked) {
   });
 }
 
-void FlightDeck::WritePicture(const std::filesystem::path& file, const ImageSize& size) {
+void ViewerApp::WritePicture(const std::filesystem::path& file, const ImageSize& size) {
   RequireInstruments(file, size);
   const RenderTarget screen(size.width, size.height, RenderTarget::Depth::kNone);
   const Development development =
@@ -527,7 +527,7 @@ void FlightDeck::WritePicture(const std::filesystem::path& file, const ImageSize
   WritePng(file, screen.ReadBytes(), header);
 }
 
-void FlightDeck::Paint(const ToneMapPass::Screen& screen, double seconds) {
+void ViewerApp::Paint(const ToneMapPass::Screen& screen, double seconds) {
   flight_.Paint(screen, seconds);
   flight_.painter().Time("hud");
   hud_.Paint(screen.framebuffer);

@@ -14,9 +14,9 @@
 
 namespace alpenglow::viewer {
 
-class Cockpit {
+class FlightController {
  public:
-  Cockpit(const Eye& eye, const Ellipsoid& ellipsoid, const UtcInstant& start)
+  FlightController(const Eye& eye, const Ellipsoid& ellipsoid, const UtcInstant& start)
       : pilot_(eye, ellipsoid), clock_(start) {}
 
   [[nodiscard]] Pilot& pilot() { return pilot_; }

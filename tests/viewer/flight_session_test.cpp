@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Pictures of a flight, without hands.
-#include "viewer/flythrough.h"
+#include "viewer/flight_session.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -29,9 +29,9 @@ class FlightsOverLand : public tests::HeadlessTile {
                          CameraFromDegrees(height, 330.0, -8.0, 7.0, 75.0));
   }
   /// @param files  of the land; none: that of the scene.
-  [[nodiscard]] static Flythrough SmallFlight(const Scene& scene,
+  [[nodiscard]] static FlightSession SmallFlight(const Scene& scene,
                                               std::vector<std::filesystem::path> files = {}) {
-    FlythroughSettings settings;
+    FlightSessionSettings settings;
     settings.land = LandSourceOf(scene);
     if (!files.empty()) settings.land.files = std::move(files);
     settings.quality = {Quality::kLow};
@@ -42,14 +42,14 @@ class FlightsOverLand : public tests::HeadlessTile {
   static constexpr ImageSize kSmall{32, 18};
 };
 
-double OverTheGround_m(const Flythrough& flight) {
+double OverTheGround_m(const FlightSession& flight) {
   return flight.eye().place.height_m - flight.Ground()(flight.eye().place);
 }
 
 TEST_F(FlightsOverLand, AnEyeThatIsPutOverGroundStandsThereWhenTheGroundIsKnown) {
   constexpr int kFar = 6000;  // samples; 190 km, whose land is not loaded before the eye is there
   tests::WriteTile(folder_ / "far.tif", kFar, 0);
-  Flythrough flight =
+  FlightSession flight =
       SmallFlight(SceneAt({300.0, true}), {folder_ / "land.tif", folder_ / "far.tif"});
   EXPECT_FALSE(flight.KnowsGround()) << "nothing has been read yet";
   flight.Settle(kSmall);
@@ -66,7 +66,7 @@ TEST_F(FlightsOverLand, AnEyeThatIsPutOverGroundStandsThereWhenTheGroundIsKnown)
 
 TEST_F(FlightsOverLand, WhereThereIsNoLandTheGroundIsKnownAtOnce) {
   for (const double latitude_deg : {10.0, 46.0}) {
-    Flythrough flight = SmallFlight(SceneAt({300.0, true}));
+    FlightSession flight = SmallFlight(SceneAt({300.0, true}));
     flight.Place({latitude_deg, {}, {}, {}, {}});
     flight.Advance({}, 1.0 / 60.0);
     EXPECT_TRUE(flight.KnowsGround()) << latitude_deg;
@@ -75,7 +75,7 @@ TEST_F(FlightsOverLand, WhereThereIsNoLandTheGroundIsKnownAtOnce) {
 }
 
 TEST_F(FlightsOverLand, OfAPlaceWithoutTerrainThereIsANote) {
-  Flythrough flight = SmallFlight(SceneAt({300.0, true}));
+  FlightSession flight = SmallFlight(SceneAt({300.0, true}));
   static_cast<void>(flight.TakeNotes());
   flight.GoTo("LSZS");
   EXPECT_THAT(flight.TakeNotes(), ElementsAre(HasSubstr("no terrain at Samedan")));
@@ -87,7 +87,7 @@ TEST_F(FlightsOverLand, OfAPlaceWithoutTerrainThereIsANote) {
 /// The frames that a window shows of a flight, one after another.
 class ShownFrames {
  public:
-  explicit ShownFrames(Flythrough& flight)
+  explicit ShownFrames(FlightSession& flight)
       : flight_(flight), screen_(64, 36, {PixelFormat::kRgba8}, RenderTarget::Depth::kNone) {
     flight_.AwaitGround();
   }
@@ -100,7 +100,7 @@ class ShownFrames {
   }
 
  private:
-  Flythrough& flight_;
+  FlightSession& flight_;
   RenderTarget screen_;
 };
 
@@ -118,11 +118,11 @@ double Greenest(const Image& image) {
 TEST_F(FlightsOverLand, AWindowShowsTheSkyThenTheLandAndTheEyeStays) {
   constexpr double kSky = 1.35;
   const Scene scene = SceneAt({300.0, true});
-  FlythroughSettings settings;
+  FlightSessionSettings settings;
   settings.land = LandSourceOf(scene);
   settings.quality = {Quality::kLow};
   settings.size = kSmall;
-  Flythrough flight(scene, ParseInstant("2026-06-21T11:30:00Z"), settings);
+  FlightSession flight(scene, ParseInstant("2026-06-21T11:30:00Z"), settings);
   ShownFrames window(flight);
   EXPECT_NEAR(OverTheGround_m(flight), 300.0, 1e-6) << "before the first picture";
   const GeodeticPosition start = flight.eye().place;
@@ -140,7 +140,7 @@ TEST_F(FlightsOverLand, AWindowShowsTheSkyThenTheLandAndTheEyeStays) {
 }
 
 TEST_F(FlightsOverLand, AfterAJumpInTimeTheFirstFrameIsExposedForItsLight) {
-  Flythrough flight = SmallFlight(SceneAt({300.0, true}));
+  FlightSession flight = SmallFlight(SceneAt({300.0, true}));
   flight.Settle(kSmall);
   ShownFrames window(flight);
   for (int frame = 0; frame < 3; ++frame)
@@ -167,8 +167,8 @@ class FlightsOverTheRange : public tests::HeadlessLand {
     scene.medium = MediumPreset("bruneton2017");
     return scene;
   }
-  [[nodiscard]] static Flythrough FlightOver(const Scene& scene) {
-    FlythroughSettings settings;
+  [[nodiscard]] static FlightSession FlightOver(const Scene& scene) {
+    FlightSessionSettings settings;
     settings.land = LandSourceOf(scene);
     settings.quality = {Quality::kLow};
     settings.size = {32, 18};
@@ -177,7 +177,7 @@ class FlightsOverTheRange : public tests::HeadlessLand {
 };
 
 TEST_F(FlightsOverTheRange, TheRangeComesToAPlaceOffItAndGoesBack) {
-  Flythrough flight = FlightOver(RangeScene());
+  FlightSession flight = FlightOver(RangeScene());
   flight.GoTo("Tromso");
   const GeodeticPosition tromso = PlaceNamed("Tromso").place;
   EXPECT_EQ(flight.scene().terrain.range_seed, RangeSeenFrom(tromso).range_seed);
@@ -191,7 +191,7 @@ TEST_F(FlightsOverTheRange, TheRangeComesToAPlaceOffItAndGoesBack) {
 }
 
 TEST_F(FlightsOverTheRange, AnEyeStandsAtItsHeightBeforeTheRangeIsThere) {
-  Flythrough flight = FlightOver(RangeScene());
+  FlightSession flight = FlightOver(RangeScene());
   flight.AwaitGround();
   EXPECT_FALSE(flight.KnowsGround()) << "nothing was waited for";
   const double height_m = flight.eye().place.height_m;
@@ -206,7 +206,7 @@ TEST_F(FlightsOverLand, AReplayOfARecordThatIsLowerThanTheLandStaysOverIt) {
   const GeodeticPosition place = tests::PlaceOfSample(120.0, 200.0, 100.0);
   const CameraPath low({{0.0, {place}}, {1.0, {place, 0.5}}});
   {
-    Flythrough flight = SmallFlight(SceneAt({3500.0, false}));
+    FlightSession flight = SmallFlight(SceneAt({3500.0, false}));
     FlightRecorder recorder(folder_ / "shown.csv");
     flight.WriteReplay(low, {folder_ / "0.png", folder_ / "1.png"}, kSmall, recorder);
     EXPECT_GT(OverTheGround_m(flight), 0.05) << "10 cm";
@@ -220,7 +220,7 @@ TEST_F(FlightsOverLand, AReplayOfARecordThatIsLowerThanTheLandStaysOverIt) {
       EXPECT_NEAR(std::stod(shown), height_m, 0.1) << name;
     }
   }
-  Flythrough window = SmallFlight(SceneAt({3500.0, false}));
+  FlightSession window = SmallFlight(SceneAt({3500.0, false}));
   window.Replay(low);
   window.Settle(kSmall);
   window.Advance({}, 0.5);
@@ -229,9 +229,9 @@ TEST_F(FlightsOverLand, AReplayOfARecordThatIsLowerThanTheLandStaysOverIt) {
 
 class PicturesInParts : public FlightsOverLand {
  protected:
-  [[nodiscard]] Flythrough FlightOf(std::optional<int> largest_part) const {
+  [[nodiscard]] FlightSession FlightOf(std::optional<int> largest_part) const {
     const Scene scene = SceneAt({3500.0, false});
-    FlythroughSettings settings;
+    FlightSessionSettings settings;
     settings.land = LandSourceOf(scene);
     settings.quality = {Quality::kMedium};
     settings.size = kSize;
@@ -268,7 +268,7 @@ TEST_F(PicturesInParts, ArePicturesInOnePiece) {
 
 TEST_F(PicturesInParts, AreExposedAsAWhole) {
   for (const std::optional<int> part : {std::optional<int>(), std::optional(kPart)}) {
-    Flythrough flight = FlightOf(part);
+    FlightSession flight = FlightOf(part);
     flight.WritePicture(folder_ / (part ? "parts.png" : "whole.png"), kSize);
   }
   EXPECT_NEAR(std::stod(ReadPngMetadata(folder_ / "parts.png").at("alpenglow.ev100")),

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "viewer/input/cockpit.h"
+#include "viewer/input/flight_controller.h"
 
 #include <fmt/format.h>
 
@@ -82,14 +82,14 @@ std::optional<Autopilot::Hold> HoldOf(Action action) {
 
 }  // namespace
 
-std::optional<std::string> Cockpit::Do(Action action, const GroundHeight& ground,
+std::optional<std::string> FlightController::Do(Action action, const GroundHeight& ground,
                                        const MoonEventAfter& moon) {
   if (auto said = DoFlight(action, ground)) return said;
   if (auto said = DoAutopilot(action)) return said;
   return DoTime(action, moon);
 }
 
-void Cockpit::Advance(const PilotControls& controls, double seconds, const GroundHeight& ground) {
+void FlightController::Advance(const PilotControls& controls, double seconds, const GroundHeight& ground) {
   const bool stands = clock_.paused() && pilot_.mode() != FlightMode::kFree;
   const bool replays = pilot_.Replays() && !pilot_.IsAtEndOfTrack();
   const auto before = replays ? pilot_.TrackUtc() : std::nullopt;
@@ -101,7 +101,7 @@ void Cockpit::Advance(const PilotControls& controls, double seconds, const Groun
 
 // During a replay the clock moves with the replayed time, including pauses and jumps; offsets set
 // by the user remain.
-void Cockpit::AdvanceClock(const std::optional<UtcInstant>& before, double seconds) {
+void FlightController::AdvanceClock(const std::optional<UtcInstant>& before, double seconds) {
   if (before) {
     clock_.Shift(SecondsBetween(*before, *pilot_.TrackUtc()));
   } else {
@@ -109,7 +109,7 @@ void Cockpit::AdvanceClock(const std::optional<UtcInstant>& before, double secon
   }
 }
 
-void Cockpit::EndReplay(const GroundHeight& ground) {
+void FlightController::EndReplay(const GroundHeight& ground) {
   if (waits_) {
     pilot_ = *std::exchange(waits_, std::nullopt);
   } else {
@@ -118,7 +118,7 @@ void Cockpit::EndReplay(const GroundHeight& ground) {
   }
 }
 
-void Cockpit::Replay(std::shared_ptr<const CameraPath> flight, const GroundHeight& ground) {
+void FlightController::Replay(std::shared_ptr<const CameraPath> flight, const GroundHeight& ground) {
   waits_.reset();
   clock_.Pause(false);
   pilot_.PutAt(pilot_.eye(), ground);  // leaves the current track
@@ -126,27 +126,27 @@ void Cockpit::Replay(std::shared_ptr<const CameraPath> flight, const GroundHeigh
   static_cast<void>(Enter(FlightMode::kTrack, ground));
 }
 
-void Cockpit::FlyAgain(std::shared_ptr<const CameraPath> flown, const GroundHeight& ground) {
+void FlightController::FlyAgain(std::shared_ptr<const CameraPath> flown, const GroundHeight& ground) {
   Pilot now = pilot_.Replays() && waits_ ? *waits_ : pilot_;
   Replay(std::move(flown), ground);
   waits_ = std::move(now);
 }
 
-std::string Cockpit::Enter(FlightMode mode, const GroundHeight& ground) {
+std::string FlightController::Enter(FlightMode mode, const GroundHeight& ground) {
   if (const auto why_not = pilot_.Enter(mode, ground)) return *why_not;
   // A track with instants sets the clock; afterwards the clock runs along.
   if (const auto utc = pilot_.TrackUtc()) clock_.Set(*utc);
   return ModeNameOf(pilot_.mode());
 }
 
-void Cockpit::SkipTrack(double seconds) {
+void FlightController::SkipTrack(double seconds) {
   const auto before = pilot_.TrackUtc();
   pilot_.SkipTrack(seconds);
   const auto after = pilot_.TrackUtc();
   if (before && after) clock_.Shift(SecondsBetween(*before, *after));
 }
 
-std::optional<std::string> Cockpit::DoFlight(Action action, const GroundHeight& ground) {
+std::optional<std::string> FlightController::DoFlight(Action action, const GroundHeight& ground) {
   switch (action) {
     case Action::kFaster:
     case Action::kFasterFlight:
@@ -193,7 +193,7 @@ std::optional<std::string> Cockpit::DoFlight(Action action, const GroundHeight& 
   return fmt::format("speed x{:.3g}", pilot_.Readout(ground).speed_factor);
 }
 
-std::optional<std::string> Cockpit::DoAutopilot(Action action) {
+std::optional<std::string> FlightController::DoAutopilot(Action action) {
   const std::optional<Autopilot::Hold> hold = HoldOf(action);
   if (!hold && action != Action::kAutopilotOff) return std::nullopt;
   if (hold) {
@@ -205,12 +205,12 @@ std::optional<std::string> Cockpit::DoAutopilot(Action action) {
   return text.empty() ? "autopilot off" : text;
 }
 
-std::string Cockpit::JumpTo(SkyEvent event, const MoonEventAfter& moon) {
+std::string FlightController::JumpTo(SkyEvent event, const MoonEventAfter& moon) {
   const bool jumped = clock_.JumpToNext(event, pilot_.eye().place, moon);
   return jumped ? NameOf(event) : fmt::format("no {} here within a year", NameOf(event));
 }
 
-std::optional<std::string> Cockpit::DoTime(Action action, const MoonEventAfter& moon) {
+std::optional<std::string> FlightController::DoTime(Action action, const MoonEventAfter& moon) {
   if (const auto event = EventOf(action)) return JumpTo(*event, moon);
   if (const auto shift_s = ShiftOf(action)) {
     clock_.Shift(*shift_s);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "viewer/flythrough.h"
+#include "viewer/flight_session.h"
 
 #include <fmt/format.h>
 
@@ -70,8 +70,8 @@ WhiteBalance AdaptedWhite(const WhiteBalance& before, const WhiteBalance& metere
   return {metered.kind, 1.0 / AdaptedEv100(1.0 / *before.kelvin, 1.0 / *metered.kelvin, seconds)};
 }
 
-Flythrough::Flythrough(const Scene& scene, const UtcInstant& start,
-                       const FlythroughSettings& settings)
+FlightSession::FlightSession(const Scene& scene, const UtcInstant& start,
+                       const FlightSessionSettings& settings)
     : first_scene_(Drawable(scene)),
       settings_(settings),
       scene_(scene),
@@ -102,7 +102,7 @@ Flythrough::Flythrough(const Scene& scene, const UtcInstant& start,
   if (scene.camera.height.above_ground) ForgetGround(scene.camera.height.value_m);
 }
 
-bool Flythrough::IsRangeExpectedAt(const GeodeticPosition& place) const {
+bool FlightSession::IsRangeExpectedAt(const GeodeticPosition& place) const {
   constexpr double kNear_m = 100.0;
   if (!has_range_ || painter_.land().KnowsGround(place)) return false;
   GeodeticPosition view = BuiltInRangeViewAboveGround(*scene_.terrain.centre).eye;
@@ -110,20 +110,20 @@ bool Flythrough::IsRangeExpectedAt(const GeodeticPosition& place) const {
   return glm::length(LocalFrame(kWgs84, view).EnuFromGeodetic(place).xyz) < kNear_m;
 }
 
-GroundHeight Flythrough::Ground() const {
+GroundHeight FlightSession::Ground() const {
   return [this](const GeodeticPosition& place) {
     if (IsRangeExpectedAt(place)) return kRangeViewGround_m;
     return painter_.land().GroundUnder(place).value_or(0.0);
   };
 }
 
-void Flythrough::ForgetGround(std::optional<double> above_ground_m) {
+void FlightSession::ForgetGround(std::optional<double> above_ground_m) {
   knows_ground_ = false;
   waits_above_ground_m_ = above_ground_m;
   put_at_ = std::nullopt;
 }
 
-void Flythrough::AwaitGround() {
+void FlightSession::AwaitGround() {
   if (knows_ground_ || !waits_above_ground_m_) return;
   if (!IsRangeExpectedAt(eye().place)) {
     painter_.land().AwaitGround(eye().place);
@@ -135,7 +135,7 @@ void Flythrough::AwaitGround() {
   put_at_ = eye();
 }
 
-void Flythrough::StandOnGround() {
+void FlightSession::StandOnGround() {
   if (knows_ground_ || !painter_.land().KnowsGround(eye().place)) return;
   knows_ground_ = true;
   const std::optional<double> above_m = std::exchange(waits_above_ground_m_, std::nullopt);
@@ -146,7 +146,7 @@ void Flythrough::StandOnGround() {
   cockpit_.pilot().PutAt(stands, Ground());
 }
 
-void Flythrough::Place(const EyePlacement& placement) {
+void FlightSession::Place(const EyePlacement& placement) {
   const bool moves = placement.latitude_deg || placement.longitude_deg;
   if (!moves && !placement.height_m && !placement.heading_deg && !placement.pitch_deg) return;
   const double above_m =
@@ -163,14 +163,14 @@ void Flythrough::Place(const EyePlacement& placement) {
   }
 }
 
-void Flythrough::GoTo(const std::string& name) {
+void FlightSession::GoTo(const std::string& name) {
   const NamedPlace& there = PlaceNamed(name);
   BringLandTo(there.place, there.name);
   cockpit_.GoTo(there, Ground());
   ForgetGround(eye().place.height_m - Ground()(eye().place));
 }
 
-void Flythrough::BringRangeTo(const GeodeticPosition& place) {
+void FlightSession::BringRangeTo(const GeodeticPosition& place) {
   const auto reaches = [&](const TerrainSource& range) {
     return BuiltInRangeExtent(*range.centre).Covers(place.latitude_rad, place.longitude_rad);
   };
@@ -178,14 +178,14 @@ void Flythrough::BringRangeTo(const GeodeticPosition& place) {
   UseRange(reaches(first_terrain_) ? first_terrain_ : RangeSeenFrom(place));
 }
 
-void Flythrough::UseRange(const TerrainSource& range) {
+void FlightSession::UseRange(const TerrainSource& range) {
   scene_.terrain = range;
   painter_.Replace(LandSourceOf(scene_));
   reference_.reset();
   reference_scene_.reset();
 }
 
-void Flythrough::BringLandTo(const GeodeticPosition& place, const std::string& name) {
+void FlightSession::BringLandTo(const GeodeticPosition& place, const std::string& name) {
   BringRangeTo(place);
   const Landscape& land = painter_.land();
   if (land.tiles().source().IsEmpty()) return;
@@ -197,46 +197,46 @@ void Flythrough::BringLandTo(const GeodeticPosition& place, const std::string& n
       fmt::format("there is no terrain at {}: --dem loads an elevation model of it", name));
 }
 
-std::vector<std::string> Flythrough::TakeNotes() {
+std::vector<std::string> FlightSession::TakeNotes() {
   std::vector<std::string> notes = std::exchange(notes_, {});
   for (std::string& note : painter_.land().TakeNotes()) notes.push_back(std::move(note));
   return notes;
 }
 
-void Flythrough::Follow(const CameraPath& path) {
+void FlightSession::Follow(const CameraPath& path) {
   ForgetGround();
   cockpit_.pilot().SetTrack(std::make_shared<const CameraPath>(path));
   static_cast<void>(cockpit_.Do(Action::kTrackMode, Ground(), MoonEventAfterwards));
 }
 
-void Flythrough::Replay(const CameraPath& flight) {
+void FlightSession::Replay(const CameraPath& flight) {
   ForgetGround();
   cockpit_.Replay(std::make_shared<const CameraPath>(flight), Ground());
 }
 
-void Flythrough::FlyAgain(const CameraPath& flown) {
+void FlightSession::FlyAgain(const CameraPath& flown) {
   ForgetGround();
   cockpit_.FlyAgain(std::make_shared<const CameraPath>(flown), Ground());
 }
 
-void Flythrough::Show(const ReplayFrame& frame) {
+void FlightSession::Show(const ReplayFrame& frame) {
   ForgetGround();
   const CameraPathPoint shown{frame.path_s, PoseOf(Zoomed(frame.eye, 1.0)), frame.now};
   cockpit_.Replay(std::make_shared<const CameraPath>(std::vector{shown}), Ground());
 }
 
-void Flythrough::Advance(const PilotControls& controls, double seconds) {
+void FlightSession::Advance(const PilotControls& controls, double seconds) {
   StandOnGround();
   cockpit_.Advance(controls, seconds, Ground());
   still_s_ = still_eye_ == eye() ? still_s_ + seconds : 0.0;
   still_eye_ = eye();
 }
 
-std::string Flythrough::JumpTo(SkyEvent event) {
+std::string FlightSession::JumpTo(SkyEvent event) {
   return cockpit_.JumpTo(event, MoonEventAfterwards);
 }
 
-std::optional<std::string> Flythrough::Do(Action action) {
+std::optional<std::string> FlightSession::Do(Action action) {
   if (auto said = cockpit_.Do(action, Ground(), MoonEventAfterwards)) return said;
   constexpr double kStep_ev = 1.0 / 3.0;
   constexpr double kHazeStep = 1.25;
@@ -276,12 +276,12 @@ std::optional<std::string> Flythrough::Do(Action action) {
   }
 }
 
-void Flythrough::Use(const QualityRule& rule) {
+void FlightSession::Use(const QualityRule& rule) {
   rule_ = rule;
   reference_.reset();
 }
 
-void Flythrough::Use(const AirChoice& choice) {
+void FlightSession::Use(const AirChoice& choice) {
   const Medium changed = Changed(medium_, choice);
   air_ = choice;
   scene_.medium = changed;
@@ -290,7 +290,7 @@ void Flythrough::Use(const AirChoice& choice) {
   painter_.Replace(*sky_air_);
 }
 
-void Flythrough::UsePlanet(const std::string& preset) {
+void FlightSession::UsePlanet(const std::string& preset) {
   Medium planet = MediumPreset(preset);
   if (planet.follows_wgs84 != medium_.follows_wgs84) {
     throw InputError(fmt::format(
@@ -302,36 +302,36 @@ void Flythrough::UsePlanet(const std::string& preset) {
   Use(air_);
 }
 
-void Flythrough::SetExposure(double ev100) { exposure_ = {true, 0.0, ev100}; }
+void FlightSession::SetExposure(double ev100) { exposure_ = {true, 0.0, ev100}; }
 
-PaintedQuality Flythrough::Painted() const {
+PaintedQuality FlightSession::Painted() const {
   return rule_.fixed ? PaintedAlways(*rule_.fixed) : auto_.painted();
 }
 
-void Flythrough::NoteFrame(double seconds) {
+void FlightSession::NoteFrame(double seconds) {
   if (!rule_.fixed) auto_.Note(seconds);
 }
 
-std::string Flythrough::QualityText() const {
+std::string FlightSession::QualityText() const {
   if (!rule_.fixed) return "auto: " + TextOf(auto_.painted());
   if (*rule_.fixed == Quality::kReference && reference_ && reference_->samples() > 0)
     return fmt::format("reference, {} rays a pixel", reference_->samples());
   return NameOf(*rule_.fixed);
 }
 
-std::string Flythrough::zone() const { return ZoneNear(eye().place, scene_.zone, scene_.place); }
+std::string FlightSession::zone() const { return ZoneNear(eye().place, scene_.zone, scene_.place); }
 
-PaintedView Flythrough::ViewOf(const ImageSize& size) const {
+PaintedView FlightSession::ViewOf(const ImageSize& size) const {
   return {eye(), now(), size.width, size.height};
 }
 
-ReferenceScene Flythrough::SceneForRenderer() const {
+ReferenceScene FlightSession::SceneForRenderer() const {
   ReferenceScene scene{SceneSeen(), nullptr};
   if (!has_one_model_) scene.ground = GroundAround();
   return scene;
 }
 
-std::function<std::shared_ptr<const SceneGround>()> Flythrough::GroundAround() const {
+std::function<std::shared_ptr<const SceneGround>()> FlightSession::GroundAround() const {
   constexpr int kMostSamples = 3000;
   return [sample = painter_.land().Sampler(), place = eye().place,
           half_width_m = HalfWidthOfLand(painter_.land().tiles().lattice(), eye().place),
@@ -349,7 +349,7 @@ std::function<std::shared_ptr<const SceneGround>()> Flythrough::GroundAround() c
   };
 }
 
-void Flythrough::ShowReference(const ImageSize& size) {
+void FlightSession::ShowReference(const ImageSize& size) {
   const bool wanted =
       rule_.fixed == std::optional(Quality::kReference) && still_s_ >= kStandsStill_s;
   if (!wanted) return;
@@ -360,7 +360,7 @@ void Flythrough::ShowReference(const ImageSize& size) {
   if (const std::optional<Image> image = reference_->Take()) painter_.Show(*image);
 }
 
-void Flythrough::AimLandingLight() {
+void FlightSession::AimLandingLight() {
   if (!landing_light_) return painter_.SetLandingLight(std::nullopt);
   LandingLight light;
   const ViewAxes axes = AxesOf(eye());
@@ -369,14 +369,14 @@ void Flythrough::AimLandingLight() {
   painter_.SetLandingLight(light);
 }
 
-std::optional<double> Flythrough::LuminanceAt(double right, double down) {
+std::optional<double> FlightSession::LuminanceAt(double right, double down) {
   const bool is_inside = right >= 0.0 && right < 1.0 && down >= 0.0 && down < 1.0;
   if (exposure_.ev100 && is_inside) return spot_.At(painter_.picture(), right, down);
   spot_.Leave();
   return std::nullopt;
 }
 
-void Flythrough::Paint(const ToneMapPass::Screen& screen, double seconds) {
+void FlightSession::Paint(const ToneMapPass::Screen& screen, double seconds) {
   const PaintedQuality wanted = Painted();
   if (wanted != used_) painter_.Use(SizesOf(wanted));
   used_ = wanted;
@@ -406,26 +406,26 @@ void Flythrough::Paint(const ToneMapPass::Screen& screen, double seconds) {
 }
 
 // A clock at 3600 times real time passes these 900 s in a quarter of a second.
-bool Flythrough::HasJumped() {
+bool FlightSession::HasJumped() {
   constexpr double kJump_s = 900.0;
   const std::optional<UtcInstant> before = std::exchange(painted_at_, now());
   return before && std::abs(SecondsBetween(*before, now())) > kJump_s;
 }
 
 // The next picture is unrelated to the previous one, so nothing adapts to it.
-void Flythrough::ForgetAdaptation() {
+void FlightSession::ForgetAdaptation() {
   if (!exposure_.locked) exposure_.ev100 = std::nullopt;
   white_ = std::nullopt;
 }
 
-void Flythrough::Settle(const ImageSize& size, int samples) {
+void FlightSession::Settle(const ImageSize& size, int samples) {
   painter_.Settle(ViewOf(size), samples);
   if (knows_ground_) return;
   StandOnGround();
   painter_.Settle(ViewOf(size), samples);
 }
 
-void Flythrough::Use(const Look& look) {
+void FlightSession::Use(const Look& look) {
   if (look.white != look_.white) {
     white_.reset();  // a new rule takes effect without adaptation
     metered_.reset();
@@ -433,12 +433,12 @@ void Flythrough::Use(const Look& look) {
   look_ = look;
 }
 
-std::optional<double> Flythrough::white_k() const {
+std::optional<double> FlightSession::white_k() const {
   if (!white_) return std::nullopt;
   return white_->IsDaylight() ? std::optional(kDaylight_k) : white_->kelvin;
 }
 
-double Flythrough::AdaptedTo(double metered_ev100, double seconds) {
+double FlightSession::AdaptedTo(double metered_ev100, double seconds) {
   if (rule_of_exposure_.kind != ExposureRule::Kind::kEye) return metered_ev100;
   const UtcInstant before = adapted_at_.value_or(now());
   adapted_at_ = now();
@@ -447,7 +447,7 @@ double Flythrough::AdaptedTo(double metered_ev100, double seconds) {
                             std::max(seconds, std::abs(SecondsBetween(before, now()))));
 }
 
-void Flythrough::Expose(const MeterReading& metered, double seconds) {
+void FlightSession::Expose(const MeterReading& metered, double seconds) {
   if (!exposure_.locked) {
     const double wanted = Ev100By(rule_of_exposure_, AdaptedTo(metered.ev100, seconds), look_);
     exposure_.ev100 = AdaptedEv100(exposure_.ev100, wanted - exposure_.compensation_ev, seconds);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // A flight with hands, without a window: what keys and panels come to.
-#include "viewer/flight_deck.h"
+#include "viewer/viewer_app.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -23,18 +23,18 @@ constexpr ImageSize kSize{320, 240};
 constexpr int kF1 = 290, kF2 = 291, kF3 = 292, kL = 76, kR = 82, kW = 87, kRightArrow = 262,
               kEscape = 256, kEnterKey = 257;
 
-class FlightDeckTest : public tests::Headless {
+class ViewerAppTest : public tests::Headless {
  protected:
   void SetUp() override {
     tests::Headless::SetUp();
     if (IsSkipped()) return;
     Scene scene = BareScene(3000.0, 30.0, 0.0, 60.0);
     scene.medium = MediumPreset("bruneton2017");
-    FlythroughSettings settings;
+    FlightSessionSettings settings;
     settings.quality = {Quality::kLow};
     settings.size = kSize;
-    flight_ = std::make_unique<Flythrough>(scene, ParseInstant("2026-06-21T10:00:00Z"), settings);
-    deck_ = std::make_unique<FlightDeck>(*flight_, recorder_, FlightDeck::Settings{});
+    flight_ = std::make_unique<FlightSession>(scene, ParseInstant("2026-06-21T10:00:00Z"), settings);
+    deck_ = std::make_unique<ViewerApp>(*flight_, recorder_, ViewerApp::Settings{});
     screen_ = std::make_unique<RenderTarget>(kSize.width, kSize.height, RenderTarget::Depth::kNone);
     flight_->Settle(kSize);
   }
@@ -82,9 +82,9 @@ class FlightDeckTest : public tests::Headless {
   [[nodiscard]] std::vector<HudMessage> Messages() const { return deck_->Model().messages; }
 
   static constexpr double kFrame_s = 1.0 / 60.0;
-  std::unique_ptr<Flythrough> flight_;
+  std::unique_ptr<FlightSession> flight_;
   FlightRecorder recorder_;
-  std::unique_ptr<FlightDeck> deck_;
+  std::unique_ptr<ViewerApp> deck_;
   std::unique_ptr<RenderTarget> screen_;
 };
 
@@ -95,7 +95,7 @@ int Changed(const DisplayImage& a, const DisplayImage& b) {
   return changed;
 }
 
-TEST_F(FlightDeckTest, F1ShowsTheKeysAndHidesThemAgain) {
+TEST_F(ViewerAppTest, F1ShowsTheKeysAndHidesThemAgain) {
   flight_->SetExposure(14.0);
   const DisplayImage bare = Shown();
   Press(kF1);
@@ -107,10 +107,10 @@ TEST_F(FlightDeckTest, F1ShowsTheKeysAndHidesThemAgain) {
   EXPECT_LT(Changed(bare, Shown()), pixels / 20) << "numbers that have gone on";
 }
 
-class FlightDeckFiles : public FlightDeckTest {
+class ViewerAppFiles : public ViewerAppTest {
  protected:
   void SetUp() override {
-    FlightDeckTest::SetUp();
+    ViewerAppTest::SetUp();
     before_ = std::filesystem::current_path();
     std::string pattern =
         (std::filesystem::temp_directory_path() / "alpenglow_test_XXXXXX").string();
@@ -118,7 +118,7 @@ class FlightDeckFiles : public FlightDeckTest {
     std::filesystem::current_path(pattern);
   }
   void TearDown() override {
-    FlightDeckTest::TearDown();
+    ViewerAppTest::TearDown();
     const std::filesystem::path folder = std::filesystem::current_path();
     std::filesystem::current_path(before_);
     std::filesystem::remove_all(folder);
@@ -126,7 +126,7 @@ class FlightDeckFiles : public FlightDeckTest {
   std::filesystem::path before_;
 };
 
-TEST_F(FlightDeckFiles, F3WritesAPictureIntoTheCurrentFolder) {
+TEST_F(ViewerAppFiles, F3WritesAPictureIntoTheCurrentFolder) {
   static_cast<void>(Shown());
   Press(kF3);
   Press(kF3);
@@ -141,7 +141,7 @@ TEST_F(FlightDeckFiles, F3WritesAPictureIntoTheCurrentFolder) {
   EXPECT_TRUE(std::filesystem::exists("skyview-0002.png"));
 }
 
-TEST_F(FlightDeckFiles, WhoLeavesDoesNotLoseThePictureUnderWay) {
+TEST_F(ViewerAppFiles, WhoLeavesDoesNotLoseThePictureUnderWay) {
   static_cast<void>(Shown());
   Press(kF3);
   deck_->Leave();
@@ -152,7 +152,7 @@ TEST_F(FlightDeckFiles, WhoLeavesDoesNotLoseThePictureUnderWay) {
   EXPECT_TRUE(std::filesystem::exists("skyview-0001.png"));
 }
 
-TEST_F(FlightDeckFiles, WhoLeavesTwiceGivesUpThePicture) {
+TEST_F(ViewerAppFiles, WhoLeavesTwiceGivesUpThePicture) {
   static_cast<void>(Shown());
   Press(kF3);
   deck_->Leave();
@@ -162,7 +162,7 @@ TEST_F(FlightDeckFiles, WhoLeavesTwiceGivesUpThePicture) {
   EXPECT_TRUE(std::filesystem::is_empty(".")) << "nor is there a part of it";
 }
 
-TEST_F(FlightDeckFiles, ADeckThatGoesHasWrittenItsPictures) {
+TEST_F(ViewerAppFiles, ADeckThatGoesHasWrittenItsPictures) {
   static_cast<void>(Shown());
   Press(kF3);
   HudRequest request;
@@ -173,7 +173,7 @@ TEST_F(FlightDeckFiles, ADeckThatGoesHasWrittenItsPictures) {
   EXPECT_TRUE(std::filesystem::exists("skyview-0002.png")) << "with its instruments";
 }
 
-TEST_F(FlightDeckFiles, ThePanelWritesPicturesWithInstrumentsAndWithout) {
+TEST_F(ViewerAppFiles, ThePanelWritesPicturesWithInstrumentsAndWithout) {
   static_cast<void>(Shown());
   deck_->Advance({}, kSize, kFrame_s);
   HudRequest request;
@@ -193,7 +193,7 @@ TEST_F(FlightDeckFiles, ThePanelWritesPicturesWithInstrumentsAndWithout) {
   EXPECT_FALSE(std::filesystem::exists("skyview-0003.exr"));
 }
 
-TEST_F(FlightDeckFiles, APictureThatCannotBeWrittenIsAWarning) {
+TEST_F(ViewerAppFiles, APictureThatCannotBeWrittenIsAWarning) {
   static_cast<void>(Shown());
   const std::filesystem::path gone = std::filesystem::current_path() / "gone";
   std::filesystem::create_directory(gone);
@@ -209,7 +209,7 @@ double Apart_m(const Eye& a, const Eye& b) {
   return glm::length((EcefFromGeodetic(kWgs84, a.place) - EcefFromGeodetic(kWgs84, b.place)).xyz);
 }
 
-TEST_F(FlightDeckTest, CtrlRFliesTheSameFlightAgainAndThenItGoesOn) {
+TEST_F(ViewerAppTest, CtrlRFliesTheSameFlightAgainAndThenItGoesOn) {
   flight_->cockpit().clock().SetRate(60.0);
   Hold({kW, kRightArrow}, true);
   const std::vector<Moment> flown = Fly(120);
@@ -233,7 +233,7 @@ TEST_F(FlightDeckTest, CtrlRFliesTheSameFlightAgainAndThenItGoesOn) {
   EXPECT_LT(Apart_m(on.back().eye, flown.back().eye), 20 * 20.0) << "but was not while it replayed";
 }
 
-TEST_F(FlightDeckTest, WhoTakesOverAReplayFliesOnFromThere) {
+TEST_F(ViewerAppTest, WhoTakesOverAReplayFliesOnFromThere) {
   Hold({kW}, true);
   static_cast<void>(Fly(120));
   Hold({kW}, false);
@@ -247,7 +247,7 @@ TEST_F(FlightDeckTest, WhoTakesOverAReplayFliesOnFromThere) {
   EXPECT_GT(Apart_m(flight_->eye(), end), 500.0);
 }
 
-TEST_F(FlightDeckTest, WhereNothingWasFlownThereIsNothingToFlyAgain) {
+TEST_F(ViewerAppTest, WhereNothingWasFlownThereIsNothingToFlyAgain) {
   static_cast<void>(Fly(10));
   const Eye before = flight_->eye();
   Press(kR, kControlKey);
@@ -258,7 +258,7 @@ TEST_F(FlightDeckTest, WhereNothingWasFlownThereIsNothingToFlyAgain) {
   EXPECT_EQ(deck_->Model().flight.mode, "free camera");
 }
 
-TEST_F(FlightDeckFiles, ShiftF2WritesTheFlightSoFarAndItFliesOn) {
+TEST_F(ViewerAppFiles, ShiftF2WritesTheFlightSoFarAndItFliesOn) {
   Press(kF2, kShiftKey);
   EXPECT_FALSE(std::filesystem::exists("flight-0001.csv")) << "nothing has been flown yet";
   ASSERT_FALSE(Messages().empty());
@@ -275,7 +275,7 @@ TEST_F(FlightDeckFiles, ShiftF2WritesTheFlightSoFarAndItFliesOn) {
   EXPECT_GT(ReadFlight("flight-0002.csv").end_s(), path.end_s());
 }
 
-TEST_F(FlightDeckFiles, ThePanelBeginsAndEndsARecord) {
+TEST_F(ViewerAppFiles, ThePanelBeginsAndEndsARecord) {
   Hold({kW}, true);
   static_cast<void>(Fly(30));
   EXPECT_FALSE(deck_->Model().recording);
@@ -298,10 +298,10 @@ TEST_F(FlightDeckFiles, ThePanelBeginsAndEndsARecord) {
   deck_->Serve(end);
 }
 
-TEST_F(FlightDeckFiles, ARecordThatNobodyEndedIsWholeWhenTheDeckHasGone) {
+TEST_F(ViewerAppFiles, ARecordThatNobodyEndedIsWholeWhenTheDeckHasGone) {
   {
     FlightRecorder recorder;
-    FlightDeck deck(*flight_, recorder, {});
+    ViewerApp deck(*flight_, recorder, {});
     HudRequest begin;
     begin.record = true;
     deck.Serve(begin);
@@ -310,7 +310,7 @@ TEST_F(FlightDeckFiles, ARecordThatNobodyEndedIsWholeWhenTheDeckHasGone) {
   EXPECT_EQ(ReadFlight("flight-0001.csv").points().size(), 1U);
 }
 
-class FlightDeckOverLand : public tests::LandFolder {
+class ViewerAppOverLand : public tests::LandFolder {
  protected:
   void SetUp() override {
     LandFolder::SetUp();
@@ -322,14 +322,14 @@ class FlightDeckOverLand : public tests::LandFolder {
     tests::WriteTile(folder_ / "land.tif", 0, 0);
   }
   /// 300 m over mountains about 1500 m high.
-  [[nodiscard]] Flythrough FlightOverMountains() const {
+  [[nodiscard]] FlightSession FlightOverMountains() const {
     Scene scene;
     scene.medium = MediumPreset("bruneton2017");
     scene.place = tests::PlaceOfSample(120.0, 200.0, 0.0);
     scene.camera = CameraFromDegrees({300.0, true}, 0.0, 0.0, 0.0, 60.0);
     scene.terrain.kind = TerrainSource::Kind::kElevationModel;
     scene.terrain.file = folder_ / "land.tif";
-    FlythroughSettings settings;
+    FlightSessionSettings settings;
     settings.land = LandSourceOf(scene);
     settings.quality = {Quality::kLow};
     settings.size = kSize;
@@ -338,10 +338,10 @@ class FlightDeckOverLand : public tests::LandFolder {
   std::optional<HeadlessContext> context_;
 };
 
-TEST_F(FlightDeckOverLand, NothingIsNotedBeforeTheGroundUnderTheEyeIsKnown) {
-  Flythrough flight = FlightOverMountains();
+TEST_F(ViewerAppOverLand, NothingIsNotedBeforeTheGroundUnderTheEyeIsKnown) {
+  FlightSession flight = FlightOverMountains();
   FlightRecorder recorder(folder_ / "f.csv");
-  FlightDeck deck(flight, recorder, {});
+  ViewerApp deck(flight, recorder, {});
   const RenderTarget screen(kSize.width, kSize.height, RenderTarget::Depth::kNone);
   const auto fly = [&](const WindowEvents& events) {
     deck.Advance(events, kSize, 1.0 / 60.0);
@@ -364,7 +364,7 @@ TEST_F(FlightDeckOverLand, NothingIsNotedBeforeTheGroundUnderTheEyeIsKnown) {
         << "places and heights are written in millimetres, on slopes of 60 degrees at most";
 }
 
-TEST_F(FlightDeckTest, APlaceThatIsAskedForMovesTheEye) {
+TEST_F(ViewerAppTest, APlaceThatIsAskedForMovesTheEye) {
   HudRequest request;
   request.place = HudPlaceRequest{47.25, 9.5, 2500.0};
   deck_->Serve(request);
@@ -374,7 +374,7 @@ TEST_F(FlightDeckTest, APlaceThatIsAskedForMovesTheEye) {
   EXPECT_TRUE(Messages().empty());
 }
 
-TEST_F(FlightDeckTest, APlaceThatNobodyKnowsIsAWarningAndTheEyeStays) {
+TEST_F(ViewerAppTest, APlaceThatNobodyKnowsIsAWarningAndTheEyeStays) {
   const Eye before = flight_->eye();
   HudRequest request;
   request.named_place = "Nowhere at all";
@@ -386,7 +386,7 @@ TEST_F(FlightDeckTest, APlaceThatNobodyKnowsIsAWarningAndTheEyeStays) {
   EXPECT_FALSE(deck_->quit());
 }
 
-TEST_F(FlightDeckTest, CtrlLSwitchesTheLandingLightAsThePanelDoes) {
+TEST_F(ViewerAppTest, CtrlLSwitchesTheLandingLightAsThePanelDoes) {
   Press(kL, kControlKey);
   ASSERT_FALSE(Messages().empty());
   EXPECT_EQ(Messages().back().text, "landing light on");
@@ -399,7 +399,7 @@ TEST_F(FlightDeckTest, CtrlLSwitchesTheLandingLightAsThePanelDoes) {
   EXPECT_EQ(Messages().back().text, "landing light off");
 }
 
-TEST_F(FlightDeckTest, TheLandingLightOfTheKeyShinesOnTheGround) {
+TEST_F(ViewerAppTest, TheLandingLightOfTheKeyShinesOnTheGround) {
   flight_->cockpit().clock().Set(ParseInstant("2026-06-21T23:00:00Z"));
   Eye low = flight_->eye();
   low.place.height_m = 30.0;
@@ -418,7 +418,7 @@ TEST_F(FlightDeckTest, TheLandingLightOfTheKeyShinesOnTheGround) {
   EXPECT_GT(mean_cd_per_m2(), 2.0 * dark);
 }
 
-TEST_F(FlightDeckTest, EachMomentOfThePanelIsTheOneThatItNames) {
+TEST_F(ViewerAppTest, EachMomentOfThePanelIsTheOneThatItNames) {
   const std::pair<const char*, const char*> cases[] = {{"sunset", "2026-06-21T19:3"},
                                                        {"dusk", "2026-06-21T20:0"},
                                                        {"dawn", "2026-06-22T02:5"},
@@ -433,7 +433,7 @@ TEST_F(FlightDeckTest, EachMomentOfThePanelIsTheOneThatItNames) {
   }
 }
 
-TEST_F(FlightDeckTest, ThePanelEntersTheModesThatThereAre) {
+TEST_F(ViewerAppTest, ThePanelEntersTheModesThatThereAre) {
   HudRequest request;
   request.mode = "aircraft";
   deck_->Serve(request);
@@ -446,7 +446,7 @@ TEST_F(FlightDeckTest, ThePanelEntersTheModesThatThereAre) {
   EXPECT_EQ(flight_->cockpit().pilot().mode(), FlightMode::kFree);
 }
 
-TEST_F(FlightDeckTest, ThePanelSetsThrottleAndHeldSpeedOfTheAircraft) {
+TEST_F(ViewerAppTest, ThePanelSetsThrottleAndHeldSpeedOfTheAircraft) {
   HudRequest throttle, speed;
   throttle.throttle = 0.25;
   speed.hold_speed_m_per_s = HudHold{55.0};
@@ -461,7 +461,7 @@ TEST_F(FlightDeckTest, ThePanelSetsThrottleAndHeldSpeedOfTheAircraft) {
   EXPECT_EQ(deck_->Model().autopilot.speed_m_per_s, std::nullopt) << "a hand has the throttle";
 }
 
-TEST_F(FlightDeckTest, ThePanelSetsLookAndWhiteBalance) {
+TEST_F(ViewerAppTest, ThePanelSetsLookAndWhiteBalance) {
   flight_->SetExposure(14.0);
   const DisplayImage photo = Shown();
   HudRequest request;
@@ -483,7 +483,7 @@ TEST_F(FlightDeckTest, ThePanelSetsLookAndWhiteBalance) {
   EXPECT_EQ(deck_->Model().exposure.white_balance, "daylight");
 }
 
-TEST_F(FlightDeckTest, EscAsksAndEnterLeaves) {
+TEST_F(ViewerAppTest, EscAsksAndEnterLeaves) {
   Press(kEscape);
   EXPECT_FALSE(deck_->quit());
   static_cast<void>(Fly(2));
@@ -491,7 +491,7 @@ TEST_F(FlightDeckTest, EscAsksAndEnterLeaves) {
   EXPECT_TRUE(deck_->quit());
 }
 
-TEST_F(FlightDeckTest, EscTwiceStays) {
+TEST_F(ViewerAppTest, EscTwiceStays) {
   Press(kEscape);
   static_cast<void>(Fly(2));
   Press(kEscape);
@@ -500,7 +500,7 @@ TEST_F(FlightDeckTest, EscTwiceStays) {
   EXPECT_FALSE(deck_->quit());
 }
 
-TEST_F(FlightDeckTest, MessagesGoAfterAWhile) {
+TEST_F(ViewerAppTest, MessagesGoAfterAWhile) {
   deck_->Say("hello");
   deck_->Advance({}, kSize, 4.0);
   EXPECT_EQ(Messages().size(), 1U);
