@@ -11,7 +11,7 @@
 #include "atmosphere/astronomy/moon.h"
 #include "atmosphere/base/error.h"
 #include "renderer/scene/scene_options.h"
-#include "renderer/terrain/built_in_range.h"
+#include "renderer/terrain/procedural_mountains.h"
 #include "viewer/flight/places.h"
 #include "viewer/gl/gl_objects.h"
 #include "viewer/land/loaded_heights.h"
@@ -96,7 +96,7 @@ FlightSession::FlightSession(const Scene& scene, const UtcInstant& start,
     SetExposure(settings.exposure.ev100);
     rule_of_exposure_ = {};  // applies once the exposure is unlocked
   }
-  if (first_terrain_.kind == TerrainSource::Kind::kBuiltInRange && !first_terrain_.centre)
+  if (first_terrain_.kind == TerrainSource::Kind::kProceduralMountains && !first_terrain_.centre)
     first_terrain_.centre = scene.place;
   scene_.terrain = first_terrain_;
   if (scene.camera.height.above_ground) ForgetGround(scene.camera.height.value_m);
@@ -105,7 +105,7 @@ FlightSession::FlightSession(const Scene& scene, const UtcInstant& start,
 bool FlightSession::IsRangeExpectedAt(const GeodeticPosition& place) const {
   constexpr double kNear_m = 100.0;
   if (!has_range_ || painter_.land().KnowsGround(place)) return false;
-  GeodeticPosition view = BuiltInRangeViewAboveGround(*scene_.terrain.centre).eye;
+  GeodeticPosition view = ProceduralMountainsViewAboveGround(*scene_.terrain.centre).eye;
   view.height_m = place.height_m;
   return glm::length(LocalFrame(kWgs84, view).EnuFromGeodetic(place).xyz) < kNear_m;
 }
@@ -172,7 +172,7 @@ void FlightSession::GoTo(const std::string& name) {
 
 void FlightSession::BringRangeTo(const GeodeticPosition& place) {
   const auto reaches = [&](const TerrainSource& range) {
-    return BuiltInRangeExtent(*range.centre).Covers(place.latitude_rad, place.longitude_rad);
+    return ProceduralMountainsExtent(*range.centre).Covers(place.latitude_rad, place.longitude_rad);
   };
   if (!has_range_ || reaches(scene_.terrain)) return;
   UseRange(reaches(first_terrain_) ? first_terrain_ : RangeSeenFrom(place));

@@ -61,12 +61,12 @@ struct Camera {
 /// Source of the ground geometry.
 struct TerrainSource {
   enum class Kind {
-    kBuiltInRange,    // BuiltInRange
+    kProceduralMountains,    // ProceduralMountains
     kElevationModel,  // file, see ReadElevation
     kMesh,            // file, see ReadObj
     kNone,            // the ellipsoid alone
   };
-  Kind kind = Kind::kBuiltInRange;
+  Kind kind = Kind::kProceduralMountains;
   std::filesystem::path file;
   VoidPolicy voids = VoidPolicy::kFill;
   UpAxis up = UpAxis::kZ;                                 // up axis of the mesh

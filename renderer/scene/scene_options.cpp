@@ -9,7 +9,7 @@
 #include "atmosphere/astronomy/night_sky.h"
 #include "atmosphere/base/error.h"
 #include "renderer/scene/nrrd_header.h"
-#include "renderer/terrain/built_in_range.h"
+#include "renderer/terrain/procedural_mountains.h"
 #include "renderer/terrain/lattice_noise.h"
 
 namespace alpenglow::renderer {
@@ -73,7 +73,7 @@ TerrainSource RangeOf(const SceneOptions& options) {
 }
 
 View ViewOfTheRange(const SceneOptions& options) {
-  const BuiltInView view = BuiltInRangeViewAboveGround(*RangeOf(options).centre);
+  const BuiltInView view = ProceduralMountainsViewAboveGround(*RangeOf(options).centre);
   GeodeticPosition place = IsPlaceTyped(options) ? PlaceTyped(options) : view.eye;
   place.height_m = 0.0;
   return {place, Height{view.eye.height_m, true}, view.heading_deg, view.pitch_deg, view.fov_deg};
@@ -108,7 +108,7 @@ std::uint32_t SeedAt(const GeodeticPosition& place) {
 }  // namespace
 
 bool IsOnRangeAtHome(const GeodeticPosition& place) {
-  return BuiltInRangeExtent(Home()).Covers(place.latitude_rad, place.longitude_rad);
+  return ProceduralMountainsExtent(Home()).Covers(place.latitude_rad, place.longitude_rad);
 }
 
 TerrainSource RangeSeenFrom(const GeodeticPosition& place) {

@@ -40,7 +40,7 @@ struct SceneOptions {
 
 /// Returns the scene with the eye at latitude and longitude, on any ground. With `dem` the default
 /// is 2 m above the ground, looking north, horizontally, 60 degrees wide. Without it the range is
-/// RangeSeenFrom the place, and height and directions default to BuiltInRangeView. The scene's time
+/// RangeSeenFrom the place, and height and directions default to ProceduralMountainsView. The scene's time
 /// is noon (UTC) of 2026-06-21, which sets the day of events given without a date. Throws
 /// InputError naming the option.
 [[nodiscard]] Scene SceneFromOptions(const SceneOptions& options);

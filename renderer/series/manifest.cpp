@@ -52,7 +52,7 @@ std::string HeightText(const Height& height) {
 
 std::string TerrainText(const TerrainSource& terrain) {
   switch (terrain.kind) {
-    case TerrainSource::Kind::kBuiltInRange:
+    case TerrainSource::Kind::kProceduralMountains:
       return !terrain.centre
                  ? "built-in range"
                  : fmt::format("{} around {}, {}",

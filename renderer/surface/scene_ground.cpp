@@ -11,7 +11,7 @@
 #include "atmosphere/math/constants.h"
 #include "atmosphere/base/error.h"
 #include "renderer/visibility/sunlit_path.h"
-#include "renderer/terrain/built_in_range.h"
+#include "renderer/terrain/procedural_mountains.h"
 #include "renderer/terrain/obj_file.h"
 
 namespace alpenglow::renderer {
@@ -252,9 +252,9 @@ std::string Joined(const std::string& one, const std::string& other) {
 LoadedMesh LoadMesh(const Scene& scene, const LocalFrame& frame, Progress* progress) {
   if (scene.terrain.kind != TerrainSource::Kind::kNone) Prepare(progress, "terrain");
   switch (scene.terrain.kind) {
-    case TerrainSource::Kind::kBuiltInRange: {
+    case TerrainSource::Kind::kProceduralMountains: {
       const ElevationGrid range =
-          BuiltInRange(scene.terrain.centre.value_or(scene.place), scene.terrain.range_seed);
+          ProceduralMountains(scene.terrain.centre.value_or(scene.place), scene.terrain.range_seed);
       Prepare(progress, "mesh");
       return MeshOf(
           range, frame,

@@ -347,7 +347,7 @@ std::optional<fs::path> CacheFolder() {
   return std::nullopt;
 }
 
-std::vector<float> KeptHeights(const WantedHeights& wanted,
+std::vector<float> HeightCache(const WantedHeights& wanted,
                                const std::function<std::vector<float>()>& make) {
   const std::optional<fs::path> folder = CacheFolder();
   if (!folder) return make();

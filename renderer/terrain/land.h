@@ -115,7 +115,7 @@ struct WantedHeights {
 
 /// Returns the cached heights, or those that `make` generates; these are stored if they match
 /// `wanted`. A folder that cannot be read or written costs only time.
-[[nodiscard]] std::vector<float> KeptHeights(const WantedHeights& wanted,
+[[nodiscard]] std::vector<float> HeightCache(const WantedHeights& wanted,
                                              const std::function<std::vector<float>()>& make);
 
 }  // namespace alpenglow::renderer

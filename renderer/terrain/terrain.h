@@ -11,7 +11,7 @@
 #include <optional>
 #include <utility>
 
-#include "renderer/terrain/built_in_range.h"
+#include "renderer/terrain/procedural_mountains.h"
 #include "renderer/terrain/elevation.h"
 #include "renderer/terrain/mesh.h"
 

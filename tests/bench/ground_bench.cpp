@@ -6,7 +6,7 @@
 
 #include "atmosphere/math/constants.h"
 #include "atmosphere/astronomy/sun.h"
-#include "renderer/terrain/built_in_range.h"
+#include "renderer/terrain/procedural_mountains.h"
 #include "viewer/ground/lit_ground.h"
 
 namespace alpenglow::viewer {
@@ -19,7 +19,7 @@ std::shared_ptr<const GroundSite> NewSite() {
   static const SiteAir kAir{std::make_shared<const SingleScattering<float>>(kMedium),
                             std::make_shared<const RefractedBeam>(kMedium),
                             std::make_shared<const MultipleScattering>(kMedium)};
-  static const ElevationGrid kRange = BuiltInRange(kPlace);
+  static const ElevationGrid kRange = ProceduralMountains(kPlace);
   return std::make_shared<const GroundSite>(GroundOf(kRange, LocalFrame(kWgs84, kPlace)),
                                             GroundCover{}, nullptr, kAir);
 }

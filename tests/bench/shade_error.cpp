@@ -18,7 +18,7 @@
 
 #include "atmosphere/math/constants.h"
 #include "renderer/visibility/shadow_heights.h"
-#include "renderer/terrain/built_in_range.h"
+#include "renderer/terrain/procedural_mountains.h"
 #include "renderer/terrain/terrain.h"
 #include "viewer/flight/flight.h"
 #include "viewer/gl/gl_context.h"
@@ -63,8 +63,8 @@ glm::dvec3 InMesh(const View& view, const glm::dvec3& direction) {
 
 View TheView() {
   const GeodeticPosition centre = PlaceFromDegrees(46.5, 8.0, 0.0);
-  ElevationGrid grid = BuiltInRange(centre);
-  const BuiltInView seen = BuiltInRangeView(centre, grid);
+  ElevationGrid grid = ProceduralMountains(centre);
+  const BuiltInView seen = ProceduralMountainsView(centre, grid);
   const LocalFrame frame(kWgs84, centre), here(kWgs84, seen.eye);
   Terrain terrain(MeshFromElevation(grid, frame));
   const Eye eye{seen.eye, seen.heading_deg * kRadiansPerDegree, 0.0, 0.0,

@@ -91,7 +91,7 @@ struct View {
 // losses are found.
 std::vector<View> Views() {
   Scene range = BareScene(2000.0, 160.0, -3.0, 60.0);
-  range.terrain.kind = TerrainSource::Kind::kBuiltInRange;
+  range.terrain.kind = TerrainSource::Kind::kProceduralMountains;
   range.camera.height.above_ground = true;
   return {{"sky", BareScene(2.0, 80.0, 20.0, 90.0), Quality::kMedium, 0.7},
           {"built-in range", range, Quality::kMedium, 2.5},

@@ -8,7 +8,7 @@
 #include <cmath>
 
 #include "renderer/scene/scene_options.h"
-#include "renderer/terrain/built_in_range.h"
+#include "renderer/terrain/procedural_mountains.h"
 #include "tests/viewer/land/headless_land.h"
 #include "viewer/flight/places.h"
 #include "viewer/gl/picture_tiles.h"

@@ -11,7 +11,7 @@
 
 #include "atmosphere/base/error.h"
 #include "atmosphere/base/parsing.h"
-#include "renderer/terrain/built_in_range.h"
+#include "renderer/terrain/procedural_mountains.h"
 #include "viewer/land/loaded_heights.h"
 
 namespace alpenglow::viewer {
@@ -71,7 +71,7 @@ LandTiles::LandTiles(const LandSource& source) : source_(source) {
   }
   if (source.files.empty() && source.range_centre) {
     tiles_.emplace_back();
-    extents_.push_back(Closed(BuiltInRangeExtent(*source.range_centre)));
+    extents_.push_back(Closed(ProceduralMountainsExtent(*source.range_centre)));
   }
   if (tiles_.empty()) return;
   LayLattice();
@@ -271,7 +271,7 @@ LandSource LandSourceOf(const Scene& scene) {
     source.files = {scene.terrain.file};
   if (scene.terrain.kind == TerrainSource::Kind::kMesh)
     source.mesh = LandSource::Mesh{scene.terrain.file, scene.place, scene.terrain.up};
-  if (scene.terrain.kind == TerrainSource::Kind::kBuiltInRange)
+  if (scene.terrain.kind == TerrainSource::Kind::kProceduralMountains)
     source.range_centre = scene.terrain.centre.value_or(scene.place);
   source.range_seed = scene.terrain.range_seed;
   return source;
@@ -281,7 +281,7 @@ ReadTile ReadLandTile(const LandTiles& tiles, int tile, int level) {
   const LandTile& wanted = tiles.tiles()[static_cast<std::size_t>(tile)];
   ElevationModel model;
   if (wanted.file.empty()) {
-    model.grid = BuiltInRange(*tiles.source().range_centre, tiles.source().range_seed);
+    model.grid = ProceduralMountains(*tiles.source().range_centre, tiles.source().range_seed);
   } else {
     model = wanted.part ? ReadElevation(wanted.file, tiles.source().voids, *wanted.part)
                         : ReadElevation(wanted.file, tiles.source().voids);

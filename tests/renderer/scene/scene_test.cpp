@@ -17,7 +17,7 @@
 #include "atmosphere/base/parsing.h"
 #include "lut/image/look.h"
 #include "renderer/scene/scene_options.h"
-#include "renderer/terrain/built_in_range.h"
+#include "renderer/terrain/procedural_mountains.h"
 #include "tests/fixtures/fault_of.h"
 #include "tests/fixtures/places.h"
 #include "tests/fixtures/temporary_folder.h"
@@ -357,7 +357,7 @@ TEST(Scene, GroundThatCannotBeIsRefused) {
 TEST(Scene, APlaceIsEnough) {
   const Scene scene = Read(kPlace);
   EXPECT_EQ(scene.medium.name, "earth");
-  EXPECT_EQ(scene.terrain.kind, TerrainSource::Kind::kBuiltInRange);
+  EXPECT_EQ(scene.terrain.kind, TerrainSource::Kind::kProceduralMountains);
   EXPECT_TRUE(scene.terrain.is_default) << "the range stands in for terrain that nobody named";
   EXPECT_FALSE(Read(kPlace + "[terrain]\nrange = true\n").terrain.is_default);
   EXPECT_EQ(scene.time, std::nullopt);
@@ -470,7 +470,7 @@ TEST(Scene, BadInputIsNamedByFileLineKeyValueAndRange) {
 
 TEST(SceneOptions, WithoutAnElevationModelTheRangeIsSeenFromItsViewpoint) {
   const Scene scene = SceneFromOptions({});
-  EXPECT_EQ(scene.terrain.kind, TerrainSource::Kind::kBuiltInRange);
+  EXPECT_EQ(scene.terrain.kind, TerrainSource::Kind::kProceduralMountains);
   EXPECT_FALSE(scene.terrain.is_default) << "at home";
   SceneOptions elsewhere;
   elsewhere.longitude = 11.0;
@@ -490,7 +490,7 @@ TEST(SceneOptions, WithoutAnElevationModelTheRangeIsSeenFromItsViewpoint) {
 // How far the built-in view of a scene's range is from the scene's place, and the place from
 // where it was typed [m].
 double ViewOffPlace_m(const Scene& scene) {
-  GeodeticPosition eye = BuiltInRangeViewAboveGround(*scene.terrain.centre).eye;
+  GeodeticPosition eye = ProceduralMountainsViewAboveGround(*scene.terrain.centre).eye;
   eye.height_m = 0.0;
   return glm::length((EcefFromGeodetic(kWgs84, eye) - EcefFromGeodetic(kWgs84, scene.place)).xyz);
 }

@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "atmosphere/math/constants.h"
-#include "renderer/terrain/built_in_range.h"
+#include "renderer/terrain/procedural_mountains.h"
 
 namespace alpenglow::viewer {
 namespace {
@@ -25,7 +25,7 @@ GroundFollower::View ViewFrom(const GeodeticPosition& place, double elevation_de
 /// What lies around a place of the built-in range, every `stride`-th sample.
 std::optional<ElevationGrid> RangeAround(const GeodeticPosition& place, double half_width_m,
                                          int most_samples) {
-  static const ElevationGrid range = BuiltInRange(kFollowedPlace);
+  static const ElevationGrid range = ProceduralMountains(kFollowedPlace);
   if (!range.Covers(place.latitude_rad, place.longitude_rad)) return std::nullopt;
   ElevationGrid around;
   around.columns = around.rows = most_samples;

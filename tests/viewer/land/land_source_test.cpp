@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "atmosphere/base/error.h"
-#include "renderer/terrain/built_in_range.h"
+#include "renderer/terrain/procedural_mountains.h"
 #include "renderer/terrain/terrain.h"
 #include "tests/viewer/land/land_files.h"
 
@@ -37,7 +37,7 @@ TEST(LandSourceRange, TheExtentOfTheRangeIsThatOfTheRange) {
   for (const double latitude_deg : {46.5, 89.8, -89.9}) {
     SCOPED_TRACE(latitude_deg);
     const GeodeticPosition centre{latitude_deg * kRadiansPerDegree, 0.14, 0.0};
-    ExpectSameGrid(BuiltInRangeExtent(centre), BuiltInRange(centre));
+    ExpectSameGrid(ProceduralMountainsExtent(centre), ProceduralMountains(centre));
   }
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "renderer/terrain/built_in_range.h"
+#include "renderer/terrain/procedural_mountains.h"
 
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
@@ -179,7 +179,7 @@ Land MadeOrKept(std::uint32_t seed) {
   return tbb::this_task_arena::isolate([&] {
     if (seed != 0) return RangeLand(seed);
     Land land = GridOf(kRangeSize);
-    land.height_m = KeptHeights({"range", kBuiltInRangeFingerprint, land.index(land.size, 0)},
+    land.height_m = HeightCache({"range", kProceduralMountainsFingerprint, land.index(land.size, 0)},
                                 [] { return MadeRangeHeights(0); });
     return land;
   });
@@ -369,15 +369,15 @@ ElevationGrid GridAt(const GeodeticPosition& centre, const Land& land) {
 
 std::vector<float> MadeRangeHeights(std::uint32_t seed) { return RangeLand(seed).height_m; }
 
-ElevationGrid BuiltInRange(const GeodeticPosition& centre, std::uint32_t seed) {
+ElevationGrid ProceduralMountains(const GeodeticPosition& centre, std::uint32_t seed) {
   return GridAt(centre, *LandOf(seed));
 }
 
-ElevationGrid BuiltInRangeExtent(const GeodeticPosition& centre) {
+ElevationGrid ProceduralMountainsExtent(const GeodeticPosition& centre) {
   return GridAt(centre, GridOf(kRangeSize));
 }
 
-BuiltInView BuiltInRangeViewAboveGround(const GeodeticPosition& centre) {
+BuiltInView ProceduralMountainsViewAboveGround(const GeodeticPosition& centre) {
   constexpr double kAboveGround_m = 60.0;
   BuiltInView view{{}, 161.0, 0.5, 50.0};
   if (IsPolar(centre)) {
@@ -399,8 +399,8 @@ GeodeticPosition CentreOfRangeSeenFrom(const GeodeticPosition& place) {
                          : centre;
 }
 
-BuiltInView BuiltInRangeView(const GeodeticPosition& centre, const ElevationGrid& range) {
-  BuiltInView view = BuiltInRangeViewAboveGround(centre);
+BuiltInView ProceduralMountainsView(const GeodeticPosition& centre, const ElevationGrid& range) {
+  BuiltInView view = ProceduralMountainsViewAboveGround(centre);
   const std::optional<double> ground =
       range.HeightAt(view.eye.latitude_rad, view.eye.longitude_rad);
   if (!ground)

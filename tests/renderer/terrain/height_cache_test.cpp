@@ -33,12 +33,12 @@ class Variable {
   std::optional<std::string> before_;
 };
 
-class KeptHeightsTest : public TemporaryFolder {
+class HeightCacheTest : public TemporaryFolder {
  protected:
   // Asks for the heights; whether they had to be made.
   [[nodiscard]] bool HadToMake() {
     bool made = false;
-    const std::vector<float> height_m = KeptHeights(wanted_, [&] {
+    const std::vector<float> height_m = HeightCache(wanted_, [&] {
       made = true;
       return height_m_;
     });
@@ -51,21 +51,21 @@ class KeptHeightsTest : public TemporaryFolder {
   WantedHeights wanted_{"range", FingerprintOf(height_m_), height_m_.size()};
 };
 
-TEST_F(KeptHeightsTest, AreMadeOnceAndThenRead) {
+TEST_F(HeightCacheTest, AreMadeOnceAndThenRead) {
   const Variable cache("ALPENGLOW_CACHE", folder_.c_str());
   EXPECT_TRUE(HadToMake());
   EXPECT_FALSE(HadToMake());
   EXPECT_EQ(fs::file_size(OnlyFile()), 4 * sizeof(float));
 }
 
-TEST_F(KeptHeightsTest, AreNotKeptWhereTheVariableIsEmpty) {
+TEST_F(HeightCacheTest, AreNotKeptWhereTheVariableIsEmpty) {
   const Variable cache("ALPENGLOW_CACHE", "");
   EXPECT_TRUE(HadToMake());
   EXPECT_TRUE(HadToMake());
   EXPECT_EQ(CacheFolder(), std::nullopt);
 }
 
-TEST_F(KeptHeightsTest, ThatAreDamagedOrCutAreMadeAgain) {
+TEST_F(HeightCacheTest, ThatAreDamagedOrCutAreMadeAgain) {
   const Variable cache("ALPENGLOW_CACHE", folder_.c_str());
   EXPECT_TRUE(HadToMake());
   for (const char* damage : {"sixteen letters.", "short", ""}) {
@@ -75,31 +75,31 @@ TEST_F(KeptHeightsTest, ThatAreDamagedOrCutAreMadeAgain) {
   }
 }
 
-TEST_F(KeptHeightsTest, OfAnotherVersionMakeRoom) {
+TEST_F(HeightCacheTest, OfAnotherVersionMakeRoom) {
   const Variable cache("ALPENGLOW_CACHE", folder_.c_str());
   EXPECT_TRUE(HadToMake());
   height_m_[1] = 7.0F;
-  EXPECT_EQ(KeptHeights(wanted_, [&] { return std::vector<float>{1.0F}; }).size(), 4U);
+  EXPECT_EQ(HeightCache(wanted_, [&] { return std::vector<float>{1.0F}; }).size(), 4U);
   wanted_.fingerprint = FingerprintOf(height_m_);
   EXPECT_TRUE(HadToMake());
   EXPECT_EQ(FileCount(), 1U);
 }
 
-TEST_F(KeptHeightsTest, ThatAreNotWhatIsWantedAreNeverWritten) {
+TEST_F(HeightCacheTest, ThatAreNotWhatIsWantedAreNeverWritten) {
   const Variable cache("ALPENGLOW_CACHE", folder_.c_str());
   wanted_.fingerprint += 1;  // as on a machine whose arithmetic is another
   EXPECT_TRUE(HadToMake());
   EXPECT_EQ(FileCount(), 0U);
 }
 
-TEST_F(KeptHeightsTest, DoNotNeedAFolderThatCanBeWritten) {
+TEST_F(HeightCacheTest, DoNotNeedAFolderThatCanBeWritten) {
   const fs::path file = folder_ / "file";
   WriteText(file, "no folder");
   const Variable cache("ALPENGLOW_CACHE", (file / "cache").c_str());
   EXPECT_TRUE(HadToMake());
 }
 
-TEST_F(KeptHeightsTest, LieWhereTheDesktopKeepsSuchThings) {
+TEST_F(HeightCacheTest, LieWhereTheDesktopKeepsSuchThings) {
   const Variable none("ALPENGLOW_CACHE", nullptr);
   const Variable home("HOME", "/home/someone");
   {

@@ -18,15 +18,15 @@ namespace alpenglow::renderer {
 /// the range falls to 0 m at the rim. Each seed has different mountains; the foreland behind the
 /// view is always that of seed 0. It takes two seconds of processor time, for seed 0 only once per
 /// machine.
-[[nodiscard]] ElevationGrid BuiltInRange(const GeodeticPosition& centre, std::uint32_t seed = 0);
+[[nodiscard]] ElevationGrid ProceduralMountains(const GeodeticPosition& centre, std::uint32_t seed = 0);
 
 /// Returns the grid of the range without heights, immediately.
-[[nodiscard]] ElevationGrid BuiltInRangeExtent(const GeodeticPosition& centre);
+[[nodiscard]] ElevationGrid ProceduralMountainsExtent(const GeodeticPosition& centre);
 
 /// Fingerprint of the heights of seed 0, see FingerprintOf (land.h).
-inline constexpr std::uint64_t kBuiltInRangeFingerprint = 15784046122448507333ULL;
+inline constexpr std::uint64_t kProceduralMountainsFingerprint = 15784046122448507333ULL;
 
-/// Returns the heights of a seed, rows from the north, without a cache; BuiltInRange caches them.
+/// Returns the heights of a seed, rows from the north, without a cache; ProceduralMountains caches them.
 [[nodiscard]] std::vector<float> MadeRangeHeights(std::uint32_t seed);
 
 /// Position and direction of a view.
@@ -39,16 +39,16 @@ struct BuiltInView {
 
 /// Returns the view that the range was designed for: from a shoulder of the foothills to the
 /// highest peak, chain behind chain, east at the left.
-[[nodiscard]] BuiltInView BuiltInRangeView(const GeodeticPosition& centre,
+[[nodiscard]] BuiltInView ProceduralMountainsView(const GeodeticPosition& centre,
                                            const ElevationGrid& range);
 
 /// Height of the ground [m] at the position of the view, known before a range is made. It is equal
 /// for all seeds to a centimetre; beside a pole, where the heights are resampled, to some metres.
 inline constexpr double kRangeViewGround_m = 2084.44;
 
-/// Returns BuiltInRangeView without the heights of the range: eye.height_m is relative to the
+/// Returns ProceduralMountainsView without the heights of the range: eye.height_m is relative to the
 /// ground.
-[[nodiscard]] BuiltInView BuiltInRangeViewAboveGround(const GeodeticPosition& centre);
+[[nodiscard]] BuiltInView ProceduralMountainsViewAboveGround(const GeodeticPosition& centre);
 
 /// Returns the centre of the range whose built-in view is at a place, to a micrometre. A centre
 /// beyond a pole keeps its meridian: its latitude exceeds 90 degrees. The view is 2 km east of its

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "renderer/terrain/built_in_range.h"
+#include "renderer/terrain/procedural_mountains.h"
 
 #include <gtest/gtest.h>
 
@@ -24,7 +24,7 @@ GeodeticPosition Degrees(double latitude, double longitude) {
 }
 
 const ElevationGrid& TheRange() {
-  static const ElevationGrid range = BuiltInRange(Degrees(46.5, 8.0));
+  static const ElevationGrid range = ProceduralMountains(Degrees(46.5, 8.0));
   return range;
 }
 
@@ -46,24 +46,24 @@ Gradient GradientAt(const ElevationGrid& range, int row, int column) {
           (height(row - 1, column) - height(row + 1, column)) / (2.0 * kSpacing_m)};
 }
 
-TEST(BuiltInRange, IsTheSameToTheLastBitEveryTimeAndEverywhere) {
-  EXPECT_EQ(FingerprintOf(MadeRangeHeights(0)), kBuiltInRangeFingerprint)
+TEST(ProceduralMountains, IsTheSameToTheLastBitEveryTimeAndEverywhere) {
+  EXPECT_EQ(FingerprintOf(MadeRangeHeights(0)), kProceduralMountainsFingerprint)
       << "the range has changed: pictures made with it will not match older ones";
-  EXPECT_EQ(FingerprintOf(TheRange().height_m), kBuiltInRangeFingerprint);
-  EXPECT_EQ(TheRange().height_m, BuiltInRange(Degrees(-33.9, 151.2)).height_m);
+  EXPECT_EQ(FingerprintOf(TheRange().height_m), kProceduralMountainsFingerprint);
+  EXPECT_EQ(TheRange().height_m, ProceduralMountains(Degrees(-33.9, 151.2)).height_m);
 }
 
-TEST(BuiltInRange, AnotherSeedHasOtherMountainsUnderTheSameView) {
+TEST(ProceduralMountains, AnotherSeedHasOtherMountainsUnderTheSameView) {
   const GeodeticPosition centre = Degrees(46.5, 8.0);
-  const ElevationGrid other = BuiltInRange(centre, 12345);
-  EXPECT_EQ(other.height_m, BuiltInRange(centre, 12345).height_m);
+  const ElevationGrid other = ProceduralMountains(centre, 12345);
+  EXPECT_EQ(other.height_m, ProceduralMountains(centre, 12345).height_m);
   int far_apart = 0;
   for (std::size_t i = 0; i < other.height_m.size(); ++i)
     far_apart += std::abs(other.height_m[i] - TheRange().height_m[i]) > 300.0F ? 1 : 0;
   EXPECT_GT(far_apart, static_cast<int>(other.height_m.size()) / 10) << "half of it are mountains";
   EXPECT_GE(Quantile(other.height_m, 0.0), 0.0);
   EXPECT_GT(Quantile(other.height_m, 1.0), 3300.0);
-  const BuiltInView view = BuiltInRangeViewAboveGround(centre);
+  const BuiltInView view = ProceduralMountainsViewAboveGround(centre);
   for (const ElevationGrid& range : {TheRange(), other}) {
     // Bilinear heights are up to a metre off those of the triangles that the constant is of.
     EXPECT_NEAR(range.HeightAt(view.eye.latitude_rad, view.eye.longitude_rad).value(),
@@ -71,7 +71,7 @@ TEST(BuiltInRange, AnotherSeedHasOtherMountainsUnderTheSameView) {
   }
 }
 
-TEST(BuiltInRange, LooksLikeAlps) {
+TEST(ProceduralMountains, LooksLikeAlps) {
   const ElevationGrid& range = TheRange();
   ASSERT_EQ(range.columns, 1024);
   ASSERT_EQ(range.rows, 1024);
@@ -103,7 +103,7 @@ TEST(BuiltInRange, LooksLikeAlps) {
       << "slopes do not favour the eight directions of the grid";
 }
 
-TEST(BuiltInRange, HasNoTerraces) {
+TEST(ProceduralMountains, HasNoTerraces) {
   // A terrace is a height that too many samples share.
   std::vector<int> count(4500, 0);
   const ElevationGrid& range = TheRange();
@@ -119,7 +119,7 @@ TEST(BuiltInRange, HasNoTerraces) {
   }
 }
 
-TEST(BuiltInRange, EveryPlaceDrains) {
+TEST(ProceduralMountains, EveryPlaceDrains) {
   const ElevationGrid& range = TheRange();
   int pits = 0;
   for (int row = 1; row < range.rows - 1; ++row) {
@@ -138,7 +138,7 @@ TEST(BuiltInRange, EveryPlaceDrains) {
   EXPECT_EQ(pits, 0);
 }
 
-TEST(BuiltInRange, JoinsTheSeaAtItsRim) {
+TEST(ProceduralMountains, JoinsTheSeaAtItsRim) {
   const ElevationGrid& range = TheRange();
   for (int i = 0; i < 1024; ++i) {
     for (const float height :
@@ -156,8 +156,8 @@ struct Sight {
 };
 
 Sight Look(const GeodeticPosition& centre) {
-  const ElevationGrid range = BuiltInRange(centre);
-  const BuiltInView view = BuiltInRangeView(centre, range);
+  const ElevationGrid range = ProceduralMountains(centre);
+  const BuiltInView view = ProceduralMountainsView(centre, range);
   const LocalFrame frame(kWgs84, view.eye);
   const Terrain terrain(MeshFromElevation(range, frame));
   const auto direction = [](double azimuth_deg, double elevation_deg) {
@@ -200,26 +200,26 @@ Sight Look(const GeodeticPosition& centre) {
   return sight;
 }
 
-TEST(BuiltInRangeView, ShowsTheHighestPeakAndChainBehindChain) {
+TEST(ProceduralMountainsView, ShowsTheHighestPeakAndChainBehindChain) {
   const Sight sight = Look(Degrees(46.5, 8.0));
   EXPECT_LT(std::abs(sight.summit_in_view_deg), 20.0);
   EXPECT_GT(sight.farthest_m, 40e3);
   EXPECT_GE(sight.ridges, 4);
-  const BuiltInView view = BuiltInRangeView(Degrees(46.5, 8.0), TheRange());
+  const BuiltInView view = ProceduralMountainsView(Degrees(46.5, 8.0), TheRange());
   EXPECT_NEAR(view.eye.height_m, 2000.0, 200.0);
   EXPECT_GT(view.heading_deg, 135.0) << "south-east to south: dawn comes from the left";
   EXPECT_LT(view.heading_deg, 180.0);
 }
 
 // Hard case 17.
-TEST(BuiltInRangeView, ShowsTheSameBesideAPole) {
+TEST(ProceduralMountainsView, ShowsTheSameBesideAPole) {
   const Sight sight = Look(Degrees(89.9, 120.0));
   EXPECT_LT(std::abs(sight.summit_in_view_deg), 20.0);
   EXPECT_GT(sight.farthest_m, 40e3);
 }
 
 // Hard case 17.
-TEST(BuiltInRangeView, ShowsTheSameOverTheSouthPole) {
+TEST(ProceduralMountainsView, ShowsTheSameOverTheSouthPole) {
   const Sight sight = Look(Degrees(-90.0, 0.0));
   EXPECT_LT(std::abs(sight.summit_in_view_deg), 20.0);
   EXPECT_GT(sight.farthest_m, 40e3);
