@@ -234,7 +234,7 @@ int Run(const SkyseriesOptions& options) {
       scene.camera.IsPanorama() ? Projection::kLatitudeLongitude : Projection::kCamera,
       scene.camera.fov_rad,
       [&](const Frame& frame) {
-        return renderer(nullptr).Render(camera_sample(frame), PilotSettings(settings, options));
+        return renderer(nullptr).Render(camera_sample(frame), PreviewSettings(settings, options));
       },
       scene.medium.follows_wgs84};
   WarnOfTotality(source, selected);

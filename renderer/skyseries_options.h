@@ -286,17 +286,17 @@ inline void SetRays(const SkyseriesOptions& options, RenderSettings& settings) {
 
 /// Returns the settings of the small picture that meters a series: 96 pixels along the longer side,
 /// with the effects of `settings`.
-inline RenderSettings PilotSettings(const RenderSettings& settings,
+inline RenderSettings PreviewSettings(const RenderSettings& settings,
                                     const SkyseriesOptions& options) {
   constexpr int kLongSide = 96;
-  RenderSettings pilot;
+  RenderSettings preview;
   const int longest = std::max(settings.width, settings.height);
-  pilot.width = std::max(settings.width * kLongSide / longest, 1);
-  pilot.height = std::max(settings.height * kLongSide / longest, 1);
-  pilot.effects = settings.effects;
-  pilot.filter = settings.filter;
-  if (options.night_vision) pilot.layers.push_back(PictureLayer::kScotopic);
-  return pilot;
+  preview.width = std::max(settings.width * kLongSide / longest, 1);
+  preview.height = std::max(settings.height * kLongSide / longest, 1);
+  preview.effects = settings.effects;
+  preview.filter = settings.filter;
+  if (options.night_vision) preview.layers.push_back(PictureLayer::kScotopic);
+  return preview;
 }
 
 /// Returns whether effects are chosen for each picture.

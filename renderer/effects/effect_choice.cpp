@@ -74,7 +74,7 @@ namespace {
 
 constexpr double kPercentileFactor = 4.0;  // 99th percentile allowed, in budgets
 
-/// Returns the number of pixels of a picture's pilot grid.
+/// Returns the number of pixels of a picture's preview grid.
 int PreviewSize(int width, int height) {
   constexpr double kLeast = 400.0, kMost = 2000.0, kShare = 1.0 / 512.0;
   const double pixels = static_cast<double>(width) * height;
@@ -90,21 +90,21 @@ bool IsWithin(const ChangeEstimate& change, double max_error) {
          change.at_most.at_99_percent <= kPercentileFactor * max_error;
 }
 
-/// Returns the first pixels of a pilot's picture.
+/// Returns the first pixels of a preview's picture.
 Image FirstPixels(const Image& image, std::size_t count) {
   Image first(static_cast<int>(count), 1);
   std::copy_n(image.rgb.begin(), count, first.rgb.begin());
   return first;
 }
 
-/// Compares pilot pictures with the reference, the pilot picture with all wanted effects.
+/// Compares preview pictures with the reference, the preview picture with all wanted effects.
 class EffectComparison {
  public:
-  EffectComparison(const EffectPreview& pilot, EffectSet wanted, int repeats)
-      : pilot_(pilot),
+  EffectComparison(const EffectPreview& preview, EffectSet wanted, int repeats)
+      : preview_(preview),
         repeats_(repeats),
         everything_(Render(wanted)),
-        floor_(ChangeFloor(FirstPixels(everything_.image, pilot.groups.front().size()))) {}
+        floor_(ChangeFloor(FirstPixels(everything_.image, preview.groups.front().size()))) {}
 
   struct Verdict {
     ChangeEstimate change;  // the worst of the groups
@@ -116,13 +116,13 @@ class EffectComparison {
   [[nodiscard]] Verdict On(const PreviewPicture& picture) const {
     Verdict verdict{{}, {}, PictureSeconds(picture)};
     std::size_t at = 0;
-    for (const auto& group : pilot_.groups) {
+    for (const auto& group : preview_.groups) {
       std::vector<double> changes;
       for (std::size_t i = 0; i < group.size(); ++i, ++at) {
         changes.push_back(PixelChange(everything_.image.rgb[at], picture.image.rgb[at], floor_));
       }
       const ChangeEstimate change = ChangeEstimate::Of(std::move(changes));
-      if (&group == &pilot_.groups.front()) verdict.whole = change;
+      if (&group == &preview_.groups.front()) verdict.whole = change;
       verdict.change.seen = Worse(verdict.change.seen, change.seen);
       verdict.change.at_most = Worse(verdict.change.at_most, change.at_most);
     }
@@ -133,19 +133,19 @@ class EffectComparison {
 
  private:
   [[nodiscard]] PreviewPicture Render(EffectSet effects) const {
-    PreviewPicture picture = pilot_.render(effects);
+    PreviewPicture picture = preview_.render(effects);
     for (int i = 1; i < repeats_; ++i) {
-      picture.seconds = std::min(picture.seconds, pilot_.render(effects).seconds);
+      picture.seconds = std::min(picture.seconds, preview_.render(effects).seconds);
     }
     return picture;
   }
 
   [[nodiscard]] double PictureSeconds(const PreviewPicture& picture) const {
-    return picture.seconds * pilot_.pixels_of_picture /
+    return picture.seconds * preview_.pixels_of_picture /
            static_cast<double>(picture.image.rgb.size());
   }
 
-  const EffectPreview& pilot_;
+  const EffectPreview& preview_;
   int repeats_;
   PreviewPicture everything_;
   double floor_;
@@ -193,9 +193,9 @@ class Chooser {
   EffectComparison::Verdict verdict_;
 };
 
-std::vector<RefinementEstimate> Refine(const EffectPreview& pilot, const EffectComparison& comparison) {
+std::vector<RefinementEstimate> Refine(const EffectPreview& preview, const EffectComparison& comparison) {
   std::vector<RefinementEstimate> estimates;
-  for (const Refinement& refinement : pilot.refinements) {
+  for (const Refinement& refinement : preview.refinements) {
     const EffectComparison::Verdict with = comparison.On(refinement.render());
     estimates.push_back({refinement.name, with.change, with.picture_s - comparison.everything_s()});
   }
@@ -280,20 +280,20 @@ EffectSet EffectChoice::LeftOut() const {
   return left_out;
 }
 
-EffectChoice ChooseEffects(const EffectPreview& pilot, EffectSet wanted, const EffectBudget& budget) {
+EffectChoice ChooseEffects(const EffectPreview& preview, EffectSet wanted, const EffectBudget& budget) {
   const Stopwatch watch;
-  const EffectComparison comparison(pilot, wanted, budget.explain ? 3 : 1);
+  const EffectComparison comparison(preview, wanted, budget.explain ? 3 : 1);
   EffectChoice choice;
   choice.max_error = budget.max_error;
   choice.all_s = comparison.everything_s();
   std::vector<EffectEstimate> candidates;
   for (const Effect effect : wanted.List()) {
     EffectEstimate estimate{effect, {}, {}};
-    estimate.present = pilot.present.Has(effect);
+    estimate.present = preview.present.Has(effect);
     if (TextOf(effect).is_free && !budget.explain) continue;
     if (estimate.present) {
       const EffectComparison::Verdict without = comparison.On(wanted.Without(effect));
-      const double preparation_s = pilot.preparation_s(effect);
+      const double preparation_s = preview.preparation_s(effect);
       choice.all_s += preparation_s;
       estimate.change = without.change;
       estimate.whole = without.whole;
@@ -308,16 +308,16 @@ EffectChoice ChooseEffects(const EffectPreview& pilot, EffectSet wanted, const E
   });
   Chooser chooser(comparison, wanted, budget.max_error);
   if (budget.leave_out) chooser.LeaveOut(candidates);
-  if (budget.explain) choice.refinements = Refine(pilot, comparison);
+  if (budget.explain) choice.refinements = Refine(preview, comparison);
   choice.effects = chooser.effects();
   choice.together = chooser.verdict().change;
   choice.chosen_s = chooser.verdict().picture_s;
   for (EffectEstimate& estimate : choice.estimates) {
     estimate.kept = choice.effects.Has(estimate.effect);
-    if (estimate.kept) choice.chosen_s += pilot.preparation_s(estimate.effect);
+    if (estimate.kept) choice.chosen_s += preview.preparation_s(estimate.effect);
   }
-  for (const auto& group : pilot.groups) choice.pilot_pixels += group.size();
-  choice.pilot_s = watch.seconds();
+  for (const auto& group : preview.groups) choice.preview_pixels += group.size();
+  choice.preview_s = watch.seconds();
   return choice;
 }
 
@@ -354,9 +354,9 @@ std::string ExplainText(const EffectChoice& choice) {
   for (const RefinementEstimate& more : choice.refinements)
     text += Line(more.name, more.change, more.cost_s, choice.all_s, "not asked for");
   text += fmt::format(
-      "pilot: {} pixels, {:.3f} s; the frame: {:.3f} s with everything, {:.3f} s as "
+      "preview: {} pixels, {:.3f} s; the frame: {:.3f} s with everything, {:.3f} s as "
       "chosen\n",
-      choice.pilot_pixels, choice.pilot_s, choice.all_s, choice.chosen_s);
+      choice.preview_pixels, choice.preview_s, choice.all_s, choice.chosen_s);
   return text;
 }
 

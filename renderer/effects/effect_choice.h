@@ -13,18 +13,18 @@
 // an edge which rough ground masks, and that viewers tolerate errors of hue more than errors of
 // lightness.
 //
-// The choice is made with a pilot: a few of the picture's own pixels are rendered with all effects,
+// The choice is made with a preview: a few of the picture's own pixels are rendered with all effects,
 // and again without each one. Effects whose change is small are left out, smallest first, as long
-// as the pilot without all of them together stays within the budget:
+// as the preview without all of them together stays within the budget:
 //
 //   rms of d at most the budget,    99th percentile of d at most four times the budget,
 //
 // Three standard errors are added to both numbers. They must hold for the picture as a whole and
 // also, separately and however small these are, for its lamps and for the surroundings of the sun.
 //
-// The pilot has one pixel in each cell of a grid over the picture, at a pseudo-random but
+// The preview has one pixel in each cell of a grid over the picture, at a pseudo-random but
 // deterministic position in the cell. It therefore misses nothing larger than a cell. Smaller
-// features that are neither lamps nor near the sun are seen only if a pilot pixel happens to hit
+// features that are neither lamps nor near the sun are seen only if a preview pixel happens to hit
 // them.
 //
 // The choice depends on pixels alone; the cost of effects is measured and reported, but not used.
@@ -75,7 +75,7 @@ struct PixelPlace {
   int x, y;
 };
 
-/// Pixels of the pilot: the first group represents the whole picture, each other group a small
+/// Pixels of the preview: the first group represents the whole picture, each other group a small
 /// feature.
 using PreviewGroups = std::vector<std::vector<PixelPlace>>;
 
@@ -106,7 +106,7 @@ class Stopwatch {
   std::clock_t begin_ = std::clock();
 };
 
-/// The pilot's pixels, group after group, as a picture of one row, and the rendering time.
+/// The preview's pixels, group after group, as a picture of one row, and the rendering time.
 struct PreviewPicture {
   Image image;
   double seconds = 0.0;
@@ -128,7 +128,7 @@ struct EffectPreview {
   std::function<double(Effect)> preparation_s = [](Effect) { return 0.0; };
 };
 
-/// Estimate of an effect of a picture from the pilot.
+/// Estimate of an effect of a picture from the preview.
 struct EffectEstimate {
   Effect effect;
   ChangeEstimate change;  // the worst of the groups
@@ -148,7 +148,7 @@ struct RefinementEstimate {
 struct EffectBudget {
   double max_error = 0.01;  // rms of d, in (0, 1]
   /// Also estimates the parts of the air, which cost nothing and are always kept, and times each
-  /// pilot picture three times.
+  /// preview picture three times.
   bool explain = false;
   bool leave_out = true;  // false: all effects are kept and only estimated
 };
@@ -159,15 +159,15 @@ struct EffectChoice {
   std::vector<EffectEstimate> estimates;  // of the requested effects, in the order of Effect
   ChangeEstimate together;                // change from leaving out all of `LeftOut()`
   std::vector<RefinementEstimate> refinements;
-  // Times, summed over threads: the picture with all effects, the picture as chosen, and the pilot.
-  double all_s = 0.0, chosen_s = 0.0, pilot_s = 0.0;
-  std::size_t pilot_pixels = 0;
+  // Times, summed over threads: the picture with all effects, the picture as chosen, and the preview.
+  double all_s = 0.0, chosen_s = 0.0, preview_s = 0.0;
+  std::size_t preview_pixels = 0;
 
   [[nodiscard]] EffectSet LeftOut() const;
 };
 
 /// @param wanted  the effects of the reference picture.
-[[nodiscard]] EffectChoice ChooseEffects(const EffectPreview& pilot, EffectSet wanted,
+[[nodiscard]] EffectChoice ChooseEffects(const EffectPreview& preview, EffectSet wanted,
                                          const EffectBudget& budget);
 
 /// Returns a table of a choice, with one line per effect.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Renders pictures with the effects that a scene needs: runs the pilot of effect_choice.h with the
+// Renders pictures with the effects that a scene needs: runs the preview of effect_choice.h with the
 // scene's own pixels.
 #include "renderer/picture/render.h"
 
@@ -104,33 +104,33 @@ ChosenPicture SceneRenderer::RenderWithin(const CameraSample& camera_sample, con
     if (!on_few_bands) on_few_bands.emplace(state.FrameAt(camera_sample, settings));
     return state.Reduced(*on_few_bands, effects);
   };
-  EffectPreview pilot;
+  EffectPreview preview;
   std::vector<glm::dvec3> points = frame.lamps->Directions();
   if (frame.stars) {
     const auto& stars = frame.stars->directions();
     points.insert(points.end(), stars.begin(), stars.end());
   }
-  pilot.groups =
+  preview.groups =
       PreviewPixels(frame.camera(), settings.width, settings.height, frame.light.to_sun, points);
   std::vector<PixelPlace> places;
-  for (const auto& group : pilot.groups) places.insert(places.end(), group.begin(), group.end());
+  for (const auto& group : preview.groups) places.insert(places.end(), group.begin(), group.end());
   const auto timed = [&](const PreparedScene& state, const FrameContext& of) {
     const Stopwatch watch;
     Image image = state.Pixels(of, places);
     return PreviewPicture{std::move(image), watch.seconds()};
   };
-  pilot.render = [&](EffectSet effects) { return timed(state_->For(effects), with(effects)); };
-  pilot.pixels_of_picture = static_cast<double>(settings.width) * settings.height;
-  pilot.preparation_s = [&](Effect effect) {
+  preview.render = [&](EffectSet effects) { return timed(state_->For(effects), with(effects)); };
+  preview.pixels_of_picture = static_cast<double>(settings.width) * settings.height;
+  preview.preparation_s = [&](Effect effect) {
     return effect == Effect::kShafts   ? frame.sunlight_s
            : effect == Effect::kLights ? frame.plan_s
            : effect == Effect::kBounce ? frame.slopes_s
                                        : 0.0;
   };
   Prepare(settings.progress, "choice of effects");
-  pilot.present = whole.Present(frame);
+  preview.present = whole.Present(frame);
   const auto refine = [&](const char* name, const auto& change) {
-    pilot.refinements.push_back({name, [&, change] {
+    preview.refinements.push_back({name, [&, change] {
                                    FrameContext finer = frame;
                                    change(finer.settings);
                                    return timed(whole, finer);
@@ -140,10 +140,10 @@ ChosenPicture SceneRenderer::RenderWithin(const CameraSample& camera_sample, con
   refine("air of each ray", [](RenderSettings& finer) { finer.share_air = false; });
   const std::unique_ptr<PreparedScene> more_bands = budget.explain ? whole.OnOtherBands(16) : nullptr;
   if (more_bands && frame.model->air.bands() < 16) {
-    pilot.refinements.push_back(
+    preview.refinements.push_back(
         {"16 bands", [&] { return timed(*more_bands, more_bands->FrameAt(camera_sample, settings)); }});
   }
-  EffectChoice choice = ChooseEffects(pilot, settings.effects, budget);
+  EffectChoice choice = ChooseEffects(preview, settings.effects, budget);
   CountedPicture picture = state_->For(choice.effects).Picture(with(choice.effects));
   return {std::move(picture.image), picture.rays, std::move(choice)};
 }

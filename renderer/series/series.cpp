@@ -165,7 +165,7 @@ class Series {
   Series(const SeriesSource& source, const std::vector<Frame>& frames, const SeriesOutput& output)
       : source_(source), frames_(frames), output_(output) {
     const std::optional<int> per_node = FramesPerNode(frames, source.path.has_value());
-    if (!source.pilot || !per_node) return;
+    if (!source.preview || !per_node) return;
     const ExposureRule::Kind kind = output.exposure.kind;
     if (kind == ExposureRule::Kind::kMetered) {
       smooth_ev100_.emplace(frames, *per_node,
@@ -269,9 +269,9 @@ class Series {
   [[nodiscard]] const Reading& ReadingOf(const Frame& frame) {
     const auto known = readings_.find(frame.number);
     if (known != readings_.end()) return known->second;
-    const Image pilot = source_.pilot(frame);
-    const Look look = Settled(output_.look, pilot, ViewOf(frame, pilot));
-    Reading reading{Metered(frame, pilot, look), std::nullopt};
+    const Image preview = source_.preview(frame);
+    const Look look = Settled(output_.look, preview, ViewOf(frame, preview));
+    Reading reading{Metered(frame, preview, look), std::nullopt};
     if (look.white.kelvin) reading.white_mired = kPerMired / *look.white.kelvin;
     return readings_[frame.number] = reading;
   }

@@ -51,7 +51,7 @@ struct SeriesSource {
   double fov_rad = 0.0;                         // without a path
   /// Returns a small picture of a frame, for the meter of a series (smooth_meter.h); without it
   /// each frame is metered by itself.
-  std::function<Image(const Frame&)> pilot = {};
+  std::function<Image(const Frame&)> preview = {};
   bool has_moon = true;  // the planet has the earth's moon, which can eclipse the sun
 
   /// Returns the fraction of the sun's light (550 nm) that the moon covers, [0, 1].

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Measures the change of whole pictures and the time saved when effects are left out, and compares
-// both with the prediction of the pilot. Run by hand; results are in README.md.
-//   effects_error [WIDTH HEIGHT [SCENE [pilot]]]         pilot: only the cost of the choice
+// both with the prediction of the preview. Run by hand; results are in README.md.
+//   effects_error [WIDTH HEIGHT [SCENE [preview]]]         preview: only the cost of the choice
 #include <fmt/core.h>
 
 #include <cstdlib>
@@ -24,12 +24,12 @@ Timed Render(const SceneRenderer& renderer, const EffectScene& scene,
   return {std::move(image), watch.seconds()};
 }
 
-void MeasurePilot(const EffectScene& scene, const RenderSettings& settings) {
+void MeasurePreview(const EffectScene& scene, const RenderSettings& settings) {
   const SceneRenderer renderer(scene.scene);
   (void)renderer.RenderWithin(scene.instant, settings, {});
   const EffectChoice choice = renderer.RenderWithin(scene.instant, settings, {}).choice;
   fmt::print("{}: choosing takes {:.3f} s, {:.1f} % of {:.2f} s with everything\n", scene.name,
-             choice.pilot_s, 100.0 * choice.pilot_s / choice.all_s, choice.all_s);
+             choice.preview_s, 100.0 * choice.preview_s / choice.all_s, choice.all_s);
 }
 
 void Measure(const EffectScene& scene, RenderSettings settings) {
@@ -61,9 +61,9 @@ void Measure(const EffectScene& scene, RenderSettings settings) {
     hold(fmt::format("within {} %", 100.0 * budget), choice.effects, choice.together,
          choice.all_s - choice.chosen_s);
     const EffectChoice plain = renderer.RenderWithin(scene.instant, everything, {budget}).choice;
-    fmt::print("  left out: {}; the pilot takes {:.3f} s, {:.1f} % of the picture\n",
-               NotesOn(choice).at("alpenglow.note.effects_left_out"), plain.pilot_s,
-               100.0 * plain.pilot_s / all.seconds);
+    fmt::print("  left out: {}; the preview takes {:.3f} s, {:.1f} % of the picture\n",
+               NotesOn(choice).at("alpenglow.note.effects_left_out"), plain.preview_s,
+               100.0 * plain.preview_s / all.seconds);
   }
 }
 
@@ -78,7 +78,7 @@ int main(int argc, char** argv) {
   for (const EffectScene& scene : EffectScenes(std::filesystem::temp_directory_path().string())) {
     if (argc > 3 && scene.name != argv[3]) continue;
     if (argc > 4) {
-      MeasurePilot(scene, settings);
+      MeasurePreview(scene, settings);
     } else {
       Measure(scene, settings);
     }

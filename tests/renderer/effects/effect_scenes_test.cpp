@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What the pilot says of whole pictures, held against whole pictures.
+// What the preview says of whole pictures, held against whole pictures.
 #include "tests/fixtures/effect_scenes.h"
 
 #include <gtest/gtest.h>
@@ -99,7 +99,7 @@ TEST_P(SceneEffects, ThePilotSeesOfEachEffectWhatThePictureShows) {
     const double is = ChangeOf(scene_->WithAll(), without).rms;
     const char* name = TextOf(estimate.effect).name;
     EXPECT_LE(is, estimate.change.at_most.rms + 1e-3)
-        << name << ": three standard errors, and what falls between the pilot's pixels";
+        << name << ": three standard errors, and what falls between the preview's pixels";
     const double seen = estimate.whole.seen.rms, at_most = estimate.whole.at_most.rms;
     EXPECT_GE(is * is, 2.0 * seen * seen - at_most * at_most) << name << ": as many below";
     EXPECT_LT(seen, 2.0 * is + 1e-3) << name;

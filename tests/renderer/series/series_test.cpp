@@ -145,9 +145,9 @@ TEST_F(SeriesRun, FilesAndManifestSayWhatExposedThem) {
 
 TEST_F(SeriesRun, AFarmsSingleFrameIsExposedAsInTheWholeSeries) {
   SeriesSource source = Source();
-  int pilots = 0;
-  source.pilot = [&](const Frame& frame) {
-    ++pilots;
+  int previews = 0;
+  source.preview = [&](const Frame& frame) {
+    ++previews;
     Image image(4, 3);
     const double jump = frame.number > 4 ? 30.0 : 1.0;
     for (auto& pixel : image.rgb) pixel.fill(static_cast<float>(100.0 * jump));
@@ -172,10 +172,10 @@ TEST_F(SeriesRun, AFarmsSingleFrameIsExposedAsInTheWholeSeries) {
   RunSeries(source, frames, SelectFrames(frames, "5"), output);
   EXPECT_EQ(ContentOf(folder_ / "frame.0005.png"), whole);
 
-  pilots = 0;
+  previews = 0;
   output.resume = true;
   EXPECT_EQ(RunSeries(source, frames, frames, output).kept, 8);
-  EXPECT_EQ(pilots, 0) << "frames that are there say how they were exposed";
+  EXPECT_EQ(previews, 0) << "frames that are there say how they were exposed";
 }
 
 TEST_F(SeriesRun, WhiteBalanceIsOfTheDevelopedPictureAndTheHeaderHasItsTemperature) {
@@ -211,11 +211,11 @@ TEST_F(SeriesRun, AnAutomaticWhiteBalanceIsSmoothOverAFilmAndKeptWithoutPilots) 
     }
     return image;
   };
-  int pilots = 0;
+  int previews = 0;
   SeriesSource source = Source();
   source.render = [&](const Frame& frame, Progress&) { return light(frame); };
-  source.pilot = [&](const Frame& frame) {
-    ++pilots;
+  source.preview = [&](const Frame& frame) {
+    ++previews;
     return light(frame);
   };
   SeriesOutput output = Output();
@@ -224,7 +224,7 @@ TEST_F(SeriesRun, AnAutomaticWhiteBalanceIsSmoothOverAFilmAndKeptWithoutPilots) 
   std::vector<Frame> frames;
   for (int i = 0; i < 49; ++i) frames.push_back({i, UtcInstant{61212, 40000.0 + 30.0 * i}});
   RunSeries(source, frames, frames, output);
-  EXPECT_EQ(pilots, 13) << "a node every four frames";
+  EXPECT_EQ(previews, 13) << "a node every four frames";
   std::vector<double> mireds;
   for (const Frame& frame : frames) {
     const Metadata header = ReadExrMetadata(output.name.Exr(frame.number));
@@ -237,10 +237,10 @@ TEST_F(SeriesRun, AnAutomaticWhiteBalanceIsSmoothOverAFilmAndKeptWithoutPilots) 
     EXPECT_GE(mireds[i] - mireds[i - 1], -0.1) << "whole kelvins";
     EXPECT_LE(mireds[i] - mireds[i - 1], 0.75 * kStep / 4.0 + 0.1) << "3 s / (4 n)";
   }
-  pilots = 0;
+  previews = 0;
   output.resume = true;
   EXPECT_EQ(RunSeries(source, frames, frames, output).kept, 49);
-  EXPECT_EQ(pilots, 0);
+  EXPECT_EQ(previews, 0);
 }
 
 TEST_F(SeriesRun, NightVisionDevelopsWhatTheEyeSeesAndKeepsTheLight) {
