@@ -9,11 +9,11 @@
 #include <string>
 #include <vector>
 
+#include "atmosphere/astronomy/sun.h"
 #include "atmosphere/medium/medium_presets.h"
 #include "atmosphere/refraction/refracted_view.h"
-#include "atmosphere/astronomy/sun.h"
-#include "lut/image/look.h"
 #include "lut/cli/output_file.h"
+#include "lut/image/look.h"
 #include "lut/sky/panorama.h"
 
 namespace alpenglow::lut {
@@ -115,8 +115,9 @@ RenderedSky Rendered(const SkyJob& job, ProgressStyle style) {
   const SingleScattering<float> air(job.medium);
   const MultipleScattering multiple_scattering(job.medium);
   Progress progress("rows", static_cast<std::size_t>(job.settings.height), style);
-  return {RenderPanorama(air, multiple_scattering, job.settings, [&] { progress.Advance(); }),
-          HorizontalIlluminance(air, multiple_scattering, job.settings.altitude_m, job.settings.sun)};
+  return {
+      RenderPanorama(air, multiple_scattering, job.settings, [&] { progress.Advance(); }),
+      HorizontalIlluminance(air, multiple_scattering, job.settings.altitude_m, job.settings.sun)};
 }
 
 double Ev100Of(const RenderedSky& sky, const Image& seen, const ExposureRule& rule,

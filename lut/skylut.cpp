@@ -4,17 +4,17 @@
 #include <string>
 #include <vector>
 
-#include "atmosphere/medium/medium_presets.h"
 #include "atmosphere/base/error.h"
-#include "lut/evaluate/eval.h"
-#include "lut/evaluate/lamp_cases.h"
+#include "atmosphere/medium/medium_presets.h"
 #include "lut/cli/command_line.h"
 #include "lut/cli/output_file.h"
 #include "lut/cli/program.h"
+#include "lut/evaluate/eval.h"
+#include "lut/evaluate/lamp_cases.h"
 #include "lut/sky_command.h"
+#include "lut/table_commands.h"
 #include "lut/table_io/exchange_check.h"
 #include "lut/table_io/table_folder.h"
-#include "lut/table_commands.h"
 
 namespace alpenglow::lut {
 namespace {

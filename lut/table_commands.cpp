@@ -10,8 +10,8 @@
 #include "atmosphere/medium/aerosol_mixture.h"
 #include "atmosphere/medium/medium.h"
 #include "atmosphere/medium/medium_presets.h"
-#include "lut/evaluate/eval.h"
 #include "lut/cli/output_file.h"
+#include "lut/evaluate/eval.h"
 #include "lut/report/report.h"
 #include "lut/table_io/exchange_tables.h"
 #include "lut/table_io/table_folder.h"
@@ -217,10 +217,11 @@ void WriteMeasuredReport(const ReportCommandOptions& options, const CommonOption
 
 Subcommand AddReportCommand(CLI::App& app) {
   const auto options = std::make_shared<ReportCommandOptions>();
-  CLI::App& report = *app.add_subcommand(
-      "report",
-      "Measure every method against the reference solutions, error against time and memory, by day, at sunset "
-      "and in twilight: CSV, SVG plots, summary.md and a page, index.html.");
+  CLI::App& report =
+      *app.add_subcommand("report",
+                          "Measure every method against the reference solutions, error against "
+                          "time and memory, by day, at sunset "
+                          "and in twilight: CSV, SVG plots, summary.md and a page, index.html.");
   report.add_option("--out", options->out, "Folder for the report; made when missing")
       ->check(FaultOfFolderName)
       ->required();

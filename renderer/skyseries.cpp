@@ -5,17 +5,17 @@
 #include <algorithm>
 #include <memory>
 
-#include "atmosphere/math/constants.h"
 #include "atmosphere/astronomy/eclipse.h"
 #include "atmosphere/base/parsing.h"
+#include "atmosphere/math/constants.h"
 #include "renderer/camera/track.h"
-#include "renderer/surface/scene_ground.h"
 #include "renderer/scene/scene_options.h"
 #include "renderer/series/frame_times.h"
 #include "renderer/series/manifest.h"
 #include "renderer/series/series.h"
 #include "renderer/skyseries_commands.h"
 #include "renderer/skyseries_options.h"
+#include "renderer/surface/scene_ground.h"
 
 namespace alpenglow::renderer {
 namespace {
@@ -212,13 +212,15 @@ int Run(const SkyseriesOptions& options) {
     return *loaded;
   };
   const auto camera_sample = [&](const Frame& frame) {
-    return path ? CameraSampleOf(frame, *path, options.shutter * FrameInterval(*path, RateOf(options)))
+    return path ? CameraSampleOf(frame, *path,
+                                 options.shutter * FrameInterval(*path, RateOf(options)))
                 : CameraSample(frame.instant);
   };
   const SeriesSource source{
       [&](const Frame& frame, Progress& progress) {
         settings.progress = &progress;
-        NotedPicture picture = RenderFrame(renderer(&progress), camera_sample(frame), settings, options);
+        NotedPicture picture =
+            RenderFrame(renderer(&progress), camera_sample(frame), settings, options);
         picture.notes[kIlluminanceNote] =
             fmt::format("{:.6g}", renderer(nullptr).Illuminance(camera_sample(frame)));
         return picture;

@@ -7,14 +7,14 @@
 #include <string>
 #include <vector>
 
-#include "atmosphere/medium/medium.h"
-#include "atmosphere/math/constants.h"
 #include "atmosphere/astronomy/moon.h"
 #include "atmosphere/astronomy/sun.h"
-#include "lut/image/look.h"
+#include "atmosphere/math/constants.h"
+#include "atmosphere/medium/medium.h"
 #include "lut/cli/messages.h"
 #include "lut/cli/output_file.h"
 #include "lut/cli/program.h"
+#include "lut/image/look.h"
 #include "renderer/picture/render.h"
 #include "renderer/report/report.h"
 #include "renderer/scene/scene.h"
@@ -44,10 +44,11 @@ void WriteMeasuredReport(const PictureReportOptions& options) {
 
 std::function<void()> AddPictureReportCommand(CLI::App& app) {
   const auto options = std::make_shared<PictureReportOptions>();
-  CLI::App& report = *app.add_subcommand(
-      "report",
-      "Measure the air before mountains, shafts, lamps and whole pictures against slow reference solutions, "
-      "error against time: CSV, SVG plots, summary.md and a page, index.html.");
+  CLI::App& report =
+      *app.add_subcommand("report",
+                          "Measure the air before mountains, shafts, lamps and whole pictures "
+                          "against slow reference solutions, "
+                          "error against time: CSV, SVG plots, summary.md and a page, index.html.");
   report.preparse_callback([&app](std::size_t) { app.get_option("--out")->required(false); });
   report.add_option("--out", options->out, "Folder for the report; made when missing")
       ->check(FaultOfFolderName)

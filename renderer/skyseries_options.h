@@ -10,10 +10,10 @@
 #include <string>
 #include <vector>
 
-#include "lut/evaluate/eval.h"
-#include "lut/image/look.h"
 #include "lut/cli/command_line.h"
 #include "lut/cli/output_file.h"
+#include "lut/evaluate/eval.h"
+#include "lut/image/look.h"
 #include "renderer/camera/camera_rays.h"
 #include "renderer/camera/track.h"
 #include "renderer/picture/render.h"
@@ -287,7 +287,7 @@ inline void SetRays(const SkyseriesOptions& options, RenderSettings& settings) {
 /// Returns the settings of the small picture that meters a series: 96 pixels along the longer side,
 /// with the effects of `settings`.
 inline RenderSettings PreviewSettings(const RenderSettings& settings,
-                                    const SkyseriesOptions& options) {
+                                      const SkyseriesOptions& options) {
   constexpr int kLongSide = 96;
   RenderSettings preview;
   const int longest = std::max(settings.width, settings.height);

@@ -71,7 +71,7 @@ WhiteBalance AdaptedWhite(const WhiteBalance& before, const WhiteBalance& metere
 }
 
 FlightSession::FlightSession(const Scene& scene, const UtcInstant& start,
-                       const FlightSessionSettings& settings)
+                             const FlightSessionSettings& settings)
     : first_scene_(Drawable(scene)),
       settings_(settings),
       scene_(scene),

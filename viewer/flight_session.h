@@ -18,9 +18,9 @@
 #include "viewer/input/flight_controller.h"
 #include "viewer/passes/auto_quality.h"
 #include "viewer/passes/display_pass.h"
-#include "viewer/passes/tone_map_pass.h"
 #include "viewer/passes/reference_picture.h"
 #include "viewer/passes/sky_painter.h"
+#include "viewer/passes/tone_map_pass.h"
 
 namespace alpenglow::viewer {
 

@@ -81,7 +81,7 @@ Image FlightSession::Picture(const ImageSize& size, int samples, const PicturePr
 }
 
 Image FlightSession::PaintedInParts(const PaintedView& whole, int samples,
-                                 const PictureProgress& progress) {
+                                    const PictureProgress& progress) {
   const int largest = IsDrawable(whole.width, whole.height)
                           ? std::max(whole.width, whole.height)
                           : std::min(LargestSquareOfDriver(), kLargestPart);
@@ -145,7 +145,7 @@ Metadata FlightSession::ExposureHeader(const Development& development) const {
 }
 
 Development FlightSession::PaintStill(const ToneMapPass::Screen& screen,
-                                   const PictureProgress& progress) {
+                                      const PictureProgress& progress) {
   const ImageSize size{screen.width, screen.height};
   const Image image = Picture(size, kPictureSamples, progress);
   const RenderTarget picture(size.width, size.height, RenderTarget::Depth::kNone);
@@ -158,7 +158,7 @@ Development FlightSession::PaintStill(const ToneMapPass::Screen& screen,
 }
 
 void FlightSession::WritePicture(const std::filesystem::path& file, const ImageSize& size,
-                              const PictureProgress& progress) {
+                                 const PictureProgress& progress) {
   RequirePictureName(file);
   Image image = Picture(size, kPictureSamples, progress);
   const auto [look, ev100] = DevelopmentOf(image);
@@ -172,8 +172,8 @@ void FlightSession::WritePicture(const std::filesystem::path& file, const ImageS
 }
 
 void FlightSession::WriteReplay(const CameraPath& path,
-                             const std::vector<std::filesystem::path>& files, const ImageSize& size,
-                             FlightRecorder& recorder) {
+                                const std::vector<std::filesystem::path>& files,
+                                const ImageSize& size, FlightRecorder& recorder) {
   const double steps = std::max(static_cast<double>(files.size()) - 1.0, 1.0);
   for (std::size_t i = 0; i < files.size(); ++i) {
     ThrowIfInterrupted();

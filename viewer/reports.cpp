@@ -11,8 +11,8 @@
 #include <utility>
 #include <vector>
 
-#include "atmosphere/math/constants.h"
 #include "atmosphere/base/error.h"
+#include "atmosphere/math/constants.h"
 #include "renderer/picture/render.h"
 #include "viewer/passes/display_pass.h"
 #include "viewer/passes/reference_picture.h"

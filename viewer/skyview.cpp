@@ -5,8 +5,8 @@
 #include <chrono>
 #include <future>
 
-#include "atmosphere/math/constants.h"
 #include "atmosphere/base/error.h"
+#include "atmosphere/math/constants.h"
 #include "lut/cli/output_file.h"
 #include "renderer/camera/track.h"
 #include "renderer/scene/scene_options.h"
@@ -14,13 +14,13 @@
 #include "renderer/series/video.h"
 #include "viewer/flight/flight_recorder.h"
 #include "viewer/flight/places.h"
-#include "viewer/viewer_app.h"
 #include "viewer/flight_session.h"
 #include "viewer/gl/gl_context.h"
 #include "viewer/gl/picture_tiles.h"
 #include "viewer/gl/render_target.h"
 #include "viewer/reports.h"
 #include "viewer/skyview_options.h"
+#include "viewer/viewer_app.h"
 #include "viewer/window.h"
 
 namespace alpenglow::viewer {
@@ -142,9 +142,9 @@ void Fly(const SkyviewOptions& options, FlightSession& flight, Window& window,
   int frames = 0;
   const double scale = options.hud_scale > 0.0 ? options.hud_scale : window.content_scale();
   ViewerApp deck(flight, recorder,
-                  {scale,
-                   options.hud != "off",
-                   {.invert_y = options.invert_y, .invert_look_y = options.invert_y}});
+                 {scale,
+                  options.hud != "off",
+                  {.invert_y = options.invert_y, .invert_look_y = options.invert_y}});
   flight.AwaitGround();
   const LossOfDisplay loss(window, recorder, deck);
   bool looks = false;
@@ -178,7 +178,7 @@ void RunBenchmark(double seconds, FlightSession& flight, const ImageSize& size, 
   const RenderTarget picture(size.width, size.height, {PixelFormat::kRgba8},
                              RenderTarget::Depth::kNone);
   const ToneMapPass::Screen screen{window == nullptr ? picture.framebuffer() : 0, size.width,
-                                 size.height};
+                                   size.height};
   flight.Settle(size);
   const Eye start = flight.eye();
   const UtcInstant begin = flight.now();

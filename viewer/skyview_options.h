@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "lut/image/look.h"
 #include "lut/cli/command_line.h"
+#include "lut/image/look.h"
 #include "renderer/scene/scene_options.h"
 #include "viewer/layer.h"
 

@@ -6,14 +6,14 @@
 #include <algorithm>
 #include <utility>
 
-#include "atmosphere/math/constants.h"
-#include "atmosphere/refraction/refracted_view.h"
 #include "atmosphere/astronomy/moon.h"
 #include "atmosphere/base/error.h"
 #include "atmosphere/base/parsing.h"
-#include "lut/image/look.h"
+#include "atmosphere/math/constants.h"
+#include "atmosphere/refraction/refracted_view.h"
 #include "lut/cli/messages.h"
 #include "lut/cli/output_file.h"
+#include "lut/image/look.h"
 #include "lut/sky/sky_view_map.h"
 #include "viewer/flight/places.h"
 #include "viewer/gl/picture_tiles.h"
@@ -287,8 +287,8 @@ void ViewerApp::WantStrip() {
   const UtcInstant begin = AddSeconds(
       flight_.now(), -kSecondsPerDay * LocalTimeAt(flight_.now(), flight_.zone()).day_fraction);
   strips_.Want({std::make_shared<const SingleScattering<float>>(air->medium),
-                std::shared_ptr<const MultipleScattering>(air, &air->multiple_scattering), flight_.eye().place,
-                begin});
+                std::shared_ptr<const MultipleScattering>(air, &air->multiple_scattering),
+                flight_.eye().place, begin});
 }
 
 void ViewerApp::Advance(const WindowEvents& events, const ImageSize& size, double seconds) {

@@ -5,11 +5,11 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 
+#include "atmosphere/astronomy/sun.h"
+#include "atmosphere/base/error.h"
 #include "atmosphere/math/constants.h"
 #include "atmosphere/math/numerics.h"
 #include "atmosphere/refraction/refraction.h"
-#include "atmosphere/astronomy/sun.h"
-#include "atmosphere/base/error.h"
 
 namespace alpenglow::atmosphere {
 namespace {

@@ -14,9 +14,9 @@
 #include <optional>
 #include <string_view>
 
-#include "atmosphere/time_place/geodesy.h"
 #include "atmosphere/astronomy/moon.h"
 #include "atmosphere/astronomy/sun.h"
+#include "atmosphere/time_place/geodesy.h"
 #include "atmosphere/time_place/time.h"
 
 namespace alpenglow::atmosphere {

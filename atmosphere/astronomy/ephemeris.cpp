@@ -10,8 +10,8 @@
 #include <numeric>
 #include <vector>
 
-#include "atmosphere/math/constants.h"
 #include "atmosphere/base/parsing.h"
+#include "atmosphere/math/constants.h"
 
 namespace alpenglow::atmosphere {
 namespace {

@@ -7,12 +7,12 @@
 #include <glm/geometric.hpp>
 #include <vector>
 
-#include "atmosphere/math/constants.h"
-#include "atmosphere/math/numerics.h"
 #include "atmosphere/astronomy/ephemeris.h"
-#include "atmosphere/refraction/refraction.h"
 #include "atmosphere/astronomy/sun.h"
 #include "atmosphere/base/error.h"
+#include "atmosphere/math/constants.h"
+#include "atmosphere/math/numerics.h"
+#include "atmosphere/refraction/refraction.h"
 
 namespace alpenglow::atmosphere {
 namespace {

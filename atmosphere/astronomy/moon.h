@@ -28,8 +28,8 @@
 #include <optional>
 #include <string_view>
 
-#include "atmosphere/time_place/geodesy.h"
 #include "atmosphere/refraction/refraction.h"
+#include "atmosphere/time_place/geodesy.h"
 #include "atmosphere/time_place/time.h"
 
 namespace alpenglow::atmosphere {

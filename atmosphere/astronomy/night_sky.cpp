@@ -7,10 +7,10 @@
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 
-#include "atmosphere/math/constants.h"
 #include "atmosphere/astronomy/ephemeris.h"
 #include "atmosphere/base/error.h"
 #include "atmosphere/base/parsing.h"
+#include "atmosphere/math/constants.h"
 
 namespace alpenglow::atmosphere {
 namespace {

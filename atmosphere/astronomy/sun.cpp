@@ -10,11 +10,11 @@
 #include <utility>
 #include <vector>
 
+#include "atmosphere/astronomy/ephemeris.h"
+#include "atmosphere/base/error.h"
 #include "atmosphere/math/constants.h"
 #include "atmosphere/math/numerics.h"
-#include "atmosphere/astronomy/ephemeris.h"
 #include "atmosphere/refraction/refraction.h"
-#include "atmosphere/base/error.h"
 
 namespace alpenglow::atmosphere {
 

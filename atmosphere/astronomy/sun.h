@@ -6,9 +6,9 @@
 #include <optional>
 #include <string_view>
 
+#include "atmosphere/refraction/refraction.h"
 #include "atmosphere/shared_glsl/shared_math.h"
 #include "atmosphere/time_place/geodesy.h"
-#include "atmosphere/refraction/refraction.h"
 #include "atmosphere/time_place/time.h"
 
 namespace alpenglow::shared {

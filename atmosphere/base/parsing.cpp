@@ -11,8 +11,8 @@
 #include <numeric>
 #include <utility>
 
-#include "atmosphere/embedded_text.h"
 #include "atmosphere/base/error.h"
+#include "atmosphere/embedded_text.h"
 
 namespace alpenglow::atmosphere {
 namespace {

@@ -19,11 +19,11 @@
 #include <cmath>
 #include <utility>
 
+#include "atmosphere/base/error.h"
+#include "atmosphere/base/parsing.h"
 #include "atmosphere/colour/spectrum.h"
 #include "atmosphere/math/constants.h"
 #include "atmosphere/math/numerics.h"
-#include "atmosphere/base/error.h"
-#include "atmosphere/base/parsing.h"
 
 namespace alpenglow::atmosphere {
 namespace {

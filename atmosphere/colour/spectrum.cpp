@@ -11,10 +11,10 @@
 #include <utility>
 #include <vector>
 
-#include "atmosphere/colour/band_colour.h"
-#include "atmosphere/math/constants.h"
 #include "atmosphere/base/error.h"
 #include "atmosphere/base/parsing.h"
+#include "atmosphere/colour/band_colour.h"
+#include "atmosphere/math/constants.h"
 
 namespace alpenglow::atmosphere {
 namespace {

@@ -6,9 +6,9 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 
+#include "atmosphere/base/error.h"
 #include "atmosphere/math/constants.h"
 #include "atmosphere/math/numerics.h"
-#include "atmosphere/base/error.h"
 
 namespace alpenglow::atmosphere {
 namespace {

@@ -22,8 +22,8 @@
 #include <vector>
 
 #include "atmosphere/medium/phase.h"
-#include "atmosphere/shared_glsl/shared_math.h"
 #include "atmosphere/ray/single_scattering.h"
+#include "atmosphere/shared_glsl/shared_math.h"
 
 namespace alpenglow::shared {
 // clang-format off

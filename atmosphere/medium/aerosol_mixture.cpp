@@ -9,10 +9,10 @@
 #include <span>
 #include <utility>
 
-#include "atmosphere/medium/phase_table.h"
-#include "atmosphere/colour/spectrum.h"
 #include "atmosphere/base/error.h"
 #include "atmosphere/base/parsing.h"
+#include "atmosphere/colour/spectrum.h"
+#include "atmosphere/medium/phase_table.h"
 
 namespace alpenglow::atmosphere {
 namespace {

@@ -7,14 +7,14 @@
 #include <memory>
 #include <utility>
 
+#include "atmosphere/base/error.h"
+#include "atmosphere/base/parsing.h"
+#include "atmosphere/colour/spectrum.h"
+#include "atmosphere/math/constants.h"
 #include "atmosphere/medium/aerosol_mixture.h"
 #include "atmosphere/medium/medium.h"
 #include "atmosphere/medium/medium_presets.h"
 #include "atmosphere/medium/phase_table.h"
-#include "atmosphere/colour/spectrum.h"
-#include "atmosphere/math/constants.h"
-#include "atmosphere/base/error.h"
-#include "atmosphere/base/parsing.h"
 
 namespace alpenglow::atmosphere {
 namespace {

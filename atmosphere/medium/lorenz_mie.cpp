@@ -5,8 +5,8 @@
 #include <array>
 #include <cmath>
 
-#include "atmosphere/math/constants.h"
 #include "atmosphere/base/error.h"
+#include "atmosphere/math/constants.h"
 
 namespace alpenglow::atmosphere {
 namespace {

@@ -6,11 +6,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "atmosphere/base/error.h"
+#include "atmosphere/math/numerics.h"
 #include "atmosphere/medium/phase_table.h"
 #include "atmosphere/medium/phase_text.h"
-#include "atmosphere/math/numerics.h"
 #include "atmosphere/time_place/geodesy.h"
-#include "atmosphere/base/error.h"
 
 namespace alpenglow::atmosphere {
 namespace {

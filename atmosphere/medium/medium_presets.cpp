@@ -18,14 +18,14 @@
 #include <system_error>
 #include <vector>
 
+#include "atmosphere/base/error.h"
+#include "atmosphere/base/parsing.h"
+#include "atmosphere/colour/spectrum.h"
+#include "atmosphere/math/constants.h"
 #include "atmosphere/medium/aerosol_mixture.h"
 #include "atmosphere/medium/medium.h"
 #include "atmosphere/medium/phase.h"
 #include "atmosphere/medium/phase_table.h"
-#include "atmosphere/colour/spectrum.h"
-#include "atmosphere/math/constants.h"
-#include "atmosphere/base/error.h"
-#include "atmosphere/base/parsing.h"
 
 namespace alpenglow::atmosphere {
 namespace {

@@ -9,10 +9,10 @@
 #include <cstddef>
 #include <utility>
 
+#include "atmosphere/base/error.h"
+#include "atmosphere/math/constants.h"
 #include "atmosphere/medium/phase_table.h"
 #include "atmosphere/medium/phase_text.h"
-#include "atmosphere/math/constants.h"
-#include "atmosphere/base/error.h"
 
 namespace alpenglow::atmosphere {
 

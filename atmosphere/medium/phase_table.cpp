@@ -9,10 +9,10 @@
 #include <string_view>
 #include <utility>
 
-#include "atmosphere/math/constants.h"
-#include "atmosphere/math/numerics.h"
 #include "atmosphere/base/error.h"
 #include "atmosphere/base/parsing.h"
+#include "atmosphere/math/constants.h"
+#include "atmosphere/math/numerics.h"
 
 namespace alpenglow::atmosphere {
 namespace {

@@ -5,9 +5,9 @@
 #include <array>
 #include <cstddef>
 
-#include "atmosphere/shared_glsl/instruction_set.h"
 #include "atmosphere/ray/direct_panels.h"
 #include "atmosphere/ray/ray.h"
+#include "atmosphere/shared_glsl/instruction_set.h"
 
 namespace alpenglow::atmosphere {
 

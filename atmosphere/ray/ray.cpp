@@ -6,10 +6,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "atmosphere/base/error.h"
 #include "atmosphere/math/constants.h"
 #include "atmosphere/ray/ray_map.h"
 #include "atmosphere/ray/shell.h"
-#include "atmosphere/base/error.h"
 
 namespace alpenglow::atmosphere {
 namespace {

@@ -9,8 +9,8 @@
 #include <cstddef>
 #include <limits>
 
-#include "atmosphere/medium/medium.h"
 #include "atmosphere/math/numerics.h"
+#include "atmosphere/medium/medium.h"
 
 namespace alpenglow::atmosphere {
 

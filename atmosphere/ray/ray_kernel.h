@@ -5,8 +5,8 @@
 #include <array>
 #include <cstddef>
 
-#include "atmosphere/shared_glsl/instruction_set.h"
 #include "atmosphere/ray/ray.h"
+#include "atmosphere/shared_glsl/instruction_set.h"
 
 namespace alpenglow::atmosphere {
 

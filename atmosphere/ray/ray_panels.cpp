@@ -5,11 +5,11 @@
 #include <cmath>
 #include <span>
 
+#include "atmosphere/base/error.h"
 #include "atmosphere/math/constants.h"
 #include "atmosphere/math/numerics.h"
 #include "atmosphere/ray/ray_map.h"
 #include "atmosphere/ray/shell.h"
-#include "atmosphere/base/error.h"
 
 namespace alpenglow::atmosphere {
 namespace {

@@ -9,8 +9,8 @@
 #include <array>
 #include <cstddef>
 
-#include "atmosphere/medium/medium.h"
 #include "atmosphere/math/constants.h"
+#include "atmosphere/medium/medium.h"
 #include "atmosphere/ray/ray.h"
 #include "atmosphere/ray/ray_kernel.h"
 

@@ -6,13 +6,13 @@
 #include <iterator>
 #include <type_traits>
 
-#include "atmosphere/medium/phase_table.h"
-#include "atmosphere/medium/phase_text.h"
+#include "atmosphere/base/error.h"
 #include "atmosphere/math/constants.h"
 #include "atmosphere/math/numerics.h"
+#include "atmosphere/medium/phase_table.h"
+#include "atmosphere/medium/phase_text.h"
 #include "atmosphere/ray/ray_panels.h"
 #include "atmosphere/ray/shell.h"
-#include "atmosphere/base/error.h"
 
 namespace alpenglow::atmosphere {
 namespace {
@@ -369,7 +369,8 @@ Bands<Real> SingleScattering<Real>::TransmittanceAlong(const ViewRay& ray) const
 }
 
 template <typename Real>
-RaySamples<Real> SingleScattering<Real>::Sample(const ViewRay& ray, const Sampling& sampling) const {
+RaySamples<Real> SingleScattering<Real>::Sample(const ViewRay& ray,
+                                                const Sampling& sampling) const {
   RaySamples<Real> samples;
   samples.extent = ExtentOf(ray, medium_.planet_radius_m, medium_.atmosphere_height_m);
   const RayEntry entry = EntryOf(ray, samples.extent, medium_);
@@ -380,7 +381,7 @@ RaySamples<Real> SingleScattering<Real>::Sample(const ViewRay& ray, const Sampli
 
 template <typename Real>
 RaySamples<Real> SingleScattering<Real>::SampleAt(const ViewRay& ray,
-                                               std::span<const RayNode> nodes) const {
+                                                  std::span<const RayNode> nodes) const {
   const RayExtent extent = ExtentOf(ray, medium_.planet_radius_m, medium_.atmosphere_height_m);
   return SampleAt(ray, extent, PlanetShadow(ray, extent, medium_.planet_radius_m), nodes,
                   ViewColumns::kFromSpace);
@@ -388,9 +389,9 @@ RaySamples<Real> SingleScattering<Real>::SampleAt(const ViewRay& ray,
 
 template <typename Real>
 RaySamples<Real> SingleScattering<Real>::SampleAt(const ViewRay& ray, const RayExtent& extent,
-                                               const ShadowSpan& shadow,
-                                               std::span<const RayNode> nodes,
-                                               ViewColumns columns) const {
+                                                  const ShadowSpan& shadow,
+                                                  std::span<const RayNode> nodes,
+                                                  ViewColumns columns) const {
   ALPENGLOW_ENSURE(nodes.size() + 16, <=, kMaxRaySamples);
   RaySamples<Real> samples;
   samples.extent = extent;
@@ -429,7 +430,8 @@ Bands<Real> SingleScattering<Real>::AerosolPhases(double nu) const {
 }
 
 template <typename Real>
-Bands<Real> SingleScattering<Real>::Inscatter(const ScatteredOnce<Real>& scattered, double nu) const {
+Bands<Real> SingleScattering<Real>::Inscatter(const ScatteredOnce<Real>& scattered,
+                                              double nu) const {
   const std::vector<double>& depolarisation = medium_.rayleigh_depolarisation;
   Real rayleigh_phase = Real(0);
   Bands<Real> radiance = AerosolPhases(nu);

@@ -162,4 +162,4 @@ LampLight AirlightAlong(const LampAir& air, const Lamp& lamp, const LampSegment&
   return {found.value, found.error, found.error < 1e-9};
 }
 
-}  // namespace alpenglow::atmosphere::reference solution
+}  // namespace alpenglow::atmosphere::reference

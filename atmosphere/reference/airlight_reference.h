@@ -21,4 +21,4 @@ struct LampLight {
 [[nodiscard]] LampLight AirlightAlong(const LampAir& air, const Lamp& lamp,
                                       const LampSegment& segment);
 
-}  // namespace alpenglow::atmosphere::reference solution
+}  // namespace alpenglow::atmosphere::reference

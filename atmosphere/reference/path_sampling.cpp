@@ -185,4 +185,4 @@ AirColumns ColumnTable::ToSpace(double perigee_radius_m, double s0_m) const {
   return Difference(s0_m, Primitive(line, s0_m), s1, Primitive(line, s1), at_perigee);
 }
 
-}  // namespace alpenglow::atmosphere::reference solution
+}  // namespace alpenglow::atmosphere::reference

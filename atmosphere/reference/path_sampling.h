@@ -243,4 +243,4 @@ struct PlaneTurn {
   return before;
 }
 
-}  // namespace alpenglow::atmosphere::reference solution
+}  // namespace alpenglow::atmosphere::reference

@@ -12,9 +12,9 @@
 #include <numeric>
 #include <span>
 
-#include "atmosphere/reference/path_sampling.h"
-#include "atmosphere/math/constants.h"
 #include "atmosphere/base/error.h"
+#include "atmosphere/math/constants.h"
+#include "atmosphere/reference/path_sampling.h"
 
 namespace alpenglow::atmosphere::reference {
 namespace {
@@ -931,4 +931,4 @@ PathTracedIrradiance TraceIrradiance(const Medium& medium, double altitude_m, do
           estimate.converged};
 }
 
-}  // namespace alpenglow::atmosphere::reference solution
+}  // namespace alpenglow::atmosphere::reference

@@ -103,4 +103,4 @@ struct PathTracedIrradiance {
                                                    double mu_s, PlaneSide side,
                                                    const PathOptions& options = {});
 
-}  // namespace alpenglow::atmosphere::reference solution
+}  // namespace alpenglow::atmosphere::reference

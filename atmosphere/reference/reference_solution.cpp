@@ -6,10 +6,10 @@
 #include <cmath>
 #include <limits>
 
+#include "atmosphere/base/error.h"
 #include "atmosphere/math/constants.h"
 #include "atmosphere/math/numerics.h"
 #include "atmosphere/refraction/refraction.h"
-#include "atmosphere/base/error.h"
 
 namespace alpenglow::atmosphere::reference {
 namespace {
@@ -347,4 +347,4 @@ RayEquation::State RayEquation::Stepped(const State& at, double step_m) const {
              k4);
 }
 
-}  // namespace alpenglow::atmosphere::reference solution
+}  // namespace alpenglow::atmosphere::reference

@@ -90,4 +90,4 @@ class RayEquation {
   double refractivity_;
 };
 
-}  // namespace alpenglow::atmosphere::reference solution
+}  // namespace alpenglow::atmosphere::reference

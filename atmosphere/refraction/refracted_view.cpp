@@ -68,7 +68,7 @@ BendingAir GentleAirOf(const Medium& medium) {
 }
 
 RefractedLight RefractedLightOf(const Medium& medium, const BendingAir& air, double elevation_rad,
-                      double height_m) {
+                                double height_m) {
   RefractedLight light;
   light.refraction_rad = RefractionSeenAt(air, elevation_rad, height_m);
   constexpr double kStep = 1e-2;
@@ -288,8 +288,8 @@ RefractedBeam::RefractedBeam(const Medium& medium)
   });
 }
 
-RefractedBeam::Row RefractedBeam::RowAt(const SingleScattering<double>& straight, const BendingAir& air,
-                              double height_m) {
+RefractedBeam::Row RefractedBeam::RowAt(const SingleScattering<double>& straight,
+                                        const BendingAir& air, double height_m) {
   const Medium& medium = straight.medium();
   const auto densities = [&](double h_m) {
     return glm::dvec2(MoleculeDensity(medium, h_m), std::exp(-h_m / medium.mie_scale_height_m));
@@ -299,9 +299,9 @@ RefractedBeam::Row RefractedBeam::RowAt(const SingleScattering<double>& straight
     const double mu = MuOf(static_cast<double>(i) / (kElevations - 1), row.horizon_mu);
     const double elevation = std::min(std::asin(std::min(mu, 1.0)), kHighest_rad);
     const std::array<double, 3> less = straight.ColumnsToSpace(height_m, std::sin(elevation));
-    row.nodes.push_back(
-        {RefractedRay(air, elevation, height_m).ColumnToSpace(densities) - glm::dvec2(less[0], less[1]),
-         LogSpread(air, elevation, height_m)});
+    row.nodes.push_back({RefractedRay(air, elevation, height_m).ColumnToSpace(densities) -
+                             glm::dvec2(less[0], less[1]),
+                         LogSpread(air, elevation, height_m)});
   }
   return row;
 }
@@ -332,7 +332,8 @@ Bands<float> RefractedBeam::OverStraight(double altitude_m, double mu) const {
   return over;
 }
 
-Bands<float> RefractedBeam::Left(const SingleScattering<float>& air, double altitude_m, double mu) const {
+Bands<float> RefractedBeam::Left(const SingleScattering<float>& air, double altitude_m,
+                                 double mu) const {
   Bands<float> left = air.TransmittanceToSpace(altitude_m, mu);
   const Bands<float> over = OverStraight(altitude_m, mu);
   for (std::size_t band = 0; band < bands_; ++band) left[band] *= over[band];

@@ -66,7 +66,7 @@ struct RefractedLight {
 /// @param air  GentleAirOf(medium).
 /// @param elevation_rad  from the horizon up.
 [[nodiscard]] RefractedLight RefractedLightOf(const Medium& medium, const BendingAir& air,
-                                    double elevation_rad, double height_m);
+                                              double elevation_rad, double height_m);
 
 /// Tables for an observer at one height. Immutable. All elevations are apparent unless they are
 /// called true. Directions below the horizon have the values of the sky at the horizon.

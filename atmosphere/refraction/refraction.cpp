@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "atmosphere/math/numerics.h"
 #include "atmosphere/astronomy/sun.h"
 #include "atmosphere/base/error.h"
+#include "atmosphere/math/numerics.h"
 
 namespace alpenglow::atmosphere {
 namespace {

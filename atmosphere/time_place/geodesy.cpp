@@ -9,8 +9,8 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 
-#include "atmosphere/math/constants.h"
 #include "atmosphere/base/error.h"
+#include "atmosphere/math/constants.h"
 
 namespace alpenglow::atmosphere {
 namespace {

@@ -17,10 +17,10 @@
 #include <cstdint>
 #include <utility>
 
-#include "atmosphere/math/constants.h"
-#include "atmosphere/time_place/time_zone.h"
 #include "atmosphere/base/error.h"
 #include "atmosphere/base/parsing.h"
+#include "atmosphere/math/constants.h"
+#include "atmosphere/time_place/time_zone.h"
 
 namespace alpenglow::atmosphere {
 namespace {

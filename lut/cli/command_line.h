@@ -12,8 +12,8 @@
 #include <vector>
 
 #include "atmosphere/base/error.h"
-#include "lut/layer.h"
 #include "lut/cli/program.h"
+#include "lut/layer.h"
 
 namespace alpenglow::lut {
 

@@ -14,9 +14,9 @@
 #include <optional>
 #include <system_error>
 
-#include "atmosphere/shared_glsl/instruction_set.h"
 #include "atmosphere/base/error.h"
 #include "atmosphere/base/parsing.h"
+#include "atmosphere/shared_glsl/instruction_set.h"
 #include "lut/layer.h"
 #include "lut/version.h"
 

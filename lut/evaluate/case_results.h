@@ -15,10 +15,10 @@
 #include <vector>
 
 #include "atmosphere/base/error.h"
-#include "lut/evaluate/eval.h"
 #include "lut/cli/messages.h"
 #include "lut/cli/output_file.h"
 #include "lut/cli/program.h"
+#include "lut/evaluate/eval.h"
 
 namespace alpenglow::lut {
 

@@ -12,11 +12,11 @@
 #include <string_view>
 #include <vector>
 
-#include "atmosphere/reference/path_tracer.h"
-#include "atmosphere/math/constants.h"
 #include "atmosphere/base/error.h"
-#include "lut/evaluate/case_results.h"
+#include "atmosphere/math/constants.h"
+#include "atmosphere/reference/path_tracer.h"
 #include "lut/cli/program.h"
+#include "lut/evaluate/case_results.h"
 #include "lut/table_io/table_folder.h"
 
 namespace alpenglow::lut {
@@ -209,13 +209,15 @@ class PathEvaluator final : public Evaluator {
     reference::PathOptions options = paths_;
     if (work.quantity != Quantity::kTotal) options.max_order = 1;
     const bool air_only = work.quantity == Quantity::kInscatterSingle;
-    const auto traced = reference::TraceRadiance(air_only ? black_ground_ : medium_, work.ray, options);
+    const auto traced =
+        reference::TraceRadiance(air_only ? black_ground_ : medium_, work.ray, options);
     return WithErrors(traced.total, traced.standard_error);
   }
 
  private:
   [[nodiscard]] Estimates Stokes(const Case& work) const {
-    const auto traced = reference::TraceStokes(medium_, reference::ScatteringOf(medium_), work.ray, paths_);
+    const auto traced =
+        reference::TraceStokes(medium_, reference::ScatteringOf(medium_), work.ray, paths_);
     return StokesOf(work, WithErrors(traced.q.total, traced.q.standard_error),
                     WithErrors(traced.u.total, traced.u.standard_error));
   }
@@ -225,7 +227,7 @@ class PathEvaluator final : public Evaluator {
     if (ray.altitude_m > medium_.atmosphere_height_m)
       return Estimates(medium_.wavelengths_nm.size());
     const auto traced = reference::TraceIrradiance(medium_, std::max(ray.altitude_m, 0.0), ray.mu_s,
-                                               reference::PlaneSide::kFromAbove, paths_);
+                                                   reference::PlaneSide::kFromAbove, paths_);
     return WithErrors(traced.value, traced.standard_error);
   }
 

@@ -47,9 +47,9 @@
 
 #include "atmosphere/medium/medium.h"
 #include "atmosphere/ray/ray.h"
-#include "lut/layer.h"
 #include "lut/cli/csv_reader.h"
 #include "lut/cli/messages.h"
+#include "lut/layer.h"
 #include "lut/table_io/table_folder.h"
 
 namespace alpenglow::lut {

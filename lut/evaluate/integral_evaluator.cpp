@@ -6,12 +6,12 @@
 #include <cmath>
 #include <string>
 
-#include "atmosphere/reference/reference_solution.h"
-#include "atmosphere/math/constants.h"
 #include "atmosphere/base/error.h"
+#include "atmosphere/math/constants.h"
+#include "atmosphere/reference/reference_solution.h"
+#include "lut/evaluate/eval.h"
 #include "lut/multiple_scattering/delta_m.h"
 #include "lut/multiple_scattering/multiple_scattering.h"
-#include "lut/evaluate/eval.h"
 
 namespace alpenglow::lut {
 namespace {
@@ -35,21 +35,21 @@ constexpr std::array<int, 6> kLadder{4, 8, 12, 16, 24, 32};
 // be small by chance. They are coarse in the parameters that dominate the error: degree, altitudes
 // and directions in haze, nodes of later orders in thick air, suns in twilight.
 constexpr MultipleScatteringOptions kCoarseLight{.altitudes = 12,
-                                           .sun_angles = 28,
-                                           .degree = 2,
-                                           .zenith_nodes = 8,
-                                           .azimuth_nodes = 6,
-                                           .ray_nodes = 8};
+                                                 .sun_angles = 28,
+                                                 .degree = 2,
+                                                 .zenith_nodes = 8,
+                                                 .azimuth_nodes = 6,
+                                                 .ray_nodes = 8};
 constexpr MultipleScatteringOptions kMiddlingLight{.altitudes = 12,
-                                             .sun_angles = 22,
-                                             .degree = 4,
-                                             .zenith_nodes = 9,
-                                             .azimuth_nodes = 6,
-                                             .ray_nodes = 7,
-                                             .later_zenith_nodes = 4,
-                                             .later_azimuth_nodes = 4,
-                                             .later_ray_nodes = 4,
-                                             .tolerance = 3e-2};
+                                                   .sun_angles = 22,
+                                                   .degree = 4,
+                                                   .zenith_nodes = 9,
+                                                   .azimuth_nodes = 6,
+                                                   .ray_nodes = 7,
+                                                   .later_zenith_nodes = 4,
+                                                   .later_azimuth_nodes = 4,
+                                                   .later_ray_nodes = 4,
+                                                   .tolerance = 3e-2};
 
 // Factors that compute the error of light of higher orders from the two differences and the
 // truncated degrees. They were calibrated on 342 path-traced values, in clear air, haze, dust and
@@ -320,7 +320,8 @@ class IntegralEvaluator final : public Evaluator {
   }
 
   SingleScattering<double> air_;
-  SingleScattering<float> quick_air_;  // for the samples along which multiple scattering is gathered
+  SingleScattering<float>
+      quick_air_;  // for the samples along which multiple scattering is gathered
   IntegralOptions options_;
   double closed_form_error_, fast_path_floor_;  // relative errors
   std::optional<MultipleScattering> fine_light_, middling_light_, coarse_light_;

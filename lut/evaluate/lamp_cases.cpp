@@ -10,9 +10,9 @@
 #include <limits>
 #include <string_view>
 
-#include "atmosphere/reference/airlight_reference.h"
-#include "atmosphere/math/constants.h"
 #include "atmosphere/base/error.h"
+#include "atmosphere/math/constants.h"
+#include "atmosphere/reference/airlight_reference.h"
 #include "lut/evaluate/case_results.h"
 
 namespace alpenglow::lut {
@@ -158,7 +158,8 @@ Estimate EvaluateLamp(const LampCase& work, const IntegralOptions& options) {
     coarse = found.value;
     last_difference = difference;
   }
-  const reference::LampLight reference = reference::AirlightAlong(work.air, work.lamp, work.segment);
+  const reference::LampLight reference =
+      reference::AirlightAlong(work.air, work.lamp, work.segment);
   const double value = reference.radiance[0];
   return {value, std::max(reference.error, kFloor) * value};
 }

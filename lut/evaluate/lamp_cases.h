@@ -19,8 +19,8 @@
 #include <string>
 
 #include "atmosphere/lamp/airlight.h"
-#include "lut/evaluate/eval.h"
 #include "lut/cli/csv_reader.h"
+#include "lut/evaluate/eval.h"
 
 namespace alpenglow::lut {
 

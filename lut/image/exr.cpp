@@ -25,9 +25,9 @@
 #include <system_error>
 
 #include "atmosphere/base/error.h"
-#include "lut/layer.h"
-#include "lut/image/image.h"
 #include "lut/cli/output_file.h"
+#include "lut/image/image.h"
+#include "lut/layer.h"
 
 namespace alpenglow::lut {
 namespace {

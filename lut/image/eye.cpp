@@ -10,10 +10,10 @@
 #include <complex>
 #include <vector>
 
-#include "atmosphere/math/constants.h"
 #include "atmosphere/base/error.h"
-#include "lut/layer.h"
+#include "atmosphere/math/constants.h"
 #include "lut/image/tone_mapping.h"
+#include "lut/layer.h"
 
 namespace alpenglow::lut {
 

@@ -16,10 +16,10 @@
 #include <memory>
 #include <string_view>
 
-#include "atmosphere/math/constants.h"
 #include "atmosphere/base/error.h"
-#include "lut/layer.h"
+#include "atmosphere/math/constants.h"
 #include "lut/cli/output_file.h"
+#include "lut/layer.h"
 
 namespace alpenglow::lut {
 namespace {

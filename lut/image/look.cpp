@@ -9,10 +9,10 @@
 #include <utility>
 
 #include "atmosphere/base/error.h"
-#include "lut/layer.h"
 #include "lut/image/eye.h"
 #include "lut/image/metering.h"
 #include "lut/image/tone_mapping.h"
+#include "lut/layer.h"
 
 namespace alpenglow::lut {
 

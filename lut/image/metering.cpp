@@ -12,9 +12,9 @@
 #include <cmath>
 #include <numeric>
 
+#include "atmosphere/base/error.h"
 #include "atmosphere/colour/spectrum.h"
 #include "atmosphere/math/constants.h"
-#include "atmosphere/base/error.h"
 #include "lut/image/image.h"
 #include "lut/image/tone_mapping.h"
 

@@ -40,8 +40,8 @@
 #include <string>
 
 #include "atmosphere/colour/spectrum.h"
-#include "lut/layer.h"
 #include "lut/image/image.h"
+#include "lut/layer.h"
 
 namespace alpenglow::lut {
 

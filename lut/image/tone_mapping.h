@@ -42,8 +42,8 @@
 #include <vector>
 
 #include "atmosphere/shared_glsl/shared_math.h"
-#include "lut/layer.h"
 #include "lut/image/image.h"
+#include "lut/layer.h"
 
 namespace alpenglow::lut {
 

@@ -40,8 +40,8 @@ AzimuthFan::AzimuthFan(const MultipleScattering& light)
   }
   for (int i = 0; i <= kTableCells; ++i) {
     const double mu_s = 2.0 * i / kTableCells - 1.0;
-    position_of_mu_s_.push_back(
-        static_cast<float>(MultipleScattering::SunCoordinate(mu_s) * (light.options().sun_angles - 1)));
+    position_of_mu_s_.push_back(static_cast<float>(MultipleScattering::SunCoordinate(mu_s) *
+                                                   (light.options().sun_angles - 1)));
     twilight_of_mu_s_.push_back(TwilightOf(light.grid(), mu_s));
   }
   for (std::size_t sun = 0; sun < light.grid().suns; ++sun)

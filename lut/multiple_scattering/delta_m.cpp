@@ -6,8 +6,8 @@
 #include <cmath>
 #include <numeric>
 
-#include "atmosphere/medium/phase_text.h"
 #include "atmosphere/math/constants.h"
+#include "atmosphere/medium/phase_text.h"
 #include "lut/multiple_scattering/spherical_harmonics.h"
 
 namespace alpenglow::lut {
@@ -208,8 +208,8 @@ Bands<float> DeltaM::Beam(double altitude_m, double mu_s) const {
   return beam;
 }
 
-float DeltaM::SumAlong(std::size_t band, const RaySamples<float>& samples, double nu,
-                            float ahead, float base) const {
+float DeltaM::SumAlong(std::size_t band, const RaySamples<float>& samples, double nu, float ahead,
+                       float base) const {
   const AirConstants<float>& air = air_.constants();
   const Place angle = PlaceOfAngle(nu);
   const PeakShape& shape = shapes_[shapes_.size() > 1 ? band : 0];
@@ -255,8 +255,7 @@ Bands<float> DeltaM::Along(const RaySamples<float>& samples, double nu) const {
   return light;
 }
 
-Bands<float> DeltaM::Behind(const Way& way, const RaySamples<float>& samples,
-                                 double nu) const {
+Bands<float> DeltaM::Behind(const Way& way, const RaySamples<float>& samples, double nu) const {
   Bands<float> light(air_.bands());
   for (std::size_t band = 0; band < light.count; ++band)
     light[band] = way.clear[band] * SumAlong(band, samples, nu, way.scattering[band], 1.0F);
@@ -313,7 +312,7 @@ TruncationError::TruncationError(const Medium& medium, int degree)
       chi_(MieLegendreCoefficients(medium, kLastMissingDegree)) {}
 
 std::vector<double> TruncationError::Along(const AirConstants<float>& air,
-                                          const RaySamples<float>& samples, double nu) const {
+                                           const RaySamples<float>& samples, double nu) const {
   std::vector<double> legendre = LegendreValues(nu);
   legendre.push_back(Envelope(degree_ + 1, nu));
   std::vector<double> light;
@@ -323,8 +322,8 @@ std::vector<double> TruncationError::Along(const AirConstants<float>& air,
 }
 
 double TruncationError::AlongBand(const AirConstants<float>& air, std::size_t band,
-                                 const RaySamples<float>& samples,
-                                 const std::vector<double>& legendre) const {
+                                  const RaySamples<float>& samples,
+                                  const std::vector<double>& legendre) const {
   const double scattering = static_cast<double>(air.mie_scattering[band]);
   if (scattering == 0.0) return 0.0;
   double sum = 0.0, envelope = 0.0;

@@ -43,7 +43,7 @@ float RayleighChi2(const Medium& medium, std::size_t band) {
 
 double MuSOfNode(const MomentGrid& grid, std::size_t sun) {
   const double mu_s = MultipleScattering::MuSFromCoordinate(static_cast<double>(sun) /
-                                                      static_cast<double>(grid.suns - 1));
+                                                            static_cast<double>(grid.suns - 1));
   return grid.polarised ? std::min(mu_s, kHighestPolarisedSun) : mu_s;
 }
 

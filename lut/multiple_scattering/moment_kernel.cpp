@@ -4,8 +4,8 @@
 #include <utility>
 
 #include "atmosphere/math/constants.h"
-#include "lut/multiple_scattering/moment_lanes.h"
 #include "lut/multiple_scattering/march_lanes.h"
+#include "lut/multiple_scattering/moment_lanes.h"
 
 namespace alpenglow::lut {
 namespace {
@@ -501,7 +501,7 @@ void Irradiance(const MomentGrid& grid, const SurfacePoint& point, std::size_t c
 
 const MomentKernel& KernelOf(KernelName<MomentKernel, kThisSet> /*name*/) {
   static constexpr MomentKernel kernel{Arrive,  ArrivePolarised, Place,
-                                        Scatter, Inscatter,       Irradiance};
+                                       Scatter, Inscatter,       Irradiance};
   return kernel;
 }
 

@@ -12,8 +12,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "atmosphere/shared_glsl/instruction_set.h"
 #include "atmosphere/ray/ray.h"
+#include "atmosphere/shared_glsl/instruction_set.h"
 #include "lut/layer.h"
 
 namespace alpenglow::lut {

@@ -6,10 +6,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "atmosphere/medium/phase.h"
-#include "atmosphere/medium/phase_text.h"
 #include "atmosphere/math/constants.h"
 #include "atmosphere/math/numerics.h"
+#include "atmosphere/medium/phase.h"
+#include "atmosphere/medium/phase_text.h"
 #include "atmosphere/ray/ray_panels.h"
 #include "atmosphere/ray/shell.h"
 #include "lut/multiple_scattering/spherical_harmonics.h"
@@ -29,8 +29,9 @@ bool OnlyMolecules(const AirConstants<float>& air, float rayleigh_density, float
 
 }  // namespace
 
-MomentMarches::MomentMarches(const SingleScattering<float>& air, const MultipleScatteringOptions& options,
-                               const std::vector<double>& chi)
+MomentMarches::MomentMarches(const SingleScattering<float>& air,
+                             const MultipleScatteringOptions& options,
+                             const std::vector<double>& chi)
     : air_(&air),
       chi_(&chi),
       grid_(GridOf(air.medium(), options)),
@@ -85,7 +86,7 @@ double MomentMarches::Nu(const March& march, std::size_t sun, std::size_t azimut
 
 // Places Gauss nodes above and below the horizon, dense near it: mu - horizon = range v^2.
 std::vector<March> MomentMarches::MarchesAt(std::size_t altitude,
-                                             const MultipleScatteringOptions& options) const {
+                                            const MultipleScatteringOptions& options) const {
   const double horizon = shared::HorizonCosine<double>(altitude_km_[altitude], radius_km_);
   const GaussRule& rule = GaussLegendre(options.zenith_nodes);
   std::vector<March> marches;
@@ -106,8 +107,8 @@ std::vector<March> MomentMarches::MarchesAt(std::size_t altitude,
   return marches;
 }
 
-void MomentMarches::AddPoints(std::size_t altitude, const MultipleScatteringOptions& options, double mu,
-                               March& march) const {
+void MomentMarches::AddPoints(std::size_t altitude, const MultipleScatteringOptions& options,
+                              double mu, March& march) const {
   // With the sun in the zenith no part of the ray is in shadow, so one set of panels serves every
   // sun.
   const ViewRay ray{altitude_km_[altitude] * 1000.0, mu, 1.0, mu};
@@ -152,7 +153,8 @@ void MomentMarches::AddGround(std::size_t altitude, March& march) const {
     for (std::size_t k = 0; k < azimuths_; ++k) {
       const double mu_s = std::clamp(
           (r * mu_s_[j] + march.ground_distance_km * Nu(march, j, k)) / radius_km_, -1.0, 1.0);
-      CubicTaps taps = TapsAt(MultipleScattering::SunCoordinate(mu_s), static_cast<int>(grid_.suns));
+      CubicTaps taps =
+          TapsAt(MultipleScattering::SunCoordinate(mu_s), static_cast<int>(grid_.suns));
       const float twilight = TwilightOf(grid_, mu_s);
       for (float& weight : taps.weight) weight *= twilight;
       march.ground_taps.push_back(taps);
@@ -364,7 +366,8 @@ void AddSunlitGround(const MomentMarches& marches, std::size_t altitude, const M
 }  // namespace
 
 SunlightOfMarch SunlightScatteredOnce(const MomentMarches& marches, std::size_t altitude,
-                                      const March& march, const MultipleScatteringOptions& options) {
+                                      const March& march,
+                                      const MultipleScatteringOptions& options) {
   const std::size_t values = marches.air().bands() * marches.grid().suns * marches.azimuths();
   SunlightOfMarch light{std::vector<float>(values, 0.0F), std::vector<float>(values, 0.0F)};
   const PieceScatterer scatterer(marches, altitude, march, options);

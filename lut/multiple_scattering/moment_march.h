@@ -33,7 +33,7 @@ class MomentMarches {
   /// @param chi  Legendre coefficients of aerosol scattering: degree l of a band at [l * bands +
   ///   band].
   MomentMarches(const SingleScattering<float>& air, const MultipleScatteringOptions& options,
-                 const std::vector<double>& chi);
+                const std::vector<double>& chi);
 
   [[nodiscard]] const SingleScattering<float>& air() const { return *air_; }
   [[nodiscard]] const MomentGrid& grid() const { return grid_; }

@@ -6,11 +6,11 @@
 #include <algorithm>
 #include <cmath>
 
-#include "atmosphere/shared_glsl/instruction_set.h"
+#include "atmosphere/base/error.h"
 #include "atmosphere/math/constants.h"
 #include "atmosphere/math/numerics.h"
 #include "atmosphere/ray/shell.h"
-#include "atmosphere/base/error.h"
+#include "atmosphere/shared_glsl/instruction_set.h"
 #include "lut/multiple_scattering/moment_grid.h"
 #include "lut/multiple_scattering/successive_orders.h"
 #include "lut/tables/cubic_taps.h"
@@ -62,8 +62,8 @@ const Medium& Checked(const Medium& medium, const MultipleScatteringOptions& opt
 }
 
 // Adds `times` times the beam's light at a node to the values of the node.
-void AddBeam(const MultipleScatteringOptions& options, const Bands<float>& beam, double mu_s, float times,
-             bool polarised, float* value) {
+void AddBeam(const MultipleScatteringOptions& options, const Bands<float>& beam, double mu_s,
+             float times, bool polarised, float* value) {
   const Moments towards = LegendreTerms(options.degree, static_cast<float>(mu_s));
   const auto add = [&](float share) {
     for (std::size_t band = 0; band < beam.count; ++band, ++value)
@@ -77,8 +77,8 @@ void AddBeam(const MultipleScatteringOptions& options, const Bands<float>& beam,
 }
 
 // Returns the values at all nodes plus `times` times the beam.
-std::vector<float> WithBeam(const Medium& medium, const MultipleScatteringOptions& options, float times,
-                            std::vector<float> values) {
+std::vector<float> WithBeam(const Medium& medium, const MultipleScatteringOptions& options,
+                            float times, std::vector<float> values) {
   const DeltaM peak(medium, options.degree);
   const MomentGrid grid = GridOf(medium, options);
   const std::size_t floats = values.size() / (grid.altitudes * grid.suns);
@@ -94,8 +94,7 @@ std::vector<float> WithBeam(const Medium& medium, const MultipleScatteringOption
 
 SolvedOrders Solved(const Medium& medium, const MultipleScatteringOptions& options) {
   SolvedOrders solved = SolveSuccessiveOrders(Checked(medium, options), options);
-  if (options.delta_m)
-    solved.values = WithBeam(medium, options, 1.0F, std::move(solved.values));
+  if (options.delta_m) solved.values = WithBeam(medium, options, 1.0F, std::move(solved.values));
   return solved;
 }
 
@@ -133,11 +132,13 @@ MultipleScatteringOptions OptionsFor(const Medium& medium) {
   return options;
 }
 
-MultipleScattering::MultipleScattering(const Medium& medium, const MultipleScatteringOptions& options)
+MultipleScattering::MultipleScattering(const Medium& medium,
+                                       const MultipleScatteringOptions& options)
     : MultipleScattering(medium, options, Solved(medium, options)) {}
 
-MultipleScattering::MultipleScattering(const Medium& medium, const MultipleScatteringOptions& options,
-                           SolvedOrders solved)
+MultipleScattering::MultipleScattering(const Medium& medium,
+                                       const MultipleScatteringOptions& options,
+                                       SolvedOrders solved)
     : medium_(Checked(medium, options)),
       options_(options),
       bands_(medium.wavelengths_nm.size()),
@@ -233,7 +234,8 @@ double MultipleScattering::AltitudeCoordinate(double altitude_m) const {
 }
 
 template <typename Visit>
-void MultipleScattering::VisitNodes(double altitude_coordinate, double mu_s, const Visit& visit) const {
+void MultipleScattering::VisitNodes(double altitude_coordinate, double mu_s,
+                                    const Visit& visit) const {
   const CubicTaps row = TapsAt(altitude_coordinate, options_.altitudes);
   const CubicTaps column = SunTaps(grid_, mu_s);
   for (std::size_t a = 0; a < 4; ++a) {
@@ -246,17 +248,18 @@ void MultipleScattering::VisitNodes(double altitude_coordinate, double mu_s, con
   }
 }
 
-Bands<float> MultipleScattering::InscatterByMoments(const RaySamples<float>& samples, double nu) const {
+Bands<float> MultipleScattering::InscatterByMoments(const RaySamples<float>& samples,
+                                                    double nu) const {
   alignas(64) std::array<float, kMaxBands + kBlockBands> light{};
   Kernel<MomentKernel>().inscatter(grid_, samples, static_cast<float>(nu), blocks_.data(),
-                                    blocks_.size(), packed_.data(), light.data());
+                                   blocks_.size(), packed_.data(), light.data());
   Bands<float> sum(bands_);
   std::copy_n(light.begin(), bands_, sum.value.begin());
   return sum;
 }
 
 Bands<float> MultipleScattering::InscatterAlong(const RaySamples<float>& samples, double nu,
-                                          double nu_seen, SegmentEnd end) const {
+                                                double nu_seen, SegmentEnd end) const {
   Bands<float> light = InscatterByMoments(samples, nu);
   if (samples.count == 0) return light;
   if (glow_ && GlowAboutTheSun::Reaches(nu_seen)) {
@@ -325,7 +328,7 @@ ViewRay MultipleScattering::RayBehind(const RaySamples<float>& samples, double n
 // Returns the part of the light from behind the end of samples that the forward peak adds. It comes
 // from the ground or, if the samples end before it, from the air and the ground that follow.
 Bands<float> MultipleScattering::PeakBehind(const RaySamples<float>& samples, double nu,
-                                      double nu_seen) const {
+                                            double nu_seen) const {
   Bands<float> light(bands_), closed(bands_);
   if (samples.extent.end == RayEnd::kSpace) return light;
   const DeltaM::Way way = peak_->WayTo(samples);
@@ -351,7 +354,7 @@ Bands<float> MultipleScattering::PeakBehind(const RaySamples<float>& samples, do
 }
 
 Bands<float> MultipleScattering::Irradiance(double altitude_m, double mu_s, double normal_mu,
-                                      double normal_cos_azimuth) const {
+                                            double normal_cos_azimuth) const {
   const CubicTaps row = TapsAt(AltitudeCoordinate(altitude_m), options_.altitudes);
   const double x = (mu_s - SunNodes().centre()) / SunNodes().width();
   const double cell = (std::asinh(x) - static_cast<double>(grid_.first_asinh)) *
@@ -368,7 +371,7 @@ Bands<float> MultipleScattering::Irradiance(double altitude_m, double mu_s, doub
   }
   alignas(64) std::array<float, kMaxBands + kBlockBands> light{};
   Kernel<MomentKernel>().irradiance(grid_, point, blocks_.size(), packed_.data(),
-                                     packed_sky_.data(), light.data());
+                                    packed_sky_.data(), light.data());
   Bands<float> irradiance(bands_);
   std::copy_n(light.begin(), bands_, irradiance.value.begin());
   if (peak_) {
@@ -399,7 +402,8 @@ Bands<float> MultipleScattering::SkyIrradiance(double altitude_m, double mu_s) c
   return irradiance;
 }
 
-std::vector<float> MultipleScattering::ValuesAt(double altitude_coordinate, double sun_coordinate) const {
+std::vector<float> MultipleScattering::ValuesAt(double altitude_coordinate,
+                                                double sun_coordinate) const {
   std::vector<float> sum(channels() * bands_, 0.0F);
   const double mu_s = MuSFromCoordinate(sun_coordinate);
   const float here = SunSine(mu_s);
@@ -429,7 +433,7 @@ std::size_t MultipleScattering::OrderOf(std::size_t channel) const {
 }
 
 std::array<Bands<float>, kTensorMoments> MultipleScattering::TensorAt(double altitude_m,
-                                                                double mu_s) const {
+                                                                      double mu_s) const {
   std::array<Bands<float>, kTensorMoments> tensor;
   tensor.fill(Bands<float>(bands_));
   const float here = SunSine(mu_s);
@@ -454,7 +458,8 @@ std::array<Bands<float>, kTensorMoments> MultipleScattering::TensorAt(double alt
   return tensor;
 }
 
-PolarisedLight MultipleScattering::PolarisationAlong(const RaySamples<float>& samples, double nu) const {
+PolarisedLight MultipleScattering::PolarisationAlong(const RaySamples<float>& samples,
+                                                     double nu) const {
   PolarisedLight light{Bands<float>(bands_), Bands<float>(bands_)};
   if (!medium_.polarised) return light;
   const AirConstants<float> air = SingleScattering<float>(medium_).constants();

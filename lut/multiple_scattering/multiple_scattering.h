@@ -31,8 +31,8 @@
 
 #include "atmosphere/medium/medium.h"
 #include "atmosphere/ray/single_scattering.h"
-#include "lut/multiple_scattering/moment_kernel.h"
 #include "lut/multiple_scattering/delta_m.h"
+#include "lut/multiple_scattering/moment_kernel.h"
 #include "lut/multiple_scattering/polarised_scattering.h"
 #include "lut/multiple_scattering/spherical_harmonics.h"
 #include "lut/tables/table_axes.h"
@@ -90,7 +90,8 @@ class MultipleScattering {
 
   /// Restores a stored solution: values, orders and converged as returned by the accessors. Throws
   /// InputError unless the number of values matches the options and all values are finite.
-  MultipleScattering(const Medium& medium, const MultipleScatteringOptions& options, SolvedOrders solved);
+  MultipleScattering(const Medium& medium, const MultipleScatteringOptions& options,
+                     SolvedOrders solved);
 
   [[nodiscard]] const Medium& medium() const { return medium_; }
   [[nodiscard]] bool converged() const { return converged_; }

@@ -8,10 +8,10 @@
 #include <cmath>
 #include <numeric>
 
-#include "atmosphere/medium/phase_table.h"
+#include "atmosphere/base/error.h"
 #include "atmosphere/math/constants.h"
 #include "atmosphere/math/numerics.h"
-#include "atmosphere/base/error.h"
+#include "atmosphere/medium/phase_table.h"
 
 namespace alpenglow::lut {
 namespace {

@@ -12,9 +12,9 @@
 #include <cstddef>
 #include <vector>
 
+#include "atmosphere/math/constants.h"
 #include "atmosphere/medium/medium.h"
 #include "atmosphere/medium/phase.h"
-#include "atmosphere/math/constants.h"
 #include "lut/layer.h"
 
 namespace alpenglow::lut {

@@ -23,8 +23,8 @@
 #include <vector>
 
 #include "atmosphere/medium/medium.h"
-#include "lut/layer.h"
 #include "lut/cli/messages.h"
+#include "lut/layer.h"
 #include "lut/report/svg_plot.h"
 
 namespace alpenglow::lut {

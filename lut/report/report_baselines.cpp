@@ -8,10 +8,10 @@
 #include <numbers>
 #include <optional>
 
+#include "atmosphere/base/error.h"
 #include "atmosphere/math/constants.h"
 #include "atmosphere/ray/ray.h"
 #include "atmosphere/ray/shell.h"
-#include "atmosphere/base/error.h"
 #include "lut/evaluate/eval.h"
 #include "lut/tables/table_axes.h"
 

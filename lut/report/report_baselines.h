@@ -46,8 +46,8 @@ enum class ChapmanRule {
 
 /// Returns the transmittance to space. The exponential layers use a Chapman approximation, ozone
 /// uses the closed form of this library. The ray must not hit the ground.
-[[nodiscard]] Bands<float> ChapmanTransmittance(const SingleScattering<float>& air, ChapmanRule rule,
-                                                const ViewRay& ray);
+[[nodiscard]] Bands<float> ChapmanTransmittance(const SingleScattering<float>& air,
+                                                ChapmanRule rule, const ViewRay& ray);
 
 /// Multiple scattering as in Hillaire (2020), A scalable and production ready sky and atmosphere
 /// rendering technique, Computer Graphics Forum 39, 13, section 5.5. Light of order two is assumed

@@ -9,9 +9,9 @@
 #include <cmath>
 #include <vector>
 
-#include "atmosphere/reference/reference_solution.h"
 #include "atmosphere/math/constants.h"
 #include "atmosphere/math/numerics.h"
+#include "atmosphere/reference/reference_solution.h"
 #include "atmosphere/refraction/refracted_view.h"
 #include "lut/report/report_baselines.h"
 #include "lut/report/report_measure.h"
@@ -255,9 +255,9 @@ class RefractionTopic {
     topic_.medium = medium_;
     topic_.rays = Count();
     topic_.reference = {.text =
-                        "the ray equation, by Runge and Kutta's fourth order, with Peck and "
-                        "Reeder's refractivity",
-                    .time_s = reference_time_s_};
+                            "the ray equation, by Runge and Kutta's fourth order, with Peck and "
+                            "Reeder's refractivity",
+                        .time_s = reference_time_s_};
     return std::move(topic_);
   }
 

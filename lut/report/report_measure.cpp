@@ -9,10 +9,10 @@
 #include <cmath>
 #include <utility>
 
-#include "atmosphere/reference/reference_solution.h"
+#include "atmosphere/base/error.h"
 #include "atmosphere/math/constants.h"
 #include "atmosphere/math/numerics.h"
-#include "atmosphere/base/error.h"
+#include "atmosphere/reference/reference_solution.h"
 #include "lut/cli/program.h"
 
 namespace alpenglow::lut {
@@ -110,7 +110,8 @@ ViewRay ZenithOf(const Medium& medium, const ViewRay& ray) {
 
 }  // namespace
 
-ReferenceRays SolveReferenceRays(ErrorKind kind, int count, const DrawRay& draw, const SolveReference& ask) {
+ReferenceRays SolveReferenceRays(ErrorKind kind, int count, const DrawRay& draw,
+                                 const SolveReference& ask) {
   ReferenceRays result;
   result.kind = kind;
   const auto start = std::chrono::steady_clock::now();
@@ -135,7 +136,8 @@ double SunElevationNumber(int i, const ReportRegime& regime) {
 }
 
 std::vector<double> DarkestRadiance(const Medium& medium, const ViewRay& ray) {
-  std::vector<double> floor = reference::SingleScatteringAlong(medium, ZenithOf(medium, ray)).inscatter;
+  std::vector<double> floor =
+      reference::SingleScatteringAlong(medium, ZenithOf(medium, ray)).inscatter;
   for (double& value : floor) value *= kDarkestPart;
   return floor;
 }
@@ -207,9 +209,9 @@ ReferenceRays ReferenceSkyRays(const Medium& medium, int count) {
       [&](int i, const ReportRegime& regime) { return ViewNumber(medium, i, regime); },
       [&](const ViewRay& ray) {
         return ReferenceRay{ray,
-                         reference::SingleScatteringAlong(medium, ray).inscatter,
-                         {},
-                         DarkestRadiance(medium, ray)};
+                            reference::SingleScatteringAlong(medium, ray).inscatter,
+                            {},
+                            DarkestRadiance(medium, ray)};
       });
   result.reference.text =
       "adaptive Gauss-Legendre quadrature in extended precision, relative error "
@@ -231,7 +233,7 @@ ReferenceRays TracedViews(const Medium& medium, int count, std::size_t paths) {
       [&](const ViewRay& ray) {
         reference::PathTracedRadiance traced = reference::TraceRadiance(medium, ray, options);
         return ReferenceRay{ray, std::move(traced.total), std::move(traced.standard_error),
-                         DarkestRadiance(medium, ray)};
+                            DarkestRadiance(medium, ray)};
       });
   result.reference.text = fmt::format("backward path tracing of all orders, {} paths a ray", paths);
   return result;

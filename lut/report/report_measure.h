@@ -38,9 +38,9 @@
 #include <vector>
 
 #include "atmosphere/medium/medium.h"
-#include "atmosphere/reference/path_tracer.h"
 #include "atmosphere/ray/ray.h"
 #include "atmosphere/ray/single_scattering.h"
+#include "atmosphere/reference/path_tracer.h"
 #include "lut/cli/program.h"
 #include "lut/report/report.h"
 #include "lut/report/report_baselines.h"
@@ -79,7 +79,7 @@ using SolveReference = std::function<ReferenceRay(const ViewRay& ray)>;
 /// Evaluates the reference for `count` rays in each of kRegimes, in parallel, and records the time
 /// of one evaluation. The caller sets the text of the judge.
 [[nodiscard]] ReferenceRays SolveReferenceRays(ErrorKind kind, int count, const DrawRay& draw,
-                                   const SolveReference& ask);
+                                               const SolveReference& ask);
 
 /// Returns the sun's elevation for ray number i [degrees], uniform over the regime.
 [[nodiscard]] double SunElevationNumber(int i, const ReportRegime& regime);

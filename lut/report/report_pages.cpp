@@ -8,8 +8,8 @@
 #include <system_error>
 
 #include "atmosphere/base/error.h"
-#include "lut/embedded_text.h"
 #include "lut/cli/output_file.h"
+#include "lut/embedded_text.h"
 #include "lut/report/report.h"
 
 namespace alpenglow::lut {
@@ -276,9 +276,9 @@ std::string ReferenceText(const ReportTopic& topic) {
   if (topic.reference.noise[0] > 0.0) {
     text += " Its own standard error, rms:";
     for (std::size_t r = 0; r < topic.regimes.size(); ++r)
-      text +=
-          fmt::format("{} {} {}", r == 0 ? "" : ",",
-                      QuantityText(topic.reference.noise[r], PlotUnit::kShare), topic.regimes[r].key);
+      text += fmt::format("{} {} {}", r == 0 ? "" : ",",
+                          QuantityText(topic.reference.noise[r], PlotUnit::kShare),
+                          topic.regimes[r].key);
     text +=
         "; subtracted from the rms errors (not from percentiles and maxima), of which none "
         "below half of it can be told.";
@@ -304,7 +304,8 @@ std::string SectionOf(const ReportTopic& topic) {
         SvgOfPlot(*plot) + "</figure></details>\n";
   }
   text += TableOf(topic);
-  return text + fmt::format("<p class=\"judge\">{}</p>\n</section>\n", XmlText(ReferenceText(topic)));
+  return text +
+         fmt::format("<p class=\"judge\">{}</p>\n</section>\n", XmlText(ReferenceText(topic)));
 }
 
 std::string CardsOf(const Report& report) {

@@ -7,8 +7,8 @@
 #include <cmath>
 
 #include "atmosphere/math/constants.h"
-#include "lut/multiple_scattering/multiple_scattering.h"
 #include "lut/evaluate/eval.h"
+#include "lut/multiple_scattering/multiple_scattering.h"
 #include "lut/report/report_baselines.h"
 #include "lut/report/report_measure.h"
 #include "lut/sky/panorama.h"
@@ -68,8 +68,13 @@ std::vector<Direction> Directions(int count) {
 template <typename Real>
 class DirectSky {
  public:
-  DirectSky(const Medium& medium, const MultipleScattering& multiple_scattering, int nodes, bool split_ozone)
-      : air_(medium), quick_(medium), multiple_scattering_(multiple_scattering), nodes_(nodes), split_(split_ozone) {}
+  DirectSky(const Medium& medium, const MultipleScattering& multiple_scattering, int nodes,
+            bool split_ozone)
+      : air_(medium),
+        quick_(medium),
+        multiple_scattering_(multiple_scattering),
+        nodes_(nodes),
+        split_(split_ozone) {}
 
   [[nodiscard]] Bands<Real> Radiance(const ViewRay& ray) const {
     Bands<Real> light = air_.Inscatter(

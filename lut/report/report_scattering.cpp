@@ -274,7 +274,8 @@ ReportTopic WordsOfAllOrders() {
           "are this library's spherical-harmonic moments of the diffuse light over altitude "
           "and sun; the "
           "largest is the quality fine of skylut build, which also has more directions. "
-          "Where the medium's light is polarised, so is the reference solution's, and scalar light is "
+          "Where the medium's light is polarised, so is the reference solution's, and scalar light "
+          "is "
           "what neglects it: the same single scattering, and moments of scalar light. In "
           "hazy air the forward peak of the aerosol is set apart and found in closed form "
           "(delta-M); only then do more degrees pay, and skylut eval and build take it.",

@@ -10,20 +10,20 @@
 #include <cstdlib>
 #include <utility>
 
-#include "atmosphere/colour/spectrum.h"
-#include "atmosphere/math/constants.h"
 #include "atmosphere/astronomy/sun.h"
 #include "atmosphere/base/error.h"
-#include "lut/image/tone_mapping.h"
+#include "atmosphere/colour/spectrum.h"
+#include "atmosphere/math/constants.h"
 #include "lut/cli/program.h"
+#include "lut/image/tone_mapping.h"
 
 namespace alpenglow::lut {
 namespace {
 
 constexpr int kSteps = 48;  // over half a turn
 
-PolarisedLight Along(const SingleScattering<float>& air, const MultipleScattering& multiple_scattering,
-                     const ViewRay& ray) {
+PolarisedLight Along(const SingleScattering<float>& air,
+                     const MultipleScattering& multiple_scattering, const ViewRay& ray) {
   const RaySamples<float> samples = air.Sample(ray, {.nodes = 16, .dark_samples = true});
   PolarisedLight light{Bands<float>(air.bands()), Bands<float>(air.bands())};
   if (samples.count == 0 || !air.medium().polarised) return light;
@@ -38,8 +38,9 @@ PolarisedLight Along(const SingleScattering<float>& air, const MultipleScatterin
 
 }  // namespace
 
-PolarisedRow::PolarisedRow(const SingleScattering<float>& air, const MultipleScattering& multiple_scattering,
-                           double altitude_m, double mu_s, double zenith_angle_rad) {
+PolarisedRow::PolarisedRow(const SingleScattering<float>& air,
+                           const MultipleScattering& multiple_scattering, double altitude_m,
+                           double mu_s, double zenith_angle_rad) {
   const double mu = std::cos(zenith_angle_rad);
   const double sines =
       std::sin(zenith_angle_rad) * std::sqrt(std::max((1.0 - mu_s) * (1.0 + mu_s), 0.0));
@@ -308,7 +309,8 @@ double CentreAzimuth(PanoramaOrientation orientation) {
   throw InternalError("an orientation without a centre");
 }
 
-Image RenderPanorama(const SingleScattering<float>& air, const MultipleScattering& multiple_scattering,
+Image RenderPanorama(const SingleScattering<float>& air,
+                     const MultipleScattering& multiple_scattering,
                      const PanoramaSettings& settings, const std::function<void()>& row_done) {
   Image image(settings.width, settings.height);
   const double mu_s = std::sin(settings.sun.elevation_for_air_rad());
@@ -324,7 +326,8 @@ Image RenderPanorama(const SingleScattering<float>& air, const MultipleScatterin
   const std::vector<float> srgb = SrgbFromRelative(air.medium(), settings.sun.distance);
   const std::vector<LayerPlace> layers = AddPanoramaLayers(settings.layers, image);
   const auto add_polarisation = [&](int y) {
-    const PolarisedRow row(air, multiple_scattering, settings.altitude_m, mu_s, grid.ZenithAngle(y + 0.5));
+    const PolarisedRow row(air, multiple_scattering, settings.altitude_m, mu_s,
+                           grid.ZenithAngle(y + 0.5));
     for (int x = 0; x < grid.width; ++x) {
       const PolarisedLight light = row.At(from_sun[static_cast<std::size_t>(x)]);
       SetLayers(layers, static_cast<std::size_t>(y) * from_sun.size() + static_cast<std::size_t>(x),
@@ -348,8 +351,9 @@ Image RenderPanorama(const SingleScattering<float>& air, const MultipleScatterin
   return image;
 }
 
-double HorizontalIlluminance(const SingleScattering<float>& air, const MultipleScattering& multiple_scattering,
-                             double altitude_m, const PanoramaSun& sun) {
+double HorizontalIlluminance(const SingleScattering<float>& air,
+                             const MultipleScattering& multiple_scattering, double altitude_m,
+                             const PanoramaSun& sun) {
   const Medium& medium = air.medium();
   const double h = std::max(altitude_m, 0.0);
   const double mu_s = std::sin(sun.elevation_rad);
@@ -357,7 +361,8 @@ double HorizontalIlluminance(const SingleScattering<float>& air, const MultipleS
   const VisibleDisk disk = DiskOverHorizon(mu_s, horizon, sun.angular_radius_rad);
   const double mu = disk.mu_s_effective;
   const Bands<float> direct = air.TransmittanceToSpace(h, mu);
-  const Bands<float> sky = multiple_scattering.SkyIrradiance(h, std::sin(sun.elevation_for_air_rad()));
+  const Bands<float> sky =
+      multiple_scattering.SkyIrradiance(h, std::sin(sun.elevation_for_air_rad()));
   std::vector<double> light;
   for (std::size_t band = 0; band < sky.count; ++band) {
     light.push_back(medium.solar_irradiance[band] / (sun.distance * sun.distance) *

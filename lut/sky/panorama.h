@@ -26,9 +26,9 @@
 
 #include "atmosphere/math/constants.h"
 #include "atmosphere/ray/single_scattering.h"
+#include "lut/image/image.h"
 #include "lut/multiple_scattering/multiple_scattering.h"
 #include "lut/multiple_scattering/polarised_scattering.h"
-#include "lut/image/image.h"
 #include "lut/sky/sky_view.h"
 
 namespace alpenglow::lut {
@@ -40,8 +40,8 @@ class PolarisedRow {
  public:
   /// `air` and `multiple_scattering` must have the same medium; no reference to them is kept.
   /// @param mu_s  cosine of the sun's zenith angle at the observer.
-  PolarisedRow(const SingleScattering<float>& air, const MultipleScattering& multiple_scattering, double altitude_m,
-               double mu_s, double zenith_angle_rad);
+  PolarisedRow(const SingleScattering<float>& air, const MultipleScattering& multiple_scattering,
+               double altitude_m, double mu_s, double zenith_angle_rad);
 
   /// Returns interpolated values, within 1e-3 of the radiance of a direct evaluation by day, 3e-3
   /// in twilight, up to 10 km.
@@ -95,13 +95,13 @@ struct PanoramaSettings {
 /// below 0.3 % down to -10. Throws InputError for a size outside [1, kLargestImageSide].
 /// @param row_done  called once per row, from any thread.
 [[nodiscard]] Image RenderPanorama(
-    const SingleScattering<float>& air, const MultipleScattering& multiple_scattering, const PanoramaSettings& settings,
-    const std::function<void()>& row_done = [] {});
+    const SingleScattering<float>& air, const MultipleScattering& multiple_scattering,
+    const PanoramaSettings& settings, const std::function<void()>& row_done = [] {});
 
 /// Returns the illuminance [lx] of a horizontal plane by sun and sky at the observer, with the
 /// sun's disk cut by the horizon.
 [[nodiscard]] double HorizontalIlluminance(const SingleScattering<float>& air,
-                                           const MultipleScattering& multiple_scattering, double altitude_m,
-                                           const PanoramaSun& sun);
+                                           const MultipleScattering& multiple_scattering,
+                                           double altitude_m, const PanoramaSun& sun);
 
 }  // namespace alpenglow::lut

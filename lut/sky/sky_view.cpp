@@ -7,10 +7,10 @@
 #include <limits>
 #include <utility>
 
+#include "atmosphere/base/error.h"
 #include "atmosphere/math/constants.h"
 #include "atmosphere/ray/direct_scattering.h"
 #include "atmosphere/ray/shell.h"
-#include "atmosphere/base/error.h"
 #include "lut/multiple_scattering/azimuth_fan.h"
 #include "lut/multiple_scattering/moment_grid.h"
 #include "lut/sky/sky_row_kernel.h"
@@ -131,14 +131,16 @@ void SplineMirroredLine(const Line& line) {
 // Returns the aerosol's phase function including the glow around the sun: a table for every four
 // bands.
 std::vector<std::vector<float>> PhaseTables(const SingleScattering<float>& air,
-                                            const MultipleScattering& multiple_scattering, float column_km) {
+                                            const MultipleScattering& multiple_scattering,
+                                            float column_km) {
   const std::size_t blocks = (air.bands() + kViewLanes - 1) / kViewLanes;
   std::vector<std::vector<float>> tables(blocks,
                                          std::vector<float>(kViewLanes * (kSkyPhaseNodes + 1)));
   for (std::size_t k = 0; k <= kSkyPhaseNodes; ++k) {
     const double x = static_cast<double>(k) / kSkyPhaseNodes;
     const double nu = std::cos(kPi * x * x);
-    const Bands<float> phase = air.AerosolPhases(nu), glow = multiple_scattering.GlowFactor(nu, column_km);
+    const Bands<float> phase = air.AerosolPhases(nu),
+                       glow = multiple_scattering.GlowFactor(nu, column_km);
     for (std::size_t lane = 0; lane < blocks * kViewLanes; ++lane) {
       const std::size_t band = std::min(lane, phase.count - 1);
       tables[lane / kViewLanes][kViewLanes * k + lane % kViewLanes] = phase[band] + glow[band];
@@ -208,8 +210,8 @@ namespace {
 /// visible ground.
 class GroundLight {
  public:
-  GroundLight(const SingleScattering<float>& air, const MultipleScattering& multiple_scattering, double least_mu_s,
-              double most_mu_s)
+  GroundLight(const SingleScattering<float>& air, const MultipleScattering& multiple_scattering,
+              double least_mu_s, double most_mu_s)
       : bands_(air.bands()),
         least_(MultipleScattering::SunCoordinate(least_mu_s)),
         most_(MultipleScattering::SunCoordinate(most_mu_s)),
@@ -232,7 +234,8 @@ class GroundLight {
 
   [[nodiscard]] Bands<float> At(double mu_s) const {
     const double width = std::max(most_ - least_, 1e-12);
-    const CubicTaps taps = TapsAt((MultipleScattering::SunCoordinate(mu_s) - least_) / width, nodes_);
+    const CubicTaps taps =
+        TapsAt((MultipleScattering::SunCoordinate(mu_s) - least_) / width, nodes_);
     Bands<float> light(bands_);
     for (std::size_t tap = 0; tap < 4; ++tap) {
       const float* node = &light_[taps.node[tap] * bands_];
@@ -257,8 +260,8 @@ class GroundLight {
 /// Evaluates the nodes of a sky view.
 class SkyView::Builder {
  public:
-  Builder(const SingleScattering<float>& air, const MultipleScattering& multiple_scattering, double altitude_m,
-          double mu_s, SkyView& view)
+  Builder(const SingleScattering<float>& air, const MultipleScattering& multiple_scattering,
+          double altitude_m, double mu_s, SkyView& view)
       : air_(air),
         direct_(air.medium()),
         fan_(multiple_scattering),
@@ -299,7 +302,8 @@ class SkyView::Builder {
                                          const MultipleScattering& multiple_scattering) const {
     const double dip = view_.map_.horizon_zenith_angle_rad() - 0.5 * kPi;
     const double sun = std::acos(mu_s_);
-    return {air, multiple_scattering, std::cos(std::min(sun + dip, kPi)), std::cos(std::max(sun - dip, 0.0))};
+    return {air, multiple_scattering, std::cos(std::min(sun + dip, kPi)),
+            std::cos(std::max(sun - dip, 0.0))};
   }
 
   [[nodiscard]] std::size_t Columns() const {
@@ -387,12 +391,13 @@ class SkyView::Builder {
   std::vector<double> cosines_;  // cosines of the columns' azimuths
 };
 
-SkyView::SkyView(const SingleScattering<float>& air, const MultipleScattering& multiple_scattering, double altitude_m,
-                 double mu_s)
-    : SkyView(air, multiple_scattering, altitude_m, mu_s, SkyViewSizeFor(air.medium(), altitude_m, mu_s)) {}
+SkyView::SkyView(const SingleScattering<float>& air, const MultipleScattering& multiple_scattering,
+                 double altitude_m, double mu_s)
+    : SkyView(air, multiple_scattering, altitude_m, mu_s,
+              SkyViewSizeFor(air.medium(), altitude_m, mu_s)) {}
 
-SkyView::SkyView(const SingleScattering<float>& air, const MultipleScattering& multiple_scattering, double altitude_m,
-                 double mu_s, const SkyViewSize& size)
+SkyView::SkyView(const SingleScattering<float>& air, const MultipleScattering& multiple_scattering,
+                 double altitude_m, double mu_s, const SkyViewSize& size)
     : map_(air.medium(), altitude_m, mu_s),
       size_(size),
       bands_(air.bands()),

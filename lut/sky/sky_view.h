@@ -71,10 +71,10 @@ class SkyView {
  public:
   /// `air` and `multiple_scattering` must have the same medium; no reference to them is kept.
   /// @param mu_s  cosine of the sun's zenith angle at the observer.
-  SkyView(const SingleScattering<float>& air, const MultipleScattering& multiple_scattering, double altitude_m,
-          double mu_s, const SkyViewSize& size);
-  SkyView(const SingleScattering<float>& air, const MultipleScattering& multiple_scattering, double altitude_m,
-          double mu_s);
+  SkyView(const SingleScattering<float>& air, const MultipleScattering& multiple_scattering,
+          double altitude_m, double mu_s, const SkyViewSize& size);
+  SkyView(const SingleScattering<float>& air, const MultipleScattering& multiple_scattering,
+          double altitude_m, double mu_s);
 
   /// Returns the sky with a visible sun in a direction that differs from that of the sun that
   /// lights the air (SunForAir of sun.h), by a degree at most: the aureole surrounds the visible
@@ -126,6 +126,7 @@ class SkyView {
 /// Returns the column of aerosol, relative to its density on the ground [km], that sky views use
 /// for the glow around the sun (MultipleScattering::GlowFactor): the column on the path of its light from
 /// the sun to the observer, in twilight along the horizon.
-[[nodiscard]] float GlowColumn_km(const SingleScattering<float>& air, double altitude_m, double mu_s);
+[[nodiscard]] float GlowColumn_km(const SingleScattering<float>& air, double altitude_m,
+                                  double mu_s);
 
 }  // namespace alpenglow::lut

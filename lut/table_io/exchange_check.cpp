@@ -13,10 +13,10 @@
 #include <limits>
 #include <optional>
 
-#include "atmosphere/medium/phase_text.h"
-#include "atmosphere/math/constants.h"
 #include "atmosphere/base/error.h"
 #include "atmosphere/base/parsing.h"
+#include "atmosphere/math/constants.h"
+#include "atmosphere/medium/phase_text.h"
 #include "lut/table_io/table_image.h"
 #include "lut/tables/transmittance_table.h"
 

@@ -12,10 +12,10 @@
 #include <fstream>
 #include <utility>
 
+#include "atmosphere/base/error.h"
+#include "atmosphere/math/constants.h"
 #include "atmosphere/medium/medium.h"
 #include "atmosphere/medium/phase_text.h"
-#include "atmosphere/math/constants.h"
-#include "atmosphere/base/error.h"
 #include "lut/cli/program.h"
 #include "lut/table_io/table_folder.h"
 #include "lut/tables/transmittance_table.h"
@@ -36,12 +36,12 @@ constexpr TextureShape ScatteringShape(const char* name) {
 
 // Four orders of scattering in total: these are the three orders after the first.
 constexpr MultipleScatteringOptions kFourOrders{.altitudes = 32,
-                                          .sun_angles = 56,
-                                          .degree = 6,
-                                          .zenith_nodes = 14,
-                                          .azimuth_nodes = 10,
-                                          .ray_nodes = 12,
-                                          .exact_orders = 3};
+                                                .sun_angles = 56,
+                                                .degree = 6,
+                                                .zenith_nodes = 14,
+                                                .azimuth_nodes = 10,
+                                                .ray_nodes = 12,
+                                                .exact_orders = 3};
 constexpr Sampling kHigherOrderSampling{.nodes = 12, .split_ozone = false, .dark_samples = true};
 
 TexelType TypeOf(const ExchangeOptions& options) {
@@ -130,7 +130,8 @@ class HigherOrdersOfRays {
 };
 
 /// Returns scattering, higher_order_scattering, single_mie_scattering.
-std::array<ExchangeTexture, 3> ScatteringTextures(const Medium& medium, const MultipleScattering& light,
+std::array<ExchangeTexture, 3> ScatteringTextures(const Medium& medium,
+                                                  const MultipleScattering& light,
                                                   double lowest_mu_s, ProgressStyle style) {
   const std::size_t rows = ScatteringTable::Rows(kScatteringSize);
   Progress progress("scattering", 2 * rows, style);
@@ -294,7 +295,9 @@ const char* SuffixOf(TexelFormat format) {
   throw InternalError("an unknown format");
 }
 
-MultipleScattering FourOrdersOf(const Medium& medium) { return MultipleScattering(medium, kFourOrders); }
+MultipleScattering FourOrdersOf(const Medium& medium) {
+  return MultipleScattering(medium, kFourOrders);
+}
 
 Bands<float> HigherOrdersAlong(const SingleScattering<float>& air, const MultipleScattering& light,
                                const ViewRay& ray) {

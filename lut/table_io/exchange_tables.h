@@ -35,8 +35,8 @@
 #include <vector>
 
 #include "atmosphere/medium/medium.h"
-#include "lut/multiple_scattering/multiple_scattering.h"
 #include "lut/cli/messages.h"
+#include "lut/multiple_scattering/multiple_scattering.h"
 #include "lut/table_io/table_image.h"
 #include "lut/tables/scattering_table.h"
 

@@ -9,10 +9,10 @@
 #include <set>
 #include <sstream>
 
-#include "atmosphere/medium/medium.h"
 #include "atmosphere/base/error.h"
-#include "lut/multiple_scattering/moment_grid.h"
+#include "atmosphere/medium/medium.h"
 #include "lut/cli/program.h"
+#include "lut/multiple_scattering/moment_grid.h"
 #include "lut/table_io/table_image.h"
 
 namespace alpenglow::lut {
@@ -316,7 +316,7 @@ FolderUse UseOf(const TableImageReader& image) {
 }
 
 StoredMultipleScattering MultipleScatteringOf(const TableImageReader& image,
-                                  const std::optional<std::uint64_t>& medium_hash) {
+                                              const std::optional<std::uint64_t>& medium_hash) {
   const int degree = IntegerOf(image, "alpenglow.degree", 0, 1 << 20);
   NamingTheFile(image.file(), [&] { RequireDegree(degree); });
   RequireKind(image, MultipleScatteringKind(degree, false));
@@ -409,7 +409,7 @@ ScatteringTable ReadScatteringTable(const fs::path& file,
 }
 
 StoredMultipleScattering ReadMultipleScattering(const fs::path& file,
-                                    const std::optional<std::uint64_t>& medium_hash) {
+                                                const std::optional<std::uint64_t>& medium_hash) {
   return MultipleScatteringOf(TableImageReader(file), medium_hash);
 }
 
@@ -435,8 +435,8 @@ TableDescription DescribeTable(const fs::path& file) {
     describe(KindOf(table.axes()), table.medium(), table.texels());
   } else if (description.kind == MultipleScatteringKind(0, false).name) {
     const MultipleScattering light = MultipleScatteringOf(image, {}).light;
-    describe(MultipleScatteringKind(light.options().degree, light.medium().polarised), light.medium(),
-             light.values());
+    describe(MultipleScatteringKind(light.options().degree, light.medium().polarised),
+             light.medium(), light.values());
   } else {
     RefuseFile(file,
                fmt::format("is a table of {}, which this program does not know", description.kind));

@@ -68,7 +68,8 @@ void BuildTableFolder(const Medium& medium, const TableQuality& quality, TableOr
                                                                  &progress));
   if (orders == TableOrders::kSingleOnly) return;
   WriteTable(folder / kMultipleScatteringFileName,
-             MultipleScattering(medium, quality.multiple_scattering), {.ray_nodes = quality.ray_nodes});
+             MultipleScattering(medium, quality.multiple_scattering),
+             {.ray_nodes = quality.ray_nodes});
 }
 
 TableFolder ReadTableFolder(const fs::path& folder,
@@ -82,7 +83,8 @@ TableFolder ReadTableFolder(const fs::path& folder,
   FolderUse use;
   std::error_code error;
   if (fs::exists(folder / kMultipleScatteringFileName, error)) {
-    StoredMultipleScattering stored = ReadMultipleScattering(folder / kMultipleScatteringFileName, hash);
+    StoredMultipleScattering stored =
+        ReadMultipleScattering(folder / kMultipleScatteringFileName, hash);
     use = stored.use;
     tables.ray_nodes = use.ray_nodes;
     tables.multiple_scattering = std::move(stored.light);

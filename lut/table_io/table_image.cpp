@@ -21,8 +21,8 @@
 #include <type_traits>
 
 #include "atmosphere/base/error.h"
-#include "lut/image/exr.h"
 #include "lut/cli/output_file.h"
+#include "lut/image/exr.h"
 #include "lut/tables/table_axes.h"
 
 namespace alpenglow::lut {

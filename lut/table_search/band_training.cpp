@@ -7,9 +7,9 @@
 #include <set>
 #include <utility>
 
+#include "atmosphere/base/error.h"
 #include "atmosphere/colour/spectrum.h"
 #include "atmosphere/math/numerics.h"
-#include "atmosphere/base/error.h"
 
 namespace alpenglow::lut {
 namespace {

@@ -6,10 +6,10 @@
 #include <random>
 #include <utility>
 
+#include "atmosphere/base/error.h"
 #include "atmosphere/math/constants.h"
 #include "atmosphere/ray/ray.h"
 #include "atmosphere/ray/single_scattering.h"
-#include "atmosphere/base/error.h"
 
 namespace alpenglow::lut {
 namespace {
@@ -165,7 +165,8 @@ void Append(const Bands<float>& bands, std::vector<double>& values) {
 
 }  // namespace
 
-SkySimulator::SkySimulator(const SkyConditions& conditions, const MultipleScatteringOptions& options) {
+SkySimulator::SkySimulator(const SkyConditions& conditions,
+                           const MultipleScatteringOptions& options) {
   const std::vector<double> all = FineWavelengths();
   static_assert(kFineCount % kMaxBands == 0);
   for (auto first = all.begin(); first != all.end(); first += kMaxBands) {
@@ -184,7 +185,8 @@ std::vector<double> SkySimulator::Radiance(const ViewRay& ray) const {
 
 std::vector<double> SkySimulator::SkyIrradiance(double altitude_m, double mu_s) const {
   std::vector<double> values;
-  for (const auto& part : parts_) Append(part->multiple_scattering.SkyIrradiance(altitude_m, mu_s), values);
+  for (const auto& part : parts_)
+    Append(part->multiple_scattering.SkyIrradiance(altitude_m, mu_s), values);
   return values;
 }
 
@@ -220,7 +222,8 @@ std::vector<SkySpectrum> DrawSkySpectra(const SkyDrawing& drawing) {
   Drawer draw(drawing.seed);
   std::vector<SkySpectrum> spectra;
   for (int number = 0; number < drawing.atmospheres; ++number) {
-    const SkySimulator simulator(DrawConditions(drawing.family, number, draw), drawing.multiple_scattering);
+    const SkySimulator simulator(DrawConditions(drawing.family, number, draw),
+                                 drawing.multiple_scattering);
     for (const SkyRegime regime : kSkyRegimes) {
       const ElevationRange range = SpectrumRangeOf(regime);
       // Direct light has only one spectrum per sun, so it gets three times as many suns.

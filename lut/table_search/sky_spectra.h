@@ -60,12 +60,12 @@ struct SkyDrawing {
   SkyFamily family;
   /// Options of multiply scattered light; colour needs less accuracy than radiance.
   MultipleScatteringOptions multiple_scattering{.altitudes = 14,
-                              .sun_angles = 28,
-                              .degree = 2,
-                              .zenith_nodes = 6,
-                              .azimuth_nodes = 4,
-                              .ray_nodes = 8,
-                              .tolerance = 1e-3};
+                                                .sun_angles = 28,
+                                                .degree = 2,
+                                                .zenith_nodes = 6,
+                                                .azimuth_nodes = 4,
+                                                .ray_nodes = 8,
+                                                .tolerance = 1e-3};
 };
 
 /// Simulation of one atmosphere at FineWavelengths().

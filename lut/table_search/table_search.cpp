@@ -50,7 +50,7 @@ struct Verdict {
 using Bounds = std::array<double, kViewKinds.size()>;
 
 Verdict Assess(const ReferenceViews& views, const TableLookup& tables, const Bounds& bounds,
-              double enough) {
+               double enough) {
   Verdict verdict;
   // Start with the last kind: irradiance is cheap to look up and rules out most tables.
   for (std::size_t k = kViewKinds.size(); k-- > 0;) {
@@ -210,7 +210,8 @@ void RemoveOld(const fs::path& file) {
 
 }  // namespace
 
-MultipleScattering Resampled(const MultipleScattering& light, int altitudes, int sun_angles, int degree) {
+MultipleScattering Resampled(const MultipleScattering& light, int altitudes, int sun_angles,
+                             int degree) {
   ALPENGLOW_ENSURE(degree, <=, light.options().degree);
   const std::size_t moments = MomentCount(degree);
   const auto share = [](int i, int n) { return static_cast<double>(i) / (n - 1); };

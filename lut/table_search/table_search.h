@@ -48,8 +48,8 @@ struct TableChoice {
 
 /// Returns a table with fewer nodes and moments than the solution it is resampled from.
 /// @param degree  at most the degree of `light`; InternalError otherwise.
-[[nodiscard]] MultipleScattering Resampled(const MultipleScattering& light, int altitudes, int sun_angles,
-                                     int degree);
+[[nodiscard]] MultipleScattering Resampled(const MultipleScattering& light, int altitudes,
+                                           int sun_angles, int degree);
 
 /// Returns sizes, bytes and errors as text.
 [[nodiscard]] std::string ChoiceText(const TableChoice& choice, double max_error);

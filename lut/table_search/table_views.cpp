@@ -6,25 +6,25 @@
 #include <algorithm>
 #include <cmath>
 
-#include "atmosphere/reference/reference_solution.h"
-#include "atmosphere/reference/path_tracer.h"
+#include "atmosphere/base/error.h"
 #include "atmosphere/math/constants.h"
 #include "atmosphere/math/numerics.h"
-#include "atmosphere/base/error.h"
+#include "atmosphere/reference/path_tracer.h"
+#include "atmosphere/reference/reference_solution.h"
 #include "lut/cli/program.h"
 
 namespace alpenglow::lut {
 namespace {
 
 constexpr MultipleScatteringOptions kFinest{.altitudes = 40,
-                                      .sun_angles = 80,
-                                      .degree = 8,
-                                      .zenith_nodes = 16,
-                                      .azimuth_nodes = 12,
-                                      .ray_nodes = 14,
-                                      .later_zenith_nodes = 10,
-                                      .later_azimuth_nodes = 10,
-                                      .later_ray_nodes = 10};
+                                            .sun_angles = 80,
+                                            .degree = 8,
+                                            .zenith_nodes = 16,
+                                            .azimuth_nodes = 12,
+                                            .ray_nodes = 14,
+                                            .later_zenith_nodes = 10,
+                                            .later_azimuth_nodes = 10,
+                                            .later_ray_nodes = 10};
 // Sampling along the rays of true values.
 constexpr Sampling kFinestSampling{.nodes = 32, .split_ozone = true, .dark_samples = true};
 
@@ -82,7 +82,7 @@ double RmsOf(const std::vector<double>& values) {
 }
 
 ReferenceView ViewReference(const Medium& medium, const SingleScattering<float>& air,
-                     const MultipleScattering& finest, ViewKind kind, std::size_t i) {
+                            const MultipleScattering& finest, ViewKind kind, std::size_t i) {
   ReferenceView view{kind, RayOf(kind, i, medium), {}, {}};
   if (kind == ViewKind::kIrradiance) {
     view.light = Values(finest.SkyIrradiance(view.ray.altitude_m, view.ray.mu_s));
@@ -142,13 +142,13 @@ MultipleScattering FinestMultipleScattering(const Medium& medium) {
 }
 
 ReferenceViews::ReferenceViews(const Medium& medium, const MultipleScattering& finest,
-                         std::size_t views_of_a_kind, std::size_t first)
+                               std::size_t views_of_a_kind, std::size_t first)
     : views_(kViewKinds.size() * views_of_a_kind) {
   const SingleScattering<float> air(medium);
   tbb::parallel_for(std::size_t{0}, views_.size(), [&](std::size_t k) {
     if (Interrupted()) return;
     views_[k] = ViewReference(medium, air, finest, kViewKinds[k / views_of_a_kind],
-                          first + k % views_of_a_kind);
+                              first + k % views_of_a_kind);
   });
   ThrowIfInterrupted();
 }
@@ -181,8 +181,8 @@ double ReferenceViews::PathCheck::Unexplained() const {
 }
 
 ReferenceViews::PathCheck ReferenceViews::HeldAgainstPaths(const Medium& medium, ViewKind kind,
-                                                     std::size_t views,
-                                                     double standard_error) const {
+                                                           std::size_t views,
+                                                           double standard_error) const {
   std::vector<const ReferenceView*> all;
   for (const ReferenceView& view : views_) {
     if (view.kind == kind) all.push_back(&view);
@@ -196,7 +196,7 @@ ReferenceViews::PathCheck ReferenceViews::HeldAgainstPaths(const Medium& medium,
     std::vector<double> value, noise;
     if (kind == ViewKind::kIrradiance) {
       auto traced = reference::TraceIrradiance(medium, view.ray.altitude_m, view.ray.mu_s,
-                                           reference::PlaneSide::kFromAbove, options);
+                                               reference::PlaneSide::kFromAbove, options);
       value = std::move(traced.value);
       noise = std::move(traced.standard_error);
     } else {

@@ -55,8 +55,8 @@ class ReferenceViews {
  public:
   /// @param first  number of the first view of a low-discrepancy sequence: sets [first, first +
   ///   views_of_a_kind) that do not overlap have no view in common.
-  ReferenceViews(const Medium& medium, const MultipleScattering& finest, std::size_t views_of_a_kind,
-              std::size_t first);
+  ReferenceViews(const Medium& medium, const MultipleScattering& finest,
+                 std::size_t views_of_a_kind, std::size_t first);
 
   [[nodiscard]] const std::vector<ReferenceView>& views() const { return views_; }
   [[nodiscard]] ViewErrors ErrorsOf(const TableLookup& tables, ViewKind kind) const;

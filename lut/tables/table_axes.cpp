@@ -5,8 +5,8 @@
 
 #include <string>
 
-#include "atmosphere/ray/single_scattering.h"
 #include "atmosphere/base/error.h"
+#include "atmosphere/ray/single_scattering.h"
 
 namespace alpenglow::lut {
 

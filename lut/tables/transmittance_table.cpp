@@ -7,9 +7,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "atmosphere/base/error.h"
 #include "atmosphere/math/constants.h"
 #include "atmosphere/ray/ray.h"
-#include "atmosphere/base/error.h"
 #include "lut/tables/table_axes.h"
 
 namespace alpenglow::lut {

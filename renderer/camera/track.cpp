@@ -8,8 +8,8 @@
 #include <glm/vec3.hpp>
 #include <optional>
 
-#include "atmosphere/math/constants.h"
 #include "atmosphere/base/error.h"
+#include "atmosphere/math/constants.h"
 #include "renderer/camera/camera_path.h"
 
 namespace alpenglow::renderer {

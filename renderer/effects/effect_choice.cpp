@@ -8,9 +8,9 @@
 #include <numbers>
 #include <numeric>
 
+#include "atmosphere/base/error.h"
 #include "atmosphere/math/constants.h"
 #include "atmosphere/math/numerics.h"
-#include "atmosphere/base/error.h"
 #include "lut/cli/program.h"
 
 namespace alpenglow::renderer {
@@ -193,7 +193,8 @@ class Chooser {
   EffectComparison::Verdict verdict_;
 };
 
-std::vector<RefinementEstimate> Refine(const EffectPreview& preview, const EffectComparison& comparison) {
+std::vector<RefinementEstimate> Refine(const EffectPreview& preview,
+                                       const EffectComparison& comparison) {
   std::vector<RefinementEstimate> estimates;
   for (const Refinement& refinement : preview.refinements) {
     const EffectComparison::Verdict with = comparison.On(refinement.render());
@@ -250,8 +251,8 @@ std::vector<PixelPlace> PilotSpiral(int width, int height, const std::array<doub
   return places;
 }
 
-PreviewGroups PreviewPixels(const CameraRays& camera, int width, int height, const glm::dvec3& to_sun,
-                        const std::vector<glm::dvec3>& lamps) {
+PreviewGroups PreviewPixels(const CameraRays& camera, int width, int height,
+                            const glm::dvec3& to_sun, const std::vector<glm::dvec3>& lamps) {
   constexpr double kAroundSun_rad = 3.0 * kRadiansPerDegree;
   constexpr int kPixelsAroundSun = 48, kPixelsOfLamp = 3;
   constexpr std::size_t kMostLamps = 64;
@@ -280,7 +281,8 @@ EffectSet EffectChoice::LeftOut() const {
   return left_out;
 }
 
-EffectChoice ChooseEffects(const EffectPreview& preview, EffectSet wanted, const EffectBudget& budget) {
+EffectChoice ChooseEffects(const EffectPreview& preview, EffectSet wanted,
+                           const EffectBudget& budget) {
   const Stopwatch watch;
   const EffectComparison comparison(preview, wanted, budget.explain ? 3 : 1);
   EffectChoice choice;

@@ -91,8 +91,8 @@ using PreviewGroups = std::vector<std::vector<PixelPlace>>;
 /// Returns the groups of a picture: the grid, the surroundings of the sun, and the lamps.
 /// @param lamps  unit directions from the eye.
 [[nodiscard]] PreviewGroups PreviewPixels(const CameraRays& camera, int width, int height,
-                                      const glm::dvec3& to_sun,
-                                      const std::vector<glm::dvec3>& lamps);
+                                          const glm::dvec3& to_sun,
+                                          const std::vector<glm::dvec3>& lamps);
 
 /// CPU time of all threads of the program together since construction; other programs on the
 /// machine do not count.

@@ -5,13 +5,13 @@
 #include <array>
 #include <cmath>
 
+#include "atmosphere/base/error.h"
 #include "atmosphere/math/constants.h"
 #include "atmosphere/math/numerics.h"
 #include "atmosphere/ray/direct_columns.h"
 #include "atmosphere/ray/ray.h"
 #include "atmosphere/ray/ray_map.h"
 #include "atmosphere/ray/shell.h"
-#include "atmosphere/base/error.h"
 
 namespace alpenglow::renderer {
 namespace {
@@ -254,7 +254,8 @@ struct Panel {
 
 }  // namespace
 
-AerialPerspective::AerialPerspective(const SingleScattering<float>& air, const MultipleScattering& multiple_scattering)
+AerialPerspective::AerialPerspective(const SingleScattering<float>& air,
+                                     const MultipleScattering& multiple_scattering)
     : air_(air), multiple_scattering_(multiple_scattering), segments_(air) {
   const Medium& medium = air.medium();
   for (std::size_t band = 0; band < medium.wavelengths_nm.size(); ++band) {
@@ -366,9 +367,10 @@ AirAlongRay AerialPerspective::Sum(const SampledLight& light, const ViewRay& ray
   const auto& [samples, once] = light;
   const double nu_seen = nodes.nu_seen.value_or(ray.nu);
   const auto direct = air_.Inscatter(once, nu_seen);
-  const auto multiple_scattering = nodes.higher_orders
-                           ? multiple_scattering_.InscatterAlong(samples, ray.nu, nu_seen, SegmentEnd::kOpaque)
-                           : Bands<float>(air_.bands());
+  const auto multiple_scattering =
+      nodes.higher_orders
+          ? multiple_scattering_.InscatterAlong(samples, ray.nu, nu_seen, SegmentEnd::kOpaque)
+          : Bands<float>(air_.bands());
   AirAlongRay air{Bands<float>(air_.bands()), Bands<float>(air_.bands())};
   const std::size_t last = samples.count - 1;
   for (std::size_t band = 0; band < air_.bands(); ++band) {

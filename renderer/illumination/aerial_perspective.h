@@ -167,7 +167,8 @@ struct AirAlongRay {
 /// mean square; 5e-4 in clear air) and 5e-3 (at worst) of single scattering, 3e-7 of transmittance.
 class AerialPerspective {
  public:
-  AerialPerspective(const SingleScattering<float>& air, const MultipleScattering& multiple_scattering);
+  AerialPerspective(const SingleScattering<float>& air,
+                    const MultipleScattering& multiple_scattering);
 
   /// Nodes per panel. Rays that end in the air (ViewRay::length_m) choose their number by their
   /// length and the haze.

@@ -11,22 +11,22 @@
 #include <optional>
 #include <vector>
 
-#include "atmosphere/medium/medium.h"
-#include "atmosphere/refraction/refracted_view.h"
-#include "atmosphere/ray/single_scattering.h"
 #include "atmosphere/astronomy/eclipse.h"
-#include "atmosphere/time_place/geodesy.h"
 #include "atmosphere/astronomy/moon.h"
 #include "atmosphere/astronomy/sun.h"
+#include "atmosphere/medium/medium.h"
+#include "atmosphere/ray/single_scattering.h"
+#include "atmosphere/refraction/refracted_view.h"
+#include "atmosphere/time_place/geodesy.h"
 #include "atmosphere/time_place/time.h"
 #include "lut/multiple_scattering/multiple_scattering.h"
 #include "renderer/effects/effects.h"
+#include "renderer/illumination/night_light.h"
+#include "renderer/illumination/terrain_irradiance.h"
+#include "renderer/layer.h"
 #include "renderer/material/band_light.h"
 #include "renderer/surface/scene_geometry.h"
 #include "renderer/surface/surface.h"
-#include "renderer/layer.h"
-#include "renderer/illumination/night_light.h"
-#include "renderer/illumination/terrain_irradiance.h"
 
 namespace alpenglow::renderer {
 
@@ -34,7 +34,7 @@ namespace alpenglow::renderer {
 /// members.
 struct SunlitAir {
   const SingleScattering<float>& air;
-  const RefractedBeam& beam;         // direct light of sun and moon
+  const RefractedBeam& beam;                      // direct light of sun and moon
   const MultipleScattering& multiple_scattering;  // light of the sky
 
   /// Returns the irradiance perpendicular to the beams of a disk whose irradiance above the air is

@@ -7,11 +7,11 @@
 #include <glm/geometric.hpp>
 #include <vector>
 
-#include "atmosphere/colour/spectrum.h"
-#include "atmosphere/math/constants.h"
 #include "atmosphere/astronomy/ephemeris.h"
 #include "atmosphere/astronomy/night_sky.h"
 #include "atmosphere/astronomy/sun.h"
+#include "atmosphere/colour/spectrum.h"
+#include "atmosphere/math/constants.h"
 
 namespace alpenglow::renderer {
 namespace {
@@ -34,7 +34,7 @@ BandLight LampsOfUnitLuminance(const BandColour& colour) {
 }  // namespace
 
 BandLight Skyglow(double zenith, double ground_m, const SingleScattering<float>& air,
-                    const BandColour& colour) {
+                  const BandColour& colour) {
   const double wanted = std::max(
       LuminanceOfSurfaceBrightness(zenith) - LuminanceOfSurfaceBrightness(kNaturalZenith), 0.0);
   const BandLight lamps = LampsOfUnitLuminance(colour);

@@ -34,11 +34,11 @@
 #include <optional>
 #include <vector>
 
-#include "atmosphere/colour/spectrum.h"
-#include "atmosphere/refraction/refracted_view.h"
-#include "atmosphere/ray/single_scattering.h"
-#include "atmosphere/time_place/geodesy.h"
 #include "atmosphere/astronomy/night_sky.h"
+#include "atmosphere/colour/spectrum.h"
+#include "atmosphere/ray/single_scattering.h"
+#include "atmosphere/refraction/refracted_view.h"
+#include "atmosphere/time_place/geodesy.h"
 #include "atmosphere/time_place/time.h"
 #include "renderer/material/band_light.h"
 
@@ -48,7 +48,7 @@ namespace alpenglow::renderer {
 /// @param zenith  [V magnitudes per square arcsecond]; J is 0 if it is darker than kNaturalZenith.
 /// @param ground_m  altitude of the place with this zenith, >= 0.
 [[nodiscard]] BandLight Skyglow(double zenith, double ground_m, const SingleScattering<float>& air,
-                                  const BandColour& colour);
+                                const BandColour& colour);
 
 /// A star or planet at the top of the air.
 struct StarLight {
@@ -86,7 +86,8 @@ inline constexpr double kDaylight_lux = 5000.0;
 /// east, north, up at the eye, refracted (without dispersion). While the shutter is open, planets
 /// move with the stars (they are off by 0.2 arcseconds a minute).
 [[nodiscard]] std::vector<StarLight> StarLightsOver(const GeodeticPosition& eye,
-                                                    const UtcInstant& instant, const RefractedView& view,
+                                                    const UtcInstant& instant,
+                                                    const RefractedView& view,
                                                     const BandColour& colour, double faintest,
                                                     const OpenShutter& shutter = {});
 

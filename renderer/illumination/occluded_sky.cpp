@@ -29,8 +29,8 @@ Moments OverLowerHalf(int degree) {
 
 }  // namespace
 
-SkyMoments::SkyMoments(const MultipleScattering& multiple_scattering, const glm::dvec3& up, const glm::dvec3& to_sun,
-                       std::vector<double> altitudes_m)
+SkyMoments::SkyMoments(const MultipleScattering& multiple_scattering, const glm::dvec3& up,
+                       const glm::dvec3& to_sun, std::vector<double> altitudes_m)
     : up_(up),
       to_sun_(to_sun),
       mu_s_(std::clamp(glm::dot(up, to_sun), -1.0, 1.0)),
@@ -40,7 +40,7 @@ SkyMoments::SkyMoments(const MultipleScattering& multiple_scattering, const glm:
   const double top = multiple_scattering.medium().atmosphere_height_m;
   for (const double altitude : altitudes_m_) {
     values_.push_back(multiple_scattering.ValuesAt(std::sqrt(std::clamp(altitude / top, 0.0, 1.0)),
-                                       MultipleScattering::SunCoordinate(mu_s_)));
+                                                   MultipleScattering::SunCoordinate(mu_s_)));
   }
 }
 
@@ -184,8 +184,9 @@ Horizons GroundShares(const SurfaceSectors& surface, const Horizons& horizons) {
   return shares;
 }
 
-OccludedSkyIrradiance::OccludedSkyIrradiance(const SingleScattering<float>& air, const MultipleScattering& multiple_scattering,
-                 const glm::dvec3& to_sun, const Extent& extent)
+OccludedSkyIrradiance::OccludedSkyIrradiance(const SingleScattering<float>& air,
+                                             const MultipleScattering& multiple_scattering,
+                                             const glm::dvec3& to_sun, const Extent& extent)
     : bands_(air.bands()),
       stride_((air.bands() + 3) / 4 * 4),
       lowest_m_(std::max(extent.lowest_m, 0.0)),
@@ -204,9 +205,10 @@ OccludedSkyIrradiance::OccludedSkyIrradiance(const SingleScattering<float>& air,
   }
   // Compute three skies; the levels between them are interpolated linearly.
   const double middle_m = 0.5 * (lowest_m_ + highest_m_);
-  const std::array<std::vector<float>, 3> table{TableAt(air, multiple_scattering, lowest_m_, to_sun),
-                                                TableAt(air, multiple_scattering, middle_m, to_sun),
-                                                TableAt(air, multiple_scattering, highest_m_, to_sun)};
+  const std::array<std::vector<float>, 3> table{
+      TableAt(air, multiple_scattering, lowest_m_, to_sun),
+      TableAt(air, multiple_scattering, middle_m, to_sun),
+      TableAt(air, multiple_scattering, highest_m_, to_sun)};
   for (std::size_t level = 0; level < kLevels; ++level) {
     const float at = 2.0F * static_cast<float>(level) / static_cast<float>(kLevels - 1);
     const std::size_t first = at < 1.0F ? 0 : 1;
@@ -218,8 +220,10 @@ OccludedSkyIrradiance::OccludedSkyIrradiance(const SingleScattering<float>& air,
   KeepRadiances();
 }
 
-std::vector<float> OccludedSkyIrradiance::TableAt(const SingleScattering<float>& air, const MultipleScattering& multiple_scattering,
-                                    double altitude_m, const glm::dvec3& to_sun) const {
+std::vector<float> OccludedSkyIrradiance::TableAt(const SingleScattering<float>& air,
+                                                  const MultipleScattering& multiple_scattering,
+                                                  double altitude_m,
+                                                  const glm::dvec3& to_sun) const {
   constexpr std::size_t kParts = 6;  // per sector
   constexpr std::array<double, 2> kGauss{0.2113248654051871, 0.7886751345948129};
   const double mu_s = std::clamp(to_sun.z, -1.0, 1.0);
@@ -296,8 +300,9 @@ Bands<float> OccludedSkyIrradiance::LevelIrradiance(double altitude_m, double mu
 
 // The integral between two sines is the difference of the integrals above them. The weights of all
 // sectors are computed first, then four bands at a time, so that both loops vectorise.
-Bands<float> OccludedSkyIrradiance::Irradiance(double altitude_m, double mu_s, const SurfaceSectors& surface,
-                                 const Horizons& horizons) const {
+Bands<float> OccludedSkyIrradiance::Irradiance(double altitude_m, double mu_s,
+                                               const SurfaceSectors& surface,
+                                               const Horizons& horizons) const {
   constexpr float kScale = static_cast<float>(kNodes - 1) / (1.0F - HorizonMap::kLowest);
   constexpr float kLast = static_cast<float>(kNodes - 1);
   std::array<float, kHorizonAzimuths> at, open;
@@ -362,7 +367,8 @@ void OccludedSkyIrradiance::KeepRadiances() {
   }
 }
 
-Bands<float> OccludedSkyIrradiance::Radiance(double altitude_m, double mu_s, const glm::dvec3& direction) const {
+Bands<float> OccludedSkyIrradiance::Radiance(double altitude_m, double mu_s,
+                                             const glm::dvec3& direction) const {
   constexpr float kScale = static_cast<float>(kNodes - 1) / (1.0F - HorizonMap::kLowest);
   const float cell =
       std::clamp((static_cast<float>(direction.z) - HorizonMap::kLowest) * kScale - 0.5F, 0.0F,

@@ -27,8 +27,8 @@
 
 #include "atmosphere/ray/single_scattering.h"
 #include "lut/multiple_scattering/multiple_scattering.h"
-#include "renderer/material/band_light.h"
 #include "renderer/layer.h"
+#include "renderer/material/band_light.h"
 #include "renderer/visibility/horizon_map.h"
 
 namespace alpenglow::renderer {
@@ -38,8 +38,8 @@ namespace alpenglow::renderer {
 class SkyMoments {
  public:
   /// @param up, to_sun  unit vectors. @param altitudes_m  ascending.
-  SkyMoments(const MultipleScattering& multiple_scattering, const glm::dvec3& up, const glm::dvec3& to_sun,
-             std::vector<double> altitudes_m);
+  SkyMoments(const MultipleScattering& multiple_scattering, const glm::dvec3& up,
+             const glm::dvec3& to_sun, std::vector<double> altitudes_m);
 
   [[nodiscard]] double mu_s() const { return mu_s_; }
 
@@ -93,8 +93,9 @@ class OccludedSkyIrradiance {
     double radius_m;             // greatest distance from the frame's origin
   };
   /// @param to_sun  unit, in the frame of the horizons.
-  OccludedSkyIrradiance(const SingleScattering<float>& air, const MultipleScattering& multiple_scattering, const glm::dvec3& to_sun,
-          const Extent& extent);
+  OccludedSkyIrradiance(const SingleScattering<float>& air,
+                        const MultipleScattering& multiple_scattering, const glm::dvec3& to_sun,
+                        const Extent& extent);
 
   /// Returns the irradiance per unit solar irradiance [1] from directions above the horizon, which
   /// is taken to be at least HorizonMap::kLowest.
@@ -129,8 +130,8 @@ class OccludedSkyIrradiance {
 
  private:
   [[nodiscard]] std::vector<float> TableAt(const SingleScattering<float>& air,
-                                           const MultipleScattering& multiple_scattering, double altitude_m,
-                                           const glm::dvec3& to_sun) const;
+                                           const MultipleScattering& multiple_scattering,
+                                           double altitude_m, const glm::dvec3& to_sun) const;
   /// Returns the irradiance of a level plane.
   [[nodiscard]] Bands<float> LevelIrradiance(double altitude_m, double mu_s) const;
   void KeepRadiances();

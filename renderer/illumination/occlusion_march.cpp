@@ -6,9 +6,9 @@
 #include <glm/geometric.hpp>
 #include <limits>
 
+#include "atmosphere/astronomy/sun.h"
 #include "atmosphere/math/constants.h"
 #include "atmosphere/time_place/geodesy.h"
-#include "atmosphere/astronomy/sun.h"
 #include "renderer/camera/camera_rays.h"
 
 namespace alpenglow::renderer {

@@ -9,8 +9,8 @@
 #include <limits>
 #include <utility>
 
-#include "atmosphere/math/constants.h"
 #include "atmosphere/base/error.h"
+#include "atmosphere/math/constants.h"
 
 namespace alpenglow::renderer {
 namespace {
@@ -158,8 +158,9 @@ struct TerrainInterreflection::Neighbours {
   }
 };
 
-TerrainInterreflection::TerrainInterreflection(const SlopeViews& views, const Medium& medium, const Outgoing& outgoing,
-                       const OccludedSkyIrradiance& sky, double mu_s)
+TerrainInterreflection::TerrainInterreflection(const SlopeViews& views, const Medium& medium,
+                                               const Outgoing& outgoing,
+                                               const OccludedSkyIrradiance& sky, double mu_s)
     : views_(views),
       bands_(medium.wavelengths_nm.size()),
       stride_((bands_ + 3) / 4 * 4),
@@ -195,8 +196,9 @@ TerrainInterreflection::TerrainInterreflection(const SlopeViews& views, const Me
   Gather(sent, through, air);
 }
 
-void TerrainInterreflection::Gather(const std::vector<float>& sent, const std::vector<float>& through,
-                        const std::vector<float>& air) {
+void TerrainInterreflection::Gather(const std::vector<float>& sent,
+                                    const std::vector<float>& through,
+                                    const std::vector<float>& air) {
   tbb::parallel_for(0, views_.heights().rows, [&](int row) {
     for (int column = 0; column < views_.heights().columns; ++column) {
       const std::size_t node = views_.heights().index(column, row);
@@ -221,7 +223,7 @@ void TerrainInterreflection::Gather(const std::vector<float>& sent, const std::v
 }
 
 BandLight TerrainInterreflection::Irradiance(const glm::dvec3& point, const SurfaceSectors& surface,
-                                 const Horizons& horizons) const {
+                                             const Horizons& horizons) const {
   const Neighbours around(*this, point);
   Horizons scale = GroundShares(surface, horizons);
   Horizons weight{};
@@ -250,7 +252,7 @@ BandLight TerrainInterreflection::Irradiance(const glm::dvec3& point, const Surf
 }
 
 BandLight TerrainInterreflection::Radiance(const glm::dvec3& point, const BetweenAzimuths& azimuth,
-                               double horizon, const BandLight& beyond) const {
+                                           double horizon, const BandLight& beyond) const {
   const Neighbours around(*this, point);
   BandLight radiance(bands_);
   float weight = 0.0F;
@@ -318,14 +320,15 @@ TerrainHorizons::TerrainHorizons(const HeightRaster& heights, const TriangleMesh
 }
 
 TerrainIrradiance::TerrainIrradiance(std::shared_ptr<const TerrainHorizons> horizons,
-                           const SingleScattering<float>& air, const MultipleScattering& multiple_scattering,
-                           const glm::dvec3& to_sun)
+                                     const SingleScattering<float>& air,
+                                     const MultipleScattering& multiple_scattering,
+                                     const glm::dvec3& to_sun)
     : horizons_(std::move(horizons)),
-      sky_(air, multiple_scattering, to_sun, horizons_ ? horizons_->extent() : OccludedSkyIrradiance::Extent{0.0, 1.0, 5e5}) {
-}
+      sky_(air, multiple_scattering, to_sun,
+           horizons_ ? horizons_->extent() : OccludedSkyIrradiance::Extent{0.0, 1.0, 5e5}) {}
 
-void TerrainIrradiance::AddSlopes(const Medium& medium, const TerrainInterreflection::Outgoing& outgoing,
-                             double mu_s) {
+void TerrainIrradiance::AddSlopes(const Medium& medium,
+                                  const TerrainInterreflection::Outgoing& outgoing, double mu_s) {
   slopes_.emplace(horizons_->views(), medium, outgoing, sky_, mu_s);
 }
 
@@ -344,7 +347,8 @@ namespace {
 
 // Returns the fraction of a direction's spread that lies below a horizon.
 double GroundShare(double sine, const Spread& spread, double horizon) {
-  constexpr double kSharpest = 0.011;  // a step of OccludedSkyIrradiance; neither sky nor horizons are finer
+  constexpr double kSharpest =
+      0.011;  // a step of OccludedSkyIrradiance; neither sky nor horizons are finer
   const double range = std::max(spread.below + spread.above, kSharpest);
   const double lowest = sine + 0.5 * (spread.above - spread.below - range);
   const double within = std::clamp((horizon - lowest) / range, 0.0, 1.0);
@@ -355,7 +359,7 @@ double GroundShare(double sine, const Spread& spread, double horizon) {
 }  // namespace
 
 BandLight TerrainIrradiance::Radiance(const SlopePoint& at, const glm::dvec3& direction,
-                                 const Spread& spread) const {
+                                      const Spread& spread) const {
   const glm::dvec3 here = AtPlace(direction, at.up);
   const BandLight sky = sky_.Radiance(at.altitude_m, at.mu_s, here);
   if (!slopes_) return sky;

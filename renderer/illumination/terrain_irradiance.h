@@ -24,12 +24,12 @@
 #include <span>
 #include <vector>
 
+#include "renderer/illumination/occluded_sky.h"
 #include "renderer/material/band_light.h"
 #include "renderer/material/reflectance.h"
 #include "renderer/surface/scene_ground.h"
-#include "renderer/illumination/occluded_sky.h"
-#include "renderer/visibility/horizon_map.h"
 #include "renderer/terrain/mesh.h"
+#include "renderer/visibility/horizon_map.h"
 
 namespace alpenglow::renderer {
 
@@ -88,7 +88,7 @@ class TerrainInterreflection {
   /// The result does not depend on the number of threads.
   /// @param mu_s  zenith cosine of the sun at the frame's origin.
   TerrainInterreflection(const SlopeViews& views, const Medium& medium, const Outgoing& outgoing,
-             const OccludedSkyIrradiance& sky, double mu_s);
+                         const OccludedSkyIrradiance& sky, double mu_s);
 
   /// Returns the irradiance [1] from other ground, below the horizons.
   [[nodiscard]] BandLight Irradiance(const glm::dvec3& point, const SurfaceSectors& surface,
@@ -168,16 +168,20 @@ class TerrainIrradiance {
  public:
   /// Creates the light of the sky alone.
   /// @param horizons  null: a plain.
-  TerrainIrradiance(std::shared_ptr<const TerrainHorizons> horizons, const SingleScattering<float>& air,
-               const MultipleScattering& multiple_scattering, const glm::dvec3& to_sun);
+  TerrainIrradiance(std::shared_ptr<const TerrainHorizons> horizons,
+                    const SingleScattering<float>& air,
+                    const MultipleScattering& multiple_scattering, const glm::dvec3& to_sun);
 
   [[nodiscard]] const OccludedSkyIrradiance& sky() const { return sky_; }
   [[nodiscard]] const TerrainHorizons* horizons() const { return horizons_.get(); }
   /// Null before AddSlopes.
-  [[nodiscard]] const TerrainInterreflection* slopes() const { return slopes_ ? &*slopes_ : nullptr; }
+  [[nodiscard]] const TerrainInterreflection* slopes() const {
+    return slopes_ ? &*slopes_ : nullptr;
+  }
 
   /// Adds the light between slopes. Needs horizons.
-  void AddSlopes(const Medium& medium, const TerrainInterreflection::Outgoing& outgoing, double mu_s);
+  void AddSlopes(const Medium& medium, const TerrainInterreflection::Outgoing& outgoing,
+                 double mu_s);
 
   /// Irradiance per unit solar irradiance [1].
   struct OnSlope {

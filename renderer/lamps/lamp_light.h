@@ -26,9 +26,9 @@
 #include "atmosphere/lamp/lamp.h"
 #include "atmosphere/ray/single_scattering.h"
 #include "renderer/camera/camera_rays.h"
-#include "renderer/surface/scene_ground.h"
 #include "renderer/layer.h"
 #include "renderer/scene/scene.h"
+#include "renderer/surface/scene_ground.h"
 
 namespace alpenglow::renderer {
 

@@ -5,9 +5,9 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 
-#include "atmosphere/reference/airlight_reference.h"
 #include "atmosphere/math/constants.h"
 #include "atmosphere/math/numerics.h"
+#include "atmosphere/reference/airlight_reference.h"
 
 namespace alpenglow::renderer {
 namespace {
@@ -124,7 +124,8 @@ LampTestCase LampTestCaseNumber(int i, const LampTestKind& kind) {
   if (kind.through) work.lamp.radius_m = 0.1;
   work.air.altitude_at_origin_m = -std::min({0.0, length * forward.z, work.lamp.position_m.z});
   if (kind.beam) MakeBeam(i, work.lamp);
-  const reference::LampLight reference = reference::AirlightAlong(work.air, work.lamp, work.segment);
+  const reference::LampLight reference =
+      reference::AirlightAlong(work.air, work.lamp, work.segment);
   work.truth = reference.radiance[0];
   work.converged = reference.converged;
   return work;

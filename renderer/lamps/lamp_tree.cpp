@@ -11,9 +11,9 @@
 #include <glm/matrix.hpp>
 #include <limits>
 
+#include "atmosphere/base/error.h"
 #include "atmosphere/math/constants.h"
 #include "atmosphere/math/numerics.h"
-#include "atmosphere/base/error.h"
 #include "renderer/material/band_light.h"
 
 namespace alpenglow::renderer {
@@ -96,19 +96,21 @@ Moments HarmonicsOf(const glm::dvec3& normal, const glm::dvec3& towards, const g
   const double lengths = glm::length(lift) * glm::length(aside);
   const double azimuth =
       lengths > 1e-9 ? std::clamp(glm::dot(lift, aside) / lengths, -1.0, 1.0) : 1.0;
-  return SphericalHarmonics(LampAirlightIrradiance::kDegree, static_cast<float>(mu), static_cast<float>(azimuth));
+  return SphericalHarmonics(LampAirlightIrradiance::kDegree, static_cast<float>(mu),
+                            static_cast<float>(azimuth));
 }
 
 double Facing(const Moments& lobe, const Moments& harmonics) {
   float sum = 0.0F;
-  for (std::size_t k = 0; k < MomentCount(LampAirlightIrradiance::kDegree); ++k) sum += lobe[k] * harmonics[k];
+  for (std::size_t k = 0; k < MomentCount(LampAirlightIrradiance::kDegree); ++k)
+    sum += lobe[k] * harmonics[k];
   return static_cast<double>(sum);
 }
 
 }  // namespace
 
-LampAirlightIrradiance::LampAirlightIrradiance(const std::vector<LampLayer>& layers, double lamp_altitude_m,
-                   double ground_altitude_m)
+LampAirlightIrradiance::LampAirlightIrradiance(const std::vector<LampLayer>& layers,
+                                               double lamp_altitude_m, double ground_altitude_m)
     : lamp_altitude_m_(lamp_altitude_m),
       ground_altitude_m_(ground_altitude_m),
       lights_(static_cast<std::size_t>(kDistances * kElevations) *
@@ -123,7 +125,8 @@ LampAirlightIrradiance::LampAirlightIrradiance(const std::vector<LampLayer>& lay
   });
 }
 
-std::vector<LampAirlightIrradiance::Light> LampAirlightIrradiance::LightAt(double distance_m, double sine) const {
+std::vector<LampAirlightIrradiance::Light> LampAirlightIrradiance::LightAt(double distance_m,
+                                                                           double sine) const {
   constexpr int kNodes = 8;
   constexpr double kFar_m = 20e3;
   const double cosine = std::sqrt(std::max(1.0 - sine * sine, 0.0));
@@ -172,7 +175,7 @@ std::vector<LampAirlightIrradiance::Light> LampAirlightIrradiance::LightAt(doubl
 }
 
 Bands<double> LampAirlightIrradiance::On(const glm::dvec3& to_lamp, const glm::dvec3& normal,
-                           const glm::dvec3& up) const {
+                                         const glm::dvec3& up) const {
   const double length = std::max(glm::length(to_lamp), 1e-6);
   const double distance = std::clamp(length, kNearest_m, kFarthestGlow_m);
   const glm::dvec3 towards = to_lamp / length;
@@ -308,8 +311,8 @@ void LampTree::MakeGlows(const LampStage& stage) {
     glow_of_node_.push_back(static_cast<std::size_t>(same - stands.begin()));
     if (same != stands.end()) continue;
     stands.push_back(here);
-    glows_.push_back(std::make_shared<const LampAirlightIrradiance>(stage.layers(), here.altitude_m,
-                                                      here.altitude_m - here.above_m));
+    glows_.push_back(std::make_shared<const LampAirlightIrradiance>(
+        stage.layers(), here.altitude_m, here.altitude_m - here.above_m));
   }
 }
 

@@ -43,7 +43,8 @@ class LampAirlightIrradiance {
   static constexpr int kDegree = 6;
 
   /// @param ground_altitude_m  at the lamp's foot, not above it.
-  LampAirlightIrradiance(const std::vector<LampLayer>& layers, double lamp_altitude_m, double ground_altitude_m);
+  LampAirlightIrradiance(const std::vector<LampLayer>& layers, double lamp_altitude_m,
+                         double ground_altitude_m);
 
   /// Returns the irradiance of a surface [m^-2], in every band. Its error against quadrature over
   /// the hemisphere, in fog of scale heights of 25 to 100 m up to 4 optical depths from the lamp,

@@ -7,11 +7,11 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 
+#include "atmosphere/base/error.h"
 #include "atmosphere/colour/spectrum.h"
 #include "atmosphere/lamp/lamp.h"
 #include "atmosphere/math/constants.h"
 #include "atmosphere/math/numerics.h"
-#include "atmosphere/base/error.h"
 #include "renderer/surface/scene_geometry.h"
 
 namespace alpenglow::renderer {

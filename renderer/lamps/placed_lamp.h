@@ -11,13 +11,13 @@
 #include <string>
 #include <vector>
 
-#include "atmosphere/medium/medium.h"
 #include "atmosphere/colour/spectrum.h"
 #include "atmosphere/lamp/lamp.h"
+#include "atmosphere/medium/medium.h"
 #include "renderer/camera/camera_rays.h"
-#include "renderer/surface/scene_ground.h"
 #include "renderer/lamps/ies_file.h"
 #include "renderer/scene/scene.h"
+#include "renderer/surface/scene_ground.h"
 
 namespace alpenglow::renderer {
 

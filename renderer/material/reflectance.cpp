@@ -5,10 +5,10 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 
+#include "atmosphere/base/error.h"
 #include "atmosphere/colour/spectrum.h"
 #include "atmosphere/math/constants.h"
 #include "atmosphere/math/numerics.h"
-#include "atmosphere/base/error.h"
 
 namespace alpenglow::renderer {
 namespace {

@@ -14,8 +14,8 @@
 #include <glm/vec3.hpp>
 #include <span>
 
-#include "atmosphere/shared_glsl/shared_math.h"
 #include "atmosphere/ray/single_scattering.h"
+#include "atmosphere/shared_glsl/shared_math.h"
 #include "renderer/layer.h"
 
 namespace alpenglow::shared {

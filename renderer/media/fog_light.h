@@ -97,7 +97,8 @@ class FogLight {
  public:
   /// @param fog  a LocalMedium that is fog.
   /// @param bottom_m  altitude of the ground below it.
-  FogLight(const LocalMedium& fog, const MultipleScattering& diffuse, const FogSun& sun, double bottom_m);
+  FogLight(const LocalMedium& fog, const MultipleScattering& diffuse, const FogSun& sun,
+           double bottom_m);
 
   /// Precomputed values of a ray through the fog.
   struct Look {

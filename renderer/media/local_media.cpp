@@ -9,8 +9,8 @@
 #include <limits>
 #include <string>
 
-#include "atmosphere/colour/spectrum.h"
 #include "atmosphere/base/error.h"
+#include "atmosphere/colour/spectrum.h"
 #include "renderer/surface/scene_geometry.h"
 
 namespace alpenglow::renderer {

@@ -20,9 +20,9 @@
 #include "atmosphere/lamp/lamp.h"
 #include "atmosphere/ray/ray.h"
 #include "atmosphere/ray/shell.h"
-#include "renderer/surface/scene_ground.h"
 #include "renderer/scene/local_volume.h"
 #include "renderer/scene/scene.h"
+#include "renderer/surface/scene_ground.h"
 
 namespace alpenglow::shared {
 // clang-format off

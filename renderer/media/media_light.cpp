@@ -129,8 +129,8 @@ MediaLight::State::State(LocalMedia of, const SceneGeometry& over, const SunlitA
   const double scale = fog_layer().scale_height_m();
   const double bottom = media.fog_bottom_m();
   const glm::dvec3 head(0.0, 0.0, bottom + (std::isinf(scale) ? 0.0 : scale));
-  fog.emplace(*media.fog(), multiple_scattering, FogSun{sun.to_light, sun.to_light_for_air, SunInAir(head)},
-              bottom);
+  fog.emplace(*media.fog(), multiple_scattering,
+              FogSun{sun.to_light, sun.to_light_for_air, SunInAir(head)}, bottom);
 }
 
 BandLight MediaLight::State::SunInAir(const glm::dvec3& point) const {
@@ -146,8 +146,8 @@ LitVolume MediaLight::State::Light(const LocalMedium& medium) const {
   const double high = geometry.AltitudeOf(volume.FrameFromUnit({0.5, 0.5, 1.0}));
   const SkyMoments sky(multiple_scattering, geometry.UpAt(volume.Middle()), sun.to_light_for_air,
                        {low, 0.5 * (low + high), high});
-  LitVolume lit{LegendreCoefficients(medium.optics.phase, multiple_scattering.options().degree), sky,
-                std::nullopt, SkyLeft(volume, sky), LampsOf(volume)};
+  LitVolume lit{LegendreCoefficients(medium.optics.phase, multiple_scattering.options().degree),
+                sky, std::nullopt, SkyLeft(volume, sky), LampsOf(volume)};
   if (volume.grid() != nullptr) lit.sun_column.emplace(SunColumns(volume));
   return lit;
 }
@@ -212,7 +212,8 @@ std::vector<VolumeGrid> MediaLight::State::SkyLeft(const LocalVolume& volume,
                                                    const SkyMoments& sky) const {
   constexpr std::array<int, 3> kSize{8, 8, 8};
   const LebedevRule& rule = Lebedev();
-  const std::vector<double> all(static_cast<std::size_t>(multiple_scattering.options().degree) + 1, 1.0);
+  const std::vector<double> all(static_cast<std::size_t>(multiple_scattering.options().degree) + 1,
+                                1.0);
   std::array<BandLight, 26> weight;
   BandLight sum(bands());
   for (std::size_t i = 0; i < weight.size(); ++i) {

@@ -21,8 +21,8 @@
 #include <glm/vec3.hpp>
 #include <memory>
 
-#include "renderer/lamps/lamp_light.h"
 #include "renderer/illumination/lighting.h"
+#include "renderer/lamps/lamp_light.h"
 #include "renderer/media/local_media.h"
 #include "renderer/media/media_march.h"
 #include "renderer/visibility/sunlit_path.h"

@@ -6,8 +6,8 @@
 #include <glm/geometric.hpp>
 #include <limits>
 
-#include "atmosphere/math/constants.h"
 #include "atmosphere/astronomy/sun.h"
+#include "atmosphere/math/constants.h"
 
 namespace alpenglow::renderer {
 namespace {
@@ -30,7 +30,10 @@ bool SeesTerrain(const Hit& hit, const Lighting& light) {
 }  // namespace
 
 GroundLight::GroundLight(const GroundParts& parts, const SunlitAir& air)
-    : parts_(parts), air_(air.air), beam_(air.beam), multiple_scattering_(air.multiple_scattering) {}
+    : parts_(parts),
+      air_(air.air),
+      beam_(air.beam),
+      multiple_scattering_(air.multiple_scattering) {}
 
 std::shared_ptr<const TerrainIrradiance> GroundLight::OnTerrain(const GroundSources& from) const {
   const Lighting& light = from.light;
@@ -38,7 +41,8 @@ std::shared_ptr<const TerrainIrradiance> GroundLight::OnTerrain(const GroundSour
   const std::shared_ptr<const TerrainHorizons> horizons =
       light.effects.Has(Effect::kHorizons) ? parts_.horizons.Get() : nullptr;
   if (!horizons && !parts_.material.HasGloss()) return nullptr;
-  auto on_terrain = std::make_shared<TerrainIrradiance>(horizons, air_, multiple_scattering_, light.to_sun_for_air);
+  auto on_terrain = std::make_shared<TerrainIrradiance>(horizons, air_, multiple_scattering_,
+                                                        light.to_sun_for_air);
   if (horizons && light.effects.Has(Effect::kBounce)) {
     on_terrain->AddSlopes(
         air_.medium(),

@@ -8,14 +8,14 @@
 #include <memory>
 #include <optional>
 
-#include "renderer/material/band_light.h"
-#include "renderer/surface/scene_geometry.h"
-#include "renderer/surface/surface.h"
-#include "renderer/lamps/lamp_light.h"
 #include "renderer/illumination/lighting.h"
 #include "renderer/illumination/picture_stokes.h"
 #include "renderer/illumination/terrain_irradiance.h"
+#include "renderer/lamps/lamp_light.h"
+#include "renderer/material/band_light.h"
 #include "renderer/media/media_light.h"
+#include "renderer/surface/scene_geometry.h"
+#include "renderer/surface/surface.h"
 
 namespace alpenglow::renderer {
 

@@ -5,8 +5,8 @@
 
 #include <algorithm>
 
-#include "atmosphere/colour/spectrum.h"
 #include "atmosphere/base/error.h"
+#include "atmosphere/colour/spectrum.h"
 #include "lut/image/eye.h"
 #include "lut/image/image.h"
 #include "renderer/surface/scene_geometry.h"

@@ -13,9 +13,9 @@
 
 #include "atmosphere/colour/spectrum.h"
 #include "lut/image/image.h"
+#include "renderer/illumination/picture_stokes.h"
 #include "renderer/material/band_light.h"
 #include "renderer/surface/scene_geometry.h"
-#include "renderer/illumination/picture_stokes.h"
 
 namespace alpenglow::renderer {
 

@@ -64,8 +64,8 @@ std::optional<AirAlongRay> Reaching(AirAlongRay air, double ratio) {
 
 }  // namespace
 
-AirInterpolationGrid::AirInterpolationGrid(const PreparedScene& scene, const FrameContext& frame, int x0, int y0, int x1,
-                       int y1)
+AirInterpolationGrid::AirInterpolationGrid(const PreparedScene& scene, const FrameContext& frame,
+                                           int x0, int y0, int x1, int y1)
     : scene_(&scene),
       frame_(&frame),
       x0_(x0),
@@ -90,7 +90,7 @@ const AirInterpolationGrid::Corner& AirInterpolationGrid::At(int column, int row
 }
 
 std::optional<AirAlongRay> AirInterpolationGrid::Between(int column, int row, double x, double y,
-                                               HitKind kind, double distance_m) {
+                                                         HitKind kind, double distance_m) {
   const double u = (x - x0_) / kCell - column, v = (y - y0_) / kCell - row;
   const std::array<double, 4> share{(1.0 - u) * (1.0 - v), u * (1.0 - v), (1.0 - u) * v, u * v};
   const std::size_t bands = scene_->medium.wavelengths_nm.size();

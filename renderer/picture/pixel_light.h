@@ -43,7 +43,8 @@ class AirInterpolationGrid {
   static constexpr int kCell = 4;  // pixels
 
   /// @param x0, y0  first pixel. @param x1, y1  one past the last pixel.
-  AirInterpolationGrid(const PreparedScene& scene, const FrameContext& frame, int x0, int y0, int x1, int y1);
+  AirInterpolationGrid(const PreparedScene& scene, const FrameContext& frame, int x0, int y0,
+                       int x1, int y1);
 
   /// Returns the air in front of rays of a pixel; no value where it cannot be shared.
   [[nodiscard]] std::optional<AirAlongRay> Before(const SharedSegmentAir& rays);

@@ -6,15 +6,15 @@
 #include <glm/geometric.hpp>
 #include <utility>
 
-#include "atmosphere/math/constants.h"
 #include "atmosphere/astronomy/eclipse.h"
 #include "atmosphere/astronomy/ephemeris.h"
 #include "atmosphere/astronomy/sun.h"
+#include "atmosphere/math/constants.h"
 #include "lut/cli/program.h"
 #include "renderer/effects/effect_choice.h"
-#include "renderer/surface/scene_geometry.h"
 #include "renderer/illumination/lighting.h"
 #include "renderer/illumination/night_light.h"
+#include "renderer/surface/scene_geometry.h"
 
 namespace alpenglow::renderer {
 
@@ -51,7 +51,7 @@ glm::dvec3 MoonTurn(double open_s, double latitude_rad, const CameraStand& stand
 }  // namespace
 
 double PreparedScene::IlluminanceBy(const DistantLight& source, const glm::dvec3& eye,
-                                 const Lighting& light) const {
+                                    const Lighting& light) const {
   const LocalSun sun = models.whole().ground_light.LocalSunAt(eye, light.By(source));
   const auto direct = static_cast<float>(sun.visible_fraction * std::max(sun.mu_s_effective, 0.0));
   const BandLight irradiance =
@@ -99,9 +99,11 @@ CameraStand PreparedScene::StandOf(const CameraSample& camera_sample) const {
   return pose ? StandAt(ground, pose->place) : StandOfScene(ground);
 }
 
-Lighting PreparedScene::LightingAt(const CameraSample& camera_sample, const CameraStand& stand) const {
+Lighting PreparedScene::LightingAt(const CameraSample& camera_sample,
+                                   const CameraStand& stand) const {
   const SunPosition sun = ApparentSun(camera_sample);
-  Lighting light = LightingOf(sun, camera_sample.instant, scene.place, medium, scene.ground.wetness);
+  Lighting light =
+      LightingOf(sun, camera_sample.instant, scene.place, medium, scene.ground.wetness);
   light.to_sun = stand.frame_from_enu * light.to_sun;
   light.to_sun_for_air = stand.frame_from_enu * light.to_sun_for_air;
   if (!medium.follows_wgs84) return light;  // other planets have other moons
@@ -126,8 +128,8 @@ std::optional<BandLight> PreparedScene::SkyglowOf() const {
   return Skyglow(*scene.town_zenith, ground_m, models.whole().air, colour);
 }
 
-void PreparedScene::AddNight(const CameraSample& camera_sample, const CameraStand& stand, double earth_sun_au,
-                          Lighting& light) const {
+void PreparedScene::AddNight(const CameraSample& camera_sample, const CameraStand& stand,
+                             double earth_sun_au, Lighting& light) const {
   light.moon_colour = MoonColour(*light.moon, medium.wavelengths_nm);
   const double sun_lux = Illuminance(stand.eye, light);
   if (sun_lux > kDaylight_lux) return;
@@ -145,11 +147,12 @@ void PreparedScene::AddNight(const CameraSample& camera_sample, const CameraStan
   const double towns_lux = towns ? kPi * colour.Xyz(InDouble(*towns))[1] : 0.0;  // upper bound
   if (kNightSky_lux + towns_lux < kUnseenShare * sun_lux) return;
   light.night = std::make_shared<NightLight>(
-      NightSky(eye, camera_sample.instant).InFrame(stand.frame_from_enu), models.whole().air, colour,
-      geometry.UpAt(stand.eye), geometry.AltitudeOf(stand.eye), towns);
+      NightSky(eye, camera_sample.instant).InFrame(stand.frame_from_enu), models.whole().air,
+      colour, geometry.UpAt(stand.eye), geometry.AltitudeOf(stand.eye), towns);
 }
 
-FrameContext PreparedScene::FrameAt(const CameraSample& camera_sample, const RenderSettings& settings) const {
+FrameContext PreparedScene::FrameAt(const CameraSample& camera_sample,
+                                    const RenderSettings& settings) const {
   const MovingCamera camera =
       CameraOn(ground, scene.camera, camera_sample.poses, settings.width, settings.height);
   FrameContext frame{settings,
@@ -199,7 +202,7 @@ void PreparedScene::LightNight(FrameContext& frame) const {
 }
 
 std::optional<BandLight> PreparedScene::LeftOfSpace(const FrameContext& frame, double x,
-                                                 double y) const {
+                                                    double y) const {
   const CameraRay ray = frame.camera().MiddleRay(x, y);
   const Hit hit = Trace(ray, frame);
   if (hit.kind != HitKind::kSky) return std::nullopt;
@@ -212,7 +215,7 @@ std::optional<BandLight> PreparedScene::LeftOfSpace(const FrameContext& frame, d
 }
 
 std::shared_ptr<const StarPixels> PreparedScene::StarsIn(const FrameContext& frame,
-                                                      const CameraSample& camera_sample) const {
+                                                         const CameraSample& camera_sample) const {
   const double lux = Illuminance(frame.camera().eye(), frame.light);
   if (!frame.light.moon || lux > kDaylight_lux) return nullptr;
   const MoonDisk& moon = *frame.light.moon;
@@ -221,8 +224,8 @@ std::shared_ptr<const StarPixels> PreparedScene::StarsIn(const FrameContext& fra
   const double pixel_rad = frame.camera().PixelAngle();
   const RefractedView view(medium, geometry.AltitudeOf(frame.camera().eye()));
   for (StarLight& light :
-       StarLightsOver(EyeOf(camera_sample), camera_sample.instant, view, colour, FaintestStar(lux, pixel_rad),
-                      OpenFor(scene.camera.shutter_s, pixel_rad))) {
+       StarLightsOver(EyeOf(camera_sample), camera_sample.instant, view, colour,
+                      FaintestStar(lux, pixel_rad), OpenFor(scene.camera.shutter_s, pixel_rad))) {
     light.direction = frame_from_enu * light.direction;
     for (glm::dvec3& direction : light.way) direction = frame_from_enu * direction;
     if (glm::length(light.direction - moon.to_moon) >= moon.radius_rad)

@@ -14,15 +14,15 @@
 
 #include "atmosphere/colour/spectrum.h"
 #include "renderer/effects/effect_choice.h"
-#include "renderer/surface/scene_geometry.h"
-#include "renderer/surface/scene_ground.h"
-#include "renderer/lamps/lamp_light.h"
 #include "renderer/illumination/lighting.h"
+#include "renderer/lamps/lamp_light.h"
 #include "renderer/picture/ground_light.h"
 #include "renderer/picture/picture_layers.h"
 #include "renderer/picture/pixel_light.h"
 #include "renderer/picture/render.h"
 #include "renderer/picture/segment_air.h"
+#include "renderer/surface/scene_geometry.h"
+#include "renderer/surface/scene_ground.h"
 
 namespace alpenglow::renderer {
 
@@ -79,7 +79,8 @@ struct PreparedScene {
         models(medium, {ground, geometry, lamps, *horizons, material}),
         towns(SkyglowOf()) {}
 
-  [[nodiscard]] FrameContext FrameAt(const CameraSample& camera_sample, const RenderSettings& settings) const;
+  [[nodiscard]] FrameContext FrameAt(const CameraSample& camera_sample,
+                                     const RenderSettings& settings) const;
   void LightMedia(FrameContext& frame) const;
   void LightTerrain(FrameContext& frame) const;
   /// Adds moonlight and the night sky where they can be visible.
@@ -116,12 +117,12 @@ struct PreparedScene {
   }
   /// Returns the hit of a bent ray. Terrain appears within 0.1' of the solution of the ray equation.
   [[nodiscard]] Hit OnRefractedRay(const CameraRay& ray, const FrameContext& frame,
-                              double expected_m) const;
+                                   double expected_m) const;
   /// Returns the largest lift [rad] of terrain and the horizon.
   [[nodiscard]] double MostLift(const FrameContext& frame, double eye_height_m) const;
   /// Returns the refraction if it moves something in the picture by more than half a pixel; else null.
-  [[nodiscard]] std::shared_ptr<const RefractedViewRays> RefractedViewRaysOf(const FrameContext& frame,
-                                                             const CameraSample& camera_sample) const;
+  [[nodiscard]] std::shared_ptr<const RefractedViewRays> RefractedViewRaysOf(
+      const FrameContext& frame, const CameraSample& camera_sample) const;
   [[nodiscard]] Shaded Shade(const Hit& hit, const SharedSegmentAir& through, const CameraRay& ray,
                              const FrameContext& frame, const LampTile& near,
                              std::array<double, 2> disk_sample) const;
@@ -142,9 +143,11 @@ struct PreparedScene {
                                    const FrameContext& frame) const;
   [[nodiscard]] std::optional<BandLight> SkyglowOf() const;
   [[nodiscard]] GeodeticPosition EyeOf(const CameraSample& camera_sample) const;
-  [[nodiscard]] SunPosition ApparentSun(const CameraSample& camera_sample) const;  // see SceneRenderer
+  [[nodiscard]] SunPosition ApparentSun(
+      const CameraSample& camera_sample) const;  // see SceneRenderer
   [[nodiscard]] CameraStand StandOf(const CameraSample& camera_sample) const;
-  [[nodiscard]] Lighting LightingAt(const CameraSample& camera_sample, const CameraStand& stand) const;
+  [[nodiscard]] Lighting LightingAt(const CameraSample& camera_sample,
+                                    const CameraStand& stand) const;
   /// Adds the night sky and moonlight to `light` if the sun is dim enough.
   void AddNight(const CameraSample& camera_sample, const CameraStand& stand, double earth_sun_au,
                 Lighting& light) const;

@@ -5,8 +5,8 @@
 
 #include <optional>
 
-#include "atmosphere/medium/medium_presets.h"
 #include "atmosphere/base/error.h"
+#include "atmosphere/medium/medium_presets.h"
 #include "renderer/camera/camera_rays.h"
 #include "renderer/picture/prepared_scene.h"
 
@@ -34,14 +34,17 @@ const Medium& SceneRenderer::medium() const { return state_->medium; }
 double SceneRenderer::eye_height_m() const { return state_->ground.eye_height_m; }
 const std::string& SceneRenderer::terrain_message() const { return state_->ground.message; }
 
-SunPosition SceneRenderer::ApparentSun(const CameraSample& camera_sample) const { return state_->ApparentSun(camera_sample); }
+SunPosition SceneRenderer::ApparentSun(const CameraSample& camera_sample) const {
+  return state_->ApparentSun(camera_sample);
+}
 
 double SceneRenderer::Illuminance(const CameraSample& camera_sample) const {
   const CameraStand stand = state_->StandOf(camera_sample);
   return state_->Illuminance(stand.eye, state_->LightingAt(camera_sample, stand));
 }
 
-Image SceneRenderer::Render(const CameraSample& camera_sample, const RenderSettings& settings) const {
+Image SceneRenderer::Render(const CameraSample& camera_sample,
+                            const RenderSettings& settings) const {
   return RenderCounted(camera_sample, settings).image;
 }
 
@@ -92,7 +95,8 @@ EffectSet PreparedScene::Present(const FrameContext& frame) const {
   return without(present, &OnFewBands() != this, {Effect::kFineSpectrum});
 }
 
-ChosenPicture SceneRenderer::RenderWithin(const CameraSample& camera_sample, const RenderSettings& settings,
+ChosenPicture SceneRenderer::RenderWithin(const CameraSample& camera_sample,
+                                          const RenderSettings& settings,
                                           const EffectBudget& budget) const {
   ValidateSettings(settings);
   const PreparedScene& whole = state_->For(settings.effects);
@@ -131,17 +135,19 @@ ChosenPicture SceneRenderer::RenderWithin(const CameraSample& camera_sample, con
   preview.present = whole.Present(frame);
   const auto refine = [&](const char* name, const auto& change) {
     preview.refinements.push_back({name, [&, change] {
-                                   FrameContext finer = frame;
-                                   change(finer.settings);
-                                   return timed(whole, finer);
-                                 }});
+                                     FrameContext finer = frame;
+                                     change(finer.settings);
+                                     return timed(whole, finer);
+                                   }});
   };
   refine("16 air nodes", [](RenderSettings& finer) { finer.air_nodes = 16; });
   refine("air of each ray", [](RenderSettings& finer) { finer.share_air = false; });
-  const std::unique_ptr<PreparedScene> more_bands = budget.explain ? whole.OnOtherBands(16) : nullptr;
+  const std::unique_ptr<PreparedScene> more_bands =
+      budget.explain ? whole.OnOtherBands(16) : nullptr;
   if (more_bands && frame.model->air.bands() < 16) {
     preview.refinements.push_back(
-        {"16 bands", [&] { return timed(*more_bands, more_bands->FrameAt(camera_sample, settings)); }});
+        {"16 bands",
+         [&] { return timed(*more_bands, more_bands->FrameAt(camera_sample, settings)); }});
   }
   EffectChoice choice = ChooseEffects(preview, settings.effects, budget);
   CountedPicture picture = state_->For(choice.effects).Picture(with(choice.effects));

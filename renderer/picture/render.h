@@ -25,8 +25,8 @@
 
 #include "atmosphere/astronomy/sun.h"
 #include "atmosphere/time_place/time.h"
-#include "lut/image/image.h"
 #include "lut/cli/messages.h"
+#include "lut/image/image.h"
 #include "renderer/camera/camera_path.h"
 #include "renderer/camera/camera_rays.h"
 #include "renderer/effects/effect_choice.h"
@@ -121,13 +121,15 @@ class SceneRenderer {
   /// Returns the picture as linear sRGB in cd/m^2. The bytes do not depend on the number of
   /// threads. Throws InputError for a size out of [1, 16384] and for an eye at an impossible place,
   /// RenderingStopped when settings.stop requests it; stops early when Interrupted().
-  [[nodiscard]] Image Render(const CameraSample& camera_sample, const RenderSettings& settings) const;
+  [[nodiscard]] Image Render(const CameraSample& camera_sample,
+                             const RenderSettings& settings) const;
   [[nodiscard]] CountedPicture RenderCounted(const CameraSample& camera_sample,
                                              const RenderSettings& settings) const;
 
   /// Renders with the subset of settings.effects that the picture needs (effect_choice.h). The
   /// choice does not depend on the number of threads; the times in it are measured in this run.
-  [[nodiscard]] ChosenPicture RenderWithin(const CameraSample& camera_sample, const RenderSettings& settings,
+  [[nodiscard]] ChosenPicture RenderWithin(const CameraSample& camera_sample,
+                                           const RenderSettings& settings,
                                            const EffectBudget& budget) const;
 
   /// Returns the illuminance of all distant lights and the sky on a horizontal plane at the eye,

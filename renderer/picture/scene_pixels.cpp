@@ -8,8 +8,8 @@
 #include <glm/geometric.hpp>
 #include <optional>
 
-#include "atmosphere/math/constants.h"
 #include "atmosphere/astronomy/sun.h"
+#include "atmosphere/math/constants.h"
 #include "lut/cli/program.h"
 #include "renderer/effects/effect_choice.h"
 #include "renderer/picture/picture_layers.h"
@@ -91,7 +91,8 @@ std::optional<double> PlaceOnSun(const glm::dvec3& direction, const glm::dvec3& 
 /// Returns the radiance of the refracted disk: each band of the disk is lifted by its own
 /// refraction, and attenuated by the air along the bent ray.
 BandLight RefractedSunDisk(const glm::dvec3& direction, const AirAlongRay& through,
-                      const Lighting& light, const RefractedViewRays& bent, const Medium& medium) {
+                           const Lighting& light, const RefractedViewRays& bent,
+                           const Medium& medium) {
   BandLight disk(light.irradiance.count);
   // The refracted disk is not wider than a circular one.
   if (glm::length(direction - light.to_sun) > 2.0 * light.sun_radius_rad) return disk;
@@ -112,7 +113,7 @@ BandLight RefractedSunDisk(const glm::dvec3& direction, const AirAlongRay& throu
 }  // namespace
 
 BandLight PreparedScene::SunDisk(const glm::dvec3& direction, const AirAlongRay& through,
-                              const FrameContext& frame) const {
+                                 const FrameContext& frame) const {
   const Lighting& light = frame.light;
   if (frame.bent) return RefractedSunDisk(direction, through, light, *frame.bent, medium);
   const glm::dvec3& to_moon = light.moon ? light.moon->to_moon : light.to_sun;
@@ -152,8 +153,8 @@ double MeanMoonRadiance(const MoonDisk& moon, const glm::dvec3& turn, const glm:
 }
 
 /// Returns the radiance of the refracted moon (see RefractedSunDisk).
-BandLight RefractedMoon(const glm::dvec3& direction, const AirAlongRay& through, const Lighting& light,
-                   const RefractedViewRays& bent) {
+BandLight RefractedMoon(const glm::dvec3& direction, const AirAlongRay& through,
+                        const Lighting& light, const RefractedViewRays& bent) {
   BandLight seen(light.irradiance.count);
   // Neither the refracted disk nor its trail is wider than the unrefracted one.
   const double widest = 2.0 * light.moon->radius_rad + glm::length(light.moon_turn);
@@ -174,7 +175,7 @@ BandLight RefractedMoon(const glm::dvec3& direction, const AirAlongRay& through,
 }  // namespace
 
 BandLight PreparedScene::MoonSeen(const glm::dvec3& direction, const AirAlongRay& through,
-                               const FrameContext& frame) const {
+                                  const FrameContext& frame) const {
   const Lighting& light = frame.light;
   // During an eclipse, the earthshine of the moon would stand out, because the renderer has no corona.
   if (!light.moon || light.eclipse) return BandLight(light.irradiance.count);
@@ -192,8 +193,8 @@ PixelSum PreparedScene::WithStars(const FrameContext& frame, int x, int y, Pixel
 }
 
 PolarisedLight PreparedScene::PolarisedGround(const Hit& hit, const CameraRay& ray,
-                                           const FrameContext& frame,
-                                           std::array<double, 2> disk_sample) const {
+                                              const FrameContext& frame,
+                                              std::array<double, 2> disk_sample) const {
   const GroundLight& ground_light = frame.model->ground_light;
   const PictureAxes axes = frame.camera().AxesAt(ray.through);
   const SeenGround seen = ground_light.SeenFrom(hit, -ray.direction, frame.light);
@@ -224,8 +225,8 @@ Shaded Polarised(const CameraRays& camera, const glm::dvec3& direction,
 }  // namespace
 
 Shaded PreparedScene::Shade(const Hit& hit, const SharedSegmentAir& through, const CameraRay& ray,
-                         const FrameContext& frame, const LampTile& near,
-                         std::array<double, 2> disk_sample) const {
+                            const FrameContext& frame, const LampTile& near,
+                            std::array<double, 2> disk_sample) const {
   Shaded shaded = ShadedWithoutPolariser(hit, through, ray, frame, near, disk_sample);
   if (!frame.polarised) return shaded;
   const PolarisedLight inscatter = (through.fog * frame.light.irradiance) * *through.air.polarised;
@@ -238,9 +239,9 @@ Shaded PreparedScene::Shade(const Hit& hit, const SharedSegmentAir& through, con
 }
 
 Shaded PreparedScene::ShadedWithoutPolariser(const Hit& hit, const SharedSegmentAir& through,
-                                          const CameraRay& ray, const FrameContext& frame,
-                                          const LampTile& near,
-                                          std::array<double, 2> disk_sample) const {
+                                             const CameraRay& ray, const FrameContext& frame,
+                                             const LampTile& near,
+                                             std::array<double, 2> disk_sample) const {
   Shaded shaded;
   shaded.inscatter = through.fog * (frame.light.irradiance * through.air.inscatter);
   shaded.transmittance = through.fog * through.air.transmittance;
@@ -290,7 +291,8 @@ Shaded PreparedScene::ShadedWithoutPolariser(const Hit& hit, const SharedSegment
   return shaded;
 }
 
-Image PreparedScene::Pixels(const FrameContext& frame, const std::vector<PixelPlace>& places) const {
+Image PreparedScene::Pixels(const FrameContext& frame,
+                            const std::vector<PixelPlace>& places) const {
   const int count = static_cast<int>(places.size());
   const int rays = frame.settings.samples_per_pixel;
   PixelWriter writer(colour, count, 1, {});
@@ -356,7 +358,7 @@ void PreparedScene::AddTiles(const FrameContext& frame, PixelWriter& writer) con
 // Traces first rays of the tile and of a border of pixels around it. Border pixels belong to other
 // tiles; they only provide the noise estimate and their rays.
 void PreparedScene::AddTile(const FrameContext& frame, double floor, int x0, int y0,
-                         const OccludedSkyPixels& open_sky, PixelWriter& writer) const {
+                            const OccludedSkyPixels& open_sky, PixelWriter& writer) const {
   const RenderSettings& settings = frame.settings;
   const int first = settings.samples_per_pixel, most = std::max(kMostRaysForNoise, first);
   const int fewest = std::min(first, kFewestRaysForNoise);
@@ -366,7 +368,8 @@ void PreparedScene::AddTile(const FrameContext& frame, double floor, int x0, int
                    std::min(tile.y1 + 1, settings.height)};
   const auto stopped = [&] { return Interrupted() || settings.stop.stop_requested(); };
   AirInterpolationGrid air(*this, frame, x0, y0, tile.x1, tile.y1);
-  AirInterpolationGrid* const lattice = settings.share_air && settings.share_air_of_pixels ? &air : nullptr;
+  AirInterpolationGrid* const lattice =
+      settings.share_air && settings.share_air_of_pixels ? &air : nullptr;
   std::vector<PixelLight> pixels;
   std::vector<RaySpread> spreads;
   std::vector<bool> is_done;
@@ -403,7 +406,7 @@ void PreparedScene::AddTile(const FrameContext& frame, double floor, int x0, int
                                    : begun);
   });
   SharedSampleFilter shared(frame.filter, asked.x1 - asked.x0, asked.y1 - asked.y0,
-                    medium.wavelengths_nm.size());
+                            medium.wavelengths_nm.size());
   asked.Visit(
       [&](int x, int y) { shared.Expect(x - asked.x0, y - asked.y0, wanted[asked.Index(x, y)]); });
   asked.Visit([&](int x, int y) {
@@ -426,7 +429,7 @@ void PreparedScene::AddTile(const FrameContext& frame, double floor, int x0, int
 }
 
 void PreparedScene::Write(const FrameContext& frame, int x, int y, const PixelLight& pixel,
-                       PixelWriter& writer) const {
+                          PixelWriter& writer) const {
   writer.Write(x, y, WithStars(frame, x, y, pixel.sum()));
   if (!writer.AsksForMiddle()) return;
   writer.WriteMiddle(x, y, Trace(frame.camera().MiddleRay(x + 0.5, y + 0.5), frame));

@@ -7,9 +7,9 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 
+#include "atmosphere/astronomy/moon.h"
 #include "atmosphere/math/constants.h"
 #include "atmosphere/refraction/refracted_view.h"
-#include "atmosphere/astronomy/moon.h"
 #include "renderer/illumination/picture_stokes.h"
 #include "renderer/picture/prepared_scene.h"
 
@@ -81,8 +81,8 @@ glm::dvec3 RefractedViewRays::TrueDirection(const glm::dvec3& direction, std::si
   return AtElevation(direction, up, view.TrueElevation(ElevationOf(direction), band));
 }
 
-std::shared_ptr<const RefractedViewRays> PreparedScene::RefractedViewRaysOf(const FrameContext& frame,
-                                                         const CameraSample& camera_sample) const {
+std::shared_ptr<const RefractedViewRays> PreparedScene::RefractedViewRaysOf(
+    const FrameContext& frame, const CameraSample& camera_sample) const {
   const CameraRays& camera = frame.camera();
   const double half_pixel = 0.5 * camera.PixelAngle();
   const glm::dvec3 up = geometry.UpAt(camera.eye());
@@ -120,10 +120,10 @@ std::shared_ptr<const RefractedViewRays> PreparedScene::RefractedViewRaysOf(cons
   const glm::dmat3 frame_from_enu = StandOf(camera_sample).frame_from_enu;
   const SunPosition sun = SunAt(EyeOf(camera_sample), camera_sample.instant);
   const MoonPosition moon = MoonAt(EyeOf(camera_sample), camera_sample.instant);
-  auto bent = std::make_shared<RefractedViewRays>(
-      RefractedViewRays{RefractedView(medium, height_m), up,
-                frame_from_enu * DirectionFromAngles(sun.elevation_rad, sun.azimuth_rad).xyz,
-                frame_from_enu * DirectionFromAngles(moon.elevation_rad, moon.azimuth_rad).xyz});
+  auto bent = std::make_shared<RefractedViewRays>(RefractedViewRays{
+      RefractedView(medium, height_m), up,
+      frame_from_enu * DirectionFromAngles(sun.elevation_rad, sun.azimuth_rad).xyz,
+      frame_from_enu * DirectionFromAngles(moon.elevation_rad, moon.azimuth_rad).xyz});
   const auto moves = [&](const glm::dvec3& to_disk, double radius_rad) {
     return ChangeOfDisk(bent->view, Elevation(to_disk, up), radius_rad,
                         medium.wavelengths_nm.size()) > half_pixel;
@@ -133,7 +133,7 @@ std::shared_ptr<const RefractedViewRays> PreparedScene::RefractedViewRaysOf(cons
   const bool moves_sea = may_see_sea && bent->view.horizon_rad() - geometric_rad > half_pixel;
   if (moves_terrain) {
     bent->fan = std::make_shared<RefractedFan>(bent->view.air(), camera.eye(), up,
-                                          geometry.FarthestFrom(camera.eye()));
+                                               geometry.FarthestFrom(camera.eye()));
   }
   bent->moves_ground = !geometry.HasTerrain() || moves_terrain;
   return moves_disk || moves_sea || moves_terrain ? bent : nullptr;
@@ -149,9 +149,9 @@ namespace {
 /// Returns whether the bare planet occludes the terrain that a ray meets: the ray enters the planet
 /// before it, where no terrain covers the planet (a ray through a basin below the sphere is in free
 /// air). Inside the planet the air of ground level continues.
-bool HiddenByPlanet(const SceneGeometry& geometry, const RefractedGroundRay& met, const BendingAir& air,
-                    const glm::dvec3& foot, const glm::dvec3& up, const glm::dvec3& across,
-                    const glm::dvec3& point) {
+bool HiddenByPlanet(const SceneGeometry& geometry, const RefractedGroundRay& met,
+                    const BendingAir& air, const glm::dvec3& foot, const glm::dvec3& up,
+                    const glm::dvec3& across, const glm::dvec3& point) {
   const glm::dvec3 from_centre = point + glm::dvec3(0.0, 0.0, geometry.radius_m());
   const double angle = std::atan2(glm::dot(from_centre, across), glm::dot(from_centre, up));
   if (angle < met.angle_rad) return false;
@@ -174,7 +174,7 @@ bool IsBeforeHorizon(const SceneGeometry& geometry, const CameraRay& ray, const 
 }  // namespace
 
 Hit PreparedScene::OnRefractedRay(const CameraRay& ray, const FrameContext& frame,
-                          double expected_m) const {
+                                  double expected_m) const {
   const RefractedViewRays& bent = *frame.bent;
   Hit hit;
   if (geometry.HasTerrain()) {

@@ -10,18 +10,18 @@
 #include <mutex>
 #include <vector>
 
-#include "atmosphere/refraction/refracted_view.h"
 #include "atmosphere/ray/single_scattering.h"
+#include "atmosphere/refraction/refracted_view.h"
 #include "lut/multiple_scattering/multiple_scattering.h"
 #include "renderer/camera/camera_rays.h"
 #include "renderer/effects/effects.h"
-#include "renderer/surface/scene_geometry.h"
-#include "renderer/lamps/lamp_light.h"
 #include "renderer/illumination/aerial_perspective.h"
+#include "renderer/lamps/lamp_light.h"
 #include "renderer/media/media_light.h"
 #include "renderer/picture/ground_light.h"
 #include "renderer/picture/render.h"
 #include "renderer/picture/sky_pixels.h"
+#include "renderer/surface/scene_geometry.h"
 
 namespace alpenglow::renderer {
 
@@ -80,7 +80,8 @@ struct RefractedViewRays {
   glm::dvec3 up;               // at the eye, unit
   glm::dvec3 to_sun, to_moon;  // unit, without refraction
   bool moves_ground = false;  // moves the farthest terrain or the horizon by more than half a pixel
-  std::shared_ptr<const RefractedFan> fan = nullptr;  // rays to terrain; null: terrain does not move
+  std::shared_ptr<const RefractedFan> fan =
+      nullptr;  // rays to terrain; null: terrain does not move
 
   [[nodiscard]] double ElevationOf(const glm::dvec3& direction) const;
   /// Returns the direction, unit, from which light of a band arrives that is seen in `direction`.
@@ -102,8 +103,8 @@ struct FrameContext {
   std::shared_ptr<const NightLight> night = nullptr;     // null: the night sky is not visible
   std::shared_ptr<const StarPixels> stars = nullptr;     // null: no visible stars
   bool polarised = false;  // a polariser or a layer needs Stokes parameters
-  std::shared_ptr<const RefractedViewRays> bent = nullptr;        // null: refraction moves nothing
-  double sunlight_s = 0.0, plan_s = 0.0, slopes_s = 0.0;  // preparation times
+  std::shared_ptr<const RefractedViewRays> bent = nullptr;  // null: refraction moves nothing
+  double sunlight_s = 0.0, plan_s = 0.0, slopes_s = 0.0;    // preparation times
 
   [[nodiscard]] bool Has(Effect effect) const { return settings.effects.Has(effect); }
   [[nodiscard]] const CameraRays& camera() const { return moving.middle(); }

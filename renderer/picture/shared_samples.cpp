@@ -60,7 +60,8 @@ float LimitedSlope(float before, float here, float behind) {
 
 }  // namespace
 
-SharedSampleFilter::SharedSampleFilter(const PixelFilter& filter, int columns, int rows, std::size_t bands)
+SharedSampleFilter::SharedSampleFilter(const PixelFilter& filter, int columns, int rows,
+                                       std::size_t bands)
     : columns_(columns),
       rows_(rows),
       bands_(bands),

@@ -22,9 +22,9 @@
 #include <vector>
 
 #include "renderer/camera/camera_rays.h"
+#include "renderer/illumination/night_light.h"
 #include "renderer/material/band_light.h"
 #include "renderer/surface/skyline.h"
-#include "renderer/illumination/night_light.h"
 
 namespace alpenglow::renderer {
 

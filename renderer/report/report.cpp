@@ -8,9 +8,9 @@
 #include <cmath>
 #include <vector>
 
-#include "atmosphere/reference/reference_solution.h"
 #include "atmosphere/math/constants.h"
 #include "atmosphere/math/numerics.h"
+#include "atmosphere/reference/reference_solution.h"
 #include "lut/report/report_baselines.h"
 #include "lut/tables/scattering_table.h"
 #include "lut/tables/transmittance_table.h"
@@ -62,9 +62,9 @@ ReferenceRays ReferenceSegments(const Medium& medium, int count) {
       [&](int i, const ReportRegime& regime) { return SegmentNumber(medium, i, regime); },
       [&](const ViewRay& ray) {
         return ReferenceRay{ray,
-                         reference::SingleScatteringAlong(medium, ray).inscatter,
-                         {},
-                         DarkestRadiance(medium, ray)};
+                            reference::SingleScatteringAlong(medium, ray).inscatter,
+                            {},
+                            DarkestRadiance(medium, ray)};
       });
   solution.reference.text =
       "adaptive Gauss-Legendre quadrature in extended precision, relative error below 1e-8";
@@ -321,7 +321,8 @@ ReportWords WordsOfReport() {
   return {
       .title = "Alpenglow: speed and accuracy of pictures",
       .lead =
-          "What a picture of terrain in real air is made of, each part held against a slow reference solution: "
+          "What a picture of terrain in real air is made of, each part held against a slow "
+          "reference solution: "
           "the air before mountains, the shafts of light and shade in it, lamps in fog, and whole "
           "pictures. Methods of this library and of the literature answer the same questions in "
           "one run.",

@@ -19,8 +19,8 @@
 #include "lut/report/report.h"
 #include "lut/report/report_baselines.h"
 #include "lut/report/report_measure.h"
-#include "renderer/layer.h"
 #include "renderer/illumination/aerial_perspective.h"
+#include "renderer/layer.h"
 #include "renderer/scene/scene.h"
 
 namespace alpenglow::renderer {

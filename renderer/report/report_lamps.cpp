@@ -58,8 +58,9 @@ class AirlightTopic {
           works_[k][static_cast<std::size_t>(i)] = LampTestCaseNumber(i + 1, Kinds()[k]);
       });
       ThrowIfInterrupted();
-      std::erase_if(works_[k],
-                    [](const LampTestCase& work) { return !work.converged || !(work.truth > 0.0); });
+      std::erase_if(works_[k], [](const LampTestCase& work) {
+        return !work.converged || !(work.truth > 0.0);
+      });
     }
     const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - start;
     topic_.reference.time_s = taken.count() / static_cast<double>(kKinds) / count;
@@ -291,7 +292,8 @@ class ManyLampsTopic {
     std::vector<Bands<float>>& truth = truth_.emplace_back(pixels_.size(), Bands<float>(0));
     const auto start = std::chrono::steady_clock::now();
     tbb::parallel_for(std::size_t{0}, pixels_.size(), [&](std::size_t i) {
-      if (!Interrupted()) truth[i] = light_.back()->InAir(all, RayEnd(r, i), pixel, kReferenceNodes);
+      if (!Interrupted())
+        truth[i] = light_.back()->InAir(all, RayEnd(r, i), pixel, kReferenceNodes);
     });
     ThrowIfInterrupted();
     reference_s_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();

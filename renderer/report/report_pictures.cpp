@@ -194,7 +194,8 @@ class PicturesTopic {
     const double start = ProcessorSeconds();
     for (ReferenceSceneCase& scene : scenes_)
       scene.reference = scene.renderer->Render(scene.instant, settings);
-    topic_.reference.time_s = (ProcessorSeconds() - start) / (static_cast<double>(kScenes) * Pixels());
+    topic_.reference.time_s =
+        (ProcessorSeconds() - start) / (static_cast<double>(kScenes) * Pixels());
   }
 
   void Add(ReportRow row, const RenderSettings& settings) {

@@ -11,10 +11,10 @@
 #include <vector>
 
 #include "lut/cli/program.h"
-#include "renderer/surface/scene_ground.h"
 #include "renderer/illumination/aerial_perspective.h"
 #include "renderer/illumination/occlusion_march.h"
 #include "renderer/report/report.h"
+#include "renderer/surface/scene_ground.h"
 #include "renderer/visibility/shadow_heights.h"
 #include "renderer/visibility/sunlit_path.h"
 
@@ -86,7 +86,8 @@ class ShaftTopic {
       : effort_(effort),
         ground_(effort.quick ? Waves() : OverTheRange()),
         air_(MediumPreset("earth")),
-        multiple_scattering_(air_.medium(), {.altitudes = 4, .sun_angles = 4, .degree = 2, .max_orders = 1}),
+        multiple_scattering_(air_.medium(),
+                             {.altitudes = 4, .sun_angles = 4, .degree = 2, .max_orders = 1}),
         aerial_(air_, multiple_scattering_) {
     for (const ReportRegime& sun : kSuns) SolveReference(sun.sun->lowest_deg);
     topic_.reference.time_s = reference_s_ / static_cast<double>(kSuns.size() * Pixels());
@@ -159,8 +160,8 @@ class ShaftTopic {
     topic_.regimes.assign(kSuns.begin(), kSuns.end());
     topic_.medium = air_.medium();
     topic_.rays = Pixels();
-    topic_.reference.text = fmt::format("{} occlusion rays a pixel in eight marches of different steps",
-                                    8 * MarchRays());
+    topic_.reference.text = fmt::format(
+        "{} occlusion rays a pixel in eight marches of different steps", 8 * MarchRays());
     topic_.reference.noise.assign(kSuns.size(), 0.0);
     return std::move(topic_);
   }
@@ -169,11 +170,12 @@ class ShaftTopic {
   [[nodiscard]] int MarchRays() const { return effort_.quick ? 64 : 512; }
 
   void SolveReference(double sun_deg) {
-    ReferenceView solution{effort_.quick ? ViewWithSun(ground_.eye_height_m, 200.0, sun_deg, 8, 5)
-                                    : ViewWithSun(ground_.eye_height_m, 200.0, sun_deg, 24, 14),
-                      {},
-                      {},
-                      std::vector<double>(air_.bands())};
+    ReferenceView solution{effort_.quick
+                               ? ViewWithSun(ground_.eye_height_m, 200.0, sun_deg, 8, 5)
+                               : ViewWithSun(ground_.eye_height_m, 200.0, sun_deg, 24, 14),
+                           {},
+                           {},
+                           std::vector<double>(air_.bands())};
     const std::size_t pixels = solution.view.directions.size();
     solution.truth.assign(pixels, Bands<float>(air_.bands()));
     solution.length_m.resize(pixels);
@@ -197,7 +199,8 @@ class ShaftTopic {
         solution.mean[band] += static_cast<double>(pixel[band]) / static_cast<double>(pixels);
     }
     auto [heights, seconds] = Built([&] {
-      return ShadowHeights(ground_.terrain.mesh(), solution.view.to_sun, solution.view.sun_radius_rad);
+      return ShadowHeights(ground_.terrain.mesh(), solution.view.to_sun,
+                           solution.view.sun_radius_rad);
     });
     heights_.push_back(std::move(heights));
     sweep_s_.push_back(seconds);

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 
-#include "atmosphere/lamp/lamp.h"
 #include "atmosphere/base/error.h"
+#include "atmosphere/lamp/lamp.h"
 
 namespace alpenglow::renderer {
 namespace {

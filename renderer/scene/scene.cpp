@@ -7,11 +7,11 @@
 #include <initializer_list>
 #include <limits>
 
-#include "atmosphere/medium/medium_presets.h"
-#include "atmosphere/math/constants.h"
 #include "atmosphere/astronomy/night_sky.h"
 #include "atmosphere/base/error.h"
 #include "atmosphere/base/parsing.h"
+#include "atmosphere/math/constants.h"
+#include "atmosphere/medium/medium_presets.h"
 
 namespace alpenglow::renderer {
 namespace {

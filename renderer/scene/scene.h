@@ -61,10 +61,10 @@ struct Camera {
 /// Source of the ground geometry.
 struct TerrainSource {
   enum class Kind {
-    kProceduralMountains,    // ProceduralMountains
-    kElevationModel,  // file, see ReadElevation
-    kMesh,            // file, see ReadObj
-    kNone,            // the ellipsoid alone
+    kProceduralMountains,  // ProceduralMountains
+    kElevationModel,       // file, see ReadElevation
+    kMesh,                 // file, see ReadObj
+    kNone,                 // the ellipsoid alone
   };
   Kind kind = Kind::kProceduralMountains;
   std::filesystem::path file;

@@ -4,13 +4,13 @@
 #include <algorithm>
 #include <cmath>
 
-#include "atmosphere/medium/medium_presets.h"
-#include "atmosphere/math/constants.h"
 #include "atmosphere/astronomy/night_sky.h"
 #include "atmosphere/base/error.h"
+#include "atmosphere/math/constants.h"
+#include "atmosphere/medium/medium_presets.h"
 #include "renderer/scene/nrrd_header.h"
-#include "renderer/terrain/procedural_mountains.h"
 #include "renderer/terrain/lattice_noise.h"
+#include "renderer/terrain/procedural_mountains.h"
 
 namespace alpenglow::renderer {
 namespace {

@@ -8,10 +8,10 @@
 #include <cmath>
 #include <functional>
 
-#include "atmosphere/math/constants.h"
 #include "atmosphere/astronomy/moon.h"
 #include "atmosphere/astronomy/sun.h"
 #include "atmosphere/base/error.h"
+#include "atmosphere/math/constants.h"
 #include "lut/report/svg_plot.h"
 
 namespace alpenglow::renderer {

@@ -7,12 +7,12 @@
 #include <charconv>
 #include <cmath>
 
-#include "atmosphere/math/constants.h"
-#include "atmosphere/time_place/geodesy.h"
 #include "atmosphere/base/error.h"
 #include "atmosphere/base/parsing.h"
-#include "renderer/surface/scene_ground.h"
+#include "atmosphere/math/constants.h"
+#include "atmosphere/time_place/geodesy.h"
 #include "renderer/layer.h"
+#include "renderer/surface/scene_ground.h"
 
 namespace alpenglow::renderer {
 namespace {
@@ -347,8 +347,8 @@ CameraSample CameraSampleOf(const Frame& frame, const CameraPath& path, double s
   // Straight segments between 16 steps miss a curve by less than a hundredth of its length.
   constexpr int kSteps = 17;
   CameraSample camera_sample(frame.instant);
-  camera_sample.poses = path.PosesBetween(frame.path_s - 0.5 * shutter_s, frame.path_s + 0.5 * shutter_s,
-                                 shutter_s > 0.0 ? kSteps : 1);
+  camera_sample.poses = path.PosesBetween(
+      frame.path_s - 0.5 * shutter_s, frame.path_s + 0.5 * shutter_s, shutter_s > 0.0 ? kSteps : 1);
   return camera_sample;
 }
 

@@ -11,9 +11,9 @@
 
 #include "atmosphere/time_place/time.h"
 #include "renderer/camera/camera_path.h"
-#include "renderer/surface/scene_ground.h"
 #include "renderer/picture/render.h"
 #include "renderer/series/time_text.h"
+#include "renderer/surface/scene_ground.h"
 
 namespace alpenglow::renderer {
 
@@ -96,6 +96,7 @@ struct PathRate {
 
 /// Returns the camera of a frame; with an open shutter, its motion during the exposure, which is
 /// centred on the frame.
-[[nodiscard]] CameraSample CameraSampleOf(const Frame& frame, const CameraPath& path, double shutter_s);
+[[nodiscard]] CameraSample CameraSampleOf(const Frame& frame, const CameraPath& path,
+                                          double shutter_s);
 
 }  // namespace alpenglow::renderer

@@ -6,11 +6,11 @@
 #include <fstream>
 #include <vector>
 
-#include "atmosphere/math/constants.h"
 #include "atmosphere/astronomy/eclipse.h"
 #include "atmosphere/astronomy/moon.h"
 #include "atmosphere/astronomy/sun.h"
 #include "atmosphere/base/error.h"
+#include "atmosphere/math/constants.h"
 #include "lut/cli/messages.h"
 #include "lut/cli/program.h"
 

@@ -9,14 +9,14 @@
 #include <set>
 #include <system_error>
 
-#include "atmosphere/math/constants.h"
 #include "atmosphere/astronomy/eclipse.h"
 #include "atmosphere/astronomy/moon.h"
 #include "atmosphere/astronomy/sun.h"
 #include "atmosphere/base/error.h"
+#include "atmosphere/math/constants.h"
+#include "lut/cli/program.h"
 #include "lut/image/eye.h"
 #include "lut/image/look.h"
-#include "lut/cli/program.h"
 #include "renderer/picture/render.h"
 #include "renderer/series/contact_sheet.h"
 #include "renderer/series/day_times.h"

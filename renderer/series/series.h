@@ -10,10 +10,10 @@
 #include <vector>
 
 #include "atmosphere/time_place/geodesy.h"
-#include "lut/image/image.h"
-#include "lut/image/look.h"
 #include "lut/cli/messages.h"
 #include "lut/cli/output_file.h"
+#include "lut/image/image.h"
+#include "lut/image/look.h"
 #include "renderer/camera/camera_path.h"
 #include "renderer/series/frame_times.h"
 

@@ -10,9 +10,9 @@
 #include <limits>
 #include <mutex>
 
+#include "atmosphere/base/error.h"
 #include "atmosphere/colour/spectrum.h"
 #include "atmosphere/math/constants.h"
-#include "atmosphere/base/error.h"
 #include "renderer/material/land_cover.h"
 #include "renderer/terrain/elevation_raster.h"
 

@@ -21,8 +21,8 @@
 #include <vector>
 
 #include "renderer/material/band_light.h"
-#include "renderer/surface/scene_ground.h"
 #include "renderer/scene/scene.h"
+#include "renderer/surface/scene_ground.h"
 
 namespace alpenglow::renderer {
 

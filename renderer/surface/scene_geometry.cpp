@@ -83,7 +83,8 @@ double SineOfGrazing(const BendingAir& air, double height_m) {
 
 // Nodes are densest around the ray that grazes the ground, within the angle that half a scale
 // height subtends at the far end of a ray.
-RefractedFan::RefractedFan(const BendingAir& air, const glm::dvec3& eye, const glm::dvec3& up, double reach_m)
+RefractedFan::RefractedFan(const BendingAir& air, const glm::dvec3& eye, const glm::dvec3& up,
+                           double reach_m)
     : air_(air),
       up_(up),
       height_m_(AltitudeOverSphere(eye, air.planet_radius_m)),
@@ -175,7 +176,8 @@ glm::dvec3 FanRay::At(double along_m) const {
   const glm::dvec3 straight = origin_ + along_m * direction_;
   const double in_air_m = along_m - enters_m_;
   if (!(in_air_m > 0.0)) return straight;
-  const double node = RefractedFan::kDistances * std::sqrt(std::min(in_air_m / fan_->reach_m_, 1.0));
+  const double node =
+      RefractedFan::kDistances * std::sqrt(std::min(in_air_m / fan_->reach_m_, 1.0));
   const int before = std::min(static_cast<int>(node), RefractedFan::kDistances - 1);
   const auto way = static_cast<float>(node - before);
   const float* here = row_ + before;

@@ -39,9 +39,9 @@
 
 #include "atmosphere/medium/medium.h"
 #include "atmosphere/refraction/refraction.h"
+#include "renderer/layer.h"
 #include "renderer/surface/scene_ground.h"
 #include "renderer/surface/surface.h"
-#include "renderer/layer.h"
 #include "renderer/visibility/shadow_heights.h"
 #include "renderer/visibility/sunlit_path.h"
 

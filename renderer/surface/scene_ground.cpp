@@ -8,11 +8,11 @@
 #include <glm/geometric.hpp>
 #include <utility>
 
-#include "atmosphere/math/constants.h"
 #include "atmosphere/base/error.h"
-#include "renderer/visibility/sunlit_path.h"
-#include "renderer/terrain/procedural_mountains.h"
+#include "atmosphere/math/constants.h"
 #include "renderer/terrain/obj_file.h"
+#include "renderer/terrain/procedural_mountains.h"
+#include "renderer/visibility/sunlit_path.h"
 
 namespace alpenglow::renderer {
 namespace {

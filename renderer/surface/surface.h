@@ -14,10 +14,10 @@
 #include "atmosphere/ray/single_scattering.h"
 #include "atmosphere/time_place/time.h"
 #include "renderer/material/band_light.h"
-#include "renderer/surface/colour_drape.h"
 #include "renderer/material/land_cover.h"
 #include "renderer/material/reflectance.h"
 #include "renderer/scene/scene.h"
+#include "renderer/surface/colour_drape.h"
 
 namespace alpenglow::renderer {
 

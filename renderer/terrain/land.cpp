@@ -13,8 +13,8 @@
 #include <string_view>
 #include <system_error>
 
-#include "atmosphere/math/numerics.h"
 #include "atmosphere/base/error.h"
+#include "atmosphere/math/numerics.h"
 #include "lut/cli/output_file.h"
 #include "renderer/layer.h"
 #include "renderer/terrain/lattice_noise.h"

@@ -11,8 +11,8 @@
 #include <limits>
 #include <optional>
 
-#include "atmosphere/math/constants.h"
 #include "atmosphere/base/error.h"
+#include "atmosphere/math/constants.h"
 
 namespace alpenglow::renderer {
 

@@ -17,8 +17,8 @@
 #include <utility>
 #include <vector>
 
-#include "atmosphere/math/constants.h"
 #include "atmosphere/base/error.h"
+#include "atmosphere/math/constants.h"
 #include "renderer/terrain/erosion.h"
 #include "renderer/terrain/land.h"
 #include "renderer/terrain/lattice_noise.h"
@@ -179,8 +179,9 @@ Land MadeOrKept(std::uint32_t seed) {
   return tbb::this_task_arena::isolate([&] {
     if (seed != 0) return RangeLand(seed);
     Land land = GridOf(kRangeSize);
-    land.height_m = HeightCache({"range", kProceduralMountainsFingerprint, land.index(land.size, 0)},
-                                [] { return MadeRangeHeights(0); });
+    land.height_m =
+        HeightCache({"range", kProceduralMountainsFingerprint, land.index(land.size, 0)},
+                    [] { return MadeRangeHeights(0); });
     return land;
   });
 }

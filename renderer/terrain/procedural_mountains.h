@@ -18,7 +18,8 @@ namespace alpenglow::renderer {
 /// the range falls to 0 m at the rim. Each seed has different mountains; the foreland behind the
 /// view is always that of seed 0. It takes two seconds of processor time, for seed 0 only once per
 /// machine.
-[[nodiscard]] ElevationGrid ProceduralMountains(const GeodeticPosition& centre, std::uint32_t seed = 0);
+[[nodiscard]] ElevationGrid ProceduralMountains(const GeodeticPosition& centre,
+                                                std::uint32_t seed = 0);
 
 /// Returns the grid of the range without heights, immediately.
 [[nodiscard]] ElevationGrid ProceduralMountainsExtent(const GeodeticPosition& centre);
@@ -40,7 +41,7 @@ struct BuiltInView {
 /// Returns the view that the range was designed for: from a shoulder of the foothills to the
 /// highest peak, chain behind chain, east at the left.
 [[nodiscard]] BuiltInView ProceduralMountainsView(const GeodeticPosition& centre,
-                                           const ElevationGrid& range);
+                                                  const ElevationGrid& range);
 
 /// Height of the ground [m] at the position of the view, known before a range is made. It is equal
 /// for all seeds to a centimetre; beside a pole, where the heights are resampled, to some metres.

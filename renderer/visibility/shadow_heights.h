@@ -30,8 +30,8 @@
 #include <optional>
 #include <vector>
 
-#include "renderer/visibility/sunlit_path.h"
 #include "renderer/terrain/mesh.h"
+#include "renderer/visibility/sunlit_path.h"
 
 namespace alpenglow::renderer {
 

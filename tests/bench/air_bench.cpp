@@ -8,10 +8,10 @@
 #include <string>
 #include <vector>
 
-#include "atmosphere/shared_glsl/instruction_set.h"
-#include "atmosphere/reference/reference_solution.h"
 #include "atmosphere/ray/direct_scattering.h"
 #include "atmosphere/ray/single_scattering.h"
+#include "atmosphere/reference/reference_solution.h"
+#include "atmosphere/shared_glsl/instruction_set.h"
 #include "lut/multiple_scattering/multiple_scattering.h"
 
 namespace alpenglow::lut {

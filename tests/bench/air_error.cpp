@@ -30,7 +30,8 @@ void PrintNodes() {
 void PrintDirect(const Medium& medium, const alpenglow::tests::DirectRegime& regime) {
   const DirectScattering direct(medium);
   const SingleScattering<float>& air = direct.reference();
-  const alpenglow::tests::ReferenceRays reference = tests::ReferenceRaysOf(regime, medium, 20001, 1500);
+  const alpenglow::tests::ReferenceRays reference =
+      tests::ReferenceRaysOf(regime, medium, 20001, 1500);
   const auto print = [&](const char* method, const auto& scatter) {
     const auto error = alpenglow::tests::ErrorsOf(reference, air, scatter);
     fmt::print("| {} | {} | {} | {:.1e} | {:.1e} | {:.1e} |\n", medium.name, regime.name, method,

@@ -16,8 +16,8 @@
 #include <string>
 #include <vector>
 
-#include "atmosphere/math/constants.h"
 #include "atmosphere/base/error.h"
+#include "atmosphere/math/constants.h"
 #include "lut/layer.h"
 #include "lut/tables/scattering_table.h"
 

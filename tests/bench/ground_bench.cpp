@@ -4,8 +4,8 @@
 #include <benchmark/benchmark.h>
 #include <tbb/global_control.h>
 
-#include "atmosphere/math/constants.h"
 #include "atmosphere/astronomy/sun.h"
+#include "atmosphere/math/constants.h"
 #include "renderer/terrain/procedural_mountains.h"
 #include "viewer/ground/lit_ground.h"
 

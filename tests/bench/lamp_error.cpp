@@ -21,7 +21,8 @@ using Work = LampTestCase;
 
 Work CheckedWork(int i, const LampTestKind& kind) {
   Work work = LampTestCaseNumber(i, kind);
-  if (!work.converged && work.truth > 0.0) fmt::print("# the reference solution misses in case {}\n", i);
+  if (!work.converged && work.truth > 0.0)
+    fmt::print("# the reference solution misses in case {}\n", i);
   return work;
 }
 

@@ -20,9 +20,9 @@
 #include <string_view>
 #include <vector>
 
+#include "atmosphere/math/constants.h"
 #include "atmosphere/medium/lorenz_mie.h"
 #include "atmosphere/medium/phase.h"
-#include "atmosphere/math/constants.h"
 
 namespace {
 

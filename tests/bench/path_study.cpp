@@ -11,9 +11,9 @@
 #include <string_view>
 #include <vector>
 
-#include "atmosphere/reference/path_tracer.h"
 #include "atmosphere/math/constants.h"
 #include "atmosphere/math/numerics.h"
+#include "atmosphere/reference/path_tracer.h"
 #include "lut/evaluate/eval.h"
 
 namespace alpenglow::lut {
@@ -67,8 +67,9 @@ void PrintIrradiance() {
       const Case sky{"", 0, Quantity::kIrradianceSky, {0.0, 1.0, mu_s, mu_s}};
       evaluator->Prepare({&sky, 1});
       const Estimates fast = evaluator->Evaluate(sky);
-      const auto truth = reference::TraceIrradiance(medium, 0.0, mu_s, reference::PlaneSide::kFromAbove,
-                                                {.max_paths = 200000, .relative_error = 0.002});
+      const auto truth =
+          reference::TraceIrradiance(medium, 0.0, mu_s, reference::PlaneSide::kFromAbove,
+                                     {.max_paths = 200000, .relative_error = 0.002});
       fmt::print("| {} | {} |", name, sun_deg);
       for (std::size_t band = 0; band < fast.size(); ++band)
         fmt::print(" {:.2f} %", 100.0 * (fast[band].value / truth.value[band] - 1.0));
@@ -132,7 +133,9 @@ void PrintRow(const Row& row) {
 }
 
 void PrintErrors(bool every_ray) {
-  fmt::print("\n| air | sun | rays | rms error | largest | rms of the reference solution's standard error |\n");
+  fmt::print(
+      "\n| air | sun | rays | rms error | largest | rms of the reference solution's standard error "
+      "|\n");
   fmt::print("|---|---|---|---|---|---|\n");
   for (const char* name : {"earth", "hazy"}) {
     const Medium medium = MediumPreset(name);

@@ -9,9 +9,9 @@
 #include <cmath>
 #include <vector>
 
+#include "atmosphere/astronomy/sun.h"
 #include "atmosphere/refraction/refracted_view.h"
 #include "atmosphere/refraction/refraction.h"
-#include "atmosphere/astronomy/sun.h"
 #include "tests/fixtures/refracted_twilight.h"
 
 namespace {

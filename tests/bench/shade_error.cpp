@@ -17,9 +17,9 @@
 #include <vector>
 
 #include "atmosphere/math/constants.h"
-#include "renderer/visibility/shadow_heights.h"
 #include "renderer/terrain/procedural_mountains.h"
 #include "renderer/terrain/terrain.h"
+#include "renderer/visibility/shadow_heights.h"
 #include "viewer/flight/flight.h"
 #include "viewer/gl/gl_context.h"
 #include "viewer/shade/shade_map.h"

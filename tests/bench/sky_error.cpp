@@ -12,8 +12,9 @@
 namespace alpenglow::lut {
 namespace {
 
-void Row(const SingleScattering<float>& air, const MultipleScattering& multiple_scattering, const DirectSky& direct,
-         double altitude_m, double elevation_deg, const SkyViewSize* fixed) {
+void Row(const SingleScattering<float>& air, const MultipleScattering& multiple_scattering,
+         const DirectSky& direct, double altitude_m, double elevation_deg,
+         const SkyViewSize* fixed) {
   const double mu_s = std::sin(elevation_deg * kRadiansPerDegree);
   const SkyViewSize size =
       fixed != nullptr ? *fixed : SkyViewSizeFor(air.medium(), altitude_m, mu_s);

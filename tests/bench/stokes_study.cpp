@@ -13,10 +13,10 @@
 #include <string_view>
 #include <vector>
 
+#include "atmosphere/math/constants.h"
 #include "atmosphere/medium/lorenz_mie.h"
 #include "atmosphere/medium/phase_table.h"
 #include "atmosphere/reference/path_tracer.h"
-#include "atmosphere/math/constants.h"
 #include "tests/fixtures/polarised_slab.h"
 #include "tests/fixtures/stored_cases.h"
 
@@ -100,7 +100,8 @@ void PrintSlab() {
     if (row.mu < 0.15 || row.mu0 < 0.15 || ++number % 37 != 0) continue;
     const Medium medium = slab::Layer(row.tau, row.albedo);
     const ViewRay ray = slab::RayOf(row);
-    const reference::PathOptions options{.seed = number, .max_paths = 400000, .relative_error = 0.001};
+    const reference::PathOptions options{
+        .seed = number, .max_paths = 400000, .relative_error = 0.001};
     const auto traced = reference::TraceStokes(medium, Molecules(medium, 0.0), ray, options);
     const double scalar = reference::TraceRadiance(medium, ray, options).total[0];
     slab::Stokes truth = slab::Seen(row);
@@ -133,7 +134,7 @@ void PrintSphere() {
     const Medium& medium = media.at(row.at("set"));
     const auto traced =
         reference::TraceStokes(medium, Molecules(medium, stored::Number(row, "depolarisation")),
-                           stored::RayOf(row), {.max_paths = 2000000, .relative_error = 0.001});
+                               stored::RayOf(row), {.max_paths = 2000000, .relative_error = 0.001});
     Comparison one;
     for (const stored::Row& result : results.at(row.at("id"))) {
       const slab::Stokes truth = AsTraced(row, result);
@@ -247,8 +248,8 @@ void PrintTime() {
   const ViewRay ray = RayFromAngles(2.0, 60.0, 90.0, 45.0);
   const reference::PathOptions options{.max_paths = 200000, .relative_error = 0.0};
   const double scalar = Seconds([&] { return reference::TraceRadiance(medium, ray, options); });
-  const double stokes =
-      Seconds([&] { return reference::TraceStokes(medium, Molecules(medium, 0.0279), ray, options); });
+  const double stokes = Seconds(
+      [&] { return reference::TraceStokes(medium, Molecules(medium, 0.0279), ray, options); });
   fmt::print("\n200 000 paths, four wavelengths: scalar {:.2f} s, polarised {:.2f} s\n", scalar,
              stokes);
 }

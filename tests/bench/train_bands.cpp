@@ -13,8 +13,8 @@
 #include <string>
 #include <vector>
 
-#include "atmosphere/colour/spectrum.h"
 #include "atmosphere/base/error.h"
+#include "atmosphere/colour/spectrum.h"
 #include "lut/table_search/band_training.h"
 
 namespace alpenglow::lut {

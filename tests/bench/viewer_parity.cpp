@@ -37,7 +37,7 @@ Image DifferencePicture(const Image& reference, const Image& painted) {
 }
 
 Image ReferenceOf(const ParityView& view, const RenderSettings& settings,
-              const std::filesystem::path& file) {
+                  const std::filesystem::path& file) {
   if (std::filesystem::exists(file)) return ReadExr(file);
   Image reference = SceneRenderer(view.scene).Render(view.instant, settings);
   WriteExr(file, reference, {});
@@ -76,12 +76,15 @@ void Run(const std::filesystem::path& folder, const RenderSettings& settings,
       continue;
     const std::filesystem::path file = folder / fmt::format("reference-{}.exr", number);
     const Image reference = ReferenceOf(view, settings, file);
-    WritePng(folder / fmt::format("reference-{}.png", number),
-             Develop(reference, MeterEv100(reference, kSunDiskLuminance_cd_per_m2), ToneCurve::kAgx), {});
+    WritePng(
+        folder / fmt::format("reference-{}.png", number),
+        Develop(reference, MeterEv100(reference, kSunDiskLuminance_cd_per_m2), ToneCurve::kAgx),
+        {});
     const Image painted = PaintedOf(view, settings);
     WriteExr(folder / fmt::format("painted-{}.exr", number), painted, {});
     WritePng(folder / fmt::format("painted-{}.png", number),
-             Develop(painted, MeterEv100(reference, kSunDiskLuminance_cd_per_m2), ToneCurve::kAgx), {});
+             Develop(painted, MeterEv100(reference, kSunDiskLuminance_cd_per_m2), ToneCurve::kAgx),
+             {});
     WritePng(folder / fmt::format("difference-{}.png", number),
              TenfoldGrey(DifferencePicture(reference, painted)), {});
     const ViewDifference is = DifferenceOf(reference, painted);

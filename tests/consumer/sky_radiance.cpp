@@ -9,7 +9,7 @@ using namespace alpenglow::lut;  // and with it alpenglow::atmosphere
 int main() {
   const Medium earth = MediumPreset("earth");
   const SingleScattering<float> air(earth);  // single scattering
-  const MultipleScattering orders(earth);       // all higher orders, solved once
+  const MultipleScattering orders(earth);    // all higher orders, solved once
   // From 2 m; view and sun are 80 and 60 degrees from the zenith, and 90 degrees apart in azimuth.
   const ViewRay ray = RayFromAngles(2.0, 80.0, 90.0, 60.0);
   const auto samples = air.Sample(ray, {.nodes = 12, .split_ozone = false, .dark_samples = true});

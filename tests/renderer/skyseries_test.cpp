@@ -11,8 +11,8 @@
 #include <cstdlib>
 #include <sstream>
 
-#include "atmosphere/time_place/time.h"
 #include "atmosphere/base/parsing.h"
+#include "atmosphere/time_place/time.h"
 #include "lut/image/image.h"
 #include "tests/fixtures/bare_scene_folder.h"
 #include "tests/fixtures/lost_messages.h"

@@ -30,7 +30,7 @@ class FlightsOverLand : public tests::HeadlessTile {
   }
   /// @param files  of the land; none: that of the scene.
   [[nodiscard]] static FlightSession SmallFlight(const Scene& scene,
-                                              std::vector<std::filesystem::path> files = {}) {
+                                                 std::vector<std::filesystem::path> files = {}) {
     FlightSessionSettings settings;
     settings.land = LandSourceOf(scene);
     if (!files.empty()) settings.land.files = std::move(files);

@@ -211,7 +211,8 @@ TEST_F(Skyview, ToTheEyeDuskIsDarkAndThePictureSaysHowItWasExposed) {
   }
   EXPECT_NEAR(std::stod(eye.at("alpenglow.ev100")), EyeEv100(metered, {}), 2e-4)
       << "the functions of the series; four digits are written";
-  const Metadata asked = camera_sample("asked.png", "--exposure 7.5 --look punchy --white-balance 4000");
+  const Metadata asked =
+      camera_sample("asked.png", "--exposure 7.5 --look punchy --white-balance 4000");
   EXPECT_EQ(asked.at("alpenglow.exposure"), "fixed");
   EXPECT_EQ(asked.at("alpenglow.ev100"), "7.5000");
   EXPECT_EQ(asked.at("alpenglow.tone_curve"), "agx, punchy");
@@ -367,7 +368,7 @@ class SkyviewLand : public tests::LandFolder {
 
   /// Of 8 to 8.1 degrees east, 46.6 to 46.7 north and beyond.
   [[nodiscard]] Outcome CameraSample(const std::string& arguments,
-                             const std::string& name = "a.png") const {
+                                     const std::string& name = "a.png") const {
     return RunCommand(std::string("env -u DISPLAY -u WAYLAND_DISPLAY '") + tests::kSkyview +
                       "' --headless --size 32x18 --quality low --screenshot " + name + " " +
                       arguments);
@@ -385,7 +386,8 @@ TEST_F(SkyviewLand, SeveralModelsAreOneLand) {
 }
 
 TEST_F(SkyviewLand, AFlightThatBeginsOverTheGroundIsRecordedReplayedAndRenderedThere) {
-  Outcome outcome = CameraSample("--dem west.tif --pitch -20 --time noon --record f.csv --frames 4");
+  Outcome outcome =
+      CameraSample("--dem west.tif --pitch -20 --time noon --record f.csv --frames 4");
   ASSERT_EQ(outcome.status, 0) << outcome.error;
   const DisplayImage flown = ReadPng(folder_ / "a.png");
   outcome = CameraSample("--dem west.tif --replay f.csv --frames 2", "r.%04d.png");

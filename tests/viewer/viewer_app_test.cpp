@@ -33,7 +33,8 @@ class ViewerAppTest : public tests::Headless {
     FlightSessionSettings settings;
     settings.quality = {Quality::kLow};
     settings.size = kSize;
-    flight_ = std::make_unique<FlightSession>(scene, ParseInstant("2026-06-21T10:00:00Z"), settings);
+    flight_ =
+        std::make_unique<FlightSession>(scene, ParseInstant("2026-06-21T10:00:00Z"), settings);
     deck_ = std::make_unique<ViewerApp>(*flight_, recorder_, ViewerApp::Settings{});
     screen_ = std::make_unique<RenderTarget>(kSize.width, kSize.height, RenderTarget::Depth::kNone);
     flight_->Settle(kSize);

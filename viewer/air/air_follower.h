@@ -18,9 +18,9 @@
 
 #include "viewer/air/air_tables.h"
 #include "viewer/air/solved_air.h"
+#include "viewer/async/latest_job.h"
 #include "viewer/gl/gl_objects.h"
 #include "viewer/gl/shader.h"
-#include "viewer/async/latest_job.h"
 
 namespace alpenglow::viewer {
 

@@ -8,9 +8,9 @@
 #include <cmath>
 #include <glm/exponential.hpp>
 
-#include "atmosphere/medium/phase_text.h"
 #include "atmosphere/math/constants.h"
 #include "atmosphere/math/numerics.h"
+#include "atmosphere/medium/phase_text.h"
 #include "lut/multiple_scattering/azimuth_fan.h"
 
 namespace alpenglow::viewer {
@@ -323,8 +323,8 @@ class SingleOfRow {
 
 class WayBuilder {
  public:
-  WayBuilder(const SingleScattering<float>& air, const MultipleScattering& multiple_scattering, const AirPhases& phases,
-             AirTables& tables)
+  WayBuilder(const SingleScattering<float>& air, const MultipleScattering& multiple_scattering,
+             const AirPhases& phases, AirTables& tables)
       : air_(air),
         fan_(multiple_scattering),
         phases_(phases),
@@ -415,8 +415,8 @@ class WayBuilder {
 
 }  // namespace
 
-void FillWays(const SingleScattering<float>& air, const MultipleScattering& multiple_scattering, const AirPhases& phases,
-              AirTables& tables) {
+void FillWays(const SingleScattering<float>& air, const MultipleScattering& multiple_scattering,
+              const AirPhases& phases, AirTables& tables) {
   WayBuilder(air, multiple_scattering, phases, tables).Fill();
 }
 

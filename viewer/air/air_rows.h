@@ -58,7 +58,7 @@ class AirPhases {
 [[nodiscard]] float TwilightAt(const AirMap& map, double mu_s, double nu, double distance_km);
 
 /// Fills single, diffuse and extinction of the tables; all other members must be set.
-void FillWays(const SingleScattering<float>& air, const MultipleScattering& multiple_scattering, const AirPhases& phases,
-              AirTables& tables);
+void FillWays(const SingleScattering<float>& air, const MultipleScattering& multiple_scattering,
+              const AirPhases& phases, AirTables& tables);
 
 }  // namespace alpenglow::viewer

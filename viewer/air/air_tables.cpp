@@ -5,9 +5,9 @@
 #include <cmath>
 #include <utility>
 
-#include "atmosphere/medium/phase_text.h"
-#include "atmosphere/math/constants.h"
 #include "atmosphere/base/error.h"
+#include "atmosphere/math/constants.h"
+#include "atmosphere/medium/phase_text.h"
 #include "lut/sky/sky_view.h"
 #include "lut/tables/transmittance_table.h"
 #include "viewer/air/air_rows.h"
@@ -81,8 +81,9 @@ double CosineOfPhaseNode(int node) {
   return 1.0 - 2.0 * half_sine * half_sine;
 }
 
-AirTexels SkyPhase(const SingleScattering<float>& air, const MultipleScattering& multiple_scattering,
-                   const AirTexels& aerosol, const AirEye& eye) {
+AirTexels SkyPhase(const SingleScattering<float>& air,
+                   const MultipleScattering& multiple_scattering, const AirTexels& aerosol,
+                   const AirEye& eye) {
   const float column_km = GlowColumn_km(air, eye.altitude_m, eye.mu_s);
   AirTexels phase = aerosol;
   for (int k = 0; k < phase.width; ++k)
@@ -121,8 +122,8 @@ AirTexels SkyTexels(const SkyView& view, const AirMap& map, const AirPhases& pha
   return texels;
 }
 
-SkyView ViewOf(const SingleScattering<float>& air, const MultipleScattering& multiple_scattering, const AirEye& eye,
-               double fineness) {
+SkyView ViewOf(const SingleScattering<float>& air, const MultipleScattering& multiple_scattering,
+               const AirEye& eye, double fineness) {
   SkyViewSize size = SkyViewSizeFor(air.medium(), eye.altitude_m, eye.mu_s);
   for (int* nodes : {&size.sky_rows, &size.ground_rows, &size.azimuths})
     *nodes = static_cast<int>(std::lround(fineness * *nodes));
@@ -202,8 +203,9 @@ AirTablesSize AirTablesSizeOf(AirQuality quality, double altitude_m) {
   return high;
 }
 
-AirTables MakeAirTables(const SingleScattering<float>& air, const MultipleScattering& multiple_scattering,
-                        const MediumTables& medium, const AirEye& eye, const AirTablesSize& size) {
+AirTables MakeAirTables(const SingleScattering<float>& air,
+                        const MultipleScattering& multiple_scattering, const MediumTables& medium,
+                        const AirEye& eye, const AirTablesSize& size) {
   RequireFourBands(air.medium());
   const SkyView view = ViewOf(air, multiple_scattering, eye, size.sky_fineness);
   const AirMap map(air.medium(), eye.altitude_m, eye.ceiling_m,

@@ -28,9 +28,9 @@
 #include <vector>
 
 #include "atmosphere/medium/medium.h"
-#include "atmosphere/refraction/refracted_view.h"
 #include "atmosphere/ray/shell.h"
 #include "atmosphere/ray/single_scattering.h"
+#include "atmosphere/refraction/refracted_view.h"
 #include "lut/multiple_scattering/multiple_scattering.h"
 #include "viewer/layer.h"
 
@@ -139,12 +139,14 @@ struct MediumTables {
 };
 
 /// @param beam  beam of the medium of `air`.
-[[nodiscard]] MediumTables MakeMediumTables(const SingleScattering<float>& air, const RefractedBeam& beam);
+[[nodiscard]] MediumTables MakeMediumTables(const SingleScattering<float>& air,
+                                            const RefractedBeam& beam);
 
 /// Computes the tables on the calling thread alone. `air`, `multiple_scattering` and `medium` must belong to
 /// one medium; no reference to them is kept. Throws InputError for a medium of more than four
 /// bands.
-[[nodiscard]] AirTables MakeAirTables(const SingleScattering<float>& air, const MultipleScattering& multiple_scattering,
+[[nodiscard]] AirTables MakeAirTables(const SingleScattering<float>& air,
+                                      const MultipleScattering& multiple_scattering,
                                       const MediumTables& medium, const AirEye& eye,
                                       const AirTablesSize& size);
 

@@ -7,9 +7,9 @@
 #include <cmath>
 #include <utility>
 
-#include "atmosphere/medium/medium_presets.h"
-#include "atmosphere/math/constants.h"
 #include "atmosphere/base/error.h"
+#include "atmosphere/math/constants.h"
+#include "atmosphere/medium/medium_presets.h"
 
 namespace alpenglow::viewer {
 namespace {
@@ -92,7 +92,8 @@ std::shared_ptr<const SolvedAir> SolveAir(const Medium& medium, AirSolution solu
     MediumTables tables = MakeMediumTables(air, beam);
     return std::make_shared<const SolvedAir>(SolvedAir{
         medium, solution, std::move(beam),
-        MultipleScattering(medium, solution == AirSolution::kDraft ? kDraft : MultipleScatteringOptions{}),
+        MultipleScattering(medium,
+                           solution == AirSolution::kDraft ? kDraft : MultipleScatteringOptions{}),
         std::move(tables)});
   });
 }

@@ -5,10 +5,10 @@
 #include <array>
 #include <cmath>
 
-#include "atmosphere/math/constants.h"
-#include "atmosphere/refraction/refraction.h"
 #include "atmosphere/astronomy/sun.h"
 #include "atmosphere/base/error.h"
+#include "atmosphere/math/constants.h"
+#include "atmosphere/refraction/refraction.h"
 #include "renderer/series/frame_times.h"
 
 namespace alpenglow::viewer {

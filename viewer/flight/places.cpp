@@ -9,9 +9,9 @@
 #include <cmath>
 #include <utility>
 
-#include "atmosphere/math/constants.h"
 #include "atmosphere/base/error.h"
 #include "atmosphere/base/parsing.h"
+#include "atmosphere/math/constants.h"
 #include "viewer/embedded_text.h"
 
 namespace alpenglow::viewer {

@@ -7,8 +7,8 @@
 #include <charconv>
 #include <optional>
 
-#include "atmosphere/embedded_text.h"
 #include "atmosphere/base/error.h"
+#include "atmosphere/embedded_text.h"
 #include "lut/embedded_text.h"
 #include "renderer/embedded_text.h"
 #include "viewer/layer.h"
@@ -99,10 +99,11 @@ class Stage {
 
 std::vector<ShaderPiece> SharedTexts() {
   std::vector<ShaderPiece> pieces;
-  for (const char* name : {"atmosphere/shared_glsl/shared_prelude.glsl", "atmosphere/ray/shell.glsl",
-                           "atmosphere/ray/optical_depth.glsl", "atmosphere/refraction/land_lift.glsl",
-                           "atmosphere/ray/ray_map.glsl", "atmosphere/medium/phase.glsl",
-                           "atmosphere/lamp/lamp_ray.glsl", "atmosphere/astronomy/disk_light.glsl"}) {
+  for (const char* name :
+       {"atmosphere/shared_glsl/shared_prelude.glsl", "atmosphere/ray/shell.glsl",
+        "atmosphere/ray/optical_depth.glsl", "atmosphere/refraction/land_lift.glsl",
+        "atmosphere/ray/ray_map.glsl", "atmosphere/medium/phase.glsl",
+        "atmosphere/lamp/lamp_ray.glsl", "atmosphere/astronomy/disk_light.glsl"}) {
     pieces.push_back({name, std::string(atmosphere::EmbeddedText(name))});
   }
   for (const char* name : {"lut/tables/transmittance_map.glsl", "lut/tables/scattering_map.glsl",

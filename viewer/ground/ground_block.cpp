@@ -151,25 +151,26 @@ std::vector<ShaderPiece> GroundTexts(const GroundMaterial& material, const LandK
   const auto water_line_m = material.WaterLine_m();
   const bool planet_is_water =
       (water_line_m && *water_line_m >= 0.0) || material.cover().kind == GroundCover::Kind::kWater;
-  return {{"ground constants",
-           fmt::format("#define GROUND_COVER {}\n#define HAS_SEA {}\n#define HAS_DRAPE {}\n#define "
-                       "HAS_LAND_COVER {}\n"
-                       "#define PLANET_IS_WATER {}\n#define PLANET_IS_LAND {}\n"
-                       "#define HAS_FINE_RELIEF {}\n"
-                       "#define LEVEL_SKY_LOWEST {:.9f}\n"
-                       "#define LEVEL_SKY_RANGE {:.9f}\n#define LEVEL_SKY_NODES {}.0\n"
-                       "#define SEA_MIRROR_SIDE {}.0\n"
-                       "#define OPEN_SKY_COLUMNS {}\n#define OPEN_SKY_ROWS {}\n",
-                       static_cast<int>(material.cover().kind), water_line_m ? 1 : 0,
-                       material.drape() != nullptr ? 1 : 0,
-                       material.drape() != nullptr && material.drape()->IsLandCover() ? 1 : 0,
-                       planet_is_water ? 1 : 0, land.is_there ? 1 : 0, land.has_fine_relief ? 1 : 0,
-                       LevelSky::kLowest_rad, LevelSky::kRange_rad, LevelSky::kNodes,
-                       SeaMirror::kSide, SkyIrradianceGradient::kColumns, SkyIrradianceGradient::kRows)},
-          ViewerPiece("viewer/ground/sky_irradiance_gradient.glsl"),
-          ViewerPiece("viewer/shaders/ground.glsl"),
-          ViewerPiece("viewer/shaders/ground_surface.glsl"),
-          ViewerPiece("viewer/shaders/ground_light.glsl")};
+  return {
+      {"ground constants",
+       fmt::format("#define GROUND_COVER {}\n#define HAS_SEA {}\n#define HAS_DRAPE {}\n#define "
+                   "HAS_LAND_COVER {}\n"
+                   "#define PLANET_IS_WATER {}\n#define PLANET_IS_LAND {}\n"
+                   "#define HAS_FINE_RELIEF {}\n"
+                   "#define LEVEL_SKY_LOWEST {:.9f}\n"
+                   "#define LEVEL_SKY_RANGE {:.9f}\n#define LEVEL_SKY_NODES {}.0\n"
+                   "#define SEA_MIRROR_SIDE {}.0\n"
+                   "#define OPEN_SKY_COLUMNS {}\n#define OPEN_SKY_ROWS {}\n",
+                   static_cast<int>(material.cover().kind), water_line_m ? 1 : 0,
+                   material.drape() != nullptr ? 1 : 0,
+                   material.drape() != nullptr && material.drape()->IsLandCover() ? 1 : 0,
+                   planet_is_water ? 1 : 0, land.is_there ? 1 : 0, land.has_fine_relief ? 1 : 0,
+                   LevelSky::kLowest_rad, LevelSky::kRange_rad, LevelSky::kNodes, SeaMirror::kSide,
+                   SkyIrradianceGradient::kColumns, SkyIrradianceGradient::kRows)},
+      ViewerPiece("viewer/ground/sky_irradiance_gradient.glsl"),
+      ViewerPiece("viewer/shaders/ground.glsl"),
+      ViewerPiece("viewer/shaders/ground_surface.glsl"),
+      ViewerPiece("viewer/shaders/ground_light.glsl")};
 }
 
 GroundTextures::GroundTextures(const MultipleScattering& multiple_scattering) {

@@ -12,10 +12,10 @@
 #include <memory>
 #include <vector>
 
+#include "renderer/scene/scene.h"
 #include "renderer/surface/colour_drape.h"
 #include "renderer/surface/scene_ground.h"
 #include "renderer/surface/surface.h"
-#include "renderer/scene/scene.h"
 #include "viewer/air/solved_air.h"
 #include "viewer/gl/gl_objects.h"
 #include "viewer/gl/shader.h"
@@ -72,8 +72,8 @@ static_assert(offsetof(GroundLightBlock, ground_view) == sizeof(glm::vec4));
 
 /// @param to_sun  unit vector in the frame of the eye.
 /// @param pixel_angle_rad  angle between neighbouring pixels; a larger angle gives coarser detail.
-[[nodiscard]] GroundLightBlock GroundLightBlockOf(const SkyIrradianceGradient& tilt, const glm::dvec3& to_sun,
-                                                  double pixel_angle_rad);
+[[nodiscard]] GroundLightBlock GroundLightBlockOf(const SkyIrradianceGradient& tilt,
+                                                  const glm::dvec3& to_sun, double pixel_angle_rad);
 
 /// Mirrors the uniform block `GroundSurface` of ground_surface.glsl.
 struct GroundSurfaceBlock {

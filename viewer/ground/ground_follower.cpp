@@ -91,7 +91,8 @@ std::array<float, 4> Over(const std::array<float, 4>& sky, const std::array<floa
 struct SharesOfOccludedSky {
   std::array<float, 4> all, sky;
 };
-SharesOfOccludedSky SharesAt(const GroundVertex& vertex, const GroundSky& sky, const SkyIrradianceGradient& open) {
+SharesOfOccludedSky SharesAt(const GroundVertex& vertex, const GroundSky& sky,
+                             const SkyIrradianceGradient& open) {
   const glm::dvec3 normal = InDoubles(vertex.normal), to_sun = sky.lighting().to_sun;
   const glm::dvec3 up = sky.site().geometry().UpAt(InDoubles(vertex.position_m));
   const double flat = std::max(std::hypot(to_sun.x, to_sun.y), 1e-9);
@@ -159,7 +160,8 @@ class GroundFollower::Maker {
     const SingleScattering<float> single_scattering(medium);
     const MultipleScattering& multiple_scattering = request.air->multiple_scattering;
     const glm::dvec3 to_sun = Direction(SunForAir(disk));
-    const OccludedSkyIrradiance sky(single_scattering, multiple_scattering, to_sun, OccludedSkyIrradiance::Extent{0.0, 1.0, 5e5});
+    const OccludedSkyIrradiance sky(single_scattering, multiple_scattering, to_sun,
+                                    OccludedSkyIrradiance::Extent{0.0, 1.0, 5e5});
     return SeaMirror::Of(sky, multiple_scattering, material.water(), to_sun);
   }
 
@@ -178,9 +180,10 @@ class GroundFollower::Maker {
     GeodeticPosition foot = request.view.eye;
     foot.height_m = 0.0;
     const Medium medium = OnOsculatingSphere(request.air->medium, foot.latitude_rad);
-    const SiteAir air{std::make_shared<const SingleScattering<float>>(medium),
-                      std::shared_ptr<const RefractedBeam>(request.air, &request.air->beam),
-                      std::shared_ptr<const MultipleScattering>(request.air, &request.air->multiple_scattering)};
+    const SiteAir air{
+        std::make_shared<const SingleScattering<float>>(medium),
+        std::shared_ptr<const RefractedBeam>(request.air, &request.air->beam),
+        std::shared_ptr<const MultipleScattering>(request.air, &request.air->multiple_scattering)};
     SceneGround ground = GroundOf(*grid, LocalFrame(EllipsoidOf(medium), foot));
     if (ground.terrain->mesh().triangles.empty()) return nullptr;  // no land is loaded there yet
     auto drape = drape_ ? drape_->In(ground.frame) : nullptr;

@@ -10,9 +10,9 @@
 #include <vector>
 
 #include "viewer/air/solved_air.h"
+#include "viewer/async/latest_job.h"
 #include "viewer/ground/lit_ground.h"
 #include "viewer/ground/sky_on_ground.h"
-#include "viewer/async/latest_job.h"
 #include "viewer/land/land_chunk.h"
 #include "viewer/shade/shafts.h"
 
@@ -95,7 +95,7 @@ class GroundFollower {
   struct Made {
     LightSource casts = LightSource::kSun;
     std::shared_ptr<const LitGround> lit;
-    std::shared_ptr<const GroundSky> other;   // null: it is not significant
+    std::shared_ptr<const GroundSky> other;                 // null: it is not significant
     std::optional<SkyIrradianceGradient> open, other_open;  // light of the open sky of each source
     std::array<std::vector<BandTexel>, kLightSources> sea_mirrors;
     double open_altitude_m = 0.0;

@@ -8,8 +8,8 @@
 #include <glm/geometric.hpp>
 #include <utility>
 
-#include "atmosphere/colour/spectrum.h"
 #include "atmosphere/base/error.h"
+#include "atmosphere/colour/spectrum.h"
 #include "viewer/ground/ground_block.h"
 
 namespace alpenglow::viewer {

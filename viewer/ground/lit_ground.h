@@ -24,16 +24,16 @@
 #include <span>
 #include <vector>
 
+#include "renderer/illumination/lighting.h"
+#include "renderer/illumination/terrain_irradiance.h"
+#include "renderer/lamps/lamp_light.h"
+#include "renderer/picture/ground_light.h"
+#include "renderer/scene/scene.h"
 #include "renderer/surface/scene_geometry.h"
 #include "renderer/surface/scene_ground.h"
 #include "renderer/surface/surface.h"
-#include "renderer/lamps/lamp_light.h"
-#include "renderer/illumination/lighting.h"
-#include "renderer/illumination/terrain_irradiance.h"
-#include "renderer/picture/ground_light.h"
-#include "renderer/scene/scene.h"
-#include "renderer/visibility/shadow_heights.h"
 #include "renderer/terrain/mesh.h"
+#include "renderer/visibility/shadow_heights.h"
 #include "viewer/layer.h"
 
 namespace alpenglow::viewer {

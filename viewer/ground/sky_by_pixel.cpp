@@ -25,7 +25,8 @@ void Clamp(GLenum target) {
 
 // Reorders the renderer's layout [level][azimuth][node][A, B][band] to rows of nodes.
 void UploadIntegrals(const GlTexture& texture, const OccludedSkyIrradiance::Tables& tables) {
-  constexpr std::size_t kNodes = OccludedSkyIrradiance::kNodes, kRows = OccludedSkyIrradiance::kLevels * kHorizonAzimuths;
+  constexpr std::size_t kNodes = OccludedSkyIrradiance::kNodes,
+                        kRows = OccludedSkyIrradiance::kLevels * kHorizonAzimuths;
   std::vector<float> texels(tables.integral.size());
   for (std::size_t row = 0; row < kRows; ++row) {
     for (std::size_t node = 0; node < kNodes; ++node) {
@@ -36,7 +37,8 @@ void UploadIntegrals(const GlTexture& texture, const OccludedSkyIrradiance::Tabl
   }
   glBindTexture(GL_TEXTURE_2D_ARRAY, texture.id());
   glTexImage3D(GL_TEXTURE_2D_ARRAY, 0, GL_RGBA16F, static_cast<GLsizei>(kNodes), 2 * kAzimuths,
-               static_cast<GLsizei>(OccludedSkyIrradiance::kLevels), 0, GL_RGBA, GL_FLOAT, texels.data());
+               static_cast<GLsizei>(OccludedSkyIrradiance::kLevels), 0, GL_RGBA, GL_FLOAT,
+               texels.data());
   Clamp(GL_TEXTURE_2D_ARRAY);
 }
 
@@ -60,7 +62,8 @@ glm::vec4 UnitOf(const TerrainInterreflection& slopes) {
 }
 
 // The layers of azimuths come first, followed by the layers of their weights.
-void UploadSlopes(const GlTexture& texture, const TerrainInterreflection& slopes, const glm::vec4& unit) {
+void UploadSlopes(const GlTexture& texture, const TerrainInterreflection& slopes,
+                  const glm::vec4& unit) {
   const SlopeViews& views = slopes.views();
   const std::size_t nodes = views.places().size();
   std::vector<float> texels(nodes * (kHorizonAzimuths + kWeightLayers) * kFour);
@@ -117,7 +120,8 @@ void SkyByPixel::Use(LightSource source, const GroundFollower::SkyOfSource& sky)
 }
 
 SkyByPixelBlock SkyByPixel::BlockOf(LightSource source, const LocalFrame& eye,
-                                    const glm::dvec3& to_sun_for_air, const SkyIrradianceGradient& now) const {
+                                    const glm::dvec3& to_sun_for_air,
+                                    const SkyIrradianceGradient& now) const {
   const OfSource& of = *of_source_[IndexOf(source)];
   const GroundSky& sky = *of.sky.sky;
   const LocalFrame& site = sky.site().ground().frame;
@@ -132,10 +136,10 @@ SkyByPixelBlock SkyByPixel::BlockOf(LightSource source, const LocalFrame& eye,
   const OccludedSkyIrradiance::Tables tables = sky.lighting().on_terrain->sky().tables();
   const double mu_s_now = site.EnuFromEcef(eye.EcefFromEnu(Vector<Enu>{to_sun_for_air})).xyz.z;
   const double moved = sky.lighting().to_sun_for_air.z - mu_s_now;
-  block.sky_place = {-tables.lowest_m / kMetresPerKilometre,
-                     kMetresPerKilometre / (tables.highest_m - tables.lowest_m),
-                     moved - tables.first_mu_s,
-                     1.0 / (tables.mu_s_step * static_cast<double>(OccludedSkyIrradiance::kSuns - 1))};
+  block.sky_place = {
+      -tables.lowest_m / kMetresPerKilometre,
+      kMetresPerKilometre / (tables.highest_m - tables.lowest_m), moved - tables.first_mu_s,
+      1.0 / (tables.mu_s_step * static_cast<double>(OccludedSkyIrradiance::kSuns - 1))};
   return block;
 }
 
@@ -158,11 +162,12 @@ void SkyByPixel::Bind(const ShaderProgram& program, int first_unit, LightSource 
 }
 
 std::vector<ShaderPiece> SkyByPixelTexts() {
-  return {{"sky by pixel",
-           fmt::format("#define SKY_LOWEST ({:.9f})\n#define SKY_NODES {}.0\n"
-                       "#define SKY_LEVELS {}.0\n#define SKY_SUNS {}.0\n",
-                       HorizonMap::kLowest, OccludedSkyIrradiance::kNodes, OccludedSkyIrradiance::kLevels, OccludedSkyIrradiance::kSuns)},
-          ViewerPiece("viewer/shaders/sky_by_pixel.glsl")};
+  return {
+      {"sky by pixel", fmt::format("#define SKY_LOWEST ({:.9f})\n#define SKY_NODES {}.0\n"
+                                   "#define SKY_LEVELS {}.0\n#define SKY_SUNS {}.0\n",
+                                   HorizonMap::kLowest, OccludedSkyIrradiance::kNodes,
+                                   OccludedSkyIrradiance::kLevels, OccludedSkyIrradiance::kSuns)},
+      ViewerPiece("viewer/shaders/sky_by_pixel.glsl")};
 }
 
 }  // namespace alpenglow::viewer

@@ -40,7 +40,8 @@ class SkyByPixel {
   /// to_sun_for_air: direction to the source in this frame.
   /// @param now  current light of the open sky, at the altitude of the one given to Use.
   [[nodiscard]] SkyByPixelBlock BlockOf(LightSource source, const LocalFrame& eye,
-                                        const glm::dvec3& to_sun_for_air, const SkyIrradianceGradient& now) const;
+                                        const glm::dvec3& to_sun_for_air,
+                                        const SkyIrradianceGradient& now) const;
 
   /// Binds four textures, beginning with `first_unit`, and assigns the samplers of a program to
   /// them.

@@ -7,8 +7,8 @@
 #include <glm/vec3.hpp>
 #include <vector>
 
-#include "atmosphere/math/constants.h"
 #include "atmosphere/base/error.h"
+#include "atmosphere/math/constants.h"
 #include "lut/sky/sky_view.h"
 #include "renderer/material/band_light.h"
 
@@ -23,7 +23,8 @@ BandTexel TexelOf(const BandLight& light) {
   return texel;
 }
 
-BandLight Shown(const OccludedSkyIrradiance& sky, const Water& water, double mu_s, const glm::dvec3& to_eye) {
+BandLight Shown(const OccludedSkyIrradiance& sky, const Water& water, double mu_s,
+                const glm::dvec3& to_eye) {
   BandLight sum(sky.bands());
   const MirroredRays mirrored = water.Mirrored(kUp, to_eye);
   for (const MirroredRay& ray : mirrored.All())
@@ -49,7 +50,8 @@ std::vector<BandTexel> LevelSky::Of(const MultipleScattering& multiple_scatterin
 }
 
 // The sectors of the sky are not symmetric about the sun, so the mean of both sides is used.
-std::vector<BandTexel> SeaMirror::Of(const OccludedSkyIrradiance& sky, const MultipleScattering& multiple_scattering,
+std::vector<BandTexel> SeaMirror::Of(const OccludedSkyIrradiance& sky,
+                                     const MultipleScattering& multiple_scattering,
                                      const Water& water, const glm::dvec3& to_sun) {
   const double mu_s = std::clamp(to_sun.z, -1.0, 1.0);
   const BandLight level = multiple_scattering.SkyIrradiance(0.0, mu_s);
@@ -143,10 +145,12 @@ std::array<float, 4> NodeAt(const std::vector<SkyPart>& parts, float sunward, fl
 
 }  // namespace
 
-SkyIrradianceGradient::SkyIrradianceGradient(const SingleScattering<float>& air, const MultipleScattering& multiple_scattering, double altitude_m,
-                 double mu_s) {
+SkyIrradianceGradient::SkyIrradianceGradient(const SingleScattering<float>& air,
+                                             const MultipleScattering& multiple_scattering,
+                                             double altitude_m, double mu_s) {
   ALPENGLOW_ENSURE(air.bands(), <=, std::size_t{4});
-  const std::vector<SkyPart> parts = PartsOf(SkyView(air, multiple_scattering, altitude_m, mu_s, kCoarseSky));
+  const std::vector<SkyPart> parts =
+      PartsOf(SkyView(air, multiple_scattering, altitude_m, mu_s, kCoarseSky));
   for (std::size_t row = 0; row < kRows; ++row) {
     for (std::size_t column = 0; column < kColumns; ++column) {
       const float sunward = static_cast<float>(column) / 4.0F - 1.0F;

@@ -25,9 +25,9 @@
 #include <vector>
 
 #include "atmosphere/shared_glsl/shared_math.h"
+#include "renderer/illumination/occluded_sky.h"
 #include "renderer/material/band_light.h"
 #include "renderer/material/reflectance.h"
-#include "renderer/illumination/occluded_sky.h"
 #include "viewer/layer.h"
 
 namespace alpenglow::viewer {
@@ -44,7 +44,8 @@ struct LevelSky {
   /// Returns the table. The relative error between nodes is below 2e-3.
   [[nodiscard]] static std::vector<BandTexel> Of(const MultipleScattering& multiple_scattering);
   /// Returns the exact value.
-  [[nodiscard]] static BandLight Under(const MultipleScattering& multiple_scattering, double sun_elevation_rad);
+  [[nodiscard]] static BandLight Under(const MultipleScattering& multiple_scattering,
+                                       double sun_elevation_rad);
 };
 
 /// Mirrored radiance [1/sr] relative to LevelSky; a row has one mu_eye.
@@ -52,7 +53,8 @@ struct SeaMirror {
   static constexpr std::size_t kSide = 48;
 
   /// @param sky  sky of the same sun.
-  [[nodiscard]] static std::vector<BandTexel> Of(const OccludedSkyIrradiance& sky, const MultipleScattering& multiple_scattering,
+  [[nodiscard]] static std::vector<BandTexel> Of(const OccludedSkyIrradiance& sky,
+                                                 const MultipleScattering& multiple_scattering,
                                                  const Water& water, const glm::dvec3& to_sun);
 };
 
@@ -75,8 +77,9 @@ struct SkyIrradianceGradient {
   std::array<std::array<float, 4>, kColumns * kRows> nodes{};
 
   /// @param air, multiple_scattering  of one medium; mu_s: zenith cosine of the sun or moon.
-  SkyIrradianceGradient(const SingleScattering<float>& air, const MultipleScattering& multiple_scattering, double altitude_m,
-          double mu_s);
+  SkyIrradianceGradient(const SingleScattering<float>& air,
+                        const MultipleScattering& multiple_scattering, double altitude_m,
+                        double mu_s);
 
   /// Returns the irradiance on a slope whose unit normal has these components upwards and towards
   /// the sun.

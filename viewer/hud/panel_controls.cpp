@@ -7,11 +7,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "atmosphere/astronomy/sun.h"
+#include "atmosphere/base/error.h"
 #include "atmosphere/colour/spectrum.h"
 #include "atmosphere/math/constants.h"
 #include "atmosphere/refraction/refracted_view.h"
-#include "atmosphere/astronomy/sun.h"
-#include "atmosphere/base/error.h"
 #include "lut/image/image.h"
 #include "lut/image/tone_mapping.h"
 #include "lut/sky/sky_view_map.h"
@@ -89,8 +89,8 @@ bool LooksTheSame(const DayStripRequest& a, const DayStripRequest& b) {
       std::max(std::abs(a.place.latitude_rad - b.place.latitude_rad),
                std::abs(std::remainder(a.place.longitude_rad - b.place.longitude_rad, 2.0 * kPi)) *
                    std::cos(a.place.latitude_rad));
-  return a.air == b.air && a.multiple_scattering == b.multiple_scattering && a.columns == b.columns && a.begin == b.begin &&
-         apart_rad < kAngle_rad &&
+  return a.air == b.air && a.multiple_scattering == b.multiple_scattering &&
+         a.columns == b.columns && a.begin == b.begin && apart_rad < kAngle_rad &&
          std::abs(a.place.height_m - b.place.height_m) <
              std::max(kHeight_m, kShareOfHeight * std::abs(a.place.height_m));
 }

@@ -29,8 +29,9 @@
 namespace alpenglow::viewer {
 
 struct DayStripRequest {
-  std::shared_ptr<const SingleScattering<float>> air;  // not null; for the same medium as `multiple_scattering`
-  std::shared_ptr<const MultipleScattering> multiple_scattering;      // not null
+  std::shared_ptr<const SingleScattering<float>>
+      air;  // not null; for the same medium as `multiple_scattering`
+  std::shared_ptr<const MultipleScattering> multiple_scattering;  // not null
   GeodeticPosition place;
   UtcInstant begin;  // start of the 24 hours shown
   int columns = 96;  // >= 2

@@ -8,8 +8,8 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 
-#include "atmosphere/math/constants.h"
 #include "atmosphere/astronomy/sun.h"
+#include "atmosphere/math/constants.h"
 
 namespace alpenglow::viewer {
 namespace {

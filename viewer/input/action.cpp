@@ -18,7 +18,8 @@ static_assert(kShiftKey == GLFW_MOD_SHIFT && kControlKey == GLFW_MOD_CONTROL &&
               kAltKey == GLFW_MOD_ALT);
 
 constexpr Modes kAll{true, true, true}, kFree{true, false, false}, kAircraft{false, true, false},
-    kTrack{false, false, true}, kFlightController{false, true, true}, kNotAircraft{true, false, true};
+    kTrack{false, false, true}, kFlightController{false, true, true},
+    kNotAircraft{true, false, true};
 constexpr Press kOnce = Press::kOnce, kAgain = Press::kRepeating, kHeld = Press::kHeld;
 constexpr std::string_view kAllKeys = "Everywhere", kCameraKeys = "Free camera",
                            kSpeedKeys = "Free camera and track", kTrackKeys = "Track",

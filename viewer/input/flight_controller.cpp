@@ -83,13 +83,14 @@ std::optional<Autopilot::Hold> HoldOf(Action action) {
 }  // namespace
 
 std::optional<std::string> FlightController::Do(Action action, const GroundHeight& ground,
-                                       const MoonEventAfter& moon) {
+                                                const MoonEventAfter& moon) {
   if (auto said = DoFlight(action, ground)) return said;
   if (auto said = DoAutopilot(action)) return said;
   return DoTime(action, moon);
 }
 
-void FlightController::Advance(const PilotControls& controls, double seconds, const GroundHeight& ground) {
+void FlightController::Advance(const PilotControls& controls, double seconds,
+                               const GroundHeight& ground) {
   const bool stands = clock_.paused() && pilot_.mode() != FlightMode::kFree;
   const bool replays = pilot_.Replays() && !pilot_.IsAtEndOfTrack();
   const auto before = replays ? pilot_.TrackUtc() : std::nullopt;
@@ -118,7 +119,8 @@ void FlightController::EndReplay(const GroundHeight& ground) {
   }
 }
 
-void FlightController::Replay(std::shared_ptr<const CameraPath> flight, const GroundHeight& ground) {
+void FlightController::Replay(std::shared_ptr<const CameraPath> flight,
+                              const GroundHeight& ground) {
   waits_.reset();
   clock_.Pause(false);
   pilot_.PutAt(pilot_.eye(), ground);  // leaves the current track
@@ -126,7 +128,8 @@ void FlightController::Replay(std::shared_ptr<const CameraPath> flight, const Gr
   static_cast<void>(Enter(FlightMode::kTrack, ground));
 }
 
-void FlightController::FlyAgain(std::shared_ptr<const CameraPath> flown, const GroundHeight& ground) {
+void FlightController::FlyAgain(std::shared_ptr<const CameraPath> flown,
+                                const GroundHeight& ground) {
   Pilot now = pilot_.Replays() && waits_ ? *waits_ : pilot_;
   Replay(std::move(flown), ground);
   waits_ = std::move(now);

@@ -9,12 +9,12 @@
 #include <glm/geometric.hpp>
 #include <utility>
 
-#include "atmosphere/math/constants.h"
-#include "atmosphere/ray/shell.h"
 #include "atmosphere/astronomy/sun.h"
 #include "atmosphere/base/error.h"
-#include "renderer/surface/scene_geometry.h"
+#include "atmosphere/math/constants.h"
+#include "atmosphere/ray/shell.h"
 #include "renderer/media/fog_light.h"
+#include "renderer/surface/scene_geometry.h"
 #include "viewer/gl/gl_context.h"
 #include "viewer/gl/render_target.h"
 #include "viewer/lamps/scene_lamps.h"
@@ -45,8 +45,8 @@ class FogMarch {
         view_(view),
         radius_m_(air.air.medium().planet_radius_m),
         eye_(0.0, 0.0, std::max(view.altitude_m, 0.0)),
-        light_(fog, air.multiple_scattering, {view.to_sun, view.to_sun_for_air, SunInAir(Head(bottom_m))},
-               bottom_m) {}
+        light_(fog, air.multiple_scattering,
+               {view.to_sun, view.to_sun_for_air, SunInAir(Head(bottom_m))}, bottom_m) {}
 
   [[nodiscard]] const FogLight& light() const { return light_; }
 
@@ -356,9 +356,10 @@ void SceneFog::BeginIn(const std::shared_ptr<const SolvedAir>& air, double latit
   follower_.emplace([air, media = media_, size = size_, latitude_rad](const FogView& wanted) {
     tbb::task_arena alone(1);
     return alone.execute([&] {
-      const SingleScattering<float> single_scattering(OnOsculatingSphere(air->medium, latitude_rad));
-      return MakeFogMap(*media->fog(), media->fog_bottom_m(), {single_scattering, air->beam, air->multiple_scattering},
-                        wanted, size);
+      const SingleScattering<float> single_scattering(
+          OnOsculatingSphere(air->medium, latitude_rad));
+      return MakeFogMap(*media->fog(), media->fog_bottom_m(),
+                        {single_scattering, air->beam, air->multiple_scattering}, wanted, size);
     });
   });
 }

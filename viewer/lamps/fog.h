@@ -28,10 +28,10 @@
 #include "renderer/illumination/lighting.h"
 #include "renderer/media/local_media.h"
 #include "viewer/air/solved_air.h"
+#include "viewer/async/latest_job.h"
 #include "viewer/flight/flight.h"
 #include "viewer/gl/gl_objects.h"
 #include "viewer/gl/shader.h"
-#include "viewer/async/latest_job.h"
 #include "viewer/layer.h"
 
 namespace alpenglow::viewer {

@@ -47,7 +47,8 @@ std::array<double, kSlopeTerms> TermsOf(const glm::dvec3& normal) {
     std::array<double, kSlopeTerms> one{};
     one[k] = 1.0;
     of_term[k] =
-        shared::LampAirlightOnSlope(normal.x, normal.z, one[0], one[1], one[2], one[3], one[4]) - 1.0;
+        shared::LampAirlightOnSlope(normal.x, normal.z, one[0], one[1], one[2], one[3], one[4]) -
+        1.0;
   }
   return of_term;
 }

@@ -72,7 +72,8 @@ struct LampShadowField {
 
 /// Computes a plan. It takes 0.1 s per level: half a million rays where shadows are intricate.
 /// `stage` must have terrain.
-[[nodiscard]] LampShadowField LampShadowFieldAround(const LampStage& stage, const Lamp& lamp, int levels);
+[[nodiscard]] LampShadowField LampShadowFieldAround(const LampStage& stage, const Lamp& lamp,
+                                                    int levels);
 
 class LampShadowFieldFollower {
  public:

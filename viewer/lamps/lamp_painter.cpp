@@ -5,9 +5,9 @@
 
 #include <array>
 
-#include "atmosphere/medium/phase_table.h"
-#include "atmosphere/math/numerics.h"
 #include "atmosphere/base/error.h"
+#include "atmosphere/math/numerics.h"
+#include "atmosphere/medium/phase_table.h"
 #include "viewer/gl/gl_context.h"
 #include "viewer/lamps/ground_under_lamps.h"
 #include "viewer/lamps/scene_lamps.h"
@@ -88,8 +88,8 @@ LampPainter::LampPainter(const SceneLamps& shape, const LampQuality& quality,
   corners.insert(corners.end(), texts_.begin(), texts_.end() - 1);
   corners.push_back(ViewerPiece("viewer/shaders/lamps/lamp_corners.glsl"));
   if (quality.step > 1) {
-    glow_program_.emplace(
-        FullScreenProgram(WithViewerPieces(texts, {"viewer/shaders/lamps/lamp_airlight.frag.glsl"})));
+    glow_program_.emplace(FullScreenProgram(
+        WithViewerPieces(texts, {"viewer/shaders/lamps/lamp_airlight.frag.glsl"})));
     core_program_.emplace(WithViewerPieces(corners, {"viewer/shaders/lamps/lamp_core.vert.glsl"}),
                           WithViewerPieces(texts, {"viewer/shaders/lamps/lamp_core.frag.glsl"}));
     Connect(*glow_program_);

@@ -10,9 +10,9 @@
 #include <numeric>
 #include <queue>
 
+#include "atmosphere/base/error.h"
 #include "atmosphere/colour/spectrum.h"
 #include "atmosphere/math/constants.h"
-#include "atmosphere/base/error.h"
 
 namespace alpenglow::viewer {
 

@@ -19,9 +19,9 @@
 #include <string>
 #include <vector>
 
+#include "atmosphere/colour/spectrum.h"
 #include "atmosphere/medium/medium.h"
 #include "atmosphere/medium/phase.h"
-#include "atmosphere/colour/spectrum.h"
 #include "atmosphere/time_place/geodesy.h"
 #include "renderer/lamps/lamp_tree.h"
 #include "renderer/lamps/placed_lamp.h"
@@ -186,7 +186,8 @@ class SceneLamps {
     int first_layer, levels;
   };
   std::vector<PlannedLamp> planned_;
-  std::optional<LampShadowFieldFollower> plans_;  // last member, because its thread reads the ones above
+  std::optional<LampShadowFieldFollower>
+      plans_;  // last member, because its thread reads the ones above
 };
 
 /// Returns the visibility of a place over terrain up to a distance: [ring * kShadeTurns + turn],

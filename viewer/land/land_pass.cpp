@@ -66,9 +66,9 @@ namespace {
 constexpr GLuint kLandBinding = 8;
 
 std::vector<ShaderPiece> Vertices() {
-  return WithViewerPieces(SharedTexts(),
-                          {"viewer/shaders/view_block.glsl", "viewer/shaders/refracted_view_rays.glsl",
-                           "viewer/shaders/land_block.glsl", "viewer/shaders/land.vert.glsl"});
+  return WithViewerPieces(
+      SharedTexts(), {"viewer/shaders/view_block.glsl", "viewer/shaders/refracted_view_rays.glsl",
+                      "viewer/shaders/land_block.glsl", "viewer/shaders/land.vert.glsl"});
 }
 
 // Returns whether depth can run from 1 at the near plane to 0 at infinity. A float depth buffer

@@ -10,8 +10,8 @@
 #include <glm/vec4.hpp>
 #include <utility>
 
-#include "atmosphere/math/constants.h"
 #include "atmosphere/base/error.h"
+#include "atmosphere/math/constants.h"
 #include "lut/cli/program.h"
 #include "viewer/land/seen_chunks.h"
 

@@ -60,7 +60,7 @@ PaintedView OnScreen(const PaintedView& view, const ToneMapPass::Screen& screen)
 }  // namespace
 
 void DisplayPass::DrawUpscaled(SkyPainter& painter, const PaintedView& view, double ev100,
-                             const ToneMapPass::Screen& screen) {
+                               const ToneMapPass::Screen& screen) {
   Fit(outline_, screen.width, screen.height);
   painter.PaintOutline(*outline_);
   painter.Time("develop");
@@ -74,7 +74,8 @@ void DisplayPass::DrawUpscaled(SkyPainter& painter, const PaintedView& view, dou
 // Draws disks and stars. Their edges differ from those of land, so around them the linear light is
 // upscaled before it is tone-mapped.
 void DisplayPass::PrintBodies(SkyPainter& painter, const PaintedView& view, double ev100,
-                           const ToneMapPass::Screen& screen, const std::vector<PixelBox>& boxes) {
+                              const ToneMapPass::Screen& screen,
+                              const std::vector<PixelBox>& boxes) {
   if (boxes.empty()) return;
   painter.Time("bodies");
   Fit(light_, screen.width, screen.height, PixelFormat::kRgba32F);
@@ -89,7 +90,7 @@ void DisplayPass::PrintBodies(SkyPainter& painter, const PaintedView& view, doub
 // programs are therefore drawn once in the second and third frame, over one pixel that is
 // overwritten afterwards, instead of when the picture is first reduced.
 void DisplayPass::MakeReady(SkyPainter& painter, const PaintedView& view, double ev100,
-                         const ToneMapPass::Screen& screen) {
+                            const ToneMapPass::Screen& screen) {
   constexpr PixelBox kOnePixel{0, 0, 1, 1};
   if (prints_ == 2) {
     const Scissor within(kOnePixel);
@@ -99,7 +100,7 @@ void DisplayPass::MakeReady(SkyPainter& painter, const PaintedView& view, double
 }
 
 void DisplayPass::Print(SkyPainter& painter, const PaintedView& view, double ev100,
-                     const ToneMapPass::Screen& screen) {
+                        const ToneMapPass::Screen& screen) {
   ++prints_;
   MakeReady(painter, view, ev100, screen);
   if (Upscales(view, screen)) {

@@ -15,8 +15,8 @@
 #include "viewer/gl/render_target.h"
 #include "viewer/gl/shader.h"
 #include "viewer/land/land_pass.h"
-#include "viewer/passes/tone_map_pass.h"
 #include "viewer/passes/sky_painter.h"
+#include "viewer/passes/tone_map_pass.h"
 #include "viewer/shaders/full_screen.h"
 
 namespace alpenglow::viewer {
@@ -56,7 +56,7 @@ class Upscaler {
 class DisplayPass {
  public:
   explicit DisplayPass(const Look& look,
-                    ToneMapPass::FirstPictures first = ToneMapPass::FirstPictures::kWait)
+                       ToneMapPass::FirstPictures first = ToneMapPass::FirstPictures::kWait)
       : developer_(look, first) {}
 
   [[nodiscard]] ToneMapPass& developer() { return developer_; }
@@ -73,7 +73,7 @@ class DisplayPass {
 
  private:
   void DrawUpscaled(SkyPainter& painter, const PaintedView& view, double ev100,
-                     const ToneMapPass::Screen& screen);
+                    const ToneMapPass::Screen& screen);
   void PrintBodies(SkyPainter& painter, const PaintedView& view, double ev100,
                    const ToneMapPass::Screen& screen, const std::vector<PixelBox>& boxes);
   void MakeReady(SkyPainter& painter, const PaintedView& view, double ev100,

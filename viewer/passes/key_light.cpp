@@ -4,10 +4,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "atmosphere/math/constants.h"
-#include "atmosphere/refraction/refracted_view.h"
-#include "atmosphere/ray/single_scattering.h"
 #include "atmosphere/astronomy/eclipse.h"
+#include "atmosphere/math/constants.h"
+#include "atmosphere/ray/single_scattering.h"
+#include "atmosphere/refraction/refracted_view.h"
 #include "renderer/illumination/lighting.h"
 #include "viewer/shaders/uniform_blocks.h"
 

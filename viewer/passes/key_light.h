@@ -9,8 +9,8 @@
 #include <glm/vec4.hpp>
 #include <optional>
 
-#include "atmosphere/colour/spectrum.h"
 #include "atmosphere/astronomy/sun.h"
+#include "atmosphere/colour/spectrum.h"
 #include "atmosphere/time_place/time.h"
 #include "viewer/air/solved_air.h"
 

@@ -24,8 +24,9 @@ void Upload(const GlTexture& map, int unit, int columns, int rows,
 
 }  // namespace
 
-NightSkyMap NightSkyMapOver(const GeodeticPosition& eye, const UtcInstant& now, const Medium& medium,
-                          const BandColour& colour, const SceneSkyglow& towns) {
+NightSkyMap NightSkyMapOver(const GeodeticPosition& eye, const UtcInstant& now,
+                            const Medium& medium, const BandColour& colour,
+                            const SceneSkyglow& towns) {
   const SingleScattering<float> air(OnOsculatingSphere(medium, eye.latitude_rad));
   std::optional<BandLight> town_light;
   if (towns.zenith) town_light = Skyglow(*towns.zenith, towns.ground_m, air, colour);
@@ -45,8 +46,8 @@ NightSkyMap NightSkyMapOver(const GeodeticPosition& eye, const UtcInstant& now, 
 NightSkyMapFollower::NightSkyMapFollower(const SceneSkyglow& towns)
     : maker_([towns](const Request& request) {
         const Medium& medium = request.air->medium;
-        return NightSkyMapOver(request.place, request.now, medium, BandColour(medium.wavelengths_nm),
-                              towns);
+        return NightSkyMapOver(request.place, request.now, medium,
+                               BandColour(medium.wavelengths_nm), towns);
       }) {}
 
 // Returns whether the requested map is close enough. The sky may rotate by an eighth of a degree, a
@@ -70,7 +71,7 @@ void NightSkyMapFollower::Take(int unit) {
 }
 
 void NightSkyMapFollower::Follow(const PaintedView& view,
-                                const std::shared_ptr<const SolvedAir>& air, bool waits) {
+                                 const std::shared_ptr<const SolvedAir>& air, bool waits) {
   const Request wanted{view.eye.place, view.now, air};
   if (waits) maker_.Wait();
   Take(kNightUnit);

@@ -11,9 +11,9 @@
 
 #include "atmosphere/colour/spectrum.h"
 #include "viewer/air/solved_air.h"
+#include "viewer/async/latest_job.h"
 #include "viewer/gl/gl_objects.h"
 #include "viewer/gl/shader.h"
-#include "viewer/async/latest_job.h"
 #include "viewer/passes/painted_view.h"
 
 namespace alpenglow::viewer {
@@ -36,8 +36,8 @@ struct SceneSkyglow {
 };
 
 [[nodiscard]] NightSkyMap NightSkyMapOver(const GeodeticPosition& eye, const UtcInstant& now,
-                                        const Medium& medium, const BandColour& colour,
-                                        const SceneSkyglow& towns = {});
+                                          const Medium& medium, const BandColour& colour,
+                                          const SceneSkyglow& towns = {});
 
 /// Keeps the map up to date. Must be used on the thread whose OpenGL context is current at
 /// construction.

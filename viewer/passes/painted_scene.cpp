@@ -181,9 +181,10 @@ void PaintedScene::KeepUpOpenSkies(const LightsOfSky& lights, Pace pace) {
         std::abs(sky->elevation_rad - elevation_rad) <= left_rad)
       continue;
     sky = OccludedSkyOf{known_air_,
-                    altitude_m,
-                    elevation_rad,
-                    {*single_scattering_, known_air_->multiple_scattering, altitude_m, std::sin(elevation_rad)}};
+                        altitude_m,
+                        elevation_rad,
+                        {*single_scattering_, known_air_->multiple_scattering, altitude_m,
+                         std::sin(elevation_rad)}};
   }
 }
 

@@ -8,11 +8,11 @@
 #include <optional>
 #include <vector>
 
-#include "atmosphere/ray/single_scattering.h"
 #include "atmosphere/astronomy/sun.h"
+#include "atmosphere/ray/single_scattering.h"
+#include "renderer/scene/scene.h"
 #include "renderer/surface/scene_ground.h"
 #include "renderer/surface/surface.h"
-#include "renderer/scene/scene.h"
 #include "viewer/air/air_follower.h"
 #include "viewer/ground/ground_block.h"
 #include "viewer/ground/ground_follower.h"
@@ -138,9 +138,9 @@ class PaintedScene {
   SceneGround lamp_ground_;
   SceneDrape drape_;
   GroundMaterial material_;
-  AirView sun_view_;                                // the last view in which the sun was a light
-  AirFollower air_;                                 // at sun_view_
-  std::shared_ptr<const SolvedAir> known_air_;      // the medium in ground_textures_
+  AirView sun_view_;                            // the last view in which the sun was a light
+  AirFollower air_;                             // at sun_view_
+  std::shared_ptr<const SolvedAir> known_air_;  // the medium in ground_textures_
   std::optional<SingleScattering<float>> single_scattering_;  // of known_air_
   std::array<std::optional<OccludedSkyOf>, kLightSources> open_skies_;
   std::optional<AirFollower> moon_air_;           // once the moon is a light

@@ -6,8 +6,8 @@
 #include <glm/geometric.hpp>
 
 #include "atmosphere/math/constants.h"
-#include "atmosphere/refraction/refracted_view.h"
 #include "atmosphere/ray/shell.h"
+#include "atmosphere/refraction/refracted_view.h"
 #include "renderer/camera/camera_rays.h"
 #include "viewer/air/air_rows.h"
 
@@ -138,7 +138,7 @@ double RefractedDisk::Change() const {
 }
 
 RefractedDisk RefractedDiskOf(const Medium& medium, double height_m, double elevation_rad,
-                    double radius_rad) {
+                              double radius_rad) {
   const BendingAir air = GentleAirOf(medium);
   const double horizon_rad = GrazingElevation(air, height_m);
   // No part of a disk is visible below the horizon.
@@ -165,8 +165,8 @@ RefractedDisk RefractedDiskOf(const Medium& medium, double height_m, double elev
 }
 
 const RefractedDisk* RefractedDiskFollower::Follow(const std::shared_ptr<const SolvedAir>& air,
-                                         double height_m, double elevation_rad, double radius_rad,
-                                         double half_pixel_rad) {
+                                                   double height_m, double elevation_rad,
+                                                   double radius_rad, double half_pixel_rad) {
   constexpr double kLow_rad = 10.0 * kRadiansPerDegree;
   const double horizon_rad = GrazingElevation(GentleAirOf(air->medium), height_m);
   if (elevation_rad > kLow_rad || elevation_rad < horizon_rad - 2.0 * radius_rad) return nullptr;

@@ -15,9 +15,9 @@
 #include <memory>
 #include <optional>
 
+#include "atmosphere/astronomy/sun.h"
 #include "atmosphere/medium/medium.h"
 #include "atmosphere/refraction/refracted_view.h"
-#include "atmosphere/astronomy/sun.h"
 #include "viewer/air/solved_air.h"
 #include "viewer/flight/flight.h"
 #include "viewer/gl/gl_objects.h"
@@ -90,17 +90,17 @@ struct RefractedDisk {
 
 /// Computes the refraction of a disk, which takes some milliseconds.
 /// @param elevation_rad, radius_rad  of the disk, apparent.
-[[nodiscard]] RefractedDisk RefractedDiskOf(const Medium& medium, double height_m, double elevation_rad,
-                                  double radius_rad);
+[[nodiscard]] RefractedDisk RefractedDiskOf(const Medium& medium, double height_m,
+                                            double elevation_rad, double radius_rad);
 
 /// Keeps a RefractedDisk as long as eye and disk move little.
 class RefractedDiskFollower {
  public:
   /// Returns null if the disk is so high, or so far below the horizon, that it is round, or if no
   /// part of it moves by `half_pixel_rad`.
-  [[nodiscard]] const RefractedDisk* Follow(const std::shared_ptr<const SolvedAir>& air, double height_m,
-                                       double elevation_rad, double radius_rad,
-                                       double half_pixel_rad);
+  [[nodiscard]] const RefractedDisk* Follow(const std::shared_ptr<const SolvedAir>& air,
+                                            double height_m, double elevation_rad,
+                                            double radius_rad, double half_pixel_rad);
 
  private:
   struct Made {

@@ -18,8 +18,8 @@
 #include <set>
 #include <vector>
 
-#include "atmosphere/medium/phase.h"
 #include "atmosphere/astronomy/sun.h"
+#include "atmosphere/medium/phase.h"
 #include "renderer/surface/surface.h"
 #include "viewer/air/air_follower.h"
 #include "viewer/air/solved_air.h"

@@ -18,8 +18,8 @@
 #include "renderer/picture/picture_layers.h"
 #include "renderer/picture/render.h"
 #include "renderer/scene/scene.h"
-#include "viewer/flight/flight.h"
 #include "viewer/async/latest_job.h"
+#include "viewer/flight/flight.h"
 #include "viewer/layer.h"
 
 namespace alpenglow::viewer {

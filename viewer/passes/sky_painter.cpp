@@ -4,11 +4,11 @@
 #include <algorithm>
 #include <cmath>
 
-#include "atmosphere/refraction/refracted_view.h"
 #include "atmosphere/astronomy/eclipse.h"
 #include "atmosphere/astronomy/moon.h"
-#include "renderer/surface/scene_ground.h"
+#include "atmosphere/refraction/refracted_view.h"
 #include "renderer/illumination/lighting.h"
+#include "renderer/surface/scene_ground.h"
 #include "viewer/gl/gl_context.h"
 #include "viewer/gl/gl_objects.h"
 #include "viewer/passes/painted_view.h"
@@ -183,7 +183,8 @@ SkyPainter::DisksInAir SkyPainter::InAir(const SkyDisks& disks, const PaintedVie
                            0.5 * PixelAngle(view));
   };
   const GeodeticPosition& place = view.eye.place;
-  DisksInAir seen{disks, follow(refracted_sun_, DirectionToSun(disks.sun), disks.sun.angular_radius_rad),
+  DisksInAir seen{disks,
+                  follow(refracted_sun_, DirectionToSun(disks.sun), disks.sun.angular_radius_rad),
                   follow(refracted_moon_, disks.moon.to_moon, disks.moon.radius_rad)};
   const MoonPosition moon = MoonAt(place, view.now);
   if (EclipsedDiskOf(disks.sun, moon).IsCovered()) seen.moon = seen.sun;
@@ -217,8 +218,8 @@ void SkyPainter::MakeOneReady(const PaintedView& view, bool has_shade, bool has_
   for (const PictureStage& stage :
        {PictureStage{kSky, has_shade, has_lamps}, PictureStage{kOccludedSky, has_shade, has_lamps},
         PictureStage{kLand, !has_shade, has_lamps}, PictureStage{kSky, !has_shade, has_lamps},
-        PictureStage{kOccludedSky, !has_shade, has_lamps}, PictureStage{kDisks}, PictureStage{kNight},
-        PictureStage{kLand}, PictureStage{kSky}, PictureStage{kOccludedSky}})
+        PictureStage{kOccludedSky, !has_shade, has_lamps}, PictureStage{kDisks},
+        PictureStage{kNight}, PictureStage{kLand}, PictureStage{kSky}, PictureStage{kOccludedSky}})
     if (programs_.MakeReady(stage)) return;
   stars_.MakeReady(view, scene_.fog(), scene_.fog_phase());
 }

@@ -6,9 +6,9 @@
 #include <glm/geometric.hpp>
 #include <limits>
 
-#include "atmosphere/math/constants.h"
 #include "atmosphere/astronomy/night_sky.h"
 #include "atmosphere/astronomy/sun.h"
+#include "atmosphere/math/constants.h"
 #include "renderer/picture/sky_pixels.h"
 #include "viewer/gl/gl_context.h"
 #include "viewer/lamps/fog.h"

@@ -15,14 +15,14 @@
 #include <utility>
 #include <vector>
 
-#include "atmosphere/medium/medium.h"
-#include "atmosphere/colour/spectrum.h"
-#include "atmosphere/refraction/refracted_view.h"
 #include "atmosphere/astronomy/moon.h"
+#include "atmosphere/colour/spectrum.h"
+#include "atmosphere/medium/medium.h"
+#include "atmosphere/refraction/refracted_view.h"
 #include "renderer/illumination/night_light.h"
+#include "viewer/async/latest_job.h"
 #include "viewer/gl/gl_objects.h"
 #include "viewer/gl/shader.h"
-#include "viewer/async/latest_job.h"
 #include "viewer/lamps/fog.h"
 #include "viewer/passes/key_light.h"
 #include "viewer/passes/painted_view.h"

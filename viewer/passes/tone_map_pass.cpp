@@ -204,7 +204,7 @@ void ToneMapPass::Use(const Look& look) {
 }
 
 void ToneMapPass::Fill(const ShaderProgram& program, const RenderTarget& picture, double ev100,
-                     const Screen& screen, const PassArea& area) const {
+                       const Screen& screen, const PassArea& area) const {
   TakeTable();
   glBindFramebuffer(GL_FRAMEBUFFER, screen.framebuffer);
   glViewport(0, 0, screen.width, screen.height);
@@ -226,12 +226,12 @@ void ToneMapPass::Fill(const ShaderProgram& program, const RenderTarget& picture
 }
 
 void ToneMapPass::Develop(const RenderTarget& picture, double ev100, const Screen& screen,
-                        const PassArea& area) const {
+                          const PassArea& area) const {
   Fill(program_, picture, ev100, screen, area);
 }
 
 void ToneMapPass::DevelopSmall(const RenderTarget& picture, double ev100,
-                             const RenderTarget& codes) const {
+                               const RenderTarget& codes) const {
   Fill(small_program_, picture, ev100, {codes.framebuffer(), codes.width(), codes.height()},
        whole_);
 }

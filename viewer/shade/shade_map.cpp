@@ -9,8 +9,8 @@
 #include <limits>
 #include <vector>
 
-#include "atmosphere/math/constants.h"
 #include "atmosphere/base/error.h"
+#include "atmosphere/math/constants.h"
 #include "renderer/terrain/mesh.h"
 #include "viewer/gl/gl_objects.h"
 
@@ -266,8 +266,8 @@ void GoOnBeyond(float lowest_m, SunShadowMap& map) {
 
 }  // namespace
 
-SunShadowMap SunShadowMapOf(const HeightRaster& heights, const glm::dvec3& to_sun, double radius_rad,
-                    int most_side) {
+SunShadowMap SunShadowMapOf(const HeightRaster& heights, const glm::dvec3& to_sun,
+                            double radius_rad, int most_side) {
   ALPENGLOW_ENSURE(std::abs(glm::length(to_sun) - 1.0), <, 1e-6);
   ALPENGLOW_ENSURE(most_side, >=, 2);
   const double elevation = std::asin(std::clamp(to_sun.z, -1.0, 1.0));

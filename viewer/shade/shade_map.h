@@ -71,6 +71,6 @@ struct SunShadowMap {
 /// @param most_side   largest number of cells along the longer side. Cells are no smaller than
 ///   those of the heights.
 [[nodiscard]] SunShadowMap SunShadowMapOf(const HeightRaster& heights, const glm::dvec3& to_sun,
-                                  double radius_rad, int most_side);
+                                          double radius_rad, int most_side);
 
 }  // namespace alpenglow::viewer

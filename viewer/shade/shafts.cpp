@@ -173,9 +173,9 @@ class ShadeFollower::Maker {
   std::shared_ptr<const Made> operator()(const Request& request) {
     const auto begin = std::chrono::steady_clock::now();
     if (!IsKept(request)) Keep(request);
-    SunShadowMap map =
-        heights_ ? SunShadowMapOf(*heights_, request.to_sun, request.sun_radius_rad, request.size.cells)
-                 : SunShadowMap{};
+    SunShadowMap map = heights_ ? SunShadowMapOf(*heights_, request.to_sun, request.sun_radius_rad,
+                                                 request.size.cells)
+                                : SunShadowMap{};
     const std::chrono::duration<double> took = std::chrono::steady_clock::now() - begin;
     return std::make_shared<const Made>(
         Made{request.frame, request.to_sun, std::move(map), took.count()});

@@ -35,12 +35,12 @@
 #include <optional>
 #include <vector>
 
-#include "atmosphere/time_place/geodesy.h"
 #include "atmosphere/astronomy/sun.h"
+#include "atmosphere/time_place/geodesy.h"
+#include "viewer/async/latest_job.h"
 #include "viewer/gl/gl_objects.h"
 #include "viewer/gl/render_target.h"
 #include "viewer/gl/shader.h"
-#include "viewer/async/latest_job.h"
 #include "viewer/land/loaded_heights.h"
 #include "viewer/shade/shade_map.h"
 

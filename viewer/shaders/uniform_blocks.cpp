@@ -6,9 +6,9 @@
 #include <algorithm>
 #include <glm/common.hpp>
 
+#include "atmosphere/base/error.h"
 #include "atmosphere/colour/spectrum.h"
 #include "atmosphere/math/constants.h"
-#include "atmosphere/base/error.h"
 #include "renderer/material/land_cover.h"
 
 namespace alpenglow::viewer {

@@ -9,10 +9,10 @@
 #include <functional>
 #include <vector>
 
-#include "atmosphere/math/constants.h"
-#include "atmosphere/math/numerics.h"
 #include "atmosphere/astronomy/sun.h"
 #include "atmosphere/base/error.h"
+#include "atmosphere/math/constants.h"
+#include "atmosphere/math/numerics.h"
 #include "tests/fixtures/sanitized.h"
 
 namespace alpenglow::atmosphere {
@@ -54,7 +54,8 @@ TEST(Eclipse, LightThatPassesTheMoonIsWhatIsSummedChordByChord) {
       for (const double wavelength_nm : tests::ScaledDown(wavelengths_nm, {400.0})) {
         EXPECT_NEAR(UncoveredLight(disk, wavelength_nm), UncoveredByChords(disk, wavelength_nm),
                     1e-6)
-            << radius << " " << separation << ": the ends of the reference solution's chords are square roots";
+            << radius << " " << separation
+            << ": the ends of the reference solution's chords are square roots";
       }
     }
   }

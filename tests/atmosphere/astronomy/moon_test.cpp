@@ -8,9 +8,9 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 
+#include "atmosphere/astronomy/sun.h"
 #include "atmosphere/math/constants.h"
 #include "atmosphere/refraction/refraction.h"
-#include "atmosphere/astronomy/sun.h"
 
 namespace alpenglow::atmosphere {
 namespace {

@@ -6,9 +6,9 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 
-#include "atmosphere/math/constants.h"
 #include "atmosphere/astronomy/ephemeris.h"
 #include "atmosphere/astronomy/sun.h"
+#include "atmosphere/math/constants.h"
 
 namespace alpenglow::atmosphere {
 namespace {

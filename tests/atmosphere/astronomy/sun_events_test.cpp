@@ -5,9 +5,9 @@
 #include <cmath>
 #include <string>
 
+#include "atmosphere/astronomy/sun.h"
 #include "atmosphere/math/constants.h"
 #include "atmosphere/refraction/refraction.h"
-#include "atmosphere/astronomy/sun.h"
 
 namespace alpenglow::atmosphere {
 namespace {

@@ -12,8 +12,8 @@
 #include <string>
 #include <vector>
 
-#include "atmosphere/math/constants.h"
 #include "atmosphere/base/error.h"
+#include "atmosphere/math/constants.h"
 #include "tests/fixtures/places.h"
 
 namespace alpenglow::atmosphere {

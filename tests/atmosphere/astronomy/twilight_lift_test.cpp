@@ -6,10 +6,10 @@
 #include <array>
 #include <cmath>
 
-#include "atmosphere/math/constants.h"
 #include "atmosphere/astronomy/moon.h"
-#include "atmosphere/refraction/refraction.h"
 #include "atmosphere/astronomy/sun.h"
+#include "atmosphere/math/constants.h"
+#include "atmosphere/refraction/refraction.h"
 #include "tests/fixtures/refracted_twilight.h"
 
 namespace alpenglow::atmosphere {

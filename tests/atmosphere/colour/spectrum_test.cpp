@@ -11,11 +11,11 @@
 #include <sstream>
 #include <string>
 
-#include "atmosphere/medium/medium.h"
-#include "atmosphere/embedded_text.h"
-#include "atmosphere/reference/reference_solution.h"
-#include "atmosphere/math/constants.h"
 #include "atmosphere/base/error.h"
+#include "atmosphere/embedded_text.h"
+#include "atmosphere/math/constants.h"
+#include "atmosphere/medium/medium.h"
+#include "atmosphere/reference/reference_solution.h"
 
 namespace alpenglow::atmosphere {
 namespace {
@@ -437,8 +437,8 @@ TEST(BandColour, SunAboveTheAirHasTheSameColourOnEveryWavelengthSet) {
 // Hard case 36.
 TEST(BandColour, WhitePointOfAGreySurfaceUnderADaySkyMovesLessThanTwoPerCentBetweenSets) {
   // Sun at 30 degrees through the default air, on white paper.
-  const std::vector<double> relative =
-      reference::SunIrradiance(MediumPreset("earth", TestWavelengths()), 10.0, std::sin(Radians(30.0)));
+  const std::vector<double> relative = reference::SunIrradiance(
+      MediumPreset("earth", TestWavelengths()), 10.0, std::sin(Radians(30.0)));
   const SampledFunction light(TestWavelengths(), relative);
   const Triple truth = TrueXyz(light);
   for (const int bands : kWavelengthSetSizes) {

@@ -8,9 +8,9 @@
 #include <glm/geometric.hpp>
 #include <limits>
 
-#include "atmosphere/reference/airlight_reference.h"
 #include "atmosphere/math/constants.h"
 #include "atmosphere/math/numerics.h"
+#include "atmosphere/reference/airlight_reference.h"
 #include "tests/fixtures/lamp_cases.h"
 
 namespace alpenglow::atmosphere {
@@ -34,7 +34,7 @@ LampSegment Along(const glm::dvec3& direction, double length_m) {
 }
 
 void ExpectNearTheReference(const LampAir& air, const Lamp& lamp, const LampSegment& segment,
-                        double tolerance, const std::string& what) {
+                            double tolerance, const std::string& what) {
   const reference::LampLight truth = reference::AirlightAlong(air, lamp, segment);
   EXPECT_TRUE(truth.converged) << what;
   EXPECT_NEAR(Airlight(air, lamp, segment)[0] / truth.radiance[0], 1.0, tolerance) << what;
@@ -271,7 +271,8 @@ TEST(Airlight, SurfacesCollectTheAirsLightFromTheirHemisphere) {
         const double high = kPi * std::pow((i + 1.0) / kSteps, 2.0);
         const double alpha = 0.5 * (low + high);
         const double radiance =
-            reference::AirlightAlong(air, lamp, Along({std::cos(alpha), std::sin(alpha), 0.0}, 2000.0))
+            reference::AirlightAlong(air, lamp,
+                                     Along({std::cos(alpha), std::sin(alpha), 0.0}, 2000.0))
                 .radiance[0];
         for (int j = 0; j < kTurns; ++j) {
           const double phi = 2.0 * kPi * (j + 0.5) / kTurns;
@@ -307,7 +308,7 @@ TEST(Airlight, OverFogTheLightThatClearAirScattersIsFound) {
       Lamp lamp = LampAt({distance, 23.0, -37.0});
       lamp.radius_m = 0.1;
       ExpectNearTheReference(air, lamp, Along({1.0, 0.0, climb}, 4.0 * distance + 20e3), 2e-3,
-                         fmt::format("a lamp at {} m, a ray that climbs {}", distance, climb));
+                             fmt::format("a lamp at {} m, a ray that climbs {}", distance, climb));
     }
   }
 }

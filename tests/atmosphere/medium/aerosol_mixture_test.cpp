@@ -8,9 +8,9 @@
 #include <cmath>
 #include <map>
 
-#include "atmosphere/medium/phase_table.h"
-#include "atmosphere/math/constants.h"
 #include "atmosphere/base/error.h"
+#include "atmosphere/math/constants.h"
+#include "atmosphere/medium/phase_table.h"
 
 namespace alpenglow::atmosphere {
 namespace {

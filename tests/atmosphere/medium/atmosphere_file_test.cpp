@@ -8,10 +8,10 @@
 #include <string>
 #include <vector>
 
+#include "atmosphere/base/error.h"
+#include "atmosphere/colour/spectrum.h"
 #include "atmosphere/medium/aerosol_mixture.h"
 #include "atmosphere/medium/medium.h"
-#include "atmosphere/colour/spectrum.h"
-#include "atmosphere/base/error.h"
 #include "tests/fixtures/fault_of.h"
 
 namespace alpenglow::atmosphere {

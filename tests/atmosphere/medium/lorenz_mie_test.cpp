@@ -5,9 +5,9 @@
 
 #include <cmath>
 
-#include "atmosphere/medium/phase.h"
-#include "atmosphere/math/constants.h"
 #include "atmosphere/base/error.h"
+#include "atmosphere/math/constants.h"
+#include "atmosphere/medium/phase.h"
 
 namespace alpenglow::atmosphere {
 namespace {

@@ -11,10 +11,10 @@
 #include <set>
 #include <utility>
 
-#include "atmosphere/medium/aerosol_mixture.h"
-#include "atmosphere/medium/phase.h"
 #include "atmosphere/colour/spectrum.h"
 #include "atmosphere/math/constants.h"
+#include "atmosphere/medium/aerosol_mixture.h"
+#include "atmosphere/medium/phase.h"
 #include "tests/fixtures/fault_of.h"
 
 namespace alpenglow::atmosphere {

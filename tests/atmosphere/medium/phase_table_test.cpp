@@ -7,8 +7,8 @@
 
 #include <cmath>
 
-#include "atmosphere/medium/phase.h"
 #include "atmosphere/math/constants.h"
+#include "atmosphere/medium/phase.h"
 #include "tests/fixtures/fault_of.h"
 #include "tests/fixtures/temporary_folder.h"
 

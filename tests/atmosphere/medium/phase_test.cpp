@@ -11,10 +11,10 @@
 #include <memory>
 #include <vector>
 
+#include "atmosphere/base/error.h"
+#include "atmosphere/math/constants.h"
 #include "atmosphere/medium/phase_table.h"
 #include "atmosphere/medium/phase_text.h"
-#include "atmosphere/math/constants.h"
-#include "atmosphere/base/error.h"
 #include "tests/fixtures/fault_of.h"
 
 namespace alpenglow::atmosphere {

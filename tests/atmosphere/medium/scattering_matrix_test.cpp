@@ -5,10 +5,10 @@
 
 #include <cmath>
 
-#include "atmosphere/medium/lorenz_mie.h"
+#include "atmosphere/base/parsing.h"
 #include "atmosphere/math/constants.h"
 #include "atmosphere/math/numerics.h"
-#include "atmosphere/base/parsing.h"
+#include "atmosphere/medium/lorenz_mie.h"
 
 namespace alpenglow::atmosphere {
 namespace {

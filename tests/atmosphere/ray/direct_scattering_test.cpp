@@ -10,11 +10,11 @@
 #include <string>
 #include <vector>
 
+#include "atmosphere/base/error.h"
 #include "atmosphere/medium/medium.h"
-#include "atmosphere/shared_glsl/instruction_set.h"
 #include "atmosphere/ray/direct_columns.h"
 #include "atmosphere/ray/ray.h"
-#include "atmosphere/base/error.h"
+#include "atmosphere/shared_glsl/instruction_set.h"
 #include "tests/fixtures/direct_regimes.h"
 
 namespace alpenglow::atmosphere {
@@ -115,7 +115,8 @@ TEST(DirectScattering, ScatterWithinKeepsTheErrorOfNineteenOfTwentyRays) {
       for (std::size_t i = 0; i < reference.rays.size(); ++i) {
         const EstimatedLight light = direct.ScatterWithin(reference.rays[i], stated);
         EXPECT_LE(light.error, stated);
-        const double error = ErrorOfRay(direct, light.scattered, reference.rays[i], reference.light[i]);
+        const double error =
+            ErrorOfRay(direct, light.scattered, reference.rays[i], reference.light[i]);
         coverage.held += error <= stated ? 1 : 0;
         ++coverage.rays;
       }

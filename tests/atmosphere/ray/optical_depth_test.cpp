@@ -9,13 +9,13 @@
 #include <span>
 #include <vector>
 
-#include "atmosphere/medium/medium.h"
 #include "atmosphere/colour/spectrum.h"
-#include "atmosphere/shared_glsl/instruction_set.h"
 #include "atmosphere/math/numerics.h"
+#include "atmosphere/medium/medium.h"
 #include "atmosphere/ray/ray.h"
 #include "atmosphere/ray/shell.h"
 #include "atmosphere/ray/single_scattering.h"
+#include "atmosphere/shared_glsl/instruction_set.h"
 
 namespace alpenglow::atmosphere {
 namespace {

@@ -8,10 +8,10 @@
 #include <cmath>
 #include <vector>
 
-#include "atmosphere/reference/reference_solution.h"
+#include "atmosphere/base/error.h"
 #include "atmosphere/math/constants.h"
 #include "atmosphere/ray/shell.h"
-#include "atmosphere/base/error.h"
+#include "atmosphere/reference/reference_solution.h"
 #include "tests/fixtures/ray_regimes.h"
 #include "tests/fixtures/stored_cases.h"
 

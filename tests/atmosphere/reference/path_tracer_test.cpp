@@ -8,11 +8,11 @@
 #include <cmath>
 #include <set>
 
-#include "atmosphere/reference/reference_solution.h"
-#include "atmosphere/reference/path_sampling.h"
+#include "atmosphere/base/error.h"
 #include "atmosphere/math/constants.h"
 #include "atmosphere/math/numerics.h"
-#include "atmosphere/base/error.h"
+#include "atmosphere/reference/path_sampling.h"
+#include "atmosphere/reference/reference_solution.h"
 #include "tests/fixtures/sanitized.h"
 #include "tests/fixtures/stored_cases.h"
 
@@ -293,4 +293,4 @@ TEST(PathTracer, AgreesWithStoredIrradiance) {
 }
 
 }  // namespace
-}  // namespace alpenglow::atmosphere::reference solution
+}  // namespace alpenglow::atmosphere::reference

@@ -5,11 +5,11 @@
 #include <cmath>
 #include <set>
 
-#include "atmosphere/medium/lorenz_mie.h"
-#include "atmosphere/reference/reference_solution.h"
-#include "atmosphere/reference/path_tracer.h"
-#include "atmosphere/math/constants.h"
 #include "atmosphere/base/error.h"
+#include "atmosphere/math/constants.h"
+#include "atmosphere/medium/lorenz_mie.h"
+#include "atmosphere/reference/path_tracer.h"
+#include "atmosphere/reference/reference_solution.h"
 #include "tests/fixtures/polarised_slab.h"
 #include "tests/fixtures/stored_cases.h"
 
@@ -178,4 +178,4 @@ TEST(PathTracedStokes, AgreeWithStoredTwilightAndViewsFromSpace) {
 }
 
 }  // namespace
-}  // namespace alpenglow::atmosphere::reference solution
+}  // namespace alpenglow::atmosphere::reference

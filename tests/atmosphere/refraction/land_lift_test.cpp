@@ -7,8 +7,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "atmosphere/reference/reference_solution.h"
 #include "atmosphere/ray/shell.h"
+#include "atmosphere/reference/reference_solution.h"
 
 namespace alpenglow::atmosphere {
 namespace {

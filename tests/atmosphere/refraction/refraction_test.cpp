@@ -6,10 +6,10 @@
 
 #include <cmath>
 
-#include "atmosphere/math/constants.h"
-#include "atmosphere/refraction/refracted_view.h"
 #include "atmosphere/astronomy/sun.h"
 #include "atmosphere/base/error.h"
+#include "atmosphere/math/constants.h"
+#include "atmosphere/refraction/refracted_view.h"
 
 namespace alpenglow::atmosphere {
 namespace {

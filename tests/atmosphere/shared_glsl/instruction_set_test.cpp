@@ -11,9 +11,9 @@
 #include <string>
 #include <vector>
 
+#include "atmosphere/base/error.h"
 #include "atmosphere/ray/ray_kernel.h"
 #include "atmosphere/ray/single_scattering.h"
-#include "atmosphere/base/error.h"
 
 namespace alpenglow::atmosphere {
 namespace {

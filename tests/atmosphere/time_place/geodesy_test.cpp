@@ -9,8 +9,8 @@
 #include <limits>
 #include <string>
 
-#include "atmosphere/math/constants.h"
 #include "atmosphere/base/error.h"
+#include "atmosphere/math/constants.h"
 #include "tests/fixtures/fault_of.h"
 
 namespace alpenglow::atmosphere {

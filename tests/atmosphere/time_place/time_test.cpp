@@ -9,8 +9,8 @@
 #include <locale>
 #include <string>
 
-#include "atmosphere/time_place/time_zone.h"
 #include "atmosphere/base/error.h"
+#include "atmosphere/time_place/time_zone.h"
 #include "tests/fixtures/fault_of.h"
 
 namespace alpenglow::atmosphere {

@@ -19,8 +19,8 @@
 #include <vector>
 
 #include "atmosphere/base/error.h"
-#include "lut/layer.h"
 #include "lut/cli/output_file.h"
+#include "lut/layer.h"
 #include "tests/fixtures/lost_messages.h"
 
 namespace alpenglow::lut {

@@ -11,9 +11,9 @@
 #include <map>
 #include <sstream>
 
-#include "atmosphere/reference/path_tracer.h"
-#include "atmosphere/math/constants.h"
 #include "atmosphere/base/error.h"
+#include "atmosphere/math/constants.h"
+#include "atmosphere/reference/path_tracer.h"
 #include "lut/cli/program.h"
 #include "tests/fixtures/stored_cases.h"
 #include "tests/fixtures/temporary_folder.h"
@@ -154,7 +154,8 @@ TEST_F(StoredEval, TransmittanceAndOpticalDepthAreWithinTheirEstimates) {
     EXPECT_GE(fast.compared, 300);
     EXPECT_LT(fast.worst, 1e-5) << fast.worst_id << ": closed forms, 4e-7 of the optical depth";
     EXPECT_EQ(fast.honest, fast.compared);
-    const Comparison reference = Compare("transmittance", quantity, column, WithMaxError(1e-8), All);
+    const Comparison reference =
+        Compare("transmittance", quantity, column, WithMaxError(1e-8), All);
     EXPECT_LT(reference.worst, 1e-8 * 10.0)
         << reference.worst_id << ": the reference solution, times optical depths to 10";
     EXPECT_EQ(reference.honest, reference.compared);

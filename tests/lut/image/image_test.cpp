@@ -14,8 +14,8 @@
 #include <limits>
 
 #include "atmosphere/base/error.h"
-#include "lut/layer.h"
 #include "lut/image/development.h"
+#include "lut/layer.h"
 #include "tests/fixtures/temporary_folder.h"
 
 namespace alpenglow::lut {

@@ -7,8 +7,8 @@
 #include <limits>
 #include <vector>
 
-#include "atmosphere/math/constants.h"
 #include "atmosphere/base/error.h"
+#include "atmosphere/math/constants.h"
 #include "lut/image/look.h"
 
 namespace alpenglow::lut {

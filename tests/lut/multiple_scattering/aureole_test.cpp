@@ -28,7 +28,8 @@ ViewRay BesideTheSun(double sun_deg, double from_sun_deg) {
 class AureoleAir {
  public:
   /// Light of higher orders is a tenth of the aureole: small options do for its brightness.
-  explicit AureoleAir(const Medium& medium, const MultipleScatteringOptions& options = tests::kSmallLight)
+  explicit AureoleAir(const Medium& medium,
+                      const MultipleScatteringOptions& options = tests::kSmallLight)
       : medium_(medium), air_(medium), multiple_scattering_(medium, options) {}
 
   /// Light of all orders, per unit solar irradiance [1/sr].

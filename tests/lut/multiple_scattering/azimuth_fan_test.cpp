@@ -11,11 +11,11 @@ namespace alpenglow::lut {
 namespace {
 
 constexpr MultipleScatteringOptions kSmall{.altitudes = 10,
-                                     .sun_angles = 24,
-                                     .degree = 4,
-                                     .zenith_nodes = 6,
-                                     .azimuth_nodes = 4,
-                                     .ray_nodes = 6};
+                                           .sun_angles = 24,
+                                           .degree = 4,
+                                           .zenith_nodes = 6,
+                                           .azimuth_nodes = 4,
+                                           .ray_nodes = 6};
 
 double NuOf(double mu, double mu_s, double azimuth_rad) {
   return mu * mu_s + std::sqrt((1.0 - mu * mu) * (1.0 - mu_s * mu_s)) * std::cos(azimuth_rad);
@@ -61,7 +61,8 @@ void ExpectMultipleScatteringOfEveryAzimuth(const Medium& medium) {
 class AzimuthFanOf : public testing::TestWithParam<int> {};
 
 TEST_P(AzimuthFanOf, BandsIsTheMultipleScatteringOfEveryAzimuth) {
-  ExpectMultipleScatteringOfEveryAzimuth(InScalarLight(MediumPreset("earth", WavelengthSet(GetParam()))));
+  ExpectMultipleScatteringOfEveryAzimuth(
+      InScalarLight(MediumPreset("earth", WavelengthSet(GetParam()))));
 }
 
 TEST_P(AzimuthFanOf, BandsIsThePolarisedLightOfEveryAzimuth) {

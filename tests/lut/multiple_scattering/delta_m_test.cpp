@@ -149,12 +149,12 @@ TEST(ThickAir, MoleculesOfOpticalDepthFiveAgreeWithPathsToOnePercent) {
 TEST(DeltaM, ComesBackFromStoredValues) {
   const Medium haze = Haze(7.992e-5, 8.88e-5);
   const MultipleScatteringOptions few{.altitudes = 8,
-                                .sun_angles = 12,
-                                .degree = 4,
-                                .zenith_nodes = 6,
-                                .azimuth_nodes = 6,
-                                .ray_nodes = 6,
-                                .delta_m = true};
+                                      .sun_angles = 12,
+                                      .degree = 4,
+                                      .zenith_nodes = 6,
+                                      .azimuth_nodes = 6,
+                                      .ray_nodes = 6,
+                                      .delta_m = true};
   const MultipleScattering light(haze, few);
   const MultipleScattering back(haze, few, {light.values(), light.orders(), light.converged()});
   const SingleScattering<float> air(haze);

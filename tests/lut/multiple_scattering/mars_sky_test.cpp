@@ -4,10 +4,10 @@
 
 #include <cmath>
 
-#include "atmosphere/medium/medium.h"
-#include "atmosphere/medium/phase_table.h"
 #include "atmosphere/colour/spectrum.h"
 #include "atmosphere/math/constants.h"
+#include "atmosphere/medium/medium.h"
+#include "atmosphere/medium/phase_table.h"
 #include "atmosphere/ray/single_scattering.h"
 #include "lut/sky/sky_view.h"
 

@@ -9,11 +9,11 @@
 #include <string>
 #include <utility>
 
-#include "atmosphere/shared_glsl/instruction_set.h"
-#include "atmosphere/reference/path_tracer.h"
+#include "atmosphere/base/error.h"
 #include "atmosphere/math/constants.h"
 #include "atmosphere/math/numerics.h"
-#include "atmosphere/base/error.h"
+#include "atmosphere/reference/path_tracer.h"
+#include "atmosphere/shared_glsl/instruction_set.h"
 #include "tests/fixtures/small_light.h"
 #include "tests/fixtures/stored_cases.h"
 
@@ -60,7 +60,8 @@ TEST(SphericalHarmonics, AreOrthonormalOverTheSphere) {
 
 TEST(MultipleScattering, SunCoordinateAndItsInverseAgree) {
   for (double v = 0.0; v <= 1.0; v += 0.01) {
-    EXPECT_NEAR(MultipleScattering::SunCoordinate(MultipleScattering::MuSFromCoordinate(v)), v, 1e-12);
+    EXPECT_NEAR(MultipleScattering::SunCoordinate(MultipleScattering::MuSFromCoordinate(v)), v,
+                1e-12);
   }
 }
 
@@ -81,10 +82,11 @@ TEST(MultipleScattering, ComesBackFromItsValues) {
   const Medium air = MediumPreset("bruneton2017");
   const MultipleScattering light(air, tests::kSmallLight);
   const MultipleScattering back(air, tests::kSmallLight,
-                          {light.values(), light.orders(), light.converged()});
+                                {light.values(), light.orders(), light.converged()});
   EXPECT_EQ(back.orders(), light.orders());
   EXPECT_EQ(back.SkyIrradiance(500.0, 0.3), light.SkyIrradiance(500.0, 0.3));
-  EXPECT_THROW(MultipleScattering(air, {}, {light.values(), 1, true}), InputError) << "of other options";
+  EXPECT_THROW(MultipleScattering(air, {}, {light.values(), 1, true}), InputError)
+      << "of other options";
   std::vector<float> broken = light.values();
   broken[7] = std::nanf("");
   EXPECT_THROW(MultipleScattering(air, tests::kSmallLight, {broken, 1, true}), InputError);
@@ -127,19 +129,20 @@ TEST(MultipleScattering, EveryBandHasThePhaseFunctionOfItsOwn) {
     medium.mie_phase.push_back({.kind = PhaseKind::kHenyeyGreenstein, .g = g});
   }
   const MultipleScatteringOptions few_orders{.altitudes = tests::kSmallLight.altitudes,
-                                       .sun_angles = tests::kSmallLight.sun_angles,
-                                       .degree = tests::kSmallLight.degree,
-                                       .zenith_nodes = tests::kSmallLight.zenith_nodes,
-                                       .azimuth_nodes = tests::kSmallLight.azimuth_nodes,
-                                       .ray_nodes = tests::kSmallLight.ray_nodes,
-                                       .max_orders = 4,
-                                       .tolerance = 1e-9};
+                                             .sun_angles = tests::kSmallLight.sun_angles,
+                                             .degree = tests::kSmallLight.degree,
+                                             .zenith_nodes = tests::kSmallLight.zenith_nodes,
+                                             .azimuth_nodes = tests::kSmallLight.azimuth_nodes,
+                                             .ray_nodes = tests::kSmallLight.ray_nodes,
+                                             .max_orders = 4,
+                                             .tolerance = 1e-9};
   const MultipleScattering light(medium, few_orders);
   const ViewRay ray{2.0, 0.5, 0.7, 0.9};
   const auto inscatter = [&ray](const Medium& air, const MultipleScattering& multiple_scattering) {
     const SingleScattering<float> single_scattering(air);
     return multiple_scattering.InscatterAlong(
-        single_scattering.Sample(ray, {.nodes = 8, .split_ozone = false, .dark_samples = true}), ray.nu);
+        single_scattering.Sample(ray, {.nodes = 8, .split_ozone = false, .dark_samples = true}),
+        ray.nu);
   };
   for (std::size_t band = 0; band < 4; ++band) {
     Medium shared = medium;
@@ -327,8 +330,8 @@ TEST(MultipleScattering, HorizontalSurfacesAtAnyAltitudeAreLitAsByThePathTracer)
         if (altitude_m == 0.0 && side == reference::PlaneSide::kFromBelow) continue;
         const double up = side == reference::PlaneSide::kFromAbove ? 1.0 : -1.0;
         const auto found = light.Irradiance(altitude_m, mu_s, up, 1.0);
-        const auto truth = reference::TraceIrradiance(medium, altitude_m, mu_s, side,
-                                                  {.max_paths = 30000, .relative_error = 0.003});
+        const auto truth = reference::TraceIrradiance(
+            medium, altitude_m, mu_s, side, {.max_paths = 30000, .relative_error = 0.003});
         for (std::size_t band = 0; band < light.bands(); ++band) {
           const double tolerance = 0.02 * truth.value[band] + 3.0 * truth.standard_error[band];
           EXPECT_NEAR(static_cast<double>(found[band]), truth.value[band], tolerance)
@@ -506,7 +509,7 @@ TEST(MultipleScattering, APeakNarrowerThanTheDirectionsStillLightsTheGround) {
   for (const double sun_zenith_deg : {20.0, 60.0}) {
     const double mu_s = std::cos(sun_zenith_deg * kRadiansPerDegree);
     const auto truth = reference::TraceIrradiance(mars, 0.0, mu_s, reference::PlaneSide::kFromAbove,
-                                              {.max_paths = 100000, .relative_error = 4e-3});
+                                                  {.max_paths = 100000, .relative_error = 4e-3});
     const Bands<float> found = light.SkyIrradiance(0.0, mu_s);
     for (std::size_t band = 0; band < found.count; ++band) {
       EXPECT_NEAR(static_cast<double>(found[band]) / truth.value[band], 1.0, 0.05)

@@ -8,8 +8,8 @@
 #include <map>
 #include <string>
 
-#include "atmosphere/reference/path_tracer.h"
 #include "atmosphere/math/constants.h"
+#include "atmosphere/reference/path_tracer.h"
 #include "lut/multiple_scattering/multiple_scattering.h"
 #include "tests/fixtures/direct_regimes.h"
 #include "tests/fixtures/polarised_slab.h"
@@ -82,10 +82,10 @@ struct Errors {
 // Twice the suns and the nodes along rays, and more of them for later orders: the usual numbers
 // leave more in layers that are thinner than real air.
 constexpr MultipleScatteringOptions kFine{.sun_angles = 64,
-                                    .ray_nodes = 20,
-                                    .later_zenith_nodes = 10,
-                                    .later_azimuth_nodes = 6,
-                                    .later_ray_nodes = 14};
+                                          .ray_nodes = 20,
+                                          .later_zenith_nodes = 10,
+                                          .later_azimuth_nodes = 6,
+                                          .later_ray_nodes = 14};
 MultipleScatteringOptions Fine(const Medium&) { return kFine; }
 
 /// @param options  of a layer's medium.
@@ -151,8 +151,8 @@ TEST(PolarisedLight, AgreesWithStoredSkiesOnTheSphere) {
     if (row.at("set") == "haze20mix" && row.at("end") == "dist") continue;
     Medium medium = Polarised(media.at(row.at("set")));
     medium.rayleigh_depolarisation = {stored::Number(row, "depolarisation")};
-    const auto sky =
-        skies.try_emplace(row.at("set") + row.at("depolarisation"), medium, MultipleScatteringOptions{});
+    const auto sky = skies.try_emplace(row.at("set") + row.at("depolarisation"), medium,
+                                       MultipleScatteringOptions{});
     const double side = stored::Number(row, "raz_deg") > 180.0 ? -1.0 : 1.0;
     const double view_deg = stored::Number(row, "vza_deg");
     const bool vertical = view_deg == 0.0 || view_deg == 180.0;
@@ -181,8 +181,9 @@ TEST(PolarisedLight, AgreesWithPathsInDepolarisingAirAndHaze) {
   for (const ViewRay& ray :
        {RayFromAngles(0.0, 70.0, 90.0, 40.0), RayFromAngles(0.0, 40.0, 150.0, 85.0),
         RayFromAngles(9000.0, 120.0, 60.0, 60.0)}) {
-    const reference::PathTracedStokes traced = reference::TraceStokes(
-        medium, reference::ScatteringOf(medium), ray, {.max_paths = 16000, .relative_error = 0.003});
+    const reference::PathTracedStokes traced =
+        reference::TraceStokes(medium, reference::ScatteringOf(medium), ray,
+                               {.max_paths = 16000, .relative_error = 0.003});
     for (std::size_t band = 0; band < 2; ++band) {
       const Stokes found = sky.Along(ray, band);
       // Four standard errors and 0.3 %, the bound by day.
@@ -213,7 +214,7 @@ TEST(PolarisedLight, OfAirWithoutMoleculesIsScalarLight) {
 
 TEST(PolarisedLight, ValuesAtNodesAreTheNodesAndSurfacesSeeTheSky) {
   const MultipleScattering light(InPolarisedLight(MediumPreset("bruneton2017"), "bruneton2017"),
-                           tests::kSmallLight);
+                                 tests::kSmallLight);
   const auto suns = static_cast<std::size_t>(tests::kSmallLight.sun_angles);
   const std::size_t row = light.channels() * light.bands();
   EXPECT_EQ(light.channels(), 6U + 3U + 1U);

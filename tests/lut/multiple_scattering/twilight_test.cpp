@@ -16,9 +16,9 @@
 #include <sstream>
 #include <string>
 
+#include "atmosphere/astronomy/sun.h"
 #include "atmosphere/colour/spectrum.h"
 #include "atmosphere/math/constants.h"
-#include "atmosphere/astronomy/sun.h"
 #include "lut/sky/panorama.h"
 #include "tests/fixtures/places.h"
 

@@ -138,7 +138,8 @@ TEST(Report, MethodsOfThisLibraryKeepTheirBounds) {
   for (const char* name :
        {"tables of one height", "quadrature over elevation (Auer, Standish 2000)"}) {
     for (const RegimeResult& at : RowOf("refraction", name).at)
-      EXPECT_LT(at.error.largest, 0.1 / 32.0) << "bound of RefractedView and RefractionSeenAt, 0.1'";
+      EXPECT_LT(at.error.largest, 0.1 / 32.0)
+          << "bound of RefractedView and RefractionSeenAt, 0.1'";
   }
   for (const double max_error : {1e-2, 1e-3, 1e-4, 1e-5}) {
     const int nodes = SamplingForError(max_error).nodes;

@@ -9,9 +9,9 @@
 #include <cmath>
 #include <tuple>
 
-#include "atmosphere/colour/spectrum.h"
 #include "atmosphere/astronomy/sun.h"
 #include "atmosphere/base/error.h"
+#include "atmosphere/colour/spectrum.h"
 #include "tests/fixtures/lit_air.h"
 #include "tests/fixtures/luminance.h"
 #include "tests/fixtures/sanitized.h"
@@ -158,9 +158,9 @@ double LuminanceOf(const Medium& medium, const Bands<float>& relative) {
 TEST(Panorama, LightsAHorizontalPlaneAsTheSkyDoes) {
   for (const double elevation_deg : {50.0, 10.0, 0.0, -5.0, -9.0}) {
     const Image image = Panorama(SunAtDegrees(elevation_deg, 120.0));
-    const double expected = LuminanceOf(
-        Earth().medium,
-        Earth().multiple_scattering.SkyIrradiance(2.0, std::sin(elevation_deg * kRadiansPerDegree)));
+    const double expected =
+        LuminanceOf(Earth().medium, Earth().multiple_scattering.SkyIrradiance(
+                                        2.0, std::sin(elevation_deg * kRadiansPerDegree)));
     EXPECT_NEAR(IlluminanceFromAbove(image), expected, 0.02 * expected)
         << "sun at " << elevation_deg << ": the pixels of the aureole are 1.4 degrees wide, and "
         << "the table of irradiance is interpolated between its nodes";

@@ -6,8 +6,8 @@
 #include <cmath>
 #include <vector>
 
-#include "atmosphere/colour/spectrum.h"
 #include "atmosphere/base/error.h"
+#include "atmosphere/colour/spectrum.h"
 #include "tests/fixtures/sanitized.h"
 #include "tests/fixtures/sky_view_errors.h"
 #include "tests/fixtures/small_light.h"
@@ -189,8 +189,10 @@ TEST(SkyView, ARowIsItsLookUps) {
 TEST(SkyView, AnyNumberOfBandsIsTheBandsOneByOne) {
   const Medium all = MediumPreset("earth", WavelengthSet(6));
   const Medium one = MediumPreset("earth", {all.wavelengths_nm[4]});
-  const SkyView view(SingleScattering<float>(all), MultipleScattering(all, tests::kSmallLight), 2.0, 0.5);
-  const SkyView single(SingleScattering<float>(one), MultipleScattering(one, tests::kSmallLight), 2.0, 0.5);
+  const SkyView view(SingleScattering<float>(all), MultipleScattering(all, tests::kSmallLight), 2.0,
+                     0.5);
+  const SkyView single(SingleScattering<float>(one), MultipleScattering(one, tests::kSmallLight),
+                       2.0, 0.5);
   EXPECT_EQ(view.stride(), 8U);
   const float expected = single.Radiance(1.0, 0.7)[0];
   EXPECT_NEAR(view.Radiance(1.0, 0.7)[4], expected, 1e-3F * expected)

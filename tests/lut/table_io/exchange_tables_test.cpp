@@ -16,10 +16,10 @@
 #include <cstring>
 #include <random>
 
-#include "atmosphere/medium/medium.h"
-#include "atmosphere/reference/reference_solution.h"
-#include "atmosphere/reference/path_tracer.h"
 #include "atmosphere/base/error.h"
+#include "atmosphere/medium/medium.h"
+#include "atmosphere/reference/path_tracer.h"
+#include "atmosphere/reference/reference_solution.h"
 #include "lut/cli/program.h"
 #include "lut/table_io/exchange_check.h"
 #include "tests/fixtures/temporary_folder.h"
@@ -355,7 +355,8 @@ TEST_F(TakramSet, HigherOrdersAreThoseOfPathsOfFourEvents) {
        {std::array{5 * 32 + 26, 80, 2}, {3 * 32 + 20, 100, 8}, {6 * 32 + 29, 115, 0}}) {
     const Place place = PlaceOf(x, y, z, -0.5);
     const ViewRay ray{place.altitude_m, place.mu, place.mu_s, place.nu};
-    const auto paths = reference::TraceRadiance(air_, ray, {.relative_error = 1e-3, .max_order = 4});
+    const auto paths =
+        reference::TraceRadiance(air_, ray, {.relative_error = 1e-3, .max_order = 4});
     const auto once = reference::SingleScatteringAlong(air_, ray);
     const Rgba texel = higher.At(static_cast<std::size_t>(x), static_cast<std::size_t>(y),
                                  static_cast<std::size_t>(z));
@@ -375,8 +376,9 @@ TEST_F(TakramSet, IrradianceIsThatOfTheSkyScatteredUpToThreeTimes) {
   for (const auto& [x, y] : {std::array{40, 0}, {33, 3}, {60, 8}}) {
     const double altitude_m = 60000.0 * y / 15.0;
     const double mu_s = 2.0 * x / 63.0 - 1.0;
-    const auto paths = reference::TraceIrradiance(air_, altitude_m, mu_s, reference::PlaneSide::kFromAbove,
-                                              {.relative_error = 2e-3, .max_order = 3});
+    const auto paths =
+        reference::TraceIrradiance(air_, altitude_m, mu_s, reference::PlaneSide::kFromAbove,
+                                   {.relative_error = 2e-3, .max_order = 3});
     const Rgba texel = irradiance.At(static_cast<std::size_t>(x), static_cast<std::size_t>(y), 0);
     EXPECT_EQ(texel[3], 1.0);
     for (std::size_t c = 0; c < 3; ++c) {

@@ -24,8 +24,8 @@
 #include <functional>
 #include <vector>
 
-#include "atmosphere/medium/medium.h"
 #include "atmosphere/base/error.h"
+#include "atmosphere/medium/medium.h"
 #include "lut/table_io/table_image.h"
 #include "tests/fixtures/temporary_folder.h"
 
@@ -141,11 +141,11 @@ TEST_F(TableFile, SingleScatteringByAzimuthComesBackWithItsAxes) {
 
 const MultipleScattering& Light() {
   static const MultipleScattering light(MediumPreset("bruneton2017"), {.altitudes = 5,
-                                                                 .sun_angles = 6,
-                                                                 .degree = 2,
-                                                                 .zenith_nodes = 4,
-                                                                 .azimuth_nodes = 4,
-                                                                 .ray_nodes = 4});
+                                                                       .sun_angles = 6,
+                                                                       .degree = 2,
+                                                                       .zenith_nodes = 4,
+                                                                       .azimuth_nodes = 4,
+                                                                       .ray_nodes = 4});
   return light;
 }
 
@@ -169,17 +169,20 @@ TEST_F(TableFile, MultipleScatteringComesBackBitForBit) {
 
 TEST_F(TableFile, PolarisedMultipleScatteringComesBackBitForBitAndIsNeverReadAsScalar) {
   const fs::path file = folder_ / "polarised.exr";
-  const MultipleScattering light(InPolarisedLight(Light().medium(), "bruneton2017"), Light().options());
+  const MultipleScattering light(InPolarisedLight(Light().medium(), "bruneton2017"),
+                                 Light().options());
   WriteTable(file, light);
   const StoredMultipleScattering back = ReadMultipleScattering(file, MediumHash(light.medium()));
   EXPECT_EQ(back.light.values(), light.values());
   EXPECT_TRUE(back.light.medium().polarised);
   const std::string text = DescriptionText(file, DescribeTable(file));
   EXPECT_THAT(text, HasSubstr("T22.0550nm"));
-  EXPECT_THROW(static_cast<void>(ReadMultipleScattering(file, MediumHash(Light().medium()))), InputError);
+  EXPECT_THROW(static_cast<void>(ReadMultipleScattering(file, MediumHash(Light().medium()))),
+               InputError);
   const fs::path scalar = folder_ / "scalar.exr";
   WriteTable(scalar, Light());
-  EXPECT_THROW(static_cast<void>(ReadMultipleScattering(scalar, MediumHash(light.medium()))), InputError);
+  EXPECT_THROW(static_cast<void>(ReadMultipleScattering(scalar, MediumHash(light.medium()))),
+               InputError);
 }
 
 TEST_F(TableFile, MultipleScatteringOfAnotherAtmosphereOrWithOtherAttributesIsRefused) {
@@ -201,7 +204,8 @@ TEST_F(TableFile, MultipleScatteringOfAnotherAtmosphereOrWithOtherAttributesIsRe
     Imf::Header changed = header;
     changed.insert(name, Imf::StringAttribute(text));
     WriteImage(changed);
-    EXPECT_THROW(static_cast<void>(ReadMultipleScattering(bad_)), InputError) << name << " = " << text;
+    EXPECT_THROW(static_cast<void>(ReadMultipleScattering(bad_)), InputError)
+        << name << " = " << text;
   }
 }
 

@@ -9,11 +9,11 @@
 #include <limits>
 #include <string>
 
+#include "atmosphere/base/error.h"
 #include "atmosphere/colour/spectrum.h"
 #include "atmosphere/math/constants.h"
 #include "atmosphere/math/numerics.h"
 #include "atmosphere/ray/ray.h"
-#include "atmosphere/base/error.h"
 
 namespace alpenglow::lut {
 namespace {
@@ -21,11 +21,11 @@ namespace {
 using Triple = std::array<double, 3>;
 
 constexpr MultipleScatteringOptions kSmallSolution{.altitudes = 12,
-                                             .sun_angles = 24,
-                                             .degree = 2,
-                                             .zenith_nodes = 5,
-                                             .azimuth_nodes = 4,
-                                             .ray_nodes = 6};
+                                                   .sun_angles = 24,
+                                                   .degree = 2,
+                                                   .zenith_nodes = 5,
+                                                   .azimuth_nodes = 4,
+                                                   .ray_nodes = 6};
 
 // Skies that no training has seen: three atmospheres, one of them without haze.
 std::vector<SkySpectrum> FreshSkies() {

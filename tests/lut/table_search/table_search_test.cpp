@@ -17,11 +17,11 @@ namespace fs = std::filesystem;
 
 const MultipleScattering& Small() {
   static const MultipleScattering light(MediumPreset("bruneton2017"), {.altitudes = 9,
-                                                                 .sun_angles = 13,
-                                                                 .degree = 4,
-                                                                 .zenith_nodes = 6,
-                                                                 .azimuth_nodes = 4,
-                                                                 .ray_nodes = 6});
+                                                                       .sun_angles = 13,
+                                                                       .degree = 4,
+                                                                       .zenith_nodes = 6,
+                                                                       .azimuth_nodes = 4,
+                                                                       .ray_nodes = 6});
   return light;
 }
 

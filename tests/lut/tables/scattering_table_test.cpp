@@ -7,8 +7,8 @@
 #include <cmath>
 #include <random>
 
-#include "atmosphere/reference/reference_solution.h"
 #include "atmosphere/base/error.h"
+#include "atmosphere/reference/reference_solution.h"
 #include "lut/cli/program.h"
 #include "tests/lut/tables/table_errors.h"
 
@@ -111,7 +111,8 @@ void ExpectErrorsBelow(const ScatteringTable& table, const Regime& regime) {
         regime.highest_deg + (regime.lowest_deg - regime.highest_deg) * uniform(random);
     const double view = 180.0 * uniform(random);
     const ViewRay ray = RayFromAngles(12000.0 * u * u, view, 180.0 * uniform(random), sun);
-    const std::vector<double> truth = reference::SingleScatteringAlong(table.medium(), ray).inscatter;
+    const std::vector<double> truth =
+        reference::SingleScatteringAlong(table.medium(), ray).inscatter;
     const Bands<float> value = air.Inscatter(table.Lookup(ray), ray.nu);
     for (std::size_t band = 0; band < value.count; ++band) {
       absolute.Add(value[band], truth[band]);

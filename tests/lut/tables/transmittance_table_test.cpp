@@ -7,8 +7,8 @@
 #include <cmath>
 #include <random>
 
-#include "atmosphere/reference/reference_solution.h"
 #include "atmosphere/base/error.h"
+#include "atmosphere/reference/reference_solution.h"
 #include "lut/cli/program.h"
 #include "tests/lut/tables/table_errors.h"
 

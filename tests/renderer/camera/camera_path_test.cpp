@@ -7,8 +7,8 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 
-#include "atmosphere/math/constants.h"
 #include "atmosphere/base/error.h"
+#include "atmosphere/math/constants.h"
 #include "renderer/series/frame_times.h"
 #include "tests/fixtures/fault_of.h"
 #include "tests/fixtures/temporary_folder.h"

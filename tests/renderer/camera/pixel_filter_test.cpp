@@ -6,8 +6,8 @@
 #include <array>
 #include <cmath>
 
-#include "atmosphere/math/constants.h"
 #include "atmosphere/base/error.h"
+#include "atmosphere/math/constants.h"
 #include "renderer/layer.h"
 
 namespace alpenglow::renderer {

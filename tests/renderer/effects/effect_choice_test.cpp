@@ -132,11 +132,11 @@ TEST(EffectChoice, ExplainingKeepsAllThatItIsToldToAndHasALineForEach) {
 TEST(EffectChoice, WhatMoreWouldChangeIsToldAndNotDone) {
   GreyPreview grey({{Effect::kSky, 0.5}});
   grey.preview.refinements.push_back({"finer", [&] {
-                                      PreviewPicture picture = grey.preview.render(kThree);
-                                      for (auto& rgb : picture.image.rgb) rgb.fill(101.0F);
-                                      picture.seconds *= 3.0;
-                                      return picture;
-                                    }});
+                                        PreviewPicture picture = grey.preview.render(kThree);
+                                        for (auto& rgb : picture.image.rgb) rgb.fill(101.0F);
+                                        picture.seconds *= 3.0;
+                                        return picture;
+                                      }});
   const EffectChoice choice =
       ChooseEffects(grey.preview, kThree, {.max_error = 0.01, .explain = true});
   ASSERT_EQ(choice.refinements.size(), 1U);

@@ -27,7 +27,9 @@ MultipleScatteringOptions Coarse() {
 
 struct Air {
   explicit Air(const Medium& medium)
-      : single_scattering(medium), multiple_scattering(medium, Coarse()), aerial(single_scattering, multiple_scattering) {}
+      : single_scattering(medium),
+        multiple_scattering(medium, Coarse()),
+        aerial(single_scattering, multiple_scattering) {}
 
   SingleScattering<float> single_scattering;
   MultipleScattering multiple_scattering;
@@ -160,7 +162,8 @@ double MarchSum(const Air& air, const ViewRay& ray, const SunlitPath& sunlit) {
     RaySamples<float> samples = air.single_scattering.SampleAt(ray, nodes);
     for (std::size_t i = 0; i < nodes.size(); ++i)
       samples.lit[i] *= static_cast<float>(SunlightAt(sunlit, nodes[i].distance_m));
-    const auto light = air.single_scattering.Inscatter(air.single_scattering.Scatter(samples), ray.nu);
+    const auto light =
+        air.single_scattering.Inscatter(air.single_scattering.Scatter(samples), ray.nu);
     for (std::size_t band = 0; band < light.count; ++band) sum += static_cast<double>(light[band]);
   }
   return sum;
@@ -302,7 +305,8 @@ TEST(AerialPerspective, OfHazeIsWithinHalfAPercentOfPathsAndHasNothingOfWhatIsBe
     const RaySamples<float> way =
         aerial.Sample(to_a_mountain, nullptr, AerialPerspective::Nodes{}).samples;
     const Bands<float> open = multiple_scattering.InscatterAlong(way, view.ray.nu);
-    const Bands<float> hidden = multiple_scattering.InscatterAlong(way, view.ray.nu, SegmentEnd::kOpaque);
+    const Bands<float> hidden =
+        multiple_scattering.InscatterAlong(way, view.ray.nu, SegmentEnd::kOpaque);
     for (std::size_t band = 0; band < 3; ++band) {
       EXPECT_LT(hidden[band], open[band]);
       EXPECT_GT(hidden[band], 0.0F);

@@ -4,9 +4,9 @@
 
 #include <cmath>
 
+#include "atmosphere/astronomy/moon.h"
 #include "atmosphere/colour/spectrum.h"
 #include "atmosphere/math/constants.h"
-#include "atmosphere/astronomy/moon.h"
 #include "renderer/illumination/aerial_perspective.h"
 #include "renderer/illumination/night_light.h"
 #include "tests/fixtures/lit_air.h"

@@ -9,12 +9,12 @@
 #include <glm/geometric.hpp>
 #include <limits>
 
+#include "atmosphere/astronomy/sun.h"
 #include "atmosphere/math/constants.h"
 #include "atmosphere/math/numerics.h"
-#include "atmosphere/astronomy/sun.h"
 #include "lut/sky/sky_view.h"
-#include "renderer/material/reflectance.h"
 #include "renderer/illumination/aerial_perspective.h"
+#include "renderer/material/reflectance.h"
 #include "renderer/terrain/terrain.h"
 #include "tests/fixtures/lit_air.h"
 #include "tests/fixtures/rough_land.h"
@@ -71,7 +71,8 @@ double IrradianceByQuadrature(const glm::dvec3& to_sun, double altitude_m, const
 TEST(OccludedSkyIrradiance, OfAPlainIsTheIrradianceFromAbove) {
   for (const double elevation : {60.0, 20.0, 3.0, -4.0}) {
     const glm::dvec3 to_sun = SunAtElevation(elevation);
-    const OccludedSkyIrradiance sky(TheAir().air, TheAir().multiple_scattering, to_sun, {0.0, 3000.0, 5e4});
+    const OccludedSkyIrradiance sky(TheAir().air, TheAir().multiple_scattering, to_sun,
+                                    {0.0, 3000.0, 5e4});
     const auto open = sky.Irradiance(0.0, to_sun.z, SectorsOf(kUp), OpenTo(0.0F));
     const auto known = TheAir().multiple_scattering.SkyIrradiance(0.0, to_sun.z);
     for (std::size_t band = 0; band < open.count; ++band) {
@@ -84,7 +85,8 @@ TEST(OccludedSkyIrradiance, OfAPlainIsTheIrradianceFromAbove) {
 TEST(OccludedSkyIrradiance, OnAnySlopeUnderAnyHorizonIsTheIntegralOverTheOpenPart) {
   for (const double elevation : {40.0, 5.0}) {
     const glm::dvec3 to_sun = SunAtElevation(elevation);
-    const OccludedSkyIrradiance sky(TheAir().air, TheAir().multiple_scattering, to_sun, {0.0, 3000.0, 5e4});
+    const OccludedSkyIrradiance sky(TheAir().air, TheAir().multiple_scattering, to_sun,
+                                    {0.0, 3000.0, 5e4});
     for (const double lean : {0.0, 30.0, 70.0}) {
       for (const double azimuth : {10.0, 130.0, 260.0}) {
         for (const double horizon : {0.0, 0.3}) {
@@ -103,7 +105,8 @@ TEST(OccludedSkyIrradiance, OnAnySlopeUnderAnyHorizonIsTheIntegralOverTheOpenPar
 
 TEST(OccludedSkyIrradiance, BehindAClosedHorizonIsDark) {
   const glm::dvec3 to_sun = SunAtElevation(40.0);
-  const OccludedSkyIrradiance sky(TheAir().air, TheAir().multiple_scattering, to_sun, {0.0, 3000.0, 5e4});
+  const OccludedSkyIrradiance sky(TheAir().air, TheAir().multiple_scattering, to_sun,
+                                  {0.0, 3000.0, 5e4});
   for (const double lean : {0.0, 60.0}) {
     const auto none = sky.Irradiance(500.0, to_sun.z, SectorsOf(Leaning(lean, 45.0)), OpenTo(1.0F));
     EXPECT_EQ(none[0], 0.0F);
@@ -112,7 +115,8 @@ TEST(OccludedSkyIrradiance, BehindAClosedHorizonIsDark) {
 
 TEST(OccludedSkyIrradiance, RadianceIsThatOfTheSky) {
   const glm::dvec3 to_sun = SunAtElevation(40.0);
-  const OccludedSkyIrradiance sky(TheAir().air, TheAir().multiple_scattering, to_sun, {0.0, 3000.0, 5e4});
+  const OccludedSkyIrradiance sky(TheAir().air, TheAir().multiple_scattering, to_sun,
+                                  {0.0, 3000.0, 5e4});
   const SkyView view(TheAir().air, TheAir().multiple_scattering, 0.0, to_sun.z);
   for (const double sine : {0.05, 0.2, 0.5, 0.9}) {
     for (const double azimuth : {0.3, 1.4, 2.9}) {  // away from the aureole
@@ -250,8 +254,8 @@ TEST(TerrainIrradiance, IsThatOfRaysThatMeetSkyAndSlopes) {
           glm::dot(glm::normalize(flat),
                    glm::normalize(glm::dvec3(mountains.to_sun().x, mountains.to_sun().y, 0.0)));
       const double plain =
-          static_cast<double>(TheAir().multiple_scattering.Irradiance(hit.smooth_point.z, mountains.to_sun().z,
-                                                          hit.normal.z, azimuth)[1]) /
+          static_cast<double>(TheAir().multiple_scattering.Irradiance(
+              hit.smooth_point.z, mountains.to_sun().z, hit.normal.z, azimuth)[1]) /
               (rays.sky + rays.slopes) -
           1.0;
       sum += error / kPlaces;
@@ -271,7 +275,8 @@ TEST(TerrainIrradiance, SlopesLightEachOtherThroughAirThatDimsNothing) {
                                     &medium.mie_extinction_per_m, &medium.ozone_absorption_per_m})
     std::fill(list->begin(), list->end(), 0.0);
   const SingleScattering<float> air(medium);
-  const MultipleScattering multiple_scattering(medium, {.altitudes = 4, .sun_angles = 8, .degree = 2});
+  const MultipleScattering multiple_scattering(medium,
+                                               {.altitudes = 4, .sun_angles = 8, .degree = 2});
   const Terrain terrain(LandMesh(RoughLand, 17, 480.0));
   const auto horizons = std::make_shared<const TerrainHorizons>(terrain.mesh(), medium);
   const glm::dvec3 to_sun = SunAtElevation(30.0);

@@ -129,7 +129,8 @@ TEST(LampExtremes, ARayThroughALampAndOneAMillimetreBesideItAreFiniteAndRight) {
     const glm::dvec3 direction = glm::normalize(offset + glm::dvec3(beside_m, 0.0, 0.0));
     const double found = air.Along(direction);
     EXPECT_TRUE(std::isfinite(found)) << beside_m;
-    EXPECT_NEAR(found / air.ByTheReference(direction), 1.0, 2e-3) << beside_m << " m; 32 nodes a panel";
+    EXPECT_NEAR(found / air.ByTheReference(direction), 1.0, 2e-3)
+        << beside_m << " m; 32 nodes a panel";
   }
   EXPECT_GT(BrightestOf(Picture(scene)), 0.0) << "the lamp stands in the middle of the picture";
 }

@@ -88,28 +88,30 @@ constexpr glm::dvec3 kUpwards(0.0, 0.0, 1.0);
 constexpr glm::dvec3 kPoint(0.0, 0.0, 1e-3);
 
 TEST(LampAirlightIrradiance, LevelGroundGetsWhatTheHemisphereSends) {
-  const GlowError error = ErrorOver([](const LampAir& air, const LampAirlightIrradiance& glow, const Lamp& lamp) {
-    return glow.On(lamp.position_m - kPoint, kUpwards, kUpwards)[0] /
-               OverTheHemisphere(air, lamp, kPoint, kUpwards) -
-           1.0;
-  });
+  const GlowError error =
+      ErrorOver([](const LampAir& air, const LampAirlightIrradiance& glow, const Lamp& lamp) {
+        return glow.On(lamp.position_m - kPoint, kUpwards, kUpwards)[0] /
+                   OverTheHemisphere(air, lamp, kPoint, kUpwards) -
+               1.0;
+      });
   EXPECT_LT(error.rms, 0.06) << "16 distances and 9 elevations";
   EXPECT_LT(error.most, 0.18);
 }
 
 TEST(LampAirlightIrradiance, WallsGetWhatTheirHemisphereSends) {
-  const GlowError error = ErrorOver([](const LampAir& air, const LampAirlightIrradiance& glow, const Lamp& lamp) {
-    double worst = 0.0, brightest = 0.0;
-    for (const glm::dvec3& normal :
-         {glm::dvec3(1.0, 0.0, 0.2), glm::dvec3(0.3, 1.0, 0.2), glm::dvec3(-1.0, 0.0, 0.5)}) {
-      const glm::dvec3 unit = glm::normalize(normal);
-      const double truth = OverTheHemisphere(air, lamp, kPoint, unit);
-      const double found = glow.On(lamp.position_m - kPoint, unit, kUpwards)[0];
-      brightest = std::max(brightest, truth);
-      worst = std::abs(found - truth) > std::abs(worst) ? found - truth : worst;
-    }
-    return worst / brightest;
-  });
+  const GlowError error =
+      ErrorOver([](const LampAir& air, const LampAirlightIrradiance& glow, const Lamp& lamp) {
+        double worst = 0.0, brightest = 0.0;
+        for (const glm::dvec3& normal :
+             {glm::dvec3(1.0, 0.0, 0.2), glm::dvec3(0.3, 1.0, 0.2), glm::dvec3(-1.0, 0.0, 0.5)}) {
+          const glm::dvec3 unit = glm::normalize(normal);
+          const double truth = OverTheHemisphere(air, lamp, kPoint, unit);
+          const double found = glow.On(lamp.position_m - kPoint, unit, kUpwards)[0];
+          brightest = std::max(brightest, truth);
+          worst = std::abs(found - truth) > std::abs(worst) ? found - truth : worst;
+        }
+        return worst / brightest;
+      });
   EXPECT_LT(error.rms, 0.12) << "the worst of three walls; moments to degree 6 of light that the "
                                 "horizon cuts";
   EXPECT_LT(error.most, 0.18);

@@ -8,9 +8,9 @@
 #include <glm/geometric.hpp>
 #include <limits>
 
-#include "atmosphere/reference/airlight_reference.h"
-#include "atmosphere/math/constants.h"
 #include "atmosphere/base/error.h"
+#include "atmosphere/math/constants.h"
+#include "atmosphere/reference/airlight_reference.h"
 #include "renderer/lamps/placed_lamp.h"
 #include "renderer/picture/render.h"
 #include "tests/fixtures/bare_scene.h"
@@ -136,7 +136,8 @@ TEST(LampLight, LightInFogIsThatOfTheReference) {
     const double expected = 1000.0 * reference::AirlightAlong(fog, lamp, segment).radiance[0];
     const double found = stage.Luminance(stage.light.InAir(stage.light.All(), ray, 0.0, 16));
     EXPECT_NEAR(found / expected, 1.0, 0.02)
-        << "molecules and aerosol, which the reference solution's fog does not have, add and take 1 per cent";
+        << "molecules and aerosol, which the reference solution's fog does not have, add and take "
+           "1 per cent";
   }
 }
 

@@ -5,8 +5,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "atmosphere/colour/spectrum.h"
 #include "atmosphere/base/error.h"
+#include "atmosphere/colour/spectrum.h"
 #include "renderer/surface/surface.h"
 #include "tests/fixtures/class_map.h"
 #include "tests/fixtures/fault_of.h"

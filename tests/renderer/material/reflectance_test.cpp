@@ -9,10 +9,10 @@
 #include <glm/geometric.hpp>
 #include <vector>
 
+#include "atmosphere/base/error.h"
 #include "atmosphere/colour/spectrum.h"
 #include "atmosphere/math/constants.h"
 #include "atmosphere/math/numerics.h"
-#include "atmosphere/base/error.h"
 
 namespace alpenglow::renderer {
 namespace {

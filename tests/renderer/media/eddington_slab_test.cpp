@@ -9,8 +9,8 @@
 #include <glm/geometric.hpp>
 #include <glm/vec3.hpp>
 
-#include "atmosphere/medium/phase.h"
 #include "atmosphere/math/constants.h"
+#include "atmosphere/medium/phase.h"
 #include "lut/multiple_scattering/spherical_harmonics.h"
 #include "renderer/layer.h"
 

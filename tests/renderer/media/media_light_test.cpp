@@ -7,10 +7,10 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 
+#include "atmosphere/base/error.h"
 #include "atmosphere/colour/spectrum.h"
 #include "atmosphere/lamp/airlight.h"
 #include "atmosphere/math/constants.h"
-#include "atmosphere/base/error.h"
 #include "lut/multiple_scattering/spherical_harmonics.h"
 #include "renderer/illumination/occluded_sky.h"
 #include "renderer/picture/render.h"
@@ -26,7 +26,8 @@ const glm::dvec3 kToSun(0.6 * std::cos(kSunElevation), 0.8 * std::cos(kSunElevat
 
 /// Air, solved.
 struct SolvedAir {
-  explicit SolvedAir(const Medium& medium) : air(medium), beam(medium), multiple_scattering(medium) {}
+  explicit SolvedAir(const Medium& medium)
+      : air(medium), beam(medium), multiple_scattering(medium) {}
   [[nodiscard]] SunlitAir sunlit() const { return {air, beam, multiple_scattering}; }
 
   SingleScattering<float> air;
@@ -103,8 +104,8 @@ TEST(MediaLight, ThinVolumeScattersSunAndSkyOnce) {
   to.length_m = 300.0;
   const BandLight view = stage.air.air.TransmittanceAlong(to);
   const SkyMoments sky(stage.air.multiple_scattering, stage.geometry.UpAt(there), kToSun, {50.0});
-  const BandLight from_sky =
-      sky.Towards(look, LegendreCoefficients(optics.phase, stage.air.multiple_scattering.options().degree))[0];
+  const BandLight from_sky = sky.Towards(
+      look, LegendreCoefficients(optics.phase, stage.air.multiple_scattering.options().degree))[0];
   for (std::size_t band = 0; band < 3; ++band) {
     const double expected =
         optics.scattering_per_m[band] * 20.0 *

@@ -97,8 +97,9 @@ TEST(MarchMedia, FogToTheHorizonIsOneMinusItsTransmittance) {
 struct ReferenceLight {
   double radiance = 0.0, transmittance = 1.0;
 };
-ReferenceLight Reference(const LocalMedia& media, const glm::dvec3& from, const glm::dvec3& way, double begin,
-             double end, int steps, const std::function<double(const glm::dvec3&)>& source) {
+ReferenceLight Reference(const LocalMedia& media, const glm::dvec3& from, const glm::dvec3& way,
+                         double begin, double end, int steps,
+                         const std::function<double(const glm::dvec3&)>& source) {
   ReferenceLight reference;
   const double step = (end - begin) / steps;
   for (int i = 0; i < steps; ++i) {
@@ -138,10 +139,11 @@ TEST(MarchMedia, KeepsItsToleranceAgainstFineMidpointSums) {
     };
     for (int i = 0; i < 12; ++i) {
       const glm::dvec3 way = glm::normalize(glm::dvec3(0.02 * i - 0.1, 1.0, 0.13 - 0.025 * i));
-      const ReferenceLight reference = Reference(media, glm::dvec3(0.0), way, 0.0, 200.0, 160000, Striped);
+      const ReferenceLight reference =
+          Reference(media, glm::dvec3(0.0), way, 0.0, 200.0, 160000, Striped);
       const MarchedLight light = MarchMedia(media, glm::dvec3(0.0), way, 200.0, source);
-      worst =
-          std::max(worst, std::abs(static_cast<double>(light.radiance[0]) / reference.radiance - 1.0));
+      worst = std::max(worst,
+                       std::abs(static_cast<double>(light.radiance[0]) / reference.radiance - 1.0));
       worst = std::max(
           worst, std::abs(static_cast<double>(light.transmittance[0]) - reference.transmittance));
       worst_estimate = std::max(worst_estimate, light.error);

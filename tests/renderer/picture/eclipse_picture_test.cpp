@@ -6,8 +6,8 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 
-#include "atmosphere/math/constants.h"
 #include "atmosphere/astronomy/eclipse.h"
+#include "atmosphere/math/constants.h"
 #include "renderer/picture/render.h"
 #include "tests/fixtures/bare_scene.h"
 

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "atmosphere/math/constants.h"
 #include "atmosphere/astronomy/moon.h"
+#include "atmosphere/math/constants.h"
 #include "renderer/picture/render.h"
 #include "tests/fixtures/bare_scene.h"
 

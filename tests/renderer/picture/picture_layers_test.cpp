@@ -5,11 +5,11 @@
 
 #include <cmath>
 
-#include "atmosphere/medium/medium.h"
-#include "atmosphere/medium/medium_presets.h"
+#include "atmosphere/base/error.h"
 #include "atmosphere/colour/spectrum.h"
 #include "atmosphere/math/constants.h"
-#include "atmosphere/base/error.h"
+#include "atmosphere/medium/medium.h"
+#include "atmosphere/medium/medium_presets.h"
 #include "lut/multiple_scattering/multiple_scattering.h"
 #include "renderer/illumination/aerial_perspective.h"
 

@@ -8,8 +8,8 @@
 #include <cmath>
 #include <string>
 
-#include "atmosphere/math/constants.h"
 #include "atmosphere/base/error.h"
+#include "atmosphere/math/constants.h"
 #include "renderer/effects/effect_choice.h"
 #include "renderer/picture/render.h"
 #include "tests/fixtures/bare_scene.h"

@@ -45,7 +45,8 @@ TEST(Polariser, HalvesLightThatIsNotPolarisedToTheLastBit) {
 TEST(Polariser, AirThatIsNotAskedForPolarisationHasNoneAndTheSameLight) {
   const Medium earth = MediumPreset("earth", {450.0, 650.0});
   const SingleScattering<float> air(earth);
-  const MultipleScattering multiple_scattering(earth, {.altitudes = 6, .sun_angles = 8, .degree = 2});
+  const MultipleScattering multiple_scattering(earth,
+                                               {.altitudes = 6, .sun_angles = 8, .degree = 2});
   const AerialPerspective aerial(air, multiple_scattering);
   const ViewRay ray = RayFromAngles(2.0, 60.0, 80.0, 70.0);
   const AirAlongRay without = aerial.Along(ray, AerialPerspective::Nodes{});

@@ -3,8 +3,8 @@
 
 #include <gtest/gtest.h>
 
-#include "atmosphere/math/constants.h"
 #include "atmosphere/astronomy/sun.h"
+#include "atmosphere/math/constants.h"
 #include "tests/fixtures/bare_scene.h"
 
 namespace alpenglow::renderer {

@@ -5,10 +5,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "atmosphere/reference/reference_solution.h"
-#include "atmosphere/refraction/refracted_view.h"
 #include "atmosphere/astronomy/moon.h"
 #include "atmosphere/astronomy/night_sky.h"
+#include "atmosphere/reference/reference_solution.h"
+#include "atmosphere/refraction/refracted_view.h"
 #include "renderer/illumination/night_light.h"
 #include "renderer/picture/render.h"
 #include "tests/fixtures/bare_scene.h"
@@ -34,7 +34,8 @@ TEST(RefractedPlaces, TheSunIsWhereTheRayEquationOfThePicturesAirHasIt) {
     for (int minutes = 0; minutes < 60; minutes += 6) {
       const UtcInstant instant = AddSeconds(ParseInstant("2026-06-21T18:26:00Z"), 60.0 * minutes);
       const double apparent = renderer.ApparentSun(instant).elevation_rad;
-      if (apparent < RefractedView(renderer.medium(), height_m).horizon_rad() + kArcminute) continue;
+      if (apparent < RefractedView(renderer.medium(), height_m).horizon_rad() + kArcminute)
+        continue;
       ++seen;
       EXPECT_NEAR(TrueElevation(renderer.medium(), apparent, height_m),
                   SunAt(eye, instant).elevation_rad, kTolerance)

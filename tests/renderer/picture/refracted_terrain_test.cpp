@@ -51,7 +51,8 @@ TEST_F(RefractedTerrain, APeakBehindTheGeometricHorizonStandsWhereTheRayEquation
     const auto rows = far_pixels(renderer.Render(kNoon, settings));
     ASSERT_FALSE(rows.empty()) << "refraction shows it: " << peak.distance_m << " m";
     const double top = std::asin(camera.Direction(30.5, rows.front()).z);
-    EXPECT_NEAR(top / kMinute, expected / kMinute, 0.15) << "0.1' of RefractedPath, and half a pixel";
+    EXPECT_NEAR(top / kMinute, expected / kMinute, 0.15)
+        << "0.1' of RefractedPath, and half a pixel";
     settings.effects = settings.effects.Without(Effect::kRefraction);
     EXPECT_TRUE(far_pixels(renderer.Render(kNoon, settings)).empty());
   }

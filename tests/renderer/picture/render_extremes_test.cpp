@@ -36,8 +36,8 @@ using tests::Luminance;
 CameraSample CameraSampleFrom(double height_m, double pitch, double roll, double fov) {
   const Camera camera = CameraFromDegrees({}, 40.0, pitch, roll, 60.0);
   CameraSample camera_sample(kExtremeNoon);
-  camera_sample.poses = {{PlaceFromDegrees(46.5, 8.0, height_m), camera.heading_rad, camera.pitch_rad,
-                 camera.roll_rad, fov * kRadiansPerDegree}};
+  camera_sample.poses = {{PlaceFromDegrees(46.5, 8.0, height_m), camera.heading_rad,
+                          camera.pitch_rad, camera.roll_rad, fov * kRadiansPerDegree}};
   return camera_sample;
 }
 
@@ -224,8 +224,8 @@ TEST(RenderExtremes, PicturesOfOnePixelAndOneColumnArePartsOfWiderOnes) {
     for (const double roll : {0.0, 90.0}) {
       // A third of a picture that is three times as wide.
       const CameraSample narrow = CameraSampleFrom(100.0, 10.0, roll, FovOf(TanHalf(fov) / 3.0));
-      const Image three =
-          renderer.Render(CameraSampleFrom(100.0, 10.0, roll, fov), Settings(3, 5, {PictureLayer::kDepth}));
+      const Image three = renderer.Render(CameraSampleFrom(100.0, 10.0, roll, fov),
+                                          Settings(3, 5, {PictureLayer::kDepth}));
       const Image column = renderer.Render(narrow, Settings(1, 5));
       for (int y = 0; y < 5; ++y) {
         const bool sky = std::isinf(three.layers[0].values[static_cast<std::size_t>(3 * y + 1)]);
@@ -245,7 +245,8 @@ TEST(RenderExtremes, ACameraOnItsSideSeesRowsAsColumns) {
   const SceneRenderer renderer(BareScene(100.0, 40.0, 30.0, 60.0));
   const CameraSample upright = CameraSampleFrom(100.0, 30.0, 0.0, FovOf(kPixels * TanHalf(kFov)));
   const Image row = renderer.Render(upright, Settings(kPixels, 1));
-  const Image column = renderer.Render(CameraSampleFrom(100.0, 30.0, 90.0, kFov), Settings(1, kPixels));
+  const Image column =
+      renderer.Render(CameraSampleFrom(100.0, 30.0, 90.0, kFov), Settings(1, kPixels));
   for (int i = 0; i < kPixels; ++i) {
     for (std::size_t c = 0; c < 3; ++c) {
       EXPECT_NEAR(column.at(0, i)[c] / row.at(kPixels - 1 - i, 0)[c], 1.0F, 1e-4F)

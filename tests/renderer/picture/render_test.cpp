@@ -7,13 +7,13 @@
 #include <cmath>
 #include <filesystem>
 
-#include "atmosphere/colour/spectrum.h"
-#include "atmosphere/reference/reference_solution.h"
-#include "atmosphere/math/constants.h"
-#include "atmosphere/refraction/refracted_view.h"
 #include "atmosphere/base/error.h"
-#include "lut/multiple_scattering/multiple_scattering.h"
+#include "atmosphere/colour/spectrum.h"
+#include "atmosphere/math/constants.h"
+#include "atmosphere/reference/reference_solution.h"
+#include "atmosphere/refraction/refracted_view.h"
 #include "lut/image/eye.h"
+#include "lut/multiple_scattering/multiple_scattering.h"
 #include "renderer/camera/camera_rays.h"
 #include "tests/fixtures/bare_scene.h"
 #include "tests/fixtures/luminance.h"
@@ -43,8 +43,8 @@ TEST(Render, SkyPixelIsSingleScatteringOfTheReferencePlusMultipleScattering) {
     const glm::dvec3 d = camera.Direction(x + 0.5, 4.5);
     const ViewRay ray{1000.0, d.z, to_sun.z, d.x * to_sun.x + d.y * to_sun.y + d.z * to_sun.z};
     const auto once = reference::SingleScatteringAlong(medium, ray);
-    const auto more =
-        multiple_scattering.InscatterAlong(air.Sample(ray, {.nodes = 16, .dark_samples = true}), ray.nu);
+    const auto more = multiple_scattering.InscatterAlong(
+        air.Sample(ray, {.nodes = 16, .dark_samples = true}), ray.nu);
     std::vector<double> radiance;
     for (std::size_t band = 0; band < medium.wavelengths_nm.size(); ++band) {
       radiance.push_back((once.inscatter[band] + static_cast<double>(more[band])) *
@@ -112,7 +112,8 @@ TEST(Render, AnEyeOnAPathSeesWhatOneThatStandsThereSees) {
   Scene there = BareScene(3000.0, 300.0, 4.0, 40.0);
   there.place = PlaceFromDegrees(46.0, 8.8, 0.0);
   const SceneRenderer at(there);
-  EXPECT_LT(MostRelativeDifference(from.Render(camera_sample, kSmall), at.Render(evening, kSmall)), 2e-3)
+  EXPECT_LT(MostRelativeDifference(from.Render(camera_sample, kSmall), at.Render(evening, kSmall)),
+            2e-3)
       << "the sphere that osculates 80 km away, 2 m of altitude";
   EXPECT_NEAR(from.Illuminance(camera_sample) / at.Illuminance(evening), 1.0, 1e-3);
 }
@@ -158,7 +159,8 @@ TEST(Render, LensFilterAndPathGiveTheSameBytesForAnyNumberOfThreads) {
   lamp.intensity_cd = 1000.0;
   const SceneRenderer renderer(scene);
   CameraSample camera_sample(ParseInstant("2026-06-21T02:40:00Z"));
-  camera_sample.poses = {PoseAt(46.5, 8.0, 20.0, 118.0, 0.0), PoseAt(46.5, 8.00001, 21.0, 124.0, 1.0)};
+  camera_sample.poses = {PoseAt(46.5, 8.0, 20.0, 118.0, 0.0),
+                         PoseAt(46.5, 8.00001, 21.0, 124.0, 1.0)};
   RenderSettings settings = kSmall;
   settings.samples_per_pixel = 7;
   settings.layers = {PictureLayer::kDepth, PictureLayer::kLamps};

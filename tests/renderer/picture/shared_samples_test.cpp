@@ -14,7 +14,7 @@ constexpr int kSide = 7;
 
 /// Pixels of a square, each with some rays where its filter sends them, that see light(x, y).
 SharedSampleFilter Seen(PixelFilter::Kind kind, int rays,
-                const std::function<double(double, double)>& light) {
+                        const std::function<double(double, double)>& light) {
   const PixelFilter filter(kind);
   SharedSampleFilter shared(filter, kSide, kSide, 2);
   std::minstd_rand random(7);
@@ -53,7 +53,7 @@ TEST(SharedSampleFilter, OfASlopeAreNearlyWhatTheMiddleSees) {
   // A ray alone is off by 0.43 pixels rms, four rays by 0.22 and, shared, by about 0.15; what the
   // slope to the neighbours leaves of it is of second order: their own rays are off as well.
   const SharedSampleFilter shared = Seen(PixelFilter::Kind::kBlackmanHarris, 4,
-                                 [](double x, double y) { return 20.0 + x - 0.5 * y; });
+                                         [](double x, double y) { return 20.0 + x - 0.5 * y; });
   double squares = 0.0;
   for (int y = 1; y + 1 < kSide; ++y) {
     for (int x = 1; x + 1 < kSide; ++x)
@@ -71,7 +71,7 @@ TEST(SharedSampleFilter, AreNearlyTheFilterOfARefractedLightWhereManyCome) {
   for (int i = 0; i < kParts; ++i)
     variance += std::pow(filter.Offset((i + 0.5) / kParts), 2) / kParts;
   const SharedSampleFilter shared = Seen(PixelFilter::Kind::kBlackmanHarris, 2000,
-                                 [](double x, double) { return std::pow(x - 3.0, 2); });
+                                         [](double x, double) { return std::pow(x - 3.0, 2); });
   EXPECT_NEAR(shared.Light(3, 3)[0], variance, 0.02);
   EXPECT_NEAR(shared.Light(2, 3)[0], 1.0 + variance, 0.03);
 }
@@ -106,7 +106,7 @@ TEST(SharedSampleFilter, ShareWhereTheSkyIsButNotWhichSky) {
 
 TEST(SharedSampleFilter, StayPositiveBesideALightAMillionTimesAsBright) {
   const SharedSampleFilter shared = Seen(PixelFilter::Kind::kBlackmanHarris, 4,
-                                 [](double x, double) { return x > 3.2 ? 1e6 : 1.0; });
+                                         [](double x, double) { return x > 3.2 ? 1e6 : 1.0; });
   for (int y = 0; y < kSide; ++y) {
     for (int x = 0; x < kSide; ++x) EXPECT_GT(shared.Light(x, y)[0], 0.5F) << x << ' ' << y;
     EXPECT_NEAR(shared.Light(1, y)[0], 1.0, 1e-4) << "two pixels off no ray sees it";

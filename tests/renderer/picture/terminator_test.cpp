@@ -9,9 +9,9 @@
 
 #include "atmosphere/math/constants.h"
 #include "renderer/camera/camera_rays.h"
-#include "renderer/surface/scene_ground.h"
 #include "renderer/lamps/lamp_light.h"
 #include "renderer/picture/render.h"
+#include "renderer/surface/scene_ground.h"
 #include "tests/fixtures/bare_scene.h"
 #include "tests/fixtures/temporary_folder.h"
 

@@ -9,8 +9,8 @@
 #include "atmosphere/refraction/refraction.h"
 #include "renderer/picture/render.h"
 #include "tests/fixtures/bare_scene.h"
-#include "tests/fixtures/refracted_twilight.h"
 #include "tests/fixtures/luminance.h"
+#include "tests/fixtures/refracted_twilight.h"
 
 namespace alpenglow::renderer {
 namespace {

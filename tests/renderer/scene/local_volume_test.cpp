@@ -15,9 +15,9 @@
 #include <utility>
 #include <vector>
 
+#include "atmosphere/base/error.h"
 #include "atmosphere/colour/spectrum.h"
 #include "atmosphere/math/constants.h"
-#include "atmosphere/base/error.h"
 #include "renderer/media/local_media.h"
 #include "renderer/scene/scene_options.h"
 #include "renderer/terrain/lattice_noise.h"

@@ -10,11 +10,11 @@
 #include <utility>
 #include <vector>
 
-#include "atmosphere/math/constants.h"
-#include "atmosphere/time_place/geodesy.h"
 #include "atmosphere/astronomy/night_sky.h"
 #include "atmosphere/base/error.h"
 #include "atmosphere/base/parsing.h"
+#include "atmosphere/math/constants.h"
+#include "atmosphere/time_place/geodesy.h"
 #include "lut/image/look.h"
 #include "renderer/scene/scene_options.h"
 #include "renderer/terrain/procedural_mountains.h"

@@ -5,8 +5,8 @@
 
 #include <cmath>
 
-#include "atmosphere/math/constants.h"
 #include "atmosphere/astronomy/moon.h"
+#include "atmosphere/math/constants.h"
 #include "lut/cli/messages.h"
 #include "renderer/series/contact_sheet.h"
 #include "renderer/series/day_times.h"

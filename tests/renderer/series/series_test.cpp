@@ -10,8 +10,8 @@
 #include <sstream>
 
 #include "atmosphere/base/error.h"
-#include "lut/image/eye.h"
 #include "lut/cli/program.h"
+#include "lut/image/eye.h"
 #include "renderer/series/contact_sheet.h"
 #include "renderer/series/manifest.h"
 #include "tests/fixtures/fault_of.h"

@@ -4,8 +4,8 @@
 
 #include <cmath>
 
-#include "atmosphere/math/constants.h"
 #include "atmosphere/astronomy/sun.h"
+#include "atmosphere/math/constants.h"
 #include "lut/image/look.h"
 #include "renderer/picture/render.h"
 #include "renderer/series/smooth_meter.h"

@@ -12,9 +12,9 @@
 #include <fstream>
 #include <vector>
 
+#include "atmosphere/base/error.h"
 #include "atmosphere/colour/spectrum.h"
 #include "atmosphere/math/constants.h"
-#include "atmosphere/base/error.h"
 #include "tests/fixtures/fault_of.h"
 #include "tests/fixtures/rough_land.h"
 #include "tests/fixtures/temporary_folder.h"

@@ -151,7 +151,7 @@ TEST(SceneGeometry, LongChordsOfRefractedRaysMeetWhatShortOnesMeet) {
   const SceneGeometry solid(solid_ground, medium, false), pieces(ground, medium, false);
   const glm::dvec3 eye(0.0, 0.0, kEye_m);
   const RefractedFan fan(BendingAirOf(medium, kHorizonWavelength_nm), eye, {0.0, 0.0, 1.0},
-                    pieces.FarthestFrom(eye));
+                         pieces.FarthestFrom(eye));
   int met = 0, other = 0;
   double expected_m = 0.0;
   for (double azimuth = 0.0; azimuth < 6.28; azimuth += 0.13) {

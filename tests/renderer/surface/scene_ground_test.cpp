@@ -12,9 +12,9 @@
 #include <string>
 #include <vector>
 
+#include "atmosphere/base/error.h"
 #include "atmosphere/colour/spectrum.h"
 #include "atmosphere/math/constants.h"
-#include "atmosphere/base/error.h"
 #include "renderer/lamps/placed_lamp.h"
 #include "renderer/scene/scene_options.h"
 #include "tests/fixtures/bare_scene.h"

@@ -12,8 +12,8 @@
 #include <thread>
 #include <vector>
 
-#include "atmosphere/math/constants.h"
 #include "atmosphere/base/error.h"
+#include "atmosphere/math/constants.h"
 
 namespace alpenglow::renderer {
 namespace {

@@ -7,9 +7,9 @@
 #include <cmath>
 #include <filesystem>
 
-#include "atmosphere/math/constants.h"
 #include "atmosphere/astronomy/sun.h"
 #include "atmosphere/base/error.h"
+#include "atmosphere/math/constants.h"
 #include "tests/fixtures/occlusion_march.h"
 #include "tests/fixtures/places.h"
 

@@ -9,9 +9,9 @@
 #include <utility>
 #include <vector>
 
+#include "atmosphere/base/error.h"
 #include "atmosphere/colour/spectrum.h"
 #include "atmosphere/math/constants.h"
-#include "atmosphere/base/error.h"
 #include "tests/viewer/air/air_reference.h"
 #include "tests/viewer/shaders/headless.h"
 
@@ -110,7 +110,8 @@ double ErrorOfOld(const AirEye& made, const AirEye& now) {
   const AirTables old = MakeAirTables(air.air, air.multiple_scattering, medium, made, size);
   const AirMap map(air.medium, now.altitude_m, now.ceiling_m,
                    static_cast<double>(air.multiple_scattering.grid().twilight_fall));
-  return tests::SkyErrors(tests::AirReference(air, now), tests::AirReading(old, medium, now), map, 200)
+  return tests::SkyErrors(tests::AirReference(air, now), tests::AirReading(old, medium, now), map,
+                          200)
       .Rms();
 }
 

@@ -10,8 +10,8 @@
 #include <glm/geometric.hpp>
 #include <glm/vec3.hpp>
 
-#include "atmosphere/medium/phase_text.h"
 #include "atmosphere/math/constants.h"
+#include "atmosphere/medium/phase_text.h"
 #include "lut/tables/transmittance_table.h"
 #include "viewer/air/air_tables.h"
 

@@ -38,9 +38,9 @@ class AirReference {
     const double nu_seen = SeenCosineOf(ray.mu, azimuth);
     const Bands<double> single = exact_.Inscatter(
         exact_.Scatter(exact_.Sample(ray, {.nodes = 32, .split_ozone = true})), nu_seen);
-    const Bands<float> multiple_scattering =
-        air_.multiple_scattering.InscatterAlong(air_.air.Sample(ray, {.nodes = 32, .dark_samples = true}),
-                                    ray.nu, nu_seen, SegmentEnd::kOpen);
+    const Bands<float> multiple_scattering = air_.multiple_scattering.InscatterAlong(
+        air_.air.Sample(ray, {.nodes = 32, .dark_samples = true}), ray.nu, nu_seen,
+        SegmentEnd::kOpen);
     const Bands<double> left = exact_.TransmittanceAlong(ray);
     AirToPoint to{glm::dvec4(0.0), glm::dvec4(0.0), glm::dvec4(1.0)};
     for (std::size_t band = 0; band < left.count; ++band) {
@@ -95,8 +95,8 @@ inline std::vector<LandPoint> LandPoints(const AirMap& map, int count) {
 }
 
 /// Of the light of all orders in all bands.
-inline AirErrors WayErrors(const AirReference& reference, const AirReading& reading, const AirMap& map,
-                           const std::vector<LandPoint>& points) {
+inline AirErrors WayErrors(const AirReference& reference, const AirReading& reading,
+                           const AirMap& map, const std::vector<LandPoint>& points) {
   AirErrors errors;
   for (const LandPoint& point : points) {
     const AirToPoint exact = reference.To(map, point.angle, point.azimuth, point.distance_km);
@@ -104,15 +104,16 @@ inline AirErrors WayErrors(const AirReference& reference, const AirReading& read
     for (glm::length_t band = 0; band < 4; ++band) {
       const double light = exact.single[band] + exact.multiple_scattering[band];
       if (light > 0.0)
-        errors.sorted.push_back(std::abs(read.single[band] + read.multiple_scattering[band] - light) / light);
+        errors.sorted.push_back(
+            std::abs(read.single[band] + read.multiple_scattering[band] - light) / light);
     }
   }
   std::sort(errors.sorted.begin(), errors.sorted.end());
   return errors;
 }
 
-inline AirErrors WayErrors(const AirReference& reference, const AirReading& reading, const AirMap& map,
-                           int count) {
+inline AirErrors WayErrors(const AirReference& reference, const AirReading& reading,
+                           const AirMap& map, int count) {
   return WayErrors(reference, reading, map, LandPoints(map, count));
 }
 
@@ -131,8 +132,8 @@ inline AirErrors TransmittanceErrors(const AirReference& reference, const AirRea
 }
 
 /// Relative to the radiance or to a thousandth of its mean, where that is more.
-inline AirErrors SkyErrors(const AirReference& reference, const AirReading& reading, const AirMap& map,
-                           int count) {
+inline AirErrors SkyErrors(const AirReference& reference, const AirReading& reading,
+                           const AirMap& map, int count) {
   std::vector<std::pair<double, double>> pairs;
   double mean = 0.0;
   for (int i = 1; i <= count; ++i) {

@@ -7,8 +7,8 @@
 
 #include <cmath>
 
-#include "atmosphere/colour/spectrum.h"
 #include "atmosphere/base/error.h"
+#include "atmosphere/colour/spectrum.h"
 #include "tests/viewer/air/air_reference.h"
 #include "viewer/gl/gl_objects.h"
 

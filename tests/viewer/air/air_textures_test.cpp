@@ -26,8 +26,8 @@ constexpr GLuint kBinding = 5;
 struct BothTables {
   BothTables(double altitude_m, double mu_s)
       : medium(MakeMediumTables(tests::Earth().air, tests::Earth().beam)),
-        tables(MakeAirTables(tests::Earth().air, tests::Earth().multiple_scattering, medium, {altitude_m, mu_s},
-                             AirTablesSizeOf(AirQuality::kLow, altitude_m))),
+        tables(MakeAirTables(tests::Earth().air, tests::Earth().multiple_scattering, medium,
+                             {altitude_m, mu_s}, AirTablesSizeOf(AirQuality::kLow, altitude_m))),
         reading(tables, medium) {
     textures.Upload(medium);
     textures.Upload(tables);
@@ -151,7 +151,8 @@ void ExpectWaysOfCpu(double altitude_m, double mu_s, double tolerance) {
   const auto value = [&](const char* member) {
     return both.OnGpu(fmt::format("AirToPoint(vec3(a[0], a[1], a[2]), a[3]).{}.y", member), points);
   };
-  const auto single = value("single"), multiple_scattering = value("diffuse"), left = value("transmittance");
+  const auto single = value("single"), multiple_scattering = value("diffuse"),
+             left = value("transmittance");
   const auto single_to = both.OnGpu("SingleTo(vec3(a[0], a[1], a[2]), a[3]).y", points);
   for (std::size_t i = 0; i < looks.size(); ++i) {
     const tests::AirToPoint exact =
@@ -199,7 +200,8 @@ TEST_F(AirTexturesOnGpu, AnEyeThatHasMovedSeesThemFromItsOwnHorizonUnderItsOwnSu
     points.push_back({d.x, d.y, d.z, static_cast<float>(look.distance_km)});
   }
   const auto sky = both.OnGpu("SkyRadiance(vec3(a[0], a[1], a[2])).y", points);
-  const auto multiple_scattering = both.OnGpu("AirToPoint(vec3(a[0], a[1], a[2]), a[3]).diffuse.y", points);
+  const auto multiple_scattering =
+      both.OnGpu("AirToPoint(vec3(a[0], a[1], a[2]), a[3]).diffuse.y", points);
   for (std::size_t i = 0; i < looks.size(); ++i) {
     const double seen = reading.Sky(looks[i].angle, looks[i].azimuth)[1];
     EXPECT_NEAR(sky[i], seen, 2e-3 * seen) << looks[i].angle << ", " << looks[i].azimuth;

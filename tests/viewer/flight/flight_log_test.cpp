@@ -3,8 +3,8 @@
 
 #include <gtest/gtest.h>
 
-#include "atmosphere/math/constants.h"
 #include "atmosphere/base/error.h"
+#include "atmosphere/math/constants.h"
 
 namespace alpenglow::viewer {
 namespace {

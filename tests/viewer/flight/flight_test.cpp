@@ -6,8 +6,8 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 
-#include "atmosphere/math/constants.h"
 #include "atmosphere/base/error.h"
+#include "atmosphere/math/constants.h"
 #include "viewer/flight_session.h"
 
 namespace alpenglow::viewer {

@@ -66,9 +66,10 @@ class Blocks {
       : lit_(lit), eye_m_(eye_m), textures_(*lit.site().air().multiple_scattering) {
     if (const ColourDrape* drape = lit.site().material().drape())
       textures_.SetDrape(DrapeTexels(*drape, Picture(), 256));
-    textures_.SetSeaMirror(LightSource::kSun,
-                           SeaMirror::Of(light.on_terrain->sky(), *lit.site().air().multiple_scattering,
-                                         lit.site().material().water(), lit.lighting().to_sun));
+    textures_.SetSeaMirror(
+        LightSource::kSun,
+        SeaMirror::Of(light.on_terrain->sky(), *lit.site().air().multiple_scattering,
+                      lit.site().material().water(), lit.lighting().to_sun));
   }
 
   void Upload(const ShaderProgram& program) const {
@@ -247,8 +248,8 @@ std::vector<double> DifferencesByPixel(const LitGround& lit) {
 std::vector<double> PlanetDifferences(const LitGround& lit, double eye_m) {
   Lighting light = lit.lighting();
   const SiteAir& air = lit.site().air();
-  light.on_terrain =
-      std::make_shared<const TerrainIrradiance>(nullptr, *air.single_scattering, *air.multiple_scattering, light.to_sun);
+  light.on_terrain = std::make_shared<const TerrainIrradiance>(
+      nullptr, *air.single_scattering, *air.multiple_scattering, light.to_sun);
   return Differences(lit, light, eye_m, PlanetCases(lit, eye_m),
                      {"PlanetRadiance(" + kPoint + ", " + kToEye + ")", false,
                       [eye_m](const Case& c) { return PlaceOf(c, eye_m, {}); }});
@@ -381,7 +382,8 @@ TEST_F(GroundOnGpu, ThePlanetBeyondIsTheRenderers) {
         EXPECT_LT(LightQuantile(differences, 0.5), elevation_deg > 0.0 ? 0.01 : 0.06)
             << elevation_deg << " " << eye_m;
         EXPECT_LT(LightQuantile(differences, 0.98), elevation_deg > 0.0 ? 0.07 : 0.12)
-            << "the reference solution's sky is linear between sectors of 22.5 degrees, and in twilight between "
+            << "the reference solution's sky is linear between sectors of 22.5 degrees, and in "
+               "twilight between "
                "suns a degree apart";
       }
     }

@@ -9,8 +9,8 @@
 #include <glm/geometric.hpp>
 #include <limits>
 
-#include "atmosphere/math/numerics.h"
 #include "atmosphere/astronomy/sun.h"
+#include "atmosphere/math/numerics.h"
 #include "tests/viewer/ground/rough_site.h"
 
 namespace alpenglow::viewer {
@@ -208,8 +208,9 @@ TEST(LitGround, ReliefChangesTheSkysLightAsTheOpenSkys) {
     const glm::dvec3& to_sun = lit.lighting().to_sun;
     const glm::dvec3 sunward = glm::normalize(glm::dvec3(to_sun.x, to_sun.y, 0.0));
     const OccludedSkyIrradiance::Extent& extent = TheSite()->horizons()->extent();
-    const SkyIrradianceGradient tilt(*TheSite()->air().single_scattering, *TheSite()->air().multiple_scattering,
-                       0.5 * (extent.lowest_m + extent.highest_m), to_sun.z);
+    const SkyIrradianceGradient tilt(*TheSite()->air().single_scattering,
+                                     *TheSite()->air().multiple_scattering,
+                                     0.5 * (extent.lowest_m + extent.highest_m), to_sun.z);
     const auto open = [&](const glm::dvec3& n) {
       return static_cast<double>(tilt.On(n.z, glm::dot(n, sunward))[1]);
     };

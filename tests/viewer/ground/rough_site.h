@@ -5,8 +5,8 @@
 #include <filesystem>
 #include <memory>
 
-#include "atmosphere/math/constants.h"
 #include "atmosphere/astronomy/sun.h"
+#include "atmosphere/math/constants.h"
 #include "tests/fixtures/rough_land.h"
 #include "tests/fixtures/small_light.h"
 #include "viewer/ground/lit_ground.h"

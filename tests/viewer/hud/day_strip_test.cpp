@@ -5,9 +5,9 @@
 
 #include <cmath>
 
+#include "atmosphere/astronomy/sun.h"
 #include "atmosphere/colour/spectrum.h"
 #include "atmosphere/math/constants.h"
-#include "atmosphere/astronomy/sun.h"
 #include "lut/image/image.h"
 #include "lut/sky/sky_view.h"
 
@@ -27,7 +27,8 @@ const Air& Earth() {
 }
 
 DayStripRequest Alps() {
-  DayStripRequest request{Earth().air, Earth().multiple_scattering, PlaceFromDegrees(46.0, 8.0, 500.0), {}, 24};
+  DayStripRequest request{
+      Earth().air, Earth().multiple_scattering, PlaceFromDegrees(46.0, 8.0, 500.0), {}, 24};
   request.begin = ParseInstant("2026-03-19T23:28:00Z");  // midnight of the mean sun
   return request;
 }

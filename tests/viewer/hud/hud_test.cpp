@@ -8,8 +8,8 @@
 #include <array>
 #include <utility>
 
-#include "atmosphere/math/constants.h"
 #include "atmosphere/base/error.h"
+#include "atmosphere/math/constants.h"
 #include "tests/viewer/hud/hud_picture.h"
 
 namespace alpenglow::viewer {

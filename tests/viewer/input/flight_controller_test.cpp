@@ -27,7 +27,8 @@ TEST(FlightController, DoesWhatIsOfFlightAndTimeAndLeavesTheRestToOthers) {
   EXPECT_EQ(cockpit.Do(Action::kTrackMode, FlightControllerSea), "there is no track to follow");
   EXPECT_EQ(cockpit.Do(Action::kScreenshot, FlightControllerSea), std::nullopt);
   EXPECT_EQ(cockpit.Do(Action::kHud, FlightControllerSea), std::nullopt);
-  EXPECT_EQ(cockpit.Do(Action::kForward, FlightControllerSea), std::nullopt) << "held keys are controls";
+  EXPECT_EQ(cockpit.Do(Action::kForward, FlightControllerSea), std::nullopt)
+      << "held keys are controls";
 }
 
 TEST(FlightController, GoesAroundTheModesThatThereAre) {

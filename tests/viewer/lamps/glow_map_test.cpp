@@ -52,7 +52,8 @@ struct Texel {
   }
   [[nodiscard]] double ByMap(const glm::dvec3& normal) const {
     return std::exp(Term(0)) / Far() *
-           shared::LampAirlightOnSlope(normal.x, normal.z, Term(1), Term(2), Term(3), Term(4), Term(5));
+           shared::LampAirlightOnSlope(normal.x, normal.z, Term(1), Term(2), Term(3), Term(4),
+                                       Term(5));
   }
   [[nodiscard]] double ByGlow(const glm::dvec3& normal) const {
     const double sine = shared::LampRiseFromUnit(rise / (kGlowRises - 1.0));

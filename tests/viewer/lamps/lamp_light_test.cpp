@@ -8,8 +8,8 @@
 #include <limits>
 #include <random>
 
-#include "renderer/lamps/lamp_light.h"
 #include "renderer/illumination/lighting.h"
+#include "renderer/lamps/lamp_light.h"
 #include "tests/fixtures/bare_scene.h"
 #include "tests/viewer/lamps/ridge.h"
 #include "tests/viewer/shaders/gpu_values.h"
@@ -183,7 +183,8 @@ TEST_F(LampsOnTheCard, FogFarBelowItsBaseIsAWallWithoutLight) {
   scene.fog->base_height_m = 5000.0;
   const BothLamps both(scene);
   const auto rays = Rays(both, 100);
-  for (const float glow : both.OnGpu("LampAirlightIn(vec3(a[0], a[1], a[2]), a[3], 1.0)[2]", rays)) {
+  for (const float glow :
+       both.OnGpu("LampAirlightIn(vec3(a[0], a[1], a[2]), a[3], 1.0)[2]", rays)) {
     EXPECT_EQ(glow, 0.0F);
   }
   for (const float lit :
@@ -268,7 +269,8 @@ TEST_F(LampsOnTheCard, GroundUnderLampsAsTheRenderer) {
   const Deviation level = GroundDeviation(fog, false), slopes = GroundDeviation(fog, true);
   EXPECT_LT(level.mean, 0.01) << "its light in the fog comes from a map of LampAirlightIrradiance";
   EXPECT_LT(level.p99, 0.08);
-  EXPECT_LT(slopes.mean, 0.04) << "six terms of light in the fog; LampAirlightIrradiance itself is off by 18 %";
+  EXPECT_LT(slopes.mean, 0.04)
+      << "six terms of light in the fog; LampAirlightIrradiance itself is off by 18 %";
   EXPECT_LT(slopes.p99, 0.2);
 }
 

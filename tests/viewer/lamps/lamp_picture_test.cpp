@@ -11,8 +11,8 @@
 #include <numeric>
 
 #include "atmosphere/ray/shell.h"
-#include "renderer/material/band_light.h"
 #include "renderer/lamps/lamp_light.h"
+#include "renderer/material/band_light.h"
 #include "tests/fixtures/bare_scene.h"
 #include "tests/viewer/shaders/headless.h"
 #include "viewer/lamps/lamp_painter.h"

@@ -99,7 +99,9 @@ TEST_F(UpscalerTest, OnOneSurfaceLightIsInterpolated) {
   const DepthPrepass outline(kPrintWidth, kPrintHeight);
   const RenderTarget small(kPrintWidth / kSmaller, kPrintHeight / kSmaller);
   // Level ground: inverse depth falls to 0 at the horizon, here the upper rim of the picture.
-  const auto inverse_depth = [](double y) { return static_cast<float>(2.0 * (1.0 - y / kPrintHeight)); };
+  const auto inverse_depth = [](double y) {
+    return static_cast<float>(2.0 * (1.0 - y / kPrintHeight));
+  };
   for (const bool is_land : {false, true}) {
     Fill(small, [&](int x, int y) {
       const auto light = static_cast<float>(kSmaller * (x + 0.5) + 3.0 * kSmaller * (y + 0.5));

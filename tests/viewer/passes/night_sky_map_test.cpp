@@ -5,8 +5,8 @@
 
 #include <cmath>
 
-#include "atmosphere/math/constants.h"
 #include "atmosphere/astronomy/sun.h"
+#include "atmosphere/math/constants.h"
 #include "renderer/illumination/night_light.h"
 
 namespace alpenglow::viewer {
@@ -35,8 +35,8 @@ TEST(NightSkyMap, BetweenTexelsTheSkyIsThatOfTheRenderer) {
   const BandColour colour(medium.wavelengths_nm);
   const NightSkyMap floor = NightSkyMapOver(eye, now, medium, colour);
   const NightLight reference(NightSky(eye, now),
-                         SingleScattering<float>(OnOsculatingSphere(medium, eye.latitude_rad)), colour,
-                         {0.0, 0.0, 1.0}, eye.height_m);
+                             SingleScattering<float>(OnOsculatingSphere(medium, eye.latitude_rad)),
+                             colour, {0.0, 0.0, 1.0}, eye.height_m);
   EXPECT_EQ(floor.scattered.x, reference.scattered()[0]);
   EXPECT_EQ(floor.level.x, reference.OnSurface(1.0)[0]);
   double sum = 0.0;
@@ -45,7 +45,8 @@ TEST(NightSkyMap, BetweenTexelsTheSkyIsThatOfTheRenderer) {
     for (int column = 0; column + 1 < NightSkyMap::kColumns; column += 5) {
       const auto texel = [&](int x, int y) {
         return static_cast<double>(
-            floor.above[static_cast<std::size_t>((row + y) * NightSkyMap::kColumns + column + x)].y);
+            floor.above[static_cast<std::size_t>((row + y) * NightSkyMap::kColumns + column + x)]
+                .y);
       };
       const double between = 0.25 * (texel(0, 0) + texel(1, 0) + texel(0, 1) + texel(1, 1));
       const double elevation = kPi * ((row + 1.0) / NightSkyMap::kRows - 0.5);

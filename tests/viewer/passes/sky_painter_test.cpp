@@ -11,8 +11,8 @@
 #include <limits>
 
 #include "atmosphere/astronomy/eclipse.h"
-#include "renderer/surface/scene_ground.h"
 #include "renderer/picture/render.h"
+#include "renderer/surface/scene_ground.h"
 #include "tests/fixtures/bare_scene.h"
 #include "tests/fixtures/parity_views.h"
 #include "tests/fixtures/sanitized.h"
@@ -69,7 +69,8 @@ class BothPrograms {
     camera_sample.poses = {PoseOf(view.eye)};
     painter_.Settle(view, kSamples);
     painter_.Paint(view, kSamples);
-    return DifferenceOf(reference_.Render(camera_sample, ReferenceSettings(size_)), painter_.picture().Read());
+    return DifferenceOf(reference_.Render(camera_sample, ReferenceSettings(size_)),
+                        painter_.picture().Read());
   }
   ViewDifference Difference(const ParityView& view) {
     return Difference(ViewOf(view.scene, ground_->eye_height_m, view.instant));

@@ -7,8 +7,8 @@
 #include <glm/geometric.hpp>
 #include <map>
 
-#include "atmosphere/math/constants.h"
 #include "atmosphere/astronomy/sun.h"
+#include "atmosphere/math/constants.h"
 #include "renderer/camera/camera_rays.h"
 #include "renderer/picture/sky_pixels.h"
 #include "tests/fixtures/bare_scene.h"

@@ -98,7 +98,8 @@ TEST_F(ToneMapPassTest, LooksAndWhiteBalanceAreThoseOfTheRendererWithinOneCode) 
     look.white = {WhiteBalance::Kind::kKelvin, 4000.0};
     developer.Use(look);
     developer.Develop(picture, 13.0, {screen.framebuffer(), kFrameWidth, kFrameHeight});
-    const DisplayImage reference = Develop(Seen(image, look), 13.0, look), shown = screen.ReadBytes();
+    const DisplayImage reference = Develop(Seen(image, look), 13.0, look),
+                       shown = screen.ReadBytes();
     for (std::size_t i = 0; i < reference.rgb.size(); ++i)
       ASSERT_NEAR(shown.rgb[i], reference.rgb[i], 1) << NameOf(agx) << ", byte " << i;
   }

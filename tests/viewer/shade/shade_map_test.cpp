@@ -48,7 +48,8 @@ TEST(SunShadowMap, HasNoSideThatIsAPowerOfTwoWhileTheSunTurns) {
   const auto wall = [](double x, double) { return std::abs(x) < 60.0 ? 800.0 : 0.0; };
   const HeightRaster heights = Raster(wall, 65, 50.0);
   for (double azimuth_deg = 0.0; azimuth_deg < 90.0; azimuth_deg += 1.0) {
-    const SunShadowMap map = SunShadowMapOf(heights, SunAtDegrees(10.0, azimuth_deg), kSunRadius_rad, 64);
+    const SunShadowMap map =
+        SunShadowMapOf(heights, SunAtDegrees(10.0, azimuth_deg), kSunRadius_rad, 64);
     EXPECT_EQ(map.columns, OffPowersOfTwo(map.columns)) << azimuth_deg;
     EXPECT_EQ(map.lines, OffPowersOfTwo(map.lines)) << azimuth_deg;
   }
@@ -58,7 +59,8 @@ TEST(SunShadowMap, OfAWallFallsByTheTangentOfTheSun) {
   const auto wall = [](double x, double) { return std::abs(x) < 60.0 ? 800.0 : 0.0; };
   const HeightRaster heights = Raster(wall, 401, 50.0);
   for (const double degrees : {2.0, 10.0, 40.0}) {
-    const SunShadowMap map = SunShadowMapOf(heights, SunAtDegrees(degrees, 0.0), kSunRadius_rad, 1024);
+    const SunShadowMap map =
+        SunShadowMapOf(heights, SunAtDegrees(degrees, 0.0), kSunRadius_rad, 1024);
     const double slope = std::tan(degrees * kRadiansPerDegree);
     const int line = map.lines / 2;
     for (int column = 1; column < map.columns - 1; ++column) {
@@ -113,10 +115,12 @@ TEST(SunShadowMap, OfGentleLandUnderAHighSunIsNone) {
   const auto hills = [](double x, double y) {
     return 100.0 * (1.0 + std::cos(1e-3 * x)) * std::exp(-5e-8 * (x * x + y * y));
   };
-  EXPECT_TRUE(SunShadowMapOf(Raster(hills, 201, 100.0), SunAtDegrees(50.0, 20.0), kSunRadius_rad, 512)
-                  .ShadesNothing());
-  EXPECT_FALSE(SunShadowMapOf(Raster(hills, 201, 100.0), SunAtDegrees(5.0, 20.0), kSunRadius_rad, 512)
-                   .ShadesNothing());
+  EXPECT_TRUE(
+      SunShadowMapOf(Raster(hills, 201, 100.0), SunAtDegrees(50.0, 20.0), kSunRadius_rad, 512)
+          .ShadesNothing());
+  EXPECT_FALSE(
+      SunShadowMapOf(Raster(hills, 201, 100.0), SunAtDegrees(5.0, 20.0), kSunRadius_rad, 512)
+          .ShadesNothing());
   for (const double degrees : {-5.0, 85.0, 90.0}) {
     EXPECT_TRUE(
         SunShadowMapOf(Raster(hills, 201, 100.0), SunAtDegrees(degrees, 20.0), kSunRadius_rad, 512)
@@ -126,7 +130,8 @@ TEST(SunShadowMap, OfGentleLandUnderAHighSunIsNone) {
 
 TEST(SunShadowMap, ItsBoxHoldsAllShade) {
   const auto hill = [](double x, double y) { return 900.0 * std::exp(-1e-7 * (x * x + y * y)); };
-  const SunShadowMap map = SunShadowMapOf(Raster(hill, 301, 100.0), SunAtDegrees(6.0, 200.0), 0.0046, 512);
+  const SunShadowMap map =
+      SunShadowMapOf(Raster(hill, 301, 100.0), SunAtDegrees(6.0, 200.0), 0.0046, 512);
   ASSERT_FALSE(map.ShadesNothing());
   for (int line = 0; line < map.lines; ++line) {
     for (int column = 0; column < map.columns; ++column) {

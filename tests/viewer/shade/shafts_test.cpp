@@ -8,9 +8,9 @@
 #include <random>
 
 #include "atmosphere/math/constants.h"
-#include "renderer/visibility/shadow_heights.h"
 #include "renderer/terrain/mesh.h"
 #include "renderer/terrain/terrain.h"
+#include "renderer/visibility/shadow_heights.h"
 #include "tests/fixtures/rough_land.h"
 #include "tests/viewer/shaders/gpu_values.h"
 #include "tests/viewer/shaders/headless.h"
@@ -138,7 +138,7 @@ TEST_F(Shafts, OfARayThroughAHoleInTheLandEndAtItsLowestGround) {
   const double e = 8.0 * kRadiansPerDegree;
   const auto map = std::make_shared<SunShadowMap>(
       SunShadowMapOf(RasterOf(LandMesh(RoughLand, kSide, kCell_m), std::size_t{1} << 18),
-                 {std::cos(e), 0.0, std::sin(e)}, kShaftSunRadius_rad, 1024));
+                     {std::cos(e), 0.0, std::sin(e)}, kShaftSunRadius_rad, 1024));
   ShadeTexture texture;
   texture.TakeOver(map);
   texture.Upload(map->lines, 1);
@@ -284,7 +284,7 @@ TEST_F(Shafts, OfEveryFourthPixelAreTakenBetweenRaysThatComeAsFar) {
   ShadeTexture shade;
   shade.TakeOver(std::make_shared<SunShadowMap>(
       SunShadowMapOf(RasterOf(LandMesh(land, 201, 150.0), std::size_t{1} << 16),
-                 {-std::cos(0.09), 0.0, std::sin(0.09)}, kShaftSunRadius_rad, 512)));
+                     {-std::cos(0.09), 0.0, std::sin(0.09)}, kShaftSunRadius_rad, 512)));
   shade.Upload(100000, 1);
   ASSERT_TRUE(shade.Shades());
   const ShaftPicture scene;

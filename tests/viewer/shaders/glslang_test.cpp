@@ -18,8 +18,8 @@
 #include "viewer/lamps/lamp_painter.h"
 #include "viewer/land/land_pass.h"
 #include "viewer/passes/display_pass.h"
-#include "viewer/passes/tone_map_pass.h"
 #include "viewer/passes/picture_programs.h"
+#include "viewer/passes/tone_map_pass.h"
 #include "viewer/shade/shafts.h"
 #include "viewer/shaders/full_screen.h"
 
@@ -57,7 +57,8 @@ TEST_F(Glslang, AcceptsTheShadersOfLandShaftsAndDisplay) {
   ExpectAccepted({}, "hud.frag.glsl");
   for (int curve = 0; curve < 5; ++curve) {
     for (const bool dithers : {false, true})
-      ExpectAccepted(ToneMapPassTexts(static_cast<ToneCurve>(curve), dithers), "tone_map.frag.glsl");
+      ExpectAccepted(ToneMapPassTexts(static_cast<ToneCurve>(curve), dithers),
+                     "tone_map.frag.glsl");
   }
   const ShaderPiece single = {
       "air",
