@@ -59,19 +59,6 @@ struct SunPosition {
 /// Returns the unit vector of an elevation and azimuth.
 [[nodiscard]] Vector<Enu> DirectionFromAngles(double elevation_rad, double azimuth_rad);
 
-/// Air at the observer, for refraction.
-struct AirAtObserver {
-  double pressure_pa = 101325.0;
-  double temperature_k = 288.15;
-};
-
-/// Returns refraction [rad], apparent minus true elevation, as a function of the *true* elevation,
-/// for an observer on the ground; smooth and bounded for every elevation in [-pi/2, pi/2], 34' for
-/// a body seen at the horizontal, 0 from -6 degrees down. Model, source and error are in
-/// refraction.cpp; RefractionFromHeight (refraction.h) is for observers high above the sea. Throws
-/// InputError if the pressure is not in [0, 2e5] Pa or the temperature not in [150, 400] K.
-[[nodiscard]] double Refraction(double true_elevation_rad, const AirAtObserver& air = {});
-
 /// Events of the sun on a local solar day.
 enum class SunEvent {
   kNoon,

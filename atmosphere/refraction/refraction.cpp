@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "atmosphere/astronomy/sun.h"
 #include "atmosphere/base/error.h"
 #include "atmosphere/math/numerics.h"
 

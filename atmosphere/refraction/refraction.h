@@ -21,7 +21,7 @@
 // sea level is lifted by the 34' of the almanacs. The model reproduces quantities that almanacs
 // tabulate separately: refraction at any elevation, the refracted dip of the sea horizon, and the
 // refraction of a body on the horizon. The air of the earth presets bends rays in the same way.
-// sun.h has a closed form for observers on the ground, for which this model is the reference.
+// Refraction is a closed form for observers on the ground, for which this model is the reference.
 // Weather changes all of these values by minutes of arc near the horizon.
 #pragma once
 
@@ -210,5 +210,18 @@ struct SeaHorizon {
 /// sun that has set, where single scattering ends. tests/bench/refracted_twilight.cpp compares values of
 /// the lift.
 [[nodiscard]] double LiftForAir(const BendingAir& air, double true_elevation_rad);
+
+/// Air at the observer, for refraction.
+struct AirAtObserver {
+  double pressure_pa = 101325.0;
+  double temperature_k = 288.15;
+};
+
+/// Returns refraction [rad], apparent minus true elevation, as a function of the *true* elevation,
+/// for an observer on the ground; smooth and bounded for every elevation in [-pi/2, pi/2], 34' for
+/// a body seen at the horizontal, 0 from -6 degrees down. Model, source and error are in
+/// refraction.cpp; RefractionFromHeight is for observers high above the sea. Throws InputError if
+/// the pressure is not in [0, 2e5] Pa or the temperature not in [150, 400] K.
+[[nodiscard]] double Refraction(double true_elevation_rad, const AirAtObserver& air = {});
 
 }  // namespace alpenglow::atmosphere
