@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Uses one thing of each installed library; exits 0 when they answer sensibly.
 #include <alpenglow/atmosphere/ray/single_scattering.h>
+#include <alpenglow/lut/image/image.h>
 #include <alpenglow/lut/multiple_scattering/multiple_scattering.h>
-#include <alpenglow/lut/picture/image.h>
 
 int main() {
   const alpenglow::atmosphere::SingleScattering<float> air(
