@@ -2,7 +2,7 @@
 
 add_library(alpenglow_warnings INTERFACE)
 target_compile_options(alpenglow_warnings INTERFACE
-  -Wall -Wextra -Wpedantic -Wconversion -Wdouble-promotion -Wshadow -Wcast-align=strict
+  -Wall -Wextra -Wpedantic -Wconversion -Wdouble-promotion -Wshadow $<$<CXX_COMPILER_ID:GNU>:-Wcast-align=strict>
   $<$<BOOL:${ALPENGLOW_WARNINGS_AS_ERRORS}>:-Werror>
   # Not -ffast-math: infinities and NaN mean what they mean. Contraction is off so that one source
   # gives one result on every machine.
