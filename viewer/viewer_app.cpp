@@ -286,9 +286,9 @@ void ViewerApp::WantStrip() {
   const std::shared_ptr<const SolvedAir>& air = flight_.painter().air().air();
   const UtcInstant begin = AddSeconds(
       flight_.now(), -kSecondsPerDay * LocalTimeAt(flight_.now(), flight_.zone()).day_fraction);
-  strips_.Want({std::make_shared<const SingleScattering<float>>(air->medium),
-                std::shared_ptr<const MultipleScattering>(air, &air->multiple_scattering),
-                flight_.eye().place, begin});
+  strip_.RequestIfNeeded({std::shared_ptr<const MultipleScattering>(air, &air->multiple_scattering),
+                          flight_.eye().place, begin});
+  strip_.Update();
 }
 
 void ViewerApp::Advance(const WindowEvents& events, const ImageSize& size, double seconds) {
@@ -306,7 +306,8 @@ void ViewerApp::Advance(const WindowEvents& events, const ImageSize& size, doubl
   input.wheel = events.wheel;
   input.text = events.text;
   if (size.width > 0 && size.height > 0)
-    Serve(hud_.Update(Model(), Choices(), strips_.Newest(), keys_.Into(input)));
+    Serve(hud_.Update(Model(), Choices(), strip_.value() ? &*strip_.value() : nullptr,
+                      keys_.Into(input)));
   Tell(events, size.width, size.height, {hud_.WantsMouse(), hud_.WantsKeyboard()}, controls_);
   const Intent intent =
       controls_.Take(flight_.cockpit().pilot().mode(), seconds, GamepadOf(events));

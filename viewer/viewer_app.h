@@ -96,7 +96,7 @@ class ViewerApp {
   bool replays_ = false;
   Hud hud_;
   HudKeys keys_;
-  DayStrips strips_;
+  AsyncValue<DayStripRequest, DayStrip> strip_{MakeDayStrip, LooksTheSame};
   Controls controls_;
   std::deque<Message> messages_;
   std::optional<double> cursor_cd_per_m2_;

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <glm/geometric.hpp>
 #include <glm/vec2.hpp>
 #include <tuple>
@@ -191,9 +192,7 @@ double AirChange(const AirEye& made, const AirEye& now) {
 }
 
 AirFollower::Made AirFollower::Make(const Request& request) {
-  const auto start = Clock::now();
-  AirTables tables = TablesOf(*request.air, request.view, request.quality);
-  return {request, std::move(tables), std::chrono::duration<double>(Clock::now() - start).count()};
+  return {request, TablesOf(*request.air, request.view, request.quality)};
 }
 
 AirFollower::AirFollower(std::shared_ptr<const SolvedAir> air, AirQuality quality,
@@ -204,7 +203,7 @@ AirFollower::AirFollower(std::shared_ptr<const SolvedAir> air, AirQuality qualit
       eye_(EyeOf(first)),
       last_view_(first),
       solver_([](const Solve& solve) { return SolveAir(solve.medium, solve.solution); }),
-      maker_(Make) {
+      maker_(Make, std::equal_to<Request>()) {
   textures_.Upload(air_->tables);
   shown_ = air_;
   ShowSmall(first);
@@ -214,7 +213,7 @@ AirFollower::AirFollower(std::shared_ptr<const SolvedAir> air, AirQuality qualit
 void AirFollower::Replace(const Medium& medium) {
   Validate(medium);
   RequireFourBands(medium);
-  solver_.Ask({medium, AirSolution::kDraft});
+  solver_.Request({medium, AirSolution::kDraft});
   replaced_at_ = Clock::now();
 }
 
@@ -227,21 +226,19 @@ void AirFollower::Show(const Made& made) {
   }
   textures_.Upload(made.tables);
   eye_ = made.tables.eye;
-  making_s_ = made.making_s;
-  rests_until_ = Clock::now() + std::chrono::duration_cast<Clock::duration>(
-                                    std::chrono::duration<double>(kRest * making_s_));
+  maker_.RestFor(kRest * maker_.making_s());
 }
 
 void AirFollower::TakeFinished() {
-  if (auto solved = solver_.Take()) air_ = std::move(*solved);
-  if (const auto made = maker_.Take()) Show(*made);
+  if (auto solved = solver_.Poll()) air_ = std::move(*solved);
+  if (const auto made = maker_.Poll()) Show(*made);
 }
 
 // Wait before refining: while a slider moves, the medium changes every frame.
 void AirFollower::RefineDraft() {
   constexpr auto kPause = std::chrono::milliseconds(200);
-  if (drafts_ == Drafts::kKept || air_->solution == AirSolution::kFull || solver_.Busy()) return;
-  if (Clock::now() > replaced_at_ + kPause) solver_.Ask({air_->medium, AirSolution::kFull});
+  if (drafts_ == Drafts::kKept || air_->solution == AirSolution::kFull || solver_.IsBusy()) return;
+  if (Clock::now() > replaced_at_ + kPause) solver_.Request({air_->medium, AirSolution::kFull});
 }
 
 AirFollower::Request AirFollower::Wanted(const AirView& view) const {
@@ -252,12 +249,12 @@ AirFollower::Request AirFollower::Wanted(const AirView& view) const {
 // Returns whether tables for `wanted` should be computed now. A new medium or size starts at once.
 // While eye or sun move, tables are computed when the change is large enough; when both are at
 // rest, exact tables are computed.
-bool AirFollower::Asks(const Request& wanted) const {
-  if (asked_ == wanted) return false;
-  if (!asked_ || asked_->air != wanted.air || asked_->quality != wanted.quality) return true;
-  if (maker_.Busy()) return false;
-  const double change = AirChange(EyeOf(asked_->view), EyeOf(wanted.view));
-  if (Clock::now() < rests_until_ && change < kGreatChange) return false;
+bool AirFollower::IsDue(const Request& wanted) const {
+  const std::optional<Request>& last = maker_.requested();
+  if (!last || last->air != wanted.air || last->quality != wanted.quality) return true;
+  if (maker_.IsBusy()) return false;
+  const double change = AirChange(EyeOf(last->view), EyeOf(wanted.view));
+  if (maker_.IsResting() && change < kGreatChange) return false;
   return wanted.view == last_view_ || change > kMostChange;
 }
 
@@ -265,10 +262,7 @@ void AirFollower::Follow(const AirView& view, double seconds) {
   TakeFinished();
   RefineDraft();
   const Request wanted = Wanted(Ahead(view, seconds));
-  if (Asks(wanted)) {
-    asked_ = wanted;
-    maker_.Ask(wanted);
-  }
+  if (IsDue(wanted)) maker_.RequestIfNeeded(wanted);
   last_view_ = view;
   if (AirChange(eye_, EyeOf(view)) > kJump) ShowSmall(view);
   textures_.SetView(view.altitude_m, view.sun);
@@ -281,7 +275,7 @@ AirView AirFollower::Ahead(const AirView& view, double seconds) const {
   const bool runs = seconds > 0.0 && seconds < kLongestFrame_s && view.sun != last_view_.sun;
   if (!runs || AirChange(EyeOf(last_view_), EyeOf(view)) > kJump) return view;
   AirView ahead = view;
-  const double frames = kShown * (making_s_ + seconds) / seconds;
+  const double frames = kShown * (making_s() + seconds) / seconds;
   const auto gone_on = [&](glm::dvec3 SkySun::*to) {
     return glm::normalize(view.sun.*to + frames * (view.sun.*to - last_view_.sun.*to));
   };
@@ -299,16 +293,11 @@ void AirFollower::Settle(const AirView& view) {
   solver_.Wait();
   TakeFinished();
   if (air_->solution == AirSolution::kDraft) {
-    solver_.Ask({air_->medium, AirSolution::kFull});
+    solver_.Request({air_->medium, AirSolution::kFull});
     solver_.Wait();
     TakeFinished();
   }
-  const Request wanted = Wanted(view);
-  if (asked_ != wanted) {
-    asked_ = wanted;
-    maker_.Ask(wanted);
-  }
-  maker_.Wait();
+  maker_.WaitUntilReady(Wanted(view));
   Follow(view);
 }
 

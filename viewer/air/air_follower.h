@@ -18,7 +18,7 @@
 
 #include "viewer/air/air_tables.h"
 #include "viewer/air/solved_air.h"
-#include "viewer/async/latest_job.h"
+#include "viewer/async/async_value.h"
 #include "viewer/gl/gl_objects.h"
 #include "viewer/gl/shader.h"
 
@@ -118,7 +118,7 @@ class AirFollower {
   [[nodiscard]] const AirEye& eye() const { return eye_; }
   /// Returns the computation time of the displayed tables; 0 until the first tables from the other
   /// thread.
-  [[nodiscard]] double making_s() const { return making_s_; }
+  [[nodiscard]] double making_s() const { return maker_.making_s(); }
 
  private:
   struct Request {
@@ -130,7 +130,6 @@ class AirFollower {
   struct Made {
     Request request;
     AirTables tables;
-    double making_s;
   };
   using Clock = std::chrono::steady_clock;
 
@@ -146,7 +145,7 @@ class AirFollower {
   void TakeFinished();
   void RefineDraft();
   [[nodiscard]] Request Wanted(const AirView& view) const;
-  [[nodiscard]] bool Asks(const Request& wanted) const;
+  [[nodiscard]] bool IsDue(const Request& wanted) const;
 
   std::shared_ptr<const SolvedAir> air_;  // displayed next
   std::shared_ptr<const SolvedAir> shown_;
@@ -154,12 +153,10 @@ class AirFollower {
   Drafts drafts_;
   AirTextures textures_;
   AirEye eye_;
-  std::optional<Request> asked_;  // the last request
   AirView last_view_;
-  double making_s_ = 0.0;
-  Clock::time_point rests_until_{}, replaced_at_{};
-  LatestJob<Solve, std::shared_ptr<const SolvedAir>> solver_;
-  LatestJob<Request, Made> maker_;
+  Clock::time_point replaced_at_{};
+  AsyncValue<Solve, std::shared_ptr<const SolvedAir>> solver_;
+  AsyncValue<Request, Made> maker_;
 };
 
 }  // namespace alpenglow::viewer

@@ -8,7 +8,7 @@
 #include "lut/cli/messages.h"
 #include "lut/cli/output_file.h"
 #include "renderer/series/frame_times.h"
-#include "viewer/async/latest_job.h"
+#include "viewer/async/async_value.h"
 
 namespace alpenglow::viewer {
 
@@ -35,7 +35,7 @@ struct FlightRecorder::State {
   std::optional<std::string> fault;
   // Sync runs in another thread, because a disk may take longer than a frame. The lines are already
   // in the system's buffers.
-  LatestJob<int, int> sync{[this](const int& request) {
+  AsyncValue<int, int> sync{[this](const int& request) {
     file.Sync();
     return request;
   }};
@@ -51,7 +51,7 @@ struct FlightRecorder::State {
     if (!last_s) file.Append(HeaderOfCameraPath(point.utc.has_value()));
     file.Append(LineOf(point));
     if (point.time_s < synced_s + kUnsynced_s) return;
-    sync.Ask(0);
+    sync.Request(0);
     synced_s = point.time_s;
   }
 };

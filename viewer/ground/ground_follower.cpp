@@ -216,48 +216,39 @@ class GroundFollower::Maker {
 
 GroundFollower::GroundFollower(const GroundCover& cover, std::shared_ptr<const ColourDrape> drape,
                                const GroundExtent& extent)
-    : extent_(extent),
-      maker_([maker = std::make_shared<Maker>(cover, std::move(drape), extent)](
-                 const Request& request) { return maker->Make(request); }) {}
+    : maker_([maker = std::make_shared<Maker>(cover, std::move(drape), extent)](
+                 const Request& request) { return maker->Make(request); },
+             [extent](const Request& requested, const Request& wanted) {
+               return Suits(extent, requested, wanted);
+             }) {}
 
 void GroundFollower::ForgetLand() {
   ++land_;
   ground_ = nullptr;
-  asked_.reset();
   made_ = {};
-  rests_until_ = {};
+  maker_.Forget();
 }
 
 void GroundFollower::SetGround(GroundSampler sampler) {
   ground_ = std::make_shared<const GroundSampler>(std::move(sampler));
 }
 
-bool GroundFollower::Suits(const Request& asked, const Request& wanted) const {
-  if (asked.air != wanted.air || asked.ground != wanted.ground) return false;
-  if (asked.view.casts != wanted.view.casts ||
-      asked.view.other.has_value() != wanted.view.other.has_value())
-    return false;
-  const double width_m = extent_.HalfWidthUnder(wanted.view.eye.height_m);
-  return IsNear(asked.view.by, wanted.view.by) &&
-         (!wanted.view.other || IsNear(*asked.view.other, *wanted.view.other)) &&
-         AreAlikeWide(extent_, asked.view.eye.height_m, wanted.view.eye.height_m) &&
-         DistanceBetween(kWgs84, asked.view.eye, wanted.view.eye) < kNearMiddle * width_m;
+bool GroundFollower::Suits(const GroundExtent& extent, const Request& requested,
+                           const Request& wanted) {
+  if (requested.air != wanted.air || requested.ground != wanted.ground) return false;
+  const View &before = requested.view, &now = wanted.view;
+  if (before.casts != now.casts || before.other.has_value() != now.other.has_value()) return false;
+  const double width_m = extent.HalfWidthUnder(now.eye.height_m);
+  return IsNear(before.by, now.by) && (!now.other || IsNear(*before.other, *now.other)) &&
+         AreAlikeWide(extent, before.eye.height_m, now.eye.height_m) &&
+         DistanceBetween(kWgs84, before.eye, now.eye) < kNearMiddle * width_m;
 }
 
 bool GroundFollower::Take() {
-  std::optional<Made> made = maker_.Take();
+  std::optional<Made> made = maker_.Poll();
   if (!made || made->land != land_) return false;
   made_ = std::move(*made);
-  rests_until_ = std::chrono::steady_clock::now() +
-                 std::chrono::duration_cast<std::chrono::steady_clock::duration>(
-                     std::chrono::duration<double>(kRest * made_.making_s));
-  return true;
-}
-
-bool GroundFollower::Ask(const Request& wanted) {
-  if (asked_ && Suits(*asked_, wanted)) return false;
-  asked_ = wanted;
-  maker_.Ask(wanted);
+  maker_.RestFor(made_.lit ? kRest * made_.making_s : 0.0);
   return true;
 }
 
@@ -282,19 +273,15 @@ GroundFollower::View GroundFollower::WhenShown(const View& view, double seconds)
 bool GroundFollower::Follow(const std::shared_ptr<const SolvedAir>& air, const View& view,
                             double seconds) {
   const bool is_new = Take();
-  if (last_view_ && IsAJump(*last_view_, view)) rests_until_ = {};
-  const bool rests = made_.lit && std::chrono::steady_clock::now() < rests_until_;
-  if (!maker_.Busy() && !rests) Ask({air, ground_, WhenShown(view, seconds), land_});
+  if (last_view_ && IsAJump(*last_view_, view)) maker_.RestFor(0.0);
+  maker_.RequestWhenIdle({air, ground_, WhenShown(view, seconds), land_});
   last_view_ = view;
   return is_new;
 }
 
 bool GroundFollower::Settle(const std::shared_ptr<const SolvedAir>& air, const View& view) {
-  maker_.Wait();
-  bool is_new = Take();
-  if (Ask({air, ground_, view, land_})) maker_.Wait();
-  is_new = Take() || is_new;
-  return is_new;
+  maker_.WaitUntilReady({air, ground_, view, land_});
+  return Take();
 }
 
 std::optional<GroundFollower::SkyOfSource> GroundFollower::SkyOf(LightSource source) const {

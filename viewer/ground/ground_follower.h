@@ -4,13 +4,12 @@
 #pragma once
 
 #include <array>
-#include <chrono>
 #include <memory>
 #include <optional>
 #include <vector>
 
 #include "viewer/air/solved_air.h"
-#include "viewer/async/latest_job.h"
+#include "viewer/async/async_value.h"
 #include "viewer/ground/lit_ground.h"
 #include "viewer/ground/sky_on_ground.h"
 #include "viewer/land/land_chunk.h"
@@ -103,19 +102,16 @@ class GroundFollower {
     int land = 0;
   };
   class Maker;
-  [[nodiscard]] bool Suits(const Request& asked, const Request& wanted) const;
+  [[nodiscard]] static bool Suits(const GroundExtent& extent, const Request& requested,
+                                  const Request& wanted);
   [[nodiscard]] View WhenShown(const View& view, double seconds) const;
-  bool Ask(const Request& wanted);
   bool Take();
 
-  GroundExtent extent_;
   std::shared_ptr<const GroundSampler> ground_;
   int land_ = 0;
-  std::optional<Request> asked_;
   std::optional<View> last_view_;
   Made made_;
-  std::chrono::steady_clock::time_point rests_until_{};
-  LatestJob<Request, Made> maker_;
+  AsyncValue<Request, Made> maker_;
 };
 
 /// Returns the view with the sources of light moved on by `steps` times their motion from `before`

@@ -28,7 +28,8 @@ class Sky {
  public:
   explicit Sky(const DayStripRequest& request)
       : request_(request),
-        medium_(request.air->medium()),
+        medium_(request.multiple_scattering->medium()),
+        air_(medium_),
         colour_(medium_.wavelengths_nm),
         altitude_m_(std::max(request.place.height_m, 0.0)),
         horizon_rad_(SkyViewMap(medium_, altitude_m_, 1.0).horizon_zenith_angle_rad()) {}
@@ -43,8 +44,8 @@ class Sky {
     };
     const ViewRay ray = under(SunForAir(sun));
     const double nu_seen = under(sun).nu;
-    const RaySamples<float> samples = request_.air->Sample(ray, {.dark_samples = true});
-    const Bands<float> once = request_.air->Inscatter(request_.air->Scatter(samples), nu_seen);
+    const RaySamples<float> samples = air_.Sample(ray, {.dark_samples = true});
+    const Bands<float> once = air_.Inscatter(air_.Scatter(samples), nu_seen);
     const Bands<float> more =
         request_.multiple_scattering->InscatterAlong(samples, ray.nu, nu_seen, SegmentEnd::kOpen);
     std::vector<double> radiance(once.count);
@@ -58,6 +59,7 @@ class Sky {
  private:
   const DayStripRequest& request_;
   const Medium& medium_;
+  SingleScattering<float> air_;
   BandColour colour_;
   double altitude_m_;
   double horizon_rad_;  // zenith angle of the sea horizon
@@ -82,20 +84,20 @@ std::array<float, 3> DisplayCode(const std::array<double, 3>& rgb, double ev100)
   return code;
 }
 
+}  // namespace
+
 bool LooksTheSame(const DayStripRequest& a, const DayStripRequest& b) {
-  constexpr double kAngle_rad = 0.5 * kRadiansPerDegree;
+  constexpr double kAngle_rad = 0.5 * kRadiansPerDegree, kTime_s = 1.0;
   constexpr double kHeight_m = 200.0, kShareOfHeight = 0.1;
   const double apart_rad =
       std::max(std::abs(a.place.latitude_rad - b.place.latitude_rad),
                std::abs(std::remainder(a.place.longitude_rad - b.place.longitude_rad, 2.0 * kPi)) *
                    std::cos(a.place.latitude_rad));
-  return a.air == b.air && a.multiple_scattering == b.multiple_scattering &&
-         a.columns == b.columns && a.begin == b.begin && apart_rad < kAngle_rad &&
+  return a.multiple_scattering == b.multiple_scattering && a.columns == b.columns &&
+         std::abs(SecondsBetween(a.begin, b.begin)) < kTime_s && apart_rad < kAngle_rad &&
          std::abs(a.place.height_m - b.place.height_m) <
              std::max(kHeight_m, kShareOfHeight * std::abs(a.place.height_m));
 }
-
-}  // namespace
 
 DayStrip MakeDayStrip(const DayStripRequest& request) {
   ALPENGLOW_ENSURE(request.columns, >=, 2);
@@ -105,7 +107,7 @@ DayStrip MakeDayStrip(const DayStripRequest& request) {
   strip.begin = request.begin;
   strip.colours.resize(static_cast<std::size_t>(request.columns) * kRows);
   const Sky sky(request);
-  const BendingAir refracting = GentleAirOf(request.air->medium());
+  const BendingAir refracting = GentleAirOf(request.multiple_scattering->medium());
   for (int x = 0; x < request.columns; ++x) {
     const UtcInstant instant =
         AddSeconds(request.begin, (x + 0.5) / request.columns * kSecondsPerDay);
@@ -121,17 +123,6 @@ DayStrip MakeDayStrip(const DayStripRequest& request) {
     }
   }
   return strip;
-}
-
-void DayStrips::Want(const DayStripRequest& request) {
-  if (asked_ && LooksTheSame(*asked_, request)) return;
-  asked_ = request;
-  job_.Ask(request);
-}
-
-const DayStrip* DayStrips::Newest() {
-  if (auto made = job_.Take()) newest_ = std::move(made);
-  return newest_ ? &*newest_ : nullptr;
 }
 
 namespace {

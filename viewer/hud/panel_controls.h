@@ -23,14 +23,12 @@
 #include "atmosphere/time_place/geodesy.h"
 #include "atmosphere/time_place/time.h"
 #include "lut/multiple_scattering/multiple_scattering.h"
-#include "viewer/async/latest_job.h"
+#include "viewer/async/async_value.h"
 #include "viewer/layer.h"
 
 namespace alpenglow::viewer {
 
 struct DayStripRequest {
-  std::shared_ptr<const SingleScattering<float>>
-      air;  // not null; for the same medium as `multiple_scattering`
   std::shared_ptr<const MultipleScattering> multiple_scattering;  // not null
   GeodeticPosition place;
   UtcInstant begin;  // start of the 24 hours shown
@@ -53,23 +51,9 @@ struct DayStrip {
 /// Returns a strip in which column i shows the instant begin + (i + 1/2) / columns of 24 hours.
 [[nodiscard]] DayStrip MakeDayStrip(const DayStripRequest& request);
 
-/// Computes strips on a separate thread, and again after a visible change: of the air, the day, or
-/// the place by more than half a degree or, in height, by a tenth and at least 200 m.
-class DayStrips {
- public:
-  DayStrips() : job_(MakeDayStrip) {}
-  void Want(const DayStripRequest& request);
-  /// Returns the newest strip; null until there is one. Rethrows exceptions of the computation.
-  [[nodiscard]] const DayStrip* Newest();
-  [[nodiscard]] bool Busy() const { return job_.Busy(); }
-  /// Waits for the last request.
-  void Wait() { job_.Wait(); }
-
- private:
-  std::optional<DayStripRequest> asked_;
-  std::optional<DayStrip> newest_;
-  LatestJob<DayStripRequest, DayStrip> job_;
-};
+/// Returns whether strips look the same: they have the same air, and begin within a second, and
+/// their places differ by less than half a degree and, in height, by less than a tenth or 200 m.
+[[nodiscard]] bool LooksTheSame(const DayStripRequest& a, const DayStripRequest& b);
 
 struct SliderRange {
   double low, high;

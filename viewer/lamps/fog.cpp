@@ -248,26 +248,11 @@ FogMap MakeFogMap(const LocalMedium& fog, double bottom_m, const SunlitAir& air,
   return map;
 }
 
-bool Serves(const FogMap& map, const FogView& view) {
+bool Serves(const FogView& made, const FogView& wanted, double scale_height_m) {
   constexpr double kSun_rad = 0.1 * 3.14159265358979 / 180.0;
-  const double step_m = 0.1 * std::min(map.scale_height_m, 1000.0);
-  return std::abs(map.view.altitude_m - view.altitude_m) <= step_m &&
-         glm::length(map.view.to_sun - view.to_sun) <= kSun_rad;
-}
-
-bool FogFollower::Follow(const FogView& view) {
-  std::optional<FogMap> made = job_.Take();
-  const bool is_new = made.has_value();
-  if (is_new) map_ = std::move(made);
-  if (!(map_ && Serves(*map_, view)) && !job_.Busy()) job_.Ask(view);
-  return is_new;
-}
-
-void FogFollower::Wait(const FogView& view) {
-  if (map_ && Serves(*map_, view)) return;
-  job_.Ask(view);
-  job_.Wait();
-  if (std::optional<FogMap> made = job_.Take()) map_ = std::move(made);
+  const double step_m = 0.1 * std::min(scale_height_m, 1000.0);
+  return std::abs(made.altitude_m - wanted.altitude_m) <= step_m &&
+         glm::length(made.to_sun - wanted.to_sun) <= kSun_rad;
 }
 
 namespace {
@@ -353,7 +338,7 @@ void SceneFog::SetSize(const FogMapSize& size) {
 // Uses one thread, so that drawing keeps the others.
 void SceneFog::BeginIn(const std::shared_ptr<const SolvedAir>& air, double latitude_rad) {
   air_ = air;
-  follower_.emplace([air, media = media_, size = size_, latitude_rad](const FogView& wanted) {
+  const auto make = [air, media = media_, size = size_, latitude_rad](const FogView& wanted) {
     tbb::task_arena alone(1);
     return alone.execute([&] {
       const SingleScattering<float> single_scattering(
@@ -361,20 +346,26 @@ void SceneFog::BeginIn(const std::shared_ptr<const SolvedAir>& air, double latit
       return MakeFogMap(*media->fog(), media->fog_bottom_m(),
                         {single_scattering, air->beam, air->multiple_scattering}, wanted, size);
     });
+  };
+  const double scale_height_m = media_->fog()->fog()->scale_height_m();
+  maps_.emplace(make, [scale_height_m](const FogView& made, const FogView& wanted) {
+    return Serves(made, wanted, scale_height_m);
   });
 }
 
 void SceneFog::Follow(const std::shared_ptr<const SolvedAir>& air, const Eye& eye,
                       const SunPosition& sun) {
   if (air_ != air) return Settle(air, eye, sun);
-  if (follower_->Follow(FogViewOf(eye, sun))) painter_.Upload(*follower_->map());
+  if (maps_->Update()) painter_.Upload(*maps_->value());
+  maps_->RequestWhenIdle(FogViewOf(eye, sun));
 }
 
 void SceneFog::Settle(const std::shared_ptr<const SolvedAir>& air, const Eye& eye,
                       const SunPosition& sun) {
   if (air_ != air) BeginIn(air, eye.place.latitude_rad);
-  follower_->Wait(FogViewOf(eye, sun));
-  painter_.Upload(*follower_->map());
+  maps_->WaitUntilReady(FogViewOf(eye, sun));
+  maps_->Update();
+  painter_.Upload(*maps_->value());
 }
 
 double SceneFog::ExtinctionAt(double altitude_m) const {
@@ -383,7 +374,7 @@ double SceneFog::ExtinctionAt(double altitude_m) const {
 }
 
 void SceneFog::Bind(const Eye& eye, const SunPosition& sun) const {
-  painter_.Bind(*follower_->map(), FogViewOf(eye, sun));
+  painter_.Bind(*maps_->value(), FogViewOf(eye, sun));
 }
 
 }  // namespace alpenglow::viewer

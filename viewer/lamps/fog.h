@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Provides the light of sun and sky in a scene's fog: FogMap, its table around one eye,
-// FogFollower, which computes FogMaps for a moving eye and sun beside drawing, FogPainter, which
-// uploads them for fog_light.glsl, and SceneFog, which combines these and starts a new job for
-// another medium or map size.
+// FogPainter, which uploads it for fog_light.glsl, and SceneFog, which computes maps for a moving eye
+// and sun beside drawing.
 //
 // A FogMap holds FogLight (renderer/media/fog_light.h) summed along rays, for interpolation on the
 // GPU. Values are per unit solar irradiance. Along a ray they are relative to the fraction of light
@@ -17,7 +16,6 @@
 // open ground: terrain does not shade them.
 #pragma once
 
-#include <functional>
 #include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
 #include <memory>
@@ -28,7 +26,7 @@
 #include "renderer/illumination/lighting.h"
 #include "renderer/media/local_media.h"
 #include "viewer/air/solved_air.h"
-#include "viewer/async/latest_job.h"
+#include "viewer/async/async_value.h"
 #include "viewer/flight/flight.h"
 #include "viewer/gl/gl_objects.h"
 #include "viewer/gl/shader.h"
@@ -83,29 +81,11 @@ struct FogMap {
 [[nodiscard]] FogMap MakeFogMap(const LocalMedium& fog, double bottom_m, const SunlitAir& air,
                                 const FogView& view, const FogMapSize& size = {});
 
-/// Returns whether the map is valid for this eye and sun, to a few per cent: the eye is within a
-/// tenth of the fog's scale height, at most 100 m, and the sun within a tenth of a degree.
+/// Returns whether the map of one eye and sun is valid for others, to a few per cent: the eye is
+/// within a tenth of the fog's scale height, at most 100 m, and the sun within a tenth of a degree.
 /// Quantities that vary faster, transmittance and the phase function towards the sun, are not in
 /// the map.
-[[nodiscard]] bool Serves(const FogMap& map, const FogView& view);
-
-class FogFollower {
- public:
-  using Make = std::function<FogMap(const FogView&)>;
-  /// @param make  called on a thread of this object; everything it refers to must outlive this
-  ///     object.
-  explicit FogFollower(Make make) : job_(std::move(make)) {}
-
-  /// Takes a finished map and requests a missing one. Returns whether map() is new.
-  [[nodiscard]] bool Follow(const FogView& view);
-  /// Waits for a map of the view.
-  void Wait(const FogView& view);
-  [[nodiscard]] const std::optional<FogMap>& map() const { return map_; }
-
- private:
-  std::optional<FogMap> map_;
-  LatestJob<FogView, FogMap> job_;
-};
+[[nodiscard]] bool Serves(const FogView& made, const FogView& wanted, double scale_height_m);
 
 /// Mirrors the uniform block `Fog` of fog_light.glsl.
 struct FogBlock {
@@ -172,7 +152,7 @@ class SceneFog {
   FogMapSize size_;
   FogPainter painter_;
   std::shared_ptr<const SolvedAir> air_;  // medium of the maps; null: no map of this size yet
-  std::optional<FogFollower> follower_;
+  std::optional<AsyncValue<FogView, FogMap>> maps_;
 };
 
 }  // namespace alpenglow::viewer

@@ -311,13 +311,13 @@ LampShadowField LampShadowFieldAround(const LampStage& stage, const Lamp& lamp, 
 }
 
 void LampShadowFieldFollower::Follow() {
-  if (plans_.size() == lamps_ || job_.Busy()) return;
-  if (std::optional<LampShadowField> made = job_.Take()) plans_.push_back(std::move(*made));
-  if (plans_.size() < lamps_) job_.Ask(plans_.size());
+  if (plans_.size() == lamps_ || plan_.IsBusy()) return;
+  if (std::optional<LampShadowField> made = plan_.Poll()) plans_.push_back(std::move(*made));
+  if (plans_.size() < lamps_) plan_.Request(plans_.size());
 }
 
 void LampShadowFieldFollower::Settle() {
-  for (Follow(); plans_.size() < lamps_; Follow()) job_.Wait();
+  for (Follow(); plans_.size() < lamps_; Follow()) plan_.Wait();
 }
 
 }  // namespace alpenglow::viewer

@@ -30,7 +30,7 @@
 
 #include "renderer/lamps/lamp_tree.h"
 #include "renderer/lamps/placed_lamp.h"
-#include "viewer/async/latest_job.h"
+#include "viewer/async/async_value.h"
 #include "viewer/layer.h"
 
 namespace alpenglow::viewer {
@@ -81,7 +81,7 @@ class LampShadowFieldFollower {
   using Make = std::function<LampShadowField(std::size_t)>;
   /// @param make  called on a thread of this object; everything it refers to must outlive this
   ///     object.
-  LampShadowFieldFollower(std::size_t lamps, Make make) : lamps_(lamps), job_(std::move(make)) {}
+  LampShadowFieldFollower(std::size_t lamps, Make make) : lamps_(lamps), plan_(std::move(make)) {}
 
   /// Takes a finished plan and requests the next one.
   void Follow();
@@ -93,7 +93,7 @@ class LampShadowFieldFollower {
  private:
   std::size_t lamps_;
   std::vector<LampShadowField> plans_;
-  LatestJob<std::size_t, LampShadowField> job_;
+  AsyncValue<std::size_t, LampShadowField> plan_;
 };
 
 }  // namespace alpenglow::viewer

@@ -393,7 +393,7 @@ void Landscape::MoveAnchor() {
 }
 
 void Landscape::TakeChunks() {
-  const std::optional<MadeChunks> made = worker_.Take();
+  const std::optional<MadeChunks> made = worker_.Poll();
   if (!made) return;
   is_working_ = false;
   ChunkSet* const set = made->for_next_anchor ? next_set_.get() : set_.get();
@@ -420,8 +420,8 @@ std::vector<ChunkKey> Landscape::Missing(const ChunkSet& set) const {
 void Landscape::Ask(const ChunkSet& set, std::vector<ChunkKey> make,
                     std::vector<std::shared_ptr<const LandChunk>> relight) {
   if (make.empty() && relight.empty()) return;
-  worker_.Ask({cache_.loaded(), set.anchor(), std::move(make), std::move(relight), tree_.top(),
-               fade_.light(), fade_.number(), &set == next_set_.get()});
+  worker_.Request({cache_.loaded(), set.anchor(), std::move(make), std::move(relight), tree_.top(),
+                   fade_.light(), fade_.number(), &set == next_set_.get()});
   is_working_ = true;
 }
 

@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-#include "viewer/async/latest_job.h"
+#include "viewer/async/async_value.h"
 #include "viewer/land/chunk_set.h"
 #include "viewer/land/land_pass.h"
 #include "viewer/land/level_ranges.h"
@@ -105,7 +105,7 @@ class Landscape {
     return mesh_ || cache_.Reaches(place);
   }
   /// Returns whether worker threads are busy. The destructor waits for them.
-  [[nodiscard]] bool IsWorking() const { return cache_.IsReading() || worker_.Busy(); }
+  [[nodiscard]] bool IsWorking() const { return cache_.IsReading() || worker_.IsBusy(); }
   /// Returns whether the land around the eye of the last Update has its final detail and is lit, or
   /// there is no land under the eye.
   [[nodiscard]] bool HasCome() const;
@@ -181,8 +181,8 @@ class Landscape {
   bool is_working_ = false;
   std::vector<std::string> notes_;
   LandPass pass_;
-  std::optional<MeshLand> mesh_;              // instead of tiles
-  LatestJob<ChunkOrder, MadeChunks> worker_;  // last member: it uses those above
+  std::optional<MeshLand> mesh_;               // instead of tiles
+  AsyncValue<ChunkOrder, MadeChunks> worker_;  // last member: it uses those above
 };
 
 }  // namespace alpenglow::viewer

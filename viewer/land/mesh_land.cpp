@@ -152,7 +152,7 @@ MeshLand::MeshLand(const LandSource::Mesh& source, const Ellipsoid& ellipsoid)
       lighter_([frame = frame_](const Order& order) {
         return LightOfMesh(order.terrain->mesh(), frame, order.light);
       }) {
-  reader_.Ask(source);
+  reader_.Request(source);
 }
 
 void MeshLand::Upload() {
@@ -185,17 +185,17 @@ void MeshLand::DescribeLight(const GlBuffer& buffer, GLuint first_location) cons
 }
 
 void MeshLand::Update(double seconds) {
-  if (auto read = reader_.Take()) {
+  if (auto read = reader_.Poll()) {
     terrain_ = std::move(read->terrain);
     if (!read->message.empty()) notes_.push_back(std::move(read->message));
     Upload();
   }
   if (!terrain_) return;
-  const auto light = lighter_.Take();
+  const auto light = lighter_.Poll();
   if (light) viewer::Upload(GL_ARRAY_BUFFER, LightOn(fade_.from()), *light);
   const int before = fade_.number();
   fade_.Advance(seconds, light.has_value());
-  if (fade_.number() != before) lighter_.Ask({terrain_, fade_.light().value()});
+  if (fade_.number() != before) lighter_.Request({terrain_, fade_.light().value()});
 }
 
 void MeshLand::Draw(LandPass& pass, LandDrawn what, const GeodeticPosition& eye,

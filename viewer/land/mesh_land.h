@@ -12,7 +12,7 @@
 #include "atmosphere/time_place/geodesy.h"
 #include "renderer/terrain/elevation.h"
 #include "renderer/terrain/terrain.h"
-#include "viewer/async/latest_job.h"
+#include "viewer/async/async_value.h"
 #include "viewer/land/chunk_set.h"
 #include "viewer/land/land_chunk.h"
 #include "viewer/land/land_pass.h"
@@ -82,8 +82,8 @@ class MeshLand {
   GlBuffer positions_, normals_, triangles_, first_light_, second_light_;
   LightFade fade_;
   std::vector<std::string> notes_;
-  LatestJob<LandSource::Mesh, Read> reader_;
-  LatestJob<Order, std::vector<ChunkLight>> lighter_;
+  AsyncValue<LandSource::Mesh, Read> reader_;
+  AsyncValue<Order, std::vector<ChunkLight>> lighter_;
 };
 
 }  // namespace alpenglow::viewer

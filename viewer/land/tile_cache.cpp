@@ -87,7 +87,7 @@ void TileCache::KeepWithinBounds(const std::vector<std::size_t>& by_distance) {
 }
 
 bool TileCache::TakeOne() {
-  std::optional<Reading> reading = reader_.Take();
+  std::optional<Reading> reading = reader_.Poll();
   if (!reading) return false;
   reading_.clear();
   const auto tile = static_cast<std::size_t>(reading->tile);
@@ -142,7 +142,7 @@ void TileCache::AskForNearest(const LandEye& eye) {
   if (!nearest || !reading_.empty()) return;
   const std::filesystem::path& file = tiles_->tiles()[*nearest].file;
   reading_ = file.empty() ? "the built-in range" : file.filename().string();
-  reader_.Ask({static_cast<int>(*nearest), level_wanted_[*nearest]});
+  reader_.Request({static_cast<int>(*nearest), level_wanted_[*nearest]});
 }
 
 bool TileCache::Update(const LandEye& eye, double detail) {

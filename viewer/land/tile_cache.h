@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "viewer/async/latest_job.h"
+#include "viewer/async/async_value.h"
 #include "viewer/land/level_ranges.h"
 #include "viewer/land/loaded_heights.h"
 
@@ -47,7 +47,7 @@ class TileCache {
   [[nodiscard]] std::vector<std::string> TakeNotes() { return std::exchange(notes_, {}); }
   /// Returns the size of the heights that are kept.
   [[nodiscard]] std::size_t bytes() const;
-  [[nodiscard]] bool IsReading() const { return reader_.Busy(); }
+  [[nodiscard]] bool IsReading() const { return reader_.IsBusy(); }
   /// Waits until the current read has ended.
   void Wait() { reader_.Wait(); }
 
@@ -84,7 +84,7 @@ class TileCache {
   std::vector<std::string> notes_;
   std::string reading_;
   int wanted_ = 0, there_ = 0;
-  LatestJob<Order, Reading> reader_;  // last member: it uses the tiles
+  AsyncValue<Order, Reading> reader_;  // last member: it uses the tiles
 };
 
 }  // namespace alpenglow::viewer

@@ -44,25 +44,27 @@ NightSkyMap NightSkyMapOver(const GeodeticPosition& eye, const UtcInstant& now,
 }
 
 NightSkyMapFollower::NightSkyMapFollower(const SceneSkyglow& towns)
-    : maker_([towns](const Request& request) {
-        const Medium& medium = request.air->medium;
-        return NightSkyMapOver(request.place, request.now, medium,
-                               BandColour(medium.wavelengths_nm), towns);
-      }) {}
+    : maker_(
+          [towns](const Request& request) {
+            const Medium& medium = request.air->medium;
+            return NightSkyMapOver(request.place, request.now, medium,
+                                   BandColour(medium.wavelengths_nm), towns);
+          },
+          Suits) {}
 
 // Returns whether the requested map is close enough. The sky may rotate by an eighth of a degree, a
 // tenth of a texel.
-bool NightSkyMapFollower::Suits(const Request& wanted) const {
+bool NightSkyMapFollower::Suits(const Request& requested, const Request& wanted) {
   constexpr double kMostTurn_s = 30.0, kMostWay_rad = 2e-3, kMostRise_m = 1000.0;
-  return asked_ && asked_->air == wanted.air &&
-         std::abs(SecondsBetween(asked_->now, wanted.now)) < kMostTurn_s &&
-         std::abs(asked_->place.latitude_rad - wanted.place.latitude_rad) < kMostWay_rad &&
-         std::abs(asked_->place.longitude_rad - wanted.place.longitude_rad) < kMostWay_rad &&
-         std::abs(asked_->place.height_m - wanted.place.height_m) < kMostRise_m;
+  return requested.air == wanted.air &&
+         std::abs(SecondsBetween(requested.now, wanted.now)) < kMostTurn_s &&
+         std::abs(requested.place.latitude_rad - wanted.place.latitude_rad) < kMostWay_rad &&
+         std::abs(requested.place.longitude_rad - wanted.place.longitude_rad) < kMostWay_rad &&
+         std::abs(requested.place.height_m - wanted.place.height_m) < kMostRise_m;
 }
 
 void NightSkyMapFollower::Take(int unit) {
-  const std::optional<NightSkyMap> floor = maker_.Take();
+  const std::optional<NightSkyMap> floor = maker_.Poll();
   if (!floor) return;
   scattered_ = floor->scattered;
   level_ = floor->level;
@@ -73,15 +75,12 @@ void NightSkyMapFollower::Take(int unit) {
 void NightSkyMapFollower::Follow(const PaintedView& view,
                                  const std::shared_ptr<const SolvedAir>& air, bool waits) {
   const Request wanted{view.eye.place, view.now, air};
-  if (waits) maker_.Wait();
-  Take(kNightUnit);
-  if (waits || (!maker_.Busy() && !Suits(wanted))) {
-    asked_ = wanted;
-    maker_.Ask(wanted);
+  if (waits) {
+    maker_.Forget();
+    maker_.WaitUntilReady(wanted);
   }
-  if (!waits) return;
-  maker_.Wait();
   Take(kNightUnit);
+  maker_.RequestWhenIdle(wanted);
 }
 
 void NightSkyMapFollower::Bind(const ShaderProgram& program, int unit) const {

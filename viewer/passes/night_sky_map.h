@@ -11,7 +11,7 @@
 
 #include "atmosphere/colour/spectrum.h"
 #include "viewer/air/solved_air.h"
-#include "viewer/async/latest_job.h"
+#include "viewer/async/async_value.h"
 #include "viewer/gl/gl_objects.h"
 #include "viewer/gl/shader.h"
 #include "viewer/passes/painted_view.h"
@@ -59,14 +59,13 @@ class NightSkyMapFollower {
     std::shared_ptr<const SolvedAir> air;
   };
 
-  [[nodiscard]] bool Suits(const Request& wanted) const;
+  [[nodiscard]] static bool Suits(const Request& requested, const Request& wanted);
   void Take(int unit);
 
   GlTexture map_;
   glm::vec4 scattered_{0.0F}, level_{0.0F};
   bool has_map_ = false;
-  std::optional<Request> asked_;
-  LatestJob<Request, NightSkyMap> maker_;
+  AsyncValue<Request, NightSkyMap> maker_;
 };
 
 }  // namespace alpenglow::viewer

@@ -71,7 +71,7 @@ ReferencePicture::~ReferencePicture() { stop_.request_stop(); }
 
 void ReferencePicture::AskFor(std::size_t stage) {
   stage_ = stage;
-  job_.Ask({*view_, kStages[stage].reduction, kStages[stage].samples, stop_.get_token()});
+  job_.Request({*view_, kStages[stage].reduction, kStages[stage].samples, stop_.get_token()});
 }
 
 void ReferencePicture::Show(const View& view) {
@@ -84,7 +84,7 @@ void ReferencePicture::Show(const View& view) {
 }
 
 std::optional<Image> ReferencePicture::Take() {
-  std::optional<std::optional<Made>> taken = job_.Take();
+  std::optional<std::optional<Made>> taken = job_.Poll();
   if (!taken || !*taken || (*taken)->stop.stop_requested()) return std::nullopt;
   samples_ = (*taken)->samples;
   if (stage_ + 1 < kStages.size()) AskFor(stage_ + 1);

@@ -18,7 +18,7 @@
 #include "renderer/picture/picture_layers.h"
 #include "renderer/picture/render.h"
 #include "renderer/scene/scene.h"
-#include "viewer/async/latest_job.h"
+#include "viewer/async/async_value.h"
 #include "viewer/flight/flight.h"
 #include "viewer/layer.h"
 
@@ -79,7 +79,7 @@ class ReferencePicture {
   std::size_t stage_ = 0;
   int samples_ = 0;
   std::shared_ptr<Renderers> renderers_;  // used only by the job
-  LatestJob<Request, std::optional<Made>> job_;
+  AsyncValue<Request, std::optional<Made>> job_;
 };
 
 struct ViewDifference {

@@ -118,12 +118,14 @@ const std::vector<VertexAttribute> kAttributes{{0, "star_corner"}, {1, "star_tow
 }  // namespace
 
 StarPainter::StarPainter()
-    : maker_([](const Request& request) {
-        constexpr double kAll = std::numeric_limits<double>::infinity();
-        const RefractedView bent(request.medium, request.place.height_m);
-        return Made{request, bent,
-                    StarLightsOver(request.place, request.now, bent, *request.colour, kAll)};
-      }) {}
+    : maker_(
+          [](const Request& request) {
+            constexpr double kAll = std::numeric_limits<double>::infinity();
+            const RefractedView bent(request.medium, request.place.height_m);
+            return Made{request, bent,
+                        StarLightsOver(request.place, request.now, bent, *request.colour, kAll)};
+          },
+          Suits) {}
 
 bool StarPainter::IsNight(const PaintedView& view, const LightsOfSky& lights,
                           const SolvedAir& air) {
@@ -141,30 +143,25 @@ bool StarPainter::IsNight(const PaintedView& view, const LightsOfSky& lights,
   return sky_lux_ > 0.0;
 }
 
-void StarPainter::Ask(const PaintedView& view, const Medium& medium) {
-  asked_ = {view.eye.place, view.now, colour_, medium};
-  maker_.Ask(*asked_);
+bool StarPainter::Suits(const Request& requested, const Request& wanted) {
+  return requested.colour == wanted.colour &&
+         std::abs(SecondsBetween(requested.now, wanted.now)) < kMostTurn_s &&
+         std::abs(requested.place.latitude_rad - wanted.place.latitude_rad) < kMostWay_rad &&
+         std::abs(requested.place.longitude_rad - wanted.place.longitude_rad) < kMostWay_rad &&
+         std::abs(requested.place.height_m - wanted.place.height_m) < kMostRise_m;
 }
 
 void StarPainter::Follow(const PaintedView& view, const LightsOfSky& lights, const SolvedAir& air) {
   if (!IsNight(view, lights, air)) return;
-  if (std::optional<Made> made = maker_.Take()) made_ = std::move(made);
-  const GeodeticPosition& place = view.eye.place;
-  const auto suits = [&](const Request& asked) {
-    return asked.colour == colour_ && std::abs(SecondsBetween(asked.now, view.now)) < kMostTurn_s &&
-           std::abs(asked.place.latitude_rad - place.latitude_rad) < kMostWay_rad &&
-           std::abs(asked.place.longitude_rad - place.longitude_rad) < kMostWay_rad &&
-           std::abs(asked.place.height_m - place.height_m) < kMostRise_m;
-  };
-  if (!maker_.Busy() && !(asked_ && suits(*asked_))) Ask(view, air.medium);
+  maker_.Update();
+  maker_.RequestWhenIdle({view.eye.place, view.now, colour_, air.medium});
 }
 
 void StarPainter::Settle(const PaintedView& view, const LightsOfSky& lights, const SolvedAir& air) {
   if (!IsNight(view, lights, air)) return;
-  maker_.Wait();
-  Ask(view, air.medium);
-  maker_.Wait();
-  if (std::optional<Made> made = maker_.Take()) made_ = std::move(made);
+  maker_.Forget();
+  maker_.WaitUntilReady({view.eye.place, view.now, colour_, air.medium});
+  maker_.Update();
 }
 
 void StarPainter::Connect(const SceneFog* fog, std::optional<PhaseKind> fog_phase) {
@@ -216,10 +213,11 @@ void StarPainter::MakeReady(const PaintedView& view, const SceneFog* fog,
 std::vector<StarPoint> StarPainter::PointsIn(const PaintedView& view, const MoonDisk& moon) const {
   if (!HasAny()) return {};
   const double faintest_lux = IlluminanceOf(FaintestStar(sky_lux_, PixelAngle(view)));
+  const Made& made = maker_.value().value();
   const glm::dmat3 turn =
-      TurnOfSky(view.eye.place.latitude_rad, SecondsBetween(made_->request.now, view.now));
-  return StarPointsIn(
-      view, {made_->lights, turn, faintest_lux, moon.to_moon, moon.radius_rad, &made_->bent});
+      TurnOfSky(view.eye.place.latitude_rad, SecondsBetween(made.request.now, view.now));
+  return StarPointsIn(view,
+                      {made.lights, turn, faintest_lux, moon.to_moon, moon.radius_rad, &made.bent});
 }
 
 std::vector<PixelBox> StarPainter::Seen(const PaintedView& view, const MoonDisk& moon) const {

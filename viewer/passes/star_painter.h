@@ -20,7 +20,7 @@
 #include "atmosphere/medium/medium.h"
 #include "atmosphere/refraction/refracted_view.h"
 #include "renderer/illumination/night_light.h"
-#include "viewer/async/latest_job.h"
+#include "viewer/async/async_value.h"
 #include "viewer/gl/gl_objects.h"
 #include "viewer/gl/shader.h"
 #include "viewer/lamps/fog.h"
@@ -74,7 +74,7 @@ class StarPainter {
   /// Illuminance of a level surface by the sky in which the stars are seen; 0 by day.
   [[nodiscard]] double sky_lux() const { return sky_lux_; }
   /// Returns whether it is dark enough and the stars are known.
-  [[nodiscard]] bool HasAny() const { return sky_lux_ > 0.0 && made_; }
+  [[nodiscard]] bool HasAny() const { return sky_lux_ > 0.0 && maker_.value(); }
   /// Draws once with the program if it has not been drawn yet. Drivers finish compiling it then,
   /// which takes tenths of a second.
   void MakeReady(const PaintedView& view, const SceneFog* fog, std::optional<PhaseKind> fog_phase);
@@ -103,7 +103,7 @@ class StarPainter {
 
   [[nodiscard]] bool IsNight(const PaintedView& view, const LightsOfSky& lights,
                              const SolvedAir& air);
-  void Ask(const PaintedView& view, const Medium& medium);
+  [[nodiscard]] static bool Suits(const Request& requested, const Request& wanted);
   void Connect(const SceneFog* fog, std::optional<PhaseKind> fog_phase);
   [[nodiscard]] std::vector<StarPoint> PointsIn(const PaintedView& view,
                                                 const MoonDisk& moon) const;
@@ -114,9 +114,7 @@ class StarPainter {
   std::optional<ShaderProgram> program_;  // created on first draw
   std::shared_ptr<const BandColour> colour_;
   double sky_lux_ = 0.0;  // illuminance by the sky; 0: day
-  std::optional<Request> asked_;
-  std::optional<Made> made_;
-  LatestJob<Request, Made> maker_;
+  AsyncValue<Request, Made> maker_;
 };
 
 }  // namespace alpenglow::viewer

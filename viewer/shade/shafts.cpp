@@ -201,7 +201,8 @@ class ShadeFollower::Maker {
   std::optional<HeightRaster> heights_;
 };
 
-ShadeFollower::ShadeFollower(const Ellipsoid& ellipsoid) : ellipsoid_(ellipsoid), maker_(Maker()) {}
+ShadeFollower::ShadeFollower(const Ellipsoid& ellipsoid)
+    : ellipsoid_(ellipsoid), maker_(Maker(), Suits) {}
 
 void ShadeFollower::SetGround(GroundSampler sampler) {
   ground_ = sampler ? std::make_shared<const GroundSampler>(std::move(sampler)) : nullptr;
@@ -214,29 +215,23 @@ ShadeFollower::Request ShadeFollower::RequestFor(const GeodeticPosition& eye,
   const LocalFrame here(ellipsoid_, eye);
   LocalFrame frame(ellipsoid_, {eye.latitude_rad, eye.longitude_rad, 0.0});
   // Heights are kept while the eye is near their centre.
-  if (asked_ && DistanceBetween(asked_->frame, frame) < kPlaceStep * size_.half_width_m)
-    frame = asked_->frame;
+  const std::optional<Request>& last = maker_.requested();
+  if (last && DistanceBetween(last->frame, frame) < kPlaceStep * size_.half_width_m)
+    frame = last->frame;
   const Vector<Ecef> to_sun =
       here.EcefFromEnu(DirectionFromAngles(sun.elevation_rad, sun.azimuth_rad));
   return {ground_, size_, frame, glm::normalize(frame.EnuFromEcef(to_sun).xyz),
           sun.angular_radius_rad};
 }
 
-bool ShadeFollower::Suits(const Request& asked, const Request& wanted) const {
-  return asked.ground == wanted.ground && asked.size == wanted.size &&
-         AreOne(asked.frame, wanted.frame) &&
-         glm::length(asked.to_sun - wanted.to_sun) < kSunStep * wanted.sun_radius_rad;
-}
-
-void ShadeFollower::Ask(const GeodeticPosition& eye, const SunPosition& sun) {
-  const Request wanted = RequestFor(eye, sun);
-  if (asked_ && Suits(*asked_, wanted)) return;
-  asked_ = wanted;
-  maker_.Ask(wanted);
+bool ShadeFollower::Suits(const Request& requested, const Request& wanted) {
+  return requested.ground == wanted.ground && requested.size == wanted.size &&
+         AreOne(requested.frame, wanted.frame) &&
+         glm::length(requested.to_sun - wanted.to_sun) < kSunStep * wanted.sun_radius_rad;
 }
 
 void ShadeFollower::TakeFinished() {
-  std::optional<std::shared_ptr<const Made>> made = maker_.Take();
+  std::optional<std::shared_ptr<const Made>> made = maker_.Poll();
   if (!made) return;
   coming_ = std::move(*made);
   texture_.TakeOver({coming_, &coming_->map});
@@ -249,14 +244,13 @@ void ShadeFollower::Upload(int lines, int unit) {
 
 void ShadeFollower::Follow(const GeodeticPosition& eye, const SunPosition& sun, int unit) {
   // If the sun moves faster than maps are made, a finished map must still be shown.
-  if (!maker_.Busy() && !coming_) Ask(eye, sun);
+  if (!coming_) maker_.RequestWhenIdle(RequestFor(eye, sun));
   if (!coming_) TakeFinished();
   Upload(kLinesOfAFrame, unit);
 }
 
 void ShadeFollower::Settle(const GeodeticPosition& eye, const SunPosition& sun, int unit) {
-  Ask(eye, sun);
-  maker_.Wait();
+  maker_.WaitUntilReady(RequestFor(eye, sun));
   TakeFinished();
   Upload(std::numeric_limits<int>::max(), unit);
 }

@@ -37,7 +37,7 @@
 
 #include "atmosphere/astronomy/sun.h"
 #include "atmosphere/time_place/geodesy.h"
-#include "viewer/async/latest_job.h"
+#include "viewer/async/async_value.h"
 #include "viewer/gl/gl_objects.h"
 #include "viewer/gl/render_target.h"
 #include "viewer/gl/shader.h"
@@ -178,8 +178,7 @@ class ShadeFollower {
   class Maker;
 
   [[nodiscard]] Request RequestFor(const GeodeticPosition& eye, const SunPosition& sun) const;
-  [[nodiscard]] bool Suits(const Request& asked, const Request& wanted) const;
-  void Ask(const GeodeticPosition& eye, const SunPosition& sun);
+  [[nodiscard]] static bool Suits(const Request& requested, const Request& wanted);
   void TakeFinished();
   void Upload(int lines, int unit);
 
@@ -187,9 +186,8 @@ class ShadeFollower {
   std::shared_ptr<const GroundSampler> ground_;
   ShadeSize size_;
   ShadeTexture texture_;
-  std::optional<Request> asked_;
   std::shared_ptr<const Made> used_, coming_;
-  LatestJob<Request, std::shared_ptr<const Made>> maker_;
+  AsyncValue<Request, std::shared_ptr<const Made>> maker_;
 };
 
 struct ShadeQuality {

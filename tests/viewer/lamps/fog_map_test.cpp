@@ -208,20 +208,10 @@ TEST_F(FogOnTheCard, LeavesTheGroundWhatTheRendererDoes) {
   }
 }
 
-TEST(FogFollower, MakesANewMapWhenTheEyeHasRisenAndKeepsItWhileItStands) {
-  const LocalMedium fog = FogOf(0.02, 60.0, 0.0);
-  FogFollower follower([&](const FogView& view) {
-    return MakeFogMap(fog, 0.0, TheStage().sunlit(), view, {4, 3, 3});
-  });
-  const FogView low{10.0, kToSun, kToSun, kFogSunRadius_rad},
-      high{100.0, kToSun, kToSun, kFogSunRadius_rad};
-  follower.Wait(low);
-  ASSERT_TRUE(follower.map());
-  EXPECT_FALSE(follower.Follow(low)) << "it serves";
-  EXPECT_TRUE(Serves(*follower.map(), {12.0, kToSun, kToSun, kFogSunRadius_rad}));
-  EXPECT_FALSE(Serves(*follower.map(), high));
-  follower.Wait(high);
-  EXPECT_EQ(follower.map()->view.altitude_m, 100.0);
+TEST(FogMap, ServesWhileTheEyeStandsAndNotWhenItHasRisen) {
+  const FogView made{10.0, kToSun, kToSun, kFogSunRadius_rad};
+  EXPECT_TRUE(Serves(made, {12.0, kToSun, kToSun, kFogSunRadius_rad}, 60.0));
+  EXPECT_FALSE(Serves(made, {100.0, kToSun, kToSun, kFogSunRadius_rad}, 60.0));
 }
 
 /// The shader's sum of a light that rises by 1 a kilometre of the ray (x, y, z) until its end, 20 km at
