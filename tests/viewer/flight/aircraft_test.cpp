@@ -7,7 +7,7 @@
 #include <glm/geometric.hpp>
 
 #include "atmosphere/math/constants.h"
-#include "viewer/flight/standard_air.h"
+#include "atmosphere/medium/standard_air.h"
 
 namespace alpenglow::viewer {
 namespace {

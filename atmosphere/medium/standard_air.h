@@ -9,7 +9,7 @@
 // Heights above the ellipsoid are used as heights above the sea, which is within 110 m of it.
 #pragma once
 
-namespace alpenglow::viewer {
+namespace alpenglow::atmosphere {
 
 struct StandardAir {
   double density_kg_per_m3;
@@ -21,4 +21,4 @@ struct StandardAir {
 /// decrease with the last scale height.
 [[nodiscard]] StandardAir StandardAirAt(double height_m);
 
-}  // namespace alpenglow::viewer
+}  // namespace alpenglow::atmosphere

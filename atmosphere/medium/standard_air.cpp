@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: MIT
-#include "viewer/flight/standard_air.h"
+#include "atmosphere/medium/standard_air.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 
 #include "atmosphere/math/constants.h"
-#include "viewer/layer.h"
 
-namespace alpenglow::viewer {
+namespace alpenglow::atmosphere {
 namespace {
 
 constexpr double kGasConstant_J_per_kmol_K = 8314.32;  // value of the standard
@@ -69,4 +68,4 @@ StandardAir StandardAirAt(double height_m) {
   return {PressureIn(layer, geopotential_m - layer.base_m) / gas, std::sqrt(kHeatRatio * gas)};
 }
 
-}  // namespace alpenglow::viewer
+}  // namespace alpenglow::atmosphere

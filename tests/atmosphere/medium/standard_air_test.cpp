@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-#include "viewer/flight/standard_air.h"
+#include "atmosphere/medium/standard_air.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-namespace alpenglow::viewer {
+namespace alpenglow::atmosphere {
 namespace {
 
 // U.S. Standard Atmosphere 1976, table I: geometric height [m], density [kg/m3].
@@ -36,4 +36,4 @@ TEST(StandardAir, ThinsOutWithoutAJumpFromBelowTheSeaToOrbit) {
 }
 
 }  // namespace
-}  // namespace alpenglow::viewer
+}  // namespace alpenglow::atmosphere
