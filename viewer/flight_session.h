@@ -10,10 +10,11 @@
 #include <string>
 #include <vector>
 
+#include "atmosphere/medium/air_choice.h"
+#include "lut/camera_tables/air_tables.h"
 #include "lut/image/eye.h"
 #include "lut/image/look.h"
 #include "renderer/scene/scene.h"
-#include "viewer/air/solved_air.h"
 #include "viewer/flight/flight_recorder.h"
 #include "viewer/input/flight_controller.h"
 #include "viewer/passes/auto_quality.h"

@@ -30,6 +30,17 @@
 
 namespace alpenglow::renderer {
 
+/// The distant sources of light.
+enum class LightSource : std::size_t { kSun, kMoon };
+inline constexpr std::size_t kLightSources = 2;
+
+[[nodiscard]] constexpr std::size_t IndexOf(LightSource source) {
+  return static_cast<std::size_t>(source);
+}
+[[nodiscard]] constexpr LightSource OtherThan(LightSource source) {
+  return source == LightSource::kSun ? LightSource::kMoon : LightSource::kSun;
+}
+
 /// The air of one medium, through which ground, fog and volumes are lit. Refers to all three
 /// members.
 struct SunlitAir {

@@ -9,9 +9,9 @@
 #include <vector>
 
 #include "atmosphere/medium/medium.h"
+#include "lut/camera_tables/air_tables.h"
 #include "tests/fixtures/lit_air.h"
 #include "viewer/air/air_follower.h"
-#include "viewer/air/solved_air.h"
 #include "viewer/gl/gl_context.h"
 #include "viewer/gl/render_target.h"
 #include "viewer/shaders/full_screen.h"

@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "tests/viewer/air/air_reference.h"
+#include "tests/lut/camera_tables/air_reference.h"
 
 namespace alpenglow::viewer {
 namespace {

@@ -16,8 +16,7 @@
 #include <optional>
 #include <vector>
 
-#include "viewer/air/air_tables.h"
-#include "viewer/air/solved_air.h"
+#include "lut/camera_tables/air_tables.h"
 #include "viewer/async/async_value.h"
 #include "viewer/gl/gl_objects.h"
 #include "viewer/gl/shader.h"

@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: MIT
-// Provides owners of OpenGL object names, a scissor rectangle for its scope, and texture sizes that
-// are not powers of two. An object must not outlive the context in which it was created.
+// Provides owners of OpenGL object names, and a scissor rectangle for its scope. An object must not outlive the context in which it was created.
 #pragma once
 
 #include <epoxy/gl.h>
 
-#include <bit>
 #include <utility>
 
 namespace alpenglow::viewer {
@@ -107,13 +105,5 @@ class Scissor {
   Scissor(const Scissor&) = delete;
   Scissor& operator=(const Scissor&) = delete;
 };
-
-/// Returns `side`, or one more if it is a power of two greater than 1. Mesa's software driver
-/// recompiles a program when a side of a texture that it reads becomes a power of two or ceases to
-/// be one. Such frames took 0.3 to 0.9 s, measured with its shader cache disabled.
-/// @param side  > 0.
-[[nodiscard]] constexpr int OffPowersOfTwo(int side) {
-  return side > 1 && std::has_single_bit(static_cast<unsigned>(side)) ? side + 1 : side;
-}
 
 }  // namespace alpenglow::viewer

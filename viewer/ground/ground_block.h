@@ -12,11 +12,12 @@
 #include <memory>
 #include <vector>
 
+#include "lut/camera_tables/air_tables.h"
+#include "renderer/illumination/lighting.h"
 #include "renderer/scene/scene.h"
 #include "renderer/surface/colour_drape.h"
 #include "renderer/surface/scene_ground.h"
 #include "renderer/surface/surface.h"
-#include "viewer/air/solved_air.h"
 #include "viewer/gl/gl_objects.h"
 #include "viewer/gl/shader.h"
 #include "viewer/ground/sky_on_ground.h"

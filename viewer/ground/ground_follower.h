@@ -8,7 +8,8 @@
 #include <optional>
 #include <vector>
 
-#include "viewer/air/solved_air.h"
+#include "lut/camera_tables/air_tables.h"
+#include "renderer/illumination/lighting.h"
 #include "viewer/async/async_value.h"
 #include "viewer/ground/lit_ground.h"
 #include "viewer/ground/sky_on_ground.h"

@@ -13,7 +13,8 @@
 #include <optional>
 #include <vector>
 
-#include "viewer/air/solved_air.h"
+#include "lut/camera_tables/air_tables.h"
+#include "renderer/illumination/lighting.h"
 #include "viewer/gl/gl_objects.h"
 #include "viewer/gl/shader.h"
 #include "viewer/ground/ground_follower.h"

@@ -23,9 +23,9 @@
 #include <vector>
 
 #include "atmosphere/astronomy/sun.h"
+#include "lut/camera_tables/air_tables.h"
 #include "renderer/illumination/lighting.h"
 #include "renderer/media/local_media.h"
-#include "viewer/air/solved_air.h"
 #include "viewer/async/async_value.h"
 #include "viewer/flight/flight.h"
 #include "viewer/gl/gl_objects.h"

@@ -8,7 +8,7 @@
 #include <optional>
 #include <string>
 
-#include "viewer/air/air_tables.h"
+#include "lut/camera_tables/air_tables.h"
 #include "viewer/lamps/fog.h"
 #include "viewer/lamps/lamp_painter.h"
 #include "viewer/shade/shafts.h"

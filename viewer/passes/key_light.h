@@ -12,7 +12,8 @@
 #include "atmosphere/astronomy/sun.h"
 #include "atmosphere/colour/spectrum.h"
 #include "atmosphere/time_place/time.h"
-#include "viewer/air/solved_air.h"
+#include "lut/camera_tables/air_tables.h"
+#include "renderer/illumination/lighting.h"
 
 namespace alpenglow::viewer {
 

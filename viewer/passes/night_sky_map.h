@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "atmosphere/colour/spectrum.h"
-#include "viewer/air/solved_air.h"
+#include "lut/camera_tables/air_tables.h"
 #include "viewer/async/async_value.h"
 #include "viewer/gl/gl_objects.h"
 #include "viewer/gl/shader.h"

@@ -8,8 +8,8 @@
 #include "atmosphere/math/constants.h"
 #include "atmosphere/ray/shell.h"
 #include "atmosphere/refraction/refracted_view.h"
+#include "lut/camera_tables/air_rows.h"
 #include "renderer/camera/camera_rays.h"
-#include "viewer/air/air_rows.h"
 
 namespace alpenglow::viewer {
 namespace {

@@ -18,7 +18,7 @@
 #include "atmosphere/astronomy/sun.h"
 #include "atmosphere/medium/medium.h"
 #include "atmosphere/refraction/refracted_view.h"
-#include "viewer/air/solved_air.h"
+#include "lut/camera_tables/air_tables.h"
 #include "viewer/flight/flight.h"
 #include "viewer/gl/gl_objects.h"
 #include "viewer/land/land_pass.h"

@@ -7,9 +7,9 @@
 #include <cmath>
 #include <utility>
 
+#include "lut/camera_tables/air_rows.h"
 #include "renderer/surface/surface.h"
 #include "viewer/air/air_follower.h"
-#include "viewer/air/air_rows.h"
 #include "viewer/gl/gl_objects.h"
 #include "viewer/ground/ground_block.h"
 #include "viewer/ground/sky_by_pixel.h"

@@ -20,9 +20,10 @@
 
 #include "atmosphere/astronomy/sun.h"
 #include "atmosphere/medium/phase.h"
+#include "lut/camera_tables/air_tables.h"
+#include "renderer/illumination/lighting.h"
 #include "renderer/surface/surface.h"
 #include "viewer/air/air_follower.h"
-#include "viewer/air/solved_air.h"
 #include "viewer/gl/gl_objects.h"
 #include "viewer/gl/shader.h"
 #include "viewer/ground/ground_block.h"

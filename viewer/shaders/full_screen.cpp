@@ -3,11 +3,15 @@
 
 #include <glm/vec4.hpp>
 
+#include "lut/embedded_text.h"
+#include "renderer/embedded_text.h"
 #include "viewer/embedded_text.h"
 
 namespace alpenglow::viewer {
 
 ShaderPiece ViewerPiece(const std::string& name) {
+  if (name.starts_with("lut/")) return {name, std::string(lut::EmbeddedText(name))};
+  if (name.starts_with("renderer/")) return {name, std::string(renderer::EmbeddedText(name))};
   return {name, std::string(viewer::EmbeddedText(name))};
 }
 

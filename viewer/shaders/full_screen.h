@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Passes over a whole picture or over boxes of it with one fragment stage, and the viewer's
-// embedded shader texts, named by their path in the tree: "viewer/shaders/hud.frag.glsl".
+// Passes over a whole picture or over boxes of it with one fragment stage, and embedded
+// shader texts, named by their path in the tree: "viewer/shaders/hud.frag.glsl".
 #pragma once
 
 #include <optional>
@@ -13,9 +13,10 @@
 
 namespace alpenglow::viewer {
 
+/// Returns a text that the library of its layer embeds.
 [[nodiscard]] ShaderPiece ViewerPiece(const std::string& name);
 
-/// Returns the texts followed by the viewer's texts of these names.
+/// Returns the texts followed by those of these names.
 [[nodiscard]] std::vector<ShaderPiece> WithViewerPieces(std::vector<ShaderPiece> texts,
                                                         const std::vector<std::string>& names);
 

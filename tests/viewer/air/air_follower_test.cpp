@@ -12,7 +12,7 @@
 #include "atmosphere/base/error.h"
 #include "atmosphere/colour/spectrum.h"
 #include "atmosphere/math/constants.h"
-#include "tests/viewer/air/air_reference.h"
+#include "tests/lut/camera_tables/air_reference.h"
 #include "tests/viewer/shaders/headless.h"
 
 namespace alpenglow::viewer {

@@ -10,7 +10,7 @@
 
 #include "atmosphere/math/numerics.h"
 #include "tests/fixtures/lit_air.h"
-#include "tests/viewer/air/air_reading.h"
+#include "tests/lut/camera_tables/air_reading.h"
 #include "tests/viewer/shaders/gpu_values.h"
 #include "tests/viewer/shaders/headless.h"
 

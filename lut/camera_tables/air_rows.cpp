@@ -2,7 +2,7 @@
 // Computes for AirTables the light scattered on the way to a point. A row of texels is one march:
 // all rays of a row pass through the same air and differ only in the direction of the sun. The
 // light gathered up to each distance is stored.
-#include "viewer/air/air_rows.h"
+#include "lut/camera_tables/air_rows.h"
 
 #include <algorithm>
 #include <cmath>
@@ -13,7 +13,7 @@
 #include "atmosphere/medium/phase_text.h"
 #include "lut/multiple_scattering/azimuth_fan.h"
 
-namespace alpenglow::viewer {
+namespace alpenglow::lut {
 namespace {
 
 constexpr double kHair_rad = 1e-9;  // offset from the horizon to the side that a row belongs to
@@ -420,4 +420,4 @@ void FillWays(const SingleScattering<float>& air, const MultipleScattering& mult
   WayBuilder(air, multiple_scattering, phases, tables).Fill();
 }
 
-}  // namespace alpenglow::viewer
+}  // namespace alpenglow::lut

@@ -12,12 +12,12 @@
 
 #include "atmosphere/math/constants.h"
 #include "atmosphere/medium/phase_text.h"
+#include "lut/camera_tables/air_tables.h"
 #include "lut/tables/transmittance_table.h"
-#include "viewer/air/air_tables.h"
 
 namespace alpenglow::tests {
 
-using namespace viewer;
+using namespace lut;
 
 /// Between texels, places counted in texels from the first.
 inline glm::dvec4 Linear(const AirTexels& texels, double x, double y = 0.0, double z = 0.0) {

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: MIT
-#include "viewer/air/solved_air.h"
+#include "atmosphere/medium/air_choice.h"
 
 #include <gtest/gtest.h>
 
 #include "tests/fixtures/fault_of.h"
 
-namespace alpenglow::viewer {
+namespace alpenglow::atmosphere {
 namespace {
 
 TEST(AirChoice, AVisibilityThatIsAskedForIsThatOfTheAir) {
@@ -44,4 +44,4 @@ TEST(AirChoice, WhatIsOutOfRangeIsNamed) {
 }
 
 }  // namespace
-}  // namespace alpenglow::viewer
+}  // namespace alpenglow::atmosphere

@@ -1,17 +1,14 @@
 // SPDX-License-Identifier: MIT
-#include "viewer/air/solved_air.h"
-
-#include <tbb/task_arena.h>
+#include "atmosphere/medium/air_choice.h"
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
 
 #include "atmosphere/base/error.h"
 #include "atmosphere/math/constants.h"
 #include "atmosphere/medium/medium_presets.h"
 
-namespace alpenglow::viewer {
+namespace alpenglow::atmosphere {
 namespace {
 
 constexpr double kMostAerosol = 1000.0;
@@ -82,20 +79,4 @@ double OzoneDobson(const Medium& medium) {
   return dobson;
 }
 
-std::shared_ptr<const SolvedAir> SolveAir(const Medium& medium, AirSolution solution) {
-  constexpr MultipleScatteringOptions kDraft{
-      .altitudes = 12, .sun_angles = 24, .zenith_nodes = 8, .azimuth_nodes = 5, .ray_nodes = 6};
-  const SingleScattering<float> air(medium);
-  tbb::task_arena one_thread(1);
-  return one_thread.execute([&] {
-    RefractedBeam beam(medium);
-    MediumTables tables = MakeMediumTables(air, beam);
-    return std::make_shared<const SolvedAir>(SolvedAir{
-        medium, solution, std::move(beam),
-        MultipleScattering(medium,
-                           solution == AirSolution::kDraft ? kDraft : MultipleScatteringOptions{}),
-        std::move(tables)});
-  });
-}
-
-}  // namespace alpenglow::viewer
+}  // namespace alpenglow::atmosphere

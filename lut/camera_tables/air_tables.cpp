@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: MIT
-#include "viewer/air/air_tables.h"
+#include "lut/camera_tables/air_tables.h"
+
+#include <tbb/task_arena.h>
 
 #include <algorithm>
 #include <cmath>
@@ -8,11 +10,11 @@
 #include "atmosphere/base/error.h"
 #include "atmosphere/math/constants.h"
 #include "atmosphere/medium/phase_text.h"
+#include "lut/camera_tables/air_rows.h"
 #include "lut/sky/sky_view.h"
 #include "lut/tables/transmittance_table.h"
-#include "viewer/air/air_rows.h"
 
-namespace alpenglow::viewer {
+namespace alpenglow::lut {
 namespace {
 
 // Returns the angle below the horizontal at which rays from altitude h are tangent to the sphere of
@@ -256,4 +258,20 @@ MediumTables MakeMediumTables(const SingleScattering<float>& air, const Refracte
   return tables;
 }
 
-}  // namespace alpenglow::viewer
+std::shared_ptr<const SolvedAir> SolveAir(const Medium& medium, AirSolution solution) {
+  constexpr MultipleScatteringOptions kDraft{
+      .altitudes = 12, .sun_angles = 24, .zenith_nodes = 8, .azimuth_nodes = 5, .ray_nodes = 6};
+  const SingleScattering<float> air(medium);
+  tbb::task_arena one_thread(1);
+  return one_thread.execute([&] {
+    RefractedBeam beam(medium);
+    MediumTables tables = MakeMediumTables(air, beam);
+    return std::make_shared<const SolvedAir>(SolvedAir{
+        medium, solution, std::move(beam),
+        MultipleScattering(medium,
+                           solution == AirSolution::kDraft ? kDraft : MultipleScatteringOptions{}),
+        std::move(tables)});
+  });
+}
+
+}  // namespace alpenglow::lut

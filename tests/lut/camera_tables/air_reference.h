@@ -10,11 +10,11 @@
 #include "atmosphere/math/numerics.h"
 #include "tests/fixtures/lit_air.h"
 #include "tests/fixtures/sky_view_errors.h"
-#include "tests/viewer/air/air_reading.h"
+#include "tests/lut/camera_tables/air_reading.h"
 
 namespace alpenglow::tests {
 
-using namespace viewer;
+using namespace lut;
 
 /// Relative errors, as of a sky view.
 using AirErrors = SkyViewErrors;

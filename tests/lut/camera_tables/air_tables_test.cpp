@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The tables of one eye's air, read on the processor, against direct evaluation of every ray.
-#include "viewer/air/air_tables.h"
+#include "lut/camera_tables/air_tables.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
@@ -9,10 +9,10 @@
 
 #include "atmosphere/base/error.h"
 #include "atmosphere/colour/spectrum.h"
-#include "tests/viewer/air/air_reference.h"
-#include "viewer/gl/gl_objects.h"
+#include "atmosphere/math/numerics.h"
+#include "tests/lut/camera_tables/air_reference.h"
 
-namespace alpenglow::viewer {
+namespace alpenglow::lut {
 namespace {
 
 constexpr int kRays = 300;
@@ -260,4 +260,4 @@ TEST(AirTablesSize, NoSideOfATextureIsAPowerOfTwo) {
 }
 
 }  // namespace
-}  // namespace alpenglow::viewer
+}  // namespace alpenglow::lut

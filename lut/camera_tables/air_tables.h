@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Provides the tables of the air for one eye and one sun, which the GPU interpolates: the sky,
+// Provides SolvedAir, a medium with all of its light, and the tables of the air for one eye and one
+// sun, which the GPU interpolates: the sky,
 // light scattered into a ray up to any distance along it, and transmittance. Light is per unit
 // solar irradiance [1/sr]. Texels of four floats hold one value per band.
 //
@@ -25,24 +26,25 @@
 
 #include <array>
 #include <glm/vec4.hpp>
+#include <memory>
 #include <vector>
 
 #include "atmosphere/medium/medium.h"
 #include "atmosphere/ray/shell.h"
 #include "atmosphere/ray/single_scattering.h"
 #include "atmosphere/refraction/refracted_view.h"
+#include "lut/layer.h"
 #include "lut/multiple_scattering/multiple_scattering.h"
-#include "viewer/layer.h"
 
 namespace alpenglow::shared {
 // clang-format off
 #include "atmosphere/shared_glsl/shared_begin.h"
-#include "viewer/air/air_map.glsl"
+#include "lut/camera_tables/air_map.glsl"
 #include "atmosphere/shared_glsl/shared_end.h"
 // clang-format on
 }  // namespace alpenglow::shared
 
-namespace alpenglow::viewer {
+namespace alpenglow::lut {
 
 /// Axes of the tables of one eye. Angles are in radians, lengths in km.
 struct AirMap {
@@ -150,4 +152,22 @@ struct MediumTables {
                                       const MediumTables& medium, const AirEye& eye,
                                       const AirTablesSize& size);
 
-}  // namespace alpenglow::viewer
+/// Accuracy of a solution. A draft takes a third of the time; irradiance from its sky is accurate
+/// to 3 % by day and 6 % in twilight.
+enum class AirSolution { kDraft, kFull };
+
+/// A solved medium. It is immutable and can be shared between threads.
+struct SolvedAir {
+  Medium medium;
+  AirSolution solution;
+  RefractedBeam beam;
+  MultipleScattering multiple_scattering;
+  MediumTables tables;
+};
+
+/// Solves the medium on the calling thread alone, so that drawing keeps the other processors.
+/// Throws InputError for a medium that Validate rejects or that has more than four bands.
+[[nodiscard]] std::shared_ptr<const SolvedAir> SolveAir(const Medium& medium,
+                                                        AirSolution solution = AirSolution::kFull);
+
+}  // namespace alpenglow::lut

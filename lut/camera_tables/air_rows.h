@@ -9,9 +9,9 @@
 
 #include "atmosphere/math/constants.h"
 #include "atmosphere/ray/ray.h"
-#include "viewer/air/air_tables.h"
+#include "lut/camera_tables/air_tables.h"
 
-namespace alpenglow::viewer {
+namespace alpenglow::lut {
 
 /// Returns the position of node i of n in [0, 1].
 [[nodiscard]] inline double Unit(int i, int n) { return static_cast<double>(i) / (n - 1); }
@@ -61,4 +61,4 @@ class AirPhases {
 void FillWays(const SingleScattering<float>& air, const MultipleScattering& multiple_scattering,
               const AirPhases& phases, AirTables& tables);
 
-}  // namespace alpenglow::viewer
+}  // namespace alpenglow::lut
