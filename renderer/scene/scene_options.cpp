@@ -9,6 +9,7 @@
 #include "atmosphere/math/constants.h"
 #include "atmosphere/medium/medium_presets.h"
 #include "renderer/scene/nrrd_header.h"
+#include "renderer/terrain/land_source.h"
 #include "renderer/terrain/lattice_noise.h"
 #include "renderer/terrain/procedural_mountains.h"
 
@@ -43,6 +44,19 @@ std::vector<NamedFile> FilesOf(const Scene& scene) {
     if (const auto data = DataOfGrid(volume); data != volume.grid) add("volume.grid", data);
   }
   return files;
+}
+
+LandSource LandSourceOf(const Scene& scene) {
+  LandSource source;
+  source.voids = scene.terrain.voids;
+  if (scene.terrain.kind == TerrainSource::Kind::kElevationModel)
+    source.files = {scene.terrain.file};
+  if (scene.terrain.kind == TerrainSource::Kind::kMesh)
+    source.mesh = LandSource::Mesh{scene.terrain.file, scene.place, scene.terrain.up};
+  if (scene.terrain.kind == TerrainSource::Kind::kProceduralMountains)
+    source.range_centre = scene.terrain.centre.value_or(scene.place);
+  source.range_seed = scene.terrain.range_seed;
+  return source;
 }
 
 namespace {

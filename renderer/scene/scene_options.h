@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Builds a scene from command line options, for programs that are called without a scene file, and
-// lists the files of a scene.
+// lists the files and the land of a scene.
 #pragma once
 
 #include <optional>
@@ -12,8 +12,13 @@
 
 namespace alpenglow::renderer {
 
+struct LandSource;  // renderer/terrain/land_source.h
+
 /// Returns every file that the scene names and that is read for rendering, with the name of its key.
 [[nodiscard]] std::vector<NamedFile> FilesOf(const Scene& scene);
+
+/// Returns the land source of a scene: its elevation model, its mesh or the built-in range.
+[[nodiscard]] LandSource LandSourceOf(const Scene& scene);
 
 /// Default latitude and longitude [degrees], for elevation models, and for the view of the built-in
 /// range centred there.

@@ -16,6 +16,7 @@
 
 #include "renderer/effects/effect_choice.h"
 #include "renderer/picture/render.h"
+#include "renderer/scene/scene_options.h"
 #include "tests/fixtures/parity_views.h"
 #include "viewer/gl/gl_context.h"
 #include "viewer/passes/reference_picture.h"

@@ -14,6 +14,7 @@
 #include <string>
 #include <vector>
 
+#include "renderer/scene/scene_options.h"
 #include "tests/fixtures/bare_scene.h"
 #include "viewer/gl/gl_context.h"
 #include "viewer/gl/pass_timer.h"

@@ -8,6 +8,7 @@
 #include <set>
 #include <thread>
 
+#include "renderer/scene/scene_options.h"
 #include "tests/viewer/land/headless_land.h"
 
 namespace alpenglow::viewer {

@@ -10,7 +10,7 @@
 #include "tests/fixtures/bare_scene_folder.h"
 #include "tests/fixtures/lost_messages.h"
 #include "tests/fixtures/places.h"
-#include "tests/viewer/land/land_files.h"
+#include "tests/renderer/terrain/land_files.h"
 #include "tests/viewer/shaders/headless.h"
 #include "viewer/gl/picture_tiles.h"
 

@@ -8,9 +8,10 @@
 #include <glm/geometric.hpp>
 
 #include "atmosphere/math/constants.h"
+#include "renderer/scene/scene_options.h"
 #include "tests/fixtures/bare_scene.h"
 #include "tests/fixtures/temporary_folder.h"
-#include "tests/viewer/land/land_files.h"
+#include "tests/renderer/terrain/land_files.h"
 #include "tests/viewer/shaders/headless.h"
 
 namespace alpenglow::viewer {

@@ -16,10 +16,10 @@
 #include <utility>
 #include <vector>
 
+#include "renderer/terrain/loaded_heights.h"
 #include "viewer/gl/gl_objects.h"
 #include "viewer/land/land_chunk.h"
 #include "viewer/land/level_ranges.h"
-#include "viewer/land/loaded_heights.h"
 
 namespace alpenglow::viewer {
 

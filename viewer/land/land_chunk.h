@@ -26,7 +26,7 @@
 #include <vector>
 
 #include "atmosphere/time_place/geodesy.h"
-#include "viewer/land/loaded_heights.h"
+#include "renderer/terrain/loaded_heights.h"
 
 namespace alpenglow::viewer {
 

@@ -12,11 +12,11 @@
 #include <string>
 #include <vector>
 
+#include "renderer/terrain/loaded_heights.h"
 #include "viewer/async/async_value.h"
 #include "viewer/land/chunk_set.h"
 #include "viewer/land/land_pass.h"
 #include "viewer/land/level_ranges.h"
-#include "viewer/land/loaded_heights.h"
 #include "viewer/land/mesh_land.h"
 #include "viewer/land/tile_cache.h"
 

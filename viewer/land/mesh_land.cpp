@@ -9,8 +9,8 @@
 
 #include "atmosphere/math/constants.h"
 #include "renderer/surface/scene_ground.h"
+#include "renderer/terrain/loaded_heights.h"
 #include "renderer/terrain/obj_file.h"
-#include "viewer/land/loaded_heights.h"
 
 namespace alpenglow::viewer {
 namespace {

@@ -11,13 +11,13 @@
 
 #include "atmosphere/time_place/geodesy.h"
 #include "renderer/terrain/elevation.h"
+#include "renderer/terrain/land_source.h"
+#include "renderer/terrain/loaded_heights.h"
 #include "renderer/terrain/terrain.h"
 #include "viewer/async/async_value.h"
 #include "viewer/land/chunk_set.h"
 #include "viewer/land/land_chunk.h"
 #include "viewer/land/land_pass.h"
-#include "viewer/land/land_source.h"
-#include "viewer/land/loaded_heights.h"
 #include "viewer/layer.h"
 
 namespace alpenglow::viewer {

@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
+#include "renderer/terrain/loaded_heights.h"
 #include "viewer/async/async_value.h"
 #include "viewer/land/level_ranges.h"
-#include "viewer/land/loaded_heights.h"
 
 namespace alpenglow::viewer {
 

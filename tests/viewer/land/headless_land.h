@@ -3,7 +3,7 @@
 #pragma once
 
 #include "renderer/scene/scene.h"
-#include "tests/viewer/land/land_files.h"
+#include "tests/renderer/terrain/land_files.h"
 #include "tests/viewer/shaders/headless.h"
 
 namespace alpenglow::tests {

@@ -10,7 +10,7 @@
 #include <utility>
 
 #include "renderer/terrain/mesh.h"
-#include "tests/viewer/land/land_files.h"
+#include "tests/renderer/terrain/land_files.h"
 
 #ifdef __SANITIZE_ADDRESS__
 // A function of the sanitizers' runtime; gcc does not install the header that declares it.

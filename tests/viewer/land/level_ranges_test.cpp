@@ -6,7 +6,7 @@
 #include <cmath>
 #include <set>
 
-#include "tests/viewer/land/land_files.h"
+#include "tests/renderer/terrain/land_files.h"
 
 namespace alpenglow::viewer {
 namespace {

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <map>
 
-#include "tests/viewer/land/land_files.h"
+#include "tests/renderer/terrain/land_files.h"
 #include "viewer/land/level_ranges.h"
 
 namespace alpenglow::viewer {

@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "lut/image/tone_mapping.h"
+#include "renderer/scene/scene_options.h"
 #include "tests/fixtures/bare_scene.h"
 #include "tests/fixtures/parity_views.h"
 #include "tests/fixtures/sanitized.h"

@@ -9,6 +9,7 @@
 #include "atmosphere/refraction/refracted_view.h"
 #include "lut/image/tone_mapping.h"
 #include "renderer/picture/render.h"
+#include "renderer/scene/scene_options.h"
 #include "renderer/surface/scene_ground.h"
 #include "tests/fixtures/far_peak.h"
 #include "tests/fixtures/temporary_folder.h"

@@ -12,6 +12,7 @@
 
 #include "atmosphere/astronomy/eclipse.h"
 #include "renderer/picture/render.h"
+#include "renderer/scene/scene_options.h"
 #include "renderer/surface/scene_ground.h"
 #include "tests/fixtures/bare_scene.h"
 #include "tests/fixtures/parity_views.h"

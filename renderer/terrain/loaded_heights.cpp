@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "viewer/land/loaded_heights.h"
+#include "renderer/terrain/loaded_heights.h"
 
 #include <algorithm>
 #include <cmath>
@@ -11,7 +11,7 @@
 #include "atmosphere/base/error.h"
 #include "renderer/terrain/mesh.h"
 
-namespace alpenglow::viewer {
+namespace alpenglow::renderer {
 namespace {
 
 constexpr double kWholeTurn = 2.0 * std::numbers::pi;
@@ -82,11 +82,11 @@ ElevationGrid PaddedExtent(const ElevationGrid& grid, const TilePads& pads) {
 namespace {
 
 /// A position in rows and columns of a grid.
-struct GridPlace {
+struct TilePlace {
   double row, column;
 };
 
-GridPlace PlaceIn(const ElevationGrid& grid, double latitude_rad, double longitude_rad) {
+TilePlace TilePlaceIn(const ElevationGrid& grid, double latitude_rad, double longitude_rad) {
   const double middle = grid.west_rad + 0.5 * (grid.columns - 1) * grid.step_lon_rad;
   return {(grid.north_rad - latitude_rad) / grid.step_lat_rad,
           0.5 * (grid.columns - 1) +
@@ -95,7 +95,7 @@ GridPlace PlaceIn(const ElevationGrid& grid, double latitude_rad, double longitu
 
 // Returns whether a tile covers a place. Samples represent cells, so a tile extends half a step
 // beyond its outermost samples.
-bool Has(const ElevationGrid& grid, const GridPlace& at) {
+bool Has(const ElevationGrid& grid, const TilePlace& at) {
   constexpr double kBeyond = 0.5 + kOnLattice;
   return at.row >= -kBeyond && at.column >= -kBeyond && at.row <= grid.rows - 1 + kBeyond &&
          at.column <= grid.columns - 1 + kBeyond;
@@ -113,7 +113,7 @@ class Rims {
   /// Returns the height from another tile; empty if no tile has one.
   [[nodiscard]] std::optional<double> At(double latitude_rad, double longitude_rad) const {
     for (const Rim& rim : rims_) {
-      const GridPlace at = PlaceIn(rim.extent, latitude_rad, longitude_rad);
+      const TilePlace at = TilePlaceIn(rim.extent, latitude_rad, longitude_rad);
       if (!Has(rim.extent, at)) continue;
       const double row = std::clamp(at.row, 0.0, rim.extent.rows - 1.0);
       const double column = std::clamp(at.column, 0.0, rim.extent.columns - 1.0);
@@ -135,7 +135,7 @@ class Rims {
   // samples.
   void Add(const LandTiles& tiles, int other, const ElevationGrid& padded) {
     const ElevationGrid& extent = tiles.ExtentOf(other);
-    const GridPlace first = PlaceIn(extent, padded.north_rad, padded.west_rad);
+    const TilePlace first = TilePlaceIn(extent, padded.north_rad, padded.west_rad);
     const double last_row =
         first.row + (padded.rows - 1) * padded.step_lat_rad / extent.step_lat_rad;
     const double last_column =
@@ -157,7 +157,7 @@ class Rims {
     const double last = std::clamp(std::ceil(to) + 1.0, first + 1.0, count - 1.0);
     return {static_cast<int>(first), static_cast<int>(last - first) + 1};
   }
-  static GridWindow Shared(const GridPlace& first, const GridPlace& last,
+  static GridWindow Shared(const TilePlace& first, const TilePlace& last,
                            const ElevationGrid& extent) {
     const Span columns = Between(first.column, last.column, extent.columns);
     const Span rows = Between(first.row, last.row, extent.rows);
@@ -308,4 +308,4 @@ std::optional<ElevationGrid> LoadedHeights::SampledGrid(const GeodeticPosition& 
   return grid;
 }
 
-}  // namespace alpenglow::viewer
+}  // namespace alpenglow::renderer

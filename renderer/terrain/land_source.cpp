@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "viewer/land/land_source.h"
+#include "renderer/terrain/land_source.h"
 
 #include <fmt/format.h>
 
@@ -11,10 +11,10 @@
 
 #include "atmosphere/base/error.h"
 #include "atmosphere/base/parsing.h"
+#include "renderer/terrain/loaded_heights.h"
 #include "renderer/terrain/procedural_mountains.h"
-#include "viewer/land/loaded_heights.h"
 
-namespace alpenglow::viewer {
+namespace alpenglow::renderer {
 namespace {
 
 constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
@@ -264,19 +264,6 @@ std::vector<float> OnLattice(const LandLattice& lattice, const LandTile& tile, E
 
 }  // namespace
 
-LandSource LandSourceOf(const Scene& scene) {
-  LandSource source;
-  source.voids = scene.terrain.voids;
-  if (scene.terrain.kind == TerrainSource::Kind::kElevationModel)
-    source.files = {scene.terrain.file};
-  if (scene.terrain.kind == TerrainSource::Kind::kMesh)
-    source.mesh = LandSource::Mesh{scene.terrain.file, scene.place, scene.terrain.up};
-  if (scene.terrain.kind == TerrainSource::Kind::kProceduralMountains)
-    source.range_centre = scene.terrain.centre.value_or(scene.place);
-  source.range_seed = scene.terrain.range_seed;
-  return source;
-}
-
 ReadTile ReadLandTile(const LandTiles& tiles, int tile, int level) {
   const LandTile& wanted = tiles.tiles()[static_cast<std::size_t>(tile)];
   ElevationModel model;
@@ -294,4 +281,4 @@ ReadTile ReadLandTile(const LandTiles& tiles, int tile, int level) {
           NoteOn(model, wanted.file.string())};
 }
 
-}  // namespace alpenglow::viewer
+}  // namespace alpenglow::renderer

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "viewer/land/land_source.h"
+#include "renderer/terrain/land_source.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -7,9 +7,9 @@
 #include "atmosphere/base/error.h"
 #include "renderer/terrain/procedural_mountains.h"
 #include "renderer/terrain/terrain.h"
-#include "tests/viewer/land/land_files.h"
+#include "tests/renderer/terrain/land_files.h"
 
-namespace alpenglow::viewer {
+namespace alpenglow::renderer {
 namespace {
 
 using namespace tests;
@@ -321,4 +321,4 @@ TEST_F(LandSourceFiles, WhatCannotBeReadIsSaidByName) {
 }
 
 }  // namespace
-}  // namespace alpenglow::viewer
+}  // namespace alpenglow::renderer

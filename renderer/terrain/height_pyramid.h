@@ -19,9 +19,9 @@
 #include <vector>
 
 #include "atmosphere/time_place/geodesy.h"
-#include "viewer/layer.h"
+#include "renderer/layer.h"
 
-namespace alpenglow::viewer {
+namespace alpenglow::renderer {
 
 /// A rectangle of samples of level 0, both ends included.
 struct LatticeBox {
@@ -146,4 +146,4 @@ class HeightPyramid {
   std::vector<std::shared_ptr<const HeightSamples>> levels_;  // [0] is level finest_
 };
 
-}  // namespace alpenglow::viewer
+}  // namespace alpenglow::renderer

@@ -17,12 +17,12 @@
 #include <vector>
 
 #include "atmosphere/time_place/geodesy.h"
+#include "renderer/layer.h"
 #include "renderer/terrain/elevation.h"
-#include "viewer/land/height_pyramid.h"
-#include "viewer/land/land_source.h"
-#include "viewer/layer.h"
+#include "renderer/terrain/height_pyramid.h"
+#include "renderer/terrain/land_source.h"
 
-namespace alpenglow::viewer {
+namespace alpenglow::renderer {
 
 /// Returns the heights within half_width_m of a place, with at most most_samples per side; empty if
 /// there is no land. For a mesh it returns the part nearest to the place (GridOverMesh). Called on
@@ -93,4 +93,4 @@ struct SampleSize {
 };
 [[nodiscard]] SampleSize SampleSizeAt(const LandLattice& lattice, double latitude_rad);
 
-}  // namespace alpenglow::viewer
+}  // namespace alpenglow::renderer

@@ -14,14 +14,14 @@
 #include <vector>
 
 #include "atmosphere/math/constants.h"
+#include "renderer/terrain/land_source.h"
+#include "renderer/terrain/loaded_heights.h"
 #include "tests/fixtures/rough_land.h"
 #include "tests/fixtures/temporary_folder.h"
-#include "viewer/land/land_source.h"
-#include "viewer/land/loaded_heights.h"
 
 namespace alpenglow::tests {
 
-using namespace viewer;
+using namespace renderer;
 
 inline constexpr double kTileStep_deg = 1.0 / 2400.0;  // 46 m
 inline constexpr int kTileSamples = 241;               // a side: a tenth of a degree

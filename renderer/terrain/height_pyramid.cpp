@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
-#include "viewer/land/height_pyramid.h"
+#include "renderer/terrain/height_pyramid.h"
 
 #include <algorithm>
 #include <cmath>
 
 #include "atmosphere/base/error.h"
 
-namespace alpenglow::viewer {
+namespace alpenglow::renderer {
 namespace {
 
 bool IsWhole(float height_m) {
@@ -156,4 +156,4 @@ std::size_t HeightPyramid::BytesOf(const LatticeBox& box, int level) {
                                   std::pow(0.25, level));
 }
 
-}  // namespace alpenglow::viewer
+}  // namespace alpenglow::renderer

@@ -2,17 +2,18 @@
 // Sources of terrain: elevation models from files and folders, a mesh, or the built-in range.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "renderer/scene/scene.h"
 #include "renderer/terrain/elevation.h"
-#include "viewer/land/height_pyramid.h"
+#include "renderer/terrain/height_pyramid.h"
+#include "renderer/terrain/mesh.h"
 
-namespace alpenglow::viewer {
+namespace alpenglow::renderer {
 
 struct LandSource {
   /// Elevation models in the formats of ReadElevation, and folders of such files (.hgt, .tif,
@@ -35,9 +36,6 @@ struct LandSource {
 
   [[nodiscard]] bool IsEmpty() const { return files.empty() && !range_centre && !mesh; }
 };
-
-/// Returns the land source of a scene: its elevation model, its mesh or the built-in range.
-[[nodiscard]] LandSource LandSourceOf(const Scene& scene);
 
 /// Sides on which a tile is extended by one of its own steps, using samples of its neighbours.
 /// Padding is needed if the lattice has samples between the last samples of the tile and the first
@@ -109,4 +107,4 @@ struct ReadTile {
 /// neighbours that lie on its pads. Throws InputError as ReadElevation does.
 [[nodiscard]] ReadTile ReadLandTile(const LandTiles& tiles, int tile, int level);
 
-}  // namespace alpenglow::viewer
+}  // namespace alpenglow::renderer
