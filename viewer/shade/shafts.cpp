@@ -10,9 +10,9 @@
 #include <utility>
 
 #include "atmosphere/base/error.h"
+#include "renderer/visibility/shade_map.h"
 #include "viewer/gl/gl_context.h"
 #include "viewer/gl/render_target.h"
-#include "viewer/shade/shade_map.h"
 #include "viewer/shaders/full_screen.h"
 
 namespace alpenglow::viewer {

@@ -38,11 +38,11 @@
 #include "atmosphere/astronomy/sun.h"
 #include "atmosphere/time_place/geodesy.h"
 #include "renderer/terrain/loaded_heights.h"
+#include "renderer/visibility/shade_map.h"
 #include "viewer/async/async_value.h"
 #include "viewer/gl/gl_objects.h"
 #include "viewer/gl/render_target.h"
 #include "viewer/gl/shader.h"
-#include "viewer/shade/shade_map.h"
 
 namespace alpenglow::viewer {
 

@@ -21,11 +21,11 @@
 #include <vector>
 
 #include "atmosphere/time_place/geodesy.h"
+#include "renderer/layer.h"
 #include "renderer/terrain/elevation.h"
 #include "renderer/terrain/mesh.h"
-#include "viewer/layer.h"
 
-namespace alpenglow::viewer {
+namespace alpenglow::renderer {
 
 /// Returns the ground within `half_m` east, west, north and south of the frame's origin, as side x
 /// side nodes with z in the frame, which includes the curvature of the planet.
@@ -73,4 +73,4 @@ struct SunShadowMap {
 [[nodiscard]] SunShadowMap SunShadowMapOf(const HeightRaster& heights, const glm::dvec3& to_sun,
                                           double radius_rad, int most_side);
 
-}  // namespace alpenglow::viewer
+}  // namespace alpenglow::renderer

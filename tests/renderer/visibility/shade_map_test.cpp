@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "viewer/shade/shade_map.h"
+#include "renderer/visibility/shade_map.h"
 
 #include <gtest/gtest.h>
 
@@ -8,11 +8,11 @@
 #include <vector>
 
 #include "atmosphere/math/constants.h"
+#include "atmosphere/math/numerics.h"
 #include "renderer/terrain/mesh.h"
 #include "tests/fixtures/rough_land.h"
-#include "viewer/gl/gl_objects.h"
 
-namespace alpenglow::viewer {
+namespace alpenglow::renderer {
 namespace {
 
 constexpr double kSunRadius_rad = 0.00465;
@@ -181,4 +181,4 @@ TEST(HeightsAround, AreThoseOfTheMeshOfTheSameElevations) {
 }
 
 }  // namespace
-}  // namespace alpenglow::viewer
+}  // namespace alpenglow::renderer

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "viewer/shade/shade_map.h"
+#include "renderer/visibility/shade_map.h"
 
 #include <algorithm>
 #include <array>
@@ -11,28 +11,28 @@
 
 #include "atmosphere/base/error.h"
 #include "atmosphere/math/constants.h"
+#include "atmosphere/math/numerics.h"
 #include "renderer/terrain/mesh.h"
-#include "viewer/gl/gl_objects.h"
 
-namespace alpenglow::viewer {
+namespace alpenglow::renderer {
 namespace {
 
 constexpr int kStride = 16;  // nodes between exactly computed places
 
 /// Position of a node's ground in the elevation grid, and depth of the ellipsoid under it below the
 /// plane of the frame.
-struct Place {
+struct NodePlace {
   double column, row, drop_m;
 
-  friend Place operator+(const Place& a, const Place& b) {
+  friend NodePlace operator+(const NodePlace& a, const NodePlace& b) {
     return {a.column + b.column, a.row + b.row, a.drop_m + b.drop_m};
   }
-  friend Place operator*(double k, const Place& a) {
+  friend NodePlace operator*(double k, const NodePlace& a) {
     return {k * a.column, k * a.row, k * a.drop_m};
   }
 };
 
-Place ExactPlace(const ElevationGrid& grid, const LocalFrame& frame, double x_m, double y_m) {
+NodePlace ExactPlace(const ElevationGrid& grid, const LocalFrame& frame, double x_m, double y_m) {
   // Finds where the vertical through the node meets the ellipsoid, with two iterations.
   double z_m = 0.0;
   GeodeticPosition at{};
@@ -56,7 +56,7 @@ class Facets {
     }
   }
 
-  [[nodiscard]] float HeightAt(const Place& place) const {
+  [[nodiscard]] float HeightAt(const NodePlace& place) const {
     if (!(place.column >= 0.0 && place.column < grid_.columns - 1 && place.row >= 0.0 &&
           place.row < grid_.rows - 1))
       return HeightRaster::kNothing;
@@ -100,13 +100,14 @@ class Facets {
 /// A coarse grid of exact places, between which positions are interpolated.
 struct Net {
   int side;
-  std::vector<Place> places;
+  std::vector<NodePlace> places;
 
-  [[nodiscard]] Place At(int column, int row) const {
+  [[nodiscard]] NodePlace At(int column, int row) const {
     const double x = static_cast<double>(column % kStride) / kStride;
     const double y = static_cast<double>(row % kStride) / kStride;
-    const Place* low = &places[static_cast<std::size_t>(row / kStride * side + column / kStride)];
-    const Place* high = low + side;
+    const NodePlace* low =
+        &places[static_cast<std::size_t>(row / kStride * side + column / kStride)];
+    const NodePlace* high = low + side;
     return (1.0 - y) * ((1.0 - x) * low[0] + x * low[1]) + y * ((1.0 - x) * high[0] + x * high[1]);
   }
 };
@@ -220,7 +221,7 @@ SunShadowMap EmptyMap(const HeightRaster& heights, const glm::dvec3& to_sun, int
 }
 
 /// The inputs that all lines share.
-struct Sweep {
+struct LineSweep {
   const HeightRaster& heights;
   float lowest_m;
   int steps;                    // per cell along u; a crest is found to half a step
@@ -230,7 +231,7 @@ struct Sweep {
 };
 
 // Sweeps one line, starting on the side of the sun.
-void Sweep::Line(int line, SunShadowMap& map) const {
+void LineSweep::Line(int line, SunShadowMap& map) const {
   const double v_m = map.first_v_m + map.cell_m * line;
   const glm::dvec3 first = map.first_u_m * map.sunwards + v_m * map.across;
   const glm::dvec3 step = map.cell_m / steps * map.sunwards;
@@ -276,7 +277,7 @@ SunShadowMap SunShadowMapOf(const HeightRaster& heights, const glm::dvec3& to_su
   map.height.resize(static_cast<std::size_t>(map.columns) * static_cast<std::size_t>(map.lines));
   // At least two steps per cell of the map, and at least one per cell of the heights.
   const int steps = std::max(2, static_cast<int>(std::lround(map.cell_m / heights.cell_m)));
-  Sweep sweep{heights, LowestOf(heights), steps, {}};
+  LineSweep sweep{heights, LowestOf(heights), steps, {}};
   for (std::size_t beam = 0; beam < 3; ++beam) {
     const double at = elevation + (static_cast<double>(beam) - 1.0) * radius_rad;
     sweep.fall_m[beam] = static_cast<float>(map.cell_m / steps * std::tan(at));
@@ -289,4 +290,4 @@ SunShadowMap SunShadowMapOf(const HeightRaster& heights, const glm::dvec3& to_su
   return map;
 }
 
-}  // namespace alpenglow::viewer
+}  // namespace alpenglow::renderer
