@@ -208,7 +208,7 @@ struct Rectangle {
   double west, east, south, north;  // x and y of the frame
 };
 
-Rectangle RectangleOf(const TriangleMesh& mesh) {
+Rectangle BoundsOf(const TriangleMesh& mesh) {
   Rectangle bounds{
       std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity(),
       std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()};
@@ -298,7 +298,7 @@ ColourDrape::ColourDrape(const std::filesystem::path& file, bool is_land_cover,
   }
   const int columns = levels.front().columns, rows = levels.front().rows;
   levels_ = std::make_shared<const std::vector<Level>>(std::move(levels));
-  const Rectangle bounds = RectangleOf(ground.terrain->mesh());
+  const Rectangle bounds = BoundsOf(ground.terrain->mesh());
   first_x_m_ = bounds.west;
   first_y_m_ = bounds.south;
   step_x_m_ = std::max(bounds.east - bounds.west, 1e-3) / (kGridNodes - 1);

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // This header provides the ground as triangles in a local frame. It contains the split of four
 // samples into two triangles and the height on these, normals for each vertex (means of the normals
-// of its triangles, weighted by their areas), and heights of a mesh on a regular grid in the mesh's
-// frame.
+// of its triangles, weighted by their areas), heights of a mesh on a regular grid in the mesh's
+// frame, and MeshHeights, fast heights of a mesh that is one surface.
 #pragma once
 
 #include <array>
@@ -115,5 +115,37 @@ struct GridCell {
 /// than the mesh itself (for a few large triangles: than a 512th of its extent). The result does
 /// not depend on the number of threads.
 [[nodiscard]] HeightRaster RasterOf(const TriangleMesh& mesh, std::size_t most_nodes);
+
+/// A rectangle in the frame of the ground, east and north [m].
+struct FlatRectangle {
+  double west_m, south_m, width_m, depth_m;
+};
+
+/// Returns the bounding rectangle of all vertices.
+[[nodiscard]] FlatRectangle RectangleOf(const TriangleMesh& mesh);
+
+/// Heights of a mesh. It is immutable and can be used by many threads. It refers to the mesh.
+class MeshHeights {
+ public:
+  explicit MeshHeights(const TriangleMesh& mesh);
+
+  /// Returns z [m] of the triangle at a place, to the rounding of its corners; nullopt outside of
+  /// the mesh.
+  [[nodiscard]] std::optional<double> At(double x_m, double y_m) const;
+
+ private:
+  struct Cells {
+    std::size_t first_column, last_column, first_row, last_row;
+  };
+  [[nodiscard]] Cells Under(const std::array<std::uint32_t, 3>& triangle) const;
+  template <typename Visit>
+  void VisitCells(const Visit& visit) const;
+
+  const TriangleMesh& mesh_;
+  double west_m_ = 0.0, south_m_ = 0.0, cell_m_ = 1.0;
+  std::size_t columns_ = 0, rows_ = 0;
+  std::vector<std::uint32_t> first_;      // first triangle of each cell; one entry more than cells
+  std::vector<std::uint32_t> triangles_;  // triangles, cell by cell
+};
 
 }  // namespace alpenglow::renderer

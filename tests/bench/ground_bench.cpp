@@ -6,8 +6,8 @@
 
 #include "atmosphere/astronomy/sun.h"
 #include "atmosphere/math/constants.h"
+#include "renderer/picture/lit_ground.h"
 #include "renderer/terrain/procedural_mountains.h"
-#include "viewer/ground/lit_ground.h"
 
 namespace alpenglow::viewer {
 namespace {

@@ -16,17 +16,6 @@
 
 namespace alpenglow::viewer {
 
-FlatRectangle RectangleOf(const TriangleMesh& mesh) {
-  double west = std::numeric_limits<double>::infinity(), south = west, east = -west, north = -west;
-  for (const auto& position : mesh.positions) {
-    west = std::min(west, static_cast<double>(position[0]));
-    east = std::max(east, static_cast<double>(position[0]));
-    south = std::min(south, static_cast<double>(position[1]));
-    north = std::max(north, static_cast<double>(position[1]));
-  }
-  return {west, south, east - west, north - south};
-}
-
 FlatRectangle CoveredPart(const ColourDrape& drape, const FlatRectangle& of) {
   constexpr int kSteps = 100;
   const double step_x_m = of.width_m / kSteps, step_y_m = of.depth_m / kSteps;
@@ -167,7 +156,7 @@ std::vector<ShaderPiece> GroundTexts(const GroundMaterial& material, const LandK
                    planet_is_water ? 1 : 0, land.is_there ? 1 : 0, land.has_fine_relief ? 1 : 0,
                    LevelSky::kLowest_rad, LevelSky::kRange_rad, LevelSky::kNodes, SeaMirror::kSide,
                    SkyIrradianceGradient::kColumns, SkyIrradianceGradient::kRows)},
-      ViewerPiece("viewer/ground/sky_irradiance_gradient.glsl"),
+      ViewerPiece("renderer/illumination/sky_irradiance_gradient.glsl"),
       ViewerPiece("viewer/shaders/ground.glsl"),
       ViewerPiece("viewer/shaders/ground_surface.glsl"),
       ViewerPiece("viewer/shaders/ground_light.glsl")};

@@ -14,24 +14,16 @@
 
 #include "lut/camera_tables/air_tables.h"
 #include "renderer/illumination/lighting.h"
+#include "renderer/illumination/sky_on_ground.h"
 #include "renderer/scene/scene.h"
 #include "renderer/surface/colour_drape.h"
 #include "renderer/surface/scene_ground.h"
 #include "renderer/surface/surface.h"
 #include "viewer/gl/gl_objects.h"
 #include "viewer/gl/shader.h"
-#include "viewer/ground/sky_on_ground.h"
 #include "viewer/layer.h"
 
 namespace alpenglow::viewer {
-
-/// A rectangle in the frame of the ground, east and north [m].
-struct FlatRectangle {
-  double west_m, south_m, width_m, depth_m;
-};
-
-/// Returns the bounding rectangle of all vertices.
-[[nodiscard]] FlatRectangle RectangleOf(const TriangleMesh& mesh);
 
 /// Returns the part of a rectangle that the drape covers, to a hundredth of its sides; the whole
 /// rectangle if the drape covers none of it.

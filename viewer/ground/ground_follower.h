@@ -10,9 +10,9 @@
 
 #include "lut/camera_tables/air_tables.h"
 #include "renderer/illumination/lighting.h"
+#include "renderer/illumination/sky_on_ground.h"
+#include "renderer/picture/lit_ground.h"
 #include "viewer/async/async_value.h"
-#include "viewer/ground/lit_ground.h"
-#include "viewer/ground/sky_on_ground.h"
 #include "viewer/land/land_chunk.h"
 #include "viewer/shade/shafts.h"
 

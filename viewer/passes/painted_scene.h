@@ -10,6 +10,7 @@
 
 #include "atmosphere/astronomy/sun.h"
 #include "atmosphere/ray/single_scattering.h"
+#include "renderer/illumination/sky_on_ground.h"
 #include "renderer/scene/scene.h"
 #include "renderer/surface/scene_ground.h"
 #include "renderer/surface/surface.h"
@@ -17,7 +18,6 @@
 #include "viewer/ground/ground_block.h"
 #include "viewer/ground/ground_follower.h"
 #include "viewer/ground/sky_by_pixel.h"
-#include "viewer/ground/sky_on_ground.h"
 #include "viewer/lamps/fog.h"
 #include "viewer/land/landscape.h"
 #include "viewer/passes/auto_quality.h"

@@ -13,7 +13,7 @@
 #include "atmosphere/math/numerics.h"
 #include "lut/image/image.h"
 #include "tests/fixtures/class_map.h"
-#include "tests/viewer/ground/rough_site.h"
+#include "tests/renderer/picture/rough_site.h"
 #include "tests/viewer/ground/sun_in_closed_form.h"
 #include "tests/viewer/shaders/gpu_values.h"
 #include "tests/viewer/shaders/headless.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "viewer/ground/sky_on_ground.h"
+#include "renderer/illumination/sky_on_ground.h"
 
 #include <algorithm>
 #include <cmath>
@@ -12,7 +12,7 @@
 #include "lut/sky/sky_view.h"
 #include "renderer/material/band_light.h"
 
-namespace alpenglow::viewer {
+namespace alpenglow::renderer {
 namespace {
 
 const glm::dvec3 kUp(0.0, 0.0, 1.0);
@@ -174,4 +174,4 @@ std::array<float, 4> SkyIrradianceGradient::On(double n_up, double n_sunward) co
   return light;
 }
 
-}  // namespace alpenglow::viewer
+}  // namespace alpenglow::renderer

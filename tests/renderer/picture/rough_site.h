@@ -7,13 +7,13 @@
 
 #include "atmosphere/astronomy/sun.h"
 #include "atmosphere/math/constants.h"
+#include "renderer/picture/lit_ground.h"
 #include "tests/fixtures/rough_land.h"
 #include "tests/fixtures/small_light.h"
-#include "viewer/ground/lit_ground.h"
 
 namespace alpenglow::tests {
 
-using namespace viewer;
+using namespace renderer;
 
 inline constexpr GeodeticPosition kRoughPlace{46.5 * kRadiansPerDegree, 8.0 * kRadiansPerDegree,
                                               0.0};

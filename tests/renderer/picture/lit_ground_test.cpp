@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Light on the land as vertices have it and triangles interpolate it, against rays and against the
 // light of every place of its own.
-#include "viewer/ground/lit_ground.h"
+#include "renderer/picture/lit_ground.h"
 
 #include <gtest/gtest.h>
 
@@ -11,9 +11,9 @@
 
 #include "atmosphere/astronomy/sun.h"
 #include "atmosphere/math/numerics.h"
-#include "tests/viewer/ground/rough_site.h"
+#include "tests/renderer/picture/rough_site.h"
 
-namespace alpenglow::viewer {
+namespace alpenglow::renderer {
 namespace {
 
 const std::shared_ptr<const GroundSite>& TheSite() {
@@ -235,4 +235,4 @@ TEST(LitGround, ReliefChangesTheSkysLightAsTheOpenSkys) {
 }
 
 }  // namespace
-}  // namespace alpenglow::viewer
+}  // namespace alpenglow::renderer

@@ -26,11 +26,11 @@
 
 #include "atmosphere/shared_glsl/shared_math.h"
 #include "renderer/illumination/occluded_sky.h"
+#include "renderer/layer.h"
 #include "renderer/material/band_light.h"
 #include "renderer/material/reflectance.h"
-#include "viewer/layer.h"
 
-namespace alpenglow::viewer {
+namespace alpenglow::renderer {
 
 /// One value per band; unused components are 0.
 using BandTexel = std::array<float, 4>;
@@ -58,17 +58,17 @@ struct SeaMirror {
                                                  const Water& water, const glm::dvec3& to_sun);
 };
 
-}  // namespace alpenglow::viewer
+}  // namespace alpenglow::renderer
 
 namespace alpenglow::shared {
 // clang-format off
 #include "atmosphere/shared_glsl/shared_begin.h"
-#include "viewer/ground/sky_irradiance_gradient.glsl"
+#include "renderer/illumination/sky_irradiance_gradient.glsl"
 #include "atmosphere/shared_glsl/shared_end.h"
 // clang-format on
 }  // namespace alpenglow::shared
 
-namespace alpenglow::viewer {
+namespace alpenglow::renderer {
 
 struct SkyIrradianceGradient {
   static constexpr std::size_t kColumns = 9, kRows = 5;
@@ -86,4 +86,4 @@ struct SkyIrradianceGradient {
   [[nodiscard]] std::array<float, 4> On(double n_up, double n_sunward) const;
 };
 
-}  // namespace alpenglow::viewer
+}  // namespace alpenglow::renderer

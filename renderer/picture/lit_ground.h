@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Provides the light on the land for one position of the sun, vertex by vertex; the GPU
 // interpolates it over triangles. The parts are
-//   MeshHeights  fast heights of a mesh that is one surface, by a grid of triangles,
 //   GroundSite   land around the eye with everything that does not depend on the sun: triangles
 //                ready for rays, horizons, the mutual visibility of slopes, materials,
 //   GroundSky    light of sky and slopes, by TerrainIrradiance,
@@ -27,6 +26,7 @@
 #include "renderer/illumination/lighting.h"
 #include "renderer/illumination/terrain_irradiance.h"
 #include "renderer/lamps/lamp_light.h"
+#include "renderer/layer.h"
 #include "renderer/picture/ground_light.h"
 #include "renderer/scene/scene.h"
 #include "renderer/surface/scene_geometry.h"
@@ -34,33 +34,8 @@
 #include "renderer/surface/surface.h"
 #include "renderer/terrain/mesh.h"
 #include "renderer/visibility/shadow_heights.h"
-#include "viewer/layer.h"
 
-namespace alpenglow::viewer {
-
-/// Heights of a mesh. It is immutable and can be used by many threads. It refers to the mesh.
-class MeshHeights {
- public:
-  explicit MeshHeights(const TriangleMesh& mesh);
-
-  /// Returns z [m] of the triangle at a place, to the rounding of its corners; nullopt outside of
-  /// the mesh.
-  [[nodiscard]] std::optional<double> At(double x_m, double y_m) const;
-
- private:
-  struct Cells {
-    std::size_t first_column, last_column, first_row, last_row;
-  };
-  [[nodiscard]] Cells Under(const std::array<std::uint32_t, 3>& triangle) const;
-  template <typename Visit>
-  void VisitCells(const Visit& visit) const;
-
-  const TriangleMesh& mesh_;
-  double west_m_ = 0.0, south_m_ = 0.0, cell_m_ = 1.0;
-  std::size_t columns_ = 0, rows_ = 0;
-  std::vector<std::uint32_t> first_;      // first triangle of each cell; one entry more than cells
-  std::vector<std::uint32_t> triangles_;  // triangles, cell by cell
-};
+namespace alpenglow::renderer {
 
 /// Solved air over the land: all members belong to one medium on the sphere of the site.
 struct SiteAir {
@@ -230,4 +205,4 @@ class LitGround {
   ShadowHeights shadow_;
 };
 
-}  // namespace alpenglow::viewer
+}  // namespace alpenglow::renderer
