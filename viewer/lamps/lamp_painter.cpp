@@ -8,8 +8,8 @@
 #include "atmosphere/base/error.h"
 #include "atmosphere/math/numerics.h"
 #include "atmosphere/medium/phase_table.h"
+#include "renderer/lamps/ground_under_lamps.h"
 #include "viewer/gl/gl_context.h"
-#include "viewer/lamps/ground_under_lamps.h"
 #include "viewer/lamps/scene_lamps.h"
 #include "viewer/shaders/full_screen.h"
 

@@ -374,4 +374,14 @@ std::vector<float> SampledProfile(const LampProfile& profile) {
   return samples;
 }
 
+void LampShadowFieldFollower::Follow() {
+  if (plans_.size() == lamps_ || plan_.IsBusy()) return;
+  if (std::optional<LampShadowField> made = plan_.Poll()) plans_.push_back(std::move(*made));
+  if (plans_.size() < lamps_) plan_.Request(plans_.size());
+}
+
+void LampShadowFieldFollower::Settle() {
+  for (Follow(); plans_.size() < lamps_; Follow()) plan_.Wait();
+}
+
 }  // namespace alpenglow::viewer

@@ -2,7 +2,8 @@
 // Provides SceneLamps, the lamps of a scene and the landing light of the eye's own aircraft for a
 // moving eye. It selects the lamps, or the nodes that represent many lamps
 // (renderer/lamps/lamp_tree.h), for the loop of a shader, and packs them for lamp_light.glsl into a
-// uniform block of vec4 alone. It also provides phase functions as shader expressions.
+// uniform block of vec4 alone. It also provides phase functions as shader expressions, and
+// LampShadowFieldFollower, which computes the LitPlans of all lamps once, one by one, beside drawing.
 //
 // Altitudes are relative to the lowest of eye and lamps. Single precision is then sufficient for
 // fog with a scale height of metres under an eye kilometres above it. Densities are relative to
@@ -11,6 +12,7 @@
 
 #include <array>
 #include <cstddef>
+#include <functional>
 #include <glm/mat3x3.hpp>
 #include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
@@ -23,9 +25,10 @@
 #include "atmosphere/medium/medium.h"
 #include "atmosphere/medium/phase.h"
 #include "atmosphere/time_place/geodesy.h"
+#include "renderer/lamps/ground_under_lamps.h"
 #include "renderer/lamps/lamp_tree.h"
 #include "renderer/lamps/placed_lamp.h"
-#include "viewer/lamps/ground_under_lamps.h"
+#include "viewer/async/async_value.h"
 #include "viewer/layer.h"
 
 namespace alpenglow::viewer {
@@ -120,6 +123,27 @@ inline constexpr double kFarthestShade_m = 2e4;
 inline constexpr std::size_t kMostShades = 256;
 /// Number of the brightest lamps that have a LampShadowField, of up to 1.3 MB each.
 inline constexpr std::size_t kMostPlans = 32;
+
+class LampShadowFieldFollower {
+ public:
+  /// Returns the plan of a lamp with this number, from 0.
+  using Make = std::function<LampShadowField(std::size_t)>;
+  /// @param make  called on a thread of this object; everything it refers to must outlive this
+  ///     object.
+  LampShadowFieldFollower(std::size_t lamps, Make make) : lamps_(lamps), plan_(std::move(make)) {}
+
+  /// Takes a finished plan and requests the next one.
+  void Follow();
+  /// Waits for all plans.
+  void Settle();
+  /// Returns the finished plans, which are those of the first lamps.
+  [[nodiscard]] const std::vector<LampShadowField>& plans() const { return plans_; }
+
+ private:
+  std::size_t lamps_;
+  std::vector<LampShadowField> plans_;
+  AsyncValue<std::size_t, LampShadowField> plan_;
+};
 
 class SceneLamps {
  public:

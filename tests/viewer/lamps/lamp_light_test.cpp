@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <limits>
@@ -11,7 +12,7 @@
 #include "renderer/illumination/lighting.h"
 #include "renderer/lamps/lamp_light.h"
 #include "tests/fixtures/bare_scene.h"
-#include "tests/viewer/lamps/ridge.h"
+#include "tests/renderer/lamps/ridge.h"
 #include "tests/viewer/shaders/gpu_values.h"
 #include "tests/viewer/shaders/headless.h"
 #include "viewer/lamps/lamp_painter.h"
@@ -421,6 +422,27 @@ TEST_F(LampsOnTheCard, ALandingLightMovesWithTheEye) {
     EXPECT_NEAR(lamp.position.y, 0.0F, 1e-4F);
     EXPECT_EQ(lamp.axis.y, 1.0F);
   }
+}
+
+TEST(LampShadowFieldFollower, MakesEveryPlanOnceAndInOrder) {
+  std::atomic<int> made = 0;
+  LampShadowFieldFollower follower(5, [&](std::size_t number) {
+    ++made;
+    return LampShadowField{static_cast<int>(number), {}};
+  });
+  EXPECT_TRUE(follower.plans().empty()) << "nothing is made before it is asked for";
+  follower.Settle();
+  follower.Follow();
+  follower.Settle();
+  ASSERT_EQ(follower.plans().size(), 5U);
+  for (int i = 0; i < 5; ++i) EXPECT_EQ(follower.plans()[static_cast<std::size_t>(i)].levels, i);
+  EXPECT_EQ(made, 5);
+}
+
+TEST(LampShadowFieldFollower, NoLampsAreSettledAtOnce) {
+  LampShadowFieldFollower follower(0, [](std::size_t) { return LampShadowField{}; });
+  follower.Settle();
+  EXPECT_TRUE(follower.plans().empty());
 }
 
 }  // namespace

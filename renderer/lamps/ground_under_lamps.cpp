@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "viewer/lamps/ground_under_lamps.h"
+#include "renderer/lamps/ground_under_lamps.h"
 
 #include <tbb/parallel_for.h>
 
@@ -15,7 +15,7 @@
 #include "atmosphere/math/constants.h"
 #include "atmosphere/math/numerics.h"
 
-namespace alpenglow::viewer {
+namespace alpenglow::renderer {
 namespace {
 
 constexpr double kDark = 1e-30;  // lower bound for logarithms [m^-1]
@@ -29,7 +29,7 @@ double DistanceAt(double texel) {
 double RiseAt(double texel) { return shared::LampRiseFromUnit(texel / (kGlowRises - 1.0)); }
 
 /// A lamp in the x-z plane; x points towards it and z upwards.
-struct View {
+struct LampSeen {
   const LampAirlightIrradiance& glow;
   double distance_m, rise;
 
@@ -54,18 +54,18 @@ std::array<double, kSlopeTerms> TermsOf(const glm::dvec3& normal) {
 }
 
 /// A slope of the least-squares fit.
-struct Slope {
+struct FitSlope {
   glm::dvec3 normal;
   double weight;
   std::array<double, kSlopeTerms> of_term;
 };
 
 /// Returns slopes on one side of the plane; light is symmetric about the plane.
-const std::vector<Slope>& FittedSlopes() {
+const std::vector<FitSlope>& FittedSlopes() {
   static const auto kSlopes = [] {
     constexpr int kTilts = 5, kTurns = 6;
     constexpr double kSteepest_rad = 60.0 * kRadiansPerDegree, kGentleness = 4.0;
-    std::vector<Slope> slopes;
+    std::vector<FitSlope> slopes;
     for (int i = 0; i < kTilts; ++i) {
       const double tilt = kSteepest_rad * (i + 0.5) / kTilts, z = std::cos(tilt);
       for (int k = 0; k < kTurns; ++k) {
@@ -84,7 +84,7 @@ const std::vector<Slope>& FittedSlopes() {
 const std::vector<double>& FitMatrix() {
   static const auto kMatrix = [] {
     std::vector<double> matrix(kSlopeTerms * kSlopeTerms);
-    for (const Slope& slope : FittedSlopes()) {
+    for (const FitSlope& slope : FittedSlopes()) {
       for (std::size_t i = 0; i < kSlopeTerms; ++i) {
         for (std::size_t j = 0; j < kSlopeTerms; ++j)
           matrix[i * kSlopeTerms + j] += slope.weight * slope.of_term[i] * slope.of_term[j];
@@ -95,11 +95,11 @@ const std::vector<double>& FitMatrix() {
   return kMatrix;
 }
 
-SlopeTerms FitOf(const View& view) {
+SlopeTerms FitOf(const LampSeen& view) {
   const Bands<double> level = view.OnLevel();
   std::array<std::vector<double>, 4> sums;
   sums.fill(std::vector<double>(kSlopeTerms));
-  for (const Slope& slope : FittedSlopes()) {
+  for (const FitSlope& slope : FittedSlopes()) {
     const Bands<double> light = view.On(slope.normal);
     for (std::size_t band = 0; band < level.count; ++band) {
       const double over_level = light[band] / std::max(level[band], kDark) - 1.0;
@@ -117,7 +117,7 @@ SlopeTerms FitOf(const View& view) {
 }
 
 /// Returns the logarithm of the light on level ground times the distance.
-glm::vec4 LogLevelOf(const View& view) {
+glm::vec4 LogLevelOf(const LampSeen& view) {
   const Bands<double> level = view.OnLevel();
   glm::vec4 logs(static_cast<float>(std::log(kDark)));
   for (std::size_t band = 0; band < level.count; ++band) {
@@ -133,8 +133,8 @@ std::vector<glm::vec4> SampledGlow(const LampAirlightIrradiance& glow) {
   constexpr std::size_t kTerm = std::size_t{kGlowDistances} * kGlowRises;
   std::vector<glm::vec4> texels(kGlowTerms * kTerm);
   tbb::parallel_for(std::size_t{0}, kTerm, [&](std::size_t at) {
-    const View view{glow, DistanceAt(static_cast<double>(at % kGlowDistances)),
-                    RiseAt(static_cast<double>(at / kGlowDistances))};
+    const LampSeen view{glow, DistanceAt(static_cast<double>(at % kGlowDistances)),
+                        RiseAt(static_cast<double>(at / kGlowDistances))};
     texels[at] = LogLevelOf(view);
     const SlopeTerms terms = FitOf(view);
     for (std::size_t k = 0; k < kSlopeTerms; ++k) texels[(k + 1) * kTerm + at] = terms[k];
@@ -310,14 +310,4 @@ LampShadowField LampShadowFieldAround(const LampStage& stage, const Lamp& lamp, 
   return plan;
 }
 
-void LampShadowFieldFollower::Follow() {
-  if (plans_.size() == lamps_ || plan_.IsBusy()) return;
-  if (std::optional<LampShadowField> made = plan_.Poll()) plans_.push_back(std::move(*made));
-  if (plans_.size() < lamps_) plan_.Request(plans_.size());
-}
-
-void LampShadowFieldFollower::Settle() {
-  for (Follow(); plans_.size() < lamps_; Follow()) plan_.Wait();
-}
-
-}  // namespace alpenglow::viewer
+}  // namespace alpenglow::renderer

@@ -7,10 +7,10 @@
 #include <cstdint>
 #include <utility>
 
+#include "renderer/layer.h"
 #include "renderer/surface/scene_ground.h"
-#include "viewer/layer.h"
 
-namespace alpenglow::viewer {
+namespace alpenglow::renderer {
 
 /// Level ground with a ridge 60 m high that runs east, 150 m north of the origin.
 inline SceneGround Ridge(const Scene& scene) {
@@ -35,4 +35,4 @@ inline SceneGround Ridge(const Scene& scene) {
   return ground;
 }
 
-}  // namespace alpenglow::viewer
+}  // namespace alpenglow::renderer

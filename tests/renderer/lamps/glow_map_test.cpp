@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // What a map of a lamp's glow says of slopes, against LampAirlightIrradiance.
-#include "viewer/lamps/ground_under_lamps.h"
+#include "renderer/lamps/ground_under_lamps.h"
 
 #include <gtest/gtest.h>
 
@@ -11,10 +11,10 @@
 #include "atmosphere/lamp/lamp.h"
 #include "atmosphere/math/constants.h"
 
-namespace alpenglow::viewer {
+namespace alpenglow::renderer {
 namespace {
 
-constexpr glm::dvec3 kUp(0.0, 0.0, 1.0);
+constexpr glm::dvec3 kGlowUp(0.0, 0.0, 1.0);
 
 LampLayer LayerOf(double per_m, double scale_height_m, const PhaseFunction& phase) {
   LampLayer layer;
@@ -57,7 +57,7 @@ struct Texel {
   }
   [[nodiscard]] double ByGlow(const glm::dvec3& normal) const {
     const double sine = shared::LampRiseFromUnit(rise / (kGlowRises - 1.0));
-    return glow.On(Far() * glm::dvec3(std::sqrt(1.0 - sine * sine), 0.0, sine), normal, kUp)[0];
+    return glow.On(Far() * glm::dvec3(std::sqrt(1.0 - sine * sine), 0.0, sine), normal, kGlowUp)[0];
   }
 };
 
@@ -108,7 +108,8 @@ TEST(LampAirlightMap, LevelGroundGetsWhatItGets) {
   for (int distance = 0; distance <= 48; distance += 6) {
     for (int rise = 16; rise < kGlowRises; rise += 3) {
       const Texel texel{glow, map, distance, rise};
-      EXPECT_NEAR(texel.ByMap(kUp) / texel.ByGlow(kUp), 1.0, 1e-5) << "logarithms are floats";
+      EXPECT_NEAR(texel.ByMap(kGlowUp) / texel.ByGlow(kGlowUp), 1.0, 1e-5)
+          << "logarithms are floats";
     }
   }
 }
@@ -135,4 +136,4 @@ TEST(LampAirlightMap, SlopesInLightFogGetWhatLampAirlightSays) {
 }
 
 }  // namespace
-}  // namespace alpenglow::viewer
+}  // namespace alpenglow::renderer

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Provides the light of lamps on the ground for interpolation by the GPU: SampledGlow, the light
-// that the illuminated air around a lamp brings to surfaces, LampShadowField, the lit and shadowed ground
-// around a lamp, and LampShadowFieldFollower, which computes the LitPlans of all lamps once, one by one,
-// beside drawing.
+// that the illuminated air around a lamp brings to surfaces, and LampShadowField, the lit and shadowed
+// ground around a lamp.
 //
 // SampledGlow tabulates LampAirlightIrradiance (renderer/lamps/lamp_tree.h) with six terms over distance and rise
 // of the lamp.
@@ -24,16 +23,14 @@
 #pragma once
 
 #include <cstdint>
-#include <functional>
 #include <glm/vec4.hpp>
 #include <vector>
 
 #include "renderer/lamps/lamp_tree.h"
 #include "renderer/lamps/placed_lamp.h"
-#include "viewer/async/async_value.h"
-#include "viewer/layer.h"
+#include "renderer/layer.h"
 
-namespace alpenglow::viewer {
+namespace alpenglow::renderer {
 
 /// Size of the table. Distances and rises are spaced as in lamp_ray.glsl; each step of LampAirlightIrradiance is
 /// divided into four.
@@ -75,25 +72,4 @@ struct LampShadowField {
 [[nodiscard]] LampShadowField LampShadowFieldAround(const LampStage& stage, const Lamp& lamp,
                                                     int levels);
 
-class LampShadowFieldFollower {
- public:
-  /// Returns the plan of a lamp with this number, from 0.
-  using Make = std::function<LampShadowField(std::size_t)>;
-  /// @param make  called on a thread of this object; everything it refers to must outlive this
-  ///     object.
-  LampShadowFieldFollower(std::size_t lamps, Make make) : lamps_(lamps), plan_(std::move(make)) {}
-
-  /// Takes a finished plan and requests the next one.
-  void Follow();
-  /// Waits for all plans.
-  void Settle();
-  /// Returns the finished plans, which are those of the first lamps.
-  [[nodiscard]] const std::vector<LampShadowField>& plans() const { return plans_; }
-
- private:
-  std::size_t lamps_;
-  std::vector<LampShadowField> plans_;
-  AsyncValue<std::size_t, LampShadowField> plan_;
-};
-
-}  // namespace alpenglow::viewer
+}  // namespace alpenglow::renderer

@@ -3,16 +3,15 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 #include <random>
 
+#include "renderer/lamps/ground_under_lamps.h"
 #include "renderer/lamps/placed_lamp.h"
 #include "tests/fixtures/bare_scene.h"
-#include "tests/viewer/lamps/ridge.h"
-#include "viewer/lamps/ground_under_lamps.h"
+#include "tests/renderer/lamps/ridge.h"
 
-namespace alpenglow::viewer {
+namespace alpenglow::renderer {
 namespace {
 
 /// Level ground with a ridge, and a lamp behind it.
@@ -89,26 +88,5 @@ TEST(LampShadowField, HasAsManyLevelsAsTheLampsLightReaches) {
   EXPECT_EQ(PlanLevelsOf(1e9), kMostPlanLevels);
 }
 
-TEST(LampShadowFieldFollower, MakesEveryPlanOnceAndInOrder) {
-  std::atomic<int> made = 0;
-  LampShadowFieldFollower follower(5, [&](std::size_t number) {
-    ++made;
-    return LampShadowField{static_cast<int>(number), {}};
-  });
-  EXPECT_TRUE(follower.plans().empty()) << "nothing is made before it is asked for";
-  follower.Settle();
-  follower.Follow();
-  follower.Settle();
-  ASSERT_EQ(follower.plans().size(), 5U);
-  for (int i = 0; i < 5; ++i) EXPECT_EQ(follower.plans()[static_cast<std::size_t>(i)].levels, i);
-  EXPECT_EQ(made, 5);
-}
-
-TEST(LampShadowFieldFollower, NoLampsAreSettledAtOnce) {
-  LampShadowFieldFollower follower(0, [](std::size_t) { return LampShadowField{}; });
-  follower.Settle();
-  EXPECT_TRUE(follower.plans().empty());
-}
-
 }  // namespace
-}  // namespace alpenglow::viewer
+}  // namespace alpenglow::renderer
