@@ -10,10 +10,10 @@
 
 #include "atmosphere/astronomy/moon.h"
 #include "atmosphere/base/error.h"
+#include "renderer/scene/places.h"
 #include "renderer/scene/scene_options.h"
 #include "renderer/terrain/loaded_heights.h"
 #include "renderer/terrain/procedural_mountains.h"
-#include "viewer/flight/places.h"
 #include "viewer/gl/gl_objects.h"
 #include "viewer/shaders/uniform_blocks.h"
 

@@ -15,7 +15,7 @@
 #include "lut/cli/output_file.h"
 #include "lut/image/look.h"
 #include "lut/sky/sky_view_map.h"
-#include "viewer/flight/places.h"
+#include "renderer/scene/places.h"
 #include "viewer/gl/picture_tiles.h"
 #include "viewer/passes/picture_programs.h"
 #include "viewer/picture_queue.h"

@@ -147,10 +147,10 @@ class LampRay {
   // on the ray. They are used for scouting, which needs only the shape of the integrand. Above fog,
   // the clear air is selected.
   void ChooseLayers(double begin_z, double end_z) {
-    constexpr int kHeights = 4;
+    constexpr int kPoints = 4;
     std::array<bool, kMostLampLayers> is_great{};
-    for (int i = 0; i < kHeights; ++i) {
-      const double z = begin_z + (end_z - begin_z) * i / (kHeights - 1.0);
+    for (int i = 0; i < kPoints; ++i) {
+      const double z = begin_z + (end_z - begin_z) * i / (kPoints - 1.0);
       std::array<double, kMostLampLayers> here{};
       for (std::size_t k = 0; k < air_.layers.size(); ++k)
         here[k] = air_.layers[k].scattering_per_m[reference_] * air_.layers[k].Density(z);

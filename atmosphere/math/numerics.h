@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Numerical methods: bracketed roots, Gauss-Legendre rules with adaptive integration, small dense
-// systems of linear equations, Halton sequences, sizes of textures and the hash FNV-1a.
+// systems of linear equations, Halton sequences and the hash FNV-1a.
 //
 // Halton sequences fill the unit interval evenly and are the same in every run: Halton (1960),
 // Numer. Math. 2, 84-90. The coordinates of a point in more dimensions are sequences of different
@@ -185,13 +185,5 @@ class Fnv1a {
  private:
   std::uint64_t hash_ = 0xcbf29ce484222325U;
 };
-
-/// Returns `side`, or one more if it is a power of two greater than 1. Mesa's software driver
-/// recompiles a program when a side of a texture that it reads becomes a power of two or ceases to
-/// be one. Such frames took 0.3 to 0.9 s, measured with its shader cache disabled.
-/// @param side  > 0.
-[[nodiscard]] constexpr int OffPowersOfTwo(int side) {
-  return side > 1 && std::has_single_bit(static_cast<unsigned>(side)) ? side + 1 : side;
-}
 
 }  // namespace alpenglow::atmosphere

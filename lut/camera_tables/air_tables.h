@@ -25,6 +25,7 @@
 #pragma once
 
 #include <array>
+#include <bit>
 #include <glm/vec4.hpp>
 #include <memory>
 #include <vector>
@@ -70,12 +71,20 @@ struct AirTablesSize {
   bool operator==(const AirTablesSize&) const = default;
 };
 
+/// Returns `side`, or one more if it is a power of two greater than 1. Mesa's software driver
+/// recompiles a program when a side of a texture that it reads becomes a power of two or ceases to
+/// be one. Such frames took 0.3 to 0.9 s, measured with its shader cache disabled.
+/// @param side  > 0.
+[[nodiscard]] constexpr int OffPowersOfTwo(int side) {
+  return side > 1 && std::has_single_bit(static_cast<unsigned>(side)) ? side + 1 : side;
+}
+
 /// Resolution of tables. Each step halves the error approximately and doubles the computation time.
 enum class AirQuality { kFirst, kLow, kMedium, kHigh };
 
 /// Returns the size of the tables. For a high eye there are more columns, because the terminator
 /// crosses the rows, and fewer distances, because paths through the air below are short. kFirst is
-/// for a first frame that must not wait. No side of a texture is a power of two (gl_objects.h),
+/// for a first frame that must not wait. No side of a texture is a power of two (OffPowersOfTwo),
 /// because the quality changes during a flight.
 [[nodiscard]] AirTablesSize AirTablesSizeOf(AirQuality quality, double altitude_m);
 

@@ -11,7 +11,7 @@
 
 #include "atmosphere/base/error.h"
 #include "atmosphere/math/constants.h"
-#include "atmosphere/math/numerics.h"
+#include "lut/camera_tables/air_tables.h"
 #include "renderer/terrain/mesh.h"
 
 namespace alpenglow::renderer {

@@ -95,6 +95,20 @@ Eye FreeFlight(const Eye& eye, const Steering& steering, const Ellipsoid& ellips
   return moved;
 }
 
+Eye EyeAt(const NamedPlace& there, const Eye& before, const GroundHeight& ground) {
+  const double above_m = there.kind == PlaceKind::kAirport ? 2.0
+                         : there.kind == PlaceKind::kPeak  ? 100.0
+                                                           : 600.0;
+  Eye eye = before;
+  eye.place = there.place;
+  eye.place.height_m = ground(there.place) + above_m;
+  eye.pitch_rad = eye.roll_rad = 0.0;
+  if (there.kind == PlaceKind::kAirport) {
+    eye.heading_rad = std::remainder(there.heading_rad, 2.0 * kPi);
+  }
+  return eye;
+}
+
 Eye Turned(const Eye& eye, double right_rad, double up_rad) {
   // In a rolled view, a turn to the right changes both heading and pitch.
   const double c = std::cos(eye.roll_rad), s = std::sin(eye.roll_rad);

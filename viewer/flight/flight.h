@@ -7,6 +7,7 @@
 
 #include "atmosphere/time_place/geodesy.h"
 #include "renderer/camera/camera_path.h"
+#include "renderer/scene/places.h"
 #include "viewer/layer.h"
 
 namespace alpenglow::viewer {
@@ -67,6 +68,10 @@ struct ViewAxes {
 /// within 1 % of the distance. The eye stays at least 1.5 m above the ground.
 [[nodiscard]] Eye FreeFlight(const Eye& eye, const Steering& steering, const Ellipsoid& ellipsoid,
                              const GroundHeight& ground, double speed_factor, double seconds);
+
+/// Returns an eye at a place: at the middle of the runway, 2 m above the ground and looking along
+/// it; 100 m above a peak; 600 m above a city or a pole. The published height is not used.
+[[nodiscard]] Eye EyeAt(const NamedPlace& there, const Eye& before, const GroundHeight& ground);
 
 /// Returns the eye turned to the right and upwards [rad] in its own frame, which may be rolled.
 [[nodiscard]] Eye Turned(const Eye& eye, double right_rad, double up_rad);

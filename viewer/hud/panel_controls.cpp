@@ -15,7 +15,7 @@
 #include "lut/image/image.h"
 #include "lut/image/tone_mapping.h"
 #include "lut/sky/sky_view_map.h"
-#include "viewer/flight/places.h"
+#include "renderer/scene/places.h"
 
 namespace alpenglow::viewer {
 namespace {

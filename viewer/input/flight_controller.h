@@ -7,9 +7,9 @@
 #include <optional>
 #include <string>
 
+#include "renderer/scene/places.h"
 #include "viewer/flight/clock.h"
 #include "viewer/flight/pilot.h"
-#include "viewer/flight/places.h"
 #include "viewer/input/action.h"
 
 namespace alpenglow::viewer {

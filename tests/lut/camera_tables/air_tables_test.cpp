@@ -9,7 +9,6 @@
 
 #include "atmosphere/base/error.h"
 #include "atmosphere/colour/spectrum.h"
-#include "atmosphere/math/numerics.h"
 #include "tests/lut/camera_tables/air_reference.h"
 
 namespace alpenglow::lut {

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "atmosphere/math/constants.h"
-#include "atmosphere/math/numerics.h"
+#include "lut/camera_tables/air_tables.h"
 #include "renderer/terrain/mesh.h"
 #include "tests/fixtures/rough_land.h"
 

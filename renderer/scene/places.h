@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Provides the list of named places (airports, peaks and cities) and the time zones there. The list
-// is viewer/data/places.csv, which names its sources: aeronautical publications, national surveys,
+// is renderer/data/places.csv, which names its sources: aeronautical publications, national surveys,
 // atlases.
 #pragma once
 
@@ -10,10 +10,11 @@
 #include <string_view>
 #include <vector>
 
+#include "atmosphere/time_place/geodesy.h"
 #include "atmosphere/time_place/time.h"
-#include "viewer/flight/flight.h"
+#include "renderer/layer.h"
 
-namespace alpenglow::viewer {
+namespace alpenglow::renderer {
 
 enum class PlaceKind { kAirport, kPeak, kCity, kPole };
 
@@ -43,10 +44,6 @@ struct NamedPlace {
 /// Throws InputError otherwise, with the candidates.
 [[nodiscard]] const NamedPlace& PlaceNamed(std::string_view text);
 
-/// Returns an eye at a place: at the middle of the runway, 2 m above the ground and looking along
-/// it; 100 m above a peak; 600 m above a city or a pole. The published height is not used.
-[[nodiscard]] Eye EyeAt(const NamedPlace& there, const Eye& before, const GroundHeight& ground);
-
 /// Returns the time zone at a place: that of the scene within 300 km of the scene, that of the
 /// nearest place of the list within 150 km, otherwise the whole hour of the longitude ("Etc/GMT-9"
 /// is nine hours ahead).
@@ -63,4 +60,4 @@ struct LocalTime {
 /// Throws InputError if the zone does not exist.
 [[nodiscard]] LocalTime LocalTimeAt(const UtcInstant& instant, const std::string& zone);
 
-}  // namespace alpenglow::viewer
+}  // namespace alpenglow::renderer

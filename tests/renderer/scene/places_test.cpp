@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "viewer/flight/places.h"
+#include "renderer/scene/places.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -11,12 +11,11 @@
 #include "atmosphere/time_place/time_zone.h"
 #include "tests/fixtures/fault_of.h"
 
-namespace alpenglow::viewer {
+namespace alpenglow::renderer {
 namespace {
 
 using ::testing::HasSubstr;
 
-double PlacesSea(const GeodeticPosition&) { return 0.0; }
 double PlaceDegrees(double radians) { return radians / kRadiansPerDegree; }
 
 TEST(Places, EveryPlaceHasAZoneThatKnowsItsLongitude) {
@@ -134,15 +133,6 @@ TEST(Places, AListThatIsSearchedHasTheBestFirst) {
   EXPECT_TRUE(PlacesByName("qqqqqq").empty());
 }
 
-TEST(Places, AnEyeStandsOnTheRunwayAndFliesOverTheCity) {
-  const Eye zurich = EyeAt(PlaceNamed("LSZH"), {}, [](const GeodeticPosition&) { return 430.0; });
-  EXPECT_EQ(zurich.place.height_m, 432.0) << "over the terrain's runway";
-  EXPECT_NEAR(PlaceDegrees(zurich.heading_rad), 155.0, 1e-9)
-      << "runway 16, five degrees of it grid";
-  const Eye lhasa = EyeAt(PlaceNamed("Lhasa"), {}, PlacesSea);
-  EXPECT_EQ(lhasa.place.height_m, 600.0) << "over the plain, where there is no terrain";
-}
-
 TEST(Places, TheZoneIsTheScenesThenThatOfTheNearestPlaceThenTheLongitudes) {
   const GeodeticPosition alps = PlaceFromDegrees(46.5, 8.0, 0.0);
   EXPECT_EQ(ZoneNear(alps, "Europe/Rome", alps), "Europe/Rome");
@@ -171,4 +161,4 @@ TEST(Places, LocalTimeNamesItsZoneAndTheShareOfTheDay) {
 }
 
 }  // namespace
-}  // namespace alpenglow::viewer
+}  // namespace alpenglow::renderer

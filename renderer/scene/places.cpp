@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "viewer/flight/places.h"
+#include "renderer/scene/places.h"
 
 #include <fmt/format.h>
 
@@ -12,16 +12,16 @@
 #include "atmosphere/base/error.h"
 #include "atmosphere/base/parsing.h"
 #include "atmosphere/math/constants.h"
-#include "viewer/embedded_text.h"
+#include "renderer/embedded_text.h"
 
-namespace alpenglow::viewer {
+namespace alpenglow::renderer {
 namespace {
 
 constexpr std::size_t kFields = 9;
 
 using Fields = std::array<std::string_view, kFields>;
 
-Fields FieldsOf(std::string_view line) {
+Fields FieldsOfLine(std::string_view line) {
   Fields fields;
   for (std::size_t i = 0; i < kFields; ++i) {
     const std::size_t comma = std::min(line.find(','), line.size());
@@ -31,7 +31,7 @@ Fields FieldsOf(std::string_view line) {
   return fields;
 }
 
-double NumberOf(std::string_view text) {
+double ExactNumber(std::string_view text) {
   double value = 0.0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   const bool whole = error == std::errc() && end == text.data() + text.size();
@@ -52,14 +52,15 @@ NamedPlace PlaceOf(const Fields& fields) {
   place.code = fields[1];
   place.name = fields[2];
   place.also = fields[3];
-  place.place = PlaceFromDegrees(NumberOf(fields[4]), NumberOf(fields[5]), NumberOf(fields[6]));
-  place.heading_rad = NumberOf(fields[7]) * kRadiansPerDegree;
+  place.place =
+      PlaceFromDegrees(ExactNumber(fields[4]), ExactNumber(fields[5]), ExactNumber(fields[6]));
+  place.heading_rad = ExactNumber(fields[7]) * kRadiansPerDegree;
   place.zone = fields[8];
   return place;
 }
 
 std::vector<NamedPlace> ReadPlaces() {
-  std::string_view text = viewer::EmbeddedText("viewer/data/places.csv");
+  std::string_view text = renderer::EmbeddedText("renderer/data/places.csv");
   std::vector<NamedPlace> places;
   bool has_header = false;
   while (!text.empty()) {
@@ -67,7 +68,7 @@ std::vector<NamedPlace> ReadPlaces() {
     const std::string_view line = text.substr(0, end);
     text.remove_prefix(std::min(end + 1, text.size()));
     if (line.empty() || line.front() == '#') continue;
-    if (std::exchange(has_header, true)) places.push_back(PlaceOf(FieldsOf(line)));
+    if (std::exchange(has_header, true)) places.push_back(PlaceOf(FieldsOfLine(line)));
   }
   return places;
 }
@@ -212,20 +213,6 @@ const NamedPlace& PlaceNamed(std::string_view text) {
   throw InputError(fmt::format("place \"{}\" could be {}", text, fmt::join(names, ", ")));
 }
 
-Eye EyeAt(const NamedPlace& there, const Eye& before, const GroundHeight& ground) {
-  const double above_m = there.kind == PlaceKind::kAirport ? 2.0
-                         : there.kind == PlaceKind::kPeak  ? 100.0
-                                                           : 600.0;
-  Eye eye = before;
-  eye.place = there.place;
-  eye.place.height_m = ground(there.place) + above_m;
-  eye.pitch_rad = eye.roll_rad = 0.0;
-  if (there.kind == PlaceKind::kAirport) {
-    eye.heading_rad = std::remainder(there.heading_rad, 2.0 * kPi);
-  }
-  return eye;
-}
-
 std::string ZoneNear(const GeodeticPosition& place, const std::optional<std::string>& scene_zone,
                      const GeodeticPosition& scene_place) {
   constexpr double kOfScene_m = 300e3, kOfList_m = 150e3;
@@ -261,4 +248,4 @@ LocalTime LocalTimeAt(const UtcInstant& instant, const std::string& zone) {
   return local;
 }
 
-}  // namespace alpenglow::viewer
+}  // namespace alpenglow::renderer
