@@ -1,6 +1,12 @@
 // SPDX-License-Identifier: MIT
 // Layers that a picture can have besides its colours: one table of their names, channels and
 // values, and the writer that turns the rays of a pixel into the picture and its layers.
+//
+// ViewDifference compares a picture with the renderer's, away from edges. The difference of a pixel
+// is PixelChange (effect_choice.h), the relative difference of linear radiance above the floor of
+// ChangeFloor. Pixels at an edge are excluded, because there a hundredth of a pixel decides what is
+// visible: pixels with neighbours of another kind, a tenth farther or nearer, lit by more or less of
+// the sun's disk, or lit a fifth more or less by lamps.
 #pragma once
 
 #include <array>
@@ -136,5 +142,25 @@ class PixelWriter {
   std::vector<Plane> planes_;
   std::atomic<std::uint64_t> rays_{0}, least_{~std::uint64_t{0}}, most_{0};
 };
+
+struct ViewDifference {
+  double mean = 0.0;
+  double at_99_percent = 0.0;
+  double at_999_permille = 0.0;
+  double worst = 0.0;
+  double edge_share = 0.0;  // fraction of excluded pixels
+};
+
+/// Returns the layers that the renderer's picture must have. The layer of lamps is optional;
+/// without it lamps cause no edges.
+[[nodiscard]] std::vector<PictureLayer> LayersOfEdges();
+
+/// Returns which pixels of the renderer's picture are at an edge, row by row.
+[[nodiscard]] std::vector<bool> EdgesOf(const Image& reference);
+
+/// Returns the differences of a drawn picture from the reference.
+/// @param reference solution  the renderer's, with LayersOfEdges(). Throws InternalError if the sizes differ or
+///   all pixels are at edges.
+[[nodiscard]] ViewDifference DifferenceOf(const Image& reference, const Image& painted);
 
 }  // namespace alpenglow::renderer

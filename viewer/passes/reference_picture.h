@@ -1,11 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The renderer's own picture of a view, made on a worker thread and refined while the view does not
-// change, and the difference between it and the picture of the GPU away from edges.
-//
-// The difference of a pixel is PixelChange (effect_choice.h), the relative difference of linear
-// radiance above the floor of ChangeFloor. Pixels at an edge are excluded, because there a
-// hundredth of a pixel decides what is visible: pixels with neighbours of another kind, a tenth
-// farther or nearer, lit by more or less of the sun's disk, or lit a fifth more or less by lamps.
+// change.
 #pragma once
 
 #include <functional>
@@ -15,7 +10,6 @@
 #include <vector>
 
 #include "lut/image/image.h"
-#include "renderer/picture/picture_layers.h"
 #include "renderer/picture/render.h"
 #include "renderer/scene/scene.h"
 #include "viewer/async/async_value.h"
@@ -81,25 +75,5 @@ class ReferencePicture {
   std::shared_ptr<Renderers> renderers_;  // used only by the job
   AsyncValue<Request, std::optional<Made>> job_;
 };
-
-struct ViewDifference {
-  double mean = 0.0;
-  double at_99_percent = 0.0;
-  double at_999_permille = 0.0;
-  double worst = 0.0;
-  double edge_share = 0.0;  // fraction of excluded pixels
-};
-
-/// Returns the layers that the renderer's picture must have. The layer of lamps is optional;
-/// without it lamps cause no edges.
-[[nodiscard]] std::vector<PictureLayer> LayersOfEdges();
-
-/// Returns which pixels of the renderer's picture are at an edge, row by row.
-[[nodiscard]] std::vector<bool> EdgesOf(const Image& reference);
-
-/// Returns the differences of a drawn picture from the reference.
-/// @param reference solution  the renderer's, with LayersOfEdges(). Throws InternalError if the sizes differ or
-///   all pixels are at edges.
-[[nodiscard]] ViewDifference DifferenceOf(const Image& reference, const Image& painted);
 
 }  // namespace alpenglow::viewer

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "viewer/passes/reference_picture.h"
+#include "renderer/picture/picture_layers.h"
 
 #include <gtest/gtest.h>
 
@@ -7,34 +7,34 @@
 
 #include "atmosphere/base/error.h"
 
-namespace alpenglow::viewer {
+namespace alpenglow::renderer {
 namespace {
 
-constexpr int kSide = 10;
+constexpr int kLandSide = 10;
 
 /// An even grey of land a kilometre away, all of it in the sun.
 Image EvenLand() {
-  Image image(kSide, kSide);
+  Image image(kLandSide, kLandSide);
   for (auto& pixel : image.rgb) pixel = {100.0F, 100.0F, 100.0F};
-  image.layers = {{kDepthChannel, std::vector<float>(kSide * kSide, 1000.0F)},
-                  {"sun_visibility.Y", std::vector<float>(kSide * kSide, 1.0F)}};
+  image.layers = {{kDepthChannel, std::vector<float>(kLandSide * kLandSide, 1000.0F)},
+                  {"sun_visibility.Y", std::vector<float>(kLandSide * kLandSide, 1.0F)}};
   return image;
 }
 
-std::size_t At(int x, int y) { return static_cast<std::size_t>(y * kSide + x); }
+std::size_t At(int x, int y) { return static_cast<std::size_t>(y * kLandSide + x); }
 
-int CountOf(const std::vector<bool>& edges) {
+int EdgeCount(const std::vector<bool>& edges) {
   int count = 0;
   for (const bool is_edge : edges) count += is_edge ? 1 : 0;
   return count;
 }
 
-TEST(ViewDifference, EvenLandHasNoEdges) { EXPECT_EQ(CountOf(EdgesOf(EvenLand())), 0); }
+TEST(ViewDifference, EvenLandHasNoEdges) { EXPECT_EQ(EdgeCount(EdgesOf(EvenLand())), 0); }
 
 TEST(ViewDifference, BesideARidgeASkylineAndAShadowPixelsAreEdges) {
   Image ridge = EvenLand(), skyline = EvenLand(), shadow = EvenLand();
   for (int y = 0; y < 5; ++y) {
-    for (int x = 0; x < kSide; ++x) {
+    for (int x = 0; x < kLandSide; ++x) {
       ridge.layers[0].values[At(x, y)] = 1200.0F;
       skyline.layers[0].values[At(x, y)] = INFINITY;
       shadow.layers[1].values[At(x, y)] = 0.8F;
@@ -42,7 +42,7 @@ TEST(ViewDifference, BesideARidgeASkylineAndAShadowPixelsAreEdges) {
   }
   for (const Image& image : {ridge, skyline, shadow}) {
     const std::vector<bool> edges = EdgesOf(image);
-    EXPECT_EQ(CountOf(edges), 2 * kSide) << "the rows on both sides";
+    EXPECT_EQ(EdgeCount(edges), 2 * kLandSide) << "the rows on both sides";
     EXPECT_TRUE(edges[At(3, 4)]);
     EXPECT_TRUE(edges[At(3, 5)]);
   }
@@ -50,13 +50,13 @@ TEST(ViewDifference, BesideARidgeASkylineAndAShadowPixelsAreEdges) {
 
 TEST(ViewDifference, LandThatRecedesAndSkyAreNoEdges) {
   Image image = EvenLand();
-  for (int y = 0; y < kSide; ++y) {
-    for (int x = 0; x < kSide; ++x)
+  for (int y = 0; y < kLandSide; ++y) {
+    for (int x = 0; x < kLandSide; ++x)
       image.layers[0].values[At(x, y)] = 1000.0F * std::pow(1.04F, static_cast<float>(y));
   }
-  EXPECT_EQ(CountOf(EdgesOf(image)), 0);
-  image.layers[0].values.assign(kSide * kSide, INFINITY);
-  EXPECT_EQ(CountOf(EdgesOf(image)), 0);
+  EXPECT_EQ(EdgeCount(EdgesOf(image)), 0);
+  image.layers[0].values.assign(kLandSide * kLandSide, INFINITY);
+  EXPECT_EQ(EdgeCount(EdgesOf(image)), 0);
 }
 
 TEST(ViewDifference, OfAKnownDifferenceHasTheKnownNumbers) {
@@ -83,10 +83,10 @@ TEST(ViewDifference, WhatIsOffBesideAnEdgeDoesNotCount) {
 }
 
 TEST(ViewDifference, WithoutLayersPicturesCannotBeCompared) {
-  const Image bare(kSide, kSide);
+  const Image bare(kLandSide, kLandSide);
   EXPECT_THROW(static_cast<void>(EdgesOf(bare)), InternalError);
   EXPECT_THROW(static_cast<void>(DifferenceOf(EvenLand(), Image(3, 3))), InternalError);
 }
 
 }  // namespace
-}  // namespace alpenglow::viewer
+}  // namespace alpenglow::renderer
