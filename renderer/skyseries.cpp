@@ -9,6 +9,7 @@
 #include "atmosphere/base/parsing.h"
 #include "atmosphere/math/constants.h"
 #include "renderer/camera/track.h"
+#include "renderer/scene/places.h"
 #include "renderer/scene/scene_options.h"
 #include "renderer/series/frame_times.h"
 #include "renderer/series/manifest.h"
@@ -32,16 +33,16 @@ GeodeticPosition PlaceOfPath(const SkyseriesOptions& options) {
     return points[points.size() / 2].place;
   }
   const std::vector<CameraPathPoint> points = ReadCameraPath(*options.path).points();
-  return points[options.scene.dem ? points.size() / 2 : 0].pose.place;
+  return points[options.scene.dem.empty() ? 0 : points.size() / 2].pose.place;
 }
 
 /// Returns the scene options. Without a scene file and without a place, the path gives the place,
 /// except for a path over the built-in range at its home, where the range stays at its place.
 SceneOptions OptionsOfScene(const SkyseriesOptions& options) {
   SceneOptions scene = options.scene;
-  if (!options.path || scene.latitude || scene.longitude) return scene;
+  if (!options.path || scene.place || scene.latitude || scene.longitude) return scene;
   const GeodeticPosition place = PlaceOfPath(options);
-  if (!IsTrack(*options.path) && !scene.dem && IsOnRangeAtHome(place)) return scene;
+  if (!IsTrack(*options.path) && scene.dem.empty() && IsOnRangeAtHome(place)) return scene;
   scene.latitude = place.latitude_rad / kRadiansPerDegree;
   scene.longitude = place.longitude_rad / kRadiansPerDegree;
   return scene;
@@ -50,6 +51,7 @@ SceneOptions OptionsOfScene(const SkyseriesOptions& options) {
 Scene SceneOf(const SkyseriesOptions& options) {
   Scene scene = options.scene_file.empty() ? SceneFromOptions(OptionsOfScene(options))
                                            : ReadScene(options.scene_file);
+  if (options.scene.place) scene.zone = PlaceNamed(*options.scene.place).zone;
   if (options.zone) scene.zone = options.zone;
   return scene;
 }

@@ -85,8 +85,12 @@ inline void AddSceneOptions(CLI::App& app, SkyseriesOptions& options) {
   without_file("--height", scene.height_m, "Metres above the ellipsoid, -12000 to 1e9");
   without_file("--above-ground", scene.above_ground_m,
                "Metres above the ground, 0 to 1e9 (default: 2, or the range's view)");
+  without_file("--place", scene.place,
+               "Airport, peak or city by name or code: LSZH, \"Mont Blanc\"; its zone is that of "
+               "local times");
   without_file("--dem", scene.dem,
-               "Elevation model: GeoTIFF, SRTM .hgt, USGS DEM (default: a "
+               "Elevation models: GeoTIFF, SRTM .hgt, USGS DEM, VRT, and folders of such; several "
+               "may be named (default: a "
                "built-in mountain range, of its own for each place, which has the view of it)");
   without_file("--atmosphere", scene.atmosphere,
                "Atmosphere file (TOML) or preset: earth, hazy, "

@@ -26,18 +26,10 @@
 namespace alpenglow::viewer {
 namespace {
 
-LandSource LandOf(const SkyviewOptions& options, const Scene& scene) {
-  LandSource land = LandSourceOf(scene);
-  if (options.dem.empty()) return land;
-  land.files.clear();
-  for (const std::string& file : options.dem) land.files.emplace_back(file);
-  return land;
-}
-
 /// Places the eye over the middle of the given elevation models if the command line does not give a
 /// position.
 void StandOverTheLand(const SkyviewOptions& options, SceneOptions& typed) {
-  if (options.dem.empty() || (typed.latitude && typed.longitude)) return;
+  if (options.dem.empty() || typed.place || (typed.latitude && typed.longitude)) return;
   LandSource land;
   for (const std::string& file : options.dem) land.files.emplace_back(file);
   const LandTiles tiles(land);
@@ -50,17 +42,13 @@ void StandOverTheLand(const SkyviewOptions& options, SceneOptions& typed) {
 Scene SceneOf(const SkyviewOptions& options) {
   if (!options.scene_file.empty()) return ReadScene(options.scene_file);
   SceneOptions typed;
-  if (options.place) {
-    const GeodeticPosition& place = PlaceNamed(*options.place).place;
-    typed.latitude = place.latitude_rad / kRadiansPerDegree;
-    typed.longitude = place.longitude_rad / kRadiansPerDegree;
-  }
-  if (options.latitude) typed.latitude = options.latitude;
-  if (options.longitude) typed.longitude = options.longitude;
+  typed.place = options.place;
+  typed.latitude = options.latitude;
+  typed.longitude = options.longitude;
   typed.height_m = options.altitude;
   typed.heading = options.heading;
   typed.pitch = options.pitch;
-  if (!options.dem.empty()) typed.dem = options.dem.front();
+  typed.dem = options.dem;
   StandOverTheLand(options, typed);
   Scene scene = SceneFromOptions(typed);
   scene.time.reset();  // StartOf uses noon at the place instead of noon in Greenwich
@@ -215,7 +203,6 @@ std::vector<NamedFile> InputsOf(const SkyviewOptions& options, const Scene& scen
   if (!options.scene_file.empty()) inputs.push_back({"the scene", options.scene_file});
   if (options.replay) inputs.push_back({"--replay", *options.replay});
   if (options.track) inputs.push_back({"--track", *options.track});
-  for (const std::string& file : options.dem) inputs.push_back({"--dem", file});
   return inputs;
 }
 
@@ -280,7 +267,7 @@ int Run(const SkyviewOptions& options) {
   if (headless && !PaintsInParts(options)) RequireDrawable(size.width, size.height);
   FlightSession flight(
       scene, start,
-      {LandOf(options, scene), QualityRuleFromText(options.quality), options.frame_rate, size,
+      {LandSourceOf(scene), QualityRuleFromText(options.quality), options.frame_rate, size,
        std::nullopt, FlightExposureFromText(options.exposure), LookOf(options),
        first_air.valid() ? first_air.get() : FirstAir()});
   flight.Place(PlacementOf(options));

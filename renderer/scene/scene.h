@@ -76,6 +76,14 @@ struct TerrainSource {
   bool is_default = true;                 // terrain was not specified: the range stands in for it
   std::filesystem::path colour = {};      // image over the terrain, see ColourDrape; empty: none
   std::filesystem::path land_cover = {};  // land cover map; excludes `colour`
+  std::vector<std::filesystem::path> more_files = {};  // further elevation models, and folders of
+                                                       // them: see LandSource
+
+  /// Returns whether the heights are those of several files: `file` is a folder, or there are more.
+  [[nodiscard]] bool HasManyModels() const {
+    return kind == Kind::kElevationModel &&
+           (!more_files.empty() || std::filesystem::is_directory(file));
+  }
 
   /// Returns whether the ground has relief finer than its triangles, which then connect samples of
   /// elevation. A mesh file has only its own triangles.

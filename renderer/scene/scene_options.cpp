@@ -9,6 +9,7 @@
 #include "atmosphere/math/constants.h"
 #include "atmosphere/medium/medium_presets.h"
 #include "renderer/scene/nrrd_header.h"
+#include "renderer/scene/places.h"
 #include "renderer/terrain/land_source.h"
 #include "renderer/terrain/lattice_noise.h"
 #include "renderer/terrain/procedural_mountains.h"
@@ -34,6 +35,7 @@ std::vector<NamedFile> FilesOf(const Scene& scene) {
     if (!file.empty()) files.push_back({name, file});
   };
   add("the terrain", scene.terrain.file);
+  for (const std::filesystem::path& file : scene.terrain.more_files) add("the terrain", file);
   add("terrain.colour", scene.terrain.colour);
   add("terrain.land_cover", scene.terrain.land_cover);
   for (const Light& light : scene.lights) {
@@ -49,8 +51,10 @@ std::vector<NamedFile> FilesOf(const Scene& scene) {
 LandSource LandSourceOf(const Scene& scene) {
   LandSource source;
   source.voids = scene.terrain.voids;
-  if (scene.terrain.kind == TerrainSource::Kind::kElevationModel)
-    source.files = {scene.terrain.file};
+  if (scene.terrain.kind == TerrainSource::Kind::kElevationModel) {
+    source.files = scene.terrain.more_files;
+    source.files.insert(source.files.begin(), scene.terrain.file);
+  }
   if (scene.terrain.kind == TerrainSource::Kind::kMesh)
     source.mesh = LandSource::Mesh{scene.terrain.file, scene.place, scene.terrain.up};
   if (scene.terrain.kind == TerrainSource::Kind::kProceduralMountains)
@@ -67,11 +71,19 @@ struct View {
   double heading, pitch, fov;
 };
 
-bool IsPlaceTyped(const SceneOptions& options) { return options.latitude || options.longitude; }
+bool IsPlaceTyped(const SceneOptions& options) {
+  return options.place || options.latitude || options.longitude;
+}
 
 GeodeticPosition PlaceTyped(const SceneOptions& options) {
-  return PlaceFromDegrees(options.latitude.value_or(kHomeLatitude),
-                          options.longitude.value_or(kHomeLongitude), 0.0);
+  double latitude = kHomeLatitude, longitude = kHomeLongitude;
+  if (options.place) {
+    const GeodeticPosition& place = PlaceNamed(*options.place).place;
+    latitude = place.latitude_rad / kRadiansPerDegree;
+    longitude = place.longitude_rad / kRadiansPerDegree;
+  }
+  return PlaceFromDegrees(options.latitude.value_or(latitude),
+                          options.longitude.value_or(longitude), 0.0);
 }
 
 GeodeticPosition Home() { return PlaceFromDegrees(kHomeLatitude, kHomeLongitude, 0.0); }
@@ -133,8 +145,8 @@ TerrainSource RangeSeenFrom(const GeodeticPosition& place) {
 }
 
 Scene SceneFromOptions(const SceneOptions& options) {
-  const View view =
-      options.dem ? View{PlaceTyped(options), Height{}, 0.0, 0.0, 60.0} : ViewOfTheRange(options);
+  const View view = options.dem.empty() ? ViewOfTheRange(options)
+                                        : View{PlaceTyped(options), Height{}, 0.0, 0.0, 60.0};
   Scene scene;
   scene.place = view.place;
   scene.time = ParseInstant("2026-06-21T12:00:00Z");
@@ -146,11 +158,12 @@ Scene SceneFromOptions(const SceneOptions& options) {
     RequireInRange(*options.bortle, 1.0, 9.0, "--bortle");
     scene.town_zenith = ZenithOfBortleClass(*options.bortle);
   }
-  if (options.dem) {
-    scene.terrain.kind = TerrainSource::Kind::kElevationModel;
-    scene.terrain.file = *options.dem;
-  } else {
+  if (options.dem.empty()) {
     scene.terrain = RangeOf(options);
+  } else {
+    scene.terrain.kind = TerrainSource::Kind::kElevationModel;
+    scene.terrain.file = options.dem.front();
+    scene.terrain.more_files.assign(options.dem.begin() + 1, options.dem.end());
   }
   return scene;
 }

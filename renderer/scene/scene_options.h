@@ -27,10 +27,11 @@ inline constexpr double kHomeLongitude = 8.0;
 
 /// Options that replace a scene file; degrees and metres.
 struct SceneOptions {
+  std::optional<std::string> place;  // see PlaceNamed; for what latitude and longitude do not say
   std::optional<double> latitude, longitude;
   std::optional<double> heading, pitch, fov;
   std::optional<double> height_m, above_ground_m;
-  std::optional<std::string> dem;
+  std::vector<std::string> dem;           // files and folders; see LandSource
   std::optional<std::string> atmosphere;  // file, or name of a preset
   std::optional<int> bortle;              // see ZenithOfBortleClass
 };
@@ -43,7 +44,7 @@ struct SceneOptions {
 /// Returns whether a place lies on the built-in range around kHomeLatitude and kHomeLongitude.
 [[nodiscard]] bool IsOnRangeAtHome(const GeodeticPosition& place);
 
-/// Returns the scene with the eye at latitude and longitude, on any ground. With `dem` the default
+/// Returns the scene with the eye at latitude and longitude or the named place, on any ground. With `dem` the default
 /// is 2 m above the ground, looking north, horizontally, 60 degrees wide. Without it the range is
 /// RangeSeenFrom the place, and height and directions default to ProceduralMountainsView. The scene's time
 /// is noon (UTC) of 2026-06-21, which sets the day of events given without a date. Throws

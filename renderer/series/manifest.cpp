@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <fstream>
+#include <utility>
 #include <vector>
 
 #include "atmosphere/astronomy/eclipse.h"
@@ -13,6 +14,8 @@
 #include "atmosphere/math/constants.h"
 #include "lut/cli/messages.h"
 #include "lut/cli/program.h"
+#include "renderer/scene/scene_options.h"
+#include "renderer/terrain/land_source.h"
 
 namespace alpenglow::renderer {
 namespace {
@@ -50,7 +53,22 @@ std::string HeightText(const Height& height) {
                      height.above_ground ? "ground" : "ellipsoid");
 }
 
-std::string TerrainText(const TerrainSource& terrain) {
+/// Returns the number of the elevation models, and a hash of their names and contents in their
+/// order.
+std::string TextOfModels(const Scene& scene) {
+  const LandTiles tiles(LandSourceOf(scene));
+  Metadata files;
+  std::filesystem::path last;
+  for (const LandTile& tile : tiles.tiles()) {
+    if (std::exchange(last, tile.file) == tile.file) continue;  // another part of a large file
+    files[fmt::format("{:06} {}", files.size(), tile.file.filename().string())] =
+        HashOfFile(tile.file);
+  }
+  return fmt::format("{} elevation models, hash {}", files.size(), Fingerprint(files));
+}
+
+std::string TerrainText(const Scene& scene) {
+  const TerrainSource& terrain = scene.terrain;
   switch (terrain.kind) {
     case TerrainSource::Kind::kProceduralMountains:
       return !terrain.centre
@@ -62,8 +80,11 @@ std::string TerrainText(const TerrainSource& terrain) {
                                DegreesText(terrain.centre->latitude_rad),
                                DegreesText(terrain.centre->longitude_rad));
     case TerrainSource::Kind::kElevationModel:
-      return fmt::format("{}, hash {}, voids {}", terrain.file.filename().string(),
-                         HashOfFile(terrain.file),
+      return fmt::format("{}, voids {}",
+                         terrain.HasManyModels()
+                             ? TextOfModels(scene)
+                             : fmt::format("{}, hash {}", terrain.file.filename().string(),
+                                           HashOfFile(terrain.file)),
                          terrain.voids == VoidPolicy::kFill ? "filled" : "open");
     case TerrainSource::Kind::kMesh:
       return fmt::format("{}, hash {}{}", terrain.file.filename().string(),
@@ -116,7 +137,7 @@ Metadata SceneMetadata(const Scene& scene) {
       {"alpenglow.pitch_deg", DegreesText(camera.pitch_rad)},
       {"alpenglow.roll_deg", DegreesText(camera.roll_rad)},
       {"alpenglow.fov_deg", DegreesText(camera.fov_rad)},
-      {"alpenglow.terrain", TerrainText(scene.terrain)}};
+      {"alpenglow.terrain", TerrainText(scene)}};
   if (camera.lens) {
     const ThinLens& lens = *camera.lens;
     metadata["alpenglow.lens"] =

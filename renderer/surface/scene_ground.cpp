@@ -10,6 +10,8 @@
 
 #include "atmosphere/base/error.h"
 #include "atmosphere/math/constants.h"
+#include "renderer/scene/scene_options.h"
+#include "renderer/terrain/loaded_heights.h"
 #include "renderer/terrain/obj_file.h"
 #include "renderer/terrain/procedural_mountains.h"
 #include "renderer/visibility/sunlit_path.h"
@@ -111,6 +113,11 @@ Span ColumnsAround(const ElevationGrid& grid, const GeodeticPosition& place, dou
   return {column < 0 ? column + grid.columns : column, static_cast<int>(count)};
 }
 
+// Returns the name of the elevation model in messages.
+std::string NameOfModels(const TerrainSource& terrain) {
+  return terrain.file.string() + (terrain.more_files.empty() ? "" : " and others");
+}
+
 // Returns the height of the eye above the ellipsoid.
 double EyeHeight(const Scene& scene, const ElevationGrid& grid) {
   const Height& height = scene.camera.height;
@@ -135,7 +142,52 @@ GridWindow WindowAround(const ElevationGrid& grid, const GeodeticPosition& place
   return {columns.first, rows.first, columns.count, rows.count};
 }
 
+namespace {
+
+// Returns the grid of all models together, without heights.
+ElevationGrid ExtentOf(const LandLattice& lattice) {
+  ElevationGrid extent;
+  extent.west_rad = lattice.west_rad;
+  extent.north_rad = lattice.north_rad;
+  extent.step_lon_rad = lattice.step_lon_rad;
+  extent.step_lat_rad = lattice.step_lat_rad;
+  extent.columns = lattice.last_column + 1;
+  extent.rows = lattice.last_row + 1;
+  return extent;
+}
+
+ModelInSight ReadModelsInSight(const Scene& scene) {
+  constexpr int kMostSamples = 1 << 13;
+  const auto tiles = std::make_shared<const LandTiles>(LandSourceOf(scene));
+  ModelInSight loaded{{}, ExtentOf(tiles->lattice()), ""};
+  std::vector<std::string> notes = tiles->notes();
+  double eye_m = scene.camera.height.value_m;
+  if (scene.camera.height.above_ground) {
+    const SampleSize step = SampleSizeAt(tiles->lattice(), scene.place.latitude_rad);
+    const double around_m = 2.0 * std::max(step.column_m, step.row_m);
+    std::vector<std::string> said_below;
+    const auto under_eye =
+        ReadHeightsAround(tiles, scene.place, around_m, kMostSamples, said_below);
+    if (under_eye)
+      eye_m +=
+          under_eye->HeightAt(scene.place.latitude_rad, scene.place.longitude_rad).value_or(0.0);
+  }
+  const double sight_m = kEarth_m * Sight(eye_m);
+  auto grid = ReadHeightsAround(tiles, scene.place, sight_m, kMostSamples, notes);
+  if (grid) loaded.model.grid = std::move(*grid);
+  const std::vector<float>& heights = loaded.model.grid.height_m;
+  if (std::all_of(heights.begin(), heights.end(), [](float z_m) { return std::isnan(z_m); })) {
+    throw InputError(fmt::format("{}: no valid sample within {:.0f} km of the camera",
+                                 NameOfModels(scene.terrain), 1e-3 * sight_m));
+  }
+  loaded.message = fmt::format("{}", fmt::join(notes, "; "));
+  return loaded;
+}
+
+}  // namespace
+
 ModelInSight ReadModelInSight(const Scene& scene) {
+  if (scene.terrain.HasManyModels()) return ReadModelsInSight(scene);
   constexpr double kManySamples = 1 << 25;
   const std::filesystem::path& file = scene.terrain.file;
   ElevationGrid all = ReadElevationExtent(file);
@@ -240,7 +292,7 @@ void RequireEyeOver(const ElevationGrid& extent, const ElevationGrid& seen, cons
   throw InputError(fmt::format(
       "the camera at latitude {}, longitude {} is outside {}, which covers latitudes {} "
       "to {} and longitudes {} to {}{}",
-      latitude.value, longitude.value, scene.terrain.file.string(), latitude.low, latitude.high,
+      latitude.value, longitude.value, NameOfModels(scene.terrain), latitude.low, latitude.high,
       longitude.low, longitude.high,
       swapped_lies_inside ? "; latitude and longitude seem to be swapped" : ""));
 }

@@ -73,8 +73,10 @@ struct ModelInSight {
 };
 
 /// Reads the elevation model of a scene. A model of more than 2^25 samples for which CanBeCut holds
-/// is read only as far as ground of any height may be visible from the camera. Throws InputError as
-/// ReadElevation does, and if there is no valid sample within this distance.
+/// is read only as far as ground of any height may be visible from the camera. Several models
+/// (TerrainSource::HasManyModels) are read as far, into one grid of at most 2^13 samples per side.
+/// Throws InputError as ReadElevation and LandTiles do, and if there is no valid sample within this
+/// distance.
 [[nodiscard]] ModelInSight ReadModelInSight(const Scene& scene);
 
 struct SceneGround {

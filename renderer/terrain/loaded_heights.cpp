@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "renderer/terrain/loaded_heights.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -264,11 +266,17 @@ std::optional<double> LoadedHeights::HeightUnder(double latitude_rad, double lon
                            std::clamp(at.row - j, 0.0, 1.0));
 }
 
-std::optional<ElevationGrid> LoadedHeights::SampledGrid(const GeodeticPosition& place,
-                                                        double half_width_m,
-                                                        int most_samples) const {
-  if (tiles_->tiles().empty()) return std::nullopt;
-  const LandLattice& lattice = tiles_->lattice();
+namespace {
+
+/// Vertices of one level of a lattice, both ends included.
+struct VertexSpan {
+  int level, first_i, first_j, last_i, last_j;
+};
+
+// Returns the vertices within half_width_m of a place, at the finest level that has no more than
+// most_samples per side; empty if the lattice has fewer than two there.
+std::optional<VertexSpan> SpanAround(const LandLattice& lattice, const GeodeticPosition& place,
+                                     double half_width_m, int most_samples) {
   const SampleSize size = SampleSizeAt(lattice, place.latitude_rad);
   const LatticePlace at = lattice.At(place.latitude_rad, place.longitude_rad);
   const double half_columns = half_width_m / size.column_m, half_rows = half_width_m / size.row_m;
@@ -287,15 +295,26 @@ std::optional<ElevationGrid> LoadedHeights::SampledGrid(const GeodeticPosition& 
   const auto last = [&](double to, int last_sample) {
     return std::min(static_cast<int>(std::floor(to / step)), last_sample >> level);
   };
-  int i0 = first(at.column - half_columns), j0 = first(at.row - half_rows);
-  int i1 = last(at.column + half_columns, lattice.last_column);
-  int j1 = last(at.row + half_rows, lattice.last_row);
+  const int i0 = first(at.column - half_columns), j0 = first(at.row - half_rows);
+  const int i1 = last(at.column + half_columns, lattice.last_column);
+  const int j1 = last(at.row + half_rows, lattice.last_row);
   if (i1 <= i0 || j1 <= j0) return std::nullopt;
-  if (std::max(lattice.last_column, lattice.last_row) < most_samples) {
-    i0 = j0 = 0;
-    i1 = lattice.last_column;
-    j1 = lattice.last_row;
-  }
+  if (std::max(lattice.last_column, lattice.last_row) < most_samples)
+    return VertexSpan{level, 0, 0, lattice.last_column, lattice.last_row};
+  return VertexSpan{level, i0, j0, i1, j1};
+}
+
+}  // namespace
+
+std::optional<ElevationGrid> LoadedHeights::SampledGrid(const GeodeticPosition& place,
+                                                        double half_width_m,
+                                                        int most_samples) const {
+  if (tiles_->tiles().empty()) return std::nullopt;
+  const LandLattice& lattice = tiles_->lattice();
+  const std::optional<VertexSpan> span = SpanAround(lattice, place, half_width_m, most_samples);
+  if (!span) return std::nullopt;
+  const auto [level, i0, j0, i1, j1] = *span;
+  const double step = 1 << level;
   const GeodeticPosition corner = lattice.PlaceOf(i0 << level, j0 << level, 0.0);
   ElevationGrid grid;
   grid.west_rad = corner.longitude_rad;
@@ -306,6 +325,31 @@ std::optional<ElevationGrid> LoadedHeights::SampledGrid(const GeodeticPosition& 
   grid.rows = j1 - j0 + 1;
   grid.height_m = Block(level, i0, j0, grid.columns, grid.rows).height_m;
   return grid;
+}
+
+std::optional<ElevationGrid> ReadHeightsAround(const std::shared_ptr<const LandTiles>& tiles,
+                                               const GeodeticPosition& place, double half_width_m,
+                                               int most_samples, std::vector<std::string>& notes) {
+  if (tiles->tiles().empty()) return std::nullopt;
+  const LandLattice& lattice = tiles->lattice();
+  const std::optional<VertexSpan> span = SpanAround(lattice, place, half_width_m, most_samples);
+  if (!span) return std::nullopt;
+  const int level = span->level;
+  std::vector<std::shared_ptr<const HeightPyramid>> heights(tiles->tiles().size());
+  for (const int tile : tiles->Touching(
+           {lattice.ColumnOf(span->first_i, level), lattice.RowOf(span->first_j, level),
+            lattice.ColumnOf(span->last_i, level), lattice.RowOf(span->last_j, level)})) {
+    const auto index = static_cast<std::size_t>(tile);
+    try {
+      ReadTile read = ReadLandTile(*tiles, tile, level);
+      heights[index] = std::move(read.heights);
+      if (!read.note.empty()) notes.push_back(std::move(read.note));
+    } catch (const InputError& error) {
+      if (!tiles->tiles()[index].is_from_folder) throw;
+      notes.push_back(fmt::format("left out: {}", error.what()));
+    }
+  }
+  return LoadedHeights(tiles, std::move(heights)).SampledGrid(place, half_width_m, most_samples);
 }
 
 }  // namespace alpenglow::renderer

@@ -14,6 +14,7 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "atmosphere/time_place/geodesy.h"
@@ -86,6 +87,14 @@ class LoadedHeights {
   std::shared_ptr<const LandTiles> tiles_;
   std::vector<std::shared_ptr<const HeightPyramid>> heights_;
 };
+
+/// Reads the tiles around a place and returns LoadedHeights::SampledGrid of them. Tiles are read one
+/// after the other, at the level of the grid. Throws InputError as ReadLandTile does, but for
+/// unreadable files in a folder, which are left out.
+/// @param notes  receives the notes on the tiles and the files that were left out.
+[[nodiscard]] std::optional<ElevationGrid> ReadHeightsAround(
+    const std::shared_ptr<const LandTiles>& tiles, const GeodeticPosition& place,
+    double half_width_m, int most_samples, std::vector<std::string>& notes);
 
 /// Size [m] of one column's and one row's step of a lattice at a latitude.
 struct SampleSize {

@@ -20,6 +20,7 @@
 #include "viewer/async/async_value.h"
 #include "viewer/gl/gl_objects.h"
 #include "viewer/gl/shader.h"
+#include "viewer/layer.h"
 
 namespace alpenglow::viewer {
 

@@ -27,6 +27,7 @@
 
 #include "atmosphere/time_place/geodesy.h"
 #include "renderer/terrain/loaded_heights.h"
+#include "viewer/layer.h"
 
 namespace alpenglow::viewer {
 

@@ -14,6 +14,7 @@
 #include "atmosphere/time_place/time.h"
 #include "lut/camera_tables/air_tables.h"
 #include "renderer/illumination/lighting.h"
+#include "viewer/layer.h"
 
 namespace alpenglow::viewer {
 

@@ -16,6 +16,7 @@
 #include "atmosphere/math/constants.h"
 #include "atmosphere/time_place/geodesy.h"
 #include "lut/image/look.h"
+#include "renderer/scene/places.h"
 #include "renderer/scene/scene_options.h"
 #include "renderer/terrain/procedural_mountains.h"
 #include "tests/fixtures/fault_of.h"
@@ -533,7 +534,7 @@ TEST(SceneOptions, APlaceHasMountainsOfItsOwnAndAlwaysTheSame) {
 
 TEST(SceneOptions, WithAnElevationModelTheEyeStandsWhereItIsTold) {
   SceneOptions options;
-  options.dem = "N35E138.hgt";
+  options.dem = {"N35E138.hgt"};
   options.latitude = 35.5;
   options.longitude = 138.76;
   options.atmosphere = "hazy";
@@ -542,6 +543,23 @@ TEST(SceneOptions, WithAnElevationModelTheEyeStandsWhereItIsTold) {
   EXPECT_EQ(scene.terrain.file, "N35E138.hgt");
   EXPECT_EQ(scene.medium.name, "hazy");
   EXPECT_EQ(scene.camera.height, (Height{2.0, true}));
+}
+
+TEST(SceneOptions, ANamedPlaceStandsInForLatitudeAndLongitude) {
+  SceneOptions options;
+  options.place = "LSZH";
+  options.dem = {"a.hgt", "b.hgt"};
+  const GeodeticPosition& zurich = PlaceNamed("LSZH").place;
+  Scene scene = SceneFromOptions(options);
+  EXPECT_NEAR(scene.place.latitude_rad, zurich.latitude_rad, 1e-12);
+  EXPECT_NEAR(scene.place.longitude_rad, zurich.longitude_rad, 1e-12);
+  EXPECT_EQ(scene.terrain.more_files, std::vector<std::filesystem::path>{"b.hgt"});
+  options.latitude = 47.0;
+  scene = SceneFromOptions(options);
+  EXPECT_DOUBLE_EQ(scene.place.latitude_rad, 47.0 * kRadiansPerDegree);
+  EXPECT_NEAR(scene.place.longitude_rad, zurich.longitude_rad, 1e-12);
+  options.place = "Atlantis";
+  EXPECT_THROW(static_cast<void>(SceneFromOptions(options)), InputError);
 }
 
 TEST(SceneOptions, SizesAndExposuresAreReadWhole) {

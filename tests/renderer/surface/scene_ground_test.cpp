@@ -41,7 +41,7 @@ class AModel : public TemporaryFolder {
   [[nodiscard]] std::filesystem::path File() const { return folder_ / "N46E008.hgt"; }
   [[nodiscard]] Scene At(double latitude, double longitude) const {
     SceneOptions options;
-    options.dem = File().string();
+    options.dem = {File().string()};
     options.latitude = latitude;
     options.longitude = longitude;
     return SceneFromOptions(options);

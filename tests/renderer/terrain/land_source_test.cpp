@@ -5,6 +5,8 @@
 #include <gtest/gtest.h>
 
 #include "atmosphere/base/error.h"
+#include "renderer/scene/scene_options.h"
+#include "renderer/surface/scene_ground.h"
 #include "renderer/terrain/procedural_mountains.h"
 #include "renderer/terrain/terrain.h"
 #include "tests/renderer/terrain/land_files.h"
@@ -318,6 +320,27 @@ TEST_F(LandSourceFiles, WhatCannotBeReadIsSaidByName) {
   EXPECT_EQ(tiles.tiles().size(), 1U);
   ASSERT_EQ(tiles.notes().size(), 1U);
   EXPECT_THAT(tiles.notes()[0], HasSubstr("broken.tif"));
+}
+
+TEST_F(LandSourceFiles, ASceneReadsAllModelsThatMayBeInSight) {
+  WriteTiles(2);
+  SceneOptions options;
+  for (const char* name : {"tile00.tif", "tile01.tif", "tile10.tif", "tile11.tif"})
+    options.dem.push_back((folder_ / name).string());
+  const GeodeticPosition place = PlaceOfSample(300.0, 400.0, 0.0);
+  options.latitude = place.latitude_rad / kRadiansPerDegree;
+  options.longitude = place.longitude_rad / kRadiansPerDegree;
+  const ModelInSight named = ReadModelInSight(SceneFromOptions(options));
+  const ElevationGrid& grid = named.model.grid;
+  ASSERT_EQ(grid.columns, 2 * kTileSamples - 1);
+  ASSERT_EQ(grid.rows, 2 * kTileSamples - 1);
+  for (int row = 0; row < grid.rows; row += 7)
+    for (int column = 0; column < grid.columns; ++column)
+      ASSERT_EQ(grid.at(row, column), HeightOfSample(column, row)) << column << ' ' << row;
+  options.dem = {folder_.string()};
+  EXPECT_EQ(ReadModelInSight(SceneFromOptions(options)).model.grid.height_m, grid.height_m);
+  options.latitude = 10.0;
+  EXPECT_THROW(static_cast<void>(ReadModelInSight(SceneFromOptions(options))), InputError);
 }
 
 }  // namespace

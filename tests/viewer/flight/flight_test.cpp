@@ -114,11 +114,13 @@ TEST(Flight, ExposureAdaptsHalfWayInAThirdOfASecond) {
 }
 
 TEST(Flight, AnEyeAtAPlaceStandsOnTheRunwayAndFliesOverTheCity) {
-  const Eye zurich = EyeAt(PlaceNamed("LSZH"), {}, [](const GeodeticPosition&) { return 430.0; });
+  const Eye zurich =
+      viewer::EyeAt(PlaceNamed("LSZH"), {}, [](const GeodeticPosition&) { return 430.0; });
   EXPECT_EQ(zurich.place.height_m, 432.0) << "over the terrain's runway";
   EXPECT_NEAR(zurich.heading_rad / kRadiansPerDegree, 155.0, 1e-9)
       << "runway 16, five degrees of it grid";
-  const Eye lhasa = EyeAt(PlaceNamed("Lhasa"), {}, [](const GeodeticPosition&) { return 0.0; });
+  const Eye lhasa =
+      viewer::EyeAt(PlaceNamed("Lhasa"), {}, [](const GeodeticPosition&) { return 0.0; });
   EXPECT_EQ(lhasa.place.height_m, 600.0) << "over the plain, where there is no terrain";
 }
 
