@@ -8,7 +8,6 @@
 #include <glm/geometric.hpp>
 #include <utility>
 
-#include "atmosphere/astronomy/moon.h"
 #include "atmosphere/base/error.h"
 #include "renderer/scene/places.h"
 #include "renderer/scene/scene_options.h"
@@ -28,11 +27,6 @@ Eye EyeOfScene(const Scene& scene) {
           scene.camera.fov_rad};
   eye.place.height_m = scene.camera.height.value_m;
   return Zoomed(eye, 1.0);
-}
-
-std::optional<UtcInstant> MoonEventAfterwards(SkyEvent event, const GeodeticPosition& place,
-                                              const UtcInstant& after) {
-  return event == SkyEvent::kMoonset ? NextMoonset(place, after) : NextMoonrise(place, after);
 }
 
 // Returns the half width of a square around a place that contains all land, at most 60 km. A
@@ -206,7 +200,7 @@ std::vector<std::string> FlightSession::TakeNotes() {
 void FlightSession::Follow(const CameraPath& path) {
   ForgetGround();
   cockpit_.pilot().SetTrack(std::make_shared<const CameraPath>(path));
-  static_cast<void>(cockpit_.Do(Action::kTrackMode, Ground(), MoonEventAfterwards));
+  static_cast<void>(cockpit_.Do(Action::kTrackMode, Ground()));
 }
 
 void FlightSession::Replay(const CameraPath& flight) {
@@ -232,12 +226,10 @@ void FlightSession::Advance(const PilotControls& controls, double seconds) {
   still_eye_ = eye();
 }
 
-std::string FlightSession::JumpTo(SkyEvent event) {
-  return cockpit_.JumpTo(event, MoonEventAfterwards);
-}
+std::string FlightSession::JumpTo(SkyEvent event) { return cockpit_.JumpTo(event); }
 
 std::optional<std::string> FlightSession::Do(Action action) {
-  if (auto said = cockpit_.Do(action, Ground(), MoonEventAfterwards)) return said;
+  if (auto said = cockpit_.Do(action, Ground())) return said;
   constexpr double kStep_ev = 1.0 / 3.0;
   constexpr double kHazeStep = 1.25;
   switch (action) {

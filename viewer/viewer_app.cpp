@@ -109,7 +109,8 @@ HudAir AirOf(const FlightSession& flight) {
 }
 
 HudAutopilot AutopilotOf(const Pilot& pilot) {
-  const AutopilotTargets& held = pilot.autopilot().targets();
+  if (pilot.aircraft() == nullptr) return {};
+  const AutopilotTargets& held = pilot.aircraft()->autopilot().targets();
   return {held.heading_rad, held.height_m, held.speed_m_per_s};
 }
 
@@ -136,7 +137,7 @@ HudExposure ExposureOf(const FlightSession& flight) {
 // Returns the flight modes, named like the keys that select them.
 std::vector<Action> ModesOf(const Pilot& pilot) {
   std::vector<Action> modes{Action::kFreeMode, Action::kAircraftMode};
-  if (pilot.HasTrack()) modes.push_back(Action::kTrackMode);
+  if (pilot.track().exists()) modes.push_back(Action::kTrackMode);
   return modes;
 }
 
@@ -479,13 +480,15 @@ void ViewerApp::ServeFlight(const HudRequest& asked) {
   for (const Action mode : ModesOf(pilot)) {
     if (asked.mode == RowOf(mode).does) Say(flight_.Do(mode).value_or(""));
   }
-  if (asked.throttle) pilot.SetThrottle(*asked.throttle);
-  AutopilotTargets targets = pilot.autopilot().targets();
+  PilotedAircraft* aircraft = pilot.aircraft();
+  if (aircraft == nullptr) return;
+  if (asked.throttle) aircraft->SetThrottle(*asked.throttle);
+  AutopilotTargets targets = aircraft->autopilot().targets();
   if (asked.hold_heading_rad) targets.heading_rad = asked.hold_heading_rad->value;
   if (asked.hold_height_m) targets.height_m = asked.hold_height_m->value;
   if (asked.hold_speed_m_per_s) targets.speed_m_per_s = asked.hold_speed_m_per_s->value;
   if (asked.hold_heading_rad || asked.hold_height_m || asked.hold_speed_m_per_s)
-    pilot.autopilot().Set(targets);
+    aircraft->autopilot().Set(targets);
 }
 
 void ViewerApp::SetLandingLight(bool is_on) {

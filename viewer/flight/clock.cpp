@@ -4,7 +4,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <variant>
 
+#include "atmosphere/astronomy/moon.h"
 #include "atmosphere/astronomy/sun.h"
 #include "atmosphere/base/error.h"
 #include "atmosphere/math/constants.h"
@@ -26,22 +28,20 @@ const UtcInstant& LastInstant() {
   return last;
 }
 
-std::optional<SunEvent> SunEventOf(SkyEvent event) {
-  switch (event) {
-    case SkyEvent::kDawn:
-      return SunEvent::kCivilDawn;
-    case SkyEvent::kSunrise:
-      return SunEvent::kSunrise;
-    case SkyEvent::kNoon:
-      return SunEvent::kNoon;
-    case SkyEvent::kSunset:
-      return SunEvent::kSunset;
-    case SkyEvent::kDusk:
-      return SunEvent::kCivilDusk;
-    default:
-      return std::nullopt;
-  }
-}
+struct EventRow {
+  const char* name;
+  std::variant<SunEvent, MoonEvent> of;
+};
+// The rows have the order of SkyEvent.
+constexpr std::array<EventRow, 7> kEventRows{{{"dawn", SunEvent::kCivilDawn},
+                                              {"sunrise", SunEvent::kSunrise},
+                                              {"noon", SunEvent::kNoon},
+                                              {"sunset", SunEvent::kSunset},
+                                              {"dusk", SunEvent::kCivilDusk},
+                                              {"moonrise", MoonEvent::kMoonrise},
+                                              {"moonset", MoonEvent::kMoonset}}};
+
+const EventRow& RowOf(SkyEvent event) { return kEventRows[static_cast<std::size_t>(event)]; }
 
 /// Returns whether the sun of the day reaches the elevations of the event, with a margin of 2
 /// degrees: its declination changes by 0.4 degrees a day. Most days of a polar night need no
@@ -70,22 +70,19 @@ double SteppedTimeRate(double rate, int step) {
   return kTimeRates[static_cast<std::size_t>(next)];
 }
 
-const char* NameOf(SkyEvent event) {
-  constexpr std::array<const char*, 7> kNames{"dawn", "sunrise",  "noon",   "sunset",
-                                              "dusk", "moonrise", "moonset"};
-  return kNames[static_cast<std::size_t>(event)];
-}
+const char* NameOf(SkyEvent event) { return RowOf(event).name; }
 
 std::optional<UtcInstant> NextEvent(SkyEvent event, const GeodeticPosition& place,
-                                    const UtcInstant& after, const MoonEventAfter& moon) {
-  const std::optional<SunEvent> of_sun = SunEventOf(event);
-  if (!of_sun) return moon ? moon(event, place, after) : std::nullopt;
+                                    const UtcInstant& after) {
+  const auto& of = RowOf(event).of;
+  if (const auto* moon = std::get_if<MoonEvent>(&of)) return NextMoonEvent(*moon, place, after);
   constexpr int kDays = 366;
   constexpr double kSame_s = 1.0;
+  const SunEvent sun = std::get<SunEvent>(of);
   for (int day = 0; day <= kDays; ++day) {
     const UtcInstant around = AddSeconds(after, day * kSecondsPerDay);
-    if (!CanHappen(*of_sun, place, around)) continue;
-    const auto found = FindSunEvent(*of_sun, place, around);
+    if (!CanHappen(sun, place, around)) continue;
+    const auto found = FindSunEvent(sun, place, around);
     if (found && SecondsBetween(after, *found) > kSame_s) return found;
   }
   return std::nullopt;
@@ -107,9 +104,8 @@ void SceneClock::Set(const UtcInstant& instant) {
   now_ = early ? FirstInstant() : late ? LastInstant() : instant;
 }
 
-bool SceneClock::JumpToNext(SkyEvent event, const GeodeticPosition& place,
-                            const MoonEventAfter& moon) {
-  const std::optional<UtcInstant> next = NextEvent(event, place, now_, moon);
+bool SceneClock::JumpToNext(SkyEvent event, const GeodeticPosition& place) {
+  const std::optional<UtcInstant> next = NextEvent(event, place, now_);
   if (next) Set(*next);
   return next.has_value();
 }

@@ -4,7 +4,6 @@
 #pragma once
 
 #include <array>
-#include <functional>
 #include <optional>
 #include <string>
 
@@ -27,16 +26,11 @@ inline constexpr std::array<SkyEvent, 7> kSkyEvents{
 /// Returns "dawn", "sunrise", ...
 [[nodiscard]] const char* NameOf(SkyEvent event);
 
-/// Returns the next moonrise or moonset after an instant.
-using MoonEventAfter = std::function<std::optional<UtcInstant>(
-    SkyEvent event, const GeodeticPosition& place, const UtcInstant& after)>;
-
-/// Returns the next occurrence of an event at a place, more than a second after an instant; nullopt
-/// if it does not occur within 366 days. `moon` finds events of the moon; without it there are
-/// none. Instants of the sun are those of FindSunEvent.
+/// Returns the next occurrence of an event at a place, after an instant and for the sun more than a
+/// second after it. Instants are those of FindSunEvent and NextMoonEvent. Returns nullopt if the
+/// event does not occur within 366 days (sun) or 30 days (moon).
 [[nodiscard]] std::optional<UtcInstant> NextEvent(SkyEvent event, const GeodeticPosition& place,
-                                                  const UtcInstant& after,
-                                                  const MoonEventAfter& moon = {});
+                                                  const UtcInstant& after);
 
 /// Clock of the scene. Its range is the years 1900 to 2100; it stops at their ends.
 class SceneClock {
@@ -58,9 +52,9 @@ class SceneClock {
   /// Shifts the time, whether the clock is paused or not.
   void Shift(double seconds);
   void Set(const UtcInstant& instant);
-  /// Jumps to the next occurrence of the event. Returns false and changes nothing if there is none
-  /// within 366 days.
-  bool JumpToNext(SkyEvent event, const GeodeticPosition& place, const MoonEventAfter& moon = {});
+  /// Jumps to the next occurrence of the event. Returns false and changes nothing if NextEvent finds
+  /// none.
+  bool JumpToNext(SkyEvent event, const GeodeticPosition& place);
   /// Sets the time from a text, as InstantFromText (renderer/series/time_text.h). The day is that
   /// of this clock in the zone, but "today" and "now" refer to the clock of the computer. Throws
   /// InputError.

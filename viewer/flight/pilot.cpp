@@ -150,46 +150,104 @@ constexpr double kOnGround_m = 15.0;  // below this height a flight begins on th
 
 }  // namespace
 
+void PilotedAircraft::Begin(GeodeticPosition place, double heading_rad,
+                            const GroundHeight& ground) {
+  const double ground_m = ground(place);
+  const bool stands = place.height_m < ground_m + kOnGround_m;
+  if (stands) place.height_m = ground_m + kStanding_m;
+  kind_ = !stands && place.height_m > kJetsFrom_m ? kSmallJet : kLightAircraft;
+  state_ = LevelFlight(kind_, ellipsoid_, place, heading_rad);
+  if (stands) {
+    state_.velocity = {};
+    state_.throttle = 0.0;
+    state_.contact = GroundContact::kStanding;
+  }
+  shown_ = state_;
+  rest_s_ = 0.0;
+}
+
+void PilotedAircraft::LeaveTheGround(const GroundHeight& ground) {
+  constexpr double kDeep_m = 30.0, kOver_m = 150.0;
+  GeodeticPosition place = GeodeticFromEcef(ellipsoid_, state_.place);
+  const double ground_m = ground(place);
+  if (place.height_m > ground_m - kDeep_m) return;
+  place.height_m = ground_m + kOver_m;
+  state_.place = EcefFromGeodetic(ellipsoid_, place);
+}
+
+AircraftState PilotedAircraft::NextState(Autopilot& autopilot, const Stick& stick, double step_s,
+                                         const GroundHeight& ground) const {
+  const Autopilot::Flown flown = autopilot.Fly(state_, kind_, ellipsoid_, stick, step_s);
+  return Stepped(flown.state, kind_, ellipsoid_, flown.stick, ground, step_s);
+}
+
+void PilotedAircraft::Fly(const Stick& stick, double seconds, const GroundHeight& ground) {
+  LeaveTheGround(ground);
+  rest_s_ += seconds;
+  const auto steps = static_cast<std::int64_t>(rest_s_ / kStep_s);
+  for (std::int64_t i = 0; i < steps; ++i) state_ = NextState(autopilot_, stick, kStep_s, ground);
+  rest_s_ = std::max(rest_s_ - static_cast<double>(steps) * kStep_s, 0.0);
+  Autopilot looking_on = autopilot_;
+  shown_ = rest_s_ > 0.0 ? NextState(looking_on, stick, rest_s_, ground) : state_;
+}
+
+void PilotedAircraft::Lift(double height_m) {
+  const AircraftReadout now = ReadoutOf(state_, kind_, ellipsoid_);
+  GeodeticPosition place = GeodeticFromEcef(ellipsoid_, state_.place);
+  place.height_m += height_m;
+  const bool flies = now.speed_m_per_s > 1.3 * StallSpeed(kind_, place.height_m);
+  if (flies) {
+    state_.place = EcefFromGeodetic(ellipsoid_, place);
+  } else {
+    state_ = LevelFlight(kind_, ellipsoid_, place, now.heading_rad);
+  }
+  shown_ = state_;
+}
+
+void PilotedAircraft::Level() { state_.held_bank_rad = state_.held_path_rad = 0.0; }
+
+void PilotedAircraft::SetThrottle(double share) {
+  state_.throttle = shown_.throttle = std::clamp(share, 0.0, 1.0);
+  AutopilotTargets targets = autopilot_.targets();
+  targets.speed_m_per_s.reset();
+  autopilot_.Set(targets);
+}
+
+void PilotedAircraft::Toggle(Autopilot::Hold hold) {
+  autopilot_.Toggle(hold, ReadoutOf(state_, kind_, ellipsoid_),
+                    GeodeticFromEcef(ellipsoid_, state_.place).height_m);
+}
+
+FollowedTrack::FollowedTrack(std::shared_ptr<const CameraPath> path)
+    : path_(std::move(path)), at_s_(path_ ? path_->begin_s() : 0.0) {}
+
+void FollowedTrack::Skip(double seconds) {
+  if (path_) at_s_ = std::clamp(at_s_ + seconds, path_->begin_s(), path_->end_s());
+}
+
 Pilot::Pilot(const Eye& eye, const Ellipsoid& ellipsoid)
-    : ellipsoid_(ellipsoid), eye_(eye), first_fov_rad_(eye.fov_rad) {}
+    : ellipsoid_(ellipsoid), eye_(eye), first_fov_rad_(eye.fov_rad), aircraft_(ellipsoid) {}
 
 void Pilot::SetTrack(std::shared_ptr<const CameraPath> track, Lens lens) {
-  track_ = std::move(track);
+  track_ = FollowedTrack(std::move(track));
   track_lens_ = lens;
-  track_s_ = track_ ? track_->begin_s() : 0.0;
   track_factor_ = 1.0;
-  if (!track_ && mode_ == FlightMode::kTrack) mode_ = FlightMode::kFree;
+  if (!track_.exists() && mode_ == FlightMode::kTrack) mode_ = FlightMode::kFree;
 }
 
 std::optional<std::string> Pilot::Enter(FlightMode mode, const GroundHeight& ground) {
   if (mode == mode_) return std::nullopt;
-  if (mode == FlightMode::kTrack && !track_) return "there is no track to follow";
+  if (mode == FlightMode::kTrack && !track_.exists()) return "there is no track to follow";
   if (mode == FlightMode::kAircraft && eye_.place.height_m > kHighestStart_m) {
     return "there is no air to fly in over 18 km";
   }
   look_right_rad_ = look_up_rad_ = 0.0;
-  autopilot_.Release();
+  aircraft_.autopilot().Release();
   mode_ = mode;
-  if (mode == FlightMode::kAircraft) BeginFlight(eye_.heading_rad, ground);
+  if (mode == FlightMode::kAircraft) aircraft_.Begin(eye_.place, eye_.heading_rad, ground);
   if (mode == FlightMode::kFree) eye_.roll_rad = 0.0;
   Show(ground);
   return std::nullopt;
-}
-
-void Pilot::BeginFlight(double heading_rad, const GroundHeight& ground) {
-  const double ground_m = ground(eye_.place);
-  GeodeticPosition place = eye_.place;
-  const bool stands = place.height_m < ground_m + kOnGround_m;
-  if (stands) place.height_m = ground_m + kStanding_m;
-  kind_ = !stands && place.height_m > kJetsFrom_m ? kSmallJet : kLightAircraft;
-  aircraft_ = LevelFlight(kind_, ellipsoid_, place, heading_rad);
-  if (stands) {
-    aircraft_.velocity = {};
-    aircraft_.throttle = 0.0;
-    aircraft_.contact = GroundContact::kStanding;
-  }
-  shown_ = aircraft_;
-  rest_s_ = 0.0;
 }
 
 void Pilot::PutAt(const Eye& eye, const GroundHeight& ground) {
@@ -197,8 +255,8 @@ void Pilot::PutAt(const Eye& eye, const GroundHeight& ground) {
   if (mode_ == FlightMode::kTrack || eye.place.height_m > kHighestStart_m)
     mode_ = FlightMode::kFree;
   look_right_rad_ = look_up_rad_ = 0.0;
-  autopilot_.Release();
-  if (mode_ == FlightMode::kAircraft) BeginFlight(eye.heading_rad, ground);
+  aircraft_.autopilot().Release();
+  if (mode_ == FlightMode::kAircraft) aircraft_.Begin(eye.place, eye.heading_rad, ground);
   Show(ground);
 }
 
@@ -208,8 +266,7 @@ void Pilot::Advance(const PilotControls& controls, double seconds, const GroundH
   if (mode_ == FlightMode::kFree) {
     eye_ = FreeFlight(eye_, controls.camera, ellipsoid_, ground, free_factor_, seconds);
   } else if (mode_ == FlightMode::kAircraft) {
-    LeaveTheGround(ground);
-    FlyAircraft(controls.stick, flight_factor_ * seconds, ground);
+    aircraft_.Fly(controls.stick, flight_factor_ * seconds, ground);
   } else {
     SkipTrack(track_factor_ * seconds);
   }
@@ -229,15 +286,6 @@ void Pilot::NoteSpeed(const GeodeticPosition& before, double seconds) {
   course_ = Course{std::atan2(way.x, way.y), std::asin(std::clamp(climb, -1.0, 1.0))};
 }
 
-void Pilot::LeaveTheGround(const GroundHeight& ground) {
-  constexpr double kDeep_m = 30.0, kOver_m = 150.0;
-  GeodeticPosition place = GeodeticFromEcef(ellipsoid_, aircraft_.place);
-  const double ground_m = ground(place);
-  if (place.height_m > ground_m - kDeep_m) return;
-  place.height_m = ground_m + kOver_m;
-  aircraft_.place = EcefFromGeodetic(ellipsoid_, place);
-}
-
 void Pilot::LookAround(const PilotControls& controls) {
   const double right_rad = controls.look_right * eye_.fov_rad;
   const double up_rad = controls.look_up * eye_.fov_rad;
@@ -249,29 +297,12 @@ void Pilot::LookAround(const PilotControls& controls) {
   look_up_rad_ = std::clamp(look_up_rad_ + up_rad, -0.5 * kPi, 0.5 * kPi);
 }
 
-AircraftState Pilot::NextState(Autopilot& autopilot, const Stick& stick, double step_s,
-                               const GroundHeight& ground) const {
-  const Autopilot::Flown flown = autopilot.Fly(aircraft_, kind_, ellipsoid_, stick, step_s);
-  return Stepped(flown.state, kind_, ellipsoid_, flown.stick, ground, step_s);
-}
-
-void Pilot::FlyAircraft(const Stick& stick, double seconds, const GroundHeight& ground) {
-  rest_s_ += seconds;
-  const auto steps = static_cast<std::int64_t>(rest_s_ / kStep_s);
-  for (std::int64_t i = 0; i < steps; ++i) {
-    aircraft_ = NextState(autopilot_, stick, kStep_s, ground);
-  }
-  rest_s_ = std::max(rest_s_ - static_cast<double>(steps) * kStep_s, 0.0);
-  Autopilot looking_on = autopilot_;
-  shown_ = rest_s_ > 0.0 ? NextState(looking_on, stick, rest_s_, ground) : aircraft_;
-}
-
 void Pilot::Show(const GroundHeight& ground) {
   if (mode_ == FlightMode::kAircraft) {
-    eye_ = EyeIn(shown_, kind_, ellipsoid_, look_right_rad_, look_up_rad_, eye_.fov_rad);
+    eye_ = aircraft_.EyeOfPilot(look_right_rad_, look_up_rad_, eye_.fov_rad);
   } else if (mode_ == FlightMode::kTrack) {
     const double fov_rad = eye_.fov_rad;
-    eye_ = Turned(EyeOf(track_->PoseAt(track_s_)), look_right_rad_, look_up_rad_);
+    eye_ = Turned(EyeOf(track_.Pose()), look_right_rad_, look_up_rad_);
     if (track_lens_ == Lens::kOfEye) eye_.fov_rad = fov_rad;
   }
   eye_ = KeptAbove(eye_, ground(eye_.place), Replays() ? kReplayed_m : kStanding_m);
@@ -292,18 +323,13 @@ double Pilot::time_factor() const {
                                         : 1.0;
 }
 
-void Pilot::SkipTrack(double seconds) {
-  if (track_) track_s_ = std::clamp(track_s_ + seconds, track_->begin_s(), track_->end_s());
-}
-
 std::optional<UtcInstant> Pilot::TrackUtc() const {
-  return mode_ == FlightMode::kTrack ? track_->UtcAt(track_s_) : std::nullopt;
+  return mode_ == FlightMode::kTrack ? track_.Utc() : std::nullopt;
 }
 
 void Pilot::Centre(const GroundHeight& ground) {
   look_right_rad_ = look_up_rad_ = 0.0;
-  aircraft_.held_bank_rad = 0.0;
-  aircraft_.held_path_rad = 0.0;
+  aircraft_.Level();
   if (mode_ == FlightMode::kFree) eye_.roll_rad = eye_.pitch_rad = 0.0;
   Show(ground);
 }
@@ -311,34 +337,8 @@ void Pilot::Centre(const GroundHeight& ground) {
 void Pilot::Lift(double height_m, const GroundHeight& ground) {
   if (mode_ == FlightMode::kTrack) return;
   eye_.place.height_m += height_m;
-  if (mode_ == FlightMode::kAircraft) {
-    const AircraftState before = aircraft_;
-    const AircraftReadout now = ReadoutOf(before, kind_, ellipsoid_);
-    GeodeticPosition place = GeodeticFromEcef(ellipsoid_, before.place);
-    place.height_m += height_m;
-    const bool flies = now.speed_m_per_s > 1.3 * StallSpeed(kind_, place.height_m);
-    if (flies) {
-      aircraft_.place = EcefFromGeodetic(ellipsoid_, place);
-    } else {
-      aircraft_ = LevelFlight(kind_, ellipsoid_, place, now.heading_rad);
-    }
-    shown_ = aircraft_;
-  }
+  if (mode_ == FlightMode::kAircraft) aircraft_.Lift(height_m);
   Show(ground);
-}
-
-void Pilot::SetThrottle(double share) {
-  if (mode_ != FlightMode::kAircraft) return;
-  aircraft_.throttle = shown_.throttle = std::clamp(share, 0.0, 1.0);
-  AutopilotTargets targets = autopilot_.targets();
-  targets.speed_m_per_s.reset();
-  autopilot_.Set(targets);
-}
-
-void Pilot::ToggleHold(Autopilot::Hold hold) {
-  if (mode_ != FlightMode::kAircraft) return;
-  autopilot_.Toggle(hold, ReadoutOf(aircraft_, kind_, ellipsoid_),
-                    GeodeticFromEcef(ellipsoid_, aircraft_.place).height_m);
 }
 
 FlightReadout Pilot::Readout(const GroundHeight& ground) const {
@@ -351,9 +351,9 @@ FlightReadout Pilot::Readout(const GroundHeight& ground) const {
   readout.speed_factor = time_factor();
   if (mode_ == FlightMode::kFree) readout.speed_factor = free_factor_;
   if (mode_ == FlightMode::kAircraft) {
-    readout.aircraft = ReadoutOf(shown_, kind_, ellipsoid_);
-    readout.aircraft_name = kind_.name;
-    readout.autopilot = TextOf(autopilot_.targets());
+    readout.aircraft = aircraft_.Readout();
+    readout.aircraft_name = aircraft_.name();
+    readout.autopilot = TextOf(aircraft_.autopilot().targets());
     readout.speed_m_per_s = readout.aircraft->speed_m_per_s;
     readout.vertical_speed_m_per_s = readout.aircraft->vertical_speed_m_per_s;
   }

@@ -76,6 +76,67 @@ class Autopilot {
   std::optional<double> speed_before_m_per_s_;
 };
 
+/// An aircraft in flight with its autopilot.
+class PilotedAircraft {
+ public:
+  explicit PilotedAircraft(const Ellipsoid& ellipsoid) : ellipsoid_(ellipsoid) {}
+
+  /// Starts a level flight at a place; less than 15 m above the ground, the aircraft stands on it.
+  void Begin(GeodeticPosition place, double heading_rad, const GroundHeight& ground);
+  /// Flies for a number of seconds. If the ground is more than 30 m above the aircraft because its
+  /// terrain was loaded, the flight continues 150 m above the ground.
+  void Fly(const Stick& stick, double seconds, const GroundHeight& ground);
+  /// Raises the aircraft. If it is too slow, it gets enough speed to fly.
+  void Lift(double height_m);
+  /// Levels wings and path; the autopilot keeps its targets.
+  void Level();
+
+  /// Sets the throttle, clamped to [0, 1], and stops holding the speed.
+  void SetThrottle(double share);
+  /// Starts or stops holding a value.
+  void Toggle(Autopilot::Hold hold);
+  [[nodiscard]] Autopilot& autopilot() { return autopilot_; }
+  [[nodiscard]] const Autopilot& autopilot() const { return autopilot_; }
+
+  [[nodiscard]] AircraftReadout Readout() const { return ReadoutOf(shown_, kind_, ellipsoid_); }
+  [[nodiscard]] std::string_view name() const { return kind_.name; }
+  /// Returns the eye of the pilot, turned to the right and upwards.
+  [[nodiscard]] Eye EyeOfPilot(double right_rad, double up_rad, double fov_rad) const {
+    return EyeIn(shown_, kind_, ellipsoid_, right_rad, up_rad, fov_rad);
+  }
+
+ private:
+  [[nodiscard]] AircraftState NextState(Autopilot& autopilot, const Stick& stick, double step_s,
+                                        const GroundHeight& ground) const;
+  void LeaveTheGround(const GroundHeight& ground);
+
+  Ellipsoid ellipsoid_;
+  AircraftKind kind_ = kLightAircraft;
+  AircraftState state_, shown_;
+  Autopilot autopilot_;
+  double rest_s_ = 0.0;  // time not yet flown, less than a step
+};
+
+/// A camera path, and the position along it. There may be no path.
+class FollowedTrack {
+ public:
+  FollowedTrack() = default;
+  /// Starts at the beginning of a path; null: there is none.
+  explicit FollowedTrack(std::shared_ptr<const CameraPath> path);
+
+  [[nodiscard]] bool exists() const { return path_ != nullptr; }
+  [[nodiscard]] bool IsAtEnd() const { return !path_ || at_s_ >= path_->end_s(); }
+  /// Moves along the path, at most to its ends.
+  void Skip(double seconds);
+  /// Return pose and time according to the path, which must exist; nullopt if it has no times.
+  [[nodiscard]] CameraPose Pose() const { return path_->PoseAt(at_s_); }
+  [[nodiscard]] std::optional<UtcInstant> Utc() const { return path_->UtcAt(at_s_); }
+
+ private:
+  std::shared_ptr<const CameraPath> path_;
+  double at_s_ = 0.0;
+};
+
 /// Direction of motion: heading clockwise from north, climb angle above the horizontal.
 struct Course {
   double heading_rad, climb_rad;
@@ -103,8 +164,7 @@ class Pilot {
   [[nodiscard]] const Eye& eye() const { return eye_; }
 
   /// Changes the mode at the current position. A track starts at its beginning, or where it was
-  /// left. Less than 15 m above the ground, the aircraft stands on it. Returns the reason if the
-  /// mode cannot be entered, otherwise nullopt.
+  /// left. Returns the reason if the mode cannot be entered, otherwise nullopt.
   [[nodiscard]] std::optional<std::string> Enter(FlightMode mode, const GroundHeight& ground);
   /// Moves the eye to another position in the current mode; the mode kTrack changes to the free
   /// camera.
@@ -116,15 +176,13 @@ class Pilot {
   /// @param lens  source of the field of view: the eye, or the track (a replay)
   enum class Lens { kOfEye, kOfTrack };
   void SetTrack(std::shared_ptr<const CameraPath> track, Lens lens = Lens::kOfEye);
-  [[nodiscard]] bool HasTrack() const { return track_ != nullptr; }
+  [[nodiscard]] const FollowedTrack& track() const { return track_; }
   /// Returns whether a track is followed with its own field of view.
   [[nodiscard]] bool Replays() const {
     return mode_ == FlightMode::kTrack && track_lens_ == Lens::kOfTrack;
   }
-  [[nodiscard]] bool IsAtEndOfTrack() const { return !track_ || track_s_ >= track_->end_s(); }
 
-  /// Advances by a number of real seconds. If the ground is more than 30 m above the aircraft
-  /// because its terrain was loaded, the flight continues 150 m above the ground.
+  /// Advances by a number of real seconds.
   void Advance(const PilotControls& controls, double seconds, const GroundHeight& ground);
 
   /// Increases (+1) or decreases (-1) the speed by a factor of 1.5: for the free camera between
@@ -134,7 +192,7 @@ class Pilot {
   /// Returns the ratio of aircraft or track time to real time; the clock of the scene runs with it.
   [[nodiscard]] double time_factor() const;
   /// Moves along the track, at most to its ends.
-  void SkipTrack(double seconds);
+  void SkipTrack(double seconds) { track_.Skip(seconds); }
   /// Returns the time according to the track; nullopt in other modes.
   [[nodiscard]] std::optional<UtcInstant> TrackUtc() const;
 
@@ -145,22 +203,17 @@ class Pilot {
   /// Raises the eye. An aircraft that is too slow gets enough speed to fly. A track does not move.
   void Lift(double height_m, const GroundHeight& ground);
 
-  /// Sets the throttle, clamped to [0, 1], and stops holding the speed; in aircraft mode only.
-  void SetThrottle(double share);
-  /// Starts or stops holding a value; in aircraft mode only.
-  void ToggleHold(Autopilot::Hold hold);
-  void ReleaseAutopilot() { autopilot_.Release(); }
-  [[nodiscard]] Autopilot& autopilot() { return autopilot_; }
-  [[nodiscard]] const Autopilot& autopilot() const { return autopilot_; }
+  /// Return the aircraft; null in other modes.
+  [[nodiscard]] PilotedAircraft* aircraft() {
+    return mode_ == FlightMode::kAircraft ? &aircraft_ : nullptr;
+  }
+  [[nodiscard]] const PilotedAircraft* aircraft() const {
+    return mode_ == FlightMode::kAircraft ? &aircraft_ : nullptr;
+  }
 
   [[nodiscard]] FlightReadout Readout(const GroundHeight& ground) const;
 
  private:
-  void BeginFlight(double heading_rad, const GroundHeight& ground);
-  void FlyAircraft(const Stick& stick, double seconds, const GroundHeight& ground);
-  [[nodiscard]] AircraftState NextState(Autopilot& autopilot, const Stick& stick, double step_s,
-                                        const GroundHeight& ground) const;
-  void LeaveTheGround(const GroundHeight& ground);
   void NoteSpeed(const GeodeticPosition& before, double seconds);
   void LookAround(const PilotControls& controls);
   void Show(const GroundHeight& ground);
@@ -173,15 +226,9 @@ class Pilot {
   double look_right_rad_ = 0.0, look_up_rad_ = 0.0;
   double speed_m_per_s_ = 0.0, vertical_speed_m_per_s_ = 0.0;
   std::optional<Course> course_;
-
-  AircraftKind kind_ = kLightAircraft;
-  AircraftState aircraft_, shown_;
-  Autopilot autopilot_;
-  double rest_s_ = 0.0;  // time not yet flown, less than a step
-
-  std::shared_ptr<const CameraPath> track_;
+  PilotedAircraft aircraft_;
+  FollowedTrack track_;
   Lens track_lens_ = Lens::kOfEye;
-  double track_s_ = 0.0;
 };
 
 }  // namespace alpenglow::viewer

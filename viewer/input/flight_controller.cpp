@@ -82,22 +82,21 @@ std::optional<Autopilot::Hold> HoldOf(Action action) {
 
 }  // namespace
 
-std::optional<std::string> FlightController::Do(Action action, const GroundHeight& ground,
-                                                const MoonEventAfter& moon) {
+std::optional<std::string> FlightController::Do(Action action, const GroundHeight& ground) {
   if (auto said = DoFlight(action, ground)) return said;
   if (auto said = DoAutopilot(action)) return said;
-  return DoTime(action, moon);
+  return DoTime(action);
 }
 
 void FlightController::Advance(const PilotControls& controls, double seconds,
                                const GroundHeight& ground) {
   const bool stands = clock_.paused() && pilot_.mode() != FlightMode::kFree;
-  const bool replays = pilot_.Replays() && !pilot_.IsAtEndOfTrack();
+  const bool replays = pilot_.Replays() && !pilot_.track().IsAtEnd();
   const auto before = replays ? pilot_.TrackUtc() : std::nullopt;
   pilot_.Advance(controls, stands ? 0.0 : seconds, ground);
   AdvanceClock(before, seconds);
   if (!pilot_.Replays()) waits_.reset();
-  if (pilot_.Replays() && pilot_.IsAtEndOfTrack()) EndReplay(ground);
+  if (pilot_.Replays() && pilot_.track().IsAtEnd()) EndReplay(ground);
 }
 
 // During a replay the clock moves with the replayed time, including pauses and jumps; offsets set
@@ -180,7 +179,7 @@ std::optional<std::string> FlightController::DoFlight(Action action, const Groun
       const int step = action == Action::kNextMode ? 1 : -1;
       const FlightMode next = Stepped(pilot_.mode(), step);
       // Without a track the cycle has two modes.
-      const bool skips = next == FlightMode::kTrack && !pilot_.HasTrack();
+      const bool skips = next == FlightMode::kTrack && !pilot_.track().exists();
       return Enter(skips ? Stepped(next, step) : next, ground);
     }
     case Action::kNarrowerView:
@@ -199,22 +198,24 @@ std::optional<std::string> FlightController::DoFlight(Action action, const Groun
 std::optional<std::string> FlightController::DoAutopilot(Action action) {
   const std::optional<Autopilot::Hold> hold = HoldOf(action);
   if (!hold && action != Action::kAutopilotOff) return std::nullopt;
+  PilotedAircraft* aircraft = pilot_.aircraft();
+  if (aircraft == nullptr) return "";
   if (hold) {
-    pilot_.ToggleHold(*hold);
+    aircraft->Toggle(*hold);
   } else {
-    pilot_.ReleaseAutopilot();
+    aircraft->autopilot().Release();
   }
-  const std::string text = TextOf(pilot_.autopilot().targets());
+  const std::string text = TextOf(aircraft->autopilot().targets());
   return text.empty() ? "autopilot off" : text;
 }
 
-std::string FlightController::JumpTo(SkyEvent event, const MoonEventAfter& moon) {
-  const bool jumped = clock_.JumpToNext(event, pilot_.eye().place, moon);
+std::string FlightController::JumpTo(SkyEvent event) {
+  const bool jumped = clock_.JumpToNext(event, pilot_.eye().place);
   return jumped ? NameOf(event) : fmt::format("no {} here within a year", NameOf(event));
 }
 
-std::optional<std::string> FlightController::DoTime(Action action, const MoonEventAfter& moon) {
-  if (const auto event = EventOf(action)) return JumpTo(*event, moon);
+std::optional<std::string> FlightController::DoTime(Action action) {
+  if (const auto event = EventOf(action)) return JumpTo(*event);
   if (const auto shift_s = ShiftOf(action)) {
     clock_.Shift(*shift_s);
     return "";

@@ -26,12 +26,11 @@ class FlightController {
 
   /// Executes an action. Returns the result as text for the screen (empty: no message); no value if
   /// the action concerns neither flight nor time.
-  [[nodiscard]] std::optional<std::string> Do(Action action, const GroundHeight& ground,
-                                              const MoonEventAfter& moon = {});
+  [[nodiscard]] std::optional<std::string> Do(Action action, const GroundHeight& ground);
 
   /// Moves the clock to the next occurrence of an event; returns its name, or a message if there is
   /// none within a year.
-  [[nodiscard]] std::string JumpTo(SkyEvent event, const MoonEventAfter& moon);
+  [[nodiscard]] std::string JumpTo(SkyEvent event);
 
   /// Flies to a place of the list: with the aircraft onto the runway, otherwise above it.
   void GoTo(const NamedPlace& there, const GroundHeight& ground) {
@@ -53,7 +52,7 @@ class FlightController {
  private:
   [[nodiscard]] std::optional<std::string> DoFlight(Action action, const GroundHeight& ground);
   [[nodiscard]] std::optional<std::string> DoAutopilot(Action action);
-  [[nodiscard]] std::optional<std::string> DoTime(Action action, const MoonEventAfter& moon);
+  [[nodiscard]] std::optional<std::string> DoTime(Action action);
   [[nodiscard]] std::string Enter(FlightMode mode, const GroundHeight& ground);
   void SkipTrack(double seconds);
   void AdvanceClock(const std::optional<UtcInstant>& before, double seconds);
