@@ -189,16 +189,14 @@ void PictureQueue::Note(double share) {
 }
 
 void PictureQueue::Write(const PictureRequest& request, SecondFlight& second) {
-  FlightSession& flight = second.flight;
+  PictureWriter pictures(second.flight);
   const auto progress = [this](double share) { Note(share); };
-  flight.TakeUp(request.moment);
-  if (!request.instruments) return flight.WritePicture(request.file, request.size, progress);
+  second.flight.TakeUp(request.moment);
+  if (!request.instruments) return pictures.Write(request.file, request.size, progress);
   const ImageSize& size = request.size;
   const RenderTarget screen(size.width, size.height, RenderTarget::Depth::kNone);
-  const Development development =
-      flight.PaintStill({screen.framebuffer(), size.width, size.height}, progress);
-  Metadata header = flight.PictureHeader(size);
-  header.merge(flight.ExposureHeader(development));
+  const Metadata header =
+      pictures.PaintStill({screen.framebuffer(), size.width, size.height}, progress);
   WritePng(request.file, WithInstruments(screen.Read()), header);
 }
 

@@ -23,6 +23,7 @@
 #include <vector>
 
 #include "viewer/flight_session.h"
+#include "viewer/picture_writer.h"
 
 namespace alpenglow::viewer {
 

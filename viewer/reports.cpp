@@ -166,8 +166,7 @@ double LeastMs(const std::function<void()>& draw) {
   return least_ms;
 }
 
-TimedPicture Paint(FlightSession& flight, const PaintedView& view, const PaintSizes& sizes) {
-  SkyPainter& painter = flight.painter();
+TimedPicture Paint(SkyPainter& painter, const PaintedView& view, const PaintSizes& sizes) {
   painter.Use(sizes);
   painter.Settle(view);
   const double best_ms = LeastMs([&] { painter.Paint(view); });
@@ -203,14 +202,14 @@ class OneRay {
   Upscaler enlarger_{Upscaler::Shows::kLight};
 };
 
-Image ReferenceOf(const FlightSession& flight, const ImageSize& size) {
+Image ReferenceOf(const ReferenceScene& scene, const PaintedView& view) {
   RenderSettings settings;
-  settings.width = size.width;
-  settings.height = size.height;
+  settings.width = view.width;
+  settings.height = view.height;
   settings.samples_per_pixel = kSamples;
   settings.filter = PixelFilter::Kind::kBox;
   settings.layers = LayersOfEdges();
-  return RendererOf(flight.SceneForRenderer())->Render(flight.now(), settings);
+  return RendererOf(scene)->Render(view.now, settings);
 }
 
 std::string Row(const std::string& name, const ViewDifference& is, const std::string& time) {
@@ -220,10 +219,10 @@ std::string Row(const std::string& name, const ViewDifference& is, const std::st
 
 // Compares a view that is painted at a fraction of its size and upscaled with the view at one ray
 // per pixel.
-std::string FewerRays(FlightSession& flight, const PaintedView& view,
+std::string FewerRays(SkyPainter& painter, const PaintedView& view,
                       const std::vector<Channel>& edges, double scale) {
-  flight.painter().Settle(view);
-  OneRay of_view(flight.painter(), view);
+  painter.Settle(view);
+  OneRay of_view(painter, view);
   TimedPicture all = of_view.At(1.0);
   all.image.layers = edges;
   const TimedPicture fewer = of_view.At(scale);
@@ -233,32 +232,30 @@ std::string FewerRays(FlightSession& flight, const PaintedView& view,
 
 }  // namespace
 
-std::string ExplainView(FlightSession& flight, const ImageSize& size) {
-  flight.Settle(size);
-  const Quality quality = flight.quality_rule().fixed.value_or(Quality::kMedium);
+std::string ExplainView(SkyPainter& painter, const ReferenceScene& scene, const PaintedView& view,
+                        Quality quality) {
   const PaintSizes sizes = SizesOf(quality);
-  const PaintedView view{flight.eye(), flight.now(), size.width, size.height};
-  const Image by_renderer = ReferenceOf(flight, size);
-  const TimedPicture painted = Paint(flight, view, sizes);
+  const Image by_renderer = ReferenceOf(scene, view);
+  const TimedPicture painted = Paint(painter, view, sizes);
   const ViewDifference all = DifferenceOf(by_renderer, painted.image);
   std::string text = fmt::format(
       "quality {}, {}x{}, {} rays a pixel; {:.1f} % of pixels are edges and left out\n"
       "{:<26}{:>10}{:>11}{:>11}  {:>10}\n",
-      NameOf(quality), size.width, size.height, kSamples, 100.0 * all.edge_share, "off by", "mean",
+      NameOf(quality), view.width, view.height, kSamples, 100.0 * all.edge_share, "off by", "mean",
       "99 %", "99.9 %", "frame");
   text += Row("picture, from renderer's", all, fmt::format("{:.1f} ms", painted.frame_ms));
   for (const Shortcut& shortcut : kShortcuts) {
     PaintSizes better = sizes;
     shortcut.perfect(better);
-    const TimedPicture without = Paint(flight, view, better);
+    const TimedPicture without = Paint(painter, view, better);
     Image reference = without.image;
     reference.layers = by_renderer.layers;
     text += Row(shortcut.name, DifferenceOf(reference, painted.image),
                 fmt::format("saves {:.1f}", without.frame_ms - painted.frame_ms));
   }
-  flight.painter().Use(sizes);
+  painter.Use(sizes);
   const double scale = PaintedAlways(quality).scale;
-  return scale < 1.0 ? text + FewerRays(flight, view, by_renderer.layers, scale) : text;
+  return scale < 1.0 ? text + FewerRays(painter, view, by_renderer.layers, scale) : text;
 }
 
 }  // namespace alpenglow::viewer

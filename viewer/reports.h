@@ -18,8 +18,10 @@
 #include <vector>
 
 #include "viewer/flight/flight_recorder.h"
-#include "viewer/flight_session.h"
 #include "viewer/gl/pass_timer.h"
+#include "viewer/passes/auto_quality.h"
+#include "viewer/passes/reference_picture.h"
+#include "viewer/passes/sky_painter.h"
 
 namespace alpenglow::viewer {
 
@@ -89,8 +91,9 @@ class Benchmark {
 
 /// Returns a text table of errors: of the picture against the renderer's, and of each shortcut
 /// against its best setting. Its columns are the mean, 99 % and 99.9 % of pixels (ViewDifference)
-/// and the frame time that the shortcut saves. The renderer uses the land that the scene names, or
-/// for several elevation models the land that is loaded around the eye.
-[[nodiscard]] std::string ExplainView(FlightSession& flight, const ImageSize& size);
+/// and the frame time that the shortcut saves. Everything must be ready for the view
+/// (SkyPainter::WaitUntilReady).
+[[nodiscard]] std::string ExplainView(SkyPainter& painter, const ReferenceScene& scene,
+                                      const PaintedView& view, Quality quality);
 
 }  // namespace alpenglow::viewer

@@ -18,6 +18,7 @@
 #include "viewer/gl/gl_context.h"
 #include "viewer/gl/picture_tiles.h"
 #include "viewer/gl/render_target.h"
+#include "viewer/picture_writer.h"
 #include "viewer/reports.h"
 #include "viewer/skyview_options.h"
 #include "viewer/viewer_app.h"
@@ -80,7 +81,8 @@ UtcInstant StartOf(const SkyviewOptions& options, const Scene& scene) {
 void PaintHeadless(const SkyviewOptions& options, FlightSession& flight, const ImageSize& size,
                    FlightRecorder& recorder) {
   constexpr double kFrame_s = 1.0 / 60.0;
-  if (options.record) flight.Settle(size);  // points are recorded only once the ground is known
+  if (options.record)
+    flight.WaitUntilReady(size);  // points are recorded only once the ground is known
   recorder.Note(0.0, flight.eye(), flight.now());
   for (int frame = 1; frame < options.frames; ++frame) {
     flight.Advance({}, kFrame_s);
@@ -91,7 +93,7 @@ void PaintHeadless(const SkyviewOptions& options, FlightSession& flight, const I
     ViewerApp deck(flight, none, {options.hud_scale > 0.0 ? options.hud_scale : 1.0, true, {}});
     deck.WritePicture(*options.screenshot, size);
   } else {
-    flight.WritePicture(*options.screenshot, size);
+    PictureWriter(flight).Write(*options.screenshot, size);
   }
 }
 
@@ -133,7 +135,7 @@ void Fly(const SkyviewOptions& options, FlightSession& flight, Window& window,
                  {scale,
                   options.hud != "off",
                   {.invert_y = options.invert_y, .invert_look_y = options.invert_y}});
-  flight.AwaitGround();
+  flight.standpoint().AwaitGround();
   const LossOfDisplay loss(window, recorder, deck);
   bool looks = false;
   for (Clock::time_point before = Clock::now();;) {
@@ -153,9 +155,9 @@ void Fly(const SkyviewOptions& options, FlightSession& flight, Window& window,
     if (events.minimised || window.width() == 0 || window.height() == 0) continue;
     deck.Paint(ScreenOf(window), seconds);
     window.Swap();
-    flight.NoteFrame(std::chrono::duration<double>(Clock::now() - now).count());
+    flight.frames().NoteFrame(std::chrono::duration<double>(Clock::now() - now).count());
     if (options.screenshot && ++frames == options.frames) {
-      flight.WritePicture(*options.screenshot, {window.width(), window.height()});
+      PictureWriter(flight).Write(*options.screenshot, {window.width(), window.height()});
       return;
     }
   }
@@ -167,11 +169,11 @@ void RunBenchmark(double seconds, FlightSession& flight, const ImageSize& size, 
                              RenderTarget::Depth::kNone);
   const ToneMapPass::Screen screen{window == nullptr ? picture.framebuffer() : 0, size.width,
                                    size.height};
-  flight.Settle(size);
+  flight.WaitUntilReady(size);
   const Eye start = flight.eye();
   const UtcInstant begin = flight.now();
   Benchmark benchmark(seconds);
-  flight.painter().SetTimer(&benchmark.timer());
+  flight.frames().SetTimer(&benchmark.timer());
   for (double before_s = 0.0; benchmark.NextFrame(); before_s = benchmark.elapsed_s()) {
     ThrowIfInterrupted();
     if (window != nullptr && window->Poll().close) break;
@@ -179,22 +181,24 @@ void RunBenchmark(double seconds, FlightSession& flight, const ImageSize& size, 
     const double frame_s = benchmark.elapsed_s() - before_s;
     flight.Paint(screen, frame_s);
     if (window != nullptr) window->Swap();
-    flight.NoteFrame(frame_s);
+    flight.frames().NoteFrame(frame_s);
   }
-  flight.painter().SetTimer(nullptr);
+  flight.frames().SetTimer(nullptr);
   Print(benchmark.Text());
-  Say(fmt::format("skyview: {}; quality {}\n", benchmark.WorstText(), flight.QualityText()));
+  Say(fmt::format("skyview: {}; quality {}\n", benchmark.WorstText(),
+                  flight.frames().QualityText()));
 }
 
 void WriteFilm(const SkyviewOptions& options, const CameraPath& path, const ImageSize& size,
                FlightSession& flight) {
   const double length_s = path.end_s() - path.begin_s();
   const int frames = 1 + static_cast<int>(length_s * options.fps);
+  PictureWriter pictures(flight);
   const VideoSettings settings{
       size.width, size.height, options.fps, {{"alpenglow.replay", *options.replay}}};
   WriteVideo(*options.video, settings, frames, [&](int number) {
     const double seconds = number == 0 ? 0.0 : 1.0 / options.fps;
-    return flight.Film(ReplayAt(path, path.begin_s() + number / options.fps), size, seconds);
+    return pictures.Film(ReplayAt(path, path.begin_s() + number / options.fps), size, seconds);
   });
 }
 
@@ -235,7 +239,8 @@ void RequireOutputs(const SkyviewOptions& options, const Scene& scene) {
 
 /// Writes the notes about the land to standard error.
 void SayNotes(FlightSession& flight) {
-  for (const std::string& note : flight.TakeNotes()) Say(fmt::format("skyview: {}\n", note));
+  for (const std::string& note : flight.edits().TakeNotes())
+    Say(fmt::format("skyview: {}\n", note));
 }
 
 /// Returns whether only linear pictures are requested; these can be assembled from tiles.
@@ -270,20 +275,20 @@ int Run(const SkyviewOptions& options) {
       {LandSourceOf(scene), QualityRuleFromText(options.quality), options.frame_rate, size,
        std::nullopt, FlightExposureFromText(options.exposure), LookOf(options),
        first_air.valid() ? first_air.get() : FirstAir()});
-  flight.Place(PlacementOf(options));
-  if (options.place) flight.GoTo(*options.place);
+  flight.standpoint().Place(PlacementOf(options));
+  if (options.place) flight.standpoint().GoTo(*options.place);
   if (options.track) {
     const Track track = ReadTrack(*options.track);
     if (!track.note.empty())
       Say(fmt::format("skyview: warning: {}: {}\n", *options.track, track.note));
-    flight.BringRangeTo(track.points[track.points.size() / 2].place);
-    flight.Follow(PathAlong(track, {}, flight.Ground()));
+    flight.edits().BringRangeTo(track.points[track.points.size() / 2].place);
+    flight.Follow(PathAlong(track, {}, flight.edits().Ground()));
   }
-  if (path) flight.BringRangeTo(path->PoseAt(path->begin_s()).place);
+  if (path) flight.edits().BringRangeTo(path->PoseAt(path->begin_s()).place);
   FlightRecorder recorder = options.record ? FlightRecorder(*options.record) : FlightRecorder();
   if (window) window->AtLostDisplay([&recorder] { recorder.Finish(); });
   if (options.explain) {
-    Print(ExplainView(flight, size));
+    Print(flight.Explain(size));
   } else if (options.benchmark) {
     const bool shown = window && window->width() > 0 && window->height() > 0;
     const ImageSize drawn = shown ? ImageSize{window->width(), window->height()} : size;
@@ -294,7 +299,8 @@ int Run(const SkyviewOptions& options) {
   } else if (options.video) {
     WriteFilm(options, *path, size, flight);
   } else if (path) {
-    flight.WriteReplay(*path, ReplayPictures(*options.screenshot, options.frames), size, recorder);
+    PictureWriter(flight).WriteReplay(*path, ReplayPictures(*options.screenshot, options.frames),
+                                      size, recorder);
   } else {
     PaintHeadless(options, flight, size, recorder);
   }

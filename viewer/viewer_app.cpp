@@ -41,9 +41,9 @@ const char* NameOf(FlightMode mode) {
   return "free camera";
 }
 
-HudFlight FlightOf(const FlightSession& flight) {
+HudFlight FlightOf(FlightSession& flight) {
   const Eye& eye = flight.eye();
-  const FlightReadout readout = flight.cockpit().pilot().Readout(flight.Ground());
+  const FlightReadout readout = flight.cockpit().pilot().Readout(flight.edits().Ground());
   HudFlight shown;
   shown.mode = readout.aircraft ? std::string(readout.aircraft_name) : NameOf(readout.mode);
   if (flight.cockpit().pilot().Replays()) shown.mode = "replay";
@@ -53,7 +53,7 @@ HudFlight FlightOf(const FlightSession& flight) {
   shown.fov_rad = eye.fov_rad;
   const double height_m = std::max(eye.place.height_m, 0.0);
   shown.horizon_dip_rad =
-      SkyViewMap(OnOsculatingSphere(flight.medium(), eye.place.latitude_rad), height_m, 1.0)
+      SkyViewMap(OnOsculatingSphere(flight.edits().planet(), eye.place.latitude_rad), height_m, 1.0)
           .horizon_zenith_angle_rad() -
       0.5 * kPi;
   shown.ground_speed_m_per_s = readout.speed_m_per_s;
@@ -70,9 +70,11 @@ HudFlight FlightOf(const FlightSession& flight) {
   return shown;
 }
 
-HudTime TimeOf(const FlightSession& flight) {
+std::string ZoneOf(FlightSession& flight) { return flight.edits().ZoneAt(flight.eye().place); }
+
+HudTime TimeOf(FlightSession& flight) {
   const SceneClock& clock = flight.cockpit().clock();
-  const LocalTime local = LocalTimeAt(clock.now(), flight.zone());
+  const LocalTime local = LocalTimeAt(clock.now(), ZoneOf(flight));
   HudTime time;
   time.utc = FormatUtc(clock.now());
   time.local = local.time;
@@ -83,24 +85,24 @@ HudTime TimeOf(const FlightSession& flight) {
   return time;
 }
 
-HudSky SkyOf(const FlightSession& flight) {
-  const BendingAir air = GentleAirOf(flight.medium());
+HudSky SkyOf(FlightSession& flight) {
+  const BendingAir air = GentleAirOf(flight.edits().planet());
   const SunPosition sun = ApparentSunAt(flight.eye().place, flight.now(), air);
   const MoonPosition moon = ApparentMoonAt(flight.eye().place, flight.now(), air);
   return {sun.azimuth_rad, sun.elevation_rad,
           HudMoon{moon.azimuth_rad, moon.elevation_rad, moon.IlluminatedFraction()}};
 }
 
-HudAir AirOf(const FlightSession& flight) {
-  const Medium air = Changed(flight.medium(), flight.air_choice());
+HudAir AirOf(FlightSession& flight) {
+  const Medium& planet = flight.edits().planet();
+  const Medium air = Changed(planet, flight.edits().air_choice());
   HudAir shown;
-  shown.planet = flight.medium().name;
+  shown.planet = planet.name;
   shown.visibility_km = std::min(1e-3 * VisibilityOf(air), 1e4);
   const double height_m = flight.eye().place.height_m;
-  const SceneFog* fog = flight.painter().fog();
-  const double fog_per_m = fog != nullptr ? fog->ExtinctionAt(height_m) : 0.0;
-  shown.visibility_here_km = std::min(1e-3 * VisibilityAt(air, height_m, fog_per_m), 1e4);
-  shown.aerosol_scale = flight.air_choice().aerosol;
+  shown.visibility_here_km =
+      std::min(1e-3 * VisibilityAt(air, height_m, flight.frames().FogAt(height_m)), 1e4);
+  shown.aerosol_scale = flight.edits().air_choice().aerosol;
   shown.ozone_du = OzoneDobson(air);
   double albedo = 0.0;
   for (const double value : air.ground_albedo) albedo += value;
@@ -121,16 +123,17 @@ std::string WhiteBalanceOf(const Look& look) {
   return fmt::format("{:.0f} K", look.white.kelvin.value_or(kDaylight_k));
 }
 
-HudExposure ExposureOf(const FlightSession& flight) {
-  const FlightExposure& exposure = flight.exposure();
+HudExposure ExposureOf(const ExposureControl& control) {
+  const FlightExposure& exposure = control.exposure();
+  const Look& look = control.look();
   HudExposure shown;
   shown.ev100 = exposure.ev100.value_or(15.0);
   shown.locked = exposure.locked;
   shown.compensation_ev = exposure.compensation_ev;
-  shown.tone_curve = NameOf(flight.look().curve);
-  shown.look = NameOf(flight.look().agx);
-  shown.white_balance = WhiteBalanceOf(flight.look());
-  shown.white_k = flight.white_k();
+  shown.tone_curve = NameOf(look.curve);
+  shown.look = NameOf(look.agx);
+  shown.white_balance = WhiteBalanceOf(look);
+  shown.white_k = control.white_k();
   return shown;
 }
 
@@ -141,16 +144,15 @@ std::vector<Action> ModesOf(const Pilot& pilot) {
   return modes;
 }
 
-std::vector<HudRow> TablesOf(const FlightSession& flight) {
-  const SkyPainter& painter = flight.painter();
-  const LandFigures land = painter.land().Figures();
+std::vector<HudRow> TablesOf(const TableFigures& figures) {
+  const LandFigures& land = figures.land;
   const auto ms = [](double seconds) { return fmt::format("{:.0f} ms", 1e3 * seconds); };
   const auto mb = [](std::size_t bytes) {
     return fmt::format("{:.0f} MB", 1e-6 * static_cast<double>(bytes));
   };
-  return {{"air", ms(painter.air().making_s()), ""},
-          {"light on land", ms(painter.ground().making_s()), ""},
-          {"shade", ms(painter.shade().making_s()), ""},
+  return {{"air", ms(figures.air_s), ""},
+          {"light on land", ms(figures.ground_s), ""},
+          {"shade", ms(figures.shade_s), ""},
           {fmt::format("land, {} triangles", land.triangles), "",
            mb(land.tile_bytes + land.chunk_bytes + land.card_bytes)}};
 }
@@ -183,6 +185,51 @@ HudProgress ProgressOf(const PictureUnderWay& picture) {
   return {fmt::format("Picture {} ({} more to come):", name, picture.waiting), picture.share};
 }
 
+// Carries out an action of the flight. Returns a message about its result, which is empty if there
+// is nothing to report; nullopt for other actions.
+std::optional<std::string> Carry(Action action, FlightSession& flight) {
+  if (auto said = flight.cockpit().Do(action, flight.edits().Ground())) return said;
+  constexpr double kStep_ev = 1.0 / 3.0;
+  constexpr double kHazeStep = 1.25;
+  ExposureControl& exposure = flight.exposure();
+  SceneEdits& edits = flight.edits();
+  AirChoice choice = edits.air_choice();
+  switch (action) {
+    case Action::kExposureLock:
+      exposure.Lock(!exposure.exposure().locked);
+      return exposure.exposure().locked ? "exposure locked" : "exposure follows the meter";
+    case Action::kBrighter:
+    case Action::kDarker:
+      exposure.Compensate(exposure.exposure().compensation_ev +
+                          (action == Action::kBrighter ? kStep_ev : -kStep_ev));
+      return fmt::format("exposure {:+.1f} EV", exposure.exposure().compensation_ev);
+    case Action::kResetExposure:
+      exposure.Reset();
+      return "exposure follows the meter";
+    case Action::kClearer:
+    case Action::kHazier:
+      choice.aerosol = std::clamp(
+          choice.aerosol * (action == Action::kHazier ? kHazeStep : 1.0 / kHazeStep), 1e-3, 1000.0);
+      edits.Use(choice, flight.eye().place);
+      return fmt::format("visibility {:.1f} km",
+                         1e-3 * VisibilityOf(Changed(edits.planet(), choice)));
+    case Action::kResetVisibility:
+      choice.aerosol = 1.0;
+      edits.Use(choice, flight.eye().place);
+      return fmt::format("visibility {:.1f} km", 1e-3 * VisibilityOf(edits.planet()));
+    case Action::kNextQuality: {
+      const std::optional<Quality> fixed = flight.frames().rule().fixed;
+      const int next = fixed ? static_cast<int>(*fixed) + 1 : 0;
+      flight.frames().Use(next > static_cast<int>(Quality::kReference)
+                              ? QualityRule{}
+                              : QualityRule{static_cast<Quality>(next)});
+      return "quality " + flight.frames().QualityText();
+    }
+    default:
+      return std::nullopt;
+  }
+}
+
 std::string TextOf(const PictureOutcome& outcome) {
   const std::string name = outcome.file.filename().string();
   if (outcome.fault.empty()) return fmt::format("{} is written", name);
@@ -196,7 +243,7 @@ ViewerApp::ViewerApp(FlightSession& flight, FlightRecorder& recorder, const Sett
       recorder_(recorder),
       hud_({.scale = settings.hud_scale}),
       controls_(settings.controls),
-      pictures_(flight.first_scene(), flight.settings()) {
+      pictures_(flight.start().scene, flight.start().settings) {
   if (!settings.shows_hud) hud_.ToggleVisible();
 }
 
@@ -235,7 +282,7 @@ void ViewerApp::Try(const Work& work) {
 void ViewerApp::Age(double seconds) {
   for (Message& message : messages_) message.age_s += seconds;
   while (!messages_.empty() && messages_.front().age_s > kMessage_s) messages_.pop_front();
-  for (const std::string& note : flight_.TakeNotes()) Say(note);
+  for (const std::string& note : flight_.edits().TakeNotes()) Say(note);
   constexpr double kMemory = 0.1;
   frame_ms_ += kMemory * (1e3 * seconds - frame_ms_);
 }
@@ -248,18 +295,14 @@ HudModel ViewerApp::Model() const {
   model.longitude_rad = flight_.eye().place.longitude_rad;
   model.time = TimeOf(flight_);
   model.sky = SkyOf(flight_);
-  model.exposure = ExposureOf(flight_);
+  model.exposure = ExposureOf(flight_.exposure());
   model.exposure.cursor_luminance_cd_per_m2 = cursor_cd_per_m2_;
   model.air = AirOf(flight_);
-  model.speed = {frame_ms_, flight_.QualityText()};
+  model.speed = {frame_ms_, flight_.frames().QualityText()};
   for (const Message& message : messages_)
     model.messages.push_back({message.text, message.is_warning});
-  const LandProgress progress = flight_.painter().land().Progress();
-  if (progress.share < 1.0) {
-    model.progress = HudProgress{progress.text, progress.share};
-  } else if (flight_.painter().AwaitsLand()) {
-    model.progress = HudProgress{"terrain: light on the land", 1.0};
-  }
+  if (const auto progress = flight_.frames().Progress())
+    model.progress = HudProgress{progress->text, progress->share};
   if (const auto picture = pictures_.UnderWay()) model.progress = ProgressOf(*picture);
   model.recording = recorder_.file().has_value();
   model.units = units_;
@@ -278,15 +321,15 @@ HudChoices ViewerApp::Choices() const {
   choices.qualities = kQualities;
   choices.lamps = {{"landing light", landing_light_}};
   choices.table_heading = {"", "made in", "memory"};
-  choices.tables = TablesOf(flight_);
+  choices.tables = TablesOf(flight_.frames().Figures());
   return choices;
 }
 
 void ViewerApp::WantStrip() {
   if (!hud_.IsOpen(HudPanel::kPlaceAndTime)) return;
-  const std::shared_ptr<const SolvedAir>& air = flight_.painter().air().air();
+  const std::shared_ptr<const SolvedAir>& air = flight_.frames().air();
   const UtcInstant begin = AddSeconds(
-      flight_.now(), -kSecondsPerDay * LocalTimeAt(flight_.now(), flight_.zone()).day_fraction);
+      flight_.now(), -kSecondsPerDay * LocalTimeAt(flight_.now(), ZoneOf(flight_)).day_fraction);
   strip_.RequestIfNeeded({std::shared_ptr<const MultipleScattering>(air, &air->multiple_scattering),
                           flight_.eye().place, begin});
   strip_.Update();
@@ -318,15 +361,15 @@ void ViewerApp::Advance(const WindowEvents& events, const ImageSize& size, doubl
   flight_.Advance(intent.pilot, seconds);
   NoteFlight(seconds);
   const bool on_picture = events.pointer && !hud_.WantsMouse() && hud_.visible();
-  if (!on_picture) flight_.LeavePicture();
-  cursor_cd_per_m2_ = on_picture ? flight_.LuminanceAt(events.pointer->right / size.width,
-                                                       events.pointer->down / size.height)
+  if (!on_picture) flight_.frames().LeavePicture();
+  cursor_cd_per_m2_ = on_picture ? flight_.frames().LuminanceAt(events.pointer->right / size.width,
+                                                                events.pointer->down / size.height)
                                  : std::nullopt;
 }
 
 void ViewerApp::Do(Action action, const ImageSize& size) {
   Try([&] {
-    if (const auto said = flight_.Do(action)) {
+    if (const auto said = Carry(action, flight_)) {
       if (!said->empty()) Say(*said);
       return;
     }
@@ -436,49 +479,51 @@ void ViewerApp::NoteFlight(double seconds) {
   elapsed_s_ += seconds;
   flown_s_ += replays ? 0.0 : seconds;
   // The renderer cannot render points inside the ground.
-  if (!flight_.KnowsGround()) return;
+  if (!flight_.standpoint().KnowsGround()) return;
   recorder_.Note(elapsed_s_, flight_.eye(), flight_.now());
   if (!replays) flown_.Note(flown_s_, flight_.eye(), flight_.now());
 }
 
 void ViewerApp::ServeTime(const HudTimeRequest& asked) {
   SceneClock& clock = flight_.cockpit().clock();
-  if (asked.instant) clock.Type(*asked.instant, flight_.eye().place, flight_.zone());
+  if (asked.instant) clock.Type(*asked.instant, flight_.eye().place, ZoneOf(flight_));
   if (asked.day_fraction) {
     clock.Shift(kSecondsPerDay *
-                (*asked.day_fraction - LocalTimeAt(clock.now(), flight_.zone()).day_fraction));
+                (*asked.day_fraction - LocalTimeAt(clock.now(), ZoneOf(flight_)).day_fraction));
   }
   if (asked.rate) clock.SetRate(*asked.rate);
   if (asked.paused) clock.Pause(*asked.paused);
   for (const SkyEvent event : kSkyEvents) {
-    if (asked.moment == NameOf(event)) Say(flight_.JumpTo(event));
+    if (asked.moment == NameOf(event)) Say(flight_.cockpit().JumpTo(event));
   }
 }
 
 void ViewerApp::ServeAir(const HudAirRequest& asked) {
-  if (asked.planet) flight_.UsePlanet(*asked.planet);
-  AirChoice choice = flight_.air_choice();
+  SceneEdits& edits = flight_.edits();
+  const GeodeticPosition& place = flight_.eye().place;
+  if (asked.planet) edits.UsePlanet(*asked.planet, place);
+  AirChoice choice = edits.air_choice();
   if (asked.visibility_km)
-    choice.aerosol = AerosolForVisibility(flight_.medium(), 1e3 * *asked.visibility_km);
+    choice.aerosol = AerosolForVisibility(edits.planet(), 1e3 * *asked.visibility_km);
   if (asked.aerosol_scale) choice.aerosol = *asked.aerosol_scale;
   if (asked.ozone_du) choice.ozone_du = asked.ozone_du;
   if (asked.ground_albedo) choice.ground_albedo = asked.ground_albedo;
   if (asked.visibility_km || asked.aerosol_scale || asked.ozone_du || asked.ground_albedo)
-    flight_.Use(choice);
+    edits.Use(choice, place);
 }
 
 void ViewerApp::ServeLook(const HudRequest& asked) {
-  Look look = flight_.look();
+  Look look = flight_.exposure().look();
   if (asked.tone_curve) look.curve = ToneCurveFromName(*asked.tone_curve);
   if (asked.look) look.agx = AgxLookFromName(*asked.look);
   if (asked.white_balance) look.white = WhiteBalanceFromText(*asked.white_balance);
-  if (look != flight_.look()) flight_.Use(look);
+  if (look != flight_.exposure().look()) flight_.exposure().Use(look);
 }
 
 void ViewerApp::ServeFlight(const HudRequest& asked) {
   Pilot& pilot = flight_.cockpit().pilot();
   for (const Action mode : ModesOf(pilot)) {
-    if (asked.mode == RowOf(mode).does) Say(flight_.Do(mode).value_or(""));
+    if (asked.mode == RowOf(mode).does) Say(Carry(mode, flight_).value_or(""));
   }
   PilotedAircraft* aircraft = pilot.aircraft();
   if (aircraft == nullptr) return;
@@ -493,25 +538,25 @@ void ViewerApp::ServeFlight(const HudRequest& asked) {
 
 void ViewerApp::SetLandingLight(bool is_on) {
   landing_light_ = is_on;
-  flight_.SetLandingLight(is_on);
+  flight_.frames().SetLandingLight(is_on);
 }
 
 void ViewerApp::Serve(const HudRequest& asked) {
   Try([&] {
     if (asked.place) {
-      flight_.Place(
+      flight_.standpoint().Place(
           {asked.place->latitude_deg, asked.place->longitude_deg, asked.place->height_m, {}, {}});
     }
-    if (asked.named_place) flight_.GoTo(*asked.named_place);
-    if (asked.place || asked.named_place) flight_.AwaitGround();
+    if (asked.named_place) flight_.standpoint().GoTo(*asked.named_place);
+    if (asked.place || asked.named_place) flight_.standpoint().AwaitGround();
     ServeTime(asked.time);
     ServeAir(asked.air);
     if (asked.lamp) SetLandingLight(asked.lamp->is_on);
     ServeLook(asked);
-    if (asked.exposure_locked) flight_.LockExposure(*asked.exposure_locked);
-    if (asked.ev100) flight_.SetExposure(*asked.ev100);
-    if (asked.compensation_ev) flight_.Compensate(*asked.compensation_ev);
-    if (asked.quality) flight_.Use(QualityRuleFromText(*asked.quality));
+    if (asked.exposure_locked) flight_.exposure().Lock(*asked.exposure_locked);
+    if (asked.ev100) flight_.exposure().Set(*asked.ev100);
+    if (asked.compensation_ev) flight_.exposure().Compensate(*asked.compensation_ev);
+    if (asked.quality) flight_.frames().Use(QualityRuleFromText(*asked.quality));
     ServeFlight(asked);
     if (asked.units) units_ = *asked.units;
     if (asked.capture) AskForPicture(*asked.capture);
@@ -523,19 +568,16 @@ void ViewerApp::Serve(const HudRequest& asked) {
 void ViewerApp::WritePicture(const std::filesystem::path& file, const ImageSize& size) {
   RequireInstruments(file, size);
   const RenderTarget screen(size.width, size.height, RenderTarget::Depth::kNone);
-  const Development development =
-      flight_.PaintStill({screen.framebuffer(), size.width, size.height});
+  const Metadata header =
+      PictureWriter(flight_).PaintStill({screen.framebuffer(), size.width, size.height});
   DrawInstruments(screen, Model(), SettingsOf(hud_));
-  Metadata header = flight_.PictureHeader(size);
-  header.merge(flight_.ExposureHeader(development));
   WritePng(file, screen.ReadBytes(), header);
 }
 
 void ViewerApp::Paint(const ToneMapPass::Screen& screen, double seconds) {
   flight_.Paint(screen, seconds);
-  flight_.painter().Time("hud");
+  const TimedPass timed(flight_.frames().timer(), "hud");
   hud_.Paint(screen.framebuffer);
-  flight_.painter().EndTime();
 }
 
 }  // namespace alpenglow::viewer

@@ -19,7 +19,7 @@
 #include "viewer/gl/gl_context.h"
 #include "viewer/gl/pass_timer.h"
 #include "viewer/passes/auto_quality.h"
-#include "viewer/passes/display_pass.h"
+#include "viewer/passes/frame_renderer.h"
 #include "viewer/passes/sky_painter.h"
 #include "viewer/shaders/full_screen.h"
 
@@ -115,11 +115,12 @@ Times TimesOf(const View& view) {
   SkyPainter painter(view.scene, LandSourceOf(view.scene), painted, SizesOf(view.quality));
   painter.Settle(painted);
   DisplayPass darkroom(Look{});
+  FrameDisplay display(painter, darkroom);
   const RenderTarget screen(kWidth, kHeight, {PixelFormat::kRgba8}, RenderTarget::Depth::kNone);
   const auto draw = [&] {
     constexpr double kEv100 = 13.0;
     painter.Paint(painted, 1, SkyPainter::Bodies::kNone);
-    darkroom.Print(painter, painted, kEv100, {screen.framebuffer(), kWidth, kHeight});
+    display.Show(painted, kEv100, {screen.framebuffer(), kWidth, kHeight});
   };
   const ReferencePass reference;
   Times times;

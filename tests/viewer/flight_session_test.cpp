@@ -13,6 +13,7 @@
 #include "tests/viewer/land/headless_land.h"
 #include "viewer/gl/picture_tiles.h"
 #include "viewer/gl/render_target.h"
+#include "viewer/picture_writer.h"
 
 namespace alpenglow::viewer {
 namespace {
@@ -42,8 +43,8 @@ class FlightsOverLand : public tests::HeadlessTile {
   static constexpr ImageSize kSmall{32, 18};
 };
 
-double OverTheGround_m(const FlightSession& flight) {
-  return flight.eye().place.height_m - flight.Ground()(flight.eye().place);
+double OverTheGround_m(FlightSession& flight) {
+  return flight.eye().place.height_m - flight.edits().Ground()(flight.eye().place);
 }
 
 TEST_F(FlightsOverLand, AnEyeThatIsPutOverGroundStandsThereWhenTheGroundIsKnown) {
@@ -51,37 +52,37 @@ TEST_F(FlightsOverLand, AnEyeThatIsPutOverGroundStandsThereWhenTheGroundIsKnown)
   tests::WriteTile(folder_ / "far.tif", kFar, 0);
   FlightSession flight =
       SmallFlight(SceneAt({300.0, true}), {folder_ / "land.tif", folder_ / "far.tif"});
-  EXPECT_FALSE(flight.KnowsGround()) << "nothing has been read yet";
-  flight.Settle(kSmall);
-  EXPECT_TRUE(flight.KnowsGround());
+  EXPECT_FALSE(flight.standpoint().KnowsGround()) << "nothing has been read yet";
+  flight.WaitUntilReady(kSmall);
+  EXPECT_TRUE(flight.standpoint().KnowsGround());
   EXPECT_NEAR(OverTheGround_m(flight), 300.0, 1e-6);
   EyePlacement far;
   far.longitude_deg = tests::PlaceOfSample(kFar + 70.0, 0.0, 0.0).longitude_rad / kRadiansPerDegree;
-  flight.Place(far);
-  EXPECT_FALSE(flight.KnowsGround()) << "of another place";
-  flight.Settle(kSmall);
-  EXPECT_TRUE(flight.KnowsGround());
+  flight.standpoint().Place(far);
+  EXPECT_FALSE(flight.standpoint().KnowsGround()) << "of another place";
+  flight.WaitUntilReady(kSmall);
+  EXPECT_TRUE(flight.standpoint().KnowsGround());
   EXPECT_NEAR(OverTheGround_m(flight), 300.0, 1e-6);
 }
 
 TEST_F(FlightsOverLand, WhereThereIsNoLandTheGroundIsKnownAtOnce) {
   for (const double latitude_deg : {10.0, 46.0}) {
     FlightSession flight = SmallFlight(SceneAt({300.0, true}));
-    flight.Place({latitude_deg, {}, {}, {}, {}});
+    flight.standpoint().Place({latitude_deg, {}, {}, {}, {}});
     flight.Advance({}, 1.0 / 60.0);
-    EXPECT_TRUE(flight.KnowsGround()) << latitude_deg;
+    EXPECT_TRUE(flight.standpoint().KnowsGround()) << latitude_deg;
     EXPECT_EQ(flight.eye().place.height_m, 300.0) << "over the ellipsoid";
   }
 }
 
 TEST_F(FlightsOverLand, OfAPlaceWithoutTerrainThereIsANote) {
   FlightSession flight = SmallFlight(SceneAt({300.0, true}));
-  static_cast<void>(flight.TakeNotes());
-  flight.GoTo("LSZS");
-  EXPECT_THAT(flight.TakeNotes(), ElementsAre(HasSubstr("no terrain at Samedan")));
+  static_cast<void>(flight.edits().TakeNotes());
+  flight.standpoint().GoTo("LSZS");
+  EXPECT_THAT(flight.edits().TakeNotes(), ElementsAre(HasSubstr("no terrain at Samedan")));
   EXPECT_NEAR(flight.eye().place.height_m, 2.0, 1e-9) << "on the plain, not 1707 m over it";
-  flight.Place({46.65, 8.05, {}, {}, {}});
-  EXPECT_THAT(flight.TakeNotes(), IsEmpty()) << "on the tile";
+  flight.standpoint().Place({46.65, 8.05, {}, {}, {}});
+  EXPECT_THAT(flight.edits().TakeNotes(), IsEmpty()) << "on the tile";
 }
 
 /// The frames that a window shows of a flight, one after another.
@@ -89,14 +90,14 @@ class ShownFrames {
  public:
   explicit ShownFrames(FlightSession& flight)
       : flight_(flight), screen_(64, 36, {PixelFormat::kRgba8}, RenderTarget::Depth::kNone) {
-    flight_.AwaitGround();
+    flight_.standpoint().AwaitGround();
   }
   /// The next frame, as it was painted: its fourth component is the inverse depth of land.
   [[nodiscard]] Image Next() {
     constexpr double kFrame_s = 0.05;
     flight_.Advance({}, kFrame_s);
     flight_.Paint({screen_.framebuffer(), screen_.width(), screen_.height()}, kFrame_s);
-    return flight_.painter().picture().Read();
+    return flight_.frames().picture().Read();
   }
 
  private:
@@ -130,7 +131,7 @@ TEST_F(FlightsOverLand, AWindowShowsTheSkyThenTheLandAndTheEyeStays) {
   // The threads beside drawing need some frames.
   for (bool has_come = false; !has_come;) {
     const Image shown = window.Next();
-    has_come = flight.painter().land().HasCome();
+    has_come = flight.edits().land().HasCome();
     ASSERT_EQ(flight.eye().place, start);
     if (!has_come) {
       ASSERT_LT(Greenest(shown), kSky);
@@ -141,22 +142,23 @@ TEST_F(FlightsOverLand, AWindowShowsTheSkyThenTheLandAndTheEyeStays) {
 
 TEST_F(FlightsOverLand, AfterAJumpInTimeTheFirstFrameIsExposedForItsLight) {
   FlightSession flight = SmallFlight(SceneAt({300.0, true}));
-  flight.Settle(kSmall);
+  flight.WaitUntilReady(kSmall);
   ShownFrames window(flight);
   for (int frame = 0; frame < 3; ++frame)
     static_cast<void>(window.Next());  // one copy is on its way
-  const double day_ev100 = flight.exposure().ev100.value();
+  const double day_ev100 = flight.exposure().exposure().ev100.value();
   flight.cockpit().clock().Set(ParseInstant("2026-06-21T20:10:00Z"));
   std::vector<double> shown;
   for (int frame = 0; frame < 4; ++frame) {
     static_cast<void>(window.Next());
-    shown.push_back(flight.exposure().ev100.value());
+    shown.push_back(flight.exposure().exposure().ev100.value());
   }
   EXPECT_GT(day_ev100 - shown.front(), 4.0) << "dusk";
-  flight.Settle(kSmall);
+  flight.WaitUntilReady(kSmall);
   for (int frame = 0; frame < 60; ++frame) static_cast<void>(window.Next());
   for (const double ev100 : shown)
-    EXPECT_NEAR(ev100, flight.exposure().ev100.value(), 0.3) << "land and air of small tables";
+    EXPECT_NEAR(ev100, flight.exposure().exposure().ev100.value(), 0.3)
+        << "land and air of small tables";
 }
 
 /// Over the built-in range. It is made when it is first settled or painted.
@@ -178,26 +180,27 @@ class FlightsOverTheRange : public tests::HeadlessLand {
 
 TEST_F(FlightsOverTheRange, TheRangeComesToAPlaceOffItAndGoesBack) {
   FlightSession flight = FlightOver(RangeScene());
-  flight.GoTo("Tromso");
+  flight.standpoint().GoTo("Tromso");
   const GeodeticPosition tromso = PlaceNamed("Tromso").place;
-  EXPECT_EQ(flight.scene().terrain.range_seed, RangeSeenFrom(tromso).range_seed);
-  EXPECT_TRUE(flight.painter().land().Reaches(tromso));
-  EXPECT_FALSE(flight.KnowsGround()) << "it is made beside drawing";
+  EXPECT_EQ(flight.edits().scene().terrain.range_seed, RangeSeenFrom(tromso).range_seed);
+  EXPECT_TRUE(flight.edits().land().Reaches(tromso));
+  EXPECT_FALSE(flight.standpoint().KnowsGround()) << "it is made beside drawing";
   EXPECT_NEAR(flight.eye().place.height_m, kRangeViewGround_m + 600.0, 1e-6)
       << "its ground is known before";
-  flight.Place({46.58, 8.01, {}, {}, {}});
-  EXPECT_EQ(flight.scene().terrain.range_seed, 0U) << "on the range that the flight began over";
-  EXPECT_EQ(flight.scene().terrain.centre, RangeScene().terrain.centre);
+  flight.standpoint().Place({46.58, 8.01, {}, {}, {}});
+  EXPECT_EQ(flight.edits().scene().terrain.range_seed, 0U)
+      << "on the range that the flight began over";
+  EXPECT_EQ(flight.edits().scene().terrain.centre, RangeScene().terrain.centre);
 }
 
 TEST_F(FlightsOverTheRange, AnEyeStandsAtItsHeightBeforeTheRangeIsThere) {
   FlightSession flight = FlightOver(RangeScene());
-  flight.AwaitGround();
-  EXPECT_FALSE(flight.KnowsGround()) << "nothing was waited for";
+  flight.standpoint().AwaitGround();
+  EXPECT_FALSE(flight.standpoint().KnowsGround()) << "nothing was waited for";
   const double height_m = flight.eye().place.height_m;
   EXPECT_NEAR(height_m, kRangeViewGround_m + RangeScene().camera.height.value_m, 1e-6);
   EXPECT_NEAR(OverTheGround_m(flight), RangeScene().camera.height.value_m, 1e-6);
-  flight.Settle({32, 18});
+  flight.WaitUntilReady({32, 18});
   EXPECT_NEAR(flight.eye().place.height_m, height_m, 0.01) << "a centimetre is not seen";
 }
 
@@ -208,7 +211,8 @@ TEST_F(FlightsOverLand, AReplayOfARecordThatIsLowerThanTheLandStaysOverIt) {
   {
     FlightSession flight = SmallFlight(SceneAt({3500.0, false}));
     FlightRecorder recorder(folder_ / "shown.csv");
-    flight.WriteReplay(low, {folder_ / "0.png", folder_ / "1.png"}, kSmall, recorder);
+    PictureWriter(flight).WriteReplay(low, {folder_ / "0.png", folder_ / "1.png"}, kSmall,
+                                      recorder);
     EXPECT_GT(OverTheGround_m(flight), 0.05) << "10 cm";
     recorder.Finish();
     const double height_m = flight.eye().place.height_m;
@@ -222,7 +226,7 @@ TEST_F(FlightsOverLand, AReplayOfARecordThatIsLowerThanTheLandStaysOverIt) {
   }
   FlightSession window = SmallFlight(SceneAt({3500.0, false}));
   window.Replay(low);
-  window.Settle(kSmall);
+  window.WaitUntilReady(kSmall);
   window.Advance({}, 0.5);
   EXPECT_GT(OverTheGround_m(window), 0.05);
 }
@@ -254,8 +258,11 @@ double Difference(const std::array<float, 3>& a, const std::array<float, 3>& b) 
 }
 
 TEST_F(PicturesInParts, ArePicturesInOnePiece) {
-  const Image whole = FlightOf(std::nullopt).Picture(kSize, 4);
-  const Image parts = FlightOf(kPart).Picture(kSize, 4);
+  const auto painted = [&](std::optional<int> largest_part) {
+    FlightSession flight = FlightOf(largest_part);
+    return PictureWriter(flight).Picture(kSize, 4);
+  };
+  const Image whole = painted(std::nullopt), parts = painted(kPart);
   ASSERT_GE(TiledPicture(kSize.width, kSize.height, kPart).tiles().size(), 6U);
   double worst = 0.0;
   for (int y = 0; y < whole.height; ++y) {
@@ -269,7 +276,7 @@ TEST_F(PicturesInParts, ArePicturesInOnePiece) {
 TEST_F(PicturesInParts, AreExposedAsAWhole) {
   for (const std::optional<int> part : {std::optional<int>(), std::optional(kPart)}) {
     FlightSession flight = FlightOf(part);
-    flight.WritePicture(folder_ / (part ? "parts.png" : "whole.png"), kSize);
+    PictureWriter(flight).Write(folder_ / (part ? "parts.png" : "whole.png"), kSize);
   }
   EXPECT_NEAR(std::stod(ReadPngMetadata(folder_ / "parts.png").at("alpenglow.ev100")),
               std::stod(ReadPngMetadata(folder_ / "whole.png").at("alpenglow.ev100")), 1e-3);

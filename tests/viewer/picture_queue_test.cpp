@@ -50,18 +50,18 @@ TEST_F(PictureQueueTest, APictureIsThatOfItsMomentWhateverFollows) {
   const FlightSessionSettings settings = SettingsFor(scene);
   const RenderTarget screen(kSize.width, kSize.height, RenderTarget::Depth::kNone);
   FlightSession flight(scene, Evening(), settings);
-  flight.Settle(kSize);
+  flight.WaitUntilReady(kSize);
   AirChoice haze;
   haze.aerosol = 2.0;
-  flight.Use(haze);
-  flight.SetExposure(12.0);
+  flight.edits().Use(haze, flight.eye().place);
+  flight.exposure().Set(12.0);
   flight.Paint({screen.framebuffer(), kSize.width, kSize.height}, 0.1);
   const FlightMoment moment = flight.Moment();
   PictureQueue queue(scene, settings);
   queue.Ask({moment, File("moving.exr"), kSize});
   queue.Ask({moment, File("again.exr"), kSize});
-  flight.Use(AirChoice{});
-  flight.SetExposure(3.0);
+  flight.edits().Use(AirChoice{}, flight.eye().place);
+  flight.exposure().Set(3.0);
   while (queue.UnderWay()) {
     queue.NextFrame();
     flight.cockpit().clock().Shift(60.0);
@@ -70,9 +70,9 @@ TEST_F(PictureQueueTest, APictureIsThatOfItsMomentWhateverFollows) {
   }
   for (const PictureOutcome& outcome : queue.TakeOutcomes()) EXPECT_EQ(outcome.fault, "");
   FlightSession resting(scene, Evening(), settings);
-  resting.Use(haze);
-  resting.SetExposure(12.0);
-  resting.WritePicture(File("resting.exr"), kSize);
+  resting.edits().Use(haze, resting.eye().place);
+  resting.exposure().Set(12.0);
+  PictureWriter(resting).Write(File("resting.exr"), kSize);
   const Image at_rest = ReadExr(File("resting.exr"));
   const Metadata header_at_rest = ReadExrMetadata(File("resting.exr"));
   for (const char* name : {"moving.exr", "again.exr"}) {

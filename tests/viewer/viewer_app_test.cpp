@@ -38,7 +38,7 @@ class ViewerAppTest : public tests::Headless {
         std::make_unique<FlightSession>(scene, ParseInstant("2026-06-21T10:00:00Z"), settings);
     deck_ = std::make_unique<ViewerApp>(*flight_, recorder_, ViewerApp::Settings{});
     screen_ = std::make_unique<RenderTarget>(kSize.width, kSize.height, RenderTarget::Depth::kNone);
-    flight_->Settle(kSize);
+    flight_->WaitUntilReady(kSize);
   }
   void TearDown() override {
     screen_.reset();
@@ -98,7 +98,7 @@ int Changed(const DisplayImage& a, const DisplayImage& b) {
 }
 
 TEST_F(ViewerAppTest, F1ShowsTheKeysAndHidesThemAgain) {
-  flight_->SetExposure(14.0);
+  flight_->exposure().Set(14.0);
   const DisplayImage bare = Shown();
   Press(kF1);
   static_cast<void>(Shown());  // windows find their sizes in their first frames
@@ -350,7 +350,7 @@ TEST_F(ViewerAppOverLand, NothingIsNotedBeforeTheGroundUnderTheEyeIsKnown) {
     deck.Paint({screen.framebuffer(), kSize.width, kSize.height}, 1.0 / 60.0);
   };
   int frames = 0;
-  for (; !flight.KnowsGround(); ++frames) fly({});
+  for (; !flight.standpoint().KnowsGround(); ++frames) fly({});
   EXPECT_GT(frames, 1) << "land is read beside drawing";
   for (int i = 0; i < 12; ++i) fly({});
   WindowEvents again;
@@ -362,7 +362,7 @@ TEST_F(ViewerAppOverLand, NothingIsNotedBeforeTheGroundUnderTheEyeIsKnown) {
   const CameraPath path = ReadFlight(folder_ / "f.csv");
   EXPECT_GE(path.points().size(), 4U);
   for (const CameraPathPoint& point : path.points())
-    EXPECT_NEAR(point.pose.place.height_m, flight.Ground()(point.pose.place) + 300.0, 0.01)
+    EXPECT_NEAR(point.pose.place.height_m, flight.edits().Ground()(point.pose.place) + 300.0, 0.01)
         << "places and heights are written in millimetres, on slopes of 60 degrees at most";
 }
 
@@ -406,9 +406,9 @@ TEST_F(ViewerAppTest, TheLandingLightOfTheKeyShinesOnTheGround) {
   Eye low = flight_->eye();
   low.place.height_m = 30.0;
   low.pitch_rad = -0.3;
-  flight_->cockpit().pilot().PutAt(low, flight_->Ground());
+  flight_->cockpit().pilot().PutAt(low, flight_->edits().Ground());
   const auto mean_cd_per_m2 = [&] {
-    const Image image = flight_->Picture({32, 24}, 1);
+    const Image image = PictureWriter(*flight_).Picture({32, 24}, 1);
     double sum = 0.0;
     for (const auto& rgb : image.rgb) sum += static_cast<double>(rgb[1]);
     return sum / static_cast<double>(image.rgb.size());
@@ -464,7 +464,7 @@ TEST_F(ViewerAppTest, ThePanelSetsThrottleAndHeldSpeedOfTheAircraft) {
 }
 
 TEST_F(ViewerAppTest, ThePanelSetsLookAndWhiteBalance) {
-  flight_->SetExposure(14.0);
+  flight_->exposure().Set(14.0);
   const DisplayImage photo = Shown();
   HudRequest request;
   request.look = "none";

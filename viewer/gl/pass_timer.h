@@ -74,4 +74,21 @@ class PassTimer {
   std::vector<GlQuery> free_;
 };
 
+/// Times a pass during its lifetime.
+class TimedPass {
+ public:
+  /// @param timer  null: the pass is not timed.
+  TimedPass(PassTimer* timer, std::string_view pass) : timer_(timer) {
+    if (timer_ != nullptr) timer_->Begin(pass);
+  }
+  ~TimedPass() {
+    if (timer_ != nullptr) timer_->End();
+  }
+  TimedPass(const TimedPass&) = delete;
+  TimedPass& operator=(const TimedPass&) = delete;
+
+ private:
+  PassTimer* timer_;
+};
+
 }  // namespace alpenglow::viewer

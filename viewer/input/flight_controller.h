@@ -28,6 +28,9 @@ class FlightController {
   /// the action concerns neither flight nor time.
   [[nodiscard]] std::optional<std::string> Do(Action action, const GroundHeight& ground);
 
+  /// Changes the mode. Returns its name, or the reason why it cannot be entered.
+  [[nodiscard]] std::string Enter(FlightMode mode, const GroundHeight& ground);
+
   /// Moves the clock to the next occurrence of an event; returns its name, or a message if there is
   /// none within a year.
   [[nodiscard]] std::string JumpTo(SkyEvent event);
@@ -53,7 +56,6 @@ class FlightController {
   [[nodiscard]] std::optional<std::string> DoFlight(Action action, const GroundHeight& ground);
   [[nodiscard]] std::optional<std::string> DoAutopilot(Action action);
   [[nodiscard]] std::optional<std::string> DoTime(Action action);
-  [[nodiscard]] std::string Enter(FlightMode mode, const GroundHeight& ground);
   void SkipTrack(double seconds);
   void AdvanceClock(const std::optional<UtcInstant>& before, double seconds);
   void EndReplay(const GroundHeight& ground);

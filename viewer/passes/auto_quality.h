@@ -77,6 +77,28 @@ class AutoQuality {
   double wait_up_s_ = 2.0;
 };
 
+/// The quality of a flight: the rule of the user, and what it is painted with at the moment.
+class QualityChoice {
+ public:
+  /// @param frame_rate  target of automatic quality, frames a second, > 0.
+  QualityChoice(const QualityRule& rule, double frame_rate)
+      : rule_(rule), auto_(1.0 / frame_rate) {}
+
+  void Use(const QualityRule& rule) { rule_ = rule; }
+  [[nodiscard]] const QualityRule& rule() const { return rule_; }
+  /// Records the time that a frame took. Automatic quality uses it.
+  void Note(double frame_s) {
+    if (!rule_.fixed) auto_.Note(frame_s);
+  }
+  [[nodiscard]] PaintedQuality painted() const {
+    return rule_.fixed ? PaintedAlways(*rule_.fixed) : auto_.painted();
+  }
+
+ private:
+  QualityRule rule_;
+  AutoQuality auto_;
+};
+
 struct PaintSizes {
   AirQuality air = AirQuality::kMedium;
   double land_detail = 96.0;  // LandSize::detail

@@ -51,66 +51,29 @@ void Upscaler::Upscale(const RenderTarget& small, const DepthPrepass& outline,
   CheckGl("Upscaler::Enlarge");
 }
 
-namespace {
-
-PaintedView OnScreen(const PaintedView& view, const ToneMapPass::Screen& screen) {
-  return {view.eye, view.now, screen.width, screen.height, view.part};
-}
-
-}  // namespace
-
-void DisplayPass::DrawUpscaled(SkyPainter& painter, const PaintedView& view, double ev100,
-                               const ToneMapPass::Screen& screen) {
+const DepthPrepass& DisplayPass::OutlineFor(const ToneMapPass::Screen& screen) {
   Fit(outline_, screen.width, screen.height);
-  painter.PaintOutline(*outline_);
-  painter.Time("develop");
-  const RenderTarget& picture = painter.picture();
-  Fit(codes_, picture.width(), picture.height(), PixelFormat::kRgba16F);
-  developer_.DevelopSmall(picture, ev100, *codes_);
-  painter.Time("enlarge");
-  code_enlarger_.Upscale(*codes_, *outline_, HalfViewOf(view), screen.framebuffer);
+  return *outline_;
 }
 
-// Draws disks and stars. Their edges differ from those of land, so around them the linear light is
-// upscaled before it is tone-mapped.
-void DisplayPass::PrintBodies(SkyPainter& painter, const PaintedView& view, double ev100,
-                              const ToneMapPass::Screen& screen,
-                              const std::vector<PixelBox>& boxes) {
-  if (boxes.empty()) return;
-  painter.Time("bodies");
+void DisplayPass::ShowEnlarged(const RenderTarget& picture, const glm::dvec2& half_view,
+                               double ev100, const ToneMapPass::Screen& screen, PassTimer* timer) {
+  {
+    const TimedPass timed(timer, "develop");
+    Fit(codes_, picture.width(), picture.height(), PixelFormat::kRgba16F);
+    developer_.DevelopSmall(picture, ev100, *codes_);
+  }
+  const TimedPass timed(timer, "enlarge");
+  code_enlarger_.Upscale(*codes_, *outline_, half_view, screen.framebuffer);
+}
+
+const RenderTarget& DisplayPass::LightIn(const std::vector<PixelBox>& boxes,
+                                         const RenderTarget& picture, const glm::dvec2& half_view,
+                                         const ToneMapPass::Screen& screen) {
   Fit(light_, screen.width, screen.height, PixelFormat::kRgba32F);
   bodies_.Set(boxes, screen.width, screen.height);
-  light_enlarger_.Upscale(painter.picture(), *outline_, HalfViewOf(view), light_->framebuffer(),
-                          bodies_);
-  painter.PaintBodiesOver(*light_, *outline_, OnScreen(view, screen));
-  developer_.Develop(*light_, ev100, screen, bodies_);
-}
-
-// Drivers finish compiling a program on its first draw, which takes tenths of a second. The
-// programs are therefore drawn once in the second and third frame, over one pixel that is
-// overwritten afterwards, instead of when the picture is first reduced.
-void DisplayPass::MakeReady(SkyPainter& painter, const PaintedView& view, double ev100,
-                            const ToneMapPass::Screen& screen) {
-  constexpr PixelBox kOnePixel{0, 0, 1, 1};
-  if (prints_ == 2) {
-    const Scissor within(kOnePixel);
-    DrawUpscaled(painter, view, ev100, screen);
-  }
-  if (prints_ == 3) PrintBodies(painter, view, ev100, screen, {kOnePixel});
-}
-
-void DisplayPass::Print(SkyPainter& painter, const PaintedView& view, double ev100,
-                        const ToneMapPass::Screen& screen) {
-  ++prints_;
-  MakeReady(painter, view, ev100, screen);
-  if (Upscales(view, screen)) {
-    DrawUpscaled(painter, view, ev100, screen);
-    PrintBodies(painter, view, ev100, screen, painter.BodiesSeen(OnScreen(view, screen)));
-  } else {
-    painter.Time("develop");
-    developer_.Develop(painter.picture(), ev100, screen);
-  }
-  painter.EndTime();
+  light_enlarger_.Upscale(picture, *outline_, half_view, light_->framebuffer(), bodies_);
+  return *light_;
 }
 
 }  // namespace alpenglow::viewer

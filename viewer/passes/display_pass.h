@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
 // Display of rendered pictures on a screen, which may be larger than the picture.
 //
-// DisplayPass shows the picture that a SkyPainter rendered. If the picture is smaller than the screen,
-// it is tone-mapped at its own resolution and then upscaled by Upscaler, which interpolates smooth
-// areas and uses the edges of land at screen resolution (shaders/upscale.frag.glsl). The cost of
-// lighting is that of the small picture, and edges stay sharp.
+// If the picture is smaller than the screen, it is tone-mapped at its own resolution and then
+// upscaled by Upscaler, which interpolates smooth areas and uses the edges of land at screen
+// resolution (shaders/upscale.frag.glsl). The cost of lighting is that of the small picture, and
+// edges stay sharp.
 #pragma once
 
 #include <glm/vec2.hpp>
@@ -12,10 +12,11 @@
 #include <vector>
 
 #include "viewer/gl/gl_objects.h"
+#include "viewer/gl/pass_timer.h"
 #include "viewer/gl/render_target.h"
 #include "viewer/gl/shader.h"
 #include "viewer/land/land_pass.h"
-#include "viewer/passes/sky_painter.h"
+#include "viewer/passes/painted_view.h"
 #include "viewer/passes/tone_map_pass.h"
 #include "viewer/shaders/full_screen.h"
 
@@ -53,6 +54,8 @@ class Upscaler {
 [[nodiscard]] std::vector<ShaderPiece> UpscalerTexts(Upscaler::Shows shows,
                                                      const ShaderPiece& depth);
 
+/// Shows pictures of linear light on a screen, whole or upscaled. Bodies, which are disks and stars,
+/// are not upscaled: they are added to linear light at screen resolution and developed there.
 class DisplayPass {
  public:
   explicit DisplayPass(const Look& look,
@@ -60,31 +63,38 @@ class DisplayPass {
       : developer_(look, first) {}
 
   [[nodiscard]] ToneMapPass& developer() { return developer_; }
-  [[nodiscard]] const ToneMapPass& developer() const { return developer_; }
 
   /// Returns whether a view is upscaled on this screen. Its picture must then be rendered without
-  /// disks and stars, which are added at screen resolution.
+  /// bodies.
   [[nodiscard]] static bool Upscales(const PaintedView& view, const ToneMapPass::Screen& screen) {
     return view.width < screen.width || view.height < screen.height;
   }
-  /// Shows the most recent picture, which must be of this view.
-  void Print(SkyPainter& painter, const PaintedView& view, double ev100,
-             const ToneMapPass::Screen& screen);
+
+  /// Returns the outline of land at screen resolution, for the caller to draw before ShowEnlarged.
+  [[nodiscard]] const DepthPrepass& OutlineFor(const ToneMapPass::Screen& screen);
+  /// Shows a picture upscaled along the outline.
+  /// @param half_view  tangents of half the horizontal and half the vertical field of view.
+  /// @param timer      receives the times of the passes; null: none.
+  void ShowEnlarged(const RenderTarget& picture, const glm::dvec2& half_view, double ev100,
+                    const ToneMapPass::Screen& screen, PassTimer* timer);
+  /// Returns the linear light of a picture, upscaled to the screen in some boxes of pixels, for the
+  /// caller to add bodies before ShowBodies.
+  [[nodiscard]] const RenderTarget& LightIn(const std::vector<PixelBox>& boxes,
+                                            const RenderTarget& picture,
+                                            const glm::dvec2& half_view,
+                                            const ToneMapPass::Screen& screen);
+  /// Shows these boxes. Edges of bodies differ from those of land, so the light around them is
+  /// upscaled before it is tone-mapped.
+  void ShowBodies(double ev100, const ToneMapPass::Screen& screen) const {
+    developer_.Develop(*light_, ev100, screen, bodies_);
+  }
 
  private:
-  void DrawUpscaled(SkyPainter& painter, const PaintedView& view, double ev100,
-                    const ToneMapPass::Screen& screen);
-  void PrintBodies(SkyPainter& painter, const PaintedView& view, double ev100,
-                   const ToneMapPass::Screen& screen, const std::vector<PixelBox>& boxes);
-  void MakeReady(SkyPainter& painter, const PaintedView& view, double ev100,
-                 const ToneMapPass::Screen& screen);
-
   ToneMapPass developer_;
   Upscaler code_enlarger_{Upscaler::Shows::kCodes}, light_enlarger_{Upscaler::Shows::kLight};
   std::optional<RenderTarget> codes_, light_;  // at picture size; at screen size
   std::optional<DepthPrepass> outline_;
   PassArea bodies_;
-  int prints_ = 0;
 };
 
 }  // namespace alpenglow::viewer

@@ -424,7 +424,7 @@ void SkyPainter::Paint(const PaintedView& view, int samples, Bodies bodies,
   }
   PaintLampsOver(view);
   if (bodies != Bodies::kNone) PaintStars(view, disks.moon);
-  EndTime();
+  if (timer_ != nullptr) timer_->End();
   CheckGl("SkyPainter::Paint");
 }
 

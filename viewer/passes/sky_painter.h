@@ -83,11 +83,6 @@ class SkyPainter {
   /// size has no land.
   void PaintBodiesOver(const RenderTarget& target, const DepthPrepass& outline,
                        const PaintedView& view);
-  /// Starts the timing of a pass that other code draws in the same frame.
-  void Time(const char* pass) const { Begin(pass); }
-  void EndTime() const {
-    if (timer_ != nullptr) timer_->End();
-  }
   /// Sets the timer that receives the times of the passes; null: none.
   void SetTimer(PassTimer* timer) { timer_ = timer; }
 

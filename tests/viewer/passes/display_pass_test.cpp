@@ -31,8 +31,8 @@ class DisplayPassTest : public tests::HeadlessTile {
     settings.quality = {quality};
     settings.size = kScreen;
     FlightSession flight(scene, ParseInstant("2026-06-21T18:40:00Z"), settings);
-    flight.Settle(kScreen);
-    flight.SetExposure(15.0);
+    flight.WaitUntilReady(kScreen);
+    flight.exposure().Set(15.0);
     const RenderTarget screen(kScreen.width, kScreen.height, {PixelFormat::kRgba8},
                               RenderTarget::Depth::kNone);
     flight.Paint({screen.framebuffer(), kScreen.width, kScreen.height}, 0.0);
@@ -89,7 +89,8 @@ class SmallPictures : public tests::Headless {
     painter.Paint(
         view, 1,
         DisplayPass::Upscales(view, on) ? SkyPainter::Bodies::kNone : SkyPainter::Bodies::kAll);
-    DisplayPass(Look{}).Print(painter, view, window.ev100, on);
+    DisplayPass darkroom(Look{});
+    FrameDisplay(painter, darkroom).Show(view, window.ev100, on);
     return screen.ReadBytes();
   }
   static LandingLight LandingLightOf(const Eye& eye) {

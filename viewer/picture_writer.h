@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: MIT
+// Provides PictureWriter, which makes the pictures of a flight that are written to files: still
+// pictures, replays and films.
+#pragma once
+
+#include <filesystem>
+#include <vector>
+
+#include "lut/image/image.h"
+#include "viewer/flight/flight_recorder.h"
+#include "viewer/flight_session.h"
+
+namespace alpenglow::viewer {
+
+/// Throws InputError unless the file's name ends in .png or .exr.
+void RequirePictureName(const std::filesystem::path& file);
+
+class PictureWriter {
+ public:
+  /// Keeps a reference to the flight.
+  explicit PictureWriter(FlightSession& flight) : flight_(flight) {}
+
+  /// Returns the linear picture as seen by the eye, with everything that is visible there. Any size
+  /// is possible: a picture that OpenGL cannot draw as a whole is painted in tiles. Throws
+  /// OptionError if memory is insufficient.
+  [[nodiscard]] Image Picture(const ImageSize& size, int samples,
+                              const PictureProgress& progress = {});
+  /// Paints the view again with several rays per pixel and writes it: a .png is developed, an .exr
+  /// is linear. Both have the settings of the picture in their headers. Throws OutputError.
+  void Write(const std::filesystem::path& file, const ImageSize& size,
+             const PictureProgress& progress = {});
+  /// Paints the picture of Write and develops it onto a screen.
+  /// @return the metadata of the picture.
+  [[nodiscard]] Metadata PaintStill(const ToneMapPass::Screen& screen,
+                                    const PictureProgress& progress = {});
+  /// Writes pictures at equal time steps along the path, including both of its ends, and records
+  /// their points.
+  void WriteReplay(const CameraPath& path, const std::vector<std::filesystem::path>& files,
+                   const ImageSize& size, FlightRecorder& recorder);
+  /// Returns a developed picture of a film, `seconds` after the previous one, with adapted
+  /// exposure.
+  [[nodiscard]] DisplayImage Film(const ReplayFrame& frame, const ImageSize& size, double seconds);
+
+ private:
+  [[nodiscard]] Metadata HeaderOf(const ImageSize& size, const Development& development) const;
+
+  FlightSession& flight_;
+};
+
+}  // namespace alpenglow::viewer

@@ -1,0 +1,231 @@
+// SPDX-License-Identifier: MIT
+#include "viewer/scene_edits.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <glm/geometric.hpp>
+#include <utility>
+
+#include "atmosphere/base/error.h"
+#include "renderer/scene/scene_options.h"
+#include "renderer/terrain/procedural_mountains.h"
+#include "viewer/flight/places.h"
+#include "viewer/land/loaded_heights.h"
+#include "viewer/shaders/uniform_blocks.h"
+
+namespace alpenglow::viewer {
+namespace {
+
+// Returns the half width of a square around a place that contains all land, at most 60 km. A
+// smaller square has finer samples.
+double HalfWidthOfLand(const LandLattice& lattice, const GeodeticPosition& place) {
+  constexpr double kMost_m = 60e3;
+  const SampleSize size = SampleSizeAt(lattice, place.latitude_rad);
+  const LatticePlace at = lattice.At(place.latitude_rad, place.longitude_rad);
+  const double columns = std::max(at.column, lattice.last_column - at.column);
+  const double rows = std::max(at.row, lattice.last_row - at.row);
+  return std::min(std::max(columns * size.column_m, rows * size.row_m) + size.row_m, kMost_m);
+}
+
+TerrainSource TerrainOf(const Scene& scene) {
+  TerrainSource terrain = scene.terrain;
+  if (terrain.kind == TerrainSource::Kind::kProceduralMountains && !terrain.centre)
+    terrain.centre = scene.place;
+  return terrain;
+}
+
+bool IsOneModel(const LandSource& land) {
+  return land.files.empty() ||
+         (land.files.size() == 1 && !std::filesystem::is_directory(land.files.front()));
+}
+
+}  // namespace
+
+SceneEdits::SceneEdits(const Scene& scene, const LandSource& land, SkyPainter& painter)
+    : painter_(painter),
+      scene_(scene),
+      first_terrain_(TerrainOf(scene)),
+      has_range_(land.files.empty() && land.range_centre),
+      has_one_model_(IsOneModel(land)),
+      changes_{first_terrain_, scene.medium, {}, {}} {
+  scene_.terrain = first_terrain_;
+}
+
+void SceneEdits::Use(const AirChoice& choice, const GeodeticPosition& place) {
+  const Medium changed = Changed(changes_.planet, choice);
+  changes_.air = choice;
+  scene_.medium = changed;
+  ++version_;
+  changes_.sky_air = OnOsculatingSphere(changed, place.latitude_rad);
+  painter_.Replace(*changes_.sky_air);
+}
+
+void SceneEdits::UsePlanet(const std::string& preset, const GeodeticPosition& place) {
+  Medium planet = MediumPreset(preset);
+  if (planet.follows_wgs84 != changes_.planet.follows_wgs84) {
+    throw InputError(fmt::format(
+        "{} is another planet than the one that this land lies on; start there with a scene file",
+        preset));
+  }
+  static_cast<void>(AirBlockOf(planet));
+  changes_.planet = std::move(planet);
+  Use(changes_.air, place);
+}
+
+void SceneEdits::Restore(const SceneChanges& changes) {
+  if (has_range_ && changes.terrain.centre != scene_.terrain.centre) UseRange(changes.terrain);
+  changes_.planet = changes.planet;
+  changes_.air = changes.air;
+  if (!changes.sky_air || changes.sky_air == changes_.sky_air) return;
+  scene_.medium = Changed(changes_.planet, changes_.air);
+  changes_.sky_air = changes.sky_air;
+  ++version_;
+  painter_.Replace(*changes_.sky_air);
+}
+
+bool SceneEdits::IsRangeExpectedAt(const GeodeticPosition& place) const {
+  constexpr double kNear_m = 100.0;
+  if (!has_range_ || painter_.land().KnowsGround(place)) return false;
+  GeodeticPosition view = ProceduralMountainsViewAboveGround(*scene_.terrain.centre).eye;
+  view.height_m = place.height_m;
+  return glm::length(LocalFrame(kWgs84, view).EnuFromGeodetic(place).xyz) < kNear_m;
+}
+
+GroundHeight SceneEdits::Ground() const {
+  return [this](const GeodeticPosition& place) {
+    if (IsRangeExpectedAt(place)) return kRangeViewGround_m;
+    return painter_.land().GroundUnder(place).value_or(0.0);
+  };
+}
+
+void SceneEdits::BringRangeTo(const GeodeticPosition& place) {
+  const auto reaches = [&](const TerrainSource& range) {
+    return ProceduralMountainsExtent(*range.centre).Covers(place.latitude_rad, place.longitude_rad);
+  };
+  if (!has_range_ || reaches(scene_.terrain)) return;
+  UseRange(reaches(first_terrain_) ? first_terrain_ : RangeSeenFrom(place));
+}
+
+void SceneEdits::UseRange(const TerrainSource& range) {
+  scene_.terrain = changes_.terrain = range;
+  painter_.Replace(LandSourceOf(scene_));
+  ++version_;
+}
+
+void SceneEdits::BringLandTo(const GeodeticPosition& place, const std::string& name) {
+  BringRangeTo(place);
+  const Landscape& land = painter_.land();
+  if (land.tiles().source().IsEmpty()) return;
+  if (land.Reaches(place)) {
+    if (!land.KnowsGround(place)) painter_.AwaitLand();
+    return;
+  }
+  notes_.push_back(
+      fmt::format("there is no terrain at {}: --dem loads an elevation model of it", name));
+}
+
+std::vector<std::string> SceneEdits::TakeNotes() {
+  std::vector<std::string> notes = std::exchange(notes_, {});
+  for (std::string& note : painter_.land().TakeNotes()) notes.push_back(std::move(note));
+  return notes;
+}
+
+std::string SceneEdits::ZoneAt(const GeodeticPosition& place) const {
+  return ZoneNear(place, scene_.zone, scene_.place);
+}
+
+Scene SceneEdits::SeenBy(const Eye& eye, const UtcInstant& now) const {
+  Scene seen = scene_;
+  seen.place = eye.place;
+  seen.place.height_m = 0.0;
+  if (!has_one_model_) seen.terrain.kind = TerrainSource::Kind::kNone;
+  seen.time = now;
+  seen.camera.height = {eye.place.height_m, false};
+  seen.camera.heading_rad = eye.heading_rad;
+  seen.camera.pitch_rad = eye.pitch_rad;
+  seen.camera.roll_rad = eye.roll_rad;
+  seen.camera.fov_rad = eye.fov_rad;
+  return seen;
+}
+
+ReferenceScene SceneEdits::ForRenderer(const Eye& eye, const UtcInstant& now) const {
+  ReferenceScene scene{SeenBy(eye, now), nullptr};
+  if (!has_one_model_) scene.ground = GroundAround(eye.place);
+  return scene;
+}
+
+std::function<std::shared_ptr<const SceneGround>()> SceneEdits::GroundAround(
+    const GeodeticPosition& place) const {
+  constexpr int kMostSamples = 3000;
+  return [sample = painter_.land().Sampler(), place,
+          half_width_m = HalfWidthOfLand(painter_.land().tiles().lattice(), place),
+          ellipsoid = EllipsoidOf(scene_.medium)]() -> std::shared_ptr<const SceneGround> {
+    GeodeticPosition foot = place;
+    foot.height_m = 0.0;
+    const LocalFrame frame(ellipsoid, foot);
+    const std::optional<ElevationGrid> grid = sample(place, half_width_m, kMostSamples);
+    if (!grid)
+      return std::make_shared<const SceneGround>(
+          SceneGround{frame, std::nullopt, place.height_m, "", true});
+    SceneGround ground = GroundOf(*grid, frame);
+    ground.eye_height_m = place.height_m;
+    return std::make_shared<const SceneGround>(std::move(ground));
+  };
+}
+
+void Standpoint::Leave(std::optional<double> above_ground_m) {
+  state_ = {false, above_ground_m};
+  put_at_ = std::nullopt;
+}
+
+void Standpoint::AwaitGround() {
+  if (state_.knows_ground || !state_.waits_above_ground_m) return;
+  if (!scene_.IsRangeExpectedAt(eye().place)) {
+    painter_.land().AwaitGround(eye().place);
+    return StandOnGround();
+  }
+  Eye stands = eye();
+  stands.place.height_m = kRangeViewGround_m + *state_.waits_above_ground_m;
+  cockpit_.pilot().PutAt(stands, scene_.Ground());
+  put_at_ = eye();
+}
+
+void Standpoint::StandOnGround() {
+  if (state_.knows_ground || !painter_.land().KnowsGround(eye().place)) return;
+  state_.knows_ground = true;
+  const std::optional<double> above_m = std::exchange(state_.waits_above_ground_m, std::nullopt);
+  const bool has_left = put_at_ && *put_at_ != eye();
+  if (!above_m || has_left) return cockpit_.pilot().KeepAbove(scene_.Ground());
+  Eye stands = eye();
+  stands.place.height_m = painter_.land().HighestGround(stands.place).value_or(0.0) + *above_m;
+  cockpit_.pilot().PutAt(stands, scene_.Ground());
+}
+
+void Standpoint::Place(const EyePlacement& placement) {
+  const bool moves = placement.latitude_deg || placement.longitude_deg;
+  if (!moves && !placement.height_m && !placement.heading_deg && !placement.pitch_deg) return;
+  const GroundHeight ground = scene_.Ground();
+  const double above_m =
+      state_.waits_above_ground_m.value_or(eye().place.height_m - ground(eye().place));
+  Eye placed = Placed(eye(), placement);
+  if (moves) scene_.BringLandTo(placed.place, "this place");
+  if (moves && !placement.height_m)
+    placed.place.height_m = ground(placed.place) + std::max(above_m, 0.0);
+  cockpit_.pilot().PutAt(placed, ground);
+  if (placement.height_m) {
+    Leave();
+  } else if (moves) {
+    Leave(std::max(above_m, 0.0));
+  }
+}
+
+void Standpoint::GoTo(const std::string& name) {
+  const NamedPlace& there = PlaceNamed(name);
+  scene_.BringLandTo(there.place, there.name);
+  cockpit_.GoTo(there, scene_.Ground());
+  Leave(eye().place.height_m - scene_.Ground()(eye().place));
+}
+
+}  // namespace alpenglow::viewer
