@@ -37,7 +37,8 @@ QualityChoice QualityOf(const FlightSessionSettings& settings) {
 FlightSession::FlightSession(const Scene& scene, const UtcInstant& start,
                              const FlightSessionSettings& settings)
     : start_{Drawable(scene), settings},
-      cockpit_(EyeOfScene(scene), EllipsoidOf(scene.medium), start),
+      cockpit_(EyeOfScene(scene), EllipsoidOf(scene.medium), start,
+               [this](const GeodeticPosition& place) { return edits_.GroundAt(place); }),
       exposure_(settings.exposure, settings.look),
       darkroom_(InDaylight(settings.look), settings.first_air ? ToneMapPass::FirstPictures::kDraft
                                                               : ToneMapPass::FirstPictures::kWait),
@@ -53,17 +54,17 @@ FlightSession::FlightSession(const Scene& scene, const UtcInstant& start,
 void FlightSession::Follow(const CameraPath& path) {
   standpoint_.Leave();
   cockpit_.pilot().SetTrack(std::make_shared<const CameraPath>(path));
-  static_cast<void>(cockpit_.Enter(FlightMode::kTrack, edits_.Ground()));
+  cockpit_.Enter(FlightMode::kTrack);
 }
 
 void FlightSession::Replay(const CameraPath& flight) {
   standpoint_.Leave();
-  cockpit_.Replay(std::make_shared<const CameraPath>(flight), edits_.Ground());
+  cockpit_.Replay(std::make_shared<const CameraPath>(flight));
 }
 
 void FlightSession::FlyAgain(const CameraPath& flown) {
   standpoint_.Leave();
-  cockpit_.FlyAgain(std::make_shared<const CameraPath>(flown), edits_.Ground());
+  cockpit_.FlyAgain(std::make_shared<const CameraPath>(flown));
 }
 
 void FlightSession::Show(const ReplayFrame& frame) {
@@ -73,7 +74,7 @@ void FlightSession::Show(const ReplayFrame& frame) {
 
 void FlightSession::Advance(const PilotControls& controls, double seconds) {
   standpoint_.StandOnGround();
-  cockpit_.Advance(controls, seconds, edits_.Ground());
+  cockpit_.Advance(controls, seconds);
 }
 
 void FlightSession::Paint(const ToneMapPass::Screen& screen, double seconds) {

@@ -86,6 +86,8 @@ class FlightSession {
 
   [[nodiscard]] const Eye& eye() const { return cockpit_.pilot().eye(); }
   [[nodiscard]] const UtcInstant& now() const { return cockpit_.clock().now(); }
+  /// Returns the name of the time zone at the eye.
+  [[nodiscard]] std::string zone() const { return edits_.ZoneAt(eye().place); }
   [[nodiscard]] PaintedView ViewOf(const ImageSize& size) const {
     return {eye(), now(), size.width, size.height};
   }

@@ -93,11 +93,9 @@ bool SceneEdits::IsRangeExpectedAt(const GeodeticPosition& place) const {
   return glm::length(LocalFrame(kWgs84, view).EnuFromGeodetic(place).xyz) < kNear_m;
 }
 
-GroundHeight SceneEdits::Ground() const {
-  return [this](const GeodeticPosition& place) {
-    if (IsRangeExpectedAt(place)) return kRangeViewGround_m;
-    return painter_.land().GroundUnder(place).value_or(0.0);
-  };
+double SceneEdits::GroundAt(const GeodeticPosition& place) const {
+  if (IsRangeExpectedAt(place)) return kRangeViewGround_m;
+  return painter_.land().GroundUnder(place).value_or(0.0);
 }
 
 void SceneEdits::BringRangeTo(const GeodeticPosition& place) {
@@ -188,7 +186,7 @@ void Standpoint::AwaitGround() {
   }
   Eye stands = eye();
   stands.place.height_m = kRangeViewGround_m + *state_.waits_above_ground_m;
-  cockpit_.pilot().PutAt(stands, scene_.Ground());
+  cockpit_.pilot().PutAt(stands, cockpit_.ground());
   put_at_ = eye();
 }
 
@@ -197,16 +195,16 @@ void Standpoint::StandOnGround() {
   state_.knows_ground = true;
   const std::optional<double> above_m = std::exchange(state_.waits_above_ground_m, std::nullopt);
   const bool has_left = put_at_ && *put_at_ != eye();
-  if (!above_m || has_left) return cockpit_.pilot().KeepAbove(scene_.Ground());
+  if (!above_m || has_left) return cockpit_.pilot().KeepAbove(cockpit_.ground());
   Eye stands = eye();
   stands.place.height_m = painter_.land().HighestGround(stands.place).value_or(0.0) + *above_m;
-  cockpit_.pilot().PutAt(stands, scene_.Ground());
+  cockpit_.pilot().PutAt(stands, cockpit_.ground());
 }
 
 void Standpoint::Place(const EyePlacement& placement) {
   const bool moves = placement.latitude_deg || placement.longitude_deg;
   if (!moves && !placement.height_m && !placement.heading_deg && !placement.pitch_deg) return;
-  const GroundHeight ground = scene_.Ground();
+  const GroundHeight& ground = cockpit_.ground();
   const double above_m =
       state_.waits_above_ground_m.value_or(eye().place.height_m - ground(eye().place));
   Eye placed = Placed(eye(), placement);
@@ -224,8 +222,8 @@ void Standpoint::Place(const EyePlacement& placement) {
 void Standpoint::GoTo(const std::string& name) {
   const NamedPlace& there = PlaceNamed(name);
   scene_.BringLandTo(there.place, there.name);
-  cockpit_.GoTo(there, scene_.Ground());
-  Leave(eye().place.height_m - scene_.Ground()(eye().place));
+  cockpit_.GoTo(there);
+  Leave(eye().place.height_m - scene_.GroundAt(eye().place));
 }
 
 }  // namespace alpenglow::viewer

@@ -47,10 +47,10 @@ class SceneEdits {
   /// Returns whether the built-in mountain range will be loaded near its view at a place; the
   /// height of its ground there is known in advance.
   [[nodiscard]] bool IsRangeExpectedAt(const GeodeticPosition& place) const;
-  /// Returns a function for the height of the ground under a place. Without land it returns the
-  /// height of the bare planet. Near the view of the built-in mountain range it returns the known
-  /// height before the range is loaded.
-  [[nodiscard]] GroundHeight Ground() const;
+  /// Returns the height of the ground under a place [m]. Without land it returns the height of the
+  /// bare planet. Near the view of the built-in mountain range it returns the known height before
+  /// the range is loaded.
+  [[nodiscard]] double GroundAt(const GeodeticPosition& place) const;
 
   [[nodiscard]] const Scene& scene() const { return scene_; }
   [[nodiscard]] const Landscape& land() const { return painter_.land(); }

@@ -146,7 +146,7 @@ void Fly(const SkyviewOptions& options, FlightSession& flight, Window& window,
     const Clock::time_point now = Clock::now();
     const double seconds = std::chrono::duration<double>(now - before).count();
     before = now;
-    deck.Advance(events, {window.width(), window.height()}, seconds);
+    deck.Advance({events, {window.width(), window.height()}, seconds});
     if (deck.TakeFullScreen()) window.SetFullscreen(!window.fullscreen());
     if (looks != (deck.mouse_mode() == MouseMode::kLook)) {
       looks = !looks;
@@ -282,7 +282,7 @@ int Run(const SkyviewOptions& options) {
     if (!track.note.empty())
       Say(fmt::format("skyview: warning: {}: {}\n", *options.track, track.note));
     flight.edits().BringRangeTo(track.points[track.points.size() / 2].place);
-    flight.Follow(PathAlong(track, {}, flight.edits().Ground()));
+    flight.Follow(PathAlong(track, {}, flight.cockpit().ground()));
   }
   if (path) flight.edits().BringRangeTo(path->PoseAt(path->begin_s()).place);
   FlightRecorder recorder = options.record ? FlightRecorder(*options.record) : FlightRecorder();

@@ -10,15 +10,12 @@
 #include "lut/cli/command_line.h"
 #include "lut/image/look.h"
 #include "renderer/scene/scene_options.h"
+#include "viewer/input/action.h"
 #include "viewer/layer.h"
 
 namespace alpenglow::viewer {
 
-inline constexpr char kSkyviewFooter[] =
-    "Keys: ? shows them all. W A S D fly along and across the view, R F up and down, arrows turn, "
-    "2 takes the aircraft, 1 the free camera again; t T change the rate of time, F5 to F9 jump to "
-    "sunrise, noon, sunset and the like, x X change the field of view, F3 writes a screenshot, F10 "
-    "opens panels, h hides all, Esc asks whether to leave.\n\n"
+inline constexpr char kSkyviewExamples[] =
     "Example: sunrise over the built-in range, without a display\n"
     "  skyview --time sunrise+15m --headless --screenshot dawn.png\n"
     "A flight as a film:\n"
@@ -179,7 +176,7 @@ inline void AddSkyviewOptions(CLI::App& app, SkyviewOptions& options) {
       throw CLI::RequiresError("--headless", "--screenshot, --video, --benchmark or --explain");
     }
   });
-  app.footer(kSkyviewFooter);
+  app.footer("Keys: " + FirstKeysText() + ".\n\n" + kSkyviewExamples);
 }
 
 }  // namespace alpenglow::viewer

@@ -5,19 +5,21 @@
 #pragma once
 
 #include <deque>
+#include <functional>
 #include <optional>
 #include <string>
 
 #include "viewer/flight/flight_recorder.h"
 #include "viewer/flight_session.h"
 #include "viewer/hud/hud.h"
+#include "viewer/input/action.h"
 #include "viewer/input/controls.h"
-#include "viewer/picture_queue.h"
-#include "viewer/window.h"
+#include "viewer/picture_writer.h"
 
 namespace alpenglow::viewer {
 
-class ViewerApp {
+/// Keys, gamepad and panels change the flight through its FlightCommands.
+class ViewerApp final : public FlightCommands {
  public:
   struct Settings {
     double hud_scale = 1.0;
@@ -29,15 +31,13 @@ class ViewerApp {
   ViewerApp(FlightSession& flight, FlightRecorder& recorder, const Settings& settings);
   /// Finishes the requested pictures and writes their outcomes that were not yet displayed to
   /// standard error.
-  ~ViewerApp();
+  ~ViewerApp() override;
   ViewerApp(const ViewerApp&) = delete;
   ViewerApp& operator=(const ViewerApp&) = delete;
 
-  /// Applies the input of keyboard, mouse, gamepad and panels, and advances the flight by `seconds`
-  /// of real time. Call it once a frame, whether the frame is displayed or not.
-  void Advance(const WindowEvents& events, const ImageSize& size, double seconds);
-  /// Carries out the requests of the panels. Errors are displayed as messages on the screen.
-  void Serve(const HudRequest& asked);
+  /// Applies the input of keyboard, mouse, gamepad and panels, and advances the flight. Call it once
+  /// a frame, whether the frame is displayed or not.
+  void Advance(const InputFrame& input);
   /// Paints the flight and draws the instruments over it.
   void Paint(const ToneMapPass::Screen& screen, double seconds);
 
@@ -45,15 +45,12 @@ class ViewerApp {
   /// the call returns. Throws OutputError.
   void WritePicture(const std::filesystem::path& file, const ImageSize& size);
 
-  /// Ends the flight: at once, or as soon as all requested pictures are written. A second call
-  /// drops the pictures that are not painted yet.
-  void Leave();
+  void Leave() override;
   /// Waits for the pictures after the display of the window is lost, and writes their outcomes to
   /// standard error.
   void FinishWithoutWindow();
 
-  /// Displays a message on the screen.
-  void Say(const std::string& text, bool is_warning = false);
+  void Report(const std::string& message) override;
 
   /// Returns whether the user has left the flight and all pictures are written.
   [[nodiscard]] bool quit() const { return leaves_ && !pictures_.UnderWay(); }
@@ -70,22 +67,38 @@ class ViewerApp {
     double age_s;
     bool is_warning;
   };
-  void Do(Action action, const ImageSize& size);
-  void ServeTime(const HudTimeRequest& asked);
-  void ServeAir(const HudAirRequest& asked);
-  void ServeLook(const HudRequest& asked);
-  void ServeFlight(const HudRequest& asked);
-  void AskForPicture(const HudCaptureRequest& asked);
-  void TellOfPictures();
-  void SayOutcomes();
-  void Record(bool records);
-  void SaveFlight();
-  void FlyAgain();
+
+  // The other FlightCommands.
+  [[nodiscard]] FlightController& cockpit() override { return flight_.cockpit(); }
+  [[nodiscard]] ExposureControl& exposure() override { return flight_.exposure(); }
+  [[nodiscard]] const QualityRule& quality() const override { return flight_.frames().rule(); }
+  void Use(const QualityRule& rule) override;
+  [[nodiscard]] const Medium& planet() const override { return flight_.edits().planet(); }
+  void UsePlanet(const std::string& preset) override;
+  [[nodiscard]] const AirChoice& air_choice() const override {
+    return flight_.edits().air_choice();
+  }
+  void Use(const AirChoice& choice) override;
+  void ToggleLandingLight() override;
+  void Place(const EyePlacement& placement) override;
+  void GoTo(const std::string& place) override;
+  void SetTime(const std::string& text) override;
+  void Request(const PictureOrder& picture) override;
+  void Record(bool records) override;
+  void SaveFlight() override;
+  void FlyAgain() override;
+  void Switch(WindowPart part) override;
+
+  void Display(const std::string& text, bool is_warning = false);
+  void ReportPictures();
+  void ReportOutcomesAtEnd();
   void NoteFlight(double seconds);
+  void ReadLuminance(const InputFrame& input);
   void Age(double seconds);
-  void SetLandingLight(bool is_on);
-  [[nodiscard]] HudChoices Choices() const;
   void WantStrip();
+  /// Returns a function that draws the instruments of this moment over a picture.
+  [[nodiscard]] std::function<DisplayImage(const Image&)> Instruments();
+  /// Displays errors of a work as warnings.
   template <typename Work>
   void Try(const Work& work);
 
@@ -95,14 +108,13 @@ class ViewerApp {
   FlightLog flown_;  // without the replayed parts
   bool replays_ = false;
   Hud hud_;
-  HudKeys keys_;
   AsyncValue<DayStripRequest, DayStrip> strip_{MakeDayStrip, LooksTheSame};
   Controls controls_;
   std::deque<Message> messages_;
   std::optional<double> cursor_cd_per_m2_;
+  ImageSize size_;  // of the picture in the last frame [pixels]
   double frame_ms_ = 16.0;
-  bool leaves_ = false, full_screen_ = false, landing_light_ = false;
-  HudUnits units_ = HudUnits::kMetric;
+  bool leaves_ = false, full_screen_ = false;
   PictureQueue pictures_;
 };
 

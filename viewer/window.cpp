@@ -9,6 +9,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <glm/common.hpp>
 #include <glm/vec3.hpp>
@@ -153,11 +154,11 @@ GLFWmonitor* MonitorUnder(GLFWwindow* window) {
   return glfwGetPrimaryMonitor();
 }
 
-std::optional<GamepadReading> FirstGamepad() {
+std::optional<GamepadState> FirstGamepad() {
   for (int id = GLFW_JOYSTICK_1; id <= GLFW_JOYSTICK_LAST; ++id) {
     GLFWgamepadstate state = {};
     if (glfwGetGamepadState(id, &state) != GLFW_TRUE) continue;
-    GamepadReading reading;
+    GamepadState reading;
     const char* name = glfwGetGamepadName(id);
     reading.name = name == nullptr ? "" : name;
     std::copy(std::begin(state.buttons), std::end(state.buttons), reading.buttons.begin());

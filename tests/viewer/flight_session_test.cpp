@@ -44,7 +44,7 @@ class FlightsOverLand : public tests::HeadlessTile {
 };
 
 double OverTheGround_m(FlightSession& flight) {
-  return flight.eye().place.height_m - flight.edits().Ground()(flight.eye().place);
+  return flight.eye().place.height_m - flight.edits().GroundAt(flight.eye().place);
 }
 
 TEST_F(FlightsOverLand, AnEyeThatIsPutOverGroundStandsThereWhenTheGroundIsKnown) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "viewer/picture_queue.h"
+#include "viewer/picture_writer.h"
 
 #include "tests/fixtures/temporary_folder.h"
 

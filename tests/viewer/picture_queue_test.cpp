@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Pictures that are made while the flight goes on.
-#include "viewer/picture_queue.h"
+#include "viewer/picture_writer.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

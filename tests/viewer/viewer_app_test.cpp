@@ -49,13 +49,13 @@ class ViewerAppTest : public tests::Headless {
   void Press(int key, int modifiers = 0) {
     WindowEvents events;
     events.keys = {{key, 0, 1, modifiers, ""}, {key, 0, 0, modifiers, ""}};
-    deck_->Advance(events, kSize, kFrame_s);
+    deck_->Advance({events, kSize, kFrame_s});
   }
   /// Keys that go down or up, and a frame.
   void Hold(std::initializer_list<int> keys, bool down) {
     WindowEvents events;
     for (const int key : keys) events.keys.push_back({key, 0, down ? 1 : 0, 0, ""});
-    deck_->Advance(events, kSize, kFrame_s);
+    deck_->Advance({events, kSize, kFrame_s});
   }
   struct Moment {
     Eye eye;
@@ -64,13 +64,13 @@ class ViewerAppTest : public tests::Headless {
   std::vector<Moment> Fly(int frames) {
     std::vector<Moment> moments;
     for (int i = 0; i < frames; ++i) {
-      deck_->Advance({}, kSize, kFrame_s);
+      deck_->Advance({{}, kSize, kFrame_s});
       moments.push_back({flight_->eye(), flight_->now()});
     }
     return moments;
   }
   DisplayImage Shown() {
-    deck_->Advance({}, kSize, kFrame_s);
+    deck_->Advance({{}, kSize, kFrame_s});
     deck_->Paint({screen_->framebuffer(), kSize.width, kSize.height}, kFrame_s);
     return screen_->ReadBytes();
   }
@@ -81,6 +81,8 @@ class ViewerAppTest : public tests::Headless {
     static_cast<void>(Fly(1));
     return frames;
   }
+  /// What keys and panels change.
+  [[nodiscard]] FlightCommands& Commands() { return *deck_; }
   [[nodiscard]] std::vector<HudMessage> Messages() const { return deck_->Model().messages; }
 
   static constexpr double kFrame_s = 1.0 / 60.0;
@@ -167,9 +169,7 @@ TEST_F(ViewerAppFiles, WhoLeavesTwiceGivesUpThePicture) {
 TEST_F(ViewerAppFiles, ADeckThatGoesHasWrittenItsPictures) {
   static_cast<void>(Shown());
   Press(kF3);
-  HudRequest request;
-  request.capture = HudCaptureRequest{HudPictureKind::kPng, 320, 240, true};
-  deck_->Serve(request);
+  Commands().Request({false, ImageSize{320, 240}, true});
   deck_.reset();
   EXPECT_TRUE(std::filesystem::exists("skyview-0001.png"));
   EXPECT_TRUE(std::filesystem::exists("skyview-0002.png")) << "with its instruments";
@@ -177,19 +177,15 @@ TEST_F(ViewerAppFiles, ADeckThatGoesHasWrittenItsPictures) {
 
 TEST_F(ViewerAppFiles, ThePanelWritesPicturesWithInstrumentsAndWithout) {
   static_cast<void>(Shown());
-  deck_->Advance({}, kSize, kFrame_s);
-  HudRequest request;
-  request.capture = HudCaptureRequest{HudPictureKind::kPng, 480, 360, true};
-  deck_->Serve(request);
-  request.capture->with_hud = false;
-  deck_->Serve(request);
+  deck_->Advance({{}, kSize, kFrame_s});
+  Commands().Request({false, ImageSize{480, 360}, true});
+  Commands().Request({false, ImageSize{480, 360}, false});
   static_cast<void>(FlyUntilPicturesEnd());
   const DisplayImage with = ReadPng("skyview-0001.png"), without = ReadPng("skyview-0002.png");
   ASSERT_EQ(with.width, 480);
   EXPECT_GT(Changed(with, without), 2000) << "instruments";
   EXPECT_LT(Changed(with, without), 480 * 360) << "over the same picture";
-  request.capture = HudCaptureRequest{HudPictureKind::kExr, 480, 360, true};
-  deck_->Serve(request);
+  Commands().Request({true, ImageSize{480, 360}, true});
   EXPECT_TRUE(Messages().back().is_warning) << "instruments are no light";
   EXPECT_FALSE(deck_->Model().progress);
   EXPECT_FALSE(std::filesystem::exists("skyview-0003.exr"));
@@ -281,33 +277,28 @@ TEST_F(ViewerAppFiles, ThePanelBeginsAndEndsARecord) {
   Hold({kW}, true);
   static_cast<void>(Fly(30));
   EXPECT_FALSE(deck_->Model().recording);
-  HudRequest begin, end;
-  begin.record = true;
-  end.record = false;
-  deck_->Serve(begin);
+  Commands().Record(true);
   EXPECT_TRUE(deck_->Model().recording);
   const std::vector<Moment> flown = Fly(61);
   EXPECT_EQ(ReadFlight("flight-0001.csv.part").points().size(), 21U)
       << "every third frame is on the disk before the next one";
-  deck_->Serve(end);
+  Commands().Record(false);
   EXPECT_FALSE(deck_->Model().recording);
   const CameraPath path = ReadFlight("flight-0001.csv");
   EXPECT_EQ(path.begin_s(), 0.0) << "of the record, not of the flight";
   EXPECT_LT(Apart_m(EyeOf(path.points().front().pose), flown.front().eye), 1e-3);
-  deck_->Serve(begin);
+  Commands().Record(true);
   static_cast<void>(Fly(1));
   EXPECT_TRUE(std::filesystem::exists("flight-0002.csv.part")) << "no flight is written over";
-  deck_->Serve(end);
+  Commands().Record(false);
 }
 
 TEST_F(ViewerAppFiles, ARecordThatNobodyEndedIsWholeWhenTheDeckHasGone) {
   {
     FlightRecorder recorder;
     ViewerApp deck(*flight_, recorder, {});
-    HudRequest begin;
-    begin.record = true;
-    deck.Serve(begin);
-    deck.Advance({}, kSize, kFrame_s);
+    static_cast<FlightCommands&>(deck).Record(true);
+    deck.Advance({{}, kSize, kFrame_s});
   }
   EXPECT_EQ(ReadFlight("flight-0001.csv").points().size(), 1U);
 }
@@ -346,7 +337,7 @@ TEST_F(ViewerAppOverLand, NothingIsNotedBeforeTheGroundUnderTheEyeIsKnown) {
   ViewerApp deck(flight, recorder, {});
   const RenderTarget screen(kSize.width, kSize.height, RenderTarget::Depth::kNone);
   const auto fly = [&](const WindowEvents& events) {
-    deck.Advance(events, kSize, 1.0 / 60.0);
+    deck.Advance({events, kSize, 1.0 / 60.0});
     deck.Paint({screen.framebuffer(), kSize.width, kSize.height}, 1.0 / 60.0);
   };
   int frames = 0;
@@ -362,14 +353,12 @@ TEST_F(ViewerAppOverLand, NothingIsNotedBeforeTheGroundUnderTheEyeIsKnown) {
   const CameraPath path = ReadFlight(folder_ / "f.csv");
   EXPECT_GE(path.points().size(), 4U);
   for (const CameraPathPoint& point : path.points())
-    EXPECT_NEAR(point.pose.place.height_m, flight.edits().Ground()(point.pose.place) + 300.0, 0.01)
+    EXPECT_NEAR(point.pose.place.height_m, flight.edits().GroundAt(point.pose.place) + 300.0, 0.01)
         << "places and heights are written in millimetres, on slopes of 60 degrees at most";
 }
 
 TEST_F(ViewerAppTest, APlaceThatIsAskedForMovesTheEye) {
-  HudRequest request;
-  request.place = HudPlaceRequest{47.25, 9.5, 2500.0};
-  deck_->Serve(request);
+  Commands().Place({47.25, 9.5, 2500.0, {}, {}});
   EXPECT_NEAR(flight_->eye().place.latitude_rad, 47.25 * kRadiansPerDegree, 1e-12);
   EXPECT_NEAR(flight_->eye().place.longitude_rad, 9.5 * kRadiansPerDegree, 1e-12);
   EXPECT_NEAR(flight_->eye().place.height_m, 2500.0, 1e-6);
@@ -378,9 +367,7 @@ TEST_F(ViewerAppTest, APlaceThatIsAskedForMovesTheEye) {
 
 TEST_F(ViewerAppTest, APlaceThatNobodyKnowsIsAWarningAndTheEyeStays) {
   const Eye before = flight_->eye();
-  HudRequest request;
-  request.named_place = "Nowhere at all";
-  deck_->Serve(request);
+  Commands().GoTo("Nowhere at all");
   EXPECT_EQ(flight_->eye(), before);
   ASSERT_EQ(Messages().size(), 1U);
   EXPECT_TRUE(Messages().back().is_warning);
@@ -392,9 +379,7 @@ TEST_F(ViewerAppTest, CtrlLSwitchesTheLandingLightAsThePanelDoes) {
   Press(kL, kControlKey);
   ASSERT_FALSE(Messages().empty());
   EXPECT_EQ(Messages().back().text, "landing light on");
-  HudRequest off;
-  off.lamp = HudLampRequest{0, false};
-  deck_->Serve(off);
+  Commands().ToggleLandingLight();
   Press(kL, kControlKey);
   EXPECT_EQ(Messages().back().text, "landing light on") << "the panel had put it out";
   Press(kL, kControlKey);
@@ -406,7 +391,7 @@ TEST_F(ViewerAppTest, TheLandingLightOfTheKeyShinesOnTheGround) {
   Eye low = flight_->eye();
   low.place.height_m = 30.0;
   low.pitch_rad = -0.3;
-  flight_->cockpit().pilot().PutAt(low, flight_->edits().Ground());
+  flight_->cockpit().pilot().PutAt(low, flight_->cockpit().ground());
   const auto mean_cd_per_m2 = [&] {
     const Image image = PictureWriter(*flight_).Picture({32, 24}, 1);
     double sum = 0.0;
@@ -420,69 +405,64 @@ TEST_F(ViewerAppTest, TheLandingLightOfTheKeyShinesOnTheGround) {
   EXPECT_GT(mean_cd_per_m2(), 2.0 * dark);
 }
 
-TEST_F(ViewerAppTest, EachMomentOfThePanelIsTheOneThatItNames) {
-  const std::pair<const char*, const char*> cases[] = {{"sunset", "2026-06-21T19:3"},
-                                                       {"dusk", "2026-06-21T20:0"},
-                                                       {"dawn", "2026-06-22T02:5"},
-                                                       {"sunrise", "2026-06-22T03:2"},
-                                                       {"noon", "2026-06-22T11:3"}};
-  for (const auto& [moment, time] : cases) {
-    HudRequest request;
-    request.time.moment = moment;
-    deck_->Serve(request);
-    EXPECT_THAT(FormatUtc(flight_->now()), ::testing::StartsWith(time)) << moment;
-    EXPECT_EQ(Messages().back().text, moment);
+TEST_F(ViewerAppTest, EachEventIsTheOneThatItNames) {
+  const std::pair<SkyEvent, const char*> cases[] = {{SkyEvent::kSunset, "2026-06-21T19:3"},
+                                                    {SkyEvent::kDusk, "2026-06-21T20:0"},
+                                                    {SkyEvent::kDawn, "2026-06-22T02:5"},
+                                                    {SkyEvent::kSunrise, "2026-06-22T03:2"},
+                                                    {SkyEvent::kNoon, "2026-06-22T11:3"}};
+  for (const auto& [event, time] : cases) {
+    EXPECT_EQ(flight_->cockpit().JumpTo(event), NameOf(event));
+    EXPECT_THAT(FormatUtc(flight_->now()), ::testing::StartsWith(time)) << NameOf(event);
   }
 }
 
-TEST_F(ViewerAppTest, ThePanelEntersTheModesThatThereAre) {
-  HudRequest request;
-  request.mode = "aircraft";
-  deck_->Serve(request);
+TEST_F(ViewerAppTest, TypedTimesAreSetAndOthersAreWarnings) {
+  Commands().SetTime("2026-06-22T04:00:00Z");
+  EXPECT_EQ(FormatUtc(flight_->now()), "2026-06-22T04:00:00Z");
+  Commands().SetTime("sunsat");
+  EXPECT_EQ(FormatUtc(flight_->now()), "2026-06-22T04:00:00Z");
+  EXPECT_TRUE(Messages().back().is_warning);
+}
+
+TEST_F(ViewerAppTest, KeysEnterTheModesThatThereAre) {
+  Press('2');
   EXPECT_EQ(flight_->cockpit().pilot().mode(), FlightMode::kAircraft);
-  request.mode = "follow the track";
-  deck_->Serve(request);
+  Press('3');
   EXPECT_EQ(flight_->cockpit().pilot().mode(), FlightMode::kAircraft) << "there is no track";
-  request.mode = "free camera";
-  deck_->Serve(request);
+  Press('1');
   EXPECT_EQ(flight_->cockpit().pilot().mode(), FlightMode::kFree);
 }
 
-TEST_F(ViewerAppTest, ThePanelSetsThrottleAndHeldSpeedOfTheAircraft) {
-  HudRequest throttle, speed;
-  throttle.throttle = 0.25;
-  speed.hold_speed_m_per_s = HudHold{55.0};
-  deck_->Serve(throttle);
+TEST_F(ViewerAppTest, ThrottleAndHeldSpeedOfTheAircraftAreShown) {
   EXPECT_FALSE(deck_->Model().flight.throttle) << "the free camera has none";
   Press('2');
-  deck_->Serve(throttle);
+  PilotedAircraft* aircraft = flight_->cockpit().pilot().aircraft();
+  ASSERT_NE(aircraft, nullptr);
+  aircraft->SetThrottle(0.25);
   EXPECT_EQ(deck_->Model().flight.throttle, 0.25);
-  deck_->Serve(speed);
+  aircraft->autopilot().Set({.speed_m_per_s = 55.0});
   EXPECT_EQ(deck_->Model().autopilot.speed_m_per_s, 55.0);
-  deck_->Serve(throttle);
+  aircraft->SetThrottle(0.25);
   EXPECT_EQ(deck_->Model().autopilot.speed_m_per_s, std::nullopt) << "a hand has the throttle";
 }
 
-TEST_F(ViewerAppTest, ThePanelSetsLookAndWhiteBalance) {
-  flight_->exposure().Set(14.0);
+TEST_F(ViewerAppTest, AnotherLookAndWhiteBalanceChangeThePicture) {
+  ExposureControl& exposure = flight_->exposure();
+  exposure.Set(14.0);
   const DisplayImage photo = Shown();
-  HudRequest request;
-  request.look = "none";
-  deck_->Serve(request);
-  EXPECT_EQ(deck_->Model().exposure.look, "none");
+  Look look = exposure.look();
+  look.agx = AgxLook::kNone;
+  exposure.Use(look);
   const DisplayImage none = Shown();
   EXPECT_GT(Changed(photo, none), 10000);
-  request = {};
-  request.white_balance = "3000";
-  deck_->Serve(request);
-  EXPECT_EQ(deck_->Model().exposure.look, "none") << "the rest stays";
-  EXPECT_EQ(deck_->Model().exposure.white_balance, "3000 K");
+  look.white = WhiteBalanceFromText("3000");
+  exposure.Use(look);
   EXPECT_GT(Changed(none, Shown()), 10000) << "bluer";
-  EXPECT_EQ(deck_->Model().exposure.white_k, 3000.0);
-  request.white_balance = "daylight";
-  deck_->Serve(request);
+  EXPECT_EQ(exposure.white_k(), 3000.0);
+  look.white = WhiteBalanceFromText("daylight");
+  exposure.Use(look);
   EXPECT_LT(Changed(none, Shown()), 4000) << "daylight, as camera is by day; instruments changed";
-  EXPECT_EQ(deck_->Model().exposure.white_balance, "daylight");
 }
 
 TEST_F(ViewerAppTest, EscAsksAndEnterLeaves) {
@@ -503,10 +483,10 @@ TEST_F(ViewerAppTest, EscTwiceStays) {
 }
 
 TEST_F(ViewerAppTest, MessagesGoAfterAWhile) {
-  deck_->Say("hello");
-  deck_->Advance({}, kSize, 4.0);
+  deck_->Report("hello");
+  deck_->Advance({{}, kSize, 4.0});
   EXPECT_EQ(Messages().size(), 1U);
-  deck_->Advance({}, kSize, 5.0);
+  deck_->Advance({{}, kSize, 5.0});
   EXPECT_TRUE(Messages().empty());
 }
 

@@ -2,6 +2,7 @@
 #include "viewer/flight/flight.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <glm/geometric.hpp>
@@ -17,6 +18,11 @@ namespace {
 double TurnRate(const Eye& eye) { return 0.75 * std::min(eye.fov_rad, 60.0 * kRadiansPerDegree); }
 
 }  // namespace
+
+const char* NameOf(FlightMode mode) {
+  constexpr std::array<const char*, 3> kNames{"free camera", "aircraft", "track"};
+  return kNames[static_cast<std::size_t>(mode)];
+}
 
 Eye Placed(const Eye& eye, const EyePlacement& placement) {
   const auto degrees = [](double radians) { return radians / kRadiansPerDegree; };

@@ -14,6 +14,8 @@ namespace alpenglow::viewer {
 
 /// Control of the eye: a free camera, an aircraft, or a track that is followed.
 enum class FlightMode { kFree, kAircraft, kTrack };
+/// Returns "free camera", "aircraft" or "track".
+[[nodiscard]] const char* NameOf(FlightMode mode);
 
 /// Position, direction and field of view of the eye. Angles are in radians.
 struct Eye {

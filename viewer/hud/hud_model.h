@@ -1,10 +1,8 @@
 // SPDX-License-Identifier: MIT
-// Data of instruments and panels: values shown in one frame, requests from panels, colours, and
-// number formats.
+// Data of instruments and panels: values shown in one frame, colours, and number formats.
 //
 // HudModel holds plain values, refilled for every frame. Angles are in radians, azimuths and
-// headings clockwise from north, heights and speeds in SI. HudRequest holds the requests of one
-// frame: each value at most once, mostly none.
+// headings clockwise from north, heights and speeds in SI.
 //
 // The day theme has bright colours; the night theme is red and amber, which keeps the eye
 // dark-adapted. Text has a plate or a panel behind it, with a contrast of at least 4.5 (Web Content
@@ -14,7 +12,6 @@
 #pragma once
 
 #include <array>
-#include <cstddef>
 #include <optional>
 #include <string>
 #include <vector>
@@ -97,18 +94,13 @@ struct HudExposure {
   bool locked = false;
   double compensation_ev = 0.0;  // added to the meter's value; positive is brighter
   std::optional<double> cursor_luminance_cd_per_m2 = {};
-  std::string tone_curve;              // one of HudChoices::tone_curves
-  std::string look;                    // one of HudChoices::looks; of the tone curve agx
-  std::string white_balance;           // one of HudChoices::white_balances, or "5600 K"
-  std::optional<double> white_k = {};  // temperature of the light that appears white [K]
 };
 
 struct HudAir {
-  std::string planet;                // one of HudChoices::planets
-  std::string mixture;               // one of HudChoices::mixtures
+  std::string planet;                // name of the medium
   double visibility_km = 50.0;       // of the air at altitude 0
   double visibility_here_km = 50.0;  // at the camera, also in fog
-  double aerosol_scale = 1.0;        // factor on the aerosol of the mixture
+  double aerosol_scale = 1.0;        // factor on the aerosol of the planet
   double ozone_du = 300.0;           // 0 for air without ozone
   double ground_albedo = 0.1;
 };
@@ -131,6 +123,9 @@ struct HudProgress {
 
 enum class HudUnits { kMetric, kAviation };
 
+/// Cells of a row of the table of tables: "air", "12 ms", "".
+using HudRow = std::vector<std::string>;
+
 struct HudModel {
   HudFlight flight;
   HudAutopilot autopilot;
@@ -140,102 +135,19 @@ struct HudModel {
   HudSky sky;
   HudExposure exposure;
   HudAir air;
+  bool landing_light = false;
   HudSpeed speed;
   std::vector<HudMessage> messages;  // the newest last
   std::optional<HudProgress> progress = {};
   bool recording = false;
   HudUnits units = HudUnits::kMetric;
+  std::vector<HudRow> tables;  // tables of the viewer: name, time to make it, memory
 };
 
-/// A lamp of the scene, or the landing light.
-struct HudLamp {
-  std::string name;
-  bool is_on = true;
-};
-
-/// Cells of a table row: "sky view", "64 x 104", "0.2 %", ..., in the order of the heading.
-using HudRow = std::vector<std::string>;
-
-/// Options and lists of the panels; they rarely change.
-struct HudChoices {
-  std::vector<std::string> modes;     // flight modes
-  std::vector<std::string> moments;   // "sunrise", "noon", "moonrise", ...
-  std::vector<std::string> planets;   // atmosphere presets
-  std::vector<std::string> mixtures;  // aerosol mixtures; empty: no list
-  std::vector<std::string> tone_curves, looks, white_balances;
-  std::vector<std::string> qualities;  // "auto", "low", ...
-  std::vector<HudLamp> lamps;
-  HudRow table_heading;
-  std::vector<HudRow> tables;  // tables of the viewer: size, age, error
-};
-
-/// Degrees and metres as typed; the panel clamps the angles to their ranges.
-struct HudPlaceRequest {
-  double latitude_deg = 0.0;   // [-90, 90]
-  double longitude_deg = 0.0;  // [-180, 180]
-  double height_m = 0.0;       // over the ellipsoid
-};
-
-struct HudTimeRequest {
-  std::optional<std::string> instant = {};  // as typed; ParseInstant (time.h) validates it
-  std::optional<double> day_fraction = {};  // clicked position in the day strip, [0, 1]
-  std::optional<std::string> moment = {};   // one of HudChoices::moments
-  std::optional<double> rate = {};          // [-3600, 3600]
-  std::optional<bool> paused = {};
-};
-
-struct HudAirRequest {
-  std::optional<std::string> planet = {};
-  std::optional<std::string> mixture = {};
-  std::optional<double> visibility_km = {};
-  std::optional<double> aerosol_scale = {};
-  std::optional<double> ozone_du = {};
-  std::optional<double> ground_albedo = {};
-};
-
-/// A value to hold; empty: release.
-struct HudHold {
-  std::optional<double> value = {};
-};
-
-struct HudLampRequest {
-  std::size_t lamp = 0;  // index into HudChoices::lamps
-  bool is_on = true;
-};
-
-enum class HudPictureKind { kPng, kExr };
-
-struct HudCaptureRequest {
-  HudPictureKind kind = HudPictureKind::kPng;
-  int width = 0;  // pixels, [1, kLargestImageSide]
-  int height = 0;
-  bool with_hud = false;
-};
-
-struct HudRequest {
-  std::optional<HudPlaceRequest> place = {};
-  std::optional<std::string> named_place = {};  // resolved by PlaceNamed (places.h)
-  HudTimeRequest time;
-  HudAirRequest air;
-  std::optional<HudLampRequest> lamp = {};
-  std::optional<std::string> tone_curve = {};
-  std::optional<std::string> look = {};
-  std::optional<std::string> white_balance =
-      {};  // parsed by WhiteBalanceFromText (white_balance.h)
-  std::optional<bool> exposure_locked = {};
-  std::optional<double> ev100 = {};  // also locks the exposure
-  std::optional<double> compensation_ev = {};
-  std::optional<std::string> quality = {};
-  std::optional<std::string> mode = {};
-  std::optional<double> throttle = {};  // fraction, [0, 1]
-  std::optional<HudHold> hold_heading_rad = {};
-  std::optional<HudHold> hold_height_m = {};
-  std::optional<HudHold> hold_speed_m_per_s = {};
-  std::optional<HudCaptureRequest> capture = {};
-  std::optional<bool> record = {};  // true: begin, false: end
-  std::optional<HudUnits> units = {};
-  std::optional<HudThemeChoice> theme = {};  // already applied by Hud
-  bool quit = false;
+/// Preferences of the user that only change the display.
+struct HudPreferences {
+  HudThemeChoice theme = HudThemeChoice::kAuto;
+  HudUnits units = HudUnits::kMetric;
 };
 
 /// Return "46.5000° N", "8.0000° W".

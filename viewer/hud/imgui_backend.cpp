@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: MIT
 #include "viewer/hud/imgui_backend.h"
 
+// GLFW is included for its key numbers alone.
+#define GLFW_INCLUDE_NONE
+#include <GLFW/glfw3.h>
+
 #include <fmt/format.h>
 #include <imgui.h>
 
@@ -117,74 +121,93 @@ void ApplyStyle(HudTheme theme, double scale) {
 
 namespace {
 
-constexpr std::pair<HudKey, int> kInputKeys[] = {{HudKey::kTab, ImGuiKey_Tab},
-                                                 {HudKey::kLeft, ImGuiKey_LeftArrow},
-                                                 {HudKey::kRight, ImGuiKey_RightArrow},
-                                                 {HudKey::kUp, ImGuiKey_UpArrow},
-                                                 {HudKey::kDown, ImGuiKey_DownArrow},
-                                                 {HudKey::kPageUp, ImGuiKey_PageUp},
-                                                 {HudKey::kPageDown, ImGuiKey_PageDown},
-                                                 {HudKey::kHome, ImGuiKey_Home},
-                                                 {HudKey::kEnd, ImGuiKey_End},
-                                                 {HudKey::kInsert, ImGuiKey_Insert},
-                                                 {HudKey::kDelete, ImGuiKey_Delete},
-                                                 {HudKey::kBackspace, ImGuiKey_Backspace},
-                                                 {HudKey::kSpace, ImGuiKey_Space},
-                                                 {HudKey::kEnter, ImGuiKey_Enter},
-                                                 {HudKey::kEscape, ImGuiKey_Escape},
-                                                 {HudKey::kA, ImGuiKey_A},
-                                                 {HudKey::kC, ImGuiKey_C},
-                                                 {HudKey::kV, ImGuiKey_V},
-                                                 {HudKey::kX, ImGuiKey_X},
-                                                 {HudKey::kY, ImGuiKey_Y},
-                                                 {HudKey::kZ, ImGuiKey_Z}};
+/// Keys that edit text or navigate panels.
+constexpr std::pair<int, int> kPanelKeys[] = {{ImGuiKey_Tab, GLFW_KEY_TAB},
+                                              {ImGuiKey_LeftArrow, GLFW_KEY_LEFT},
+                                              {ImGuiKey_RightArrow, GLFW_KEY_RIGHT},
+                                              {ImGuiKey_UpArrow, GLFW_KEY_UP},
+                                              {ImGuiKey_DownArrow, GLFW_KEY_DOWN},
+                                              {ImGuiKey_PageUp, GLFW_KEY_PAGE_UP},
+                                              {ImGuiKey_PageDown, GLFW_KEY_PAGE_DOWN},
+                                              {ImGuiKey_Home, GLFW_KEY_HOME},
+                                              {ImGuiKey_End, GLFW_KEY_END},
+                                              {ImGuiKey_Insert, GLFW_KEY_INSERT},
+                                              {ImGuiKey_Delete, GLFW_KEY_DELETE},
+                                              {ImGuiKey_Backspace, GLFW_KEY_BACKSPACE},
+                                              {ImGuiKey_Space, GLFW_KEY_SPACE},
+                                              {ImGuiKey_Escape, GLFW_KEY_ESCAPE},
+                                              {ImGuiKey_A, GLFW_KEY_A},
+                                              {ImGuiKey_C, GLFW_KEY_C},
+                                              {ImGuiKey_V, GLFW_KEY_V},
+                                              {ImGuiKey_X, GLFW_KEY_X},
+                                              {ImGuiKey_Y, GLFW_KEY_Y},
+                                              {ImGuiKey_Z, GLFW_KEY_Z}};
 
 #if IMGUI_VERSION_NUM >= 18700
-void TellKey(ImGuiIO& io, int key, bool is_down) {
+void FeedKey(ImGuiIO& io, int key, bool is_down) {
   io.AddKeyEvent(static_cast<ImGuiKey>(key), is_down);
 }
-void TellModifiers(ImGuiIO& io, const HudInput& input) {
+void FeedModifiers(ImGuiIO& io, bool control, bool shift) {
 #if IMGUI_VERSION_NUM >= 18900
-  io.AddKeyEvent(ImGuiMod_Ctrl, input.control);
-  io.AddKeyEvent(ImGuiMod_Shift, input.shift);
+  io.AddKeyEvent(ImGuiMod_Ctrl, control);
+  io.AddKeyEvent(ImGuiMod_Shift, shift);
 #else
-  io.AddKeyEvent(ImGuiKey_ModCtrl, input.control);
-  io.AddKeyEvent(ImGuiKey_ModShift, input.shift);
+  io.AddKeyEvent(ImGuiKey_ModCtrl, control);
+  io.AddKeyEvent(ImGuiKey_ModShift, shift);
 #endif
 }
 #else
 // Key codes are mapped to themselves.
-void TellKey(ImGuiIO& io, int key, bool is_down) {
+void FeedKey(ImGuiIO& io, int key, bool is_down) {
   io.KeyMap[key] = key;
   io.KeysDown[key] = is_down;
 }
-void TellModifiers(ImGuiIO& io, const HudInput& input) {
-  io.KeyCtrl = input.control;
-  io.KeyShift = input.shift;
+void FeedModifiers(ImGuiIO& io, bool control, bool shift) {
+  io.KeyCtrl = control;
+  io.KeyShift = shift;
 }
 #endif
 
-void TellMouse(ImGuiIO& io, const HudInput& input) {
+void FeedMouse(ImGuiIO& io, const WindowEvents& events) {
   constexpr float kNowhere = -std::numeric_limits<float>::max();
-  io.MousePos = input.pointer ? ImVec2{static_cast<float>(input.pointer->x),
-                                       static_cast<float>(input.pointer->y)}
-                              : ImVec2{kNowhere, kNowhere};
-  std::copy(input.buttons.begin(), input.buttons.end(), io.MouseDown);
-  io.MouseWheel = static_cast<float>(input.wheel);
+  io.MousePos = events.pointer ? ImVec2{static_cast<float>(events.pointer->right),
+                                        static_cast<float>(events.pointer->down)}
+                               : ImVec2{kNowhere, kNowhere};
+  std::copy(events.buttons.begin(), events.buttons.end(), io.MouseDown);
+  io.MouseWheel = static_cast<float>(events.wheel);
 }
 
 }  // namespace
 
-void TellInput(ImGuiIO& io, const HudInput& input) {
-  constexpr float kShortest_s = 1e-4F;  // Dear ImGui requires a positive time step
-  io.DisplaySize = {static_cast<float>(input.width), static_cast<float>(input.height)};
-  io.DeltaTime = std::max(static_cast<float>(input.seconds), kShortest_s);
-  TellMouse(io, input);
-  TellModifiers(io, input);
-  for (const auto& [key, name] : kInputKeys) {
-    TellKey(io, name, std::find(input.keys.begin(), input.keys.end(), key) != input.keys.end());
+void PanelKeys::Take(const WindowEvents& events) {
+  pressed_.clear();
+  for (const KeyEvent& event : events.keys) {
+    std::erase(held_, event.key);
+    if (event.change == GLFW_RELEASE) continue;
+    held_.push_back(event.key);
+    pressed_.push_back(event.key);
   }
-  io.AddInputCharactersUTF8(input.text.c_str());
+  if (!events.focused) held_.clear();
+}
+
+bool PanelKeys::IsDown(int glfw_key) const {
+  const auto has = [&](const std::vector<int>& keys) {
+    return std::find(keys.begin(), keys.end(), glfw_key) != keys.end();
+  };
+  return has(held_) || has(pressed_);
+}
+
+void FeedInput(ImGuiIO& io, const InputFrame& input, const PanelKeys& keys) {
+  constexpr float kShortest_s = 1e-4F;  // Dear ImGui requires a positive time step
+  const auto either = [&](int one, int other) { return keys.IsDown(one) || keys.IsDown(other); };
+  io.DisplaySize = {static_cast<float>(input.size.width), static_cast<float>(input.size.height)};
+  io.DeltaTime = std::max(static_cast<float>(input.seconds), kShortest_s);
+  FeedMouse(io, input.events);
+  FeedModifiers(io, either(GLFW_KEY_LEFT_CONTROL, GLFW_KEY_RIGHT_CONTROL),
+                either(GLFW_KEY_LEFT_SHIFT, GLFW_KEY_RIGHT_SHIFT));
+  for (const auto& [key, glfw_key] : kPanelKeys) FeedKey(io, key, keys.IsDown(glfw_key));
+  FeedKey(io, ImGuiKey_Enter, either(GLFW_KEY_ENTER, GLFW_KEY_KP_ENTER));
+  io.AddInputCharactersUTF8(input.events.text.c_str());
 }
 
 namespace {

@@ -13,11 +13,12 @@
 
 #include <filesystem>
 #include <optional>
+#include <vector>
 
 #include "viewer/gl/gl_objects.h"
 #include "viewer/gl/shader.h"
-#include "viewer/hud/hud.h"
 #include "viewer/hud/hud_model.h"
+#include "viewer/input/controls.h"
 
 namespace alpenglow::viewer {
 
@@ -33,8 +34,20 @@ void LoadFont(ImFontAtlas& atlas, double scale, const std::optional<std::filesys
 /// @param scale  pixels per unit.
 void ApplyStyle(HudTheme theme, double scale);
 
-/// Call before each NewFrame.
-void TellInput(ImGuiIO& io, const HudInput& input);
+/// Keys that are held, or were pressed and released since the last frame.
+class PanelKeys {
+ public:
+  /// Takes the keys of a frame. A window that loses the keyboard releases all keys.
+  void Take(const WindowEvents& events);
+  /// @param glfw_key  GLFW_KEY_...
+  [[nodiscard]] bool IsDown(int glfw_key) const;
+
+ private:
+  std::vector<int> held_, pressed_;  // pressed: in this frame
+};
+
+/// Passes the input of a frame to Dear ImGui. Call before each NewFrame.
+void FeedInput(ImGuiIO& io, const InputFrame& input, const PanelKeys& keys);
 
 class DrawListPainter {
  public:

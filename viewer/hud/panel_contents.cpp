@@ -6,10 +6,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
 
 #include "atmosphere/math/constants.h"
 #include "lut/image/image.h"
+#include "lut/image/look.h"
 #include "lut/image/metering.h"
 #include "viewer/hud/hud_model.h"
 #include "viewer/hud/panel_controls.h"
@@ -21,6 +21,12 @@ constexpr double kItemWidth = 170.0;   // width of sliders and lists [units]
 constexpr double kStripWidth = 440.0;  // units
 constexpr double kStripHeight = 64.0;  // units
 constexpr double kNightShare = 0.35;   // brightness of the day strip in the night theme
+
+const std::vector<std::string> kCurves{"agx", "aces", "reinhard", "pbr-neutral", "linear"};
+const std::vector<std::string> kWhiteBalances{"camera", "daylight", "auto"};
+const std::vector<std::string> kQualities{"auto", "low", "medium", "high", "reference"};
+const std::vector<std::string> kThemes{"by exposure", "day", "night"};
+const std::vector<std::string> kTableHeading{"", "made in", "memory"};
 
 float Pixels(const PanelView& view, double units) { return static_cast<float>(units * view.scale); }
 
@@ -34,15 +40,15 @@ double StripWidth_px(const PanelView& view) {
       60.0);
 }
 
-std::optional<double> RateButtons(const HudTime& time, double width_px) {
+void RateButtons(const HudTime& time, double width_px, SceneClock& clock) {
   static constexpr std::array<double, 7> kRates{-3600.0, -60.0, 0.0, 1.0, 10.0, 60.0, 3600.0};
   std::vector<std::string> names;
   for (const double rate : kRates) names.push_back(RateText(rate, false));
   ImGui::Text("rate of time: %s", RateText(time.rate, time.paused).c_str());
-  const auto pressed = ButtonRows(names, width_px);
-  return pressed ? std::optional(kRates[*pressed]) : std::nullopt;
+  if (const auto pressed = ButtonRows(names, width_px)) clock.SetRate(kRates[*pressed]);
 }
 
+// Draws a field for an instant. Returns the text when it is submitted.
 std::optional<std::string> InstantControl(std::array<char, 64>& typed, float width) {
   ImGui::SetNextItemWidth(width);
   const bool entered =
@@ -54,39 +60,47 @@ std::optional<std::string> InstantControl(std::array<char, 64>& typed, float wid
   return std::string(typed.data());
 }
 
-HudTimeRequest TimeControls(const PanelView& view, PanelTyping& typing) {
+void EventButtons(double width_px, FlightCommands& flight) {
+  std::vector<std::string> names;
+  for (const SkyEvent event : kSkyEvents) names.emplace_back(NameOf(event));
+  if (const auto pressed = ButtonRows(names, width_px))
+    flight.Report(flight.cockpit().JumpTo(kSkyEvents[*pressed]));
+}
+
+void TimeControls(const PanelChange& change, PanelTyping& typing) {
+  const auto& [view, preferences, flight] = change;
   const HudTime& time = view.model.time;
   const double width = StripWidth_px(view);
-  HudTimeRequest request;
+  SceneClock& clock = flight.cockpit().clock();
   ImGui::TextUnformatted(time.utc.c_str());
   ImGui::TextUnformatted((time.local + " " + time.zone).c_str());
-  request.day_fraction = DayStripControl(
+  const auto day_fraction = DayStripControl(
       view.strip, time.day_fraction,
       {width, kStripHeight * view.scale, view.theme == HudTheme::kDay ? 1.0 : kNightShare});
-  if (const auto moment = ButtonRows(view.choices.moments, width))
-    request.moment = view.choices.moments[*moment];
-  request.rate = RateButtons(time, width);
-  request.paused = CheckBox("paused", time.paused);
-  request.instant = InstantControl(
+  if (day_fraction) clock.Shift(kSecondsPerDay * (*day_fraction - time.day_fraction));
+  EventButtons(width, flight);
+  RateButtons(time, width, clock);
+  if (const auto paused = CheckBox("paused", time.paused)) clock.Pause(*paused);
+  const auto instant = InstantControl(
       typing.instant,
       std::min(Pixels(view, kItemWidth + 40.0), static_cast<float>(width) - Pixels(view, 90.0)));
-  return request;
+  if (instant) flight.SetTime(*instant);
 }
 
 std::array<double, 3> PlaceOf(const HudModel& model) {
   return {Degrees(model.latitude_rad), Degrees(model.longitude_rad), model.flight.height_m};
 }
 
-std::optional<HudPlaceRequest> PlaceControls(const PanelView& view, PanelTyping& typing) {
-  if (!typing.is_place_typed) typing.place = PlaceOf(view.model);
+void PlaceControls(const PanelChange& change, PanelTyping& typing) {
+  if (!typing.is_place_typed) typing.place = PlaceOf(change.view.model);
   auto& [latitude, longitude, height] = typing.place;
   typing.is_place_typed |= ImGui::InputDouble("latitude", &latitude, 0.0, 0.0, "%.5f°");
   typing.is_place_typed |= ImGui::InputDouble("longitude", &longitude, 0.0, 0.0, "%.5f°");
   typing.is_place_typed |= ImGui::InputDouble("height", &height, 0.0, 0.0, "%.0f m");
-  if (!ImGui::Button("go there")) return std::nullopt;
+  if (!ImGui::Button("go there")) return;
   typing.is_place_typed = false;
-  return HudPlaceRequest{std::clamp(latitude, -90.0, 90.0), std::clamp(longitude, -180.0, 180.0),
-                         height};
+  change.flight.Place({std::clamp(latitude, -90.0, 90.0), std::clamp(longitude, -180.0, 180.0),
+                       height, std::nullopt, std::nullopt});
 }
 
 /// A value that can be held: its name, slider units per SI unit, and range.
@@ -97,39 +111,45 @@ struct Holdable {
 };
 
 // Draws a check box that holds the current value, and a slider for the held value. All values are
-// in SI.
-std::optional<HudHold> HoldControl(const Holdable& what, const std::optional<double>& held,
-                                   double now) {
+// in SI. Returns the target that the user chose, which is empty to release it; nullopt: no choice.
+std::optional<std::optional<double>> HoldControl(const Holdable& what,
+                                                 const std::optional<double>& held, double now) {
   const double shown = what.per_si * held.value_or(now);
-  std::optional<HudHold> request;
+  std::optional<std::optional<double>> chosen;
   ImGui::PushID(what.name);
   if (const auto on = CheckBox(what.name, held.has_value())) {
     const double value = std::clamp(shown, what.range.low, what.range.high) / what.per_si;
-    request = HudHold{*on ? std::optional(value) : std::nullopt};
+    chosen = *on ? std::optional(value) : std::nullopt;
   }
   if (const auto value = Slider("##held", shown, what.range))
-    request = HudHold{*value / what.per_si};
+    chosen = std::optional(*value / what.per_si);
   ImGui::PopID();
-  return request;
+  return chosen;
 }
 
-HudRequest WithHolds(const HudModel& model, HudRequest request) {
+void HoldControls(const HudModel& model, HudUnits units, PilotedAircraft& aircraft) {
   constexpr double kHighest_m = 20000.0, kSlowest_m_per_s = 25.0, kFastest_m_per_s = 280.0;
   const HudAutopilot& held = model.autopilot;
+  AutopilotTargets targets = aircraft.autopilot().targets();
   const double turns = model.flight.heading_rad / (2.0 * kPi);
-  request.hold_heading_rad =
+  const auto heading =
       HoldControl({"hold heading", 1.0 / kRadiansPerDegree, {0.0, 360.0, "%03.0f°"}},
                   held.heading_rad, 2.0 * kPi * (turns - std::floor(turns)));
-  const Quantity height = HeightText(0.0, model.units), speed = SpeedText(0.0, model.units);
-  const std::string in_heights = "%.0f " + height.unit, in_speeds = "%.0f " + speed.unit;
-  request.hold_height_m = HoldControl(
-      {"hold height", height.per_si, {0.0, kHighest_m * height.per_si, in_heights.c_str()}},
-      held.height_m, model.flight.height_m);
-  const SliderRange speeds{kSlowest_m_per_s * speed.per_si, kFastest_m_per_s * speed.per_si,
-                           in_speeds.c_str()};
-  request.hold_speed_m_per_s = HoldControl({"hold speed", speed.per_si, speeds}, held.speed_m_per_s,
-                                           model.flight.ground_speed_m_per_s);
-  return request;
+  const Quantity in_heights = HeightText(0.0, units), in_speeds = SpeedText(0.0, units);
+  const std::string height_format = "%.0f " + in_heights.unit;
+  const std::string speed_format = "%.0f " + in_speeds.unit;
+  const auto height = HoldControl({"hold height",
+                                   in_heights.per_si,
+                                   {0.0, kHighest_m * in_heights.per_si, height_format.c_str()}},
+                                  held.height_m, model.flight.height_m);
+  const SliderRange speeds{kSlowest_m_per_s * in_speeds.per_si, kFastest_m_per_s * in_speeds.per_si,
+                           speed_format.c_str()};
+  const auto speed = HoldControl({"hold speed", in_speeds.per_si, speeds}, held.speed_m_per_s,
+                                 model.flight.ground_speed_m_per_s);
+  if (heading) targets.heading_rad = *heading;
+  if (height) targets.height_m = *height;
+  if (speed) targets.speed_m_per_s = *speed;
+  if (heading || height || speed) aircraft.autopilot().Set(targets);
 }
 
 void ShowRow(const HudRow& row) {
@@ -140,140 +160,164 @@ void ShowRow(const HudRow& row) {
   }
 }
 
-// Draws a list of named white balances, and a slider for the colour temperature.
-HudRequest WithWhiteBalance(const PanelView& view, HudRequest request) {
-  const HudExposure& exposure = view.model.exposure;
-  request.white_balance =
-      NameList("white balance", exposure.white_balance, view.choices.white_balances);
-  if (const auto kelvin = Slider("white light", exposure.white_k.value_or(kDaylight_k),
-                                 {kWarmestWhite_k, kCoolestWhite_k, "%.0f K", true}))
-    request.white_balance = fmt::format("{:.0f}", *kelvin);
-  return request;
+std::string WhiteBalanceOf(const Look& look) {
+  for (const std::string& name : kWhiteBalances) {
+    if (WhiteBalanceFromText(name) == look.white) return name;
+  }
+  return fmt::format("{:.0f} K", look.white.kelvin.value_or(kDaylight_k));
 }
 
-std::optional<HudThemeChoice> ThemeList(HudThemeChoice current) {
-  static const std::vector<std::string> names{"by exposure", "day", "night"};
-  const auto chosen = NameList("instruments", names[static_cast<std::size_t>(current)], names);
-  if (!chosen) return std::nullopt;
-  return static_cast<HudThemeChoice>(std::find(names.begin(), names.end(), *chosen) -
-                                     names.begin());
+// Draws a list of named white balances, and a slider for the colour temperature.
+void WhiteBalanceControls(const ExposureControl& exposure, Look& look) {
+  if (const auto name = NameList("white balance", WhiteBalanceOf(look), kWhiteBalances))
+    look.white = WhiteBalanceFromText(*name);
+  if (const auto kelvin = Slider("white light", exposure.white_k().value_or(kDaylight_k),
+                                 {kWarmestWhite_k, kCoolestWhite_k, "%.0f K", true}))
+    look.white = WhiteBalanceFromText(fmt::format("{:.0f}", *kelvin));
+}
+
+void LookControls(ExposureControl& exposure) {
+  Look look = exposure.look();
+  if (const auto curve = NameList("tone curve", NameOf(look.curve), kCurves))
+    look.curve = ToneCurveFromName(*curve);
+  if (look.curve == ToneCurve::kAgx) {
+    if (const auto agx = NameList("look", NameOf(look.agx), AgxLookNames()))
+      look.agx = AgxLookFromName(*agx);
+  }
+  WhiteBalanceControls(exposure, look);
+  if (look != exposure.look()) exposure.Use(look);
+}
+
+void ThemeList(HudThemeChoice& theme) {
+  const std::string& current = kThemes[static_cast<std::size_t>(theme)];
+  if (const auto chosen = NameList("instruments", current, kThemes))
+    theme = static_cast<HudThemeChoice>(std::find(kThemes.begin(), kThemes.end(), *chosen) -
+                                        kThemes.begin());
+}
+
+void ModeList(const HudModel& model, FlightCommands& flight) {
+  std::vector<std::string> names;
+  for (const FlightMode mode : {FlightMode::kFree, FlightMode::kAircraft, FlightMode::kTrack}) {
+    if (mode != FlightMode::kTrack || flight.cockpit().pilot().track().exists())
+      names.emplace_back(NameOf(mode));
+  }
+  const auto chosen = NameList("mode", model.flight.mode, names);
+  if (!chosen) return;
+  const auto index = std::find(names.begin(), names.end(), *chosen) - names.begin();
+  flight.Report(flight.cockpit().Enter(static_cast<FlightMode>(index)));
 }
 
 constexpr ImGuiTableFlags kTableFlags =
     ImGuiTableFlags_RowBg | ImGuiTableFlags_SizingFixedFit | ImGuiTableFlags_BordersInnerV;
 
-void ShowTable(const HudChoices& choices) {
-  const int columns = static_cast<int>(choices.table_heading.size());
-  if (columns == 0 || !ImGui::BeginTable("tables", columns, kTableFlags)) return;
-  for (const std::string& name : choices.table_heading) ImGui::TableSetupColumn(name.c_str());
+void ShowTable(const std::vector<HudRow>& rows) {
+  if (!ImGui::BeginTable("tables", static_cast<int>(kTableHeading.size()), kTableFlags)) return;
+  for (const std::string& name : kTableHeading) ImGui::TableSetupColumn(name.c_str());
   ImGui::TableHeadersRow();
-  for (const HudRow& row : choices.tables) ShowRow(row);
+  for (const HudRow& row : rows) ShowRow(row);
   ImGui::EndTable();
 }
 
-std::optional<HudCaptureRequest> PictureButtons(const PanelTyping& typing) {
-  const auto request = [&](HudPictureKind kind) {
-    return HudCaptureRequest{kind, typing.picture_size[0], typing.picture_size[1], typing.with_hud};
-  };
+void PictureButtons(const PanelTyping& typing, FlightCommands& flight) {
   const bool png = ImGui::Button("PNG");
   ImGui::SameLine();
   const bool exr = ImGui::Button("EXR, linear");
-  if (png) return request(HudPictureKind::kPng);
-  return exr ? std::optional(request(HudPictureKind::kExr)) : std::nullopt;
+  if (!png && !exr) return;
+  const auto& [width, height] = typing.picture_size;
+  flight.Request({exr, ImageSize{width, height}, typing.with_hud});
 }
 
 }  // namespace
 
-HudRequest WithPlaceAndTime(const PanelView& view, PanelTyping& typing, HudRequest request) {
-  request.time = TimeControls(view, typing);
+void DrawPlaceAndTime(const PanelChange& change, PanelTyping& typing) {
+  const PanelView& view = change.view;
+  TimeControls(change, typing);
   ImGui::Separator();
-  request.named_place = PlaceSearch(typing.place_name, StripWidth_px(view));
+  if (const auto place = PlaceSearch(typing.place_name, StripWidth_px(view)))
+    change.flight.GoTo(*place);
   ImGui::PushItemWidth(Pixels(view, kItemWidth));
-  request.place = PlaceControls(view, typing);
+  PlaceControls(change, typing);
   ImGui::PopItemWidth();
-  return request;
 }
 
-HudRequest WithAir(const PanelView& view, HudRequest request) {
+void DrawAir(const PanelChange& change) {
+  const auto& [view, preferences, flight] = change;
   const HudAir& air = view.model.air;
+  AirChoice choice = flight.air_choice();
   ImGui::PushItemWidth(Pixels(view, kItemWidth));
-  request.air.planet = NameList("planet", air.planet, view.choices.planets);
-  request.air.visibility_km =
-      Slider("visibility", air.visibility_km, {1.0, 400.0, "%.3g km", true});
-  if (!view.choices.mixtures.empty())
-    request.air.mixture = NameList("aerosol", air.mixture, view.choices.mixtures);
-  request.air.aerosol_scale =
-      Slider("amount of aerosol", air.aerosol_scale, {0.01, 10.0, "x %.2f", true});
-  request.air.ozone_du = Slider("ozone", air.ozone_du, {0.0, 600.0, "%.0f DU"});
-  request.air.ground_albedo = Slider("ground albedo", air.ground_albedo, {0.0, 1.0, "%.2f"});
+  const auto planet = NameList("planet", air.planet, MediumPresetNames());
+  const auto visibility_km = Slider("visibility", air.visibility_km, {1.0, 400.0, "%.3g km", true});
+  const auto aerosol = Slider("amount of aerosol", air.aerosol_scale, {0.01, 10.0, "x %.2f", true});
+  const auto ozone_du = Slider("ozone", air.ozone_du, {0.0, 600.0, "%.0f DU"});
+  const auto albedo = Slider("ground albedo", air.ground_albedo, {0.0, 1.0, "%.2f"});
   ImGui::PopItemWidth();
-  return request;
+  if (planet) flight.UsePlanet(*planet);
+  if (visibility_km) choice.aerosol = AerosolForVisibility(flight.planet(), 1e3 * *visibility_km);
+  if (aerosol) choice.aerosol = *aerosol;
+  if (ozone_du) choice.ozone_du = ozone_du;
+  if (albedo) choice.ground_albedo = albedo;
+  if (visibility_km || aerosol || ozone_du || albedo) flight.Use(choice);
 }
 
-HudRequest WithLights(const PanelView& view, HudRequest request) {
-  if (view.choices.lamps.empty()) ImGui::TextUnformatted("There are no lamps here.");
-  for (std::size_t i = 0; i < view.choices.lamps.size(); ++i) {
-    const HudLamp& lamp = view.choices.lamps[i];
-    ImGui::PushID(static_cast<int>(i));
-    if (const auto on = CheckBox(lamp.name.c_str(), lamp.is_on))
-      request.lamp = HudLampRequest{i, *on};
-    ImGui::PopID();
-  }
-  return request;
+void DrawLights(const PanelChange& change) {
+  if (CheckBox("landing light", change.view.model.landing_light))
+    change.flight.ToggleLandingLight();
 }
 
-HudRequest WithExposure(const PanelView& view, HudRequest request) {
-  const HudExposure& exposure = view.model.exposure;
-  ImGui::PushItemWidth(Pixels(view, kItemWidth));
-  request.exposure_locked = CheckBox("locked", exposure.locked);
-  request.ev100 = Slider("EV at ISO 100", exposure.ev100, {kDarkestEv100, kBrightestEv100, "%.1f"});
-  request.compensation_ev = Slider("compensation", exposure.compensation_ev, {-5.0, 5.0, "%+.1f"});
-  request.tone_curve = NameList("tone curve", exposure.tone_curve, view.choices.tone_curves);
-  if (exposure.tone_curve == "agx")
-    request.look = NameList("look", exposure.look, view.choices.looks);
-  request = WithWhiteBalance(view, std::move(request));
-  request.theme = ThemeList(view.theme_choice);
+void DrawExposure(const PanelChange& change) {
+  const HudExposure& shown = change.view.model.exposure;
+  ExposureControl& exposure = change.flight.exposure();
+  ImGui::PushItemWidth(Pixels(change.view, kItemWidth));
+  if (const auto locked = CheckBox("locked", shown.locked)) exposure.Lock(*locked);
+  if (const auto ev100 =
+          Slider("EV at ISO 100", shown.ev100, {kDarkestEv100, kBrightestEv100, "%.1f"}))
+    exposure.Set(*ev100);
+  if (const auto ev = Slider("compensation", shown.compensation_ev, {-5.0, 5.0, "%+.1f"}))
+    exposure.Compensate(*ev);
+  LookControls(exposure);
+  ThemeList(change.preferences.theme);
   ImGui::PopItemWidth();
-  return request;
 }
 
-HudRequest WithFlight(const PanelView& view, HudRequest request) {
+void DrawFlight(const PanelChange& change) {
+  const auto& [view, preferences, flight] = change;
   const HudModel& model = view.model;
   ImGui::PushItemWidth(Pixels(view, kItemWidth));
-  request.mode = NameList("mode", model.flight.mode, view.choices.modes);
-  if (model.flight.throttle) {
+  ModeList(model, flight);
+  PilotedAircraft* aircraft = flight.cockpit().pilot().aircraft();
+  if (model.flight.throttle && aircraft != nullptr) {
     if (const auto percent =
             Slider("throttle", 100.0 * *model.flight.throttle, {0.0, 100.0, "%.0f %%"}))
-      request.throttle = 0.01 * *percent;
-    request = WithHolds(model, std::move(request));
+      aircraft->SetThrottle(0.01 * *percent);
+    HoldControls(model, preferences.units, *aircraft);
   } else {
     ImGui::TextUnformatted("Throttle and autopilot: in the aircraft.");
   }
-  if (const auto aviation = CheckBox("feet and knots", model.units == HudUnits::kAviation))
-    request.units = *aviation ? HudUnits::kAviation : HudUnits::kMetric;
+  if (const auto aviation = CheckBox("feet and knots", preferences.units == HudUnits::kAviation))
+    preferences.units = *aviation ? HudUnits::kAviation : HudUnits::kMetric;
   ImGui::PopItemWidth();
-  return request;
 }
 
-HudRequest WithTables(const PanelView& view, HudRequest request) {
-  ImGui::PushItemWidth(Pixels(view, kItemWidth));
-  request.quality = NameList("quality", view.model.speed.quality, view.choices.qualities);
+void DrawTables(const PanelChange& change) {
+  ImGui::PushItemWidth(Pixels(change.view, kItemWidth));
+  if (const auto quality = NameList("quality", change.view.model.speed.quality, kQualities))
+    change.flight.Use(QualityRuleFromText(*quality));
   ImGui::PopItemWidth();
-  ShowTable(view.choices);
-  return request;
+  ShowTable(change.view.model.tables);
 }
 
-HudRequest WithCapture(const PanelView& view, PanelTyping& typing, HudRequest request) {
+void DrawCapture(const PanelChange& change, PanelTyping& typing) {
+  const PanelView& view = change.view;
   ImGui::PushItemWidth(Pixels(view, kItemWidth));
   if (!typing.is_size_typed) typing.picture_size = {view.width, view.height};
   typing.is_size_typed |= ImGui::InputInt2("width, height", typing.picture_size.data());
   for (int& side : typing.picture_size) side = std::clamp(side, 1, kLargestImageSide);
   if (const auto with_hud = CheckBox("with instruments", typing.with_hud))
     typing.with_hud = *with_hud;
-  request.capture = PictureButtons(typing);
-  request.record = CheckBox("record the flight", view.model.recording);
+  PictureButtons(typing, change.flight);
+  if (const auto records = CheckBox("record the flight", view.model.recording))
+    change.flight.Record(*records);
   ImGui::PopItemWidth();
-  return request;
 }
 
 }  // namespace alpenglow::viewer

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: MIT
 // Contents of each panel: functions that draw its controls into the current Dear ImGui window and
-// return the request with the user's changes.
+// make the changes that the user requests.
 #pragma once
 
 #include <array>
 
 #include "viewer/hud/hud_model.h"
 #include "viewer/hud/panel_controls.h"
+#include "viewer/input/action.h"
 
 namespace alpenglow::viewer {
 
@@ -15,13 +16,18 @@ inline constexpr double kPanelMargin = 10.0;  // to the edges of the picture [un
 /// State that panels show.
 struct PanelView {
   const HudModel& model;
-  const HudChoices& choices;
   const DayStrip* strip;  // null until it is computed
   HudTheme theme;
-  HudThemeChoice theme_choice;
   double scale;       // pixels per unit
   int width, height;  // of the picture [pixels]
   int top;            // height at the upper edge that panels avoid: menu and clock [pixels]
+};
+
+/// State that panels show, and what they change.
+struct PanelChange {
+  const PanelView& view;
+  HudPreferences& preferences;
+  FlightCommands& flight;
 };
 
 /// Typed texts and numbers before they are submitted.
@@ -34,14 +40,12 @@ struct PanelTyping {
   bool with_hud = false;
 };
 
-[[nodiscard]] HudRequest WithPlaceAndTime(const PanelView& view, PanelTyping& typing,
-                                          HudRequest request);
-[[nodiscard]] HudRequest WithAir(const PanelView& view, HudRequest request);
-[[nodiscard]] HudRequest WithLights(const PanelView& view, HudRequest request);
-[[nodiscard]] HudRequest WithExposure(const PanelView& view, HudRequest request);
-[[nodiscard]] HudRequest WithFlight(const PanelView& view, HudRequest request);
-[[nodiscard]] HudRequest WithTables(const PanelView& view, HudRequest request);
-[[nodiscard]] HudRequest WithCapture(const PanelView& view, PanelTyping& typing,
-                                     HudRequest request);
+void DrawPlaceAndTime(const PanelChange& change, PanelTyping& typing);
+void DrawAir(const PanelChange& change);
+void DrawLights(const PanelChange& change);
+void DrawExposure(const PanelChange& change);
+void DrawFlight(const PanelChange& change);
+void DrawTables(const PanelChange& change);
+void DrawCapture(const PanelChange& change, PanelTyping& typing);
 
 }  // namespace alpenglow::viewer

@@ -28,12 +28,12 @@ void ShowSection(const ActionSection& section, float width, HudTheme theme) {
     return;
   ImGui::TableSetupColumn("keys", ImGuiTableColumnFlags_WidthFixed, kKeysShare * width);
   ImGui::TableSetupColumn("what they do", ImGuiTableColumnFlags_WidthStretch);
-  for (const ActionRow& row : section.rows) {
+  for (const Action& action : section.rows) {
     ImGui::TableNextRow();
     ImGui::TableNextColumn();
-    ImGui::TextWrapped("%s", KeysText(row).c_str());
+    ImGui::TextWrapped("%s", KeysText(action).c_str());
     ImGui::TableNextColumn();
-    ImGui::TextWrapped("%s", std::string(row.does).c_str());
+    ImGui::TextWrapped("%s", std::string(action.help).c_str());
   }
   ImGui::EndTable();
   ImGui::Spacing();
@@ -171,35 +171,32 @@ void Panels::DrawMenu() {
   ImGui::EndMainMenuBar();
 }
 
-HudRequest Panels::Contents(HudPanel panel, const PanelView& view, HudRequest request) {
+void Panels::DrawContents(HudPanel panel, const PanelChange& change) {
   switch (panel) {
     case HudPanel::kPlaceAndTime:
-      return WithPlaceAndTime(view, typing_, std::move(request));
+      return DrawPlaceAndTime(change, typing_);
     case HudPanel::kAir:
-      return WithAir(view, std::move(request));
+      return DrawAir(change);
     case HudPanel::kLights:
-      return WithLights(view, std::move(request));
+      return DrawLights(change);
     case HudPanel::kExposure:
-      return WithExposure(view, std::move(request));
+      return DrawExposure(change);
     case HudPanel::kFlight:
-      return WithFlight(view, std::move(request));
+      return DrawFlight(change);
     case HudPanel::kTables:
-      return WithTables(view, std::move(request));
+      return DrawTables(change);
     case HudPanel::kCapture:
-      return WithCapture(view, typing_, std::move(request));
+      return DrawCapture(change, typing_);
     case HudPanel::kHelp:
-      ShowKeyHelp(view);
-      return request;
+      return ShowKeyHelp(change.view);
     case HudPanel::kLeave:
-      request.quit = AskToLeave();
-      return request;
+      if (AskToLeave()) change.flight.Leave();
   }
-  return request;
 }
 
-HudRequest Panels::DrawPanel(HudPanel panel, const PanelView& view, HudRequest request) {
+void Panels::DrawPanel(HudPanel panel, const PanelChange& change) {
   const Placement& placement = kPlacements[static_cast<std::size_t>(panel)];
-  const FreeArea area(view);
+  const FreeArea area(change.view);
   const ImVec2 share{placement.x, placement.y};
   ImGui::SetNextWindowPos(
       {area.from.x + share.x * area.size.x, area.from.y + share.y * area.size.y},
@@ -211,18 +208,16 @@ HudRequest Panels::DrawPanel(HudPanel panel, const PanelView& view, HudRequest r
   int& frames = frames_[static_cast<std::size_t>(panel)];
   frames = ImGui::IsWindowAppearing() ? 0 : std::min(frames + 1, kMeasured);
   if (frames == kMeasured) KeepInside(area);
-  return window.visible() ? Contents(panel, view, std::move(request)) : request;
+  if (window.visible()) DrawContents(panel, change);
 }
 
-HudRequest Panels::Draw(const PanelView& view) {
+void Panels::Draw(const PanelView& view, HudPreferences& preferences, FlightCommands& flight) {
   const std::array<int, 2> size{view.width, view.height};
   resized_ = std::exchange(picture_, size) != size;
   if (menu_) DrawMenu();
-  HudRequest request;
   for (const Placement& placement : kPlacements) {
-    if (IsOpen(placement.panel)) request = DrawPanel(placement.panel, view, std::move(request));
+    if (IsOpen(placement.panel)) DrawPanel(placement.panel, {view, preferences, flight});
   }
-  return request;
 }
 
 }  // namespace alpenglow::viewer

@@ -46,13 +46,14 @@ class Panels {
   /// Returns the height of the menu at the upper edge [pixels].
   [[nodiscard]] int MenuHeight() const;
 
-  [[nodiscard]] HudRequest Draw(const PanelView& view);
+  /// Draws the open panels, which change the flight and the preferences.
+  void Draw(const PanelView& view, HudPreferences& preferences, FlightCommands& flight);
 
  private:
   bool& Open(HudPanel panel) { return open_[static_cast<std::size_t>(panel)]; }
   void DrawMenu();
-  [[nodiscard]] HudRequest DrawPanel(HudPanel panel, const PanelView& view, HudRequest request);
-  [[nodiscard]] HudRequest Contents(HudPanel panel, const PanelView& view, HudRequest request);
+  void DrawPanel(HudPanel panel, const PanelChange& change);
+  void DrawContents(HudPanel panel, const PanelChange& change);
 
   std::array<bool, kHudPanels> open_{};
   std::array<int, kHudPanels> frames_{};  // since the panel appeared

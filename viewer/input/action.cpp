@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <iterator>
 #include <utility>
 
 #include "atmosphere/base/error.h"
@@ -20,7 +21,6 @@ static_assert(kShiftKey == GLFW_MOD_SHIFT && kControlKey == GLFW_MOD_CONTROL &&
 constexpr Modes kAll{true, true, true}, kFree{true, false, false}, kAircraft{false, true, false},
     kTrack{false, false, true}, kFlightController{false, true, true},
     kNotAircraft{true, false, true};
-constexpr Press kOnce = Press::kOnce, kAgain = Press::kRepeating, kHeld = Press::kHeld;
 constexpr std::string_view kAllKeys = "Everywhere", kCameraKeys = "Free camera",
                            kSpeedKeys = "Free camera and track", kTrackKeys = "Track",
                            kAircraftKeys = "Aircraft", kAutopilotKeys = "Autopilot of the aircraft",
@@ -28,108 +28,266 @@ constexpr std::string_view kAllKeys = "Everywhere", kCameraKeys = "Free camera",
                            kExposureKeys = "Exposure", kCaptureKeys = "Capture and replay",
                            kWindowKeys = "Window";
 
-constexpr ActionRow kActionRows[] = {
-    {Action::kFreeMode, kOnce, kAll, kAllKeys, "free camera", "1, Ctrl+V", ""},
-    {Action::kAircraftMode, kOnce, kAll, kAllKeys, "aircraft", "2", ""},
-    {Action::kTrackMode, kOnce, kAll, kAllKeys, "follow the track", "3", ""},
-    {Action::kNextMode, kOnce, kAll, kAllKeys, "next mode", "V", ""},
-    {Action::kPreviousMode, kOnce, kAll, kAllKeys, "previous mode", "Shift+V", ""},
-    {Action::kCentre, kOnce, kAll, kAllKeys, "centre the stick and look ahead, level",
-     "5, Keypad 5", ""},
-    {Action::kHigher, kOnce, kAll, kAllKeys, "1000 ft higher", "Ctrl+U", ""},
-    {Action::kHud, kOnce, kAll, kWindowKeys, "hide everything but the picture", "H", ""},
-    {Action::kNightTheme, kOnce, kAll, kWindowKeys, "colours for the night", "Shift+H", ""},
-    {Action::kMouseMode, kOnce, kAll, kWindowKeys, "mouse: cursor, look, fly", "Tab", ""},
-    {Action::kPanels, kOnce, kAll, kWindowKeys, "panels", "F10", ""},
-    {Action::kFullScreen, kOnce, kAll, kWindowKeys, "full screen", "Shift+F10", ""},
-    {Action::kHelp, kOnce, kAll, kWindowKeys, "these keys", "?, F1", ""},
-    {Action::kQuit, kOnce, kAll, kWindowKeys, "close panels; ask whether to leave", "Esc", ""},
-    {Action::kForward, kHeld, kFree, kCameraKeys, "fly forward", "W", ""},
-    {Action::kBack, kHeld, kFree, kCameraKeys, "fly back", "S", ""},
-    {Action::kLeft, kHeld, kFree, kCameraKeys, "fly to the left", "A", ""},
-    {Action::kRight, kHeld, kFree, kCameraKeys, "fly to the right", "D", ""},
-    {Action::kUp, kHeld, kFree, kCameraKeys, "rise", "R, Page Up", ""},
-    {Action::kDown, kHeld, kFree, kCameraKeys, "sink", "F, Page Down", ""},
-    {Action::kRollLeft, kHeld, kFree, kCameraKeys, "roll to the left", "Q", ""},
-    {Action::kRollRight, kHeld, kFree, kCameraKeys, "roll to the right", "E", ""},
-    {Action::kTurnLeft, kHeld, kFree, kCameraKeys, "turn to the left", "Left, Keypad 4", ""},
-    {Action::kTurnRight, kHeld, kFree, kCameraKeys, "turn to the right", "Right, Keypad 6", ""},
-    {Action::kLookUp, kHeld, kFree, kCameraKeys, "look up", "Up, Keypad 8", ""},
-    {Action::kLookDown, kHeld, kFree, kCameraKeys, "look down", "Down, Keypad 2", ""},
-    {Action::kFaster, kAgain, kNotAircraft, kSpeedKeys, "faster; the mouse wheel too",
-     "+, Keypad +", ""},
-    {Action::kSlower, kAgain, kNotAircraft, kSpeedKeys, "slower; the mouse wheel too",
-     "-, Keypad -", ""},
-    {Action::kTrackAhead, kAgain, kTrack, kTrackKeys, "ten seconds on along the track", "Right",
-     ""},
-    {Action::kTrackBack, kAgain, kTrack, kTrackKeys, "ten seconds back along the track", "Left",
-     ""},
-    {Action::kNoseDown, kHeld, kAircraft, kAircraftKeys, "stick forward: nose down", "Up, Keypad 8",
-     ""},
-    {Action::kNoseUp, kHeld, kAircraft, kAircraftKeys, "stick back: nose up", "Down, Keypad 2", ""},
-    {Action::kBankLeft, kHeld, kAircraft, kAircraftKeys, "bank to the left", "Left, Keypad 4", ""},
-    {Action::kBankRight, kHeld, kAircraft, kAircraftKeys, "bank to the right", "Right, Keypad 6",
-     ""},
-    {Action::kRudderLeft, kHeld, kAircraft, kAircraftKeys, "rudder to the left",
-     "0, Keypad 0, Insert", ""},
-    {Action::kRudderRight, kHeld, kAircraft, kAircraftKeys, "rudder to the right",
-     "Enter, Keypad Enter", ""},
-    {Action::kThrottleUp, kHeld, kAircraft, kAircraftKeys, "more throttle", "Page Up, Keypad 9, 9",
-     ""},
-    {Action::kThrottleDown, kHeld, kAircraft, kAircraftKeys, "less throttle", "Page Down, Keypad 3",
-     ""},
-    {Action::kBrake, kHeld, kAircraft, kAircraftKeys, "brakes of the wheels", "B", ""},
-    {Action::kFasterFlight, kOnce, kAircraft, kAircraftKeys, "flight twice as fast, up to 32 times",
-     "A", ""},
-    {Action::kSlowerFlight, kOnce, kAircraft, kAircraftKeys,
-     "flight half as fast, down to real time", "Shift+A", ""},
-    {Action::kHoldHeading, kOnce, kAircraft, kAutopilotKeys, "hold the heading; banking moves it",
-     "Ctrl+H", ""},
-    {Action::kHoldAltitude, kOnce, kAircraft, kAutopilotKeys, "hold the height; the stick moves it",
-     "Ctrl+A", ""},
-    {Action::kHoldClimb, kOnce, kAircraft, kAutopilotKeys, "hold the climb; the stick moves it",
-     "Ctrl+P", ""},
-    {Action::kHoldSpeed, kOnce, kAircraft, kAutopilotKeys, "hold the speed; the throttle moves it",
-     "Ctrl+S", ""},
-    {Action::kLevelWings, kOnce, kAircraft, kAutopilotKeys, "keep the wings level", "Ctrl+W", ""},
-    {Action::kAutopilotOff, kOnce, kAircraft, kAutopilotKeys, "hold nothing", "Backspace", ""},
-    {Action::kExposureLock, kOnce, kAll, kExposureKeys, "lock the exposure", "L", ""},
-    {Action::kBrighter, kAgain, kAll, kExposureKeys, "a third of a stop brighter", "K", ""},
-    {Action::kDarker, kAgain, kAll, kExposureKeys, "a third of a stop darker", "Shift+K", ""},
-    {Action::kResetExposure, kOnce, kAll, kExposureKeys, "exposure of the meter", "Ctrl+K", ""},
-    {Action::kNarrowerView, kAgain, kAll, kViewKeys, "narrower view (aircraft: wheel too)", "X",
-     ""},
-    {Action::kWiderView, kAgain, kAll, kViewKeys, "wider view (aircraft: wheel too)", "Shift+X",
-     ""},
-    {Action::kResetView, kOnce, kAll, kViewKeys, "view that the scene began with", "Ctrl+X", ""},
-    {Action::kClearer, kAgain, kAll, kViewKeys, "farther visibility", "Z", ""},
-    {Action::kHazier, kAgain, kAll, kViewKeys, "shorter visibility", "Shift+Z", ""},
-    {Action::kResetVisibility, kOnce, kAll, kViewKeys, "visibility of the scene", "Ctrl+Z", ""},
-    {Action::kLandingLight, kOnce, kAll, kViewKeys, "landing light on and off", "Ctrl+L", ""},
-    {Action::kNextQuality, kOnce, kAll, kViewKeys, "next quality", "O", ""},
-    {Action::kPause, kOnce, kAll, kTimeKeys, "pause: time, aircraft and track stand", "P", ""},
-    {Action::kFasterTime, kAgain, kAll, kTimeKeys, "rate of time up: -3600 to 3600", "T", ""},
-    {Action::kSlowerTime, kAgain, kAll, kTimeKeys, "rate of time down, and backwards", "Shift+T",
-     ""},
-    {Action::kRealTime, kOnce, kAll, kTimeKeys, "real time", "Shift+P", ""},
-    {Action::kLaterMinute, kAgain, kAll, kTimeKeys, "a minute later", "]", "W"},
-    {Action::kEarlierMinute, kAgain, kAll, kTimeKeys, "a minute earlier", "[", "Shift+W"},
-    {Action::kLaterHour, kAgain, kAll, kTimeKeys, "an hour later", "Shift+]", ""},
-    {Action::kEarlierHour, kAgain, kAll, kTimeKeys, "an hour earlier", "Shift+[", ""},
-    {Action::kLaterDay, kAgain, kAll, kTimeKeys, "a day later", "Ctrl+]", ""},
-    {Action::kEarlierDay, kAgain, kAll, kTimeKeys, "a day earlier", "Ctrl+[", ""},
-    {Action::kToDawn, kOnce, kAll, kTimeKeys, "on to dawn", "Shift+F5", ""},
-    {Action::kToSunrise, kOnce, kAll, kTimeKeys, "on to sunrise", "F5", ""},
-    {Action::kToNoon, kOnce, kAll, kTimeKeys, "on to noon", "F6", ""},
-    {Action::kToSunset, kOnce, kAll, kTimeKeys, "on to sunset", "F7", ""},
-    {Action::kToDusk, kOnce, kAll, kTimeKeys, "on to dusk", "F8", ""},
-    {Action::kToMoonrise, kOnce, kAll, kTimeKeys, "on to moonrise", "F9", ""},
-    {Action::kToMoonset, kOnce, kAll, kTimeKeys, "on to moonset", "Shift+F9", ""},
-    {Action::kScreenshot, kOnce, kAll, kCaptureKeys, "screenshot, PNG", "F3", ""},
-    {Action::kScreenshotExr, kOnce, kAll, kCaptureKeys, "screenshot, linear EXR", "Shift+F3", ""},
-    {Action::kSaveFlight, kOnce, kAll, kCaptureKeys, "write the flight so far to a file",
-     "Shift+F2", ""},
-    {Action::kReplay, kOnce, kAll, kCaptureKeys, "fly this flight again", "Ctrl+R", ""},
+using Run = void (*)(FlightCommands& flight);
+
+// Lines of the table: an action of a press, an action that repeats while its key is held, and a
+// control that moves while its key is held.
+constexpr Action Once(std::string_view heading, std::string_view help, std::string_view keys,
+                      Run run, Modes modes = kAll) {
+  return {heading, help, keys, Press::kOnce, modes, run};
+}
+constexpr Action Again(std::string_view heading, std::string_view help, std::string_view keys,
+                       Run run, Modes modes = kAll) {
+  return {heading, help, keys, Press::kRepeating, modes, run};
+}
+constexpr Action Moves(std::string_view help, std::string_view keys, double Steering::*control,
+                       double sign) {
+  return {kCameraKeys, help, keys, Press::kHeld, kFree, nullptr, {control, nullptr, sign}};
+}
+constexpr Action Moves(std::string_view help, std::string_view keys, double Stick::*control,
+                       double sign) {
+  return {kAircraftKeys, help, keys, Press::kHeld, kAircraft, nullptr, {nullptr, control, sign}};
+}
+// Additional triggers of a line.
+constexpr Action OnPad(int button, Action action, Modes modes = kAll) {
+  action.pad = {button, modes};
+  return action;
+}
+constexpr Action OnWheel(int step, Action action) {
+  action.wheel = step;
+  return action;
+}
+constexpr Action InFlightController(std::string_view keys, Action action) {
+  action.keys_in_cockpit = keys;
+  return action;
+}
+constexpr Action NeedsPicture(Action action) {
+  action.needs_picture = true;
+  return action;
+}
+
+template <FlightMode kMode>
+void Enter(FlightCommands& flight) {
+  flight.Report(flight.cockpit().Enter(kMode));
+}
+template <int kStep>
+void EnterNext(FlightCommands& flight) {
+  flight.Report(flight.cockpit().EnterNext(kStep));
+}
+template <WindowPart kPart>
+void Switch(FlightCommands& flight) {
+  flight.Switch(kPart);
+}
+template <int kStep>
+void StepSpeed(FlightCommands& flight) {
+  flight.Report(flight.cockpit().StepSpeed(kStep));
+}
+template <int kSeconds>
+void SkipTrack(FlightCommands& flight) {
+  flight.cockpit().SkipTrack(kSeconds);
+}
+template <Autopilot::Hold kHold>
+void Hold(FlightCommands& flight) {
+  flight.Report(flight.cockpit().ToggleHold(kHold));
+}
+// Brightens by thirds of a stop.
+template <int kThirds>
+void Compensate(FlightCommands& flight) {
+  ExposureControl& exposure = flight.exposure();
+  exposure.Compensate(exposure.exposure().compensation_ev + kThirds / 3.0);
+  flight.Report(fmt::format("exposure {:+.1f} EV", exposure.exposure().compensation_ev));
+}
+template <int kStep>
+void Zoom(FlightCommands& flight) {
+  constexpr double kZoomStep = 1.1;
+  flight.cockpit().pilot().Zoom(kStep > 0 ? kZoomStep : 1.0 / kZoomStep);
+}
+template <int kSeconds>
+void Shift(FlightCommands& flight) {
+  flight.cockpit().clock().Shift(kSeconds);
+}
+template <int kStep>
+void StepTimeRate(FlightCommands& flight) {
+  SceneClock& clock = flight.cockpit().clock();
+  clock.StepRate(kStep);
+  flight.Report(fmt::format("time x{:.0f}", clock.rate()));
+}
+template <SkyEvent kEvent>
+void JumpTo(FlightCommands& flight) {
+  flight.Report(flight.cockpit().JumpTo(kEvent));
+}
+template <bool kIsExr>
+void TakePicture(FlightCommands& flight) {
+  flight.Request({.is_exr = kIsExr});
+}
+
+void Centre(FlightCommands& flight) { flight.cockpit().pilot().Centre(flight.cockpit().ground()); }
+
+void Lift(FlightCommands& flight) {
+  constexpr double kThousandFeet_m = 304.8;
+  flight.cockpit().pilot().Lift(kThousandFeet_m, flight.cockpit().ground());
+}
+
+void ToggleExposureLock(FlightCommands& flight) {
+  const bool locks = !flight.exposure().exposure().locked;
+  flight.exposure().Lock(locks);
+  flight.Report(locks ? "exposure locked" : "exposure follows the meter");
+}
+
+void ResetExposure(FlightCommands& flight) {
+  flight.exposure().Reset();
+  flight.Report("exposure follows the meter");
+}
+
+void UseAerosol(FlightCommands& flight, double aerosol) {
+  AirChoice choice = flight.air_choice();
+  choice.aerosol = aerosol;
+  flight.Use(choice);
+  flight.Report(
+      fmt::format("visibility {:.1f} km", 1e-3 * VisibilityOf(Changed(flight.planet(), choice))));
+}
+template <int kStep>
+void StepHaze(FlightCommands& flight) {
+  constexpr double kHazeStep = 1.25;
+  const double factor = kStep > 0 ? kHazeStep : 1.0 / kHazeStep;
+  UseAerosol(flight, std::clamp(flight.air_choice().aerosol * factor, 1e-3, 1000.0));
+}
+
+void UseNextQuality(FlightCommands& flight) {
+  const std::optional<Quality> fixed = flight.quality().fixed;
+  const int next = fixed ? static_cast<int>(*fixed) + 1 : 0;
+  flight.Use(next > static_cast<int>(Quality::kReference)
+                 ? QualityRule{}
+                 : QualityRule{static_cast<Quality>(next)});
+}
+
+void TogglePause(FlightCommands& flight) {
+  SceneClock& clock = flight.cockpit().clock();
+  clock.Pause(!clock.paused());
+  if (clock.paused()) flight.Report("paused");
+}
+
+void UseRealTime(FlightCommands& flight) {
+  flight.cockpit().clock().SetRate(1.0);
+  flight.Report("time x1");
+}
+
+constexpr int kMinute_s = 60, kHour_s = 3600, kDay_s = 86400;
+
+constexpr Action kActions[] = {
+    Once(kAllKeys, "free camera", "1, Ctrl+V", Enter<FlightMode::kFree>),
+    Once(kAllKeys, "aircraft", "2", Enter<FlightMode::kAircraft>),
+    Once(kAllKeys, "follow the track", "3", Enter<FlightMode::kTrack>),
+    OnPad(GLFW_GAMEPAD_BUTTON_B, Once(kAllKeys, "next mode", "V", EnterNext<1>)),
+    Once(kAllKeys, "previous mode", "Shift+V", EnterNext<-1>),
+    OnPad(GLFW_GAMEPAD_BUTTON_A,
+          Once(kAllKeys, "centre the stick; look ahead, level", "5, Keypad 5", Centre)),
+    Once(kAllKeys, "1000 ft higher", "Ctrl+U", Lift),
+    OnPad(GLFW_GAMEPAD_BUTTON_Y, Once(kWindowKeys, "hide or show everything but the picture", "H",
+                                      Switch<WindowPart::kInstruments>)),
+    Once(kWindowKeys, "night colours of the instruments, on and off", "Shift+H",
+         Switch<WindowPart::kNightColours>),
+    Once(kWindowKeys, "mouse: cursor, look, fly", "Tab", Switch<WindowPart::kMouseMode>),
+    Once(kWindowKeys, "menu of the panels, on and off", "F10", Switch<WindowPart::kMenu>),
+    Once(kWindowKeys, "full screen, on and off", "Shift+F10", Switch<WindowPart::kFullScreen>),
+    OnPad(GLFW_GAMEPAD_BUTTON_BACK,
+          Once(kWindowKeys, "show or hide the keys", "?, F1", Switch<WindowPart::kHelp>)),
+    Once(kWindowKeys, "close the panels, or leave the flight", "Esc",
+         Switch<WindowPart::kLeaveQuestion>),
+    Moves("fly forward", "W", &Steering::forward, 1.0),
+    Moves("fly back", "S", &Steering::forward, -1.0),
+    Moves("fly to the left", "A", &Steering::right, -1.0),
+    Moves("fly to the right", "D", &Steering::right, 1.0),
+    Moves("fly up", "R, Page Up", &Steering::up, 1.0),
+    Moves("fly down", "F, Page Down", &Steering::up, -1.0),
+    Moves("roll to the left", "Q", &Steering::roll_right, -1.0),
+    Moves("roll to the right", "E", &Steering::roll_right, 1.0),
+    Moves("turn to the left", "Left, Keypad 4", &Steering::turn_right, -1.0),
+    Moves("turn to the right", "Right, Keypad 6", &Steering::turn_right, 1.0),
+    Moves("look up", "Up, Keypad 8", &Steering::pitch_up, 1.0),
+    Moves("look down", "Down, Keypad 2", &Steering::pitch_up, -1.0),
+    OnWheel(1, Again(kSpeedKeys, "faster (also the mouse wheel)", "+, Keypad +", StepSpeed<1>,
+                     kNotAircraft)),
+    OnWheel(-1, Again(kSpeedKeys, "slower (also the mouse wheel)", "-, Keypad -", StepSpeed<-1>,
+                      kNotAircraft)),
+    Again(kTrackKeys, "ten seconds ahead on the track", "Right", SkipTrack<10>, kTrack),
+    Again(kTrackKeys, "ten seconds back on the track", "Left", SkipTrack<-10>, kTrack),
+    Moves("stick forward: nose down", "Up, Keypad 8", &Stick::pitch_up, -1.0),
+    Moves("stick back: nose up", "Down, Keypad 2", &Stick::pitch_up, 1.0),
+    Moves("bank to the left", "Left, Keypad 4", &Stick::roll_right, -1.0),
+    Moves("bank to the right", "Right, Keypad 6", &Stick::roll_right, 1.0),
+    Moves("rudder to the left", "0, Keypad 0, Insert", &Stick::yaw_right, -1.0),
+    Moves("rudder to the right", "Enter, Keypad Enter", &Stick::yaw_right, 1.0),
+    Moves("more throttle", "Page Up, Keypad 9, 9", &Stick::throttle_up, 1.0),
+    Moves("less throttle", "Page Down, Keypad 3", &Stick::throttle_up, -1.0),
+    Moves("brakes of the wheels", "B", &Stick::brake, 1.0),
+    Once(kAircraftKeys, "flight twice as fast, up to 32 times", "A", StepSpeed<1>, kAircraft),
+    Once(kAircraftKeys, "flight half as fast, down to real time", "Shift+A", StepSpeed<-1>,
+         kAircraft),
+    Once(kAutopilotKeys, "hold the heading; banking moves it", "Ctrl+H",
+         Hold<Autopilot::Hold::kHeading>, kAircraft),
+    Once(kAutopilotKeys, "hold the height; the stick moves it", "Ctrl+A",
+         Hold<Autopilot::Hold::kHeight>, kAircraft),
+    Once(kAutopilotKeys, "hold the climb; the stick moves it", "Ctrl+P",
+         Hold<Autopilot::Hold::kClimb>, kAircraft),
+    Once(kAutopilotKeys, "hold the speed; the throttle moves it", "Ctrl+S",
+         Hold<Autopilot::Hold::kSpeed>, kAircraft),
+    Once(kAutopilotKeys, "keep the wings level", "Ctrl+W", Hold<Autopilot::Hold::kLevelWings>,
+         kAircraft),
+    Once(
+        kAutopilotKeys, "autopilot off", "Backspace",
+        [](FlightCommands& flight) { flight.Report(flight.cockpit().ReleaseAutopilot()); },
+        kAircraft),
+    Once(kExposureKeys, "lock or unlock the exposure", "L", ToggleExposureLock),
+    OnPad(GLFW_GAMEPAD_BUTTON_DPAD_UP,
+          Again(kExposureKeys, "a third of a stop brighter", "K", Compensate<1>)),
+    OnPad(GLFW_GAMEPAD_BUTTON_DPAD_DOWN,
+          Again(kExposureKeys, "a third of a stop darker", "Shift+K", Compensate<-1>)),
+    Once(kExposureKeys, "metered exposure", "Ctrl+K", ResetExposure),
+    OnWheel(1, OnPad(GLFW_GAMEPAD_BUTTON_RIGHT_BUMPER,
+                     Again(kViewKeys, "narrower view (aircraft: also the wheel)", "X", Zoom<-1>),
+                     kNotAircraft)),
+    OnWheel(-1, OnPad(GLFW_GAMEPAD_BUTTON_LEFT_BUMPER,
+                      Again(kViewKeys, "wider view (aircraft: also the wheel)", "Shift+X", Zoom<1>),
+                      kNotAircraft)),
+    OnPad(GLFW_GAMEPAD_BUTTON_RIGHT_THUMB,
+          Once(kViewKeys, "field of view of the scene", "Ctrl+X",
+               [](FlightCommands& flight) { flight.cockpit().pilot().ResetView(); })),
+    Again(kViewKeys, "farther visibility", "Z", StepHaze<-1>),
+    Again(kViewKeys, "shorter visibility", "Shift+Z", StepHaze<1>),
+    Once(kViewKeys, "visibility of the scene", "Ctrl+Z",
+         [](FlightCommands& flight) { UseAerosol(flight, 1.0); }),
+    Once(kViewKeys, "landing light, on and off", "Ctrl+L",
+         [](FlightCommands& flight) { flight.ToggleLandingLight(); }),
+    Once(kViewKeys, "next quality", "O", UseNextQuality),
+    OnPad(GLFW_GAMEPAD_BUTTON_START,
+          Once(kTimeKeys, "pause time, aircraft and track", "P", TogglePause)),
+    Again(kTimeKeys, "rate of time up: -3600 to 3600", "T", StepTimeRate<1>),
+    Again(kTimeKeys, "rate of time down, and backwards", "Shift+T", StepTimeRate<-1>),
+    Once(kTimeKeys, "real time", "Shift+P", UseRealTime),
+    OnPad(GLFW_GAMEPAD_BUTTON_DPAD_RIGHT,
+          InFlightController("W", Again(kTimeKeys, "a minute later", "]", Shift<kMinute_s>))),
+    OnPad(GLFW_GAMEPAD_BUTTON_DPAD_LEFT,
+          InFlightController("Shift+W",
+                             Again(kTimeKeys, "a minute earlier", "[", Shift<-kMinute_s>))),
+    Again(kTimeKeys, "an hour later", "Shift+]", Shift<kHour_s>),
+    Again(kTimeKeys, "an hour earlier", "Shift+[", Shift<-kHour_s>),
+    Again(kTimeKeys, "a day later", "Ctrl+]", Shift<kDay_s>),
+    Again(kTimeKeys, "a day earlier", "Ctrl+[", Shift<-kDay_s>),
+    Once(kTimeKeys, "next dawn", "Shift+F5", JumpTo<SkyEvent::kDawn>),
+    Once(kTimeKeys, "next sunrise", "F5", JumpTo<SkyEvent::kSunrise>),
+    Once(kTimeKeys, "next noon", "F6", JumpTo<SkyEvent::kNoon>),
+    Once(kTimeKeys, "next sunset", "F7", JumpTo<SkyEvent::kSunset>),
+    Once(kTimeKeys, "next dusk", "F8", JumpTo<SkyEvent::kDusk>),
+    Once(kTimeKeys, "next moonrise", "F9", JumpTo<SkyEvent::kMoonrise>),
+    Once(kTimeKeys, "next moonset", "Shift+F9", JumpTo<SkyEvent::kMoonset>),
+    OnPad(GLFW_GAMEPAD_BUTTON_X,
+          NeedsPicture(Once(kCaptureKeys, "screenshot, PNG", "F3", TakePicture<false>))),
+    NeedsPicture(Once(kCaptureKeys, "screenshot, linear EXR", "Shift+F3", TakePicture<true>)),
+    Once(kCaptureKeys, "write the flight so far to a file", "Shift+F2",
+         [](FlightCommands& flight) { flight.SaveFlight(); }),
+    Once(kCaptureKeys, "fly this flight again", "Ctrl+R",
+         [](FlightCommands& flight) { flight.FlyAgain(); }),
 };
 
 constexpr std::pair<std::string_view, int> kKeyNames[] = {
@@ -191,24 +349,24 @@ std::vector<std::string_view> SplitAtCommas(std::string_view keys) {
 
 struct Binding {
   KeyChord chord;
-  const ActionRow* row;
+  const Action* action;
   Modes modes;
 };
 
 std::vector<Binding> AllBindings() {
   std::vector<Binding> bindings;
-  for (const ActionRow& row : kActionRows) {
-    for (const std::string_view key : SplitAtCommas(row.keys))
-      bindings.push_back({KeyChordFromText(key), &row, row.modes});
-    for (const std::string_view key : SplitAtCommas(row.keys_in_cockpit))
-      bindings.push_back({KeyChordFromText(key), &row, kFlightController});
+  for (const Action& action : kActions) {
+    for (const std::string_view key : SplitAtCommas(action.keys))
+      bindings.push_back({KeyChordFromText(key), &action, action.modes});
+    for (const std::string_view key : SplitAtCommas(action.keys_in_cockpit))
+      bindings.push_back({KeyChordFromText(key), &action, kFlightController});
   }
   return bindings;
 }
 
 bool Fits(const Binding& binding, int key, int modifiers, FlightMode mode) {
   if (binding.chord.key != key || !binding.modes.Has(mode)) return false;
-  const bool any_shift = binding.chord.any_shift || binding.row->press == Press::kHeld;
+  const bool any_shift = binding.chord.any_shift || binding.action->press == Press::kHeld;
   const int counted = any_shift ? modifiers & ~kShiftKey : modifiers;
   return counted == binding.chord.modifiers;
 }
@@ -219,20 +377,14 @@ bool Modes::Has(FlightMode mode) const {
   return mode == FlightMode::kFree ? free : mode == FlightMode::kAircraft ? aircraft : track;
 }
 
-std::span<const ActionRow> ActionTable() { return kActionRows; }
-
-const ActionRow& RowOf(Action action) {
-  const ActionRow& row = kActionRows[static_cast<std::size_t>(action)];
-  ALPENGLOW_ENSURE(static_cast<int>(row.action), ==, static_cast<int>(action));
-  return row;
-}
+std::span<const Action> ActionTable() { return kActions; }
 
 std::vector<ActionSection> ActionSections() {
   std::vector<ActionSection> sections;
-  for (const ActionRow& row : kActionRows) {
-    if (sections.empty() || sections.back().heading != row.heading)
-      sections.push_back({row.heading, {&row, 0}});
-    std::span<const ActionRow>& rows = sections.back().rows;
+  for (const Action& action : kActions) {
+    if (sections.empty() || sections.back().heading != action.heading)
+      sections.push_back({action.heading, {&action, 0}});
+    std::span<const Action>& rows = sections.back().rows;
     rows = {rows.data(), rows.size() + 1};
   }
   return sections;
@@ -255,14 +407,22 @@ KeyChord KeyChordFromText(std::string_view text) {
   return {*key, modifiers};
 }
 
-std::optional<Action> ActionOfKey(int key, int modifiers, FlightMode mode) {
+const Action* ActionOfKey(int key, int modifiers, FlightMode mode) {
   static const std::vector<Binding> bindings = AllBindings();
   // Caps Lock and Num Lock are modifiers too; ignore them.
   const int counted = modifiers & (kShiftKey | kControlKey | kAltKey);
   for (const Binding& binding : bindings) {
-    if (Fits(binding, key, counted, mode)) return binding.row->action;
+    if (Fits(binding, key, counted, mode)) return binding.action;
   }
-  return std::nullopt;
+  return nullptr;
+}
+
+const Action& ActionOfWheel(int step, FlightMode mode) {
+  const auto* found = std::find_if(
+      std::begin(kActions), std::end(kActions),
+      [&](const Action& action) { return action.wheel == step && action.modes.Has(mode); });
+  ALPENGLOW_ENSURE(found == std::end(kActions), ==, false);
+  return *found;
 }
 
 int PrintedKey(int key, const char* name) {
@@ -273,19 +433,32 @@ int PrintedKey(int key, const char* name) {
   return !keypad && IsLetterOrDigit(c) ? c : key;
 }
 
-std::string KeysText(const ActionRow& row) {
-  if (row.keys_in_cockpit.empty()) return std::string(row.keys);
-  return fmt::format("{}; {} (aircraft, track)", row.keys, row.keys_in_cockpit);
+std::string KeysText(const Action& action) {
+  if (action.keys_in_cockpit.empty()) return std::string(action.keys);
+  return fmt::format("{}; {} (aircraft, track)", action.keys, action.keys_in_cockpit);
 }
 
 std::string ControlsMarkdown() {
   std::string text = "| | keys | what they do |\n|---|---|---|\n";
   for (const ActionSection& section : ActionSections()) {
-    for (const ActionRow& row : section.rows) {
-      const bool is_first = &row == section.rows.data();
-      text += fmt::format("| {} | {} | {} |\n", is_first ? section.heading : "", KeysText(row),
-                          row.does);
+    for (const Action& action : section.rows) {
+      const bool is_first = &action == section.rows.data();
+      text += fmt::format("| {} | {} | {} |\n", is_first ? section.heading : "", KeysText(action),
+                          action.help);
     }
+  }
+  return text;
+}
+
+std::string FirstKeysText() {
+  std::string text;
+  for (const char* key :
+       {"?", "W", "S",       "A",  "D",  "R", "F",       "Left", "Right", "Up", "Down", "1",
+        "2", "T", "Shift+T", "F5", "F7", "X", "Shift+X", "F3",   "F10",   "H",  "Esc"}) {
+    const KeyChord chord = KeyChordFromText(key);
+    const Action* action = ActionOfKey(chord.key, chord.modifiers, FlightMode::kFree);
+    ALPENGLOW_ENSURE(action == nullptr, ==, false);
+    text += fmt::format("{}{}: {}", text.empty() ? "" : ", ", key, action->help);
   }
   return text;
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Actions of the pilot and their keys: one table for the keyboard, the help on the screen and the
-// manual.
+// Actions of the user: one table with the key, the gamepad button, the help text and the effect of
+// each, for the keyboard, the gamepad, the help on the screen and the manual. FlightCommands is what
+// actions and panels can change.
 //
 // Keys follow FlightGear where it defines them (its keyboard.xml); in the free camera W A S D, R F
 // and Q E move the eye, as in other viewers.
@@ -12,133 +13,118 @@
 #include <string_view>
 #include <vector>
 
+#include "viewer/air/solved_air.h"
 #include "viewer/flight/flight.h"
+#include "viewer/input/flight_controller.h"
+#include "viewer/passes/auto_quality.h"
+#include "viewer/passes/exposure_control.h"
 
 namespace alpenglow::viewer {
 
-enum class Action {
-  // Modes, and the position of the eye.
-  kFreeMode,
-  kAircraftMode,
-  kTrackMode,
-  kNextMode,
-  kPreviousMode,
-  kCentre,
-  kHigher,
-  // Window.
-  kHud,
-  kNightTheme,
-  kMouseMode,
-  kPanels,
-  kFullScreen,
-  kHelp,
-  kQuit,
-  // Eye of the free camera, while a key is held.
-  kForward,
-  kBack,
-  kLeft,
-  kRight,
-  kUp,
-  kDown,
-  kRollLeft,
-  kRollRight,
-  kTurnLeft,
-  kTurnRight,
-  kLookUp,
-  kLookDown,
-  // Speed of free camera and track.
-  kFaster,
-  kSlower,
-  // Position along the track.
-  kTrackAhead,
-  kTrackBack,
-  // Aircraft, mostly while a key is held.
-  kNoseDown,
-  kNoseUp,
-  kBankLeft,
-  kBankRight,
-  kRudderLeft,
-  kRudderRight,
-  kThrottleUp,
-  kThrottleDown,
-  kBrake,
-  kFasterFlight,
-  kSlowerFlight,
-  // Autopilot.
-  kHoldHeading,
-  kHoldAltitude,
-  kHoldClimb,
-  kHoldSpeed,
-  kLevelWings,
-  kAutopilotOff,
-  // Exposure.
-  kExposureLock,
-  kBrighter,
-  kDarker,
-  kResetExposure,
-  // View, air and lights.
-  kNarrowerView,
-  kWiderView,
-  kResetView,
-  kClearer,
-  kHazier,
-  kResetVisibility,
-  kLandingLight,
-  kNextQuality,
-  // Time.
-  kPause,
-  kFasterTime,
-  kSlowerTime,
-  kRealTime,
-  kLaterMinute,
-  kEarlierMinute,
-  kLaterHour,
-  kEarlierHour,
-  kLaterDay,
-  kEarlierDay,
-  kToDawn,
-  kToSunrise,
-  kToNoon,
-  kToSunset,
-  kToDusk,
-  kToMoonrise,
-  kToMoonset,
-  // Picture and flight files.
-  kScreenshot,
-  kScreenshotExr,
-  kSaveFlight,
-  kReplay,
+/// Parts of the window that are switched on and off.
+enum class WindowPart {
+  kInstruments,    // and panels
+  kNightColours,   // of the instruments
+  kMenu,           // of the panels
+  kFullScreen,     // or a window
+  kHelp,           // the panel with the keys
+  kLeaveQuestion,  // closes all panels first
+  kMouseMode       // the next one of cursor, look and fly
+};
+
+/// A picture that is written to a file of the current folder.
+struct PictureOrder {
+  bool is_exr = false;                 // linear, otherwise a PNG
+  std::optional<ImageSize> size = {};  // nullopt: that of the window
+  bool with_instruments = false;
+};
+
+/// What keys, gamepad and panels can change. Failures are reported to the user, not thrown.
+class FlightCommands {
+ public:
+  virtual ~FlightCommands() = default;
+
+  [[nodiscard]] virtual FlightController& cockpit() = 0;
+  [[nodiscard]] virtual ExposureControl& exposure() = 0;
+  [[nodiscard]] virtual const QualityRule& quality() const = 0;
+  virtual void Use(const QualityRule& rule) = 0;
+
+  /// Returns the medium of the planet without the changes of air_choice().
+  [[nodiscard]] virtual const Medium& planet() const = 0;
+  virtual void UsePlanet(const std::string& preset) = 0;
+  [[nodiscard]] virtual const AirChoice& air_choice() const = 0;
+  virtual void Use(const AirChoice& choice) = 0;
+  virtual void ToggleLandingLight() = 0;
+
+  virtual void Place(const EyePlacement& placement) = 0;
+  /// Goes to a place of the list (places.h).
+  virtual void GoTo(const std::string& place) = 0;
+  /// Sets the time from a text (SceneClock::Type).
+  virtual void SetTime(const std::string& text) = 0;
+
+  virtual void Request(const PictureOrder& picture) = 0;
+  /// Starts or ends the record of the flight.
+  virtual void Record(bool records) = 0;
+  virtual void SaveFlight() = 0;
+  /// Shows this flight from its beginning, and then continues it.
+  virtual void FlyAgain() = 0;
+  virtual void Switch(WindowPart part) = 0;
+  /// Ends the flight as soon as all requested pictures are written; a second call drops them.
+  virtual void Leave() = 0;
+  /// Displays a message. An empty one is ignored.
+  virtual void Report(const std::string& message) = 0;
 };
 
 /// Flight modes in which a key has an effect.
 struct Modes {
-  bool free, aircraft, track;
+  bool free = true, aircraft = true, track = true;
   [[nodiscard]] bool Has(FlightMode mode) const;
 };
 
 /// Trigger of a key: once when it goes down; also on keyboard repeats; as long as it is held.
 enum class Press { kOnce, kRepeating, kHeld };
 
-/// One line of the table.
-struct ActionRow {
-  Action action;
-  Press press;
-  Modes modes;
-  std::string_view heading, does;
-  std::string_view keys;             // "Page Up, Keypad 9"
-  std::string_view keys_in_cockpit;  // additional keys in aircraft and track modes
+/// Control that a held key moves, one of the camera or one of the stick, and its direction.
+struct HeldControl {
+  double Steering::*camera = nullptr;
+  double Stick::*stick = nullptr;
+  double sign = 1.0;
+
+  /// Returns whether both keys move the same control.
+  [[nodiscard]] bool IsOf(const HeldControl& other) const {
+    return camera == other.camera && stick == other.stick;
+  }
 };
 
-/// Returns all lines, one action each, in the order of the enumeration.
-[[nodiscard]] std::span<const ActionRow> ActionTable();
-[[nodiscard]] const ActionRow& RowOf(Action action);
+/// Button of a gamepad with GLFW's number, and the modes in which it acts.
+struct PadButton {
+  int button = -1;  // -1: none
+  Modes modes = {};
+};
+
+/// One line of the table.
+struct Action {
+  std::string_view heading, help;
+  std::string_view keys;  // "Page Up, Keypad 9"
+  Press press = Press::kOnce;
+  Modes modes = {};
+  void (*run)(FlightCommands& flight) = nullptr;  // null for a held key
+  HeldControl moves = {};                         // of a held key
+  std::string_view keys_in_cockpit = "";          // additional keys in aircraft and track modes
+  PadButton pad = {};
+  int wheel = 0;               // 1, -1: a step of the mouse wheel forward or back also acts
+  bool needs_picture = false;  // refused while the window is minimised
+};
+
+/// Returns all lines, those with the same heading in sequence: first the actions of all modes, then
+/// those of each mode, then those of the view.
+[[nodiscard]] std::span<const Action> ActionTable();
 
 /// The lines under one heading.
 struct ActionSection {
   std::string_view heading;
-  std::span<const ActionRow> rows;
+  std::span<const Action> rows;
 };
-/// Returns all lines: first the actions of all modes, then those of each mode, then those of the view.
 [[nodiscard]] std::vector<ActionSection> ActionSections();
 
 /// Modifiers with GLFW's values.
@@ -153,9 +139,11 @@ struct KeyChord {
 /// Parses "Shift+T", "Ctrl+H", "Page Up", "?". Throws InputError for an unknown key.
 [[nodiscard]] KeyChord KeyChordFromText(std::string_view text);
 
-/// Returns the action of a key in a mode; no value for most keys. Held keys also act with Shift,
-/// but not with Ctrl or Alt.
-[[nodiscard]] std::optional<Action> ActionOfKey(int key, int modifiers, FlightMode mode);
+/// Returns the action of a key in a mode; null for most keys. Held keys also act with Shift, but
+/// not with Ctrl or Alt.
+[[nodiscard]] const Action* ActionOfKey(int key, int modifiers, FlightMode mode);
+/// Returns the action of a step of the mouse wheel: 1 forward, -1 back.
+[[nodiscard]] const Action& ActionOfWheel(int step, FlightMode mode);
 
 /// Returns the number of the key with the label `name` on the keyboard (glfwGetKeyName): letters
 /// have other positions on a French keyboard. Returns `key` if the name is neither a letter nor a
@@ -163,9 +151,11 @@ struct KeyChord {
 [[nodiscard]] int PrintedKey(int key, const char* name);
 
 /// Returns "T, Keypad 9": all keys of a line.
-[[nodiscard]] std::string KeysText(const ActionRow& row);
+[[nodiscard]] std::string KeysText(const Action& action);
 
 /// Returns the table for the manual.
 [[nodiscard]] std::string ControlsMarkdown();
+/// Returns the keys that a newcomer needs, for --help: "?: show the keys, W: fly forward, ...".
+[[nodiscard]] std::string FirstKeysText();
 
 }  // namespace alpenglow::viewer

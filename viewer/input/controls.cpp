@@ -20,32 +20,6 @@ static_assert(sizeof(GamepadState::buttons) == sizeof(GLFWgamepadstate::buttons)
 
 constexpr double kHandPerSecond = 4.0;
 
-bool NeedsPicture(Action action) {
-  return action == Action::kScreenshot || action == Action::kScreenshotExr;
-}
-
-struct ButtonRow {
-  int button;
-  Action action;
-  Modes modes;
-};
-constexpr Modes kEveryMode{true, true, true}, kNoRudder{true, false, true};
-constexpr ButtonRow kButtons[] = {
-    {GLFW_GAMEPAD_BUTTON_A, Action::kCentre, kEveryMode},
-    {GLFW_GAMEPAD_BUTTON_B, Action::kNextMode, kEveryMode},
-    {GLFW_GAMEPAD_BUTTON_X, Action::kScreenshot, kEveryMode},
-    {GLFW_GAMEPAD_BUTTON_Y, Action::kHud, kEveryMode},
-    {GLFW_GAMEPAD_BUTTON_BACK, Action::kHelp, kEveryMode},
-    {GLFW_GAMEPAD_BUTTON_START, Action::kPause, kEveryMode},
-    {GLFW_GAMEPAD_BUTTON_RIGHT_THUMB, Action::kResetView, kEveryMode},
-    {GLFW_GAMEPAD_BUTTON_LEFT_BUMPER, Action::kWiderView, kNoRudder},
-    {GLFW_GAMEPAD_BUTTON_RIGHT_BUMPER, Action::kNarrowerView, kNoRudder},
-    {GLFW_GAMEPAD_BUTTON_DPAD_UP, Action::kBrighter, kEveryMode},
-    {GLFW_GAMEPAD_BUTTON_DPAD_DOWN, Action::kDarker, kEveryMode},
-    {GLFW_GAMEPAD_BUTTON_DPAD_RIGHT, Action::kLaterMinute, kEveryMode},
-    {GLFW_GAMEPAD_BUTTON_DPAD_LEFT, Action::kEarlierMinute, kEveryMode},
-};
-
 double Within(double value) { return std::clamp(value, -1.0, 1.0); }
 
 double AxisOf(const GamepadState& gamepad, int axis) {
@@ -57,6 +31,10 @@ bool IsDown(const GamepadState& gamepad, int button) {
 /// Returns 0 for a released trigger, 1 for a pulled one.
 double TriggerOf(const GamepadState& gamepad, int axis) {
   return std::clamp(0.5 + 0.5 * AxisOf(gamepad, axis), 0.0, 1.0);
+}
+
+void Ask(const Action& action, bool minimised, Intent& intent) {
+  (action.needs_picture && minimised ? intent.refused : intent.actions).push_back(&action);
 }
 
 /// Returns how many times a button held for `held_s` has acted so far.
@@ -88,97 +66,73 @@ void Controls::Set(const ControlSettings& settings) {
   settings_ = settings;
 }
 
-void Controls::Key(int key, int change, int modifiers, int printed) {
-  events_.push_back({key, change, modifiers, printed, minimised_});
+void Controls::NextMouseMode() {
+  mouse_mode_ = static_cast<MouseMode>((static_cast<int>(mouse_mode_) + 1) % 3);
 }
 
-void Controls::MouseAt(double right, double down, double width_to_height) {
-  if (mouse_ && !mouse_is_ignored_) {
-    const double moved_right = right - mouse_->right;
-    const double moved_down = (down - mouse_->down) / std::max(width_to_height, 1e-3);
-    const bool drags = mouse_mode_ == MouseMode::kCursor && dragging_;
-    const bool looks = mouse_mode_ == MouseMode::kLook;
-    // A drag moves the scene; looking turns the head, which can be inverted.
-    const double hold = drags ? -1.0 : looks ? 1.0 : 0.0;
-    look_right_ += hold * moved_right;
-    look_up_ -= (looks && settings_.invert_look_y ? -hold : hold) * moved_down;
-  }
-  mouse_ = Place{right, down};
+// Looks around. A drag moves the scene; looking turns the head, which can be inverted.
+void Controls::MoveMouse(const InputFrame& input, bool taken, PilotControls& pilot) {
+  const auto& [width, height] = input.size;
+  if (!input.events.pointer || width <= 0 || height <= 0) return;
+  const Place place{input.events.pointer->right / width, input.events.pointer->down / height};
+  const std::optional<Place> before = std::exchange(mouse_, place);
+  if (!before || taken) return;
+  const double moved_right = place.right - before->right;
+  const double moved_down =
+      (place.down - before->down) / std::max(static_cast<double>(width) / height, 1e-3);
+  const bool drags = mouse_mode_ == MouseMode::kCursor && input.events.buttons[0];
+  const bool looks = mouse_mode_ == MouseMode::kLook;
+  const double hold = drags ? -1.0 : looks ? 1.0 : 0.0;
+  pilot.look_right += hold * moved_right;
+  pilot.look_up -= (looks && settings_.invert_look_y ? -hold : hold) * moved_down;
 }
 
 void Controls::LetGo() {
   held_.clear();
-  dragging_ = false;
   camera_ = {};
   stick_ = {};
 }
 
-void Controls::Focus(bool focused) {
-  focused_ = focused;
-  if (!focused) LetGo();
-}
-
-void Controls::Minimise(bool minimised) {
-  minimised_ = minimised;
-  if (minimised) LetGo();
-}
-
-void Controls::Ask(Action action, Intent& intent) {
-  if (NeedsPicture(action) && minimised_) {
-    intent.refused.push_back(action);
-    return;
-  }
-  if (action == Action::kMouseMode) {
-    mouse_mode_ = static_cast<MouseMode>((static_cast<int>(mouse_mode_) + 1) % 3);
-  }
-  intent.actions.push_back(action);
-}
-
-void Controls::Resolve(const KeyEvent& event, FlightMode mode, Intent& intent) {
+void Controls::Resolve(const KeyEvent& event, bool minimised, FlightMode mode, Intent& intent) {
   if (event.change == GLFW_RELEASE) {
     held_.erase(event.key);
     return;
   }
-  const std::optional<Action> here = ActionOfKey(event.key, event.modifiers, mode);
-  if (here && RowOf(*here).press == Press::kHeld) {
-    if (!event.minimised && event.change == GLFW_PRESS) held_.insert_or_assign(event.key, *here);
+  const Action* here = ActionOfKey(event.key, event.modifiers, mode);
+  if (here != nullptr && here->press == Press::kHeld) {
+    if (!minimised && event.change == GLFW_PRESS) held_.insert_or_assign(event.key, here);
     return;
   }
-  const std::optional<Action> printed = ActionOfKey(event.printed, event.modifiers, mode);
-  if (!printed || RowOf(*printed).press == Press::kHeld) return;
+  const int label = PrintedKey(event.key, event.printed.c_str());
+  const Action* printed = ActionOfKey(label, event.modifiers, mode);
+  if (printed == nullptr || printed->press == Press::kHeld) return;
   const bool again = event.change == GLFW_REPEAT;
-  if (again && (event.minimised || RowOf(*printed).press != Press::kRepeating)) return;
-  Ask(*printed, intent);
+  if (again && (minimised || printed->press != Press::kRepeating)) return;
+  Ask(*printed, minimised, intent);
 }
 
-double Controls::Pushed(Action positive, Action negative) const {
+double Controls::Pushed(const HeldControl& control) const {
   double pushed = 0.0;
   for (const auto& [key, action] : held_) {
-    pushed += action == positive ? 1.0 : action == negative ? -1.0 : 0.0;
+    if (action->moves.IsOf(control)) pushed += action->moves.sign;
   }
   return Within(pushed);
 }
 
 void Controls::MoveControls(double seconds) {
-  const auto move = [&](double& value, Action positive, Action negative) {
-    value = MovedToward(value, Pushed(positive, negative), kHandPerSecond, seconds);
-  };
-  move(camera_.forward, Action::kForward, Action::kBack);
-  move(camera_.right, Action::kRight, Action::kLeft);
-  move(camera_.up, Action::kUp, Action::kDown);
-  move(camera_.turn_right, Action::kTurnRight, Action::kTurnLeft);
-  move(camera_.pitch_up, Action::kLookUp, Action::kLookDown);
-  move(camera_.roll_right, Action::kRollRight, Action::kRollLeft);
-  move(stick_.pitch_up, Action::kNoseUp, Action::kNoseDown);
-  move(stick_.roll_right, Action::kBankRight, Action::kBankLeft);
-  move(stick_.yaw_right, Action::kRudderRight, Action::kRudderLeft);
-  move(stick_.brake, Action::kBrake, Action::kBrake);
-  // The throttle lever stays where it is released.
-  stick_.throttle_up = Pushed(Action::kThrottleUp, Action::kThrottleDown);
+  for (const Action& action : ActionTable()) {
+    const HeldControl& control = action.moves;
+    if (action.press != Press::kHeld || control.sign < 0.0) continue;
+    double& value = control.camera != nullptr ? camera_.*control.camera : stick_.*control.stick;
+    // The throttle lever stays where it is released.
+    value = control.stick == &Stick::throttle_up
+                ? Pushed(control)
+                : MovedToward(value, Pushed(control), kHandPerSecond, seconds);
+  }
 }
 
 void Controls::AddMouse(FlightMode mode, PilotControls& pilot) const {
-  if (mouse_mode_ != MouseMode::kFly || !mouse_ || mouse_is_ignored_) return;
+  if (mouse_mode_ != MouseMode::kFly || !mouse_) return;
   ControlSettings soft = settings_;
   soft.dead_zone = 0.04;
   const StickPlace place = Shaped({2.0 * mouse_->right - 1.0, 2.0 * mouse_->down - 1.0}, soft);
@@ -225,9 +179,10 @@ void Controls::AddGamepad(const GamepadState& gamepad, FlightMode mode, double s
 
 void Controls::PressButtons(const GamepadState& gamepad, FlightMode mode, double seconds,
                             Intent& intent) {
-  for (const ButtonRow& row : kButtons) {
-    double& held_s = button_held_s_[static_cast<std::size_t>(row.button)];
-    if (!IsDown(gamepad, row.button)) {
+  for (const Action& action : ActionTable()) {
+    if (action.pad.button < 0) continue;
+    double& held_s = button_held_s_[static_cast<std::size_t>(action.pad.button)];
+    if (!IsDown(gamepad, action.pad.button)) {
       held_s = 0.0;
       continue;
     }
@@ -235,32 +190,36 @@ void Controls::PressButtons(const GamepadState& gamepad, FlightMode mode, double
     const int acted = was_up ? 0 : TimesActed(held_s);
     // The first frame always counts, however short it is.
     held_s += was_up ? 1e-9 : seconds;
-    const bool repeats = RowOf(row.action).press == Press::kRepeating;
+    const bool repeats = action.press == Press::kRepeating;
     const int times = repeats ? TimesActed(held_s) - acted : was_up ? 1 : 0;
-    for (int i = 0; row.modes.Has(mode) && i < times; ++i) Ask(row.action, intent);
+    for (int i = 0; action.pad.modes.Has(mode) && i < times; ++i) Ask(action, false, intent);
   }
 }
 
 void Controls::TurnWheel(FlightMode mode, Intent& intent) {
-  if (mouse_is_ignored_) wheel_ = 0.0;
-  const bool flies = mode == FlightMode::kAircraft;
-  const Action forward = flies ? Action::kNarrowerView : Action::kFaster;
-  const Action back = flies ? Action::kWiderView : Action::kSlower;
-  for (; wheel_ >= 1.0; wheel_ -= 1.0) Ask(forward, intent);
-  for (; wheel_ <= -1.0; wheel_ += 1.0) Ask(back, intent);
+  for (; wheel_ >= 1.0; wheel_ -= 1.0) intent.actions.push_back(&ActionOfWheel(1, mode));
+  for (; wheel_ <= -1.0; wheel_ += 1.0) intent.actions.push_back(&ActionOfWheel(-1, mode));
 }
 
-Intent Controls::Take(FlightMode mode, double seconds, const std::optional<GamepadState>& gamepad) {
+Intent Controls::Take(const InputFrame& input, FlightMode mode, const TakenByPanels& taken) {
+  const WindowEvents& events = input.events;
   Intent intent;
-  for (const KeyEvent& event : std::exchange(events_, {})) Resolve(event, mode, intent);
-  MoveControls(seconds);
-  intent.pilot = {camera_, stick_, std::exchange(look_right_, 0.0), std::exchange(look_up_, 0.0)};
+  if (!events.HasKeyboard()) LetGo();
+  for (const KeyEvent& event : events.keys) {
+    // Panels leave the releases of keys to the controls.
+    if (!taken.keyboard || event.change == GLFW_RELEASE)
+      Resolve(event, events.minimised, mode, intent);
+  }
+  MoveControls(input.seconds);
+  intent.pilot = {camera_, stick_};
+  MoveMouse(input, taken.mouse, intent.pilot);
+  wheel_ = taken.mouse ? 0.0 : wheel_ + events.wheel;
   TurnWheel(mode, intent);
-  if (minimised_ || !focused_) return intent;
-  AddMouse(mode, intent.pilot);
-  if (gamepad) {
-    AddGamepad(*gamepad, mode, seconds, intent.pilot);
-    PressButtons(*gamepad, mode, seconds, intent);
+  if (!events.HasKeyboard()) return intent;
+  if (!taken.mouse) AddMouse(mode, intent.pilot);
+  if (events.gamepad) {
+    AddGamepad(*events.gamepad, mode, input.seconds, intent.pilot);
+    PressButtons(*events.gamepad, mode, input.seconds, intent);
   }
   return intent;
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Converts events of keyboard, mouse and gamepad into the intent of a frame. It needs no window:
-// events arrive as numbers.
+// Input of a frame: events of keyboard, mouse and gamepad, and Controls, which converts them into
+// the intent of the pilot. It needs no window: events arrive as numbers of GLFW.
 //
 // Held keys move a control like a hand does, in a quarter of a second from rest to its end and
 // back. An unfocused window continues to fly without input: while it is minimised, or another
@@ -13,23 +13,71 @@
 #include <array>
 #include <map>
 #include <optional>
+#include <string>
 #include <vector>
 
+#include "lut/image/image.h"
 #include "viewer/flight/pilot.h"
 #include "viewer/input/action.h"
 
 namespace alpenglow::viewer {
 
-/// kCursor: a drag with the left button looks around. kLook: the mouse looks around without a
-/// button. kFly: the mouse is the stick, centred on the middle of the window.
-enum class MouseMode { kCursor, kLook, kFly };
+/// A key that went up (0), went down (1) or repeats (2).
+struct KeyEvent {
+  int key = -1;  // position on an American keyboard; -1: unknown
+  int scancode = 0;
+  int change = 0;
+  int modifiers = 0;         // Shift 1, Ctrl 2, Alt 4, Super 8
+  std::string printed = {};  // printed on this keyboard: "w"; empty for Esc and similar keys
+};
 
-/// A gamepad in GLFW's mapping (GLFWgamepadstate): sticks in [-1, 1], down and right positive;
-/// triggers from -1, released, to 1.
+/// Position in pixels from the upper left corner of the picture. It may be fractional on displays
+/// whose desktop units are larger than pixels. It may be outside of the picture while a button is
+/// held or the pointer is captured.
+struct PointerPlace {
+  double right = 0.0, down = 0.0;
+};
+
+/// A gamepad in the layout of an Xbox controller, as mapped by GLFW's gamepad table
+/// (GLFWgamepadstate). Axes: left stick right and down, right stick right and down, from -1 to 1;
+/// left and right trigger, from -1 (released) to 1.
 struct GamepadState {
+  std::string name = {};
   std::array<unsigned char, 15> buttons{};
   std::array<float, 6> axes{0.0F, 0.0F, 0.0F, 0.0F, -1.0F, -1.0F};
 };
+
+/// Events of a window between two frames.
+struct WindowEvents {
+  std::vector<KeyEvent> keys;           // in the order of their occurrence
+  std::string text;                     // typed, UTF-8
+  std::optional<PointerPlace> pointer;  // nullopt outside of the window
+  std::array<bool, 3> buttons{};        // left, right, middle: held, or pressed and released
+  double wheel = 0.0;                   // steps, positive away from the user
+  std::optional<GamepadState> gamepad;
+  bool focused = true;     // has the keyboard focus
+  bool minimised = false;  // the window is not visible
+  bool close = false;      // closing was requested
+
+  /// Returns whether the keyboard acts on the flight.
+  [[nodiscard]] bool HasKeyboard() const { return focused && !minimised; }
+};
+
+/// Input of one frame, for controls and panels.
+struct InputFrame {
+  WindowEvents events = {};
+  ImageSize size = {};   // of the picture [pixels]; 0 while there is none
+  double seconds = 0.0;  // since the last frame
+};
+
+/// Input that panels use themselves: the mouse over a panel, the keyboard while text is typed.
+struct TakenByPanels {
+  bool mouse = false, keyboard = false;
+};
+
+/// kCursor: a drag with the left button looks around. kLook: the mouse looks around without a
+/// button. kFly: the mouse is the stick, centred on the middle of the window.
+enum class MouseMode { kCursor, kLook, kFly };
 
 struct ControlSettings {
   double dead_zone = 0.12;     // inactive fraction of a stick's range, in [0, 0.9]
@@ -50,11 +98,11 @@ struct StickPlace {
 /// of its range per second.
 [[nodiscard]] double MovedToward(double value, double target, double per_second, double seconds);
 
-/// Input of one frame.
+/// What the user wants in one frame.
 struct Intent {
   PilotControls pilot;
-  std::vector<Action> actions;  // in the order of the key presses
-  std::vector<Action> refused;  // pressed without a picture to act on; to be reported
+  std::vector<const Action*> actions;  // in the order of the key presses
+  std::vector<const Action*> refused;  // pressed without a picture to act on; to be reported
 };
 
 class Controls {
@@ -63,49 +111,26 @@ class Controls {
   /// [0, 1].
   explicit Controls(const ControlSettings& settings = {}) { Set(settings); }
 
-  /// @param change     GLFW_RELEASE, GLFW_PRESS or GLFW_REPEAT (0, 1, 2)
-  /// @param modifiers  GLFW_MOD_SHIFT and so on
-  /// @param printed    PrintedKey: held actions use the position of the key, all others its printed
-  ///     label
-  void Key(int key, int change, int modifiers, int printed);
-  void Key(int key, int change, int modifiers) { Key(key, change, modifiers, key); }
-  /// Sets the position of the mouse in the window, from 0 to 1 to the right and down.
-  /// @param width_to_height  aspect ratio of the window: looking around counts in widths along both
-  ///     axes
-  void MouseAt(double right, double down, double width_to_height);
-  void MouseButton(bool left_is_down) { dragging_ = left_is_down; }
-  /// Adds steps of the wheel, forward positive.
-  void Wheel(double steps) { wheel_ += steps; }
-  /// Ignores the mouse while instruments under the cursor use it.
-  void IgnoreMouse(bool ignored) { mouse_is_ignored_ = ignored; }
-  /// Set whether this window has the keyboard, and whether it is minimised; repeated calls are
-  /// harmless.
-  void Focus(bool focused);
-  void Minimise(bool minimised);
-
   [[nodiscard]] MouseMode mouse_mode() const { return mouse_mode_; }
+  void NextMouseMode();
   [[nodiscard]] const ControlSettings& settings() const { return settings_; }
   void Set(const ControlSettings& settings);
 
-  /// Returns the input since the last call, `seconds` ago. kMouseMode is applied here and also
-  /// returned.
-  [[nodiscard]] Intent Take(FlightMode mode, double seconds,
-                            const std::optional<GamepadState>& gamepad = {});
+  /// Returns the intent of a frame. Held actions use the position of a key, all others its printed
+  /// label. Looking around counts in widths of the window along both axes.
+  [[nodiscard]] Intent Take(const InputFrame& input, FlightMode mode,
+                            const TakenByPanels& taken = {});
 
  private:
-  struct KeyEvent {
-    int key, change, modifiers, printed;
-    bool minimised;
-  };
   struct Place {
-    double right, down;
+    double right, down;  // fractions of the window
   };
 
   void LetGo();
-  void Resolve(const KeyEvent& event, FlightMode mode, Intent& intent);
-  void Ask(Action action, Intent& intent);
-  [[nodiscard]] double Pushed(Action positive, Action negative) const;
+  void Resolve(const KeyEvent& event, bool minimised, FlightMode mode, Intent& intent);
+  [[nodiscard]] double Pushed(const HeldControl& control) const;
   void MoveControls(double seconds);
+  void MoveMouse(const InputFrame& input, bool taken, PilotControls& pilot);
   void AddMouse(FlightMode mode, PilotControls& pilot) const;
   void AddGamepad(const GamepadState& gamepad, FlightMode mode, double seconds,
                   PilotControls& pilot) const;
@@ -114,11 +139,9 @@ class Controls {
 
   ControlSettings settings_;
   MouseMode mouse_mode_ = MouseMode::kCursor;
-  std::vector<KeyEvent> events_;
-  std::map<int, Action> held_;  // key, and its action since it went down
+  std::map<int, const Action*> held_;  // key, and its action since it went down
   std::optional<Place> mouse_;
-  bool dragging_ = false, focused_ = true, minimised_ = false, mouse_is_ignored_ = false;
-  double wheel_ = 0.0, look_right_ = 0.0, look_up_ = 0.0;
+  double wheel_ = 0.0;  // steps that have not acted
   Steering camera_;
   Stick stick_;
   std::array<double, 15> button_held_s_{};

@@ -215,12 +215,13 @@ std::optional<LandProgress> FrameRenderer::Progress() const {
 }
 
 TableFigures FrameRenderer::Figures() const {
-  return {painter_.air().making_s(), painter_.ground().making_s(), painter_.shade().making_s(),
-          painter_.land().Figures()};
+  const PaintedScene& scene = painter_.scene();
+  return {scene.air().making_s(), scene.ground().making_s(), scene.shade().making_s(),
+          scene.land().Figures()};
 }
 
 double FrameRenderer::FogAt(double height_m) const {
-  const SceneFog* fog = painter_.fog();
+  const SceneFog* fog = painter_.scene().fog();
   return fog != nullptr ? fog->ExtinctionAt(height_m) : 0.0;
 }
 

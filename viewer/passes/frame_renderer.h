@@ -123,7 +123,9 @@ class FrameRenderer {
   /// Returns the extinction by fog [1/m] at a height; 0 without fog.
   [[nodiscard]] double FogAt(double height_m) const;
   /// Returns the medium that is displayed.
-  [[nodiscard]] const std::shared_ptr<const SolvedAir>& air() const { return painter_.air().air(); }
+  [[nodiscard]] const std::shared_ptr<const SolvedAir>& air() const {
+    return painter_.scene().air().air();
+  }
 
  private:
   [[nodiscard]] bool HasReference() const { return reference_ && reference_->samples() > 0; }

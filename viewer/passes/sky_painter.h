@@ -88,11 +88,7 @@ class SkyPainter {
 
   [[nodiscard]] const Landscape& land() const { return scene_.land(); }
   [[nodiscard]] Landscape& land() { return scene_.land(); }
-  [[nodiscard]] const AirFollower& air() const { return scene_.air(); }
-  /// Returns null if there is no fog.
-  [[nodiscard]] const SceneFog* fog() const { return scene_.fog(); }
-  [[nodiscard]] const GroundFollower& ground() const { return scene_.ground(); }
-  [[nodiscard]] const ShadeFollower& shade() const { return scene_.shade(); }
+  [[nodiscard]] const PaintedScene& scene() const { return scene_; }
 
  private:
   struct SkyDisks {

@@ -3,7 +3,11 @@
 #pragma once
 
 #include <algorithm>
+#include <optional>
+#include <string>
+#include <utility>
 
+#include "tests/viewer/input/recorded_commands.h"
 #include "tests/viewer/shaders/headless.h"
 #include "viewer/gl/render_target.h"
 #include "viewer/hud/hud.h"
@@ -29,20 +33,53 @@ inline HudModel Flying() {
   return model;
 }
 
+/// What panels changed in a frame.
+struct Changes : RecordedCommands::Requests {
+  std::optional<double> day_fraction;  // of the day that the model shows
+  std::optional<AgxLook> look;
+  std::optional<WhiteBalance> white;
+  std::optional<double> throttle;
+  std::optional<std::optional<double>> heading_rad, speed_m_per_s;  // of the autopilot
+};
+
+/// A frame of a flight in the aircraft whose look and white balance are none of those that panels
+/// offer first.
+inline Changes FrameOf(Hud& hud, const HudModel& model, const InputFrame& input) {
+  RecordedCommands flight;
+  flight.cockpit().Enter(FlightMode::kAircraft);
+  Look look;
+  look.agx = AgxLook::kNone;
+  look.white = WhiteBalanceFromText("3456");
+  flight.exposure().Use(look);
+  AutopilotTargets held{.heading_rad = model.autopilot.heading_rad};
+  flight.cockpit().pilot().aircraft()->autopilot().Set(held);
+  const double first_throttle = flight.cockpit().pilot().aircraft()->Readout().throttle;
+  const UtcInstant before = flight.cockpit().clock().now();
+  hud.Update(model, nullptr, input, flight);
+  Changes changes;
+  static_cast<RecordedCommands::Requests&>(changes) = flight.requests;
+  const double shifted_s = SecondsBetween(before, flight.cockpit().clock().now());
+  if (shifted_s != 0.0) changes.day_fraction = model.time.day_fraction + shifted_s / 86400.0;
+  const Look& now = flight.exposure().look();
+  if (now.agx != look.agx) changes.look = now.agx;
+  if (now.white != look.white) changes.white = now.white;
+  const PilotedAircraft* aircraft = flight.cockpit().pilot().aircraft();
+  if (aircraft == nullptr) return changes;
+  const double throttle = aircraft->Readout().throttle;
+  if (throttle != first_throttle) changes.throttle = throttle;
+  const AutopilotTargets& targets = aircraft->autopilot().targets();
+  if (targets.heading_rad != held.heading_rad) changes.heading_rad = targets.heading_rad;
+  if (targets.speed_m_per_s) changes.speed_m_per_s = targets.speed_m_per_s;
+  return changes;
+}
+
 class HudPicture : public Headless {
  protected:
-  static HudInput Still(int width, int height) {
-    HudInput input;
-    input.width = width;
-    input.height = height;
-    input.seconds = 0.02;
-    return input;
-  }
+  static InputFrame Still(int width, int height) { return {{}, {width, height}, 0.02}; }
 
   /// Over a grey of 0.5. Panels need two frames to find their size.
   static Image Drawn(Hud& hud, const HudModel& model, int width, int height) {
-    for (int frame = 0; frame < 3; ++frame)
-      static_cast<void>(hud.Update(model, {}, nullptr, Still(width, height)));
+    for (int frame = 0; frame < 3; ++frame) FrameOf(hud, model, Still(width, height));
     const RenderTarget target(width, height, RenderTarget::Depth::kNone);
     target.Bind();
     glClearColor(0.5F, 0.5F, 0.5F, 1.0F);

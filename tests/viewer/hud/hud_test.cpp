@@ -2,6 +2,8 @@
 // Instruments and panels as a whole: hidden, scaled, clicked on.
 #include "viewer/hud/hud.h"
 
+#define GLFW_INCLUDE_NONE
+#include <GLFW/glfw3.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -15,37 +17,39 @@
 namespace alpenglow::viewer {
 namespace {
 
+using tests::Changes;
+using tests::FrameOf;
+
 constexpr int kWidth = 1280, kHeight = 720;
 
 class HudTest : public tests::HudPicture {
  protected:
   /// A frame with the pointer there.
-  HudRequest At(Hud& hud, double x, double y, bool pressed) {
-    HudInput input = Still(kWidth, kHeight);
-    input.pointer = HudPointer{x, y};
-    input.buttons[0] = pressed;
-    return hud.Update(model_, choices_, nullptr, input);
+  Changes At(Hud& hud, double x, double y, bool pressed) {
+    InputFrame input = Still(kWidth, kHeight);
+    input.events.pointer = PointerPlace{x, y};
+    input.events.buttons[0] = pressed;
+    return FrameOf(hud, model_, input);
   }
   /// Moves there, presses and lets go: what was asked for in these two frames.
-  std::array<HudRequest, 2> Click(Hud& hud, double x, double y) {
+  std::array<Changes, 2> Click(Hud& hud, double x, double y) {
     static_cast<void>(At(hud, x, y, false));
-    HudRequest pressed = At(hud, x, y, true);
+    Changes pressed = At(hud, x, y, true);
     return {std::move(pressed), At(hud, x, y, false)};
   }
   /// Clicks along a column of the picture until that is asked for.
   template <typename Asked>
-  std::optional<HudPointer> Find(Hud& hud, double x, int from_y, int to_y, const Asked& asked) {
+  std::optional<PointerPlace> Find(Hud& hud, double x, int from_y, int to_y, const Asked& asked) {
     const int step = from_y < to_y ? 4 : -4;
     for (int y = from_y; y != to_y; y += step) {
-      const std::array<HudRequest, 2> requests = Click(hud, x, y);
+      const std::array<Changes, 2> requests = Click(hud, x, y);
       if (std::any_of(requests.begin(), requests.end(), asked))
-        return HudPointer{x, static_cast<double>(y)};
+        return PointerPlace{x, static_cast<double>(y)};
     }
     return std::nullopt;
   }
 
   HudModel model_ = tests::Flying();
-  HudChoices choices_;
 };
 
 TEST_F(HudTest, HiddenItLeavesEveryByteOfThePictureAsItWas) {
@@ -62,7 +66,7 @@ TEST_F(HudTest, HiddenItLeavesEveryByteOfThePictureAsItWas) {
   }();
   EXPECT_FALSE(Difference(grey, shown).empty());
   EXPECT_TRUE(Difference(grey, hidden).empty());
-  EXPECT_FALSE(hud.WantsMouse());
+  EXPECT_FALSE(hud.Taken().mouse);
   hud.ToggleVisible();
   EXPECT_TRUE(Difference(shown, Drawn(hud, model_, kWidth, kHeight)).empty())
       << "and it comes back as it was";
@@ -70,7 +74,7 @@ TEST_F(HudTest, HiddenItLeavesEveryByteOfThePictureAsItWas) {
 
 TEST_F(HudTest, HidingWorksBetweenLayoutAndPaint) {
   Hud hud;
-  static_cast<void>(hud.Update(model_, choices_, nullptr, Still(64, 48)));
+  FrameOf(hud, model_, Still(64, 48));
   hud.ToggleVisible();
   const RenderTarget target(64, 48, RenderTarget::Depth::kNone);
   target.Bind();
@@ -95,9 +99,9 @@ TEST_F(HudTest, PaintingLeavesTheStateThatPassesExpect) {
 
 TEST_F(HudTest, APictureWithoutPixelsIsNotDrawnOn) {
   Hud hud;
-  static_cast<void>(hud.Update(model_, choices_, nullptr, Still(0, 0)));
+  FrameOf(hud, model_, Still(0, 0));
   hud.Paint(0);
-  EXPECT_FALSE(hud.WantsMouse());
+  EXPECT_FALSE(hud.Taken().mouse);
 }
 
 TEST_F(HudTest, RefusesAScaleOutOfRangeAndAFontThatIsNone) {
@@ -113,28 +117,27 @@ TEST_F(HudTest, TheMouseIsThePanelsWhereTheyAreAndTheFlightsElsewhere) {
   hud.Toggle(HudPanel::kLeave);  // in the middle below the clock
   for (int frame = 0; frame < 3; ++frame)
     static_cast<void>(At(hud, 0.5 * kWidth, 0.57 * kHeight, false));
-  EXPECT_TRUE(hud.WantsMouse());
+  EXPECT_TRUE(hud.Taken().mouse);
   static_cast<void>(At(hud, 0.2 * kWidth, 0.8 * kHeight, false));
-  EXPECT_FALSE(hud.WantsMouse());
+  EXPECT_FALSE(hud.Taken().mouse);
   static_cast<void>(At(hud, 0.2 * kWidth, 0.8 * kHeight, true));
   static_cast<void>(At(hud, 0.5 * kWidth, 0.57 * kHeight, true));
-  EXPECT_FALSE(hud.WantsMouse()) << "a drag that began in the picture stays the flight's";
+  EXPECT_FALSE(hud.Taken().mouse) << "a drag that began in the picture stays the flight's";
 }
 
 TEST_F(HudTest, AClickIntoTheStripOfTheDayIsAShareOfTheDay) {
   Hud hud;
   hud.Toggle(HudPanel::kPlaceAndTime);
-  const auto found = Find(hud, 200.0, 40, 300, [](const HudRequest& request) {
-    return request.time.day_fraction.has_value();
-  });
+  const auto found = Find(hud, 200.0, 40, 300,
+                          [](const Changes& request) { return request.day_fraction.has_value(); });
   ASSERT_TRUE(found.has_value());
-  static_cast<void>(At(hud, found->x, found->y + 4.0, false));
-  const double here = At(hud, found->x, found->y + 4.0, true).time.day_fraction.value();
-  const double there = At(hud, found->x + 110.0, found->y + 4.0, true).time.day_fraction.value();
+  static_cast<void>(At(hud, found->right, found->down + 4.0, false));
+  const double here = At(hud, found->right, found->down + 4.0, true).day_fraction.value();
+  const double there = At(hud, found->right + 110.0, found->down + 4.0, true).day_fraction.value();
   EXPECT_NEAR(there - here, 110.0 / 440.0, 1e-6) << "the strip is 440 pixels wide";
-  EXPECT_EQ(At(hud, 0.0, found->y, true).time.day_fraction, 0.0) << "midnight, while held";
-  EXPECT_EQ(At(hud, 900.0, found->y, true).time.day_fraction, 1.0);
-  EXPECT_EQ(At(hud, 900.0, found->y, false).time.day_fraction, std::nullopt);
+  EXPECT_EQ(At(hud, 0.0, found->down, true).day_fraction, 0.0) << "midnight, while held";
+  EXPECT_EQ(At(hud, 900.0, found->down, true).day_fraction, 1.0);
+  EXPECT_EQ(At(hud, 900.0, found->down, false).day_fraction, std::nullopt);
 }
 
 TEST_F(HudTest, ASliderAsksForWhatItIsDraggedTo) {
@@ -143,32 +146,22 @@ TEST_F(HudTest, ASliderAsksForWhatItIsDraggedTo) {
   const double x = kWidth - 10.0 - 200.0;
   // From below: the ground's albedo, then ozone; lists are above them.
   const auto found = Find(
-      hud, x, 300, 60, [](const HudRequest& request) { return request.air.ozone_du.has_value(); });
+      hud, x, 300, 60, [](const Changes& request) { return request.air && request.air->ozone_du; });
   ASSERT_TRUE(found.has_value());
-  static_cast<void>(At(hud, x, found->y, false));
-  static_cast<void>(At(hud, x, found->y, true));
-  EXPECT_EQ(At(hud, x - 500.0, found->y, true).air.ozone_du, 0.0);
-  EXPECT_EQ(At(hud, x + 500.0, found->y, true).air.ozone_du, 600.0);
-  const HudRequest none = At(hud, x + 500.0, found->y, false);
-  EXPECT_EQ(none.air.ozone_du, std::nullopt) << "nothing is asked for once it is let go";
-  EXPECT_EQ(none.air.visibility_km, std::nullopt);
+  static_cast<void>(At(hud, x, found->down, false));
+  static_cast<void>(At(hud, x, found->down, true));
+  EXPECT_EQ(At(hud, x - 500.0, found->down, true).air.value().ozone_du, 0.0);
+  EXPECT_EQ(At(hud, x + 500.0, found->down, true).air.value().ozone_du, 600.0);
+  const Changes none = At(hud, x + 500.0, found->down, false);
+  EXPECT_FALSE(none.air) << "nothing is asked for once it is let go";
 }
 
-TEST_F(HudTest, ALampIsSwitchedWhereItsNameStands) {
+TEST_F(HudTest, TheLandingLightIsSwitchedWhereItsNameStands) {
   Hud hud;
-  choices_.lamps = {{"landing light", true}, {"runway 26", false}};
   hud.Toggle(HudPanel::kLights);
-  std::vector<HudLampRequest> asked;
-  for (int y = 250; y < 480; y += 3) {
-    for (const HudRequest& request : Click(hud, kWidth - 100.0, y)) {
-      if (request.lamp) asked.push_back(*request.lamp);
-    }
-  }
-  ASSERT_GE(asked.size(), 2U);
-  EXPECT_EQ(asked.front().lamp, 0U);
-  EXPECT_FALSE(asked.front().is_on) << "it was on";
-  EXPECT_EQ(asked.back().lamp, 1U);
-  EXPECT_TRUE(asked.back().is_on) << "it was off";
+  EXPECT_TRUE(Find(hud, kWidth - 100.0, 250, 482, [](const Changes& request) {
+                return request.landing_light;
+              }).has_value());
 }
 
 TEST_F(HudTest, ATypedInstantIsAskedForWithEnter) {
@@ -178,55 +171,56 @@ TEST_F(HudTest, ATypedInstantIsAskedForWithEnter) {
   for (int y = 150; y < 400 && !field_y; y += 4) {
     static_cast<void>(Click(hud, 120.0, y));
     static_cast<void>(At(hud, 120.0, y, false));
-    if (hud.WantsKeyboard()) field_y = y;
+    if (hud.Taken().keyboard) field_y = y;
   }
   ASSERT_TRUE(field_y.has_value()) << "a field that takes letters";
-  HudInput typing = Still(kWidth, kHeight);
-  typing.text = "2026-06-21T04:00:00Z";
-  static_cast<void>(hud.Update(model_, choices_, nullptr, typing));
-  typing.text.clear();
-  typing.keys = {HudKey::kEnter};
-  EXPECT_EQ(hud.Update(model_, choices_, nullptr, typing).time.instant, "2026-06-21T04:00:00Z");
+  InputFrame typing = Still(kWidth, kHeight);
+  typing.events.text = "2026-06-21T04:00:00Z";
+  FrameOf(hud, model_, typing);
+  typing.events.text.clear();
+  typing.events.keys = {{GLFW_KEY_ENTER, 0, GLFW_PRESS, 0, ""}};
+  EXPECT_EQ(FrameOf(hud, model_, typing).time, "2026-06-21T04:00:00Z");
 }
 
 TEST_F(HudTest, APictureIsAskedForInTheSizeThatIsSeen) {
   Hud hud;
   hud.Toggle(HudPanel::kCapture);
-  std::optional<HudCaptureRequest> capture;
+  std::optional<PictureOrder> capture;
   // From below: the recorder, then the buttons.
-  const auto found = Find(hud, 0.5 * kWidth - 105.0, 260, 80, [&](const HudRequest& request) {
-    capture = request.capture;
+  const auto found = Find(hud, 0.5 * kWidth - 105.0, 260, 80, [&](const Changes& request) {
+    capture = request.picture;
     return capture.has_value();
   });
   ASSERT_TRUE(found.has_value());
-  EXPECT_EQ(capture->kind, HudPictureKind::kPng);
-  EXPECT_EQ(capture->width, kWidth);
-  EXPECT_EQ(capture->height, kHeight);
-  EXPECT_FALSE(capture->with_hud);
+  EXPECT_FALSE(capture->is_exr);
+  ASSERT_TRUE(capture->size.has_value());
+  EXPECT_EQ(capture->size->width, kWidth);
+  EXPECT_EQ(capture->size->height, kHeight);
+  EXPECT_FALSE(capture->with_instruments);
 }
 
 TEST_F(HudTest, TheHeadingThatIsHeldIsTheOneFlown) {
   Hud hud;
   model_.flight.heading_rad = -0.5;
   hud.Toggle(HudPanel::kFlight);
-  std::optional<HudHold> hold;
-  const auto asked = [&](const HudRequest& request) {
-    hold = request.hold_heading_rad;
+  std::optional<std::optional<double>> hold;
+  const auto asked = [&](const Changes& request) {
+    hold = request.heading_rad;
     return hold.has_value();
   };
   ASSERT_TRUE(Find(hud, 0.5 * kWidth - 100.0, 500, 680, asked).has_value());
-  ASSERT_TRUE(hold->value.has_value());
-  EXPECT_NEAR(*hold->value, 2.0 * kPi - 0.5, 1e-9) << "in [0, 2 pi]";
-  model_.autopilot.heading_rad = *hold->value;
+  ASSERT_TRUE(hold->has_value());
+  EXPECT_NEAR(**hold, 2.0 * kPi - 0.5, 1e-9) << "in [0, 2 pi]";
+  model_.autopilot.heading_rad = **hold;
   ASSERT_TRUE(Find(hud, 0.5 * kWidth - 100.0, 500, 680, asked).has_value());
-  EXPECT_EQ(hold->value, std::nullopt) << "a second click lets it go";
+  EXPECT_FALSE(hold->has_value()) << "a second click lets it go";
 }
 
 TEST_F(HudTest, LeavingIsAskedOnce) {
   Hud hud;
   hud.Toggle(HudPanel::kLeave);
-  const auto quits = [](const HudRequest& request) { return request.quit; };
-  EXPECT_FALSE(At(hud, 1.0, 1.0, false).quit);
+  const auto quits = [](const Changes& request) { return request.leaves; };
+  EXPECT_FALSE(At(hud, 1.0, 1.0, false).leaves);
   EXPECT_TRUE(Find(hud, 0.5 * kWidth - 110.0, 360, 470, quits).has_value());
 }
 
@@ -255,11 +249,9 @@ TEST_F(HudTest, KeysClosePanelsFirst) {
 TEST_F(HudTest, EveryPanelFitsIntoTheSmallestPicture) {
   for (std::size_t panel = 0; panel < kHudPanels; ++panel) {
     Hud hud;
-    choices_.moments = {"now", "sunrise", "noon", "sunset", "dusk", "moonrise"};
     const Image bare = Drawn(hud, model_, 320, 240);
     hud.Toggle(static_cast<HudPanel>(panel));
-    for (int frame = 0; frame < 4; ++frame)
-      static_cast<void>(hud.Update(model_, choices_, nullptr, Still(320, 240)));
+    for (int frame = 0; frame < 4; ++frame) FrameOf(hud, model_, Still(320, 240));
     const Image with = Drawn(hud, model_, 320, 240);
     const Box box = Difference(bare, with);
     ASSERT_FALSE(box.empty()) << panel;

@@ -10,8 +10,7 @@
 
 #include "atmosphere/math/constants.h"
 #include "tests/viewer/hud/hud_picture.h"
-#include "viewer/hud/pitch_ladder.h"
-#include "viewer/hud/tapes.h"
+#include "viewer/hud/scales.h"
 
 namespace alpenglow::viewer {
 namespace {

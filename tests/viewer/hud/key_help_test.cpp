@@ -22,13 +22,11 @@ std::string WrittenHelp(int width) {
   io.ClipboardUserData = &written;
   io.SetClipboardTextFn = [](void* to, const char* text) { *static_cast<std::string*>(to) = text; };
   const HudModel model;
-  const HudChoices choices;
   for (int frame = 0; frame < 3; ++frame) {
     ImGui::NewFrame();
     ImGui::Begin("Help", nullptr, ImGuiWindowFlags_AlwaysAutoResize);
     ImGui::LogToClipboard();
-    ShowKeyHelp(
-        {model, choices, nullptr, HudTheme::kDay, HudThemeChoice::kDay, 1.0, width, 4000, 0});
+    ShowKeyHelp({model, nullptr, HudTheme::kDay, 1.0, width, 4000, 0});
     ImGui::LogFinish();
     ImGui::End();
     ImGui::EndFrame();
@@ -51,9 +49,9 @@ TEST(KeyHelp, EveryActionIsWrittenUnderItsHeading) {
     for (const ActionSection& section : ActionSections()) {
       const std::size_t heading = written.find(section.heading);
       ASSERT_NE(heading, std::string::npos) << section.heading;
-      for (const ActionRow& row : section.rows) {
-        EXPECT_GE(CountOf(std::string(row.does), written), 1U) << row.does << ", " << width;
-        EXPECT_NE(written.find(row.does, heading), std::string::npos) << row.does;
+      for (const Action& row : section.rows) {
+        EXPECT_GE(CountOf(std::string(row.help), written), 1U) << row.help << ", " << width;
+        EXPECT_NE(written.find(row.help, heading), std::string::npos) << row.help;
         EXPECT_GE(CountOf(KeysText(row), written), 1U) << KeysText(row);
       }
     }

@@ -2,6 +2,8 @@
 // Panels: where they stand beside the clock, what lists and fields ask for.
 #include "viewer/hud/panels.h"
 
+#define GLFW_INCLUDE_NONE
+#include <GLFW/glfw3.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -11,39 +13,43 @@
 namespace alpenglow::viewer {
 namespace {
 
+using tests::Changes;
+using tests::FrameOf;
+
 constexpr int kPictureWidth = 1280, kPictureHeight = 800;
 
 class PanelsTest : public tests::HudPicture {
  protected:
-  HudRequest At(Hud& hud, double x, double y, bool pressed) {
-    HudInput input = Still(kPictureWidth, kPictureHeight);
-    input.pointer = HudPointer{x, y};
-    input.buttons[0] = pressed;
-    return hud.Update(model_, choices_, nullptr, input);
+  Changes At(Hud& hud, double x, double y, bool pressed) {
+    InputFrame input = Still(kPictureWidth, kPictureHeight);
+    input.events.pointer = PointerPlace{x, y};
+    input.events.buttons[0] = pressed;
+    return FrameOf(hud, model_, input);
   }
   /// The requests while the button was down and when it was let go.
-  std::vector<HudRequest> Click(Hud& hud, double x, double y) {
+  std::vector<Changes> Click(Hud& hud, double x, double y) {
     static_cast<void>(At(hud, x, y, false));
-    std::vector<HudRequest> requests{At(hud, x, y, true)};
+    std::vector<Changes> requests{At(hud, x, y, true)};
     requests.push_back(At(hud, x, y, false));
     return requests;
   }
-  HudRequest Press(Hud& hud, HudKey key) {
-    HudInput input = Still(kPictureWidth, kPictureHeight);
-    input.keys = {key};
-    return hud.Update(model_, choices_, nullptr, input);
+  Changes PressEnter(Hud& hud) {
+    InputFrame input = Still(kPictureWidth, kPictureHeight);
+    input.events.keys = {{GLFW_KEY_ENTER, 0, GLFW_PRESS, 0, ""},
+                         {GLFW_KEY_ENTER, 0, GLFW_RELEASE, 0, ""}};
+    return FrameOf(hud, model_, input);
   }
-  HudRequest Type(Hud& hud, const char* text) {
-    HudInput input = Still(kPictureWidth, kPictureHeight);
-    input.text = text;
-    return hud.Update(model_, choices_, nullptr, input);
+  Changes Type(Hud& hud, const char* text) {
+    InputFrame input = Still(kPictureWidth, kPictureHeight);
+    input.events.text = text;
+    return FrameOf(hud, model_, input);
   }
   /// Clicks down a column until a field takes letters.
   double FieldFrom(Hud& hud, double x, int from_y) {
     for (int y = from_y; y < kPictureHeight; y += 4) {
       static_cast<void>(Click(hud, x, y));
       static_cast<void>(At(hud, x, y, false));
-      if (hud.WantsKeyboard()) return y;
+      if (hud.Taken().keyboard) return y;
     }
     ADD_FAILURE() << "there is no field";
     return 0.0;
@@ -55,7 +61,7 @@ class PanelsTest : public tests::HudPicture {
     for (int y = from_y; y < kPictureHeight - 10; y += 6) {
       for (int below = -140; below < 140; below += 7) {
         static_cast<void>(Click(hud, x, y));  // opens the list again
-        for (const HudRequest& request : Click(hud, x, y + below)) {
+        for (const Changes& request : Click(hud, x, y + below)) {
           const auto name = asked(request);
           if (name && std::find(names.begin(), names.end(), *name) == names.end())
             names.push_back(*name);
@@ -67,7 +73,6 @@ class PanelsTest : public tests::HudPicture {
   }
 
   HudModel model_ = tests::Flying();
-  HudChoices choices_;
 };
 
 /// A clock that shows something else everywhere.
@@ -157,11 +162,11 @@ TEST_F(PanelsTest, APanelThatIsDraggedOverTheClockComesBack) {
 
 TEST_F(PanelsTest, EnterLeavesTheFlight) {
   Hud hud;
-  EXPECT_FALSE(Press(hud, HudKey::kEnter).quit) << "nobody has been asked";
+  EXPECT_FALSE(PressEnter(hud).leaves) << "nobody has been asked";
   static_cast<void>(Type(hud, ""));
   hud.Toggle(HudPanel::kLeave);
-  EXPECT_FALSE(Type(hud, "").quit);
-  EXPECT_TRUE(Press(hud, HudKey::kEnter).quit);
+  EXPECT_FALSE(Type(hud, "").leaves);
+  EXPECT_TRUE(PressEnter(hud).leaves);
 }
 
 TEST_F(PanelsTest, EnterInAFieldDoesNotLeaveTheFlight) {
@@ -170,9 +175,9 @@ TEST_F(PanelsTest, EnterInAFieldDoesNotLeaveTheFlight) {
   hud.Toggle(HudPanel::kLeave);
   static_cast<void>(FieldFrom(hud, 120.0, 200));
   static_cast<void>(Type(hud, "2026-06-21T04:00:00Z"));
-  const HudRequest request = Press(hud, HudKey::kEnter);
-  EXPECT_TRUE(request.time.instant.has_value());
-  EXPECT_FALSE(request.quit);
+  const Changes request = PressEnter(hud);
+  EXPECT_TRUE(request.time.has_value());
+  EXPECT_FALSE(request.leaves);
 }
 
 TEST_F(PanelsTest, EnterFliesToTheFirstPlaceThatIsFound) {
@@ -181,7 +186,7 @@ TEST_F(PanelsTest, EnterFliesToTheFirstPlaceThatIsFound) {
   const double instant_y = FieldFrom(hud, 120.0, 200);
   static_cast<void>(FieldFrom(hud, 120.0, static_cast<int>(instant_y) + 26));
   static_cast<void>(Type(hud, "zurich"));
-  EXPECT_EQ(Press(hud, HudKey::kEnter).named_place, "Zürich");
+  EXPECT_EQ(PressEnter(hud).named_place, "Zürich");
 }
 
 TEST_F(PanelsTest, ClicksInTheListOfPlacesAreThoseThatWereFound) {
@@ -192,7 +197,7 @@ TEST_F(PanelsTest, ClicksInTheListOfPlacesAreThoseThatWereFound) {
   const auto clicked = [&] {
     std::vector<std::string> names;
     for (double y = search_y + 24.0; y < search_y + 140.0; y += 4.0) {
-      for (const HudRequest& request : Click(hud, 60.0, y)) {
+      for (const Changes& request : Click(hud, 60.0, y)) {
         if (request.named_place && (names.empty() || names.back() != *request.named_place))
           names.push_back(*request.named_place);
       }
@@ -210,42 +215,44 @@ TEST_F(PanelsTest, ClicksInTheListOfPlacesAreThoseThatWereFound) {
 
 TEST_F(PanelsTest, TheExposurePanelOffersLooksAndWhiteBalances) {
   Hud hud;
-  model_.exposure.tone_curve = "agx";
-  model_.exposure.look = "photo";
-  model_.exposure.white_balance = "camera";
-  choices_.looks = {"photo", "punchy"};
-  choices_.white_balances = {"camera", "auto"};
   hud.Toggle(HudPanel::kExposure);
   const double x = kPictureWidth - 230.0;
-  EXPECT_THAT(Listed(hud, x, 560, [](const HudRequest& request) { return request.look; }),
-              ::testing::UnorderedElementsAre("photo", "punchy"));
-  const std::vector<std::string> whites =
-      Listed(hud, x, 560, [](const HudRequest& request) { return request.white_balance; });
-  EXPECT_THAT(whites, ::testing::IsSupersetOf({"camera", "auto"}));
+  const auto look = [](const Changes& request) {
+    return request.look ? std::optional(NameOf(*request.look)) : std::nullopt;
+  };
+  EXPECT_THAT(Listed(hud, x, 560, look), ::testing::IsSupersetOf({"photo", "punchy"}));
+  const auto white = [](const Changes& request) {
+    return request.white ? std::optional(NameOf(*request.white)) : std::nullopt;
+  };
+  const std::vector<std::string> whites = Listed(hud, x, 560, white);
+  EXPECT_THAT(whites, ::testing::IsSupersetOf({NameOf(WhiteBalanceFromText("camera")),
+                                               NameOf(WhiteBalanceFromText("auto"))}));
   EXPECT_GE(whites.size(), 3U) << "and kelvins of the slider";
 }
 
 TEST_F(PanelsTest, TheFlightPanelSetsModeThrottleAndSpeed) {
   Hud hud;
-  choices_.modes = {"free camera", "aircraft"};
   hud.Toggle(HudPanel::kFlight);
   EXPECT_THAT(Listed(hud, 0.5 * kPictureWidth - 60.0, 560,
-                     [](const HudRequest& request) { return request.mode; }),
+                     [](const Changes& request) {
+                       return request.messages.empty() ? std::nullopt
+                                                       : std::optional(request.messages.back());
+                     }),
               ::testing::UnorderedElementsAre("free camera", "aircraft"));
   std::optional<double> throttle;
-  std::optional<HudHold> speed;
+  std::optional<std::optional<double>> speed;
   for (int y = 540; y < 790; y += 4) {
-    for (const HudRequest& request : Click(hud, 0.5 * kPictureWidth - 102.0, y)) {
+    for (const Changes& request : Click(hud, 0.5 * kPictureWidth - 102.0, y)) {
       if (request.throttle) throttle = request.throttle;
-      if (request.hold_speed_m_per_s && !speed) speed = request.hold_speed_m_per_s;
+      if (request.speed_m_per_s && !speed) speed = request.speed_m_per_s;
     }
   }
   ASSERT_TRUE(throttle.has_value());
   EXPECT_GE(*throttle, 0.0);
   EXPECT_LT(*throttle, 0.1) << "the left end of the slider";
   ASSERT_TRUE(speed.has_value());
-  ASSERT_TRUE(speed->value.has_value());
-  EXPECT_NEAR(*speed->value, model_.flight.ground_speed_m_per_s, 1e-9) << "as fast as it flies";
+  ASSERT_TRUE(speed->has_value());
+  EXPECT_NEAR(**speed, model_.flight.ground_speed_m_per_s, 1e-9) << "as fast as it flies";
 }
 
 TEST_F(PanelsTest, OutsideOfTheAircraftThereIsNoThrottle) {
@@ -253,9 +260,9 @@ TEST_F(PanelsTest, OutsideOfTheAircraftThereIsNoThrottle) {
   model_.flight.throttle.reset();
   hud.Toggle(HudPanel::kFlight);
   for (int y = 600; y < 790; y += 4) {
-    for (const HudRequest& request : Click(hud, 0.5 * kPictureWidth - 80.0, y)) {
+    for (const Changes& request : Click(hud, 0.5 * kPictureWidth - 80.0, y)) {
       EXPECT_FALSE(request.throttle) << y;
-      EXPECT_FALSE(request.hold_heading_rad) << y;
+      EXPECT_FALSE(request.heading_rad) << y;
     }
   }
 }

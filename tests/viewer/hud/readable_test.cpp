@@ -110,8 +110,7 @@ class Readable : public tests::HudPicture {
   }
 
   Worst WorstPixel(Of which, Hud& hud, int width, int height, const Halves& halves) const {
-    for (int frame = 0; frame < 3; ++frame)
-      static_cast<void>(hud.Update(model_, choices_, nullptr, Still(width, height)));
+    for (int frame = 0; frame < 3; ++frame) tests::FrameOf(hud, model_, Still(width, height));
     const Image with = Painted(hud, width, height, halves);
     const std::vector<Letter> letters = TakeLetters(which);
     const Image behind = Painted(hud, width, height, halves);
@@ -154,13 +153,12 @@ class Readable : public tests::HudPicture {
     model.recording = true;
     return model;
   }();
-  HudChoices choices_;
 };
 
 TEST_F(Readable, InstrumentsHaveContrastOverEveryPicture) {
   for (const HudThemeChoice theme : {HudThemeChoice::kDay, HudThemeChoice::kNight}) {
     const char* const name = theme == HudThemeChoice::kDay ? "day" : "night";
-    Hud hud({.theme = theme}), large({.scale = 2.0, .theme = theme});
+    Hud hud({.preferences = {theme}}), large({.scale = 2.0, .preferences = {theme}});
     ExpectReadable(Of::kInstruments, name, hud, 1280, 720);
     ExpectReadable(Of::kInstruments, name, hud, 320, 240);
     ExpectReadable(Of::kInstruments, name, large, 640, 480);
@@ -168,12 +166,9 @@ TEST_F(Readable, InstrumentsHaveContrastOverEveryPicture) {
 }
 
 TEST_F(Readable, PanelsHaveContrastOverDarkAndBright) {
-  choices_.modes = choices_.planets = choices_.moments = {"one", "another"};
-  choices_.lamps = {{"landing light", true}};
-  choices_.table_heading = {"", "made in"};
-  choices_.tables = {{"air", "50 ms"}};
+  model_.tables = {{"air", "50 ms", ""}};
   for (const HudThemeChoice theme : {HudThemeChoice::kDay, HudThemeChoice::kNight}) {
-    Hud hud({.theme = theme});
+    Hud hud({.preferences = {theme}});
     hud.ToggleMenu();
     for (std::size_t panel = 0; panel < kHudPanels; ++panel) {
       hud.Toggle(static_cast<HudPanel>(panel));

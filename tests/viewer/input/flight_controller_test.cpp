@@ -4,52 +4,55 @@
 #include <gtest/gtest.h>
 
 #include "atmosphere/math/constants.h"
-#include "viewer/input/controls.h"
+#include "tests/viewer/input/hands.h"
+#include "tests/viewer/input/recorded_commands.h"
 
 namespace alpenglow::viewer {
 namespace {
 
-double FlightControllerSea(const GeodeticPosition&) { return 0.0; }
+using tests::Hands;
+using tests::RecordedCommands;
 
-FlightController NewFlightController() {
-  return {{PlaceFromDegrees(47.0, 8.0, 1500.0)}, kWgs84, ParseInstant("2026-06-21T12:00:00Z")};
+double FlightControllerSea(const GeodeticPosition&) { return 0.0; }
+double Airport(const GeodeticPosition&) { return 423.0; }
+
+FlightController NewFlightController(const GroundHeight& ground = FlightControllerSea) {
+  return {
+      {PlaceFromDegrees(47.0, 8.0, 1500.0)}, kWgs84, ParseInstant("2026-06-21T12:00:00Z"), ground};
 }
 std::string Shows(const FlightController& cockpit) { return FormatUtc(cockpit.clock().now()); }
 
-TEST(FlightController, DoesWhatIsOfFlightAndTimeAndLeavesTheRestToOthers) {
-  FlightController cockpit = NewFlightController();
-  EXPECT_EQ(cockpit.Do(Action::kFasterTime, FlightControllerSea), "time x10");
-  EXPECT_EQ(cockpit.Do(Action::kLaterHour, FlightControllerSea), "");
-  EXPECT_EQ(Shows(cockpit), "2026-06-21T13:00:00Z");
-  EXPECT_EQ(cockpit.Do(Action::kToSunset, FlightControllerSea), "sunset");
-  EXPECT_EQ(Shows(cockpit).substr(0, 13), "2026-06-21T19");
-  EXPECT_EQ(cockpit.Do(Action::kToMoonrise, FlightControllerSea), "moonrise");
-  EXPECT_EQ(cockpit.Do(Action::kTrackMode, FlightControllerSea), "there is no track to follow");
-  EXPECT_EQ(cockpit.Do(Action::kScreenshot, FlightControllerSea), std::nullopt);
-  EXPECT_EQ(cockpit.Do(Action::kHud, FlightControllerSea), std::nullopt);
-  EXPECT_EQ(cockpit.Do(Action::kForward, FlightControllerSea), std::nullopt)
-      << "held keys are controls";
+TEST(FlightController, KeysChangeFlightAndTime) {
+  RecordedCommands flight;
+  EXPECT_EQ(flight.Press("T"), "time x10");
+  EXPECT_EQ(flight.Press("Shift+]"), "");
+  EXPECT_EQ(Shows(flight.cockpit()), "2026-06-21T13:00:00Z");
+  EXPECT_EQ(flight.Press("F7"), "sunset");
+  EXPECT_EQ(Shows(flight.cockpit()).substr(0, 13), "2026-06-21T19");
+  EXPECT_EQ(flight.Press("F9"), "moonrise");
+  EXPECT_EQ(flight.Press("3"), "there is no track to follow");
 }
 
 TEST(FlightController, GoesAroundTheModesThatThereAre) {
   FlightController cockpit = NewFlightController();
-  EXPECT_EQ(cockpit.Do(Action::kNextMode, FlightControllerSea), "aircraft");
-  EXPECT_EQ(cockpit.Do(Action::kNextMode, FlightControllerSea), "free camera");
-  EXPECT_EQ(cockpit.Do(Action::kPreviousMode, FlightControllerSea), "aircraft");
-  EXPECT_EQ(cockpit.Do(Action::kHoldHeading, FlightControllerSea), "HDG 000");
-  EXPECT_EQ(cockpit.Do(Action::kAutopilotOff, FlightControllerSea), "autopilot off");
-  EXPECT_EQ(cockpit.Do(Action::kFreeMode, FlightControllerSea), "free camera");
+  EXPECT_EQ(cockpit.EnterNext(1), "aircraft");
+  EXPECT_EQ(cockpit.EnterNext(1), "free camera");
+  EXPECT_EQ(cockpit.EnterNext(-1), "aircraft");
+  EXPECT_EQ(cockpit.ToggleHold(Autopilot::Hold::kHeading), "HDG 000");
+  EXPECT_EQ(cockpit.ReleaseAutopilot(), "autopilot off");
+  EXPECT_EQ(cockpit.Enter(FlightMode::kFree), "free camera");
 }
 
 TEST(FlightController, PausedTimeAndAircraftStandAndTheFreeCameraFlies) {
-  FlightController cockpit = NewFlightController();
-  EXPECT_EQ(cockpit.Do(Action::kPause, FlightControllerSea), "paused");
+  RecordedCommands flight;
+  FlightController& cockpit = flight.cockpit();
+  EXPECT_EQ(flight.Press("P"), "paused");
   const double latitude = cockpit.pilot().eye().place.latitude_rad;
-  cockpit.Advance({.camera = {.forward = 1.0}}, 1.0, FlightControllerSea);
+  cockpit.Advance({.camera = {.forward = 1.0}}, 1.0);
   EXPECT_GT(cockpit.pilot().eye().place.latitude_rad, latitude);
-  static_cast<void>(cockpit.Do(Action::kAircraftMode, FlightControllerSea));
+  cockpit.Enter(FlightMode::kAircraft);
   const double stands = cockpit.pilot().eye().place.latitude_rad;
-  cockpit.Advance({.look_right = 0.1}, 1.0, FlightControllerSea);
+  cockpit.Advance({.look_right = 0.1}, 1.0);
   EXPECT_EQ(cockpit.pilot().eye().place.latitude_rad, stands);
   EXPECT_GT(cockpit.pilot().eye().heading_rad, 0.05) << "one can look around";
   EXPECT_EQ(Shows(cockpit), "2026-06-21T12:00:00Z");
@@ -57,49 +60,47 @@ TEST(FlightController, PausedTimeAndAircraftStandAndTheFreeCameraFlies) {
 
 TEST(FlightController, AFlightAtFourTimesItsSpeedTakesTheClockAlong) {
   FlightController cockpit = NewFlightController();
-  static_cast<void>(cockpit.Do(Action::kAircraftMode, FlightControllerSea));
-  EXPECT_EQ(cockpit.Do(Action::kFasterFlight, FlightControllerSea), "speed x2");
-  EXPECT_EQ(cockpit.Do(Action::kFasterFlight, FlightControllerSea), "speed x4");
-  cockpit.Advance({}, 2.5, FlightControllerSea);
+  cockpit.Enter(FlightMode::kAircraft);
+  EXPECT_EQ(cockpit.StepSpeed(1), "speed x2");
+  EXPECT_EQ(cockpit.StepSpeed(1), "speed x4");
+  cockpit.Advance({}, 2.5);
   EXPECT_EQ(Shows(cockpit), "2026-06-21T12:00:10Z");
 }
 
 TEST(FlightController, FliesToPlacesByName) {
   FlightController cockpit = NewFlightController();
-  cockpit.GoTo(PlaceNamed("Matterhorn"), FlightControllerSea);
+  cockpit.GoTo(PlaceNamed("Matterhorn"));
   EXPECT_EQ(cockpit.pilot().eye().place.height_m, 100.0) << "over the ground that is there";
-  static_cast<void>(cockpit.Do(Action::kAircraftMode, FlightControllerSea));
-  const GroundHeight airport = [](const GeodeticPosition&) { return 423.0; };
-  cockpit.GoTo(PlaceNamed("LSZH"), airport);
-  const FlightReadout readout = cockpit.pilot().Readout(airport);
+  FlightController at_airport = NewFlightController(Airport);
+  at_airport.Enter(FlightMode::kAircraft);
+  at_airport.GoTo(PlaceNamed("LSZH"));
+  const FlightReadout readout = at_airport.pilot().Readout(Airport);
   EXPECT_EQ(readout.aircraft->contact, GroundContact::kStanding);
   EXPECT_NEAR(readout.aircraft->heading_rad / kRadiansPerDegree, 155.0, 1e-6);
 }
 
 TEST(FlightController, AMinuteOfFlyingByKeysTakesOffTurnsAndClimbs) {
-  FlightController cockpit = NewFlightController();
-  Controls controls;
-  const GroundHeight airport = [](const GeodeticPosition&) { return 423.0; };
-  cockpit.GoTo(PlaceNamed("LSZH"), airport);
+  RecordedCommands flight(Airport);
+  FlightController& cockpit = flight.cockpit();
+  Hands hands;
+  cockpit.GoTo(PlaceNamed("LSZH"));
   const auto fly = [&](double seconds) {
     for (double t = 0.0; t < seconds; t += 1.0 / 30.0) {
-      const Intent intent = controls.Take(cockpit.pilot().mode(), 1.0 / 30.0);
-      for (const Action action : intent.actions) {
-        EXPECT_TRUE(cockpit.Do(action, airport));
-      }
-      cockpit.Advance(intent.pilot, 1.0 / 30.0, airport);
+      const Intent intent = hands.Take(cockpit.pilot().mode(), 1.0 / 30.0);
+      for (const Action* action : intent.actions) action->run(flight);
+      cockpit.Advance(intent.pilot, 1.0 / 30.0);
     }
   };
   const auto hold = [&](const char* key, double seconds) {
-    controls.Key(KeyChordFromText(key).key, 1, 0);
+    hands.Key(KeyChordFromText(key).key, 1, 0);
     fly(seconds);
-    controls.Key(KeyChordFromText(key).key, 0, 0);
+    hands.Key(KeyChordFromText(key).key, 0, 0);
   };
   hold("2", 0.1);
   hold("Page Up", 25.0);
   hold("Down", 0.8);
   fly(25.0);
-  const FlightReadout climbing = cockpit.pilot().Readout(airport);
+  const FlightReadout climbing = cockpit.pilot().Readout(Airport);
   EXPECT_EQ(climbing.aircraft->contact, GroundContact::kNone);
   EXPECT_GT(climbing.above_ground_m, 50.0);
   EXPECT_FALSE(climbing.aircraft->stalled);
@@ -107,14 +108,14 @@ TEST(FlightController, AMinuteOfFlyingByKeysTakesOffTurnsAndClimbs) {
   EXPECT_NEAR(climbing.course->heading_rad / kRadiansPerDegree, 155.0, 2.0);
   hold("Left", 0.6);
   fly(10.0);
-  const FlightReadout turning = cockpit.pilot().Readout(airport);
+  const FlightReadout turning = cockpit.pilot().Readout(Airport);
   EXPECT_LT(turning.aircraft->bank_rad, -10.0 * kRadiansPerDegree) << "held after the key is up";
   EXPECT_LT(turning.course->heading_rad, climbing.course->heading_rad - 0.2);
 }
 
 TEST(FlightController, ALongFrameIsNotCutShort) {
   FlightController cockpit = NewFlightController();
-  cockpit.Advance({}, 7.0, FlightControllerSea);
+  cockpit.Advance({}, 7.0);
   EXPECT_EQ(Shows(cockpit), "2026-06-21T12:00:07Z");
 }
 
@@ -129,39 +130,39 @@ std::shared_ptr<const CameraPath> AnHour() {
 
 TEST(FlightController, AReplayHasItsOwnTimeAndViewAndGivesTheControlsBackAtItsEnd) {
   FlightController cockpit = NewFlightController();
-  static_cast<void>(cockpit.Do(Action::kPause, FlightControllerSea));
-  cockpit.Replay(AnHour(), FlightControllerSea);
-  cockpit.Advance({}, 5.0, FlightControllerSea);
+  cockpit.clock().Pause(!cockpit.clock().paused());
+  cockpit.Replay(AnHour());
+  cockpit.Advance({}, 5.0);
   EXPECT_EQ(Shows(cockpit), "2025-01-02T08:30:00Z") << "as fast as it went then";
   EXPECT_EQ(cockpit.pilot().eye().fov_rad, 0.3);
   EXPECT_EQ(cockpit.pilot().mode(), FlightMode::kTrack);
-  static_cast<void>(cockpit.Do(Action::kTrackBack, FlightControllerSea));
+  cockpit.SkipTrack(-10.0);
   EXPECT_EQ(Shows(cockpit), "2025-01-02T08:00:00Z");
-  static_cast<void>(cockpit.Do(Action::kPause, FlightControllerSea));
-  cockpit.Advance({}, 5.0, FlightControllerSea);
+  cockpit.clock().Pause(!cockpit.clock().paused());
+  cockpit.Advance({}, 5.0);
   EXPECT_EQ(Shows(cockpit), "2025-01-02T08:00:00Z") << "paused it stands";
-  static_cast<void>(cockpit.Do(Action::kPause, FlightControllerSea));
-  cockpit.Advance({}, 11.0, FlightControllerSea);
+  cockpit.clock().Pause(!cockpit.clock().paused());
+  cockpit.Advance({}, 11.0);
   EXPECT_EQ(cockpit.pilot().mode(), FlightMode::kFree);
   EXPECT_NEAR(cockpit.pilot().eye().place.height_m, 2000.0, 1e-6);
   EXPECT_EQ(Shows(cockpit), "2025-01-02T09:00:00Z");
-  cockpit.Advance({}, 1.0, FlightControllerSea);
+  cockpit.Advance({}, 1.0);
   EXPECT_EQ(Shows(cockpit), "2025-01-02T09:00:01Z") << "real time again";
 }
 
 TEST(FlightController, WhatIsFlownAgainEndsInTheFlightThatGoesOn) {
   FlightController cockpit = NewFlightController();
-  static_cast<void>(cockpit.Do(Action::kAircraftMode, FlightControllerSea));
-  static_cast<void>(cockpit.Do(Action::kHoldHeading, FlightControllerSea));
-  cockpit.Advance({.stick = {.roll_right = 1.0}}, 3.0, FlightControllerSea);
+  cockpit.Enter(FlightMode::kAircraft);
+  cockpit.ToggleHold(Autopilot::Hold::kHeading);
+  cockpit.Advance({.stick = {.roll_right = 1.0}}, 3.0);
   const FlightReadout flown = cockpit.pilot().Readout(FlightControllerSea);
   for (int time = 0; time < 2; ++time) {  // asked for in the middle, it begins again
-    cockpit.FlyAgain(AnHour(), FlightControllerSea);
+    cockpit.FlyAgain(AnHour());
     EXPECT_TRUE(cockpit.pilot().Replays());
-    cockpit.Advance({}, 5.0, FlightControllerSea);
+    cockpit.Advance({}, 5.0);
   }
   EXPECT_TRUE(cockpit.pilot().Replays());
-  cockpit.Advance({}, 5.0, FlightControllerSea);
+  cockpit.Advance({}, 5.0);
   EXPECT_EQ(cockpit.pilot().mode(), FlightMode::kAircraft);
   const FlightReadout on = cockpit.pilot().Readout(FlightControllerSea);
   EXPECT_EQ(on.aircraft->bank_rad, flown.aircraft->bank_rad);
@@ -174,10 +175,10 @@ TEST(FlightController, ATrackWithInstantsSetsTheClockAndSkippingTakesItAlong) {
   cockpit.pilot().SetTrack(std::make_shared<CameraPath>(std::vector<CameraPathPoint>{
       {0.0, {PlaceFromDegrees(46.0, 8.0, 1000.0)}, ParseInstant("2025-01-02T08:00:00Z")},
       {100.0, {PlaceFromDegrees(46.1, 8.0, 2000.0)}, ParseInstant("2025-01-02T08:01:40Z")}}));
-  EXPECT_EQ(cockpit.Do(Action::kTrackMode, FlightControllerSea), "track");
+  EXPECT_EQ(cockpit.Enter(FlightMode::kTrack), "track");
   EXPECT_EQ(Shows(cockpit), "2025-01-02T08:00:00Z");
-  cockpit.Advance({}, 5.0, FlightControllerSea);
-  static_cast<void>(cockpit.Do(Action::kTrackAhead, FlightControllerSea));
+  cockpit.Advance({}, 5.0);
+  cockpit.SkipTrack(10.0);
   EXPECT_EQ(Shows(cockpit), "2025-01-02T08:00:15Z");
 }
 
