@@ -87,7 +87,7 @@ void SceneEdits::Restore(const SceneChanges& changes) {
 
 bool SceneEdits::IsRangeExpectedAt(const GeodeticPosition& place) const {
   constexpr double kNear_m = 100.0;
-  if (!has_range_ || painter_.land().KnowsGround(place)) return false;
+  if (!has_range_ || painter_.land().ground().IsKnownAt(place)) return false;
   GeodeticPosition view = ProceduralMountainsViewAboveGround(*scene_.terrain.centre).eye;
   view.height_m = place.height_m;
   return glm::length(LocalFrame(kWgs84, view).EnuFromGeodetic(place).xyz) < kNear_m;
@@ -95,7 +95,7 @@ bool SceneEdits::IsRangeExpectedAt(const GeodeticPosition& place) const {
 
 double SceneEdits::GroundAt(const GeodeticPosition& place) const {
   if (IsRangeExpectedAt(place)) return kRangeViewGround_m;
-  return painter_.land().GroundUnder(place).value_or(0.0);
+  return painter_.land().ground().HeightUnder(place).value_or(0.0);
 }
 
 void SceneEdits::BringRangeTo(const GeodeticPosition& place) {
@@ -116,8 +116,8 @@ void SceneEdits::BringLandTo(const GeodeticPosition& place, const std::string& n
   BringRangeTo(place);
   const Landscape& land = painter_.land();
   if (land.tiles().source().IsEmpty()) return;
-  if (land.Reaches(place)) {
-    if (!land.KnowsGround(place)) painter_.AwaitLand();
+  if (land.ground().Reaches(place)) {
+    if (!land.ground().IsKnownAt(place)) painter_.AwaitLand();
     return;
   }
   notes_.push_back(
@@ -157,7 +157,7 @@ ReferenceScene SceneEdits::ForRenderer(const Eye& eye, const UtcInstant& now) co
 std::function<std::shared_ptr<const SceneGround>()> SceneEdits::GroundAround(
     const GeodeticPosition& place) const {
   constexpr int kMostSamples = 3000;
-  return [sample = painter_.land().Sampler(), place,
+  return [sample = painter_.land().ground().Sampler(), place,
           half_width_m = HalfWidthOfLand(painter_.land().tiles().lattice(), place),
           ellipsoid = EllipsoidOf(scene_.medium)]() -> std::shared_ptr<const SceneGround> {
     GeodeticPosition foot = place;
@@ -191,13 +191,13 @@ void Standpoint::AwaitGround() {
 }
 
 void Standpoint::StandOnGround() {
-  if (state_.knows_ground || !painter_.land().KnowsGround(eye().place)) return;
+  if (state_.knows_ground || !painter_.land().ground().IsKnownAt(eye().place)) return;
   state_.knows_ground = true;
   const std::optional<double> above_m = std::exchange(state_.waits_above_ground_m, std::nullopt);
   const bool has_left = put_at_ && *put_at_ != eye();
   if (!above_m || has_left) return cockpit_.pilot().KeepAbove(cockpit_.ground());
   Eye stands = eye();
-  stands.place.height_m = painter_.land().HighestGround(stands.place).value_or(0.0) + *above_m;
+  stands.place.height_m = painter_.land().ground().HighestAt(stands.place).value_or(0.0) + *above_m;
   cockpit_.pilot().PutAt(stands, cockpit_.ground());
 }
 

@@ -183,7 +183,7 @@ TEST_F(FlightsOverTheRange, TheRangeComesToAPlaceOffItAndGoesBack) {
   flight.standpoint().GoTo("Tromso");
   const GeodeticPosition tromso = PlaceNamed("Tromso").place;
   EXPECT_EQ(flight.edits().scene().terrain.range_seed, RangeSeenFrom(tromso).range_seed);
-  EXPECT_TRUE(flight.edits().land().Reaches(tromso));
+  EXPECT_TRUE(flight.edits().land().ground().Reaches(tromso));
   EXPECT_FALSE(flight.standpoint().KnowsGround()) << "it is made beside drawing";
   EXPECT_NEAR(flight.eye().place.height_m, kRangeViewGround_m + 600.0, 1e-6)
       << "its ground is known before";

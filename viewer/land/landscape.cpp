@@ -126,7 +126,7 @@ void Landscape::RaiseAbove(double seconds) {
 
 void Landscape::FindAround() {
   around_ = DrawnChunks(tree_, eye_, ranges_, [&](const ChunkKey& key) { return set_->Has(key); });
-  const std::optional<double> ground = GroundUnder(eye_place_);
+  const std::optional<double> ground = ground_.HeightUnder(eye_place_);
   over_ground_ = ground && eye_place_.height_m > *ground;
 }
 
@@ -148,7 +148,7 @@ void Landscape::ChooseDrawn() {
 }
 
 void Landscape::BeginReading(const GeodeticPosition& place) {
-  if (!tiles_->tiles().empty() && cache_.Update(EyeAt(place), detail_)) ++heights_version_;
+  if (!tiles_->tiles().empty() && cache_.Update(EyeAt(place), detail_)) ground_.CountChange();
 }
 
 void Landscape::AwaitGround(const GeodeticPosition& place) {
@@ -156,7 +156,7 @@ void Landscape::AwaitGround(const GeodeticPosition& place) {
     mesh_->Wait();
     mesh_->Update(0.0);
   }
-  while (!KnowsGround(place)) {
+  while (!ground_.IsKnownAt(place)) {
     ThrowIfInterrupted();
     BeginReading(place);
     cache_.Wait();
@@ -180,7 +180,7 @@ void Landscape::Advance(const GeodeticPosition& eye, const LandView& view, doubl
   if (tiles_->tiles().empty()) return;
   eye_ = EyeAt(eye);
   FollowView(seconds);
-  if (cache_.Update(eye_, detail_)) ++heights_version_;
+  if (cache_.Update(eye_, detail_)) ground_.CountChange();
   for (std::string& note : cache_.TakeNotes()) notes_.push_back(std::move(note));
   if (!set_) set_ = NewSet();
   TakeChunks();
@@ -247,7 +247,7 @@ LandBlock Landscape::Block() const {
   return block;
 }
 
-void Landscape::DrawAll(LandDrawn what, GLuint view_binding) {
+void Landscape::Draw(LandDrawn what, GLuint view_binding) {
   LandPass::Clear(what);
   if (mesh_) mesh_->Draw(pass_, what, eye_place_, view_binding);
   if (!set_ || drawn_.empty()) return;
@@ -257,20 +257,16 @@ void Landscape::DrawAll(LandDrawn what, GLuint view_binding) {
             [&] { set_->Draw(drawn_, fade_.from()); });
 }
 
-void Landscape::Draw(GLuint view_binding) { DrawAll(LandDrawn::kSurface, view_binding); }
-
-void Landscape::DrawOutline(GLuint view_binding) { DrawAll(LandDrawn::kOutline, view_binding); }
-
-std::optional<double> Landscape::GroundUnder(const GeodeticPosition& place) const {
+std::optional<double> LandGround::HeightUnder(const GeodeticPosition& place) const {
   if (mesh_) return mesh_->GroundUnder(place);
   return cache_.loaded()->HeightUnder(place.latitude_rad, place.longitude_rad);
 }
 
-std::optional<double> Landscape::HighestGround(const GeodeticPosition& place) const {
-  return mesh_ ? mesh_->HighestGround(place) : GroundUnder(place);
+std::optional<double> LandGround::HighestAt(const GeodeticPosition& place) const {
+  return mesh_ ? mesh_->HighestGround(place) : HeightUnder(place);
 }
 
-bool Landscape::KnowsGround(const GeodeticPosition& place) const {
+bool LandGround::IsKnownAt(const GeodeticPosition& place) const {
   return mesh_ ? mesh_->IsRead() : cache_.HasRead(place);
 }
 
@@ -278,8 +274,8 @@ bool Landscape::HasCome() const {
   constexpr double kAbout_m = 3000.0;
   if (mesh_) return mesh_->IsRead();
   if (tiles_->tiles().empty()) return true;
-  if (!set_ || !KnowsGround(eye_place_)) return false;
-  if (!GroundUnder(eye_place_)) return true;
+  if (!set_ || !ground_.IsKnownAt(eye_place_)) return false;
+  if (!ground_.HeightUnder(eye_place_)) return true;
   if (!fade_.HasShown()) return false;
   const std::vector<ChunkKey> roots = tree_.Roots(eye_);
   const bool has_roots = std::all_of(roots.begin(), roots.end(), [&](const ChunkKey& root) {
@@ -293,7 +289,7 @@ bool Landscape::HasCome() const {
   return has_roots;
 }
 
-GroundSampler Landscape::Sampler() const {
+GroundSampler LandGround::Sampler() const {
   if (mesh_) return mesh_->Sampler();
   return [loaded = cache_.loaded()](const GeodeticPosition& place, double half_width_m,
                                     int most_samples) {

@@ -55,6 +55,39 @@ struct LandProgress {
   std::string text;    // empty if nothing is being loaded
 };
 
+/// The ground of the land that is loaded.
+class LandGround {
+ public:
+  /// Keeps references to both; the mesh stands instead of tiles.
+  LandGround(const TileCache& cache, const std::optional<MeshLand>& mesh)
+      : cache_(cache), mesh_(mesh) {}
+
+  /// Returns the height of the ground [m] under an eye at a place, equal to the surface drawn near
+  /// the eye. Empty if there is no ground or it is not loaded. For a mesh with roofs this is the
+  /// highest surface that is not above the place.
+  [[nodiscard]] std::optional<double> HeightUnder(const GeodeticPosition& place) const;
+  /// Returns the height of the highest surface at a place, independent of the place's own height.
+  [[nodiscard]] std::optional<double> HighestAt(const GeodeticPosition& place) const;
+  /// Returns whether the result of HeightUnder is final: all land at a place is loaded.
+  [[nodiscard]] bool IsKnownAt(const GeodeticPosition& place) const;
+  /// Returns whether any land covers a place, loaded or not. A mesh covers every place.
+  [[nodiscard]] bool Reaches(const GeodeticPosition& place) const {
+    return mesh_ || cache_.Reaches(place);
+  }
+  /// Returns LoadedHeights::SampledGrid or GridOverMesh of the heights loaded now, callable on any
+  /// thread.
+  [[nodiscard]] GroundSampler Sampler() const;
+  /// Increases when heights have been loaded: then the Sampler may have changed.
+  [[nodiscard]] int version() const { return version_ + (mesh_ && mesh_->IsRead() ? 1 : 0); }
+  /// Counts a change of the heights in the cache.
+  void CountChange() { ++version_; }
+
+ private:
+  const TileCache& cache_;
+  const std::optional<MeshLand>& mesh_;
+  int version_ = 0;
+};
+
 class Landscape {
  public:
   /// Reads only the headers of files. Throws InputError as LandTiles does, and if the detail is out
@@ -72,13 +105,11 @@ class Landscape {
   void Settle(const GeodeticPosition& eye, const LandView& view);
   /// Starts to read the tiles around a place, before the first Update.
   void BeginReading(const GeodeticPosition& place);
-  /// Waits until KnowsGround is true for a place.
+  /// Waits until the ground at a place is known.
   void AwaitGround(const GeodeticPosition& place);
-  /// Draws the chunks that the last Update chose into the bound GBuffer, which is cleared first.
-  /// The uniform block View must be bound to `view_binding`.
-  void Draw(GLuint view_binding);
-  /// Draws the same chunks into the bound DepthPrepass, with the view of the last Update.
-  void DrawOutline(GLuint view_binding);
+  /// Draws the chunks that the last Update chose, with its view, into the bound GBuffer or
+  /// DepthPrepass, which is cleared first. The uniform block View must be bound to `view_binding`.
+  void Draw(LandDrawn what, GLuint view_binding);
 
   /// Relights all vertices with this function on a worker thread. When the new light is complete,
   /// the old one fades into it. If called again meanwhile, the most recent light follows.
@@ -92,37 +123,18 @@ class Landscape {
   [[nodiscard]] bool HasHorizon() const { return pass_.HasHorizon(); }
   [[nodiscard]] EdgesOfVertices edges() const;
 
-  /// Returns the height of the ground [m] under an eye at a place, equal to the surface drawn near
-  /// the eye. Empty if there is no ground or it is not loaded. For a mesh with roofs this is the
-  /// highest surface that is not above the place.
-  [[nodiscard]] std::optional<double> GroundUnder(const GeodeticPosition& place) const;
-  /// Returns the height of the highest surface at a place, independent of the place's own height.
-  [[nodiscard]] std::optional<double> HighestGround(const GeodeticPosition& place) const;
-  /// Returns whether the result of GroundUnder is final: all land at a place is loaded.
-  [[nodiscard]] bool KnowsGround(const GeodeticPosition& place) const;
-  /// Returns whether any land covers a place, loaded or not. A mesh covers every place.
-  [[nodiscard]] bool Reaches(const GeodeticPosition& place) const {
-    return mesh_ || cache_.Reaches(place);
-  }
+  [[nodiscard]] const LandGround& ground() const { return ground_; }
   /// Returns whether worker threads are busy. The destructor waits for them.
   [[nodiscard]] bool IsWorking() const { return cache_.IsReading() || worker_.IsBusy(); }
   /// Returns whether the land around the eye of the last Update has its final detail and is lit, or
   /// there is no land under the eye.
   [[nodiscard]] bool HasCome() const;
-  /// Returns LoadedHeights::SampledGrid or GridOverMesh of the heights loaded now, callable on any
-  /// thread.
-  [[nodiscard]] GroundSampler Sampler() const;
   /// Changes the range of the finest level, see LandSize.
   void SetDetail(double detail, double most_growth) {
     size_.detail = detail;
     size_.most_growth = most_growth;
     cache_.SetDetail(detail);
   }
-  /// Increases when heights have been loaded: then the Sampler may have changed.
-  [[nodiscard]] int heights_version() const {
-    return heights_version_ + (mesh_ && mesh_->IsRead() ? 1 : 0);
-  }
-
   [[nodiscard]] LandProgress Progress() const;
   /// Returns the warnings, each once: tiles that were left out, voids, vertical datums, statements
   /// in a mesh file that are not supported, and the fact that the range is procedural.
@@ -155,7 +167,6 @@ class Landscape {
   void WaitForWork();
   [[nodiscard]] bool IsAllThere(std::size_t chunks_before) const;
   [[nodiscard]] LandBlock Block() const;
-  void DrawAll(LandDrawn what, GLuint view_binding);
 
   std::shared_ptr<const LandTiles> tiles_;
   LandSize size_;
@@ -177,11 +188,11 @@ class Landscape {
   double farthest_m_ = 0.0;
   LightFade fade_;
   long frame_ = 0;
-  int heights_version_ = 0;
   bool is_working_ = false;
   std::vector<std::string> notes_;
   LandPass pass_;
-  std::optional<MeshLand> mesh_;               // instead of tiles
+  std::optional<MeshLand> mesh_;  // instead of tiles
+  LandGround ground_{cache_, mesh_};
   AsyncValue<ChunkOrder, MadeChunks> worker_;  // last member: it uses those above
 };
 

@@ -63,31 +63,35 @@ AirView AirViewOf(const Eye& eye, const SunPosition& sun) {
 
 FirstAir DraftOfAir(const Scene& scene) { return SolveAir(MediumAt(scene), AirSolution::kDraft); }
 
+FixedScene::FixedScene(const Scene& scene, bool has_land)
+    : place(scene.place),
+      ellipsoid(EllipsoidOf(scene.medium)),
+      lamp_ground(LampGroundOf(scene)),
+      drape(DrapeOf(scene, lamp_ground)),
+      material(scene.ground, drape.colours, scene.medium.wavelengths_nm),
+      land_kind{has_land, scene.terrain.HasFineRelief()},
+      fog_phase(scene.fog ? std::optional(scene.fog->phase.kind) : std::nullopt) {}
+
 PaintedScene::PaintedScene(const Scene& scene, const LandSource& land, const PaintedView& first,
                            const PaintSizes& sizes, FirstAir first_air)
-    : scene_(scene),
-      ellipsoid_(EllipsoidOf(scene.medium)),
+    : fixed_(scene, !land.IsEmpty()),
       sizes_(sizes),
-      has_land_(!land.IsEmpty()),
-      lamp_ground_(LampGroundOf(scene)),
-      drape_(DrapeOf(scene, lamp_ground_)),
-      material_(scene.ground, drape_.colours, scene.medium.wavelengths_nm),
       sun_view_(AirViewOf(first.eye,
                           ApparentSunAt(first.eye.place, first.now, GentleAirOf(MediumAt(scene))))),
       air_(first_air ? std::move(first_air) : SolveAir(MediumAt(scene)), sizes.air, sun_view_),
-      land_(std::make_unique<Landscape>(land, LandSizeOf(sizes), ellipsoid_)),
-      ground_(scene.ground, drape_.colours, {}),
+      land_(std::make_unique<Landscape>(land, LandSizeOf(sizes), fixed_.ellipsoid)),
+      ground_(scene.ground, fixed_.drape.colours, {}),
       ground_textures_(air_.air()->multiple_scattering),
-      shade_(ellipsoid_),
-      awaits_land_(has_land_) {
+      shade_(fixed_.ellipsoid),
+      awaits_land_(!land.IsEmpty()) {
   if (!land.range_centre) land_->BeginReading(first.eye.place);
   if (scene.fog) {
     for (std::optional<SceneFog>* fog : {&fog_, &moon_fog_})
-      fog->emplace(LocalMedia(scene, lamp_ground_, MediumAt(scene)).Only(false, true), sizes.fog,
-                   kFogUnits);
+      fog->emplace(LocalMedia(scene, fixed_.lamp_ground, MediumAt(scene)).Only(false, true),
+                   sizes.fog, kFogUnits);
   }
   shade_.SetSize(sizes.shade.size);
-  if (drape_.colours) ground_textures_.SetDrape(TexelsOf(drape_));
+  if (fixed_.drape.colours) ground_textures_.SetDrape(TexelsOf(fixed_.drape));
 }
 
 void PaintedScene::Use(const PaintSizes& sizes) {
@@ -100,19 +104,19 @@ void PaintedScene::Use(const PaintSizes& sizes) {
 }
 
 void PaintedScene::Replace(const LandSource& land) {
-  auto other = std::make_unique<Landscape>(land, LandSizeOf(sizes_), ellipsoid_);
+  auto other = std::make_unique<Landscape>(land, LandSizeOf(sizes_), fixed_.ellipsoid);
   leaving_.push_back(std::exchange(land_, std::move(other)));
   heights_version_ = -1;
   has_edges_ = false;
-  awaits_land_ = has_land_;
+  awaits_land_ = !land.IsEmpty();
   ground_.ForgetLand();
   shade_.SetGround({});
 }
 
 void PaintedScene::TakeHeights() {
-  if (heights_version_ == land_->heights_version()) return;
-  heights_version_ = land_->heights_version();
-  const GroundSampler sampler = land_->Sampler();
+  if (heights_version_ == land_->ground().version()) return;
+  heights_version_ = land_->ground().version();
+  const GroundSampler sampler = land_->ground().Sampler();
   ground_.SetGround(sampler);
   shade_.SetGround(sampler);
 }
@@ -203,8 +207,8 @@ bool PaintedScene::HasEdgesNear(const Vector<Ecef>& to_light) const {
 void PaintedScene::KeepUpEdges(const PaintedView& view, const KeyLight& key, double seconds) {
   constexpr double kFades_s = 0.3;
   casts_ = key.source();
-  const Vector<Ecef> to_light =
-      LocalFrame(ellipsoid_, view.eye.place).EcefFromEnu(Vector<Enu>{DirectionToSun(key.disk)});
+  const Vector<Ecef> to_light = LocalFrame(fixed_.ellipsoid, view.eye.place)
+                                    .EcefFromEnu(Vector<Enu>{DirectionToSun(key.disk)});
   has_edges_ = HasEdgesNear(to_light);
   momentary_edges_ = has_edges_ ? std::max(momentary_edges_ - seconds / kFades_s, 0.0) : 1.0;
   land_->Use(MomentaryEdges{momentary_edges_, to_light, key.disk.angular_radius_rad});
@@ -249,10 +253,6 @@ void PaintedScene::Settle(const PaintedView& view, const LightsOfSky& lights, in
   if (sizes_.has_shafts) shade_.Settle(view.eye.place, lights.key.disk, kShadeUnit);
   KeepUpFog(view, lights, Pace::kSettle);
   awaits_land_ = false;
-}
-
-std::optional<PhaseKind> PaintedScene::fog_phase() const {
-  return scene_.fog ? std::optional(scene_.fog->phase.kind) : std::nullopt;
 }
 
 }  // namespace alpenglow::viewer

@@ -33,6 +33,20 @@ using FirstAir = std::shared_ptr<const SolvedAir>;
 /// Returns a draft solution. Throws for a medium as the constructor of PaintedScene does.
 [[nodiscard]] FirstAir DraftOfAir(const Scene& scene);
 
+/// The parts of a scene that do not change during a flight.
+struct FixedScene {
+  /// @param has_land  whether the scene has land anywhere.
+  FixedScene(const Scene& scene, bool has_land);
+
+  GeodeticPosition place;
+  Ellipsoid ellipsoid;
+  SceneGround lamp_ground;  // on which lamps and fog are placed
+  SceneDrape drape;
+  GroundMaterial material;
+  LandKind land_kind;
+  std::optional<PhaseKind> fog_phase;  // nullopt without fog
+};
+
 /// All parts of a scene that are needed to draw it. Must be used on the thread whose OpenGL context
 /// is current at construction.
 class PaintedScene {
@@ -67,12 +81,7 @@ class PaintedScene {
   void Settle(const PaintedView& view, const LightsOfSky& lights, int samples);
 
   [[nodiscard]] const PaintSizes& sizes() const { return sizes_; }
-  [[nodiscard]] const GeodeticPosition& place() const { return scene_.place; }
-  [[nodiscard]] const Ellipsoid& ellipsoid() const { return ellipsoid_; }
-  /// The ground on which lamps and fog are placed.
-  [[nodiscard]] const SceneGround& lamp_ground() const { return lamp_ground_; }
-  [[nodiscard]] const SceneDrape& drape() const { return drape_; }
-  [[nodiscard]] const GroundMaterial& material() const { return material_; }
+  [[nodiscard]] const FixedScene& fixed() const { return fixed_; }
   /// The medium lit by the sun.
   [[nodiscard]] const AirFollower& air() const { return air_; }
   /// The textures of the medium lit by a source, which must be one of the lights.
@@ -81,8 +90,6 @@ class PaintedScene {
   }
   [[nodiscard]] const Landscape& land() const { return *land_; }
   [[nodiscard]] Landscape& land() { return *land_; }
-  /// Returns whether the scene has land anywhere, and whether it has fine relief.
-  [[nodiscard]] LandKind land_kind() const { return {has_land_, scene_.terrain.HasFineRelief()}; }
   [[nodiscard]] const GroundFollower& ground() const { return ground_; }
   /// Directional variation of the unoccluded sky's irradiance under a source, which must be one of
   /// the lights, at the last updated or settled instant.
@@ -96,11 +103,6 @@ class PaintedScene {
     return sizes_.sky_by_pixel && sky_by_pixel_.Has(source) ? &sky_by_pixel_ : nullptr;
   }
   [[nodiscard]] const ShadeFollower& shade() const { return shade_; }
-  /// Returns whether terrain shadows the air from the key light, and that effect is drawn.
-  [[nodiscard]] bool HasShade(const PaintedView& view, const KeyLight& key) const {
-    return !awaits_land_ && sizes_.has_shafts && shade_.shade().Shades() &&
-           shade_.IsOf(view.eye.place, key.disk);
-  }
   /// Returns whether all shadow edges on land belong to this source.
   [[nodiscard]] bool HasEdgesOf(LightSource source) const {
     return source == casts_ && (momentary_edges_ == 1.0 ? land_->HasHorizon() : has_edges_);
@@ -110,8 +112,6 @@ class PaintedScene {
     if (source == LightSource::kMoon && moon_fog_) return &*moon_fog_;
     return fog_ ? &*fog_ : nullptr;
   }
-  /// Empty without fog.
-  [[nodiscard]] std::optional<PhaseKind> fog_phase() const;
 
  private:
   /// Followers either do their work in the background (Update) or complete it (Settle).
@@ -131,13 +131,8 @@ class PaintedScene {
   void TakeLight();
   void TakeSkyByPixel();
 
-  Scene scene_;
-  Ellipsoid ellipsoid_;
+  FixedScene fixed_;
   PaintSizes sizes_;
-  bool has_land_;
-  SceneGround lamp_ground_;
-  SceneDrape drape_;
-  GroundMaterial material_;
   AirView sun_view_;                            // the last view in which the sun was a light
   AirFollower air_;                             // at sun_view_
   std::shared_ptr<const SolvedAir> known_air_;  // the medium in ground_textures_

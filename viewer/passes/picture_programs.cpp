@@ -73,15 +73,15 @@ void Upload(const GlBuffer& buffer, PictureBinding binding, const Block& block) 
 
 // Returns the frame of the ground's pattern, in which a draped image also lies.
 LocalFrame PatternOf(const PaintedScene& scene) {
-  GeodeticPosition origin = scene.place();
+  GeodeticPosition origin = scene.fixed().place;
   origin.height_m = 0.0;
-  return {scene.ellipsoid(), origin};
+  return {scene.fixed().ellipsoid, origin};
 }
 
 // Returns the eye's point in the pattern's coordinates.
 GroundPoint OnPattern(const PaintedScene& scene, const glm::dvec3& eye, const UtcInstant& now) {
   const Medium& medium = scene.air().air()->medium;
-  const GeodeticPosition& origin = scene.place();
+  const GeodeticPosition& origin = scene.fixed().place;
   const double radius =
       medium.follows_wgs84 ? OsculatingRadius(kWgs84, origin.latitude_rad) : medium.planet_radius_m;
   GroundPoint at{origin.longitude_rad * std::cos(origin.latitude_rad) * radius + eye.x,
@@ -92,10 +92,10 @@ GroundPoint OnPattern(const PaintedScene& scene, const glm::dvec3& eye, const Ut
 }
 
 GroundBlock GroundAround(const PaintedScene& scene, const PaintedView& view) {
-  const LocalFrame pattern = PatternOf(scene), here(scene.ellipsoid(), view.eye.place);
+  const LocalFrame pattern = PatternOf(scene), here(scene.fixed().ellipsoid, view.eye.place);
   const MountainSurface surface(scene.air().air()->medium.wavelengths_nm,
                                 CoverInSeason(view.eye.place, view.now.modified_julian_day),
-                                scene.material().cover().wetness);
+                                scene.fixed().material.cover().wetness);
   GroundBlock block = GroundBlockOf(
       surface, OnPattern(scene, pattern.EnuFromGeodetic(view.eye.place).xyz, view.now));
   const auto axis = [&](const glm::dvec3& of_pattern) {
@@ -117,10 +117,10 @@ GroundLightBlock LightAround(const PaintedScene& scene, const PaintedView& view,
 }
 
 GroundSurfaceBlock SurfaceAround(const PaintedScene& scene, const Eye& eye) {
-  const GroundSurfaceBlock cover = GroundSurfaceBlockOf(scene.material());
-  if (!scene.drape().colours) return cover;
+  const GroundSurfaceBlock cover = GroundSurfaceBlockOf(scene.fixed().material);
+  if (!scene.fixed().drape.colours) return cover;
   const glm::dvec3 at = PatternOf(scene).EnuFromGeodetic(eye.place).xyz;
-  return Draped(cover, scene.drape().place, at.x, at.y);
+  return Draped(cover, scene.fixed().drape.place, at.x, at.y);
 }
 
 // Sets the refraction of the view. Without refraction the planet appears with its true radius.
@@ -173,7 +173,7 @@ void PictureBlocks::UploadSkyByPixel(const PaintedScene& scene, const PaintedVie
                                      const KeyLight& light) const {
   const SkyByPixel* sky = scene.sky_by_pixel(light.source());
   if (sky == nullptr) return;
-  const LocalFrame eye(scene.ellipsoid(), view.eye.place);
+  const LocalFrame eye(scene.fixed().ellipsoid, view.eye.place);
   Upload(sky_by_pixel_, kSkyByPixelBinding,
          sky->BlockOf(light.source(), eye, DirectionToSun(SunForAir(light.disk)),
                       scene.OccludedSkyIrradiance(light.source())));
@@ -216,7 +216,8 @@ PicturePrograms::PicturePrograms(const PaintedScene& scene, const LampPainter& l
     : scene_(scene), lamps_(lamps), shafts_(shafts) {}
 
 ShaderProgram PicturePrograms::Made(const PictureStage& stage) const {
-  const PictureKind kind{scene_.material(), lamps_, scene_.land_kind(), scene_.fog_phase()};
+  const PictureKind kind{scene_.fixed().material, lamps_, scene_.fixed().land_kind,
+                         scene_.fixed().fog_phase};
   ShaderProgram made = FullScreenProgram(
       WithViewerPieces(PictureTexts(kind, stage), {"viewer/shaders/picture.frag.glsl"}));
   ConnectBlocks(made);

@@ -19,9 +19,9 @@ namespace {
 
 ShaftPass ConnectedShafts(const PaintedScene& scene) {
   std::vector<ShaderPiece> texts = AirTexts();
-  if (scene.fog_phase())
-    for (ShaderPiece& piece : FogTexts(*scene.fog_phase())) texts.push_back(std::move(piece));
-  ShaftPass pass(std::move(texts), scene.fog_phase().has_value());
+  if (scene.fixed().fog_phase)
+    for (ShaderPiece& piece : FogTexts(*scene.fixed().fog_phase)) texts.push_back(std::move(piece));
+  ShaftPass pass(std::move(texts), scene.fixed().fog_phase.has_value());
   pass.program().BindBlock("View", kViewBinding);
   AirTextures::Prepare(pass.program(), kAirUnit, kTablesBinding);
   if (scene.fog() != nullptr) scene.fog()->Connect(pass.program());
@@ -62,12 +62,12 @@ class Adding {
 SkyPainter::SkyPainter(const Scene& scene, const LandSource& land, const PaintedView& first,
                        const PaintSizes& sizes, FirstAir first_air)
     : scene_(scene, land, first, sizes, std::move(first_air)),
-      lamps_(scene, scene_.lamp_ground(),
+      lamps_(scene, scene_.fixed().lamp_ground,
              OnOsculatingSphere(scene.medium, scene.place.latitude_rad)),
       lamp_painter_(lamps_, sizes.lamps, kLampUnits),
       shaft_pass_(ConnectedShafts(scene_)),
-      night_floor_(
-          {scene.town_zenith, std::max(GroundHeightUnder(scene_.lamp_ground(), scene.place), 0.0)}),
+      night_floor_({scene.town_zenith,
+                    std::max(GroundHeightUnder(scene_.fixed().lamp_ground, scene.place), 0.0)}),
       has_towns_(scene.town_zenith.has_value()),
       programs_(scene_, lamp_painter_, shaft_pass_) {
   CheckGl("SkyPainter");
@@ -103,7 +103,8 @@ void SkyPainter::Settle(const PaintedView& view, int samples) {
 void SkyPainter::PrepareLamps(const PaintedView& view) {
   // Lamps dimmer than this are invisible against other light.
   constexpr double kDimmest_cd_per_m2 = 1e-5;
-  const LampView seen = LampViewFrom(scene_.lamp_ground().frame, view.eye.place, PixelAngle(view));
+  const LampView seen =
+      LampViewFrom(scene_.fixed().lamp_ground.frame, view.eye.place, PixelAngle(view));
   const PaintSizes& sizes = scene_.sizes();
   const bool suits = lamp_painter_.Suits(sizes.lamps);
   if (suits) lamp_painter_.SetStep(sizes.lamps.step);
@@ -122,7 +123,7 @@ void SkyPainter::PaintLand(const PaintedView& view) {
   if (scene_.AwaitsLand()) {
     LandPass::Clear(LandDrawn::kSurface);
   } else {
-    scene_.land().Draw(kViewBinding);
+    scene_.land().Draw(LandDrawn::kSurface, kViewBinding);
   }
   surface_->BindTexture(kSurfaceUnit, GBuffer::kSurface);
 }
@@ -131,11 +132,17 @@ void SkyPainter::PaintOutline(const DepthPrepass& outline) {
   Begin("outline");
   outline.Bind();
   if (scene_.AwaitsLand()) return LandPass::Clear(LandDrawn::kOutline);
-  scene_.land().DrawOutline(kViewBinding);
+  scene_.land().Draw(LandDrawn::kOutline, kViewBinding);
+}
+
+bool SkyPainter::HasShade(const PaintedView& view, const KeyLight& key) const {
+  const ShadeFollower& shade = scene_.shade();
+  return !scene_.AwaitsLand() && scene_.sizes().has_shafts && shade.shade().Shades() &&
+         shade.IsOf(view.eye.place, key.disk);
 }
 
 void SkyPainter::PaintShafts(const PaintedView& view) {
-  if (!scene_.HasShade(view, LightsOf(view).lights.key)) return;
+  if (!HasShade(view, LightsOf(view).lights.key)) return;
   Begin("shafts");
   const ShadeFollower& shade = scene_.shade();
   shaft_pass_.Paint(shade.shade(), shade.MapFromEye(view.eye.place), view.width, view.height,
@@ -221,7 +228,7 @@ void SkyPainter::MakeOneReady(const PaintedView& view, bool has_shade, bool has_
         PictureStage{kOccludedSky, !has_shade, has_lamps}, PictureStage{kDisks},
         PictureStage{kNight}, PictureStage{kLand}, PictureStage{kSky}, PictureStage{kOccludedSky}})
     if (programs_.MakeReady(stage)) return;
-  stars_.MakeReady(view, scene_.fog(), scene_.fog_phase());
+  stars_.MakeReady(view, scene_.fog(), scene_.fixed().fog_phase);
 }
 
 // Returns the number of rows below the horizon. The horizon is that of straight rays over a planet
@@ -304,7 +311,7 @@ void SkyPainter::PaintBodiesOver(const RenderTarget& target, const DepthPrepass&
   if (stars_.HasAny()) {
     const BesideLand beside;
     stars_.Paint(view, DisksOf(view).moon, StarPainter::Land::kByDepth, scene_.fog(),
-                 scene_.fog_phase());
+                 scene_.fixed().fog_phase);
   }
   CheckGl("SkyPainter::PaintBodiesOver");
 }
@@ -331,7 +338,7 @@ void SkyPainter::PaintPicture(const PaintedView& view, double share) {
   const BesideLand beside;
   std::optional<Adding> adding;
   if (share < 1.0) adding.emplace(share);
-  const Lit lit{key.source(), scene_.HasShade(view, key), HasLamps()};
+  const Lit lit{key.source(), HasShade(view, key), HasLamps()};
   if (share == 1.0 && programs_.HasPainted()) MakeOneReady(view, lit.has_shade, lit.has_lamps);
   PaintLandAndSky(view, lit);
 }
@@ -383,7 +390,7 @@ void SkyPainter::PaintNightSkyMap(const PaintedView& view, double share) {
 void SkyPainter::PaintStars(const PaintedView& view, const MoonDisk& moon) {
   if (!stars_.HasAny()) return;
   Begin("stars");
-  stars_.Paint(view, moon, StarPainter::Land::kBySurface, scene_.fog(), scene_.fog_phase());
+  stars_.Paint(view, moon, StarPainter::Land::kBySurface, scene_.fog(), scene_.fixed().fog_phase);
 }
 
 void SkyPainter::PaintSample(const PaintedView& view, Bodies bodies, const PixelRay& ray) {

@@ -117,6 +117,8 @@ class SkyPainter {
   [[nodiscard]] int RowsUnderHorizon(const PaintedView& view) const;
   void PaintSample(const PaintedView& view, Bodies bodies, const PixelRay& ray);
   void PaintLand(const PaintedView& view);
+  /// Returns whether terrain shadows the air from the key light, and that effect is drawn.
+  [[nodiscard]] bool HasShade(const PaintedView& view, const KeyLight& key) const;
   void PaintShafts(const PaintedView& view);
   void PaintLamps(const PaintedView& view);
   /// The light and the options that a picture is drawn with.

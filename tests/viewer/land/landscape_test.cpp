@@ -83,7 +83,7 @@ class LandscapePictures : public HeadlessLand {
     glBindBufferBase(GL_UNIFORM_BUFFER, kView, buffer.id());
     glBufferData(GL_UNIFORM_BUFFER, sizeof(block), &block, GL_STATIC_DRAW);
     map_->Bind();
-    land.Draw(kView);
+    land.Draw(LandDrawn::kSurface, kView);
     CheckGl("draw");
     return map_->ReadValues(GBuffer::kSurface);
   }
@@ -153,7 +153,7 @@ TEST_F(LandscapePictures, DistanceAndNormalAreTheRenderersFromTheGroundToOrbit) 
     LookOut eye{PlaceOfSample(view.column + 0.3, view.row + 0.4, 0.0), 2.8, view.pitch_rad,
                 view.fov_rad};
     land.Settle(eye.place, eye.View());
-    eye.place.height_m = *land.GroundUnder(eye.place) + view.above_m;
+    eye.place.height_m = *land.ground().HeightUnder(eye.place) + view.above_m;
     const Misses misses = MissesOf(Settled(land, eye), eye, terrain, frame);
     ASSERT_GT(misses.both, 500);
     EXPECT_LE(misses.only_one, 4 + misses.both / 30) << "rims of mountains and of the land";
@@ -176,7 +176,7 @@ TEST_F(LandscapePictures, DistanceIsThatAlongTheRayOfAPixelNotAlongItsMiddle) {
   Landscape land(Folder(), {96.0}, kWgs84);
   LookOut eye{PlaceOfSample(120.3, 60.4, 0.0), 2.8};
   land.Settle(eye.place, eye.View());
-  eye.place.height_m = *land.GroundUnder(eye.place) + 2.0;
+  eye.place.height_m = *land.ground().HeightUnder(eye.place) + 2.0;
   eye.shift = {1.0 / kWidth, 1.0 / kHeight};
   const Misses misses = MissesOf(Settled(land, eye), eye, terrain, frame);
   ASSERT_GT(misses.both, 500);
@@ -197,7 +197,7 @@ TEST_F(LandscapePictures, WhatNearLandHidesIsLeftOutAndNothingElse) {
                               20.0 + 200.0 * std::fmod(0.5698 * i, 1.0), 0.0),
                 1.1 * i, -0.1};
     land.Settle(eye.place, eye.View());
-    eye.place.height_m = *land.GroundUnder(eye.place) + 2.0 + std::exp2(i % 10);
+    eye.place.height_m = *land.ground().HeightUnder(eye.place) + 2.0 + std::exp2(i % 10);
     const Misses misses = MissesOf(Settled(land, eye), eye, terrain, frame);
     fewest = std::min(fewest, land.Figures().chunks);
     most = std::max(most, land.Figures().chunks);
@@ -216,7 +216,7 @@ TEST_F(LandscapePictures, NoPixelBelowTheSkylineIsWithoutTerrain) {
                               40.0 + 640.0 * std::fmod(0.5698 * i, 1.0), 0.0),
                 0.7 * i, 0.0};  // level, so that a column of pixels has one azimuth
     land.Settle(eye.place, eye.View());
-    eye.place.height_m = *land.GroundUnder(eye.place) + std::exp2(i % 12);
+    eye.place.height_m = *land.ground().HeightUnder(eye.place) + std::exp2(i % 12);
     const auto picture = Settled(land, eye);
     for (int x = 0; x < kWidth; ++x) {
       int y = 0;  // from below
@@ -255,7 +255,7 @@ TEST_F(LandscapePictures, FlyingOverAFolderKeepsWithinItsBounds) {
   const LookOut eye{PlaceOfSample(700.0, 700.0, 2500.0), 0.7, -0.3};
   land.Settle(eye.place, eye.View());
   EXPECT_TRUE(land.Progress().text.empty());
-  EXPECT_NEAR(*land.GroundUnder(PlaceOfSample(700.0, 700.0, 0.0)),
+  EXPECT_NEAR(*land.ground().HeightUnder(PlaceOfSample(700.0, 700.0, 0.0)),
               static_cast<double>(HeightOfSample(700, 700)), 0.01)
       << "near the eye stand the samples themselves";
 }
@@ -333,7 +333,7 @@ TEST_F(LandscapePictures, ADamagedTileOfAFolderIsSaidByNameAndTheRestIsDrawn) {
   land.Settle(eye.place, eye.View());
   EXPECT_THAT(land.TakeNotes(), ElementsAre(HasSubstr("tile01.tif")));
   EXPECT_GT(land.Figures().chunks, 3);
-  EXPECT_FALSE(land.GroundUnder(PlaceOfSample(300.0, 100.0, 0.0)));
+  EXPECT_FALSE(land.ground().HeightUnder(PlaceOfSample(300.0, 100.0, 0.0)));
 }
 
 TEST_F(LandscapePictures, ADamagedFileThatWasNamedIsRefused) {
@@ -398,7 +398,7 @@ TEST_F(LandscapePictures, FarFromWhereItBeganTheLandIsAsExact) {
   land.Settle(first.place, first.View());
   LookOut eye{PlaceOfSample(kFar + 120.3, 60.4, 0.0), 3.0, -0.05};
   land.Settle(eye.place, eye.View());
-  eye.place.height_m = *land.GroundUnder(eye.place) + 2.0;
+  eye.place.height_m = *land.ground().HeightUnder(eye.place) + 2.0;
   const LocalFrame frame(kWgs84, PlaceOfSample(kFar + 120.0, 120.0, 0.0));
   const Terrain terrain(
       MeshFromElevation(ReadElevation(folder_ / "b.tif", VoidPolicy::kFill).grid, frame));
@@ -464,7 +464,7 @@ TEST_F(LandscapePictures, WithoutASourceNothingIsDrawn) {
   const auto picture = Settled(land, eye);
   EXPECT_TRUE(std::all_of(picture.begin(), picture.end(),
                           [](const glm::vec4& pixel) { return pixel.w == 0.0F; }));
-  EXPECT_FALSE(land.GroundUnder(eye.place));
+  EXPECT_FALSE(land.ground().HeightUnder(eye.place));
 }
 
 TEST_F(LandscapePictures, TheMadeUpRangeSaysSo) {
@@ -482,13 +482,13 @@ TEST_F(LandscapePictures, AMeshIsDrawnWhole) {
   LookOut eye{{0.81, 0.14, 500.0}, 0.0, -0.5};
   EXPECT_THAT(land.Progress().text, HasSubstr("hill.obj"));
   const auto picture = Settled(land, eye);
-  EXPECT_NEAR(*land.GroundUnder(eye.place), 200.0, 0.01);
+  EXPECT_NEAR(*land.ground().HeightUnder(eye.place), 200.0, 0.01);
   const LocalFrame frame(kWgs84, {0.81, 0.14, 0.0});
   const Misses misses = MissesOf(picture, eye, Terrain(ReadObj(folder_ / "hill.obj").mesh), frame);
   EXPECT_GT(misses.both, 500);
   EXPECT_LT(Quantile(misses.distance, 1.0), 1e-5);
   EXPECT_LT(Quantile(misses.normal, 1.0), 1e-4);
-  const auto grid = land.Sampler()(eye.place, 1000.0, 9);
+  const auto grid = land.ground().Sampler()(eye.place, 1000.0, 9);
   ASSERT_TRUE(grid);
   EXPECT_NEAR(*grid->HeightAt(0.81, 0.14), 200.0, 0.1);
   land.Relight({[](const LocalFrame&, std::span<const LandVertex> vertices) {
