@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Provides owners of OpenGL object names, and a scissor rectangle for its scope. An object must not outlive the context in which it was created.
+// Provides owners of OpenGL object names, the binding of a texture to a unit, a scissor rectangle for
+// its scope, and texture sizes that are not powers of two. An object must not outlive the context in which it was created.
 #pragma once
 
 #include <epoxy/gl.h>
@@ -30,49 +31,15 @@ class GlObject {
 
 namespace gl_kind {
 
-struct Buffer {
+/// Objects whose names OpenGL returns in an array, by the functions glGen... and glDelete...
+template <auto& kGenerate, auto& kDelete>
+struct Named {
   static GLuint Make() {
     GLuint id = 0;
-    glGenBuffers(1, &id);
+    kGenerate(1, &id);
     return id;
   }
-  static void Free(GLuint id) { glDeleteBuffers(1, &id); }
-};
-
-struct VertexArray {
-  static GLuint Make() {
-    GLuint id = 0;
-    glGenVertexArrays(1, &id);
-    return id;
-  }
-  static void Free(GLuint id) { glDeleteVertexArrays(1, &id); }
-};
-
-struct Texture {
-  static GLuint Make() {
-    GLuint id = 0;
-    glGenTextures(1, &id);
-    return id;
-  }
-  static void Free(GLuint id) { glDeleteTextures(1, &id); }
-};
-
-struct Framebuffer {
-  static GLuint Make() {
-    GLuint id = 0;
-    glGenFramebuffers(1, &id);
-    return id;
-  }
-  static void Free(GLuint id) { glDeleteFramebuffers(1, &id); }
-};
-
-struct Query {
-  static GLuint Make() {
-    GLuint id = 0;
-    glGenQueries(1, &id);
-    return id;
-  }
-  static void Free(GLuint id) { glDeleteQueries(1, &id); }
+  static void Free(GLuint id) { kDelete(1, &id); }
 };
 
 struct Program {
@@ -82,12 +49,18 @@ struct Program {
 
 }  // namespace gl_kind
 
-using GlBuffer = GlObject<gl_kind::Buffer>;
-using GlVertexArray = GlObject<gl_kind::VertexArray>;
-using GlTexture = GlObject<gl_kind::Texture>;
-using GlFramebuffer = GlObject<gl_kind::Framebuffer>;
-using GlQuery = GlObject<gl_kind::Query>;
+using GlBuffer = GlObject<gl_kind::Named<glGenBuffers, glDeleteBuffers>>;
+using GlVertexArray = GlObject<gl_kind::Named<glGenVertexArrays, glDeleteVertexArrays>>;
+using GlTexture = GlObject<gl_kind::Named<glGenTextures, glDeleteTextures>>;
+using GlFramebuffer = GlObject<gl_kind::Named<glGenFramebuffers, glDeleteFramebuffers>>;
+using GlQuery = GlObject<gl_kind::Named<glGenQueries, glDeleteQueries>>;
 using GlProgram = GlObject<gl_kind::Program>;
+
+/// Binds a texture to a unit, which becomes the active one.
+inline void BindTexture(int unit, GLenum target, const GlTexture& texture) {
+  glActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(unit));
+  glBindTexture(target, texture.id());
+}
 
 /// A rectangle of pixels; (x, y) is its lower left pixel.
 struct PixelBox {

@@ -83,14 +83,10 @@ void RenderTarget::Bind() const {
 }
 
 void RenderTarget::BindTexture(int unit, std::size_t output) const {
-  glActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(unit));
-  glBindTexture(GL_TEXTURE_2D, colours_[output].id());
+  viewer::BindTexture(unit, GL_TEXTURE_2D, colours_[output]);
 }
 
-void RenderTarget::BindDepth(int unit) const {
-  glActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(unit));
-  glBindTexture(GL_TEXTURE_2D, depth_.id());
-}
+void RenderTarget::BindDepth(int unit) const { viewer::BindTexture(unit, GL_TEXTURE_2D, depth_); }
 
 void RenderTarget::Write(const Image& image) const {
   ALPENGLOW_ENSURE(image.width, ==, width_);

@@ -262,8 +262,7 @@ void DrawListPainter::UploadAtlas(ImFontAtlas& atlas) {
   unsigned char* coverage = nullptr;
   int width = 0, height = 0;
   atlas.GetTexDataAsAlpha8(&coverage, &width, &height);
-  glActiveTexture(GL_TEXTURE0 + kAtlasUnit);
-  glBindTexture(GL_TEXTURE_2D, atlas_.id());
+  BindTexture(kAtlasUnit, GL_TEXTURE_2D, atlas_);
   ClampAndFilter(GL_TEXTURE_2D, true);
   glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
   glTexImage2D(GL_TEXTURE_2D, 0, GL_R8, width, height, 0, GL_RED, GL_UNSIGNED_BYTE, coverage);
@@ -280,8 +279,7 @@ void DrawListPainter::Paint(const ImDrawData& data, GLuint framebuffer) const {
   glEnable(GL_SCISSOR_TEST);
   program_.Use();
   glUniform2f(program_.Uniform("picture_size"), data.DisplaySize.x, data.DisplaySize.y);
-  glActiveTexture(GL_TEXTURE0 + kAtlasUnit);
-  glBindTexture(GL_TEXTURE_2D, atlas_.id());
+  BindTexture(kAtlasUnit, GL_TEXTURE_2D, atlas_);
   glBindVertexArray(layout_.id());
   for (int i = 0; i < data.CmdListsCount; ++i) PaintList(*data.CmdLists[i], data);
   glBindVertexArray(0);

@@ -133,8 +133,7 @@ void LampPainter::UploadTables(const SceneLamps& shape) {
     const std::vector<float> sampled = SampledProfile(profile);
     samples.insert(samples.end(), sampled.begin(), sampled.end());
   }
-  glActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(units_.first + kLampTablesUnit));
-  glBindTexture(GL_TEXTURE_2D_ARRAY, tables_.id());
+  BindTexture(units_.first + kLampTablesUnit, GL_TEXTURE_2D_ARRAY, tables_);
   if (!samples.empty()) {
     glTexImage3D(GL_TEXTURE_2D_ARRAY, 0, GL_R32F, kLampGammas, kLampTurns,
                  static_cast<GLsizei>(shape.tables().size()), 0, GL_RED, GL_FLOAT, samples.data());
@@ -144,8 +143,7 @@ void LampPainter::UploadTables(const SceneLamps& shape) {
   if (mie.kind != PhaseKind::kTable) return;
   std::vector<float> nodes;
   for (const double node : mie.table->nodes()) nodes.push_back(static_cast<float>(node));
-  glActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(units_.first + kLampMieUnit));
-  glBindTexture(GL_TEXTURE_2D, mie_table_.id());
+  BindTexture(units_.first + kLampMieUnit, GL_TEXTURE_2D, mie_table_);
   glTexImage2D(GL_TEXTURE_2D, 0, GL_R32F, static_cast<GLsizei>(nodes.size()), 1, 0, GL_RED,
                GL_FLOAT, nodes.data());
   ClampAndFilter(GL_TEXTURE_2D, true);
@@ -158,8 +156,7 @@ void LampPainter::UploadGlows(const SceneLamps& shape) {
     const std::vector<glm::vec4> terms = SampledGlow(*glow);
     texels.insert(texels.end(), terms.begin(), terms.end());
   }
-  glActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(units_.first + kLampAirlightUnit));
-  glBindTexture(GL_TEXTURE_2D_ARRAY, glows_.id());
+  BindTexture(units_.first + kLampAirlightUnit, GL_TEXTURE_2D_ARRAY, glows_);
   glTexImage3D(GL_TEXTURE_2D_ARRAY, 0, GL_RGBA32F, kGlowDistances, kGlowTerms * kGlowRises,
                static_cast<GLsizei>(shape.glows().size()), 0, GL_RGBA, GL_FLOAT, texels.data());
   ClampAndFilter(GL_TEXTURE_2D_ARRAY, true);
@@ -171,8 +168,7 @@ void LampPainter::UploadShades(const SceneLamps& shape) {
   for (const std::vector<float>& shade : shape.shades()) {
     texels.insert(texels.end(), shade.begin(), shade.end());
   }
-  glActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(units_.first + kLampShadeUnit));
-  glBindTexture(GL_TEXTURE_2D_ARRAY, shades_.id());
+  BindTexture(units_.first + kLampShadeUnit, GL_TEXTURE_2D_ARRAY, shades_);
   glTexImage3D(GL_TEXTURE_2D_ARRAY, 0, GL_R32F, kShadeTurns, kShadeRings,
                static_cast<GLsizei>(shape.shades().size()), 0, GL_RED, GL_FLOAT, texels.data());
   ClampAndFilter(GL_TEXTURE_2D_ARRAY, true);
@@ -182,8 +178,7 @@ void LampPainter::UploadShades(const SceneLamps& shape) {
 // Allocates layers for all plans and uploads the finished ones.
 void LampPainter::UploadPlans(const SceneLamps& shape) {
   if (shape.PlanLayerCount() == 0) return;
-  glActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(units_.first + kLampPlanUnit));
-  glBindTexture(GL_TEXTURE_2D_ARRAY, plans_.id());
+  BindTexture(units_.first + kLampPlanUnit, GL_TEXTURE_2D_ARRAY, plans_);
   if (uploaded_plans_ == 0) {
     glTexImage3D(GL_TEXTURE_2D_ARRAY, 0, GL_R8, kPlanSide, kPlanSide, shape.PlanLayerCount(), 0,
                  GL_RED, GL_UNSIGNED_BYTE, nullptr);
@@ -228,8 +223,7 @@ void LampPainter::Prepare(SceneLamps& lamps, const LampView& view, double dimmes
 void LampPainter::Bind() const {
   glBindBufferBase(GL_UNIFORM_BUFFER, units_.lamps_block, block_.id());
   const auto bind = [&](LampUnit unit, GLenum target, const GlTexture& texture) {
-    glActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(units_.first + unit));
-    glBindTexture(target, texture.id());
+    BindTexture(units_.first + unit, target, texture);
   };
   bind(kLampTablesUnit, GL_TEXTURE_2D_ARRAY, tables_);
   bind(kLampAirlightUnit, GL_TEXTURE_2D_ARRAY, glows_);

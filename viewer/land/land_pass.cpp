@@ -51,8 +51,7 @@ void HorizonTexture::Upload(double azimuth_rad) {
 
 void HorizonTexture::Bind(int unit, const Vector<Ecef>& to_sun) {
   constexpr double kTurns_rad = 0.1 * kRadiansPerDegree;
-  glActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(unit));
-  glBindTexture(GL_TEXTURE_2D, texture_.id());
+  BindTexture(unit, GL_TEXTURE_2D, texture_);
   if (!horizon_) return;
   const glm::dvec3 direction = horizon_->frame.EnuFromEcef(to_sun).xyz;
   const double azimuth_rad = std::atan2(direction.y, direction.x);

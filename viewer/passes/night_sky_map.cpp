@@ -15,8 +15,7 @@ namespace {
 
 void Upload(const GlTexture& map, int unit, int columns, int rows,
             const std::vector<glm::vec4>& texels) {
-  glActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(unit));
-  glBindTexture(GL_TEXTURE_2D, map.id());
+  BindTexture(unit, GL_TEXTURE_2D, map);
   glTexImage2D(GL_TEXTURE_2D, 0, GL_RGBA32F, columns, rows, 0, GL_RGBA, GL_FLOAT, texels.data());
   ClampAndFilter(GL_TEXTURE_2D, true);
   glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_S, GL_REPEAT);
@@ -85,8 +84,7 @@ void NightSkyMapFollower::Follow(const PaintedView& view,
 
 void NightSkyMapFollower::Bind(const ShaderProgram& program, int unit) const {
   program.BindSampler("night_sky", unit);
-  glActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(unit));
-  glBindTexture(GL_TEXTURE_2D, map_.id());
+  BindTexture(unit, GL_TEXTURE_2D, map_);
   program.Use();
   glUniform4fv(program.Uniform("night_scattered"), 1, &scattered_.x);
   glUniform4fv(program.Uniform("night_level"), 1, &level_.x);

@@ -93,8 +93,7 @@ DitherTexture::DitherTexture() {
 }
 
 void DitherTexture::Bind(const ShaderProgram& program, int unit, int width, int height) const {
-  glActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(unit));
-  glBindTexture(GL_TEXTURE_2D, noise_.id());
+  BindTexture(unit, GL_TEXTURE_2D, noise_);
   glUniform1i(program.Uniform("dither_noise"), unit);
   glUniform2f(program.Uniform("screen_size"), static_cast<float>(width),
               static_cast<float>(height));
@@ -145,8 +144,7 @@ ShaderProgram ProgramOf(ToneCurve curve, bool dithers) {
 }
 
 void Upload(const GlTexture& texture, const ToneTable& table) {
-  glActiveTexture(GL_TEXTURE0 + kTable);
-  glBindTexture(GL_TEXTURE_3D, texture.id());
+  BindTexture(kTable, GL_TEXTURE_3D, texture);
   glTexImage3D(GL_TEXTURE_3D, 0, GL_RGBA32F, table.side(), table.side(), table.side(), 0, GL_RGB,
                GL_FLOAT, table.codes().data());
   ClampAndFilter(GL_TEXTURE_3D, true);
@@ -211,8 +209,7 @@ void ToneMapPass::Fill(const ShaderProgram& program, const RenderTarget& picture
   picture.BindTexture(kPicture);
   ClampAndFilter(GL_TEXTURE_2D,
                  picture.width() != screen.width || picture.height() != screen.height);
-  glActiveTexture(GL_TEXTURE0 + kTable);
-  glBindTexture(GL_TEXTURE_3D, table_.id());
+  BindTexture(kTable, GL_TEXTURE_3D, table_);
   program.Use();
   dither_.Bind(program, kDither, screen.width, screen.height);
   glUniform1f(program.Uniform("exposure"), static_cast<float>(ExposureScale(ev100)));
