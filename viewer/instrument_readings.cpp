@@ -33,8 +33,7 @@ HudFlight FlightOf(FlightSession& flight) {
   shown.height_m = eye.place.height_m;
   shown.above_ground_m = readout.above_ground_m;
   shown.climb_m_per_s = readout.vertical_speed_m_per_s;
-  if (readout.course)
-    shown.path = HudDirection{readout.course->heading_rad, readout.course->climb_rad};
+  shown.path = readout.course;
   if (!readout.aircraft) return shown;
   shown.air_speed_m_per_s = readout.aircraft->indicated_m_per_s;
   shown.throttle = readout.aircraft->throttle;
@@ -81,12 +80,6 @@ HudAir AirOf(FlightSession& flight) {
   return shown;
 }
 
-HudAutopilot AutopilotOf(const Pilot& pilot) {
-  if (pilot.aircraft() == nullptr) return {};
-  const AutopilotTargets& held = pilot.aircraft()->autopilot().targets();
-  return {held.heading_rad, held.height_m, held.speed_m_per_s};
-}
-
 HudExposure ExposureOf(const ExposureControl& control) {
   const FlightExposure& exposure = control.exposure();
   HudExposure shown;
@@ -114,7 +107,8 @@ std::vector<HudRow> TablesOf(const TableFigures& figures) {
 HudModel ReadInstruments(FlightSession& flight) {
   HudModel model;
   model.flight = FlightOf(flight);
-  model.autopilot = AutopilotOf(flight.cockpit().pilot());
+  if (const PilotedAircraft* aircraft = flight.cockpit().pilot().aircraft())
+    model.autopilot = aircraft->autopilot().targets();
   model.latitude_rad = flight.eye().place.latitude_rad;
   model.longitude_rad = flight.eye().place.longitude_rad;
   model.time = TimeOf(flight);

@@ -16,6 +16,8 @@
 #include <string>
 #include <vector>
 
+#include "viewer/flight/pilot.h"
+
 namespace alpenglow::viewer {
 
 enum class HudTheme { kDay, kNight };
@@ -37,12 +39,6 @@ struct HudColours {
 /// flicker at dusk.
 [[nodiscard]] HudTheme ThemeFor(HudThemeChoice choice, double ev100, HudTheme before);
 
-/// Direction of motion of the eye, or of its vehicle.
-struct HudDirection {
-  double heading_rad = 0.0;
-  double climb_rad = 0.0;  // above the horizontal plane
-};
-
 struct HudFlight {
   std::string mode;  // "free camera", "light aircraft", "replay", ...
   double heading_rad = 0.0;
@@ -57,15 +53,8 @@ struct HudFlight {
   double climb_m_per_s = 0.0;
   std::optional<double> throttle = {};     // fraction, [0, 1]
   std::optional<double> load_factor = {};  // g
-  std::optional<HudDirection> path = {};   // empty at rest
+  std::optional<Course> path = {};         // empty at rest
   bool stall = false;
-};
-
-/// Held values.
-struct HudAutopilot {
-  std::optional<double> heading_rad = {};
-  std::optional<double> height_m = {};
-  std::optional<double> speed_m_per_s = {};
 };
 
 struct HudTime {
@@ -128,7 +117,7 @@ using HudRow = std::vector<std::string>;
 
 struct HudModel {
   HudFlight flight;
-  HudAutopilot autopilot;
+  AutopilotTargets autopilot;
   double latitude_rad = 0.0;
   double longitude_rad = 0.0;
   HudTime time;

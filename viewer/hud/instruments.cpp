@@ -151,7 +151,7 @@ std::string AutopilotText(const HudModel& model) {
 
 Lines FlightLines(const HudModel& model) {
   Lines lines = ModeLines(model);
-  const HudAutopilot& held = model.autopilot;
+  const AutopilotTargets& held = model.autopilot;
   if (held.heading_rad || held.height_m || held.speed_m_per_s)
     lines.push_back(AutopilotText(model));
   if (model.flight.throttle)

@@ -129,7 +129,7 @@ std::optional<std::optional<double>> HoldControl(const Holdable& what,
 
 void HoldControls(const HudModel& model, HudUnits units, PilotedAircraft& aircraft) {
   constexpr double kHighest_m = 20000.0, kSlowest_m_per_s = 25.0, kFastest_m_per_s = 280.0;
-  const HudAutopilot& held = model.autopilot;
+  const AutopilotTargets& held = model.autopilot;
   AutopilotTargets targets = aircraft.autopilot().targets();
   const double turns = model.flight.heading_rad / (2.0 * kPi);
   const auto heading =

@@ -248,7 +248,7 @@ Camera CameraOf(const HudFlight& flight) {
 HorizonView::HorizonView(const HudFlight& flight, int width, int height)
     : rays_(CameraOf(flight), width, height), middle_(0.5 * width, 0.5 * height) {}
 
-std::optional<glm::dvec2> HorizonView::PixelOf(const HudDirection& direction) const {
+std::optional<glm::dvec2> HorizonView::PixelOf(const Course& direction) const {
   const auto place =
       rays_.PlaceOf(DirectionFromAngles(direction.climb_rad, direction.heading_rad).xyz);
   if (!place) return std::nullopt;

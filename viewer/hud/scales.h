@@ -38,7 +38,7 @@ class HorizonView {
 
   /// Returns pixels from the upper left corner; no value for directions behind the eye or more than
   /// four picture widths from the middle.
-  [[nodiscard]] std::optional<glm::dvec2> PixelOf(const HudDirection& direction) const;
+  [[nodiscard]] std::optional<glm::dvec2> PixelOf(const Course& direction) const;
   /// Returns the pixels per radian in the middle of the picture.
   [[nodiscard]] double PixelsPerRadian() const { return 1.0 / rays_.PixelAngle(); }
 

@@ -35,7 +35,7 @@ TEST_F(Instruments, EachTellsOfItsValueAndOfNoOther) {
       {"climb", [](HudModel& m) { m.flight.climb_m_per_s = 4.0; }, 0.75, 0.6, 0.9, 0.8},
       {"path",
        [](HudModel& m) {
-         m.flight.path = HudDirection{0.85, -0.02};
+         m.flight.path = Course{0.85, -0.02};
        },
        0.45, 0.4, 0.65, 0.6},
       {"throttle", [](HudModel& m) { m.flight.throttle = 0.9; }, 0.0, 0.0, 0.2, 0.2},
@@ -181,7 +181,7 @@ TEST_F(Instruments, EveryAttitudeAndViewIsDrawn) {
         model.flight.pitch_rad = pitch_deg * kRadiansPerDegree;
         model.flight.roll_rad = roll_deg * kRadiansPerDegree;
         model.flight.fov_rad = fov_deg * kRadiansPerDegree;
-        model.flight.path = HudDirection{2.0, 0.1};
+        model.flight.path = Course{2.0, 0.1};
         const Image image = Drawn(hud, model, 160, 120);
         EXPECT_FALSE(FaultyValue(image)) << pitch_deg << " " << roll_deg << " " << fov_deg;
       }
