@@ -9,7 +9,7 @@
 #include "atmosphere/math/constants.h"
 #include "atmosphere/refraction/refracted_view.h"
 #include "lut/sky/sky_view_map.h"
-#include "viewer/flight/places.h"
+#include "renderer/scene/places.h"
 
 namespace alpenglow::viewer {
 namespace {

@@ -9,10 +9,10 @@
 #include <utility>
 
 #include "atmosphere/base/error.h"
+#include "renderer/scene/places.h"
 #include "renderer/scene/scene_options.h"
+#include "renderer/terrain/loaded_heights.h"
 #include "renderer/terrain/procedural_mountains.h"
-#include "viewer/flight/places.h"
-#include "viewer/land/loaded_heights.h"
 #include "viewer/shaders/uniform_blocks.h"
 
 namespace alpenglow::viewer {

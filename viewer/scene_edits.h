@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
+#include "atmosphere/medium/air_choice.h"
 #include "renderer/scene/scene.h"
-#include "viewer/air/solved_air.h"
 #include "viewer/input/flight_controller.h"
 #include "viewer/passes/reference_picture.h"
 #include "viewer/passes/sky_painter.h"

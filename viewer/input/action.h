@@ -13,7 +13,7 @@
 #include <string_view>
 #include <vector>
 
-#include "viewer/air/solved_air.h"
+#include "atmosphere/medium/air_choice.h"
 #include "viewer/flight/flight.h"
 #include "viewer/input/flight_controller.h"
 #include "viewer/passes/auto_quality.h"
