@@ -7,7 +7,7 @@
 #include <glm/geometric.hpp>
 #include <glm/vec2.hpp>
 
-#include "renderer/picture/prepared_scene.h"
+#include "renderer/picture/pixel_shader.h"
 
 namespace alpenglow::renderer {
 namespace {
@@ -64,10 +64,10 @@ std::optional<AirAlongRay> Reaching(AirAlongRay air, double ratio) {
 
 }  // namespace
 
-AirInterpolationGrid::AirInterpolationGrid(const PreparedScene& scene, const FrameContext& frame,
-                                           int x0, int y0, int x1, int y1)
-    : scene_(&scene),
-      frame_(&frame),
+AirInterpolationGrid::AirInterpolationGrid(const PixelShader& shader, int x0, int y0, int x1,
+                                           int y1)
+    : shader_(&shader),
+      frame_(&shader.frame()),
       x0_(x0),
       y0_(y0),
       columns_((x1 - x0 + kCell - 1) / kCell),
@@ -77,9 +77,9 @@ AirInterpolationGrid::AirInterpolationGrid(const PreparedScene& scene, const Fra
 
 AirInterpolationGrid::Corner AirInterpolationGrid::Computed(double x, double y) const {
   const CameraRay ray = frame_->camera().MiddleRay(x, y);
-  const Hit hit = scene_->Trace(ray, *frame_);
+  const Hit hit = shader_->Trace(ray);
   SharedSegmentAir air{hit.kind, hit.distance_m, ray.through, ray.through, hit.distance_m, 1};
-  AddAir(*frame_, scene_->geometry, scene_->medium, air);
+  AddAir(*frame_, air);
   return {hit.kind, hit.distance_m, air.air};
 }
 
@@ -93,12 +93,12 @@ std::optional<AirAlongRay> AirInterpolationGrid::Between(int column, int row, do
                                                          HitKind kind, double distance_m) {
   const double u = (x - x0_) / kCell - column, v = (y - y0_) / kCell - row;
   const std::array<double, 4> share{(1.0 - u) * (1.0 - v), u * (1.0 - v), (1.0 - u) * v, u * v};
-  const std::size_t bands = scene_->medium.wavelengths_nm.size();
+  const std::size_t bands = frame_->scene().medium().wavelengths_nm.size();
   const auto add = [](float weight, const BandLight& light, BandLight& to) {
     for (std::size_t band = 0; band < to.count; ++band) to[band] += weight * light[band];
   };
   AirAlongRay sum{BandLight(bands), BandLight(bands)};
-  if (frame_->polarised) sum.polarised = {BandLight(bands), BandLight(bands)};
+  if (frame_->IsPolarised()) sum.polarised = {BandLight(bands), BandLight(bands)};
   double corners_m = 0.0;
   for (int i = 0; i < 4; ++i) {
     const Corner& corner = At(column + i % 2, row + i / 2);
@@ -132,7 +132,7 @@ bool AirInterpolationGrid::IsShared(int column, int row) {
 }
 
 std::optional<AirAlongRay> AirInterpolationGrid::Before(const SharedSegmentAir& rays) {
-  if (rays.kind == HitKind::kPlanet || frame_->media) return std::nullopt;
+  if (rays.kind == HitKind::kPlanet || frame_->media() != nullptr) return std::nullopt;
   const auto place = frame_->camera().PlaceOf(rays.direction_sum);
   if (!place) return std::nullopt;
   const auto [x, y] = *place;
@@ -161,32 +161,32 @@ CameraRay RayOf(const PixelSamples& samples, int sample, const glm::dvec2& at,
   std::array<double, 2> lens{};
   double time = 0.0;
   if (frame.camera().HasLens()) lens = samples.Point(sample, SampleOf::kLens);
-  if (frame.moving.IsMoving()) time = samples.Point(sample, SampleOf::kTime)[0];
-  return frame.moving.Ray(at.x, at.y, lens, time);
+  if (frame.moving().IsMoving()) time = samples.Point(sample, SampleOf::kTime)[0];
+  return frame.moving().Ray(at.x, at.y, lens, time);
 }
 
 }  // namespace
 
-PixelLight::PixelLight(const PreparedScene& scene, const FrameContext& frame, int x, int y,
-                       int most_rays, AirInterpolationGrid* around, double expected_m)
-    : scene_(&scene),
-      frame_(&frame),
+PixelLight::PixelLight(const PixelShader& shader, int x, int y, int most_rays,
+                       AirInterpolationGrid* around, double expected_m)
+    : shader_(&shader),
+      frame_(&shader.frame()),
       x_(x),
       y_(y),
       through_middle_(most_rays == 1),
       around_(around),
       last_m_(expected_m),
       samples_(x, y, most_rays),
-      glow_(scene.medium.wavelengths_nm.size()) {}
+      glow_(frame_->scene().medium().wavelengths_nm.size()) {}
 
 PixelLight::Ray PixelLight::Traced(int sample) {
   glm::dvec2 offset(0.0);
   if (!through_middle_) {
     const auto [u, v] = samples_.Point(sample, SampleOf::kPixel);
-    offset = {frame_->filter.Offset(u), frame_->filter.Offset(v)};
+    offset = {frame_->filter().Offset(u), frame_->filter().Offset(v)};
   }
   const CameraRay ray = RayOf(samples_, sample, glm::dvec2(x_ + 0.5, y_ + 0.5) + offset, *frame_);
-  const Hit hit = scene_->Trace(ray, *frame_, last_m_);
+  const Hit hit = shader_->Trace(ray, last_m_);
   if (hit.kind != HitKind::kSky) last_m_ = hit.distance_m;
   return {ray, hit, AirFor(hit, ray.through, *frame_, airs_), offset};
 }
@@ -194,7 +194,7 @@ PixelLight::Ray PixelLight::Traced(int sample) {
 void PixelLight::AddNewAir(std::size_t known) {
   // The filter is symmetric, so the direction of the pixel's centre is the exact mean over all
   // rays. The mean over some of them is less accurate.
-  if (airs_.size() == 1 && known == 0 && !frame_->moving.IsMoving()) {
+  if (airs_.size() == 1 && known == 0 && !frame_->moving().IsMoving()) {
     airs_.front().direction_sum = frame_->camera().Direction(x_ + 0.5, y_ + 0.5);
   }
   for (std::size_t i = known; i < airs_.size(); ++i) {
@@ -203,7 +203,7 @@ void PixelLight::AddNewAir(std::size_t known) {
       airs_[i].air = *shared;
       airs_[i].media = BandLight(shared->inscatter.count);
     } else {
-      AddAir(*frame_, scene_->geometry, scene_->medium, airs_[i]);
+      AddAir(*frame_, airs_[i]);
     }
     AddLamps(*frame_, x_, y_, airs_[i]);
   }
@@ -228,10 +228,10 @@ void PixelLight::TakeOccludedSky() {
 }
 
 void PixelLight::Add(const Ray& seen) {
-  const LampTile& near = frame_->plan->tiles.empty() ? DarkTile() : frame_->plan->At(x_, y_);
-  const Shaded shaded = scene_->Shade(seen.hit, airs_[seen.air], seen.ray, *frame_, near,
-                                      samples_.Point(sum_.rays, SampleOf::kSunDisk));
-  spread_.Add(scene_->colour.LinearSrgb(InDouble(shaded.radiance)));
+  const LampTile& near = frame_->plan().tiles.empty() ? DarkTile() : frame_->plan().At(x_, y_);
+  const Shaded shaded = shader_->Shade(seen.hit, airs_[seen.air], seen.ray, near,
+                                       samples_.Point(sum_.rays, SampleOf::kSunDisk));
+  spread_.Add(frame_->scene().colour().LinearSrgb(InDouble(shaded.radiance)));
   const BandLight glow = shaded.lamps + shaded.volumes;
   const bool sees_sky = seen.hit.kind == HitKind::kSky;
   if (sees_sky && !sky_) sky_ = shaded.inscatter;
@@ -239,7 +239,7 @@ void PixelLight::Add(const Ray& seen) {
   if (sees_sky) shared = shared + -1.0F * *sky_;
   new_rays_.push_back({seen.offset.x, seen.offset.y, shared, sees_sky});
   glow_ = glow_ + glow;
-  sum_.Add(shaded, !frame_->settings.layers.empty());
+  sum_.Add(shaded, !frame_->settings().layers.empty());
 }
 
 }  // namespace alpenglow::renderer

@@ -34,17 +34,16 @@
 
 namespace alpenglow::renderer {
 
-struct PreparedScene;
+class PixelShader;
 
-/// Air of a rectangle of pixels. Cells are computed on demand, by one thread. Refers to scene and
-/// frame.
+/// Air of a rectangle of pixels. Cells are computed on demand, by one thread. Refers to the
+/// shader and its frame.
 class AirInterpolationGrid {
  public:
   static constexpr int kCell = 4;  // pixels
 
   /// @param x0, y0  first pixel. @param x1, y1  one past the last pixel.
-  AirInterpolationGrid(const PreparedScene& scene, const FrameContext& frame, int x0, int y0,
-                       int x1, int y1);
+  AirInterpolationGrid(const PixelShader& shader, int x0, int y0, int x1, int y1);
 
   /// Returns the air in front of rays of a pixel; no value where it cannot be shared.
   [[nodiscard]] std::optional<AirAlongRay> Before(const SharedSegmentAir& rays);
@@ -64,24 +63,22 @@ class AirInterpolationGrid {
                                                    HitKind kind, double distance_m);
   [[nodiscard]] bool IsShared(int column, int row);
 
-  const PreparedScene* scene_;
+  const PixelShader* shader_;
   const FrameContext* frame_;
   int x0_, y0_, columns_, rows_;  // in cells
   std::vector<std::optional<Corner>> corners_;
   std::vector<Cell> cells_;
 };
 
-struct PreparedScene;
-
 /// Accumulates rays of one pixel up to a requested number; all rays have the same weight. Refers to
-/// scene, frame and lattice.
+/// shader, frame and lattice.
 class PixelLight {
  public:
   /// @param most_rays  largest number of rays that will be requested. A pixel with a single ray
   ///     looks through its middle.
   /// @param around  air shared with other pixels; null: no sharing.
-  /// @param expected_m  expected length of the rays (PreparedScene::Trace).
-  PixelLight(const PreparedScene& scene, const FrameContext& frame, int x, int y, int most_rays,
+  /// @param expected_m  expected length of the rays (PixelShader::Trace).
+  PixelLight(const PixelShader& shader, int x, int y, int most_rays,
              AirInterpolationGrid* around = nullptr, double expected_m = 0.0);
 
   /// Adds rays until the pixel has `rays` of them. Air of earlier rays is reused.
@@ -117,7 +114,7 @@ class PixelLight {
   void AddNewAir(std::size_t known);
   void Add(const Ray& seen);
 
-  const PreparedScene* scene_;
+  const PixelShader* shader_;
   const FrameContext* frame_;
   int x_, y_;
   bool through_middle_;

@@ -3,12 +3,15 @@
 // scene's own pixels.
 #include "renderer/picture/render.h"
 
+#include <algorithm>
 #include <optional>
 
 #include "atmosphere/base/error.h"
-#include "atmosphere/medium/medium_presets.h"
 #include "renderer/camera/camera_rays.h"
+#include "renderer/picture/frame_context.h"
 #include "renderer/picture/prepared_scene.h"
+#include "renderer/picture/scene_lighting.h"
+#include "renderer/picture/tile_renderer.h"
 
 namespace alpenglow::renderer {
 
@@ -25,22 +28,22 @@ void ValidateSettings(const RenderSettings& settings) {
 }
 
 SceneRenderer::SceneRenderer(const Scene& scene, Progress* progress)
-    : state_(std::make_unique<PreparedScene>(scene, progress)) {}
+    : scene_(std::make_unique<PreparedScene>(scene, progress)) {}
 SceneRenderer::SceneRenderer(const Scene& scene, std::shared_ptr<const SceneGround> ground)
-    : state_(std::make_unique<PreparedScene>(scene, std::move(ground))) {}
+    : scene_(std::make_unique<PreparedScene>(scene, std::move(ground))) {}
 SceneRenderer::~SceneRenderer() = default;
 
-const Medium& SceneRenderer::medium() const { return state_->medium; }
-double SceneRenderer::eye_height_m() const { return state_->ground.eye_height_m; }
-const std::string& SceneRenderer::terrain_message() const { return state_->ground.message; }
+const Medium& SceneRenderer::medium() const { return scene_->medium(); }
+double SceneRenderer::eye_height_m() const { return scene_->ground().eye_height_m; }
+const std::string& SceneRenderer::terrain_message() const { return scene_->ground().message; }
 
 SunPosition SceneRenderer::ApparentSun(const CameraSample& camera_sample) const {
-  return state_->ApparentSun(camera_sample);
+  return renderer::ApparentSun(*scene_, ObserverOf(*scene_, camera_sample));
 }
 
 double SceneRenderer::Illuminance(const CameraSample& camera_sample) const {
-  const CameraStand stand = state_->StandOf(camera_sample);
-  return state_->Illuminance(stand.eye, state_->LightingAt(camera_sample, stand));
+  const Observer observer = ObserverOf(*scene_, camera_sample);
+  return renderer::Illuminance(*scene_, observer.stand.eye, LightingAt(*scene_, observer));
 }
 
 Image SceneRenderer::Render(const CameraSample& camera_sample,
@@ -51,106 +54,92 @@ Image SceneRenderer::Render(const CameraSample& camera_sample,
 CountedPicture SceneRenderer::RenderCounted(const CameraSample& camera_sample,
                                             const RenderSettings& settings) const {
   ValidateSettings(settings);
-  const PreparedScene& state = state_->For(settings.effects);
-  return state.Picture(state.FrameAt(camera_sample, settings));
+  return TileRenderer({scene_->For(settings.effects), camera_sample, settings}).Picture();
 }
 
-std::unique_ptr<PreparedScene> PreparedScene::OnOtherBands(int bands) const {
-  const std::optional<Medium> other = OnBands(scene.medium, bands);
-  if (!other) return nullptr;
-  Scene same = scene;
-  same.medium = *other;
-  return std::make_unique<PreparedScene>(same, shared_ground, this);
-}
+namespace {
 
-const PreparedScene& PreparedScene::OnFewBands() const {
-  constexpr int kFew = 4;
-  std::call_once(few_bands_asked, [&] {
-    if (medium.wavelengths_nm.size() > kFew) few_bands = OnOtherBands(kFew);
-  });
-  return few_bands ? *few_bands : *this;
-}
-
-// Returns the effects that can change this picture.
-EffectSet PreparedScene::Present(const FrameContext& frame) const {
+/// Returns the effects that can change this picture.
+EffectSet Present(const FrameContext& frame) {
   const auto without = [](EffectSet effects, bool is_there, EffectSet those) {
     if (is_there) return effects;
     for (const Effect effect : those.List()) effects = effects.Without(effect);
     return effects;
   };
   EffectSet present = EffectSet::All();
-  const bool moon_is_broken = frame.moonlit && frame.moonlit->sunlight->IsBroken();
-  present = without(present, frame.sunlight->IsBroken() || moon_is_broken, {Effect::kShafts});
-  present = without(present, !lamps.All().empty(), {Effect::kLights, Effect::kBeams});
-  present = without(present, ground.terrain.has_value(), {Effect::kShadows, Effect::kRelief});
+  const PreparedScene& scene = frame.scene();
+  const auto any_light = [&](const auto& holds) {
+    return std::any_of(frame.lights().begin(), frame.lights().end(), holds);
+  };
+  const bool is_broken = any_light([](const FrameLight& of) { return of.shadows->IsBroken(); });
+  present = without(present, is_broken, {Effect::kShafts});
+  present = without(present, !scene.lamps().All().empty(), {Effect::kLights, Effect::kBeams});
+  present =
+      without(present, scene.ground().terrain.has_value(), {Effect::kShadows, Effect::kRelief});
   const bool is_terrain_lit =
-      frame.light.on_terrain || (frame.moonlit && frame.moonlit->light.on_terrain);
+      any_light([](const FrameLight& of) { return of.light.on_terrain != nullptr; });
   present = without(present, is_terrain_lit, {Effect::kHorizons, Effect::kBounce});
-  present = without(present, media.HasVolumes(), {Effect::kVolumes});
-  present = without(present, media.fog() != nullptr, {Effect::kFogGlow});
-  present = without(present, frame.moonlit != nullptr, {Effect::kMoonlight});
-  present = without(present, frame.night != nullptr, {Effect::kNightSky});
-  present = without(present, frame.stars != nullptr, {Effect::kStars});
-  present = without(present, frame.bent != nullptr, {Effect::kRefraction});
-  return without(present, &OnFewBands() != this, {Effect::kFineSpectrum});
+  present = without(present, scene.media().HasVolumes(), {Effect::kVolumes});
+  present = without(present, scene.media().fog() != nullptr, {Effect::kFogGlow});
+  present = without(present, frame.lights().size() > 1, {Effect::kMoonlight});
+  present = without(present, frame.night() != nullptr, {Effect::kNightSky});
+  present = without(present, frame.stars() != nullptr, {Effect::kStars});
+  present = without(present, frame.bent() != nullptr, {Effect::kRefraction});
+  return without(present, &scene.OnFewBands() != &scene, {Effect::kFineSpectrum});
 }
+
+}  // namespace
 
 ChosenPicture SceneRenderer::RenderWithin(const CameraSample& camera_sample,
                                           const RenderSettings& settings,
                                           const EffectBudget& budget) const {
   ValidateSettings(settings);
-  const PreparedScene& whole = state_->For(settings.effects);
-  const FrameContext frame = whole.FrameAt(camera_sample, settings);
+  const FrameContext frame(scene_->For(settings.effects), camera_sample, settings);
   std::optional<FrameContext> on_few_bands;
   const auto with = [&](EffectSet effects) {
-    const PreparedScene& state = state_->For(effects);
-    if (&state == &whole) return whole.Reduced(frame, effects);
-    if (!on_few_bands) on_few_bands.emplace(state.FrameAt(camera_sample, settings));
-    return state.Reduced(*on_few_bands, effects);
+    const PreparedScene& scene = scene_->For(effects);
+    if (&scene == &frame.scene()) return frame.Reduced(effects);
+    if (!on_few_bands) on_few_bands.emplace(scene, camera_sample, settings);
+    return on_few_bands->Reduced(effects);
   };
   EffectPreview preview;
-  std::vector<glm::dvec3> points = frame.lamps->Directions();
-  if (frame.stars) {
-    const auto& stars = frame.stars->directions();
+  std::vector<glm::dvec3> points = frame.lamps().Directions();
+  if (frame.stars() != nullptr) {
+    const auto& stars = frame.stars()->directions();
     points.insert(points.end(), stars.begin(), stars.end());
   }
   preview.groups =
-      PreviewPixels(frame.camera(), settings.width, settings.height, frame.light.to_sun, points);
+      PreviewPixels(frame.camera(), settings.width, settings.height, frame.light().to_sun, points);
   std::vector<PixelPlace> places;
   for (const auto& group : preview.groups) places.insert(places.end(), group.begin(), group.end());
-  const auto timed = [&](const PreparedScene& state, const FrameContext& of) {
+  const auto timed = [&](const FrameContext& of) {
     const Stopwatch watch;
-    Image image = state.Pixels(of, places);
+    Image image = TileRenderer(of).Pixels(places);
     return PreviewPicture{std::move(image), watch.seconds()};
   };
-  preview.render = [&](EffectSet effects) { return timed(state_->For(effects), with(effects)); };
+  preview.render = [&](EffectSet effects) { return timed(with(effects)); };
   preview.pixels_of_picture = static_cast<double>(settings.width) * settings.height;
-  preview.preparation_s = [&](Effect effect) {
-    return effect == Effect::kShafts   ? frame.sunlight_s
-           : effect == Effect::kLights ? frame.plan_s
-           : effect == Effect::kBounce ? frame.slopes_s
-                                       : 0.0;
-  };
+  preview.preparation_s = [&](Effect effect) { return frame.PreparationSeconds(effect); };
   Prepare(settings.progress, "choice of effects");
-  preview.present = whole.Present(frame);
+  preview.present = Present(frame);
   const auto refine = [&](const char* name, const auto& change) {
     preview.refinements.push_back({name, [&, change] {
-                                     FrameContext finer = frame;
-                                     change(finer.settings);
-                                     return timed(whole, finer);
+                                     RenderSettings finer = frame.settings();
+                                     change(finer);
+                                     return timed(frame.Sampled(finer));
                                    }});
   };
   refine("16 air nodes", [](RenderSettings& finer) { finer.air_nodes = 16; });
   refine("air of each ray", [](RenderSettings& finer) { finer.share_air = false; });
   const std::unique_ptr<PreparedScene> more_bands =
-      budget.explain ? whole.OnOtherBands(16) : nullptr;
-  if (more_bands && frame.model->air.bands() < 16) {
-    preview.refinements.push_back(
-        {"16 bands",
-         [&] { return timed(*more_bands, more_bands->FrameAt(camera_sample, settings)); }});
+      budget.explain ? frame.scene().OnOtherBands(16) : nullptr;
+  if (more_bands && frame.model().air.bands() < 16) {
+    preview.refinements.push_back({"16 bands", [&] {
+                                     return timed({*more_bands, camera_sample, settings});
+                                   }});
   }
   EffectChoice choice = ChooseEffects(preview, settings.effects, budget);
-  CountedPicture picture = state_->For(choice.effects).Picture(with(choice.effects));
+  CountedPicture picture = TileRenderer(with(choice.effects)).Picture();
   return {std::move(picture.image), picture.rays, std::move(choice)};
 }
 

@@ -92,7 +92,7 @@ struct CameraSample {
 void ValidateSettings(const RenderSettings& settings);
 
 struct SceneGround;
-struct PreparedScene;
+class PreparedScene;
 
 /// A picture and its ray counts.
 struct CountedPicture {
@@ -147,7 +147,7 @@ class SceneRenderer {
   [[nodiscard]] const std::string& terrain_message() const;
 
  private:
-  std::unique_ptr<PreparedScene> state_;
+  std::unique_ptr<PreparedScene> scene_;
 };
 
 }  // namespace alpenglow::renderer

@@ -6,7 +6,7 @@
 #include <glm/geometric.hpp>
 
 #include "atmosphere/math/constants.h"
-#include "renderer/picture/prepared_scene.h"
+#include "renderer/picture/pixel_shader.h"
 
 namespace alpenglow::renderer {
 namespace {
@@ -134,28 +134,29 @@ namespace {
 // pixels up to a filter's width away, and two pixels cover features between the azimuths of the
 // skyline.
 double AroundPixel(const FrameContext& frame) {
-  return (4.0 * frame.filter.radius() + 2.0) * frame.camera().PixelAngle();
+  return (4.0 * frame.filter().radius() + 2.0) * frame.camera().PixelAngle();
 }
 
 }  // namespace
 
-OccludedSkyPixels::OccludedSkyPixels(const PreparedScene& scene, const FrameContext& frame)
-    : frame_(frame), around_rad_(AroundPixel(frame)) {
-  const CameraRays& camera = frame.camera();
-  const bool is_solid = scene.ground.is_solid || !scene.geometry.HasTerrain();
-  if (!frame.settings.skips_open_sky || !is_solid || camera.HasLens() || frame.moving.IsMoving())
+OccludedSkyPixels::OccludedSkyPixels(const PixelShader& shader)
+    : frame_(shader.frame()), around_rad_(AroundPixel(frame_)) {
+  const CameraRays& camera = frame_.camera();
+  const PreparedScene& scene = frame_.scene();
+  const bool is_solid = scene.ground().is_solid || !scene.geometry().HasTerrain();
+  if (!frame_.settings().skips_open_sky || !is_solid || camera.HasLens() ||
+      frame_.moving().IsMoving())
     return;
-  const glm::dvec3 up = scene.geometry.UpAt(camera.eye());
+  const glm::dvec3 up = scene.geometry().UpAt(camera.eye());
   const auto sees_sky = [&](const glm::dvec3& direction) {
-    return scene.Trace({camera.eye(), camera.eye(), direction, direction}, frame).kind ==
-           HitKind::kSky;
+    return shader.Trace({camera.eye(), camera.eye(), direction, direction}).kind == HitKind::kSky;
   };
   skyline_.emplace(up, ArcAround(up), 0.5 * camera.PixelAngle(), sees_sky);
 }
 
 Skyline::Arc OccludedSkyPixels::ArcAround(const glm::dvec3& up) const {
   const CameraRays& camera = frame_.camera();
-  const int width = frame_.settings.width, height = frame_.settings.height;
+  const int width = frame_.settings().width, height = frame_.settings().height;
   const Skyline::Arc whole{0.0, 2.0 * kPi};
   const auto shows = [&](const glm::dvec3& direction) {
     const auto at = camera.PlaceOf(direction);
@@ -191,7 +192,7 @@ bool OccludedSkyPixels::Has(int x, int y) const {
   const auto is_near = [&](const glm::dvec3& to_disk, double radius_rad) {
     return glm::length(middle - to_disk) < 2.0 * radius_rad + around_rad_;
   };
-  const Lighting& light = frame_.light;
+  const Lighting& light = frame_.light();
   if (is_near(light.to_sun, light.sun_radius_rad)) return false;
   if (light.moon &&
       is_near(light.moon->to_moon, light.moon->radius_rad + glm::length(light.moon_turn)))

@@ -71,15 +71,15 @@ class StarPixels {
   std::vector<glm::dvec3> directions_;
 };
 
-struct FrameContext;
-struct PreparedScene;
+class FrameContext;
+class PixelShader;
 
 /// Immutable, safe to share between threads. Refers to the frame.
 class OccludedSkyPixels {
  public:
   /// No pixel counts as open sky where sky can be visible below ground, a lens blurs, or the camera
   /// moves.
-  OccludedSkyPixels(const PreparedScene& scene, const FrameContext& frame);
+  explicit OccludedSkyPixels(const PixelShader& shader);
 
   /// Returns whether all rays that count for a pixel see only sky, without a disk in it.
   [[nodiscard]] bool Has(int x, int y) const;

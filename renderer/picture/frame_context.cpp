@@ -1,0 +1,184 @@
+// SPDX-License-Identifier: MIT
+#include "renderer/picture/frame_context.h"
+
+#include <algorithm>
+#include <glm/geometric.hpp>
+#include <utility>
+
+#include "atmosphere/refraction/refracted_view.h"
+#include "lut/cli/messages.h"
+#include "renderer/effects/effect_choice.h"
+#include "renderer/picture/pixel_shader.h"
+
+namespace alpenglow::renderer {
+namespace {
+
+LampPlan PlanOf(const FrameContext& frame) {
+  // A lamp is negligible if all neglected lamps together change a grey card in daylight by less
+  // than a thousandth.
+  constexpr double kGreyCard = 0.18;
+  const PreparedScene& scene = frame.scene();
+  const CameraRays& camera = frame.camera();
+  LampSettings lamp_settings = frame.settings().lamps;
+  lamp_settings.floor_cd_per_m2 =
+      std::max(lamp_settings.floor_cd_per_m2,
+               1e-3 * kGreyCard / kPi * Illuminance(scene, camera.eye(), frame.light()));
+  return frame.lamps().PlanFor(
+      frame.moving(), frame.settings().width, frame.settings().height, lamp_settings,
+      [&](const CameraRay& ray) {
+        return scene.geometry().Trace(ray.origin, ray.direction, camera.PixelAngle()).distance_m;
+      });
+}
+
+bool NeedsStokes(const CameraRays& camera, const std::vector<PictureLayer>& layers) {
+  return camera.HasPolariser() || std::any_of(layers.begin(), layers.end(), IsOfPolarisation);
+}
+
+}  // namespace
+
+FrameContext::FrameContext(const PreparedScene& scene, const CameraSample& camera_sample,
+                           const RenderSettings& settings)
+    : scene_(&scene),
+      settings_(settings),
+      model_(&scene.models().With(settings.effects)),
+      moving_(CameraOn(scene.ground(), scene.scene().camera, camera_sample.poses, settings.width,
+                       settings.height)),
+      filter_(settings.filter),
+      is_polarised_(NeedsStokes(camera(), settings.layers)),
+      lamps_(std::make_shared<LampLight>(scene.lamps().SeenBy(camera()))),
+      plan_(std::make_shared<LampPlan>()) {
+  const Observer observer = ObserverOf(scene, camera_sample);
+  Lighting sun = LightingAt(scene, observer);
+  sun.effects = settings.effects;
+  BandLight by_sun(sun.irradiance.count);
+  std::fill_n(by_sun.value.begin(), by_sun.count, 1.0F);
+  lights_.push_back({std::move(sun), by_sun, std::make_shared<const TerrainSunlight>(), nullptr});
+  if (Has(Effect::kRefraction)) refracted_ = RefractedViewRaysOf(*this, observer);
+  if (Has(Effect::kShafts) && light().shows) {
+    Prepare(settings.progress, "shadows");
+    const auto made = scene.sunlight().At(light().to_sun, light().sun_radius_rad);
+    lights_.front().shadows = made.sunlight;
+    shadows_s_ = made.made_in_s;
+  }
+  if (Has(Effect::kLights)) {
+    if (!scene.lamps().All().empty()) Prepare(settings.progress, "lamps");
+    const Stopwatch watch;
+    plan_ = std::make_shared<LampPlan>(PlanOf(*this));
+    plan_s_ = watch.seconds();
+  }
+  LightNight();
+  LightMedia();
+  LightTerrain();
+  if (Has(Effect::kStars)) AddStars(observer);
+}
+
+void FrameContext::LightNight() {
+  if (Has(Effect::kNightSky)) night_ = light().night;
+  if (!Has(Effect::kMoonlight) || !light().moonlight) return;
+  FrameLight moon{light().By(*light().moonlight), BandLight(light().irradiance.count),
+                  std::make_shared<const TerrainSunlight>(), nullptr};
+  for (std::size_t band = 0; band < moon.by_sun.count; ++band)
+    moon.by_sun[band] = moon.light.irradiance[band] / light().irradiance[band];
+  if (Has(Effect::kShafts))
+    moon.shadows = scene_->moonlight().At(moon.light.to_sun, moon.light.sun_radius_rad).sunlight;
+  lights_.push_back(std::move(moon));
+}
+
+void FrameContext::LightMedia() {
+  // Below a millionth of a lux of sunlight, only lamps light fog, unless fog stands in front of a
+  // volume.
+  const SceneGeometry& geometry = scene_->geometry();
+  const bool has_volumes = Has(Effect::kVolumes) && scene_->media().HasVolumes();
+  const bool is_lit = Has(Effect::kFogGlow) &&
+                      (has_volumes || lights_.size() > 1 ||
+                       IlluminanceBy(*scene_, light().Sun(), camera().eye(), light()) > 1e-6);
+  LocalMedia here = scene_->media().Only(has_volumes, is_lit);
+  for (FrameLight& source : lights_) source.media = nullptr;
+  if (here.IsNothing()) return;
+  lights_.front().media =
+      std::make_shared<MediaLight>(std::move(here), geometry, model_->sunlit(), light(),
+                                   Has(Effect::kLights) ? lamps_.get() : nullptr);
+  for (std::size_t i = 1; i < lights_.size(); ++i) {
+    lights_[i].media = std::make_shared<MediaLight>(media()->media().WithoutGlow(), geometry,
+                                                    model_->sunlit(), lights_[i].light);
+  }
+}
+
+void FrameContext::LightTerrain() {
+  Prepare(settings_.progress, "light of slopes");
+  if (Has(Effect::kHorizons)) scene_->PrepareHorizons();
+  const Stopwatch watch;
+  for (FrameLight& source : lights_) {
+    if (source.light.shows)
+      source.light.on_terrain = model_->ground_light.OnTerrain(source.ground_sources());
+  }
+  slopes_s_ = watch.seconds();
+}
+
+void FrameContext::AddStars(const Observer& observer) {
+  const double lux = Illuminance(*scene_, camera().eye(), light());
+  if (!light().moon || lux > kDaylight_lux) return;
+  const MoonDisk& moon = *light().moon;
+  const glm::dmat3& frame_from_enu = observer.stand.frame_from_enu;
+  std::vector<StarLight> lights;
+  const double pixel_rad = camera().PixelAngle();
+  const RefractedView view(scene_->medium(), scene_->geometry().AltitudeOf(camera().eye()));
+  for (StarLight& star : StarLightsOver(observer.eye, observer.instant, view, scene_->colour(),
+                                        FaintestStar(lux, pixel_rad),
+                                        OpenFor(scene_->scene().camera.shutter_s, pixel_rad))) {
+    star.direction = frame_from_enu * star.direction;
+    for (glm::dvec3& direction : star.way) direction = frame_from_enu * direction;
+    if (glm::length(star.direction - moon.to_moon) >= moon.radius_rad)
+      lights.push_back(std::move(star));
+  }
+  if (lights.empty()) return;
+  const PixelShader shader(*this);
+  stars_ = std::make_shared<StarPixels>(
+      camera(), settings_.width, settings_.height, lights,
+      [&](double x, double y) { return shader.LeftOfSpace(x, y); },
+      [&](double x, double y) {
+        return shader.Trace(camera().MiddleRay(x, y)).kind != HitKind::kSky;
+      });
+}
+
+FrameContext FrameContext::Reduced(EffectSet effects) const {
+  constexpr EffectSet kThatLightTerrain{Effect::kHorizons,  Effect::kBounce,  Effect::kSkylight,
+                                        Effect::kShadows,   Effect::kFogGlow, Effect::kVolumes,
+                                        Effect::kMolecules, Effect::kAerosol, Effect::kOzone};
+  constexpr EffectSet kThatLightMedia{Effect::kFogGlow,   Effect::kVolumes, Effect::kLights,
+                                      Effect::kMolecules, Effect::kAerosol, Effect::kOzone};
+  const auto are_alike = [&](EffectSet those) {
+    return settings_.effects.And(those) == effects.And(those);
+  };
+  FrameContext frame = *this;
+  frame.settings_.effects = effects;
+  frame.model_ = &scene_->models().With(effects);
+  if (!effects.Has(Effect::kNightSky)) frame.night_ = nullptr;
+  if (!effects.Has(Effect::kStars)) frame.stars_ = nullptr;
+  if (!effects.Has(Effect::kRefraction)) frame.refracted_ = nullptr;
+  if (!effects.Has(Effect::kMoonlight))
+    frame.lights_.erase(frame.lights_.begin() + 1, frame.lights_.end());
+  for (FrameLight& source : frame.lights_) {
+    source.light.effects = effects;
+    if (!effects.Has(Effect::kShafts)) source.shadows = std::make_shared<const TerrainSunlight>();
+  }
+  if (!effects.Has(Effect::kLights)) frame.plan_ = std::make_shared<LampPlan>();
+  if (!are_alike(kThatLightMedia)) frame.LightMedia();
+  if (!are_alike(kThatLightTerrain)) frame.LightTerrain();
+  return frame;
+}
+
+FrameContext FrameContext::Sampled(const RenderSettings& settings) const {
+  FrameContext frame = *this;
+  frame.settings_ = settings;
+  return frame;
+}
+
+double FrameContext::PreparationSeconds(Effect effect) const {
+  return effect == Effect::kShafts   ? shadows_s_
+         : effect == Effect::kLights ? plan_s_
+         : effect == Effect::kBounce ? slopes_s_
+                                     : 0.0;
+}
+
+}  // namespace alpenglow::renderer

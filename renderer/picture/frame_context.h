@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: MIT
+// The data that all pixels of one picture share: camera, distant lights with their shadows and their
+// light on terrain and in media, lamps, night sky, stars and refraction.
+#pragma once
+
+#include <glm/vec3.hpp>
+#include <memory>
+#include <vector>
+
+#include "renderer/camera/camera_rays.h"
+#include "renderer/effects/effects.h"
+#include "renderer/illumination/lighting.h"
+#include "renderer/illumination/night_light.h"
+#include "renderer/lamps/lamp_light.h"
+#include "renderer/media/media_light.h"
+#include "renderer/picture/prepared_scene.h"
+#include "renderer/picture/refracted_view_rays.h"
+#include "renderer/picture/render.h"
+#include "renderer/picture/scene_lighting.h"
+#include "renderer/picture/sky_pixels.h"
+
+namespace alpenglow::renderer {
+
+/// A distant light of a picture, with its shadows and its light in media.
+struct FrameLight {
+  Lighting light;                                  // with this light as its sun
+  BandLight by_sun;                                // irradiance relative to the sun's
+  std::shared_ptr<const TerrainSunlight> shadows;  // in the air
+  std::shared_ptr<const MediaLight> media;         // null: no volumes, and only lamps light fog
+
+  [[nodiscard]] GroundSources ground_sources() const { return {light, media.get()}; }
+};
+
+/// Immutable, safe to share between threads. Copies share the parts that take long to prepare.
+/// Refers to the scene.
+class FrameContext {
+ public:
+  /// Prepares a picture. Reports the steps to the progress of the settings. Throws InputError for an
+  /// eye at an impossible place.
+  FrameContext(const PreparedScene& scene, const CameraSample& camera_sample,
+               const RenderSettings& settings);
+
+  /// Returns this picture with fewer effects.
+  [[nodiscard]] FrameContext Reduced(EffectSet effects) const;
+  /// Returns this picture with other numbers of samples and nodes; all other settings are equal.
+  [[nodiscard]] FrameContext Sampled(const RenderSettings& settings) const;
+
+  [[nodiscard]] const PreparedScene& scene() const { return *scene_; }
+  /// Returns the geometry with fine relief, unless the effects lack it.
+  [[nodiscard]] const SceneGeometry& geometry() const {
+    return scene_->GeometryWith(settings_.effects);
+  }
+  [[nodiscard]] const AirModel& model() const { return *model_; }
+  [[nodiscard]] const RenderSettings& settings() const { return settings_; }
+  [[nodiscard]] bool Has(Effect effect) const { return settings_.effects.Has(effect); }
+
+  [[nodiscard]] const MovingCamera& moving() const { return moving_; }
+  /// Returns the camera in the middle of its motion.
+  [[nodiscard]] const CameraRays& camera() const { return moving_.middle(); }
+  [[nodiscard]] const PixelFilter& filter() const { return filter_; }
+  /// Returns whether a polariser or a layer needs Stokes parameters.
+  [[nodiscard]] bool IsPolarised() const { return is_polarised_; }
+
+  /// Returns the lights: the sun, and the moon if it lights anything.
+  [[nodiscard]] const std::vector<FrameLight>& lights() const { return lights_; }
+  /// Returns the lighting by the sun, with the visible disk of the moon.
+  [[nodiscard]] const Lighting& light() const { return lights_.front().light; }
+  /// Returns fog and volumes in the light of the sun; null if there are none that it lights.
+  [[nodiscard]] const MediaLight* media() const { return lights_.front().media.get(); }
+  [[nodiscard]] const LampLight& lamps() const { return *lamps_; }
+  [[nodiscard]] const LampPlan& plan() const { return *plan_; }
+  /// Returns null if the night sky is not visible.
+  [[nodiscard]] const NightLight* night() const { return night_.get(); }
+  /// Returns null if no star is visible.
+  [[nodiscard]] const StarPixels* stars() const { return stars_.get(); }
+  /// Returns null if refraction moves nothing.
+  [[nodiscard]] const RefractedViewRays* bent() const { return refracted_.get(); }
+
+  /// Returns the time that the preparation of an effect took [s].
+  [[nodiscard]] double PreparationSeconds(Effect effect) const;
+
+ private:
+  void LightNight();
+  void LightMedia();
+  /// Computes the terrain's illumination by all lights.
+  void LightTerrain();
+  void AddStars(const Observer& observer);
+
+  const PreparedScene* scene_;
+  RenderSettings settings_;
+  const AirModel* model_;
+  MovingCamera moving_;
+  PixelFilter filter_;
+  bool is_polarised_ = false;
+  std::vector<FrameLight> lights_;
+  std::shared_ptr<const LampLight> lamps_;
+  std::shared_ptr<const LampPlan> plan_;
+  std::shared_ptr<const NightLight> night_;
+  std::shared_ptr<const StarPixels> stars_;
+  std::shared_ptr<const RefractedViewRays> refracted_;
+  double shadows_s_ = 0.0, plan_s_ = 0.0, slopes_s_ = 0.0;
+};
+
+}  // namespace alpenglow::renderer

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: MIT
+// The radiance of single rays of a picture: what a ray meets, and the light that arrives along it.
+#pragma once
+
+#include <array>
+#include <optional>
+
+#include "renderer/camera/camera_rays.h"
+#include "renderer/lamps/lamp_light.h"
+#include "renderer/picture/frame_context.h"
+#include "renderer/picture/picture_layers.h"
+#include "renderer/picture/segment_air.h"
+#include "renderer/surface/scene_geometry.h"
+
+namespace alpenglow::renderer {
+
+/// Immutable, safe to share between threads. Refers to the frame.
+class PixelShader {
+ public:
+  explicit PixelShader(const FrameContext& frame) : frame_(&frame) {}
+
+  [[nodiscard]] const FrameContext& frame() const { return *frame_; }
+  /// @param expected_m  expected length of the ray; 0: unknown.
+  [[nodiscard]] Hit Trace(const CameraRay& ray, double expected_m = 0.0) const;
+  /// Returns the light that arrives along a ray.
+  /// @param near  lamps that can light the pixel. @param disk_sample  see GroundLight::Natural.
+  [[nodiscard]] Shaded Shade(const Hit& hit, const SharedSegmentAir& through, const CameraRay& ray,
+                             const LampTile& near, std::array<double, 2> disk_sample) const;
+  /// Returns the fraction of light from space that air, fog and a polariser let through at a place
+  /// of the picture; no value where ground is in front.
+  [[nodiscard]] std::optional<BandLight> LeftOfSpace(double x, double y) const;
+
+ private:
+  /// Computes Shade() without a polariser and without Shaded::polarised.
+  [[nodiscard]] Shaded WithoutPolariser(const Hit& hit, const SharedSegmentAir& through,
+                                        const CameraRay& ray, const LampTile& near,
+                                        std::array<double, 2> disk_sample) const;
+  /// Adds the light that the ground sends towards the eye.
+  void AddGround(const Hit& hit, const CameraRay& ray, const LampTile& near,
+                 std::array<double, 2> disk_sample, Shaded& shaded) const;
+  /// Returns Q and U of the distant lights that the ground sends towards the eye.
+  [[nodiscard]] PolarisedLight PolarisedGround(const Hit& hit, const CameraRay& ray,
+                                               std::array<double, 2> disk_sample) const;
+
+  const FrameContext* frame_;
+};
+
+}  // namespace alpenglow::renderer

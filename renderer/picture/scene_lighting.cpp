@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: MIT
+#include "renderer/picture/scene_lighting.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+
+#include "atmosphere/astronomy/eclipse.h"
+#include "atmosphere/astronomy/ephemeris.h"
+#include "atmosphere/math/constants.h"
+#include "renderer/illumination/night_light.h"
+
+namespace alpenglow::renderer {
+namespace {
+
+// A light below this fraction of the light already present is invisible.
+constexpr double kUnseenShare = 1e-4;
+// Illuminance of the moonless night sky.
+constexpr double kNightSky_lux = 1e-3;
+
+/// Returns the rotation of the moon while the shutter is open: westwards with the stars, less its
+/// own motion among them of 13.18 degrees a day (Meeus 1998, Astronomical Algorithms, chapter 47),
+/// here taken along the equator.
+glm::dvec3 MoonTurn(double open_s, double latitude_rad, const CameraStand& stand) {
+  constexpr double kBack_rad_per_s = 13.17640 / kSecondsPerDay * kRadiansPerDegree;
+  const glm::dvec3 pole =
+      stand.frame_from_enu * glm::dvec3(0.0, std::cos(latitude_rad), std::sin(latitude_rad));
+  return -(kEarthRotation_rad_per_s - kBack_rad_per_s) * open_s * pole;
+}
+
+}  // namespace
+
+Observer ObserverOf(const PreparedScene& scene, const CameraSample& camera_sample) {
+  const SceneGround& ground = scene.ground();
+  if (const auto pose = camera_sample.middle())
+    return {pose->place, StandAt(ground, pose->place), camera_sample.instant};
+  const GeodeticPosition& place = scene.scene().place;
+  return {{place.latitude_rad, place.longitude_rad, ground.eye_height_m},
+          StandOfScene(ground),
+          camera_sample.instant};
+}
+
+SunPosition ApparentSun(const PreparedScene& scene, const Observer& observer) {
+  return ApparentSunAt(observer.eye, observer.instant, GentleAirOf(scene.medium()));
+}
+
+double IlluminanceBy(const PreparedScene& scene, const DistantLight& source, const glm::dvec3& eye,
+                     const Lighting& light) {
+  const AirModel& air = scene.models().whole();
+  const LocalSun sun = air.ground_light.LocalSunAt(eye, light.By(source));
+  const auto direct = static_cast<float>(sun.visible_fraction * std::max(sun.mu_s_effective, 0.0));
+  const BandLight irradiance =
+      direct * air.sunlit().BeamLeft(sun.altitude_m, sun.mu_s_effective) +
+      air.multiple_scattering.SkyIrradiance(sun.altitude_m, sun.mu_s_for_air);
+  return scene.colour().Xyz(InDouble(source.irradiance * irradiance))[1];
+}
+
+double Illuminance(const PreparedScene& scene, const glm::dvec3& eye, const Lighting& light) {
+  double lux = light.night ? scene.colour().Xyz(InDouble(light.night->OnSurface(1.0)))[1] : 0.0;
+  for (const DistantLight& source : light.Lights()) lux += IlluminanceBy(scene, source, eye, light);
+  return lux;
+}
+
+namespace {
+
+/// Adds the night sky and moonlight to `light` if the sun is dim enough.
+void AddNight(const PreparedScene& scene, const Observer& observer, double earth_sun_au,
+              Lighting& light) {
+  const Medium& medium = scene.medium();
+  const SceneGeometry& geometry = scene.geometry();
+  const CameraStand& stand = observer.stand;
+  light.moon_colour = MoonColour(*light.moon, medium.wavelengths_nm);
+  const double sun_lux = Illuminance(scene, stand.eye, light);
+  if (sun_lux > kDaylight_lux) return;
+  const DistantLight moonlight = MoonlightOf(*light.moon, observer.eye, observer.instant,
+                                             earth_sun_au, light.moon_colour, light.WholeSun());
+  const double moon_lux = IlluminanceBy(scene, moonlight, stand.eye, light);
+  if (moon_lux > kUnseenShare * (sun_lux + kNightSky_lux)) light.moonlight = moonlight;
+  const double depression_rad =
+      -std::asin(glm::dot(light.to_sun_for_air, geometry.UpAt(stand.eye)));
+  light.shows =
+      sun_lux > kUnseenShare * (moon_lux + kNightSky_lux) ||
+      depression_rad < DepressionOfDarkAir(geometry.AltitudeOf(stand.eye), geometry.radius_m(),
+                                           medium.atmosphere_height_m);
+  const std::optional<BandLight>& towns = scene.towns();
+  const double towns_lux =
+      towns ? kPi * scene.colour().Xyz(InDouble(*towns))[1] : 0.0;  // upper bound
+  if (kNightSky_lux + towns_lux < kUnseenShare * sun_lux) return;
+  light.night = std::make_shared<NightLight>(
+      NightSky(observer.eye, observer.instant).InFrame(stand.frame_from_enu),
+      scene.models().whole().air, scene.colour(), geometry.UpAt(stand.eye),
+      geometry.AltitudeOf(stand.eye), towns);
+}
+
+}  // namespace
+
+Lighting LightingAt(const PreparedScene& scene, const Observer& observer) {
+  const Medium& medium = scene.medium();
+  const glm::dmat3& frame_from_enu = observer.stand.frame_from_enu;
+  const SunPosition sun = ApparentSun(scene, observer);
+  Lighting light =
+      LightingOf(sun, observer.instant, scene.scene().place, medium, scene.scene().ground.wetness);
+  light.to_sun = frame_from_enu * light.to_sun;
+  light.to_sun_for_air = frame_from_enu * light.to_sun_for_air;
+  if (!medium.follows_wgs84) return light;  // other planets have other moons
+  light.moon =
+      ApparentMoonDisk(observer.eye, observer.instant, sun.distance_au, GentleAirOf(medium));
+  const EclipsedDisk disk = EclipsedDiskOf(sun, MoonAt(observer.eye, observer.instant));
+  if (disk.IsCovered()) {
+    light = light.EclipsedBy(disk, medium.wavelengths_nm);
+    light.moon->to_moon = ToMoonBefore(sun, observer.eye, observer.instant);
+  }
+  light.moon->to_moon = frame_from_enu * light.moon->to_moon;
+  light.moon->to_moon_for_air = frame_from_enu * light.moon->to_moon_for_air;
+  light.moon->to_sun = frame_from_enu * light.moon->to_sun;
+  light.moon_turn =
+      MoonTurn(scene.scene().camera.shutter_s, observer.eye.latitude_rad, observer.stand);
+  AddNight(scene, observer, sun.distance_au, light);
+  return light;
+}
+
+}  // namespace alpenglow::renderer
