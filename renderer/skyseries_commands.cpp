@@ -105,7 +105,7 @@ EventDay FirstDayOf(const TimesOptions& options) {
 /// Plots from the first noon on, by day and by night.
 void WritePlot(const TimesOptions& options, const EventDay& first) {
   const SceneRenderer renderer(SceneOf(options));
-  const double span_s = 86400.0 * options.days, step_s = 60.0 * options.every_min;
+  const double span_s = kSecondsPerDay * options.days, step_s = 60.0 * options.every_min;
   std::vector<PlottedMoment> moments;
   for (double at_s = 0.0; at_s <= span_s; at_s += step_s) {
     ThrowIfInterrupted();

@@ -6,6 +6,7 @@
 #include <glm/geometric.hpp>
 
 #include "atmosphere/astronomy/sun.h"
+#include "atmosphere/base/enum_names.h"
 #include "atmosphere/base/error.h"
 #include "atmosphere/math/constants.h"
 #include "atmosphere/math/numerics.h"
@@ -179,12 +180,12 @@ std::optional<SolarEclipse> FindSolarEclipse(const GeodeticPosition& place, cons
 }
 
 std::optional<EclipseEvent> EclipseEventFromName(std::string_view name) {
-  if (name == "first-contact") return EclipseEvent::kFirstContact;
-  if (name == "second-contact") return EclipseEvent::kSecondContact;
-  if (name == "eclipse-maximum") return EclipseEvent::kMaximum;
-  if (name == "third-contact") return EclipseEvent::kThirdContact;
-  if (name == "last-contact") return EclipseEvent::kLastContact;
-  return std::nullopt;
+  constexpr EnumNames<EclipseEvent, 5> kNames({{EclipseEvent::kFirstContact, "first-contact"},
+                                               {EclipseEvent::kSecondContact, "second-contact"},
+                                               {EclipseEvent::kMaximum, "eclipse-maximum"},
+                                               {EclipseEvent::kThirdContact, "third-contact"},
+                                               {EclipseEvent::kLastContact, "last-contact"}});
+  return kNames.Find(name);
 }
 
 std::optional<UtcInstant> InstantOf(EclipseEvent event, const SolarEclipse& eclipse) {

@@ -9,6 +9,7 @@
 
 #include "atmosphere/astronomy/ephemeris.h"
 #include "atmosphere/astronomy/sun.h"
+#include "atmosphere/base/enum_names.h"
 #include "atmosphere/base/error.h"
 #include "atmosphere/math/constants.h"
 #include "atmosphere/math/numerics.h"
@@ -220,10 +221,10 @@ UtcInstant NextMoonTransit(const GeodeticPosition& place, const UtcInstant& afte
 }
 
 std::optional<MoonEvent> MoonEventFromName(std::string_view name) {
-  if (name == "moonrise") return MoonEvent::kMoonrise;
-  if (name == "moonset") return MoonEvent::kMoonset;
-  if (name == "moon-transit") return MoonEvent::kMoonTransit;
-  return std::nullopt;
+  constexpr EnumNames<MoonEvent, 3> kNames({{MoonEvent::kMoonrise, "moonrise"},
+                                            {MoonEvent::kMoonset, "moonset"},
+                                            {MoonEvent::kMoonTransit, "moon-transit"}});
+  return kNames.Find(name);
 }
 
 std::optional<UtcInstant> NextMoonEvent(MoonEvent event, const GeodeticPosition& place,

@@ -54,7 +54,8 @@ const std::vector<Star>& Catalogue() {
 std::vector<PointLight> StarsAt(const UtcInstant& instant, double faintest) {
   constexpr double kDayOf2000 = 51544.5, kDaysOfYear = 365.25;
   const double years =
-      (instant.modified_julian_day + instant.second_of_day / 86400.0 - kDayOf2000) / kDaysOfYear;
+      (instant.modified_julian_day + instant.second_of_day / kSecondsPerDay - kDayOf2000) /
+      kDaysOfYear;
   const glm::dmat3 ecef_from_gcrs = EcefFromGcrs(instant, DeltaT(instant));
   std::vector<PointLight> lights;
   for (const Star& star : Catalogue()) {

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "atmosphere/astronomy/ephemeris.h"
+#include "atmosphere/base/enum_names.h"
 #include "atmosphere/base/error.h"
 #include "atmosphere/math/constants.h"
 #include "atmosphere/math/numerics.h"
@@ -99,17 +100,17 @@ constexpr double kEventStep_s = 1800.0;
 constexpr int kEventSteps = 48;
 constexpr double kEventTolerance_s = 0.01;
 
-constexpr std::array<std::pair<std::string_view, SunEvent>, 9> kNames = {{
-    {"noon", SunEvent::kNoon},
-    {"sunrise", SunEvent::kSunrise},
-    {"sunset", SunEvent::kSunset},
-    {"civil-dawn", SunEvent::kCivilDawn},
-    {"civil-dusk", SunEvent::kCivilDusk},
-    {"nautical-dawn", SunEvent::kNauticalDawn},
-    {"nautical-dusk", SunEvent::kNauticalDusk},
-    {"astronomical-dawn", SunEvent::kAstronomicalDawn},
-    {"astronomical-dusk", SunEvent::kAstronomicalDusk},
-}};
+constexpr EnumNames<SunEvent, 9> kSunEvents({
+    {SunEvent::kNoon, "noon"},
+    {SunEvent::kSunrise, "sunrise"},
+    {SunEvent::kSunset, "sunset"},
+    {SunEvent::kCivilDawn, "civil-dawn"},
+    {SunEvent::kCivilDusk, "civil-dusk"},
+    {SunEvent::kNauticalDawn, "nautical-dawn"},
+    {SunEvent::kNauticalDusk, "nautical-dusk"},
+    {SunEvent::kAstronomicalDawn, "astronomical-dawn"},
+    {SunEvent::kAstronomicalDusk, "astronomical-dusk"},
+});
 
 /// The crossing that defines an event: elevation, limb or centre, and direction.
 struct Crossing {
@@ -232,12 +233,7 @@ double NoonOf(const GeodeticPosition& place, const UtcInstant& midnight) {
 
 }  // namespace
 
-std::optional<SunEvent> SunEventFromName(std::string_view name) {
-  for (const auto& [known, event] : kNames) {
-    if (known == name) return event;
-  }
-  return std::nullopt;
-}
+std::optional<SunEvent> SunEventFromName(std::string_view name) { return kSunEvents.Find(name); }
 
 std::optional<UtcInstant> FindSunEvent(SunEvent event, const GeodeticPosition& place,
                                        const UtcInstant& around) {

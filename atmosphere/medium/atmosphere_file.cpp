@@ -36,7 +36,7 @@ const Names kMieKeys{
     "phase_per_sr",     "droplet_diameter_um"};
 // Values of mie.phase that are not a PhaseKind, or that need more than parameters.
 constexpr const char* kFog = "fog";
-constexpr const char* kTabulated = "table";
+constexpr const char* kTablePhase = "table";
 constexpr const char* kByMolecules = "molecules";
 constexpr const char* kByAlmanacs = "almanacs";
 const Names kTableKeys{"phase_file", "phase_angles_deg", "phase_per_sr"};
@@ -263,7 +263,7 @@ class AtmosphereFile {
     RefuseKeysOfOtherPhases(name.value_or(""));
     if (name == kFog) {
       phases = {FogOfFile()};
-    } else if (name == kTabulated) {
+    } else if (name == kTablePhase) {
       phases = TableOfFile(medium.wavelengths_nm);
     } else if (name || (mie_->Has("g") && phases.front().kind == PhaseKind::kTable)) {
       const PhaseKind kind = name ? KindOf(*name) : PhaseKind::kCornetteShanks;
@@ -304,7 +304,7 @@ class AtmosphereFile {
       }
     };
     refuse("droplet_diameter_um", kFog);
-    for (const std::string& key : kTableKeys) refuse(key, kTabulated);
+    for (const std::string& key : kTableKeys) refuse(key, kTablePhase);
   }
 
   PhaseFunction FogOfFile() const {

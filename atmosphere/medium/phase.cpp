@@ -9,6 +9,7 @@
 #include <cstddef>
 #include <utility>
 
+#include "atmosphere/base/enum_names.h"
 #include "atmosphere/base/error.h"
 #include "atmosphere/math/constants.h"
 #include "atmosphere/medium/phase_table.h"
@@ -66,16 +67,16 @@ ScatteringMatrix SphereMatrix(const SphereRatios& ratios, double phase_per_sr,
 
 namespace {
 
-constexpr std::array<std::pair<std::string_view, PhaseKind>, 8> kPhaseNames{{
-    {"rayleigh", PhaseKind::kRayleigh},
-    {"henyey-greenstein", PhaseKind::kHenyeyGreenstein},
-    {"double-henyey-greenstein", PhaseKind::kDoubleHenyeyGreenstein},
-    {"cornette-shanks", PhaseKind::kCornetteShanks},
-    {"schlick", PhaseKind::kSchlick},
-    {"draine", PhaseKind::kDraine},
-    {"henyey-greenstein-draine", PhaseKind::kHenyeyGreensteinDraine},
-    {"table", PhaseKind::kTable},
-}};
+constexpr EnumNames<PhaseKind, 8> kPhaseNames({
+    {PhaseKind::kRayleigh, "rayleigh"},
+    {PhaseKind::kHenyeyGreenstein, "henyey-greenstein"},
+    {PhaseKind::kDoubleHenyeyGreenstein, "double-henyey-greenstein"},
+    {PhaseKind::kCornetteShanks, "cornette-shanks"},
+    {PhaseKind::kSchlick, "schlick"},
+    {PhaseKind::kDraine, "draine"},
+    {PhaseKind::kHenyeyGreensteinDraine, "henyey-greenstein-draine"},
+    {PhaseKind::kTable, "table"},
+});
 
 double SchlickK(double g) { return g * (1.55 - 0.55 * g * g); }
 
@@ -271,20 +272,10 @@ PhaseFunction FogPhase(double droplet_diameter_um, const std::string& key) {
 }
 
 PhaseKind PhaseKindFromName(std::string_view name) {
-  std::string known;
-  for (const auto& [known_name, kind] : kPhaseNames) {
-    if (known_name == name) return kind;
-    known += fmt::format("{}{}", known.empty() ? "" : ", ", known_name);
-  }
-  throw InputError(fmt::format("phase is \"{}\"; it must be one of {}", name, known));
+  return kPhaseNames.Named(name, "phase is \"{}\"; it must be one of {}");
 }
 
-std::string NameOf(PhaseKind kind) {
-  for (const auto& [name, known_kind] : kPhaseNames) {
-    if (known_kind == kind) return std::string(name);
-  }
-  throw InternalError("unknown kind of phase function");
-}
+std::string NameOf(PhaseKind kind) { return kPhaseNames.Of(kind); }
 
 void Validate(const PhaseFunction& phase, const std::string& prefix) {
   RequireLobe(phase.g, phase.kind == PhaseKind::kSchlick ? kLargestSchlickG : 1.0, prefix + ".g");

@@ -33,7 +33,7 @@ using std::chrono::sys_seconds;
 constexpr int kFirstYear = 1900;
 constexpr int kLastYear = 2100;
 constexpr int kUnixEpoch = 40587;  // modified Julian day of 1970-01-01
-constexpr int kDay_s = 86400;
+constexpr int kDay_s = static_cast<int>(kSecondsPerDay);
 
 sys_days DayOf(int modified_julian_day) { return sys_days(days(modified_julian_day - kUnixEpoch)); }
 
@@ -278,7 +278,7 @@ double ParseDuration(std::string_view text) {
         text));
   };
   constexpr std::array<std::pair<char, double>, 4> kUnits = {
-      {{'d', 86400.0}, {'h', 3600.0}, {'m', 60.0}, {'s', 1.0}}};
+      {{'d', kSecondsPerDay}, {'h', 3600.0}, {'m', 60.0}, {'s', 1.0}}};
   TextCursor cursor(text);
   const bool negative = cursor.Accept('-');
   if (!negative) cursor.Accept('+');
@@ -316,7 +316,7 @@ double TtMinusUtc(int modified_julian_day, double second_of_day) {
   eraJd2cal(2400000.5, modified_julian_day, &year, &month, &day, &fraction);
   double tai_minus_utc_s = 0.0;
   const int status =
-      eraDat(year, month, day, std::min(second_of_day / 86400.0, 1.0), &tai_minus_utc_s);
+      eraDat(year, month, day, std::min(second_of_day / kSecondsPerDay, 1.0), &tai_minus_utc_s);
   ALPENGLOW_ENSURE(status, >=, 0);  // positive: dubious, but the best available result
   return tai_minus_utc_s + kTtMinusTai_s;
 }
@@ -346,18 +346,18 @@ double EspenakMeeus(double year) {
 }
 
 double JulianYear(int modified_julian_day, double second_of_day) {
-  return 2000.0 + (modified_julian_day - 51544.5 + second_of_day / 86400.0) / 365.25;
+  return 2000.0 + (modified_julian_day - 51544.5 + second_of_day / kSecondsPerDay) / 365.25;
 }
 
 }  // namespace
 
 double DayLength(int modified_julian_day) {
   if (modified_julian_day < kFirstDayOfLeapSeconds || modified_julian_day >= kFirstDayUnknown) {
-    return 86400.0;
+    return kSecondsPerDay;
   }
   const double step_s =
       TtMinusUtc(modified_julian_day + 1, 0.0) - TtMinusUtc(modified_julian_day, 0.0);
-  return step_s > 0.5 ? 86401.0 : 86400.0;
+  return step_s > 0.5 ? kSecondsPerDay + 1.0 : kSecondsPerDay;
 }
 
 double DeltaT(const UtcInstant& instant) {
@@ -368,9 +368,9 @@ double DeltaT(const UtcInstant& instant) {
   const double year = JulianYear(day, instant.second_of_day);
   const int seam_day = day < kFirstDayOfUtc ? kFirstDayOfUtc : kFirstDayUnknown;
   const double seam_year = JulianYear(seam_day, 0.0);
-  const double gap_s =
-      (day < kFirstDayOfUtc ? TtMinusUtc(seam_day, 0.0) : TtMinusUtc(seam_day - 1, 86400.0)) -
-      EspenakMeeus(seam_year);
+  const double gap_s = (day < kFirstDayOfUtc ? TtMinusUtc(seam_day, 0.0)
+                                             : TtMinusUtc(seam_day - 1, kSecondsPerDay)) -
+                       EspenakMeeus(seam_year);
   // Before 1960 the polynomials represent observations: the gap (0.03 s) fades within ten years. In
   // 2027 they are a forecast that is 6 s too high; there is no indication that the earth's rotation
   // will catch up, so the gap remains.

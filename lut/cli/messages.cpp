@@ -17,6 +17,7 @@
 #include <set>
 #include <system_error>
 
+#include "atmosphere/base/enum_names.h"
 #include "atmosphere/base/error.h"
 #include "lut/layer.h"
 
@@ -112,12 +113,11 @@ std::string DurationText(double seconds) {
 }
 
 ProgressStyle ProgressStyleFromName(const std::string& name) {
-  if (name == "auto") return ProgressStyle::kAuto;
-  if (name == "plain") return ProgressStyle::kPlain;
-  if (name == "json") return ProgressStyle::kJson;
-  if (name == "quiet") return ProgressStyle::kQuiet;
-  throw InputError(
-      fmt::format("--progress is \"{}\"; it must be auto, plain, json or quiet", name));
+  constexpr EnumNames<ProgressStyle, 4> kNames({{ProgressStyle::kAuto, "auto"},
+                                                {ProgressStyle::kPlain, "plain"},
+                                                {ProgressStyle::kJson, "json"},
+                                                {ProgressStyle::kQuiet, "quiet"}});
+  return kNames.Named(name, "--progress is \"{0}\"; it must be {2}");
 }
 
 struct Progress::State {

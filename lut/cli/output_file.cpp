@@ -173,6 +173,16 @@ void WriteTextAtomically(const fs::path& target, std::string_view text) {
   });
 }
 
+void MakeFolder(const fs::path& folder) {
+  if (folder.empty()) return;
+  std::error_code error;
+  fs::create_directories(folder, error);
+  if (error || !fs::is_directory(folder, error)) {
+    throw OutputError(fmt::format("{}: no such folder can be made: {}", folder.string(),
+                                  error ? error.message() : "it is a file"));
+  }
+}
+
 void RequireWritable(const fs::path& target) { const Temporary probe(FinalName(target)); }
 
 std::size_t RemoveAbandonedTemporaries(const fs::path& folder) {

@@ -53,6 +53,10 @@ void WriteFileAtomically(const std::filesystem::path& target,
 /// Writes the given text to a file atomically.
 void WriteTextAtomically(const std::filesystem::path& target, std::string_view text);
 
+/// Creates a folder and the folders above it; does nothing for an empty name. Throws OutputError
+/// naming the folder if it cannot be created.
+void MakeFolder(const std::filesystem::path& folder);
+
 /// Throws the OutputError with which writing to the target would fail (missing folder, missing
 /// permission, a folder with this name): to be called before the work, so that it is not lost.
 void RequireWritable(const std::filesystem::path& target);

@@ -12,6 +12,7 @@
 #include <string_view>
 #include <vector>
 
+#include "atmosphere/base/enum_names.h"
 #include "atmosphere/base/error.h"
 #include "atmosphere/math/constants.h"
 #include "atmosphere/reference/path_tracer.h"
@@ -31,16 +32,17 @@ constexpr std::array<std::string_view, 7> kColumnNames{"id",
                                                        "sun_zenith_deg",
                                                        "distance_m"};
 
-const std::map<std::string_view, Quantity> kQuantities{
-    {"transmittance", Quantity::kTransmittance},
-    {"optical_depth", Quantity::kOpticalDepth},
-    {"single", Quantity::kSingle},
-    {"inscatter_single", Quantity::kInscatterSingle},
-    {"total", Quantity::kTotal},
-    {"stokes_q", Quantity::kStokesQ},
-    {"stokes_u", Quantity::kStokesU},
-    {"irradiance_sun", Quantity::kIrradianceSun},
-    {"irradiance_sky", Quantity::kIrradianceSky}};
+constexpr EnumNames<Quantity, 9> kQuantities({
+    {Quantity::kInscatterSingle, "inscatter_single"},
+    {Quantity::kIrradianceSky, "irradiance_sky"},
+    {Quantity::kIrradianceSun, "irradiance_sun"},
+    {Quantity::kOpticalDepth, "optical_depth"},
+    {Quantity::kSingle, "single"},
+    {Quantity::kStokesQ, "stokes_q"},
+    {Quantity::kStokesU, "stokes_u"},
+    {Quantity::kTotal, "total"},
+    {Quantity::kTransmittance, "transmittance"},
+});
 
 }  // namespace
 
@@ -56,14 +58,12 @@ std::optional<Case> CaseReader::Next() {
     Fail(result.line,
          "quantity airlight has columns of its own; put such cases in a file of theirs");
   }
-  const auto quantity = kQuantities.find(lines_.Field(kQuantity));
-  if (quantity == kQuantities.end()) {
-    std::vector<std::string_view> names;
-    for (const auto& [name, unused] : kQuantities) names.push_back(name);
+  const std::optional<Quantity> quantity = kQuantities.Find(lines_.Field(kQuantity));
+  if (!quantity) {
     Fail(result.line, fmt::format("quantity is \"{}\"; it must be one of {}",
-                                  lines_.Field(kQuantity), fmt::join(names, ", ")));
+                                  lines_.Field(kQuantity), fmt::join(kQuantities.All(), ", ")));
   }
-  result.quantity = quantity->second;
+  result.quantity = *quantity;
   const double altitude_m = lines_.Number(kAltitude, -12000.0, 1e9);
   const double view_deg = lines_.Number(kView, 0.0, 180.0);
   result.relative_azimuth_deg = lines_.Number(kAzimuth, -360.0, 360.0);

@@ -16,6 +16,7 @@
 #include <memory>
 #include <string_view>
 
+#include "atmosphere/base/enum_names.h"
 #include "atmosphere/base/error.h"
 #include "atmosphere/math/constants.h"
 #include "lut/cli/output_file.h"
@@ -61,24 +62,18 @@ std::optional<std::string> FaultyValue(const Image& image) {
   return std::nullopt;
 }
 
-std::string NameOf(StokesLayer layer) {
-  switch (layer) {
-    case StokesLayer::kQ:
-      return "stokes_q";
-    case StokesLayer::kU:
-      return "stokes_u";
-    case StokesLayer::kPolarisation:
-      return "polarisation";
-  }
-  throw InternalError("a layer without a name");
-}
+namespace {
+
+constexpr EnumNames<StokesLayer, 3> kStokesNames({{StokesLayer::kQ, "stokes_q"},
+                                                  {StokesLayer::kU, "stokes_u"},
+                                                  {StokesLayer::kPolarisation, "polarisation"}});
+
+}  // namespace
+
+std::string NameOf(StokesLayer layer) { return kStokesNames.Of(layer); }
 
 StokesLayer StokesLayerFromName(const std::string& name) {
-  for (const StokesLayer layer : kStokesLayers) {
-    if (NameOf(layer) == name) return layer;
-  }
-  throw InputError(
-      fmt::format("layer \"{}\" is not one of stokes_q, stokes_u, polarisation", name));
+  return kStokesNames.Named(name, "layer \"{}\" is not one of {}");
 }
 
 std::vector<std::string> ChannelsOf(StokesLayer layer) {

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <utility>
 
+#include "atmosphere/base/enum_names.h"
 #include "atmosphere/base/error.h"
 #include "lut/image/eye.h"
 #include "lut/image/metering.h"
@@ -54,17 +55,10 @@ ExposureRule ExposureRuleFromText(const std::string& text) {
 }
 
 std::string NameOf(ExposureRule::Kind kind) {
-  switch (kind) {
-    case ExposureRule::Kind::kMetered:
-      return "metered";
-    case ExposureRule::Kind::kIncident:
-      return "incident";
-    case ExposureRule::Kind::kFixed:
-      return "fixed";
-    case ExposureRule::Kind::kEye:
-      return "eye";
-  }
-  throw InternalError("unknown rule of exposure");
+  using enum ExposureRule::Kind;
+  constexpr EnumNames<ExposureRule::Kind, 4> kNames(
+      {{kMetered, "metered"}, {kIncident, "incident"}, {kFixed, "fixed"}, {kEye, "eye"}});
+  return kNames.Of(kind);
 }
 
 namespace {
@@ -187,30 +181,20 @@ std::optional<double> Ev100FromText(const std::string& text) {
   return RequireInRange(ev100, -30.0, 30.0, "exposure");
 }
 
+namespace {
+
+constexpr EnumNames<ToneCurve, 5> kToneCurves({{ToneCurve::kAgx, "agx"},
+                                               {ToneCurve::kAces, "aces"},
+                                               {ToneCurve::kReinhard, "reinhard"},
+                                               {ToneCurve::kPbrNeutral, "pbr-neutral"},
+                                               {ToneCurve::kLinear, "linear"}});
+
+}  // namespace
+
 ToneCurve ToneCurveFromName(const std::string& name) {
-  if (name == "agx") return ToneCurve::kAgx;
-  if (name == "aces") return ToneCurve::kAces;
-  if (name == "reinhard") return ToneCurve::kReinhard;
-  if (name == "pbr-neutral") return ToneCurve::kPbrNeutral;
-  if (name == "linear") return ToneCurve::kLinear;
-  throw InputError(fmt::format(
-      "tone curve is \"{}\"; it must be agx, aces, reinhard, pbr-neutral or linear", name));
+  return kToneCurves.Named(name, "tone curve is \"{0}\"; it must be {2}");
 }
 
-std::string NameOf(ToneCurve curve) {
-  switch (curve) {
-    case ToneCurve::kAgx:
-      return "agx";
-    case ToneCurve::kAces:
-      return "aces";
-    case ToneCurve::kReinhard:
-      return "reinhard";
-    case ToneCurve::kPbrNeutral:
-      return "pbr-neutral";
-    case ToneCurve::kLinear:
-      return "linear";
-  }
-  throw InternalError("unknown tone curve");
-}
+std::string NameOf(ToneCurve curve) { return kToneCurves.Of(curve); }
 
 }  // namespace alpenglow::lut

@@ -4,51 +4,43 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "atmosphere/base/enum_names.h"
 #include "atmosphere/base/error.h"
 #include "lut/layer.h"
 
 namespace alpenglow::lut {
 namespace {
 
-struct NamedLook {
-  AgxLook look;
-  const char* name;
-  AgxGrade grade;
-};
+constexpr EnumNames<AgxLook, 5> kLooks({{AgxLook::kPhoto, "photo"},
+                                        {AgxLook::kNone, "none"},
+                                        {AgxLook::kPunchy, "punchy"},
+                                        {AgxLook::kMedium, "medium"},
+                                        {AgxLook::kHigh, "high"}});
 
-constexpr std::array<NamedLook, 5> kLooks{{
-    {AgxLook::kPhoto, "photo", {0.6, 1.8, true, 0.38, 1.0, 1.0, 0.35, true}},
-    {AgxLook::kNone, "none", {}},
-    {AgxLook::kPunchy, "punchy", {0.0, 1.0, false, 0.0, 1.3, 1.2, 0.0, false}},
-    {AgxLook::kMedium, "medium", {0.0, 1.2, false, 0.0, 1.0, 1.0, 0.0, false}},
-    {AgxLook::kHigh, "high", {0.0, 1.4, false, 0.0, 1.0, 0.95, 0.0, false}},
-}};
+}  // namespace
 
-const NamedLook& Entry(AgxLook look) {
-  for (const NamedLook& entry : kLooks) {
-    if (entry.look == look) return entry;
+AgxGrade GradeOf(AgxLook look) {
+  switch (look) {
+    case AgxLook::kPhoto:
+      return {0.6, 1.8, true, 0.38, 1.0, 1.0, 0.35, true};
+    case AgxLook::kNone:
+      return {};
+    case AgxLook::kPunchy:
+      return {0.0, 1.0, false, 0.0, 1.3, 1.2, 0.0, false};
+    case AgxLook::kMedium:
+      return {0.0, 1.2, false, 0.0, 1.0, 1.0, 0.0, false};
+    case AgxLook::kHigh:
+      return {0.0, 1.4, false, 0.0, 1.0, 0.95, 0.0, false};
   }
   throw InternalError("unknown look");
 }
 
-}  // namespace
-
-AgxGrade GradeOf(AgxLook look) { return Entry(look).grade; }
-
 AgxLook AgxLookFromName(const std::string& name) {
-  for (const NamedLook& entry : kLooks) {
-    if (name == entry.name) return entry.look;
-  }
-  throw InputError(
-      fmt::format("look is \"{}\"; it must be one of {}", name, fmt::join(AgxLookNames(), ", ")));
+  return kLooks.Named(name, "look is \"{}\"; it must be one of {}");
 }
 
-std::string NameOf(AgxLook look) { return Entry(look).name; }
+std::string NameOf(AgxLook look) { return kLooks.Of(look); }
 
-std::vector<std::string> AgxLookNames() {
-  std::vector<std::string> names;
-  for (const NamedLook& entry : kLooks) names.emplace_back(entry.name);
-  return names;
-}
+std::vector<std::string> AgxLookNames() { return kLooks.All(); }
 
 }  // namespace alpenglow::lut

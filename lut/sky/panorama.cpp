@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "atmosphere/astronomy/sun.h"
+#include "atmosphere/base/enum_names.h"
 #include "atmosphere/base/error.h"
 #include "atmosphere/colour/spectrum.h"
 #include "atmosphere/math/constants.h"
@@ -77,14 +78,14 @@ PolarisedLight PolarisedRow::At(double azimuth_rad) const {
 
 namespace {
 
-constexpr std::array<std::pair<PanoramaOrientation, const char*>, 6> kNames{{
+constexpr EnumNames<PanoramaOrientation, 6> kOrientations({
     {PanoramaOrientation::kNorth, "north"},
     {PanoramaOrientation::kBlender, "blender"},
     {PanoramaOrientation::kOpenExr, "openexr"},
     {PanoramaOrientation::kThree, "three"},
     {PanoramaOrientation::kUnity, "unity"},
     {PanoramaOrientation::kGodot, "godot"},
-}};
+});
 
 /// View directions of the pixels of a latitude-longitude picture.
 struct PanoramaGrid {
@@ -280,19 +281,10 @@ SkyViewSize FineSize(const SkyViewSize& size) {
 
 PanoramaOrientation PanoramaOrientationFromName(const std::string& name) {
   if (name == "geographic") return PanoramaOrientation::kNorth;
-  for (const auto& [orientation, known] : kNames) {
-    if (name == known) return orientation;
-  }
-  throw InputError(fmt::format(
-      "orientation is \"{}\"; it must be north, blender, openexr, three, unity or godot", name));
+  return kOrientations.Named(name, "orientation is \"{0}\"; it must be {2}");
 }
 
-std::string NameOf(PanoramaOrientation orientation) {
-  for (const auto& [known, name] : kNames) {
-    if (known == orientation) return name;
-  }
-  throw InternalError("an orientation without a name");
-}
+std::string NameOf(PanoramaOrientation orientation) { return kOrientations.Of(orientation); }
 
 double CentreAzimuth(PanoramaOrientation orientation) {
   switch (orientation) {

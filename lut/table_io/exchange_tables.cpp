@@ -12,10 +12,12 @@
 #include <fstream>
 #include <utility>
 
+#include "atmosphere/base/enum_names.h"
 #include "atmosphere/base/error.h"
 #include "atmosphere/math/constants.h"
 #include "atmosphere/medium/medium.h"
 #include "atmosphere/medium/phase_text.h"
+#include "lut/cli/output_file.h"
 #include "lut/cli/program.h"
 #include "lut/table_io/table_folder.h"
 #include "lut/tables/transmittance_table.h"
@@ -223,16 +225,15 @@ std::string MediumText(const Medium& medium, const ExchangeOptions& options) {
 }  // namespace
 
 TexelType TexelTypeFromName(std::string_view name) {
-  if (name == "float") return TexelType::kFloat;
-  if (name == "half") return TexelType::kHalf;
-  throw InputError(fmt::format("type is \"{}\"; it must be float or half", name));
+  constexpr EnumNames<TexelType, 2> kNames(
+      {{TexelType::kFloat, "float"}, {TexelType::kHalf, "half"}});
+  return kNames.Named(name, "type is \"{0}\"; it must be {2}");
 }
 
 TexelFormat TexelFormatFromName(std::string_view name) {
-  if (name == "exr") return TexelFormat::kExr;
-  if (name == "bin") return TexelFormat::kBin;
-  if (name == "dat") return TexelFormat::kDat;
-  throw InputError(fmt::format("format is \"{}\"; it must be exr, bin or dat", name));
+  constexpr EnumNames<TexelFormat, 3> kNames(
+      {{TexelFormat::kExr, "exr"}, {TexelFormat::kBin, "bin"}, {TexelFormat::kDat, "dat"}});
+  return kNames.Named(name, "format is \"{0}\"; it must be {2}");
 }
 
 std::optional<std::string> FaultOf(const ExchangeOptions& options) {

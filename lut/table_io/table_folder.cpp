@@ -9,6 +9,7 @@
 #include <system_error>
 
 #include "atmosphere/base/error.h"
+#include "lut/cli/output_file.h"
 
 namespace alpenglow::lut {
 
@@ -41,15 +42,6 @@ TableQuality TableQualityFromName(std::string_view name) {
             16};
   }
   throw InputError(fmt::format("quality is \"{}\"; it must be preview, standard or fine", name));
-}
-
-void MakeFolder(const fs::path& folder) {
-  std::error_code error;
-  fs::create_directories(folder, error);
-  if (error || !fs::is_directory(folder, error)) {
-    throw OutputError(fmt::format("{}: no such folder can be made: {}", folder.string(),
-                                  error ? error.message() : "it is a file"));
-  }
 }
 
 void BuildTableFolder(const Medium& medium, const TableQuality& quality, TableOrders orders,

@@ -37,9 +37,6 @@ enum class TableOrders { kAll, kSingleOnly };
 /// Parses "preview", "standard" or "fine"; throws InputError for another name.
 [[nodiscard]] TableQuality TableQualityFromName(std::string_view name);
 
-/// Creates the folder if it is missing. Throws OutputError naming it.
-void MakeFolder(const std::filesystem::path& folder);
-
 /// Builds and writes every table, each file atomically; creates the folder if it is missing. Throws
 /// OutputError naming the file that could not be written.
 void BuildTableFolder(const Medium& medium, const TableQuality& quality, TableOrders orders,

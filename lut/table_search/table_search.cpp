@@ -9,6 +9,7 @@
 #include <system_error>
 
 #include "atmosphere/base/error.h"
+#include "lut/cli/output_file.h"
 #include "lut/cli/program.h"
 
 namespace alpenglow::lut {

@@ -10,6 +10,7 @@
 #include <glm/geometric.hpp>
 #include <glm/vec2.hpp>
 
+#include "atmosphere/base/enum_names.h"
 #include "atmosphere/base/error.h"
 #include "atmosphere/math/constants.h"
 #include "renderer/layer.h"
@@ -122,23 +123,22 @@ double PixelFilter::Offset(double u) const {
 
 double PixelFilter::Weight(double x) const { return Shape(x) / integral_; }
 
-const std::vector<std::string>& PixelFilterNames() {
-  static const std::vector<std::string> names{"box", "gaussian", "blackman-harris"};
-  return names;
-}
+namespace {
+
+constexpr EnumNames<PixelFilter::Kind, 3> kFilters({{PixelFilter::Kind::kBox, "box"},
+                                                    {PixelFilter::Kind::kGaussian, "gaussian"},
+                                                    {PixelFilter::Kind::kBlackmanHarris,
+                                                     "blackman-harris"}});
+
+}  // namespace
+
+std::vector<std::string> PixelFilterNames() { return kFilters.All(); }
 
 PixelFilter::Kind PixelFilterFromName(std::string_view name) {
-  const std::vector<std::string>& names = PixelFilterNames();
-  const auto found = std::find(names.begin(), names.end(), name);
-  if (found == names.end()) {
-    throw InputError(fmt::format("filter \"{}\" is not one of {}", name, fmt::join(names, ", ")));
-  }
-  return static_cast<PixelFilter::Kind>(found - names.begin());
+  return kFilters.Named(name, "filter \"{}\" is not one of {}");
 }
 
-std::string NameOf(PixelFilter::Kind kind) {
-  return PixelFilterNames()[static_cast<std::size_t>(kind)];
-}
+std::string NameOf(PixelFilter::Kind kind) { return kFilters.Of(kind); }
 
 namespace {
 

@@ -121,7 +121,7 @@ class PixelFilter {
 /// Throws InputError listing the valid names.
 [[nodiscard]] PixelFilter::Kind PixelFilterFromName(std::string_view name);
 [[nodiscard]] std::string NameOf(PixelFilter::Kind kind);
-[[nodiscard]] const std::vector<std::string>& PixelFilterNames();
+[[nodiscard]] std::vector<std::string> PixelFilterNames();
 
 /// The choice that a pair of sample numbers makes.
 enum class SampleOf : std::uint32_t { kPixel, kLens, kSunDisk, kTime };

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <iterator>
 
+#include "atmosphere/math/constants.h"
 #include "renderer/camera/camera_path.h"
 
 namespace alpenglow::renderer {
@@ -125,7 +126,7 @@ std::vector<std::size_t> LongestGrowing(const std::vector<std::optional<double>>
 
 /// Removes end points that lie far in time from the rest, such as those with another year.
 void CutFarEnds(const std::vector<std::optional<double>>& times_s, std::vector<std::size_t>& run) {
-  constexpr double kFar_s = 86400.0;
+  constexpr double kFar_s = kSecondsPerDay;
   constexpr double kLengths = 100.0;
   const auto is_far = [&](double step_s, double rest_s) {
     return step_s > std::max(kFar_s, kLengths * rest_s);

@@ -7,7 +7,6 @@
 #include <cmath>
 #include <map>
 #include <set>
-#include <system_error>
 
 #include "atmosphere/astronomy/eclipse.h"
 #include "atmosphere/astronomy/moon.h"
@@ -467,13 +466,6 @@ class Series {
   std::vector<Thumbnail> thumbnails_;
 };
 
-void CreateFolder(const fs::path& folder) {
-  if (folder.empty()) return;
-  std::error_code error;
-  fs::create_directories(folder, error);
-  if (error) throw OutputError(fmt::format("{}: {}", folder.string(), error.message()));
-}
-
 /// Returns the files made from all frames.
 std::vector<NamedFile> MadeOfTheFrames(const SeriesOutput& output) {
   std::vector<NamedFile> files;
@@ -531,10 +523,10 @@ SeriesSummary RunSeries(const SeriesSource& source, const std::vector<Frame>& fr
       throw InputError("--glare is of an eye that looks one way, not of a panorama");
   }
   RequireNoInputAmongTheOutputs(frames, output);
-  CreateFolder(output.name.Folder());
+  MakeFolder(output.name.Folder());
   if (output.video) RequireVideo(*output.video);
   for (const NamedFile& made : MadeOfTheFrames(output)) {
-    CreateFolder(made.file.parent_path());
+    MakeFolder(made.file.parent_path());
     RequireWritable(made.file);
   }
   Series series(source, frames, output);

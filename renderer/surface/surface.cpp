@@ -117,7 +117,7 @@ std::span<const NoiseOctave> OctavesOf(GroundNoise family) {
 }
 
 double SeaTime(const UtcInstant& instant) {
-  return (instant.modified_julian_day - 58849) * 86400.0 + instant.second_of_day;
+  return (instant.modified_julian_day - 58849) * kSecondsPerDay + instant.second_of_day;
 }
 
 double WaveSpeed(double wave_number) {

@@ -7,13 +7,17 @@
 #include <array>
 #include <cmath>
 
+#include "atmosphere/base/enum_names.h"
 #include "atmosphere/base/error.h"
 #include "viewer/layer.h"
 
 namespace alpenglow::viewer {
 namespace {
 
-constexpr std::array<const char*, 4> kNames{"low", "medium", "high", "reference"};
+constexpr EnumNames<Quality, 4> kQualities({{Quality::kLow, "low"},
+                                            {Quality::kMedium, "medium"},
+                                            {Quality::kHigh, "high"},
+                                            {Quality::kReference, "reference"}});
 
 /// A rendering configuration and its approximate relative cost.
 struct Step {
@@ -56,16 +60,11 @@ double MedianOf(std::deque<double> values) {
 
 }  // namespace
 
-std::string NameOf(Quality quality) { return kNames[static_cast<std::size_t>(quality)]; }
+std::string NameOf(Quality quality) { return kQualities.Of(quality); }
 
 QualityRule QualityRuleFromText(const std::string& text) {
   if (text == "auto") return {};
-  const auto* const at = std::find(kNames.begin(), kNames.end(), text);
-  if (at == kNames.end()) {
-    throw InputError(
-        fmt::format("--quality is \"{}\"; it is one of auto, low, medium, high, reference", text));
-  }
-  return {static_cast<Quality>(at - kNames.begin())};
+  return {kQualities.Named(text, "--quality is \"{}\"; it is one of auto, {}")};
 }
 
 PaintedQuality PaintedAlways(Quality quality) {
