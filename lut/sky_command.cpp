@@ -154,13 +154,10 @@ void MakeSky(const SkyOptions& options, const CommonOptions& common) {
   const double ev100 = Ev100Of(sky, seen, rule, look);
   Describe(job);
   job.metadata["alpenglow.illuminance_lux"] = fmt::format("{:.6g}", sky.illuminance_lux);
-  job.metadata["alpenglow.ev100"] = fmt::format("{:.4f}", ev100);
-  job.metadata["alpenglow.exposure"] = NameOf(rule.kind);
-  job.metadata["alpenglow.exposure_rule"] = RuleInWords(rule);
+  job.metadata.merge(HeaderOfExposure(rule, ev100, RuleInWords(rule)));
   WriteExr(options.out, sky.image, job.metadata, Projection::kLatitudeLongitude);
   if (options.png) {
-    job.metadata["alpenglow.tone_curve"] = NameOf(look);
-    job.metadata["alpenglow.white_balance"] = NameOf(look.white);
+    job.metadata.merge(HeaderOfLook(look));
     WritePng(*options.png, Develop(seen, ev100, look), job.metadata);
   }
 }

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <memory>
 
-#include "atmosphere/astronomy/eclipse.h"
 #include "atmosphere/base/parsing.h"
 #include "atmosphere/math/constants.h"
 #include "renderer/camera/track.h"
@@ -146,31 +145,19 @@ NotedPicture RenderFrame(const SceneRenderer& renderer, const CameraSample& came
   return {std::move(picture.image), std::move(notes)};
 }
 
-/// Warns about missing light in pictures during the totality of a solar eclipse.
-void WarnOfTotality(const SeriesSource& source, const std::vector<Frame>& frames) {
-  const auto is_total = [&](const Frame& frame) {
-    return source.has_moon && EclipseAt(source.PlaceOf(frame), frame.instant).disk.IsTotal();
-  };
-  const auto total = static_cast<int>(std::count_if(frames.begin(), frames.end(), is_total));
-  if (total == 0) return;
-  Say(
-      fmt::format("skyseries: warning: {} of {} frames stand in the totality of an eclipse; the "
-                  "corona is not drawn, and light that the air outside of the moon's shadow sends "
-                  "in is missing: such pictures are too dark\n",
-                  total, frames.size()));
-}
-
 void List(const SkyseriesOptions& options) {
   const Scene scene = SceneOf(options);
   const std::optional<CameraPath> path = PathOf(options, scene);
   const std::vector<Frame> frames = FramesOf(options, scene, path);
-  FrameListing listing;
-  listing.place_of = [&](const Frame& frame) {
-    return path ? path->PoseAt(frame.path_s).place : scene.place;
-  };
-  listing.zone = scene.zone;
-  if (!options.out.empty()) listing.name.emplace(options.out);
-  Print(ListOf(options.frames ? SelectFrames(frames, *options.frames) : frames, listing));
+  std::optional<FrameName> name;
+  if (!options.out.empty()) name.emplace(options.out);
+  std::vector<FrameRecord> records;
+  for (const Frame& frame : options.frames ? SelectFrames(frames, *options.frames) : frames) {
+    const GeodeticPosition place = path ? path->PoseAt(frame.path_s).place : scene.place;
+    FrameRecord& record = records.emplace_back(RecordOf(frame, place, scene.zone));
+    if (name) record.Set("file", name->Exr(frame.number).string());
+  }
+  Print(ListOf(records));
 }
 
 int Run(const SkyseriesOptions& options) {
@@ -241,7 +228,6 @@ int Run(const SkyseriesOptions& options) {
         return renderer(nullptr).Render(camera_sample(frame), PreviewSettings(settings, options));
       },
       scene.medium.follows_wgs84};
-  WarnOfTotality(source, selected);
   const SeriesSummary summary = RunSeries(source, frames, selected, output);
   if (!options.common.quiet) {
     if (summary.removed > 0) {

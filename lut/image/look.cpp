@@ -136,6 +136,17 @@ std::string RuleInWords(const ExposureRule& rule) {
   throw InternalError("unknown rule of exposure");
 }
 
+Metadata HeaderOfExposure(const ExposureRule& rule, double ev100,
+                          const std::string& rule_in_words) {
+  return {{"alpenglow.ev100", fmt::format("{:.4f}", ev100)},
+          {"alpenglow.exposure", NameOf(rule.kind)},
+          {"alpenglow.exposure_rule", rule_in_words}};
+}
+
+Metadata HeaderOfLook(const Look& look) {
+  return {{"alpenglow.tone_curve", NameOf(look)}, {"alpenglow.white_balance", NameOf(look.white)}};
+}
+
 double IncidentEv100(double illuminance_lux) {
   constexpr double kFlatReceptor = 250.0;  // C [lx s ISO]
   if (!(illuminance_lux > 0.0)) return kDarkestEv100;

@@ -103,6 +103,12 @@ struct ExposureRule {
 /// Returns the rule in words, for the metadata of output files.
 [[nodiscard]] std::string RuleInWords(const ExposureRule& rule);
 
+/// Returns the exposure of an image for its header. @param rule_in_words  RuleInWords, or more.
+[[nodiscard]] Metadata HeaderOfExposure(const ExposureRule& rule, double ev100,
+                                        const std::string& rule_in_words);
+/// Returns tone curve and white balance of a developed image for its header.
+[[nodiscard]] Metadata HeaderOfLook(const Look& look);
+
 /// Returns the reading of an incident-light meter: E S / C = 2^EV with C = 250 for a flat receptor
 /// (ISO 2720).
 /// @param illuminance_lux  on a horizontal plane, >= 0. The result lies within [kDarkestEv100,

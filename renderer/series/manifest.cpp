@@ -3,13 +3,13 @@
 
 #include <fmt/format.h>
 
+#include <array>
 #include <fstream>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
-#include "atmosphere/astronomy/eclipse.h"
-#include "atmosphere/astronomy/moon.h"
-#include "atmosphere/astronomy/sun.h"
+#include "atmosphere/astronomy/sky_bodies.h"
 #include "atmosphere/base/error.h"
 #include "atmosphere/math/constants.h"
 #include "lut/cli/messages.h"
@@ -198,72 +198,176 @@ std::string Fingerprint(const Metadata& metadata) {
   return hash.Text();
 }
 
-namespace {
-
-std::string LineOf(const Frame& frame, const FrameListing& listing) {
-  const GeodeticPosition place = listing.place_of(frame);
-  const SunPosition sun = SunAt(place, frame.instant);
-  const MoonPosition moon = MoonAt(place, frame.instant);
-  return fmt::format("{},{},{},{:.3f},{:.3f},{:.4f},{:.3f},{:.3f},{:.3f},{}\n", frame.number,
-                     FormatUtc(frame.instant),
-                     listing.zone ? FormatInZone(frame.instant, *listing.zone) : "",
-                     sun.azimuth_rad / kRadiansPerDegree, sun.elevation_rad / kRadiansPerDegree,
-                     CoveredLight(place, frame.instant), moon.azimuth_rad / kRadiansPerDegree,
-                     moon.elevation_rad / kRadiansPerDegree, moon.IlluminatedFraction(),
-                     listing.name ? listing.name->Exr(frame.number).string() : "");
+void FrameRecord::Set(std::string_view key, Value value) {
+  const auto* const text = std::get_if<std::string>(&value);
+  if (text != nullptr && text->empty()) value = std::monostate();
+  for (auto& [known, old] : values_) {
+    if (known != key) continue;
+    old = std::move(value);
+    return;
+  }
+  values_.emplace_back(key, std::move(value));
 }
 
-}  // namespace
+const FrameRecord::Value& FrameRecord::At(std::string_view key) const {
+  static const Value kUnknown;
+  for (const auto& [known, value] : values_) {
+    if (known == key) return value;
+  }
+  return kUnknown;
+}
 
-std::string ListOf(const std::vector<Frame>& frames, const FrameListing& listing) {
-  std::string text =
-      "frame,utc,local_time,sun_azimuth_deg,sun_elevation_deg,sun_covered,moon_azimuth_deg,"
-      "moon_elevation_deg,moon_illuminated,file\n";
-  for (const Frame& frame : frames) text += LineOf(frame, listing);
+std::optional<double> FrameRecord::Number(std::string_view key) const {
+  const auto* const number = std::get_if<double>(&At(key));
+  return number != nullptr ? std::optional(*number) : std::nullopt;
+}
+
+FrameRecord RecordOf(const Frame& frame, const GeodeticPosition& place,
+                     const std::optional<std::string>& zone, bool has_moon) {
+  const SkyBodies bodies = SkyBodiesAt(place, frame.instant);
+  FrameRecord record;
+  record.Set("frame", frame.number);
+  record.Set("utc", FormatUtc(frame.instant));
+  record.Set("local_time", zone ? FormatInZone(frame.instant, *zone) : "");
+  record.Set("sun_azimuth_deg", bodies.sun.azimuth_rad / kRadiansPerDegree);
+  record.Set("sun_elevation_deg", bodies.sun.elevation_rad / kRadiansPerDegree);
+  record.Set("sun_covered", has_moon ? bodies.CoveredLight() : 0.0);
+  record.Set("moon_azimuth_deg", bodies.moon.azimuth_rad / kRadiansPerDegree);
+  record.Set("moon_elevation_deg", bodies.moon.elevation_rad / kRadiansPerDegree);
+  record.Set("moon_illuminated", bodies.moon.IlluminatedFraction());
+  return record;
+}
+
+void AddPose(const Frame& frame, const CameraPose& pose, FrameRecord& record) {
+  record.Set("t_s", frame.path_s);
+  record.Set("latitude", pose.place.latitude_rad / kRadiansPerDegree);
+  record.Set("longitude", pose.place.longitude_rad / kRadiansPerDegree);
+  record.Set("height_m", pose.place.height_m);
+  record.Set("heading", pose.heading_rad / kRadiansPerDegree);
+  record.Set("pitch", pose.pitch_rad / kRadiansPerDegree);
+  record.Set("roll", pose.roll_rad / kRadiansPerDegree);
+  record.Set("fov", pose.fov_rad / kRadiansPerDegree);
+}
+
+namespace {
+
+constexpr std::array<RecordField, 8> kPoseFields{{{"t_s", "{:.6f}"},
+                                                  {"latitude", "{:.8f}"},
+                                                  {"longitude", "{:.8f}"},
+                                                  {"height_m", "{:.3f}"},
+                                                  {"heading", "{:.6f}"},
+                                                  {"pitch", "{:.6f}"},
+                                                  {"roll", "{:.6f}"},
+                                                  {"fov", "{:.6f}"}}};
+
+std::vector<RecordField> CsvFields(bool on_path) {
+  std::vector<RecordField> fields{{"frame"},
+                                  {"file"},
+                                  {"utc"},
+                                  {"local_time"},
+                                  {"sun_azimuth_deg", "{:.4f}"},
+                                  {"sun_elevation_deg", "{:.4f}"},
+                                  {"sun_covered", "{:.6f}"},
+                                  {"ev100", "{:.4f}"}};
+  if (on_path) fields.insert(fields.end(), kPoseFields.begin(), kPoseFields.end());
+  fields.push_back({"exposure"});
+  return fields;
+}
+
+std::vector<RecordField> JsonFields(bool on_path) {
+  std::vector<RecordField> fields{{"frame"},
+                                  {"file"},
+                                  {"utc"},
+                                  {"local_time"},
+                                  {"sun_azimuth_deg", "{:.4f}"},
+                                  {"sun_elevation_deg", "{:.4f}"},
+                                  {"sun_covered", "{:.6f}"},
+                                  {"moon_azimuth_deg", "{:.4f}"},
+                                  {"moon_elevation_deg", "{:.4f}"},
+                                  {"moon_illuminated", "{:.4f}"},
+                                  {"illuminance_lx", "{:.6g}"},
+                                  {"ev100", "{:.6g}"},
+                                  {"exposure"}};
+  if (on_path) fields.insert(fields.end(), kPoseFields.begin(), kPoseFields.end());
+  return fields;
+}
+
+const std::vector<RecordField>& ListFields() {
+  static const std::vector<RecordField> kFields{{"frame"},
+                                                {"utc"},
+                                                {"local_time"},
+                                                {"sun_azimuth_deg", "{:.3f}"},
+                                                {"sun_elevation_deg", "{:.3f}"},
+                                                {"sun_covered", "{:.4f}"},
+                                                {"moon_azimuth_deg", "{:.3f}"},
+                                                {"moon_elevation_deg", "{:.3f}"},
+                                                {"moon_illuminated", "{:.3f}"},
+                                                {"file"}};
+  return kFields;
+}
+
+/// Returns the value as text; empty if it is not known.
+std::string TextOf(const FrameRecord& record, const RecordField& field) {
+  return std::visit(
+      [&](const auto& value) -> std::string {
+        if constexpr (std::is_same_v<std::decay_t<decltype(value)>, std::monostate>)
+          return "";
+        else
+          return fmt::format(fmt::runtime(field.format), value);
+      },
+      record.At(field.key));
+}
+
+std::string Csv(const std::vector<FrameRecord>& records, const std::vector<RecordField>& fields) {
+  std::string text;
+  const auto add = [&](const RecordField& field, const std::string& cell) {
+    text += cell;
+    text += &field == &fields.back() ? '\n' : ',';
+  };
+  for (const RecordField& field : fields) add(field, field.key);
+  for (const FrameRecord& record : records) {
+    for (const RecordField& field : fields) add(field, TextOf(record, field));
+  }
   return text;
 }
 
-namespace {
-
-std::string StringOrNull(const std::string& text) {
-  return text.empty() ? "null" : JsonString(text);
-}
-
-std::string NumberOrNull(const std::optional<double>& value) {
-  return value ? fmt::format("{:.6g}", *value) : "null";
-}
-
-std::string PoseOf(const ManifestEntry& entry) {
-  if (!entry.pose) return "";
-  const CameraPose& pose = *entry.pose;
-  return fmt::format(
-      ",\"t_s\":{:.6f},\"latitude\":{:.8f},\"longitude\":{:.8f},\"height_m\":{:.3f},"
-      "\"heading\":{:.6f},\"pitch\":{:.6f},\"roll\":{:.6f},\"fov\":{:.6f}",
-      entry.frame.path_s, pose.place.latitude_rad / kRadiansPerDegree,
-      pose.place.longitude_rad / kRadiansPerDegree, pose.place.height_m,
-      pose.heading_rad / kRadiansPerDegree, pose.pitch_rad / kRadiansPerDegree,
-      pose.roll_rad / kRadiansPerDegree, pose.fov_rad / kRadiansPerDegree);
-}
-
-std::string ObjectOf(const ManifestEntry& entry) {
-  const SunPosition sun = SunAt(entry.place, entry.frame.instant);
-  const MoonPosition moon = MoonAt(entry.place, entry.frame.instant);
-  return fmt::format(
-      "{{\"frame\":{},\"file\":{},\"utc\":{},\"local_time\":{},\"sun_azimuth_deg\":{:.4f},"
-      "\"sun_elevation_deg\":{:.4f},\"sun_covered\":{:.6f},\"moon_azimuth_deg\":{:.4f},\"moon_"
-      "elevation_deg\":{:.4f},"
-      "\"moon_illuminated\":{:.4f},\"illuminance_lx\":{},\"ev100\":{},\"exposure\":{}{}}}",
-      entry.frame.number, JsonString(entry.file), JsonString(FormatUtc(entry.frame.instant)),
-      StringOrNull(entry.local_time), sun.azimuth_rad / kRadiansPerDegree,
-      sun.elevation_rad / kRadiansPerDegree, entry.sun_covered,
-      moon.azimuth_rad / kRadiansPerDegree, moon.elevation_rad / kRadiansPerDegree,
-      moon.IlluminatedFraction(), NumberOrNull(entry.illuminance_lx), NumberOrNull(entry.ev100),
-      StringOrNull(entry.exposure), PoseOf(entry));
+std::string JsonObject(const FrameRecord& record, const std::vector<RecordField>& fields) {
+  std::string text;
+  for (const RecordField& field : fields) {
+    const bool is_text = std::holds_alternative<std::string>(record.At(field.key));
+    const std::string value = TextOf(record, field);
+    text += fmt::format("{}{}:{}", text.empty() ? "" : ",", JsonString(field.key),
+                        is_text         ? JsonString(value)
+                        : value.empty() ? "null"
+                                        : value);
+  }
+  return "{" + text + "}";
 }
 
 }  // namespace
 
-std::string JsonOfManifest(const std::vector<ManifestEntry>& entries, const Metadata& settings) {
+Metadata HeaderOf(const FrameRecord& record) {
+  Metadata metadata;
+  const auto add = [&](const RecordField& field) {
+    const std::string text = TextOf(record, field);
+    if (!text.empty()) metadata[fmt::format("alpenglow.{}", field.key)] = text;
+  };
+  for (const RecordField& field :
+       {RecordField{"frame"}, RecordField{"sun_azimuth_deg", "{:.6f}"},
+        RecordField{"sun_elevation_deg", "{:.6f}"}, RecordField{"local_time"}})
+    add(field);
+  if (record.Number("sun_covered").value_or(0.0) > 0.0) add({"sun_covered", "{:.6f}"});
+  return metadata;
+}
+
+std::string ListOf(const std::vector<FrameRecord>& records) { return Csv(records, ListFields()); }
+
+std::string CsvOfManifest(const std::vector<FrameRecord>& records, bool on_path) {
+  return Csv(records, CsvFields(on_path));
+}
+
+std::string JsonOfManifest(const std::vector<FrameRecord>& records, const Metadata& settings,
+                           bool on_path) {
   std::string text = fmt::format("{{\"program\":{},\n\"settings\":{{", JsonString(ProducerText()));
   const char* between = "";
   for (const auto& [name, value] : settings) {
@@ -272,8 +376,9 @@ std::string JsonOfManifest(const std::vector<ManifestEntry>& entries, const Meta
   }
   text += "},\n\"frames\":[";
   between = "";
-  for (const ManifestEntry& entry : entries) {
-    text += fmt::format("{}\n{}", between, ObjectOf(entry));
+  const std::vector<RecordField> fields = JsonFields(on_path);
+  for (const FrameRecord& record : records) {
+    text += fmt::format("{}\n{}", between, JsonObject(record, fields));
     between = ",";
   }
   return text + "]}\n";

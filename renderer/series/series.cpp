@@ -7,10 +7,8 @@
 #include <cmath>
 #include <map>
 #include <set>
+#include <variant>
 
-#include "atmosphere/astronomy/eclipse.h"
-#include "atmosphere/astronomy/moon.h"
-#include "atmosphere/astronomy/sun.h"
 #include "atmosphere/base/error.h"
 #include "atmosphere/math/constants.h"
 #include "lut/cli/program.h"
@@ -32,9 +30,6 @@ constexpr char kRenderFingerprint[] = "alpenglow.render_fingerprint";
 constexpr char kFingerprint[] = "alpenglow.fingerprint";
 constexpr char kEv100[] = "alpenglow.ev100";
 constexpr char kExposure[] = "alpenglow.exposure";
-constexpr char kExposureRule[] = "alpenglow.exposure_rule";
-constexpr char kToneCurve[] = "alpenglow.tone_curve";
-constexpr char kWhiteBalance[] = "alpenglow.white_balance";
 constexpr char kWhite_k[] = "alpenglow.white_k";
 constexpr char kWhiteRule[] = "alpenglow.white_balance_rule";
 constexpr double kPerMired = 1e6;  // mireds are 1e6 / K
@@ -52,10 +47,6 @@ struct Reading {
   double ev100;
   std::optional<double> white_mired;  // for the white balances auto and camera
 };
-
-std::string LocalTime(const SeriesSource& source, const UtcInstant& instant) {
-  return source.zone ? FormatInZone(instant, *source.zone) : "";
-}
 
 /// Returns the values that affect the pixels of a frame: settings and instant, with their fingerprint.
 Metadata RenderMetadata(const SeriesSource& source, const Frame& frame) {
@@ -82,21 +73,16 @@ std::string HeaderValue(const std::function<Metadata()>& read, const std::string
   }
 }
 
-/// Values read from the files of a frame; texts are empty if there is no file.
-struct FoundFrame {
-  std::string ev100, rule;
-  std::optional<double> illuminance_lx;
-};
-
-FoundFrame FoundIn(const Metadata& header) {
+/// Adds the values that the header of an existing frame has.
+void AddFound(const Metadata& header, FrameRecord& record) {
   const auto value = [&](const char* name) {
     const auto found = header.find(name);
     return found == header.end() ? std::string() : found->second;
   };
-  FoundFrame found{value(kEv100), value(kExposure), std::nullopt};
-  const std::string illuminance = value(kIlluminanceNote);
-  if (!illuminance.empty()) found.illuminance_lx = std::stod(illuminance);
-  return found;
+  const std::string ev100 = value(kEv100), illuminance = value(kIlluminanceNote);
+  if (!ev100.empty()) record.Set("ev100", std::stod(ev100));
+  if (!illuminance.empty()) record.Set("illuminance_lx", std::stod(illuminance));
+  record.Set("exposure", value(kExposure));
 }
 
 std::string ExrValue(const fs::path& file, const std::string& name) {
@@ -134,27 +120,16 @@ bool IsKeptPng(const fs::path& file, const std::string& fingerprint) {
 
 /// Returns all metadata of a frame's header except its notes.
 Metadata FrameMetadata(const SeriesSource& source, const SeriesOutput& output, const Frame& frame,
-                       const Development& development) {
+                       const FrameRecord& record, const Development& development) {
   Metadata metadata = RenderMetadata(source, frame);
-  const SunPosition sun = SunAt(source.PlaceOf(frame), frame.instant);
-  metadata["alpenglow.frame"] = fmt::format("{}", frame.number);
-  metadata["alpenglow.sun_azimuth_deg"] =
-      fmt::format("{:.6f}", sun.azimuth_rad / kRadiansPerDegree);
-  metadata["alpenglow.sun_elevation_deg"] =
-      fmt::format("{:.6f}", sun.elevation_rad / kRadiansPerDegree);
-  const double covered = source.SunCovered(frame);
-  if (covered > 0.0) metadata["alpenglow.sun_covered"] = fmt::format("{:.6f}", covered);
-  metadata[kEv100] = fmt::format("{:.4f}", development.ev100);
-  metadata[kExposure] = NameOf(output.exposure.kind);
-  metadata[kExposureRule] = development.rule;
-  metadata[kToneCurve] = NameOf(development.look);
-  metadata[kWhiteBalance] = NameOf(development.look.white);
+  metadata.merge(HeaderOf(record));
+  metadata.merge(HeaderOfExposure(output.exposure, development.ev100, development.rule));
+  metadata.merge(HeaderOfLook(development.look));
   if (!development.white_rule.empty()) {
     metadata[kWhiteRule] = development.white_rule;
     metadata[kWhite_k] = fmt::format("{:.0f}", development.look.white.kelvin.value());
   }
   if (output.glare) metadata["alpenglow.glare"] = "eye, in the developed picture only";
-  if (source.zone) metadata["alpenglow.local_time"] = LocalTime(source, frame.instant);
   metadata[kFingerprint] = Fingerprint(metadata);
   return metadata;
 }
@@ -163,6 +138,7 @@ class Series {
  public:
   Series(const SeriesSource& source, const std::vector<Frame>& frames, const SeriesOutput& output)
       : source_(source), frames_(frames), output_(output) {
+    for (const Frame& frame : frames) records_.push_back(RecordBefore(frame));
     const std::optional<int> per_node = FramesPerNode(frames, source.path.has_value());
     if (!source.preview || !per_node) return;
     const ExposureRule::Kind kind = output.exposure.kind;
@@ -197,15 +173,26 @@ class Series {
     return rendered;
   }
 
+  /// Warns about missing light in pictures during the totality of a solar eclipse.
+  void WarnOfTotality(const std::vector<Frame>& selected) const {
+    const auto is_total = [&](const Frame& frame) {
+      return RecordOfFrame(frame).Number("sun_covered") == 1.0;
+    };
+    const auto total = std::count_if(selected.begin(), selected.end(), is_total);
+    if (total == 0) return;
+    Say(fmt::format(
+        "skyseries: warning: {} of {} frames stand in the totality of an eclipse; the "
+        "corona is not drawn, and light that the air outside of the moon's shadow sends "
+        "in is missing: such pictures are too dark\n",
+        total, selected.size()));
+  }
+
   void WriteManifest() const {
-    std::string text =
-        "frame,file,utc,local_time,sun_azimuth_deg,sun_elevation_deg,sun_covered,ev100";
-    if (source_.path) text += ",t_s,latitude,longitude,height_m,heading,pitch,roll,fov";
-    text += ",exposure\n";
-    const std::vector<ManifestEntry> entries = Entries();
-    for (const ManifestEntry& entry : entries) text += ManifestLine(entry);
-    WriteTextAtomically(output_.name.Manifest(), text);
-    WriteTextAtomically(output_.name.JsonManifest(), JsonOfManifest(entries, source_.settings));
+    const std::vector<FrameRecord> records = Records();
+    const bool on_path = source_.path.has_value();
+    WriteTextAtomically(output_.name.Manifest(), CsvOfManifest(records, on_path));
+    WriteTextAtomically(output_.name.JsonManifest(),
+                        JsonOfManifest(records, source_.settings, on_path));
   }
 
   void WriteContactSheet() const {
@@ -217,11 +204,11 @@ class Series {
   void WritePlot() const {
     if (!output_.plot) return;
     std::vector<PlottedMoment> moments;
-    for (const ManifestEntry& entry : Entries()) {
-      const UtcInstant& instant = entry.frame.instant;
-      moments.push_back({instant, SunAt(entry.place, instant).elevation_rad / kRadiansPerDegree,
-                         MoonAt(entry.place, instant).elevation_rad / kRadiansPerDegree,
-                         entry.illuminance_lx, entry.ev100});
+    const std::vector<FrameRecord> records = Records();
+    for (std::size_t i = 0; i < frames_.size(); ++i) {
+      const auto value = [&](const char* key) { return records[i].Number(key); };
+      moments.push_back({frames_[i].instant, *value("sun_elevation_deg"),
+                         *value("moon_elevation_deg"), value("illuminance_lx"), value("ev100")});
     }
     std::stable_sort(moments.begin(), moments.end(),
                      [](const PlottedMoment& a, const PlottedMoment& b) {
@@ -350,10 +337,9 @@ class Series {
   [[nodiscard]] std::optional<double> KeptEv100(const Frame& frame, const Look& look,
                                                 const std::string& words) const {
     const Metadata kept = ReadExrMetadata(output_.name.Exr(frame.number));
-    const Metadata wanted{{kExposure, NameOf(output_.exposure.kind)},
-                          {kExposureRule, words},
-                          {kToneCurve, NameOf(look)},
-                          {kWhiteBalance, NameOf(look.white)}};
+    Metadata wanted = HeaderOfExposure(output_.exposure, 0.0, words);
+    wanted.erase(kEv100);
+    wanted.merge(HeaderOfLook(look));
     if (!std::includes(kept.begin(), kept.end(), wanted.begin(), wanted.end())) return std::nullopt;
     return std::stod(kept.at(kEv100));
   }
@@ -369,7 +355,7 @@ class Series {
   void Write(const Frame& frame, const NotedPicture& picture, const Development& development,
              bool rendered) {
     const Image& image = picture.image;
-    Metadata metadata = FrameMetadata(source_, output_, frame, development);
+    Metadata metadata = FrameMetadata(source_, output_, frame, RecordOfFrame(frame), development);
     metadata.insert(picture.notes.begin(), picture.notes.end());
     const fs::path exr = output_.name.Exr(frame.number);
     const fs::path png = output_.name.Png(frame.number);
@@ -382,7 +368,8 @@ class Series {
           Develop(AsLookedAt(frame, image, development.look), development.ev100, development.look),
           metadata);
     (rendered ? summary_.rendered : keep_exr && keep_png ? summary_.kept : summary_.developed) += 1;
-    found_[frame.number] = FoundIn(metadata);
+    AddFound(metadata, records_[IndexOf(frame)]);
+    made_.insert(frame.number);
   }
 
   /// Returns an existing frame, developed.
@@ -394,74 +381,58 @@ class Series {
   }
 
   void AddThumbnail(const Frame& frame, const Image& image, const Development& development) {
-    const std::string local = LocalTime(source_, frame.instant);
-    const std::string time = (local.empty() ? FormatUtc(frame.instant) : local).substr(11, 5);
-    const double elevation_deg =
-        SunAt(source_.PlaceOf(frame), frame.instant).elevation_rad / kRadiansPerDegree;
+    const FrameRecord& record = RecordOfFrame(frame);
+    const auto* const local = std::get_if<std::string>(&record.At("local_time"));
+    const std::string time = (local ? *local : FormatUtc(frame.instant)).substr(11, 5);
     const Image small = Reduced(AsLookedAt(frame, image, development.look), kThumbnailWidth);
     thumbnails_.push_back({Develop(small, development.ev100, development.look),
-                           fmt::format("{} {:+.1f}", time, elevation_deg)});
+                           fmt::format("{} {:+.1f}", time, *record.Number("sun_elevation_deg"))});
   }
 
-  /// Returns the values of a frame; frames of other runs (or machines) are read from their files.
-  [[nodiscard]] FoundFrame FoundOf(const Frame& frame) const {
-    const auto found = found_.find(frame.number);
-    if (found != found_.end()) return found->second;
+  [[nodiscard]] std::size_t IndexOf(const Frame& frame) const {
+    return static_cast<std::size_t>(frame.number - frames_.front().number);
+  }
+  [[nodiscard]] const FrameRecord& RecordOfFrame(const Frame& frame) const {
+    return records_[IndexOf(frame)];
+  }
+
+  /// Returns what is known of a frame before it is rendered.
+  [[nodiscard]] FrameRecord RecordBefore(const Frame& frame) const {
+    FrameRecord record = RecordOf(frame, source_.PlaceOf(frame), source_.zone, source_.has_moon);
+    record.Set("file", output_.name.Exr(frame.number).filename().string());
+    if (source_.path) AddPose(frame, source_.path->PoseAt(frame.path_s), record);
+    return record;
+  }
+
+  /// Adds the values of a frame that another run (or machine) has rendered, from its file.
+  void AddFoundElsewhere(const Frame& frame, FrameRecord& record) const {
     const std::string wanted = RenderMetadata(source_, frame).at(kRenderFingerprint);
     try {
       const Metadata header = ReadExrMetadata(output_.name.Exr(frame.number));
       const auto made = header.find(kRenderFingerprint);
-      return made != header.end() && made->second == wanted ? FoundIn(header) : FoundFrame{};
+      if (made != header.end() && made->second == wanted) AddFound(header, record);
     } catch (const InputError&) {
-      return {};
+      // There is no such frame yet.
     }
   }
 
-  [[nodiscard]] std::vector<ManifestEntry> Entries() const {
-    std::vector<ManifestEntry> entries;
+  /// Returns the records of all frames with the values of those that exist.
+  [[nodiscard]] std::vector<FrameRecord> Records() const {
+    std::vector<FrameRecord> records = records_;
     for (const Frame& frame : frames_) {
-      ManifestEntry entry{frame, output_.name.Exr(frame.number).filename().string(),
-                          LocalTime(source_, frame.instant), source_.PlaceOf(frame)};
-      if (source_.path) entry.pose = source_.path->PoseAt(frame.path_s);
-      const FoundFrame found = FoundOf(frame);
-      entry.illuminance_lx = found.illuminance_lx;
-      if (!found.ev100.empty()) entry.ev100 = std::stod(found.ev100);
-      entry.exposure = found.rule;
-      entry.sun_covered = source_.SunCovered(frame);
-      entries.push_back(entry);
+      if (!made_.contains(frame.number)) AddFoundElsewhere(frame, records[IndexOf(frame)]);
     }
-    return entries;
-  }
-
-  [[nodiscard]] static std::string PoseText(const ManifestEntry& entry) {
-    if (!entry.pose) return "";
-    const CameraPose& pose = *entry.pose;
-    std::string text =
-        fmt::format(",{:.6f},{:.8f},{:.8f},{:.3f}", entry.frame.path_s,
-                    pose.place.latitude_rad / kRadiansPerDegree,
-                    pose.place.longitude_rad / kRadiansPerDegree, pose.place.height_m);
-    for (const double angle : {pose.heading_rad, pose.pitch_rad, pose.roll_rad, pose.fov_rad}) {
-      text += fmt::format(",{:.6f}", angle / kRadiansPerDegree);
-    }
-    return text;
-  }
-
-  [[nodiscard]] static std::string ManifestLine(const ManifestEntry& entry) {
-    const SunPosition sun = SunAt(entry.place, entry.frame.instant);
-    return fmt::format("{},{},{},{},{:.4f},{:.4f},{:.6f},{}{},{}\n", entry.frame.number, entry.file,
-                       FormatUtc(entry.frame.instant), entry.local_time,
-                       sun.azimuth_rad / kRadiansPerDegree, sun.elevation_rad / kRadiansPerDegree,
-                       entry.sun_covered, entry.ev100 ? fmt::format("{:.4f}", *entry.ev100) : "",
-                       PoseText(entry), entry.exposure);
+    return records;
   }
 
   const SeriesSource& source_;
   const std::vector<Frame>& frames_;
   const SeriesOutput& output_;
+  std::vector<FrameRecord> records_;  // of all frames, with the values of those made by this run
+  std::set<int> made_;
   SeriesSummary summary_;
   std::optional<SmoothMeter> smooth_ev100_, smooth_mired_;
   std::map<int, Reading> readings_;
-  std::map<int, FoundFrame> found_;
   std::map<int, Development> developments_;
   std::vector<Thumbnail> thumbnails_;
 };
@@ -501,10 +472,6 @@ std::size_t RemoveLeftovers(const SeriesOutput& output) {
 
 }  // namespace
 
-double SeriesSource::SunCovered(const Frame& frame) const {
-  return has_moon ? CoveredLight(PlaceOf(frame), frame.instant) : 0.0;
-}
-
 Projection SeriesSource::ProjectionOf(const Frame& frame) const {
   if (!path) return projection;
   Camera camera;
@@ -530,6 +497,7 @@ SeriesSummary RunSeries(const SeriesSource& source, const std::vector<Frame>& fr
     RequireWritable(made.file);
   }
   Series series(source, frames, output);
+  series.WarnOfTotality(selected);
   const std::size_t removed = output.resume ? RemoveLeftovers(output) : 0;
   series.WriteManifest();  // before rendering, to detect a folder that is not writable
   Progress progress("frames", selected.size(), output.progress);

@@ -54,8 +54,6 @@ struct SeriesSource {
   std::function<Image(const Frame&)> preview = {};
   bool has_moon = true;  // the planet has the earth's moon, which can eclipse the sun
 
-  /// Returns the fraction of the sun's light (550 nm) that the moon covers, [0, 1].
-  [[nodiscard]] double SunCovered(const Frame& frame) const;
   /// Returns the place of the eye in a frame.
   [[nodiscard]] GeodeticPosition PlaceOf(const Frame& frame) const {
     return path ? path->PoseAt(frame.path_s).place : place;
@@ -104,6 +102,8 @@ struct SeriesSummary {
 /// file carries a fingerprint of its settings. Temporary files of killed runs are removed from the
 /// folders (RemoveAbandonedTemporaries). A signal stops the series between frames
 /// (ThrowIfInterrupted); finished frames and the manifest are kept.
+///
+/// A warning names frames in the totality of a solar eclipse, where light is missing.
 ///
 /// Throws OutputError, also for a video without an ffmpeg, before the first frame; InputError for
 /// several frames under a name without a number, and when a file of the series is one of its

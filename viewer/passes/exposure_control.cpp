@@ -75,13 +75,11 @@ Development ExposureControl::DevelopmentOf(const Image& picture) const {
 Metadata ExposureControl::Header(const Development& development) const {
   const ExposureRule rule =
       exposure_.locked ? ExposureRule{ExposureRule::Kind::kFixed, development.ev100} : rule_;
-  return {{"alpenglow.ev100", fmt::format("{:.4f}", development.ev100)},
-          {"alpenglow.exposure", NameOf(rule.kind)},
-          {"alpenglow.exposure_rule", RuleInWords(rule)},
-          {"alpenglow.exposure_compensation_ev",
-           fmt::format("{}", exposure_.locked ? 0.0 : exposure_.compensation_ev)},
-          {"alpenglow.tone_curve", NameOf(development.look)},
-          {"alpenglow.white_balance", NameOf(development.look.white)}};
+  Metadata header = HeaderOfExposure(rule, development.ev100, RuleInWords(rule));
+  header["alpenglow.exposure_compensation_ev"] =
+      fmt::format("{}", exposure_.locked ? 0.0 : exposure_.compensation_ev);
+  header.merge(HeaderOfLook(development.look));
+  return header;
 }
 
 }  // namespace alpenglow::viewer

@@ -81,12 +81,13 @@ TEST(DayTimes, AnEclipseIsDeepestAtSunsetWhereItsMaximumIsBelowTheHorizon) {
 
 TEST(FrameList, HasALineForEachFrameWithSunAndMoon) {
   const EventDay day = Tromso();
-  FrameListing listing;
-  listing.place_of = [&](const Frame&) { return day.place; };
-  listing.zone = day.zone;
-  listing.name.emplace("night.%03d.exr");
-  const std::string text =
-      ListOf(FramesFromTimes({{"noon", "2026-06-21T22:00:00Z"}, {}, {}, {}, {}}, day), listing);
+  std::vector<FrameRecord> records;
+  for (const Frame& frame :
+       FramesFromTimes({{"noon", "2026-06-21T22:00:00Z"}, {}, {}, {}, {}}, day)) {
+    records.push_back(RecordOf(frame, day.place, day.zone));
+    records.back().Set("file", FrameName("night.%03d.exr").Exr(frame.number).string());
+  }
+  const std::string text = ListOf(records);
   EXPECT_THAT(text, HasSubstr("\n0,2026-06-21T10:4"));
   EXPECT_THAT(text, HasSubstr("\n1,2026-06-21T22:00:00Z,2026-06-22T00:00:00+02:00,"));
   EXPECT_THAT(text, HasSubstr(",night.001.exr\n"));

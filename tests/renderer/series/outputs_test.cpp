@@ -95,9 +95,12 @@ TEST(DayPlot, OneFrameAndAYearOfFramesHaveTheirTicks) {
 }
 
 TEST(JsonManifest, SaysWhereTheMoonStandsAndNullForWhatIsNotThereYet) {
-  ManifestEntry entry{{3, Hour(4.0)}, "f.0003.exr", "", PlaceFromDegrees(46.5, 8.0, 0.0)};
-  const std::string early = JsonOfManifest({entry}, {{"alpenglow.fov_deg", "60"}});
-  const MoonPosition moon = MoonAt(entry.place, entry.frame.instant);
+  const Frame frame{3, Hour(4.0)};
+  const GeodeticPosition place = PlaceFromDegrees(46.5, 8.0, 0.0);
+  FrameRecord record = RecordOf(frame, place, std::nullopt);
+  record.Set("file", "f.0003.exr");
+  const std::string early = JsonOfManifest({record}, {{"alpenglow.fov_deg", "60"}}, false);
+  const MoonPosition moon = MoonAt(place, frame.instant);
   EXPECT_THAT(early,
               HasSubstr("\"moon_elevation_deg\":" +
                         std::to_string(moon.elevation_rad / kRadiansPerDegree).substr(0, 5)));
@@ -105,10 +108,10 @@ TEST(JsonManifest, SaysWhereTheMoonStandsAndNullForWhatIsNotThereYet) {
   EXPECT_THAT(early, HasSubstr("\"utc\":\"2026-06-21T04:00:00Z\",\"local_time\":null"));
   EXPECT_THAT(early, HasSubstr("\"illuminance_lx\":null,\"ev100\":null,\"exposure\":null}"));
   EXPECT_THAT(early, HasSubstr("\"alpenglow.fov_deg\":\"60\""));
-  entry.ev100 = 14.25;
-  entry.illuminance_lx = 1000.0;
-  entry.pose = CameraPose{};
-  const std::string later = JsonOfManifest({entry}, {});
+  record.Set("ev100", 14.25);
+  record.Set("illuminance_lx", 1000.0);
+  AddPose(frame, CameraPose{}, record);
+  const std::string later = JsonOfManifest({record}, {}, true);
   EXPECT_THAT(later, HasSubstr("\"illuminance_lx\":1000,\"ev100\":14.25,"));
   EXPECT_THAT(later, HasSubstr("\"fov\":60.000000}"));
 }
