@@ -152,11 +152,6 @@ SolarEclipse::Moment EclipseAt(const GeodeticPosition& place, const UtcInstant& 
           sun.elevation_rad + sun.angular_radius_rad - horizon_rad};
 }
 
-double CoveredLight(const GeodeticPosition& place, const UtcInstant& instant) {
-  constexpr double kWavelength_nm = 550.0;
-  return 1.0 - UncoveredLight(EclipseAt(place, instant).disk, kWavelength_nm);
-}
-
 std::optional<SolarEclipse> FindSolarEclipse(const GeodeticPosition& place, const UtcInstant& from,
                                              double within_s) {
   const Pair pair(place, from);

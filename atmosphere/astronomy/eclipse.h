@@ -65,9 +65,6 @@ struct SolarEclipse {
 [[nodiscard]] SolarEclipse::Moment EclipseAt(const GeodeticPosition& place,
                                              const UtcInstant& instant);
 
-/// Returns the fraction of the sun's light at 550 nm that the moon covers, [0, 1].
-[[nodiscard]] double CoveredLight(const GeodeticPosition& place, const UtcInstant& instant);
-
 /// Returns the eclipse at a place whose maximum, the least distance of the centres, is within a
 /// number of seconds from an instant. Contacts are defined as in almanacs: the sun's radius is
 /// 959.63 arcseconds at 1 au (Auwers), the moon's radius is 0.2725076 equatorial radii of the earth

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "atmosphere/astronomy/ephemeris.h"
+#include "atmosphere/astronomy/sky_bodies.h"
 #include "atmosphere/astronomy/sun.h"
 #include "atmosphere/base/enum_names.h"
 #include "atmosphere/base/error.h"
@@ -187,11 +188,7 @@ MoonPosition ApparentMoonAt(const GeodeticPosition& place, const UtcInstant& ins
 
 MoonPosition ApparentMoonAt(const GeodeticPosition& place, const UtcInstant& instant,
                             const BendingAir& air) {
-  MoonPosition moon = MoonAt(place, instant);
-  const double lift_rad = RefractionFromHeight(air, moon.elevation_rad, place.height_m);
-  moon.lower_for_air_rad = lift_rad - LiftForAir(air, moon.elevation_rad);
-  moon.elevation_rad += lift_rad;
-  return moon;
+  return Refracted(MoonAt(place, instant), place.height_m, air);
 }
 
 std::optional<UtcInstant> NextMoonrise(const GeodeticPosition& place, const UtcInstant& after) {
@@ -288,17 +285,6 @@ double MoonIrradiance(const MoonPosition& moon, double earth_sun_au, double wave
   const double sine = std::sin(moon.angular_radius_rad);
   return sine * sine * SunlightAt(moon, earth_sun_au) *
          MoonReflectance(moon.phase_angle_rad, wavelength_nm);
-}
-
-MoonDisk ApparentMoonDisk(const GeodeticPosition& place, const UtcInstant& instant,
-                          double earth_sun_au, const BendingAir& air) {
-  const MoonPosition moon = ApparentMoonAt(place, instant, air);
-  const LocalFrame frame(kWgs84, place);
-  MoonDisk disk = MoonDiskOf(moon, DirectionFromAngles(moon.elevation_rad, moon.azimuth_rad).xyz,
-                             frame.EnuFromEcef(moon.to_sun).xyz, earth_sun_au);
-  disk.to_moon_for_air =
-      DirectionFromAngles(moon.elevation_rad - moon.lower_for_air_rad, moon.azimuth_rad).xyz;
-  return disk;
 }
 
 double MoonRadiance(const MoonDisk& moon, const glm::dvec3& direction) {

@@ -117,11 +117,6 @@ struct MoonDisk {
 [[nodiscard]] MoonDisk MoonDiskOf(const MoonPosition& moon, const glm::dvec3& to_moon,
                                   const glm::dvec3& to_sun, double earth_sun_au);
 
-/// Returns the disk of the moon as seen from a place, with refraction by air that bends rays
-/// gently, in the frame east, north, up there.
-[[nodiscard]] MoonDisk ApparentMoonDisk(const GeodeticPosition& place, const UtcInstant& instant,
-                                        double earth_sun_au, const BendingAir& air);
-
 /// Returns the radiance [1/sr] outside the air per unit of solar irradiance, in a direction; 0
 /// outside the disk, on its dark side that of earthshine.
 [[nodiscard]] double MoonRadiance(const MoonDisk& moon, const glm::dvec3& direction);

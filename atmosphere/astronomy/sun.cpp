@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "atmosphere/astronomy/ephemeris.h"
+#include "atmosphere/astronomy/sky_bodies.h"
 #include "atmosphere/base/enum_names.h"
 #include "atmosphere/base/error.h"
 #include "atmosphere/math/constants.h"
@@ -43,11 +44,7 @@ SunPosition ApparentSunAt(const GeodeticPosition& place, const UtcInstant& insta
 
 SunPosition ApparentSunAt(const GeodeticPosition& place, const UtcInstant& instant,
                           const BendingAir& air) {
-  SunPosition sun = SunAt(place, instant);
-  const double lift_rad = RefractionFromHeight(air, sun.elevation_rad, place.height_m);
-  sun.lower_for_air_rad = lift_rad - LiftForAir(air, sun.elevation_rad);
-  sun.elevation_rad += lift_rad;
-  return sun;
+  return Refracted(SunAt(place, instant), place.height_m, air);
 }
 
 Vector<Enu> DirectionFromAngles(double elevation_rad, double azimuth_rad) {

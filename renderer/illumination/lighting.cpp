@@ -10,11 +10,9 @@
 
 namespace alpenglow::renderer {
 
-glm::dvec3 ToMoonBefore(const SunPosition& apparent_sun, const GeodeticPosition& eye,
-                        const UtcInstant& instant) {
-  const MoonPosition moon = MoonAt(eye, instant);
-  const double lift_rad = apparent_sun.elevation_rad - SunAt(eye, instant).elevation_rad;
-  return DirectionFromAngles(moon.elevation_rad + lift_rad, moon.azimuth_rad).xyz;
+glm::dvec3 ToMoonBefore(const SunPosition& apparent_sun, const SkyBodies& bodies) {
+  const double lift_rad = apparent_sun.elevation_rad - bodies.sun.elevation_rad;
+  return DirectionFromAngles(bodies.moon.elevation_rad + lift_rad, bodies.moon.azimuth_rad).xyz;
 }
 
 Lighting LightingOf(const SunPosition& sun, const UtcInstant& instant,
@@ -77,10 +75,9 @@ BandLight MoonColour(const MoonDisk& moon, const std::vector<double>& wavelength
   return colour;
 }
 
-DistantLight MoonlightOf(const MoonDisk& disk, const GeodeticPosition& place,
-                         const UtcInstant& instant, double earth_sun_au, const BandLight& colour,
+DistantLight MoonlightOf(const MoonDisk& disk, const SkyBodies& bodies, const BandLight& colour,
                          const BandLight& sun) {
-  const double share = MoonIrradiance(MoonAt(place, instant), earth_sun_au, 550.0);
+  const double share = MoonIrradiance(bodies.moon, bodies.sun.distance_au, 550.0);
   return {disk.to_moon, disk.to_moon_for_air, disk.radius_rad,
           static_cast<float>(share) * (colour * sun)};
 }

@@ -13,6 +13,7 @@
 
 #include "atmosphere/astronomy/eclipse.h"
 #include "atmosphere/astronomy/moon.h"
+#include "atmosphere/astronomy/sky_bodies.h"
 #include "atmosphere/astronomy/sun.h"
 #include "atmosphere/medium/medium.h"
 #include "atmosphere/ray/single_scattering.h"
@@ -59,8 +60,7 @@ struct SunlitAir {
 /// Returns the unit direction (east, north, up of the eye) to the moon during a solar eclipse. It
 /// is lifted by the refraction of the sun's centre behind it, because the sun is drawn as a round
 /// disk and the moon's disk must be round too.
-[[nodiscard]] glm::dvec3 ToMoonBefore(const SunPosition& apparent_sun, const GeodeticPosition& eye,
-                                      const UtcInstant& instant);
+[[nodiscard]] glm::dvec3 ToMoonBefore(const SunPosition& apparent_sun, const SkyBodies& bodies);
 
 /// A light so distant that it shines everywhere from one direction. Where refraction lifts it, it
 /// lights the air from another direction (SunForAir of sun.h).
@@ -132,12 +132,10 @@ struct Lighting {
 [[nodiscard]] double DepressionOfDarkAir(double altitude_m, double radius_m,
                                          double atmosphere_height_m);
 
-/// Returns moonlight at a place.
+/// Returns moonlight at the place of the bodies.
 /// @param disk  its direction is used.
 /// @param sun  irradiance of the sun there.
-/// @param earth_sun_au  distance of the place from the sun.
-[[nodiscard]] DistantLight MoonlightOf(const MoonDisk& disk, const GeodeticPosition& place,
-                                       const UtcInstant& instant, double earth_sun_au,
+[[nodiscard]] DistantLight MoonlightOf(const MoonDisk& disk, const SkyBodies& bodies,
                                        const BandLight& colour, const BandLight& sun);
 
 /// The sun at a point, without shadows of terrain.

@@ -123,8 +123,8 @@ void FrameContext::AddStars(const Observer& observer) {
   std::vector<StarLight> lights;
   const double pixel_rad = camera().PixelAngle();
   const RefractedView view(scene_->medium(), scene_->geometry().AltitudeOf(camera().eye()));
-  for (StarLight& star : StarLightsOver(observer.eye, observer.instant, view, scene_->colour(),
-                                        FaintestStar(lux, pixel_rad),
+  for (StarLight& star : StarLightsOver(observer.bodies.place, observer.bodies.instant, view,
+                                        scene_->colour(), FaintestStar(lux, pixel_rad),
                                         OpenFor(scene_->scene().camera.shutter_s, pixel_rad))) {
     star.direction = frame_from_enu * star.direction;
     for (glm::dvec3& direction : star.way) direction = frame_from_enu * direction;

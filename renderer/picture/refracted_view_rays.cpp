@@ -102,8 +102,8 @@ std::shared_ptr<const RefractedViewRays> RefractedViewRaysOf(const FrameContext&
   const bool moves_terrain = geometry.HasTerrain() && MostLift(frame, height_m) > half_pixel;
   if (!may_see_sun && !may_see_moon && !may_see_sea && !moves_terrain) return nullptr;
   const glm::dmat3& frame_from_enu = observer.stand.frame_from_enu;
-  const SunPosition sun = SunAt(observer.eye, observer.instant);
-  const MoonPosition moon = MoonAt(observer.eye, observer.instant);
+  const SunPosition& sun = observer.bodies.sun;
+  const MoonPosition& moon = observer.bodies.moon;
   auto bent = std::make_shared<RefractedViewRays>(RefractedViewRays{
       RefractedView(medium, height_m), up,
       frame_from_enu * DirectionFromAngles(sun.elevation_rad, sun.azimuth_rad).xyz,

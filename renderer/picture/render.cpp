@@ -38,7 +38,11 @@ double SceneRenderer::eye_height_m() const { return scene_->ground().eye_height_
 const std::string& SceneRenderer::terrain_message() const { return scene_->ground().message; }
 
 SunPosition SceneRenderer::ApparentSun(const CameraSample& camera_sample) const {
-  return renderer::ApparentSun(*scene_, ObserverOf(*scene_, camera_sample));
+  return ObserverOf(*scene_, camera_sample).bodies.ApparentSun(GentleAirOf(scene_->medium()));
+}
+
+SkyBodies SceneRenderer::BodiesOver(const CameraSample& camera_sample) const {
+  return ObserverOf(*scene_, camera_sample).bodies;
 }
 
 double SceneRenderer::Illuminance(const CameraSample& camera_sample) const {

@@ -23,6 +23,7 @@
 #include <string>
 #include <vector>
 
+#include "atmosphere/astronomy/sky_bodies.h"
 #include "atmosphere/astronomy/sun.h"
 #include "atmosphere/time_place/time.h"
 #include "lut/cli/messages.h"
@@ -76,6 +77,9 @@ struct CameraSample {
   CameraSample(const UtcInstant& at) : instant(at) {}  // NOLINT: the camera of the scene
 
   UtcInstant instant;
+  /// Sun and moon at the eye (SceneRenderer::BodiesOver); each call computes them if they are
+  /// missing.
+  std::optional<SkyBodies> bodies = std::nullopt;
   /// Replaces the camera of the scene, with the same lens: one pose, or several at even steps of
   /// time while the shutter is open. Terrain stays in place; light and air are those of the middle
   /// pose. The air stays on the sphere that osculates the ellipsoid at the scene's place. Sphere
@@ -136,6 +140,8 @@ class SceneRenderer {
   /// without terrain [lux].
   [[nodiscard]] double Illuminance(const CameraSample& camera_sample) const;
 
+  /// Returns sun and moon at the eye, for Shot::bodies.
+  [[nodiscard]] SkyBodies BodiesOver(const CameraSample& camera_sample) const;
   /// Returns the sun as seen from the eye with refraction, where the picture shows it.
   [[nodiscard]] SunPosition ApparentSun(const CameraSample& camera_sample) const;
 

@@ -5,7 +5,6 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 
-#include "atmosphere/astronomy/eclipse.h"
 #include "atmosphere/astronomy/ephemeris.h"
 #include "atmosphere/math/constants.h"
 #include "renderer/illumination/night_light.h"
@@ -32,16 +31,14 @@ glm::dvec3 MoonTurn(double open_s, double latitude_rad, const CameraStand& stand
 
 Observer ObserverOf(const PreparedScene& scene, const CameraSample& camera_sample) {
   const SceneGround& ground = scene.ground();
-  if (const auto pose = camera_sample.middle())
-    return {pose->place, StandAt(ground, pose->place), camera_sample.instant};
   const GeodeticPosition& place = scene.scene().place;
-  return {{place.latitude_rad, place.longitude_rad, ground.eye_height_m},
-          StandOfScene(ground),
-          camera_sample.instant};
-}
-
-SunPosition ApparentSun(const PreparedScene& scene, const Observer& observer) {
-  return ApparentSunAt(observer.eye, observer.instant, GentleAirOf(scene.medium()));
+  const auto pose = camera_sample.middle();
+  const CameraStand stand = pose ? StandAt(ground, pose->place) : StandOfScene(ground);
+  if (camera_sample.bodies) return {stand, *camera_sample.bodies};
+  const GeodeticPosition eye =
+      pose ? pose->place
+           : GeodeticPosition{place.latitude_rad, place.longitude_rad, ground.eye_height_m};
+  return {stand, SkyBodiesAt(eye, camera_sample.instant)};
 }
 
 double IlluminanceBy(const PreparedScene& scene, const DistantLight& source, const glm::dvec3& eye,
@@ -64,16 +61,15 @@ double Illuminance(const PreparedScene& scene, const glm::dvec3& eye, const Ligh
 namespace {
 
 /// Adds the night sky and moonlight to `light` if the sun is dim enough.
-void AddNight(const PreparedScene& scene, const Observer& observer, double earth_sun_au,
-              Lighting& light) {
+void AddNight(const PreparedScene& scene, const Observer& observer, Lighting& light) {
   const Medium& medium = scene.medium();
   const SceneGeometry& geometry = scene.geometry();
   const CameraStand& stand = observer.stand;
   light.moon_colour = MoonColour(*light.moon, medium.wavelengths_nm);
   const double sun_lux = Illuminance(scene, stand.eye, light);
   if (sun_lux > kDaylight_lux) return;
-  const DistantLight moonlight = MoonlightOf(*light.moon, observer.eye, observer.instant,
-                                             earth_sun_au, light.moon_colour, light.WholeSun());
+  const DistantLight moonlight =
+      MoonlightOf(*light.moon, observer.bodies, light.moon_colour, light.WholeSun());
   const double moon_lux = IlluminanceBy(scene, moonlight, stand.eye, light);
   if (moon_lux > kUnseenShare * (sun_lux + kNightSky_lux)) light.moonlight = moonlight;
   const double depression_rad =
@@ -87,7 +83,7 @@ void AddNight(const PreparedScene& scene, const Observer& observer, double earth
       towns ? kPi * scene.colour().Xyz(InDouble(*towns))[1] : 0.0;  // upper bound
   if (kNightSky_lux + towns_lux < kUnseenShare * sun_lux) return;
   light.night = std::make_shared<NightLight>(
-      NightSky(observer.eye, observer.instant).InFrame(stand.frame_from_enu),
+      NightSky(observer.bodies.place, observer.bodies.instant).InFrame(stand.frame_from_enu),
       scene.models().whole().air, scene.colour(), geometry.UpAt(stand.eye),
       geometry.AltitudeOf(stand.eye), towns);
 }
@@ -96,26 +92,27 @@ void AddNight(const PreparedScene& scene, const Observer& observer, double earth
 
 Lighting LightingAt(const PreparedScene& scene, const Observer& observer) {
   const Medium& medium = scene.medium();
+  const BendingAir air = GentleAirOf(medium);
+  const SkyBodies& bodies = observer.bodies;
   const glm::dmat3& frame_from_enu = observer.stand.frame_from_enu;
-  const SunPosition sun = ApparentSun(scene, observer);
+  const SunPosition sun = bodies.ApparentSun(air);
   Lighting light =
-      LightingOf(sun, observer.instant, scene.scene().place, medium, scene.scene().ground.wetness);
+      LightingOf(sun, bodies.instant, scene.scene().place, medium, scene.scene().ground.wetness);
   light.to_sun = frame_from_enu * light.to_sun;
   light.to_sun_for_air = frame_from_enu * light.to_sun_for_air;
   if (!medium.follows_wgs84) return light;  // other planets have other moons
-  light.moon =
-      ApparentMoonDisk(observer.eye, observer.instant, sun.distance_au, GentleAirOf(medium));
-  const EclipsedDisk disk = EclipsedDiskOf(sun, MoonAt(observer.eye, observer.instant));
+  light.moon = bodies.ApparentMoonDisk(air);
+  const EclipsedDisk disk = bodies.Eclipse();
   if (disk.IsCovered()) {
     light = light.EclipsedBy(disk, medium.wavelengths_nm);
-    light.moon->to_moon = ToMoonBefore(sun, observer.eye, observer.instant);
+    light.moon->to_moon = ToMoonBefore(sun, bodies);
   }
   light.moon->to_moon = frame_from_enu * light.moon->to_moon;
   light.moon->to_moon_for_air = frame_from_enu * light.moon->to_moon_for_air;
   light.moon->to_sun = frame_from_enu * light.moon->to_sun;
   light.moon_turn =
-      MoonTurn(scene.scene().camera.shutter_s, observer.eye.latitude_rad, observer.stand);
-  AddNight(scene, observer, sun.distance_au, light);
+      MoonTurn(scene.scene().camera.shutter_s, bodies.place.latitude_rad, observer.stand);
+  AddNight(scene, observer, light);
   return light;
 }
 

@@ -4,9 +4,7 @@
 
 #include <glm/vec3.hpp>
 
-#include "atmosphere/astronomy/sun.h"
-#include "atmosphere/time_place/geodesy.h"
-#include "atmosphere/time_place/time.h"
+#include "atmosphere/astronomy/sky_bodies.h"
 #include "renderer/camera/camera_rays.h"
 #include "renderer/illumination/lighting.h"
 #include "renderer/picture/prepared_scene.h"
@@ -14,18 +12,15 @@
 
 namespace alpenglow::renderer {
 
-/// The eye of a picture at its instant.
+/// The eye of a picture, and sun and moon at its instant.
 struct Observer {
-  GeodeticPosition eye;
   CameraStand stand;  // of the eye, in the frame of the scene
-  UtcInstant instant;
+  SkyBodies bodies;   // from the place of the eye
 };
 
-/// Returns the observer of the middle pose, or the scene's own. Throws InputError as StandAt does.
+/// Returns the observer of the middle pose, or the scene's own. Takes sun and moon from the shot if
+/// it has them. Throws InputError as StandAt does.
 [[nodiscard]] Observer ObserverOf(const PreparedScene& scene, const CameraSample& camera_sample);
-
-/// Returns the sun with refraction by the air of the scene.
-[[nodiscard]] SunPosition ApparentSun(const PreparedScene& scene, const Observer& observer);
 
 /// Returns the light of sun, moon and night sky, each if it may be visible, in the scene's frame.
 [[nodiscard]] Lighting LightingAt(const PreparedScene& scene, const Observer& observer);

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "atmosphere/astronomy/eclipse.h"
+#include "atmosphere/astronomy/sky_bodies.h"
 #include "atmosphere/math/constants.h"
 #include "atmosphere/ray/single_scattering.h"
 #include "atmosphere/refraction/refracted_view.h"
@@ -38,11 +38,10 @@ BandLight LevelLight(const SolvedAir& air, double altitude_m, const SunPosition&
 }
 
 // Returns the sunlight that the moon does not cover.
-KeyLight BesideMoon(const KeyLight& sun, const GeodeticPosition& eye, const UtcInstant& now,
-                    const Medium& medium) {
-  const EclipsedDisk disk = EclipsedDiskOf(sun.disk, MoonAt(eye, now));
+KeyLight BesideMoon(const KeyLight& sun, const SkyBodies& bodies, const Medium& medium) {
+  const EclipsedDisk disk = bodies.Eclipse();
   if (!disk.IsCovered()) return sun;
-  const Lighting whole = LightingOf(sun.disk, now, eye, medium);
+  const Lighting whole = LightingOf(sun.disk, bodies.instant, bodies.place, medium);
   return {sun.disk, GpuBandsOf(whole.EclipsedBy(disk, medium.wavelengths_nm).irradiance)};
 }
 
@@ -74,14 +73,15 @@ LightsOfSky LightsOfSkyAt(const GeodeticPosition& eye, const UtcInstant& now,
   constexpr double kUnseenShare = 1e-4;
   const KeyLight whole_sun = SunAsKey(sun, air.medium);
   if (!air.medium.follows_wgs84) return {whole_sun, std::nullopt};
-  const KeyLight by_sun = BesideMoon(whole_sun, eye, now, air.medium);
+  const SkyBodies bodies = SkyBodiesAt(eye, now);
+  const KeyLight by_sun = BesideMoon(whole_sun, bodies, air.medium);
   if (sun.elevation_rad > kMoonDoesNotCount_rad) return {by_sun, std::nullopt};
-  const MoonDisk disk = ApparentMoonDisk(eye, now, sun.distance_au, GentleAirOf(air.medium));
+  const MoonDisk disk = bodies.ApparentMoonDisk(GentleAirOf(air.medium));
   BandLight solar(air.medium.wavelengths_nm.size());
   for (std::size_t band = 0; band < solar.count; ++band)
     solar[band] = whole_sun.irradiance[static_cast<glm::length_t>(band)];
-  const DistantLight moon = MoonlightOf(disk, eye, now, sun.distance_au,
-                                        MoonColour(disk, air.medium.wavelengths_nm), solar);
+  const DistantLight moon =
+      MoonlightOf(disk, bodies, MoonColour(disk, air.medium.wavelengths_nm), solar);
   const KeyLight by_moon{AsPosition(moon, sun.distance_au), GpuBandsOf(moon.irradiance), true};
   const double altitude_m = std::max(eye.height_m, 0.0);
   const auto green = static_cast<glm::length_t>(GreenBand(air.medium.wavelengths_nm));

@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "atmosphere/astronomy/eclipse.h"
 #include "atmosphere/astronomy/moon.h"
+#include "atmosphere/astronomy/sky_bodies.h"
 #include "atmosphere/refraction/refracted_view.h"
 #include "renderer/illumination/lighting.h"
 #include "renderer/surface/scene_ground.h"
@@ -407,11 +407,9 @@ void SkyPainter::PaintSample(const PaintedView& view, Bodies bodies, const Pixel
 
 SkyPainter::SkyDisks SkyPainter::DisksOf(const PaintedView& view) {
   const SunPosition& sun = LightsOf(view).sun;
-  const GeodeticPosition& place = view.eye.place;
-  SkyDisks disks{sun, ApparentMoonDisk(place, view.now, sun.distance_au,
-                                       GentleAirOf(scene_.air().air()->medium))};
-  if (EclipsedDiskOf(sun, MoonAt(place, view.now)).IsCovered())
-    disks.moon.to_moon = ToMoonBefore(sun, place, view.now);
+  const SkyBodies bodies = SkyBodiesAt(view.eye.place, view.now);
+  SkyDisks disks{sun, bodies.ApparentMoonDisk(GentleAirOf(scene_.air().air()->medium))};
+  if (bodies.Eclipse().IsCovered()) disks.moon.to_moon = ToMoonBefore(sun, bodies);
   return disks;
 }
 

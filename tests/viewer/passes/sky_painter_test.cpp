@@ -10,7 +10,7 @@
 #include <cmath>
 #include <limits>
 
-#include "atmosphere/astronomy/eclipse.h"
+#include "atmosphere/astronomy/sky_bodies.h"
 #include "renderer/picture/render.h"
 #include "renderer/scene/scene_options.h"
 #include "renderer/surface/scene_ground.h"
@@ -140,7 +140,7 @@ TEST_F(SkyPainterTest, ASunWithTheMoonBeforeItIsTheRenderers) {
   const std::shared_ptr<const SolvedAir> air = SolveAir(scene.medium, AirSolution::kDraft);
   const double left = double{LightsOfSkyAt(scene.place, now, sun, *air).key.irradiance[1]} /
                       double{SunAsKey(sun, scene.medium).irradiance[1]};
-  const double covered = CoveredLight(scene.place, now);
+  const double covered = SkyBodiesAt(scene.place, now).CoveredLight();
   EXPECT_NEAR(covered, 0.9, 0.02);
   EXPECT_NEAR(left / (1.0 - covered), 1.0, 0.02) << "of 550 nm and of the second band";
 }
