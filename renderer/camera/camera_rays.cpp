@@ -125,20 +125,20 @@ double PixelFilter::Weight(double x) const { return Shape(x) / integral_; }
 
 namespace {
 
-constexpr EnumNames<PixelFilter::Kind, 3> kFilters({{PixelFilter::Kind::kBox, "box"},
-                                                    {PixelFilter::Kind::kGaussian, "gaussian"},
-                                                    {PixelFilter::Kind::kBlackmanHarris,
-                                                     "blackman-harris"}});
+constexpr EnumNames<PixelFilter::Kind, 3> kPixelFilters({{PixelFilter::Kind::kBox, "box"},
+                                                         {PixelFilter::Kind::kGaussian, "gaussian"},
+                                                         {PixelFilter::Kind::kBlackmanHarris,
+                                                          "blackman-harris"}});
 
 }  // namespace
 
-std::vector<std::string> PixelFilterNames() { return kFilters.All(); }
+std::vector<std::string> PixelFilterNames() { return kPixelFilters.All(); }
 
 PixelFilter::Kind PixelFilterFromName(std::string_view name) {
-  return kFilters.Named(name, "filter \"{}\" is not one of {}");
+  return kPixelFilters.Named(name, "filter \"{}\" is not one of {}");
 }
 
-std::string NameOf(PixelFilter::Kind kind) { return kFilters.Of(kind); }
+std::string NameOf(PixelFilter::Kind kind) { return kPixelFilters.Of(kind); }
 
 namespace {
 
