@@ -192,14 +192,14 @@ class OneRay {
   void Show(const PaintedView& painted) {
     painter_.Paint(painted, 1, SkyPainter::Bodies::kStars);
     painter_.PaintOutline(outline_);
-    enlarger_.Upscale(painter_.picture(), outline_, HalfViewOf(painted), light_.framebuffer());
+    upscaler_.Upscale(painter_.picture(), outline_, HalfViewOf(painted), light_.framebuffer());
   }
 
   SkyPainter& painter_;
   PaintedView screen_;
   DepthPrepass outline_{screen_.width, screen_.height};
   RenderTarget light_{screen_.width, screen_.height};
-  Upscaler enlarger_{Upscaler::Shows::kLight};
+  Upscaler upscaler_{Upscaler::Shows::kLight};
 };
 
 Image ReferenceOf(const ReferenceScene& scene, const PaintedView& view) {

@@ -35,7 +35,7 @@ std::string DefinesOf(const SceneLamps& shape, const LampQuality& quality) {
       "#define LAMP_MOST {}\n#define LAMP_CONE {}\n#define LAMP_TABLE {}\n"
       "#define LAMP_NODES {}\n#define LAMP_LATTICE {}\n"
       "#define LAMP_PHASE_MIE(c, p) {}\n#define LAMP_GLOW_NEAREST {:.7f}\n"
-      "#define LAMP_GLOW_FARTHEST {:.7f}\n#define LAMP_GLOW_TERMS {}\n",
+      "#define LAMP_GLOW_FARTHEST {:.7f}\n#define LAMP_AIRLIGHT_TERMS {}\n",
       kMostGpuLamps, static_cast<int>(LampProfile::Kind::kCone),
       static_cast<int>(LampProfile::Kind::kTable), quality.nodes, quality.step > 1 ? 1 : 0,
       PhaseExpression(layers[1].phase.kind), kNearestGlow_m, kFarthestGlow_m, kGlowTerms);
@@ -120,7 +120,7 @@ void LampPainter::Connect(const ShaderProgram& program) const {
   program.BindBlock("View", units_.view_block);
   program.BindSampler("surface_map", units_.surface);
   program.BindSampler("lamp_tables", units_.first + kLampTablesUnit);
-  program.BindSampler("lamp_glow_map", units_.first + kLampAirlightUnit);
+  program.BindSampler("lamp_airlight_map", units_.first + kLampAirlightUnit);
   program.BindSampler("lamp_mie_table", units_.first + kLampMieUnit);
   program.BindSampler("lamp_shades", units_.first + kLampShadeUnit);
   program.BindSampler("lamp_plans", units_.first + kLampPlanUnit);

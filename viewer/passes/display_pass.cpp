@@ -59,12 +59,12 @@ const DepthPrepass& DisplayPass::OutlineFor(const ToneMapPass::Screen& screen) {
 void DisplayPass::ShowEnlarged(const RenderTarget& picture, const glm::dvec2& half_view,
                                double ev100, const ToneMapPass::Screen& screen, PassTimer* timer) {
   {
-    const TimedPass timed(timer, "develop");
+    const TimedPass timed(timer, "tone map");
     Fit(codes_, picture.width(), picture.height(), PixelFormat::kRgba16F);
     developer_.DevelopSmall(picture, ev100, *codes_);
   }
-  const TimedPass timed(timer, "enlarge");
-  code_enlarger_.Upscale(*codes_, *outline_, half_view, screen.framebuffer);
+  const TimedPass timed(timer, "upscale");
+  code_upscaler_.Upscale(*codes_, *outline_, half_view, screen.framebuffer);
 }
 
 const RenderTarget& DisplayPass::LightIn(const std::vector<PixelBox>& boxes,
@@ -72,7 +72,7 @@ const RenderTarget& DisplayPass::LightIn(const std::vector<PixelBox>& boxes,
                                          const ToneMapPass::Screen& screen) {
   Fit(light_, screen.width, screen.height, PixelFormat::kRgba32F);
   bodies_.Set(boxes, screen.width, screen.height);
-  light_enlarger_.Upscale(picture, *outline_, half_view, light_->framebuffer(), bodies_);
+  light_upscaler_.Upscale(picture, *outline_, half_view, light_->framebuffer(), bodies_);
   return *light_;
 }
 

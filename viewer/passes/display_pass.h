@@ -91,7 +91,7 @@ class DisplayPass {
 
  private:
   ToneMapPass developer_;
-  Upscaler code_enlarger_{Upscaler::Shows::kCodes}, light_enlarger_{Upscaler::Shows::kLight};
+  Upscaler code_upscaler_{Upscaler::Shows::kCodes}, light_upscaler_{Upscaler::Shows::kLight};
   std::optional<RenderTarget> codes_, light_;  // at picture size; at screen size
   std::optional<DepthPrepass> outline_;
   PassArea bodies_;

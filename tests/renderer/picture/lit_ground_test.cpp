@@ -11,6 +11,7 @@
 
 #include "atmosphere/astronomy/sun.h"
 #include "atmosphere/math/numerics.h"
+#include "renderer/illumination/sky_on_ground.h"
 #include "tests/renderer/picture/rough_site.h"
 
 namespace alpenglow::renderer {

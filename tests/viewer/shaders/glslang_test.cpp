@@ -116,7 +116,7 @@ TEST_F(Glslang, AcceptsTheShadersOfLampsWithAndWithoutFog) {
     ExpectAccepted(corners, "lamps/lamp_core.vert.glsl");
     ExpectAccepted(corners, "lamps/lamp_disk.vert.glsl");
     for (const char* stage :
-         {"lamps/lamp_glow.frag.glsl", "lamps/lamp_core.frag.glsl", "lamps/lamp_disk.frag.glsl"}) {
+         {"lamps/lamp_airlight.frag.glsl", "lamps/lamp_core.frag.glsl", "lamps/lamp_disk.frag.glsl"}) {
       ExpectAccepted(texts, stage);
     }
   }

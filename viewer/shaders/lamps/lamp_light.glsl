@@ -50,7 +50,7 @@ uniform vec2 lamp_gauss[LAMP_NODES];  // nodes in [0, 1] and weights
 uniform sampler2DArray lamp_tables;  // relative intensity by angle from the axis and around it
 #endif
 #ifdef LAMP_GLOW_MAP
-uniform sampler2DArray lamp_glow_map;  // irradiance by the air around a lamp; see ground_under_lamps.h
+uniform sampler2DArray lamp_airlight_map;  // irradiance by the air around a lamp; see ground_under_lamps.h
 #endif
 #ifdef LAMP_SHADE
 uniform sampler2DArray lamp_shades;  // slope above which a lamp is visible, by azimuth and distance
@@ -321,16 +321,16 @@ vec4 LampAirlightIn(vec3 direction, float distance_m, float with_cores) {
 #ifdef LAMP_GLOW_MAP
 // Returns a term of the glow map of a lamp; `at` counts texels of one term.
 vec4 LampAirlightTerm(Lamp lamp, vec2 at, float term) {
-  vec2 size = vec2(textureSize(lamp_glow_map, 0).xy);
-  vec2 place = (at + vec2(0.0, term * size.y / float(LAMP_GLOW_TERMS))) / size;
-  return textureLod(lamp_glow_map, vec3(place, lamp.glow.y), 0.0);
+  vec2 size = vec2(textureSize(lamp_airlight_map, 0).xy);
+  vec2 place = (at + vec2(0.0, term * size.y / float(LAMP_AIRLIGHT_TERMS))) / size;
+  return textureLod(lamp_airlight_map, vec3(place, lamp.glow.y), 0.0);
 }
 
 // Returns the irradiance of a surface by the air that a lamp lights; see ground_under_lamps.h.
 vec4 LampAirOnSurface(Lamp lamp, vec3 towards, float distance_m, vec3 normal) {
   float sine = dot(towards, lamp.up.xyz);
   float up = dot(normal, lamp.up.xyz);
-  vec2 size = vec2(textureSize(lamp_glow_map, 0).xy) / vec2(1.0, LAMP_GLOW_TERMS);
+  vec2 size = vec2(textureSize(lamp_airlight_map, 0).xy) / vec2(1.0, LAMP_AIRLIGHT_TERMS);
   float far = clamp(distance_m, LAMP_GLOW_NEAREST, LAMP_GLOW_FARTHEST);
   vec2 unit = vec2(LampAirlightUnit(far, LAMP_GLOW_NEAREST, LAMP_GLOW_FARTHEST), LampRiseUnit(sine));
   vec2 at = vec2(TexelFromUnit(unit.x, size.x), TexelFromUnit(unit.y, size.y)) * size;
