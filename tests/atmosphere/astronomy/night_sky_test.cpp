@@ -4,7 +4,10 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <glm/geometric.hpp>
 
+#include "atmosphere/astronomy/ephemeris.h"
+#include "atmosphere/astronomy/sun.h"
 #include "atmosphere/math/constants.h"
 
 namespace alpenglow::atmosphere {
@@ -18,7 +21,7 @@ TEST(NightSky, AirglowIsLongerTheLowerOneLooks) {
   EXPECT_NEAR(VanRhijn(1.0), 6.04, 0.05) << "at the horizon sqrt(R / 2h) = 5.95, and a little";
 }
 
-TEST(NightSky, ZodiacalLightIsThatOfTheTableBetweenItsPointsToo) {
+TEST(NightSky, ZodiacalLightIsThatOfTheTable) {
   EXPECT_NEAR(ZodiacalLight(Radians(90.0), 0.0), 259e-8, 1e-12);
   EXPECT_NEAR(ZodiacalLight(Radians(-90.0), Radians(-30.0)), 132e-8, 1e-12) << "even both ways";
   EXPECT_NEAR(ZodiacalLight(Radians(1.0), Radians(90.0)), 77e-8, 1e-12);
@@ -39,7 +42,7 @@ TEST(NightSky, TheMilkyWayIsBrightTowardsItsCentreAndSplitByDust) {
       << "no seam behind";
 }
 
-TEST(NightSky, TheCentreOfTheGalaxyStandsHighInTheSouthOfAJuneNight) {
+TEST(NightSky, TheCentreOfTheGalaxyCulminatesOnJuneNights) {
   // Sagittarius A* at 17h 45m 40s, -29 degrees, passes the meridian of latitude -30 near the zenith.
   const GeodeticPosition place{.latitude_rad = Radians(-29.0), .longitude_rad = 0.0};
   const glm::dvec3 up(0.0, 0.0, 1.0);
@@ -69,6 +72,69 @@ TEST(NightSky, ThereIsNoAirglowAboveItsLayer) {
   const glm::dvec3 up(0.0, 0.0, 1.0);
   EXPECT_GT(sky.Towards(up, up, 80e3).airglow_cd_per_m2, 0.0);
   EXPECT_EQ(sky.Towards(up, up, 400e3).airglow_cd_per_m2, 0.0);
+}
+
+double AngleBetween(const Vector<Ecef>& a, const Vector<Ecef>& b) {
+  return std::atan2(glm::length(glm::cross(a.xyz, b.xyz)), glm::dot(a.xyz, b.xyz)) /
+         kRadiansPerDegree;
+}
+
+/// Returns the declination of date [degrees].
+double Declination(const Vector<Ecef>& direction) {
+  return std::asin(direction.xyz.z) / kRadiansPerDegree;
+}
+
+TEST(Stars, AreFiveThousandToTheSixthMagnitudeBrightestFirst) {
+  const auto stars = StarsAt(ParseInstant("2026-01-01T00:00:00Z"));
+  EXPECT_EQ(stars.size(), 5080U);
+  EXPECT_DOUBLE_EQ(stars.front().magnitude, -1.46) << "Sirius";
+  EXPECT_DOUBLE_EQ(stars.back().magnitude, 6.0);
+  EXPECT_EQ(StarsAt(ParseInstant("2026-01-01T00:00:00Z"), 1.0).size(), 15U);
+}
+
+TEST(Stars, SiriusHasMovedAndTheEarthHasTurned) {
+  // Its declination: -16 42.97' in 2000, with -1.2 arcseconds a year of its own and -3.9 by
+  // precession, 20.04 times the cosine of its right ascension.
+  const auto then = StarsAt(ParseInstant("2000-01-01T12:00:00Z")).front();
+  const auto now = StarsAt(ParseInstant("2050-01-01T12:00:00Z")).front();
+  EXPECT_NEAR(Declination(then.direction), -16.7161, 0.005) << "nutation: 9 arcseconds";
+  EXPECT_NEAR(Declination(now.direction), -16.7161 - 50.0 * 5.13 / 3600.0, 0.005);
+}
+
+TEST(Stars, TheBeltOfOrionPointsAtSirius) {
+  const auto stars = StarsAt(ParseInstant("2026-01-15T21:00:00Z"));
+  const auto near = [&](double magnitude, double colour) {
+    for (const PointLight& star : stars) {
+      if (star.magnitude == magnitude && star.colour_index == colour) return star.direction;
+    }
+    return Vector<Ecef>{};
+  };
+  const auto betelgeuse = near(0.50, 1.85), rigel = near(0.12, -0.03);
+  EXPECT_NEAR(AngleBetween(betelgeuse, rigel), 18.6, 0.1);
+  EXPECT_NEAR(AngleBetween(betelgeuse, stars.front().direction), 27.1, 0.1);
+}
+
+TEST(Stars, LightAndColourAreThoseOfTheirMagnitudes) {
+  EXPECT_NEAR(IlluminanceOf(-1.46), 9.7e-6, 0.1e-6);
+  EXPECT_DOUBLE_EQ(MagnitudeOf(IlluminanceOf(3.5)), 3.5);
+  EXPECT_NEAR(TemperatureOf(0.65), 5770.0, 60.0) << "the sun";
+  EXPECT_NEAR(TemperatureOf(0.0), 10100.0, 300.0) << "Vega, a black body of 9,600 to 10,100 K";
+}
+
+TEST(Planets, StandOnTheEclipticAsBrightAsAlmanacsSay) {
+  const GeodeticPosition place{.latitude_rad = 0.8};
+  // Jupiter in opposition on 2026 January 10 in Gemini, V = -2.7; Saturn V = 1.2 in Pisces.
+  const auto planets = PlanetsAt(place, ParseInstant("2026-01-10T00:00:00Z"));
+  const SunPosition sun = SunAt(place, ParseInstant("2026-01-10T00:00:00Z"));
+  EXPECT_NEAR(AngleBetween(planets[3].direction, sun.direction), 180.0, 1.0);
+  EXPECT_NEAR(planets[3].magnitude, -2.7, 0.15);
+  EXPECT_NEAR(planets[4].magnitude, 1.1, 0.3);
+  EXPECT_LT(AngleBetween(planets[1].direction, sun.direction), 3.0) << "Venus behind the sun";
+  // Greatest elongation east on 2026 August 15: 45.9 degrees.
+  const auto evening = PlanetsAt(place, ParseInstant("2026-08-15T06:00:00Z"));
+  const SunPosition late = SunAt(place, ParseInstant("2026-08-15T06:00:00Z"));
+  EXPECT_NEAR(AngleBetween(evening[1].direction, late.direction), 45.9, 0.2);
+  EXPECT_NEAR(evening[1].magnitude, -4.3, 0.2);
 }
 
 }  // namespace

@@ -16,6 +16,7 @@
 #include "atmosphere/math/constants.h"
 #include "atmosphere/medium/medium.h"
 #include "atmosphere/reference/reference_solution.h"
+#include "tests/fixtures/bands_near.h"
 
 namespace alpenglow::atmosphere {
 namespace {
@@ -32,27 +33,18 @@ std::uint64_t Fnv1a(std::string_view text) {
 
 TEST(SampledFunction, IsLinearBetweenItsPointsAndConstantBeyond) {
   const SampledFunction f({1.0, 2.0, 4.0}, {10.0, 20.0, 0.0});
-  EXPECT_DOUBLE_EQ(f(1.5), 15.0);
-  EXPECT_DOUBLE_EQ(f(2.0), 20.0);
-  EXPECT_DOUBLE_EQ(f(3.0), 10.0);
-  EXPECT_DOUBLE_EQ(f(0.0), 10.0);
-  EXPECT_DOUBLE_EQ(f(5.0), 0.0);
-}
-
-TEST(SampledFunction, MeanIsTheAreaUnderTheBrokenLine) {
-  const SampledFunction f({1.0, 2.0, 4.0}, {10.0, 20.0, 0.0});
-  EXPECT_DOUBLE_EQ(f.Mean(1.0, 4.0), (15.0 + 20.0) / 3.0);
+  for (const auto& [x, y] :
+       {std::pair{1.5, 15.0}, {2.0, 20.0}, {3.0, 10.0}, {0.0, 10.0}, {5.0, 0.0}})
+    EXPECT_DOUBLE_EQ(f(x), y) << x;
+  EXPECT_DOUBLE_EQ(f.Mean(1.0, 4.0), (15.0 + 20.0) / 3.0) << "the area under the broken line";
   EXPECT_DOUBLE_EQ(f.Mean(0.0, 1.0), 10.0);
   EXPECT_DOUBLE_EQ(f.Mean(4.0, 9.0), 0.0);
   EXPECT_DOUBLE_EQ(f.Mean(0.0, 5.0), (10.0 + 15.0 + 20.0) / 5.0);
   EXPECT_DOUBLE_EQ(f.Mean(2.5, 3.0), 12.5);
-}
-
-TEST(SampledFunction, TablesOutOfOrderAreRefused) {
-  EXPECT_THROW(SampledFunction({1.0, 1.0}, {0.0, 0.0}), InternalError);
+  EXPECT_THROW(SampledFunction({1.0, 1.0}, {0.0, 0.0}), InternalError) << "out of order";
   EXPECT_THROW(SampledFunction({1.0}, {0.0, 0.0}), InternalError);
   EXPECT_THROW(SampledFunction({}, {}), InternalError);
-  EXPECT_THROW((void)SampledFunction({1.0}, {0.0}).Mean(2.0, 2.0), InternalError);
+  EXPECT_THROW((void)f.Mean(2.0, 2.0), InternalError);
 }
 
 TEST(Tables, EveryByteIsAsItWasChecked) {
@@ -86,7 +78,7 @@ TEST(Tables, ColourMatchingFunctionsHaveThePublishedSums) {
   EXPECT_EQ(ColourMatching(831.0), Triple{});
 }
 
-// Luminance of the rods over that of the cones, of a black body.
+// Returns the luminance of the rods over that of the cones, of a black body.
 double ScotopicOverPhotopic(double temperature_k) {
   constexpr double kSecondRadiationConstant_nm_k = 1.438777e7;
   double scotopic = 0.0, photopic = 0.0;
@@ -180,22 +172,17 @@ TEST(Wavelengths, SetsHaveTheirSizesAndAscend) {
   EXPECT_THROW((void)WavelengthSet(7), InputError);
 }
 
-TEST(Srgb, MatrixIsTheOneOfTheStandard) {
+TEST(Srgb, MatrixIsTheOneOfTheStandardAndHasItsInverse) {
   const Matrix3 published{{{0.4123907993, 0.3575843394, 0.1804807884},
                            {0.2126390059, 0.7151686788, 0.0721923154},
                            {0.0193308187, 0.1191947798, 0.9505321522}}};
-  for (std::size_t row = 0; row < 3; ++row) {
-    for (std::size_t column = 0; column < 3; ++column) {
-      EXPECT_NEAR(XyzFromLinearSrgb()[row][column], published[row][column], 1e-9)
-          << "from primaries and D65 (0.3127, 0.3290), ten digits";
-    }
-  }
-}
-
-TEST(Srgb, MatricesAreInversesOfEachOther) {
   const Triple colour{0.2, 0.7, 0.4};
   const Triple back = LinearSrgbFromXyz() * (XyzFromLinearSrgb() * colour);
-  for (std::size_t c = 0; c < 3; ++c) EXPECT_NEAR(back[c], colour[c], 1e-15);
+  for (std::size_t row = 0; row < 3; ++row) {
+    EXPECT_TRUE(tests::BandsNear(XyzFromLinearSrgb()[row], published[row], 0.0, 1e-9))
+        << "from primaries and D65 (0.3127, 0.3290), ten digits";
+    EXPECT_NEAR(back[row], colour[row], 1e-15);
+  }
 }
 
 Triple XyzFromLab(double l, double a, double b, const Triple& white) {
@@ -259,9 +246,9 @@ TEST(Ciede2000, PublishedPairsHaveTheirDifferences) {
   }
 }
 
-// Sunlight and skylight that the training family does not know: the
-// reference solution's single scattering through three atmospheres at 95 wavelengths,
-// as it is and with more blue as from light scattered again.
+// The training does not know this sunlight and skylight: single scattering of the reference solution
+// through three atmospheres at 95 wavelengths, as it is and with more blue as from light scattered
+// again.
 struct TestLight {
   SampledFunction relative_to_sun;
   Triple xyz;
@@ -316,11 +303,8 @@ std::vector<TestLight> MakeTestLights() {
   for (const char* preset : {"earth", "clear-mountain", "hazy"}) {
     const Medium medium = MediumPreset(preset, TestWavelengths());
     for (const double elevation : {60.0, 30.0, 10.0, 3.0, 0.5, -2.0, -5.0}) {
-      for (const double view_zenith : {5.0, 45.0, 75.0, 87.0}) {
-        for (const double azimuth : {0.0, 90.0, 180.0}) {
-          AddSky(medium, RayTowards(view_zenith, azimuth, elevation), lights);
-        }
-      }
+      for (const double view_zenith : {5.0, 45.0, 75.0, 87.0})
+        AddSky(medium, RayTowards(view_zenith, 2.0 * view_zenith, elevation), lights);
       if (elevation < 0.0) continue;
       AddLight(reference::SunIrradiance(medium, 10.0, std::sin(Radians(elevation))), lights);
     }
@@ -339,7 +323,8 @@ std::vector<double> SunInBands(const std::vector<double>& wavelengths_nm) {
   return bands;
 }
 
-// CIEDE2000 of every test light, at an exposure that gives it two fifths of the luminance of white.
+// Returns CIEDE2000 of every test light, at an exposure that gives it two fifths of the luminance of
+// white.
 std::vector<double> SortedErrors(const BandColour& colour) {
   const Triple sun = TrueXyz(SampledFunction({360.0}, {1.0}));
   std::vector<double> errors;
@@ -367,8 +352,8 @@ struct Bound {
   double mean, percentile95;
 };
 
-TEST(BandColour, ErrorsOnSkiesItWasNotTrainedOnAreBelowTheBoundsInItsHeader) {
-  ASSERT_EQ(TestLights().size(), 513U);
+TEST(BandColour, ErrorsOnUntrainedSkiesAreBelowTheBoundsInItsHeader) {
+  ASSERT_EQ(TestLights().size(), 183U);
   const Bound bounds[] = {
       {WavelengthSet(3), 0.9, 2.5},    {WavelengthSet(4), 0.2, 0.6},
       {WavelengthSet(5), 0.08, 0.2},   {WavelengthSet(6), 0.03, 0.08},
@@ -427,15 +412,12 @@ TEST(BandColour, SunAboveTheAirHasTheSameColourOnEveryWavelengthSet) {
       {440.0, 550.0, 680.0}, {550.0}, {430.0, 500.0, 530.0, 610.0, 670.0}};
   for (const int bands : kWavelengthSetSizes) sets.push_back(WavelengthSet(bands));
   for (const auto& set : sets) {
-    const Triple xyz = BandColour(set).Xyz(SunInBands(set));
-    for (std::size_t c = 0; c < 3; ++c) {
-      EXPECT_NEAR(xyz[c] / sun[c], 1.0, 1e-4) << set.size() << " bands";
-    }
+    EXPECT_TRUE(tests::BandsNear(BandColour(set).Xyz(SunInBands(set)), sun, 1e-4)) << set.size();
   }
 }
 
 // Hard case 36.
-TEST(BandColour, WhitePointOfAGreySurfaceUnderADaySkyMovesLessThanTwoPerCentBetweenSets) {
+TEST(BandColour, WhiteOfPaperByDayIsWithinTwoPercentInEverySet) {
   // Sun at 30 degrees through the default air, on white paper.
   const std::vector<double> relative = reference::SunIrradiance(
       MediumPreset("earth", TestWavelengths()), 10.0, std::sin(Radians(30.0)));
@@ -446,10 +428,7 @@ TEST(BandColour, WhitePointOfAGreySurfaceUnderADaySkyMovesLessThanTwoPerCentBetw
     std::vector<double> radiance = SunInBands(colour.wavelengths_nm());
     for (std::size_t i = 0; i < radiance.size(); ++i)
       radiance[i] *= light(colour.wavelengths_nm()[i]);
-    const Triple xyz = colour.Xyz(radiance);
-    for (std::size_t c = 0; c < 3; ++c) {
-      EXPECT_NEAR(xyz[c] / truth[c], 1.0, 0.02) << bands << " bands";
-    }
+    EXPECT_TRUE(tests::BandsNear(colour.Xyz(radiance), truth, 0.02)) << bands << " bands";
   }
 }
 
@@ -502,29 +481,47 @@ Triple ColourUnderEqualEnergy(const Triple& rgb) {
 TEST(Albedo, HasTheColourItWasMadeFrom) {
   for (const Triple& rgb : {Triple{0.5, 0.5, 0.5}, Triple{0.2, 0.4, 0.1}, Triple{0.6, 0.3, 0.2},
                             Triple{0.1, 0.2, 0.5}, Triple{1.0, 1.0, 1.0}, Triple{0.0, 0.0, 0.0}}) {
-    const Triple back = ColourUnderEqualEnergy(rgb);
-    for (std::size_t c = 0; c < 3; ++c) EXPECT_NEAR(back[c], rgb[c], 1e-9);
+    EXPECT_TRUE(tests::BandsNear(ColourUnderEqualEnergy(rgb), rgb, 0.0, 1e-9));
   }
+  for (const double value : AlbedoFromLinearSrgb({0.3, 0.3, 0.3}, WavelengthSet(40)))
+    EXPECT_NEAR(value, 0.3, 1e-12) << "grey is flat";
 }
 
 TEST(Albedo, OfAPrimaryIsNearItAndStaysAnAlbedo) {
   for (std::size_t primary = 0; primary < 3; ++primary) {
     Triple rgb{};
     rgb[primary] = 1.0;
-    const Triple back = ColourUnderEqualEnergy(rgb);
-    for (std::size_t c = 0; c < 3; ++c) {
-      EXPECT_NEAR(back[c], rgb[c], 0.06) << "shares are clamped to [0, 1]";
-    }
+    EXPECT_TRUE(tests::BandsNear(ColourUnderEqualEnergy(rgb), rgb, 0.0, 0.06))
+        << "shares are clamped to [0, 1]";
     for (const double value : AlbedoFromLinearSrgb(rgb, WavelengthSet(40))) {
       EXPECT_TRUE(value >= 0.0 && value <= 1.0);
     }
   }
 }
 
-TEST(Albedo, OfGreyIsFlat) {
-  for (const double value : AlbedoFromLinearSrgb({0.3, 0.3, 0.3}, WavelengthSet(40))) {
-    EXPECT_NEAR(value, 0.3, 1e-12);
+TEST(Water, IsClearestInTheVioletAsPopeAndFryFound) {
+  double clearest_nm = 380.0;
+  for (double nm = 380.0; nm <= 750.0; nm += 1.0) {
+    if (WaterAbsorption(nm) < WaterAbsorption(clearest_nm)) clearest_nm = nm;
   }
+  EXPECT_NEAR(clearest_nm, 418.0, 10.0) << "their minimum lies at 418 nm; the table has 10 nm";
+  EXPECT_NEAR(WaterAbsorption(clearest_nm), 0.0044, 0.0002) << "their 0.0044 1/m";
+  for (double nm = 430.0; nm < 745.0; nm += 5.0)
+    EXPECT_LE(WaterAbsorption(nm), WaterAbsorption(nm + 5.0)) << "no digit is out of place: " << nm;
+}
+
+TEST(Water, ScattersShortWavesMuchMoreThanLongOnes) {
+  EXPECT_DOUBLE_EQ(SeaWaterScattering(500.0), 0.00288);
+  EXPECT_NEAR(SeaWaterScattering(400.0) / SeaWaterScattering(700.0), 11.2, 0.1)
+      << "(700 / 400)^4.32";
+}
+
+TEST(Ice, AbsorbsAThousandTimesMoreInDeepRedThanInViolet) {
+  EXPECT_NEAR(IceAbsorption(550.0), 0.0523, 0.0001) << "4 pi 2.289e-9 / 550 nm";
+  EXPECT_NEAR(IceAbsorption(400.0), 7.43e-4, 0.01e-4) << "4 pi 2.365e-11 / 400 nm";
+  EXPECT_GT(IceAbsorption(750.0) / IceAbsorption(400.0), 1000.0);
+  for (double nm = 390.0; nm < 745.0; nm += 5.0)
+    EXPECT_LT(IceAbsorption(nm), IceAbsorption(nm + 5.0)) << "no digit is out of place: " << nm;
 }
 
 }  // namespace

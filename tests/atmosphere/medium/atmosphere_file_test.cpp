@@ -26,7 +26,7 @@ std::string FileFaultOf(const std::string& text) {
   return tests::FaultOf([&] { return Read(text); });
 }
 
-// The example of the manual: everything given, wavelengths from red to blue.
+// The example of the manual gives everything, with wavelengths from red to blue.
 constexpr const char* kComplete = R"(preset = "bruneton2017"
 [planet]
 radius_m = 6360000.0
@@ -56,44 +56,30 @@ TEST(AtmosphereFile, NothingGivenIsTheEarth) {
   EXPECT_EQ(Read("# only a comment\n[planet]\n"), MediumPreset("earth"));
   EXPECT_EQ(Read("\xef\xbb\xbfpreset = \"hazy\"\r\n"), MediumPreset("hazy"))
       << "a byte order mark and CRLF are harmless";
+  EXPECT_FALSE(Read("[planet]\nradius_m = 6371000\n").follows_wgs84) << "a radius means a sphere";
+  EXPECT_TRUE(Read("[planet]\nradius_m = 6371000\nfollows_wgs84 = true\n").follows_wgs84);
 }
 
-TEST(AtmosphereFile, DescendingListsOfTheManualAreThePresetAscending) {
+TEST(AtmosphereFile, DescendingListsAreReversed) {
   EXPECT_EQ(Read(kComplete), MediumPreset("bruneton2017"));
-}
-
-TEST(AtmosphereFile, AscendingAndDescendingFilesGiveTheSameMedium) {
-  const Medium ascending = Read(
-      "[spectrum]\nwavelengths_nm = [450, 550]\nsolar_irradiance = [2.0, 1.8]\n"
-      "[planet]\nground_albedo = [0.1, 0.2]\n");
-  const Medium descending = Read(
-      "[spectrum]\nwavelengths_nm = [550, 450]\nsolar_irradiance = [1.8, 2.0]\n"
-      "[planet]\nground_albedo = [0.2, 0.1]\n");
-  EXPECT_EQ(ascending, descending);
-  EXPECT_EQ(MediumHash(ascending), MediumHash(descending));
-  EXPECT_EQ(descending.ground_albedo, (std::vector<double>{0.1, 0.2}));
-}
-
-TEST(AtmosphereFile, EveryPhaseParameterOfADescendingFileIsReversed) {
-  const std::string spectrum = "preset = \"earth\"\n[spectrum]\nwavelengths_nm = ";
-  const std::string phase = "[mie]\nphase = \"double-henyey-greenstein\"\n";
-  const Medium ascending = Read(spectrum + "[450, 550, 650]\n" + phase +
-                                "g = [0.9, 0.8, 0.7]\ng_back = [-0.1, -0.2, -0.3]\n"
-                                "back_weight = [0.1, 0.2, 0.3]\n");
-  const Medium descending = Read(spectrum + "[650, 550, 450]\n" + phase +
-                                 "g = [0.7, 0.8, 0.9]\ng_back = [-0.3, -0.2, -0.1]\n"
-                                 "back_weight = [0.3, 0.2, 0.1]\n");
-  EXPECT_EQ(ascending, descending);
-  EXPECT_EQ(MediumHash(ascending), MediumHash(descending));
-  EXPECT_EQ(descending.mie_phase.front().g_back, -0.1) << "at 450 nm";
-}
-
-TEST(AtmosphereFile, ADescendingListMayBeTheOnlyOneOfAPhaseFunction) {
-  const auto with = [&](const char* wavelengths, const char* alpha) {
-    return Read(std::string("[spectrum]\nwavelengths_nm = ") + wavelengths +
-                "\n[mie]\nphase = \"draine\"\ng = 0.5\nalpha = " + alpha + "\n");
-  };
-  EXPECT_EQ(with("[450, 550, 650]", "[0.1, 0.2, 0.3]"), with("[650, 550, 450]", "[0.3, 0.2, 0.1]"));
+  const std::string spectrum = "[spectrum]\nwavelengths_nm = ";
+  const std::pair<std::string, std::string> ascending_and_descending[] = {
+      {"[450, 550]\nsolar_irradiance = [2.0, 1.8]\n[planet]\nground_albedo = [0.1, 0.2]\n",
+       "[550, 450]\nsolar_irradiance = [1.8, 2.0]\n[planet]\nground_albedo = [0.2, 0.1]\n"},
+      {"[450, 550, 650]\n[mie]\nphase = \"double-henyey-greenstein\"\ng = [0.9, 0.8, 0.7]\n"
+       "g_back = [-0.1, -0.2, -0.3]\nback_weight = [0.1, 0.2, 0.3]\n",
+       "[650, 550, 450]\n[mie]\nphase = \"double-henyey-greenstein\"\ng = [0.7, 0.8, 0.9]\n"
+       "g_back = [-0.3, -0.2, -0.1]\nback_weight = [0.3, 0.2, 0.1]\n"},
+      {"[450, 550, 650]\n[mie]\nphase = \"draine\"\ng = 0.5\nalpha = [0.1, 0.2, 0.3]\n",
+       "[650, 550, 450]\n[mie]\nphase = \"draine\"\ng = 0.5\nalpha = [0.3, 0.2, 0.1]\n"}};
+  for (const auto& [ascending, descending] : ascending_and_descending) {
+    EXPECT_EQ(Read(spectrum + descending), Read(spectrum + ascending)) << ascending;
+    EXPECT_EQ(MediumHash(Read(spectrum + descending)), MediumHash(Read(spectrum + ascending)));
+  }
+  EXPECT_EQ(Read(spectrum + ascending_and_descending[0].second).ground_albedo,
+            (std::vector<double>{0.1, 0.2}));
+  EXPECT_EQ(Read(spectrum + ascending_and_descending[1].second).mie_phase.front().g_back, -0.1)
+      << "at 450 nm";
 }
 
 TEST(AtmosphereFile, WhatIsNotGivenIsThePresets) {
@@ -109,13 +95,9 @@ TEST(AtmosphereFile, BandsChooseTheWavelengths) {
     const Medium medium = Read("[spectrum]\nbands = " + std::to_string(bands) + "\n");
     EXPECT_EQ(medium.wavelengths_nm, WavelengthSet(bands));
   }
-  EXPECT_EQ(FileFaultOf("[spectrum]\nbands = 7\n"),
-            "a.toml:2: spectrum.bands is 7; it must be one of 3, 4, 5, 6, 8, 16, 40");
-  EXPECT_THAT(FileFaultOf("[spectrum]\nbands = 4\nwavelengths_nm = [500]\n"),
-              HasSubstr("give one of"));
 }
 
-TEST(AtmosphereFile, LightIsPolarisedByTheGasOfThePresetUnlessTheFileSaysOtherwise) {
+TEST(AtmosphereFile, PolarisationIsThatOfThePresetUnlessGiven) {
   EXPECT_TRUE(Read("").polarised);
   EXPECT_FALSE(Read("preset = \"bruneton2017\"\n").polarised) << "as others have it";
   EXPECT_EQ(Read("polarised = true\n"), MediumPreset("earth"));
@@ -136,11 +118,6 @@ TEST(AtmosphereFile, LightIsPolarisedByTheGasOfThePresetUnlessTheFileSaysOtherwi
   EXPECT_FALSE(reversed.polarised) << "a shape of scattering of its own";
 }
 
-TEST(AtmosphereFile, AGivenRadiusIsASphere) {
-  EXPECT_FALSE(Read("[planet]\nradius_m = 6371000\n").follows_wgs84);
-  EXPECT_TRUE(Read("[planet]\nradius_m = 6371000\nfollows_wgs84 = true\n").follows_wgs84);
-}
-
 TEST(AtmosphereFile, AScaleHeightAloneMakesMoleculesOneExponential) {
   EXPECT_EQ(Read("[rayleigh]\nscale_height_m = 7000\n").rayleigh_deficit, MoleculeDeficit{});
   const Medium both =
@@ -149,9 +126,6 @@ TEST(AtmosphereFile, AScaleHeightAloneMakesMoleculesOneExponential) {
   EXPECT_NEAR(MoleculeColumn_m(both), 1.3 * 7000.0 - 0.3 * 2500.0, 1e-9);
   EXPECT_NEAR(MoleculeDensity(both, 5000.0), 1.3 * std::exp(-5.0 / 7.0) - 0.3 * std::exp(-2.0),
               1e-15);
-  EXPECT_THAT(FileFaultOf("[rayleigh]\nscale_height_m = 7000\ndeficit_scale_height_m = 2500\n"),
-              HasSubstr("no effect"));
-  EXPECT_THAT(FileFaultOf("[rayleigh]\ndeficit = 2\n"), HasSubstr("[0, 1]"));
 }
 
 TEST(AtmosphereFile, RaysBendAsInAlmanacsUnlessTheFileGivesTheDensity) {
@@ -161,7 +135,6 @@ TEST(AtmosphereFile, RaysBendAsInAlmanacsUnlessTheFileGivesTheDensity) {
   EXPECT_EQ(Read("[rayleigh]\nscale_height_m = 7000\nrefraction = \"almanacs\"\n").refraction,
             RefractionBy::kAlmanacs);
   EXPECT_EQ(Read("preset = \"mars\"\n").refraction, RefractionBy::kMolecules);
-  EXPECT_THAT(FileFaultOf("[rayleigh]\nrefraction = \"none\"\n"), HasSubstr("molecules, almanacs"));
 }
 
 TEST(AtmosphereFile, VisibilityIsWhereContrastFallsToTwoPerCent) {
@@ -169,16 +142,10 @@ TEST(AtmosphereFile, VisibilityIsWhereContrastFallsToTwoPerCent) {
       Read("[spectrum]\nwavelengths_nm = [550]\n[aerosol]\nvisibility_m = 23000\n");
   const double extinction = medium.mie_extinction_per_m[0] + medium.rayleigh_scattering_per_m[0];
   EXPECT_NEAR(std::exp(-23000.0 * extinction), 0.02, 1e-5) << "3.912 has four digits";
-  EXPECT_THAT(FileFaultOf("[aerosol]\nvisibility_m = 400000\n"),
-              HasSubstr("the molecules alone limit it to 340"));
-}
-
-TEST(AtmosphereFile, VisibilityDoesNotDependOnTheBands) {
-  const Medium one = Read("[spectrum]\nwavelengths_nm = [550]\n[aerosol]\nvisibility_m = 23000\n");
   const Medium four =
       Read("[spectrum]\nwavelengths_nm = [450, 500, 590, 650]\n[aerosol]\nvisibility_m = 23000\n");
   const double at_550 = four.mie_extinction_per_m[1] * std::pow(550.0 / 500.0, -1.3);
-  EXPECT_NEAR(at_550, one.mie_extinction_per_m[0], 1e-4 * at_550)
+  EXPECT_NEAR(at_550, medium.mie_extinction_per_m[0], 1e-4 * at_550)
       << "molecules at 550 nm are interpolated between the bands";
 }
 
@@ -187,10 +154,9 @@ TEST(AtmosphereFile, TurbidityIsTheOpticalDepthOverThatOfCleanAir) {
   const double aerosol = medium.mie_extinction_per_m[0] * medium.mie_scale_height_m;
   const double molecules = medium.rayleigh_scattering_per_m[0] * MoleculeColumn_m(medium);
   EXPECT_NEAR((aerosol + molecules) / molecules, 3.0, 1e-12);
-  EXPECT_THAT(FileFaultOf("[aerosol]\nturbidity = 0.5\n"), HasSubstr("[1, 1000]"));
 }
 
-TEST(AtmosphereFile, OpticalDepthAndExponentSetTheExtinctionAndKeepTheAlbedo) {
+TEST(AtmosphereFile, OpticalDepthAndExponentKeepTheAlbedo) {
   const Medium medium = Read(
       "[spectrum]\nwavelengths_nm = [450, 550]\n[mie]\nscale_height_m = 2000\n"
       "[aerosol]\noptical_depth_550 = 0.1\nangstrom_exponent = 0.5\n");
@@ -202,15 +168,6 @@ TEST(AtmosphereFile, OpticalDepthAndExponentSetTheExtinctionAndKeepTheAlbedo) {
   EXPECT_EQ(grey.mie_scattering_per_m, grey.mie_extinction_per_m);
 }
 
-TEST(AtmosphereFile, AerosolIsGivenInOneWayOnly) {
-  EXPECT_THAT(FileFaultOf("[aerosol]\nturbidity = 2\nvisibility_m = 23000\n"),
-              StartsWith("a.toml:2: aerosol.turbidity is given beside aerosol.visibility_m"));
-  EXPECT_THAT(FileFaultOf("[aerosol]\nangstrom_exponent = 1\n"),
-              HasSubstr("aerosol needs mixture or one of"));
-  EXPECT_THAT(FileFaultOf("[mie]\nscattering_per_m = [0, 0, 0, 0]\n[aerosol]\nturbidity = 2\n"),
-              StartsWith("a.toml:2: mie.scattering_per_m is given beside [aerosol]"));
-}
-
 TEST(AtmosphereFile, DobsonIsTheColumnOfTheLayer) {
   const Medium thin = Read("[ozone]\ndobson = 150\n");
   const Medium narrow = Read("[ozone]\ndobson = 300\nbottom_m = 20000\ntop_m = 35000\n");
@@ -220,10 +177,6 @@ TEST(AtmosphereFile, DobsonIsTheColumnOfTheLayer) {
     EXPECT_NEAR(narrow.ozone_absorption_per_m[i],
                 earth.ozone_absorption_per_m[i] * EquivalentDepth_m(earth.ozone) / 7500.0, 1e-18);
   }
-  EXPECT_THAT(FileFaultOf("[ozone]\ndobson = 300\nabsorption_per_m = [0, 0, 0, 0]\n"),
-              HasSubstr("give one of them"));
-  EXPECT_THAT(FileFaultOf("[ozone]\ndobson = 300\nbottom_m = 40000\n"),
-              HasSubstr("ozone.peak_m is 25000; it must lie between"));
 }
 
 TEST(AtmosphereFile, OzoneHasTwoProfilesOfWhichTheEdgesMakeATent) {
@@ -237,9 +190,6 @@ TEST(AtmosphereFile, OzoneHasTwoProfilesOfWhichTheEdgesMakeATent) {
   EXPECT_NEAR(tent.ozone_absorption_per_m[1] * 15000.0,
               earth.ozone_absorption_per_m[1] * EquivalentDepth_m(earth.ozone), 1e-12)
       << "another profile keeps the column";
-  EXPECT_THAT(FileFaultOf("[ozone]\nprofile = \"box\"\n"), HasSubstr("one of smooth, tent"));
-  EXPECT_THAT(FileFaultOf("[ozone]\nprofile = \"smooth\"\ntop_m = 60000\n"),
-              HasSubstr("ozone.top_m has no effect"));
 }
 
 TEST(AtmosphereFile, PhaseParametersBelongToTheirPhase) {
@@ -249,11 +199,6 @@ TEST(AtmosphereFile, PhaseParametersBelongToTheirPhase) {
   EXPECT_EQ(medium.mie_phase.front().g_back, -0.2);
   EXPECT_EQ(Read("[mie]\ng = 0.7\n").mie_phase.front().g, 0.7);
   EXPECT_EQ(Read("[mie]\nphase = \"rayleigh\"\n").mie_phase.front().kind, PhaseKind::kRayleigh);
-  EXPECT_THAT(FileFaultOf("[mie]\nalpha = 0.5\n"), StartsWith("a.toml:2: mie.alpha has no effect"));
-  EXPECT_THAT(FileFaultOf("[mie]\nphase = \"henyey-greenstein\"\n"), HasSubstr("give mie.g too"));
-  EXPECT_THAT(FileFaultOf("[mie]\nphase = \"mie\"\n"),
-              StartsWith("a.toml:2: mie.phase is \"mie\"; it must be one of rayleigh"));
-  EXPECT_EQ(FileFaultOf("[mie]\n\ng = 1.0\n"), "a.toml:3: mie.g is 1; it must lie in (-1, 1)");
 }
 
 // Files that were written when the presets of the earth had one lobe.
@@ -282,21 +227,11 @@ TEST(AtmosphereFile, PhaseParametersMayBeOnePerWavelength) {
   EXPECT_EQ(MiePhase(medium, 2).g_back, -0.2);
   EXPECT_EQ(Read("[mie]\ng = [0.7, 0.7, 0.7, 0.7]\n").mie_phase.size(), 1U)
       << "four times the same is one for all";
-  EXPECT_THAT(FileFaultOf("[mie]\ng = [0.7, 0.8]\n"),
-              StartsWith("a.toml:2: mie.g has 2 values; it must have 4, one per wavelength"));
 }
 
 TEST(AtmosphereFile, FogIsKnownByItsDroplets) {
   const Medium medium = Read("[mie]\nphase = \"fog\"\ndroplet_diameter_um = 12\n");
   EXPECT_EQ(medium.mie_phase.front(), FogPhase(12.0));
-  EXPECT_THAT(FileFaultOf("[mie]\nphase = \"fog\"\n"),
-              HasSubstr("give mie.droplet_diameter_um too"));
-  EXPECT_THAT(FileFaultOf("[mie]\nphase = \"fog\"\ndroplet_diameter_um = 60\n"),
-              StartsWith("a.toml:3: mie.droplet_diameter_um is 60; it must lie in [1.5, 50]"));
-  EXPECT_THAT(FileFaultOf("[mie]\ndroplet_diameter_um = 10\n"),
-              HasSubstr("no effect without phase = \"fog\""));
-  EXPECT_THAT(FileFaultOf("[mie]\nphase = \"fog\"\ndroplet_diameter_um = 12\ng = 0.8\n"),
-              HasSubstr("mie.g has no effect"));
 }
 
 TEST(AtmosphereFile, APhaseFunctionMayBeAFileBesideTheAtmosphere) {
@@ -324,17 +259,6 @@ TEST(AtmosphereFile, APhaseFunctionMayBeAFileBesideTheAtmosphere) {
       << "linear between 400 and 700 nm";
   EXPECT_THROW(static_cast<void>(ReadMedium(folder / "b.toml")), InputError);
   std::filesystem::remove_all(folder);
-  EXPECT_THAT(FileFaultOf("[mie]\nphase = \"table\"\n"), HasSubstr("give mie.phase_file too"));
-  EXPECT_THAT(FileFaultOf("[mie]\nphase_file = \"x.csv\"\n"),
-              HasSubstr("no effect without phase = \"table\""));
-  EXPECT_THAT(
-      FileFaultOf("[mie]\nphase = \"table\"\nphase_angles_deg = [0, 45, 90, 135, 180]\n"
-                  "phase_per_sr = [0.08, 0.08]\n"),
-      StartsWith("a.toml:4: mie.phase_per_sr has 2 values; it must have 5, one per angle, or "
-                 "20, one per angle and wavelength"));
-  EXPECT_THAT(FileFaultOf("[mie]\nphase = \"table\"\nphase_angles_deg = [0, 45, 90, 135, 180]\n"
-                          "phase_per_sr = [1, 1, 1, 1, 1]\n"),
-              StartsWith("a.toml:4: mie.phase: the integral over the sphere is 12.566"));
 }
 
 TEST(AtmosphereFile, AMixtureBringsSpectrumLayerAndPhaseFunction) {
@@ -363,23 +287,12 @@ TEST(AtmosphereFile, TheLoadOfAMixtureMayBeGivenInEveryWay) {
   const Medium turbid = Read(green + "turbidity = 3\n");
   EXPECT_NEAR(turbid.mie_extinction_per_m[1] * turbid.mie_scale_height_m,
               2.0 * turbid.rayleigh_scattering_per_m[1] * MoleculeColumn_m(turbid), 1e-12);
-  EXPECT_THAT(FileFaultOf("[aerosol]\n" + mixture + "angstrom_exponent = 1\n"),
-              StartsWith("a.toml:3: aerosol.angstrom_exponent has no effect"));
-  EXPECT_THAT(FileFaultOf("[aerosol]\nmixture = \"dessert\"\n"), HasSubstr("did you mean desert?"));
-  EXPECT_THAT(FileFaultOf("[mie]\ng = 0.7\n[aerosol]\n" + mixture),
-              StartsWith("a.toml:2: mie.g has no effect"));
   const Medium fog =
       Read("[mie]\nphase = \"fog\"\ndroplet_diameter_um = 10\n[aerosol]\n" + mixture);
   EXPECT_EQ(fog.mie_phase.front(), FogPhase(10.0)) << "[mie] may say otherwise";
 }
 
 TEST(AtmosphereFile, WavelengthsBeyondTheDataOfThePresetNeedTheirLists) {
-  EXPECT_THAT(
-      FileFaultOf("[spectrum]\nwavelengths_nm = [550, 900]\n"),
-      StartsWith("a.toml:2: spectrum.wavelengths_nm leaves the data of preset earth (360 to "
-                 "830 nm); give spectrum.solar_irradiance too"));
-  EXPECT_THAT(FileFaultOf("preset = \"bruneton2017\"\n[spectrum]\nbands = 4\n"),
-              HasSubstr("(440, 550 and 680 nm); give spectrum.solar_irradiance too"));
   const Medium infrared = Read(
       "[spectrum]\nwavelengths_nm = [900]\nsolar_irradiance = [0.91]\n[planet]\nground_albedo = "
       "0.3\n"
@@ -388,20 +301,6 @@ TEST(AtmosphereFile, WavelengthsBeyondTheDataOfThePresetNeedTheirLists) {
       "300\n");
   EXPECT_EQ(infrared.wavelengths_nm, std::vector<double>{900.0});
   EXPECT_EQ(infrared.ozone_absorption_per_m, std::vector<double>{0.0});
-  EXPECT_THAT(FileFaultOf("[spectrum]\nwavelengths_nm = [300]\nsolar_irradiance = [0.5]\n"
-                          "[ozone]\ndobson = 300\n"),
-              HasSubstr("give ozone.absorption_per_m"));
-}
-
-TEST(AtmosphereFile, UnknownKeysSuggestTheNearest) {
-  EXPECT_EQ(FileFaultOf("[planet]\nradius = 6e6\n"),
-            "a.toml:2: unknown key planet.radius; did you mean radius_m?");
-  EXPECT_EQ(FileFaultOf("[rayleigh]\n\nscatering_per_m = [1]\n"),
-            "a.toml:3: unknown key rayleigh.scatering_per_m; did you mean scattering_per_m?");
-  EXPECT_THAT(FileFaultOf("[planets]\n"), HasSubstr("unknown key planets; did you mean planet?"));
-  EXPECT_EQ(FileFaultOf("\npreset = \"earht\"\n"),
-            "a.toml:2: preset is \"earht\"; it must be one of earth, clear-mountain, hazy, mars, "
-            "bruneton2017; did you mean earth?");
 }
 
 struct BadInput {
@@ -409,8 +308,68 @@ struct BadInput {
   const char* message;
 };
 
-TEST(AtmosphereFile, BadValuesAreRefusedWithFileLineKeyValueAndRange) {
+TEST(AtmosphereFile, BadInputsAreRefusedWithFileLineKeyAndRange) {
   const BadInput inputs[] = {
+      {"[spectrum]\nbands = 7\n",
+       "a.toml:2: spectrum.bands is 7; it must be one of 3, 4, 5, 6, 8, 16, 40"},
+      {"[spectrum]\nbands = 4\nwavelengths_nm = [500]\n", "give one of"},
+      {"[rayleigh]\nscale_height_m = 7000\ndeficit_scale_height_m = 2500\n", "no effect"},
+      {"[rayleigh]\ndeficit = 2\n", "[0, 1]"},
+      {"[rayleigh]\nrefraction = \"none\"\n", "molecules, almanacs"},
+      {"[aerosol]\nvisibility_m = 400000\n", "the molecules alone limit it to 340"},
+      {"[aerosol]\nturbidity = 0.5\n", "[1, 1000]"},
+      {"[aerosol]\nturbidity = 2\nvisibility_m = 23000\n",
+       "a.toml:2: aerosol.turbidity is given beside aerosol.visibility_m"},
+      {"[aerosol]\nangstrom_exponent = 1\n", "aerosol needs mixture or one of"},
+      {"[mie]\nscattering_per_m = [0, 0, 0, 0]\n[aerosol]\nturbidity = 2\n",
+       "a.toml:2: mie.scattering_per_m is given beside [aerosol]"},
+      {"[ozone]\ndobson = 300\nabsorption_per_m = [0, 0, 0, 0]\n", "give one of them"},
+      {"[ozone]\ndobson = 300\nbottom_m = 40000\n", "ozone.peak_m is 25000; it must lie between"},
+      {"[ozone]\nprofile = \"box\"\n", "one of smooth, tent"},
+      {"[ozone]\nprofile = \"smooth\"\ntop_m = 60000\n", "ozone.top_m has no effect"},
+      {"[mie]\nalpha = 0.5\n", "a.toml:2: mie.alpha has no effect"},
+      {"[mie]\nphase = \"henyey-greenstein\"\n", "give mie.g too"},
+      {"[mie]\nphase = \"mie\"\n", "a.toml:2: mie.phase is \"mie\"; it must be one of rayleigh"},
+      {"[mie]\n\ng = 1.0\n", "a.toml:3: mie.g is 1; it must lie in (-1, 1)"},
+      {"[mie]\ng = [0.7, 0.8]\n",
+       "a.toml:2: mie.g has 2 values; it must have 4, one per wavelength"},
+      {"[mie]\nphase = \"fog\"\n", "give mie.droplet_diameter_um too"},
+      {"[mie]\nphase = \"fog\"\ndroplet_diameter_um = 60\n",
+       "a.toml:3: mie.droplet_diameter_um is 60; it must lie in [1.5, 50]"},
+      {"[mie]\ndroplet_diameter_um = 10\n", "no effect without phase = \"fog\""},
+      {"[mie]\nphase = \"fog\"\ndroplet_diameter_um = 12\ng = 0.8\n", "mie.g has no effect"},
+      {"[mie]\nphase = \"table\"\n", "give mie.phase_file too"},
+      {"[mie]\nphase_file = \"x.csv\"\n", "no effect without phase = \"table\""},
+      {"[mie]\nphase = \"table\"\nphase_angles_deg = [0, 45, 90, 135, 180]\n"
+       "phase_per_sr = [0.08, 0.08]\n",
+       "a.toml:4: mie.phase_per_sr has 2 values; it must have 5, one per angle, or "
+       "20, one per angle and wavelength"},
+      {"[mie]\nphase = \"table\"\nphase_angles_deg = [0, 45, 90, 135, 180]\n"
+       "phase_per_sr = [1, 1, 1, 1, 1]\n",
+       "a.toml:4: mie.phase: the integral over the sphere is 12.566"},
+      {"[aerosol]\n"
+       "mixture = \"maritime_clean\"\n"
+       "angstrom_exponent = 1\n",
+       "a.toml:3: aerosol.angstrom_exponent has no effect"},
+      {"[aerosol]\nmixture = \"dessert\"\n", "did you mean desert?"},
+      {"[mie]\ng = 0.7\n[aerosol]\n"
+       "mixture = \"maritime_clean\"\n",
+       "a.toml:2: mie.g has no effect"},
+      {"[spectrum]\nwavelengths_nm = [550, 900]\n",
+       "a.toml:2: spectrum.wavelengths_nm leaves the data of preset earth (360 to "
+       "830 nm); give spectrum.solar_irradiance too"},
+      {"preset = \"bruneton2017\"\n[spectrum]\nbands = 4\n",
+       "(440, 550 and 680 nm); give spectrum.solar_irradiance too"},
+      {"[spectrum]\nwavelengths_nm = [300]\nsolar_irradiance = [0.5]\n"
+       "[ozone]\ndobson = 300\n",
+       "give ozone.absorption_per_m"},
+      {"[planet]\nradius = 6e6\n", "a.toml:2: unknown key planet.radius; did you mean radius_m?"},
+      {"[rayleigh]\n\nscatering_per_m = [1]\n",
+       "a.toml:3: unknown key rayleigh.scatering_per_m; did you mean scattering_per_m?"},
+      {"[planets]\n", "unknown key planets; did you mean planet?"},
+      {"\npreset = \"earht\"\n",
+       "a.toml:2: preset is \"earht\"; it must be one of earth, clear-mountain, hazy, mars, "
+       "bruneton2017; did you mean earth?"},
       {"[planet]\nradius_m = \"big\"\n", "a.toml:2: planet.radius_m is the text \"big\""},
       {"[planet]\nradius_m = true\n", "a.toml:2: planet.radius_m is true; it must be a number"},
       {"[planet]\nradius_m = -1\n", "a.toml:2: planet.radius_m is -1; it must lie in [1000, "},
@@ -476,7 +435,7 @@ TEST(AtmosphereFile, BadValuesAreRefusedWithFileLineKeyValueAndRange) {
   };
   // A contradiction with a value that the file does not give has the line of its section.
   for (const BadInput& input : inputs) {
-    EXPECT_THAT(FileFaultOf(input.text), StartsWith(input.message)) << input.text;
+    EXPECT_THAT(FileFaultOf(input.text), HasSubstr(input.message)) << input.text;
   }
 }
 
@@ -500,12 +459,8 @@ TEST(AtmosphereFile, FilesAreReadAndNamedInFaults) {
   std::ofstream(file) << kComplete;
   EXPECT_EQ(ReadMedium(file), MediumPreset("bruneton2017"));
   std::ofstream(file) << "\n[mie]\ng = 2\n";
-  try {
-    (void)ReadMedium(file);
-    FAIL() << "g = 2 was accepted";
-  } catch (const InputError& error) {
-    EXPECT_THAT(error.what(), StartsWith(file.string() + ":3: mie.g is 2"));
-  }
+  EXPECT_THAT(tests::FaultOf([&] { return ReadMedium(file); }),
+              StartsWith(file.string() + ":3: mie.g is 2"));
   std::filesystem::remove(file);
   EXPECT_THROW((void)ReadMedium(file), InputError);
 }

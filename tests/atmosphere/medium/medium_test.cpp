@@ -14,8 +14,10 @@
 #include "atmosphere/colour/spectrum.h"
 #include "atmosphere/math/constants.h"
 #include "atmosphere/medium/aerosol_mixture.h"
+#include "atmosphere/medium/medium_presets.h"
 #include "atmosphere/medium/phase.h"
 #include "tests/fixtures/fault_of.h"
+#include "tests/fixtures/media.h"
 
 namespace alpenglow::atmosphere {
 namespace {
@@ -28,7 +30,7 @@ double OpticalDepthOfAerosol(const Medium& medium, std::size_t band) {
   return medium.mie_extinction_per_m[band] * medium.mie_scale_height_m;
 }
 
-TEST(Medium, EveryPresetIsValidOnItsOwnWavelengthsAndOnManyBands) {
+TEST(Medium, EveryPresetIsValidOnItsWavelengthsAndOnManyBands) {
   for (const std::string& name : MediumPresetNames()) {
     EXPECT_EQ(FindFault(MediumPreset(name)), std::nullopt) << name;
     EXPECT_EQ(MediumPreset(name).name, name);
@@ -156,44 +158,33 @@ std::vector<Change> HashedChanges() {
   };
 }
 
-TEST(Medium, RefractionLeavesTheHashOfTablesAsItIs) {
-  Medium medium = MediumPreset("earth");
-  const std::uint64_t hash = MediumHash(medium);
-  medium.refraction = RefractionBy::kMolecules;
-  EXPECT_EQ(MediumHash(medium), hash) << "it changes no light";
-}
-
-TEST(Medium, HashTellsApartEverythingButTheName) {
-  std::set<std::uint64_t> hashes{MediumHash(MediumPreset("earth"))};
+TEST(Medium, HashTellsApartEverythingThatChangesLight) {
+  const std::uint64_t hash = MediumHash(MediumPreset("earth"));
+  std::set<std::uint64_t> hashes{hash};
   for (const Change& change : HashedChanges()) {
     Medium medium = MediumPreset("earth");
     change.make(medium);
     EXPECT_TRUE(hashes.insert(MediumHash(medium)).second) << change.key;
   }
-  Medium renamed = MediumPreset("earth");
-  renamed.name = "home";
-  EXPECT_EQ(MediumHash(renamed), MediumHash(MediumPreset("earth")));
+  Medium same = MediumPreset("earth");
+  same.name = "home";
+  same.refraction = RefractionBy::kMolecules;
+  EXPECT_EQ(MediumHash(same), hash);
 }
 
-TEST(Medium, OnePhaseFunctionForAllIsTheSameAirAsItsCopies) {
+TEST(Medium, OneValueForAllBandsIsTheSameAirAsItsCopies) {
   Medium one = MediumPreset("earth");
   one.mie_phase = {PhaseFunction{}};
+  one.rayleigh_depolarisation = {0.03};
   Medium copies = one;
   copies.mie_phase.resize(one.wavelengths_nm.size(), one.mie_phase.front());
+  copies.rayleigh_depolarisation.assign(4, 0.03);
   EXPECT_EQ(MediumHash(one), MediumHash(copies));
+  EXPECT_EQ(RayleighPhaseValues(one, 0.3), RayleighPhaseValues(copies, 0.3));
   copies.mie_phase[2].g += 0.01;
   EXPECT_NE(MediumHash(one), MediumHash(copies));
   EXPECT_EQ(MiePhaseValues(one, 0.3), std::vector<double>(4, Phase(one.mie_phase[0], 0.3)));
   EXPECT_EQ(MiePhaseValues(copies, 0.3)[2], Phase(copies.mie_phase[2], 0.3));
-}
-
-TEST(Medium, OneDepolarisationForAllIsTheSameAirAsItsCopies) {
-  Medium one = MediumPreset("earth");
-  one.rayleigh_depolarisation = {0.03};
-  Medium copies = one;
-  copies.rayleigh_depolarisation.assign(4, 0.03);
-  EXPECT_EQ(MediumHash(one), MediumHash(copies));
-  EXPECT_EQ(RayleighPhaseValues(one, 0.3), RayleighPhaseValues(copies, 0.3));
 }
 
 TEST(Medium, MoleculesScatterAsHansenAndTravisSay) {
@@ -216,8 +207,8 @@ TEST(Medium, GasOfEarthIsAirAndThatOfMarsCarbonDioxide) {
 }
 
 TEST(Medium, HashIsTheSameOnEveryMachine) {
-  // A medium of literals only, so that no library's pow
-  // can change it; the value is from a separate program.
+  // The medium has literals only, so that no library's pow can change it. The value is from a
+  // separate program.
   EXPECT_EQ(MediumHash(MediumPreset("bruneton2017")), 3681725893479617410U)
       << "a new value here makes every table on every disk stale";
   Medium negative_zero = MediumPreset("bruneton2017");
@@ -290,79 +281,113 @@ TEST(Medium, FirstFaultNamesKeyValueAndRange) {
 
 // Hard case 28.
 TEST(Medium, EmptyAirIsValid) {
-  Medium medium = MediumPreset("earth");
-  for (auto* list : {&medium.rayleigh_scattering_per_m, &medium.mie_scattering_per_m,
-                     &medium.mie_extinction_per_m, &medium.ozone_absorption_per_m}) {
-    std::fill(list->begin(), list->end(), 0.0);
+  EXPECT_EQ(FindFault(tests::WithoutAir(MediumPreset("earth"))), std::nullopt);
+}
+
+TEST(Medium, RadiusTopAndScaleHeightsKeepClosedFormsRight) {
+  // The changed medium is bruneton2017: a tent of ozone, one exponential of molecules.
+  const Change changes[] = {
+      // 25 scale heights of 8 km are the smallest radius.
+      {"", [](Medium& m) { m.planet_radius_m = 200e3; }},
+      {"planet.radius_m is 199000; with rayleigh.scale_height_m 8000 it must lie in [200000, "
+       "100000000]",
+       [](Medium& m) { m.planet_radius_m = 199e3; }},
+      {"", [](Medium& m) { m.planet_radius_m = 1e8; }},
+      {"planet.radius_m is 101000000; it must lie in",
+       [](Medium& m) { m.planet_radius_m = 1.01e8; }},
+      {"with mie.scale_height_m 50000 it must lie in [1250000, 100000000]",
+       [](Medium& m) {
+         m.planet_radius_m = 1e6;
+         m.mie_scale_height_m = 50e3;
+       }},
+      {"planet.radius_m is 201000; with the smooth ozone layer of ozone.peak_m 30000 it must lie "
+       "in [270000, ",
+       [](Medium& m) {
+         m.planet_radius_m = 201e3;
+         m.ozone = SmoothOzone(30e3);
+         m.atmosphere_height_m = 90e3;
+       }},
+      // The tent of ozone ends at 40 km. Ozone that absorbs nothing may lie anywhere.
+      {"", [](Medium& m) { m.atmosphere_height_m = 40e3; }},
+      {"planet.atmosphere_top_m is 39000; with ozone up to 40000 it must lie in [40000, 2400000]",
+       [](Medium& m) { m.atmosphere_height_m = 39e3; }},
+      {"", [](Medium& m) { m.atmosphere_height_m = 2.4e6; }},
+      {"planet.atmosphere_top_m is 2500000; with rayleigh.scale_height_m 8000 it must lie in "
+       "[40000, 2400000]",
+       [](Medium& m) { m.atmosphere_height_m = 2.5e6; }},
+      {"",
+       [](Medium& m) {
+         m.atmosphere_height_m = 10e3;
+         m.ozone_absorption_per_m.assign(3, 0.0);
+       }},
+      {"with rayleigh.deficit_scale_height_m 6000 it must lie in [48000, ",
+       [](Medium& m) {
+         m.rayleigh_deficit = {0.3, 6e3};
+         m.atmosphere_height_m = 47e3;
+       }},
+      {"mie.scale_height_m is 1; it must lie in [100, 200000]",
+       [](Medium& m) { m.mie_scale_height_m = 1.0; }},
+      {"", [](Medium& m) { m.mie_scale_height_m = 100.0; }},
+      {"", [](Medium& m) { m.mie_scale_height_m = 200e3; }},  // 32 of them are the earth's radius
+      {"mie.scale_height_m is 201000", [](Medium& m) { m.mie_scale_height_m = 201e3; }},
+      {"rayleigh.scale_height_m is 1; it must lie in [100, 200000]",
+       [](Medium& m) { m.rayleigh_scale_height_m = 1.0; }},
+  };
+  for (const auto& [message, make] : changes) {
+    Medium medium = MediumPreset("bruneton2017");
+    make(medium);
+    const auto fault = FindFault(medium);
+    EXPECT_EQ(fault.has_value(), *message != '\0') << message;
+    if (fault) {
+      EXPECT_THAT(fault->text, HasSubstr(message));
+    }
   }
-  EXPECT_EQ(FindFault(medium), std::nullopt);
 }
 
-/// bruneton2017 (a tent of ozone, one exponential of molecules), changed.
-template <typename Make>
-std::string FaultOfChanged(const Make& make) {
-  Medium medium = MediumPreset("bruneton2017");
-  make(medium);
-  const auto fault = FindFault(medium);
-  return fault ? fault->text : "";
+TEST(MediumBands, OfAPresetAreThePresetThere) {
+  for (const char* name : {"earth", "hazy", "clear-mountain", "mars"}) {
+    const auto four = OnBands(MediumPreset(name, WavelengthSet(16)), 4);
+    ASSERT_TRUE(four.has_value()) << name;
+    EXPECT_EQ(*four, MediumPreset(name, WavelengthSet(4))) << name;
+  }
 }
 
-TEST(Medium, RadiusAndTopAreAllowedWhereTheClosedFormsAreRight) {
-  const auto with_radius = [](double radius_m) {
-    return FaultOfChanged([&](Medium& m) { m.planet_radius_m = radius_m; });
+TEST(MediumBands, FactorsOfAllWavelengthsAreKeptExactly) {
+  const auto text = [](int bands) {
+    return MediumFromToml("preset = \"earth\"\n[ozone]\ndobson = 450\n[spectrum]\nbands = " +
+                              std::to_string(bands) + "\n",
+                          "a.toml");
   };
-  EXPECT_EQ(with_radius(200e3), "") << "25 scale heights of 8 km";
-  EXPECT_EQ(with_radius(199e3),
-            "planet.radius_m is 199000; with rayleigh.scale_height_m 8000 it must lie in "
-            "[200000, 100000000]");
-  EXPECT_EQ(with_radius(1e8), "");
-  EXPECT_THAT(with_radius(1.01e8), HasSubstr("planet.radius_m is 101000000; it must lie in"));
-  EXPECT_THAT(FaultOfChanged([](Medium& m) {
-                m.planet_radius_m = 1e6;
-                m.mie_scale_height_m = 50e3;
-              }),
-              HasSubstr("with mie.scale_height_m 50000 it must lie in [1250000, 100000000]"));
-  EXPECT_THAT(FaultOfChanged([](Medium& m) {
-                m.planet_radius_m = 201e3;
-                m.ozone = SmoothOzone(30e3);
-                m.atmosphere_height_m = 90e3;
-              }),
-              HasSubstr("planet.radius_m is 201000; with the smooth ozone layer of ozone.peak_m "
-                        "30000 it must lie in [270000, "));
-  const auto with_top = [](double top_m) {
-    return FaultOfChanged([&](Medium& m) { m.atmosphere_height_m = top_m; });
-  };
-  EXPECT_EQ(with_top(40e3), "") << "where the tent of ozone ends";
-  EXPECT_EQ(with_top(39e3),
-            "planet.atmosphere_top_m is 39000; with ozone up to 40000 it must lie in "
-            "[40000, 2400000]");
-  EXPECT_EQ(with_top(2.4e6), "");
-  EXPECT_EQ(with_top(2.5e6),
-            "planet.atmosphere_top_m is 2500000; with rayleigh.scale_height_m 8000 it must lie in "
-            "[40000, 2400000]");
-  EXPECT_EQ(FaultOfChanged([](Medium& m) {
-              m.atmosphere_height_m = 10e3;
-              std::fill(m.ozone_absorption_per_m.begin(), m.ozone_absorption_per_m.end(), 0.0);
-            }),
-            "")
-      << "ozone that absorbs nothing may lie anywhere";
-  EXPECT_THAT(FaultOfChanged([](Medium& m) {
-                m.rayleigh_deficit = {0.3, 6e3};
-                m.atmosphere_height_m = 47e3;
-              }),
-              HasSubstr("with rayleigh.deficit_scale_height_m 6000 it must lie in [48000, "));
+  const auto eight = OnBands(text(4), 8);
+  ASSERT_TRUE(eight.has_value());
+  const Medium expected = text(8);
+  for (std::size_t i = 0; i < 8; ++i) {
+    EXPECT_NEAR(eight->ozone_absorption_per_m[i] / expected.ozone_absorption_per_m[i], 1.0, 1e-12);
+    EXPECT_EQ(eight->solar_irradiance[i], expected.solar_irradiance[i]);
+  }
 }
 
-TEST(Medium, ScaleHeightsFromAHundredMetresToTwoHundredKilometresAreAllowed) {
-  const auto with_height = [](double height_m) {
-    return FaultOfChanged([&](Medium& m) { m.mie_scale_height_m = height_m; });
-  };
-  EXPECT_THAT(with_height(1.0), HasSubstr("mie.scale_height_m is 1; it must lie in [100, 200000]"));
-  EXPECT_EQ(with_height(100.0), "");
-  EXPECT_EQ(with_height(200e3), "") << "32 of them are the earth's radius";
-  EXPECT_THAT(with_height(201e3), HasSubstr("mie.scale_height_m is 201000"));
-  EXPECT_THAT(FaultOfChanged([](Medium& m) { m.rayleigh_scale_height_m = 1.0; }),
-              HasSubstr("rayleigh.scale_height_m is 1; it must lie in [100, 200000]"));
+TEST(MediumBands, DepolarisationIsThatOfTheGasOrLinearBetweenBands) {
+  const auto polarised = [](int bands) { return MediumPreset("earth", WavelengthSet(bands)); };
+  const auto four = OnBands(polarised(16), 4);
+  ASSERT_TRUE(four.has_value());
+  EXPECT_EQ(*four, polarised(4));
+  Medium own = polarised(4);
+  own.rayleigh_depolarisation = {0.0, 0.1, 0.2, 0.3};
+  const auto eight = OnBands(own, 8);
+  ASSERT_TRUE(eight.has_value());
+  ASSERT_EQ(eight->rayleigh_depolarisation.size(), 8U);
+  for (std::size_t i = 1; i < 8; ++i)
+    EXPECT_GE(eight->rayleigh_depolarisation[i], eight->rayleigh_depolarisation[i - 1]);
+  own.rayleigh_depolarisation = {0.05};
+  EXPECT_EQ(OnBands(own, 8)->rayleigh_depolarisation, std::vector<double>{0.05});
+}
+
+TEST(MediumBands, ThereAreNoneWhereNothingSaysWhatTheyAre) {
+  EXPECT_FALSE(OnBands(MediumPreset("bruneton2017"), 8).has_value());
+  Medium own = MediumPreset("earth");
+  own.name = "my own";
+  EXPECT_FALSE(OnBands(own, 8).has_value());
 }
 
 }  // namespace

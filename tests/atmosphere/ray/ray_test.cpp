@@ -9,6 +9,8 @@
 
 #include "atmosphere/base/error.h"
 #include "atmosphere/math/constants.h"
+#include "atmosphere/ray/shell.h"
+#include "tests/fixtures/fault_of.h"
 
 namespace alpenglow::atmosphere {
 namespace {
@@ -165,6 +167,238 @@ TEST(PlanetShadow, OfASegmentOfAThousandKilometresIsTheOneStretchThatAScanFinds)
         shadow.dark_begin_m > 0.0 && shadow.dark_end_m < kLength_m && changes == 2 ? 1 : 0;
   }
   EXPECT_GT(lit_dark_lit, 100) << "of the rays go in and out again";
+}
+
+constexpr double kRadius_km = 6371.0;
+constexpr double kShellRadius_m = 6371000.0;
+constexpr double kShellTop_m = 120000.0;
+
+double AltitudeOf(double h_km, double mu, double d_km) {
+  const long double r = static_cast<long double>(kRadius_km) + h_km;
+  const long double d = d_km;
+  return static_cast<double>(std::sqrt(r * r + 2 * r * mu * d + d * d) - kRadius_km);
+}
+
+// Hard case 1.
+TEST(Shell, TheHorizonFromTheGroundIsHorizontal) {
+  EXPECT_EQ(shared::HorizonCosine(0.0, kRadius_km), 0.0);
+  EXPECT_EQ(shared::HorizonCosine(0.0F, 6371.0F), 0.0F);
+  EXPECT_EQ(shared::HorizonDistance(0.0, kRadius_km), 0.0);
+}
+
+// Hard case 9.
+TEST(Shell, AltitudeAlongARayIsThatOfThePlainFormulaInExtendedPrecision) {
+  for (const double h : {0.0, 1e-5, 0.002, 1.0, 10.0, 120.0, 400.0}) {
+    for (const double mu : {-1.0, -0.3, -0.01, 0.0, 0.01, 0.5, 1.0}) {
+      for (const double d : {1e-6, 0.1, 10.0, 500.0}) {
+        EXPECT_NEAR(shared::AltitudeAlongRay(h, mu, d, kRadius_km), AltitudeOf(h, mu, d), 1e-11)
+            << "10 nm: rounding of doubles the size of the planet is cancelled by the formula";
+      }
+    }
+  }
+}
+
+TEST(Shell, DistancesLeadToTheAltitudeTheyWereAskedFor) {
+  for (const double h : {0.0, 0.002, 1.0, 60.0, 120.0, 400.0}) {
+    for (const double mu : {-1.0, -0.5, -0.05, -1e-4, 0.0, 1e-4, 0.3, 1.0}) {
+      for (const double z : {0.0, 0.01, 10.0, 60.0, 120.0, 400.0}) {
+        if (z >= h) {
+          const double d = shared::DistanceUpTo(h, mu, z, kRadius_km);
+          EXPECT_GE(d, 0.0);
+          EXPECT_NEAR(AltitudeOf(h, mu, d), z, 1e-9) << h << " " << mu << " " << z;
+        } else if (mu < 0.0 && shared::PerigeeAltitude(h, mu, kRadius_km) < z) {
+          const double d = shared::DistanceDownTo(h, mu, z, kRadius_km);
+          EXPECT_GT(d, 0.0);
+          EXPECT_NEAR(AltitudeOf(h, mu, d), z, 1e-9) << h << " " << mu << " " << z;
+        }
+      }
+    }
+  }
+}
+
+TEST(Shell, TheLowestPointOfTheLineIsAtThePerigee) {
+  for (const double h : {0.002, 1.0, 60.0, 400.0}) {
+    for (const double mu : {-0.3, -0.05, -1e-4, 0.0}) {
+      const double perigee = shared::PerigeeAltitude(h, mu, kRadius_km);
+      const double at = -(kRadius_km + h) * mu;
+      EXPECT_NEAR(AltitudeOf(h, mu, at), perigee, 1e-9);
+      EXPECT_GE(AltitudeOf(h, mu, at + 1.0), perigee);
+      EXPECT_GE(AltitudeOf(h, mu, at - 1.0), perigee);
+    }
+  }
+}
+
+// Hard case 7.
+TEST(Shell, TheHorizonIsTheRayThatGrazesTheGround) {
+  for (const double h : {1e-5, 0.002, 1.0, 11.0, 60.0, 400.0, 35786.0}) {
+    const double mu = shared::HorizonCosine(h, kRadius_km);
+    EXPECT_NEAR(shared::PerigeeAltitude(h, mu, kRadius_km), 0.0, 1e-11 * (kRadius_km + h))
+        << "rounding of mu moves the perigee by r mu times 1e-16";
+    EXPECT_LT(shared::GroundClearance(h, mu + 1e-9, kRadius_km), 0.0);
+    EXPECT_GT(shared::GroundClearance(h, mu - 1e-9, kRadius_km), 0.0);
+  }
+}
+
+// Hard case 7.
+TEST(Shell, FloatTellsGroundFromSkyToAMillimetreOfThePerigee) {
+  for (const float h : {1e-5F, 0.002F, 0.1F, 1.0F, 11.0F}) {
+    const float horizon = shared::HorizonCosine(h, 6371.0F);
+    for (int step = -40; step <= 40; ++step) {
+      const float mu = horizon * (1.0F + 1e-5F * static_cast<float>(step));
+      const bool hits = shared::GroundClearance(h, mu, 6371.0F) > 0.0F;
+      const double exact = shared::PerigeeAltitude<double>(static_cast<double>(h),
+                                                           static_cast<double>(mu), kRadius_km);
+      if (std::abs(exact) > 2e-7 * static_cast<double>(h) + 1e-12) {
+        EXPECT_EQ(hits, exact < 0.0) << h << " " << mu << " perigee " << exact;
+      }
+    }
+  }
+}
+
+// --- extents ---
+
+// Hard case 1.
+TEST(Extent, AHorizontalRayAtAltitudeZeroLeavesTheAir) {
+  const RayExtent extent = ExtentOf({0.0, 0.0}, kShellRadius_m, kShellTop_m);
+  EXPECT_EQ(extent.end, RayEnd::kSpace);
+  EXPECT_EQ(extent.begin_m, 0.0);
+  EXPECT_NEAR(extent.end_m, std::sqrt(kShellTop_m * (2.0 * kShellRadius_m + kShellTop_m)), 1e-6);
+}
+
+TEST(Extent, ARayBelowTheHorizontalAtAltitudeZeroHitsTheGroundAtOnce) {
+  const double barely_down = std::nextafter(0.0, -1.0);
+  for (const double mu : {barely_down, -1e-12, -0.5, -1.0}) {
+    const RayExtent extent = ExtentOf({0.0, mu}, kShellRadius_m, kShellTop_m);
+    EXPECT_EQ(extent.end, RayEnd::kGround) << mu;
+    EXPECT_EQ(extent.end_m, 0.0) << mu;
+  }
+}
+
+// Hard case 2.
+TEST(Extent, AnObserverBelowTheSphereSeesTheSkyAsFromTheGround) {
+  for (const double altitude_m : {-430.0, -11000.0}) {
+    for (const double mu : {0.0, 0.1, 1.0}) {
+      const RayExtent below = ExtentOf({altitude_m, mu}, kShellRadius_m, kShellTop_m);
+      const RayExtent ground = ExtentOf({0.0, mu}, kShellRadius_m, kShellTop_m);
+      EXPECT_EQ(below.end_m, ground.end_m);
+      EXPECT_EQ(below.end, RayEnd::kSpace);
+    }
+  }
+}
+
+// Hard case 3.
+TEST(Extent, RefusesARayThatIsNotFiniteAndNamesTheField) {
+  constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  const auto message = [](const ViewRay& ray) {
+    return tests::FaultOf([&] { return ExtentOf(ray, kShellRadius_m, kShellTop_m); });
+  };
+  for (const double altitude_m : {kNan, kInfinity, -kShellRadius_m, -2.0 * kShellRadius_m}) {
+    EXPECT_NE(message({altitude_m, 1.0}).find("altitude_m"), std::string::npos) << altitude_m;
+  }
+  EXPECT_NE(message({0.0, kNan}).find("mu "), std::string::npos);
+  EXPECT_NE(message({0.0, 1.0, kNan}).find("mu_s"), std::string::npos);
+  EXPECT_NE(message({0.0, 1.0, 1.0, kNan}).find("nu"), std::string::npos);
+  EXPECT_NE(message({0.0, 1.0, 1.0, 1.0, kNan}).find("length_m"), std::string::npos);
+}
+
+// Hard case 4.
+TEST(Extent, IsContinuousThroughTheTop) {
+  for (const double mu : {-1.0, -0.5, -0.19}) {
+    const double below = ExtentOf({kShellTop_m - 1e-6, mu}, kShellRadius_m, kShellTop_m).end_m;
+    const RayExtent above = ExtentOf({kShellTop_m + 1e-6, mu}, kShellRadius_m, kShellTop_m);
+    EXPECT_NEAR(above.end_m - above.begin_m, below, 1e-4) << "2 um of altitude, over |mu| > 0.02";
+  }
+  for (const double mu : {0.0, 1e-9, 0.5, 1.0}) {
+    const RayExtent above = ExtentOf({kShellTop_m + 1e-6, mu}, kShellRadius_m, kShellTop_m);
+    EXPECT_EQ(above.begin_m, above.end_m) << "upwards from above the top there is no air";
+  }
+}
+
+// Hard case 8.
+TEST(Extent, ARayThatGrazesTheTopFromOutsideHasNoLengthAndIsFinite) {
+  for (const double altitude_m : {400e3, 35786e3, 1e8}) {
+    const double r = kShellRadius_m + altitude_m;
+    const double r_top = kShellRadius_m + kShellTop_m;
+    const double grazing = -std::sqrt((r - r_top) * (r + r_top)) / r;
+    double mu = grazing;
+    for (int i = 0; i < 8; ++i) mu = std::nextafter(mu, -1.0);
+    for (int i = 0; i < 16; ++i, mu = std::nextafter(mu, 1.0)) {
+      const RayExtent extent = ExtentOf({altitude_m, mu}, kShellRadius_m, kShellTop_m);
+      const double length = extent.end_m - extent.begin_m;
+      EXPECT_GE(length, 0.0);
+      EXPECT_LT(length, 2e4 * std::sqrt(r / kShellRadius_m))
+          << "one ulp of mu lowers the grazing point by r mu 1e-16, a chord of sqrt(8 R times "
+             "that)";
+    }
+    const RayExtent missed = ExtentOf({altitude_m, grazing + 1e-9}, kShellRadius_m, kShellTop_m);
+    EXPECT_EQ(missed.begin_m, missed.end_m);
+  }
+}
+
+// Hard case 5.
+TEST(Extent, FromSpaceARayAtTheLimbEntersAndLeavesSymmetrically) {
+  for (const double altitude_m : {400e3, 35786e3, 1e8}) {
+    const double r = kShellRadius_m + altitude_m;
+    const double tangent = kShellRadius_m + 30e3;
+    const double mu = -std::sqrt((r - tangent) * (r + tangent)) / r;
+    const RayExtent extent = ExtentOf({altitude_m, mu}, kShellRadius_m, kShellTop_m);
+    EXPECT_EQ(extent.end, RayEnd::kSpace);
+    const double middle = 0.5 * (extent.begin_m + extent.end_m);
+    EXPECT_NEAR(middle, -r * mu, 1e-6 * r / kShellRadius_m);
+    EXPECT_NEAR(extent.end_m - extent.begin_m,
+                2.0 * std::sqrt(90e3 * (2.0 * kShellRadius_m + 150e3)), 0.1)
+        << "rounding of mu moves the tangent by 1e-8 m, and the chord by ten times that";
+  }
+}
+
+// Hard case 7.
+TEST(Extent, OneUlpAcrossTheHorizonEndsAtTheGroundOrInSpaceAndNowhereElse) {
+  for (const double altitude_m : {0.01, 1.7, 1000.0, 11000.0, 400e3}) {
+    const double horizon = shared::HorizonCosine(altitude_m * 1e-3, kRadius_km);
+    const RayExtent over = ExtentOf({altitude_m, horizon + 1e-14}, kShellRadius_m, kShellTop_m);
+    const RayExtent under = ExtentOf({altitude_m, horizon - 1e-14}, kShellRadius_m, kShellTop_m);
+    EXPECT_EQ(over.end, RayEnd::kSpace) << altitude_m;
+    EXPECT_EQ(under.end, RayEnd::kGround) << altitude_m;
+    const double to_horizon = shared::HorizonDistance(altitude_m * 1e-3, kRadius_km) * 1e3;
+    EXPECT_NEAR(under.end_m, to_horizon, 1.0 + 1e-4 * to_horizon)
+        << "near grazing the hit moves with the root of the step";
+  }
+}
+
+// Hard case 10.
+TEST(Extent, TheAzimuthOfAVerticalViewDoesNotMatter) {
+  for (const double zenith : {0.0, 180.0}) {
+    const ViewRay north = RayFromAngles(2.0, zenith, 0.0, 40.0);
+    for (const double azimuth : {90.0, 180.0, 271.0}) {
+      EXPECT_NEAR(RayFromAngles(2.0, zenith, azimuth, 40.0).nu, north.nu, 1e-15);
+    }
+  }
+}
+
+TEST(Shadow, OfThePlanetLiesBehindItAndNowhereElse) {
+  const ViewRay noon = RayFromAngles(2.0, 45.0, 0.0, 30.0);
+  const ShadowSpan none =
+      PlanetShadow(noon, ExtentOf(noon, kShellRadius_m, kShellTop_m), kShellRadius_m);
+  EXPECT_EQ(none.dark_begin_m, none.dark_end_m);
+  const ViewRay midnight = RayFromAngles(2.0, 45.0, 0.0, 180.0);
+  const RayExtent extent = ExtentOf(midnight, kShellRadius_m, kShellTop_m);
+  const ShadowSpan all = PlanetShadow(midnight, extent, kShellRadius_m);
+  EXPECT_EQ(all.dark_begin_m, extent.begin_m);
+  EXPECT_EQ(all.dark_end_m, extent.end_m);
+}
+
+TEST(Shadow, TowardsTheZenithAtTwilightEndsAtTheHeightOfElementaryGeometry) {
+  for (const double depression_deg : {1.0, 4.0, 8.0}) {
+    const ViewRay ray = RayFromAngles(0.0, 0.0, 0.0, 90.0 + depression_deg);
+    const ShadowSpan span =
+        PlanetShadow(ray, ExtentOf(ray, kShellRadius_m, kShellTop_m), kShellRadius_m);
+    const double height =
+        kShellRadius_m * (1.0 / std::cos(depression_deg * 3.14159265358979324 / 180) - 1.0);
+    EXPECT_NEAR(span.dark_begin_m, 0.0, 1e-3);
+    EXPECT_NEAR(span.dark_end_m, std::fmin(height, kShellTop_m), 1e-3)
+        << "R (1 / cos(depression) - 1)";
+  }
 }
 
 }  // namespace

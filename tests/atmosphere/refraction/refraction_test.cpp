@@ -4,12 +4,16 @@
 #include <erfa.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 
+#include "atmosphere/astronomy/moon.h"
 #include "atmosphere/astronomy/sun.h"
 #include "atmosphere/base/error.h"
 #include "atmosphere/math/constants.h"
 #include "atmosphere/refraction/refracted_view.h"
+#include "tests/fixtures/refracted_twilight.h"
 
 namespace alpenglow::atmosphere {
 namespace {
@@ -60,7 +64,7 @@ TEST(Refraction, NearTheHorizonItIsBennetts) {
   }
 }
 
-/// Ratio of density to that at sea level in the U.S. Standard Atmosphere 1976 up to 32 km.
+/// Returns the ratio of density to that at sea level in the U.S. Standard Atmosphere 1976 up to 32 km.
 double StandardDensity(double height_m) {
   const double h = height_m * 6356766.0 / (6356766.0 + height_m);
   const double rho_11 = std::pow(216.65 / 288.15, 4.255876);
@@ -70,8 +74,8 @@ double StandardDensity(double height_m) {
   return rho_20 * std::pow(1.0 + (h - 20000.0) / 216650.0, -35.163195);
 }
 
-/// Bending along a ray by its definition, tan(psi) d ln n, with h = s^2 against the singularity of
-/// the horizontal ray. Shares nothing with the library.
+/// Returns the bending along a ray by its definition, tan(psi) d ln n, with h = s^2 against the
+/// singularity of the horizontal ray. This shares nothing with the library.
 double RayThroughStandardAtmosphere(double apparent_rad, double eye_m = 0.0) {
   const double radius = 6371008.7714;
   const double n0 = 2.7782e-4;
@@ -200,7 +204,7 @@ TEST(Refraction, SunsetFromAMountainIsTheExplanatorySupplements) {
   }
 }
 
-TEST(Refraction, SeenFromSpaceTheHorizonIsGeometryAndTwiceTheRefraction) {
+TEST(Refraction, FromSpaceTheHorizonIsLiftedByTwiceTheRefraction) {
   const double height = 400e3;
   const SeaHorizon horizon = SeaHorizonFrom(height);
   const double geometric = std::acos(kEarthMeanRadius_m / (kEarthMeanRadius_m + height));
@@ -212,19 +216,21 @@ TEST(Refraction, SeenFromSpaceTheHorizonIsGeometryAndTwiceTheRefraction) {
 TEST(Refraction, FromAnyHeightItIsContinuousAndKeepsTheOrder) {
   for (const double height : {0.0, 2.0, 900.0, 3776.0, 11e3, 400e3, 36e6}) {
     const SeaHorizon horizon = SeaHorizonFrom(height);
-    const double step = 0.05;
-    double apparent_before = -kPi;
-    double before = 0.0;
-    for (double elevation = -90.0; elevation <= 90.0; elevation += step) {
+    const double horizon_deg = horizon.true_elevation_rad / kDegree;
+    double at = -90.0, before = 0.0;
+    for (double elevation = -90.0; elevation <= 90.0;
+         elevation += std::abs(elevation - horizon_deg) < 6.0 ? 0.05 : 0.5) {
       const double refraction = RefractionFromHeight(elevation * kDegree, height);
       EXPECT_GE(refraction, 0.0);
       EXPECT_LE(refraction, 69.0 * kMinute);
-      EXPECT_GT(elevation * kDegree + refraction, apparent_before) << height << " " << elevation;
-      EXPECT_NEAR(refraction, before, step * kDegree)
+      if (elevation > -90.0) {
+        EXPECT_GT(elevation * kDegree + refraction, at * kDegree + before) << elevation;
+      }
+      EXPECT_NEAR(refraction, before, (elevation - at) * kDegree + 1e-15)
           << height << " m, " << elevation
-          << " degrees: who keeps the order loses less than the body climbs, from far out nearly "
+          << " degrees: what keeps the order loses less than the body climbs, from far out nearly "
              "so";
-      apparent_before = elevation * kDegree + refraction;
+      at = elevation;
       before = refraction;
     }
     EXPECT_NEAR(RefractionFromHeight(horizon.true_elevation_rad + 1e-9, height),
@@ -233,7 +239,7 @@ TEST(Refraction, FromAnyHeightItIsContinuousAndKeepsTheOrder) {
   }
 }
 
-TEST(ApparentSun, StandsHigherThanTheSunByTheRefractionFromTheEyesHeight) {
+TEST(ApparentSun, IsHigherThanTheSunByRefractionAtTheEye) {
   const UtcInstant evening = ParseInstant("2026-06-21T18:50:00Z");
   for (const double height_m : {0.0, 10e3}) {
     const GeodeticPosition eye = PlaceFromDegrees(47.0, 8.0, height_m);
@@ -242,6 +248,133 @@ TEST(ApparentSun, StandsHigherThanTheSunByTheRefractionFromTheEyesHeight) {
               sun.elevation_rad + RefractionFromHeight(sun.elevation_rad, height_m));
     EXPECT_GT(apparent.elevation_rad, sun.elevation_rad);
     EXPECT_EQ(apparent.azimuth_rad, sun.azimuth_rad);
+  }
+}
+
+constexpr std::array kViews{std::array{90.0, 0.0}, std::array{45.0, 0.0}, std::array{45.0, 180.0},
+                            std::array{5.0, 0.0}, std::array{20.0, 90.0}};
+
+glm::dvec3 Towards(double elevation_deg, double azimuth_deg) {
+  return DirectionFromAngles(elevation_deg * kRadiansPerDegree, azimuth_deg * kRadiansPerDegree)
+      .xyz;
+}
+
+using Bands = std::array<double, 3>;
+
+/// The air of the earth in three colours. Errors of straight rays are relative to bent rays by the
+/// same 120 steps, which therefore leave nothing in them.
+const tests::RefractedTwilight& Evening() {
+  static const tests::RefractedTwilight air(MediumPreset("earth", {450.0, 550.0, 650.0}), 0.0, 120);
+  return air;
+}
+
+/// Views under a sun, by bent rays.
+class RefractedSky {
+ public:
+  explicit RefractedSky(double truly_deg) : truly_deg_(truly_deg) {
+    for (const auto& [elevation, azimuth] : kViews)
+      refracted_.push_back(
+          Evening().Radiance(Towards(elevation, azimuth), Towards(truly_deg, 0.0), true));
+  }
+
+  /// Relative errors of straight rays from a lifted sun, over the views.
+  struct Errors {
+    Bands worst{};
+    double rms = 0.0;  // of all bands
+  };
+  [[nodiscard]] Errors ErrorsOf(double lift_rad) const {
+    Errors errors;
+    const glm::dvec3 sun = Towards(truly_deg_ + lift_rad / kRadiansPerDegree, 0.0);
+    for (std::size_t view = 0; view < kViews.size(); ++view) {
+      const auto lifted = Evening().Radiance(Towards(kViews[view][0], kViews[view][1]), sun, false);
+      for (std::size_t band = 0; band < 3; ++band) {
+        const double error = lifted[band] / refracted_[view][band] - 1.0;
+        errors.worst[band] = std::max(errors.worst[band], std::abs(error));
+        errors.rms += error * error / static_cast<double>(3 * kViews.size());
+      }
+    }
+    errors.rms = std::sqrt(errors.rms);
+    return errors;
+  }
+
+ private:
+  double truly_deg_;
+  std::vector<tests::BandValues> refracted_;
+};
+
+double LiftAt(double truly_deg) {
+  return LiftForAir(Evening().air(), truly_deg * kRadiansPerDegree);
+}
+
+TEST(LiftForAir, GivesAnEveningSkyTheLightOfRefractedRays) {
+  for (const double truly_deg : {1.0, -1.5, -3.0}) {
+    const RefractedSky::Errors errors = RefractedSky(truly_deg).ErrorsOf(LiftAt(truly_deg));
+    // One lift serves all colours and views: low in the west light comes through lower air.
+    EXPECT_LT(errors.rms, 0.06) << truly_deg;
+    for (const double worst : errors.worst) EXPECT_LT(worst, 0.15) << truly_deg;
+  }
+}
+
+TEST(LiftForAir, ServesAirBetterThanTheRefractionThatIsSeen) {
+  const RefractedSky sky(-1.0);
+  const double seen = RefractionFromHeight(Evening().air(), -kRadiansPerDegree, 0.0);
+  EXPECT_LT(sky.ErrorsOf(LiftAt(-1.0)).rms, 0.4 * sky.ErrorsOf(seen).rms)
+      << "from where it is seen, the sun lights the air by a third too much";
+}
+
+TEST(LiftForAir, GivesDuskMoreOfTheLightOfRefractedRaysThanNoLift) {
+  for (const double truly_deg : {-5.0, -6.5, -8.0}) {
+    const RefractedSky sky(truly_deg);
+    const Bands with = sky.ErrorsOf(LiftAt(truly_deg)).worst, without = sky.ErrorsOf(0.0).worst;
+    // Red comes through lower air, which bends more.
+    EXPECT_LT(with[0], 0.20) << truly_deg;
+    EXPECT_LT(with[1], 0.25) << truly_deg;
+    EXPECT_LT(with[2], 0.5) << truly_deg << ", without the lift up to 0.63";
+    EXPECT_LT(with[1] + with[2], 0.75 * (without[1] + without[2])) << truly_deg;
+  }
+}
+
+using Bands = std::array<double, 3>;
+
+TEST(LiftForAir, RisesSmoothlyToAFifthOfTheHorizontalRefraction) {
+  const auto lift = [air = AlmanacAir()](double minutes) {
+    return LiftForAir(air, minutes * kMinute) / kMinute;
+  };
+  EXPECT_NEAR(lift(-34.0), 0.2 * 34.0, 0.01);
+  EXPECT_EQ(LiftForAir(AlmanacAir(), -0.7), LiftForAir(AlmanacAir(), -34.1 * kMinute))
+      << "nothing ends at night";
+  // A sun that sinks by a minute of arc lights the air from 0.9 to 1.04 minutes lower, whatever
+  // happens to what is seen of it: refraction itself grows by at most 0.2 of what it sinks by.
+  for (double minutes = 120.0; minutes > -600.0; minutes -= 1.0) {
+    const double sinks = 1.0 + lift(minutes) - lift(minutes - 1.0);
+    EXPECT_GT(sinks, 0.9) << minutes;
+    EXPECT_LT(sinks, 1.0 + 1e-6) << minutes;
+  }
+}
+
+TEST(LiftForAir, IsNothingWithoutAir) {
+  BendingAir none = AlmanacAir();
+  none.refractivity = 0.0;
+  for (const double elevation_deg : {10.0, 0.0, -1.0, -10.0})
+    EXPECT_NEAR(LiftForAir(none, elevation_deg * kRadiansPerDegree), 0.0, 1e-12) << elevation_deg;
+}
+
+TEST(SunForAir, IsRaisedByTheLiftForAirAtAnyHeight) {
+  for (const double height_m : {0.0, 3000.0, 11000.0, 400e3}) {
+    const GeodeticPosition eye = PlaceFromDegrees(46.5, 8.0, height_m);
+    for (const char* time :
+         {"2026-06-21T11:00:00Z", "2026-06-21T19:22:00Z", "2026-06-21T20:20:00Z"}) {
+      const UtcInstant now = ParseInstant(time);
+      const SunPosition truly = SunAt(eye, now), seen = ApparentSunAt(eye, now);
+      EXPECT_NEAR(SunForAir(seen).elevation_rad,
+                  truly.elevation_rad + LiftForAir(AlmanacAir(), truly.elevation_rad), 1e-12)
+          << time << " " << height_m;
+      EXPECT_EQ(SunForAir(seen).azimuth_rad, seen.azimuth_rad);
+      EXPECT_EQ(SunForAir(truly).elevation_rad, truly.elevation_rad) << "nothing has lifted it";
+      const MoonPosition moon = ApparentMoonAt(eye, now), bare = MoonAt(eye, now);
+      EXPECT_NEAR(moon.elevation_rad - moon.lower_for_air_rad,
+                  bare.elevation_rad + LiftForAir(AlmanacAir(), bare.elevation_rad), 1e-12);
+    }
   }
 }
 

@@ -34,19 +34,15 @@ TEST(Geodesy, AxesOfTheEarthAreWhereWgs84PutsThem) {
   EXPECT_EQ(at(90, 17, 0).x, 0.0) << "the pole is on the axis exactly";
 }
 
-// The closed form of the textbooks, N = a / sqrt(1 - e^2 sin^2), in long double.
-glm::dvec3 TextbookEcef(double latitude_rad, double longitude_rad, double height_m) {
-  const long double a = 6378137.0L;
-  const long double f = 1.0L / 298.257223563L;
-  const long double e2 = f * (2.0L - f);
-  const long double sine = std::sin(static_cast<long double>(latitude_rad));
-  const long double cosine = std::cos(static_cast<long double>(latitude_rad));
+// This is the closed form of the textbooks, N = a / sqrt(1 - e^2 sin^2), in long double.
+glm::dvec3 TextbookEcef(long double latitude_rad, long double longitude_rad, double height_m) {
+  const long double a = 6378137.0L, f = 1.0L / 298.257223563L, e2 = f * (2.0L - f);
+  const long double sine = std::sin(latitude_rad), cosine = std::cos(latitude_rad);
   const long double n = a / std::sqrt(1.0L - e2 * sine * sine);
-  return {static_cast<double>((n + height_m) * cosine *
-                              std::cos(static_cast<long double>(longitude_rad))),
-          static_cast<double>((n + height_m) * cosine *
-                              std::sin(static_cast<long double>(longitude_rad))),
-          static_cast<double>((n * (1.0L - e2) + height_m) * sine)};
+  const auto value = [](long double wide) { return static_cast<double>(wide); };
+  return {value((n + height_m) * cosine * std::cos(longitude_rad)),
+          value((n + height_m) * cosine * std::sin(longitude_rad)),
+          value((n * (1.0L - e2) + height_m) * sine)};
 }
 
 TEST(Geodesy, EcefIsTheTextbookFormula) {
@@ -179,22 +175,27 @@ TEST(Geodesy, OsculatingRadiusIsTheGaussianMean) {
       << "the chord of 6 km sees the change of curvature along it, 5e-6 of the radius";
 }
 
-std::string FaultOfPlace(double latitude, double longitude, double height_m) {
-  return tests::FaultOf([&] { return PlaceFromDegrees(latitude, longitude, height_m); });
-}
-
 // Hard case 3.
 TEST(Geodesy, ImpossiblePlacesAreRefusedByName) {
-  EXPECT_EQ(FaultOfPlace(90, 360, -12000), "no fault");
-  EXPECT_EQ(FaultOfPlace(90.0000001, 0, 0), "latitude is 90.0000001; it must lie in [-90, 90]");
-  EXPECT_EQ(FaultOfPlace(-91, 0, 0), "latitude is -91; it must lie in [-90, 90]");
-  EXPECT_EQ(FaultOfPlace(0, 540, 0), "longitude is 540; it must lie in [-180, 360]");
-  EXPECT_THAT(FaultOfPlace(0, kNan, 0), testing::StartsWith("longitude is nan"));
-  EXPECT_THAT(FaultOfPlace(kNan, 0, 0), testing::StartsWith("latitude is nan"));
-  EXPECT_EQ(FaultOfPlace(0, 0, -12001),
-            "height_m is -12001; it must be finite and at least -12000");
-  EXPECT_THAT(FaultOfPlace(0, 0, kInfinity), testing::StartsWith("height_m is inf"));
-  EXPECT_THAT(FaultOfPlace(0, 0, kNan), testing::StartsWith("height_m is nan"));
+  const struct {
+    double latitude, longitude, height_m;
+    const char* fault;
+  } places[] = {
+      {90, 360, -12000, "no fault"},
+      {90.0000001, 0, 0, "latitude is 90.0000001; it must lie in [-90, 90]"},
+      {-91, 0, 0, "latitude is -91; it must lie in [-90, 90]"},
+      {0, 540, 0, "longitude is 540; it must lie in [-180, 360]"},
+      {0, kNan, 0, "longitude is nan"},
+      {kNan, 0, 0, "latitude is nan"},
+      {0, 0, -12001, "height_m is -12001; it must be finite and at least -12000"},
+      {0, 0, kInfinity, "height_m is inf"},
+      {0, 0, kNan, "height_m is nan"},
+  };
+  for (const auto& [latitude, longitude, height_m, fault] : places) {
+    const std::string message =
+        tests::FaultOf([&] { return PlaceFromDegrees(latitude, longitude, height_m); });
+    EXPECT_THAT(message, testing::StartsWith(fault));
+  }
 }
 
 // Hard case 3.

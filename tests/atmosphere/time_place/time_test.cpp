@@ -7,6 +7,7 @@
 #include <clocale>
 #include <cmath>
 #include <locale>
+#include <span>
 #include <string>
 
 #include "atmosphere/base/error.h"
@@ -27,6 +28,7 @@ TEST(Time, InstantsAreReadInUtcAndWithOffsets) {
   EXPECT_EQ(ParseInstant("2026-06-21T13:00:00+09:00"), expected);
   EXPECT_EQ(ParseInstant("2026-06-20T18:30:00-09:30"), expected);
   EXPECT_EQ(ParseInstant("2026-06-21T04:00Z"), expected);
+  EXPECT_EQ(ParseInstant("2026-06-21 04:00:00Z"), expected) << "a space stands for the T";
   EXPECT_EQ(ParseInstant("2026-06-21T13:00:00", "Asia/Tokyo"), expected);
   EXPECT_EQ(ParseInstant("2026-06-21T04:00:00Z", "Asia/Tokyo"), expected) << "the text decides";
   EXPECT_EQ(ParseInstant("2000-01-01T12:00:00Z"), (UtcInstant{51544, 43200.0})) << "J2000";
@@ -39,33 +41,41 @@ TEST(Time, InstantsAreReadInUtcAndWithOffsets) {
   EXPECT_EQ(ParseInstant("2100-12-31T23:59:59Z").modified_julian_day, 88433);
 }
 
-// Hard case 25.
-TEST(Time, ASpaceStandsForTheT) {
-  EXPECT_EQ(ParseInstant("2024-06-21 04:00:00Z"), ParseInstant("2024-06-21T04:00:00Z"));
+struct RefusedInstant {
+  const char* text;
+  const char* fault;
+  std::optional<std::string> zone = std::nullopt;
+};
+
+void ExpectRefused(std::span<const RefusedInstant> instants) {
+  for (const auto& [text, fault, zone] : instants)
+    EXPECT_THAT(FaultOf(text, zone), testing::HasSubstr(fault)) << text;
 }
 
 TEST(Time, WhatIsNotAnInstantIsRefusedWithTextAndFault) {
-  EXPECT_EQ(
-      FaultOf("2024-02-30T00:00:00Z"),
-      "time \"2024-02-30T00:00:00Z\": the day in month 2 of 2024 is 30; it must lie in [1, 29]");
-  EXPECT_THAT(FaultOf("2023-02-29T00:00:00Z"), testing::HasSubstr("[1, 28]"));
-  EXPECT_THAT(FaultOf("1900-02-29T00:00:00Z"), testing::HasSubstr("[1, 28]")) << "no leap year";
-  EXPECT_THAT(FaultOf("2100-02-29T00:00:00Z"), testing::HasSubstr("[1, 28]")) << "no leap year";
-  EXPECT_THAT(FaultOf("2024-06-21T24:00:00Z"), testing::HasSubstr("the hour is 24"));
-  EXPECT_THAT(FaultOf("2024-06-21T23:60:00Z"), testing::HasSubstr("the minute is 60"));
-  EXPECT_THAT(FaultOf("2024-06-21T23:59:61Z"), testing::HasSubstr("the second is 61"));
-  EXPECT_THAT(FaultOf("2024-13-01T00:00:00Z"), testing::HasSubstr("the month is 13"));
-  EXPECT_THAT(FaultOf("2024-06-21T04:00:00"), testing::HasSubstr("needs Z, an offset"));
-  EXPECT_THAT(FaultOf("2024-06-21T04:00:00Zulu"), testing::HasSubstr("\"ulu\" is left over"));
-  EXPECT_THAT(FaultOf("2024-06-21T04:00:00Z "), testing::HasSubstr("left over"));
-  EXPECT_THAT(FaultOf("10000-01-01T00:00:00Z"), testing::HasSubstr("[1900, 2100]"));
-  EXPECT_THAT(FaultOf("1899-12-31T23:59:59Z"), testing::HasSubstr("[1900, 2100]"));
-  EXPECT_THAT(FaultOf("2101-01-01T00:00:00Z"), testing::HasSubstr("[1900, 2100]"));
-  EXPECT_THAT(FaultOf("1900-01-01T00:00:00+01:00"), testing::HasSubstr("is 1899"));
-  EXPECT_THAT(FaultOf("2100-12-31T23:30:00-01:00"), testing::HasSubstr("is 2101"));
-  EXPECT_THAT(FaultOf("2024-06-21T04:00:00", "Mars/Olympus"), testing::HasSubstr("Mars/Olympus"));
-  EXPECT_THAT(FaultOf("2024-06-21T04:00:00+0900"), testing::HasSubstr("is written +09:00"));
-  EXPECT_THAT(FaultOf("2024-06-21T04:00:00-03"), testing::HasSubstr("is written -03:00"));
+  const RefusedInstant instants[] = {
+      {"2024-02-30T00:00:00Z",
+       "time \"2024-02-30T00:00:00Z\": the day in month 2 of 2024 is 30; it must lie in [1, 29]"},
+      {"2023-02-29T00:00:00Z", "[1, 28]"},
+      {"1900-02-29T00:00:00Z", "[1, 28]"},  // 1900 and 2100 are no leap years
+      {"2100-02-29T00:00:00Z", "[1, 28]"},
+      {"2024-06-21T24:00:00Z", "the hour is 24"},
+      {"2024-06-21T23:60:00Z", "the minute is 60"},
+      {"2024-06-21T23:59:61Z", "the second is 61"},
+      {"2024-13-01T00:00:00Z", "the month is 13"},
+      {"2024-06-21T04:00:00", "needs Z, an offset"},
+      {"2024-06-21T04:00:00Zulu", "\"ulu\" is left over"},
+      {"2024-06-21T04:00:00Z ", "left over"},
+      {"10000-01-01T00:00:00Z", "[1900, 2100]"},
+      {"1899-12-31T23:59:59Z", "[1900, 2100]"},
+      {"2101-01-01T00:00:00Z", "[1900, 2100]"},
+      {"1900-01-01T00:00:00+01:00", "is 1899"},
+      {"2100-12-31T23:30:00-01:00", "is 2101"},
+      {"2024-06-21T04:00:00", "Mars/Olympus", "Mars/Olympus"},
+      {"2024-06-21T04:00:00+0900", "is written +09:00"},
+      {"2024-06-21T04:00:00-03", "is written -03:00"},
+  };
+  ExpectRefused(instants);
   for (const char* text : {"",
                            "now",
                            "2024",
@@ -81,7 +91,6 @@ TEST(Time, WhatIsNotAnInstantIsRefusedWithTextAndFault) {
                            "2024-06-21T04:00:00.Z",
                            "2024-06-21T04:00:00,5Z",
                            "2024-06-21T04:00:00+9:00",
-                           "2024-06-21T04:00:00+0900",
                            "2024-06-21T04:00:00+16:00",
                            "2024-06-21T04:00:00+09:60",
                            "2024-06-21T04:00:00Z+09:00",
@@ -116,48 +125,47 @@ TEST(Time, ThereAre27LeapSecondsUntil2026AndNoOthersAreAccepted) {
   int leap_seconds = 0;
   for (int day = 15020; day < 61406; ++day) leap_seconds += DayLength(day) > 86400.0 ? 1 : 0;
   EXPECT_EQ(leap_seconds, 27) << "IERS bulletin C: 1972-06-30 to 2016-12-31";
-  EXPECT_THAT(FaultOf("2018-12-31T23:59:60Z"), testing::HasSubstr("there is no leap second"));
-  EXPECT_THAT(FaultOf("2016-12-31T22:59:60Z"), testing::HasSubstr("there is no leap second"));
-  EXPECT_THAT(FaultOf("2016-12-31T23:59:60+09:00"), testing::HasSubstr("there is no leap second"));
-  EXPECT_THAT(FaultOf("2050-06-30T23:59:60Z"), testing::HasSubstr("there is no leap second"));
+  for (const char* text : {"2018-12-31T23:59:60Z", "2016-12-31T22:59:60Z",
+                           "2016-12-31T23:59:60+09:00", "2050-06-30T23:59:60Z"})
+    EXPECT_THAT(FaultOf(text), testing::HasSubstr("there is no leap second"));
 }
 
 // Hard case 26.
 TEST(Time, LocalTimesInAGapOrAnOverlapAskForTheOffset) {
-  EXPECT_EQ(FaultOf("2026-03-29T02:30:00", "Europe/Berlin"),
-            "time \"2026-03-29T02:30:00\": clocks in Europe/Berlin skip this time (the offset goes "
-            "from +01:00 to +02:00); write the offset that is meant");
-  EXPECT_EQ(FaultOf("2026-10-25T02:30:00", "Europe/Berlin"),
-            "time \"2026-10-25T02:30:00\": clocks in Europe/Berlin show this time twice; write the "
-            "offset that is meant, +02:00 or +01:00");
-  EXPECT_EQ(FormatUtc(ParseInstant("2026-10-25T02:30:00+02:00", "Europe/Berlin")),
-            "2026-10-25T00:30:00Z");
-  EXPECT_EQ(FormatUtc(ParseInstant("2026-03-29T01:59:59", "Europe/Berlin")),
-            "2026-03-29T00:59:59Z");
-  EXPECT_EQ(FormatUtc(ParseInstant("2026-03-29T03:00:00", "Europe/Berlin")),
-            "2026-03-29T01:00:00Z");
-  EXPECT_EQ(FormatUtc(ParseInstant("2026-10-25T03:00:00", "Europe/Berlin")),
-            "2026-10-25T02:00:00Z");
-  EXPECT_THAT(FaultOf("2011-12-30T12:00:00", "Pacific/Apia"), testing::HasSubstr("skip this time"))
-      << "Samoa left out a whole day";
-  EXPECT_THAT(FaultOf("2026-10-04T02:15:00", "Australia/Lord_Howe"),
-              testing::HasSubstr("+10:30 to +11:00"));
+  const RefusedInstant instants[] = {
+      {"2026-03-29T02:30:00",
+       "time \"2026-03-29T02:30:00\": clocks in Europe/Berlin skip this time (the offset goes from "
+       "+01:00 to +02:00); write the offset that is meant",
+       "Europe/Berlin"},
+      {"2026-10-25T02:30:00",
+       "time \"2026-10-25T02:30:00\": clocks in Europe/Berlin show this time twice; write the "
+       "offset that is meant, +02:00 or +01:00",
+       "Europe/Berlin"},
+      {"2011-12-30T12:00:00", "skip this time", "Pacific/Apia"},  // Samoa left out a whole day
+      {"2026-10-04T02:15:00", "+10:30 to +11:00", "Australia/Lord_Howe"},
+      // The last Sunday of March 2050 is the 27th, in a year that zone tables do not reach.
+      {"2050-03-27T02:30:00", "skip", "Europe/Berlin"},
+      {"2050-10-30T02:30:00", "twice", "Europe/Berlin"},
+  };
+  ExpectRefused(instants);
 }
 
-TEST(Time, SummerTimeGoesOnAfterTheZoneTableEndsIn2037) {
-  EXPECT_EQ(FormatUtc(ParseInstant("2050-07-01T12:00:00", "Europe/Berlin")),
-            "2050-07-01T10:00:00Z");
-  EXPECT_EQ(FormatUtc(ParseInstant("2050-01-01T12:00:00", "Europe/Berlin")),
-            "2050-01-01T11:00:00Z");
-  EXPECT_EQ(FormatInZone(ParseInstant("2100-12-21T12:00:00Z"), "Australia/Sydney"),
-            "2100-12-21T23:00:00+11:00");
-  EXPECT_EQ(FormatInZone(ParseInstant("2100-06-21T12:00:00Z"), "Australia/Sydney"),
-            "2100-06-21T22:00:00+10:00");
-  EXPECT_EQ(FormatInZone(ParseInstant("2060-06-21T12:00:00Z"), "Asia/Kathmandu"),
-            "2060-06-21T17:45:00+05:45");
-  EXPECT_THAT(FaultOf("2050-03-27T02:30:00", "Europe/Berlin"), testing::HasSubstr("skip"))
-      << "the last Sunday of March 2050 is the 27th";
-  EXPECT_THAT(FaultOf("2050-10-30T02:30:00", "Europe/Berlin"), testing::HasSubstr("twice"));
+TEST(Time, ZonesSayTheOffsetAlsoAfterTheirTablesEndIn2037) {
+  const std::pair<const char*, const char*> in_berlin[] = {
+      {"2026-10-25T02:30:00+02:00", "2026-10-25T00:30:00Z"},
+      {"2026-03-29T01:59:59", "2026-03-29T00:59:59Z"},
+      {"2026-03-29T03:00:00", "2026-03-29T01:00:00Z"},
+      {"2026-10-25T03:00:00", "2026-10-25T02:00:00Z"},
+      {"2050-07-01T12:00:00", "2050-07-01T10:00:00Z"},
+      {"2050-01-01T12:00:00", "2050-01-01T11:00:00Z"}};
+  for (const auto& [local, utc] : in_berlin)
+    EXPECT_EQ(FormatUtc(ParseInstant(local, "Europe/Berlin")), utc) << local;
+  const auto in = [](const char* zone, const char* utc) {
+    return FormatInZone(ParseInstant(utc), zone);
+  };
+  EXPECT_EQ(in("Australia/Sydney", "2100-12-21T12:00:00Z"), "2100-12-21T23:00:00+11:00");
+  EXPECT_EQ(in("Australia/Sydney", "2100-06-21T12:00:00Z"), "2100-06-21T22:00:00+10:00");
+  EXPECT_EQ(in("Asia/Kathmandu", "2060-06-21T12:00:00Z"), "2060-06-21T17:45:00+05:45");
 }
 
 std::int64_t RuleOffset(std::string_view rule, int year, unsigned month, unsigned day, int hour) {
@@ -279,18 +287,15 @@ TEST(Time, DeltaTHasNoJumpWhereModelsMeet) {
   for (const char* text :
        {"1920-01-01T12:00:00Z", "1941-01-01T00:00:00Z", "1950-01-01T00:00:00Z",
         "1960-01-01T00:00:00Z", "2027-01-01T00:00:00Z", "2050-01-01T00:00:00Z"}) {
-    const UtcInstant seam = ParseInstant(text);
     for (int day = -3; day < 3; ++day) {
-      const UtcInstant before = AddSeconds(seam, 86400.0 * day);
+      const UtcInstant before = AddSeconds(ParseInstant(text), 86400.0 * day);
       EXPECT_NEAR(DeltaT(AddSeconds(before, 86400.0)), DeltaT(before), 0.02)
           << text << ": a day changes it by 0.008 s at most; the polynomials of 1920 and 1941 miss "
           << "each other by 0.012 s";
     }
   }
-  const UtcInstant join = ParseInstant("1960-01-01T00:00:00Z");
-  EXPECT_NEAR(DeltaT(AddSeconds(join, -1e-3)), DeltaT(join), 1e-6);
-  const UtcInstant end = ParseInstant("2027-01-01T00:00:00Z");
-  EXPECT_NEAR(DeltaT(AddSeconds(end, -1e-3)), DeltaT(end), 1e-6);
+  for (const char* seam : {"1960-01-01T00:00:00Z", "2027-01-01T00:00:00Z"})
+    EXPECT_NEAR(DeltaT(AddSeconds(ParseInstant(seam), -1e-3)), DeltaT(ParseInstant(seam)), 1e-6);
 }
 
 }  // namespace

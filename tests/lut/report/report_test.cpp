@@ -1,6 +1,4 @@
 // SPDX-License-Identifier: MIT
-// The report: what it writes, that its numbers agree with each other, and that they are physics.
-// Nothing here asks how long anything takes.
 #include "lut/report/report.h"
 
 #include <fmt/format.h>
@@ -8,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 #include <regex>
 #include <set>
 
@@ -15,6 +14,7 @@
 #include "lut/multiple_scattering/multiple_scattering.h"
 #include "lut/report/report_baselines.h"
 #include "lut/report/report_measure.h"
+#include "lut/report/svg_plot.h"
 #include "tests/fixtures/report_files.h"
 #include "tests/fixtures/report_rows.h"
 #include "tests/fixtures/temporary_folder.h"
@@ -270,6 +270,64 @@ TEST(ReportBaselines, FiveHundredTrapezoidsKnowTheSameAir) {
       for (std::size_t band = 0; band < air.bands(); ++band)
         EXPECT_NEAR(march[band], closed[band], 5e-4F) << name << " " << mu;
     }
+  }
+}
+
+using testing::HasSubstr;
+
+std::size_t CountOf(const std::string& text, const std::string& pattern) {
+  const std::regex what(pattern);
+  return static_cast<std::size_t>(
+      std::distance(std::sregex_iterator(text.begin(), text.end(), what), {}));
+}
+
+Plot PlotOf(std::vector<PlotPoint> points) {
+  return {"title",
+          "subtitle",
+          {"x", PlotUnit::kSeconds},
+          {"y", PlotUnit::kShare},
+          {{"panel", {{"series <1>", 0, false, std::move(points)}}, {}}}};
+}
+
+TEST(QuantityText, IsShortAndHasAUnit) {
+  EXPECT_EQ(QuantityText(1.5e-6, PlotUnit::kSeconds), "1.5 µs");
+  EXPECT_EQ(QuantityText(1e-9, PlotUnit::kSeconds), "1 ns");
+  EXPECT_EQ(QuantityText(0.25, PlotUnit::kSeconds), "250 ms");
+  EXPECT_EQ(QuantityText(0.0012, PlotUnit::kShare), "0.12 %");
+  EXPECT_EQ(QuantityText(1e-7, PlotUnit::kShare), "1e-5 %");
+  EXPECT_EQ(QuantityText(16.0, PlotUnit::kShare), "1600 %");
+  EXPECT_EQ(QuantityText(65536.0, PlotUnit::kBytes), "66 kB");
+  EXPECT_EQ(QuantityText(512.0, PlotUnit::kCount), "512");
+}
+
+TEST(SvgPlot, HasAMarkAPointAndTheNameOfEverySeries) {
+  const std::string svg = SvgOfPlot(PlotOf({{1e-6, 0.1, {}, "8"}, {1e-5, 0.01, 0.02, "16"}}));
+  EXPECT_EQ(CountOf(svg, "class=\"mark\""), 2U);
+  EXPECT_EQ(CountOf(svg, "class=\"tail\""), 1U);
+  EXPECT_EQ(CountOf(svg, "series &lt;1&gt;"), 1U);
+  EXPECT_THAT(svg, HasSubstr("prefers-color-scheme: dark"));
+}
+
+TEST(SvgPlot, LeavesOutWhatNoLogarithmHas) {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const std::string svg =
+      SvgOfPlot(PlotOf({{1e-6, 0.1, {}, ""}, {0.0, 0.1, {}, ""}, {1e-6, nan, {}, ""}}));
+  EXPECT_EQ(CountOf(svg, "class=\"mark\""), 1U);
+  EXPECT_EQ(CountOf(svg, "nan|inf"), 0U);
+}
+
+TEST(SvgPlot, APlotWithoutPointsIsAnEmptyFrame) {
+  EXPECT_EQ(CountOf(SvgOfPlot(PlotOf({})), "nan|inf"), 0U);
+}
+
+TEST(SvgPlot, MarksLieInsideTheSheet) {
+  const std::string svg = SvgOfPlot(PlotOf({{1e-9, 1e-9, {}, ""}, {10.0, 10.0, {}, ""}}));
+  const std::regex centre("cx=\"([0-9.]+)\" cy=\"([0-9.]+)\"");
+  for (std::sregex_iterator at(svg.begin(), svg.end(), centre), end; at != end; ++at) {
+    EXPECT_GT(std::stod((*at)[1]), 60.0);
+    EXPECT_LT(std::stod((*at)[1]), 1080.0);
+    EXPECT_GT(std::stod((*at)[2]), 70.0);
+    EXPECT_LT(std::stod((*at)[2]), 420.0);
   }
 }
 

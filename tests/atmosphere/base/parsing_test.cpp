@@ -1,15 +1,43 @@
 // SPDX-License-Identifier: MIT
-#include "atmosphere/base/parsing.h"
+#include "atmosphere/base/error.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
+
+#include "atmosphere/base/parsing.h"
 #include "tests/fixtures/fault_of.h"
 
 namespace alpenglow::atmosphere {
 namespace {
 
 using tests::FaultOf;
+
+TEST(Error, RangeMessageNamesKeyValueAndRange) {
+  EXPECT_EQ(FaultOf([] { return RequireInRange(91.0, -90.0, 90.0, "latitude"); }),
+            "latitude is 91; it must lie in [-90, 90]");
+  EXPECT_NE(FaultOf([] { return RequireInRange(std::nan(""), 0.0, 1.0, "g"); }), "no fault");
+}
+
+TEST(Error, EnsurePrintsBothValues) {
+  const auto compare = [] {
+    ALPENGLOW_ENSURE(1 + 1, ==, 3);
+    return 0;
+  };
+  EXPECT_THAT(FaultOf<InternalError>(compare),
+              testing::HasSubstr("expected 1 + 1 == 3, got 2 and 3"));
+}
+
+TEST(FileExtension, IsTheSameInWhateverCase) {
+  for (const char* name : {"track.gpx", "folder.d/TRACK.GPX", "a.b.GpX"}) {
+    EXPECT_TRUE(HasExtension(name, ".gpx")) << name;
+  }
+  for (const char* name : {"gpx", ".gpx", "track.gp", "track.gpxx", "track.gpx/file", ""}) {
+    EXPECT_FALSE(HasExtension(name, ".gpx")) << name;
+  }
+  EXPECT_TRUE(HasExtension("none", ""));
+}
 
 TomlTable Camera(const std::string& line) {
   return *TomlTable("[camera]\n" + line + "\n", "s.toml").Table("camera");
@@ -48,26 +76,31 @@ TEST(TomlTable, NumbersThatAreNoneAreRefused) {
 }
 
 TEST(TomlTable, WrongTypesAreRefused) {
-  EXPECT_THAT(FaultOf([] { (void)Camera("a = 3").Text("a"); }),
-              testing::HasSubstr("camera.a is 3; it must be text"));
-  EXPECT_THAT(FaultOf([] { (void)Camera("a = 3").Truth("a"); }), testing::HasSubstr("true or"));
-  EXPECT_THAT(FaultOf([] { (void)Camera("a = 3").Table("a"); }), testing::HasSubstr("a table"));
-  EXPECT_THAT(FaultOf([] { (void)Camera("a = 3").Tables("a"); }), testing::HasSubstr("[[camera.a"));
-  EXPECT_THAT(FaultOf([] { (void)Camera("a = [3]").Tables("a"); }), testing::HasSubstr("holds 3"));
-  EXPECT_THAT(FaultOf([] { (void)Camera("a = 2026-06-21").Text("a"); }),
-              testing::HasSubstr("a date or time"));
+  const auto fault = [](const char* line, const auto& read) {
+    return FaultOf([&] { return read(Camera(line)); });
+  };
+  const auto text = [](const TomlTable& table) { return table.Text("a"); };
+  const auto tables = [](const TomlTable& table) { return table.Tables("a"); };
+  EXPECT_THAT(fault("a = 3", text), testing::HasSubstr("camera.a is 3; it must be text"));
+  EXPECT_THAT(fault("a = 3", [](const TomlTable& table) { return table.Truth("a"); }),
+              testing::HasSubstr("true or"));
+  EXPECT_THAT(fault("a = 3", [](const TomlTable& table) { return table.Table("a"); }),
+              testing::HasSubstr("a table"));
+  EXPECT_THAT(fault("a = 3", tables), testing::HasSubstr("[[camera.a"));
+  EXPECT_THAT(fault("a = [3]", tables), testing::HasSubstr("holds 3"));
+  EXPECT_THAT(fault("a = 2026-06-21", text), testing::HasSubstr("a date or time"));
 }
 
 TEST(TomlTable, AnUnknownKeyIsRefusedWithTheNearestKnownOne) {
-  EXPECT_EQ(FaultOf([] {
-              Camera("headin = 3").AllowOnly({"heading", "pitch"});
-            }),
-            "s.toml:2: unknown key camera.headin; did you mean heading?");
-  EXPECT_EQ(FaultOf([] {
-              Camera("zzz = 3").AllowOnly({"heading", "pitch"});
-            }),
-            "s.toml:2: unknown key camera.zzz; known are heading, pitch");
-  EXPECT_EQ(FaultOf([] { Camera("pitch = 3").AllowOnly({"heading", "pitch"}); }), "no fault");
+  const auto fault = [](const char* line) {
+    return FaultOf([&] {
+      Camera(line).AllowOnly({"heading", "pitch"});
+      return 0;
+    });
+  };
+  EXPECT_EQ(fault("headin = 3"), "s.toml:2: unknown key camera.headin; did you mean heading?");
+  EXPECT_EQ(fault("zzz = 3"), "s.toml:2: unknown key camera.zzz; known are heading, pitch");
+  EXPECT_EQ(fault("pitch = 3"), "no fault");
 }
 
 TEST(TomlTable, WhatIsNoTomlIsRefusedWithItsLine) {
