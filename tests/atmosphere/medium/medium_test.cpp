@@ -109,6 +109,7 @@ TEST(Medium, Bruneton2017IsAsPublishedButAscending) {
   EXPECT_EQ(medium.solar_irradiance, (std::vector<double>{1.91198, 1.8504, 1.474}));
   EXPECT_EQ(medium.rayleigh_scattering_per_m, (std::vector<double>{33.1e-6, 13.558e-6, 5.802e-6}));
   EXPECT_EQ(medium.ozone_absorption_per_m, (std::vector<double>{0.085e-6, 1.881e-6, 0.650e-6}));
+  EXPECT_EQ(medium.ground_albedo, (std::vector<double>{0.1, 0.1, 0.1}));
   EXPECT_FALSE(medium.follows_wgs84);
   EXPECT_EQ(medium.planet_radius_m, 6360000.0);
   EXPECT_EQ(medium.atmosphere_height_m, 60000.0);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Closed-form columns against quadrature of the densities that is written here, without the shared
-// texts; and what must hold for light on extreme rays.
+// Closed-form columns are compared with quadrature of the densities, which is written here without
+// the shared texts. Light on extreme rays is right or continuous.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -22,8 +22,8 @@ namespace {
 
 using Columns = std::array<double, 3>;
 
-// A column [m] whose optical depth is below 1e-16:
-// aerosol at 80 km, which float holds as a subnormal.
+// This column [m] has an optical depth below 1e-16: aerosol at 80 km, which float holds as a
+// subnormal.
 constexpr double kNothing_m = 1e-12;
 
 Medium Earth() { return MediumPreset("earth", WavelengthSet(4)); }
@@ -37,7 +37,8 @@ double OzoneDensity(const OzoneLayer& layer, double h) {
                                   (layer.top_m - h) / (layer.top_m - layer.peak_m)));
 }
 
-/// Columns [m] along the whole straight line from altitude h [m] to the top, in extended precision.
+/// Returns columns [m] along the whole straight line from an altitude to the top, in extended
+/// precision.
 Columns ColumnsByQuadrature(const Medium& medium, double altitude_m, double mu) {
   const long double radius = medium.planet_radius_m;
   const long double r = radius + altitude_m;
@@ -68,8 +69,8 @@ Columns ColumnsByQuadrature(const Medium& medium, double altitude_m, double mu) 
   return {result.value[0], result.value[1], result.value[2]};
 }
 
-/// Rays of all directions that do not meet the ground, with cosines that float holds exactly: how
-/// far a cosine that it does not hold lies from its float is not the formula's matter.
+/// Returns rays of all directions that do not meet the ground, with cosines that float holds exactly,
+/// because the formula does not cause the rounding of other cosines.
 std::vector<std::array<double, 2>> RaysToSpace(double radius_m) {
   std::vector<std::array<double, 2>> rays;
   for (const double altitude_m :
@@ -109,7 +110,7 @@ TEST(OpticalDepth, ClosedFormColumnsAreThoseOfQuadrature) {
 }
 
 // Hard case 9.
-TEST(OpticalDepth, FloatIsRightAtEveryAltitudeAndAngleInEveryInstructionSet) {
+TEST(OpticalDepth, FloatIsRightForEveryRayInEveryInstructionSet) {
   const Medium medium = Earth();
   const SingleScattering<double> in_double(medium);
   const SingleScattering<float> in_float(medium);
@@ -152,17 +153,6 @@ double Radiance(const SingleScattering<double>& air, const ViewRay& ray) {
 }
 
 // Hard case 14.
-TEST(OpticalDepth, ASegmentOfLengthZeroHasNone) {
-  const Medium medium = Earth();
-  const SingleScattering<float> air(medium);
-  for (const double mu : {1.0, 0.0, -0.01, -1.0}) {
-    const ViewRay nothing{100.0, mu, 0.5, 0.3, 0.0};
-    EXPECT_EQ(air.TransmittanceAlong(nothing)[0], 1.0F);
-    EXPECT_EQ(air.Inscatter(air.Scatter(air.Sample(nothing, {})), nothing.nu)[0], 0.0F);
-  }
-}
-
-// Hard case 14.
 TEST(OpticalDepth, AMillimetreHasTheRightSmallDepthAndLight) {
   const Medium medium = Earth();
   const SingleScattering<double> air(medium);
@@ -182,12 +172,12 @@ TEST(OpticalDepth, AMillimetreHasTheRightSmallDepthAndLight) {
     EXPECT_NEAR(Radiance(air, ray), light, 1e-5 * light);
     const float light_in_float =
         in_float.Inscatter(in_float.Scatter(in_float.Sample(ray, {})), ray.nu)[0];
-    EXPECT_NEAR(static_cast<double>(light_in_float), light, 1e-4 * light) << "no noise in float";
+    EXPECT_NEAR(static_cast<double>(light_in_float), light, 2e-5 * light) << "no noise in float";
   }
 }
 
 // Hard case 5.
-TEST(OpticalDepth, OffTheLimbTheTransmittanceIsExactlyOneAndSpaceIsBlack) {
+TEST(OpticalDepth, OffTheLimbAirIsExactlyClearAndSpaceIsBlack) {
   const Medium medium = Earth();
   const SingleScattering<double> air(medium);
   for (const double altitude_m : {400e3, 35786e3, 1e8}) {
@@ -211,9 +201,8 @@ TEST(OpticalDepth, FromSpaceTheLimbShines) {
     const double tangent = medium.planet_radius_m + 20e3;
     const double mu = -std::sqrt((r - tangent) * (r + tangent)) / r;
     const ViewRay limb{altitude_m, mu, std::sqrt(1.0 - mu * mu), 0.0};
-    const double radiance = Radiance(air, limb);
-    EXPECT_GT(radiance, 1e-3) << altitude_m;
-    EXPECT_LT(radiance, 1.0) << altitude_m;
+    EXPECT_GT(Radiance(air, limb), 1e-3) << altitude_m;
+    EXPECT_LT(Radiance(air, limb), 1.0) << altitude_m;
   }
 }
 
@@ -273,8 +262,7 @@ TEST(OpticalDepth, AClimbIntoSpaceIsContinuous) {
   const Medium medium = Earth();
   const SingleScattering<double> air(medium);
   for (const double mu : {1.0, 0.2, 0.0, -0.02, -0.3, -1.0}) {
-    double before = Radiance(air, {1.7, mu, 0.5, 0.3});
-    double peak = before;
+    double before = Radiance(air, {1.7, mu, 0.5, 0.3}), peak = before;
     for (double altitude_m = 1.7; altitude_m < 400e3; altitude_m *= 1.002) {
       const double now = Radiance(air, {altitude_m, mu, 0.5, 0.3});
       peak = std::fmax(peak, now);
@@ -295,20 +283,6 @@ TEST(OpticalDepth, ASunAtTheZenithLightsAllAzimuthsAlike) {
     for (const double azimuth : {33.0, 90.0, 180.0, 301.0}) {
       EXPECT_NEAR(Radiance(air, RayFromAngles(2.0, view_zenith, azimuth, 0.0)), north,
                   1e-6 * north);
-    }
-  }
-}
-
-// Hard case 12.
-TEST(OpticalDepth, TheViewAtTheSunAndAwayFromItIsFiniteForTheSharpestLobe) {
-  Medium medium = Earth();
-  for (const double g : {0.999, -0.999}) {
-    medium.mie_phase.front().g = g;
-    const SingleScattering<double> air(medium);
-    for (const double nu : {1.0, -1.0}) {
-      const double radiance = Radiance(air, {2.0, nu * 0.5, 0.5, nu});
-      EXPECT_TRUE(std::isfinite(radiance)) << g << " " << nu;
-      EXPECT_GT(radiance, 0.0);
     }
   }
 }

@@ -18,21 +18,6 @@ namespace {
 constexpr double kRadius_m = 6.371e6;
 constexpr double kTop_m = 120e3;
 
-// Hard case 1.
-TEST(Ray, HorizontalOnTheGroundLeavesForSpace) {
-  const RayExtent extent = ExtentOf({0.0, 0.0, 1.0, 0.0}, kRadius_m, kTop_m);
-  EXPECT_EQ(extent.end, RayEnd::kSpace);
-  EXPECT_NEAR(extent.end_m, std::sqrt(kTop_m * (2.0 * kRadius_m + kTop_m)), 1e-6)
-      << "the tangent to the top";
-}
-
-// Hard case 1.
-TEST(Ray, JustBelowTheHorizontalOnTheGroundHitsItAtOnce) {
-  const RayExtent extent = ExtentOf({0.0, -1e-12, 1.0, 0.0}, kRadius_m, kTop_m);
-  EXPECT_EQ(extent.end, RayEnd::kGround);
-  EXPECT_EQ(extent.end_m, 0.0);
-}
-
 // Hard case 7.
 TEST(Ray, HorizonSeparatesGroundFromSkyWithinOneUlp) {
   for (const double h : {0.01, 2.0, 1e3, 1e4, 1e5, 4e5}) {
@@ -44,29 +29,6 @@ TEST(Ray, HorizonSeparatesGroundFromSkyWithinOneUlp) {
   }
 }
 
-// Hard case 5.
-TEST(Ray, FromSpaceMissesGrazesOrEnters) {
-  const double h = 4e5;
-  const double grazing =
-      -std::sqrt((h - kTop_m) * (2.0 * kRadius_m + h + kTop_m)) / (kRadius_m + h);
-  const RayExtent miss = ExtentOf({h, grazing + 1e-9, 1.0, 0.0}, kRadius_m, kTop_m);
-  EXPECT_EQ(miss.begin_m, miss.end_m);
-  const RayExtent enter = ExtentOf({h, grazing - 1e-9, 1.0, 0.0}, kRadius_m, kTop_m);
-  EXPECT_GT(enter.begin_m, 0.0);
-  EXPECT_GT(enter.end_m, enter.begin_m);
-  const RayExtent down = ExtentOf({h, -1.0, 1.0, -1.0}, kRadius_m, kTop_m);
-  EXPECT_NEAR(down.begin_m, h - kTop_m, 1e-6);
-  EXPECT_NEAR(down.end_m, h, 1e-6);
-  EXPECT_EQ(down.end, RayEnd::kGround);
-}
-
-// Hard case 2.
-TEST(Ray, BelowTheSphereSeesTheSkyOfTheGround) {
-  const RayExtent sunken = ExtentOf({-430.0, 0.5, 1.0, 0.5}, kRadius_m, kTop_m);
-  const RayExtent ground = ExtentOf({0.0, 0.5, 1.0, 0.5}, kRadius_m, kTop_m);
-  EXPECT_EQ(sunken.end_m, ground.end_m);
-}
-
 TEST(Ray, GivenLengthEndsItUnlessTheGroundIsNearer) {
   EXPECT_EQ(ExtentOf({100.0, 0.2, 1.0, 0.2, 5000.0}, kRadius_m, kTop_m).end, RayEnd::kLength);
   EXPECT_EQ(ExtentOf({100.0, -1.0, 1.0, -1.0, 5000.0}, kRadius_m, kTop_m).end, RayEnd::kGround);
@@ -74,7 +36,7 @@ TEST(Ray, GivenLengthEndsItUnlessTheGroundIsNearer) {
 }
 
 // Hard case 39.
-TEST(Ray, AShortRayThatComesNearGroundOrTopEndsThereOnlyIfItReachesThem) {
+TEST(Ray, AShortRayEndsAtGroundOrTopOnlyIfItReachesThem) {
   constexpr double kFrom_m = 200.0;
   for (const double perigee_m : {-2.0, -0.5, 0.5, 2.0, 50.0}) {
     // Down to the perigee and up again.
@@ -92,28 +54,14 @@ TEST(Ray, AShortRayThatComesNearGroundOrTopEndsThereOnlyIfItReachesThem) {
   }
 }
 
-// Hard case 3.
-TEST(Ray, NotANumberAndTheCentreOfThePlanetAreRefused) {
-  const double nan = std::numeric_limits<double>::quiet_NaN();
-  EXPECT_THROW((void)ExtentOf({nan, 0.0, 1.0, 0.0}, kRadius_m, kTop_m), InputError);
-  EXPECT_THROW((void)ExtentOf({-kRadius_m, 0.0, 1.0, 0.0}, kRadius_m, kTop_m), InputError);
-  EXPECT_THROW((void)ExtentOf({0.0, nan, 1.0, 0.0}, kRadius_m, kTop_m), InputError);
-  EXPECT_THROW((void)ExtentOf({0.0, 0.0, 1.0, 0.0, -1.0}, kRadius_m, kTop_m), InputError);
-}
-
 TEST(PlanetShadow, ZenithViewEntersLightWhereTheShadowEnds) {
-  // Sun e below the horizon: the shadow reaches R (1 / cos e - 1) over the observer.
-  const double e = 0.1;
-  const ViewRay ray{0.0, 1.0, -std::sin(e), -std::sin(e)};
-  const ShadowSpan shadow = PlanetShadow(ray, ExtentOf(ray, kRadius_m, kTop_m), kRadius_m);
-  EXPECT_EQ(shadow.dark_begin_m, 0.0);
-  EXPECT_NEAR(shadow.dark_end_m, kRadius_m * (1.0 / std::cos(e) - 1.0), 1e-5) << "closed form";
-}
-
-TEST(PlanetShadow, NoneByDay) {
-  const ViewRay ray{0.0, 0.3, 0.5, 0.9};
-  const ShadowSpan shadow = PlanetShadow(ray, ExtentOf(ray, kRadius_m, kTop_m), kRadius_m);
-  EXPECT_EQ(shadow.dark_begin_m, shadow.dark_end_m);
+  // With the sun e below the horizon, the shadow reaches R (1 / cos e - 1) over the observer.
+  for (const double e : {0.02, 0.07, 0.1, 0.14}) {
+    const ViewRay ray{0.0, 1.0, -std::sin(e), -std::sin(e)};
+    const ShadowSpan shadow = PlanetShadow(ray, ExtentOf(ray, kRadius_m, kTop_m), kRadius_m);
+    EXPECT_EQ(shadow.dark_begin_m, 0.0);
+    EXPECT_NEAR(shadow.dark_end_m, kRadius_m * (1.0 / std::cos(e) - 1.0), 1e-5) << "closed form";
+  }
 }
 
 TEST(PlanetShadow, LookingAlongTheShadowAxisIsDarkToTheEnd) {
@@ -124,7 +72,7 @@ TEST(PlanetShadow, LookingAlongTheShadowAxisIsDarkToTheEnd) {
   EXPECT_EQ(shadow.dark_end_m, 1e6);
 }
 
-// Points of a ray that the planet hides from the sun, from the positions themselves.
+// Returns whether the planet hides a point of a ray from the sun, from the positions themselves.
 bool IsDark(const ViewRay& ray, double distance_m) {
   const double along = std::sqrt((1.0 - ray.mu) * (1.0 + ray.mu));
   const double sun_x = (ray.nu - ray.mu * ray.mu_s) / along;
@@ -136,7 +84,7 @@ bool IsDark(const ViewRay& ray, double distance_m) {
 }
 
 // Hard case 15.
-TEST(PlanetShadow, OfASegmentOfAThousandKilometresIsTheOneStretchThatAScanFinds) {
+TEST(PlanetShadow, OfALongSegmentIsTheOneStretchThatAScanFinds) {
   // The shadow is convex: a ray that has left it stays in the light, whatever its direction.
   std::mt19937 random(15);
   std::uniform_real_distribution<double> uniform(0.0, 1.0);
@@ -170,8 +118,6 @@ TEST(PlanetShadow, OfASegmentOfAThousandKilometresIsTheOneStretchThatAScanFinds)
 }
 
 constexpr double kRadius_km = 6371.0;
-constexpr double kShellRadius_m = 6371000.0;
-constexpr double kShellTop_m = 120000.0;
 
 double AltitudeOf(double h_km, double mu, double d_km) {
   const long double r = static_cast<long double>(kRadius_km) + h_km;
@@ -187,7 +133,7 @@ TEST(Shell, TheHorizonFromTheGroundIsHorizontal) {
 }
 
 // Hard case 9.
-TEST(Shell, AltitudeAlongARayIsThatOfThePlainFormulaInExtendedPrecision) {
+TEST(Shell, AltitudeAlongARayIsThatOfThePlainFormula) {
   for (const double h : {0.0, 1e-5, 0.002, 1.0, 10.0, 120.0, 400.0}) {
     for (const double mu : {-1.0, -0.3, -0.01, 0.0, 0.01, 0.5, 1.0}) {
       for (const double d : {1e-6, 0.1, 10.0, 500.0}) {
@@ -255,20 +201,19 @@ TEST(Shell, FloatTellsGroundFromSkyToAMillimetreOfThePerigee) {
   }
 }
 
-// --- extents ---
-
 // Hard case 1.
 TEST(Extent, AHorizontalRayAtAltitudeZeroLeavesTheAir) {
-  const RayExtent extent = ExtentOf({0.0, 0.0}, kShellRadius_m, kShellTop_m);
+  const RayExtent extent = ExtentOf({0.0, 0.0}, kRadius_m, kTop_m);
   EXPECT_EQ(extent.end, RayEnd::kSpace);
   EXPECT_EQ(extent.begin_m, 0.0);
-  EXPECT_NEAR(extent.end_m, std::sqrt(kShellTop_m * (2.0 * kShellRadius_m + kShellTop_m)), 1e-6);
+  EXPECT_NEAR(extent.end_m, std::sqrt(kTop_m * (2.0 * kRadius_m + kTop_m)), 1e-6);
 }
 
-TEST(Extent, ARayBelowTheHorizontalAtAltitudeZeroHitsTheGroundAtOnce) {
+// Hard case 1.
+TEST(Extent, ARayBelowTheHorizontalOnTheGroundHitsItAtOnce) {
   const double barely_down = std::nextafter(0.0, -1.0);
   for (const double mu : {barely_down, -1e-12, -0.5, -1.0}) {
-    const RayExtent extent = ExtentOf({0.0, mu}, kShellRadius_m, kShellTop_m);
+    const RayExtent extent = ExtentOf({0.0, mu}, kRadius_m, kTop_m);
     EXPECT_EQ(extent.end, RayEnd::kGround) << mu;
     EXPECT_EQ(extent.end_m, 0.0) << mu;
   }
@@ -278,8 +223,8 @@ TEST(Extent, ARayBelowTheHorizontalAtAltitudeZeroHitsTheGroundAtOnce) {
 TEST(Extent, AnObserverBelowTheSphereSeesTheSkyAsFromTheGround) {
   for (const double altitude_m : {-430.0, -11000.0}) {
     for (const double mu : {0.0, 0.1, 1.0}) {
-      const RayExtent below = ExtentOf({altitude_m, mu}, kShellRadius_m, kShellTop_m);
-      const RayExtent ground = ExtentOf({0.0, mu}, kShellRadius_m, kShellTop_m);
+      const RayExtent below = ExtentOf({altitude_m, mu}, kRadius_m, kTop_m);
+      const RayExtent ground = ExtentOf({0.0, mu}, kRadius_m, kTop_m);
       EXPECT_EQ(below.end_m, ground.end_m);
       EXPECT_EQ(below.end, RayEnd::kSpace);
     }
@@ -290,27 +235,31 @@ TEST(Extent, AnObserverBelowTheSphereSeesTheSkyAsFromTheGround) {
 TEST(Extent, RefusesARayThatIsNotFiniteAndNamesTheField) {
   constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
-  const auto message = [](const ViewRay& ray) {
-    return tests::FaultOf([&] { return ExtentOf(ray, kShellRadius_m, kShellTop_m); });
-  };
-  for (const double altitude_m : {kNan, kInfinity, -kShellRadius_m, -2.0 * kShellRadius_m}) {
-    EXPECT_NE(message({altitude_m, 1.0}).find("altitude_m"), std::string::npos) << altitude_m;
+  const std::pair<ViewRay, const char*> rays[] = {
+      {{kNan, 1.0}, "altitude_m"},
+      {{kInfinity, 1.0}, "altitude_m"},
+      {{-kRadius_m, 1.0}, "altitude_m"},  // the centre of the planet
+      {{-2.0 * kRadius_m, 1.0}, "altitude_m"},
+      {{0.0, kNan}, "mu "},
+      {{0.0, 1.0, kNan}, "mu_s"},
+      {{0.0, 1.0, 1.0, kNan}, "nu"},
+      {{0.0, 1.0, 1.0, 1.0, kNan}, "length_m"},
+      {{0.0, 0.0, 1.0, 0.0, -1.0}, "length_m"}};
+  for (const auto& [ray, field] : rays) {
+    const std::string fault = tests::FaultOf([&] { return ExtentOf(ray, kRadius_m, kTop_m); });
+    EXPECT_NE(fault.find(field), std::string::npos) << fault;
   }
-  EXPECT_NE(message({0.0, kNan}).find("mu "), std::string::npos);
-  EXPECT_NE(message({0.0, 1.0, kNan}).find("mu_s"), std::string::npos);
-  EXPECT_NE(message({0.0, 1.0, 1.0, kNan}).find("nu"), std::string::npos);
-  EXPECT_NE(message({0.0, 1.0, 1.0, 1.0, kNan}).find("length_m"), std::string::npos);
 }
 
 // Hard case 4.
 TEST(Extent, IsContinuousThroughTheTop) {
   for (const double mu : {-1.0, -0.5, -0.19}) {
-    const double below = ExtentOf({kShellTop_m - 1e-6, mu}, kShellRadius_m, kShellTop_m).end_m;
-    const RayExtent above = ExtentOf({kShellTop_m + 1e-6, mu}, kShellRadius_m, kShellTop_m);
+    const double below = ExtentOf({kTop_m - 1e-6, mu}, kRadius_m, kTop_m).end_m;
+    const RayExtent above = ExtentOf({kTop_m + 1e-6, mu}, kRadius_m, kTop_m);
     EXPECT_NEAR(above.end_m - above.begin_m, below, 1e-4) << "2 um of altitude, over |mu| > 0.02";
   }
   for (const double mu : {0.0, 1e-9, 0.5, 1.0}) {
-    const RayExtent above = ExtentOf({kShellTop_m + 1e-6, mu}, kShellRadius_m, kShellTop_m);
+    const RayExtent above = ExtentOf({kTop_m + 1e-6, mu}, kRadius_m, kTop_m);
     EXPECT_EQ(above.begin_m, above.end_m) << "upwards from above the top there is no air";
   }
 }
@@ -318,20 +267,20 @@ TEST(Extent, IsContinuousThroughTheTop) {
 // Hard case 8.
 TEST(Extent, ARayThatGrazesTheTopFromOutsideHasNoLengthAndIsFinite) {
   for (const double altitude_m : {400e3, 35786e3, 1e8}) {
-    const double r = kShellRadius_m + altitude_m;
-    const double r_top = kShellRadius_m + kShellTop_m;
+    const double r = kRadius_m + altitude_m;
+    const double r_top = kRadius_m + kTop_m;
     const double grazing = -std::sqrt((r - r_top) * (r + r_top)) / r;
     double mu = grazing;
     for (int i = 0; i < 8; ++i) mu = std::nextafter(mu, -1.0);
     for (int i = 0; i < 16; ++i, mu = std::nextafter(mu, 1.0)) {
-      const RayExtent extent = ExtentOf({altitude_m, mu}, kShellRadius_m, kShellTop_m);
+      const RayExtent extent = ExtentOf({altitude_m, mu}, kRadius_m, kTop_m);
       const double length = extent.end_m - extent.begin_m;
       EXPECT_GE(length, 0.0);
-      EXPECT_LT(length, 2e4 * std::sqrt(r / kShellRadius_m))
+      EXPECT_LT(length, 2e4 * std::sqrt(r / kRadius_m))
           << "one ulp of mu lowers the grazing point by r mu 1e-16, a chord of sqrt(8 R times "
              "that)";
     }
-    const RayExtent missed = ExtentOf({altitude_m, grazing + 1e-9}, kShellRadius_m, kShellTop_m);
+    const RayExtent missed = ExtentOf({altitude_m, grazing + 1e-9}, kRadius_m, kTop_m);
     EXPECT_EQ(missed.begin_m, missed.end_m);
   }
 }
@@ -339,25 +288,30 @@ TEST(Extent, ARayThatGrazesTheTopFromOutsideHasNoLengthAndIsFinite) {
 // Hard case 5.
 TEST(Extent, FromSpaceARayAtTheLimbEntersAndLeavesSymmetrically) {
   for (const double altitude_m : {400e3, 35786e3, 1e8}) {
-    const double r = kShellRadius_m + altitude_m;
-    const double tangent = kShellRadius_m + 30e3;
+    const double r = kRadius_m + altitude_m;
+    const double tangent = kRadius_m + 30e3;
     const double mu = -std::sqrt((r - tangent) * (r + tangent)) / r;
-    const RayExtent extent = ExtentOf({altitude_m, mu}, kShellRadius_m, kShellTop_m);
+    const RayExtent extent = ExtentOf({altitude_m, mu}, kRadius_m, kTop_m);
     EXPECT_EQ(extent.end, RayEnd::kSpace);
     const double middle = 0.5 * (extent.begin_m + extent.end_m);
-    EXPECT_NEAR(middle, -r * mu, 1e-6 * r / kShellRadius_m);
-    EXPECT_NEAR(extent.end_m - extent.begin_m,
-                2.0 * std::sqrt(90e3 * (2.0 * kShellRadius_m + 150e3)), 0.1)
+    EXPECT_NEAR(middle, -r * mu, 1e-6 * r / kRadius_m);
+    EXPECT_NEAR(extent.end_m - extent.begin_m, 2.0 * std::sqrt(90e3 * (2.0 * kRadius_m + 150e3)),
+                0.1)
         << "rounding of mu moves the tangent by 1e-8 m, and the chord by ten times that";
+    EXPECT_GT(extent.begin_m, 0.0);
+    const RayExtent down = ExtentOf({altitude_m, -1.0, 1.0, -1.0}, kRadius_m, kTop_m);
+    EXPECT_EQ(down.end, RayEnd::kGround);
+    EXPECT_NEAR(down.begin_m, altitude_m - kTop_m, 1e-6);
+    EXPECT_NEAR(down.end_m, altitude_m, 1e-6);
   }
 }
 
 // Hard case 7.
-TEST(Extent, OneUlpAcrossTheHorizonEndsAtTheGroundOrInSpaceAndNowhereElse) {
+TEST(Extent, AcrossTheHorizonRaysEndAtTheGroundOrInSpace) {
   for (const double altitude_m : {0.01, 1.7, 1000.0, 11000.0, 400e3}) {
     const double horizon = shared::HorizonCosine(altitude_m * 1e-3, kRadius_km);
-    const RayExtent over = ExtentOf({altitude_m, horizon + 1e-14}, kShellRadius_m, kShellTop_m);
-    const RayExtent under = ExtentOf({altitude_m, horizon - 1e-14}, kShellRadius_m, kShellTop_m);
+    const RayExtent over = ExtentOf({altitude_m, horizon + 1e-14}, kRadius_m, kTop_m);
+    const RayExtent under = ExtentOf({altitude_m, horizon - 1e-14}, kRadius_m, kTop_m);
     EXPECT_EQ(over.end, RayEnd::kSpace) << altitude_m;
     EXPECT_EQ(under.end, RayEnd::kGround) << altitude_m;
     const double to_horizon = shared::HorizonDistance(altitude_m * 1e-3, kRadius_km) * 1e3;
@@ -376,29 +330,15 @@ TEST(Extent, TheAzimuthOfAVerticalViewDoesNotMatter) {
   }
 }
 
-TEST(Shadow, OfThePlanetLiesBehindItAndNowhereElse) {
+TEST(PlanetShadow, LiesBehindThePlanetAndNowhereElse) {
   const ViewRay noon = RayFromAngles(2.0, 45.0, 0.0, 30.0);
-  const ShadowSpan none =
-      PlanetShadow(noon, ExtentOf(noon, kShellRadius_m, kShellTop_m), kShellRadius_m);
+  const ShadowSpan none = PlanetShadow(noon, ExtentOf(noon, kRadius_m, kTop_m), kRadius_m);
   EXPECT_EQ(none.dark_begin_m, none.dark_end_m);
   const ViewRay midnight = RayFromAngles(2.0, 45.0, 0.0, 180.0);
-  const RayExtent extent = ExtentOf(midnight, kShellRadius_m, kShellTop_m);
-  const ShadowSpan all = PlanetShadow(midnight, extent, kShellRadius_m);
+  const RayExtent extent = ExtentOf(midnight, kRadius_m, kTop_m);
+  const ShadowSpan all = PlanetShadow(midnight, extent, kRadius_m);
   EXPECT_EQ(all.dark_begin_m, extent.begin_m);
   EXPECT_EQ(all.dark_end_m, extent.end_m);
-}
-
-TEST(Shadow, TowardsTheZenithAtTwilightEndsAtTheHeightOfElementaryGeometry) {
-  for (const double depression_deg : {1.0, 4.0, 8.0}) {
-    const ViewRay ray = RayFromAngles(0.0, 0.0, 0.0, 90.0 + depression_deg);
-    const ShadowSpan span =
-        PlanetShadow(ray, ExtentOf(ray, kShellRadius_m, kShellTop_m), kShellRadius_m);
-    const double height =
-        kShellRadius_m * (1.0 / std::cos(depression_deg * 3.14159265358979324 / 180) - 1.0);
-    EXPECT_NEAR(span.dark_begin_m, 0.0, 1e-3);
-    EXPECT_NEAR(span.dark_end_m, std::fmin(height, kShellTop_m), 1e-3)
-        << "R (1 / cos(depression) - 1)";
-  }
 }
 
 }  // namespace

@@ -10,8 +10,11 @@
 
 #include "atmosphere/base/error.h"
 #include "atmosphere/math/constants.h"
+#include "atmosphere/math/numerics.h"
 #include "atmosphere/ray/shell.h"
 #include "atmosphere/reference/reference_solution.h"
+#include "tests/fixtures/bands_near.h"
+#include "tests/fixtures/media.h"
 #include "tests/fixtures/ray_regimes.h"
 #include "tests/fixtures/stored_cases.h"
 
@@ -24,12 +27,12 @@ Bands<Real> Inscatter(const SingleScattering<Real>& air, const ViewRay& ray,
   return air.Inscatter(air.Scatter(air.Sample(ray, sampling)), ray.nu);
 }
 
-// Rays that an observer near the ground looks along, sun from high to 8 degrees below the horizon.
+// An observer near the ground looks along these rays.
 std::vector<ViewRay> RaysUnderSun(double sun_elevation_deg) {
   std::vector<ViewRay> rays;
   for (const double altitude : {2.0, 1500.0, 10000.0}) {
-    for (const double view : {5.0, 40.0, 70.0, 85.0, 89.0}) {
-      for (const double azimuth : {0.0, 60.0, 180.0}) {
+    for (const double view : {5.0, 70.0, 89.0}) {
+      for (const double azimuth : {60.0, 180.0}) {
         rays.push_back(RayFromAngles(altitude, view, azimuth, 90.0 - sun_elevation_deg));
       }
     }
@@ -55,43 +58,31 @@ double LargestErrorUnderSun(double sun_elevation_deg, const Sampling& sampling) 
 
 constexpr Sampling kFine{.nodes = 16, .split_ozone = true, .dark_samples = false};
 
-TEST(SingleScattering, DayAgreesWithTheReference) {
-  for (const double sun : {60.0, 20.0, 6.0}) {
+TEST(SingleScattering, DaySunsetAndTwilightAgreeWithTheReference) {
+  for (const double sun : {60.0, 20.0, 6.0, 4.0, 1.0, 0.0, -1.0, -4.0, -6.0}) {
     EXPECT_LT(LargestErrorUnderSun(sun, kFine), 1e-4)
         << "sun at " << sun << " degrees; 16 nodes a panel, tent split";
   }
 }
 
-TEST(SingleScattering, SunsetAgreesWithTheReference) {
-  for (const double sun : {4.0, 1.0, 0.0}) EXPECT_LT(LargestErrorUnderSun(sun, kFine), 1e-4) << sun;
-}
-
-TEST(SingleScattering, TwilightAgreesWithTheReference) {
-  for (const double sun : {-1.0, -4.0, -6.0})
-    EXPECT_LT(LargestErrorUnderSun(sun, kFine), 1e-4) << sun;
-}
-
-TEST(SingleScattering, StoredCasesThatAreNotLimbRaysAgreeToOnePartInTenThousand) {
+TEST(SingleScattering, StoredCasesAgreeToOnePartInTenThousand) {
   if (!stored::Available()) GTEST_SKIP() << "no stored cases at " << stored::Folder();
   const auto media = stored::Media();
-  const auto results = stored::Results("single_results.csv");
-  int compared = 0;
-  for (const stored::Row& row : stored::Read("single.csv")) {
+  const auto is_no_limb_ray = [&](const stored::Row& row) {
     const ViewRay ray = stored::RayOf(row);
     const Medium& medium = media.at(row.at("set"));
-    const RayExtent extent = ExtentOf(ray, medium.planet_radius_m, medium.atmosphere_height_m);
-    const bool limb = ray.mu < 0.0 && extent.end == RayEnd::kSpace;
-    if (limb) continue;
-    const SingleScattering<float> air(medium);
-    const auto fast = Inscatter(air, ray, kFine);
-    for (const stored::Row& expected : results.at(row.at("id"))) {
-      const double truth = stored::Number(expected, "inscatter");
-      EXPECT_NEAR(static_cast<double>(fast[stored::Band(medium, expected)]), truth,
-                  1e-4 * truth + 1e-13)
-          << row.at("id") << " " << row.at("tag");
-      ++compared;
-    }
-  }
+    return ray.mu >= 0.0 ||
+           ExtentOf(ray, medium.planet_radius_m, medium.atmosphere_height_m).end != RayEnd::kSpace;
+  };
+  const int compared =
+      stored::Compare("single", is_no_limb_ray, [](const stored::Row& row, const Medium& medium) {
+        const auto fast = Inscatter(SingleScattering<float>(medium), stored::RayOf(row), kFine);
+        return [fast, &row](const stored::Row& expected, std::size_t band) {
+          const double truth = stored::Number(expected, "inscatter");
+          EXPECT_NEAR(static_cast<double>(fast[band]), truth, 1e-4 * truth + 1e-13)
+              << row.at("id") << " " << row.at("tag");
+        };
+      });
   EXPECT_GT(compared, 300);
 }
 
@@ -100,15 +91,13 @@ double ErrorOf(const Medium& medium, const tests::SunHeights& sun, tests::RayVie
   return tests::ErrorOfRegime(medium, sun, view, sampling, 200).rms;
 }
 
-TEST(SingleScattering, EightSamplesAreRightToOnePartInAThousandAndTwelveToTen) {
-  for (const char* name : {"earth", "hazy"}) {
-    const Medium medium = MediumPreset(name);
-    for (const auto& sun : tests::kSunHeights) {
-      for (const auto& view : tests::kRayViews) {
-        SCOPED_TRACE(::testing::Message() << name << ", sun " << sun.name << ", " << view.name);
-        EXPECT_LT(ErrorOf(medium, sun, view.view, {.nodes = 8}), 1e-3) << "rms";
-        EXPECT_LT(ErrorOf(medium, sun, view.view, {.nodes = 12}), 1e-4) << "rms";
-      }
+TEST(SingleScattering, EightSamplesKeepAThousandthAndTwelveATenthOfIt) {
+  const Medium medium = MediumPreset("earth");
+  for (const auto& sun : tests::kSunHeights) {
+    for (const auto& view : tests::kRayViews) {
+      SCOPED_TRACE(::testing::Message() << "sun " << sun.name << ", " << view.name);
+      EXPECT_LT(ErrorOf(medium, sun, view.view, {.nodes = 8}), 1e-3) << "rms";
+      EXPECT_LT(ErrorOf(medium, sun, view.view, {.nodes = 12}), 1e-4) << "rms";
     }
   }
 }
@@ -118,39 +107,36 @@ TEST(SingleScattering, SamplingForAnErrorKeepsIt) {
   for (const double error : {1e-2, 1e-3, 1e-4, 1e-5}) {
     const Sampling sampling = SamplingForError(error);
     for (const auto& sun : tests::kSunHeights) {
-      for (const auto& view : tests::kRayViews) {
-        SCOPED_TRACE(::testing::Message() << "sun " << sun.name << ", " << view.name);
-        EXPECT_LT(ErrorOf(medium, sun, view.view, sampling), error) << sampling.nodes << " nodes";
-      }
+      for (const auto& view : tests::kRayViews)
+        EXPECT_LT(ErrorOf(medium, sun, view.view, sampling), error)
+            << sampling.nodes << " nodes, sun " << sun.name << ", " << view.name;
     }
   }
+  // The haze is also right with the numbers of nodes that the earth's air needs.
+  EXPECT_LE(SamplingForError(1e-3).nodes, 8);
+  EXPECT_LE(SamplingForError(1e-4).nodes, 12);
   EXPECT_THROW(static_cast<void>(SamplingForError(-1.0)), InputError);
 }
 
-// Rays through twilight have up to 912 samples where ozone is a tent and samples in shadow count.
 TEST(SingleScattering, ALayerOfAHundredMetresIsSampledAsTheEarthsAir) {
-  Medium medium = MediumPreset("bruneton2017");
+  Medium medium = tests::MoleculesOf(MediumPreset("bruneton2017"));
   medium.atmosphere_height_m = 2500.0;
   medium.rayleigh_scale_height_m = 100.0;
-  for (std::size_t band = 0; band < 3; ++band) {
-    medium.rayleigh_scattering_per_m[band] = 0.1 / 100.0;
-    medium.mie_scattering_per_m[band] = medium.mie_extinction_per_m[band] = 0.0;
-    medium.ozone_absorption_per_m[band] = 0.0;
-  }
+  medium.rayleigh_scattering_per_m.assign(3, 0.1 / 100.0);
   const SingleScattering<double> air(medium);
   for (const double zenith_deg : {10.0, 60.0, 82.0, 94.0, 130.0}) {
     for (const double sun_deg : {20.0, 78.0, 88.0}) {
       const ViewRay ray =
           RayFromAngles(zenith_deg > 90.0 ? 2500.0 : 0.0, zenith_deg, 90.0, sun_deg);
-      const auto light = [&](int nodes) {
-        return air.Inscatter(air.Scatter(air.Sample(ray, {.nodes = nodes})), ray.nu)[0];
-      };
       // 1e-5 was found over 135 rays.
-      EXPECT_NEAR(light(12) / light(32), 1.0, 1e-4) << zenith_deg << " " << sun_deg;
+      EXPECT_NEAR(Inscatter(air, ray, {.nodes = 12})[0] / Inscatter(air, ray, {.nodes = 32})[0],
+                  1.0, 1e-4)
+          << zenith_deg << " " << sun_deg;
     }
   }
 }
 
+// Rays through twilight have up to 912 samples where ozone is a tent and samples in shadow count.
 TEST(SingleScattering, RaysOfAnyKindHaveRoomForTheFinestSampling) {
   const Medium medium = MediumPreset("bruneton2017");
   const SingleScattering<double> air(medium);
@@ -174,7 +160,7 @@ TEST(SingleScattering, RaysOfAnyKindHaveRoomForTheFinestSampling) {
   EXPECT_LE(most, kMaxRaySamples - 16);
 }
 
-// What ErrorOfRegime takes for the truth is right.
+// This shows that the truth of ErrorOfRegime is right.
 TEST(SingleScattering, SixtyFourSamplesAreTheReferenceInEveryRegime) {
   const Medium medium = MediumPreset("hazy");
   const SingleScattering<double> air(medium);
@@ -184,10 +170,8 @@ TEST(SingleScattering, SixtyFourSamplesAreTheReferenceInEveryRegime) {
         const ViewRay ray = tests::RayOfRegime(i, sun, view.view, medium);
         const auto truth = reference::SingleScatteringAlong(medium, ray);
         const auto fine = Inscatter(air, ray, {.nodes = 64});
-        for (std::size_t band = 0; band < air.bands(); ++band) {
-          EXPECT_NEAR(fine[band], truth.inscatter[band], 2e-6 * truth.inscatter[band] + 1e-14)
-              << "sun " << sun.name << ", " << view.name << ": the closed form of the columns";
-        }
+        EXPECT_TRUE(tests::BandsNear(fine, truth.inscatter, 2e-6, 1e-14))
+            << "sun " << sun.name << ", " << view.name << ": the closed form of the columns";
       }
     }
   }
@@ -200,12 +184,9 @@ TEST(SingleScattering, FloatAgreesWithDouble) {
   const SingleScattering<double> twice(medium);
   for (const double sun : {60.0, 6.0, 1.0, -3.0}) {
     for (const ViewRay& ray : RaysUnderSun(sun)) {
-      const auto f = Inscatter(single, ray, kFine);
-      const auto d = Inscatter(twice, ray, kFine);
-      for (std::size_t band = 0; band < single.bands(); ++band) {
-        EXPECT_NEAR(static_cast<double>(f[band]), d[band], 2e-5 * d[band] + 1e-13)
-            << "float floor of the pipeline: exp of optical depths up to 30 in float";
-      }
+      EXPECT_TRUE(tests::BandsNear(Inscatter(single, ray, kFine), Inscatter(twice, ray, kFine),
+                                   2e-5, 1e-13))
+          << "float floor of the pipeline: exp of optical depths up to 30 in float";
     }
   }
 }
@@ -213,25 +194,13 @@ TEST(SingleScattering, FloatAgreesWithDouble) {
 // Hard case 14.
 TEST(SingleScattering, SegmentOfLengthZeroIsExactlyNothing) {
   const SingleScattering<float> air(MediumPreset("earth"));
-  const ViewRay ray{100.0, 0.1, 0.5, 0.3, 0.0};
-  const auto scattered = air.Scatter(air.Sample(ray, {}));
-  const auto transmittance = air.TransmittanceAlong(ray);
-  for (std::size_t band = 0; band < air.bands(); ++band) {
-    EXPECT_EQ(scattered.rayleigh[band], 0.0F);
-    EXPECT_EQ(scattered.mie[band], 0.0F);
-    EXPECT_EQ(transmittance[band], 1.0F);
-  }
-}
-
-// Hard case 14.
-TEST(SingleScattering, OneMillimetreOfAirScattersTheRightSmallNumber) {
-  const Medium medium = MediumPreset("earth");
-  const SingleScattering<float> air(medium);
-  const ViewRay ray{100.0, 0.1, 0.5, 0.3, 1e-3};
-  const auto fast = Inscatter(air, ray, {});
-  const auto truth = reference::SingleScatteringAlong(medium, ray);
-  for (std::size_t band = 0; band < air.bands(); ++band) {
-    EXPECT_NEAR(static_cast<double>(fast[band]) / truth.inscatter[band], 1.0, 2e-5) << "not noise";
+  const std::vector<float> nothing(air.bands(), 0.0F), all(air.bands(), 1.0F);
+  for (const double mu : {1.0, 0.1, 0.0, -0.01, -1.0}) {
+    const ViewRay ray{100.0, mu, 0.5, 0.3, 0.0};
+    const auto scattered = air.Scatter(air.Sample(ray, {}));
+    EXPECT_TRUE(tests::BandsNear(scattered.rayleigh, nothing, 0.0));
+    EXPECT_TRUE(tests::BandsNear(scattered.mie, nothing, 0.0));
+    EXPECT_TRUE(tests::BandsNear(air.TransmittanceAlong(ray), all, 0.0));
   }
 }
 
@@ -249,7 +218,7 @@ TEST(SingleScattering, ShortSegmentsKeepTheirOpticalDepth) {
   }
 }
 
-TEST(SingleScattering, ColumnsSummedFromSampleToSampleAreThoseOfTheWholeWay) {
+TEST(SingleScattering, ColumnsBetweenSamplesSumToThoseOfTheWholeWay) {
   const Medium medium = MediumPreset("earth");
   const SingleScattering<double> air(medium);
   const auto columns_between = [&](const ViewRay& ray, std::size_t steps) {
@@ -291,7 +260,7 @@ TEST(SingleScattering, ColumnsSummedFromSampleToSampleAreThoseOfTheWholeWay) {
   }
 }
 
-TEST(SingleScattering, TransmittanceToSpaceAgreesWithTheReferenceAtEveryAngle) {
+TEST(SingleScattering, TransmittanceAgreesWithTheReferenceAtEveryAngle) {
   const Medium medium = MediumPreset("earth");
   const SingleScattering<float> air(medium);
   for (const double altitude : {0.0, 10.0, 3000.0, 30000.0, 80000.0}) {
@@ -312,8 +281,7 @@ TEST(SingleScattering, ZenithAndNadirViewsDoNotDependOnAzimuth) {
   for (const double view : {0.0, 180.0}) {
     const auto one = Inscatter(air, RayFromAngles(5000.0, view, 0.0, 50.0), kFine);
     const auto other = Inscatter(air, RayFromAngles(5000.0, view, 137.0, 50.0), kFine);
-    for (std::size_t band = 0; band < air.bands(); ++band)
-      EXPECT_NEAR(one[band], other[band], 1e-6F * one[band]);
+    EXPECT_TRUE(tests::BandsNear(other, one, 1e-6));
   }
 }
 
@@ -325,9 +293,7 @@ TEST(SingleScattering, TopOfTheAtmosphereIsCrossedWithoutAJump) {
   for (const double view : {95.0, 100.0, 120.0, 180.0}) {
     const auto below = Inscatter(air, RayFromAngles(top - 1e-6, view, 40.0, 60.0), kFine);
     const auto above = Inscatter(air, RayFromAngles(top + 1e-6, view, 40.0, 60.0), kFine);
-    for (std::size_t band = 0; band < air.bands(); ++band) {
-      EXPECT_NEAR(below[band], above[band], 1e-4F * below[band]) << view;
-    }
+    EXPECT_TRUE(tests::BandsNear(above, below, 1e-4)) << view;
   }
 }
 
@@ -344,25 +310,18 @@ TEST(SingleScattering, MarchOfManyStepsComesToTheSameLight) {
     const auto gauss = Inscatter(air, ray, kFine);
     // The step that holds the edge of the planet's shadow is lit or not as a whole: 1 / kSteps of
     // the ray, in thin air.
-    for (std::size_t band = 0; band < air.bands(); ++band)
-      EXPECT_NEAR(march[band], gauss[band], 2e-3F * gauss[band]) << sun_elevation_deg;
+    EXPECT_TRUE(tests::BandsNear(march, gauss, 2e-3)) << sun_elevation_deg;
   }
 }
 
 TEST(SingleScattering, MoreWavelengthsThanItHoldsAreRefused) {
-  Medium medium = MediumPreset("earth");
-  while (medium.wavelengths_nm.size() <= kMaxBands) {
-    medium.wavelengths_nm.push_back(medium.wavelengths_nm.back() + 1.0);
-    for (auto* list : {&medium.solar_irradiance, &medium.ground_albedo,
-                       &medium.rayleigh_scattering_per_m, &medium.mie_scattering_per_m,
-                       &medium.mie_extinction_per_m, &medium.ozone_absorption_per_m}) {
-      list->push_back(list->back());
-    }
-  }
-  EXPECT_THROW(SingleScattering<float>{medium}, InputError);
+  std::vector<double> wavelengths_nm;
+  for (std::size_t i = 0; i <= kMaxBands; ++i)
+    wavelengths_nm.push_back(400.0 + static_cast<double>(i));
+  EXPECT_THROW(SingleScattering<float>{MediumPreset("earth", wavelengths_nm)}, InputError);
 }
 
-// The desert's dust: a table at every wavelength.
+// Dust of the desert has a table at every wavelength.
 Medium Dusty() { return MediumFromToml("[aerosol]\nmixture = \"desert\"\n", "dusty"); }
 
 TEST(SingleScattering, EveryBandHasThePhaseFunctionOfItsOwn) {
@@ -370,10 +329,10 @@ TEST(SingleScattering, EveryBandHasThePhaseFunctionOfItsOwn) {
   const SingleScattering<float> air(medium);
   for (const ViewRay& ray : RaysUnderSun(20.0)) {
     const auto light = Inscatter(air, ray, kFine);
-    const auto truth = reference::SingleScatteringAlong(medium, ray);
+    EXPECT_TRUE(
+        tests::BandsNear(light, reference::SingleScatteringAlong(medium, ray).inscatter, 1e-4))
+        << "16 nodes a panel";
     for (std::size_t band = 0; band < air.bands(); ++band) {
-      EXPECT_NEAR(static_cast<double>(light[band]) / truth.inscatter[band], 1.0, 1e-4)
-          << "16 nodes a panel";
       Medium shared = medium;
       shared.mie_phase = {medium.mie_phase[band]};
       EXPECT_EQ(light[band], Inscatter(SingleScattering<float>(shared), ray, kFine)[band]);
@@ -403,12 +362,14 @@ TEST(SingleScattering, PhaseFunctionsReadInFloatAreThoseOfTheirTables) {
 // Hard case 12.
 TEST(SingleScattering, LookingAtTheSunWithASharpPhaseFunctionIsFinite) {
   Medium medium = MediumPreset("earth");
-  medium.mie_phase = {{.kind = PhaseKind::kHenyeyGreenstein, .g = 0.999}};
-  const SingleScattering<float> air(medium);
-  for (const double nu : {1.0, -1.0}) {
-    const ViewRay ray{2.0, nu * 0.5, 0.5, nu};
-    const auto light = Inscatter(air, ray, kFine);
-    for (std::size_t band = 0; band < air.bands(); ++band) EXPECT_TRUE(std::isfinite(light[band]));
+  for (const double g : {0.999, -0.999}) {
+    medium.mie_phase = {{.kind = PhaseKind::kHenyeyGreenstein, .g = g}};
+    const SingleScattering<float> air(medium);
+    for (const double nu : {1.0, -1.0}) {
+      const auto light = Inscatter(air, {2.0, nu * 0.5, 0.5, nu}, kFine);
+      for (std::size_t band = 0; band < air.bands(); ++band)
+        EXPECT_TRUE(std::isfinite(light[band]) && light[band] > 0.0F) << g << " " << nu;
+    }
   }
 }
 
@@ -427,7 +388,7 @@ ViewRay ThroughTheShadow(const Medium& medium, double depth_m) {
 }
 
 // Hard case 15.
-TEST(SingleScattering, ASegmentThroughThePlanetsShadowIsThatOfTheReferenceWithoutASeam) {
+TEST(SingleScattering, ASegmentThroughThePlanetsShadowHasNoSeam) {
   const Medium medium = MediumPreset("earth");
   const SingleScattering<float> air(medium);
   for (const double depth_m : {-20e3, -100.0, -1.0, 1.0, 100.0, 3e3, 10e3, 18e3}) {
@@ -439,12 +400,9 @@ TEST(SingleScattering, ASegmentThroughThePlanetsShadowIsThatOfTheReferenceWithou
                 2.0 * std::sqrt(std::max(depth_m, 0.0) * (2.0 * medium.planet_radius_m - depth_m)),
                 1.0)
         << "the chord through a cylinder";
-    const auto light = Inscatter(air, ray, kFine);
-    const auto truth = reference::SingleScatteringAlong(medium, ray);
-    for (std::size_t band = 0; band < air.bands(); ++band) {
-      EXPECT_NEAR(static_cast<double>(light[band]) / truth.inscatter[band], 1.0, 2e-4)
-          << depth_m << " m: 16 nodes a panel";
-    }
+    EXPECT_TRUE(tests::BandsNear(Inscatter(air, ray, kFine),
+                                 reference::SingleScatteringAlong(medium, ray).inscatter, 2e-4))
+        << depth_m << " m: 16 nodes a panel";
   }
 }
 
@@ -455,10 +413,8 @@ TEST(SingleScattering, WhereTheShadowOpensInASegmentItsLightDoesNotJump) {
   // A millimetre of depth is 226 m of shadow; air there is lit through 38 optical depths and more.
   const auto before = Inscatter(air, ThroughTheShadow(medium, -1e-3), kFine);
   const auto after = Inscatter(air, ThroughTheShadow(medium, 1e-3), kFine);
-  for (std::size_t band = 0; band < air.bands(); ++band) {
-    EXPECT_NEAR(after[band] / before[band], 1.0F, 1e-4F) << "panels begin and end elsewhere";
-  }
-  // Cut in two anywhere, in the light, on the edges of the shadow and in it, it is the same.
+  EXPECT_TRUE(tests::BandsNear(after, before, 1e-4)) << "panels begin and end elsewhere";
+  // A segment cut in two in the light, on the edges of the shadow or in it has the same light.
   const SingleScattering<double> fine(medium);
   const ViewRay whole = ThroughTheShadow(medium, 3e3);
   const ShadowSpan shadow =
@@ -518,7 +474,7 @@ TEST(SingleScattering, ThickAirFadesToNothingWithoutFurtherEffort) {
   EXPECT_EQ(nodes, std::vector<std::size_t>(nodes.size(), nodes.front()));
 }
 
-/// Largest relative errors against the reference solution, of rays of all kinds.
+/// The largest relative errors of rays of all kinds.
 struct EdgeErrors {
   double depth = 0.0, light = 0.0;
 };
@@ -526,14 +482,12 @@ struct EdgeErrors {
 EdgeErrors ErrorsAtTheEdge(const Medium& medium) {
   const SingleScattering<double> air(medium);
   EdgeErrors errors;
-  for (int i = 1; i <= 48; ++i) {
+  for (int i = 1; i <= 24; ++i) {
     const double top = medium.atmosphere_height_m;
     const double altitude = std::array{0.0, 1.0, 0.5, 2.0}[static_cast<std::size_t>(i % 4)] *
                             (i % 4 == 1 ? medium.mie_scale_height_m : top);
-    const double view = i % 3 == 0 ? 80.0 + 20.0 * tests::RadicalInverse(i, 2)
-                                   : 180.0 * tests::RadicalInverse(i, 2);
-    const ViewRay ray = RayFromAngles(altitude, view, 180.0 * tests::RadicalInverse(i, 3),
-                                      95.0 * tests::RadicalInverse(i, 5));
+    const double view = i % 3 == 0 ? 80.0 + 20.0 * Halton(i, 2) : 180.0 * Halton(i, 2);
+    const ViewRay ray = RayFromAngles(altitude, view, 180.0 * Halton(i, 3), 95.0 * Halton(i, 5));
     const reference::RayRadiance truth = reference::SingleScatteringAlong(medium, ray);
     const std::vector<double> tau = reference::OpticalDepthAlong(medium, ray).tau;
     const auto depth = air.OpticalDepthAlong(ray);
@@ -593,7 +547,7 @@ TEST(SingleScattering, AtTheEdgesOfTheRangesOfAMediumTheReferenceAgrees) {
 }
 
 // Hard case 31.
-TEST(SingleScattering, TheSharpestLobesForwardsAndBackwardsAndNoneAreFinite) {
+TEST(SingleScattering, TheSharpestLobesAgreeWithTheReference) {
   for (const double g : {-0.999, -0.5, 0.0, 0.999}) {
     for (const PhaseKind kind : {PhaseKind::kHenyeyGreenstein, PhaseKind::kCornetteShanks}) {
       Medium medium = MediumPreset("bruneton2017");
@@ -601,12 +555,9 @@ TEST(SingleScattering, TheSharpestLobesForwardsAndBackwardsAndNoneAreFinite) {
       const SingleScattering<float> air(medium);
       for (const double azimuth : {0.0, 1.0, 90.0, 180.0}) {
         const ViewRay ray = RayFromAngles(2.0, 50.0, azimuth, 50.0);
-        const auto light = Inscatter(air, ray, kFine);
-        const auto truth = reference::SingleScatteringAlong(medium, ray);
-        for (std::size_t band = 0; band < air.bands(); ++band) {
-          EXPECT_NEAR(static_cast<double>(light[band]) / truth.inscatter[band], 1.0, 2e-3)
-              << g << ' ' << azimuth << ": float keeps 1 - nu to 1e-7, the lobe is 1e-3 wide";
-        }
+        EXPECT_TRUE(tests::BandsNear(Inscatter(air, ray, kFine),
+                                     reference::SingleScatteringAlong(medium, ray).inscatter, 2e-3))
+            << g << ' ' << azimuth << ": float keeps 1 - nu to 1e-7, the lobe is 1e-3 wide";
       }
     }
   }

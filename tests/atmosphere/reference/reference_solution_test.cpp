@@ -6,19 +6,15 @@
 #include <cmath>
 
 #include "atmosphere/math/constants.h"
+#include "tests/fixtures/media.h"
 #include "tests/fixtures/stored_cases.h"
 
 namespace alpenglow::atmosphere {
 namespace {
 
-// One species, one band, nothing else in the air.
 Medium OnlyMolecules(double scattering_per_m, double scale_height_m) {
-  Medium medium = MediumPreset("bruneton2017");
-  for (std::size_t band = 0; band < medium.wavelengths_nm.size(); ++band) {
-    medium.rayleigh_scattering_per_m[band] = scattering_per_m;
-    medium.mie_scattering_per_m[band] = medium.mie_extinction_per_m[band] = 0.0;
-    medium.ozone_absorption_per_m[band] = 0.0;
-  }
+  Medium medium = tests::MoleculesOf(MediumPreset("bruneton2017"));
+  medium.rayleigh_scattering_per_m.assign(3, scattering_per_m);
   medium.rayleigh_scale_height_m = scale_height_m;
   return medium;
 }
@@ -57,40 +53,31 @@ TEST(Reference, ThinUniformAirScattersLengthTimesCoefficientTimesPhase) {
 
 TEST(Reference, StoredOpticalDepthsAgreeToOnePartInAHundredMillion) {
   if (!stored::Available()) GTEST_SKIP() << "no stored cases at " << stored::Folder();
-  const auto media = stored::Media();
-  const auto results = stored::Results("transmittance_results.csv");
-  int compared = 0;
-  for (const stored::Row& row : stored::Read("transmittance.csv")) {
-    const Medium& medium = media.at(row.at("set"));
-    const auto depth = reference::OpticalDepthAlong(medium, stored::RayOf(row));
-    EXPECT_TRUE(depth.converged) << row.at("id");
-    for (const stored::Row& expected : results.at(row.at("id"))) {
-      const double tau = stored::Number(expected, "tau");
-      EXPECT_NEAR(depth.tau[stored::Band(medium, expected)], tau, 1e-8 * tau)
-          << row.at("id") << " " << row.at("tag") << ": stored to 1e-15";
-      ++compared;
-    }
-  }
+  const int compared =
+      stored::Compare("transmittance", stored::All, [](const stored::Row& row, const Medium& air) {
+        const auto depth = reference::OpticalDepthAlong(air, stored::RayOf(row));
+        EXPECT_TRUE(depth.converged) << row.at("id");
+        return [depth, &row](const stored::Row& expected, std::size_t band) {
+          const double tau = stored::Number(expected, "tau");
+          EXPECT_NEAR(depth.tau[band], tau, 1e-8 * tau)
+              << row.at("id") << " " << row.at("tag") << ": stored to 1e-15";
+        };
+      });
   EXPECT_GT(compared, 250);
 }
 
 TEST(Reference, StoredSingleScatteringAgreesToOnePartInTenMillion) {
   if (!stored::Available()) GTEST_SKIP() << "no stored cases at " << stored::Folder();
-  const auto media = stored::Media();
-  const auto results = stored::Results("single_results.csv");
-  int compared = 0;
-  for (const stored::Row& row : stored::Read("single.csv")) {
-    const Medium& medium = media.at(row.at("set"));
-    const auto light = reference::SingleScatteringAlong(medium, stored::RayOf(row));
-    EXPECT_TRUE(light.converged) << row.at("id");
-    for (const stored::Row& expected : results.at(row.at("id"))) {
-      const std::size_t band = stored::Band(medium, expected);
-      const double total = stored::Number(expected, "total");
-      EXPECT_NEAR(light.inscatter[band] + light.ground[band], total, 1e-7 * total)
-          << row.at("id") << " " << row.at("tag") << ": stored to 1e-10";
-      ++compared;
-    }
-  }
+  const int compared =
+      stored::Compare("single", stored::All, [](const stored::Row& row, const Medium& air) {
+        const auto light = reference::SingleScatteringAlong(air, stored::RayOf(row));
+        EXPECT_TRUE(light.converged) << row.at("id");
+        return [light, &row](const stored::Row& expected, std::size_t band) {
+          const double total = stored::Number(expected, "total");
+          EXPECT_NEAR(light.inscatter[band] + light.ground[band], total, 1e-7 * total)
+              << row.at("id") << " " << row.at("tag") << ": stored to 1e-10";
+        };
+      });
   EXPECT_GT(compared, 400);
 }
 
