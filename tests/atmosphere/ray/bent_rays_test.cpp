@@ -210,7 +210,6 @@ TEST(RefractedBeam, BetweenItsNodesIsWithinThreePerCentOfRefractedRays) {
 TEST(RefractedBeam, FadesSmoothlyWhileTheSunSinks) {
   // A sun that sinks by a minute of arc: what is left falls by a share that changes by a tenth of
   // itself at most from each to the next, or by 1e-3 high up where it hardly falls.
-  constexpr double kMinute = kRadiansPerDegree / 60.0;
   const Medium medium = EarthOfThreeBands();
   const SingleScattering<float> air(medium);
   const RefractedBeam beam(medium);

@@ -245,9 +245,10 @@ TEST(Extent, RefusesARayThatIsNotFiniteAndNamesTheField) {
       {{0.0, 1.0, 1.0, kNan}, "nu"},
       {{0.0, 1.0, 1.0, 1.0, kNan}, "length_m"},
       {{0.0, 0.0, 1.0, 0.0, -1.0}, "length_m"}};
-  for (const auto& [ray, field] : rays) {
-    const std::string fault = tests::FaultOf([&] { return ExtentOf(ray, kRadius_m, kTop_m); });
-    EXPECT_NE(fault.find(field), std::string::npos) << fault;
+  for (const auto& bad : rays) {
+    const std::string fault =
+        tests::FaultOf([&] { return ExtentOf(bad.first, kRadius_m, kTop_m); });
+    EXPECT_NE(fault.find(bad.second), std::string::npos) << fault;
   }
 }
 

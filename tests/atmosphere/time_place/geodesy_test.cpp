@@ -191,10 +191,11 @@ TEST(Geodesy, ImpossiblePlacesAreRefusedByName) {
       {0, 0, kInfinity, "height_m is inf"},
       {0, 0, kNan, "height_m is nan"},
   };
-  for (const auto& [latitude, longitude, height_m, fault] : places) {
-    const std::string message =
-        tests::FaultOf([&] { return PlaceFromDegrees(latitude, longitude, height_m); });
-    EXPECT_THAT(message, testing::StartsWith(fault));
+  for (const auto& place : places) {
+    EXPECT_THAT(tests::FaultOf([&] {
+                  return PlaceFromDegrees(place.latitude, place.longitude, place.height_m);
+                }),
+                testing::StartsWith(place.fault));
   }
 }
 
