@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: MIT
+// Geometry of rays in the shell is right where it is hard: on the ground, at the horizon, at the top
+// and in space.
 #include "atmosphere/ray/ray.h"
 
 #include <gtest/gtest.h>

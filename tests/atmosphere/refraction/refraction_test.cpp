@@ -251,6 +251,7 @@ TEST(ApparentSun, IsHigherThanTheSunByRefractionAtTheEye) {
   }
 }
 
+// The sun that lights the air by straight rays is compared with light of bent rays.
 constexpr std::array kViews{std::array{90.0, 0.0}, std::array{45.0, 0.0}, std::array{45.0, 180.0},
                             std::array{5.0, 0.0}, std::array{20.0, 90.0}};
 

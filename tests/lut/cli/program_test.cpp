@@ -46,28 +46,7 @@ std::size_t LinesOf(const std::string& text) {
   return static_cast<std::size_t>(std::count(text.begin(), text.end(), '\n'));
 }
 
-std::string ContentOf(const fs::path& file) {
-  std::ifstream stream(file, std::ios::binary);
-  return {std::istreambuf_iterator<char>(stream), {}};
-}
-
-std::size_t FilesIn(const fs::path& folder) {
-  return static_cast<std::size_t>(
-      std::distance(fs::directory_iterator(folder), fs::directory_iterator()));
-}
-
-class Folder : public testing::Test {
- protected:
-  void SetUp() override {
-    std::string pattern = (fs::temp_directory_path() / "alpenglow_test_XXXXXX").string();
-    ASSERT_NE(mkdtemp(pattern.data()), nullptr);
-    folder_ = pattern;
-  }
-  void TearDown() override { fs::remove_all(folder_); }
-
-  fs::path folder_;
-};
-using AtomicFile = Folder;
+using AtomicFile = TemporaryFolder;
 
 TEST(Program, StatusOfTheBodyIsTheStatusOfTheProgram) {
   EXPECT_EQ(RunBody([] { return 0; }).status, 0);
@@ -149,7 +128,7 @@ TEST_F(AtomicFile, ContentArrivesWholeAndNothingElseStays) {
   WriteTextAtomically(folder_ / "a.txt", "one");
   WriteTextAtomically(folder_ / "a.txt", "two");
   EXPECT_EQ(ContentOf(folder_ / "a.txt"), "two");
-  EXPECT_EQ(FilesIn(folder_), 1U);
+  EXPECT_EQ(FileCount(), 1U);
 }
 
 TEST_F(AtomicFile, ModeFollowsTheUmask) {
@@ -168,33 +147,25 @@ TEST_F(AtomicFile, AFailedWriterLeavesTheOldFileAndNoTemporary) {
     std::ofstream(name) << "half";
     throw OutputError(name.string() + ": the disk is full");
   };
-  try {
-    WriteFileAtomically(folder_ / "a.txt", fail);
-    FAIL() << "the failure was swallowed";
-  } catch (const OutputError& error) {
-    EXPECT_EQ(error.what(), (folder_ / "a.txt").string() + ": the disk is full")
-        << "the user's name, not the temporary's";
-  }
+  EXPECT_EQ(tests::FaultOf<OutputError>([&] { WriteFileAtomically(folder_ / "a.txt", fail); }),
+            (folder_ / "a.txt").string() + ": the disk is full")
+      << "the user's name, not the temporary's";
   EXPECT_EQ(ContentOf(folder_ / "a.txt"), "old");
-  EXPECT_EQ(FilesIn(folder_), 1U);
+  EXPECT_EQ(FileCount(), 1U);
 }
 
 TEST_F(AtomicFile, OtherExceptionsPassAndLeaveNothing) {
   EXPECT_THROW(
       WriteFileAtomically(folder_ / "a.txt", [](const fs::path&) { throw InputError("x"); }),
       InputError);
-  EXPECT_EQ(FilesIn(folder_), 0U);
+  EXPECT_EQ(FileCount(), 0U);
 }
 
 // Hard case 46.
 TEST_F(AtomicFile, AMissingFolderIsAnOutputErrorThatNamesTheTarget) {
   const fs::path target = folder_ / "missing" / "a.txt";
-  try {
-    WriteTextAtomically(target, "one");
-    FAIL() << "a folder was made up";
-  } catch (const OutputError& error) {
-    EXPECT_THAT(error.what(), HasSubstr(target.string()));
-  }
+  EXPECT_THAT(tests::FaultOf<OutputError>([&] { WriteTextAtomically(target, "one"); }),
+              HasSubstr(target.string()));
 }
 
 // Hard case 46.
@@ -207,7 +178,7 @@ TEST_F(AtomicFile, AFolderRemovedWhileWritingIsAnOutputError) {
 }
 
 /// While it lives, a superuser, who may write into read-only folders, has the rights of the user
-/// "nobody". Changes nothing for other users.
+/// "nobody". It changes nothing for other users.
 class WithoutSuperuser {
  public:
   WithoutSuperuser() : was_superuser_(geteuid() == 0) {
@@ -259,19 +230,15 @@ TEST_F(AtomicFile, AFullDiskIsAnOutputErrorAndLeavesNothing) {
     rlimit small = before;
     small.rlim_cur = 1000;
     setrlimit(RLIMIT_FSIZE, &small);
-    std::string fault;
-    try {
-      WriteTextAtomically(target, std::string(100000, 'x'));
-    } catch (const OutputError& error) {
-      fault = error.what();
-    }
+    const std::string fault =
+        tests::FaultOf<OutputError>([&] { WriteTextAtomically(target, std::string(100000, 'x')); });
     setrlimit(RLIMIT_FSIZE, &before);
     throw OutputError(fault);
     return 0;
   });
   EXPECT_EQ(outcome.status, 4);
   EXPECT_THAT(outcome.error_text, HasSubstr(target.string()));
-  EXPECT_EQ(FilesIn(folder_), 0U);
+  EXPECT_EQ(FileCount(), 0U);
 }
 
 // Hard case 47.
@@ -286,18 +253,18 @@ TEST_F(AtomicFile, WritersOfTheSameFileDoNotDisturbEachOther) {
   other.join();
   const std::string content = ContentOf(folder_ / "a.txt");
   EXPECT_EQ(content, std::string(5000, content.at(0))) << "one writer's content, unmixed";
-  EXPECT_EQ(FilesIn(folder_), 1U);
+  EXPECT_EQ(FileCount(), 1U);
 }
 
 // Hard case 45.
-TEST_F(AtomicFile, WhatAKilledWriterLeavesIsRemovedAndWhatALivingOneWritesIsNot) {
+TEST_F(AtomicFile, FilesOfKilledWritersAreRemovedAndOfLivingOnesNot) {
   tests::LeaveTemporaryOf(folder_ / "a.exr");
-  ASSERT_EQ(FilesIn(folder_), 1U);
+  ASSERT_EQ(FileCount(), 1U);
   std::size_t removed = 0, there = 0;
   WriteFileAtomically(folder_ / "b.exr", [&](const fs::path& name) {
     std::ofstream(name) << "b";
     removed = RemoveAbandonedTemporaries(folder_);
-    there = FilesIn(folder_);
+    there = FileCount();
   });
   EXPECT_EQ(removed, 1U);
   EXPECT_EQ(there, 1U) << "the living writer's";
@@ -305,7 +272,7 @@ TEST_F(AtomicFile, WhatAKilledWriterLeavesIsRemovedAndWhatALivingOneWritesIsNot)
   EXPECT_EQ(RemoveAbandonedTemporaries(folder_ / "missing"), 0U);
 }
 
-TEST_F(AtomicFile, TemporariesOfOtherMachinesAndFilesOfOtherNamesAreNotRemoved) {
+TEST_F(AtomicFile, TemporariesOfOtherMachinesAndOtherFilesAreKept) {
   tests::LeaveTemporaryOf(folder_ / "a.exr");
   const fs::path ours = *fs::directory_iterator(folder_);
   std::string name = ours.filename().string();  // .a.MACHINE-...
@@ -315,7 +282,7 @@ TEST_F(AtomicFile, TemporariesOfOtherMachinesAndFilesOfOtherNamesAreNotRemoved) 
     std::ofstream(folder_ / other) << "x";
   }
   EXPECT_EQ(RemoveAbandonedTemporaries(folder_), 0U);
-  EXPECT_EQ(FilesIn(folder_), 5U);
+  EXPECT_EQ(FileCount(), 5U);
 }
 
 TEST_F(AtomicFile, WhetherATargetCanBeWrittenIsKnownBeforeAndChangesNothing) {
@@ -326,7 +293,7 @@ TEST_F(AtomicFile, WhetherATargetCanBeWrittenIsKnownBeforeAndChangesNothing) {
   EXPECT_THROW(RequireWritable(folder_ / "none" / "a.txt"), OutputError);
   EXPECT_THROW(RequireWritable("/dev/null"), OutputError);
   EXPECT_EQ(ContentOf(folder_ / "a.txt"), "old");
-  EXPECT_EQ(FilesIn(folder_), 1U);
+  EXPECT_EQ(FileCount(), 1U);
 }
 
 TEST_F(AtomicFile, ANameThatIsNearlyTooLongStillHasATemporary) {
@@ -335,7 +302,7 @@ TEST_F(AtomicFile, ANameThatIsNearlyTooLongStillHasATemporary) {
   EXPECT_EQ(ContentOf(target), "one");
 }
 
-using OutputName = Folder;
+using OutputName = TemporaryFolder;
 
 TEST_F(OutputName, AnInputIsRecognisedUnderEveryName) {
   std::ofstream(folder_ / "in.csv") << "x";
@@ -364,64 +331,54 @@ TEST_F(OutputName, TheExtensionSaysWhatIsWritten) {
   for (const char* file : {"t.dds", "t.exr", "-"}) EXPECT_NE(FaultOfFolderName(file), "") << file;
 }
 
-std::string ProgressText(ProgressStyle style, std::size_t total, std::size_t skipped = 0) {
+/// Returns what a progress that `work` advances writes to standard error.
+template <typename Work>
+std::string TextOfProgress(ProgressStyle style, std::size_t total, const Work& work) {
   testing::internal::CaptureStderr();
   {
     Progress progress("frames", total, style);
-    progress.Skip(skipped);
-    for (std::size_t i = skipped; i < total; ++i) progress.Advance();
+    work(progress);
   }
   return testing::internal::GetCapturedStderr();
 }
 
-TEST(Progress, PlainStyleIsALinePerFivePercent) {
+std::string ProgressText(ProgressStyle style, std::size_t total) {
+  return TextOfProgress(style, total, [&](Progress& progress) {
+    for (std::size_t i = 0; i < total; ++i) progress.Advance();
+  });
+}
+
+TEST(Progress, PlainStyleIsALinePerFivePercentAndQuietIsNone) {
   const std::string text = ProgressText(ProgressStyle::kPlain, 1000);
   EXPECT_EQ(LinesOf(text), 20U);
   EXPECT_THAT(text, HasSubstr("frames: 5 % (50 of 1000)"));
   EXPECT_THAT(text, HasSubstr("frames: 100 % (1000 of 1000)"));
-}
-
-TEST(Progress, OutsideATerminalAutoIsPlain) {
-  EXPECT_EQ(LinesOf(ProgressText(ProgressStyle::kAuto, 40)), 20U);
+  EXPECT_EQ(LinesOf(ProgressText(ProgressStyle::kAuto, 40)), 20U) << "outside a terminal";
+  EXPECT_EQ(ProgressText(ProgressStyle::kQuiet, 100), "");
 }
 
 TEST(Progress, JsonIsOneObjectALineUpToTheTotal) {
   const std::string text = ProgressText(ProgressStyle::kJson, 4);
   std::istringstream lines(text);
-  std::string line;
-  int count = 0;
-  while (std::getline(lines, line)) {
-    ++count;
+  for (std::string line; std::getline(lines, line);)
     EXPECT_THAT(line, testing::MatchesRegex("\\{\"label\":\"frames\",\"done\":[0-9]+,\"total\":4,"
                                             "\"elapsed_s\":[0-9.]+,\"eta_s\":[0-9.]+\\}"));
-  }
-  EXPECT_EQ(count, 4);
+  EXPECT_EQ(LinesOf(text), 4U);
   EXPECT_THAT(text, HasSubstr("\"done\":4"));
-}
-
-TEST(Progress, SkippedWorkSaysNothingAboutTheSpeed) {
-  testing::internal::CaptureStderr();
-  {
-    Progress progress("frames", 4, ProgressStyle::kJson);
-    progress.Skip(2);
-  }
-  EXPECT_THAT(testing::internal::GetCapturedStderr(), HasSubstr("\"done\":2,\"total\":4"));
+  EXPECT_THAT(TextOfProgress(ProgressStyle::kJson, 4, [](Progress& progress) { progress.Skip(2); }),
+              HasSubstr("\"done\":2,\"total\":4"))
+      << "skipped work";
 }
 
 std::string TextOfOneUnit(ProgressStyle style) {
-  testing::internal::CaptureStderr();
-  {
-    Progress progress("frames", 2, style);
-    progress.Prepare("terrain");
-    progress.Prepare("mesh");
-    progress.Prepare("terrain");
+  return TextOfProgress(style, 2, [](Progress& progress) {
+    for (const char* step : {"terrain", "mesh", "terrain"}) progress.Prepare(step);
     for (int quarter = 1; quarter <= 4; ++quarter) progress.Part(0.25 * quarter);
     progress.Advance();
-  }
-  return testing::internal::GetCapturedStderr();
+  });
 }
 
-TEST(Progress, ALongUnitTellsWhatIsPreparedAndHowMuchOfItIsDone) {
+TEST(Progress, ALongUnitSaysWhatIsPreparedAndHowMuchIsDone) {
   const std::string json = TextOfOneUnit(ProgressStyle::kJson);
   EXPECT_THAT(json, HasSubstr("{\"label\":\"frames\",\"step\":\"mesh\",\"elapsed_s\":"));
   EXPECT_THAT(json, HasSubstr("{\"label\":\"frames\",\"done\":0,\"part\":0.250,\"total\":2,"));
@@ -435,22 +392,14 @@ TEST(Progress, StepsAreNamedOnceAndShortUnitsKeepToTheirLine) {
 }
 
 TEST(Progress, PartsOfUnitsNeverGoBack) {
-  testing::internal::CaptureStderr();
-  {
-    Progress progress("frames", 1, ProgressStyle::kJson);
-    progress.Part(0.5);
-    progress.Part(0.25);  // from a thread that was held up
-    progress.Part(0.75);
-  }
-  EXPECT_EQ(LinesOf(testing::internal::GetCapturedStderr()), 2U);
+  const std::string text = TextOfProgress(ProgressStyle::kJson, 1, [](Progress& progress) {
+    for (const double part : {0.5, 0.25, 0.75}) progress.Part(part);  // 0.25 of a thread held up
+  });
+  EXPECT_EQ(LinesOf(text), 2U);
 }
 
-TEST(Progress, QuietSaysNothing) { EXPECT_EQ(ProgressText(ProgressStyle::kQuiet, 100), ""); }
-
 TEST(Progress, AdvancesFromManyThreadsAreAllCounted) {
-  testing::internal::CaptureStderr();
-  {
-    Progress progress("frames", 400, ProgressStyle::kPlain);
+  const std::string text = TextOfProgress(ProgressStyle::kPlain, 400, [](Progress& progress) {
     std::vector<std::thread> threads;
     for (int t = 0; t < 4; ++t) {
       threads.emplace_back([&] {
@@ -458,8 +407,7 @@ TEST(Progress, AdvancesFromManyThreadsAreAllCounted) {
       });
     }
     for (std::thread& thread : threads) thread.join();
-  }
-  const std::string text = testing::internal::GetCapturedStderr();
+  });
   EXPECT_EQ(LinesOf(text), 20U);
   EXPECT_THAT(text, HasSubstr("100 % (400 of 400)"));
 }
@@ -551,12 +499,7 @@ TEST_F(GrowingFiles, ADiskThatIsFullLeavesWholeLines) {
 
 TEST_F(GrowingFiles, AFolderThatIsNotThereIsNamed) {
   const fs::path target = folder_ / "none" / "a.csv";
-  EXPECT_THROW(GrowingFile{target}, OutputError);
-  try {
-    GrowingFile{target};
-  } catch (const OutputError& error) {
-    EXPECT_THAT(error.what(), HasSubstr("none/a.csv"));
-  }
+  EXPECT_THAT(tests::FaultOf<OutputError>([&] { GrowingFile{target}; }), HasSubstr("none/a.csv"));
 }
 
 }  // namespace

@@ -17,14 +17,28 @@ constexpr double kNotTheDisk_cd_per_m2 = 1e8;
 
 Image Uniform(float luminance) {
   Image image(40, 40);
-  for (auto& pixel : image.rgb) pixel = {luminance, luminance, luminance};
+  for (auto& pixel : image.rgb) pixel.fill(luminance);
   return image;
+}
+
+double Metered(const Image& image) { return MeterEv100(image, kNotTheDisk_cd_per_m2); }
+
+/// Fills rows from `begin` to before `end`.
+void FillRows(Image& image, int begin, int end, float luminance) {
+  for (int y = begin; y < end; ++y) {
+    for (int x = 0; x < image.width; ++x) image.at(x, y).fill(luminance);
+  }
 }
 
 TEST(Exposure, Sunny16) {
   // f/16 at 1/100 s, ISO 100: EV 14.6; a grey card in full sun has 4096 cd/m^2 at EV 15.
-  EXPECT_NEAR(MeterEv100(Uniform(4096.0F), kNotTheDisk_cd_per_m2), 15.0, 0.04)
+  EXPECT_NEAR(Metered(Uniform(4096.0F)), 15.0, 0.04)
       << "log2(4096 * 100 / 12.5) = 15; the histogram has 16 bins a stop";
+  EXPECT_NEAR(Metered(Uniform(200.0F)) - Metered(Uniform(100.0F)), 1.0, 1e-12)
+      << "a stop is 16 bins exactly";
+  for (const float dark : {0.0F, -1.0F, 1e-7F})
+    EXPECT_EQ(Metered(Uniform(dark)), kDarkestEv100) << "the meter has limits";
+  EXPECT_EQ(Metered(Uniform(5e7F)), kBrightestEv100);
 }
 
 TEST(Exposure, SaturationIs1Point2TimesTwoToTheEv) {
@@ -32,73 +46,56 @@ TEST(Exposure, SaturationIs1Point2TimesTwoToTheEv) {
   EXPECT_DOUBLE_EQ(ExposureScale(15.0) * 1.2 * 32768.0, 1.0);
 }
 
-TEST(Exposure, OneStopMoreLightIsOneEv) {
-  const double once = MeterEv100(Uniform(100.0F), kNotTheDisk_cd_per_m2);
-  const double twice = MeterEv100(Uniform(200.0F), kNotTheDisk_cd_per_m2);
-  EXPECT_NEAR(twice - once, 1.0, 1e-12) << "a stop is 16 bins exactly";
-}
-
 TEST(Exposure, TheSunsDiskDoesNotCount) {
   Image image = Uniform(1000.0F);
-  const double without = MeterEv100(image, kNotTheDisk_cd_per_m2);
+  const double without = Metered(image);
   for (int y = 0; y < 10; ++y) {
     for (int x = 0; x < 20; ++x) image.at(x, y).fill(static_cast<float>(kSunDisk_cd_per_m2));
   }
-  EXPECT_DOUBLE_EQ(MeterEv100(image, kNotTheDisk_cd_per_m2), without);
+  EXPECT_DOUBLE_EQ(Metered(image), without);
+  FillRows(image, 10, 36, 0.0F);
+  EXPECT_DOUBLE_EQ(Metered(image), without) << "black space does not count either";
 }
 
 TEST(Exposure, DarkestAndBrightestPixelsHaveNoWeight) {
   Image image = Uniform(1000.0F);
-  const double uniform = MeterEv100(image, kNotTheDisk_cd_per_m2);
-  for (int x = 0; x < 40; ++x) {
-    for (int y = 0; y < 12; ++y) image.at(x, y).fill(0.01F);  // 30 % in deep shadow
-    image.at(x, 39).fill(1e6F);                               // 2.5 % of glare
-  }
-  EXPECT_DOUBLE_EQ(MeterEv100(image, kNotTheDisk_cd_per_m2), uniform);
-}
-
-TEST(Exposure, BlackSpaceDoesNotCount) {
-  Image image = Uniform(1000.0F);
-  const double uniform = MeterEv100(image, kNotTheDisk_cd_per_m2);
-  for (int x = 0; x < 40; ++x) {
-    for (int y = 0; y < 36; ++y) image.at(x, y).fill(0.0F);
-  }
-  EXPECT_DOUBLE_EQ(MeterEv100(image, kNotTheDisk_cd_per_m2), uniform);
+  const double uniform = Metered(image);
+  FillRows(image, 0, 12, 0.01F);  // 30 % in deep shadow
+  FillRows(image, 39, 40, 1e6F);  // 2.5 % of glare
+  EXPECT_DOUBLE_EQ(Metered(image), uniform);
 }
 
 // The lower rows of a picture are lit ground, the others have a luminance of their own.
 Image GroundUnder(float sky_cd_per_m2, int rows_of_ground) {
   Image image = Uniform(6000.0F);
-  for (int x = 0; x < 40; ++x) {
-    for (int y = 0; y < 40 - rows_of_ground; ++y) image.at(x, y).fill(sky_cd_per_m2);
-  }
+  FillRows(image, 0, 40 - rows_of_ground, sky_cd_per_m2);
   return image;
 }
 
 TEST(Exposure, SpaceDoesNotCountThoughSomeAirIsLeftInIt) {
   // From 100 km up the sky at noon has 0.003 to 0.1 cd/m^2, the ground 6000.
-  const double ground = MeterEv100(Uniform(6000.0F), kNotTheDisk_cd_per_m2);
+  const double ground = Metered(Uniform(6000.0F));
   for (const float sky : {0.003F, 0.1F}) {
-    EXPECT_DOUBLE_EQ(MeterEv100(GroundUnder(sky, 12), kNotTheDisk_cd_per_m2), ground) << sky;
+    EXPECT_DOUBLE_EQ(Metered(GroundUnder(sky, 12)), ground) << sky;
   }
 }
 
 TEST(Exposure, SunlitGroundBelowABlackSkyIsMeteredAtAllHeights) {
   // From 25 km up the sky at noon is 6 stops darker than the ground, from 40 km 8. Between shares
   // of 40 and 95 % 15 of 55 are sky until it counts less.
-  const double ground = MeterEv100(Uniform(6000.0F), kNotTheDisk_cd_per_m2);
+  const double ground = Metered(Uniform(6000.0F));
   for (double stops = 5.0; stops < 14.0; stops += 0.5) {
     const auto sky = static_cast<float>(6000.0 * std::exp2(-stops));
-    EXPECT_GT(MeterEv100(GroundUnder(sky, 18), kNotTheDisk_cd_per_m2), ground - 1.8) << stops;
+    EXPECT_GT(Metered(GroundUnder(sky, 18)), ground - 1.8) << stops;
   }
   const float from_40_km = 6000.0F / 512.0F;
-  EXPECT_NEAR(MeterEv100(GroundUnder(from_40_km, 20), kNotTheDisk_cd_per_m2), ground, 0.5);
+  EXPECT_NEAR(Metered(GroundUnder(from_40_km, 20)), ground, 0.5);
 }
 
 TEST(Exposure, ShadeOnTheGroundCounts) {
-  const double even = MeterEv100(Uniform(6000.0F), kNotTheDisk_cd_per_m2);
+  const double even = Metered(Uniform(6000.0F));
   // 70 % of the picture 3 stops darker: between shares of 40 and 95 % that is 30 of 55.
-  const double shaded = MeterEv100(GroundUnder(6000.0F / 8.0F, 12), kNotTheDisk_cd_per_m2);
+  const double shaded = Metered(GroundUnder(6000.0F / 8.0F, 12));
   EXPECT_NEAR(shaded, even + std::log2((25.0 + 30.0 / 8.0) / 55.0), 1.0 / 16.0)
       << "bins of a 16th of a stop";
 }
@@ -107,50 +104,46 @@ TEST(Exposure, LandThatGrowsDarkFasterThanTheSkyDoesNotOpenThePicture) {
   // As from sun at -14.5 degrees to -18: half of the picture loses 2 stops, the sky a third of one.
   const auto sky_shown = [](float sky, float land) {
     Image image = Uniform(sky);
-    for (int x = 0; x < 40; ++x)
-      for (int y = 0; y < 20; ++y) image.at(x, y).fill(land);
-    return std::log2(double{sky}) - MeterEv100(image, kNotTheDisk_cd_per_m2);
+    FillRows(image, 0, 20, land);
+    return std::log2(double{sky}) - Metered(image);
   };
   const double before = sky_shown(9e-4F, 9e-5F), after = sky_shown(7e-4F, 2.2e-5F);
   EXPECT_LT(after - before, 0.12) << "land is a tenth of what is weighed, and a tenth as bright";
 }
 
 TEST(Exposure, WhatTheSunLightsIsNoBrighterThanPaperBesideAGreyCard) {
-  const double even = MeterEv100(Uniform(6000.0F), kNotTheDisk_cd_per_m2);
+  const double even = Metered(Uniform(6000.0F));
   // A tenth of the picture in the sun, the rest 5 stops darker: the mean alone would be 4.5 lower.
-  EXPECT_NEAR(MeterEv100(GroundUnder(6000.0F / 32.0F, 4), kNotTheDisk_cd_per_m2),
-              even - std::log2(0.90 / 0.18), 1.0 / 16.0);
+  EXPECT_NEAR(Metered(GroundUnder(6000.0F / 32.0F, 4)), even - std::log2(0.90 / 0.18), 1.0 / 16.0);
 }
 
 TEST(Exposure, LampsDoNotCount) {
   for (const float dusk : {300.0F, 3.0F, 0.03F}) {
-    const double without = MeterEv100(Uniform(dusk), kNotTheDisk_cd_per_m2);
+    const double without = Metered(Uniform(dusk));
     Image lamps = Uniform(dusk);
     for (int x = 0; x < 40; ++x) lamps.at(x, 20).fill(x % 2 == 0 ? 2e5F : 50.0F * dusk);
-    EXPECT_NEAR(MeterEv100(lamps, kNotTheDisk_cd_per_m2), without, 1.0 / 16.0)
+    EXPECT_NEAR(Metered(lamps), without, 1.0 / 16.0)
         << dusk << " cd/m^2: 40 of 1600 pixels are lamps and what they light";
   }
 }
 
 TEST(Exposure, ASkyThatTurnsBlackMovesTheMeterWithoutAJump) {
-  double before = MeterEv100(GroundUnder(100.0F, 18), kNotTheDisk_cd_per_m2);
+  double before = Metered(GroundUnder(100.0F, 18));
   for (double stops = 0.0; stops < 14.0; stops += 0.0625) {
     const auto sky = static_cast<float>(100.0 * std::exp2(-stops));
-    const double now = MeterEv100(GroundUnder(sky, 18), kNotTheDisk_cd_per_m2);
+    const double now = Metered(GroundUnder(sky, 18));
     EXPECT_NEAR(now, before, 0.2)
         << "the sky fades by a 16th of a stop from picture to picture; a cut would be 4 stops";
     before = now;
   }
 }
 
-// All pixels of a row of sky are as bright: they come into a class of the meter's together.
+// All pixels of a row of sky are as bright: they enter a class of the meter together.
 TEST(Exposure, LightThatFadesEvenlyIsFollowedEvenly) {
   constexpr double kStep_ev = 0.13;  // of a minute of dusk
   Image dusk(48, 27);
-  for (int y = 0; y < dusk.height; ++y) {
-    const auto glow = static_cast<float>(std::exp2(-0.35 * y));
-    for (int x = 0; x < dusk.width; ++x) dusk.at(x, y) = {glow, glow, glow};
-  }
+  for (int y = 0; y < dusk.height; ++y)
+    FillRows(dusk, y, y + 1, static_cast<float>(std::exp2(-0.35 * y)));
   double before = MeterEv100(dusk, kSunDiskLuminance_cd_per_m2);
   for (int minute = 1; minute <= 20; ++minute) {
     for (auto& rgb : dusk.rgb)
@@ -164,17 +157,14 @@ TEST(Exposure, LightThatFadesEvenlyIsFollowedEvenly) {
 TEST(Exposure, RowsOfAPanoramaCountAsTheirSolidAngle) {
   // Beyond 30 degrees of latitude lies half of the sphere, on two thirds of the rows.
   Image panorama(8, 96), half(8, 96);
-  for (int x = 0; x < 8; ++x) {
-    for (int y = 0; y < 96; ++y) {
-      panorama.at(x, y).fill(y < 32 || y >= 64 ? 100.0F : 1000.0F);
-      half.at(x, y).fill(y < 48 ? 100.0F : 1000.0F);
-    }
-  }
+  FillRows(panorama, 0, 96, 100.0F);
+  FillRows(panorama, 32, 64, 1000.0F);
+  FillRows(half, 0, 48, 100.0F);
+  FillRows(half, 48, 96, 1000.0F);
   EXPECT_NEAR(MeterEv100(panorama, kNotTheDisk_cd_per_m2, Projection::kLatitudeLongitude),
-              MeterEv100(half, kNotTheDisk_cd_per_m2), 1e-3)
+              Metered(half), 1e-3)
       << "rows of 2 degrees are taken at their middles";
-  EXPECT_LT(MeterEv100(panorama, kNotTheDisk_cd_per_m2),
-            MeterEv100(half, kNotTheDisk_cd_per_m2) - 0.5)
+  EXPECT_LT(Metered(panorama), Metered(half) - 0.5)
       << "as a picture of a camera two thirds are dark";
 }
 
@@ -184,10 +174,8 @@ TEST(Exposure, FromNightToDayTheMeterFollowsTheLight) {
   for (double stop = -6.0; stop < 16.0; stop += 1.0 / 16.0) {
     const auto bright = static_cast<float>(1.001 * std::exp2(stop));
     Image image = Uniform(bright / 256.0F);
-    for (int x = 0; x < 40; ++x) {
-      for (int y = 36; y < 40; ++y) image.at(x, y).fill(bright);
-    }
-    const double now = MeterEv100(image, kNotTheDisk_cd_per_m2);
+    FillRows(image, 36, 40, bright);
+    const double now = Metered(image);
     if (stop > -6.0) {
       EXPECT_NEAR(now, before + 1.0 / 16.0, 1e-3) << "a bin of the histogram at " << stop;
     }
@@ -200,14 +188,7 @@ TEST(Exposure, TheRuleOfTheMeterIsSaidInWords) {
   EXPECT_NE(MeterRule().find("over 1e+06 cd/m^2"), std::string::npos) << MeterRule();
 }
 
-TEST(Exposure, TheMeterHasLimits) {
-  EXPECT_EQ(MeterEv100(Uniform(0.0F), kNotTheDisk_cd_per_m2), kDarkestEv100);
-  EXPECT_EQ(MeterEv100(Uniform(-1.0F), kNotTheDisk_cd_per_m2), kDarkestEv100);
-  EXPECT_EQ(MeterEv100(Uniform(1e-7F), kNotTheDisk_cd_per_m2), kDarkestEv100);
-  EXPECT_EQ(MeterEv100(Uniform(5e7F), kNotTheDisk_cd_per_m2), kBrightestEv100);
-}
-
-// What is so many stops over what EV 12 prints as grey.
+// Returns light some stops over what EV 12 prints as grey.
 std::array<float, 3> At(double stops) {
   const auto y = static_cast<float>(0.125 * std::exp2(12.0 + stops));
   return {y, y, y};

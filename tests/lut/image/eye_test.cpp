@@ -16,7 +16,7 @@ namespace {
 
 constexpr double kRodEfficiency = 683.002 / 1700.0;
 
-// The two equations of MES2 as they stand in the publication.
+// These are the two equations of MES2 as they stand in the publication.
 double Unsolved(double m, double photopic, double scotopic) {
   const double luminance =
       (m * photopic + (1.0 - m) * scotopic * kRodEfficiency) / (m + (1.0 - m) * kRodEfficiency);
@@ -35,7 +35,7 @@ TEST(NightVision, IsPhotopicByDayAndScotopicInTheDark) {
   EXPECT_EQ(MesopicLightOf(0.0, 0.0).luminance_cd_per_m2, 0.0);
 }
 
-TEST(NightVision, SolvesTheEquationsOfTheSystemAndTheyHaveOneSolution) {
+TEST(NightVision, SolvesTheEquationsWhichHaveOneSolution) {
   for (const double ratio : {0.25, 0.5, 1.0, 2.5, 5.0}) {
     for (double stop = -12.0; stop < 4.0; stop += 0.25) {
       const double photopic = std::exp2(stop);
@@ -125,7 +125,7 @@ TEST(EyeAdaptation, FollowsMoreLightAndDuskWithoutALag) {
     EXPECT_EQ(eye.Follow(ev100, 60.0), ev100) << "half an EV a minute";
 }
 
-// From daylight to the light of a total eclipse within a minute.
+// Light falls from daylight to that of a total eclipse within a minute.
 TEST(EyeAdaptation, LagsBehindLightThatFallsFasterThanRodsRegenerate) {
   EyeAdaptation eye;
   (void)eye.Follow(13.0, 0.0);
@@ -149,7 +149,7 @@ double MeanOf(const Image& image) {
   return sum / static_cast<double>(image.rgb.size());
 }
 
-/// Upright bars of full contrast, `period` pixels from one to the next.
+/// Returns upright bars of full contrast, `period` pixels from one to the next.
 Image Grating(double mean, double period) {
   Image image(240, 24);
   for (int y = 0; y < image.height; ++y) {
@@ -231,8 +231,6 @@ TEST(Acuity, PicturesOfOnePixelOrOneRowAreSeen) {
   }
 }
 
-constexpr double kGlarePixel_rad = 0.05 * kRadiansPerDegree;
-
 TEST(Glare, SpreadsAllLightOverTheHemisphere) {
   double sum = 0.0;
   // Steps even in the logarithm, from a thousandth of the core's width.
@@ -251,13 +249,13 @@ TEST(Glare, IsTheSumOverAllPixels) {
       image.at(x, y) = {static_cast<float>(x), static_cast<float>(y + 1), 2.0F};
   }
   image.at(4, 6) = {3e5F, 2e5F, 1e5F};
-  const Image seen = WithGlareOfEye(image, kGlarePixel_rad);
+  const Image seen = WithGlareOfEye(image, kPixel_rad);
   // What a pixel keeps: all that it does not send to the torus of 32 x 32.
   double sent = 0.0;
   for (int v = -15; v <= 16; ++v) {
     for (int u = -15; u <= 16; ++u) {
       if (u != 0 || v != 0)
-        sent += GlareOfEye(kGlarePixel_rad * std::hypot(u, v)) * kGlarePixel_rad * kGlarePixel_rad;
+        sent += GlareOfEye(kPixel_rad * std::hypot(u, v)) * kPixel_rad * kPixel_rad;
     }
   }
   for (int y = 0; y < image.height; ++y) {
@@ -267,8 +265,8 @@ TEST(Glare, IsTheSumOverAllPixels) {
         for (int v = 0; v < image.height; ++v) {
           for (int u = 0; u < image.width; ++u) {
             if (u == x && v == y) continue;
-            sum += GlareOfEye(kGlarePixel_rad * std::hypot(u - x, v - y)) * kGlarePixel_rad *
-                   kGlarePixel_rad * static_cast<double>(image.at(u, v).at(c));
+            sum += GlareOfEye(kPixel_rad * std::hypot(u - x, v - y)) * kPixel_rad * kPixel_rad *
+                   static_cast<double>(image.at(u, v).at(c));
           }
         }
         EXPECT_NEAR(static_cast<double>(seen.at(x, y).at(c)) / sum, 1.0, 1e-6) << x << " " << y;
@@ -287,7 +285,7 @@ TEST(Glare, OfASunOnABlackSkyFallsAsTheSquareOfTheAngleFarFromIt) {
 }
 
 TEST(Glare, LeavesDarknessDark) {
-  const Image seen = WithGlareOfEye(Image(17, 5), kGlarePixel_rad);
+  const Image seen = WithGlareOfEye(Image(17, 5), kPixel_rad);
   for (const auto& pixel : seen.rgb) EXPECT_EQ(pixel[1], 0.0F);
 }
 

@@ -17,6 +17,7 @@
 #include "lut/image/development.h"
 #include "lut/image/look.h"
 #include "lut/layer.h"
+#include "tests/fixtures/fault_of.h"
 #include "tests/fixtures/temporary_folder.h"
 
 namespace alpenglow::lut {
@@ -70,32 +71,26 @@ TEST_F(ExrFile, ReturnsEveryBitOfPixelsLayersAndMetadata) {
 TEST_F(ExrFile, APictureWithAValueThatIsNotFiniteIsNotWritten) {
   constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
   constexpr float kInfinite = std::numeric_limits<float>::infinity();
-  const auto fault_of = [&](const Image& image) -> std::string {
-    try {
-      WriteExr(folder_ / "a.exr", image, kMetadata);
-    } catch (const InternalError& fault) {
-      return fault.what();
-    }
-    return "none";
+  const auto fault_of = [&](const auto& change) {
+    Image image = TestImage();
+    change(image);
+    return tests::FaultOf<InternalError>([&] { WriteExr(folder_ / "a.exr", image, kMetadata); });
   };
-  Image image = TestImage();
-  image.at(3, 4)[1] = kNan;
-  EXPECT_NE(fault_of(image).find("a.exr is not written: pixel (3, 4) of layer G is nan"),
-            std::string::npos)
-      << fault_of(image);
-  image = TestImage();
-  image.at(0, 1)[2] = kInfinite;
-  EXPECT_NE(fault_of(image).find("pixel (0, 1) of layer B is inf"), std::string::npos);
-  image = TestImage();
-  image.layers[0].values[5] = kNan;
-  EXPECT_NE(fault_of(image).find("pixel (5, 0) of layer depth.Z is nan"), std::string::npos);
-  image.layers[0].name = "normal.Z";
-  image.layers[0].values[5] = 0.0F;
-  EXPECT_NE(fault_of(image).find("of layer normal.Z is inf"), std::string::npos)
+  EXPECT_THAT(fault_of([](Image& image) { image.at(3, 4)[1] = kNan; }),
+              HasSubstr("a.exr is not written: pixel (3, 4) of layer G is nan"));
+  EXPECT_THAT(fault_of([](Image& image) { image.at(0, 1)[2] = kInfinite; }),
+              HasSubstr("pixel (0, 1) of layer B is inf"));
+  EXPECT_THAT(fault_of([](Image& image) { image.layers[0].values[5] = kNan; }),
+              HasSubstr("pixel (5, 0) of layer depth.Z is nan"));
+  EXPECT_THAT(fault_of([](Image& image) { image.layers[0].name = "normal.Z"; }),
+              HasSubstr("of layer normal.Z is inf"))
       << "only distances are infinite where there is nothing";
   EXPECT_EQ(FileCount(), 0U) << "nothing is left, under no name";
-  for (float& value : image.layers[0].values) value = -0.5F;
-  EXPECT_EQ(fault_of(image), "none") << "a ceiling looks down";
+  const std::string of_ceiling = fault_of([](Image& image) {
+    image.layers[0].name = "normal.Z";
+    for (float& value : image.layers[0].values) value = -0.5F;
+  });
+  EXPECT_EQ(of_ceiling, "no fault") << "a ceiling looks down";
 }
 
 // Hard case 44.
@@ -113,12 +108,8 @@ TEST_F(ExrFile, EveryTruncationIsRefused) {
   const std::string whole = ContentOf(folder_ / "a.exr");
   for (std::size_t size = 0; size < whole.size(); size += 1 + whole.size() / 60) {
     WriteText(folder_ / "cut.exr", whole.substr(0, size));
-    try {
-      (void)ReadExr(folder_ / "cut.exr");
-      FAIL() << size << " of " << whole.size() << " bytes were accepted";
-    } catch (const InputError& error) {
-      EXPECT_THAT(error.what(), HasSubstr("cut.exr"));
-    }
+    EXPECT_THAT(tests::FaultOf([&] { return ReadExr(folder_ / "cut.exr"); }), HasSubstr("cut.exr"))
+        << size << " of " << whole.size() << " bytes";
   }
 }
 
@@ -138,21 +129,14 @@ TEST_F(ExrFile, MissingForeignAndChannelLessFilesAreRefused) {
     output.setFrameBuffer(buffer);
     output.writePixels(4);
   }
-  try {
-    (void)ReadExr(folder_ / "red.exr");
-    FAIL() << "a picture without green was accepted";
-  } catch (const InputError& error) {
-    EXPECT_THAT(error.what(), HasSubstr("channel G is missing"));
-  }
+  EXPECT_THAT(tests::FaultOf([&] { return ReadExr(folder_ / "red.exr"); }),
+              HasSubstr("channel G is missing"));
 }
 
 TEST_F(ExrFile, AMissingFolderIsAnOutputError) {
-  try {
-    WriteExr(folder_ / "none" / "a.exr", TestImage(), {});
-    FAIL() << "a folder was made up";
-  } catch (const OutputError& error) {
-    EXPECT_THAT(error.what(), HasSubstr((folder_ / "none" / "a.exr").string()));
-  }
+  const fs::path file = folder_ / "none" / "a.exr";
+  EXPECT_THAT(tests::FaultOf<OutputError>([&] { WriteExr(file, TestImage(), {}); }),
+              HasSubstr(file.string()));
 }
 
 // Hard case 46.
@@ -235,17 +219,9 @@ TEST(Develop, ASlowGradientHasNoBands) {
   }
 }
 
-TEST(Develop, IsTheSameInEveryRun) {
-  const Image image = Grey(97, 41, 123.0F);
-  EXPECT_EQ(Develop(image, 7.0, ToneCurve::kAgx).rgb, Develop(image, 7.0, ToneCurve::kAgx).rgb);
-}
-
-TEST(Develop, BlackStaysBlack) {
+TEST(Develop, BlackStaysBlackAndAPixelThatIsNoNumberIsAFault) {
   const DisplayImage display = Develop(Grey(64, 64, 0.0F), 10.0, ToneCurve::kAgx);
   EXPECT_EQ(display.rgb, std::vector<std::uint8_t>(64 * 64 * 3, 0));
-}
-
-TEST(Develop, APixelThatIsNoNumberIsAFault) {
   Image image = Grey(4, 4, 1.0F);
   image.at(2, 1)[1] = std::numeric_limits<float>::quiet_NaN();
   EXPECT_THROW((void)Develop(image, 0.0, ToneCurve::kAgx), InternalError);
@@ -270,9 +246,10 @@ TEST(Dither, NeighboursDifferAsInBlueNoise) {
   EXPECT_GT(sum / 4096.0 / 4096.0, 0.37);
 }
 
-// Faint vertical stripes in an even sky, 2026-11-21: columns of the one tile stood over each other.
+// Fixed on 2026-11-21: an even sky had faint vertical stripes, because columns of the one tile stood
+// over each other.
 // Hard case 35.
-TEST(Dither, ColumnsOfAnEvenPictureAreAsEvenAsIfEveryPixelHadItsOwnNoise) {
+TEST(Dither, ColumnsOfAnEvenPictureAreEven) {
   constexpr int kWidth = 320;
   constexpr int kHeight = 704;
   double sum = 0.0;
@@ -326,8 +303,10 @@ TEST_F(ExrFile, PicturesAreInFloatsAndHoldTheSunsDisk) {
 constexpr std::array<float, 3> kSky{3000.0F, 6000.0F, 12000.0F};
 constexpr float kDisk = 1e9F, kWhite = 4e4F;
 
-/// The share of a pixel that a disk in the middle of a picture covers, by 32x32 rays.
+/// Returns the share of a pixel that a disk in the middle of a picture covers, by 32x32 rays.
 float CoveredShare(int x, int y, double middle, double radius) {
+  const double away = std::hypot(x + 0.5 - middle, y + 0.5 - middle) - radius;
+  if (std::abs(away) > 0.75) return away < 0.0 ? 1.0F : 0.0F;  // half a diagonal is 0.71
   constexpr int kRays = 32;
   int covered = 0;
   for (int j = 0; j < kRays; ++j) {
@@ -339,7 +318,7 @@ float CoveredShare(int x, int y, double middle, double radius) {
   return static_cast<float>(covered) / (kRays * kRays);
 }
 
-/// A white disk before a sky; every pixel is the mean of its light.
+/// Returns a white disk before a sky. Every pixel is the mean of its light.
 Image DiskBeforeSky(int side, double radius) {
   Image image(side, side);
   for (int y = 0; y < side; ++y) {
@@ -371,7 +350,7 @@ TEST(ClippedEdge, APixelIsTheMixtureOfDiskAndSkyThatItCovers) {
   }
 }
 
-TEST(ClippedEdge, BesideADiskThatARidgeCutsIsTheLandAlongTheRidgeAndTheSkyElsewhere) {
+TEST(ClippedEdge, BesideADiskAreLandAlongARidgeAndSkyElsewhere) {
   constexpr std::array<float, 3> kLand{400.0F, 300.0F, 200.0F};
   constexpr int kRidge = 18;  // land from this row on, which is half in the sky
   Image image = DiskBeforeSky(32, 9.0);
@@ -437,7 +416,8 @@ TEST(ClippedEdge, ADisksEdgeIsSmoothOnTheDisplay) {
   EXPECT_EQ(between, partly) << "none of them is as white as the disk, none as blue as the sky";
 }
 
-// The aureole is as bright at the disk as a share of white, `fades_in` pixels farther out a third of that.
+// The aureole is as bright at the disk as a share of white, and a third of that `fades_in` pixels
+// farther out.
 Image DiskInAnAureole(double radius, float of_white, double fades_in) {
   Image image = DiskBeforeSky(32, radius);
   for (int y = 0; y < 32; ++y) {
@@ -451,8 +431,8 @@ Image DiskInAnAureole(double radius, float of_white, double fades_in) {
   return image;
 }
 
-// The curve is stood for by its clipping. A ring would be a third darker: what lies three pixels
-// behind. The sky under a sun that sets fades in four pixels of a wide picture.
+// Clipping stands for the curve. A ring would be a third darker, like what lies three pixels behind.
+// The sky under a sun that sets fades in four pixels of a wide picture.
 TEST(ClippedEdge, ASteepAureoleHasNoDarkRingAtTheDisk) {
   constexpr double kRadius = 2.5;
   for (const double fades_in : {6.0, 4.0}) {

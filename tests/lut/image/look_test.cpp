@@ -31,7 +31,7 @@ TEST(Look, IncidentMeterReadsTheSunnySixteenRule) {
   EXPECT_EQ(IncidentEv100(1e12), kBrightestEv100);
 }
 
-// Linear display light of what the meter took for middle grey.
+// Returns linear display light of what the meter took for middle grey.
 double GreyOnTheDisplay(double metered_ev100, double ev100, const Look& look) {
   const double grey = kMeterConstant / 100.0 * std::exp2(metered_ev100);
   return DisplayLight(look.curve, {grey, grey, grey}, ExposureScale(ev100), look.agx)[1];
@@ -66,7 +66,7 @@ TEST(Look, ToTheEyeLightThatFalls20PercentIsShown7PercentDarker) {
   }
 }
 
-// Metered at noon, under a full moon, and under stars alone [EV].
+// The meter reads these values at noon, under a full moon, and under stars alone [EV].
 constexpr double kNoonEv100 = 15.0, kFullMoonEv100 = -3.0, kStarlightEv100 = -9.0;
 
 TEST(Look, ACameraPrintsAFullMoonFourStopsDarkerAndStarsSix) {

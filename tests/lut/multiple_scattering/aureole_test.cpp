@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Aerosol in the presets of the earth makes the sky about the sun bright.
 #include <gtest/gtest.h>
 
 #include <array>

@@ -1,4 +1,12 @@
 // SPDX-License-Identifier: MIT
+// Light of the twilight sky is compared with the published illuminances of the U.S. Naval Observatory
+// (Brown 1952; shared/tables), average clear sky at sea level. Skies of Mars have the colours that
+// people see: butterscotch by day, a blue glow around the setting sun.
+//
+// Deep twilight is light scattered at 20 to 80 km, where the air is thinner than an exponential of
+// 8 km says: by a factor of 2 at 40 km in the U.S. Standard Atmosphere 1976. With the scale height
+// that the standard atmosphere has there, and the same column, illuminance is right within a quarter
+// from sunset to the end of nautical twilight. With 8 km it is twice too bright from -6 degrees on.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -108,7 +116,7 @@ TEST(Twilight, IsAsBrightAsPublished) {
   }
 }
 
-TEST(Twilight, OfOneExponentialOfEightKilometresIsTooBrightForItsAirIsTooDenseHighUp) {
+TEST(Twilight, OfOneExponentialIsTooBrightBecauseAirIsTooDenseHighUp) {
   if (PublishedLux().empty()) GTEST_SKIP() << "../shared/tables is not here";
   const double height_m = 8000.0;
   const double too_dense = std::exp(-40e3 / height_m) / DensityAt40Km();

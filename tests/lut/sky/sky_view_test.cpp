@@ -8,7 +8,8 @@
 
 #include "atmosphere/base/error.h"
 #include "atmosphere/colour/spectrum.h"
-#include "tests/fixtures/sanitized.h"
+#include "tests/fixtures/bands_near.h"
+#include "tests/fixtures/lit_air.h"
 #include "tests/fixtures/sky_view_errors.h"
 #include "tests/fixtures/small_light.h"
 
@@ -18,28 +19,23 @@ namespace {
 constexpr double kAltitudes_m[] = {0.0, 2.0, 1500.0, 10e3, 40e3, 400e3};
 constexpr double kElevations_deg[] = {90.0, 60.0, 10.0, 1.0, -1.0, -4.0, -10.0};
 
-/// The default atmosphere, its light of higher orders solved once.
-struct Air {
-  Medium medium = MediumPreset("earth");
-  SingleScattering<float> air{medium};
-  MultipleScattering multiple_scattering{medium};
-  DirectSky direct{medium, multiple_scattering};
-
-  static const Air& Earth() {
-    static const Air air;
-    return air;
-  }
-  [[nodiscard]] SkyView View(double altitude_m, double elevation_deg) const {
-    return SkyView(air, multiple_scattering, altitude_m, Sine(elevation_deg));
-  }
-  static double Sine(double degrees) { return std::sin(degrees * kRadiansPerDegree); }
-};
-
 double Degrees(double degrees) { return degrees * kRadiansPerDegree; }
+double Sine(double degrees) { return std::sin(Degrees(degrees)); }
+
+/// Returns the sky of the default atmosphere under a sun at an elevation.
+SkyView ViewOfEarth(double altitude_m, double elevation_deg) {
+  return SkyView(tests::Earth().air, tests::Earth().multiple_scattering, altitude_m,
+                 Sine(elevation_deg));
+}
+
+const DirectSky& DirectSkyOfEarth() {
+  static const DirectSky direct(tests::Earth().medium, tests::Earth().multiple_scattering);
+  return direct;
+}
 
 TEST(SkyViewMap, CoordinatesAndAnglesAreInverse) {
   for (const double altitude_m : kAltitudes_m) {
-    const SkyViewMap map(MediumPreset("earth"), altitude_m, Air::Sine(-4.0));
+    const SkyViewMap map(MediumPreset("earth"), altitude_m, Sine(-4.0));
     for (double v = 0.0; v <= 1.0; v += 1.0 / 64.0) {
       // At the air's upper edge the angle is quadratic in v: 1e-16 of it are 1e-8 of v.
       EXPECT_NEAR(map.SkyCoordinate(map.SkyZenithAngle(v)), v, map.sees_upper_edge() ? 1e-7 : 1e-9)
@@ -67,13 +63,13 @@ TEST(SkyViewMap, TheHorizonIsWhereRaysBeginToMeetTheGround) {
 }
 
 TEST(SkyView, ErrorsStayBelowThreePerMilleInTheMean) {
-  constexpr int kDirections = tests::ScaledDown(300, 60);
-  const Air& earth = Air::Earth();
+  constexpr int kDirections = 100;
+
   for (const double altitude_m : kAltitudes_m) {
     for (const double elevation_deg : kElevations_deg) {
-      const SkyView view = earth.View(altitude_m, elevation_deg);
+      const SkyView view = ViewOfEarth(altitude_m, elevation_deg);
       const SkyViewErrors errors =
-          ErrorsOf(view, earth.direct, altitude_m, Air::Sine(elevation_deg), kDirections);
+          ErrorsOf(view, DirectSkyOfEarth(), altitude_m, Sine(elevation_deg), kDirections);
       EXPECT_LT(errors.Rms(), 0.003) << altitude_m << " m, sun at " << elevation_deg;
       EXPECT_LT(errors.Percentile(95.0), 0.006) << altitude_m << " m, sun at " << elevation_deg;
     }
@@ -87,9 +83,9 @@ TEST(SkyView, OfHazeIsAsRight) {
   const DirectSky direct(medium, multiple_scattering);
   for (const double altitude_m : {2.0, 10e3}) {
     for (const double elevation_deg : {60.0, 1.0, -4.0}) {
-      const double mu_s = Air::Sine(elevation_deg);
+      const double mu_s = Sine(elevation_deg);
       const SkyView view(air, multiple_scattering, altitude_m, mu_s);
-      EXPECT_LT(ErrorsOf(view, direct, altitude_m, mu_s, 300).Rms(), 0.003)
+      EXPECT_LT(ErrorsOf(view, direct, altitude_m, mu_s, 100).Rms(), 0.003)
           << altitude_m << " m, sun at " << elevation_deg;
     }
   }
@@ -97,18 +93,18 @@ TEST(SkyView, OfHazeIsAsRight) {
 
 // Hard case 7.
 TEST(SkyView, HasNoStripeAtTheHorizon) {
-  const Air& earth = Air::Earth();
   for (const double altitude_m : {2.0, 10e3, 400e3}) {
     for (const double elevation_deg : {10.0, 1.0, -4.0}) {
-      const SkyView view = earth.View(altitude_m, elevation_deg);
-      const double mu_s = Air::Sine(elevation_deg);
-      for (double from_horizon_deg = -0.5; from_horizon_deg < 0.5; from_horizon_deg += 0.043) {
-        const double zenith = view.map().horizon_zenith_angle_rad() + Degrees(from_horizon_deg);
-        const double nu = std::cos(zenith) * mu_s +
-                          std::sin(zenith) * std::sqrt(1.0 - mu_s * mu_s) * std::cos(0.8);
-        const double exact = earth.direct.Radiance({altitude_m, std::cos(zenith), mu_s, nu})[1];
-        EXPECT_NEAR(view.Radiance(zenith, 0.8)[1], exact, 0.006 * exact)
-            << altitude_m << " m, sun at " << elevation_deg << ", " << from_horizon_deg;
+      const SkyView view = ViewOfEarth(altitude_m, elevation_deg);
+      std::vector<double> from_horizon_deg{-6e-5, 6e-5};
+      for (double at = -0.5; at < 0.5; at += 0.043) from_horizon_deg.push_back(at);
+      for (const double degrees : from_horizon_deg) {
+        const double zenith = view.map().horizon_zenith_angle_rad() + Degrees(degrees);
+        const auto exact =
+            DirectSkyOfEarth().Radiance(SkyRay(altitude_m, zenith, Sine(elevation_deg), 0.8));
+        const bool is_edge = std::abs(degrees) < 1e-4 && elevation_deg == 10.0;
+        EXPECT_TRUE(tests::BandsNear(view.Radiance(zenith, 0.8), exact, is_edge ? 0.003 : 0.006))
+            << altitude_m << " m, sun at " << elevation_deg << ", " << degrees;
       }
     }
   }
@@ -116,10 +112,9 @@ TEST(SkyView, HasNoStripeAtTheHorizon) {
 
 // Hard case 23.
 TEST(SkyView, IsFiniteAndNotNegativeEverywhere) {
-  const Air& earth = Air::Earth();
   for (const double altitude_m : {-400.0, 0.0, 119999.0, 120001.0, 36e6, 1e9}) {
     for (const double elevation_deg : {90.0, 0.0, -6.0, -18.0, -60.0, -90.0}) {
-      const SkyView view = earth.View(altitude_m, elevation_deg);
+      const SkyView view = ViewOfEarth(altitude_m, elevation_deg);
       for (int i = 1; i <= 200; ++i) {
         const Bands<float> light = view.Radiance(kPi * Halton(i, 2), 2.0 * kPi * Halton(i, 3));
         for (std::size_t band = 0; band < light.count; ++band) {
@@ -133,7 +128,7 @@ TEST(SkyView, IsFiniteAndNotNegativeEverywhere) {
 
 // Hard case 10.
 TEST(SkyView, ZenithAndNadirDoNotKnowTheAzimuth) {
-  const SkyView view = Air::Earth().View(10e3, 20.0);
+  const SkyView view = ViewOfEarth(10e3, 20.0);
   for (const double zenith : {0.0, kPi}) {
     const double towards = view.Radiance(zenith, 0.0)[1];
     EXPECT_NEAR(view.Radiance(zenith, 2.0)[1], towards, 1e-5 * towards) << "float";
@@ -143,7 +138,7 @@ TEST(SkyView, ZenithAndNadirDoNotKnowTheAzimuth) {
 
 // Hard case 37.
 TEST(SkyView, IsTheSameOnBothSidesOfTheSunAndWithoutASeam) {
-  const SkyView view = Air::Earth().View(2.0, -3.0);
+  const SkyView view = ViewOfEarth(2.0, -3.0);
   for (const double zenith : {0.3, 1.2, 1.55, 2.0}) {
     EXPECT_EQ(view.Radiance(zenith, 1.0)[2], view.Radiance(zenith, -1.0)[2]);
     EXPECT_NEAR(view.Radiance(zenith, 1.0)[2], view.Radiance(zenith, 1.0 - 4.0 * kPi)[2],
@@ -154,26 +149,8 @@ TEST(SkyView, IsTheSameOnBothSidesOfTheSunAndWithoutASeam) {
   }
 }
 
-// Hard case 7.
-TEST(SkyView, BothSidesOfTheHorizonAreWhatTheyAreDirectly) {
-  const Air& earth = Air::Earth();
-  for (const double altitude_m : {2.0, 10e3, 400e3}) {
-    const SkyView view = earth.View(altitude_m, 10.0);
-    for (const double hair : {-1e-6, 1e-6}) {
-      const double zenith = view.map().horizon_zenith_angle_rad() + hair;
-      const double mu_s = Air::Sine(10.0);
-      const double nu =
-          std::cos(zenith) * mu_s + std::sin(zenith) * std::cos(Degrees(10.0)) * std::cos(1.0);
-      const Bands<double> exact = earth.direct.Radiance({altitude_m, std::cos(zenith), mu_s, nu});
-      const Bands<float> seen = view.Radiance(zenith, 1.0);
-      for (std::size_t band = 0; band < exact.count; ++band)
-        EXPECT_NEAR(seen[band], exact[band], 0.003 * exact[band]) << altitude_m << " " << hair;
-    }
-  }
-}
-
 TEST(SkyView, ARowIsItsLookUps) {
-  const SkyView view = Air::Earth().View(1500.0, 5.0);
+  const SkyView view = ViewOfEarth(1500.0, 5.0);
   std::vector<double> azimuths;
   for (int i = 0; i < 777; ++i) azimuths.push_back(0.01 * i - 2.0);
   const SkyAzimuths prepared(view, azimuths);
@@ -199,7 +176,7 @@ TEST(SkyView, AnyNumberOfBandsIsTheBandsOneByOne) {
       << "quadrature nodes follow the largest extinction of the bands";
 }
 
-// Largest second difference along a line of values, relative to the middle one.
+// Returns the largest second difference along a line of values, relative to the middle one.
 double LargestBend(const std::vector<double>& values) {
   double largest = 0.0;
   for (std::size_t i = 1; i + 1 < values.size(); ++i) {
@@ -211,20 +188,18 @@ double LargestBend(const std::vector<double>& values) {
 
 // Hard case 22.
 TEST(SkyView, TwilightHasNoBlocksInAzimuth) {
-  const Air& earth = Air::Earth();
   for (const double altitude_m : {2.0, 10e3}) {
     for (const double elevation_deg : {-4.0, -8.0, -12.0}) {
-      const SkyView view = earth.View(altitude_m, elevation_deg);
-      const double mu_s = Air::Sine(elevation_deg);
+      const SkyView view = ViewOfEarth(altitude_m, elevation_deg);
+      const double mu_s = Sine(elevation_deg);
       for (const double above_deg : {1.0, 5.0, 20.0, 60.0}) {
         const double zenith = view.map().horizon_zenith_angle_rad() - Degrees(above_deg);
         std::vector<double> along;
-        for (int i = 0; i < 2048; ++i) {
+        for (int i = 0; i < 1024; ++i) {
           const double azimuth = 2.0 * kPi * i / 2048;
-          const double nu = std::cos(zenith) * mu_s +
-                            std::sin(zenith) * std::sqrt(1.0 - mu_s * mu_s) * std::cos(azimuth);
           // The bends of the aureole are real.
-          const double exact = earth.direct.Radiance({altitude_m, std::cos(zenith), mu_s, nu})[1];
+          const double exact =
+              DirectSkyOfEarth().Radiance(SkyRay(altitude_m, zenith, mu_s, azimuth))[1];
           along.push_back(double{view.Radiance(zenith, azimuth)[1]} / exact);
         }
         // Two neighbouring pixels of a smooth sky differ by 1 % at most, and their steps by much
@@ -240,18 +215,16 @@ TEST(SkyView, TwilightHasNoBlocksInAzimuth) {
 // Hard case 22.
 TEST(SkyView, TheTerminatorOnTheLimbHasNoBlocks) {
   // Seen from space light dies within a few degrees of azimuth: there the bends are real.
-  const Air& earth = Air::Earth();
+
   const double step = 2.0 * kPi / 2048;
   for (const double elevation_deg : {1.0, -4.0, -10.0}) {
-    const SkyView view = earth.View(400e3, elevation_deg);
-    const double mu_s = Air::Sine(elevation_deg);
+    const SkyView view = ViewOfEarth(400e3, elevation_deg);
+    const double mu_s = Sine(elevation_deg);
     for (const double above_deg : {-5.0, 0.3, 1.0}) {
       const double zenith = view.map().horizon_zenith_angle_rad() - Degrees(above_deg);
       std::vector<double> ratio;
       for (int i = 300; i < 800; ++i) {
-        const double nu = std::cos(zenith) * mu_s +
-                          std::sin(zenith) * std::sqrt(1.0 - mu_s * mu_s) * std::cos(step * i);
-        const double exact = earth.direct.Radiance({400e3, std::cos(zenith), mu_s, nu})[1];
+        const double exact = DirectSkyOfEarth().Radiance(SkyRay(400e3, zenith, mu_s, step * i))[1];
         if (exact < 1e-6) break;  // some 1e-5 of the sky by day
         ratio.push_back(double{view.Radiance(zenith, step * i)[1]} / exact);
       }
@@ -266,7 +239,7 @@ TEST(SkyView, TwilightHasNoStepsFromMinuteToMinute) {
   for (const double zenith_deg : {0.0, 45.0, 85.0}) {
     std::vector<double> stops;
     for (double elevation_deg = 3.0; elevation_deg > -8.1; elevation_deg -= 0.25) {
-      const SkyView view = Air::Earth().View(2.0, elevation_deg);
+      const SkyView view = ViewOfEarth(2.0, elevation_deg);
       stops.push_back(std::log(double{view.Radiance(Degrees(zenith_deg), 0.5)[1]}));
     }
     for (std::size_t i = 1; i + 1 < stops.size(); ++i) {
@@ -279,23 +252,22 @@ TEST(SkyView, TwilightHasNoStepsFromMinuteToMinute) {
 
 // Hard case 38.
 TEST(SkyView, TooFewNodesAreRefused) {
-  const Air& earth = Air::Earth();
   const auto refuse = [&](const SkyViewSize& size) {
-    const SkyView view(earth.air, earth.multiple_scattering, 0.0, 1.0, size);
+    const SkyView view(tests::Earth().air, tests::Earth().multiple_scattering, 0.0, 1.0, size);
   };
   EXPECT_THROW(refuse({.sky_rows = 4}), InputError);
   EXPECT_THROW(refuse({.ground_rows = 4}), InputError);
   EXPECT_THROW(refuse({.azimuths = 2}), InputError);
 }
 
-// Image says which colours have a negative channel. The spectra behind them are those of light.
+// Colours of an image may have a negative channel. The spectra behind them are those of light.
 TEST(SkyView, DeepTwilightHasNegativeRedAndNoNegativeLight) {
-  const Medium& medium = Air::Earth().medium;
+  const Medium& medium = tests::Earth().medium;
   const BandColour colour(medium.wavelengths_nm);
   int with_negative_red = 0;
   for (const double elevation_deg : {-24.0, -25.0, -26.0, -30.0}) {
     for (const double altitude_m : {2.0, 9e3, 30e3}) {
-      const SkyView view = Air::Earth().View(altitude_m, elevation_deg);
+      const SkyView view = ViewOfEarth(altitude_m, elevation_deg);
       for (double zenith_deg = 0.5; zenith_deg < 180.0; zenith_deg += 3.0) {
         for (const double azimuth_deg : {0.0, 60.0, 120.0, 180.0}) {
           const Bands<float> radiance = view.Radiance(Degrees(zenith_deg), Degrees(azimuth_deg));

@@ -37,7 +37,7 @@ const MultipleScattering& Quick() {
 /// The finest solution of the earth; it has one band under the sanitizers.
 const MultipleScattering& EarthFinest() {
   static const MultipleScattering light = FinestMultipleScattering(
-      tests::kSanitized ? MediumPreset("earth", {550.0}) : MediumPreset("earth"));
+      MediumPreset("earth", tests::kSanitized ? std::vector{550.0} : std::vector{450.0, 650.0}));
   return light;
 }
 
@@ -81,13 +81,13 @@ TEST(TableSearch, AnUnreachableErrorIsRefusedWithTheBestOne) {
 class ChosenTables : public TemporaryFolder {
  protected:
   static constexpr std::size_t kUnseen = 100000;
-  static constexpr std::size_t kUnseenViews = tests::ScaledDown<std::size_t>(200, 80);
-  /// The share of the bound that an rms may have: 80 views tell an rms to a twelfth.
+  static constexpr std::size_t kUnseenViews = tests::ScaledDown<std::size_t>(120, 80);
+  /// An rms may have this share of the bound: 80 views tell it to a twelfth.
   static constexpr double kSampling = tests::ScaledDown(1.0, 1.0 + 1.0 / 12.0);
   static TableSearch Search(double max_error, TablesWanted wanted = TablesWanted::kSmallest) {
     return {.max_error = max_error,
-            .views_of_a_kind = tests::ScaledDown<std::size_t>(160, 80),
-            .path_traced_views_of_a_kind = tests::ScaledDown<std::size_t>(6, 1),
+            .views_of_a_kind = tests::ScaledDown<std::size_t>(120, 80),
+            .path_traced_views_of_a_kind = max_error < 0.01 ? 1U : 3U,
             .wanted = wanted};
   }
 };

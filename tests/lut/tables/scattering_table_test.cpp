@@ -5,7 +5,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <map>
 #include <random>
+#include <string>
 #include <vector>
 
 #include "atmosphere/base/error.h"
@@ -114,20 +116,34 @@ struct Regime {
   double median;                   // bound, relative to each value
 };
 
-// Compares radiance with phase functions in all bands, from altitudes to 12 km in all directions.
-void ExpectErrorsBelow(const ScatteringTable& table, const Regime& regime) {
-  const SingleScattering<float> air(table.medium());
+/// A ray with its radiance by the reference solution.
+struct ReferenceRay {
+  ViewRay ray;
+  std::vector<double> radiance;
+};
+
+/// Returns observers to 12 km who look in all directions. The rays of a regime are solved once.
+const std::vector<ReferenceRay>& RaysOf(const Medium& medium, const Regime& regime) {
+  static std::map<std::string, std::vector<ReferenceRay>> solved;
+  std::vector<ReferenceRay>& rays = solved[regime.name];
   std::mt19937 random(3);
   std::uniform_real_distribution<double> uniform(0.0, 1.0);
-  ErrorStatistics absolute, relative;
-  for (int i = 0; i < 100; ++i) {
+  while (rays.size() < 80) {
     const double u = uniform(random);
     const double sun =
         regime.highest_deg + (regime.lowest_deg - regime.highest_deg) * uniform(random);
     const double view = 180.0 * uniform(random);
     const ViewRay ray = RayFromAngles(12000.0 * u * u, view, 180.0 * uniform(random), sun);
-    const std::vector<double> truth =
-        reference::SingleScatteringAlong(table.medium(), ray).inscatter;
+    rays.push_back({ray, reference::SingleScatteringAlong(medium, ray).inscatter});
+  }
+  return rays;
+}
+
+// Compares radiance with phase functions in all bands.
+void ExpectErrorsBelow(const ScatteringTable& table, const Regime& regime) {
+  const SingleScattering<float> air(table.medium());
+  ErrorStatistics absolute, relative;
+  for (const auto& [ray, truth] : RaysOf(table.medium(), regime)) {
     const Bands<float> value = air.Inscatter(table.Lookup(ray), ray.nu);
     for (std::size_t band = 0; band < value.count; ++band) {
       absolute.Add(value[band], truth[band]);
