@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// `skylut sky` as users run it: what it writes and returns.
+// Tests what `skylut sky` writes and returns when users run it.
 #include <ImfHeader.h>
 #include <ImfInputFile.h>
 #include <ImfStandardAttributes.h>
@@ -131,7 +131,7 @@ TEST_F(SkylutSky, APlaceAndATimeGiveTheSunThere) {
   ASSERT_EQ(Run(rest + "--out a.exr --time 2026-06-21T11:30:00Z").status, 0);
   ASSERT_EQ(Run(rest + "--out b.exr --time 2026-06-21T13:30 --zone Europe/Zurich").status, 0);
   const Metadata metadata = ReadExrMetadata(folder_ / "a.exr");
-  // Noon of the solstice: 90 - 46.5 + 23.44, and refraction of half a minute of arc.
+  // Noon of the solstice has 90 - 46.5 + 23.44, and refraction of half a minute of arc.
   EXPECT_NEAR(std::stod(metadata.at("alpenglow.sun_elevation_deg")), 66.94, 0.02);
   EXPECT_NEAR(std::stod(metadata.at("alpenglow.sun_azimuth_deg")), 180.0, 1.0);
   EXPECT_EQ(metadata.at("alpenglow.utc"), "2026-06-21T11:30:00.000Z");

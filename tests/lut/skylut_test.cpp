@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The program as users run it: what it prints, writes and returns.
+// Tests what the program prints, writes and returns when users run it.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/wait.h>

@@ -136,9 +136,9 @@ constexpr std::array<City, 9> kCities{{
     {"Sevilla", 37.3891, -5.9845, 10.0, false},
 }};
 
-/// Besselian elements as polynomials of hours from 18h TDT, 2026 August 12: Espenak and Meeus (2006),
-/// Five Millennium Canon of Solar Eclipses, NASA/TP-2006-214141, from eclipse.gsfc.nasa.gov; k is
-/// 0.272488 for the penumbra and 0.272281 for the umbra.
+/// Besselian elements as polynomials of hours from 18h TDT, 2026 August 12: Espenak and Meeus
+/// (2006), Five Millennium Canon of Solar Eclipses, NASA/TP-2006-214141, from
+/// eclipse.gsfc.nasa.gov; k is 0.272488 for the penumbra and 0.272281 for the umbra.
 struct Elements {
   std::array<double, 4> x{0.4755140, 0.5189249, -0.0000773, -0.0000080};
   std::array<double, 4> y{0.7711830, -0.2301680, -0.0001246, 0.0000038};
@@ -279,7 +279,7 @@ TEST(Eclipse, IsNoneWhereTheShadowPassesByAndUnseenByNight) {
 }
 
 TEST(Eclipse, OtherNewMoonsOfTheYearPassTheSunBy) {
-  // Three days about each new moon of 2026, which are 29.53 days apart, within 0.6 days.
+  // The search has three days about each new moon, which are 29.53 days apart within 0.6 days.
   const GeodeticPosition burgos = PlaceOf(kCities[3]);
   int eclipses = 0;
   for (int moon = -7; moon <= 4; ++moon) {
@@ -293,8 +293,8 @@ TEST(Eclipse, OtherNewMoonsOfTheYearPassTheSunBy) {
   EXPECT_EQ(eclipses, 1) << "that of 2026 February 17 is of the Antarctic";
 }
 
-// Annular eclipse of 2023 October 14 in Albuquerque: a ring for 4 min 48 s (Espenak, NASA), near the
-// middle of the path.
+// Annular eclipse of 2023 October 14 in Albuquerque: a ring for 4 min 48 s (Espenak, NASA), near
+// the middle of the path.
 TEST(Eclipse, ARingStandsAroundTheMoonWhereItIsAnnular) {
   const auto eclipse = FindSolarEclipse(PlaceFromDegrees(35.0844, -106.6504, 1620.0),
                                         ParseInstant("2023-10-14T06:00:00Z"), 86400.0);

@@ -46,11 +46,12 @@ TEST(Moon, ExampleOfMeeus) {
 
 // Almanacs give the phases to the minute.
 TEST(Moon, IsFullAndNewWhenAlmanacsSay) {
-  // Total lunar eclipse of 2000 January 21, greatest at 4:43:28 UT (Espenak, NASA).
+  // The total lunar eclipse of 2000 January 21 is greatest at 4:43:28 UT (Espenak, NASA).
   const MoonPosition eclipsed = MoonAt(kGeocentre, ParseInstant("2000-01-21T04:43:28Z"));
   EXPECT_LT(eclipsed.phase_angle_rad, 0.5 * kRadiansPerDegree) << "gamma 0.2957 earth radii";
   EXPECT_GT(eclipsed.IlluminatedFraction(), 0.9999);
-  // Total solar eclipse of 1999 August 11, greatest at 11:03:04 UT at 45.1 N 24.3 E (Espenak, NASA).
+  // The total solar eclipse of 1999 August 11 is greatest at 11:03:04 UT at 45.1 N 24.3 E
+  // (Espenak).
   const GeodeticPosition place = PlaceFromDegrees(45.0667, 24.2833, 0.0);
   const UtcInstant instant = ParseInstant("1999-08-11T11:03:04Z");
   const MoonPosition moon = MoonAt(place, instant);

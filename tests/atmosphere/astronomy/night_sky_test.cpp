@@ -43,7 +43,8 @@ TEST(NightSky, TheMilkyWayIsBrightTowardsItsCentreAndSplitByDust) {
 }
 
 TEST(NightSky, TheCentreOfTheGalaxyCulminatesOnJuneNights) {
-  // Sagittarius A* at 17h 45m 40s, -29 degrees, passes the meridian of latitude -30 near the zenith.
+  // Sagittarius A* at 17h 45m 40s, -29 degrees, passes the meridian of latitude -30 near the
+  // zenith.
   const GeodeticPosition place{.latitude_rad = Radians(-29.0), .longitude_rad = 0.0};
   const glm::dvec3 up(0.0, 0.0, 1.0);
   const UtcInstant noon = ParseInstant("2026-06-21T12:00:00Z");
@@ -93,7 +94,7 @@ TEST(Stars, AreFiveThousandToTheSixthMagnitudeBrightestFirst) {
 }
 
 TEST(Stars, SiriusHasMovedAndTheEarthHasTurned) {
-  // Its declination: -16 42.97' in 2000, with -1.2 arcseconds a year of its own and -3.9 by
+  // Its declination is -16 42.97' in 2000, with -1.2 arcseconds a year of its own and -3.9 by
   // precession, 20.04 times the cosine of its right ascension.
   const auto then = StarsAt(ParseInstant("2000-01-01T12:00:00Z")).front();
   const auto now = StarsAt(ParseInstant("2050-01-01T12:00:00Z")).front();
@@ -123,14 +124,14 @@ TEST(Stars, LightAndColourAreThoseOfTheirMagnitudes) {
 
 TEST(Planets, StandOnTheEclipticAsBrightAsAlmanacsSay) {
   const GeodeticPosition place{.latitude_rad = 0.8};
-  // Jupiter in opposition on 2026 January 10 in Gemini, V = -2.7; Saturn V = 1.2 in Pisces.
+  // Jupiter is in opposition on 2026 January 10 in Gemini, V = -2.7; Saturn has V = 1.2 in Pisces.
   const auto planets = PlanetsAt(place, ParseInstant("2026-01-10T00:00:00Z"));
   const SunPosition sun = SunAt(place, ParseInstant("2026-01-10T00:00:00Z"));
   EXPECT_NEAR(AngleBetween(planets[3].direction, sun.direction), 180.0, 1.0);
   EXPECT_NEAR(planets[3].magnitude, -2.7, 0.15);
   EXPECT_NEAR(planets[4].magnitude, 1.1, 0.3);
   EXPECT_LT(AngleBetween(planets[1].direction, sun.direction), 3.0) << "Venus behind the sun";
-  // Greatest elongation east on 2026 August 15: 45.9 degrees.
+  // The greatest elongation east, on 2026 August 15, is 45.9 degrees.
   const auto evening = PlanetsAt(place, ParseInstant("2026-08-15T06:00:00Z"));
   const SunPosition late = SunAt(place, ParseInstant("2026-08-15T06:00:00Z"));
   EXPECT_NEAR(AngleBetween(evening[1].direction, late.direction), 45.9, 0.2);

@@ -44,7 +44,8 @@ TEST(Sun, ExampleOfTheNrelSolarPositionAlgorithm) {
                                 ParseInstant("2003-10-17T12:30:30-07:00"), 67.0);
   const double elevation = sun.elevation_rad / kRadiansPerDegree;
   EXPECT_NEAR(sun.azimuth_rad / kRadiansPerDegree, 194.34024, 0.0003) << "SPA's own tolerance";
-  // Published: zenith angle 50.11162 with refraction at 820 mbar and 11 C, by equation 42 of SPA.
+  // The published zenith angle is 50.11162 with refraction at 820 mbar and 11 C, by equation 42 of
+  // SPA.
   const double spa_refraction =
       820.0 / 1010.0 * 283.0 / (273.0 + 11.0) * 1.02 /
       (60.0 * std::tan((elevation + 10.3 / (elevation + 5.11)) * kRadiansPerDegree));
@@ -70,7 +71,7 @@ double ErrorInArcseconds(const SpaRow& row) {
          kSunArcsecond_rad;
 }
 
-// Rows of an independent implementation of SPA (npm nrel-spa 2.0.2), without refraction.
+// These rows are of an independent implementation of SPA (npm nrel-spa 2.0.2), without refraction.
 const std::vector<SpaRow> kSpaRows = {
     {"2044-10-26T09:09:08.951Z", 90, 0, 0, 88.555, 141.312718, -12.717612, 0.994084208},
     {"2060-12-21T17:38:19.864Z", -90, 0, 2835, 115.634, 275.036261, 23.429823, 0.983790414},

@@ -246,9 +246,9 @@ TEST(Ciede2000, PublishedPairsHaveTheirDifferences) {
   }
 }
 
-// The training does not know this sunlight and skylight: single scattering of the reference solution
-// through three atmospheres at 95 wavelengths, as it is and with more blue as from light scattered
-// again.
+// The training does not know this sunlight and skylight: single scattering of the reference
+// solution through three atmospheres at 95 wavelengths, as it is and with more blue as from light
+// scattered again.
 struct TestLight {
   SampledFunction relative_to_sun;
   Triple xyz;
@@ -324,8 +324,8 @@ std::vector<double> SunInBands(const std::vector<double>& wavelengths_nm) {
   return bands;
 }
 
-// Returns CIEDE2000 of every test light, at an exposure that gives it two fifths of the luminance of
-// white.
+// Returns CIEDE2000 of every test light, at an exposure that gives it two fifths of the luminance
+// of white.
 std::vector<double> SortedErrors(const BandColour& colour) {
   const Triple sun = TrueXyz(SampledFunction({360.0}, {1.0}));
   std::vector<double> errors;
@@ -419,7 +419,7 @@ TEST(BandColour, SunAboveTheAirHasTheSameColourOnEveryWavelengthSet) {
 
 // Hard case 36.
 TEST(BandColour, WhiteOfPaperByDayIsWithinTwoPercentInEverySet) {
-  // Sun at 30 degrees through the default air, on white paper.
+  // The sun at 30 degrees shines through the default air on white paper.
   const std::vector<double> relative = reference::SunIrradiance(
       MediumPreset("earth", TestWavelengths()), 10.0, std::sin(Radians(30.0)));
   const SampledFunction light(TestWavelengths(), relative);

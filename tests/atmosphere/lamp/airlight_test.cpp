@@ -247,7 +247,7 @@ TEST(Airlight, SurfacesCollectTheAirsLightFromTheirHemisphere) {
   for (const double g : {0.0, 0.85}) {
     const LampAir air = HomogeneousAir(0.01, 0.012, HenyeyGreenstein(g));
     for (const double cos_normal : {1.0, 0.5, 0.0, -0.5}) {
-      // By plain quadrature around the normal, finest at the lamp: radiance is 1/sin(alpha) there.
+      // Plain quadrature around the normal is finest at the lamp, where radiance is 1/sin(alpha).
       const glm::dvec3 normal(cos_normal, std::sqrt(1.0 - cos_normal * cos_normal), 0.0);
       const Lamp lamp = LampAt({30.0, 0.0, 0.0});
       double sum = 0.0;

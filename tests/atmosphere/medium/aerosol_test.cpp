@@ -49,7 +49,8 @@ TEST(AerosolMixture, MeanCosinesAreThoseThatOpacGives) {
       EXPECT_NEAR(phase.table->integral(), 1.0, 0.0101) << name;
     }
   }
-  // The phase function of polluted air follows from other mixtures; OPAC's table has its mean cosine.
+  // The phase function of polluted air follows from other mixtures; OPAC's table has its mean
+  // cosine.
   const std::vector<PhaseFunction> polluted =
       AerosolMixturePhase("continental_polluted", {450.0, 550.0, 650.0});
   const std::array<double, 3> of_polluted{0.7097, 0.6977, 0.6847};
@@ -146,7 +147,7 @@ std::vector<double> Angles(int steps) {
   return angles;
 }
 
-// Trapezoidal rule over solid angle.
+// Integrates over solid angle by the trapezoidal rule.
 double Integral(const std::vector<double>& angles, const std::vector<double>& values) {
   double sum = 0.0;
   for (std::size_t i = 0; i + 1 < angles.size(); ++i) {
@@ -274,7 +275,7 @@ TEST(ScatteringMatrix, SmallSpheresPolariseAsRoundMolecules) {
   for (const double cosine : {-0.95, -0.4, 0.1, 0.7}) {
     const ScatteringMatrix molecule = RayleighMatrix(0.0, cosine);
     const ScatteringMatrix sphere = SphereMatrix(small.polarised, molecule.a1, cosine);
-    // Of the size squared, 1e-4, and lines over a degree, 2e-4 of the value.
+    // The size squared is 1e-4, and lines over a degree miss 2e-4 of the value.
     EXPECT_NEAR(sphere.a3, molecule.a3, 3e-4 * molecule.a1);
     EXPECT_NEAR(sphere.a4, molecule.a4, 3e-4 * molecule.a1);
     EXPECT_NEAR(sphere.b1, molecule.b1, 3e-4 * molecule.a1);
@@ -283,7 +284,7 @@ TEST(ScatteringMatrix, SmallSpheresPolariseAsRoundMolecules) {
   }
 }
 
-// a1^2 = a3^2 + b1^2 + b2^2 where light keeps one phase.
+// Light keeps one phase where a1^2 = a3^2 + b1^2 + b2^2.
 TEST(ScatteringMatrix, OneSphereKeepsLightPolarisedAndManyDoNot) {
   const std::vector<double> angles{0.0, 0.5, 1.5, 2.5, kPi};
   const SizeDistribution sizes{.effective_radius_um = 0.5, .effective_variance = 0.1};

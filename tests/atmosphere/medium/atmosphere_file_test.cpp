@@ -201,7 +201,7 @@ TEST(AtmosphereFile, PhaseParametersBelongToTheirPhase) {
   EXPECT_EQ(Read("[mie]\nphase = \"rayleigh\"\n").mie_phase.front().kind, PhaseKind::kRayleigh);
 }
 
-// Files that were written when the presets of the earth had one lobe.
+// Such files were written when the presets of the earth had one lobe.
 TEST(AtmosphereFile, ALobeMayStandForTheTableOfAPreset) {
   const Medium lobe = Read("[mie]\ng = 0.76\n");
   EXPECT_EQ(lobe.mie_phase,

@@ -323,7 +323,8 @@ TEST(PhaseTable, DenseSamplesAreKeptToOnePartInTwentyThousand) {
 TEST(PhaseTable, IsPositiveHoweverRuggedTheSamples) {
   std::vector<double> values{1.0, 1e-6, 50.0, 1e-8, 0.02, 1e-5, 0.3};
   const std::vector<double> angles{0.0, 1.0, 2.0, 40.0, 90.0, 170.0, 180.0};
-  // Scaled to an integral near 1 by trial: the integral of what is refused is in the message.
+  // Samples are scaled to an integral near 1 by trial: the integral of what is refused is in the
+  // message.
   double scale = 1.0;
   for (int step = 0; step < 4; ++step) {
     const std::string fault = FaultOf([&] { PhaseTable(angles, values); });
@@ -393,7 +394,7 @@ TEST(PhaseTable, EqualSamplesAreEqualWhereverTheyAre) {
 
 class PhaseFile : public TemporaryFolder {
  protected:
-  // Two wavelengths, columns in another order than the manual's.
+  // Returns a file of two wavelengths, with columns in another order than the manual's.
   std::string Text() const {
     std::string text = "# made for a test\nangle_deg,wavelength_nm,phase_per_sr\n";
     for (const double wavelength : {600.0, 400.0}) {

@@ -53,7 +53,8 @@ TEST(RefractedView, TheSettingDiskIsAsFlatAsByTheRayEquation) {
   for (const double height : {2.0, 3000.0, 12e3}) {
     const RefractedView view(medium, height);
     const double horizon = view.horizon_rad();
-    // The lower limb stands on the horizon, the upper where the reference solution finds what is as much higher.
+    // The lower limb stands on the horizon, the upper where the equation finds what is as much
+    // higher.
     const double lower = horizon + 1e-3 * kMinute;
     const double truly = lower - equation.Follow(lower, height).refraction_rad + kDiameter;
     double upper = lower + kDiameter;
@@ -87,7 +88,7 @@ TEST(RefractedView, TheHorizonLiesWhereRaysOfTheEquationJustMissTheGround) {
     EXPECT_TRUE(equation.Follow(view.horizon_rad() - little, height).is_ground) << height;
     const double geometric = -std::acos(medium.planet_radius_m / (medium.planet_radius_m + height));
     EXPECT_GT(view.horizon_rad(), geometric) << "air lifts the horizon";
-    // As far as the horizon but for where the ray is almost level.
+    // This ray is almost as long as that to the horizon, but not almost level.
     const double below = view.horizon_rad() - 0.01 * std::max(-view.horizon_rad(), 1e-3);
     const auto ground = view.ToGround(below);
     ASSERT_TRUE(ground);
@@ -167,8 +168,8 @@ TEST(RefractedBeam, IsWithinOnePerCentOfTheRayEquationInMolecules) {
       for (std::size_t band = 0; band < 3; ++band) {
         const double expected =
             spread * std::exp(-medium.rayleigh_scattering_per_m[band] * found.column_m);
-        // Columns of bent rays are good to 2e-3, which is 0.8 % of blue light through a depth of 4 on
-        // the horizon; the table adds its interpolation.
+        // Columns of bent rays are good to 2e-3, which is 0.8 % of blue light through a depth of 4
+        // on the horizon; the table adds its interpolation.
         EXPECT_NEAR(static_cast<double>(left[band]) / expected, 1.0, 0.01)
             << height_m << " m, " << elevation_deg << " degrees, band " << band;
       }
@@ -334,7 +335,7 @@ TEST(LandLift, ThePlanetLooksAsWideAsRefractedRaysShowItsHorizon) {
     constexpr double kLittle = 0.02 * kMinute;
     EXPECT_FALSE(equation.Follow(horizon_rad + kLittle, eye_m).is_ground) << eye_m;
     EXPECT_TRUE(equation.Follow(horizon_rad - kLittle, eye_m).is_ground) << eye_m;
-    // Ground half way to the horizon, along a straight line to the planet as it looks.
+    // The ground is half way to the horizon, along a straight line to the planet as it looks.
     const double elevation = 1.3 * horizon_rad;
     const auto found = equation.Follow(elevation, eye_m);
     const double away_m = std::hypot(found.state.x, found.state.y - medium.planet_radius_m - eye_m);

@@ -165,7 +165,7 @@ Medium OnPlanetOf(Medium medium, double radius_m) {
   return medium;
 }
 
-// The smallest planets that a medium may have, and one larger than Jupiter.
+// These are the smallest planets that a medium may have, and one larger than Jupiter.
 TEST(DirectScattering, EstimateHoldsOnPlanetsOfAnySize) {
   for (const Medium& medium :
        {OnPlanetOf(MediumPreset("bruneton2017"), 200e3), OnPlanetOf(MediumPreset("earth"), 223e3),
@@ -214,15 +214,16 @@ TEST(DirectScattering, SamplesScatterTheSameLight) {
   }
 }
 
-// Columns differ by a thousandth, by what single precision leaves of a difference, and by the fit of
-// ozone, up to three times (0.6 km of it are 1e-3 of an optical depth).
+// Columns differ by a thousandth, by what single precision leaves of a difference, and by the fit
+// of ozone, up to three times (0.6 km of it are 1e-3 of an optical depth).
 void ExpectColumns(const ColumnSet<float>& found, const ColumnSet<double>& truth) {
   EXPECT_NEAR(static_cast<double>(found.rayleigh), truth.rayleigh, 1e-3 * truth.rayleigh + 3e-3);
   EXPECT_NEAR(static_cast<double>(found.mie), truth.mie, 1e-3 * truth.mie + 3e-3);
   EXPECT_NEAR(static_cast<double>(found.ozone), truth.ozone, 1e-3 * truth.ozone + 0.6);
 }
 
-// True when positions, weights and columns of samples are those of SingleScattering at the same places.
+// Expects that positions, weights and columns of samples are those of SingleScattering at the same
+// places.
 void ExpectSamplesOf(const SingleScattering<double>& fine, const ViewRay& ray,
                      const RaySamples<float>& samples) {
   if (samples.count == 0) return;  // the ray meets no air
@@ -286,7 +287,7 @@ TEST(DirectScattering, ColumnsOfShortWaysKeepTheirDigits) {
   for (int i = 1; i <= 400; ++i) {
     const double altitude = 200.0 + 3000.0 * Halton(i, 2);
     const double length = std::pow(10.0, 5.0 * Halton(i, 3));
-    // No steeper than two kilometres over the way, and over the horizon of the planet.
+    // The way rises by two kilometres at most, and stays over the horizon of the planet.
     const double slope = std::min(2000.0 / length, 1.0) * (2.0 * Halton(i, 5) - 1.0);
     const ViewRay ray{altitude, std::max(slope, -100.0 / length), 0.5, 0.5, length};
     const DirectRay placed = direct.Place(ray, {.dark_samples = true});

@@ -47,7 +47,8 @@ Columns ColumnsByQuadrature(const Medium& medium, double altitude_m, double mu) 
     return static_cast<double>(std::sqrt(r * r + 2 * r * mu * d + d * d) - radius);
   };
   std::vector<double> points{0.0};
-  // Where the line crosses the tent's edges, the scale heights and the top, and its lowest point.
+  // The line crosses the tent's edges, the scale heights and the top here, and has its lowest
+  // point.
   for (const double z :
        {medium.ozone.bottom_m, medium.ozone.peak_m, medium.ozone.top_m, 600.0, 1200.0, 2400.0,
         4800.0, 8000.0, 16000.0, 60000.0, medium.atmosphere_height_m}) {
@@ -69,8 +70,8 @@ Columns ColumnsByQuadrature(const Medium& medium, double altitude_m, double mu) 
   return {result.value[0], result.value[1], result.value[2]};
 }
 
-/// Returns rays of all directions that do not meet the ground, with cosines that float holds exactly,
-/// because the formula does not cause the rounding of other cosines.
+/// Returns rays of all directions that do not meet the ground, with cosines that float holds
+/// exactly, because the formula does not cause the rounding of other cosines.
 std::vector<std::array<double, 2>> RaysToSpace(double radius_m) {
   std::vector<std::array<double, 2>> rays;
   for (const double altitude_m :

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Geometry of rays in the shell is right where it is hard: on the ground, at the horizon, at the top
-// and in space.
+// Geometry of rays in the shell is right where it is hard: on the ground, at the horizon, at the
+// top and in space.
 #include "atmosphere/ray/ray.h"
 
 #include <gtest/gtest.h>
@@ -41,7 +41,7 @@ TEST(Ray, GivenLengthEndsItUnlessTheGroundIsNearer) {
 TEST(Ray, AShortRayEndsAtGroundOrTopOnlyIfItReachesThem) {
   constexpr double kFrom_m = 200.0;
   for (const double perigee_m : {-2.0, -0.5, 0.5, 2.0, 50.0}) {
-    // Down to the perigee and up again.
+    // The ray goes down to the perigee and up again.
     const double sine = (kRadius_m + perigee_m) / (kRadius_m + kFrom_m);
     const double mu = -std::sqrt((1.0 - sine) * (1.0 + sine));
     const double deepest_m = -(kRadius_m + kFrom_m) * mu;
@@ -94,8 +94,8 @@ TEST(PlanetShadow, OfALongSegmentIsTheOneStretchThatAScanFinds) {
   constexpr double kLength_m = 1e6, kStep_m = kLength_m / kSteps;
   int lit_dark_lit = 0;
   for (int i = 0; i < 1000; ++i) {
-    // Lowest in its middle, across the azimuth of a sun that stands 5 to 11 degrees below the
-    // horizon there, more or less.
+    // The ray is lowest in its middle, across the azimuth of a sun that stands 5 to 11 degrees
+    // below the horizon there, more or less.
     ViewRay ray{60e3 + 60e3 * uniform(random), -0.09 + 0.03 * uniform(random),
                 -std::sin((5.0 + 6.0 * uniform(random)) * kRadiansPerDegree), 0.0, kLength_m};
     ray.nu =

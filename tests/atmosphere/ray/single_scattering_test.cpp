@@ -511,7 +511,7 @@ TEST(SingleScattering, AtTheEdgesOfTheRangesOfAMediumTheReferenceAgrees) {
     EXPECT_EQ(FindFault(medium), std::nullopt);
     return medium;
   };
-  // The same column of aerosol in a layer of another scale height.
+  // Keeps the column of aerosol in a layer of another scale height.
   const auto with_layer = [](double height_m) {
     return [height_m](Medium& m) {
       for (auto* list : {&m.mie_scattering_per_m, &m.mie_extinction_per_m})

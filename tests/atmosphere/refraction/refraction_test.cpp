@@ -64,7 +64,8 @@ TEST(Refraction, NearTheHorizonItIsBennetts) {
   }
 }
 
-/// Returns the ratio of density to that at sea level in the U.S. Standard Atmosphere 1976 up to 32 km.
+/// Returns the ratio of density to that at sea level in the U.S. Standard Atmosphere 1976 up to 32
+/// km.
 double StandardDensity(double height_m) {
   const double h = height_m * 6356766.0 / (6356766.0 + height_m);
   const double rho_11 = std::pow(216.65 / 288.15, 4.255876);
@@ -269,7 +270,7 @@ const tests::RefractedTwilight& Evening() {
   return air;
 }
 
-/// Views under a sun, by bent rays.
+/// Has the light of views under a sun, by bent rays.
 class RefractedSky {
  public:
   explicit RefractedSky(double truly_deg) : truly_deg_(truly_deg) {

@@ -38,8 +38,8 @@ std::vector<double> LightOfManyRays() {
   return light;
 }
 
-// Fused operations, the order of sums and the exponential of xsimd change the rounding only. Light of
-// less than 1e-13 counts as none, so an optical depth is at most 30: the exponential turns its
+// Fused operations, the order of sums and the exponential of xsimd change the rounding only. Light
+// of less than 1e-13 counts as none, so an optical depth is at most 30: the exponential turns its
 // rounding of a unit in the last place into one of 30 units, and sums add one or two.
 template <typename Real>
 void ExpectTheScalarLightFromEverySet() {

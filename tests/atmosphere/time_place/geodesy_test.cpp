@@ -161,7 +161,7 @@ TEST(Geodesy, OsculatingRadiusIsTheGaussianMean) {
   EXPECT_NEAR(OsculatingRadius(kWgs84, kPi / 2), a * a / b, 1e-6) << "polar radius of curvature";
   EXPECT_NEAR(a * a / b, 6399593.6258, 1e-4) << "NIMA TR8350.2 table 3.3";
   EXPECT_EQ(OsculatingRadius({6360e3, 0.0}, 1.0), 6360e3);
-  // Curvature measured on the ellipsoid itself, from the sagitta of 1 km along and across.
+  // Curvature is measured on the ellipsoid itself, from the sagitta of 1 km along and across.
   const GeodeticPosition here = PlaceFromDegrees(52.0, 0.0, 0.0);
   const LocalFrame frame(kWgs84, here);
   const auto radius = [&](double east, double north) {

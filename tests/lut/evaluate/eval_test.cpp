@@ -44,7 +44,7 @@ class Eval : public TemporaryFolder {
     results_ = folder_ / "results.csv";
   }
 
-  /// id and wavelength -> value and error.
+  /// Maps id and wavelength to value and error.
   using Results = std::map<std::pair<std::string, double>, Estimate>;
 
   [[nodiscard]] Results Evaluate(const std::string& text, Evaluator& evaluator) const {
@@ -319,8 +319,8 @@ std::unique_ptr<Evaluator> StandardTables(const Medium& medium) {
        .ray_nodes = quality.ray_nodes});
 }
 
-// Makes what skylut build --max-error makes of a percent: moments, and rays that are integrated where
-// they are asked for.
+// Makes what skylut build --max-error makes of a percent: moments, and rays that are integrated
+// where they are asked for.
 std::unique_ptr<Evaluator> MomentsAlone(const Medium& medium) {
   const TableQuality quality = TableQualityFromName("standard");
   return MakeTableEvaluator(
@@ -390,7 +390,7 @@ TEST_F(Eval, StokesParametersAreThoseOfThePathsOnBothSidesOfTheSun) {
       const double total = fast.at({fmt::format("total{}", place), band}).value;
       for (const char* quantity : {"stokes_q", "stokes_u", "total"}) {
         const std::string id = fmt::format("{}{}", quantity, place);
-        // Four standard errors, and the bound of 0.3 % that polarised light by day has.
+        // The tolerance is four standard errors and 0.3 %, the bound of polarised light by day.
         EXPECT_NEAR(fast.at({id, band}).value, slow.at({id, band}).value,
                     4.0 * slow.at({id, band}).error + 0.003 * total)
             << id << " " << band;
@@ -435,7 +435,7 @@ TEST_F(Eval, EdgesOfTheDefinitionsAreKept) {
   EXPECT_EQ(results.at({"dark", 550.0}).value, 0.0);
 }
 
-/// Tables of single scattering only.
+/// Returns tables of single scattering only.
 TableFolder SmallTables(const Medium& medium) {
   return {.medium = medium,
           .transmittance = TransmittanceTable(medium, {.mu = 128, .altitudes = 32}),
@@ -477,7 +477,7 @@ TEST_F(Eval, ADistanceToTheGroundOrBeyondLeavesItsLightOut) {
   folder.multiple_scattering.emplace(medium, kSmallLight);
   const auto tables = MakeTableEvaluator(std::move(folder));
   expect(*tables, 0.05);
-  // Four standard errors of 0.3 %, of two values.
+  // The tolerance is four standard errors of 0.3 %, of two values.
   const auto paths = MakePathTraceEvaluator(medium, {.max_error = 0.003});
   expect(*paths, 4.0 * 0.003 * std::sqrt(2.0));
 }

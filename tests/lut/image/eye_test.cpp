@@ -89,7 +89,7 @@ TEST(NightVision, LeavesDaylightAloneToTheLastBit) {
 }
 
 TEST(NightVision, TakesColourAwayAndTurnsTheRestBlue) {
-  // A red wall of 1e-3 cd/m^2, which rods hardly see.
+  // Rods hardly see a red wall of 1e-3 cd/m^2.
   const Image wall = SeenByNight(Uniform({4e-3F, 2e-4F, 1e-4F}, 2e-4F));
   const auto& rgb = wall.at(0, 0);
   EXPECT_NEAR(shared::Luminance<float>(rgb[0], rgb[1], rgb[2]), 2e-4F, 1e-7F)
@@ -160,7 +160,7 @@ Image Grating(double mean, double period) {
   return image;
 }
 
-/// (largest - smallest) / (largest + smallest) in the middle row.
+/// Returns (largest - smallest) / (largest + smallest) in the middle row.
 double ContrastOf(const Image& image) {
   float low = image.at(80, 12)[1], high = low;
   for (int x = 80; x < 160; ++x) {
@@ -196,7 +196,8 @@ TEST(Acuity, InTheDarkFineGratingsFadeAndCoarseOnesDoNot) {
       for (auto& rgb : bars.rgb) rgb.fill(0.95F * static_cast<float>(mean) + 0.05F * rgb[0]);
       return ContrastOf(WithAcuityOfNight(bars, kPixel_rad)) / 0.05;
     };
-    // One Gaussian would leave 0.1 of the finest. Brighter bars are sharper than those between them.
+    // One Gaussian would leave 0.1 of the finest. Brighter bars are sharper than those between
+    // them.
     EXPECT_GT(left(finest_px), 0.05) << mean << " cd/m^2";
     EXPECT_LT(left(finest_px), 0.4) << mean << " cd/m^2";
     EXPECT_LT(left(0.5 * finest_px), 0.15) << mean << " cd/m^2, a grating twice as fine";
@@ -233,7 +234,7 @@ TEST(Acuity, PicturesOfOnePixelOrOneRowAreSeen) {
 
 TEST(Glare, SpreadsAllLightOverTheHemisphere) {
   double sum = 0.0;
-  // Steps even in the logarithm, from a thousandth of the core's width.
+  // Steps are even in the logarithm, from a thousandth of the core's width.
   constexpr double kStep = 0.001;
   for (double log_deg = std::log(2e-5); log_deg < std::log(90.0); log_deg += kStep) {
     const double angle = std::exp(log_deg) * kRadiansPerDegree;
@@ -250,7 +251,7 @@ TEST(Glare, IsTheSumOverAllPixels) {
   }
   image.at(4, 6) = {3e5F, 2e5F, 1e5F};
   const Image seen = WithGlareOfEye(image, kPixel_rad);
-  // What a pixel keeps: all that it does not send to the torus of 32 x 32.
+  // A pixel keeps all that it does not send to the torus of 32 x 32.
   double sent = 0.0;
   for (int v = -15; v <= 16; ++v) {
     for (int u = -15; u <= 16; ++u) {

@@ -246,8 +246,8 @@ TEST(Dither, NeighboursDifferAsInBlueNoise) {
   EXPECT_GT(sum / 4096.0 / 4096.0, 0.37);
 }
 
-// Fixed on 2026-11-21: an even sky had faint vertical stripes, because columns of the one tile stood
-// over each other.
+// Fixed on 2026-11-21: an even sky had faint vertical stripes, because columns of the one tile
+// stood over each other.
 // Hard case 35.
 TEST(Dither, ColumnsOfAnEvenPictureAreEven) {
   constexpr int kWidth = 320;
@@ -431,8 +431,8 @@ Image DiskInAnAureole(double radius, float of_white, double fades_in) {
   return image;
 }
 
-// Clipping stands for the curve. A ring would be a third darker, like what lies three pixels behind.
-// The sky under a sun that sets fades in four pixels of a wide picture.
+// Clipping stands for the curve. A ring would be a third darker, like what lies three pixels
+// behind. The sky under a sun that sets fades in four pixels of a wide picture.
 TEST(ClippedEdge, ASteepAureoleHasNoDarkRingAtTheDisk) {
   constexpr double kRadius = 2.5;
   for (const double fades_in : {6.0, 4.0}) {

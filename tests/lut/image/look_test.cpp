@@ -80,7 +80,8 @@ TEST(Look, ACameraPrintsAFullMoonFourStopsDarkerAndStarsSix) {
   }
 }
 
-// Krawczyk et al. (2005), equation 11, at 1 cd/m^2 and at 4096: 1.03 - 2 / 2.3010, 1.03 - 2 / 5.6125.
+// Krawczyk et al. (2005), equation 11, at 1 cd/m^2 and at 4096: 1.03 - 2 / 2.3010, 1.03 - 2 /
+// 5.6125.
 TEST(Look, ACameraPrintsDuskByThePublishedKey) {
   const double key = 1.03 - 2.0 / (2.0 + std::log10(2.0));
   const double day = 1.03 - 2.0 / (2.0 + std::log10(4097.0));

@@ -34,7 +34,8 @@ std::vector<Color> Colours() {
   return colours;
 }
 
-// Sobotka's configuration: 10 of 16.5 stops lie below 0.18, the curve's pivot is (20/33, 0.5).
+// In Sobotka's configuration 10 of 16.5 stops lie below 0.18, and the curve's pivot is (20/33,
+// 0.5).
 TEST(Agx, MiddleGreyIsHalfTheCodeRange) {
   const double share = shared::AgxWhiteShare(0.18, 0.18, 0.18);
   EXPECT_NEAR(share, 0.18, 1e-9) << "the shares of the primaries are given to 11 digits";
@@ -105,8 +106,8 @@ double Chroma(const Color& colour) {
   return std::hypot(lab.a, lab.b);
 }
 
-// A clear sky at noon over a range that is metered at EV 15.3 has this linear light [cd/m^2], 10 and
-// 20 degrees over the horizon.
+// A clear sky at noon over a range that is metered at EV 15.3 has this linear light [cd/m^2], 10
+// and 20 degrees over the horizon.
 const std::vector<Color> kClearSky = {{3203, 5118, 9254}, {2229, 3694, 7288}};
 
 TEST(AgxLooks, ABlueSkyKeepsItsHueAndItsChromaInAPhoto) {
@@ -130,8 +131,8 @@ TEST(AgxLooks, WarmLightTurnsToYellowAsTheCurveHasIt) {
   EXPECT_GT(turned, Hue(lamp)) << "90 degrees is OKLab's yellow";
 }
 
-// This holds for what is brighter than black by a code, at least, and is not at the border of what is
-// shown.
+// This holds for what is brighter than black by a code, at least, and is not at the border of what
+// is shown.
 TEST(AgxLooks, NoneShowsATonesChromaOver1p3TimesTheScenes) {
   for (const std::string& name : AgxLookNames()) {
     for (const Color& hue : {Color{1.0, 0.7, 0.45}, Color{0.3, 0.5, 1.0}, Color{0.3, 0.45, 0.2},

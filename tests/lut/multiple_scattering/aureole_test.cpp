@@ -17,7 +17,7 @@
 namespace alpenglow::lut {
 namespace {
 
-/// A direction as high as the sun, some degrees beside it.
+/// Returns a direction as high as the sun, some degrees beside it.
 ViewRay BesideTheSun(double sun_deg, double from_sun_deg) {
   const double zenith_deg = 90.0 - sun_deg;
   const double azimuth_deg = 2.0 / kRadiansPerDegree *
@@ -33,7 +33,7 @@ class AureoleAir {
                       const MultipleScatteringOptions& options = tests::kSmallLight)
       : medium_(medium), air_(medium), multiple_scattering_(medium, options) {}
 
-  /// Light of all orders, per unit solar irradiance [1/sr].
+  /// Returns light of all orders, per unit solar irradiance [1/sr].
   [[nodiscard]] Bands<float> Radiance(const ViewRay& ray) const {
     const auto samples = air_.Sample(ray, {.nodes = 12, .dark_samples = true});
     Bands<float> light = air_.Inscatter(air_.Scatter(samples), ray.nu);
@@ -42,7 +42,7 @@ class AureoleAir {
     return light;
   }
 
-  /// [cd/m^2]
+  /// Returns the luminance [cd/m^2].
   [[nodiscard]] double Luminance(const ViewRay& ray) const {
     const Bands<float> light = Radiance(ray);
     std::vector<double> radiance;
@@ -59,8 +59,8 @@ class AureoleAir {
   MultipleScattering multiple_scattering_;
 };
 
-// Scattered once in plane layers, seen as high as the sun: every path through the air has the same
-// length, m = 1 / sin(elevation) vertical ones, and
+// For light scattered once in plane layers, seen as high as the sun, every path through the air has
+// the same length, m = 1 / sin(elevation) vertical ones, and
 //
 //   L = m (tau_R p_R + tau_M albedo p_M) exp(-m tau).
 //
@@ -81,9 +81,10 @@ TEST(Aureole, OfEarthAtOneDegreeIsThatOfContinentalAir) {
   EXPECT_LT(all, 1.15 * once);
 }
 
-// Light scattered once by a sun at 20 degrees of 133 klx, by the formula above with m = 2.92 and
-// optical depths of 0.1 (molecules), 0.05 (aerosol) and 0.03 (ozone): 42,700 cd/m^2. Higher orders
-// add less than 10 %. A lobe of the same mean cosine, 1.25 / sr at 1 degree, has 17,000.
+// Light scattered once by a sun at 20 degrees of 133 klx follows from the formula above with m =
+// 2.92 and optical depths of 0.1 (molecules), 0.05 (aerosol) and 0.03 (ozone): 42,700 cd/m^2.
+// Higher orders add less than 10 %. A lobe of the same mean cosine, 1.25 / sr at 1 degree, has
+// 17,000.
 TEST(Aureole, OfEarthIsMoreThanTwiceThatOfOneLobe) {
   const ViewRay ray = BesideTheSun(20.0, 1.0);
   const double earth = AureoleAir(MediumPreset("earth")).Luminance(ray);
@@ -126,7 +127,8 @@ double RmsErrorOfAureole(const Medium& medium, const std::vector<TracedAureole>&
   return std::sqrt(squares / static_cast<double>(4 * views.size()));
 }
 
-// From 1 to 10 degrees beside suns at 50, 15, 5 and 2 degrees, and towards one that has set.
+// The views are 1 to 10 degrees beside suns at 50, 15, 5 and 2 degrees, and towards one that has
+// set.
 TEST(Aureole, OfEarthAgreesWithPathsByDayAndAtSunset) {
   EXPECT_LT(RmsErrorOfAureole(MediumPreset("earth"),
                               {

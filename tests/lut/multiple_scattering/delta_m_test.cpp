@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Light of all orders in hazy and dusty air, where aerosol throws it forward.
+// Light of all orders is right in hazy and dusty air, where aerosol throws it forward.
 #include "lut/multiple_scattering/delta_m.h"
 
 #include <gtest/gtest.h>
@@ -31,7 +31,7 @@ struct Traced {
 };
 constexpr double kToSpace_m = 1e9;
 
-/// Relative errors of light of all orders.
+/// Returns relative errors of light of all orders.
 std::vector<double> ErrorsOf(const Medium& medium, const MultipleScatteringOptions& options,
                              const std::vector<Traced>& views) {
   const MultipleScattering light(medium, options);

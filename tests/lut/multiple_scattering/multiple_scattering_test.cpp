@@ -147,7 +147,7 @@ TEST(LegendreCoefficients, OfATableAreThoseOfItsBrokenLine) {
   const auto chi = LegendreCoefficients(phase, 6);
   EXPECT_NEAR(chi[0], 1.0, 1e-7);
   EXPECT_NEAR(chi[1], MeanCosine(phase), 1e-7);
-  // Sums over a million angles, error of second order in the step.
+  // The sum over a million angles has an error of second order in the step.
   double p2 = 0.0;
   constexpr int kSteps = 1000000;
   for (int i = 0; i < kSteps; ++i) {
@@ -271,7 +271,7 @@ TEST(MultipleScattering, DaylightAgreesWithPathTracingToAnEighthOfAPercent) {
 
 TEST(MultipleScattering, TwilightAgreesWithPathTracingToOnePercent) {
   if (!stored::Available()) GTEST_SKIP() << "no stored cases at " << stored::Folder();
-  // Includes two hazy rays with the sun 10 degrees down, where the stored sigma is 0.6 %.
+  // This includes two hazy rays with the sun 10 degrees down, where the stored sigma is 0.6 %.
   ExpectStoredTotals("twilight", {"earth", "earth_a03", "rayleigh", "spec5"}, 1e-2, 9);
 }
 
@@ -455,7 +455,7 @@ TEST(MultipleScattering, ThinnestAndThickestLayersGiveLight) {
     medium.mie_scale_height_m = mie_m;
     const MultipleScattering light(medium, tests::kSmallLight);
     for (const float value : light.values()) EXPECT_TRUE(std::isfinite(value));
-    // What falls on the ground is no more than sun and nothing less than none.
+    // More than nothing falls on the ground, and less than the sun.
     const auto sky = light.SkyIrradiance(0.0, 0.7);
     for (std::size_t band = 0; band < sky.count; ++band) {
       EXPECT_GT(sky[band], 0.0F) << rayleigh_m << " " << mie_m;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Polarised light of all orders against published tables, stored cases and the path tracer.
+// Polarised light of all orders agrees with published tables, stored cases and the path tracer.
 #include "lut/multiple_scattering/polarised_scattering.h"
 
 #include <gtest/gtest.h>
@@ -21,7 +21,7 @@ namespace {
 
 using slab::Stokes;
 
-/// Light along rays of one medium, ground at their ends included.
+/// Computes light along rays of one medium, ground at their ends included.
 class Sky {
  public:
   Sky(const Medium& medium, const MultipleScatteringOptions& options)
@@ -79,8 +79,8 @@ struct Errors {
   int count = 0;
 };
 
-// These options have twice the suns and the nodes along rays, and more of them for later orders. The
-// usual numbers leave larger errors in layers that are thinner than real air.
+// These options have twice the suns and the nodes along rays, and more of them for later orders.
+// The usual numbers leave larger errors in layers that are thinner than real air.
 constexpr MultipleScatteringOptions kFine{.sun_angles = 64,
                                           .ray_nodes = 20,
                                           .later_zenith_nodes = 10,
@@ -146,7 +146,7 @@ TEST(PolarisedLight, AgreesWithStoredSkiesOnTheSphere) {
   std::map<std::string, Sky> skies;
   std::map<std::string, Errors> errors;
   for (const stored::Row& row : stored::Read("polarised.csv")) {
-    // A segment in haze, where what moments to degree 6 lack is 3 to 5 %, of scalar light too.
+    // In this segment in haze, moments to degree 6 lack 3 to 5 %, of scalar light too.
     if (row.at("set") == "haze20mix" && row.at("end") == "dist") continue;
     Medium medium = Polarised(media.at(row.at("set")));
     medium.rayleigh_depolarisation = {stored::Number(row, "depolarisation")};
@@ -184,7 +184,7 @@ TEST(PolarisedLight, AgreesWithPathsInDepolarisingAirAndHaze) {
         medium, reference::ScatteringOf(medium), ray, {.max_paths = 8000, .relative_error = 0.003});
     for (std::size_t band = 0; band < 2; ++band) {
       const Stokes found = sky.Along(ray, band);
-      // Four standard errors and 0.3 %, the bound by day.
+      // The tolerance is four standard errors and 0.3 %, the bound by day.
       const double slack = 0.003 * traced.i.total[band];
       EXPECT_NEAR(found.i, traced.i.total[band], 4.0 * traced.i.standard_error[band] + slack);
       EXPECT_NEAR(found.q, traced.q.total[band], 4.0 * traced.q.standard_error[band] + slack);
@@ -202,7 +202,7 @@ TEST(PolarisedLight, OfAirWithoutMoleculesIsScalarLight) {
     const reference::PathTracedRadiance traced = reference::TraceRadiance(
         InScalarLight(medium), ray, {.max_paths = 4000, .relative_error = 0.003});
     const Stokes found = sky.Along(ray, 0);
-    // Four standard errors, and 0.5 % of moments to degree 6.
+    // The tolerance is four standard errors, and 0.5 % of moments to degree 6.
     EXPECT_NEAR(found.i, traced.total[0], 4.0 * traced.standard_error[0] + 0.005 * traced.total[0])
         << sun_deg;
     EXPECT_EQ(found.q, 0.0);

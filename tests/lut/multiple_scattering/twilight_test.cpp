@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: MIT
-// Light of the twilight sky is compared with the published illuminances of the U.S. Naval Observatory
-// (Brown 1952; shared/tables), average clear sky at sea level. Skies of Mars have the colours that
-// people see: butterscotch by day, a blue glow around the setting sun.
+// Light of the twilight sky is compared with the published illuminances of the U.S. Naval
+// Observatory (Brown 1952; shared/tables), average clear sky at sea level. Skies of Mars have the
+// colours that people see: butterscotch by day, a blue glow around the setting sun.
 //
 // Deep twilight is light scattered at 20 to 80 km, where the air is thinner than an exponential of
 // 8 km says: by a factor of 2 at 40 km in the U.S. Standard Atmosphere 1976. With the scale height
-// that the standard atmosphere has there, and the same column, illuminance is right within a quarter
-// from sunset to the end of nautical twilight. With 8 km it is twice too bright from -6 degrees on.
+// that the standard atmosphere has there, and the same column, illuminance is right within a
+// quarter from sunset to the end of nautical twilight. With 8 km it is twice too bright from -6
+// degrees on.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -31,7 +32,7 @@ namespace {
 
 constexpr double kNightSky_lux = 0.0005;  // what the table adds (Janiczek, DeYoung 1987)
 
-/// Two columns of a published table as x -> y; empty where the table is absent.
+/// Returns two columns of a published table as x -> y, or nothing where the table is absent.
 std::map<double, double> Table(const std::string& file, std::size_t x, std::size_t y) {
   std::ifstream in(std::filesystem::path(tests::kSharedFolder) / "tables" / file);
   std::map<double, double> table;
@@ -47,7 +48,7 @@ std::map<double, double> Table(const std::string& file, std::size_t x, std::size
 
 std::map<double, double> PublishedLux() { return Table("illuminance_vs_sun_altitude.csv", 0, 2); }
 
-/// Relative density at 40 km of the U.S. Standard Atmosphere.
+/// Returns the relative density at 40 km of the U.S. Standard Atmosphere.
 double DensityAt40Km() { return Table("ussa76_profile.csv", 0, 6).at(40.0); }
 
 double TrueElevation(double apparent_rad) {
@@ -56,7 +57,7 @@ double TrueElevation(double apparent_rad) {
   return elevation;
 }
 
-/// Illuminance [lx] of a horizontal plane on the ground.
+/// Computes illuminance [lx] of a horizontal plane on the ground.
 class Daylight {
  public:
   explicit Daylight(const Medium& medium) : air_(medium), multiple_scattering_(medium) {}
@@ -72,7 +73,7 @@ class Daylight {
   MultipleScattering multiple_scattering_;
 };
 
-/// The same column of molecules in one exponential.
+/// Returns the medium with the same column of molecules in one exponential.
 Medium WithOneExponential(Medium medium, double height_m) {
   for (double& scattering : medium.rayleigh_scattering_per_m)
     scattering *= MoleculeColumn_m(medium) / height_m;
@@ -130,7 +131,7 @@ TEST(Twilight, OfOneExponentialIsTooBrightBecauseAirIsTooDenseHighUp) {
 
 class MarsSky : public testing::Test {
  protected:
-  // Linear sRGB of the sky, sun included in no pixel.
+  // Returns linear sRGB of the sky without the sun.
   // Angles in degrees: elevations, azimuth from the sun.
   std::array<double, 3> Sky(double sun_deg, double elevation_deg, double azimuth_deg) const {
     const SkyView view(air_, multiple_scattering_, 2.0, std::sin(sun_deg * kRadiansPerDegree));
@@ -144,7 +145,7 @@ class MarsSky : public testing::Test {
   }
   static double BlueOverRed(const std::array<double, 3>& colour) { return colour[2] / colour[0]; }
 
-  // Solved once for all tests.
+  // The air is solved once for all tests.
   inline static const Medium medium_ = MediumPreset("mars");
   inline static const SingleScattering<float> air_{medium_};
   inline static const MultipleScattering multiple_scattering_{medium_};

@@ -173,7 +173,7 @@ TEST(Report, MoreEffortIsLessError) {
               rms("transmittance", "table, 64 x 16", r));
     EXPECT_LT(rms("transmittance", "midpoint march, 160 steps", r),
               rms("transmittance", "midpoint march, 10 steps", r));
-    // First-order truth: light of higher orders is there, and it is not isotropic.
+    // Light of higher orders is there, and it is not isotropic.
     EXPECT_GT(rms("all_orders", "single scattering only", r), 0.1);
     EXPECT_LT(rms("all_orders", "isotropic table (Hillaire 2020), 32 x 32, 64 directions", r),
               rms("all_orders", "single scattering only", r));
@@ -188,7 +188,7 @@ TEST(Report, NoiseOfTheReferenceIsTakenFromTheErrors) {
   const auto statistics = [&](double off) {
     return StatisticsOf(rays, ErrorKind::kRelative, {{2.0 + off}, {2.0 - off}, {2.0 + off}, {2.0}});
   };
-  // Errors 5, 5, 5, 0 %; noise 1 %.
+  // The errors are 5, 5, 5 and 0 %; the noise is 1 %.
   EXPECT_NEAR(statistics(0.1).rms, std::sqrt(0.75 * 0.0025 - 0.0001), 1e-9);
   EXPECT_FALSE(statistics(0.1).rms_is_bound);
   EXPECT_NEAR(statistics(0.1).largest, 0.05, 1e-9);
@@ -245,7 +245,7 @@ TEST(ReportRays, FromSpaceTheSunStandsOverTheLowestPointOfTheRay) {
 }
 
 TEST(ReportBaselines, ChapmanApproximationsAreAsGoodAsPublished) {
-  // One exponential of 8 km, as the publications reference solution themselves; nothing but its height matters.
+  // The publications reference solution themselves by one exponential of 8 km. Nothing but its height matters.
   Medium medium = MediumPreset("earth");
   medium.rayleigh_scale_height_m = 8000.0;
   medium.rayleigh_deficit = {};

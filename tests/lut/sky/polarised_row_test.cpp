@@ -98,9 +98,10 @@ class Meridian {
 };
 
 // Coulson (1988), Polarization and Intensity of Light in the Atmosphere, and Horvath, Varju (2004),
-// Polarized Light in Animal Vision, give the observed distances. Babinet's point is over the sun and
-// Brewster's below it by 10 to 25 degrees, nearer to a high sun. Arago's is 18 to 25 degrees over the
-// antisolar point of a low sun, farther in the blue than in the red and after sunset than before.
+// Polarized Light in Animal Vision, give the observed distances. Babinet's point is over the sun
+// and Brewster's below it by 10 to 25 degrees, nearer to a high sun. Arago's is 18 to 25 degrees
+// over the antisolar point of a low sun, farther in the blue than in the red and after sunset than
+// before.
 TEST(PolarisedSky, NeutralPointsStandWhereTheyAreObserved) {
   for (const char* air : {"clear-mountain", "hazy"}) {
     const LitAir lit(MediumPreset(air, {450.0, 550.0, 650.0}));

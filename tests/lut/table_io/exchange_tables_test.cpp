@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Tables for other programs are read by code of this file alone. It was written from the description
-// of those programs' formats: which texel is where, and what it must hold.
+// Tables for other programs are read by code of this file alone. It was written from the
+// description of those programs' formats: which texel is where, and what it must hold.
 #include "lut/table_io/exchange_tables.h"
 
 #include <OpenEXR/ImfChannelList.h>
@@ -45,7 +45,7 @@ double CosineOfDistance(double distance, double from_squared, double to_squared,
                          : (to_squared - from_squared - distance * distance) / (2.0 * r * distance);
 }
 
-/// x = nu * 32 + mu_s; y < 64 hits the ground.
+/// Returns the place of a texel, where x = nu * 32 + mu_s; y < 64 hits the ground.
 Place PlaceOf(int x, int y, int z, double mu_s_min) {
   const double H = kHorizon_km, rb = kPlanet_km, rt = kTop_km;
   const double rho = H * z / 31.0;
@@ -81,7 +81,7 @@ double HalfFromBits(unsigned bits) {
   return (bits >> 15U) != 0 ? -magnitude : magnitude;
 }
 
-/// A raw file of RGBA: x fastest, then y, then z, little-endian.
+/// Reads a raw file of RGBA: x fastest, then y, then z, little-endian.
 class Raw {
  public:
   Raw(const fs::path& file, std::size_t width, std::size_t height, std::size_t bytes_a_value)
@@ -109,7 +109,7 @@ class Raw {
   std::size_t width_, height_, size_;
 };
 
-/// An EXR of half RGBA whose last scan line is row 0.
+/// Reads an EXR of half RGBA whose last scan line is row 0.
 class ReversedExr {
  public:
   explicit ReversedExr(const fs::path& file, std::size_t height_of_layer)
@@ -379,7 +379,7 @@ TEST_F(TakramSet, TransmittanceIsThatOfTheReferenceToAHalf) {
     const double rho = kHorizon_km * y / 63.0;
     const double r = std::sqrt(rho * rho + kPlanet_km * kPlanet_km);
     const double d = (kTop_km - r) + x / 255.0 * (rho + kHorizon_km - (kTop_km - r));
-    // One rounding above the horizon, which the last column touches.
+    // The ray is one rounding above the horizon, which the last column touches.
     const double mu = std::clamp(
         CosineOfDistance(d, rho * rho, kHorizon_km * kHorizon_km, r) + (x == 255 ? 1e-12 : 0.0),
         -1.0, 1.0);
@@ -489,7 +489,7 @@ TEST_F(TakramSet, ADamagedTextureIsRefusedByItsName) {
     WriteText(file, bad);
     ExpectRefused(folder_, "channel G of texel 1000 is");
   }
-  // Rows from the first to the last, as three-atmosphere does not read them.
+  // Rows go from the first to the last, as three-atmosphere does not read them.
   std::string turned;
   for (std::size_t row = 4096; row-- > 0;) turned += whole.substr(row * 2048, 2048);
   WriteText(file, turned);
@@ -506,7 +506,7 @@ TEST_F(ExchangeFiles, TheLowestSunIsFoundOutFromTexels) {
   EXPECT_EQ(description.options.layout, ExchangeLayout::kBruneton);
   EXPECT_EQ(description.options.lowest_sun_deg, 102.0);
   ASSERT_EQ(description.textures.size(), 3U);
-  // Ours in float: sixteen nodes against twenty-four.
+  // Tables in float have sixteen nodes, the description twenty-four.
   EXPECT_LT(description.textures[2].errors.median, 1e-5);
   EXPECT_LT(description.textures[2].errors.largest, 1e-2);
 }

@@ -60,8 +60,8 @@ class TableFile : public TemporaryFolder {
   /// Returns the header of a good file, with its channels and attributes.
   [[nodiscard]] Imf::Header GoodHeader() const { return Imf::InputFile(good_.c_str()).header(); }
 
-  /// Returns a header of the good size with every attribute of the program but one, and no channels.
-  /// (Imf::Header::erase leaks.)
+  /// Returns a header of the good size with every attribute of the program but one, and no
+  /// channels. (Imf::Header::erase leaks.)
   [[nodiscard]] Imf::Header HeaderWithout(const std::string& name) const {
     const Imf::Header good = GoodHeader();
     Imf::Header header(8, 4);
@@ -73,7 +73,7 @@ class TableFile : public TemporaryFolder {
     return header;
   }
 
-  /// Writes zeros (or `value`) under a header; every channel by its own type.
+  /// Writes `value` under a header, in every channel by its own type.
   void WriteImage(const Imf::Header& header, float value = 0.5F) const {
     const auto window = header.dataWindow();
     const auto width = static_cast<std::size_t>(window.max.x - window.min.x + 1);
@@ -428,7 +428,7 @@ long PeakOfReading(const fs::path& file) {
     try {
       static_cast<void>(DescribeTable(file));
     } catch (const InputError&) {
-      // Refused: what is wanted.
+      // The file must be refused.
     }
     _exit(0);
   }

@@ -38,7 +38,8 @@ std::vector<SkySpectrum> FreshSkies() {
   return DrawSkySpectra(drawing);
 }
 
-// Returns what a renderer gets: radiance in bands, through BandColour, relative to the sun's colour.
+// Returns what a renderer gets: radiance in bands, through BandColour, relative to the sun's
+// colour.
 std::vector<Triple> ColoursThroughBands(const std::vector<double>& wavelengths_nm,
                                         const std::vector<SkySpectrum>& spectra) {
   const std::vector<double> fine = FineWavelengths();

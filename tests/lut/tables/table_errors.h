@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Errors of tables in numbers: what the tests of the tables share.
+// Statistics of the errors of tables.
 #pragma once
 
 #include <algorithm>
@@ -8,7 +8,7 @@
 
 namespace alpenglow::lut {
 
-/// Differences between a method and the reference solution on the same work.
+/// Collects differences between a method and the reference solution on the same work.
 class ErrorStatistics {
  public:
   void Add(double value, double truth) {
@@ -22,11 +22,11 @@ class ErrorStatistics {
     for (const double error : absolute_) sum += error * error;
     return std::sqrt(sum / static_cast<double>(absolute_.size()));
   }
-  /// Relative to the rms of the truth.
+  /// Returns the rms relative to the rms of the truth.
   [[nodiscard]] double RelativeRms() const {
     return Rms() / std::sqrt(truth_squares_ / static_cast<double>(absolute_.size()));
   }
-  /// The error that a share of all (0.5: the median) do not exceed.
+  /// Returns the error that a share of all (0.5: the median) do not exceed.
   [[nodiscard]] double Quantile(double share) const {
     std::vector<double> sorted = absolute_;
     std::sort(sorted.begin(), sorted.end());

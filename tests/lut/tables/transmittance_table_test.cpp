@@ -32,7 +32,7 @@ TEST(TransmittanceTable, TexelsAreTheTransmittanceOfTheirRays) {
   for (std::size_t row = 0; row < 7; ++row) {
     for (std::size_t column = 0; column < 9; ++column) {
       const auto point = table.PointOfTexel(column, row);
-      // The reference solution calls grazing rays blocked by its own rounding: it gets a nudge up.
+      // Rounding makes the reference solution call grazing rays blocked. A nudge up avoids that.
       const ViewRay ray{point.altitude_m, std::min(point.mu + 1e-12, 1.0), 1.0, 1.0};
       for (std::size_t band = 0; band < bands; ++band) {
         EXPECT_NEAR(table.texels()[(row * 9 + column) * bands + band],
@@ -89,7 +89,7 @@ TEST(TransmittanceTable, SegmentsAreQuotients) {
       ViewRay beyond = ray;
       beyond.length_m = std::numeric_limits<double>::infinity();
       const double truth = ReferenceTransmittance(medium, ray, band);
-      // The way to space in the direction of the quotient: its smallness magnifies the error.
+      // A small transmittance to space in the direction of the quotient magnifies the error.
       const bool ground = HitsGround(medium, beyond);
       const double whole =
           ground ? table.LookupAlong(beyond)[band] : table.Lookup(ray.altitude_m, ray.mu)[band];
