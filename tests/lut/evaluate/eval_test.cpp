@@ -714,13 +714,6 @@ TEST_F(LampCases, StoredCasesAreAsNearAsIsAskedFor) {
     ExpectStored(Evaluate(StoredAsCases(), {.max_error = error}), error);
 }
 
-TEST_F(LampCases, StoredCasesAreAsNearAsIsAskedFor) {
-  if (!stored::Available()) GTEST_SKIP() << "no stored cases at " << stored::Folder();
-  for (const double error : {1e-3, 1e-4, 1e-5, 1e-8}) {
-    ExpectStored(Evaluate(StoredAsCases(), {.max_error = error}), error);
-  }
-}
-
 TEST_F(LampCases, AFileOfLampsIsKnownByItsHeader) {
   WriteText(folder_ / "lamps.csv", kLampHeader);
   WriteText(folder_ / "sky.csv", "id,quantity,altitude_m\n");

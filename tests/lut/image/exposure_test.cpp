@@ -200,16 +200,10 @@ float RolledOff(double stops) {
   return WithHighlightsRolledOff(image, 12.0).rgb[0][1];
 }
 
-TEST(Highlights, AreTheLogarithmOfTheirStopsOverGrey) {
+TEST(Highlights, AreTheLogarithmOfStopsOverGreyAndKeepTheirColour) {
   for (const double stops : {0.01, 1.0, 3.0, 6.0, 20.0})
     EXPECT_NEAR(RolledOff(stops) / At(std::log1p(stops))[1], 1.0, 2e-6) << stops << " stops, float";
-}
-
-TEST(Highlights, WhatIsDarkerThanGreyStays) {
   for (const double stops : {-10.0, -1.0, 0.0}) EXPECT_EQ(RolledOff(stops), At(stops)[1]);
-}
-
-TEST(Highlights, KeepTheirColour) {
   Image image(1, 1);
   image.rgb = {{4000.0F, 8000.0F, 16000.0F}};
   const std::array<float, 3> rgb = WithHighlightsRolledOff(image, 12.0).rgb[0];

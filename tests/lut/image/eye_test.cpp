@@ -83,9 +83,10 @@ Image Uniform(std::array<float, 3> rgb, float scotopic) {
   return image;
 }
 
-TEST(NightVision, LeavesDaylightAloneToTheLastBit) {
+TEST(NightVision, LeavesDaylightAloneAndNeedsTheLightThatRodsSee) {
   const Image day = Uniform({30.0F, 10.0F, 5.0F}, 20.0F);
   EXPECT_EQ(SeenByNight(day).rgb, day.rgb);
+  EXPECT_THROW((void)SeenByNight(Image(2, 2)), InputError);
 }
 
 TEST(NightVision, TakesColourAwayAndTurnsTheRestBlue) {
@@ -113,10 +114,6 @@ TEST(NightVision, IsNeverBrighterThanWhatConesWouldSee) {
   }
 }
 
-TEST(NightVision, NeedsTheLightThatRodsSee) {
-  EXPECT_THROW((void)SeenByNight(Image(2, 2)), InputError);
-}
-
 TEST(EyeAdaptation, FollowsMoreLightAndDuskWithoutALag) {
   EyeAdaptation eye;
   EXPECT_EQ(eye.Follow(-5.0, 0.0), -5.0);
@@ -126,19 +123,16 @@ TEST(EyeAdaptation, FollowsMoreLightAndDuskWithoutALag) {
 }
 
 // Light falls from daylight to that of a total eclipse within a minute.
-TEST(EyeAdaptation, LagsBehindLightThatFallsFasterThanRodsRegenerate) {
+TEST(EyeAdaptation, LagsBehindFallingLightButNotAfterAGlanceIntoShade) {
   EyeAdaptation eye;
   (void)eye.Follow(13.0, 0.0);
   EXPECT_DOUBLE_EQ(eye.Follow(3.0, 60.0), 13.0 - 0.8 - 4.0);
   EXPECT_DOUBLE_EQ(eye.Follow(3.0, 120.0), 13.0 - 3 * 0.8 - 4.0);
   EXPECT_DOUBLE_EQ(eye.Follow(3.0, 600.0), 3.0) << "13 minutes regenerate 10.4 EV";
-}
-
-TEST(EyeAdaptation, AGlanceIntoShadeIsSeenAtOnce) {
-  EyeAdaptation eye;
-  (void)eye.Follow(15.0, 0.0);
-  EXPECT_EQ(eye.Follow(11.0, 0.0), 11.0);
-  EXPECT_EQ(eye.Follow(15.0, 0.0), 15.0);
+  EyeAdaptation glance;
+  (void)glance.Follow(15.0, 0.0);
+  EXPECT_EQ(glance.Follow(11.0, 0.0), 11.0) << "seen at once";
+  EXPECT_EQ(glance.Follow(15.0, 0.0), 15.0);
 }
 
 constexpr double kPixel_rad = 0.05 * kRadiansPerDegree;

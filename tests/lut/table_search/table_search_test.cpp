@@ -50,9 +50,6 @@ TEST(TableSearch, ResamplingKeepsTheNodesThatStay) {
   for (std::size_t band = 0; band < 3; ++band) {
     EXPECT_NEAR(after[18 + band], before[45 + band], 1e-6F) << "irradiance comes last";
   }
-}
-
-TEST(TableSearch, ResamplingRefusesADegreeThatTheLightLacks) {
   EXPECT_THROW(static_cast<void>(Resampled(Small(), 5, 7, 6)), InternalError) << "it has degree 4";
 }
 
