@@ -17,10 +17,6 @@
 //   v = tanh((x - m) / 2 s),
 //
 // which maps tails falling as exp(-|x - m| / s) to finite, smooth ends.
-//
-// For comparison, this header also provides the closed form of Sun, Ramamoorthi, Narasimhan and
-// Nayar (2005), "A practical analytic single scattering model for real time rendering", ACM TOG 24,
-// 1040, for isotropic scattering in homogeneous air.
 #pragma once
 
 #include <glm/vec3.hpp>
@@ -59,28 +55,5 @@ struct AirlightEffort {
 };
 [[nodiscard]] AirlightEffort EffortOfAirlight(const LampAir& air, const Lamp& lamp,
                                               const LampSegment& segment, int nodes = 16);
-
-/// Returns the irradiance of a surface by airlight of an isotropic lamp, for unit intensity [m^-2],
-/// in homogeneous air that fills all space: the integral of Airlight over the hemisphere. Error
-/// below 1e-2 against the reference solution integrated over the hemisphere, g up to 0.9.
-/// @param distance_m   distance of the lamp, > 0.
-/// @param cos_normal   cosine between the surface's normal and the direction to the lamp, [-1, 1].
-[[nodiscard]] Bands<double> AirlightOnSurface(const LampAir& air, double distance_m,
-                                              double cos_normal);
-
-/// Returns F(u, v) of Sun et al. (2005), equation 11: the integral of exp(-u tan xi) over xi from 0
-/// to v. Error below 1e-11.
-/// @param u >= 0, v in [0, pi/2].
-[[nodiscard]] double SunFunction(double u, double v);
-
-/// Returns airlight by Sun et al. (2005), equation 10: an isotropic lamp in homogeneous air that
-/// scatters isotropically, per unit intensity. It is computed as published, as the difference of
-/// two values of F: its relative error is unbounded when the lamp approaches the line of the ray
-/// outside of the segment.
-/// @param along_m, across_m  position of the lamp along the ray, and its distance from the ray
-/// (> 0).
-/// @param length_m  length of the segment; may be infinite.
-[[nodiscard]] double AirlightOfSun2005(double scattering_per_m, double extinction_per_m,
-                                       double length_m, double along_m, double across_m);
 
 }  // namespace alpenglow::atmosphere

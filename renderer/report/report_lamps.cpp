@@ -14,7 +14,7 @@
 
 #include "lut/cli/program.h"
 #include "renderer/lamps/lamp_light.h"
-#include "renderer/lamps/lamp_test_cases.h"
+#include "renderer/report/lamp_test_cases.h"
 #include "renderer/report/report.h"
 
 namespace alpenglow::renderer {

@@ -12,7 +12,7 @@
 
 #include "lut/cli/program.h"
 #include "renderer/illumination/aerial_perspective.h"
-#include "renderer/illumination/occlusion_march.h"
+#include "renderer/report/occlusion_march.h"
 #include "renderer/report/report.h"
 #include "renderer/surface/scene_ground.h"
 #include "renderer/visibility/shadow_heights.h"

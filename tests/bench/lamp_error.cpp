@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "atmosphere/lamp/airlight.h"
-#include "renderer/lamps/lamp_test_cases.h"
+#include "renderer/report/lamp_test_cases.h"
 
 namespace alpenglow::renderer {
 namespace {

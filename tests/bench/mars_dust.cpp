@@ -21,8 +21,8 @@
 #include <vector>
 
 #include "atmosphere/math/constants.h"
-#include "atmosphere/medium/lorenz_mie.h"
 #include "atmosphere/medium/phase.h"
+#include "tests/fixtures/lorenz_mie.h"
 
 namespace {
 

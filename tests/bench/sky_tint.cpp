@@ -25,7 +25,7 @@
 #include "atmosphere/ray/ray.h"
 #include "atmosphere/ray/single_scattering.h"
 #include "lut/multiple_scattering/multiple_scattering.h"
-#include "lut/table_search/sky_spectra.h"
+#include "tests/fixtures/sky_spectra.h"
 
 namespace alpenglow::lut {
 namespace {

@@ -14,9 +14,9 @@
 #include <vector>
 
 #include "atmosphere/math/constants.h"
-#include "atmosphere/medium/lorenz_mie.h"
 #include "atmosphere/medium/phase_table.h"
 #include "atmosphere/reference/path_tracer.h"
+#include "tests/fixtures/lorenz_mie.h"
 #include "tests/fixtures/polarised_slab.h"
 #include "tests/fixtures/stored_cases.h"
 

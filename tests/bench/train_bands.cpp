@@ -15,7 +15,7 @@
 
 #include "atmosphere/base/error.h"
 #include "atmosphere/colour/spectrum.h"
-#include "lut/table_search/band_training.h"
+#include "tests/fixtures/band_training.h"
 
 namespace alpenglow::lut {
 namespace {

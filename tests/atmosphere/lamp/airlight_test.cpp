@@ -11,6 +11,7 @@
 #include "atmosphere/math/constants.h"
 #include "atmosphere/math/numerics.h"
 #include "atmosphere/reference/airlight_reference.h"
+#include "tests/fixtures/airlight_on_surface.h"
 #include "tests/fixtures/lamp_cases.h"
 
 namespace alpenglow::atmosphere {
@@ -106,26 +107,6 @@ TEST(AirlightReference, TheThinLimitIsTheAngleThatTheSegmentFills) {
       reference::AirlightAlong(air, LampAt({5.0, 2.0, 0.0}), Along({1.0, 0.0, 0.0}, 12.0));
   const double angle = std::atan2(5.0, 2.0) + std::atan2(7.0, 2.0);
   EXPECT_NEAR(found.radiance[0] / (1e-12 / (4.0 * kPi * 2.0) * angle), 1.0, 1e-9);
-}
-
-TEST(Airlight, SunsClosedFormIsTheIntegralForIsotropicFog) {
-  for (int i = 1; i <= 50; ++i) {
-    const double sigma = Logarithmic(1e-3, 0.05, Halton(i, 2));
-    const double along = 100.0 * Halton(i, 3), across = Logarithmic(0.5, 50.0, Halton(i, 5));
-    const double length = i % 4 == 0 ? kInfinite : Logarithmic(5.0, 500.0, Halton(i, 7));
-    const LampAir air = HomogeneousAir(sigma, sigma, HenyeyGreenstein(0.0));
-    const double truth =
-        reference::AirlightAlong(air, LampAt({along, across, 0.0}), Along({1.0, 0.0, 0.0}, length))
-            .radiance[0];
-    EXPECT_NEAR(AirlightOfSun2005(sigma, sigma, length, along, across) / truth, 1.0, 1e-7)
-        << "differences of F lose what lies before the segment: case " << i;
-  }
-}
-
-TEST(Airlight, SunsFunctionHasItsKnownValues) {
-  EXPECT_NEAR(SunFunction(0.0, 1.2), 1.2, 1e-11) << "exp(0) over the angle";
-  // F(u, pi/2) = Ci(u) sin(u) + (pi/2 - Si(u)) cos(u); at u = 1 (Abramowitz and Stegun 5.2).
-  EXPECT_NEAR(SunFunction(1.0, 0.5 * kPi), 0.6214496242358134, 1e-10);
 }
 
 // Hard case 42.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "lut/table_search/band_training.h"
+#include "tests/fixtures/band_training.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>

@@ -9,6 +9,7 @@
 
 #include "atmosphere/math/constants.h"
 #include "atmosphere/math/numerics.h"
+#include "tests/fixtures/airlight_on_surface.h"
 
 namespace alpenglow::renderer {
 namespace {

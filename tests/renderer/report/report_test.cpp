@@ -9,7 +9,6 @@
 #include <cmath>
 #include <set>
 
-#include "renderer/lamps/lamp_test_cases.h"
 #include "tests/fixtures/report_files.h"
 #include "tests/fixtures/report_rows.h"
 #include "tests/fixtures/temporary_folder.h"
@@ -132,15 +131,6 @@ TEST(PictureReport, SunsClosedFormIsOnlyForIsotropicFogOfOneDensity) {
 TEST(PictureReport, SamplesOfAirlightCountThoseThatOnlyLook) {
   const ReportRow& row = RowOf("airlight", "panels around the light, 16 nodes");
   for (const RegimeResult& at : row.at) EXPECT_GT(at.samples, 16.0);
-}
-
-TEST(LampWorks, RulesAgreeWithTheReferenceWhenTheyTakeManyPoints) {
-  for (int i = 1; i <= 40; ++i) {
-    const LampTestCase work = LampTestCaseNumber(i, {.g = 0.5});
-    EXPECT_NEAR(AirlightByRule(LampRule::kEquiAngular, work, 20000) / work.truth, 1.0, 1e-4);
-    EXPECT_NEAR(AirlightByRule(LampRule::kHalfAngle, work, 64) / work.truth, 1.0, 1e-3);
-    EXPECT_NEAR(AirlightByRule(LampRule::kAsinh, work, 64) / work.truth, 1.0, 1e-3);
-  }
 }
 
 }  // namespace

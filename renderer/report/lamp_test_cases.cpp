@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: MIT
-#include "renderer/lamps/lamp_test_cases.h"
+#include "renderer/report/lamp_test_cases.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <vector>
 
 #include "atmosphere/math/constants.h"
 #include "atmosphere/math/numerics.h"
@@ -148,6 +150,30 @@ double AirlightByRule(LampRule rule, const LampTestCase& work, int nodes) {
     for (std::size_t i = 0; i < gauss.node.size(); ++i) add(gauss.node[i], gauss.weight[i]);
   }
   return sum;
+}
+
+double SunFunction(double u, double v) {
+  // With xi = atan y the integrand is exp(-u y) / (1 + y^2); beyond u y = 40 it is negligible.
+  const double end = u > 0.0 ? std::min(v, std::atan(40.0 / u)) : v;
+  const std::array<double, 3> panels{0.0, std::min(0.5 * end, std::atan(1.0 / std::max(u, 1e-3))),
+                                     end};
+  const auto integrand = [u](double xi) {
+    return std::vector<double>{std::exp(-u * std::tan(xi))};
+  };
+  return IntegrateAdaptively(integrand, 1, panels, 1e-13).value[0];
+}
+
+double AirlightOfSun2005(double scattering_per_m, double extinction_per_m, double length_m,
+                         double along_m, double across_m) {
+  const double distance = std::hypot(along_m, across_m);
+  const double gamma = std::atan2(across_m, along_m);
+  const double u = extinction_per_m * across_m;
+  const double v_end = std::isinf(length_m)
+                           ? 0.5 * kPi
+                           : 0.25 * kPi + 0.5 * std::atan((length_m - along_m) / across_m);
+  return scattering_per_m / (2.0 * kPi * across_m) *
+         std::exp(-extinction_per_m * distance * std::cos(gamma)) *
+         (SunFunction(u, v_end) - SunFunction(u, 0.5 * gamma));
 }
 
 }  // namespace alpenglow::renderer

@@ -1,7 +1,11 @@
 // SPDX-License-Identifier: MIT
 // This header generates random test cases of lamps beside rays with reference results, and provides
-// rules of the literature that integrate the same light.
+// rules of the literature that integrate the same light, and the closed form of Sun, Ramamoorthi,
+// Narasimhan and Nayar (2005), "A practical analytic single scattering model for real time
+// rendering", ACM TOG 24, 1040, for isotropic scattering in homogeneous air.
 #pragma once
+
+#include <limits>
 
 #include "atmosphere/lamp/airlight.h"
 #include "renderer/layer.h"
@@ -42,5 +46,20 @@ enum class LampRule {
 
 /// Integrates a test case with a rule over its whole segment, which must be finite.
 [[nodiscard]] double AirlightByRule(LampRule rule, const LampTestCase& work, int nodes);
+
+/// Returns F(u, v) of Sun et al. (2005), equation 11: the integral of exp(-u tan xi) over xi from 0
+/// to v. Error below 1e-11.
+/// @param u >= 0, v in [0, pi/2].
+[[nodiscard]] double SunFunction(double u, double v);
+
+/// Returns airlight by Sun et al. (2005), equation 10: an isotropic lamp in homogeneous air that
+/// scatters isotropically, per unit intensity. It is computed as published, as the difference of
+/// two values of F: its relative error is unbounded when the lamp approaches the line of the ray
+/// outside of the segment.
+/// @param along_m, across_m  position of the lamp along the ray, and its distance from the ray
+/// (> 0).
+/// @param length_m  length of the segment; may be infinite.
+[[nodiscard]] double AirlightOfSun2005(double scattering_per_m, double extinction_per_m,
+                                       double length_m, double along_m, double across_m);
 
 }  // namespace alpenglow::renderer

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "renderer/illumination/occlusion_march.h"
+#include "renderer/report/occlusion_march.h"
 
 #include <algorithm>
 #include <cmath>
