@@ -219,8 +219,8 @@ Subcommand AddReportCommand(CLI::App& app) {
   const auto options = std::make_shared<ReportCommandOptions>();
   CLI::App& report =
       *app.add_subcommand("report",
-                          "Measure every method against the reference solutions, error against "
-                          "time and memory, by day, at sunset "
+                          "Compare every method with reference solutions, error over time and "
+                          "memory, by day, at sunset "
                           "and in twilight: CSV, SVG plots, summary.md and a page, index.html.");
   report.add_option("--out", options->out, "Folder for the report; made when missing")
       ->check(FaultOfFolderName)

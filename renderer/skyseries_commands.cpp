@@ -44,11 +44,10 @@ void WriteMeasuredReport(const PictureReportOptions& options) {
 
 std::function<void()> AddPictureReportCommand(CLI::App& app) {
   const auto options = std::make_shared<PictureReportOptions>();
-  CLI::App& report =
-      *app.add_subcommand("report",
-                          "Measure the air before mountains, shafts, lamps and whole pictures "
-                          "against slow reference solutions, "
-                          "error against time: CSV, SVG plots, summary.md and a page, index.html.");
+  CLI::App& report = *app.add_subcommand(
+      "report",
+      "Compare the air in front of mountains, shafts, lamps and whole pictures with slow reference "
+      "solutions, error over time: CSV, SVG plots, summary.md and a page, index.html.");
   report.preparse_callback([&app](std::size_t) { app.get_option("--out")->required(false); });
   report.add_option("--out", options->out, "Folder for the report; made when missing")
       ->check(FaultOfFolderName)

@@ -6,7 +6,6 @@
 #include <oneapi/tbb/global_control.h>
 #include <sys/utsname.h>
 
-#include <chrono>
 #include <ctime>
 #include <fstream>
 #include <functional>
@@ -16,7 +15,7 @@
 #include "atmosphere/medium/medium_presets.h"
 #include "atmosphere/refraction/refracted_view.h"
 #include "lut/cli/program.h"
-#include "lut/report/report_measure.h"
+#include "lut/report/report_rays.h"
 #include "lut/version.h"
 
 namespace alpenglow::lut {
@@ -76,34 +75,33 @@ ReportWords Words() {
   return {
       .title = "Alpenglow: speed and accuracy",
       .lead =
-          "Every method of this library, and what the literature does in its place, answer the "
-          "same questions about the same rays in one run. This page holds what they got wrong "
-          "against what they cost.",
+          "All methods of this library, and the methods of the literature for the same quantities, "
+          "are evaluated on the same rays in one run. This page shows their errors and their "
+          "costs.",
       .minute =
-          "For each topic: the fastest method that nobody could tell from the truth, by day, at "
-          "sunset and in twilight. An error of 1 % in radiance is about the smallest step that an "
-          "eye sees side by side.",
+          "For each topic, this section names the fastest method whose errors are not visible by "
+          "day, at sunset and in twilight. An error of 1 % in radiance is about the smallest step "
+          "between adjacent areas that an observer sees.",
       .reading =
-          "Rays are points of Halton's sequence. Sun: elevation uniform over the range of the "
-          "column. Observer: 2 m, 1.5 km or 10 km above the ground. View: half of the rays "
-          "anywhere in the sky (uniform in solid angle), a quarter within 10° above the "
-          "horizontal, a quarter down to the ground; azimuth uniform. Beams to the sun "
-          "(transmittance) start in the lower half of the air, dense near the ground; in twilight "
-          "their lowest points are drawn so. Errors of radiance are relative to the radiance; what "
-          "is darker than a hundredth of the singly scattered light of the zenith, same place and "
-          "sun, counts as if it were that bright, but not in the column \"strict\", whose errors "
-          "are "
-          "relative to the radiance itself. From space (400 km) half of the views end on the "
-          "ground and half pass it at up to 100 km; the elevation is that of the sun at the ray's "
-          "lowest point. Molecules polarise light where the atmosphere "
-          "says so, the sun is a point, rays are straight."};
+          "Rays are points of Halton's sequence. Sun: the elevation is uniform over the range of "
+          "the column. Observer: 2 m, 1.5 km or 10 km above the ground. View: half of the rays "
+          "are anywhere in the sky (uniform in solid angle), a quarter within 10° above the "
+          "horizontal, a quarter down to the ground; the azimuth is uniform. Beams to the sun "
+          "(transmittance) start in the lower half of the air, most of them near the ground; in "
+          "twilight their lowest points are distributed in this way. Errors of radiance are "
+          "relative to the radiance. Values below a hundredth of the singly scattered light of "
+          "the zenith, at the same place under the same sun, count as if they were that bright, "
+          "except in the column \"strict\", whose errors are relative to the radiance itself. From "
+          "space (400 km), half of the views end on the ground and half pass it at up to 100 km; "
+          "the elevation is that of the sun at the ray's lowest point. Molecules polarise light if "
+          "the atmosphere says so, the sun is a point, and rays are straight."};
 }
 
 }  // namespace
 
 Report MeasureTopics(ReportWords words, bool quick, ProgressStyle style,
                      const std::vector<MeasureTopic>& topics) {
-  const auto start = std::chrono::steady_clock::now();
+  const Stopwatch watch;
   const std::clock_t cpu_start = std::clock();
   Report report{.words = std::move(words), .maker = Maker(), .quick = quick};
   Progress progress("report", topics.size(), style);
@@ -111,7 +109,7 @@ Report MeasureTopics(ReportWords words, bool quick, ProgressStyle style,
     report.topics.push_back(measure());
     progress.Advance();
   }
-  report.wall_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  report.wall_s = watch.Seconds();
   report.cpu_s = static_cast<double>(std::clock() - cpu_start) / CLOCKS_PER_SEC;
   return report;
 }

@@ -3,7 +3,7 @@
 // identical rays in one run.
 //
 // Every method of a topic (transmittance, light scattered once, all orders, panoramas, refraction)
-// is evaluated on one set of rays, drawn once from the distribution of report_measure.h, by day, at
+// is evaluated on one set of rays, drawn once from the distribution of report_rays.h, by day, at
 // sunset, in civil and nautical twilight, and from space. The error of a method is its difference
 // from the reference solution (reference_solution.h, path_tracer.h). Its cost is memory, the build time, and the
 // time of one evaluation on one thread. Methods of the literature, reimplemented from their
@@ -58,7 +58,7 @@ struct ErrorStatistics {
   double median = 0.0, rms = 0.0, percentile_99 = 0.0, largest = 0.0;
   /// The noise of the reference hides the error: rms is an approximate upper bound.
   bool rms_is_bound = false;
-  /// Errors relative to each value itself, however dark, above kDarkestValue (report_measure.h).
+  /// Errors relative to each value itself, however dark, above kDarkestValue (error_study.h).
   /// For rms and percentile_99, dark values count as brighter (DarkestRadiance).
   double strict_rms = 0.0, strict_percentile_99 = 0.0;
 };
@@ -80,7 +80,6 @@ struct ReportRow {
   std::string series;     // methods that differ only in size share a line in the plots
   std::string parameter;  // size or number of steps
   MethodOrigin origin = MethodOrigin::kOurs;
-  int style = 0;            // style of the line, see PlotSeries
   bool in_summary = false;  // whether summary.md shows the row
   std::uint64_t memory_bytes = 0;
   double build_s = 0.0;  // time to prepare, all threads; 0: no preparation

@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cctype>
+#include <limits>
 #include <map>
 #include <system_error>
 
@@ -53,47 +55,35 @@ std::string HashDigits(const ReportTopic& topic) {
   return topic.medium.name.empty() ? "" : fmt::format("{:016x}", MediumHash(topic.medium));
 }
 
-bool IsMeasuredEverywhere(const ReportRow& row) {
-  return std::all_of(row.at.begin(), row.at.end(),
-                     [](const RegimeResult& result) { return result.IsMeasured(); });
-}
-
 double CostOf(const ReportTopic& topic, const ReportRow& row, std::size_t regime) {
   return topic.cost == CostAxis::kTimeToBuild ? row.build_s : row.at[regime].time_s;
 }
 
-PlotPoint PointOf(const ReportRow& row, double x, std::size_t regime) {
-  const ErrorStatistics& error = row.at[regime].error;
-  return {x, error.rms, error.percentile_99, row.parameter};
-}
-
-/// Returns one panel per regime. `cost` returns the x value of a row in a regime; a value that is
-/// not positive means that there is no point.
+/// Returns one panel per regime, each with all series of the topic. `cost` returns the x value of a
+/// row in a regime; a value that is not positive means that there is no point.
 template <typename Cost>
 std::vector<PlotPanel> PanelsOf(const ReportTopic& topic, const Cost& cost) {
   std::vector<PlotPanel> panels;
   for (std::size_t regime = 0; regime < topic.regimes.size(); ++regime) {
-    PlotPanel panel{topic.regimes[regime].name, {}, {}};
+    std::vector<PlotSeries> list;
     for (const ReportRow& row : topic.rows) {
-      const double x = cost(row, regime);
-      if (!(x > 0.0) || !row.at[regime].IsMeasured()) continue;
-      auto series = std::find_if(panel.series.begin(), panel.series.end(),
+      auto series = std::find_if(list.begin(), list.end(),
                                  [&](const PlotSeries& one) { return one.name == row.series; });
-      if (series == panel.series.end()) {
-        panel.series.push_back(
-            {row.series, row.style, row.origin == MethodOrigin::kLiterature, {}});
-        series = panel.series.end() - 1;
-      }
-      series->points.push_back(PointOf(row, x, regime));
+      if (series == list.end())
+        series = list.insert(series, {row.series, row.origin == MethodOrigin::kLiterature, {}});
+      const double x = cost(row, regime);
+      const ErrorStatistics& error = row.at[regime].error;
+      if (x > 0.0 && row.at[regime].IsMeasured())
+        series->points.push_back({x, error.rms, error.percentile_99, row.parameter});
     }
-    panels.push_back(std::move(panel));
+    panels.push_back({topic.regimes[regime].name, std::move(list), {}});
   }
   return panels;
 }
 
 std::string PlotSubtitle(const ReportTopic& topic) {
   return fmt::format(
-      "Atmosphere: {}. Marks: root mean square over {} {}s a panel, {} wavelength{}; "
+      "Atmosphere: {}. Marks: root mean square over {} {}s per panel, {} wavelength{}; "
       "thin lines: up to the 99th percentile. Lower left is better.",
       PlaceName(topic), topic.rays, topic.answer, topic.medium.wavelengths_nm.size(),
       topic.medium.wavelengths_nm.size() == 1 ? "" : "s");
@@ -111,13 +101,10 @@ std::optional<Plot> PlotOverSamples(const ReportTopic& topic) {
   if (!any || topic.cost == CostAxis::kTimeToBuild) return {};
   return Plot{topic.title,
               PlotSubtitle(topic),
-              {"points of the air looked at, mean of the " + topic.answer + "s", PlotUnit::kCount},
+              {"sampled points of the air, mean of the " + topic.answer + "s", PlotUnit::kCount},
               {"error", PlotUnit::kShare},
               PanelsOf(topic, samples)};
 }
-
-std::string PlotFile(const ReportTopic& topic) { return TopicKey(topic) + ".svg"; }
-std::string SamplesPlotFile(const ReportTopic& topic) { return TopicKey(topic) + ".samples.svg"; }
 
 /// Returns the aerosol's optical depth at the wavelength nearest to 550 nm, in words.
 std::string AerosolText(const Medium& medium) {
@@ -139,18 +126,17 @@ std::string MediumParagraph(const Medium& medium) {
                      AerosolText(medium), wavelengths);
 }
 
-std::string RmsText(const ErrorStatistics& error) {
-  return fmt::format("{}{}", error.rms_is_bound ? "< " : "",
-                     QuantityText(error.rms, PlotUnit::kShare));
+std::string ShareText(double value) { return QuantityText(value, PlotUnit::kShare); }
+std::string TimeText(double seconds) { return QuantityText(seconds, PlotUnit::kSeconds); }
+std::string MemoryText(std::uint64_t bytes) {
+  return QuantityText(static_cast<double>(bytes), PlotUnit::kBytes);
 }
 
 /// Returns the rms and the percentile, and the strict rms if it differs.
 std::string ErrorText(const ErrorStatistics& error) {
-  std::string text =
-      fmt::format("{} / {}", RmsText(error), QuantityText(error.percentile_99, PlotUnit::kShare));
-  if (error.strict_rms != error.rms)
-    text += " / " + QuantityText(error.strict_rms, PlotUnit::kShare);
-  return text;
+  return (error.rms_is_bound ? "< " : "") + ShareText(error.rms) + " / " +
+         ShareText(error.percentile_99) +
+         (error.strict_rms == error.rms ? "" : " / " + ShareText(error.strict_rms));
 }
 
 /// Returns the time of an answer in the slowest regime.
@@ -166,77 +152,63 @@ double LargestPercentile99(const ReportRow& row) {
   return largest;
 }
 
-/// Returns the fastest row of an origin whose error is at most topic.wanted in every regime; null
-/// if there is none.
-const ReportRow* FastestWithin(const ReportTopic& topic, MethodOrigin origin) {
-  const ReportRow* fastest = nullptr;
-  for (const ReportRow& row : topic.rows) {
-    if (row.origin != origin || LargestPercentile99(row) > topic.wanted) continue;
-    if (!IsMeasuredEverywhere(row)) continue;
-    if (fastest == nullptr || SlowestAnswer(row) < SlowestAnswer(*fastest)) fastest = &row;
-  }
-  return fastest;
-}
-
-/// Returns the row of an origin whose 99th percentile in its worst regime is the smallest.
-const ReportRow* MostAccurate(const ReportTopic& topic, MethodOrigin origin) {
+/// Returns the row of an origin with the least cost, of those that are measured in every regime
+/// with 99th percentiles up to `wanted`; null if there is none.
+const ReportRow* BestOf(const ReportTopic& topic, MethodOrigin origin, double wanted,
+                        double (*cost)(const ReportRow&)) {
   const ReportRow* best = nullptr;
   for (const ReportRow& row : topic.rows) {
-    if (row.origin != origin || !IsMeasuredEverywhere(row)) continue;
-    if (best == nullptr || LargestPercentile99(row) < LargestPercentile99(*best)) best = &row;
+    if (row.origin != origin || LargestPercentile99(row) > wanted) continue;
+    if (!std::all_of(row.at.begin(), row.at.end(),
+                     [](const RegimeResult& result) { return result.IsMeasured(); }))
+      continue;
+    if (best == nullptr || cost(row) < cost(*best)) best = &row;
   }
   return best;
 }
 
 std::string CostText(const ReportTopic& topic, const ReportRow& row) {
-  std::string text = QuantityText(SlowestAnswer(row), PlotUnit::kSeconds) + " a " + topic.answer;
-  if (row.memory_bytes > 0)
-    text += ", " + QuantityText(static_cast<double>(row.memory_bytes), PlotUnit::kBytes);
-  if (row.build_s > 0.0) text += ", ready in " + QuantityText(row.build_s, PlotUnit::kSeconds);
-  return text;
+  return TimeText(SlowestAnswer(row)) + " per " + topic.answer +
+         (row.memory_bytes == 0 ? "" : ", " + MemoryText(row.memory_bytes)) +
+         (row.build_s == 0.0 ? "" : ", ready in " + TimeText(row.build_s));
 }
 
 /// Summarises the results of a topic for one origin, in a sentence.
 std::string FindingOf(const ReportTopic& topic, MethodOrigin origin) {
-  const std::string wanted = QuantityText(topic.wanted, PlotUnit::kShare);
-  if (const ReportRow* row = FastestWithin(topic, origin)) {
+  if (const ReportRow* row = BestOf(topic, origin, topic.wanted, SlowestAnswer)) {
     return fmt::format("{}: {}. 99 of 100 errors below {} {}.", row->Name(), CostText(topic, *row),
-                       QuantityText(LargestPercentile99(*row), PlotUnit::kShare), topic.everywhere);
+                       ShareText(LargestPercentile99(*row)), topic.everywhere);
   }
-  const ReportRow* best = MostAccurate(topic, origin);
-  if (best == nullptr) return "none measured";
+  constexpr double kAny = std::numeric_limits<double>::infinity();
+  const ReportRow* best = BestOf(topic, origin, kAny, LargestPercentile99);
+  if (best == nullptr) return "No method was measured.";
   std::string parts;
   for (std::size_t r = 0; r < topic.regimes.size(); ++r)
-    parts += fmt::format("{}{} {}", r == 0 ? "" : ", ",
-                         QuantityText(best->at[r].error.percentile_99, PlotUnit::kShare),
+    parts += fmt::format("{}{} {}", r == 0 ? "" : ", ", ShareText(best->at[r].error.percentile_99),
                          topic.regimes[r].key);
-  return fmt::format("none keeps 99 of 100 errors below {} {}; nearest {} ({}): {}", wanted,
-                     topic.everywhere, best->Name(), CostText(topic, *best), parts);
+  return fmt::format("No method has 99 of 100 errors below {} {}. The most accurate is {} ({}): {}",
+                     ShareText(topic.wanted), topic.everywhere, best->Name(),
+                     CostText(topic, *best), parts);
 }
 
-std::string CellClass(double error) {
-  return error < 1e-4   ? "e0"
-         : error < 1e-3 ? "e1"
-         : error < 1e-2 ? "e2"
-         : error < 1e-1 ? "e3"
-                        : "e4";
+/// Returns a cell of a table, with the number of the CSV file behind the rounded one.
+std::string Cell(const std::string& csv, const std::string& text, const std::string& kind = "") {
+  return fmt::format("<td{} data-csv=\"{}\">{}</td>",
+                     kind.empty() ? "" : fmt::format(" class=\"{}\"", kind), csv, XmlText(text));
 }
 
-std::string Cell(double value, PlotUnit unit, const std::string& kind = "",
-                 const std::string& before = "") {
-  return fmt::format("<td{} data-csv=\"{}\">{}{}</td>",
-                     kind.empty() ? "" : fmt::format(" class=\"{}\"", kind), CsvNumber(value),
-                     XmlText(before), XmlText(QuantityText(value, unit)));
+std::string ErrorCell(double error, const std::string& before = "") {
+  constexpr std::array<double, 4> kEnds{1e-4, 1e-3, 1e-2, 1e-1};
+  const auto shade = std::upper_bound(kEnds.begin(), kEnds.end(), error) - kEnds.begin();
+  return Cell(CsvNumber(error), before + ShareText(error), fmt::format("e{}", shade));
 }
 
 std::string RegimeCells(const RegimeResult& result) {
   if (!result.IsMeasured()) return "<td class=\"first\"></td><td></td><td></td><td></td><td></td>";
   const ErrorStatistics& error = result.error;
-  return Cell(result.time_s, PlotUnit::kSeconds, "first") +
-         Cell(error.rms, PlotUnit::kShare, CellClass(error.rms), error.rms_is_bound ? "< " : "") +
-         Cell(error.percentile_99, PlotUnit::kShare, CellClass(error.percentile_99)) +
-         Cell(error.largest, PlotUnit::kShare, CellClass(error.largest)) +
-         Cell(error.strict_rms, PlotUnit::kShare, CellClass(error.strict_rms));
+  return Cell(CsvNumber(result.time_s), TimeText(result.time_s), "first") +
+         ErrorCell(error.rms, error.rms_is_bound ? "< " : "") + ErrorCell(error.percentile_99) +
+         ErrorCell(error.largest) + ErrorCell(error.strict_rms);
 }
 
 std::string TableRow(const ReportRow& row) {
@@ -245,13 +217,11 @@ std::string TableRow(const ReportRow& row) {
   std::string text = fmt::format("<tr class=\"{}\"><th scope=\"row\">{}</th><td>{}</td>",
                                  row.origin == MethodOrigin::kOurs ? "ours" : "theirs",
                                  XmlText(row.series), XmlText(row.parameter));
-  text += row.memory_bytes == 0
-              ? "<td data-csv=\"0\">–</td>"
-              : fmt::format("<td data-csv=\"{}\">{}</td>", row.memory_bytes,
-                            QuantityText(static_cast<double>(row.memory_bytes), PlotUnit::kBytes));
-  text += row.build_s == 0.0 ? "<td data-csv=\"0\">–</td>" : Cell(row.build_s, PlotUnit::kSeconds);
+  text += Cell(fmt::format("{}", row.memory_bytes),
+               row.memory_bytes == 0 ? "–" : MemoryText(row.memory_bytes));
+  text += Cell(CsvNumber(row.build_s), row.build_s == 0.0 ? "–" : TimeText(row.build_s));
   for (const RegimeResult& result : row.at) text += RegimeCells(result);
-  return text + Cell(spread, PlotUnit::kShare, "first") + "</tr>\n";
+  return text + Cell(CsvNumber(spread), ShareText(spread), "first") + "</tr>\n";
 }
 
 std::string TableOf(const ReportTopic& topic) {
@@ -271,19 +241,17 @@ std::string TableOf(const ReportTopic& topic) {
 }
 
 std::string ReferenceText(const ReportTopic& topic) {
-  std::string text = fmt::format("Reference: {}; {} an answer.", topic.reference.text,
-                                 QuantityText(topic.reference.time_s, PlotUnit::kSeconds));
-  if (topic.reference.noise[0] > 0.0) {
-    text += " Its own standard error, rms:";
-    for (std::size_t r = 0; r < topic.regimes.size(); ++r)
-      text += fmt::format("{} {} {}", r == 0 ? "" : ",",
-                          QuantityText(topic.reference.noise[r], PlotUnit::kShare),
-                          topic.regimes[r].key);
-    text +=
-        "; subtracted from the rms errors (not from percentiles and maxima), of which none "
-        "below half of it can be told.";
-  }
-  return text;
+  const ReportReference& reference = topic.reference;
+  std::string text = fmt::format("Reference solution: {}; {} per answer.", reference.text,
+                                 TimeText(reference.time_s));
+  if (reference.noise[0] == 0.0) return text;
+  text += " Its standard error, rms:";
+  for (std::size_t r = 0; r < topic.regimes.size(); ++r)
+    text += fmt::format("{} {} {}", r == 0 ? "" : ",", ShareText(reference.noise[r]),
+                        topic.regimes[r].key);
+  return text +
+         ". It is subtracted from the rms errors, but not from percentiles and maxima. Errors "
+         "below half of it are not resolved.";
 }
 
 /// Returns a description of atmosphere and scene.
@@ -299,7 +267,7 @@ std::string SectionOf(const ReportTopic& topic) {
   text += fmt::format("<figure>{}</figure>\n", SvgOfPlot(PlotOfTopic(topic)));
   if (const auto plot = PlotOverSamples(topic)) {
     text +=
-        "<details><summary>The same over the number of samples, whatever the "
+        "<details><summary>Errors over the number of samples, which does not depend on the "
         "machine</summary><figure>" +
         SvgOfPlot(*plot) + "</figure></details>\n";
   }
@@ -316,7 +284,7 @@ std::string CardsOf(const Report& report) {
         "100 errors below {}</p>\n"
         "<p><b>This library.</b> {}</p>\n<p><b>Literature.</b> {}</p></div>\n",
         TopicKey(topic), XmlText(topic.title.substr(0, topic.title.find(':'))),
-        XmlText(PlaceName(topic)), QuantityText(topic.wanted, PlotUnit::kShare),
+        XmlText(PlaceName(topic)), ShareText(topic.wanted),
         XmlText(FindingOf(topic, MethodOrigin::kOurs)),
         XmlText(FindingOf(topic, MethodOrigin::kLiterature)));
   }
@@ -339,7 +307,7 @@ std::string MakerText(const Report& report) {
   }
   add("this report",
       fmt::format("took {:.0f} s, {:.0f} s of processor time{}", report.wall_s, report.cpu_s,
-                  report.quick ? "; --quick: of no use but as a test" : ""));
+                  report.quick ? "; --quick: only a test of the report" : ""));
   return text + "</dl>\n";
 }
 
@@ -365,12 +333,10 @@ void Replace(std::string& text, const std::string& place, const std::string& val
 }
 
 std::string SummaryRow(const ReportRow& row) {
-  std::string text = fmt::format(
-      "| {} | {} | {} | {} |", row.Name(),
-      row.memory_bytes == 0 ? "-"
-                            : QuantityText(static_cast<double>(row.memory_bytes), PlotUnit::kBytes),
-      row.build_s == 0.0 ? "-" : QuantityText(row.build_s, PlotUnit::kSeconds),
-      QuantityText(SlowestAnswer(row), PlotUnit::kSeconds));
+  std::string text =
+      fmt::format("| {} | {} | {} | {} |", row.Name(),
+                  row.memory_bytes == 0 ? "-" : MemoryText(row.memory_bytes),
+                  row.build_s == 0.0 ? "-" : TimeText(row.build_s), TimeText(SlowestAnswer(row)));
   for (const RegimeResult& result : row.at) {
     text += result.IsMeasured() ? " " + ErrorText(result.error) + " |" : " |";
   }
@@ -410,25 +376,35 @@ std::string CsvOfTopic(const ReportTopic& topic, const ReportMaker& maker) {
   std::string text;
   for (const ReportRow& row : topic.rows) {
     for (std::size_t r = 0; r < topic.regimes.size(); ++r) {
-      const RegimeResult& at = row.at[r];
-      if (!at.IsMeasured()) continue;
-      const ReportRegime& regime = topic.regimes[r];
-      text += fmt::format(
-          "{},{},{},{},{},{},{},{},{},", topic.key, topic.scene.empty() ? "" : CsvText(topic.scene),
-          CsvText(topic.medium.name), HashDigits(topic), CsvText(row.series),
-          CsvText(row.parameter), row.origin == MethodOrigin::kOurs ? "this library" : "literature",
-          row.memory_bytes, CsvNumber(row.build_s));
-      text += fmt::format(
-          "{},{},{},{},{},{},", regime.key,
-          regime.sun ? fmt::format("{},{}", regime.sun->lowest_deg, regime.sun->highest_deg) : ",",
-          topic.rays, CsvNumber(at.samples), CsvNumber(at.time_s), CsvNumber(at.time_spread));
-      text += fmt::format("{},{},{},{},{},{},", CsvNumber(at.error.median), CsvNumber(at.error.rms),
-                          at.error.rms_is_bound ? 1 : 0, CsvNumber(at.error.percentile_99),
-                          CsvNumber(at.error.largest), CsvNumber(at.error.strict_rms));
-      text += fmt::format("{},{},", CsvNumber(at.error.strict_percentile_99),
-                          CsvNumber(topic.reference.noise[r]));
-      text += fmt::format("{},{},{}\n", CsvText(maker.machine), CsvText(maker.program),
-                          CsvText(maker.date));
+      const auto& [error, time_s, time_spread, samples] = row.at[r];
+      if (!row.at[r].IsMeasured()) continue;
+      const std::optional<SunRange>& sun = topic.regimes[r].sun;
+      const std::vector<std::string> method{
+          topic.key,
+          topic.scene.empty() ? "" : CsvText(topic.scene),
+          CsvText(topic.medium.name),
+          HashDigits(topic),
+          CsvText(row.series),
+          CsvText(row.parameter),
+          row.origin == MethodOrigin::kOurs ? "this library" : "literature",
+          fmt::format("{}", row.memory_bytes),
+          CsvNumber(row.build_s),
+          topic.regimes[r].key,
+          sun ? fmt::format("{},{}", sun->lowest_deg, sun->highest_deg) : ",",
+          fmt::format("{}", topic.rays)};
+      const std::array<double, 11> numbers{samples,
+                                           time_s,
+                                           time_spread,
+                                           error.median,
+                                           error.rms,
+                                           error.rms_is_bound ? 1.0 : 0.0,
+                                           error.percentile_99,
+                                           error.largest,
+                                           error.strict_rms,
+                                           error.strict_percentile_99,
+                                           topic.reference.noise[r]};
+      text += fmt::format("{},{:.6g},{},{},{}\n", fmt::join(method, ","), fmt::join(numbers, ","),
+                          CsvText(maker.machine), CsvText(maker.program), CsvText(maker.date));
     }
   }
   return text;
@@ -438,10 +414,10 @@ std::string SummaryOf(const Report& report) {
   std::string text;
   for (const ReportTopic& topic : report.topics) {
     text += fmt::format(
-        "**{}**. {}; {} {}s a column; error: rms / 99th percentile "
+        "**{}**. {}; {} {}s per column; error: rms / 99th percentile "
         "(/ rms relative to each value, however dark)\n\n",
         topic.title.substr(0, topic.title.find(':')), PlaceText(topic), topic.rays, topic.answer);
-    text += fmt::format("| method | memory | build | time of a {} |", topic.answer);
+    text += fmt::format("| method | memory | build | time per {} |", topic.answer);
     for (const ReportRegime& regime : topic.regimes) text += fmt::format(" {} |", regime.name);
     text += "\n|---|---|---|---|";
     for (std::size_t r = 0; r < topic.regimes.size(); ++r) text += "---|";
@@ -479,9 +455,9 @@ void WriteReport(const Report& report, const fs::path& folder) {
   for (const ReportTopic& topic : report.topics) {
     std::string& table = tables.try_emplace(topic.key, CsvHeader()).first->second;
     table += CsvOfTopic(topic, report.maker);
-    WriteTextAtomically(folder / PlotFile(topic), SvgOfPlot(PlotOfTopic(topic)));
+    WriteTextAtomically(folder / (TopicKey(topic) + ".svg"), SvgOfPlot(PlotOfTopic(topic)));
     if (const auto plot = PlotOverSamples(topic))
-      WriteTextAtomically(folder / SamplesPlotFile(topic), SvgOfPlot(*plot));
+      WriteTextAtomically(folder / (TopicKey(topic) + ".samples.svg"), SvgOfPlot(*plot));
   }
   for (const auto& [key, table] : tables) WriteTextAtomically(folder / (key + ".csv"), table);
   WriteTextAtomically(folder / "summary.md", SummaryOf(report));

@@ -5,20 +5,18 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "atmosphere/math/constants.h"
 #include "lut/evaluate/eval.h"
 #include "lut/multiple_scattering/multiple_scattering.h"
 #include "lut/report/report_baselines.h"
-#include "lut/report/report_measure.h"
+#include "lut/report/report_rays.h"
 #include "lut/sky/panorama.h"
 #include "lut/sky/sky_view.h"
 
 namespace alpenglow::lut {
 namespace {
-
-// Styles of the lines of the plot.
-enum PanoramaStyle { kSkyViewRows = 0, kLatitudes = 1, kDirect = 2, kSkyView = 6 };
 
 constexpr std::size_t kSuns = 3;
 constexpr std::array<std::array<double, kSuns>, kReportRegimes> kElevations_deg{
@@ -157,210 +155,170 @@ class LatitudeTable {
   std::vector<float> texels_;
 };
 
-class PanoramaTopic {
- public:
-  PanoramaTopic(const Medium& medium, const ReportEffort& effort)
-      : medium_(medium),
-        effort_(effort),
-        air_(medium),
-        multiple_scattering_(medium),
-        direct_(medium, multiple_scattering_, 12, false),
-        directions_(Directions(effort.rays)) {
-    reference_rays_.reference.text =
-        "direct evaluation in double with 32 Gauss nodes a panel, cut at ozone; "
-        "light of higher orders is the same for all methods";
-    const auto start = std::chrono::steady_clock::now();
-    for (std::size_t r = 0; r < kReportRegimes; ++r) SolveReference(r);
-    reference_rays_.reference.time_s =
-        std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count() /
-        static_cast<double>(kReportRegimes * directions_.size());
-  }
+ViewRay RayIn(std::size_t r, const Direction& one) {
+  return one.Ray(MuS(r, one.sun), AltitudeOf(r));
+}
 
-  void AddDirect() {
-    ReportRow row{.series = "direct evaluation",
-                  .parameter = "12 nodes",
-                  .style = kDirect,
-                  .in_summary = true};
-    Measure(row, [&](std::size_t r) {
-      return [&, r](const Direction& one) { return direct_.Radiance(RayIn(r, one)); };
-    });
-  }
+/// Objects that the methods of this topic share.
+struct PanoramaAir {
+  SingleScattering<float> air;
+  MultipleScattering multiple_scattering;
+  DirectSky<float> direct;
 
-  /// @param size  nullopt: chosen by SkyViewSizeFor.
-  void AddSkyView(const std::optional<SkyViewSize>& size) {
-    ReportRow row{.series = "sky view, one by one",
-                  .parameter = size ? fmt::format("({} + {}) x {}", size->sky_rows,
-                                                  size->ground_rows, size->azimuths)
-                                    : "size chosen",
-                  .style = kSkyView,
-                  .in_summary = !size.has_value()};
-    const auto view = [&](std::size_t r, std::size_t sun) {
-      return size ? SkyView(air_, multiple_scattering_, AltitudeOf(r), MuS(r, sun), *size)
-                  : SkyView(air_, multiple_scattering_, AltitudeOf(r), MuS(r, sun));
-    };
-    AddTables(row, view);
-    row = rows_.back();
-    row.series = "sky view, in rows";
-    row.style = kSkyViewRows;
-    for (std::size_t r = 0; r < kReportRegimes; ++r) TimeRows(view(r, 1), row.at[r]);
-    rows_.push_back(std::move(row));
-  }
+  explicit PanoramaAir(const Medium& medium)
+      : air(medium), multiple_scattering(medium), direct(medium, multiple_scattering, 12, false) {}
+};
+using PanoramaStudy = ErrorStudy<Direction>;
 
-  void AddLatitudes(int width, int height, bool published) {
-    ReportRow row{.series = "latitude table (Hillaire 2020)",
-                  .parameter = fmt::format("{} x {}", width, height),
-                  .origin = MethodOrigin::kLiterature,
-                  .style = kLatitudes,
-                  .in_summary = published};
-    AddTables(row, [&](std::size_t r, std::size_t sun) {
-      return LatitudeTable(direct_, AltitudeOf(r), MuS(r, sun), air_.bands(), width, height);
-    });
+/// Returns the mean over the directions of a sun. It replaces the zenith, which is black from
+/// space.
+std::vector<double> MeanOf(PanoramaStudy& study, std::size_t r, std::size_t sun) {
+  std::vector<double> mean(study.references(r).front().value.size(), 0.0);
+  double count = 0.0;
+  for (std::size_t i = 0; i < study.cases(r).size(); ++i) {
+    if (study.cases(r)[i].sun != sun) continue;
+    for (std::size_t band = 0; band < mean.size(); ++band)
+      mean[band] += study.references(r)[i].value[band];
+    ++count;
   }
+  for (double& value : mean) value /= count;
+  return mean;
+}
 
-  /// Returns the wall time [s] of a whole image, all threads, with the sun at 25 degrees.
-  [[nodiscard]] double PictureSeconds(int width) const {
-    PanoramaSettings settings;
-    settings.width = width;
-    settings.height = width / 2;
-    settings.sun.elevation_rad = 25.0 * kRadiansPerDegree;
-    return Built([&] { return RenderPanorama(air_, multiple_scattering_, settings); }).second;
-  }
-
-  [[nodiscard]] ReportTopic Finished(ReportTopic words) && {
-    words.medium = medium_;
-    words.rays = directions_.size();
-    words.reference = reference_rays_.reference;
-    words.rows = std::move(rows_);
-    return words;
-  }
-
- private:
-  static ViewRay RayIn(std::size_t r, const Direction& one) {
-    return one.Ray(MuS(r, one.sun), AltitudeOf(r));
-  }
-
-  void SolveReference(std::size_t r) {
-    const DirectSky<double> exact(medium_, multiple_scattering_, 32, true);
-    std::vector<ReferenceRay>& rays = reference_rays_.rays[r];
-    rays.resize(directions_.size());
-    tbb::parallel_for(std::size_t{0}, directions_.size(), [&](std::size_t i) {
-      const ViewRay ray = RayIn(r, directions_[i]);
-      rays[i] = {ray, ValuesOf(exact.Radiance(ray)), {}, {}};
-    });
+void SolveDirections(PanoramaStudy& study, const Medium& medium,
+                     const MultipleScattering& multiple_scattering) {
+  const std::vector<Direction> directions = Directions(study.effort().rays);
+  const DirectSky<double> exact(medium, multiple_scattering, 32, true);
+  study.SolveCases(directions.size(), [&](std::size_t r, std::size_t i) {
+    return std::optional(PanoramaStudy::Solved{
+        directions[i], {ValuesOf(exact.Radiance(RayIn(r, directions[i]))), {}, {}}});
+  });
+  for (std::size_t r = 0; r < kReportRegimes; ++r) {
     for (std::size_t sun = 0; sun < kSuns; ++sun) {
       std::vector<double> floor = kRegimes[r].from_space
-                                      ? MeanOf(r, sun)
+                                      ? MeanOf(study, r, sun)
                                       : ValuesOf(exact.Radiance(RayIn(r, {sun, 0.0, 0.0})));
       for (double& value : floor) value *= kDarkestPart;
-      for (std::size_t i = 0; i < rays.size(); ++i)
-        if (directions_[i].sun == sun) rays[i].floor = floor;
+      for (std::size_t i = 0; i < directions.size(); ++i) {
+        ReferenceValue& one = study.references(r)[i];
+        if (directions[i].sun == sun) one = RadianceReference(std::move(one.value), {}, floor);
+      }
     }
   }
+}
 
-  /// Returns the mean over the directions of a sun. It replaces the zenith, which is black from
-  /// space.
-  [[nodiscard]] std::vector<double> MeanOf(std::size_t r, std::size_t sun) const {
-    std::vector<double> mean(air_.bands(), 0.0);
-    double count = 0.0;
-    for (std::size_t i = 0; i < directions_.size(); ++i) {
-      if (directions_[i].sun != sun) continue;
-      for (std::size_t band = 0; band < mean.size(); ++band)
-        mean[band] += reference_rays_.rays[r][i].truth[band];
-      ++count;
-    }
-    for (double& value : mean) value /= count;
-    return mean;
-  }
-
-  /// Times look-ups row by row, as panoramas do them.
-  void TimeRows(const SkyView& view, RegimeResult& result) const {
-    constexpr std::size_t kRows = 32, kColumns = 256;
-    std::vector<double> azimuth_rad;
-    for (std::size_t i = 0; i < kColumns; ++i)
-      azimuth_rad.push_back(2.0 * kPi * static_cast<double>(i) / kColumns);
-    const SkyAzimuths azimuths(view, azimuth_rad);
-    std::vector<float> radiance(kColumns * view.stride());
-    const auto pass = [&] {
-      for (std::size_t row = 0; row < kRows; ++row)
-        view.FillRow(kPi * (static_cast<double>(row) + 0.5) / kRows, azimuths, radiance);
-      return radiance.front();
+/// Adds a method with one table for each sun. @param make  makes the table of a sun of a regime.
+template <typename Make>
+void AddTables(PanoramaStudy& study, ReportRow row, const Make& make) {
+  const auto [first, seconds] = Built([&] { return make(0, 1); });
+  row.build_s = seconds;
+  row.memory_bytes = first.bytes();
+  study.AddPrepared(std::move(row), [&](std::size_t r, ReportRow&) {
+    std::vector<decltype(make(0, 0))> tables;
+    for (std::size_t sun = 0; sun < kSuns; ++sun) tables.push_back(make(r, sun));
+    return [tables = std::move(tables)](const Direction& one) {
+      return tables[one.sun].Radiance(one.zenith_rad, one.azimuth_rad);
     };
-    TimePasses(kRows * kColumns, effort_, pass, result);
-  }
+  });
+}
 
-  /// @param make  makes the table of a sun of a regime.
-  template <typename Make>
-  void AddTables(ReportRow row, const Make& make) {
-    const auto [first, seconds] = Built([&] { return make(0, 1); });
-    row.build_s = seconds;
-    row.memory_bytes = first.bytes();
-    Measure(std::move(row), [&](std::size_t r) {
-      std::vector<decltype(make(0, 0))> tables;
-      for (std::size_t sun = 0; sun < kSuns; ++sun) tables.push_back(make(r, sun));
-      return [tables = std::move(tables)](const Direction& one) {
-        return tables[one.sun].Radiance(one.zenith_rad, one.azimuth_rad);
-      };
-    });
-  }
+/// Times look-ups row by row, as panoramas do them.
+void TimeRows(const SkyView& view, const ReportEffort& effort, RegimeResult& result) {
+  constexpr std::size_t kRows = 32, kColumns = 256;
+  std::vector<double> azimuth_rad;
+  for (std::size_t i = 0; i < kColumns; ++i)
+    azimuth_rad.push_back(2.0 * kPi * static_cast<double>(i) / kColumns);
+  const SkyAzimuths azimuths(view, azimuth_rad);
+  std::vector<float> radiance(kColumns * view.stride());
+  const auto pass = [&] {
+    for (std::size_t row = 0; row < kRows; ++row)
+      view.FillRow(kPi * (static_cast<double>(row) + 0.5) / kRows, azimuths, radiance);
+    return radiance.front();
+  };
+  TimePasses(kRows * kColumns, effort, pass, result);
+}
 
-  /// @param answers  returns the function that evaluates directions in a regime.
-  template <typename Answers>
-  void Measure(ReportRow row, const Answers& answers) {
-    for (std::size_t r = 0; r < kReportRegimes; ++r) {
-      const auto answer = answers(r);
-      std::vector<std::vector<double>> values;
-      for (const Direction& one : directions_) values.push_back(ValuesOf(answer(one)));
-      row.at[r].error = StatisticsOf(reference_rays_.rays[r], reference_rays_.kind, values);
-      const auto pass = [&] {
-        float sum = 0.0F;
-        for (const Direction& one : directions_) sum += answer(one)[0];
-        return sum;
-      };
-      TimePasses(directions_.size(), effort_, pass, row.at[r]);
-      ThrowIfInterrupted();
-    }
-    rows_.push_back(std::move(row));
-  }
+/// Adds sky views, evaluated one by one and in rows. @param size  nullopt: chosen by SkyViewSizeFor.
+void AddSkyView(PanoramaStudy& study, const PanoramaAir& shared,
+                const std::optional<SkyViewSize>& size) {
+  const auto view = [&](std::size_t r, std::size_t sun) {
+    return size ? SkyView(shared.air, shared.multiple_scattering, AltitudeOf(r), MuS(r, sun), *size)
+                : SkyView(shared.air, shared.multiple_scattering, AltitudeOf(r), MuS(r, sun));
+  };
+  AddTables(study,
+            {.series = "sky view, one by one",
+             .parameter = size ? fmt::format("({} + {}) x {}", size->sky_rows, size->ground_rows,
+                                             size->azimuths)
+                               : "size chosen",
+             .in_summary = !size.has_value()},
+            view);
+  ReportRow row = study.topic().rows.back();
+  row.series = "sky view, in rows";
+  for (std::size_t r = 0; r < kReportRegimes; ++r) TimeRows(view(r, 1), study.effort(), row.at[r]);
+  study.AddMeasured(std::move(row));
+}
 
-  const Medium& medium_;
-  const ReportEffort& effort_;
-  SingleScattering<float> air_;
-  MultipleScattering multiple_scattering_;
-  DirectSky<float> direct_;
-  std::vector<Direction> directions_;
-  ReferenceRays reference_rays_;
-  std::vector<ReportRow> rows_;
-};
+void AddLatitudes(PanoramaStudy& study, const PanoramaAir& shared, int width, int height) {
+  AddTables(study,
+            {.series = "latitude table (Hillaire 2020)",
+             .parameter = fmt::format("{} x {}", width, height),
+             .origin = MethodOrigin::kLiterature,
+             .in_summary = width == 192},  // the published size
+            [&](std::size_t r, std::size_t sun) {
+              return LatitudeTable(shared.direct, AltitudeOf(r), MuS(r, sun), shared.air.bands(),
+                                   width, height);
+            });
+}
+
+/// Returns the wall time of a whole image on all threads, with the sun at 25 degrees, in words.
+std::string PictureTimeText(const PanoramaAir& shared, int width) {
+  PanoramaSettings settings;
+  settings.width = width;
+  settings.height = width / 2;
+  settings.sun.elevation_rad = 25.0 * kRadiansPerDegree;
+  const double seconds = Built([&] {
+                           return RenderPanorama(shared.air, shared.multiple_scattering, settings);
+                         }).second;
+  return fmt::format(
+      "A whole panorama of {} x {} pixels by the sky view, including colours, takes {} on all "
+      "threads.",
+      width, width / 2, QuantityText(seconds, PlotUnit::kSeconds));
+}
 
 }  // namespace
 
 ReportTopic MeasurePanoramas(const Medium& medium, const ReportEffort& effort) {
-  PanoramaTopic topic(medium, effort);
-  topic.AddDirect();
-  topic.AddSkyView(SkyViewSize{.sky_rows = 20, .ground_rows = 12, .azimuths = 9});
-  topic.AddSkyView({});
-  if (!effort.quick)
-    topic.AddSkyView(SkyViewSize{.sky_rows = 80, .ground_rows = 48, .azimuths = 33});
-  topic.AddLatitudes(96, 54, false);
-  if (!effort.quick) topic.AddLatitudes(192, 108, true);
-  const int width = effort.quick ? 128 : 2048;
-  const std::string notes = fmt::format(
-      "Three suns a column, seen from 2 m and from 400 km; half of the directions anywhere on the "
-      "sphere, "
-      "half within 10° of the horizontal. The table over latitudes is the sky-view table of "
-      "Hillaire (2020), 192 x 108, filled here by direct evaluation: its errors are those of "
-      "interpolation alone. A whole panorama of {} x {} pixels, sky view, colours and all, took "
-      "{} on all threads.",
-      width, width / 2, QuantityText(topic.PictureSeconds(width), PlotUnit::kSeconds));
-  return std::move(topic).Finished(
+  PanoramaStudy study(
       {.key = "panoramas",
        .title = "Panoramas: the whole sphere under one sun",
-       .what = "One observer, one sun, any direction: the radiance of sky and lit ground, light of "
-               "all orders.",
-       .error_unit = "parts of the radiance",
-       .notes = notes,
-       .wanted = 0.01,
-       .cost = CostAxis::kTimeOfAnswer});
+       .what = "One observer, one sun, any direction. The methods compute the radiance of sky and "
+               "lit ground, with light of all orders.",
+       .error_unit = "fractions of the radiance",
+       .notes = "Each column has three suns, seen from 2 m and from 400 km. Half of the directions "
+                "are anywhere on the sphere, half within 10° of the horizontal. The table over "
+                "latitudes is the sky-view table of Hillaire (2020), 192 x 108, filled here by "
+                "direct evaluation: its errors are due to interpolation only. ",
+       .medium = medium,
+       .reference = {.text =
+                         "direct evaluation in double with 32 Gauss nodes a panel, cut at ozone; "
+                         "light of higher orders is the same for all methods"}},
+      effort);
+  const PanoramaAir shared(medium);
+  SolveDirections(study, medium, shared.multiple_scattering);
+  study.AddPrepared({.series = "direct evaluation", .parameter = "12 nodes", .in_summary = true},
+                    [&](std::size_t r, ReportRow&) {
+                      return [&, r](const Direction& one) {
+                        return shared.direct.Radiance(RayIn(r, one));
+                      };
+                    });
+  AddSkyView(study, shared, SkyViewSize{.sky_rows = 20, .ground_rows = 12, .azimuths = 9});
+  AddSkyView(study, shared, {});
+  if (!effort.quick)
+    AddSkyView(study, shared, SkyViewSize{.sky_rows = 80, .ground_rows = 48, .azimuths = 33});
+  AddLatitudes(study, shared, 96, 54);
+  if (!effort.quick) AddLatitudes(study, shared, 192, 108);
+  study.topic().notes += PictureTimeText(shared, effort.quick ? 128 : 2048);
+  return std::move(study).Finished();
 }
 
 }  // namespace alpenglow::lut

@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <string_view>
 
 #include "atmosphere/base/error.h"
 #include "lut/layer.h"
@@ -17,17 +18,11 @@ namespace {
 constexpr double kWidth = 1080.0;
 constexpr double kPanelHeight = 330.0;
 constexpr double kLeft = 62.0, kRight = 14.0, kTop = 76.0, kBottom = 52.0, kGap = 18.0;
-constexpr double kLabelSize = 12.0, kNoteSize = 9.5;
+constexpr std::size_t kColourCount = 7;
+constexpr double kLegendRow = 18.0, kLegendSize = 12.0;
 
 struct Box {
   double x0 = 0.0, y0 = 0.0, x1 = 0.0, y1 = 0.0;
-  double penalty = 0.0;  // for the place of a label: distance from the labelled point
-
-  [[nodiscard]] double Overlap(const Box& other) const {
-    const double width = std::min(x1, other.x1) - std::max(x0, other.x0);
-    const double height = std::min(y1, other.y1) - std::max(y0, other.y0);
-    return width > 0.0 && height > 0.0 ? width * height : 0.0;
-  }
 };
 
 bool Drawable(const PlotPoint& point) {
@@ -93,7 +88,7 @@ std::string LineElement(double x0, double y0, double x1, double y1, const std::s
 }
 
 std::string StyleSheet() {
-  constexpr std::array<std::array<const char*, 2>, kPlotStyles> kColours = {{
+  constexpr std::array<std::array<const char*, 2>, kColourCount> kColours = {{
       {"#0072b2", "#56b4e9"},
       {"#d55e00", "#ff8c42"},
       {"#009e73", "#2fd6a3"},
@@ -135,23 +130,13 @@ std::string StyleSheet() {
          colours(1) + "}\n</style>\n";
 }
 
-std::string Marker(int style, double x, double y) {
-  constexpr double r = 3.6;
-  switch (style % 4) {
-    case 0:
-      return fmt::format("<circle class=\"mark\" cx=\"{:.1f}\" cy=\"{:.1f}\" r=\"{}\"/>\n", x, y,
-                         r);
-    case 1:
-      return fmt::format("<path class=\"mark\" d=\"M{:.1f} {:.1f}l{} {}h{}z\"/>\n", x, y - 1.2 * r,
-                         1.1 * r, 2.0 * r, -2.2 * r);
-    case 2:
-      return fmt::format(
-          "<rect class=\"mark\" x=\"{:.1f}\" y=\"{:.1f}\" width=\"{}\" height=\"{}\"/>\n",
-          x - 0.9 * r, y - 0.9 * r, 1.8 * r, 1.8 * r);
-    default:
-      return fmt::format("<path class=\"mark\" d=\"M{:.1f} {:.1f}l{} {}l{} {}l{} {}z\"/>\n", x,
-                         y - 1.3 * r, 1.3 * r, 1.3 * r, -1.3 * r, 1.3 * r, -1.3 * r, -1.3 * r);
-  }
+/// Returns a mark at (x, y): a disk, a triangle, a square or a diamond.
+std::string Marker(std::size_t series, double x, double y) {
+  constexpr std::array<const char*, 4> kShapes{"m-3.6 0a3.6 3.6 0 1 0 7.2 0a3.6 3.6 0 1 0 -7.2 0z",
+                                               "m0 -4.3l4 7.2h-7.9z", "m-3.2 -3.2h6.5v6.5h-6.5z",
+                                               "m0 -4.7l4.7 4.7l-4.7 4.7l-4.7 -4.7z"};
+  return fmt::format("<path class=\"mark\" d=\"M{:.1f} {:.1f}{}\"/>\n", x, y,
+                     kShapes[series % kShapes.size()]);
 }
 
 std::vector<PlotPoint> DrawablePoints(const PlotSeries& series) {
@@ -204,136 +189,28 @@ std::string FrameText(const Frame& frame, const Plot& plot, bool first) {
              frame.area.y1 - frame.area.y0);
 }
 
-std::string SeriesText(const Frame& frame, const PlotSeries& series) {
-  const std::vector<PlotPoint> points = DrawablePoints(series);
-  std::string text =
-      fmt::format("<g class=\"c{}{}\">\n", series.style, series.faint ? " faint" : "");
-  std::string run;
-  for (const PlotPoint& point : points) {
-    run += fmt::format("{:.1f},{:.1f} ", frame.X(point.x), frame.Y(point.y));
-    if (point.y_high && *point.y_high > point.y)
-      text += LineElement(frame.X(point.x), frame.Y(point.y), frame.X(point.x),
-                          frame.Y(*point.y_high), "tail");
-  }
-  if (points.size() > 1) text += fmt::format("<polyline class=\"run\" points=\"{}\"/>\n", run);
-  for (const PlotPoint& point : points)
-    text += Marker(series.style, frame.X(point.x), frame.Y(point.y));
-  return text + "</g>\n";
+/// Returns the start of a group of elements in the colour and the kind of line of series `i`.
+std::string GroupOf(std::size_t i, const PlotSeries& series) {
+  return fmt::format("<g class=\"c{}{}\">\n", i % kColourCount, series.faint ? " faint" : "");
 }
 
-/// Places labels one after the other, each beside a point and away from everything drawn before.
-class Labels {
- public:
-  Labels(const Frame& frame, const PlotPanel& panel) : frame_(frame) {
-    for (const PlotSeries& series : panel.series) Avoid(DrawablePoints(series));
-    for (const PlotLevel& level : panel.levels) {
-      const double at = frame.Y(level.y);
-      ink_.push_back({frame.area.x0, at - 1.0, frame.area.x1, at + 1.0});
-    }
+std::string SeriesText(const Frame& frame, std::size_t i, const PlotSeries& series) {
+  const std::vector<PlotPoint> points = DrawablePoints(series);
+  std::string text = GroupOf(i, series), run;
+  for (const PlotPoint& point : points) {
+    const double x = frame.X(point.x), y = frame.Y(point.y);
+    run += fmt::format("{:.1f},{:.1f} ", x, y);
+    if (point.y_high && *point.y_high > point.y)
+      text += LineElement(x, y, x, frame.Y(*point.y_high), "tail");
+    const bool is_end = &point == &points.front() || &point == &points.back();
+    if (is_end && points.size() > 1 && !point.note.empty())
+      text += x < 0.5 * (frame.area.x0 + frame.area.x1)
+                  ? TextElement(x + 6.0, y - 5.0, "note", point.note)
+                  : TextElement(x - 6.0, y - 5.0, "note", point.note, " text-anchor=\"end\"");
   }
-
-  /// Returns the text at the best of the places around the points.
-  [[nodiscard]] std::string Place(const std::vector<PlotPoint>& points, const std::string& text,
-                                  const std::string& kind, double size) {
-    std::vector<Box> places;
-    for (const PlotPoint& point : points) {
-      const std::vector<Box> around =
-          PlacesAround(frame_.X(point.x), frame_.Y(point.y), text, size);
-      places.insert(places.end(), around.begin(), around.end());
-    }
-    return Taken(places, kind, text, size);
-  }
-
-  /// Returns the text placed on the line across the panel at height `y`.
-  [[nodiscard]] std::string PlaceAlong(double y, const std::string& text) {
-    const double size = 11.0, width = TextWidth(text, size);
-    std::vector<Box> places;
-    for (double x = frame_.area.x1 - 4.0 - width; x > frame_.area.x0 + 4.0; x -= 12.0) {
-      places.push_back({x, frame_.Y(y) - 3.0 - size, x + width, frame_.Y(y) - 3.0});
-      places.push_back({x, frame_.Y(y) + 3.0, x + width, frame_.Y(y) + 3.0 + size});
-    }
-    return Taken(places, "tick", text, size);
-  }
-
- private:
-  [[nodiscard]] std::string Taken(const std::vector<Box>& places, const std::string& kind,
-                                  const std::string& text, double size) {
-    const Box best =
-        *std::min_element(places.begin(), places.end(),
-                          [&](const Box& a, const Box& b) { return Cost(a) < Cost(b); });
-    taken_.push_back(best);
-    return TextElement(best.x0, best.y1 - 0.22 * size, kind, text);
-  }
-
-  void Avoid(const std::vector<PlotPoint>& points) {
-    for (std::size_t i = 0; i < points.size(); ++i) {
-      const double x = frame_.X(points[i].x), y = frame_.Y(points[i].y);
-      ink_.push_back({x - 5.0, y - 5.0, x + 5.0, y + 5.0});
-      if (points[i].y_high)
-        ink_.push_back({x - 1.0, frame_.Y(std::max(*points[i].y_high, points[i].y)), x + 1.0, y});
-      if (i == 0) continue;
-      // A line is represented by a row of small boxes.
-      const double px = frame_.X(points[i - 1].x), py = frame_.Y(points[i - 1].y);
-      const int pieces = 1 + static_cast<int>(std::hypot(x - px, y - py) / 5.0);
-      for (int k = 1; k < pieces; ++k) {
-        const double cx = px + (x - px) * k / pieces, cy = py + (y - py) * k / pieces;
-        ink_.push_back({cx - 2.5, cy - 2.5, cx + 2.5, cy + 2.5});
-      }
-    }
-  }
-
-  [[nodiscard]] static std::vector<Box> PlacesAround(double x, double y, const std::string& text,
-                                                     double size) {
-    const double width = TextWidth(text, size), height = size;
-    std::vector<Box> places;
-    for (const double away : {7.0, 14.0, 24.0}) {
-      for (const auto& [dx, dy] :
-           {std::pair{away, -0.5 * height}, std::pair{-away - width, -0.5 * height},
-            std::pair{-0.5 * width, -away - height}, std::pair{-0.5 * width, away},
-            std::pair{away, -away - 0.5 * height}, std::pair{away, away - 0.5 * height},
-            std::pair{-away - width, -away - 0.5 * height},
-            std::pair{-away - width, away - 0.5 * height}}) {
-        places.push_back({x + dx, y + dy, x + dx + width, y + dy + height, 8.0 * (away - 7.0)});
-      }
-    }
-    return places;
-  }
-
-  [[nodiscard]] double Cost(const Box& place) const {
-    double cost = place.penalty;
-    for (const Box& box : taken_) cost += 20.0 * place.Overlap(box);
-    for (const Box& box : ink_) cost += 3.0 * place.Overlap(box);
-    const double area = (place.x1 - place.x0) * (place.y1 - place.y0);
-    cost += 50.0 * (area - place.Overlap(Box{frame_.area.x0 + 2.0, frame_.area.y0 + 2.0,
-                                             frame_.area.x1 - 2.0, frame_.area.y1 - 2.0}));
-    return cost;
-  }
-
-  const Frame& frame_;
-  std::vector<Box> ink_, taken_;
-};
-
-std::string LabelsText(const Frame& frame, const PlotPanel& panel) {
-  Labels labels(frame, panel);
-  std::string text;
-  for (const PlotLevel& level : panel.levels) text += labels.PlaceAlong(level.y, level.name);
-  for (const PlotSeries& series : panel.series) {
-    const std::vector<PlotPoint> points = DrawablePoints(series);
-    if (points.empty()) continue;
-    text += fmt::format("<g class=\"c{}\">\n", series.style);
-    text += labels.Place(points, series.name, "name", kLabelSize);
-    text += "</g>\n";
-  }
-  for (const PlotSeries& series : panel.series) {
-    const std::vector<PlotPoint> points = DrawablePoints(series);
-    if (points.size() < 2) continue;
-    text += fmt::format("<g class=\"c{}\">\n", series.style);
-    for (const PlotPoint& end : {points.front(), points.back()}) {
-      if (!end.note.empty()) text += labels.Place({end}, end.note, "note", kNoteSize);
-    }
-    text += "</g>\n";
-  }
-  return text;
+  if (points.size() > 1) text += fmt::format("<polyline class=\"run\" points=\"{}\"/>\n", run);
+  for (const PlotPoint& point : points) text += Marker(i, frame.X(point.x), frame.Y(point.y));
+  return text + "</g>\n";
 }
 
 std::string PanelText(const Frame& frame, const Plot& plot, const PlotPanel& panel, bool first) {
@@ -341,10 +218,40 @@ std::string PanelText(const Frame& frame, const Plot& plot, const PlotPanel& pan
   text += TextElement(frame.area.x0, frame.area.y0 - 8.0, "panel", panel.title);
   for (const PlotLevel& level : panel.levels) {
     const double at = frame.Y(level.y);
-    text += LineElement(frame.area.x0, at, frame.area.x1, at, "level");
+    text += LineElement(frame.area.x0, at, frame.area.x1, at, "level") +
+            TextElement(frame.area.x1 - 4.0, at - 3.0, "tick", level.name, " text-anchor=\"end\"");
   }
-  for (const PlotSeries& series : panel.series) text += SeriesText(frame, series);
-  return text + LabelsText(frame, panel);
+  for (std::size_t i = 0; i < panel.series.size(); ++i)
+    text += SeriesText(frame, i, panel.series[i]);
+  return text;
+}
+
+/// The marks and names of the series that have points, in rows below the panels.
+struct Legend {
+  std::string text;
+  double height = kLegendRow;
+};
+
+Legend LegendBelow(const Plot& plot, double top) {
+  Legend legend;
+  double x = kLeft;
+  for (std::size_t i = 0; i < plot.panels.front().series.size(); ++i) {
+    const PlotSeries& series = plot.panels.front().series[i];
+    if (std::all_of(plot.panels.begin(), plot.panels.end(), [i](const PlotPanel& panel) {
+          return DrawablePoints(panel.series[i]).empty();
+        }))
+      continue;
+    const double width = TextWidth(series.name, kLegendSize) + 36.0;
+    if (x > kLeft && x + width > kWidth - kRight) {
+      x = kLeft;
+      legend.height += kLegendRow;
+    }
+    const double y = top + legend.height - 0.5 * kLegendRow;
+    legend.text += GroupOf(i, series) + Marker(i, x + 6.0, y) +
+                   TextElement(x + 16.0, y + 4.0, "name", series.name) + "</g>\n";
+    x += width;
+  }
+  return legend;
 }
 
 Frame SharedAxes(const Plot& plot) {
@@ -403,34 +310,21 @@ std::string QuantityText(double value, PlotUnit unit) {
 }
 
 std::string XmlText(const std::string& text) {
+  constexpr std::string_view kReserved = "&<>\"'";
+  constexpr std::array<const char*, 5> kEntities{"&amp;", "&lt;", "&gt;", "&quot;", "&#39;"};
   std::string result;
   for (const char c : text) {
-    switch (c) {
-      case '&':
-        result += "&amp;";
-        break;
-      case '<':
-        result += "&lt;";
-        break;
-      case '>':
-        result += "&gt;";
-        break;
-      case '"':
-        result += "&quot;";
-        break;
-      case '\'':
-        result += "&#39;";
-        break;
-      default:
-        result += c;
-    }
+    const std::size_t at = kReserved.find(c);
+    result += at == std::string_view::npos ? std::string(1, c) : kEntities[at];
   }
   return result;
 }
 
 std::string SvgOfPlot(const Plot& plot) {
   ALPENGLOW_ENSURE(plot.panels.size(), >, 0U);
-  const double height = kTop + kPanelHeight + kBottom;
+  const double bottom = kTop + kPanelHeight + kBottom;
+  const Legend legend = LegendBelow(plot, bottom - 8.0);
+  const double height = bottom + legend.height;
   std::string text = fmt::format(
       "<svg xmlns=\"http://www.w3.org/2000/svg\" class=\"p\" viewBox=\"0 0 {0} {1}\" "
       "width=\"{0}\" height=\"{1}\" role=\"img\" aria-label=\"{2}\">\n",
@@ -447,12 +341,12 @@ std::string SvgOfPlot(const Plot& plot) {
     frame.area = {x0, kTop, x0 + width, kTop + kPanelHeight};
     text += PanelText(frame, plot, plot.panels[i], i == 0);
   }
-  text += TextElement(0.5 * (kLeft + kWidth - kRight), height - 12.0, "axis", plot.x.title,
+  text += TextElement(0.5 * (kLeft + kWidth - kRight), bottom - 12.0, "axis", plot.x.title,
                       " text-anchor=\"middle\"");
   text += TextElement(14.0, kTop + 0.5 * kPanelHeight, "axis", plot.y.title,
                       fmt::format(" text-anchor=\"middle\" transform=\"rotate(-90 14 {})\"",
                                   kTop + 0.5 * kPanelHeight));
-  return text + "</svg>\n";
+  return text + legend.text + "</svg>\n";
 }
 
 }  // namespace alpenglow::lut

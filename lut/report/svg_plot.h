@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// This header provides log-log plots as SVG text: panels side by side, one line per series,
-// labelled next to the line.
+// This header provides log-log plots as SVG text: panels side by side, one line per series, and a
+// legend below them.
 //
 // Colours are those of Okabe and Ito (2008), Color Universal Design, which colour-blind readers can
 // distinguish, with one marker per series for print. Lighter colours are used if the reader's
@@ -23,11 +23,9 @@ struct PlotPoint {
 
 struct PlotSeries {
   std::string name;
-  int style = 0;       // colour and marker, in [0, kPlotStyles)
   bool faint = false;  // hollow markers and a dashed line: methods of others
   std::vector<PlotPoint> points;
 };
-inline constexpr int kPlotStyles = 7;
 
 /// A line across a panel at height `y`.
 struct PlotLevel {
@@ -37,6 +35,8 @@ struct PlotLevel {
 
 struct PlotPanel {
   std::string title;
+  /// Colour and marker of a series follow from its place here, so that all panels of a plot have
+  /// the same series in the same order. A series without points is not drawn.
   std::vector<PlotSeries> series;
   std::vector<PlotLevel> levels;
 };

@@ -5,29 +5,20 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdint>
 #include <vector>
 
 #include "atmosphere/math/constants.h"
 #include "atmosphere/math/numerics.h"
-#include "atmosphere/reference/reference_solution.h"
 #include "lut/report/report_baselines.h"
-#include "lut/tables/scattering_table.h"
+#include "lut/report/report_rays.h"
 #include "lut/tables/transmittance_table.h"
 #include "renderer/illumination/aerial_perspective.h"
 
 namespace alpenglow::renderer {
 namespace {
-
-// Line styles of the plots.
-enum AirStyle {
-  kAirPanels = 0,
-  kUniform = 1,
-  kFroxels = 2,
-  kTable = 3,
-  kQuadratic = 4,
-  kGrey = 5,
-};
 
 /// Returns segment number i >= 1 of Halton's sequence: from an eye to a mountainside, both on or
 /// above the ground, without the planet in between. The sequence gives the altitudes [m] of the eye
@@ -56,36 +47,55 @@ ViewRay SegmentNumber(const Medium& medium, int i, const ReportRegime& regime) {
   return ray;
 }
 
-ReferenceRays ReferenceSegments(const Medium& medium, int count) {
-  ReferenceRays solution = SolveReferenceRays(
-      ErrorKind::kRelative, count,
-      [&](int i, const ReportRegime& regime) { return SegmentNumber(medium, i, regime); },
-      [&](const ViewRay& ray) {
-        return ReferenceRay{ray,
-                            reference::SingleScatteringAlong(medium, ray).inscatter,
-                            {},
-                            DarkestRadiance(medium, ray)};
-      });
-  solution.reference.text =
-      "adaptive Gauss-Legendre quadrature in extended precision, relative error below 1e-8";
-  return solution;
-}
+/// The slices of a froxel volume along one ray, reimplemented from Hillaire (2020), Computer
+/// Graphics Forum 39, 13, section 5.4: inscatter and transmittance up to each slice, linear in
+/// between. Slice k of 32 ends at 128 km (k / 32)^2 and is marched to from the eye in 2 k
+/// steps.
+class FroxelColumn {
+ public:
+  static constexpr int kSlices = 32;
+  static constexpr double kFarthest_m = 128e3;
+  static constexpr int kSide = 32;  // froxels of the volume across the picture
 
-ReferenceRays ReferenceTransmittances(const Medium& medium, int count) {
-  ReferenceRays solution = SolveReferenceRays(
-      ErrorKind::kAbsolute, count,
-      [&](int i, const ReportRegime& regime) { return SegmentNumber(medium, i, regime); },
-      [&](const ViewRay& ray) {
-        ReferenceRay answer{ray, {}, {}, {}};
-        for (const double tau : reference::OpticalDepthAlong(medium, ray).tau)
-          answer.truth.push_back(std::exp(-tau));
-        return answer;
-      });
-  solution.reference.text =
-      "adaptive Gauss-Legendre quadrature in extended precision, relative error of the optical "
-      "depth below 1e-10";
-  return solution;
-}
+  FroxelColumn(const SingleScattering<float>& air, const ViewRay& ray) : slices_(kSlices + 1) {
+    slices_[0] = {Bands<float>(air.bands()), Bands<float>(air.bands())};
+    for (std::size_t band = 0; band < air.bands(); ++band) slices_[0].transmittance[band] = 1.0F;
+    const Medium& medium = air.medium();
+    for (int k = 1; k <= kSlices; ++k) {
+      ViewRay part = ray;
+      part.length_m = kFarthest_m * k * k / (kSlices * kSlices);
+      const RayExtent extent = ExtentOf(part, medium.planet_radius_m, medium.atmosphere_height_m);
+      const auto once =
+          air.Scatter(air.SampleAt(part, MarchNodes(MarchRule::kMidpoint, 2 * k, extent)));
+      slices_[static_cast<std::size_t>(k)] = {
+          air.Inscatter(once, ray.nu),
+          MarchedTransmittance(medium, part, MarchRule::kMidpoint, 2 * k)};
+    }
+  }
+
+  [[nodiscard]] Bands<float> Inscatter(double distance_m) const {
+    return Between(distance_m, &AirAlongRay::inscatter);
+  }
+  [[nodiscard]] Bands<float> Transmittance(double distance_m) const {
+    return Between(distance_m, &AirAlongRay::transmittance);
+  }
+
+ private:
+  [[nodiscard]] Bands<float> Between(double distance_m, Bands<float> AirAlongRay::*part) const {
+    const double slice =
+        std::min(std::sqrt(distance_m / kFarthest_m) * kSlices, static_cast<double>(kSlices));
+    const auto low = std::min(static_cast<std::size_t>(slice), std::size_t{kSlices} - 1);
+    const auto share = static_cast<float>(slice - static_cast<double>(low));
+    const Bands<float>& from = slices_[low].*part;
+    const Bands<float>& to = slices_[low + 1].*part;
+    Bands<float> mixed(from.count);
+    for (std::size_t band = 0; band < mixed.count; ++band)
+      mixed[band] = (1.0F - share) * from[band] + share * to[band];
+    return mixed;
+  }
+
+  std::vector<AirAlongRay> slices_;
+};
 
 /// Returns the mean of the bands in every band.
 Bands<float> Grey(const Bands<float>& bands) {
@@ -97,222 +107,169 @@ Bands<float> Grey(const Bands<float>& bands) {
   return grey;
 }
 
-MultipleScatteringOptions NotLookedAt() {
-  MultipleScatteringOptions coarse;
-  coarse.altitudes = 4;
-  coarse.sun_angles = 4;
-  coarse.degree = 2;
-  coarse.max_orders = 1;
-  return coarse;
+/// Returns coarse light of higher orders, for objects that need it and do not use it here.
+MultipleScattering UnusedMultipleScattering(const Medium& medium) {
+  return MultipleScattering(medium,
+                            {.altitudes = 4, .sun_angles = 4, .degree = 2, .max_orders = 1});
 }
 
-class Topic : public TopicWork {
- public:
-  Topic(const Medium& medium, const ReportEffort& effort, ReferenceRays solution)
-      : TopicWork(medium, effort, std::move(solution)),
-        air_(medium),
-        multiple_scattering_(medium, NotLookedAt()),
-        aerial_(air_, multiple_scattering_) {}
+void AddPanels(RayStudy& study, const AerialPerspective& aerial, const std::string& parameter,
+               const AerialPerspective::Nodes& nodes, bool in_summary) {
+  study.Add(
+      {.series = "direct integration", .parameter = parameter, .in_summary = in_summary},
+      [&](const ViewRay& ray) {
+        return study.air().Inscatter(aerial.Once(ray, nullptr, nodes), ray.nu);
+      },
+      [&](const ViewRay& ray) { return aerial.Sample(ray, nullptr, nodes).samples.Nodes(); });
+}
 
-  void AddPanels(const std::string& parameter, const AerialPerspective::Nodes& nodes,
-                 bool in_summary) {
-    AddRow(
-        {.series = "direct integration",
-         .parameter = parameter,
-         .style = kAirPanels,
-         .in_summary = in_summary},
-        [&](const ViewRay& ray) {
-          return air_.Inscatter(aerial_.Once(ray, nullptr, nodes), ray.nu);
-        },
-        [&](const ViewRay& ray) { return aerial_.Sample(ray, nullptr, nodes).samples.Nodes(); });
-  }
+void AddScatteringTables(RayStudy& study) {
+  ReportRow row{.series = "two look-ups (Bruneton)",
+                .parameter = "",
+                .origin = MethodOrigin::kLiterature,
+                .in_summary = study.effort().quick};
+  study.AddScatteringTable(
+      row, {.size = {.nu = 8, .mu_s = 24, .mu = 64, .altitudes = 16}, .lowest_mu_s = {}});
+  row.in_summary = true;
+  if (!study.effort().quick) study.AddScatteringTable(row, {});
+}
 
-  void AddMarch(MarchRule rule, int steps, bool in_summary) {
-    TopicWork::AddMarch(air_, rule, steps, rule == MarchRule::kMidpoint ? kUniform : kQuadratic,
-                        in_summary);
-  }
+/// Adds froxels. @param value  function from a column and a distance [m] to the values of a ray.
+template <typename Value>
+void AddFroxels(RayStudy& study, const std::string& series, const Value& value) {
+  constexpr std::uint64_t kColumns = FroxelColumn::kSide * FroxelColumn::kSide;
+  const auto prepare = [&](std::size_t r, ReportRow& row) {
+    const std::vector<ViewRay>& rays = study.cases(r);
+    auto [columns, seconds] = Built([&] {
+      std::vector<FroxelColumn> made;
+      for (const ViewRay& ray : rays) made.emplace_back(study.air(), ray);
+      return made;
+    });
+    row.build_s = std::max(
+        row.build_s, seconds / static_cast<double>(rays.size()) * static_cast<double>(kColumns));
+    return [&value, first = rays.data(), columns = std::move(columns)](const ViewRay& ray) {
+      const auto i = static_cast<std::size_t>(&ray - first);
+      return value(columns[i], ray.length_m);
+    };
+  };
+  study.AddPrepared({.series = series,
+                     .parameter = "32 x 32 x 32",
+                     .origin = MethodOrigin::kLiterature,
+                     .in_summary = true,
+                     .memory_bytes = kColumns * FroxelColumn::kSlices * (study.air().bands() + 1) *
+                                     sizeof(float)},
+                    prepare);
+}
 
-  void AddTable(ScatteringAxes axes, const ScatteringTableSize& size, bool in_summary) {
-    const ScatteringTableOptions options{.size = size, .lowest_mu_s = {}, .axes = axes};
-    const auto [table, seconds] = Built([&] { return ScatteringTable(medium_, options); });
-    AddLookUp(
-        {.series = "two look-ups (Bruneton)",
-         .parameter = fmt::format("{} x {} x {} x {}", size.altitudes, size.mu, size.mu_s, size.nu),
-         .origin = MethodOrigin::kLiterature,
-         .style = kTable,
-         .in_summary = in_summary,
-         .memory_bytes = table.bytes(),
-         .build_s = seconds},
-        [&](const ViewRay& ray) { return air_.Inscatter(table.Lookup(ray), ray.nu); });
-  }
+void AddClosedForms(RayStudy& study) {
+  study.Add({.series = "closed form", .parameter = "float", .in_summary = true},
+            [&](const ViewRay& ray) { return study.air().TransmittanceAlong(ray); });
+  study.Add({.series = "closed form, one grey value",
+             .parameter = "",
+             .origin = MethodOrigin::kLiterature,
+             .in_summary = true},
+            [&](const ViewRay& ray) { return Grey(study.air().TransmittanceAlong(ray)); });
+}
 
-  enum class FroxelValue { kInscatter, kTransmittance, kGreyTransmittance };
+void AddTransmittanceTable(RayStudy& study) {
+  const TransmittanceTableSize size;
+  const auto [table, seconds] = Built([&] { return TransmittanceTable(study.medium(), size); });
+  study.Add({.series = "two look-ups (Bruneton)",
+             .parameter = fmt::format("{} x {}", size.mu, size.altitudes),
+             .origin = MethodOrigin::kLiterature,
+             .in_summary = true,
+             .memory_bytes = table.bytes(),
+             .build_s = seconds},
+            [&table = table](const ViewRay& ray) { return table.LookupAlong(ray); });
+}
 
-  void AddFroxels(FroxelValue value) {
-    constexpr std::uint64_t kColumns = FroxelColumn::kSide * FroxelColumn::kSide;
-    ReportRow row{
-        .series = value == FroxelValue::kGreyTransmittance ? "froxels, grey (Hillaire 2020)"
-                                                           : "froxels (Hillaire 2020)",
-        .parameter = "32 x 32 x 32",
-        .origin = MethodOrigin::kLiterature,
-        .style = value == FroxelValue::kGreyTransmittance ? kGrey : kFroxels,
-        .in_summary = true,
-        .memory_bytes = kColumns * FroxelColumn::kSlices * (air_.bands() + 1) * sizeof(float)};
-    for (std::size_t r = 0; r < kReportRegimes; ++r) {
-      const std::vector<ReferenceRay>& rays = solution().rays[r];
-      const auto [columns, seconds] = Built([&] {
-        std::vector<FroxelColumn> made;
-        for (const ReferenceRay& one : rays) made.emplace_back(air_, one.ray);
-        return made;
-      });
-      row.build_s = std::max(
-          row.build_s, seconds / static_cast<double>(rays.size()) * static_cast<double>(kColumns));
-      const auto answer = [&](std::size_t i) {
-        const double distance_m = rays[i].ray.length_m;
-        if (value == FroxelValue::kInscatter) return columns[i].Inscatter(distance_m);
-        const Bands<float> through = columns[i].Transmittance(distance_m);
-        return value == FroxelValue::kTransmittance ? through : Grey(through);
-      };
-      std::vector<std::vector<double>> answers;
-      for (std::size_t i = 0; i < rays.size(); ++i) answers.push_back(ValuesOf(answer(i)));
-      row.at[r].error = StatisticsOf(rays, solution().kind, answers);
-      TimePasses(
-          rays.size(), effort_,
-          [&] {
-            float sum = 0.0F;
-            for (std::size_t i = 0; i < rays.size(); ++i) sum += answer(i)[0];
-            return sum;
-          },
-          row.at[r]);
-    }
-    AddMeasured(std::move(row));
-  }
-
-  void AddClosedForms() {
-    AddLookUp(
-        {.series = "closed form", .parameter = "float", .style = kAirPanels, .in_summary = true},
-        [&](const ViewRay& ray) { return air_.TransmittanceAlong(ray); });
-    AddLookUp({.series = "closed form, one grey value",
-               .parameter = "",
-               .origin = MethodOrigin::kLiterature,
-               .style = kGrey,
-               .in_summary = true},
-              [&](const ViewRay& ray) { return Grey(air_.TransmittanceAlong(ray)); });
-  }
-
-  void AddTransmittanceMarch(int steps) {
-    AddRow(
-        {.series = "uniform march",
-         .parameter = fmt::format("{} steps", steps),
-         .origin = MethodOrigin::kLiterature,
-         .style = kUniform,
-         .in_summary = steps == 32},
-        [&](const ViewRay& ray) {
-          return MarchedTransmittance(medium_, ray, MarchRule::kMidpoint, steps);
-        },
-        [&](const ViewRay&) { return steps; });
-  }
-
-  void AddTransmittanceTable(const TransmittanceTableSize& size) {
-    const auto [table, seconds] = Built([&] { return TransmittanceTable(medium_, size); });
-    AddLookUp({.series = "two look-ups (Bruneton)",
-               .parameter = fmt::format("{} x {}", size.mu, size.altitudes),
-               .origin = MethodOrigin::kLiterature,
-               .style = kTable,
-               .in_summary = true,
-               .memory_bytes = table.bytes(),
-               .build_s = seconds},
-              [&](const ViewRay& ray) { return table.LookupAlong(ray); });
-  }
-
-  /// Describes the cost of all orders and the transmittance together.
-  [[nodiscard]] std::string AllOrdersText() const {
-    const MultipleScattering multiple_scattering(medium_);
-    const AerialPerspective aerial(air_, multiple_scattering);
-    const std::vector<ReferenceRay>& rays = solution().rays[0];
-    RegimeResult result;
-    TimePasses(
-        rays.size(), effort_,
-        [&] {
-          float sum = 0.0F;
-          for (const ReferenceRay& one : rays) sum += aerial.Along(one.ray, {}).inscatter[0];
-          return sum;
-        },
-        result);
-    return fmt::format(
-        "Light of all orders and transmittance together, automatic nodes: {} a ray by day.",
-        QuantityText(result.time_s, PlotUnit::kSeconds));
-  }
-
- private:
-  template <typename Answer>
-  void AddLookUp(ReportRow row, const Answer& answer) {
-    AddRow(std::move(row), answer, [](const ViewRay&) { return 0; });
-  }
-
-  SingleScattering<float> air_;
-  MultipleScattering multiple_scattering_;
-  AerialPerspective aerial_;
-};
+/// Describes the cost of all orders and the transmittance together.
+std::string AllOrdersText(const RayStudy& study) {
+  const MultipleScattering multiple_scattering(study.medium());
+  const AerialPerspective aerial(study.air(), multiple_scattering);
+  const std::vector<ViewRay>& rays = study.cases(0);
+  RegimeResult result;
+  const auto pass = [&] {
+    float sum = 0.0F;
+    for (const ViewRay& ray : rays) sum += aerial.Along(ray, {}).inscatter[0];
+    return sum;
+  };
+  TimePasses(rays.size(), study.effort(), pass, result);
+  return fmt::format(
+      "Light of all orders and transmittance together, with automatic nodes, take {} per ray by "
+      "day.",
+      QuantityText(result.time_s, PlotUnit::kSeconds));
+}
 
 constexpr char kSegments[] =
-    "Eyes at 2 m, 1.5 km and 10 km look at mountainsides up to 4 km high, 1 to 100 km away "
-    "(distances in equal ratios), with nothing of the planet between; the sun shines on all of the "
-    "way but for the planet's own shadow. ";
+    "Rays from observers at 2 m, 1.5 km and 10 km to mountainsides up to 4 km high, 1 to 100 km "
+    "away (uniform in the logarithm of the distance), without the planet in between. The sun "
+    "lights "
+    "the whole ray except for the shadow of the planet. ";
 
 }  // namespace
 
 ReportTopic MeasureAerialPerspective(const Medium& medium, const ReportEffort& effort) {
-  Topic topic(medium, effort, ReferenceSegments(medium, effort.rays));
-  for (const int nodes : {2, 3, 4, 6, 8})
-    topic.AddPanels(fmt::format("at most {}", nodes), {.sky = nodes}, nodes == 2 || nodes == 4);
-  topic.AddPanels("automatic", {}, true);
-  for (const int steps : {8, 16, 32, 64, 128})
-    topic.AddMarch(MarchRule::kMidpoint, steps, steps == 32);
-  for (const int steps : {8, 16, 32, 64, 128})
-    topic.AddMarch(MarchRule::kQuadratic, steps, steps == 32);
-  topic.AddFroxels(Topic::FroxelValue::kInscatter);
-  topic.AddTable(ScatteringAxes::kBruneton, {.nu = 8, .mu_s = 24, .mu = 64, .altitudes = 16},
-                 effort.quick);
-  if (!effort.quick) topic.AddTable(ScatteringAxes::kBruneton, {}, true);
-  const std::string all_orders = topic.AllOrdersText();
-  return std::move(topic).Finished(
+  RayStudy study(
       {.key = "aerial_perspective",
-       .title = "Aerial perspective: light scattered by the air before a mountain",
+       .title = "Aerial perspective: light scattered by the air in front of a mountain",
        .what = std::string(kSegments) +
-               "The question is the radiance of sunlight that the air on the way scatters once.",
-       .error_unit = "parts of the radiance",
+               "The methods compute the radiance of sunlight that the air along the ray scatters "
+               "once.",
+       .error_unit = "fractions of the radiance",
        .notes =
-           "The marches and the froxels are given this library's exact columns, its planet's "
-           "shadow and its SIMD kernel: only where they look at the air differs. The froxels "
-           "are those of Hillaire (2020), 32 slices to 128 km, each marched to from the eye, "
-           "along every ray's own direction: what interpolation across the picture adds is "
-           "not counted, and the time to build is that of 32 x 32 such rays. Bruneton and "
-           "Neyret (2008) take what lies before the mountain as the difference of two look-ups "
-           "in the table of single scattering, here filled exactly. " +
-           all_orders,
-       .wanted = 0.01,
-       .cost = CostAxis::kTimeOfAnswer});
+           "The marches and the froxels use this library's exact columns, its shadow of the planet "
+           "and its SIMD kernel: they differ only in the points at which they sample the air. The "
+           "froxels are those of Hillaire (2020), 32 slices to 128 km, each marched from the "
+           "observer along the direction of every ray: errors of interpolation across the picture "
+           "are not included, and the time to build is that of 32 x 32 such rays. Bruneton and "
+           "Neyret (2008) compute the light in front of a mountain as the difference of two "
+           "look-ups in the table of single scattering, which is filled exactly here. "},
+      medium, effort);
+  study.SolveSingleScattering(SegmentNumber);
+  const MultipleScattering coarse = UnusedMultipleScattering(medium);
+  const AerialPerspective aerial(study.air(), coarse);
+  for (const int nodes : {2, 3, 4, 6, 8}) {
+    AddPanels(study, aerial, fmt::format("at most {}", nodes), {.sky = nodes},
+              nodes == 2 || nodes == 4);
+  }
+  AddPanels(study, aerial, "automatic", {}, true);
+  for (const MarchRule rule : {MarchRule::kMidpoint, MarchRule::kQuadratic}) {
+    for (const int steps : {8, 16, 32, 64, 128}) study.AddScatteringMarch(rule, steps, steps == 32);
+  }
+  AddFroxels(study, "froxels (Hillaire 2020)", [](const FroxelColumn& column, double distance_m) {
+    return column.Inscatter(distance_m);
+  });
+  AddScatteringTables(study);
+  study.topic().notes += AllOrdersText(study);
+  return std::move(study).Finished();
 }
 
 ReportTopic MeasureTransmittanceToTerrain(const Medium& medium, const ReportEffort& effort) {
-  Topic topic(medium, effort, ReferenceTransmittances(medium, effort.rays));
-  topic.AddClosedForms();
-  for (const int steps : {8, 32, 128}) topic.AddTransmittanceMarch(steps);
-  topic.AddTransmittanceTable({});
-  topic.AddFroxels(Topic::FroxelValue::kTransmittance);
-  topic.AddFroxels(Topic::FroxelValue::kGreyTransmittance);
-  return std::move(topic).Finished(
+  RayStudy study(
       {.key = "terrain_transmittance",
-       .title = "Transmittance: what the air leaves of a mountain's light",
-       .what =
-           std::string(kSegments) +
-           "The question is which part of the light of the mountainside arrives, in every band.",
-       .error_unit = "parts of the mountainside's light",
-       .notes = "One grey value for all colours, the mean, is what volumes of four channels keep "
-                "beside the scattered light (Hillaire 2020): exact columns do not help it.",
-       .wanted = 0.001,
-       .cost = CostAxis::kTimeOfAnswer});
+       .title = "Transmittance: the part of a mountain's light that the air transmits",
+       .what = std::string(kSegments) +
+               "The methods compute the part of the light of the mountainside that arrives, in "
+               "every band.",
+       .error_unit = "fractions of the mountainside's light",
+       .notes = "Volumes of four channels store one grey value for all colours, the mean, next to "
+                "the scattered light (Hillaire 2020). Exact columns do not reduce its error.",
+       .wanted = 0.001},
+      medium, effort);
+  study.SolveTransmittance(SegmentNumber);
+  AddClosedForms(study);
+  for (const int steps : {8, 32, 128})
+    study.AddTransmittanceMarch("uniform march", MarchRule::kMidpoint, steps, steps == 32);
+  AddTransmittanceTable(study);
+  AddFroxels(study, "froxels (Hillaire 2020)", [](const FroxelColumn& column, double distance_m) {
+    return column.Transmittance(distance_m);
+  });
+  AddFroxels(study, "froxels, grey (Hillaire 2020)",
+             [](const FroxelColumn& column, double distance_m) {
+               return Grey(column.Transmittance(distance_m));
+             });
+  return std::move(study).Finished();
 }
 
 namespace {
@@ -321,20 +278,21 @@ ReportWords WordsOfReport() {
   return {
       .title = "Alpenglow: speed and accuracy of pictures",
       .lead =
-          "What a picture of terrain in real air is made of, each part held against a slow "
-          "reference solution: "
-          "the air before mountains, the shafts of light and shade in it, lamps in fog, and whole "
-          "pictures. Methods of this library and of the literature answer the same questions in "
-          "one run.",
+          "The parts of a picture of terrain in real air are compared with slow reference "
+          "solutions: the air in front of mountains, shafts of light and shadow in it, lamps in "
+          "fog, and whole pictures. Methods of this library and of the literature are evaluated on "
+          "the same cases in one run.",
       .minute =
-          "For each topic: the fastest method that nobody could tell from the truth in any of its "
-          "columns. An error of 1 % in radiance is about the smallest step that an eye sees side "
-          "by side.",
+          "For each topic, this section names the fastest method whose errors are not visible in "
+          "any of its columns. An error of 1 % in radiance is about the smallest step between "
+          "adjacent areas that an observer sees.",
       .reading =
-          "Every topic says what it is asked of and what its errors are relative to. Columns are "
-          "heights of the sun, kinds of fog, numbers of lamps or times of the day. Where a method "
-          "is not made for a column, its cells are empty. Methods of the literature use this "
-          "library's columns, geometry and kernels: what is left of their errors is their own."};
+          "Every topic describes its cases and the values to which its errors are relative. "
+          "Columns "
+          "are elevations of the sun, kinds of fog, numbers of lamps or times of the day. Cells "
+          "are "
+          "empty if a method does not support a column. Methods of the literature use this "
+          "library's columns, geometry and kernels, so that the remaining errors are their own."};
 }
 
 }  // namespace

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Measures the topic of the report about whole pictures, by samples of a pixel and nodes of the air.
+// This file measures a topic of the report: whole pictures, by samples of a pixel and nodes of the
+// air.
 #include <fmt/format.h>
 
 #include <unistd.h>
@@ -9,6 +10,8 @@
 #include <ctime>
 #include <fstream>
 #include <memory>
+#include <utility>
+#include <vector>
 
 #include "atmosphere/math/constants.h"
 #include "lut/cli/program.h"
@@ -20,9 +23,6 @@
 
 namespace alpenglow::renderer {
 namespace {
-
-// Line styles of the plot.
-enum PictureStyle { kSamples = 0, kNoise = 1, kPictureNodes = 2, kWithout = 5 };
 
 constexpr std::size_t kScenes = 4;
 struct SceneText {
@@ -46,28 +46,105 @@ std::uint64_t ResidentBytes() {
 /// Returns the processor time of all threads [s].
 double ProcessorSeconds() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
 
+/// Returns the result of `make` and the processor time that it takes [s].
+template <typename Make>
+auto Timed(const Make& make) {
+  const double start = ProcessorSeconds();
+  auto made = make();
+  return std::pair{std::move(made), ProcessorSeconds() - start};
+}
+
+/// Returns the middle of a picture of the usual size, with pixels of the usual angular size. The
+/// range takes seconds to generate, so tests of the report see its place without it.
+Scene RangeScene(bool quick, int width) {
+  Scene scene = SceneFromOptions({});
+  constexpr double kWidthOfPictures = 1280.0;
+  scene.camera.fov_rad =
+      2.0 * std::atan(std::tan(0.5 * scene.camera.fov_rad) * width / kWidthOfPictures);
+  if (quick) scene.terrain.kind = TerrainSource::Kind::kNone;
+  return scene;
+}
+
+UtcInstant InstantOf(std::size_t r) {
+  const Scene range = SceneFromOptions({});
+  return InstantFromText(kSceneTexts[r].time, {range.place, range.zone, range.time});
+}
+
+std::vector<double> ChangesOf(const Image& reference, const Image& image) {
+  const double floor = ChangeFloor(reference);
+  std::vector<double> changes;
+  for (std::size_t i = 0; i < image.rgb.size(); ++i)
+    changes.push_back(PixelChange(reference.rgb[i], image.rgb[i], floor));
+  return changes;
+}
+
+ReportTopic WordsOfPictures() {
+  return {
+      .key = "pictures",
+      .title = "Whole pictures: effect of samples of a pixel and nodes of the air",
+      .what =
+          "The built-in range at noon, a quarter of an hour before sunset and ten minutes before "
+          "the end of civil twilight, from the same place: the middle of a picture 1280 pixels "
+          "wide. And a runway with forty lamps and an aeroplane's landing lights in height fog. "
+          "Sky, air, shafts, shadows and lamps are rendered as skyseries renders them.",
+      .error_unit =
+          "fractions of the pixel, as a distance of linear red, green and blue. Pixels below a "
+          "sixteenth of middle grey count as if they were that bright. The largest possible error "
+          "is 2, for light in only one of the pictures",
+      .notes =
+          "Rows with fewer air nodes and without effects are rendered with 4 samples. \"rays as "
+          "noise asks\" uses 4 rays for every pixel, and up to 256 if the rays of the neighbouring "
+          "pixels predict a larger error than the parameter; air and rays are shared between "
+          "pixels. Most of the error of few samples is at edges of terrain, which are thinner than "
+          "a pixel: a sample sees one side of them. Time is the processor time of all threads per "
+          "pixel. build is the time to load the scene and to prepare a picture (shadow heights, "
+          "tree of lamps). memory is the increase of the program's memory when both scenes were "
+          "loaded.",
+      .wanted = 0.1,
+      .answer = "pixel",
+      .everywhere = "from noon to night"};
+}
+
 class PicturesTopic {
  public:
   explicit PicturesTopic(const ReportEffort& effort)
-      : effort_(effort), width_(effort.quick ? 24 : 192), height_(effort.quick ? 14 : 108) {
+      : effort_(effort),
+        width_(effort.quick ? 24 : 192),
+        height_(effort.quick ? 14 : 108),
+        topic_(WordsOfPictures()) {
     const std::uint64_t before = ResidentBytes();
-    const auto [range, range_s] = Once([&] { return Range(effort.quick, width_); });
-    const auto [runway, runway_s] = Once([&] { return RunwayScene(effort.quick ? 10 : 40, true); });
+    const auto renderer_of = [](const Scene& scene) {
+      return std::make_shared<const SceneRenderer>(scene);
+    };
+    const auto [range, range_s] =
+        Timed([&] { return renderer_of(RangeScene(effort.quick, width_)); });
+    const auto [runway, runway_s] =
+        Timed([&] { return renderer_of(RunwayScene(effort.quick ? 10 : 40, true)); });
     range_bytes_ = std::max(ResidentBytes(), before) - before;
     load_s_ = std::max(range_s, runway_s);
     for (std::size_t r = 0; r < kScenes; ++r)
       scenes_.push_back({r + 1 < kScenes ? range : runway, InstantOf(r)});
     for (ReferenceSceneCase& scene : scenes_) scene.frame_s = FrameSeconds(scene);
     SolveReference();
+    Describe();
+  }
+
+  void Add(ReportRow row, const RenderSettings& settings) {
+    row.at.resize(kScenes);
+    row.memory_bytes = range_bytes_;
+    row.build_s = load_s_;
+    for (std::size_t r = 0; r < kScenes; ++r) {
+      Measure(scenes_[r], settings, row.at[r]);
+      row.build_s = std::max(row.build_s, load_s_ + scenes_[r].frame_s);
+    }
+    topic_.rows.push_back(std::move(row));
   }
 
   void AddSamples(int samples) {
-    RenderSettings settings = Settings(samples);
     Add({.series = "samples of a pixel",
          .parameter = fmt::format("{}", samples),
-         .style = kSamples,
          .in_summary = true},
-        settings);
+        Settings(samples));
   }
 
   void AddNoise(double noise) {
@@ -75,7 +152,6 @@ class PicturesTopic {
     settings.noise = noise;
     Add({.series = "rays as noise asks",
          .parameter = fmt::format("{:g} %", 100.0 * noise),
-         .style = kNoise,
          .in_summary = true},
         settings);
   }
@@ -85,7 +161,6 @@ class PicturesTopic {
     settings.air_nodes = nodes;
     Add({.series = "fewer air nodes",
          .parameter = fmt::format("{} nodes", nodes),
-         .style = kPictureNodes,
          .in_summary = nodes == 4},
         settings);
   }
@@ -96,47 +171,11 @@ class PicturesTopic {
     Add({.series = "without " + what,
          .parameter = "",
          .origin = MethodOrigin::kLiterature,
-         .style = kWithout,
          .in_summary = true},
         settings);
   }
 
-  [[nodiscard]] ReportTopic Finished() && {
-    topic_.key = "pictures";
-    topic_.title = "Whole pictures: what samples of a pixel and nodes of the air buy";
-    topic_.what =
-        "The built-in range at noon, a quarter of an hour before sunset and ten minutes before the "
-        "end of civil twilight from the same place, the middle of a picture 1280 pixels wide; and "
-        "a runway with forty lamps and an aeroplane's landing lights in height fog; sky, air, "
-        "shafts, shadows and lamps are rendered as skyseries renders them.";
-    topic_.error_unit =
-        "parts of the pixel, as a distance of linear red, green and blue; what is darker than a "
-        "sixteenth of middle grey counts as if it were that bright, and 2 is the most (light in "
-        "one "
-        "picture and not in the other)";
-    topic_.notes =
-        "Fewer air nodes and what is left out are rendered with 4 samples. Rays as noise asks: 4 "
-        "for every pixel, more, up to 256, where the neighbours' 4 say that the pixel's error is "
-        "larger than that, and air and rays that are shared between pixels. Most of the error of "
-        "few samples is at edges of terrain, which are thinner than a pixel: "
-        "a sample sees one side of them. Time is the processor time of all threads for a pixel; "
-        "build is loading the scene and what a picture prepares once (shadow heights, tree of "
-        "lamps); memory is what the program grew by when both scenes were loaded.";
-    topic_.wanted = 0.1;
-    topic_.answer = "pixel";
-    topic_.everywhere = "from noon to night";
-    topic_.scene = fmt::format("{} x {}", width_, height_);
-    topic_.regimes.clear();
-    for (std::size_t r = 0; r < kScenes; ++r)
-      topic_.regimes.push_back({kSceneTexts[r].key, kSceneTexts[r].name, SunOf(r)});
-    topic_.medium = scenes_.front().renderer->medium();
-    topic_.rays = static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_);
-    topic_.reference.text = fmt::format(
-        "the same picture with {} samples a pixel, 16 nodes in the air and 24 for every lamp",
-        ReferenceSamples());
-    topic_.reference.noise.assign(kScenes, 0.0);
-    return std::move(topic_);
-  }
+  [[nodiscard]] ReportTopic Finished() && { return std::move(topic_); }
 
  private:
   struct ReferenceSceneCase {
@@ -146,31 +185,8 @@ class PicturesTopic {
     double frame_s = 0.0;  // time to prepare a picture
   };
 
-  /// Returns the middle of a picture of the usual size, with pixels of the usual angular size. The
-  /// range takes seconds to generate, so tests of the report see its place without it.
-  static Scene Range(bool quick, int width) {
-    Scene scene = SceneFromOptions({});
-    constexpr double kWidthOfPictures = 1280.0;
-    scene.camera.fov_rad =
-        2.0 * std::atan(std::tan(0.5 * scene.camera.fov_rad) * width / kWidthOfPictures);
-    if (quick) scene.terrain.kind = TerrainSource::Kind::kNone;
-    return scene;
-  }
-
-  /// Returns a prepared scene, and the time of its preparation.
-  template <typename Make>
-  static std::pair<std::shared_ptr<const SceneRenderer>, double> Once(const Make& make) {
-    const double start = ProcessorSeconds();
-    auto renderer = std::make_shared<const SceneRenderer>(make());
-    return {std::move(renderer), ProcessorSeconds() - start};
-  }
-
   [[nodiscard]] int ReferenceSamples() const { return effort_.quick ? 32 : 256; }
-
-  [[nodiscard]] static UtcInstant InstantOf(std::size_t r) {
-    const Scene range = SceneFromOptions({});
-    return InstantFromText(kSceneTexts[r].time, {range.place, range.zone, range.time});
-  }
+  [[nodiscard]] double Pixels() const { return static_cast<double>(width_ * height_); }
 
   [[nodiscard]] SunRange SunOf(std::size_t r) const {
     const double deg =
@@ -198,15 +214,18 @@ class PicturesTopic {
         (ProcessorSeconds() - start) / (static_cast<double>(kScenes) * Pixels());
   }
 
-  void Add(ReportRow row, const RenderSettings& settings) {
-    row.at.resize(kScenes);
-    row.memory_bytes = range_bytes_;
-    row.build_s = load_s_;
-    for (std::size_t r = 0; r < kScenes; ++r) {
-      Measure(scenes_[r], settings, row.at[r]);
-      row.build_s = std::max(row.build_s, load_s_ + scenes_[r].frame_s);
-    }
-    topic_.rows.push_back(std::move(row));
+  /// Completes the texts that depend on the scenes.
+  void Describe() {
+    topic_.scene = fmt::format("{} x {}", width_, height_);
+    topic_.regimes.clear();
+    for (std::size_t r = 0; r < kScenes; ++r)
+      topic_.regimes.push_back({kSceneTexts[r].key, kSceneTexts[r].name, SunOf(r)});
+    topic_.medium = scenes_.front().renderer->medium();
+    topic_.rays = static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_);
+    topic_.reference.text = fmt::format(
+        "the same picture with {} samples per pixel, 16 nodes in the air and 24 for every lamp",
+        ReferenceSamples());
+    topic_.reference.noise.assign(kScenes, 0.0);
   }
 
   /// Measures the error of a picture, and its time without the preparation.
@@ -214,9 +233,9 @@ class PicturesTopic {
                RegimeResult& result) const {
     std::vector<double> seconds;
     for (int pass = 0; pass < (effort_.quick ? 1 : 2); ++pass) {
-      const double start = ProcessorSeconds();
-      const Image image = scene.renderer->Render(scene.instant, settings);
-      seconds.push_back(ProcessorSeconds() - start);
+      const auto [image, taken] =
+          Timed([&] { return scene.renderer->Render(scene.instant, settings); });
+      seconds.push_back(taken);
       result.error = StatisticsOfErrors(ChangesOf(scene.reference, image), 0.0);
       ThrowIfInterrupted();
     }
@@ -227,28 +246,13 @@ class PicturesTopic {
     result.time_spread = seconds.back() / seconds.front() - 1.0;
   }
 
-  [[nodiscard]] static std::vector<double> ChangesOf(const Image& reference, const Image& image) {
-    const double floor = ChangeFloor(reference);
-    std::vector<double> changes;
-    for (std::size_t i = 0; i < image.rgb.size(); ++i)
-      changes.push_back(PixelChange(reference.rgb[i], image.rgb[i], floor));
-    return changes;
-  }
-
-  [[nodiscard]] double Pixels() const { return static_cast<double>(width_ * height_); }
-
   /// Returns the preparation time of a picture: the time of a picture of one pixel.
   [[nodiscard]] double FrameSeconds(const ReferenceSceneCase& scene) const {
     RenderSettings settings = Settings(1);
     settings.width = settings.height = 1;
-    double shortest = 0.0;
-    for (int pass = 0; pass < 2; ++pass) {
-      const double start = ProcessorSeconds();
-      (void)scene.renderer->Render(scene.instant, settings);
-      const double taken = ProcessorSeconds() - start;
-      shortest = pass == 0 ? taken : std::min(shortest, taken);
-    }
-    return shortest;
+    const auto draw = [&] { return scene.renderer->Render(scene.instant, settings); };
+    const double first = Timed(draw).second;
+    return std::min(first, Timed(draw).second);
   }
 
   const ReportEffort& effort_;

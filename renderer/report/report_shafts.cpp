@@ -1,16 +1,15 @@
 // SPDX-License-Identifier: MIT
-// Measures the topic of the report about single scattering in air that terrain shades in part.
+// This file measures a topic of the report: single scattering in air that terrain shades in part.
 #include <fmt/format.h>
-#include <oneapi/tbb/parallel_for.h>
 
 #include <algorithm>
 #include <array>
-#include <chrono>
 #include <cmath>
+#include <cstdint>
 #include <numbers>
+#include <optional>
 #include <vector>
 
-#include "lut/cli/program.h"
 #include "renderer/illumination/aerial_perspective.h"
 #include "renderer/report/occlusion_march.h"
 #include "renderer/report/report.h"
@@ -21,9 +20,6 @@
 namespace alpenglow::renderer {
 namespace {
 
-// Line styles of the plot.
-enum ShaftStyle { kHeights = 0, kMarch = 1, kProbes = 2, kUnbroken = 5 };
-
 constexpr std::array<ReportRegime, 4> kSuns{{{"15", "Sun at 15°", SunRange{15.0, 15.0}},
                                              {"8", "Sun at 8°", SunRange{8.0, 8.0}},
                                              {"3", "Sun at 3°", SunRange{3.0, 3.0}},
@@ -31,14 +27,6 @@ constexpr std::array<ReportRegime, 4> kSuns{{{"15", "Sun at 15°", SunRange{15.0
 
 /// Length of the longest relevant ray through the air [m].
 constexpr double kLongest_m = 2000e3;
-
-/// The picture under one sun, with the reference solution's answers.
-struct ReferenceView {
-  ShaftView view;
-  std::vector<double> length_m;
-  std::vector<Bands<float>> truth;
-  std::vector<double> mean;  // of the picture, by band; errors are relative to it
-};
 
 /// Terrain, and an eye 300 m above it.
 struct ShaftPlace {
@@ -80,215 +68,180 @@ ShaftPlace OverTheRange() {
   return {std::move(ground.terrain.value()), ground.eye_height_m};
 }
 
-class ShaftTopic {
- public:
-  explicit ShaftTopic(const ReportEffort& effort)
-      : effort_(effort),
-        ground_(effort.quick ? Waves() : OverTheRange()),
-        air_(MediumPreset("earth")),
-        multiple_scattering_(air_.medium(),
-                             {.altitudes = 4, .sun_angles = 4, .degree = 2, .max_orders = 1}),
-        aerial_(air_, multiple_scattering_) {
-    for (const ReportRegime& sun : kSuns) SolveReference(sun.sun->lowest_deg);
-    topic_.reference.time_s = reference_s_ / static_cast<double>(kSuns.size() * Pixels());
-  }
-
-  void AddHeights(const std::string& parameter, const AerialPerspective::Nodes& nodes) {
-    ReportRow row = Row("shadow heights", parameter, MethodOrigin::kOurs, kHeights);
-    row.in_summary = true;
-    for (std::size_t r = 0; r < views_.size(); ++r) {
-      row.memory_bytes = std::max<std::uint64_t>(row.memory_bytes, heights_[r].bytes());
-      row.build_s = std::max(row.build_s, sweep_s_[r]);
-      AddPanels(heights_[r], nodes, r, row);
-    }
-    topic_.rows.push_back(std::move(row));
-  }
-
-  void AddProbes(int probes) {
-    ReportRow row =
-        Row("sun probes", fmt::format("{} probes", probes), MethodOrigin::kOurs, kProbes);
-    row.in_summary = probes == 32;
-    for (std::size_t r = 0; r < views_.size(); ++r) {
-      const ShaftView& view = views_[r].view;
-      const SunProbes along(ground_.terrain, view.to_sun, view.sun_radius_rad, probes);
-      AddPanels(along, {}, r, row);
-    }
-    topic_.rows.push_back(std::move(row));
-  }
-
-  void AddMarch(int rays) {
-    ReportRow row =
-        Row("occlusion rays", fmt::format("{} rays", rays), MethodOrigin::kLiterature, kMarch);
-    row.in_summary = rays == 64 || rays == 512;
-    for (std::size_t r = 0; r < views_.size(); ++r) {
-      Measure(r, row, [&](std::size_t i) {
-        return MarchWithOcclusion(air_, views_[r].view, i, ground_.terrain, rays);
-      });
-      row.at[r].samples = rays;
-    }
-    topic_.rows.push_back(std::move(row));
-  }
-
-  void AddUnbroken() {
-    ReportRow row = Row("no shafts", "", MethodOrigin::kLiterature, kUnbroken);
-    row.in_summary = true;
-    for (std::size_t r = 0; r < views_.size(); ++r) {
-      Measure(r, row, [&](std::size_t i) { return aerial_.Once(Ray(r, i), nullptr, {}); });
-    }
-    topic_.rows.push_back(std::move(row));
-  }
-
-  [[nodiscard]] std::size_t Pixels() const { return views_.front().view.directions.size(); }
-
-  [[nodiscard]] ReportTopic Finished() && {
-    topic_.key = "shafts";
-    topic_.title = "Shafts: sunlight that terrain lets into the air";
-    topic_.what =
-        "A picture of the built-in range from 300 m over the ground, the sun 20° beside its "
-        "middle at four heights; the question is, for every pixel, the radiance of sunlight that "
-        "the air scatters once where the terrain does not shade it.";
-    topic_.error_unit = "parts of the mean radiance of the picture";
-    topic_.notes =
-        "Times are those of finding the lit stretches of a ray and of the light in them; "
-        "ending the ray at the terrain is not counted, but for the march, whose occlusion rays "
-        "cost a hundred times as much. The march looks at the air at equal steps of a distance "
-        "that is dense near the eye, each with a ray to a point of the sun's disk: the exact "
-        "visibility that shadow maps approximate.";
-    topic_.wanted = 0.02;
-    topic_.answer = "pixel";
-    topic_.scene = effort_.quick ? "waves" : "built-in range";
-    topic_.regimes.assign(kSuns.begin(), kSuns.end());
-    topic_.medium = air_.medium();
-    topic_.rays = Pixels();
-    topic_.reference.text = fmt::format(
-        "{} occlusion rays a pixel in eight marches of different steps", 8 * MarchRays());
-    topic_.reference.noise.assign(kSuns.size(), 0.0);
-    return std::move(topic_);
-  }
-
- private:
-  [[nodiscard]] int MarchRays() const { return effort_.quick ? 64 : 512; }
-
-  void SolveReference(double sun_deg) {
-    ReferenceView solution{effort_.quick
-                               ? ViewWithSun(ground_.eye_height_m, 200.0, sun_deg, 8, 5)
-                               : ViewWithSun(ground_.eye_height_m, 200.0, sun_deg, 24, 14),
-                           {},
-                           {},
-                           std::vector<double>(air_.bands())};
-    const std::size_t pixels = solution.view.directions.size();
-    solution.truth.assign(pixels, Bands<float>(air_.bands()));
-    solution.length_m.resize(pixels);
-    const auto start = std::chrono::steady_clock::now();
-    tbb::parallel_for(std::size_t{0}, pixels, [&](std::size_t i) {
-      if (Interrupted()) return;
-      solution.length_m[i] = LengthOf(solution.view, i, ground_.terrain);
-      const double nu = RayOf(solution.view, i, solution.length_m[i]).nu;
-      for (int k = 0; k < 8; ++k) {
-        const Bands<float> light = air_.Inscatter(
-            MarchWithOcclusion(air_, solution.view, i, ground_.terrain, MarchRays(), (k + 0.5) / 8),
-            nu);
-        for (std::size_t band = 0; band < light.count; ++band)
-          solution.truth[i][band] += light[band] / 8.0F;
-      }
-    });
-    ThrowIfInterrupted();
-    reference_s_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-    for (const Bands<float>& pixel : solution.truth) {
-      for (std::size_t band = 0; band < pixel.count; ++band)
-        solution.mean[band] += static_cast<double>(pixel[band]) / static_cast<double>(pixels);
-    }
-    auto [heights, seconds] = Built([&] {
-      return ShadowHeights(ground_.terrain.mesh(), solution.view.to_sun,
-                           solution.view.sun_radius_rad);
-    });
-    heights_.push_back(std::move(heights));
-    sweep_s_.push_back(seconds);
-    views_.push_back(std::move(solution));
-  }
-
-  [[nodiscard]] static ReportRow Row(const std::string& series, const std::string& parameter,
-                                     MethodOrigin origin, int style) {
-    ReportRow row{.series = series, .parameter = parameter, .origin = origin, .style = style};
-    row.at.resize(kSuns.size());
-    return row;
-  }
-
-  [[nodiscard]] ViewRay Ray(std::size_t r, std::size_t i) const {
-    return RayOf(views_[r].view, i, views_[r].length_m[i]);
-  }
-
-  /// Adds Gauss panels on the lit stretches that `lit` finds.
-  template <typename Lit>
-  void AddPanels(const Lit& lit, const AerialPerspective::Nodes& nodes, std::size_t r,
-                 ReportRow& row) {
-    const auto path = [&](std::size_t i) {
-      return lit.Along(views_[r].view.eye, views_[r].view.directions[i],
-                       std::min(Ray(r, i).length_m, kLongest_m));
-    };
-    Measure(r, row, [&](std::size_t i) {
-      const SunlitPath sunlit = path(i);
-      return aerial_.Once(Ray(r, i), &sunlit, nodes);
-    });
-    double points = 0.0;
-    for (std::size_t i = 0; i < Pixels(); ++i) {
-      const SunlitPath sunlit = path(i);
-      points += static_cast<double>(aerial_.Sample(Ray(r, i), &sunlit, nodes).samples.Nodes());
-    }
-    row.at[r].samples = points / static_cast<double>(Pixels());
-  }
-
-  /// Measures the error on every pixel, and the time on every fourth.
-  template <typename Scatter>
-  void Measure(std::size_t r, ReportRow& row, const Scatter& scatter) {
-    const ReferenceView& solution = views_[r];
-    const auto answer = [&](std::size_t i) { return air_.Inscatter(scatter(i), Ray(r, i).nu); };
-    std::vector<Bands<float>> answers(Pixels(), Bands<float>(air_.bands()));
-    tbb::parallel_for(std::size_t{0}, Pixels(), [&](std::size_t i) { answers[i] = answer(i); });
-    std::vector<double> errors;
-    for (std::size_t i = 0; i < Pixels(); ++i) {
-      for (std::size_t band = 0; band < air_.bands(); ++band) {
-        errors.push_back(static_cast<double>(std::abs(answers[i][band] - solution.truth[i][band])) /
-                         solution.mean[band]);
-      }
-    }
-    row.at[r].error = StatisticsOfErrors(std::move(errors), 0.0);
-    ReportEffort effort = effort_;
-    effort.passes = 3;
-    TimePasses((Pixels() + 3) / 4, effort,
-               [&] {
-                 float sum = 0.0F;
-                 for (std::size_t i = 0; i < Pixels(); i += 4) sum += answer(i)[0];
-                 return sum;
-               },
-               row.at[r]);
-    ThrowIfInterrupted();
-  }
-
-  const ReportEffort& effort_;
-  ShaftPlace ground_;
-  SingleScattering<float> air_;
-  MultipleScattering multiple_scattering_;  // unused
-  AerialPerspective aerial_;
-  std::vector<ReferenceView> views_;
-  std::vector<ShadowHeights> heights_;  // one for each view
-  std::vector<double> sweep_s_;         // time to build `heights_`
-  double reference_s_ = 0.0;
-  ReportTopic topic_;
+/// A pixel of the picture under a sun, and the ray to the terrain there.
+struct ShaftRay {
+  std::size_t sun, pixel;
+  ViewRay ray;
 };
+using ShaftStudy = ErrorStudy<ShaftRay>;
+
+/// Objects that the methods of this topic share.
+struct ShaftScene {
+  ShaftPlace place;
+  SingleScattering<float> air;
+  MultipleScattering unused;
+  AerialPerspective aerial;
+  std::vector<ShaftView> views;  // by sun
+
+  explicit ShaftScene(bool quick)
+      : place(quick ? Waves() : OverTheRange()),
+        air(MediumPreset("earth")),
+        unused(air.medium(), {.altitudes = 4, .sun_angles = 4, .degree = 2, .max_orders = 1}),
+        aerial(air, unused) {
+    for (const ReportRegime& sun : kSuns)
+      views.push_back(ViewWithSun(place.eye_height_m, 200.0, sun.sun->lowest_deg, quick ? 8 : 24,
+                                  quick ? 5 : 14));
+  }
+
+  /// Returns single scattering by a march with `rays` occlusion rays.
+  [[nodiscard]] Bands<float> March(const ShaftRay& one, int rays, double offset = 0.5) const {
+    return air.Inscatter(
+        MarchWithOcclusion(air, views[one.sun], one.pixel, place.terrain, rays, offset),
+        one.ray.nu);
+  }
+};
+
+/// Returns the mean of eight marches with different steps.
+std::vector<double> MeanOfMarches(const ShaftScene& scene, const ShaftRay& one, int rays) {
+  Bands<float> mean(scene.air.bands());
+  for (int k = 0; k < 8; ++k) {
+    const Bands<float> light = scene.March(one, rays, (k + 0.5) / 8);
+    for (std::size_t band = 0; band < light.count; ++band) mean[band] += light[band] / 8.0F;
+  }
+  return ValuesOf(mean);
+}
+
+/// Solves all pixels. Errors are relative to the mean of the picture, by band.
+void SolvePixels(ShaftStudy& study, const ShaftScene& scene, int rays) {
+  const std::size_t pixels = scene.views.front().directions.size();
+  study.SolveCases(pixels, [&](std::size_t r, std::size_t i) {
+    const double length_m = LengthOf(scene.views[r], i, scene.place.terrain);
+    const ShaftRay one{r, i, RayOf(scene.views[r], i, length_m)};
+    return std::optional(ShaftStudy::Solved{one, {MeanOfMarches(scene, one, rays), {}, {}}});
+  });
+  for (std::size_t r = 0; r < study.regimes(); ++r) {
+    std::vector<double> mean(scene.air.bands());
+    for (const ReferenceValue& pixel : study.references(r)) {
+      for (std::size_t band = 0; band < mean.size(); ++band)
+        mean[band] += pixel.value[band] / static_cast<double>(pixels);
+    }
+    for (ReferenceValue& pixel : study.references(r)) pixel.scale = mean;
+  }
+}
+
+/// Adds Gauss panels on the lit stretches of rays. @param lit_under  function from a sun to an
+/// object with the lit stretches under it.
+template <typename LitUnder>
+void AddPanels(ShaftStudy& study, const ShaftScene& scene, ReportRow row,
+               const AerialPerspective::Nodes& nodes, const LitUnder& lit_under) {
+  const auto path = [&](const ShaftRay& one) {
+    const ShaftView& view = scene.views[one.sun];
+    return lit_under(one.sun).Along(view.eye, view.directions[one.pixel],
+                                    std::min(one.ray.length_m, kLongest_m));
+  };
+  study.Add(
+      std::move(row),
+      [&](const ShaftRay& one) {
+        const SunlitPath sunlit = path(one);
+        return scene.air.Inscatter(scene.aerial.Once(one.ray, &sunlit, nodes), one.ray.nu);
+      },
+      [&](const ShaftRay& one) {
+        const SunlitPath sunlit = path(one);
+        return scene.aerial.Sample(one.ray, &sunlit, nodes).samples.Nodes();
+      });
+}
+
+void AddHeights(ShaftStudy& study, const ShaftScene& scene) {
+  std::vector<ShadowHeights> heights;
+  ReportRow row{.series = "shadow heights", .parameter = "", .in_summary = true};
+  for (const ShaftView& view : scene.views) {
+    auto [made, seconds] = Built([&] {
+      return ShadowHeights(scene.place.terrain.mesh(), view.to_sun, view.sun_radius_rad);
+    });
+    row.memory_bytes = std::max<std::uint64_t>(row.memory_bytes, made.bytes());
+    row.build_s = std::max(row.build_s, seconds);
+    heights.push_back(std::move(made));
+  }
+  const auto under = [&](std::size_t sun) -> const ShadowHeights& { return heights[sun]; };
+  for (const int nodes : {0, 4, 8, 16}) {
+    row.parameter = nodes == 0 ? "automatic nodes" : fmt::format("at most {} nodes", nodes);
+    AddPanels(study, scene, row,
+              nodes == 0 ? AerialPerspective::Nodes{} : AerialPerspective::Nodes{.sky = nodes},
+              under);
+  }
+}
+
+void AddProbes(ShaftStudy& study, const ShaftScene& scene, int probes) {
+  std::vector<SunProbes> made;
+  for (const ShaftView& view : scene.views)
+    made.emplace_back(scene.place.terrain, view.to_sun, view.sun_radius_rad, probes);
+  AddPanels(study, scene,
+            {.series = "sun probes",
+             .parameter = fmt::format("{} probes", probes),
+             .in_summary = probes == 32},
+            {}, [&](std::size_t sun) -> const SunProbes& { return made[sun]; });
+}
+
+void AddMarch(ShaftStudy& study, const ShaftScene& scene, int rays) {
+  study.Add(
+      {.series = "occlusion rays",
+       .parameter = fmt::format("{} rays", rays),
+       .origin = MethodOrigin::kLiterature,
+       .in_summary = rays == 64 || rays == 512},
+      [&](const ShaftRay& one) { return scene.March(one, rays); }, rays);
+}
+
+ReportTopic WordsOfShafts(bool quick) {
+  return {
+      .key = "shafts",
+      .title = "Shafts: sunlight in air that terrain shades in part",
+      .what =
+          "A picture of the built-in range from 300 m over the ground, with the sun 20° beside "
+          "its middle at four elevations. The methods compute, for every pixel, the radiance of "
+          "sunlight that the air scatters once where the terrain does not shade it.",
+      .error_unit = "fractions of the mean radiance of the picture",
+      .notes =
+          "Times include the search for the lit stretches of a ray and the light in them. They do "
+          "not include the end of the ray at the terrain, except for the march, whose occlusion "
+          "rays take a hundred times as long. The march samples the air at equal steps of a "
+          "distance that is dense near the observer, each with a ray to a point of the sun's disk. "
+          "This is the exact visibility that shadow maps approximate.",
+      .wanted = 0.02,
+      .answer = "pixel",
+      .scene = quick ? "waves" : "built-in range",
+      .regimes = {kSuns.begin(), kSuns.end()}};
+}
 
 }  // namespace
 
 ReportTopic MeasureShafts(const ReportEffort& effort) {
-  ShaftTopic topic(effort);
-  topic.AddHeights("automatic nodes", {});
-  topic.AddHeights("at most 4 nodes", {.sky = 4});
-  topic.AddHeights("at most 8 nodes", {.sky = 8});
-  topic.AddHeights("at most 16 nodes", {.sky = 16});
-  for (const int probes : {8, 16, 32, 64}) topic.AddProbes(probes);
-  for (const int rays : {16, 32, 64, 128, 256, 512}) topic.AddMarch(rays);
-  topic.AddUnbroken();
-  return std::move(topic).Finished();
+  const ShaftScene scene(effort.quick);
+  ReportEffort fewer = effort;
+  fewer.passes = 3;
+  fewer.time_every = 4;
+  const ErrorRule in_float{[](double value, double truth, double scale) {
+                             return static_cast<double>(std::abs(static_cast<float>(value) -
+                                                                 static_cast<float>(truth))) /
+                                    scale;
+                           },
+                           false};
+  ShaftStudy study(WordsOfShafts(effort.quick), fewer, in_float);
+  const int rays = effort.quick ? 64 : 512;
+  study.topic().medium = scene.air.medium();
+  study.topic().reference.text =
+      fmt::format("{} occlusion rays per pixel in eight marches of different steps", 8 * rays);
+  SolvePixels(study, scene, rays);
+  AddHeights(study, scene);
+  for (const int probes : {8, 16, 32, 64}) AddProbes(study, scene, probes);
+  for (const int marched : {16, 32, 64, 128, 256, 512}) AddMarch(study, scene, marched);
+  study.Add({.series = "no shafts",
+             .parameter = "",
+             .origin = MethodOrigin::kLiterature,
+             .in_summary = true},
+            [&](const ShaftRay& one) {
+              return scene.air.Inscatter(scene.aerial.Once(one.ray, nullptr, {}), one.ray.nu);
+            });
+  return std::move(study).Finished();
 }
 
 }  // namespace alpenglow::renderer

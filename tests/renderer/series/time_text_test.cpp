@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "atmosphere/astronomy/moon.h"
+#include "atmosphere/astronomy/sun.h"
 #include "atmosphere/base/error.h"
 #include "tests/fixtures/event_days.h"
 #include "tests/fixtures/fault_of.h"
