@@ -12,10 +12,10 @@
 #include "atmosphere/base/parsing.h"
 #include "atmosphere/math/constants.h"
 #include "atmosphere/math/numerics.h"
-#include "atmosphere/medium/lorenz_mie.h"
 #include "atmosphere/medium/phase.h"
 #include "atmosphere/medium/phase_table.h"
 #include "tests/fixtures/fault_of.h"
+#include "tests/fixtures/lorenz_mie.h"
 
 namespace alpenglow::atmosphere {
 namespace {

@@ -115,8 +115,8 @@ TEST_F(Glslang, AcceptsTheShadersOfLampsWithAndWithoutFog) {
     corners.push_back(ViewerPiece("viewer/shaders/lamps/lamp_corners.glsl"));
     ExpectAccepted(corners, "lamps/lamp_core.vert.glsl");
     ExpectAccepted(corners, "lamps/lamp_disk.vert.glsl");
-    for (const char* stage :
-         {"lamps/lamp_airlight.frag.glsl", "lamps/lamp_core.frag.glsl", "lamps/lamp_disk.frag.glsl"}) {
+    for (const char* stage : {"lamps/lamp_airlight.frag.glsl", "lamps/lamp_core.frag.glsl",
+                              "lamps/lamp_disk.frag.glsl"}) {
       ExpectAccepted(texts, stage);
     }
   }
