@@ -239,7 +239,7 @@ TEST(ReportRays, FromSpaceTheSunStandsOverTheLowestPointOfTheRay) {
 }
 
 TEST(ReportBaselines, ChapmanApproximationsAreAsGoodAsPublished) {
-  // One exponential of 8 km, as the publications reference solution themselves; nothing but its height matters.
+  // The publications compare themselves with one exponential of 8 km; only its height matters.
   Medium medium = MediumPreset("earth");
   medium.rayleigh_scale_height_m = 8000.0;
   medium.rayleigh_deficit = {};
