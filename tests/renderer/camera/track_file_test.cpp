@@ -15,9 +15,9 @@
 namespace alpenglow::renderer {
 namespace {
 
-using ::testing::ElementsAre;
-using ::testing::HasSubstr;
-using ::testing::StartsWith;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::StartsWith;
 
 class TrackFile : public TemporaryFolder {
  protected:
@@ -47,7 +47,7 @@ constexpr char kGpx[] = R"(<?xml version="1.0" encoding="UTF-8"?>
 </gpx>
 )";
 
-TEST_F(TrackFile, AllSegmentsOfAGpxTrackAreReadOneAfterTheOther) {
+TEST_F(TrackFile, AllSegmentsOfAGpxTrackAreReadInOrder) {
   const Track track = Read(kGpx);
   EXPECT_EQ(track.name, "Over the pass");
   EXPECT_EQ(track.heights, TrackHeights::kSea);
@@ -59,7 +59,7 @@ TEST_F(TrackFile, AllSegmentsOfAGpxTrackAreReadOneAfterTheOther) {
   EXPECT_EQ(FormatUtc(*track.points[2].utc), "2026-06-21T04:00:20Z");
 }
 
-TEST_F(TrackFile, RoutesAndWaypointsServeWhereThereIsNoTrack) {
+TEST_F(TrackFile, RoutesAndWaypointsAreReadIfThereIsNoTrack) {
   const Track route = Read(
       "<gpx><rte><name>R</name><rtept lat='1' lon='2'/><rtept lat='3' lon='4'/></rte>"
       "<rte><rtept lat='5' lon='6'/></rte></gpx>");
@@ -103,7 +103,7 @@ TEST_F(TrackFile, ATrackOfKmlHasItsTimes) {
   EXPECT_NEAR(Degrees(track.points[1].place.longitude_rad), 8.1, 1e-12);
 }
 
-TEST_F(TrackFile, FaultsNameTheFileTheLineAndWhatIsWrong) {
+TEST_F(TrackFile, AFaultIsReportedWithItsFileAndLine) {
   const std::string file = (folder_ / "t.gpx").string();
   const auto gpx = [](const std::string& point) {
     return "<gpx>\n<trk><trkseg>\n" + point + "\n</trkseg></trk></gpx>";
@@ -149,7 +149,7 @@ TEST_F(TrackFile, FaultsNameTheFileTheLineAndWhatIsWrong) {
               HasSubstr("none.gpx"));
 }
 
-// A point of a track: the longitude's hundredths beyond 8 E, the rest as in a file; empty is left
+// Returns a point of a track, `hundredths` of a degree east of 8 E. An empty height or time is left
 // out.
 std::string TrackPointText(int hundredths, const std::string& height, const std::string& time) {
   std::string text = "<trkpt lat='46.5' lon='8.0" + std::to_string(hundredths) + "'>";
@@ -202,24 +202,20 @@ TEST_F(TrackFile, TimesThatSomePointsLackAreInterpolated) {
   EXPECT_THAT(one.note, HasSubstr("flown with an even speed"));
 }
 
-TEST_F(TrackFile, APointWhoseTimeCannotBeTrueIsLeftOutAndCounted) {
-  const std::string rest = TrackPointText(2, "1", "1:00") + TrackPointText(4, "1", "2:00") +
-                           TrackPointText(6, "1", "3:00");
+TEST_F(TrackFile, APointWithAnImpossibleTimeIsLeftOutAndCounted) {
   const auto odd = [](int year) {
     return "<trkpt lat='46.5' lon='8'><time>" + std::to_string(year) +
            "-02-05T10:00:00Z</time></trkpt>";
   };
-  const std::vector<std::string> texts = {
-      odd(2045) + rest,
-      rest + odd(2045),
-      odd(1980) + rest,
-      rest + odd(1980),
-      TrackPointText(2, "1", "1:00") + odd(2045) + TrackPointText(4, "1", "2:00") +
-          TrackPointText(6, "1", "3:00"),
-      TrackPointText(2, "1", "1:00") + TrackPointText(4, "1", "2:00") +
-          TrackPointText(5, "1", "0:30") + TrackPointText(6, "1", "3:00"),
-      TrackPointText(2, "1", "1:00") + TrackPointText(3, "1", "1:00") +
-          TrackPointText(4, "1", "2:00") + TrackPointText(6, "1", "3:00")};
+  const std::string a = TrackPointText(2, "1", "1:00"), b = TrackPointText(4, "1", "2:00"),
+                    c = TrackPointText(6, "1", "3:00"), rest = a + b + c;
+  const std::vector<std::string> texts = {odd(2045) + rest,
+                                          rest + odd(2045),
+                                          odd(1980) + rest,
+                                          rest + odd(1980),
+                                          a + odd(2045) + b + c,
+                                          a + b + TrackPointText(5, "1", "0:30") + c,
+                                          a + TrackPointText(3, "1", "1:00") + b + c};
   for (const std::string& text : texts) {
     const Track track = Read(GpxOf(text));
     EXPECT_THAT(ClockTimesOf(track), ElementsAre("10:01:00", "10:02:00", "10:03:00")) << text;
@@ -263,7 +259,7 @@ TEST_F(TrackFile, ALostFixIsLeftOutAndCounted) {
   EXPECT_THAT(gpx.note, HasSubstr("2 of 4 points"));
 }
 
-TEST_F(TrackFile, AnAltitudeModeHoldsForWhatIsInsideItsElement) {
+TEST_F(TrackFile, AnAltitudeModeHoldsInsideItsElement) {
   const auto heights = [&](const std::string& around, const std::string& own) {
     return Read("<kml><Folder><Placemark><gx:MultiTrack>" + around + "<gx:Track>" + own +
                     "<when>2026-06-21T10:00:00Z</when><gx:coord>8 46 9</gx:coord></gx:Track>"
@@ -297,7 +293,7 @@ TEST_F(TrackFile, EveryTruncationOfAFileIsRefused) {
   }
 }
 
-TEST_F(TrackFile, ElementsInsideEachOtherWithoutEndAreRefused) {
+TEST_F(TrackFile, DeeplyNestedElementsAreRefused) {
   std::string deep = "<gpx>";
   for (int i = 0; i < 10000; ++i) deep += "<a>";
   EXPECT_THAT(Fault(deep), HasSubstr("this is no XML"));

@@ -15,7 +15,6 @@
 #include <utility>
 #include <vector>
 
-#include "atmosphere/base/error.h"
 #include "atmosphere/colour/spectrum.h"
 #include "atmosphere/math/constants.h"
 #include "renderer/media/local_media.h"
@@ -27,7 +26,11 @@
 namespace alpenglow::renderer {
 namespace {
 
-VolumePlacement Turned(VolumePlacement::Shape shape, double heading_deg) {
+using testing::HasSubstr;
+using tests::FaultOf;
+using Shape = VolumePlacement::Shape;
+
+VolumePlacement Turned(Shape shape, double heading_deg) {
   const double a = heading_deg * kRadiansPerDegree;
   VolumePlacement placement;
   placement.shape = shape;
@@ -38,7 +41,7 @@ VolumePlacement Turned(VolumePlacement::Shape shape, double heading_deg) {
   return placement;
 }
 
-/// Turbulent, with empty parts, from the built-in noise.
+/// Returns a turbulent grid with empty parts, made of the built-in noise.
 VolumeGrid NoiseGrid(const std::array<int, 3>& size) {
   std::vector<float> values;
   for (int z = 0; z < size[2]; ++z) {
@@ -73,7 +76,7 @@ std::vector<glm::dvec3> Directions() {
 }
 
 TEST(VolumeGrid, ColumnIsTheIntegralOfItsDensity) {
-  const LocalVolume volume(Turned(VolumePlacement::Shape::kBox, 30.0), std::nullopt,
+  const LocalVolume volume(Turned(Shape::kBox, 30.0), std::nullopt,
                            std::make_shared<VolumeGrid>(NoiseGrid({21, 17, 34})));
   for (const glm::dvec3& direction : Directions()) {
     const glm::dvec3 from = volume.Middle() - 60.0 * direction;
@@ -94,10 +97,10 @@ TEST(VolumeGrid, ColumnAddsUpFromItsParts) {
   }
 }
 
-TEST(VolumeGrid, OfConstantDensityIsAHomogeneousVolume) {
+TEST(VolumeGrid, ConstantDensityIsAHomogeneousVolume) {
   const auto grid =
       std::make_shared<VolumeGrid>(std::array<int, 3>{5, 9, 30}, std::vector<float>(1350, 0.75F));
-  for (const auto shape : {VolumePlacement::Shape::kBox, VolumePlacement::Shape::kEllipsoid}) {
+  for (const auto shape : {Shape::kBox, Shape::kEllipsoid}) {
     const LocalVolume with_grid(Turned(shape, 50.0), std::nullopt, grid);
     const LocalVolume without(Turned(shape, 50.0), std::nullopt, nullptr);
     for (const glm::dvec3& direction : Directions()) {
@@ -109,8 +112,8 @@ TEST(VolumeGrid, OfConstantDensityIsAHomogeneousVolume) {
   }
 }
 
-TEST(VolumeGrid, PiecesHoldAllDensityAndBoundIt) {
-  const LocalVolume volume(Turned(VolumePlacement::Shape::kBox, 10.0), std::nullopt,
+TEST(VolumeGrid, PiecesContainAllDensityAndBoundIt) {
+  const LocalVolume volume(Turned(Shape::kBox, 10.0), std::nullopt,
                            std::make_shared<VolumeGrid>(NoiseGrid({40, 33, 20})));
   for (const glm::dvec3& direction : Directions()) {
     const glm::dvec3 from = volume.Middle() - 70.0 * direction;
@@ -128,7 +131,7 @@ TEST(VolumeGrid, PiecesHoldAllDensityAndBoundIt) {
 
 TEST(LocalVolume, ChordsOfASphereAreThoseOfGeometry) {
   VolumePlacement placement;
-  placement.shape = VolumePlacement::Shape::kEllipsoid;
+  placement.shape = Shape::kEllipsoid;
   placement.bottom = {0.0, 0.0, -50.0};
   placement.size_m = glm::dvec3(100.0);
   const LocalVolume sphere(placement, std::nullopt, nullptr);
@@ -140,22 +143,18 @@ TEST(LocalVolume, ChordsOfASphereAreThoseOfGeometry) {
   EXPECT_NEAR(sphere.Column({0.0, 0.0, 0.0}, {0.0, 0.0, 1.0}, 1e6), 50.0, 1e-9) << "from inside";
   EXPECT_NEAR(sphere.Column({-100.0, 0.0, 0.0}, {1.0, 0.0, 0.0}, 75.0), 25.0, 1e-9)
       << "a ray that ends inside";
+  const LocalVolume turned(Turned(Shape::kBox, 33.0), std::nullopt, nullptr);
+  for (const glm::dvec3& unit : Directions())
+    EXPECT_LT(glm::length(turned.UnitFromFrame(turned.FrameFromUnit(unit)) - unit), 1e-12);
 }
 
 TEST(LocalVolume, ExponentialColumnIsTheIntegralOfItsDensity) {
-  const LocalVolume volume(Turned(VolumePlacement::Shape::kEllipsoid, 75.0), 12.0, nullptr);
+  const LocalVolume volume(Turned(Shape::kEllipsoid, 75.0), 12.0, nullptr);
   for (const glm::dvec3& direction : Directions()) {
     const glm::dvec3 from = volume.Middle() - 60.0 * direction + glm::dvec3(4.0, -7.0, 3.0);
     EXPECT_NEAR(volume.Column(from, direction, 130.0),
                 MidpointColumn(volume, from, direction, 130.0, 100000), 2e-3)
         << "midpoint sums miss the ends by half a step of 1.3 mm";
-  }
-}
-
-TEST(LocalVolume, UnitsAndFrameAreInverse) {
-  const LocalVolume volume(Turned(VolumePlacement::Shape::kBox, 33.0), std::nullopt, nullptr);
-  for (const glm::dvec3& unit : Directions()) {
-    EXPECT_LT(glm::length(volume.UnitFromFrame(volume.FrameFromUnit(unit)) - unit), 1e-12);
   }
 }
 
@@ -182,16 +181,14 @@ TEST(FogLayer, WithoutScaleHeightReachesTheTopOfTheAir) {
               std::sqrt(100e3 * (2.0 * 6371e3 + 100e3)), 1e-3);
 }
 
-TEST(BlackBody, RadiatesAsStefanAndBoltzmannSay) {
+TEST(BlackBody, RadiatesByTheLawOfStefanAndBoltzmann) {
   double sum = 0.0;
   for (double nm = 100.0; nm < 200000.0; nm *= 1.001) sum += BlackBodyRadiance(nm, 3000.0) * nm;
   EXPECT_NEAR(sum * std::log(1.001) * kPi / (5.670374419e-8 * std::pow(3000.0, 4.0)), 1.0, 1e-3)
       << "the tail beyond 0.2 mm is 1e-5, the sum's own error below it";
 }
 
-using tests::FaultOf;
-
-TEST(VolumeGrid, RefusesWhatIsNoDensity) {
+TEST(VolumeGrid, InvalidDensitiesAreRefused) {
   using Size = std::array<int, 3>;
   const auto grid = [](const Size& size, std::vector<float> values) {
     return FaultOf([&] { VolumeGrid(size, std::move(values)); });
@@ -206,8 +203,16 @@ TEST(VolumeGrid, RefusesWhatIsNoDensity) {
   }
 }
 
-class Nrrd : public TemporaryFolder {};
-class RawGrid : public TemporaryFolder {};
+class Nrrd : public TemporaryFolder {
+ protected:
+  [[nodiscard]] VolumeGrid Read(const std::string& text, const char* name = "x.nrrd") const {
+    WriteText(folder_ / name, text);
+    return ReadNrrd(folder_ / name);
+  }
+  [[nodiscard]] std::string Fault(const std::string& text) const {
+    return FaultOf([&] { return Read(text); });
+  }
+};
 
 std::string LittleEndian(const std::vector<float>& values) {
   std::string bytes;
@@ -220,51 +225,35 @@ std::string LittleEndian(const std::vector<float>& values) {
   return bytes;
 }
 
+const std::vector<float> kEight{0.0F, 1.0F, 2.0F, 3.0F, 4.0F, 5.0F, 6.0F, 7.5F};
+const std::string kFloats = "NRRD0004\ntype: float\ndimension: 3\nsizes: 2 2 2\n";
+
 TEST_F(Nrrd, ReadsFloatsAndBytes) {
-  const std::vector<float> values{0.0F, 1.0F, 2.0F, 3.0F, 4.0F, 5.0F, 6.0F, 7.5F};
-  WriteText(folder_ / "a.nrrd",
-            "NRRD0004\n# made by hand\ntype: float\ndimension: 3\nsizes: 2 2 2\nspacings: 1 1 1\n"
-            "encoding: raw\nendian: little\nauthor:=nobody\n\n" +
-                LittleEndian(values));
-  EXPECT_EQ(ReadNrrd(folder_ / "a.nrrd").values(), values);
-  WriteText(folder_ / "b.nrrd",
-            std::string("NRRD0001\ntype: uint8\ndimension: 3\nsizes: 2 2 2\nencoding: raw\n\n") +
-                std::string(7, '\0') + '\xFF');
-  EXPECT_EQ(ReadNrrd(folder_ / "b.nrrd").largest(), 1.0);
+  EXPECT_EQ(Read(kFloats +
+                 "# made by hand\nspacings: 1 1 1\nencoding: raw\nendian: little\n"
+                 "author:=nobody\n\n" +
+                 LittleEndian(kEight))
+                .values(),
+            kEight);
+  EXPECT_EQ(
+      Read(std::string("NRRD0001\ntype: uint8\ndimension: 3\nsizes: 2 2 2\nencoding: raw\n\n") +
+           std::string(7, '\0') + '\xFF')
+          .largest(),
+      1.0);
 }
 
 TEST_F(Nrrd, RefusesEveryTruncationOfAValidFile) {
   const std::string whole =
-      "NRRD0004\ntype: float\ndimension: 3\nsizes: 2 2 2\nencoding: raw\nendian: little\n\n" +
-      LittleEndian(std::vector<float>(8, 1.0F));
-  for (std::size_t length = 0; length < whole.size(); ++length) {
-    WriteText(folder_ / "cut.nrrd", whole.substr(0, length));
-    EXPECT_THROW((void)ReadNrrd(folder_ / "cut.nrrd"), InputError) << length;
-  }
+      kFloats + "encoding: raw\nendian: little\n\n" + LittleEndian(std::vector<float>(8, 1.0F));
+  for (std::size_t length = 0; length < whole.size(); ++length)
+    EXPECT_NE(Fault(whole.substr(0, length)), "no fault") << length;
 }
 
-TEST_F(Nrrd, SaysWhatItDoesNotRead) {
-  const auto file = folder_ / "x.nrrd";
-  const auto read = [&](const std::string& header) {
-    WriteText(file, "NRRD0004\n" + header + "\n\n");
-    return FaultOf([&] { (void)ReadNrrd(file); });
-  };
-  EXPECT_EQ(read("type: double"),
-            file.string() + ":2: type is \"double\"; it must be \"float\" or \"uint8\"");
-  EXPECT_EQ(read("encoding: bzip2"),
-            file.string() + ":2: encoding is \"bzip2\"; it must be \"raw\" or \"gzip\"");
-  EXPECT_EQ(read("dimension: 4"), file.string() + ":2: dimension is 4; it must be 3");
-  EXPECT_EQ(FaultOf([&] { (void)ReadNrrd(folder_ / "none.nrrd"); }),
-            (folder_ / "none.nrrd").string() + ": cannot be read");
-}
-
-TEST_F(Nrrd, RefusesByNameWhatChangesTheMeaning) {
-  const auto file = folder_ / "x.nrrd";
+TEST_F(Nrrd, UnsupportedFieldsAreRefusedByName) {
   const auto fault = [&](const std::string& line) {
-    WriteText(file, "NRRD0004\n" + line +
-                        "\ntype: uint8\ndimension: 3\nsizes: 2 2 2\nencoding: raw\n\n" +
-                        std::string(8, 'a'));
-    return tests::FaultOf([&] { return ReadNrrd(file); });
+    return Fault("NRRD0004\n" + line +
+                 "\ntype: uint8\ndimension: 3\nsizes: 2 2 2\nencoding: raw\n\n" +
+                 std::string(8, 'a'));
   };
   for (const char* line :
        {"content: smoke: dense", "Spacings: 1 1 2", "SPACE: RAS", "labels: \"x\" \"y\" \"z\"",
@@ -273,6 +262,9 @@ TEST_F(Nrrd, RefusesByNameWhatChangesTheMeaning) {
     EXPECT_EQ(fault(line), "no fault") << line;
   }
   for (const auto& [line, named] : std::vector<std::pair<const char*, const char*>>{
+           {"type: double", ":2: type is \"double\"; it must be \"float\" or \"uint8\""},
+           {"encoding: bzip2", ":2: encoding is \"bzip2\"; it must be \"raw\" or \"gzip\""},
+           {"dimension: 4", ":2: dimension is 4; it must be 3"},
            {"centers: cell node cell", "centers are \"cell node cell\""},
            {"kinds: vector domain domain", "kinds are \"vector domain domain\""},
            {"old min: 3", "\"old min\" is not read"},
@@ -293,11 +285,13 @@ TEST_F(Nrrd, RefusesByNameWhatChangesTheMeaning) {
            {"byte skip: -2", "byte skip is \"-2\""},
            {"byte skip: 4", "4 bytes of data; 2 x 2 x 2 bytes are 8"},
            {"line skip: 1", "has 0 lines; line skip is 1"}}) {
-    EXPECT_THAT(fault(line), testing::HasSubstr(named)) << line;
+    EXPECT_THAT(fault(line), HasSubstr(named)) << line;
   }
+  EXPECT_EQ(FaultOf([&] { return ReadNrrd(folder_ / "none.nrrd"); }),
+            (folder_ / "none.nrrd").string() + ": cannot be read");
 }
 
-// The file 0, 1, 2, ... of 4 x 3 x 2 samples, as bytes of 255ths.
+// Returns a file of 4 x 3 x 2 samples 0, 1, 2 ... in 255ths, as bytes.
 std::string Counting(const std::string& fields) {
   std::string text =
       "NRRD0005\ntype: uchar\ndimension: 3\nsizes: 4 3 2\nencoding: raw\n" + fields + "\n";
@@ -306,11 +300,9 @@ std::string Counting(const std::string& fields) {
 }
 
 TEST_F(Nrrd, SpaceDirectionsTurnTheSamples) {
-  const auto file = folder_ / "turned.nrrd";
-  // The value at the right, ahead and up of the box, in 255ths, and the sizes.
+  // Returns the value at the right, ahead and up of the box, in 255ths, and the sizes.
   const auto first = [&](const std::string& fields) {
-    WriteText(file, Counting(fields));
-    const VolumeGrid grid = ReadNrrd(file);
+    const VolumeGrid grid = Read(Counting(fields));
     EXPECT_EQ(grid.values().size(), 24U);
     return fmt::format("{:.0f} of {} {} {}", 255.0 * grid.At({1.0, 1.0, 1.0}), grid.size()[0],
                        grid.size()[1], grid.size()[2]);
@@ -327,29 +319,21 @@ TEST_F(Nrrd, SpaceDirectionsTurnTheSamples) {
 }
 
 TEST_F(Nrrd, DataMayBeInAFileOfTheirOwn) {
-  const std::vector<float> values{0.0F, 1.0F, 2.0F, 3.0F, 4.0F, 5.0F, 6.0F, 7.5F};
-  const std::string fields = "NRRD0004\ntype: float\ndimension: 3\nsizes: 2 2 2\nencoding: raw\n";
-  WriteText(folder_ / "det data.raw", LittleEndian(values));
-  WriteText(folder_ / "det.nhdr", fields + "endian: little\ndata file: det data.raw");
-  EXPECT_EQ(ReadNrrd(folder_ / "det.nhdr").values(), values);
-  WriteText(folder_ / "skip.raw", "P7\n# two lines\n12345" + LittleEndian(values));
-  WriteText(folder_ / "skip.nhdr", fields + "line skip: 2\nbyte skip: 5\ndatafile: skip.raw\n");
-  EXPECT_EQ(ReadNrrd(folder_ / "skip.nhdr").values(), values);
-  WriteText(folder_ / "last.nhdr", fields + "byte skip: -1\ndata file: ./skip.raw\n\n");
-  EXPECT_EQ(ReadNrrd(folder_ / "last.nhdr").values(), values);
-  std::string big = LittleEndian(values);
-  for (std::size_t i = 0; i < big.size(); i += 4) {
-    std::reverse(big.begin() + static_cast<std::ptrdiff_t>(i),
-                 big.begin() + static_cast<std::ptrdiff_t>(i) + 4);
-  }
-  WriteText(folder_ / "big.nrrd", fields + "endian: big\n\n" + big);
-  EXPECT_EQ(ReadNrrd(folder_ / "big.nrrd").values(), values);
-  WriteText(folder_ / "none.nhdr", fields + "data file: none.raw\n");
-  EXPECT_EQ(tests::FaultOf([&] { return ReadNrrd(folder_ / "none.nhdr"); }),
+  const std::string raw = kFloats + "encoding: raw\n";
+  WriteText(folder_ / "det data.raw", LittleEndian(kEight));
+  WriteText(folder_ / "skip.raw", "P7\n# two lines\n12345" + LittleEndian(kEight));
+  for (const char* fields : {"endian: little\ndata file: det data.raw",
+                             "line skip: 2\nbyte skip: 5\ndatafile: skip.raw\n",
+                             "byte skip: -1\ndata file: ./skip.raw\n\n"})
+    EXPECT_EQ(Read(raw + fields, "det.nhdr").values(), kEight) << fields;
+  std::string big = LittleEndian(kEight);
+  for (auto at = big.begin(); at != big.end(); at += 4) std::reverse(at, at + 4);
+  EXPECT_EQ(Read(raw + "endian: big\n\n" + big).values(), kEight);
+  EXPECT_EQ(Fault(raw + "data file: none.raw\n"),
             (folder_ / "none.raw").string() + ": cannot be read");
 }
 
-TEST_F(Nrrd, OutputsMayNotReplaceItsDataFile) {
+TEST_F(Nrrd, ItsDataFileIsAnInput) {
   WriteText(folder_ / "det.nhdr",
             "NRRD0004\ntype: uint8\nsizes: 2 2 2\nencoding: raw\ndata file: a.raw");
   Scene scene;
@@ -359,7 +343,7 @@ TEST_F(Nrrd, OutputsMayNotReplaceItsDataFile) {
   EXPECT_EQ(files[1].file, folder_ / "a.raw");
 }
 
-// Compresses data as gzip does.
+// Returns data compressed by gzip.
 std::string Packed(std::string data) {
   z_stream stream{};
   EXPECT_EQ(deflateInit2(&stream, 9, Z_DEFLATED, 16 + MAX_WBITS, 8, Z_DEFAULT_STRATEGY), Z_OK);
@@ -374,36 +358,28 @@ std::string Packed(std::string data) {
   return packed;
 }
 
-TEST_F(Nrrd, GzipIsUnpackedAndItsDamageIsTold) {
-  const std::vector<float> values{0.0F, 1.0F, 2.0F, 3.0F, 4.0F, 5.0F, 6.0F, 7.5F};
-  const std::string fields = "NRRD0004\ntype: float\ndimension: 3\nsizes: 2 2 2\nencoding: GZ\n";
-  const std::string packed = Packed(LittleEndian(values));
-  const auto file = folder_ / "gz.nrrd";
-  const auto fault = [&](const std::string& text) {
-    WriteText(file, text);
-    return tests::FaultOf([&] { return ReadNrrd(file); });
-  };
-  WriteText(file, fields + "\n" + packed);
-  EXPECT_EQ(ReadNrrd(file).values(), values);
-  WriteText(file, fields + "byte skip: 3\n\n" + Packed("abc" + LittleEndian(values)));
-  EXPECT_EQ(ReadNrrd(file).values(), values) << "bytes are skipped that were packed too";
-  const std::string half = LittleEndian(values);
-  WriteText(file, fields + "\n" + Packed(half.substr(0, 9)) + Packed(half.substr(9)));
-  EXPECT_EQ(ReadNrrd(file).values(), values) << "files of gzip may be joined";
+TEST_F(Nrrd, GzipIsUnpackedAndItsDamageIsReported) {
+  const std::string fields = kFloats + "encoding: GZ\n", bytes = LittleEndian(kEight);
+  const std::string packed = Packed(bytes);
+  EXPECT_EQ(Read(fields + "\n" + packed).values(), kEight);
+  EXPECT_EQ(Read(fields + "byte skip: 3\n\n" + Packed("abc" + bytes)).values(), kEight)
+      << "skipped bytes are packed too";
+  EXPECT_EQ(Read(fields + "\n" + Packed(bytes.substr(0, 9)) + Packed(bytes.substr(9))).values(),
+            kEight)
+      << "files of gzip may be joined";
   for (std::size_t length = 0; length + 9 < packed.size(); ++length) {
-    EXPECT_THAT(fault(fields + "\n" + packed.substr(0, length)),
-                testing::HasSubstr("bytes of data; 2 x 2 x 2 floats are 32"));
+    EXPECT_THAT(Fault(fields + "\n" + packed.substr(0, length)),
+                HasSubstr("bytes of data; 2 x 2 x 2 floats are 32"));
   }
   std::string damaged = packed;
   damaged[packed.size() / 2] = static_cast<char>(~damaged[packed.size() / 2]);
-  EXPECT_NE(fault(fields + "\n" + damaged), "no fault");
-  EXPECT_THAT(fault(fields + "\n" + LittleEndian(values)), testing::HasSubstr("are damaged at"));
-  EXPECT_THAT(fault(fields + "\n" + Packed(LittleEndian(values) + "x")),
-              testing::HasSubstr("33 bytes of data"));
-  EXPECT_THAT(fault(fields + "byte skip: -1\n\n" + packed), testing::HasSubstr("byte skip is -1"));
+  EXPECT_NE(Fault(fields + "\n" + damaged), "no fault");
+  EXPECT_THAT(Fault(fields + "\n" + bytes), HasSubstr("are damaged at"));
+  EXPECT_THAT(Fault(fields + "\n" + Packed(bytes + "x")), HasSubstr("33 bytes of data"));
+  EXPECT_THAT(Fault(fields + "byte skip: -1\n\n" + packed), HasSubstr("byte skip is -1"));
 }
 
-TEST_F(RawGrid, RefusesAFileOfAnotherLength) {
+TEST_F(Nrrd, RawGridsOfAnotherLengthAreRefused) {
   const auto file = folder_ / "g.raw";
   WriteText(file, LittleEndian(std::vector<float>(12, 0.5F)));
   EXPECT_EQ(ReadRawGrid(file, {2, 3, 2}).largest(), 0.5);

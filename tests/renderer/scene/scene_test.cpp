@@ -27,6 +27,7 @@ namespace alpenglow::renderer {
 namespace {
 
 using testing::HasSubstr;
+using SceneFile = TemporaryFolder;
 
 const std::string kPlace = "[place]\nlatitude = 35.3606\nlongitude = 138.7274\n";
 
@@ -36,7 +37,7 @@ std::string FaultOf(const std::string& text) {
   return tests::FaultOf([&] { return Read(text); });
 }
 
-TEST(Scene, SensorAndFocalLengthMakeTheFieldOfView) {
+TEST(Scene, SensorAndFocalLengthDefineTheFieldOfView) {
   const auto fov = [](const std::string& camera) {
     return Read(kPlace + "[camera]\n" + camera).camera.fov_rad;
   };
@@ -44,9 +45,9 @@ TEST(Scene, SensorAndFocalLengthMakeTheFieldOfView) {
   EXPECT_NEAR(fov(sensor), 2.0 * std::atan(18.0 / 50.0), 1e-12);
   EXPECT_NEAR(fov(sensor + "f_number = 2\nfocus_m = 1\n"), 2.0 * std::atan(18.0 * 0.95 / 50.0),
               1e-12)
-      << "in focus at 1 m the sensor stands at 50 / 0.95 mm";
+      << "for a focus at 1 m the sensor is at 50 / 0.95 mm";
   EXPECT_NEAR(fov(sensor + "fov = 39.6\n"), 39.6 * kRadiansPerDegree, 1e-12)
-      << "said twice, and rounded";
+      << "given twice, and rounded";
   const Camera bladed = Read(kPlace +
                              "[camera]\nf_number = 2\nfocal_length_mm = 50\nfocus_m = 1\n"
                              "blades = 7\nblade_rotation = 10\n")
@@ -55,7 +56,7 @@ TEST(Scene, SensorAndFocalLengthMakeTheFieldOfView) {
   EXPECT_NEAR(bladed.lens->blade_rotation_rad, 10.0 * kRadiansPerDegree, 1e-12);
 }
 
-/// The block of TOML in the manual of scene.toml.
+/// Returns the block of TOML in the manual of scene.toml.
 std::string Manual() {
   const std::string all =
       ReadTextFile(std::filesystem::path(tests::kSourceFolder) / "renderer" / "MANUAL.md");
@@ -63,7 +64,7 @@ std::string Manual() {
   return all.substr(begin, all.find("```", begin) - begin);
 }
 
-TEST(Scene, OfTheManualIsReadAndItsDefaultsAreThose) {
+TEST(Scene, TheManualsSceneHasTheDefaults) {
   const Scene manual = Read(Manual());
   const Scene bare = Read("[place]\nlatitude = 46.5\nlongitude = 8.0\n");
   EXPECT_EQ(manual.camera.height, bare.camera.height);
@@ -79,7 +80,7 @@ TEST(Scene, OfTheManualIsReadAndItsDefaultsAreThose) {
   EXPECT_EQ(manual.volumes.at(0).albedo, Volume{}.albedo);
 }
 
-TEST(Scene, EverythingThatTheFileSaysArrives) {
+TEST(Scene, EveryKeyOfTheFileIsRead) {
   const Scene scene = Read(R"(
 [place]
 latitude = 35.3606
@@ -146,7 +147,7 @@ intensity_cd = 0
   EXPECT_EQ(scene.lights[1].height, (Height{700.0, false}));
 }
 
-TEST(Scene, LampsMayBeMeasuredAndFogMayLie) {
+TEST(Scene, MeasuredLampsAndFogAreRead) {
   const Scene scene = Read(kPlace + R"(
 [fog]
 visibility_m = 391.2
@@ -171,25 +172,7 @@ radius_m = 0.2
   EXPECT_EQ(scene.lights[0].radius_m, 0.2);
 }
 
-// Hard case 42.
-TEST(Scene, FogAndLampsThatMakeNoSenseAreRefusedByKey) {
-  const std::string light = "[[light]]\nlatitude = 35\nlongitude = 138\n";
-  EXPECT_THAT(FaultOf(kPlace + "[fog]\nscale_height_m = 30\n"), HasSubstr("fog.visibility_m"));
-  EXPECT_THAT(FaultOf(kPlace + "[fog]\nvisibility_m = 300\nextinction_per_m = 0.1\n"),
-              HasSubstr("give one of"));
-  EXPECT_THAT(FaultOf(kPlace + "[fog]\nvisibility_m = 300\ng = 0.5\ndroplet_diameter_um = 9\n"),
-              HasSubstr("give one"));
-  EXPECT_THAT(FaultOf(kPlace + light), HasSubstr("intensity_cd is missing"));
-  EXPECT_THAT(FaultOf(kPlace + light + "intensity_cd = -1\n"), HasSubstr("intensity_cd is -1"));
-  EXPECT_THAT(FaultOf(kPlace + light + "intensity_cd = inf\n"), HasSubstr("intensity_cd"));
-  EXPECT_THAT(FaultOf(kPlace + light + "intensity_cd = -inf\n"), HasSubstr("intensity_cd"));
-  EXPECT_THAT(FaultOf(kPlace + light + "intensity_cd = nan\n"), HasSubstr("intensity_cd is nan"));
-  EXPECT_EQ(FaultOf(kPlace + light + "intensity_cd = 0\n"), "no fault");
-  EXPECT_THAT(FaultOf(kPlace + light + "ies = \"a\"\ncone = [1, 2]\n"), HasSubstr("cone is for"));
-  EXPECT_THAT(FaultOf(kPlace + light + "type = \"spot\"\nies = \"a\"\n"), HasSubstr("ies is for"));
-}
-
-TEST(Scene, VolumesOfAirArrive) {
+TEST(Scene, VolumesOfAirAreRead) {
   const Scene scene = Read(kPlace + R"(
 [[volume]]
 shape = "ellipsoid"
@@ -237,75 +220,7 @@ extinction_per_m = 0.1
   EXPECT_EQ(scene.volumes[2].height, (Height{0.0, true})) << "it stands on the ground";
 }
 
-TEST(Scene, VolumesThatMakeNoSenseAreRefusedByKey) {
-  const std::string start = kPlace + "[[volume]]\nlatitude = 35\nlongitude = 138\n";
-  const std::string whole = start + "size_m = [9, 9, 9]\nvisibility_m = 50\n";
-  EXPECT_EQ(FaultOf(whole), "no fault");
-  const std::vector<std::pair<std::string, std::string>> faults{
-      {start + "visibility_m = 50\n", "volume[0].size_m is missing"},
-      {start + "size_m = [9, 9]\nvisibility_m = 50\n", "volume[0].size_m has 2 values"},
-      {start + "size_m = [9, 0, 9]\nvisibility_m = 50\n", "s.toml:7: volume[0].size_m[1] is 0"},
-      {start + "size_m = [9, nan, 9]\nvisibility_m = 50\n", "volume[0].size_m"},
-      {start + "size_m = [9, 9, 9]\n", "give one of volume[0].visibility_m and"},
-      {whole + "extinction_per_m = 0.1\n", "give one of volume[0].visibility_m and"},
-      {whole + "albedo = 1.5\n", "volume[0].albedo is 1.5"},
-      {whole + "albedo = [0.5, 0.5]\n", "volume[0].albedo has 2 values; give one, or 4"},
-      {whole + "emission_per_m = -1\n", "volume[0].emission_per_m is -1"},
-      {whole + "temperature_k = 5\n", "volume[0].temperature_k is 5"},
-      {whole + "shape = \"sphere\"\n", "it must be \"box\" or \"ellipsoid\""},
-      {whole + "grid_size = [4, 4, 4]\n", "volume[0].grid_size needs a grid"},
-      {whole + "grid = \"a.raw\"\n", "volume[0].grid_size is missing"},
-      {whole + "grid = \"a.raw\"\ngrid_size = [4, 4, 4.5]\n", "whole numbers"},
-      {whole + "grid = \"a.raw\"\ngrid_size = [4, 4, 1]\n", "volume[0].grid_size[2] is 1"},
-      {whole + "grid = \"a.nrrd\"\ngrid_size = [4, 4, 4]\n", "is for a raw grid"},
-      {whole + "grid = \"a.NHDR\"\ngrid_size = [4, 4, 4]\n", "is for a raw grid"},
-      {whole + "grid = \"a.nrrd\"\nscale_height_m = 4\n", "is for a volume without a grid"},
-      {whole + "g = 0.5\ndroplet_diameter_um = 9\n", "both given"},
-      {whole + "extinctoin = 1\n", "volume[0].extinctoin"}};
-  for (const auto& [text, fault] : faults) {
-    EXPECT_THAT(FaultOf(text), HasSubstr(fault)) << text;
-  }
-}
-
-// Sizes and temperatures that are over 0 and next to nothing; @ is the value.
-TEST(Scene, SizesNextToNothingAreRefusedByKeyAndRange) {
-  const std::string lens = "[camera]\nf_number = 2\nfocal_length_mm = 50\nfocus_m = 10\n";
-  const std::string lamp = "[[light]]\nlatitude = 35\nlongitude = 138\nintensity_cd = 9\n";
-  const std::string volume = "[[volume]]\nlatitude = 35\nlongitude = 138\n";
-  const std::string smoke = volume + "size_m = [9, 9, 9]\n";
-  const std::vector<std::pair<std::string, std::string>> keys{
-      {"[camera]\nfov = @\n", "camera.fov"},
-      {"[camera]\nf_number = @\nfocal_length_mm = 50\nfocus_m = 10\n", "camera.f_number"},
-      {"[camera]\nf_number = 2\nfocal_length_mm = @\nfocus_m = 10\n", "camera.focal_length_mm"},
-      {"[camera]\nf_number = 2\nfocal_length_mm = 50\nfocus_m = @\n", "camera.focus_m"},
-      {lens + "blades = @\n", "camera.blades"},
-      {"[camera]\nfocal_length_mm = 50\nsensor_width_mm = @\n", "camera.sensor_width_mm"},
-      {"[fog]\nvisibility_m = @\n", "fog.visibility_m"},
-      {"[fog]\nvisibility_m = 99\nscale_height_m = @\n", "fog.scale_height_m"},
-      {"[fog]\nvisibility_m = 99\ndroplet_diameter_um = @\n", "fog.droplet_diameter_um"},
-      {lamp + "radius_m = @\n", "light[0].radius_m"},
-      {lamp + "temperature_k = @\n", "light[0].temperature_k"},
-      {volume + "size_m = [9, @, 9]\nvisibility_m = 50\n", "volume[0].size_m[1]"},
-      {smoke + "visibility_m = @\n", "volume[0].visibility_m"},
-      {smoke + "visibility_m = 50\nscale_height_m = @\n", "volume[0].scale_height_m"},
-      {smoke + "visibility_m = 50\ntemperature_k = @\n", "volume[0].temperature_k"},
-      {smoke + "visibility_m = 50\ndroplet_diameter_um = @\n", "volume[0].droplet_diameter_um"},
-      {"[ground]\ncover = \"blinn-phong\"\nroughness = @\n", "ground.roughness"},
-      {"[ground]\ncover = \"snow\"\ngrain_diameter_mm = @\n", "ground.grain_diameter_mm"},
-      {"[night]\nbortle = @\n", "night.bortle"},
-      {"[night]\nzenith_mag_per_arcsec2 = @\n", "night.zenith_mag_per_arcsec2"}};
-  for (const auto& [with_key, key] : keys) {
-    for (const std::string value : {"5e-324", "1e-300", "1e-30", "1e300"}) {
-      std::string text = kPlace + with_key;
-      text.replace(text.find('@'), 1, value);
-      const std::string fault = FaultOf(text);
-      EXPECT_THAT(fault, HasSubstr(key + " is ")) << text;
-      EXPECT_THAT(fault, HasSubstr("; it must ")) << text;
-    }
-  }
-}
-
-TEST(Scene, GroundIsWhatTheFileSays) {
+TEST(Scene, GroundOfTheFileIsRead) {
   const Scene water = Read(kPlace + "[ground]\ncover = \"water\"\nwind_m_per_s = 8\n");
   EXPECT_EQ(water.ground.kind, GroundCover::Kind::kWater);
   EXPECT_EQ(water.ground.wind_m_per_s, 8.0);
@@ -329,33 +244,7 @@ TEST(Scene, GroundIsWhatTheFileSays) {
             std::filesystem::path("folder") / "map.tif");
 }
 
-TEST(Scene, GroundThatCannotBeIsRefused) {
-  const auto fault = [](const std::string& ground) {
-    return FaultOf(kPlace + "[ground]\n" + ground);
-  };
-  EXPECT_THAT(fault("cover = \"lava\"\n"), HasSubstr("ground.cover is \"lava\""));
-  EXPECT_THAT(fault("colour = 1\n"), HasSubstr("ground.colour"));
-  EXPECT_THAT(fault("albedo = 0.5\n"), HasSubstr("ground.albedo is for lambert"));
-  EXPECT_THAT(fault("wind_m_per_s = 5\n"), HasSubstr("ground.wind_m_per_s is for water"));
-  EXPECT_THAT(fault("cover = \"lambert\"\nalbedo = 1.5\n"), HasSubstr("ground.albedo"));
-  EXPECT_THAT(fault("cover = \"lambert\"\nalbedo = [0.1, 0.2]\n"), HasSubstr("ground.albedo"));
-  EXPECT_THAT(fault("cover = \"lambert\"\nroughness = 0.5\n"),
-              HasSubstr("ground.roughness is for"));
-  EXPECT_THAT(fault("cover = \"blinn-phong\"\nroughness = 0.05\n"), HasSubstr("[0.1, 1]"));
-  EXPECT_THAT(fault("cover = \"snow\"\ngrain_diameter_mm = 50\n"), HasSubstr("[0.05, 5]"));
-  EXPECT_THAT(fault("wetness = 1.1\n"), HasSubstr("[0, 1]"));
-  EXPECT_THAT(fault("cover = \"snow\"\nwetness = 1\n"), HasSubstr("ground.wetness is for"));
-  const auto map_fault = [](const std::string& more) {
-    return FaultOf(kPlace + "[terrain]\nland_cover = \"m.tif\"\n" + more);
-  };
-  EXPECT_THAT(map_fault("colour = \"a.tif\"\n"), HasSubstr("give one of terrain.colour"));
-  EXPECT_THAT(map_fault("none = true\n"), HasSubstr("terrain.land_cover lies over"));
-  EXPECT_THAT(map_fault("[ground]\ncover = \"snow\"\n"), HasSubstr("terrain.land_cover is for"));
-  EXPECT_THAT(FaultOf(kPlace + "[terrain]\nnone = true\ncolour = \"a.tif\"\n"),
-              HasSubstr("terrain.colour"));
-}
-
-TEST(Scene, APlaceIsEnough) {
+TEST(Scene, OnlyAPlaceIsRequired) {
   const Scene scene = Read(kPlace);
   EXPECT_EQ(scene.medium.name, "earth");
   EXPECT_EQ(scene.terrain.kind, TerrainSource::Kind::kProceduralMountains);
@@ -365,14 +254,16 @@ TEST(Scene, APlaceIsEnough) {
   EXPECT_EQ(scene.camera.height, (Height{2.0, true})) << "eye level";
   EXPECT_FALSE(scene.camera.lens.has_value());
   EXPECT_TRUE(scene.lights.empty());
+  const std::string mesh = kPlace + "[terrain]\nmesh = \"x.obj\"\n";
+  EXPECT_EQ(Read(mesh).terrain.up, UpAxis::kZ);
+  EXPECT_EQ(Read(mesh + "up = \"z\"\n").terrain.up, UpAxis::kZ);
+  EXPECT_EQ(Read(mesh + "up = \"y\"\n").terrain.up, UpAxis::kY);
 }
 
-TEST(Scene, LocalTimeIsReadInThePlacesZone) {
+TEST(Scene, LocalTimeIsReadInTheZoneOfThePlace) {
   const std::string seconds =
       kPlace + "zone = \"Asia/Tokyo\"\n[time]\nlocal = \"2026-06-21T13:00:00\"\n";
   EXPECT_EQ(FormatUtc(Read(seconds).time.value()), "2026-06-21T04:00:00Z");
-  EXPECT_THAT(FaultOf(kPlace + "[time]\nlocal = \"2026-06-21T13:00:00\"\n"),
-              HasSubstr("time.local needs place.zone"));
 }
 
 // Hard case 44.
@@ -383,19 +274,124 @@ TEST(Scene, PanoramasAndSteepRollsAreCameras) {
 }
 
 // Hard case 27.
-TEST(Scene, LatitudeNinetyAndLongitudes180ArePlacesOnEarth) {
+TEST(Scene, PolesAndTheDateLineArePlaces) {
   for (const char* place : {"latitude = 90\nlongitude = 0\n", "latitude = -90\nlongitude = -180\n",
                             "latitude = 0\nlongitude = 180\n"}) {
     EXPECT_EQ(FaultOf(std::string("[place]\n") + place), "no fault");
   }
 }
 
-struct Bad {
-  std::string text, message;
-};
+/// Expects that each text is refused with one line that contains the message.
+void ExpectFaults(const std::vector<std::pair<std::string, std::string>>& faults) {
+  for (const auto& [text, message] : faults) {
+    const std::string fault = FaultOf(text);
+    EXPECT_THAT(fault, HasSubstr(message)) << text;
+    EXPECT_EQ(fault.find('\n'), std::string::npos) << "one line: " << fault;
+  }
+}
 
-TEST(Scene, BadInputIsNamedByFileLineKeyValueAndRange) {
-  const std::vector<Bad> cases = {
+const std::string kFog = kPlace + "[fog]\n", kGround = kPlace + "[ground]\n",
+                  kMap = kPlace + "[terrain]\nland_cover = \"m.tif\"\n",
+                  kLamp = kPlace + "[[light]]\nlatitude = 35\nlongitude = 138\n",
+                  kVolume = kPlace + "[[volume]]\nlatitude = 35\nlongitude = 138\n",
+                  kSmoke = kVolume + "size_m = [9, 9, 9]\nvisibility_m = 50\n";
+
+// Hard case 42.
+TEST(Scene, FogLampsVolumesAndGroundAreRefusedByKey) {
+  EXPECT_EQ(FaultOf(kLamp + "intensity_cd = 0\n"), "no fault");
+  EXPECT_EQ(FaultOf(kSmoke), "no fault");
+  ExpectFaults({
+      {kFog + "scale_height_m = 30\n", "fog.visibility_m"},
+      {kFog + "visibility_m = 300\nextinction_per_m = 0.1\n", "give one of"},
+      {kFog + "visibility_m = 300\ng = 0.5\ndroplet_diameter_um = 9\n", "give one"},
+      {kLamp, "light[0].intensity_cd is missing"},
+      {kLamp + "intensity_cd = -1\n", "s.toml:7: light[0].intensity_cd is -1"},
+      {kLamp + "intensity_cd = inf\n", "intensity_cd is inf"},
+      {kLamp + "intensity_cd = -inf\n", "intensity_cd"},
+      {kLamp + "intensity_cd = nan\n", "intensity_cd is nan"},
+      {kLamp + "ies = \"a\"\ncone = [1, 2]\n", "cone is for"},
+      {kLamp + "intensity_cd = 1\ncone = [1, 2]\n", "is for a spot"},
+      {kLamp + "type = \"spot\"\nies = \"a\"\n", "ies is for"},
+      {kLamp + "type = \"spot\"\nintensity_cd = 1\n", "light[0].cone must be two half angles"},
+      {kLamp + "type = \"spot\"\nintensity_cd = 1\ncone = [25, 10]\n", "s.toml:9: light[0].cone"},
+      {kPlace + "[[light]]\ntype = \"tube\"\n", "\"point\" or \"spot\""},
+      {kVolume + "visibility_m = 50\n", "volume[0].size_m is missing"},
+      {kVolume + "size_m = [9, 9]\nvisibility_m = 50\n", "volume[0].size_m has 2 values"},
+      {kVolume + "size_m = [9, 0, 9]\nvisibility_m = 50\n", "s.toml:7: volume[0].size_m[1] is 0"},
+      {kVolume + "size_m = [9, nan, 9]\nvisibility_m = 50\n", "volume[0].size_m"},
+      {kVolume + "size_m = [9, 9, 9]\n", "give one of volume[0].visibility_m and"},
+      {kSmoke + "extinction_per_m = 0.1\n", "give one of volume[0].visibility_m and"},
+      {kSmoke + "albedo = 1.5\n", "volume[0].albedo is 1.5"},
+      {kSmoke + "albedo = [0.5, 0.5]\n", "volume[0].albedo has 2 values; give one, or 4"},
+      {kSmoke + "emission_per_m = -1\n", "volume[0].emission_per_m is -1"},
+      {kSmoke + "temperature_k = 5\n", "volume[0].temperature_k is 5"},
+      {kSmoke + "shape = \"sphere\"\n", "it must be \"box\" or \"ellipsoid\""},
+      {kSmoke + "grid_size = [4, 4, 4]\n", "volume[0].grid_size needs a grid"},
+      {kSmoke + "grid = \"a.raw\"\n", "volume[0].grid_size is missing"},
+      {kSmoke + "grid = \"a.raw\"\ngrid_size = [4, 4, 4.5]\n", "whole numbers"},
+      {kSmoke + "grid = \"a.raw\"\ngrid_size = [4, 4, 1]\n", "volume[0].grid_size[2] is 1"},
+      {kSmoke + "grid = \"a.nrrd\"\ngrid_size = [4, 4, 4]\n", "is for a raw grid"},
+      {kSmoke + "grid = \"a.NHDR\"\ngrid_size = [4, 4, 4]\n", "is for a raw grid"},
+      {kSmoke + "grid = \"a.nrrd\"\nscale_height_m = 4\n", "is for a volume without a grid"},
+      {kSmoke + "g = 0.5\ndroplet_diameter_um = 9\n", "both given"},
+      {kSmoke + "extinctoin = 1\n", "volume[0].extinctoin"},
+      {kGround + "cover = \"lava\"\n", "ground.cover is \"lava\""},
+      {kGround + "colour = 1\n", "ground.colour"},
+      {kGround + "albedo = 0.5\n", "ground.albedo is for lambert"},
+      {kGround + "wind_m_per_s = 5\n", "ground.wind_m_per_s is for water"},
+      {kGround + "cover = \"lambert\"\nalbedo = 1.5\n", "ground.albedo"},
+      {kGround + "cover = \"lambert\"\nalbedo = [0.1, 0.2]\n", "ground.albedo"},
+      {kGround + "cover = \"lambert\"\nroughness = 0.5\n", "ground.roughness is for"},
+      {kGround + "cover = \"blinn-phong\"\nroughness = 0.05\n", "[0.1, 1]"},
+      {kGround + "cover = \"snow\"\ngrain_diameter_mm = 50\n", "[0.05, 5]"},
+      {kGround + "wetness = 1.1\n", "[0, 1]"},
+      {kGround + "cover = \"snow\"\nwetness = 1\n", "ground.wetness is for"},
+      {kMap + "colour = \"a.tif\"\n", "give one of terrain.colour"},
+      {kMap + "none = true\n", "terrain.land_cover lies over"},
+      {kMap + "[ground]\ncover = \"snow\"\n", "terrain.land_cover is for"},
+      {kPlace + "[terrain]\nnone = true\ncolour = \"a.tif\"\n", "terrain.colour"},
+  });
+}
+
+// Sizes and temperatures are positive and almost 0; @ is the value.
+TEST(Scene, AlmostZeroSizesAreRefusedByKeyAndRange) {
+  const std::string lens = "[camera]\nf_number = 2\nfocal_length_mm = 50\nfocus_m = 10\n";
+  const std::string lamp = kLamp + "intensity_cd = 9\n";
+  const std::vector<std::pair<std::string, std::string>> keys{
+      {kPlace + "[camera]\nfov = @\n", "camera.fov"},
+      {kPlace + "[camera]\nf_number = @\nfocal_length_mm = 50\nfocus_m = 10\n", "camera.f_number"},
+      {kPlace + "[camera]\nf_number = 2\nfocal_length_mm = @\nfocus_m = 10\n",
+       "camera.focal_length_mm"},
+      {kPlace + "[camera]\nf_number = 2\nfocal_length_mm = 50\nfocus_m = @\n", "camera.focus_m"},
+      {kPlace + lens + "blades = @\n", "camera.blades"},
+      {kPlace + "[camera]\nfocal_length_mm = 50\nsensor_width_mm = @\n", "camera.sensor_width_mm"},
+      {kFog + "visibility_m = @\n", "fog.visibility_m"},
+      {kFog + "visibility_m = 99\nscale_height_m = @\n", "fog.scale_height_m"},
+      {kFog + "visibility_m = 99\ndroplet_diameter_um = @\n", "fog.droplet_diameter_um"},
+      {lamp + "radius_m = @\n", "light[0].radius_m"},
+      {lamp + "temperature_k = @\n", "light[0].temperature_k"},
+      {kVolume + "size_m = [9, @, 9]\nvisibility_m = 50\n", "volume[0].size_m[1]"},
+      {kVolume + "size_m = [9, 9, 9]\nvisibility_m = @\n", "volume[0].visibility_m"},
+      {kSmoke + "scale_height_m = @\n", "volume[0].scale_height_m"},
+      {kSmoke + "temperature_k = @\n", "volume[0].temperature_k"},
+      {kSmoke + "droplet_diameter_um = @\n", "volume[0].droplet_diameter_um"},
+      {kGround + "cover = \"blinn-phong\"\nroughness = @\n", "ground.roughness"},
+      {kGround + "cover = \"snow\"\ngrain_diameter_mm = @\n", "ground.grain_diameter_mm"},
+      {kPlace + "[night]\nbortle = @\n", "night.bortle"},
+      {kPlace + "[night]\nzenith_mag_per_arcsec2 = @\n", "night.zenith_mag_per_arcsec2"}};
+  for (const auto& [with_key, key] : keys) {
+    for (const std::string value : {"5e-324", "1e-300", "1e-30", "1e300"}) {
+      std::string text = with_key;
+      text.replace(text.find('@'), 1, value);
+      const std::string fault = FaultOf(text);
+      EXPECT_THAT(fault, HasSubstr(key + " is ")) << text;
+      EXPECT_THAT(fault, HasSubstr("; it must ")) << text;
+    }
+  }
+}
+
+TEST(Scene, BadInputIsReportedWithLineKeyValueAndRange) {
+  ExpectFaults({
       {"", "s.toml:1: [place] with latitude and longitude is missing"},
       {"[place]\nlatitude = 3\n", "place.longitude is missing"},
       {"[place]\nlatitude = 90.0000001\nlongitude = 0\n", "s.toml:2: place.latitude is 90.0000001"},
@@ -436,6 +432,7 @@ TEST(Scene, BadInputIsNamedByFileLineKeyValueAndRange) {
       {kPlace + "[time]\nutc = \"2026-06-21T04:00:00\"\n", "s.toml:5: time.utc"},
       {kPlace + "[time]\nutc = 2026-06-21T04:00:00Z\n", "must be text in quotes"},
       {kPlace + "[time]\n", "time.utc is missing"},
+      {kPlace + "[time]\nlocal = \"2026-06-21T13:00:00\"\n", "time.local needs place.zone"},
       {kPlace + "[terrain]\ndem = 5\n", "terrain.dem is 5; it must be text"},
       {kPlace + "[terrain]\ndem = \"a\"\nmesh = \"b\"\n", "give one of"},
       {kPlace + "[terrain]\ndem = \"a\"\nvoids = \"sometimes\"\n", "\"fill\" or \"open\""},
@@ -445,31 +442,14 @@ TEST(Scene, BadInputIsNamedByFileLineKeyValueAndRange) {
       {kPlace + "[terrain]\ndem = \"a\"\nup = \"y\"\n", "terrain.up needs terrain.mesh"},
       {kPlace + "[atmosphere]\npreset = \"venus\"\n", "s.toml:5: atmosphere.preset"},
       {kPlace + "[atmosphere]\nfile = \"none.toml\"\n", "folder/none.toml"},
-      {kPlace + "[[light]]\nlatitude = 0\nlongitude = 0\n", "light[0].intensity_cd is missing"},
-      {kPlace + "[[light]]\nlatitude = 0\nlongitude = 0\nintensity_cd = -1\n",
-       "s.toml:7: light[0].intensity_cd is -1"},
-      {kPlace + "[[light]]\nlatitude = 0\nlongitude = 0\nintensity_cd = inf\n", "is inf"},
-      {kPlace + "[[light]]\ntype = \"tube\"\n", "\"point\" or \"spot\""},
-      {kPlace + "[[light]]\ntype = \"spot\"\nlatitude = 0\nlongitude = 0\nintensity_cd = 1\n",
-       "light[0].cone must be two half angles"},
-      {kPlace + "[[light]]\ntype = \"spot\"\nlatitude = 0\nlongitude = 0\nintensity_cd = 1\n"
-                "cone = [25, 10]\n",
-       "s.toml:9: light[0].cone"},
-      {kPlace + "[[light]]\nlatitude = 0\nlongitude = 0\nintensity_cd = 1\ncone = [1, 2]\n",
-       "is for a spot"},
       {kPlace + "light = 3\n", "unknown key place.light"},
       {"light = 3\n" + kPlace, "must be a list of tables"},
       {"place = 3\n", "place is 3; it must be a table"},
       {"not a scene", "s.toml:1: not valid TOML"},
-  };
-  for (const Bad& bad : cases) {
-    const std::string fault = FaultOf(bad.text);
-    EXPECT_THAT(fault, HasSubstr(bad.message)) << bad.text;
-    EXPECT_EQ(fault.find('\n'), std::string::npos) << "one line: " << fault;
-  }
+  });
 }
 
-TEST(SceneOptions, WithoutAnElevationModelTheRangeIsSeenFromItsViewpoint) {
+TEST(SceneOptions, WithoutAModelTheRangeIsSeenFromItsViewpoint) {
   const Scene scene = SceneFromOptions({});
   EXPECT_EQ(scene.terrain.kind, TerrainSource::Kind::kProceduralMountains);
   EXPECT_FALSE(scene.terrain.is_default) << "at home";
@@ -488,8 +468,7 @@ TEST(SceneOptions, WithoutAnElevationModelTheRangeIsSeenFromItsViewpoint) {
   EXPECT_EQ(SceneFromOptions(turned).place.latitude_rad, scene.place.latitude_rad);
 }
 
-// How far the built-in view of a scene's range is from the scene's place, and the place from
-// where it was typed [m].
+// Returns the distance [m] between the built-in view of a scene's range and the scene's place.
 double ViewOffPlace_m(const Scene& scene) {
   GeodeticPosition eye = ProceduralMountainsViewAboveGround(*scene.terrain.centre).eye;
   eye.height_m = 0.0;
@@ -502,7 +481,7 @@ Scene SceneTypedAt(double latitude, double longitude) {
   return SceneFromOptions(options);
 }
 
-TEST(SceneOptions, TheRangeComesToThePlaceThatIsTyped) {
+TEST(SceneOptions, TheRangeIsMovedToTheGivenPlace) {
   const std::vector<std::pair<double, double>> places = {
       {46.5, 8.0},    {69.65, 18.96},  {42.3439, -3.6969}, {-33.9, 151.2}, {0.0, 179.999},
       {10.0, -180.0}, {89.449, 20.0},  {89.44, 20.0},      {89.9, 120.0},  {89.98, -60.0},
@@ -518,7 +497,7 @@ TEST(SceneOptions, TheRangeComesToThePlaceThatIsTyped) {
   }
 }
 
-TEST(SceneOptions, APlaceHasMountainsOfItsOwnAndAlwaysTheSame) {
+TEST(SceneOptions, EveryPlaceHasItsOwnConstantMountains) {
   const auto seed_at = [](double latitude, double longitude) {
     return SceneTypedAt(latitude, longitude).terrain.range_seed;
   };
@@ -532,7 +511,7 @@ TEST(SceneOptions, APlaceHasMountainsOfItsOwnAndAlwaysTheSame) {
   EXPECT_EQ(seed_at(46.58, 8.01), 0U) << "on the range at home";
 }
 
-TEST(SceneOptions, WithAnElevationModelTheEyeStandsWhereItIsTold) {
+TEST(SceneOptions, WithAModelTheEyeIsAtTheGivenPlace) {
   SceneOptions options;
   options.dem = {"N35E138.hgt"};
   options.latitude = 35.5;
@@ -562,7 +541,7 @@ TEST(SceneOptions, ANamedPlaceStandsInForLatitudeAndLongitude) {
   EXPECT_THROW(static_cast<void>(SceneFromOptions(options)), InputError);
 }
 
-TEST(SceneOptions, SizesAndExposuresAreReadWhole) {
+TEST(SceneOptions, SizesAndExposuresAreReadCompletely) {
   EXPECT_EQ(ImageSizeFromText("1x16384").height, 16384);
   for (const char* bad :
        {"", "5", "5x", "x5", "0x5", "5x16385", "5x5x5", "5.5x5", " 5x5", "-5x5"}) {
@@ -575,18 +554,7 @@ TEST(SceneOptions, SizesAndExposuresAreReadWhole) {
   }
 }
 
-TEST(Scene, TheUpAxisOfAMeshIsZUnlessYIsAskedFor) {
-  const auto up_of = [](const std::string& terrain) {
-    return Read(kPlace + "[terrain]\nmesh = \"x.obj\"\n" + terrain).terrain.up;
-  };
-  EXPECT_EQ(up_of(""), UpAxis::kZ);
-  EXPECT_EQ(up_of("up = \"z\"\n"), UpAxis::kZ);
-  EXPECT_EQ(up_of("up = \"y\"\n"), UpAxis::kY);
-}
-
-using SceneFile = TemporaryFolder;
-
-TEST_F(SceneFile, NamesOfFilesAreRelativeToTheScene) {
+TEST_F(SceneFile, FileNamesAreRelativeToTheScene) {
   WriteText(folder_ / "air.toml", "preset = \"mars\"\n");
   WriteText(folder_ / "scene.toml",
             kPlace + "[atmosphere]\nfile = \"air.toml\"\n[terrain]\nmesh = \"x.obj\"\n");

@@ -15,27 +15,34 @@
 namespace alpenglow::renderer {
 namespace {
 
+const MountainCover kSummerCover{2100.0, 2900.0};
+
+/// Returns the i-th of places that are spread evenly in a square.
+GroundPoint SpreadPlace(int i, double side_m, double altitude_m, double footprint_m) {
+  return {7e5 + side_m * std::fmod(0.7548776662 * i, 1.0),
+          5e6 + side_m * std::fmod(0.5698402910 * i, 1.0), altitude_m, footprint_m};
+}
+
 struct Spread {
   double mean, share;  // rms difference from the mean, over it
 };
 
-/// Of the albedo in the green, over places of one altitude and slope in a square.
+/// Returns mean and spread of the green albedo over places of one altitude and slope in a square.
 Spread AlbedoSpread(double altitude_m, double slope_deg, double footprint_m, double side_m = 8e3) {
-  const MountainSurface surface(WavelengthSet(4), MountainCover{2100.0, 2900.0});
+  const MountainSurface surface(WavelengthSet(4), kSummerCover);
   const double normal_up = std::cos(slope_deg * kRadiansPerDegree);
   double sum = 0.0, sum2 = 0.0;
   constexpr int kPlaces = 2000;
   for (int i = 0; i < kPlaces; ++i) {
-    const GroundPoint at{7e5 + side_m * std::fmod(0.7548776662 * i, 1.0),
-                         5e6 + side_m * std::fmod(0.5698402910 * i, 1.0), altitude_m, footprint_m};
-    const auto albedo = static_cast<double>(surface.Albedo(at, normal_up)[1]);
+    const auto albedo = static_cast<double>(
+        surface.Albedo(SpreadPlace(i, side_m, altitude_m, footprint_m), normal_up)[1]);
     sum += albedo / kPlaces;
     sum2 += albedo * albedo / kPlaces;
   }
   return {sum, std::sqrt(sum2 - sum * sum) / sum};
 }
 
-TEST(MountainSurface, NearGroundHasGrainThatDistantGroundHasNot) {
+TEST(MountainSurface, OnlyNearGroundHasGrain) {
   for (const double altitude_m : {1000.0, 2650.0}) {
     const double near = AlbedoSpread(altitude_m, 20.0, 0.02, 5.0).share;
     EXPECT_GT(near, 0.1) << altitude_m << ": within five metres";
@@ -43,7 +50,7 @@ TEST(MountainSurface, NearGroundHasGrainThatDistantGroundHasNot) {
   }
 }
 
-// Where the tree line wavers too, the mean is that of a curve and not the curve of the mean.
+// Where the tree line wavers, the mean of a curve is not the curve of the mean.
 TEST(MountainSurface, DetailFadesToItsMean) {
   for (const double slope_deg : {2.0, 20.0, 35.0, 50.0}) {
     for (const double altitude_m : {600.0, 1000.0, 1500.0, 1900.0, 2200.0, 2650.0}) {
@@ -57,8 +64,8 @@ TEST(MountainSurface, DetailFadesToItsMean) {
   }
 }
 
-TEST(MountainSurface, AMeadowIsEvenAtAMansFeet) {
-  const MountainSurface surface(WavelengthSet(4), MountainCover{2100.0, 2900.0});
+TEST(MountainSurface, AMeadowIsEvenAtItsViewersFeet) {
+  const MountainSurface surface(WavelengthSet(4), kSummerCover);
   float darkest = 1.0F, lightest = 0.0F;
   for (int i = 0; i < 500; ++i) {
     const GroundPoint at{7e5 + 0.01 * i, 5e6 - 0.007 * i, 1000.0, 2e-3};
@@ -70,22 +77,19 @@ TEST(MountainSurface, AMeadowIsEvenAtAMansFeet) {
       << "over 6 m, half of the shortest wave that tints it; with blades and stones a factor of 2";
 }
 
-TEST(LandFootprint, IsTheWidthOfARayFromAbove) {
+TEST(LandFootprint, GrowsFromTheWidthOfTheRayWithTheSlant) {
   EXPECT_DOUBLE_EQ(shared::LandFootprint(0.5, 1.0), 0.5);
-}
-
-TEST(LandFootprint, CoversTheDepthOfARayFromTheSide) {
   for (const double cosine : {0.2, 0.5, 0.9})
     EXPECT_GT(shared::LandFootprint(30.0, cosine), 30.0 / cosine) << cosine;
 }
 
-TEST(LandFootprint, SeenFromTheSideGroundHasNoStreaksOfGrain) {
+TEST(LandFootprint, GroundSeenFromTheSideHasNoStreaksOfGrain) {
   EXPECT_EQ(shared::OctaveShare(12.0, shared::LandFootprint(0.0, 0.1)), 0.0)
       << "waves of crowns, from a man's height at 20 m";
   EXPECT_EQ(shared::OctaveShare(12.0, shared::LandFootprint(0.0, 0.7)), 1.0) << "from above";
 }
 
-TEST(MountainSurface, SlopesUnderTheTreeLineAreWoodWithoutPatchesOfCamouflage) {
+TEST(MountainSurface, SlopesUnderTheTreeLineAreEvenWood) {
   for (const double slope_deg : {15.0, 25.0, 35.0}) {
     const Spread seen = AlbedoSpread(1000.0, slope_deg, 20.0);
     EXPECT_LT(seen.mean, 0.07) << slope_deg << ": a wood is 0.05";
@@ -93,26 +97,25 @@ TEST(MountainSurface, SlopesUnderTheTreeLineAreWoodWithoutPatchesOfCamouflage) {
   }
 }
 
-TEST(MountainSurface, SteepGroundInTheWoodIsNotAPaleBlob) {
+TEST(MountainSurface, SteepGroundInAWoodIsNotMuchPaler) {
   EXPECT_LT(AlbedoSpread(1000.0, 45.0, 20.0).mean, 1.6 * AlbedoSpread(1000.0, 30.0, 20.0).mean);
   EXPECT_LT(AlbedoSpread(1000.0, 60.0, 20.0).mean, 2.6 * AlbedoSpread(1000.0, 30.0, 20.0).mean)
       << "rock is 0.17, over three times as light as a wood";
 }
 
-// A tone has all bands alike, so that the ratio of two is that of the materials.
+// A tone scales all bands equally, so that the ratio of two bands is that of the materials.
 double Reddest(double slope_deg) {
   const MountainSurface surface(std::vector<double>{555.0, 645.0}, {2100.0, 2900.0});
   double reddest = 0.0;
   for (int i = 0; i < 2000; ++i) {
-    const GroundPoint at{7e5 + 8e3 * std::fmod(0.7548776662 * i, 1.0),
-                         5e6 + 8e3 * std::fmod(0.5698402910 * i, 1.0), 1000.0, 0.5};
-    const Bands<float> albedo = surface.Albedo(at, std::cos(slope_deg * kRadiansPerDegree));
+    const Bands<float> albedo =
+        surface.Albedo(SpreadPlace(i, 8e3, 1000.0, 0.5), std::cos(slope_deg * kRadiansPerDegree));
     reddest = std::max(reddest, static_cast<double>(albedo[1] / albedo[0]));
   }
   return reddest;
 }
 
-TEST(MountainSurface, SlopesOfUpTo45DegreesAreGreenWithoutSpotsOfRock) {
+TEST(MountainSurface, SlopesOfUpTo45DegreesHaveNoRock) {
   const MountainSurface surface(std::vector<double>{555.0, 645.0}, {2100.0, 2900.0});
   const Bands<float>& meadow = surface.materials().meadow;
   for (const double slope_deg : {20.0, 40.0, 45.0})
@@ -142,8 +145,8 @@ TEST(MountainSurface, FlatLandHasMeadowsAndGroves) {
 }
 
 // Surface reflectances in the blue, green and red (470, 555, 645 nm) as satellites see them: green
-// vegetation 0.04, 0.08, 0.04 and soil 0.08, 0.12, 0.17, rounded. Land is of both.
-TEST(MountainSurface, LowlandInSummerIsBetweenGreenVegetationAndSoil) {
+// vegetation 0.04, 0.08, 0.04 and soil 0.08, 0.12, 0.17, rounded. Land is a mixture of both.
+TEST(MountainSurface, SummerLowlandIsBetweenVegetationAndSoil) {
   const MountainSurface surface(std::vector<double>{470.0, 555.0, 645.0}, {});
   const Bands<float> seen = surface.Albedo({0.0, 0.0, 300.0, 1e4}, 1.0);
   EXPECT_NEAR(seen[0], 0.045F, 0.015F);
@@ -152,7 +155,7 @@ TEST(MountainSurface, LowlandInSummerIsBetweenGreenVegetationAndSoil) {
   EXPECT_GT(seen[1], seen[2]) << "green";
 }
 
-TEST(MountainSurface, DryGrassAndBareTreesGrowLighterTowardsTheRed) {
+TEST(MountainSurface, DryGrassAndBareTreesAreLightestInTheRed) {
   const MountainSurface surface(std::vector<double>{470.0, 555.0, 645.0}, {});
   for (const Bands<float>& dry : {surface.materials().dry_meadow, surface.materials().bare_trees}) {
     EXPECT_GT(dry[1], dry[0]);
@@ -160,7 +163,7 @@ TEST(MountainSurface, DryGrassAndBareTreesGrowLighterTowardsTheRed) {
   }
 }
 
-/// A wood in winter, snow from 700 m, without leaves.
+/// Returns a leafless wood in winter, with snow from 700 m.
 MountainSurface WinterWood() {
   MountainCover cover{2100.0, 700.0, -2000.0, -2000.0, -2000.0};
   cover.broadleaf_line_m = 1300.0;
@@ -191,7 +194,7 @@ TEST(MountainSurface, AWoodInSnowIsDark) {
       << "Betts, Ball (1997): 0.13 of conifers, 0.21 of aspen";
 }
 
-TEST(MountainSurface, AWoodInSnowHasNoSpeckleOfBlackAndWhite) {
+TEST(MountainSurface, AWoodInSnowHasNoSpeckles) {
   for (const double altitude_m : {500.0, 700.0, 900.0, 1300.0, 1700.0}) {
     EXPECT_LT(SnowyWood(altitude_m).contrast, 1.26)
         << altitude_m << ": a third of a stop, the least step of a camera; camouflage had 2.4";
@@ -215,7 +218,7 @@ TEST(SnowSeen, IsAllOfAMeadowAndTheGapsOfAWood) {
       << "two halves of a wood hide as the whole";
 }
 
-/// Mean of how much the relief differs over a step.
+/// Returns the mean difference of the relief over a step.
 double ReliefOver(const glm::dvec3& step) {
   double sum = 0.0;
   for (int i = 0; i < 500; ++i) {
@@ -235,13 +238,13 @@ double ReliefOver(const glm::dvec3& step) {
   return sum;
 }
 
-TEST(MountainSurface, OnACliffThePatternIsNotDrawnOut) {
+TEST(MountainSurface, ThePatternIsNotStretchedOnACliff) {
   const double along = ReliefOver({2.0 * std::cos(2.862), 2.0 * std::sin(2.862), 0.0});
   EXPECT_GT(ReliefOver({0.0, 0.0, 2.0}), 0.35 * along)
       << "up the cliff; 0 where the pattern is projected straight down";
 }
 
-TEST(MountainSurface, ReliefTiltsTheGroundNearAndNotAtAllFarAway) {
+TEST(MountainSurface, ReliefTiltsOnlyNearGround) {
   double near2 = 0.0;
   constexpr int kPlaces = 2000;
   const glm::dvec3 up(0.0, 0.0, 1.0);
@@ -253,8 +256,6 @@ TEST(MountainSurface, ReliefTiltsTheGroundNearAndNotAtAllFarAway) {
   }
   EXPECT_NEAR(std::sqrt(near2), 6.4, 0.3) << "the header's figure, to its rounding";
 }
-
-// --- waves ---
 
 constexpr double kBreeze = 0.003 + 0.00512 * 5.0;  // Cox, Munk: 5 m/s
 
@@ -275,7 +276,7 @@ MeanWaves WavesSeen(double variance, double footprint_m, double cosine) {
   return mean;
 }
 
-TEST(Waves, ResolvedOrNotTheirSlopesAreThoseOfTheWind) {
+TEST(Waves, SlopesAreThoseOfTheWindAtEveryDistance) {
   for (const double footprint_m : {0.005, 0.1, 1.0, 5.0}) {
     const MeanWaves seen = WavesSeen(kBreeze, footprint_m, 1.0);
     EXPECT_NEAR(seen.resolved + seen.left, kBreeze, 0.05 * kBreeze)
@@ -284,13 +285,14 @@ TEST(Waves, ResolvedOrNotTheirSlopesAreThoseOfTheWind) {
   }
 }
 
-TEST(Waves, AreResolvedNearAndGlitterFarAway) {
+TEST(Waves, AreResolvedNearAndGlitterFar) {
   EXPECT_GT(WavesSeen(kBreeze, 0.01, 1.0).resolved, 0.5 * kBreeze);
   EXPECT_EQ(WavesSeen(kBreeze, 100.0, 1.0).resolved, 0.0) << "the longest are of 21 m";
   EXPECT_NEAR(WavesSeen(kBreeze, 100.0, 1.0).left, kBreeze, 1e-12);
+  EXPECT_EQ(WavesSeen(0.003, 0.01, 1.0).resolved, 0.0) << "a calm sea has none";
 }
 
-TEST(Waves, ThatHideEachOtherAreLeftToTheGlitter) {
+TEST(Waves, HiddenWavesBelongToTheGlitter) {
   EXPECT_EQ(WavesSeen(kBreeze, 0.01, 0.0).resolved, 0.0);
   EXPECT_EQ(WavesSeen(kBreeze, 0.01, -0.1).resolved, 0.0) << "a normal turned away from the eye";
 }
@@ -303,7 +305,7 @@ TEST(Waves, TravelAsInDeepWater) {
   EXPECT_NEAR(WaveSpeed(2.0 * kPi / 100.0), 12.49, 0.01) << "sqrt(g 100 m / 2 pi)";
 }
 
-TEST(Waves, AnOctaveIsCarriedAlong) {
+TEST(Waves, AnOctaveMovesWithItsDrift) {
   for (const NoiseOctave& octave : OctavesOf(GroundNoise::kWaves)) {
     const GroundPoint now{7e5, 5e6, 0.0, 0.01};
     GroundPoint then = now;
@@ -331,8 +333,6 @@ TEST(Waves, MoveSmoothlyAfterYears) {
   EXPECT_GT(moved, 0.02) << "after a second the sea is another: 0.12 rms";
   EXPECT_LT(jumped, 2e-3) << "0.1 ms is 0.1 mm of ripples of 30 mm";
 }
-
-TEST(Waves, ACalmSeaHasNone) { EXPECT_EQ(WavesSeen(0.003, 0.01, 1.0).resolved, 0.0); }
 
 }  // namespace
 }  // namespace alpenglow::renderer

@@ -14,101 +14,65 @@
 #include <limits>
 #include <numbers>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "atmosphere/base/error.h"
 #include "renderer/layer.h"
+#include "tests/fixtures/fault_of.h"
 #include "tests/fixtures/places.h"
+#include "tests/fixtures/raster_file.h"
+#include "tests/fixtures/temporary_folder.h"
 
 namespace alpenglow::renderer {
 namespace {
 
 namespace fs = std::filesystem;
-using ::testing::HasSubstr;
+using testing::HasSubstr;
+using tests::Raster;
 
 constexpr double kDegree = std::numbers::pi / 180.0;
 const fs::path kDem = fs::path(tests::kSharedFolder) / "dem";
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 
-// What a raster file is made of.
-struct Recipe {
-  std::string name = "dem.tif";
-  int columns = 16;
-  int rows = 12;
-  std::array<double, 6> geotransform{7.0, 0.001, 0.0, 47.0, 0.0, -0.001};
-  int epsg = 4326;
-  int bands = 1;
-  GDALDataType type = GDT_Float32;
-  std::string unit;
-  bool has_nodata = false;
-  double nodata = 0.0;
-  // Height of a sample by row and column.
-  std::function<float(int, int)> height = [](int row, int column) {
-    return static_cast<float>(1000 + 10 * row + column);
-  };
-};
-
-class ElevationFile : public ::testing::Test {
+class ElevationFile : public TemporaryFolder {
  protected:
-  ElevationFile() { fs::create_directories(folder_); }
-  ~ElevationFile() override { fs::remove_all(folder_); }
-
-  fs::path Write(const Recipe& recipe) const {
-    GDALRegister_GTiff();
-    const fs::path file = folder_ / recipe.name;
-    GDALDriver* driver = GetGDALDriverManager()->GetDriverByName("GTiff");
-    GDALDataset* dataset = driver->Create(file.c_str(), recipe.columns, recipe.rows, recipe.bands,
-                                          recipe.type, nullptr);
-    std::array<double, 6> transform = recipe.geotransform;
-    dataset->SetGeoTransform(transform.data());
-    if (recipe.epsg != 0) {
-      OGRSpatialReference crs;
-      crs.importFromEPSG(recipe.epsg);
-      dataset->SetSpatialRef(&crs);
-    }
-    GDALRasterBand* band = dataset->GetRasterBand(1);
-    if (recipe.has_nodata) band->SetNoDataValue(recipe.nodata);
-    if (!recipe.unit.empty()) band->SetUnitType(recipe.unit.c_str());
-    std::vector<float> samples;
-    for (int row = 0; row < recipe.rows; ++row) {
-      for (int column = 0; column < recipe.columns; ++column) {
-        samples.push_back(recipe.height(row, column));
-      }
-    }
-    EXPECT_EQ(band->RasterIO(GF_Write, 0, 0, recipe.columns, recipe.rows, samples.data(),
-                             recipe.columns, recipe.rows, GDT_Float32, 0, 0, nullptr),
-              CE_None);
-    GDALClose(dataset);
-    return file;
+  [[nodiscard]] fs::path Write(const Raster& raster) const {
+    return tests::WriteRaster(folder_, raster);
   }
-
-  fs::path folder_ =
-      fs::path(::testing::TempDir()) /
-      ("elevation_" + std::string(::testing::UnitTest::GetInstance()->current_test_info()->name()));
+  [[nodiscard]] ElevationModel Model(const Raster& raster,
+                                     VoidPolicy policy = VoidPolicy::kFill) const {
+    return ReadElevation(Write(raster), policy);
+  }
+  [[nodiscard]] ElevationGrid GridOf(const Raster& raster) const { return Model(raster).grid; }
 };
 
 void ExpectRefused(const fs::path& file, const std::string& fault) {
-  try {
-    static_cast<void>(ReadElevation(file, VoidPolicy::kFill));
-    ADD_FAILURE() << file << " was read";
-  } catch (const InputError& error) {
-    EXPECT_THAT(error.what(), HasSubstr(file.filename().string()));
-    EXPECT_THAT(error.what(), HasSubstr(fault));
-    EXPECT_THAT(error.what(), Not(HasSubstr("\n"))) << "a message is one line";
-  }
+  const std::string message =
+      tests::FaultOf([&] { return ReadElevation(file, VoidPolicy::kFill); });
+  EXPECT_THAT(message, AllOf(HasSubstr(file.filename().string()), HasSubstr(fault)));
+  EXPECT_THAT(message, Not(HasSubstr("\n"))) << "a message is one line";
 }
 
-TEST_F(ElevationFile, SaysWhichVerticalDatumItsHeightsCountFrom) {
-  Recipe recipe;
-  EXPECT_EQ(ReadElevation(Write(recipe), VoidPolicy::kFill).vertical_datum, "");
-  recipe.epsg = 9707;  // WGS 84 with heights over EGM96
-  EXPECT_EQ(ReadElevation(Write(recipe), VoidPolicy::kFill).vertical_datum, "EGM96 height");
-  recipe.epsg = 4979;  // WGS 84 with heights over the ellipsoid
-  EXPECT_EQ(ReadElevation(Write(recipe), VoidPolicy::kFill).vertical_datum, "");
+/// Expects a height [m] of a place in degrees.
+void ExpectHeight(const ElevationGrid& grid, double latitude, double longitude, double height_m,
+                  double tolerance_m) {
+  const std::optional<double> found = grid.HeightAt(latitude * kDegree, longitude * kDegree);
+  ASSERT_TRUE(found.has_value()) << latitude << " " << longitude;
+  EXPECT_NEAR(*found, height_m, tolerance_m) << latitude << " " << longitude;
+}
+
+TEST_F(ElevationFile, ReportsTheVerticalDatumOfItsHeights) {
+  Raster raster;
+  EXPECT_EQ(Model(raster).vertical_datum, "");
+  raster.epsg = 9707;  // WGS 84 with heights over EGM96
+  EXPECT_EQ(Model(raster).vertical_datum, "EGM96 height");
+  raster.epsg = 4979;  // WGS 84 with heights over the ellipsoid
+  EXPECT_EQ(Model(raster).vertical_datum, "");
 }
 
 TEST_F(ElevationFile, SamplesLieAtThePixelCentres) {
-  const ElevationModel model = ReadElevation(Write({}), VoidPolicy::kFill);
+  const ElevationModel model = Model({});
   const ElevationGrid& grid = model.grid;
   ASSERT_EQ(grid.columns, 16);
   ASSERT_EQ(grid.rows, 12);
@@ -121,74 +85,69 @@ TEST_F(ElevationFile, SamplesLieAtThePixelCentres) {
 }
 
 TEST_F(ElevationFile, HeightBetweenSamplesIsBilinear) {
-  const ElevationGrid grid = ReadElevation(Write({}), VoidPolicy::kFill).grid;
-  const std::optional<double> height = grid.HeightAt(46.99625 * kDegree, 7.00375 * kDegree);
-  ASSERT_TRUE(height.has_value());
-  EXPECT_NEAR(*height, 1000.0 + 10.0 * 3.25 + 3.25, 1e-6);
-  EXPECT_NEAR(*grid.HeightAt(46.9995 * kDegree, 367.0005 * kDegree), 1000.0, 1e-6)
-      << "a longitude counts modulo 360 degrees";
+  const ElevationGrid grid = GridOf({});
+  ExpectHeight(grid, 46.99625, 7.00375, 1000.0 + 10.0 * 3.25 + 3.25, 1e-6);
+  ExpectHeight(grid, 46.9995, 367.0005, 1000.0, 1e-6);  // A longitude counts modulo 360 degrees.
   EXPECT_FALSE(grid.HeightAt(46.9995 * kDegree, 7.0 * kDegree).has_value());
   EXPECT_FALSE(grid.HeightAt(47.0 * kDegree, 7.005 * kDegree).has_value());
 }
 
-TEST_F(ElevationFile, SouthUpComesOutNorthUp) {
-  Recipe recipe;
-  recipe.geotransform = {7.0, 0.001, 0.0, 46.0, 0.0, 0.001};
-  const ElevationGrid grid = ReadElevation(Write(recipe), VoidPolicy::kFill).grid;
+TEST_F(ElevationFile, SouthUpRastersBecomeNorthUp) {
+  Raster raster;
+  raster.geotransform = {7.0, 0.001, 0.0, 46.0, 0.0, 0.001};
+  const ElevationGrid grid = GridOf(raster);
   EXPECT_NEAR(grid.north_rad, 46.0115 * kDegree, 1e-14);
   EXPECT_EQ(grid.at(0, 5), 1115.0F) << "the file's last row is the northernmost";
-  EXPECT_NEAR(*grid.HeightAt(46.0005 * kDegree, 7.0005 * kDegree), 1000.0, 1e-6);
+  ExpectHeight(grid, 46.0005, 7.0005, 1000.0, 1e-6);
 }
 
 TEST_F(ElevationFile, FeetBecomeMetres) {
-  Recipe recipe;
-  recipe.unit = "ft";
-  EXPECT_NEAR(static_cast<double>(ReadElevation(Write(recipe), VoidPolicy::kFill).grid.at(0, 0)),
-              304.8, 1e-4);
-  recipe.unit = "US survey foot";
-  EXPECT_NEAR(static_cast<double>(ReadElevation(Write(recipe), VoidPolicy::kFill).grid.at(0, 0)),
-              304.8006096, 1e-4);
-  recipe.unit = "furlong";
-  ExpectRefused(Write(recipe), "furlong");
+  Raster raster;
+  for (const auto& [unit, height_m] : {std::pair{"ft", 304.8}, {"US survey foot", 304.8006096}}) {
+    raster.unit = unit;
+    EXPECT_NEAR(static_cast<double>(GridOf(raster).at(0, 0)), height_m, 1e-4) << unit;
+  }
+  raster.unit = "furlong";
+  ExpectRefused(Write(raster), "furlong");
 }
 
-// 2 m apart on a map of New Mexico (State Plane, US survey feet), or of a place elsewhere.
-Recipe PlaneOfFeet(int epsg) {
-  Recipe recipe;
-  recipe.epsg = epsg;
-  recipe.geotransform = {1714733.97, 6.0, 0.0, 1673762.98, 0.0, -6.0};
-  recipe.height = [](int, int) { return 7000.0F; };
-  return recipe;
+// Returns samples 2 m apart on a map of New Mexico (State Plane, US survey feet) or elsewhere.
+Raster PlaneOfFeet(int epsg) {
+  Raster raster;
+  raster.epsg = epsg;
+  raster.geotransform = {1714733.97, 6.0, 0.0, 1673762.98, 0.0, -6.0};
+  raster.height = [](int, int) { return 7000.0F; };
+  return raster;
 }
 
-TEST_F(ElevationFile, HeightsWithoutAUnitAreInFeetOnAMapInFeet) {
+TEST_F(ElevationFile, HeightsWithoutAUnitHaveThatOfTheMap) {
   struct Case {
     int epsg;
     double height_m;
     const char* note;
   };
-  for (const Case& map : std::vector<Case>{
-           {6529, 7000.0 * 1200.0 / 3937.0, "the map is in US survey foot; they are taken in US"},
-           {2222, 7000.0 * 0.3048, "the map is in foot; they are taken in foot"},
-           {32613, 7000.0, ""},
-           {4326, 7000.0, ""}}) {
-    Recipe recipe = PlaneOfFeet(map.epsg);
-    if (map.epsg == 32613) recipe.geotransform = {4e5, 2.0, 0.0, 4e6, 0.0, -2.0};
-    if (map.epsg == 4326) recipe.geotransform = Recipe{}.geotransform;
-    const ElevationModel model = ReadElevation(Write(recipe), VoidPolicy::kLeaveOpen);
+  for (const Case& map :
+       {Case{6529, 7000.0 * 1200.0 / 3937.0, "the map is in US survey foot; they are taken in US"},
+        {2222, 7000.0 * 0.3048, "the map is in foot; they are taken in foot"},
+        {32613, 7000.0, ""},
+        {4326, 7000.0, ""}}) {
+    Raster raster = PlaneOfFeet(map.epsg);
+    if (map.epsg == 32613) raster.geotransform = {4e5, 2.0, 0.0, 4e6, 0.0, -2.0};
+    if (map.epsg == 4326) raster.geotransform = Raster{}.geotransform;
+    const ElevationModel model = Model(raster, VoidPolicy::kLeaveOpen);
     EXPECT_NEAR(static_cast<double>(model.grid.at(5, 5)), map.height_m, 1e-3) << map.epsg;
     EXPECT_THAT(NoteOn(model, "dem.tif"), HasSubstr(map.note)) << map.epsg;
     EXPECT_EQ(model.unit_note.empty(), std::string(map.note).empty()) << map.epsg;
-    recipe.unit = "m";
-    const ElevationModel declared = ReadElevation(Write(recipe), VoidPolicy::kLeaveOpen);
+    raster.unit = "m";
+    const ElevationModel declared = Model(raster, VoidPolicy::kLeaveOpen);
     EXPECT_NEAR(static_cast<double>(declared.grid.at(5, 5)), 7000.0, 1e-3) << map.epsg;
     EXPECT_EQ(declared.unit_note, "") << map.epsg;
   }
 }
 
 TEST_F(ElevationFile, AMapThatIsNotInMetresIsNoted) {
-  Recipe recipe;
-  const fs::path file = Write(recipe);
+  Raster raster;
+  const fs::path file = Write(raster);
   auto* dataset = static_cast<GDALDataset*>(GDALOpen(file.c_str(), GA_Update));
   OGRSpatialReference kilometres;
   kilometres.SetUTM(32);
@@ -204,88 +163,94 @@ TEST_F(ElevationFile, AMapThatIsNotInMetresIsNoted) {
                         "in metre"));
 }
 
-TEST_F(ElevationFile, AProjectedPlaneIsStillThatPlane) {
-  Recipe recipe;
-  recipe.columns = 60;
-  recipe.rows = 50;
-  recipe.epsg = 32632;
-  recipe.geotransform = {400000.0, 30.0, 0.0, 5150000.0, 0.0, -30.0};
-  const ElevationGrid grid = ReadElevation(Write(recipe), VoidPolicy::kFill).grid;
-  OGRSpatialReference utm;
-  OGRSpatialReference wgs84;
-  utm.importFromEPSG(32632);
+/// Calls visit(row, column, latitude, longitude) for samples of a projected map; angles are in
+/// degrees.
+template <typename Visit>
+void VisitSamples(int epsg, const std::array<double, 6>& transform, std::array<int, 3> rows,
+                  std::array<int, 3> columns, const Visit& visit) {
+  OGRSpatialReference map, wgs84;
+  map.importFromEPSG(epsg);
   wgs84.importFromEPSG(4326);
   wgs84.SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
-  auto* to_geographic = OGRCreateCoordinateTransformation(&utm, &wgs84);
-  for (int row = 5; row < 45; row += 7) {
-    for (int column = 5; column < 55; column += 7) {
-      double x = 400000.0 + 30.0 * (column + 0.5);
-      double y = 5150000.0 - 30.0 * (row + 0.5);
+  auto* to_geographic = OGRCreateCoordinateTransformation(&map, &wgs84);
+  for (int row = rows[0]; row < rows[1]; row += rows[2]) {
+    for (int column = columns[0]; column < columns[1]; column += columns[2]) {
+      double x = transform[0] + transform[1] * (column + 0.5);
+      double y = transform[3] + transform[5] * (row + 0.5);
       ASSERT_TRUE(to_geographic->Transform(1, &x, &y));
-      const std::optional<double> height = grid.HeightAt(y * kDegree, x * kDegree);
-      ASSERT_TRUE(height.has_value()) << row << " " << column;
-      EXPECT_NEAR(*height, 1000.0 + 10.0 * row + column, 0.01)
-          << "bilinear keeps a plane; float and the bend of the projection leave millimetres";
+      visit(row, column, y, x);
     }
   }
   OGRCoordinateTransformation::DestroyCT(to_geographic);
 }
 
+TEST_F(ElevationFile, AProjectedPlaneStaysAPlane) {
+  Raster raster;
+  raster.columns = 60;
+  raster.rows = 50;
+  raster.epsg = 32632;
+  raster.geotransform = {400000.0, 30.0, 0.0, 5150000.0, 0.0, -30.0};
+  const ElevationGrid grid = GridOf(raster);
+  VisitSamples(raster.epsg, raster.geotransform, {5, 45, 7}, {5, 55, 7},
+               [&](int row, int column, double latitude, double longitude) {
+                 // Bilinear keeps a plane; float and the bend of the projection leave millimetres.
+                 ExpectHeight(grid, latitude, longitude, 1000.0 + 10.0 * row + column, 0.01);
+               });
+}
+
 // Hard case 17.
-TEST_F(ElevationFile, AMapAroundThePoleClosesAroundThePole) {
-  Recipe recipe;
-  recipe.columns = 101;
-  recipe.rows = 101;
-  recipe.epsg = 3413;
-  recipe.geotransform = {-5050.0, 100.0, 0.0, 5050.0, 0.0, -100.0};
-  recipe.height = [](int row, int column) {
+TEST_F(ElevationFile, AMapOfAPoleClosesAroundIt) {
+  Raster raster;
+  raster.columns = 101;
+  raster.rows = 101;
+  raster.epsg = 3413;
+  raster.geotransform = {-5050.0, 100.0, 0.0, 5050.0, 0.0, -100.0};
+  raster.height = [](int row, int column) {
     return static_cast<float>(100.0 + std::hypot(row - 50, column - 50));
   };
-  const ElevationGrid grid = ReadElevation(Write(recipe), VoidPolicy::kFill).grid;
+  const ElevationGrid grid = GridOf(raster);
   EXPECT_TRUE(grid.ClosesAroundTheEarth());
   for (double lon = -180.0; lon <= 180.0; lon += 7.5) {
-    const std::optional<double> height = grid.HeightAt(89.97 * kDegree, lon * kDegree);
-    ASSERT_TRUE(height.has_value()) << lon;
-    EXPECT_NEAR(*height, 100.0 + 0.03 * 111694.0 * 0.97 / 100.0, 0.3)
-        << "a cone: its level lines are circles; scale of the map at the pole 0.970";
+    // On a cone level lines are circles; the scale of the map at the pole is 0.970.
+    ExpectHeight(grid, 89.97, lon, 100.0 + 0.03 * 111694.0 * 0.97 / 100.0, 0.3);
   }
 }
 
 // Hard case 17.
-TEST_F(ElevationFile, ARasterOverTheMeridianOfGreenwichStaysWholeHoweverLongitudesAreCounted) {
+TEST_F(ElevationFile, ARasterOverGreenwichStaysWhole) {
   for (const double west : {-0.005, 359.995}) {
-    Recipe recipe;
-    recipe.geotransform = {west, 0.001, 0.0, 51.5, 0.0, -0.001};
-    const ElevationGrid grid = ReadElevation(Write(recipe), VoidPolicy::kFill).grid;
+    Raster raster;
+    raster.geotransform = {west, 0.001, 0.0, 51.5, 0.0, -0.001};
+    const ElevationGrid grid = GridOf(raster);
     EXPECT_EQ(grid.columns, 16);
     for (const double turn : {0.0, 360.0}) {
-      EXPECT_NEAR(*grid.HeightAt(51.4995 * kDegree, (turn - 0.0005) * kDegree), 1004.0, 1e-6);
-      EXPECT_NEAR(*grid.HeightAt(51.4995 * kDegree, (turn + 0.0005) * kDegree), 1005.0, 1e-6);
+      ExpectHeight(grid, 51.4995, turn - 0.0005, 1004.0, 1e-6);
+      ExpectHeight(grid, 51.4995, turn + 0.0005, 1005.0, 1e-6);
     }
   }
 }
 
 // Hard case 17.
 TEST_F(ElevationFile, ARasterOverThe180thMeridianStaysWhole) {
-  Recipe recipe;
-  recipe.geotransform = {179.995, 0.001, 0.0, -17.0, 0.0, -0.001};
-  const ElevationGrid grid = ReadElevation(Write(recipe), VoidPolicy::kFill).grid;
+  Raster raster;
+  raster.geotransform = {179.995, 0.001, 0.0, -17.0, 0.0, -0.001};
+  const ElevationGrid grid = GridOf(raster);
   EXPECT_EQ(grid.columns, 16);
-  EXPECT_NEAR(*grid.HeightAt(-17.0005 * kDegree, 179.9995 * kDegree), 1004.0, 1e-6);
-  EXPECT_NEAR(*grid.HeightAt(-17.0005 * kDegree, -179.9995 * kDegree), 1005.0, 1e-6);
+  ExpectHeight(grid, -17.0005, 179.9995, 1004.0, 1e-6);
+  ExpectHeight(grid, -17.0005, -179.9995, 1005.0, 1e-6);
 }
 
 TEST_F(ElevationFile, VoidsAreCountedAndFilledWithAMembrane) {
-  Recipe recipe;
-  recipe.columns = 40;
-  recipe.rows = 40;
-  recipe.has_nodata = true;
-  recipe.nodata = -1.0;
-  recipe.height = [](int row, int column) {
+  Raster raster;
+  raster.columns = 40;
+  raster.rows = 40;
+  raster.has_nodata = true;
+  raster.nodata = -1.0;
+  raster.height = [](int row, int column) {
     const bool is_void = row >= 10 && row < 25 && column >= 12 && column < 30;
     return is_void ? -1.0F : static_cast<float>(500 + 8 * row - 3 * column);
   };
-  const ElevationModel filled = ReadElevation(Write(recipe), VoidPolicy::kFill);
+  const ElevationModel filled = Model(raster);
   EXPECT_EQ(filled.voids, 15U * 18U);
   EXPECT_EQ(filled.voids_filled, 15U * 18U);
   for (int row = 10; row < 25; ++row) {
@@ -294,18 +259,18 @@ TEST_F(ElevationFile, VoidsAreCountedAndFilledWithAMembrane) {
           << "a membrane over a hole in a plane is the plane";
     }
   }
-  const ElevationModel open = ReadElevation(Write(recipe), VoidPolicy::kLeaveOpen);
+  const ElevationModel open = Model(raster, VoidPolicy::kLeaveOpen);
   EXPECT_EQ(open.voids, 15U * 18U);
   EXPECT_EQ(open.voids_filled, 0U);
   EXPECT_TRUE(std::isnan(open.grid.at(15, 20)));
   EXPECT_FALSE(open.grid.HeightAt(open.grid.LatitudeOfRow(15), open.grid.LongitudeOfColumn(20)));
 }
 
-// The two western columns of a file have no data; its raw samples there are 0.
-Recipe WesternSea() {
-  Recipe recipe;
-  recipe.height = [](int, int column) { return column < 2 ? 0.0F : 700.0F; };
-  return recipe;
+// Returns a file whose two western columns have no data; its raw samples there are 0.
+Raster WesternSea() {
+  Raster raster;
+  raster.height = [](int, int column) { return column < 2 ? 0.0F : 700.0F; };
+  return raster;
 }
 
 void ExpectTwoColumnsOpen(const fs::path& file) {
@@ -317,45 +282,41 @@ void ExpectTwoColumnsOpen(const fs::path& file) {
   EXPECT_NEAR(static_cast<double>(filled.grid.at(5, 0)), 700.0, 1e-3);
 }
 
-// Adds a mask of the whole file, inside it or beside it.
+// Writes 0 to the two western columns of a band of the file, and 255 to the others.
+void LeaveColumnsOut(GDALRasterBand& band) {
+  std::vector<float> mask(16 * 12, 255.0F);
+  for (std::size_t i = 0; i < mask.size(); ++i) mask[i] = i % 16 < 2 ? 0.0F : 255.0F;
+  tests::WriteSamples(band, {0, 0, 16, 12}, std::move(mask));
+}
+
+// Adds a mask of the whole file, inside the file or next to it.
 void AddMask(const fs::path& file, const char* inside) {
   CPLSetThreadLocalConfigOption("GDAL_TIFF_INTERNAL_MASK", inside);
   auto* dataset = static_cast<GDALDataset*>(GDALOpen(file.c_str(), GA_Update));
   ASSERT_EQ(dataset->CreateMaskBand(GMF_PER_DATASET), CE_None);
-  std::vector<std::uint8_t> mask(16 * 12, 255);
-  for (std::size_t i = 0; i < mask.size(); ++i) mask[i] = i % 16 < 2 ? 0 : 255;
-  ASSERT_EQ(dataset->GetRasterBand(1)->GetMaskBand()->RasterIO(GF_Write, 0, 0, 16, 12, mask.data(),
-                                                               16, 12, GDT_Byte, 0, 0, nullptr),
-            CE_None);
+  LeaveColumnsOut(*dataset->GetRasterBand(1)->GetMaskBand());
   GDALClose(dataset);
   CPLSetThreadLocalConfigOption("GDAL_TIFF_INTERNAL_MASK", nullptr);
 }
 
-TEST_F(ElevationFile, WhatAMaskLeavesOutIsAVoid) {
+TEST_F(ElevationFile, WhatAMaskOrAnAlphaBandLeavesOutIsAVoid) {
   const fs::path inside = Write(WesternSea());
   AddMask(inside, "YES");
   ExpectTwoColumnsOpen(inside);
-  Recipe other = WesternSea();
+  Raster other = WesternSea();
   other.name = "beside.tif";
   const fs::path beside = Write(other);
   AddMask(beside, "NO");
   ASSERT_TRUE(fs::exists(beside.string() + ".msk"));
   ExpectTwoColumnsOpen(beside);
-}
-
-TEST_F(ElevationFile, WhatAnAlphaBandLeavesOutIsAVoid) {
-  Recipe recipe = WesternSea();
-  recipe.bands = 2;
-  const fs::path file = Write(recipe);
-  auto* dataset = static_cast<GDALDataset*>(GDALOpen(file.c_str(), GA_Update));
+  other.name = "alpha.tif";
+  other.bands = 2;
+  const fs::path alpha = Write(other);
+  auto* dataset = static_cast<GDALDataset*>(GDALOpen(alpha.c_str(), GA_Update));
   dataset->GetRasterBand(2)->SetColorInterpretation(GCI_AlphaBand);
-  std::vector<float> alpha(16 * 12, 255.0F);
-  for (std::size_t i = 0; i < alpha.size(); ++i) alpha[i] = i % 16 < 2 ? 0.0F : 255.0F;
-  ASSERT_EQ(dataset->GetRasterBand(2)->RasterIO(GF_Write, 0, 0, 16, 12, alpha.data(), 16, 12,
-                                                GDT_Float32, 0, 0, nullptr),
-            CE_None);
+  LeaveColumnsOut(*dataset->GetRasterBand(2));
   GDALClose(dataset);
-  ExpectTwoColumnsOpen(file);
+  ExpectTwoColumnsOpen(alpha);
 }
 
 TEST_F(ElevationFile, AnSrtmTileLiesOnTheDegreesOfItsName) {
@@ -370,20 +331,20 @@ TEST_F(ElevationFile, AnSrtmTileLiesOnTheDegreesOfItsName) {
   stream.close();
   const ElevationModel model = ReadElevation(tile, VoidPolicy::kFill);
   EXPECT_EQ(model.voids, 1U);
-  EXPECT_NEAR(*model.grid.HeightAt(-33.0 * kDegree, -71.0 * kDegree), 0.0, 1e-3);
-  EXPECT_NEAR(*model.grid.HeightAt(-34.0 * kDegree, -70.0 * kDegree), 2400.0, 1e-3);
+  ExpectHeight(model.grid, -33.0, -71.0, 0.0, 1e-3);
+  ExpectHeight(model.grid, -34.0, -70.0, 2400.0, 1e-3);
   fs::rename(tile, folder_ / "elsewhere.hgt");
   ExpectRefused(folder_ / "elsewhere.hgt", "not a readable");
 }
 
 TEST_F(ElevationFile, AUsgsDemIsRead) {
-  Recipe recipe;
-  recipe.columns = 1201;
-  recipe.rows = 1201;
-  recipe.geotransform = {-76.0 - 0.5 * 0.25 / 1200, 0.25 / 1200, 0.0,
+  Raster raster;
+  raster.columns = 1201;
+  raster.rows = 1201;
+  raster.geotransform = {-76.0 - 0.5 * 0.25 / 1200, 0.25 / 1200, 0.0,
                          45.25 + 0.5 * 0.25 / 1200, 0.0,         -0.25 / 1200};
-  recipe.height = [](int row, int column) { return static_cast<float>(500 + row - column / 3); };
-  const fs::path tif = Write(recipe);
+  raster.height = [](int row, int column) { return static_cast<float>(500 + row - column / 3); };
+  const fs::path tif = Write(raster);
   GDALRegister_USGSDEM();
   auto* source = static_cast<GDALDataset*>(GDALOpen(tif.c_str(), GA_ReadOnly));
   const fs::path file = folder_ / "quad.dem";
@@ -392,25 +353,24 @@ TEST_F(ElevationFile, AUsgsDemIsRead) {
   GDALClose(source);
   if (copy == nullptr) GTEST_SKIP() << "this GDAL writes no USGS DEM";
   GDALClose(copy);
-  const ElevationGrid grid = ReadElevation(file, VoidPolicy::kFill).grid;
-  const std::optional<double> height = grid.HeightAt(45.1 * kDegree, -75.9 * kDegree);
-  ASSERT_TRUE(height.has_value());
-  EXPECT_NEAR(*height, 500.0 + 720.0 - 160.0, 1.5) << "the file holds whole metres";
+  // The file holds whole metres.
+  ExpectHeight(ReadElevation(file, VoidPolicy::kFill).grid, 45.1, -75.9, 500.0 + 720.0 - 160.0,
+               1.5);
 }
 
-// The height at each sample tells its column and row.
-Recipe Numbered() {
-  Recipe recipe;
-  recipe.height = [](int row, int column) { return static_cast<float>(100 * row + column); };
-  return recipe;
+// Returns a raster in which the height of a sample encodes its column and row.
+Raster Numbered() {
+  Raster raster;
+  raster.height = [](int row, int column) { return static_cast<float>(100 * row + column); };
+  return raster;
 }
 
 TEST_F(ElevationFile, AWindowIsThatPartOfTheWhole) {
-  Recipe south_up = Numbered();
+  Raster south_up = Numbered();
   south_up.name = "south.tif";
   south_up.geotransform = {7.0, 0.001, 0.0, 46.0, 0.0, 0.001};
-  for (const Recipe& recipe : {Numbered(), south_up}) {
-    const fs::path file = Write(recipe);
+  for (const Raster& raster : {Numbered(), south_up}) {
+    const fs::path file = Write(raster);
     ASSERT_TRUE(CanBeCut(file));
     const ElevationGrid whole = ReadElevation(file, VoidPolicy::kFill).grid;
     const ElevationGrid part = ReadElevation(file, VoidPolicy::kFill, {5, 3, 6, 2}).grid;
@@ -426,12 +386,11 @@ TEST_F(ElevationFile, AWindowIsThatPartOfTheWhole) {
   }
 }
 
-TEST_F(ElevationFile, AWindowOfTheEarthGoesOnAfterTheLastColumn) {
-  Recipe recipe = Numbered();
-  recipe.columns = 36;
-  recipe.geotransform = {-180.0, 10.0, 0.0, 60.0, 0.0, -10.0};
-  const fs::path file = Write(recipe);
-  const ElevationGrid part = ReadElevation(file, VoidPolicy::kFill, {34, 2, 4, 3}).grid;
+TEST_F(ElevationFile, AWindowOfTheEarthContinuesAfterTheLastColumn) {
+  Raster raster = Numbered();
+  raster.columns = 36;
+  raster.geotransform = {-180.0, 10.0, 0.0, 60.0, 0.0, -10.0};
+  const ElevationGrid part = ReadElevation(Write(raster), VoidPolicy::kFill, {34, 2, 4, 3}).grid;
   ASSERT_EQ(part.columns, 4);
   EXPECT_NEAR(part.west_rad, 165.0 * kDegree, 1e-12);
   EXPECT_EQ(part.at(0, 1), 235.0F);
@@ -440,33 +399,26 @@ TEST_F(ElevationFile, AWindowOfTheEarthGoesOnAfterTheLastColumn) {
 }
 
 TEST_F(ElevationFile, AResampledModelCannotBeCut) {
-  Recipe recipe;
-  recipe.epsg = 32632;
-  recipe.geotransform = {4e5, 30.0, 0.0, 5.2e6, 0.0, -30.0};
-  EXPECT_FALSE(CanBeCut(Write(recipe)));
+  Raster raster;
+  raster.epsg = 32632;
+  raster.geotransform = {4e5, 30.0, 0.0, 5.2e6, 0.0, -30.0};
+  EXPECT_FALSE(CanBeCut(Write(raster)));
 }
 
 // The model has the size of GEBCO's grid of 15 seconds, 3.7e9 samples. Blocks that are not written take
 // no room in the file.
-TEST_F(ElevationFile, OfAModelOfTheWholeEarthAWindowIsRead) {
-  GDALRegister_GTiff();
-  const fs::path file = folder_ / "earth.tif";
-  const char* const options[] = {"SPARSE_OK=TRUE", "TILED=YES", nullptr};
-  GDALDataset* dataset = GetGDALDriverManager()->GetDriverByName("GTiff")->Create(
-      file.c_str(), 86400, 43200, 1, GDT_Int16, const_cast<char**>(options));
-  std::array<double, 6> transform{-180.0, 1.0 / 240.0, 0.0, 90.0, 0.0, -1.0 / 240.0};
-  dataset->SetGeoTransform(transform.data());
-  OGRSpatialReference crs;
-  crs.importFromEPSG(4326);
-  dataset->SetSpatialRef(&crs);
-  std::vector<float> heights(64 * 32);
-  for (std::size_t i = 0; i < heights.size(); ++i) heights[i] = static_cast<float>(i);
-  ASSERT_EQ(dataset->GetRasterBand(1)->RasterIO(GF_Write, 45120, 10440, 64, 32, heights.data(), 64,
-                                                32, GDT_Float32, 0, 0, nullptr),
-            CE_None);
-  GDALClose(dataset);
-  const ElevationGrid extent = ReadElevationExtent(file);
-  EXPECT_EQ(extent.columns, 86400);
+TEST_F(ElevationFile, AWindowOfAModelOfTheWholeEarthIsRead) {
+  Raster earth;
+  earth.columns = 86400;
+  earth.rows = 43200;
+  earth.type = GDT_Int16;
+  earth.geotransform = {-180.0, 1.0 / 240.0, 0.0, 90.0, 0.0, -1.0 / 240.0};
+  earth.window = {45120, 10440, 64, 32};
+  earth.height = [](int row, int column) {
+    return static_cast<float>(64 * (row - 10440) + column - 45120);
+  };
+  const fs::path file = Write(earth);
+  EXPECT_EQ(ReadElevationExtent(file).columns, 86400);
   ASSERT_TRUE(CanBeCut(file));
   const ElevationGrid part = ReadElevation(file, VoidPolicy::kFill, {45110, 10430, 80, 50}).grid;
   EXPECT_EQ(part.height_m.size(), 80U * 50U);
@@ -476,51 +428,45 @@ TEST_F(ElevationFile, OfAModelOfTheWholeEarthAWindowIsRead) {
   ExpectRefused(file, "has 86400 x 43200 samples; at most 268435456 can be held");
 }
 
-TEST_F(ElevationFile, CustomaryNodataIsAVoidThoughUndeclared) {
+TEST_F(ElevationFile, UndeclaredCustomaryNodataIsAVoid) {
   for (const float value :
        {kNan, -32768.0F, -32767.0F, -9999.0F, std::numeric_limits<float>::lowest()}) {
-    Recipe recipe;
-    recipe.height = [&](int row, int column) { return row == 4 && column == 4 ? value : 700.0F; };
-    const ElevationModel model = ReadElevation(Write(recipe), VoidPolicy::kFill);
+    Raster raster;
+    raster.height = [&](int row, int column) { return row == 4 && column == 4 ? value : 700.0F; };
+    const ElevationModel model = Model(raster);
     EXPECT_EQ(model.voids, 1U) << value;
     EXPECT_EQ(model.grid.at(4, 4), 700.0F);
   }
 }
 
-TEST_F(ElevationFile, HeightsThatNoGroundHasAreRefusedByPlace) {
+TEST_F(ElevationFile, ImpossibleHeightsAreRefusedByPlace) {
   for (const float value : {9001.0F, -12001.0F, 3.4e38F, std::numeric_limits<float>::infinity()}) {
-    Recipe recipe;
-    recipe.height = [&](int row, int column) { return row == 4 && column == 5 ? value : 700.0F; };
-    ExpectRefused(Write(recipe), "row 4, column 5");
+    Raster raster;
+    raster.height = [&](int row, int column) { return row == 4 && column == 5 ? value : 700.0F; };
+    ExpectRefused(Write(raster), "row 4, column 5");
   }
 }
 
-TEST_F(ElevationFile, WhatIsNoElevationModelIsRefused) {
-  Recipe recipe;
-  recipe.height = [](int, int) { return kNan; };
-  ExpectRefused(Write(recipe), "no valid sample");
-  recipe = {};
-  recipe.epsg = 0;
-  ExpectRefused(Write(recipe), "no coordinate system");
-  recipe = {};
-  recipe.bands = 3;
-  ExpectRefused(Write(recipe), "3 bands");
-  recipe.bands = 2;
-  ExpectRefused(Write(recipe), "2 bands");
-  recipe = {};
-  recipe.type = GDT_CFloat32;
-  ExpectRefused(Write(recipe), "complex");
-  recipe = {};
-  recipe.rows = 1;
-  ExpectRefused(Write(recipe), "16 x 1");
-  recipe = {};
-  recipe.geotransform = {7.0, 0.001, 0.0001, 47.0, 0.0001, -0.001};
-  ExpectRefused(Write(recipe), "rotated");
-  recipe = {};
-  recipe.geotransform = {7.0, 0.001, 0.0, 90.01, 0.0, -0.001};
-  ExpectRefused(Write(recipe), "latitude");
+TEST_F(ElevationFile, FilesThatAreNoElevationModelAreRefused) {
+  struct Case {
+    std::function<void(Raster&)> change;
+    const char* fault;
+  };
+  for (const auto& [change, fault] : std::vector<Case>{
+           {[](Raster& r) { r.height = [](int, int) { return kNan; }; }, "no valid sample"},
+           {[](Raster& r) { r.epsg = 0; }, "no coordinate system"},
+           {[](Raster& r) { r.bands = 3; }, "3 bands"},
+           {[](Raster& r) { r.bands = 2; }, "2 bands"},
+           {[](Raster& r) { r.type = GDT_CFloat32; }, "complex"},
+           {[](Raster& r) { r.rows = 1; }, "16 x 1"},
+           {[](Raster& r) { r.geotransform[2] = r.geotransform[4] = 0.0001; }, "rotated"},
+           {[](Raster& r) { r.geotransform[3] = 90.01; }, "latitude"}}) {
+    Raster raster;
+    change(raster);
+    ExpectRefused(Write(raster), fault);
+  }
   ExpectRefused(folder_ / "missing.tif", "no such file");
-  std::ofstream(folder_ / "N46E008.hgt") << std::string(2000000, '\0');
+  WriteText(folder_ / "N46E008.hgt", std::string(2000000, '\0'));
   ExpectRefused(folder_ / "N46E008.hgt", "not a readable");
 }
 
@@ -535,16 +481,9 @@ TEST_F(ElevationFile, EveryTruncationIsRefused) {
   }
 }
 
-// ---- Files that others made ----
-
-struct BadFile {
-  const char* name;
-  const char* fault;
-};
-
 TEST(SharedElevation, BadFilesAreRefusedByNameAndFault) {
   if (!fs::exists(kDem / "bad")) GTEST_SKIP() << "no " << kDem / "bad";
-  const BadFile files[] = {
+  const std::pair<const char*, const char*> files[] = {
       {"N46E008.hgt", "not a readable"},
       {"all_nodata.tif", "no valid sample"},
       {"complex.tif", "complex"},
@@ -574,7 +513,7 @@ struct ReadableFile {
   double west_deg;
 };
 
-TEST(SharedElevation, ReadableOnesAmongThemComeOutRight) {
+TEST(SharedElevation, ReadableFilesHaveTheirVoidsAndPlaces) {
   if (!fs::exists(kDem / "bad")) GTEST_SKIP() << "no " << kDem / "bad";
   constexpr double kHalf = 0.5 / 1200.0;  // half a pixel
   const ReadableFile files[] = {
@@ -599,54 +538,41 @@ TEST(SharedElevation, ReadableOnesAmongThemComeOutRight) {
   }
 }
 
-TEST(SharedElevation, ProjectedOnesShowTheSameHillsAsTheGeographicOne) {
+TEST(SharedElevation, ProjectedFilesShowTheHillsOfTheGeographicOne) {
   if (!fs::exists(kDem / "bad")) GTEST_SKIP() << "no " << kDem / "bad";
   const ElevationGrid ok = ReadElevation(kDem / "bad" / "ok.tif", VoidPolicy::kFill).grid;
-  const std::pair<const char*, int> files[] = {{"utm32.tif", 32632}, {"webmercator.tif", 3857}};
-  const std::array<double, 6> transforms[] = {{400000.0, 30.0, 0.0, 5150000.0, 0.0, -30.0},
-                                              {834000.0, 30.0, 0.0, 5860000.0, 0.0, -30.0}};
-  for (int which = 0; which < 2; ++which) {
-    const auto& [name, epsg] = files[which];
-    const ElevationGrid grid = ReadElevation(kDem / "bad" / name, VoidPolicy::kFill).grid;
-    OGRSpatialReference crs;
-    OGRSpatialReference wgs84;
-    crs.importFromEPSG(epsg);
-    wgs84.importFromEPSG(4326);
-    wgs84.SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
-    auto* to_geographic = OGRCreateCoordinateTransformation(&crs, &wgs84);
-    double worst = 0.0;
-    for (int row = 2; row < 62; ++row) {
-      for (int column = 2; column < 62; ++column) {
-        double x = transforms[which][0] + 30.0 * (column + 0.5);
-        double y = transforms[which][3] - 30.0 * (row + 0.5);
-        ASSERT_TRUE(to_geographic->Transform(1, &x, &y));
-        const std::optional<double> height = grid.HeightAt(y * kDegree, x * kDegree);
-        ASSERT_TRUE(height.has_value());
-        worst = std::max(worst, std::abs(*height - static_cast<double>(ok.at(row, column))));
-      }
-    }
-    EXPECT_LT(worst, 3.0)
-        << name
-        << ": hills of 300 m turn by 1/8 rad a sample; each of two bilinear steps loses up to "
-           "300 / 8^2 / 8 = 0.6 m a dimension";
-    OGRCoordinateTransformation::DestroyCT(to_geographic);
+  struct Map {
+    const char* name;
+    int epsg;
+    std::array<double, 6> transform;
+  };
+  for (const Map& map : {Map{"utm32.tif", 32632, {400000.0, 30.0, 0.0, 5150000.0, 0.0, -30.0}},
+                         {"webmercator.tif", 3857, {834000.0, 30.0, 0.0, 5860000.0, 0.0, -30.0}}}) {
+    SCOPED_TRACE(map.name);
+    const ElevationGrid grid = ReadElevation(kDem / "bad" / map.name, VoidPolicy::kFill).grid;
+    VisitSamples(map.epsg, map.transform, {2, 62, 1}, {2, 62, 1},
+                 [&](int row, int column, double latitude, double longitude) {
+                   // Hills of 300 m turn by 1/8 rad a sample; each of two bilinear steps loses up
+                   // to 300 / 8^2 / 8 = 0.6 m in each dimension.
+                   ExpectHeight(grid, latitude, longitude, static_cast<double>(ok.at(row, column)),
+                                3.0);
+                 });
   }
 }
 
-TEST(SharedElevation, FujiStandsWhereItStands) {
+TEST(SharedElevation, FujiHasItsHeightAndPlace) {
   const fs::path tile = kDem / "N35E138.hgt";
   if (!fs::exists(tile)) GTEST_SKIP() << "no " << tile;
   const ElevationModel model = ReadElevation(tile, VoidPolicy::kFill);
-  const std::optional<double> summit = model.grid.HeightAt(35.3606 * kDegree, 138.7274 * kDegree);
-  ASSERT_TRUE(summit.has_value());
-  EXPECT_NEAR(*summit, 3776.0, 40.0) << "a radar sample of 90 m cuts the rim of the crater";
+  // A radar sample of 90 m cuts the rim of the crater.
+  ExpectHeight(model.grid, 35.3606, 138.7274, 3776.0, 40.0);
   EXPECT_EQ(model.voids, 2437U);
   EXPECT_EQ(model.grid.columns, 1201);
   EXPECT_NEAR(model.grid.west_rad / kDegree, 138.0, 1e-9) << "samples of a tile lie on its degrees";
   EXPECT_NEAR(model.grid.north_rad / kDegree, 36.0, 1e-9);
 }
 
-TEST(SharedElevation, VoidsOfEverestAreCountedAndFilledBetweenTheirRims) {
+TEST(SharedElevation, VoidsOfEverestAreFilledBetweenTheirRims) {
   const fs::path file = kDem / "everest_srtm3_voids.tif";
   if (!fs::exists(file)) GTEST_SKIP() << "no " << file;
   const ElevationModel model = ReadElevation(file, VoidPolicy::kFill);

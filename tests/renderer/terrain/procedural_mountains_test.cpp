@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// The built-in range: its noise, erosion, shape and view, and the file that keeps its heights.
 #include "renderer/terrain/procedural_mountains.h"
 
 #include <gtest/gtest.h>
@@ -6,16 +7,29 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
 #include <glm/geometric.hpp>
+#include <optional>
+#include <set>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "atmosphere/math/constants.h"
+#include "renderer/terrain/erosion.h"
 #include "renderer/terrain/land.h"
+#include "renderer/terrain/lattice_noise.h"
 #include "renderer/terrain/mesh.h"
 #include "renderer/terrain/terrain.h"
+#include "tests/fixtures/temporary_folder.h"
 
 namespace alpenglow::renderer {
 namespace {
+
+namespace fs = std::filesystem;
 
 constexpr double kSpacing_m = 70.0;
 
@@ -46,17 +60,16 @@ Gradient GradientAt(const ElevationGrid& range, int row, int column) {
           (height(row - 1, column) - height(row + 1, column)) / (2.0 * kSpacing_m)};
 }
 
-TEST(ProceduralMountains, IsTheSameToTheLastBitEveryTimeAndEverywhere) {
+TEST(ProceduralMountains, IsTheSameToTheLastBitEverywhere) {
   EXPECT_EQ(FingerprintOf(MadeRangeHeights(0)), kProceduralMountainsFingerprint)
       << "the range has changed: pictures made with it will not match older ones";
   EXPECT_EQ(FingerprintOf(TheRange().height_m), kProceduralMountainsFingerprint);
   EXPECT_EQ(TheRange().height_m, ProceduralMountains(Degrees(-33.9, 151.2)).height_m);
 }
 
-TEST(ProceduralMountains, AnotherSeedHasOtherMountainsUnderTheSameView) {
+TEST(ProceduralMountains, AnotherSeedHasOtherMountainsAndTheSameView) {
   const GeodeticPosition centre = Degrees(46.5, 8.0);
   const ElevationGrid other = ProceduralMountains(centre, 12345);
-  EXPECT_EQ(other.height_m, ProceduralMountains(centre, 12345).height_m);
   int far_apart = 0;
   for (std::size_t i = 0; i < other.height_m.size(); ++i)
     far_apart += std::abs(other.height_m[i] - TheRange().height_m[i]) > 300.0F ? 1 : 0;
@@ -65,13 +78,13 @@ TEST(ProceduralMountains, AnotherSeedHasOtherMountainsUnderTheSameView) {
   EXPECT_GT(Quantile(other.height_m, 1.0), 3300.0);
   const BuiltInView view = ProceduralMountainsViewAboveGround(centre);
   for (const ElevationGrid& range : {TheRange(), other}) {
-    // Bilinear heights are up to a metre off those of the triangles that the constant is of.
+    // Bilinear heights differ by up to a metre from those of the triangles, which define the constant.
     EXPECT_NEAR(range.HeightAt(view.eye.latitude_rad, view.eye.longitude_rad).value(),
                 kRangeViewGround_m, 2.0);
   }
 }
 
-TEST(ProceduralMountains, LooksLikeAlps) {
+TEST(ProceduralMountains, HasHeightsAndSlopesOfAlps) {
   const ElevationGrid& range = TheRange();
   ASSERT_EQ(range.columns, 1024);
   ASSERT_EQ(range.rows, 1024);
@@ -104,7 +117,7 @@ TEST(ProceduralMountains, LooksLikeAlps) {
 }
 
 TEST(ProceduralMountains, HasNoTerraces) {
-  // A terrace is a height that too many samples share.
+  // A height that too many samples share is a terrace.
   std::vector<int> count(4500, 0);
   const ElevationGrid& range = TheRange();
   for (int row = 200; row < 900; ++row) {
@@ -124,15 +137,12 @@ TEST(ProceduralMountains, EveryPlaceDrains) {
   int pits = 0;
   for (int row = 1; row < range.rows - 1; ++row) {
     for (int column = 1; column < range.columns - 1; ++column) {
-      bool lowest = true;
+      int not_higher = 0;  // of the sample and its neighbours
       for (int r = -1; r <= 1; ++r) {
-        for (int c = -1; c <= 1; ++c) {
-          if ((r != 0 || c != 0) && range.at(row + r, column + c) <= range.at(row, column)) {
-            lowest = false;
-          }
-        }
+        for (int c = -1; c <= 1; ++c)
+          not_higher += range.at(row + r, column + c) <= range.at(row, column) ? 1 : 0;
       }
-      pits += lowest ? 1 : 0;
+      pits += not_higher == 1 ? 1 : 0;
     }
   }
   EXPECT_EQ(pits, 0);
@@ -148,7 +158,7 @@ TEST(ProceduralMountains, JoinsTheSeaAtItsRim) {
   }
 }
 
-// What an eye at the built-in view sees.
+// A summary of what an eye at the built-in view sees.
 struct Sight {
   double summit_in_view_deg;  // off the middle of the picture; 999 if hidden
   double farthest_m;
@@ -167,9 +177,8 @@ Sight Look(const GeodeticPosition& centre) {
   };
   std::size_t highest = 0;
   for (std::size_t i = 0; i < range.height_m.size(); ++i) {
-    if (range.height_m[i] > range.height_m[highest] || std::isnan(range.height_m[highest])) {
+    if (range.height_m[i] > range.height_m[highest] || std::isnan(range.height_m[highest]))
       highest = i;
-    }
   }
   const auto columns = static_cast<std::size_t>(range.columns);
   const glm::dvec3 summit =
@@ -200,29 +209,265 @@ Sight Look(const GeodeticPosition& centre) {
   return sight;
 }
 
-TEST(ProceduralMountainsView, ShowsTheHighestPeakAndChainBehindChain) {
-  const Sight sight = Look(Degrees(46.5, 8.0));
-  EXPECT_LT(std::abs(sight.summit_in_view_deg), 20.0);
-  EXPECT_GT(sight.farthest_m, 40e3);
-  EXPECT_GE(sight.ridges, 4);
+// Hard case 17.
+TEST(ProceduralMountainsView, ShowsTheHighestPeakEvenNearThePoles) {
+  for (const GeodeticPosition& centre :
+       {Degrees(46.5, 8.0), Degrees(89.9, 120.0), Degrees(-90.0, 0.0)}) {
+    const Sight sight = Look(centre);
+    EXPECT_LT(std::abs(sight.summit_in_view_deg), 20.0);
+    EXPECT_GT(sight.farthest_m, 40e3);
+    EXPECT_GE(sight.ridges, 4) << "chain behind chain";
+  }
   const BuiltInView view = ProceduralMountainsView(Degrees(46.5, 8.0), TheRange());
   EXPECT_NEAR(view.eye.height_m, 2000.0, 200.0);
   EXPECT_GT(view.heading_deg, 135.0) << "south-east to south: dawn comes from the left";
   EXPECT_LT(view.heading_deg, 180.0);
 }
 
-// Hard case 17.
-TEST(ProceduralMountainsView, ShowsTheSameBesideAPole) {
-  const Sight sight = Look(Degrees(89.9, 120.0));
-  EXPECT_LT(std::abs(sight.summit_in_view_deg), 20.0);
-  EXPECT_GT(sight.farthest_m, 40e3);
+// Returns land of noise whose heights are rounded: it has many basins and samples of equal height.
+Land Rough(int size, double height_m, double step_m, std::uint32_t seed) {
+  Land land{size, 70.0, {}};
+  for (int row = 0; row < size; ++row) {
+    for (int column = 0; column < size; ++column) {
+      const double height = height_m * LatticeUniform(column, row, seed) +
+                            0.1 * height_m * FractalNoise(0.1 * column, 0.1 * row, 3, seed);
+      land.height_m.push_back(static_cast<float>(step_m * std::round(height / step_m)));
+    }
+  }
+  return land;
 }
 
-// Hard case 17.
-TEST(ProceduralMountainsView, ShowsTheSameOverTheSouthPole) {
-  const Sight sight = Look(Degrees(-90.0, 0.0));
-  EXPECT_LT(std::abs(sight.summit_in_view_deg), 20.0);
-  EXPECT_GT(sight.farthest_m, 40e3);
+std::vector<std::size_t> NeighboursOf(const Land& land, std::size_t sample) {
+  const int row = static_cast<int>(sample) / land.size;
+  const int column = static_cast<int>(sample) % land.size;
+  std::vector<std::size_t> neighbours;
+  for (int r = std::max(row - 1, 0); r <= std::min(row + 1, land.size - 1); ++r) {
+    for (int c = std::max(column - 1, 0); c <= std::min(column + 1, land.size - 1); ++c) {
+      if (r != row || c != column) neighbours.push_back(land.index(r, c));
+    }
+  }
+  return neighbours;
+}
+
+// The priority flood of Barnes, Lehman and Mulla with one ordered set as its queue. Keys have the
+// order that the header defines: heights in the steps of a float at 20 km, then samples.
+struct SlowFlood {
+  std::vector<std::uint32_t> order;
+
+  explicit SlowFlood(Land& land) {
+    std::set<std::pair<float, std::size_t>> queue;
+    std::vector<bool> reached(land.height_m.size(), false);
+    const auto reach = [&](std::size_t sample) {
+      reached[sample] = true;
+      queue.insert({land.height_m[sample] + 20000.0F, sample});
+    };
+    for (std::size_t i = 0; i < land.height_m.size(); ++i) {
+      const auto size = static_cast<std::size_t>(land.size);
+      if (land.IsRim(static_cast<int>(i / size), static_cast<int>(i % size))) reach(i);
+    }
+    while (!queue.empty()) {
+      const std::size_t sample = queue.begin()->second;
+      queue.erase(queue.begin());
+      order.push_back(static_cast<std::uint32_t>(sample));
+      for (const std::size_t next : NeighboursOf(land, sample)) {
+        if (reached[next]) continue;
+        land.height_m[next] = std::max(land.height_m[next], land.height_m[sample] + 1e-3F);
+        reach(next);
+      }
+    }
+  }
+};
+
+TEST(Erosion, TheFloodEqualsOneWithASingleQueue) {
+  for (const int size : {2, 3, 8, 33, 64}) {
+    for (const double step_m : {1e-3, 0.5, 20.0}) {
+      Land slow = Rough(size, 90.0, step_m, 3);
+      Land fast = slow;
+      const SlowFlood flood(slow);
+      const Drainage drainage = DrainAndFill(fast, ScatteredSamples(size, 4));
+      EXPECT_EQ(drainage.order, flood.order) << size << " samples a side, steps of " << step_m;
+      EXPECT_EQ(fast.height_m, slow.height_m) << size << " samples a side, steps of " << step_m;
+    }
+  }
+}
+
+TEST(Erosion, WaterFlowsDownTheSteepestWay) {
+  constexpr int kSize = 40;
+  Land land = Rough(kSize, 90.0, 0.5, 5);
+  const ScatteredSamples scattered(kSize, 6);
+  const Drainage drainage = DrainAndFill(land, scattered);
+  std::vector<std::size_t> rank(drainage.order.size());
+  for (std::size_t i = 0; i < rank.size(); ++i) rank[drainage.order[i]] = i;
+  for (std::size_t sample = 0; sample < rank.size(); ++sample) {
+    const int row = static_cast<int>(sample) / kSize, column = static_cast<int>(sample) % kSize;
+    if (land.IsRim(row, column)) {
+      EXPECT_EQ(drainage.receiver[sample], sample);
+      continue;
+    }
+    float steepest = -1.0F;
+    std::size_t receiver = sample;
+    for (const std::size_t next : NeighboursOf(land, sample)) {
+      const int rows = static_cast<int>(next) / kSize - row;
+      const int columns = static_cast<int>(next) % kSize - column;
+      const float distance = *scattered.Distances(sample, rows, columns);
+      const float slope = (land.height_m[sample] - land.height_m[next]) / distance;
+      if (rank[next] > rank[sample] || slope <= steepest) continue;
+      steepest = slope;
+      receiver = next;
+    }
+    EXPECT_EQ(drainage.receiver[sample], receiver) << "row " << row << ", column " << column;
+  }
+}
+
+TEST(Erosion, DistancesOfScatteredSamplesAreSymmetric) {
+  constexpr int kSize = 12;
+  const ScatteredSamples scattered(kSize, 7);
+  const int middle = 5 * kSize + 5;
+  for (int sample = middle; sample < middle + 3; ++sample) {
+    for (int rows = -1; rows <= 1; ++rows) {
+      for (int columns = -1; columns <= 1; ++columns) {
+        if (rows == 0 && columns == 0) continue;
+        const auto next = static_cast<std::size_t>(sample + rows * kSize + columns);
+        const float there = *scattered.Distances(static_cast<std::size_t>(sample), rows, columns);
+        EXPECT_EQ(there, *scattered.Distances(next, -rows, -columns));
+        // Each of two samples is displaced by up to a third of the spacing along both axes.
+        EXPECT_NEAR(there, std::hypot(rows, columns), 2.0 / 3.0 * std::sqrt(2.0));
+      }
+    }
+  }
+}
+
+// Sets an environment variable until the end of a scope.
+class Variable {
+ public:
+  Variable(const char* name, const char* value) : name_(name) {
+    if (const char* const before = std::getenv(name)) before_ = before;
+    value == nullptr ? unsetenv(name) : setenv(name, value, 1);
+  }
+  ~Variable() { before_ ? setenv(name_, before_->c_str(), 1) : unsetenv(name_); }
+  Variable(const Variable&) = delete;
+  Variable& operator=(const Variable&) = delete;
+
+ private:
+  const char* name_;
+  std::optional<std::string> before_;
+};
+
+class HeightCacheTest : public TemporaryFolder {
+ protected:
+  // Requests the heights, and returns whether they had to be made.
+  [[nodiscard]] bool HadToMake() {
+    bool made = false;
+    const std::vector<float> height_m = HeightCache(wanted_, [&] {
+      made = true;
+      return height_m_;
+    });
+    EXPECT_EQ(height_m, height_m_);
+    return made;
+  }
+  [[nodiscard]] fs::path OnlyFile() const { return fs::directory_iterator(folder_)->path(); }
+
+  std::vector<float> height_m_{1.0F, -2.5F, 3e3F, 0.0F};
+  WantedHeights wanted_{"range", FingerprintOf(height_m_), height_m_.size()};
+};
+
+TEST_F(HeightCacheTest, AreMadeOnceAndThenRead) {
+  const Variable cache("ALPENGLOW_CACHE", folder_.c_str());
+  EXPECT_TRUE(HadToMake());
+  EXPECT_FALSE(HadToMake());
+  EXPECT_EQ(fs::file_size(OnlyFile()), 4 * sizeof(float));
+}
+
+TEST_F(HeightCacheTest, AreNotKeptIfTheVariableIsEmpty) {
+  const Variable cache("ALPENGLOW_CACHE", "");
+  EXPECT_TRUE(HadToMake());
+  EXPECT_TRUE(HadToMake());
+  EXPECT_EQ(CacheFolder(), std::nullopt);
+}
+
+TEST_F(HeightCacheTest, DamagedOrTruncatedOnesAreMadeAgain) {
+  const Variable cache("ALPENGLOW_CACHE", folder_.c_str());
+  EXPECT_TRUE(HadToMake());
+  for (const char* damage : {"sixteen letters.", "short", ""}) {
+    WriteText(OnlyFile(), damage);
+    EXPECT_TRUE(HadToMake()) << damage;
+    EXPECT_FALSE(HadToMake()) << "and are whole again";
+  }
+}
+
+TEST_F(HeightCacheTest, OldVersionsAreRemoved) {
+  const Variable cache("ALPENGLOW_CACHE", folder_.c_str());
+  EXPECT_TRUE(HadToMake());
+  height_m_[1] = 7.0F;
+  EXPECT_EQ(HeightCache(wanted_, [&] { return std::vector<float>{1.0F}; }).size(), 4U);
+  wanted_.fingerprint = FingerprintOf(height_m_);
+  EXPECT_TRUE(HadToMake());
+  EXPECT_EQ(FileCount(), 1U);
+}
+
+TEST_F(HeightCacheTest, UnexpectedOnesAreNeverWritten) {
+  const Variable cache("ALPENGLOW_CACHE", folder_.c_str());
+  wanted_.fingerprint += 1;  // as on a machine whose arithmetic is another
+  EXPECT_TRUE(HadToMake());
+  EXPECT_EQ(FileCount(), 0U);
+}
+
+TEST_F(HeightCacheTest, DoNotNeedAWritableFolder) {
+  const fs::path file = folder_ / "file";
+  WriteText(file, "no folder");
+  const Variable cache("ALPENGLOW_CACHE", (file / "cache").c_str());
+  EXPECT_TRUE(HadToMake());
+}
+
+TEST_F(HeightCacheTest, LieInTheCacheFolderOfTheDesktop) {
+  const Variable none("ALPENGLOW_CACHE", nullptr);
+  const Variable home("HOME", "/home/someone");
+  {
+    const Variable caches("XDG_CACHE_HOME", "/caches");
+    EXPECT_EQ(CacheFolder(), fs::path("/caches/alpenglow"));
+  }
+  const Variable caches("XDG_CACHE_HOME", nullptr);
+  EXPECT_EQ(CacheFolder(), fs::path("/home/someone/.cache/alpenglow"));
+}
+
+TEST(LatticeNoise, SlopesAreTheDifferencesOfNearbyValues) {
+  constexpr double kStep = 1e-5;
+  for (int i = 0; i < 500; ++i) {
+    const double x = -7.0 + 0.0531 * i;
+    const double y = 3.0 - 0.0377 * i;
+    const NoiseSlope noise = GradientNoiseSlope(x, y, 5U);
+    EXPECT_EQ(noise.value, GradientNoise(x, y, 5U)) << "one formula";
+    const double by_x = GradientNoise(x + kStep, y, 5U) - GradientNoise(x - kStep, y, 5U);
+    const double by_y = GradientNoise(x, y + kStep, 5U) - GradientNoise(x, y - kStep, 5U);
+    EXPECT_NEAR(noise.by_x, by_x / (2.0 * kStep), 1e-7)
+        << "step^2 times the third derivative, which jumps across lattice lines";
+    EXPECT_NEAR(noise.by_y, by_y / (2.0 * kStep), 1e-7);
+  }
+}
+
+TEST(LatticeNoise, WithFewerOperationsTheNoiseIsTheSame) {
+  for (int i = 0; i < 200; ++i) {
+    const auto bits = static_cast<std::uint32_t>(i);
+    const std::uint32_t sw = shared::MixedBits(bits), se = shared::MixedBits(sw);
+    const std::uint32_t nw = shared::MixedBits(se), ne = shared::MixedBits(nw);
+    const double dx = 0.0049 * i, dy = 1.0 - 0.0037 * i;
+    EXPECT_NEAR(shared::NoiseOfHashes(sw, se, nw, ne, dx, dy),
+                shared::NoiseInCell(sw, se, nw, ne, dx, dy), 1e-14)
+        << "another order of the same sums";
+    EXPECT_NEAR(shared::SlopeOfHashesEast(sw, se, nw, ne, dx, dy),
+                shared::NoiseSlopeEast(sw, se, nw, ne, dx, dy), 1e-14);
+    EXPECT_NEAR(shared::SlopeOfHashesNorth(sw, se, nw, ne, dx, dy),
+                shared::NoiseSlopeNorth(sw, se, nw, ne, dx, dy), 1e-14);
+  }
+}
+
+TEST(LatticeNoise, IsZeroAtTheLatticePointsAndStaysWithinOne) {
+  for (int i = -5; i < 5; ++i) EXPECT_EQ(GradientNoise(i, 3 * i, 9U), 0.0);
+  for (int i = 0; i < 2000; ++i) {
+    const double noise = GradientNoise(0.137 * i - 90.0, 0.071 * i, 9U);
+    EXPECT_LT(noise, 1.0);
+    EXPECT_GT(noise, -1.0);
+  }
 }
 
 }  // namespace
