@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// The scripts of a farm, with stand-ins for Slurm and for the program: what they ask of both.
+// The scripts of a farm with substitutes for Slurm and the program: which commands they call.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -19,7 +19,8 @@ class Farm : public TemporaryFolder {
     TemporaryFolder::SetUp();
     fs::create_directory(folder_ / "bin");
     for (const char* name : {"sbatch", "scancel", "scontrol"}) {
-      // Prints an id, as sbatch does; fails as a requeue that is not granted, which ends the script.
+      // The script prints an id like sbatch. It fails like a requeue that is not granted, which
+      // ends the caller.
       Script(name, std::string("echo ") + name + " \"$@\" >> calls; [ " + name +
                        " = sbatch ] && echo 77");
     }
@@ -28,7 +29,7 @@ class Farm : public TemporaryFolder {
     WriteText(folder_ / "bin" / name, "#!/bin/sh\n" + text + "\n");
     fs::permissions(folder_ / "bin" / name, fs::perms::owner_all);
   }
-  /// A program that writes what it is called with, and ends with a status.
+  /// Makes a program that writes its arguments and ends with a status.
   void Program(int status) {
     Script("program", "echo \"$@\" >> asked; echo frame; echo 0; echo 1; echo 2; exit " +
                           std::to_string(status));
@@ -49,7 +50,7 @@ class Farm : public TemporaryFolder {
   }
 };
 
-TEST_F(Farm, ATaskRendersItsShareOfTheFramesAndKeepsWhatIsThere) {
+TEST_F(Farm, ATaskRendersItsShareOfTheFrames) {
   Program(0);
   EXPECT_EQ(Task().status, 0);
   EXPECT_THAT(ContentOf(folder_ / "asked"),
@@ -59,7 +60,7 @@ TEST_F(Farm, ATaskRendersItsShareOfTheFramesAndKeepsWhatIsThere) {
   EXPECT_EQ(Calls(), "");
 }
 
-TEST_F(Farm, ATaskThatFailedGoesBackIntoTheQueueAFewTimes) {
+TEST_F(Farm, AFailedTaskIsRequeuedAFewTimes) {
   for (const int status : {4, 70, 143}) {
     Program(status);
     fs::remove(folder_ / "calls");
@@ -71,7 +72,7 @@ TEST_F(Farm, ATaskThatFailedGoesBackIntoTheQueueAFewTimes) {
   EXPECT_EQ(Calls(), "");
 }
 
-TEST_F(Farm, AWrongJobIsCancelledAndNotTriedAgain) {
+TEST_F(Farm, AnInvalidJobIsCancelledAndNotRequeued) {
   for (const int status : {2, 3}) {
     Program(status);
     fs::remove(folder_ / "calls");
@@ -91,7 +92,7 @@ TEST_F(Farm, TheLastJobWaitsForAllFrames) {
   EXPECT_EQ(Run("", "submit.sh").status, 2);
 }
 
-TEST_F(Farm, TheLastJobAsksForEverythingThatIsMadeOfFrames) {
+TEST_F(Farm, TheLastJobMakesTheSheetKeogramAndPlot) {
   Program(0);
   EXPECT_EQ(Run("", "finish.sbatch out program s.toml").status, 0);
   EXPECT_THAT(ContentOf(folder_ / "asked"),
@@ -99,7 +100,7 @@ TEST_F(Farm, TheLastJobAsksForEverythingThatIsMadeOfFrames) {
                         "--keogram out/keogram.png --plot out/plot.svg"));
 }
 
-TEST_F(Farm, TablesOfAnAtmosphereAreThereWholeOrNotAtAll) {
+TEST_F(Farm, TablesOfAnAtmosphereAreCompleteOrAbsent) {
   Script("skylut",
          "echo \"$@\" >> asked; while [ \"$1\" != --out ]; do shift; done; mkdir \"$2\"; "
          "exit ${FAIL:-0}");

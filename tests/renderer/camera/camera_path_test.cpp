@@ -214,7 +214,8 @@ constexpr double kG = 9.80665;
 
 double Sea(const GeodeticPosition&) { return 0.0; }
 
-/// Returns a circle of 3 km around 46 N 8 E, clockwise from its south, with a point every 10 degrees.
+/// Returns a circle of 3 km around 46 N 8 E, clockwise from its south, with a point every 10
+/// degrees.
 Track Circle() {
   Track track;
   const LocalFrame frame(kWgs84, PlaceFromDegrees(46.0, 8.0, 1000.0));
@@ -311,8 +312,8 @@ Track Eastward(const std::vector<std::pair<double, double>>& points) {
   return track;
 }
 
-/// Returns a drive of 20 m/s with a fix every `step_s`, a pause of an hour in which the car is moved
-/// by 30 m, and a second drive.
+/// Returns a drive of 20 m/s with a fix every `step_s`, a pause of an hour in which the car is
+/// moved by 30 m, and a second drive.
 std::vector<std::pair<double, double>> DriveWithPause(double step_s) {
   constexpr double kDegreesPerMetre = 1.0 / 111319.49;
   std::vector<std::pair<double, double>> points;

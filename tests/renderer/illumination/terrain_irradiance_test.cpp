@@ -2,7 +2,6 @@
 #include "renderer/illumination/terrain_irradiance.h"
 
 #include <gtest/gtest.h>
-#include <tbb/global_control.h>
 
 #include <algorithm>
 #include <cmath>
@@ -18,14 +17,12 @@
 #include "renderer/terrain/terrain.h"
 #include "tests/fixtures/lit_air.h"
 #include "tests/fixtures/rough_land.h"
+#include "tests/fixtures/thread_counts.h"
 
 namespace alpenglow::renderer {
 namespace {
 
-const tests::LitAir& TheAir() {
-  static const tests::LitAir air(MediumPreset("bruneton2017"));
-  return air;
-}
+using tests::ThreeBandAir;
 
 glm::dvec3 SunAtElevation(double degrees) {
   return DirectionFromAngles(degrees * kRadiansPerDegree, 200.0 * kRadiansPerDegree).xyz;
@@ -44,11 +41,15 @@ glm::dvec3 Leaning(double degrees, double azimuth_degrees) {
   return {std::sin(lean) * std::cos(azimuth), std::sin(lean) * std::sin(azimuth), std::cos(lean)};
 }
 
-/// The sky's irradiance by midpoints in elevation's sine and azimuth.
+OccludedSkyIrradiance OccludedSkyOf(const glm::dvec3& to_sun) {
+  return {ThreeBandAir().air, ThreeBandAir().multiple_scattering, to_sun, {0.0, 3000.0, 5e4}};
+}
+
+/// Returns the sky's irradiance by midpoints in azimuth and in the sine of the elevation.
 double IrradianceByQuadrature(const glm::dvec3& to_sun, double altitude_m, const glm::dvec3& normal,
                               double from_sine) {
   constexpr int kSines = 200, kAzimuths = 144;
-  const SkyView view(TheAir().air, TheAir().multiple_scattering, altitude_m, to_sun.z);
+  const SkyView view(ThreeBandAir().air, ThreeBandAir().multiple_scattering, altitude_m, to_sun.z);
   const double sun = std::atan2(to_sun.y, to_sun.x);
   double sum = 0.0;
   for (int i = 0; i < kSines; ++i) {
@@ -68,13 +69,17 @@ double IrradianceByQuadrature(const glm::dvec3& to_sun, double altitude_m, const
   return sum * 2.0 * kPi / kAzimuths;
 }
 
-TEST(OccludedSkyIrradiance, OfAPlainIsTheIrradianceFromAbove) {
+TEST(OccludedSkyIrradiance, OnAPlainIsTheIrradianceFromAbove) {
   for (const double elevation : {60.0, 20.0, 3.0, -4.0}) {
     const glm::dvec3 to_sun = SunAtElevation(elevation);
-    const OccludedSkyIrradiance sky(TheAir().air, TheAir().multiple_scattering, to_sun,
-                                    {0.0, 3000.0, 5e4});
+    const OccludedSkyIrradiance sky = OccludedSkyOf(to_sun);
+    for (const double lean : {0.0, 60.0}) {
+      EXPECT_EQ(sky.Irradiance(500.0, to_sun.z, SectorsOf(Leaning(lean, 45.0)), OpenTo(1.0F))[0],
+                0.0F)
+          << "behind a closed horizon";
+    }
     const auto open = sky.Irradiance(0.0, to_sun.z, SectorsOf(kUp), OpenTo(0.0F));
-    const auto known = TheAir().multiple_scattering.SkyIrradiance(0.0, to_sun.z);
+    const auto known = ThreeBandAir().multiple_scattering.SkyIrradiance(0.0, to_sun.z);
     for (std::size_t band = 0; band < open.count; ++band) {
       EXPECT_NEAR(open[band] / known[band], 1.0F, 0.02F)
           << "sun at " << elevation << "; the two integrate in different nodes";
@@ -82,11 +87,10 @@ TEST(OccludedSkyIrradiance, OfAPlainIsTheIrradianceFromAbove) {
   }
 }
 
-TEST(OccludedSkyIrradiance, OnAnySlopeUnderAnyHorizonIsTheIntegralOverTheOpenPart) {
+TEST(OccludedSkyIrradiance, OnSlopesIsTheIntegralOverTheVisibleSky) {
   for (const double elevation : {40.0, 5.0}) {
     const glm::dvec3 to_sun = SunAtElevation(elevation);
-    const OccludedSkyIrradiance sky(TheAir().air, TheAir().multiple_scattering, to_sun,
-                                    {0.0, 3000.0, 5e4});
+    const OccludedSkyIrradiance sky = OccludedSkyOf(to_sun);
     for (const double lean : {0.0, 30.0, 70.0}) {
       for (const double azimuth : {10.0, 130.0, 260.0}) {
         for (const double horizon : {0.0, 0.3}) {
@@ -103,21 +107,10 @@ TEST(OccludedSkyIrradiance, OnAnySlopeUnderAnyHorizonIsTheIntegralOverTheOpenPar
   }
 }
 
-TEST(OccludedSkyIrradiance, BehindAClosedHorizonIsDark) {
-  const glm::dvec3 to_sun = SunAtElevation(40.0);
-  const OccludedSkyIrradiance sky(TheAir().air, TheAir().multiple_scattering, to_sun,
-                                  {0.0, 3000.0, 5e4});
-  for (const double lean : {0.0, 60.0}) {
-    const auto none = sky.Irradiance(500.0, to_sun.z, SectorsOf(Leaning(lean, 45.0)), OpenTo(1.0F));
-    EXPECT_EQ(none[0], 0.0F);
-  }
-}
-
 TEST(OccludedSkyIrradiance, RadianceIsThatOfTheSky) {
   const glm::dvec3 to_sun = SunAtElevation(40.0);
-  const OccludedSkyIrradiance sky(TheAir().air, TheAir().multiple_scattering, to_sun,
-                                  {0.0, 3000.0, 5e4});
-  const SkyView view(TheAir().air, TheAir().multiple_scattering, 0.0, to_sun.z);
+  const OccludedSkyIrradiance sky = OccludedSkyOf(to_sun);
+  const SkyView view(ThreeBandAir().air, ThreeBandAir().multiple_scattering, 0.0, to_sun.z);
   for (const double sine : {0.05, 0.2, 0.5, 0.9}) {
     for (const double azimuth : {0.3, 1.4, 2.9}) {  // away from the aureole
       const double cosine = std::sqrt(1.0 - sine * sine);
@@ -146,19 +139,19 @@ TEST(SectorIntegral, IsTheIntegralOverAPartOfASector) {
   }
 }
 
-/// Mountains with a grey ground, lit by sun and sky, and the slow way to light them: rays.
+/// Mountains with grey ground, lit by sun and sky, and their light by rays, which are slow.
 class Mountains {
  public:
-  explicit Mountains(double sun_degrees, float albedo)
+  Mountains(double sun_degrees, float albedo, int side = 129)
       : to_sun_(SunAtElevation(sun_degrees)),
         albedo_(albedo),
-        terrain_(LandMesh(RoughLand, 129, 60.0)),
-        horizons_(std::make_shared<const TerrainHorizons>(terrain_.mesh(), TheAir().medium)),
-        light_(horizons_, TheAir().air, TheAir().multiple_scattering, to_sun_),
-        view_(TheAir().air, TheAir().multiple_scattering, 1500.0, to_sun_.z),
-        aerial_(TheAir().air, TheAir().multiple_scattering) {
+        terrain_(LandMesh(RoughLand, side, 60.0 * 128 / (side - 1))),
+        horizons_(std::make_shared<const TerrainHorizons>(terrain_.mesh(), ThreeBandAir().medium)),
+        light_(horizons_, ThreeBandAir().air, ThreeBandAir().multiple_scattering, to_sun_),
+        view_(ThreeBandAir().air, ThreeBandAir().multiple_scattering, 1500.0, to_sun_.z),
+        aerial_(ThreeBandAir().air, ThreeBandAir().multiple_scattering) {
     light_.AddSlopes(
-        TheAir().medium,
+        ThreeBandAir().medium,
         [this](const SlopePlace& place) {
           const glm::dvec3 point = place.point + 2.0 * place.normal;
           return Sent(Direct(point, place.normal, place.normal) +
@@ -181,7 +174,7 @@ class Mountains {
     return *terrain_.Intersect({x, y, 9000.0}, {0.0, 0.0, -1.0});
   }
 
-  /// Of the sky, and of the ground in view, which the sky and the sun light.
+  /// Irradiance by the sky, and by the visible ground, which sky and sun light.
   struct ByRays {
     double sky = 0.0, slopes = 0.0;
   };
@@ -220,8 +213,8 @@ class Mountains {
     const double cosine = glm::dot(normal, to_sun_);
     if (cosine <= 0.0 ||
         terrain_.Occluded(point, geometric, to_sun_, std::numeric_limits<double>::infinity()))
-      return BandLight(TheAir().air.bands());
-    return static_cast<float>(cosine) * TheAir().air.TransmittanceToSpace(point.z, to_sun_.z);
+      return BandLight(ThreeBandAir().air.bands());
+    return static_cast<float>(cosine) * ThreeBandAir().air.TransmittanceToSpace(point.z, to_sun_.z);
   }
   [[nodiscard]] BandLight Sent(const BandLight& irradiance) const {
     return static_cast<float>(static_cast<double>(albedo_) / kPi) * irradiance;
@@ -236,8 +229,8 @@ class Mountains {
   AerialPerspective aerial_;
 };
 
-TEST(TerrainIrradiance, IsThatOfRaysThatMeetSkyAndSlopes) {
-  // The error that TerrainIrradiance states, and what it would be without horizons.
+TEST(TerrainIrradiance, IsThatOfRaysToSkyAndSlopes) {
+  // The bounds are the error that TerrainIrradiance states. Without horizons it would be larger.
   for (const auto& [albedo, bound] : {std::pair{0.15F, 0.04}, {0.8F, 0.09}}) {
     const Mountains mountains(30.0, albedo);
     double sum2 = 0.0, sum = 0.0, plain2 = 0.0;
@@ -254,7 +247,7 @@ TEST(TerrainIrradiance, IsThatOfRaysThatMeetSkyAndSlopes) {
           glm::dot(glm::normalize(flat),
                    glm::normalize(glm::dvec3(mountains.to_sun().x, mountains.to_sun().y, 0.0)));
       const double plain =
-          static_cast<double>(TheAir().multiple_scattering.Irradiance(
+          static_cast<double>(ThreeBandAir().multiple_scattering.Irradiance(
               hit.smooth_point.z, mountains.to_sun().z, hit.normal.z, azimuth)[1]) /
               (rays.sky + rays.slopes) -
           1.0;
@@ -268,9 +261,9 @@ TEST(TerrainIrradiance, IsThatOfRaysThatMeetSkyAndSlopes) {
   }
 }
 
-// Light between slopes has 0/0 for the depth of such air when it is divided by its extinction.
-TEST(TerrainIrradiance, SlopesLightEachOtherThroughAirThatDimsNothing) {
-  Medium medium = TheAir().medium;
+// In such air the depth divided by the extinction is 0/0.
+TEST(TerrainIrradiance, SlopesLightEachOtherWithoutAir) {
+  Medium medium = ThreeBandAir().medium;
   for (std::vector<double>* list : {&medium.rayleigh_scattering_per_m, &medium.mie_scattering_per_m,
                                     &medium.mie_extinction_per_m, &medium.ozone_absorption_per_m})
     std::fill(list->begin(), list->end(), 0.0);
@@ -303,18 +296,14 @@ TEST(TerrainIrradiance, SlopesLightEachOtherThroughAirThatDimsNothing) {
 }
 
 TEST(TerrainIrradiance, IsTheSameForAnyNumberOfThreads) {
-  std::vector<float> made;
-  for (const std::size_t threads : {1U, 2U, 8U}) {
-    const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
-    const Mountains mountains(20.0, 0.5F);
+  static_cast<void>(tests::EqualForAnyNumberOfThreads([] {
+    const Mountains mountains(20.0, 0.5F, 65);
     const TerrainHit hit = mountains.Ground(321.0, -543.0);
-    made.push_back(mountains.light().Irradiance(mountains.At(hit.smooth_point, hit.normal))[1]);
-  }
-  EXPECT_EQ(made[0], made[1]);
-  EXPECT_EQ(made[0], made[2]);
+    return mountains.light().Irradiance(mountains.At(hit.smooth_point, hit.normal))[1];
+  }));
 }
 
-TEST(TerrainIrradiance, ShowsSkyOverTheHorizonAndGroundBelowIt) {
+TEST(TerrainIrradiance, ShowsSkyAboveTheHorizonAndGroundBelow) {
   const Mountains mountains(30.0, 0.1F);
   const TerrainHit hit = mountains.Ground(200.0, 100.0);
   const SlopePoint at = mountains.At(hit.smooth_point, hit.normal);
@@ -325,8 +314,8 @@ TEST(TerrainIrradiance, ShowsSkyOverTheHorizonAndGroundBelowIt) {
   EXPECT_GT(mountains.light().Radiance(at, below)[2], 0.0F);
 }
 
-// A sea of 32 km with a coast 300 m high, 10 km away in the east-north-east, that ends half way
-// between two azimuths of the horizons.
+// Returns the height of a sea of 32 km with a coast 300 m high, 10 km away in the east-north-east,
+// that ends half-way between two azimuths of the horizons.
 double SeaBeforeACoast(double x_m, double y_m) {
   const bool is_coast = x_m > 10e3 && y_m > 0.2 * x_m && y_m < 0.9 * x_m;
   return is_coast ? 300.0 : 0.0;
@@ -335,19 +324,20 @@ double SeaBeforeACoast(double x_m, double y_m) {
 TEST(TerrainIrradiance, ASeaMirrorsAFarCoastWithoutEdges) {
   constexpr double kEye_m = 60.0;
   const Terrain terrain(LandMesh(SeaBeforeACoast, 129, 250.0));
-  const auto horizons = std::make_shared<const TerrainHorizons>(terrain.mesh(), TheAir().medium);
+  const auto horizons =
+      std::make_shared<const TerrainHorizons>(terrain.mesh(), ThreeBandAir().medium);
   const glm::dvec3 to_sun = SunAtElevation(30.0);
-  TerrainIrradiance light(horizons, TheAir().air, TheAir().multiple_scattering, to_sun);
+  TerrainIrradiance light(horizons, ThreeBandAir().air, ThreeBandAir().multiple_scattering, to_sun);
   light.AddSlopes(
-      TheAir().medium,
+      ThreeBandAir().medium,
       [](const SlopePlace&) {
-        BandLight dark(TheAir().air.bands());
+        BandLight dark(ThreeBandAir().air.bands());
         std::fill_n(dark.value.begin(), dark.count, 0.002F);
         return dark;
       },
       to_sun.z);
-  const Water water(5.0, TheAir().medium.wavelengths_nm);
-  // What the water shows, of what it would show of the sky alone.
+  const Water water(5.0, ThreeBandAir().medium.wavelengths_nm);
+  // Returns the light that the water mirrors, relative to that of a free sky.
   const auto share_of_sky = [&](double azimuth_deg, double distance_m) {
     const double azimuth = azimuth_deg * kRadiansPerDegree;
     const glm::dvec3 point(distance_m * std::cos(azimuth), distance_m * std::sin(azimuth), 0.0);

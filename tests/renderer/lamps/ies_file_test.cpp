@@ -18,6 +18,7 @@ namespace alpenglow::renderer {
 namespace {
 
 using testing::HasSubstr;
+using Angles = std::vector<std::pair<double, double>>;  // C, candela
 
 const std::string kHead = "IESNA:LM-63-2002\n[TEST] 1\n[MANUFAC] none\nTILT=NONE\n";
 
@@ -25,17 +26,23 @@ std::string FaultOf(const std::string& text) {
   return tests::FaultOf([&] { return IesFromText(text, "l.ies"); });
 }
 
-double At(const IesLamp& lamp, double gamma_deg, double c_deg) {
+// Returns the intensity in a direction with components down, towards C 0 and to the right of it.
+double Towards(const IesLamp& lamp, double down, double ahead, double right) {
   LampProfile profile;
   profile.kind = LampProfile::Kind::kTable;
   profile.table = lamp.table;
-  const double gamma = gamma_deg * kRadiansPerDegree, c = c_deg * kRadiansPerDegree;
+  const double length = std::hypot(down, ahead, right);
   return lamp.intensity_cd *
-         RelativeIntensity(profile, {std::cos(gamma), std::sin(gamma) * std::cos(c),
-                                     std::sin(gamma) * std::sin(c)});
+         RelativeIntensity(profile, {down / length, ahead / length, -right / length});
 }
 
-TEST(IesFile, ALampThatIsTheSameAllAround) {
+double At(const IesLamp& lamp, double gamma_deg, double c_deg) {
+  const double gamma = gamma_deg * kRadiansPerDegree, c = c_deg * kRadiansPerDegree;
+  return Towards(lamp, std::cos(gamma), std::sin(gamma) * std::cos(c),
+                 -std::sin(gamma) * std::sin(c));
+}
+
+TEST(IesFile, RotationallySymmetricLampsAreRead) {
   const IesLamp lamp =
       IesFromText(kHead + "1 1000 2 3 1 1 2 0.1 0.1 0\n1.0 1 60\n0 45 90\n0\n100 80\n0\n", "l.ies");
   EXPECT_EQ(lamp.intensity_cd, 200.0) << "the multiplier is 2";
@@ -48,15 +55,15 @@ TEST(IesFile, ALampThatIsTheSameAllAround) {
 TEST(IesFile, QuadrantsAndHalvesAreMirrored) {
   const IesLamp quadrant = IesFromText(
       kHead + "1 1000 1 2 3 1 2 0 0 0 1 1 60\n0 90\n0 45 90\n10 1 10 2 10 3\n", "l.ies");
-  for (const auto& [c, candela] : std::vector<std::pair<double, double>>{{0.0, 1.0},
-                                                                         {45.0, 2.0},
-                                                                         {90.0, 3.0},
-                                                                         {135.0, 2.0},
-                                                                         {180.0, 1.0},
-                                                                         {225.0, 2.0},
-                                                                         {270.0, 3.0},
-                                                                         {315.0, 2.0},
-                                                                         {337.5, 1.5}}) {
+  for (const auto& [c, candela] : Angles{{0.0, 1.0},
+                                         {45.0, 2.0},
+                                         {90.0, 3.0},
+                                         {135.0, 2.0},
+                                         {180.0, 1.0},
+                                         {225.0, 2.0},
+                                         {270.0, 3.0},
+                                         {315.0, 2.0},
+                                         {337.5, 1.5}}) {
     EXPECT_NEAR(At(quadrant, 90.0 - 1e-9, c), candela, 1e-6) << "C " << c;
   }
   const IesLamp half = IesFromText(
@@ -65,7 +72,7 @@ TEST(IesFile, QuadrantsAndHalvesAreMirrored) {
   EXPECT_NEAR(At(half, 90.0 - 1e-9, 180.0), 3.0, 1e-6);
 }
 
-TEST(IesFile, AnglesGoCounterclockwiseAroundALampThatIsSeenFromAbove) {
+TEST(IesFile, AnglesRunCounterclockwiseSeenFromAbove) {
   const IesLamp measured = IesFromText(kHead +
                                            "1 1000 1 2 5 1 2 0 0 0 1 1 60\n0 90\n0 90 180 270 360\n"
                                            "5 1 5 2 5 3 5 4 5 1\n",
@@ -84,7 +91,7 @@ TEST(IesFile, AnglesGoCounterclockwiseAroundALampThatIsSeenFromAbove) {
   EXPECT_NEAR(candela(1.0, 0.0), 4.0, 1e-9) << "east";
 }
 
-// One value at each of the angles, in the order of the file.
+// Returns a file with one value for each pair of angles, in the order of the file.
 std::string FileOf(int type, const std::string& vertical, const std::string& horizontal,
                    const std::string& candela) {
   const auto count = [](const std::string& list) {
@@ -94,25 +101,15 @@ std::string FileOf(int type, const std::string& vertical, const std::string& hor
                              count(horizontal), type, vertical, horizontal, candela);
 }
 
-// Directions are told by what lies straight down, towards C 0 and to the right of it.
-double Towards(const IesLamp& lamp, double down, double ahead, double right) {
-  LampProfile profile;
-  profile.kind = LampProfile::Kind::kTable;
-  profile.table = lamp.table;
-  const double length = std::hypot(down, ahead, right);
-  return lamp.intensity_cd *
-         RelativeIntensity(profile, {down / length, ahead / length, -right / length});
-}
-
 TEST(IesFile, HalvesAcrossAreMirroredToo) {
   const IesLamp half = IesFromText(FileOf(1, "0 90", "90 135 180 270", "9 1 9 2 9 3 9 4"), "l.ies");
-  for (const auto& [c, candela] : std::vector<std::pair<double, double>>{{90.0, 1.0},
-                                                                         {45.0, 2.0},
-                                                                         {0.0, 3.0},
-                                                                         {315.0, 3.5},
-                                                                         {270.0, 4.0},
-                                                                         {180.0, 3.0},
-                                                                         {225.0, 3.5}}) {
+  for (const auto& [c, candela] : Angles{{90.0, 1.0},
+                                         {45.0, 2.0},
+                                         {0.0, 3.0},
+                                         {315.0, 3.5},
+                                         {270.0, 4.0},
+                                         {180.0, 3.0},
+                                         {225.0, 3.5}}) {
     EXPECT_NEAR(At(half, 90.0 - 1e-9, c), candela, 1e-6) << "C " << c;
   }
   const IesLamp open = IesFromText(FileOf(1, "0 90", "90 170 270", "9 1 9 2 9 4"), "l.ies");
@@ -134,7 +131,7 @@ TEST(IesFile, TypeBTurnsAboutTheLevelAxis) {
   EXPECT_NEAR(Towards(lamp, v * v, 0.5 * v, 0.5), 40.0, 1.0) << "sampled at 2.5 degrees";
 }
 
-TEST(IesFile, TypeBFromZeroIsTheSameOnBothSides) {
+TEST(IesFile, TypeBFromZeroIsSymmetric) {
   const IesLamp lamp =
       IesFromText(FileOf(2, "-90 0 90", "0 30 90", "10 100 20  5 60 15  0 0 0"), "l.ies");
   EXPECT_NEAR(Towards(lamp, std::sqrt(3.0), 0.0, 1.0), 60.0, 1e-9);
@@ -142,7 +139,7 @@ TEST(IesFile, TypeBFromZeroIsTheSameOnBothSides) {
   EXPECT_NEAR(Towards(lamp, 0.0, 1.0, 0.0), 20.0, 1e-9);
 }
 
-TEST(IesFile, TypeAShinesLevelAndTurnsAboutTheVertical) {
+TEST(IesFile, TypeAShinesHorizontallyAndTurnsAboutTheVertical) {
   const IesLamp lamp = IesFromText(
       FileOf(3, "-90 0 30 90", "-90 0 60 90", "0 10 0 0  0 100 70 0  0 50 20 0  0 0 0 0"), "l.ies");
   EXPECT_NEAR(Towards(lamp, 0.0, 1.0, 0.0), 100.0, 1e-9) << "V 0, H 0 is C 0, level";
@@ -215,7 +212,7 @@ TEST(IesFile, LinesMayEndInAnyWay) {
   }
 }
 
-TEST(IesFile, NothingMayFollowTheLastValue) {
+TEST(IesFile, TextAfterTheLastValueIsRefused) {
   const std::string comma = kHead + "1 1000 1 3 1 1 2 0 0 0\n1 1 100\n0 45 90\n0\n";
   EXPECT_THAT(FaultOf(comma + "1000,5 800,5 400,5\n"),
               HasSubstr("l.ies:9: \"5\" follows the last of 3 candela values"));
@@ -225,30 +222,28 @@ TEST(IesFile, NothingMayFollowTheLastValue) {
   EXPECT_EQ(FaultOf(comma + "1000,800,400,\n"), "no fault") << "a comma separates numbers";
 }
 
-TEST(IesFile, FaultsAreNamedByLine) {
-  EXPECT_THAT(FaultOf("hello"), HasSubstr("l.ies: has no TILT line"));
-  EXPECT_THAT(FaultOf("TILT=lamp.tlt\n1\n"), HasSubstr("l.ies:1: TILT=lamp.tlt; TILT=NONE and"));
-  EXPECT_THAT(FaultOf(kHead + "1 1000 1 2 1 4 2 0 0 0 1 1 60\n0 90\n0\n1 1\n"),
-              HasSubstr("photometric type is 4; it must lie in [1, 3]"));
-  EXPECT_THAT(FaultOf(kHead + "1 1000 1 2 1 2 2 0 0 0 1 1 60\n0 90\n0\n1 1\n"),
-              HasSubstr("horizontal angles go from 0 to 0"));
-  for (const char* angles : {"0 100 200 300", "0 90 180 270", "0 90 170 359", "90 180 269"}) {
-    EXPECT_THAT(FaultOf(FileOf(1, "0 90", angles, "1 1 1 1 1 1 1 1")),
-                HasSubstr("from 0 to 0, 90, 180 or 360, or from 90 to 270"))
-        << angles;
-  }
-  EXPECT_THAT(FaultOf(kHead + "1 1000 1 2 1 1 2 0 0 0 1 1 60\n0 90\n0\n1\n"),
-              HasSubstr("candela value is missing: the file ends"));
-  EXPECT_THAT(FaultOf(kHead + "1 1000 1 2 1 1 2 0 0 0 1 1 60\n90 0\n0\n1 1\n"),
-              HasSubstr("l.ies:6: vertical angle 0 comes after 90"));
-  EXPECT_THAT(FaultOf(kHead + "1 1000 1 2 1 1 2 0 0 0 1 1 60\n0 90\n0\n1 -1\n"),
-              HasSubstr("candela value is -1"));
-  EXPECT_THAT(FaultOf(kHead + "1 1000 1 2 1 1 2 0 0 0 1 1 60\n0 90\n0\n0 0\n"),
-              HasSubstr("has no light"));
-  EXPECT_THAT(FaultOf(kHead + "1 1000 1 2 1 1 2 0 0 0 1 1 60\n0 90\n5\n1 1\n"),
-              HasSubstr("horizontal angles go from 5"));
-  EXPECT_THAT(FaultOf(FileOf(2, "0 90", "-60 30", "1 1 1 1")), HasSubstr("go from -60 to 30"));
-  EXPECT_THAT(FaultOf(kHead + "1 1000 1 x 1\n"), HasSubstr("is \"x\"; it must be a number"));
+TEST(IesFile, FaultsAreReportedByLine) {
+  const std::string type_1 = kHead + "1 1000 1 2 1 1 2 0 0 0 1 1 60\n";
+  const char* const ranges = "from 0 to 0, 90, 180 or 360, or from 90 to 270";
+  for (const auto& [text, fault] : std::vector<std::pair<std::string, const char*>>{
+           {"hello", "l.ies: has no TILT line"},
+           {"TILT=lamp.tlt\n1\n", "l.ies:1: TILT=lamp.tlt; TILT=NONE and"},
+           {kHead + "1 1000 1 2 1 4 2 0 0 0 1 1 60\n0 90\n0\n1 1\n",
+            "photometric type is 4; it must lie in [1, 3]"},
+           {kHead + "1 1000 1 2 1 2 2 0 0 0 1 1 60\n0 90\n0\n1 1\n",
+            "horizontal angles go from 0 to 0"},
+           {FileOf(1, "0 90", "0 100 200 300", "1 1 1 1 1 1 1 1"), ranges},
+           {FileOf(1, "0 90", "0 90 180 270", "1 1 1 1 1 1 1 1"), ranges},
+           {FileOf(1, "0 90", "0 90 170 359", "1 1 1 1 1 1 1 1"), ranges},
+           {FileOf(1, "0 90", "90 180 269", "1 1 1 1 1 1 1 1"), ranges},
+           {type_1 + "0 90\n0\n1\n", "candela value is missing: the file ends"},
+           {type_1 + "90 0\n0\n1 1\n", "l.ies:6: vertical angle 0 comes after 90"},
+           {type_1 + "0 90\n0\n1 -1\n", "candela value is -1"},
+           {type_1 + "0 90\n0\n0 0\n", "has no light"},
+           {type_1 + "0 90\n5\n1 1\n", "horizontal angles go from 5"},
+           {FileOf(2, "0 90", "-60 30", "1 1 1 1"), "go from -60 to 30"},
+           {kHead + "1 1000 1 x 1\n", "is \"x\"; it must be a number"}})
+    EXPECT_THAT(FaultOf(text), HasSubstr(fault)) << text;
 }
 
 }  // namespace

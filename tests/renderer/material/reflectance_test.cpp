@@ -273,7 +273,8 @@ TEST(Snow, IsAsBrightAsMeasured) {
   EXPECT_LT(old[4], 0.92F) << "coarse grains absorb red";
 }
 
-// Returns the mean reflectance of diffuse light, which meets the surface in proportion to the cosine.
+// Returns the mean reflectance of diffuse light, which meets the surface in proportion to the
+// cosine.
 double MeanFresnel(double index) {
   constexpr int kSteps = 2000;
   double sum = 0.0;

@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <glm/geometric.hpp>
 #include <glm/vec3.hpp>
+#include <random>
 
 #include "atmosphere/math/constants.h"
 #include "atmosphere/medium/phase.h"
@@ -17,19 +18,14 @@
 namespace alpenglow::renderer {
 namespace {
 
-/// SplitMix64 (Steele, Lea, Flood 2014).
+/// Returns random numbers that are evenly distributed in [0, 1).
 class Random {
  public:
-  explicit Random(std::uint64_t seed) : state_(seed) {}
-  double operator()() {
-    std::uint64_t z = (state_ += 0x9E3779B97F4A7C15U);
-    z = (z ^ (z >> 30U)) * 0xBF58476D1CE4E5B9U;
-    z = (z ^ (z >> 27U)) * 0x94D049BB133111EBU;
-    return static_cast<double>((z ^ (z >> 31U)) >> 11U) * 0x1.0p-53;
-  }
+  explicit Random(std::uint64_t seed) : engine_(seed) {}
+  double operator()() { return static_cast<double>(engine_() >> 11U) * 0x1.0p-53; }
 
  private:
-  std::uint64_t state_;
+  std::mt19937_64 engine_;
 };
 
 struct Slab {
@@ -44,8 +40,8 @@ glm::dvec3 Turned(const glm::dvec3& axis, double cosine, double angle) {
   return cosine * axis + sine * (std::cos(angle) * side + std::sin(angle) * glm::cross(axis, side));
 }
 
-/// Diffuse light that goes up at the top and down at the bottom, for a beam of irradiance 1 on a
-/// horizontal plane: photons, one by one. z is depth, downwards.
+/// Diffuse light that leaves upwards at the top and downwards at the bottom, for a beam of
+/// irradiance 1 on a horizontal plane. Photons are traced one by one; z is depth, downwards.
 struct Fluxes {
   double up = 0.0, down = 0.0;
 };
@@ -83,9 +79,9 @@ Fluxes TracedFluxes(const Slab& slab, int photons) {
   return {fluxes.up / photons, fluxes.down / photons};
 }
 
-/// Radiance towards a viewer outside, at the top looking down or at the bottom looking up, per unit
-/// irradiance across the beam, without the ground and the beam themselves: backward paths with the
-/// beam asked at every scattering.
+/// Returns the radiance towards a viewer outside, at the top looking down or at the bottom looking
+/// up, per unit irradiance across the beam, without the ground and the beam themselves. Backward
+/// paths add the beam at every scattering.
 double TracedRadiance(const Slab& slab, const glm::dvec3& look, int paths) {
   Random random(29);
   const glm::dvec3 beam(std::sqrt(1.0 - slab.mu0 * slab.mu0), 0.0, slab.mu0);
@@ -94,7 +90,7 @@ double TracedRadiance(const Slab& slab, const glm::dvec3& look, int paths) {
     double z = look.z > 0.0 ? 0.0 : slab.depth, weight = 1.0;
     glm::dvec3 way = look;
     for (int order = 0;; ++order) {
-      // The first flight is drawn within the layer, so that no path is in vain.
+      // The first flight is sampled within the layer, so that every path contributes.
       const double to_edge = way.z > 0.0 ? (slab.depth - z) / way.z : -z / way.z;
       if (order == 0) {
         const double inside = -std::expm1(-to_edge);
@@ -125,7 +121,7 @@ double TracedRadiance(const Slab& slab, const glm::dvec3& look, int paths) {
   return sum / paths;
 }
 
-/// The same by the fast way: sources along the ray.
+/// Returns the same radiance from sources along the ray, which is fast.
 double FastRadiance(const Slab& slab, const glm::dvec3& look) {
   const auto chi = LegendreCoefficients(slab.phase, 2);
   const EddingtonSlab eddington({slab.albedo, chi[1], chi[2]}, slab.depth, slab.ground, slab.mu0);
@@ -142,7 +138,7 @@ double FastRadiance(const Slab& slab, const glm::dvec3& look) {
     const double z = look.z > 0.0 ? t * look.z : slab.depth + t * look.z;
     const double left = std::exp(-z / slab.mu0);
     const SlabField field = eddington.At(z);
-    // Light that ends in the viewer goes against `look`.
+    // Light towards the viewer travels against `look`.
     const double source =
         slab.albedo * (Phase(slab.phase, cosine) * left +
                        Phase(blurred, cosine) * (eddington.BeamLeft(z / slab.mu0) - left) +
@@ -160,7 +156,7 @@ PhaseFunction Lobe(double g) {
 }
 
 // Hard case 30.
-TEST(EddingtonSlab, LosesNoLightWhereNothingAbsorbs) {
+TEST(EddingtonSlab, ConservesLightWithoutAbsorption) {
   for (const double depth : {1e-3, 0.3, 3.0, 40.0, 1000.0}) {
     for (const double mu0 : {0.02, 0.3, 1.0}) {
       const EddingtonSlab slab({1.0, 0.85, 0.75}, depth, 0.0, mu0);
@@ -173,7 +169,7 @@ TEST(EddingtonSlab, LosesNoLightWhereNothingAbsorbs) {
   }
 }
 
-TEST(EddingtonSlab, GroundReflectsWhatComesDown) {
+TEST(EddingtonSlab, TheGroundReflectsTheDownwardLight) {
   const EddingtonSlab slab({0.98, 0.8, 0.64}, 2.0, 0.6, 0.5);
   const SlabField field = slab.At(2.0);
   EXPECT_NEAR(field.UpwardFlux(), 0.6 * (field.DownwardFlux() + 0.5 * slab.BeamLeft(4.0)), 1e-9);
@@ -188,7 +184,7 @@ double WorstFlux(double mu0) {
       const auto chi = LegendreCoefficients(slab.phase, 2);
       const EddingtonSlab fast({albedo, chi[1], chi[2]}, depth, 0.2, mu0);
       const double up = fast.At(0.0).UpwardFlux() / mu0;
-      // The beam with what the peak took along, less the beam alone, is diffuse light.
+      // The light of the beam and the peak, minus the beam alone, is diffuse light.
       const double down =
           fast.At(depth).DownwardFlux() / mu0 + fast.BeamLeft(depth / mu0) - std::exp(-depth / mu0);
       worst = std::max({worst, std::abs(up - traced.up), std::abs(down - traced.down)});
@@ -197,13 +193,13 @@ double WorstFlux(double mu0) {
   return worst;
 }
 
-TEST(EddingtonSlab, FluxesAreThoseOfPhotons) {
+TEST(EddingtonSlab, FluxesAreThoseOfTracedPhotons) {
   EXPECT_LT(WorstFlux(0.9), 0.06) << "10000 photons have a standard error of 0.005";
   EXPECT_LT(WorstFlux(0.4), 0.06);
   EXPECT_LT(WorstFlux(0.1), 0.16) << "Eddington's approximation is weak where the sun grazes";
 }
 
-TEST(EddingtonSlab, RadiancesAreThoseOfPaths) {
+TEST(EddingtonSlab, RadiancesAreThoseOfTracedPaths) {
   double squares = 0.0, least = 1.0, most = 1.0;
   int count = 0;
   for (const double depth : {0.5, 2.0, 8.0}) {

@@ -66,7 +66,7 @@ TEST(Golden, PicturesAreTheStoredOnes) {
   }
 }
 
-/// A smooth picture without anything in it.
+/// Returns a smooth picture without details.
 Image Gradient() {
   Image image(48, 27);
   for (int y = 0; y < image.height; ++y) {
@@ -107,7 +107,7 @@ TEST(GoldenTolerance, AShiftOfColourIsAnotherPicture) {
   EXPECT_NE(FaultOfPicture(Gradient(), other), "");
 }
 
-TEST(GoldenTolerance, ASmallPlaceThatIsWrongIsAnotherPictureThoughTheRestHidesIt) {
+TEST(GoldenTolerance, ASmallWrongPlaceIsAnotherPicture) {
   Image other = Gradient();
   for (std::size_t i = 0; i < 20; ++i) Scale(other.rgb[i], 1.012F);
   EXPECT_LT(ChangeOf(Gradient(), other).rms, PictureTolerance{}.rms);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What shines at night in the renderer's pictures.
+// Pictures of the night, of the moon, and of the eclipse of 2026 August 12 over Burgos.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -7,6 +7,7 @@
 #include <glm/geometric.hpp>
 #include <vector>
 
+#include "atmosphere/astronomy/eclipse.h"
 #include "atmosphere/astronomy/moon.h"
 #include "atmosphere/astronomy/night_sky.h"
 #include "atmosphere/math/constants.h"
@@ -38,7 +39,7 @@ RenderSettings Small(int width, int height, EffectSet effects = EffectSet::All()
   return settings;
 }
 
-/// Illuminance that a picture holds, of a narrow field [lux].
+/// Returns the illuminance by a picture of a narrow field [lx].
 double Lux(const Image& image, double pixel_rad) {
   double sum = 0.0;
   for (const auto& rgb : image.rgb) sum += tests::Luminance(rgb);
@@ -50,14 +51,14 @@ struct Look {
   double azimuth, elevation;
 };
 
-/// Sirius, from the place of BareScene.
+/// Returns the direction of Sirius at the place of BareScene.
 Look SiriusAt(const UtcInstant& instant) {
   const LocalFrame frame(kWgs84, PlaceFromDegrees(46.5, 8.0, 2.0));
   const glm::dvec3 enu = frame.EnuFromEcef(StarsAt(instant).front().direction).xyz;
   return {std::atan2(enu.x, enu.y) / kRadiansPerDegree, std::asin(enu.z) / kRadiansPerDegree};
 }
 
-TEST(NightPicture, AStarIsOfTheSameLuxAtEverySizeOfThePicture) {
+TEST(NightPicture, AStarHasTheSameLuxAtEverySizeOfThePicture) {
   const Look sirius = SiriusAt(kMoonless);
   ASSERT_GT(sirius.elevation, 20.0);
   const SceneRenderer renderer(BareScene(2.0, sirius.azimuth, sirius.elevation + 0.1, 4.0));
@@ -67,8 +68,8 @@ TEST(NightPicture, AStarIsOfTheSameLuxAtEverySizeOfThePicture) {
     const double with = Lux(renderer.Render(kMoonless, Small(side, side)), pixel_rad);
     const double without =
         Lux(renderer.Render(kMoonless, Small(side, side, Without({Effect::kStars}))), pixel_rad);
-    // Of molecules 0.097, dust 0.05 and ozone 0.03 in V, 2.2 air masses leave exp(-0.39) of 9.7e-6
-    // lux above the air; faint neighbours bring a hundredth.
+    // With optical depths in V of 0.097 (molecules), 0.05 (dust) and 0.03 (ozone), 2.2 air masses
+    // leave exp(-0.39) of 9.7e-6 lux above the air. Faint neighbours add a hundredth.
     EXPECT_NEAR((with - without) / 9.7e-6, 0.68, 0.02) << side;
     lux.push_back(with - without);
   }
@@ -76,7 +77,7 @@ TEST(NightPicture, AStarIsOfTheSameLuxAtEverySizeOfThePicture) {
   EXPECT_NEAR(lux[2] / lux[1], 1.0, 1e-3);
 }
 
-TEST(NightPicture, ATrailIsOfTheLuxOfItsStarAtEverySizeAndAsLongAsTheSkyTurns) {
+TEST(NightPicture, TrailsHaveTheLuxOfTheirStarAndTheirLength) {
   const Look sirius = SiriusAt(kMoonless);
   Scene scene = BareScene(2.0, sirius.azimuth, sirius.elevation + 0.1, 4.0);
   const SceneRenderer still(scene);
@@ -100,7 +101,8 @@ TEST(NightPicture, ATrailIsOfTheLuxOfItsStarAtEverySizeAndAsLongAsTheSkyTurns) {
       first = std::min(first, x);
       last = std::max(last, x);
     }
-    // 15.04 arcseconds a second, by the cosine of Sirius' declination, -16.7 degrees.
+    // The sky turns by 15.04 arcseconds a second, times the cosine of Sirius' declination, -16.7
+    // degrees.
     EXPECT_NEAR((last - first + 1) * pixel_rad, 0.0209, 2.0 * pixel_rad) << side;
   }
 }
@@ -125,10 +127,11 @@ TEST(NightPicture, TheMoonDrawsATrailOfItsLight) {
       bottom = std::max(bottom, y);
     }
   }
-  // From end to end but for the disk, half a degree.
+  // The trail is measured from end to end, without the disk of half a degree.
   const double across = (right - left + 1) * 8.0 / 64 - 0.55;
   const double down = (bottom - top + 1) * 8.0 / 64 - 0.55;
-  // 14.5 arcseconds a second by the cosine of its declination, 28 degrees, but for the dim ends.
+  // The moon moves by 14.5 arcseconds a second, times the cosine of its declination, 28 degrees;
+  // the ends of the trail are dim.
   EXPECT_NEAR(std::hypot(across, down), 2.42 * 0.883, 0.25);
 }
 
@@ -150,14 +153,14 @@ TEST(NightPicture, OrionStandsInTheSouthOfAJanuaryNight) {
   EXPECT_NEAR(y_of_brightest, 20, 1) << "refraction lifts it by two minutes of arc, a third of one";
 }
 
-TEST(NightPicture, AMoonlessNightIsAThousandthAndAFullMoonAQuarterOfALux) {
+TEST(NightPicture, MoonlessAndMoonlitNightsHaveTheirIlluminance) {
   const SceneRenderer renderer(BareScene(2.0, 0.0, 45.0, 60.0));
   EXPECT_NEAR(renderer.Illuminance(kMoonless), 1e-3, 0.4e-3);
   EXPECT_GT(renderer.Illuminance(kFullMoon), 0.2);
   EXPECT_LT(renderer.Illuminance(kFullMoon), 0.4) << "near its perigee, 65 degrees up";
 }
 
-TEST(NightPicture, TheMoonlitGroundIsThatOfItsLuxOnGrey) {
+TEST(NightPicture, MoonlitGroundHasTheLuminanceOfItsLux) {
   Scene scene = BareScene(1000.0, 40.0, -80.0, 10.0);
   scene.medium.ground_albedo.assign(scene.medium.wavelengths_nm.size(), 0.2);
   const SceneRenderer renderer(scene);
@@ -167,7 +170,7 @@ TEST(NightPicture, TheMoonlitGroundIsThatOfItsLuxOnGrey) {
       << "but for a kilometre of air before it";
 }
 
-TEST(NightPicture, AMoonlitSkyIsBlueButLessSoThanASunlitOne) {
+TEST(NightPicture, AMoonlitSkyIsLessBlueThanASunlitOne) {
   const SceneRenderer renderer(BareScene(2.0, 0.0, 60.0, 30.0));
   const auto blue_by_red = [&](const UtcInstant& instant, EffectSet without) {
     const auto rgb = renderer.Render(instant, Small(1, 1, Without(without))).at(0, 0);
@@ -180,7 +183,7 @@ TEST(NightPicture, AMoonlitSkyIsBlueButLessSoThanASunlitOne) {
   EXPECT_LT(sunlit / moonlit, 1.8);
 }
 
-TEST(NightPicture, ByDayNothingOfTheNightIsThere) {
+TEST(NightPicture, ByDayLightsOfTheNightAreAbsent) {
   const SceneRenderer renderer(BareScene(2.0, 120.0, 20.0, 60.0));
   EffectBudget budget;
   const ChosenPicture day = renderer.RenderWithin(kNoon, Small(32, 18), budget);
@@ -206,6 +209,195 @@ TEST(NightPicture, DuskFallsWithoutAStepWhereTheMoonBegins) {
     EXPECT_GT(now, 0.80 * before) << "no step, " << minute;
     before = now;
   }
+}
+
+/// Returns a small picture of the night sky around a direction.
+Image NightAround(double azimuth_rad, double elevation_rad, const UtcInstant& instant) {
+  const Scene scene =
+      BareScene(2.0, azimuth_rad / kRadiansPerDegree, elevation_rad / kRadiansPerDegree, 2.0);
+  RenderSettings settings;
+  settings.width = settings.height = 64;
+  settings.samples_per_pixel = 1;
+  return SceneRenderer(scene).Render(instant, settings);
+}
+
+/// The mean place and the number of pixels brighter than a hundredth of the brightest.
+struct Bright {
+  double x = 0.0, y = 0.0, luminance = 0.0;
+  int count = 0;
+};
+
+Bright BrightOf(const Image& image) {
+  float most = 0.0F;
+  for (const auto& pixel : image.rgb) most = std::max(most, pixel[1]);
+  Bright bright;
+  bright.luminance = static_cast<double>(most);
+  for (int y = 0; y < 64; ++y) {
+    for (int x = 0; x < 64; ++x) {
+      if (image.at(x, y)[1] < 0.01F * most) continue;
+      bright.x += x + 0.5;
+      bright.y += y + 0.5;
+      ++bright.count;
+    }
+  }
+  bright.x /= bright.count;
+  bright.y /= bright.count;
+  return bright;
+}
+
+/// Returns the moon at the place of BareScene.
+MoonPosition MoonOver(const UtcInstant& instant) {
+  return ApparentMoonAt(PlaceFromDegrees(46.5, 8.0, 2.0), instant);
+}
+
+TEST(MoonPicture, TheFullMoonHasItsPlaceAndBrightness) {
+  // The moon is full on 2026 June 29 at 23:57 UT.
+  const UtcInstant instant = ParseInstant("2026-06-29T23:30:00Z");
+  const MoonPosition moon = MoonOver(instant);
+  ASSERT_GT(moon.elevation_rad, 10.0 * kRadiansPerDegree);
+  const Bright bright = BrightOf(NightAround(moon.azimuth_rad, moon.elevation_rad, instant));
+  EXPECT_NEAR(bright.x, 32.0, 0.5) << "pixels of a thirty-second of a degree";
+  EXPECT_NEAR(bright.y, 32.0, 0.5);
+  const double radius_pixels =
+      std::tan(moon.angular_radius_rad) / std::tan(kRadiansPerDegree) * 32.0;
+  EXPECT_NEAR(bright.count, kPi * radius_pixels * radius_pixels, 12.0);
+  EXPECT_GT(bright.luminance, 1000.0) << "cd/m^2, through two to four masses of air";
+  EXPECT_LT(bright.luminance, 5100.0);
+}
+
+TEST(MoonPicture, TheHalfMoonOfAnEveningIsLitOnItsRight) {
+  // The first quarter is on 2026 June 21 at 21:55 UT.
+  const UtcInstant instant = ParseInstant("2026-06-21T20:30:00Z");
+  const MoonPosition moon = MoonOver(instant);
+  ASSERT_GT(moon.elevation_rad, 5.0 * kRadiansPerDegree);
+  const Bright bright = BrightOf(NightAround(moon.azimuth_rad, moon.elevation_rad, instant));
+  EXPECT_GT(bright.x, 33.0) << "towards the sun that has set";
+  EXPECT_GT(bright.y, 32.5) << "and below";
+}
+
+constexpr double kBurgosEye_m = 2.0;
+
+GeodeticPosition Burgos() { return PlaceFromDegrees(42.3439, -3.6969, kBurgosEye_m); }
+
+/// Returns a scene at Burgos on the bare ellipsoid; angles are in degrees.
+Scene SceneTowards(double heading, double pitch, double fov) {
+  Scene scene = BareScene(kBurgosEye_m, heading, pitch, fov);
+  scene.place = PlaceFromDegrees(42.3439, -3.6969, 0.0);
+  return scene;
+}
+
+/// Returns the scene on the same planet without its moon.
+Scene Moonless(Scene scene) {
+  scene.medium.follows_wgs84 = false;
+  scene.medium.planet_radius_m = OsculatingRadius(kWgs84, scene.place.latitude_rad);
+  return scene;
+}
+
+Image EclipseRendered(const Scene& scene, const UtcInstant& instant, int size, int rays) {
+  RenderSettings settings;
+  settings.width = settings.height = size;
+  settings.samples_per_pixel = rays;
+  return SceneRenderer(scene).Render(instant, settings);
+}
+
+double Mean(const Image& image, std::size_t channel) {
+  double sum = 0.0;
+  for (const auto& pixel : image.rgb) sum += static_cast<double>(pixel[channel]);
+  return sum / static_cast<double>(image.rgb.size());
+}
+
+double Left(const UtcInstant& instant, double wavelength_nm) {
+  return UncoveredLight(EclipseAt(Burgos(), instant).disk, wavelength_nm);
+}
+
+/// Returns a scene at Burgos that looks at the sun.
+Scene SceneTowardsSun(const UtcInstant& instant, double fov) {
+  const SunPosition sun = ApparentSunAt(Burgos(), instant);
+  return SceneTowards(sun.azimuth_rad / kRadiansPerDegree, sun.elevation_rad / kRadiansPerDegree,
+                      fov);
+}
+
+// Nine tenths of the sun are covered. Higher orders of scattering and the ground are included.
+TEST(EclipsePicture, SkyIsDarkerByTheLightThatTheMoonCovers) {
+  const UtcInstant instant = ParseInstant("2026-08-12T18:23:00Z");
+  const Scene scene = SceneTowards(100.0, 10.0, 60.0);
+  const Image eclipsed = EclipseRendered(scene, instant, 24, 1);
+  const Image whole = EclipseRendered(Moonless(scene), instant, 24, 1);
+  const double green = Mean(eclipsed, 1) / Mean(whole, 1);
+  EXPECT_NEAR(Left(instant, 550.0), 0.1, 0.02);
+  EXPECT_NEAR(green / Left(instant, 550.0), 1.0, 0.01)
+      << "the channel is as wide as the share changes by a few per cent";
+  EXPECT_LT(Mean(eclipsed, 2) / Mean(whole, 2), green) << "the limb that is left is red";
+  EXPECT_GT(Mean(eclipsed, 0) / Mean(whole, 0), green);
+}
+
+// The light of the disk in the picture is that on the land.
+TEST(EclipsePicture, LightOfTheCrescentIsThatOfTheUncoveredSun) {
+  for (const char* utc : {"2026-08-12T17:50:00Z", "2026-08-12T18:23:00Z"}) {
+    const UtcInstant instant = ParseInstant(utc);
+    const Scene scene = SceneTowardsSun(instant, 0.7);
+    const double share = Mean(EclipseRendered(scene, instant, 64, 16), 1) /
+                         Mean(EclipseRendered(Moonless(scene), instant, 64, 16), 1);
+    EXPECT_NEAR(share / Left(instant, 550.0), 1.0, 0.02)
+        << utc << ": the air reddens the lower side of a low sun";
+  }
+}
+
+TEST(EclipsePicture, TheCrescentFacesAwayFromTheMoon) {
+  for (const char* utc : {"2026-08-12T17:50:00Z", "2026-08-12T18:10:00Z", "2026-08-12T18:40:00Z"}) {
+    const UtcInstant instant = ParseInstant(utc);
+    const SunPosition sun = ApparentSunAt(Burgos(), instant);
+    const MoonPosition moon = ApparentMoonAt(Burgos(), instant);
+    const Image image = EclipseRendered(SceneTowardsSun(instant, 0.7), instant, 64, 4);
+    double x = 0.0, y = 0.0;
+    for (int row = 0; row < 64; ++row) {
+      for (int column = 0; column < 64; ++column) {
+        const auto light = static_cast<double>(image.at(column, row)[1]);
+        x += light * (column + 0.5 - 32.0);
+        y += light * (32.0 - row - 0.5);
+      }
+    }
+    const double right = (moon.azimuth_rad - sun.azimuth_rad) * std::cos(sun.elevation_rad);
+    const double up = moon.elevation_rad - sun.elevation_rad;
+    const double cosine = (x * right + y * up) / (std::hypot(x, y) * std::hypot(right, up));
+    EXPECT_LT(cosine, -0.995) << utc << ": within 6 degrees of opposite";
+  }
+}
+
+TEST(EclipsePicture, TotalityIsDarkAndFinite) {
+  const UtcInstant middle = ParseInstant("2026-08-12T18:29:40Z");
+  ASSERT_EQ(Left(middle, 550.0), 0.0);
+  const SunPosition sun = ApparentSunAt(Burgos(), middle);
+  const Scene scene = SceneTowards(sun.azimuth_rad / kRadiansPerDegree, 20.0, 60.0);
+  const Image dark = EclipseRendered(scene, middle, 32, 2);
+  for (const auto& pixel : dark.rgb) {
+    for (const float value : pixel) {
+      EXPECT_TRUE(std::isfinite(value));
+      EXPECT_GE(value, 0.0F);
+    }
+  }
+  const double before =
+      Mean(EclipseRendered(scene, ParseInstant("2026-08-12T18:27:00Z"), 32, 2), 1);
+  EXPECT_GT(Mean(dark, 1), 1e-7 * before) << "the corona and the stars";
+  EXPECT_LT(Mean(dark, 1), 1e-3 * before);
+}
+
+TEST(EclipsePicture, IlluminanceFallsToThatOfTheCoronaAndRises) {
+  const SceneRenderer renderer(SceneTowards(280.0, 10.0, 60.0));
+  const SolarEclipse eclipse =
+      *FindSolarEclipse(Burgos(), ParseInstant("2026-08-12T12:00:00Z"), 43200.0);
+  double before_lux = renderer.Illuminance(eclipse.first_contact.instant);
+  const double whole_lux = before_lux;
+  const double down_s = SecondsBetween(eclipse.first_contact.instant, eclipse.maximum.instant);
+  for (int i = 1; i <= 40; ++i) {
+    const double now_lux =
+        renderer.Illuminance(AddSeconds(eclipse.first_contact.instant, down_s * i / 40.0));
+    EXPECT_LT(now_lux, before_lux);
+    before_lux = now_lux;
+  }
+  EXPECT_GT(before_lux, 1e-7 * whole_lux);
+  EXPECT_LT(before_lux, 1e-5 * whole_lux);
+  EXPECT_GT(renderer.Illuminance(AddSeconds(eclipse.maximum.instant, 120.0)), 100.0 * before_lux);
 }
 
 }  // namespace

@@ -20,6 +20,8 @@
 namespace alpenglow::renderer {
 namespace {
 
+using tests::Luminance;
+
 const UtcInstant kExtremeNoon = ParseInstant("2026-06-21T11:30:00Z");
 
 RenderSettings Settings(int width, int height, std::vector<PictureLayer> layers = {}) {
@@ -30,9 +32,7 @@ RenderSettings Settings(int width, int height, std::vector<PictureLayer> layers 
           .layers = std::move(layers)};
 }
 
-using tests::Luminance;
-
-/// From another camera at the place of a bare scene; angles in degrees.
+/// Returns a view of another camera at the place of a bare scene; angles are in degrees.
 CameraSample CameraSampleFrom(double height_m, double pitch, double roll, double fov) {
   const Camera camera = CameraFromDegrees({}, 40.0, pitch, roll, 60.0);
   CameraSample camera_sample(kExtremeNoon);
@@ -49,7 +49,7 @@ void ExpectLightEverywhere(const Image& image) {
 }
 
 // Hard case 1.
-TEST(RenderExtremes, FromTheGroundItselfTheHorizonIsTheHorizontal) {
+TEST(RenderExtremes, OnTheGroundTheHorizonIsTheHorizontal) {
   const SceneRenderer renderer(BareScene(0.0, 40.0, 0.0, 2.0));
   const Image image = renderer.Render(kExtremeNoon, Settings(2, 100, {PictureLayer::kDepth}));
   ExpectLightEverywhere(image);
@@ -60,10 +60,10 @@ TEST(RenderExtremes, FromTheGroundItselfTheHorizonIsTheHorizontal) {
 }
 
 // Hard case 6.
-TEST(RenderExtremes, AClimbToOrbitIsContinuousFromPictureToPicture) {
+TEST(RenderExtremes, AClimbToOrbitIsContinuous) {
   const SceneRenderer renderer(BareScene(1.7, 40.0, 0.0, 20.0));
   const double lowest_m = tests::ScaledDown(1.7, 60e3);  // a seventh of the pictures
-  // The sky, the horizon, which the limb passes at 100 km, and the ground.
+  // The camera looks at the sky, the horizon (which the limb passes at 100 km) or the ground.
   for (const double pitch : {40.0, -10.0, -60.0}) {
     double peak = 0.0;
     std::vector<double> seen;
@@ -80,7 +80,7 @@ TEST(RenderExtremes, AClimbToOrbitIsContinuousFromPictureToPicture) {
   }
 }
 
-// A funnel that is so deep in the middle, and 300 m above the sea at its rim, 30 km away.
+// Returns a scene at the bottom of a funnel whose rim is 300 m above the sea and 30 km away.
 Scene AtTheBottomOf(const std::filesystem::path& file, double depth_m) {
   std::string text = fmt::format("v 0 0 {}\n", -depth_m);
   constexpr int kRim = 24;
@@ -99,7 +99,7 @@ Scene AtTheBottomOf(const std::filesystem::path& file, double depth_m) {
 class RenderExtremesFiles : public TemporaryFolder {};
 
 // Hard case 2.
-TEST_F(RenderExtremesFiles, BelowTheSeaTheSkyIsThatOfTheShoreAndNothingIsBlack) {
+TEST_F(RenderExtremesFiles, BelowTheSeaTheSkyIsThatOfTheShore) {
   const Image shore =
       SceneRenderer(BareScene(0.0, 40.0, 55.0, 30.0)).Render(kExtremeNoon, Settings(12, 8));
   for (const double depth_m : {430.0, 11000.0}) {
@@ -110,7 +110,7 @@ TEST_F(RenderExtremesFiles, BelowTheSeaTheSkyIsThatOfTheShoreAndNothingIsBlack) 
       EXPECT_NEAR(Luminance(sky.rgb[i]) / Luminance(shore.rgb[i]), 1.0, 1e-3)
           << depth_m << " m down, pixel " << i << ": the ground's shape does not change the sky";
     }
-    // The walls, the rim and what is over it, and the floor.
+    // The camera looks at the walls and the rim, then at the floor.
     for (const double pitch : {0.0, -60.0}) {
       const CameraSample down = CameraSampleFrom(renderer.eye_height_m(), pitch, 0.0, 60.0);
       ExpectLightEverywhere(renderer.Render(down, Settings(12, 8)));
@@ -166,7 +166,7 @@ TEST(RenderExtremes, WithoutAirTheSunsDiskStandsInABlackSky) {
   EXPECT_LT(brightest, 3e9);
 }
 
-/// Settings without what else shines at night.
+/// Returns the settings without the other lights of the night.
 RenderSettings InSunlightAlone(RenderSettings settings) {
   for (const Effect effect : {Effect::kMoonlight, Effect::kNightSky, Effect::kStars})
     settings.effects = settings.effects.Without(effect);
@@ -174,7 +174,7 @@ RenderSettings InSunlightAlone(RenderSettings settings) {
 }
 
 // Hard case 28.
-TEST(RenderExtremes, WithoutAirTheGroundIsSunlitAndTheNightIsBlack) {
+TEST(RenderExtremes, WithoutAirGroundIsSunlitAndNightsAreBlack) {
   const SceneRenderer renderer(WithoutAir(1000.0, 40.0, -30.0, 40.0));
   ExpectLightEverywhere(renderer.Render(kExtremeNoon, Settings(8, 8)));
   const Image night =
@@ -188,7 +188,7 @@ TEST(RenderExtremes, WithoutAirTheGroundIsSunlitAndTheNightIsBlack) {
 }
 
 // Hard case 33.
-TEST_F(RenderExtremesFiles, TwilightAMillionTimesDimmerThanNoonHasNoBands) {
+TEST_F(RenderExtremesFiles, DeepTwilightHasNoBands) {
   constexpr int kRows = 200;  // 4 to 24 degrees up, away from the sun and towards it
   const RenderSettings column = InSunlightAlone(Settings(1, kRows));
   for (const double heading : {310.0, 130.0}) {
@@ -199,7 +199,7 @@ TEST_F(RenderExtremesFiles, TwilightAMillionTimesDimmerThanNoonHasNoBands) {
     WriteExr(folder_ / "dusk.exr", image, {});
     const Image kept = ReadExr(folder_ / "dusk.exr");
     EXPECT_EQ(kept.rgb, image.rgb);
-    // Exposed a million times longer, from pixel to pixel the light moves on as evenly as by day.
+    // Exposed a million times longer, the light changes from pixel to pixel as evenly as by day.
     std::vector<double> stops;
     for (int y = 0; y < kRows; ++y) stops.push_back(std::log2(1e6 * Luminance(kept.at(0, y))));
     double largest = 0.0;
@@ -218,11 +218,11 @@ double TanHalf(double fov_deg) { return std::tan(0.5 * fov_deg * kRadiansPerDegr
 double FovOf(double tan_half) { return 2.0 * std::atan(tan_half) / kRadiansPerDegree; }
 
 // Hard case 44.
-TEST(RenderExtremes, PicturesOfOnePixelAndOneColumnArePartsOfWiderOnes) {
+TEST(RenderExtremes, OnePixelAndOneColumnArePartsOfWiderPictures) {
   const SceneRenderer renderer(BareScene(100.0, 40.0, 10.0, 60.0));
   for (const double fov : {1.0, 60.0, 179.0}) {
     for (const double roll : {0.0, 90.0}) {
-      // A third of a picture that is three times as wide.
+      // The narrow picture is a third of one that is three times as wide.
       const CameraSample narrow = CameraSampleFrom(100.0, 10.0, roll, FovOf(TanHalf(fov) / 3.0));
       const Image three = renderer.Render(CameraSampleFrom(100.0, 10.0, roll, fov),
                                           Settings(3, 5, {PictureLayer::kDepth}));
@@ -256,14 +256,14 @@ TEST(RenderExtremes, ACameraOnItsSideSeesRowsAsColumns) {
 }
 
 // Hard case 44.
-TEST(RenderExtremes, SixteenThousandColumnsAreSmoothAndAPanoramaCloses) {
+TEST(RenderExtremes, SixteenThousandColumnsAreSmooth) {
   constexpr int kWidth = 16384;
   const SceneRenderer renderer(BareScene(100.0, 40.0, 20.0, 360.0));
   const RenderSettings wide = Settings(kWidth, 1);
   ExpectLightEverywhere(renderer.Render(kExtremeNoon, Settings(1, 1)));
   for (const double fov : {1.0, 179.0, 360.0}) {
     const bool closes = fov == 360.0;
-    // Of two rows of a panorama the upper one looks 45 degrees up.
+    // The upper one of two rows of a panorama looks 45 degrees up.
     const Image image = closes ? renderer.Render(kExtremeNoon, Settings(kWidth, 2))
                                : renderer.Render(CameraSampleFrom(100.0, 20.0, 0.0, fov), wide);
     ExpectLightEverywhere(image);

@@ -1,13 +1,15 @@
 // SPDX-License-Identifier: MIT
-// The report of pictures: what it writes, and that its numbers are physics. Nothing here asks how
-// long anything takes.
+// The report of pictures: its files, and that its numbers are physics. No test measures time.
 #include "renderer/report/report.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <set>
+#include <string>
+#include <vector>
 
 #include "tests/fixtures/report_files.h"
 #include "tests/fixtures/report_rows.h"
@@ -18,7 +20,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A quick report of the default air, measured once.
+/// Returns a quick report of the default air, measured once.
 const Report& QuickReport() {
   static const Report report =
       MeasurePictureReport({.mediums = {MediumPreset("earth")}, .quick = true});
@@ -34,7 +36,7 @@ void ExpectLessErrorEverywhere(const char* topic, const char* better, const char
   const ReportRow& bad = RowOf(topic, worse);
   for (std::size_t r = 0; r < good.at.size(); ++r) {
     if (!good.at[r].IsMeasured() || !bad.at[r].IsMeasured()) continue;
-    // Before mountains no air is lit when the sun is below -6 degrees.
+    // If the sun is below -6 degrees, no air before mountains is lit.
     if (topic == std::string("aerial_perspective") && good.at[r].error.largest == 0.0) continue;
     EXPECT_LT(good.at[r].error.rms, bad.at[r].error.rms)
         << topic << ": " << better << " against " << worse << ", column " << r;
@@ -63,7 +65,7 @@ TEST_F(PictureReportFiles, EveryTopicHasATableAndAPlot) {
   }
 }
 
-TEST_F(PictureReportFiles, LinesHaveAllColumnsAndEveryNumberIsOne) {
+TEST_F(PictureReportFiles, LinesHaveAllColumnsAndFiniteNumbers) {
   const std::vector<std::string> header = CellsOf(LinesOf(CsvHeader())[0]);
   for (const ReportTopic& topic : QuickReport().topics) {
     const std::vector<std::string> lines = LinesOf(CsvOfTopic(topic, QuickReport().maker));
@@ -82,7 +84,7 @@ TEST_F(PictureReportFiles, LinesHaveAllColumnsAndEveryNumberIsOne) {
   }
 }
 
-TEST_F(PictureReportFiles, ThePageHoldsEverySectionAndNoOtherFile) {
+TEST_F(PictureReportFiles, ThePageHasEverySectionAndNeedsNoOtherFile) {
   const std::string page = PageOf(QuickReport());
   for (const ReportTopic& topic : QuickReport().topics)
     EXPECT_NE(page.find(XmlText(topic.title)), std::string::npos) << topic.title;
@@ -90,21 +92,19 @@ TEST_F(PictureReportFiles, ThePageHoldsEverySectionAndNoOtherFile) {
     EXPECT_EQ(page.find(outside), std::string::npos) << outside;
 }
 
-TEST(PictureReport, MoreEffortIsLessError) {
-  ExpectLessErrorEverywhere("aerial_perspective", "direct integration, automatic",
-                            "direct integration, at most 2");
-  ExpectLessErrorEverywhere("aerial_perspective", "uniform march, 128 steps",
-                            "uniform march, 8 steps");
-  ExpectLessErrorEverywhere("aerial_perspective", "quadratic march, 128 steps",
-                            "quadratic march, 8 steps");
-  ExpectLessErrorEverywhere("terrain_transmittance", "uniform march, 128 steps",
-                            "uniform march, 8 steps");
-  ExpectLessErrorEverywhere("shafts", "occlusion rays, 256 rays", "occlusion rays, 16 rays");
-  ExpectLessErrorEverywhere("shafts", "shadow heights, automatic nodes", "no shafts");
-  ExpectLessErrorEverywhere("airlight", "panels around the light, 32 nodes",
-                            "panels around the light, 8 nodes");
-  ExpectLessErrorEverywhere("airlight", "uniform march, 256 points", "uniform march, 16 points");
-  ExpectLessErrorEverywhere("pictures", "samples of a pixel, 4", "without higher orders");
+TEST(PictureReport, MoreEffortGivesLessError) {
+  const char* const uniform[] = {"uniform march, 128 steps", "uniform march, 8 steps"};
+  for (const auto& [topic, better, worse] : std::vector<std::array<const char*, 3>>{
+           {"aerial_perspective", "direct integration, automatic", "direct integration, at most 2"},
+           {"aerial_perspective", uniform[0], uniform[1]},
+           {"aerial_perspective", "quadratic march, 128 steps", "quadratic march, 8 steps"},
+           {"terrain_transmittance", uniform[0], uniform[1]},
+           {"shafts", "occlusion rays, 256 rays", "occlusion rays, 16 rays"},
+           {"shafts", "shadow heights, automatic nodes", "no shafts"},
+           {"airlight", "panels around the light, 32 nodes", "panels around the light, 8 nodes"},
+           {"airlight", "uniform march, 256 points", "uniform march, 16 points"},
+           {"pictures", "samples of a pixel, 4", "without higher orders"}})
+    ExpectLessErrorEverywhere(topic, better, worse);
 }
 
 TEST(PictureReport, AirBeforeMountainsKeepsItsErrorAtEverySun) {
@@ -121,14 +121,14 @@ TEST(PictureReport, OneGreyTransmittanceIsWrongByPercents) {
     EXPECT_LT(at.error.rms, 1e-5);
 }
 
-TEST(PictureReport, SunsClosedFormIsOnlyForIsotropicFogOfOneDensity) {
+TEST(PictureReport, TheClosedFormOfSunIsOnlyForUniformIsotropicFog) {
   const ReportRow& row = RowOf("airlight", "Sun et al. (2005)");
   EXPECT_TRUE(row.at[0].IsMeasured());
   EXPECT_LT(row.at[0].error.rms, 1e-6);
   for (std::size_t r = 1; r < row.at.size(); ++r) EXPECT_FALSE(row.at[r].IsMeasured());
 }
 
-TEST(PictureReport, SamplesOfAirlightCountThoseThatOnlyLook) {
+TEST(PictureReport, SamplesOfAirlightIncludeThoseThatOnlyProbe) {
   const ReportRow& row = RowOf("airlight", "panels around the light, 16 nodes");
   for (const RegimeResult& at : row.at) EXPECT_GT(at.samples, 16.0);
 }

@@ -1,28 +1,36 @@
 // SPDX-License-Identifier: MIT
-// What is made of a series: keogram, plot, manifest for programs.
+// Files made of a series: keogram, plot, manifest and film; and tables of the times of days.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <chrono>
 #include <cmath>
+#include <csignal>
+#include <cstdlib>
+#include <thread>
 
 #include "atmosphere/astronomy/moon.h"
+#include "atmosphere/base/error.h"
 #include "atmosphere/math/constants.h"
 #include "lut/cli/messages.h"
 #include "renderer/series/contact_sheet.h"
 #include "renderer/series/day_times.h"
 #include "renderer/series/manifest.h"
+#include "renderer/series/video.h"
+#include "tests/fixtures/temporary_folder.h"
 
 namespace alpenglow::renderer {
 namespace {
 
 using testing::HasSubstr;
 using testing::Not;
+namespace fs = std::filesystem;
 
-TEST(JsonText, QuotesBackslashesAndControlCharactersAreEscaped) {
+TEST(JsonText, SpecialCharactersAreEscaped) {
   EXPECT_EQ(JsonString("a \"b\" c:\\d\n\xC3\xA9"), "\"a \\\"b\\\" c:\\\\d\\u000a\xC3\xA9\"");
 }
 
-TEST(KeogramPicture, HasTheMiddleColumnOfEachPictureInTheirOrder) {
+TEST(KeogramPicture, HasTheMiddleColumnsOfPicturesInOrder) {
   Keogram keogram;
   for (int number = 0; number < 4; ++number) {
     DisplayImage picture{5, 3, std::vector<std::uint8_t>(45, 255)};
@@ -65,7 +73,7 @@ TEST(DayPlot, CurvesHaveGapsWhereFramesHaveNoValue) {
   EXPECT_THAT(SvgOfDay(moments, "Asia/Tokyo"), HasSubstr(">Asia/Tokyo</text>"));
 }
 
-TEST(DayPlot, LightIsDrawnByItsLogarithmAndItsBlackestLeftOut) {
+TEST(DayPlot, LightIsDrawnByItsLogarithmWithoutZeros) {
   std::vector<PlottedMoment> moments;
   for (int i = 0; i < 5; ++i)
     moments.push_back({Hour(i), 0.0, 0.0, i == 4 ? 0.0 : std::pow(10.0, 4 - 2 * i), 1.0});
@@ -76,7 +84,7 @@ TEST(DayPlot, LightIsDrawnByItsLogarithmAndItsBlackestLeftOut) {
   EXPECT_THAT(svg, Not(HasSubstr("\"nan")));
 }
 
-TEST(DayPlot, PublishedLevelsStandBesideTheLight) {
+TEST(DayPlot, PublishedLevelsAreDrawn) {
   const std::vector<PlottedMoment> moments{{Hour(0.0), -40.0, 50.0, 0.2, -5.0},
                                            {Hour(1.0), -40.0, 40.0, 0.15, -5.0}};
   EXPECT_THAT(SvgOfDay(moments, std::nullopt), Not(HasSubstr("full moon")));
@@ -94,7 +102,7 @@ TEST(DayPlot, OneFrameAndAYearOfFramesHaveTheirTicks) {
   EXPECT_LT(CountOf(SvgOfDay(year, std::nullopt), "<text"), 60U);
 }
 
-TEST(JsonManifest, SaysWhereTheMoonStandsAndNullForWhatIsNotThereYet) {
+TEST(JsonManifest, HasTheMoonAndNullForMissingValues) {
   const Frame frame{3, Hour(4.0)};
   const GeodeticPosition place = PlaceFromDegrees(46.5, 8.0, 0.0);
   FrameRecord record = RecordOf(frame, place, std::nullopt);
@@ -114,6 +122,197 @@ TEST(JsonManifest, SaysWhereTheMoonStandsAndNullForWhatIsNotThereYet) {
   const std::string later = JsonOfManifest({record}, {}, true);
   EXPECT_THAT(later, HasSubstr("\"illuminance_lx\":1000,\"ev100\":14.25,"));
   EXPECT_THAT(later, HasSubstr("\"fov\":60.000000}"));
+}
+
+EventDay TromsoInJune() {
+  EventDay day{PlaceFromDegrees(69.65, 18.96, 0.0), "Europe/Oslo", {}};
+  day.around = DayFromText("2026-06-21", day);
+  return day;
+}
+
+TEST(DayTimes, MissingEventsAreLeftOut) {
+  const std::vector<DayTimes> days = TimesOfDays(TromsoInJune(), 2);
+  ASSERT_EQ(days.size(), 2U);
+  EXPECT_EQ(days[1].date, "2026-06-22");
+  EXPECT_FALSE(days[0].at[3].has_value()) << "no sunrise under the midnight sun";
+  EXPECT_TRUE(days[0].at[4].has_value());
+  EXPECT_NEAR(days[0].noon_elevation_deg, 90.0 - 69.65 + 23.44, 0.05) << "and 1' of refraction";
+  EXPECT_THAT(TableOf(days, TromsoInJune().zone),
+              HasSubstr("2026-06-21 --:-- --:-- --:-- --:-- 12:4"));
+  EXPECT_THAT(CsvOf(days), HasSubstr("\n2026-06-21,,,,,2026-06-21T10:4"));
+}
+
+TEST(DayTimes, TheMoonGrowsToTheFullMoon) {
+  EventDay day = TromsoInJune();
+  day.around = DayFromText("2026-06-15", day);              // new moon of 02:54 UTC
+  const std::vector<DayTimes> days = TimesOfDays(day, 15);  // full moon on the 29th, 23:57 UTC
+  for (std::size_t i = 1; i < days.size(); ++i) {
+    EXPECT_GT(days[i].moon_illuminated, days[i - 1].moon_illuminated) << days[i].date;
+  }
+  EXPECT_LT(days.front().moon_illuminated, 0.01);
+  EXPECT_GT(days.back().moon_illuminated, 0.99);
+}
+
+EventDay EclipsedDay(double latitude_deg, double longitude_deg) {
+  EventDay day{PlaceFromDegrees(latitude_deg, longitude_deg, 0.0), "Europe/Madrid", {}};
+  day.around = DayFromText("2026-08-11", day);
+  return day;
+}
+
+TEST(DayTimes, AnEclipseIsListedWithContactsToTheSecond) {
+  const EventDay day = EclipsedDay(42.3439, -3.6969);  // Burgos
+  const std::vector<DayTimes> days = TimesOfDays(day, 3);
+  EXPECT_FALSE(days[0].eclipse);
+  ASSERT_TRUE(days[1].eclipse);
+  EXPECT_FALSE(days[2].eclipse);
+  EXPECT_TRUE(days[1].eclipse->at_deepest.disk.IsTotal());
+  EXPECT_THAT(TableOf(days, day.zone), HasSubstr("\n           eclipse of the sun: begins 19:33:"));
+  EXPECT_THAT(TableOf(days, day.zone), HasSubstr(", total 20:28:"));
+  EXPECT_THAT(CsvOf(days), HasSubstr(",2026-08-12T17:33:"));
+  EXPECT_THAT(CsvOf(days), HasSubstr(",1.0000\n2026-08-13,"));
+}
+
+// In Palma the sun sets between third and last contact, in Istanbul before the first.
+TEST(DayTimes, OnlyVisiblePartsOfAnEclipseAreListed) {
+  const std::vector<DayTimes> palma = TimesOfDays(EclipsedDay(39.5696, 2.6502), 2);
+  ASSERT_TRUE(palma[1].eclipse);
+  EXPECT_TRUE(palma[1].eclipse->whole.inner->third_contact.IsSeen());
+  EXPECT_THAT(TableOf(palma, "Europe/Madrid"), Not(HasSubstr("ends")));
+  EXPECT_THAT(CsvOf(palma), HasSubstr("Z,,1.")) << "no last contact before the magnitude";
+  EXPECT_FALSE(TimesOfDays(EclipsedDay(41.0, 29.0), 2)[1].eclipse);
+}
+
+// In Rome the sun sets on the sea horizon while the eclipse still grows.
+TEST(DayTimes, AnEclipseWithAHiddenMaximumIsDeepestAtSunset) {
+  const DayTimes rome = TimesOfDays(EclipsedDay(41.9, 12.5), 2)[1];
+  ASSERT_TRUE(rome.eclipse);
+  EXPECT_FALSE(rome.eclipse->whole.maximum.IsSeen());
+  EXPECT_EQ(rome.eclipse->at_deepest.instant, rome.at[5]);
+  EXPECT_LT(rome.eclipse->at_deepest.disk.Magnitude(),
+            rome.eclipse->whole.maximum.disk.Magnitude());
+}
+
+TEST(FrameList, HasALineForEachFrameWithSunAndMoon) {
+  const EventDay day = TromsoInJune();
+  std::vector<FrameRecord> records;
+  for (const Frame& frame :
+       FramesFromTimes({{"noon", "2026-06-21T22:00:00Z"}, {}, {}, {}, {}}, day)) {
+    records.push_back(RecordOf(frame, day.place, day.zone));
+    records.back().Set("file", FrameName("night.%03d.exr").Exr(frame.number).string());
+  }
+  const std::string text = ListOf(records);
+  EXPECT_THAT(text, HasSubstr("\n0,2026-06-21T10:4"));
+  EXPECT_THAT(text, HasSubstr("\n1,2026-06-21T22:00:00Z,2026-06-22T00:00:00+02:00,"));
+  EXPECT_THAT(text, HasSubstr(",night.001.exr\n"));
+}
+
+class Videos : public TemporaryFolder {
+ protected:
+  void SetUp() override {
+    TemporaryFolder::SetUp();
+    path_ = std::getenv("PATH");
+  }
+  void TearDown() override {
+    setenv("PATH", path_.c_str(), 1);
+    TemporaryFolder::TearDown();
+  }
+  /// Makes a shell script the first ffmpeg on the PATH.
+  void UseFfmpeg(const std::string& script) {
+    fs::create_directory(folder_ / "bin");
+    WriteText(folder_ / "bin" / "ffmpeg", "#!/bin/sh\n" + script + "\n");
+    fs::permissions(folder_ / "bin" / "ffmpeg", fs::perms::owner_all);
+    setenv("PATH", ((folder_ / "bin").string() + ":" + path_).c_str(), 1);
+  }
+  /// Returns the fault with which writing a film ends.
+  [[nodiscard]] std::string FaultOfVideo(
+      int frames, const std::function<DisplayImage(int)>& frame = Frame) const {
+    try {
+      WriteVideo(File(), {64, 64, 25.0, {}}, frames, frame);
+    } catch (const std::exception& error) {
+      return error.what();
+    }
+    return "no fault";
+  }
+  [[nodiscard]] fs::path File() const { return folder_ / "film.mp4"; }
+
+  /// Returns red that fades from frame to frame, over constant green.
+  static DisplayImage Frame(int number) {
+    DisplayImage image{64, 64, {}};
+    for (int pixel = 0; pixel < 64 * 64; ++pixel) {
+      const bool upper = pixel < 32 * 64;
+      image.rgb.push_back(static_cast<std::uint8_t>(upper ? 200 - 10 * number : 0));
+      image.rgb.push_back(static_cast<std::uint8_t>(upper ? 0 : 150));
+      image.rgb.push_back(0);
+    }
+    return image;
+  }
+
+ private:
+  std::string path_;
+};
+
+TEST_F(Videos, AFilmHasThePicturesInOrderAndColour) {
+  if (RunCommand("ffmpeg -version").status != 0) GTEST_SKIP() << "there is no ffmpeg here";
+  const int frames = 10;
+  WriteVideo(File(), {64, 64, 25.0, {{"alpenglow.scene", "a test"}}}, frames, Frame);
+  EXPECT_EQ(FileCount(), 1U) << "the film and nothing else";
+  ASSERT_EQ(RunCommand("ffmpeg -i film.mp4 -f rawvideo -pix_fmt rgb24 film.raw").status, 0);
+  const std::string raw = ContentOf(folder_ / "film.raw");
+  const std::size_t bytes = std::size_t{3} * 64 * 64;
+  ASSERT_EQ(raw.size(), bytes * frames);
+  for (int number = 0; number < frames; ++number) {
+    const auto at = [&](std::size_t row, std::size_t channel) {
+      const std::size_t pixel = row * 64 + 30;
+      return static_cast<int>(static_cast<unsigned char>(
+          raw[static_cast<std::size_t>(number) * bytes + 3 * pixel + channel]));
+    };
+    EXPECT_NEAR(at(10, 0), 200 - 10 * number, 6) << "eight bits of luma, compressed";
+    EXPECT_NEAR(at(10, 1), 0, 6);
+    EXPECT_NEAR(at(50, 1), 150, 6) << "the lower half stays green";
+  }
+  EXPECT_THAT(RunCommand("ffmpeg -i film.mp4").error, HasSubstr("alpenglow.scene=a test"));
+  const auto odd = [](int) {
+    return DisplayImage{63, 35, std::vector<std::uint8_t>(std::size_t{3} * 63 * 35, 99)};
+  };
+  WriteVideo(folder_ / "odd.mkv", {63, 35, 25.0, {}}, 3, odd);
+  EXPECT_THAT(RunCommand("ffmpeg -i odd.mkv").error, HasSubstr("64x36")) << "odd sides get a line";
+}
+
+TEST_F(Videos, MissingFfmpegIsReportedBeforeAnythingIsDrawn) {
+  setenv("PATH", folder_.c_str(), 1);
+  EXPECT_THROW(RequireVideo(File()), OutputError);
+  const auto frame = [](int) -> DisplayImage { throw InputError("a frame was drawn"); };
+  EXPECT_THAT(FaultOfVideo(1, frame), HasSubstr("needs ffmpeg"));
+  EXPECT_EQ(FileCount(), 0U);
+}
+
+TEST_F(Videos, MessagesOfFfmpegAreReportedAndNoFileIsLeft) {
+  UseFfmpeg("echo a first line >&2; echo Unknown encoder >&2; exit 1");
+  EXPECT_THAT(FaultOfVideo(100), HasSubstr("ffmpeg: Unknown encoder"));
+  UseFfmpeg("while read -r line; do :; done; exit 7");
+  EXPECT_THAT(FaultOfVideo(3), HasSubstr("gives no reason"));
+  UseFfmpeg("kill -9 $$");
+  EXPECT_THAT(FaultOfVideo(100), HasSubstr("film.mp4")) << "the file that is missing is named";
+  EXPECT_EQ(FileCount(), 1U) << "the folder of the script";
+}
+
+TEST_F(Videos, AFrameThatFailsLeavesNoFileAndNoProcess) {
+  UseFfmpeg("echo $$ > " + (folder_ / "process").string() + "; exec sleep 1000");
+  const auto frame = [&](int number) {
+    if (number == 1) throw InputError("the second picture");
+    while (ContentOf(folder_ / "process").empty()) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
+    return Frame(number);
+  };
+  EXPECT_EQ(FaultOfVideo(3, frame), "the second picture");
+  EXPECT_NE(kill(std::stoi(ContentOf(folder_ / "process")), 0), 0) << "it has been ended";
+  EXPECT_FALSE(fs::exists(File()));
+}
+
+TEST_F(Videos, UnknownFileTypesAreRefused) {
+  EXPECT_THROW(RequireVideo("film.gif"), InputError);
+  EXPECT_THROW(RequireVideo("film"), InputError);
 }
 
 }  // namespace

@@ -1,9 +1,16 @@
 // SPDX-License-Identifier: MIT
+// The exposure of a series follows the light without steps of its own, also from noon to noon.
 #include "renderer/series/smooth_meter.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
+
+#include "atmosphere/astronomy/sun.h"
+#include "atmosphere/math/constants.h"
+#include "lut/image/look.h"
+#include "renderer/picture/render.h"
+#include "tests/fixtures/bare_scene.h"
 
 namespace alpenglow::renderer {
 namespace {
@@ -25,7 +32,7 @@ TEST(SmoothMeter, NodesLieTwoMinutesApartOrOnEveryFrame) {
   EXPECT_EQ(FramesPerNode(Every(0.04, 200), true), 13) << "half a second of 25 frames";
 }
 
-TEST(SmoothMeter, StillsAndUnevenTimesAreMeteredByThemselves) {
+TEST(SmoothMeter, StillsAndUnevenTimesAreMeteredAlone) {
   EXPECT_EQ(FramesPerNode(Every(600.0, 1), false), std::nullopt);
   EXPECT_EQ(FramesPerNode(Every(600.0, 2), false), std::nullopt);
   EXPECT_EQ(FramesPerNode(Every(2400.0, 20), false), std::nullopt) << "pictures of a day, no film";
@@ -47,7 +54,7 @@ TEST(SmoothMeter, LightThatFadesEvenlyIsFollowedWithoutALag) {
   }
 }
 
-TEST(SmoothMeter, LightThatFadesFasterAndFasterIsOffByASixthOfTheSecondDifference) {
+TEST(SmoothMeter, CurvedFadesAreOffByASixthOfTheSecondDifference) {
   const std::vector<Frame> frames = Every(60.0, 61);
   SmoothMeter meter(frames, 4,
                     [](const Frame& frame) { return -0.01 * frame.number * frame.number; });
@@ -72,7 +79,7 @@ TEST(SmoothMeter, AStepOfTheLightIsSpreadOverFrames) {
   EXPECT_NEAR(meter.At(frames.back()), 12.0, 1e-4);
 }
 
-TEST(SmoothMeter, AFrameAloneHasTheExposureThatItHasAmongOthers) {
+TEST(SmoothMeter, AFrameAloneHasTheExposureOfTheSeries) {
   const std::vector<Frame> frames = Every(20.0, 100);
   const auto metered = [](const Frame& frame) { return 8.0 + std::sin(0.3 * frame.number); };
   SmoothMeter all(frames, 6, metered);
@@ -91,6 +98,101 @@ TEST(SmoothMeter, ANodeIsMeteredOnce) {
   });
   for (const Frame& frame : frames) (void)meter.At(frame);
   EXPECT_EQ(asked, 17) << "frames 0, 6 ... 96";
+}
+
+constexpr double kThreePercent_ev = 0.0426;  // log2(1.03)
+
+const GeodeticPosition& Place() {
+  static const GeodeticPosition place = PlaceFromDegrees(46.5, 8.0, 0.0);
+  return place;
+}
+
+std::vector<Frame> Minutes() {
+  std::vector<Frame> frames;
+  for (int i = 0; i <= 1440; ++i)
+    frames.push_back({i, AddSeconds(UtcInstant{61212, 41400.0}, 60.0 * i)});
+  return frames;
+}
+
+/// Returns the luminance of a simple sky [cd/m^2]: 5000 by day, 1e-3 in a moonlit night (darker
+/// ones are beyond the camera's limit, and fade), with the slope of twilight in between (a factor
+/// of 1.4 in a minute, where the sun is 6 degrees low).
+double Luminance(const Frame& frame) {
+  const double elevation = SunAt(Place(), frame.instant).elevation_rad / kRadiansPerDegree;
+  return std::pow(10.0, -3.0 + 6.7 / (1.0 + std::exp(-(elevation + 6.0) / 2.2)));
+}
+
+double MeteredEv100(const Frame& frame) { return std::log2(8.0 * Luminance(frame)); }
+
+/// Returns the exposure of the meter of a small picture, rounded to a bin of its histogram.
+double RoughlyMeteredEv100(const Frame& frame) {
+  constexpr double kBin_ev = 0.04;
+  return kBin_ev * std::round(MeteredEv100(frame) / kBin_ev);
+}
+
+/// Returns the largest change [EV] of the displayed light from one minute to the next.
+template <typename Ev100>
+double LargestStep(const Ev100& ev100) {
+  double largest = 0.0, before = 0.0;
+  for (const Frame& frame : Minutes()) {
+    const double shown = MeteredEv100(frame) - ev100(frame);
+    if (frame.number > 0) largest = std::max(largest, std::abs(shown - before));
+    before = shown;
+  }
+  return largest;
+}
+
+TEST(SteadySeries, MeteredMinutesDifferByLessThanThreePercent) {
+  const std::vector<Frame> frames = Minutes();
+  SmoothMeter meter(frames, *FramesPerNode(frames, false), RoughlyMeteredEv100);
+  EXPECT_LT(LargestStep([&](const Frame& frame) { return meter.At(frame); }), kThreePercent_ev);
+}
+
+TEST(SteadySeries, IncidentLightExposesWithoutSteps) {
+  // A sky with the luminance L everywhere lights the ground with pi L.
+  EXPECT_LT(LargestStep([](const Frame& frame) { return IncidentEv100(kPi * Luminance(frame)); }),
+            kThreePercent_ev);
+}
+
+TEST(SteadySeries, ShortAndLongDusksFallWithoutSteps) {
+  for (const double latitude : {0.0, 46.5, 65.0}) {
+    Scene scene = BareScene(2.0, 0.0, 45.0, 60.0);
+    scene.place = PlaceFromDegrees(latitude, 8.0, 0.0);
+    const SceneRenderer renderer(scene);
+    const UtcInstant sunset =  // of the day after a new moon
+        *FindSunEvent(SunEvent::kSunset, scene.place, ParseInstant("2026-03-20T12:00:00Z"));
+    double before = 0.0;
+    for (int minute = 0; minute <= 150; ++minute) {
+      const double lux = renderer.Illuminance(AddSeconds(sunset, 60.0 * minute));
+      const double shown = std::log2(lux) - IncidentEv100(lux);
+      if (minute > 0) {
+        EXPECT_NEAR(shown, before, kThreePercent_ev) << latitude << ", " << minute << ", " << lux;
+      }
+      before = shown;
+    }
+  }
+}
+
+void ExpectNoOtherStepThanByItsLaw(const ExposureRule& rule) {
+  const std::vector<Frame> frames = Minutes();
+  SmoothMeter meter(frames, *FramesPerNode(frames, false), RoughlyMeteredEv100);
+  double before = 0.0, wanted_before = 0.0;
+  for (const Frame& frame : frames) {
+    const double light = MeteredEv100(frame);
+    const double shown = light - Ev100By(rule, meter.At(frame), {});
+    const double wanted = light - Ev100By(rule, light, {});
+    if (frame.number > 0) {
+      EXPECT_NEAR(shown - before, wanted - wanted_before, kThreePercent_ev)
+          << FormatUtc(frame.instant);
+    }
+    before = shown;
+    wanted_before = wanted;
+  }
+}
+
+TEST(SteadySeries, EyeAndCameraMakeNoStepsBeyondTheirLaw) {
+  ExpectNoOtherStepThanByItsLaw({ExposureRule::Kind::kEye});
+  ExpectNoOtherStepThanByItsLaw({ExposureRule::Kind::kMetered});
 }
 
 }  // namespace

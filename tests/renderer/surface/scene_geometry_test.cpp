@@ -132,7 +132,8 @@ TEST(SceneGeometry, HitsLieOnTheRayAndAreLitOnTheSmoothSurface) {
                                 "ground looked up there slides over the triangles";
 }
 
-// Long chords are below their rays, so that they meet more of the ground. Short chords are the truth.
+// Long chords are below their rays, so that they meet more of the ground. Short chords are the
+// truth.
 TEST(SceneGeometry, LongChordsOfRaysMeetWhatShortOnesMeet) {
   const LocalFrame frame(kWgs84, {0.8, 0.1, 0.0});
   ElevationGrid grid;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The ground of a scene under eyes and lamps: elevation models, meshes with roofs, the built-in range.
+// The ground of a scene under eyes and lamps: elevation models, meshes with roofs, the built-in
+// range.
 #include "renderer/surface/scene_ground.h"
 
 #include <gmock/gmock.h>
@@ -27,7 +28,8 @@ namespace {
 using testing::HasSubstr;
 using testing::Not;
 
-// An elevation model of latitudes 46 to 47 and longitudes 8 to 9, in which everything is 500 m high.
+// An elevation model of latitudes 46 to 47 and longitudes 8 to 9, in which everything is 500 m
+// high.
 class AModel : public TemporaryFolder {
  protected:
   void SetUp() override {

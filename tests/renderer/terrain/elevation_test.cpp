@@ -405,8 +405,8 @@ TEST_F(ElevationFile, AResampledModelCannotBeCut) {
   EXPECT_FALSE(CanBeCut(Write(raster)));
 }
 
-// The model has the size of GEBCO's grid of 15 seconds, 3.7e9 samples. Blocks that are not written take
-// no room in the file.
+// The model has the size of GEBCO's grid of 15 seconds, 3.7e9 samples. Blocks that are not written
+// take no room in the file.
 TEST_F(ElevationFile, AWindowOfAModelOfTheWholeEarthIsRead) {
   Raster earth;
   earth.columns = 86400;

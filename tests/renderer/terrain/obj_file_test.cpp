@@ -271,8 +271,8 @@ TEST_F(ObjFile, BadFilesAreRefusedByLine) {
   EXPECT_NE(tests::FaultOf([&] { return ReadObj(folder_ / "none.obj"); }), "no fault");
 }
 
-/// Returns the area of a polygon in any plane: half the length of the sum of cross products (shoelace
-/// formula).
+/// Returns the area of a polygon in any plane: half the length of the sum of cross products
+/// (shoelace formula).
 double ShoelaceArea(const Corners& corners) {
   glm::dvec3 sum(0.0);
   for (std::size_t i = 0; i < corners.size(); ++i)

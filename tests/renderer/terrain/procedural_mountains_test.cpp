@@ -78,7 +78,8 @@ TEST(ProceduralMountains, AnotherSeedHasOtherMountainsAndTheSameView) {
   EXPECT_GT(Quantile(other.height_m, 1.0), 3300.0);
   const BuiltInView view = ProceduralMountainsViewAboveGround(centre);
   for (const ElevationGrid& range : {TheRange(), other}) {
-    // Bilinear heights differ by up to a metre from those of the triangles, which define the constant.
+    // Bilinear heights differ by up to a metre from those of the triangles, which define the
+    // constant.
     EXPECT_NEAR(range.HeightAt(view.eye.latitude_rad, view.eye.longitude_rad).value(),
                 kRangeViewGround_m, 2.0);
   }
