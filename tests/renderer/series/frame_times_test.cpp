@@ -374,11 +374,11 @@ TEST(FrameTimes, ARangeOfClockTimesRollsOverMidnight) {
 }
 
 TEST(FrameTimes, EachDayHasItsOwnSunrise) {
-  const std::vector<Frame> frames = Range("sunrise-10m", "2027-06-20", "1d", {}, Fuji());
-  ASSERT_EQ(frames.size(), 365U) << "both days belong to the series";
+  const std::vector<Frame> frames = Range("sunrise-10m", "2027-06-20", "4d", {}, Fuji());
+  ASSERT_EQ(frames.size(), 92U) << "both days belong to the series";
   for (const Frame& frame : frames) {
     EventDay day = Fuji();
-    day.around = AddSeconds(*day.around, frame.number * 86400.0);
+    day.around = AddSeconds(*day.around, frame.number * 4.0 * 86400.0);
     EXPECT_EQ(frame.instant, InstantFromText("sunrise-10m", day)) << frame.number;
   }
 }
