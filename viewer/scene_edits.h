@@ -17,7 +17,7 @@
 
 namespace alpenglow::viewer {
 
-/// What changed in the scene of a flight since its start.
+/// Changes of the scene of a flight since its start.
 struct SceneChanges {
   TerrainSource terrain;          // the built-in mountain range in use, if there is no other land
   Medium planet;                  // without the changes of `air`

@@ -39,7 +39,7 @@ struct PictureOrder {
   bool with_instruments = false;
 };
 
-/// What keys, gamepad and panels can change. Failures are reported to the user, not thrown.
+/// Changes that keys, gamepad and panels can make. Failures are reported to the user, not thrown.
 class FlightCommands {
  public:
   virtual ~FlightCommands() = default;

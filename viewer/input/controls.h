@@ -98,7 +98,7 @@ struct StickPlace {
 /// of its range per second.
 [[nodiscard]] double MovedToward(double value, double target, double per_second, double seconds);
 
-/// What the user wants in one frame.
+/// Intent of the user in one frame.
 struct Intent {
   PilotControls pilot;
   std::vector<const Action*> actions;  // in the order of the key presses
