@@ -458,7 +458,7 @@ std::string FirstKeysText() {
     const KeyChord chord = KeyChordFromText(key);
     const Action* action = ActionOfKey(chord.key, chord.modifiers, FlightMode::kFree);
     ALPENGLOW_ENSURE(action == nullptr, ==, false);
-    text += fmt::format("{}{}: {}", text.empty() ? "" : ", ", key, action->help);
+    text += fmt::format("{}{}: {}", text.empty() ? "" : "\n      ", key, action->help);
   }
   return text;
 }

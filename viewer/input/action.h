@@ -155,7 +155,7 @@ struct KeyChord {
 
 /// Returns the table for the manual.
 [[nodiscard]] std::string ControlsMarkdown();
-/// Returns the keys that a newcomer needs, for --help: "?: show the keys, W: fly forward, ...".
+/// Returns the keys that a newcomer needs, one a line after "Keys: ", for --help.
 [[nodiscard]] std::string FirstKeysText();
 
 }  // namespace alpenglow::viewer
