@@ -25,11 +25,14 @@ set(CMAKE_EXE_LINKER_FLAGS_SANITIZE "-fsanitize=address,undefined")
 # GoogleTest take long to optimise, with sanitizers three times as long as all other code.
 set(ALPENGLOW_LITTLE_OPTIMISATION $<$<CONFIG:Release>:-O1> $<$<CONFIG:Sanitize>:-O0>)
 
-# alpenglow_library(<folder> SOURCES a.cpp ... HEADERS a.h ...)
+# alpenglow_library(<folder> SOURCES a.cpp ... API b.cpp ...): the sources in API implement the public headers,
+# and only they see them. They are compiled one by one, because some public types have names of a layer's types.
 function(alpenglow_library folder)
-  cmake_parse_arguments(PARSE_ARGV 1 arg "" "" "SOURCES;HEADERS")
+  cmake_parse_arguments(PARSE_ARGV 1 arg "" "" "SOURCES;API")
   set(target alpenglow_${folder})
-  add_library(${target} STATIC ${arg_SOURCES})
+  add_library(${target} STATIC ${arg_SOURCES} ${arg_API})
+  set_source_files_properties(${arg_API} PROPERTIES
+    INCLUDE_DIRECTORIES ${PROJECT_SOURCE_DIR}/include SKIP_UNITY_BUILD_INCLUSION ON)
   add_library(alpenglow::${folder} ALIAS ${target})
   set_target_properties(${target} PROPERTIES EXPORT_NAME ${folder})
   target_compile_features(${target} PUBLIC cxx_std_20)
@@ -39,17 +42,21 @@ function(alpenglow_library folder)
   target_link_libraries(${target} PRIVATE $<BUILD_INTERFACE:alpenglow_warnings>)
   target_precompile_headers(${target} PRIVATE <.cmake/precompiled.h>)
   install(TARGETS ${target} EXPORT alpenglow ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
-  alpenglow_install_headers(${folder} ${arg_HEADERS})
 endfunction()
 
-# alpenglow_install_headers(<folder> a/b.h ...): strangers include <alpenglow/folder/a/b.h>, so the
-# includes inside installed headers, "folder/a/b.h" in this tree, get that prefix when they are installed.
-function(alpenglow_install_headers folder)
-  list(JOIN ARGN ";" headers)
-  install(CODE "set(source \"${CMAKE_CURRENT_SOURCE_DIR}\")
-set(destination \"\$ENV{DESTDIR}\${CMAKE_INSTALL_PREFIX}/${CMAKE_INSTALL_INCLUDEDIR}/alpenglow/${folder}\")
-set(headers \"${headers}\")
-include(\"${PROJECT_SOURCE_DIR}/.cmake/install_headers.cmake\")")
+# alpenglow::alpenglow: the public headers and all libraries. In the installed package the libraries have the
+# headers too: scene.h needs alpenglow::renderer, and the others need alpenglow::lut. In the tree only this target
+# has them, so that no source of a layer can include them.
+function(alpenglow_public_headers)
+  add_library(alpenglow_alpenglow INTERFACE)
+  add_library(alpenglow::alpenglow ALIAS alpenglow_alpenglow)
+  set_target_properties(alpenglow_alpenglow PROPERTIES EXPORT_NAME alpenglow)
+  target_include_directories(alpenglow_alpenglow INTERFACE
+    $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/include>
+    $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
+  target_link_libraries(alpenglow_alpenglow INTERFACE alpenglow_renderer)
+  install(TARGETS alpenglow_alpenglow EXPORT alpenglow)
+  install(DIRECTORY ${PROJECT_SOURCE_DIR}/include/alpenglow DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
 endfunction()
 
 # The instruction sets that kernels are compiled for (atmosphere/shared_glsl/instruction_set.h), and their options.

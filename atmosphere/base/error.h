@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Exceptions for failures caused by the user (InputError), the machine (OutputError, DisplayError)
 // or the program (InternalError). No fault is repaired silently, and every check stays in release
-// builds.
+// builds. Those that the library can throw are defined in its public header errors.h.
 #pragma once
 
 #include <filesystem>
@@ -10,14 +10,9 @@
 #include <string_view>
 #include <type_traits>
 
-namespace alpenglow::atmosphere {
+#include "include/alpenglow/errors.h"
 
-/// The input is wrong. The message is one line: file, line or key, value, allowed range. Exit
-/// status 3.
-class InputError : public std::runtime_error {
- public:
-  using std::runtime_error::runtime_error;
-};
+namespace alpenglow::atmosphere {
 
 /// An option needs a capability that this machine lacks; the message names the option. Exit status
 /// 2.
@@ -26,22 +21,10 @@ class OptionError : public InputError {
   using InputError::InputError;
 };
 
-/// An output could not be written; the message names the file. Exit status 4.
-class OutputError : public std::runtime_error {
- public:
-  using std::runtime_error::runtime_error;
-};
-
 /// There is no display, or its OpenGL version is too old. Exit status 5.
 class DisplayError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
-};
-
-/// A fault of the program. Exit status 70.
-class InternalError : public std::logic_error {
- public:
-  using std::logic_error::logic_error;
 };
 
 /// Throws the InputError "FILE: fault".

@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: MIT
+#include <alpenglow/atmosphere.h>
+
+#include <utility>
+
+#include "atmosphere/base/error.h"
+#include "atmosphere/colour/spectrum.h"
+#include "atmosphere/math/constants.h"
+#include "atmosphere/medium/medium.h"
+
+namespace alpenglow {
+
+using atmosphere::Medium;
+
+struct Atmosphere::State {
+  Medium medium;
+  atmosphere::BandColour colour;
+};
+
+Atmosphere::Atmosphere() {
+  static const Atmosphere earth(atmosphere::MediumPreset("earth"));
+  state_ = earth.state_;
+}
+
+Atmosphere::Atmosphere(const Medium& medium) {
+  atmosphere::Validate(medium);
+  atmosphere::RequireInRange(static_cast<double>(medium.wavelengths_nm.size()), 1.0,
+                             static_cast<double>(Spectrum::kMostBands),
+                             "the number of wavelengths");
+  state_ =
+      std::make_shared<const State>(State{medium, atmosphere::BandColour(medium.wavelengths_nm)});
+}
+
+Atmosphere Atmosphere::Preset(std::string_view name) {
+  return Atmosphere(atmosphere::MediumPreset(name));
+}
+
+Atmosphere Atmosphere::Preset(std::string_view name, const std::vector<double>& wavelengths_nm) {
+  return Atmosphere(atmosphere::MediumPreset(name, wavelengths_nm));
+}
+
+std::vector<std::string> Atmosphere::PresetNames() { return atmosphere::MediumPresetNames(); }
+
+Atmosphere Atmosphere::Read(const std::filesystem::path& file) {
+  return Atmosphere(atmosphere::ReadMedium(file));
+}
+
+Atmosphere Atmosphere::FromToml(std::string_view text) {
+  return Atmosphere(atmosphere::MediumFromToml(text, "atmosphere"));
+}
+
+std::string Atmosphere::ToToml() const { return atmosphere::TomlFromMedium(medium()); }
+
+Atmosphere Atmosphere::AtLatitude(double latitude_deg) const {
+  atmosphere::RequireInRange(latitude_deg, -90.0, 90.0, "latitude");
+  return Atmosphere(
+      atmosphere::OnOsculatingSphere(medium(), latitude_deg * atmosphere::kRadiansPerDegree));
+}
+
+const std::string& Atmosphere::name() const { return medium().name; }
+
+std::span<const double> Atmosphere::wavelengths_nm() const { return medium().wavelengths_nm; }
+
+std::span<const double> Atmosphere::solar_irradiance_w_per_m2_nm() const {
+  return medium().solar_irradiance;
+}
+
+double Atmosphere::planet_radius_m() const { return medium().planet_radius_m; }
+
+double Atmosphere::top_m() const { return medium().atmosphere_height_m; }
+
+std::uint64_t Atmosphere::hash() const { return atmosphere::MediumHash(medium()); }
+
+LinearRgb Atmosphere::ColourOf(const Spectrum& light) const {
+  const std::vector<double>& sun = medium().solar_irradiance;
+  if (light.size() != sun.size()) {
+    throw InputError("a spectrum has " + std::to_string(light.size()) + " bands; it must have " +
+                     std::to_string(sun.size()));
+  }
+  std::array<double, Spectrum::kMostBands> scaled{};
+  for (std::size_t band = 0; band < sun.size(); ++band) {
+    scaled[band] = sun[band] * static_cast<double>(light[band]);
+  }
+  const auto [red, green, blue] = state_->colour.LinearSrgb({scaled.data(), sun.size()});
+  return {red, green, blue};
+}
+
+const Medium& Atmosphere::medium() const { return state_->medium; }
+
+double Luminance(const LinearRgb& colour) {
+  const auto& row = atmosphere::XyzFromLinearSrgb()[1];
+  return row[0] * colour.red + row[1] * colour.green + row[2] * colour.blue;
+}
+
+}  // namespace alpenglow

@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: MIT
+// Conversions between values of the public headers and those of this layer.
+#pragma once
+
+#include <alpenglow/place_time.h>
+
+#include "atmosphere/time_place/geodesy.h"
+#include "atmosphere/time_place/time.h"
+
+namespace alpenglow {
+
+/// Returns the place. Throws InputError as PlaceFromDegrees does.
+[[nodiscard]] atmosphere::GeodeticPosition GeodeticFromPlace(const Place& place);
+
+[[nodiscard]] atmosphere::UtcInstant InstantFromTime(UtcTime time);
+
+/// Returns the time, rounded to microseconds. A leap second becomes the first second of the next
+/// day.
+[[nodiscard]] UtcTime TimeFromInstant(const atmosphere::UtcInstant& instant);
+
+}  // namespace alpenglow

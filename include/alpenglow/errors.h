@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: MIT
+/// @file
+/// Exceptions of the library. No fault is repaired silently.
+#pragma once
+
+#include <stdexcept>
+
+namespace alpenglow::atmosphere {
+
+/// The input is wrong: a value, a name or a file. The message is one line with file, line or key,
+/// value and allowed range. Programs exit with status 3.
+class InputError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// An output could not be written; the message names the file. Programs exit with status 4.
+class OutputError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// A fault of the library itself; please report it. Programs exit with status 70.
+class InternalError : public std::logic_error {
+ public:
+  using std::logic_error::logic_error;
+};
+
+}  // namespace alpenglow::atmosphere
+
+/// Light in the atmospheres of planets: sky, aerial perspective, tables and pictures.
+///
+/// Any function may throw InternalError and std::bad_alloc. The other exceptions are part of the
+/// description of each function.
+namespace alpenglow {
+
+using atmosphere::InputError;
+using atmosphere::InternalError;
+using atmosphere::OutputError;
+
+}  // namespace alpenglow

@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: MIT
+/// @file
+/// Images of physical light, their files, and their conversion for a display.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace alpenglow {
+
+/// A plane of values beside the colours of an image, row 0 at the top.
+struct ImageLayer {
+  std::string name;           ///< channel in the EXR file, such as "depth.Z"
+  std::vector<float> values;  ///< width * height values
+};
+
+/// An image in linear sRGB [cd/m^2]. Colours are not clamped: values outside of the gamut are
+/// negative.
+struct HdrImage {
+  int width = 0;                                ///< pixels
+  int height = 0;                               ///< pixels
+  std::vector<std::array<float, 3>> rgb;        ///< width * height pixels, row 0 at the top
+  std::vector<ImageLayer> layers;               ///< further planes of the same size
+  bool is_panorama = false;                     ///< longitude-latitude picture of the whole sphere
+  std::map<std::string, std::string> metadata;  ///< attributes of the file
+};
+
+/// Exposure and colours of an image for a display. The names are those of the programs' options
+/// --tone-map, --look and --white-balance.
+struct DisplayOptions {
+  /// Exposure value at ISO 100, in [-30, 30]; by default the image is metered.
+  std::optional<double> ev100;
+  /// "agx", "aces", "reinhard", "pbr-neutral", "linear", or "local" for local exposure and agx.
+  std::string tone_map = "agx";
+  /// Look of agx: "photo", "none", "punchy", "medium" or "high".
+  std::string look = "photo";
+  /// "camera", "daylight", "auto" or kelvins in [1500, 25000], such as "5600".
+  std::string white_balance = "camera";
+};
+
+/// Writes float RGB and all layers as OpenEXR (ZIP), replacing the file atomically. Throws
+/// OutputError if the file cannot be written, and InputError unless all planes have width * height
+/// finite values.
+void WriteExr(const std::filesystem::path& file, const HdrImage& image);
+
+/// Reads an OpenEXR file of scan lines with channels R, G and B. Throws InputError for a file that
+/// is missing, damaged or of another kind. Panoramas are recognised if WriteExr() wrote them.
+[[nodiscard]] HdrImage ReadExr(const std::filesystem::path& file);
+
+/// Returns 8-bit sRGB, three values per pixel: exposed, tone-mapped and dithered. The result is the
+/// same in every run. Throws InputError for an unknown name, a value out of range and for pixels
+/// that are not finite.
+[[nodiscard]] std::vector<std::uint8_t> ForDisplay(const HdrImage& image,
+                                                   const DisplayOptions& options = {});
+
+/// Writes ForDisplay() as PNG, replacing the file atomically. Throws InputError as ForDisplay()
+/// does, and OutputError if the file cannot be written.
+void WritePng(const std::filesystem::path& file, const HdrImage& image,
+              const DisplayOptions& options = {});
+
+}  // namespace alpenglow

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: MIT
+/// @file
+/// Panoramas of the whole sphere around one observer, for lighting.
+#pragma once
+
+#include <alpenglow/image.h>
+#include <alpenglow/sky.h>
+#include <alpenglow/sun_and_moon.h>
+
+namespace alpenglow {
+
+/// The direction in the centre of a panorama. East is +x in all programs; panoramas are never
+/// mirrored.
+enum class PanoramaCentre {
+  kNorth,    ///< geographic: north
+  kBlender,  ///< +x, east
+  kOpenExr,  ///< +z, south
+  kThreeJs,  ///< +x, east
+  kUnity,    ///< +x, east
+  kGodot     ///< +z, south
+};
+
+/// Size and content of a panorama.
+struct PanoramaOptions {
+  int width = 2048;         ///< in [1, 32768]
+  int height = 1024;        ///< in [1, 32768]
+  double altitude_m = 2.0;  ///< of the observer
+  SunInSky sun;             ///< its default stands 45 degrees high in the south
+  PanoramaCentre centre = PanoramaCentre::kNorth;  ///< convention of the program that reads it
+  bool draws_sun = false;  ///< draw the disk: a few pixels of some 1e9 cd/m^2
+};
+
+/// Renders the sky and the ground around an observer, on all processors: longitude-latitude, row 0
+/// at the zenith. The ground has the albedo of the atmosphere and is seen through the air.
+///
+/// Error of the luminance against evaluation at the centres of pixels, relative to it or to 1e-4 of
+/// the brightest pixel: below 0.1 % (rms) with the sun above 10 degrees, below 0.3 % down to -10
+/// degrees (asserted by panorama_test). Throws InputError for a size out of range.
+[[nodiscard]] HdrImage RenderPanorama(const Sky& sky, const PanoramaOptions& options);
+
+/// Returns the illuminance of sun and sky on a horizontal plane at the observer [lx]; the horizon
+/// cuts the disk of the sun.
+[[nodiscard]] double HorizontalIlluminance(const Sky& sky, double altitude_m, const SunInSky& sun);
+
+}  // namespace alpenglow

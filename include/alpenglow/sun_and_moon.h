@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: MIT
+/// @file
+/// Positions of the sun and the moon at a place and time, and the times of sunrise and twilight.
+#pragma once
+
+#include <optional>
+#include <string_view>
+
+#include <alpenglow/atmosphere.h>
+#include <alpenglow/geometry.h>
+#include <alpenglow/place_time.h>
+
+namespace alpenglow {
+
+/// The sun as seen from a place. Its default is a sun in the south at its mean distance.
+struct SunInSky {
+  double elevation_deg = 45.0;         ///< of the centre, with refraction
+  double azimuth_deg = 180.0;          ///< clockwise from north
+  double distance_au = 1.0;            ///< from the place
+  double angular_radius_deg = 0.2666;  ///< of the disk
+  /// The air is lit by a sun that stands lower by this angle [degrees]: refraction bends rays less
+  /// before they reach high air than before they reach the observer.
+  double lower_for_air_deg = 0.0;
+
+  /// Returns the direction in which the sun is visible: for its disk and for light on surfaces.
+  [[nodiscard]] Direction ToSun() const;
+  /// Returns the direction of the sun that lights the air: for Sky.
+  [[nodiscard]] Direction ToSunForAir() const;
+};
+
+/// The moon as seen from a place.
+struct MoonInSky {
+  double elevation_deg = 0.0;         ///< of the centre, with refraction
+  double azimuth_deg = 0.0;           ///< clockwise from north
+  double distance_m = 0.0;            ///< from the place to the centre
+  double angular_radius_deg = 0.0;    ///< of the disk
+  double phase_angle_deg = 0.0;       ///< 0 at full moon, 180 at new moon
+  double illuminated_fraction = 0.0;  ///< of the disk, by area, in [0, 1]
+};
+
+/// Returns the sun as seen from a place, with the refraction of an atmosphere. Without refraction
+/// the direction is within 2 arcseconds of the NREL Solar Position Algorithm (asserted by
+/// sun_test). Throws InputError for a place out of range.
+[[nodiscard]] SunInSky SunAt(const Place& place, UtcTime time, const Atmosphere& atmosphere = {});
+
+/// Returns the moon as seen from a place, with the refraction of an atmosphere. Throws InputError
+/// for a place out of range.
+[[nodiscard]] MoonInSky MoonAt(const Place& place, UtcTime time, const Atmosphere& atmosphere = {});
+
+/// Returns the time of an event on the local solar day that contains `around`, or std::nullopt if
+/// it does not happen on that day, as in polar night. Error of the search: below 0.1 s (asserted by
+/// sun_events_test). Throws InputError for an unknown name or a place out of range.
+/// @param event  "noon", "sunrise", "sunset", or "civil-", "nautical-" or "astronomical-" before
+///   "dawn" or "dusk".
+/// @param place  of the observer; its height lowers the horizon.
+/// @param around  any time of the day.
+[[nodiscard]] std::optional<UtcTime> SunEventTime(std::string_view event, const Place& place,
+                                                  UtcTime around);
+
+}  // namespace alpenglow

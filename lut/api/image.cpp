@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: MIT
+#include <alpenglow/errors.h>
+#include <alpenglow/image.h>
+
+#include <cmath>
+#include <utility>
+
+#include "atmosphere/base/error.h"
+#include "lut/image/image.h"
+#include "lut/image/look.h"
+
+namespace alpenglow {
+namespace {
+
+constexpr const char* kProjectionKey = "alpenglow.projection";
+
+lut::Projection ProjectionOf(const HdrImage& image) {
+  return image.is_panorama ? lut::Projection::kLatitudeLongitude : lut::Projection::kCamera;
+}
+
+/// Returns the image. Throws InputError for a wrong number of values and for values that are not
+/// finite.
+lut::Image CheckedImage(const HdrImage& image) {
+  lut::Image checked(image.width, image.height);
+  const std::size_t pixels = checked.rgb.size();
+  if (image.rgb.size() != pixels) {
+    throw InputError("the image has " + std::to_string(image.rgb.size()) +
+                     " pixels; it must have " + std::to_string(pixels));
+  }
+  checked.rgb = image.rgb;
+  for (const ImageLayer& layer : image.layers) {
+    if (layer.name.empty() || layer.values.size() != pixels) {
+      throw InputError("the layer \"" + layer.name + "\" must have a name and " +
+                       std::to_string(pixels) + " values");
+    }
+    checked.layers.push_back({layer.name, layer.values});
+  }
+  if (const auto fault = lut::FaultyValue(checked)) throw InputError(*fault);
+  return checked;
+}
+
+struct Developed {
+  lut::DisplayImage display;
+  double ev100;
+  lut::Look look;
+};
+
+Developed DevelopedBy(const HdrImage& image, const DisplayOptions& options) {
+  const lut::ExposureRule rule =
+      options.ev100
+          ? lut::ExposureRule{lut::ExposureRule::Kind::kFixed,
+                              atmosphere::RequireInRange(*options.ev100, -30.0, 30.0, "ev100")}
+          : lut::ExposureRule{};
+  lut::Look look = lut::LookFromName(options.tone_map);
+  look.agx = lut::AgxLookFromName(options.look);
+  look.white = lut::WhiteBalanceFromText(options.white_balance);
+  const lut::PictureView view{ProjectionOf(image)};
+  const lut::Image light = CheckedImage(image);
+  look = lut::Settled(lut::LookUnder(rule, look), light, view);
+  const lut::Image seen = lut::Seen(light, look, view);
+  const double ev100 = lut::Ev100By(
+      rule, lut::MeterEv100(seen, lut::kSunDiskLuminance_cd_per_m2, view.projection), look);
+  return {lut::Develop(seen, ev100, look), ev100, look};
+}
+
+}  // namespace
+
+void WriteExr(const std::filesystem::path& file, const HdrImage& image) {
+  lut::Metadata metadata = image.metadata;
+  if (image.is_panorama) metadata[kProjectionKey] = "latlong";
+  lut::WriteExr(file, CheckedImage(image), metadata, ProjectionOf(image));
+}
+
+HdrImage ReadExr(const std::filesystem::path& file) {
+  lut::Image read = lut::ReadExr(file);
+  HdrImage image;
+  image.width = read.width;
+  image.height = read.height;
+  image.rgb = std::move(read.rgb);
+  for (lut::Channel& layer : read.layers) {
+    image.layers.push_back({std::move(layer.name), std::move(layer.values)});
+  }
+  image.metadata = lut::ReadExrMetadata(file);
+  image.is_panorama = image.metadata.contains(kProjectionKey);
+  return image;
+}
+
+std::vector<std::uint8_t> ForDisplay(const HdrImage& image, const DisplayOptions& options) {
+  return DevelopedBy(image, options).display.rgb;
+}
+
+void WritePng(const std::filesystem::path& file, const HdrImage& image,
+              const DisplayOptions& options) {
+  const Developed developed = DevelopedBy(image, options);
+  lut::Metadata metadata = image.metadata;
+  metadata["alpenglow.ev100"] = std::to_string(developed.ev100);
+  metadata["alpenglow.tone_curve"] = lut::NameOf(developed.look);
+  metadata["alpenglow.white_balance"] = lut::NameOf(developed.look.white);
+  lut::WritePng(file, developed.display, metadata);
+}
+
+}  // namespace alpenglow

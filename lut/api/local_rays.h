@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: MIT
+// Rays of the public headers in the form that this layer uses.
+//
+//   altitude = z + (x^2 + y^2) / (r + R + z),     r = distance from the centre of the planet
+//
+// is exact above the origin and loses no digits elsewhere.
+#pragma once
+
+#include <alpenglow/geometry.h>
+
+#include <glm/vec3.hpp>
+#include <limits>
+
+#include "atmosphere/ray/ray.h"
+
+namespace alpenglow {
+
+/// Returns the unit vector. Throws InputError for a direction that is not finite or has length 0.
+[[nodiscard]] glm::dvec3 UnitVectorOf(const Direction& direction);
+
+/// Altitude and zenith direction of a point.
+struct AltitudeAndZenith {
+  double altitude_m;
+  glm::dvec3 up;  // unit vector
+};
+/// Throws InputError for a point that is not finite or not above the centre of the planet.
+[[nodiscard]] AltitudeAndZenith AltitudeOf(const LocalPoint& point, double planet_radius_m);
+
+/// @param view, to_sun  unit vectors.
+[[nodiscard]] atmosphere::ViewRay RayFrom(
+    const AltitudeAndZenith& eye, const glm::dvec3& view, const glm::dvec3& to_sun,
+    double length_m = std::numeric_limits<double>::infinity());
+
+}  // namespace alpenglow

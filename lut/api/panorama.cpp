@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: MIT
+#include <alpenglow/panorama.h>
+
+#include <utility>
+
+#include "atmosphere/math/constants.h"
+#include "lut/api/sky_state.h"
+#include "lut/cli/program.h"
+#include "lut/sky/panorama.h"
+
+namespace alpenglow {
+
+using atmosphere::kRadiansPerDegree;
+
+namespace {
+
+lut::PanoramaSun SunOf(const SunInSky& sun) {
+  return {sun.elevation_deg * kRadiansPerDegree, sun.azimuth_deg * kRadiansPerDegree,
+          sun.distance_au, sun.angular_radius_deg * kRadiansPerDegree,
+          sun.lower_for_air_deg * kRadiansPerDegree};
+}
+
+lut::PanoramaOrientation OrientationOf(PanoramaCentre centre) {
+  switch (centre) {
+    case PanoramaCentre::kNorth:
+      return lut::PanoramaOrientation::kNorth;
+    case PanoramaCentre::kBlender:
+      return lut::PanoramaOrientation::kBlender;
+    case PanoramaCentre::kOpenExr:
+      return lut::PanoramaOrientation::kOpenExr;
+    case PanoramaCentre::kThreeJs:
+      return lut::PanoramaOrientation::kThree;
+    case PanoramaCentre::kUnity:
+      return lut::PanoramaOrientation::kUnity;
+    case PanoramaCentre::kGodot:
+      return lut::PanoramaOrientation::kGodot;
+  }
+  return lut::PanoramaOrientation::kNorth;
+}
+
+}  // namespace
+
+HdrImage RenderPanorama(const Sky& sky, const PanoramaOptions& options) {
+  lut::PanoramaSettings settings;
+  settings.width = options.width;
+  settings.height = options.height;
+  settings.altitude_m = options.altitude_m;
+  settings.sun = SunOf(options.sun);
+  settings.orientation = OrientationOf(options.centre);
+  settings.sun_disk = options.draws_sun;
+  lut::Image image =
+      lut::RenderPanorama(sky.state().air, sky.state().multiple_scattering(), settings);
+  HdrImage panorama;
+  panorama.width = image.width;
+  panorama.height = image.height;
+  panorama.rgb = std::move(image.rgb);
+  panorama.is_panorama = true;
+  panorama.metadata = {{"Software", lut::ProducerText()},
+                       {"alpenglow.unit", "cd/m^2, linear sRGB (Rec. 709 primaries, D65)"},
+                       {"alpenglow.atmosphere", sky.atmosphere().name()},
+                       {"alpenglow.orientation", lut::NameOf(settings.orientation)}};
+  return panorama;
+}
+
+double HorizontalIlluminance(const Sky& sky, double altitude_m, const SunInSky& sun) {
+  return lut::HorizontalIlluminance(sky.state().air, sky.state().multiple_scattering(), altitude_m,
+                                    SunOf(sun));
+}
+
+}  // namespace alpenglow

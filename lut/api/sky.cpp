@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: MIT
+#include <alpenglow/errors.h>
+#include <alpenglow/sky.h>
+#include <alpenglow/version.h>
+#include <oneapi/tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <utility>
+
+#include "lut/api/local_rays.h"
+#include "lut/api/sky_state.h"
+#include "lut/version.h"
+
+namespace alpenglow {
+
+using atmosphere::Bands;
+using atmosphere::ViewRay;
+
+std::string_view Version() { return version::kRelease; }
+
+glm::dvec3 UnitVectorOf(const Direction& direction) {
+  const glm::dvec3 vector{direction.east, direction.north, direction.up};
+  const double length = glm::length(vector);
+  if (!(length > 0.0 && std::isfinite(length))) {
+    throw InputError("a direction must be finite and longer than 0");
+  }
+  return vector / length;
+}
+
+AltitudeAndZenith AltitudeOf(const LocalPoint& point, double planet_radius_m) {
+  const glm::dvec3 from_centre{point.east_m, point.north_m, planet_radius_m + point.up_m};
+  const double radius_m = glm::length(from_centre);
+  const double across2 = point.east_m * point.east_m + point.north_m * point.north_m;
+  if (!(from_centre.z > 0.0 && std::isfinite(radius_m))) {
+    throw InputError("a point must be finite and above the centre of the planet");
+  }
+  return {point.up_m + across2 / (radius_m + from_centre.z), from_centre / radius_m};
+}
+
+ViewRay RayFrom(const AltitudeAndZenith& eye, const glm::dvec3& view, const glm::dvec3& to_sun,
+                double length_m) {
+  const auto cosine = [](const glm::dvec3& a, const glm::dvec3& b) {
+    return std::clamp(glm::dot(a, b), -1.0, 1.0);
+  };
+  return {eye.altitude_m, cosine(view, eye.up), cosine(to_sun, eye.up), cosine(view, to_sun),
+          length_m};
+}
+
+namespace {
+
+Spectrum SpectrumOf(const Bands<float>& bands) {
+  Spectrum spectrum(bands.count);
+  for (std::size_t band = 0; band < bands.count; ++band) spectrum[band] = bands[band];
+  return spectrum;
+}
+
+lut::TableFolder SolvedWithoutTables(const atmosphere::Medium& medium) {
+  lut::TableFolder tables;
+  tables.medium = medium;
+  tables.multiple_scattering.emplace(medium, lut::OptionsFor(medium));
+  return tables;
+}
+
+/// Rays from one eye under one sun.
+class RaysFrom {
+ public:
+  RaysFrom(const Sky::State& sky, const LocalPoint& eye, const Direction& to_sun)
+      : sky_(sky),
+        eye_{eye.east_m, eye.north_m, eye.up_m},
+        place_(AltitudeOf(eye, sky.parameters.planet_radius_m())),
+        to_sun_(UnitVectorOf(to_sun)) {}
+
+  [[nodiscard]] Spectrum Radiance(const Direction& view) const {
+    return SpectrumOf(
+        sky_.lookup.InscatterOfAllOrders(RayFrom(place_, UnitVectorOf(view), to_sun_)));
+  }
+
+  [[nodiscard]] AirBetween Between(const LocalPoint& object) const {
+    const glm::dvec3 way = glm::dvec3{object.east_m, object.north_m, object.up_m} - eye_;
+    const double length_m = glm::length(way);
+    if (!std::isfinite(length_m)) throw InputError("a point must be finite");
+    const glm::dvec3 view = length_m > 0.0 ? way / length_m : place_.up;
+    const ViewRay ray = RayFrom(place_, view, to_sun_, length_m);
+    const atmosphere::SingleScattering<float>& air = sky_.air;
+    const auto samples = air.Sample(
+        ray, {.nodes = sky_.lookup.tables().ray_nodes, .split_ozone = false, .dark_samples = true});
+    Bands<float> light = air.Inscatter(air.Scatter(samples), ray.nu);
+    const Bands<float> more =
+        sky_.multiple_scattering().InscatterAlong(samples, ray.nu, lut::SegmentEnd::kOpaque);
+    for (std::size_t band = 0; band < light.count; ++band) light[band] += more[band];
+    return {SpectrumOf(air.TransmittanceAlong(ray)), SpectrumOf(light)};
+  }
+
+ private:
+  const Sky::State& sky_;
+  glm::dvec3 eye_;
+  AltitudeAndZenith place_;
+  glm::dvec3 to_sun_;
+};
+
+}  // namespace
+
+Sky::State::State(Atmosphere air_parameters, lut::TableFolder tables)
+    : parameters(std::move(air_parameters)), air(parameters.medium()), lookup(std::move(tables)) {}
+
+Sky::Sky(const Atmosphere& atmosphere)
+    : Sky(std::make_shared<const State>(atmosphere, SolvedWithoutTables(atmosphere.medium()))) {}
+
+Sky::Sky(std::shared_ptr<const State> state) : state_(std::move(state)) {}
+
+const Atmosphere& Sky::atmosphere() const { return state_->parameters; }
+
+Spectrum Sky::Radiance(const LocalPoint& eye, const Direction& view,
+                       const Direction& to_sun) const {
+  return RaysFrom(*state_, eye, to_sun).Radiance(view);
+}
+
+std::vector<Spectrum> Sky::Radiance(const LocalPoint& eye, std::span<const Direction> views,
+                                    const Direction& to_sun) const {
+  const RaysFrom rays(*state_, eye, to_sun);
+  std::vector<Spectrum> result(views.size());
+  tbb::parallel_for(std::size_t{0}, views.size(),
+                    [&](std::size_t i) { result[i] = rays.Radiance(views[i]); });
+  return result;
+}
+
+AirBetween Sky::Between(const LocalPoint& eye, const LocalPoint& object,
+                        const Direction& to_sun) const {
+  return RaysFrom(*state_, eye, to_sun).Between(object);
+}
+
+void Sky::Between(const LocalPoint& eye, std::span<const LocalPoint> objects,
+                  const Direction& to_sun, std::span<AirBetween> result) const {
+  if (result.size() != objects.size()) {
+    throw InputError("the results must be as many as the objects");
+  }
+  const RaysFrom rays(*state_, eye, to_sun);
+  tbb::parallel_for(std::size_t{0}, objects.size(),
+                    [&](std::size_t i) { result[i] = rays.Between(objects[i]); });
+}
+
+std::vector<AirBetween> Sky::Between(const LocalPoint& eye, std::span<const LocalPoint> objects,
+                                     const Direction& to_sun) const {
+  std::vector<AirBetween> result(objects.size());
+  Between(eye, objects, to_sun, result);
+  return result;
+}
+
+Spectrum Sky::SunIrradiance(const LocalPoint& point, const Direction& to_sun) const {
+  const AltitudeAndZenith place = AltitudeOf(point, atmosphere().planet_radius_m());
+  return SpectrumOf(
+      state_->lookup.SunIrradiance(place.altitude_m, glm::dot(UnitVectorOf(to_sun), place.up)));
+}
+
+Spectrum Sky::SkyIrradiance(const LocalPoint& point, const Direction& to_sun) const {
+  const AltitudeAndZenith place = AltitudeOf(point, atmosphere().planet_radius_m());
+  return SpectrumOf(
+      state_->lookup.SkyIrradiance(place.altitude_m, glm::dot(UnitVectorOf(to_sun), place.up)));
+}
+
+}  // namespace alpenglow

@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: MIT
+#include <alpenglow/errors.h>
+#include <alpenglow/scene.h>
+
+#include <utility>
+
+#include "atmosphere/api/conversions.h"
+#include "atmosphere/math/constants.h"
+#include "renderer/picture/picture_layers.h"
+#include "renderer/picture/render.h"
+#include "renderer/scene/scene.h"
+#include "renderer/scene/scene_options.h"
+#include "renderer/series/manifest.h"
+#include "renderer/terrain/procedural_mountains.h"
+
+namespace alpenglow {
+
+using atmosphere::kRadiansPerDegree;
+
+struct Scene::State {
+  explicit State(const renderer::Scene& loaded) : scene(loaded), renderer(loaded) {}
+
+  renderer::Scene scene;
+  renderer::SceneRenderer renderer;
+};
+
+namespace {
+
+renderer::TerrainSource TerrainOf(const SceneDescription& description) {
+  renderer::TerrainSource terrain;
+  switch (description.terrain) {
+    case TerrainKind::kBuiltInMountains:
+      terrain = renderer::RangeSeenFrom(GeodeticFromPlace(description.place));
+      break;
+    case TerrainKind::kElevationModel:
+      terrain.kind = renderer::TerrainSource::Kind::kElevationModel;
+      terrain.file = description.elevation_model;
+      break;
+    case TerrainKind::kNone:
+      terrain.kind = renderer::TerrainSource::Kind::kNone;
+      break;
+  }
+  terrain.is_default = false;
+  return terrain;
+}
+
+renderer::Scene SceneFrom(const SceneDescription& description) {
+  renderer::Scene scene;
+  scene.place = GeodeticFromPlace(description.place);
+  scene.place.height_m = 0.0;
+  const Camera& camera = description.camera;
+  scene.camera = renderer::CameraFromDegrees({camera.height_m, camera.height_is_above_ground},
+                                             camera.heading_deg, camera.pitch_deg, camera.roll_deg,
+                                             camera.fov_deg, "camera.");
+  scene.medium = description.atmosphere.medium();
+  scene.terrain = TerrainOf(description);
+  return scene;
+}
+
+}  // namespace
+
+SceneDescription BuiltInScene() {
+  const renderer::BuiltInView view = renderer::ProceduralMountainsViewAboveGround(
+      atmosphere::PlaceFromDegrees(renderer::kHomeLatitude, renderer::kHomeLongitude, 0.0));
+  SceneDescription scene;
+  scene.place = {view.eye.latitude_rad / kRadiansPerDegree,
+                 view.eye.longitude_rad / kRadiansPerDegree};
+  scene.camera = {.height_m = view.eye.height_m,
+                  .heading_deg = view.heading_deg,
+                  .pitch_deg = view.pitch_deg,
+                  .fov_deg = view.fov_deg};
+  return scene;
+}
+
+Scene::Scene(const SceneDescription& description)
+    : Scene(std::make_shared<const State>(SceneFrom(description))) {}
+
+Scene::Scene(std::shared_ptr<const State> state) : state_(std::move(state)) {}
+
+Scene Scene::Read(const std::filesystem::path& file) {
+  return Scene(std::make_shared<const State>(renderer::ReadScene(file)));
+}
+
+HdrImage Scene::Render(UtcTime time, const StillOptions& options) const {
+  renderer::RenderSettings settings;
+  settings.width = options.width;
+  settings.height = options.height;
+  settings.samples_per_pixel = options.samples_per_pixel;
+  settings.noise = options.noise;
+  settings.layers = renderer::LayersFromNames(options.layers);
+  lut::Image image = state_->renderer.Render(InstantFromTime(time), settings);
+  HdrImage still;
+  still.width = image.width;
+  still.height = image.height;
+  still.rgb = std::move(image.rgb);
+  for (lut::Channel& layer : image.layers) {
+    still.layers.push_back({std::move(layer.name), std::move(layer.values)});
+  }
+  still.is_panorama = state_->scene.camera.IsPanorama();
+  still.metadata = renderer::PictureMetadata(state_->scene, settings);
+  still.metadata["alpenglow.utc"] = TextFromTime(time);
+  return still;
+}
+
+double Scene::HorizontalIlluminance(UtcTime time) const {
+  return state_->renderer.Illuminance(InstantFromTime(time));
+}
+
+const std::string& Scene::terrain_message() const { return state_->renderer.terrain_message(); }
+
+}  // namespace alpenglow
