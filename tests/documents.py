@@ -6,7 +6,7 @@
 - A manual has every option that --help of its program prints, and no option that it does not print.
 - The manuals of scene.toml and atmosphere.toml have every key that the readers accept. The readers
   list their keys in the message about an unknown one.
-- The example of README.md is the one that tests/consumer builds.
+- The first example of README.md is the one that tests/consumer builds.
 """
 import argparse
 import pathlib

@@ -20,10 +20,10 @@ LAYERS = ("atmosphere", "lut", "renderer", "viewer")
 SOURCES = (".h", ".cpp", ".glsl")
 MOST_PUBLIC_METHODS = 20
 LIMITS = {
-    "source files of the four layers": 541,
+    "source files of the four layers": 551,
     "types with more than 20 public methods": 7,
     "files over 500 lines": 9,
-    "installed headers": 146,
+    "installed headers": 14,
     "comment blocks that start without a subject, %": 1.0,
 }
 LEAST_MEDIAN = 120  # lines of a file, in every layer
@@ -116,15 +116,6 @@ def comment_blocks():
                 before = now
 
 
-def installed_headers():
-    count = 0
-    for layer in LAYERS:
-        lists = text_of(TREE / layer / "CMakeLists.txt")
-        listed = re.search(r"HEADERS(.*?)\)", lists, re.DOTALL)
-        count += len(re.findall(r"\S+\.(?:h|glsl)", listed[1])) if listed else 0
-    return count
-
-
 def build_size(build):
     commands = subprocess.run(["ninja", "-C", build, "-t", "commands"], capture_output=True, text=True, check=True)
     lines = commands.stdout.splitlines()
@@ -149,7 +140,7 @@ def rows(build):
     fragments = sum(bool(FRAGMENT.match(block)) for block in blocks)
     shape["comment blocks"] = len(blocks)
     shape["comment blocks that start without a subject, %"] = round(100.0 * fragments / len(blocks), 1)
-    shape["installed headers"] = installed_headers()
+    shape["installed headers"] = len(files("include"))
     if build:
         shape.update(build_size(build))
     return shape

@@ -5,7 +5,9 @@
 - Folder order: a file includes nothing of a folder above its own. The four layers stand in the order
   atmosphere, lut, renderer, viewer; the folders of a layer stand in the order of the table in its README.
 - The README of a layer lists every folder of it.
-- Namespaces: a source of a layer declares nothing in the namespace of another one.
+- Namespaces: a source of a layer declares nothing in the namespace of another one. Only the public headers and
+  the folders api/, which implement them, declare names in namespace alpenglow.
+- Public headers include the standard library and each other, as <alpenglow/NAME.h>, and nothing else.
 - The top level of the repository has only the known entries.
 - Every file that begins with an interpreter can be run.
 - Programs write to standard output and error only through lut/cli/messages.h: fmt::print throws
@@ -24,7 +26,7 @@ ALL_LAYERS = (*LAYERS, "tests")  # nothing includes what the tests have
 # Written by the build, or without contents of a folder: these stand under all folders of their layer.
 LOWEST = ("embedded_text.h", "version.h", "layer.h")
 TOP_LEVEL = {"CHANGELOG.md", "CITATION.cff", "CMakeLists.txt", "CMakePresets.json", "CONTRIBUTING.md", "LICENSE",
-             "README.md", "atmosphere", "build", "lut", "out", "quickstart.sh", "renderer", "tests", "viewer"}
+             "README.md", "atmosphere", "build", "include", "lut", "out", "quickstart.sh", "renderer", "tests", "viewer"}
 SPEECH = ("fmt::print", "std::cerr", "std::cout <<", "printf(")
 INCLUDE = re.compile(r'^\s*#\s*include\s*["<](?:alpenglow/)?([^">]+)[">]')
 NAMESPACE = re.compile(r"^namespace alpenglow::(\w+)", re.MULTILINE)
@@ -66,8 +68,16 @@ def foreign_namespaces(path, text):
     for name in NAMESPACE.findall(text):
         if name in LAYERS and name != layer and not path.endswith("/layer.h"):
             yield f"{path}: namespace alpenglow::{name} belongs to another layer"
-    if re.search(r"^namespace alpenglow \{", text, re.MULTILINE):
+    is_public = path.startswith("include/") or path.split("/")[1:2] == ["api"]
+    if not is_public and re.search(r"^namespace alpenglow \{", text, re.MULTILINE):
         yield f"{path}: namespace alpenglow without the name of a layer"
+
+
+def foreign_includes(path, text):
+    """What a public header includes that strangers do not have."""
+    for included in re.findall(r"^\s*#\s*include\s*(\S+)", text, re.MULTILINE):
+        if not re.fullmatch(r"<(alpenglow/\w+\.h|\w+)>", included):
+            yield f"{path}: a public header includes {included}"
 
 
 def speech(path, text):
@@ -93,6 +103,9 @@ def check_examples():
         assert len(found) == expected, (path, included, found)
     assert len(list(foreign_namespaces("lut/sky/a.h", "namespace alpenglow::renderer {\n"))) == 1
     assert len(list(foreign_namespaces("lut/sky/a.h", "namespace alpenglow {\n"))) == 1
+    assert not list(foreign_namespaces("lut/api/a.h", "namespace alpenglow {\n"))
+    assert len(list(foreign_includes("a.h", '#include "b.h"\n#include <glm/vec3.hpp>\n'))) == 2
+    assert not list(foreign_includes("a.h", "#include <vector>\n#include <alpenglow/b.h>\n"))
     assert not list(foreign_namespaces("lut/sky/a.h", "namespace alpenglow::lut {\nnamespace alpenglow::shared {\n"))
     assert len(speech("lut/a.cpp", 'std::cerr << "x";')) == 1
     assert folders_of("| `air/` | media |\n| `ray.h` | no folder |\n") == ["air"]
@@ -115,6 +128,8 @@ def broken_rules():
             if not path.endswith(".glsl"):
                 yield from foreign_namespaces(path, text)
                 yield from speech(path, text)
+    for file in sorted((TREE / "include").rglob("*.h")):
+        yield from foreign_includes(str(file.relative_to(TREE)), file.read_text(encoding="utf-8"))
     for entry in sorted(TREE.iterdir()):
         if entry.name[0] != "." and entry.name not in TOP_LEVEL:
             yield f"{entry.name}: the top level is closed"

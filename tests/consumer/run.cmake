@@ -1,4 +1,5 @@
-# Installs BUILD into PREFIX, configures and builds the consumer against it, runs its programs.
+# Installs BUILD into PREFIX, configures and builds the consumer against it, runs its programs. The elevation model
+# that PYTHON writes is an SRTM tile of hills.
 function(run)
   execute_process(COMMAND ${ARGN} RESULT_VARIABLE status OUTPUT_VARIABLE output ERROR_VARIABLE output)
   if(NOT status EQUAL 0)
@@ -10,5 +11,15 @@ run(${CMAKE_COMMAND} --install ${BUILD} --prefix ${PREFIX})
 run(${CMAKE_COMMAND} -G Ninja -S ${SOURCE} -B ${BINARY} -DCMAKE_PREFIX_PATH=${PREFIX}
     -DCMAKE_BUILD_TYPE=${TYPE} -DCMAKE_CXX_FLAGS=${FLAGS} -DCMAKE_CXX_COMPILER=${COMPILER})
 run(${CMAKE_COMMAND} --build ${BINARY})
-run(${BINARY}/consumer)
 run(${BINARY}/sky_radiance)
+run(${BINARY}/tables ${BINARY}/baked)
+run(${PYTHON} -c "import math, struct
+heights = (int(900 + 600 * math.sin(x / 40) * math.cos(y / 55)) for y in range(1201) for x in range(1201))
+open('${BINARY}/N46E008.hgt', 'wb').write(struct.pack('>1442401h', *heights))")
+run(${BINARY}/still ${BINARY} ${BINARY}/N46E008.hgt 46.5 8.5)
+foreach(picture still.exr still.png)
+  file(SIZE ${BINARY}/${picture} size)
+  if(size LESS 5000)
+    message(FATAL_ERROR "${picture} has ${size} bytes")
+  endif()
+endforeach()

@@ -1,20 +1,19 @@
 // SPDX-License-Identifier: MIT
-// The example of README.md.
-#include <alpenglow/lut/multiple_scattering/multiple_scattering.h>
+// An example of README.md: the light of the sky, and the air in front of a mountain.
+#include <alpenglow/alpenglow.h>
 
 #include <cstdio>
 
-using namespace alpenglow::lut;  // and with it alpenglow::atmosphere
+using namespace alpenglow;
 
 int main() {
-  const Medium earth = MediumPreset("earth");
-  const SingleScattering<float> air(earth);  // single scattering
-  const MultipleScattering orders(earth);    // all higher orders, solved once
-  // From 2 m; view and sun are 80 and 60 degrees from the zenith, and 90 degrees apart in azimuth.
-  const ViewRay ray = RayFromAngles(2.0, 80.0, 90.0, 60.0);
-  const auto samples = air.Sample(ray, {.nodes = 12, .split_ozone = false, .dark_samples = true});
-  const auto once = air.Inscatter(air.Scatter(samples), ray.nu);
-  const auto more = orders.InscatterAlong(samples, ray.nu);
-  for (std::size_t i = 0; i < air.bands(); ++i)
-    std::printf("%.0f nm: %.4f per steradian\n", earth.wavelengths_nm[i], once[i] + more[i]);
+  const Sky sky(Atmosphere::Preset("earth"));              // solves all orders of scattering, once
+  const Direction sun = DirectionFromAngles(30.0, 180.0);  // elevation and azimuth in degrees
+  const LocalPoint eye{.up_m = 2.0}, peak{.north_m = 30e3, .up_m = 2000.0};
+  const Spectrum zenith = sky.Radiance(eye, {.up = 1.0}, sun);  // per unit of sunlight [1/sr]
+  const AirBetween air = sky.Between(eye, peak, sun);           // aerial perspective
+  std::printf("zenith: %.0f cd/m^2\n", Luminance(sky.atmosphere().ColourOf(zenith)));
+  for (std::size_t i = 0; i < zenith.size(); ++i)
+    std::printf("band %zu: transmittance %.3f, in-scattered light %.4f/sr\n", i,
+                air.transmittance[i], air.inscattered[i]);
 }

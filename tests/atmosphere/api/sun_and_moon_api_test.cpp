@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: MIT
+#include <alpenglow/errors.h>
+#include <alpenglow/sun_and_moon.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "atmosphere/astronomy/moon.h"
+#include "atmosphere/astronomy/sun.h"
+#include "atmosphere/math/constants.h"
+#include "atmosphere/medium/medium.h"
+#include "atmosphere/refraction/refracted_view.h"
+
+namespace alpenglow {
+namespace {
+
+using atmosphere::kRadiansPerDegree;
+
+constexpr Place kFuji{35.36, 138.73, 2500.0};
+
+TEST(PlaceTime, TextsComeBack) {
+  const UtcTime time = TimeFromText("2026-06-21T13:00:00+09:00");
+  EXPECT_EQ(TextFromTime(time), "2026-06-21T04:00:00Z");
+  EXPECT_EQ(time, TimeFromText("2026-06-21T13:00:00", "Asia/Tokyo"));
+  EXPECT_EQ(time, std::chrono::sys_days{std::chrono::year{2026} / 6 / 21} + std::chrono::hours{4});
+  EXPECT_EQ(TextFromTime(TimeFromText("1933-12-31T23:59:59.5Z")), "1934-01-01T00:00:00Z");
+}
+
+TEST(PlaceTime, ALeapSecondIsTheFirstSecondOfTheNextDay) {
+  EXPECT_EQ(TimeFromText("2016-12-31T23:59:60Z"), TimeFromText("2017-01-01T00:00:00Z"));
+}
+
+TEST(PlaceTime, WrongTextsAreRefused) {
+  EXPECT_THROW((void)TimeFromText("noon"), InputError);
+  EXPECT_THROW((void)TimeFromText("2026-06-21T13:00:00", "Asia/Atlantis"), InputError);
+}
+
+TEST(SunInSky, IsTheSunOfTheLayerBelow) {
+  const auto medium =
+      atmosphere::OnOsculatingSphere(atmosphere::MediumPreset("earth"), 35.36 * kRadiansPerDegree);
+  const auto place = atmosphere::PlaceFromDegrees(35.36, 138.73, 2500.0);
+  const auto instant = atmosphere::ParseInstant("2026-06-21T09:30:00Z");
+  const auto expected = atmosphere::ApparentSunAt(place, instant, atmosphere::GentleAirOf(medium));
+  const SunInSky sun = SunAt(kFuji, TimeFromText("2026-06-21T09:30:00Z"));
+  EXPECT_EQ(sun.elevation_deg, expected.elevation_rad / kRadiansPerDegree);
+  EXPECT_EQ(sun.azimuth_deg, expected.azimuth_rad / kRadiansPerDegree);
+  EXPECT_EQ(sun.distance_au, expected.distance_au);
+  EXPECT_GT(sun.ToSun().up, sun.ToSunForAir().up);
+}
+
+TEST(MoonInSky, IsTheMoonOfTheLayerBelow) {
+  const auto medium =
+      atmosphere::OnOsculatingSphere(atmosphere::MediumPreset("earth"), 35.36 * kRadiansPerDegree);
+  const auto expected = atmosphere::ApparentMoonAt(
+      atmosphere::PlaceFromDegrees(35.36, 138.73, 2500.0),
+      atmosphere::ParseInstant("2026-06-21T09:30:00Z"), atmosphere::GentleAirOf(medium));
+  const MoonInSky moon = MoonAt(kFuji, TimeFromText("2026-06-21T09:30:00Z"));
+  EXPECT_EQ(moon.elevation_deg, expected.elevation_rad / kRadiansPerDegree);
+  EXPECT_EQ(moon.azimuth_deg, expected.azimuth_rad / kRadiansPerDegree);
+  EXPECT_EQ(moon.illuminated_fraction, expected.IlluminatedFraction());
+}
+
+TEST(SunEventTime, IsThatOfTheLayerBelowToAMicrosecond) {
+  const auto noon = TimeFromText("2026-06-21T03:00:00Z");
+  const std::optional<UtcTime> sunset = SunEventTime("sunset", kFuji, noon);
+  const auto expected = atmosphere::FindSunEvent(
+      atmosphere::SunEvent::kSunset, atmosphere::PlaceFromDegrees(35.36, 138.73, 2500.0),
+      atmosphere::ParseInstant("2026-06-21T03:00:00Z"));
+  ASSERT_TRUE(sunset && expected);
+  const auto second =
+      std::chrono::duration<double>(*sunset - std::chrono::floor<std::chrono::days>(*sunset));
+  EXPECT_NEAR(second.count(), expected->second_of_day, 1e-6);
+  EXPECT_EQ(SunEventTime("sunset", {80.0, 0.0, 0.0}, noon), std::nullopt);
+}
+
+TEST(SunEventTime, UnknownNamesAndPlacesAreRefused) {
+  EXPECT_THROW((void)SunEventTime("tea", kFuji, {}), InputError);
+  EXPECT_THROW((void)SunAt({91.0, 0.0, 0.0}, {}), InputError);
+}
+
+TEST(DirectionFromAngles, CountsAzimuthFromNorthOverEast) {
+  const Direction east = DirectionFromAngles(0.0, 90.0);
+  EXPECT_NEAR(east.east, 1.0, 1e-15);
+  EXPECT_NEAR(east.north, 0.0, 1e-15);
+  EXPECT_EQ(east.up, 0.0);
+}
+
+}  // namespace
+}  // namespace alpenglow

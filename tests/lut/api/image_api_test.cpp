@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: MIT
+#include <alpenglow/errors.h>
+#include <alpenglow/image.h>
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include "lut/image/look.h"
+#include "tests/fixtures/temporary_folder.h"
+
+namespace alpenglow {
+namespace {
+
+HdrImage Gradient() {
+  HdrImage image;
+  image.width = 8;
+  image.height = 4;
+  for (int i = 0; i < 32; ++i) {
+    const auto light = static_cast<float>(100 * i);
+    image.rgb.push_back({light, 0.8F * light, 0.6F * light});
+  }
+  image.layers = {{"depth.Z", std::vector<float>(32, 7.0F)}};
+  image.metadata = {{"alpenglow.utc", "2026-06-21T04:00:00Z"}};
+  return image;
+}
+
+class ApiImage : public TemporaryFolder {};
+
+TEST_F(ApiImage, ComesBackFromItsFile) {
+  HdrImage image = Gradient();
+  image.is_panorama = true;
+  WriteExr(folder_ / "a.exr", image);
+  const HdrImage read = ReadExr(folder_ / "a.exr");
+  EXPECT_EQ(read.width, 8);
+  EXPECT_EQ(read.height, 4);
+  EXPECT_EQ(read.rgb, image.rgb);
+  ASSERT_EQ(read.layers.size(), 1U);
+  EXPECT_EQ(read.layers[0].name, "depth.Z");
+  EXPECT_EQ(read.layers[0].values, image.layers[0].values);
+  EXPECT_TRUE(read.is_panorama);
+  EXPECT_EQ(read.metadata.at("alpenglow.utc"), "2026-06-21T04:00:00Z");
+}
+
+TEST_F(ApiImage, IsShownAsByTheLayerBelow) {
+  const HdrImage image = Gradient();
+  lut::Image light(8, 4);
+  light.rgb = image.rgb;
+  lut::Look look = lut::LookFromName("aces");
+  look.white = lut::WhiteBalanceFromText("camera");
+  look = lut::Settled(look, light);
+  const lut::Image seen = lut::Seen(light, look);
+  const std::vector<std::uint8_t> fixed = lut::Develop(seen, 12.0, look).rgb;
+  EXPECT_EQ(ForDisplay(image, {.ev100 = 12.0, .tone_map = "aces"}), fixed);
+  const double metered =
+      lut::Ev100By({}, lut::MeterEv100(seen, lut::kSunDiskLuminance_cd_per_m2), look);
+  EXPECT_EQ(ForDisplay(image, {.ev100 = std::nullopt, .tone_map = "aces"}),
+            lut::Develop(seen, metered, look).rgb);
+  WritePng(folder_ / "a.png", image, {.ev100 = 12.0, .tone_map = "aces"});
+  EXPECT_EQ(lut::ReadPng(folder_ / "a.png").rgb, fixed);
+}
+
+TEST_F(ApiImage, WrongImagesOptionsAndFilesAreRefused) {
+  HdrImage image = Gradient();
+  EXPECT_THROW((void)ForDisplay(image, {.ev100 = 31.0}), InputError);
+  EXPECT_THROW((void)ForDisplay(image, {.ev100 = 1.0, .tone_map = "film"}), InputError);
+  EXPECT_THROW((void)ReadExr(folder_ / "none.exr"), InputError);
+  EXPECT_THROW(WriteExr(folder_ / "none" / "a.exr", image), OutputError);
+  image.rgb[3][1] = std::numeric_limits<float>::quiet_NaN();
+  EXPECT_THROW(WriteExr(folder_ / "a.exr", image), InputError);
+  image.rgb.pop_back();
+  EXPECT_THROW((void)ForDisplay(image), InputError);
+  image = Gradient();
+  image.layers[0].values.pop_back();
+  EXPECT_THROW(WriteExr(folder_ / "a.exr", image), InputError);
+}
+
+}  // namespace
+}  // namespace alpenglow

@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: MIT
+#include <alpenglow/errors.h>
+#include <alpenglow/scene.h>
+#include <gtest/gtest.h>
+
+#include "renderer/picture/render.h"
+#include "tests/fixtures/temporary_folder.h"
+
+namespace alpenglow {
+namespace {
+
+const StillOptions kSmall{
+    .width = 16, .height = 9, .noise = std::nullopt, .samples_per_pixel = 2, .layers = {"depth"}};
+
+SceneDescription Sea() {
+  SceneDescription sea;
+  sea.place = {46.5, 8.0};
+  sea.camera = {.height_m = 300.0, .height_is_above_ground = false, .pitch_deg = -5.0};
+  sea.terrain = TerrainKind::kNone;
+  return sea;
+}
+
+class ApiScene : public TemporaryFolder {};
+
+TEST_F(ApiScene, IsRenderedAsByTheLayerBelow) {
+  const UtcTime time = TimeFromText("2026-06-21T16:00:00Z");
+  const Scene sea(Sea());
+  const HdrImage still = sea.Render(time, kSmall);
+  renderer::Scene scene;
+  scene.place = atmosphere::PlaceFromDegrees(46.5, 8.0, 0.0);
+  scene.camera = renderer::CameraFromDegrees({300.0, false}, 0.0, -5.0, 0.0, 60.0);
+  scene.medium = atmosphere::MediumPreset("earth");
+  scene.terrain.kind = renderer::TerrainSource::Kind::kNone;
+  renderer::RenderSettings settings;
+  settings.width = 16;
+  settings.height = 9;
+  settings.samples_per_pixel = 2;
+  settings.layers = {renderer::PictureLayer::kDepth};
+  const renderer::SceneRenderer expected(scene);
+  const auto instant = atmosphere::ParseInstant("2026-06-21T16:00:00Z");
+  const lut::Image image = expected.Render(instant, settings);
+  EXPECT_EQ(still.rgb, image.rgb);
+  ASSERT_EQ(still.layers.size(), 1U);
+  EXPECT_EQ(still.layers[0].values, image.layers[0].values);
+  EXPECT_EQ(sea.HorizontalIlluminance(time), expected.Illuminance(instant));
+  EXPECT_EQ(still.metadata.at("alpenglow.utc"), "2026-06-21T16:00:00Z");
+
+  WriteText(folder_ / "sea.toml",
+            "[place]\nlatitude = 46.5\nlongitude = 8.0\n[camera]\nheight_m = 300.0\n"
+            "pitch = -5.0\n[terrain]\nnone = true\n");
+  EXPECT_EQ(Scene::Read(folder_ / "sea.toml").Render(time, kSmall).rgb, image.rgb);
+}
+
+TEST_F(ApiScene, WrongInputIsRefused) {
+  SceneDescription sea = Sea();
+  sea.camera.pitch_deg = 91.0;
+  EXPECT_THROW((void)Scene(sea), InputError);
+  sea = Sea();
+  sea.terrain = TerrainKind::kElevationModel;
+  sea.elevation_model = folder_ / "none.tif";
+  EXPECT_THROW((void)Scene(sea), InputError);
+  EXPECT_THROW((void)Scene::Read(folder_ / "none.toml"), InputError);
+}
+
+TEST(BuiltInScene, LooksAtTheMountainsFromTheGround) {
+  const SceneDescription scene = BuiltInScene();
+  EXPECT_EQ(scene.terrain, TerrainKind::kBuiltInMountains);
+  EXPECT_TRUE(scene.camera.height_is_above_ground);
+  EXPECT_NEAR(scene.place.latitude_deg, 46.5, 1.0);
+}
+
+}  // namespace
+}  // namespace alpenglow
