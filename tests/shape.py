@@ -21,9 +21,9 @@ SOURCES = (".h", ".cpp", ".glsl")
 MOST_PUBLIC_METHODS = 20
 LIMITS = {
     "source files of the four layers": 551,
-    "types with more than 20 public methods": 7,
-    "files over 500 lines": 9,
-    "installed headers": 14,
+    "types with more than 20 public methods": 0,
+    "files over 500 lines": 8,
+    "installed headers": 13,
     "comment blocks that start without a subject, %": 1.0,
 }
 LEAST_MEDIAN = 120  # lines of a file, in every layer

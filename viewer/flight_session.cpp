@@ -5,7 +5,7 @@
 #include <memory>
 
 #include "viewer/reports.h"
-#include "viewer/shaders/uniform_blocks.h"
+#include "viewer/shaders/pass_setup.h"
 
 namespace alpenglow::viewer {
 namespace {

@@ -13,7 +13,7 @@
 #include "renderer/scene/scene_options.h"
 #include "renderer/terrain/loaded_heights.h"
 #include "renderer/terrain/procedural_mountains.h"
-#include "viewer/shaders/uniform_blocks.h"
+#include "viewer/shaders/pass_setup.h"
 
 namespace alpenglow::viewer {
 namespace {

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "atmosphere/medium/air_choice.h"
+#include "atmosphere/medium/medium_presets.h"
 #include "renderer/scene/scene.h"
 #include "viewer/input/flight_controller.h"
 #include "viewer/passes/reference_picture.h"

@@ -35,8 +35,8 @@ class ViewerApp final : public FlightCommands {
   ViewerApp(const ViewerApp&) = delete;
   ViewerApp& operator=(const ViewerApp&) = delete;
 
-  /// Applies the input of keyboard, mouse, gamepad and panels, and advances the flight. Call it once
-  /// a frame, whether the frame is displayed or not.
+  /// Applies the input of keyboard, mouse, gamepad and panels, and advances the flight. Call it
+  /// once a frame, whether the frame is displayed or not.
   void Advance(const InputFrame& input);
   /// Paints the flight and draws the instruments over it.
   void Paint(const ToneMapPass::Screen& screen, double seconds);

@@ -6,8 +6,8 @@
 #include <glm/geometric.hpp>
 
 #include "atmosphere/astronomy/sun.h"
-#include "atmosphere/base/enum_names.h"
 #include "atmosphere/base/error.h"
+#include "atmosphere/base/parsing.h"
 #include "atmosphere/math/constants.h"
 #include "atmosphere/math/numerics.h"
 #include "atmosphere/refraction/refraction.h"

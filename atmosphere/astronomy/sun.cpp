@@ -12,8 +12,8 @@
 
 #include "atmosphere/astronomy/ephemeris.h"
 #include "atmosphere/astronomy/sky_bodies.h"
-#include "atmosphere/base/enum_names.h"
 #include "atmosphere/base/error.h"
+#include "atmosphere/base/parsing.h"
 #include "atmosphere/math/constants.h"
 #include "atmosphere/math/numerics.h"
 #include "atmosphere/refraction/refraction.h"

@@ -3,7 +3,6 @@
 
 #include <fmt/format.h>
 #include <toml++/toml.h>
-
 #include <algorithm>
 #include <charconv>
 #include <cmath>
@@ -15,6 +14,7 @@
 #include "atmosphere/embedded_text.h"
 
 namespace alpenglow::atmosphere {
+
 namespace {
 
 std::string_view TakeUntil(std::string_view& text, char end) {
@@ -290,6 +290,14 @@ std::vector<TomlTable> TomlTable::Tables(const std::string& key) const {
               level_->document, item.as_table()})));
   }
   return tables;
+}
+
+void RefuseName(std::string_view refusal, std::string_view name,
+                std::span<const std::string> known) {
+  const std::string all = fmt::format("{}", fmt::join(known, ", "));
+  const std::string before = fmt::format("{}", fmt::join(known.begin(), known.end() - 1, ", "));
+  throw InputError(
+      fmt::format(fmt::runtime(refusal), name, all, fmt::format("{} or {}", before, known.back())));
 }
 
 }  // namespace alpenglow::atmosphere

@@ -40,8 +40,8 @@ inline constexpr int kMostLampNodes = 64;
 /// Returns the radiance scattered along the segment towards its origin, for unit intensity
 /// [sr^-1 m^-2], in every band.
 ///
-/// For a lamp of radius 0 on the ray itself, D = 0 is replaced by 1e-12 m: the result is then of the
-/// order of 1e12, because the radiance of a point light in air is unbounded. Errors:
+/// For a lamp of radius 0 on the ray itself, D = 0 is replaced by 1e-12 m: the result is then of
+/// the order of 1e12, because the radiance of a point light in air is unbounded. Errors:
 /// tests/bench/lamp_error.cpp, and the bounds asserted in tests/atmosphere/lamp/airlight_test.cpp.
 /// @param nodes  total of all Gauss rules, in [kFewestLampNodes, kMostLampNodes]; each lit segment
 /// of the ray has at least two, so that a beam may need some more.

@@ -42,8 +42,9 @@ SHARED Number SoftDiskPerSr(Number off, Number radius) {
   return inside * inside * Number(0.95492965855137202) / (radius * radius);
 }
 
-// Coordinates in the map of irradiance by airlight of a lamp (LampAirlightIrradiance): logarithmic in the
-// distance, piecewise linear in the sine of the lamp's elevation between 0, 0.04, 0.2, 0.6 and 1.
+// Coordinates in the map of irradiance by airlight of a lamp (LampAirlightIrradiance): logarithmic
+// in the distance, piecewise linear in the sine of the lamp's elevation between 0, 0.04, 0.2, 0.6
+// and 1.
 SHARED Number LampAirlightUnit(Length distance, Length nearest, Length farthest) {
   return log(distance / nearest) / log(farthest / nearest);
 }

@@ -86,8 +86,8 @@ struct MoleculeDeficit {
 };
 
 /// Selects the height profile of the refractivity: the density of the molecules, or the standard
-/// air of almanacs (kAlmanacLayers of atmosphere/refraction/refraction.h), whose gradient near the ground
-/// determines the refraction of a low sun.
+/// air of almanacs (kAlmanacLayers of atmosphere/refraction/refraction.h), whose gradient near the
+/// ground determines the refraction of a low sun.
 enum class RefractionBy { kMolecules, kAlmanacs };
 
 /// kTent: linear from 0 at the bottom to 1 at the peak to 0 at the top (Bruneton 2017). kSmooth:

@@ -9,8 +9,8 @@
 #include <cstddef>
 #include <utility>
 
-#include "atmosphere/base/enum_names.h"
 #include "atmosphere/base/error.h"
+#include "atmosphere/base/parsing.h"
 #include "atmosphere/math/constants.h"
 #include "atmosphere/medium/phase_table.h"
 #include "atmosphere/medium/phase_text.h"

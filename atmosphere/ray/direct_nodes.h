@@ -97,8 +97,8 @@ NodePlaces<T> PlacesOf(const DirectAir& air, const DirectRule& rule, const Panel
   return at;
 }
 
-/// Columns from points upwards along the ray (mu >= 0), and in a direction with the elevation of the
-/// sun.
+/// Columns from points upwards along the ray (mu >= 0), and in a direction with the elevation of
+/// the sun.
 template <typename T>
 struct TwoColumns {
   T view, sun;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Single scattering along a ray by direct integration: the same integral as SingleScattering, several
-// times as fast, with 7 or 14 nodes in each panel of the ray.
+// Single scattering along a ray by direct integration: the same integral as SingleScattering,
+// several times as fast, with 7 or 14 nodes in each panel of the ray.
 //
 // A ray costs one pass over 8 or 16 SIMD lanes. The set-up is scalar (direct_panels.h). Altitude,
 // densities and columns are then computed at all nodes at once, without exp, log or ray marching:

@@ -8,7 +8,6 @@
 
 #include "atmosphere/base/error.h"
 #include "atmosphere/math/constants.h"
-#include "atmosphere/ray/ray_map.h"
 #include "atmosphere/ray/shell.h"
 
 namespace alpenglow::atmosphere {

@@ -16,13 +16,13 @@
 // Each map is dense at one of its ends (k = length / scale); the maps are combined by the balance
 // heuristic.
 //
-// Columns of air along straight lines are computed thousands of times faster than in reference_solution.cpp, and
-// also without the shared sources and closed forms.
+// Columns of air along straight lines are computed thousands of times faster than in
+// reference_solution.cpp, and also without the shared sources and closed forms.
 //
 // A line is described by the distance p of its perigee from the planet's centre; s is the distance
 // along the line, counted from the perigee, and mu = s / r its zenith cosine. In the variable
-// y = r (w^2 - mu^2) / 2, the climb from radius r, the integrand has no singularity at the perigee, and
-// an exponential layer's column outwards is
+// y = r (w^2 - mu^2) / 2, the climb from radius r, the integrand has no singularity at the perigee,
+// and an exponential layer's column outwards is
 //
 //   exp(-h / H) F(r, mu),   F = integral over w >= mu of
 //                               exp(-y / H) (r + y) / sqrt(1 + ((w^2 - mu^2) / 2w)^2) dw

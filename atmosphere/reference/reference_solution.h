@@ -3,8 +3,8 @@
 //
 // Optical depth and single scattering along any ray are computed by adaptive Gauss-Legendre
 // quadrature in the distance. Positions are computed in extended precision from the formula
-// sqrt(r^2 + 2 r mu t + t^2) - R. Of the shared sources, closed forms and tables, these functions use
-// only the values of phase functions.
+// sqrt(r^2 + 2 r mu t + t^2) - R. Of the shared sources, closed forms and tables, these functions
+// use only the values of phase functions.
 //
 // The reference for refracted rays is the ray equation, d/ds (n dr/ds) = grad n, integrated step by
 // step in the plane of the ray (fourth-order Runge-Kutta method). It uses neither Bouguer's law nor

@@ -168,9 +168,9 @@ struct RefractionAndSlope {
 ///   A cos e / (sin e + b / (sin e + c / (sin e + d)))
 ///
 /// This is the continued fraction of Marini (1972), Radio Science 7, 223-231, which is A cot e at
-/// high elevations and finite at the horizon. The four constants were fitted to RefractionOfRay from
-/// sea level: the difference is less than 0.04' from the horizon up; below it the function continues
-/// smoothly.
+/// high elevations and finite at the horizon. The four constants were fitted to RefractionOfRay
+/// from sea level: the difference is less than 0.04' from the horizon up; below it the function
+/// continues smoothly.
 RefractionAndSlope StandardRefraction(double elevation_rad) {
   constexpr double kA = 2.78291862e-4;
   constexpr double kB = 1.60741104e-3;

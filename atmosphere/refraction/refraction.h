@@ -207,8 +207,8 @@ struct SeaHorizon {
 /// 3 km is within 5 % (rms over directions) of that of refracted rays while the sun is up, 6 % down
 /// to -4 degrees and 17 % down to -8, where blue is brighter and red, whose light comes through
 /// lower air, darker. These figures exclude the sky up to 10 degrees over the horizon opposite a
-/// sun that has set, where single scattering ends. tests/bench/refracted_twilight.cpp compares values of
-/// the lift.
+/// sun that has set, where single scattering ends. tests/bench/refracted_twilight.cpp compares
+/// values of the lift.
 [[nodiscard]] double LiftForAir(const BendingAir& air, double true_elevation_rad);
 
 /// Air at the observer, for refraction.

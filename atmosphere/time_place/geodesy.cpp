@@ -94,7 +94,8 @@ GeodeticPosition GeodeticFromEcef(const Ellipsoid& ellipsoid, const Point<Ecef>&
 
 double OsculatingRadius(const Ellipsoid& ellipsoid, double latitude_rad) {
   // The radii are M = a (1 - e^2) / w^3 and N = a / w with w^2 = 1 - e^2 sin^2(latitude);
-  // e^2 = f (2 - f). The mean over all azimuths of the radii of the normal sections is sqrt(M N) (Gauss).
+  // e^2 = f (2 - f). The mean over all azimuths of the radii of the normal sections is sqrt(M N)
+  // (Gauss).
   const double f = ellipsoid.flattening;
   const double sine = std::sin(latitude_rad);
   return ellipsoid.equatorial_radius_m * (1.0 - f) / (1.0 - f * (2.0 - f) * sine * sine);

@@ -51,12 +51,12 @@ struct SceneDescription {
 struct StillOptions {
   int width = 1280;  ///< in [1, 16384]
   int height = 720;  ///< in [1, 16384]
-  /// Relative noise of a pixel, in [1e-8, 1]: pixels take up to 256 rays until they reach it. Empty:
-  /// every pixel takes samples_per_pixel rays.
+  /// Relative noise of a pixel, in [1e-8, 1]: pixels take up to 256 rays until they reach it.
+  /// Empty: every pixel takes samples_per_pixel rays.
   std::optional<double> noise = 0.02;
   int samples_per_pixel = 4;  ///< rays of a pixel, in [1, 1024]; with noise its first rays
-  /// Further layers: "depth", "normal", "albedo", "inscatter", "transmittance", "sun_visibility" and
-  /// others, see --aov in renderer/MANUAL.md.
+  /// Further layers: "depth", "normal", "albedo", "inscatter", "transmittance", "sun_visibility"
+  /// and others, see --aov in renderer/MANUAL.md.
   std::vector<std::string> layers;
 };
 

@@ -144,8 +144,9 @@ struct MediumTables {
   /// Phase function of the aerosol, [node]: PhaseNode of phase.glsl, from forward to backward.
   AirTexels phase;
   /// On the map of transmittance_map.glsl, [zenith cosine, altitude]: the first half of the rows
-  /// holds the transmittance of straight rays to space, by which air is illuminated. The second half
-  /// holds the transmitted fraction of the beam of a disk on ground and fog (RefractedBeam::Left).
+  /// holds the transmittance of straight rays to space, by which air is illuminated. The second
+  /// half holds the transmitted fraction of the beam of a disk on ground and fog
+  /// (RefractedBeam::Left).
   AirTexels to_sun;
 };
 
@@ -153,9 +154,9 @@ struct MediumTables {
 [[nodiscard]] MediumTables MakeMediumTables(const SingleScattering<float>& air,
                                             const RefractedBeam& beam);
 
-/// Computes the tables on the calling thread alone. `air`, `multiple_scattering` and `medium` must belong to
-/// one medium; no reference to them is kept. Throws InputError for a medium of more than four
-/// bands.
+/// Computes the tables on the calling thread alone. `air`, `multiple_scattering` and `medium` must
+/// belong to one medium; no reference to them is kept. Throws InputError for a medium of more than
+/// four bands.
 [[nodiscard]] AirTables MakeAirTables(const SingleScattering<float>& air,
                                       const MultipleScattering& multiple_scattering,
                                       const MediumTables& medium, const AirEye& eye,

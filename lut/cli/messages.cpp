@@ -17,8 +17,8 @@
 #include <set>
 #include <system_error>
 
-#include "atmosphere/base/enum_names.h"
 #include "atmosphere/base/error.h"
+#include "atmosphere/base/parsing.h"
 #include "lut/layer.h"
 
 namespace alpenglow::lut {

@@ -12,8 +12,8 @@
 #include <string_view>
 #include <vector>
 
-#include "atmosphere/base/enum_names.h"
 #include "atmosphere/base/error.h"
+#include "atmosphere/base/parsing.h"
 #include "atmosphere/math/constants.h"
 #include "atmosphere/reference/path_tracer.h"
 #include "lut/cli/program.h"

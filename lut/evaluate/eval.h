@@ -15,7 +15,8 @@
 //
 // Methods:
 //
-//   integral  SingleScattering in double; light of all orders from MultipleScattering. The error is the
+//   integral  SingleScattering in double; light of all orders from MultipleScattering. The error is
+// the
 //             difference between two numbers of nodes plus the error of closed forms (bounds
 //             below). For smaller errors than that, the reference solution is used. The error of
 //             light of higher orders is 0.6 times the sum of the differences to two coarser

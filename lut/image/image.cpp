@@ -16,8 +16,8 @@
 #include <memory>
 #include <string_view>
 
-#include "atmosphere/base/enum_names.h"
 #include "atmosphere/base/error.h"
+#include "atmosphere/base/parsing.h"
 #include "atmosphere/math/constants.h"
 #include "lut/cli/output_file.h"
 #include "lut/layer.h"

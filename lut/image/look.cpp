@@ -8,8 +8,8 @@
 #include <cmath>
 #include <utility>
 
-#include "atmosphere/base/enum_names.h"
 #include "atmosphere/base/error.h"
+#include "atmosphere/base/parsing.h"
 #include "lut/image/eye.h"
 #include "lut/image/metering.h"
 #include "lut/image/tone_mapping.h"

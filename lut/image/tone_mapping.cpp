@@ -4,8 +4,8 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "atmosphere/base/enum_names.h"
 #include "atmosphere/base/error.h"
+#include "atmosphere/base/parsing.h"
 #include "lut/layer.h"
 
 namespace alpenglow::lut {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// This header provides AzimuthFan: MultipleScattering along one view ray for many azimuths of the sun, at
-// the cost of a few.
+// This header provides AzimuthFan: MultipleScattering along one view ray for many azimuths of the
+// sun, at the cost of a few.
 //
 // All directions of one zenith angle share altitudes, columns and harmonics; only the sun's angles
 // differ. The moments are therefore interpolated in altitude, and summed over degree, once per
@@ -28,9 +28,9 @@ class AzimuthFan {
   /// @param ray      altitude, zenith cosine and sun zenith cosine at the observer; its nu is not
   ///   used.
   /// @param nus      cosine of the angle between each direction and the sun.
-  /// Agrees with MultipleScattering::InscatterAlong of these samples to 1e-4 of the brightest value if
-  /// the forward peak is not treated separately. Otherwise the result covers only the degrees that
-  /// the moments keep.
+  /// Agrees with MultipleScattering::InscatterAlong of these samples to 1e-4 of the brightest value
+  /// if the forward peak is not treated separately. Otherwise the result covers only the degrees
+  /// that the moments keep.
   [[nodiscard]] std::vector<float> InscatterAlong(const RaySamples<float>& samples,
                                                   const ViewRay& ray,
                                                   std::span<const float> nus) const;

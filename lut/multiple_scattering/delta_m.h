@@ -10,8 +10,9 @@
 //
 // whose phase function ends at degree L, so nothing is truncated. The sun's beam in that medium is
 // brighter than the true beam by light that is deflected little, T' - T = T (exp(f x) - 1) with x
-// the optical depth of scattering by aerosol towards the sun. MultipleScattering::values() include it as
-// multiply scattered light from the sun's direction, so that they mean the same with and without delta-M.
+// the optical depth of scattering by aerosol towards the sun. MultipleScattering::values() include
+// it as multiply scattered light from the sun's direction, so that they mean the same with and
+// without delta-M.
 //
 // Radiance along view rays is also gathered in that medium. Light scattered once then has the exact
 // phase function and, in closed form, the peak of all orders (Nakajima, Tanaka 1988, J. Quant.

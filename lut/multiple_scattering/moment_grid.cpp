@@ -42,8 +42,8 @@ float RayleighChi2(const Medium& medium, std::size_t band) {
 }
 
 double MuSOfNode(const MomentGrid& grid, std::size_t sun) {
-  const double mu_s = MultipleScattering::MuSFromCoordinate(static_cast<double>(sun) /
-                                                            static_cast<double>(grid.suns - 1));
+  const double mu_s = MultipleScattering::SunNodes().MuS(static_cast<double>(sun) /
+                                                         static_cast<double>(grid.suns - 1));
   return grid.polarised ? std::min(mu_s, kHighestPolarisedSun) : mu_s;
 }
 
@@ -57,7 +57,7 @@ CubicTaps SunTaps(const MomentGrid& grid, double mu_s) {
   const float here = TwilightOf(grid, mu_s);
   for (std::size_t tap = 0; tap < 4; ++tap) {
     const double v = static_cast<double>(taps.node[tap]) / (suns - 1);
-    taps.weight[tap] *= here / TwilightOf(grid, MultipleScattering::MuSFromCoordinate(v));
+    taps.weight[tap] *= here / TwilightOf(grid, MultipleScattering::SunNodes().MuS(v));
   }
   return taps;
 }
@@ -66,7 +66,7 @@ std::vector<float> TwilightAtNodes(const MomentGrid& grid) {
   std::vector<float> twilight;
   for (std::size_t sun = 0; sun < grid.suns; ++sun) {
     const double v = static_cast<double>(sun) / static_cast<double>(grid.suns - 1);
-    twilight.push_back(TwilightOf(grid, MultipleScattering::MuSFromCoordinate(v)));
+    twilight.push_back(TwilightOf(grid, MultipleScattering::SunNodes().MuS(v)));
   }
   return twilight;
 }

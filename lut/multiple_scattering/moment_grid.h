@@ -25,8 +25,8 @@ namespace alpenglow::lut {
 /// Returns the molecules' Legendre coefficient of degree 2: D / 10.
 [[nodiscard]] float RayleighChi2(const Medium& medium, std::size_t band);
 
-/// Returns the zenith cosine of a sun node. The nodes are those of MultipleScattering::SunNodes(), except
-/// that for polarised light the last one lies close to the zenith.
+/// Returns the zenith cosine of a sun node. The nodes are those of MultipleScattering::SunNodes(),
+/// except that for polarised light the last one lies close to the zenith.
 [[nodiscard]] double MuSOfNode(const MomentGrid& grid, std::size_t sun);
 
 /// Returns the sine of an angle in [0, pi] from its cosine.

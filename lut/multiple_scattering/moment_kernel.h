@@ -42,16 +42,16 @@ class AlignedFloats {
   std::vector<Line> lines_;
 };
 
-/// Returns the number of vectors of eight floats in a node. Polarised light (polarised_scattering.h)
-/// needs two more, (T20, T21) and (T22, a copy of moment 00).
+/// Returns the number of vectors of eight floats in a node. Polarised light
+/// (polarised_scattering.h) needs two more, (T20, T21) and (T22, a copy of moment 00).
 constexpr std::size_t PackedVectors(std::size_t degree, bool polarised) {
   return kPackedRow[degree + 1] + (polarised ? 2 : 0);
 }
 
-/// Nodes of the table: altitude = top u^2; sun as in MultipleScattering::SunCoordinate. Between sun nodes
-/// moments are interpolated after division by Twilight(mu_s), the usual fall of their light when
-/// the sun goes down, exp(-fall (x + sqrt(x^2 + width^2)) / 2) with x = start - mu_s. Moments of
-/// polarised light are also divided by SinePower (polarised_scattering.h).
+/// Nodes of the table: altitude = top u^2; sun as in MultipleScattering::SunCoordinate. Between sun
+/// nodes moments are interpolated after division by Twilight(mu_s), the usual fall of their light
+/// when the sun goes down, exp(-fall (x + sqrt(x^2 + width^2)) / 2) with x = start - mu_s. Moments
+/// of polarised light are also divided by SinePower (polarised_scattering.h).
 struct MomentGrid {
   std::size_t altitudes, suns, degree;
   bool polarised;

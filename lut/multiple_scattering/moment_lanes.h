@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // This header provides vectors of eight floats and the functions that marches and look-ups of
-// multiply scattered light share. It is a part of moment_kernel.cpp, which is compiled once per instruction
-// set.
+// multiply scattered light share. It is a part of moment_kernel.cpp, which is compiled once per
+// instruction set.
 #pragma once
 
 #include <cmath>

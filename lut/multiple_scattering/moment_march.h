@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// This header provides the directions from the nodes of MultipleScattering's table and the points along
-// them. Successive orders march along these for every band and order.
+// This header provides the directions from the nodes of MultipleScattering's table and the points
+// along them. Successive orders march along these for every band and order.
 //
 // It also provides the first of the successive orders: sunlight that arrives at the nodes after one
 // scattering or after reflection by the ground.

@@ -26,8 +26,6 @@ double MultipleScattering::SunCoordinate(double mu_s) {
   return std::clamp(SunNodes().Coordinate(mu_s), 0.0, 1.0);
 }
 
-double MultipleScattering::MuSFromCoordinate(double v) { return SunNodes().MuS(v); }
-
 namespace {
 
 void RequireNodes(const MultipleScatteringOptions& options) {
@@ -405,7 +403,7 @@ Bands<float> MultipleScattering::SkyIrradiance(double altitude_m, double mu_s) c
 std::vector<float> MultipleScattering::ValuesAt(double altitude_coordinate,
                                                 double sun_coordinate) const {
   std::vector<float> sum(channels() * bands_, 0.0F);
-  const double mu_s = MuSFromCoordinate(sun_coordinate);
+  const double mu_s = SunNodes().MuS(sun_coordinate);
   const float here = SunSine(mu_s);
   VisitNodes(altitude_coordinate, mu_s, [&](const float* node, float weight, std::size_t sun) {
     const float there = SunSine(MuSOfNode(grid_, sun));
@@ -471,7 +469,7 @@ PolarisedLight MultipleScattering::PolarisationAlong(const RaySamples<float>& sa
     const TensorStokes<float> stokes = TensorStokesAlong<float>(mu, sine);
     const std::array<Bands<float>, kTensorMoments> here =
         TensorAt(1000.0 * static_cast<double>(samples.altitude[s]),
-                 MuSFromCoordinate(SunCoordinate(static_cast<double>(mu_s))));
+                 SunNodes().MuS(SunCoordinate(static_cast<double>(mu_s))));
     for (std::size_t band = 0; band < bands_; ++band) {
       const auto tensor = [&](std::size_t m) { return here[m][band]; };
       const float depth =

@@ -15,9 +15,10 @@
 //
 // which is exact for molecules (chi^R = 1, 0, D/10; D as in phase.glsl) with l <= 2. If the
 // medium's light is polarised, three additional moments give the molecules' source
-// (polarised_scattering.h). The moments of all orders are found by successive orders: the radiance of
-// one order along directions of a Gauss grid split at the horizon is projected onto moments, which
-// give the source of the next. Light reflected by the (Lambertian) ground is part of every order.
+// (polarised_scattering.h). The moments of all orders are found by successive orders: the radiance
+// of one order along directions of a Gauss grid split at the horizon is projected onto moments,
+// which give the source of the next. Light reflected by the (Lambertian) ground is part of every
+// order.
 //
 // All values are per unit solar irradiance. Successive orders: e.g. Herman, Ben-David, Thome
 // (1994), Appl. Opt. 33, 1760. The use of moments over (altitude, sun angle) as a rendering table
@@ -55,9 +56,9 @@ struct MultipleScatteringOptions {
   // Largest fraction of the light that may be summed as a geometric series instead of being
   // computed. In thick air: ten times the uncertainty of that sum.
   double tolerance = 1e-2;
-  /// Computes exactly this number of orders of the multiply scattered light (1: scattered or reflected once)
-  /// and sums no rest. InscatterAlong then returns orders 2 to exact_orders + 1. Some table formats
-  /// are defined this way.
+  /// Computes exactly this number of orders of the multiply scattered light (1: scattered or
+  /// reflected once) and sums no rest. InscatterAlong then returns orders 2 to exact_orders + 1.
+  /// Some table formats are defined this way.
   std::optional<int> exact_orders = std::nullopt;
   /// Finds the light that aerosol scatters forward in closed form (delta_m.h), for hazy and
   /// thick air. It cannot be combined with exact_orders.
@@ -162,7 +163,6 @@ class MultipleScattering {
   /// Node coordinates: altitude = top u^2, u in [0, 1]; zenith cosine of the sun on SunNodes().
   [[nodiscard]] static const SunAxis& SunNodes();
   [[nodiscard]] static double SunCoordinate(double mu_s);
-  [[nodiscard]] static double MuSFromCoordinate(double v);
 
  private:
   [[nodiscard]] std::vector<MomentBlock> BlocksOf() const;

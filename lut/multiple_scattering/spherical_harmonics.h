@@ -20,7 +20,8 @@
 namespace alpenglow::lut {
 
 inline constexpr int kMaxDegree = 12;
-/// Supported degrees of multiply scattered light. Every kernel of multiply scattered light is compiled for each of them.
+/// Supported degrees of multiply scattered light. Every kernel of multiply scattered light is
+/// compiled for each of them.
 inline constexpr std::array kDegrees{2, 4, 6, 8, kMaxDegree};
 /// Throws InputError, which lists the supported degrees, if `degree` is none of them.
 void RequireDegree(int degree);

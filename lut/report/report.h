@@ -5,9 +5,9 @@
 // Every method of a topic (transmittance, light scattered once, all orders, panoramas, refraction)
 // is evaluated on one set of rays, drawn once from the distribution of report_rays.h, by day, at
 // sunset, in civil and nautical twilight, and from space. The error of a method is its difference
-// from the reference solution (reference_solution.h, path_tracer.h). Its cost is memory, the build time, and the
-// time of one evaluation on one thread. Methods of the literature, reimplemented from their
-// publications (report_baselines.h), are listed beside this library's.
+// from the reference solution (reference_solution.h, path_tracer.h). Its cost is memory, the build
+// time, and the time of one evaluation on one thread. Methods of the literature, reimplemented from
+// their publications (report_baselines.h), are listed beside this library's.
 //
 // Each topic defines its own quantities and rays. Topics of images (renderer/report/report.h) are
 // written into folders of the same form.

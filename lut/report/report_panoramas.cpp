@@ -238,7 +238,8 @@ void TimeRows(const SkyView& view, const ReportEffort& effort, RegimeResult& res
   TimePasses(kRows * kColumns, effort, pass, result);
 }
 
-/// Adds sky views, evaluated one by one and in rows. @param size  nullopt: chosen by SkyViewSizeFor.
+/// Adds sky views, evaluated one by one and in rows. @param size  nullopt: chosen by
+/// SkyViewSizeFor.
 void AddSkyView(PanoramaStudy& study, const PanoramaAir& shared,
                 const std::optional<SkyViewSize>& size) {
   const auto view = [&](std::size_t r, std::size_t sun) {

@@ -11,8 +11,8 @@
 #include <utility>
 
 #include "atmosphere/astronomy/sun.h"
-#include "atmosphere/base/enum_names.h"
 #include "atmosphere/base/error.h"
+#include "atmosphere/base/parsing.h"
 #include "atmosphere/colour/spectrum.h"
 #include "atmosphere/math/constants.h"
 #include "lut/cli/program.h"

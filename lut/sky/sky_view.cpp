@@ -218,7 +218,7 @@ class GroundLight {
         nodes_(most_ - least_ < kOneNode ? 4 : kNodes) {
     for (int i = 0; i < nodes_; ++i) {
       const double v = least_ + (most_ - least_) * i / (nodes_ - 1);
-      const double mu_s = MultipleScattering::MuSFromCoordinate(v);
+      const double mu_s = MultipleScattering::SunNodes().MuS(v);
       Bands<float> irradiance = multiple_scattering.SkyIrradiance(0.0, mu_s);
       if (mu_s > 0.0) {
         const Bands<float> sun = air.TransmittanceToSpace(0.0, mu_s);

@@ -61,12 +61,12 @@ class SkyAzimuths {
 /// A sky view. Immutable; look-ups are safe from many threads.
 ///
 /// Error of the size that SkyViewSizeFor returns, over the whole sphere and against direct
-/// evaluation (SingleScattering<double> with many nodes, MultipleScattering), relative to the radiance or to
-/// a thousandth of its mean, whichever is larger: rms below 0.3 %, below 0.6 % for 95 % of
-/// directions and bands, for the atmospheres of the earth, from the ground to 400 km, with the sun
-/// from the zenith to 10 degrees below the horizon. The largest errors are where the light fades
-/// within a degree: at the edge of the planet's shadow in red light, and on the limb behind the
-/// terminator.
+/// evaluation (SingleScattering<double> with many nodes, MultipleScattering), relative to the
+/// radiance or to a thousandth of its mean, whichever is larger: rms below 0.3 %, below 0.6 % for
+/// 95 % of directions and bands, for the atmospheres of the earth, from the ground to 400 km, with
+/// the sun from the zenith to 10 degrees below the horizon. The largest errors are where the light
+/// fades within a degree: at the edge of the planet's shadow in red light, and on the limb behind
+/// the terminator.
 class SkyView {
  public:
   /// `air` and `multiple_scattering` must have the same medium; no reference to them is kept.
@@ -124,8 +124,8 @@ class SkyView {
 };
 
 /// Returns the column of aerosol, relative to its density on the ground [km], that sky views use
-/// for the glow around the sun (MultipleScattering::GlowFactor): the column on the path of its light from
-/// the sun to the observer, in twilight along the horizon.
+/// for the glow around the sun (MultipleScattering::GlowFactor): the column on the path of its
+/// light from the sun to the observer, in twilight along the horizon.
 [[nodiscard]] float GlowColumn_km(const SingleScattering<float>& air, double altitude_m,
                                   double mu_s);
 

@@ -12,8 +12,8 @@
 #include <fstream>
 #include <utility>
 
-#include "atmosphere/base/enum_names.h"
 #include "atmosphere/base/error.h"
+#include "atmosphere/base/parsing.h"
 #include "atmosphere/math/constants.h"
 #include "atmosphere/medium/medium.h"
 #include "atmosphere/medium/phase_text.h"

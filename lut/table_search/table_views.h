@@ -4,9 +4,9 @@
 // There are four kinds: the sky by day (sun 2 to 90 degrees high), aerial perspective (segments of
 // 0.5 to 100 km by day), the sky in twilight (sun 2 degrees above to 6 below the horizon), and the
 // sky's irradiance on horizontal planes (sun -6 to 90 degrees); observers from 2 m to 10 km. The
-// truth of a view consists of the reference solution's single scattering and transmittance, and of a solution of
-// the multiply scattered light that is finer than any table. HeldAgainstPaths compares that truth with the
-// path tracer.
+// truth of a view consists of the reference solution's single scattering and transmittance, and of
+// a solution of the multiply scattered light that is finer than any table. HeldAgainstPaths
+// compares that truth with the path tracer.
 //
 // The error of a view is |difference| over |truth|, lengths of vectors over the bands, or the
 // largest difference of transmittance if that is larger.

@@ -5,8 +5,8 @@
 //   texel = integral of sigma_s(h) T(observer to point) T(point to sun) ds   per unit irradiance
 //
 // for molecules and aerosol separately, per band, as float, without the phase functions: those are
-// applied at the look-up (SingleScattering::Inscatter), which keeps the aureole sharp. There are two
-// sets of axes:
+// applied at the look-up (SingleScattering::Inscatter), which keeps the aureole sharp. There are
+// two sets of axes:
 //
 //   Bruneton   those of scattering_map.glsl, quadrilinear; angles nu that are impossible for a
 //              texel's mu and mu_s are moved to the nearest possible, so that interpolation never
@@ -14,7 +14,8 @@
 //              27, 1079.
 //   azimuth    r and mu as above; the azimuth from the sun, 0 to pi in equal steps, in place of nu,
 //              so that no texel is wasted; the sun's zenith cosine dense around the terminator, as
-//              in MultipleScattering; cubic except for mu. Texels hold fourth roots, so that light which
+//              in MultipleScattering; cubic except for mu. Texels hold fourth roots, so that light
+// which
 //              falls by decades in twilight is smooth. For programs of this project.
 //
 // This header also includes the shared text scattering_map.glsl as C++ templates over double, float
@@ -86,11 +87,11 @@ class ScatteringTable {
   /// Rays that end at length_m are differences of two look-ups, as in Bruneton and Neyret (2008):
   /// their absolute error is that of the whole rays, so short ones should be integrated instead.
   ///
-  /// Error of the radiance against the reference solution at the default size, earth, observers to 12 km, all
-  /// directions, as rms over the rms of the radiance and as the median of relative errors: sun
-  /// above 5 degrees 1 % and 0.25 %, 5 to 0 degrees 1.5 % and 0.8 %, 0 to -6 degrees 40 % and 15 %.
-  /// In twilight eight angles between view and sun are too few for the glow over the sun. On
-  /// azimuths, 8 x 32 x 64 x 48: 0.4 % and 0.15 %, 0.5 % and 0.2 %, 0.8 % and 0.45 %.
+  /// Error of the radiance against the reference solution at the default size, earth, observers to
+  /// 12 km, all directions, as rms over the rms of the radiance and as the median of relative
+  /// errors: sun above 5 degrees 1 % and 0.25 %, 5 to 0 degrees 1.5 % and 0.8 %, 0 to -6 degrees 40
+  /// % and 15 %. In twilight eight angles between view and sun are too few for the glow over the
+  /// sun. On azimuths, 8 x 32 x 64 x 48: 0.4 % and 0.15 %, 0.5 % and 0.2 %, 0.8 % and 0.45 %.
   [[nodiscard]] ScatteredOnce<float> Lookup(const ViewRay& ray) const;
 
   [[nodiscard]] const Medium& medium() const { return air_.medium(); }

@@ -5,8 +5,8 @@
 //   texel (i, j) = T(h_j, mu_i) per band, stored as float, rays to space only
 //
 // The map is that of transmittance_map.glsl: columns run from the zenith to the horizon, rows from
-// the ground to the top. SingleScattering computes this transmittance faster and more accurately (see
-// its header). The table is for programs that load tables, and for comparison with it.
+// the ground to the top. SingleScattering computes this transmittance faster and more accurately
+// (see its header). The table is for programs that load tables, and for comparison with it.
 //
 // This header also includes the shared text transmittance_map.glsl as C++ templates over double,
 // float and SIMD batches. Lengths are kilometres there and metres in the table.
@@ -51,8 +51,8 @@ class TransmittanceTable {
   /// Returns the transmittance to space, bilinear; 0 if the ground is in the way, 1 for rays that
   /// miss the air. Observers above the top are moved to where the ray enters.
   ///
-  /// Error at the default size, earth and bruneton2017, against the reference solution: below 4e-3 everywhere
-  /// (rays near the horizon through the aerosol), 3e-4 rms.
+  /// Error at the default size, earth and bruneton2017, against the reference solution: below 4e-3
+  /// everywhere (rays near the horizon through the aerosol), 3e-4 rms.
   [[nodiscard]] Bands<float> Lookup(double altitude_m, double mu) const;
 
   /// Returns the transmittance from the observer to the end of the ray: a quotient of two look-ups.

@@ -10,8 +10,8 @@
 #include <glm/geometric.hpp>
 #include <glm/vec2.hpp>
 
-#include "atmosphere/base/enum_names.h"
 #include "atmosphere/base/error.h"
+#include "atmosphere/base/parsing.h"
 #include "atmosphere/math/constants.h"
 #include "renderer/layer.h"
 

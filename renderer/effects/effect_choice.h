@@ -13,9 +13,9 @@
 // an edge which rough ground masks, and that viewers tolerate errors of hue more than errors of
 // lightness.
 //
-// The choice is made with a preview: a few of the picture's own pixels are rendered with all effects,
-// and again without each one. Effects whose change is small are left out, smallest first, as long
-// as the preview without all of them together stays within the budget:
+// The choice is made with a preview: a few of the picture's own pixels are rendered with all
+// effects, and again without each one. Effects whose change is small are left out, smallest first,
+// as long as the preview without all of them together stays within the budget:
 //
 //   rms of d at most the budget,    99th percentile of d at most four times the budget,
 //
@@ -159,7 +159,8 @@ struct EffectChoice {
   std::vector<EffectEstimate> estimates;  // of the requested effects, in the order of Effect
   ChangeEstimate together;                // change from leaving out all of `LeftOut()`
   std::vector<RefinementEstimate> refinements;
-  // Times, summed over threads: the picture with all effects, the picture as chosen, and the preview.
+  // Times, summed over threads: the picture with all effects, the picture as chosen, and the
+  // preview.
   double all_s = 0.0, chosen_s = 0.0, preview_s = 0.0;
   std::size_t preview_pixels = 0;
 

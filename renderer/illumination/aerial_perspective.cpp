@@ -8,9 +8,7 @@
 #include "atmosphere/base/error.h"
 #include "atmosphere/math/constants.h"
 #include "atmosphere/math/numerics.h"
-#include "atmosphere/ray/direct_columns.h"
 #include "atmosphere/ray/ray.h"
-#include "atmosphere/ray/ray_map.h"
 #include "atmosphere/ray/shell.h"
 
 namespace alpenglow::renderer {

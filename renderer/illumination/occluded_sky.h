@@ -1,15 +1,16 @@
 // SPDX-License-Identifier: MIT
 // This header provides skylight at a place: its moments for scattering by any phase function
-// (SkyMoments), and its irradiance of surfaces whose horizon hides a part of it (OccludedSkyIrradiance).
+// (SkyMoments), and its irradiance of surfaces whose horizon hides a part of it
+// (OccludedSkyIrradiance).
 //
-// SkyMoments keeps the moments of MultipleScattering, from which a phase function with coefficients chi_l
-// scatters
+// SkyMoments keeps the moments of MultipleScattering, from which a phase function with coefficients
+// chi_l scatters
 //
 //   J(look) = sum over l, m of  chi_l L_lm Y_lm(look)
 //
-// OccludedSkyIrradiance integrates the sky over the directions that a surface sees. From azimuth p and elevation
-// e, a surface of normal n = (n_h(p) along the azimuth, n_z up) receives L (n_z sin e + n_h cos e).
-// The open part of one azimuth, above the sine s of the horizon, contributes
+// OccludedSkyIrradiance integrates the sky over the directions that a surface sees. From azimuth p
+// and elevation e, a surface of normal n = (n_h(p) along the azimuth, n_z up) receives L (n_z sin e
+// + n_h cos e). The open part of one azimuth, above the sine s of the horizon, contributes
 //
 //   n_z A(p, s) + n_h B(p, s),   A = integral of L s ds,   B = integral of L sqrt(1 - s^2) ds.
 //

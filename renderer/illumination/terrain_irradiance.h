@@ -6,11 +6,12 @@
 // outwards from the nodes of a coarse grid along kHorizonAzimuths directions, in growing steps, and
 // keeps for each direction a few nodes that represent the ground in view. A strip between one
 // elevation and the next higher one is weighted by the light that it would bring, and the kept
-// nodes are at equal fractions of the total weight. For one position of the sun, TerrainInterreflection
-// evaluates once the outgoing light of all nodes, and sums it for every node and direction. The air
-// in between dims this light and adds its own, which is assumed to be that of the sky above the
-// horizon there. A point of the picture weights the directions by its own normal and horizon. Light
-// may be propagated between slopes several times; the first time contributes most of it.
+// nodes are at equal fractions of the total weight. For one position of the sun,
+// TerrainInterreflection evaluates once the outgoing light of all nodes, and sums it for every node
+// and direction. The air in between dims this light and adds its own, which is assumed to be that
+// of the sky above the horizon there. A point of the picture weights the directions by its own
+// normal and horizon. Light may be propagated between slopes several times; the first time
+// contributes most of it.
 #pragma once
 
 #include <array>

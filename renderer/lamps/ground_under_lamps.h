@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
 // Provides the light of lamps on the ground for interpolation by the GPU: SampledGlow, the light
-// that the illuminated air around a lamp brings to surfaces, and LampShadowField, the lit and shadowed
-// ground around a lamp.
+// that the illuminated air around a lamp brings to surfaces, and LampShadowField, the lit and
+// shadowed ground around a lamp.
 //
-// SampledGlow tabulates LampAirlightIrradiance (renderer/lamps/lamp_tree.h) with six terms over distance and rise
-// of the lamp.
+// SampledGlow tabulates LampAirlightIrradiance (renderer/lamps/lamp_tree.h) with six terms over
+// distance and rise of the lamp.
 //
 //   E(n) = exp(term 0) / d * LampAirlightOnSlope(n, terms 1 to 5)             [m^-2], by band
 //
@@ -12,14 +12,14 @@
 // in atmosphere/lamp/lamp_ray.glsl, are fitted by least squares to slopes of up to 60 degrees.
 // Gentle slopes have larger weights than steep ones (the fourth power of the cosine).
 //
-// A LampShadowField is a horizontal map of the signed distance to the edge of the shadows of terrain, found
-// with the renderer's own shadow rays (LampStage::Shades). Shadows end at sides of triangles and at
-// the shadows of these sides on other triangles, along lines that are straight over many steps of a
-// lattice. The distance to a straight line is linear between nodes, so the edge is located far more
-// accurately than the spacing of the lattice; only corners are rounded (Green 2007, "Improved
-// Alpha-Tested Magnification for Vector Textures and Special Effects", SIGGRAPH courses). Every
-// level is twice as coarse and twice as wide as the previous one, and empty where the previous one
-// is used.
+// A LampShadowField is a horizontal map of the signed distance to the edge of the shadows of
+// terrain, found with the renderer's own shadow rays (LampStage::Shades). Shadows end at sides of
+// triangles and at the shadows of these sides on other triangles, along lines that are straight
+// over many steps of a lattice. The distance to a straight line is linear between nodes, so the
+// edge is located far more accurately than the spacing of the lattice; only corners are rounded
+// (Green 2007, "Improved Alpha-Tested Magnification for Vector Textures and Special Effects",
+// SIGGRAPH courses). Every level is twice as coarse and twice as wide as the previous one, and
+// empty where the previous one is used.
 #pragma once
 
 #include <cstdint>
@@ -32,8 +32,8 @@
 
 namespace alpenglow::renderer {
 
-/// Size of the table. Distances and rises are spaced as in lamp_ray.glsl; each step of LampAirlightIrradiance is
-/// divided into four.
+/// Size of the table. Distances and rises are spaced as in lamp_ray.glsl; each step of
+/// LampAirlightIrradiance is divided into four.
 inline constexpr int kGlowDistances = 61;
 inline constexpr int kGlowRises = 33;
 inline constexpr double kNearestGlow_m = 0.2;

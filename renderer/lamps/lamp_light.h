@@ -4,7 +4,8 @@
 //   lamp -> eye              the lamp itself, never smaller than a pixel
 //   lamp -> air -> eye       Airlight, on the lit pieces of the ray where terrain casts shadows
 //   lamp -> surface -> eye   inverse square, through the air, shadowed by terrain
-//   lamp -> air -> surface   LampAirlightIrradiance, over level ground at the lamp's foot, the flux of a beam
+//   lamp -> air -> surface   LampAirlightIrradiance, over level ground at the lamp's foot, the flux
+// of a beam
 //                            spread evenly over all directions (not shaded by terrain)
 //
 // The air around a lamp consists of the scene's molecules, aerosol and fog, with exponential

@@ -2,7 +2,8 @@
 // This header provides the tree of a scene's lamps, and the irradiance of surfaces from the air
 // that a lamp lights (LampAirlightIrradiance).
 //
-// LampAirlightIrradiance integrates lamp -> air -> surface, in air of exponential density over level ground:
+// LampAirlightIrradiance integrates lamp -> air -> surface, in air of exponential density over
+// level ground:
 //
 //   E(n) = integral over directions d with n.d > 0 of  L(d) n.d,    L = Airlight from the surface
 //

@@ -2,12 +2,12 @@
 // This header computes the light of sun, sky and lamps in local media (volumes and fog), and the
 // transmittance of local media.
 //
-// Volumes scatter light once. Sunlight arrives through the air (RefractedBeam), the terrain's shadow,
-// and every volume and the fog on its path. Skylight is given by its moments (MultipleScattering) and the
-// phase function, and attenuated by the mean transmittance of the volumes over 26 directions. Light
-// that a volume scatters again is neglected. Columns towards the sun through a gridded volume are
-// taken from a grid of at most 64 samples per side; the error is 2 % of the sun's light in
-// turbulent smoke with as many samples itself.
+// Volumes scatter light once. Sunlight arrives through the air (RefractedBeam), the terrain's
+// shadow, and every volume and the fog on its path. Skylight is given by its moments
+// (MultipleScattering) and the phase function, and attenuated by the mean transmittance of the
+// volumes over 26 directions. Light that a volume scatters again is neglected. Columns towards the
+// sun through a gridded volume are taken from a grid of at most 64 samples per side; the error is 2
+// % of the sun's light in turbulent smoke with as many samples itself.
 //
 // The eight lamps of the scene that are brightest at a volume light it, through air, fog and
 // volumes (optical depths are from a grid of at most 24 samples per side), shadowed by terrain.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The data that all pixels of one picture share: camera, distant lights with their shadows and their
-// light on terrain and in media, lamps, night sky, stars and refraction.
+// The data that all pixels of one picture share: camera, distant lights with their shadows and
+// their light on terrain and in media, lamps, night sky, stars and refraction.
 #pragma once
 
 #include <glm/vec3.hpp>
@@ -35,8 +35,8 @@ struct FrameLight {
 /// Refers to the scene.
 class FrameContext {
  public:
-  /// Prepares a picture. Reports the steps to the progress of the settings. Throws InputError for an
-  /// eye at an impossible place.
+  /// Prepares a picture. Reports the steps to the progress of the settings. Throws InputError for
+  /// an eye at an impossible place.
   FrameContext(const PreparedScene& scene, const CameraSample& camera_sample,
                const RenderSettings& settings);
 

@@ -5,8 +5,8 @@
 // ViewDifference compares a picture with the renderer's, away from edges. The difference of a pixel
 // is PixelChange (effect_choice.h), the relative difference of linear radiance above the floor of
 // ChangeFloor. Pixels at an edge are excluded, because there a hundredth of a pixel decides what is
-// visible: pixels with neighbours of another kind, a tenth farther or nearer, lit by more or less of
-// the sun's disk, or lit a fifth more or less by lamps.
+// visible: pixels with neighbours of another kind, a tenth farther or nearer, lit by more or less
+// of the sun's disk, or lit a fifth more or less by lamps.
 #pragma once
 
 #include <array>
@@ -159,8 +159,8 @@ struct ViewDifference {
 [[nodiscard]] std::vector<bool> EdgesOf(const Image& reference);
 
 /// Returns the differences of a drawn picture from the reference.
-/// @param reference solution  the renderer's, with LayersOfEdges(). Throws InternalError if the sizes differ or
-///   all pixels are at edges.
+/// @param reference solution  the renderer's, with LayersOfEdges(). Throws InternalError if the
+///   sizes differ or all pixels are at edges.
 [[nodiscard]] ViewDifference DifferenceOf(const Image& reference, const Image& painted);
 
 }  // namespace alpenglow::renderer

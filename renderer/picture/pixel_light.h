@@ -58,7 +58,8 @@ class AirInterpolationGrid {
 
   [[nodiscard]] const Corner& At(int column, int row);
   [[nodiscard]] Corner Computed(double x, double y) const;
-  /// Returns the interpolated air in front of a surface at a distance, at (x, y) within the picture.
+  /// Returns the interpolated air in front of a surface at a distance, at (x, y) within the
+  /// picture.
   [[nodiscard]] std::optional<AirAlongRay> Between(int column, int row, double x, double y,
                                                    HitKind kind, double distance_m);
   [[nodiscard]] bool IsShared(int column, int row);
@@ -95,7 +96,8 @@ class PixelLight {
   /// of lamps has one value for all rays of a pixel, and near lamps it changes strongly from pixel
   /// to pixel.
   [[nodiscard]] std::vector<SeenRay> NewRays() { return std::exchange(new_rays_, {}); }
-  /// Airlight of the rays that see the sky; the radiance in NewRays() of these rays is relative to it.
+  /// Airlight of the rays that see the sky; the radiance in NewRays() of these rays is relative to
+  /// it.
   [[nodiscard]] const std::optional<BandLight>& sky() const { return sky_; }
   /// Replaces the mean radiance without lamps and volumes by a better estimate than the mean of the
   /// pixel's own rays.

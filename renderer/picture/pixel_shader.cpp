@@ -122,7 +122,8 @@ BandLight RefractedMoon(const glm::dvec3& direction, const AirAlongRay& through,
 BandLight MoonDiskRadiance(const FrameContext& frame, const glm::dvec3& direction,
                            const AirAlongRay& through) {
   const Lighting& light = frame.light();
-  // During an eclipse, the earthshine of the moon would stand out, because the renderer has no corona.
+  // During an eclipse, the earthshine of the moon would stand out, because the renderer has no
+  // corona.
   if (!light.moon || light.eclipse) return BandLight(light.irradiance.count);
   if (frame.bent()) return RefractedMoon(direction, through, light, *frame.bent());
   const double radiance = MeanMoonRadiance(*light.moon, light.moon_turn, direction);

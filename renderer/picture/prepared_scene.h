@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-// The scene behind SceneRenderer, prepared once for all pictures: ground, air, lamps, media; and the
-// cache of sunlight or moonlight in the air over one ground, which all pictures of a moment share.
+// The scene behind SceneRenderer, prepared once for all pictures: ground, air, lamps, media; and
+// the cache of sunlight or moonlight in the air over one ground, which all pictures of a moment
+// share.
 #pragma once
 
 #include <deque>
@@ -94,8 +95,8 @@ class AirModels {
   mutable std::map<EffectSet, std::unique_ptr<AirModel>> partial_;
 };
 
-/// A scene ready for pictures of any time. Immutable, safe to share between threads. The parts refer
-/// to each other.
+/// A scene ready for pictures of any time. Immutable, safe to share between threads. The parts
+/// refer to each other.
 class PreparedScene {
  public:
   /// Throws InputError as LoadGround does.
@@ -128,7 +129,8 @@ class PreparedScene {
   [[nodiscard]] RecentSunlight& sunlight() const { return *sunlight_; }
   [[nodiscard]] RecentSunlight& moonlight() const { return *moonlight_; }
 
-  /// Returns this scene with another number of bands; null if its medium is not known on those bands.
+  /// Returns this scene with another number of bands; null if its medium is not known on those
+  /// bands.
   [[nodiscard]] std::unique_ptr<PreparedScene> OnOtherBands(int bands) const;
   /// Returns the scene without its fine spectrum; itself if it has no fine spectrum.
   [[nodiscard]] const PreparedScene& OnFewBands() const;

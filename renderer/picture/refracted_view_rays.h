@@ -30,12 +30,13 @@ struct RefractedViewRays {
   [[nodiscard]] glm::dvec3 TrueDirection(const glm::dvec3& direction, std::size_t band) const;
 };
 
-/// Returns the refraction if it moves something in the picture by more than half a pixel; else null.
+/// Returns the refraction if it moves something in the picture by more than half a pixel; else
+/// null.
 [[nodiscard]] std::shared_ptr<const RefractedViewRays> RefractedViewRaysOf(
     const FrameContext& frame, const Observer& observer);
 
-/// Returns the hit of a bent ray, for a frame with RefractedViewRays. Terrain appears within 0.1' of the
-/// solution of the ray equation.
+/// Returns the hit of a bent ray, for a frame with RefractedViewRays. Terrain appears within 0.1'
+/// of the solution of the ray equation.
 /// @param expected_m  expected length of the ray; 0: unknown.
 [[nodiscard]] Hit OnRefractedRay(const FrameContext& frame, const CameraRay& ray,
                                  double expected_m);

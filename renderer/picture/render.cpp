@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Renders pictures with the effects that a scene needs: runs the preview of effect_choice.h with the
-// scene's own pixels.
+// Renders pictures with the effects that a scene needs: runs the preview of effect_choice.h with
+// the scene's own pixels.
 #include "renderer/picture/render.h"
 
 #include <algorithm>

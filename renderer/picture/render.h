@@ -10,9 +10,9 @@
 // sea without terrain follow refracted rays instead (RefractedViewRays).
 //
 // Each pixel traces rays against the terrain, distributed by PixelFilter and PixelSamples. A single
-// ray goes through the middle of the pixel; with RenderSettings::noise, shared_samples.h chooses the
-// number of rays. Then AerialPerspective computes the air along the mean of the rays that meet the
-// same surface: single scattering where terrain and planet let the sun in, multiple scattering
+// ray goes through the middle of the pixel; with RenderSettings::noise, shared_samples.h chooses
+// the number of rays. Then AerialPerspective computes the air along the mean of the rays that meet
+// the same surface: single scattering where terrain and planet let the sun in, multiple scattering
 // everywhere. Terrain beyond the planet's own horizon is not visible.
 #pragma once
 

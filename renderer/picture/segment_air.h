@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Air and media along the view rays of a pixel: light of sun and sky, fog, volumes, and the airlight
-// of lamps.
+// Air and media along the view rays of a pixel: light of sun and sky, fog, volumes, and the
+// airlight of lamps.
 #pragma once
 
 #include <glm/vec3.hpp>

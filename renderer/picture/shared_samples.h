@@ -38,12 +38,12 @@
 // is 0 at crests and never over twice the difference to either neighbour, so that light does not
 // become negative.
 //
-// All rays of a pixel that meet the sky have one sky radiance, that of the pixel (SharedSegmentAir),
-// whatever their direction. To a neighbour they contribute only the fact that sky is visible, not
-// its radiance. So L_r is the light relative to the sky of the ray's own pixel, and a pixel adds
-// its own sky in proportion to its visible fraction: sum_r g(r) [r sees sky] / sum_r g(r).
-// Otherwise a sky whose radiance grows by a quarter from row to row would come out up to a fifth
-// too bright above a ridge, whose pixels have many rays.
+// All rays of a pixel that meet the sky have one sky radiance, that of the pixel
+// (SharedSegmentAir), whatever their direction. To a neighbour they contribute only the fact that
+// sky is visible, not its radiance. So L_r is the light relative to the sky of the ray's own pixel,
+// and a pixel adds its own sky in proportion to its visible fraction: sum_r g(r) [r sees sky] /
+// sum_r g(r). Otherwise a sky whose radiance grows by a quarter from row to row would come out up
+// to a fifth too bright above a ridge, whose pixels have many rays.
 //
 // The combined rays have 0.6 times the error of the mean of each pixel's own rays.
 #pragma once

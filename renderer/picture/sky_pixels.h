@@ -10,8 +10,8 @@
 //
 // OccludedSkyPixels finds the pixels that see only sky without tracing a ray: those well above the
 // skyline, and not near the sun or the moon. All rays of such a pixel have one sky radiance, that
-// of its middle (shared_samples.h), and so have all rays of its neighbours that count for it. One ray
-// through the middle gives the same result as many.
+// of its middle (shared_samples.h), and so have all rays of its neighbours that count for it. One
+// ray through the middle gives the same result as many.
 #pragma once
 
 #include <array>

@@ -42,7 +42,8 @@ struct Tile {
   }
 };
 
-/// Returns the mean of the relative variances of a pixel's neighbours; its own if it has no neighbours.
+/// Returns the mean of the relative variances of a pixel's neighbours; its own if it has no
+/// neighbours.
 double VarianceAround(const std::vector<double>& variances, const Tile& tile, int x, int y) {
   double sum = 0.0;
   int neighbours = 0;

@@ -22,8 +22,8 @@ class TileRenderer {
 
   /// Throws RenderingStopped when the settings request it; stops early when Interrupted().
   [[nodiscard]] CountedPicture Picture() const;
-  /// Returns single pixels as an image of one row, with a fixed number of rays per pixel and without
-  /// layers.
+  /// Returns single pixels as an image of one row, with a fixed number of rays per pixel and
+  /// without layers.
   [[nodiscard]] Image Pixels(const std::vector<PixelPlace>& places) const;
 
  private:

@@ -98,7 +98,8 @@ constexpr Word<NrrdHeader::Encoding> kEncodings[] = {{"raw", NrrdHeader::Encodin
                                                      {"gzip", NrrdHeader::Encoding::kGzip},
                                                      {"gz", NrrdHeader::Encoding::kGzip}};
 constexpr Word<bool> kEndians[] = {{"little", false}, {"big", true}};
-// The spaces. Each flag tells whether an axis points against right, ahead (anterior) or up (superior).
+// The spaces. Each flag tells whether an axis points against right, ahead (anterior) or up
+// (superior).
 constexpr Word<std::array<bool, 3>> kSpaces[] = {
     {"3d-right-handed", {false, false, false}},         {"ras", {false, false, false}},
     {"right-anterior-superior", {false, false, false}}, {"las", {true, false, false}},

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Provides the list of named places (airports, peaks and cities) and the time zones there. The list
-// is renderer/data/places.csv, which names its sources: aeronautical publications, national surveys,
-// atlases.
+// is renderer/data/places.csv, which names its sources: aeronautical publications, national
+// surveys, atlases.
 #pragma once
 
 #include <optional>

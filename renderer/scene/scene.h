@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The description of a scene: place, time, camera, air, ground and lamps; and the reader of scene.toml.
+// The description of a scene: place, time, camera, air, ground and lamps; and the reader of
+// scene.toml.
 #pragma once
 
 #include <array>

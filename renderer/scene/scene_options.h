@@ -14,7 +14,8 @@ namespace alpenglow::renderer {
 
 struct LandSource;  // renderer/terrain/land_source.h
 
-/// Returns every file that the scene names and that is read for rendering, with the name of its key.
+/// Returns every file that the scene names and that is read for rendering, with the name of its
+/// key.
 [[nodiscard]] std::vector<NamedFile> FilesOf(const Scene& scene);
 
 /// Returns the land source of a scene: its elevation model, its mesh or the built-in range.
@@ -44,11 +45,11 @@ struct SceneOptions {
 /// Returns whether a place lies on the built-in range around kHomeLatitude and kHomeLongitude.
 [[nodiscard]] bool IsOnRangeAtHome(const GeodeticPosition& place);
 
-/// Returns the scene with the eye at latitude and longitude or the named place, on any ground. With `dem` the default
-/// is 2 m above the ground, looking north, horizontally, 60 degrees wide. Without it the range is
-/// RangeSeenFrom the place, and height and directions default to ProceduralMountainsView. The scene's time
-/// is noon (UTC) of 2026-06-21, which sets the day of events given without a date. Throws
-/// InputError naming the option.
+/// Returns the scene with the eye at latitude and longitude or the named place, on any ground. With
+/// `dem` the default is 2 m above the ground, looking north, horizontally, 60 degrees wide. Without
+/// it the range is RangeSeenFrom the place, and height and directions default to
+/// ProceduralMountainsView. The scene's time is noon (UTC) of 2026-06-21, which sets the day of
+/// events given without a date. Throws InputError naming the option.
 [[nodiscard]] Scene SceneFromOptions(const SceneOptions& options);
 
 }  // namespace alpenglow::renderer

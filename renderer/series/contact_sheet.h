@@ -23,7 +23,8 @@ struct Thumbnail {
   std::string label;  // digits, ':', '.', '+', '-' and spaces; other characters are left blank
 };
 
-/// Returns the thumbnails row by row, in about as many columns as rows. All must have the same size.
+/// Returns the thumbnails row by row, in about as many columns as rows. All must have the same
+/// size.
 [[nodiscard]] DisplayImage ContactSheet(const std::vector<Thumbnail>& thumbnails);
 
 /// Grows by one column per picture.

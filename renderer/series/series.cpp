@@ -48,7 +48,8 @@ struct Reading {
   std::optional<double> white_mired;  // for the white balances auto and camera
 };
 
-/// Returns the values that affect the pixels of a frame: settings and instant, with their fingerprint.
+/// Returns the values that affect the pixels of a frame: settings and instant, with their
+/// fingerprint.
 Metadata RenderMetadata(const SeriesSource& source, const Frame& frame) {
   Metadata metadata = source.settings;
   if (source.path) {
@@ -217,7 +218,8 @@ class Series {
     WriteTextAtomically(*output_.plot, SvgOfDay(moments, source_.zone));
   }
 
-  /// Video and keogram take the developed pictures one by one, so the series is never held in memory.
+  /// Video and keogram take the developed pictures one by one, so the series is never held in
+  /// memory.
   void WriteVideoAndKeogram(const std::vector<Frame>& shown) const {
     if (!output_.video && !output_.keogram) return;
     Keogram keogram;

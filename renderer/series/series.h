@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Renders a series of pictures: exposes and writes them one by one, and resumes an interrupted series.
+// Renders a series of pictures: exposes and writes them one by one, and resumes an interrupted
+// series.
 #pragma once
 
 #include <filesystem>

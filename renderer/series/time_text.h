@@ -55,8 +55,9 @@ struct TimeOfDay {
 
 /// Reads a time:
 /// - an instant, "2026-06-21T04:00:00Z" (ParseInstant), in the day's zone without Z or offset;
-/// - an event of the sun, the moon or an eclipse with an offset, "sunrise-1h", "noon", "civil-dusk",
-///   "midnight" (half way from the day's noon to the next), "moonrise", "second-contact-10s";
+/// - an event of the sun, the moon or an eclipse with an offset, "sunrise-1h", "noon",
+///   "civil-dusk", "midnight" (half way from the day's noon to the next), "moonrise",
+/// "second-contact-10s";
 /// - a clock time, "18:30", "18:30:15", "18:30Z", "1830", of the day;
 /// - an event or a clock time after a day: "2026-06-21 sunrise", "tomorrow 18:30", "today moonset";
 /// - "today", "tomorrow", "yesterday": the noon of that day;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// This header provides the geometry of a scene: refracted rays of one eye (RefractedFan), intersections
-// of camera rays with terrain or planet (SceneGeometry), and sunlit stretches of rays
+// This header provides the geometry of a scene: refracted rays of one eye (RefractedFan),
+// intersections of camera rays with terrain or planet (SceneGeometry), and sunlit stretches of rays
 // (TerrainSunlight).
 //
 // RefractedFan tabulates rays through air that refracts them. The ray equation

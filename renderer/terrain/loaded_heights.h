@@ -88,8 +88,8 @@ class LoadedHeights {
   std::vector<std::shared_ptr<const HeightPyramid>> heights_;
 };
 
-/// Reads the tiles around a place and returns LoadedHeights::SampledGrid of them. Tiles are read one
-/// after the other, at the level of the grid. Throws InputError as ReadLandTile does, but for
+/// Reads the tiles around a place and returns LoadedHeights::SampledGrid of them. Tiles are read
+/// one after the other, at the level of the grid. Throws InputError as ReadLandTile does, but for
 /// unreadable files in a folder, which are left out.
 /// @param notes  receives the notes on the tiles and the files that were left out.
 [[nodiscard]] std::optional<ElevationGrid> ReadHeightsAround(

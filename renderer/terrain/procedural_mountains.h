@@ -27,7 +27,8 @@ namespace alpenglow::renderer {
 /// Fingerprint of the heights of seed 0, see FingerprintOf (land.h).
 inline constexpr std::uint64_t kProceduralMountainsFingerprint = 15784046122448507333ULL;
 
-/// Returns the heights of a seed, rows from the north, without a cache; ProceduralMountains caches them.
+/// Returns the heights of a seed, rows from the north, without a cache; ProceduralMountains caches
+/// them.
 [[nodiscard]] std::vector<float> MadeRangeHeights(std::uint32_t seed);
 
 /// Position and direction of a view.
@@ -47,8 +48,8 @@ struct BuiltInView {
 /// for all seeds to a centimetre; beside a pole, where the heights are resampled, to some metres.
 inline constexpr double kRangeViewGround_m = 2084.44;
 
-/// Returns ProceduralMountainsView without the heights of the range: eye.height_m is relative to the
-/// ground.
+/// Returns ProceduralMountainsView without the heights of the range: eye.height_m is relative to
+/// the ground.
 [[nodiscard]] BuiltInView ProceduralMountainsViewAboveGround(const GeodeticPosition& centre);
 
 /// Returns the centre of the range whose built-in view is at a place, to a micrometre. A centre

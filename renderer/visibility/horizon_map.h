@@ -21,7 +21,8 @@
 
 namespace alpenglow::renderer {
 
-/// Number of azimuths with horizons: in even steps counter-clockwise from east (x), seen from above.
+/// Number of azimuths with horizons: in even steps counter-clockwise from east (x), seen from
+/// above.
 inline constexpr std::size_t kHorizonAzimuths = 16;
 [[nodiscard]] double HorizonAzimuth(std::size_t i);
 
@@ -49,7 +50,8 @@ class HorizonMap {
   /// @param planet_radius_m  determines the local vertical, which is the frame's z at the origin.
   HorizonMap(const HeightRaster& heights, double planet_radius_m);
 
-  /// Interpolates bilinearly between nodes, and uses the rim for points beyond it. Resolution 1.7e-5.
+  /// Interpolates bilinearly between nodes, and uses the rim for points beyond it. Resolution
+  /// 1.7e-5.
   [[nodiscard]] Horizons At(const glm::dvec3& point) const;
 
   /// Returns the horizon towards one azimuth, node by node: a raster of sines instead of heights.

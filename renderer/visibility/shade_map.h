@@ -2,9 +2,9 @@
 // Height of terrain shadows in the air, which shaders need to find the shadowed stretches of a ray.
 //
 // HeightsAround resamples heights from latitude and longitude to an even grid of a local frame.
-// SunShadowMap is a faster version of ShadowHeights (renderer/visibility/shadow_heights.h) for the GPU.
-// Over the plane of u, the distance towards the sun, and v, across it, the height of the shadow for
-// a beam is
+// SunShadowMap is a faster version of ShadowHeights (renderer/visibility/shadow_heights.h) for the
+// GPU. Over the plane of u, the distance towards the sun, and v, across it, the height of the
+// shadow for a beam is
 //
 //   Z(u, v) = max over u' >= u of z(u', v) - (u' - u) tan(E),     E the beam's elevation,
 //

@@ -385,7 +385,8 @@ ShadowHeights::Beams ShadowHeights::BeamsOf(const glm::dvec3& point) const {
   return through;
 }
 
-// Returns C interpolated between four nodes; in front of the first column, that of the first column.
+// Returns C interpolated between four nodes; in front of the first column, that of the first
+// column.
 ShadowHeights::Beams ShadowHeights::HighestAt(double column, double line) const {
   const double along = std::max(column, 0.0);
   const std::size_t i = std::min(static_cast<std::size_t>(along), columns_ - 2);

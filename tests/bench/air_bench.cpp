@@ -89,8 +89,8 @@ BENCHMARK(DirectScatteringOfOneRay)
     ->ArgsProduct({{0, 1, 2, 3}, {0, 1}, {60, 91}})
     ->ArgNames({"set", "normal", "sun_zenith"});
 
-// A segment of 20 km of air in front of a mountain; argument: 0 SingleScattering with 8 nodes, 1 fast,
-// 2 normal.
+// A segment of 20 km of air in front of a mountain; argument: 0 SingleScattering with 8 nodes, 1
+// fast, 2 normal.
 void AirInFrontOfAMountain(benchmark::State& state) {
   const DirectScattering direct(MediumPreset("earth"));
   const SingleScattering<float>& air = direct.reference();
@@ -144,8 +144,8 @@ SampledLight ByReference(const SingleScattering<float>& air, const ViewRay& ray)
   return light;
 }
 
-// All orders of scattering from a direction of the sky; argument: 0 SingleScattering with 12 nodes, 1
-// fast, 2 normal.
+// All orders of scattering from a direction of the sky; argument: 0 SingleScattering with 12 nodes,
+// 1 fast, 2 normal.
 void AllOrdersOfOneRay(benchmark::State& state) {
   const Medium medium = MediumPreset("earth");
   const DirectScattering direct(medium);

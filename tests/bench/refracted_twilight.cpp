@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
-// Compares twilight by refracted rays of the sun (tests/fixtures/refracted_twilight.h) with twilight by
-// straight rays, from a sun that is lifted by a fraction of its refraction (LiftForAir) and from
-// the apparent sun. It then compares sunlight on the ground by RefractedBeam and by the straight ray
-// from the apparent sun.
+// Compares twilight by refracted rays of the sun (tests/fixtures/refracted_twilight.h) with
+// twilight by straight rays, from a sun that is lifted by a fraction of its refraction (LiftForAir)
+// and from the apparent sun. It then compares sunlight on the ground by RefractedBeam and by the
+// straight ray from the apparent sun.
 #include <fmt/core.h>
 
 #include <array>

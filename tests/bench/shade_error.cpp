@@ -24,8 +24,7 @@
 #include "viewer/flight/flight.h"
 #include "viewer/gl/gl_context.h"
 #include "viewer/shade/shafts.h"
-#include "viewer/shaders/full_screen.h"
-#include "viewer/shaders/uniform_blocks.h"
+#include "viewer/shaders/pass_setup.h"
 
 namespace alpenglow::viewer {
 namespace {

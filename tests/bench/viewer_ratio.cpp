@@ -21,7 +21,7 @@
 #include "viewer/passes/auto_quality.h"
 #include "viewer/passes/frame_renderer.h"
 #include "viewer/passes/sky_painter.h"
-#include "viewer/shaders/full_screen.h"
+#include "viewer/shaders/pass_setup.h"
 
 namespace alpenglow::viewer {
 namespace {

@@ -105,8 +105,8 @@ class ShownFrames {
   RenderTarget screen_;
 };
 
-/// Green over blue of the greenest pixel: sky at noon has little more of one than of the other, even
-/// at the horizon (1.1), and ground has twice as much.
+/// Green over blue of the greenest pixel: sky at noon has little more of one than of the other,
+/// even at the horizon (1.1), and ground has twice as much.
 double Greenest(const Image& image) {
   double most = 0.0;
   for (int y = 0; y < image.height; ++y) {

@@ -12,7 +12,7 @@
 #include "atmosphere/math/constants.h"
 #include "viewer/gl/gl_context.h"
 #include "viewer/gl/render_target.h"
-#include "viewer/shaders/full_screen.h"
+#include "viewer/shaders/pass_setup.h"
 
 namespace alpenglow::viewer {
 namespace {

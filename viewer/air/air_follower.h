@@ -58,8 +58,8 @@ class AirTextures {
   /// tables requires: rows start at the current horizon, azimuths at the current sun.
   void SetView(double altitude_m, const SkySun& sun);
 
-  /// Call once for each program: its samplers read from kUnits units, beginning with first_unit, its
-  /// block from `binding`.
+  /// Call once for each program: its samplers read from kUnits units, beginning with first_unit,
+  /// its block from `binding`.
   static void Prepare(const ShaderProgram& program, int first_unit, GLuint binding);
 
   /// Binds the textures and the block for draw calls of prepared programs.

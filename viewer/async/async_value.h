@@ -14,10 +14,10 @@
 namespace alpenglow::viewer {
 
 /// A value that follows an input, such as tables for a moving eye. One thread computes it, always
-/// for the newest request: a request replaces one that has not begun. A finished value is kept until
-/// it is taken over or a newer one is finished. The computation runs on that thread alone unless it
-/// starts threads itself. All functions must be called on one thread, which is usually the one that
-/// draws.
+/// for the newest request: a request replaces one that has not begun. A finished value is kept
+/// until it is taken over or a newer one is finished. The computation runs on that thread alone
+/// unless it starts threads itself. All functions must be called on one thread, which is usually
+/// the one that draws.
 ///
 /// The policy of requests is a function, Suits, and a rest. RequestIfNeeded requests a value unless
 /// the newest request suits the input, so that a small change of the input causes no work.

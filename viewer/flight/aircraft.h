@@ -10,9 +10,9 @@
 // flight with bank angle phi the aircraft turns at the rate g tan(phi) / |v|; nothing else causes a
 // turn. The air is StandardAirAt. In thin air wings therefore produce less lift and engines less
 // thrust: the thrust of a jet is proportional to density, the power of a piston engine to
-// sigma - (1 - sigma) / 7.55 (Gagg and Ferrar's model, Gudmundsson (2014), General Aviation Aircraft
-// Design, eq. 7-16). Gravity decreases with the square of the distance. The earth does not rotate
-// below the aircraft: there is no wind and no Coriolis force.
+// sigma - (1 - sigma) / 7.55 (Gagg and Ferrar's model, Gudmundsson (2014), General Aviation
+// Aircraft Design, eq. 7-16). Gravity decreases with the square of the distance. The earth does not
+// rotate below the aircraft: there is no wind and no Coriolis force.
 // Formulas: Anderson (1999), Aircraft Performance and Design, chapters 3, 5 and 6; Lock's law: Gur,
 // Mason and Schetz (2010), J. Aircraft 47(4), doi 10.2514/1.47557.
 //

@@ -52,8 +52,8 @@ class SceneClock {
   /// Shifts the time, whether the clock is paused or not.
   void Shift(double seconds);
   void Set(const UtcInstant& instant);
-  /// Jumps to the next occurrence of the event. Returns false and changes nothing if NextEvent finds
-  /// none.
+  /// Jumps to the next occurrence of the event. Returns false and changes nothing if NextEvent
+  /// finds none.
   bool JumpToNext(SkyEvent event, const GeodeticPosition& place);
   /// Sets the time from a text, as InstantFromText (renderer/series/time_text.h). The day is that
   /// of this clock in the zone, but "today" and "now" refer to the clock of the computer. Throws

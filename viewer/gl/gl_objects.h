@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Provides owners of OpenGL object names, the binding of a texture to a unit, a scissor rectangle for
-// its scope, and texture sizes that are not powers of two. An object must not outlive the context in which it was created.
+// Provides owners of OpenGL object names, the binding of a texture to a unit, a scissor rectangle
+// for its scope, and texture sizes that are not powers of two. An object must not outlive the
+// context in which it was created.
 #pragma once
 
 #include <epoxy/gl.h>

@@ -158,8 +158,8 @@ struct Quantity {
 /// Returns m up to 100 km and km beyond; in aviation units feet up to 100 000 and nautical miles
 /// beyond.
 [[nodiscard]] Quantity HeightText(double height_m, HudUnits units);
-/// Returns km/h up to 10 000 and km/s beyond; in aviation units knots up to 10 000 and nautical miles
-/// per second beyond.
+/// Returns km/h up to 10 000 and km/s beyond; in aviation units knots up to 10 000 and nautical
+/// miles per second beyond.
 [[nodiscard]] Quantity SpeedText(double speed_m_per_s, HudUnits units);
 /// Returns m/s, or feet per minute in aviation units, with sign.
 [[nodiscard]] Quantity ClimbText(double climb_m_per_s, HudUnits units);

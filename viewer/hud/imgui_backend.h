@@ -22,7 +22,8 @@
 
 namespace alpenglow::viewer {
 
-/// Returns the DejaVu Sans font of an installed package (Debian: fonts-dejavu-core), if there is one.
+/// Returns the DejaVu Sans font of an installed package (Debian: fonts-dejavu-core), if there is
+/// one.
 [[nodiscard]] std::optional<std::filesystem::path> InstalledFont();
 
 /// Empties the atlas and adds Latin, Greek and Cyrillic glyphs of `font`, or without one the

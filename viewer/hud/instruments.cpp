@@ -296,7 +296,8 @@ CornerTexts ShortCornerTextsOf(const HudModel& model) {
           {ExposureText(model.exposure), FrameText(model.speed)}};
 }
 
-// Returns the lower end of the upper right plate, which shows the clock [pixels from the upper edge].
+// Returns the lower end of the upper right plate, which shows the clock [pixels from the upper
+// edge].
 double BottomOfClock(const Canvas& canvas, const HudFrame& frame, const CornerTexts& texts) {
   return frame.top + canvas.Pixels(kEdge) + HeightOf(canvas, texts.upper_right);
 }

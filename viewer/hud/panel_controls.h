@@ -3,9 +3,9 @@
 //
 // DayStrip shows the colours of the sky through one day; a click on it chooses the time. Columns
 // are instants, rows are elevations above the horizon under the sun, the zenith on top. The light
-// is computed by SingleScattering and MultipleScattering, without a moon. The exposure of each column lies
-// between its metered exposure and that of a bright day, so that night is dark while dusk shows its
-// colours:
+// is computed by SingleScattering and MultipleScattering, without a moon. The exposure of each
+// column lies between its metered exposure and that of a bright day, so that night is dark while
+// dusk shows its colours:
 //
 //   EV = 0.8 EV(meter, mean luminance of the column) + 0.2 EV 14
 //

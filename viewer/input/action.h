@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Actions of the user: one table with the key, the gamepad button, the help text and the effect of
-// each, for the keyboard, the gamepad, the help on the screen and the manual. FlightCommands is what
-// actions and panels can change.
+// each, for the keyboard, the gamepad, the help on the screen and the manual. FlightCommands is
+// what actions and panels can change.
 //
 // Keys follow FlightGear where it defines them (its keyboard.xml); in the free camera W A S D, R F
 // and Q E move the eye, as in other viewers.
@@ -13,7 +13,7 @@
 #include <string_view>
 #include <vector>
 
-#include "atmosphere/medium/air_choice.h"
+#include "atmosphere/medium/medium_presets.h"
 #include "viewer/flight/flight.h"
 #include "viewer/input/flight_controller.h"
 #include "viewer/passes/auto_quality.h"

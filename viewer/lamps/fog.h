@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Provides the light of sun and sky in a scene's fog on the GPU: FogPainter, which uploads a FogMap
-// (renderer/media/fog_light.h) for fog_light.glsl, and SceneFog, which computes maps for a moving eye
-// and sun beside drawing.
+// (renderer/media/fog_light.h) for fog_light.glsl, and SceneFog, which computes maps for a moving
+// eye and sun beside drawing.
 #pragma once
 
 #include <glm/vec3.hpp>

@@ -11,7 +11,7 @@
 #include "renderer/lamps/ground_under_lamps.h"
 #include "viewer/gl/gl_context.h"
 #include "viewer/lamps/scene_lamps.h"
-#include "viewer/shaders/full_screen.h"
+#include "viewer/shaders/pass_setup.h"
 
 namespace alpenglow::viewer {
 namespace {

@@ -3,7 +3,8 @@
 // moving eye. It selects the lamps, or the nodes that represent many lamps
 // (renderer/lamps/lamp_tree.h), for the loop of a shader, and packs them for lamp_light.glsl into a
 // uniform block of vec4 alone. It also provides phase functions as shader expressions, and
-// LampShadowFieldFollower, which computes the LitPlans of all lamps once, one by one, beside drawing.
+// LampShadowFieldFollower, which computes the LitPlans of all lamps once, one by one, beside
+// drawing.
 //
 // Altitudes are relative to the lowest of eye and lamps. Single precision is then sufficient for
 // fog with a scale height of metres under an eye kilometres above it. Densities are relative to

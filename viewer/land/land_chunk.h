@@ -60,7 +60,8 @@ struct LandVertex {
 /// Light at a vertex.
 struct VertexLight {
   /// Irradiance of the sky lit by the sun and of the sky lit by the moon, in four bands, divided by
-  /// the irradiance of the unoccluded sky on the same slope (SkyIrradianceGradient) under the same sun or moon.
+  /// the irradiance of the unoccluded sky on the same slope (SkyIrradianceGradient) under the same
+  /// sun or moon.
   std::array<float, 4> sky{1.0F, 1.0F, 1.0F, 1.0F}, moon_sky{1.0F, 1.0F, 1.0F, 1.0F};
   /// Elevation of the centre of the shadow-casting disk (sun or moon) above the terrain edge that
   /// hides it, in radii of the disk. Part of the disk is visible between -1 and 1.

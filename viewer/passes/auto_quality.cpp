@@ -7,8 +7,8 @@
 #include <array>
 #include <cmath>
 
-#include "atmosphere/base/enum_names.h"
 #include "atmosphere/base/error.h"
+#include "atmosphere/base/parsing.h"
 #include "viewer/layer.h"
 
 namespace alpenglow::viewer {

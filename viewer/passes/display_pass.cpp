@@ -7,7 +7,7 @@
 #include "viewer/gl/gl_context.h"
 #include "viewer/gl/gl_objects.h"
 #include "viewer/land/land_pass.h"
-#include "viewer/shaders/full_screen.h"
+#include "viewer/shaders/pass_setup.h"
 
 namespace alpenglow::viewer {
 namespace {

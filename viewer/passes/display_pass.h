@@ -18,7 +18,7 @@
 #include "viewer/land/land_pass.h"
 #include "viewer/passes/painted_view.h"
 #include "viewer/passes/tone_map_pass.h"
-#include "viewer/shaders/full_screen.h"
+#include "viewer/shaders/pass_setup.h"
 
 namespace alpenglow::viewer {
 
@@ -31,8 +31,8 @@ class Upscaler {
   explicit Upscaler(Shows shows);
 
   /// Fills the framebuffer (0: the window), which has the size of the outline.
-  /// @param small      of any size, with the inverse depth of land (shaders/inverse_depth.glsl) in its
-  ///   fourth component.
+  /// @param small      of any size, with the inverse depth of land (shaders/inverse_depth.glsl) in
+  ///   its fourth component.
   /// @param half_view  tangents of half the horizontal and half the vertical field of view.
   void Upscale(const RenderTarget& small, const DepthPrepass& outline, const glm::dvec2& half_view,
                GLuint framebuffer) const {
@@ -54,8 +54,9 @@ class Upscaler {
 [[nodiscard]] std::vector<ShaderPiece> UpscalerTexts(Upscaler::Shows shows,
                                                      const ShaderPiece& depth);
 
-/// Shows pictures of linear light on a screen, whole or upscaled. Bodies, which are disks and stars,
-/// are not upscaled: they are added to linear light at screen resolution and developed there.
+/// Shows pictures of linear light on a screen, whole or upscaled. Bodies, which are disks and
+/// stars, are not upscaled: they are added to linear light at screen resolution and developed
+/// there.
 class DisplayPass {
  public:
   explicit DisplayPass(const Look& look,

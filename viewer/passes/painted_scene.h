@@ -17,11 +17,10 @@
 #include "viewer/air/air_follower.h"
 #include "viewer/ground/ground_block.h"
 #include "viewer/ground/ground_follower.h"
-#include "viewer/ground/sky_by_pixel.h"
 #include "viewer/lamps/fog.h"
 #include "viewer/land/landscape.h"
 #include "viewer/passes/auto_quality.h"
-#include "viewer/passes/key_light.h"
+#include "viewer/passes/frame_light.h"
 #include "viewer/passes/painted_view.h"
 #include "viewer/shade/shafts.h"
 

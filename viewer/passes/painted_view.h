@@ -2,10 +2,10 @@
 // A view to be drawn: its time, place and size in pixels, and the positions of objects in it.
 //
 // BendOf describes atmospheric refraction of a view, or returns no refraction if its effect is not
-// visible. RefractedDisk describes the disk of the sun or moon near the horizon: refraction flattens it,
-// dispersion separates its colours, and extinction dims its lower limb. It has nodes of elevation
-// across the disk, computed with the renderer's refracted rays; shaders interpolate between them
-// (shaders/refracted_disks.glsl).
+// visible. RefractedDisk describes the disk of the sun or moon near the horizon: refraction
+// flattens it, dispersion separates its colours, and extinction dims its lower limb. It has nodes
+// of elevation across the disk, computed with the renderer's refracted rays; shaders interpolate
+// between them (shaders/refracted_disks.glsl).
 #pragma once
 
 #include <array>

@@ -12,11 +12,10 @@
 #include "viewer/air/air_follower.h"
 #include "viewer/gl/gl_objects.h"
 #include "viewer/ground/ground_block.h"
-#include "viewer/ground/sky_by_pixel.h"
 #include "viewer/lamps/fog.h"
 #include "viewer/passes/painted_view.h"
 #include "viewer/shade/shafts.h"
-#include "viewer/shaders/full_screen.h"
+#include "viewer/shaders/pass_setup.h"
 
 namespace alpenglow::viewer {
 namespace {

@@ -29,11 +29,11 @@
 #include "viewer/ground/ground_block.h"
 #include "viewer/lamps/fog.h"
 #include "viewer/lamps/lamp_painter.h"
-#include "viewer/passes/key_light.h"
+#include "viewer/passes/frame_light.h"
 #include "viewer/passes/painted_scene.h"
 #include "viewer/passes/painted_view.h"
 #include "viewer/shade/shafts.h"
-#include "viewer/shaders/uniform_blocks.h"
+#include "viewer/shaders/pass_setup.h"
 
 namespace alpenglow::viewer {
 
@@ -69,7 +69,8 @@ enum PictureUnit {
 inline constexpr LampUnits kLampUnits{kLampsBinding, kViewBinding, kSurfaceUnit, kLampUnit};
 inline constexpr FogUnits kFogUnits{kFogBinding, kFogUnit};
 
-/// Identifies one program of the picture. kOccludedSky is the sky above the horizon, see RowsOfPlanet.
+/// Identifies one program of the picture. kOccludedSky is the sky above the horizon, see
+/// RowsOfPlanet.
 struct PictureStage {
   enum class Pass { kLand, kSky, kDisks, kOccludedSky, kNight };
   Pass pass;

@@ -4,9 +4,9 @@
 //
 // The passes of a frame: the visible land (Landscape), the light that shadows remove along rays
 // (ShaftPass), the glow of lamps (LampPainter), the linear picture, by night the light of the night
-// sky (NightSkyMapFollower), then the lamps and stars (StarPainter). ToneMapPass displays the result.
-// Its difference from SceneRenderer is reported in tests/bench/README.md, and for one view by
-// `skyview --explain`.
+// sky (NightSkyMapFollower), then the lamps and stars (StarPainter). ToneMapPass displays the
+// result. Its difference from SceneRenderer is reported in tests/bench/README.md, and for one view
+// by `skyview --explain`.
 #pragma once
 
 #include <functional>
@@ -23,8 +23,7 @@
 #include "viewer/lamps/lamp_painter.h"
 #include "viewer/land/land_pass.h"
 #include "viewer/passes/auto_quality.h"
-#include "viewer/passes/key_light.h"
-#include "viewer/passes/night_sky_map.h"
+#include "viewer/passes/frame_light.h"
 #include "viewer/passes/painted_scene.h"
 #include "viewer/passes/painted_view.h"
 #include "viewer/passes/picture_programs.h"
@@ -71,8 +70,8 @@ class SkyPainter {
   /// Shows another picture of the view instead: linear, of any size.
   void Show(const Image& image);
 
-  /// The linear picture. Its fourth component is the inverse depth of land (shaders/inverse_depth.glsl)
-  /// if one ray per pixel was drawn.
+  /// The linear picture. Its fourth component is the inverse depth of land
+  /// (shaders/inverse_depth.glsl) if one ray per pixel was drawn.
   [[nodiscard]] const RenderTarget& picture() const { return *picture_; }
   /// Draws the depth of the land in that picture.
   void PaintOutline(const DepthPrepass& outline);

@@ -13,8 +13,7 @@
 #include "viewer/gl/gl_context.h"
 #include "viewer/lamps/fog.h"
 #include "viewer/passes/picture_programs.h"
-#include "viewer/shaders/full_screen.h"
-#include "viewer/shaders/uniform_blocks.h"
+#include "viewer/shaders/pass_setup.h"
 
 namespace alpenglow::viewer {
 namespace {

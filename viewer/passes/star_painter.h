@@ -24,7 +24,7 @@
 #include "viewer/gl/gl_objects.h"
 #include "viewer/gl/shader.h"
 #include "viewer/lamps/fog.h"
-#include "viewer/passes/key_light.h"
+#include "viewer/passes/frame_light.h"
 #include "viewer/passes/painted_view.h"
 
 namespace alpenglow::viewer {

@@ -25,7 +25,7 @@
 #include "viewer/gl/render_target.h"
 #include "viewer/gl/shader.h"
 #include "viewer/layer.h"
-#include "viewer/shaders/full_screen.h"
+#include "viewer/shaders/pass_setup.h"
 
 namespace alpenglow::viewer {
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Shafts: the volumetric shadows of terrain in the air.
 //
-// ShadeTexture holds a SunShadowMap on the GPU. A new map is uploaded line by line while the previous
-// one is in use.
+// ShadeTexture holds a SunShadowMap on the GPU. A new map is uploaded line by line while the
+// previous one is in use.
 //
 // ShaftPass renders the light that shadows remove from the ray of every few pixels, and the picture
 // interpolates between them. In any direction the removed light is smooth over the picture, except

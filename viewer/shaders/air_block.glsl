@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Optical properties of the medium: AirBlock of uniform_blocks.h. Vectors of four hold one value
+// Optical properties of the medium: AirBlock of pass_setup.h. Vectors of four hold one value
 // per band. Lengths are in kilometres.
 layout(std140) uniform Air {
   vec4 rayleigh_scattering;  // per km at altitude 0

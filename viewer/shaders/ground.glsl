@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Albedo of the ground around the eye, and relief finer than the mesh: GroundBlock of
-// uniform_blocks.h, with the functions of ground_cover.glsl and lattice_noise.glsl.
+// pass_setup.h, with the functions of ground_cover.glsl and lattice_noise.glsl.
 //
 // Positions are in metres from the eye along the east, north and upward axes of the mesh. For every
 // octave the eye's position is given as a lattice cell and a fraction of it, so that floats suffice

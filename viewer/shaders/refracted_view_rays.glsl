@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Apparent positions of land and of the bare planet under refraction (atmosphere/refraction/refracted_view.h),
-// with the parameters of the block View. Without refraction, apparent and true positions are equal.
+// Apparent positions of land and of the bare planet under refraction
+// (atmosphere/refraction/refracted_view.h), with the parameters of the block View. Without
+// refraction, apparent and true positions are equal.
 //
 // Pixels, the air in front of them, fog and shafts use apparent directions and true distances, as
 // in the renderer. Ground is lit and coloured at its true position.

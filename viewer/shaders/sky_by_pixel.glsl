@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Irradiance of a surface between mountains by the sky and by other slopes, computed per pixel as
-// in the renderer (OccludedSkyIrradiance::Irradiance and TerrainInterreflection::Irradiance) from the tables of
-// sky_by_pixel.h.
+// in the renderer (OccludedSkyIrradiance::Irradiance and TerrainInterreflection::Irradiance) from
+// the tables of ground_block.h.
 #define SKY_AZIMUTHS 16
 
 layout(std140) uniform SkyByPixel {

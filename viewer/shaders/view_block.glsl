@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Position and view of the eye, and position of the sun: ViewBlock of uniform_blocks.h. Frame:
+// Position and view of the eye, and position of the sun: ViewBlock of pass_setup.h. Frame:
 // east, north, up at the eye.
 layout(std140) uniform View {
   vec4 view_right;      // times the tangent of half the horizontal field of view

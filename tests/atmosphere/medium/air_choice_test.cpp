@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "atmosphere/medium/air_choice.h"
+#include "atmosphere/medium/medium_presets.h"
 
 #include <gtest/gtest.h>
 

@@ -12,8 +12,8 @@
 
 #include "atmosphere/base/error.h"
 #include "atmosphere/medium/medium.h"
-#include "atmosphere/ray/direct_columns.h"
 #include "atmosphere/ray/ray.h"
+#include "atmosphere/ray/shell.h"
 #include "atmosphere/shared_glsl/instruction_set.h"
 #include "tests/fixtures/bands_near.h"
 #include "tests/fixtures/direct_regimes.h"

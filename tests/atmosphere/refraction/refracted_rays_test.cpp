@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Refracted rays, light of the sun's disk on ground at any height, and the lift of land and planet as
-// shaders have it are compared with the ray equation and with integration along bent rays.
+// Refracted rays, light of the sun's disk on ground at any height, and the lift of land and planet
+// as shaders have it are compared with the ray equation and with integration along bent rays.
 #include "atmosphere/refraction/refracted_view.h"
 
 #include <gtest/gtest.h>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// The air of one eye and one sun evaluated directly, ray by ray, with many nodes in double: what its
-// tables are held against. Errors of rays all over the sphere, most of them near the horizon.
+// The air of one eye and one sun evaluated directly, ray by ray, with many nodes in double: what
+// its tables are held against. Errors of rays all over the sphere, most of them near the horizon.
 #pragma once
 
 #include <algorithm>

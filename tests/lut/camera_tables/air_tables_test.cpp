@@ -55,7 +55,8 @@ void ExpectErrorsBelow(const tests::LitAir& air, const AirEye& eye, AirQuality q
 
 // --- against direct evaluation ---
 
-// Near a low sun most of the error is that of the glow, which is taken to be that of one column of aerosol.
+// Near a low sun most of the error is that of the glow, which is taken to be that of one column of
+// aerosol.
 TEST(AirTables, OfTheGroundAreThoseOfTheIntegratorFromNoonToDusk) {
   ExpectErrorsBelow(tests::Earth(), EyeUnder(2.0, 60.0), AirQuality::kHigh, {7e-5, 2.1e-4, 2e-5});
   ExpectErrorsBelow(tests::Earth(), EyeUnder(1500.0, 6.0), AirQuality::kHigh,
@@ -67,8 +68,9 @@ TEST(AirTables, OfTheGroundAreThoseOfTheIntegratorFromNoonToDusk) {
   ExpectErrorsBelow(tests::Earth(), EyeUnder(2.0, -10.0), AirQuality::kHigh, {4e-4, 2.5e-3, 2e-5});
 }
 
-// From 2500 m, where a setting sun is seen on the horizon, low air about it is dark and high air is not:
-// tables whose aureole is elsewhere than the one that shaders put on them have a dark spot and a bright.
+// From 2500 m, where a setting sun is seen on the horizon, low air about it is dark and high air is
+// not: tables whose aureole is elsewhere than the one that shaders put on them have a dark spot and
+// a bright.
 TEST(AirTables, HaveTheAureoleWhereTheSunIsSeen) {
   AirEye eye = EyeUnder(2500.0, -1.8);
   eye.lower_for_air_rad = 0.5 * kRadiansPerDegree;
@@ -122,8 +124,8 @@ TEST(AirTables, OfLowQualityAreGoodToAPercent) {
   ExpectErrorsBelow(tests::Earth(), EyeUnder(9e3, 2.0), AirQuality::kLow, {1.3e-3, 4.5e-3, 1.2e-3});
 }
 
-// Dust's phase function rises a hundredfold within ten degrees of the sun. Of the largest error, 0.9 %, the
-// glow makes more than half: it is taken to be that of one column of aerosol.
+// Dust's phase function rises a hundredfold within ten degrees of the sun. Of the largest error,
+// 0.9 %, the glow makes more than half: it is taken to be that of one column of aerosol.
 TEST(AirTables, HaveAnAureoleAsSharpAsThePhaseFunction) {
   const tests::LitAir dusty(MediumFromToml("[aerosol]\nmixture = \"desert\"\n", "dusty"));
   const AirEye eye = EyeUnder(300.0, 20.0);

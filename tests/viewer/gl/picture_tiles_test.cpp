@@ -60,8 +60,8 @@ TEST(PictureTiles, OneTileSeesTheWholeView) {
 
 class PaintedTiles : public tests::Headless {};
 
-// The direction of every pixel, and a triangle between them and the eye: what a painter makes of the
-// four numbers of a tile's view.
+// The direction of every pixel, and a triangle between them and the eye: what a painter makes of
+// the four numbers of a tile's view.
 constexpr const char* kVertex =
     "uniform vec4 tile_view; uniform bool is_triangle; out vec2 where;\n"
     "void main() {\n"

@@ -18,9 +18,7 @@
 #include "tests/viewer/shaders/gpu_values.h"
 #include "tests/viewer/shaders/headless.h"
 #include "viewer/ground/ground_block.h"
-#include "viewer/ground/sky_by_pixel.h"
-#include "viewer/shaders/full_screen.h"
-#include "viewer/shaders/uniform_blocks.h"
+#include "viewer/shaders/pass_setup.h"
 
 namespace alpenglow::viewer {
 namespace {
@@ -179,7 +177,8 @@ struct Question {
   std::function<tests::Arguments<float>(const Case&)> arguments;
 };
 
-/// The point from the eye, and what of the normal is needed to know it, before what a question adds.
+/// The point from the eye, and what of the normal is needed to know it, before what a question
+/// adds.
 tests::Arguments<float> PlaceOf(const Case& c, double eye_m, const std::array<float, 3>& more) {
   const auto point = tests::InFloats(c.hit.point - glm::dvec3(0.0, 0.0, eye_m));
   const auto normal = tests::InFloats(c.hit.mesh_normal);

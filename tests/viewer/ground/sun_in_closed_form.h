@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Light of the sun through the air without the tables of it, along straight rays: so that the ground
-// can be tested alone.
+// Light of the sun through the air without the tables of it, along straight rays: so that the
+// ground can be tested alone.
 #pragma once
 
 #include "viewer/gl/shader.h"

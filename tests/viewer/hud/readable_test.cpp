@@ -32,8 +32,8 @@ bool IsLetter(const ImDrawVert* v) {
 
 enum class Of { kInstruments, kPanels };
 
-/// Takes all letters out of what Dear ImGui has laid out, and tells of those of instruments or panels
-/// that are no shadow. Instruments are the first list, under the panels.
+/// Takes all letters out of what Dear ImGui has laid out, and tells of those of instruments or
+/// panels that are no shadow. Instruments are the first list, under the panels.
 std::vector<Letter> TakeLetters(Of which) {
   std::vector<Letter> letters;
   ImDrawData& data = *ImGui::GetDrawData();

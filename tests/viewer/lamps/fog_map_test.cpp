@@ -214,8 +214,8 @@ TEST(FogMap, ServesWhileTheEyeStandsAndNotWhenItHasRisen) {
   EXPECT_FALSE(Serves(made, {100.0, kToSun, kToSun, kFogSunRadius_rad}, 60.0));
 }
 
-/// The shader's sum of a light that rises by 1 a kilometre of the ray (x, y, z) until its end, 20 km at
-/// most.
+/// The shader's sum of a light that rises by 1 a kilometre of the ray (x, y, z) until its end, 20
+/// km at most.
 std::string LightInFog() {
   const std::string to = "FogStretchesTo(vec3(a[0], a[1], a[2]), min(a[3], 20.0))";
   const std::string km = to + ".distance_km";

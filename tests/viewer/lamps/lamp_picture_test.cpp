@@ -16,8 +16,7 @@
 #include "tests/fixtures/bare_scene.h"
 #include "tests/viewer/shaders/headless.h"
 #include "viewer/lamps/lamp_painter.h"
-#include "viewer/shaders/full_screen.h"
-#include "viewer/shaders/uniform_blocks.h"
+#include "viewer/shaders/pass_setup.h"
 
 namespace alpenglow::viewer {
 namespace {

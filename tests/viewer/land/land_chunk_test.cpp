@@ -52,7 +52,8 @@ glm::dvec3 Normal(const LandChunk& chunk, int i, int j) {
   return glm::dvec3(n[0], n[1], n[2]) / 32767.0;
 }
 
-/// The bytes that all threads have taken from the heap and not given back. The sanitizer's heap is its own.
+/// The bytes that all threads have taken from the heap and not given back. The sanitizer's heap is
+/// its own.
 std::size_t HeapBytes() {
 #ifdef __SANITIZE_ADDRESS__
   return __sanitizer_get_current_allocated_bytes();

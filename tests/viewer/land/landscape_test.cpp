@@ -13,7 +13,7 @@
 #include "renderer/terrain/terrain.h"
 #include "tests/viewer/land/headless_land.h"
 #include "viewer/land/land_pass.h"
-#include "viewer/shaders/uniform_blocks.h"
+#include "viewer/shaders/pass_setup.h"
 
 namespace alpenglow::viewer {
 namespace {
@@ -166,8 +166,8 @@ TEST_F(LandscapePictures, DistanceAndNormalAreTheRenderersFromTheGroundToOrbit) 
   }
 }
 
-// Half a pixel off its middle a ray is as much as 0.1 % longer or shorter. From 400 km that is half a
-// kilometre of height, and another one's snow.
+// Half a pixel off its middle a ray is as much as 0.1 % longer or shorter. From 400 km that is half
+// a kilometre of height, and another one's snow.
 TEST_F(LandscapePictures, DistanceIsThatAlongTheRayOfAPixelNotAlongItsMiddle) {
   WriteTile(folder_ / "a.tif", 0, 0);
   const LocalFrame frame(kWgs84, PlaceOfSample(120.0, 120.0, 0.0));

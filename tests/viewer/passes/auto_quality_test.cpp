@@ -47,7 +47,8 @@ TEST(AutoQuality, AFastMachineWaitsTwoSecondsForHighQuality) {
   EXPECT_EQ(RunFor(0.005, 70).last, (PaintedQuality{Quality::kHigh, 1.0}));  // 70 frames: 2.3 s
 }
 
-// A flight's worst frame may take three times its median: half of that is left to land that arrives.
+// A flight's worst frame may take three times its median: half of that is left to land that
+// arrives.
 TEST(AutoQuality, TheFirstFramesOfASlowMachineAreLittleLongerThanItsUsualOnes) {
   for (const double full_s : {0.05, 0.1, 0.2, 0.3, 2.0}) {
     const Outcome run = RunFor(full_s, 600);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "viewer/passes/night_sky_map.h"
+#include "viewer/passes/frame_light.h"
 
 #include <gtest/gtest.h>
 

@@ -17,7 +17,7 @@
 #include "tests/viewer/shaders/headless.h"
 #include "viewer/passes/painted_view.h"
 #include "viewer/passes/sky_painter.h"
-#include "viewer/shaders/full_screen.h"
+#include "viewer/shaders/pass_setup.h"
 
 namespace alpenglow::viewer {
 namespace {

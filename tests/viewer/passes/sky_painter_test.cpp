@@ -19,7 +19,7 @@
 #include "tests/fixtures/sanitized.h"
 #include "tests/viewer/land/headless_land.h"
 #include "viewer/flight/flight_recorder.h"
-#include "viewer/passes/key_light.h"
+#include "viewer/passes/frame_light.h"
 #include "viewer/passes/reference_picture.h"
 
 namespace alpenglow::viewer {

@@ -21,7 +21,7 @@
 #include "viewer/passes/picture_programs.h"
 #include "viewer/passes/tone_map_pass.h"
 #include "viewer/shade/shafts.h"
-#include "viewer/shaders/full_screen.h"
+#include "viewer/shaders/pass_setup.h"
 
 namespace alpenglow::viewer {
 namespace {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // C++ and the driver agree on where every member of a uniform block lies.
-#include "viewer/shaders/uniform_blocks.h"
+#include "viewer/shaders/pass_setup.h"
 
 #include <gtest/gtest.h>
 
@@ -10,7 +10,6 @@
 #include "atmosphere/math/constants.h"
 #include "tests/viewer/shaders/gpu_values.h"
 #include "tests/viewer/shaders/headless.h"
-#include "viewer/shaders/full_screen.h"
 
 namespace alpenglow::viewer {
 namespace {

@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: MIT
+// Passes over a whole picture or over boxes of it with one fragment stage, and embedded
+// shader texts, named by their path in the tree: "viewer/shaders/hud.frag.glsl".
+//
 // Uniform blocks shared by C++ and the shaders, in std140 layout. They consist of vectors of four,
 // so that offsets are equal on both sides (asserted here and checked against the driver by a test).
 #pragma once
@@ -6,14 +9,48 @@
 #include <array>
 #include <cstddef>
 #include <glm/vec4.hpp>
+#include <optional>
+#include <span>
+#include <string>
 #include <vector>
 
 #include "atmosphere/medium/medium.h"
 #include "renderer/material/band_light.h"
 #include "renderer/surface/surface.h"
+#include "viewer/gl/gl_objects.h"
+#include "viewer/gl/shader.h"
 #include "viewer/layer.h"
 
 namespace alpenglow::viewer {
+
+/// Returns a text that the library of its layer embeds.
+[[nodiscard]] ShaderPiece ViewerPiece(const std::string& name);
+
+/// Returns the texts followed by those of these names.
+[[nodiscard]] std::vector<ShaderPiece> WithViewerPieces(std::vector<ShaderPiece> texts,
+                                                        const std::vector<std::string>& names);
+
+/// Returns a program of full_screen.vert.glsl and a fragment stage of these texts.
+[[nodiscard]] ShaderProgram FullScreenProgram(const std::vector<ShaderPiece>& fragment);
+
+/// Draws over the whole viewport of the bound target.
+void DrawFullScreen(const ShaderProgram& program, const GlVertexArray& no_vertices);
+
+/// The pixels that a pass fills: all, or those of some boxes. Thousands of boxes take one draw
+/// call.
+class PassArea {
+ public:
+  /// Restricts the pass to boxes.
+  /// @param width, height  of the viewport.
+  void Set(std::span<const PixelBox> boxes, int width, int height);
+
+  void Draw(const ShaderProgram& program) const;
+
+ private:
+  std::optional<int> boxes_;  // number of boxes; empty: all pixels
+  GlBuffer squares_;
+  GlVertexArray layout_, no_vertices_;
+};
 
 /// Number of bands: one component of a vec4 each. A medium may have fewer; the remaining ones are
 /// 0.
