@@ -19,11 +19,12 @@ namespace {
 
 using Points = std::vector<std::array<double, 2>>;
 
-constexpr double kTolerance = 1e-12;
+constexpr double kDirectionTolerance = 1e-12;
 const double kHalfRoot = std::sqrt(0.5);
 
 void ExpectDirection(const glm::dvec3& actual, const glm::dvec3& expected) {
-  for (int axis = 0; axis < 3; ++axis) EXPECT_NEAR(actual[axis], expected[axis], kTolerance);
+  for (int axis = 0; axis < 3; ++axis)
+    EXPECT_NEAR(actual[axis], expected[axis], kDirectionTolerance);
 }
 
 /// Returns the rays of a pinhole camera; angles are in degrees.
@@ -59,10 +60,10 @@ TEST(CameraRays, APolariserTurnsWithTheCameraAndAbsorbsAlongOneAxis) {
   const CameraRays rays = camera(0.0, 30.0);
   const glm::dvec3 absorbed(std::cos(30.0 * kRadiansPerDegree), 0.0, -0.5);
   const glm::dvec3 oblique = rays.Direction(190.0, 5.0);
-  EXPECT_NEAR(glm::dot(*rays.PassedBy(oblique), oblique), 0.0, kTolerance);
-  EXPECT_NEAR(glm::dot(*rays.PassedBy(oblique), absorbed), 0.0, kTolerance);
+  EXPECT_NEAR(glm::dot(*rays.PassedBy(oblique), oblique), 0.0, kDirectionTolerance);
+  EXPECT_NEAR(glm::dot(*rays.PassedBy(oblique), absorbed), 0.0, kDirectionTolerance);
   const PictureAxes axes = rays.AxesAt(oblique);
-  EXPECT_NEAR(glm::dot(axes.up, oblique), 0.0, kTolerance);
+  EXPECT_NEAR(glm::dot(axes.up, oblique), 0.0, kDirectionTolerance);
   ExpectDirection(glm::cross(oblique, axes.up), axes.right);
 }
 
@@ -96,7 +97,7 @@ TEST(CameraRays, DirectionsAreUnitVectorsForEveryFieldOfView) {
     const CameraRays rays = RaysOf(33.0, -20.0, 10.0, fov, 7, 5);
     for (int y = 0; y <= 5; ++y) {
       for (int x = 0; x <= 7; ++x)
-        EXPECT_NEAR(glm::length(rays.Direction(x, y)), 1.0, kTolerance) << fov;
+        EXPECT_NEAR(glm::length(rays.Direction(x, y)), 1.0, kDirectionTolerance) << fov;
     }
   }
 }
@@ -118,8 +119,8 @@ TEST(CameraRays, RaysOfALensMeetInThePlaneOfFocus) {
     for (const double u : {0.05, 0.35, 0.8}) {
       const CameraRay ray = camera.Ray(x, y, {u, 0.9});
       EXPECT_NEAR(glm::length(ray.origin - camera.eye()),
-                  0.5 * kFocal_m / kFNumber * std::sqrt(0.9), kTolerance);
-      EXPECT_NEAR(glm::dot(ray.origin - camera.eye(), ahead), 0.0, kTolerance);
+                  0.5 * kFocal_m / kFNumber * std::sqrt(0.9), kDirectionTolerance);
+      EXPECT_NEAR(glm::dot(ray.origin - camera.eye(), ahead), 0.0, kDirectionTolerance);
       const glm::dvec3 offset = in_focus - ray.origin;
       EXPECT_NEAR(glm::length(offset - glm::dot(offset, ray.direction) * ray.direction), 0.0, 1e-9);
     }

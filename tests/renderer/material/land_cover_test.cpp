@@ -285,9 +285,9 @@ TEST_F(DrapedColours, LieWhereTheGeoreferenceSays) {
   for (const auto& [column, row] : {std::pair{40, 20}, {10, 50}, {25, 33}}) {
     const GeodeticPosition place =
         PlaceFromDegrees(46.03 - kStep * (row + 0.5), 7.97 + kStep * (column + 0.5), 800.0);
-    constexpr double kTolerance = 0.01;  // a hundredth of a pixel
+    constexpr double kShift = 0.01;  // a hundredth of a pixel
     ExpectColour(drape->At(Plain().frame.EnuFromGeodetic(place).xyz, 800.0, 1.0),
-                 {3 * column, 3 * row, 90}, kTolerance);
+                 {3 * column, 3 * row, 90}, kShift);
   }
   EXPECT_FALSE(drape->At({-3900.0, 0.0, 0.0}, 0.0, 1.0).has_value()) << "west of the picture";
 }
