@@ -273,7 +273,7 @@ std::string SectionOf(const ReportTopic& topic) {
   }
   text += TableOf(topic);
   return text +
-         fmt::format("<p class=\"judge\">{}</p>\n</section>\n", XmlText(ReferenceText(topic)));
+         fmt::format("<p class=\"reference\">{}</p>\n</section>\n", XmlText(ReferenceText(topic)));
 }
 
 std::string CardsOf(const Report& report) {
