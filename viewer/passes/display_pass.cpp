@@ -59,7 +59,7 @@ const DepthPrepass& DisplayPass::OutlineFor(const ToneMapPass::Screen& screen) {
 void DisplayPass::ShowEnlarged(const RenderTarget& picture, const glm::dvec2& half_view,
                                double ev100, const ToneMapPass::Screen& screen, PassTimer* timer) {
   {
-    const TimedPass timed(timer, "tone map");
+    const TimedPass timed(timer, "tone_map");
     Fit(codes_, picture.width(), picture.height(), PixelFormat::kRgba16F);
     developer_.DevelopSmall(picture, ev100, *codes_);
   }

@@ -69,7 +69,7 @@ void FrameDisplay::Show(const PaintedView& view, double ev100, const ToneMapPass
     ShowEnlarged(shown);
     ShowBodies(shown, painter_.BodiesSeen(OnScreen(view, screen)));
   } else {
-    const TimedPass timed(timer, "tone map");
+    const TimedPass timed(timer, "tone_map");
     darkroom_.developer().Develop(painter_.picture(), ev100, screen);
   }
 }
