@@ -162,13 +162,14 @@ void MakeSky(const SkyOptions& options, const CommonOptions& common) {
   }
 }
 
-void AddSun(CLI::App& sky, SkyOptions& options) {
+void AddPlace(CLI::App& sky, SkyOptions& options) {
+  BeginGroup(sky, kPlaceGroup);
   CLI::Option* elevation =
       sky.add_option("--sun-elevation", options.sun_elevation,
-                     "Degrees of the sun over the horizontal, as seen, -90 to 90")
+                     "Apparent elevation of the sun in degrees above the horizontal, -90 to 90")
           ->check(CLI::Range(-90.0, 90.0));
   sky.add_option("--sun-azimuth", options.sun_azimuth,
-                 "Degrees of the sun from north over east, -360 to 360")
+                 "Azimuth of the sun in degrees from north over east, -360 to 360")
       ->check(CLI::Range(-360.0, 360.0))
       ->needs(elevation)
       ->capture_default_str();
@@ -179,67 +180,71 @@ void AddSun(CLI::App& sky, SkyOptions& options) {
       sky.add_option("--longitude", options.longitude, "Degrees east, -180 to 360")
           ->check(CLI::Range(-180.0, 360.0))
           ->needs(latitude);
-  CLI::Option* time = sky.add_option("--time", options.time,
-                                     "Instant: 2026-06-21T04:00:00Z, with an offset, or local time "
-                                     "with --zone")
+  sky.add_option("--altitude,--height", options.altitude,
+                 "Height of the observer in metres above the ground, -12000 to 1e9; values below 0 "
+                 "are treated as 0")
+      ->check(CLI::Range(-12000.0, 1e9))
+      ->capture_default_str();
+  sky.add_option("--orient", options.orientation,
+                 "Direction of the centre of the picture: north or geographic (north); blender, "
+                 "three or unity (east, which is +x there); openexr or godot (south, which is +z "
+                 "there). East is +x in all of them, and no picture is mirrored")
+      ->check(ReadableBy([](const std::string& text) { (void)PanoramaOrientationFromName(text); }))
+      ->capture_default_str();
+  BeginGroup(sky, kTimeGroup);
+  CLI::Option* time = sky.add_option("--time,--at", options.time,
+                                     "Instant: 2026-06-21T04:00:00Z, with an offset, or a local "
+                                     "time with --zone")
                           ->needs(latitude);
   sky.add_option("--zone", options.zone, "IANA zone of a local time")->needs(time);
   latitude->needs(longitude)->needs(time);
 }
 
 void AddPicture(CLI::App& sky, SkyOptions& options) {
-  sky.add_option("--out", options.out, "EXR file: linear sRGB in cd/m^2, envmap latlong")
-      ->check([](const std::string& name) { return FaultOfFileName(name, ".exr"); })
-      ->required();
-  CLI::Option* png =
-      sky.add_option("--png", options.png, "PNG file as well: exposed, tone-mapped")
-          ->check([](const std::string& name) { return FaultOfFileName(name, ".png"); });
+  BeginGroup(sky, kPictureGroup);
   sky.add_option("--size", options.size, "Width x height in pixels, 1 to 16384 each")
       ->check(ReadableBy([](const std::string& text) { (void)ImageSizeFromText(text); }))
       ->capture_default_str();
-  sky.add_option("--orient", options.orientation,
-                 "What the middle of the picture is: north or geographic (north); blender, three, "
-                 "unity (east, +x there); openexr, godot (south, +z there). East is +x in all; "
-                 "never mirrored")
-      ->check(ReadableBy([](const std::string& text) { (void)PanoramaOrientationFromName(text); }))
-      ->capture_default_str();
   sky.add_flag("--sun-disk", options.sun_disk,
-               "Draw the sun's disk: pixels of some 1e9 cd/m^2 that bring its whole light");
+               "Draw the disk of the sun: pixels of about 1e9 cd/m^2 that contain all its light");
   sky.add_flag("--compass", options.compass,
-               "Paint N, E, S and W on the horizon, to see how a program turns the picture");
-  sky.add_option("--aov", options.layers,
-                 "More layers in the EXR, separated by commas: stokes_q, stokes_u (linear sRGB in "
-                 "cd/m^2), polarisation (degree 0 to 1, and angle in degrees clockwise from the "
-                 "vertical, of luminance)")
-      ->delimiter(',')
-      ->check(CLI::IsMember({"stokes_q", "stokes_u", "polarisation"}));
+               "Paint N, E, S and W on the horizon, to check the orientation in another program");
   sky.add_option("--exposure", options.exposure,
-                 "auto (the picture is metered), eye (dusk is darker than day, night darker), "
-                 "incident (the light on a horizontal plane is "
-                 "metered) or EV at ISO 100, -30 to 30")
+                 "Exposure: auto (the picture is metered), eye (dusk and night stay darker than "
+                 "day), incident (the light on a horizontal plane is metered) or an EV at ISO 100, "
+                 "-30 to 30")
       ->check(ReadableBy([](const std::string& text) { (void)ExposureRuleFromText(text); }))
       ->capture_default_str();
-  sky.add_option("--tone-map", options.curve,
-                 "Curve of the PNG; local: an exposure of its own for every part, and agx")
-      ->check(CLI::IsMember({"agx", "aces", "reinhard", "pbr-neutral", "linear", "local"}))
-      ->needs(png)
-      ->capture_default_str();
-  sky.add_option("--look", options.look,
-                 "Of agx: photo, or as its authors have it, none, punchy, medium or high contrast")
-      ->check(CLI::IsMember(AgxLookNames()))
-      ->needs(png)
-      ->capture_default_str();
-  sky.add_option("--white-balance", options.white_balance,
-                 "Light that the PNG shows as white: camera (daylight, by night 4000 K), daylight, "
-                 "auto (the "
-                 "mean colour of what is metered, 3000 to 7000 K) or kelvins, 1500 to 25000")
+  sky.add_option("--white-balance", options.white_balance, kWhiteBalanceHelp)
       ->check(ReadableBy([](const std::string& text) { (void)WhiteBalanceFromText(text); }))
-      ->needs(png)
       ->capture_default_str();
-  sky.add_flag("--night-vision", options.night_vision,
-               "PNG as the eye adapted to the dark sees it: below 5 cd/m^2 colour fades and "
-               "fine detail is lost")
-      ->needs(png);
+  sky.add_option("--tone-map", options.curve, kToneMapHelp)
+      ->check(CLI::IsMember({"agx", "aces", "reinhard", "pbr-neutral", "linear", "local"}))
+      ->capture_default_str();
+  sky.add_option("--look", options.look, kLookHelp)
+      ->check(CLI::IsMember(AgxLookNames()))
+      ->capture_default_str();
+  sky.add_flag("--night-vision", options.night_vision, kNightVisionHelp);
+}
+
+void AddOutput(CLI::App& sky, SkyOptions& options) {
+  BeginGroup(sky, kOutputGroup);
+  sky.add_option("--out", options.out,
+                 "EXR file in linear sRGB and cd/m^2, with the attribute envmap latlong")
+      ->check([](const std::string& name) { return FaultOfFileName(name, ".exr"); })
+      ->required();
+  CLI::Option* png =
+      sky.add_option("--png", options.png,
+                     "PNG file, exposed and tone-mapped, in addition to --out")
+          ->check([](const std::string& name) { return FaultOfFileName(name, ".png"); });
+  sky.add_option("--aov", options.layers,
+                 "Additional layers in the EXR, separated by commas: stokes_q and stokes_u (linear "
+                 "sRGB in cd/m^2), polarisation (degree 0 to 1 and angle in degrees clockwise from "
+                 "the vertical, for luminance)")
+      ->delimiter(',')
+      ->check(CLI::IsMember({"stokes_q", "stokes_u", "polarisation"}));
+  for (const char* name : {"--white-balance", "--tone-map", "--look", "--night-vision"})
+    sky.get_option(name)->needs(png);
 }
 
 }  // namespace
@@ -249,15 +254,14 @@ Subcommand AddSkyCommand(CLI::App& app) {
   CLI::App& sky = *app.add_subcommand(
       "sky",
       "Make a panorama of the sky for lighting: the whole sphere around an observer, "
-      "latitude-longitude, ground included. The sun stands where --sun-elevation and --sun-azimuth "
-      "say, or where it is seen from a place at a time.");
-  AddSun(sky, *options);
-  sky.add_option("--altitude", options->altitude,
-                 "Metres of the observer over the ground, -12000 to 1e9; below 0 as from 0")
-      ->check(CLI::Range(-12000.0, 1e9))
-      ->capture_default_str();
+      "in a latitude-longitude picture, ground included. The position of the sun is given by "
+      "--sun-elevation and --sun-azimuth, or by a place and a time.");
+  AddPlace(sky, *options);
+  BeginGroup(sky, kAirGroup);
   AddAtmosphereOption(sky, options->atmosphere);
   AddPicture(sky, *options);
+  AddOutput(sky, *options);
+  BeginDiagnostics(sky);
   sky.parse_complete_callback([options] {
     if (!options->sun_elevation && !options->latitude) {
       throw CLI::ValidationError("sky",

@@ -30,45 +30,53 @@ struct Options {
 void AddInfo(CLI::App& app, Options& options) {
   CLI::App& info = *app.add_subcommand(
       "info",
-      "Say what tables hold, units, ranges, what made them. Checks every texel. Folders of tables "
-      "for other programs (bruneton, takram, whoever made them) are held against texels of our "
-      "own.");
+      "Describe tables: contents, units, ranges and origin. Every texel is checked. Tables for "
+      "other "
+      "programs (bruneton, takram), whichever program made them, are compared with texels that "
+      "skylut computes.");
   info.add_option("tables", options.described, "A table file or a folder of tables")->required();
+  BeginDiagnostics(info);
   info.footer("Example: skylut info tables");
 }
 
 void AddEval(CLI::App& app, Options& options) {
   CLI::App& eval = *app.add_subcommand(
       "eval",
-      "Evaluate cases, one a line: id,quantity,altitude_m,view_zenith_deg,"
+      "Evaluate cases, one per line: id,quantity,altitude_m,view_zenith_deg,"
       "relative_azimuth_deg,sun_zenith_deg,distance_m. Quantities: transmittance, "
       "optical_depth, single, inscatter_single, total, irradiance_sun, irradiance_sky, stokes_q, "
-      "stokes_u; "
-      "radiances [1/sr] and irradiances [1] per unit solar irradiance. distance_m empty: to the "
-      "ground, whose light single and total bring, or out of the top; given: the segment ends "
-      "there, or at the ground or the top if nearer, and light of the ground is left out. Results: "
-      "id,wavelength_nm,value,error. Or a file of lamps in homogeneous air, quantity airlight: "
-      "id,quantity,scattering_per_m,extinction_per_m,phase,g,segment_m,light_along_m,"
-      "light_across_m,profile,axis_x,axis_y,axis_z,exponent,inner_deg,outer_deg (--method "
-      "integral; no atmosphere is needed): radiance for unit intensity [1/(sr m2)].");
-  eval.add_option("--cases", options.cases, "Cases (CSV)")->required();
-  eval.add_option("--out", options.results, "Results (CSV)")
-      ->check([](const std::string& name) { return FaultOfFileName(name, ""); })
-      ->required();
-  eval.add_option("--method", options.method, "table (needs --lut), integral or path-trace")
-      ->check(CLI::IsMember({"table", "integral", "path-trace"}))
-      ->required();
+      "stokes_u. Radiances [1/sr] and irradiances [1] are per unit solar irradiance. If distance_m "
+      "is empty, the ray ends at the ground or at the top of the atmosphere; single and total then "
+      "include the light of the ground. If distance_m is given, the ray ends there, or at the "
+      "ground or the top if they are nearer, and the light of the ground is left out. Results: "
+      "id,wavelength_nm,value,error. For lamps in homogeneous air (quantity airlight) the columns "
+      "are id,quantity,scattering_per_m,extinction_per_m,phase,g,segment_m,light_along_m,"
+      "light_across_m,profile,axis_x,axis_y,axis_z,exponent,inner_deg,outer_deg. This needs "
+      "--method integral and no atmosphere, and the result is the radiance for unit intensity "
+      "[1/(sr m2)].");
+  BeginGroup(eval, kAirGroup);
   AddAtmosphereOption(eval, options.atmosphere);
   eval.add_option("--lut", options.tables,
-                  "Folder of tables; without --atmosphere, their atmosphere is taken");
+                  "Folder of tables. Without --atmosphere, the atmosphere of the tables is used");
+  BeginGroup(eval, kOutputGroup);
+  eval.add_option("--cases", options.cases, "CSV file of the cases")->required();
+  eval.add_option("--out", options.results, "CSV file of the results")
+      ->check([](const std::string& name) { return FaultOfFileName(name, ""); })
+      ->required();
+  eval.add_option("--method", options.method,
+                  "table (needs --lut), integral (along rays) or path-trace")
+      ->check(CLI::IsMember({"table", "integral", "path-trace"}))
+      ->required();
   CLI::Option* samples =
       eval.add_option("--samples", options.samples,
-                      "integral: Gauss nodes on each smooth piece of a ray; default 16")
+                      "With integral: Gauss nodes in each smooth piece of a ray (default: 16)")
           ->check(CLI::Range(kFewestSamples, kMostSamples));
   eval.add_option("--max-error", options.max_error,
-                  "Relative error, 1e-8 to 1 or like 0.2%; path-trace: one standard error, 0.5%")
+                  "Relative error, 1e-8 to 1 or in percent; for path-trace, one standard error "
+                  "(default of path-trace: 0.5%)")
       ->check(FaultOfRelativeError)
       ->excludes(samples);
+  BeginDiagnostics(eval);
   eval.footer("Example: skylut eval --cases cases.csv --out results.csv --method integral");
 }
 
@@ -137,7 +145,7 @@ std::string Description(const std::filesystem::path& tables) {
 
 int Run(int argc, char** argv) {
   Options options;
-  CLI::App app("Tables of the sky: what the air does to light, ready to look up.", "skylut");
+  CLI::App app("Build, inspect and evaluate tables of the sky, and make sky panoramas.", "skylut");
   app.fallthrough();
   app.require_subcommand(1);
   AddCommonOptions(app, "skylut", options.common);

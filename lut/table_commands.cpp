@@ -131,62 +131,72 @@ Subcommand AddBuildCommand(CLI::App& app) {
   CLI::App& build = *app.add_subcommand(
       "build",
       "Build the tables of an atmosphere: transmittance, single scattering, multiple scattering.");
-  build.add_option("--out", options->out, "Folder for the tables; made when missing")
+  BeginGroup(build, kAirGroup);
+  AddAtmosphereOption(build, options->atmosphere);
+  BeginGroup(build, kOutputGroup);
+  build.add_option("--out", options->out, "Folder for the tables; it is created if necessary")
       ->check(FaultOfFolderName)
       ->required();
-  AddAtmosphereOption(build, options->atmosphere);
   CLI::Option* quality =
       build
           .add_option(
               "--quality", options->quality,
-              "preview (128x32; 6x16x32x24; 28x14), standard (256x64; 8x32x64x48; 32x18) or "
-              "fine (512x128; 10x48x96x64; 64x32): sizes of transmittance mu x r; single "
-              "scattering azimuth x mu_s x mu x r; multiple scattering mu_s x altitudes")
+              "Sizes of the tables: preview (128x32; 6x16x32x24; 28x14), standard (256x64; "
+              "8x32x64x48; 32x18) or fine (512x128; 10x48x96x64; 64x32). The sizes are those of "
+              "transmittance (mu x r), single scattering (azimuth x mu_s x mu x r) and multiple "
+              "scattering (mu_s x altitudes)")
           ->check(CLI::IsMember({"preview", "standard", "fine"}))
           ->capture_default_str();
   CLI::Option* max_error =
       build
-          .add_option("--max-error", options->max_error,
-                      "Relative error, like 0.5%: chooses the number of ray nodes, which tables "
-                      "to make and the smallest sizes so that sky, aerial perspective, twilight "
-                      "and irradiance stay below it (rms), and prints what it measured")
+          .add_option(
+              "--max-error", options->max_error,
+              "Choose the number of ray nodes, the tables and the smallest sizes so that sky, "
+              "aerial perspective, twilight and irradiance stay below this relative error "
+              "(rms), like 0.5%, and print the measured errors")
           ->check(FaultOfRelativeError)
           ->excludes(quality);
   build
-      .add_option("--tables", options->tables,
-                  "With --max-error: smallest (whatever needs least memory; what closed forms and "
-                  "a few nodes along the ray do as well gets no table) or all three")
+      .add_option(
+          "--tables", options->tables,
+          "With --max-error: smallest (least memory: a table is omitted if closed forms or a "
+          "few nodes along the ray can replace it) or all (all three tables)")
       ->check(CLI::IsMember({"smallest", "all"}))
       ->needs(max_error)
       ->capture_default_str();
   build
       .add_flag("--single-scattering-only", options->single_scattering_only,
-                "Leave the table of multiple scattering out")
+                "Omit the table of multiple scattering")
       ->excludes(max_error);
   build
-      .add_option("--layout", options->layout,
-                  "native, or the files that other programs load: bruneton (his demo), takram "
-                  "(three-atmosphere); three wavelengths, by default those of preset bruneton2017, "
-                  "the only atmosphere that the latter's sky draws")
+      .add_option(
+          "--layout", options->layout,
+          "Files to write: native, or those that other programs load: bruneton (the demo of "
+          "Bruneton 2017) or takram (@takram/three-atmosphere). Both have three "
+          "wavelengths and use the preset bruneton2017 by default, the only atmosphere "
+          "that the sky of takram draws")
       ->check(CLI::IsMember({"native", "bruneton", "takram"}))
       ->excludes(quality)
       ->excludes(max_error)
       ->capture_default_str();
-  build.add_option("--type", options->type, "float or half; default: float, but half for takram")
+  build
+      .add_option("--type", options->type,
+                  "Type of texels: float or half (default: float; half for takram)")
       ->check(CLI::IsMember({"float", "half"}));
   build
       .add_option("--format", options->format,
-                  "exr, bin (half, takram) or dat (float, bruneton): default exr, but dat for "
-                  "bruneton")
+                  "File format: exr, bin (for half and takram) or dat (for float and bruneton) "
+                  "(default: exr; dat for bruneton)")
       ->check(CLI::IsMember({"exr", "bin", "dat"}));
   build
       .add_option(
           "--lowest-sun", options->lowest_sun_deg,
-          "Degrees from the zenith of the lowest sun in the tables, which the programs have "
-          "as a constant: 102 (default of bruneton: his demo as it stands, in half "
-          "precision) or 120 (takram, which has no other, and his demo when compiled for "
-          "single precision)")
+          "Zenith angle in degrees of the lowest sun in the tables, a constant in the programs "
+          "that "
+          "load them: 102 (default of bruneton, for his demo in half precision) or 120 (takram, "
+          "and the demo of Bruneton when compiled for single precision)")
       ->check(CLI::IsMember({102, 120}));
+  BeginDiagnostics(build);
   build.parse_complete_callback([options] { CheckLayout(*options); });
   build.footer(
       "Examples: skylut build --out tables --atmosphere atmosphere.toml --quality fine\n"
@@ -219,18 +229,21 @@ Subcommand AddReportCommand(CLI::App& app) {
   const auto options = std::make_shared<ReportCommandOptions>();
   CLI::App& report =
       *app.add_subcommand("report",
-                          "Compare every method with reference solutions, error over time and "
-                          "memory, by day, at sunset "
-                          "and in twilight: CSV, SVG plots, summary.md and a page, index.html.");
-  report.add_option("--out", options->out, "Folder for the report; made when missing")
+                          "Compare every method with reference solutions by day, at sunset and in "
+                          "twilight, and plot error over time and memory. The report has CSV "
+                          "files, SVG plots, summary.md and a page, index.html.");
+  BeginGroup(report, kAirGroup);
+  report.add_option("--atmosphere", options->atmosphere,
+                    "Atmosphere file (TOML) or preset (default: the presets earth and hazy and, "
+                    "for multiple scattering, dust, thick haze and thick air)");
+  BeginGroup(report, kOutputGroup);
+  report.add_option("--out", options->out, "Folder for the report; it is created if necessary")
       ->check(FaultOfFolderName)
       ->required();
-  report.add_option("--atmosphere", options->atmosphere,
-                    "Atmosphere file (TOML) or preset; without it the presets earth and hazy, and, "
-                    "for light of all "
-                    "orders, dust, thick haze and thick air");
   report.add_flag("--quick", options->quick,
-                  "Few rays and methods, one atmosphere: a test of the report, not of the methods");
+                  "Use few rays and methods and one atmosphere, to test the report and not the "
+                  "methods");
+  BeginDiagnostics(report);
   report.footer("Example: skylut report --out report");
   return [options](const CommonOptions& common) { WriteMeasuredReport(*options, common); };
 }

@@ -303,8 +303,10 @@ int Run(const SkyseriesOptions& options) {
 }
 
 int Main(int argc, char** argv) {
-  CLI::App app("Pictures of a scene through the day: sky, terrain and the air between.",
-               "skyseries");
+  CLI::App app(
+      "Render pictures of a scene at one time or through the day: sky, terrain and the air "
+      "between.",
+      "skyseries");
   SkyseriesOptions options;
   AddSkyseriesOptions(app, options);
   const std::function<void()> report = AddPictureReportCommand(app);

@@ -47,16 +47,19 @@ std::function<void()> AddPictureReportCommand(CLI::App& app) {
   CLI::App& report = *app.add_subcommand(
       "report",
       "Compare the air in front of mountains, shafts, lamps and whole pictures with slow reference "
-      "solutions, error over time: CSV, SVG plots, summary.md and a page, index.html.");
+      "solutions, and plot error over time. The report has CSV files, SVG plots, summary.md and a "
+      "page, index.html.");
   report.preparse_callback([&app](std::size_t) { app.get_option("--out")->required(false); });
-  report.add_option("--out", options->out, "Folder for the report; made when missing")
+  BeginGroup(report, kAirGroup);
+  report.add_option("--atmosphere", options->atmosphere,
+                    "Atmosphere file (TOML) of the air in front of mountains (default: the presets "
+                    "earth and hazy)");
+  BeginGroup(report, kOutputGroup);
+  report.add_option("--out", options->out, "Folder for the report; it is created if necessary")
       ->check(FaultOfFolderName)
       ->required();
-  report.add_option("--atmosphere", options->atmosphere,
-                    "Atmosphere file (TOML) of the air before mountains; without it the presets "
-                    "earth and hazy");
   report.add_flag("--quick", options->quick,
-                  "Few rays and small pictures: a test of the report, not of the methods");
+                  "Use few rays and small pictures, to test the report and not the methods");
   AddCommonOptions(report, "skyseries", options->common);
   report.footer("Example: skyseries report --out report");
   return [options] { WriteMeasuredReport(*options); };
@@ -135,11 +138,13 @@ std::function<void()> AddTimesCommand(CLI::App& app) {
   CLI::App& times = *app.add_subcommand(
       "times", "Print when sun and moon rise, culminate and set at a place, and the twilights.");
   times.preparse_callback([&app](std::size_t) { app.get_option("--out")->required(false); });
+  BeginGroup(times, kPlaceGroup);
   CLI::Option* file = times.add_option("SCENE", options->scene_file, "Scene file (TOML)");
-  CLI::Option* latitude = times.add_option("--latitude", options->latitude_deg, "Degrees north")
-                              ->check(CLI::Range(-90.0, 90.0))
-                              ->excludes(file);
-  times.add_option("--longitude", options->longitude_deg, "Degrees east")
+  CLI::Option* latitude =
+      times.add_option("--latitude", options->latitude_deg, "Degrees north, -90 to 90")
+          ->check(CLI::Range(-90.0, 90.0))
+          ->excludes(file);
+  times.add_option("--longitude", options->longitude_deg, "Degrees east, -180 to 360")
       ->check(CLI::Range(-180.0, 360.0))
       ->needs(latitude);
   latitude->needs("--longitude");
@@ -147,30 +152,36 @@ std::function<void()> AddTimesCommand(CLI::App& app) {
     if (!*file && !*latitude) throw CLI::RequiresError("times", "SCENE, or --latitude");
   });
   times
-      .add_option("--height", options->height_m,
-                  "Metres above the ellipsoid; from high places the horizon is lower. Events of "
-                  "skyseries --at are those of height 0")
+      .add_option(
+          "--height,--altitude", options->height_m,
+          "Height in metres above the ellipsoid, -12000 to 1e9. The horizon of a high place is "
+          "lower. The events of skyseries --at are those of height 0")
       ->check(CLI::Range(-12000.0, 1e9))
       ->excludes(file)
       ->capture_default_str();
-  times.add_option("--zone", options->zone,
-                   "IANA zone of days and times (default: the scene's; without one the days are "
-                   "those of the meridian, and the times UTC)");
+  BeginGroup(times, kTimeGroup);
+  times.add_option(
+      "--zone", options->zone,
+      "IANA zone of days and times (default: zone of the scene; without a zone, days are "
+      "those of the meridian, and times are UTC)");
   times.add_option("--date", options->date, "First day: 2026-06-21, today, tomorrow, yesterday")
       ->capture_default_str();
   times.add_option("--days", options->days, "Number of days, 1 to 3660")
       ->check(CLI::Range(1, 3660))
       ->capture_default_str();
-  times.add_option("--out", options->out, "CSV file, with instants of UTC, instead of a table")
+  BeginGroup(times, kOutputGroup);
+  times.add_option("--out", options->out, "CSV file with UTC instants, instead of a table")
       ->check([](const std::string& name) { return FaultOfFileName(name, ".csv"); });
   CLI::Option* plot =
       times
           .add_option(
               "--plot", options->plot,
-              "SVG of sun, moon and the light on level ground from the first noon on, by the "
-              "scene's air or a clear one, beside published levels")
+              "SVG of sun, moon and light on level ground from the first noon, next to published "
+              "light levels, for the air of the scene or for clear air")
           ->check([](const std::string& name) { return FaultOfFileName(name, ".svg"); });
-  times.add_option("--minutes", options->every_min, "Between points of the plot, 1 to 1440")
+  times
+      .add_option("--minutes", options->every_min,
+                  "Time in minutes between points of the plot, 1 to 1440")
       ->check(CLI::Range(1.0, 1440.0))
       ->needs(plot)
       ->capture_default_str();

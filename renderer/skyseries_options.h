@@ -28,16 +28,15 @@ inline constexpr char kSkyseriesFooter[] =
     "midnight, civil-dawn, "
     "civil-dusk, nautical-..., astronomical-..., moonrise, moonset, moon-transit; "
     "first-contact, second-contact, eclipse-maximum, third-contact and last-contact of an eclipse "
-    "of the sun), either of them "
-    "after a day of its own (\"tomorrow sunrise\", \"2026-06-22 18:30\"), or now, now+2h, tomorrow "
-    "(its noon)\n\n"
+    "of the sun), a clock time or an event after a day (\"tomorrow sunrise\", \"2026-06-22 "
+    "18:30\"), or now, now+2h, or tomorrow (at noon).\n\n"
     "Example: a day over the built-in range\n"
     "  skyseries --out 'out/frame.%04d.exr' --png --date 2026-06-21 --from sunrise-1h "
     "--to sunset+1h --every 10m\n"
     "Example: dawn on Mount Fuji\n"
     "  skyseries --dem N35E138.hgt --latitude 35.50 --longitude 138.76 --heading 190 "
     "--zone Asia/Tokyo --date 2026-01-01 --at sunrise-10m --out fuji.exr --png\n"
-    "Example: along a recorded flight, what moves blurred\n"
+    "Example: along a recorded flight, with motion blur\n"
     "  skyseries --path flight.csv --fps 24 --shutter 0.5 --out 'out/f.%04d.exr' --png\n"
     "Example: a walk as a film\n"
     "  skyseries --dem N46E008.hgt --path walk.gpx --every 2s --out 'out/w.%04d.exr' --video "
@@ -62,86 +61,97 @@ struct SkyseriesOptions {
        list = false;
 };
 
-inline void AddSceneOptions(CLI::App& app, SkyseriesOptions& options) {
-  CLI::Option* file = app.add_option("SCENE", options.scene_file,
-                                     "Scene file (TOML); without it, the next options:");
+/// Adds an option that replaces a part of the scene file, and cannot be given together with one.
+inline CLI::Option* AddWithoutFile(CLI::App& app, const char* name, auto& value,
+                                   const std::string& text) {
+  return app.add_option(name, value, text)->excludes(app.get_option("SCENE"));
+}
+
+inline void AddPlaceOptions(CLI::App& app, SkyseriesOptions& options) {
+  BeginGroup(app, kPlaceGroup);
+  app.add_option("SCENE", options.scene_file,
+                 "Scene file (TOML). It replaces the options that exclude it");
   SceneOptions& scene = options.scene;
-  const auto without_file = [&](const char* name, auto& value, const std::string& text) {
-    return app.add_option(name, value, text)->excludes(file)->group("Instead of a scene file");
-  };
-  without_file("--latitude", scene.latitude,
-               fmt::format("Degrees north, -90 to 90 (default: {0}; the range at {0} {1} is seen "
-                           "from a shoulder 17 km off)",
-                           kHomeLatitude, kHomeLongitude));
-  without_file("--longitude", scene.longitude,
-               fmt::format("Degrees east, -180 to 360 (default: {})", kHomeLongitude));
-  without_file("--heading", scene.heading,
-               "Degrees clockwise from north, -360 to 360 (default: 0, or the range's view)");
-  without_file("--pitch", scene.pitch,
-               "Degrees above the horizontal, -90 to 90 (default: 0, or the range's view)");
-  without_file("--fov", scene.fov,
-               "Horizontal field of view in degrees, 0.1 to 179, or 360 for a panorama (default: "
-               "60, or the range's view)");
-  without_file("--height", scene.height_m, "Metres above the ellipsoid, -12000 to 1e9");
-  without_file("--above-ground", scene.above_ground_m,
-               "Metres above the ground, 0 to 1e9 (default: 2, or the range's view)");
-  without_file("--place", scene.place,
-               "Airport, peak or city by name or code: LSZH, \"Mont Blanc\"; its zone is that of "
-               "local times");
-  without_file("--dem", scene.dem,
-               "Elevation models: GeoTIFF, SRTM .hgt, USGS DEM, VRT, and folders of such; several "
-               "may be named (default: a "
-               "built-in mountain range, of its own for each place, which has the view of it)");
-  without_file("--atmosphere", scene.atmosphere,
-               "Atmosphere file (TOML) or preset: earth, hazy, "
-               "clear-mountain, mars, bruneton2017");
-  without_file("--bortle", scene.bortle,
-               "Class of the night sky, 1 to 9: how much light of towns there is in the air");
+  AddWithoutFile(app, "--latitude", scene.latitude,
+                 fmt::format("Degrees north, -90 to 90 (default: {0}, with a view of the built-in "
+                             "mountain range at {0} {1} from a distance of 17 km)",
+                             kHomeLatitude, kHomeLongitude));
+  AddWithoutFile(app, "--longitude", scene.longitude,
+                 fmt::format("Degrees east, -180 to 360 (default: {})", kHomeLongitude));
+  AddWithoutFile(app, "--place", scene.place,
+                 "Airport, peak or city by name or code: LSZH, \"Mont Blanc\". Its time zone is "
+                 "the default of --zone");
+  AddWithoutFile(app, "--height,--altitude", scene.height_m,
+                 "Height of the camera in metres above the ellipsoid, -12000 to 1e9");
+  AddWithoutFile(app, "--above-ground", scene.above_ground_m,
+                 "Height of the camera in metres above the ground, 0 to 1e9 (default: 2, or the "
+                 "view of the range)");
+  AddWithoutFile(app, "--heading", scene.heading,
+                 "Direction of view in degrees clockwise from north, -360 to 360 (default: 0, or "
+                 "the view of the range)");
+  AddWithoutFile(app, "--pitch", scene.pitch,
+                 "Direction of view in degrees above the horizontal, -90 to 90 (default: 0, or the "
+                 "view of the range)");
+  AddWithoutFile(app, "--fov", scene.fov,
+                 "Horizontal field of view in degrees, 0.1 to 179, or 360 for a panorama (default: "
+                 "60, or the view of the range)");
+  AddWithoutFile(app, "--dem", scene.dem,
+                 "Elevation models: GeoTIFF, SRTM .hgt, USGS DEM, VRT, and folders of these files; "
+                 "several may be given (default: a built-in mountain range, different for each "
+                 "place)");
+}
+
+/// Adds the path of the camera; the times of its frames are in AddTimeOptions.
+inline void AddPathOptions(CLI::App& app, SkyseriesOptions& options) {
+  CLI::Option* path = app.add_option(
+      "--path,--replay,--track", options.path,
+      "Path of the camera: a GPX or KML track (.gpx, .kml), along which the camera looks and "
+      "banks, or a CSV file with the columns t_s, latitude, longitude, height_m (above the "
+      "ellipsoid) and optionally heading, pitch, roll, fov and utc. skyview --record writes such a "
+      "file. Frames begin at the first point. Without a scene and a place, the path gives the "
+      "place");
+  app.add_option("--track-speed", options.track.speed_m_per_s,
+                 "Speed in metres per second along a track without times, 0.1 to 1e5")
+      ->check(CLI::Range(0.1, 1e5))
+      ->needs(path)
+      ->capture_default_str();
+  app.add_option("--track-height", options.track.over_ground_m,
+                 "Height in metres above the ground of a track without heights, 0 to 1e6")
+      ->check(CLI::Range(0.0, 1e6))
+      ->needs(path)
+      ->capture_default_str();
 }
 
 inline void AddTimeOptions(CLI::App& app, SkyseriesOptions& options) {
+  BeginGroup(app, kTimeGroup);
   TimesText& times = options.times;
-  CLI::Option* at = app.add_option("--at", times.at, "Time of the picture; may be repeated")
+  CLI::Option* path = app.get_option("--path");
+  CLI::Option* at = app.add_option("--at,--time", times.at, "Time of the picture; may be repeated")
                         ->allow_extra_args(false);
   CLI::Option* from = app.add_option("--from", times.from, "First time of the series");
   CLI::Option* to = app.add_option("--to", times.to, "Last time of the series");
   CLI::Option* every = app.add_option(
       "--every", times.every,
-      "Time between frames: 10m, 90s, 1h; 1d is a day of the calendar in the zone. With whole days "
-      "and an event in --from each "
-      "frame is the event of its own day, and --to may be a day");
-  CLI::Option* count = app.add_option("--count", times.count,
-                                      "Number of frames, first and last "
-                                      "included");
-  CLI::Option* path = app.add_option(
-      "--path", options.path,
-      "Way of the camera: a GPX or KML track (.gpx, .kml), along which the camera looks and banks, "
-      "or "
-      "a CSV with a header of t_s, latitude, longitude, height_m (over the "
-      "ellipsoid) and, if wanted, heading, pitch, roll, fov and utc; skyview --record writes one. "
-      "Its frames begin at its first point. Without a scene and a place it says where");
+      "Time between frames: 10m, 90s, 1h; 1d is a calendar day in the zone. With whole days and an "
+      "event in --from, each frame shows the event of its own day, and --to may be a day");
+  CLI::Option* count =
+      app.add_option("--count", times.count, "Number of frames, including the first and the last");
+  app.add_option("--date", options.date,
+                 "Day of events and clock times: 2026-06-21, today, tomorrow, yesterday (default: "
+                 "the day of the scene; without a scene file 2026-06-21)");
+  app.add_option("--zone", options.zone, "IANA zone of local times (default: zone of the scene)");
   CLI::Option* fps =
-      app.add_option(
-             "--fps", options.frames_per_second,
-             "Frames per second of the path, without --every and --count, and of the --video")
+      app.add_option("--fps", options.frames_per_second,
+                     "Frames per second of the --video, and of the path if neither --every nor "
+                     "--count is given")
           ->capture_default_str();
-  app.add_option("--track-speed", options.track.speed_m_per_s,
-                 "Metres a second along a track without times, 0.1 to 1e5")
-      ->check(CLI::Range(0.1, 1e5))
-      ->needs(path)
-      ->capture_default_str();
-  app.add_option("--track-height", options.track.over_ground_m,
-                 "Metres over the ground of a track without heights, 0 to 1e6")
-      ->check(CLI::Range(0.0, 1e6))
-      ->needs(path)
-      ->capture_default_str();
-  app.add_option(
-         "--shutter", options.shutter,
-         "Share of the time between frames of a path that the shutter is open, 0 to 1: what "
-         "moves is blurred")
+  app.add_option("--shutter", options.shutter,
+                 "Motion blur along a path: fraction of the time between frames during which the "
+                 "shutter is open, 0 to 1")
       ->check(CLI::Range(0.0, 1.0))
       ->needs(path)
       ->capture_default_str();
+  app.add_option("--frames", options.frames, "Render only these frames: A-B,C, counted from 0");
   from->needs(to)->excludes(at)->excludes(path);
   to->needs(from);
   every->excludes(count);
@@ -157,121 +167,79 @@ inline void AddTimeOptions(CLI::App& app, SkyseriesOptions& options) {
     }
     if (*fps && !*path && !options.video) throw CLI::RequiresError("--fps", "--path or --video");
   });
-  app.add_option("--date", options.date,
-                 "Day of events and clock times: 2026-06-21, today, tomorrow, yesterday (default: "
-                 "the scene's; "
-                 "without a file 2026-06-21)");
-  app.add_option("--zone", options.zone, "IANA zone of local times (default: the scene's)");
-  app.add_option("--frames", options.frames, "Render only these frames: A-B,C, counted from 0");
-  app.add_flag_callback(
-      "--list",
-      [&app, &options] {
-        options.list = true;
-        app.get_option("--out")->required(false);
-      },
-      "Print the frames as CSV, with sun and moon, and render nothing; needs no --out");
 }
 
-inline void AddOutputOptions(CLI::App& app, SkyseriesOptions& options) {
-  app.add_option("--out", options.out, "EXR files, with %04d for the frame number")->required();
-  app.add_flag("--png", options.png, "Write a developed PNG beside every EXR");
-  app.add_option("--size", options.size, "Width x height in pixels, 1 to 16384 each")
-      ->check(ReadableBy([](const std::string& text) { (void)ImageSizeFromText(text); }))
-      ->capture_default_str();
-  app.add_option(
-         "--samples", options.samples,
-         "Rays per pixel, 1 to 1024; powers of two are spread best, 1 is not smoothed. With "
-         "--noise the first rays, 2 at least (default: 4, and --noise)")
-      ->check(CLI::Range(1, PixelSamples::kMostSamples));
-  app.add_option("--noise", options.noise,
-                 "More rays, up to 256, where the noise of a pixel is more than this part of its "
-                 "brightness, 1e-8 to 1 or in percent (default: 2%; with --samples alone all "
-                 "pixels have equally many)")
-      ->check(FaultOfRelativeError);
-  app.add_option("--filter", options.filter,
-                 "How rays are spread about a pixel: box is sharpest and has the most stair steps, "
-                 "gaussian the fewest")
-      ->check(CLI::IsMember(PixelFilterNames()))
-      ->capture_default_str();
-  app.add_option(
-         "--aov", options.layers,
-         "More layers in the EXR, separated by commas; of polarised light stokes_q, stokes_u "
-         "(linear sRGB in cd/m^2) and polarisation (degree 0 to 1, and angle in degrees "
-         "clockwise from the picture's vertical, of luminance)")
-      ->delimiter(',')
-      ->allow_extra_args(false)
-      ->check(CLI::IsMember(LayerNames()));
-  app.add_option(
-         "--exposure", options.exposure,
-         "auto (pictures are metered, those of a series smoothly from frame to frame), eye "
-         "(metered, "
-         "but dusk is darker than day and night darker, as an eye has it that adapts in part), "
-         "incident (each frame's light on the ground is metered: smooth from day to night) or EV "
-         "at "
-         "ISO 100, -30 to 30")
+inline void AddAirOptions(CLI::App& app, SkyseriesOptions& options) {
+  BeginGroup(app, kAirGroup);
+  AddWithoutFile(app, "--atmosphere", options.scene.atmosphere,
+                 "Atmosphere file (TOML) or preset: earth, hazy, clear-mountain, mars, "
+                 "bruneton2017");
+  AddWithoutFile(app, "--bortle", options.scene.bortle,
+                 "Light pollution of the night sky: class 1 (dark) to 9 (city)");
+}
+
+inline void AddDisplayOptions(CLI::App& app, SkyseriesOptions& options) {
+  app.add_option("--exposure", options.exposure,
+                 "Exposure: auto (each picture is metered; in a series the exposure changes "
+                 "smoothly), eye (metered, but dusk and night stay darker than day, as for an eye "
+                 "that adapts only in part), incident (the light on the ground is metered in each "
+                 "frame; smooth from day to night) or an EV at ISO 100, -30 to 30")
       ->check(ReadableBy([](const std::string& text) { (void)ExposureRuleFromText(text); }))
       ->capture_default_str();
-  app.add_option("--tone-map", options.tone_curve,
-                 "Curve of the PNG; local: an exposure of its own for every part, and agx")
-      ->check(CLI::IsMember({"agx", "aces", "reinhard", "pbr-neutral", "linear", "local"}))
-      ->capture_default_str();
-  app.add_option("--look", options.look,
-                 "Of agx: photo, or as its authors have it, none, punchy, medium or high contrast")
-      ->check(CLI::IsMember(AgxLookNames()))
-      ->capture_default_str();
-  app.add_option("--white-balance", options.white_balance,
-                 "Light that the PNG shows as white: camera (daylight, by night 4000 K), daylight, "
-                 "auto (the "
-                 "mean colour of what is metered, 3000 to 7000 K) or kelvins, 1500 to 25000")
+  app.add_option("--white-balance", options.white_balance, kWhiteBalanceHelp)
       ->check(ReadableBy([](const std::string& text) { (void)WhiteBalanceFromText(text); }))
       ->capture_default_str();
-  app.add_flag("--night-vision", options.night_vision,
-               "PNG as the eye adapted to the dark sees it: below 5 cd/m^2 colour fades and fine "
-               "detail is lost");
+  app.add_option("--tone-map", options.tone_curve, kToneMapHelp)
+      ->check(CLI::IsMember({"agx", "aces", "reinhard", "pbr-neutral", "linear", "local"}))
+      ->capture_default_str();
+  app.add_option("--look", options.look, kLookHelp)
+      ->check(CLI::IsMember(AgxLookNames()))
+      ->capture_default_str();
+  app.add_flag("--night-vision", options.night_vision, kNightVisionHelp);
   app.add_option("--glare", options.glare,
-                 "eye: PNG with the light that the eye scatters around sun and lamps; not in the "
-                 "EXR, not of panoramas")
+                 "\"eye\" adds to the PNG the light that the eye scatters around sun and lamps. It "
+                 "does not change the EXR and needs a perspective camera")
       ->check(CLI::IsMember({"none", "eye"}))
       ->capture_default_str();
-  app.add_flag("--resume", options.resume,
-               "Keep intact frames that were made with these settings; remove unfinished files of "
-               "runs that were killed on this machine");
-  app.add_option("--contact-sheet", options.contact_sheet, "PNG of all frames of this run, small")
-      ->check([](const std::string& name) { return FaultOfFileName(name, ".png"); });
-  app.add_option("--keogram", options.keogram,
-                 "PNG of the middle column of every frame of this run, side by side")
-      ->check([](const std::string& name) { return FaultOfFileName(name, ".png"); });
-  app.add_option("--plot", options.plot,
-                 "SVG of the elevation of sun and moon, the light on the ground and the exposure "
-                 "over the time of the series")
-      ->check([](const std::string& name) { return FaultOfFileName(name, ".svg"); });
-  app.add_option(
-         "--video", options.video,
-         "Film of all frames of this run (.mp4, .mov, .mkv), --fps a second, through ffmpeg")
-      ->check([](const std::string& name) { return FaultOfFileName(name, ""); });
+}
+
+inline void AddRayOptions(CLI::App& app, SkyseriesOptions& options) {
+  app.add_option("--samples", options.samples,
+                 "Rays per pixel, 1 to 1024. Powers of two are distributed best; pictures with 1 "
+                 "are not smoothed. With --noise, the number of first rays, at least 2 (default: "
+                 "4, and --noise)")
+      ->check(CLI::Range(1, PixelSamples::kMostSamples));
+  app.add_option("--noise", options.noise,
+                 "Use more rays, up to 256, in pixels whose noise exceeds this fraction of their "
+                 "brightness, 1e-8 to 1 or in percent (default: 2%; with --samples alone all "
+                 "pixels have the same number of rays)")
+      ->check(FaultOfRelativeError);
+  app.add_option("--filter", options.filter,
+                 "Pixel filter. box is sharpest and has the most aliasing; gaussian has the least "
+                 "aliasing")
+      ->check(CLI::IsMember(PixelFilterNames()))
+      ->capture_default_str();
 }
 
 inline void AddEffectOptions(CLI::App& app, SkyseriesOptions& options) {
   CLI::Option* effects =
       app.add_option(
              "--effects", options.effects,
-             "all; auto: what each picture needs within --max-error; or exactly these: " +
+             "Effects to render: all; auto, those that each picture needs to stay within "
+             "--max-error; or a list of names: " +
                  NamesOfEffects() +
-                 ". molecules, aerosol, ozone, fine-air, fine-spectrum are on unless one is "
-                 "named; -NAME takes one away from all (default: all; auto with "
+                 ". molecules, aerosol, ozone, fine-air and fine-spectrum are on unless one of "
+                 "them is named. all,-NAME leaves one effect out (default: all; auto with "
                  "--max-error)")
           ->check(ReadableBy([](const std::string& text) {
             if (text != "auto") (void)EffectsFromText(text);
           }));
   app.add_option("--max-error", options.max_error,
-                 "Change of the picture that leaving effects out may make: root mean square of "
-                 "the pixels' relative changes, 1e-8 to 1 or in percent (default: 1%)")
+                 "Largest error caused by leaving effects out: root mean square of the relative "
+                 "changes of pixels, 1e-8 to 1 or in percent (default: 1%)")
       ->check(FaultOfRelativeError);
-  app.add_flag("--explain", options.explain,
-               "Print for each picture what each effect changes, what it costs, and whether it is "
-               "kept");
   app.add_flag("--no-shafts", options.no_shafts,
-               "Leave the air in the sun where terrain shades it, for comparison")
+               "Light the air as if terrain cast no shadows into it, for comparison")
       ->excludes(effects);
   app.callback([&options] {
     if (options.noise && options.samples == 1)
@@ -279,6 +247,54 @@ inline void AddEffectOptions(CLI::App& app, SkyseriesOptions& options) {
     if (options.max_error && options.effects.value_or("auto") != "auto")
       throw CLI::ValidationError("--max-error", "goes with --effects auto");
   });
+}
+
+inline void AddPictureOptions(CLI::App& app, SkyseriesOptions& options) {
+  BeginGroup(app, kPictureGroup);
+  app.add_option("--size", options.size, "Width x height in pixels, 1 to 16384 each")
+      ->check(ReadableBy([](const std::string& text) { (void)ImageSizeFromText(text); }))
+      ->capture_default_str();
+  AddDisplayOptions(app, options);
+  AddRayOptions(app, options);
+  AddEffectOptions(app, options);
+}
+
+inline void AddOutputOptions(CLI::App& app, SkyseriesOptions& options) {
+  BeginGroup(app, kOutputGroup);
+  app.add_option("--out", options.out, "EXR files, with %04d for the frame number")->required();
+  app.add_flag("--png", options.png, "Write a tone-mapped PNG next to every EXR");
+  app.add_option(
+         "--aov", options.layers,
+         "Additional layers in the EXR, separated by commas. For polarised light: stokes_q and "
+         "stokes_u (linear sRGB in cd/m^2) and polarisation (degree 0 to 1 and angle in degrees "
+         "clockwise from the vertical of the picture, for luminance)")
+      ->delimiter(',')
+      ->allow_extra_args(false)
+      ->check(CLI::IsMember(LayerNames()));
+  app.add_option("--video", options.video,
+                 "Film of all frames of this run (.mp4, .mov, .mkv) with --fps frames per second; "
+                 "needs ffmpeg")
+      ->check([](const std::string& name) { return FaultOfFileName(name, ""); });
+  app.add_option("--contact-sheet", options.contact_sheet,
+                 "PNG with small copies of all frames of this run")
+      ->check([](const std::string& name) { return FaultOfFileName(name, ".png"); });
+  app.add_option("--keogram", options.keogram,
+                 "PNG of the middle column of every frame of this run, side by side")
+      ->check([](const std::string& name) { return FaultOfFileName(name, ".png"); });
+  app.add_option("--plot", options.plot,
+                 "SVG of the elevation of sun and moon, the light on level ground and the exposure "
+                 "over the time of the series")
+      ->check([](const std::string& name) { return FaultOfFileName(name, ".svg"); });
+  app.add_flag("--resume", options.resume,
+               "Keep intact frames that were made with the same settings, and remove unfinished "
+               "files of killed runs on this machine");
+  app.add_flag_callback(
+      "--list",
+      [&app, &options] {
+        options.list = true;
+        app.get_option("--out")->required(false);
+      },
+      "Print the frames as CSV, with sun and moon, and render nothing; needs no --out");
 }
 
 /// Sets the number of rays per pixel.
@@ -322,11 +338,16 @@ inline EffectBudget BudgetOf(const SkyseriesOptions& options) {
 }
 
 inline void AddSkyseriesOptions(CLI::App& app, SkyseriesOptions& options) {
-  AddSceneOptions(app, options);
+  AddPlaceOptions(app, options);
+  AddPathOptions(app, options);
   AddTimeOptions(app, options);
+  AddAirOptions(app, options);
+  AddPictureOptions(app, options);
   AddOutputOptions(app, options);
-  AddEffectOptions(app, options);
   AddCommonOptions(app, "skyseries", options.common);
+  app.add_flag("--explain", options.explain,
+               "Print for each picture what each effect changes, what it costs, and whether it is "
+               "kept");
   app.footer(kSkyseriesFooter);
 }
 

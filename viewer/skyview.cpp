@@ -310,7 +310,7 @@ int Run(const SkyviewOptions& options) {
 }
 
 int Main(int argc, char** argv) {
-  CLI::App app("A flight through a scene, on the graphics card", "skyview");
+  CLI::App app("Fly through a scene, rendered on the graphics card.", "skyview");
   SkyviewOptions options;
   AddSkyviewOptions(app, options);
   if (const std::optional<int> status = ParseCommandLine(app, argc, argv)) return *status;

@@ -18,7 +18,7 @@ namespace alpenglow::viewer {
 inline constexpr char kSkyviewExamples[] =
     "Example: sunrise over the built-in range, without a display\n"
     "  skyview --time sunrise+15m --headless --screenshot dawn.png\n"
-    "A flight as a film:\n"
+    "Example: a flight as a film\n"
     "  skyview --record flight.csv\n"
     "  skyview --replay flight.csv --headless --video flight.mp4";
 
@@ -55,19 +55,15 @@ struct SkyviewOptions {
 inline void AddPictureLooks(CLI::App& app, SkyviewOptions& options) {
   app.add_option(
          "--exposure", options.exposure,
-         "auto (the picture is metered), eye (metered, but dusk is darker than day and night "
-         "darker) or EV at ISO 100, -30 to 30, locked")
+         "Exposure: auto (the picture is metered), eye (metered, but dusk and night stay darker "
+         "than day) or a fixed EV at ISO 100, -30 to 30")
       ->check(ReadableBy([](const std::string& text) { (void)FlightExposureFromText(text); }))
       ->capture_default_str();
-  app.add_option("--look", options.look,
-                 "Of agx: photo, or as its authors have it, none, punchy, medium or high contrast")
-      ->check(CLI::IsMember(AgxLookNames()))
-      ->capture_default_str();
-  app.add_option("--white-balance", options.white_balance,
-                 "Light that is shown as white: camera (daylight, by night 4000 K), daylight, auto "
-                 "(the mean "
-                 "colour of what is metered, 3000 to 7000 K) or kelvins, 1500 to 25000")
+  app.add_option("--white-balance", options.white_balance, kWhiteBalanceHelp)
       ->check(ReadableBy([](const std::string& text) { (void)WhiteBalanceFromText(text); }))
+      ->capture_default_str();
+  app.add_option("--look", options.look, kLookHelp)
+      ->check(CLI::IsMember(AgxLookNames()))
       ->capture_default_str();
 }
 
@@ -78,98 +74,125 @@ inline void AddPictureLooks(CLI::App& app, SkyviewOptions& options) {
   return look;
 }
 
-inline void AddSkyviewOptions(CLI::App& app, SkyviewOptions& options) {
-  CLI::Option* file = app.add_option("SCENE", options.scene_file,
-                                     "Scene file (TOML); without it a built-in range, or --dem");
-  app.add_option("--latitude", options.latitude, "Of the eye: degrees north, -90 to 90")
+inline void AddPlaceOptions(CLI::App& app, SkyviewOptions& options) {
+  BeginGroup(app, kPlaceGroup);
+  CLI::Option* file =
+      app.add_option("SCENE", options.scene_file,
+                     "Scene file (TOML). Without it, skyview shows --dem or a built-in mountain "
+                     "range");
+  app.add_option("--latitude", options.latitude, "Place of the camera in degrees north, -90 to 90")
       ->check(CLI::Range(-90.0, 90.0));
-  app.add_option("--longitude", options.longitude, "Of the eye: degrees east, -180 to 360")
+  app.add_option("--longitude", options.longitude,
+                 "Place of the camera in degrees east, -180 to 360")
       ->check(CLI::Range(-180.0, 360.0));
-  app.add_option("--altitude", options.altitude, "Of the eye: metres above the ellipsoid, to 1e9")
-      ->check(CLI::Range(-12000.0, 1e9));
-  app.add_option("--heading", options.heading, "Degrees clockwise from north, -360 to 360")
-      ->check(CLI::Range(-360.0, 360.0));
-  app.add_option("--pitch", options.pitch, "Degrees above the horizontal, -90 to 90")
-      ->check(CLI::Range(-90.0, 90.0));
-  app.add_option("--time", options.time,
-                 "2026-06-21T04:00:00Z, or an event of the scene's day: sunrise-10m, noon, "
-                 "civil-dusk (default: the scene's time, else noon there on 2026-06-21)");
-  app.add_option("--dem", options.dem,
-                 "Elevation models: GeoTIFF, SRTM .hgt, USGS DEM, and folders of such; several may "
-                 "be named")
-      ->excludes(file);
   app.add_option("--place", options.place,
-                 "Begin at an airport, peak or city by name or code: LSZH, \"Mont Blanc\"");
-  app.add_option("--track", options.track, "Follow a GPX or KML file");
-  app.add_option("--quality", options.quality,
-                 "low, medium, high, reference (the renderer's own picture where the eye stands), "
-                 "or auto, which keeps --frame-rate")
-      ->capture_default_str();
-  app.add_option("--frame-rate", options.frame_rate,
-                 "Frames a second that --quality auto keeps, "
-                 "1 to 1000")
-      ->check(CLI::Range(1.0, 1000.0))
-      ->capture_default_str();
-  app.add_option("--hud", options.hud,
-                 "Instruments: on, off, or auto: on in windows, not in pictures of --screenshot")
-      ->check(CLI::IsMember({"on", "off", "auto"}))
-      ->capture_default_str();
-  app.add_option("--hud-scale", options.hud_scale,
-                 "Size of instruments, 0.5 to 8 (default: as the "
-                 "desktop says)")
-      ->check(CLI::Range(0.5, 8.0));
-  app.add_flag("--invert-y", options.invert_y, "Sticks and mouse look down when pushed up");
-  app.add_option(
-         "--size", options.size,
-         "Width x height in pixels, 1 to 32768 each; what is no --screenshot is as large as "
-         "OpenGL draws in one piece at most")
+                 "Start at an airport, peak or city by name or code: LSZH, \"Mont Blanc\"");
+  app.add_option("--altitude,--height", options.altitude,
+                 "Height of the camera in metres above the ellipsoid, -12000 to 1e9")
+      ->check(CLI::Range(-12000.0, 1e9));
+  app.add_option("--heading", options.heading,
+                 "Direction of view in degrees clockwise from north, -360 to 360")
+      ->check(CLI::Range(-360.0, 360.0));
+  app.add_option("--pitch", options.pitch,
+                 "Direction of view in degrees above the horizontal, -90 to 90")
+      ->check(CLI::Range(-90.0, 90.0));
+  app.add_option("--dem", options.dem,
+                 "Elevation models: GeoTIFF, SRTM .hgt, USGS DEM, and folders of these files; "
+                 "several may be given")
+      ->excludes(file);
+  app.add_option("--track", options.track, "Follow a GPX or KML track");
+  app.add_option("--replay,--path", options.replay,
+                 "Fly along a recorded path. Without a display, --screenshot out.%04d.png "
+                 "--frames N writes pictures along it");
+  BeginGroup(app, kTimeGroup);
+  app.add_option("--time,--at", options.time,
+                 "Time at the start: 2026-06-21T04:00:00Z, or an event of the day of the scene: "
+                 "sunrise-10m, noon, civil-dusk (default: the time of the scene, or noon on "
+                 "2026-06-21 at the place of the camera)");
+}
+
+inline void AddPictureOptions(CLI::App& app, SkyviewOptions& options) {
+  BeginGroup(app, kPictureGroup);
+  app.add_option("--size", options.size,
+                 "Width x height in pixels, 1 to 32768 each. Only a screenshot may be larger than "
+                 "the largest picture that OpenGL draws in one piece")
       ->check(ReadableBy([](const std::string& text) { (void)SizeFromText(text); }))
       ->capture_default_str();
   app.add_flag("--fullscreen", options.fullscreen, "Use the whole screen");
-  app.add_option("--vsync", options.vsync, "Frames wait for the display: on or off")
+  app.add_option("--quality", options.quality,
+                 "Quality of the picture: low, medium, high, reference (the picture of the "
+                 "renderer while the camera stands still) or auto (adapts to keep --frame-rate)")
+      ->capture_default_str();
+  app.add_option("--frame-rate", options.frame_rate,
+                 "Frames per second that --quality auto keeps, 1 to 1000")
+      ->check(CLI::Range(1.0, 1000.0))
+      ->capture_default_str();
+  AddPictureLooks(app, options);
+  app.add_option("--hud", options.hud,
+                 "Instruments: on, off, or auto (on in windows, off in pictures of --screenshot)")
+      ->check(CLI::IsMember({"on", "off", "auto"}))
+      ->capture_default_str();
+  app.add_option("--hud-scale", options.hud_scale,
+                 "Size of the instruments, 0.5 to 8 (default: the scale of the desktop)")
+      ->check(CLI::Range(0.5, 8.0));
+  app.add_option("--vsync", options.vsync, "Wait for the display before each frame: on or off")
       ->check(CLI::IsMember({"on", "off"}))
       ->capture_default_str();
+  app.add_flag("--invert-y", options.invert_y,
+               "Sticks and mouse turn the view down when they are pushed up");
+}
+
+inline void AddOutputOptions(CLI::App& app, SkyviewOptions& options) {
+  BeginGroup(app, kOutputGroup);
   CLI::Option* picture = app.add_option("--screenshot", options.screenshot,
-                                        "Write this PNG or EXR after --frames frames and end");
+                                        "Write this PNG or EXR after --frames frames, and exit");
   app.add_option("--frames", options.frames,
-                 "Frames before the screenshot, 1 to 1000000; without a display, pictures of a "
-                 "replay, its ends included")
+                 "Number of frames before the screenshot, 1 to 1000000; for a replay without a "
+                 "display, number of pictures along it, including both ends")
       ->check(CLI::Range(1, 1000000))
       ->needs(picture)
       ->capture_default_str();
-  CLI::Option* benchmark =
-      app.add_option("--benchmark", options.benchmark,
-                     "Fly for so many seconds, with time running x60, and print frame times: one "
-                     "line a pass, \"name median_ms p95_ms p99_ms\" (name.cpu: of the thread that "
-                     "draws), and the whole frame as \"frame\"; 0.1 to 3600")
-          ->check(CLI::Range(0.1, 3600.0))
-          ->excludes(picture);
-  CLI::Option* explain = app.add_flag(
-      "--explain", options.explain,
-      "Compare this view with the renderer's, say what each shortcut costs and saves, and end");
-  explain->excludes(picture)->excludes(benchmark);
   app.add_flag("--headless", options.headless,
-               "Needs no display; only with --screenshot, --video, --benchmark or --explain");
+               "Run without a display; needs --screenshot, --video, --benchmark or --explain");
   app.add_option("--record", options.record,
                  "Write the flight to this file, for --replay and skyseries --path");
-  app.add_option("--replay", options.replay,
-                 "Fly along this path; without a display, --screenshot out.%04d.png --frames N "
-                 "writes pictures along it");
   CLI::Option* video =
-      app.add_option(
-             "--video", options.video,
-             "Write the replay as a film (.mp4, .mov, .mkv), through ffmpeg; with --headless")
+      app.add_option("--video", options.video,
+                     "Write the replay as a film (.mp4, .mov, .mkv); needs --headless and ffmpeg")
           ->needs("--replay")
           ->needs("--headless")
-          ->excludes(picture);
-  app.add_option("--fps", options.fps, "Pictures a second of the film, 1 to 1000")
+          ->excludes(picture)
+          ->excludes("--record");
+  app.add_option("--fps", options.fps, "Frames per second of the film, 1 to 1000")
       ->check(CLI::Range(1.0, 1000.0))
       ->needs(video)
       ->capture_default_str();
-  benchmark->excludes(video)->excludes("--replay")->excludes("--record");
-  for (CLI::Option* flies_nothing : {explain, video}) flies_nothing->excludes("--record");
-  AddPictureLooks(app, options);
+}
+
+inline void AddDiagnostics(CLI::App& app, SkyviewOptions& options) {
   AddCommonOptions(app, "skyview", options.common);
+  CLI::Option* benchmark =
+      app.add_option("--benchmark", options.benchmark,
+                     "Fly for this number of seconds, 0.1 to 3600, with time at 60 times its rate, "
+                     "and print frame times. Each line is a pass: \"name median_ms p95_ms "
+                     "p99_ms\". name.cpu is the time of the drawing thread; frame is the whole "
+                     "frame")
+          ->check(CLI::Range(0.1, 3600.0));
+  for (const char* other : {"--screenshot", "--video", "--replay", "--record"})
+    benchmark->excludes(other);
+  app.add_flag("--explain", options.explain,
+               "Compare this view with the picture of the renderer, print what each shortcut costs "
+               "and saves, and exit")
+      ->excludes("--screenshot")
+      ->excludes(benchmark)
+      ->excludes("--record");
+}
+
+inline void AddSkyviewOptions(CLI::App& app, SkyviewOptions& options) {
+  AddPlaceOptions(app, options);
+  AddPictureOptions(app, options);
+  AddOutputOptions(app, options);
+  AddDiagnostics(app, options);
   app.callback([&options] {
     if (options.headless && !options.screenshot && !options.benchmark && !options.video &&
         !options.explain) {

@@ -31,25 +31,59 @@ struct CommonOptions {
 /// pair of files NAME_command.h and .cpp with `Subcommand AddNameCommand(CLI::App&)`.
 using Subcommand = std::function<void(const CommonOptions&)>;
 
+/// Titles of the groups of options in --help. A program prints its groups in the order in which it
+/// begins them; all use the order of this list.
+inline constexpr char kPlaceGroup[] = "Place and camera";
+inline constexpr char kTimeGroup[] = "Time";
+inline constexpr char kAirGroup[] = "Air";
+inline constexpr char kPictureGroup[] = "Light and picture";
+inline constexpr char kOutputGroup[] = "Output";
+inline constexpr char kDiagnosticsGroup[] = "Diagnostics";
+
+/// Begins a group: --help lists the options that are added after this call under `title`.
+inline void BeginGroup(CLI::App& app, const char* title) { app.option_defaults()->group(title); }
+
+/// Begins the last group and moves --help to it. CLI11 adds --help before all other options.
+inline void BeginDiagnostics(CLI::App& app) {
+  BeginGroup(app, kDiagnosticsGroup);
+  app.set_help_flag("-h,--help", "Print this help and exit");
+}
+
 /// Adds --atmosphere. `atmosphere` must outlive the parsing.
 inline void AddAtmosphereOption(CLI::App& command, std::optional<std::string>& atmosphere) {
   command.add_option("--atmosphere", atmosphere,
                      "Atmosphere file (TOML) or preset: earth, hazy, clear-mountain, mars, "
-                     "bruneton2017; without it the preset earth");
+                     "bruneton2017 (default: the preset earth)");
 }
 
-/// Adds --threads, --quiet, --progress and --version. `options` must outlive the parsing.
+/// Help texts of options that several programs have.
+inline constexpr char kToneMapHelp[] =
+    "Tone curve of the PNG. \"local\" applies local exposure, then agx";
+inline constexpr char kLookHelp[] =
+    "Look of the tone curve agx: photo, or a look of the authors of agx: none, punchy, medium or "
+    "high contrast";
+inline constexpr char kWhiteBalanceHelp[] =
+    "Light that is shown as white: camera (daylight by day, 4000 K by night), daylight, auto (the "
+    "mean colour of the picture, limited to 3000 to 7000 K) or a temperature in kelvins, 1500 to "
+    "25000";
+inline constexpr char kNightVisionHelp[] =
+    "Show in the PNG what an eye sees that is adapted to the dark: below 5 cd/m^2 colour fades and "
+    "fine detail is lost";
+
+/// Adds --threads, --quiet, --progress, --version and --help. `options` must outlive the parsing.
 inline void AddCommonOptions(CLI::App& app, const std::string& program, CommonOptions& options) {
-  app.add_option("--threads", options.threads, "Threads to use; 0: all")
+  BeginDiagnostics(app);
+  app.add_option("--threads", options.threads, "Number of threads; 0 uses all")
       ->check(CLI::Range(0, 4096))
       ->capture_default_str();
   app.add_flag("--quiet", options.quiet,
-               "No progress and no summary on standard error; warnings stay");
+               "Suppress progress and the summary, but not warnings, on standard error");
   app.add_option("--progress", options.progress,
-                 "Progress on standard error: auto, plain, json or quiet")
+                 "Form of progress on standard error: auto, plain, json or quiet")
       ->check(CLI::IsMember({"auto", "plain", "json", "quiet"}))
       ->capture_default_str();
-  app.set_version_flag("--version", [program] { return VersionText(program); });
+  app.set_version_flag(
+      "--version", [program] { return VersionText(program); }, "Print the version and exit");
 }
 
 /// Returns a validator that rejects a text on the command line if `read` throws for it.

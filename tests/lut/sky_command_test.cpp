@@ -138,6 +138,14 @@ TEST_F(SkylutSky, APlaceAndATimeGiveTheSunThere) {
   EXPECT_EQ(ContentOf(folder_ / "a.exr"), ContentOf(folder_ / "b.exr")) << "the same instant";
 }
 
+TEST_F(SkylutSky, HeightAndAtAreAltitudeAndTime) {
+  const std::string rest = "--quiet --size 16x8 --latitude 46.5 --longitude 8 ";
+  const std::string instant = " 2026-06-21T11:30:00Z";
+  ASSERT_EQ(Run(rest + "--out a.exr --altitude 900 --time" + instant).status, 0);
+  ASSERT_EQ(Run(rest + "--out b.exr --height 900 --at" + instant).status, 0);
+  EXPECT_EQ(ContentOf(folder_ / "a.exr"), ContentOf(folder_ / "b.exr"));
+}
+
 TEST_F(SkylutSky, LayersOfPolarisationAreChannelsOfTheFile) {
   const Outcome outcome = Run(
       "--quiet --size 16x8 --out a.exr --sun-elevation 10 --aov polarisation,stokes_q,stokes_q");

@@ -118,6 +118,18 @@ TEST_F(Skyseries, HelpAndVersionArePrinted) {
   EXPECT_THAT(version.out, HasSubstr("skyseries of alpenglow "));
 }
 
+TEST_F(Skyseries, OtherNamesOfOptionsAreAccepted) {
+  const std::string list = "--list --latitude 46.5 --longitude 8 ";
+  const Outcome still = Run(list + "--height 3000 --at noon");
+  ASSERT_EQ(still.status, 0) << still.error;
+  EXPECT_EQ(Run(list + "--altitude 3000 --time noon").out, still.out);
+  WriteText(folder_ / "p.csv", "t_s,latitude,longitude,height_m\n0,46.5,8,900\n1,46.6,8,900\n");
+  const Outcome path = Run("--list --count 2 --path " + InFolder("p.csv"));
+  ASSERT_EQ(path.status, 0) << path.error;
+  for (const char* name : {"--replay ", "--track "})
+    EXPECT_EQ(Run(std::string("--list --count 2 ") + name + InFolder("p.csv")).out, path.out);
+}
+
 TEST_F(Skyseries, ListsNeedNoRendering) {
   const std::string list = InFolder("s.toml") + " --list --date 2026-06-21 ";
   EXPECT_THAT(Run(list + "--at 18:30").out, HasSubstr("\n0,2026-06-21T16:30:00Z,"));

@@ -338,6 +338,13 @@ TEST_F(Skyview, HelpNamesEveryOptionAndAnExample) {
   }
 }
 
+TEST_F(Skyview, OtherNamesOfOptionsAreAccepted) {
+  const Outcome outcome = Run(InFolder("s.toml") + " --headless --height 3000 --at noon --path " +
+                              InFolder("missing.csv") + " --screenshot " + InFolder("a.png"));
+  EXPECT_EQ(outcome.status, 3) << outcome.error;
+  EXPECT_THAT(outcome.error, HasSubstr("missing.csv"));
+}
+
 // Hard case 49.
 TEST_F(Skyview, WithoutADisplayAnOpenGlOlderThan33IsRefusedWithStatusFive) {
   if (!tests::HasOpenGl()) GTEST_SKIP() << "EGL gives no OpenGL here";
