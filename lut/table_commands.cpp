@@ -193,7 +193,7 @@ Subcommand AddBuildCommand(CLI::App& app) {
           "--lowest-sun", options->lowest_sun_deg,
           "Zenith angle in degrees of the lowest sun in the tables, a constant in the programs "
           "that "
-          "load them: 102 (default of bruneton, for his demo in half precision) or 120 (takram, "
+          "load them: 102 (default of bruneton, for the demo in half precision) or 120 (takram, "
           "and the demo of Bruneton when compiled for single precision)")
       ->check(CLI::IsMember({102, 120}));
   BeginDiagnostics(build);
