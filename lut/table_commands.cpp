@@ -124,6 +124,72 @@ void Build(const BuildOptions& options, const CommonOptions& common) {
                    options.out, common.progress_style());
 }
 
+/// Adds the options that choose the tables and their sizes.
+void AddSizes(CLI::App& build, BuildOptions& options) {
+  CLI::Option* quality =
+      build
+          .add_option(
+              "--quality", options.quality,
+              "Sizes of the tables: preview (128x32; 6x16x32x24; 28x14), standard (256x64; "
+              "8x32x64x48; 32x18) or fine (512x128; 10x48x96x64; 64x32). The sizes are those of "
+              "transmittance (mu x r), single scattering (azimuth x mu_s x mu x r) and multiple "
+              "scattering (mu_s x altitudes)")
+          ->check(CLI::IsMember({"preview", "standard", "fine"}))
+          ->capture_default_str();
+  CLI::Option* max_error =
+      build
+          .add_option(
+              "--max-error", options.max_error,
+              "Choose the number of ray nodes, the tables and the smallest sizes so that sky, "
+              "aerial perspective, twilight and irradiance stay below this relative error "
+              "(rms), like 0.5%, and print the measured errors")
+          ->check(FaultOfRelativeError)
+          ->excludes(quality);
+  build
+      .add_option(
+          "--tables", options.tables,
+          "With --max-error: smallest (least memory: a table is omitted if closed forms or a "
+          "few nodes along the ray can replace it) or all (all three tables)")
+      ->check(CLI::IsMember({"smallest", "all"}))
+      ->needs(max_error)
+      ->capture_default_str();
+  build
+      .add_flag("--single-scattering-only", options.single_scattering_only,
+                "Omit the table of multiple scattering")
+      ->excludes(max_error);
+  build
+      .add_option(
+          "--layout", options.layout,
+          "Files to write: native, or those that other programs load: bruneton (the demo of "
+          "Bruneton 2017) or takram (@takram/three-atmosphere). Both have three "
+          "wavelengths and use the preset bruneton2017 by default, the only atmosphere "
+          "that the sky of takram draws")
+      ->check(CLI::IsMember({"native", "bruneton", "takram"}))
+      ->excludes(quality)
+      ->excludes(max_error)
+      ->capture_default_str();
+}
+
+/// Adds the options that choose the format of the files.
+void AddFormats(CLI::App& build, BuildOptions& options) {
+  build
+      .add_option("--type", options.type,
+                  "Type of texels: float or half (default: float; half for takram)")
+      ->check(CLI::IsMember({"float", "half"}));
+  build
+      .add_option("--format", options.format,
+                  "File format: exr, bin (for half and takram) or dat (for float and bruneton) "
+                  "(default: exr; dat for bruneton)")
+      ->check(CLI::IsMember({"exr", "bin", "dat"}));
+  build
+      .add_option(
+          "--lowest-sun", options.lowest_sun_deg,
+          "Zenith angle in degrees of the lowest sun in the tables, a constant in the programs "
+          "that load them: 102 (default of bruneton, for the demo in half precision) or 120 "
+          "(takram, and the demo of Bruneton when compiled for single precision)")
+      ->check(CLI::IsMember({102, 120}));
+}
+
 }  // namespace
 
 Subcommand AddBuildCommand(CLI::App& app) {
@@ -137,65 +203,8 @@ Subcommand AddBuildCommand(CLI::App& app) {
   build.add_option("--out", options->out, "Folder for the tables; it is created if necessary")
       ->check(FaultOfFolderName)
       ->required();
-  CLI::Option* quality =
-      build
-          .add_option(
-              "--quality", options->quality,
-              "Sizes of the tables: preview (128x32; 6x16x32x24; 28x14), standard (256x64; "
-              "8x32x64x48; 32x18) or fine (512x128; 10x48x96x64; 64x32). The sizes are those of "
-              "transmittance (mu x r), single scattering (azimuth x mu_s x mu x r) and multiple "
-              "scattering (mu_s x altitudes)")
-          ->check(CLI::IsMember({"preview", "standard", "fine"}))
-          ->capture_default_str();
-  CLI::Option* max_error =
-      build
-          .add_option(
-              "--max-error", options->max_error,
-              "Choose the number of ray nodes, the tables and the smallest sizes so that sky, "
-              "aerial perspective, twilight and irradiance stay below this relative error "
-              "(rms), like 0.5%, and print the measured errors")
-          ->check(FaultOfRelativeError)
-          ->excludes(quality);
-  build
-      .add_option(
-          "--tables", options->tables,
-          "With --max-error: smallest (least memory: a table is omitted if closed forms or a "
-          "few nodes along the ray can replace it) or all (all three tables)")
-      ->check(CLI::IsMember({"smallest", "all"}))
-      ->needs(max_error)
-      ->capture_default_str();
-  build
-      .add_flag("--single-scattering-only", options->single_scattering_only,
-                "Omit the table of multiple scattering")
-      ->excludes(max_error);
-  build
-      .add_option(
-          "--layout", options->layout,
-          "Files to write: native, or those that other programs load: bruneton (the demo of "
-          "Bruneton 2017) or takram (@takram/three-atmosphere). Both have three "
-          "wavelengths and use the preset bruneton2017 by default, the only atmosphere "
-          "that the sky of takram draws")
-      ->check(CLI::IsMember({"native", "bruneton", "takram"}))
-      ->excludes(quality)
-      ->excludes(max_error)
-      ->capture_default_str();
-  build
-      .add_option("--type", options->type,
-                  "Type of texels: float or half (default: float; half for takram)")
-      ->check(CLI::IsMember({"float", "half"}));
-  build
-      .add_option("--format", options->format,
-                  "File format: exr, bin (for half and takram) or dat (for float and bruneton) "
-                  "(default: exr; dat for bruneton)")
-      ->check(CLI::IsMember({"exr", "bin", "dat"}));
-  build
-      .add_option(
-          "--lowest-sun", options->lowest_sun_deg,
-          "Zenith angle in degrees of the lowest sun in the tables, a constant in the programs "
-          "that "
-          "load them: 102 (default of bruneton, for the demo in half precision) or 120 (takram, "
-          "and the demo of Bruneton when compiled for single precision)")
-      ->check(CLI::IsMember({102, 120}));
+  AddSizes(build, *options);
+  AddFormats(build, *options);
   BeginDiagnostics(build);
   build.parse_complete_callback([options] { CheckLayout(*options); });
   build.footer(

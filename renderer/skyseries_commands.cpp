@@ -131,6 +131,25 @@ void WriteTimes(const TimesOptions& options) {
   if (options.plot) WritePlot(options, first);
 }
 
+void AddTimesOutput(CLI::App& times, TimesOptions& options) {
+  BeginGroup(times, kOutputGroup);
+  times.add_option("--out", options.out, "CSV file with UTC instants, instead of a table")
+      ->check([](const std::string& name) { return FaultOfFileName(name, ".csv"); });
+  CLI::Option* plot =
+      times
+          .add_option(
+              "--plot", options.plot,
+              "SVG of sun, moon and light on level ground from the first noon, next to published "
+              "light levels, for the air of the scene or for clear air")
+          ->check([](const std::string& name) { return FaultOfFileName(name, ".svg"); });
+  times
+      .add_option("--minutes", options.every_min,
+                  "Time in minutes between points of the plot, 1 to 1440")
+      ->check(CLI::Range(1.0, 1440.0))
+      ->needs(plot)
+      ->capture_default_str();
+}
+
 }  // namespace
 
 std::function<void()> AddTimesCommand(CLI::App& app) {
@@ -169,22 +188,7 @@ std::function<void()> AddTimesCommand(CLI::App& app) {
   times.add_option("--days", options->days, "Number of days, 1 to 3660")
       ->check(CLI::Range(1, 3660))
       ->capture_default_str();
-  BeginGroup(times, kOutputGroup);
-  times.add_option("--out", options->out, "CSV file with UTC instants, instead of a table")
-      ->check([](const std::string& name) { return FaultOfFileName(name, ".csv"); });
-  CLI::Option* plot =
-      times
-          .add_option(
-              "--plot", options->plot,
-              "SVG of sun, moon and light on level ground from the first noon, next to published "
-              "light levels, for the air of the scene or for clear air")
-          ->check([](const std::string& name) { return FaultOfFileName(name, ".svg"); });
-  times
-      .add_option("--minutes", options->every_min,
-                  "Time in minutes between points of the plot, 1 to 1440")
-      ->check(CLI::Range(1.0, 1440.0))
-      ->needs(plot)
-      ->capture_default_str();
+  AddTimesOutput(times, *options);
   AddCommonOptions(times, "skyseries", options->common);
   times.footer(
       "Example: a year on Mount Fuji\n"
