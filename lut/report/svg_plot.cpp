@@ -108,11 +108,12 @@ std::string StyleSheet() {
          ".p text {fill:#222}\n"
          ".p .title {font-size:16px; font-weight:bold}\n"
          ".p .subtitle {font-size:12px; fill:#555}\n"
-         ".p .panel {font-size:13px; font-weight:bold}\n"
+         ".p .panel {font-size:11px; font-weight:bold}\n"
          ".p .tick {fill:#555}\n"
          ".p .axis {fill:#333; font-size:12px}\n"
          ".p text.name {font-size:12px; font-weight:bold; fill:currentColor}\n"
-         ".p text.note {font-size:9.5px; fill:currentColor}\n"
+         ".p text.note {font-size:9.5px; fill:currentColor; stroke:#fff; "
+         "stroke-width:2.5px; paint-order:stroke}\n"
          ".p .sheet {fill:#fff}\n"
          ".p .grid {stroke:#e4e4e4; stroke-width:1}\n"
          ".p .frame {stroke:#999; stroke-width:1; fill:none}\n"
@@ -126,7 +127,7 @@ std::string StyleSheet() {
          "@media (prefers-color-scheme: dark) {\n"
          ".p text {fill:#e6e6e6}\n.p .subtitle,.p .tick {fill:#aaa}\n.p .axis {fill:#ccc}\n"
          ".p .sheet {fill:#15181c}\n.p .grid {stroke:#2b3036}\n.p .frame {stroke:#666}\n"
-         ".p .faint .mark {fill:#15181c}\n" +
+         ".p .faint .mark {fill:#15181c}\n.p text.note {stroke:#15181c}\n" +
          colours(1) + "}\n</style>\n";
 }
 
