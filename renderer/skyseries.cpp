@@ -99,7 +99,7 @@ std::vector<Frame> FramesOf(const SkyseriesOptions& options, const Scene& scene,
   return FramesFromTimes(options.times, day);
 }
 
-/// What the options say about the series: read once, before anything is rendered.
+/// The options, read once into the values that a series needs, before anything is rendered.
 struct SeriesPlan {
   explicit SeriesPlan(const SkyseriesOptions& options) : SeriesPlan(options, TrackOf(options)) {}
 

@@ -260,34 +260,33 @@ constexpr std::array<RecordField, 8> kPoseFields{{{"t_s", "{:.6f}"},
                                                   {"roll", "{:.6f}"},
                                                   {"fov", "{:.6f}"}}};
 
-std::vector<RecordField> CsvFields(bool on_path) {
+/// Returns the fields that begin every manifest, and `more` after them.
+std::vector<RecordField> FirstFields(const std::vector<RecordField>& more) {
   std::vector<RecordField> fields{{"frame"},
                                   {"file"},
                                   {"utc"},
                                   {"local_time"},
                                   {"sun_azimuth_deg", "{:.4f}"},
                                   {"sun_elevation_deg", "{:.4f}"},
-                                  {"sun_covered", "{:.6f}"},
-                                  {"ev100", "{:.4f}"}};
+                                  {"sun_covered", "{:.6f}"}};
+  fields.insert(fields.end(), more.begin(), more.end());
+  return fields;
+}
+
+std::vector<RecordField> CsvFields(bool on_path) {
+  std::vector<RecordField> fields = FirstFields({{"ev100", "{:.4f}"}});
   if (on_path) fields.insert(fields.end(), kPoseFields.begin(), kPoseFields.end());
   fields.push_back({"exposure"});
   return fields;
 }
 
 std::vector<RecordField> JsonFields(bool on_path) {
-  std::vector<RecordField> fields{{"frame"},
-                                  {"file"},
-                                  {"utc"},
-                                  {"local_time"},
-                                  {"sun_azimuth_deg", "{:.4f}"},
-                                  {"sun_elevation_deg", "{:.4f}"},
-                                  {"sun_covered", "{:.6f}"},
-                                  {"moon_azimuth_deg", "{:.4f}"},
-                                  {"moon_elevation_deg", "{:.4f}"},
-                                  {"moon_illuminated", "{:.4f}"},
-                                  {"illuminance_lx", "{:.6g}"},
-                                  {"ev100", "{:.6g}"},
-                                  {"exposure"}};
+  std::vector<RecordField> fields = FirstFields({{"moon_azimuth_deg", "{:.4f}"},
+                                                 {"moon_elevation_deg", "{:.4f}"},
+                                                 {"moon_illuminated", "{:.4f}"},
+                                                 {"illuminance_lx", "{:.6g}"},
+                                                 {"ev100", "{:.6g}"},
+                                                 {"exposure"}});
   if (on_path) fields.insert(fields.end(), kPoseFields.begin(), kPoseFields.end());
   return fields;
 }

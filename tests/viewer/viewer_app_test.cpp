@@ -81,7 +81,7 @@ class ViewerAppTest : public tests::Headless {
     static_cast<void>(Fly(1));
     return frames;
   }
-  /// What keys and panels change.
+  /// The commands that keys and panels give.
   [[nodiscard]] FlightCommands& Commands() { return *deck_; }
   [[nodiscard]] std::vector<HudMessage> Messages() const { return deck_->Model().messages; }
 

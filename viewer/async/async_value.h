@@ -88,7 +88,7 @@ class AsyncValue {
     return true;
   }
   [[nodiscard]] const std::optional<Value>& value() const { return value_; }
-  /// As Update, but the caller gets the value itself, if there was one.
+  /// Updates like Update, but moves the new value, if there is one, to the caller.
   [[nodiscard]] std::optional<Value> Poll() {
     Update();
     return std::exchange(value_, std::nullopt);

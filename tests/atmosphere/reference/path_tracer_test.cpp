@@ -343,7 +343,7 @@ TEST(PathTracedStokes, AerosolAndGroundThatDepolariseLeaveScalarLight) {
   }
 }
 
-// The same air, called molecules and called small spheres.
+// One medium is described twice: as molecules and as small spheres.
 TEST(PathTracedStokes, SmallSpheresOfLorenzAndMieAreMolecules) {
   const Medium molecules = tests::WithoutAerosol(MediumPreset("bruneton2017"));
   Medium spheres = molecules;

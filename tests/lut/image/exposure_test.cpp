@@ -101,7 +101,7 @@ TEST(Exposure, ShadeOnTheGroundCounts) {
 }
 
 TEST(Exposure, LandThatGrowsDarkFasterThanTheSkyDoesNotOpenThePicture) {
-  // As from sun at -14.5 degrees to -18: half of the picture loses 2 stops, the sky a third of one.
+  // The sun falls from -14.5 to -18 degrees: half of the picture loses 2 stops, the sky a third.
   const auto sky_shown = [](float sky, float land) {
     Image image = Uniform(sky);
     FillRows(image, 0, 20, land);

@@ -202,7 +202,7 @@ void ExpectMultipleScatteringOfEveryAzimuth(const Medium& medium) {
         float brightest = 1e-12F;
         for (const float value : seen) brightest = std::max(brightest, value);
         for (std::size_t k = 0; k < nus.size(); ++k) {
-          // The same samples under this sun.
+          // These are the samples of the ray under this sun.
           RaySamples<float> lit = samples;
           for (std::size_t s = 0; s < lit.count; ++s) {
             const double r = medium.planet_radius_m / 1000.0;

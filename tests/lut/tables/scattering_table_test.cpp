@@ -97,7 +97,7 @@ TEST(ScatteringTable, InterpolationIsExactAtTheNodes) {
     for (std::size_t mu = 1; mu < kSmall.mu - 1; mu += 2) {
       for (std::size_t mu_s = 0; mu_s < kSmall.mu_s; mu_s += 3) {
         const ViewRay ray = table.RayOfTexel(2, mu_s, mu, altitude);
-        // Where nu was moved, several texels hold the same ray.
+        // Several texels hold one ray if nu was moved.
         if (std::abs(ray.nu - (2.0 * 2.0 / 5.0 - 1.0)) > 1e-15) continue;
         ++compared;
         EXPECT_TRUE(tests::BandsNear(ValuesOf(table.Lookup(ray)),

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Which effects a picture can omit: their names, the change of a picture, and the choice.
+// Effects that a picture can omit: their names, the change of a picture, and the choice.
 #include "renderer/effects/effect_choice.h"
 
 #include <gmock/gmock.h>

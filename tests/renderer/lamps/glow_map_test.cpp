@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// What a map of a lamp's glow says of slopes, against LampAirlightIrradiance.
+// Irradiance of slopes by the map of a lamp's airlight, against LampAirlightIrradiance.
 #include "renderer/lamps/ground_under_lamps.h"
 
 #include <gtest/gtest.h>

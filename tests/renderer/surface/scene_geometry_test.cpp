@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Where rays meet the ground of a scene: horizons, tabulated refracted rays, the skyline.
+// Points where rays meet the ground of a scene: horizons, tabulated refracted rays, the skyline.
 #include "renderer/surface/scene_geometry.h"
 
 #include <gtest/gtest.h>

@@ -50,7 +50,7 @@ TEST(MountainSurface, OnlyNearGroundHasGrain) {
   }
 }
 
-// Where the tree line wavers, the mean of a curve is not the curve of the mean.
+// The mean of a curve is not the curve of the mean, for example at an irregular tree line.
 TEST(MountainSurface, DetailFadesToItsMean) {
   for (const double slope_deg : {2.0, 20.0, 35.0, 50.0}) {
     for (const double altitude_m : {600.0, 1000.0, 1500.0, 1900.0, 2200.0, 2650.0}) {

@@ -33,7 +33,7 @@ inline HudModel Flying() {
   return model;
 }
 
-/// What panels changed in a frame.
+/// The changes that panels requested in a frame.
 struct Changes : RecordedCommands::Requests {
   std::optional<double> day_fraction;  // of the day that the model shows
   std::optional<AgxLook> look;

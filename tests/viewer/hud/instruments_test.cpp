@@ -118,7 +118,7 @@ TEST_F(Instruments, TheHorizonOfTheLadderLiesOnTheHorizon) {
     const double pixel_rad = 2.0 * std::tan(0.5 * model.flight.fov_rad) / kPanelWidth;
     int found = 0;
     for (const double aside : {-0.15, -0.11, 0.11, 0.15}) {
-      // Where the reference solution says that the column meets the horizontal plane.
+      // The reference solution finds where the column meets the horizontal plane.
       const int x = static_cast<int>((0.5 + aside) * kPanelWidth);
       int y = 0;
       while (y < kPanelHeight && ThroughPixel(model.flight, x + 0.5, y + 0.5).z > 0.0) ++y;

@@ -41,7 +41,7 @@ class UpscalerTest : public tests::Headless {
     }
     return {0.5F, 0.7F, 0.9F, 0.0F};
   }
-  /// Of inverse_depth.glsl.
+  /// Returns the inverse depth by the formula of inverse_depth.glsl.
   [[nodiscard]] static float InverseDepthAt(double along_view_m) {
     return static_cast<float>(100.0 / along_view_m);
   }
