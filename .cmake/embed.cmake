@@ -1,5 +1,5 @@
 # Writes OUTPUT, a C++ file that holds the text of each of FILES (paths from the folder SOURCE, separated by
-# semicolons) and alpenglow::FOLDER::EmbeddedText, which finds a text by its path. A text is cut into pieces
+# semicolons) and alpenglow::FOLDER::FindEmbeddedText, which finds a text by its path. A text is cut into pieces
 # because compilers limit the length of one literal.
 set(chunk 8000)
 set(rows "")
@@ -20,22 +20,18 @@ foreach(name IN LISTS FILES)
 endforeach()
 file(WRITE "${OUTPUT}"
 "// Written by alpenglow_embed.
-#include \"${FOLDER}/embedded_text.h\"
-
-#include <string>
 #include <string_view>
 #include <utility>
 
-#include \"atmosphere/base/error.h\"
-
 namespace alpenglow::${FOLDER} {
-std::string_view EmbeddedText(std::string_view name) {
+std::string_view FindEmbeddedText(std::string_view name);
+std::string_view FindEmbeddedText(std::string_view name) {
   static constexpr std::pair<std::string_view, std::string_view> rows[] = {
 ${rows}  };
   for (const auto& [key, text] : rows) {
     if (key == name) return text;
   }
-  throw atmosphere::InternalError(\"no embedded text \" + std::string(name));
+  return {};
 }
 }  // namespace alpenglow::${FOLDER}
 ")

@@ -25,6 +25,18 @@ set(CMAKE_EXE_LINKER_FLAGS_SANITIZE "-fsanitize=address,undefined")
 # GoogleTest take long to optimise, with sanitizers three times as long as all other code.
 set(ALPENGLOW_LITTLE_OPTIMISATION $<$<CONFIG:Release>:-O1> $<$<CONFIG:Sanitize>:-O0>)
 
+# alpenglow_precompiled: all libraries share its precompiled headers. It has no macros of one library, because
+# gcc rejects precompiled headers with other macros.
+function(alpenglow_precompiled_headers)
+  file(CONFIGURE OUTPUT ${CMAKE_BINARY_DIR}/precompiled.cpp CONTENT "")
+  add_library(alpenglow_precompiled OBJECT ${CMAKE_BINARY_DIR}/precompiled.cpp)
+  target_compile_features(alpenglow_precompiled PRIVATE cxx_std_20)
+  target_include_directories(alpenglow_precompiled PRIVATE ${PROJECT_SOURCE_DIR})
+  target_link_libraries(alpenglow_precompiled PRIVATE alpenglow_warnings glm::glm fmt::fmt TBB::tbb)
+  target_precompile_headers(alpenglow_precompiled PRIVATE <.cmake/precompiled.h>)
+endfunction()
+alpenglow_precompiled_headers()
+
 # alpenglow_library(<folder> SOURCES a.cpp ... API b.cpp ...): the sources in API implement the public headers,
 # and only they see them. They are compiled one by one, because some public types have names of a layer's types.
 function(alpenglow_library folder)
@@ -40,7 +52,7 @@ function(alpenglow_library folder)
     $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}>
     $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
   target_link_libraries(${target} PRIVATE $<BUILD_INTERFACE:alpenglow_warnings>)
-  target_precompile_headers(${target} PRIVATE <.cmake/precompiled.h>)
+  target_precompile_headers(${target} REUSE_FROM alpenglow_precompiled)
   install(TARGETS ${target} EXPORT alpenglow ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
 endfunction()
 
@@ -126,6 +138,11 @@ function(alpenglow_embed target)
   string(REPLACE alpenglow_ "" folder ${target})
   set(generated ${CMAKE_CURRENT_BINARY_DIR}/generated)
   set(output ${CMAKE_CURRENT_BINARY_DIR}/embedded_text.cpp)
+  # In an object of its own, which links to nothing. In the library itself, no source would be compiled before
+  # all libraries that it links to are complete.
+  add_library(${target}_text OBJECT ${output})
+  target_compile_features(${target}_text PRIVATE cxx_std_20)
+  target_link_libraries(${target}_text PRIVATE alpenglow_warnings)
   add_custom_command(
     OUTPUT ${output}
     COMMAND ${CMAKE_COMMAND} "-DFILES=${names}" -DSOURCE=${PROJECT_SOURCE_DIR} -DOUTPUT=${output}
@@ -135,15 +152,25 @@ function(alpenglow_embed target)
   file(CONFIGURE OUTPUT ${generated}/${folder}/embedded_text.h @ONLY CONTENT
 "// Written by alpenglow_embed: files of folder @folder@ that travel inside its library.
 #pragma once
+#include <string>
 #include <string_view>
+
+#include \"atmosphere/base/error.h\"
+
 namespace alpenglow::@folder@ {
+/// The text of a file, or a view without data for a name that was not embedded.
+std::string_view FindEmbeddedText(std::string_view name);
+
 /// The text of a file, named from the top of the tree. Throws InternalError for a name that was not
 /// embedded (CMakeLists.txt of the folder).
-std::string_view EmbeddedText(std::string_view name);
+inline std::string_view EmbeddedText(std::string_view name) {
+  const std::string_view text = FindEmbeddedText(name);
+  if (text.data() == nullptr) throw atmosphere::InternalError(\"no embedded text \" + std::string(name));
+  return text;
+}
 }  // namespace alpenglow::@folder@
 ")
-  target_sources(${target} PRIVATE ${output})
-  set_source_files_properties(${output} PROPERTIES SKIP_PRECOMPILE_HEADERS ON)
+  target_sources(${target} PRIVATE $<TARGET_OBJECTS:${target}_text>)
   target_include_directories(${target} PUBLIC $<BUILD_INTERFACE:${generated}>)
 endfunction()
 
@@ -152,7 +179,7 @@ function(alpenglow_test_headers)
   file(CONFIGURE OUTPUT ${CMAKE_CURRENT_BINARY_DIR}/test_headers.cpp CONTENT "")
   add_library(alpenglow_test_headers OBJECT ${CMAKE_CURRENT_BINARY_DIR}/test_headers.cpp)
   target_link_libraries(alpenglow_test_headers PUBLIC
-    alpenglow::renderer alpenglow_warnings GTest::gmock GTest::gtest)
+    alpenglow::renderer alpenglow_warnings TBB::tbb GTest::gmock GTest::gtest)
   target_compile_options(alpenglow_test_headers PUBLIC ${ALPENGLOW_LITTLE_OPTIMISATION})
   target_precompile_headers(alpenglow_test_headers PRIVATE
     <.cmake/precompiled.h> <gmock/gmock.h> <gtest/gtest.h>)
@@ -175,7 +202,12 @@ extern const char* const kSharedFolder = \"${PROJECT_SOURCE_DIR}/../shared\";
       string(APPEND name "${first}${rest}")
     endforeach()
     string(APPEND text "extern const char* const ${name} = \"$<TARGET_FILE:${other}>\";\n")
-    add_dependencies(${program} ${other})
+    # Only the link waits for the other program, not every source.
+    if(CMAKE_GENERATOR MATCHES "Ninja")
+      set_property(TARGET ${program} APPEND PROPERTY LINK_DEPENDS $<TARGET_FILE:${other}>)
+    else()
+      add_dependencies(${program} ${other})
+    endif()
   endforeach()
   set(places ${CMAKE_CURRENT_BINARY_DIR}/${program}_places.cpp)
   file(GENERATE OUTPUT ${places} CONTENT "${text}}  // namespace alpenglow::tests\n")
