@@ -2,7 +2,7 @@
 // Measures how the display follows the light of a day. Each minute of the day is rendered as a
 // small picture and tone-mapped by each exposure rule. Run by hand; results are in README.md.
 //
-//   day_exposure [DATE [SCENE [HEADING [FROM [TO]]]]]
+//   studies day_exposure [DATE [SCENE [HEADING [FROM [TO]]]]]
 //
 // DATE is a day in UTC (2026-06-15). SCENE is "range" (the built-in range) or "bare" (sky and sea
 // from 3000 m). HEADING is that of the view [degrees]. FROM and TO are hours of the day (0, 24).
@@ -34,6 +34,7 @@
 #include "renderer/picture/render.h"
 #include "renderer/scene/scene_options.h"
 #include "renderer/series/smooth_meter.h"
+#include "tests/bench/studies.h"
 #include "tests/fixtures/bare_scene.h"
 #include "tests/fixtures/luminance.h"
 
@@ -228,14 +229,13 @@ void Run(const std::string& date, const std::string& name, double heading,
 }  // namespace
 }  // namespace alpenglow::renderer
 
-int main(int argc, char** argv) {
+void alpenglow::tests::DayExposure(int argc, char** argv) {
   const auto argument = [&](int index, const char* otherwise) {
     return std::string(argc > index ? argv[index] : otherwise);
   };
   const auto number = [&](int index, const char* otherwise) {
     return std::atoi(argument(index, otherwise).c_str());
   };
-  alpenglow::renderer::Run(argument(1, "2026-06-15"), argument(2, "bare"), number(3, "0"),
-                           {number(4, "0"), number(5, "24")});
-  return 0;
+  renderer::Run(argument(1, "2026-06-15"), argument(2, "bare"), number(3, "0"),
+                {number(4, "0"), number(5, "24")});
 }

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: MIT
 // Measures the change of whole pictures and the time saved when effects are left out, and compares
 // both with the prediction of the preview. Run by hand; results are in README.md.
-//   effects_error [WIDTH HEIGHT [SCENE [preview]]]         preview: only the cost of the choice
+//   studies effects_error [WIDTH HEIGHT [SCENE [preview]]]         preview: only the cost of the choice
 #include <fmt/core.h>
 
 #include <cstdlib>
 #include <filesystem>
 
+#include "tests/bench/studies.h"
 #include "tests/fixtures/effect_scenes.h"
 
 namespace alpenglow::renderer {
@@ -70,7 +71,7 @@ void Measure(const EffectScene& scene, RenderSettings settings) {
 }  // namespace
 }  // namespace alpenglow::renderer
 
-int main(int argc, char** argv) {
+void alpenglow::tests::EffectsError(int argc, char** argv) {
   using namespace alpenglow::renderer;
   RenderSettings settings;
   settings.width = argc > 2 ? std::atoi(argv[1]) : 320;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Compares two sets of Bruneton's .dat files, table by table.
-//   exchange_error OURS STOCK [LOWEST_SUN]
+//   studies exchange_error OURS STOCK [LOWEST_SUN]
 // OURS is written by `skylut build --layout bruneton`, STOCK by `precompute` of his demo, both for
 // a lowest sun of 102 (default) or 120 degrees from the zenith. Differences are relative to STOCK,
 // for texels with more than a thousandth of the largest value of their row in the report.
@@ -20,6 +20,7 @@
 #include "atmosphere/math/constants.h"
 #include "lut/layer.h"
 #include "lut/tables/scattering_table.h"
+#include "tests/bench/studies.h"
 
 namespace alpenglow::lut {
 namespace {
@@ -124,16 +125,7 @@ void CompareFolders(const std::string& ours, const std::string& stock, double lo
 }  // namespace
 }  // namespace alpenglow::lut
 
-int main(int argc, char** argv) {
-  if (argc < 3) {
-    fmt::print(stderr, "exchange_error OURS STOCK [LOWEST_SUN]\n");
-    return 2;
-  }
-  try {
-    alpenglow::lut::CompareFolders(argv[1], argv[2], argc > 3 ? std::atof(argv[3]) : 102.0);
-  } catch (const std::exception& error) {
-    fmt::print(stderr, "exchange_error: {}\n", error.what());
-    return 3;
-  }
-  return 0;
+void alpenglow::tests::ExchangeError(int argc, char** argv) {
+  if (argc < 3) throw atmosphere::InputError("usage: exchange_error OURS STOCK [LOWEST_SUN]");
+  lut::CompareFolders(argv[1], argv[2], argc > 3 ? std::atof(argv[3]) : 102.0);
 }

@@ -12,6 +12,7 @@
 #include "atmosphere/astronomy/sun.h"
 #include "atmosphere/refraction/refracted_view.h"
 #include "atmosphere/refraction/refraction.h"
+#include "tests/bench/studies.h"
 #include "tests/fixtures/refracted_twilight.h"
 
 namespace {
@@ -106,7 +107,7 @@ void CompareBeam(const Medium& medium, double height_m, double apparent_deg) {
 
 }  // namespace
 
-int main() {
+void alpenglow::tests::RefractedTwilightError(int /*count*/, char** /*arguments*/) {
   const Medium medium = MediumPreset("earth", {450.0, 550.0, 650.0});
   for (const double height_m : {0.0, 3000.0, 11000.0}) {
     const RefractedTwilight twilight(medium, height_m);

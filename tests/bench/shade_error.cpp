@@ -21,6 +21,7 @@
 #include "renderer/terrain/terrain.h"
 #include "renderer/visibility/shade_map.h"
 #include "renderer/visibility/shadow_heights.h"
+#include "tests/bench/studies.h"
 #include "viewer/flight/flight.h"
 #include "viewer/gl/gl_context.h"
 #include "viewer/shade/shafts.h"
@@ -283,4 +284,4 @@ void Compare() {
 }  // namespace
 }  // namespace alpenglow::viewer
 
-int main() { alpenglow::viewer::Compare(); }
+void alpenglow::tests::ShadeError(int /*count*/, char** /*arguments*/) { viewer::Compare(); }

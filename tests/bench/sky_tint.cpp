@@ -2,7 +2,7 @@
 // Measures the green tint of the sky opposite a low sun, and its dependence on bands, ozone,
 // aerosol and ground.
 //
-//   sky_tint
+//   studies sky_tint
 //
 // The program computes colours of the clear sky from the ground, with all orders of scattering, in
 // the vertical plane of the sun on the opposite side. Each line has one kind of air and a number of
@@ -25,6 +25,7 @@
 #include "atmosphere/ray/ray.h"
 #include "atmosphere/ray/single_scattering.h"
 #include "lut/multiple_scattering/multiple_scattering.h"
+#include "tests/bench/studies.h"
 #include "tests/fixtures/sky_spectra.h"
 
 namespace alpenglow::lut {
@@ -154,7 +155,4 @@ void Run() {
 }  // namespace
 }  // namespace alpenglow::lut
 
-int main() {
-  alpenglow::lut::Run();
-  return 0;
-}
+void alpenglow::tests::SkyTint(int /*count*/, char** /*arguments*/) { lut::Run(); }

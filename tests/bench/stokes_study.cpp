@@ -2,7 +2,7 @@
 // Studies polarised light by the path tracer: its difference from the stored tables of Natraj, Li
 // and Yung (2009) and from the stored cases on the sphere (both in the shared folder that tests
 // use), the error of scalar light, the change due to aerosol that does not depolarise, and the
-// computing time. Run by hand: stokes_study [slab|sphere|aerosol|time].
+// computing time. Run by hand: studies stokes_study [slab|sphere|aerosol|time].
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -16,6 +16,7 @@
 #include "atmosphere/math/constants.h"
 #include "atmosphere/medium/phase_table.h"
 #include "atmosphere/reference/path_tracer.h"
+#include "tests/bench/studies.h"
 #include "tests/fixtures/lorenz_mie.h"
 #include "tests/fixtures/polarised_slab.h"
 #include "tests/fixtures/stored_cases.h"
@@ -257,10 +258,10 @@ void PrintTime() {
 }  // namespace
 }  // namespace alpenglow::atmosphere
 
-int main(int argc, char** argv) {
+void alpenglow::tests::StokesStudy(int argc, char** argv) {
   const std::string_view part = argc > 1 ? argv[1] : "";
-  if (part == "" || part == "slab") alpenglow::atmosphere::PrintSlab();
-  if (part == "" || part == "sphere") alpenglow::atmosphere::PrintSphere();
-  if (part == "" || part == "aerosol") alpenglow::atmosphere::PrintAerosol();
-  if (part == "" || part == "time") alpenglow::atmosphere::PrintTime();
+  if (part == "" || part == "slab") atmosphere::PrintSlab();
+  if (part == "" || part == "sphere") atmosphere::PrintSphere();
+  if (part == "" || part == "aerosol") atmosphere::PrintAerosol();
+  if (part == "" || part == "time") atmosphere::PrintTime();
 }

@@ -2,7 +2,7 @@
 // Measures the memory for a picture over a large elevation model: writes a synthetic tile, renders
 // over it with shafts, and prints the maximum resident memory. Run by hand; results are in
 // README.md.
-//   tile_memory [samples per side; default 3601 as in 1" tiles of SRTM]
+//   studies tile_memory [samples per side; default 3601 as in 1" tiles of SRTM]
 #include <fmt/core.h>
 #include <sys/resource.h>
 
@@ -18,6 +18,7 @@
 #include "atmosphere/time_place/time.h"
 #include "renderer/picture/render.h"
 #include "renderer/terrain/lattice_noise.h"
+#include "tests/bench/studies.h"
 
 namespace alpenglow::renderer {
 namespace {
@@ -45,8 +46,7 @@ double PeakMegabytes() {
   return static_cast<double>(usage.ru_maxrss) / 1024.0;
 }
 
-int Main(int argc, char** argv) {
-  const int side = argc > 1 ? std::atoi(argv[1]) : 3601;
+void Measure(int side) {
   // The name of an SRTM tile contains its position.
   const std::filesystem::path file = std::filesystem::temp_directory_path() / "N46E008.hgt";
   WriteTile(file, side);
@@ -67,10 +67,11 @@ int Main(int argc, char** argv) {
   fmt::print(
       "{0} x {0} samples: {1:.0f} MB before, {2:.0f} MB loaded, {3:.0f} MB after a picture\n", side,
       before, loaded, PeakMegabytes());
-  return 0;
 }
 
 }  // namespace
 }  // namespace alpenglow::renderer
 
-int main(int argc, char** argv) { return alpenglow::renderer::Main(argc, argv); }
+void alpenglow::tests::TileMemory(int argc, char** argv) {
+  renderer::Measure(argc > 1 ? std::atoi(argv[1]) : 3601);
+}

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Measures the errors of the tables of the viewer's air by eye, sun and quality, and the time to
-// compute them. Run by hand: viewer_error QUALITY "ALTITUDES [m]" "ELEVATIONS OF THE SUN [deg]"
+// compute them. Run by hand: studies viewer_error QUALITY "ALTITUDES [m]" "ELEVATIONS OF THE SUN [deg]"
 // MEDIUM
 #include <fmt/format.h>
 
@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "tests/bench/studies.h"
 #include "tests/lut/camera_tables/air_reference.h"
 
 namespace alpenglow::viewer {
@@ -48,7 +49,7 @@ std::vector<double> NumbersOf(const char* text) {
 }  // namespace
 }  // namespace alpenglow::viewer
 
-int main(int argc, char** argv) {
+void alpenglow::tests::ViewerError(int argc, char** argv) {
   using namespace alpenglow::viewer;
   const auto quality = static_cast<AirQuality>(argc > 1 ? std::atoi(argv[1]) : 3);
   const alpenglow::tests::LitAir air(MediumPreset(argc > 4 ? argv[4] : "earth"));

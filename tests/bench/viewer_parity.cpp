@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Compares pictures of the viewer with pictures of the renderer in fifteen views, without edges.
 // Run by hand; results are in README.md.
-//   viewer_parity FOLDER [WIDTH HEIGHT [SAMPLES [VIEWS]]]
+//   studies viewer_parity FOLDER [WIDTH HEIGHT [SAMPLES [VIEWS]]]
 // VIEWS are the numbers of the views to draw, separated by commas: 1,2,15. Both pictures and their
 // difference (white is a tenth) are written to the folder. Existing pictures of the renderer are
 // read instead of rendered.
@@ -17,6 +17,7 @@
 #include "renderer/effects/effect_choice.h"
 #include "renderer/picture/render.h"
 #include "renderer/scene/scene_options.h"
+#include "tests/bench/studies.h"
 #include "tests/fixtures/parity_views.h"
 #include "viewer/gl/gl_context.h"
 #include "viewer/passes/reference_picture.h"
@@ -99,18 +100,16 @@ void Run(const std::filesystem::path& folder, const RenderSettings& settings,
 }  // namespace
 }  // namespace alpenglow::viewer
 
-int main(int count, char** arguments) {
+void alpenglow::tests::ViewerParity(int count, char** arguments) {
   if (count < 2) {
-    fmt::print(stderr, "usage: viewer_parity FOLDER [WIDTH HEIGHT [SAMPLES [VIEWS]]]\n");
-    return 2;
+    throw atmosphere::InputError("usage: viewer_parity FOLDER [WIDTH HEIGHT [SAMPLES [VIEWS]]]");
   }
-  alpenglow::viewer::RenderSettings settings;
+  viewer::RenderSettings settings;
   settings.width = count > 3 ? std::atoi(arguments[2]) : 640;
   settings.height = count > 3 ? std::atoi(arguments[3]) : 360;
   settings.samples_per_pixel = count > 4 ? std::atoi(arguments[4]) : 64;
-  settings.filter = alpenglow::viewer::PixelFilter::Kind::kBox;
-  settings.layers = alpenglow::viewer::LayersOfEdges();
-  const alpenglow::viewer::HeadlessContext context;
-  alpenglow::viewer::Run(arguments[1], settings, count > 5 ? arguments[5] : "");
-  return 0;
+  settings.filter = viewer::PixelFilter::Kind::kBox;
+  settings.layers = viewer::LayersOfEdges();
+  const viewer::HeadlessContext context;
+  viewer::Run(arguments[1], settings, count > 5 ? arguments[5] : "");
 }
