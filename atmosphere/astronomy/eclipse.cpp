@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <glm/geometric.hpp>
 
 #include "atmosphere/astronomy/sun.h"
@@ -32,11 +33,10 @@ double RhoAt(double mu) { return std::sqrt(std::max((1.0 - mu) * (1.0 + mu), 0.0
 /// 2 rho d rho = -2 mu d mu.
 template <typename Passed>
 double LightBetween(double low, double high, double wavelength_nm, const Passed& passed) {
-  constexpr int kNodes = 32;
-  const GaussRule& rule = GaussLegendre(kNodes);
+  const GaussRule& rule = GaussLegendre(32);
   const double from = MuAt(high), width = MuAt(low) - from;
   double light = 0.0;
-  for (int i = 0; i < kNodes; ++i) {
+  for (std::size_t i = 0; i < rule.node.size(); ++i) {
     // This substitution makes the steps smaller towards both ends, where the arc cosine behaves
     // like a square root.
     const double t = rule.node[i], step = t * t * (3.0 - 2.0 * t);
