@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "atmosphere/base/error.h"
+#include "lut/api/conversions.h"
 #include "lut/image/image.h"
 #include "lut/image/look.h"
 
@@ -65,6 +66,16 @@ Developed DevelopedBy(const HdrImage& image, const DisplayOptions& options) {
 
 }  // namespace
 
+HdrImage HdrImageFrom(lut::Image image) {
+  HdrImage converted;
+  converted.width = image.width;
+  converted.height = image.height;
+  converted.rgb = std::move(image.rgb);
+  for (lut::Channel& layer : image.layers)
+    converted.layers.push_back({std::move(layer.name), std::move(layer.values)});
+  return converted;
+}
+
 void WriteExr(const std::filesystem::path& file, const HdrImage& image) {
   lut::Metadata metadata = image.metadata;
   if (image.is_panorama) metadata[kProjectionKey] = "latlong";
@@ -72,14 +83,7 @@ void WriteExr(const std::filesystem::path& file, const HdrImage& image) {
 }
 
 HdrImage ReadExr(const std::filesystem::path& file) {
-  lut::Image read = lut::ReadExr(file);
-  HdrImage image;
-  image.width = read.width;
-  image.height = read.height;
-  image.rgb = std::move(read.rgb);
-  for (lut::Channel& layer : read.layers) {
-    image.layers.push_back({std::move(layer.name), std::move(layer.values)});
-  }
+  HdrImage image = HdrImageFrom(lut::ReadExr(file));
   image.metadata = lut::ReadExrMetadata(file);
   image.is_panorama = image.metadata.contains(kProjectionKey);
   return image;

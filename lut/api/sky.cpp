@@ -9,7 +9,7 @@
 #include <glm/geometric.hpp>
 #include <utility>
 
-#include "lut/api/local_rays.h"
+#include "lut/api/conversions.h"
 #include "lut/api/sky_state.h"
 #include "lut/version.h"
 

@@ -6,6 +6,7 @@
 
 #include "atmosphere/api/conversions.h"
 #include "atmosphere/math/constants.h"
+#include "lut/api/conversions.h"
 #include "renderer/picture/picture_layers.h"
 #include "renderer/picture/render.h"
 #include "renderer/scene/scene.h"
@@ -88,14 +89,7 @@ HdrImage Scene::Render(UtcTime time, const StillOptions& options) const {
   settings.samples_per_pixel = options.samples_per_pixel;
   settings.noise = options.noise;
   settings.layers = renderer::LayersFromNames(options.layers);
-  lut::Image image = state_->renderer.Render(InstantFromTime(time), settings);
-  HdrImage still;
-  still.width = image.width;
-  still.height = image.height;
-  still.rgb = std::move(image.rgb);
-  for (lut::Channel& layer : image.layers) {
-    still.layers.push_back({std::move(layer.name), std::move(layer.values)});
-  }
+  HdrImage still = HdrImageFrom(state_->renderer.Render(InstantFromTime(time), settings));
   still.is_panorama = state_->scene.camera.IsPanorama();
   still.metadata = renderer::PictureMetadata(state_->scene, settings);
   still.metadata["alpenglow.utc"] = TextFromTime(time);

@@ -11,7 +11,7 @@
 
 #include "atmosphere/colour/spectrum.h"
 #include "atmosphere/reference/reference_solution.h"
-#include "lut/api/local_rays.h"
+#include "lut/api/conversions.h"
 #include "lut/api/sky_state.h"
 #include "lut/cli/program.h"
 

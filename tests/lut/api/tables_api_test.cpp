@@ -4,7 +4,7 @@
 #include <alpenglow/tables.h>
 #include <gtest/gtest.h>
 
-#include "lut/api/local_rays.h"
+#include "lut/api/conversions.h"
 #include "lut/api/sky_state.h"
 #include "lut/sky/panorama.h"
 #include "tests/fixtures/temporary_folder.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Rays of the public headers in the form that this layer uses.
+// Conversions between values of the public headers and those of this layer. Of a ray,
 //
 //   altitude = z + (x^2 + y^2) / (r + R + z),     r = distance from the centre of the planet
 //
@@ -7,11 +7,13 @@
 #pragma once
 
 #include <alpenglow/geometry.h>
+#include <alpenglow/image.h>
 
 #include <glm/vec3.hpp>
 #include <limits>
 
 #include "atmosphere/ray/ray.h"
+#include "lut/image/image.h"
 
 namespace alpenglow {
 
@@ -30,5 +32,8 @@ struct AltitudeAndZenith {
 [[nodiscard]] atmosphere::ViewRay RayFrom(
     const AltitudeAndZenith& eye, const glm::dvec3& view, const glm::dvec3& to_sun,
     double length_m = std::numeric_limits<double>::infinity());
+
+/// Returns the image with its layers; the metadata is empty.
+[[nodiscard]] HdrImage HdrImageFrom(lut::Image image);
 
 }  // namespace alpenglow
