@@ -72,14 +72,7 @@ struct DarkSpan {
   double begin = 0.0, end = 0.0;
 };
 
-DarkSpan DarkSpanOf(const ViewRay& ray, const RayExtent& extent, const RayEntry& entry,
-                    const Medium& medium) {
-  // If the sun is above the plane through the planet's centre at both ends, there is no shadow in
-  // between.
-  const double height = (Kilometres(medium.planet_radius_m) + entry.altitude_km) * entry.mu_s;
-  if (height > 0.0 && height + Kilometres(extent.end_m - extent.begin_m) * entry.nu > 0.0) {
-    return {};
-  }
+DarkSpan DarkSpanOf(const ViewRay& ray, const RayExtent& extent, const Medium& medium) {
   const ShadowSpan shadow = PlanetShadow(ray, extent, medium.planet_radius_m);
   if (!(shadow.dark_begin_m < shadow.dark_end_m)) return {};
   return {Kilometres(shadow.dark_begin_m - extent.begin_m),
@@ -173,7 +166,7 @@ RayPanels PanelsOf(const ViewRay& ray, const RayExtent& extent, const RayEntry& 
   const double perigee = -(radius + entry.altitude_km) * entry.mu;
   const double extinction = LargestExtinctionPerKm(medium);
   const double map = MapLengthsPerKm(medium);
-  const DarkSpan dark = DarkSpanOf(ray, extent, entry, medium);
+  const DarkSpan dark = DarkSpanOf(ray, extent, medium);
   PanelEnds cuts(length);
   if (perigee > 0.0 && perigee < length) cuts.Add(perigee);
   if (dark.begin < dark.end) {

@@ -12,6 +12,7 @@
 #include "atmosphere/math/numerics.h"
 #include "atmosphere/medium/phase_text.h"
 #include "lut/multiple_scattering/azimuth_fan.h"
+#include "lut/multiple_scattering/moment_grid.h"
 
 namespace alpenglow::lut {
 namespace {
@@ -24,8 +25,6 @@ AirRow RowAt(const AirMap& map, bool ground, double v, double range) {
   const double zenith = std::clamp(0.5 * kPi + map.horizon_dip + angle, 0.0, kPi);
   return {ground, zenith, std::cos(zenith), std::sin(zenith)};
 }
-
-double Sine(double cosine) { return std::sqrt(std::max((1.0 - cosine) * (1.0 + cosine), 0.0)); }
 
 }  // namespace
 
@@ -54,7 +53,7 @@ std::vector<double> AzimuthsOf(int columns) {
 }
 
 double SunCosineOf(const AirRow& row, double mu_s, double azimuth) {
-  return std::clamp(row.mu * mu_s + row.sine * Sine(mu_s) * std::cos(azimuth), -1.0, 1.0);
+  return std::clamp(row.mu * mu_s + row.sine * SineOf(mu_s) * std::cos(azimuth), -1.0, 1.0);
 }
 
 float AirPhases::OfMolecules(double nu) {

@@ -9,7 +9,7 @@
 #include "lut/multiple_scattering/azimuth_fan_kernel.h"
 #include "lut/multiple_scattering/moment_grid.h"
 #include "lut/multiple_scattering/spherical_harmonics.h"
-#include "lut/tables/cubic_taps.h"
+#include "lut/tables/table_axes.h"
 
 namespace alpenglow::lut {
 namespace {

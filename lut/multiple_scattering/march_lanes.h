@@ -84,21 +84,6 @@ void AddEnds(std::size_t suns, float* rows) {
   }
 }
 
-template <std::size_t kDegree>
-void Contract(const MomentGrid& grid, const MarchPoint& point, const MarchLight& light,
-              const BlockShape& shape, const float* previous, float* rows) {
-  constexpr std::size_t kPairs = kDegree / 2 + 1;
-  constexpr std::size_t kNode = kPackedRow[kDegree + 1];
-  Eight factor[4 * kNode];
-  FindFactors<kDegree, false>(point, light, shape, factor);
-  if (point.only_molecules) {
-    ContractRows<kDegree, 2, 2, kNode, kPairs>(grid, point, factor, previous, rows);
-  } else {
-    ContractRows<kDegree, 1, kDegree, kNode, kPairs>(grid, point, factor, previous, rows);
-  }
-  AddEnds<kPairs>(grid.suns, rows);
-}
-
 // Finds the tensor at every sun node times the molecules' factors: (D/10 T20, D/10 T21) and (D/10
 // T22, moment 00 Y00), in the last two vectors of each row.
 template <std::size_t kDegree>
@@ -189,37 +174,6 @@ void FindTaps(const MomentGrid& grid, const MarchDirection& direction, const Mar
   }
 }
 
-template <std::size_t kDegree>
-void ArriveOfDegree(const MomentGrid& grid, const MarchDirection& direction,
-                    const MarchPoint* points, const MarchLight* lights, std::size_t count,
-                    const BlockShape& shape, const float* previous, float* rows, float* arriving) {
-  constexpr std::size_t kPairs = kDegree / 2 + 1;
-  AzimuthTaps<kPairs> taps;
-  for (std::size_t s = 0; s < count; ++s) {
-    Contract<kDegree>(grid, points[s], lights[s], shape, previous, rows);
-    float* light = arriving;
-    for (std::size_t sun = 0; sun < grid.suns; ++sun) {
-      FindTaps<kPairs>(grid, direction, points[s], sun, taps);
-      for (std::size_t k = 0; k < direction.azimuths; ++k, light += 8) {
-        const float* row =
-            rows + static_cast<std::size_t>(static_cast<int>(taps.cell[k])) * kPairs * 8;
-        const V w0(taps.weight[0][k]), w1(taps.weight[1][k]), w2(taps.weight[2][k]),
-            w3(taps.weight[3][k]);
-        Eight sum = LoadEight(light);
-        for (std::size_t p = 0; p < kPairs; ++p) {
-          Eight there = Zero();
-          Add(there, w0, LoadEight(row + p * 8));
-          Add(there, w1, LoadEight(row + (kPairs + p) * 8));
-          Add(there, w2, LoadEight(row + (2 * kPairs + p) * 8));
-          Add(there, w3, LoadEight(row + (3 * kPairs + p) * 8));
-          Add(sum, Pair(taps.cosine[2 * p][k], taps.cosine[2 * p + 1][k]), there);
-        }
-        StoreEight(light, sum);
-      }
-    }
-  }
-}
-
 // Weights of four rows of suns, and the start of the first row.
 struct SunRows {
   const float* row;
@@ -259,35 +213,45 @@ void AddTensorLight(const MarchPoint& point, const TensorStokes<float>& stokes,
   }
 }
 
-template <std::size_t kDegree>
-void ArrivePolarisedOfDegree(const MomentGrid& grid, const MarchDirection& direction,
-                             const MarchPoint* points, const MarchLight* lights, std::size_t count,
-                             const BlockShape& shape, const float* previous, float* rows,
-                             float* arriving) {
+// Finds the source of a march point at every sun node, in rows that begin one node before the first.
+// With polarised light, the tensor provides the light of molecules in the last two vectors of a row.
+template <std::size_t kDegree, bool kPolarised, std::size_t kRow>
+void Contract(const MomentGrid& grid, const MarchPoint& point, const MarchLight& light,
+              const BlockShape& shape, const float* previous, float* rows) {
+  constexpr std::size_t kNode = PackedVectors(kDegree, kPolarised);
+  if (!kPolarised || !point.only_molecules) {
+    Eight factor[4 * kPackedRow[kDegree + 1]];
+    FindFactors<kDegree, kPolarised>(point, light, shape, factor);
+    if (point.only_molecules) {
+      ContractRows<kDegree, 2, 2, kNode, kRow>(grid, point, factor, previous, rows);
+    } else {
+      ContractRows<kDegree, 1, kDegree, kNode, kRow>(grid, point, factor, previous, rows);
+    }
+  }
+  if constexpr (kPolarised) ContractTensor<kDegree>(grid, point, light, shape, previous, rows);
+  AddEnds<kRow>(grid.suns, rows);
+}
+
+template <std::size_t kDegree, bool kPolarised>
+void ArriveOfDegree(const MomentGrid& grid, const MarchDirection& direction,
+                    const MarchPoint* points, const MarchLight* lights, std::size_t count,
+                    const BlockShape& shape, const float* previous, float* rows, float* arriving) {
   constexpr std::size_t kPairs = kDegree / 2 + 1;
-  constexpr std::size_t kRow = kPairs + 2;
+  constexpr std::size_t kRow = kPairs + (kPolarised ? 2 : 0), kStokes = kPolarised ? 3 : 1;
   AzimuthTaps<kPairs> taps;
   for (std::size_t s = 0; s < count; ++s) {
     const MarchPoint& point = points[s];
-    const std::size_t pairs = point.only_molecules ? 0 : kPairs;
-    if (!point.only_molecules) {
-      Eight factor[4 * kPackedRow[kDegree + 1]];
-      FindFactors<kDegree, true>(point, lights[s], shape, factor);
-      ContractRows<kDegree, 1, kDegree, PackedVectors(kDegree, true), kRow>(grid, point, factor,
-                                                                            previous, rows);
-    }
-    ContractTensor<kDegree>(grid, point, lights[s], shape, previous, rows);
-    AddEnds<kRow>(grid.suns, rows);
+    Contract<kDegree, kPolarised, kRow>(grid, point, lights[s], shape, previous, rows);
+    const std::size_t pairs = kPolarised && point.only_molecules ? 0 : kPairs;
     const TensorStokes<float> stokes = TensorStokesAlong<float>(point.mu, point.sine);
     float* light = arriving;
     for (std::size_t sun = 0; sun < grid.suns; ++sun) {
       FindTaps<kPairs>(grid, direction, point, sun, taps);
-      for (std::size_t k = 0; k < direction.azimuths; ++k, light += 3 * 8) {
+      for (std::size_t k = 0; k < direction.azimuths; ++k, light += kStokes * 8) {
         const std::size_t cell = static_cast<std::size_t>(static_cast<int>(taps.cell[k]));
         const SunRows at{rows + cell * kRow * 8, V(taps.weight[0][k]), V(taps.weight[1][k]),
                          V(taps.weight[2][k]), V(taps.weight[3][k])};
-        AddTensorLight<kPairs>(point, stokes, taps, k, at, light);
-        if (pairs == 0) continue;
+        if constexpr (kPolarised) AddTensorLight<kPairs>(point, stokes, taps, k, at, light);
         Eight sum = LoadEight(light);
         for (std::size_t p = 0; p < pairs; ++p)
           Add(sum, Pair(taps.cosine[2 * p][k], taps.cosine[2 * p + 1][k]),
@@ -301,18 +265,9 @@ void ArrivePolarisedOfDegree(const MomentGrid& grid, const MarchDirection& direc
 void Arrive(const MomentGrid& grid, const MarchDirection& direction, const MarchPoint* points,
             const MarchLight* lights, std::size_t count, const BlockShape& shape,
             const float* previous, float* rows, float* arriving) {
-  OfDegree(grid.degree, [&](auto degree) {
-    ArriveOfDegree<degree()>(grid, direction, points, lights, count, shape, previous, rows,
-                             arriving);
-  });
-}
-
-void ArrivePolarised(const MomentGrid& grid, const MarchDirection& direction,
-                     const MarchPoint* points, const MarchLight* lights, std::size_t count,
-                     const BlockShape& shape, const float* previous, float* rows, float* arriving) {
-  OfDegree(grid.degree, [&](auto degree) {
-    ArrivePolarisedOfDegree<degree()>(grid, direction, points, lights, count, shape, previous, rows,
-                                      arriving);
+  OfDegree(grid, [&](auto degree, auto polarised) {
+    ArriveOfDegree<degree(), polarised()>(grid, direction, points, lights, count, shape, previous,
+                                          rows, arriving);
   });
 }
 

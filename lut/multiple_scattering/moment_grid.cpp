@@ -30,6 +30,11 @@ MomentGrid GridOf(const Medium& medium, const MultipleScatteringOptions& options
   return grid;
 }
 
+DeltaScaledMedium ScatteringMedium(const Medium& medium, const MultipleScatteringOptions& options) {
+  if (options.delta_m) return WithoutPeak(medium, options.degree);
+  return {medium, {}, MieLegendreCoefficients(medium, options.degree)};
+}
+
 float TwilightOf(const MomentGrid& grid, double mu_s) {
   const double x = static_cast<double>(grid.twilight_start) - mu_s;
   const double width = static_cast<double>(grid.twilight_width);

@@ -6,11 +6,16 @@
 #include "lut/multiple_scattering/moment_kernel.h"
 #include "lut/multiple_scattering/multiple_scattering.h"
 #include "lut/multiple_scattering/polarised_scattering.h"
-#include "lut/tables/cubic_taps.h"
+#include "lut/tables/table_axes.h"
 
 namespace alpenglow::lut {
 
 [[nodiscard]] MomentGrid GridOf(const Medium& medium, const MultipleScatteringOptions& options);
+
+/// Returns the medium in which the moments are transported: without the forward peak if
+/// MultipleScatteringOptions::delta_m is set.
+[[nodiscard]] DeltaScaledMedium ScatteringMedium(const Medium& medium,
+                                                 const MultipleScatteringOptions& options);
 
 /// Returns the divisor of moments before they are interpolated between sun angles, in (0, 1].
 [[nodiscard]] float TwilightOf(const MomentGrid& grid, double mu_s);

@@ -15,7 +15,7 @@ constexpr std::size_t kChunk = BatchOf<float>::kLanes;
 struct Chunk {
   alignas(64) float altitude_cell[kChunk], sun_cell[kChunk];
   alignas(64) float altitude_weight[4][kChunk], sun_weight[4][kChunk];
-  alignas(64) float harmonic[kLargestMoments][kChunk];
+  alignas(64) float harmonic[kMaxMoments][kChunk];
 };
 
 // Returns the weights at the ends of an axis, where the node beyond the end is BeyondEnd of the
@@ -54,31 +54,6 @@ void StoreTaps(const T& position, std::size_t nodes, const T& factor, float* cel
   Lanes::Store(weight[3], w.w3 * factor);
 }
 
-constexpr double Root(double square) {
-  double root = square < 1.0 ? 1.0 : square;
-  for (double next = 0.5 * (root + square / root); next < root; next = 0.5 * (root + square / root))
-    root = next;
-  return root;
-}
-
-struct Norms {
-  float of[kLargestMoments];
-};
-
-// Returns norm_lm of the real harmonics, l major (spherical_harmonics.h).
-constexpr Norms FindNorms() {
-  Norms norms{};
-  for (std::size_t l = 0, i = 0; l <= kLargestDegree; ++l) {
-    for (std::size_t m = 0; m <= l; ++m, ++i) {
-      double square = (m == 0 ? 1.0 : 2.0) * static_cast<double>(2 * l + 1) / (4.0 * kPi);
-      for (std::size_t k = l - m + 1; k <= l + m; ++k) square /= static_cast<double>(k);
-      norms.of[i] = static_cast<float>(Root(square));
-    }
-  }
-  return norms;
-}
-constexpr Norms kNorm = FindNorms();
-
 template <std::size_t kDegree, typename T, typename Visit>
 void VisitHarmonics(const T& mu, const T& sine, const T& cosine, const Visit& visit) {
   T diagonal(1.0F), cos_before = cosine, cos_now(1.0F);  // cos((m - 1) phi), cos(m phi)
@@ -86,7 +61,7 @@ void VisitHarmonics(const T& mu, const T& sine, const T& cosine, const Visit& vi
     T lower(0.0F), value = diagonal;
     for (std::size_t l = m; l <= kDegree; ++l) {
       const std::size_t i = l * (l + 1) / 2 + m;
-      visit(i, T(T(kNorm.of[i]) * value * cos_now));
+      visit(i, T(T(kHarmonicNorm.of[i]) * value * cos_now));
       const T next =
           (T(static_cast<float>(2 * l + 1)) * mu * value - T(static_cast<float>(l + m)) * lower) *
           T(1.0F / static_cast<float>(l + 1 - m));
@@ -401,17 +376,14 @@ void InscatterOfDegree(const MomentGrid& grid, const RaySamples<float>& samples,
 
 void Inscatter(const MomentGrid& grid, const RaySamples<float>& samples, float nu,
                const MomentBlock* blocks, std::size_t count, const float* moments, float* light) {
-  OfDegree(grid.degree, [&](auto degree) {
-    if (grid.polarised) {
-      InscatterOfDegree<degree(), true>(grid, samples, nu, blocks, count, moments, light);
-    } else {
-      InscatterOfDegree<degree(), false>(grid, samples, nu, blocks, count, moments, light);
-    }
+  OfDegree(grid, [&](auto degree, auto polarised) {
+    InscatterOfDegree<degree(), polarised()>(grid, samples, nu, blocks, count, moments, light);
   });
 }
 
-// Zonal coefficients of the clamped cosine: pi, 2 pi / 3, pi / 4, 0, -pi / 24, 0, pi / 64 ...
-constexpr float kClampedCosine[kLargestDegree + 1] = {
+// 2 pi integral of max(x, 0) P_l(x) dx: factor by which a Lambertian surface convolves moments of
+// degree l (Ramamoorthi, Hanrahan 2001): pi, 2 pi / 3, pi / 4, 0, -pi / 24, 0, pi / 64 ...
+constexpr float kClampedCosine[kMaxDegree + 1] = {
     3.14159265F,    2.09439510F, 0.785398163F,  0.0F, -0.130899694F,  0.0F, 0.0490873852F, 0.0F,
     -0.0245436926F, 0.0F,        0.0143171540F, 0.0F, -0.00920388473F};
 
@@ -457,13 +429,14 @@ void IrradianceOfDegree(const MomentGrid& grid, const SurfacePoint& point, std::
   const float mu = point.normal_mu;
   const float missing = FirstMissingLegendre<kDegree>(mu);
   const float sine2 = (1.0F - mu) * (1.0F + mu);
-  float of_moment[kLargestMoments];
+  float of_moment[kMaxMoments];
   VisitHarmonics<kDegree, float>(mu, std::sqrt(sine2 > 0.0F ? sine2 : 0.0F), point.normal_azimuth,
                                  [&](std::size_t i, float y) { of_moment[i] = y; });
   Eight factor[kPackedRow[kDegree + 1]];
   for (std::size_t l = 0; l <= kDegree; ++l) {
     const std::size_t first = l * (l + 1) / 2;
-    of_moment[first] -= missing * kNorm.of[first];  // subtracts the harmonic of the vertical
+    of_moment[first] -=
+        missing * kHarmonicNorm.of[first];  // subtracts the harmonic of the vertical
     if (grid.polarised) {
       for (std::size_t m = 1; m <= l; ++m) of_moment[first + m] *= SinePower(m, point.sun_sine);
     }
@@ -492,7 +465,7 @@ void IrradianceOfDegree(const MomentGrid& grid, const SurfacePoint& point, std::
 
 void Irradiance(const MomentGrid& grid, const SurfacePoint& point, std::size_t count,
                 const float* moments, const float* sky, float* irradiance) {
-  OfDegree(grid.degree, [&](auto degree) {
+  OfDegree(grid, [&](auto degree, auto /*polarised*/) {
     IrradianceOfDegree<degree()>(grid, point, count, moments, sky, irradiance);
   });
 }
@@ -500,8 +473,7 @@ void Irradiance(const MomentGrid& grid, const SurfacePoint& point, std::size_t c
 }  // namespace
 
 const MomentKernel& KernelOf(KernelName<MomentKernel, kThisSet> /*name*/) {
-  static constexpr MomentKernel kernel{Arrive,  ArrivePolarised, Place,
-                                       Scatter, Inscatter,       Irradiance};
+  static constexpr MomentKernel kernel{Arrive, Place, Scatter, Inscatter, Irradiance};
   return kernel;
 }
 

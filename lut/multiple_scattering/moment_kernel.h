@@ -15,16 +15,15 @@
 #include "atmosphere/ray/ray.h"
 #include "atmosphere/shared_glsl/instruction_set.h"
 #include "lut/layer.h"
+#include "lut/multiple_scattering/spherical_harmonics.h"
 
 namespace alpenglow::lut {
 
 inline constexpr std::size_t kBlockBands = 4;
-inline constexpr std::size_t kLargestDegree = 12;
-inline constexpr std::size_t kLargestMoments = (kLargestDegree + 1) * (kLargestDegree + 2) / 2;
 /// Number of vectors of eight floats before row l of a node; entry [degree + 1] is the size of a
 /// whole node.
-constexpr std::size_t kPackedRow[kLargestDegree + 2] = {0,  1,  2,  4,  6,  9,  12,
-                                                        16, 20, 25, 30, 36, 42, 49};
+constexpr std::size_t kPackedRow[kMaxDegree + 2] = {0,  1,  2,  4,  6,  9,  12,
+                                                    16, 20, 25, 30, 36, 42, 49};
 
 /// An array of floats that begins at a multiple of 64 bytes.
 class AlignedFloats {
@@ -67,7 +66,7 @@ struct MarchPoint {
   std::array<float, 4> altitude_weight;
   float mu, sine, distance_km, inverse_radius;  // 1 / distance from the planet's centre [1/km]
   bool only_molecules;                          // aerosol scatters too little to matter
-  std::array<float, kLargestMoments> legendre;
+  std::array<float, kMaxMoments> legendre;
 };
 
 /// Factors of the light that a point scatters into the ray, for four bands: transmittance, weight
@@ -87,7 +86,7 @@ struct MarchDirection {
 inline constexpr std::size_t kMostAzimuths = 32;
 
 /// Legendre coefficients of the aerosol's phase function, for four bands.
-using BlockChi = std::array<std::array<float, kBlockBands>, kLargestDegree + 1>;
+using BlockChi = std::array<std::array<float, kBlockBands>, kMaxDegree + 1>;
 
 /// A block of bands in the form that look-ups need; coefficients per km.
 struct MomentBlock {
@@ -140,17 +139,13 @@ struct BlockShape {
 
 struct MomentKernel {
   /// Adds the light of the previous order that arrives along a march to arriving[((sun * azimuths)
-  /// + azimuth) * 8 + half * 4 + band]. The caller adds the two halves. `rows` is scratch space for
-  /// (suns + 2) * (degree / 2 + 3) * 8 floats. All arrays begin at multiples of 64 bytes.
+  /// + azimuth) * 8 + half * 4 + band], or, for a polarised grid, I, Q and U in the frame of
+  /// polarised_scattering.h to arriving[(((sun * azimuths) + azimuth) * 3 + stokes) * 8 + half * 4
+  /// + band]. The caller adds the two halves. `rows` is scratch space for (suns + 2) * (degree / 2 +
+  /// 3) * 8 floats. All arrays begin at multiples of 64 bytes.
   void (*arrive)(const MomentGrid& grid, const MarchDirection& direction, const MarchPoint* points,
                  const MarchLight* lights, std::size_t count, const BlockShape& shape,
                  const float* previous, float* rows, float* arriving);
-  /// Does the work of `arrive` for a polarised grid: adds I, Q and U at [(((sun * azimuths) +
-  /// azimuth) * 3 + stokes) * 8 + half * 4 + band], in the frame of polarised_scattering.h.
-  void (*arrive_polarised)(const MomentGrid& grid, const MarchDirection& direction,
-                           const MarchPoint* points, const MarchLight* lights, std::size_t count,
-                           const BlockShape& shape, const float* previous, float* rows,
-                           float* arriving);
   /// Places nodes on lit pieces.
   void (*place)(const LitPieces& pieces, const LitPoints& points);
   /// Finds the light of one band that is scattered once along lit pieces, without phase functions:

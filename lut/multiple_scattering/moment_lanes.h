@@ -150,20 +150,23 @@ T CosineOfAzimuth(const T& mu, const T& sine, const T& mu_s, const T& nu) {
   return min(max(cosine, T(-1.0F)), T(1.0F));
 }
 
-// Calls `run` with the degree as a compile-time constant.
+// Calls `run` with the degree, and with whether light is polarised, as compile-time constants.
 template <typename Run>
-void OfDegree(std::size_t degree, const Run& run) {
-  switch (degree) {
+void OfDegree(const MomentGrid& grid, const Run& run) {
+  const auto of = [&](auto degree) {
+    return grid.polarised ? run(degree, std::true_type{}) : run(degree, std::false_type{});
+  };
+  switch (grid.degree) {
     case 2:
-      return run(std::integral_constant<std::size_t, 2>{});
+      return of(std::integral_constant<std::size_t, 2>{});
     case 4:
-      return run(std::integral_constant<std::size_t, 4>{});
+      return of(std::integral_constant<std::size_t, 4>{});
     case 6:
-      return run(std::integral_constant<std::size_t, 6>{});
+      return of(std::integral_constant<std::size_t, 6>{});
     case 8:
-      return run(std::integral_constant<std::size_t, 8>{});
+      return of(std::integral_constant<std::size_t, 8>{});
     default:
-      return run(std::integral_constant<std::size_t, kLargestDegree>{});
+      return of(std::integral_constant<std::size_t, kMaxDegree>{});
   }
 }
 

@@ -179,7 +179,6 @@ struct Pieces {
 // Returns, for every ray, the parts of [begin, end] before and after the planet's shadow.
 std::array<Pieces, 2> SunlitPieces(const MomentMarches& marches, std::size_t altitude,
                                    const March& march, double begin, double end) {
-  const double r = marches.radius_km() + marches.altitude_km(altitude);
   const double h_m = marches.altitude_km(altitude) * 1000.0;
   const RayExtent extent{0.0, march.panels.back() * 1000.0, RayEnd::kSpace};
   std::array<Pieces, 2> pieces;
@@ -193,14 +192,9 @@ std::array<Pieces, 2> SunlitPieces(const MomentMarches& marches, std::size_t alt
     for (std::size_t k = 0; k < marches.azimuths(); ++k) {
       const std::size_t ray = sun * marches.azimuths() + k;
       const double nu = marches.Nu(march, sun, k);
-      // The sun's height over the plane through the planet's centre is linear along the ray.
-      const bool day =
-          marches.mu_s(sun) > 0.0 && r * marches.mu_s(sun) + march.panels.back() * nu > 0.0;
-      ShadowSpan dark{};
-      if (!day) {
-        dark = PlanetShadow({h_m, static_cast<double>(march.mu), marches.mu_s(sun), nu}, extent,
-                            marches.radius_km() * 1000.0);
-      }
+      const ShadowSpan dark =
+          PlanetShadow({h_m, static_cast<double>(march.mu), marches.mu_s(sun), nu}, extent,
+                       marches.radius_km() * 1000.0);
       if (dark.dark_begin_m >= dark.dark_end_m) {
         add(pieces[0], ray, begin, end);
       } else {

@@ -17,7 +17,7 @@ namespace alpenglow::lut {
 struct March {
   float mu = 0.0F, sine = 0.0F;
   float solid_angle = 0.0F;  // of the direction and its mirror image, per azimuth of half a turn
-  std::array<float, kLargestMoments> legendre{};
+  std::array<float, kMaxMoments> legendre{};
   std::vector<MarchPoint> points;
   std::vector<std::array<float, 6>>
       air;                     // per point: weight [km], densities, columns from the node
@@ -71,7 +71,7 @@ class MomentMarches {
   std::size_t azimuths_;
   std::vector<double> altitude_km_, mu_s_;
   std::vector<float> mu_s_floats_, sine_s_;
-  std::array<AlignedFloats, kLargestDegree + 1> azimuth_cosines_;
+  std::array<AlignedFloats, kMaxDegree + 1> azimuth_cosines_;
   std::array<AlignedFloats, 2> azimuth_sines_;
   std::vector<std::vector<March>> marches_;
 };

@@ -13,7 +13,7 @@
 #include "atmosphere/shared_glsl/instruction_set.h"
 #include "lut/multiple_scattering/moment_grid.h"
 #include "lut/multiple_scattering/successive_orders.h"
-#include "lut/tables/cubic_taps.h"
+#include "lut/tables/table_axes.h"
 
 namespace alpenglow::lut {
 
@@ -167,10 +167,7 @@ MultipleScattering::MultipleScattering(const Medium& medium,
 }
 
 std::vector<MomentBlock> MultipleScattering::BlocksOf() const {
-  const DeltaScaledMedium scattering =
-      options_.delta_m
-          ? WithoutPeak(medium_, options_.degree)
-          : DeltaScaledMedium{medium_, {}, MieLegendreCoefficients(medium_, options_.degree)};
+  const DeltaScaledMedium scattering = ScatteringMedium(medium_, options_);
   const AirConstants<float> air = SingleScattering<float>(scattering.medium).constants();
   const std::vector<double>& chi = scattering.chi;
   std::vector<MomentBlock> blocks((bands_ + kBlockBands - 1) / kBlockBands);

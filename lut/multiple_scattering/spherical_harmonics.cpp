@@ -14,35 +14,12 @@
 #include "atmosphere/medium/phase_table.h"
 
 namespace alpenglow::lut {
-namespace {
-
-struct HarmonicNorms {
-  std::array<float, kMaxMoments> norm{};
-  HarmonicNorms() {
-    std::size_t index = 0;
-    for (int l = 0; l <= kMaxDegree; ++l) {
-      for (int m = 0; m <= l; ++m, ++index) {
-        norm[index] = static_cast<float>(HarmonicNorm(l, m));
-      }
-    }
-  }
-};
-
-}  // namespace
-
 void RequireDegree(int degree) {
   if (std::find(kDegrees.begin(), kDegrees.end(), degree) == kDegrees.end())
     throw InputError(fmt::format("degree is {}; there are {}", degree, fmt::join(kDegrees, ", ")));
 }
 
-double HarmonicNorm(int l, int m) {
-  double ratio = 1.0;  // (l - m)! / (l + m)!
-  for (int k = l - m + 1; k <= l + m; ++k) ratio /= k;
-  return std::sqrt((m == 0 ? 1.0 : 2.0) * (2 * l + 1) / (4.0 * kPi) * ratio);
-}
-
 Moments LegendreTerms(int degree, float mu) {
-  static const HarmonicNorms norms;
   Moments p{};
   const float sine = std::sqrt(std::max((1.0F - mu) * (1.0F + mu), 0.0F));
   float diagonal = 1.0F;
@@ -56,7 +33,7 @@ Moments LegendreTerms(int degree, float mu) {
     }
     diagonal *= static_cast<float>(2 * m + 1) * sine;
   }
-  for (std::size_t i = 0; i < MomentCount(degree); ++i) p[i] *= norms.norm[i];
+  for (std::size_t i = 0; i < MomentCount(degree); ++i) p[i] *= kHarmonicNorm.of[i];
   return p;
 }
 

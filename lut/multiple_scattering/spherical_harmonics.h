@@ -36,24 +36,26 @@ inline constexpr std::size_t kMaxMoments = MomentCount(kMaxDegree);
 
 using Moments = std::array<float, kMaxMoments>;
 
-/// Returns norm_lm.
-[[nodiscard]] double HarmonicNorm(int l, int m);
-
-/// 2 pi integral of max(x, 0) P_l(x) dx: factor by which a Lambertian surface convolves moments of
-/// degree l (Ramamoorthi, Hanrahan 2001).
-inline constexpr std::array<double, kMaxDegree + 1> kClampedCosine{kPi,
-                                                                   2.0 * kPi / 3.0,
-                                                                   kPi / 4.0,
-                                                                   0.0,
-                                                                   -kPi / 24.0,
-                                                                   0.0,
-                                                                   kPi / 64.0,
-                                                                   0.0,
-                                                                   -kPi / 128.0,
-                                                                   0.0,
-                                                                   7.0 * kPi / 1536.0,
-                                                                   0.0,
-                                                                   -3.0 * kPi / 1024.0};
+struct HarmonicNorms {
+  float of[kMaxMoments];  // norm_lm by MomentIndex
+};
+[[nodiscard]] constexpr HarmonicNorms FindHarmonicNorms() {
+  HarmonicNorms norms{};
+  for (int l = 0; l <= kMaxDegree; ++l) {
+    for (int m = 0; m <= l; ++m) {
+      double square = (m == 0 ? 1.0 : 2.0) * (2 * l + 1) / (4.0 * kPi);
+      for (int k = l - m + 1; k <= l + m; ++k) square /= k;
+      double root = square < 1.0 ? 1.0 : square;
+      for (double next = 0.5 * (root + square / root); next < root;
+           next = 0.5 * (root + square / root))
+        root = next;
+      norms.of[MomentIndex(l, m)] = static_cast<float>(root);
+    }
+  }
+  return norms;
+}
+// The constant is not inline, so that kernels define no symbol for it.
+constexpr HarmonicNorms kHarmonicNorm = FindHarmonicNorms();
 
 /// Returns norm_lm P_l^m(mu) for l <= degree. @param mu in [-1, 1].
 [[nodiscard]] Moments LegendreTerms(int degree, float mu);

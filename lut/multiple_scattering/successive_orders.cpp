@@ -60,7 +60,7 @@ class Transport {
                Field& field) const;
 
  private:
-  using Around = std::array<Light, kLargestDegree + 1>;
+  using Around = std::array<Light, kMaxDegree + 1>;
   [[nodiscard]] bool polarised() const { return marches_.grid().polarised; }
   void ProjectMarch(const March& march, std::size_t altitude, const MarchRadiance& radiance,
                     Field& field) const;
@@ -247,15 +247,14 @@ void Transport::NextOrder(std::size_t altitude, const Field& previous, Field& ne
   const std::size_t rays = layout_.suns * marches_.azimuths();
   const std::size_t stokes = polarised() ? 3 : 1;
   const MomentKernel& kernel = Kernel<MomentKernel>();
-  const auto arrive = polarised() ? kernel.arrive_polarised : kernel.arrive;
   AlignedFloats rows((layout_.suns + 2) * (layout_.degree / 2 + 3) * 8);
   MarchRadiance radiance(rays, polarised());
   for (std::size_t i = 0; i < marches_.At(altitude).size(); ++i) {
     const March& march = marches_.At(altitude)[i];
     AlignedFloats arriving(rays * stokes * 8);
-    arrive(marches_.grid(), marches_.Direction(altitude, march), march.points.data(),
-           lights_[altitude][i].data(), march.points.size(), shape_, previous.moments.data(),
-           rows.data(), arriving.data());
+    kernel.arrive(marches_.grid(), marches_.Direction(altitude, march), march.points.data(),
+                  lights_[altitude][i].data(), march.points.size(), shape_, previous.moments.data(),
+                  rows.data(), arriving.data());
     for (std::size_t ray = 0; ray < rays; ++ray) {
       const float* halves = arriving.data() + ray * stokes * 8;
       for (int lane = 0; lane < 4; ++lane)
@@ -539,10 +538,7 @@ MultipleScatteringOptions OfLaterOrders(MultipleScatteringOptions options) {
 }  // namespace
 
 SolvedOrders SolveSuccessiveOrders(const Medium& medium, const MultipleScatteringOptions& options) {
-  const DeltaScaledMedium rest =
-      options.delta_m
-          ? WithoutPeak(medium, options.degree)
-          : DeltaScaledMedium{medium, {}, MieLegendreCoefficients(medium, options.degree)};
+  const DeltaScaledMedium rest = ScatteringMedium(medium, options);
   const SingleScattering<float> air(rest.medium);
   const MomentMarches marches(air, options, rest.chi);
   const MomentMarches later(air, OfLaterOrders(options), rest.chi);

@@ -14,7 +14,7 @@
 #include "lut/multiple_scattering/azimuth_fan.h"
 #include "lut/multiple_scattering/moment_grid.h"
 #include "lut/sky/sky_row_kernel.h"
-#include "lut/tables/cubic_taps.h"
+#include "lut/tables/table_axes.h"
 
 namespace alpenglow::lut {
 namespace {

@@ -11,7 +11,6 @@
 #include "atmosphere/base/error.h"
 #include "atmosphere/math/constants.h"
 #include "lut/cli/program.h"
-#include "lut/tables/cubic_taps.h"
 #include "lut/tables/table_axes.h"
 
 namespace alpenglow::lut {

@@ -14,7 +14,7 @@
 #include "atmosphere/math/constants.h"
 #include "atmosphere/reference/reference_solution.h"
 #include "lut/cli/program.h"
-#include "lut/tables/cubic_taps.h"
+#include "lut/tables/table_axes.h"
 #include "tests/fixtures/bands_near.h"
 #include "tests/fixtures/fault_of.h"
 #include "tests/fixtures/media.h"
