@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "lut/sky_command.h"
+#include "lut/commands.h"
 
 #include <fmt/format.h>
 
