@@ -14,7 +14,6 @@
 namespace alpenglow::lut {
 namespace {
 
-constexpr std::size_t kLanes = 4;
 constexpr int kTableCells = 4096;
 
 }  // namespace
@@ -52,96 +51,100 @@ const float* AzimuthFan::Values() const {
   return padded_.empty() ? light_.values().data() : padded_.data();
 }
 
-// Adds the light of four bands. If the medium has fewer bands left, the remaining lanes repeat its
-// last band.
-void AzimuthFan::AddBlock(const Line& line, std::size_t first_band, std::span<float> light) const {
+// Returns the light that each moment and component of the tensor at a sample sends to the eye, in
+// four bands. If the medium has fewer bands left, the remaining lanes repeat its last band.
+AzimuthFan::Factors AzimuthFan::FactorsAt(const RaySamples<float>& samples, std::size_t s,
+                                          std::size_t first_band) const {
   const Medium& medium = light_.medium();
-  const MultipleScatteringOptions& options = light_.options();
-  const RaySamples<float>& samples = line.samples;
   const std::size_t bands = light_.bands();
-  const bool polarised = medium.polarised;
+  const auto orders = static_cast<std::size_t>(light_.options().degree) + 1;
+  const Moments legendre = LegendreTerms(light_.options().degree, samples.mu[s]);
+  Factors factors;
+  for (std::size_t lane = 0; lane < kLanes; ++lane) {
+    const std::size_t band = std::min(first_band + lane, bands - 1);
+    const auto per_km = [band](const std::vector<double>& per_m) {
+      return static_cast<float>(per_m[band] * kMetresPerKilometre);
+    };
+    const float rayleigh = per_km(medium.rayleigh_scattering_per_m);
+    const float tau = rayleigh * samples.view_rayleigh[s] +
+                      per_km(medium.mie_extinction_per_m) * samples.view_mie[s] +
+                      per_km(medium.ozone_absorption_per_m) * samples.view_ozone[s];
+    const float seen = samples.weight[s] * std::exp(-tau);
+    const float molecules = seen * rayleigh * samples.rayleigh_density[s];
+    const float aerosol = seen * per_km(medium.mie_scattering_per_m) * samples.mie_density[s];
+    const float chi2 = RayleighChi2(medium, band);
+    for (std::size_t l = 0; l < orders; ++l) {
+      const float rayleigh_chi = l == 0 ? 1.0F : l == 2 && !medium.polarised ? chi2 : 0.0F;
+      const float source =
+          molecules * rayleigh_chi + aerosol * static_cast<float>(chi_mie_[l * bands + band]);
+      for (std::size_t m = 0; m <= l; ++m) {
+        const std::size_t i = l * (l + 1) / 2 + m;
+        factors[i * kLanes + lane] = source * legendre[i];
+      }
+    }
+    for (std::size_t m = 0; m < kTensorMoments; ++m) {
+      factors[(light_.moments() + m) * kLanes + lane] =
+          molecules * chi2 * legendre[MomentIndex(2, static_cast<int>(m))];
+    }
+  }
+  return factors;
+}
+
+// Finds the light of a sample per cos(m phi) at a range of sun nodes, in the rows after the first;
+// the first and the last row are those of a node beyond each end.
+void AzimuthFan::FillRows(const RaySamples<float>& samples, std::size_t s, std::size_t first_band,
+                          const SunRange& suns, float* rows) const {
+  const MultipleScatteringOptions& options = light_.options();
   const std::size_t node_floats = light_.channels() * stride_;
-  const auto suns = static_cast<std::size_t>(options.sun_angles);
-  const auto orders = static_cast<std::size_t>(options.degree) + 1;
-  const double top_km = medium.atmosphere_height_m / kMetresPerKilometre;
+  const std::size_t width = (static_cast<std::size_t>(options.degree) + 1) * kLanes;
+  const auto low = static_cast<std::size_t>(suns.low);
+  const double top_km = light_.medium().atmosphere_height_m / kMetresPerKilometre;
+  const Factors factors = FactorsAt(samples, s, first_band);
+  const CubicTaps taps = TapsAt(
+      std::sqrt(std::clamp(double{samples.altitude[s]} / top_km, 0.0, 1.0)), options.altitudes);
+  FanContraction contraction{};
+  contraction.suns = static_cast<std::size_t>(suns.high - suns.low + 1);
+  contraction.sun_stride = node_floats;
+  contraction.moment_stride = stride_;
+  contraction.degree = options.degree;
+  contraction.tensor = light_.medium().polarised ? light_.moments() : 0;
+  contraction.factors = factors.data();
+  contraction.rows = rows + width;
+  for (std::size_t a = 0; a < 4; ++a) {
+    const std::size_t node = taps.node[a] * light_.grid().suns + low;
+    contraction.weights[a] = taps.weight[a];
+    contraction.nodes[a] = Values() + node * node_floats + first_band;
+  }
+  Kernel<AzimuthFanKernel>().contract(contraction);
+  for (std::size_t sun = 0; sun < contraction.suns; ++sun) {
+    float* row = contraction.rows + sun * width;
+    for (std::size_t k = 0; k < width; ++k)
+      row[k] /= twilight_[low + sun] * SinePowerOf(light_.grid(), k / kLanes, sun_sine_[low + sun]);
+  }
+  float* after = rows + (contraction.suns + 1) * width;
+  for (std::size_t k = 0; k < width; ++k) {
+    rows[k] = shared::BeyondEnd<float>(rows[width + k], rows[2 * width + k], rows[3 * width + k]);
+    after[k] = shared::BeyondEnd<float>((after - width)[k], (after - 2 * width)[k],
+                                        (after - 3 * width)[k]);
+  }
+}
+
+// Adds the light of four bands.
+void AzimuthFan::AddBlock(const Line& line, std::size_t first_band, std::span<float> light) const {
+  const int degree = light_.options().degree, last = light_.options().sun_angles - 1;
   const AzimuthFanKernel& kernel = Kernel<AzimuthFanKernel>();
-  std::vector<float> rows((suns + 2) * orders * kLanes);
-  for (std::size_t s = 0; s < samples.count; ++s) {
-    const float* position = &line.position[s * line.directions];
+  std::vector<float> rows((light_.grid().suns + 2) * static_cast<std::size_t>(degree + 1) * kLanes);
+  for (std::size_t s = 0; s < line.samples.count; ++s) {
+    const std::size_t first = s * line.directions;
+    const float* position = &line.position[first];
     const auto [least, most] = std::minmax_element(position, position + line.directions);
-    // Range of nodes that the taps read, at least four. Node -1 and the node after the last one are
-    // added below.
-    const int low = std::clamp(static_cast<int>(*least) - 1, 0, options.sun_angles - 4);
-    const int high = std::clamp(static_cast<int>(*most) + 2, low + 3, options.sun_angles - 1);
-
-    std::array<float, (kMaxMoments + kTensorMoments) * kLanes> factors;
-    const Moments legendre = LegendreTerms(options.degree, samples.mu[s]);
-    for (std::size_t lane = 0; lane < kLanes; ++lane) {
-      const std::size_t band = std::min(first_band + lane, bands - 1);
-      const auto per_km = [band](const std::vector<double>& per_m) {
-        return static_cast<float>(per_m[band] * kMetresPerKilometre);
-      };
-      const float rayleigh = per_km(medium.rayleigh_scattering_per_m);
-      const float tau = rayleigh * samples.view_rayleigh[s] +
-                        per_km(medium.mie_extinction_per_m) * samples.view_mie[s] +
-                        per_km(medium.ozone_absorption_per_m) * samples.view_ozone[s];
-      const float seen = samples.weight[s] * std::exp(-tau);
-      const float molecules = seen * rayleigh * samples.rayleigh_density[s];
-      const float aerosol = seen * per_km(medium.mie_scattering_per_m) * samples.mie_density[s];
-      const float chi2 = RayleighChi2(medium, band);
-      for (std::size_t l = 0; l < orders; ++l) {
-        const float rayleigh_chi = l == 0 ? 1.0F : l == 2 && !polarised ? chi2 : 0.0F;
-        const float source =
-            molecules * rayleigh_chi + aerosol * static_cast<float>(chi_mie_[l * bands + band]);
-        for (std::size_t m = 0; m <= l; ++m) {
-          const std::size_t i = l * (l + 1) / 2 + m;
-          factors[i * kLanes + lane] = source * legendre[i];
-        }
-      }
-      for (std::size_t m = 0; m < kTensorMoments; ++m) {
-        factors[(light_.moments() + m) * kLanes + lane] =
-            molecules * chi2 * legendre[MomentIndex(2, static_cast<int>(m))];
-      }
-    }
-
-    const CubicTaps taps = TapsAt(
-        std::sqrt(std::clamp(double{samples.altitude[s]} / top_km, 0.0, 1.0)), options.altitudes);
-    FanContraction contraction{};
-    contraction.suns = static_cast<std::size_t>(high - low + 1);
-    contraction.sun_stride = node_floats;
-    contraction.moment_stride = stride_;
-    contraction.degree = options.degree;
-    contraction.tensor = polarised ? light_.moments() : 0;
-    contraction.factors = factors.data();
-    contraction.rows = &rows[orders * kLanes];
-    for (std::size_t a = 0; a < 4; ++a) {
-      contraction.weights[a] = taps.weight[a];
-      contraction.nodes[a] = Values() +
-                             (taps.node[a] * suns + static_cast<std::size_t>(low)) * node_floats +
-                             first_band;
-    }
-    kernel.contract(contraction);
-    for (std::size_t sun = 0; sun < contraction.suns; ++sun) {
-      const float twilight = twilight_[static_cast<std::size_t>(low) + sun];
-      const float sine = sun_sine_[static_cast<std::size_t>(low) + sun];
-      float* row = contraction.rows + sun * orders * kLanes;
-      for (std::size_t k = 0; k < orders * kLanes; ++k)
-        row[k] /= twilight * SinePowerOf(light_.grid(), k / kLanes, sine);
-    }
-
-    const std::size_t width = orders * kLanes;
-    float* before = rows.data();
-    float* after = &rows[(contraction.suns + 1) * width];
-    for (std::size_t k = 0; k < width; ++k) {
-      before[k] =
-          shared::BeyondEnd<float>(before[width + k], before[2 * width + k], before[3 * width + k]);
-      after[k] = shared::BeyondEnd<float>((after - width)[k], (after - 2 * width)[k],
-                                          (after - 3 * width)[k]);
-    }
-    kernel.gather({line.directions, position, &line.twilight[s * line.directions],
-                   &line.cosine[s * line.directions],
-                   polarised ? &line.sun_sine[s * line.directions] : nullptr, low - 1,
-                   high - low + 3, options.degree, rows.data(), light.data()});
+    // Range of nodes that the taps read, at least four, before a node is added at each end.
+    const int low = std::clamp(static_cast<int>(*least) - 1, 0, last - 3);
+    const SunRange suns{low, std::clamp(static_cast<int>(*most) + 2, low + 3, last)};
+    FillRows(line.samples, s, first_band, suns, rows.data());
+    kernel.gather({line.directions, position, &line.twilight[first], &line.cosine[first],
+                   line.sun_sine.empty() ? nullptr : &line.sun_sine[first], suns.low - 1,
+                   suns.high - suns.low + 3, degree, rows.data(), light.data()});
   }
 }
 

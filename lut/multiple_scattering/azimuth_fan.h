@@ -8,6 +8,7 @@
 // angle.
 #pragma once
 
+#include <array>
 #include <span>
 #include <vector>
 
@@ -37,6 +38,16 @@ class AzimuthFan {
 
  private:
   struct Line;
+  static constexpr std::size_t kLanes = 4;
+  using Factors = std::array<float, (kMaxMoments + kTensorMoments) * kLanes>;
+  /// Nodes of the sun's angle from the first to the last.
+  struct SunRange {
+    int low, high;
+  };
+  [[nodiscard]] Factors FactorsAt(const RaySamples<float>& samples, std::size_t s,
+                                  std::size_t first_band) const;
+  void FillRows(const RaySamples<float>& samples, std::size_t s, std::size_t first_band,
+                const SunRange& suns, float* rows) const;
   void AddBlock(const Line& line, std::size_t first_band, std::span<float> light) const;
   [[nodiscard]] const float* Values() const;
 
