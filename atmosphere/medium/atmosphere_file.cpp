@@ -62,6 +62,15 @@ void RequireOneOf(const TomlTable& table, const Names& keys) {
   }
 }
 
+void RequireNameIn(const TomlTable& table, const std::string& key, const std::string& name,
+                   const Names& names) {
+  if (std::find(names.begin(), names.end(), name) != names.end()) return;
+  const auto nearest = NearestName(name, names);
+  table.Fail(
+      key, fmt::format("{} is \"{}\"; it must be one of {}{}", table.FullName(key), name,
+                       fmt::join(names, ", "), nearest ? "; did you mean " + *nearest + "?" : ""));
+}
+
 void ReadNumber(const TomlTable& table, const std::string& key, const Range& range,
                 double& target) {
   if (const auto number = table.Number(key, range.low, range.high)) target = *number;
@@ -106,13 +115,7 @@ class AtmosphereFile {
   static std::string PresetOf(const TomlTable& root) {
     root.AllowOnly(kSections);
     const std::string preset = root.Text("preset").value_or("earth");
-    const Names names = MediumPresetNames();
-    if (std::find(names.begin(), names.end(), preset) == names.end()) {
-      const auto nearest = NearestName(preset, names);
-      root.Fail("preset", fmt::format("preset is \"{}\"; it must be one of {}{}", preset,
-                                      fmt::join(names, ", "),
-                                      nearest ? "; did you mean " + *nearest + "?" : ""));
-    }
+    RequireNameIn(root, "preset", preset, MediumPresetNames());
     return preset;
   }
 
@@ -442,13 +445,7 @@ class AtmosphereFile {
   // gives one.
   void ReadMixture(const std::string& name, Medium& medium) const {
     const TomlTable& table = *aerosol_;
-    const Names names = AerosolMixtureNames();
-    if (std::find(names.begin(), names.end(), name) == names.end()) {
-      const auto nearest = NearestName(name, names);
-      table.Fail("mixture", fmt::format("aerosol.mixture is \"{}\"; it must be one of {}{}", name,
-                                        fmt::join(names, ", "),
-                                        nearest ? "; did you mean " + *nearest + "?" : ""));
-    }
+    RequireNameIn(table, "mixture", name, AerosolMixtureNames());
     if (table.Has("angstrom_exponent")) {
       table.Fail("angstrom_exponent",
                  "aerosol.angstrom_exponent has no effect: the mixture has a spectrum of its own");

@@ -299,16 +299,6 @@ std::optional<std::string> PresetOf(const Medium& medium) {
   return std::nullopt;
 }
 
-/// Interpolates linearly between wavelengths, constant beyond them.
-double Interpolated(const std::vector<double>& nm, const std::vector<double>& values, double at) {
-  const auto above = std::upper_bound(nm.begin(), nm.end(), at);
-  if (above == nm.begin()) return values.front();
-  if (above == nm.end()) return values.back();
-  const auto i = static_cast<std::size_t>(above - nm.begin());
-  const double share = (at - nm[i - 1]) / (nm[i] - nm[i - 1]);
-  return values[i - 1] + share * (values[i] - values[i - 1]);
-}
-
 /// Returns the ratios of a medium to its preset; std::nullopt if the preset is zero and the medium
 /// is not.
 std::optional<std::vector<double>> Factors(const std::vector<double>& medium,
@@ -327,9 +317,9 @@ std::vector<double> DepolarisationAt(const Medium& medium, const std::string& pr
   const std::vector<double>& here = medium.rayleigh_depolarisation;
   if (here == GasDepolarisation(preset, medium.wavelengths_nm))
     return GasDepolarisation(preset, wavelengths_nm);
+  const SampledFunction at(medium.wavelengths_nm, here);
   std::vector<double> there;
-  for (const double nm : wavelengths_nm)
-    there.push_back(Interpolated(medium.wavelengths_nm, here, nm));
+  for (const double nm : wavelengths_nm) there.push_back(at(nm));
   return there;
 }
 
@@ -353,10 +343,10 @@ std::optional<Medium> OnBands(const Medium& medium, int bands) {
   for (const Row row : kRows) {
     const auto factors = Factors(medium.*row, here.*row);
     if (!factors) return std::nullopt;
+    const SampledFunction factor(medium.wavelengths_nm, *factors);
     result.*row = there.*row;
-    for (std::size_t i = 0; i < there.wavelengths_nm.size(); ++i) {
-      (result.*row)[i] *= Interpolated(medium.wavelengths_nm, *factors, there.wavelengths_nm[i]);
-    }
+    for (std::size_t i = 0; i < there.wavelengths_nm.size(); ++i)
+      (result.*row)[i] *= factor(there.wavelengths_nm[i]);
   }
   return result;
 }

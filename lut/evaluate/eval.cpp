@@ -265,14 +265,17 @@ class TableEvaluator final : public Evaluator {
   [[nodiscard]] Estimates Evaluate(const Case& work) const override {
     Estimates result = integral_->Evaluate(work);
     if (NeedsPolarisedLight(work.quantity)) return WithValues(std::move(result), Stokes(work));
-    const Bands<float> found = LookUp(work.quantity, work.ray);
-    Estimates values(found.count);
-    for (std::size_t band = 0; band < found.count; ++band)
-      values[band].value = static_cast<double>(found[band]);
-    return WithValues(std::move(result), values);
+    return WithValues(std::move(result), ValuesOf(LookUp(work.quantity, work.ray)));
   }
 
  private:
+  [[nodiscard]] static Estimates ValuesOf(const Bands<float>& bands) {
+    Estimates values(bands.count);
+    for (std::size_t band = 0; band < bands.count; ++band)
+      values[band].value = static_cast<double>(bands[band]);
+    return values;
+  }
+
   // Replaces the values of the integral and increases its error by the difference.
   [[nodiscard]] static Estimates WithValues(Estimates integral, const Estimates& values) {
     for (std::size_t band = 0; band < values.size(); ++band) {
@@ -284,13 +287,7 @@ class TableEvaluator final : public Evaluator {
 
   [[nodiscard]] Estimates Stokes(const Case& work) const {
     const PolarisedLight light = tables_.PolarisationOfAllOrders(work.ray);
-    const auto of = [](const Bands<float>& bands) {
-      Estimates values(bands.count);
-      for (std::size_t band = 0; band < bands.count; ++band)
-        values[band].value = static_cast<double>(bands[band]);
-      return values;
-    };
-    return StokesOf(work, of(light.q), of(light.u));
+    return StokesOf(work, ValuesOf(light.q), ValuesOf(light.u));
   }
 
   [[nodiscard]] Bands<float> LookUp(Quantity quantity, const ViewRay& ray) const {

@@ -50,6 +50,12 @@ double HigherOrders(double chi, double y) {
   return (std::exp((chi - 1.0) * y) - std::exp(-y)) / y - chi * std::exp(-y);
 }
 
+// Returns the columns on the path of sunlight that is scattered once at a sample.
+ColumnSet<float> FromSunToEye(const RaySamples<float>& samples, std::size_t i) {
+  return {samples.view_rayleigh[i] + samples.sun_rayleigh[i],
+          samples.view_mie[i] + samples.sun_mie[i], samples.view_ozone[i] + samples.sun_ozone[i]};
+}
+
 // Returns exp(-depth) (exp(peak) - 1) for peak < depth without cancellation or overflow.
 float Gain(float peak, float depth) {
   if (peak < 1.0F) return std::exp(-depth) * std::expm1(peak);
@@ -236,10 +242,7 @@ float DeltaM::SumAlong(std::size_t band, const RaySamples<float>& samples, doubl
     const float lit = samples.weight[i] * samples.lit[i];
     if (!(lit > 0.0F)) continue;
     const float y = mie * (samples.sun_mie[i] + samples.view_mie[i]);
-    const float depth =
-        OpticalDepthOf(ExtinctionAt(air, band), {samples.view_rayleigh[i] + samples.sun_rayleigh[i],
-                                                 samples.view_mie[i] + samples.sun_mie[i],
-                                                 samples.view_ozone[i] + samples.sun_ozone[i]});
+    const float depth = OpticalDepthOf(ExtinctionAt(air, band), FromSunToEye(samples, i));
     const float of_gas = gas * samples.rayleigh_density[i];
     const float of_aerosol = mie * samples.mie_density[i];
     sum += lit * formula(y + ahead, depth, of_gas, of_aerosol);
@@ -328,10 +331,7 @@ double TruncationError::AlongBand(const AirConstants<float>& air, std::size_t ba
   if (scattering == 0.0) return 0.0;
   double sum = 0.0, envelope = 0.0;
   for (std::size_t i = 0; i < samples.count; ++i) {
-    const float depth =
-        OpticalDepthOf(ExtinctionAt(air, band), {samples.view_rayleigh[i] + samples.sun_rayleigh[i],
-                                                 samples.view_mie[i] + samples.sun_mie[i],
-                                                 samples.view_ozone[i] + samples.sun_ozone[i]});
+    const float depth = OpticalDepthOf(ExtinctionAt(air, band), FromSunToEye(samples, i));
     const double light = static_cast<double>(samples.weight[i] * samples.lit[i] *
                                              samples.mie_density[i] * std::exp(-depth)) *
                          scattering;

@@ -445,12 +445,7 @@ std::string PageOf(const Report& report) {
 }
 
 void WriteReport(const Report& report, const fs::path& folder) {
-  std::error_code error;
-  fs::create_directories(folder, error);
-  if (error || !fs::is_directory(folder, error)) {
-    throw OutputError(fmt::format("{}: no such folder can be made: {}", folder.string(),
-                                  error ? error.message() : "it is a file"));
-  }
+  MakeFolder(folder);
   std::map<std::string, std::string> tables;
   for (const ReportTopic& topic : report.topics) {
     std::string& table = tables.try_emplace(topic.key, CsvHeader()).first->second;
