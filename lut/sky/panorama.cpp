@@ -191,6 +191,9 @@ std::vector<DiskPiece> PiecesOfDisk(const PanoramaGrid& grid, const PanoramaSun&
   for (int y = row_of(zenith - radius); y <= row_of(zenith + radius); ++y) {
     for (int j = 0; j < down; ++j) {
       const double angle = grid.ZenithAngle(y + (j + 0.5) / down);
+      // Rows of parts above and below the disk hold none of it; the margin exceeds the rounding of
+      // rho. Without this, the work for a small picture is that of a large one.
+      if (std::abs(angle - zenith) > radius * (1.0 + 1e-9)) continue;
       for (int x = 0; x < grid.width; ++x) {
         const double middle = grid.Azimuth(x + 0.5) - sun.azimuth_rad;
         const double reach = std::sin(angle) * std::sin(zenith);
