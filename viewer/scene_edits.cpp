@@ -9,10 +9,10 @@
 #include <utility>
 
 #include "atmosphere/base/error.h"
+#include "renderer/procedural_mountains/procedural_mountains.h"
 #include "renderer/scene/places.h"
 #include "renderer/scene/scene_options.h"
 #include "renderer/terrain/loaded_heights.h"
-#include "renderer/terrain/procedural_mountains.h"
 #include "viewer/shaders/pass_setup.h"
 
 namespace alpenglow::viewer {

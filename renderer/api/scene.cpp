@@ -9,10 +9,10 @@
 #include "lut/api/conversions.h"
 #include "renderer/picture/picture_layers.h"
 #include "renderer/picture/render.h"
+#include "renderer/procedural_mountains/procedural_mountains.h"
 #include "renderer/scene/scene.h"
 #include "renderer/scene/scene_options.h"
 #include "renderer/series/manifest.h"
-#include "renderer/terrain/procedural_mountains.h"
 
 namespace alpenglow {
 

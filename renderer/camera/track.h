@@ -1,5 +1,19 @@
 // SPDX-License-Identifier: MIT
-// This header turns a track into the path of a camera that looks along it.
+// This header turns recorded or drawn tracks into camera paths.
+//
+// ReadTrack reads GPX 1.0 and 1.1 (topografix.com) and KML 2.2 (OGC 07-147r2) files.
+//
+// From a GPX file it reads all segments of its tracks, in the order of their times; without tracks
+// the first route, and without routes the waypoints. From a KML file it reads all gx:Tracks in the
+// order of their times, or else the first LineString. For incomplete and implausible points, see
+// TrackOf. Heights are above sea level, which is assumed to be the ellipsoid (within 110 m of it).
+//
+// TrackOf turns the raw points of a recorder, with lost fixes and implausible values, into a track.
+// A recorder that has just been switched on may lack a height or a fix, or show a wrong year, while
+// its other points are good. Missing values of a point are interpolated from its neighbours, and
+// impossible points are dropped. The track's note counts both.
+//
+// PathAlong turns a track into the path of a camera that looks along it.
 //
 //   bank = atan(v psi' / g), to 35 degrees           psi' is the turn of the path per second
 //
@@ -11,10 +25,68 @@
 // receivers that record seldom). The bank is smoothed over 4 s too.
 #pragma once
 
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "atmosphere/time_place/geodesy.h"
+#include "atmosphere/time_place/time.h"
 #include "renderer/camera/camera_path.h"
-#include "renderer/camera/track_file.h"
+#include "renderer/layer.h"
 
 namespace alpenglow::renderer {
+
+struct TrackPoint {
+  GeodeticPosition place;  // its height is 0 if unknown
+  std::optional<UtcInstant> utc = {};
+  int segment = 0;  // the path between points of different segments is unknown
+};
+
+/// Reference surface of a track's heights. kOnGround: heights are ignored (KML's clampToGround, and
+/// points without a height).
+enum class TrackHeights { kSea, kOverGround, kOnGround };
+
+struct Track {
+  std::string name;  // empty if it has none
+  TrackHeights heights = TrackHeights::kSea;
+  std::vector<TrackPoint> points;
+  std::string file = {};  // the file that was read
+  std::string note = {};  // one line about points that were dropped or completed; may be empty
+};
+
+/// Reads a track. A KML line without altitudeMode inherits it from the enclosing MultiTrack or
+/// other element. Throws InputError "file:line: ..." for invalid XML, for UTF-16, for files that
+/// are neither GPX nor KML, for files without points, for an invalid latitude, longitude, height or
+/// time (empty values and nan count as missing), and for lines of different altitudeModes. Throws
+/// InputError without a line number for a file that cannot be read or exceeds 16 MiB.
+[[nodiscard]] Track ReadTrack(const std::filesystem::path& file);
+
+struct RecordedPoint {
+  std::optional<GeodeticPosition> place;  // height 0; empty: the fix was lost
+  std::optional<double> height_m;
+  std::optional<UtcInstant> utc;
+};
+
+/// Consecutive points without a gap.
+using RecordedSegment = std::vector<RecordedPoint>;
+
+/// Returns the points in the order of their times, segment by segment. A segment whose times run
+/// backwards is reversed. If only some segments have times, the order of the file is kept.
+///
+/// - A point without a place is dropped.
+/// - A missing height is interpolated along the path. Beyond the first and the last known height,
+///   it continues with the slope of the adjacent step for the length of that step, then level. A
+///   track above sea level without any height is placed on the ground.
+/// - A point whose time is not after the times before it and before the times after it is dropped,
+///   with as few drops as possible. A first or last point is also dropped if its distance in time
+///   to the rest exceeds both a day and a hundred times the duration of the rest. Points with the
+///   place and time of the previous point are skipped.
+/// - A missing time is interpolated along the path. Before the first and after the last time, the
+///   speed is that of the adjacent step. If fewer than two points have a time, the track has none.
+///
+/// The note of the track counts all these changes in one line.
+[[nodiscard]] Track TrackOf(const std::vector<RecordedSegment>& segments, TrackHeights heights);
 
 struct TrackStyle {
   double speed_m_per_s = 60.0;   // for a track without times

@@ -25,11 +25,11 @@
 #include <span>
 #include <vector>
 
+#include "renderer/elevation/mesh.h"
 #include "renderer/illumination/occluded_sky.h"
 #include "renderer/material/band_light.h"
 #include "renderer/material/reflectance.h"
 #include "renderer/surface/scene_ground.h"
-#include "renderer/terrain/mesh.h"
 #include "renderer/visibility/horizon_map.h"
 
 namespace alpenglow::renderer {

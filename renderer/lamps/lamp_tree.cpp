@@ -21,14 +21,14 @@ namespace {
 
 constexpr int kDistances = 16;
 constexpr double kNearest_m = 0.2;
-constexpr double kFarthestGlow_m = 2e4;
+constexpr double kFarthestLamp_m = 2e4;
 constexpr double kDarkest = 1e-250;  // lower limit of values in logarithms
 /// Sines of the lamp's elevation, dense near 0, where distant lamps on the ground are.
 constexpr std::array<double, 9> kSines{-1.0, -0.6, -0.2, -0.04, 0.0, 0.04, 0.2, 0.6, 1.0};
 constexpr int kElevations = static_cast<int>(kSines.size());
 
 double DistanceNumber(int i) {
-  return kNearest_m * std::pow(kFarthestGlow_m / kNearest_m, i / (kDistances - 1.0));
+  return kNearest_m * std::pow(kFarthestLamp_m / kNearest_m, i / (kDistances - 1.0));
 }
 
 /// Returns the moments of the clamped cosine over those of Y_l0, so that E = sum of A_l L_lm Y_lm.
@@ -54,7 +54,7 @@ double LobeOf(int l) {
 struct Around {
   double alpha, turn, weight;
 };
-const std::vector<Around>& Directions() {
+const std::vector<Around>& DirectionsAround() {
   static const auto kDirections = [] {
     constexpr std::array<double, 6> kCuts{0.0, 0.05, 0.2, 0.6, 1.3, kPi};
     constexpr int kTurns = 8;
@@ -138,7 +138,7 @@ std::vector<LampAirlightIrradiance::Light> LampAirlightIrradiance::LightAt(doubl
   const std::size_t bands = air_.bands();
   std::vector<std::array<double, kMaxMoments>> sums(bands);
   std::vector<double> on_level(bands);
-  for (const Around& around : Directions()) {
+  for (const Around& around : DirectionsAround()) {
     LampSegment segment;
     segment.origin_m = point;
     segment.direction =
@@ -177,12 +177,12 @@ std::vector<LampAirlightIrradiance::Light> LampAirlightIrradiance::LightAt(doubl
 Bands<double> LampAirlightIrradiance::On(const glm::dvec3& to_lamp, const glm::dvec3& normal,
                                          const glm::dvec3& up) const {
   const double length = std::max(glm::length(to_lamp), 1e-6);
-  const double distance = std::clamp(length, kNearest_m, kFarthestGlow_m);
+  const double distance = std::clamp(length, kNearest_m, kFarthestLamp_m);
   const glm::dvec3 towards = to_lamp / length;
   const double sine = std::clamp(glm::dot(towards, up), -1.0, 1.0);
   const Moments harmonics = HarmonicsOf(normal, towards, up - sine * towards);
   const double u =
-      std::log(distance / kNearest_m) / std::log(kFarthestGlow_m / kNearest_m) * (kDistances - 1.0);
+      std::log(distance / kNearest_m) / std::log(kFarthestLamp_m / kNearest_m) * (kDistances - 1.0);
   const int low = std::min(static_cast<int>(u), kDistances - 2);
   const GlowPlace elevation = GlowPlaceOf(sine);
   const double upwards = std::max(glm::dot(normal, up), 0.0);

@@ -11,6 +11,7 @@
 
 #include "atmosphere/base/error.h"
 #include "atmosphere/colour/spectrum.h"
+#include "renderer/scene/volume_file.h"
 #include "renderer/surface/scene_geometry.h"
 
 namespace alpenglow::renderer {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "renderer/media/media_march.h"
+#include "renderer/media/media_light.h"
 
 #include <algorithm>
 #include <array>
@@ -293,6 +293,77 @@ MarchedLight MarchMedia(const LocalMedia& media, const glm::dvec3& origin,
                         const glm::dvec3& direction, double length_m, const MediaSource& source,
                         double tolerance, std::span<const double> cuts_m) {
   return March(media, origin, direction, length_m, source, tolerance, cuts_m).Run();
+}
+
+namespace {
+
+/// A stretch of media within which light is assumed to increase linearly.
+struct Stretch {
+  double begin_m, end_m;
+  BandLight first, last, weighted;  // transmittance at the ends; its integral
+};
+
+void Extend(const MarchedPiece& piece, Behind behind, std::vector<Stretch>& stretches) {
+  constexpr float kMostFall = 0.15F;
+  const bool without_fog = behind == Behind::kVolumes;
+  const BandLight& after = without_fog ? piece.past_volumes : piece.transmittance;
+  const BandLight& mean = without_fog ? piece.mean_past_volumes : piece.mean_transmittance;
+  const auto length = static_cast<float>(piece.end_m - piece.begin_m);
+  if (!stretches.empty()) {
+    Stretch& open = stretches.back();
+    const double gap = piece.begin_m - open.end_m;
+    if (gap <= 0.1 * (open.end_m - open.begin_m)) {
+      float fall = 0.0F;
+      for (std::size_t band = 0; band < after.count; ++band) {
+        fall = std::max(fall, open.first[band] - after[band]);
+      }
+      if (fall <= kMostFall) {
+        open.weighted = open.weighted + static_cast<float>(gap) * open.last + length * mean;
+        open.last = after;
+        open.end_m = piece.end_m;
+        return;
+      }
+    }
+  }
+  BandLight first(after.count);
+  std::fill_n(first.value.begin(), first.count, 1.0F);
+  if (!stretches.empty()) first = stretches.back().last;
+  stretches.push_back({piece.begin_m, piece.end_m, first, after, length * mean});
+}
+
+}  // namespace
+
+BandLight DimmedByMedia(const std::vector<MarchedPiece>& pieces,
+                        const std::function<BandLight(double)>& upto, const BandLight& whole,
+                        Behind behind) {
+  std::vector<Stretch> stretches;
+  for (const MarchedPiece& piece : pieces) Extend(piece, behind, stretches);
+  if (stretches.empty()) return whole;
+  BandLight sum(whole.count), before(whole.count);
+  const auto add = [&](const BandLight& factor, const BandLight& reached) {
+    for (std::size_t band = 0; band < sum.count; ++band) {
+      sum[band] += factor[band] * std::max(reached[band] - before[band], 0.0F);
+      before[band] = std::max(before[band], reached[band]);
+    }
+  };
+  for (const Stretch& stretch : stretches) {
+    if (stretch.begin_m > 0.0) add(stretch.first, upto(stretch.begin_m));
+    const auto length = static_cast<float>(stretch.end_m - stretch.begin_m);
+    add((1.0F / length) * stretch.weighted, upto(stretch.end_m));
+  }
+  add(stretches.back().last, whole);
+  return sum;
+}
+
+BandLight LeftByVolumes(const std::vector<MarchedPiece>& pieces, double distance_m,
+                        std::size_t bands) {
+  BandLight left(bands);
+  std::fill_n(left.value.begin(), bands, 1.0F);
+  for (const MarchedPiece& piece : pieces) {
+    if (piece.begin_m >= distance_m) break;
+    left = piece.past_volumes;
+  }
+  return left;
 }
 
 }  // namespace alpenglow::renderer

@@ -9,7 +9,6 @@
 #include <optional>
 
 #include "renderer/illumination/lighting.h"
-#include "renderer/illumination/picture_stokes.h"
 #include "renderer/illumination/terrain_irradiance.h"
 #include "renderer/lamps/lamp_light.h"
 #include "renderer/material/band_light.h"

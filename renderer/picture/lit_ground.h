@@ -23,6 +23,7 @@
 #include <span>
 #include <vector>
 
+#include "renderer/elevation/mesh.h"
 #include "renderer/illumination/lighting.h"
 #include "renderer/illumination/terrain_irradiance.h"
 #include "renderer/lamps/lamp_light.h"
@@ -32,7 +33,6 @@
 #include "renderer/surface/scene_geometry.h"
 #include "renderer/surface/scene_ground.h"
 #include "renderer/surface/surface.h"
-#include "renderer/terrain/mesh.h"
 #include "renderer/visibility/shadow_heights.h"
 
 namespace alpenglow::renderer {

@@ -19,7 +19,6 @@
 
 #include "atmosphere/colour/spectrum.h"
 #include "lut/image/image.h"
-#include "renderer/illumination/picture_stokes.h"
 #include "renderer/material/band_light.h"
 #include "renderer/surface/scene_geometry.h"
 

@@ -9,8 +9,8 @@
 #include "atmosphere/astronomy/moon.h"
 #include "atmosphere/astronomy/sun.h"
 #include "atmosphere/math/constants.h"
+#include "renderer/picture/frame_context.h"
 #include "renderer/picture/ground_light.h"
-#include "renderer/picture/refracted_view_rays.h"
 
 namespace alpenglow::renderer {
 namespace {

@@ -2,9 +2,13 @@
 #include "renderer/picture/prepared_scene.h"
 
 #include <algorithm>
+#include <cmath>
+#include <glm/geometric.hpp>
 #include <utility>
 #include <vector>
 
+#include "atmosphere/astronomy/ephemeris.h"
+#include "atmosphere/math/constants.h"
 #include "atmosphere/medium/medium_presets.h"
 #include "renderer/effects/effect_choice.h"
 #include "renderer/illumination/night_light.h"
@@ -92,6 +96,112 @@ const PreparedScene& PreparedScene::OnFewBands() const {
     if (medium_.wavelengths_nm.size() > kFew) few_bands_ = OnOtherBands(kFew);
   });
   return few_bands_ ? *few_bands_ : *this;
+}
+
+namespace {
+
+// A light below this fraction of the light already present is invisible.
+constexpr double kUnseenShare = 1e-4;
+// Illuminance of the moonless night sky.
+constexpr double kNightSky_lux = 1e-3;
+
+/// Returns the rotation of the moon while the shutter is open: westwards with the stars, less its
+/// own motion among them of 13.18 degrees a day (Meeus 1998, Astronomical Algorithms, chapter 47),
+/// here taken along the equator.
+glm::dvec3 MoonTurn(double open_s, double latitude_rad, const CameraStand& stand) {
+  constexpr double kBack_rad_per_s = 13.17640 / kSecondsPerDay * kRadiansPerDegree;
+  const glm::dvec3 pole =
+      stand.frame_from_enu * glm::dvec3(0.0, std::cos(latitude_rad), std::sin(latitude_rad));
+  return -(kEarthRotation_rad_per_s - kBack_rad_per_s) * open_s * pole;
+}
+
+}  // namespace
+
+Observer ObserverOf(const PreparedScene& scene, const CameraSample& camera_sample) {
+  const SceneGround& ground = scene.ground();
+  const GeodeticPosition& place = scene.scene().place;
+  const auto pose = camera_sample.middle();
+  const CameraStand stand = pose ? StandAt(ground, pose->place) : StandOfScene(ground);
+  if (camera_sample.bodies) return {stand, *camera_sample.bodies};
+  const GeodeticPosition eye =
+      pose ? pose->place
+           : GeodeticPosition{place.latitude_rad, place.longitude_rad, ground.eye_height_m};
+  return {stand, SkyBodiesAt(eye, camera_sample.instant)};
+}
+
+double IlluminanceBy(const PreparedScene& scene, const DistantLight& source, const glm::dvec3& eye,
+                     const Lighting& light) {
+  const AirModel& air = scene.models().whole();
+  const LocalSun sun = air.ground_light.LocalSunAt(eye, light.By(source));
+  const auto direct = static_cast<float>(sun.visible_fraction * std::max(sun.mu_s_effective, 0.0));
+  const BandLight irradiance =
+      direct * air.sunlit().BeamLeft(sun.altitude_m, sun.mu_s_effective) +
+      air.multiple_scattering.SkyIrradiance(sun.altitude_m, sun.mu_s_for_air);
+  return scene.colour().Xyz(InDouble(source.irradiance * irradiance))[1];
+}
+
+double Illuminance(const PreparedScene& scene, const glm::dvec3& eye, const Lighting& light) {
+  double lux = light.night ? scene.colour().Xyz(InDouble(light.night->OnSurface(1.0)))[1] : 0.0;
+  for (const DistantLight& source : light.Lights()) lux += IlluminanceBy(scene, source, eye, light);
+  return lux;
+}
+
+namespace {
+
+/// Adds the night sky and moonlight to `light` if the sun is dim enough.
+void AddNight(const PreparedScene& scene, const Observer& observer, Lighting& light) {
+  const Medium& medium = scene.medium();
+  const SceneGeometry& geometry = scene.geometry();
+  const CameraStand& stand = observer.stand;
+  light.moon_colour = MoonColour(*light.moon, medium.wavelengths_nm);
+  const double sun_lux = Illuminance(scene, stand.eye, light);
+  if (sun_lux > kDaylight_lux) return;
+  const DistantLight moonlight =
+      MoonlightOf(*light.moon, observer.bodies, light.moon_colour, light.WholeSun());
+  const double moon_lux = IlluminanceBy(scene, moonlight, stand.eye, light);
+  if (moon_lux > kUnseenShare * (sun_lux + kNightSky_lux)) light.moonlight = moonlight;
+  const double depression_rad =
+      -std::asin(glm::dot(light.to_sun_for_air, geometry.UpAt(stand.eye)));
+  light.shows =
+      sun_lux > kUnseenShare * (moon_lux + kNightSky_lux) ||
+      depression_rad < DepressionOfDarkAir(geometry.AltitudeOf(stand.eye), geometry.radius_m(),
+                                           medium.atmosphere_height_m);
+  const std::optional<BandLight>& towns = scene.towns();
+  const double towns_lux =
+      towns ? kPi * scene.colour().Xyz(InDouble(*towns))[1] : 0.0;  // upper bound
+  if (kNightSky_lux + towns_lux < kUnseenShare * sun_lux) return;
+  light.night = std::make_shared<NightLight>(
+      NightSky(observer.bodies.place, observer.bodies.instant).InFrame(stand.frame_from_enu),
+      scene.models().whole().air, scene.colour(), geometry.UpAt(stand.eye),
+      geometry.AltitudeOf(stand.eye), towns);
+}
+
+}  // namespace
+
+Lighting LightingAt(const PreparedScene& scene, const Observer& observer) {
+  const Medium& medium = scene.medium();
+  const BendingAir air = GentleAirOf(medium);
+  const SkyBodies& bodies = observer.bodies;
+  const glm::dmat3& frame_from_enu = observer.stand.frame_from_enu;
+  const SunPosition sun = bodies.ApparentSun(air);
+  Lighting light =
+      LightingOf(sun, bodies.instant, scene.scene().place, medium, scene.scene().ground.wetness);
+  light.to_sun = frame_from_enu * light.to_sun;
+  light.to_sun_for_air = frame_from_enu * light.to_sun_for_air;
+  if (!medium.follows_wgs84) return light;  // other planets have other moons
+  light.moon = bodies.ApparentMoonDisk(air);
+  const EclipsedDisk disk = bodies.Eclipse();
+  if (disk.IsCovered()) {
+    light = light.EclipsedBy(disk, medium.wavelengths_nm);
+    light.moon->to_moon = ToMoonBefore(sun, bodies);
+  }
+  light.moon->to_moon = frame_from_enu * light.moon->to_moon;
+  light.moon->to_moon_for_air = frame_from_enu * light.moon->to_moon_for_air;
+  light.moon->to_sun = frame_from_enu * light.moon->to_sun;
+  light.moon_turn =
+      MoonTurn(scene.scene().camera.shutter_s, bodies.place.latitude_rad, observer.stand);
+  AddNight(scene, observer, light);
+  return light;
 }
 
 }  // namespace alpenglow::renderer

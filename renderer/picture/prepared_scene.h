@@ -2,6 +2,8 @@
 // The scene behind SceneRenderer, prepared once for all pictures: ground, air, lamps, media; and
 // the cache of sunlight or moonlight in the air over one ground, which all pictures of a moment
 // share.
+//
+// The light of a scene seen by an observer: sun, moon and night sky, and their illuminance.
 #pragma once
 
 #include <deque>
@@ -11,11 +13,13 @@
 #include <mutex>
 #include <optional>
 
+#include "atmosphere/astronomy/sky_bodies.h"
 #include "atmosphere/colour/spectrum.h"
 #include "atmosphere/ray/single_scattering.h"
 #include "atmosphere/refraction/refracted_view.h"
 #include "lut/cli/messages.h"
 #include "lut/multiple_scattering/multiple_scattering.h"
+#include "renderer/camera/camera_rays.h"
 #include "renderer/effects/effects.h"
 #include "renderer/illumination/aerial_perspective.h"
 #include "renderer/illumination/lighting.h"
@@ -23,6 +27,7 @@
 #include "renderer/lamps/lamp_light.h"
 #include "renderer/media/local_media.h"
 #include "renderer/picture/ground_light.h"
+#include "renderer/picture/render.h"
 #include "renderer/scene/scene.h"
 #include "renderer/surface/scene_geometry.h"
 #include "renderer/surface/scene_ground.h"
@@ -159,5 +164,27 @@ class PreparedScene {
   mutable std::once_flag few_bands_asked_;
   mutable std::unique_ptr<PreparedScene> few_bands_;
 };
+
+/// The eye of a picture, and sun and moon at its instant.
+struct Observer {
+  CameraStand stand;  // of the eye, in the frame of the scene
+  SkyBodies bodies;   // from the place of the eye
+};
+
+/// Returns the observer of the middle pose, or the scene's own. Takes sun and moon from the shot if
+/// it has them. Throws InputError as StandAt does.
+[[nodiscard]] Observer ObserverOf(const PreparedScene& scene, const CameraSample& camera_sample);
+
+/// Returns the light of sun, moon and night sky, each if it may be visible, in the scene's frame.
+[[nodiscard]] Lighting LightingAt(const PreparedScene& scene, const Observer& observer);
+
+/// Returns the illuminance of one light and its sky on a level plane at a point, without terrain
+/// [lux].
+[[nodiscard]] double IlluminanceBy(const PreparedScene& scene, const DistantLight& source,
+                                   const glm::dvec3& eye, const Lighting& light);
+/// Returns the illuminance of all distant lights and the sky on a level plane at a point, without
+/// terrain [lux].
+[[nodiscard]] double Illuminance(const PreparedScene& scene, const glm::dvec3& eye,
+                                 const Lighting& light);
 
 }  // namespace alpenglow::renderer

@@ -1,19 +1,288 @@
 // SPDX-License-Identifier: MIT
-// Renders pictures with the effects that a scene needs: runs the preview of effect_choice.h with
-// the scene's own pixels.
+// Renders pictures, row by row or tile by tile, with the effects that a scene needs: runs the
+// preview of effect_choice.h with the scene's own pixels.
 #include "renderer/picture/render.h"
 
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
+#include <atomic>
 #include <optional>
+#include <utility>
+#include <vector>
 
 #include "atmosphere/base/error.h"
+#include "lut/cli/program.h"
 #include "renderer/camera/camera_rays.h"
+#include "renderer/effects/effect_choice.h"
 #include "renderer/picture/frame_context.h"
+#include "renderer/picture/pixel_light.h"
+#include "renderer/picture/pixel_shader.h"
 #include "renderer/picture/prepared_scene.h"
-#include "renderer/picture/scene_lighting.h"
-#include "renderer/picture/tile_renderer.h"
+#include "renderer/picture/sky_pixels.h"
 
 namespace alpenglow::renderer {
+namespace {
+
+/// A square of pixels within a picture, processed by one thread.
+struct Tile {
+  static constexpr int kSide = 64;
+  int x0, y0, x1, y1;
+
+  [[nodiscard]] bool Has(int x, int y) const { return x >= x0 && x < x1 && y >= y0 && y < y1; }
+  [[nodiscard]] std::size_t Index(int x, int y) const {
+    return static_cast<std::size_t>((y - y0) * (x1 - x0) + x - x0);
+  }
+  [[nodiscard]] std::size_t Size() const { return Index(x0, y1); }
+
+  /// Calls visit(x, y) row by row.
+  template <typename See>
+  void Visit(const See& visit) const {
+    for (int y = y0; y < y1; ++y) {
+      for (int x = x0; x < x1; ++x) visit(x, y);
+    }
+  }
+  /// Calls visit(index) for each of up to eight neighbours.
+  template <typename See>
+  void VisitNeighbours(int x, int y, const See& visit) const {
+    for (int v = y - 1; v <= y + 1; ++v) {
+      for (int u = x - 1; u <= x + 1; ++u) {
+        if ((u != x || v != y) && Has(u, v)) visit(Index(u, v));
+      }
+    }
+  }
+};
+
+/// Returns the mean of the relative variances of a pixel's neighbours; its own if it has no
+/// neighbours.
+double VarianceAround(const std::vector<double>& variances, const Tile& tile, int x, int y) {
+  double sum = 0.0;
+  int neighbours = 0;
+  tile.VisitNeighbours(x, y, [&](std::size_t at) {
+    sum += variances[at];
+    ++neighbours;
+  });
+  return neighbours > 0 ? sum / neighbours : variances[tile.Index(x, y)];
+}
+
+/// Returns the relative variance over the rays of all neighbours of a pixel, pooled as if they
+/// belonged to one pixel.
+double VarianceAmong(const std::vector<RaySpread>& spreads, const Tile& tile, int x, int y,
+                     double floor) {
+  RaySpread all;
+  tile.VisitNeighbours(x, y, [&](std::size_t at) { all.Add(spreads[at]); });
+  return all.RelativeVariance(floor);
+}
+
+/// Adds the light of stars at the pixel, which rays do not meet.
+PixelSum WithStars(const FrameContext& frame, int x, int y, PixelSum rays) {
+  const BandLight* star = frame.stars() ? frame.stars()->At(x, y) : nullptr;
+  if (star != nullptr) rays.radiance = rays.radiance + static_cast<float>(rays.rays) * *star;
+  return rays;
+}
+
+/// Renders the pixels of a picture in parallel, row by row or, with a bound on the noise, tile by
+/// tile.
+/// Refers to the frame. The bytes of its pictures do not depend on the number of threads.
+class TileRenderer {
+ public:
+  explicit TileRenderer(const FrameContext& frame) : shader_(frame), frame_(frame) {}
+
+  /// Throws RenderingStopped when the settings request it; stops early when Interrupted().
+  [[nodiscard]] CountedPicture Picture() const;
+  /// Returns single pixels as an image of one row, with a fixed number of rays per pixel and
+  /// without layers.
+  [[nodiscard]] Image Pixels(const std::vector<PixelPlace>& places) const;
+
+ private:
+  /// Adds the rows of a picture with a fixed number of rays per pixel.
+  void AddRows(PixelWriter& writer) const;
+  /// Adds the tiles of a picture whose pixels take as many rays as their noise requires.
+  void AddTiles(PixelWriter& writer) const;
+  void AddTile(double floor, int x0, int y0, const OccludedSkyPixels& open_sky,
+               PixelWriter& writer) const;
+  void Write(int x, int y, const PixelLight& pixel, PixelWriter& writer) const;
+  /// Returns the luminance floor of the relative noise: darker pixels count as if they had this
+  /// luminance (effect_choice.h) [cd/m^2].
+  [[nodiscard]] double NoiseFloor() const;
+
+  PixelShader shader_;
+  const FrameContext& frame_;
+};
+
+Image TileRenderer::Pixels(const std::vector<PixelPlace>& places) const {
+  const int count = static_cast<int>(places.size());
+  const int rays = frame_.settings().samples_per_pixel;
+  PixelWriter writer(frame_.scene().colour(), count, 1, {});
+  tbb::parallel_for(0, count, [&](int i) {
+    const PixelPlace& at = places[static_cast<std::size_t>(i)];
+    if (Interrupted()) return;
+    PixelLight pixel(shader_, at.x, at.y, rays);
+    pixel.TakeUpTo(rays);
+    writer.Write(i, 0, WithStars(frame_, at.x, at.y, pixel.sum()));
+  });
+  ThrowIfInterrupted();
+  return writer.Take();
+}
+
+CountedPicture TileRenderer::Picture() const {
+  PixelWriter writer(frame_.scene().colour(), frame_.settings().width, frame_.settings().height,
+                     frame_.settings().layers);
+  ThrowIfInterrupted();
+  if (frame_.settings().noise) {
+    AddTiles(writer);
+  } else {
+    AddRows(writer);
+  }
+  ThrowIfInterrupted();
+  if (frame_.settings().stop.stop_requested()) throw RenderingStopped();
+  return {writer.Take(), writer.rays()};
+}
+
+void TileRenderer::AddRows(PixelWriter& writer) const {
+  const int rays = frame_.settings().samples_per_pixel;
+  std::atomic<int> rows{0};
+  tbb::parallel_for(0, frame_.settings().height, [&](int y) {
+    for (int x = 0; x < frame_.settings().width; ++x) {
+      if (Interrupted() || frame_.settings().stop.stop_requested()) return;
+      PixelLight pixel(shader_, x, y, rays);
+      pixel.TakeUpTo(rays);
+      Write(x, y, pixel, writer);
+    }
+    if (frame_.settings().progress != nullptr)
+      frame_.settings().progress->Part(static_cast<double>(++rows) / frame_.settings().height);
+  });
+}
+
+double TileRenderer::NoiseFloor() const {
+  constexpr int kPixels = 400;
+  return ChangeFloor(
+      Pixels(PreviewGrid(frame_.settings().width, frame_.settings().height, kPixels)));
+}
+
+void TileRenderer::AddTiles(PixelWriter& writer) const {
+  const RenderSettings& settings = frame_.settings();
+  const int columns = (settings.width + Tile::kSide - 1) / Tile::kSide;
+  const int tiles = columns * ((settings.height + Tile::kSide - 1) / Tile::kSide);
+  const double floor = NoiseFloor();
+  const OccludedSkyPixels open_sky(shader_);
+  std::atomic<int> done{0};
+  tbb::parallel_for(0, tiles, [&](int i) {
+    const int x0 = i % columns * Tile::kSide, y0 = i / columns * Tile::kSide;
+    AddTile(floor, x0, y0, open_sky, writer);
+    if (settings.progress != nullptr) settings.progress->Part(static_cast<double>(++done) / tiles);
+  });
+}
+
+// Traces first rays of the tile and of a border of pixels around it. Border pixels belong to other
+// tiles; they only provide the noise estimate and their rays.
+void TileRenderer::AddTile(double floor, int x0, int y0, const OccludedSkyPixels& open_sky,
+                           PixelWriter& writer) const {
+  const RenderSettings& settings = frame_.settings();
+  const int first = settings.samples_per_pixel, most = std::max(kMostRaysForNoise, first);
+  const int fewest = std::min(first, kFewestRaysForNoise);
+  const Tile tile{x0, y0, std::min(x0 + Tile::kSide, settings.width),
+                  std::min(y0 + Tile::kSide, settings.height)};
+  const Tile asked{std::max(x0 - 1, 0), std::max(y0 - 1, 0), std::min(tile.x1 + 1, settings.width),
+                   std::min(tile.y1 + 1, settings.height)};
+  const auto stopped = [&] { return Interrupted() || settings.stop.stop_requested(); };
+  AirInterpolationGrid air(shader_, x0, y0, tile.x1, tile.y1);
+  AirInterpolationGrid* const lattice =
+      settings.share_air && settings.share_air_of_pixels ? &air : nullptr;
+  std::vector<PixelLight> pixels;
+  std::vector<RaySpread> spreads;
+  std::vector<bool> is_done;
+  pixels.reserve(asked.Size());
+  asked.Visit([&](int x, int y) {
+    if (stopped()) return;
+    const double expected_m = pixels.empty() ? 0.0 : pixels.back().last_m();
+    PixelLight& pixel = pixels.emplace_back(shader_, x, y, most, lattice, expected_m);
+    is_done.push_back(open_sky.Has(x, y));
+    if (is_done.back()) {
+      pixel.TakeOccludedSky();
+    } else {
+      pixel.TakeUpTo(fewest);
+    }
+    spreads.push_back(pixel.spread());
+  });
+  if (stopped()) return;
+  asked.Visit([&](int x, int y) {
+    if (stopped() || is_done[asked.Index(x, y)]) return;
+    const double among = VarianceAmong(spreads, asked, x, y, floor);
+    if (RaysForNoise(among, *settings.noise, fewest, first) > fewest)
+      pixels[asked.Index(x, y)].TakeUpTo(first);
+  });
+  if (stopped()) return;
+  std::vector<double> variances;
+  for (const PixelLight& pixel : pixels)
+    variances.push_back(pixel.spread().RelativeVariance(floor));
+  std::vector<int> wanted;
+  asked.Visit([&](int x, int y) {
+    const int begun = pixels[asked.Index(x, y)].sum().rays;
+    const bool may_take_more = tile.Has(x, y) && !is_done[asked.Index(x, y)];
+    wanted.push_back(may_take_more ? RaysForNoise(VarianceAround(variances, asked, x, y),
+                                                  *settings.noise, begun, most)
+                                   : begun);
+  });
+  SharedSampleFilter shared(frame_.filter(), asked.x1 - asked.x0, asked.y1 - asked.y0,
+                            frame_.scene().medium().wavelengths_nm.size());
+  asked.Visit(
+      [&](int x, int y) { shared.Expect(x - asked.x0, y - asked.y0, wanted[asked.Index(x, y)]); });
+  asked.Visit([&](int x, int y) {
+    if (stopped()) return;
+    PixelLight& pixel = pixels[asked.Index(x, y)];
+    const auto share = [&] {
+      for (const SeenRay& ray : pixel.NewRays()) shared.Add(x - asked.x0, y - asked.y0, ray);
+    };
+    share();
+    pixel.TakeUpTo(wanted[asked.Index(x, y)]);
+    share();
+    if (pixel.sky()) shared.SetSky(x - asked.x0, y - asked.y0, *pixel.sky());
+  });
+  if (stopped()) return;
+  tile.Visit([&](int x, int y) {
+    PixelLight& pixel = pixels[asked.Index(x, y)];
+    pixel.SetMeanRadiance(shared.Light(x - asked.x0, y - asked.y0));
+    Write(x, y, pixel, writer);
+  });
+}
+
+void TileRenderer::Write(int x, int y, const PixelLight& pixel, PixelWriter& writer) const {
+  writer.Write(x, y, WithStars(frame_, x, y, pixel.sum()));
+  if (!writer.AsksForMiddle()) return;
+  writer.WriteMiddle(x, y, shader_.Trace(frame_.camera().MiddleRay(x + 0.5, y + 0.5)));
+}
+
+/// Returns the effects that can change this picture.
+EffectSet Present(const FrameContext& frame) {
+  const auto without = [](EffectSet effects, bool is_there, EffectSet those) {
+    if (is_there) return effects;
+    for (const Effect effect : those.List()) effects = effects.Without(effect);
+    return effects;
+  };
+  EffectSet present = EffectSet::All();
+  const PreparedScene& scene = frame.scene();
+  const auto any_light = [&](const auto& holds) {
+    return std::any_of(frame.lights().begin(), frame.lights().end(), holds);
+  };
+  const bool is_broken = any_light([](const FrameLight& of) { return of.shadows->IsBroken(); });
+  present = without(present, is_broken, {Effect::kShafts});
+  present = without(present, !scene.lamps().All().empty(), {Effect::kLights, Effect::kBeams});
+  present =
+      without(present, scene.ground().terrain.has_value(), {Effect::kShadows, Effect::kRelief});
+  const bool is_terrain_lit =
+      any_light([](const FrameLight& of) { return of.light.on_terrain != nullptr; });
+  present = without(present, is_terrain_lit, {Effect::kHorizons, Effect::kBounce});
+  present = without(present, scene.media().HasVolumes(), {Effect::kVolumes});
+  present = without(present, scene.media().fog() != nullptr, {Effect::kFogGlow});
+  present = without(present, frame.lights().size() > 1, {Effect::kMoonlight});
+  present = without(present, frame.night() != nullptr, {Effect::kNightSky});
+  present = without(present, frame.stars() != nullptr, {Effect::kStars});
+  present = without(present, frame.bent() != nullptr, {Effect::kRefraction});
+  return without(present, &scene.OnFewBands() != &scene, {Effect::kFineSpectrum});
+}
+
+}  // namespace
 
 void ValidateSettings(const RenderSettings& settings) {
   RequireInRange(settings.width, 1, 16384, "picture width");
@@ -60,39 +329,6 @@ CountedPicture SceneRenderer::RenderCounted(const CameraSample& camera_sample,
   ValidateSettings(settings);
   return TileRenderer({scene_->For(settings.effects), camera_sample, settings}).Picture();
 }
-
-namespace {
-
-/// Returns the effects that can change this picture.
-EffectSet Present(const FrameContext& frame) {
-  const auto without = [](EffectSet effects, bool is_there, EffectSet those) {
-    if (is_there) return effects;
-    for (const Effect effect : those.List()) effects = effects.Without(effect);
-    return effects;
-  };
-  EffectSet present = EffectSet::All();
-  const PreparedScene& scene = frame.scene();
-  const auto any_light = [&](const auto& holds) {
-    return std::any_of(frame.lights().begin(), frame.lights().end(), holds);
-  };
-  const bool is_broken = any_light([](const FrameLight& of) { return of.shadows->IsBroken(); });
-  present = without(present, is_broken, {Effect::kShafts});
-  present = without(present, !scene.lamps().All().empty(), {Effect::kLights, Effect::kBeams});
-  present =
-      without(present, scene.ground().terrain.has_value(), {Effect::kShadows, Effect::kRelief});
-  const bool is_terrain_lit =
-      any_light([](const FrameLight& of) { return of.light.on_terrain != nullptr; });
-  present = without(present, is_terrain_lit, {Effect::kHorizons, Effect::kBounce});
-  present = without(present, scene.media().HasVolumes(), {Effect::kVolumes});
-  present = without(present, scene.media().fog() != nullptr, {Effect::kFogGlow});
-  present = without(present, frame.lights().size() > 1, {Effect::kMoonlight});
-  present = without(present, frame.night() != nullptr, {Effect::kNightSky});
-  present = without(present, frame.stars() != nullptr, {Effect::kStars});
-  present = without(present, frame.bent() != nullptr, {Effect::kRefraction});
-  return without(present, &scene.OnFewBands() != &scene, {Effect::kFineSpectrum});
-}
-
-}  // namespace
 
 ChosenPicture SceneRenderer::RenderWithin(const CameraSample& camera_sample,
                                           const RenderSettings& settings,

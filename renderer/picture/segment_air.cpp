@@ -6,7 +6,7 @@
 #include <glm/geometric.hpp>
 #include <utility>
 
-#include "renderer/illumination/picture_stokes.h"
+#include "renderer/material/band_light.h"
 #include "renderer/picture/frame_context.h"
 
 namespace alpenglow::renderer {

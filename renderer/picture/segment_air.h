@@ -9,7 +9,7 @@
 
 #include "renderer/illumination/aerial_perspective.h"
 #include "renderer/material/band_light.h"
-#include "renderer/media/media_march.h"
+#include "renderer/media/media_light.h"
 #include "renderer/picture/frame_context.h"
 #include "renderer/surface/scene_geometry.h"
 

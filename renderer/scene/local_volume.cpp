@@ -1,14 +1,176 @@
 // SPDX-License-Identifier: MIT
 #include "renderer/scene/local_volume.h"
 
+#include <fmt/format.h>
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <glm/geometric.hpp>
+#include <limits>
+#include <string>
+#include <vector>
 
 #include "atmosphere/base/error.h"
 #include "atmosphere/lamp/lamp.h"
+#include "renderer/layer.h"
 
 namespace alpenglow::renderer {
+namespace {
+
+constexpr int kBlock = 4;  // samples per side
+
+/// Finds the next crossing of a line with the planes `first + step k` of one axis.
+class PlaneWalk {
+ public:
+  // @param at  coordinate at t = begin, in units of planes.
+  PlaneWalk(double at, double slope, double begin) : slope_(slope) {
+    if (slope_ == 0.0) return;
+    const double next = slope_ > 0.0 ? std::floor(at) + 1.0 : std::ceil(at) - 1.0;
+    next_ = begin + (next - at) / slope_;
+    step_ = 1.0 / std::abs(slope_);
+  }
+  [[nodiscard]] double next() const { return next_; }
+  void Pass() { next_ += step_; }
+
+ private:
+  double slope_;
+  double next_ = std::numeric_limits<double>::infinity();
+  double step_ = 0.0;
+};
+
+/// Calls visit(begin, end) for the pieces of a line between planes at integer coordinates.
+template <typename Visit>
+void WalkPlanes(const glm::dvec3& origin, const glm::dvec3& direction, double begin, double end,
+                const Visit& visit) {
+  const glm::dvec3 at = origin + begin * direction;
+  std::array<PlaneWalk, 3> walks{PlaneWalk(at.x, direction.x, begin),
+                                 PlaneWalk(at.y, direction.y, begin),
+                                 PlaneWalk(at.z, direction.z, begin)};
+  double from = begin;
+  while (from < end) {
+    PlaneWalk& nearest = *std::min_element(
+        walks.begin(), walks.end(),
+        [](const PlaneWalk& a, const PlaneWalk& b) { return a.next() < b.next(); });
+    const double to = std::min(nearest.next(), end);
+    if (to > from) visit(from, to);
+    from = std::max(from, to);
+    nearest.Pass();
+  }
+}
+
+std::size_t CountOf(const std::array<int, 3>& size) {
+  std::size_t count = 1;
+  for (const int side : size) count *= static_cast<std::size_t>(side);
+  return count;
+}
+
+}  // namespace
+
+void CheckGridSize(const std::array<int, 3>& size) {
+  for (const int side : size) {
+    if (!(side >= 2 && side <= kMostGridSamples)) {
+      throw InputError(fmt::format("a grid of {} x {} x {} samples; each side must have 2 to {}",
+                                   size[0], size[1], size[2], kMostGridSamples));
+    }
+  }
+}
+
+VolumeGrid::VolumeGrid(const std::array<int, 3>& size, std::vector<float> values)
+    : size_(size), values_(std::move(values)) {
+  CheckGridSize(size);
+  if (values_.size() != CountOf(size)) {
+    throw InputError(fmt::format("{} values for a grid of {} x {} x {} samples", values_.size(),
+                                 size[0], size[1], size[2]));
+  }
+  for (std::size_t i = 0; i < values_.size(); ++i) {
+    if (!(values_[i] >= 0.0F && std::isfinite(values_[i]))) {
+      throw InputError(
+          fmt::format("value {} of the grid is {}; densities must be finite and not "
+                      "negative",
+                      i, values_[i]));
+    }
+  }
+  FindLargest();
+}
+
+void VolumeGrid::FindLargest() {
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    blocks_[axis] = (size_[axis] - 2) / kBlock + 1;
+  }
+  for (int bz = 0; bz < blocks_[2]; ++bz) {
+    for (int by = 0; by < blocks_[1]; ++by) {
+      for (int bx = 0; bx < blocks_[0]; ++bx) {
+        float most = 0.0F;
+        for (int z = kBlock * bz; z <= std::min(kBlock * (bz + 1), size_[2] - 1); ++z) {
+          for (int y = kBlock * by; y <= std::min(kBlock * (by + 1), size_[1] - 1); ++y) {
+            for (int x = kBlock * bx; x <= std::min(kBlock * (bx + 1), size_[0] - 1); ++x) {
+              most = std::max(most, values_[Index(x, y, z)]);
+            }
+          }
+        }
+        largest_in_block_.push_back(most);
+        largest_ = std::max(largest_, static_cast<double>(most));
+      }
+    }
+  }
+}
+
+double VolumeGrid::At(const glm::dvec3& point) const {
+  std::array<int, 3> low{};
+  std::array<double, 3> share{};
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto a = static_cast<std::size_t>(axis);
+    const double u = std::clamp(point[axis] * size_[a] - 0.5, 0.0, size_[a] - 1.0);
+    low[a] = std::min(static_cast<int>(u), size_[a] - 2);
+    share[a] = u - low[a];
+  }
+  const auto along_x = [&](int y, int z) {
+    const float* row = values_.data() + Index(low[0], low[1] + y, low[2] + z);
+    return (1.0 - share[0]) * static_cast<double>(row[0]) + share[0] * static_cast<double>(row[1]);
+  };
+  const auto along_xy = [&](int z) {
+    return (1.0 - share[1]) * along_x(0, z) + share[1] * along_x(1, z);
+  };
+  return (1.0 - share[2]) * along_xy(0) + share[2] * along_xy(1);
+}
+
+std::vector<VolumeGrid::Piece> VolumeGrid::PiecesAlong(const glm::dvec3& origin,
+                                                       const glm::dvec3& direction, double begin,
+                                                       double end) const {
+  const glm::dvec3 scale = glm::dvec3(size_[0], size_[1], size_[2]) / double{kBlock};
+  const glm::dvec3 from = origin * scale - 0.5 / kBlock;
+  const glm::dvec3 slope = direction * scale;
+  std::vector<Piece> pieces;
+  WalkPlanes(from, slope, begin, end, [&](double a, double b) {
+    const glm::dvec3 middle = from + 0.5 * (a + b) * slope;
+    std::size_t index = 0;
+    for (int axis = 2; axis >= 0; --axis) {
+      const int blocks = blocks_[static_cast<std::size_t>(axis)];
+      const int block = std::clamp(static_cast<int>(std::floor(middle[axis])), 0, blocks - 1);
+      index = index * static_cast<std::size_t>(blocks) + static_cast<std::size_t>(block);
+    }
+    const auto largest = static_cast<double>(largest_in_block_[index]);
+    if (largest > 0.0) pieces.push_back({a, b, largest});
+  });
+  return pieces;
+}
+
+double VolumeGrid::Column(const glm::dvec3& origin, const glm::dvec3& direction, double begin,
+                          double end) const {
+  constexpr double kGauss = 0.21132486540518712;  // (1 - 1 / sqrt 3) / 2
+  const glm::dvec3 scale(size_[0], size_[1], size_[2]);
+  double sum = 0.0;
+  for (const Piece& piece : PiecesAlong(origin, direction, begin, end)) {
+    WalkPlanes(
+        origin * scale - 0.5, direction * scale, piece.begin, piece.end, [&](double a, double b) {
+          const double near = a + kGauss * (b - a);
+          const double far = b - kGauss * (b - a);
+          sum += 0.5 * (b - a) * (At(origin + near * direction) + At(origin + far * direction));
+        });
+  }
+  return sum;
+}
+
 namespace {
 
 /// A line in the coordinates of the unit cube.

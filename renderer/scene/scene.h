@@ -14,9 +14,9 @@
 #include "atmosphere/medium/medium.h"
 #include "atmosphere/time_place/geodesy.h"
 #include "atmosphere/time_place/time.h"
+#include "renderer/elevation/elevation.h"
+#include "renderer/elevation/mesh.h"
 #include "renderer/scene/local_volume.h"
-#include "renderer/terrain/elevation.h"
-#include "renderer/terrain/mesh.h"
 
 namespace alpenglow::renderer {
 

@@ -8,11 +8,11 @@
 #include "atmosphere/base/error.h"
 #include "atmosphere/math/constants.h"
 #include "atmosphere/medium/medium_presets.h"
-#include "renderer/scene/nrrd_header.h"
+#include "renderer/procedural_mountains/lattice_noise.h"
+#include "renderer/procedural_mountains/procedural_mountains.h"
 #include "renderer/scene/places.h"
+#include "renderer/scene/volume_file.h"
 #include "renderer/terrain/land_source.h"
-#include "renderer/terrain/lattice_noise.h"
-#include "renderer/terrain/procedural_mountains.h"
 
 namespace alpenglow::renderer {
 namespace {

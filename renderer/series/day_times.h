@@ -11,7 +11,7 @@
 #include "atmosphere/astronomy/eclipse.h"
 #include "atmosphere/time_place/time.h"
 #include "renderer/layer.h"
-#include "renderer/series/time_text.h"
+#include "atmosphere/astronomy/time_text.h"
 
 namespace alpenglow::renderer {
 

@@ -12,7 +12,7 @@
 #include "atmosphere/time_place/time.h"
 #include "renderer/camera/camera_path.h"
 #include "renderer/picture/render.h"
-#include "renderer/series/time_text.h"
+#include "atmosphere/astronomy/time_text.h"
 #include "renderer/surface/scene_ground.h"
 
 namespace alpenglow::renderer {

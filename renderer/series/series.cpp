@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <map>
 #include <set>
 #include <variant>
@@ -12,13 +11,12 @@
 #include "atmosphere/base/error.h"
 #include "atmosphere/math/constants.h"
 #include "lut/cli/program.h"
-#include "lut/image/eye.h"
 #include "lut/image/look.h"
 #include "renderer/picture/render.h"
 #include "renderer/series/contact_sheet.h"
 #include "renderer/series/day_times.h"
+#include "renderer/series/frame_exposure.h"
 #include "renderer/series/manifest.h"
-#include "renderer/series/smooth_meter.h"
 #include "renderer/series/video.h"
 
 namespace alpenglow::renderer {
@@ -28,25 +26,7 @@ namespace fs = std::filesystem;
 
 constexpr char kRenderFingerprint[] = "alpenglow.render_fingerprint";
 constexpr char kFingerprint[] = "alpenglow.fingerprint";
-constexpr char kEv100[] = "alpenglow.ev100";
 constexpr char kExposure[] = "alpenglow.exposure";
-constexpr char kWhite_k[] = "alpenglow.white_k";
-constexpr char kWhiteRule[] = "alpenglow.white_balance_rule";
-constexpr double kPerMired = 1e6;  // mireds are 1e6 / K
-
-/// Settings for developing a frame.
-struct Development {
-  Look look;  // resolved for the frame
-  double ev100;
-  std::string rule;        // exposure rule as text
-  std::string white_rule;  // rule of a white balance that is smooth over the series
-};
-
-/// Meter reading of a small picture of a frame.
-struct Reading {
-  double ev100;
-  std::optional<double> white_mired;  // for the white balances auto and camera
-};
 
 /// Returns the values that affect the pixels of a frame: settings and instant, with their
 /// fingerprint.
@@ -80,7 +60,7 @@ void AddFound(const Metadata& header, FrameRecord& record) {
     const auto found = header.find(name);
     return found == header.end() ? std::string() : found->second;
   };
-  const std::string ev100 = value(kEv100), illuminance = value(kIlluminanceNote);
+  const std::string ev100 = value(kEv100Key), illuminance = value(kIlluminanceNote);
   if (!ev100.empty()) record.Set("ev100", std::stod(ev100));
   if (!illuminance.empty()) record.Set("illuminance_lx", std::stod(illuminance));
   record.Set("exposure", value(kExposure));
@@ -124,13 +104,7 @@ Metadata FrameMetadata(const SeriesSource& source, const SeriesOutput& output, c
                        const FrameRecord& record, const Development& development) {
   Metadata metadata = RenderMetadata(source, frame);
   metadata.merge(HeaderOf(record));
-  metadata.merge(HeaderOfExposure(output.exposure, development.ev100, development.rule));
-  metadata.merge(HeaderOfLook(development.look));
-  if (!development.white_rule.empty()) {
-    metadata[kWhiteRule] = development.white_rule;
-    metadata[kWhite_k] = fmt::format("{:.0f}", development.look.white.kelvin.value());
-  }
-  if (output.glare) metadata["alpenglow.glare"] = "eye, in the developed picture only";
+  metadata.merge(HeaderOfDevelopment(output, development));
   metadata[kFingerprint] = Fingerprint(metadata);
   return metadata;
 }
@@ -138,24 +112,8 @@ Metadata FrameMetadata(const SeriesSource& source, const SeriesOutput& output, c
 class Series {
  public:
   Series(const SeriesSource& source, const std::vector<Frame>& frames, const SeriesOutput& output)
-      : source_(source), frames_(frames), output_(output) {
+      : source_(source), frames_(frames), output_(output), exposure_(source, frames, output) {
     for (const Frame& frame : frames) records_.push_back(RecordBefore(frame));
-    const std::optional<int> per_node = FramesPerNode(frames, source.path.has_value());
-    if (!source.preview || !per_node) return;
-    const ExposureRule::Kind kind = output.exposure.kind;
-    if (kind == ExposureRule::Kind::kMetered) {
-      smooth_ev100_.emplace(frames, *per_node,
-                            [this](const Frame& frame) { return ReadingOf(frame).ev100; });
-    } else if (kind == ExposureRule::Kind::kEye) {
-      smooth_ev100_.emplace(frames, *per_node, [this, step = *per_node](const Frame& frame) {
-        return AdaptedEv100(frame, step);
-      });
-    }
-    if (output.look.white.IsOfPicture()) {
-      smooth_mired_.emplace(frames, *per_node, [this](const Frame& frame) {
-        return ReadingOf(frame).white_mired.value();
-      });
-    }
   }
 
   /// Renders or updates a frame. @return whether it was rendered.
@@ -166,8 +124,7 @@ class Series {
     if (output_.resume) picture = KeptPicture(exr, wanted);
     const bool rendered = !picture;
     if (rendered) picture = source_.render(frame, progress);
-    const Look look = LookOf(frame, picture->image, rendered);
-    const Development development = DevelopmentOf(frame, picture->image, look, rendered);
+    const Development development = exposure_.DevelopmentOf(frame, picture->image, rendered);
     Write(frame, *picture, development, rendered);
     if (output_.video || output_.keogram) developments_.emplace(frame.number, development);
     if (output_.contact_sheet) AddThumbnail(frame, picture->image, development);
@@ -246,114 +203,6 @@ class Series {
   [[nodiscard]] const SeriesSummary& summary() const { return summary_; }
 
  private:
-  [[nodiscard]] PictureView ViewOf(const Frame& frame, const Image& image) const {
-    const Projection projection = source_.ProjectionOf(frame);
-    const double across =
-        projection == Projection::kCamera ? 2.0 * std::tan(0.5 * source_.FovOf(frame)) : 2.0 * kPi;
-    return {projection, across / image.width};
-  }
-
-  /// Returns the reading of a spline node. Its small picture is rendered once for both splines.
-  [[nodiscard]] const Reading& ReadingOf(const Frame& frame) {
-    const auto known = readings_.find(frame.number);
-    if (known != readings_.end()) return known->second;
-    const Image preview = source_.preview(frame);
-    const Look look = Settled(output_.look, preview, ViewOf(frame, preview));
-    Reading reading{Metered(frame, preview, look), std::nullopt};
-    if (look.white.kelvin) reading.white_mired = kPerMired / *look.white.kelvin;
-    return readings_[frame.number] = reading;
-  }
-
-  /// Returns the EV to which the eye is adapted. It depends only on the nodes within the preceding
-  /// time in which an eye forgets the light of a whole day, not on which frames are rendered.
-  [[nodiscard]] double AdaptedEv100(const Frame& frame, int frames_per_node) {
-    constexpr double kForgotten_s =
-        60.0 * (kBrightestEv100 - kDarkestEv100) / EyeAdaptation::kRegenerated_ev_per_min;
-    int first = frame.number - frames_.front().number;
-    const auto at = [&](int index) -> const Frame& {
-      return frames_[static_cast<std::size_t>(index)];
-    };
-    while (first >= frames_per_node &&
-           SecondsBetween(at(first).instant, frame.instant) < kForgotten_s)
-      first -= frames_per_node;
-    EyeAdaptation eye;
-    double adapted = ReadingOf(at(first)).ev100;
-    for (int i = first; i <= frame.number - frames_.front().number; i += frames_per_node) {
-      const double passed =
-          SecondsBetween(at(std::max(i - frames_per_node, first)).instant, at(i).instant);
-      adapted = eye.Follow(ReadingOf(at(i)).ev100, passed);
-    }
-    return adapted;
-  }
-
-  /// Returns the look with its white balance resolved: from the picture itself or, in a film, from
-  /// the spline over mireds, in which equal steps look equal. An existing frame stores its white
-  /// balance and needs no small picture.
-  [[nodiscard]] Look LookOf(const Frame& frame, const Image& image, bool rendered) {
-    if (!smooth_mired_) return Settled(output_.look, image, ViewOf(frame, image));
-    Look look = output_.look;
-    if (!rendered) look.white.kelvin = KeptWhite(frame);
-    if (!look.white.kelvin) look.white.kelvin = std::round(kPerMired / smooth_mired_->At(frame));
-    return look;
-  }
-
-  [[nodiscard]] std::optional<double> KeptWhite(const Frame& frame) const {
-    const Metadata kept = ReadExrMetadata(output_.name.Exr(frame.number));
-    const auto rule = kept.find(kWhiteRule), kelvin = kept.find(kWhite_k);
-    if (rule == kept.end() || rule->second != smooth_mired_->InWords() || kelvin == kept.end())
-      return std::nullopt;
-    return std::stod(kelvin->second);
-  }
-
-  [[nodiscard]] double Metered(const Frame& frame, const Image& image, const Look& look) const {
-    const PictureView view = ViewOf(frame, image);
-    return MeterEv100(Seen(image, look, view), kSunDiskLuminance_cd_per_m2, view.projection);
-  }
-
-  [[nodiscard]] Development DevelopmentOf(const Frame& frame, const Image& image, const Look& look,
-                                          bool rendered) {
-    const ExposureRule& rule = output_.exposure;
-    std::string words = RuleInWords(rule);
-    const std::string white = smooth_mired_ ? smooth_mired_->InWords() : "";
-    switch (rule.kind) {
-      case ExposureRule::Kind::kFixed:
-        return {look, rule.ev100, words, white};
-      case ExposureRule::Kind::kIncident:
-        return {look, IncidentEv100(source_.illuminance(frame)), words, white};
-      case ExposureRule::Kind::kMetered:
-      case ExposureRule::Kind::kEye:
-        break;
-    }
-    if (!smooth_ev100_)
-      return {look, Ev100By(rule, Metered(frame, image, look), look), words, white};
-    words += "; " + smooth_ev100_->InWords();
-    if (!rendered) {
-      if (const std::optional<double> known = KeptEv100(frame, look, words))
-        return {look, *known, words, white};
-    }
-    return {look, Ev100By(rule, smooth_ev100_->At(frame), look), words, white};
-  }
-
-  /// Returns the EV100 stored in an existing frame if this run would expose and develop it in the
-  /// same way; it needs no small picture.
-  [[nodiscard]] std::optional<double> KeptEv100(const Frame& frame, const Look& look,
-                                                const std::string& words) const {
-    const Metadata kept = ReadExrMetadata(output_.name.Exr(frame.number));
-    Metadata wanted = HeaderOfExposure(output_.exposure, 0.0, words);
-    wanted.erase(kEv100);
-    wanted.merge(HeaderOfLook(look));
-    if (!std::includes(kept.begin(), kept.end(), wanted.begin(), wanted.end())) return std::nullopt;
-    return std::stod(kept.at(kEv100));
-  }
-
-  /// Returns the picture before tone mapping: with the eye's glare if requested, white-balanced,
-  /// and at night as the eye perceives it.
-  [[nodiscard]] Image AsLookedAt(const Frame& frame, const Image& image, const Look& look) const {
-    const PictureView view = ViewOf(frame, image);
-    if (!output_.glare) return Seen(image, look, view);
-    return Seen(WithGlareOfEye(image, view.pixel_rad), look, view);
-  }
-
   void Write(const Frame& frame, const NotedPicture& picture, const Development& development,
              bool rendered) {
     const Image& image = picture.image;
@@ -365,10 +214,10 @@ class Series {
     const bool keep_png = !output_.png || (keep_exr && IsKeptPng(png, metadata.at(kFingerprint)));
     if (!keep_exr) WriteExr(exr, image, metadata);
     if (!keep_png)
-      WritePng(
-          png,
-          Develop(AsLookedAt(frame, image, development.look), development.ev100, development.look),
-          metadata);
+      WritePng(png,
+               Develop(exposure_.Seen(frame, image, development.look), development.ev100,
+                       development.look),
+               metadata);
     (rendered ? summary_.rendered : keep_exr && keep_png ? summary_.kept : summary_.developed) += 1;
     AddFound(metadata, records_[IndexOf(frame)]);
     made_.insert(frame.number);
@@ -379,14 +228,15 @@ class Series {
     if (output_.png) return ReadPng(output_.name.Png(frame.number));
     const Development& development = developments_.at(frame.number);
     const Image image = ReadExr(output_.name.Exr(frame.number));
-    return Develop(AsLookedAt(frame, image, development.look), development.ev100, development.look);
+    return Develop(exposure_.Seen(frame, image, development.look), development.ev100,
+                   development.look);
   }
 
   void AddThumbnail(const Frame& frame, const Image& image, const Development& development) {
     const FrameRecord& record = RecordOfFrame(frame);
     const auto* const local = std::get_if<std::string>(&record.At("local_time"));
     const std::string time = (local ? *local : FormatUtc(frame.instant)).substr(11, 5);
-    const Image small = Reduced(AsLookedAt(frame, image, development.look), kThumbnailWidth);
+    const Image small = Reduced(exposure_.Seen(frame, image, development.look), kThumbnailWidth);
     thumbnails_.push_back({Develop(small, development.ev100, development.look),
                            fmt::format("{} {:+.1f}", time, *record.Number("sun_elevation_deg"))});
   }
@@ -433,8 +283,7 @@ class Series {
   std::vector<FrameRecord> records_;  // of all frames, with the values of those made by this run
   std::set<int> made_;
   SeriesSummary summary_;
-  std::optional<SmoothMeter> smooth_ev100_, smooth_mired_;
-  std::map<int, Reading> readings_;
+  SeriesExposure exposure_;
   std::map<int, Development> developments_;
   std::vector<Thumbnail> thumbnails_;
 };

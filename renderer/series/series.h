@@ -50,7 +50,7 @@ struct SeriesSource {
   std::optional<CameraPath> path;               // camera path of Frame::path_s
   Projection projection = Projection::kCamera;  // without a path
   double fov_rad = 0.0;                         // without a path
-  /// Returns a small picture of a frame, for the meter of a series (smooth_meter.h); without it
+  /// Returns a small picture of a frame, for the meter of a series (frame_exposure.h); without it
   /// each frame is metered by itself.
   std::function<Image(const Frame&)> preview = {};
   bool has_moon = true;  // the planet has the earth's moon, which can eclipse the sun

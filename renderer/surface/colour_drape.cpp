@@ -13,8 +13,8 @@
 #include "atmosphere/base/error.h"
 #include "atmosphere/colour/spectrum.h"
 #include "atmosphere/math/constants.h"
+#include "renderer/elevation/elevation_raster.h"
 #include "renderer/material/land_cover.h"
-#include "renderer/terrain/elevation_raster.h"
 
 namespace alpenglow::renderer {
 namespace {

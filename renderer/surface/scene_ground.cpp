@@ -10,10 +10,10 @@
 
 #include "atmosphere/base/error.h"
 #include "atmosphere/math/constants.h"
+#include "renderer/elevation/obj_file.h"
+#include "renderer/procedural_mountains/procedural_mountains.h"
 #include "renderer/scene/scene_options.h"
 #include "renderer/terrain/loaded_heights.h"
-#include "renderer/terrain/obj_file.h"
-#include "renderer/terrain/procedural_mountains.h"
 #include "renderer/visibility/sunlit_path.h"
 
 namespace alpenglow::renderer {

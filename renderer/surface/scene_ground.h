@@ -15,9 +15,9 @@
 #include "lut/cli/messages.h"
 #include "renderer/camera/camera_path.h"
 #include "renderer/camera/camera_rays.h"
+#include "renderer/elevation/elevation.h"
 #include "renderer/layer.h"
 #include "renderer/scene/scene.h"
-#include "renderer/terrain/elevation.h"
 #include "renderer/terrain/terrain.h"
 
 namespace alpenglow::renderer {

@@ -12,7 +12,7 @@
 #include "atmosphere/math/constants.h"
 #include "renderer/material/land_cover.h"
 #include "renderer/material/reflectance.h"
-#include "renderer/terrain/lattice_noise.h"
+#include "renderer/procedural_mountains/lattice_noise.h"
 
 namespace alpenglow::renderer {
 namespace {

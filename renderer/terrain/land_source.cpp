@@ -11,8 +11,8 @@
 
 #include "atmosphere/base/error.h"
 #include "atmosphere/base/parsing.h"
+#include "renderer/procedural_mountains/procedural_mountains.h"
 #include "renderer/terrain/loaded_heights.h"
-#include "renderer/terrain/procedural_mountains.h"
 
 namespace alpenglow::renderer {
 namespace {

@@ -9,9 +9,9 @@
 #include <string>
 #include <vector>
 
-#include "renderer/terrain/elevation.h"
+#include "renderer/elevation/elevation.h"
+#include "renderer/elevation/mesh.h"
 #include "renderer/terrain/height_pyramid.h"
-#include "renderer/terrain/mesh.h"
 
 namespace alpenglow::renderer {
 

@@ -11,7 +11,7 @@
 #include <utility>
 
 #include "atmosphere/base/error.h"
-#include "renderer/terrain/mesh.h"
+#include "renderer/elevation/mesh.h"
 
 namespace alpenglow::renderer {
 namespace {

@@ -18,8 +18,8 @@
 #include <vector>
 
 #include "atmosphere/time_place/geodesy.h"
+#include "renderer/elevation/elevation.h"
 #include "renderer/layer.h"
-#include "renderer/terrain/elevation.h"
 #include "renderer/terrain/height_pyramid.h"
 #include "renderer/terrain/land_source.h"
 

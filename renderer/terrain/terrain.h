@@ -11,9 +11,9 @@
 #include <optional>
 #include <utility>
 
-#include "renderer/terrain/elevation.h"
-#include "renderer/terrain/mesh.h"
-#include "renderer/terrain/procedural_mountains.h"
+#include "renderer/elevation/elevation.h"
+#include "renderer/elevation/mesh.h"
+#include "renderer/procedural_mountains/procedural_mountains.h"
 
 namespace alpenglow::renderer {
 

@@ -17,7 +17,7 @@
 #include <span>
 #include <vector>
 
-#include "renderer/terrain/mesh.h"
+#include "renderer/elevation/mesh.h"
 
 namespace alpenglow::renderer {
 

@@ -12,7 +12,7 @@
 #include "atmosphere/base/error.h"
 #include "atmosphere/math/constants.h"
 #include "lut/camera_tables/air_tables.h"
-#include "renderer/terrain/mesh.h"
+#include "renderer/elevation/mesh.h"
 
 namespace alpenglow::renderer {
 namespace {

@@ -21,9 +21,9 @@
 #include <vector>
 
 #include "atmosphere/time_place/geodesy.h"
+#include "renderer/elevation/elevation.h"
+#include "renderer/elevation/mesh.h"
 #include "renderer/layer.h"
-#include "renderer/terrain/elevation.h"
-#include "renderer/terrain/mesh.h"
 
 namespace alpenglow::renderer {
 

@@ -30,7 +30,7 @@
 #include <optional>
 #include <vector>
 
-#include "renderer/terrain/mesh.h"
+#include "renderer/elevation/mesh.h"
 #include "renderer/visibility/sunlit_path.h"
 
 namespace alpenglow::renderer {

@@ -7,7 +7,7 @@
 #include "atmosphere/astronomy/sun.h"
 #include "atmosphere/math/constants.h"
 #include "renderer/picture/lit_ground.h"
-#include "renderer/terrain/procedural_mountains.h"
+#include "renderer/procedural_mountains/procedural_mountains.h"
 
 namespace alpenglow::viewer {
 namespace {

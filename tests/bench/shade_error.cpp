@@ -17,7 +17,7 @@
 #include <vector>
 
 #include "atmosphere/math/constants.h"
-#include "renderer/terrain/procedural_mountains.h"
+#include "renderer/procedural_mountains/procedural_mountains.h"
 #include "renderer/terrain/terrain.h"
 #include "renderer/visibility/shade_map.h"
 #include "renderer/visibility/shadow_heights.h"

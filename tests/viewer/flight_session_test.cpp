@@ -7,9 +7,9 @@
 
 #include <cmath>
 
+#include "renderer/procedural_mountains/procedural_mountains.h"
 #include "renderer/scene/places.h"
 #include "renderer/scene/scene_options.h"
-#include "renderer/terrain/procedural_mountains.h"
 #include "tests/viewer/land/headless_land.h"
 #include "viewer/gl/picture_tiles.h"
 #include "viewer/gl/render_target.h"

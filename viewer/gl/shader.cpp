@@ -111,7 +111,7 @@ std::vector<ShaderPiece> SharedTexts() {
     pieces.push_back({name, std::string(lut::EmbeddedText(name))});
   }
   for (const char* name :
-       {"renderer/terrain/lattice_noise.glsl", "renderer/material/ground_cover.glsl",
+       {"renderer/procedural_mountains/lattice_noise.glsl", "renderer/material/ground_cover.glsl",
         "renderer/material/reflectance.glsl", "renderer/visibility/sunlight_over_edge.glsl",
         "renderer/media/fog_layer.glsl"}) {
     pieces.push_back({name, std::string(renderer::EmbeddedText(name))});

@@ -8,7 +8,7 @@
 #include <limits>
 
 #include "atmosphere/base/error.h"
-#include "renderer/terrain/mesh.h"
+#include "renderer/elevation/mesh.h"
 
 namespace alpenglow::viewer {
 namespace {

@@ -8,9 +8,9 @@
 #include <limits>
 
 #include "atmosphere/math/constants.h"
+#include "renderer/elevation/obj_file.h"
 #include "renderer/surface/scene_ground.h"
 #include "renderer/terrain/loaded_heights.h"
-#include "renderer/terrain/obj_file.h"
 
 namespace alpenglow::viewer {
 namespace {

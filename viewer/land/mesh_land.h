@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "atmosphere/time_place/geodesy.h"
-#include "renderer/terrain/elevation.h"
+#include "renderer/elevation/elevation.h"
 #include "renderer/terrain/land_source.h"
 #include "renderer/terrain/loaded_heights.h"
 #include "renderer/terrain/terrain.h"

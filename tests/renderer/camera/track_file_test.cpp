@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "renderer/camera/track_file.h"
+#include "renderer/camera/track.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

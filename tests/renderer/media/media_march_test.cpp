@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "renderer/media/media_march.h"
+#include "renderer/media/media_light.h"
 
 #include <gtest/gtest.h>
 

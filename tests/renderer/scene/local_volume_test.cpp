@@ -18,8 +18,8 @@
 #include "atmosphere/colour/spectrum.h"
 #include "atmosphere/math/constants.h"
 #include "renderer/media/local_media.h"
+#include "renderer/procedural_mountains/lattice_noise.h"
 #include "renderer/scene/scene_options.h"
-#include "renderer/terrain/lattice_noise.h"
 #include "tests/fixtures/fault_of.h"
 #include "tests/fixtures/temporary_folder.h"
 

@@ -15,8 +15,8 @@
 
 #include "atmosphere/astronomy/moon.h"
 #include "atmosphere/astronomy/sun.h"
+#include "atmosphere/astronomy/time_text.h"
 #include "atmosphere/base/error.h"
-#include "renderer/series/time_text.h"
 #include "tests/fixtures/event_days.h"
 #include "tests/fixtures/fault_of.h"
 

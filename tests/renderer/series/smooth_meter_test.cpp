@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The exposure of a series follows the light without steps of its own, also from noon to noon.
-#include "renderer/series/smooth_meter.h"
+#include "renderer/series/frame_exposure.h"
 
 #include <gtest/gtest.h>
 

@@ -11,10 +11,10 @@
 #include "atmosphere/math/constants.h"
 #include "atmosphere/reference/reference_solution.h"
 #include "atmosphere/refraction/refracted_view.h"
+#include "renderer/elevation/mesh.h"
 #include "renderer/layer.h"
 #include "renderer/picture/render.h"
-#include "renderer/surface/skyline.h"
-#include "renderer/terrain/mesh.h"
+#include "renderer/picture/sky_pixels.h"
 
 namespace alpenglow::renderer {
 namespace {

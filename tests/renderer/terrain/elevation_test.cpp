@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "renderer/terrain/elevation.h"
+#include "renderer/elevation/elevation.h"
 
 #include <gdal_priv.h>
 #include <gmock/gmock.h>

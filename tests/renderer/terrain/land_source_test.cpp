@@ -5,9 +5,9 @@
 #include <gtest/gtest.h>
 
 #include "atmosphere/base/error.h"
+#include "renderer/procedural_mountains/procedural_mountains.h"
 #include "renderer/scene/scene_options.h"
 #include "renderer/surface/scene_ground.h"
-#include "renderer/terrain/procedural_mountains.h"
 #include "renderer/terrain/terrain.h"
 #include "tests/renderer/terrain/land_files.h"
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Meshes of Wavefront OBJ files, and the triangles of their polygons.
-#include "renderer/terrain/obj_file.h"
+#include "renderer/elevation/obj_file.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -15,8 +15,8 @@
 #include <vector>
 
 #include "atmosphere/math/constants.h"
+#include "renderer/elevation/obj_file.h"
 #include "renderer/layer.h"
-#include "renderer/terrain/polygon_triangles.h"
 #include "tests/fixtures/fault_of.h"
 #include "tests/fixtures/temporary_folder.h"
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The built-in range: its noise, erosion, shape and view, and the file that keeps its heights.
-#include "renderer/terrain/procedural_mountains.h"
+#include "renderer/procedural_mountains/procedural_mountains.h"
 
 #include <gtest/gtest.h>
 
@@ -19,10 +19,10 @@
 #include <vector>
 
 #include "atmosphere/math/constants.h"
-#include "renderer/terrain/erosion.h"
-#include "renderer/terrain/land.h"
-#include "renderer/terrain/lattice_noise.h"
-#include "renderer/terrain/mesh.h"
+#include "renderer/elevation/mesh.h"
+#include "renderer/procedural_mountains/erosion.h"
+#include "renderer/procedural_mountains/land.h"
+#include "renderer/procedural_mountains/lattice_noise.h"
 #include "renderer/terrain/terrain.h"
 #include "tests/fixtures/temporary_folder.h"
 

@@ -21,7 +21,7 @@
 
 #include "atmosphere/base/error.h"
 #include "atmosphere/math/constants.h"
-#include "renderer/terrain/mesh.h"
+#include "renderer/elevation/mesh.h"
 
 namespace alpenglow::renderer {
 namespace {

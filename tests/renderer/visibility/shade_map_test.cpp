@@ -9,7 +9,7 @@
 
 #include "atmosphere/math/constants.h"
 #include "lut/camera_tables/air_tables.h"
-#include "renderer/terrain/mesh.h"
+#include "renderer/elevation/mesh.h"
 #include "tests/fixtures/rough_land.h"
 
 namespace alpenglow::renderer {

@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "atmosphere/math/constants.h"
-#include "renderer/terrain/procedural_mountains.h"
+#include "renderer/procedural_mountains/procedural_mountains.h"
 
 namespace alpenglow::viewer {
 namespace {

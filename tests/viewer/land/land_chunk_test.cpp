@@ -9,7 +9,7 @@
 #include <set>
 #include <utility>
 
-#include "renderer/terrain/mesh.h"
+#include "renderer/elevation/mesh.h"
 #include "tests/renderer/terrain/land_files.h"
 
 #ifdef __SANITIZE_ADDRESS__

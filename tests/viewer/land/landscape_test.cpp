@@ -9,7 +9,7 @@
 #include <glm/geometric.hpp>
 
 #include "atmosphere/astronomy/sun.h"
-#include "renderer/terrain/obj_file.h"
+#include "renderer/elevation/obj_file.h"
 #include "renderer/terrain/terrain.h"
 #include "tests/viewer/land/headless_land.h"
 #include "viewer/land/land_pass.h"

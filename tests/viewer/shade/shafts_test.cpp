@@ -8,7 +8,7 @@
 #include <random>
 
 #include "atmosphere/math/constants.h"
-#include "renderer/terrain/mesh.h"
+#include "renderer/elevation/mesh.h"
 #include "renderer/terrain/terrain.h"
 #include "renderer/visibility/shade_map.h"
 #include "renderer/visibility/shadow_heights.h"

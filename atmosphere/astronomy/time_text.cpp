@@ -1,0 +1,303 @@
+// SPDX-License-Identifier: MIT
+#include "atmosphere/astronomy/time_text.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <cmath>
+#include <utility>
+#include <vector>
+
+#include "atmosphere/astronomy/eclipse.h"
+#include "atmosphere/astronomy/moon.h"
+#include "atmosphere/astronomy/sun.h"
+#include "atmosphere/base/error.h"
+#include "atmosphere/base/parsing.h"
+#include "atmosphere/math/constants.h"
+
+namespace alpenglow::atmosphere {
+namespace {
+
+constexpr std::size_t kDateLength = 10;  // "2026-06-21"
+
+constexpr std::array<std::pair<std::string_view, int>, 3> kDayWords = {
+    {{"yesterday", -1}, {"today", 0}, {"tomorrow", 1}}};
+
+const std::vector<std::string> kEventNames = {"noon",
+                                              "midnight",
+                                              "sunrise",
+                                              "sunset",
+                                              "civil-dawn",
+                                              "civil-dusk",
+                                              "nautical-dawn",
+                                              "nautical-dusk",
+                                              "astronomical-dawn",
+                                              "astronomical-dusk",
+                                              "moonrise",
+                                              "moonset",
+                                              "moon-transit",
+                                              "first-contact",
+                                              "second-contact",
+                                              "eclipse-maximum",
+                                              "third-contact",
+                                              "last-contact",
+                                              "now"};
+
+bool IsDigit(char c) { return c >= '0' && c <= '9'; }
+
+struct EventText {
+  std::string_view name;    // "civil-dusk"
+  std::string_view offset;  // "+20m", or empty
+};
+
+/// Splits at the last sign that a digit follows: names can contain signs, but no digits.
+EventText SplitEvent(std::string_view text) {
+  for (std::size_t i = text.size(); i-- > 0;) {
+    const bool sign = text[i] == '+' || text[i] == '-';
+    if (sign && i + 1 < text.size() && IsDigit(text[i + 1])) {
+      return {text.substr(0, i), text.substr(i)};
+    }
+  }
+  return {text, {}};
+}
+
+double OffsetOf(const EventText& parts) {
+  return parts.offset.empty() ? 0.0 : ParseDuration(parts.offset);
+}
+
+bool IsNow(std::string_view text) { return SplitEvent(text).name == "now"; }
+
+std::optional<int> DaysFromToday(std::string_view word) {
+  for (const auto& [name, days] : kDayWords) {
+    if (name == word) return days;
+  }
+  return std::nullopt;
+}
+
+/// Returns "18:30" for "1830", also with "Z" after it; no value for other texts.
+std::optional<std::string> FourDigitClockTime(std::string_view text) {
+  const std::string_view zulu = text.ends_with('Z') ? "Z" : "";
+  text.remove_suffix(zulu.size());
+  if (text.size() != 4 || !std::all_of(text.begin(), text.end(), IsDigit)) return std::nullopt;
+  return fmt::format("{}:{}{}", text.substr(0, 2), text.substr(2), zulu);
+}
+
+/// Returns "18:00" for other notations: "6pm", "6:00 pm", "18h00", "18.00", "9:30"; no value for
+/// other texts.
+std::optional<std::string> ClockTimeMeant(std::string_view text) {
+  const auto number = [&](std::size_t most) {
+    int value = 0;
+    std::size_t digits = 0;
+    for (; digits < most && digits < text.size() && IsDigit(text[digits]); ++digits)
+      value = 10 * value + (text[digits] - '0');
+    text.remove_prefix(digits);
+    return digits > 0 ? std::optional<int>(value) : std::nullopt;
+  };
+  std::optional<int> hour = number(2);
+  const bool has_separator = !text.empty() && std::string_view(":.hH").find(text.front()) < 4;
+  if (has_separator) text.remove_prefix(1);
+  const int minute = has_separator ? number(2).value_or(0) : 0;
+  text.remove_prefix(std::min(text.find_first_not_of(' '), text.size()));
+  std::string half(text);
+  std::transform(half.begin(), half.end(), half.begin(),
+                 [](unsigned char letter) { return static_cast<char>(std::tolower(letter)); });
+  const bool is_afternoon = half == "pm" || half == "p.m.";
+  const bool is_half = is_afternoon || half == "am" || half == "a.m.";
+  if (!hour || (!is_half && !half.empty()) || (is_half && (*hour < 1 || *hour > 12)))
+    return std::nullopt;
+  if (is_half) hour = *hour % 12 + (is_afternoon ? 12 : 0);
+  if (*hour > 23 || minute > 59) return std::nullopt;
+  return fmt::format("{:02}:{:02}", *hour, minute);
+}
+
+/// Rejects a clock time in an unsupported notation, after a day or alone.
+void RefuseOtherClockTimes(std::string_view text) {
+  const bool after_day = text.size() > kDateLength + 1 && IsDayText(text.substr(0, kDateLength));
+  const std::string_view clock = after_day ? text.substr(kDateLength + 1) : text;
+  const std::optional<std::string> meant = ClockTimeMeant(clock);
+  if (!meant || clock.starts_with(*meant)) return;
+  throw InputError(
+      fmt::format("time \"{}\": \"{}\" is no time; did you mean {}?", text, clock, *meant));
+}
+
+[[noreturn]] void RefuseEvent(std::string_view name, std::string_view text) {
+  if (name.empty() && !text.empty()) {
+    throw InputError(fmt::format(
+        "time \"{}\": an offset follows a time: now+2h, sunrise+20m, 18:30+02:00", text));
+  }
+  const std::optional<std::string> nearest = NearestName(name, kEventNames);
+  throw InputError(fmt::format("time \"{}\": unknown event \"{}\"; {}", text, name,
+                               nearest
+                                   ? fmt::format("did you mean {}?", *nearest)
+                                   : fmt::format("known are {}", fmt::join(kEventNames, ", "))));
+}
+
+const UtcInstant& AroundOf(std::string_view text, const EventDay& day) {
+  if (!day.around) throw InputError(fmt::format("time \"{}\": of which day? give a date", text));
+  return *day.around;
+}
+
+/// Returns the position of the space before the time in "tomorrow 18:30" and "2026-06-21 sunrise";
+/// no value if there is no day in front, or only the digits of an instant that ParseInstant reads.
+std::optional<std::size_t> EndOfDay(std::string_view text) {
+  const std::size_t space = text.find(' ');
+  if (space == std::string_view::npos || space + 1 == text.size()) return std::nullopt;
+  const bool is_instant =
+      IsDigit(text[0]) && IsDigit(text[space + 1]) && !FourDigitClockTime(text.substr(space + 1));
+  if (is_instant || !IsDayText(text.substr(0, space))) return std::nullopt;
+  return space;
+}
+
+/// Returns the middle between two noons. The sun is lowest then, within the half minute by which
+/// noons are unevenly spaced.
+std::optional<UtcInstant> FindMidnight(const GeodeticPosition& place, const UtcInstant& around) {
+  const auto noon = FindSunEvent(SunEvent::kNoon, place, around);
+  const auto next = FindSunEvent(SunEvent::kNoon, place, AddSeconds(around, kSecondsPerDay));
+  return AddSeconds(noon.value(), 0.5 * SecondsBetween(noon.value(), next.value()));
+}
+
+/// Returns the event that falls on the date of `around` by the clocks of the place. Each event
+/// comes 50 minutes later from day to day, so once a month a date has none.
+std::optional<UtcInstant> FindMoonEvent(MoonEvent event, const UtcInstant& around,
+                                        const EventDay& day) {
+  constexpr double kBefore_s = 1.5 * kSecondsPerDay;  // the date can begin a day before
+  const std::string date = DateAt(around, day);
+  UtcInstant after = AddSeconds(around, -kBefore_s);
+  while (true) {
+    const std::optional<UtcInstant> next = NextMoonEvent(event, day.place, after);
+    if (!next || DateAt(*next, day) > date) return std::nullopt;
+    if (DateAt(*next, day) == date) return next;
+    after = AddSeconds(*next, 1.0);
+  }
+}
+
+std::optional<UtcInstant> FindEclipseEvent(EclipseEvent event, const UtcInstant& around,
+                                           const EventDay& day) {
+  const UtcInstant midnight = MeanSolarMidnight(WrappedLongitude(day.place.longitude_rad), around);
+  const auto eclipse = FindSolarEclipse(day.place, midnight, kSecondsPerDay);
+  return eclipse ? InstantOf(event, *eclipse) : std::nullopt;
+}
+
+/// Explains why the sun does not cross the height of an event on a day.
+std::string WhyNot(SunEvent event, const EventDay& day) {
+  const auto noon = FindSunEvent(SunEvent::kNoon, day.place, *day.around);
+  const bool above = IsAboveEvent(event, day.place, noon.value());
+  if (event == SunEvent::kSunrise || event == SunEvent::kSunset)
+    return above ? " (polar day: the sun stays above the horizon)"
+                 : " (polar night: the sun stays below the horizon)";
+  return above ? " (the night is light: the sun does not sink so far below the horizon)"
+               : " (polar night: the sun stays farther below the horizon)";
+}
+
+std::string NoSuchEvent(std::string_view text, const EventDay& day) {
+  const EventText parts = SplitEvent(text);
+  std::string fault =
+      fmt::format("time \"{}\": there is no {} on {} at latitude {:.4f}, longitude {:.4f}", text,
+                  parts.name, DateAt(*day.around, day), day.place.latitude_rad / kRadiansPerDegree,
+                  day.place.longitude_rad / kRadiansPerDegree);
+  if (EclipseEventFromName(parts.name)) return fault + ": no such eclipse of the sun";
+  if (const std::optional<SunEvent> sun = SunEventFromName(parts.name))
+    return fault + WhyNot(*sun, day);
+  const std::optional<MoonEvent> moon = MoonEventFromName(parts.name);
+  if (const auto next = NextMoonEvent(moon.value(), day.place, *day.around)) {
+    fault += fmt::format(" (the next is at {})", FormatUtc(*next));
+  }
+  return fault;
+}
+
+}  // namespace
+
+std::string DateAt(const UtcInstant& instant, const EventDay& day) {
+  if (day.zone) return FormatInZone(instant, *day.zone).substr(0, kDateLength);
+  const double turns = WrappedLongitude(day.place.longitude_rad) / (2.0 * kPi);
+  return FormatUtc(AddSeconds(instant, kSecondsPerDay * turns)).substr(0, kDateLength);
+}
+
+UtcInstant DayFromText(std::string_view date, const EventDay& day) {
+  if (const std::optional<int> days = DaysFromToday(date)) {
+    const UtcInstant noon_today = DayFromText(DateAt(day.now, day), day);
+    const UtcInstant near_noon = AddSeconds(noon_today, *days * kSecondsPerDay);
+    return DayFromText(DateAt(near_noon, day), day);  // the clocks can change in between
+  }
+  if (date.size() != kDateLength) {
+    throw InputError(
+        fmt::format("date is \"{}\"; write it as 2026-06-21, today, tomorrow or yesterday", date));
+  }
+  const std::string noon = fmt::format("{}T12:00:00", date);
+  if (day.zone) return ParseInstant(noon, day.zone);
+  const double turns = WrappedLongitude(day.place.longitude_rad) / (2.0 * kPi);
+  return AddSeconds(ParseInstant(noon + "Z"), -kSecondsPerDay * turns);
+}
+
+bool IsDayText(std::string_view text) {
+  return DaysFromToday(text).has_value() ||
+         (text.size() == kDateLength && IsDigit(text[0]) && text[4] == '-' && text[7] == '-');
+}
+
+TimeOfDay TimeOfDayFromText(std::string_view text, const EventDay& day) {
+  TimeOfDay time{std::string(text), day};
+  if (const std::optional<std::size_t> end = EndOfDay(text)) {
+    time.text = text.substr(*end + 1);
+    time.day.around = DayFromText(text.substr(0, *end), day);
+  }
+  return time;
+}
+
+bool IsClockTime(std::string_view text) {
+  return (text.size() >= 5 && IsDigit(text[0]) && IsDigit(text[1]) && text[2] == ':') ||
+         FourDigitClockTime(text).has_value();
+}
+
+bool IsDailyEvent(std::string_view text) {
+  return !text.empty() && !IsDigit(text.front()) && !IsNow(text) && !IsDayText(text) &&
+         !EndOfDay(text);
+}
+
+std::optional<UtcInstant> FindDailyEvent(std::string_view text, const EventDay& day) {
+  const EventText parts = SplitEvent(text);
+  if (parts.name.empty()) RefuseEvent(parts.name, text);
+  const double offset_s = OffsetOf(parts);
+  std::optional<UtcInstant> instant;
+  if (parts.name == "midnight") {
+    instant = FindMidnight(day.place, AroundOf(text, day));
+  } else if (const std::optional<SunEvent> sun = SunEventFromName(parts.name)) {
+    instant = FindSunEvent(*sun, day.place, AroundOf(text, day));
+  } else if (const std::optional<MoonEvent> moon = MoonEventFromName(parts.name)) {
+    instant = FindMoonEvent(*moon, AroundOf(text, day), day);
+  } else if (const std::optional<EclipseEvent> eclipse = EclipseEventFromName(parts.name)) {
+    instant = FindEclipseEvent(*eclipse, AroundOf(text, day), day);
+  } else {
+    RefuseEvent(parts.name, text);
+  }
+  if (instant) instant = AddSeconds(*instant, offset_s);
+  return instant;
+}
+
+UtcInstant InstantFromText(std::string_view text, const EventDay& day) {
+  if (IsNow(text)) return AddSeconds(day.now, OffsetOf(SplitEvent(text)));
+  if (EndOfDay(text)) {
+    const TimeOfDay time = TimeOfDayFromText(text, day);
+    return InstantFromText(time.text, time.day);
+  }
+  if (DaysFromToday(text)) return InstantFromText(fmt::format("{} noon", text), day);
+  if (IsDayText(text)) {
+    throw InputError(fmt::format(
+        "time \"{0}\": at what time of that day? write \"{0} 18:30\" or \"{0} sunrise\"", text));
+  }
+  if (const std::optional<std::string> clock = FourDigitClockTime(text))
+    return InstantFromText(*clock, day);
+  if (IsClockTime(text)) {
+    return ParseInstant(fmt::format("{}T{}", DateAt(AroundOf(text, day), day), text), day.zone);
+  }
+  if (!IsDailyEvent(text)) {
+    RefuseOtherClockTimes(text);
+    return ParseInstant(text, day.zone);
+  }
+  const std::optional<UtcInstant> instant = FindDailyEvent(text, day);
+  if (!instant) throw InputError(NoSuchEvent(text, day));
+  return *instant;
+}
+
+}  // namespace alpenglow::atmosphere

@@ -1,0 +1,67 @@
+// SPDX-License-Identifier: MIT
+// Parses times: instants, clock times of a day, events of sun and moon with an offset.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "atmosphere/time_place/geodesy.h"
+#include "atmosphere/time_place/time.h"
+
+namespace alpenglow::atmosphere {
+
+/// Place and day of "sunrise" and "18:30".
+struct EventDay {
+  GeodeticPosition place;
+  std::optional<std::string> zone;   // zone of local times, IANA
+  std::optional<UtcInstant> around;  // any instant of the day; required by events and clock times
+  UtcInstant now = Now();            // reference of "now", "today", "tomorrow", "yesterday"
+};
+
+/// Returns the day of an instant at a place, "2026-06-21": in the zone, or in mean solar time
+/// without a zone.
+[[nodiscard]] std::string DateAt(const UtcInstant& instant, const EventDay& day);
+
+/// Returns the noon, in the zone of `day` or in mean solar time without a zone, of "2026-06-21",
+/// "today", "tomorrow" or "yesterday". Throws InputError for text that is not a date.
+[[nodiscard]] UtcInstant DayFromText(std::string_view date, const EventDay& day);
+
+/// Returns whether DayFromText accepts a text: a day without a time.
+[[nodiscard]] bool IsDayText(std::string_view text);
+
+/// A time and the day that was written with it, if there was one: "2026-06-21 sunrise" gives the
+/// day and "sunrise".
+struct TimeOfDay {
+  std::string text;
+  EventDay day;
+};
+[[nodiscard]] TimeOfDay TimeOfDayFromText(std::string_view text, const EventDay& day);
+
+/// Returns whether a text is a clock time without a day: "18:30", "1830".
+[[nodiscard]] bool IsClockTime(std::string_view text);
+
+/// Returns whether a text denotes a different instant on every day ("sunrise-1h", not "now+1h",
+/// "18:30" or "2026-06-21 sunrise").
+[[nodiscard]] bool IsDailyEvent(std::string_view text);
+
+/// Returns the instant of a daily event on the day: an event of the sun on the day of mean solar
+/// time (FindSunEvent), of the moon on the date of DateAt, of an eclipse of the sun (EclipseEvent)
+/// whose maximum falls on the day of mean solar time, visible or not. No value if it does not
+/// happen that day (polar day and night; each event of the moon once a month). Throws InputError
+/// for an unknown event, naming the nearest, and for an event without a day.
+[[nodiscard]] std::optional<UtcInstant> FindDailyEvent(std::string_view text, const EventDay& day);
+
+/// Reads a time:
+/// - an instant, "2026-06-21T04:00:00Z" (ParseInstant), in the day's zone without Z or offset;
+/// - an event of the sun, the moon or an eclipse with an offset, "sunrise-1h", "noon",
+///   "civil-dusk", "midnight" (half way from the day's noon to the next), "moonrise",
+/// "second-contact-10s";
+/// - a clock time, "18:30", "18:30:15", "18:30Z", "1830", of the day;
+/// - an event or a clock time after a day: "2026-06-21 sunrise", "tomorrow 18:30", "today moonset";
+/// - "today", "tomorrow", "yesterday": the noon of that day;
+/// - "now", "now+2h".
+/// Throws InputError for other texts, and for an event that does not happen that day.
+[[nodiscard]] UtcInstant InstantFromText(std::string_view text, const EventDay& day);
+
+}  // namespace alpenglow::atmosphere
