@@ -2,8 +2,13 @@
 // skyseries renders pictures of a scene through the day. A single picture is a series of one.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <map>
 #include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "atmosphere/base/parsing.h"
 #include "atmosphere/math/constants.h"
@@ -24,45 +29,39 @@ bool IsTrack(const std::filesystem::path& file) {
   return HasExtension(file, ".gpx") || HasExtension(file, ".kml");
 }
 
-/// Returns the track of the options, if they name one.
-std::optional<Track> TrackOf(const SkyseriesOptions& options) {
-  if (!options.path || !IsTrack(*options.path)) return std::nullopt;
-  return ReadTrack(*options.path);
-}
-
 /// Returns the place of a path: its middle, from which most of it is visible. A flight over the
 /// built-in range begins at the view of the range.
-GeodeticPosition PlaceOfPath(const SkyseriesOptions& options, const std::optional<Track>& track) {
+GeodeticPosition PlaceOfPath(const std::string& file, const std::optional<Track>& track,
+                             bool over_range) {
   if (track) return track->points[track->points.size() / 2].place;
-  const std::vector<CameraPathPoint> points = ReadCameraPath(*options.path).points();
-  return points[options.scene.dem.empty() ? 0 : points.size() / 2].pose.place;
+  const std::vector<CameraPathPoint> points = ReadCameraPath(file).points();
+  return points[over_range ? 0 : points.size() / 2].pose.place;
 }
 
-/// Returns the scene options. Without a scene file and without a place, the path gives the place,
-/// except for a path over the built-in range at its home, where the range stays at its place.
-SceneOptions OptionsOfScene(const SkyseriesOptions& options, const std::optional<Track>& track) {
-  SceneOptions scene = options.scene;
-  if (!options.path || scene.place || scene.latitude || scene.longitude) return scene;
-  const GeodeticPosition place = PlaceOfPath(options, track);
-  if (!track && scene.dem.empty() && IsOnRangeAtHome(place)) return scene;
+/// Returns the scene options. Without a place, the path gives the place, except for a path over the
+/// built-in range at its home, where the range stays at its place.
+SceneOptions AlongPath(SceneOptions scene, const std::string& file,
+                       const std::optional<Track>& track) {
+  if (scene.place || scene.latitude || scene.longitude) return scene;
+  const bool over_range = scene.dem.empty();
+  const GeodeticPosition place = PlaceOfPath(file, track, over_range);
+  if (!track && over_range && IsOnRangeAtHome(place)) return scene;
   scene.latitude = place.latitude_rad / kRadiansPerDegree;
   scene.longitude = place.longitude_rad / kRadiansPerDegree;
   return scene;
 }
 
 Scene SceneOf(const SkyseriesOptions& options, const std::optional<Track>& track) {
-  Scene scene = options.scene_file.empty() ? SceneFromOptions(OptionsOfScene(options, track))
-                                           : ReadScene(options.scene_file);
+  if (!options.scene_file.empty()) return ReadScene(options.scene_file);
+  Scene scene = SceneFromOptions(options.path ? AlongPath(options.scene, *options.path, track)
+                                              : options.scene);
   if (options.scene.place) scene.zone = PlaceNamed(*options.scene.place).zone;
-  if (options.zone) scene.zone = options.zone;
   return scene;
 }
 
 /// Returns a track as a path; loads the ground unless the track's heights are above the sea.
-CameraPath PathOfTrack(const SkyseriesOptions& options, const Track& track, const Scene& scene) {
-  if (!track.note.empty())
-    Say(fmt::format("skyseries: warning: {}: {}\n", *options.path, track.note));
-  TrackStyle style = options.track;
+CameraPath PathOfTrack(const Track& track, TrackStyle style, const Scene& scene) {
+  if (!track.note.empty()) Say(fmt::format("skyseries: warning: {}: {}\n", track.file, track.note));
   style.fov_rad = scene.camera.fov_rad;
   std::optional<SceneGround> ground;
   return PathAlong(track, style, [&](const GeodeticPosition& place) {
@@ -71,56 +70,57 @@ CameraPath PathOfTrack(const SkyseriesOptions& options, const Track& track, cons
   });
 }
 
-std::optional<CameraPath> PathOf(const SkyseriesOptions& options, const std::optional<Track>& track,
-                                 const Scene& scene) {
-  if (!options.path) return std::nullopt;
-  if (track) return PathOfTrack(options, *track, scene);
-  const Camera& camera = scene.camera;
-  return ReadCameraPath(*options.path, {scene.place, camera.heading_rad, camera.pitch_rad,
-                                        camera.roll_rad, camera.fov_rad});
-}
-
-PathRate RateOf(const SkyseriesOptions& options) {
-  return {options.times.every, options.times.count, options.frames_per_second};
-}
-
-std::vector<Frame> FramesOf(const SkyseriesOptions& options, const Scene& scene,
-                            const std::optional<CameraPath>& path) {
-  EventDay day{scene.place, scene.zone, scene.time};
-  if (options.date) day.around = DayFromText(*options.date, day);
-  if (path) {
-    const auto start =
-        options.times.at.empty() ? scene.time : InstantFromText(options.times.at.front(), day);
-    if (!start && !path->UtcAt(0.0)) throw InputError("a path without utc needs a time: --at");
-    return FramesAlong(*path, RateOf(options), start.value_or(UtcInstant{}));
-  }
-  const bool typed = !options.times.at.empty() || options.times.from;
-  if (!typed && scene.time && !options.date) return {{0, *scene.time}};
-  return FramesFromTimes(options.times, day);
-}
-
-/// The options, read once into the values that a series needs, before anything is rendered.
+/// The series that the options describe, resolved once before anything is rendered.
 struct SeriesPlan {
-  explicit SeriesPlan(const SkyseriesOptions& options) : SeriesPlan(options, TrackOf(options)) {}
-
   Scene scene;
   std::optional<CameraPath> path;
   std::vector<Frame> frames, selected;
-  double shutter_s;  // on a path, the time that the shutter is open
+  double shutter = 0.0, interval_s = 0.0;  // on a path: fraction of the time between frames
 
   /// Returns the place of the eye in a frame; without a path, that of the scene.
   [[nodiscard]] GeodeticPosition PlaceOf(const Frame& frame) const {
     return path ? path->PoseAt(frame.path_s).place : scene.place;
   }
-
- private:
-  SeriesPlan(const SkyseriesOptions& options, const std::optional<Track>& track)
-      : scene(SceneOf(options, track)),
-        path(PathOf(options, track, scene)),
-        frames(FramesOf(options, scene, path)),
-        selected(options.frames ? SelectFrames(frames, *options.frames) : frames),
-        shutter_s(path ? options.shutter * FrameInterval(*path, RateOf(options)) : 0.0) {}
 };
+
+/// Returns the frames of a series that does not follow a path.
+std::vector<Frame> FramesAt(const TimesText& times, bool on_date, const Scene& scene,
+                            const EventDay& day) {
+  const bool typed = !times.at.empty() || times.from;
+  if (!typed && scene.time && !on_date) return {{0, *scene.time}};
+  return FramesFromTimes(times, day);
+}
+
+SeriesPlan PlanOf(const SkyseriesOptions& options) {
+  std::optional<Track> track;
+  if (options.path && IsTrack(*options.path)) track = ReadTrack(*options.path);
+  SeriesPlan plan;
+  plan.scene = SceneOf(options, track);
+  if (options.zone) plan.scene.zone = options.zone;
+  const Scene& scene = plan.scene;
+  if (track) {
+    plan.path = PathOfTrack(*track, options.track, scene);
+  } else if (options.path) {
+    plan.path = ReadCameraPath(*options.path,
+                               {scene.place, scene.camera.heading_rad, scene.camera.pitch_rad,
+                                scene.camera.roll_rad, scene.camera.fov_rad});
+  }
+  EventDay day{scene.place, scene.zone, scene.time};
+  if (options.date) day.around = DayFromText(*options.date, day);
+  const TimesText& times = options.times;
+  if (plan.path) {
+    const auto start = times.at.empty() ? scene.time : InstantFromText(times.at.front(), day);
+    if (!start && !plan.path->UtcAt(0.0)) throw InputError("a path without utc needs a time: --at");
+    const PathRate rate{times.every, times.count, options.frames_per_second};
+    plan.frames = FramesAlong(*plan.path, rate, start.value_or(UtcInstant{}));
+    plan.shutter = options.shutter;
+    plan.interval_s = FrameInterval(*plan.path, rate);
+  } else {
+    plan.frames = FramesAt(times, options.date.has_value(), scene, day);
+  }
+  plan.selected = options.frames ? SelectFrames(plan.frames, *options.frames) : plan.frames;
+  return plan;
+}
 
 std::vector<NamedFile> InputsOf(const SkyseriesOptions& options, const Scene& scene) {
   std::vector<NamedFile> inputs = FilesOf(scene);
@@ -138,46 +138,31 @@ std::unique_ptr<SceneRenderer> Load(const Scene& scene, Progress* progress) {
   return renderer;
 }
 
-Metadata MetadataOf(const Scene& scene, const std::optional<CameraPath>& path,
-                    const RenderSettings& settings, const SkyseriesOptions& options) {
-  Metadata metadata = PictureMetadata(scene, settings);
-  if (path) {
-    metadata["alpenglow.path"] =
-        fmt::format("hash {}, shutter {} of {} s", Fingerprint({{"path", TextOf(*path)}}),
-                    options.shutter, FrameInterval(*path, RateOf(options)));
-  }
-  if (ChoosesEffects(options)) {
-    metadata["alpenglow.effects"] += fmt::format(" within {}", BudgetOf(options).max_error);
-  }
-  return metadata;
-}
-
-/// Returns the file name if one is given.
-std::optional<std::filesystem::path> FileOf(const std::optional<std::string>& name) {
-  return name ? std::optional<std::filesystem::path>(*name) : std::nullopt;
-}
-
-RenderSettings SettingsOf(const SkyseriesOptions& options) {
-  const ImageSize size = ImageSizeFromText(options.size);
-  RenderSettings settings;
-  settings.width = size.width;
-  settings.height = size.height;
-  SetRays(options, settings);
-  settings.effects = EffectsOf(options);
-  settings.filter = PixelFilterFromName(options.filter);
-  settings.layers = LayersFromNames(options.layers);
-  if (options.night_vision) settings.layers.push_back(PictureLayer::kScotopic);
-  return settings;
+/// Returns the settings of the small picture that meters a series: 96 pixels along the longer side,
+/// with the effects of `settings`.
+RenderSettings PreviewSettings(const RenderSettings& settings, bool night_vision) {
+  constexpr int kLongSide = 96;
+  RenderSettings preview;
+  const int longest = std::max(settings.width, settings.height);
+  preview.width = std::max(settings.width * kLongSide / longest, 1);
+  preview.height = std::max(settings.height * kLongSide / longest, 1);
+  preview.effects = settings.effects;
+  preview.filter = settings.filter;
+  if (night_vision) preview.layers.push_back(PictureLayer::kScotopic);
+  return preview;
 }
 
 /// Renders the frames of a series. The renderer is built for the first frame that needs it. Sun and
 /// moon of a frame are computed once.
 class FramePictures {
  public:
-  FramePictures(const SeriesPlan& plan, const SkyseriesOptions& options)
-      : plan_(plan), options_(options), settings_(SettingsOf(options)) {}
-
-  [[nodiscard]] const RenderSettings& settings() const { return settings_; }
+  /// @param budget  of the choice of effects; none: all effects of the settings are rendered.
+  FramePictures(const SeriesPlan& plan, const RenderSettings& settings,
+                const std::optional<EffectBudget>& budget, bool night_vision)
+      : plan_(plan),
+        settings_(settings),
+        budget_(budget),
+        preview_(PreviewSettings(settings, night_vision)) {}
 
   [[nodiscard]] NotedPicture Render(const Frame& frame, Progress& progress) {
     settings_.progress = &progress;
@@ -193,7 +178,7 @@ class FramePictures {
     return behind_filter * Loaded(nullptr).Illuminance(ShotAt(frame));
   }
   [[nodiscard]] Image Small(const Frame& frame) {
-    return Loaded(nullptr).Render(ShotAt(frame), PreviewSettings(settings_, options_));
+    return Loaded(nullptr).Render(ShotAt(frame), preview_);
   }
 
  private:
@@ -202,8 +187,9 @@ class FramePictures {
     return *renderer_;
   }
   [[nodiscard]] CameraSample ShotAt(const Frame& frame) {
-    CameraSample camera_sample = plan_.path ? CameraSampleOf(frame, *plan_.path, plan_.shutter_s)
-                                            : CameraSample(frame.instant);
+    CameraSample camera_sample =
+        plan_.path ? CameraSampleOf(frame, *plan_.path, plan_.shutter * plan_.interval_s)
+                   : CameraSample(frame.instant);
     const auto known = bodies_.find(frame.number);
     camera_sample.bodies =
         known != bodies_.end()
@@ -214,12 +200,12 @@ class FramePictures {
   }
   [[nodiscard]] NotedPicture Rendered(const SceneRenderer& renderer,
                                       const CameraSample& camera_sample) const {
-    if (!ChoosesEffects(options_) && !options_.explain) {
+    if (!budget_) {
       CountedPicture picture = renderer.RenderCounted(camera_sample, settings_);
       return {std::move(picture.image), NotesOn(picture.rays, settings_)};
     }
-    ChosenPicture picture = renderer.RenderWithin(camera_sample, settings_, BudgetOf(options_));
-    if (options_.explain)
+    ChosenPicture picture = renderer.RenderWithin(camera_sample, settings_, *budget_);
+    if (budget_->explain)
       Print(fmt::format("{}\n{}\n", FormatUtc(camera_sample.instant), ExplainText(picture.choice)));
     Metadata notes = NotesOn(picture.choice);
     notes.merge(NotesOn(picture.rays, settings_));
@@ -227,18 +213,31 @@ class FramePictures {
   }
 
   const SeriesPlan& plan_;
-  const SkyseriesOptions& options_;
   RenderSettings settings_;
+  const std::optional<EffectBudget>& budget_;
+  const RenderSettings preview_;
   std::unique_ptr<SceneRenderer> renderer_;
   std::map<int, SkyBodies> bodies_;  // by the number of the frame
 };
 
-SeriesSource SourceOf(const SeriesPlan& plan, const SkyseriesOptions& options,
-                      FramePictures& pictures) {
+Metadata MetadataOf(const SeriesPlan& plan, const RenderSettings& settings,
+                    const std::optional<EffectBudget>& budget) {
+  Metadata metadata = PictureMetadata(plan.scene, settings);
+  if (plan.path) {
+    metadata["alpenglow.path"] =
+        fmt::format("hash {}, shutter {} of {} s", Fingerprint({{"path", TextOf(*plan.path)}}),
+                    plan.shutter, plan.interval_s);
+  }
+  if (budget && budget->leave_out)
+    metadata["alpenglow.effects"] += fmt::format(" within {}", budget->max_error);
+  return metadata;
+}
+
+SeriesSource SourceOf(const SeriesPlan& plan, Metadata metadata, FramePictures& pictures) {
   const Scene& scene = plan.scene;
   return {[&](const Frame& frame, Progress& progress) { return pictures.Render(frame, progress); },
           [&](const Frame& frame) { return pictures.Illuminance(frame); },
-          MetadataOf(scene, plan.path, pictures.settings(), options),
+          std::move(metadata),
           scene.place,
           scene.zone,
           plan.path,
@@ -248,30 +247,10 @@ SeriesSource SourceOf(const SeriesPlan& plan, const SkyseriesOptions& options,
           scene.medium.follows_wgs84};
 }
 
-SeriesOutput OutputOf(const SkyseriesOptions& options) {
-  SeriesOutput output{FrameName(options.out)};
-  output.png = options.png;
-  output.exposure = ExposureRuleFromText(options.exposure);
-  output.look = LookFromName(options.tone_curve);
-  output.look.agx = AgxLookFromName(options.look);
-  output.look.night_vision = options.night_vision;
-  output.look.white = WhiteBalanceFromText(options.white_balance);
-  output.look = LookUnder(output.exposure, output.look);
-  output.glare = options.glare == "eye";
-  output.resume = options.resume;
-  output.contact_sheet = FileOf(options.contact_sheet);
-  output.keogram = FileOf(options.keogram);
-  output.plot = FileOf(options.plot);
-  output.video = FileOf(options.video);
-  output.video_frames_per_s = options.frames_per_second;
-  output.progress = options.common.progress_style();
-  return output;
-}
-
-void List(const SkyseriesOptions& options) {
-  const SeriesPlan plan(options);
+/// Prints the frames.
+void List(const SeriesPlan& plan, const std::string& out) {
   std::optional<FrameName> name;
-  if (!options.out.empty()) name.emplace(options.out);
+  if (!out.empty()) name.emplace(out);
   std::vector<FrameRecord> records;
   for (const Frame& frame : plan.selected) {
     FrameRecord& record =
@@ -292,12 +271,14 @@ void PrintSummary(const SeriesSummary& summary) {
 
 int Run(const SkyseriesOptions& options) {
   const ThreadLimit threads(options.common.threads);
-  SeriesOutput output = OutputOf(options);
-  const SeriesPlan plan(options);
+  SeriesOutput output = options.output;
+  output.name = FrameName(options.out);
+  const SeriesPlan plan = PlanOf(options);
   output.inputs = InputsOf(options, plan.scene);
-  FramePictures pictures(plan, options);
-  const SeriesSummary summary =
-      RunSeries(SourceOf(plan, options, pictures), plan.frames, plan.selected, output);
+  FramePictures pictures(plan, options.settings, options.budget, output.look.night_vision);
+  const SeriesSource source =
+      SourceOf(plan, MetadataOf(plan, options.settings, options.budget), pictures);
+  const SeriesSummary summary = RunSeries(source, plan.frames, plan.selected, output);
   if (!options.common.quiet) PrintSummary(summary);
   return 0;
 }
@@ -317,7 +298,7 @@ int Main(int argc, char** argv) {
   } else if (app.got_subcommand("times")) {
     times();
   } else if (options.list) {
-    List(options);
+    List(PlanOf(options), options.out);
   } else {
     return Run(options);
   }

@@ -5,7 +5,8 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
+#include <filesystem>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -16,9 +17,11 @@
 #include "lut/image/look.h"
 #include "renderer/camera/camera_rays.h"
 #include "renderer/camera/track.h"
+#include "renderer/effects/effect_choice.h"
 #include "renderer/picture/render.h"
 #include "renderer/scene/scene_options.h"
 #include "renderer/series/frame_times.h"
+#include "renderer/series/series.h"
 
 namespace alpenglow::renderer {
 
@@ -42,23 +45,32 @@ inline constexpr char kSkyseriesFooter[] =
     "  skyseries --dem N46E008.hgt --path walk.gpx --every 2s --out 'out/w.%04d.exr' --video "
     "walk.mp4";
 
-/// Options as typed; their texts are parsed later, against the scene.
+/// The command line. Times stay texts until the scene is known, which gives them a zone and a day.
 struct SkyseriesOptions {
   CommonOptions common;
   std::string scene_file;
   SceneOptions scene;
-  TimesText times;
-  std::optional<std::string> date, zone, frames, contact_sheet, keogram, plot, video;
-  std::string out, size = "1280x720", exposure = "auto", tone_curve = "agx", look = "photo",
-                   filter = "blackman-harris", glare = "none", white_balance = "camera";
-  std::optional<int> samples;
   std::optional<std::string> path;
   TrackStyle track;
+  TimesText times;
+  std::optional<std::string> date, zone, frames;
   double frames_per_second = 25.0, shutter = 0.0;
-  std::vector<std::string> layers;
+  RenderSettings settings;
+  std::optional<EffectBudget> budget;  // effects are chosen or explained for each picture
+  std::string out;
+  SeriesOutput output{FrameName("frame.exr")};  // the name is set from `out`
+  bool list = false;
+};
+
+/// Texts of the options of light and picture, as typed. ReadPictureOptions reads them once the
+/// whole command line is known, because they depend on each other.
+struct PictureOptionTexts {
+  std::string size = "1280x720", exposure = "auto", tone_curve = "agx", look = "photo",
+              filter = "blackman-harris", glare = "none", white_balance = "camera";
+  std::optional<int> samples;
   std::optional<std::string> effects, max_error, noise;
-  bool png = false, night_vision = false, no_shafts = false, explain = false, resume = false,
-       list = false;
+  std::vector<std::string> layers;
+  bool night_vision = false, no_shafts = false, explain = false;
 };
 
 /// Adds an option that replaces a part of the scene file, and cannot be given together with one.
@@ -161,11 +173,12 @@ inline void AddTimeOptions(CLI::App& app, SkyseriesOptions& options) {
       if (*option && !*from && !*path) {
         throw CLI::RequiresError(option->get_name(), "--from or --path");
       }
-      if (*option && *fps && !options.video) {
+      if (*option && *fps && !options.output.video) {
         throw CLI::ExcludesError(option->get_name(), "--fps");
       }
     }
-    if (*fps && !*path && !options.video) throw CLI::RequiresError("--fps", "--path or --video");
+    if (*fps && !*path && !options.output.video)
+      throw CLI::RequiresError("--fps", "--path or --video");
   });
 }
 
@@ -178,53 +191,53 @@ inline void AddAirOptions(CLI::App& app, SkyseriesOptions& options) {
                  "Light pollution of the night sky: class 1 (dark) to 9 (city)");
 }
 
-inline void AddDisplayOptions(CLI::App& app, SkyseriesOptions& options) {
-  app.add_option("--exposure", options.exposure,
+inline void AddDisplayOptions(CLI::App& app, PictureOptionTexts& texts) {
+  app.add_option("--exposure", texts.exposure,
                  "Exposure: auto (each picture is metered; in a series the exposure changes "
                  "smoothly), eye (metered, but dusk and night stay darker than day, as for an eye "
                  "that adapts only in part), incident (the light on the ground is metered in each "
                  "frame; smooth from day to night) or an EV at ISO 100, -30 to 30")
       ->check(ReadableBy([](const std::string& text) { (void)ExposureRuleFromText(text); }))
       ->capture_default_str();
-  app.add_option("--white-balance", options.white_balance, kWhiteBalanceHelp)
+  app.add_option("--white-balance", texts.white_balance, kWhiteBalanceHelp)
       ->check(ReadableBy([](const std::string& text) { (void)WhiteBalanceFromText(text); }))
       ->capture_default_str();
-  app.add_option("--tone-map", options.tone_curve, kToneMapHelp)
+  app.add_option("--tone-map", texts.tone_curve, kToneMapHelp)
       ->check(CLI::IsMember({"agx", "aces", "reinhard", "pbr-neutral", "linear", "local"}))
       ->capture_default_str();
-  app.add_option("--look", options.look, kLookHelp)
+  app.add_option("--look", texts.look, kLookHelp)
       ->check(CLI::IsMember(AgxLookNames()))
       ->capture_default_str();
-  app.add_flag("--night-vision", options.night_vision, kNightVisionHelp);
-  app.add_option("--glare", options.glare,
+  app.add_flag("--night-vision", texts.night_vision, kNightVisionHelp);
+  app.add_option("--glare", texts.glare,
                  "\"eye\" adds to the PNG the light that the eye scatters around sun and lamps. It "
                  "does not change the EXR and needs a perspective camera")
       ->check(CLI::IsMember({"none", "eye"}))
       ->capture_default_str();
 }
 
-inline void AddRayOptions(CLI::App& app, SkyseriesOptions& options) {
-  app.add_option("--samples", options.samples,
+inline void AddRayOptions(CLI::App& app, PictureOptionTexts& texts) {
+  app.add_option("--samples", texts.samples,
                  "Rays per pixel, 1 to 1024. Powers of two are distributed best; pictures with 1 "
                  "are not smoothed. With --noise, the number of first rays, at least 2 (default: "
                  "4, and --noise)")
       ->check(CLI::Range(1, PixelSamples::kMostSamples));
-  app.add_option("--noise", options.noise,
+  app.add_option("--noise", texts.noise,
                  "Use more rays, up to 256, in pixels whose noise exceeds this fraction of their "
                  "brightness, 1e-8 to 1 or in percent (default: 2%; with --samples alone all "
                  "pixels have the same number of rays)")
       ->check(FaultOfRelativeError);
-  app.add_option("--filter", options.filter,
+  app.add_option("--filter", texts.filter,
                  "Pixel filter. box is sharpest and has the most aliasing; gaussian has the least "
                  "aliasing")
       ->check(CLI::IsMember(PixelFilterNames()))
       ->capture_default_str();
 }
 
-inline void AddEffectOptions(CLI::App& app, SkyseriesOptions& options) {
+inline void AddEffectOptions(CLI::App& app, PictureOptionTexts& texts) {
   CLI::Option* effects =
       app.add_option(
-             "--effects", options.effects,
+             "--effects", texts.effects,
              "Effects to render: all; auto, those that each picture needs to stay within "
              "--max-error; or a list of names: " +
                  NamesOfEffects() +
@@ -234,58 +247,112 @@ inline void AddEffectOptions(CLI::App& app, SkyseriesOptions& options) {
           ->check(ReadableBy([](const std::string& text) {
             if (text != "auto") (void)EffectsFromText(text);
           }));
-  app.add_option("--max-error", options.max_error,
+  app.add_option("--max-error", texts.max_error,
                  "Largest error caused by leaving effects out: root mean square of the relative "
                  "changes of pixels, 1e-8 to 1 or in percent (default: 1%)")
       ->check(FaultOfRelativeError);
-  app.add_flag("--no-shafts", options.no_shafts,
+  app.add_flag("--no-shafts", texts.no_shafts,
                "Light the air as if terrain cast no shadows into it, for comparison")
       ->excludes(effects);
-  app.callback([&options] {
-    if (options.noise && options.samples == 1)
-      throw CLI::ValidationError("--noise", "needs --samples of 2 at least");
-    if (options.max_error && options.effects.value_or("auto") != "auto")
-      throw CLI::ValidationError("--max-error", "goes with --effects auto");
-  });
 }
 
-inline void AddPictureOptions(CLI::App& app, SkyseriesOptions& options) {
+/// Returns the settings of the pictures.
+[[nodiscard]] inline RenderSettings SettingsFrom(const PictureOptionTexts& texts) {
+  const ImageSize size = ImageSizeFromText(texts.size);
+  RenderSettings settings;
+  settings.width = size.width;
+  settings.height = size.height;
+  if (texts.samples) settings.samples_per_pixel = *texts.samples;
+  if (texts.noise || !texts.samples)
+    settings.noise = RelativeErrorFromText(texts.noise.value_or("2%"));
+  const std::string effects = texts.effects.value_or(texts.max_error ? "auto" : "all");
+  settings.effects = texts.no_shafts     ? EffectSet::All().Without(Effect::kShafts)
+                     : effects == "auto" ? EffectSet::All()
+                                         : EffectsFromText(effects);
+  settings.filter = PixelFilterFromName(texts.filter);
+  settings.layers = LayersFromNames(texts.layers);
+  if (texts.night_vision) settings.layers.push_back(PictureLayer::kScotopic);
+  return settings;
+}
+
+/// Returns the budget of the choice of effects, if effects are chosen or explained.
+[[nodiscard]] inline std::optional<EffectBudget> BudgetFrom(const PictureOptionTexts& texts) {
+  const bool chooses = texts.max_error || texts.effects.value_or("all") == "auto";
+  if (!chooses && !texts.explain) return std::nullopt;
+  return EffectBudget{
+      .max_error = RelativeErrorFromText(texts.max_error.value_or("1%")).value_or(0.01),
+      .explain = texts.explain,
+      .leave_out = chooses};
+}
+
+/// Sets exposure and look of the developed pictures.
+inline void SetDevelopment(const PictureOptionTexts& texts, SeriesOutput& output) {
+  output.exposure = ExposureRuleFromText(texts.exposure);
+  output.look = LookFromName(texts.tone_curve);
+  output.look.agx = AgxLookFromName(texts.look);
+  output.look.night_vision = texts.night_vision;
+  output.look.white = WhiteBalanceFromText(texts.white_balance);
+  output.look = LookUnder(output.exposure, output.look);
+  output.glare = texts.glare == "eye";
+}
+
+/// Reads the texts into the options when the command line has been parsed. Throws ValidationError
+/// for options that exclude each other.
+inline void ReadPictureOptions(const PictureOptionTexts& texts, SkyseriesOptions& options) {
+  if (texts.noise && texts.samples == 1)
+    throw CLI::ValidationError("--noise", "needs --samples of 2 at least");
+  if (texts.max_error && texts.effects.value_or("auto") != "auto")
+    throw CLI::ValidationError("--max-error", "goes with --effects auto");
+  options.settings = SettingsFrom(texts);
+  options.budget = BudgetFrom(texts);
+  SetDevelopment(texts, options.output);
+  options.output.video_frames_per_s = options.frames_per_second;
+  options.output.progress = options.common.progress_style();
+}
+
+inline void AddPictureOptions(CLI::App& app, PictureOptionTexts& texts) {
   BeginGroup(app, kPictureGroup);
-  app.add_option("--size", options.size, "Width x height in pixels, 1 to 16384 each")
+  app.add_option("--size", texts.size, "Width x height in pixels, 1 to 16384 each")
       ->check(ReadableBy([](const std::string& text) { (void)ImageSizeFromText(text); }))
       ->capture_default_str();
-  AddDisplayOptions(app, options);
-  AddRayOptions(app, options);
-  AddEffectOptions(app, options);
+  AddDisplayOptions(app, texts);
+  AddRayOptions(app, texts);
+  AddEffectOptions(app, texts);
 }
 
-inline void AddOutputOptions(CLI::App& app, SkyseriesOptions& options) {
+/// Adds an option that names a file of the whole series.
+inline CLI::Option* AddFile(CLI::App& app, const char* name,
+                            std::optional<std::filesystem::path>& file, const char* extension,
+                            const char* text) {
+  return app
+      .add_option_function<std::string>(
+          name, [&file](const std::string& typed) { file = typed; }, text)
+      ->check([extension](const std::string& typed) { return FaultOfFileName(typed, extension); });
+}
+
+inline void AddOutputOptions(CLI::App& app, SkyseriesOptions& options, PictureOptionTexts& texts) {
   BeginGroup(app, kOutputGroup);
   app.add_option("--out", options.out, "EXR files, with %04d for the frame number")->required();
-  app.add_flag("--png", options.png, "Write a tone-mapped PNG next to every EXR");
+  app.add_flag("--png", options.output.png, "Write a tone-mapped PNG next to every EXR");
   app.add_option(
-         "--aov", options.layers,
+         "--aov", texts.layers,
          "Additional layers in the EXR, separated by commas. For polarised light: stokes_q and "
          "stokes_u (linear sRGB in cd/m^2) and polarisation (degree 0 to 1 and angle in degrees "
          "clockwise from the vertical of the picture, for luminance)")
       ->delimiter(',')
       ->allow_extra_args(false)
       ->check(CLI::IsMember(LayerNames()));
-  app.add_option("--video", options.video,
-                 "Film of all frames of this run (.mp4, .mov, .mkv) with --fps frames per second; "
-                 "needs ffmpeg")
-      ->check([](const std::string& name) { return FaultOfFileName(name, ""); });
-  app.add_option("--contact-sheet", options.contact_sheet,
-                 "PNG with small copies of all frames of this run")
-      ->check([](const std::string& name) { return FaultOfFileName(name, ".png"); });
-  app.add_option("--keogram", options.keogram,
-                 "PNG of the middle column of every frame of this run, side by side")
-      ->check([](const std::string& name) { return FaultOfFileName(name, ".png"); });
-  app.add_option("--plot", options.plot,
-                 "SVG of the elevation of sun and moon, the light on level ground and the exposure "
-                 "over the time of the series")
-      ->check([](const std::string& name) { return FaultOfFileName(name, ".svg"); });
-  app.add_flag("--resume", options.resume,
+  AddFile(app, "--video", options.output.video, "",
+          "Film of all frames of this run (.mp4, .mov, .mkv) with --fps frames per second; needs "
+          "ffmpeg");
+  AddFile(app, "--contact-sheet", options.output.contact_sheet, ".png",
+          "PNG with small copies of all frames of this run");
+  AddFile(app, "--keogram", options.output.keogram, ".png",
+          "PNG of the middle column of every frame of this run, side by side");
+  AddFile(app, "--plot", options.output.plot, ".svg",
+          "SVG of the elevation of sun and moon, the light on level ground and the exposure over "
+          "the time of the series");
+  app.add_flag("--resume", options.output.resume,
                "Keep intact frames that were made with the same settings, and remove unfinished "
                "files of killed runs on this machine");
   app.add_flag_callback(
@@ -297,57 +364,19 @@ inline void AddOutputOptions(CLI::App& app, SkyseriesOptions& options) {
       "Print the frames as CSV, with sun and moon, and render nothing; needs no --out");
 }
 
-/// Sets the number of rays per pixel.
-inline void SetRays(const SkyseriesOptions& options, RenderSettings& settings) {
-  if (options.samples) settings.samples_per_pixel = *options.samples;
-  if (options.noise || !options.samples)
-    settings.noise = RelativeErrorFromText(options.noise.value_or("2%"));
-}
-
-/// Returns the settings of the small picture that meters a series: 96 pixels along the longer side,
-/// with the effects of `settings`.
-inline RenderSettings PreviewSettings(const RenderSettings& settings,
-                                      const SkyseriesOptions& options) {
-  constexpr int kLongSide = 96;
-  RenderSettings preview;
-  const int longest = std::max(settings.width, settings.height);
-  preview.width = std::max(settings.width * kLongSide / longest, 1);
-  preview.height = std::max(settings.height * kLongSide / longest, 1);
-  preview.effects = settings.effects;
-  preview.filter = settings.filter;
-  if (options.night_vision) preview.layers.push_back(PictureLayer::kScotopic);
-  return preview;
-}
-
-/// Returns whether effects are chosen for each picture.
-inline bool ChoosesEffects(const SkyseriesOptions& options) {
-  return options.max_error || options.effects.value_or("all") == "auto";
-}
-
-/// Returns the effects that pictures may use.
-inline EffectSet EffectsOf(const SkyseriesOptions& options) {
-  if (options.no_shafts) return EffectSet::All().Without(Effect::kShafts);
-  return ChoosesEffects(options) ? EffectSet::All()
-                                 : EffectsFromText(options.effects.value_or("all"));
-}
-
-inline EffectBudget BudgetOf(const SkyseriesOptions& options) {
-  return {.max_error = RelativeErrorFromText(options.max_error.value_or("1%")).value_or(0.01),
-          .explain = options.explain,
-          .leave_out = ChoosesEffects(options)};
-}
-
 inline void AddSkyseriesOptions(CLI::App& app, SkyseriesOptions& options) {
+  const auto texts = std::make_shared<PictureOptionTexts>();
   AddPlaceOptions(app, options);
   AddPathOptions(app, options);
   AddTimeOptions(app, options);
   AddAirOptions(app, options);
-  AddPictureOptions(app, options);
-  AddOutputOptions(app, options);
+  AddPictureOptions(app, *texts);
+  AddOutputOptions(app, options, *texts);
   AddCommonOptions(app, "skyseries", options.common);
-  app.add_flag("--explain", options.explain,
+  app.add_flag("--explain", texts->explain,
                "Print for each picture what each effect changes, what it costs, and whether it is "
                "kept");
+  app.callback([texts, &options] { ReadPictureOptions(*texts, options); });
   app.footer(kSkyseriesFooter);
 }
 

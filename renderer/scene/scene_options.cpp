@@ -71,11 +71,9 @@ struct View {
   double heading, pitch, fov;
 };
 
-bool IsPlaceTyped(const SceneOptions& options) {
-  return options.place || options.latitude || options.longitude;
-}
-
-GeodeticPosition PlaceTyped(const SceneOptions& options) {
+/// Returns the place of the options on the ellipsoid, if they give one.
+std::optional<GeodeticPosition> PlaceTyped(const SceneOptions& options) {
+  if (!options.place && !options.latitude && !options.longitude) return std::nullopt;
   double latitude = kHomeLatitude, longitude = kHomeLongitude;
   if (options.place) {
     const GeodeticPosition& place = PlaceNamed(*options.place).place;
@@ -90,17 +88,28 @@ GeodeticPosition Home() { return PlaceFromDegrees(kHomeLatitude, kHomeLongitude,
 
 /// Returns the built-in range, moved to a place given on the command line, or else around
 /// kHomeLatitude and kHomeLongitude.
-TerrainSource RangeOf(const SceneOptions& options) {
-  if (IsPlaceTyped(options)) return RangeSeenFrom(PlaceTyped(options));
+TerrainSource RangeOf(const std::optional<GeodeticPosition>& typed) {
+  if (typed) return RangeSeenFrom(*typed);
   TerrainSource range;
   range.centre = Home();
   range.is_default = false;  // so that no other terrain is searched for there
   return range;
 }
 
-View ViewOfTheRange(const SceneOptions& options) {
-  const BuiltInView view = ProceduralMountainsViewAboveGround(*RangeOf(options).centre);
-  GeodeticPosition place = IsPlaceTyped(options) ? PlaceTyped(options) : view.eye;
+TerrainSource ElevationModelsOf(const std::vector<std::string>& dem) {
+  TerrainSource terrain;
+  terrain.kind = TerrainSource::Kind::kElevationModel;
+  terrain.file = dem.front();
+  terrain.more_files.assign(dem.begin() + 1, dem.end());
+  return terrain;
+}
+
+/// Returns the default view: that of the range, or horizontally to the north.
+View ViewOf(const TerrainSource& terrain, const std::optional<GeodeticPosition>& typed) {
+  if (terrain.kind == TerrainSource::Kind::kElevationModel)
+    return {typed.value_or(Home()), Height{}, 0.0, 0.0, 60.0};
+  const BuiltInView view = ProceduralMountainsViewAboveGround(*terrain.centre);
+  GeodeticPosition place = typed.value_or(view.eye);
   place.height_m = 0.0;
   return {place, Height{view.eye.height_m, true}, view.heading_deg, view.pitch_deg, view.fov_deg};
 }
@@ -145,9 +154,10 @@ TerrainSource RangeSeenFrom(const GeodeticPosition& place) {
 }
 
 Scene SceneFromOptions(const SceneOptions& options) {
-  const View view = options.dem.empty() ? ViewOfTheRange(options)
-                                        : View{PlaceTyped(options), Height{}, 0.0, 0.0, 60.0};
+  const std::optional<GeodeticPosition> typed = PlaceTyped(options);
   Scene scene;
+  scene.terrain = options.dem.empty() ? RangeOf(typed) : ElevationModelsOf(options.dem);
+  const View view = ViewOf(scene.terrain, typed);
   scene.place = view.place;
   scene.time = ParseInstant("2026-06-21T12:00:00Z");
   scene.camera = CameraFromDegrees(
@@ -157,13 +167,6 @@ Scene SceneFromOptions(const SceneOptions& options) {
   if (options.bortle) {
     RequireInRange(*options.bortle, 1.0, 9.0, "--bortle");
     scene.town_zenith = ZenithOfBortleClass(*options.bortle);
-  }
-  if (options.dem.empty()) {
-    scene.terrain = RangeOf(options);
-  } else {
-    scene.terrain.kind = TerrainSource::Kind::kElevationModel;
-    scene.terrain.file = options.dem.front();
-    scene.terrain.more_files.assign(options.dem.begin() + 1, options.dem.end());
   }
   return scene;
 }

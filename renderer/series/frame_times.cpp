@@ -112,38 +112,40 @@ UtcInstant EndOf(const TimesText& times, const EventDay& day, const UtcInstant& 
   return InstantFromText(*times.to, next);
 }
 
-std::vector<Frame> Numbered(const std::vector<UtcInstant>& instants) {
-  std::vector<Frame> frames;
-  for (const UtcInstant& instant : instants) {
-    frames.push_back({static_cast<int>(frames.size()), instant});
-  }
-  return frames;
-}
+/// The time between frames.
+struct Step {
+  std::string text;
+  double seconds;
+  bool is_whole_days;
 
-double StepOf(const std::string& every) {
-  const double step_s = ParseDuration(every);
-  if (!(step_s > 0.0)) {
-    throw InputError(fmt::format("--every is {}; it must be longer than nothing", every));
+  /// Throws InputError for a text that is no positive duration.
+  explicit Step(const std::string& every)
+      : text(every),
+        seconds(ParseDuration(every)),
+        is_whole_days(std::fmod(seconds, kSecondsPerDay) == 0.0) {
+    if (!(seconds > 0.0))
+      throw InputError(fmt::format("--every is {}; it must be longer than nothing", every));
   }
-  return step_s;
-}
+
+  /// Returns the seconds from the first frame to frame i.
+  [[nodiscard]] double After(int i) const { return i * seconds; }
+};
 
 /// Returns the number of steps that fit into a span.
-int StepsIn(double span_s, const std::string& every) {
+int StepsIn(double span_s, const Step& every) {
   constexpr double kRounding_s = 1e-6;  // rounding of the event search and of sums of durations
-  const double steps = std::floor((span_s + kRounding_s) / StepOf(every));
+  const double steps = std::floor((span_s + kRounding_s) / every.seconds);
   if (steps >= kMostFrames) {
-    throw InputError(fmt::format("--every {} gives {:.0f} frames; there may be {}", every,
+    throw InputError(fmt::format("--every {} gives {:.0f} frames; there may be {}", every.text,
                                  steps + 1.0, kMostFrames));
   }
   return static_cast<int>(steps);
 }
 
-std::vector<UtcInstant> EverySeconds(const UtcInstant& from, double span_s,
-                                     const std::string& every) {
+std::vector<UtcInstant> EverySeconds(const UtcInstant& from, double span_s, const Step& every) {
   std::vector<UtcInstant> instants;
   const int steps = StepsIn(span_s, every);
-  for (int i = 0; i <= steps; ++i) instants.push_back(AddSeconds(from, i * StepOf(every)));
+  for (int i = 0; i <= steps; ++i) instants.push_back(AddSeconds(from, every.After(i)));
   return instants;
 }
 
@@ -161,11 +163,11 @@ UtcInstant ClockTimeOn(const std::string& date_and_clock, const std::string& zon
 
 /// Returns whether `every` counts whole calendar days of a zone, so that clocks show the same time
 /// at every frame.
-bool IsOfCalendarDays(const std::string& every, const EventDay& day) {
-  return day.zone && every.ends_with('d') && std::fmod(StepOf(every), kSecondsPerDay) == 0.0;
+bool IsOfCalendarDays(const Step& every, const EventDay& day) {
+  return day.zone && every.text.ends_with('d') && every.is_whole_days;
 }
 
-std::vector<UtcInstant> EveryDays(const UtcInstant& from, double span_s, const std::string& every,
+std::vector<UtcInstant> EveryDays(const UtcInstant& from, double span_s, const Step& every,
                                   const EventDay& day) {
   constexpr double kRounding_s = 1e-6;
   const double fraction_s = from.second_of_day - std::floor(from.second_of_day);
@@ -176,7 +178,7 @@ std::vector<UtcInstant> EveryDays(const UtcInstant& from, double span_s, const s
   // A span of whole days is an hour longer or shorter if it contains a clock change.
   const int most = StepsIn(span_s + 0.5 * kSecondsPerDay, every);
   for (int i = 1; i <= most; ++i) {
-    const std::string date = DateAt(AddSeconds(noon, i * StepOf(every)), day);
+    const std::string date = DateAt(AddSeconds(noon, every.After(i)), day);
     const UtcInstant next =
         AddSeconds(ClockTimeOn(date + clock, *day.zone, instants.back()), fraction_s);
     if (SecondsBetween(from, next) > span_s + kRounding_s) break;
@@ -185,13 +187,12 @@ std::vector<UtcInstant> EveryDays(const UtcInstant& from, double span_s, const s
   return instants;
 }
 
-bool IsOfEachDay(const TimesText& times) {
-  return times.every && IsDailyEvent(TimeOfDayFromText(*times.from, {}).text) &&
-         std::fmod(StepOf(*times.every), kSecondsPerDay) == 0.0;
-}
+/// Returns whether a text is an event, after a day or not.
+bool IsEvent(const std::string& text) { return IsDailyEvent(TimeOfDayFromText(text, {}).text); }
 
 /// Returns the event of `from` on its day and on the following days, up to the day of `to`.
-std::vector<UtcInstant> EventOfEachDay(const TimesText& times, const EventDay& day) {
+std::vector<UtcInstant> EventOfEachDay(const TimesText& times, const Step& every,
+                                       const EventDay& day) {
   const auto [event, first] = TimeOfDayFromText(*times.from, DayOfFrom(times, day));
   if (!first.around) throw InputError("an event of each day needs a first day: give --date");
   const UtcInstant last =
@@ -204,10 +205,10 @@ std::vector<UtcInstant> EventOfEachDay(const TimesText& times, const EventDay& d
     throw InputError(fmt::format("--to {} is before the day of --from", *times.to));
   }
   std::vector<UtcInstant> instants;
-  const int steps = StepsIn(span_s, *times.every);
+  const int steps = StepsIn(span_s, every);
   for (int i = 0; i <= steps; ++i) {
     EventDay of_frame = first;
-    of_frame.around = AddSeconds(*first.around, i * StepOf(*times.every));
+    of_frame.around = AddSeconds(*first.around, every.After(i));
     if (const auto instant = FindDailyEvent(event, of_frame)) instants.push_back(*instant);
   }
   if (instants.empty()) {
@@ -259,18 +260,19 @@ std::vector<Range> RangesFromText(std::string_view ranges) {
   return found;
 }
 
-}  // namespace
-
-std::vector<Frame> FramesFromTimes(const TimesText& times, const EventDay& day) {
+/// Returns the instants of the frames.
+std::vector<UtcInstant> InstantsOf(const TimesText& times, const EventDay& day) {
   if (!times.at.empty()) {
     std::vector<UtcInstant> instants;
     for (const std::string& text : times.at) instants.push_back(InstantFromText(text, day));
-    return Numbered(instants);
+    return instants;
   }
   if (!times.from || !times.to) {
     throw InputError("no time is given: give --at, or --from and --to, or [time] in the scene");
   }
-  if (IsOfEachDay(times)) return Numbered(EventOfEachDay(times, day));
+  const std::optional<Step> every = times.every ? std::optional<Step>(*times.every) : std::nullopt;
+  if (every && every->is_whole_days && IsEvent(*times.from))
+    return EventOfEachDay(times, *every, day);
   const EventDay day_of_from = DayOfFrom(times, day);
   const UtcInstant from = InstantFromText(*times.from, day_of_from);
   EventDay day_of_to = day_of_from;
@@ -279,11 +281,20 @@ std::vector<Frame> FramesFromTimes(const TimesText& times, const EventDay& day) 
   if (span_s < 0.0) {
     throw InputError(fmt::format("--to {} is before --from {}", *times.to, *times.from));
   }
-  if (times.every && IsOfCalendarDays(*times.every, day))
-    return Numbered(EveryDays(from, span_s, *times.every, day));
-  if (times.every) return Numbered(EverySeconds(from, span_s, *times.every));
-  if (times.count) return Numbered(CountBetween(from, span_s, *times.count));
+  if (every && IsOfCalendarDays(*every, day)) return EveryDays(from, span_s, *every, day);
+  if (every) return EverySeconds(from, span_s, *every);
+  if (times.count) return CountBetween(from, span_s, *times.count);
   throw InputError("--from and --to need --every or --count");
+}
+
+}  // namespace
+
+std::vector<Frame> FramesFromTimes(const TimesText& times, const EventDay& day) {
+  std::vector<Frame> frames;
+  for (const UtcInstant& instant : InstantsOf(times, day)) {
+    frames.push_back({static_cast<int>(frames.size()), instant});
+  }
+  return frames;
 }
 
 std::vector<Frame> SelectFrames(const std::vector<Frame>& frames, std::string_view ranges) {
