@@ -12,7 +12,7 @@
 #include "renderer/scene/places.h"
 #include "renderer/scene/scene_options.h"
 #include "renderer/series/frame_times.h"
-#include "renderer/series/video.h"
+#include "renderer/series/picture_sequence.h"
 #include "viewer/flight/flight_recorder.h"
 #include "viewer/flight_session.h"
 #include "viewer/gl/gl_context.h"

@@ -5,7 +5,6 @@
 #include <glm/geometric.hpp>
 
 namespace alpenglow::renderer {
-
 namespace {
 
 /// Returns the vertical across a view, and the axis to the right of it. A view straight up or down

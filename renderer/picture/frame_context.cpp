@@ -15,7 +15,6 @@
 #include "renderer/picture/pixel_shader.h"
 
 namespace alpenglow::renderer {
-
 namespace {
 
 /// Returns the direction in the same vertical plane at an elevation.

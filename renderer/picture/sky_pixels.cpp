@@ -2,6 +2,7 @@
 #include "renderer/picture/sky_pixels.h"
 
 #include <tbb/parallel_for.h>
+
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
@@ -11,7 +12,6 @@
 #include "renderer/picture/pixel_shader.h"
 
 namespace alpenglow::renderer {
-
 namespace {
 
 constexpr double kQuarter = 0.5 * kPi;

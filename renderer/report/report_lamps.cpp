@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "renderer/lamps/lamp_light.h"
-#include "renderer/report/lamp_test_cases.h"
+#include "renderer/report/reference_methods.h"
 #include "renderer/report/report.h"
 
 namespace alpenglow::renderer {

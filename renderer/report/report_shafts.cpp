@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "renderer/illumination/aerial_perspective.h"
-#include "renderer/report/occlusion_march.h"
+#include "renderer/report/reference_methods.h"
 #include "renderer/report/report.h"
 #include "renderer/surface/scene_ground.h"
 #include "renderer/visibility/shadow_heights.h"

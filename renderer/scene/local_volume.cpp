@@ -2,6 +2,7 @@
 #include "renderer/scene/local_volume.h"
 
 #include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <cstdint>

@@ -9,9 +9,9 @@
 #include <vector>
 
 #include "atmosphere/astronomy/eclipse.h"
+#include "atmosphere/astronomy/time_text.h"
 #include "atmosphere/time_place/time.h"
 #include "renderer/layer.h"
-#include "atmosphere/astronomy/time_text.h"
 
 namespace alpenglow::renderer {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Frames of a series: their instants from text (time_text.h) or along a camera path, and their file
+// Frames of a series: their instants from text (time_list.h) or along a camera path, and their file
 // names "DIR/frame.%04d.exr".
 #pragma once
 
@@ -9,10 +9,10 @@
 #include <string_view>
 #include <vector>
 
+#include "atmosphere/astronomy/time_list.h"
 #include "atmosphere/time_place/time.h"
 #include "renderer/camera/camera_path.h"
 #include "renderer/picture/render.h"
-#include "atmosphere/astronomy/time_text.h"
 #include "renderer/surface/scene_ground.h"
 
 namespace alpenglow::renderer {
@@ -49,27 +49,10 @@ struct Frame {
   double path_s = 0.0;  // position on the camera path, if there is one
 };
 
-/// The times of a series as given on the command line: either `at`, or `from` and `to` with `every`
-/// or `count`.
-struct TimesText {
-  std::vector<std::string> at;
-  std::optional<std::string> from, to;
-  std::optional<std::string> every;  // duration: frames from `from` on, up to `to`
-  std::optional<int> count;          // frames from `from` to `to`, both included
-};
-
 /// Largest number of frames in a series.
-inline constexpr int kMostFrames = 1000000;
+inline constexpr int kMostFrames = kMostInstants;
 
-/// Returns the frames. A `to` that is an event or a clock time and not after `from` is moved to the
-/// following day, so that "sunset" to "sunrise" and "22:00" to "02:00" are nights. A day in
-/// `every`, such as "1d", is a calendar day, after which clocks of the zone show the same time;
-/// "24h" is 24 hours. A clock time that is skipped or repeated by a clock change uses the offset
-/// before the change. An instant at one end determines the day of the event at the other end. If
-/// `from` is an event and `every` is whole days, each frame is the event of its own day, from the
-/// day of `from` to that of `to`, which may be a day without a time; days without the event have no
-/// frame. Throws InputError for errors of InstantFromText, a `to` before `from`, an `every` that is
-/// not positive, a `count` below 1, too many frames, no frame.
+/// Returns the frames at InstantsFromTimes, in their order.
 [[nodiscard]] std::vector<Frame> FramesFromTimes(const TimesText& times, const EventDay& day);
 
 /// Returns the frames whose numbers are in "A-B,C"; throws InputError for numbers outside the

@@ -13,11 +13,10 @@
 #include "lut/cli/program.h"
 #include "lut/image/look.h"
 #include "renderer/picture/render.h"
-#include "renderer/series/contact_sheet.h"
 #include "renderer/series/day_times.h"
 #include "renderer/series/frame_exposure.h"
 #include "renderer/series/manifest.h"
-#include "renderer/series/video.h"
+#include "renderer/series/picture_sequence.h"
 
 namespace alpenglow::renderer {
 namespace {
@@ -301,21 +300,21 @@ std::vector<NamedFile> MadeOfTheFrames(const SeriesOutput& output) {
   return files;
 }
 
-void RequireNoInputAmongTheOutputs(const std::vector<Frame>& frames, const SeriesOutput& output) {
+void RequireNoInputAmongTheOutputs(const std::vector<Frame>& frames, const SeriesOutput& output,
+                                   const std::vector<NamedFile>& made_of_all) {
   RequireNoInput({"--out: the manifest", output.name.Manifest()}, output.inputs);
   RequireNoInput({"--out: the manifest", output.name.JsonManifest()}, output.inputs);
-  for (const NamedFile& made : MadeOfTheFrames(output)) RequireNoInput(made, output.inputs);
+  for (const NamedFile& made : made_of_all) RequireNoInput(made, output.inputs);
   for (const Frame& frame : frames) {
     RequireNoInput({"--out", output.name.Exr(frame.number)}, output.inputs);
     if (output.png) RequireNoInput({"--png", output.name.Png(frame.number)}, output.inputs);
   }
 }
 
-std::size_t RemoveLeftovers(const SeriesOutput& output) {
-  const fs::path folder = output.name.Folder();
+std::size_t RemoveLeftovers(const fs::path& folder, const std::vector<NamedFile>& made_of_all) {
   std::size_t removed = RemoveAbandonedTemporaries(folder);
   std::set<fs::path> others;
-  for (const NamedFile& made : MadeOfTheFrames(output)) others.insert(made.file.parent_path());
+  for (const NamedFile& made : made_of_all) others.insert(made.file.parent_path());
   others.erase(folder);
   for (const fs::path& other : others) removed += RemoveAbandonedTemporaries(other);
   return removed;
@@ -340,16 +339,18 @@ SeriesSummary RunSeries(const SeriesSource& source, const std::vector<Frame>& fr
     if (output.glare && source.ProjectionOf(frame) != Projection::kCamera)
       throw InputError("--glare is of an eye that looks one way, not of a panorama");
   }
-  RequireNoInputAmongTheOutputs(frames, output);
-  MakeFolder(output.name.Folder());
+  const std::vector<NamedFile> made_of_all = MadeOfTheFrames(output);
+  RequireNoInputAmongTheOutputs(frames, output, made_of_all);
+  const fs::path folder = output.name.Folder();
+  MakeFolder(folder);
   if (output.video) RequireVideo(*output.video);
-  for (const NamedFile& made : MadeOfTheFrames(output)) {
+  for (const NamedFile& made : made_of_all) {
     MakeFolder(made.file.parent_path());
     RequireWritable(made.file);
   }
   Series series(source, frames, output);
   series.WarnOfTotality(selected);
-  const std::size_t removed = output.resume ? RemoveLeftovers(output) : 0;
+  const std::size_t removed = output.resume ? RemoveLeftovers(folder, made_of_all) : 0;
   series.WriteManifest();  // before rendering, to detect a folder that is not writable
   Progress progress("frames", selected.size(), output.progress);
   try {

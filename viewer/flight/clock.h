@@ -55,7 +55,7 @@ class SceneClock {
   /// Jumps to the next occurrence of the event. Returns false and changes nothing if NextEvent
   /// finds none.
   bool JumpToNext(SkyEvent event, const GeodeticPosition& place);
-  /// Sets the time from a text, as InstantFromText (atmosphere/astronomy/time_text.h). The day is that
+  /// Sets the time from a text, as InstantFromText (time_text.h). The day is that
   /// of this clock in the zone, but "today" and "now" refer to the clock of the computer. Throws
   /// InputError.
   void Type(const std::string& text, const GeodeticPosition& place, const std::string& zone);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "renderer/report/lamp_test_cases.h"
+#include "renderer/report/reference_methods.h"
 
 #include <gtest/gtest.h>
 

@@ -13,10 +13,9 @@
 #include "atmosphere/base/error.h"
 #include "atmosphere/math/constants.h"
 #include "lut/cli/messages.h"
-#include "renderer/series/contact_sheet.h"
 #include "renderer/series/day_times.h"
 #include "renderer/series/manifest.h"
-#include "renderer/series/video.h"
+#include "renderer/series/picture_sequence.h"
 #include "tests/fixtures/temporary_folder.h"
 
 namespace alpenglow::renderer {

@@ -16,8 +16,8 @@
 #include "atmosphere/base/error.h"
 #include "lut/cli/program.h"
 #include "lut/image/eye.h"
-#include "renderer/series/contact_sheet.h"
 #include "renderer/series/manifest.h"
+#include "renderer/series/picture_sequence.h"
 #include "tests/fixtures/fault_of.h"
 #include "tests/fixtures/temporary_folder.h"
 
