@@ -90,23 +90,17 @@ Scene SceneOf(const TimesOptions& options) {
 }
 
 /// Returns the place and the first day.
-EventDay FirstDayOf(const TimesOptions& options) {
-  EventDay day;
-  if (options.scene_file) {
-    const Scene scene = ReadScene(*options.scene_file);
-    day.place = scene.place;
-    day.zone = scene.zone;
-  } else {
+EventDay FirstDayOf(const TimesOptions& options, const Scene& scene) {
+  EventDay day{scene.place, options.zone ? options.zone : scene.zone, {}};
+  if (!options.scene_file)
     day.place = PlaceFromDegrees(*options.latitude_deg, *options.longitude_deg, options.height_m);
-  }
-  if (options.zone) day.zone = options.zone;
   day.around = DayFromText(options.date, day);
   return day;
 }
 
 /// Plots from the first noon on, by day and by night.
-void WritePlot(const TimesOptions& options, const EventDay& first) {
-  const SceneRenderer renderer(SceneOf(options));
+void WritePlot(const TimesOptions& options, const Scene& scene, const EventDay& first) {
+  const SceneRenderer renderer(scene);
   const double span_s = kSecondsPerDay * options.days, step_s = 60.0 * options.every_min;
   std::vector<PlottedMoment> moments;
   for (double at_s = 0.0; at_s <= span_s; at_s += step_s) {
@@ -121,14 +115,15 @@ void WritePlot(const TimesOptions& options, const EventDay& first) {
 }
 
 void WriteTimes(const TimesOptions& options) {
-  const EventDay first = FirstDayOf(options);
+  const Scene scene = SceneOf(options);
+  const EventDay first = FirstDayOf(options, scene);
   const std::vector<DayTimes> days = TimesOfDays(first, options.days);
   if (options.out) {
     WriteTextAtomically(*options.out, CsvOf(days));
   } else {
     Print(TableOf(days, first.zone));
   }
-  if (options.plot) WritePlot(options, first);
+  if (options.plot) WritePlot(options, scene, first);
 }
 
 void AddTimesOutput(CLI::App& times, TimesOptions& options) {

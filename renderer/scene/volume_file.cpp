@@ -34,9 +34,8 @@ constexpr std::size_t kLongestHeader = 1U << 20U;  // bytes
 std::string FirstBytes(const fs::path& file) {
   std::ifstream stream(file, std::ios::binary);
   std::string text(kLongestHeader, '\0');
-  if (!stream.read(text.data(), static_cast<std::streamsize>(text.size())) && !stream.eof()) {
+  if (!stream.read(text.data(), static_cast<std::streamsize>(text.size())) && !stream.eof())
     throw InputError(fmt::format("{}: cannot be read", file.string()));
-  }
   text.resize(static_cast<std::size_t>(stream.gcount()));
   return text;
 }
@@ -125,9 +124,8 @@ class HeaderReader {
     std::optional<std::string_view> line = Line();
     for (; line && !line->empty(); line = Line()) Take(*line);
     if (!line && !Has("data file")) Fail("the header has no end");
-    if (!Has("sizes") || !Has("type") || !Has("encoding")) {
+    if (!Has("sizes") || !Has("type") || !Has("encoding"))
       Fail("the header must have sizes, type and encoding");
-    }
     if (!Has("data file")) header_.data_begin = at_;
     if (header_.byte_skip == -1 && header_.encoding != NrrdHeader::Encoding::kRaw) {
       Fail("byte skip is -1; this is for encoding raw");
@@ -141,9 +139,8 @@ class HeaderReader {
   std::optional<std::string_view> Line() {
     if (at_ >= text_.size()) return std::nullopt;
     const std::size_t end = text_.find('\n', at_);
-    if (end == std::string_view::npos && text_.size() == kLongestHeader) {
+    if (end == std::string_view::npos && text_.size() == kLongestHeader)
       Fail("the header has no end");
-    }
     std::string_view line = text_.substr(at_, std::min(end, text_.size()) - at_);
     at_ = std::min(end, text_.size() - 1) + 1;
     ++line_;
@@ -336,9 +333,7 @@ std::string BytesAfter(const fs::path& file, std::size_t begin) {
   stream.seekg(static_cast<std::streamoff>(begin));
   std::ostringstream text;
   if (stream.peek() != std::ifstream::traits_type::eof()) text << stream.rdbuf();
-  if (stream.bad() || !stream.is_open() || !text) {
-    throw InputError("cannot be read");
-  }
+  if (stream.bad() || !stream.is_open() || !text) throw InputError("cannot be read");
   return std::move(text).str();
 }
 
@@ -443,9 +438,8 @@ std::string DataOf(const NrrdHeader& header) {
 // Returns the values in the axis order of space: right fastest, up slowest.
 VolumeGrid InSpace(const NrrdHeader& header, const VolumeGrid& grid) {
   if (header.space_axis == std::array<std::size_t, 3>{0, 1, 2} &&
-      header.is_reversed == std::array<bool, 3>{}) {
+      header.is_reversed == std::array<bool, 3>{})
     return grid;
-  }
   std::array<int, 3> size{};
   for (std::size_t axis = 0; axis < 3; ++axis) size[header.space_axis[axis]] = header.size[axis];
   const std::array<std::size_t, 3> stride{
