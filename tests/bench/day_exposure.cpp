@@ -33,12 +33,8 @@
 #include "lut/image/tone_mapping.h"
 #include "renderer/picture/render.h"
 #include "renderer/scene/scene_options.h"
-<<<<<<< HEAD
-#include "renderer/series/smooth_meter.h"
-#include "tests/bench/studies.h"
-=======
 #include "renderer/series/frame_exposure.h"
->>>>>>> 2e9c56e7 (renderer: give the built-in range its folder; merge small files)
+#include "tests/bench/studies.h"
 #include "tests/fixtures/bare_scene.h"
 #include "tests/fixtures/luminance.h"
 

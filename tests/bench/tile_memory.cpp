@@ -17,12 +17,8 @@
 #include "atmosphere/math/constants.h"
 #include "atmosphere/time_place/time.h"
 #include "renderer/picture/render.h"
-<<<<<<< HEAD
-#include "renderer/terrain/lattice_noise.h"
-#include "tests/bench/studies.h"
-=======
 #include "renderer/procedural_mountains/lattice_noise.h"
->>>>>>> 2e9c56e7 (renderer: give the built-in range its folder; merge small files)
+#include "tests/bench/studies.h"
 
 namespace alpenglow::renderer {
 namespace {
