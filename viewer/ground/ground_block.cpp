@@ -212,9 +212,9 @@ void Clamp(GLenum target) {
 // Reorders the renderer's layout [level][azimuth][node][A, B][band] to rows of nodes.
 void UploadIntegrals(const GlTexture& texture, const OccludedSkyIrradiance::Tables& tables) {
   constexpr std::size_t kNodes = OccludedSkyIrradiance::kNodes,
-                        kRows = OccludedSkyIrradiance::kLevels * kHorizonAzimuths;
+                        kHorizonRows = OccludedSkyIrradiance::kLevels * kHorizonAzimuths;
   std::vector<float> texels(tables.integral.size());
-  for (std::size_t row = 0; row < kRows; ++row) {
+  for (std::size_t row = 0; row < kHorizonRows; ++row) {
     for (std::size_t node = 0; node < kNodes; ++node) {
       for (std::size_t part = 0; part < 2; ++part)
         std::copy_n(&tables.integral[((row * kNodes + node) * 2 + part) * kFour], kFour,
