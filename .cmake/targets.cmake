@@ -2,7 +2,9 @@
 
 add_library(alpenglow_warnings INTERFACE)
 target_compile_options(alpenglow_warnings INTERFACE
-  -Wall -Wextra -Wpedantic -Wconversion -Wdouble-promotion -Wshadow $<$<CXX_COMPILER_ID:GNU>:-Wcast-align=strict>
+  -Wall -Wextra -Wpedantic -Wconversion -Wshadow
+  # clang's -Wdouble-promotion rejects long double, too.
+  $<$<CXX_COMPILER_ID:GNU>:-Wdouble-promotion> $<$<CXX_COMPILER_ID:GNU>:-Wcast-align=strict>
   $<$<BOOL:${ALPENGLOW_WARNINGS_AS_ERRORS}>:-Werror>
   # Not -ffast-math: infinities and NaN mean what they mean. Contraction is off so that one source
   # gives one result on every machine.
