@@ -24,7 +24,7 @@ if(ALPENGLOW_MOLD AND ALPENGLOW_MOLD_PROGRAM AND
   add_link_options(-fuse-ld=mold)
 endif()
 
-# gcc collects its garbage only beyond 2 GB: sources that are compiled as one need less (at most 1.3 GB), and
+# gcc collects its garbage only beyond 2 GB: sources that are compiled as one need less (at most 1 GB), and
 # collecting takes a tenth of the time.
 if(CMAKE_UNITY_BUILD AND CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
   add_compile_options(--param=ggc-min-heapsize=2000000)

@@ -2,9 +2,9 @@
 
 add_library(alpenglow_warnings INTERFACE)
 target_compile_options(alpenglow_warnings INTERFACE
-  -Wall -Wextra -Wpedantic -Wconversion -Wshadow
   # clang's -Wdouble-promotion rejects long double, too.
-  $<$<CXX_COMPILER_ID:GNU>:-Wdouble-promotion> $<$<CXX_COMPILER_ID:GNU>:-Wcast-align=strict>
+  -Wall -Wextra -Wpedantic -Wconversion $<$<CXX_COMPILER_ID:GNU>:-Wdouble-promotion> -Wshadow
+  $<$<CXX_COMPILER_ID:GNU>:-Wcast-align=strict>
   $<$<BOOL:${ALPENGLOW_WARNINGS_AS_ERRORS}>:-Werror>
   # Not -ffast-math: infinities and NaN mean what they mean. Contraction is off so that one source
   # gives one result on every machine.
@@ -39,6 +39,13 @@ function(alpenglow_precompiled_headers)
 endfunction()
 alpenglow_precompiled_headers()
 
+# alpenglow_many_as_one(<library>): fewer and longer compilations than those of programs (8 sources), because the
+# code of templates that sources share is generated once. They take at most 1 GB.
+function(alpenglow_many_as_one target)
+  target_precompile_headers(${target} REUSE_FROM alpenglow_precompiled)
+  set_target_properties(${target} PROPERTIES UNITY_BUILD_BATCH_SIZE 16)
+endfunction()
+
 # alpenglow_library(<folder> SOURCES a.cpp ... API b.cpp ...): the sources in API implement the public headers,
 # and only they see them. They are compiled one by one, because some public types have names of a layer's types.
 function(alpenglow_library folder)
@@ -54,7 +61,7 @@ function(alpenglow_library folder)
     $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}>
     $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
   target_link_libraries(${target} PRIVATE $<BUILD_INTERFACE:alpenglow_warnings>)
-  target_precompile_headers(${target} REUSE_FROM alpenglow_precompiled)
+  alpenglow_many_as_one(${target})
   install(TARGETS ${target} EXPORT alpenglow ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
 endfunction()
 
