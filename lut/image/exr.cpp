@@ -69,7 +69,8 @@ class HeaderReader {
     Take(4, "a number");
     std::array<unsigned char, 4> bytes{};
     for (unsigned char& byte : bytes) byte = static_cast<unsigned char>(stream_.get());
-    return bytes[0] | bytes[1] << 8U | bytes[2] << 16U | std::uint32_t{bytes[3]} << 24U;
+    return std::uint32_t{bytes[0]} | std::uint32_t{bytes[1]} << 8U |
+           std::uint32_t{bytes[2]} << 16U | std::uint32_t{bytes[3]} << 24U;
   }
 
   /// Returns the text up to the next 0 byte and consumes that byte.
