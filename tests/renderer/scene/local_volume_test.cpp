@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "renderer/scene/local_volume.h"
+#include "renderer/scene/volume_file.h"
 
 #include <fmt/format.h>
 #include <gmock/gmock.h>
