@@ -27,6 +27,10 @@ LIMITS = {
     "comment blocks that start without a subject, %": 1.0,
 }
 LEAST_MEDIAN = 120  # lines of a file, in every layer
+# The viewer is for windows and the GPU. A pair of header and source belongs there if one of them names OpenGL, ImGui
+# or GLFW, or includes a header of viewer/gl/; these folders are the user's side of the window.
+OPEN_GL = re.compile(r'#include "viewer/gl/|\bgl[A-Z]\w*\(|\bGL_[A-Z]|\bGL[a-z]+\b|ImGui|\bIm[A-Z]\w+|GLFW|glfw')
+USER_SIDE = ("flight", "input", "hud")
 # A sentence whose first word points at something that the reader must guess.
 FRAGMENT = re.compile(r"(Of|What|Which|Whose|Whether|Where|How|That|The same|As|Its|Those|Not|Nothing|Only) ")
 
@@ -104,6 +108,16 @@ def large_types():
     return found
 
 
+def lines_without_open_gl():
+    """The lines of the viewer that could run without a window: they belong in a lower layer."""
+    pairs = {}
+    for file in files("viewer", (".h", ".cpp")):
+        if file.relative_to(TREE / "viewer").parts[0] not in USER_SIDE:
+            pairs.setdefault(file.with_suffix(""), []).append(text_of(file))
+    texts = ["".join(pair) for pair in pairs.values()]
+    return sum(text.count("\n") for text in texts if not OPEN_GL.search(re.sub(r"//[^\n]*", "", text)))
+
+
 def comment_blocks():
     """The first line of every block of comments in the layers, without its slashes."""
     for layer in LAYERS:
@@ -130,6 +144,7 @@ def rows(build):
     code = [file for layer in LAYERS for file in files(layer)]
     shape["source files of the four layers"] = len(code)
     shape["lines of the four layers"] = line_count(code)
+    shape["lines of the viewer without OpenGL"] = lines_without_open_gl()
     shape["lines of tests"] = line_count(files("tests"))
     shape["files over 500 lines"] = sum(text_of(file).count("\n") > 500 for file in code)
     large = large_types()

@@ -10,9 +10,9 @@
 namespace alpenglow::viewer {
 namespace {
 
-Eye EyeOfScene(const Scene& scene) {
-  Eye eye{scene.place, scene.camera.heading_rad, scene.camera.pitch_rad, scene.camera.roll_rad,
-          scene.camera.fov_rad};
+CameraPose EyeOfScene(const Scene& scene) {
+  CameraPose eye{scene.place, scene.camera.heading_rad, scene.camera.pitch_rad,
+                 scene.camera.roll_rad, scene.camera.fov_rad};
   eye.place.height_m = scene.camera.height.value_m;
   return Zoomed(eye, 1.0);
 }
@@ -68,7 +68,7 @@ void FlightSession::FlyAgain(const CameraPath& flown) {
 }
 
 void FlightSession::Show(const ReplayFrame& frame) {
-  const CameraPathPoint shown{frame.path_s, PoseOf(Zoomed(frame.eye, 1.0)), frame.now};
+  const CameraPathPoint shown{frame.path_s, Zoomed(frame.eye, 1.0), frame.now};
   Replay(CameraPath(std::vector{shown}));
 }
 
@@ -83,10 +83,10 @@ void FlightSession::Paint(const ToneMapPass::Screen& screen, double seconds) {
 }
 
 void FlightSession::WaitUntilReady(const ImageSize& size, int samples) {
-  painter_.Settle(ViewOf(size), samples);
+  painter_.WaitUntilReady(ViewOf(size), samples);
   if (standpoint_.KnowsGround()) return;
   standpoint_.StandOnGround();
-  painter_.Settle(ViewOf(size), samples);
+  painter_.WaitUntilReady(ViewOf(size), samples);
 }
 
 FlightMoment FlightSession::Moment() const {

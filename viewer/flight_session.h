@@ -41,7 +41,7 @@ struct FlightStart {
 /// Everything that determines a picture of a flight besides its start. It is a copy, so that the
 /// flight can continue while the picture is made.
 struct FlightMoment {
-  Eye eye;
+  CameraPose eye;
   UtcInstant now;
   Standpoint::State standpoint;
   SceneChanges scene;
@@ -84,7 +84,7 @@ class FlightSession {
   /// Returns the report of ExplainView (reports.h) for the current view.
   [[nodiscard]] std::string Explain(const ImageSize& size);
 
-  [[nodiscard]] const Eye& eye() const { return cockpit_.pilot().eye(); }
+  [[nodiscard]] const CameraPose& eye() const { return cockpit_.pilot().eye(); }
   [[nodiscard]] const UtcInstant& now() const { return cockpit_.clock().now(); }
   /// Returns the name of the time zone at the eye.
   [[nodiscard]] std::string zone() const { return edits_.ZoneAt(eye().place); }

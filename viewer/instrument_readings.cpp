@@ -15,7 +15,7 @@ namespace alpenglow::viewer {
 namespace {
 
 HudFlight FlightOf(FlightSession& flight) {
-  const Eye& eye = flight.eye();
+  const CameraPose& eye = flight.eye();
   const FlightReadout readout = flight.cockpit().pilot().Readout(flight.cockpit().ground());
   HudFlight shown;
   shown.mode = readout.aircraft ? std::string(readout.aircraft_name) : NameOf(readout.mode);

@@ -13,9 +13,9 @@
 
 #include "atmosphere/base/error.h"
 #include "atmosphere/math/constants.h"
+#include "renderer/picture/reference_picture.h"
 #include "renderer/picture/render.h"
 #include "viewer/passes/display_pass.h"
-#include "viewer/passes/reference_picture.h"
 
 namespace alpenglow::viewer {
 namespace {
@@ -110,12 +110,12 @@ std::string Benchmark::WorstText() const {
       frame_ms_.size(), worst_ms_, worst_ms_ / PercentilesOf(frame_ms_).median, worst_at_s_);
 }
 
-ReplayFrame BenchmarkFlight(const Eye& start, const UtcInstant& begin, double elapsed_s) {
+ReplayFrame BenchmarkFlight(const CameraPose& start, const UtcInstant& begin, double elapsed_s) {
   constexpr double kSpeed_m_per_s = 250.0, kRadius_m = 5000.0;
   const double turned = kSpeed_m_per_s * elapsed_s / kRadius_m;
   const double ahead = kRadius_m * std::sin(turned), right = kRadius_m * (1.0 - std::cos(turned));
   const double c = std::cos(start.heading_rad), s = std::sin(start.heading_rad);
-  Eye eye = start;
+  CameraPose eye = start;
   eye.place = LocalFrame(kWgs84, start.place)
                   .GeodeticFromEnu(Point<Enu>{{ahead * s + right * c, ahead * c - right * s, 0.0}});
   eye.place.height_m = start.place.height_m;
@@ -168,7 +168,7 @@ double LeastMs(const std::function<void()>& draw) {
 
 TimedPicture Paint(SkyPainter& painter, const PaintedView& view, const PaintSizes& sizes) {
   painter.Use(sizes);
-  painter.Settle(view);
+  painter.WaitUntilReady(view);
   const double best_ms = LeastMs([&] { painter.Paint(view); });
   painter.Paint(view, kSamples);
   return {painter.picture().Read(), best_ms};
@@ -221,7 +221,7 @@ std::string Row(const std::string& name, const ViewDifference& is, const std::st
 // per pixel.
 std::string FewerRays(SkyPainter& painter, const PaintedView& view,
                       const std::vector<Channel>& edges, double scale) {
-  painter.Settle(view);
+  painter.WaitUntilReady(view);
   OneRay of_view(painter, view);
   TimedPicture all = of_view.At(1.0);
   all.image.layers = edges;

@@ -17,10 +17,10 @@
 #include <string>
 #include <vector>
 
+#include "renderer/picture/reference_picture.h"
 #include "viewer/flight/flight_recorder.h"
 #include "viewer/gl/pass_timer.h"
 #include "viewer/passes/auto_quality.h"
-#include "viewer/passes/reference_picture.h"
 #include "viewer/passes/sky_painter.h"
 
 namespace alpenglow::viewer {
@@ -86,7 +86,7 @@ class Benchmark {
 
 /// Returns a frame of the scripted flight: circles of 5 km radius to the right, at 250 m/s and at
 /// the initial height.
-[[nodiscard]] ReplayFrame BenchmarkFlight(const Eye& start, const UtcInstant& begin,
+[[nodiscard]] ReplayFrame BenchmarkFlight(const CameraPose& start, const UtcInstant& begin,
                                           double elapsed_s);
 
 /// Returns a text table of errors: of the picture against the renderer's, and of each shortcut

@@ -134,7 +134,7 @@ std::string SceneEdits::ZoneAt(const GeodeticPosition& place) const {
   return ZoneNear(place, scene_.zone, scene_.place);
 }
 
-Scene SceneEdits::SeenBy(const Eye& eye, const UtcInstant& now) const {
+Scene SceneEdits::SeenBy(const CameraPose& eye, const UtcInstant& now) const {
   Scene seen = scene_;
   seen.place = eye.place;
   seen.place.height_m = 0.0;
@@ -148,7 +148,7 @@ Scene SceneEdits::SeenBy(const Eye& eye, const UtcInstant& now) const {
   return seen;
 }
 
-ReferenceScene SceneEdits::ForRenderer(const Eye& eye, const UtcInstant& now) const {
+ReferenceScene SceneEdits::ForRenderer(const CameraPose& eye, const UtcInstant& now) const {
   ReferenceScene scene{SeenBy(eye, now), nullptr};
   if (!has_one_model_) scene.ground = GroundAround(eye.place);
   return scene;
@@ -184,7 +184,7 @@ void Standpoint::AwaitGround() {
     painter_.land().AwaitGround(eye().place);
     return StandOnGround();
   }
-  Eye stands = eye();
+  CameraPose stands = eye();
   stands.place.height_m = kRangeViewGround_m + *state_.waits_above_ground_m;
   cockpit_.pilot().PutAt(stands, cockpit_.ground());
   put_at_ = eye();
@@ -196,7 +196,7 @@ void Standpoint::StandOnGround() {
   const std::optional<double> above_m = std::exchange(state_.waits_above_ground_m, std::nullopt);
   const bool has_left = put_at_ && *put_at_ != eye();
   if (!above_m || has_left) return cockpit_.pilot().KeepAbove(cockpit_.ground());
-  Eye stands = eye();
+  CameraPose stands = eye();
   stands.place.height_m = painter_.land().ground().HighestAt(stands.place).value_or(0.0) + *above_m;
   cockpit_.pilot().PutAt(stands, cockpit_.ground());
 }
@@ -207,7 +207,7 @@ void Standpoint::Place(const EyePlacement& placement) {
   const GroundHeight& ground = cockpit_.ground();
   const double above_m =
       state_.waits_above_ground_m.value_or(eye().place.height_m - ground(eye().place));
-  Eye placed = Placed(eye(), placement);
+  CameraPose placed = Placed(eye(), placement);
   if (moves) scene_.BringLandTo(placed.place, "this place");
   if (moves && !placement.height_m)
     placed.place.height_m = ground(placed.place) + std::max(above_m, 0.0);

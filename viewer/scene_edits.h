@@ -10,9 +10,9 @@
 #include <vector>
 
 #include "atmosphere/medium/medium_presets.h"
+#include "renderer/picture/reference_picture.h"
 #include "renderer/scene/scene.h"
 #include "viewer/input/flight_controller.h"
-#include "viewer/passes/reference_picture.h"
 #include "viewer/passes/sky_painter.h"
 
 namespace alpenglow::viewer {
@@ -63,10 +63,10 @@ class SceneEdits {
   [[nodiscard]] int version() const { return version_; }
 
   /// Returns the scene as seen by an eye, without land of several elevation models.
-  [[nodiscard]] Scene SeenBy(const Eye& eye, const UtcInstant& now) const;
+  [[nodiscard]] Scene SeenBy(const CameraPose& eye, const UtcInstant& now) const;
   /// Returns the scene for the renderer. A scene file cannot describe land of several elevation
   /// models; for those it holds the land that is loaded around the eye.
-  [[nodiscard]] ReferenceScene ForRenderer(const Eye& eye, const UtcInstant& now) const;
+  [[nodiscard]] ReferenceScene ForRenderer(const CameraPose& eye, const UtcInstant& now) const;
   /// Returns the name of the time zone at a place.
   [[nodiscard]] std::string ZoneAt(const GeodeticPosition& place) const;
   /// Returns new notes about land and places. Each note is returned once.
@@ -122,13 +122,13 @@ class Standpoint {
   void Restore(const State& state) { state_ = state; }
 
  private:
-  [[nodiscard]] const Eye& eye() const { return cockpit_.pilot().eye(); }
+  [[nodiscard]] const CameraPose& eye() const { return cockpit_.pilot().eye(); }
 
   FlightController& cockpit_;
   SceneEdits& scene_;
   SkyPainter& painter_;
   State state_;
-  std::optional<Eye> put_at_;  // the eye as placed by AwaitGround
+  std::optional<CameraPose> put_at_;  // the eye as placed by AwaitGround
 };
 
 }  // namespace alpenglow::viewer

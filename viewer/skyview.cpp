@@ -170,7 +170,7 @@ void RunBenchmark(double seconds, FlightSession& flight, const ImageSize& size, 
   const ToneMapPass::Screen screen{window == nullptr ? picture.framebuffer() : 0, size.width,
                                    size.height};
   flight.WaitUntilReady(size);
-  const Eye start = flight.eye();
+  const CameraPose start = flight.eye();
   const UtcInstant begin = flight.now();
   Benchmark benchmark(seconds);
   flight.frames().SetTimer(&benchmark.timer());

@@ -62,6 +62,8 @@ struct CameraPose {
   double pitch_rad = 0.0;
   double roll_rad = 0.0;
   double fov_rad = 1.0471975511965976;
+
+  bool operator==(const CameraPose&) const = default;
 };
 
 struct CameraPathPoint {

@@ -68,31 +68,6 @@ std::shared_ptr<const TerrainIrradiance> GroundSite::Under(const Lighting& light
   return light_.OnTerrain({light, nullptr});
 }
 
-namespace {
-
-std::array<float, 3> InFloats(const glm::dvec3& v) {
-  return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)};
-}
-
-}  // namespace
-
-SiteFromFrame::SiteFromFrame(const LocalFrame& site, const LocalFrame& frame)
-    : origin_(site.EnuFromGeodetic(frame.origin()).xyz) {
-  for (const glm::length_t axis : {0, 1, 2}) {
-    glm::dvec3 unit(0.0);
-    unit[axis] = 1.0;
-    turn_[axis] = site.EnuFromEcef(frame.EcefFromEnu(Vector<Enu>{unit})).xyz;
-  }
-}
-
-std::array<float, 3> SiteFromFrame::Point(const glm::vec3& point_m) const {
-  return InFloats(origin_ + turn_ * glm::dvec3(point_m));
-}
-
-std::array<float, 3> SiteFromFrame::Along(const glm::vec3& direction) const {
-  return InFloats(turn_ * glm::dvec3(direction));
-}
-
 GroundSky::GroundSky(std::shared_ptr<const GroundSite> site, Lighting light)
     : site_(std::move(site)), light_(OnThisThread([&] {
         light.on_terrain = site_->Under(light);

@@ -33,6 +33,7 @@
 #include "renderer/surface/scene_geometry.h"
 #include "renderer/surface/scene_ground.h"
 #include "renderer/surface/surface.h"
+#include "renderer/terrain/frame_transform.h"
 #include "renderer/visibility/shadow_heights.h"
 
 namespace alpenglow::renderer {
@@ -113,28 +114,20 @@ struct LitVertex {
                 // edges.
 };
 
-/// Transforms from one local frame to another of the same ellipsoid.
-class SiteFromFrame {
- public:
-  SiteFromFrame(const LocalFrame& site, const LocalFrame& frame);
-
-  [[nodiscard]] std::array<float, 3> Point(const glm::vec3& point_m) const;
-  [[nodiscard]] std::array<float, 3> Along(const glm::vec3& direction) const;
-
- private:
-  glm::dmat3 turn_;
-  glm::dvec3 origin_;
-};
-
 /// Prepares vertices of another frame of the same ellipsoid. They have position_m and normal.
 template <typename Vertex>
 [[nodiscard]] std::vector<GroundVertex> VerticesIn(const GroundSite& site, const LocalFrame& frame,
                                                    std::span<const Vertex> vertices) {
-  const SiteFromFrame turned(site.ground().frame, frame);
+  const FrameTransform to_site(site.ground().frame, frame);
+  const auto floats = [](const glm::dvec3& v) {
+    return std::array<float, 3>{static_cast<float>(v.x), static_cast<float>(v.y),
+                                static_cast<float>(v.z)};
+  };
   std::vector<GroundVertex> ready;
   ready.reserve(vertices.size());
   for (const Vertex& vertex : vertices)
-    ready.push_back(site.Vertex(turned.Point(vertex.position_m), turned.Along(vertex.normal)));
+    ready.push_back(site.Vertex(floats(to_site.Point(glm::dvec3(vertex.position_m))),
+                                floats(to_site.Along(glm::dvec3(vertex.normal)))));
   return ready;
 }
 

@@ -67,8 +67,8 @@ View TheView() {
   const BuiltInView seen = ProceduralMountainsView(centre, grid);
   const LocalFrame frame(kWgs84, centre), here(kWgs84, seen.eye);
   Terrain terrain(MeshFromElevation(grid, frame));
-  const Eye eye{seen.eye, seen.heading_deg * kRadiansPerDegree, 0.0, 0.0,
-                seen.fov_deg * kRadiansPerDegree};
+  const CameraPose eye{seen.eye, seen.heading_deg * kRadiansPerDegree, 0.0, 0.0,
+                       seen.fov_deg * kRadiansPerDegree};
   const ViewAxes axes = AxesOf(eye);
   const double half = std::tan(0.5 * eye.fov_rad);
   View view{std::move(grid),

@@ -15,12 +15,12 @@
 #include <string>
 
 #include "renderer/effects/effect_choice.h"
+#include "renderer/picture/reference_picture.h"
 #include "renderer/picture/render.h"
 #include "renderer/scene/scene_options.h"
 #include "tests/bench/studies.h"
 #include "tests/fixtures/parity_views.h"
 #include "viewer/gl/gl_context.h"
-#include "viewer/passes/reference_picture.h"
 #include "viewer/passes/sky_painter.h"
 
 namespace alpenglow::viewer {
@@ -48,12 +48,12 @@ Image ReferenceOf(const ParityView& view, const RenderSettings& settings,
 
 Image PaintedOf(const ParityView& view, const RenderSettings& settings) {
   const SceneGround ground = LoadGround(view.scene);
-  Eye eye{view.scene.place, view.scene.camera.heading_rad, view.scene.camera.pitch_rad,
-          view.scene.camera.roll_rad, view.scene.camera.fov_rad};
+  CameraPose eye{view.scene.place, view.scene.camera.heading_rad, view.scene.camera.pitch_rad,
+                 view.scene.camera.roll_rad, view.scene.camera.fov_rad};
   eye.place.height_m = ground.eye_height_m;
   const PaintedView painted{eye, view.instant, settings.width, settings.height};
   SkyPainter painter(view.scene, LandSourceOf(view.scene), painted, SizesOf(Quality::kHigh));
-  painter.Settle(painted, settings.samples_per_pixel);
+  painter.WaitUntilReady(painted, settings.samples_per_pixel);
   painter.Paint(painted, settings.samples_per_pixel);
   return painter.picture().Read();
 }

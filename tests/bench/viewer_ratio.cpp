@@ -106,14 +106,14 @@ struct Times {
 
 Times TimesOf(const View& view) {
   constexpr int kFrames = 16;
-  Eye eye{view.scene.place, view.scene.camera.heading_rad, view.scene.camera.pitch_rad, 0.0,
-          view.scene.camera.fov_rad};
+  CameraPose eye{view.scene.place, view.scene.camera.heading_rad, view.scene.camera.pitch_rad, 0.0,
+                 view.scene.camera.fov_rad};
   eye.place.height_m = LoadGround(view.scene).eye_height_m;
   const double scale = PaintedAlways(view.quality).scale;
   const PaintedView painted{eye, ParseInstant("2026-06-21T05:30:00Z"),
                             static_cast<int>(scale * kWidth), static_cast<int>(scale * kHeight)};
   SkyPainter painter(view.scene, LandSourceOf(view.scene), painted, SizesOf(view.quality));
-  painter.Settle(painted);
+  painter.WaitUntilReady(painted);
   DisplayPass darkroom(Look{});
   FrameDisplay display(painter, darkroom);
   const RenderTarget screen(kWidth, kHeight, {PixelFormat::kRgba8}, RenderTarget::Depth::kNone);

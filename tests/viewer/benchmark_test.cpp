@@ -31,7 +31,7 @@ TEST(FrameTimes, PercentilesAreTimesThatWereMeasured) {
 }
 
 TEST(FrameTimes, TheFlightIsSteadyLevelAndTimeRunsSixtyfold) {
-  const Eye start{PlaceFromDegrees(46.0, 8.0, 3000.0), 0.7};
+  const CameraPose start{PlaceFromDegrees(46.0, 8.0, 3000.0), 0.7};
   const UtcInstant begin = ParseInstant("2026-06-21T18:00:00Z");
   const auto at = [&](double seconds) { return BenchmarkFlight(start, begin, seconds); };
   EXPECT_NEAR(at(0.0).eye.place.latitude_rad, start.place.latitude_rad, 1e-12);

@@ -11,6 +11,7 @@
 #include "tests/fixtures/obj_texts.h"
 #include "tests/fixtures/places.h"
 #include "tests/viewer/shaders/headless.h"
+#include "viewer/layer.h"
 
 namespace alpenglow::viewer {
 namespace {

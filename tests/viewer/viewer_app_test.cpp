@@ -58,7 +58,7 @@ class ViewerAppTest : public tests::Headless {
     deck_->Advance({events, kSize, kFrame_s});
   }
   struct Moment {
-    Eye eye;
+    CameraPose eye;
     UtcInstant now;
   };
   std::vector<Moment> Fly(int frames) {
@@ -203,7 +203,7 @@ TEST_F(ViewerAppFiles, APictureThatCannotBeWrittenIsAWarning) {
   EXPECT_TRUE(Messages().back().is_warning) << "and the flight goes on";
 }
 
-double Apart_m(const Eye& a, const Eye& b) {
+double Apart_m(const CameraPose& a, const CameraPose& b) {
   return glm::length((EcefFromGeodetic(kWgs84, a.place) - EcefFromGeodetic(kWgs84, b.place)).xyz);
 }
 
@@ -235,10 +235,10 @@ TEST_F(ViewerAppTest, WhoTakesOverAReplayFliesOnFromThere) {
   Hold({kW}, true);
   static_cast<void>(Fly(120));
   Hold({kW}, false);
-  const Eye end = flight_->eye();
+  const CameraPose end = flight_->eye();
   Press(kR, kControlKey);
   static_cast<void>(Fly(30));
-  const Eye middle = flight_->eye();
+  const CameraPose middle = flight_->eye();
   Press('1');
   static_cast<void>(Fly(120));
   EXPECT_LT(Apart_m(flight_->eye(), middle), 20.0) << "a frame of the replay";
@@ -247,7 +247,7 @@ TEST_F(ViewerAppTest, WhoTakesOverAReplayFliesOnFromThere) {
 
 TEST_F(ViewerAppTest, WhereNothingWasFlownThereIsNothingToFlyAgain) {
   static_cast<void>(Fly(10));
-  const Eye before = flight_->eye();
+  const CameraPose before = flight_->eye();
   Press(kR, kControlKey);
   ASSERT_EQ(Messages().size(), 1U);
   EXPECT_TRUE(Messages().back().is_warning);
@@ -266,7 +266,7 @@ TEST_F(ViewerAppFiles, ShiftF2WritesTheFlightSoFarAndItFliesOn) {
   Press(kF2, kShiftKey);
   EXPECT_THAT(Messages().back().text, HasSubstr("flight-0001.csv"));
   const CameraPath path = ReadFlight("flight-0001.csv");
-  EXPECT_LT(Apart_m(EyeOf(path.points().back().pose), flown.back().eye), 1e-3)
+  EXPECT_LT(Apart_m(path.points().back().pose, flown.back().eye), 1e-3)
       << "all but the frame in which the key was pressed";
   EXPECT_NEAR(SecondsBetween(*path.points().back().utc, flown.back().now), 0.0, 1e-3);
   Press(kF2, kShiftKey);
@@ -286,7 +286,7 @@ TEST_F(ViewerAppFiles, ThePanelBeginsAndEndsARecord) {
   EXPECT_FALSE(deck_->Model().recording);
   const CameraPath path = ReadFlight("flight-0001.csv");
   EXPECT_EQ(path.begin_s(), 0.0) << "of the record, not of the flight";
-  EXPECT_LT(Apart_m(EyeOf(path.points().front().pose), flown.front().eye), 1e-3);
+  EXPECT_LT(Apart_m(path.points().front().pose, flown.front().eye), 1e-3);
   Commands().Record(true);
   static_cast<void>(Fly(1));
   EXPECT_TRUE(std::filesystem::exists("flight-0002.csv.part")) << "no flight is written over";
@@ -366,7 +366,7 @@ TEST_F(ViewerAppTest, APlaceThatIsAskedForMovesTheEye) {
 }
 
 TEST_F(ViewerAppTest, APlaceThatNobodyKnowsIsAWarningAndTheEyeStays) {
-  const Eye before = flight_->eye();
+  const CameraPose before = flight_->eye();
   Commands().GoTo("Nowhere at all");
   EXPECT_EQ(flight_->eye(), before);
   ASSERT_EQ(Messages().size(), 1U);
@@ -388,7 +388,7 @@ TEST_F(ViewerAppTest, CtrlLSwitchesTheLandingLightAsThePanelDoes) {
 
 TEST_F(ViewerAppTest, TheLandingLightOfTheKeyShinesOnTheGround) {
   flight_->cockpit().clock().Set(ParseInstant("2026-06-21T23:00:00Z"));
-  Eye low = flight_->eye();
+  CameraPose low = flight_->eye();
   low.place.height_m = 30.0;
   low.pitch_rad = -0.3;
   flight_->cockpit().pilot().PutAt(low, flight_->cockpit().ground());

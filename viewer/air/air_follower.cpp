@@ -289,7 +289,7 @@ void AirFollower::ShowSmall(const AirView& view) {
   eye_ = tables.eye;
 }
 
-void AirFollower::Settle(const AirView& view) {
+void AirFollower::WaitUntilReady(const AirView& view) {
   solver_.Wait();
   TakeFinished();
   if (air_->solution == AirSolution::kDraft) {

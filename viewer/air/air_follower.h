@@ -16,8 +16,8 @@
 #include <optional>
 #include <vector>
 
+#include "atmosphere/base/async_value.h"
 #include "lut/camera_tables/air_tables.h"
-#include "viewer/async/async_value.h"
 #include "viewer/gl/gl_objects.h"
 #include "viewer/gl/shader.h"
 #include "viewer/layer.h"
@@ -110,7 +110,7 @@ class AirFollower {
   void Follow(const AirView& view, double seconds = 0.0);
   /// Waits until the final tables of Follow are displayed. It is used for pictures that are written
   /// to files.
-  void Settle(const AirView& view);
+  void WaitUntilReady(const AirView& view);
 
   /// Returns the displayed textures.
   [[nodiscard]] const AirTextures& textures() const { return textures_; }

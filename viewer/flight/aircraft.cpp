@@ -381,8 +381,8 @@ AircraftReadout ReadoutOf(const AircraftState& state, const AircraftKind& kind,
           state.contact};
 }
 
-Eye EyeIn(const AircraftState& state, const AircraftKind& kind, const Ellipsoid& ellipsoid,
-          double look_right_rad, double look_up_rad, double fov_rad) {
+CameraPose EyeIn(const AircraftState& state, const AircraftKind& kind, const Ellipsoid& ellipsoid,
+                 double look_right_rad, double look_up_rad, double fov_rad) {
   const Surroundings here = SurroundingsAt(ellipsoid, state.place);
   const double attack_rad =
       (LiftCoefficient(state, kind, here) - kind.cruise_lift) / kind.lift_slope_per_rad;
@@ -394,7 +394,7 @@ Eye EyeIn(const AircraftState& state, const AircraftKind& kind, const Ellipsoid&
   const glm::dvec3 side = TurnedAbout(state.up.xyz, -(look_right_rad + state.slip_rad), right);
   const glm::dvec3 forward = TurnedAbout(side, up_rad, turned);
   const glm::dvec3 up = glm::cross(side, forward);
-  Eye eye{here.place};
+  CameraPose eye{here.place};
   eye.fov_rad = fov_rad;
   eye.heading_rad = std::atan2(glm::dot(forward, here.east), glm::dot(forward, here.north));
   eye.pitch_rad = std::asin(std::clamp(glm::dot(forward, here.up), -1.0, 1.0));

@@ -134,8 +134,8 @@ struct AircraftReadout {
 
 /// Returns the eye of the pilot, whose view is turned from the nose by these angles; the field of
 /// view is kept.
-[[nodiscard]] Eye EyeIn(const AircraftState& state, const AircraftKind& kind,
-                        const Ellipsoid& ellipsoid, double look_right_rad, double look_up_rad,
-                        double fov_rad);
+[[nodiscard]] CameraPose EyeIn(const AircraftState& state, const AircraftKind& kind,
+                               const Ellipsoid& ellipsoid, double look_right_rad,
+                               double look_up_rad, double fov_rad);
 
 }  // namespace alpenglow::viewer

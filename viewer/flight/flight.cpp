@@ -15,7 +15,9 @@ namespace {
 
 /// Returns the turn rate. It is proportional to the field of view, so that a telescopic view turns
 /// slowly, up to 45 degrees a second at 60 degrees.
-double TurnRate(const Eye& eye) { return 0.75 * std::min(eye.fov_rad, 60.0 * kRadiansPerDegree); }
+double TurnRate(const CameraPose& eye) {
+  return 0.75 * std::min(eye.fov_rad, 60.0 * kRadiansPerDegree);
+}
 
 }  // namespace
 
@@ -24,9 +26,9 @@ const char* NameOf(FlightMode mode) {
   return kNames[static_cast<std::size_t>(mode)];
 }
 
-Eye Placed(const Eye& eye, const EyePlacement& placement) {
+CameraPose Placed(const CameraPose& eye, const EyePlacement& placement) {
   const auto degrees = [](double radians) { return radians / kRadiansPerDegree; };
-  Eye placed = eye;
+  CameraPose placed = eye;
   if (placement.latitude_deg || placement.longitude_deg || placement.height_m) {
     placed.place = PlaceFromDegrees(
         placement.latitude_deg.value_or(degrees(eye.place.latitude_rad)),
@@ -45,7 +47,7 @@ Eye Placed(const Eye& eye, const EyePlacement& placement) {
   return placed;
 }
 
-ViewAxes AxesOf(const Eye& eye) {
+ViewAxes AxesOf(const CameraPose& eye) {
   const double heading = eye.heading_rad, pitch = eye.pitch_rad, roll = eye.roll_rad;
   const glm::dvec3 forward{std::cos(pitch) * std::sin(heading), std::cos(pitch) * std::cos(heading),
                            std::sin(pitch)};
@@ -63,10 +65,10 @@ double SpeedAt(double above_ground_m) {
                     kFastest_m_per_s);
 }
 
-Eye Steer(const Eye& eye, const Steering& steering, const Ellipsoid& ellipsoid,
-          double above_ground_m, double seconds) {
+CameraPose Steer(const CameraPose& eye, const Steering& steering, const Ellipsoid& ellipsoid,
+                 double above_ground_m, double seconds) {
   const double turn_rad = TurnRate(eye) * seconds;
-  Eye moved = Turned(eye, steering.turn_right * turn_rad, steering.pitch_up * turn_rad);
+  CameraPose moved = Turned(eye, steering.turn_right * turn_rad, steering.pitch_up * turn_rad);
   moved.roll_rad = std::remainder(eye.roll_rad + steering.roll_right * turn_rad, 2.0 * kPi);
   const ViewAxes axes = AxesOf(moved);
   const double step_m = SpeedAt(above_ground_m) * seconds;
@@ -84,15 +86,15 @@ Eye Steer(const Eye& eye, const Steering& steering, const Ellipsoid& ellipsoid,
   return moved;
 }
 
-Eye FreeFlight(const Eye& eye, const Steering& steering, const Ellipsoid& ellipsoid,
-               const GroundHeight& ground, double speed_factor, double seconds) {
+CameraPose FreeFlight(const CameraPose& eye, const Steering& steering, const Ellipsoid& ellipsoid,
+                      const GroundHeight& ground, double speed_factor, double seconds) {
   constexpr double kLongest_s = 1.0 / 60.0, kClearance_m = 1.5;
   const auto steps =
       std::max(static_cast<std::int64_t>(std::ceil(seconds / kLongest_s)), std::int64_t{1});
   const double step_s = seconds / static_cast<double>(steps);
   Steering scaled = steering;
   for (double* pace : {&scaled.forward, &scaled.right, &scaled.up}) *pace *= speed_factor;
-  Eye moved = eye;
+  CameraPose moved = eye;
   for (std::int64_t i = 0; i < steps; ++i) {
     const double above_m = std::max(moved.place.height_m - ground(moved.place), 0.0);
     moved = Steer(moved, scaled, ellipsoid, above_m, step_s);
@@ -101,11 +103,11 @@ Eye FreeFlight(const Eye& eye, const Steering& steering, const Ellipsoid& ellips
   return moved;
 }
 
-Eye EyeAt(const NamedPlace& there, const Eye& before, const GroundHeight& ground) {
+CameraPose EyeAt(const NamedPlace& there, const CameraPose& before, const GroundHeight& ground) {
   const double above_m = there.kind == PlaceKind::kAirport ? 2.0
                          : there.kind == PlaceKind::kPeak  ? 100.0
                                                            : 600.0;
-  Eye eye = before;
+  CameraPose eye = before;
   eye.place = there.place;
   eye.place.height_m = ground(there.place) + above_m;
   eye.pitch_rad = eye.roll_rad = 0.0;
@@ -115,24 +117,24 @@ Eye EyeAt(const NamedPlace& there, const Eye& before, const GroundHeight& ground
   return eye;
 }
 
-Eye Turned(const Eye& eye, double right_rad, double up_rad) {
+CameraPose Turned(const CameraPose& eye, double right_rad, double up_rad) {
   // In a rolled view, a turn to the right changes both heading and pitch.
   const double c = std::cos(eye.roll_rad), s = std::sin(eye.roll_rad);
-  Eye turned = eye;
+  CameraPose turned = eye;
   turned.heading_rad = std::remainder(eye.heading_rad + c * right_rad + s * up_rad, 2.0 * kPi);
   turned.pitch_rad = std::clamp(eye.pitch_rad + c * up_rad - s * right_rad, -0.5 * kPi, 0.5 * kPi);
   return turned;
 }
 
-Eye Zoomed(const Eye& eye, double factor) {
-  Eye zoomed = eye;
+CameraPose Zoomed(const CameraPose& eye, double factor) {
+  CameraPose zoomed = eye;
   zoomed.fov_rad =
       std::clamp(eye.fov_rad * factor, 1.0 * kRadiansPerDegree, 120.0 * kRadiansPerDegree);
   return zoomed;
 }
 
-Eye KeptAbove(const Eye& eye, double ground_m, double clearance_m) {
-  Eye kept = eye;
+CameraPose KeptAbove(const CameraPose& eye, double ground_m, double clearance_m) {
+  CameraPose kept = eye;
   kept.place.height_m = std::max(eye.place.height_m, ground_m + clearance_m);
   return kept;
 }

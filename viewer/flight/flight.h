@@ -17,17 +17,6 @@ enum class FlightMode { kFree, kAircraft, kTrack };
 /// Returns "free camera", "aircraft" or "track".
 [[nodiscard]] const char* NameOf(FlightMode mode);
 
-/// Position, direction and field of view of the eye. Angles are in radians.
-struct Eye {
-  GeodeticPosition place;               // height over the ellipsoid
-  double heading_rad = 0.0;             // clockwise from north
-  double pitch_rad = 0.0;               // positive upwards
-  double roll_rad = 0.0;                // clockwise seen from behind
-  double fov_rad = 1.0471975511965976;  // horizontal
-
-  bool operator==(const Eye&) const = default;
-};
-
 /// Position and direction for an eye, as typed by the user; unset values remain unchanged.
 struct EyePlacement {
   std::optional<double> latitude_deg = {};
@@ -38,7 +27,7 @@ struct EyePlacement {
 };
 /// Returns the eye moved by a placement. Throws InputError that names the option of a value out of
 /// range.
-[[nodiscard]] Eye Placed(const Eye& eye, const EyePlacement& placement);
+[[nodiscard]] CameraPose Placed(const CameraPose& eye, const EyePlacement& placement);
 
 /// Inputs for the free camera, each in [-1, 1].
 struct Steering {
@@ -54,7 +43,7 @@ struct Steering {
 struct ViewAxes {
   glm::dvec3 right, up, forward;
 };
-[[nodiscard]] ViewAxes AxesOf(const Eye& eye);
+[[nodiscard]] ViewAxes AxesOf(const CameraPose& eye);
 
 /// Returns the speed of the free camera [m/s] at a height over the ground: walking pace at the
 /// ground, the height of a mountain in seconds above it, kilometres per second in orbit.
@@ -62,26 +51,28 @@ struct ViewAxes {
 
 /// Returns the eye after `seconds` of steering at SpeedAt(above_ground_m). Forward motion is along
 /// the view; the path follows the ellipsoid. Pitch is limited to the vertical.
-[[nodiscard]] Eye Steer(const Eye& eye, const Steering& steering, const Ellipsoid& ellipsoid,
-                        double above_ground_m, double seconds);
+[[nodiscard]] CameraPose Steer(const CameraPose& eye, const Steering& steering,
+                               const Ellipsoid& ellipsoid, double above_ground_m, double seconds);
 
 /// Returns the eye after `seconds` of steering at `speed_factor` times SpeedAt its height over the
 /// ground, in steps of at most 1/60 s. One long frame therefore ends where several short ones do,
 /// within 1 % of the distance. The eye stays at least 1.5 m above the ground.
-[[nodiscard]] Eye FreeFlight(const Eye& eye, const Steering& steering, const Ellipsoid& ellipsoid,
-                             const GroundHeight& ground, double speed_factor, double seconds);
+[[nodiscard]] CameraPose FreeFlight(const CameraPose& eye, const Steering& steering,
+                                    const Ellipsoid& ellipsoid, const GroundHeight& ground,
+                                    double speed_factor, double seconds);
 
 /// Returns an eye at a place: at the middle of the runway, 2 m above the ground and looking along
 /// it; 100 m above a peak; 600 m above a city or a pole. The published height is not used.
-[[nodiscard]] Eye EyeAt(const NamedPlace& there, const Eye& before, const GroundHeight& ground);
+[[nodiscard]] CameraPose EyeAt(const NamedPlace& there, const CameraPose& before,
+                               const GroundHeight& ground);
 
 /// Returns the eye turned to the right and upwards [rad] in its own frame, which may be rolled.
-[[nodiscard]] Eye Turned(const Eye& eye, double right_rad, double up_rad);
+[[nodiscard]] CameraPose Turned(const CameraPose& eye, double right_rad, double up_rad);
 
 /// Returns the eye with its field of view multiplied by `factor` and clamped to [1, 120] degrees.
-[[nodiscard]] Eye Zoomed(const Eye& eye, double factor);
+[[nodiscard]] CameraPose Zoomed(const CameraPose& eye, double factor);
 
 /// Returns the eye raised to at least `clearance_m` above ground of height `ground_m`.
-[[nodiscard]] Eye KeptAbove(const Eye& eye, double ground_m, double clearance_m);
+[[nodiscard]] CameraPose KeptAbove(const CameraPose& eye, double ground_m, double clearance_m);
 
 }  // namespace alpenglow::viewer

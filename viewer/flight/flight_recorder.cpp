@@ -3,22 +3,14 @@
 
 #include <fmt/format.h>
 
+#include "atmosphere/base/async_value.h"
 #include "atmosphere/base/error.h"
 #include "atmosphere/base/parsing.h"
 #include "lut/cli/messages.h"
 #include "lut/cli/output_file.h"
 #include "renderer/series/frame_times.h"
-#include "viewer/async/async_value.h"
 
 namespace alpenglow::viewer {
-
-CameraPose PoseOf(const Eye& eye) {
-  return {eye.place, eye.heading_rad, eye.pitch_rad, eye.roll_rad, eye.fov_rad};
-}
-
-Eye EyeOf(const CameraPose& pose) {
-  return {pose.place, pose.heading_rad, pose.pitch_rad, pose.roll_rad, pose.fov_rad};
-}
 
 bool IsDue(double elapsed_s, double last_s, double interval_s) {
   // Tolerance for frame times: a point may be recorded slightly early instead of one frame late. At
@@ -78,12 +70,12 @@ std::optional<std::filesystem::path> FlightRecorder::file() const {
   return state_ && !state_->fault ? std::optional(state_->name) : std::nullopt;
 }
 
-void FlightRecorder::Note(double elapsed_s, const Eye& eye, const UtcInstant& now) {
+void FlightRecorder::Note(double elapsed_s, const CameraPose& eye, const UtcInstant& now) {
   if (!state_ || state_->fault) return;
   if (state_->last_s && !IsDue(elapsed_s, *state_->last_s, kInterval_s)) return;
   if (!state_->begin_s) state_->begin_s = elapsed_s;
   try {
-    state_->Append({elapsed_s - *state_->begin_s, PoseOf(eye), now});
+    state_->Append({elapsed_s - *state_->begin_s, eye, now});
     state_->last_s = elapsed_s;
   } catch (const OutputError& error) {
     state_->fault = error.what();
@@ -117,7 +109,7 @@ CameraPath ReadFlight(const std::filesystem::path& file) {
 }
 
 ReplayFrame ReplayAt(const CameraPath& path, double path_s) {
-  return {path_s, EyeOf(path.PoseAt(path_s)), path.UtcAt(path_s)};
+  return {path_s, path.PoseAt(path_s), path.UtcAt(path_s)};
 }
 
 std::vector<std::filesystem::path> ReplayPictures(const std::string& pattern, int count) {
@@ -145,9 +137,9 @@ std::vector<CameraPathPoint> EverySecond(const std::vector<CameraPathPoint>& poi
 
 }  // namespace
 
-void FlightLog::Note(double elapsed_s, const Eye& eye, const UtcInstant& now) {
-  last_ = CameraPathPoint{elapsed_s, PoseOf(eye), now};
-  has_flown_ = has_flown_ || (!points_.empty() && !(EyeOf(points_.front().pose) == eye));
+void FlightLog::Note(double elapsed_s, const CameraPose& eye, const UtcInstant& now) {
+  last_ = CameraPathPoint{elapsed_s, eye, now};
+  has_flown_ = has_flown_ || (!points_.empty() && points_.front().pose != eye);
   if (!points_.empty() && !IsDue(elapsed_s, points_.back().time_s, interval_s_)) return;
   points_.push_back(*last_);
   if (points_.size() < most_) return;

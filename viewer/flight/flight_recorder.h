@@ -16,9 +16,6 @@
 
 namespace alpenglow::viewer {
 
-[[nodiscard]] CameraPose PoseOf(const Eye& eye);
-[[nodiscard]] Eye EyeOf(const CameraPose& pose);
-
 /// Returns whether the next point is due, given the time of the last recorded point.
 [[nodiscard]] bool IsDue(double elapsed_s, double last_s, double interval_s);
 
@@ -46,7 +43,7 @@ class FlightRecorder {
   /// Records a point. The point is skipped if the last one is too recent. If the file cannot be
   /// written, one message reports it and the flight continues without recording.
   /// @param elapsed_s  since any fixed instant; times in the file start at the first point.
-  void Note(double elapsed_s, const Eye& eye, const UtcInstant& now);
+  void Note(double elapsed_s, const CameraPose& eye, const UtcInstant& now);
 
   /// Returns the file that is being recorded; nullopt if there is none.
   [[nodiscard]] std::optional<std::filesystem::path> file() const;
@@ -69,7 +66,7 @@ class FlightRecorder {
 /// Content of one frame of a replay.
 struct ReplayFrame {
   double path_s;
-  Eye eye;
+  CameraPose eye;
   std::optional<UtcInstant> now;  // nullopt: the clock of the viewer continues
 };
 [[nodiscard]] ReplayFrame ReplayAt(const CameraPath& path, double path_s);
@@ -88,7 +85,7 @@ class FlightLog {
   explicit FlightLog(std::size_t most_points = kMostPoints) : most_(most_points) {}
 
   /// @param elapsed_s  time of flight; it increases.
-  void Note(double elapsed_s, const Eye& eye, const UtcInstant& now);
+  void Note(double elapsed_s, const CameraPose& eye, const UtcInstant& now);
 
   /// Returns the path from the first to the last Note; it starts at 0 s. Throws InputError if the
   /// eye has not moved.

@@ -225,7 +225,7 @@ void FollowedTrack::Skip(double seconds) {
   if (path_) at_s_ = std::clamp(at_s_ + seconds, path_->begin_s(), path_->end_s());
 }
 
-Pilot::Pilot(const Eye& eye, const Ellipsoid& ellipsoid)
+Pilot::Pilot(const CameraPose& eye, const Ellipsoid& ellipsoid)
     : ellipsoid_(ellipsoid), eye_(eye), first_fov_rad_(eye.fov_rad), aircraft_(ellipsoid) {}
 
 void Pilot::SetTrack(std::shared_ptr<const CameraPath> track, Lens lens) {
@@ -250,7 +250,7 @@ std::optional<std::string> Pilot::Enter(FlightMode mode, const GroundHeight& gro
   return std::nullopt;
 }
 
-void Pilot::PutAt(const Eye& eye, const GroundHeight& ground) {
+void Pilot::PutAt(const CameraPose& eye, const GroundHeight& ground) {
   eye_ = eye;
   if (mode_ == FlightMode::kTrack || eye.place.height_m > kHighestStart_m)
     mode_ = FlightMode::kFree;
@@ -302,7 +302,7 @@ void Pilot::Show(const GroundHeight& ground) {
     eye_ = aircraft_.EyeOfPilot(look_right_rad_, look_up_rad_, eye_.fov_rad);
   } else if (mode_ == FlightMode::kTrack) {
     const double fov_rad = eye_.fov_rad;
-    eye_ = Turned(EyeOf(track_.Pose()), look_right_rad_, look_up_rad_);
+    eye_ = Turned(track_.Pose(), look_right_rad_, look_up_rad_);
     if (track_lens_ == Lens::kOfEye) eye_.fov_rad = fov_rad;
   }
   eye_ = KeptAbove(eye_, ground(eye_.place), Replays() ? kReplayed_m : kStanding_m);

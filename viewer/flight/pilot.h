@@ -101,7 +101,7 @@ class PilotedAircraft {
   [[nodiscard]] AircraftReadout Readout() const { return ReadoutOf(shown_, kind_, ellipsoid_); }
   [[nodiscard]] std::string_view name() const { return kind_.name; }
   /// Returns the eye of the pilot, turned to the right and upwards.
-  [[nodiscard]] Eye EyeOfPilot(double right_rad, double up_rad, double fov_rad) const {
+  [[nodiscard]] CameraPose EyeOfPilot(double right_rad, double up_rad, double fov_rad) const {
     return EyeIn(shown_, kind_, ellipsoid_, right_rad, up_rad, fov_rad);
   }
 
@@ -158,17 +158,17 @@ struct FlightReadout {
 class Pilot {
  public:
   /// Starts with a free camera.
-  Pilot(const Eye& eye, const Ellipsoid& ellipsoid);
+  Pilot(const CameraPose& eye, const Ellipsoid& ellipsoid);
 
   [[nodiscard]] FlightMode mode() const { return mode_; }
-  [[nodiscard]] const Eye& eye() const { return eye_; }
+  [[nodiscard]] const CameraPose& eye() const { return eye_; }
 
   /// Changes the mode at the current position. A track starts at its beginning, or where it was
   /// left. Returns the reason if the mode cannot be entered, otherwise nullopt.
   [[nodiscard]] std::optional<std::string> Enter(FlightMode mode, const GroundHeight& ground);
   /// Moves the eye to another position in the current mode; the mode kTrack changes to the free
   /// camera.
-  void PutAt(const Eye& eye, const GroundHeight& ground);
+  void PutAt(const CameraPose& eye, const GroundHeight& ground);
   /// Raises the eye above ground whose height has become known.
   void KeepAbove(const GroundHeight& ground) { Show(ground); }
   /// Sets the track for kTrack, which starts at its beginning and in its own time. A null track
@@ -220,7 +220,7 @@ class Pilot {
 
   Ellipsoid ellipsoid_;
   FlightMode mode_ = FlightMode::kFree;
-  Eye eye_;
+  CameraPose eye_;
   double first_fov_rad_;
   double free_factor_ = 1.0, track_factor_ = 1.0, flight_factor_ = 1.0;
   double look_right_rad_ = 0.0, look_up_rad_ = 0.0;

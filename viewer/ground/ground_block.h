@@ -23,13 +23,13 @@
 #include "lut/camera_tables/air_tables.h"
 #include "renderer/illumination/lighting.h"
 #include "renderer/illumination/sky_on_ground.h"
+#include "renderer/picture/ground_follower.h"
 #include "renderer/scene/scene.h"
 #include "renderer/surface/colour_drape.h"
 #include "renderer/surface/scene_ground.h"
 #include "renderer/surface/surface.h"
 #include "viewer/gl/gl_objects.h"
 #include "viewer/gl/shader.h"
-#include "viewer/ground/ground_follower.h"
 #include "viewer/layer.h"
 
 namespace alpenglow::viewer {

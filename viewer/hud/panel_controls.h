@@ -19,11 +19,11 @@
 #include <string>
 #include <vector>
 
+#include "atmosphere/base/async_value.h"
 #include "atmosphere/ray/single_scattering.h"
 #include "atmosphere/time_place/geodesy.h"
 #include "atmosphere/time_place/time.h"
 #include "lut/multiple_scattering/multiple_scattering.h"
-#include "viewer/async/async_value.h"
 #include "viewer/layer.h"
 
 namespace alpenglow::viewer {

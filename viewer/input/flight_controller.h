@@ -14,7 +14,7 @@ namespace alpenglow::viewer {
 
 class FlightController {
  public:
-  FlightController(const Eye& eye, const Ellipsoid& ellipsoid, const UtcInstant& start,
+  FlightController(const CameraPose& eye, const Ellipsoid& ellipsoid, const UtcInstant& start,
                    GroundHeight ground)
       : ground_(std::move(ground)), pilot_(eye, ellipsoid), clock_(start) {}
 

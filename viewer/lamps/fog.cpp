@@ -11,9 +11,9 @@
 #include "atmosphere/astronomy/sun.h"
 #include "atmosphere/base/error.h"
 #include "atmosphere/math/constants.h"
+#include "renderer/lamps/scene_lamps.h"
 #include "viewer/gl/gl_context.h"
 #include "viewer/gl/render_target.h"
-#include "viewer/lamps/scene_lamps.h"
 #include "viewer/shaders/pass_setup.h"
 
 namespace alpenglow::viewer {
@@ -79,7 +79,7 @@ void FogPainter::Bind(const FogMap& map, const FogView& now) const {
 
 namespace {
 
-FogView FogViewOf(const Eye& eye, const SunPosition& sun) {
+FogView FogViewOf(const CameraPose& eye, const SunPosition& sun) {
   const auto towards = [](const SunPosition& at) {
     return DirectionFromAngles(at.elevation_rad, at.azimuth_rad).xyz;
   };
@@ -115,15 +115,15 @@ void SceneFog::BeginIn(const std::shared_ptr<const SolvedAir>& air, double latit
   });
 }
 
-void SceneFog::Follow(const std::shared_ptr<const SolvedAir>& air, const Eye& eye,
+void SceneFog::Follow(const std::shared_ptr<const SolvedAir>& air, const CameraPose& eye,
                       const SunPosition& sun) {
-  if (air_ != air) return Settle(air, eye, sun);
+  if (air_ != air) return WaitUntilReady(air, eye, sun);
   if (maps_->Update()) painter_.Upload(*maps_->value());
   maps_->RequestWhenIdle(FogViewOf(eye, sun));
 }
 
-void SceneFog::Settle(const std::shared_ptr<const SolvedAir>& air, const Eye& eye,
-                      const SunPosition& sun) {
+void SceneFog::WaitUntilReady(const std::shared_ptr<const SolvedAir>& air, const CameraPose& eye,
+                              const SunPosition& sun) {
   if (air_ != air) BeginIn(air, eye.place.latitude_rad);
   maps_->WaitUntilReady(FogViewOf(eye, sun));
   maps_->Update();
@@ -135,7 +135,7 @@ double SceneFog::ExtinctionAt(double altitude_m) const {
   return fog.optics.extinction_per_m[0] * fog.fog()->DensityAtAltitude(altitude_m);
 }
 
-void SceneFog::Bind(const Eye& eye, const SunPosition& sun) const {
+void SceneFog::Bind(const CameraPose& eye, const SunPosition& sun) const {
   painter_.Bind(*maps_->value(), FogViewOf(eye, sun));
 }
 

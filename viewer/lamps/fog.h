@@ -11,10 +11,10 @@
 #include <vector>
 
 #include "atmosphere/astronomy/sun.h"
+#include "atmosphere/base/async_value.h"
 #include "lut/camera_tables/air_tables.h"
 #include "renderer/media/fog_light.h"
 #include "renderer/media/local_media.h"
-#include "viewer/async/async_value.h"
 #include "viewer/flight/flight.h"
 #include "viewer/gl/gl_objects.h"
 #include "viewer/gl/shader.h"
@@ -62,23 +62,25 @@ class SceneFog {
   /// @param media  media whose last one is fog.
   SceneFog(LocalMedia media, const FogMapSize& size, const FogUnits& units);
 
-  /// Sets the size of maps from the next Follow or Settle on.
+  /// Sets the size of maps from the next Follow or WaitUntilReady on.
   void SetSize(const FogMapSize& size);
 
   /// Takes a finished map and requests a missing one. Call it once a frame. It waits only for the
   /// first map in a medium.
   /// @param sun  apparent position, seen from the eye.
-  void Follow(const std::shared_ptr<const SolvedAir>& air, const Eye& eye, const SunPosition& sun);
+  void Follow(const std::shared_ptr<const SolvedAir>& air, const CameraPose& eye,
+              const SunPosition& sun);
   /// Waits for the map of the view.
-  void Settle(const std::shared_ptr<const SolvedAir>& air, const Eye& eye, const SunPosition& sun);
+  void WaitUntilReady(const std::shared_ptr<const SolvedAir>& air, const CameraPose& eye,
+                      const SunPosition& sun);
 
   /// Returns the extinction of the fog at an altitude [1/m].
   [[nodiscard]] double ExtinctionAt(double altitude_m) const;
 
   /// Connects a program of FogTexts() with the bound data.
   void Connect(const ShaderProgram& program) const { painter_.Connect(program); }
-  /// Binds everything for the next draw call of such a program. Call it after Follow or Settle.
-  void Bind(const Eye& eye, const SunPosition& sun) const;
+  /// Binds everything for the next draw call of such a program. Call it after Follow or WaitUntilReady.
+  void Bind(const CameraPose& eye, const SunPosition& sun) const;
 
  private:
   void BeginIn(const std::shared_ptr<const SolvedAir>& air, double latitude_rad);

@@ -9,8 +9,8 @@
 #include "atmosphere/math/numerics.h"
 #include "atmosphere/medium/phase_table.h"
 #include "renderer/lamps/ground_under_lamps.h"
+#include "renderer/lamps/scene_lamps.h"
 #include "viewer/gl/gl_context.h"
-#include "viewer/lamps/scene_lamps.h"
 #include "viewer/shaders/pass_setup.h"
 
 namespace alpenglow::viewer {

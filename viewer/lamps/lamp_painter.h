@@ -18,9 +18,9 @@
 #include <optional>
 #include <vector>
 
+#include "renderer/lamps/scene_lamps.h"
 #include "viewer/gl/render_target.h"
 #include "viewer/gl/shader.h"
-#include "viewer/lamps/scene_lamps.h"
 
 namespace alpenglow::viewer {
 

@@ -111,7 +111,7 @@ void ChunkBuffers::DescribeVertices(LightSide from) {
   glBindBuffer(GL_ELEMENT_ARRAY_BUFFER, triangles_.id());
 }
 
-void ChunkBuffers::Draw(std::span<const Drawn> chunks, LightSide from) {
+void ChunkBuffers::Draw(std::span<const SeenChunk> chunks, LightSide from) {
   std::vector<GLsizei> counts;
   std::vector<const void*> offsets;
   std::vector<GLint> first_vertices;

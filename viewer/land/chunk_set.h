@@ -16,10 +16,11 @@
 #include <utility>
 #include <vector>
 
+#include "renderer/terrain/land_chunk.h"
+#include "renderer/terrain/level_ranges.h"
 #include "renderer/terrain/loaded_heights.h"
+#include "renderer/terrain/seen_chunks.h"
 #include "viewer/gl/gl_objects.h"
-#include "viewer/land/land_chunk.h"
-#include "viewer/land/level_ranges.h"
 
 namespace alpenglow::viewer {
 
@@ -41,15 +42,9 @@ class ChunkBuffers {
   void SetLight(int slot, LightSide side, std::span<const ChunkLight> light);
   void Remove(int slot) { free_.push_back(slot); }
 
-  /// A chunk in its slot. Along `coarse_sides` the odd vertices are left out.
-  struct Drawn {
-    int slot;
-    const LandChunk* chunk;
-    unsigned coarse_sides;
-  };
   /// Draws the chunks in this order with the program in use. The light fades from side `from` to
   /// the other side.
-  void Draw(std::span<const Drawn> chunks, LightSide from);
+  void Draw(std::span<const SeenChunk> chunks, LightSide from);
 
   /// Returns the size [bytes] of all slots, used or not, and of the triangles of whole chunks.
   [[nodiscard]] std::size_t bytes() const;
@@ -195,9 +190,7 @@ class ChunkSet {
   /// If there are more than `most` chunks, removes those that no recent frame has wanted.
   void Evict(std::size_t most, long frame);
   /// Draws chunks, see ChunkBuffers::Draw.
-  void Draw(std::span<const ChunkBuffers::Drawn> chunks, LightSide from) {
-    buffers_.Draw(chunks, from);
-  }
+  void Draw(std::span<const SeenChunk> chunks, LightSide from) { buffers_.Draw(chunks, from); }
 
   [[nodiscard]] std::size_t bytes() const;
   [[nodiscard]] std::size_t card_bytes() const { return buffers_.bytes(); }

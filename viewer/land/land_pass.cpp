@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "atmosphere/math/constants.h"
+#include "renderer/terrain/frame_transform.h"
 #include "viewer/gl/render_target.h"
 #include "viewer/shaders/pass_setup.h"
 
@@ -15,16 +16,13 @@ namespace alpenglow::viewer {
 // Nodes of the grid are at texel centres.
 PlaceOnGrid PlaceOnGridOf(const HeightRaster& grid, const LocalFrame& of_grid,
                           const LocalFrame& of_places) {
-  const auto turned = [&](const glm::dvec3& axis) {
-    return of_grid.EnuFromEcef(of_places.EcefFromEnu(Vector<Enu>{axis})).xyz;
-  };
-  const glm::dvec3 x = turned({1.0, 0.0, 0.0}), y = turned({0.0, 1.0, 0.0}),
-                   z = turned({0.0, 0.0, 1.0});
-  const glm::dvec3 origin = of_grid.EnuFromGeodetic(of_places.origin()).xyz;
+  const FrameTransform to_grid(of_grid, of_places);
   const auto row = [&](glm::length_t axis, double first_m, int nodes) {
     const double scale = 1.0 / (grid.cell_m * nodes);
-    return glm::vec4(
-        glm::dvec4(x[axis], y[axis], z[axis], origin[axis] - first_m + 0.5 * grid.cell_m) * scale);
+    const glm::dmat3& turned = to_grid.axes();
+    const double offset_m = to_grid.origin_m()[axis] - first_m + 0.5 * grid.cell_m;
+    return glm::vec4(glm::dvec4(turned[0][axis], turned[1][axis], turned[2][axis], offset_m) *
+                     scale);
   };
   return {row(0, grid.first_x_m, grid.columns), row(1, grid.first_y_m, grid.rows)};
 }
@@ -88,27 +86,17 @@ glm::vec4 Padded(const glm::dvec3& v) { return {glm::vec3(v), 0.0F}; }
 
 }  // namespace
 
-EyeInAnchor::EyeInAnchor(const LocalFrame& anchor, const GeodeticPosition& eye) {
-  const LocalFrame there(anchor.ellipsoid(), eye);
-  const auto axis = [&](const glm::dvec3& v) {
-    return anchor.EnuFromEcef(there.EcefFromEnu(Vector<Enu>{v})).xyz;
-  };
-  at = anchor.EnuFromGeodetic(eye).xyz;
-  east = axis({1.0, 0.0, 0.0});
-  north = axis({0.0, 1.0, 0.0});
-  up = axis({0.0, 0.0, 1.0});
-}
-
-LandBlock LandBlockOf(const EyeInAnchor& eye, double new_light) {
-  const glm::vec3 high(eye.at);
+LandBlock LandBlockOf(const LocalFrame& anchor, const GeodeticPosition& eye, double new_light) {
+  const FrameTransform from_eye(anchor, LocalFrame(anchor.ellipsoid(), eye));
+  const glm::vec3 high(from_eye.origin_m());
   std::array<GLint, 4> viewport{};
   glGetIntegerv(GL_VIEWPORT, viewport.data());
   LandBlock block{};
   block.eye_high = glm::vec4(high, 0.0F);
-  block.eye_low = Padded(eye.at - glm::dvec3(high));
-  block.east = Padded(eye.east);
-  block.north = Padded(eye.north);
-  block.up = Padded(eye.up);
+  block.eye_low = Padded(from_eye.origin_m() - glm::dvec3(high));
+  block.east = Padded(from_eye.axes()[0]);
+  block.north = Padded(from_eye.axes()[1]);
+  block.up = Padded(from_eye.axes()[2]);
   block.eye_above.y = static_cast<float>(new_light);
   block.pixel = {2.0F / static_cast<float>(viewport[2]), 2.0F / static_cast<float>(viewport[3]),
                  0.0F, 0.0F};

@@ -92,15 +92,6 @@ class DepthPrepass : public RenderTarget {
   DepthPrepass(int width, int height) : RenderTarget(width, height, {}, Depth::k32Bit) {}
 };
 
-/// View as in view_block.glsl: axes in the eye's frame (east, north, up).
-struct LandView {
-  glm::dvec3 right{1.0, 0.0, 0.0};  // times the tangent of half the horizontal field of view
-  glm::dvec3 up{0.0, 0.0, 1.0};     // times the tangent of half the vertical one
-  glm::dvec3 forward{0.0, 1.0, 0.0};
-  int rays = 1;              // rays per pixel; terrain is finer for more
-  double bends_per_m = 0.0;  // largest curvature of light rays, which raises land
-};
-
 /// Mirrors the uniform block `Land` of land_block.glsl.
 struct LandBlock {
   static constexpr std::size_t kMostLevels = 32;
@@ -113,26 +104,12 @@ struct LandBlock {
 };
 static_assert(sizeof(LandBlock) == (11 + LandBlock::kMostLevels) * sizeof(glm::vec4));
 
-/// The eye's position and axes in the frame of an anchor.
-struct EyeInAnchor {
-  glm::dvec3 at, east, north, up;
-
-  EyeInAnchor(const LocalFrame& anchor, const GeodeticPosition& eye);
-  /// Rotates a vector from the eye's frame to the anchor's.
-  [[nodiscard]] glm::dvec3 Turned(const glm::dvec3& v) const {
-    return v.x * east + v.y * north + v.z * up;
-  }
-  /// Transforms a point of the anchor's frame to the eye's.
-  [[nodiscard]] glm::dvec3 From(const glm::dvec3& point) const {
-    const glm::dvec3 v = point - at;
-    return {glm::dot(v, east), glm::dot(v, north), glm::dot(v, up)};
-  }
-};
-
 /// Returns a block without levels, in which vertices do not morph. The size of the picture is that
 /// of the viewport.
+/// @param anchor     frame of the vertices.
 /// @param new_light  weight of the new light.
-[[nodiscard]] LandBlock LandBlockOf(const EyeInAnchor& eye, double new_light);
+[[nodiscard]] LandBlock LandBlockOf(const LocalFrame& anchor, const GeodeticPosition& eye,
+                                    double new_light);
 
 /// Shadow edges of the current sun (HorizonTexture), which replace those stored in the vertices.
 struct MomentaryEdges {

@@ -13,7 +13,7 @@
 #include "atmosphere/base/error.h"
 #include "atmosphere/math/constants.h"
 #include "lut/cli/program.h"
-#include "viewer/land/seen_chunks.h"
+#include "renderer/terrain/seen_chunks.h"
 
 namespace alpenglow::viewer {
 namespace {
@@ -119,7 +119,7 @@ void Landscape::RaiseAbove(double seconds) {
   }
   if (highest < -1e8) return;
   const double share = ceiling_m_ ? 1.0 - std::exp(-seconds / kTime_s) : 1.0;
-  // lerp() reaches its end exactly. A running sum would keep changing by rounding, and Settle would
+  // lerp() reaches its end exactly. A running sum would keep changing by rounding, and WaitUntilReady would
   // not end.
   ceiling_m_ = std::lerp(ceiling_m_.value_or(highest), highest, share);
 }
@@ -139,7 +139,7 @@ void Landscape::ChooseDrawn() {
     if (kept == nullptr || kept->slot < 0) continue;
     drawn_.push_back({kept->slot, kept->chunk.get(), near.coarse_sides});
   }
-  const EyeInAnchor eye(set_->anchor().frame, eye_place_);
+  const FrameTransform eye(set_->anchor().frame, LocalFrame(ellipsoid_, eye_place_));
   farthest_m_ = FarthestOf(drawn_, eye);
   drawn_ = InView(std::move(drawn_), eye, view_);
   constexpr double kHigh_m = 5000.0;  // over all ground nearby; little is hidden from there
@@ -211,7 +211,7 @@ bool Landscape::IsAllThere(std::size_t chunks_before) const {
 // ceilings becomes periodic. It need not converge: coarse land may be higher than the fine land
 // that replaces it, so that the two ceilings alternate. The lowest ceiling of the cycle is then
 // kept.
-void Landscape::Settle(const GeodeticPosition& eye, const LandView& view) {
+void Landscape::WaitUntilReady(const GeodeticPosition& eye, const LandView& view) {
   constexpr double kLong_s = 1e3;
   std::vector<std::optional<double>> ceilings;
   for (int still = 0; still < 3;) {
@@ -232,7 +232,7 @@ void Landscape::Settle(const GeodeticPosition& eye, const LandView& view) {
 }
 
 LandBlock Landscape::Block() const {
-  LandBlock block = LandBlockOf(EyeInAnchor(set_->anchor().frame, eye_place_), fade_.share());
+  LandBlock block = LandBlockOf(set_->anchor().frame, eye_place_, fade_.share());
   block.eye_sample =
       glm::vec4(glm::dvec4(eye_.at.column - set_->anchor().column, eye_.at.row - set_->anchor().row,
                            eye_.size.column_m, eye_.size.row_m));

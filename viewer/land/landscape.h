@@ -12,13 +12,13 @@
 #include <string>
 #include <vector>
 
+#include "atmosphere/base/async_value.h"
+#include "renderer/terrain/level_ranges.h"
 #include "renderer/terrain/loaded_heights.h"
-#include "viewer/async/async_value.h"
+#include "renderer/terrain/tile_cache.h"
 #include "viewer/land/chunk_set.h"
 #include "viewer/land/land_pass.h"
-#include "viewer/land/level_ranges.h"
 #include "viewer/land/mesh_land.h"
-#include "viewer/land/tile_cache.h"
 
 namespace alpenglow::viewer {
 
@@ -102,7 +102,7 @@ class Landscape {
   /// @param seconds  time since the last call, by which new levels and lights fade in.
   void Update(const GeodeticPosition& eye, const LandView& view, double seconds);
   /// Waits until everything that this eye needs is loaded and no longer changes.
-  void Settle(const GeodeticPosition& eye, const LandView& view);
+  void WaitUntilReady(const GeodeticPosition& eye, const LandView& view);
   /// Starts to read the tiles around a place, before the first Update.
   void BeginReading(const GeodeticPosition& place);
   /// Waits until the ground at a place is known.
@@ -183,8 +183,8 @@ class Landscape {
   LandDemand demand_;
   std::vector<double> reach_m_;
   std::vector<LevelRange> ranges_;
-  std::vector<DrawnChunk> around_;          // in view or not
-  std::vector<ChunkBuffers::Drawn> drawn_;  // in view
+  std::vector<DrawnChunk> around_;  // in view or not
+  std::vector<SeenChunk> drawn_;    // in view
   double farthest_m_ = 0.0;
   LightFade fade_;
   long frame_ = 0;

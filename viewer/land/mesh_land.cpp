@@ -204,7 +204,7 @@ void MeshLand::Draw(LandPass& pass, LandDrawn what, const GeodeticPosition& eye,
   glBindVertexArray(layout_.id());
   DescribeLight(LightOn(fade_.from()), LandPass::kOldLight);
   DescribeLight(LightOn(Other(fade_.from())), LandPass::kNewLight);
-  const LandBlock block = LandBlockOf(EyeInAnchor(frame_, eye), fade_.share());
+  const LandBlock block = LandBlockOf(frame_, eye, fade_.share());
   pass.Use(fade_.edges());
   pass.Run(what, block, frame_, view_binding, false, [&] {
     glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(3 * terrain_->mesh().triangles.size()),

@@ -9,14 +9,14 @@
 #include <utility>
 #include <vector>
 
+#include "atmosphere/base/async_value.h"
 #include "atmosphere/time_place/geodesy.h"
 #include "renderer/elevation/elevation.h"
+#include "renderer/terrain/land_chunk.h"
 #include "renderer/terrain/land_source.h"
 #include "renderer/terrain/loaded_heights.h"
 #include "renderer/terrain/terrain.h"
-#include "viewer/async/async_value.h"
 #include "viewer/land/chunk_set.h"
-#include "viewer/land/land_chunk.h"
 #include "viewer/land/land_pass.h"
 #include "viewer/layer.h"
 

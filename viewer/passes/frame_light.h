@@ -16,11 +16,11 @@
 #include <vector>
 
 #include "atmosphere/astronomy/sun.h"
+#include "atmosphere/base/async_value.h"
 #include "atmosphere/colour/spectrum.h"
 #include "atmosphere/time_place/time.h"
 #include "lut/camera_tables/air_tables.h"
 #include "renderer/illumination/lighting.h"
-#include "viewer/async/async_value.h"
 #include "viewer/gl/gl_objects.h"
 #include "viewer/gl/shader.h"
 #include "viewer/layer.h"

@@ -100,7 +100,7 @@ void FrameRenderer::SetTimer(PassTimer* timer) {
   painter_.SetTimer(timer);
 }
 
-void FrameRenderer::AimLandingLight(const Eye& eye) {
+void FrameRenderer::AimLandingLight(const CameraPose& eye) {
   if (!landing_light_) return painter_.SetLandingLight(std::nullopt);
   LandingLight light;
   const ViewAxes axes = AxesOf(eye);
@@ -116,7 +116,7 @@ std::optional<double> FrameRenderer::LuminanceAt(double right, double down) {
   return std::nullopt;
 }
 
-void FrameRenderer::CountRest(const Eye& eye, double seconds) {
+void FrameRenderer::CountRest(const CameraPose& eye, double seconds) {
   still_s_ = still_eye_ == eye ? still_s_ + seconds : 0.0;
   still_eye_ = eye;
 }
@@ -150,8 +150,9 @@ void FrameRenderer::Meter(bool is_another, const UtcInstant& now, double seconds
   darkroom_.developer().Use(exposure_.ShownLook());
 }
 
-void FrameRenderer::Paint(const Eye& eye, const UtcInstant& now, const ReferenceSource& reference,
-                          const ToneMapPass::Screen& screen, double seconds) {
+void FrameRenderer::Paint(const CameraPose& eye, const UtcInstant& now,
+                          const ReferenceSource& reference, const ToneMapPass::Screen& screen,
+                          double seconds) {
   const PaintedQuality wanted = quality_.painted();
   if (wanted != used_) painter_.Use(SizesOf(wanted));
   used_ = wanted;

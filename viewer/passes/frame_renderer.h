@@ -8,10 +8,10 @@
 #include <optional>
 #include <string>
 
+#include "renderer/picture/reference_picture.h"
 #include "viewer/passes/auto_quality.h"
 #include "viewer/passes/display_pass.h"
 #include "viewer/passes/exposure_control.h"
-#include "viewer/passes/reference_picture.h"
 #include "viewer/passes/sky_painter.h"
 
 namespace alpenglow::viewer {
@@ -76,7 +76,7 @@ class FrameRenderer {
   };
   /// Paints onto a screen with the exposure of the meter. `seconds` is the time since the previous
   /// frame.
-  void Paint(const Eye& eye, const UtcInstant& now, const ReferenceSource& reference,
+  void Paint(const CameraPose& eye, const UtcInstant& now, const ReferenceSource& reference,
              const ToneMapPass::Screen& screen, double seconds);
   /// Records the time that the last frame took without the wait for the screen.
   void NoteFrame(double seconds) { quality_.Note(seconds); }
@@ -131,8 +131,8 @@ class FrameRenderer {
   [[nodiscard]] bool HasReference() const { return reference_ && reference_->samples() > 0; }
   /// Returns whether the clock has jumped by more than a quarter of an hour since the last frame.
   [[nodiscard]] bool HasJumped(const UtcInstant& now);
-  void AimLandingLight(const Eye& eye);
-  void CountRest(const Eye& eye, double seconds);
+  void AimLandingLight(const CameraPose& eye);
+  void CountRest(const CameraPose& eye, double seconds);
   void ShowReference(const PaintedView& view, const ReferenceSource& source);
   void Meter(bool is_another, const UtcInstant& now, double seconds);
 
@@ -152,7 +152,7 @@ class FrameRenderer {
   std::unique_ptr<ReferencePicture> reference_;
   std::shared_ptr<const ReferenceScene> reference_scene_;
   int reference_version_ = 0;
-  std::optional<Eye> still_eye_;
+  std::optional<CameraPose> still_eye_;
   double still_s_ = 0.0;  // how long the eye has been at rest
 };
 

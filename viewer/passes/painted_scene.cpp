@@ -53,7 +53,7 @@ LandView LandIn(const PaintedView& view, const Medium& medium, int samples = 1) 
   return seen;
 }
 
-AirView AirViewOf(const Eye& eye, const SunPosition& sun) {
+AirView AirViewOf(const CameraPose& eye, const SunPosition& sun) {
   return {std::max(eye.place.height_m, 0.0),
           eye.place.latitude_rad,
           {DirectionToSun(sun), DirectionToSun(SunForAir(sun))}};
@@ -148,7 +148,7 @@ void PaintedScene::TakeSkyByPixel() {
 void PaintedScene::KeepUpAir(const PaintedView& view, const LightsOfSky& lights, Pace pace,
                              double seconds) {
   const auto keep_up = [&](AirFollower& air, const AirView& seen) {
-    pace == Pace::kFollow ? air.Follow(seen, seconds) : air.Settle(seen);
+    pace == Pace::kFollow ? air.Follow(seen, seconds) : air.WaitUntilReady(seen);
   };
   const KeyLight* moon = OfSource(lights, LightSource::kMoon);
   if (const KeyLight* sun = OfSource(lights, LightSource::kSun))
@@ -180,7 +180,7 @@ void PaintedScene::KeepUpOpenSkies(const LightsOfSky& lights, Pace pace) {
     if (light == nullptr) continue;
     const double elevation_rad = SunForAir(light->disk).elevation_rad;
     std::optional<OccludedSkyOf>& sky = open_skies_[IndexOf(source)];
-    const double left_rad = pace == Pace::kSettle ? 0.0 : kLeft_rad;
+    const double left_rad = pace == Pace::kWait ? 0.0 : kLeft_rad;
     if (sky && sky->air == known_air_ && sky->altitude_m == altitude_m &&
         std::abs(sky->elevation_rad - elevation_rad) <= left_rad)
       continue;
@@ -218,7 +218,7 @@ void PaintedScene::KeepUpFog(const PaintedView& view, const LightsOfSky& lights,
   if (!fog_) return;
   const auto keep_up = [&](SceneFog& fog, const KeyLight& light) {
     pace == Pace::kFollow ? fog.Follow(air_.air(), view.eye, light.disk)
-                          : fog.Settle(air_.air(), view.eye, light.disk);
+                          : fog.WaitUntilReady(air_.air(), view.eye, light.disk);
   };
   if (const KeyLight* sun = OfSource(lights, LightSource::kSun)) keep_up(*fog_, *sun);
   if (const KeyLight* moon = OfSource(lights, LightSource::kMoon)) keep_up(*moon_fog_, *moon);
@@ -239,19 +239,19 @@ void PaintedScene::Update(const PaintedView& view, const LightsOfSky& lights, do
   KeepUpFog(view, lights, Pace::kFollow);
 }
 
-void PaintedScene::Settle(const PaintedView& view, const LightsOfSky& lights, int samples) {
-  KeepUpAir(view, lights, Pace::kSettle, 0.0);
-  land_->Settle(view.eye.place, LandIn(view, air_.air()->medium, samples));
+void PaintedScene::WaitUntilReady(const PaintedView& view, const LightsOfSky& lights, int samples) {
+  KeepUpAir(view, lights, Pace::kWait, 0.0);
+  land_->WaitUntilReady(view.eye.place, LandIn(view, air_.air()->medium, samples));
   TakeHeights();
-  if (ground_.Settle(air_.air(), GroundViewOf(view, lights))) {
+  if (ground_.WaitUntilReady(air_.air(), GroundViewOf(view, lights))) {
     TakeLight();
-    land_->Settle(view.eye.place, LandIn(view, air_.air()->medium, samples));
+    land_->WaitUntilReady(view.eye.place, LandIn(view, air_.air()->medium, samples));
   }
   TakeSkyByPixel();
-  KeepUpOpenSkies(lights, Pace::kSettle);
+  KeepUpOpenSkies(lights, Pace::kWait);
   KeepUpEdges(view, lights.key, kLong_s);
-  if (sizes_.has_shafts) shade_.Settle(view.eye.place, lights.key.disk, kShadeUnit);
-  KeepUpFog(view, lights, Pace::kSettle);
+  if (sizes_.has_shafts) shade_.WaitUntilReady(view.eye.place, lights.key.disk, kShadeUnit);
+  KeepUpFog(view, lights, Pace::kWait);
   awaits_land_ = false;
 }
 

@@ -11,12 +11,12 @@
 #include "atmosphere/astronomy/sun.h"
 #include "atmosphere/ray/single_scattering.h"
 #include "renderer/illumination/sky_on_ground.h"
+#include "renderer/picture/ground_follower.h"
 #include "renderer/scene/scene.h"
 #include "renderer/surface/scene_ground.h"
 #include "renderer/surface/surface.h"
 #include "viewer/air/air_follower.h"
 #include "viewer/ground/ground_block.h"
-#include "viewer/ground/ground_follower.h"
 #include "viewer/lamps/fog.h"
 #include "viewer/land/landscape.h"
 #include "viewer/passes/auto_quality.h"
@@ -77,7 +77,7 @@ class PaintedScene {
   void Update(const PaintedView& view, const LightsOfSky& lights, double seconds);
   /// Waits until everything that the view needs is complete.
   /// @param samples  number of rays per pixel to be drawn.
-  void Settle(const PaintedView& view, const LightsOfSky& lights, int samples);
+  void WaitUntilReady(const PaintedView& view, const LightsOfSky& lights, int samples);
 
   [[nodiscard]] const PaintSizes& sizes() const { return sizes_; }
   [[nodiscard]] const FixedScene& fixed() const { return fixed_; }
@@ -91,7 +91,7 @@ class PaintedScene {
   [[nodiscard]] Landscape& land() { return *land_; }
   [[nodiscard]] const GroundFollower& ground() const { return ground_; }
   /// Directional variation of the unoccluded sky's irradiance under a source, which must be one of
-  /// the lights, at the last updated or settled instant.
+  /// the lights, at the instant of the last Update or WaitUntilReady.
   [[nodiscard]] const SkyIrradianceGradient& OccludedSkyIrradiance(LightSource source) const {
     return open_skies_[IndexOf(source)].value().light;
   }
@@ -113,8 +113,8 @@ class PaintedScene {
   }
 
  private:
-  /// Followers either do their work in the background (Update) or complete it (Settle).
-  enum class Pace { kFollow, kSettle };
+  /// Followers either do their work in the background (Update) or complete it (WaitUntilReady).
+  enum class Pace { kFollow, kWait };
   void KeepUpAir(const PaintedView& view, const LightsOfSky& lights, Pace pace, double seconds);
   /// Irradiance of the unoccluded sky on slopes, and the inputs it was computed for.
   struct OccludedSkyOf {

@@ -74,7 +74,7 @@ std::optional<PixelBox> PixelsOfDisk(const glm::dvec3& direction, double radius_
                   side, side};
 }
 
-double RadiusUnder(const Eye& eye, const Medium& medium) {
+double RadiusUnder(const CameraPose& eye, const Medium& medium) {
   return OnOsculatingSphere(medium, eye.place.latitude_rad).planet_radius_m / kMetresPerKilometre;
 }
 

@@ -27,7 +27,7 @@ namespace alpenglow::viewer {
 
 /// Time, position, camera and size of a picture.
 struct PaintedView {
-  Eye eye;
+  CameraPose eye;
   UtcInstant now;
   int width, height;                    // of this part [pixels]
   glm::dvec4 part{0.0, 0.0, 1.0, 1.0};  // part of the whole view, as in ViewOfTile
@@ -59,7 +59,7 @@ struct PixelRay {
                                                    const PaintedView& view);
 
 /// Returns the radius of the planet's osculating sphere under an eye [km].
-[[nodiscard]] double RadiusUnder(const Eye& eye, const Medium& medium);
+[[nodiscard]] double RadiusUnder(const CameraPose& eye, const Medium& medium);
 
 /// Returns the number of rows, counted from the bottom, that hold all rays below the planet's
 /// horizon, plus one. Rows above them hold only sky.

@@ -9,6 +9,7 @@
 
 #include "lut/camera_tables/air_rows.h"
 #include "renderer/surface/surface.h"
+#include "renderer/terrain/frame_transform.h"
 #include "viewer/air/air_follower.h"
 #include "viewer/gl/gl_objects.h"
 #include "viewer/ground/ground_block.h"
@@ -91,19 +92,17 @@ GroundPoint OnPattern(const PaintedScene& scene, const glm::dvec3& eye, const Ut
 }
 
 GroundBlock GroundAround(const PaintedScene& scene, const PaintedView& view) {
-  const LocalFrame pattern = PatternOf(scene), here(scene.fixed().ellipsoid, view.eye.place);
+  const FrameTransform from_pattern(LocalFrame(scene.fixed().ellipsoid, view.eye.place),
+                                    PatternOf(scene));
   const MountainSurface surface(scene.air().air()->medium.wavelengths_nm,
                                 CoverInSeason(view.eye.place, view.now.modified_julian_day),
                                 scene.fixed().material.cover().wetness);
   GroundBlock block = GroundBlockOf(
-      surface, OnPattern(scene, pattern.EnuFromGeodetic(view.eye.place).xyz, view.now));
-  const auto axis = [&](const glm::dvec3& of_pattern) {
-    return glm::vec4(here.EnuFromEcef(pattern.EcefFromEnu(Vector<Enu>{of_pattern})).xyz, 0.0);
-  };
+      surface, OnPattern(scene, PatternOf(scene).EnuFromGeodetic(view.eye.place).xyz, view.now));
   block.cover_lines.z = static_cast<float>(scene.sizes().dropped_octaves);
-  block.mesh_east = axis({1.0, 0.0, 0.0});
-  block.mesh_north = axis({0.0, 1.0, 0.0});
-  block.mesh_up = axis({0.0, 0.0, 1.0});
+  block.mesh_east = glm::vec4(from_pattern.axes()[0], 0.0);
+  block.mesh_north = glm::vec4(from_pattern.axes()[1], 0.0);
+  block.mesh_up = glm::vec4(from_pattern.axes()[2], 0.0);
   return block;
 }
 
@@ -115,7 +114,7 @@ GroundLightBlock LightAround(const PaintedScene& scene, const PaintedView& view,
   return block;
 }
 
-GroundSurfaceBlock SurfaceAround(const PaintedScene& scene, const Eye& eye) {
+GroundSurfaceBlock SurfaceAround(const PaintedScene& scene, const CameraPose& eye) {
   const GroundSurfaceBlock cover = GroundSurfaceBlockOf(scene.fixed().material);
   if (!scene.fixed().drape.colours) return cover;
   const glm::dvec3 at = PatternOf(scene).EnuFromGeodetic(eye.place).xyz;
@@ -136,7 +135,7 @@ void SetBend(ViewBlock& block, const std::optional<LandBend>& bend) {
 
 }  // namespace
 
-void PictureBlocks::UploadAir(const PaintedScene& scene, const Eye& eye) {
+void PictureBlocks::UploadAir(const PaintedScene& scene, const CameraPose& eye) {
   const std::shared_ptr<const SolvedAir>& air = scene.air().air();
   if (known_air_ != air) air_block_ = AirBlockOf(air->medium);
   known_air_ = air;

@@ -98,7 +98,7 @@ struct PictureKind {
 /// The uniform blocks of a picture. Each call fills blocks and binds them (PictureBinding).
 class PictureBlocks {
  public:
-  void UploadAir(const PaintedScene& scene, const Eye& eye);
+  void UploadAir(const PaintedScene& scene, const CameraPose& eye);
   /// @param ray  the ray of each pixel that is drawn.
   void UploadView(const PaintedScene& scene, const PaintedView& view, const KeyLight& key,
                   const PixelRay& ray) const;

@@ -93,10 +93,10 @@ void SkyPainter::Update(const PaintedView& view, double seconds) {
   if (HasNightSkyMap()) night_floor_.Follow(view, scene_.air().air(), !night_floor_.HasAny());
 }
 
-void SkyPainter::Settle(const PaintedView& view, int samples) {
-  scene_.Settle(view, LightsOf(view).lights, samples);
-  lamps_.SettlePlans();
-  stars_.Settle(view, LightsOf(view).lights, *scene_.air().air());
+void SkyPainter::WaitUntilReady(const PaintedView& view, int samples) {
+  scene_.WaitUntilReady(view, LightsOf(view).lights, samples);
+  lamps_.WaitForPlans();
+  stars_.WaitUntilReady(view, LightsOf(view).lights, *scene_.air().air());
   if (HasNightSkyMap()) night_floor_.Follow(view, scene_.air().air(), true);
 }
 

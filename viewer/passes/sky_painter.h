@@ -58,11 +58,11 @@ class SkyPainter {
   void Update(const PaintedView& view, double seconds);
   /// Waits until everything that the view needs is complete.
   /// @param samples  number of rays per pixel to be drawn.
-  void Settle(const PaintedView& view, int samples = 1);
+  void WaitUntilReady(const PaintedView& view, int samples = 1);
 
   /// Selects the celestial bodies in a picture: the disks of sun and moon, and stars.
   enum class Bodies { kAll, kStars, kNone };
-  /// Draws the linear picture of the view that was updated or settled last.
+  /// Draws the linear picture of the view of the last Update or WaitUntilReady.
   /// @param samples       rays per pixel, spread over the pixel.
   /// @param after_sample  called after each ray with the number of rays so far; may be empty.
   void Paint(const PaintedView& view, int samples = 1, Bodies bodies = Bodies::kAll,

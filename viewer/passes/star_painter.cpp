@@ -156,7 +156,8 @@ void StarPainter::Follow(const PaintedView& view, const LightsOfSky& lights, con
   maker_.RequestWhenIdle({view.eye.place, view.now, colour_, air.medium});
 }
 
-void StarPainter::Settle(const PaintedView& view, const LightsOfSky& lights, const SolvedAir& air) {
+void StarPainter::WaitUntilReady(const PaintedView& view, const LightsOfSky& lights,
+                                 const SolvedAir& air) {
   if (!IsNight(view, lights, air)) return;
   maker_.Forget();
   maker_.WaitUntilReady({view.eye.place, view.now, colour_, air.medium});

@@ -16,11 +16,11 @@
 #include <vector>
 
 #include "atmosphere/astronomy/moon.h"
+#include "atmosphere/base/async_value.h"
 #include "atmosphere/colour/spectrum.h"
 #include "atmosphere/medium/medium.h"
 #include "atmosphere/refraction/refracted_view.h"
 #include "renderer/illumination/night_light.h"
-#include "viewer/async/async_value.h"
 #include "viewer/gl/gl_objects.h"
 #include "viewer/gl/shader.h"
 #include "viewer/lamps/fog.h"
@@ -69,7 +69,7 @@ class StarPainter {
   /// waits.
   void Follow(const PaintedView& view, const LightsOfSky& lights, const SolvedAir& air);
   /// Waits for the list of exactly this instant.
-  void Settle(const PaintedView& view, const LightsOfSky& lights, const SolvedAir& air);
+  void WaitUntilReady(const PaintedView& view, const LightsOfSky& lights, const SolvedAir& air);
 
   /// Illuminance of a level surface by the sky in which the stars are seen; 0 by day.
   [[nodiscard]] double sky_lux() const { return sky_lux_; }

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "atmosphere/base/error.h"
+#include "renderer/terrain/frame_transform.h"
 #include "renderer/visibility/shade_map.h"
 #include "viewer/gl/gl_context.h"
 #include "viewer/gl/render_target.h"
@@ -145,22 +146,6 @@ constexpr double kSunStep = 0.2;     // fraction of the disk's radius
 constexpr double kPlaceStep = 0.2;   // fraction of the ground's half width
 constexpr int kLinesOfAFrame = 256;  // two megabytes for a thousand columns
 
-// Returns the transformation from one local frame to another.
-glm::dmat4 BetweenFrames(const LocalFrame& to, const LocalFrame& from) {
-  glm::dmat4 matrix(1.0);
-  for (int axis = 0; axis < 3; ++axis) {
-    glm::dvec3 unit(0.0);
-    unit[axis] = 1.0;
-    matrix[axis] = glm::dvec4(to.EnuFromEcef(from.EcefFromEnu(Vector<Enu>{unit})).xyz, 0.0);
-  }
-  matrix[3] = glm::dvec4(to.EnuFromEcef(from.EcefFromEnu(Point<Enu>{})).xyz, 1.0);
-  return matrix;
-}
-
-double DistanceBetween(const LocalFrame& a, const LocalFrame& b) {
-  return glm::length(a.EnuFromGeodetic(b.origin()).xyz);
-}
-
 bool AreOne(const LocalFrame& a, const LocalFrame& b) {
   return a.origin().latitude_rad == b.origin().latitude_rad &&
          a.origin().longitude_rad == b.origin().longitude_rad;
@@ -249,7 +234,7 @@ void ShadeFollower::Follow(const GeodeticPosition& eye, const SunPosition& sun, 
   Upload(kLinesOfAFrame, unit);
 }
 
-void ShadeFollower::Settle(const GeodeticPosition& eye, const SunPosition& sun, int unit) {
+void ShadeFollower::WaitUntilReady(const GeodeticPosition& eye, const SunPosition& sun, int unit) {
   maker_.WaitUntilReady(RequestFor(eye, sun));
   TakeFinished();
   Upload(std::numeric_limits<int>::max(), unit);
@@ -266,7 +251,10 @@ bool ShadeFollower::IsOf(const GeodeticPosition& eye, const SunPosition& sun) co
 
 glm::dmat4 ShadeFollower::MapFromEye(const GeodeticPosition& eye) const {
   ALPENGLOW_ENSURE(texture_.Shades(), ==, true);
-  return BetweenFrames(used_->frame, LocalFrame(ellipsoid_, eye));
+  const FrameTransform to_map(used_->frame, LocalFrame(ellipsoid_, eye));
+  glm::dmat4 map_from_eye(to_map.axes());
+  map_from_eye[3] = glm::dvec4(to_map.origin_m(), 1.0);
+  return map_from_eye;
 }
 
 }  // namespace alpenglow::viewer

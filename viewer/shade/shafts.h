@@ -36,10 +36,10 @@
 #include <vector>
 
 #include "atmosphere/astronomy/sun.h"
+#include "atmosphere/base/async_value.h"
 #include "atmosphere/time_place/geodesy.h"
 #include "renderer/terrain/loaded_heights.h"
 #include "renderer/visibility/shade_map.h"
-#include "viewer/async/async_value.h"
 #include "viewer/gl/gl_objects.h"
 #include "viewer/gl/render_target.h"
 #include "viewer/gl/shader.h"
@@ -147,7 +147,7 @@ class ShadeFollower {
   /// @param sun  apparent, as seen from the eye.
   void Follow(const GeodeticPosition& eye, const SunPosition& sun, int unit);
   /// Waits for the final result of Follow. Used for pictures that are saved.
-  void Settle(const GeodeticPosition& eye, const SunPosition& sun, int unit);
+  void WaitUntilReady(const GeodeticPosition& eye, const SunPosition& sun, int unit);
 
   /// The map in use.
   [[nodiscard]] const ShadeTexture& shade() const { return texture_; }

@@ -55,7 +55,7 @@ TEST_F(AirFollowerOnGpu, ShowsExactTablesOnceAllStandsStill) {
 
 TEST_F(AirFollowerOnGpu, LeavesTinyChangesAloneWhileTheEyeMoves) {
   AirFollower follower(Earth(), AirQuality::kLow, ViewAt(1000.0, 30.0));
-  follower.Settle(ViewAt(1000.0, 30.0));
+  follower.WaitUntilReady(ViewAt(1000.0, 30.0));
   for (int i = 1; i <= 10; ++i) {
     follower.Follow(ViewAt(1000.0 + 0.01 * i, 30.0));
     std::this_thread::sleep_for(std::chrono::milliseconds(5));
@@ -65,7 +65,7 @@ TEST_F(AirFollowerOnGpu, LeavesTinyChangesAloneWhileTheEyeMoves) {
 
 TEST_F(AirFollowerOnGpu, TablesOfASunThatRunsAreMadeForWhereItWillBe) {
   AirFollower follower(Earth(), AirQuality::kLow, ViewAt(2.0, 3.0));
-  follower.Settle(ViewAt(2.0, 3.0));
+  follower.WaitUntilReady(ViewAt(2.0, 3.0));
   const AirView now = ViewAt(2.0, 2.95);
   follower.Follow(now, 0.04);  // asks
   const double made_mu_s = follower.eye().mu_s;
@@ -79,7 +79,7 @@ TEST_F(AirFollowerOnGpu, TablesOfASunThatRunsAreMadeForWhereItWillBe) {
 TEST_F(AirFollowerOnGpu, SettleShowsWhatWasAskedForLast) {
   AirFollower follower(Earth(), AirQuality::kLow, ViewAt(2.0, 30.0));
   follower.Follow(ViewAt(500.0, 20.0));
-  follower.Settle(ViewAt(9000.0, -3.0));
+  follower.WaitUntilReady(ViewAt(9000.0, -3.0));
   EXPECT_EQ(follower.eye().altitude_m, 9000.0);
   EXPECT_NEAR(follower.eye().mu_s, std::sin(-3.0 * kRadiansPerDegree), 1e-12);
 }
@@ -95,7 +95,7 @@ TEST_F(AirFollowerOnGpu, AnotherMediumIsShownAsADraftAndThenInFull) {
   }
   EXPECT_EQ(follower.air()->medium.name, "hazy");
   EXPECT_EQ(follower.air()->solution, AirSolution::kDraft);
-  follower.Settle(ViewAt(2.0, 30.0));
+  follower.WaitUntilReady(ViewAt(2.0, 30.0));
   EXPECT_EQ(follower.air()->medium.name, "hazy");
   EXPECT_EQ(follower.air()->solution, AirSolution::kFull);
 }

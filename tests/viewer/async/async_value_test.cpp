@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-#include "viewer/async/async_value.h"
+#include "atmosphere/base/async_value.h"
+#include "viewer/layer.h"
 
 #include <gtest/gtest.h>
 

@@ -315,7 +315,7 @@ TEST(Aircraft, DropsFromRestOutOfThinAirAndFliesWhereItIsThick) {
 
 TEST(Aircraft, TheEyeLooksAlongTheNoseWithTheWingsOfTheAircraft) {
   Flown flown(1000.0, kLightAircraft, 1.2);
-  Eye eye = EyeIn(flown.state, flown.kind, kWgs84, 0.0, 0.0, 1.0);
+  CameraPose eye = EyeIn(flown.state, flown.kind, kWgs84, 0.0, 0.0, 1.0);
   EXPECT_NEAR(eye.heading_rad, 1.2, 1e-9);
   EXPECT_NEAR(Degrees(eye.pitch_rad), 0.0, 0.1) << "cruising, the nose points along the path";
   EXPECT_NEAR(eye.roll_rad, 0.0, 1e-9);
@@ -323,7 +323,7 @@ TEST(Aircraft, TheEyeLooksAlongTheNoseWithTheWingsOfTheAircraft) {
   flown.Fly(1.0, {.roll_right = 0.5});
   eye = EyeIn(flown.state, flown.kind, kWgs84, 0.0, 0.0, 1.0);
   EXPECT_NEAR(eye.roll_rad, flown.Read().bank_rad, 0.02);
-  const Eye aside = EyeIn(flown.state, flown.kind, kWgs84, 0.5 * kPi, 0.0, 1.0);
+  const CameraPose aside = EyeIn(flown.state, flown.kind, kWgs84, 0.5 * kPi, 0.0, 1.0);
   EXPECT_NEAR(aside.pitch_rad, -flown.Read().bank_rad, 0.02) << "the right wing points down";
 }
 

@@ -26,7 +26,7 @@ class FlightRecords : public TemporaryFolder {
     const UtcInstant start = ParseInstant("2026-06-21T04:00:00Z");
     for (int frame = 0; frame < frames; ++frame) {
       const double seconds = frame / 60.0;
-      const Eye eye{PlaceFromDegrees(46.0 + 1e-4 * seconds, 8.0, 3000.0)};
+      const CameraPose eye{PlaceFromDegrees(46.0 + 1e-4 * seconds, 8.0, 3000.0)};
       recorder.Note(seconds, eye, AddSeconds(start, 60.0 * seconds));
     }
   }

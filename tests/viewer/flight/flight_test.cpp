@@ -13,8 +13,8 @@
 namespace alpenglow::viewer {
 namespace {
 
-Eye EyeAt(double latitude, double longitude, double height_m, double heading_deg = 0.0,
-          double pitch_deg = 0.0) {
+CameraPose EyeAt(double latitude, double longitude, double height_m, double heading_deg = 0.0,
+                 double pitch_deg = 0.0) {
   return {PlaceFromDegrees(latitude, longitude, height_m), heading_deg * kRadiansPerDegree,
           pitch_deg * kRadiansPerDegree};
 }
@@ -30,8 +30,8 @@ TEST(Flight, TheViewLooksWhereHeadingAndPitchSay) {
 }
 
 TEST(Flight, APlacementChangesWhatItNamesAndRefusesWhatIsOutOfRange) {
-  const Eye eye = EyeAt(46.0, 8.0, 500.0, 10.0, 5.0);
-  const Eye north = Placed(eye, {.latitude_deg = 47.0, .heading_deg = 90.0});
+  const CameraPose eye = EyeAt(46.0, 8.0, 500.0, 10.0, 5.0);
+  const CameraPose north = Placed(eye, {.latitude_deg = 47.0, .heading_deg = 90.0});
   EXPECT_NEAR(north.place.latitude_rad, 47.0 * kRadiansPerDegree, 1e-15);
   EXPECT_NEAR(north.place.longitude_rad, 8.0 * kRadiansPerDegree, 1e-15);
   EXPECT_EQ(north.place.height_m, 500.0);
@@ -51,7 +51,7 @@ TEST(Flight, SpeedIsAWalkOnTheGroundAndKilometresASecondInOrbit) {
 }
 
 TEST(Flight, AnHourForwardIsTheDistanceOfTheSpeed) {
-  Eye eye = EyeAt(46.0, 8.0, 1000.0, 90.0);
+  CameraPose eye = EyeAt(46.0, 8.0, 1000.0, 90.0);
   const Point<Ecef> start = EcefFromGeodetic(kWgs84, eye.place);
   for (int i = 0; i < 100; ++i) eye = Steer(eye, {.forward = 1.0}, kWgs84, 1000.0, 0.1);
   const double flown = glm::length((EcefFromGeodetic(kWgs84, eye.place) - start).xyz);
@@ -59,26 +59,26 @@ TEST(Flight, AnHourForwardIsTheDistanceOfTheSpeed) {
 }
 
 TEST(Flight, AcrossTheDateLineAndOverThePoleTheDirectionIsKept) {
-  Eye eye = EyeAt(0.0, 179.999, 1000.0, 90.0);
+  CameraPose eye = EyeAt(0.0, 179.999, 1000.0, 90.0);
   for (int i = 0; i < 100; ++i) eye = Steer(eye, {.forward = 1.0}, kWgs84, 1000.0, 0.1);
   EXPECT_LT(eye.place.longitude_rad, 0.0) << "beyond the date line";
   EXPECT_NEAR(eye.heading_rad, 0.5 * kPi, 1e-6);
 
-  Eye north = EyeAt(89.999, 20.0, 1000.0, 0.0);
+  CameraPose north = EyeAt(89.999, 20.0, 1000.0, 0.0);
   for (int i = 0; i < 100; ++i) north = Steer(north, {.forward = 1.0}, kWgs84, 1000.0, 0.1);
   EXPECT_NEAR(std::abs(north.heading_rad), kPi, 1e-3) << "over the pole, southwards";
   EXPECT_NEAR(north.place.longitude_rad, (20.0 - 180.0) * kRadiansPerDegree, 1e-3);
 }
 
 TEST(Flight, PitchStopsAtTheVertical) {
-  const Eye up = Turned(EyeAt(46.0, 8.0, 0.0), 0.0, 10.0);
+  const CameraPose up = Turned(EyeAt(46.0, 8.0, 0.0), 0.0, 10.0);
   EXPECT_EQ(up.pitch_rad, 0.5 * kPi);
   EXPECT_TRUE(std::isfinite(AxesOf(up).right.x));
 }
 
 TEST(Flight, ARolledEyeTurnsToWhatItSeesOnItsRight) {
   for (const double roll : {0.0, 0.5, -1.2, kPi}) {
-    Eye eye = EyeAt(46.0, 8.0, 0.0, 30.0);
+    CameraPose eye = EyeAt(46.0, 8.0, 0.0, 30.0);
     eye.roll_rad = roll;
     const ViewAxes before = AxesOf(eye);
     constexpr double kTurn = 1e-3;
@@ -89,10 +89,10 @@ TEST(Flight, ARolledEyeTurnsToWhatItSeesOnItsRight) {
 }
 
 TEST(Flight, AHeldRollTurnsTheHorizonAndATelescopeTurnsSlowly) {
-  const Eye rolled = Steer(EyeAt(46.0, 8.0, 0.0), {.roll_right = 1.0}, kWgs84, 10.0, 1.0);
+  const CameraPose rolled = Steer(EyeAt(46.0, 8.0, 0.0), {.roll_right = 1.0}, kWgs84, 10.0, 1.0);
   EXPECT_NEAR(rolled.roll_rad, 45.0 * kRadiansPerDegree, 1e-12);
-  const Eye narrow = Zoomed(EyeAt(46.0, 8.0, 0.0), 0.1);
-  const Eye turned = Steer(narrow, {.turn_right = 1.0}, kWgs84, 10.0, 1.0);
+  const CameraPose narrow = Zoomed(EyeAt(46.0, 8.0, 0.0), 0.1);
+  const CameraPose turned = Steer(narrow, {.turn_right = 1.0}, kWgs84, 10.0, 1.0);
   EXPECT_NEAR(turned.heading_rad, 4.5 * kRadiansPerDegree, 1e-12) << "in a view of 6 degrees";
 }
 
@@ -114,12 +114,12 @@ TEST(Flight, ExposureAdaptsHalfWayInAThirdOfASecond) {
 }
 
 TEST(Flight, AnEyeAtAPlaceStandsOnTheRunwayAndFliesOverTheCity) {
-  const Eye zurich =
+  const CameraPose zurich =
       viewer::EyeAt(PlaceNamed("LSZH"), {}, [](const GeodeticPosition&) { return 430.0; });
   EXPECT_EQ(zurich.place.height_m, 432.0) << "over the terrain's runway";
   EXPECT_NEAR(zurich.heading_rad / kRadiansPerDegree, 155.0, 1e-9)
       << "runway 16, five degrees of it grid";
-  const Eye lhasa =
+  const CameraPose lhasa =
       viewer::EyeAt(PlaceNamed("Lhasa"), {}, [](const GeodeticPosition&) { return 0.0; });
   EXPECT_EQ(lhasa.place.height_m, 600.0) << "over the plain, where there is no terrain";
 }

@@ -13,15 +13,16 @@ namespace {
 
 double Sea(const GeodeticPosition&) { return 0.0; }
 
-Eye EyeAt(double height_m, double heading_deg = 0.0) {
+CameraPose EyeAt(double height_m, double heading_deg = 0.0) {
   return {PlaceFromDegrees(46.0, 8.0, height_m), heading_deg * kRadiansPerDegree};
 }
-double Apart(const Eye& a, const Eye& b) {
+double Apart(const CameraPose& a, const CameraPose& b) {
   return glm::length((EcefFromGeodetic(kWgs84, a.place) - EcefFromGeodetic(kWgs84, b.place)).xyz);
 }
 
 /// The same controls for the same time, in frames of different lengths.
-Eye FlownFor(FlightMode mode, const PilotControls& controls, double seconds, double frame_s) {
+CameraPose FlownFor(FlightMode mode, const PilotControls& controls, double seconds,
+                    double frame_s) {
   Pilot pilot(EyeAt(1500.0), kWgs84);
   EXPECT_FALSE(pilot.Enter(mode, Sea));
   const int frames = static_cast<int>(std::lround(seconds / frame_s));
@@ -31,9 +32,9 @@ Eye FlownFor(FlightMode mode, const PilotControls& controls, double seconds, dou
 
 TEST(Pilot, AFlightOfTheAircraftIsTheSameAtEveryFrameRate) {
   const PilotControls controls{.stick = {.pitch_up = 0.1, .roll_right = 0.05, .throttle_up = 0.1}};
-  const Eye smooth = FlownFor(FlightMode::kAircraft, controls, 12.0, 1.0 / 240.0);
+  const CameraPose smooth = FlownFor(FlightMode::kAircraft, controls, 12.0, 1.0 / 240.0);
   for (const double frame_s : {1.0 / 60.0, 1.0 / 7.0, 0.75, 4.0, 12.0}) {
-    const Eye flown = FlownFor(FlightMode::kAircraft, controls, 12.0, frame_s);
+    const CameraPose flown = FlownFor(FlightMode::kAircraft, controls, 12.0, frame_s);
     EXPECT_LT(Apart(flown, smooth), 1e-3) << frame_s << " s a frame: the last step may be split";
     EXPECT_NEAR(flown.heading_rad, smooth.heading_rad, 1e-5) << frame_s;
   }
@@ -41,7 +42,7 @@ TEST(Pilot, AFlightOfTheAircraftIsTheSameAtEveryFrameRate) {
 
 TEST(Pilot, AFlightOfTheFreeCameraIsWithinAPercentAtEveryFrameRate) {
   const PilotControls controls{.camera = {.forward = 1.0, .up = 0.5, .turn_right = 0.1}};
-  const Eye smooth = FlownFor(FlightMode::kFree, controls, 4.0, 1.0 / 240.0);
+  const CameraPose smooth = FlownFor(FlightMode::kFree, controls, 4.0, 1.0 / 240.0);
   const double way = Apart(smooth, EyeAt(1500.0));
   for (const double frame_s : {1.0 / 60.0, 1.0 / 8.0, 0.5, 4.0}) {
     EXPECT_LT(Apart(FlownFor(FlightMode::kFree, controls, 4.0, frame_s), smooth), 0.01 * way)
@@ -53,7 +54,7 @@ TEST(Pilot, TheAircraftMovesSmoothlyBetweenItsSteps) {
   Pilot pilot(EyeAt(1500.0), kWgs84);
   ASSERT_FALSE(pilot.Enter(FlightMode::kAircraft, Sea));
   constexpr double kFrame_s = 1.0 / 500.0;
-  Eye before = pilot.eye();
+  CameraPose before = pilot.eye();
   for (int i = 0; i < 200; ++i) {
     pilot.Advance({}, kFrame_s, Sea);
     EXPECT_NEAR(Apart(pilot.eye(), before) / kFrame_s, CruiseSpeed(kLightAircraft, 1500.0), 0.1);
@@ -78,7 +79,7 @@ TEST(Pilot, ChangingTheModeKeepsPlaceAndHeading) {
   EXPECT_LT(Apart(pilot.eye(), EyeAt(1500.0)), 1e-6);
   EXPECT_NEAR(pilot.eye().heading_rad, 77.0 * kRadiansPerDegree, 1e-9);
   pilot.Advance({.stick = {.roll_right = 1.0}}, 1.0, Sea);
-  const Eye flying = pilot.eye();
+  const CameraPose flying = pilot.eye();
   EXPECT_GT(std::abs(flying.roll_rad), 0.2);
   ASSERT_FALSE(pilot.Enter(FlightMode::kFree, Sea));
   EXPECT_LT(Apart(pilot.eye(), flying), 1e-6);
@@ -183,7 +184,7 @@ TEST(Pilot, WhereTerrainIsLoadedOverTheAircraftItFliesOnOverIt) {
 TEST(Pilot, PutSomewhereElseItFliesOnThere) {
   Pilot pilot(EyeAt(1500.0), kWgs84);
   ASSERT_FALSE(pilot.Enter(FlightMode::kAircraft, Sea));
-  Eye there = EyeAt(2500.0, 90.0);
+  CameraPose there = EyeAt(2500.0, 90.0);
   there.place.longitude_rad = 3.0;
   pilot.PutAt(there, Sea);
   EXPECT_EQ(pilot.mode(), FlightMode::kAircraft);

@@ -10,6 +10,7 @@
 
 #include "tests/fixtures/luminance.h"
 #include "tests/viewer/hud/hud_picture.h"
+#include "viewer/layer.h"
 
 namespace alpenglow::viewer {
 namespace {

@@ -358,7 +358,7 @@ TEST_F(LampsOnTheCard, GroundIsLitWhereTheRenderersShadowRaysSaySo) {
     return static_cast<double>(count) / static_cast<double>(points.size());
   };
   EXPECT_GT(wrong(), 4e-3) << "the horizon around the lamp, while plans are made";
-  both.lamps.SettlePlans();
+  both.lamps.WaitForPlans();
   both.painter.Prepare(both.lamps, {both.eye_m, glm::dmat3(1.0), both.eye_m.z, kLitPixel_rad}, 0.0);
   EXPECT_LT(wrong(), 2e-3) << "corners of shade";
 }
@@ -431,9 +431,9 @@ TEST(LampShadowFieldFollower, MakesEveryPlanOnceAndInOrder) {
     return LampShadowField{static_cast<int>(number), {}};
   });
   EXPECT_TRUE(follower.plans().empty()) << "nothing is made before it is asked for";
-  follower.Settle();
+  follower.WaitUntilReady();
   follower.Follow();
-  follower.Settle();
+  follower.WaitUntilReady();
   ASSERT_EQ(follower.plans().size(), 5U);
   for (int i = 0; i < 5; ++i) EXPECT_EQ(follower.plans()[static_cast<std::size_t>(i)].levels, i);
   EXPECT_EQ(made, 5);
@@ -441,7 +441,7 @@ TEST(LampShadowFieldFollower, MakesEveryPlanOnceAndInOrder) {
 
 TEST(LampShadowFieldFollower, NoLampsAreSettledAtOnce) {
   LampShadowFieldFollower follower(0, [](std::size_t) { return LampShadowField{}; });
-  follower.Settle();
+  follower.WaitUntilReady();
   EXPECT_TRUE(follower.plans().empty());
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "viewer/land/land_chunk.h"
+#include "renderer/terrain/land_chunk.h"
 
 #include <gtest/gtest.h>
 #include <malloc.h>
@@ -11,6 +11,7 @@
 
 #include "renderer/elevation/mesh.h"
 #include "tests/renderer/terrain/land_files.h"
+#include "viewer/layer.h"
 
 #ifdef __SANITIZE_ADDRESS__
 // A function of the sanitizers' runtime; gcc does not install the header that declares it.

@@ -67,7 +67,7 @@ class LandscapePictures : public HeadlessLand {
 
   [[nodiscard]] LandSource Folder() const { return {{folder_}, VoidPolicy::kFill, std::nullopt}; }
 
-  // Draws what the last Update or Settle chose.
+  // Draws what the last Update or WaitUntilReady chose.
   [[nodiscard]] std::vector<glm::vec4> Draw(Landscape& land, const LookOut& eye) const {
     constexpr GLuint kView = 1;
     const LandView view = eye.View();
@@ -88,7 +88,7 @@ class LandscapePictures : public HeadlessLand {
     return map_->ReadValues(GBuffer::kSurface);
   }
   [[nodiscard]] std::vector<glm::vec4> Settled(Landscape& land, const LookOut& eye) const {
-    land.Settle(eye.place, eye.View());
+    land.WaitUntilReady(eye.place, eye.View());
     return Draw(land, eye);
   }
 
@@ -152,7 +152,7 @@ TEST_F(LandscapePictures, DistanceAndNormalAreTheRenderersFromTheGroundToOrbit) 
     SCOPED_TRACE(view.above_m);
     LookOut eye{PlaceOfSample(view.column + 0.3, view.row + 0.4, 0.0), 2.8, view.pitch_rad,
                 view.fov_rad};
-    land.Settle(eye.place, eye.View());
+    land.WaitUntilReady(eye.place, eye.View());
     eye.place.height_m = *land.ground().HeightUnder(eye.place) + view.above_m;
     const Misses misses = MissesOf(Settled(land, eye), eye, terrain, frame);
     ASSERT_GT(misses.both, 500);
@@ -175,7 +175,7 @@ TEST_F(LandscapePictures, DistanceIsThatAlongTheRayOfAPixelNotAlongItsMiddle) {
       MeshFromElevation(ReadElevation(folder_ / "a.tif", VoidPolicy::kFill).grid, frame));
   Landscape land(Folder(), {96.0}, kWgs84);
   LookOut eye{PlaceOfSample(120.3, 60.4, 0.0), 2.8};
-  land.Settle(eye.place, eye.View());
+  land.WaitUntilReady(eye.place, eye.View());
   eye.place.height_m = *land.ground().HeightUnder(eye.place) + 2.0;
   eye.shift = {1.0 / kWidth, 1.0 / kHeight};
   const Misses misses = MissesOf(Settled(land, eye), eye, terrain, frame);
@@ -196,7 +196,7 @@ TEST_F(LandscapePictures, WhatNearLandHidesIsLeftOutAndNothingElse) {
     LookOut eye{PlaceOfSample(20.0 + 200.0 * std::fmod(0.7549 * i, 1.0),
                               20.0 + 200.0 * std::fmod(0.5698 * i, 1.0), 0.0),
                 1.1 * i, -0.1};
-    land.Settle(eye.place, eye.View());
+    land.WaitUntilReady(eye.place, eye.View());
     eye.place.height_m = *land.ground().HeightUnder(eye.place) + 2.0 + std::exp2(i % 10);
     const Misses misses = MissesOf(Settled(land, eye), eye, terrain, frame);
     fewest = std::min(fewest, land.Figures().chunks);
@@ -215,7 +215,7 @@ TEST_F(LandscapePictures, NoPixelBelowTheSkylineIsWithoutTerrain) {
     LookOut eye{PlaceOfSample(40.0 + 640.0 * std::fmod(0.7549 * i, 1.0),
                               40.0 + 640.0 * std::fmod(0.5698 * i, 1.0), 0.0),
                 0.7 * i, 0.0};  // level, so that a column of pixels has one azimuth
-    land.Settle(eye.place, eye.View());
+    land.WaitUntilReady(eye.place, eye.View());
     eye.place.height_m = *land.ground().HeightUnder(eye.place) + std::exp2(i % 12);
     const auto picture = Settled(land, eye);
     for (int x = 0; x < kWidth; ++x) {
@@ -253,7 +253,7 @@ TEST_F(LandscapePictures, FlyingOverAFolderKeepsWithinItsBounds) {
   EXPECT_GT(drawn, 30);
   EXPECT_LT(most_chunks, 1500U) << "about a thousand lie in reach at once";
   const LookOut eye{PlaceOfSample(700.0, 700.0, 2500.0), 0.7, -0.3};
-  land.Settle(eye.place, eye.View());
+  land.WaitUntilReady(eye.place, eye.View());
   EXPECT_TRUE(land.Progress().text.empty());
   EXPECT_NEAR(*land.ground().HeightUnder(PlaceOfSample(700.0, 700.0, 0.0)),
               static_cast<double>(HeightOfSample(700, 700)), 0.01)
@@ -266,9 +266,9 @@ TEST_F(LandscapePictures, ThroughATelephotoLensFarLandIsFiner) {
   LookOut narrow = wide;
   narrow.fov_rad = 0.2;
   Landscape land(Folder(), {64.0}, kWgs84);
-  land.Settle(wide.place, wide.View());
+  land.WaitUntilReady(wide.place, wide.View());
   const int usual = land.Figures().kept_chunks;
-  land.Settle(narrow.place, narrow.View());
+  land.WaitUntilReady(narrow.place, narrow.View());
   EXPECT_GT(land.Figures().kept_chunks, 2 * usual) << "twice as fine, and the land ends somewhere";
 }
 
@@ -289,7 +289,7 @@ TEST_F(LandscapePictures, NoViewKeepsMoreChunksThanTheLimit) {
     const auto kept = [&](int most_chunks) {
       size.most_chunks = most_chunks;
       Landscape land(Folder(), size, kWgs84);
-      land.Settle(eye.place, view);
+      land.WaitUntilReady(eye.place, view);
       EXPECT_GT(land.Figures().chunks, 0);
       return land.Figures().kept_chunks;
     };
@@ -317,7 +317,7 @@ TEST_F(LandscapePictures, BuffersTakeWhatTheFiguresSay) {
   const std::size_t before = BytesOnTheCard();
   Landscape land(Folder(), {96.0}, kWgs84);
   const LookOut eye{PlaceOfSample(120.0, 120.0, 3000.0), 0.0, -0.3};
-  land.Settle(eye.place, eye.View());
+  land.WaitUntilReady(eye.place, eye.View());
   const auto held = static_cast<double>(BytesOnTheCard() - before);
   EXPECT_NEAR(static_cast<double>(land.Figures().card_bytes), held, 2e3)
       << "but for the block of uniforms";
@@ -330,7 +330,7 @@ TEST_F(LandscapePictures, ADamagedTileOfAFolderIsSaidByNameAndTheRestIsDrawn) {
   std::filesystem::resize_file(folder_ / "tile01.tif", 60000);
   Landscape land(Folder(), {64.0}, kWgs84);
   const LookOut eye{PlaceOfSample(100.0, 300.0, 2500.0), 0.7, -0.3};
-  land.Settle(eye.place, eye.View());
+  land.WaitUntilReady(eye.place, eye.View());
   EXPECT_THAT(land.TakeNotes(), ElementsAre(HasSubstr("tile01.tif")));
   EXPECT_GT(land.Figures().chunks, 3);
   EXPECT_FALSE(land.ground().HeightUnder(PlaceOfSample(300.0, 100.0, 0.0)));
@@ -341,7 +341,7 @@ TEST_F(LandscapePictures, ADamagedFileThatWasNamedIsRefused) {
   std::filesystem::resize_file(folder_ / "a.tif", 60000);
   Landscape land({{folder_ / "a.tif"}, VoidPolicy::kFill, std::nullopt}, {64.0}, kWgs84);
   const LookOut eye{PlaceOfSample(100.0, 100.0, 2500.0), 0.7, -0.3};
-  EXPECT_THROW(land.Settle(eye.place, eye.View()), InputError);
+  EXPECT_THROW(land.WaitUntilReady(eye.place, eye.View()), InputError);
 }
 
 TEST_F(LandscapePictures, NewLightTakesThePlaceOfTheOldWhenAllOfItIsThere) {
@@ -354,13 +354,13 @@ TEST_F(LandscapePictures, NewLightTakesThePlaceOfTheOldWhenAllOfItIsThere) {
     }};
   };
   const auto middle = [&] { return PixelAt(Draw(land, eye), kWidth / 2, kHeight - 11); };
-  land.Settle(eye.place, eye.View());
+  land.WaitUntilReady(eye.place, eye.View());
   EXPECT_EQ(middle().z, 4.0F) << "without a function the whole sun shines";
   land.Relight(light(-2.0F));
   land.Update(eye.place, eye.View(), 0.0);
   EXPECT_TRUE(land.IsRelighting());
   EXPECT_EQ(middle().z, 4.0F) << "the old light stays until the new is there";
-  land.Settle(eye.place, eye.View());
+  land.WaitUntilReady(eye.place, eye.View());
   EXPECT_FALSE(land.IsRelighting());
   EXPECT_NEAR(middle().z, -2.0F, 1e-3F);
   const glm::vec4 sky = PixelAt(map_->ReadValues(GBuffer::kSky), kWidth / 2, kHeight - 11);
@@ -380,7 +380,7 @@ TEST_F(LandscapePictures, EdgesOfShadeRiseAndSinkWithTheSun) {
     return std::vector<VertexLight>(vertices.size(), {{0.1F, 0.2F, 0.3F, 0.4F}, {}, -2.0F});
   };
   land.Relight({shaded, towards(0.1)});
-  land.Settle(eye.place, eye.View());
+  land.WaitUntilReady(eye.place, eye.View());
   for (const double radii : {0.0, 3.0, -1.0}) {
     land.Use(MomentaryEdges{0.0, towards(0.1 + radii * kRadius_rad), kRadius_rad});
     EXPECT_NEAR(PixelAt(Draw(land, eye), kWidth / 2, kHeight - 11).z, radii - 2.0, 0.02)
@@ -395,9 +395,9 @@ TEST_F(LandscapePictures, FarFromWhereItBeganTheLandIsAsExact) {
   WriteTile(folder_ / "b.tif", kFar, 0);
   Landscape land(Folder(), {96.0}, kWgs84);
   const LookOut first{PlaceOfSample(120.0, 120.0, 3000.0), 0.0, -0.3};
-  land.Settle(first.place, first.View());
+  land.WaitUntilReady(first.place, first.View());
   LookOut eye{PlaceOfSample(kFar + 120.3, 60.4, 0.0), 3.0, -0.05};
-  land.Settle(eye.place, eye.View());
+  land.WaitUntilReady(eye.place, eye.View());
   eye.place.height_m = *land.ground().HeightUnder(eye.place) + 2.0;
   const LocalFrame frame(kWgs84, PlaceOfSample(kFar + 120.0, 120.0, 0.0));
   const Terrain terrain(
@@ -419,7 +419,7 @@ TEST_F(LandscapePictures, WhatIsSettledDoesNotDependOnWhereTheEyeWasBefore) {
     const auto reference = Settled(fresh, eye);
     LookOut higher = eye;
     higher.place.height_m += 100.0 * (i % 3);
-    flown.Settle(higher.place, higher.View());
+    flown.WaitUntilReady(higher.place, higher.View());
     EXPECT_EQ(Settled(flown, eye), reference);
     EXPECT_EQ(Settled(flown, eye), reference) << "nor on how often that is asked";
   }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "viewer/land/level_ranges.h"
+#include "renderer/terrain/level_ranges.h"
 
 #include <gtest/gtest.h>
 
@@ -7,6 +7,7 @@
 #include <set>
 
 #include "tests/renderer/terrain/land_files.h"
+#include "viewer/layer.h"
 
 namespace alpenglow::viewer {
 namespace {

@@ -6,8 +6,9 @@
 #include <cmath>
 #include <map>
 
+#include "renderer/terrain/level_ranges.h"
 #include "tests/renderer/terrain/land_files.h"
-#include "viewer/land/level_ranges.h"
+#include "viewer/layer.h"
 
 namespace alpenglow::viewer {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "viewer/passes/reference_picture.h"
+#include "renderer/picture/reference_picture.h"
 
 #include <gtest/gtest.h>
 
@@ -14,7 +14,7 @@ namespace alpenglow::viewer {
 namespace {
 
 ReferencePicture::View ViewOf(const std::shared_ptr<const ReferenceScene>& of) {
-  Eye eye{of->scene.place, 1.0, 0.2, 0.0, 1.0};
+  CameraPose eye{of->scene.place, 1.0, 0.2, 0.0, 1.0};
   eye.place.height_m = 500.0;
   return {of, eye, ParseInstant("2026-06-21T05:00:00Z"), 16, 8};
 }
@@ -41,7 +41,7 @@ TEST(ReferencePicture, EndsAsTheRenderersPictureOf64Rays) {
   settings.height = 8;
   settings.samples_per_pixel = 64;
   CameraSample camera_sample(view.now);
-  camera_sample.poses = {PoseOf(view.eye)};
+  camera_sample.poses = {view.eye};
   EXPECT_EQ(made.rgb, SceneRenderer(of->scene).Render(camera_sample, settings).rgb);
 }
 

@@ -25,14 +25,15 @@ namespace {
 constexpr double kArcMinute = kRadiansPerDegree / 60.0;
 
 PaintedView ViewFrom(const Scene& scene, const UtcInstant& now, int width, int height) {
-  Eye eye{scene.place, scene.camera.heading_rad, scene.camera.pitch_rad, 0.0, scene.camera.fov_rad};
+  CameraPose eye{scene.place, scene.camera.heading_rad, scene.camera.pitch_rad, 0.0,
+                 scene.camera.fov_rad};
   eye.place.height_m = scene.camera.height.value_m;
   return {eye, now, width, height};
 }
 
 Image Painted(const Scene& scene, const PaintedView& view) {
   SkyPainter painter(scene, LandSourceOf(scene), view, SizesOf(Quality::kLow));
-  painter.Settle(view);
+  painter.WaitUntilReady(view);
   painter.Paint(view);
   return painter.picture().Read();
 }
@@ -174,7 +175,7 @@ TEST_F(RefractedPeak, BehindTheGeometricHorizonStandsWhereTheRayEquationHasIt) {
     constexpr int kAcross = 32, kDown = 64;
     const PaintedView view = ViewFrom(scene, noon, kAcross, kDown);
     SkyPainter painter(scene, LandSourceOf(scene), view, SizesOf(Quality::kLow));
-    painter.Settle(view);
+    painter.WaitUntilReady(view);
     painter.Paint(view);
     const CameraRays camera(scene.camera, kAcross, kDown);
     double top = 1.0;

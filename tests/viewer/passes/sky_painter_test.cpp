@@ -11,6 +11,7 @@
 #include <limits>
 
 #include "atmosphere/astronomy/sky_bodies.h"
+#include "renderer/picture/reference_picture.h"
 #include "renderer/picture/render.h"
 #include "renderer/scene/scene_options.h"
 #include "renderer/surface/scene_ground.h"
@@ -20,7 +21,6 @@
 #include "tests/viewer/land/headless_land.h"
 #include "viewer/flight/flight_recorder.h"
 #include "viewer/passes/frame_light.h"
-#include "viewer/passes/reference_picture.h"
 
 namespace alpenglow::viewer {
 namespace {
@@ -47,8 +47,8 @@ RenderSettings ReferenceSettings(const PictureSize& size) {
 
 PaintedView ViewOf(const Scene& scene, double eye_height_m, const UtcInstant& now,
                    const PictureSize& size = kFull) {
-  Eye eye{scene.place, scene.camera.heading_rad, scene.camera.pitch_rad, scene.camera.roll_rad,
-          scene.camera.fov_rad};
+  CameraPose eye{scene.place, scene.camera.heading_rad, scene.camera.pitch_rad,
+                 scene.camera.roll_rad, scene.camera.fov_rad};
   eye.place.height_m = eye_height_m;
   return {eye, now, size.width, size.height};
 }
@@ -67,8 +67,8 @@ class BothPrograms {
     view.width = size_.width;
     view.height = size_.height;
     CameraSample camera_sample(view.now);
-    camera_sample.poses = {PoseOf(view.eye)};
-    painter_.Settle(view, kSamples);
+    camera_sample.poses = {view.eye};
+    painter_.WaitUntilReady(view, kSamples);
     painter_.Paint(view, kSamples);
     return DifferenceOf(reference_.Render(camera_sample, ReferenceSettings(size_)),
                         painter_.picture().Read());
@@ -182,7 +182,7 @@ class RangeInTime : public SkyPainterTest {
     SkyPainterTest::SetUp();
     painter_.emplace(scene_, LandSourceOf(scene_), At("2026-12-23T11:00:00Z"),
                      SizesOf(Quality::kLow));
-    painter_->Settle(At("2026-12-23T11:00:00Z"));
+    painter_->WaitUntilReady(At("2026-12-23T11:00:00Z"));
   }
 
   [[nodiscard]] PaintedView At(const UtcInstant& now) const {
@@ -195,7 +195,7 @@ class RangeInTime : public SkyPainterTest {
     return Paint(view);
   }
   MeanLuminance Settled(const PaintedView& view) {
-    painter_->Settle(view);
+    painter_->WaitUntilReady(view);
     return Paint(view);
   }
   MeanLuminance Paint(const PaintedView& view) {
@@ -387,7 +387,7 @@ class BareSky : public tests::Headless {
  protected:
   /// A settled picture of a bare sky.
   static Image Painted(SkyPainter& painter, const PaintedView& view, int samples = 1) {
-    painter.Settle(view);
+    painter.WaitUntilReady(view);
     painter.Paint(view, samples);
     return painter.picture().Read();
   }

@@ -8,9 +8,9 @@
 #include <cmath>
 #include <functional>
 
+#include "renderer/picture/reference_picture.h"
 #include "tests/viewer/land/headless_land.h"
 #include "viewer/gl/gl_objects.h"
-#include "viewer/passes/reference_picture.h"
 
 namespace alpenglow::viewer {
 namespace {

@@ -59,12 +59,12 @@ class ShadeFollowerTest : public tests::Headless {
 
 TEST_F(ShadeFollowerTest, WithoutGroundThereIsNoShade) {
   ShadeFollower follower(kWgs84);
-  follower.Settle(Eye(0.0), SunAtDegrees(5.0), kUnit);
+  follower.WaitUntilReady(Eye(0.0), SunAtDegrees(5.0), kUnit);
   EXPECT_FALSE(follower.shade().Shades());
   follower.SetGround([](const GeodeticPosition&, double, int) -> std::optional<ElevationGrid> {
     return std::nullopt;
   });
-  follower.Settle(Eye(0.0), SunAtDegrees(5.0), kUnit);
+  follower.WaitUntilReady(Eye(0.0), SunAtDegrees(5.0), kUnit);
   EXPECT_FALSE(follower.shade().Shades());
 }
 
@@ -72,19 +72,19 @@ TEST_F(ShadeFollowerTest, GroundIsAskedForAnewOnlyWhenTheEyeHasLeftIt) {
   ShadeFollower follower(kWgs84);
   follower.SetSize(kSmall);
   follower.SetGround(Mountain(asked_));
-  follower.Settle(Eye(0.0), SunAtDegrees(5.0), kUnit);
+  follower.WaitUntilReady(Eye(0.0), SunAtDegrees(5.0), kUnit);
   ASSERT_TRUE(follower.shade().Shades());
   const glm::dvec3 first_sun = follower.shade().map().to_sun;
-  follower.Settle(Eye(0.01), SunAtDegrees(5.0 + 0.04), kUnit);
+  follower.WaitUntilReady(Eye(0.01), SunAtDegrees(5.0 + 0.04), kUnit);
   EXPECT_EQ(follower.shade().map().to_sun, first_sun) << "a sixth of the disk's radius";
-  follower.Settle(Eye(0.01), SunAtDegrees(4.0), kUnit);
+  follower.WaitUntilReady(Eye(0.01), SunAtDegrees(4.0), kUnit);
   EXPECT_NEAR(follower.shade().map().to_sun.z, std::sin(4.0 * kRadiansPerDegree), 1e-3)
       << "of another sun, in the frame of a kilometre away";
   EXPECT_EQ(asked_, 1);
-  follower.Settle(Eye(0.08), SunAtDegrees(4.0), kUnit);
+  follower.WaitUntilReady(Eye(0.08), SunAtDegrees(4.0), kUnit);
   EXPECT_EQ(asked_, 2) << "nine kilometres of twenty";
   follower.SetGround(Mountain(asked_));
-  follower.Settle(Eye(0.08), SunAtDegrees(4.0), kUnit);
+  follower.WaitUntilReady(Eye(0.08), SunAtDegrees(4.0), kUnit);
   EXPECT_EQ(asked_, 3) << "other ground";
 }
 
@@ -92,7 +92,7 @@ TEST_F(ShadeFollowerTest, TheMapLiesUnderTheEye) {
   ShadeFollower follower(kWgs84);
   follower.SetSize(kSmall);
   follower.SetGround(Mountain(asked_));
-  follower.Settle(Eye(0.0), SunAtDegrees(5.0), kUnit);
+  follower.WaitUntilReady(Eye(0.0), SunAtDegrees(5.0), kUnit);
   ASSERT_TRUE(follower.shade().Shades());
   const glm::dmat4 here = follower.MapFromEye(Eye(0.0));
   EXPECT_NEAR(glm::length(glm::dvec3(here[3]) - glm::dvec3(0.0, 0.0, 900.0)), 0.0, 1e-6);

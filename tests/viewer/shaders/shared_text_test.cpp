@@ -7,6 +7,7 @@
 #include "tests/fixtures/shared_text_cases.h"
 #include "tests/viewer/shaders/gpu_values.h"
 #include "tests/viewer/shaders/headless.h"
+#include "viewer/layer.h"
 
 namespace alpenglow::viewer {
 namespace {

@@ -11,7 +11,7 @@
 #include <thread>
 #include <utility>
 
-namespace alpenglow::viewer {
+namespace alpenglow::atmosphere {
 
 /// A value that follows an input, such as tables for a moving eye. One thread computes it, always
 /// for the newest request: a request replaces one that has not begun. A finished value is kept
@@ -157,4 +157,4 @@ class AsyncValue {
   std::jthread thread_;  // last, because it uses all members above
 };
 
-}  // namespace alpenglow::viewer
+}  // namespace alpenglow::atmosphere

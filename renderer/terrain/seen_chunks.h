@@ -7,7 +7,8 @@
 // occlusion horizon, after Downs, L. et al. (2001), Occlusion horizons for driving through urban
 // scenery, I3D 2001.)
 //
-// Both tests are conservative: no visible chunk is culled. They keep the order of the chunks.
+// Both tests are conservative: no visible chunk is culled. They keep the order of the chunks. The
+// eye is given by the transform from its frame to that of the anchor.
 #pragma once
 
 #include <array>
@@ -16,14 +17,31 @@
 #include <span>
 #include <vector>
 
-#include "viewer/land/chunk_set.h"
-#include "viewer/land/land_pass.h"
+#include "renderer/terrain/frame_transform.h"
+#include "renderer/terrain/land_chunk.h"
 
-namespace alpenglow::viewer {
+namespace alpenglow::renderer {
 
-class Skyline {
+/// View of the land, as in view_block.glsl: axes in the eye's frame (east, north, up).
+struct LandView {
+  glm::dvec3 right{1.0, 0.0, 0.0};  // times the tangent of half the horizontal field of view
+  glm::dvec3 up{0.0, 0.0, 1.0};     // times the tangent of half the vertical one
+  glm::dvec3 forward{0.0, 1.0, 0.0};
+  int rays = 1;              // rays per pixel; terrain is finer for more
+  double bends_per_m = 0.0;  // largest curvature of light rays, which raises land
+};
+
+/// A chunk to draw from a slot of the caller's buffers. Along `coarse_sides` the odd vertices are
+/// left out.
+struct SeenChunk {
+  int slot;
+  const LandChunk* chunk;
+  unsigned coarse_sides;
+};
+
+class LandSkyline {
  public:
-  Skyline() { tangent_.fill(-1e30); }
+  LandSkyline() { tangent_.fill(-1e30); }
 
   /// A vertex that morphs between levels of detail lies on the segment between two points. East,
   /// north, up of the eye [m].
@@ -63,17 +81,16 @@ class Skyline {
 
 /// Returns the chunks that may be in the view frustum, at their true position or raised by
 /// refraction.
-[[nodiscard]] std::vector<ChunkBuffers::Drawn> InView(std::vector<ChunkBuffers::Drawn> chunks,
-                                                      const EyeInAnchor& eye, const LandView& view);
+[[nodiscard]] std::vector<SeenChunk> InView(std::vector<SeenChunk> chunks,
+                                            const FrameTransform& eye, const LandView& view);
 
-/// Returns the chunks with a part that nearer land does not hide (Skyline), for an eye above the
+/// Returns the chunks with a part that nearer land does not hide (LandSkyline), for an eye above the
 /// ground.
 /// @param bends_per_m  largest curvature of light rays.
-[[nodiscard]] std::vector<ChunkBuffers::Drawn> WithoutHidden(
-    const std::vector<ChunkBuffers::Drawn>& chunks, const EyeInAnchor& eye, double bends_per_m);
+[[nodiscard]] std::vector<SeenChunk> WithoutHidden(const std::vector<SeenChunk>& chunks,
+                                                   const FrameTransform& eye, double bends_per_m);
 
 /// Returns an upper bound for the distance of any part of the chunks from the eye [m].
-[[nodiscard]] double FarthestOf(const std::vector<ChunkBuffers::Drawn>& chunks,
-                                const EyeInAnchor& eye);
+[[nodiscard]] double FarthestOf(const std::vector<SeenChunk>& chunks, const FrameTransform& eye);
 
-}  // namespace alpenglow::viewer
+}  // namespace alpenglow::renderer

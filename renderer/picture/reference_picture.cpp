@@ -1,14 +1,12 @@
 // SPDX-License-Identifier: MIT
-#include "viewer/passes/reference_picture.h"
+#include "renderer/picture/reference_picture.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <utility>
 
-#include "viewer/flight/flight_recorder.h"
-
-namespace alpenglow::viewer {
+namespace alpenglow::renderer {
 namespace {
 
 struct ReferenceStage {
@@ -56,7 +54,7 @@ ReferencePicture::ReferencePicture()
         settings.samples_per_pixel = request.samples;
         settings.stop = request.stop;
         CameraSample camera_sample(view.now);
-        camera_sample.poses = {PoseOf(view.eye)};
+        camera_sample.poses = {view.eye};
         try {
           const SceneRenderer& renderer = renderers->Of(view.of);
           return Made{renderer.Render(camera_sample, settings), request.samples, request.stop};
@@ -89,4 +87,4 @@ std::optional<Image> ReferencePicture::Take() {
   return std::move((*taken)->image);
 }
 
-}  // namespace alpenglow::viewer
+}  // namespace alpenglow::renderer

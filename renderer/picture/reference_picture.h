@@ -9,14 +9,14 @@
 #include <stop_token>
 #include <vector>
 
+#include "atmosphere/base/async_value.h"
 #include "lut/image/image.h"
+#include "renderer/camera/camera_path.h"
+#include "renderer/layer.h"
 #include "renderer/picture/render.h"
 #include "renderer/scene/scene.h"
-#include "viewer/async/async_value.h"
-#include "viewer/flight/flight.h"
-#include "viewer/layer.h"
 
-namespace alpenglow::viewer {
+namespace alpenglow::renderer {
 
 /// The scene that the renderer draws for a viewer.
 struct ReferenceScene {
@@ -34,7 +34,7 @@ class ReferencePicture {
  public:
   struct View {
     std::shared_ptr<const ReferenceScene> of;
-    Eye eye;
+    CameraPose eye;
     UtcInstant now;
     int width, height;  // of the full picture [pixels]
   };
@@ -76,4 +76,4 @@ class ReferencePicture {
   AsyncValue<Request, std::optional<Made>> job_;
 };
 
-}  // namespace alpenglow::viewer
+}  // namespace alpenglow::renderer

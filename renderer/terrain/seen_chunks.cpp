@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "viewer/land/seen_chunks.h"
+#include "renderer/terrain/seen_chunks.h"
 
 #include <algorithm>
 #include <array>
@@ -8,7 +8,7 @@
 #include <glm/geometric.hpp>
 #include <numbers>
 
-namespace alpenglow::viewer {
+namespace alpenglow::renderer {
 namespace {
 
 constexpr double kTurn = 2.0 * std::numbers::pi;
@@ -26,7 +26,7 @@ struct Piece {
   double tangent, farthest_m;
 };
 
-Piece LeastOf(const Skyline::Between& a, const Skyline::Between& b) {
+Piece LeastOf(const LandSkyline::Between& a, const LandSkyline::Between& b) {
   const double low = std::min({a.one.z, a.other.z, b.one.z, b.other.z});
   const std::array<double, 4> along{Along(a.one), Along(a.other), Along(b.one), Along(b.other)};
   const double far = *std::max_element(along.begin(), along.end());
@@ -40,7 +40,7 @@ Piece LeastOf(const Skyline::Between& a, const Skyline::Between& b) {
 }  // namespace
 
 // Collects the bins that a line covers completely, while its azimuth is monotonic.
-class Skyline::CrestMaker {
+class LandSkyline::CrestMaker {
  public:
   void Add(double from, double to, const Piece& piece) {
     const double low = std::min(from, to), high = std::max(from, to);
@@ -85,7 +85,7 @@ class Skyline::CrestMaker {
   std::vector<Crest> crests_;
 };
 
-void Skyline::Add(std::span<const Between> line) {
+void LandSkyline::Add(std::span<const Between> line) {
   CrestMaker maker;
   double from = BinOf(line.front().one, kBins);
   for (std::size_t i = 1; i < line.size(); ++i) {
@@ -100,7 +100,7 @@ void Skyline::Add(std::span<const Between> line) {
   for (Crest& crest : maker.Finish()) waiting_.push(std::move(crest));
 }
 
-void Skyline::Raise(double up_to_m) {
+void LandSkyline::Raise(double up_to_m) {
   while (!waiting_.empty() && waiting_.top().farthest_m <= up_to_m) {
     for (const auto& [bin, tangent] : waiting_.top().steps) {
       double& highest = tangent_[static_cast<std::size_t>(Wrapped(bin, kBins))];
@@ -110,11 +110,11 @@ void Skyline::Raise(double up_to_m) {
   }
 }
 
-double Skyline::NearestOf(const glm::dvec3& point, double radius_m) {
+double LandSkyline::NearestOf(const glm::dvec3& point, double radius_m) {
   return Along(point) - radius_m;
 }
 
-bool Skyline::Hides(const glm::dvec3& point, double radius_m, double highest_m) {
+bool LandSkyline::Hides(const glm::dvec3& point, double radius_m, double highest_m) {
   const double distance = Along(point);
   if (distance < 2.0 * radius_m) return false;
   Raise(distance - radius_m);
@@ -147,11 +147,11 @@ double FarthestCorner(const glm::dvec3& low, const glm::dvec3& high, const glm::
 // Inside is positive.
 class ViewPyramid {
  public:
-  ViewPyramid(const EyeInAnchor& eye, const LandView& view)
-      : at_(eye.at), up_(eye.up), bends_per_m_(view.bends_per_m) {
+  ViewPyramid(const FrameTransform& eye, const LandView& view)
+      : at_(eye.origin_m()), up_(eye.axes()[2]), bends_per_m_(view.bends_per_m) {
     const double wide = glm::length(view.right), high = glm::length(view.up);
-    const glm::dvec3 forward = eye.Turned(view.forward);
-    const glm::dvec3 right = eye.Turned(view.right) / wide, up = eye.Turned(view.up) / high;
+    const glm::dvec3 forward = eye.Along(view.forward);
+    const glm::dvec3 right = eye.Along(view.right) / wide, up = eye.Along(view.up) / high;
     planes_ = {wide * forward + right, wide * forward - right, high * forward + up,
                high * forward - up, forward};
   }
@@ -175,19 +175,19 @@ class ViewPyramid {
 bool IsFull(const LandChunk& chunk) { return chunk.triangles.size() == kChunkIndices; }
 
 // Adds lines of the surface along every eighth row and column of a chunk.
-void AddCrests(Skyline& skyline, const LandChunk& chunk, const EyeInAnchor& eye) {
+void AddCrests(LandSkyline& skyline, const LandChunk& chunk, const FrameTransform& eye) {
   constexpr int kStride = kChunkCells / 2;
   const auto between = [&](int i, int j) {
     const auto v = static_cast<std::size_t>(j * kChunkSide + i);
     const glm::dvec3 own(chunk.own[v].position_m);
-    if (chunk.coarse.empty()) return Skyline::Between{eye.From(own), eye.From(own)};
+    if (chunk.coarse.empty()) return LandSkyline::Between{eye.PointBack(own), eye.PointBack(own)};
     const auto [first, second] = chunk.ends[v];
     const glm::dvec3 coarse = 0.5 * (glm::dvec3(chunk.coarse[first].position_m) +
                                      glm::dvec3(chunk.coarse[second].position_m));
-    return Skyline::Between{eye.From(own), eye.From(coarse)};
+    return LandSkyline::Between{eye.PointBack(own), eye.PointBack(coarse)};
   };
   for (int line = 0; line <= kChunkCells; line += kStride) {
-    std::array<Skyline::Between, kChunkSide> row, column;
+    std::array<LandSkyline::Between, kChunkSide> row, column;
     for (int k = 0; k < kChunkSide; ++k) {
       row[static_cast<std::size_t>(k)] = between(k, line);
       column[static_cast<std::size_t>(k)] = between(line, k);
@@ -197,7 +197,7 @@ void AddCrests(Skyline& skyline, const LandChunk& chunk, const EyeInAnchor& eye)
   }
 }
 
-// A part of a chunk, with the bounds that Skyline::Hides needs.
+// A part of a chunk, with the bounds that LandSkyline::Hides needs.
 struct SeenPart {
   std::size_t chunk;  // index among the chunks in view
   glm::dvec3 middle;  // in the eye's frame
@@ -206,21 +206,22 @@ struct SeenPart {
 
 // Returns the bounds of a part. Refraction raises the part but not the crests that may hide it,
 // which is conservative.
-SeenPart PartOf(const ChunkBox& box, std::size_t chunk, const EyeInAnchor& eye,
+SeenPart PartOf(const ChunkBox& box, std::size_t chunk, const FrameTransform& eye,
                 double bends_per_m) {
   const glm::dvec3 low(box.low), high(box.high);
-  const glm::dvec3 middle = eye.From(0.5 * (low + high));
+  const glm::dvec3 middle = eye.PointBack(0.5 * (low + high));
   const glm::dvec3 half = 0.5 * (high - low);
   // The box is tilted in the eye's frame, so its highest corner is used.
-  const glm::dvec3 rise = glm::abs(eye.up) * half;
-  const double radius = std::hypot(half.x, half.y) + half.z * std::hypot(eye.up.x, eye.up.y);
+  const glm::dvec3 rise = glm::abs(eye.axes()[2]) * half;
+  const double radius =
+      std::hypot(half.x, half.y) + half.z * std::hypot(eye.axes()[2].x, eye.axes()[2].y);
   const double lifted_m = MostRise(bends_per_m, glm::length(middle) + radius);
   return {chunk, middle, radius, middle.z + rise.x + rise.y + rise.z + lifted_m,
-          Skyline::NearestOf(middle, radius)};
+          LandSkyline::NearestOf(middle, radius)};
 }
 
 // Returns for each chunk whether it has a part that nearer land does not hide.
-std::vector<char> NotHidden(const std::vector<ChunkBuffers::Drawn>& chunks, const EyeInAnchor& eye,
+std::vector<char> NotHidden(const std::vector<SeenChunk>& chunks, const FrameTransform& eye,
                             double bends_per_m) {
   std::vector<SeenPart> parts;
   for (std::size_t chunk = 0; chunk < chunks.size(); ++chunk)
@@ -228,7 +229,7 @@ std::vector<char> NotHidden(const std::vector<ChunkBuffers::Drawn>& chunks, cons
       if (box.low.x <= box.high.x) parts.push_back(PartOf(box, chunk, eye, bends_per_m));
   std::sort(parts.begin(), parts.end(),
             [](const SeenPart& a, const SeenPart& b) { return a.nearest_m < b.nearest_m; });
-  Skyline skyline;
+  LandSkyline skyline;
   std::vector<char> is_seen(chunks.size(), 0);
   for (const SeenPart& part : parts) {
     if (is_seen[part.chunk] != 0) continue;
@@ -241,29 +242,30 @@ std::vector<char> NotHidden(const std::vector<ChunkBuffers::Drawn>& chunks, cons
 
 }  // namespace
 
-std::vector<ChunkBuffers::Drawn> InView(std::vector<ChunkBuffers::Drawn> chunks,
-                                        const EyeInAnchor& eye, const LandView& view) {
+std::vector<SeenChunk> InView(std::vector<SeenChunk> chunks, const FrameTransform& eye,
+                              const LandView& view) {
   const ViewPyramid pyramid(eye, view);
-  std::erase_if(chunks, [&](const ChunkBuffers::Drawn& drawn) {
+  std::erase_if(chunks, [&](const SeenChunk& drawn) {
     return !pyramid.Touches(drawn.chunk->low, drawn.chunk->high);
   });
   return chunks;
 }
 
-std::vector<ChunkBuffers::Drawn> WithoutHidden(const std::vector<ChunkBuffers::Drawn>& chunks,
-                                               const EyeInAnchor& eye, double bends_per_m) {
+std::vector<SeenChunk> WithoutHidden(const std::vector<SeenChunk>& chunks,
+                                     const FrameTransform& eye, double bends_per_m) {
   const std::vector<char> is_seen = NotHidden(chunks, eye, bends_per_m);
-  std::vector<ChunkBuffers::Drawn> seen;
+  std::vector<SeenChunk> seen;
   for (std::size_t i = 0; i < chunks.size(); ++i)
     if (is_seen[i] != 0) seen.push_back(chunks[i]);
   return seen;
 }
 
-double FarthestOf(const std::vector<ChunkBuffers::Drawn>& chunks, const EyeInAnchor& eye) {
+double FarthestOf(const std::vector<SeenChunk>& chunks, const FrameTransform& eye) {
   double farthest_m = 0.0;
-  for (const ChunkBuffers::Drawn& drawn : chunks)
-    farthest_m = std::max(farthest_m, FarthestCorner(drawn.chunk->low, drawn.chunk->high, eye.at));
+  for (const SeenChunk& drawn : chunks)
+    farthest_m =
+        std::max(farthest_m, FarthestCorner(drawn.chunk->low, drawn.chunk->high, eye.origin_m()));
   return farthest_m;
 }
 
-}  // namespace alpenglow::viewer
+}  // namespace alpenglow::renderer

@@ -20,9 +20,9 @@
 #include <unordered_map>
 #include <vector>
 
-#include "viewer/land/land_chunk.h"
+#include "renderer/terrain/land_chunk.h"
 
-namespace alpenglow::viewer {
+namespace alpenglow::renderer {
 
 /// The eye's position on the lattice.
 struct LandEye {
@@ -103,4 +103,4 @@ struct DrawnChunk {
     const ChunkTree& tree, const LandEye& eye, const std::vector<LevelRange>& ranges,
     const std::function<bool(const ChunkKey&)>& is_there);
 
-}  // namespace alpenglow::viewer
+}  // namespace alpenglow::renderer

@@ -26,10 +26,10 @@
 #include <vector>
 
 #include "atmosphere/time_place/geodesy.h"
+#include "renderer/layer.h"
 #include "renderer/terrain/loaded_heights.h"
-#include "viewer/layer.h"
 
-namespace alpenglow::viewer {
+namespace alpenglow::renderer {
 
 inline constexpr int kChunkCells = 16;
 inline constexpr int kChunkSide = kChunkCells + 1;  // vertices
@@ -149,4 +149,4 @@ enum ChunkSideBit : unsigned { kNorthSide = 1, kEastSide = 2, kSouthSide = 4, kW
                                                          std::span<const CoarseEnds> ends,
                                                          unsigned sides);
 
-}  // namespace alpenglow::viewer
+}  // namespace alpenglow::renderer

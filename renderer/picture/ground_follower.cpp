@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "viewer/ground/ground_follower.h"
+#include "renderer/picture/ground_follower.h"
 
 #include <algorithm>
 #include <chrono>
@@ -8,8 +8,9 @@
 #include <utility>
 
 #include "atmosphere/ray/single_scattering.h"
+#include "renderer/terrain/frame_transform.h"
 
-namespace alpenglow::viewer {
+namespace alpenglow::renderer {
 namespace {
 
 // Distance of the eye from the centre at which other land is requested, as a fraction of the half
@@ -34,33 +35,33 @@ bool AreAlikeWide(const GroundExtent& extent, double a_m, double b_m) {
          extent.HalfWidthUnder(kLower * a_m) == extent.HalfWidthUnder(kLower * b_m);
 }
 
-double DistanceBetween(const Ellipsoid& ellipsoid, const GeodeticPosition& a,
-                       const GeodeticPosition& b) {
+double DistanceOn(const Ellipsoid& ellipsoid, const GeodeticPosition& a,
+                  const GeodeticPosition& b) {
   GeodeticPosition foot_a = a, foot_b = b;
   foot_a.height_m = foot_b.height_m = 0.0;
-  return glm::length(LocalFrame(ellipsoid, foot_a).EnuFromGeodetic(foot_b).xyz);
+  return DistanceBetween(LocalFrame(ellipsoid, foot_a), LocalFrame(ellipsoid, foot_b));
 }
 
 glm::dvec3 Direction(const SunPosition& sun) {
   return DirectionFromAngles(sun.elevation_rad, sun.azimuth_rad).xyz;
 }
 
-double AngleBetween(const SunPosition& a, const SunPosition& b) {
+double AngleBetweenDisks(const SunPosition& a, const SunPosition& b) {
   return std::acos(std::clamp(glm::dot(Direction(a), Direction(b)), -1.0, 1.0));
 }
 
 bool IsNear(const SunPosition& asked, const SunPosition& wanted) {
-  return AngleBetween(asked, wanted) < kSunMoves * wanted.angular_radius_rad;
+  return AngleBetweenDisks(asked, wanted) < kSunMoves * wanted.angular_radius_rad;
 }
 
 // Returns whether time has jumped. At 1000 times real time the sun moves by a tenth of this limit
 // per frame.
 bool IsAJump(const GroundFollower::View& before, const GroundFollower::View& now) {
   constexpr double kLargestStep_rad = 1.0 * kRadiansPerDegree;
-  return before.casts != now.casts || AngleBetween(before.by, now.by) > kLargestStep_rad;
+  return before.casts != now.casts || AngleBetweenDisks(before.by, now.by) > kLargestStep_rad;
 }
 
-SunPosition After(double steps, const SunPosition& before, const SunPosition& now) {
+SunPosition MovedOn(double steps, const SunPosition& before, const SunPosition& now) {
   SunPosition after = now;
   after.elevation_rad += steps * (now.elevation_rad - before.elevation_rad);
   after.lower_for_air_rad += steps * (now.lower_for_air_rad - before.lower_for_air_rad);
@@ -168,8 +169,8 @@ class GroundFollower::Maker {
   std::shared_ptr<const GroundSite> SiteFor(const Request& request) {
     if (!request.ground || !*request.ground) return nullptr;
     if (site_ && air_ == request.air && ground_ == request.ground &&
-        DistanceBetween(site_->ground().frame.ellipsoid(), site_->ground().frame.origin(),
-                        request.view.eye) < 2.0 * kNearMiddle * half_width_m_ &&
+        DistanceOn(site_->ground().frame.ellipsoid(), site_->ground().frame.origin(),
+                   request.view.eye) < 2.0 * kNearMiddle * half_width_m_ &&
         IsNearMiddle(request.view.eye) && IsAsWide(request.view.eye.height_m)) {
       return site_;
     }
@@ -195,7 +196,7 @@ class GroundFollower::Maker {
   }
 
   [[nodiscard]] bool IsNearMiddle(const GeodeticPosition& eye) const {
-    return DistanceBetween(site_->ground().frame.ellipsoid(), middle_, eye) <
+    return DistanceOn(site_->ground().frame.ellipsoid(), middle_, eye) <
            kNearMiddle * half_width_m_;
   }
 
@@ -241,7 +242,7 @@ bool GroundFollower::Suits(const GroundExtent& extent, const Request& requested,
   const double width_m = extent.HalfWidthUnder(now.eye.height_m);
   return IsNear(before.by, now.by) && (!now.other || IsNear(*before.other, *now.other)) &&
          AreAlikeWide(extent, before.eye.height_m, now.eye.height_m) &&
-         DistanceBetween(kWgs84, before.eye, now.eye) < kNearMiddle * width_m;
+         DistanceOn(kWgs84, before.eye, now.eye) < kNearMiddle * width_m;
 }
 
 bool GroundFollower::Take() {
@@ -255,12 +256,12 @@ bool GroundFollower::Take() {
 GroundFollower::View Ahead(const GroundFollower::View& before, const GroundFollower::View& now,
                            double steps) {
   constexpr double kFarthest_rad = 10.0 * kRadiansPerDegree;
-  const double step_rad = AngleBetween(before.by, now.by);
+  const double step_rad = AngleBetweenDisks(before.by, now.by);
   if (step_rad == 0.0 || IsAJump(before, now)) return now;
   const double taken = std::min(steps, kFarthest_rad / step_rad);
   GroundFollower::View ahead = now;
-  ahead.by = After(taken, before.by, now.by);
-  if (now.other && before.other) ahead.other = After(taken, *before.other, *now.other);
+  ahead.by = MovedOn(taken, before.by, now.by);
+  if (now.other && before.other) ahead.other = MovedOn(taken, *before.other, *now.other);
   return ahead;
 }
 
@@ -279,7 +280,7 @@ bool GroundFollower::Follow(const std::shared_ptr<const SolvedAir>& air, const V
   return is_new;
 }
 
-bool GroundFollower::Settle(const std::shared_ptr<const SolvedAir>& air, const View& view) {
+bool GroundFollower::WaitUntilReady(const std::shared_ptr<const SolvedAir>& air, const View& view) {
   maker_.WaitUntilReady({air, ground_, view, land_});
   return Take();
 }
@@ -313,4 +314,4 @@ std::optional<LightOfVertices> GroundFollower::Light() const {
   return LightOfVertices{at, to_disk};
 }
 
-}  // namespace alpenglow::viewer
+}  // namespace alpenglow::renderer

@@ -22,6 +22,7 @@
 #include <string>
 #include <vector>
 
+#include "atmosphere/base/async_value.h"
 #include "atmosphere/colour/spectrum.h"
 #include "atmosphere/medium/medium.h"
 #include "atmosphere/medium/phase.h"
@@ -29,10 +30,9 @@
 #include "renderer/lamps/ground_under_lamps.h"
 #include "renderer/lamps/lamp_tree.h"
 #include "renderer/lamps/placed_lamp.h"
-#include "viewer/async/async_value.h"
-#include "viewer/layer.h"
+#include "renderer/layer.h"
 
-namespace alpenglow::viewer {
+namespace alpenglow::renderer {
 
 /// Returns an expression of a cosine `c` and a vector `p` of parameters, ParametersOf(). A shader
 /// reads a phase function of kind table from a texture instead.
@@ -136,7 +136,7 @@ class LampShadowFieldFollower {
   /// Takes a finished plan and requests the next one.
   void Follow();
   /// Waits for all plans.
-  void Settle();
+  void WaitUntilReady();
   /// Returns the finished plans, which are those of the first lamps.
   [[nodiscard]] const std::vector<LampShadowField>& plans() const { return plans_; }
 
@@ -175,7 +175,7 @@ class SceneLamps {
   /// Takes finished plans and requests the next one, beside drawing.
   void FollowPlans() { plans_->Follow(); }
   /// Waits until all plans are finished.
-  void SettlePlans() { plans_->Settle(); }
+  void WaitForPlans() { plans_->WaitUntilReady(); }
 
   /// Everything that depends on the eye.
   struct InView {
@@ -223,4 +223,4 @@ class SceneLamps {
 /// gamma].
 [[nodiscard]] std::vector<float> SampledProfile(const LampProfile& profile);
 
-}  // namespace alpenglow::viewer
+}  // namespace alpenglow::renderer

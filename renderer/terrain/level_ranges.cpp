@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: MIT
-#include "viewer/land/level_ranges.h"
+#include "renderer/terrain/level_ranges.h"
 
 #include <algorithm>
 #include <cmath>
 #include <glm/vec2.hpp>
 #include <limits>
 
-namespace alpenglow::viewer {
+namespace alpenglow::renderer {
 namespace {
 
 constexpr double kAhead = 1.25;       // chunks are requested before they are needed
@@ -24,7 +24,7 @@ glm::dvec2 Away(const ChunkKey& key, const LandEye& eye) {
           Outside(eye.at.row, key.row * side, (key.row + 1) * side) * eye.size.row_m};
 }
 
-double RangeOf(int level, const LandEye& eye, double detail) {
+double RangeOfLevel(int level, const LandEye& eye, double detail) {
   return detail * std::sqrt(eye.size.column_m * eye.size.row_m) * std::exp2(level);
 }
 
@@ -116,7 +116,7 @@ class RangeDemand {
               const std::function<bool(const ChunkKey&)>& is_there)
       : tree_(tree), eye_(eye), detail_(detail), is_there_(is_there) {
     for (int level = 0; level <= tree.top(); ++level)
-      found_.reach_m.push_back(RangeOf(level, eye, detail));
+      found_.reach_m.push_back(RangeOfLevel(level, eye, detail));
     found_.reach_m.back() = std::numeric_limits<double>::infinity();
   }
 
@@ -134,7 +134,7 @@ class RangeDemand {
     if (parent.level == 0) return;
     const int level = parent.level - 1;
     const double distance = ChunkTree::Distance(parent, eye_);
-    const double range = RangeOf(level, eye_, detail_);
+    const double range = RangeOfLevel(level, eye_, detail_);
     if (distance >= kAhead * range) return;
     const double urgency = distance < range ? distance : 1e9 + distance;
     bool all_there = true;
@@ -231,4 +231,4 @@ std::vector<DrawnChunk> DrawnChunks(const ChunkTree& tree, const LandEye& eye,
   return Drawing(tree, eye, ranges).Find(is_there);
 }
 
-}  // namespace alpenglow::viewer
+}  // namespace alpenglow::renderer

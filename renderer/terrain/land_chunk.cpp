@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "viewer/land/land_chunk.h"
+#include "renderer/terrain/land_chunk.h"
 
 #include <algorithm>
 #include <cmath>
@@ -10,7 +10,7 @@
 #include "atmosphere/base/error.h"
 #include "renderer/elevation/mesh.h"
 
-namespace alpenglow::viewer {
+namespace alpenglow::renderer {
 namespace {
 
 // Vertices of a level with their normals. At level 0 the normals are the area-weighted means of the
@@ -320,7 +320,7 @@ std::array<std::uint16_t, 4> Halves(const std::array<float, 4>& values) {
           glm::packHalf1x16(values[3])};
 }
 
-VertexLight Mean(const VertexLight& a, const VertexLight& b) {
+VertexLight MeanLight(const VertexLight& a, const VertexLight& b) {
   VertexLight mean;
   for (std::size_t band = 0; band < mean.sky.size(); ++band) {
     mean.sky[band] = 0.5F * (a.sky[band] + b.sky[band]);
@@ -330,8 +330,8 @@ VertexLight Mean(const VertexLight& a, const VertexLight& b) {
   return mean;
 }
 
-std::vector<VertexLight> LightOf(const std::vector<LandVertex>& vertices, const LocalFrame& frame,
-                                 const std::optional<LightOfVertices>& light) {
+std::vector<VertexLight> LightFor(const std::vector<LandVertex>& vertices, const LocalFrame& frame,
+                                  const std::optional<LightOfVertices>& light) {
   if (!light) return std::vector<VertexLight>(vertices.size());
   std::vector<VertexLight> lit = light->at(frame, vertices);
   ALPENGLOW_ENSURE(lit.size(), ==, vertices.size());
@@ -356,14 +356,14 @@ std::vector<ChunkLight> LightOfChunk(const LandChunk& chunk, const LocalFrame& f
                                      const std::optional<LightOfVertices>& light) {
   std::vector<LandVertex> all = chunk.own;
   all.insert(all.end(), chunk.coarse.begin(), chunk.coarse.end());
-  const std::vector<VertexLight> lit = LightOf(all, frame, light);
+  const std::vector<VertexLight> lit = LightFor(all, frame, light);
   std::vector<ChunkLight> packed;
   packed.reserve(chunk.own.size());
   for (std::size_t i = 0; i < chunk.own.size(); ++i) {
     const VertexLight coarse = chunk.coarse.empty()
                                    ? lit[i]
-                                   : Mean(lit[chunk.own.size() + chunk.ends[i].first],
-                                          lit[chunk.own.size() + chunk.ends[i].second]);
+                                   : MeanLight(lit[chunk.own.size() + chunk.ends[i].first],
+                                               lit[chunk.own.size() + chunk.ends[i].second]);
     packed.push_back({Halves(lit[i].sky),
                       Halves(coarse.sky),
                       Halves(lit[i].moon_sky),
@@ -413,4 +413,4 @@ std::vector<std::uint16_t> WithCoarseSides(std::span<const std::uint16_t> triang
   return kept;
 }
 
-}  // namespace alpenglow::viewer
+}  // namespace alpenglow::renderer

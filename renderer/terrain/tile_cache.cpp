@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "viewer/land/tile_cache.h"
+#include "renderer/terrain/tile_cache.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,7 +7,7 @@
 
 #include "atmosphere/base/error.h"
 
-namespace alpenglow::viewer {
+namespace alpenglow::renderer {
 
 TileCache::TileCache(std::shared_ptr<const LandTiles> tiles, const ChunkTree& tree,
                      std::size_t most_bytes)
@@ -190,4 +190,4 @@ std::size_t TileCache::bytes() const {
   return sum;
 }
 
-}  // namespace alpenglow::viewer
+}  // namespace alpenglow::renderer

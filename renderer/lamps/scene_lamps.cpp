@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "viewer/lamps/scene_lamps.h"
+#include "renderer/lamps/scene_lamps.h"
 
 #include <tbb/parallel_for.h>
 
@@ -13,8 +13,9 @@
 #include "atmosphere/base/error.h"
 #include "atmosphere/colour/spectrum.h"
 #include "atmosphere/math/constants.h"
+#include "renderer/terrain/frame_transform.h"
 
-namespace alpenglow::viewer {
+namespace alpenglow::renderer {
 
 std::string PhaseExpression(PhaseKind kind) {
   switch (kind) {
@@ -45,7 +46,7 @@ glm::vec4 ParametersOf(const PhaseFunction& phase) {
 namespace {
 
 template <typename Values>
-glm::vec4 InFloats(const Values& values, std::size_t count) {
+glm::vec4 FloatsOf(const Values& values, std::size_t count) {
   ALPENGLOW_ENSURE(count, <=, std::size_t{4});
   glm::vec4 bands(0.0F);
   for (std::size_t band = 0; band < count; ++band) {
@@ -67,7 +68,7 @@ class LampPacking {
     const double z_lamp = placed.air.AltitudeOf(placed.lamp.position_m);
     GpuLamp gpu{};
     gpu.position = {Turned(placed.lamp.position_m - view_.eye_m), along.lamp.radius_m};
-    gpu.intensity = InFloats(placed.intensity.value, placed.intensity.count);
+    gpu.intensity = FloatsOf(placed.intensity.value, placed.intensity.count);
     gpu.axis = {Turned(placed.lamp.axis), static_cast<float>(placed.lamp.profile.kind)};
     gpu.side = {Turned(placed.lamp.side), static_cast<float>(chosen.table)};
     gpu.profile = {Edges(placed.lamp.profile), placed.distance_m, placed.HoldsEye() ? 1.0 : 0.0};
@@ -112,9 +113,9 @@ void PutAir(const std::vector<LampLayer>& layers, std::size_t bands, double refe
     block.falls[static_cast<glm::length_t>(k)] = static_cast<float>(1.0 / layers[k].scale_height_m);
     block.bases[static_cast<glm::length_t>(k)] = static_cast<float>(layers[k].base_m - reference_m);
   }
-  block.molecules = InFloats(layers[0].scattering_per_m.value, bands);
-  block.aerosol = InFloats(layers[1].scattering_per_m.value, bands);
-  block.dimming = InFloats(layers[1].extinction_per_m.value, bands);
+  block.molecules = FloatsOf(layers[0].scattering_per_m.value, bands);
+  block.aerosol = FloatsOf(layers[1].scattering_per_m.value, bands);
+  block.dimming = FloatsOf(layers[1].extinction_per_m.value, bands);
   block.mie_phase = ParametersOf(layers[1].phase);
   if (layers.size() < 3) return;
   const LampLayer& fog = layers[2];
@@ -128,7 +129,7 @@ void PutColours(const Medium& medium, LampsBlock& block) {
   const auto rows = colour.linear_srgb_from_bands();
   for (std::size_t channel = 0; channel < 3; ++channel) {
     glm::vec4& row = channel == 0 ? block.red : channel == 1 ? block.green : block.blue;
-    row = InFloats(rows.subspan(channel * bands, bands), bands);
+    row = FloatsOf(rows.subspan(channel * bands, bands), bands);
   }
 }
 
@@ -136,14 +137,8 @@ void PutColours(const Medium& medium, LampsBlock& block) {
 
 LampView LampViewFrom(const LocalFrame& ground, const GeodeticPosition& eye,
                       double pixel_angle_rad) {
-  const LocalFrame here(ground.ellipsoid(), eye);
-  const auto turned = [&](const glm::dvec3& axis) {
-    return here.EnuFromEcef(ground.EcefFromEnu(Vector<Enu>{axis})).xyz;
-  };
-  return {ground.EnuFromGeodetic(eye).xyz,
-          {turned({1.0, 0.0, 0.0}), turned({0.0, 1.0, 0.0}), turned({0.0, 0.0, 1.0})},
-          eye.height_m,
-          pixel_angle_rad};
+  const FrameTransform from_eye(ground, LocalFrame(ground.ellipsoid(), eye));
+  return {from_eye.origin_m(), glm::transpose(from_eye.axes()), eye.height_m, pixel_angle_rad};
 }
 
 LampsBlock LampsBlockOf(std::vector<ChosenLamp> lamps, const std::vector<LampLayer>& layers,
@@ -331,7 +326,7 @@ PlacedLamp SceneLamps::Landing(const LampView& view) const {
   // Mean over a cone, accurate to a tenth. It determines the light that the illuminated air, spread
   // evenly, brings to the ground.
   placed.mean_share = 0.5 * (1.0 - std::cos(0.5 * (landing_->inner_rad + landing_->outer_rad)));
-  return viewer::Before({view.eye_m, std::nullopt}, stage_, std::move(placed));
+  return renderer::Before({view.eye_m, std::nullopt}, stage_, std::move(placed));
 }
 
 SceneLamps::InView SceneLamps::Before(const LampView& view, std::array<double, 2> core_rad,
@@ -380,8 +375,8 @@ void LampShadowFieldFollower::Follow() {
   if (plans_.size() < lamps_) plan_.Request(plans_.size());
 }
 
-void LampShadowFieldFollower::Settle() {
+void LampShadowFieldFollower::WaitUntilReady() {
   for (Follow(); plans_.size() < lamps_; Follow()) plan_.Wait();
 }
 
-}  // namespace alpenglow::viewer
+}  // namespace alpenglow::renderer

@@ -8,15 +8,15 @@
 #include <optional>
 #include <vector>
 
+#include "atmosphere/base/async_value.h"
 #include "lut/camera_tables/air_tables.h"
 #include "renderer/illumination/lighting.h"
 #include "renderer/illumination/sky_on_ground.h"
 #include "renderer/picture/lit_ground.h"
-#include "viewer/async/async_value.h"
-#include "viewer/land/land_chunk.h"
-#include "viewer/shade/shafts.h"
+#include "renderer/terrain/land_chunk.h"
+#include "renderer/terrain/loaded_heights.h"
 
-namespace alpenglow::viewer {
+namespace alpenglow::renderer {
 
 /// Extent of the land whose light is computed. It contains the land that rises above its own
 /// valleys and, for a high eye, the land that is clearly visible.
@@ -56,7 +56,7 @@ class GroundFollower {
   /// @param seconds  since the last call.
   bool Follow(const std::shared_ptr<const SolvedAir>& air, const View& view, double seconds);
   /// Waits until the final light of Follow is available.
-  bool Settle(const std::shared_ptr<const SolvedAir>& air, const View& view);
+  bool WaitUntilReady(const std::shared_ptr<const SolvedAir>& air, const View& view);
 
   /// Returns the light of the shadow-casting source on the surrounding land; null without land and
   /// before the first light is complete.
@@ -120,4 +120,4 @@ class GroundFollower {
 [[nodiscard]] GroundFollower::View Ahead(const GroundFollower::View& before,
                                          const GroundFollower::View& now, double steps);
 
-}  // namespace alpenglow::viewer
+}  // namespace alpenglow::renderer

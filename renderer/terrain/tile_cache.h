@@ -6,11 +6,11 @@
 #include <string>
 #include <vector>
 
+#include "atmosphere/base/async_value.h"
+#include "renderer/terrain/level_ranges.h"
 #include "renderer/terrain/loaded_heights.h"
-#include "viewer/async/async_value.h"
-#include "viewer/land/level_ranges.h"
 
-namespace alpenglow::viewer {
+namespace alpenglow::renderer {
 
 class TileCache {
  public:
@@ -87,4 +87,4 @@ class TileCache {
   AsyncValue<Order, Reading> reader_;  // last member: it uses the tiles
 };
 
-}  // namespace alpenglow::viewer
+}  // namespace alpenglow::renderer
