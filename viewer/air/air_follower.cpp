@@ -85,7 +85,7 @@ glm::vec4 AxesOf(int one, int other) {
 }  // namespace
 
 std::vector<ShaderPiece> AirTableTexts() {
-  return WithViewerPieces({}, {"lut/camera_tables/air_map.glsl", "viewer/shaders/air_tables.glsl"});
+  return WithViewerPieces({}, {"lut/camera_tables/air_map.glsl", "viewer/shaders/air.tables.glsl"});
 }
 
 AirTextures::AirTextures() = default;

@@ -41,10 +41,10 @@ FogBlock FogBlockOf(const FogMap& map, const FogView& now) {
 
 std::vector<ShaderPiece> FogTexts(PhaseKind kind) {
   return {{"fog constants", fmt::format("#define FOG_PHASE(c, p) {}\n", PhaseExpression(kind))},
-          ViewerPiece("viewer/shaders/fog_light.glsl")};
+          ViewerPiece("viewer/shaders/fog.light.glsl")};
 }
 
-std::vector<ShaderPiece> NoFogTexts() { return {ViewerPiece("viewer/shaders/no_fog.glsl")}; }
+std::vector<ShaderPiece> NoFogTexts() { return {ViewerPiece("viewer/shaders/fog.none.glsl")}; }
 
 void FogPainter::Connect(const ShaderProgram& program) const {
   program.Use();

@@ -64,8 +64,8 @@ constexpr GLuint kLandBinding = 8;
 
 std::vector<ShaderPiece> Vertices() {
   return WithViewerPieces(
-      SharedTexts(), {"viewer/shaders/view_block.glsl", "viewer/shaders/refracted_view_rays.glsl",
-                      "viewer/shaders/land_block.glsl", "viewer/shaders/land.vert.glsl"});
+      SharedTexts(), {"viewer/shaders/view.block.glsl", "viewer/shaders/view.refracted_rays.glsl",
+                      "viewer/shaders/land.block.glsl", "viewer/shaders/land.vert.glsl"});
 }
 
 // Returns whether depth can run from 1 at the near plane to 0 at infinity. A float depth buffer
@@ -110,22 +110,22 @@ const ShaderProgram& LandPass::ProgramOf(LandDrawn drawn) const {
   std::optional<ShaderProgram>& program = is_surface ? surface_ : outline_;
   if (!program) {
     program.emplace(LandProgram(is_surface ? "viewer/shaders/land.frag.glsl"
-                                           : "viewer/shaders/depth_prepass.frag.glsl"));
+                                           : "viewer/shaders/land.depth_prepass.frag.glsl"));
   }
   return *program;
 }
 
 std::vector<ShaderPiece> LandTexts(const ShaderPiece& depth) {
   std::vector<ShaderPiece> texts =
-      WithViewerPieces({}, {"viewer/shaders/view_block.glsl", "viewer/shaders/land_block.glsl",
-                            "viewer/shaders/octahedral.glsl", "viewer/shaders/inverse_depth.glsl"});
+      WithViewerPieces({}, {"viewer/shaders/view.block.glsl", "viewer/shaders/land.block.glsl",
+                            "viewer/shaders/gbuffer.octahedral.glsl", "viewer/shaders/gbuffer.inverse_depth.glsl"});
   texts.push_back(depth);
-  return WithViewerPieces(std::move(texts), {"viewer/shaders/land_seen.glsl"});
+  return WithViewerPieces(std::move(texts), {"viewer/shaders/land.seen.glsl"});
 }
 
 ShaderPiece LandPass::DepthText() {
-  return ViewerPiece(CanReverseDepth() ? "viewer/shaders/reversed_depth.glsl"
-                                       : "viewer/shaders/logarithmic_depth.glsl");
+  return ViewerPiece(CanReverseDepth() ? "viewer/shaders/gbuffer.reversed_depth.glsl"
+                                       : "viewer/shaders/gbuffer.logarithmic_depth.glsl");
 }
 
 void LandPass::Clear(LandDrawn drawn) {

@@ -68,7 +68,7 @@ class HorizonTexture {
 class GBuffer : public RenderTarget {
  public:
   enum Output : std::size_t {
-    /// Four floats: normal in the eye's frame, octahedral (octahedral.glsl); elevation of the
+    /// Four floats: normal in the eye's frame, octahedral (gbuffer.octahedral.glsl); elevation of the
     /// shadow-casting disk above the terrain's edge, in radii of the disk; distance [m], 0: no
     /// terrain.
     kSurface,
@@ -92,7 +92,7 @@ class DepthPrepass : public RenderTarget {
   DepthPrepass(int width, int height) : RenderTarget(width, height, {}, Depth::k32Bit) {}
 };
 
-/// Mirrors the uniform block `Land` of land_block.glsl.
+/// Mirrors the uniform block `Land` of land.block.glsl.
 struct LandBlock {
   static constexpr std::size_t kMostLevels = 32;
   glm::vec4 eye_high, eye_low;
@@ -168,7 +168,7 @@ class LandPass {
   mutable std::optional<ShaderProgram> surface_, outline_;  // created on first use
 };
 
-/// Returns the shader texts that land.frag.glsl and depth_prepass.frag.glsl are built from.
+/// Returns the shader texts that land.frag.glsl and land.depth_prepass.frag.glsl are built from.
 /// @param depth  text of a depth mode: LandPass::DepthText, or the other one.
 [[nodiscard]] std::vector<ShaderPiece> LandTexts(const ShaderPiece& depth);
 

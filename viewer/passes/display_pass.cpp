@@ -16,7 +16,7 @@ enum UpscalerUnit { kSmall, kPrintDither, kOutline };
 
 ShaderProgram ProgramOf(Upscaler::Shows shows) {
   ShaderProgram program = FullScreenProgram(WithViewerPieces(
-      UpscalerTexts(shows, LandPass::DepthText()), {"viewer/shaders/upscale.frag.glsl"}));
+      UpscalerTexts(shows, LandPass::DepthText()), {"viewer/shaders/display.upscale.frag.glsl"}));
   program.BindSampler("small_picture", kSmall);
   program.BindSampler("outline", kOutline);
   return program;
@@ -27,10 +27,10 @@ ShaderProgram ProgramOf(Upscaler::Shows shows) {
 std::vector<ShaderPiece> UpscalerTexts(Upscaler::Shows shows, const ShaderPiece& depth) {
   const bool dithers = shows == Upscaler::Shows::kCodes;
   std::vector<ShaderPiece> texts =
-      WithViewerPieces(SharedTexts(), {"viewer/shaders/inverse_depth.glsl"});
+      WithViewerPieces(SharedTexts(), {"viewer/shaders/gbuffer.inverse_depth.glsl"});
   texts.push_back(depth);
   texts.push_back({"shown", dithers ? "#define DITHERS 1\n" : "#define DITHERS 0\n"});
-  return dithers ? WithViewerPieces(std::move(texts), {"viewer/shaders/dither_tile.glsl"}) : texts;
+  return dithers ? WithViewerPieces(std::move(texts), {"viewer/shaders/display.dither.glsl"}) : texts;
 }
 
 Upscaler::Upscaler(Shows shows) : shows_(shows), program_(ProgramOf(shows)) {}

@@ -3,7 +3,7 @@
 //
 // If the picture is smaller than the screen, it is tone-mapped at its own resolution and then
 // upscaled by Upscaler, which interpolates smooth areas and uses the edges of land at screen
-// resolution (shaders/upscale.frag.glsl). The cost of lighting is that of the small picture, and
+// resolution (shaders/display.upscale.frag.glsl). The cost of lighting is that of the small picture, and
 // edges stay sharp.
 #pragma once
 
@@ -31,7 +31,7 @@ class Upscaler {
   explicit Upscaler(Shows shows);
 
   /// Fills the framebuffer (0: the window), which has the size of the outline.
-  /// @param small      of any size, with the inverse depth of land (shaders/inverse_depth.glsl) in
+  /// @param small      of any size, with the inverse depth of land (shaders/gbuffer.inverse_depth.glsl) in
   ///   its fourth component.
   /// @param half_view  tangents of half the horizontal and half the vertical field of view.
   void Upscale(const RenderTarget& small, const DepthPrepass& outline, const glm::dvec2& half_view,
@@ -49,7 +49,7 @@ class Upscaler {
   DitherTexture dither_;
 };
 
-/// Returns the shader texts that upscale.frag.glsl is built from.
+/// Returns the shader texts that display.upscale.frag.glsl is built from.
 /// @param depth  text of a depth mode: LandPass::DepthText, or the other one.
 [[nodiscard]] std::vector<ShaderPiece> UpscalerTexts(Upscaler::Shows shows,
                                                      const ShaderPiece& depth);

@@ -35,7 +35,7 @@ ShaderPiece DefinesOf(const PictureKind& kind, const PictureStage& stage) {
 
 std::vector<ShaderPiece> AirTexts() {
   std::vector<ShaderPiece> texts = WithViewerPieces(
-      SharedTexts(), {"viewer/shaders/view_block.glsl", "viewer/shaders/refracted_view_rays.glsl"});
+      SharedTexts(), {"viewer/shaders/view.block.glsl", "viewer/shaders/view.refracted_rays.glsl"});
   for (ShaderPiece& piece : AirTableTexts()) texts.push_back(std::move(piece));
   return texts;
 }
@@ -52,10 +52,10 @@ std::vector<ShaderPiece> PictureTexts(const PictureKind& kind, const PictureStag
     texts.push_back(
         {"fog on the ground", "#define BeamOfSun(h, mu) (BeamOfSun(h, mu) * FogSunLeft(h, mu))\n"});
   }
-  add(WithViewerPieces({}, {"viewer/shaders/air_block.glsl", "viewer/shaders/octahedral.glsl",
-                            "viewer/shaders/inverse_depth.glsl", "viewer/shaders/sun_light.glsl"}));
+  add(WithViewerPieces({}, {"viewer/shaders/air.block.glsl", "viewer/shaders/gbuffer.octahedral.glsl",
+                            "viewer/shaders/gbuffer.inverse_depth.glsl", "viewer/shaders/air.sun_light.glsl"}));
   if (stage.pass == PictureStage::Pass::kDisks)
-    add(WithViewerPieces({}, {"viewer/shaders/refracted_disks.glsl"}));
+    add(WithViewerPieces({}, {"viewer/shaders/view.refracted_disks.glsl"}));
   add(GroundTexts(kind.material, kind.land));
   if (stage.sky_by_pixel) add(SkyByPixelTexts());
   add(ShaftTexts());

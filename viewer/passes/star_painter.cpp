@@ -169,7 +169,7 @@ void StarPainter::Connect(const SceneFog* fog, std::optional<PhaseKind> fog_phas
   std::vector<ShaderPiece> texts = AirTexts();
   for (ShaderPiece& piece : fog_phase ? FogTexts(*fog_phase) : NoFogTexts())
     texts.push_back(std::move(piece));
-  program_.emplace(WithViewerPieces(std::move(texts), {"viewer/shaders/air_block.glsl",
+  program_.emplace(WithViewerPieces(std::move(texts), {"viewer/shaders/air.block.glsl",
                                                        "viewer/shaders/star.vert.glsl"}),
                    WithViewerPieces({}, {"viewer/shaders/star.frag.glsl"}), kAttributes);
   program_->BindBlock("Air", kAirBinding);

@@ -135,7 +135,7 @@ enum ToneMapPassUnit { kPicture, kDither, kTable };
 
 ShaderProgram ProgramOf(ToneCurve curve, bool dithers) {
   ShaderProgram program = FullScreenProgram(
-      WithViewerPieces(ToneMapPassTexts(curve, dithers), {"viewer/shaders/tone_map.frag.glsl"}));
+      WithViewerPieces(ToneMapPassTexts(curve, dithers), {"viewer/shaders/display.tone_map.frag.glsl"}));
   program.BindSampler("linear_picture", kPicture);
   program.BindSampler("tone_table", kTable);
   glUniform2f(program.Uniform("stops"), static_cast<float>(ToneTable::kLowestStop),
@@ -157,7 +157,7 @@ std::vector<ShaderPiece> ToneMapPassTexts(ToneCurve curve, bool dithers) {
   std::vector<ShaderPiece> texts = SharedTexts();
   texts.push_back({"curve", fmt::format("#define CURVE {}\n#define DITHERS {}\n",
                                         static_cast<int>(curve), dithers ? 1 : 0)});
-  return WithViewerPieces(std::move(texts), {"viewer/shaders/dither_tile.glsl"});
+  return WithViewerPieces(std::move(texts), {"viewer/shaders/display.dither.glsl"});
 }
 
 ToneMapPass::ToneMapPass(const Look& look, FirstPictures first)

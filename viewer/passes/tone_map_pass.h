@@ -3,7 +3,7 @@
 //
 // ExposureMeter reads back small copies of pictures without waiting for them. SpotMeter reads the
 // luminance under the pointer. DitherTexture holds the tile of dither noise for
-// shaders/dither_tile.glsl.
+// shaders/display.dither.glsl.
 //
 // ToneTable tabulates AgX in one of its looks as a 3D texture. One fetch replaces nine powers and
 // logarithms per pixel and the hue correction. It holds sRGB codes as a function of the exposed
@@ -157,7 +157,7 @@ class ToneMapPass {
   DitherTexture dither_;
 };
 
-/// Returns the shader texts that tone_map.frag.glsl is built from.
+/// Returns the shader texts that display.tone_map.frag.glsl is built from.
 [[nodiscard]] std::vector<ShaderPiece> ToneMapPassTexts(ToneCurve curve, bool dithers);
 
 }  // namespace alpenglow::viewer

@@ -94,14 +94,14 @@ std::vector<ShaderPiece> ShaftPassTexts(std::vector<ShaderPiece> air, bool has_f
       {"fog of shafts",
        fmt::format("#define HAS_FOG {}\n#define LEFT_BY_FOG(direction, km) {}\n", has_fog ? 1 : 0,
                    has_fog ? "FogTransmittance(direction, min(km, kOutOfFog_km))" : "1.0")});
-  std::vector<std::string> files{"viewer/shaders/shade_march.glsl",
-                                 "viewer/shaders/shaft_texel.glsl"};
-  if (has_fog) files.emplace_back("viewer/shaders/fog_shade.glsl");
+  std::vector<std::string> files{"viewer/shaders/shafts.march.glsl",
+                                 "viewer/shaders/shafts.texel.glsl"};
+  if (has_fog) files.emplace_back("viewer/shaders/shafts.fog_march.glsl");
   return WithViewerPieces(std::move(air), files);
 }
 
 std::vector<ShaderPiece> ShaftTexts() {
-  return WithViewerPieces({}, {"viewer/shaders/shaft_texel.glsl", "viewer/shaders/shafts.glsl"});
+  return WithViewerPieces({}, {"viewer/shaders/shafts.texel.glsl", "viewer/shaders/shafts.picture.glsl"});
 }
 
 ShaftPass::ShaftPass(std::vector<ShaderPiece> air, bool has_fog)

@@ -23,14 +23,16 @@
 
 namespace alpenglow::viewer {
 
-/// Returns a text that the library of its layer embeds.
+/// Returns a text that the library of its layer embeds, or a part of a text of the viewer:
+/// "viewer/shaders/land.vert.glsl" is the part of viewer/shaders/land.glsl that begins with the
+/// line "//// land.vert.glsl" and ends before the next part. Throws InternalError if there is none.
 [[nodiscard]] ShaderPiece ViewerPiece(const std::string& name);
 
 /// Returns the texts followed by those of these names.
 [[nodiscard]] std::vector<ShaderPiece> WithViewerPieces(std::vector<ShaderPiece> texts,
                                                         const std::vector<std::string>& names);
 
-/// Returns a program of full_screen.vert.glsl and a fragment stage of these texts.
+/// Returns a program of view.full_screen.vert.glsl and a fragment stage of these texts.
 [[nodiscard]] ShaderProgram FullScreenProgram(const std::vector<ShaderPiece>& fragment);
 
 /// Draws over the whole viewport of the bound target.
@@ -56,7 +58,7 @@ class PassArea {
 /// 0.
 inline constexpr std::size_t kGpuBands = 4;
 
-/// Mirrors the uniform block `Air` of air_block.glsl. Lengths in km.
+/// Mirrors the uniform block `Air` of air.block.glsl. Lengths in km.
 struct AirBlock {
   glm::vec4 rayleigh_scattering, mie_scattering, mie_extinction, ozone_absorption, ground_albedo;
   glm::vec4 red_from_bands, green_from_bands, blue_from_bands;
@@ -66,7 +68,7 @@ static_assert(sizeof(AirBlock) == 12 * sizeof(glm::vec4));
 static_assert(offsetof(AirBlock, ground_albedo) == 4 * sizeof(glm::vec4));
 static_assert(offsetof(AirBlock, wavelengths) == 11 * sizeof(glm::vec4));
 
-/// Mirrors the uniform block `View` of view_block.glsl.
+/// Mirrors the uniform block `View` of view.block.glsl.
 struct ViewBlock {
   glm::vec4 view_right, view_up, view_forward;
   glm::vec4 sun, sun_for_air, sun_irradiance;

@@ -34,8 +34,8 @@ std::vector<tests::Arguments<float>> RisingDisks() {
 
 std::vector<float> OfDisks(const char* component) {
   const std::vector<ShaderPiece> pieces = WithViewerPieces(
-      SharedTexts(), {"viewer/shaders/air_block.glsl", "viewer/shaders/view_block.glsl",
-                      "viewer/shaders/sun_light.glsl"});
+      SharedTexts(), {"viewer/shaders/air.block.glsl", "viewer/shaders/view.block.glsl",
+                      "viewer/shaders/air.sun_light.glsl"});
   return tests::EvaluateOnGpu(pieces, std::string("DiskOverHorizon(a[0], a[1], a[2])") + component,
                               RisingDisks());
 }
@@ -58,7 +58,7 @@ TEST_F(SunLight, TheDiskIsDarkenedAtItsLimbAsTheRenderersIs) {
   pieces.push_back({"view",
                     "const vec4 sun = vec4(0.6, 0.0, 0.8, 0.00465);\n"
                     "const vec4 wavelengths = vec4(0.68, 0.55, 0.44, 0.35);\n"});
-  pieces.push_back(ViewerPiece("viewer/shaders/sun_light.glsl"));
+  pieces.push_back(ViewerPiece("viewer/shaders/air.sun_light.glsl"));
   constexpr std::array<double, 4> kWavelengths_nm{680.0, 550.0, 440.0, 350.0};
   std::vector<tests::Arguments<float>> points;
   std::vector<double> radii;
@@ -88,8 +88,8 @@ TEST_F(SunLight, TheMoonIsThatOfTheRenderer) {
   MoonDisk moon{{0.6, 0.0, 0.8}, {}, 0.0045, 0.05, 0.001};
   moon.to_sun = glm::normalize(glm::dvec3(-0.2, 0.8, 0.1));
   const std::vector<ShaderPiece> pieces = WithViewerPieces(
-      SharedTexts(), {"viewer/shaders/air_block.glsl", "viewer/shaders/view_block.glsl",
-                      "viewer/shaders/sun_light.glsl"});
+      SharedTexts(), {"viewer/shaders/air.block.glsl", "viewer/shaders/view.block.glsl",
+                      "viewer/shaders/air.sun_light.glsl"});
   std::vector<tests::Arguments<float>> points;
   std::vector<double> expected;
   for (double right = -1.3; right <= 1.3; right += 0.1) {

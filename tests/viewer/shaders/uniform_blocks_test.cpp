@@ -44,7 +44,7 @@ GLint SizeOf(const ShaderProgram& program, const char* block) {
 // A program that reads all blocks of the picture.
 ShaderProgram ProgramOfBlocks() {
   std::vector<ShaderPiece> pieces = WithViewerPieces(
-      SharedTexts(), {"viewer/shaders/view_block.glsl", "viewer/shaders/air_block.glsl",
+      SharedTexts(), {"viewer/shaders/view.block.glsl", "viewer/shaders/air.block.glsl",
                       "viewer/shaders/ground.glsl"});
   pieces.push_back({"main", "void main() { gl_Position = shell + eye + conifers; }\n"});
   return ShaderProgram::ForTransformFeedback(pieces, {"gl_Position"});

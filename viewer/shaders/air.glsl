@@ -1,4 +1,65 @@
 // SPDX-License-Identifier: MIT
+// The air: its block, its tables for the eye, and the sunlight that reaches a place in it.
+
+//// air.block.glsl
+// Optical properties of the medium: AirBlock of pass_setup.h. Vectors of four hold one value
+// per band. Lengths are in kilometres.
+layout(std140) uniform Air {
+  vec4 rayleigh_scattering;  // per km at altitude 0
+  vec4 mie_scattering;
+  vec4 mie_extinction;
+  vec4 ozone_absorption;  // per km at the peak of the layer
+  vec4 ground_albedo;
+  vec4 red_from_bands;  // rows of the matrix to linear sRGB [cd m^-2 per W m^-2 sr^-1 nm^-1]
+  vec4 green_from_bands;
+  vec4 blue_from_bands;
+  vec4 shell;        // radius of the planet, top of the air, scale heights of molecules and aerosol
+  vec4 ozone_layer;  // bottom, peak, top; fourth: 1 for the smooth shape, 0 for the tent
+  vec4 deficit;      // deficit of molecules near the ground: fraction, scale height
+  vec4 wavelengths;  // [um]
+};
+
+#define RADIUS shell.x
+#define TOP shell.y
+#define RAYLEIGH_HEIGHT shell.z
+#define MIE_HEIGHT shell.w
+
+float OzoneColumnUp(float h, float mu) {
+  if (ozone_layer.w > 0.5) return SmoothOzoneColumnUp(h, mu, ozone_layer.z, RADIUS);
+  return TentColumnUp(h, mu, ozone_layer.x, ozone_layer.y, ozone_layer.z, RADIUS);
+}
+
+// Returns the columns of molecules, aerosol and ozone [km] from altitude h along mu >= 0 to space.
+vec3 ColumnsUp(float h, float mu) {
+  float molecules = (1.0 + deficit.x) * ExponentialColumnUp(h, mu, RAYLEIGH_HEIGHT, TOP, RADIUS);
+  if (deficit.x > 0.0) molecules -= DeficitColumnUp(h, mu, deficit.x, deficit.y, RADIUS);
+  return vec3(molecules, ExponentialColumnUp(h, mu, MIE_HEIGHT, TOP, RADIUS), OzoneColumnUp(h, mu));
+}
+
+// Returns the columns from the lowest point of the line to space. Below the ground they are not
+// used and only have to be finite.
+vec3 ColumnsFromPerigee(float h, float mu) {
+  return ColumnsUp(max(PerigeeAltitude(h, mu, RADIUS), -1.0), 0.0);
+}
+
+// Returns the columns towards a sun that the ground does not hide.
+vec3 ColumnsToSun(float h, float mu_s) {
+  vec3 up = ColumnsUp(h, abs(mu_s));
+  if (mu_s >= 0.0) return up;
+  return max(2.0 * ColumnsFromPerigee(h, mu_s) - up, vec3(0.0));
+}
+
+vec4 OpticalDepth(vec3 columns) {
+  return rayleigh_scattering * columns.x + mie_extinction * columns.y +
+         ozone_absorption * columns.z;
+}
+
+vec3 LinearSrgb(vec4 radiance) {
+  return vec3(dot(red_from_bands, radiance), dot(green_from_bands, radiance),
+              dot(blue_from_bands, radiance));
+}
+
+//// air.tables.glsl
 // Radiance and transmittance of the air for one eye and one sun, from the tables of air_tables.h.
 // Radiance is per unit solar irradiance [1/sr], one band per component. Directions are unit vectors
 // in the eye's frame (east, north, up); distances are in kilometres from the eye.
@@ -170,3 +231,67 @@ AirTo AirToPoint(vec3 direction, float distance_km) {
 
 // Returns AirToPoint(direction, distance_km).single.
 vec4 SingleTo(vec3 direction, float distance_km) { return SingleOf(WayTo(direction, distance_km)); }
+
+//// air.sun_light.glsl
+// Sun and moon as disks: the part of the sun above the horizon, and the radiance of both (sun.h,
+// moon.h).
+
+uniform vec4 moon;      // unit vector to the apparent moon, in the eye's frame; angular radius
+uniform vec4 moon_colour;      // spectral reflectance relative to 550 nm
+uniform float moon_earthshine;  // radiance per irradiance, uniform over the disk
+uniform vec4 moon_lit;  // unit vector from the moon to the sun; radiance per irradiance, 0: no moon
+
+// Returns the angle of a sine in [-1, 1]. The asin() and acos() of some drivers are accurate only
+// to 1e-4, a fiftieth of the disk.
+float AngleOfSine(float sine) { return atan(sine, sqrt(max((1.0 - sine) * (1.0 + sine), 0.0))); }
+
+// Returns the fraction of the disk above the horizon, and the zenith cosine of the visible part's
+// centre.
+vec2 DiskOverHorizon(float mu_s, float horizon_mu, float radius) {
+  float elevation = AngleOfSine(clamp(mu_s, -1.0, 1.0));
+  float x = (elevation - AngleOfSine(clamp(horizon_mu, -1.0, 1.0))) / radius;
+  if (x >= 1.0) return vec2(1.0, mu_s);
+  if (x <= -1.0) return vec2(0.0, mu_s);
+  float chord = sqrt((1.0 - x) * (1.0 + x));
+  float area = atan(chord, -x) + x * chord;
+  // The centre of the last sliver must lie within it, in spite of rounding of the area.
+  float rise = clamp(2.0 / 3.0 * chord * chord * chord / max(area, 1e-10), max(-x, 0.0), 1.0);
+  return vec2(area / 3.14159265359, sin(elevation + rise * radius));
+}
+
+// Returns the fraction of a pixel that the moon's disk covers.
+float CoveredByMoon(vec3 direction, float width) {
+  vec3 beside = direction - moon.xyz;
+  float rho = length(beside - dot(beside, moon.xyz) * moon.xyz) / max(sin(moon.w), 1e-6);
+  return dot(direction, moon.xyz) <= 0.0 ? 0.0 : clamp((1.0 - rho) * moon.w / width + 0.5, 0.0, 1.0);
+}
+
+// Returns the radiance of the sun's disk outside the air, per unit of its irradiance [1/sr], times
+// the fraction of a pixel that the disk covers; one value per band.
+vec4 SunDiskRadiance(vec3 direction, float width) {
+  float radius = sun.w;
+  float rho = 2.0 * asin(min(0.5 * length(direction - sun.xyz), 1.0)) / radius;
+  float covered = clamp((1.0 - rho) * radius / width + 0.5, 0.0, 1.0);
+  if (covered <= 0.0) return vec4(0.0);
+  float half_sine = sin(0.5 * radius);
+  vec4 darkening =
+      vec4(SunLimbDarkeningAt(rho, wavelengths.x), SunLimbDarkeningAt(rho, wavelengths.y),
+           SunLimbDarkeningAt(rho, wavelengths.z), SunLimbDarkeningAt(rho, wavelengths.w));
+  return covered / (4.0 * 3.14159265359 * half_sine * half_sine) * darkening;
+}
+
+// Returns the radiance of the moon's disk outside the air, per unit of solar irradiance [1/sr],
+// times the fraction of a pixel that the disk covers; one value per band.
+vec4 MoonRadiance(vec3 direction, float width) {
+  vec3 beside = direction - moon.xyz;
+  vec3 at = (beside - dot(beside, moon.xyz) * moon.xyz) / max(sin(moon.w), 1e-6);
+  float rho = length(at);
+  float covered = CoveredByMoon(direction, width);
+  if (covered <= 0.0) return vec4(0.0);
+  // A pixel whose centre is beyond the limb has the radiance of the limb.
+  const float kLimb = 0.999;
+  at *= min(kLimb / max(rho, 1e-6), 1.0);
+  float mu_seen = sqrt(1.0 - dot(at, at));
+  float mu_lit = dot(at - mu_seen * moon.xyz, moon_lit.xyz);
+  return covered * (moon_lit.w * LommelSeeliger(mu_lit, mu_seen) + moon_earthshine) * moon_colour;
+}

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: MIT
+// The linear picture of land, sky and disks.
+
+//// picture.frag.glsl
 // The linear picture [cd/m^2, linear sRGB] lit by the sun or the moon, whichever the block View
-// holds as its sun, and the inverse depth of land (inverse_depth.glsl). The passes are separated by
+// holds as its sun, and the inverse depth of land (gbuffer.inverse_depth.glsl). The passes are separated by
 // the depth test against land, because software drivers evaluate both sides of a branch. Defined
 // before this text:
 //   PASS          LAND_PASS: land and the air in front of it; SKY_PASS: sky and bare planet;
