@@ -37,18 +37,13 @@ void UploadTexels(const GlTexture& texture, GLenum target, const AirTexels& texe
   glBindTexture(target, texture.id());
   const void* data = texels.texel.data();
   const auto [width, height, depth] = std::tuple(texels.width, texels.height, texels.depth);
-  if (target == GL_TEXTURE_1D) {
-    glTexImage1D(target, 0, GL_RGBA32F, width, 0, GL_RGBA, GL_FLOAT, data);
-  } else if (target == GL_TEXTURE_2D && same_size) {
+  if (target == GL_TEXTURE_2D && same_size) {
     glTexSubImage2D(target, 0, 0, 0, width, height, GL_RGBA, GL_FLOAT, data);
-  } else if (target == GL_TEXTURE_2D) {
-    glTexImage2D(target, 0, GL_RGBA32F, width, height, 0, GL_RGBA, GL_FLOAT, data);
-  } else if (same_size) {
+  } else if (target == GL_TEXTURE_3D && same_size) {
     glTexSubImage3D(target, 0, 0, 0, 0, width, height, depth, GL_RGBA, GL_FLOAT, data);
   } else {
-    glTexImage3D(target, 0, GL_RGBA32F, width, height, depth, 0, GL_RGBA, GL_FLOAT, data);
+    UploadTexture(target, texture, {GL_RGBA32F, width, height, depth, GL_RGBA, GL_FLOAT, data});
   }
-  ClampAndFilter(target, true);
   glTexParameteri(target, GL_TEXTURE_WRAP_R, GL_CLAMP_TO_EDGE);
 }
 
@@ -149,11 +144,9 @@ void AirTextures::Prepare(const ShaderProgram& program, int first_unit, GLuint b
 
 void AirTextures::Bind(int first_unit, GLuint binding) const {
   for (std::size_t i = 0; i < kSlots.size(); ++i) {
-    glActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(first_unit) + static_cast<GLenum>(i));
-    glBindTexture(kSlots[i].target, texture_[i].id());
+    BindTexture(first_unit + static_cast<int>(i), kSlots[i].target, texture_[i]);
   }
-  glBindBufferBase(GL_UNIFORM_BUFFER, binding, block_.id());
-  glBufferData(GL_UNIFORM_BUFFER, sizeof(values_), &values_, GL_DYNAMIC_DRAW);
+  UploadBlock(block_, binding, values_);
 }
 
 namespace {

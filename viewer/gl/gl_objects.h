@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Provides owners of OpenGL object names, the binding of a texture to a unit, a scissor rectangle
-// for its scope, and texture sizes that are not powers of two. An object must not outlive the
-// context in which it was created.
+// Provides owners of OpenGL object names, the upload of textures and uniform blocks and their
+// binding, and a scissor rectangle for its scope. An object must not outlive the context in which
+// it was created.
 #pragma once
 
 #include <epoxy/gl.h>
@@ -61,6 +61,28 @@ using GlProgram = GlObject<gl_kind::Program>;
 inline void BindTexture(int unit, GLenum target, const GlTexture& texture) {
   glActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(unit));
   glBindTexture(target, texture.id());
+}
+
+/// Sets the filter of a bound texture to linear or nearest, and clamps it at its edges.
+void ClampAndFilter(GLenum target, bool linear);
+
+/// Values of a texture: their format on the GPU, their number, and their format in memory.
+struct Texels {
+  GLenum internal_format;
+  int width, height, depth;  // depth of a three-dimensional texture, or the number of layers
+  GLenum format, type;
+  const void* data;  // null: the values are undefined
+};
+
+/// Replaces the values of a texture, which is bound to the active unit. Between the texels it is
+/// interpolated, and it is clamped at its edges except along depth.
+void UploadTexture(GLenum target, const GlTexture& texture, const Texels& texels);
+
+/// Uploads a uniform block, a struct of vec4, and binds it.
+template <typename Block>
+void UploadBlock(const GlBuffer& buffer, GLuint binding, const Block& block) {
+  glBindBufferBase(GL_UNIFORM_BUFFER, binding, buffer.id());
+  glBufferData(GL_UNIFORM_BUFFER, sizeof(block), &block, GL_DYNAMIC_DRAW);
 }
 
 /// A rectangle of pixels; (x, y) is its lower left pixel.

@@ -57,6 +57,20 @@ void ClampAndFilter(GLenum target, bool linear) {
   glTexParameteri(target, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
 }
 
+void UploadTexture(GLenum target, const GlTexture& texture, const Texels& of) {
+  const auto internal = static_cast<GLint>(of.internal_format);
+  glBindTexture(target, texture.id());
+  if (target == GL_TEXTURE_1D) {
+    glTexImage1D(target, 0, internal, of.width, 0, of.format, of.type, of.data);
+  } else if (target == GL_TEXTURE_2D) {
+    glTexImage2D(target, 0, internal, of.width, of.height, 0, of.format, of.type, of.data);
+  } else {
+    glTexImage3D(target, 0, internal, of.width, of.height, of.depth, 0, of.format, of.type,
+                 of.data);
+  }
+  ClampAndFilter(target, true);
+}
+
 RenderTarget::RenderTarget(int width, int height, const std::vector<PixelFormat>& formats,
                            Depth depth)
     : width_(width), height_(height), colours_(formats.size()) {

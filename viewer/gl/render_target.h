@@ -83,9 +83,6 @@ inline void Fit(std::optional<RenderTarget>& target, int width, int height, Pixe
   target.emplace(width, height, std::vector{format}, RenderTarget::Depth::kNone);
 }
 
-/// Sets the filter of a bound texture to linear or nearest, and clamps it at its edges.
-void ClampAndFilter(GLenum target, bool linear);
-
 /// Reads one rectangle at a time. An OpenGL context must be current in all calls.
 class PixelReader {
  public:

@@ -88,10 +88,9 @@ double ByRootOfMu(const GroundMaterial& material, std::size_t node) {
 
 void Upload(const GlTexture& texture, std::size_t columns, std::size_t rows,
             const std::vector<BandTexel>& texels) {
-  glBindTexture(GL_TEXTURE_2D, texture.id());
-  glTexImage2D(GL_TEXTURE_2D, 0, GL_RGBA32F, static_cast<GLsizei>(columns),
-               static_cast<GLsizei>(rows), 0, GL_RGBA, GL_FLOAT, texels.data());
-  ClampAndFilter(GL_TEXTURE_2D, true);
+  UploadTexture(GL_TEXTURE_2D, texture,
+                {GL_RGBA32F, static_cast<int>(columns), static_cast<int>(rows), 1, GL_RGBA,
+                 GL_FLOAT, texels.data()});
 }
 
 }  // namespace
@@ -178,11 +177,9 @@ void GroundTextures::SetSeaMirror(LightSource source, const std::vector<BandTexe
 }
 
 void GroundTextures::SetDrape(const DrapeTexels& texels) const {
-  glBindTexture(GL_TEXTURE_2D, drape_.id());
-  glTexImage2D(GL_TEXTURE_2D, 0, GL_RGBA16, static_cast<GLsizei>(texels.columns),
-               static_cast<GLsizei>(texels.rows), 0, GL_RGBA, GL_UNSIGNED_SHORT,
-               texels.rgba.data());
-  ClampAndFilter(GL_TEXTURE_2D, true);
+  UploadTexture(GL_TEXTURE_2D, drape_,
+                {GL_RGBA16, static_cast<int>(texels.columns), static_cast<int>(texels.rows), 1,
+                 GL_RGBA, GL_UNSIGNED_SHORT, texels.rgba.data()});
   glGenerateMipmap(GL_TEXTURE_2D);
   glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR_MIPMAP_LINEAR);
 }
@@ -193,21 +190,15 @@ void GroundTextures::Bind(const ShaderProgram& program, int first_unit, LightSou
                                          {"sea_mirror", &sea_mirrors_[IndexOf(source)]},
                                          {"drape", &drape_}}) {
     program.BindSampler(sampler, unit);
-    glActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(unit++));
-    glBindTexture(GL_TEXTURE_2D, texture->id());
+    BindTexture(unit++, GL_TEXTURE_2D, *texture);
   }
 }
 
 namespace {
 
-constexpr auto kAzimuths = static_cast<GLsizei>(kHorizonAzimuths);
+constexpr auto kAzimuths = static_cast<int>(kHorizonAzimuths);
 constexpr std::size_t kFour = 4;  // components of a texel
 constexpr std::size_t kWeightLayers = kHorizonAzimuths / kFour;
-
-void Clamp(GLenum target) {
-  ClampAndFilter(target, true);
-  glTexParameteri(target, GL_TEXTURE_WRAP_R, GL_CLAMP_TO_EDGE);
-}
 
 // Reorders the renderer's layout [level][azimuth][node][A, B][band] to rows of nodes.
 void UploadIntegrals(const GlTexture& texture, const OccludedSkyIrradiance::Tables& tables) {
@@ -221,19 +212,17 @@ void UploadIntegrals(const GlTexture& texture, const OccludedSkyIrradiance::Tabl
                     &texels[((row * 2 + part) * kNodes + node) * kFour]);
     }
   }
-  glBindTexture(GL_TEXTURE_2D_ARRAY, texture.id());
-  glTexImage3D(GL_TEXTURE_2D_ARRAY, 0, GL_RGBA16F, static_cast<GLsizei>(kNodes), 2 * kAzimuths,
-               static_cast<GLsizei>(OccludedSkyIrradiance::kLevels), 0, GL_RGBA, GL_FLOAT,
-               texels.data());
-  Clamp(GL_TEXTURE_2D_ARRAY);
+  UploadTexture(
+      GL_TEXTURE_2D_ARRAY, texture,
+      {GL_RGBA16F, static_cast<int>(kNodes), 2 * kAzimuths,
+       static_cast<int>(OccludedSkyIrradiance::kLevels), GL_RGBA, GL_FLOAT, texels.data()});
 }
 
 void UploadLevels(const GlTexture& texture, const OccludedSkyIrradiance::Tables& tables) {
-  glBindTexture(GL_TEXTURE_2D, texture.id());
-  glTexImage2D(GL_TEXTURE_2D, 0, GL_RGBA32F, static_cast<GLsizei>(OccludedSkyIrradiance::kSuns),
-               static_cast<GLsizei>(OccludedSkyIrradiance::kLevels), 0, GL_RGBA, GL_FLOAT,
-               tables.level_irradiance.data());
-  ClampAndFilter(GL_TEXTURE_2D, true);
+  UploadTexture(GL_TEXTURE_2D, texture,
+                {GL_RGBA32F, static_cast<int>(OccludedSkyIrradiance::kSuns),
+                 static_cast<int>(OccludedSkyIrradiance::kLevels), 1, GL_RGBA, GL_FLOAT,
+                 tables.level_irradiance.data()});
 }
 
 // Returns the largest light of a slope in each band. Half floats resolve values about ten thousand
@@ -264,11 +253,10 @@ void UploadSlopes(const GlTexture& texture, const TerrainInterreflection& slopes
     }
   }
   const HeightRaster& grid = views.heights();
-  glBindTexture(GL_TEXTURE_2D_ARRAY, texture.id());
-  glTexImage3D(GL_TEXTURE_2D_ARRAY, 0, GL_RGBA16F, grid.columns, grid.rows,
-               static_cast<GLsizei>(kHorizonAzimuths + kWeightLayers), 0, GL_RGBA, GL_FLOAT,
-               texels.data());
-  Clamp(GL_TEXTURE_2D_ARRAY);
+  UploadTexture(
+      GL_TEXTURE_2D_ARRAY, texture,
+      {GL_RGBA16F, grid.columns, grid.rows, static_cast<int>(kHorizonAzimuths + kWeightLayers),
+       GL_RGBA, GL_FLOAT, texels.data()});
 }
 
 }  // namespace
@@ -283,10 +271,9 @@ void SkyByPixel::UploadHorizons(const TerrainHorizons& horizons) {
                   &texels[(layer * nodes + node) * kFour]);
   }
   const HeightRaster& grid = horizons.map().grid();
-  glBindTexture(GL_TEXTURE_2D_ARRAY, horizon_texture_.id());
-  glTexImage3D(GL_TEXTURE_2D_ARRAY, 0, GL_RGBA16, grid.columns, grid.rows, kAzimuths / 4, 0,
-               GL_RGBA, GL_UNSIGNED_SHORT, texels.data());
-  Clamp(GL_TEXTURE_2D_ARRAY);
+  UploadTexture(GL_TEXTURE_2D_ARRAY, horizon_texture_,
+                {GL_RGBA16, grid.columns, grid.rows, kAzimuths / 4, GL_RGBA, GL_UNSIGNED_SHORT,
+                 texels.data()});
 }
 
 void SkyByPixel::Use(LightSource source, const GroundFollower::SkyOfSource& sky) {
@@ -342,8 +329,7 @@ void SkyByPixel::Bind(const ShaderProgram& program, int first_unit, LightSource 
                            Slot{"level_irradiance", GL_TEXTURE_2D, &of.level_irradiance},
                            Slot{"light_of_slopes", GL_TEXTURE_2D_ARRAY, &of.slopes}}) {
     program.BindSampler(slot.sampler, unit);
-    glActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(unit++));
-    glBindTexture(slot.target, slot.texture->id());
+    BindTexture(unit++, slot.target, *slot.texture);
   }
 }
 

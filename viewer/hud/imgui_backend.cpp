@@ -263,9 +263,9 @@ void DrawListPainter::UploadAtlas(ImFontAtlas& atlas) {
   int width = 0, height = 0;
   atlas.GetTexDataAsAlpha8(&coverage, &width, &height);
   BindTexture(kAtlasUnit, GL_TEXTURE_2D, atlas_);
-  ClampAndFilter(GL_TEXTURE_2D, true);
   glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
-  glTexImage2D(GL_TEXTURE_2D, 0, GL_R8, width, height, 0, GL_RED, GL_UNSIGNED_BYTE, coverage);
+  UploadTexture(GL_TEXTURE_2D, atlas_,
+                {GL_R8, width, height, 1, GL_RED, GL_UNSIGNED_BYTE, coverage});
 }
 
 void DrawListPainter::Paint(const ImDrawData& data, GLuint framebuffer) const {

@@ -21,8 +21,6 @@ namespace {
 
 constexpr double kMetres = 1000.0;
 
-void Activate(int unit) { glActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(unit)); }
-
 // @param now  current eye and sun, which may differ from those of the map.
 FogBlock FogBlockOf(const FogMap& map, const FogView& now) {
   FogBlock block{};
@@ -54,27 +52,20 @@ void FogPainter::Connect(const ShaderProgram& program) const {
 }
 
 void FogPainter::Upload(const FogMap& map) {
-  Activate(units_.first);
-  glBindTexture(GL_TEXTURE_3D, light_.id());
-  glTexImage3D(GL_TEXTURE_3D, 0, GL_RGBA32F, map.size.elevations, map.size.azimuths,
-               4 * map.size.depths, 0, GL_RGBA, GL_FLOAT, map.light.data());
-  ClampAndFilter(GL_TEXTURE_3D, true);
-  Activate(units_.first + 1);
-  glBindTexture(GL_TEXTURE_2D, surface_.id());
-  glTexImage2D(GL_TEXTURE_2D, 0, GL_RGBA32F, FogMap::kHeights, 2, 0, GL_RGBA, GL_FLOAT,
-               map.on_surface.data());
-  ClampAndFilter(GL_TEXTURE_2D, true);
+  BindTexture(units_.first, GL_TEXTURE_3D, light_);
+  UploadTexture(GL_TEXTURE_3D, light_,
+                {GL_RGBA32F, map.size.elevations, map.size.azimuths, 4 * map.size.depths, GL_RGBA,
+                 GL_FLOAT, map.light.data()});
+  BindTexture(units_.first + 1, GL_TEXTURE_2D, surface_);
+  UploadTexture(GL_TEXTURE_2D, surface_,
+                {GL_RGBA32F, FogMap::kHeights, 2, 1, GL_RGBA, GL_FLOAT, map.on_surface.data()});
   CheckGl("FogPainter::Upload");
 }
 
 void FogPainter::Bind(const FogMap& map, const FogView& now) const {
-  const FogBlock block = FogBlockOf(map, now);
-  glBindBufferBase(GL_UNIFORM_BUFFER, units_.block, block_.id());
-  glBufferData(GL_UNIFORM_BUFFER, sizeof(block), &block, GL_DYNAMIC_DRAW);
-  Activate(units_.first);
-  glBindTexture(GL_TEXTURE_3D, light_.id());
-  Activate(units_.first + 1);
-  glBindTexture(GL_TEXTURE_2D, surface_.id());
+  UploadBlock(block_, units_.block, FogBlockOf(map, now));
+  BindTexture(units_.first, GL_TEXTURE_3D, light_);
+  BindTexture(units_.first + 1, GL_TEXTURE_2D, surface_);
 }
 
 namespace {

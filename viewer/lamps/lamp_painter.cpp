@@ -66,14 +66,11 @@ std::string DefinesOf(const SceneLamps& shape, const LampQuality& quality) {
 }  // namespace
 
 std::vector<ShaderPiece> LampTexts(const SceneLamps& shape, const LampQuality& quality) {
-  return WithViewerPieces(
-      {{"lamp constants", DefinesOf(shape, quality)}},
-      {"viewer/shaders/lamp_light.glsl", "viewer/shaders/lamps.picture.glsl"});
+  return WithViewerPieces({{"lamp constants", DefinesOf(shape, quality)}},
+                          {"viewer/shaders/lamp_light.glsl", "viewer/shaders/lamps.picture.glsl"});
 }
 
-std::vector<ShaderPiece> NoLampTexts() {
-  return {ViewerPiece("viewer/shaders/lamps.none.glsl")};
-}
+std::vector<ShaderPiece> NoLampTexts() { return {ViewerPiece("viewer/shaders/lamps.none.glsl")}; }
 
 LampPainter::LampPainter(const SceneLamps& shape, const LampQuality& quality,
                          const LampUnits& units)
@@ -88,8 +85,8 @@ LampPainter::LampPainter(const SceneLamps& shape, const LampQuality& quality,
   corners.insert(corners.end(), texts_.begin(), texts_.end() - 1);
   corners.push_back(ViewerPiece("viewer/shaders/lamps.corners.glsl"));
   if (quality.step > 1) {
-    glow_program_.emplace(FullScreenProgram(
-        WithViewerPieces(texts, {"viewer/shaders/lamps.airlight.frag.glsl"})));
+    glow_program_.emplace(
+        FullScreenProgram(WithViewerPieces(texts, {"viewer/shaders/lamps.airlight.frag.glsl"})));
     core_program_.emplace(WithViewerPieces(corners, {"viewer/shaders/lamps.core.vert.glsl"}),
                           WithViewerPieces(texts, {"viewer/shaders/lamps.core.frag.glsl"}));
     Connect(*glow_program_);
@@ -135,18 +132,17 @@ void LampPainter::UploadTables(const SceneLamps& shape) {
   }
   BindTexture(units_.first + kLampTablesUnit, GL_TEXTURE_2D_ARRAY, tables_);
   if (!samples.empty()) {
-    glTexImage3D(GL_TEXTURE_2D_ARRAY, 0, GL_R32F, kLampGammas, kLampTurns,
-                 static_cast<GLsizei>(shape.tables().size()), 0, GL_RED, GL_FLOAT, samples.data());
-    ClampAndFilter(GL_TEXTURE_2D_ARRAY, true);
+    UploadTexture(GL_TEXTURE_2D_ARRAY, tables_,
+                  {GL_R32F, kLampGammas, kLampTurns, static_cast<int>(shape.tables().size()),
+                   GL_RED, GL_FLOAT, samples.data()});
   }
   const PhaseFunction& mie = shape.layers()[1].phase;
   if (mie.kind != PhaseKind::kTable) return;
   std::vector<float> nodes;
   for (const double node : mie.table->nodes()) nodes.push_back(static_cast<float>(node));
   BindTexture(units_.first + kLampMieUnit, GL_TEXTURE_2D, mie_table_);
-  glTexImage2D(GL_TEXTURE_2D, 0, GL_R32F, static_cast<GLsizei>(nodes.size()), 1, 0, GL_RED,
-               GL_FLOAT, nodes.data());
-  ClampAndFilter(GL_TEXTURE_2D, true);
+  UploadTexture(GL_TEXTURE_2D, mie_table_,
+                {GL_R32F, static_cast<int>(nodes.size()), 1, 1, GL_RED, GL_FLOAT, nodes.data()});
 }
 
 void LampPainter::UploadGlows(const SceneLamps& shape) {
@@ -157,9 +153,9 @@ void LampPainter::UploadGlows(const SceneLamps& shape) {
     texels.insert(texels.end(), terms.begin(), terms.end());
   }
   BindTexture(units_.first + kLampAirlightUnit, GL_TEXTURE_2D_ARRAY, glows_);
-  glTexImage3D(GL_TEXTURE_2D_ARRAY, 0, GL_RGBA32F, kGlowDistances, kGlowTerms * kGlowRises,
-               static_cast<GLsizei>(shape.glows().size()), 0, GL_RGBA, GL_FLOAT, texels.data());
-  ClampAndFilter(GL_TEXTURE_2D_ARRAY, true);
+  UploadTexture(GL_TEXTURE_2D_ARRAY, glows_,
+                {GL_RGBA32F, kGlowDistances, kGlowTerms * kGlowRises,
+                 static_cast<int>(shape.glows().size()), GL_RGBA, GL_FLOAT, texels.data()});
 }
 
 void LampPainter::UploadShades(const SceneLamps& shape) {
@@ -169,9 +165,9 @@ void LampPainter::UploadShades(const SceneLamps& shape) {
     texels.insert(texels.end(), shade.begin(), shade.end());
   }
   BindTexture(units_.first + kLampShadeUnit, GL_TEXTURE_2D_ARRAY, shades_);
-  glTexImage3D(GL_TEXTURE_2D_ARRAY, 0, GL_R32F, kShadeTurns, kShadeRings,
-               static_cast<GLsizei>(shape.shades().size()), 0, GL_RED, GL_FLOAT, texels.data());
-  ClampAndFilter(GL_TEXTURE_2D_ARRAY, true);
+  UploadTexture(GL_TEXTURE_2D_ARRAY, shades_,
+                {GL_R32F, kShadeTurns, kShadeRings, static_cast<int>(shape.shades().size()), GL_RED,
+                 GL_FLOAT, texels.data()});
   glTexParameteri(GL_TEXTURE_2D_ARRAY, GL_TEXTURE_WRAP_S, GL_REPEAT);
 }
 
@@ -180,9 +176,9 @@ void LampPainter::UploadPlans(const SceneLamps& shape) {
   if (shape.PlanLayerCount() == 0) return;
   BindTexture(units_.first + kLampPlanUnit, GL_TEXTURE_2D_ARRAY, plans_);
   if (uploaded_plans_ == 0) {
-    glTexImage3D(GL_TEXTURE_2D_ARRAY, 0, GL_R8, kPlanSide, kPlanSide, shape.PlanLayerCount(), 0,
-                 GL_RED, GL_UNSIGNED_BYTE, nullptr);
-    ClampAndFilter(GL_TEXTURE_2D_ARRAY, true);
+    UploadTexture(
+        GL_TEXTURE_2D_ARRAY, plans_,
+        {GL_R8, kPlanSide, kPlanSide, shape.PlanLayerCount(), GL_RED, GL_UNSIGNED_BYTE, nullptr});
   }
   for (; uploaded_plans_ < shape.plans().size(); ++uploaded_plans_) {
     const LampShadowField& plan = shape.plans()[uploaded_plans_];

@@ -41,9 +41,8 @@ PlaceOnGrid HorizonTexture::PlaceIn(const LocalFrame& anchor) const {
 void HorizonTexture::Upload(double azimuth_rad) {
   const HeightRaster sines = horizon_->map->Towards(azimuth_rad);
   glPixelStorei(GL_UNPACK_ALIGNMENT, 4);
-  glTexImage2D(GL_TEXTURE_2D, 0, GL_R32F, sines.columns, sines.rows, 0, GL_RED, GL_FLOAT,
-               sines.z_m.data());
-  ClampAndFilter(GL_TEXTURE_2D, true);
+  UploadTexture(GL_TEXTURE_2D, texture_,
+                {GL_R32F, sines.columns, sines.rows, 1, GL_RED, GL_FLOAT, sines.z_m.data()});
   azimuth_rad_ = azimuth_rad;
 }
 
@@ -116,9 +115,9 @@ const ShaderProgram& LandPass::ProgramOf(LandDrawn drawn) const {
 }
 
 std::vector<ShaderPiece> LandTexts(const ShaderPiece& depth) {
-  std::vector<ShaderPiece> texts =
-      WithViewerPieces({}, {"viewer/shaders/view.block.glsl", "viewer/shaders/land.block.glsl",
-                            "viewer/shaders/gbuffer.octahedral.glsl", "viewer/shaders/gbuffer.inverse_depth.glsl"});
+  std::vector<ShaderPiece> texts = WithViewerPieces(
+      {}, {"viewer/shaders/view.block.glsl", "viewer/shaders/land.block.glsl",
+           "viewer/shaders/gbuffer.octahedral.glsl", "viewer/shaders/gbuffer.inverse_depth.glsl"});
   texts.push_back(depth);
   return WithViewerPieces(std::move(texts), {"viewer/shaders/land.seen.glsl"});
 }
@@ -172,8 +171,7 @@ void LandPass::Run(LandDrawn drawn, LandBlock block, const LocalFrame& anchor, G
     block.eye_above.w = static_cast<float>(edges_.share);
     BindEdges(program);
   }
-  glBindBufferBase(GL_UNIFORM_BUFFER, kLandBinding, block_.id());
-  glBufferData(GL_UNIFORM_BUFFER, sizeof(block), &block, GL_DYNAMIC_DRAW);
+  UploadBlock(block_, kLandBinding, block);
   program.BindBlock("Land", kLandBinding);
   program.BindBlock("View", view_binding);
   if (reversed_depth_) glClipControl(GL_LOWER_LEFT, GL_ZERO_TO_ONE);

@@ -21,8 +21,8 @@ namespace {
 void Upload(const GlTexture& map, int unit, int columns, int rows,
             const std::vector<glm::vec4>& texels) {
   BindTexture(unit, GL_TEXTURE_2D, map);
-  glTexImage2D(GL_TEXTURE_2D, 0, GL_RGBA32F, columns, rows, 0, GL_RGBA, GL_FLOAT, texels.data());
-  ClampAndFilter(GL_TEXTURE_2D, true);
+  UploadTexture(GL_TEXTURE_2D, map,
+                {GL_RGBA32F, columns, rows, 1, GL_RGBA, GL_FLOAT, texels.data()});
   glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_WRAP_S, GL_REPEAT);
 }
 

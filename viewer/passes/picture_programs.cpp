@@ -52,8 +52,9 @@ std::vector<ShaderPiece> PictureTexts(const PictureKind& kind, const PictureStag
     texts.push_back(
         {"fog on the ground", "#define BeamOfSun(h, mu) (BeamOfSun(h, mu) * FogSunLeft(h, mu))\n"});
   }
-  add(WithViewerPieces({}, {"viewer/shaders/air.block.glsl", "viewer/shaders/gbuffer.octahedral.glsl",
-                            "viewer/shaders/gbuffer.inverse_depth.glsl", "viewer/shaders/air.sun_light.glsl"}));
+  add(WithViewerPieces(
+      {}, {"viewer/shaders/air.block.glsl", "viewer/shaders/gbuffer.octahedral.glsl",
+           "viewer/shaders/gbuffer.inverse_depth.glsl", "viewer/shaders/air.sun_light.glsl"}));
   if (stage.pass == PictureStage::Pass::kDisks)
     add(WithViewerPieces({}, {"viewer/shaders/view.refracted_disks.glsl"}));
   add(GroundTexts(kind.material, kind.land));
@@ -64,12 +65,6 @@ std::vector<ShaderPiece> PictureTexts(const PictureKind& kind, const PictureStag
 }
 
 namespace {
-
-template <typename Block>
-void Upload(const GlBuffer& buffer, PictureBinding binding, const Block& block) {
-  glBindBufferBase(GL_UNIFORM_BUFFER, binding, buffer.id());
-  glBufferData(GL_UNIFORM_BUFFER, sizeof(block), &block, GL_DYNAMIC_DRAW);
-}
 
 // Returns the frame of the ground's pattern, in which a draped image also lies.
 LocalFrame PatternOf(const PaintedScene& scene) {
@@ -140,7 +135,7 @@ void PictureBlocks::UploadAir(const PaintedScene& scene, const CameraPose& eye) 
   if (known_air_ != air) air_block_ = AirBlockOf(air->medium);
   known_air_ = air;
   air_block_.shell.x = static_cast<float>(RadiusUnder(eye, air->medium));
-  Upload(air_, kAirBinding, air_block_);
+  UploadBlock(air_, kAirBinding, air_block_);
 }
 
 void PictureBlocks::UploadView(const PaintedScene& scene, const PaintedView& view,
@@ -159,12 +154,12 @@ void PictureBlocks::UploadView(const PaintedScene& scene, const PaintedView& vie
   block.sun_irradiance = key.irradiance;
   block.eye = {altitude_km, moved.x, moved.y, RadiusUnder(view.eye, medium)};
   SetBend(block, BendOf(view, medium, scene.land().farthest_m()));
-  Upload(view_, kViewBinding, block);
+  UploadBlock(view_, kViewBinding, block);
 }
 
 void PictureBlocks::UploadGroundLight(const PaintedScene& scene, const PaintedView& view,
                                       const KeyLight& light) const {
-  Upload(ground_light_, kGroundLightBinding, LightAround(scene, view, light));
+  UploadBlock(ground_light_, kGroundLightBinding, LightAround(scene, view, light));
 }
 
 void PictureBlocks::UploadSkyByPixel(const PaintedScene& scene, const PaintedView& view,
@@ -172,14 +167,14 @@ void PictureBlocks::UploadSkyByPixel(const PaintedScene& scene, const PaintedVie
   const SkyByPixel* sky = scene.sky_by_pixel(light.source());
   if (sky == nullptr) return;
   const LocalFrame eye(scene.fixed().ellipsoid, view.eye.place);
-  Upload(sky_by_pixel_, kSkyByPixelBinding,
-         sky->BlockOf(light.source(), eye, DirectionToSun(SunForAir(light.disk)),
-                      scene.OccludedSkyIrradiance(light.source())));
+  UploadBlock(sky_by_pixel_, kSkyByPixelBinding,
+              sky->BlockOf(light.source(), eye, DirectionToSun(SunForAir(light.disk)),
+                           scene.OccludedSkyIrradiance(light.source())));
 }
 
 void PictureBlocks::UploadGround(const PaintedScene& scene, const PaintedView& view) const {
-  Upload(ground_, kGroundBinding, GroundAround(scene, view));
-  Upload(ground_surface_, kGroundSurfaceBinding, SurfaceAround(scene, view.eye));
+  UploadBlock(ground_, kGroundBinding, GroundAround(scene, view));
+  UploadBlock(ground_surface_, kGroundSurfaceBinding, SurfaceAround(scene, view.eye));
 }
 
 namespace {

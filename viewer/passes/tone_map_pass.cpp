@@ -86,9 +86,8 @@ DitherTexture::DitherTexture() {
       noise.push_back(0.0F);
     }
   }
-  glBindTexture(GL_TEXTURE_2D, noise_.id());
-  glTexImage2D(GL_TEXTURE_2D, 0, GL_RGBA32F, kDitherTileSize, kDitherTileSize, 0, GL_RGBA, GL_FLOAT,
-               noise.data());
+  UploadTexture(GL_TEXTURE_2D, noise_,
+                {GL_RGBA32F, kDitherTileSize, kDitherTileSize, 1, GL_RGBA, GL_FLOAT, noise.data()});
   ClampAndFilter(GL_TEXTURE_2D, false);
 }
 
@@ -134,8 +133,8 @@ namespace {
 enum ToneMapPassUnit { kPicture, kDither, kTable };
 
 ShaderProgram ProgramOf(ToneCurve curve, bool dithers) {
-  ShaderProgram program = FullScreenProgram(
-      WithViewerPieces(ToneMapPassTexts(curve, dithers), {"viewer/shaders/display.tone_map.frag.glsl"}));
+  ShaderProgram program = FullScreenProgram(WithViewerPieces(
+      ToneMapPassTexts(curve, dithers), {"viewer/shaders/display.tone_map.frag.glsl"}));
   program.BindSampler("linear_picture", kPicture);
   program.BindSampler("tone_table", kTable);
   glUniform2f(program.Uniform("stops"), static_cast<float>(ToneTable::kLowestStop),
@@ -145,9 +144,9 @@ ShaderProgram ProgramOf(ToneCurve curve, bool dithers) {
 
 void Upload(const GlTexture& texture, const ToneTable& table) {
   BindTexture(kTable, GL_TEXTURE_3D, texture);
-  glTexImage3D(GL_TEXTURE_3D, 0, GL_RGBA32F, table.side(), table.side(), table.side(), 0, GL_RGB,
-               GL_FLOAT, table.codes().data());
-  ClampAndFilter(GL_TEXTURE_3D, true);
+  UploadTexture(GL_TEXTURE_3D, texture,
+                {GL_RGBA32F, table.side(), table.side(), table.side(), GL_RGB, GL_FLOAT,
+                 table.codes().data()});
   CheckGl("ToneMapPass");
 }
 

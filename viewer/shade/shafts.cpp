@@ -28,11 +28,6 @@ glm::vec4 Row(const glm::dmat4& map_from_eye, const glm::dvec3& axis, double sca
   return {along(0), along(1), along(2), along(3) + shift};
 }
 
-void Allocate(const SunShadowMap& map) {
-  glTexImage2D(GL_TEXTURE_2D, 0, GL_RG32F, map.columns, map.lines, 0, GL_RG, GL_FLOAT, nullptr);
-  ClampAndFilter(GL_TEXTURE_2D, true);
-}
-
 }  // namespace
 
 void ShadeTexture::TakeOver(std::shared_ptr<const SunShadowMap> map) {
@@ -45,9 +40,11 @@ bool ShadeTexture::Upload(int most_lines, int unit) {
   if (!coming_.map) return false;
   const SunShadowMap& map = *coming_.map;
   if (!map.ShadesNothing()) {
-    glActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(unit));
-    glBindTexture(GL_TEXTURE_2D, coming_.texture.id());
-    if (lines_sent_ == 0) Allocate(map);
+    BindTexture(unit, GL_TEXTURE_2D, coming_.texture);
+    if (lines_sent_ == 0) {
+      UploadTexture(GL_TEXTURE_2D, coming_.texture,
+                    {GL_RG32F, map.columns, map.lines, 1, GL_RG, GL_FLOAT, nullptr});
+    }
     const int lines = std::min(most_lines, map.lines - lines_sent_);
     glPixelStorei(GL_UNPACK_ALIGNMENT, 4);
     glTexSubImage2D(GL_TEXTURE_2D, 0, 0, lines_sent_, map.columns, lines, GL_RG, GL_FLOAT,
@@ -65,8 +62,7 @@ void ShadeTexture::Bind(const ShaderProgram& program, int unit, const glm::dmat4
                         const ShadeSteps& steps) const {
   ALPENGLOW_ENSURE(Shades(), ==, true);
   const SunShadowMap& map = *used_.map;
-  glActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(unit));
-  glBindTexture(GL_TEXTURE_2D, used_.texture.id());
+  BindTexture(unit, GL_TEXTURE_2D, used_.texture);
   glUniform1i(program.Uniform("shade_map"), unit);
   const double across_u = 1.0 / (map.cell_m * map.columns);
   const double across_v = 1.0 / (map.cell_m * map.lines);
@@ -101,7 +97,8 @@ std::vector<ShaderPiece> ShaftPassTexts(std::vector<ShaderPiece> air, bool has_f
 }
 
 std::vector<ShaderPiece> ShaftTexts() {
-  return WithViewerPieces({}, {"viewer/shaders/shafts.texel.glsl", "viewer/shaders/shafts.picture.glsl"});
+  return WithViewerPieces(
+      {}, {"viewer/shaders/shafts.texel.glsl", "viewer/shaders/shafts.picture.glsl"});
 }
 
 ShaftPass::ShaftPass(std::vector<ShaderPiece> air, bool has_fog)
