@@ -37,34 +37,35 @@ QualityChoice QualityOf(const FlightSessionSettings& settings) {
 FlightSession::FlightSession(const Scene& scene, const UtcInstant& start,
                              const FlightSessionSettings& settings)
     : start_{Drawable(scene), settings},
-      cockpit_(EyeOfScene(scene), EllipsoidOf(scene.medium), start,
-               [this](const GeodeticPosition& place) { return edits_.GroundAt(place); }),
+      controller_(EyeOfScene(scene), EllipsoidOf(scene.medium), start,
+                  [this](const GeodeticPosition& place) { return edits_.GroundAt(place); }),
       exposure_(settings.exposure, settings.look),
-      darkroom_(InDaylight(settings.look), settings.first_air ? ToneMapPass::FirstPictures::kDraft
-                                                              : ToneMapPass::FirstPictures::kWait),
+      display_pass_(InDaylight(settings.look), settings.first_air
+                                                   ? ToneMapPass::FirstPictures::kDraft
+                                                   : ToneMapPass::FirstPictures::kWait),
       painter_(scene, settings.land,
                {EyeOfScene(scene), start, settings.size.width, settings.size.height},
                SizesOf(QualityOf(settings).painted().quality), settings.first_air),
       edits_(scene, settings.land, painter_),
-      standpoint_(cockpit_, edits_, painter_),
-      frames_(painter_, darkroom_, exposure_, QualityOf(settings)) {
+      standpoint_(controller_, edits_, painter_),
+      frames_(painter_, display_pass_, exposure_, QualityOf(settings)) {
   if (scene.camera.height.above_ground) standpoint_.Leave(scene.camera.height.value_m);
 }
 
 void FlightSession::Follow(const CameraPath& path) {
   standpoint_.Leave();
-  cockpit_.pilot().SetTrack(std::make_shared<const CameraPath>(path));
-  cockpit_.Enter(FlightMode::kTrack);
+  controller_.pilot().SetTrack(std::make_shared<const CameraPath>(path));
+  controller_.Enter(FlightMode::kTrack);
 }
 
 void FlightSession::Replay(const CameraPath& flight) {
   standpoint_.Leave();
-  cockpit_.Replay(std::make_shared<const CameraPath>(flight));
+  controller_.Replay(std::make_shared<const CameraPath>(flight));
 }
 
 void FlightSession::FlyAgain(const CameraPath& flown) {
   standpoint_.Leave();
-  cockpit_.FlyAgain(std::make_shared<const CameraPath>(flown));
+  controller_.FlyAgain(std::make_shared<const CameraPath>(flown));
 }
 
 void FlightSession::Show(const ReplayFrame& frame) {
@@ -74,7 +75,7 @@ void FlightSession::Show(const ReplayFrame& frame) {
 
 void FlightSession::Advance(const PilotControls& controls, double seconds) {
   standpoint_.StandOnGround();
-  cockpit_.Advance(controls, seconds);
+  controller_.Advance(controls, seconds);
 }
 
 void FlightSession::Paint(const ToneMapPass::Screen& screen, double seconds) {
@@ -99,8 +100,8 @@ void FlightSession::TakeUp(const FlightMoment& moment) {
   const GroundHeight no_ground = [](const GeodeticPosition&) {
     return -std::numeric_limits<double>::infinity();
   };
-  cockpit_.pilot().PutAt(moment.eye, no_ground);
-  cockpit_.clock().Set(moment.now);
+  controller_.pilot().PutAt(moment.eye, no_ground);
+  controller_.clock().Set(moment.now);
   standpoint_.Restore(moment.standpoint);
   edits_.Restore(moment.scene);
   frames_.Use(moment.quality);

@@ -84,15 +84,15 @@ class FlightSession {
   /// Returns the report of ExplainView (reports.h) for the current view.
   [[nodiscard]] std::string Explain(const ImageSize& size);
 
-  [[nodiscard]] const CameraPose& eye() const { return cockpit_.pilot().eye(); }
-  [[nodiscard]] const UtcInstant& now() const { return cockpit_.clock().now(); }
+  [[nodiscard]] const CameraPose& eye() const { return controller_.pilot().eye(); }
+  [[nodiscard]] const UtcInstant& now() const { return controller_.clock().now(); }
   /// Returns the name of the time zone at the eye.
   [[nodiscard]] std::string zone() const { return edits_.ZoneAt(eye().place); }
   [[nodiscard]] PaintedView ViewOf(const ImageSize& size) const {
     return {eye(), now(), size.width, size.height};
   }
   [[nodiscard]] const FlightStart& start() const { return start_; }
-  [[nodiscard]] FlightController& cockpit() { return cockpit_; }
+  [[nodiscard]] FlightController& controller() { return controller_; }
   [[nodiscard]] Standpoint& standpoint() { return standpoint_; }
   [[nodiscard]] SceneEdits& edits() { return edits_; }
   [[nodiscard]] ExposureControl& exposure() { return exposure_; }
@@ -100,9 +100,9 @@ class FlightSession {
 
  private:
   FlightStart start_;
-  FlightController cockpit_;
+  FlightController controller_;
   ExposureControl exposure_;
-  DisplayPass darkroom_;  // constructed before the painter: both take long and run in parallel
+  DisplayPass display_pass_;  // constructed before the painter: both take long and run in parallel
   SkyPainter painter_;
   SceneEdits edits_;
   Standpoint standpoint_;

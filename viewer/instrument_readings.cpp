@@ -16,10 +16,10 @@ namespace {
 
 HudFlight FlightOf(FlightSession& flight) {
   const CameraPose& eye = flight.eye();
-  const FlightReadout readout = flight.cockpit().pilot().Readout(flight.cockpit().ground());
+  const FlightReadout readout = flight.controller().pilot().Readout(flight.controller().ground());
   HudFlight shown;
   shown.mode = readout.aircraft ? std::string(readout.aircraft_name) : NameOf(readout.mode);
-  if (flight.cockpit().pilot().Replays()) shown.mode = "replay";
+  if (flight.controller().pilot().Replays()) shown.mode = "replay";
   shown.heading_rad = eye.heading_rad;
   shown.pitch_rad = eye.pitch_rad;
   shown.roll_rad = eye.roll_rad;
@@ -43,7 +43,7 @@ HudFlight FlightOf(FlightSession& flight) {
 }
 
 HudTime TimeOf(FlightSession& flight) {
-  const SceneClock& clock = flight.cockpit().clock();
+  const SceneClock& clock = flight.controller().clock();
   const LocalTime local = LocalTimeAt(clock.now(), flight.zone());
   HudTime time;
   time.utc = FormatUtc(clock.now());
@@ -107,7 +107,7 @@ std::vector<HudRow> TablesOf(const TableFigures& figures) {
 HudModel ReadInstruments(FlightSession& flight) {
   HudModel model;
   model.flight = FlightOf(flight);
-  if (const PilotedAircraft* aircraft = flight.cockpit().pilot().aircraft())
+  if (const PilotedAircraft* aircraft = flight.controller().pilot().aircraft())
     model.autopilot = aircraft->autopilot().targets();
   model.latitude_rad = flight.eye().place.latitude_rad;
   model.longitude_rad = flight.eye().place.longitude_rad;

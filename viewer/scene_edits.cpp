@@ -186,7 +186,7 @@ void Standpoint::AwaitGround() {
   }
   CameraPose stands = eye();
   stands.place.height_m = kRangeViewGround_m + *state_.waits_above_ground_m;
-  cockpit_.pilot().PutAt(stands, cockpit_.ground());
+  controller_.pilot().PutAt(stands, controller_.ground());
   put_at_ = eye();
 }
 
@@ -195,23 +195,23 @@ void Standpoint::StandOnGround() {
   state_.knows_ground = true;
   const std::optional<double> above_m = std::exchange(state_.waits_above_ground_m, std::nullopt);
   const bool has_left = put_at_ && *put_at_ != eye();
-  if (!above_m || has_left) return cockpit_.pilot().KeepAbove(cockpit_.ground());
+  if (!above_m || has_left) return controller_.pilot().KeepAbove(controller_.ground());
   CameraPose stands = eye();
   stands.place.height_m = painter_.land().ground().HighestAt(stands.place).value_or(0.0) + *above_m;
-  cockpit_.pilot().PutAt(stands, cockpit_.ground());
+  controller_.pilot().PutAt(stands, controller_.ground());
 }
 
 void Standpoint::Place(const EyePlacement& placement) {
   const bool moves = placement.latitude_deg || placement.longitude_deg;
   if (!moves && !placement.height_m && !placement.heading_deg && !placement.pitch_deg) return;
-  const GroundHeight& ground = cockpit_.ground();
+  const GroundHeight& ground = controller_.ground();
   const double above_m =
       state_.waits_above_ground_m.value_or(eye().place.height_m - ground(eye().place));
   CameraPose placed = Placed(eye(), placement);
   if (moves) scene_.BringLandTo(placed.place, "this place");
   if (moves && !placement.height_m)
     placed.place.height_m = ground(placed.place) + std::max(above_m, 0.0);
-  cockpit_.pilot().PutAt(placed, ground);
+  controller_.pilot().PutAt(placed, ground);
   if (placement.height_m) {
     Leave();
   } else if (moves) {
@@ -222,7 +222,7 @@ void Standpoint::Place(const EyePlacement& placement) {
 void Standpoint::GoTo(const std::string& name) {
   const NamedPlace& there = PlaceNamed(name);
   scene_.BringLandTo(there.place, there.name);
-  cockpit_.GoTo(there);
+  controller_.GoTo(there);
   Leave(eye().place.height_m - scene_.GroundAt(eye().place));
 }
 

@@ -93,8 +93,8 @@ class SceneEdits {
 class Standpoint {
  public:
   /// Keeps references to all of them.
-  Standpoint(FlightController& cockpit, SceneEdits& scene, SkyPainter& painter)
-      : cockpit_(cockpit), scene_(scene), painter_(painter) {}
+  Standpoint(FlightController& controller, SceneEdits& scene, SkyPainter& painter)
+      : controller_(controller), scene_(scene), painter_(painter) {}
 
   /// Places the eye. If the placement has no height, the eye keeps its height over the ground. It
   /// is never placed inside the ground. Land is brought to the place (SceneEdits).
@@ -122,9 +122,9 @@ class Standpoint {
   void Restore(const State& state) { state_ = state; }
 
  private:
-  [[nodiscard]] const CameraPose& eye() const { return cockpit_.pilot().eye(); }
+  [[nodiscard]] const CameraPose& eye() const { return controller_.pilot().eye(); }
 
-  FlightController& cockpit_;
+  FlightController& controller_;
   SceneEdits& scene_;
   SkyPainter& painter_;
   State state_;

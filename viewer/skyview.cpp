@@ -282,7 +282,7 @@ int Run(const SkyviewOptions& options) {
     if (!track.note.empty())
       Say(fmt::format("skyview: warning: {}: {}\n", *options.track, track.note));
     flight.edits().BringRangeTo(track.points[track.points.size() / 2].place);
-    flight.Follow(PathAlong(track, {}, flight.cockpit().ground()));
+    flight.Follow(PathAlong(track, {}, flight.controller().ground()));
   }
   if (path) flight.edits().BringRangeTo(path->PoseAt(path->begin_s()).place);
   FlightRecorder recorder = options.record ? FlightRecorder(*options.record) : FlightRecorder();

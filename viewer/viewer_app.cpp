@@ -135,7 +135,7 @@ void ViewerApp::Advance(const InputFrame& input) {
   ReportPictures();
   WantStrip();
   hud_.Update(Model(), strip_.value() ? &*strip_.value() : nullptr, input, *this);
-  const Intent intent = controls_.Take(input, flight_.cockpit().pilot().mode(), hud_.Taken());
+  const Intent intent = controls_.Take(input, flight_.controller().pilot().mode(), hud_.Taken());
   for (const Action* action : intent.actions) Try([&] { action->run(*this); });
   for (const Action* action : intent.refused)
     Report(fmt::format("{}: not while the window is minimised", action->help));
@@ -187,7 +187,7 @@ void ViewerApp::GoTo(const std::string& place) {
 }
 
 void ViewerApp::SetTime(const std::string& text) {
-  Try([&] { flight_.cockpit().clock().Type(text, flight_.eye().place, flight_.zone()); });
+  Try([&] { flight_.controller().clock().Type(text, flight_.eye().place, flight_.zone()); });
 }
 
 void ViewerApp::Switch(WindowPart part) {
@@ -283,7 +283,7 @@ void ViewerApp::FlyAgain() {
 }
 
 void ViewerApp::NoteFlight(double seconds) {
-  const bool replays = flight_.cockpit().pilot().Replays();
+  const bool replays = flight_.controller().pilot().Replays();
   if (std::exchange(replays_, replays) && !replays) Report("the replay ends here");
   elapsed_s_ += seconds;
   flown_s_ += replays ? 0.0 : seconds;

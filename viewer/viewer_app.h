@@ -69,7 +69,7 @@ class ViewerApp final : public FlightCommands {
   };
 
   // The other FlightCommands.
-  [[nodiscard]] FlightController& cockpit() override { return flight_.cockpit(); }
+  [[nodiscard]] FlightController& controller() override { return flight_.controller(); }
   [[nodiscard]] ExposureControl& exposure() override { return flight_.exposure(); }
   [[nodiscard]] const QualityRule& quality() const override { return flight_.frames().rule(); }
   void Use(const QualityRule& rule) override;

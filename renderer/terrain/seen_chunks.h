@@ -84,8 +84,8 @@ class LandSkyline {
 [[nodiscard]] std::vector<SeenChunk> InView(std::vector<SeenChunk> chunks,
                                             const FrameTransform& eye, const LandView& view);
 
-/// Returns the chunks with a part that nearer land does not hide (LandSkyline), for an eye above the
-/// ground.
+/// Returns the chunks with a part that nearer land does not hide (LandSkyline), for an eye above
+/// the ground.
 /// @param bends_per_m  largest curvature of light rays.
 [[nodiscard]] std::vector<SeenChunk> WithoutHidden(const std::vector<SeenChunk>& chunks,
                                                    const FrameTransform& eye, double bends_per_m);

@@ -114,8 +114,8 @@ Times TimesOf(const View& view) {
                             static_cast<int>(scale * kWidth), static_cast<int>(scale * kHeight)};
   SkyPainter painter(view.scene, LandSourceOf(view.scene), painted, SizesOf(view.quality));
   painter.WaitUntilReady(painted);
-  DisplayPass darkroom(Look{});
-  FrameDisplay display(painter, darkroom);
+  DisplayPass display_pass(Look{});
+  FrameDisplay display(painter, display_pass);
   const RenderTarget screen(kWidth, kHeight, {PixelFormat::kRgba8}, RenderTarget::Depth::kNone);
   const auto draw = [&] {
     constexpr double kEv100 = 13.0;

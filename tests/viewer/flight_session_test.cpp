@@ -147,7 +147,7 @@ TEST_F(FlightsOverLand, AfterAJumpInTimeTheFirstFrameIsExposedForItsLight) {
   for (int frame = 0; frame < 3; ++frame)
     static_cast<void>(window.Next());  // one copy is on its way
   const double day_ev100 = flight.exposure().exposure().ev100.value();
-  flight.cockpit().clock().Set(ParseInstant("2026-06-21T20:10:00Z"));
+  flight.controller().clock().Set(ParseInstant("2026-06-21T20:10:00Z"));
   std::vector<double> shown;
   for (int frame = 0; frame < 4; ++frame) {
     static_cast<void>(window.Next());

@@ -64,7 +64,7 @@ TEST_F(PictureQueueTest, APictureIsThatOfItsMomentWhateverFollows) {
   flight.exposure().Set(3.0);
   while (queue.UnderWay()) {
     queue.NextFrame();
-    flight.cockpit().clock().Shift(60.0);
+    flight.controller().clock().Shift(60.0);
     flight.Advance({}, 1.0);
     flight.Paint({screen.framebuffer(), kSize.width, kSize.height}, 0.1);
   }

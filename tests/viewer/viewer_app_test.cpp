@@ -208,7 +208,7 @@ double Apart_m(const CameraPose& a, const CameraPose& b) {
 }
 
 TEST_F(ViewerAppTest, CtrlRFliesTheSameFlightAgainAndThenItGoesOn) {
-  flight_->cockpit().clock().SetRate(60.0);
+  flight_->controller().clock().SetRate(60.0);
   Hold({kW, kRightArrow}, true);
   const std::vector<Moment> flown = Fly(120);
   Press(kR, kControlKey);
@@ -387,11 +387,11 @@ TEST_F(ViewerAppTest, CtrlLSwitchesTheLandingLightAsThePanelDoes) {
 }
 
 TEST_F(ViewerAppTest, TheLandingLightOfTheKeyShinesOnTheGround) {
-  flight_->cockpit().clock().Set(ParseInstant("2026-06-21T23:00:00Z"));
+  flight_->controller().clock().Set(ParseInstant("2026-06-21T23:00:00Z"));
   CameraPose low = flight_->eye();
   low.place.height_m = 30.0;
   low.pitch_rad = -0.3;
-  flight_->cockpit().pilot().PutAt(low, flight_->cockpit().ground());
+  flight_->controller().pilot().PutAt(low, flight_->controller().ground());
   const auto mean_cd_per_m2 = [&] {
     const Image image = PictureWriter(*flight_).Picture({32, 24}, 1);
     double sum = 0.0;
@@ -412,7 +412,7 @@ TEST_F(ViewerAppTest, EachEventIsTheOneThatItNames) {
                                                     {SkyEvent::kSunrise, "2026-06-22T03:2"},
                                                     {SkyEvent::kNoon, "2026-06-22T11:3"}};
   for (const auto& [event, time] : cases) {
-    EXPECT_EQ(flight_->cockpit().JumpTo(event), NameOf(event));
+    EXPECT_EQ(flight_->controller().JumpTo(event), NameOf(event));
     EXPECT_THAT(FormatUtc(flight_->now()), ::testing::StartsWith(time)) << NameOf(event);
   }
 }
@@ -427,17 +427,17 @@ TEST_F(ViewerAppTest, TypedTimesAreSetAndOthersAreWarnings) {
 
 TEST_F(ViewerAppTest, KeysEnterTheModesThatThereAre) {
   Press('2');
-  EXPECT_EQ(flight_->cockpit().pilot().mode(), FlightMode::kAircraft);
+  EXPECT_EQ(flight_->controller().pilot().mode(), FlightMode::kAircraft);
   Press('3');
-  EXPECT_EQ(flight_->cockpit().pilot().mode(), FlightMode::kAircraft) << "there is no track";
+  EXPECT_EQ(flight_->controller().pilot().mode(), FlightMode::kAircraft) << "there is no track";
   Press('1');
-  EXPECT_EQ(flight_->cockpit().pilot().mode(), FlightMode::kFree);
+  EXPECT_EQ(flight_->controller().pilot().mode(), FlightMode::kFree);
 }
 
 TEST_F(ViewerAppTest, ThrottleAndHeldSpeedOfTheAircraftAreShown) {
   EXPECT_FALSE(deck_->Model().flight.throttle) << "the free camera has none";
   Press('2');
-  PilotedAircraft* aircraft = flight_->cockpit().pilot().aircraft();
+  PilotedAircraft* aircraft = flight_->controller().pilot().aircraft();
   ASSERT_NE(aircraft, nullptr);
   aircraft->SetThrottle(0.25);
   EXPECT_EQ(deck_->Model().flight.throttle, 0.25);

@@ -64,14 +64,14 @@ void EventButtons(double width_px, FlightCommands& flight) {
   std::vector<std::string> names;
   for (const SkyEvent event : kSkyEvents) names.emplace_back(NameOf(event));
   if (const auto pressed = ButtonRows(names, width_px))
-    flight.Report(flight.cockpit().JumpTo(kSkyEvents[*pressed]));
+    flight.Report(flight.controller().JumpTo(kSkyEvents[*pressed]));
 }
 
 void TimeControls(const PanelChange& change, PanelTyping& typing) {
   const auto& [view, preferences, flight] = change;
   const HudTime& time = view.model.time;
   const double width = StripWidth_px(view);
-  SceneClock& clock = flight.cockpit().clock();
+  SceneClock& clock = flight.controller().clock();
   ImGui::TextUnformatted(time.utc.c_str());
   ImGui::TextUnformatted((time.local + " " + time.zone).c_str());
   const auto day_fraction = DayStripControl(
@@ -198,13 +198,13 @@ void ThemeList(HudThemeChoice& theme) {
 void ModeList(const HudModel& model, FlightCommands& flight) {
   std::vector<std::string> names;
   for (const FlightMode mode : {FlightMode::kFree, FlightMode::kAircraft, FlightMode::kTrack}) {
-    if (mode != FlightMode::kTrack || flight.cockpit().pilot().track().exists())
+    if (mode != FlightMode::kTrack || flight.controller().pilot().track().exists())
       names.emplace_back(NameOf(mode));
   }
   const auto chosen = NameList("mode", model.flight.mode, names);
   if (!chosen) return;
   const auto index = std::find(names.begin(), names.end(), *chosen) - names.begin();
-  flight.Report(flight.cockpit().Enter(static_cast<FlightMode>(index)));
+  flight.Report(flight.controller().Enter(static_cast<FlightMode>(index)));
 }
 
 constexpr ImGuiTableFlags kTableFlags =
@@ -284,7 +284,7 @@ void DrawFlight(const PanelChange& change) {
   const HudModel& model = view.model;
   ImGui::PushItemWidth(Pixels(view, kItemWidth));
   ModeList(model, flight);
-  PilotedAircraft* aircraft = flight.cockpit().pilot().aircraft();
+  PilotedAircraft* aircraft = flight.controller().pilot().aircraft();
   if (model.flight.throttle && aircraft != nullptr) {
     if (const auto percent =
             Slider("throttle", 100.0 * *model.flight.throttle, {0.0, 100.0, "%.0f %%"}))

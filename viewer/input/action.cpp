@@ -68,11 +68,11 @@ constexpr Action NeedsPicture(Action action) {
 
 template <FlightMode kMode>
 void Enter(FlightCommands& flight) {
-  flight.Report(flight.cockpit().Enter(kMode));
+  flight.Report(flight.controller().Enter(kMode));
 }
 template <int kStep>
 void EnterNext(FlightCommands& flight) {
-  flight.Report(flight.cockpit().EnterNext(kStep));
+  flight.Report(flight.controller().EnterNext(kStep));
 }
 template <WindowPart kPart>
 void Switch(FlightCommands& flight) {
@@ -80,15 +80,15 @@ void Switch(FlightCommands& flight) {
 }
 template <int kStep>
 void StepSpeed(FlightCommands& flight) {
-  flight.Report(flight.cockpit().StepSpeed(kStep));
+  flight.Report(flight.controller().StepSpeed(kStep));
 }
 template <int kSeconds>
 void SkipTrack(FlightCommands& flight) {
-  flight.cockpit().SkipTrack(kSeconds);
+  flight.controller().SkipTrack(kSeconds);
 }
 template <Autopilot::Hold kHold>
 void Hold(FlightCommands& flight) {
-  flight.Report(flight.cockpit().ToggleHold(kHold));
+  flight.Report(flight.controller().ToggleHold(kHold));
 }
 // Brightens by thirds of a stop.
 template <int kThirds>
@@ -100,32 +100,34 @@ void Compensate(FlightCommands& flight) {
 template <int kStep>
 void Zoom(FlightCommands& flight) {
   constexpr double kZoomStep = 1.1;
-  flight.cockpit().pilot().Zoom(kStep > 0 ? kZoomStep : 1.0 / kZoomStep);
+  flight.controller().pilot().Zoom(kStep > 0 ? kZoomStep : 1.0 / kZoomStep);
 }
 template <int kSeconds>
 void Shift(FlightCommands& flight) {
-  flight.cockpit().clock().Shift(kSeconds);
+  flight.controller().clock().Shift(kSeconds);
 }
 template <int kStep>
 void StepTimeRate(FlightCommands& flight) {
-  SceneClock& clock = flight.cockpit().clock();
+  SceneClock& clock = flight.controller().clock();
   clock.StepRate(kStep);
   flight.Report(fmt::format("time x{:.0f}", clock.rate()));
 }
 template <SkyEvent kEvent>
 void JumpTo(FlightCommands& flight) {
-  flight.Report(flight.cockpit().JumpTo(kEvent));
+  flight.Report(flight.controller().JumpTo(kEvent));
 }
 template <bool kIsExr>
 void TakePicture(FlightCommands& flight) {
   flight.Request({.is_exr = kIsExr});
 }
 
-void Centre(FlightCommands& flight) { flight.cockpit().pilot().Centre(flight.cockpit().ground()); }
+void Centre(FlightCommands& flight) {
+  flight.controller().pilot().Centre(flight.controller().ground());
+}
 
 void Lift(FlightCommands& flight) {
   constexpr double kThousandFeet_m = 304.8;
-  flight.cockpit().pilot().Lift(kThousandFeet_m, flight.cockpit().ground());
+  flight.controller().pilot().Lift(kThousandFeet_m, flight.controller().ground());
 }
 
 void ToggleExposureLock(FlightCommands& flight) {
@@ -162,13 +164,13 @@ void UseNextQuality(FlightCommands& flight) {
 }
 
 void TogglePause(FlightCommands& flight) {
-  SceneClock& clock = flight.cockpit().clock();
+  SceneClock& clock = flight.controller().clock();
   clock.Pause(!clock.paused());
   if (clock.paused()) flight.Report("paused");
 }
 
 void UseRealTime(FlightCommands& flight) {
-  flight.cockpit().clock().SetRate(1.0);
+  flight.controller().clock().SetRate(1.0);
   flight.Report("time x1");
 }
 
@@ -236,7 +238,7 @@ constexpr Action kActions[] = {
          kAircraft),
     Once(
         kAutopilotKeys, "autopilot off", "Backspace",
-        [](FlightCommands& flight) { flight.Report(flight.cockpit().ReleaseAutopilot()); },
+        [](FlightCommands& flight) { flight.Report(flight.controller().ReleaseAutopilot()); },
         kAircraft),
     Once(kExposureKeys, "lock or unlock the exposure", "L", ToggleExposureLock),
     OnPad(GLFW_GAMEPAD_BUTTON_DPAD_UP,
@@ -252,7 +254,7 @@ constexpr Action kActions[] = {
                       kNotAircraft)),
     OnPad(GLFW_GAMEPAD_BUTTON_RIGHT_THUMB,
           Once(kViewKeys, "field of view of the scene", "Ctrl+X",
-               [](FlightCommands& flight) { flight.cockpit().pilot().ResetView(); })),
+               [](FlightCommands& flight) { flight.controller().pilot().ResetView(); })),
     Again(kViewKeys, "farther visibility", "Z", StepHaze<-1>),
     Again(kViewKeys, "shorter visibility", "Shift+Z", StepHaze<1>),
     Once(kViewKeys, "visibility of the scene", "Ctrl+Z",

@@ -44,7 +44,7 @@ class FlightCommands {
  public:
   virtual ~FlightCommands() = default;
 
-  [[nodiscard]] virtual FlightController& cockpit() = 0;
+  [[nodiscard]] virtual FlightController& controller() = 0;
   [[nodiscard]] virtual ExposureControl& exposure() = 0;
   [[nodiscard]] virtual const QualityRule& quality() const = 0;
   virtual void Use(const QualityRule& rule) = 0;

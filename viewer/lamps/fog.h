@@ -79,7 +79,8 @@ class SceneFog {
 
   /// Connects a program of FogTexts() with the bound data.
   void Connect(const ShaderProgram& program) const { painter_.Connect(program); }
-  /// Binds everything for the next draw call of such a program. Call it after Follow or WaitUntilReady.
+  /// Binds everything for the next draw call of such a program. Call it after Follow or
+  /// WaitUntilReady.
   void Bind(const CameraPose& eye, const SunPosition& sun) const;
 
  private:

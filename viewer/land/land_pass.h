@@ -68,8 +68,8 @@ class HorizonTexture {
 class GBuffer : public RenderTarget {
  public:
   enum Output : std::size_t {
-    /// Four floats: normal in the eye's frame, octahedral (gbuffer.octahedral.glsl); elevation of the
-    /// shadow-casting disk above the terrain's edge, in radii of the disk; distance [m], 0: no
+    /// Four floats: normal in the eye's frame, octahedral (gbuffer.octahedral.glsl); elevation of
+    /// the shadow-casting disk above the terrain's edge, in radii of the disk; distance [m], 0: no
     /// terrain.
     kSurface,
     /// Four half floats each: irradiance of the sky lit by the sun and by the moon, in bands, as in

@@ -119,8 +119,8 @@ void Landscape::RaiseAbove(double seconds) {
   }
   if (highest < -1e8) return;
   const double share = ceiling_m_ ? 1.0 - std::exp(-seconds / kTime_s) : 1.0;
-  // lerp() reaches its end exactly. A running sum would keep changing by rounding, and WaitUntilReady would
-  // not end.
+  // lerp() reaches its end exactly. A running sum would keep changing by rounding, and
+  // WaitUntilReady would not end.
   ceiling_m_ = std::lerp(ceiling_m_.value_or(highest), highest, share);
 }
 

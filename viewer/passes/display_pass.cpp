@@ -30,7 +30,8 @@ std::vector<ShaderPiece> UpscalerTexts(Upscaler::Shows shows, const ShaderPiece&
       WithViewerPieces(SharedTexts(), {"viewer/shaders/gbuffer.inverse_depth.glsl"});
   texts.push_back(depth);
   texts.push_back({"shown", dithers ? "#define DITHERS 1\n" : "#define DITHERS 0\n"});
-  return dithers ? WithViewerPieces(std::move(texts), {"viewer/shaders/display.dither.glsl"}) : texts;
+  return dithers ? WithViewerPieces(std::move(texts), {"viewer/shaders/display.dither.glsl"})
+                 : texts;
 }
 
 Upscaler::Upscaler(Shows shows) : shows_(shows), program_(ProgramOf(shows)) {}
@@ -56,12 +57,12 @@ const DepthPrepass& DisplayPass::OutlineFor(const ToneMapPass::Screen& screen) {
   return *outline_;
 }
 
-void DisplayPass::ShowEnlarged(const RenderTarget& picture, const glm::dvec2& half_view,
+void DisplayPass::ShowUpscaled(const RenderTarget& picture, const glm::dvec2& half_view,
                                double ev100, const ToneMapPass::Screen& screen, PassTimer* timer) {
   {
     const TimedPass timed(timer, "tone_map");
     Fit(codes_, picture.width(), picture.height(), PixelFormat::kRgba16F);
-    developer_.DevelopSmall(picture, ev100, *codes_);
+    tone_map_.DevelopSmall(picture, ev100, *codes_);
   }
   const TimedPass timed(timer, "upscale");
   code_upscaler_.Upscale(*codes_, *outline_, half_view, screen.framebuffer);

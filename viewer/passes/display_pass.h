@@ -3,7 +3,7 @@
 //
 // If the picture is smaller than the screen, it is tone-mapped at its own resolution and then
 // upscaled by Upscaler, which interpolates smooth areas and uses the edges of land at screen
-// resolution (shaders/display.upscale.frag.glsl). The cost of lighting is that of the small picture, and
+// resolution (shaders/display.glsl). The cost of lighting is that of the small picture, and
 // edges stay sharp.
 #pragma once
 
@@ -31,7 +31,7 @@ class Upscaler {
   explicit Upscaler(Shows shows);
 
   /// Fills the framebuffer (0: the window), which has the size of the outline.
-  /// @param small      of any size, with the inverse depth of land (shaders/gbuffer.inverse_depth.glsl) in
+  /// @param small      of any size, with the inverse depth of land (shaders/gbuffer.glsl) in
   ///   its fourth component.
   /// @param half_view  tangents of half the horizontal and half the vertical field of view.
   void Upscale(const RenderTarget& small, const DepthPrepass& outline, const glm::dvec2& half_view,
@@ -61,9 +61,9 @@ class DisplayPass {
  public:
   explicit DisplayPass(const Look& look,
                        ToneMapPass::FirstPictures first = ToneMapPass::FirstPictures::kWait)
-      : developer_(look, first) {}
+      : tone_map_(look, first) {}
 
-  [[nodiscard]] ToneMapPass& developer() { return developer_; }
+  [[nodiscard]] ToneMapPass& tone_map() { return tone_map_; }
 
   /// Returns whether a view is upscaled on this screen. Its picture must then be rendered without
   /// bodies.
@@ -71,12 +71,12 @@ class DisplayPass {
     return view.width < screen.width || view.height < screen.height;
   }
 
-  /// Returns the outline of land at screen resolution, for the caller to draw before ShowEnlarged.
+  /// Returns the outline of land at screen resolution, for the caller to draw before ShowUpscaled.
   [[nodiscard]] const DepthPrepass& OutlineFor(const ToneMapPass::Screen& screen);
   /// Shows a picture upscaled along the outline.
   /// @param half_view  tangents of half the horizontal and half the vertical field of view.
   /// @param timer      receives the times of the passes; null: none.
-  void ShowEnlarged(const RenderTarget& picture, const glm::dvec2& half_view, double ev100,
+  void ShowUpscaled(const RenderTarget& picture, const glm::dvec2& half_view, double ev100,
                     const ToneMapPass::Screen& screen, PassTimer* timer);
   /// Returns the linear light of a picture, upscaled to the screen in some boxes of pixels, for the
   /// caller to add bodies before ShowBodies.
@@ -87,11 +87,11 @@ class DisplayPass {
   /// Shows these boxes. Edges of bodies differ from those of land, so the light around them is
   /// upscaled before it is tone-mapped.
   void ShowBodies(double ev100, const ToneMapPass::Screen& screen) const {
-    developer_.Develop(*light_, ev100, screen, bodies_);
+    tone_map_.Develop(*light_, ev100, screen, bodies_);
   }
 
  private:
-  ToneMapPass developer_;
+  ToneMapPass tone_map_;
   Upscaler code_upscaler_{Upscaler::Shows::kCodes}, light_upscaler_{Upscaler::Shows::kLight};
   std::optional<RenderTarget> codes_, light_;  // at picture size; at screen size
   std::optional<DepthPrepass> outline_;

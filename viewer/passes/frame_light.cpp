@@ -36,15 +36,15 @@ NightSkyMap NightSkyMapOver(const GeodeticPosition& eye, const UtcInstant& now,
   if (towns.zenith) town_light = Skyglow(*towns.zenith, towns.ground_m, air, colour);
   const NightLight night(NightSky(eye, now), air, colour, {0.0, 0.0, 1.0},
                          std::max(eye.height_m, 0.0), town_light);
-  NightSkyMap floor{{}, GpuBandsOf(night.scattered()), GpuBandsOf(night.OnSurface(1.0))};
+  NightSkyMap map{{}, GpuBandsOf(night.scattered()), GpuBandsOf(night.OnSurface(1.0))};
   for (int row = 0; row < NightSkyMap::kRows; ++row) {
     const double elevation = kPi * ((row + 0.5) / NightSkyMap::kRows - 0.5);
     for (int column = 0; column < NightSkyMap::kColumns; ++column) {
       const double azimuth = 2.0 * kPi * (column + 0.5) / NightSkyMap::kColumns;
-      floor.above.push_back(GpuBandsOf(night.Above(DirectionFromAngles(elevation, azimuth).xyz)));
+      map.above.push_back(GpuBandsOf(night.Above(DirectionFromAngles(elevation, azimuth).xyz)));
     }
   }
-  return floor;
+  return map;
 }
 
 NightSkyMapFollower::NightSkyMapFollower(const SceneSkyglow& towns)
@@ -68,12 +68,12 @@ bool NightSkyMapFollower::Suits(const Request& requested, const Request& wanted)
 }
 
 void NightSkyMapFollower::Take(int unit) {
-  const std::optional<NightSkyMap> floor = maker_.Poll();
-  if (!floor) return;
-  scattered_ = floor->scattered;
-  level_ = floor->level;
+  const std::optional<NightSkyMap> made = maker_.Poll();
+  if (!made) return;
+  scattered_ = made->scattered;
+  level_ = made->level;
   has_map_ = true;
-  Upload(map_, unit, NightSkyMap::kColumns, NightSkyMap::kRows, floor->above);
+  Upload(map_, unit, NightSkyMap::kColumns, NightSkyMap::kRows, made->above);
 }
 
 void NightSkyMapFollower::Follow(const PaintedView& view,
@@ -121,7 +121,7 @@ BandLight LevelLight(const SolvedAir& air, double altitude_m, const SunPosition&
 }
 
 // Returns the sunlight that the moon does not cover.
-KeyLight BesideMoon(const KeyLight& sun, const SkyBodies& bodies, const Medium& medium) {
+SkyLight BesideMoon(const SkyLight& sun, const SkyBodies& bodies, const Medium& medium) {
   const EclipsedDisk disk = bodies.Eclipse();
   if (!disk.IsCovered()) return sun;
   const Lighting whole = LightingOf(sun.disk, bodies.instant, bodies.place, medium);
@@ -144,7 +144,7 @@ SunPosition AsPosition(const DistantLight& moon, double earth_sun_au) {
 
 }  // namespace
 
-KeyLight SunAsKey(const SunPosition& sun, const Medium& medium) {
+SkyLight SunAsLight(const SunPosition& sun, const Medium& medium) {
   const auto at_1_au = static_cast<float>(1.0 / (sun.distance_au * sun.distance_au));
   return {sun, at_1_au * GpuBandsOf(medium.solar_irradiance)};
 }
@@ -154,37 +154,43 @@ LightsOfSky LightsOfSkyAt(const GeodeticPosition& eye, const UtcInstant& now,
   // A sky that contributes a ten-thousandth on a level surface contributes a five-hundredth near
   // the horizon below its light.
   constexpr double kUnseenShare = 1e-4;
-  const KeyLight whole_sun = SunAsKey(sun, air.medium);
-  if (!air.medium.follows_wgs84) return {whole_sun, std::nullopt};
+  const SkyLight whole_sun = SunAsLight(sun, air.medium);
+  if (!air.medium.follows_wgs84) return {whole_sun};
   const SkyBodies bodies = SkyBodiesAt(eye, now);
-  const KeyLight by_sun = BesideMoon(whole_sun, bodies, air.medium);
-  if (sun.elevation_rad > kMoonDoesNotCount_rad) return {by_sun, std::nullopt};
+  const SkyLight by_sun = BesideMoon(whole_sun, bodies, air.medium);
+  if (sun.elevation_rad > kMoonDoesNotCount_rad) return {by_sun};
   const MoonDisk disk = bodies.ApparentMoonDisk(GentleAirOf(air.medium));
   BandLight solar(air.medium.wavelengths_nm.size());
   for (std::size_t band = 0; band < solar.count; ++band)
     solar[band] = whole_sun.irradiance[static_cast<glm::length_t>(band)];
   const DistantLight moon =
       MoonlightOf(disk, bodies, MoonColour(disk, air.medium.wavelengths_nm), solar);
-  const KeyLight by_moon{AsPosition(moon, sun.distance_au), GpuBandsOf(moon.irradiance), true};
+  const SkyLight by_moon{AsPosition(moon, sun.distance_au), GpuBandsOf(moon.irradiance), true};
   const double altitude_m = std::max(eye.height_m, 0.0);
   const auto green = static_cast<glm::length_t>(GreenBand(air.medium.wavelengths_nm));
-  const auto brings = [&](const KeyLight& key) {
+  const auto brings = [&](const SkyLight& key) {
     return static_cast<double>(key.irradiance[green]) *
            static_cast<double>(
                LevelLight(air, altitude_m, key.disk)[static_cast<std::size_t>(green)]);
   };
   const double of_sun = brings(by_sun), of_moon = brings(by_moon);
-  if (of_moon <= kUnseenShare * of_sun) return {by_sun, std::nullopt};
-  if (of_sun <= kUnseenShare * of_moon) return {by_moon, std::nullopt};
+  if (of_moon <= kUnseenShare * of_sun) return {by_sun};
+  if (of_sun <= kUnseenShare * of_moon) return {by_moon};
   if (sun.elevation_rad < kSetOnLand_rad) return {by_moon, by_sun};
   return {by_sun, by_moon};
 }
 
-double LevelIlluminance(const KeyLight& key, const SolvedAir& air, double altitude_m,
+const SkyLight* OfSource(const LightsOfSky& lights, LightSource source) {
+  for (const SkyLight& light : lights)
+    if (light.source() == source) return &light;
+  return nullptr;
+}
+
+double LevelIlluminance(const SkyLight& source, const SolvedAir& air, double altitude_m,
                         const BandColour& colour) {
-  BandLight light = LevelLight(air, altitude_m, key.disk);
+  BandLight light = LevelLight(air, altitude_m, source.disk);
   for (std::size_t band = 0; band < light.count; ++band)
-    light[band] *= key.irradiance[static_cast<glm::length_t>(band)];
+    light[band] *= source.irradiance[static_cast<glm::length_t>(band)];
   return colour.Xyz(InDouble(light))[1];
 }
 

@@ -3,11 +3,11 @@
 // scattered light, and their light on the ground. It is the renderer's NightLight as a map of the
 // sky, made on a worker thread, and used where sun and moon contribute less than 10 lux.
 //
-// The lights of the sky in a picture: the sun, the moon, or both.
+// The lights of the sky in a picture: a list of the sun, the moon, or both.
 //
 // In a solar eclipse the sunlight is what the moon leaves uncovered as seen from the eye, for the
-// whole picture. One light casts the shadows: the sun until it has set for all land, at 2.5 degrees
-// below the horizontal, then the moon if it is bright enough.
+// whole picture. The first light casts the shadows: the sun until it has set for all land, at 2.5
+// degrees below the horizontal, then the moon if it is bright enough.
 #pragma once
 
 #include <glm/vec4.hpp>
@@ -78,7 +78,8 @@ class NightSkyMapFollower {
   AsyncValue<Request, NightSkyMap> maker_;
 };
 
-struct KeyLight {
+/// The sun or the moon as a light.
+struct SkyLight {
   SunPosition disk;      // apparent position from the eye, and radius
   glm::vec4 irradiance;  // above the atmosphere, by band [W m^-2 nm^-1]
   bool is_moon = false;
@@ -90,12 +91,13 @@ struct KeyLight {
 
 /// Returns the sun as a light, not covered by the moon.
 /// @param sun  apparent.
-[[nodiscard]] KeyLight SunAsKey(const SunPosition& sun, const Medium& medium);
+[[nodiscard]] SkyLight SunAsLight(const SunPosition& sun, const Medium& medium);
 
-struct LightsOfSky {
-  KeyLight key;                   // casts the shadows
-  std::optional<KeyLight> other;  // if bright enough
-};
+/// The lights of the sky, at least one. The first casts the shadows.
+using LightsOfSky = std::vector<SkyLight>;
+
+/// Returns the light of a source, or null if it is not in the list.
+[[nodiscard]] const SkyLight* OfSource(const LightsOfSky& lights, LightSource source);
 
 /// Returns the lights of the sky. A light is included if its contribution on a level surface at the
 /// eye, in the band nearest to 555 nm, exceeds a ten-thousandth of the other's. Planets other than
@@ -105,7 +107,7 @@ struct LightsOfSky {
 
 /// Returns the illuminance [lux] of a level surface by a light and the sky that it lights.
 /// @param colour  of the medium's bands.
-[[nodiscard]] double LevelIlluminance(const KeyLight& key, const SolvedAir& air, double altitude_m,
-                                      const BandColour& colour);
+[[nodiscard]] double LevelIlluminance(const SkyLight& source, const SolvedAir& air,
+                                      double altitude_m, const BandColour& colour);
 
 }  // namespace alpenglow::viewer

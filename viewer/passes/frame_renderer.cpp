@@ -32,20 +32,20 @@ ImageSize PaintedSize(const ToneMapPass::Screen& screen, double scale) {
 
 }  // namespace
 
-void FrameDisplay::ShowEnlarged(const Shown& shown) {
-  painter_.PaintOutline(darkroom_.OutlineFor(shown.screen));
-  darkroom_.ShowEnlarged(painter_.picture(), HalfViewOf(shown.view), shown.ev100, shown.screen,
-                         shown.timer);
+void FrameDisplay::ShowUpscaled(const Shown& shown) {
+  painter_.PaintOutline(display_pass_.OutlineFor(shown.screen));
+  display_pass_.ShowUpscaled(painter_.picture(), HalfViewOf(shown.view), shown.ev100, shown.screen,
+                             shown.timer);
 }
 
 void FrameDisplay::ShowBodies(const Shown& shown, const std::vector<PixelBox>& boxes) {
   if (boxes.empty()) return;
   const TimedPass timed(shown.timer, "bodies");
   const RenderTarget& light =
-      darkroom_.LightIn(boxes, painter_.picture(), HalfViewOf(shown.view), shown.screen);
-  painter_.PaintBodiesOver(light, darkroom_.OutlineFor(shown.screen),
+      display_pass_.LightIn(boxes, painter_.picture(), HalfViewOf(shown.view), shown.screen);
+  painter_.PaintBodiesOver(light, display_pass_.OutlineFor(shown.screen),
                            OnScreen(shown.view, shown.screen));
-  darkroom_.ShowBodies(shown.ev100, shown.screen);
+  display_pass_.ShowBodies(shown.ev100, shown.screen);
 }
 
 // Drivers finish compiling a program on its first draw, which takes tenths of a second. The
@@ -55,7 +55,7 @@ void FrameDisplay::MakeReady(const Shown& shown) {
   constexpr PixelBox kOnePixel{0, 0, 1, 1};
   if (shown_ == 2) {
     const Scissor within(kOnePixel);
-    ShowEnlarged(shown);
+    ShowUpscaled(shown);
   }
   if (shown_ == 3) ShowBodies(shown, {kOnePixel});
 }
@@ -66,20 +66,20 @@ void FrameDisplay::Show(const PaintedView& view, double ev100, const ToneMapPass
   ++shown_;
   MakeReady(shown);
   if (DisplayPass::Upscales(view, screen)) {
-    ShowEnlarged(shown);
+    ShowUpscaled(shown);
     ShowBodies(shown, painter_.BodiesSeen(OnScreen(view, screen)));
   } else {
     const TimedPass timed(timer, "tone_map");
-    darkroom_.developer().Develop(painter_.picture(), ev100, screen);
+    display_pass_.tone_map().Develop(painter_.picture(), ev100, screen);
   }
 }
 
-FrameRenderer::FrameRenderer(SkyPainter& painter, DisplayPass& darkroom, ExposureControl& exposure,
-                             const QualityChoice& quality)
+FrameRenderer::FrameRenderer(SkyPainter& painter, DisplayPass& display_pass,
+                             ExposureControl& exposure, const QualityChoice& quality)
     : painter_(painter),
-      darkroom_(darkroom),
+      display_pass_(display_pass),
       exposure_(exposure),
-      display_(painter, darkroom),
+      display_(painter, display_pass),
       quality_(quality),
       used_(quality.painted()) {}
 
@@ -147,7 +147,7 @@ void FrameRenderer::Meter(bool is_another, const UtcInstant& now, double seconds
   if (!metered_ || is_another) metered_ = meter_.Read(picture(), look);
   if (is_another) exposure_.Forget();
   exposure_.Follow(*metered_, now, seconds);
-  darkroom_.developer().Use(exposure_.ShownLook());
+  display_pass_.tone_map().Use(exposure_.ShownLook());
 }
 
 void FrameRenderer::Paint(const CameraPose& eye, const UtcInstant& now,
@@ -204,8 +204,8 @@ void FrameRenderer::ShowStill(const Image& image, const Development& development
                               const ToneMapPass::Screen& screen) {
   const RenderTarget picture(image.width, image.height, RenderTarget::Depth::kNone);
   picture.Write(image);
-  darkroom_.developer().Use(development.look);
-  darkroom_.developer().Develop(picture, development.ev100, screen);
+  display_pass_.tone_map().Use(development.look);
+  display_pass_.tone_map().Develop(picture, development.ev100, screen);
 }
 
 std::optional<LandProgress> FrameRenderer::Progress() const {

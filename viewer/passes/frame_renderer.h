@@ -21,8 +21,8 @@ namespace alpenglow::viewer {
 class FrameDisplay {
  public:
   /// Keeps references to both.
-  FrameDisplay(SkyPainter& painter, DisplayPass& darkroom)
-      : painter_(painter), darkroom_(darkroom) {}
+  FrameDisplay(SkyPainter& painter, DisplayPass& display_pass)
+      : painter_(painter), display_pass_(display_pass) {}
 
   /// Shows the most recent picture of the painter, which must be of this view.
   /// @param timer  receives the times of the passes; null: none.
@@ -36,12 +36,12 @@ class FrameDisplay {
     ToneMapPass::Screen screen;
     PassTimer* timer;
   };
-  void ShowEnlarged(const Shown& shown);
+  void ShowUpscaled(const Shown& shown);
   void ShowBodies(const Shown& shown, const std::vector<PixelBox>& boxes);
   void MakeReady(const Shown& shown);
 
   SkyPainter& painter_;
-  DisplayPass& darkroom_;
+  DisplayPass& display_pass_;
   int shown_ = 0;  // pictures
 };
 
@@ -58,7 +58,7 @@ struct TableFigures {
 class FrameRenderer {
  public:
   /// Keeps references to painter, display pass and exposure.
-  FrameRenderer(SkyPainter& painter, DisplayPass& darkroom, ExposureControl& exposure,
+  FrameRenderer(SkyPainter& painter, DisplayPass& display_pass, ExposureControl& exposure,
                 const QualityChoice& quality);
 
   void Use(const QualityRule& rule);
@@ -137,7 +137,7 @@ class FrameRenderer {
   void Meter(bool is_another, const UtcInstant& now, double seconds);
 
   SkyPainter& painter_;
-  DisplayPass& darkroom_;
+  DisplayPass& display_pass_;
   ExposureControl& exposure_;
   FrameDisplay display_;
   QualityChoice quality_;

@@ -36,14 +36,9 @@ LandSize LandSizeOf(const PaintSizes& sizes) {
   return size;
 }
 
-const KeyLight* OfSource(const LightsOfSky& lights, LightSource source) {
-  if (lights.key.source() == source) return &lights.key;
-  return lights.other && lights.other->source() == source ? &*lights.other : nullptr;
-}
-
 GroundFollower::View GroundViewOf(const PaintedView& view, const LightsOfSky& lights) {
-  GroundFollower::View seen{view.eye.place, view.now, lights.key.source(), lights.key.disk};
-  if (lights.other) seen.other = lights.other->disk;
+  GroundFollower::View seen{view.eye.place, view.now, lights.front().source(), lights.front().disk};
+  if (lights.size() > 1) seen.other = lights.back().disk;
   return seen;
 }
 
@@ -150,8 +145,8 @@ void PaintedScene::KeepUpAir(const PaintedView& view, const LightsOfSky& lights,
   const auto keep_up = [&](AirFollower& air, const AirView& seen) {
     pace == Pace::kFollow ? air.Follow(seen, seconds) : air.WaitUntilReady(seen);
   };
-  const KeyLight* moon = OfSource(lights, LightSource::kMoon);
-  if (const KeyLight* sun = OfSource(lights, LightSource::kSun))
+  const SkyLight* moon = OfSource(lights, LightSource::kMoon);
+  if (const SkyLight* sun = OfSource(lights, LightSource::kSun))
     sun_view_ = AirViewOf(view.eye, sun->disk);
   keep_up(air_, sun_view_);
   if (known_air_ != air_.air()) {
@@ -175,11 +170,9 @@ void PaintedScene::KeepUpAir(const PaintedView& view, const LightsOfSky& lights,
 void PaintedScene::KeepUpOpenSkies(const LightsOfSky& lights, Pace pace) {
   constexpr double kLeft_rad = 3e-5;
   const double altitude_m = ground_.open_altitude_m();
-  for (const LightSource source : {LightSource::kSun, LightSource::kMoon}) {
-    const KeyLight* light = OfSource(lights, source);
-    if (light == nullptr) continue;
-    const double elevation_rad = SunForAir(light->disk).elevation_rad;
-    std::optional<OccludedSkyOf>& sky = open_skies_[IndexOf(source)];
+  for (const SkyLight& light : lights) {
+    const double elevation_rad = SunForAir(light.disk).elevation_rad;
+    std::optional<OccludedSkyOf>& sky = open_skies_[IndexOf(light.source())];
     const double left_rad = pace == Pace::kWait ? 0.0 : kLeft_rad;
     if (sky && sky->air == known_air_ && sky->altitude_m == altitude_m &&
         std::abs(sky->elevation_rad - elevation_rad) <= left_rad)
@@ -204,7 +197,7 @@ bool PaintedScene::HasEdgesNear(const Vector<Ecef>& to_light) const {
   return edges.to && is_near(*edges.to) && (!edges.from || is_near(*edges.from));
 }
 
-void PaintedScene::KeepUpEdges(const PaintedView& view, const KeyLight& key, double seconds) {
+void PaintedScene::KeepUpEdges(const PaintedView& view, const SkyLight& key, double seconds) {
   constexpr double kFades_s = 0.3;
   casts_ = key.source();
   const Vector<Ecef> to_light = LocalFrame(fixed_.ellipsoid, view.eye.place)
@@ -216,22 +209,21 @@ void PaintedScene::KeepUpEdges(const PaintedView& view, const KeyLight& key, dou
 
 void PaintedScene::KeepUpFog(const PaintedView& view, const LightsOfSky& lights, Pace pace) {
   if (!fog_) return;
-  const auto keep_up = [&](SceneFog& fog, const KeyLight& light) {
+  for (const SkyLight& light : lights) {
+    SceneFog& fog = light.is_moon ? *moon_fog_ : *fog_;
     pace == Pace::kFollow ? fog.Follow(air_.air(), view.eye, light.disk)
                           : fog.WaitUntilReady(air_.air(), view.eye, light.disk);
-  };
-  if (const KeyLight* sun = OfSource(lights, LightSource::kSun)) keep_up(*fog_, *sun);
-  if (const KeyLight* moon = OfSource(lights, LightSource::kMoon)) keep_up(*moon_fog_, *moon);
+  }
 }
 
 void PaintedScene::Update(const PaintedView& view, const LightsOfSky& lights, double seconds) {
   std::erase_if(leaving_, [](const auto& land) { return !land->IsWorking(); });
-  const SunPosition& casting = lights.key.disk;
+  const SunPosition& casting = lights.front().disk;
   KeepUpAir(view, lights, Pace::kFollow, seconds);
   land_->Update(view.eye.place, LandIn(view, air_.air()->medium), seconds);
   awaits_land_ = awaits_land_ && !land_->HasCome();
   TakeHeights();
-  KeepUpEdges(view, lights.key, seconds);
+  KeepUpEdges(view, lights.front(), seconds);
   if (ground_.Follow(air_.air(), GroundViewOf(view, lights), seconds)) TakeLight();
   TakeSkyByPixel();
   KeepUpOpenSkies(lights, Pace::kFollow);
@@ -249,8 +241,8 @@ void PaintedScene::WaitUntilReady(const PaintedView& view, const LightsOfSky& li
   }
   TakeSkyByPixel();
   KeepUpOpenSkies(lights, Pace::kWait);
-  KeepUpEdges(view, lights.key, kLong_s);
-  if (sizes_.has_shafts) shade_.WaitUntilReady(view.eye.place, lights.key.disk, kShadeUnit);
+  KeepUpEdges(view, lights.front(), kLong_s);
+  if (sizes_.has_shafts) shade_.WaitUntilReady(view.eye.place, lights.front().disk, kShadeUnit);
   KeepUpFog(view, lights, Pace::kWait);
   awaits_land_ = false;
 }

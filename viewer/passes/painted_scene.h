@@ -124,7 +124,7 @@ class PaintedScene {
   };
   void KeepUpOpenSkies(const LightsOfSky& lights, Pace pace);
   [[nodiscard]] bool HasEdgesNear(const Vector<Ecef>& to_light) const;
-  void KeepUpEdges(const PaintedView& view, const KeyLight& key, double seconds);
+  void KeepUpEdges(const PaintedView& view, const SkyLight& key, double seconds);
   void KeepUpFog(const PaintedView& view, const LightsOfSky& lights, Pace pace);
   void TakeHeights();
   void TakeLight();

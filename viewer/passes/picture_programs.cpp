@@ -102,7 +102,7 @@ GroundBlock GroundAround(const PaintedScene& scene, const PaintedView& view) {
 }
 
 GroundLightBlock LightAround(const PaintedScene& scene, const PaintedView& view,
-                             const KeyLight& light) {
+                             const SkyLight& light) {
   GroundLightBlock block = GroundLightBlockOf(scene.OccludedSkyIrradiance(light.source()),
                                               DirectionToSun(light.disk), PixelAngle(view));
   block.ground_view.y = scene.HasEdgesOf(light.source()) ? 1.0F : 0.0F;
@@ -139,7 +139,7 @@ void PictureBlocks::UploadAir(const PaintedScene& scene, const CameraPose& eye) 
 }
 
 void PictureBlocks::UploadView(const PaintedScene& scene, const PaintedView& view,
-                               const KeyLight& key, const PixelRay& ray) const {
+                               const SkyLight& key, const PixelRay& ray) const {
   const Medium& medium = scene.air().air()->medium;
   const LandView axes = LandViewOf(view);
   const glm::dvec2 shift = ShiftOf(ray, view);
@@ -158,12 +158,12 @@ void PictureBlocks::UploadView(const PaintedScene& scene, const PaintedView& vie
 }
 
 void PictureBlocks::UploadGroundLight(const PaintedScene& scene, const PaintedView& view,
-                                      const KeyLight& light) const {
+                                      const SkyLight& light) const {
   UploadBlock(ground_light_, kGroundLightBinding, LightAround(scene, view, light));
 }
 
 void PictureBlocks::UploadSkyByPixel(const PaintedScene& scene, const PaintedView& view,
-                                     const KeyLight& light) const {
+                                     const SkyLight& light) const {
   const SkyByPixel* sky = scene.sky_by_pixel(light.source());
   if (sky == nullptr) return;
   const LocalFrame eye(scene.fixed().ellipsoid, view.eye.place);

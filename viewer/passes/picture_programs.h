@@ -100,14 +100,14 @@ class PictureBlocks {
  public:
   void UploadAir(const PaintedScene& scene, const CameraPose& eye);
   /// @param ray  the ray of each pixel that is drawn.
-  void UploadView(const PaintedScene& scene, const PaintedView& view, const KeyLight& key,
+  void UploadView(const PaintedScene& scene, const PaintedView& view, const SkyLight& key,
                   const PixelRay& ray) const;
   void UploadGround(const PaintedScene& scene, const PaintedView& view) const;
   void UploadGroundLight(const PaintedScene& scene, const PaintedView& view,
-                         const KeyLight& light) const;
+                         const SkyLight& light) const;
   /// Does nothing if vertices hold the sky irradiance.
   void UploadSkyByPixel(const PaintedScene& scene, const PaintedView& view,
-                        const KeyLight& light) const;
+                        const SkyLight& light) const;
 
  private:
   GlBuffer air_, view_, ground_, ground_light_, ground_surface_, sky_by_pixel_;

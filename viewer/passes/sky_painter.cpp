@@ -66,8 +66,8 @@ SkyPainter::SkyPainter(const Scene& scene, const LandSource& land, const Painted
              OnOsculatingSphere(scene.medium, scene.place.latitude_rad)),
       lamp_painter_(lamps_, sizes.lamps, kLampUnits),
       shaft_pass_(ConnectedShafts(scene_)),
-      night_floor_({scene.town_zenith,
-                    std::max(GroundHeightUnder(scene_.fixed().lamp_ground, scene.place), 0.0)}),
+      night_sky_map_({scene.town_zenith,
+                      std::max(GroundHeightUnder(scene_.fixed().lamp_ground, scene.place), 0.0)}),
       has_towns_(scene.town_zenith.has_value()),
       programs_(scene_, lamp_painter_, shaft_pass_) {
   CheckGl("SkyPainter");
@@ -90,14 +90,14 @@ void SkyPainter::Update(const PaintedView& view, double seconds) {
   scene_.Update(view, lights, seconds);
   stars_.Follow(view, lights, *scene_.air().air());
   // After a jump in time into the night, wait for the first map.
-  if (HasNightSkyMap()) night_floor_.Follow(view, scene_.air().air(), !night_floor_.HasAny());
+  if (HasNightSkyMap()) night_sky_map_.Follow(view, scene_.air().air(), !night_sky_map_.HasAny());
 }
 
 void SkyPainter::WaitUntilReady(const PaintedView& view, int samples) {
   scene_.WaitUntilReady(view, LightsOf(view).lights, samples);
   lamps_.WaitForPlans();
   stars_.WaitUntilReady(view, LightsOf(view).lights, *scene_.air().air());
-  if (HasNightSkyMap()) night_floor_.Follow(view, scene_.air().air(), true);
+  if (HasNightSkyMap()) night_sky_map_.Follow(view, scene_.air().air(), true);
 }
 
 void SkyPainter::PrepareLamps(const PaintedView& view) {
@@ -135,14 +135,14 @@ void SkyPainter::PaintOutline(const DepthPrepass& outline) {
   scene_.land().Draw(LandDrawn::kOutline, kViewBinding);
 }
 
-bool SkyPainter::HasShade(const PaintedView& view, const KeyLight& key) const {
+bool SkyPainter::HasShade(const PaintedView& view, const SkyLight& key) const {
   const ShadeFollower& shade = scene_.shade();
   return !scene_.AwaitsLand() && scene_.sizes().has_shafts && shade.shade().Shades() &&
          shade.IsOf(view.eye.place, key.disk);
 }
 
 void SkyPainter::PaintShafts(const PaintedView& view) {
-  if (!HasShade(view, LightsOf(view).lights.key)) return;
+  if (!HasShade(view, LightsOf(view).lights.front())) return;
   Begin("shafts");
   const ShadeFollower& shade = scene_.shade();
   shaft_pass_.Paint(shade.shade(), shade.MapFromEye(view.eye.place), view.width, view.height,
@@ -289,7 +289,7 @@ std::vector<PixelBox> SkyPainter::BodiesSeen(const PaintedView& view) {
 // Draws the disks. The sun's disk always uses sunlight, even if the moon lights the air.
 void SkyPainter::PaintDisks(const PaintedView& view, const PixelRay& ray) {
   const DisksInAir seen = InAir(DisksOf(view), view);
-  const KeyLight sun = SunAsKey(seen.disks.sun, scene_.air().air()->medium);
+  const SkyLight sun = SunAsLight(seen.disks.sun, scene_.air().air()->medium);
   blocks_.UploadView(scene_, view, sun, ray);
   const std::vector<PixelBox> boxes = DisksSeen(view);
   if (boxes.empty()) return;
@@ -317,14 +317,14 @@ void SkyPainter::PaintBodiesOver(const RenderTarget& target, const DepthPrepass&
 }
 
 // Binds the inputs that depend on one light of the sky.
-void SkyPainter::BindLight(const PaintedView& view, const KeyLight& light, const PixelRay& ray) {
+void SkyPainter::BindLight(const PaintedView& view, const SkyLight& light, const PixelRay& ray) {
   blocks_.UploadView(scene_, view, light, ray);
   blocks_.UploadGroundLight(scene_, view, light);
   blocks_.UploadSkyByPixel(scene_, view, light);
   scene_.air_textures(light.source()).Bind(kAirUnit, kTablesBinding);
 }
 
-void SkyPainter::BindMaps(const PaintedView& view, const KeyLight& light) {
+void SkyPainter::BindMaps(const PaintedView& view, const SkyLight& light) {
   surface_->BindTexture(kSkyOnSurfaceUnit, light.is_moon ? GBuffer::kMoonSky : GBuffer::kSky);
   if (scene_.fog() != nullptr) scene_.fog(light.source())->Bind(view.eye, light.disk);
 }
@@ -334,7 +334,7 @@ void SkyPainter::PaintPicture(const PaintedView& view, double share) {
   picture_->Bind();
   picture_->UseDepthOf(*surface_);
   lamp_painter_.Bind();
-  const KeyLight& key = LightsOf(view).lights.key;
+  const SkyLight& key = LightsOf(view).lights.front();
   const BesideLand beside;
   std::optional<Adding> adding;
   if (share < 1.0) adding.emplace(share);
@@ -343,22 +343,23 @@ void SkyPainter::PaintPicture(const PaintedView& view, double share) {
   PaintLandAndSky(view, lit);
 }
 
-// Adds the second light. The inverse depth of land in the fourth component is not written again.
-void SkyPainter::PaintOtherLight(const PaintedView& view, const PixelRay& ray) {
-  const std::optional<KeyLight>& other = LightsOf(view).lights.other;
-  if (!other) return;
+// Adds the lights that cast no shadows. The inverse depth of land in the fourth component is not
+// written again.
+void SkyPainter::PaintOtherLights(const PaintedView& view, const PixelRay& ray) {
+  const LightsOfSky& lights = LightsOf(view).lights;
+  if (lights.size() == 1) return;
   Begin("other light");
-  BindLight(view, *other, ray);
-  BindMaps(view, *other);
-  {
+  for (std::size_t i = 1; i < lights.size(); ++i) {
+    BindLight(view, lights[i], ray);
+    BindMaps(view, lights[i]);
     const BesideLand beside;
     const Adding adding(1.0 / ray.of);
     glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_FALSE);
-    PaintLandAndSky(view, {other->source(), false, false});
+    PaintLandAndSky(view, {lights[i].source(), false, false});
     glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
   }
-  BindLight(view, LightsOf(view).lights.key, ray);
-  BindMaps(view, LightsOf(view).lights.key);
+  BindLight(view, lights.front(), ray);
+  BindMaps(view, lights.front());
 }
 
 void SkyPainter::PaintLampsOver(const PaintedView& view) {
@@ -383,7 +384,7 @@ void SkyPainter::PaintNightSkyMap(const PaintedView& view, double share) {
     const int rows = RowsUnderHorizon(view);
     above.emplace(PixelBox{0, rows, view.width, view.height - rows});
   }
-  night_floor_.Bind(programs_.Of(stage), kNightUnit);
+  night_sky_map_.Bind(programs_.Of(stage), kNightUnit);
   programs_.Paint(stage);
 }
 
@@ -394,14 +395,14 @@ void SkyPainter::PaintStars(const PaintedView& view, const MoonDisk& moon) {
 }
 
 void SkyPainter::PaintSample(const PaintedView& view, Bodies bodies, const PixelRay& ray) {
-  BindLight(view, LightsOf(view).lights.key, ray);
+  BindLight(view, LightsOf(view).lights.front(), ray);
   PaintLand(view);
-  BindMaps(view, LightsOf(view).lights.key);
+  BindMaps(view, LightsOf(view).lights.front());
   PaintShafts(view);
   PaintLamps(view);
   PaintPicture(view, 1.0 / ray.of);
-  PaintOtherLight(view, ray);
-  if (HasNightSkyMap() && night_floor_.HasAny()) PaintNightSkyMap(view, 1.0 / ray.of);
+  PaintOtherLights(view, ray);
+  if (HasNightSkyMap() && night_sky_map_.HasAny()) PaintNightSkyMap(view, 1.0 / ray.of);
   if (bodies == Bodies::kAll) PaintDisks(view, ray);
 }
 

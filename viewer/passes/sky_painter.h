@@ -71,7 +71,7 @@ class SkyPainter {
   void Show(const Image& image);
 
   /// The linear picture. Its fourth component is the inverse depth of land
-  /// (shaders/gbuffer.inverse_depth.glsl) if one ray per pixel was drawn.
+  /// (shaders/gbuffer.glsl) if one ray per pixel was drawn.
   [[nodiscard]] const RenderTarget& picture() const { return *picture_; }
   /// Draws the depth of the land in that picture.
   void PaintOutline(const DepthPrepass& outline);
@@ -117,7 +117,7 @@ class SkyPainter {
   void PaintSample(const PaintedView& view, Bodies bodies, const PixelRay& ray);
   void PaintLand(const PaintedView& view);
   /// Returns whether terrain shadows the air from the key light, and that effect is drawn.
-  [[nodiscard]] bool HasShade(const PaintedView& view, const KeyLight& key) const;
+  [[nodiscard]] bool HasShade(const PaintedView& view, const SkyLight& key) const;
   void PaintShafts(const PaintedView& view);
   void PaintLamps(const PaintedView& view);
   /// The light and the options that a picture is drawn with.
@@ -125,10 +125,10 @@ class SkyPainter {
     LightSource source;
     bool has_shade, has_lamps;
   };
-  void BindLight(const PaintedView& view, const KeyLight& light, const PixelRay& ray);
-  void BindMaps(const PaintedView& view, const KeyLight& light);
+  void BindLight(const PaintedView& view, const SkyLight& light, const PixelRay& ray);
+  void BindMaps(const PaintedView& view, const SkyLight& light);
   void PaintPicture(const PaintedView& view, double share);
-  void PaintOtherLight(const PaintedView& view, const PixelRay& ray);
+  void PaintOtherLights(const PaintedView& view, const PixelRay& ray);
   void MakeOneReady(const PaintedView& view, bool has_shade, bool has_lamps);
   void PaintSky(const PaintedView& view, const Lit& lit);
   [[nodiscard]] bool HasLamps() const { return !scene_.AwaitsLand() && !lamp_painter_.IsDark(); }
@@ -148,7 +148,7 @@ class SkyPainter {
   LampPainter lamp_painter_;
   ShaftPass shaft_pass_;
   StarPainter stars_;
-  NightSkyMapFollower night_floor_;
+  NightSkyMapFollower night_sky_map_;
   bool has_towns_;
   PicturePrograms programs_;  // uses all members above
   PictureBlocks blocks_;

@@ -132,12 +132,13 @@ bool StarPainter::IsNight(const PaintedView& view, const LightsOfSky& lights,
   constexpr double kNightSky_lux = 1e-3;
   sky_lux_ = 0.0;
   if (!air.medium.follows_wgs84) return false;  // stars are known for the Earth only
-  if (!lights.key.is_moon && lights.key.disk.elevation_rad > kSureDay_rad) return false;
+  const SkyLight* sun = OfSource(lights, LightSource::kSun);
+  if (sun != nullptr && sun->disk.elevation_rad > kSureDay_rad) return false;
   if (!colour_ || colour_->wavelengths_nm() != air.medium.wavelengths_nm)
     colour_ = std::make_shared<const BandColour>(air.medium.wavelengths_nm);
   const double altitude_m = std::max(view.eye.place.height_m, 0.0);
-  double lux = kNightSky_lux + LevelIlluminance(lights.key, air, altitude_m, *colour_);
-  if (lights.other) lux += LevelIlluminance(*lights.other, air, altitude_m, *colour_);
+  double lux = kNightSky_lux;
+  for (const SkyLight& light : lights) lux += LevelIlluminance(light, air, altitude_m, *colour_);
   if (lux <= kDaylight_lux) sky_lux_ = lux;
   return sky_lux_ > 0.0;
 }

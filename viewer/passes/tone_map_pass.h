@@ -3,7 +3,7 @@
 //
 // ExposureMeter reads back small copies of pictures without waiting for them. SpotMeter reads the
 // luminance under the pointer. DitherTexture holds the tile of dither noise for
-// shaders/display.dither.glsl.
+// shaders/display.glsl.
 //
 // ToneTable tabulates AgX in one of its looks as a 3D texture. One fetch replaces nine powers and
 // logarithms per pixel and the hue correction. It holds sRGB codes as a function of the exposed

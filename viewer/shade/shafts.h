@@ -105,8 +105,8 @@ class ShaftPass {
 
   /// Returns whether Paint has been called.
   [[nodiscard]] bool HasMap() const { return map_.has_value(); }
-  /// Sets the inputs of shafts.picture.glsl in a program, which becomes the one in use. The maps are bound
-  /// to two units. Requires an earlier Paint.
+  /// Sets the inputs of shafts.picture.glsl in a program, which becomes the one in use. The maps
+  /// are bound to two units. Requires an earlier Paint.
   void Bind(const ShaderProgram& picture, int unit) const;
 
  private:

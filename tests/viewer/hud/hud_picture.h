@@ -46,24 +46,24 @@ struct Changes : RecordedCommands::Requests {
 /// offer first.
 inline Changes FrameOf(Hud& hud, const HudModel& model, const InputFrame& input) {
   RecordedCommands flight;
-  flight.cockpit().Enter(FlightMode::kAircraft);
+  flight.controller().Enter(FlightMode::kAircraft);
   Look look;
   look.agx = AgxLook::kNone;
   look.white = WhiteBalanceFromText("3456");
   flight.exposure().Use(look);
   AutopilotTargets held{.heading_rad = model.autopilot.heading_rad};
-  flight.cockpit().pilot().aircraft()->autopilot().Set(held);
-  const double first_throttle = flight.cockpit().pilot().aircraft()->Readout().throttle;
-  const UtcInstant before = flight.cockpit().clock().now();
+  flight.controller().pilot().aircraft()->autopilot().Set(held);
+  const double first_throttle = flight.controller().pilot().aircraft()->Readout().throttle;
+  const UtcInstant before = flight.controller().clock().now();
   hud.Update(model, nullptr, input, flight);
   Changes changes;
   static_cast<RecordedCommands::Requests&>(changes) = flight.requests;
-  const double shifted_s = SecondsBetween(before, flight.cockpit().clock().now());
+  const double shifted_s = SecondsBetween(before, flight.controller().clock().now());
   if (shifted_s != 0.0) changes.day_fraction = model.time.day_fraction + shifted_s / 86400.0;
   const Look& now = flight.exposure().look();
   if (now.agx != look.agx) changes.look = now.agx;
   if (now.white != look.white) changes.white = now.white;
-  const PilotedAircraft* aircraft = flight.cockpit().pilot().aircraft();
+  const PilotedAircraft* aircraft = flight.controller().pilot().aircraft();
   if (aircraft == nullptr) return changes;
   const double throttle = aircraft->Readout().throttle;
   if (throttle != first_throttle) changes.throttle = throttle;

@@ -47,11 +47,11 @@ TEST(Action, EveryControlHasOneKeyForEachDirection) {
 template <typename Visit>
 void ForEachKey(const Visit& visit) {
   for (const Action& row : ActionTable()) {
-    for (const bool cockpit : {false, true}) {
-      std::string keys(cockpit ? row.keys_in_cockpit : row.keys);
+    for (const bool controller : {false, true}) {
+      std::string keys(controller ? row.keys_in_cockpit : row.keys);
       for (std::size_t begin = 0; begin < keys.size();) {
         const std::size_t end = std::min(keys.find(", ", begin), keys.size());
-        visit(keys.substr(begin, end - begin), row, cockpit);
+        visit(keys.substr(begin, end - begin), row, controller);
         begin = end + 2;
       }
     }
@@ -60,10 +60,10 @@ void ForEachKey(const Visit& visit) {
 
 TEST(Action, EveryKeyOfTheTableDoesWhatItsLineSaysAndNoneDoesTwoThings) {
   int keys = 0;
-  ForEachKey([&](const std::string& text, const Action& row, bool cockpit) {
+  ForEachKey([&](const std::string& text, const Action& row, bool controller) {
     const KeyChord chord = KeyChordFromText(text);
     for (const FlightMode mode : kModes) {
-      if (!row.modes.Has(mode) || (cockpit && mode == FlightMode::kFree)) continue;
+      if (!row.modes.Has(mode) || (controller && mode == FlightMode::kFree)) continue;
       const Action* action = ActionOfKey(chord.key, chord.modifiers, mode);
       ASSERT_NE(action, nullptr) << text;
       EXPECT_EQ(action->help, row.help) << text << " in mode " << static_cast<int>(mode);
@@ -76,8 +76,8 @@ TEST(Action, EveryKeyOfTheTableDoesWhatItsLineSaysAndNoneDoesTwoThings) {
 TEST(Action, NoKeyIsListedTwiceForOneMode) {
   for (const FlightMode mode : kModes) {
     std::vector<std::pair<int, int>> chords;
-    ForEachKey([&](const std::string& text, const Action& row, bool cockpit) {
-      if (!row.modes.Has(mode) || (cockpit && mode == FlightMode::kFree)) return;
+    ForEachKey([&](const std::string& text, const Action& row, bool controller) {
+      if (!row.modes.Has(mode) || (controller && mode == FlightMode::kFree)) return;
       const KeyChord chord = KeyChordFromText(text);
       const std::pair<int, int> pair{chord.key, chord.modifiers};
       EXPECT_THAT(chords, ::testing::Not(::testing::Contains(pair)))

@@ -28,10 +28,10 @@ class RecordedCommands : public FlightCommands {
   };
 
   explicit RecordedCommands(GroundHeight ground = [](const GeodeticPosition&) { return 0.0; })
-      : cockpit_({PlaceFromDegrees(47.0, 8.0, 1500.0)}, kWgs84,
-                 ParseInstant("2026-06-21T12:00:00Z"), std::move(ground)) {}
+      : controller_({PlaceFromDegrees(47.0, 8.0, 1500.0)}, kWgs84,
+                    ParseInstant("2026-06-21T12:00:00Z"), std::move(ground)) {}
 
-  [[nodiscard]] FlightController& cockpit() override { return cockpit_; }
+  [[nodiscard]] FlightController& controller() override { return controller_; }
   [[nodiscard]] ExposureControl& exposure() override { return exposure_; }
   [[nodiscard]] const QualityRule& quality() const override { return quality_; }
   void Use(const QualityRule& rule) override { requests.quality = quality_ = rule; }
@@ -57,7 +57,7 @@ class RecordedCommands : public FlightCommands {
   /// Runs the action of a key in the present mode. Returns its message; "" without one.
   std::string Press(const char* key) {
     const KeyChord chord = KeyChordFromText(key);
-    const Action* action = ActionOfKey(chord.key, chord.modifiers, cockpit_.pilot().mode());
+    const Action* action = ActionOfKey(chord.key, chord.modifiers, controller_.pilot().mode());
     requests.messages.clear();
     action->run(*this);
     return requests.messages.empty() ? "" : requests.messages.back();
@@ -66,7 +66,7 @@ class RecordedCommands : public FlightCommands {
   Requests requests;
 
  private:
-  FlightController cockpit_;
+  FlightController controller_;
   ExposureControl exposure_{{}, {}};
   QualityRule quality_;
   AirChoice air_;

@@ -89,8 +89,8 @@ class SmallPictures : public tests::Headless {
     painter.Paint(
         view, 1,
         DisplayPass::Upscales(view, on) ? SkyPainter::Bodies::kNone : SkyPainter::Bodies::kAll);
-    DisplayPass darkroom(Look{});
-    FrameDisplay(painter, darkroom).Show(view, window.ev100, on);
+    DisplayPass display_pass(Look{});
+    FrameDisplay(painter, display_pass).Show(view, window.ev100, on);
     return screen.ReadBytes();
   }
   static LandingLight LandingLightOf(const CameraPose& eye) {

@@ -138,8 +138,8 @@ TEST_F(SkyPainterTest, ASunWithTheMoonBeforeItIsTheRenderers) {
                "tables between nodes, within four degrees of the sun");
   const SunPosition sun = ApparentSunAt(scene.place, now);
   const std::shared_ptr<const SolvedAir> air = SolveAir(scene.medium, AirSolution::kDraft);
-  const double left = double{LightsOfSkyAt(scene.place, now, sun, *air).key.irradiance[1]} /
-                      double{SunAsKey(sun, scene.medium).irradiance[1]};
+  const double left = double{LightsOfSkyAt(scene.place, now, sun, *air).front().irradiance[1]} /
+                      double{SunAsLight(sun, scene.medium).irradiance[1]};
   const double covered = SkyBodiesAt(scene.place, now).CoveredLight();
   EXPECT_NEAR(covered, 0.9, 0.02);
   EXPECT_NEAR(left / (1.0 - covered), 1.0, 0.02) << "of 550 nm and of the second band";

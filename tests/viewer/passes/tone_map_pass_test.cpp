@@ -40,11 +40,11 @@ TEST_F(ToneMapPassTest, EveryToneCurveIsThatOfTheRendererWithinOneCode) {
   const RenderTarget picture(kFrameWidth, kFrameHeight, RenderTarget::Depth::kNone);
   picture.Write(image);
   const RenderTarget screen(kFrameWidth, kFrameHeight, RenderTarget::Depth::kNone);
-  ToneMapPass developer{Look{}};
+  ToneMapPass tone_map{Look{}};
   for (const ToneCurve curve : {ToneCurve::kAgx, ToneCurve::kAces, ToneCurve::kReinhard,
                                 ToneCurve::kPbrNeutral, ToneCurve::kLinear}) {
-    developer.Use(Look{.curve = curve});
-    developer.Develop(picture, ev100, {screen.framebuffer(), kFrameWidth, kFrameHeight});
+    tone_map.Use(Look{.curve = curve});
+    tone_map.Develop(picture, ev100, {screen.framebuffer(), kFrameWidth, kFrameHeight});
     const DisplayImage reference = Develop(image, ev100, curve);
     const Image codes = screen.Read();
     int off_by_one = 0;
@@ -68,9 +68,9 @@ TEST_F(ToneMapPassTest, ADraftIsAFewCodesOffAndThenExact) {
   picture.Write(image);
   const RenderTarget screen(kFrameWidth, kFrameHeight, RenderTarget::Depth::kNone);
   const DisplayImage reference = Develop(image, ev100, ToneCurve::kAgx);
-  const ToneMapPass developer(Look{}, ToneMapPass::FirstPictures::kDraft);
+  const ToneMapPass tone_map(Look{}, ToneMapPass::FirstPictures::kDraft);
   const auto most_off = [&] {
-    developer.Develop(picture, ev100, {screen.framebuffer(), kFrameWidth, kFrameHeight});
+    tone_map.Develop(picture, ev100, {screen.framebuffer(), kFrameWidth, kFrameHeight});
     const Image codes = screen.Read();
     int most = 0;
     for (std::size_t i = 0; i < reference.rgb.size(); ++i) {
@@ -92,12 +92,12 @@ TEST_F(ToneMapPassTest, LooksAndWhiteBalanceAreThoseOfTheRendererWithinOneCode) 
   const RenderTarget picture(kFrameWidth, kFrameHeight, RenderTarget::Depth::kNone);
   picture.Write(image);
   const RenderTarget screen(kFrameWidth, kFrameHeight, RenderTarget::Depth::kNone);
-  ToneMapPass developer{Look{}};
+  ToneMapPass tone_map{Look{}};
   for (const AgxLook agx : {AgxLook::kNone, AgxLook::kPunchy, AgxLook::kPhoto}) {
     Look look{.agx = agx};
     look.white = {WhiteBalance::Kind::kKelvin, 4000.0};
-    developer.Use(look);
-    developer.Develop(picture, 13.0, {screen.framebuffer(), kFrameWidth, kFrameHeight});
+    tone_map.Use(look);
+    tone_map.Develop(picture, 13.0, {screen.framebuffer(), kFrameWidth, kFrameHeight});
     const DisplayImage reference = Develop(Seen(image, look), 13.0, look),
                        shown = screen.ReadBytes();
     for (std::size_t i = 0; i < reference.rgb.size(); ++i)
