@@ -22,6 +22,7 @@ MOST_PUBLIC_METHODS = 20
 LIMITS = {
     "source files of the four layers": 551,
     "types with more than 20 public methods": 0,
+    "lines of the viewer without OpenGL": 1403,
     "files over 500 lines": 8,
     "installed headers": 13,
     "comment blocks that start without a subject, %": 1.0,

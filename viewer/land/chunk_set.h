@@ -21,6 +21,7 @@
 #include "renderer/terrain/loaded_heights.h"
 #include "renderer/terrain/seen_chunks.h"
 #include "viewer/gl/gl_objects.h"
+#include "viewer/layer.h"
 
 namespace alpenglow::viewer {
 
