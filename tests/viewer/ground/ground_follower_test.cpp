@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: MIT
-#include "viewer/ground/ground_follower.h"
+#include "renderer/picture/ground_follower.h"
 
 #include <gtest/gtest.h>
 
 #include "atmosphere/math/constants.h"
 #include "renderer/procedural_mountains/procedural_mountains.h"
+#include "viewer/layer.h"
 
 namespace alpenglow::viewer {
 namespace {
@@ -53,12 +54,12 @@ const std::shared_ptr<const SolvedAir>& Air() {
 
 TEST(GroundFollower, WithoutLandThereIsNoLight) {
   GroundFollower follower({}, nullptr, kSmall);
-  static_cast<void>(follower.Settle(Air(), ViewFrom(kFollowedPlace, 30.0)));
+  static_cast<void>(follower.WaitUntilReady(Air(), ViewFrom(kFollowedPlace, 30.0)));
   EXPECT_EQ(follower.lit(), nullptr);
   EXPECT_FALSE(follower.Light());
   follower.SetGround(
       [](const GeodeticPosition&, double, int) -> std::optional<ElevationGrid> { return {}; });
-  static_cast<void>(follower.Settle(Air(), ViewFrom(kFollowedPlace, 30.0)));
+  static_cast<void>(follower.WaitUntilReady(Air(), ViewFrom(kFollowedPlace, 30.0)));
   EXPECT_EQ(follower.lit(), nullptr) << "no land around here";
 }
 
@@ -66,7 +67,7 @@ TEST(GroundFollower, ASeaWithoutLandMirrorsTheSky) {
   GroundCover sea;
   sea.kind = GroundCover::Kind::kWater;
   GroundFollower follower(sea, nullptr, kSmall);
-  EXPECT_TRUE(follower.Settle(Air(), ViewFrom(kFollowedPlace, 30.0)));
+  EXPECT_TRUE(follower.WaitUntilReady(Air(), ViewFrom(kFollowedPlace, 30.0)));
   EXPECT_EQ(follower.lit(), nullptr);
   ASSERT_EQ(follower.sea_mirror(LightSource::kSun).size(), SeaMirror::kSide * SeaMirror::kSide);
   for (const BandTexel& texel : follower.sea_mirror(LightSource::kSun)) EXPECT_GT(texel[1], 0.0F);
@@ -75,7 +76,7 @@ TEST(GroundFollower, ASeaWithoutLandMirrorsTheSky) {
 TEST(GroundFollower, OnTheRangeThereIsLightOfTheSunThatWasAskedFor) {
   GroundFollower follower({}, nullptr, kSmall);
   follower.SetGround(RangeAround);
-  EXPECT_TRUE(follower.Settle(Air(), ViewFrom(kFollowedPlace, 30.0)));
+  EXPECT_TRUE(follower.WaitUntilReady(Air(), ViewFrom(kFollowedPlace, 30.0)));
   ASSERT_NE(follower.lit(), nullptr);
   EXPECT_NEAR(follower.lit()->lighting().to_sun.z, 0.5, 1e-3) << "30 degrees high";
   EXPECT_GT(follower.making_s(), 0.0);
@@ -105,7 +106,7 @@ TEST(GroundFollower, AHigherEyeHasLightOnLandFurtherOff) {
   auto view = ViewFrom(kFollowedPlace, 30.0);
   for (const double height_m : {1000.0, 1200.0, 1100.0, 800.0}) {
     view.eye.height_m = height_m;
-    static_cast<void>(follower.Settle(Air(), view));
+    static_cast<void>(follower.WaitUntilReady(Air(), view));
   }
   EXPECT_EQ(widths_m, (std::vector{8e3, 16e3, 8e3})) << "at 1100 m that of 1200 m is kept";
 }
@@ -113,12 +114,12 @@ TEST(GroundFollower, AHigherEyeHasLightOnLandFurtherOff) {
 TEST(GroundFollower, LightIsMadeAnewForAnotherSunAndNotForTheSame) {
   GroundFollower follower({}, nullptr, kSmall);
   follower.SetGround(RangeAround);
-  static_cast<void>(follower.Settle(Air(), ViewFrom(kFollowedPlace, 30.0)));
+  static_cast<void>(follower.WaitUntilReady(Air(), ViewFrom(kFollowedPlace, 30.0)));
   const auto first = follower.lit();
-  EXPECT_FALSE(follower.Settle(Air(), ViewFrom(kFollowedPlace, 30.02)))
+  EXPECT_FALSE(follower.WaitUntilReady(Air(), ViewFrom(kFollowedPlace, 30.02)))
       << "a thirteenth of the disk";
   EXPECT_EQ(follower.lit(), first);
-  EXPECT_TRUE(follower.Settle(Air(), ViewFrom(kFollowedPlace, 20.0)));
+  EXPECT_TRUE(follower.WaitUntilReady(Air(), ViewFrom(kFollowedPlace, 20.0)));
   EXPECT_NE(follower.lit(), first);
   EXPECT_EQ(&follower.lit()->site(), &first->site()) << "horizons are kept";
 }
