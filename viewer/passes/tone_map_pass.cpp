@@ -9,6 +9,9 @@
 #include <chrono>
 #include <cmath>
 #include <cstddef>
+#include <future>
+#include <map>
+#include <mutex>
 #include <utility>
 #include <vector>
 
@@ -128,6 +131,15 @@ ToneTable::ToneTable(AgxLook look, int side) : side_(side) {
   });
 }
 
+std::shared_future<ToneTable> ToneTableOf(AgxLook look) {
+  static std::mutex mutex;
+  static std::map<AgxLook, std::shared_future<ToneTable>> tables;
+  const std::lock_guard lock(mutex);
+  std::shared_future<ToneTable>& table = tables[look];
+  if (!table.valid()) table = std::async(std::launch::async, [look] { return ToneTable(look); });
+  return table;
+}
+
 namespace {
 
 enum ToneMapPassUnit { kPicture, kDither, kTable };
@@ -163,30 +175,24 @@ ToneMapPass::ToneMapPass(const Look& look, FirstPictures first)
     : look_(look),
       program_(ProgramOf(look.curve, true)),
       small_program_(ProgramOf(look.curve, false)),
-      first_(first) {
-  if (first_ == FirstPictures::kWait) MakeTable();
-}
-
-void ToneMapPass::MakeTable() const {
-  is_asked_ = true;
-  coming_ = std::async(std::launch::async, [look = look_.agx] { return ToneTable(look); });
-}
+      first_(first) {}
 
 void ToneMapPass::UploadDraft() const {
   constexpr int kSide = 24;
   Upload(table_, ToneTable(look_.agx, kSide));
 }
 
-// The table takes half a second on both processors, which the first frame needs itself. It is
-// therefore requested in the second frame.
+// The table takes half a second on both processors, which the first frame needs itself. After a
+// draft it is therefore requested in the second frame.
 void ToneMapPass::TakeTable() const {
-  if (!is_asked_ && !std::exchange(has_draft_, true)) return UploadDraft();
-  if (!is_asked_) return MakeTable();
-  if (!coming_.valid()) return;
-  if (first_ == FirstPictures::kDraft &&
-      coming_.wait_for(std::chrono::seconds(0)) != std::future_status::ready)
-    return;
+  const bool waits = first_ == FirstPictures::kWait;
+  if (!waits && !std::exchange(has_draft_, true)) return UploadDraft();
+  if (has_table_) return;
+  if (!coming_.valid()) coming_ = ToneTableOf(look_.agx);
+  if (!waits && coming_.wait_for(std::chrono::seconds(0)) != std::future_status::ready) return;
   Upload(table_, coming_.get());
+  coming_ = {};
+  has_table_ = true;
 }
 
 void ToneMapPass::Use(const Look& look) {
@@ -196,8 +202,8 @@ void ToneMapPass::Use(const Look& look) {
     small_program_ = ProgramOf(look.curve, false);
   }
   if (look.agx == before.agx) return;
-  is_asked_ = has_draft_ = false;
-  if (first_ == FirstPictures::kWait) MakeTable();
+  has_draft_ = has_table_ = false;
+  coming_ = {};
 }
 
 void ToneMapPass::Fill(const ShaderProgram& program, const RenderTarget& picture, double ev100,

@@ -108,6 +108,10 @@ class ToneTable {
   std::vector<std::array<float, 3>> codes_;
 };
 
+/// Returns the table of a look with kSide nodes per channel. The first call for a look computes it on
+/// a worker thread; the process keeps it, 11 MB per look.
+[[nodiscard]] std::shared_future<ToneTable> ToneTableOf(AgxLook look);
+
 /// Applies white balance, exposure, gamut mapping, tone curve and dither, as Seen and Develop
 /// (look.h) do. Local exposure and night vision are not applied.
 class ToneMapPass {
@@ -115,7 +119,7 @@ class ToneMapPass {
   /// Behaviour before the table of the look is ready: kWait waits for it and is exact, kDraft uses
   /// a coarse table, with errors up to 9 codes.
   enum class FirstPictures { kWait, kDraft };
-  /// The table of the look is computed on a worker thread.
+  /// The table of the look is requested by the first picture that needs it (ToneTableOf).
   /// @param look  resolved (look.h), here and below.
   explicit ToneMapPass(const Look& look, FirstPictures first = FirstPictures::kWait);
 
@@ -140,7 +144,6 @@ class ToneMapPass {
   void DevelopSmall(const RenderTarget& picture, double ev100, const RenderTarget& codes) const;
 
  private:
-  void MakeTable() const;
   void TakeTable() const;
   void UploadDraft() const;
   void Fill(const ShaderProgram& program, const RenderTarget& picture, double ev100,
@@ -151,9 +154,8 @@ class ToneMapPass {
   PassArea whole_;
   GlTexture table_;
   FirstPictures first_;
-  mutable bool has_draft_ = false;         // of the current look
-  mutable bool is_asked_ = false;          // whether its table was requested
-  mutable std::future<ToneTable> coming_;  // the table, until it is uploaded
+  mutable bool has_draft_ = false, has_table_ = false;  // of the current look
+  mutable std::shared_future<ToneTable> coming_;        // its table, until it is uploaded
   DitherTexture dither_;
 };
 
