@@ -1,19 +1,29 @@
 // SPDX-License-Identifier: MIT
-// Pictures of a flight, without hands.
+// Flights without hands, and the pictures that are written of them.
 #include "viewer/flight_session.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <glm/geometric.hpp>
+#include <numeric>
+#include <set>
+#include <sstream>
+#include <thread>
 
-#include "renderer/procedural_mountains/procedural_mountains.h"
+#include "atmosphere/math/constants.h"
 #include "renderer/scene/places.h"
 #include "renderer/scene/scene_options.h"
+#include "renderer/terrain/procedural_mountains.h"
+#include "tests/fixtures/temporary_folder.h"
 #include "tests/viewer/land/headless_land.h"
+#include "tests/viewer/shaders/headless.h"
 #include "viewer/gl/picture_tiles.h"
 #include "viewer/gl/render_target.h"
 #include "viewer/picture_writer.h"
+#include "viewer/reports.h"
 
 namespace alpenglow::viewer {
 namespace {
@@ -29,16 +39,20 @@ class FlightsOverLand : public tests::HeadlessTile {
     return SceneOverTile(tests::PlaceOfSample(120.0, 200.0, 0.0),
                          CameraFromDegrees(height, 330.0, -8.0, 7.0, 75.0));
   }
-  /// @param files  of the land; none: that of the scene.
-  [[nodiscard]] static FlightSession SmallFlight(const Scene& scene,
-                                                 std::vector<std::filesystem::path> files = {}) {
+  [[nodiscard]] Scene Mountains() const { return SceneAt({3500.0, false}); }
+  [[nodiscard]] static FlightSessionSettings SettingsFor(const Scene& scene,
+                                                         const ImageSize& size = kSmall) {
     FlightSessionSettings settings;
     settings.land = LandSourceOf(scene);
-    if (!files.empty()) settings.land.files = std::move(files);
     settings.quality = {Quality::kLow};
-    settings.size = kSmall;
-    return {scene, ParseInstant("2026-06-21T18:20:00Z"), settings};
+    settings.size = size;
+    return settings;
   }
+  [[nodiscard]] static UtcInstant Evening() { return ParseInstant("2026-06-21T18:20:00Z"); }
+  [[nodiscard]] static FlightSession SmallFlight(const Scene& scene) {
+    return {scene, Evening(), SettingsFor(scene)};
+  }
+  [[nodiscard]] std::filesystem::path File(const char* name) const { return folder_ / name; }
 
   static constexpr ImageSize kSmall{32, 18};
 };
@@ -50,8 +64,10 @@ double OverTheGround_m(FlightSession& flight) {
 TEST_F(FlightsOverLand, AnEyeThatIsPutOverGroundStandsThereWhenTheGroundIsKnown) {
   constexpr int kFar = 6000;  // samples; 190 km, whose land is not loaded before the eye is there
   tests::WriteTile(folder_ / "far.tif", kFar, 0);
-  FlightSession flight =
-      SmallFlight(SceneAt({300.0, true}), {folder_ / "land.tif", folder_ / "far.tif"});
+  const Scene scene = SceneAt({300.0, true});
+  FlightSessionSettings settings = SettingsFor(scene);
+  settings.land.files = {File("land.tif"), File("far.tif")};
+  FlightSession flight(scene, Evening(), settings);
   EXPECT_FALSE(flight.standpoint().KnowsGround()) << "nothing has been read yet";
   flight.WaitUntilReady(kSmall);
   EXPECT_TRUE(flight.standpoint().KnowsGround());
@@ -119,11 +135,7 @@ double Greenest(const Image& image) {
 TEST_F(FlightsOverLand, AWindowShowsTheSkyThenTheLandAndTheEyeStays) {
   constexpr double kSky = 1.35;
   const Scene scene = SceneAt({300.0, true});
-  FlightSessionSettings settings;
-  settings.land = LandSourceOf(scene);
-  settings.quality = {Quality::kLow};
-  settings.size = kSmall;
-  FlightSession flight(scene, ParseInstant("2026-06-21T11:30:00Z"), settings);
+  FlightSession flight(scene, ParseInstant("2026-06-21T11:30:00Z"), SettingsFor(scene));
   ShownFrames window(flight);
   EXPECT_NEAR(OverTheGround_m(flight), 300.0, 1e-6) << "before the first picture";
   const GeodeticPosition start = flight.eye().place;
@@ -147,7 +159,7 @@ TEST_F(FlightsOverLand, AfterAJumpInTimeTheFirstFrameIsExposedForItsLight) {
   for (int frame = 0; frame < 3; ++frame)
     static_cast<void>(window.Next());  // one copy is on its way
   const double day_ev100 = flight.exposure().exposure().ev100.value();
-  flight.controller().clock().Set(ParseInstant("2026-06-21T20:10:00Z"));
+  flight.cockpit().clock().Set(ParseInstant("2026-06-21T20:10:00Z"));
   std::vector<double> shown;
   for (int frame = 0; frame < 4; ++frame) {
     static_cast<void>(window.Next());
@@ -162,24 +174,17 @@ TEST_F(FlightsOverLand, AfterAJumpInTimeTheFirstFrameIsExposedForItsLight) {
 }
 
 /// Over the built-in range. It is made when it is first settled or painted.
-class FlightsOverTheRange : public tests::HeadlessLand {
+class FlightsOverTheRange : public FlightsOverLand {
  protected:
   [[nodiscard]] static Scene RangeScene() {
     Scene scene = SceneFromOptions({});
     scene.medium = MediumPreset("bruneton2017");
     return scene;
   }
-  [[nodiscard]] static FlightSession FlightOver(const Scene& scene) {
-    FlightSessionSettings settings;
-    settings.land = LandSourceOf(scene);
-    settings.quality = {Quality::kLow};
-    settings.size = {32, 18};
-    return {scene, ParseInstant("2026-06-21T11:00:00Z"), settings};
-  }
 };
 
 TEST_F(FlightsOverTheRange, TheRangeComesToAPlaceOffItAndGoesBack) {
-  FlightSession flight = FlightOver(RangeScene());
+  FlightSession flight = SmallFlight(RangeScene());
   flight.standpoint().GoTo("Tromso");
   const GeodeticPosition tromso = PlaceNamed("Tromso").place;
   EXPECT_EQ(flight.edits().scene().terrain.range_seed, RangeSeenFrom(tromso).range_seed);
@@ -194,13 +199,13 @@ TEST_F(FlightsOverTheRange, TheRangeComesToAPlaceOffItAndGoesBack) {
 }
 
 TEST_F(FlightsOverTheRange, AnEyeStandsAtItsHeightBeforeTheRangeIsThere) {
-  FlightSession flight = FlightOver(RangeScene());
+  FlightSession flight = SmallFlight(RangeScene());
   flight.standpoint().AwaitGround();
   EXPECT_FALSE(flight.standpoint().KnowsGround()) << "nothing was waited for";
   const double height_m = flight.eye().place.height_m;
   EXPECT_NEAR(height_m, kRangeViewGround_m + RangeScene().camera.height.value_m, 1e-6);
   EXPECT_NEAR(OverTheGround_m(flight), RangeScene().camera.height.value_m, 1e-6);
-  flight.WaitUntilReady({32, 18});
+  flight.WaitUntilReady(kSmall);
   EXPECT_NEAR(flight.eye().place.height_m, height_m, 0.01) << "a centimetre is not seen";
 }
 
@@ -209,7 +214,7 @@ TEST_F(FlightsOverLand, AReplayOfARecordThatIsLowerThanTheLandStaysOverIt) {
   const GeodeticPosition place = tests::PlaceOfSample(120.0, 200.0, 100.0);
   const CameraPath low({{0.0, {place}}, {1.0, {place, 0.5}}});
   {
-    FlightSession flight = SmallFlight(SceneAt({3500.0, false}));
+    FlightSession flight = SmallFlight(Mountains());
     FlightRecorder recorder(folder_ / "shown.csv");
     PictureWriter(flight).WriteReplay(low, {folder_ / "0.png", folder_ / "1.png"}, kSmall,
                                       recorder);
@@ -224,28 +229,12 @@ TEST_F(FlightsOverLand, AReplayOfARecordThatIsLowerThanTheLandStaysOverIt) {
       EXPECT_NEAR(std::stod(shown), height_m, 0.1) << name;
     }
   }
-  FlightSession window = SmallFlight(SceneAt({3500.0, false}));
+  FlightSession window = SmallFlight(Mountains());
   window.Replay(low);
   window.WaitUntilReady(kSmall);
   window.Advance({}, 0.5);
   EXPECT_GT(OverTheGround_m(window), 0.05);
 }
-
-class PicturesInParts : public FlightsOverLand {
- protected:
-  [[nodiscard]] FlightSession FlightOf(std::optional<int> largest_part) const {
-    const Scene scene = SceneAt({3500.0, false});
-    FlightSessionSettings settings;
-    settings.land = LandSourceOf(scene);
-    settings.quality = {Quality::kMedium};
-    settings.size = kSize;
-    settings.largest_part = largest_part;
-    return {scene, ParseInstant("2026-06-21T18:20:00Z"), settings};
-  }
-
-  static constexpr ImageSize kSize{560, 300};
-  static constexpr int kPart = 480;
-};
 
 /// Of the larger of both, in the channel that differs most.
 double Difference(const std::array<float, 3>& a, const std::array<float, 3>& b) {
@@ -257,13 +246,19 @@ double Difference(const std::array<float, 3>& a, const std::array<float, 3>& b) 
   return most;
 }
 
-TEST_F(PicturesInParts, ArePicturesInOnePiece) {
-  const auto painted = [&](std::optional<int> largest_part) {
-    FlightSession flight = FlightOf(largest_part);
-    return PictureWriter(flight).Picture(kSize, 4);
-  };
-  const Image whole = painted(std::nullopt), parts = painted(kPart);
+TEST_F(FlightsOverLand, PicturesInPartsArePicturesInOnePieceAndExposedAsAWhole) {
+  constexpr ImageSize kSize{560, 300};
+  constexpr int kPart = 480;
   ASSERT_GE(TiledPicture(kSize.width, kSize.height, kPart).tiles().size(), 6U);
+  const Scene scene = Mountains();
+  FlightSessionSettings settings = SettingsFor(scene, kSize);
+  settings.quality = {Quality::kMedium};
+  for (const std::optional<int> part : {std::optional<int>(), std::optional(kPart)}) {
+    settings.largest_part = part;
+    FlightSession flight(scene, Evening(), settings);
+    PictureWriter(flight).Write(File(part ? "parts.exr" : "whole.exr"), kSize);
+  }
+  const Image whole = ReadExr(File("whole.exr")), parts = ReadExr(File("parts.exr"));
   double worst = 0.0;
   for (int y = 0; y < whole.height; ++y) {
     for (int x = 0; x < whole.width; ++x)
@@ -271,15 +266,208 @@ TEST_F(PicturesInParts, ArePicturesInOnePiece) {
   }
   EXPECT_LT(worst, 1e-3) << "rounding of floats in a narrower view; a tile without its rim is off "
                             "by several per cent where shafts end";
+  EXPECT_NEAR(std::stod(ReadExrMetadata(File("parts.exr")).at("alpenglow.ev100")),
+              std::stod(ReadExrMetadata(File("whole.exr")).at("alpenglow.ev100")), 1e-3);
 }
 
-TEST_F(PicturesInParts, AreExposedAsAWhole) {
-  for (const std::optional<int> part : {std::optional<int>(), std::optional(kPart)}) {
-    FlightSession flight = FlightOf(part);
-    PictureWriter(flight).Write(folder_ / (part ? "parts.png" : "whole.png"), kSize);
+// --- pictures that are made while the flight goes on ---
+
+class PictureQueueTest : public FlightsOverLand {
+ protected:
+  /// Frames of a window, until all that was asked for has ended.
+  static std::vector<PictureOutcome> DrawUntilEnd(PictureQueue& queue) {
+    while (queue.UnderWay()) {
+      queue.NextFrame();
+      std::this_thread::yield();
+    }
+    return queue.TakeOutcomes();
   }
-  EXPECT_NEAR(std::stod(ReadPngMetadata(folder_ / "parts.png").at("alpenglow.ev100")),
-              std::stod(ReadPngMetadata(folder_ / "whole.png").at("alpenglow.ev100")), 1e-3);
+};
+
+// The flight goes to another place, time, air and exposure as soon as the picture is asked for.
+TEST_F(PictureQueueTest, APictureIsThatOfItsMomentWhateverFollows) {
+  const Scene scene = Mountains();
+  const FlightSessionSettings settings = SettingsFor(scene);
+  const RenderTarget screen(kSmall.width, kSmall.height, RenderTarget::Depth::kNone);
+  FlightSession flight(scene, Evening(), settings);
+  flight.WaitUntilReady(kSmall);
+  AirChoice haze;
+  haze.aerosol = 2.0;
+  flight.edits().Use(haze, flight.eye().place);
+  flight.exposure().Set(12.0);
+  flight.Paint({screen.framebuffer(), kSmall.width, kSmall.height}, 0.1);
+  const FlightMoment moment = flight.Moment();
+  PictureQueue queue(scene, settings);
+  queue.Ask({moment, File("moving.exr"), kSmall});
+  queue.Ask({moment, File("again.exr"), kSmall});
+  flight.edits().Use(AirChoice{}, flight.eye().place);
+  flight.exposure().Set(3.0);
+  for (int frame = 0; queue.UnderWay(); ++frame) {
+    queue.NextFrame();
+    std::this_thread::yield();
+    if (frame >= 4) continue;  // each frame has another sun, whose light takes threads of its own
+    flight.cockpit().clock().Shift(60.0);
+    flight.Advance({}, 1.0);
+    flight.Paint({screen.framebuffer(), kSmall.width, kSmall.height}, 0.1);
+  }
+  for (const PictureOutcome& outcome : queue.TakeOutcomes()) EXPECT_EQ(outcome.fault, "");
+  FlightSession resting(scene, Evening(), settings);
+  resting.edits().Use(haze, resting.eye().place);
+  resting.exposure().Set(12.0);
+  PictureWriter(resting).Write(File("resting.exr"), kSmall);
+  const Image at_rest = ReadExr(File("resting.exr"));
+  const Metadata header_at_rest = ReadExrMetadata(File("resting.exr"));
+  for (const char* name : {"moving.exr", "again.exr"}) {
+    EXPECT_EQ(ReadExr(File(name)).rgb, at_rest.rgb) << name << ": the same code, to the bit";
+    for (const char* key : {"alpenglow.ev100", "alpenglow.time", "alpenglow.camera_height"})
+      EXPECT_EQ(ReadExrMetadata(File(name)).at(key), header_at_rest.at(key)) << name;
+  }
+}
+
+TEST_F(PictureQueueTest, FramesAreDrawnBetweenThePartsOfAPicture) {
+  const Scene scene = Mountains();
+  const FlightSessionSettings settings = SettingsFor(scene);
+  PictureQueue queue(scene, settings);
+  FlightSession flight(scene, Evening(), settings);
+  queue.Ask({flight.Moment(), File("picture.png"), kSmall});
+  std::set<double> shares;
+  int frames = 0;
+  const auto next_share = [&] {
+    for (auto picture = queue.UnderWay(); picture; picture = queue.UnderWay()) {
+      if (shares.insert(picture->share).second) return true;
+      std::this_thread::yield();
+    }
+    return false;
+  };
+  for (bool goes_on = next_share(); goes_on; ++frames) {
+    queue.NextFrame();
+    goes_on = next_share();
+  }
+  EXPECT_GE(frames, 6) << "the flight, the scene, and four rays a pixel";
+  EXPECT_EQ(shares.size(), static_cast<std::size_t>(frames)) << "one part for each frame";
+  EXPECT_TRUE(std::filesystem::exists(File("picture.png")));
+}
+
+TEST_F(PictureQueueTest, AFolderThatIsGoneIsToldAndTheNextPictureIsWritten) {
+  const Scene scene = Mountains();
+  const FlightSessionSettings settings = SettingsFor(scene);
+  PictureQueue queue(scene, settings);
+  FlightSession flight(scene, Evening(), settings);
+  queue.Ask({flight.Moment(), File("gone") / "picture.png", kSmall});
+  queue.Ask({flight.Moment(), File("picture.png"), kSmall});
+  const std::vector<PictureOutcome> outcomes = DrawUntilEnd(queue);
+  ASSERT_EQ(outcomes.size(), 2U);
+  EXPECT_THAT(outcomes[0].fault, HasSubstr("gone"));
+  EXPECT_THAT(outcomes[1].fault, IsEmpty());
+  EXPECT_TRUE(std::filesystem::exists(File("picture.png")));
+}
+
+TEST_F(PictureQueueTest, AQueueThatGoesHasWrittenWhatWasAskedFor) {
+  const Scene scene = Mountains();
+  const FlightSessionSettings settings = SettingsFor(scene);
+  FlightSession flight(scene, Evening(), settings);
+  {
+    PictureQueue queue(scene, settings);
+    queue.Ask({flight.Moment(), File("picture.png"), kSmall});
+  }
+  EXPECT_EQ(ReadPng(File("picture.png")).width, kSmall.width);
+}
+
+TEST_F(PictureQueueTest, WithoutAWindowPicturesWithInstrumentsAreNotWritten) {
+  const Scene scene = Mountains();
+  const FlightSessionSettings settings = SettingsFor(scene);
+  FlightSession flight(scene, Evening(), settings);
+  PictureQueue queue(scene, settings);
+  const auto no_instruments = [](const Image&) {
+    ADD_FAILURE() << "drawn into a window that has gone";
+    return DisplayImage{};
+  };
+  queue.Ask({flight.Moment(), File("with.png"), kSmall, no_instruments});
+  queue.Ask({flight.Moment(), File("without.png"), kSmall});
+  queue.FinishWithoutWindow();
+  EXPECT_FALSE(std::filesystem::exists(File("with.png")));
+  EXPECT_TRUE(std::filesystem::exists(File("without.png")));
+}
+
+// --- names of files with numbers ---
+
+class NumberedNames : public TemporaryFolder {};
+
+TEST_F(NumberedNames, ANumberIsFreeWhenNeitherPictureHasIt) {
+  EXPECT_EQ(NextScreenshot(folder_), folder_ / "skyview-0001");
+  WriteText(folder_ / "skyview-0001.exr", "");
+  EXPECT_EQ(NextScreenshot(folder_), folder_ / "skyview-0002");
+  WriteText(folder_ / "skyview-0002.png", "");
+  WriteText(folder_ / "skyview-0004.png", "");
+  EXPECT_EQ(NextScreenshot(folder_), folder_ / "skyview-0003");
+}
+
+TEST_F(NumberedNames, AFlightThatIsBeingRecordedHasItsNumber) {
+  EXPECT_EQ(NextFlight(folder_), folder_ / "flight-0001.csv");
+  WriteText(folder_ / "flight-0001.csv.part", "");
+  EXPECT_EQ(NextFlight(folder_), folder_ / "flight-0002.csv");
+  WriteText(folder_ / "flight-0002.csv", "");
+  EXPECT_EQ(NextFlight(folder_), folder_ / "flight-0003.csv");
+}
+
+// --- times of frames ---
+
+TEST(FrameTimes, PercentilesAreTimesThatWereMeasured) {
+  std::vector<double> hundred(100);
+  std::iota(hundred.begin(), hundred.end(), 1.0);
+  std::reverse(hundred.begin(), hundred.end());
+  const Percentiles of = PercentilesOf(hundred);
+  EXPECT_EQ(of.median, 50.0);
+  EXPECT_EQ(of.p95, 95.0);
+  EXPECT_EQ(of.p99, 99.0);
+  const Percentiles of_one = PercentilesOf({7.0});
+  EXPECT_EQ(of_one.median, 7.0);
+  EXPECT_EQ(of_one.p99, 7.0);
+  EXPECT_EQ(PercentilesOf({1.0, 2.0, 30.0}).p95, 30.0) << "the worst of few";
+}
+
+TEST(FrameTimes, TheFlightIsSteadyLevelAndTimeRunsSixtyfold) {
+  const Eye start{PlaceFromDegrees(46.0, 8.0, 3000.0), 0.7};
+  const UtcInstant begin = ParseInstant("2026-06-21T18:00:00Z");
+  const auto at = [&](double seconds) { return BenchmarkFlight(start, begin, seconds); };
+  EXPECT_NEAR(at(0.0).eye.place.latitude_rad, start.place.latitude_rad, 1e-12);
+  for (const double seconds : {0.0, 3.0, 40.0, 600.0}) {
+    const ReplayFrame a = at(seconds), b = at(seconds + 0.1);
+    const glm::dvec3 step =
+        (EcefFromGeodetic(kWgs84, b.eye.place) - EcefFromGeodetic(kWgs84, a.eye.place)).xyz;
+    EXPECT_NEAR(glm::length(step), 25.0, 0.1) << "250 m/s";
+    EXPECT_EQ(b.eye.place.height_m, 3000.0);
+    const Vector<Enu> ahead =
+        LocalFrame(kWgs84, a.eye.place).EnuFromEcef(Vector<Ecef>{glm::normalize(step)});
+    EXPECT_NEAR(std::remainder(std::atan2(ahead.xyz.x, ahead.xyz.y) - a.eye.heading_rad, 2.0 * kPi),
+                0.0, 0.01)
+        << "it looks where it flies";
+    EXPECT_NEAR(SecondsBetween(*a.now, *b.now), 6.0, 1e-4);
+  }
+}
+
+class Benchmarks : public tests::Headless {};
+
+TEST_F(Benchmarks, EveryPassHasALineAndTheFrameTheLastOne) {
+  for (const PassClock clock : {PassClock::kFinishes, PassClock::kQueries}) {
+    Benchmark benchmark(0.1, clock);
+    while (benchmark.NextFrame()) {
+      benchmark.timer().Begin("sky");
+      benchmark.timer().Begin("land");
+    }
+    std::istringstream text(benchmark.Text());
+    std::vector<std::string> names;
+    std::string name;
+    for (double median = 0.0, p95 = 0.0, p99 = 0.0; text >> name >> median >> p95 >> p99;) {
+      names.push_back(name);
+      EXPECT_LE(median, p95);
+      EXPECT_LE(p95, p99);
+    }
+    EXPECT_TRUE(text.eof());
+    EXPECT_THAT(names, ElementsAre("sky", "sky.cpu", "land", "land.cpu", "frame"));
+    EXPECT_GE(benchmark.elapsed_s(), 0.1);
+    EXPECT_THAT(benchmark.WorstText(), ::testing::HasSubstr("times the median"));
+  }
 }
 
 }  // namespace

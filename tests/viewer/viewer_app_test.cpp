@@ -11,8 +11,7 @@
 #include "renderer/scene/scene_options.h"
 #include "tests/fixtures/bare_scene.h"
 #include "tests/fixtures/temporary_folder.h"
-#include "tests/renderer/terrain/land_files.h"
-#include "tests/viewer/shaders/headless.h"
+#include "tests/viewer/land/headless_land.h"
 
 namespace alpenglow::viewer {
 namespace {
@@ -24,18 +23,32 @@ constexpr ImageSize kSize{320, 240};
 constexpr int kF1 = 290, kF2 = 291, kF3 = 292, kL = 76, kR = 82, kW = 87, kRightArrow = 262,
               kEscape = 256, kEnterKey = 257;
 
-class ViewerAppTest : public tests::Headless {
- protected:
-  void SetUp() override {
-    tests::Headless::SetUp();
-    if (IsSkipped()) return;
+/// Makes a flight over the bare planet.
+struct BareFlight {
+  static FlightSession Made() {
     Scene scene = BareScene(3000.0, 30.0, 0.0, 60.0);
     scene.medium = MediumPreset("bruneton2017");
     FlightSessionSettings settings;
     settings.quality = {Quality::kLow};
     settings.size = kSize;
-    flight_ =
-        std::make_unique<FlightSession>(scene, ParseInstant("2026-06-21T10:00:00Z"), settings);
+    return {scene, ParseInstant("2026-06-21T10:00:00Z"), settings};
+  }
+
+  FlightSession flight = Made();
+  FlightMoment begin = flight.Moment();
+};
+
+/// Each test begins with the flight as it was made.
+class ViewerAppTest : public tests::HeadlessSharing<BareFlight> {
+ protected:
+  void SetUp() override {
+    HeadlessSharing::SetUp();
+    if (IsSkipped()) return;
+    flight_ = &shared().flight;
+    flight_->cockpit().Enter(FlightMode::kFree);
+    flight_->cockpit().pilot().SetTrack(nullptr);
+    flight_->cockpit().clock().SetRate(1.0);
+    flight_->TakeUp(shared().begin);
     deck_ = std::make_unique<ViewerApp>(*flight_, recorder_, ViewerApp::Settings{});
     screen_ = std::make_unique<RenderTarget>(kSize.width, kSize.height, RenderTarget::Depth::kNone);
     flight_->WaitUntilReady(kSize);
@@ -43,7 +56,6 @@ class ViewerAppTest : public tests::Headless {
   void TearDown() override {
     screen_.reset();
     deck_.reset();
-    flight_.reset();
   }
   /// A key that goes down and up.
   void Press(int key, int modifiers = 0) {
@@ -86,7 +98,7 @@ class ViewerAppTest : public tests::Headless {
   [[nodiscard]] std::vector<HudMessage> Messages() const { return deck_->Model().messages; }
 
   static constexpr double kFrame_s = 1.0 / 60.0;
-  std::unique_ptr<FlightSession> flight_;
+  FlightSession* flight_ = nullptr;
   FlightRecorder recorder_;
   std::unique_ptr<ViewerApp> deck_;
   std::unique_ptr<RenderTarget> screen_;
@@ -303,36 +315,17 @@ TEST_F(ViewerAppFiles, ARecordThatNobodyEndedIsWholeWhenTheDeckHasGone) {
   EXPECT_EQ(ReadFlight("flight-0001.csv").points().size(), 1U);
 }
 
-class ViewerAppOverLand : public tests::LandFolder {
- protected:
-  void SetUp() override {
-    LandFolder::SetUp();
-    try {
-      context_.emplace();
-    } catch (const DisplayError& error) {
-      GTEST_SKIP() << error.what();
-    }
-    tests::WriteTile(folder_ / "land.tif", 0, 0);
-  }
-  /// 300 m over mountains about 1500 m high.
-  [[nodiscard]] FlightSession FlightOverMountains() const {
-    Scene scene;
-    scene.medium = MediumPreset("bruneton2017");
-    scene.place = tests::PlaceOfSample(120.0, 200.0, 0.0);
-    scene.camera = CameraFromDegrees({300.0, true}, 0.0, 0.0, 0.0, 60.0);
-    scene.terrain.kind = TerrainSource::Kind::kElevationModel;
-    scene.terrain.file = folder_ / "land.tif";
-    FlightSessionSettings settings;
-    settings.land = LandSourceOf(scene);
-    settings.quality = {Quality::kLow};
-    settings.size = kSize;
-    return {scene, ParseInstant("2026-06-21T10:00:00Z"), settings};
-  }
-  std::optional<HeadlessContext> context_;
-};
+/// 300 m over mountains about 1500 m high.
+using ViewerAppOverLand = tests::HeadlessTile;
 
 TEST_F(ViewerAppOverLand, NothingIsNotedBeforeTheGroundUnderTheEyeIsKnown) {
-  FlightSession flight = FlightOverMountains();
+  const Scene scene = SceneOverTile(tests::PlaceOfSample(120.0, 200.0, 0.0),
+                                    CameraFromDegrees({300.0, true}, 0.0, 0.0, 0.0, 60.0));
+  FlightSessionSettings settings;
+  settings.land = LandSourceOf(scene);
+  settings.quality = {Quality::kLow};
+  settings.size = kSize;
+  FlightSession flight(scene, ParseInstant("2026-06-21T10:00:00Z"), settings);
   FlightRecorder recorder(folder_ / "f.csv");
   ViewerApp deck(flight, recorder, {});
   const RenderTarget screen(kSize.width, kSize.height, RenderTarget::Depth::kNone);

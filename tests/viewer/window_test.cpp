@@ -26,13 +26,14 @@ class SkyviewWindow : public TemporaryFolder {
   void SetUp() override {
     TemporaryFolder::SetUp();
     WriteText(folder_ / "s.toml", kBareSceneText);
+    static const bool has_display = Run("ALPENGLOW_DISPLAY='8x8'", "").status == 0;
+    if (!has_display) GTEST_SKIP() << "Mesa's EGL gives no OpenGL here";
   }
   /// @param display  as ALPENGLOW_DISPLAY and ALPENGLOW_DISPLAY_GL say it.
   [[nodiscard]] Outcome Run(const std::string& display, const std::string& arguments) const {
     return RunCommand("env " + display + " '" + tests::kSkyviewOnScriptedDisplay + "' s.toml " +
                       arguments);
   }
-  [[nodiscard]] bool HasDisplay() const { return Run("ALPENGLOW_DISPLAY='8x8'", "").status == 0; }
 };
 
 /// Sizes of the pictures that were shown. Each had light in its middle.
@@ -49,7 +50,6 @@ std::vector<std::string> Shown(const std::string& printed) {
 
 // Hard case 49.
 TEST_F(SkyviewWindow, MinimisedResizedAndMovedToAnotherDisplayItGoesOn) {
-  if (!HasDisplay()) GTEST_SKIP() << "Mesa's EGL gives no OpenGL here";
   // As it opens, minimised, on a display of twice the density, a pixel, and a column.
   const Outcome outcome = Run("ALPENGLOW_DISPLAY='64x36 0x0 0x0 128x72 1x1 1x40'", "--hud off");
   EXPECT_EQ(outcome.status, 0) << outcome.error;
@@ -59,7 +59,6 @@ TEST_F(SkyviewWindow, MinimisedResizedAndMovedToAnotherDisplayItGoesOn) {
 
 // Hard case 49.
 TEST_F(SkyviewWindow, AScreenshotHasTheSizeThatTheWindowHasThen) {
-  if (!HasDisplay()) GTEST_SKIP() << "Mesa's EGL gives no OpenGL here";
   const Outcome outcome =
       Run("ALPENGLOW_DISPLAY='64x36 0x0 100x50 100x50'", "--frames 2 --screenshot shot.png");
   EXPECT_EQ(outcome.status, 0) << outcome.error;
@@ -70,7 +69,6 @@ TEST_F(SkyviewWindow, AScreenshotHasTheSizeThatTheWindowHasThen) {
 
 // Hard case 49.
 TEST_F(SkyviewWindow, OpenedMinimisedAndClosedItEndsInPeace) {
-  if (!HasDisplay()) GTEST_SKIP() << "Mesa's EGL gives no OpenGL here";
   const Outcome outcome = Run("ALPENGLOW_DISPLAY='0x0 0x0'", "");
   EXPECT_EQ(outcome.status, 0) << outcome.error;
   EXPECT_THAT(Shown(outcome.out), ElementsAre());
@@ -78,7 +76,6 @@ TEST_F(SkyviewWindow, OpenedMinimisedAndClosedItEndsInPeace) {
 
 // Hard case 49.
 TEST_F(SkyviewWindow, ADisplayWithOpenGl21IsRefusedWithStatusFiveAndAClearMessage) {
-  if (!HasDisplay()) GTEST_SKIP() << "Mesa's EGL gives no OpenGL here";
   for (const char* newest : {"2.1", "3.2"}) {
     const Outcome outcome =
         Run(std::string("ALPENGLOW_DISPLAY=64x36 ALPENGLOW_DISPLAY_GL=") + newest,
@@ -100,7 +97,6 @@ std::string DisplayWith(const std::string& word) {
 }
 
 TEST_F(SkyviewWindow, ASignalEndsTheFlightAndItsRecordIsWhole) {
-  if (!HasDisplay()) GTEST_SKIP() << "Mesa's EGL gives no OpenGL here";
   const std::pair<const char*, int> signals[] = {
       {"raise:2", 130}, {"raise:15", 143}, {"raise:1", 0}};  // SIGINT, SIGTERM, SIGHUP
   for (const auto& [word, status] : signals) {
@@ -113,7 +109,6 @@ TEST_F(SkyviewWindow, ASignalEndsTheFlightAndItsRecordIsWhole) {
 }
 
 TEST_F(SkyviewWindow, AFlightThatEndsBeforeItsLandIsThereLeavesNoRecordAndSaysSo) {
-  if (!HasDisplay()) GTEST_SKIP() << "Mesa's EGL gives no OpenGL here";
   WriteText(folder_ / "s.toml",
             "[place]\nlatitude = 46.5\nlongitude = 8.0\n[terrain]\nrange = true\n"
             "[atmosphere]\npreset = \"bruneton2017\"\n");
@@ -125,7 +120,6 @@ TEST_F(SkyviewWindow, AFlightThatEndsBeforeItsLandIsThereLeavesNoRecordAndSaysSo
 }
 
 TEST_F(SkyviewWindow, WhatWasFlownBeforeAKillIsReplayed) {
-  if (!HasDisplay()) GTEST_SKIP() << "Mesa's EGL gives no OpenGL here";
   const Outcome killed = Run(DisplayWith("raise:9"), "--record f.csv");
   EXPECT_NE(killed.status, 0);
   EXPECT_FALSE(std::filesystem::exists(folder_ / "f.csv"));
@@ -141,7 +135,6 @@ TEST_F(SkyviewWindow, WhatWasFlownBeforeAKillIsReplayed) {
 }
 
 TEST_F(SkyviewWindow, AReplayBeginsWhereTheFlightDid) {
-  if (!HasDisplay()) GTEST_SKIP() << "Mesa's EGL gives no OpenGL here";
   WriteText(folder_ / "p.csv",
             "t_s,latitude,longitude,height_m,heading,utc\n0,46.5,8,3000,350,2026-06-21T10:00:00Z\n"
             "1000,46.6,8,3100,10,2026-06-21T10:16:40Z\n");
@@ -157,7 +150,6 @@ TEST_F(SkyviewWindow, AReplayBeginsWhereTheFlightDid) {
 }
 
 TEST_F(SkyviewWindow, OfADisplayThatGoesTheRecordIsWholeAndTheStatusFive) {
-  if (!HasDisplay()) GTEST_SKIP() << "Mesa's EGL gives no OpenGL here";
   for (const auto& [word, said] : {std::pair{"gone", "display has gone"}, {"reset", "was reset"}}) {
     std::filesystem::remove(folder_ / "f.csv");
     const Outcome outcome = Run(DisplayWith(word), "--record f.csv");
@@ -169,7 +161,6 @@ TEST_F(SkyviewWindow, OfADisplayThatGoesTheRecordIsWholeAndTheStatusFive) {
 }
 
 TEST_F(SkyviewWindow, AWindowBeyondTheDriversLimitIsRefusedBeforeAnythingIsDrawn) {
-  if (!HasDisplay()) GTEST_SKIP() << "Mesa's EGL gives no OpenGL here";
   const Outcome outcome = Run("ALPENGLOW_DISPLAY='40000x8 40000x8'", "--record f.csv");
   EXPECT_EQ(outcome.status, 2);
   EXPECT_THAT(outcome.error, HasSubstr("--size 40000x8"));
@@ -178,14 +169,12 @@ TEST_F(SkyviewWindow, AWindowBeyondTheDriversLimitIsRefusedBeforeAnythingIsDrawn
 }
 
 TEST_F(SkyviewWindow, AWindowThatIsClosedLeavesThePictureOfF3) {
-  if (!HasDisplay()) GTEST_SKIP() << "Mesa's EGL gives no OpenGL here";
   const Outcome outcome = Run("ALPENGLOW_DISPLAY='64x36 key:292,0 64x36'", "");
   EXPECT_EQ(outcome.status, 0) << outcome.error;
   EXPECT_EQ(ReadPng(folder_ / "skyview-0001.png").width, 64);
 }
 
 TEST_F(SkyviewWindow, OfADisplayThatGoesThePictureOfF3IsWritten) {
-  if (!HasDisplay()) GTEST_SKIP() << "Mesa's EGL gives no OpenGL here";
   const Outcome outcome = Run("ALPENGLOW_DISPLAY='64x36 key:292,0 64x36 gone 64x36'", "");
   EXPECT_EQ(outcome.status, 5);
   EXPECT_THAT(outcome.error, HasSubstr("skyview-0001.png is written"));
@@ -193,7 +182,6 @@ TEST_F(SkyviewWindow, OfADisplayThatGoesThePictureOfF3IsWritten) {
 }
 
 TEST_F(SkyviewWindow, ShiftF10FillsTheScreenAndGoesBack) {
-  if (!HasDisplay()) GTEST_SKIP() << "Mesa's EGL gives no OpenGL here";
   const Outcome outcome = Run("ALPENGLOW_DISPLAY='16x9 key:299,1 16x9 key:299,1 16x9'", "");
   EXPECT_EQ(outcome.status, 0) << outcome.error;
   EXPECT_THAT(outcome.out, HasSubstr("screen 200x100\n"));

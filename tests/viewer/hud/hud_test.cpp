@@ -1,18 +1,22 @@
 // SPDX-License-Identifier: MIT
-// Instruments and panels as a whole: hidden, scaled, clicked on.
+// The HUD: what it shows, its keys and its help.
 #include "viewer/hud/hud.h"
 
 #define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>
 #include <gtest/gtest.h>
+#include <imgui.h>
 
 #include <algorithm>
 #include <array>
+#include <string>
 #include <utility>
 
 #include "atmosphere/base/error.h"
 #include "atmosphere/math/constants.h"
 #include "tests/viewer/hud/hud_picture.h"
+#include "viewer/hud/imgui_backend.h"
+#include "viewer/hud/panels.h"
 
 namespace alpenglow::viewer {
 namespace {
@@ -20,13 +24,13 @@ namespace {
 using tests::Changes;
 using tests::FrameOf;
 
-constexpr int kWidth = 1280, kHeight = 720;
+constexpr int kHudWidth = 1280, kHudHeight = 720;
 
 class HudTest : public tests::HudPicture {
  protected:
   /// A frame with the pointer there.
   Changes At(Hud& hud, double x, double y, bool pressed) {
-    InputFrame input = Still(kWidth, kHeight);
+    InputFrame input = Still(kHudWidth, kHudHeight);
     input.events.pointer = PointerPlace{x, y};
     input.events.buttons[0] = pressed;
     return FrameOf(hud, model_, input);
@@ -56,11 +60,11 @@ TEST_F(HudTest, HiddenItLeavesEveryByteOfThePictureAsItWas) {
   Hud hud;
   hud.Toggle(HudPanel::kHelp);
   hud.ToggleMenu();
-  const Image shown = Drawn(hud, model_, kWidth, kHeight);
+  const Image shown = Drawn(hud, model_, kHudWidth, kHudHeight);
   hud.ToggleVisible();
-  const Image hidden = Drawn(hud, model_, kWidth, kHeight);
+  const Image hidden = Drawn(hud, model_, kHudWidth, kHudHeight);
   const Image grey = [] {
-    Image image(kWidth, kHeight);
+    Image image(kHudWidth, kHudHeight);
     for (auto& pixel : image.rgb) pixel = {0.5F, 0.5F, 0.5F};
     return image;
   }();
@@ -68,7 +72,7 @@ TEST_F(HudTest, HiddenItLeavesEveryByteOfThePictureAsItWas) {
   EXPECT_TRUE(Difference(grey, hidden).empty());
   EXPECT_FALSE(hud.Taken().mouse);
   hud.ToggleVisible();
-  EXPECT_TRUE(Difference(shown, Drawn(hud, model_, kWidth, kHeight)).empty())
+  EXPECT_TRUE(Difference(shown, Drawn(hud, model_, kHudWidth, kHudHeight)).empty())
       << "and it comes back as it was";
 }
 
@@ -116,12 +120,12 @@ TEST_F(HudTest, TheMouseIsThePanelsWhereTheyAreAndTheFlightsElsewhere) {
   Hud hud;
   hud.Toggle(HudPanel::kLeave);  // in the middle below the clock
   for (int frame = 0; frame < 3; ++frame)
-    static_cast<void>(At(hud, 0.5 * kWidth, 0.57 * kHeight, false));
+    static_cast<void>(At(hud, 0.5 * kHudWidth, 0.57 * kHudHeight, false));
   EXPECT_TRUE(hud.Taken().mouse);
-  static_cast<void>(At(hud, 0.2 * kWidth, 0.8 * kHeight, false));
+  static_cast<void>(At(hud, 0.2 * kHudWidth, 0.8 * kHudHeight, false));
   EXPECT_FALSE(hud.Taken().mouse);
-  static_cast<void>(At(hud, 0.2 * kWidth, 0.8 * kHeight, true));
-  static_cast<void>(At(hud, 0.5 * kWidth, 0.57 * kHeight, true));
+  static_cast<void>(At(hud, 0.2 * kHudWidth, 0.8 * kHudHeight, true));
+  static_cast<void>(At(hud, 0.5 * kHudWidth, 0.57 * kHudHeight, true));
   EXPECT_FALSE(hud.Taken().mouse) << "a drag that began in the picture stays the flight's";
 }
 
@@ -143,7 +147,7 @@ TEST_F(HudTest, AClickIntoTheStripOfTheDayIsAShareOfTheDay) {
 TEST_F(HudTest, ASliderAsksForWhatItIsDraggedTo) {
   Hud hud;
   hud.Toggle(HudPanel::kAir);
-  const double x = kWidth - 10.0 - 200.0;
+  const double x = kHudWidth - 10.0 - 200.0;
   // From below: the ground's albedo, then ozone; lists are above them.
   const auto found = Find(
       hud, x, 300, 60, [](const Changes& request) { return request.air && request.air->ozone_du; });
@@ -159,7 +163,7 @@ TEST_F(HudTest, ASliderAsksForWhatItIsDraggedTo) {
 TEST_F(HudTest, TheLandingLightIsSwitchedWhereItsNameStands) {
   Hud hud;
   hud.Toggle(HudPanel::kLights);
-  EXPECT_TRUE(Find(hud, kWidth - 100.0, 250, 482, [](const Changes& request) {
+  EXPECT_TRUE(Find(hud, kHudWidth - 100.0, 250, 482, [](const Changes& request) {
                 return request.landing_light;
               }).has_value());
 }
@@ -174,7 +178,7 @@ TEST_F(HudTest, ATypedInstantIsAskedForWithEnter) {
     if (hud.Taken().keyboard) field_y = y;
   }
   ASSERT_TRUE(field_y.has_value()) << "a field that takes letters";
-  InputFrame typing = Still(kWidth, kHeight);
+  InputFrame typing = Still(kHudWidth, kHudHeight);
   typing.events.text = "2026-06-21T04:00:00Z";
   FrameOf(hud, model_, typing);
   typing.events.text.clear();
@@ -187,15 +191,15 @@ TEST_F(HudTest, APictureIsAskedForInTheSizeThatIsSeen) {
   hud.Toggle(HudPanel::kCapture);
   std::optional<PictureOrder> capture;
   // From below: the recorder, then the buttons.
-  const auto found = Find(hud, 0.5 * kWidth - 105.0, 260, 80, [&](const Changes& request) {
+  const auto found = Find(hud, 0.5 * kHudWidth - 105.0, 260, 80, [&](const Changes& request) {
     capture = request.picture;
     return capture.has_value();
   });
   ASSERT_TRUE(found.has_value());
   EXPECT_FALSE(capture->is_exr);
   ASSERT_TRUE(capture->size.has_value());
-  EXPECT_EQ(capture->size->width, kWidth);
-  EXPECT_EQ(capture->size->height, kHeight);
+  EXPECT_EQ(capture->size->width, kHudWidth);
+  EXPECT_EQ(capture->size->height, kHudHeight);
   EXPECT_FALSE(capture->with_instruments);
 }
 
@@ -208,11 +212,11 @@ TEST_F(HudTest, TheHeadingThatIsHeldIsTheOneFlown) {
     hold = request.heading_rad;
     return hold.has_value();
   };
-  ASSERT_TRUE(Find(hud, 0.5 * kWidth - 100.0, 500, 680, asked).has_value());
+  ASSERT_TRUE(Find(hud, 0.5 * kHudWidth - 100.0, 500, 680, asked).has_value());
   ASSERT_TRUE(hold->has_value());
   EXPECT_NEAR(**hold, 2.0 * kPi - 0.5, 1e-9) << "in [0, 2 pi]";
   model_.autopilot.heading_rad = **hold;
-  ASSERT_TRUE(Find(hud, 0.5 * kWidth - 100.0, 500, 680, asked).has_value());
+  ASSERT_TRUE(Find(hud, 0.5 * kHudWidth - 100.0, 500, 680, asked).has_value());
   EXPECT_FALSE(hold->has_value()) << "a second click lets it go";
 }
 
@@ -221,15 +225,15 @@ TEST_F(HudTest, LeavingIsAskedOnce) {
   hud.Toggle(HudPanel::kLeave);
   const auto quits = [](const Changes& request) { return request.leaves; };
   EXPECT_FALSE(At(hud, 1.0, 1.0, false).leaves);
-  EXPECT_TRUE(Find(hud, 0.5 * kWidth - 110.0, 360, 470, quits).has_value());
+  EXPECT_TRUE(Find(hud, 0.5 * kHudWidth - 110.0, 360, 470, quits).has_value());
 }
 
 TEST_F(HudTest, PanelsGrowWithTheScale) {
   Hud once({.scale = 1.0}), twice({.scale = 2.0});
   const auto panel = [&](Hud& hud, int times) {
-    const Image bare = Drawn(hud, model_, times * kWidth, times * kHeight);
+    const Image bare = Drawn(hud, model_, times * kHudWidth, times * kHudHeight);
     hud.Toggle(HudPanel::kAir);
-    return Difference(bare, Drawn(hud, model_, times * kWidth, times * kHeight));
+    return Difference(bare, Drawn(hud, model_, times * kHudWidth, times * kHudHeight));
   };
   const Box small = panel(once, 1), large = panel(twice, 2);
   EXPECT_NEAR(large.right - large.left, 2 * (small.right - small.left), 12)
@@ -266,7 +270,7 @@ TEST_F(HudTest, PanelsStayInAPictureThatShrinks) {
   Hud hud;
   const Image bare = Drawn(hud, model_, 320, 240);
   hud.Toggle(HudPanel::kAir);  // on the right
-  static_cast<void>(Drawn(hud, model_, kWidth, kHeight));
+  static_cast<void>(Drawn(hud, model_, kHudWidth, kHudHeight));
   const Box box = Difference(bare, Drawn(hud, model_, 320, 240));
   ASSERT_FALSE(box.empty());
   EXPECT_GT(box.left, 0);
@@ -283,10 +287,121 @@ TEST_F(HudTest, ItIsDimAtNight) {
     for (const auto& pixel : image.rgb) most = std::max(most, pixel[2]);
     return most;
   };
-  EXPECT_GT(brightest(Drawn(hud, model_, kWidth, kHeight)), 0.9F);
-  EXPECT_LE(brightest(Drawn(hud, night, kWidth, kHeight)), 0.5F + 1e-4F)
+  EXPECT_GT(brightest(Drawn(hud, model_, kHudWidth, kHudHeight)), 0.9F);
+  EXPECT_LE(brightest(Drawn(hud, night, kHudWidth, kHudHeight)), 0.5F + 1e-4F)
       << "the grey behind has that; blending rounds";
   EXPECT_EQ(hud.theme(), HudTheme::kNight);
+}
+
+// --- keys ---
+
+WindowEvents Keys(std::vector<KeyEvent> keys) {
+  WindowEvents events;
+  events.keys = std::move(keys);
+  return events;
+}
+
+TEST(PanelKeys, AKeyPressedAndLetGoBetweenTwoFramesIsSeenOnce) {
+  PanelKeys keys;
+  keys.Take(Keys({{GLFW_KEY_BACKSPACE, 0, GLFW_PRESS}, {GLFW_KEY_BACKSPACE, 0, GLFW_RELEASE}}));
+  EXPECT_TRUE(keys.IsDown(GLFW_KEY_BACKSPACE));
+  keys.Take({});
+  EXPECT_FALSE(keys.IsDown(GLFW_KEY_BACKSPACE));
+}
+
+TEST(PanelKeys, AHeldKeyStaysDownUntilItIsLetGo) {
+  PanelKeys keys;
+  keys.Take(Keys({{GLFW_KEY_LEFT, 0, GLFW_PRESS}}));
+  EXPECT_TRUE(keys.IsDown(GLFW_KEY_LEFT));
+  keys.Take({});
+  EXPECT_TRUE(keys.IsDown(GLFW_KEY_LEFT));
+  keys.Take(Keys({{GLFW_KEY_LEFT, 0, GLFW_REPEAT}}));
+  EXPECT_TRUE(keys.IsDown(GLFW_KEY_LEFT));
+  keys.Take(Keys({{GLFW_KEY_LEFT, 0, GLFW_RELEASE}}));
+  EXPECT_FALSE(keys.IsDown(GLFW_KEY_LEFT));
+}
+
+TEST(PanelKeys, AWindowOutOfFocusReleasesAllKeys) {
+  PanelKeys keys;
+  keys.Take(Keys({{GLFW_KEY_RIGHT_CONTROL, 0, GLFW_PRESS}}));
+  WindowEvents away;
+  away.focused = false;
+  keys.Take(away);
+  EXPECT_FALSE(keys.IsDown(GLFW_KEY_RIGHT_CONTROL));
+}
+
+// --- the help on keys ---
+
+/// All that the panel writes, whether it fits into the picture or not.
+std::string WrittenHelp(int width) {
+  std::string written;
+  ImGuiContext* const before = ImGui::GetCurrentContext();
+  ImGuiContext* const context = ImGui::CreateContext();
+  ImGui::SetCurrentContext(context);
+  ImGuiIO& io = ImGui::GetIO();
+  io.IniFilename = nullptr;
+  io.DisplaySize = {static_cast<float>(width), 4000.0F};
+  io.Fonts->Build();
+  io.ClipboardUserData = &written;
+  io.SetClipboardTextFn = [](void* to, const char* text) { *static_cast<std::string*>(to) = text; };
+  const HudModel model;
+  for (int frame = 0; frame < 3; ++frame) {
+    ImGui::NewFrame();
+    ImGui::Begin("Help", nullptr, ImGuiWindowFlags_AlwaysAutoResize);
+    ImGui::LogToClipboard();
+    ShowKeyHelp({model, nullptr, HudTheme::kDay, 1.0, width, 4000, 0});
+    ImGui::LogFinish();
+    ImGui::End();
+    ImGui::EndFrame();
+  }
+  ImGui::DestroyContext(context);
+  ImGui::SetCurrentContext(before);
+  return written;
+}
+
+std::size_t CountOf(const std::string& part, const std::string& text) {
+  std::size_t count = 0;
+  for (std::size_t at = text.find(part); at != std::string::npos; at = text.find(part, at + 1))
+    ++count;
+  return count;
+}
+
+TEST(KeyHelp, EveryActionIsWrittenUnderItsHeading) {
+  for (const int width : {320, 1280}) {
+    const std::string written = WrittenHelp(width);
+    for (const ActionSection& section : ActionSections()) {
+      const std::size_t heading = written.find(section.heading);
+      ASSERT_NE(heading, std::string::npos) << section.heading;
+      for (const Action& row : section.rows) {
+        EXPECT_GE(CountOf(std::string(row.help), written), 1U) << row.help << ", " << width;
+        EXPECT_NE(written.find(row.help, heading), std::string::npos) << row.help;
+        EXPECT_GE(CountOf(KeysText(row), written), 1U) << KeysText(row);
+      }
+    }
+  }
+}
+
+TEST(KeyHelp, ColumnsKeepTheOrderAndAreAboutEven) {
+  const std::vector<ActionSection> sections = ActionSections();
+  for (const std::size_t most : {1U, 2U, 3U, 40U}) {
+    const HelpColumns columns = InColumns(sections, most);
+    EXPECT_LE(columns.size(), most);
+    std::vector<std::string_view> headings;
+    std::size_t longest = 0, all = 0;
+    for (const auto& column : columns) {
+      std::size_t lines = 0;
+      for (const ActionSection& section : column) {
+        headings.push_back(section.heading);
+        lines += section.rows.size() + 2;
+      }
+      longest = std::max(longest, lines);
+      all += lines;
+    }
+    ASSERT_EQ(headings.size(), sections.size());
+    for (std::size_t i = 0; i < sections.size(); ++i) EXPECT_EQ(headings[i], sections[i].heading);
+    if (most > 3) continue;
+    EXPECT_LE(longest, all / most + 6) << "a section is not cut, and most have 6 lines or more";
+  }
 }
 
 }  // namespace

@@ -1,16 +1,25 @@
 // SPDX-License-Identifier: MIT
-// Instruments in pictures: where they stand, and that they lie over what they speak of.
+// Instruments: scales, texts and the strip of the day.
 #include "viewer/hud/instruments.h"
 
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <functional>
 #include <glm/geometric.hpp>
 
+#include "atmosphere/astronomy/sun.h"
+#include "atmosphere/colour/spectrum.h"
 #include "atmosphere/math/constants.h"
+#include "lut/image/image.h"
+#include "lut/image/tone_mapping.h"
+#include "lut/sky/sky_view.h"
 #include "tests/viewer/hud/hud_picture.h"
+#include "viewer/hud/hud_model.h"
+#include "viewer/hud/panel_controls.h"
 #include "viewer/hud/scales.h"
+#include "viewer/layer.h"
 
 namespace alpenglow::viewer {
 namespace {
@@ -200,6 +209,215 @@ TEST(Tapes, MarksAreRoundNumbers) {
   EXPECT_EQ(MarkStep(3200.0, 10.0), 100.0);
   EXPECT_EQ(MarkStep(-90000.0, 10.0), 5000.0);
   EXPECT_EQ(MarkStep(245.0, 5.0), 10.0);
+}
+
+// --- texts ---
+
+double Radians(double degrees) { return degrees * kRadiansPerDegree; }
+
+TEST(HudText, PlacesNameTheirHemisphere) {
+  EXPECT_EQ(LatitudeText(Radians(46.5)), "46.5000° N");
+  EXPECT_EQ(LatitudeText(Radians(-33.0)), "33.0000° S");
+  EXPECT_EQ(LongitudeText(Radians(-8.25)), "8.2500° W");
+  EXPECT_EQ(LongitudeText(Radians(179.9)), "179.9000° E");
+}
+
+TEST(HudText, HeadingsAreThreeDigitsBelow360) {
+  EXPECT_EQ(HeadingText(Radians(7.2)), "007");
+  EXPECT_EQ(HeadingText(Radians(-90.0)), "270");
+  EXPECT_EQ(HeadingText(Radians(359.7)), "000") << "not 360";
+  EXPECT_EQ(HeadingText(Radians(725.0)), "005");
+}
+
+TEST(HudText, NothingIsMinusZero) {
+  EXPECT_EQ(DegreesText(Radians(-0.04)), "+0.0°");
+  EXPECT_EQ(HeightText(-0.3, HudUnits::kMetric).number, "0");
+  EXPECT_EQ(ClimbText(-0.01, HudUnits::kMetric).number, "+0.0");
+  EXPECT_EQ(ClimbText(-0.001, HudUnits::kAviation).number, "+0");
+}
+
+TEST(HudText, HeightsAndSpeedsFromTheGroundToOrbit) {
+  EXPECT_EQ(Joined(HeightText(3241.7, HudUnits::kMetric)), "3242 m");
+  EXPECT_EQ(Joined(HeightText(408e3, HudUnits::kMetric)), "408.0 km");
+  EXPECT_EQ(Joined(HeightText(304.8, HudUnits::kAviation)), "1000 ft");
+  EXPECT_EQ(Joined(SpeedText(10.0, HudUnits::kMetric)), "36 km/h");
+  EXPECT_EQ(Joined(SpeedText(7660.0, HudUnits::kMetric)), "7.7 km/s");
+  EXPECT_EQ(Joined(SpeedText(51.4444, HudUnits::kAviation)), "100 kt");
+  EXPECT_EQ(Joined(ClimbText(5.08, HudUnits::kAviation)), "+1000 ft/min");
+}
+
+TEST(HudText, UnitsSayHowManyOfThemAreOneOfSi) {
+  for (const HudUnits units : {HudUnits::kMetric, HudUnits::kAviation}) {
+    for (const double value : {120.0, 3e5}) {
+      const Quantity height = HeightText(value, units), speed = SpeedText(value, units);
+      EXPECT_NEAR(std::stod(height.number), value * height.per_si, 0.5) << "rounded to whole ones";
+      EXPECT_NEAR(std::stod(speed.number), value * speed.per_si, 0.5);
+    }
+  }
+}
+
+TEST(HudText, LuminancesHaveThreeDigitsThatCount) {
+  EXPECT_EQ(LuminanceText(8213.0), "8210 cd/m²");
+  EXPECT_EQ(LuminanceText(0.0123456), "0.0123 cd/m²");
+  EXPECT_EQ(LuminanceText(1.0), "1.00 cd/m²");
+  EXPECT_EQ(LuminanceText(0.0), "0.00e+00 cd/m²");
+  EXPECT_EQ(LuminanceText(1.6e9), "1.60e+09 cd/m²") << "the sun's disk";
+}
+
+TEST(HudText, RatesOfTimeAreFactors) {
+  EXPECT_EQ(RateText(1.0, false), "x1");
+  EXPECT_EQ(RateText(-3600.0, false), "x-3600");
+  EXPECT_EQ(RateText(0.5, false), "x0.5");
+  EXPECT_EQ(RateText(60.0, true), "paused");
+}
+
+TEST(HudTheme, TheNightIsDimAndHasNoBlue) {
+  const HudColours &day = ColoursOf(HudTheme::kDay), &night = ColoursOf(HudTheme::kNight);
+  for (const HudColour& colour : {night.text, night.quiet, night.accent, night.warning, night.plate,
+                                  night.panel, night.control, night.active}) {
+    EXPECT_LT(colour[2], 0.1F);
+    EXPECT_LT(colour[1], 0.5F * day.text[1]);
+    EXPECT_GE(colour[0], colour[1]);
+  }
+}
+
+double LuminanceOf(const HudColour& colour) {
+  return shared::Luminance<double>(shared::SrgbLight(double{colour[0]}),
+                                   shared::SrgbLight(double{colour[1]}),
+                                   shared::SrgbLight(double{colour[2]}));
+}
+
+HudColour Over(const HudColour& behind, const HudColour& plate) {
+  HudColour seen = behind;
+  for (std::size_t c = 0; c < 3; ++c) seen[c] += plate[3] * (plate[c] - behind[c]);
+  return seen;
+}
+
+double ContrastOf(const HudColour& text, const HudColour& behind) {
+  return (LuminanceOf(text) + 0.05) / (LuminanceOf(behind) + 0.05);
+}
+
+constexpr HudColour kWhite{1.0F, 1.0F, 1.0F, 1.0F};
+
+TEST(HudTheme, WhatIsWrittenOnAPlateIsReadableOverWhite) {
+  for (const HudTheme theme : {HudTheme::kDay, HudTheme::kNight}) {
+    const HudColours& colours = ColoursOf(theme);
+    for (const HudColour& colour : {colours.text, colours.quiet, colours.accent, colours.warning}) {
+      for (const HudColour& plate : {colours.plate, colours.panel})
+        EXPECT_GE(ContrastOf(colour, Over(kWhite, plate)), 4.5) << colour[0] << " " << colour[1];
+    }
+  }
+}
+
+TEST(HudTheme, WhatIsWrittenOnControlsIsReadableOverWhite) {
+  for (const HudTheme theme : {HudTheme::kDay, HudTheme::kNight}) {
+    const HudColours& colours = ColoursOf(theme);
+    const HudColour control = Over(Over(kWhite, colours.panel), colours.control);
+    for (const HudColour& behind : {control, Over(control, colours.active)})
+      EXPECT_GE(ContrastOf(colours.text, behind), 4.5) << behind[0] << " " << behind[1];
+    EXPECT_GE(ContrastOf(colours.quiet, control), 4.5) << "hints in fields";
+  }
+}
+
+TEST(HudTheme, ADuskDoesNotFlicker) {
+  const auto follow = [](std::initializer_list<double> exposures) {
+    HudTheme theme = HudTheme::kDay;
+    int changes = 0;
+    for (const double ev100 : exposures) {
+      const HudTheme next = ThemeFor(HudThemeChoice::kAuto, ev100, theme);
+      changes += next == theme ? 0 : 1;
+      theme = next;
+    }
+    return changes;
+  };
+  EXPECT_EQ(follow({15.0, 5.0, 0.9, 1.4, 0.8, 2.5, -4.0}), 1);
+  EXPECT_EQ(follow({15.0, 0.0, 2.0, 3.1, 2.0, 1.1}), 2) << "down and up again";
+  EXPECT_EQ(ThemeFor(HudThemeChoice::kNight, 15.0, HudTheme::kDay), HudTheme::kNight);
+  EXPECT_EQ(ThemeFor(HudThemeChoice::kDay, -6.0, HudTheme::kNight), HudTheme::kDay);
+}
+
+// --- the strip of the day ---
+
+/// Air of four bands with all of its light, solved once.
+struct Air {
+  std::shared_ptr<const SingleScattering<float>> air =
+      std::make_shared<SingleScattering<float>>(MediumPreset("earth"));
+  std::shared_ptr<const MultipleScattering> multiple_scattering =
+      std::make_shared<MultipleScattering>(MediumPreset("earth"));
+};
+const Air& Earth() {
+  static const Air earth;
+  return earth;
+}
+
+DayStripRequest Alps() {
+  DayStripRequest request{Earth().multiple_scattering, PlaceFromDegrees(46.0, 8.0, 500.0), {}, 24};
+  request.begin = ParseInstant("2026-03-19T23:28:00Z");  // midnight of the mean sun
+  return request;
+}
+
+TEST(DayStrip, NoonIsBlueMidnightBlackAndDuskRedBelow) {
+  const DayStrip strip = MakeDayStrip(Alps());
+  const auto& noon = strip.at(11, 0);
+  EXPECT_GT(noon[2], noon[0]) << "the zenith at noon";
+  EXPECT_GT(noon[2], 0.3F);
+  for (int row = 0; row < strip.rows; ++row) {
+    for (const float channel : strip.at(0, row)) EXPECT_LT(channel, 0.02F) << "midnight";
+  }
+  const auto& dusk = strip.at(18, strip.rows - 1);  // half past six of solar time, at an equinox
+  EXPECT_GT(dusk[0], 1.3F * dusk[2]) << "the horizon under which the sun has gone";
+}
+
+// The reference solution: the table of the sky, and a day's exposure from its definition.
+TEST(DayStrip, ColoursAreThoseOfTheSky) {
+  const DayStripRequest request = Alps();
+  const DayStrip strip = MakeDayStrip(request);
+  const Medium& medium = Earth().air->medium();
+  for (const int column : {7, 12, 18}) {
+    const SunPosition sun =
+        ApparentSunAt(request.place, AddSeconds(request.begin, 3600.0 * (column + 0.5)));
+    const SkyView view(*Earth().air, *request.multiple_scattering, request.place.height_m,
+                       std::sin(sun.elevation_rad));
+    const double dip =
+        std::acos(medium.planet_radius_m / (medium.planet_radius_m + request.place.height_m));
+    Image sky(1, strip.rows);
+    double mean = 0.0;
+    constexpr std::array<double, 6> kElevations_deg{80.0, 50.0, 28.0, 14.0, 6.0, 1.5};
+    for (int row = 0; row < strip.rows; ++row) {
+      const double elevation = kElevations_deg[static_cast<std::size_t>(row)] * kRadiansPerDegree;
+      const Bands<float> seen = view.Radiance(0.5 * kPi - elevation + dip, 0.0);
+      std::vector<double> radiance;
+      for (std::size_t band = 0; band < seen.count; ++band) {
+        radiance.push_back(static_cast<double>(seen[band]) * medium.solar_irradiance[band] /
+                           (sun.distance_au * sun.distance_au));
+      }
+      const auto rgb = BandColour(medium.wavelengths_nm).LinearSrgb(radiance);
+      mean += (0.2126 * rgb[0] + 0.7152 * rgb[1] + 0.0722 * rgb[2]) / strip.rows;
+      sky.at(0, row) = {static_cast<float>(rgb[0]), static_cast<float>(rgb[1]),
+                        static_cast<float>(rgb[2])};
+    }
+    const double ev100 = 0.8 * std::log2(mean * 100.0 / 12.5) + 0.2 * 14.0;
+    const DisplayImage developed = Develop(sky, ev100, ToneCurve::kAgx);
+    for (int row = 0; row < strip.rows; ++row) {
+      for (std::size_t c = 0; c < 3; ++c) {
+        const std::size_t at = static_cast<std::size_t>(row) * 3 + c;
+        EXPECT_NEAR(strip.at(column, row)[c], developed.rgb[at] / 255.0, 2.5 / 255.0)
+            << "column " << column << " row " << row
+            << ": pictures are dithered by up to a code, and rounded; the table has 0.3 %";
+      }
+    }
+  }
+}
+
+TEST(DayStrip, AStripIsMadeAnewOnlyForWhatItWouldShow) {
+  const DayStripRequest shown = Alps();
+  DayStripRequest request = shown;
+  request.place.latitude_rad += 0.002;
+  request.place.height_m += 50.0;
+  request.begin = AddSeconds(request.begin, 1e-5);
+  EXPECT_TRUE(LooksTheSame(shown, request)) << "a tenth of a degree is not seen";
+  request.begin = AddSeconds(request.begin, 86400.0);
+  EXPECT_FALSE(LooksTheSame(shown, request)) << "another day is";
 }
 
 }  // namespace

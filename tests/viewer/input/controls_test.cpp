@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+// Keys, gamepads and pointers, the actions they stand for, and the flight under one hand.
 #include "viewer/input/controls.h"
 
 #define GLFW_INCLUDE_NONE
@@ -6,18 +7,28 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <fstream>
+#include <iterator>
 
 #include "atmosphere/base/error.h"
+#include "atmosphere/math/constants.h"
+#include "tests/fixtures/places.h"
 #include "tests/viewer/input/hands.h"
+#include "tests/viewer/input/recorded_commands.h"
+#include "viewer/input/action.h"
+#include "viewer/input/flight_controller.h"
 
 namespace alpenglow::viewer {
 namespace {
 
 using ::testing::ElementsAre;
+using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using tests::Hands;
 using tests::KeysOf;
+using tests::RecordedCommands;
 
 constexpr double kFrame_s = 1.0 / 60.0;
 
@@ -293,6 +304,369 @@ TEST(Gamepad, AButtonPressesOnceAndTheCrossRepeats) {
   EXPECT_EQ(minutes, 1 + 7) << "at once, then every tenth of a second from 0.4 s on, for a second";
   controls.Minimise(true);
   EXPECT_THAT(controls.Take(FlightMode::kFree, kFrame_s, pad).actions, IsEmpty());
+}
+
+// --- actions ---
+
+constexpr FlightMode kModes[] = {FlightMode::kFree, FlightMode::kAircraft, FlightMode::kTrack};
+
+TEST(Action, EveryActionHasKeysAndAnEffect) {
+  for (const Action& action : ActionTable()) {
+    EXPECT_FALSE(action.keys.empty()) << action.help;
+    const bool moves = action.moves.camera != nullptr || action.moves.stick != nullptr;
+    EXPECT_EQ(moves, action.press == Press::kHeld) << action.help;
+    EXPECT_NE(moves, action.run != nullptr) << action.help;
+  }
+}
+
+TEST(Action, EveryControlHasOneKeyForEachDirection) {
+  for (const Action& action : ActionTable()) {
+    if (action.press != Press::kHeld) continue;
+    int forward = 0, back = 0;
+    for (const Action& other : ActionTable()) {
+      if (other.press == Press::kHeld && other.moves.IsOf(action.moves))
+        ++(other.moves.sign > 0.0 ? forward : back);
+    }
+    EXPECT_EQ(forward, 1) << action.help;
+    EXPECT_EQ(back, action.moves.stick == &Stick::brake ? 0 : 1) << action.help;
+  }
+}
+
+/// All keys that the table names: chord, row, and whether in the flight controller alone.
+template <typename Visit>
+void ForEachKey(const Visit& visit) {
+  for (const Action& row : ActionTable()) {
+    for (const bool cockpit : {false, true}) {
+      std::string keys(cockpit ? row.keys_in_cockpit : row.keys);
+      for (std::size_t begin = 0; begin < keys.size();) {
+        const std::size_t end = std::min(keys.find(", ", begin), keys.size());
+        visit(keys.substr(begin, end - begin), row, cockpit);
+        begin = end + 2;
+      }
+    }
+  }
+}
+
+TEST(Action, EveryKeyOfTheTableDoesWhatItsLineSaysAndNoneDoesTwoThings) {
+  int keys = 0;
+  ForEachKey([&](const std::string& text, const Action& row, bool cockpit) {
+    const KeyChord chord = KeyChordFromText(text);
+    for (const FlightMode mode : kModes) {
+      if (!row.modes.Has(mode) || (cockpit && mode == FlightMode::kFree)) continue;
+      const Action* action = ActionOfKey(chord.key, chord.modifiers, mode);
+      ASSERT_NE(action, nullptr) << text;
+      EXPECT_EQ(action->help, row.help) << text << " in mode " << static_cast<int>(mode);
+      ++keys;
+    }
+  });
+  EXPECT_GT(keys, 150);
+}
+
+TEST(Action, NoKeyIsListedTwiceForOneMode) {
+  for (const FlightMode mode : kModes) {
+    std::vector<std::pair<int, int>> chords;
+    ForEachKey([&](const std::string& text, const Action& row, bool cockpit) {
+      if (!row.modes.Has(mode) || (cockpit && mode == FlightMode::kFree)) return;
+      const KeyChord chord = KeyChordFromText(text);
+      const std::pair<int, int> pair{chord.key, chord.modifiers};
+      EXPECT_THAT(chords, ::testing::Not(::testing::Contains(pair)))
+          << text << " in mode " << static_cast<int>(mode);
+      chords.push_back(pair);
+    });
+  }
+}
+
+TEST(Action, SectionsHaveEveryActionOnceUnderAHeadingOfItsOwn) {
+  std::vector<std::string_view> headings, actions;
+  for (const ActionSection& section : ActionSections()) {
+    headings.push_back(section.heading);
+    for (const Action& row : section.rows) {
+      EXPECT_EQ(row.heading, section.heading) << row.help;
+      EXPECT_EQ(row.modes.free, section.rows.front().modes.free) << row.help;
+      EXPECT_EQ(row.modes.aircraft, section.rows.front().modes.aircraft) << row.help;
+      EXPECT_EQ(row.modes.track, section.rows.front().modes.track) << row.help;
+      actions.push_back(row.help);
+    }
+  }
+  EXPECT_EQ(actions.size(), ActionTable().size());
+  for (std::vector<std::string_view>* texts : {&headings, &actions}) {
+    std::sort(texts->begin(), texts->end());
+    const auto twice = std::adjacent_find(texts->begin(), texts->end());
+    EXPECT_EQ(twice, texts->end()) << *twice;
+  }
+}
+
+/// The help text of a key; "" without an action.
+std::string_view HelpOf(const char* text, FlightMode mode) {
+  const KeyChord chord = KeyChordFromText(text);
+  const Action* action = ActionOfKey(chord.key, chord.modifiers, mode);
+  return action == nullptr ? "" : action->help;
+}
+
+TEST(Action, KeysAreThoseOfFlightGear) {
+  const std::pair<const char*, const char*> keys[] = {
+      {"Up", "stick forward: nose down"},  // elevator down
+      {"Keypad 2", "stick back: nose up"},
+      {"Keypad 5", "centre the stick; look ahead, level"},
+      {"9", "more throttle"},
+      {"Page Down", "less throttle"},
+      {"0", "rudder to the left"},
+      {"Enter", "rudder to the right"},
+      {"P", "pause time, aircraft and track"},
+      {"A", "flight twice as fast, up to 32 times"},
+      {"Shift+A", "flight half as fast, down to real time"},
+      {"T", "rate of time up: -3600 to 3600"},
+      {"W", "a minute later"},
+      {"Shift+W", "a minute earlier"},
+      {"X", "narrower view (aircraft: also the wheel)"},
+      {"Ctrl+X", "field of view of the scene"},
+      {"Z", "farther visibility"},
+      {"Ctrl+Z", "visibility of the scene"},
+      {"F3", "screenshot, PNG"},
+      {"Ctrl+R", "fly this flight again"},
+      {"Shift+F10", "full screen, on and off"},
+      {"Ctrl+U", "1000 ft higher"},
+      {"Ctrl+H", "hold the heading; banking moves it"},
+      {"Ctrl+A", "hold the height; the stick moves it"},
+      {"Ctrl+S", "hold the speed; the throttle moves it"},
+      {"Tab", "mouse: cursor, look, fly"},
+      {"?", "show or hide the keys"}};
+  for (const auto& [key, help] : keys) EXPECT_EQ(HelpOf(key, FlightMode::kAircraft), help) << key;
+}
+
+TEST(Action, InTheFreeCameraLettersMoveTheEyeWithAndWithoutShift) {
+  const Action* forward = ActionOfKey(GLFW_KEY_W, 0, FlightMode::kFree);
+  ASSERT_NE(forward, nullptr);
+  EXPECT_EQ(forward->help, "fly forward");
+  EXPECT_EQ(ActionOfKey(GLFW_KEY_W, GLFW_MOD_SHIFT, FlightMode::kFree), forward);
+  EXPECT_EQ(ActionOfKey(GLFW_KEY_A, GLFW_MOD_CONTROL, FlightMode::kFree), nullptr);
+  EXPECT_EQ(ActionOfKey(GLFW_KEY_T, GLFW_MOD_CAPS_LOCK, FlightMode::kFree),
+            ActionOfKey(GLFW_KEY_T, 0, FlightMode::kFree))
+      << "locks do not count";
+  const Action* faster = ActionOfKey(GLFW_KEY_EQUAL, GLFW_MOD_SHIFT, FlightMode::kFree);
+  ASSERT_NE(faster, nullptr);
+  EXPECT_EQ(faster->help, "faster (also the mouse wheel)");
+  EXPECT_EQ(ActionOfKey(GLFW_KEY_EQUAL, 0, FlightMode::kFree), faster);
+  EXPECT_EQ(ActionOfKey(GLFW_KEY_UNKNOWN, 0, FlightMode::kFree), nullptr);
+}
+
+TEST(Action, KeyTextsAreReadAndOthersRefused) {
+  EXPECT_EQ(KeyChordFromText("F12").key, GLFW_KEY_F12);
+  EXPECT_EQ(KeyChordFromText("Keypad 0").key, GLFW_KEY_KP_0);
+  EXPECT_EQ(KeyChordFromText("Ctrl+Shift+Q").modifiers, GLFW_MOD_SHIFT | GLFW_MOD_CONTROL);
+  for (const char* text : {"", "F0", "F26", "Keypad 10", "w", "Ctrl+", "Hyper+W", "Page"}) {
+    EXPECT_THROW(static_cast<void>(KeyChordFromText(text)), InputError) << text;
+  }
+}
+
+TEST(Action, LettersGoByWhatIsPrintedOnTheKey) {
+  EXPECT_EQ(PrintedKey(GLFW_KEY_W, "z"), GLFW_KEY_Z) << "a French keyboard";
+  EXPECT_EQ(PrintedKey(GLFW_KEY_1, "&"), GLFW_KEY_1);
+  EXPECT_EQ(PrintedKey(GLFW_KEY_KP_5, "5"), GLFW_KEY_KP_5) << "keypads are their own keys";
+  EXPECT_EQ(PrintedKey(GLFW_KEY_F3, nullptr), GLFW_KEY_F3);
+  EXPECT_EQ(PrintedKey(GLFW_KEY_X, "\xd1\x8f"), GLFW_KEY_X) << "a Russian keyboard";
+}
+
+// Each key of the help text of the program is one of the table.
+TEST(Action, TheFirstKeysAreThoseOfTheTable) {
+  EXPECT_THAT(FirstKeysText(), HasSubstr("W: fly forward"));
+  EXPECT_THAT(FirstKeysText(), HasSubstr("F5: next sunrise"));
+}
+
+TEST(Action, EffectsReportWhatTheyChange) {
+  tests::RecordedCommands flight;
+  EXPECT_EQ(flight.Press("K"), "exposure +0.3 EV");
+  EXPECT_EQ(flight.Press("Ctrl+K"), "exposure follows the meter");
+  EXPECT_EQ(flight.Press("L"), "exposure locked");
+  EXPECT_EQ(flight.Press("L"), "exposure follows the meter");
+  EXPECT_THAT(flight.Press("Shift+Z"), HasSubstr("visibility"));
+  EXPECT_DOUBLE_EQ(flight.air_choice().aerosol, 1.25);
+  flight.Press("Ctrl+Z");
+  EXPECT_EQ(flight.air_choice().aerosol, 1.0);
+  flight.Press("O");
+  EXPECT_EQ(flight.quality().fixed, Quality::kLow) << "after automatic quality";
+  flight.Press("Shift+F3");
+  EXPECT_TRUE(flight.requests.picture.value().is_exr);
+  flight.Press("H");
+  EXPECT_EQ(flight.requests.parts.back(), WindowPart::kInstruments);
+}
+
+TEST(Action, TheManualShowsTheTable) {
+  std::ifstream stream(std::string(tests::kSourceFolder) + "/viewer/MANUAL.md");
+  const std::string manual{std::istreambuf_iterator<char>(stream), {}};
+  EXPECT_THAT(manual, HasSubstr(ControlsMarkdown())) << "put this into viewer/MANUAL.md:\n"
+                                                     << ControlsMarkdown();
+}
+
+// --- pilot and clock under one hand ---
+
+double FlightControllerSea(const GeodeticPosition&) { return 0.0; }
+double Airport(const GeodeticPosition&) { return 423.0; }
+
+FlightController NewFlightController(const GroundHeight& ground = FlightControllerSea) {
+  return {
+      {PlaceFromDegrees(47.0, 8.0, 1500.0)}, kWgs84, ParseInstant("2026-06-21T12:00:00Z"), ground};
+}
+std::string Shows(const FlightController& cockpit) { return FormatUtc(cockpit.clock().now()); }
+
+TEST(FlightController, KeysChangeFlightAndTime) {
+  RecordedCommands flight;
+  EXPECT_EQ(flight.Press("T"), "time x10");
+  EXPECT_EQ(flight.Press("Shift+]"), "");
+  EXPECT_EQ(Shows(flight.cockpit()), "2026-06-21T13:00:00Z");
+  EXPECT_EQ(flight.Press("F7"), "sunset");
+  EXPECT_EQ(Shows(flight.cockpit()).substr(0, 13), "2026-06-21T19");
+  EXPECT_EQ(flight.Press("F9"), "moonrise");
+  EXPECT_EQ(flight.Press("3"), "there is no track to follow");
+}
+
+TEST(FlightController, GoesAroundTheModesThatThereAre) {
+  FlightController cockpit = NewFlightController();
+  EXPECT_EQ(cockpit.EnterNext(1), "aircraft");
+  EXPECT_EQ(cockpit.EnterNext(1), "free camera");
+  EXPECT_EQ(cockpit.EnterNext(-1), "aircraft");
+  EXPECT_EQ(cockpit.ToggleHold(Autopilot::Hold::kHeading), "HDG 000");
+  EXPECT_EQ(cockpit.ReleaseAutopilot(), "autopilot off");
+  EXPECT_EQ(cockpit.Enter(FlightMode::kFree), "free camera");
+}
+
+TEST(FlightController, PausedTimeAndAircraftStandAndTheFreeCameraFlies) {
+  RecordedCommands flight;
+  FlightController& cockpit = flight.cockpit();
+  EXPECT_EQ(flight.Press("P"), "paused");
+  const double latitude = cockpit.pilot().eye().place.latitude_rad;
+  cockpit.Advance({.camera = {.forward = 1.0}}, 1.0);
+  EXPECT_GT(cockpit.pilot().eye().place.latitude_rad, latitude);
+  cockpit.Enter(FlightMode::kAircraft);
+  const double stands = cockpit.pilot().eye().place.latitude_rad;
+  cockpit.Advance({.look_right = 0.1}, 1.0);
+  EXPECT_EQ(cockpit.pilot().eye().place.latitude_rad, stands);
+  EXPECT_GT(cockpit.pilot().eye().heading_rad, 0.05) << "one can look around";
+  EXPECT_EQ(Shows(cockpit), "2026-06-21T12:00:00Z");
+}
+
+TEST(FlightController, AFlightAtFourTimesItsSpeedTakesTheClockAlong) {
+  FlightController cockpit = NewFlightController();
+  cockpit.Enter(FlightMode::kAircraft);
+  EXPECT_EQ(cockpit.StepSpeed(1), "speed x2");
+  EXPECT_EQ(cockpit.StepSpeed(1), "speed x4");
+  cockpit.Advance({}, 2.5);
+  EXPECT_EQ(Shows(cockpit), "2026-06-21T12:00:10Z");
+}
+
+TEST(FlightController, FliesToPlacesByName) {
+  FlightController cockpit = NewFlightController();
+  cockpit.GoTo(PlaceNamed("Matterhorn"));
+  EXPECT_EQ(cockpit.pilot().eye().place.height_m, 100.0) << "over the ground that is there";
+  FlightController at_airport = NewFlightController(Airport);
+  at_airport.Enter(FlightMode::kAircraft);
+  at_airport.GoTo(PlaceNamed("LSZH"));
+  const FlightReadout readout = at_airport.pilot().Readout(Airport);
+  EXPECT_EQ(readout.aircraft->contact, GroundContact::kStanding);
+  EXPECT_NEAR(readout.aircraft->heading_rad / kRadiansPerDegree, 155.0, 1e-6);
+}
+
+TEST(FlightController, AMinuteOfFlyingByKeysTakesOffTurnsAndClimbs) {
+  RecordedCommands flight(Airport);
+  FlightController& cockpit = flight.cockpit();
+  Hands hands;
+  cockpit.GoTo(PlaceNamed("LSZH"));
+  const auto fly = [&](double seconds) {
+    for (double t = 0.0; t < seconds; t += 1.0 / 30.0) {
+      const Intent intent = hands.Take(cockpit.pilot().mode(), 1.0 / 30.0);
+      for (const Action* action : intent.actions) action->run(flight);
+      cockpit.Advance(intent.pilot, 1.0 / 30.0);
+    }
+  };
+  const auto hold = [&](const char* key, double seconds) {
+    hands.Key(KeyChordFromText(key).key, 1, 0);
+    fly(seconds);
+    hands.Key(KeyChordFromText(key).key, 0, 0);
+  };
+  hold("2", 0.1);
+  hold("Page Up", 25.0);
+  hold("Down", 0.8);
+  fly(25.0);
+  const FlightReadout climbing = cockpit.pilot().Readout(Airport);
+  EXPECT_EQ(climbing.aircraft->contact, GroundContact::kNone);
+  EXPECT_GT(climbing.above_ground_m, 50.0);
+  EXPECT_FALSE(climbing.aircraft->stalled);
+  ASSERT_TRUE(climbing.course);
+  EXPECT_NEAR(climbing.course->heading_rad / kRadiansPerDegree, 155.0, 2.0);
+  hold("Left", 0.6);
+  fly(10.0);
+  const FlightReadout turning = cockpit.pilot().Readout(Airport);
+  EXPECT_LT(turning.aircraft->bank_rad, -10.0 * kRadiansPerDegree) << "held after the key is up";
+  EXPECT_LT(turning.course->heading_rad, climbing.course->heading_rad - 0.2);
+}
+
+TEST(FlightController, ALongFrameIsNotCutShort) {
+  FlightController cockpit = NewFlightController();
+  cockpit.Advance({}, 7.0);
+  EXPECT_EQ(Shows(cockpit), "2026-06-21T12:00:07Z");
+}
+
+/// 10 s of the pilot that were an hour of the scene, with a narrow view.
+std::shared_ptr<const CameraPath> AnHour() {
+  CameraPose begin{PlaceFromDegrees(46.0, 8.0, 1000.0)}, end{PlaceFromDegrees(46.1, 8.0, 2000.0)};
+  begin.fov_rad = end.fov_rad = 0.3;
+  return std::make_shared<CameraPath>(
+      std::vector<CameraPathPoint>{{0.0, begin, ParseInstant("2025-01-02T08:00:00Z")},
+                                   {10.0, end, ParseInstant("2025-01-02T09:00:00Z")}});
+}
+
+TEST(FlightController, AReplayHasItsOwnTimeAndViewAndGivesTheControlsBackAtItsEnd) {
+  FlightController cockpit = NewFlightController();
+  cockpit.clock().Pause(!cockpit.clock().paused());
+  cockpit.Replay(AnHour());
+  cockpit.Advance({}, 5.0);
+  EXPECT_EQ(Shows(cockpit), "2025-01-02T08:30:00Z") << "as fast as it went then";
+  EXPECT_EQ(cockpit.pilot().eye().fov_rad, 0.3);
+  EXPECT_EQ(cockpit.pilot().mode(), FlightMode::kTrack);
+  cockpit.SkipTrack(-10.0);
+  EXPECT_EQ(Shows(cockpit), "2025-01-02T08:00:00Z");
+  cockpit.clock().Pause(!cockpit.clock().paused());
+  cockpit.Advance({}, 5.0);
+  EXPECT_EQ(Shows(cockpit), "2025-01-02T08:00:00Z") << "paused it stands";
+  cockpit.clock().Pause(!cockpit.clock().paused());
+  cockpit.Advance({}, 11.0);
+  EXPECT_EQ(cockpit.pilot().mode(), FlightMode::kFree);
+  EXPECT_NEAR(cockpit.pilot().eye().place.height_m, 2000.0, 1e-6);
+  EXPECT_EQ(Shows(cockpit), "2025-01-02T09:00:00Z");
+  cockpit.Advance({}, 1.0);
+  EXPECT_EQ(Shows(cockpit), "2025-01-02T09:00:01Z") << "real time again";
+}
+
+TEST(FlightController, WhatIsFlownAgainEndsInTheFlightThatGoesOn) {
+  FlightController cockpit = NewFlightController();
+  cockpit.Enter(FlightMode::kAircraft);
+  cockpit.ToggleHold(Autopilot::Hold::kHeading);
+  cockpit.Advance({.stick = {.roll_right = 1.0}}, 3.0);
+  const FlightReadout flown = cockpit.pilot().Readout(FlightControllerSea);
+  for (int time = 0; time < 2; ++time) {  // asked for in the middle, it begins again
+    cockpit.FlyAgain(AnHour());
+    EXPECT_TRUE(cockpit.pilot().Replays());
+    cockpit.Advance({}, 5.0);
+  }
+  EXPECT_TRUE(cockpit.pilot().Replays());
+  cockpit.Advance({}, 5.0);
+  EXPECT_EQ(cockpit.pilot().mode(), FlightMode::kAircraft);
+  const FlightReadout on = cockpit.pilot().Readout(FlightControllerSea);
+  EXPECT_EQ(on.aircraft->bank_rad, flown.aircraft->bank_rad);
+  EXPECT_EQ(on.above_ground_m, flown.above_ground_m);
+  EXPECT_EQ(on.autopilot, flown.autopilot);
+}
+
+TEST(FlightController, ATrackWithInstantsSetsTheClockAndSkippingTakesItAlong) {
+  FlightController cockpit = NewFlightController();
+  cockpit.pilot().SetTrack(std::make_shared<CameraPath>(std::vector<CameraPathPoint>{
+      {0.0, {PlaceFromDegrees(46.0, 8.0, 1000.0)}, ParseInstant("2025-01-02T08:00:00Z")},
+      {100.0, {PlaceFromDegrees(46.1, 8.0, 2000.0)}, ParseInstant("2025-01-02T08:01:40Z")}}));
+  EXPECT_EQ(cockpit.Enter(FlightMode::kTrack), "track");
+  EXPECT_EQ(Shows(cockpit), "2025-01-02T08:00:00Z");
+  cockpit.Advance({}, 5.0);
+  cockpit.SkipTrack(10.0);
+  EXPECT_EQ(Shows(cockpit), "2025-01-02T08:00:15Z");
 }
 
 }  // namespace

@@ -1,20 +1,25 @@
 // SPDX-License-Identifier: MIT
-// Windows whose light is painted small.
+// Windows whose light is painted small, and the quality that suits a machine.
 #include "viewer/passes/display_pass.h"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <map>
 
 #include "lut/image/tone_mapping.h"
 #include "renderer/scene/scene_options.h"
 #include "tests/fixtures/bare_scene.h"
+#include "tests/fixtures/fault_of.h"
 #include "tests/fixtures/parity_views.h"
 #include "tests/fixtures/sanitized.h"
 #include "tests/viewer/land/headless_land.h"
 #include "viewer/flight_session.h"
+#include "viewer/gl/gl_objects.h"
 #include "viewer/passes/auto_quality.h"
+#include "viewer/passes/reference_picture.h"
 
 namespace alpenglow::viewer {
 namespace {
@@ -158,6 +163,215 @@ TEST_F(SmallPictures, EdgesOfShadeAreAsWideAsTheirPixels) {
   }
 
   EXPECT_LT(std::sqrt(sum2), 0.026) << "noise of materials; 0.030 without the width of pixels";
+}
+
+// --- small pictures on large screens ---
+
+constexpr int kPrintWidth = 64, kPrintHeight = 36, kSmaller = 4;
+constexpr glm::dvec2 kHalfView{0.577, 0.325};
+
+/// A screen with a hill before a mountain under a sky, whose edges run between pixels of the small
+/// picture.
+class UpscalerTest : public tests::Headless {
+ protected:
+  enum class Seen { kSky, kMountain, kHill };
+  static constexpr double kHill_m = 500.0, kMountain_m = 800.0;
+
+  /// @param x, y  pixels of the screen, row 0 at the bottom.
+  [[nodiscard]] static Seen At(double x, double y) {
+    if (y < 0.4 * x) return Seen::kHill;
+    return y < 27.0 - 0.3 * x ? Seen::kMountain : Seen::kSky;
+  }
+  [[nodiscard]] static std::array<float, 4> PixelOf(Seen seen) {
+    switch (seen) {
+      case Seen::kHill:
+        return {0.1F, 0.5F, 0.2F, InverseDepthAt(kHill_m)};
+      case Seen::kMountain:
+        return {0.3F, 0.3F, 0.4F, InverseDepthAt(kMountain_m)};
+      case Seen::kSky:
+        break;
+    }
+    return {0.5F, 0.7F, 0.9F, 0.0F};
+  }
+  /// Returns the inverse depth by the formula of inverse_depth.glsl.
+  [[nodiscard]] static float InverseDepthAt(double along_view_m) {
+    return static_cast<float>(100.0 / along_view_m);
+  }
+
+  static void Fill(const RenderTarget& target,
+                   const std::function<std::array<float, 4>(int x, int y)>& pixel) {
+    target.Bind();
+    for (int y = 0; y < target.height(); ++y) {
+      for (int x = 0; x < target.width(); ++x) {
+        const Scissor one({x, y, 1, 1});
+        glClearBufferfv(GL_COLOR, 0, pixel(x, y).data());
+      }
+    }
+  }
+  /// Depth as reversed_depth.glsl has it: 0.1 m is 1.
+  static void FillDepth(const DepthPrepass& outline,
+                        const std::function<float(int x, int y)>& inverse_depth) {
+    outline.Bind();
+    for (int y = 0; y < outline.height(); ++y) {
+      for (int x = 0; x < outline.width(); ++x) {
+        const Scissor one({x, y, 1, 1});
+        const float depth = 1e-3F * inverse_depth(x, y);
+        glClearBufferfv(GL_DEPTH, 0, &depth);
+      }
+    }
+  }
+  [[nodiscard]] static Image Upscaled(const RenderTarget& small, const DepthPrepass& outline) {
+    const RenderTarget light(kPrintWidth, kPrintHeight);
+    Upscaler(Upscaler::Shows::kLight).Upscale(small, outline, kHalfView, light.framebuffer());
+    return light.Read();
+  }
+};
+
+TEST_F(UpscalerTest, EdgesOfLandAreAsSharpAsTheScreen) {
+  const RenderTarget small(kPrintWidth / kSmaller, kPrintHeight / kSmaller);
+  Fill(small, [](int x, int y) { return PixelOf(At(kSmaller * (x + 0.5), kSmaller * (y + 0.5))); });
+  const DepthPrepass outline(kPrintWidth, kPrintHeight);
+  FillDepth(outline, [](int x, int y) { return PixelOf(At(x + 0.5, y + 0.5))[3]; });
+  const Image shown = Upscaled(small, outline);
+  int wrong = 0;
+  for (int y = 0; y < kPrintHeight; ++y) {
+    for (int x = 0; x < kPrintWidth; ++x) {
+      const std::array<float, 4> right = PixelOf(At(x + 0.5, y + 0.5));
+      for (std::size_t c = 0; c < 3; ++c) {
+        if (std::abs(shown.at(x, kPrintHeight - 1 - y)[c] - right[c]) > 0.01F) ++wrong;
+      }
+    }
+  }
+  EXPECT_LE(wrong, 3 * 2)
+      << "all but where three meet and no small pixel saw the one in the middle; "
+         "a hundredth is what pixels beyond an edge still count";
+}
+
+TEST_F(UpscalerTest, OnOneSurfaceLightIsInterpolated) {
+  const DepthPrepass outline(kPrintWidth, kPrintHeight);
+  const RenderTarget small(kPrintWidth / kSmaller, kPrintHeight / kSmaller);
+  // Level ground: inverse depth falls to 0 at the horizon, here the upper rim of the picture.
+  const auto inverse_depth = [](double y) {
+    return static_cast<float>(2.0 * (1.0 - y / kPrintHeight));
+  };
+  for (const bool is_land : {false, true}) {
+    Fill(small, [&](int x, int y) {
+      const auto light = static_cast<float>(kSmaller * (x + 0.5) + 3.0 * kSmaller * (y + 0.5));
+      return std::array{light, 0.0F, 0.0F, is_land ? inverse_depth(kSmaller * (y + 0.5)) : 0.0F};
+    });
+    FillDepth(outline, [&](int, int y) { return is_land ? inverse_depth(y + 0.5) : 0.0F; });
+    const Image shown = Upscaled(small, outline);
+    for (int y = kSmaller; y < kPrintHeight - kSmaller; ++y) {
+      for (int x = kSmaller; x < kPrintWidth - kSmaller; ++x) {
+        ASSERT_NEAR(shown.at(x, kPrintHeight - 1 - y)[0], x + 0.5 + 3.0 * (y + 0.5), 1e-3)
+            << x << ' ' << y << (is_land ? " on land: rounding of floats" : " in the sky");
+      }
+    }
+  }
+}
+
+// --- the quality that suits a machine ---
+
+/// A machine on which a frame takes so long at full resolution and high quality; low costs 0.4 of
+/// that, medium 0.6, and pixels weigh as their number.
+double FrameOf(const PaintedQuality& painted, double full_s) {
+  const std::map<Quality, double> cost{
+      {Quality::kLow, 0.4}, {Quality::kMedium, 0.6}, {Quality::kHigh, 1.0}};
+  return full_s * cost.at(painted.quality) * (0.15 + 0.85 * painted.scale * painted.scale);
+}
+
+struct FrameSeries {
+  PaintedQuality last;
+  double frame_s;
+  double longest_s;
+  int changes;  // in the second half of the run
+};
+FrameSeries FramesFor(double full_s, int frames) {
+  AutoQuality quality(1.0 / 30.0);
+  FrameSeries run{};
+  for (int frame = 0; frame < frames; ++frame) {
+    const PaintedQuality before = quality.painted();
+    run.frame_s = FrameOf(before, full_s);
+    run.longest_s = std::max(run.longest_s, run.frame_s);
+    quality.Note(run.frame_s);
+    if (frame > frames / 2 && !(quality.painted() == before)) ++run.changes;
+  }
+  run.last = quality.painted();
+  return run;
+}
+
+TEST(AutoQuality, AFastMachineDrawsAtHighQuality) {
+  EXPECT_EQ(FramesFor(0.005, 2000).last, (PaintedQuality{Quality::kHigh, 1.0}));
+}
+
+TEST(AutoQuality, AFastMachineWaitsTwoSecondsForHighQuality) {
+  EXPECT_EQ(FramesFor(0.005, 70).last, (PaintedQuality{Quality::kHigh, 1.0}));  // 70 frames: 2.3 s
+}
+
+// A flight's worst frame may take three times its median: half of that is left to land that
+// arrives.
+TEST(AutoQuality, TheFirstFramesOfASlowMachineAreLittleLongerThanItsUsualOnes) {
+  for (const double full_s : {0.05, 0.1, 0.2, 0.3, 2.0}) {
+    const FrameSeries run = FramesFor(full_s, 600);
+    EXPECT_LT(run.longest_s, 2.0 * run.frame_s) << full_s;
+  }
+}
+
+TEST(AutoQuality, FramesTakeAsLongAsWantedWhereAnyQualityDoes) {
+  for (const double full_s : {0.02, 0.04, 0.06, 0.1, 0.2, 0.3}) {
+    const FrameSeries run = FramesFor(full_s, 6000);
+    EXPECT_LT(run.frame_s, 1.16 / 30.0) << full_s;
+    EXPECT_LE(run.changes, 4) << "it settles: a step up that fails is tried ever more rarely";
+  }
+}
+
+TEST(AutoQuality, ASlowMachineGetsTheCheapestPicture) {
+  EXPECT_EQ(FramesFor(2.0, 200).last, (PaintedQuality{Quality::kLow, 0.25, Saving::kNearLand}));
+}
+
+TEST(AutoQuality, UnderHalfTheResolutionAllElseIsLeftOutFirst) {
+  for (const double full_s : {0.08, 0.1, 0.12, 0.15, 0.2, 0.3, 0.4, 2.0}) {
+    AutoQuality quality(1.0 / 30.0);
+    for (int frame = 0; frame < 400; ++frame) {
+      quality.Note(FrameOf(quality.painted(), full_s));
+      const PaintedQuality& painted = quality.painted();
+      EXPECT_TRUE(painted.scale >= 0.5 || painted.saving == Saving::kNearLand) << full_s;
+      EXPECT_TRUE(painted.scale <= 0.5 || painted.saving == Saving::kNone) << full_s;
+    }
+  }
+}
+
+TEST(AutoQuality, RaysOfShaftsAndLampsAreAsFarApartOnTheScreen) {
+  const PaintSizes half = SizesOf(PaintedQuality{Quality::kLow, 0.5, Saving::kNearLand});
+  const PaintSizes quarter = SizesOf(PaintedQuality{Quality::kLow, 0.25, Saving::kNearLand});
+  EXPECT_EQ(2 * quarter.lamps.step, half.lamps.step);
+  EXPECT_EQ(2 * quarter.shade.detail.scale, half.shade.detail.scale);
+}
+
+TEST(AutoQuality, ThreeHugeFramesAreAnsweredAtOnce) {
+  AutoQuality quality(1.0 / 30.0);
+  for (int frame = 0; frame < 3; ++frame) quality.Note(0.6);
+  EXPECT_EQ(quality.painted(), (PaintedQuality{Quality::kLow, 0.25, Saving::kNearLand}));
+}
+
+TEST(AutoQuality, AFrameInWhichADriverFinishesAProgramChangesNothing) {
+  AutoQuality quality(1.0 / 30.0);
+  const PaintedQuality first = quality.painted();
+  quality.Note(0.7);
+  for (int frame = 0; frame < 20; ++frame) {
+    quality.Note(frame % 5 == 4 ? 0.3 : 0.03);
+    EXPECT_EQ(quality.painted(), first) << frame;
+  }
+}
+
+TEST(QualityRule, IsReadFromItsName) {
+  EXPECT_EQ(QualityRuleFromText("auto").fixed, std::nullopt);
+  EXPECT_EQ(QualityRuleFromText("reference").fixed, Quality::kReference);
+  EXPECT_NE(tests::FaultOf([] { return QualityRuleFromText("best"); }).find("--quality"),
+            std::string::npos);
+  EXPECT_EQ(TextOf(PaintedQuality{Quality::kLow, 0.7}), "low, light at 0.7x");
+  EXPECT_EQ(TextOf(PaintedQuality{Quality::kLow, 0.5, Saving::kFewLamps}),
+            "low, light at 0.5x, coarse shafts, few lamps");
 }
 
 }  // namespace

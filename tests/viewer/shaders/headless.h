@@ -23,7 +23,10 @@ inline std::unique_ptr<HeadlessContext> ContextOrNone() {
   }
 }
 
-inline bool HasOpenGl() { return ContextOrNone() != nullptr; }
+inline bool HasOpenGl() {
+  static const bool has = ContextOrNone() != nullptr;
+  return has;
+}
 
 /// Tests of this fixture have a current OpenGL context. They are skipped only where EGL gives none.
 /// @tparam Base  a fixture that they need too.
@@ -41,5 +44,28 @@ class HeadlessWith : public Base {
 };
 
 using Headless = HeadlessWith<::testing::Test>;
+
+/// Tests of this fixture share an OpenGL context and a value that the first of them makes in it.
+/// They are skipped only where EGL gives none.
+template <typename Shared>
+class HeadlessSharing : public ::testing::Test {
+ public:
+  static void TearDownTestSuite() {
+    shared_.reset();
+    context_.reset();
+  }
+
+ protected:
+  void SetUp() override {
+    if (!context_) context_ = ContextOrNone();
+    if (!context_) GTEST_SKIP() << "EGL gives no OpenGL here";
+    if (!shared_) shared_ = std::make_unique<Shared>();
+  }
+  [[nodiscard]] static Shared& shared() { return *shared_; }
+
+ private:
+  static inline std::unique_ptr<HeadlessContext> context_;
+  static inline std::unique_ptr<Shared> shared_;
+};
 
 }  // namespace alpenglow::tests

@@ -1,0 +1,471 @@
+// SPDX-License-Identifier: MIT
+// Values that threads make beside drawing: of the air, the ground and the shade that follow an eye and a sun.
+#include "viewer/async/async_value.h"
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <cmath>
+#include <future>
+#include <glm/geometric.hpp>
+#include <stdexcept>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include "atmosphere/base/error.h"
+#include "atmosphere/colour/spectrum.h"
+#include "atmosphere/math/constants.h"
+#include "renderer/terrain/procedural_mountains.h"
+#include "tests/lut/camera_tables/air_reference.h"
+#include "tests/viewer/shaders/headless.h"
+#include "viewer/air/air_follower.h"
+#include "viewer/ground/ground_follower.h"
+#include "viewer/shade/shafts.h"
+
+namespace alpenglow::viewer {
+namespace {
+
+TEST(AsyncValue, ARequestThatANewerOneReplacedIsNotComputed) {
+  std::promise<void> begun, go_on;
+  std::vector<int> made;
+  AsyncValue<int, int> value([&](const int& number) {
+    if (number == 1) {
+      begun.set_value();
+      go_on.get_future().wait();
+    }
+    made.push_back(number);
+    return 10 * number;
+  });
+  value.Request(1);
+  begun.get_future().wait();
+  value.Request(2);
+  value.Request(3);
+  EXPECT_TRUE(value.IsBusy());
+  go_on.set_value();
+  value.Wait();
+  EXPECT_EQ(value.Poll(), std::optional(30));
+  EXPECT_EQ(value.Poll(), std::nullopt) << "a value is taken over once";
+  EXPECT_EQ(made, (std::vector{1, 3}));
+}
+
+TEST(AsyncValue, ExceptionsReachTheCallerAndTheThreadGoesOn) {
+  AsyncValue<int, int> value([](const int& number) {
+    if (number == 1) throw std::runtime_error("no air");
+    return number;
+  });
+  value.Request(1);
+  value.Wait();
+  EXPECT_THROW(static_cast<void>(value.Poll()), std::runtime_error);
+  value.Request(2);
+  value.Wait();
+  EXPECT_EQ(value.Poll(), std::optional(2));
+}
+
+TEST(AsyncValue, EndsWithARequestWaiting) {
+  AsyncValue<int, int> value([](const int& number) { return number; });
+  value.Request(1);
+  SUCCEED() << "the destructor returns";
+}
+
+TEST(AsyncValue, FollowsItsInputAccordingToThePolicy) {
+  AsyncValue<double, double> value([](const double& input) { return 2.0 * input; },
+                                   [](const double& requested, const double& wanted) {
+                                     return std::abs(requested - wanted) < 0.5;
+                                   });
+  EXPECT_FALSE(value.Update());
+  EXPECT_EQ(value.value(), std::nullopt);
+  value.WaitUntilReady(1.0);
+  EXPECT_TRUE(value.Update());
+  EXPECT_FALSE(value.RequestIfNeeded(1.2)) << "the newest request suits";
+  EXPECT_FALSE(value.Update());
+  EXPECT_EQ(value.value(), std::optional(2.0));
+  value.RestFor(1e6);
+  value.RequestWhenIdle(3.0);
+  EXPECT_EQ(value.requested(), std::optional(1.0)) << "it rests";
+  value.WaitUntilReady(3.0);
+  EXPECT_EQ(value.Poll(), std::optional(6.0)) << "who waits does not rest";
+  value.Forget();
+  value.RequestWhenIdle(3.0);
+  value.Wait();
+  EXPECT_EQ(value.Poll(), std::optional(6.0)) << "a forgotten request is made again";
+}
+
+// --- tables of the air ---
+
+using AirFollowerOnGpu = tests::Headless;
+
+const std::shared_ptr<const SolvedAir>& Earth() {
+  static const auto earth = SolveAir(MediumPreset("earth"));
+  return earth;
+}
+
+AirView ViewAt(double altitude_m, double elevation_deg) {
+  const double e = elevation_deg * kRadiansPerDegree;
+  const glm::dvec3 sun(0.0, std::cos(e), std::sin(e));
+  return {altitude_m, 0.8, {sun, sun}};
+}
+
+// Frames with the same view until the tables shown are for it, or a hundred.
+void Frames(AirFollower& follower, const AirView& view) {
+  for (int i = 0; i < 100 && follower.eye().altitude_m != view.altitude_m; ++i) {
+    follower.Follow(view);
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  }
+}
+
+TEST_F(AirFollowerOnGpu, HasTablesForTheFirstFrame) {
+  const AirFollower follower(Earth(), AirQuality::kLow, ViewAt(2.0, 30.0));
+  EXPECT_EQ(follower.eye().altitude_m, 2.0);
+  EXPECT_EQ(follower.air(), Earth());
+  EXPECT_EQ(follower.making_s(), 0.0) << "made before drawing, not beside it";
+}
+
+TEST_F(AirFollowerOnGpu, ShowsExactTablesOnceAllStandsStill) {
+  AirFollower follower(Earth(), AirQuality::kLow, ViewAt(2.0, 30.0));
+  Frames(follower, ViewAt(2.5, 30.0));
+  EXPECT_EQ(follower.eye().altitude_m, 2.5) << "however small the change";
+  EXPECT_GT(follower.making_s(), 0.0);
+}
+
+TEST_F(AirFollowerOnGpu, LeavesTinyChangesAloneWhileTheEyeMoves) {
+  AirFollower follower(Earth(), AirQuality::kLow, ViewAt(1000.0, 30.0));
+  follower.Settle(ViewAt(1000.0, 30.0));
+  for (int i = 1; i <= 10; ++i) {
+    follower.Follow(ViewAt(1000.0 + 0.01 * i, 30.0));
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  }
+  EXPECT_EQ(follower.eye().altitude_m, 1000.0);
+}
+
+TEST_F(AirFollowerOnGpu, TablesOfASunThatRunsAreMadeForWhereItWillBe) {
+  AirFollower follower(Earth(), AirQuality::kLow, ViewAt(2.0, 3.0));
+  follower.Settle(ViewAt(2.0, 3.0));
+  const AirView now = ViewAt(2.0, 2.95);
+  follower.Follow(now, 0.04);  // asks
+  const double made_mu_s = follower.eye().mu_s;
+  for (int i = 0; i < 2000 && follower.eye().mu_s == made_mu_s; ++i) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    follower.Follow(now, 0.04);
+  }
+  EXPECT_LT(follower.eye().mu_s, now.sun.for_air.z) << "lower, for the sun sinks";
+}
+
+TEST_F(AirFollowerOnGpu, SettleShowsWhatWasAskedForLast) {
+  AirFollower follower(Earth(), AirQuality::kLow, ViewAt(2.0, 30.0));
+  follower.Follow(ViewAt(500.0, 20.0));
+  follower.Settle(ViewAt(9000.0, -3.0));
+  EXPECT_EQ(follower.eye().altitude_m, 9000.0);
+  EXPECT_NEAR(follower.eye().mu_s, std::sin(-3.0 * kRadiansPerDegree), 1e-12);
+}
+
+TEST_F(AirFollowerOnGpu, AnotherMediumIsShownAsADraftAndThenInFull) {
+  AirFollower follower(Earth(), AirQuality::kLow, ViewAt(2.0, 30.0));
+  follower.Replace(MediumPreset("hazy"));
+  follower.Follow(ViewAt(2.0, 30.0));
+  EXPECT_EQ(follower.air()->medium.name, "earth") << "until then the last one";
+  for (int i = 0; i < 2000 && follower.air() == Earth(); ++i) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    follower.Follow(ViewAt(2.0, 30.0));
+  }
+  EXPECT_EQ(follower.air()->medium.name, "hazy");
+  EXPECT_EQ(follower.air()->solution, AirSolution::kDraft);
+  follower.Settle(ViewAt(2.0, 30.0));
+  EXPECT_EQ(follower.air()->medium.name, "hazy");
+  EXPECT_EQ(follower.air()->solution, AirSolution::kFull);
+}
+
+// --- what is left alone ---
+
+/// Tables made for one eye, as another sees them: root mean square of relative errors of the sky.
+double ErrorOfOld(const AirEye& made, const AirEye& now) {
+  const tests::LitAir& air = tests::Earth();
+  const MediumTables medium = MakeMediumTables(air.air, air.beam);
+  const AirTablesSize size = AirTablesSizeOf(AirQuality::kHigh, now.altitude_m);
+  const AirTables old = MakeAirTables(air.air, air.multiple_scattering, medium, made, size);
+  const AirMap map(air.medium, now.altitude_m, now.ceiling_m,
+                   static_cast<double>(air.multiple_scattering.grid().twilight_fall));
+  return tests::SkyErrors(tests::AirReference(air, now), tests::AirReading(old, medium, now), map,
+                          200)
+      .Rms();
+}
+
+TEST(AirChange, IsAboutTheErrorOfTablesThatAreNotMadeAnew) {
+  const auto sine = [](double degrees) { return std::sin(degrees * kRadiansPerDegree); };
+  const std::vector<std::pair<AirEye, AirEye>> changes{
+      {{1500.0, sine(40.0)}, {1500.0, sine(39.0)}}, {{1500.0, sine(5.0)}, {1500.0, sine(4.9)}},
+      {{1500.0, sine(0.1)}, {1500.0, sine(0.05)}},  {{2.0, sine(-4.0)}, {2.0, sine(-4.03)}},
+      {{2.0, sine(-9.0)}, {2.0, sine(-9.03)}},      {{200.0, sine(20.0)}, {260.0, sine(20.0)}},
+      {{9000.0, sine(20.0)}, {9100.0, sine(20.0)}}, {{30e3, sine(20.0)}, {31e3, sine(20.0)}},
+      {{400e3, sine(20.0)}, {402e3, sine(20.0)}}};
+  for (const auto& [made, now] : changes) {
+    const double error = ErrorOfOld(made, now);
+    const double guess = AirChange(made, now);
+    EXPECT_LT(error, 2.0 * guess + 1e-3) << now.altitude_m << " m, sun " << now.mu_s;
+    EXPECT_GT(error, 0.2 * guess) << now.altitude_m << " m, sun " << now.mu_s
+                                  << ": tables would be made anew for nothing";
+  }
+}
+
+TEST(SolvedAirDraft, IsGoodEnoughForAMoment) {
+  for (const char* name : {"earth", "hazy"}) {
+    const Medium medium = MediumPreset(name);
+    const auto full = SolveAir(medium), draft = SolveAir(medium, AirSolution::kDraft);
+    for (const double mu_s : {1.0, 0.5, 0.1, -0.05}) {
+      const Bands<float> exact = full->multiple_scattering.SkyIrradiance(0.0, mu_s);
+      const Bands<float> quick = draft->multiple_scattering.SkyIrradiance(0.0, mu_s);
+      for (std::size_t band = 0; band < exact.count; ++band)
+        EXPECT_NEAR(quick[band] / exact[band], 1.0F, mu_s > 0.0 ? 0.03F : 0.06F)
+            << name << ", sun " << mu_s;
+    }
+  }
+}
+
+TEST_F(AirFollowerOnGpu, AMediumThatCannotBeShownIsRefusedAtOnce) {
+  AirFollower follower(Earth(), AirQuality::kLow, ViewAt(2.0, 30.0));
+  EXPECT_THROW(follower.Replace(MediumPreset("earth", WavelengthSet(8))), InputError);
+  Medium broken = MediumPreset("earth");
+  broken.mie_scale_height_m = -1.0;
+  EXPECT_THROW(follower.Replace(broken), InputError);
+}
+
+// --- light on the ground ---
+
+const GeodeticPosition kFollowedPlace = PlaceFromDegrees(46.5, 8.0, 0.0);
+constexpr GroundExtent kSmall{8e3, 128};
+
+GroundFollower::View ViewFrom(const GeodeticPosition& place, double elevation_deg) {
+  GroundFollower::View view{place, ParseInstant("2026-06-21T12:00:00Z"), LightSource::kSun, {}};
+  view.eye.height_m = 1500.0;
+  view.by.elevation_rad = elevation_deg * kRadiansPerDegree;
+  view.by.azimuth_rad = 4.0;
+  view.by.angular_radius_rad = 0.00465;
+  view.by.distance_au = 1.0;
+  return view;
+}
+
+/// What lies around a place of the built-in range, every `stride`-th sample.
+std::optional<ElevationGrid> RangeAround(const GeodeticPosition& place, double half_width_m,
+                                         int most_samples) {
+  static const ElevationGrid range = ProceduralMountains(kFollowedPlace);
+  if (!range.Covers(place.latitude_rad, place.longitude_rad)) return std::nullopt;
+  ElevationGrid around;
+  around.columns = around.rows = most_samples;
+  around.step_lat_rad = 2.0 * half_width_m / 6.37e6 / (most_samples - 1);
+  around.step_lon_rad = around.step_lat_rad / std::cos(place.latitude_rad);
+  around.north_rad = place.latitude_rad + half_width_m / 6.37e6;
+  around.west_rad = place.longitude_rad - 0.5 * (most_samples - 1) * around.step_lon_rad;
+  for (int row = 0; row < around.rows; ++row) {
+    for (int column = 0; column < around.columns; ++column) {
+      const auto height =
+          range.HeightAt(around.LatitudeOfRow(row), around.LongitudeOfColumn(column));
+      around.height_m.push_back(static_cast<float>(height.value_or(0.0)));
+    }
+  }
+  return around;
+}
+
+/// Solved once for all of these tests.
+const std::shared_ptr<const SolvedAir>& Air() {
+  static const auto air =
+      SolveAir(OnOsculatingSphere(MediumPreset("bruneton2017"), kFollowedPlace.latitude_rad),
+               AirSolution::kDraft);
+  return air;
+}
+
+TEST(GroundFollower, WithoutLandThereIsNoLight) {
+  GroundFollower follower({}, nullptr, kSmall);
+  static_cast<void>(follower.Settle(Air(), ViewFrom(kFollowedPlace, 30.0)));
+  EXPECT_EQ(follower.lit(), nullptr);
+  EXPECT_FALSE(follower.Light());
+  follower.SetGround(
+      [](const GeodeticPosition&, double, int) -> std::optional<ElevationGrid> { return {}; });
+  static_cast<void>(follower.Settle(Air(), ViewFrom(kFollowedPlace, 30.0)));
+  EXPECT_EQ(follower.lit(), nullptr) << "no land around here";
+}
+
+TEST(GroundFollower, ASeaWithoutLandMirrorsTheSky) {
+  GroundCover sea;
+  sea.kind = GroundCover::Kind::kWater;
+  GroundFollower follower(sea, nullptr, kSmall);
+  EXPECT_TRUE(follower.Settle(Air(), ViewFrom(kFollowedPlace, 30.0)));
+  EXPECT_EQ(follower.lit(), nullptr);
+  ASSERT_EQ(follower.sea_mirror(LightSource::kSun).size(), SeaMirror::kSide * SeaMirror::kSide);
+  for (const BandTexel& texel : follower.sea_mirror(LightSource::kSun)) EXPECT_GT(texel[1], 0.0F);
+}
+
+TEST(GroundFollower, OnTheRangeThereIsLightOfTheSunThatWasAskedFor) {
+  GroundFollower follower({}, nullptr, kSmall);
+  follower.SetGround(RangeAround);
+  EXPECT_TRUE(follower.Settle(Air(), ViewFrom(kFollowedPlace, 30.0)));
+  ASSERT_NE(follower.lit(), nullptr);
+  EXPECT_NEAR(follower.lit()->lighting().to_sun.z, 0.5, 1e-3) << "30 degrees high";
+  EXPECT_GT(follower.making_s(), 0.0);
+  const std::optional<LightOfVertices> light = follower.Light();
+  ASSERT_TRUE(light);
+  GeodeticPosition foot = kFollowedPlace;
+  LandVertex vertex{};
+  vertex.normal = {0.0F, 0.0F, 1.0F};
+  vertex.position_m = {0.0F, 0.0F,
+                       static_cast<float>(RangeAround(kFollowedPlace, 100.0, 3)->height_m[4])};
+  const std::vector<VertexLight> lit = light->at(LocalFrame(kWgs84, foot), {&vertex, 1});
+  ASSERT_EQ(lit.size(), 1U);
+  EXPECT_GT(lit[0].sky[0], 0.0F) << "level ground sees the sky";
+}
+
+TEST(GroundFollower, AHigherEyeHasLightOnLandFurtherOff) {
+  EXPECT_EQ(kSmall.HalfWidthUnder(0.0), 8e3);
+  EXPECT_EQ(kSmall.HalfWidthUnder(8e3 / 7.0), 8e3);
+  EXPECT_EQ(kSmall.HalfWidthUnder(1.01 * 8e3 / 7.0), 16e3);
+  EXPECT_EQ(kSmall.HalfWidthUnder(400e3), 32e3) << "no further";
+  std::vector<double> widths_m;
+  GroundFollower follower({}, nullptr, {8e3, 32});
+  follower.SetGround([&](const GeodeticPosition& place, double half_width_m, int most_samples) {
+    widths_m.push_back(half_width_m);
+    return RangeAround(place, half_width_m, most_samples);
+  });
+  auto view = ViewFrom(kFollowedPlace, 30.0);
+  for (const double height_m : {1000.0, 1200.0, 1100.0, 800.0}) {
+    view.eye.height_m = height_m;
+    static_cast<void>(follower.Settle(Air(), view));
+  }
+  EXPECT_EQ(widths_m, (std::vector{8e3, 16e3, 8e3})) << "at 1100 m that of 1200 m is kept";
+}
+
+TEST(GroundFollower, LightIsMadeAnewForAnotherSunAndNotForTheSame) {
+  GroundFollower follower({}, nullptr, kSmall);
+  follower.SetGround(RangeAround);
+  static_cast<void>(follower.Settle(Air(), ViewFrom(kFollowedPlace, 30.0)));
+  const auto first = follower.lit();
+  EXPECT_FALSE(follower.Settle(Air(), ViewFrom(kFollowedPlace, 30.02)))
+      << "a thirteenth of the disk";
+  EXPECT_EQ(follower.lit(), first);
+  EXPECT_TRUE(follower.Settle(Air(), ViewFrom(kFollowedPlace, 20.0)));
+  EXPECT_NE(follower.lit(), first);
+  EXPECT_EQ(&follower.lit()->site(), &first->site()) << "horizons are kept";
+}
+
+TEST(GroundFollower, ARunningSunIsMetWhereItWillStand) {
+  GroundFollower::View before = ViewFrom(kFollowedPlace, 5.0), now = ViewFrom(kFollowedPlace, 4.9);
+  before.by.azimuth_rad = 6.2831;
+  now.by.azimuth_rad = 1e-5;
+  const SunPosition ahead = Ahead(before, now, 20.0).by;
+  EXPECT_NEAR(ahead.elevation_rad / kRadiansPerDegree, 2.9, 1e-9);
+  const double step_rad = 2.0 * kPi + 1e-5 - 6.2831;
+  EXPECT_NEAR(ahead.azimuth_rad, 1e-5 + 20.0 * step_rad, 1e-9) << "over the north";
+  EXPECT_NEAR(Ahead(before, now, 1e4).by.elevation_rad / kRadiansPerDegree, -5.1, 0.1)
+      << "no further than ten degrees";
+  EXPECT_EQ(Ahead(ViewFrom(kFollowedPlace, 40.0), now, 20.0).by.elevation_rad, now.by.elevation_rad)
+      << "time has jumped";
+}
+
+// --- shade of the terrain ---
+
+const GeodeticPosition kPlace = PlaceFromDegrees(46.5, 8.0, 0.0);
+constexpr int kShadeUnit = 3;
+
+GeodeticPosition Eye(double degrees_north) {
+  return {kPlace.latitude_rad + degrees_north * kRadiansPerDegree, kPlace.longitude_rad, 900.0};
+}
+
+SunPosition SunAtDegrees(double elevation) {
+  SunPosition sun{};
+  sun.elevation_rad = elevation * kRadiansPerDegree;
+  sun.azimuth_rad = 2.0;
+  sun.angular_radius_rad = 0.00465;
+  return sun;
+}
+
+/// A mountain at the place, whoever asks from near; counts how often it was asked.
+GroundSampler Mountain(std::atomic<int>& asked) {
+  return [&asked](const GeodeticPosition& place, double half_width_m, int most_samples) {
+    ++asked;
+    ElevationGrid grid;
+    grid.columns = grid.rows = most_samples;
+    const double half_rad = half_width_m / 6.37e6;
+    grid.step_lat_rad = 2.0 * half_rad / (most_samples - 1);
+    grid.step_lon_rad = grid.step_lat_rad / std::cos(place.latitude_rad);
+    grid.north_rad = place.latitude_rad + half_rad;
+    grid.west_rad = place.longitude_rad - half_rad / std::cos(place.latitude_rad);
+    for (int row = 0; row < grid.rows; ++row) {
+      for (int column = 0; column < grid.columns; ++column) {
+        const double y = (grid.LatitudeOfRow(row) - kPlace.latitude_rad) * 6.37e6;
+        const double x = (grid.LongitudeOfColumn(column) - kPlace.longitude_rad) * 4.38e6;
+        grid.height_m.push_back(static_cast<float>(2000.0 * std::exp(-1e-7 * (x * x + y * y))));
+      }
+    }
+    return std::optional<ElevationGrid>(std::move(grid));
+  };
+}
+
+class ShadeFollowerTest : public tests::Headless {
+ protected:
+  static constexpr ShadeSize kSmall{20e3, 201, 2, 256};
+  std::atomic<int> asked_{0};
+};
+
+TEST_F(ShadeFollowerTest, WithoutGroundThereIsNoShade) {
+  ShadeFollower follower(kWgs84);
+  follower.Settle(Eye(0.0), SunAtDegrees(5.0), kShadeUnit);
+  EXPECT_FALSE(follower.shade().Shades());
+  follower.SetGround([](const GeodeticPosition&, double, int) -> std::optional<ElevationGrid> {
+    return std::nullopt;
+  });
+  follower.Settle(Eye(0.0), SunAtDegrees(5.0), kShadeUnit);
+  EXPECT_FALSE(follower.shade().Shades());
+}
+
+TEST_F(ShadeFollowerTest, GroundIsAskedForAnewOnlyWhenTheEyeHasLeftIt) {
+  ShadeFollower follower(kWgs84);
+  follower.SetSize(kSmall);
+  follower.SetGround(Mountain(asked_));
+  follower.Settle(Eye(0.0), SunAtDegrees(5.0), kShadeUnit);
+  ASSERT_TRUE(follower.shade().Shades());
+  const glm::dvec3 first_sun = follower.shade().map().to_sun;
+  follower.Settle(Eye(0.01), SunAtDegrees(5.0 + 0.04), kShadeUnit);
+  EXPECT_EQ(follower.shade().map().to_sun, first_sun) << "a sixth of the disk's radius";
+  follower.Settle(Eye(0.01), SunAtDegrees(4.0), kShadeUnit);
+  EXPECT_NEAR(follower.shade().map().to_sun.z, std::sin(4.0 * kRadiansPerDegree), 1e-3)
+      << "of another sun, in the frame of a kilometre away";
+  EXPECT_EQ(asked_, 1);
+  follower.Settle(Eye(0.08), SunAtDegrees(4.0), kShadeUnit);
+  EXPECT_EQ(asked_, 2) << "nine kilometres of twenty";
+  follower.SetGround(Mountain(asked_));
+  follower.Settle(Eye(0.08), SunAtDegrees(4.0), kShadeUnit);
+  EXPECT_EQ(asked_, 3) << "other ground";
+}
+
+TEST_F(ShadeFollowerTest, TheMapLiesUnderTheEye) {
+  ShadeFollower follower(kWgs84);
+  follower.SetSize(kSmall);
+  follower.SetGround(Mountain(asked_));
+  follower.Settle(Eye(0.0), SunAtDegrees(5.0), kShadeUnit);
+  ASSERT_TRUE(follower.shade().Shades());
+  const glm::dmat4 here = follower.MapFromEye(Eye(0.0));
+  EXPECT_NEAR(glm::length(glm::dvec3(here[3]) - glm::dvec3(0.0, 0.0, 900.0)), 0.0, 1e-6);
+  const glm::dvec3 north = follower.MapFromEye(Eye(0.01))[3];
+  EXPECT_NEAR(north.y, 1112.0, 2.0) << "a hundredth of a degree of latitude";
+  EXPECT_NEAR(north.z, 900.0 - 0.5 * 1112.0 * 1112.0 / 6.37e6, 0.01) << "round the earth";
+}
+
+TEST_F(ShadeFollowerTest, ASunThatOutrunsTheMapsIsStillFollowed) {
+  ShadeFollower follower(kWgs84);
+  follower.SetSize(kSmall);
+  follower.SetGround(Mountain(asked_));
+  double elevation = 2.0;
+  int maps = 0;
+  glm::dvec3 last(0.0);
+  while (maps < 4) {
+    elevation += elevation < 40.0 ? 0.06 : -38.0;  // more than a fifth of the radius every frame
+    follower.Follow(Eye(0.0), SunAtDegrees(elevation), kShadeUnit);
+    if (follower.shade().Shades() && follower.shade().map().to_sun != last) {
+      last = follower.shade().map().to_sun;
+      ++maps;
+    }
+    std::this_thread::yield();
+  }
+  SUCCEED() << "else it would not have come to an end";
+}
+
+}  // namespace
+}  // namespace alpenglow::viewer

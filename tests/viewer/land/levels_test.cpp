@@ -1,0 +1,369 @@
+// SPDX-License-Identifier: MIT
+// Levels of detail of the land: what is drawn, what turns, what is hidden.
+#include "viewer/land/level_ranges.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <set>
+
+#include "tests/renderer/terrain/land_files.h"
+#include "viewer/land/seen_chunks.h"
+
+namespace alpenglow::viewer {
+namespace {
+
+using namespace tests;
+
+class LevelRanges : public LandFolder {
+ protected:
+  void SetUp() override {
+    LandFolder::SetUp();
+    WriteTiles(3);
+    tiles_.emplace(LandSource{{folder_}, VoidPolicy::kFill, std::nullopt});
+    tree_.emplace(*tiles_);
+  }
+  [[nodiscard]] LandEye EyeAt(double column, double row, double above_m) const {
+    return {{column, row}, SampleSizeAt(tiles_->lattice(), 0.81), above_m, 1e6};
+  }
+  [[nodiscard]] static bool All(const ChunkKey&) { return true; }
+
+  std::optional<LandTiles> tiles_;
+  std::optional<ChunkTree> tree_;
+};
+
+// d of a sample, as level_ranges.h has it.
+double DistanceOf(const LandEye& eye, double column, double row) {
+  return std::hypot((column - eye.at.column) * eye.size.column_m,
+                    (row - eye.at.row) * eye.size.row_m, eye.above_m);
+}
+
+// Samples of all corners that a chunk's cells have.
+double Side(const ChunkKey& key) { return kChunkCells * std::exp2(key.level); }
+
+struct LevelCase {
+  LandEye eye;
+  std::vector<LevelRange> ranges;
+  std::vector<DrawnChunk> drawn;
+};
+
+// Eyes low and high, with everything there and with levels that do not reach out yet.
+std::vector<LevelCase> Cases(const LandTiles& tiles, const ChunkTree& tree) {
+  std::vector<LevelCase> cases;
+  const SampleSize size = SampleSizeAt(tiles.lattice(), 0.81);
+  for (int i = 0; i < 60; ++i) {
+    const double column = 900.0 * std::fmod(0.7549 * i, 1.0) - 90.0;
+    const double row = 900.0 * std::fmod(0.5698 * i, 1.0) - 90.0;
+    const LandEye eye{
+        {column, row}, size, i % 3 == 0 ? 4000.0 * std::fmod(0.61 * i, 1.0) : 0.0, 1e6};
+    LandDemand demand =
+        DemandOf(tree, eye, i % 2 == 0 ? 96.0 : 64.0, [](const ChunkKey&) { return true; });
+    if (i % 4 == 1) {
+      for (std::size_t level = 0; level + 1 < demand.reach_m.size(); ++level)
+        demand.reach_m[level] *= std::fmod(0.37 * (i + 3.0 * static_cast<double>(level)), 1.0);
+    }
+    LevelCase made{eye, RangesOf(demand.reach_m, eye), {}};
+    made.drawn = DrawnChunks(tree, eye, made.ranges, [](const ChunkKey&) { return true; });
+    cases.push_back(made);
+  }
+  return cases;
+}
+
+TEST_F(LevelRanges, ChunksCoverAllLandOnce) {
+  for (const LevelCase& each : Cases(*tiles_, *tree_)) {
+    double area = 0.0;
+    for (const DrawnChunk& chunk : each.drawn) {
+      const double side = Side(chunk.key);
+      const double wide = std::min((chunk.key.column + 1) * side, 720.0) - chunk.key.column * side;
+      const double high = std::min((chunk.key.row + 1) * side, 720.0) - chunk.key.row * side;
+      area += wide * high;
+    }
+    EXPECT_DOUBLE_EQ(area, 720.0 * 720.0) << "a quadtree's leaves do not overlap";
+  }
+}
+
+// What keeps levels together, asked at each border of two chunks.
+TEST_F(LevelRanges, WhereTwoLevelsMeetTheFinerHasTurnedAndTheCoarserHasNotBegun) {
+  int borders = 0;
+  for (const LevelCase& each : Cases(*tiles_, *tree_)) {
+    std::set<ChunkKey> drawn;
+    for (const DrawnChunk& chunk : each.drawn) drawn.insert(chunk.key);
+    for (const DrawnChunk& chunk : each.drawn) {
+      const auto& [level, column, row] = chunk.key;
+      struct Next {
+        int columns, rows;
+        unsigned bit;
+      };
+      for (const auto& [columns, rows, bit] :
+           {Next{0, -1, kNorthSide}, {1, 0, kEastSide}, {0, 1, kSouthSide}, {-1, 0, kWestSide}}) {
+        const ChunkKey beside{level, column + columns, row + rows};
+        if (!tree_->Exists(beside) || drawn.contains(beside)) {
+          EXPECT_EQ(chunk.coarse_sides & bit, 0U);
+          continue;
+        }
+        if (!drawn.contains(beside.Parent())) {
+          EXPECT_EQ(chunk.coarse_sides & bit, 0U) << "finer ones lie there";
+          bool finer = false;
+          for (const ChunkKey& child : tree_->Children(beside)) finer |= drawn.contains(child);
+          EXPECT_TRUE(finer) << "levels that meet differ by one";
+          continue;
+        }
+        ++borders;
+        EXPECT_EQ(chunk.coarse_sides & bit, bit);
+        const double side = Side(chunk.key);
+        for (int k = 0; k <= kChunkCells; ++k) {
+          const double along = k * std::exp2(level);
+          const double at_column = column * side + (columns == 1    ? side
+                                                    : columns == -1 ? 0
+                                                                    : along);
+          const double at_row = row * side + (rows == 1 ? side : rows == -1 ? 0.0 : along);
+          const double d = DistanceOf(each.eye, at_column, at_row);
+          const auto fine = static_cast<std::size_t>(level);
+          EXPECT_GE(d, each.ranges[fine].end_m) << "the finer side is the coarser surface";
+          if (level + 1 < tree_->top()) {
+            EXPECT_LE(d, each.ranges[fine + 1].start_m) << "which is still its own";
+          }
+        }
+      }
+    }
+  }
+  EXPECT_GT(borders, 500) << "there was something to test";
+}
+
+TEST_F(LevelRanges, ALevelTurnsOverAStretchThatIsNotShort) {
+  for (const LevelCase& each : Cases(*tiles_, *tree_)) {
+    for (const LevelRange& range : each.ranges) {
+      if (range.end_m > 0.0 && range.end_m < 1e29) {
+        EXPECT_LE(range.start_m, 0.91 * range.end_m);
+      }
+    }
+  }
+}
+
+TEST_F(LevelRanges, WhatIsNotThereIsNeitherDrawnNorHidesWhatIs) {
+  const LandEye eye = EyeAt(360.0, 360.0, 0.0);
+  const ChunkKey missing{1, 10, 11};
+  const auto is_there = [&](const ChunkKey& key) { return key != missing; };
+  const LandDemand demand = DemandOf(*tree_, eye, 96.0, is_there);
+  EXPECT_TRUE(std::any_of(demand.wanted.begin(), demand.wanted.end(),
+                          [&](const WantedChunk& wanted) { return wanted.key == missing; }));
+  const auto ranges = RangesOf(demand.reach_m, eye);
+  for (const DrawnChunk& chunk : DrawnChunks(*tree_, eye, ranges, is_there)) {
+    EXPECT_NE(chunk.key, missing);
+    EXPECT_FALSE(chunk.key.level == 0 && chunk.key.Parent() == missing);
+  }
+  EXPECT_LE(ranges[1].end_m, tree_->Distance(missing.Parent(), eye));
+}
+
+TEST_F(LevelRanges, NearTheEyeEverySampleIsDrawnAndFromAboveFewer) {
+  const LandEye low = EyeAt(360.0, 360.0, 0.0);
+  const auto near =
+      DrawnChunks(*tree_, low, RangesOf(DemandOf(*tree_, low, 96.0, All).reach_m, low), All);
+  EXPECT_EQ(near.front().key.level, 0);
+  const LandEye high = EyeAt(360.0, 360.0, 40e3);
+  const auto far =
+      DrawnChunks(*tree_, high, RangesOf(DemandOf(*tree_, high, 96.0, All).reach_m, high), All);
+  EXPECT_GE(far.front().key.level, 3);
+  EXPECT_LT(far.size(), near.size());
+}
+
+// --- the drawn surface while the eye flies, followed vertex by vertex as land.vert.glsl moves them ---
+
+class DrawnSurface {
+ public:
+  explicit DrawnSurface(const LoadedHeights& heights)
+      : heights_(heights),
+        tree_(heights.tiles()),
+        anchor_{LocalFrame(kWgs84, PlaceOfSample(360.0, 360.0, 0.0)), 360, 360} {}
+
+  void Look(const LandEye& eye) {
+    const auto all = [](const ChunkKey&) { return true; };
+    eye_ = eye;
+    ranges_ = RangesOf(DemandOf(tree_, eye, 96.0, all).reach_m, eye);
+    drawn_.clear();
+    for (const DrawnChunk& chunk : DrawnChunks(tree_, eye, ranges_, all)) drawn_[chunk.key] = chunk;
+  }
+
+  struct Height {
+    double drawn_m, own_m, coarse_m;
+  };
+  // Of the triangle over a place between samples.
+  [[nodiscard]] Height At(double column, double row) {
+    for (int level = 0; level <= tree_.top(); ++level) {
+      const double side = kChunkCells * std::exp2(level);
+      const ChunkKey key{level, static_cast<int>(column / side), static_cast<int>(row / side)};
+      const auto found = drawn_.find(key);
+      if (found != drawn_.end()) return On(found->second, column, row);
+    }
+    ADD_FAILURE() << "nothing is drawn there";
+    return {};
+  }
+
+ private:
+  struct Corner {
+    double column, row;
+    Height height;
+  };
+
+  [[nodiscard]] const LandChunk& Chunk(const ChunkKey& key) {
+    const auto found = chunks_.find(key);
+    if (found != chunks_.end()) return found->second;
+    return chunks_.emplace(key, MakeChunk(heights_, key, tree_.top(), anchor_)).first->second;
+  }
+
+  [[nodiscard]] Corner CornerOf(const LandChunk& chunk, std::uint16_t vertex) const {
+    const ChunkVertex& v = chunk.vertices[vertex];
+    const auto height = [&](const std::array<float, 3>& p) {
+      return anchor_.frame.GeodeticFromEnu(Point<Enu>{{p[0], p[1], p[2]}}).height_m;
+    };
+    const double column = static_cast<double>(v.sample[0]) + anchor_.column;
+    const double row = static_cast<double>(v.sample[1]) + anchor_.row;
+    const double d = std::hypot((column - eye_.at.column) * eye_.size.column_m,
+                                (row - eye_.at.row) * eye_.size.row_m, eye_.above_m);
+    const LevelRange& range = ranges_[static_cast<std::size_t>(chunk.key.level)];
+    const double turned =
+        std::clamp((d - range.start_m) / (0.999 * range.end_m - range.start_m), 0.0, 1.0);
+    const double own = height(v.position_m), coarse = height(v.coarse_position_m);
+    return {column, row, {own + turned * (coarse - own), own, coarse}};
+  }
+
+  [[nodiscard]] Height On(const DrawnChunk& drawn, double column, double row) {
+    const LandChunk& chunk = Chunk(drawn.key);
+    const auto triangles = WithCoarseSides(chunk.triangles, chunk.ends, drawn.coarse_sides);
+    for (std::size_t t = 0; t < triangles.size(); t += 3) {
+      const Corner a = CornerOfCached(chunk, triangles[t], column, row);
+      if (std::abs(a.column - column) > 2 << drawn.key.level ||
+          std::abs(a.row - row) > 2 << drawn.key.level)
+        continue;
+      const Corner b = CornerOf(chunk, triangles[t + 1]), c = CornerOf(chunk, triangles[t + 2]);
+      const double whole =
+          (b.column - a.column) * (c.row - a.row) - (c.column - a.column) * (b.row - a.row);
+      const double of_b =
+          ((column - a.column) * (c.row - a.row) - (c.column - a.column) * (row - a.row)) / whole;
+      const double of_c =
+          ((b.column - a.column) * (row - a.row) - (column - a.column) * (b.row - a.row)) / whole;
+      const double of_a = 1.0 - of_b - of_c;
+      if (of_a < -1e-9 || of_b < -1e-9 || of_c < -1e-9) continue;
+      const auto mean = [&](double Height::*of) {
+        return of_a * a.height.*of + of_b * b.height.*of + of_c * c.height.*of;
+      };
+      return {mean(&Height::drawn_m), mean(&Height::own_m), mean(&Height::coarse_m)};
+    }
+    ADD_FAILURE() << "no triangle is over the place";
+    return {};
+  }
+
+  // Its place alone where it is far off.
+  [[nodiscard]] Corner CornerOfCached(const LandChunk& chunk, std::uint16_t vertex, double column,
+                                      double row) const {
+    const ChunkVertex& v = chunk.vertices[vertex];
+    const double at_column = static_cast<double>(v.sample[0]) + anchor_.column;
+    const double at_row = static_cast<double>(v.sample[1]) + anchor_.row;
+    const double far = 2 << chunk.key.level;
+    if (std::abs(at_column - column) > far || std::abs(at_row - row) > far)
+      return {at_column, at_row, {}};
+    return CornerOf(chunk, vertex);
+  }
+
+  const LoadedHeights& heights_;
+  ChunkTree tree_;
+  LandAnchor anchor_;
+  LandEye eye_;
+  std::vector<LevelRange> ranges_;
+  std::map<ChunkKey, DrawnChunk> drawn_;
+  std::map<ChunkKey, LandChunk> chunks_;
+};
+
+class LandInFlight : public LandFolder {};
+
+TEST_F(LandInFlight, NothingPops) {
+  WriteTiles(3);
+  const LoadedHeights heights = AllHeights({{folder_}, VoidPolicy::kFill, std::nullopt});
+  DrawnSurface surface(heights);
+  LandEye eye{{}, SampleSizeAt(heights.tiles().lattice(), 0.81), 0.0, 1e6};
+  constexpr int kSteps = 120, kPlaces = 12;
+  constexpr double kStep_m = 20.0;
+  std::vector<double> before;
+  double fastest = 0.0, widest = 0.0;  // [rad]
+  for (int step = 0; step < kSteps; ++step) {
+    // Level, then upwards.
+    eye.at = {20.0 + std::min(step, 80) * kStep_m / eye.size.column_m, 360.0};
+    eye.above_m = std::max(step - 80, 0) * kStep_m;
+    surface.Look(eye);
+    for (std::size_t place = 0; place < kPlaces; ++place) {
+      const double column = 30.3 + 55.0 * static_cast<double>(place), row = 330.7;
+      const auto height = surface.At(column, row);
+      const double d = std::hypot((column - eye.at.column) * eye.size.column_m,
+                                  (row - eye.at.row) * eye.size.row_m, eye.above_m);
+      widest = std::max(widest, std::abs(height.own_m - height.coarse_m) / d);
+      if (step > 0) fastest = std::max(fastest, std::abs(height.drawn_m - before[place]) / d);
+      before.resize(kPlaces);
+      before[place] = height.drawn_m;
+    }
+  }
+  EXPECT_LT(fastest, 3e-4) << "a third of a pixel of 1280 over 60 degrees in 20 m of flight";
+  EXPECT_GT(widest, 3e-3) << "levels that differ by that would be seen to pop";
+}
+
+// --- what the skyline hides ---
+
+// A wall 1 km north of the eye, 2 km wide and 100 m over the eye.
+std::vector<Skyline::Between> Wall() {
+  std::vector<Skyline::Between> wall;
+  for (double x = -1000.0; x <= 1000.0; x += 50.0)
+    wall.push_back({{x, 1000.0, 100.0}, {x, 1000.0, 110.0}});
+  return wall;
+}
+
+TEST(Skyline, AWallHidesWhatStandsBehindItAndIsLower) {
+  Skyline skyline;
+  skyline.Add(Wall());
+  EXPECT_FALSE(skyline.Hides({0.0, 500.0, 0.0}, 10.0, 0.0)) << "before it";
+  EXPECT_TRUE(skyline.Hides({0.0, 3000.0, 0.0}, 50.0, 150.0))
+      << "under the line of sight over its corners, 100 m in 1414 m";
+  EXPECT_FALSE(skyline.Hides({0.0, 3000.0, 0.0}, 50.0, 301.0)) << "over it";
+  EXPECT_FALSE(skyline.Hides({3000.0, 3000.0, 0.0}, 50.0, 0.0)) << "half behind its end";
+  EXPECT_FALSE(skyline.Hides({3000.0, 0.0, 0.0}, 50.0, 0.0)) << "beside it";
+  EXPECT_FALSE(skyline.Hides({0.0, -3000.0, 0.0}, 50.0, 0.0)) << "opposite";
+}
+
+TEST(Skyline, TheLowerOfTwoLevelsCounts) {
+  std::vector<Skyline::Between> turning = Wall();
+  for (Skyline::Between& vertex : turning) vertex.other.z = 20.0;
+  Skyline skyline;
+  skyline.Add(turning);
+  EXPECT_FALSE(skyline.Hides({0.0, 3000.0, 0.0}, 50.0, 100.0));
+  EXPECT_TRUE(skyline.Hides({0.0, 3000.0, 0.0}, 50.0, 20.0));
+}
+
+TEST(Skyline, AWallThatIsFartherHidesNothing) {
+  Skyline skyline;
+  skyline.Add(Wall());
+  EXPECT_FALSE(skyline.Hides({0.0, 1400.0, 0.0}, 50.0, -10.0)) << "the wall's ends are 1414 m away";
+  EXPECT_TRUE(skyline.Hides({0.0, 1500.0, 0.0}, 50.0, -10.0));
+}
+
+TEST(Skyline, SeenFromAboveTheGroundBehindACrestIsHiddenToo) {
+  std::vector<Skyline::Between> crest = Wall();
+  for (Skyline::Between& vertex : crest) {
+    vertex.one.z = -100.0;
+    vertex.other.z = -100.0;
+  }
+  Skyline skyline;
+  skyline.Add(crest);
+  EXPECT_TRUE(skyline.Hides({0.0, 2000.0, 0.0}, 50.0, -300.0));
+  EXPECT_FALSE(skyline.Hides({0.0, 2000.0, 0.0}, 50.0, -150.0));
+}
+
+TEST(Skyline, AGapInAWallHidesNothing) {
+  Skyline skyline;
+  const std::vector<Skyline::Between> wall = Wall();
+  skyline.Add(std::span(wall).first(18));
+  skyline.Add(std::span(wall).last(18));  // 250 m are open in the middle
+  EXPECT_FALSE(skyline.Hides({0.0, 3000.0, 0.0}, 50.0, 0.0));
+}
+
+}  // namespace
+}  // namespace alpenglow::viewer
