@@ -80,30 +80,6 @@ TEST_F(Skyview, WithoutATimeItBeginsAtNoonOfThePlace) {
       << "138.5 degrees before Greenwich, and the equation of time of two minutes";
 }
 
-/// The instant of the first frame of a list of skyseries.
-UtcInstant FirstListed(const std::string& list) {
-  constexpr std::size_t kInstant = 20;  // "2026-06-21T04:00:00Z"
-  const std::size_t frame = list.find("\n0,");
-  return ParseInstant(frame == std::string::npos ? list : list.substr(frame + 3, kInstant));
-}
-
-TEST_F(Skyview, AnEventIsAtTheTimeThatSkyseriesLists) {
-  if (!tests::HasOpenGl()) GTEST_SKIP() << "EGL gives no OpenGL here";
-  const std::vector<std::pair<std::string, std::string>> scenes = {
-      {"", " --quality low"},  // over the built-in range
-      {InFolder("s.toml") + " --latitude 69.65 --longitude 18.96", " --altitude 3000"}};
-  for (const auto& [scene, eye] : scenes) {
-    const Outcome listed = RunCommand(std::string("'") + tests::kSkyseries + "' " + scene +
-                                      " --list --at '2026-05-10 sunset'");
-    ASSERT_EQ(listed.status, 0) << listed.error;
-    const Outcome seen = Run(scene + eye + " --headless --size 8x4 --time '2026-05-10 sunset' " +
-                             "--screenshot " + InFolder("s.exr"));
-    ASSERT_EQ(seen.status, 0) << seen.error;
-    const UtcInstant shown = ParseInstant(ReadExrMetadata(InFolder("s.exr")).at("alpenglow.time"));
-    EXPECT_NEAR(SecondsBetween(FirstListed(listed.out), shown), 0.0, 0.51) << scene;
-  }
-}
-
 TEST_F(Skyview, AFlightIsRecordedReplayedAndRenderedBySkyseries) {
   if (!tests::HasOpenGl()) GTEST_SKIP() << "EGL gives no OpenGL here";
   const std::string small = InFolder("s.toml") + " --headless --size 32x18 ";
@@ -432,6 +408,30 @@ TEST_F(SkyviewLand, AViewOverSeveralModelsIsExplainedOnTheLandThatIsLoaded) {
   ASSERT_NE(at, std::string::npos) << outcome.out;
   EXPECT_LT(std::stod(outcome.out.substr(at + row.size())), 1.0)
       << "per cent, as over one model; without land, or with every second sample, it would be more";
+}
+
+/// The instant of the first frame of a list of skyseries.
+UtcInstant FirstListed(const std::string& list) {
+  constexpr std::size_t kInstant = 20;  // "2026-06-21T04:00:00Z"
+  const std::size_t frame = list.find("\n0,");
+  return ParseInstant(frame == std::string::npos ? list : list.substr(frame + 3, kInstant));
+}
+
+TEST_F(SkyviewLand, AnEventIsAtTheTimeThatSkyseriesLists) {
+  WriteText(folder_ / "s.toml", kBareSceneText);
+  const std::string event = " '2026-05-10 sunset'";
+  const std::pair<std::string, std::string> views[] = {
+      {"--dem west.tif --latitude 46.65 --longitude 8.05", ""},
+      {"s.toml --latitude 69.65 --longitude 18.96", " --altitude 3000"}};
+  for (const auto& [view, eye] : views) {
+    const Outcome listed =
+        RunCommand(std::string("'") + tests::kSkyseries + "' " + view + " --list --at" + event);
+    ASSERT_EQ(listed.status, 0) << listed.error;
+    const Outcome seen = CameraSample(view + eye + " --time" + event, "e.exr");
+    ASSERT_EQ(seen.status, 0) << seen.error;
+    const UtcInstant shown = ParseInstant(ReadExrMetadata(folder_ / "e.exr").at("alpenglow.time"));
+    EXPECT_NEAR(SecondsBetween(FirstListed(listed.out), shown), 0.0, 0.51) << view;
+  }
 }
 
 TEST_F(SkyviewLand, WhatIsLeftOutOfAFolderIsSaid) {

@@ -96,15 +96,20 @@ std::string DisplayWith(const std::string& word) {
   return "ALPENGLOW_DISPLAY='" + script + word + " 16x9'";
 }
 
-TEST_F(SkyviewWindow, ASignalEndsTheFlightAndItsRecordIsWhole) {
-  const std::pair<const char*, int> signals[] = {
-      {"raise:2", 130}, {"raise:15", 143}, {"raise:1", 0}};  // SIGINT, SIGTERM, SIGHUP
-  for (const auto& [word, status] : signals) {
+TEST_F(SkyviewWindow, AfterASignalAndOfADisplayThatGoesTheRecordIsWhole) {
+  struct Case {
+    const char* word;
+    int status;
+    const char* said;
+  };
+  for (const Case& c : {Case{"raise:2", 130, ""}, Case{"raise:15", 143, ""}, Case{"raise:1", 0, ""},
+                        Case{"gone", 5, "display has gone"}, Case{"reset", 5, "was reset"}}) {
     std::filesystem::remove(folder_ / "f.csv");
-    const Outcome outcome = Run(DisplayWith(word), "--record f.csv");
-    EXPECT_EQ(outcome.status, status) << outcome.error;
-    EXPECT_GE(ReadCameraPath(folder_ / "f.csv").points().size(), 1U) << word;
-    EXPECT_FALSE(std::filesystem::exists(folder_ / "f.csv.part")) << word;
+    const Outcome outcome = Run(DisplayWith(c.word), "--record f.csv");
+    EXPECT_EQ(outcome.status, c.status) << c.word << outcome.error;
+    EXPECT_THAT(outcome.error, HasSubstr(c.said));
+    EXPECT_GE(ReadCameraPath(folder_ / "f.csv").points().size(), 1U) << c.word;
+    EXPECT_FALSE(std::filesystem::exists(folder_ / "f.csv.part")) << c.word;
   }
 }
 
@@ -149,17 +154,6 @@ TEST_F(SkyviewWindow, AReplayBeginsWhereTheFlightDid) {
   EXPECT_LT(since_s, 60.0);
 }
 
-TEST_F(SkyviewWindow, OfADisplayThatGoesTheRecordIsWholeAndTheStatusFive) {
-  for (const auto& [word, said] : {std::pair{"gone", "display has gone"}, {"reset", "was reset"}}) {
-    std::filesystem::remove(folder_ / "f.csv");
-    const Outcome outcome = Run(DisplayWith(word), "--record f.csv");
-    EXPECT_EQ(outcome.status, 5) << word;
-    EXPECT_THAT(outcome.error, HasSubstr(said));
-    EXPECT_GE(ReadCameraPath(folder_ / "f.csv").points().size(), 1U) << word;
-    EXPECT_FALSE(std::filesystem::exists(folder_ / "f.csv.part")) << word;
-  }
-}
-
 TEST_F(SkyviewWindow, AWindowBeyondTheDriversLimitIsRefusedBeforeAnythingIsDrawn) {
   const Outcome outcome = Run("ALPENGLOW_DISPLAY='40000x8 40000x8'", "--record f.csv");
   EXPECT_EQ(outcome.status, 2);
@@ -168,17 +162,14 @@ TEST_F(SkyviewWindow, AWindowBeyondTheDriversLimitIsRefusedBeforeAnythingIsDrawn
   EXPECT_FALSE(std::filesystem::exists(folder_ / "f.csv"));
 }
 
-TEST_F(SkyviewWindow, AWindowThatIsClosedLeavesThePictureOfF3) {
-  const Outcome outcome = Run("ALPENGLOW_DISPLAY='64x36 key:292,0 64x36'", "");
-  EXPECT_EQ(outcome.status, 0) << outcome.error;
-  EXPECT_EQ(ReadPng(folder_ / "skyview-0001.png").width, 64);
-}
-
-TEST_F(SkyviewWindow, OfADisplayThatGoesThePictureOfF3IsWritten) {
-  const Outcome outcome = Run("ALPENGLOW_DISPLAY='64x36 key:292,0 64x36 gone 64x36'", "");
-  EXPECT_EQ(outcome.status, 5);
-  EXPECT_THAT(outcome.error, HasSubstr("skyview-0001.png is written"));
-  EXPECT_EQ(ReadPng(folder_ / "skyview-0001.png").width, 64);
+TEST_F(SkyviewWindow, ThePictureOfF3IsWrittenWhenTheWindowIsClosedOrItsDisplayGoes) {
+  const Outcome closed = Run("ALPENGLOW_DISPLAY='64x36 key:292,0 64x36'", "");
+  EXPECT_EQ(closed.status, 0) << closed.error;
+  const Outcome gone = Run("ALPENGLOW_DISPLAY='64x36 key:292,0 64x36 gone 64x36'", "");
+  EXPECT_EQ(gone.status, 5);
+  EXPECT_THAT(gone.error, HasSubstr("skyview-0002.png is written"));
+  for (const char* name : {"skyview-0001.png", "skyview-0002.png"})
+    EXPECT_EQ(ReadPng(folder_ / name).width, 64);
 }
 
 TEST_F(SkyviewWindow, ShiftF10FillsTheScreenAndGoesBack) {

@@ -8,6 +8,7 @@
 #include <chrono>
 #include <cmath>
 #include <cstdlib>
+#include <future>
 #include <thread>
 
 #include "atmosphere/math/numerics.h"
@@ -203,7 +204,8 @@ std::array<double, 3> CodeOf(const ToneTable& table, const std::array<double, 3>
 
 /// Of the table, in codes of 8 bits, ascending.
 std::vector<double> ErrorsOf(AgxLook look) {
-  const ToneTable table(look);
+  const std::shared_future<ToneTable> made = ToneTableOf(look);
+  const ToneTable& table = made.get();
   std::vector<double> errors;
   for (int i = 1; i <= 20000; ++i) {
     // Colours as nature has them: channels within three stops of each other.
