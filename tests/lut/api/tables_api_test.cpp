@@ -7,6 +7,7 @@
 #include "lut/api/conversions.h"
 #include "lut/api/sky_state.h"
 #include "lut/sky/panorama.h"
+#include "lut/table_io/exchange_check.h"
 #include "tests/fixtures/temporary_folder.h"
 
 namespace alpenglow {
@@ -40,11 +41,15 @@ TEST_F(Tables, FoldersThatCannotBeReadOrMadeAreRefused) {
   EXPECT_THROW(ExportTables(Atmosphere(), folder_, TableUser::kThreeAtmosphere), InputError);
 }
 
-TEST_F(Tables, AreWrittenForBrunetonsDemo) {
-  ExportTables(Atmosphere::Preset("bruneton2017"), folder_ / "demo", TableUser::kBrunetonDemo);
-  for (const char* name : {"transmittance.dat", "irradiance.dat", "scattering.dat"}) {
-    EXPECT_TRUE(std::filesystem::exists(folder_ / "demo" / name)) << name;
-  }
+TEST_F(Tables, AreWrittenForBrunetonsDemoWhoseLowestSunTexelsTell) {
+  ExportTables(Atmosphere::Preset("bruneton2017"), folder_, TableUser::kBrunetonDemo);
+  const lut::ExchangeDescription description = lut::DescribeExchangeTables(folder_);
+  EXPECT_EQ(description.options.layout, lut::ExchangeLayout::kBruneton);
+  EXPECT_EQ(description.options.lowest_sun_deg, 102.0);
+  ASSERT_EQ(description.textures.size(), 3U);
+  // Tables in float have sixteen nodes, the description twenty-four.
+  EXPECT_LT(description.textures[2].errors.median, 1e-5);
+  EXPECT_LT(description.textures[2].errors.largest, 1e-2);
 }
 
 TEST(Panorama, IsThatOfTheLayerBelow) {

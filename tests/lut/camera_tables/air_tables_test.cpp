@@ -5,16 +5,19 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
+#include <span>
 
 #include "atmosphere/base/error.h"
 #include "atmosphere/colour/spectrum.h"
+#include "tests/fixtures/sanitized.h"
 #include "tests/lut/camera_tables/air_reference.h"
 
 namespace alpenglow::lut {
 namespace {
 
-constexpr int kRays = 300;
+constexpr int kRays = tests::ScaledDown(200, 60);
 
 const tests::LitAir& Hazy() {
   static const tests::LitAir hazy(MediumPreset("hazy"));
@@ -160,8 +163,12 @@ void ExpectSound(const AirTexels& texels, const char* name) {
 }
 
 TEST(AirTables, AreFiniteAndNotNegativeForEveryEyeAndSun) {
-  for (const double altitude_m : {-100.0, 0.0, 2.0, 8999.0, 9001.0, 99e3, 101e3, 400e3, 1e9}) {
-    for (const double elevation_deg : {90.0, 0.27, 0.0, -0.27, -18.0, -90.0}) {
+  constexpr std::array kSuns_deg{90.0, 0.0, -18.0, -90.0, 0.27, -0.27};
+  for (const double altitude_m : {-100.0, 0.0, 8999.0, 9001.0, 99e3, 101e3, 400e3, 1e9}) {
+    // Every other height has other suns.
+    const std::size_t first = altitude_m > 9e3 ? 3 : 0;
+    for (const double elevation_deg :
+         std::span(kSuns_deg).subspan(first, tests::ScaledDown<std::size_t>(3, 1))) {
       SCOPED_TRACE(fmt::format("{} m, sun at {} degrees", altitude_m, elevation_deg));
       const AirTables tables =
           TablesOf(tests::Earth(), EyeUnder(altitude_m, elevation_deg), AirQuality::kFirst);

@@ -25,12 +25,15 @@
 #include "atmosphere/ray/single_scattering.h"
 #include "lut/sky/panorama.h"
 #include "lut/sky/sky_view.h"
+#include "tests/fixtures/lit_air.h"
 #include "tests/fixtures/places.h"
+#include "tests/fixtures/sanitized.h"
 
 namespace alpenglow::lut {
 namespace {
 
 constexpr double kNightSky_lux = 0.0005;  // what the table adds (Janiczek, DeYoung 1987)
+constexpr int kBands = tests::ScaledDown(8, 4);
 
 /// Returns two columns of a published table as x -> y, or nothing where the table is absent.
 std::map<double, double> Table(const std::string& file, std::size_t x, std::size_t y) {
@@ -108,7 +111,7 @@ TEST(Twilight, MoleculesThinOutAsInTheStandardAtmosphere) {
 // Hard case 22.
 TEST(Twilight, IsAsBrightAsPublished) {
   if (PublishedLux().empty()) GTEST_SKIP() << "../shared/tables is not here";
-  const Daylight daylight(MediumPreset("earth", WavelengthSet(8)));
+  const Daylight daylight(MediumPreset("earth", WavelengthSet(kBands)));
   for (const double apparent_deg : {0.0, -3.0, -6.0, -9.0, -12.0}) {
     const double ratio = RatioToTable(daylight, apparent_deg);
     EXPECT_NEAR(ratio, 1.0, 0.25) << "sun at " << apparent_deg << " degrees";
@@ -122,7 +125,8 @@ TEST(Twilight, OfOneExponentialIsTooBrightBecauseAirIsTooDenseHighUp) {
   const double height_m = 8000.0;
   const double too_dense = std::exp(-40e3 / height_m) / DensityAt40Km();
   EXPECT_NEAR(too_dense, 2.1, 0.1) << "the reason: molecules at 40 km, times too many";
-  const Daylight daylight(WithOneExponential(MediumPreset("earth", WavelengthSet(8)), height_m));
+  const Daylight daylight(
+      WithOneExponential(MediumPreset("earth", WavelengthSet(kBands)), height_m));
   for (const double apparent_deg : {-6.0, -9.0, -12.0}) {
     EXPECT_GT(RatioToTable(daylight, apparent_deg), 1.2) << apparent_deg;
     EXPECT_LT(RatioToTable(daylight, apparent_deg), 1.2 * too_dense) << apparent_deg;
@@ -133,22 +137,24 @@ class MarsSky : public testing::Test {
  protected:
   // Returns linear sRGB of the sky without the sun.
   // Angles in degrees: elevations, azimuth from the sun.
-  std::array<double, 3> Sky(double sun_deg, double elevation_deg, double azimuth_deg) const {
-    const SkyView view(air_, multiple_scattering_, 2.0, std::sin(sun_deg * kRadiansPerDegree));
+  static std::array<double, 3> Sky(double sun_deg, double elevation_deg, double azimuth_deg) {
+    const SkyView view(Mars().air, Mars().multiple_scattering, 2.0,
+                       std::sin(sun_deg * kRadiansPerDegree));
     const Bands<float> sky =
         view.Radiance((90.0 - elevation_deg) * kRadiansPerDegree, azimuth_deg * kRadiansPerDegree);
     std::vector<double> radiance;
     for (std::size_t band = 0; band < sky.count; ++band) {
-      radiance.push_back(static_cast<double>(sky[band]) * medium_.solar_irradiance[band]);
+      radiance.push_back(static_cast<double>(sky[band]) * Mars().medium.solar_irradiance[band]);
     }
-    return BandColour(medium_.wavelengths_nm).LinearSrgb(radiance);
+    return BandColour(Mars().medium.wavelengths_nm).LinearSrgb(radiance);
   }
   static double BlueOverRed(const std::array<double, 3>& colour) { return colour[2] / colour[0]; }
 
-  // The air is solved once for all tests.
-  inline static const Medium medium_ = MediumPreset("mars");
-  inline static const SingleScattering<float> air_{medium_};
-  inline static const MultipleScattering multiple_scattering_{medium_};
+ private:
+  static const tests::LitAir& Mars() {
+    static const tests::LitAir mars(MediumPreset("mars"));
+    return mars;
+  }
 };
 
 TEST_F(MarsSky, DustHasAPhaseFunctionAtEveryWavelength) {

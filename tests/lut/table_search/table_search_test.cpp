@@ -34,10 +34,12 @@ const MultipleScattering& Quick() {
   return light;
 }
 
-/// The finest solution of the earth; it has one band under the sanitizers.
+/// The finest solution of scalar light of the earth in one band; the usual one under the sanitizers.
 const MultipleScattering& EarthFinest() {
-  static const MultipleScattering light = FinestMultipleScattering(
-      MediumPreset("earth", tests::kSanitized ? std::vector{550.0} : std::vector{450.0, 650.0}));
+  static const MultipleScattering light = [] {
+    const Medium medium = InScalarLight(MediumPreset("earth", {550.0}));
+    return tests::kSanitized ? MultipleScattering(medium) : FinestMultipleScattering(medium);
+  }();
   return light;
 }
 
@@ -77,52 +79,48 @@ TEST(TableSearch, AnUnreachableErrorIsRefusedWithTheBestOne) {
 /// reference solution and, few of them, with paths.
 class ChosenTables : public TemporaryFolder {
  protected:
+  static constexpr double kMaxError = 0.02;
+  static constexpr std::size_t kViews = tests::ScaledDown<std::size_t>(80, 32);
   static constexpr std::size_t kUnseen = 100000;
-  static constexpr std::size_t kUnseenViews = tests::ScaledDown<std::size_t>(120, 80);
-  /// An rms may have this share of the bound: 80 views tell it to a twelfth.
-  static constexpr double kSampling = tests::ScaledDown(1.0, 1.0 + 1.0 / 12.0);
-  static TableSearch Search(double max_error, TablesWanted wanted = TablesWanted::kSmallest) {
-    return {.max_error = max_error,
-            .views_of_a_kind = tests::ScaledDown<std::size_t>(120, 80),
-            .path_traced_views_of_a_kind = max_error < 0.01 ? 1U : 3U,
-            .wanted = wanted};
+  /// An rms may have this share of the bound: 80 views tell it to a twelfth, 32 to an eighth.
+  static constexpr double kSampling = 1.0 + tests::ScaledDown(1.0 / 12.0, 1.0 / 8.0);
+
+  static TableChoice Chosen(TablesWanted wanted, std::size_t path_traced) {
+    return ChooseTables(EarthFinest(), {.max_error = kMaxError,
+                                        .views_of_a_kind = kViews,
+                                        .path_traced_views_of_a_kind = path_traced,
+                                        .wanted = wanted});
+  }
+  static const ReferenceViews& Unseen() {
+    static const ReferenceViews views(EarthFinest().medium(), EarthFinest(), kViews, kUnseen);
+    return views;
   }
 };
-class SmallestTables : public ChosenTables, public testing::WithParamInterface<double> {};
 
-TEST_P(SmallestTables, AreUnderTheBoundOnUnseenViews) {
-  const double max_error = GetParam();
-  const Medium& medium = EarthFinest().medium();
-  const TableChoice choice = ChooseTables(EarthFinest(), Search(max_error));
+TEST_F(ChosenTables, SmallestAreUnderTheBoundOnUnseenViews) {
+  const TableChoice choice = Chosen(TablesWanted::kSmallest, tests::ScaledDown<std::size_t>(2, 1));
   WriteTables(choice, folder_);
-  const TableLookup stored(ReadTableFolder(folder_, MediumHash(medium)));
+  const TableLookup stored(ReadTableFolder(folder_, MediumHash(EarthFinest().medium())));
   EXPECT_EQ(stored.tables().ray_nodes, choice.tables.ray_nodes);
   EXPECT_FALSE(fs::exists(folder_ / kSingleScatteringFileName));
-  const ReferenceViews unseen(medium, EarthFinest(), kUnseenViews, kUnseen);
   for (const TableChoice::Measured& measured : choice.measured) {
-    EXPECT_LT(measured.errors.rms, max_error);
-    EXPECT_LT(measured.paths.Unexplained(), max_error);
-    const ViewErrors errors = unseen.ErrorsOf(stored, measured.kind);
-    EXPECT_LT(std::hypot(errors.rms, measured.paths.Unexplained()), kSampling * max_error)
+    EXPECT_LT(measured.errors.rms, kMaxError);
+    EXPECT_LT(measured.paths.Unexplained(), kMaxError);
+    const ViewErrors errors = Unseen().ErrorsOf(stored, measured.kind);
+    EXPECT_LT(std::hypot(errors.rms, measured.paths.Unexplained()), kSampling * kMaxError)
         << NameOf(measured.kind) << ":\n"
-        << ChoiceText(choice, max_error);
+        << ChoiceText(choice, kMaxError);
   }
-  RecordProperty("bytes", static_cast<int>(choice.bytes));
 }
 
-INSTANTIATE_TEST_SUITE_P(Errors, SmallestTables,
-                         testing::Values(0.02, tests::ScaledDown(0.005, 0.04)));
-
 TEST_F(ChosenTables, AllThreeTogetherAreUnderTheBoundOnUnseenViews) {
-  constexpr double kMaxError = 0.02;
-  const TableChoice choice = ChooseTables(EarthFinest(), Search(kMaxError, TablesWanted::kAll));
+  const TableChoice choice = Chosen(TablesWanted::kAll, 0);
   WriteTables(choice, folder_);
   const TableLookup stored(ReadTableFolder(folder_));
   ASSERT_TRUE(stored.tables().transmittance && stored.tables().single_scattering);
   EXPECT_EQ(stored.tables().single_scattering->texels(), choice.tables.single_scattering->texels());
-  const ReferenceViews unseen(EarthFinest().medium(), EarthFinest(), kUnseenViews, kUnseen);
   for (const ViewKind kind : kViewKinds) {
-    EXPECT_LT(unseen.ErrorsOf(stored, kind).rms, kSampling * kMaxError)
+    EXPECT_LT(Unseen().ErrorsOf(stored, kind).rms, kSampling * kMaxError)
         << NameOf(kind) << ":\n"
         << ChoiceText(choice, kMaxError);
   }
@@ -130,9 +128,10 @@ TEST_F(ChosenTables, AllThreeTogetherAreUnderTheBoundOnUnseenViews) {
 
 TEST(TableSearch, ASmallerErrorTakesMoreMemory) {
   const TableSearch coarse{
-      .max_error = 0.05, .views_of_a_kind = 32, .path_traced_views_of_a_kind = 0};
-  const TableSearch fine{
-      .max_error = 0.01, .views_of_a_kind = 32, .path_traced_views_of_a_kind = 0};
+      .max_error = 0.05, .views_of_a_kind = 16, .path_traced_views_of_a_kind = 0};
+  const TableSearch fine{.max_error = tests::ScaledDown(0.01, 0.03),
+                         .views_of_a_kind = 16,
+                         .path_traced_views_of_a_kind = 0};
   const TableChoice small = ChooseTables(Quick(), coarse), large = ChooseTables(Quick(), fine);
   EXPECT_LT(small.bytes, large.bytes);
   EXPECT_LE(small.tables.ray_nodes, large.tables.ray_nodes);
