@@ -7,12 +7,14 @@
 #include <array>
 #include <cmath>
 #include <functional>
+#include <span>
 #include <vector>
 
 #include "atmosphere/astronomy/sun.h"
 #include "atmosphere/base/error.h"
 #include "atmosphere/math/constants.h"
 #include "atmosphere/math/numerics.h"
+#include "tests/fixtures/sanitized.h"
 
 namespace alpenglow::atmosphere {
 namespace {
@@ -46,7 +48,8 @@ double UncoveredByChords(const EclipsedDisk& disk, double wavelength_nm) {
 }
 
 TEST(Eclipse, LightThatPassesTheMoonIsThatOfAllChords) {
-  for (const double radius : {0.93, 1.0, 1.04}) {
+  constexpr std::array kRadii{1.04, 1.0, 0.93};
+  for (const double radius : std::span(kRadii).first(tests::ScaledDown<std::size_t>(3, 1))) {
     for (const double separation : {0.0, 0.02, 0.05, 0.3, 0.9, 1.0, 1.3, 1.9}) {
       const EclipsedDisk disk{radius, separation};
       const double wavelength_nm = radius == 1.0 ? 700.0 : 400.0;

@@ -4,8 +4,10 @@
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
 
+#include <array>
 #include <atomic>
 #include <cmath>
+#include <iterator>
 #include <set>
 #include <span>
 #include <utility>
@@ -69,7 +71,8 @@ TEST(PathTracer, OrderOneIsTheIntegralOfSingleScattering) {
   const Medium medium = MediumPreset("bruneton2017");
   const std::pair<double, double> views[] = {
       {0.0, 20.0}, {0.0, 88.0}, {10000.0, 108.0}, {400000.0, 108.0}, {400000.0, 140.0}};
-  for (const double sun_deg : {30.0, 85.0, 92.0, 96.0}) {
+  constexpr std::array kSuns_deg{30.0, 92.0, 85.0, 96.0};
+  for (const double sun_deg : std::span(kSuns_deg).first(tests::ScaledDown<std::size_t>(4, 2))) {
     for (const auto& [altitude, view_deg] : views) {
       const double azimuth_deg = view_deg < 100.0 ? 10.0 : 120.0;
       const ViewRay ray = RayFromAngles(altitude, view_deg, azimuth_deg, sun_deg);
@@ -181,14 +184,16 @@ TEST(PathTracer, WhatComesInLeavesThroughTheTopWithoutAbsorption) {
     double low, high;
     int nodes;
   };
-  // Over zones of the shell: mean of the flux through the top, times two for the sphere.
+  // Over zones of the shell: mean of the flux through the top, times two for the sphere. Every node
+  // has its own seed, because errors of equal paths would not be independent.
+  std::uint64_t seed = 0;
   for (const Panel& panel : {Panel{-0.3, -0.05, 5}, {-0.05, 0.1, 5}, {0.1, 1.0, 7}}) {
     const GaussRule& rule = GaussLegendre(panel.nodes);
     for (std::size_t i = 0; i < rule.node.size(); ++i) {
       const double width = panel.high - panel.low;
       const auto flux =
           TraceIrradiance(medium, medium.atmosphere_height_m, panel.low + width * rule.node[i],
-                          PlaneSide::kFromBelow, {.max_paths = kFewest, .relative_error = 0.003});
+                          PlaneSide::kFromBelow, {.seed = ++seed, .max_paths = kFewest});
       for (std::size_t band = 0; band < bands; ++band) {
         leaves[band] += 2.0 * width * rule.weight[i] * flux.value[band];
         error[band] += std::pow(2.0 * width * rule.weight[i] * flux.standard_error[band], 2.0);
@@ -223,8 +228,15 @@ TEST(PathTracer, RefusesWhatIsNotARayOrAnOption) {
   EXPECT_THROW(TraceIrradiance(medium, 0.0, 1.5, PlaneSide::kFromAbove), InputError);
 }
 
+/// Returns the first two of these cases under the sanitizers, otherwise all.
+std::set<std::string> TracedIds(std::set<std::string> ids) {
+  while (tests::kSanitized && ids.size() > 2) ids.erase(std::prev(ids.end()));
+  return ids;
+}
+
 // Stored cases have errors of up to half a percent of the value; ours are a little larger.
-void ExpectStoredRadiance(const std::set<std::string>& ids) {
+void ExpectStoredRadiance(const std::set<std::string>& all) {
+  const std::set<std::string> ids = TracedIds(all);
   if (!stored::Available()) GTEST_SKIP() << "no stored cases at " << stored::Folder();
   constexpr double kError = tests::ScaledDown(0.008, 0.05);
   const int compared = stored::Compare(
@@ -391,7 +403,8 @@ TEST(PathTracedStokes, RefuseWhatIsNoScattering) {
   EXPECT_THROW(TraceStokes(medium, {{0.0, 0.0, 0.0}, {{}, {}}}, ray), InputError);
 }
 
-void ExpectStoredStokes(const std::set<std::string>& ids) {
+void ExpectStoredStokes(const std::set<std::string>& all) {
+  const std::set<std::string> ids = TracedIds(all);
   if (!stored::Available()) GTEST_SKIP() << "no stored cases at " << stored::Folder();
   constexpr double kError = tests::ScaledDown(0.008, 0.05);
   const int compared = stored::Compare(

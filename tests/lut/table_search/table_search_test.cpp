@@ -79,11 +79,11 @@ TEST(TableSearch, AnUnreachableErrorIsRefusedWithTheBestOne) {
 /// reference solution and, few of them, with paths.
 class ChosenTables : public TemporaryFolder {
  protected:
-  static constexpr double kMaxError = 0.02;
-  static constexpr std::size_t kViews = tests::ScaledDown<std::size_t>(80, 32);
+  static constexpr double kMaxError = tests::ScaledDown(0.02, 0.1);
+  static constexpr std::size_t kViews = tests::ScaledDown<std::size_t>(80, 18);
   static constexpr std::size_t kUnseen = 100000;
-  /// An rms may have this share of the bound: 80 views tell it to a twelfth, 32 to an eighth.
-  static constexpr double kSampling = 1.0 + tests::ScaledDown(1.0 / 12.0, 1.0 / 8.0);
+  /// An rms may have this share of the bound: 80 views tell it to a twelfth, 18 to a sixth.
+  static constexpr double kSampling = 1.0 + tests::ScaledDown(1.0 / 12.0, 1.0 / 6.0);
 
   static TableChoice Chosen(TablesWanted wanted, std::size_t path_traced) {
     return ChooseTables(EarthFinest(), {.max_error = kMaxError,
@@ -127,9 +127,10 @@ TEST_F(ChosenTables, AllThreeTogetherAreUnderTheBoundOnUnseenViews) {
 }
 
 TEST(TableSearch, ASmallerErrorTakesMoreMemory) {
-  const TableSearch coarse{
-      .max_error = 0.05, .views_of_a_kind = 16, .path_traced_views_of_a_kind = 0};
-  const TableSearch fine{.max_error = tests::ScaledDown(0.01, 0.03),
+  const TableSearch coarse{.max_error = tests::ScaledDown(0.05, 0.3),
+                           .views_of_a_kind = 16,
+                           .path_traced_views_of_a_kind = 0};
+  const TableSearch fine{.max_error = tests::ScaledDown(0.01, 0.1),
                          .views_of_a_kind = 16,
                          .path_traced_views_of_a_kind = 0};
   const TableChoice small = ChooseTables(Quick(), coarse), large = ChooseTables(Quick(), fine);
