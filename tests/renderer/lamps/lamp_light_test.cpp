@@ -21,6 +21,7 @@
 #include "renderer/picture/render.h"
 #include "tests/fixtures/fault_of.h"
 #include "tests/fixtures/lamp_night.h"
+#include "tests/fixtures/media.h"
 #include "tests/fixtures/temporary_folder.h"
 #include "tests/fixtures/wall_folder.h"
 
@@ -262,14 +263,15 @@ TEST(LampLight, PicturesHaveALayerOfLampLight) {
 class LampsAtTheEye : public TemporaryFolder {
  protected:
   // Expects pictures of the lamps without impossible values.
-  static void ExpectNumbers(const Scene& scene, const std::string& time) {
+  static void ExpectNumbers(const Scene& scene, const std::vector<std::string>& times) {
+    const SceneRenderer renderer(scene);
     const RenderSettings settings{.width = 8,
                                   .height = 5,
                                   .samples_per_pixel = 2,
                                   .air_nodes = 4,
                                   .layers = {PictureLayer::kDepth, PictureLayer::kLamps}};
-    EXPECT_EQ(FaultyValue(SceneRenderer(scene).Render(ParseInstant(time), settings)).value_or(""),
-              "");
+    for (const std::string& time : times)
+      EXPECT_EQ(FaultyValue(renderer.Render(ParseInstant(time), settings)).value_or(""), "");
   }
   static Scene With(Light lamp) {
     Scene scene = NightScene();
@@ -290,24 +292,20 @@ class LampsAtTheEye : public TemporaryFolder {
 
 // Hard case 42.
 TEST_F(LampsAtTheEye, GivePicturesOfFiniteNumbers) {
-  ExpectNumbers(With(point_), night_);
-  ExpectNumbers(With(point_), day_);
-  ExpectNumbers(With(SpotOf(point_, 0.2, 0.4)), night_);
+  ExpectNumbers(With(point_), {night_, day_});
   Light measured = Measured("TILT=NONE\n1 1000 1 3 1 1 2 0 0 0\n1 1 50\n0 45 90\n0\n1000 500 0\n");
   measured.intensity_cd = 1000.0;
   measured.pitch_rad = -0.5 * kPi;
-  ExpectNumbers(With(measured), night_);
-  Scene scene = With(point_);
-  scene.fog = FogOver(0.0, 0.02, 100.0);
-  ExpectNumbers(scene, night_);
-  ExpectNumbers(scene, day_);  // the sun lights the fog too
-  scene = With(point_);
+  // A value of any lamp that is not a number makes the picture's one.
+  Scene scene = With(measured);
+  scene.lights.push_back(SpotOf(point_, 0.2, 0.4));
   scene.camera.lens = ThinLens{2.0, 0.05, 10.0};
-  ExpectNumbers(scene, night_);
+  ExpectNumbers(scene, {night_});
   scene = With(point_);
   for (const double north_m : {5.0, -5.0})  // the middle of these lamps is at the eye
     scene.lights.push_back(LightAt(north_m, 0.0, kLampEye_m, 1000.0));
-  ExpectNumbers(scene, night_);
+  scene.fog = FogOver(0.0, 0.02, 100.0);
+  ExpectNumbers(scene, {night_, day_});  // the sun lights the fog too
 }
 
 TEST_F(LampsAtTheEye, AMeasuredLampIsTiltedByItsPitch) {
@@ -331,9 +329,7 @@ TEST_F(LampsAtTheEye, AMeasuredLampIsTiltedByItsPitch) {
 /// Returns a night with nothing but fog in the air; the eye looks level to the north.
 Scene FoggyNight(double scale_height_m = 30.0, double base_m = 0.0) {
   Scene scene = NightScene();
-  for (auto* list : {&scene.medium.rayleigh_scattering_per_m, &scene.medium.mie_scattering_per_m,
-                     &scene.medium.mie_extinction_per_m, &scene.medium.ozone_absorption_per_m})
-    std::fill(list->begin(), list->end(), 0.0);
+  scene.medium = tests::WithoutAir(MediumPreset("bruneton2017"));
   scene.fog = FogOver(base_m, 0.01, scale_height_m);
   return scene;
 }

@@ -20,6 +20,7 @@
 #include "tests/fixtures/lamp_site.h"
 #include "tests/fixtures/lit_air.h"
 #include "tests/fixtures/luminance.h"
+#include "tests/fixtures/media.h"
 #include "tests/fixtures/noise_grid.h"
 
 namespace alpenglow::renderer {
@@ -310,6 +311,11 @@ Image Rendered(const Scene& scene, const UtcInstant& instant,
   return SceneRenderer(scene).Render(instant, settings);
 }
 
+const Image& ClearNoon() {
+  static const Image image = Rendered(WithoutVolume(), kMediaNoon);
+  return image;
+}
+
 Scene WithVolume(double extinction, double albedo) {
   Scene scene = WithoutVolume();
   Volume volume;
@@ -324,8 +330,7 @@ Scene WithVolume(double extinction, double albedo) {
 }
 
 TEST(RenderMedia, EmptyVolumesChangeNoByte) {
-  EXPECT_EQ(Rendered(WithVolume(0.0, 1.0), kMediaNoon).rgb,
-            Rendered(WithoutVolume(), kMediaNoon).rgb);
+  EXPECT_EQ(Rendered(WithVolume(0.0, 1.0), kMediaNoon).rgb, ClearNoon().rgb);
 }
 
 TEST(RenderMedia, OpaqueBlackVolumeLeavesOnlyTheAirInFrontOfIt) {
@@ -333,7 +338,7 @@ TEST(RenderMedia, OpaqueBlackVolumeLeavesOnlyTheAirInFrontOfIt) {
   settings.layers = {PictureLayer::kTransmittance, PictureLayer::kVolumes,
                      PictureLayer::kInscatter};
   const Image image = Rendered(WithVolume(10.0, 0.0), kMediaNoon, settings);
-  const Image without = Rendered(WithoutVolume(), kMediaNoon, settings);
+  const Image& without = ClearNoon();
   for (std::size_t c = 0; c < 3; ++c) {
     EXPECT_GT(image.at(12, 7)[c], 0.0F) << "370 m of air";
     EXPECT_LT(image.at(12, 7)[c], 0.1F * without.at(12, 7)[c]);
@@ -347,10 +352,7 @@ TEST(RenderMedia, OpaqueBlackVolumeLeavesOnlyTheAirInFrontOfIt) {
 TEST(RenderMedia, AGlowingVolumeShinesLikeABlackBody) {
   Scene scene = WithVolume(0.01, 0.0);
   scene.volumes[0].temperature_k = 2000.0;
-  scene.medium.rayleigh_scattering_per_m.assign(3, 0.0);
-  scene.medium.mie_scattering_per_m.assign(3, 0.0);
-  scene.medium.mie_extinction_per_m.assign(3, 0.0);
-  scene.medium.ozone_absorption_per_m.assign(3, 0.0);
+  scene.medium = tests::WithoutAir(scene.medium);
   const Image image = Rendered(scene, kMediaNight);
   std::vector<double> radiance;
   for (const double nm : scene.medium.wavelengths_nm) {
@@ -412,7 +414,7 @@ TEST(RenderMedia, AMissingGridIsNamed) {
 
 TEST(RenderMedia, FogGrowsOutOfClearAirWithoutAStep) {
   Scene scene = WithoutVolume();
-  const Image a = Rendered(scene, kMediaNoon);
+  const Image& a = ClearNoon();
   scene.fog = FogIn(1e-8, 30.0);
   const Image b = Rendered(scene, kMediaNoon);
   for (std::size_t i = 0; i < a.rgb.size(); ++i) {

@@ -83,7 +83,7 @@ TEST(NightPicture, TrailsHaveTheLuxOfTheirStarAndTheirLength) {
   const SceneRenderer still(scene);
   scene.camera.shutter_s = 300.0;
   const SceneRenderer open(scene);
-  for (const int side : {24, 60, 111}) {
+  for (const int side : {24, 60}) {
     const double pixel_rad = 2.0 * std::tan(2.0 * kRadiansPerDegree) / side;
     const auto settings = Small(side, side), dark = Small(side, side, Without({Effect::kStars}));
     const Image empty = open.Render(kMoonless, dark), trails = open.Render(kMoonless, settings);
@@ -279,25 +279,36 @@ constexpr double kBurgosEye_m = 2.0;
 
 GeodeticPosition Burgos() { return PlaceFromDegrees(42.3439, -3.6969, kBurgosEye_m); }
 
-/// Returns a scene at Burgos on the bare ellipsoid; angles are in degrees.
-Scene SceneTowards(double heading, double pitch, double fov) {
-  Scene scene = BareScene(kBurgosEye_m, heading, pitch, fov);
-  scene.place = PlaceFromDegrees(42.3439, -3.6969, 0.0);
-  return scene;
+enum class Moon { kThere, kAbsent };
+
+/// Returns the bare ellipsoid at Burgos; without its moon the planet has the same radius.
+const SceneRenderer& OverBurgos(Moon moon) {
+  const auto scene_of = [](Moon of) {
+    Scene scene = BareScene(kBurgosEye_m, 0.0, 0.0, 60.0);
+    scene.place = PlaceFromDegrees(42.3439, -3.6969, 0.0);
+    if (of == Moon::kThere) return scene;
+    scene.medium.follows_wgs84 = false;
+    scene.medium.planet_radius_m = OsculatingRadius(kWgs84, scene.place.latitude_rad);
+    return scene;
+  };
+  static const SceneRenderer kWith(scene_of(Moon::kThere)), kWithout(scene_of(Moon::kAbsent));
+  return moon == Moon::kThere ? kWith : kWithout;
 }
 
-/// Returns the scene on the same planet without its moon.
-Scene Moonless(Scene scene) {
-  scene.medium.follows_wgs84 = false;
-  scene.medium.planet_radius_m = OsculatingRadius(kWgs84, scene.place.latitude_rad);
-  return scene;
+/// Returns the view of a camera at Burgos; angles are in degrees.
+CameraPose Towards(double heading, double pitch, double fov) {
+  const Camera camera = CameraFromDegrees({}, heading, pitch, 0.0, fov);
+  return {Burgos(), camera.heading_rad, camera.pitch_rad, 0.0, camera.fov_rad};
 }
 
-Image EclipseRendered(const Scene& scene, const UtcInstant& instant, int size, int rays) {
+Image EclipseRendered(const CameraPose& pose, const UtcInstant& instant, int size, int rays,
+                      Moon moon = Moon::kThere) {
   RenderSettings settings;
   settings.width = settings.height = size;
   settings.samples_per_pixel = rays;
-  return SceneRenderer(scene).Render(instant, settings);
+  CameraSample sample(instant);
+  sample.poses = {pose};
+  return OverBurgos(moon).Render(sample, settings);
 }
 
 double Mean(const Image& image, std::size_t channel) {
@@ -310,19 +321,18 @@ double Left(const UtcInstant& instant, double wavelength_nm) {
   return UncoveredLight(EclipseAt(Burgos(), instant).disk, wavelength_nm);
 }
 
-/// Returns a scene at Burgos that looks at the sun.
-Scene SceneTowardsSun(const UtcInstant& instant, double fov) {
+/// Returns the view of a camera at Burgos that looks at the sun.
+CameraPose TowardsSun(const UtcInstant& instant, double fov) {
   const SunPosition sun = ApparentSunAt(Burgos(), instant);
-  return SceneTowards(sun.azimuth_rad / kRadiansPerDegree, sun.elevation_rad / kRadiansPerDegree,
-                      fov);
+  return Towards(sun.azimuth_rad / kRadiansPerDegree, sun.elevation_rad / kRadiansPerDegree, fov);
 }
 
 // Nine tenths of the sun are covered. Higher orders of scattering and the ground are included.
 TEST(EclipsePicture, SkyIsDarkerByTheLightThatTheMoonCovers) {
   const UtcInstant instant = ParseInstant("2026-08-12T18:23:00Z");
-  const Scene scene = SceneTowards(100.0, 10.0, 60.0);
-  const Image eclipsed = EclipseRendered(scene, instant, 24, 1);
-  const Image whole = EclipseRendered(Moonless(scene), instant, 24, 1);
+  const CameraPose pose = Towards(100.0, 10.0, 60.0);
+  const Image eclipsed = EclipseRendered(pose, instant, 24, 1);
+  const Image whole = EclipseRendered(pose, instant, 24, 1, Moon::kAbsent);
   const double green = Mean(eclipsed, 1) / Mean(whole, 1);
   EXPECT_NEAR(Left(instant, 550.0), 0.1, 0.02);
   EXPECT_NEAR(green / Left(instant, 550.0), 1.0, 0.01)
@@ -335,9 +345,9 @@ TEST(EclipsePicture, SkyIsDarkerByTheLightThatTheMoonCovers) {
 TEST(EclipsePicture, LightOfTheCrescentIsThatOfTheUncoveredSun) {
   for (const char* utc : {"2026-08-12T17:50:00Z", "2026-08-12T18:23:00Z"}) {
     const UtcInstant instant = ParseInstant(utc);
-    const Scene scene = SceneTowardsSun(instant, 0.7);
-    const double share = Mean(EclipseRendered(scene, instant, 64, 16), 1) /
-                         Mean(EclipseRendered(Moonless(scene), instant, 64, 16), 1);
+    const CameraPose pose = TowardsSun(instant, 0.7);
+    const double share = Mean(EclipseRendered(pose, instant, 64, 16), 1) /
+                         Mean(EclipseRendered(pose, instant, 64, 16, Moon::kAbsent), 1);
     EXPECT_NEAR(share / Left(instant, 550.0), 1.0, 0.02)
         << utc << ": the air reddens the lower side of a low sun";
   }
@@ -348,7 +358,7 @@ TEST(EclipsePicture, TheCrescentFacesAwayFromTheMoon) {
     const UtcInstant instant = ParseInstant(utc);
     const SunPosition sun = ApparentSunAt(Burgos(), instant);
     const MoonPosition moon = ApparentMoonAt(Burgos(), instant);
-    const Image image = EclipseRendered(SceneTowardsSun(instant, 0.7), instant, 64, 4);
+    const Image image = EclipseRendered(TowardsSun(instant, 0.7), instant, 64, 4);
     double x = 0.0, y = 0.0;
     for (int row = 0; row < 64; ++row) {
       for (int column = 0; column < 64; ++column) {
@@ -368,22 +378,21 @@ TEST(EclipsePicture, TotalityIsDarkAndFinite) {
   const UtcInstant middle = ParseInstant("2026-08-12T18:29:40Z");
   ASSERT_EQ(Left(middle, 550.0), 0.0);
   const SunPosition sun = ApparentSunAt(Burgos(), middle);
-  const Scene scene = SceneTowards(sun.azimuth_rad / kRadiansPerDegree, 20.0, 60.0);
-  const Image dark = EclipseRendered(scene, middle, 32, 2);
+  const CameraPose pose = Towards(sun.azimuth_rad / kRadiansPerDegree, 20.0, 60.0);
+  const Image dark = EclipseRendered(pose, middle, 32, 2);
   for (const auto& pixel : dark.rgb) {
     for (const float value : pixel) {
       EXPECT_TRUE(std::isfinite(value));
       EXPECT_GE(value, 0.0F);
     }
   }
-  const double before =
-      Mean(EclipseRendered(scene, ParseInstant("2026-08-12T18:27:00Z"), 32, 2), 1);
+  const double before = Mean(EclipseRendered(pose, ParseInstant("2026-08-12T18:27:00Z"), 32, 2), 1);
   EXPECT_GT(Mean(dark, 1), 1e-7 * before) << "the corona and the stars";
   EXPECT_LT(Mean(dark, 1), 1e-3 * before);
 }
 
 TEST(EclipsePicture, IlluminanceFallsToThatOfTheCoronaAndRises) {
-  const SceneRenderer renderer(SceneTowards(280.0, 10.0, 60.0));
+  const SceneRenderer& renderer = OverBurgos(Moon::kThere);
   const SolarEclipse eclipse =
       *FindSolarEclipse(Burgos(), ParseInstant("2026-08-12T12:00:00Z"), 43200.0);
   double before_lux = renderer.Illuminance(eclipse.first_contact.instant);

@@ -374,11 +374,11 @@ TEST(FrameTimes, ARangeOfClockTimesRollsOverMidnight) {
 }
 
 TEST(FrameTimes, EachDayHasItsOwnSunrise) {
-  const std::vector<Frame> frames = Range("sunrise-10m", "2027-06-20", "4d", {}, Fuji());
-  ASSERT_EQ(frames.size(), 92U) << "both days belong to the series";
+  const std::vector<Frame> frames = Range("sunrise-10m", "2027-06-20", "28d", {}, Fuji());
+  ASSERT_EQ(frames.size(), 14U) << "both days belong to the series";
   for (const Frame& frame : frames) {
     EventDay day = Fuji();
-    day.around = AddSeconds(*day.around, frame.number * 4.0 * 86400.0);
+    day.around = AddSeconds(*day.around, frame.number * 28.0 * 86400.0);
     EXPECT_EQ(frame.instant, InstantFromText("sunrise-10m", day)) << frame.number;
   }
 }
@@ -392,10 +392,10 @@ TEST(FrameTimes, AWrittenFirstDayCountsAsTheDayOfTheEvent) {
 }
 
 TEST(FrameTimes, DaysWithoutTheEventHaveNoFrame) {
-  const std::vector<Frame> year = Range("sunrise", "2026-12-31", "1d", {}, Tromso("2026-01-01"));
+  const std::vector<Frame> year = Range("sunrise", "2026-12-31", "5d", {}, Tromso("2026-01-01"));
   // Midnight sun lasts from May 18th to July 26th (70 days), polar night from November 27th to
-  // January 15th (50 days). The tolerance covers days on which refraction decides.
-  EXPECT_NEAR(static_cast<double>(year.size()), 365.0 - 70.0 - 50.0, 6.0);
+  // January 15th (50 days). The tolerance covers 6 days on which refraction decides.
+  EXPECT_NEAR(static_cast<double>(year.size()), (365.0 - 70.0 - 50.0) / 5.0, 6.0 / 5.0);
   EXPECT_EQ(year.back().number, static_cast<int>(year.size()) - 1) << "numbered without gaps";
   EXPECT_NE(FaultOf([] { return Range("sunrise", "2026-06-25", "1d", {}, Tromso("2026-06-21")); }),
             "no fault")

@@ -9,6 +9,7 @@
 #include "renderer/scene/scene_options.h"
 #include "renderer/surface/scene_ground.h"
 #include "renderer/terrain/terrain.h"
+#include "tests/fixtures/fault_of.h"
 #include "tests/renderer/terrain/land_files.h"
 
 namespace alpenglow::renderer {
@@ -303,13 +304,8 @@ TEST_F(LandSourceFiles, ASampledGridIsTheLandAroundAPlace) {
 }
 
 TEST_F(LandSourceFiles, WhatCannotBeReadIsSaidByName) {
-  const auto fault = [](const LandSource& source) -> std::string {
-    try {
-      const LandTiles tiles(source);
-    } catch (const InputError& error) {
-      return error.what();
-    }
-    return "";
+  const auto fault = [](const LandSource& source) {
+    return FaultOf([&] { return LandTiles(source); });
   };
   EXPECT_THAT(fault({{folder_ / "none.tif"}, VoidPolicy::kFill, std::nullopt}),
               HasSubstr("none.tif"));

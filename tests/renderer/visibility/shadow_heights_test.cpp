@@ -12,6 +12,7 @@
 #include <limits>
 #include <random>
 #include <string>
+#include <vector>
 
 #include "atmosphere/astronomy/sun.h"
 #include "atmosphere/base/error.h"
@@ -20,9 +21,10 @@
 #include "renderer/visibility/sunlit_path.h"
 #include "tests/fixtures/bare_scene.h"
 #include "tests/fixtures/occlusion_march.h"
-#include "tests/fixtures/places.h"
 #include "tests/fixtures/rough_land.h"
+#include "tests/fixtures/temporary_folder.h"
 #include "tests/fixtures/thread_counts.h"
+#include "tests/renderer/terrain/coarse_fuji.h"
 
 namespace alpenglow::renderer {
 namespace {
@@ -198,9 +200,10 @@ TEST(ShadowHeights, ThePathsAreTheSameForAnyNumberOfThreads) {
 
 // The truth is the mean of eight marches of 512 occlusion rays; a single march has an error of up
 // to 0.6 %.
-void ExpectShaftsOfOcclusionRays(const SceneGround& ground) {
-  for (const double elevation : {15.0, 3.0, 1.0}) {
-    const ShaftView view = ViewWithSun(ground.eye_height_m, 200.0, elevation, 20, 7);
+void ExpectShaftsOfOcclusionRays(const SceneGround& ground,
+                                 const std::vector<double>& elevations_deg) {
+  for (const double elevation : elevations_deg) {
+    const ShaftView view = ViewWithSun(ground.eye_height_m, 200.0, elevation, 14, 7);
     const ShaftError error = ErrorOf(MeasureShafts(ground, view), &ShaftPixel::found);
     EXPECT_LT(error.rms, 5e-3) << "sun at " << elevation << " degrees";
     EXPECT_LT(error.at_99_percent, 2e-2) << "sun at " << elevation << " degrees";
@@ -214,18 +217,20 @@ TEST(ShadowHeights, ShaftsOverTheRangeAreThoseOfOcclusionRays) {
   scene.terrain.is_default = true;
   const SceneGround ground = LoadGround(scene);
   EXPECT_NE(ground.message.find("made up"), std::string::npos) << "nobody named a terrain";
-  ExpectShaftsOfOcclusionRays(ground);
+  ExpectShaftsOfOcclusionRays(ground, {15.0, 3.0, 1.0});
 }
 
-TEST(ShadowHeights, ShaftsAroundFujiAreThoseOfOcclusionRays) {
+class ShadowHeightsOfFiles : public TemporaryFolder {};
+
+TEST_F(ShadowHeightsOfFiles, ShaftsAroundFujiAreThoseOfOcclusionRays) {
+  if (!std::filesystem::exists(tests::FujiModel()))
+    GTEST_SKIP() << tests::FujiModel() << " is not there";
   Scene scene = BareScene(0.0, 0.0, 0.0, 60.0);
   scene.place = PlaceFromDegrees(35.5, 138.75, 0.0);
   scene.camera.height = {300.0, true};
   scene.terrain.kind = TerrainSource::Kind::kElevationModel;
-  scene.terrain.file = std::filesystem::path(tests::kSharedFolder) / "dem" / "N35E138.hgt";
-  if (!std::filesystem::exists(scene.terrain.file))
-    GTEST_SKIP() << scene.terrain.file << " is not there";
-  ExpectShaftsOfOcclusionRays(LoadGround(scene));
+  scene.terrain.file = tests::CoarseFuji(folder_);
+  ExpectShaftsOfOcclusionRays(LoadGround(scene), {2.0});
 }
 
 // Returns a bridge over a plain: a level slab from x = -50 to 50 and y = -500 to 500, 200 m up.
