@@ -18,8 +18,10 @@
 #include "tests/fixtures/bare_scene.h"
 #include "tests/fixtures/effect_scenes.h"
 #include "tests/fixtures/luminance.h"
+#include "tests/fixtures/sanitized.h"
 #include "tests/fixtures/temporary_folder.h"
 #include "tests/fixtures/thread_counts.h"
+#include "tests/renderer/picture/sun_seen.h"
 
 namespace alpenglow::renderer {
 namespace {
@@ -183,11 +185,11 @@ TEST_F(NoisyPicture, HasTheSkyOfAllItsRays) {
 
 TEST_F(NoisyPicture, TheSunsLimbCoversPartsOfPixels) {
   Scene scene = BareScene(1000.0, 0.0, 0.0, 3.0);
-  const SunPosition sun = SceneRenderer(scene).ApparentSun(kEvening);
+  const SunPosition sun = tests::SunSeenIn(scene, kEvening);
   scene.camera = CameraFromDegrees({1000.0, false}, sun.azimuth_rad / kRadiansPerDegree + 0.1,
                                    sun.elevation_rad / kRadiansPerDegree, 0.0, 3.0);
   const SceneRenderer renderer(scene);
-  const Image truth = renderer.Render(kEvening, Small(1024));
+  const Image truth = renderer.Render(kEvening, Small(tests::ScaledDown(1024, 512)));
   double brightest = 0.0;
   for (const auto& pixel : truth.rgb) brightest = std::max(brightest, tests::Luminance(pixel));
   EXPECT_GT(brightest, 1e6) << "it is there";

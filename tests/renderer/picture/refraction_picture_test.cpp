@@ -21,6 +21,7 @@
 #include "tests/fixtures/luminance.h"
 #include "tests/fixtures/refracted_twilight.h"
 #include "tests/fixtures/temporary_folder.h"
+#include "tests/renderer/picture/sun_seen.h"
 
 namespace alpenglow::renderer {
 namespace {
@@ -41,13 +42,15 @@ double TrueElevation(const Medium& medium, double apparent_rad, double height_m)
 }
 
 TEST(RefractedPlaces, TheSunIsWhereTheRayEquationSays) {
+  const SceneRenderer renderer(BareScene(2.0, 0.0, 0.0, 60.0));
   for (const double height_m : {2.0, 3000.0}) {
-    const SceneRenderer renderer(BareScene(height_m, 0.0, 0.0, 60.0));
     const GeodeticPosition eye = PlaceFromDegrees(46.5, 8.0, height_m);
     int seen = 0;
     for (int minutes = 0; minutes < 60; minutes += 6) {
       const UtcInstant instant = AddSeconds(ParseInstant("2026-06-21T18:26:00Z"), 60.0 * minutes);
-      const double apparent = renderer.ApparentSun(instant).elevation_rad;
+      CameraSample camera_sample(instant);
+      camera_sample.poses = {{eye, 0.0, 0.0, 0.0, 1.0}};
+      const double apparent = renderer.ApparentSun(camera_sample).elevation_rad;
       if (apparent < RefractedView(renderer.medium(), height_m).horizon_rad() + kArcminute)
         continue;
       ++seen;
@@ -90,7 +93,7 @@ TEST(RefractedPlaces, OnMarsAlmostNothingIsLifted) {
   Scene scene = BareScene(2.0, 0.0, 0.0, 60.0);
   scene.medium = MediumPreset("mars");
   const UtcInstant evening = ParseInstant("2026-06-21T19:15:00Z");
-  const SunPosition sun = SceneRenderer(scene).ApparentSun(evening);
+  const SunPosition sun = tests::SunSeenIn(scene, evening);
   EXPECT_NEAR(sun.elevation_rad, SunAt(PlaceFromDegrees(46.5, 8.0, 2.0), evening).elevation_rad,
               1.0 * kArcminute);
   EXPECT_LT(sun.lower_for_air_rad, 1.0 * kArcminute) << "its light comes from where it is seen";
@@ -165,7 +168,7 @@ TEST(RefractedPlaces, TheRisingMoonIsAsFlatAsTheRayEquationSays) {
 TEST(RefractedPlaces, TheDiskOfASettingSunIsFlat) {
   const UtcInstant evening = ParseInstant("2026-06-21T19:20:30Z");
   Scene scene = BareScene(20.0, 0.0, 0.0, 1.2);
-  const SunPosition sun = SceneRenderer(scene).ApparentSun(evening);
+  const SunPosition sun = tests::SunSeenIn(scene, evening);
   scene.camera =
       CameraFromDegrees({20.0, false}, sun.azimuth_rad / kRadiansPerDegree, 0.3, 0.0, 1.2);
   const SceneRenderer renderer(scene);
@@ -277,7 +280,7 @@ double MiddleOfAureole(const Image& image, double pixel_rad) {
 TEST(TwilightAir, TheAureoleSurroundsTheVisibleDisk) {
   constexpr double kFov_deg = 5.0;
   const UtcInstant evening = ParseInstant("2026-06-21T19:12:00Z");
-  const SunPosition sun = SceneRenderer(BareScene(20.0, 0.0, 0.0, kFov_deg)).ApparentSun(evening);
+  const SunPosition sun = tests::SunSeenIn(BareScene(20.0, 0.0, 0.0, kFov_deg), evening);
   EXPECT_GT(sun.lower_for_air_rad, 15.0 * kArcminute) << "another sun lights the air";
   const SceneRenderer renderer(BareScene(20.0, sun.azimuth_rad / kRadiansPerDegree,
                                          sun.elevation_rad / kRadiansPerDegree, kFov_deg));

@@ -17,6 +17,7 @@
 #include "tests/fixtures/media.h"
 #include "tests/fixtures/sanitized.h"
 #include "tests/fixtures/temporary_folder.h"
+#include "tests/renderer/picture/sun_seen.h"
 
 namespace alpenglow::renderer {
 namespace {
@@ -136,7 +137,7 @@ Scene WithoutAir(double height_m, double heading, double pitch, double fov) {
 
 // Hard cases 28, 32.
 TEST(RenderExtremes, WithoutAirTheSunsDiskStandsInABlackSky) {
-  const SunPosition sun = SceneRenderer(WithoutAir(2.0, 0.0, 0.0, 2.0)).ApparentSun(kExtremeNoon);
+  const SunPosition sun = tests::SunSeenIn(WithoutAir(2.0, 0.0, 0.0, 2.0), kExtremeNoon);
   const Scene scene = WithoutAir(2.0, sun.azimuth_rad / kRadiansPerDegree,
                                  sun.elevation_rad / kRadiansPerDegree, 2.0);
   const SceneRenderer renderer(scene);

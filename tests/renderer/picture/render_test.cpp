@@ -30,6 +30,7 @@
 #include "tests/fixtures/luminance.h"
 #include "tests/fixtures/temporary_folder.h"
 #include "tests/fixtures/thread_counts.h"
+#include "tests/renderer/picture/sun_seen.h"
 #include "tests/renderer/terrain/coarse_fuji.h"
 
 namespace alpenglow::renderer {
@@ -180,7 +181,7 @@ TEST(Render, TheDiskInThePictureHasTheSunsIlluminance) {
   // The radiance of the disk's pixels sums to the direct normal illuminance.
   const UtcInstant noon = ParseInstant("2026-06-21T11:30:00Z");
   Scene at_sun = BareScene(2.0, 0.0, 0.0, 1.0);
-  const SunPosition sun = SceneRenderer(at_sun).ApparentSun(noon);
+  const SunPosition sun = tests::SunSeenIn(at_sun, noon);
   at_sun.camera = CameraFromDegrees({2.0, false}, sun.azimuth_rad / kRadiansPerDegree,
                                     sun.elevation_rad / kRadiansPerDegree, 0.0, 1.0);
   const SceneRenderer renderer(at_sun);

@@ -37,53 +37,57 @@ Scene MeshScene(Scene scene, const std::filesystem::path& file, const std::strin
   return scene;
 }
 
-/// Returns a view down on the bare planet with one cover.
-Scene Planet(GroundCover::Kind kind, double heading, double pitch) {
-  Scene scene = BareScene(200.0, heading, pitch, 20.0);
-  scene.ground.kind = kind;
-  return scene;
-}
+// At 46.5 N 8 E on that evening the sun is 15 degrees high, at azimuth 281.
+const UtcInstant kLowSun = ParseInstant("2026-06-21T17:45:00Z");
+const UtcInstant kHighSun = ParseInstant("2026-06-21T11:30:00Z");
 
-double MeanLuminance(const SceneRenderer& renderer, const char* time,
+double MeanLuminance(const SceneRenderer& renderer, const CameraSample& camera_sample,
                      EffectSet effects = EffectSet::All()) {
   RenderSettings settings = kSmallGround;
   settings.effects = effects;
-  const Image image = renderer.Render(ParseInstant(time), settings);
+  const Image image = renderer.Render(camera_sample, settings);
   double sum = 0.0;
   for (const auto& rgb : image.rgb) sum += Luminance(rgb) / static_cast<double>(image.rgb.size());
   return sum;
 }
 
-// At 46.5 N 8 E on that evening the sun is 15 degrees high, at azimuth 281.
-constexpr const char* kLowSun = "2026-06-21T17:45:00Z";
+/// Returns the luminance of a view over the sea under the low sun; angles are in degrees.
+double OverTheSea(double heading, double pitch) {
+  static const SceneRenderer renderer([] {
+    Scene scene = BareScene(200.0, 0.0, 0.0, 20.0);
+    scene.ground.kind = GroundCover::Kind::kWater;
+    return scene;
+  }());
+  const Camera camera = CameraFromDegrees({}, heading, pitch, 0.0, 20.0);
+  CameraSample camera_sample(kLowSun);
+  camera_sample.poses = {{PlaceFromDegrees(46.5, 8.0, 200.0), camera.heading_rad, camera.pitch_rad,
+                          0.0, camera.fov_rad}};
+  return MeanLuminance(renderer, camera_sample);
+}
 
 TEST(GroundLight, TheSeaGlittersUnderALowSun) {
-  const double under_sun =
-      MeanLuminance(SceneRenderer(Planet(GroundCover::Kind::kWater, 281.0, -15.0)), kLowSun);
-  const double aside =
-      MeanLuminance(SceneRenderer(Planet(GroundCover::Kind::kWater, 11.0, -15.0)), kLowSun);
-  EXPECT_GT(under_sun, 20.0 * aside) << "the sun's mirror image, spread by waves";
+  EXPECT_GT(OverTheSea(281.0, -15.0), 20.0 * OverTheSea(11.0, -15.0))
+      << "the sun's mirror image, spread by waves";
 }
 
 TEST(GroundLight, WaterMirrorsTheSkyByFresnelsLaw) {
   // 60 degrees down, water reflects 2 % of the sky and sends light from under its surface.
-  const double down =
-      MeanLuminance(SceneRenderer(Planet(GroundCover::Kind::kWater, 100.0, -60.0)), kLowSun);
-  const double sky = MeanLuminance(SceneRenderer(BareScene(200.0, 100.0, 60.0, 20.0)), kLowSun);
+  const double down = OverTheSea(100.0, -60.0), sky = OverTheSea(100.0, 60.0);
   EXPECT_GT(down, 0.02 * sky);
   EXPECT_LT(down, 0.15 * sky);
 }
 
 TEST(GroundLight, CoversAreAsBrightAsTheirAlbedos) {
-  Scene grey = Planet(GroundCover::Kind::kLambert, 0.0, -60.0);
-  grey.ground.albedo = {0.5, 0.5, 0.5};
-  const double lambert = MeanLuminance(SceneRenderer(grey), "2026-06-21T11:30:00Z");
-  const double snow = MeanLuminance(SceneRenderer(Planet(GroundCover::Kind::kSnow, 0.0, -60.0)),
-                                    "2026-06-21T11:30:00Z");
+  Scene scene = BareScene(200.0, 0.0, -60.0, 20.0);
+  scene.ground.kind = GroundCover::Kind::kSnow;
+  const double snow = MeanLuminance(SceneRenderer(scene), kHighSun);
+  scene.ground.kind = GroundCover::Kind::kLambert;
+  scene.ground.albedo = {0.5, 0.5, 0.5};
+  const double lambert = MeanLuminance(SceneRenderer(scene), kHighSun);
   EXPECT_NEAR(snow / lambert, 1.95, 0.25) << "0.97 over 0.5, and snow's own distribution";
-  grey.ground.kind = GroundCover::Kind::kOrenNayar;
-  grey.ground.roughness = 0.0;
-  EXPECT_NEAR(MeanLuminance(SceneRenderer(grey), "2026-06-21T11:30:00Z") / lambert, 1.0, 1e-5);
+  scene.ground.kind = GroundCover::Kind::kOrenNayar;
+  scene.ground.roughness = 0.0;
+  EXPECT_NEAR(MeanLuminance(SceneRenderer(scene), kHighSun) / lambert, 1.0, 1e-5);
 }
 
 /// A valley between two walls along the north, as a mesh in a file.
@@ -131,7 +135,7 @@ TEST_F(Valley, HasTheSameBytesForAnyNumberOfThreads) {
   smoke.extinction_per_m = {0.02};
   scene.lights = {tests::LampNear(scene.place, 30.0, 10.0, 60.0, 1e6)};
   scene.camera.lens = ThinLens{1.4, 0.085, 300.0, 7, 0.1};
-  CameraSample camera_sample(ParseInstant(kLowSun));
+  CameraSample camera_sample(kLowSun);
   for (const double east_deg : {0.0, 1e-5}) {
     const Camera& camera = scene.camera;
     camera_sample.poses.push_back({PlaceFromDegrees(46.5, 8.0 + east_deg, 400.0),
