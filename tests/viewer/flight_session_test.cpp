@@ -14,9 +14,9 @@
 #include <thread>
 
 #include "atmosphere/math/constants.h"
+#include "renderer/procedural_mountains/procedural_mountains.h"
 #include "renderer/scene/places.h"
 #include "renderer/scene/scene_options.h"
-#include "renderer/terrain/procedural_mountains.h"
 #include "tests/fixtures/temporary_folder.h"
 #include "tests/viewer/land/headless_land.h"
 #include "tests/viewer/shaders/headless.h"
@@ -159,7 +159,7 @@ TEST_F(FlightsOverLand, AfterAJumpInTimeTheFirstFrameIsExposedForItsLight) {
   for (int frame = 0; frame < 3; ++frame)
     static_cast<void>(window.Next());  // one copy is on its way
   const double day_ev100 = flight.exposure().exposure().ev100.value();
-  flight.cockpit().clock().Set(ParseInstant("2026-06-21T20:10:00Z"));
+  flight.controller().clock().Set(ParseInstant("2026-06-21T20:10:00Z"));
   std::vector<double> shown;
   for (int frame = 0; frame < 4; ++frame) {
     static_cast<void>(window.Next());
@@ -306,7 +306,7 @@ TEST_F(PictureQueueTest, APictureIsThatOfItsMomentWhateverFollows) {
     queue.NextFrame();
     std::this_thread::yield();
     if (frame >= 4) continue;  // each frame has another sun, whose light takes threads of its own
-    flight.cockpit().clock().Shift(60.0);
+    flight.controller().clock().Shift(60.0);
     flight.Advance({}, 1.0);
     flight.Paint({screen.framebuffer(), kSmall.width, kSmall.height}, 0.1);
   }
@@ -427,7 +427,7 @@ TEST(FrameTimes, PercentilesAreTimesThatWereMeasured) {
 }
 
 TEST(FrameTimes, TheFlightIsSteadyLevelAndTimeRunsSixtyfold) {
-  const Eye start{PlaceFromDegrees(46.0, 8.0, 3000.0), 0.7};
+  const CameraPose start{PlaceFromDegrees(46.0, 8.0, 3000.0), 0.7};
   const UtcInstant begin = ParseInstant("2026-06-21T18:00:00Z");
   const auto at = [&](double seconds) { return BenchmarkFlight(start, begin, seconds); };
   EXPECT_NEAR(at(0.0).eye.place.latitude_rad, start.place.latitude_rad, 1e-12);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Values that threads make beside drawing: of the air, the ground and the shade that follow an eye and a sun.
-#include "viewer/async/async_value.h"
+#include "atmosphere/base/async_value.h"
 
 #include <gtest/gtest.h>
 
@@ -16,11 +16,11 @@
 #include "atmosphere/base/error.h"
 #include "atmosphere/colour/spectrum.h"
 #include "atmosphere/math/constants.h"
-#include "renderer/terrain/procedural_mountains.h"
+#include "renderer/picture/ground_follower.h"
+#include "renderer/procedural_mountains/procedural_mountains.h"
 #include "tests/lut/camera_tables/air_reference.h"
 #include "tests/viewer/shaders/headless.h"
 #include "viewer/air/air_follower.h"
-#include "viewer/ground/ground_follower.h"
 #include "viewer/shade/shafts.h"
 
 namespace alpenglow::viewer {
@@ -130,7 +130,7 @@ TEST_F(AirFollowerOnGpu, ShowsExactTablesOnceAllStandsStill) {
 
 TEST_F(AirFollowerOnGpu, LeavesTinyChangesAloneWhileTheEyeMoves) {
   AirFollower follower(Earth(), AirQuality::kLow, ViewAt(1000.0, 30.0));
-  follower.Settle(ViewAt(1000.0, 30.0));
+  follower.WaitUntilReady(ViewAt(1000.0, 30.0));
   for (int i = 1; i <= 10; ++i) {
     follower.Follow(ViewAt(1000.0 + 0.01 * i, 30.0));
     std::this_thread::sleep_for(std::chrono::milliseconds(5));
@@ -140,7 +140,7 @@ TEST_F(AirFollowerOnGpu, LeavesTinyChangesAloneWhileTheEyeMoves) {
 
 TEST_F(AirFollowerOnGpu, TablesOfASunThatRunsAreMadeForWhereItWillBe) {
   AirFollower follower(Earth(), AirQuality::kLow, ViewAt(2.0, 3.0));
-  follower.Settle(ViewAt(2.0, 3.0));
+  follower.WaitUntilReady(ViewAt(2.0, 3.0));
   const AirView now = ViewAt(2.0, 2.95);
   follower.Follow(now, 0.04);  // asks
   const double made_mu_s = follower.eye().mu_s;
@@ -154,7 +154,7 @@ TEST_F(AirFollowerOnGpu, TablesOfASunThatRunsAreMadeForWhereItWillBe) {
 TEST_F(AirFollowerOnGpu, SettleShowsWhatWasAskedForLast) {
   AirFollower follower(Earth(), AirQuality::kLow, ViewAt(2.0, 30.0));
   follower.Follow(ViewAt(500.0, 20.0));
-  follower.Settle(ViewAt(9000.0, -3.0));
+  follower.WaitUntilReady(ViewAt(9000.0, -3.0));
   EXPECT_EQ(follower.eye().altitude_m, 9000.0);
   EXPECT_NEAR(follower.eye().mu_s, std::sin(-3.0 * kRadiansPerDegree), 1e-12);
 }
@@ -170,7 +170,7 @@ TEST_F(AirFollowerOnGpu, AnotherMediumIsShownAsADraftAndThenInFull) {
   }
   EXPECT_EQ(follower.air()->medium.name, "hazy");
   EXPECT_EQ(follower.air()->solution, AirSolution::kDraft);
-  follower.Settle(ViewAt(2.0, 30.0));
+  follower.WaitUntilReady(ViewAt(2.0, 30.0));
   EXPECT_EQ(follower.air()->medium.name, "hazy");
   EXPECT_EQ(follower.air()->solution, AirSolution::kFull);
 }
@@ -275,12 +275,12 @@ const std::shared_ptr<const SolvedAir>& Air() {
 
 TEST(GroundFollower, WithoutLandThereIsNoLight) {
   GroundFollower follower({}, nullptr, kSmall);
-  static_cast<void>(follower.Settle(Air(), ViewFrom(kFollowedPlace, 30.0)));
+  static_cast<void>(follower.WaitUntilReady(Air(), ViewFrom(kFollowedPlace, 30.0)));
   EXPECT_EQ(follower.lit(), nullptr);
   EXPECT_FALSE(follower.Light());
   follower.SetGround(
       [](const GeodeticPosition&, double, int) -> std::optional<ElevationGrid> { return {}; });
-  static_cast<void>(follower.Settle(Air(), ViewFrom(kFollowedPlace, 30.0)));
+  static_cast<void>(follower.WaitUntilReady(Air(), ViewFrom(kFollowedPlace, 30.0)));
   EXPECT_EQ(follower.lit(), nullptr) << "no land around here";
 }
 
@@ -288,7 +288,7 @@ TEST(GroundFollower, ASeaWithoutLandMirrorsTheSky) {
   GroundCover sea;
   sea.kind = GroundCover::Kind::kWater;
   GroundFollower follower(sea, nullptr, kSmall);
-  EXPECT_TRUE(follower.Settle(Air(), ViewFrom(kFollowedPlace, 30.0)));
+  EXPECT_TRUE(follower.WaitUntilReady(Air(), ViewFrom(kFollowedPlace, 30.0)));
   EXPECT_EQ(follower.lit(), nullptr);
   ASSERT_EQ(follower.sea_mirror(LightSource::kSun).size(), SeaMirror::kSide * SeaMirror::kSide);
   for (const BandTexel& texel : follower.sea_mirror(LightSource::kSun)) EXPECT_GT(texel[1], 0.0F);
@@ -297,7 +297,7 @@ TEST(GroundFollower, ASeaWithoutLandMirrorsTheSky) {
 TEST(GroundFollower, OnTheRangeThereIsLightOfTheSunThatWasAskedFor) {
   GroundFollower follower({}, nullptr, kSmall);
   follower.SetGround(RangeAround);
-  EXPECT_TRUE(follower.Settle(Air(), ViewFrom(kFollowedPlace, 30.0)));
+  EXPECT_TRUE(follower.WaitUntilReady(Air(), ViewFrom(kFollowedPlace, 30.0)));
   ASSERT_NE(follower.lit(), nullptr);
   EXPECT_NEAR(follower.lit()->lighting().to_sun.z, 0.5, 1e-3) << "30 degrees high";
   EXPECT_GT(follower.making_s(), 0.0);
@@ -327,7 +327,7 @@ TEST(GroundFollower, AHigherEyeHasLightOnLandFurtherOff) {
   auto view = ViewFrom(kFollowedPlace, 30.0);
   for (const double height_m : {1000.0, 1200.0, 1100.0, 800.0}) {
     view.eye.height_m = height_m;
-    static_cast<void>(follower.Settle(Air(), view));
+    static_cast<void>(follower.WaitUntilReady(Air(), view));
   }
   EXPECT_EQ(widths_m, (std::vector{8e3, 16e3, 8e3})) << "at 1100 m that of 1200 m is kept";
 }
@@ -335,12 +335,12 @@ TEST(GroundFollower, AHigherEyeHasLightOnLandFurtherOff) {
 TEST(GroundFollower, LightIsMadeAnewForAnotherSunAndNotForTheSame) {
   GroundFollower follower({}, nullptr, kSmall);
   follower.SetGround(RangeAround);
-  static_cast<void>(follower.Settle(Air(), ViewFrom(kFollowedPlace, 30.0)));
+  static_cast<void>(follower.WaitUntilReady(Air(), ViewFrom(kFollowedPlace, 30.0)));
   const auto first = follower.lit();
-  EXPECT_FALSE(follower.Settle(Air(), ViewFrom(kFollowedPlace, 30.02)))
+  EXPECT_FALSE(follower.WaitUntilReady(Air(), ViewFrom(kFollowedPlace, 30.02)))
       << "a thirteenth of the disk";
   EXPECT_EQ(follower.lit(), first);
-  EXPECT_TRUE(follower.Settle(Air(), ViewFrom(kFollowedPlace, 20.0)));
+  EXPECT_TRUE(follower.WaitUntilReady(Air(), ViewFrom(kFollowedPlace, 20.0)));
   EXPECT_NE(follower.lit(), first);
   EXPECT_EQ(&follower.lit()->site(), &first->site()) << "horizons are kept";
 }
@@ -406,12 +406,12 @@ class ShadeFollowerTest : public tests::Headless {
 
 TEST_F(ShadeFollowerTest, WithoutGroundThereIsNoShade) {
   ShadeFollower follower(kWgs84);
-  follower.Settle(Eye(0.0), SunAtDegrees(5.0), kShadeUnit);
+  follower.WaitUntilReady(Eye(0.0), SunAtDegrees(5.0), kShadeUnit);
   EXPECT_FALSE(follower.shade().Shades());
   follower.SetGround([](const GeodeticPosition&, double, int) -> std::optional<ElevationGrid> {
     return std::nullopt;
   });
-  follower.Settle(Eye(0.0), SunAtDegrees(5.0), kShadeUnit);
+  follower.WaitUntilReady(Eye(0.0), SunAtDegrees(5.0), kShadeUnit);
   EXPECT_FALSE(follower.shade().Shades());
 }
 
@@ -419,19 +419,19 @@ TEST_F(ShadeFollowerTest, GroundIsAskedForAnewOnlyWhenTheEyeHasLeftIt) {
   ShadeFollower follower(kWgs84);
   follower.SetSize(kSmall);
   follower.SetGround(Mountain(asked_));
-  follower.Settle(Eye(0.0), SunAtDegrees(5.0), kShadeUnit);
+  follower.WaitUntilReady(Eye(0.0), SunAtDegrees(5.0), kShadeUnit);
   ASSERT_TRUE(follower.shade().Shades());
   const glm::dvec3 first_sun = follower.shade().map().to_sun;
-  follower.Settle(Eye(0.01), SunAtDegrees(5.0 + 0.04), kShadeUnit);
+  follower.WaitUntilReady(Eye(0.01), SunAtDegrees(5.0 + 0.04), kShadeUnit);
   EXPECT_EQ(follower.shade().map().to_sun, first_sun) << "a sixth of the disk's radius";
-  follower.Settle(Eye(0.01), SunAtDegrees(4.0), kShadeUnit);
+  follower.WaitUntilReady(Eye(0.01), SunAtDegrees(4.0), kShadeUnit);
   EXPECT_NEAR(follower.shade().map().to_sun.z, std::sin(4.0 * kRadiansPerDegree), 1e-3)
       << "of another sun, in the frame of a kilometre away";
   EXPECT_EQ(asked_, 1);
-  follower.Settle(Eye(0.08), SunAtDegrees(4.0), kShadeUnit);
+  follower.WaitUntilReady(Eye(0.08), SunAtDegrees(4.0), kShadeUnit);
   EXPECT_EQ(asked_, 2) << "nine kilometres of twenty";
   follower.SetGround(Mountain(asked_));
-  follower.Settle(Eye(0.08), SunAtDegrees(4.0), kShadeUnit);
+  follower.WaitUntilReady(Eye(0.08), SunAtDegrees(4.0), kShadeUnit);
   EXPECT_EQ(asked_, 3) << "other ground";
 }
 
@@ -439,7 +439,7 @@ TEST_F(ShadeFollowerTest, TheMapLiesUnderTheEye) {
   ShadeFollower follower(kWgs84);
   follower.SetSize(kSmall);
   follower.SetGround(Mountain(asked_));
-  follower.Settle(Eye(0.0), SunAtDegrees(5.0), kShadeUnit);
+  follower.WaitUntilReady(Eye(0.0), SunAtDegrees(5.0), kShadeUnit);
   ASSERT_TRUE(follower.shade().Shades());
   const glm::dmat4 here = follower.MapFromEye(Eye(0.0));
   EXPECT_NEAR(glm::length(glm::dvec3(here[3]) - glm::dvec3(0.0, 0.0, 900.0)), 0.0, 1e-6);

@@ -45,9 +45,9 @@ class ViewerAppTest : public tests::HeadlessSharing<BareFlight> {
     HeadlessSharing::SetUp();
     if (IsSkipped()) return;
     flight_ = &shared().flight;
-    flight_->cockpit().Enter(FlightMode::kFree);
-    flight_->cockpit().pilot().SetTrack(nullptr);
-    flight_->cockpit().clock().SetRate(1.0);
+    flight_->controller().Enter(FlightMode::kFree);
+    flight_->controller().pilot().SetTrack(nullptr);
+    flight_->controller().clock().SetRate(1.0);
     flight_->TakeUp(shared().begin);
     deck_ = std::make_unique<ViewerApp>(*flight_, recorder_, ViewerApp::Settings{});
     screen_ = std::make_unique<RenderTarget>(kSize.width, kSize.height, RenderTarget::Depth::kNone);

@@ -5,7 +5,7 @@
 #include <filesystem>
 
 #include "atmosphere/math/constants.h"
-#include "renderer/terrain/elevation.h"
+#include "renderer/elevation/elevation.h"
 #include "tests/fixtures/places.h"
 #include "tests/fixtures/raster_file.h"
 

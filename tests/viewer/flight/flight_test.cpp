@@ -26,8 +26,8 @@ namespace {
 namespace fs = std::filesystem;
 using ::testing::HasSubstr;
 
-Eye EyeAt(double latitude, double longitude, double height_m, double heading_deg = 0.0,
-          double pitch_deg = 0.0) {
+CameraPose EyeAt(double latitude, double longitude, double height_m, double heading_deg = 0.0,
+                 double pitch_deg = 0.0) {
   return {PlaceFromDegrees(latitude, longitude, height_m), heading_deg * kRadiansPerDegree,
           pitch_deg * kRadiansPerDegree};
 }
@@ -43,8 +43,8 @@ TEST(Flight, TheViewLooksWhereHeadingAndPitchSay) {
 }
 
 TEST(Flight, APlacementChangesWhatItNamesAndRefusesWhatIsOutOfRange) {
-  const Eye eye = EyeAt(46.0, 8.0, 500.0, 10.0, 5.0);
-  const Eye north = Placed(eye, {.latitude_deg = 47.0, .heading_deg = 90.0});
+  const CameraPose eye = EyeAt(46.0, 8.0, 500.0, 10.0, 5.0);
+  const CameraPose north = Placed(eye, {.latitude_deg = 47.0, .heading_deg = 90.0});
   EXPECT_NEAR(north.place.latitude_rad, 47.0 * kRadiansPerDegree, 1e-15);
   EXPECT_NEAR(north.place.longitude_rad, 8.0 * kRadiansPerDegree, 1e-15);
   EXPECT_EQ(north.place.height_m, 500.0);
@@ -64,7 +64,7 @@ TEST(Flight, SpeedIsAWalkOnTheGroundAndKilometresASecondInOrbit) {
 }
 
 TEST(Flight, AnHourForwardIsTheDistanceOfTheSpeed) {
-  Eye eye = EyeAt(46.0, 8.0, 1000.0, 90.0);
+  CameraPose eye = EyeAt(46.0, 8.0, 1000.0, 90.0);
   const Point<Ecef> start = EcefFromGeodetic(kWgs84, eye.place);
   for (int i = 0; i < 100; ++i) eye = Steer(eye, {.forward = 1.0}, kWgs84, 1000.0, 0.1);
   const double flown = glm::length((EcefFromGeodetic(kWgs84, eye.place) - start).xyz);
@@ -72,26 +72,26 @@ TEST(Flight, AnHourForwardIsTheDistanceOfTheSpeed) {
 }
 
 TEST(Flight, AcrossTheDateLineAndOverThePoleTheDirectionIsKept) {
-  Eye eye = EyeAt(0.0, 179.999, 1000.0, 90.0);
+  CameraPose eye = EyeAt(0.0, 179.999, 1000.0, 90.0);
   for (int i = 0; i < 100; ++i) eye = Steer(eye, {.forward = 1.0}, kWgs84, 1000.0, 0.1);
   EXPECT_LT(eye.place.longitude_rad, 0.0) << "beyond the date line";
   EXPECT_NEAR(eye.heading_rad, 0.5 * kPi, 1e-6);
 
-  Eye north = EyeAt(89.999, 20.0, 1000.0, 0.0);
+  CameraPose north = EyeAt(89.999, 20.0, 1000.0, 0.0);
   for (int i = 0; i < 100; ++i) north = Steer(north, {.forward = 1.0}, kWgs84, 1000.0, 0.1);
   EXPECT_NEAR(std::abs(north.heading_rad), kPi, 1e-3) << "over the pole, southwards";
   EXPECT_NEAR(north.place.longitude_rad, (20.0 - 180.0) * kRadiansPerDegree, 1e-3);
 }
 
 TEST(Flight, PitchStopsAtTheVertical) {
-  const Eye up = Turned(EyeAt(46.0, 8.0, 0.0), 0.0, 10.0);
+  const CameraPose up = Turned(EyeAt(46.0, 8.0, 0.0), 0.0, 10.0);
   EXPECT_EQ(up.pitch_rad, 0.5 * kPi);
   EXPECT_TRUE(std::isfinite(AxesOf(up).right.x));
 }
 
 TEST(Flight, ARolledEyeTurnsToWhatItSeesOnItsRight) {
   for (const double roll : {0.0, 0.5, -1.2, kPi}) {
-    Eye eye = EyeAt(46.0, 8.0, 0.0, 30.0);
+    CameraPose eye = EyeAt(46.0, 8.0, 0.0, 30.0);
     eye.roll_rad = roll;
     const ViewAxes before = AxesOf(eye);
     constexpr double kTurn = 1e-3;
@@ -102,10 +102,10 @@ TEST(Flight, ARolledEyeTurnsToWhatItSeesOnItsRight) {
 }
 
 TEST(Flight, AHeldRollTurnsTheHorizonAndATelescopeTurnsSlowly) {
-  const Eye rolled = Steer(EyeAt(46.0, 8.0, 0.0), {.roll_right = 1.0}, kWgs84, 10.0, 1.0);
+  const CameraPose rolled = Steer(EyeAt(46.0, 8.0, 0.0), {.roll_right = 1.0}, kWgs84, 10.0, 1.0);
   EXPECT_NEAR(rolled.roll_rad, 45.0 * kRadiansPerDegree, 1e-12);
-  const Eye narrow = Zoomed(EyeAt(46.0, 8.0, 0.0), 0.1);
-  const Eye turned = Steer(narrow, {.turn_right = 1.0}, kWgs84, 10.0, 1.0);
+  const CameraPose narrow = Zoomed(EyeAt(46.0, 8.0, 0.0), 0.1);
+  const CameraPose turned = Steer(narrow, {.turn_right = 1.0}, kWgs84, 10.0, 1.0);
   EXPECT_NEAR(turned.heading_rad, 4.5 * kRadiansPerDegree, 1e-12) << "in a view of 6 degrees";
 }
 
@@ -127,12 +127,12 @@ TEST(Flight, ExposureAdaptsHalfWayInAThirdOfASecond) {
 }
 
 TEST(Flight, AnEyeAtAPlaceStandsOnTheRunwayAndFliesOverTheCity) {
-  const Eye zurich =
+  const CameraPose zurich =
       viewer::EyeAt(PlaceNamed("LSZH"), {}, [](const GeodeticPosition&) { return 430.0; });
   EXPECT_EQ(zurich.place.height_m, 432.0) << "over the terrain's runway";
   EXPECT_NEAR(zurich.heading_rad / kRadiansPerDegree, 155.0, 1e-9)
       << "runway 16, five degrees of it grid";
-  const Eye lhasa =
+  const CameraPose lhasa =
       viewer::EyeAt(PlaceNamed("Lhasa"), {}, [](const GeodeticPosition&) { return 0.0; });
   EXPECT_EQ(lhasa.place.height_m, 600.0) << "over the plain, where there is no terrain";
 }
@@ -141,15 +141,16 @@ TEST(Flight, AnEyeAtAPlaceStandsOnTheRunwayAndFliesOverTheCity) {
 
 double Sea(const GeodeticPosition&) { return 0.0; }
 
-Eye EyeAt(double height_m, double heading_deg = 0.0) {
+CameraPose EyeAt(double height_m, double heading_deg = 0.0) {
   return {PlaceFromDegrees(46.0, 8.0, height_m), heading_deg * kRadiansPerDegree};
 }
-double Apart(const Eye& a, const Eye& b) {
+double Apart(const CameraPose& a, const CameraPose& b) {
   return glm::length((EcefFromGeodetic(kWgs84, a.place) - EcefFromGeodetic(kWgs84, b.place)).xyz);
 }
 
 /// The same controls for the same time, in frames of different lengths.
-Eye FlownFor(FlightMode mode, const PilotControls& controls, double seconds, double frame_s) {
+CameraPose FlownFor(FlightMode mode, const PilotControls& controls, double seconds,
+                    double frame_s) {
   Pilot pilot(EyeAt(1500.0), kWgs84);
   EXPECT_FALSE(pilot.Enter(mode, Sea));
   const int frames = static_cast<int>(std::lround(seconds / frame_s));
@@ -159,9 +160,9 @@ Eye FlownFor(FlightMode mode, const PilotControls& controls, double seconds, dou
 
 TEST(Pilot, AFlightOfTheAircraftIsTheSameAtEveryFrameRate) {
   const PilotControls controls{.stick = {.pitch_up = 0.1, .roll_right = 0.05, .throttle_up = 0.1}};
-  const Eye smooth = FlownFor(FlightMode::kAircraft, controls, 12.0, 1.0 / 240.0);
+  const CameraPose smooth = FlownFor(FlightMode::kAircraft, controls, 12.0, 1.0 / 240.0);
   for (const double frame_s : {1.0 / 60.0, 1.0 / 7.0, 0.75, 4.0, 12.0}) {
-    const Eye flown = FlownFor(FlightMode::kAircraft, controls, 12.0, frame_s);
+    const CameraPose flown = FlownFor(FlightMode::kAircraft, controls, 12.0, frame_s);
     EXPECT_LT(Apart(flown, smooth), 1e-3) << frame_s << " s a frame: the last step may be split";
     EXPECT_NEAR(flown.heading_rad, smooth.heading_rad, 1e-5) << frame_s;
   }
@@ -169,7 +170,7 @@ TEST(Pilot, AFlightOfTheAircraftIsTheSameAtEveryFrameRate) {
 
 TEST(Pilot, AFlightOfTheFreeCameraIsWithinAPercentAtEveryFrameRate) {
   const PilotControls controls{.camera = {.forward = 1.0, .up = 0.5, .turn_right = 0.1}};
-  const Eye smooth = FlownFor(FlightMode::kFree, controls, 4.0, 1.0 / 240.0);
+  const CameraPose smooth = FlownFor(FlightMode::kFree, controls, 4.0, 1.0 / 240.0);
   const double way = Apart(smooth, EyeAt(1500.0));
   for (const double frame_s : {1.0 / 60.0, 1.0 / 8.0, 0.5, 4.0}) {
     EXPECT_LT(Apart(FlownFor(FlightMode::kFree, controls, 4.0, frame_s), smooth), 0.01 * way)
@@ -181,7 +182,7 @@ TEST(Pilot, TheAircraftMovesSmoothlyBetweenItsSteps) {
   Pilot pilot(EyeAt(1500.0), kWgs84);
   ASSERT_FALSE(pilot.Enter(FlightMode::kAircraft, Sea));
   constexpr double kFrame_s = 1.0 / 500.0;
-  Eye before = pilot.eye();
+  CameraPose before = pilot.eye();
   for (int i = 0; i < 200; ++i) {
     pilot.Advance({}, kFrame_s, Sea);
     EXPECT_NEAR(Apart(pilot.eye(), before) / kFrame_s, CruiseSpeed(kLightAircraft, 1500.0), 0.1);
@@ -206,7 +207,7 @@ TEST(Pilot, ChangingTheModeKeepsPlaceAndHeading) {
   EXPECT_LT(Apart(pilot.eye(), EyeAt(1500.0)), 1e-6);
   EXPECT_NEAR(pilot.eye().heading_rad, 77.0 * kRadiansPerDegree, 1e-9);
   pilot.Advance({.stick = {.roll_right = 1.0}}, 1.0, Sea);
-  const Eye flying = pilot.eye();
+  const CameraPose flying = pilot.eye();
   EXPECT_GT(std::abs(flying.roll_rad), 0.2);
   ASSERT_FALSE(pilot.Enter(FlightMode::kFree, Sea));
   EXPECT_LT(Apart(pilot.eye(), flying), 1e-6);
@@ -311,7 +312,7 @@ TEST(Pilot, WhereTerrainIsLoadedOverTheAircraftItFliesOnOverIt) {
 TEST(Pilot, PutSomewhereElseItFliesOnThere) {
   Pilot pilot(EyeAt(1500.0), kWgs84);
   ASSERT_FALSE(pilot.Enter(FlightMode::kAircraft, Sea));
-  Eye there = EyeAt(2500.0, 90.0);
+  CameraPose there = EyeAt(2500.0, 90.0);
   there.place.longitude_rad = 3.0;
   pilot.PutAt(there, Sea);
   EXPECT_EQ(pilot.mode(), FlightMode::kAircraft);
@@ -550,7 +551,7 @@ class FlightRecords : public TemporaryFolder {
     const UtcInstant start = ParseInstant("2026-06-21T04:00:00Z");
     for (int frame = 0; frame < frames; ++frame) {
       const double seconds = frame / 60.0;
-      const Eye eye{PlaceFromDegrees(46.0 + 1e-4 * seconds, 8.0, 3000.0)};
+      const CameraPose eye{PlaceFromDegrees(46.0 + 1e-4 * seconds, 8.0, 3000.0)};
       recorder.Note(seconds, eye, AddSeconds(start, 60.0 * seconds));
     }
   }

@@ -336,11 +336,11 @@ TEST(Action, EveryControlHasOneKeyForEachDirection) {
 template <typename Visit>
 void ForEachKey(const Visit& visit) {
   for (const Action& row : ActionTable()) {
-    for (const bool cockpit : {false, true}) {
-      std::string keys(cockpit ? row.keys_in_cockpit : row.keys);
+    for (const bool controller : {false, true}) {
+      std::string keys(controller ? row.keys_in_cockpit : row.keys);
       for (std::size_t begin = 0; begin < keys.size();) {
         const std::size_t end = std::min(keys.find(", ", begin), keys.size());
-        visit(keys.substr(begin, end - begin), row, cockpit);
+        visit(keys.substr(begin, end - begin), row, controller);
         begin = end + 2;
       }
     }
@@ -349,10 +349,10 @@ void ForEachKey(const Visit& visit) {
 
 TEST(Action, EveryKeyOfTheTableDoesWhatItsLineSaysAndNoneDoesTwoThings) {
   int keys = 0;
-  ForEachKey([&](const std::string& text, const Action& row, bool cockpit) {
+  ForEachKey([&](const std::string& text, const Action& row, bool controller) {
     const KeyChord chord = KeyChordFromText(text);
     for (const FlightMode mode : kModes) {
-      if (!row.modes.Has(mode) || (cockpit && mode == FlightMode::kFree)) continue;
+      if (!row.modes.Has(mode) || (controller && mode == FlightMode::kFree)) continue;
       const Action* action = ActionOfKey(chord.key, chord.modifiers, mode);
       ASSERT_NE(action, nullptr) << text;
       EXPECT_EQ(action->help, row.help) << text << " in mode " << static_cast<int>(mode);
@@ -365,8 +365,8 @@ TEST(Action, EveryKeyOfTheTableDoesWhatItsLineSaysAndNoneDoesTwoThings) {
 TEST(Action, NoKeyIsListedTwiceForOneMode) {
   for (const FlightMode mode : kModes) {
     std::vector<std::pair<int, int>> chords;
-    ForEachKey([&](const std::string& text, const Action& row, bool cockpit) {
-      if (!row.modes.Has(mode) || (cockpit && mode == FlightMode::kFree)) return;
+    ForEachKey([&](const std::string& text, const Action& row, bool controller) {
+      if (!row.modes.Has(mode) || (controller && mode == FlightMode::kFree)) return;
       const KeyChord chord = KeyChordFromText(text);
       const std::pair<int, int> pair{chord.key, chord.modifiers};
       EXPECT_THAT(chords, ::testing::Not(::testing::Contains(pair)))
@@ -507,57 +507,59 @@ FlightController NewFlightController(const GroundHeight& ground = FlightControll
   return {
       {PlaceFromDegrees(47.0, 8.0, 1500.0)}, kWgs84, ParseInstant("2026-06-21T12:00:00Z"), ground};
 }
-std::string Shows(const FlightController& cockpit) { return FormatUtc(cockpit.clock().now()); }
+std::string Shows(const FlightController& controller) {
+  return FormatUtc(controller.clock().now());
+}
 
 TEST(FlightController, KeysChangeFlightAndTime) {
   RecordedCommands flight;
   EXPECT_EQ(flight.Press("T"), "time x10");
   EXPECT_EQ(flight.Press("Shift+]"), "");
-  EXPECT_EQ(Shows(flight.cockpit()), "2026-06-21T13:00:00Z");
+  EXPECT_EQ(Shows(flight.controller()), "2026-06-21T13:00:00Z");
   EXPECT_EQ(flight.Press("F7"), "sunset");
-  EXPECT_EQ(Shows(flight.cockpit()).substr(0, 13), "2026-06-21T19");
+  EXPECT_EQ(Shows(flight.controller()).substr(0, 13), "2026-06-21T19");
   EXPECT_EQ(flight.Press("F9"), "moonrise");
   EXPECT_EQ(flight.Press("3"), "there is no track to follow");
 }
 
 TEST(FlightController, GoesAroundTheModesThatThereAre) {
-  FlightController cockpit = NewFlightController();
-  EXPECT_EQ(cockpit.EnterNext(1), "aircraft");
-  EXPECT_EQ(cockpit.EnterNext(1), "free camera");
-  EXPECT_EQ(cockpit.EnterNext(-1), "aircraft");
-  EXPECT_EQ(cockpit.ToggleHold(Autopilot::Hold::kHeading), "HDG 000");
-  EXPECT_EQ(cockpit.ReleaseAutopilot(), "autopilot off");
-  EXPECT_EQ(cockpit.Enter(FlightMode::kFree), "free camera");
+  FlightController controller = NewFlightController();
+  EXPECT_EQ(controller.EnterNext(1), "aircraft");
+  EXPECT_EQ(controller.EnterNext(1), "free camera");
+  EXPECT_EQ(controller.EnterNext(-1), "aircraft");
+  EXPECT_EQ(controller.ToggleHold(Autopilot::Hold::kHeading), "HDG 000");
+  EXPECT_EQ(controller.ReleaseAutopilot(), "autopilot off");
+  EXPECT_EQ(controller.Enter(FlightMode::kFree), "free camera");
 }
 
 TEST(FlightController, PausedTimeAndAircraftStandAndTheFreeCameraFlies) {
   RecordedCommands flight;
-  FlightController& cockpit = flight.cockpit();
+  FlightController& controller = flight.controller();
   EXPECT_EQ(flight.Press("P"), "paused");
-  const double latitude = cockpit.pilot().eye().place.latitude_rad;
-  cockpit.Advance({.camera = {.forward = 1.0}}, 1.0);
-  EXPECT_GT(cockpit.pilot().eye().place.latitude_rad, latitude);
-  cockpit.Enter(FlightMode::kAircraft);
-  const double stands = cockpit.pilot().eye().place.latitude_rad;
-  cockpit.Advance({.look_right = 0.1}, 1.0);
-  EXPECT_EQ(cockpit.pilot().eye().place.latitude_rad, stands);
-  EXPECT_GT(cockpit.pilot().eye().heading_rad, 0.05) << "one can look around";
-  EXPECT_EQ(Shows(cockpit), "2026-06-21T12:00:00Z");
+  const double latitude = controller.pilot().eye().place.latitude_rad;
+  controller.Advance({.camera = {.forward = 1.0}}, 1.0);
+  EXPECT_GT(controller.pilot().eye().place.latitude_rad, latitude);
+  controller.Enter(FlightMode::kAircraft);
+  const double stands = controller.pilot().eye().place.latitude_rad;
+  controller.Advance({.look_right = 0.1}, 1.0);
+  EXPECT_EQ(controller.pilot().eye().place.latitude_rad, stands);
+  EXPECT_GT(controller.pilot().eye().heading_rad, 0.05) << "one can look around";
+  EXPECT_EQ(Shows(controller), "2026-06-21T12:00:00Z");
 }
 
 TEST(FlightController, AFlightAtFourTimesItsSpeedTakesTheClockAlong) {
-  FlightController cockpit = NewFlightController();
-  cockpit.Enter(FlightMode::kAircraft);
-  EXPECT_EQ(cockpit.StepSpeed(1), "speed x2");
-  EXPECT_EQ(cockpit.StepSpeed(1), "speed x4");
-  cockpit.Advance({}, 2.5);
-  EXPECT_EQ(Shows(cockpit), "2026-06-21T12:00:10Z");
+  FlightController controller = NewFlightController();
+  controller.Enter(FlightMode::kAircraft);
+  EXPECT_EQ(controller.StepSpeed(1), "speed x2");
+  EXPECT_EQ(controller.StepSpeed(1), "speed x4");
+  controller.Advance({}, 2.5);
+  EXPECT_EQ(Shows(controller), "2026-06-21T12:00:10Z");
 }
 
 TEST(FlightController, FliesToPlacesByName) {
-  FlightController cockpit = NewFlightController();
-  cockpit.GoTo(PlaceNamed("Matterhorn"));
-  EXPECT_EQ(cockpit.pilot().eye().place.height_m, 100.0) << "over the ground that is there";
+  FlightController controller = NewFlightController();
+  controller.GoTo(PlaceNamed("Matterhorn"));
+  EXPECT_EQ(controller.pilot().eye().place.height_m, 100.0) << "over the ground that is there";
   FlightController at_airport = NewFlightController(Airport);
   at_airport.Enter(FlightMode::kAircraft);
   at_airport.GoTo(PlaceNamed("LSZH"));
@@ -568,14 +570,14 @@ TEST(FlightController, FliesToPlacesByName) {
 
 TEST(FlightController, AMinuteOfFlyingByKeysTakesOffTurnsAndClimbs) {
   RecordedCommands flight(Airport);
-  FlightController& cockpit = flight.cockpit();
+  FlightController& controller = flight.controller();
   Hands hands;
-  cockpit.GoTo(PlaceNamed("LSZH"));
+  controller.GoTo(PlaceNamed("LSZH"));
   const auto fly = [&](double seconds) {
     for (double t = 0.0; t < seconds; t += 1.0 / 30.0) {
-      const Intent intent = hands.Take(cockpit.pilot().mode(), 1.0 / 30.0);
+      const Intent intent = hands.Take(controller.pilot().mode(), 1.0 / 30.0);
       for (const Action* action : intent.actions) action->run(flight);
-      cockpit.Advance(intent.pilot, 1.0 / 30.0);
+      controller.Advance(intent.pilot, 1.0 / 30.0);
     }
   };
   const auto hold = [&](const char* key, double seconds) {
@@ -587,7 +589,7 @@ TEST(FlightController, AMinuteOfFlyingByKeysTakesOffTurnsAndClimbs) {
   hold("Page Up", 25.0);
   hold("Down", 0.8);
   fly(25.0);
-  const FlightReadout climbing = cockpit.pilot().Readout(Airport);
+  const FlightReadout climbing = controller.pilot().Readout(Airport);
   EXPECT_EQ(climbing.aircraft->contact, GroundContact::kNone);
   EXPECT_GT(climbing.above_ground_m, 50.0);
   EXPECT_FALSE(climbing.aircraft->stalled);
@@ -595,15 +597,15 @@ TEST(FlightController, AMinuteOfFlyingByKeysTakesOffTurnsAndClimbs) {
   EXPECT_NEAR(climbing.course->heading_rad / kRadiansPerDegree, 155.0, 2.0);
   hold("Left", 0.6);
   fly(10.0);
-  const FlightReadout turning = cockpit.pilot().Readout(Airport);
+  const FlightReadout turning = controller.pilot().Readout(Airport);
   EXPECT_LT(turning.aircraft->bank_rad, -10.0 * kRadiansPerDegree) << "held after the key is up";
   EXPECT_LT(turning.course->heading_rad, climbing.course->heading_rad - 0.2);
 }
 
 TEST(FlightController, ALongFrameIsNotCutShort) {
-  FlightController cockpit = NewFlightController();
-  cockpit.Advance({}, 7.0);
-  EXPECT_EQ(Shows(cockpit), "2026-06-21T12:00:07Z");
+  FlightController controller = NewFlightController();
+  controller.Advance({}, 7.0);
+  EXPECT_EQ(Shows(controller), "2026-06-21T12:00:07Z");
 }
 
 /// 10 s of the pilot that were an hour of the scene, with a narrow view.
@@ -616,57 +618,57 @@ std::shared_ptr<const CameraPath> AnHour() {
 }
 
 TEST(FlightController, AReplayHasItsOwnTimeAndViewAndGivesTheControlsBackAtItsEnd) {
-  FlightController cockpit = NewFlightController();
-  cockpit.clock().Pause(!cockpit.clock().paused());
-  cockpit.Replay(AnHour());
-  cockpit.Advance({}, 5.0);
-  EXPECT_EQ(Shows(cockpit), "2025-01-02T08:30:00Z") << "as fast as it went then";
-  EXPECT_EQ(cockpit.pilot().eye().fov_rad, 0.3);
-  EXPECT_EQ(cockpit.pilot().mode(), FlightMode::kTrack);
-  cockpit.SkipTrack(-10.0);
-  EXPECT_EQ(Shows(cockpit), "2025-01-02T08:00:00Z");
-  cockpit.clock().Pause(!cockpit.clock().paused());
-  cockpit.Advance({}, 5.0);
-  EXPECT_EQ(Shows(cockpit), "2025-01-02T08:00:00Z") << "paused it stands";
-  cockpit.clock().Pause(!cockpit.clock().paused());
-  cockpit.Advance({}, 11.0);
-  EXPECT_EQ(cockpit.pilot().mode(), FlightMode::kFree);
-  EXPECT_NEAR(cockpit.pilot().eye().place.height_m, 2000.0, 1e-6);
-  EXPECT_EQ(Shows(cockpit), "2025-01-02T09:00:00Z");
-  cockpit.Advance({}, 1.0);
-  EXPECT_EQ(Shows(cockpit), "2025-01-02T09:00:01Z") << "real time again";
+  FlightController controller = NewFlightController();
+  controller.clock().Pause(!controller.clock().paused());
+  controller.Replay(AnHour());
+  controller.Advance({}, 5.0);
+  EXPECT_EQ(Shows(controller), "2025-01-02T08:30:00Z") << "as fast as it went then";
+  EXPECT_EQ(controller.pilot().eye().fov_rad, 0.3);
+  EXPECT_EQ(controller.pilot().mode(), FlightMode::kTrack);
+  controller.SkipTrack(-10.0);
+  EXPECT_EQ(Shows(controller), "2025-01-02T08:00:00Z");
+  controller.clock().Pause(!controller.clock().paused());
+  controller.Advance({}, 5.0);
+  EXPECT_EQ(Shows(controller), "2025-01-02T08:00:00Z") << "paused it stands";
+  controller.clock().Pause(!controller.clock().paused());
+  controller.Advance({}, 11.0);
+  EXPECT_EQ(controller.pilot().mode(), FlightMode::kFree);
+  EXPECT_NEAR(controller.pilot().eye().place.height_m, 2000.0, 1e-6);
+  EXPECT_EQ(Shows(controller), "2025-01-02T09:00:00Z");
+  controller.Advance({}, 1.0);
+  EXPECT_EQ(Shows(controller), "2025-01-02T09:00:01Z") << "real time again";
 }
 
 TEST(FlightController, WhatIsFlownAgainEndsInTheFlightThatGoesOn) {
-  FlightController cockpit = NewFlightController();
-  cockpit.Enter(FlightMode::kAircraft);
-  cockpit.ToggleHold(Autopilot::Hold::kHeading);
-  cockpit.Advance({.stick = {.roll_right = 1.0}}, 3.0);
-  const FlightReadout flown = cockpit.pilot().Readout(FlightControllerSea);
+  FlightController controller = NewFlightController();
+  controller.Enter(FlightMode::kAircraft);
+  controller.ToggleHold(Autopilot::Hold::kHeading);
+  controller.Advance({.stick = {.roll_right = 1.0}}, 3.0);
+  const FlightReadout flown = controller.pilot().Readout(FlightControllerSea);
   for (int time = 0; time < 2; ++time) {  // asked for in the middle, it begins again
-    cockpit.FlyAgain(AnHour());
-    EXPECT_TRUE(cockpit.pilot().Replays());
-    cockpit.Advance({}, 5.0);
+    controller.FlyAgain(AnHour());
+    EXPECT_TRUE(controller.pilot().Replays());
+    controller.Advance({}, 5.0);
   }
-  EXPECT_TRUE(cockpit.pilot().Replays());
-  cockpit.Advance({}, 5.0);
-  EXPECT_EQ(cockpit.pilot().mode(), FlightMode::kAircraft);
-  const FlightReadout on = cockpit.pilot().Readout(FlightControllerSea);
+  EXPECT_TRUE(controller.pilot().Replays());
+  controller.Advance({}, 5.0);
+  EXPECT_EQ(controller.pilot().mode(), FlightMode::kAircraft);
+  const FlightReadout on = controller.pilot().Readout(FlightControllerSea);
   EXPECT_EQ(on.aircraft->bank_rad, flown.aircraft->bank_rad);
   EXPECT_EQ(on.above_ground_m, flown.above_ground_m);
   EXPECT_EQ(on.autopilot, flown.autopilot);
 }
 
 TEST(FlightController, ATrackWithInstantsSetsTheClockAndSkippingTakesItAlong) {
-  FlightController cockpit = NewFlightController();
-  cockpit.pilot().SetTrack(std::make_shared<CameraPath>(std::vector<CameraPathPoint>{
+  FlightController controller = NewFlightController();
+  controller.pilot().SetTrack(std::make_shared<CameraPath>(std::vector<CameraPathPoint>{
       {0.0, {PlaceFromDegrees(46.0, 8.0, 1000.0)}, ParseInstant("2025-01-02T08:00:00Z")},
       {100.0, {PlaceFromDegrees(46.1, 8.0, 2000.0)}, ParseInstant("2025-01-02T08:01:40Z")}}));
-  EXPECT_EQ(cockpit.Enter(FlightMode::kTrack), "track");
-  EXPECT_EQ(Shows(cockpit), "2025-01-02T08:00:00Z");
-  cockpit.Advance({}, 5.0);
-  cockpit.SkipTrack(10.0);
-  EXPECT_EQ(Shows(cockpit), "2025-01-02T08:00:15Z");
+  EXPECT_EQ(controller.Enter(FlightMode::kTrack), "track");
+  EXPECT_EQ(Shows(controller), "2025-01-02T08:00:00Z");
+  controller.Advance({}, 5.0);
+  controller.SkipTrack(10.0);
+  EXPECT_EQ(Shows(controller), "2025-01-02T08:00:15Z");
 }
 
 }  // namespace

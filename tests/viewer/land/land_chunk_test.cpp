@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Chunks of land, and grids over meshes.
-#include "viewer/land/land_chunk.h"
+#include "renderer/terrain/land_chunk.h"
 
 #include <gtest/gtest.h>
 #include <malloc.h>
@@ -12,7 +12,7 @@
 #include <utility>
 
 #include "atmosphere/math/constants.h"
-#include "renderer/terrain/mesh.h"
+#include "renderer/elevation/mesh.h"
 #include "tests/renderer/terrain/land_files.h"
 #include "viewer/land/mesh_land.h"
 

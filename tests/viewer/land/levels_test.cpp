@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Levels of detail of the land: what is drawn, what turns, what is hidden.
-#include "viewer/land/level_ranges.h"
+#include "renderer/terrain/level_ranges.h"
 
 #include <gtest/gtest.h>
 
@@ -9,8 +9,9 @@
 #include <map>
 #include <set>
 
+#include "renderer/terrain/seen_chunks.h"
 #include "tests/renderer/terrain/land_files.h"
-#include "viewer/land/seen_chunks.h"
+#include "viewer/layer.h"
 
 namespace alpenglow::viewer {
 namespace {
@@ -310,15 +311,15 @@ TEST_F(LandInFlight, NothingPops) {
 // --- what the skyline hides ---
 
 // A wall 1 km north of the eye, 2 km wide and 100 m over the eye.
-std::vector<Skyline::Between> Wall() {
-  std::vector<Skyline::Between> wall;
+std::vector<LandSkyline::Between> Wall() {
+  std::vector<LandSkyline::Between> wall;
   for (double x = -1000.0; x <= 1000.0; x += 50.0)
     wall.push_back({{x, 1000.0, 100.0}, {x, 1000.0, 110.0}});
   return wall;
 }
 
-TEST(Skyline, AWallHidesWhatStandsBehindItAndIsLower) {
-  Skyline skyline;
+TEST(LandSkyline, AWallHidesWhatStandsBehindItAndIsLower) {
+  LandSkyline skyline;
   skyline.Add(Wall());
   EXPECT_FALSE(skyline.Hides({0.0, 500.0, 0.0}, 10.0, 0.0)) << "before it";
   EXPECT_TRUE(skyline.Hides({0.0, 3000.0, 0.0}, 50.0, 150.0))
@@ -329,37 +330,37 @@ TEST(Skyline, AWallHidesWhatStandsBehindItAndIsLower) {
   EXPECT_FALSE(skyline.Hides({0.0, -3000.0, 0.0}, 50.0, 0.0)) << "opposite";
 }
 
-TEST(Skyline, TheLowerOfTwoLevelsCounts) {
-  std::vector<Skyline::Between> turning = Wall();
-  for (Skyline::Between& vertex : turning) vertex.other.z = 20.0;
-  Skyline skyline;
+TEST(LandSkyline, TheLowerOfTwoLevelsCounts) {
+  std::vector<LandSkyline::Between> turning = Wall();
+  for (LandSkyline::Between& vertex : turning) vertex.other.z = 20.0;
+  LandSkyline skyline;
   skyline.Add(turning);
   EXPECT_FALSE(skyline.Hides({0.0, 3000.0, 0.0}, 50.0, 100.0));
   EXPECT_TRUE(skyline.Hides({0.0, 3000.0, 0.0}, 50.0, 20.0));
 }
 
-TEST(Skyline, AWallThatIsFartherHidesNothing) {
-  Skyline skyline;
+TEST(LandSkyline, AWallThatIsFartherHidesNothing) {
+  LandSkyline skyline;
   skyline.Add(Wall());
   EXPECT_FALSE(skyline.Hides({0.0, 1400.0, 0.0}, 50.0, -10.0)) << "the wall's ends are 1414 m away";
   EXPECT_TRUE(skyline.Hides({0.0, 1500.0, 0.0}, 50.0, -10.0));
 }
 
-TEST(Skyline, SeenFromAboveTheGroundBehindACrestIsHiddenToo) {
-  std::vector<Skyline::Between> crest = Wall();
-  for (Skyline::Between& vertex : crest) {
+TEST(LandSkyline, SeenFromAboveTheGroundBehindACrestIsHiddenToo) {
+  std::vector<LandSkyline::Between> crest = Wall();
+  for (LandSkyline::Between& vertex : crest) {
     vertex.one.z = -100.0;
     vertex.other.z = -100.0;
   }
-  Skyline skyline;
+  LandSkyline skyline;
   skyline.Add(crest);
   EXPECT_TRUE(skyline.Hides({0.0, 2000.0, 0.0}, 50.0, -300.0));
   EXPECT_FALSE(skyline.Hides({0.0, 2000.0, 0.0}, 50.0, -150.0));
 }
 
-TEST(Skyline, AGapInAWallHidesNothing) {
-  Skyline skyline;
-  const std::vector<Skyline::Between> wall = Wall();
+TEST(LandSkyline, AGapInAWallHidesNothing) {
+  LandSkyline skyline;
+  const std::vector<LandSkyline::Between> wall = Wall();
   skyline.Add(std::span(wall).first(18));
   skyline.Add(std::span(wall).last(18));  // 250 m are open in the middle
   EXPECT_FALSE(skyline.Hides({0.0, 3000.0, 0.0}, 50.0, 0.0));

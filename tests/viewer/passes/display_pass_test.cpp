@@ -10,6 +10,7 @@
 #include <map>
 
 #include "lut/image/tone_mapping.h"
+#include "renderer/picture/reference_picture.h"
 #include "renderer/scene/scene_options.h"
 #include "tests/fixtures/bare_scene.h"
 #include "tests/fixtures/fault_of.h"
@@ -19,7 +20,6 @@
 #include "viewer/flight_session.h"
 #include "viewer/gl/gl_objects.h"
 #include "viewer/passes/auto_quality.h"
-#include "viewer/passes/reference_picture.h"
 
 namespace alpenglow::viewer {
 namespace {
@@ -80,25 +80,25 @@ class SmallPictures : public tests::Headless {
 
   static DisplayImage Shown(const Window& window, const PaintedQuality& painted) {
     const double eye_m = LoadGround(window.scene).eye_height_m;
-    Eye eye{window.scene.place, window.scene.camera.heading_rad, window.scene.camera.pitch_rad, 0.0,
-            window.scene.camera.fov_rad};
+    CameraPose eye{window.scene.place, window.scene.camera.heading_rad,
+                   window.scene.camera.pitch_rad, 0.0, window.scene.camera.fov_rad};
     eye.place.height_m = eye_m;
     const auto part = [&](int side) { return static_cast<int>(std::lround(painted.scale * side)); };
     const PaintedView view{eye, window.now, part(kScreen.width), part(kScreen.height)};
     SkyPainter painter(window.scene, LandSourceOf(window.scene), view, SizesOf(painted));
     if (window.has_landing_light) painter.SetLandingLight(LandingLightOf(eye));
-    painter.Settle(view);
+    painter.WaitUntilReady(view);
     const RenderTarget screen(kScreen.width, kScreen.height, {PixelFormat::kRgba8},
                               RenderTarget::Depth::kNone);
     const ToneMapPass::Screen on{screen.framebuffer(), kScreen.width, kScreen.height};
     painter.Paint(
         view, 1,
         DisplayPass::Upscales(view, on) ? SkyPainter::Bodies::kNone : SkyPainter::Bodies::kAll);
-    DisplayPass darkroom(Look{});
-    FrameDisplay(painter, darkroom).Show(view, window.ev100, on);
+    DisplayPass display_pass(Look{});
+    FrameDisplay(painter, display_pass).Show(view, window.ev100, on);
     return screen.ReadBytes();
   }
-  static LandingLight LandingLightOf(const Eye& eye) {
+  static LandingLight LandingLightOf(const CameraPose& eye) {
     LandingLight light;
     const ViewAxes axes = AxesOf(eye);
     light.axis = axes.forward;
@@ -146,11 +146,12 @@ TEST_F(SmallPictures, ALandingLightInFogHasNoSteps) {
 // One ray a pixel against many: an edge of shade that one ray sees or does not makes stairs.
 TEST_F(SmallPictures, EdgesOfShadeAreAsWideAsTheirPixels) {
   const Scene scene = RangeScene({4000.0, false}, 130.0, -25.0);
-  Eye eye{scene.place, scene.camera.heading_rad, scene.camera.pitch_rad, 0.0, scene.camera.fov_rad};
+  CameraPose eye{scene.place, scene.camera.heading_rad, scene.camera.pitch_rad, 0.0,
+                 scene.camera.fov_rad};
   eye.place.height_m = scene.camera.height.value_m;
   const PaintedView view{eye, ParseInstant("2026-06-21T18:10:00Z"), 160, 90};
   SkyPainter painter(scene, LandSourceOf(scene), view, SizesOf(Quality::kLow));
-  painter.Settle(view);
+  painter.WaitUntilReady(view);
   painter.Paint(view, 1, SkyPainter::Bodies::kNone);
   const Image one = painter.picture().Read();
   painter.Paint(view, tests::ScaledDown(36, 16), SkyPainter::Bodies::kNone);
@@ -192,7 +193,7 @@ class UpscalerTest : public tests::Headless {
     }
     return {0.5F, 0.7F, 0.9F, 0.0F};
   }
-  /// Returns the inverse depth by the formula of inverse_depth.glsl.
+  /// Returns the inverse depth by the formula of gbuffer.inverse_depth.glsl.
   [[nodiscard]] static float InverseDepthAt(double along_view_m) {
     return static_cast<float>(100.0 / along_view_m);
   }
@@ -207,7 +208,7 @@ class UpscalerTest : public tests::Headless {
       }
     }
   }
-  /// Depth as reversed_depth.glsl has it: 0.1 m is 1.
+  /// Depth as gbuffer.reversed_depth.glsl has it: 0.1 m is 1.
   static void FillDepth(const DepthPrepass& outline,
                         const std::function<float(int x, int y)>& inverse_depth) {
     outline.Bind();

@@ -196,11 +196,11 @@ TEST_F(RefractedPeak, BehindTheGeometricHorizonStandsWhereTheRayEquationHasIt) {
 constexpr double kRadius_km = 6371.0;
 
 PaintedView ViewFrom(double height_m, double pitch_deg, double roll_deg) {
-  Eye eye{{0.8, 0.2, height_m},
-          1.0,
-          pitch_deg * kRadiansPerDegree,
-          roll_deg * kRadiansPerDegree,
-          60.0 * kRadiansPerDegree};
+  CameraPose eye{{0.8, 0.2, height_m},
+                 1.0,
+                 pitch_deg * kRadiansPerDegree,
+                 roll_deg * kRadiansPerDegree,
+                 60.0 * kRadiansPerDegree};
   return {eye, {}, 64, 36};
 }
 

@@ -15,6 +15,7 @@
 #include "atmosphere/astronomy/sky_bodies.h"
 #include "atmosphere/base/error.h"
 #include "lut/image/tone_mapping.h"
+#include "renderer/picture/reference_picture.h"
 #include "renderer/picture/render.h"
 #include "renderer/scene/scene_options.h"
 #include "renderer/surface/scene_ground.h"
@@ -24,7 +25,6 @@
 #include "tests/viewer/land/headless_land.h"
 #include "viewer/flight/flight_recorder.h"
 #include "viewer/passes/frame_light.h"
-#include "viewer/passes/reference_picture.h"
 
 namespace alpenglow::viewer {
 namespace {
@@ -50,8 +50,8 @@ RenderSettings ReferenceSettings(const PictureSize& size) {
 
 PaintedView ViewOf(const Scene& scene, double eye_height_m, const UtcInstant& now,
                    const PictureSize& size = kFull) {
-  Eye eye{scene.place, scene.camera.heading_rad, scene.camera.pitch_rad, scene.camera.roll_rad,
-          scene.camera.fov_rad};
+  CameraPose eye{scene.place, scene.camera.heading_rad, scene.camera.pitch_rad,
+                 scene.camera.roll_rad, scene.camera.fov_rad};
   eye.place.height_m = eye_height_m;
   return {eye, now, size.width, size.height};
 }
@@ -70,8 +70,8 @@ class BothPrograms {
     view.width = size_.width;
     view.height = size_.height;
     CameraSample camera_sample(view.now);
-    camera_sample.poses = {PoseOf(view.eye)};
-    painter_.Settle(view, kSamples);
+    camera_sample.poses = {view.eye};
+    painter_.WaitUntilReady(view, kSamples);
     painter_.Paint(view, kSamples);
     return DifferenceOf(reference_.Render(camera_sample, ReferenceSettings(size_)),
                         painter_.picture().Read());
@@ -213,8 +213,8 @@ TEST_F(SkyPainterTest, ASunWithTheMoonBeforeItIsTheRenderers) {
                "tables between nodes, within four degrees of the sun");
   const SunPosition sun = ApparentSunAt(scene.place, now);
   const std::shared_ptr<const SolvedAir> air = SolveAir(scene.medium, AirSolution::kDraft);
-  const double left = double{LightsOfSkyAt(scene.place, now, sun, *air).key.irradiance[1]} /
-                      double{SunAsKey(sun, scene.medium).irradiance[1]};
+  const double left = double{LightsOfSkyAt(scene.place, now, sun, *air).front().irradiance[1]} /
+                      double{SunAsLight(sun, scene.medium).irradiance[1]};
   const double covered = SkyBodiesAt(scene.place, now).CoveredLight();
   EXPECT_NEAR(covered, 0.9, 0.02);
   EXPECT_NEAR(left / (1.0 - covered), 1.0, 0.02) << "of 550 nm and of the second band";
@@ -241,7 +241,7 @@ MeanLuminance MeanLuminanceOf(const Image& picture) {
 class RangeInTime {
  public:
   RangeInTime() : painter_(scene_, LandSourceOf(scene_), At(kNoon), SizesOf(Quality::kLow)) {
-    painter_.Settle(At(kNoon));
+    painter_.WaitUntilReady(At(kNoon));
   }
 
   MeanLuminance Frame(const UtcInstant& now) {
@@ -249,7 +249,7 @@ class RangeInTime {
     return Paint(At(now));
   }
   MeanLuminance Settled(const UtcInstant& now) {
-    painter_.Settle(At(now));
+    painter_.WaitUntilReady(At(now));
     return Paint(At(now));
   }
 
@@ -442,7 +442,7 @@ class BareSkyPainter {
  public:
   /// Returns a settled picture.
   Image Painted(const PaintedView& view, int samples = 1) {
-    painter.Settle(view);
+    painter.WaitUntilReady(view);
     painter.Paint(view, samples);
     return painter.picture().Read();
   }
@@ -493,7 +493,7 @@ TEST_F(BareSky, AnotherPictureIsShownInstead) {
 // --- the renderer's picture beside the flight ---
 
 ReferencePicture::View ViewOf(const std::shared_ptr<const ReferenceScene>& of) {
-  Eye eye{of->scene.place, 1.0, 0.2, 0.0, 1.0};
+  CameraPose eye{of->scene.place, 1.0, 0.2, 0.0, 1.0};
   eye.place.height_m = 500.0;
   return {of, eye, ParseInstant("2026-06-21T05:00:00Z"), 16, 8};
 }
@@ -520,7 +520,7 @@ TEST(ReferencePicture, EndsAsTheRenderersPictureOf64Rays) {
   settings.height = 8;
   settings.samples_per_pixel = 64;
   CameraSample camera_sample(view.now);
-  camera_sample.poses = {PoseOf(view.eye)};
+  camera_sample.poses = {view.eye};
   EXPECT_EQ(made.rgb, SceneRenderer(of->scene).Render(camera_sample, settings).rgb);
 }
 

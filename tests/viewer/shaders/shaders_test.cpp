@@ -106,14 +106,14 @@ class Glslang : public TemporaryFolder {
 };
 
 TEST_F(Glslang, AcceptsTheShadersOfLandShaftsAndDisplay) {
-  ShaderPiece view = ViewerPiece("viewer/shaders/view_block.glsl");
-  ExpectAccepted({}, "full_screen.vert.glsl");
+  ShaderPiece view = ViewerPiece("viewer/shaders/view.block.glsl");
+  ExpectAccepted({}, "view.full_screen.vert.glsl");
   ExpectAccepted({}, "hud.vert.glsl");
   ExpectAccepted({}, "hud.frag.glsl");
   for (int curve = 0; curve < 5; ++curve) {
     for (const bool dithers : {false, true})
       ExpectAccepted(ToneMapPassTexts(static_cast<ToneCurve>(curve), dithers),
-                     "tone_map.frag.glsl");
+                     "display.tone_map.frag.glsl");
   }
   const ShaderPiece single = {
       "air",
@@ -121,22 +121,23 @@ TEST_F(Glslang, AcceptsTheShadersOfLandShaftsAndDisplay) {
       "vec4 SkyRadiance(vec3 direction) { return vec4(direction.z); }\n"};
   ExpectAccepted(ShaftPassTexts({view, single}, false), "shafts.frag.glsl");
   std::vector<ShaderPiece> in_fog =
-      WithViewerPieces(SharedTexts(), {"viewer/shaders/view_block.glsl"});
+      WithViewerPieces(SharedTexts(), {"viewer/shaders/view.block.glsl"});
   in_fog.push_back(single);
   for (ShaderPiece& piece : FogTexts(PhaseKind::kHenyeyGreenstein))
     in_fog.push_back(std::move(piece));
   ExpectAccepted(ShaftPassTexts(std::move(in_fog), true), "shafts.frag.glsl");
   std::vector<ShaderPiece> land = SharedTexts();
   land.push_back(view);
-  land.push_back(ViewerPiece("viewer/shaders/refracted_view_rays.glsl"));
-  land.push_back(ViewerPiece("viewer/shaders/land_block.glsl"));
+  land.push_back(ViewerPiece("viewer/shaders/view.refracted_rays.glsl"));
+  land.push_back(ViewerPiece("viewer/shaders/land.block.glsl"));
   ExpectAccepted(land, "land.vert.glsl");
   for (const char* depth : {"reversed", "logarithmic"}) {
-    const ShaderPiece depth_text = ViewerPiece(fmt::format("viewer/shaders/{}_depth.glsl", depth));
-    for (const char* drawn : {"land.frag.glsl", "depth_prepass.frag.glsl"})
+    const ShaderPiece depth_text =
+        ViewerPiece(fmt::format("viewer/shaders/gbuffer.{}_depth.glsl", depth));
+    for (const char* drawn : {"land.frag.glsl", "land.depth_prepass.frag.glsl"})
       ExpectAccepted(LandTexts(depth_text), drawn);
     for (const auto shows : {Upscaler::Shows::kCodes, Upscaler::Shows::kLight})
-      ExpectAccepted(UpscalerTexts(shows, depth_text), "upscale.frag.glsl");
+      ExpectAccepted(UpscalerTexts(shows, depth_text), "display.upscale.frag.glsl");
   }
 }
 
@@ -161,17 +162,17 @@ TEST_F(Glslang, AcceptsTheShadersOfLampsWithAndWithoutFog) {
     const Scene scene = LampScene(with_fog);
     const SceneLamps lamps(scene, LoadGround(scene), scene.medium);
     std::vector<ShaderPiece> texts = SharedTexts();
-    texts.push_back(ViewerPiece("viewer/shaders/view_block.glsl"));
+    texts.push_back(ViewerPiece("viewer/shaders/view.block.glsl"));
     std::vector<ShaderPiece> corners = texts;
     const std::vector<ShaderPiece> of_lamps = LampTexts(lamps, {.nodes = 6, .step = 4});
     texts.insert(texts.end(), of_lamps.begin(), of_lamps.end());
     corners.insert(corners.end(), of_lamps.begin(),
                    of_lamps.end() - 1);  // the last is of pixels
-    corners.push_back(ViewerPiece("viewer/shaders/lamps/lamp_corners.glsl"));
-    ExpectAccepted(corners, "lamps/lamp_core.vert.glsl");
-    ExpectAccepted(corners, "lamps/lamp_disk.vert.glsl");
-    for (const char* stage : {"lamps/lamp_airlight.frag.glsl", "lamps/lamp_core.frag.glsl",
-                              "lamps/lamp_disk.frag.glsl"}) {
+    corners.push_back(ViewerPiece("viewer/shaders/lamps.corners.glsl"));
+    ExpectAccepted(corners, "lamps.core.vert.glsl");
+    ExpectAccepted(corners, "lamps.disk.vert.glsl");
+    for (const char* stage :
+         {"lamps.airlight.frag.glsl", "lamps.core.frag.glsl", "lamps.disk.frag.glsl"}) {
       ExpectAccepted(texts, stage);
     }
   }
@@ -205,8 +206,8 @@ TEST_F(Glslang, AcceptsEveryCoverOfTheGround) {
     cover.kind = kind;
     if (kind == GroundCover::Kind::kLambert) cover.sea_level_m = 0.0;
     std::vector<ShaderPiece> texts = WithViewerPieces(
-        SharedTexts(), {"viewer/shaders/air_block.glsl", "viewer/shaders/view_block.glsl",
-                        "viewer/shaders/sun_light.glsl"});
+        SharedTexts(), {"viewer/shaders/air.block.glsl", "viewer/shaders/view.block.glsl",
+                        "viewer/shaders/air.sun_light.glsl"});
     texts.push_back(tests::SunInClosedForm());
     const std::vector<double> bands{450.0, 550.0, 650.0};
     for (ShaderPiece& piece :
@@ -259,7 +260,7 @@ GLint SizeOf(const ShaderProgram& program, const char* block) {
 // A program that reads all blocks of the picture.
 ShaderProgram ProgramOfBlocks() {
   std::vector<ShaderPiece> pieces = WithViewerPieces(
-      SharedTexts(), {"viewer/shaders/view_block.glsl", "viewer/shaders/air_block.glsl",
+      SharedTexts(), {"viewer/shaders/view.block.glsl", "viewer/shaders/air.block.glsl",
                       "viewer/shaders/ground.glsl"});
   pieces.push_back({"main", "void main() { gl_Position = shell + eye + conifers; }\n"});
   return ShaderProgram::ForTransformFeedback(pieces, {"gl_Position"});
@@ -448,8 +449,8 @@ std::vector<tests::Arguments<float>> RisingDisks() {
 
 std::vector<float> OfDisks(const char* component) {
   const std::vector<ShaderPiece> pieces = WithViewerPieces(
-      SharedTexts(), {"viewer/shaders/air_block.glsl", "viewer/shaders/view_block.glsl",
-                      "viewer/shaders/sun_light.glsl"});
+      SharedTexts(), {"viewer/shaders/air.block.glsl", "viewer/shaders/view.block.glsl",
+                      "viewer/shaders/air.sun_light.glsl"});
   return tests::EvaluateOnGpu(pieces, std::string("DiskOverHorizon(a[0], a[1], a[2])") + component,
                               RisingDisks());
 }
@@ -472,7 +473,7 @@ TEST_F(SunLight, TheDiskIsDarkenedAtItsLimbAsTheRenderersIs) {
   pieces.push_back({"view",
                     "const vec4 sun = vec4(0.6, 0.0, 0.8, 0.00465);\n"
                     "const vec4 wavelengths = vec4(0.68, 0.55, 0.44, 0.35);\n"});
-  pieces.push_back(ViewerPiece("viewer/shaders/sun_light.glsl"));
+  pieces.push_back(ViewerPiece("viewer/shaders/air.sun_light.glsl"));
   constexpr std::array<double, 4> kWavelengths_nm{680.0, 550.0, 440.0, 350.0};
   std::vector<tests::Arguments<float>> points;
   std::vector<double> radii;
@@ -502,8 +503,8 @@ TEST_F(SunLight, TheMoonIsThatOfTheRenderer) {
   MoonDisk moon{{0.6, 0.0, 0.8}, {}, 0.0045, 0.05, 0.001};
   moon.to_sun = glm::normalize(glm::dvec3(-0.2, 0.8, 0.1));
   const std::vector<ShaderPiece> pieces = WithViewerPieces(
-      SharedTexts(), {"viewer/shaders/air_block.glsl", "viewer/shaders/view_block.glsl",
-                      "viewer/shaders/sun_light.glsl"});
+      SharedTexts(), {"viewer/shaders/air.block.glsl", "viewer/shaders/view.block.glsl",
+                      "viewer/shaders/air.sun_light.glsl"});
   std::vector<tests::Arguments<float>> points;
   std::vector<double> expected;
   for (double right = -1.3; right <= 1.3; right += 0.1) {
