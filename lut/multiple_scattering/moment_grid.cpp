@@ -46,6 +46,19 @@ float RayleighChi2(const Medium& medium, std::size_t band) {
   return 0.1F * static_cast<float>(shared::RoundShare(Depolarisation(medium, band)));
 }
 
+BlockShape ShapeOfBlock(const Medium& medium, const std::vector<double>& chi, std::size_t degree,
+                        std::size_t first_band) {
+  const std::size_t bands = medium.wavelengths_nm.size();
+  BlockShape shape{};
+  for (std::size_t lane = 0; lane < kBlockBands && first_band + lane < bands; ++lane) {
+    const std::size_t band = first_band + lane;
+    shape.rayleigh_chi2[lane] = RayleighChi2(medium, band);
+    for (std::size_t l = 0; l <= degree; ++l)
+      shape.mie[l][lane] = static_cast<float>(chi[l * bands + band]);
+  }
+  return shape;
+}
+
 double MuSOfNode(const MomentGrid& grid, std::size_t sun) {
   const double mu_s = MultipleScattering::SunNodes().MuS(static_cast<double>(sun) /
                                                          static_cast<double>(grid.suns - 1));

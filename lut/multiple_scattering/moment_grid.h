@@ -30,6 +30,11 @@ namespace alpenglow::lut {
 /// Returns the molecules' Legendre coefficient of degree 2: D / 10.
 [[nodiscard]] float RayleighChi2(const Medium& medium, std::size_t band);
 
+/// Returns the coefficients of the four bands from first_band on; 0 where the medium has fewer.
+/// @param chi  of the aerosol: degree l of a band at [l * bands + band].
+[[nodiscard]] BlockShape ShapeOfBlock(const Medium& medium, const std::vector<double>& chi,
+                                      std::size_t degree, std::size_t first_band);
+
 /// Returns the zenith cosine of a sun node. The nodes are those of MultipleScattering::SunNodes(),
 /// except that for polarised light the last one lies close to the zenith.
 [[nodiscard]] double MuSOfNode(const MomentGrid& grid, std::size_t sun);

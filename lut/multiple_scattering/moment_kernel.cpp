@@ -307,8 +307,8 @@ struct ReadyBlock {
   float most_aerosol;  // largest ratio of aerosol to molecular scattering over bands, at altitude 0
 
   explicit ReadyBlock(const MomentBlock& of_block) : block(of_block), most_aerosol(0.0F) {
-    for (std::size_t l = 0; l <= kDegree; ++l) chi.mie[l] = Twice(block.chi[l]);
-    chi.rayleigh2 = Twice(block.rayleigh_chi2);
+    for (std::size_t l = 0; l <= kDegree; ++l) chi.mie[l] = Twice(block.shape.mie[l]);
+    chi.rayleigh2 = Twice(block.shape.rayleigh_chi2);
     for (std::size_t band = 0; band < kBlockBands; ++band) {
       const float ratio = block.mie_scattering[band] /
                           (block.rayleigh[band] > 1e-30F ? block.rayleigh[band] : 1e-30F);

@@ -85,14 +85,17 @@ struct MarchDirection {
 };
 inline constexpr std::size_t kMostAzimuths = 32;
 
-/// Legendre coefficients of the aerosol's phase function, for four bands.
-using BlockChi = std::array<std::array<float, kBlockBands>, kMaxDegree + 1>;
+/// Legendre coefficients of scattering, for four bands: chi_l of the aerosol, chi_2 of the
+/// molecules (D / 10).
+struct BlockShape {
+  std::array<std::array<float, kBlockBands>, kMaxDegree + 1> mie;
+  std::array<float, kBlockBands> rayleigh_chi2;
+};
 
 /// A block of bands in the form that look-ups need; coefficients per km.
 struct MomentBlock {
   std::array<float, kBlockBands> rayleigh, mie_scattering, mie_extinction, ozone;
-  std::array<float, kBlockBands> rayleigh_chi2;  // D / 10 of the molecules
-  BlockChi chi;
+  BlockShape shape;
 };
 
 /// Straight pieces of rays from one node that lie in sunlight.
@@ -128,13 +131,6 @@ struct ColumnPointers {
 /// Scale heights of molecules and aerosol, and the deficit of molecules (MoleculeDeficit) [km].
 struct LayerHeights {
   float rayleigh, mie, deficit, deficit_height;
-};
-
-/// Legendre coefficients of scattering along marches, for four bands: the aerosol's chi_l, the
-/// molecules' chi_2.
-struct BlockShape {
-  BlockChi mie;
-  std::array<float, kBlockBands> rayleigh_chi2;
 };
 
 struct MomentKernel {

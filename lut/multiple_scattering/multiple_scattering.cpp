@@ -169,8 +169,9 @@ MultipleScattering::MultipleScattering(const Medium& medium,
 std::vector<MomentBlock> MultipleScattering::BlocksOf() const {
   const DeltaScaledMedium scattering = ScatteringMedium(medium_, options_);
   const AirConstants<float> air = SingleScattering<float>(scattering.medium).constants();
-  const std::vector<double>& chi = scattering.chi;
   std::vector<MomentBlock> blocks((bands_ + kBlockBands - 1) / kBlockBands);
+  for (std::size_t i = 0; i < blocks.size(); ++i)
+    blocks[i].shape = ShapeOfBlock(medium_, scattering.chi, grid_.degree, i * kBlockBands);
   for (std::size_t band = 0; band < bands_; ++band) {
     MomentBlock& block = blocks[band / kBlockBands];
     const std::size_t lane = band % kBlockBands;
@@ -178,9 +179,6 @@ std::vector<MomentBlock> MultipleScattering::BlocksOf() const {
     block.mie_scattering[lane] = air.mie_scattering[band];
     block.mie_extinction[lane] = air.mie_extinction[band];
     block.ozone[lane] = air.ozone[band];
-    block.rayleigh_chi2[lane] = RayleighChi2(medium_, band);
-    for (std::size_t l = 0; l <= grid_.degree; ++l)
-      block.chi[l][lane] = static_cast<float>(chi[l * bands_ + band]);
   }
   return blocks;
 }

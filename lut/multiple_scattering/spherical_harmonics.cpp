@@ -37,6 +37,9 @@ Moments LegendreTerms(int degree, float mu) {
   return p;
 }
 
+namespace {
+
+// Returns cos(m phi) for m = 0 ... degree from cos(phi).
 std::array<float, kMaxDegree + 1> CosineMultiples(int degree, float cosine) {
   std::array<float, kMaxDegree + 1> values{};
   values[0] = 1.0F;
@@ -46,6 +49,8 @@ std::array<float, kMaxDegree + 1> CosineMultiples(int degree, float cosine) {
   }
   return values;
 }
+
+}  // namespace
 
 Moments SphericalHarmonics(int degree, float mu, float cos_azimuth) {
   Moments y = LegendreTerms(degree, mu);

@@ -60,9 +60,6 @@ constexpr HarmonicNorms kHarmonicNorm = FindHarmonicNorms();
 /// Returns norm_lm P_l^m(mu) for l <= degree. @param mu in [-1, 1].
 [[nodiscard]] Moments LegendreTerms(int degree, float mu);
 
-/// Returns cos(m phi) for m = 0 ... degree from cos(phi).
-[[nodiscard]] std::array<float, kMaxDegree + 1> CosineMultiples(int degree, float cosine);
-
 /// Returns Y_lm for l <= degree. @param cos_azimuth cos(phi).
 [[nodiscard]] Moments SphericalHarmonics(int degree, float mu, float cos_azimuth);
 

@@ -77,7 +77,7 @@ class Transport {
   Layout layout_;
   std::size_t first_band_;
   Light albedo_;
-  BlockShape shape_{};
+  BlockShape shape_;
   std::vector<float> twilight_;
   std::vector<std::vector<std::vector<MarchLight>>> lights_;  // [altitude][march][point]
   std::vector<std::vector<Light>> ground_transmittance_;      // [altitude][march]
@@ -102,15 +102,9 @@ Transport::Transport(const MomentMarches& marches, std::size_t first_band)
       layout_(marches.grid()),
       first_band_(first_band),
       albedo_(Of(marches.air().medium().ground_albedo, first_band)),
+      shape_(ShapeOfBlock(marches.air().medium(), marches.chi(), layout_.degree, first_band)),
       twilight_(TwilightAtNodes(marches.grid())) {
   const AirConstants<float>& air = marches.air().constants();
-  const std::vector<double>& chi = marches.chi();
-  for (std::size_t l = 0; l <= layout_.degree; ++l) {
-    for (std::size_t lane = 0; lane < kBlockBands && first_band + lane < air.bands; ++lane)
-      shape_.mie[l][lane] = static_cast<float>(chi[l * air.bands + first_band + lane]);
-  }
-  for (std::size_t lane = 0; lane < kBlockBands && first_band + lane < air.bands; ++lane)
-    shape_.rayleigh_chi2[lane] = RayleighChi2(marches.air().medium(), first_band + lane);
   for (std::size_t altitude = 0; altitude < marches.grid().altitudes; ++altitude) {
     auto& lights = lights_.emplace_back();
     auto& transmittance = ground_transmittance_.emplace_back();
