@@ -125,14 +125,6 @@ double RefractedRay::MetresPerRadian(double elevation_rad, double height_m) cons
   return invariant_m_ / (cosine * cosine * growth);
 }
 
-std::optional<double> RefractedRay::AngleToGround() const {
-  if (elevation_rad_ >= 0.0 || OverInvariant(0.0) < 0.0) return std::nullopt;
-  const double at_ground = ElevationAt(0.0);
-  const double at_eye = -elevation_rad_;
-  const double enters = std::min(at_eye, ElevationAt(air_.top_m));
-  return at_eye - at_ground + Bending(at_ground, enters);
-}
-
 double GrazingElevation(const BendingAir& air, double height_m) {
   const double height = std::max(height_m, 0.0);
   const double here_m = (1.0 + RefractivityAt(air, height)) * (air.planet_radius_m + height);

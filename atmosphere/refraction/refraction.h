@@ -126,10 +126,6 @@ class RefractedRay {
     return sum;
   }
 
-  /// Returns the angle at the planet's centre [rad] between the observer and the point where a
-  /// descending ray hits the ground; std::nullopt if it does not.
-  [[nodiscard]] std::optional<double> AngleToGround() const;
-
  private:
   /// Calls visit(low_rad, high_rad) for each rising part of the path to space: one, or two if the
   /// path goes through its lowest point.

@@ -128,8 +128,6 @@ enum class StokesLayer {
   kU,             // stokes_u.R, .G, .B
   kPolarisation,  // polarisation.degree and .angle, of luminance: DegreeAndAngle
 };
-inline constexpr std::array<StokesLayer, 3> kStokesLayers{StokesLayer::kQ, StokesLayer::kU,
-                                                          StokesLayer::kPolarisation};
 
 /// Converts between a layer and its name: "stokes_q", "stokes_u", "polarisation". Throws InputError
 /// for another name.

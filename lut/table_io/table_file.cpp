@@ -413,8 +413,6 @@ StoredMultipleScattering ReadMultipleScattering(const fs::path& file,
   return MultipleScatteringOf(TableImageReader(file), medium_hash);
 }
 
-Medium ReadMediumOfTable(const fs::path& file) { return MediumOf(TableImageReader(file)); }
-
 TableDescription DescribeTable(const fs::path& file) {
   const TableImageReader image(file);
   TableDescription description;

@@ -77,9 +77,6 @@ void WriteTable(const std::filesystem::path& file, const MultipleScattering& lig
 [[nodiscard]] StoredMultipleScattering ReadMultipleScattering(
     const std::filesystem::path& file, const std::optional<std::uint64_t>& medium_hash = {});
 
-/// Returns the medium a table was made for, checked against its hash; reads no texels.
-[[nodiscard]] Medium ReadMediumOfTable(const std::filesystem::path& file);
-
 /// Description of a file, made after every texel has been checked.
 struct TableDescription {
   struct ChannelRange {
