@@ -304,7 +304,7 @@ void AddSky(const Medium& medium, const ViewRay& ray, std::vector<TestLight>& li
 std::vector<TestLight> MakeTestLights() {
   std::vector<TestLight> lights;
   constexpr std::array kPresets{"earth", "clear-mountain", "hazy"};
-  for (const char* preset : std::span(kPresets).last(tests::ScaledDown<std::size_t>(3, 2))) {
+  for (const char* preset : std::span(kPresets).first(tests::ScaledDown<std::size_t>(3, 1))) {
     const Medium medium = MediumPreset(preset, TestWavelengths());
     for (const double elevation : {60.0, 30.0, 10.0, 3.0, 0.5, -2.0, -5.0}) {
       for (const double view_zenith : {5.0, 45.0, 75.0, 87.0})
@@ -316,6 +316,9 @@ std::vector<TestLight> MakeTestLights() {
   }
   return lights;
 }
+
+/// A third of the lights has a percentile that may be a tenth larger.
+constexpr double kFewLights = tests::ScaledDown(1.0, 1.1);
 
 const std::vector<TestLight>& TestLights() {
   static const std::vector<TestLight> lights = MakeTestLights();
@@ -358,7 +361,7 @@ struct Bound {
 };
 
 TEST(BandColour, ErrorsOnUntrainedSkiesAreBelowTheBoundsInItsHeader) {
-  ASSERT_EQ(TestLights().size(), tests::ScaledDown(513U, 342U));
+  ASSERT_EQ(TestLights().size(), tests::ScaledDown(513U, 171U));
   const Bound bounds[] = {
       {WavelengthSet(3), 0.9, 2.5},    {WavelengthSet(4), 0.2, 0.6},
       {WavelengthSet(5), 0.08, 0.2},   {WavelengthSet(6), 0.03, 0.08},
@@ -407,7 +410,7 @@ TEST(BandColour, ScotopicLuminanceIsWithinTheBoundsInItsHeader) {
     RecordProperty(fmt::format("scotopic_error_of_{}_bands", bands),
                    fmt::format("mean {:.4f} p95 {:.4f}", MeanOf(errors), percentile95));
     EXPECT_LT(MeanOf(errors), bound.mean) << bands << " bands, p95 " << percentile95;
-    EXPECT_LT(percentile95, bound.percentile95) << bands << " bands";
+    EXPECT_LT(percentile95, kFewLights * bound.percentile95) << bands << " bands";
   }
 }
 

@@ -18,6 +18,8 @@ namespace alpenglow::lut {
 namespace {
 
 constexpr int kRays = tests::ScaledDown(200, 60);
+/// Few large errors make most of an rms: 60 rays tell it to a third.
+constexpr double kSampling = tests::ScaledDown(1.0, 1.5);
 
 const tests::LitAir& Hazy() {
   static const tests::LitAir hazy(MediumPreset("hazy"));
@@ -47,7 +49,7 @@ void ExpectErrorsBelow(const tests::LitAir& air, const AirEye& eye, AirQuality q
   const tests::AirReading reading(tables, medium);
   const tests::AirReference reference(air, eye);
   const auto expect = [](const tests::AirErrors& errors, double bound, const char* what) {
-    EXPECT_LT(errors.Rms(), bound) << what << ": a third more than measured";
+    EXPECT_LT(errors.Rms(), kSampling * bound) << what << ": a third more than measured";
     EXPECT_LT(errors.Percentile(99.0), 5.0 * bound) << what;
   };
   expect(tests::SkyErrors(reference, reading, tables.map, kRays), bounds.sky, "sky");

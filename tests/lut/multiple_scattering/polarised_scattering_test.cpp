@@ -137,7 +137,7 @@ TEST(PolarisedLight, IsThePublishedOneInEveryDirection) {
                        number("i"),   number("q"),      number("u")};
     // Nearer to the horizon the layer is not flat; straight up the tables' azimuth turns Q and U.
     if (at.mu < 0.15 || at.mu0 < 0.15 || at.mu == 1.0 || ++rows_read % kEvery != 0) continue;
-    if (tests::kSanitized && at.tau != 0.5) continue;
+    if (tests::kSanitized && (at.tau != 0.5 || at.albedo != 0.0)) continue;
     layers[{at.tau, at.albedo}].push_back(at);
   }
   ASSERT_FALSE(layers.empty());
