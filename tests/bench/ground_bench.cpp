@@ -9,7 +9,7 @@
 #include "renderer/picture/lit_ground.h"
 #include "renderer/procedural_mountains/procedural_mountains.h"
 
-namespace alpenglow::viewer {
+namespace alpenglow::renderer {
 namespace {
 
 constexpr GeodeticPosition kPlace{47.0 * kRadiansPerDegree, 11.0 * kRadiansPerDegree, 0.0};
@@ -98,4 +98,4 @@ void VerticesLit(benchmark::State& state) {
 BENCHMARK(VerticesLit)->Unit(benchmark::kMillisecond);
 
 }  // namespace
-}  // namespace alpenglow::viewer
+}  // namespace alpenglow::renderer

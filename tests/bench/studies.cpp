@@ -25,9 +25,9 @@ constexpr Study kStudies[] = {
     {"sky_tint", SkyTint},
     {"stokes_study", StokesStudy},
     {"tile_memory", TileMemory},
+    {"viewer_error", ViewerError},
 #ifdef ALPENGLOW_STUDIES_OF_VIEWER
     {"shade_error", ShadeError},
-    {"viewer_error", ViewerError},
     {"viewer_parity", ViewerParity},
 #endif
 };

@@ -14,10 +14,10 @@ void RefractedTwilightError(int count, char** arguments);
 void SkyTint(int count, char** arguments);
 void StokesStudy(int count, char** arguments);
 void TileMemory(int count, char** arguments);
+void ViewerError(int count, char** arguments);
 
 // These need the viewer.
 void ShadeError(int count, char** arguments);
-void ViewerError(int count, char** arguments);
 void ViewerParity(int count, char** arguments);
 
 }  // namespace alpenglow::tests

@@ -14,7 +14,7 @@
 #include "tests/bench/studies.h"
 #include "tests/lut/camera_tables/air_reference.h"
 
-namespace alpenglow::viewer {
+namespace alpenglow::lut {
 namespace {
 
 std::string TextOf(const alpenglow::tests::AirErrors& errors) {
@@ -47,10 +47,10 @@ std::vector<double> NumbersOf(const char* text) {
 }
 
 }  // namespace
-}  // namespace alpenglow::viewer
+}  // namespace alpenglow::lut
 
 void alpenglow::tests::ViewerError(int argc, char** argv) {
-  using namespace alpenglow::viewer;
+  using namespace alpenglow::lut;
   const auto quality = static_cast<AirQuality>(argc > 1 ? std::atoi(argv[1]) : 3);
   const alpenglow::tests::LitAir air(MediumPreset(argc > 4 ? argv[4] : "earth"));
   fmt::print(

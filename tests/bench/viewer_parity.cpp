@@ -14,6 +14,7 @@
 #include <filesystem>
 #include <string>
 
+#include "atmosphere/base/error.h"
 #include "renderer/effects/effect_choice.h"
 #include "renderer/picture/reference_picture.h"
 #include "renderer/picture/render.h"
