@@ -42,7 +42,7 @@ inline constexpr int kMostLampNodes = 64;
 ///
 /// For a lamp of radius 0 on the ray itself, D = 0 is replaced by 1e-12 m: the result is then of
 /// the order of 1e12, because the radiance of a point light in air is unbounded. Errors:
-/// tests/bench/lamp_error.cpp, and the bounds asserted in tests/atmosphere/lamp/airlight_test.cpp.
+/// `skyseries report`, and the bounds asserted in tests/atmosphere/lamp/airlight_test.cpp.
 /// @param nodes  total of all Gauss rules, in [kFewestLampNodes, kMostLampNodes]; each lit segment
 /// of the ray has at least two, so that a beam may need some more.
 [[nodiscard]] Bands<double> Airlight(const LampAir& air, const Lamp& lamp,

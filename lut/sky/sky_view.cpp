@@ -161,7 +161,7 @@ float GlowColumn_km(const SingleScattering<float>& air, double altitude_m, doubl
   return air.ColumnsToSpace(h, std::max(mu_s, horizon + kHair))[1] * 1e-3F;
 }
 
-// Returns the smallest size, of those tried with sky_error (tests/bench), that has the stated
+// Returns the smallest size, of those tried for `skylut report`, that has the stated
 // error.
 SkyViewSize SkyViewSizeFor(const Medium& medium, double altitude_m, double mu_s) {
   constexpr double kHigh_m = 15e3;
