@@ -48,7 +48,7 @@ struct ErrorsOfSixteen {
 };
 
 // Lamps 0.1 to 100 m beside segments of 10 to 1000 m, extinction 1e-4 to 0.1 per metre at the
-// lowest point: the distribution of renderer/report/lamp_test_cases.h.
+// lowest point: the distribution of renderer/report/reference_methods.h.
 ErrorsOfSixteen Measure(double g, double scale_height_m, int cases) {
   double squares = 0.0, most = 0.0;
   for (int i = 1; i <= cases; ++i) {
