@@ -129,7 +129,7 @@ const std::vector<ReferenceRay>& RaysOf(const Medium& medium, const Regime& regi
   std::vector<ReferenceRay>& rays = solved[regime.name];
   std::mt19937 random(3);
   std::uniform_real_distribution<double> uniform(0.0, 1.0);
-  while (rays.size() < tests::ScaledDown<std::size_t>(100, 16)) {
+  while (rays.size() < tests::ScaledDown<std::size_t>(100, 24)) {
     const double u = uniform(random);
     const double sun =
         regime.highest_deg + (regime.lowest_deg - regime.highest_deg) * uniform(random);
