@@ -95,11 +95,11 @@ void BuildExchangeTables(const BuildOptions& options, const ExchangeOptions& exc
   WriteExchangeTables(MakeExchangeTextures(medium, exchange, common.progress_style()), medium,
                       exchange, options.out);
   if (!IsTheMediumThatLoadersAssume(medium)) {
-    Say(fmt::format(
+    Log(fmt::format(
         "skylut: warning: programs with fixed constants assume the preset bruneton2017; "
         "these tables are for {}\n",
         medium.name));
-    Say(LobeText(medium));
+    Log(LobeText(medium));
   }
 }
 

@@ -61,7 +61,7 @@ Scene SceneOf(const SkyseriesOptions& options, const std::optional<Track>& track
 
 /// Returns a track as a path; loads the ground unless the track's heights are above the sea.
 CameraPath PathOfTrack(const Track& track, TrackStyle style, const Scene& scene) {
-  if (!track.note.empty()) Say(fmt::format("skyseries: warning: {}: {}\n", track.file, track.note));
+  if (!track.note.empty()) Log(fmt::format("skyseries: warning: {}: {}\n", track.file, track.note));
   style.fov_rad = scene.camera.fov_rad;
   std::optional<SceneGround> ground;
   return PathAlong(track, style, [&](const GeodeticPosition& place) {
@@ -133,7 +133,7 @@ std::vector<NamedFile> InputsOf(const SkyseriesOptions& options, const Scene& sc
 std::unique_ptr<SceneRenderer> Load(const Scene& scene, Progress* progress) {
   auto renderer = std::make_unique<SceneRenderer>(scene, progress);
   if (!renderer->terrain_message().empty()) {
-    Say(fmt::format("skyseries: {}\n", renderer->terrain_message()));
+    Log(fmt::format("skyseries: {}\n", renderer->terrain_message()));
   }
   return renderer;
 }
@@ -262,10 +262,10 @@ void List(const SeriesPlan& plan, const std::string& out) {
 
 void PrintSummary(const SeriesSummary& summary) {
   if (summary.removed > 0) {
-    Say(fmt::format("skyseries: removed {} unfinished files of runs that were killed\n",
+    Log(fmt::format("skyseries: removed {} unfinished files of runs that were killed\n",
                     summary.removed));
   }
-  Say(fmt::format("skyseries: {} rendered, {} developed again, {} kept\n", summary.rendered,
+  Log(fmt::format("skyseries: {} rendered, {} developed again, {} kept\n", summary.rendered,
                   summary.developed, summary.kept));
 }
 

@@ -111,7 +111,7 @@ void PictureWriter::WriteReplay(const CameraPath& path,
     flight_.Show(ReplayAt(path, path.begin_s() + along_s));
     Write(files[i], size);
     // The ground at this place is loaded by now.
-    recorder.Note(along_s, flight_.eye(), flight_.now());
+    recorder.Record(along_s, flight_.eye(), flight_.now());
   }
 }
 
@@ -195,7 +195,7 @@ PictureQueue::~PictureQueue() {
   changed_.notify_all();
 }
 
-void PictureQueue::Ask(PictureRequest request) {
+void PictureQueue::Request(PictureRequest request) {
   {
     const std::scoped_lock lock(mutex_);
     requests_.push_back(std::move(request));
@@ -237,7 +237,7 @@ void PictureQueue::Drop() {
   changed_.notify_all();
 }
 
-std::vector<PictureOutcome> PictureQueue::TakeOutcomes() {
+std::vector<PictureOutcome> PictureQueue::PollOutcomes() {
   const std::scoped_lock lock(mutex_);
   return std::exchange(outcomes_, {});
 }
@@ -284,7 +284,7 @@ DisplayImage PictureQueue::WithInstruments(const Image& developed) {
   return std::move(*overlay.drawn);
 }
 
-void PictureQueue::Note(double share) {
+void PictureQueue::Record(double share) {
   std::unique_lock lock(mutex_);
   share_ = share;
   changed_.wait(lock, [this] { return hurries_ || drops_ || frames_ != used_frames_; });
@@ -294,7 +294,7 @@ void PictureQueue::Note(double share) {
 
 void PictureQueue::Write(const PictureRequest& request, SecondFlight& second) {
   PictureWriter pictures(second.flight);
-  const auto progress = [this](double share) { Note(share); };
+  const auto progress = [this](double share) { Record(share); };
   second.flight.TakeUp(request.moment);
   if (!request.instruments) return pictures.Write(request.file, request.size, progress);
   const ImageSize& size = request.size;
@@ -307,7 +307,7 @@ void PictureQueue::Write(const PictureRequest& request, SecondFlight& second) {
 std::string PictureQueue::Make(const PictureRequest& request,
                                std::unique_ptr<SecondFlight>& second) {
   try {
-    Note(0.0);
+    Record(0.0);
     if (!second)
       second.reset(new SecondFlight{{}, FlightSession(scene_, request.moment.now, settings_)});
     Write(request, *second);

@@ -108,7 +108,7 @@ class PictureQueue {
   PictureQueue& operator=(const PictureQueue&) = delete;
 
   /// Adds a request and returns at once. Pictures are made in the order of the requests.
-  void Ask(PictureRequest request);
+  void Request(PictureRequest request);
   /// Reports that the window has drawn a frame. The current picture may then continue with its next
   /// part.
   void NextFrame();
@@ -121,7 +121,7 @@ class PictureQueue {
   void Drop();
 
   /// Returns the outcomes since the last call.
-  [[nodiscard]] std::vector<PictureOutcome> TakeOutcomes();
+  [[nodiscard]] std::vector<PictureOutcome> PollOutcomes();
   /// Returns the progress of the current picture; nullopt if no request is left.
   [[nodiscard]] std::optional<PictureUnderWay> UnderWay() const;
   /// Returns the files of all requests that have not ended.
@@ -141,7 +141,7 @@ class PictureQueue {
   [[nodiscard]] std::string Make(const PictureRequest& request,
                                  std::unique_ptr<SecondFlight>& second);
   void Write(const PictureRequest& request, SecondFlight& second);
-  void Note(double share);
+  void Record(double share);
   [[nodiscard]] DisplayImage WithInstruments(const Image& developed);
   void DrawOverlay(std::unique_lock<std::mutex>& lock);
 

@@ -60,7 +60,7 @@ bool Benchmark::NextFrame() {
   times_passes_ = clock_ == PassClock::kQueries || !times_passes_;
   timer_.SetClock(times_passes_ ? clock_ : PassClock::kNone);
   if (elapsed_s_ < seconds_ || frame_ms_.empty() || timed_frames_ == 0) return true;
-  NotePasses(timer_.TakeAll());
+  RecordPasses(timer_.PollAll());
   return false;
 }
 
@@ -73,22 +73,22 @@ void Benchmark::WaitForTheFrameBefore() {
 }
 
 void Benchmark::EndFrame(Clock::time_point now) {
-  const std::vector<PassTime> passes = timer_.Take();
+  const std::vector<PassTime> passes = timer_.Poll();
   if (Seconds(*begin_ - *first_) < warm_up_s_) return;
   const bool is_slowed = times_passes_ && clock_ == PassClock::kFinishes;
-  if (!is_slowed) NoteFrame(1e3 * Seconds(now - *begin_));
+  if (!is_slowed) RecordFrame(1e3 * Seconds(now - *begin_));
   if (times_passes_) ++timed_frames_;
-  NotePasses(passes);
+  RecordPasses(passes);
 }
 
-void Benchmark::NoteFrame(double ms) {
+void Benchmark::RecordFrame(double ms) {
   frame_ms_.push_back(ms);
   if (ms <= worst_ms_) return;
   worst_ms_ = ms;
   worst_at_s_ = elapsed_s_;
 }
 
-void Benchmark::NotePasses(const std::vector<PassTime>& passes) {
+void Benchmark::RecordPasses(const std::vector<PassTime>& passes) {
   for (const PassTime& pass : passes) {
     if (!ms_.contains(pass.pass)) passes_.push_back(pass.pass);
     ms_[pass.pass].push_back(pass.ms);

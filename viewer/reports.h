@@ -67,8 +67,8 @@ class Benchmark {
   using Clock = std::chrono::steady_clock;
   void EndFrame(Clock::time_point now);
   void WaitForTheFrameBefore();
-  void NoteFrame(double ms);
-  void NotePasses(const std::vector<PassTime>& passes);
+  void RecordFrame(double ms);
+  void RecordPasses(const std::vector<PassTime>& passes);
 
   double seconds_, warm_up_s_;
   PassClock clock_;

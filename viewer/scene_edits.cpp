@@ -124,9 +124,9 @@ void SceneEdits::BringLandTo(const GeodeticPosition& place, const std::string& n
       fmt::format("there is no terrain at {}: --dem loads an elevation model of it", name));
 }
 
-std::vector<std::string> SceneEdits::TakeNotes() {
+std::vector<std::string> SceneEdits::PollNotes() {
   std::vector<std::string> notes = std::exchange(notes_, {});
-  for (std::string& note : painter_.land().TakeNotes()) notes.push_back(std::move(note));
+  for (std::string& note : painter_.land().PollNotes()) notes.push_back(std::move(note));
   return notes;
 }
 

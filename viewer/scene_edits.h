@@ -70,7 +70,7 @@ class SceneEdits {
   /// Returns the name of the time zone at a place.
   [[nodiscard]] std::string ZoneAt(const GeodeticPosition& place) const;
   /// Returns new notes about land and places. Each note is returned once.
-  [[nodiscard]] std::vector<std::string> TakeNotes();
+  [[nodiscard]] std::vector<std::string> PollNotes();
 
  private:
   void UseRange(const TerrainSource& range);

@@ -83,10 +83,10 @@ void PaintHeadless(const SkyviewOptions& options, FlightSession& flight, const I
   constexpr double kFrame_s = 1.0 / 60.0;
   if (options.record)
     flight.WaitUntilReady(size);  // points are recorded only once the ground is known
-  recorder.Note(0.0, flight.eye(), flight.now());
+  recorder.Record(0.0, flight.eye(), flight.now());
   for (int frame = 1; frame < options.frames; ++frame) {
     flight.Advance({}, kFrame_s);
-    recorder.Note(frame * kFrame_s, flight.eye(), flight.now());
+    recorder.Record(frame * kFrame_s, flight.eye(), flight.now());
   }
   if (options.hud == "on") {
     FlightRecorder none;
@@ -110,7 +110,7 @@ class LossOfDisplay {
       try {
         recorder.Finish();
       } catch (const OutputError& fault) {
-        Say(fmt::format("skyview: {}\n", fault.what()));
+        Log(fmt::format("skyview: {}\n", fault.what()));
       }
       deck.FinishWithoutWindow();
     });
@@ -155,7 +155,7 @@ void Fly(const SkyviewOptions& options, FlightSession& flight, Window& window,
     if (events.minimised || window.width() == 0 || window.height() == 0) continue;
     deck.Paint(ScreenOf(window), seconds);
     window.Swap();
-    flight.frames().NoteFrame(std::chrono::duration<double>(Clock::now() - now).count());
+    flight.frames().RecordFrame(std::chrono::duration<double>(Clock::now() - now).count());
     if (options.screenshot && ++frames == options.frames) {
       PictureWriter(flight).Write(*options.screenshot, {window.width(), window.height()});
       return;
@@ -181,11 +181,11 @@ void RunBenchmark(double seconds, FlightSession& flight, const ImageSize& size, 
     const double frame_s = benchmark.elapsed_s() - before_s;
     flight.Paint(screen, frame_s);
     if (window != nullptr) window->Swap();
-    flight.frames().NoteFrame(frame_s);
+    flight.frames().RecordFrame(frame_s);
   }
   flight.frames().SetTimer(nullptr);
   Print(benchmark.Text());
-  Say(fmt::format("skyview: {}; quality {}\n", benchmark.WorstText(),
+  Log(fmt::format("skyview: {}; quality {}\n", benchmark.WorstText(),
                   flight.frames().QualityText()));
 }
 
@@ -238,9 +238,9 @@ void RequireOutputs(const SkyviewOptions& options, const Scene& scene) {
 }
 
 /// Writes the notes about the land to standard error.
-void SayNotes(FlightSession& flight) {
-  for (const std::string& note : flight.edits().TakeNotes())
-    Say(fmt::format("skyview: {}\n", note));
+void LogNotes(FlightSession& flight) {
+  for (const std::string& note : flight.edits().PollNotes())
+    Log(fmt::format("skyview: {}\n", note));
 }
 
 /// Returns whether only linear pictures are requested; these can be assembled from tiles.
@@ -267,7 +267,7 @@ int Run(const SkyviewOptions& options) {
           ? nullptr
           : std::make_unique<Window>(WindowSettings{size.width, size.height, options.fullscreen,
                                                     options.vsync == "on" && !options.benchmark});
-  if (!options.common.quiet) Say(fmt::format("skyview: {}\n", GlDescription()));
+  if (!options.common.quiet) Log(fmt::format("skyview: {}\n", GlDescription()));
   if (window) RequireDrawable(std::max(window->width(), 1), std::max(window->height(), 1));
   if (headless && !PaintsInParts(options)) RequireDrawable(size.width, size.height);
   FlightSession flight(
@@ -280,7 +280,7 @@ int Run(const SkyviewOptions& options) {
   if (options.track) {
     const Track track = ReadTrack(*options.track);
     if (!track.note.empty())
-      Say(fmt::format("skyview: warning: {}: {}\n", *options.track, track.note));
+      Log(fmt::format("skyview: warning: {}: {}\n", *options.track, track.note));
     flight.edits().BringRangeTo(track.points[track.points.size() / 2].place);
     flight.Follow(PathAlong(track, {}, flight.controller().ground()));
   }
@@ -304,7 +304,7 @@ int Run(const SkyviewOptions& options) {
   } else {
     PaintHeadless(options, flight, size, recorder);
   }
-  if (!options.common.quiet) SayNotes(flight);
+  if (!options.common.quiet) LogNotes(flight);
   recorder.Finish();
   return 0;
 }

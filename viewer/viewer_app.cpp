@@ -74,8 +74,8 @@ void ViewerApp::FinishWithoutWindow() {
 }
 
 void ViewerApp::ReportOutcomesAtEnd() {
-  for (const PictureOutcome& outcome : pictures_.TakeOutcomes())
-    lut::Say(fmt::format("skyview: {}\n", TextOf(outcome)));
+  for (const PictureOutcome& outcome : pictures_.PollOutcomes())
+    lut::Log(fmt::format("skyview: {}\n", TextOf(outcome)));
 }
 
 void ViewerApp::Display(const std::string& text, bool is_warning) {
@@ -102,7 +102,7 @@ void ViewerApp::Try(const Work& work) {
 void ViewerApp::Age(double seconds) {
   for (Message& message : messages_) message.age_s += seconds;
   while (!messages_.empty() && messages_.front().age_s > kMessage_s) messages_.pop_front();
-  for (const std::string& note : flight_.edits().TakeNotes()) Report(note);
+  for (const std::string& note : flight_.edits().PollNotes()) Report(note);
   constexpr double kMemory = 0.1;
   frame_ms_ += kMemory * (1e3 * seconds - frame_ms_);
 }
@@ -135,12 +135,13 @@ void ViewerApp::Advance(const InputFrame& input) {
   ReportPictures();
   WantStrip();
   hud_.Update(Model(), strip_.value() ? &*strip_.value() : nullptr, input, *this);
-  const Intent intent = controls_.Take(input, flight_.controller().pilot().mode(), hud_.Taken());
+  const Intent intent =
+      controls_.Interpret(input, flight_.controller().pilot().mode(), hud_.Taken());
   for (const Action* action : intent.actions) Try([&] { action->run(*this); });
   for (const Action* action : intent.refused)
     Report(fmt::format("{}: not while the window is minimised", action->help));
   flight_.Advance(intent.pilot, input.seconds);
-  NoteFlight(input.seconds);
+  RecordFlight(input.seconds);
   ReadLuminance(input);
 }
 
@@ -223,7 +224,7 @@ void ViewerApp::Request(const PictureOrder& picture) {
       RequireInstruments(file, size);
       request.instruments = Instruments();
     }
-    pictures_.Ask(std::move(request));
+    pictures_.Request(std::move(request));
   });
 }
 
@@ -239,7 +240,7 @@ std::function<DisplayImage(const Image&)> ViewerApp::Instruments() {
 
 void ViewerApp::ReportPictures() {
   pictures_.NextFrame();
-  for (const PictureOutcome& outcome : pictures_.TakeOutcomes())
+  for (const PictureOutcome& outcome : pictures_.PollOutcomes())
     Display(TextOf(outcome), !outcome.fault.empty());
 }
 
@@ -282,15 +283,15 @@ void ViewerApp::FlyAgain() {
   });
 }
 
-void ViewerApp::NoteFlight(double seconds) {
+void ViewerApp::RecordFlight(double seconds) {
   const bool replays = flight_.controller().pilot().Replays();
   if (std::exchange(replays_, replays) && !replays) Report("the replay ends here");
   elapsed_s_ += seconds;
   flown_s_ += replays ? 0.0 : seconds;
   // The renderer cannot render points inside the ground.
   if (!flight_.standpoint().KnowsGround()) return;
-  recorder_.Note(elapsed_s_, flight_.eye(), flight_.now());
-  if (!replays) flown_.Note(flown_s_, flight_.eye(), flight_.now());
+  recorder_.Record(elapsed_s_, flight_.eye(), flight_.now());
+  if (!replays) flown_.Record(flown_s_, flight_.eye(), flight_.now());
 }
 
 void ViewerApp::WritePicture(const std::filesystem::path& file, const ImageSize& size) {

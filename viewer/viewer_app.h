@@ -92,7 +92,7 @@ class ViewerApp final : public FlightCommands {
   void Display(const std::string& text, bool is_warning = false);
   void ReportPictures();
   void ReportOutcomesAtEnd();
-  void NoteFlight(double seconds);
+  void RecordFlight(double seconds);
   void ReadLuminance(const InputFrame& input);
   void Age(double seconds);
   void WantStrip();

@@ -297,12 +297,12 @@ struct Window::State {
   static void AtExit() {
     constexpr int kLostDisplay = 5;
     if (Existing() == nullptr) return;
-    Say("skyview: the display has gone\n");
+    Log("skyview: the display has gone\n");
     const std::function<void()> last = std::move(Existing()->at_lost_display);
     try {
       if (last) last();
     } catch (const std::exception& error) {
-      Say(fmt::format("skyview: {}\n", error.what()));
+      Log(fmt::format("skyview: {}\n", error.what()));
     }
     _exit(kLostDisplay);
   }

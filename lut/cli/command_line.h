@@ -139,7 +139,7 @@ inline std::optional<int> ParseCommandLine(CLI::App& app, int argc, char** argv)
     const bool is_fault = error.get_exit_code() != 0;
     if (!is_fault || FaultOfWords(app, argc, argv).empty()) return app.exit(error) == 0 ? 0 : 2;
   }
-  Say(fmt::format("{}: {}\nRun with --help for more information.\n", app.get_name(),
+  Log(fmt::format("{}: {}\nRun with --help for more information.\n", app.get_name(),
                   FaultOfWords(app, argc, argv)));
   return 2;
 }

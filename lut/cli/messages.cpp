@@ -48,7 +48,7 @@ void RememberOutputFault() {
 
 }  // namespace
 
-void Say(std::string_view text) noexcept {
+void Log(std::string_view text) noexcept {
   std::fwrite(text.data(), 1, text.size(), stderr);
   std::fflush(stderr);
 }
@@ -178,7 +178,7 @@ struct Progress::State {
     step_start = Clock::now();
     if (form == Form::kBar) DrawBar();
     if (form == Form::kBar || form == Form::kNothing || !named.insert(step).second) return;
-    Say(form == Form::kJson ? fmt::format("{{\"label\":{},\"step\":{},\"elapsed_s\":{:.3f}}}\n",
+    Log(form == Form::kJson ? fmt::format("{{\"label\":{},\"step\":{},\"elapsed_s\":{:.3f}}}\n",
                                           JsonString(label), JsonString(step), ElapsedSeconds())
                             : fmt::format("{}: preparing {}\n", label, step));
   }
@@ -204,18 +204,18 @@ struct Progress::State {
                              : !step.empty() ? step
                              : left          ? DurationText(*left) + " left"
                                              : "";
-    Say(fmt::format("\r{} [{}] {:3} % {}/{} {:<20}", label, Bar(Complete(kBarWidth)), Percent(),
+    Log(fmt::format("\r{} [{}] {:3} % {}/{} {:<20}", label, Bar(Complete(kBarWidth)), Percent(),
                     done, total, note));
   }
   void PrintLine() {
     drawn = Clock::now();
     const std::optional<double> left = SecondsLeft();
-    Say(fmt::format("{}: {} % ({} of {}){}\n", label, Percent(), done, total,
+    Log(fmt::format("{}: {} % ({} of {}){}\n", label, Percent(), done, total,
                     left ? ", " + DurationText(*left) + " left" : ""));
   }
   void PrintJson() const {
     const std::optional<double> left = SecondsLeft();
-    Say(fmt::format(
+    Log(fmt::format(
         "{{\"label\":{},\"done\":{},{}\"total\":{},\"elapsed_s\":{:.3f},\"eta_s\":{}}}\n",
         JsonString(label), done, part > 0.0 ? fmt::format("\"part\":{:.3f},", part) : "", total,
         ElapsedSeconds(), left ? fmt::format("{:.3f}", *left) : "null"));
@@ -228,7 +228,7 @@ Progress::Progress(std::string label, std::size_t total, ProgressStyle style)
 }
 
 Progress::~Progress() {
-  if (state_->form == Form::kBar) Say("\n");
+  if (state_->form == Form::kBar) Log("\n");
 }
 
 void Progress::Advance(std::size_t steps) {

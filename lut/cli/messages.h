@@ -17,7 +17,7 @@ namespace alpenglow::lut {
 [[nodiscard]] std::string JsonString(std::string_view text);
 
 /// Writes text to standard error unchanged; the text must include its line end.
-void Say(std::string_view text) noexcept;
+void Log(std::string_view text) noexcept;
 
 /// Writes a result to standard output. An error is remembered until FlushStandardOutput.
 void Print(std::string_view text) noexcept;

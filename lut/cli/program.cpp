@@ -89,7 +89,7 @@ void InstallHandlers() {
 
 int ReportFailure(const std::string& name, std::string message, int status) {
   std::replace(message.begin(), message.end(), '\n', ' ');
-  Say(fmt::format("{}: {}\n", name, message));
+  Log(fmt::format("{}: {}\n", name, message));
   return status;
 }
 

@@ -149,11 +149,11 @@ class TrackReader {
     Track track = Made(segments, TrackHeights::kSea, gpx);
     if (owner != nullptr) track.name = TextOf(ChildOf(*owner, "name"));
     if (owner != nullptr && NameOf(*owner) == "rte")
-      NoteTheFirstOf(All(gpx, "rte").size(), "routes", track);
+      RecordThatOnlyTheFirstCounts(All(gpx, "rte").size(), "routes", track);
     return track;
   }
 
-  static void NoteTheFirstOf(std::size_t count, const char* what, Track& track) {
+  static void RecordThatOnlyTheFirstCounts(std::size_t count, const char* what, Track& track) {
     if (count < 2) return;
     if (!track.note.empty()) track.note += "; ";
     track.note += fmt::format("the first of {} {} is read", count, what);
@@ -216,7 +216,7 @@ class TrackReader {
     if (IsEmpty(segments)) Fail(lines.front()->GetLineNum(), "it has no points");
     Track track = Made(segments, heights, *lines.front());
     track.name = PlacemarkName(*lines.front());
-    NoteTheFirstOf(drawn, "LineStrings", track);
+    RecordThatOnlyTheFirstCounts(drawn, "LineStrings", track);
     return track;
   }
 

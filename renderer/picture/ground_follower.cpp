@@ -245,7 +245,7 @@ bool GroundFollower::Suits(const GroundExtent& extent, const Request& requested,
          DistanceOn(kWgs84, before.eye, now.eye) < kNearMiddle * width_m;
 }
 
-bool GroundFollower::Take() {
+bool GroundFollower::Poll() {
   std::optional<Made> made = maker_.Poll();
   if (!made || made->land != land_) return false;
   made_ = std::move(*made);
@@ -273,7 +273,7 @@ GroundFollower::View GroundFollower::WhenShown(const View& view, double seconds)
 
 bool GroundFollower::Follow(const std::shared_ptr<const SolvedAir>& air, const View& view,
                             double seconds) {
-  const bool is_new = Take();
+  const bool is_new = Poll();
   if (last_view_ && IsAJump(*last_view_, view)) maker_.RestFor(0.0);
   maker_.RequestWhenIdle({air, ground_, WhenShown(view, seconds), land_});
   last_view_ = view;
@@ -282,7 +282,7 @@ bool GroundFollower::Follow(const std::shared_ptr<const SolvedAir>& air, const V
 
 bool GroundFollower::WaitUntilReady(const std::shared_ptr<const SolvedAir>& air, const View& view) {
   maker_.WaitUntilReady({air, ground_, view, land_});
-  return Take();
+  return Poll();
 }
 
 std::optional<GroundFollower::SkyOfSource> GroundFollower::SkyOf(LightSource source) const {

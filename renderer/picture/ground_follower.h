@@ -106,7 +106,7 @@ class GroundFollower {
   [[nodiscard]] static bool Suits(const GroundExtent& extent, const Request& requested,
                                   const Request& wanted);
   [[nodiscard]] View WhenShown(const View& view, double seconds) const;
-  bool Take();
+  bool Poll();
 
   std::shared_ptr<const GroundSampler> ground_;
   int land_ = 0;

@@ -65,7 +65,7 @@ ReferencePicture::ReferencePicture()
 
 ReferencePicture::~ReferencePicture() { stop_.request_stop(); }
 
-void ReferencePicture::AskFor(std::size_t stage) {
+void ReferencePicture::RequestStage(std::size_t stage) {
   stage_ = stage;
   job_.Request({*view_, kStages[stage].reduction, kStages[stage].samples, stop_.get_token()});
 }
@@ -76,14 +76,14 @@ void ReferencePicture::Show(const View& view) {
   stop_ = std::stop_source();
   view_ = view;
   samples_ = 0;
-  AskFor(0);
+  RequestStage(0);
 }
 
-std::optional<Image> ReferencePicture::Take() {
+std::optional<Image> ReferencePicture::Poll() {
   std::optional<std::optional<Made>> taken = job_.Poll();
   if (!taken || !*taken || (*taken)->stop.stop_requested()) return std::nullopt;
   samples_ = (*taken)->samples;
-  if (stage_ + 1 < kStages.size()) AskFor(stage_ + 1);
+  if (stage_ + 1 < kStages.size()) RequestStage(stage_ + 1);
   return std::move((*taken)->image);
 }
 

@@ -47,7 +47,7 @@ class ReferencePicture {
   void Show(const View& view);
   /// Returns a new picture of the view shown last, if one is ready. Rethrows exceptions of the
   /// rendering.
-  [[nodiscard]] std::optional<Image> Take();
+  [[nodiscard]] std::optional<Image> Poll();
 
   /// Number of rays per pixel of the best picture of this view so far; 0: none yet.
   [[nodiscard]] int samples() const { return samples_; }
@@ -66,7 +66,7 @@ class ReferencePicture {
     std::stop_token stop;
   };
   class Renderers;
-  void AskFor(std::size_t stage);
+  void RequestStage(std::size_t stage);
 
   std::optional<View> view_;
   std::stop_source stop_;

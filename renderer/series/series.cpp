@@ -137,7 +137,7 @@ class Series {
     };
     const auto total = std::count_if(selected.begin(), selected.end(), is_total);
     if (total == 0) return;
-    Say(fmt::format(
+    Log(fmt::format(
         "skyseries: warning: {} of {} frames stand in the totality of an eclipse; the "
         "corona is not drawn, and light that the air outside of the moon's shadow sends "
         "in is missing: such pictures are too dark\n",

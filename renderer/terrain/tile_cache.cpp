@@ -86,7 +86,7 @@ void TileCache::KeepWithinBounds(const std::vector<std::size_t>& by_distance) {
   }
 }
 
-bool TileCache::TakeOne() {
+bool TileCache::PollOne() {
   std::optional<Reading> reading = reader_.Poll();
   if (!reading) return false;
   reading_.clear();
@@ -120,7 +120,7 @@ void TileCache::Drop() {
   }
 }
 
-void TileCache::AskForNearest(const LandEye& eye) {
+void TileCache::RequestNearest(const LandEye& eye) {
   wanted_ = 0;
   there_ = 0;
   std::optional<std::size_t> nearest;
@@ -149,9 +149,9 @@ bool TileCache::Update(const LandEye& eye, double detail) {
   detail_ = detail;
   if (tiles_->tiles().empty()) return false;
   Want(eye);
-  const bool has_come = TakeOne();
+  const bool has_come = PollOne();
   Drop();
-  AskForNearest(eye);
+  RequestNearest(eye);
   if (heights_ != loaded_->heights())
     loaded_ = std::make_shared<const LoadedHeights>(tiles_, heights_);
   return has_come;

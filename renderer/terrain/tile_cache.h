@@ -44,7 +44,7 @@ class TileCache {
   [[nodiscard]] int there() const { return there_; }
   /// The file that is being read, "" if none is. For the built-in range it is "the built-in range".
   [[nodiscard]] const std::string& reading() const { return reading_; }
-  [[nodiscard]] std::vector<std::string> TakeNotes() { return std::exchange(notes_, {}); }
+  [[nodiscard]] std::vector<std::string> PollNotes() { return std::exchange(notes_, {}); }
   /// Returns the size of the heights that are kept.
   [[nodiscard]] std::size_t bytes() const;
   [[nodiscard]] bool IsReading() const { return reader_.IsBusy(); }
@@ -68,9 +68,9 @@ class TileCache {
   [[nodiscard]] int LevelWanted(const LandTile& tile, const LandEye& eye) const;
   void Want(const LandEye& eye);
   void KeepWithinBounds(const std::vector<std::size_t>& by_distance);
-  bool TakeOne();
+  bool PollOne();
   void Drop();
-  void AskForNearest(const LandEye& eye);
+  void RequestNearest(const LandEye& eye);
   [[nodiscard]] bool IsThere(std::size_t tile) const;
 
   std::shared_ptr<const LandTiles> tiles_;

@@ -93,12 +93,12 @@ TEST_F(FlightsOverLand, WhereThereIsNoLandTheGroundIsKnownAtOnce) {
 
 TEST_F(FlightsOverLand, OfAPlaceWithoutTerrainThereIsANote) {
   FlightSession flight = SmallFlight(SceneAt({300.0, true}));
-  static_cast<void>(flight.edits().TakeNotes());
+  static_cast<void>(flight.edits().PollNotes());
   flight.standpoint().GoTo("LSZS");
-  EXPECT_THAT(flight.edits().TakeNotes(), ElementsAre(HasSubstr("no terrain at Samedan")));
+  EXPECT_THAT(flight.edits().PollNotes(), ElementsAre(HasSubstr("no terrain at Samedan")));
   EXPECT_NEAR(flight.eye().place.height_m, 2.0, 1e-9) << "on the plain, not 1707 m over it";
   flight.standpoint().Place({46.65, 8.05, {}, {}, {}});
-  EXPECT_THAT(flight.edits().TakeNotes(), IsEmpty()) << "on the tile";
+  EXPECT_THAT(flight.edits().PollNotes(), IsEmpty()) << "on the tile";
 }
 
 /// The frames that a window shows of a flight, one after another.
@@ -280,7 +280,7 @@ class PictureQueueTest : public FlightsOverLand {
       queue.NextFrame();
       std::this_thread::yield();
     }
-    return queue.TakeOutcomes();
+    return queue.PollOutcomes();
   }
 };
 
@@ -298,8 +298,8 @@ TEST_F(PictureQueueTest, APictureIsThatOfItsMomentWhateverFollows) {
   flight.Paint({screen.framebuffer(), kSmall.width, kSmall.height}, 0.1);
   const FlightMoment moment = flight.Moment();
   PictureQueue queue(scene, settings);
-  queue.Ask({moment, File("moving.exr"), kSmall});
-  queue.Ask({moment, File("again.exr"), kSmall});
+  queue.Request({moment, File("moving.exr"), kSmall});
+  queue.Request({moment, File("again.exr"), kSmall});
   flight.edits().Use(AirChoice{}, flight.eye().place);
   flight.exposure().Set(3.0);
   for (int frame = 0; queue.UnderWay(); ++frame) {
@@ -310,7 +310,7 @@ TEST_F(PictureQueueTest, APictureIsThatOfItsMomentWhateverFollows) {
     flight.Advance({}, 1.0);
     flight.Paint({screen.framebuffer(), kSmall.width, kSmall.height}, 0.1);
   }
-  for (const PictureOutcome& outcome : queue.TakeOutcomes()) EXPECT_EQ(outcome.fault, "");
+  for (const PictureOutcome& outcome : queue.PollOutcomes()) EXPECT_EQ(outcome.fault, "");
   FlightSession resting(scene, Evening(), settings);
   resting.edits().Use(haze, resting.eye().place);
   resting.exposure().Set(12.0);
@@ -329,7 +329,7 @@ TEST_F(PictureQueueTest, FramesAreDrawnBetweenThePartsOfAPicture) {
   const FlightSessionSettings settings = SettingsFor(scene);
   PictureQueue queue(scene, settings);
   FlightSession flight(scene, Evening(), settings);
-  queue.Ask({flight.Moment(), File("picture.png"), kSmall});
+  queue.Request({flight.Moment(), File("picture.png"), kSmall});
   std::set<double> shares;
   int frames = 0;
   const auto next_share = [&] {
@@ -353,8 +353,8 @@ TEST_F(PictureQueueTest, AFolderThatIsGoneIsToldAndTheNextPictureIsWritten) {
   const FlightSessionSettings settings = SettingsFor(scene);
   PictureQueue queue(scene, settings);
   FlightSession flight(scene, Evening(), settings);
-  queue.Ask({flight.Moment(), File("gone") / "picture.png", kSmall});
-  queue.Ask({flight.Moment(), File("picture.png"), kSmall});
+  queue.Request({flight.Moment(), File("gone") / "picture.png", kSmall});
+  queue.Request({flight.Moment(), File("picture.png"), kSmall});
   const std::vector<PictureOutcome> outcomes = DrawUntilEnd(queue);
   ASSERT_EQ(outcomes.size(), 2U);
   EXPECT_THAT(outcomes[0].fault, HasSubstr("gone"));
@@ -368,7 +368,7 @@ TEST_F(PictureQueueTest, AQueueThatGoesHasWrittenWhatWasAskedFor) {
   FlightSession flight(scene, Evening(), settings);
   {
     PictureQueue queue(scene, settings);
-    queue.Ask({flight.Moment(), File("picture.png"), kSmall});
+    queue.Request({flight.Moment(), File("picture.png"), kSmall});
   }
   EXPECT_EQ(ReadPng(File("picture.png")).width, kSmall.width);
 }
@@ -382,8 +382,8 @@ TEST_F(PictureQueueTest, WithoutAWindowPicturesWithInstrumentsAreNotWritten) {
     ADD_FAILURE() << "drawn into a window that has gone";
     return DisplayImage{};
   };
-  queue.Ask({flight.Moment(), File("with.png"), kSmall, no_instruments});
-  queue.Ask({flight.Moment(), File("without.png"), kSmall});
+  queue.Request({flight.Moment(), File("with.png"), kSmall, no_instruments});
+  queue.Request({flight.Moment(), File("without.png"), kSmall});
   queue.FinishWithoutWindow();
   EXPECT_FALSE(std::filesystem::exists(File("with.png")));
   EXPECT_TRUE(std::filesystem::exists(File("without.png")));

@@ -401,7 +401,7 @@ GroundSampler Mountain(std::atomic<int>& asked) {
 class ShadeFollowerTest : public tests::Headless {
  protected:
   static constexpr ShadeSize kSmall{20e3, 201, 2, 256};
-  std::atomic<int> asked_{0};
+  std::atomic<int> requested_{0};
 };
 
 TEST_F(ShadeFollowerTest, WithoutGroundThereIsNoShade) {
@@ -418,7 +418,7 @@ TEST_F(ShadeFollowerTest, WithoutGroundThereIsNoShade) {
 TEST_F(ShadeFollowerTest, GroundIsAskedForAnewOnlyWhenTheEyeHasLeftIt) {
   ShadeFollower follower(kWgs84);
   follower.SetSize(kSmall);
-  follower.SetGround(Mountain(asked_));
+  follower.SetGround(Mountain(requested_));
   follower.WaitUntilReady(Eye(0.0), SunAtDegrees(5.0), kShadeUnit);
   ASSERT_TRUE(follower.shade().Shades());
   const glm::dvec3 first_sun = follower.shade().map().to_sun;
@@ -427,18 +427,18 @@ TEST_F(ShadeFollowerTest, GroundIsAskedForAnewOnlyWhenTheEyeHasLeftIt) {
   follower.WaitUntilReady(Eye(0.01), SunAtDegrees(4.0), kShadeUnit);
   EXPECT_NEAR(follower.shade().map().to_sun.z, std::sin(4.0 * kRadiansPerDegree), 1e-3)
       << "of another sun, in the frame of a kilometre away";
-  EXPECT_EQ(asked_, 1);
+  EXPECT_EQ(requested_, 1);
   follower.WaitUntilReady(Eye(0.08), SunAtDegrees(4.0), kShadeUnit);
-  EXPECT_EQ(asked_, 2) << "nine kilometres of twenty";
-  follower.SetGround(Mountain(asked_));
+  EXPECT_EQ(requested_, 2) << "nine kilometres of twenty";
+  follower.SetGround(Mountain(requested_));
   follower.WaitUntilReady(Eye(0.08), SunAtDegrees(4.0), kShadeUnit);
-  EXPECT_EQ(asked_, 3) << "other ground";
+  EXPECT_EQ(requested_, 3) << "other ground";
 }
 
 TEST_F(ShadeFollowerTest, TheMapLiesUnderTheEye) {
   ShadeFollower follower(kWgs84);
   follower.SetSize(kSmall);
-  follower.SetGround(Mountain(asked_));
+  follower.SetGround(Mountain(requested_));
   follower.WaitUntilReady(Eye(0.0), SunAtDegrees(5.0), kShadeUnit);
   ASSERT_TRUE(follower.shade().Shades());
   const glm::dmat4 here = follower.MapFromEye(Eye(0.0));
@@ -451,7 +451,7 @@ TEST_F(ShadeFollowerTest, TheMapLiesUnderTheEye) {
 TEST_F(ShadeFollowerTest, ASunThatOutrunsTheMapsIsStillFollowed) {
   ShadeFollower follower(kWgs84);
   follower.SetSize(kSmall);
-  follower.SetGround(Mountain(asked_));
+  follower.SetGround(Mountain(requested_));
   double elevation = 2.0;
   int maps = 0;
   glm::dvec3 last(0.0);

@@ -222,7 +222,7 @@ void AirFollower::Show(const Made& made) {
   maker_.RestFor(kRest * maker_.making_s());
 }
 
-void AirFollower::TakeFinished() {
+void AirFollower::PollFinished() {
   if (auto solved = solver_.Poll()) air_ = std::move(*solved);
   if (const auto made = maker_.Poll()) Show(*made);
 }
@@ -252,7 +252,7 @@ bool AirFollower::IsDue(const Request& wanted) const {
 }
 
 void AirFollower::Follow(const AirView& view, double seconds) {
-  TakeFinished();
+  PollFinished();
   RefineDraft();
   const Request wanted = Wanted(Ahead(view, seconds));
   if (IsDue(wanted)) maker_.RequestIfNeeded(wanted);
@@ -284,11 +284,11 @@ void AirFollower::ShowSmall(const AirView& view) {
 
 void AirFollower::WaitUntilReady(const AirView& view) {
   solver_.Wait();
-  TakeFinished();
+  PollFinished();
   if (air_->solution == AirSolution::kDraft) {
     solver_.Request({air_->medium, AirSolution::kFull});
     solver_.Wait();
-    TakeFinished();
+    PollFinished();
   }
   maker_.WaitUntilReady(Wanted(view));
   Follow(view);

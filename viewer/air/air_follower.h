@@ -142,7 +142,7 @@ class AirFollower {
   void Show(const Made& made);
   void ShowSmall(const AirView& view);
   [[nodiscard]] AirView Ahead(const AirView& view, double seconds) const;
-  void TakeFinished();
+  void PollFinished();
   void RefineDraft();
   [[nodiscard]] Request Wanted(const AirView& view) const;
   [[nodiscard]] bool IsDue(const Request& wanted) const;

@@ -34,7 +34,7 @@ struct FlightRecorder::State {
 
   explicit State(const std::filesystem::path& of) : name(of), file(of) {
     if (!file.kept()) return;
-    Say(fmt::format("skyview: {} is a flight that was cut short; it is {} now\n",
+    Log(fmt::format("skyview: {} is a flight that was cut short; it is {} now\n",
                     file.part().string(), file.kept()->string()));
   }
 
@@ -57,7 +57,7 @@ FlightRecorder::~FlightRecorder() {
   try {
     Finish();
   } catch (const std::exception& error) {
-    Say(fmt::format("skyview: {}\n", error.what()));
+    Log(fmt::format("skyview: {}\n", error.what()));
   }
 }
 
@@ -70,7 +70,7 @@ std::optional<std::filesystem::path> FlightRecorder::file() const {
   return state_ && !state_->fault ? std::optional(state_->name) : std::nullopt;
 }
 
-void FlightRecorder::Note(double elapsed_s, const CameraPose& eye, const UtcInstant& now) {
+void FlightRecorder::Record(double elapsed_s, const CameraPose& eye, const UtcInstant& now) {
   if (!state_ || state_->fault) return;
   if (state_->last_s && !IsDue(elapsed_s, *state_->last_s, kInterval_s)) return;
   if (!state_->begin_s) state_->begin_s = elapsed_s;
@@ -79,7 +79,7 @@ void FlightRecorder::Note(double elapsed_s, const CameraPose& eye, const UtcInst
     state_->last_s = elapsed_s;
   } catch (const OutputError& error) {
     state_->fault = error.what();
-    Say(fmt::format("skyview: {}; the flight is recorded no further\n", error.what()));
+    Log(fmt::format("skyview: {}; the flight is recorded no further\n", error.what()));
   }
 }
 
@@ -90,7 +90,7 @@ bool FlightRecorder::Finish() {
   if (state->fault) throw OutputError(*state->fault);
   state->file.Finish();
   if (!state->last_s)
-    Say(fmt::format("skyview: {} is not written: nothing was flown\n", state->name.string()));
+    Log(fmt::format("skyview: {} is not written: nothing was flown\n", state->name.string()));
   return state->last_s.has_value();
 }
 
@@ -102,7 +102,7 @@ CameraPath ReadFlight(const std::filesystem::path& file) {
   }
   CameraPath path = ReadCameraPath(file);
   if (HasExtension(file, part.extension().string())) {
-    Say(fmt::format("skyview: {} is unfinished: a flight that was cut short after {:.1f} s\n",
+    Log(fmt::format("skyview: {} is unfinished: a flight that was cut short after {:.1f} s\n",
                     file.string(), path.end_s()));
   }
   return path;
@@ -137,7 +137,7 @@ std::vector<CameraPathPoint> EverySecond(const std::vector<CameraPathPoint>& poi
 
 }  // namespace
 
-void FlightLog::Note(double elapsed_s, const CameraPose& eye, const UtcInstant& now) {
+void FlightLog::Record(double elapsed_s, const CameraPose& eye, const UtcInstant& now) {
   last_ = CameraPathPoint{elapsed_s, eye, now};
   has_flown_ = has_flown_ || (!points_.empty() && points_.front().pose != eye);
   if (!points_.empty() && !IsDue(elapsed_s, points_.back().time_s, interval_s_)) return;

@@ -271,10 +271,10 @@ void Pilot::Advance(const PilotControls& controls, double seconds, const GroundH
     SkipTrack(track_factor_ * seconds);
   }
   Show(ground);
-  if (seconds > 0.0) NoteSpeed(before, seconds);
+  if (seconds > 0.0) RecordSpeed(before, seconds);
 }
 
-void Pilot::NoteSpeed(const GeodeticPosition& before, double seconds) {
+void Pilot::RecordSpeed(const GeodeticPosition& before, double seconds) {
   constexpr double kStands_m_per_s = 0.5;
   const LocalFrame frame(ellipsoid_, before);
   const glm::dvec3 way = frame.EnuFromGeodetic(eye_.place).xyz;

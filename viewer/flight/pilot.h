@@ -214,7 +214,7 @@ class Pilot {
   [[nodiscard]] FlightReadout Readout(const GroundHeight& ground) const;
 
  private:
-  void NoteSpeed(const GeodeticPosition& before, double seconds);
+  void RecordSpeed(const GeodeticPosition& before, double seconds);
   void LookAround(const PilotControls& controls);
   void Show(const GroundHeight& ground);
 

@@ -63,7 +63,7 @@ void PassTimer::End() {
   done_.push_back(pass_);
 }
 
-std::vector<PassTime> PassTimer::Take() {
+std::vector<PassTime> PassTimer::Poll() {
   while (!in_flight_.empty() && !(open_ && in_flight_.size() == 1)) {
     InFlight& oldest = in_flight_.front();
     GLuint is_available = GL_FALSE;
@@ -79,10 +79,10 @@ std::vector<PassTime> PassTimer::Take() {
   return std::exchange(done_, {});
 }
 
-std::vector<PassTime> PassTimer::TakeAll() {
+std::vector<PassTime> PassTimer::PollAll() {
   End();
   glFinish();
-  return Take();
+  return Poll();
 }
 
 }  // namespace alpenglow::viewer

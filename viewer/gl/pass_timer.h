@@ -51,10 +51,10 @@ class PassTimer {
   void SetClock(PassClock clock) { clock_ = clock; }
 
   /// Returns the times that became available since the last call, in the order of the passes. If
-  /// nobody calls Take, new passes are not timed once too many queries are pending.
-  [[nodiscard]] std::vector<PassTime> Take();
+  /// nobody calls Poll, new passes are not timed once too many queries are pending.
+  [[nodiscard]] std::vector<PassTime> Poll();
   /// Waits until all drawing is complete, and returns the remaining times.
-  [[nodiscard]] std::vector<PassTime> TakeAll();
+  [[nodiscard]] std::vector<PassTime> PollAll();
 
  private:
   static constexpr std::size_t kMostInFlight = 256;

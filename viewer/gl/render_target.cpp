@@ -178,7 +178,7 @@ void PixelReader::Begin(const RenderTarget& picture, const Rectangle& part) {
   CheckGl("PixelReader::Begin");
 }
 
-std::optional<std::vector<std::array<float, 3>>> PixelReader::Take() {
+std::optional<std::vector<std::array<float, 3>>> PixelReader::Poll() {
   if (!Busy()) return std::nullopt;
   const GLenum state = glClientWaitSync(arrives_, GL_SYNC_FLUSH_COMMANDS_BIT, 0);
   if (state != GL_ALREADY_SIGNALED && state != GL_CONDITION_SATISFIED) return std::nullopt;

@@ -104,7 +104,7 @@ class PixelReader {
   [[nodiscard]] bool Busy() const { return arrives_ != nullptr; }
   /// Returns the pixels of the pending read if they have arrived, which usually takes a frame or
   /// two.
-  [[nodiscard]] std::optional<std::vector<std::array<float, 3>>> Take();
+  [[nodiscard]] std::optional<std::vector<std::array<float, 3>>> Poll();
 
  private:
   GlBuffer buffer_;

@@ -148,7 +148,7 @@ class Shown {
 };
 
 // Returns whether the user confirms. Enter also confirms, unless text is typed.
-bool AskToLeave() {
+bool ConfirmLeaving() {
   ImGui::TextUnformatted("Leave the flight? Enter leaves, Esc stays.");
   const bool enters = ImGui::IsKeyPressed(ImGuiKey_Enter, false) && !ImGui::GetIO().WantTextInput;
   return ImGui::Button("leave") || enters;
@@ -190,7 +190,7 @@ void Panels::DrawContents(HudPanel panel, const PanelChange& change) {
     case HudPanel::kHelp:
       return ShowKeyHelp(change.view);
     case HudPanel::kLeave:
-      if (AskToLeave()) change.flight.Leave();
+      if (ConfirmLeaving()) change.flight.Leave();
   }
 }
 

@@ -33,7 +33,7 @@ double TriggerOf(const GamepadState& gamepad, int axis) {
   return std::clamp(0.5 + 0.5 * AxisOf(gamepad, axis), 0.0, 1.0);
 }
 
-void Ask(const Action& action, bool minimised, Intent& intent) {
+void Perform(const Action& action, bool minimised, Intent& intent) {
   (action.needs_picture && minimised ? intent.refused : intent.actions).push_back(&action);
 }
 
@@ -108,7 +108,7 @@ void Controls::Resolve(const KeyEvent& event, bool minimised, FlightMode mode, I
   if (printed == nullptr || printed->press == Press::kHeld) return;
   const bool again = event.change == GLFW_REPEAT;
   if (again && (minimised || printed->press != Press::kRepeating)) return;
-  Ask(*printed, minimised, intent);
+  Perform(*printed, minimised, intent);
 }
 
 double Controls::Pushed(const HeldControl& control) const {
@@ -192,7 +192,7 @@ void Controls::PressButtons(const GamepadState& gamepad, FlightMode mode, double
     held_s += was_up ? 1e-9 : seconds;
     const bool repeats = action.press == Press::kRepeating;
     const int times = repeats ? TimesActed(held_s) - acted : was_up ? 1 : 0;
-    for (int i = 0; action.pad.modes.Has(mode) && i < times; ++i) Ask(action, false, intent);
+    for (int i = 0; action.pad.modes.Has(mode) && i < times; ++i) Perform(action, false, intent);
   }
 }
 
@@ -201,7 +201,7 @@ void Controls::TurnWheel(FlightMode mode, Intent& intent) {
   for (; wheel_ <= -1.0; wheel_ += 1.0) intent.actions.push_back(&ActionOfWheel(-1, mode));
 }
 
-Intent Controls::Take(const InputFrame& input, FlightMode mode, const TakenByPanels& taken) {
+Intent Controls::Interpret(const InputFrame& input, FlightMode mode, const TakenByPanels& taken) {
   const WindowEvents& events = input.events;
   Intent intent;
   if (!events.HasKeyboard()) LetGo();

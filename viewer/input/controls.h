@@ -118,8 +118,8 @@ class Controls {
 
   /// Returns the intent of a frame. Held actions use the position of a key, all others its printed
   /// label. Looking around counts in widths of the window along both axes.
-  [[nodiscard]] Intent Take(const InputFrame& input, FlightMode mode,
-                            const TakenByPanels& taken = {});
+  [[nodiscard]] Intent Interpret(const InputFrame& input, FlightMode mode,
+                                 const TakenByPanels& taken = {});
 
  private:
   struct Place {

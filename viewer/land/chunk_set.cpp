@@ -205,7 +205,7 @@ void ChunkSet::Relight(const std::vector<LitChunk>& relit, LightSide side, int l
   }
 }
 
-void ChunkSet::NoteWanted(const std::vector<WantedChunk>& wanted, long frame) {
+void ChunkSet::RecordWanted(const std::vector<WantedChunk>& wanted, long frame) {
   for (const WantedChunk& chunk : wanted) {
     const auto found = chunks_.find(chunk.key);
     if (found != chunks_.end()) found->second.last_wanted = frame;

@@ -78,10 +78,10 @@ struct EdgesOfVertices {
 class LightFade {
  public:
   /// Requests a light to follow the current one. A newer request replaces a pending one.
-  void Ask(LightOfVertices light) { asked_ = std::move(light); }
+  void Request(LightOfVertices light) { requested_ = std::move(light); }
   /// Returns whether any light has been completed.
   [[nodiscard]] bool HasShown() const { return lights_shown_ > 0; }
-  [[nodiscard]] bool IsChanging() const { return asked_ || is_filling_ || share_ < 1.0; }
+  [[nodiscard]] bool IsChanging() const { return requested_ || is_filling_ || share_ < 1.0; }
 
   /// Light for newly made vertices (empty before the first request), and its number.
   [[nodiscard]] const std::optional<LightOfVertices>& light() const { return light_; }
@@ -109,7 +109,7 @@ class LightFade {
       ++lights_shown_;
     }
     // Side `from` must not change until the fade ends.
-    if (!is_filling_ && asked_ && share_ == 1.0) Begin();
+    if (!is_filling_ && requested_ && share_ == 1.0) Begin();
   }
 
  private:
@@ -117,14 +117,14 @@ class LightFade {
     return static_cast<std::size_t>(side);
   }
   void Begin() {
-    light_ = std::exchange(asked_, std::nullopt);
+    light_ = std::exchange(requested_, std::nullopt);
     ++number_;
     is_filling_ = true;
     filled_in_s_ = 0.0;
     to_disk_[Index(from_)] = light_->to_disk;
   }
 
-  std::optional<LightOfVertices> light_, asked_;
+  std::optional<LightOfVertices> light_, requested_;
   std::array<std::optional<Vector<Ecef>>, 2> to_disk_;  // by side
   int number_ = 0;
   bool is_filling_ = false;
@@ -187,7 +187,7 @@ class ChunkSet {
   void Add(const std::vector<LitChunk>& made, int light_number, long frame);
   /// Stores new light on a side. Chunks that were removed meanwhile are skipped.
   void Relight(const std::vector<LitChunk>& relit, LightSide side, int light_number);
-  void NoteWanted(const std::vector<WantedChunk>& wanted, long frame);
+  void RecordWanted(const std::vector<WantedChunk>& wanted, long frame);
   /// If there are more than `most` chunks, removes those that no recent frame has wanted.
   void Evict(std::size_t most, long frame);
   /// Draws chunks, see ChunkBuffers::Draw.

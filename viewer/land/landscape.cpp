@@ -83,7 +83,7 @@ void Landscape::FollowView(double seconds) {
 
 void Landscape::FindDemand(double seconds) {
   demand_ = DemandOf(tree_, eye_, detail_, [&](const ChunkKey& key) { return set_->Has(key); });
-  set_->NoteWanted(demand_.wanted, frame_);
+  set_->RecordWanted(demand_.wanted, frame_);
   LetLevelsReach(seconds);
 }
 
@@ -100,7 +100,7 @@ void Landscape::LetLevelsReach(double seconds) {
 
 void Landscape::Relight(LightOfVertices light) {
   if (mesh_) return mesh_->Relight(std::move(light));
-  fade_.Ask(std::move(light));
+  fade_.Request(std::move(light));
 }
 
 EdgesOfVertices Landscape::edges() const { return mesh_ ? mesh_->edges() : fade_.edges(); }
@@ -175,20 +175,20 @@ void Landscape::Advance(const GeodeticPosition& eye, const LandView& view, doubl
   view_ = view;
   if (mesh_) {
     mesh_->Update(seconds);
-    for (std::string& note : mesh_->TakeNotes()) notes_.push_back(std::move(note));
+    for (std::string& note : mesh_->PollNotes()) notes_.push_back(std::move(note));
   }
   if (tiles_->tiles().empty()) return;
   eye_ = EyeAt(eye);
   FollowView(seconds);
   if (cache_.Update(eye_, detail_)) ground_.CountChange();
-  for (std::string& note : cache_.TakeNotes()) notes_.push_back(std::move(note));
+  for (std::string& note : cache_.PollNotes()) notes_.push_back(std::move(note));
   if (!set_) set_ = NewSet();
-  TakeChunks();
+  PollChunks();
   FindDemand(seconds);
   MoveAnchor();
   fade_.Advance(seconds, set_->IsLitBy(fade_.number()));
-  AskForChunks();
-  AskForLight();
+  RequestChunks();
+  RequestLight();
   FindAround();
   RaiseAbove(seconds);
   set_->Evict(demand_.wanted.size() + demand_.wanted.size() / 4 + 64, frame_);
@@ -319,7 +319,7 @@ LandProgress Landscape::Progress() const {
   return {share, fmt::format("terrain: {} of {} pieces", there, demand_.wanted.size())};
 }
 
-std::vector<std::string> Landscape::TakeNotes() { return std::exchange(notes_, {}); }
+std::vector<std::string> Landscape::PollNotes() { return std::exchange(notes_, {}); }
 
 LandFigures Landscape::Figures() const {
   LandFigures figures;
@@ -388,7 +388,7 @@ void Landscape::MoveAnchor() {
   if (away > kAnchorReach_m) next_set_ = NewSet();
 }
 
-void Landscape::TakeChunks() {
+void Landscape::PollChunks() {
   const std::optional<MadeChunks> made = worker_.Poll();
   if (!made) return;
   is_working_ = false;
@@ -413,21 +413,21 @@ std::vector<ChunkKey> Landscape::Missing(const ChunkSet& set) const {
   return keys;
 }
 
-void Landscape::Ask(const ChunkSet& set, std::vector<ChunkKey> make,
-                    std::vector<std::shared_ptr<const LandChunk>> relight) {
+void Landscape::Request(const ChunkSet& set, std::vector<ChunkKey> make,
+                        std::vector<std::shared_ptr<const LandChunk>> relight) {
   if (make.empty() && relight.empty()) return;
   worker_.Request({cache_.loaded(), set.anchor(), std::move(make), std::move(relight), tree_.top(),
                    fade_.light(), fade_.number(), &set == next_set_.get()});
   is_working_ = true;
 }
 
-void Landscape::AskForChunks() {
+void Landscape::RequestChunks() {
   for (const ChunkSet* const set : {set_.get(), next_set_.get()})
-    if (!is_working_ && set != nullptr) Ask(*set, Missing(*set), {});
+    if (!is_working_ && set != nullptr) Request(*set, Missing(*set), {});
 }
 
-void Landscape::AskForLight() {
-  if (!is_working_ && fade_.IsFilling()) Ask(*set_, {}, set_->NotLitBy(fade_.number()));
+void Landscape::RequestLight() {
+  if (!is_working_ && fade_.IsFilling()) Request(*set_, {}, set_->NotLitBy(fade_.number()));
 }
 
 }  // namespace alpenglow::viewer

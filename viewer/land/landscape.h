@@ -138,7 +138,7 @@ class Landscape {
   [[nodiscard]] LandProgress Progress() const;
   /// Returns the warnings, each once: tiles that were left out, voids, vertical datums, statements
   /// in a mesh file that are not supported, and the fact that the range is procedural.
-  [[nodiscard]] std::vector<std::string> TakeNotes();
+  [[nodiscard]] std::vector<std::string> PollNotes();
   [[nodiscard]] LandFigures Figures() const;
   /// Upper bound for the distance [m] from the eye to loaded land around it, in view or not.
   [[nodiscard]] double farthest_m() const { return farthest_m_; }
@@ -150,14 +150,14 @@ class Landscape {
   [[nodiscard]] int ExpectedChunks(double detail) const;
   [[nodiscard]] std::unique_ptr<ChunkSet> NewSet() const;
   void MoveAnchor();
-  void TakeChunks();
+  void PollChunks();
   void FollowView(double seconds);
   void FindDemand(double seconds);
   void LetLevelsReach(double seconds);
-  void Ask(const ChunkSet& set, std::vector<ChunkKey> make,
-           std::vector<std::shared_ptr<const LandChunk>> relight);
-  void AskForChunks();
-  void AskForLight();
+  void Request(const ChunkSet& set, std::vector<ChunkKey> make,
+               std::vector<std::shared_ptr<const LandChunk>> relight);
+  void RequestChunks();
+  void RequestLight();
   [[nodiscard]] std::vector<ChunkKey> Missing(const ChunkSet& set) const;
   /// Does all work of a frame except the choice of the chunks in view.
   void Advance(const GeodeticPosition& eye, const LandView& view, double seconds);

@@ -46,7 +46,7 @@ class MeshLand {
   }
   void Draw(LandPass& pass, LandDrawn what, const GeodeticPosition& eye, GLuint view_binding);
 
-  void Relight(LightOfVertices light) { fade_.Ask(std::move(light)); }
+  void Relight(LightOfVertices light) { fade_.Request(std::move(light)); }
   [[nodiscard]] EdgesOfVertices edges() const { return fade_.edges(); }
   [[nodiscard]] bool IsRelighting() const { return fade_.IsChanging(); }
   [[nodiscard]] bool IsRead() const { return terrain_ != nullptr; }
@@ -57,7 +57,7 @@ class MeshLand {
   /// Returns GridOverMesh of the mesh loaded now. Any thread may call it, at any later time.
   [[nodiscard]] GroundSampler Sampler() const;
   /// Returns the warnings about the file, once (ObjMesh).
-  [[nodiscard]] std::vector<std::string> TakeNotes() { return std::exchange(notes_, {}); }
+  [[nodiscard]] std::vector<std::string> PollNotes() { return std::exchange(notes_, {}); }
   /// Returns the size of the vertices and triangles, in memory and on the GPU.
   [[nodiscard]] std::size_t bytes() const;
 

@@ -84,7 +84,7 @@ AutoQuality::AutoQuality(double wanted_frame_s) : wanted_s_(wanted_frame_s), ste
 
 const PaintedQuality& AutoQuality::painted() const { return StepAt(step_).painted; }
 
-void AutoQuality::Note(double frame_s) {
+void AutoQuality::Record(double frame_s) {
   frames_s_.push_back(frame_s);
   if (frames_s_.size() > kMostTimedFrames) frames_s_.pop_front();
   since_change_s_ += std::max(frame_s, wanted_s_);

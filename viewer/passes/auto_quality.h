@@ -66,7 +66,7 @@ class AutoQuality {
 
   /// Records a frame.
   /// @param frame_s  time of the work for the last frame, without waiting for the screen.
-  void Note(double frame_s);
+  void Record(double frame_s);
   [[nodiscard]] const PaintedQuality& painted() const;
 
  private:
@@ -87,8 +87,8 @@ class QualityChoice {
   void Use(const QualityRule& rule) { rule_ = rule; }
   [[nodiscard]] const QualityRule& rule() const { return rule_; }
   /// Records the time that a frame took. Automatic quality uses it.
-  void Note(double frame_s) {
-    if (!rule_.fixed) auto_.Note(frame_s);
+  void Record(double frame_s) {
+    if (!rule_.fixed) auto_.Record(frame_s);
   }
   [[nodiscard]] PaintedQuality painted() const {
     return rule_.fixed ? PaintedAlways(*rule_.fixed) : auto_.painted();

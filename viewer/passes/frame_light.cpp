@@ -67,7 +67,7 @@ bool NightSkyMapFollower::Suits(const Request& requested, const Request& wanted)
          std::abs(requested.place.height_m - wanted.place.height_m) < kMostRise_m;
 }
 
-void NightSkyMapFollower::Take(int unit) {
+void NightSkyMapFollower::Poll(int unit) {
   const std::optional<NightSkyMap> made = maker_.Poll();
   if (!made) return;
   scattered_ = made->scattered;
@@ -83,7 +83,7 @@ void NightSkyMapFollower::Follow(const PaintedView& view,
     maker_.Forget();
     maker_.WaitUntilReady(wanted);
   }
-  Take(kNightUnit);
+  Poll(kNightUnit);
   maker_.RequestWhenIdle(wanted);
 }
 

@@ -70,7 +70,7 @@ class NightSkyMapFollower {
   };
 
   [[nodiscard]] static bool Suits(const Request& requested, const Request& wanted);
-  void Take(int unit);
+  void Poll(int unit);
 
   GlTexture map_;
   glm::vec4 scattered_{0.0F}, level_{0.0F};

@@ -128,7 +128,7 @@ void FrameRenderer::ShowReference(const PaintedView& view, const ReferenceSource
   if (!reference_) reference_ = std::make_unique<ReferencePicture>();
   if (!reference_scene_) reference_scene_ = std::make_shared<const ReferenceScene>(source.scene());
   reference_->Show({reference_scene_, view.eye, view.now, view.width, view.height});
-  if (const std::optional<Image> image = reference_->Take()) painter_.Show(*image);
+  if (const std::optional<Image> image = reference_->Poll()) painter_.Show(*image);
 }
 
 // A clock at 3600 times real time passes these 900 s in a quarter of a second.
@@ -142,7 +142,7 @@ bool FrameRenderer::HasJumped(const UtcInstant& now) {
 void FrameRenderer::Meter(bool is_another, const UtcInstant& now, double seconds) {
   const Look& look = exposure_.look();
   if (std::exchange(metered_for_, look.white) != look.white) metered_.reset();
-  if (const std::optional<MeterReading> metered = meter_.Take(look)) metered_ = metered;
+  if (const std::optional<MeterReading> metered = meter_.Poll(look)) metered_ = metered;
   meter_.LookAt(picture());
   if (!metered_ || is_another) metered_ = meter_.Read(picture(), look);
   if (is_another) exposure_.Forget();

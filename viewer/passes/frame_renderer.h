@@ -79,7 +79,7 @@ class FrameRenderer {
   void Paint(const CameraPose& eye, const UtcInstant& now, const ReferenceSource& reference,
              const ToneMapPass::Screen& screen, double seconds);
   /// Records the time that the last frame took without the wait for the screen.
-  void NoteFrame(double seconds) { quality_.Note(seconds); }
+  void RecordFrame(double seconds) { quality_.Record(seconds); }
   /// Returns the linear picture of the last frame.
   [[nodiscard]] const RenderTarget& picture() const { return painter_.picture(); }
   /// Returns the luminance [cd/m^2] in a picture of one or two frames ago, at fractions of its

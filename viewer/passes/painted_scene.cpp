@@ -108,7 +108,7 @@ void PaintedScene::Replace(const LandSource& land) {
   shade_.SetGround({});
 }
 
-void PaintedScene::TakeHeights() {
+void PaintedScene::UpdateHeights() {
   if (heights_version_ == land_->ground().version()) return;
   heights_version_ = land_->ground().version();
   const GroundSampler sampler = land_->ground().Sampler();
@@ -116,7 +116,7 @@ void PaintedScene::TakeHeights() {
   shade_.SetGround(sampler);
 }
 
-void PaintedScene::TakeLight() {
+void PaintedScene::UpdateLight() {
   if (const std::shared_ptr<const LitGround>& lit = ground_.lit())
     land_->Use(TerrainHorizon{{lit->site().horizons(), &lit->site().horizons()->map()},
                               lit->site().ground().frame});
@@ -222,9 +222,9 @@ void PaintedScene::Update(const PaintedView& view, const LightsOfSky& lights, do
   KeepUpAir(view, lights, Pace::kFollow, seconds);
   land_->Update(view.eye.place, LandIn(view, air_.air()->medium), seconds);
   awaits_land_ = awaits_land_ && !land_->HasCome();
-  TakeHeights();
+  UpdateHeights();
   KeepUpEdges(view, lights.front(), seconds);
-  if (ground_.Follow(air_.air(), GroundViewOf(view, lights), seconds)) TakeLight();
+  if (ground_.Follow(air_.air(), GroundViewOf(view, lights), seconds)) UpdateLight();
   TakeSkyByPixel();
   KeepUpOpenSkies(lights, Pace::kFollow);
   if (sizes_.has_shafts) shade_.Follow(view.eye.place, casting, kShadeUnit);
@@ -234,9 +234,9 @@ void PaintedScene::Update(const PaintedView& view, const LightsOfSky& lights, do
 void PaintedScene::WaitUntilReady(const PaintedView& view, const LightsOfSky& lights, int samples) {
   KeepUpAir(view, lights, Pace::kWait, 0.0);
   land_->WaitUntilReady(view.eye.place, LandIn(view, air_.air()->medium, samples));
-  TakeHeights();
+  UpdateHeights();
   if (ground_.WaitUntilReady(air_.air(), GroundViewOf(view, lights))) {
-    TakeLight();
+    UpdateLight();
     land_->WaitUntilReady(view.eye.place, LandIn(view, air_.air()->medium, samples));
   }
   TakeSkyByPixel();

@@ -126,8 +126,8 @@ class PaintedScene {
   [[nodiscard]] bool HasEdgesNear(const Vector<Ecef>& to_light) const;
   void KeepUpEdges(const PaintedView& view, const SkyLight& key, double seconds);
   void KeepUpFog(const PaintedView& view, const LightsOfSky& lights, Pace pace);
-  void TakeHeights();
-  void TakeLight();
+  void UpdateHeights();
+  void UpdateLight();
   void TakeSkyByPixel();
 
   FixedScene fixed_;

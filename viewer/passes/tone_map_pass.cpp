@@ -50,8 +50,8 @@ void ExposureMeter::LookAt(const RenderTarget& picture) {
   reader_.Begin(*small_, {0, 0, small_->width(), small_->height()});
 }
 
-std::optional<MeterReading> ExposureMeter::Take(const Look& look) {
-  std::optional<std::vector<std::array<float, 3>>> rgb = reader_.Take();
+std::optional<MeterReading> ExposureMeter::Poll(const Look& look) {
+  std::optional<std::vector<std::array<float, 3>>> rgb = reader_.Poll();
   if (!rgb) return std::nullopt;
   Image copy(small_->width(), small_->height());
   copy.rgb = std::move(*rgb);
@@ -66,7 +66,7 @@ MeterReading ExposureMeter::Read(const RenderTarget& picture, const Look& look) 
 
 std::optional<double> SpotMeter::At(const RenderTarget& picture, double right, double down) {
   if (!reader_) reader_.emplace();
-  if (const auto pixels = reader_->Take()) {
+  if (const auto pixels = reader_->Poll()) {
     const std::array<float, 3>& rgb = pixels->front();
     luminance_ = shared::Luminance<double>(static_cast<double>(rgb[0]), static_cast<double>(rgb[1]),
                                            static_cast<double>(rgb[2]));

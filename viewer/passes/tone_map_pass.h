@@ -45,7 +45,7 @@ class ExposureMeter {
   /// while an earlier copy is being read.
   void LookAt(const RenderTarget& picture);
   /// Returns the reading of the copy once it has arrived.
-  [[nodiscard]] std::optional<MeterReading> Take(const Look& look);
+  [[nodiscard]] std::optional<MeterReading> Poll(const Look& look);
   /// Returns the reading of a picture immediately, waiting for the GPU. Pending copies are
   /// discarded.
   [[nodiscard]] MeterReading Read(const RenderTarget& picture, const Look& look);

@@ -212,7 +212,7 @@ bool ShadeFollower::Suits(const Request& requested, const Request& wanted) {
          glm::length(requested.to_sun - wanted.to_sun) < kSunStep * wanted.sun_radius_rad;
 }
 
-void ShadeFollower::TakeFinished() {
+void ShadeFollower::PollFinished() {
   std::optional<std::shared_ptr<const Made>> made = maker_.Poll();
   if (!made) return;
   coming_ = std::move(*made);
@@ -227,13 +227,13 @@ void ShadeFollower::Upload(int lines, int unit) {
 void ShadeFollower::Follow(const GeodeticPosition& eye, const SunPosition& sun, int unit) {
   // If the sun moves faster than maps are made, a finished map must still be shown.
   if (!coming_) maker_.RequestWhenIdle(RequestFor(eye, sun));
-  if (!coming_) TakeFinished();
+  if (!coming_) PollFinished();
   Upload(kLinesOfAFrame, unit);
 }
 
 void ShadeFollower::WaitUntilReady(const GeodeticPosition& eye, const SunPosition& sun, int unit) {
   maker_.WaitUntilReady(RequestFor(eye, sun));
-  TakeFinished();
+  PollFinished();
   Upload(std::numeric_limits<int>::max(), unit);
 }
 

@@ -179,7 +179,7 @@ class ShadeFollower {
 
   [[nodiscard]] Request RequestFor(const GeodeticPosition& eye, const SunPosition& sun) const;
   [[nodiscard]] static bool Suits(const Request& requested, const Request& wanted);
-  void TakeFinished();
+  void PollFinished();
   void Upload(int lines, int unit);
 
   Ellipsoid ellipsoid_;

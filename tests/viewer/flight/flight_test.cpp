@@ -497,8 +497,8 @@ const UtcInstant kStart = ParseInstant("2026-06-21T04:00:00Z");
 void Fly(FlightLog& log, double begin_s, int frames) {
   for (int frame = 0; frame < frames; ++frame) {
     const double seconds = begin_s + frame / 60.0;
-    log.Note(seconds, {PlaceFromDegrees(46.0 + kSpeed_deg_per_s * seconds, 8.0, 3000.0)},
-             AddSeconds(kStart, 60.0 * seconds));
+    log.Record(seconds, {PlaceFromDegrees(46.0 + kSpeed_deg_per_s * seconds, 8.0, 3000.0)},
+               AddSeconds(kStart, 60.0 * seconds));
   }
 }
 
@@ -533,7 +533,7 @@ TEST(FlightLog, WhereTheEyeStoodNothingHasBeenFlown) {
   FlightLog log;
   EXPECT_THROW((void)log.Path(), InputError);
   for (int frame = 0; frame < 100; ++frame)
-    log.Note(frame / 60.0, {PlaceFromDegrees(46.0, 8.0, 3000.0)}, AddSeconds(kStart, frame));
+    log.Record(frame / 60.0, {PlaceFromDegrees(46.0, 8.0, 3000.0)}, AddSeconds(kStart, frame));
   EXPECT_THROW((void)log.Path(), InputError);
   Fly(log, 2.0, 2);
   EXPECT_NO_THROW((void)log.Path());
@@ -552,7 +552,7 @@ class FlightRecords : public TemporaryFolder {
     for (int frame = 0; frame < frames; ++frame) {
       const double seconds = frame / 60.0;
       const CameraPose eye{PlaceFromDegrees(46.0 + 1e-4 * seconds, 8.0, 3000.0)};
-      recorder.Note(seconds, eye, AddSeconds(start, 60.0 * seconds));
+      recorder.Record(seconds, eye, AddSeconds(start, 60.0 * seconds));
     }
   }
 };

@@ -272,7 +272,7 @@ TEST_F(PassTimers, OfTwoPassesTheOneWithMoreWorkTakesLonger) {
       light.Draw();
       timer.Begin("heavy");  // ends the other
       heavy.Draw();
-      const std::vector<PassTime> times = timer.TakeAll();
+      const std::vector<PassTime> times = timer.PollAll();
       ASSERT_THAT(NamesOf(times), ElementsAre("light", "heavy"));
       EXPECT_GE(times[1].cpu_ms, 0.0);
       least_light = std::min(least_light, times[0].ms);
@@ -288,27 +288,27 @@ TEST_F(PassTimers, WithoutAClockNothingIsTimed) {
   PassTimer timer;
   timer.Begin("work");
   work.Draw();
-  EXPECT_TRUE(timer.TakeAll().empty());
+  EXPECT_TRUE(timer.PollAll().empty());
 }
 
 TEST_F(PassTimers, ResultsThatNobodyTakesAreBounded) {
   PassTimer timer(PassClock::kQueries);
   for (int i = 0; i < 2000; ++i) timer.Begin("nothing");
-  const std::size_t taken = timer.TakeAll().size();
+  const std::size_t taken = timer.PollAll().size();
   EXPECT_GT(taken, 100U);
   EXPECT_LT(taken, 1000U);
   timer.Begin("again");
-  EXPECT_THAT(NamesOf(timer.TakeAll()), ElementsAre("again")) << "the queries are free again";
+  EXPECT_THAT(NamesOf(timer.PollAll()), ElementsAre("again")) << "the queries are free again";
 }
 
 TEST_F(PassTimers, AnOpenPassIsNotTaken) {
   for (const PassClock clock : {PassClock::kFinishes, PassClock::kQueries}) {
     PassTimer timer(clock);
     timer.Begin("open");
-    EXPECT_TRUE(timer.Take().empty());
+    EXPECT_TRUE(timer.Poll().empty());
     timer.End();
     glFinish();
-    EXPECT_THAT(NamesOf(timer.Take()), ElementsAre("open"));
+    EXPECT_THAT(NamesOf(timer.Poll()), ElementsAre("open"));
   }
 }
 

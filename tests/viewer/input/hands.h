@@ -34,10 +34,11 @@ class Hands {
   void Minimise(bool minimised) { input_.events.minimised = minimised; }
 
   /// A frame with all that happened since the last one.
-  Intent Take(FlightMode mode, double seconds, const std::optional<GamepadState>& gamepad = {}) {
+  Intent Interpret(FlightMode mode, double seconds,
+                   const std::optional<GamepadState>& gamepad = {}) {
     input_.seconds = seconds;
     input_.events.gamepad = gamepad;
-    Intent intent = controls.Take(input_, mode, taken_);
+    Intent intent = controls.Interpret(input_, mode, taken_);
     input_.events.keys.clear();
     input_.events.wheel = 0.0;
     return intent;

@@ -331,7 +331,7 @@ TEST_F(LandscapePictures, ADamagedTileOfAFolderIsSaidByNameAndTheRestIsDrawn) {
   Landscape land(Folder(), {64.0}, kWgs84);
   const LookOut eye{PlaceOfSample(100.0, 300.0, 2500.0), 0.7, -0.3};
   land.WaitUntilReady(eye.place, eye.View());
-  EXPECT_THAT(land.TakeNotes(), ElementsAre(HasSubstr("tile01.tif")));
+  EXPECT_THAT(land.PollNotes(), ElementsAre(HasSubstr("tile01.tif")));
   EXPECT_GT(land.Figures().chunks, 3);
   EXPECT_FALSE(land.ground().HeightUnder(PlaceOfSample(300.0, 100.0, 0.0)));
 }
@@ -469,7 +469,7 @@ TEST_F(LandscapePictures, WithoutASourceNothingIsDrawn) {
 
 TEST_F(LandscapePictures, TheMadeUpRangeSaysSo) {
   Landscape land({{}, VoidPolicy::kFill, GeodeticPosition{0.81, 0.14, 0.0}}, {64.0}, kWgs84);
-  EXPECT_THAT(land.TakeNotes(), ElementsAre(HasSubstr("made up")));
+  EXPECT_THAT(land.PollNotes(), ElementsAre(HasSubstr("made up")));
 }
 
 TEST_F(LandscapePictures, AMeshIsDrawnWhole) {

@@ -293,7 +293,7 @@ FrameSeries FramesFor(double full_s, int frames) {
     const PaintedQuality before = quality.painted();
     run.frame_s = FrameOf(before, full_s);
     run.longest_s = std::max(run.longest_s, run.frame_s);
-    quality.Note(run.frame_s);
+    quality.Record(run.frame_s);
     if (frame > frames / 2 && !(quality.painted() == before)) ++run.changes;
   }
   run.last = quality.painted();
@@ -333,7 +333,7 @@ TEST(AutoQuality, UnderHalfTheResolutionAllElseIsLeftOutFirst) {
   for (const double full_s : {0.08, 0.1, 0.12, 0.15, 0.2, 0.3, 0.4, 2.0}) {
     AutoQuality quality(1.0 / 30.0);
     for (int frame = 0; frame < 400; ++frame) {
-      quality.Note(FrameOf(quality.painted(), full_s));
+      quality.Record(FrameOf(quality.painted(), full_s));
       const PaintedQuality& painted = quality.painted();
       EXPECT_TRUE(painted.scale >= 0.5 || painted.saving == Saving::kNearLand) << full_s;
       EXPECT_TRUE(painted.scale <= 0.5 || painted.saving == Saving::kNone) << full_s;
@@ -350,16 +350,16 @@ TEST(AutoQuality, RaysOfShaftsAndLampsAreAsFarApartOnTheScreen) {
 
 TEST(AutoQuality, ThreeHugeFramesAreAnsweredAtOnce) {
   AutoQuality quality(1.0 / 30.0);
-  for (int frame = 0; frame < 3; ++frame) quality.Note(0.6);
+  for (int frame = 0; frame < 3; ++frame) quality.Record(0.6);
   EXPECT_EQ(quality.painted(), (PaintedQuality{Quality::kLow, 0.25, Saving::kNearLand}));
 }
 
 TEST(AutoQuality, AFrameInWhichADriverFinishesAProgramChangesNothing) {
   AutoQuality quality(1.0 / 30.0);
   const PaintedQuality first = quality.painted();
-  quality.Note(0.7);
+  quality.Record(0.7);
   for (int frame = 0; frame < 20; ++frame) {
-    quality.Note(frame % 5 == 4 ? 0.3 : 0.03);
+    quality.Record(frame % 5 == 4 ? 0.3 : 0.03);
     EXPECT_EQ(quality.painted(), first) << frame;
   }
 }

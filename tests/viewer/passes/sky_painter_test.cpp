@@ -501,7 +501,7 @@ ReferencePicture::View ViewOf(const std::shared_ptr<const ReferenceScene>& of) {
 // Takes pictures until there is one of so many rays a pixel.
 Image PictureOf(ReferencePicture& reference, int samples) {
   for (;;) {
-    std::optional<Image> image = reference.Take();
+    std::optional<Image> image = reference.Poll();
     if (image && reference.samples() >= samples) return std::move(*image);
     std::this_thread::sleep_for(std::chrono::milliseconds(2));
   }

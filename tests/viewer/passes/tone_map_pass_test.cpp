@@ -165,13 +165,13 @@ TEST_F(ExposureMeterTest, WhatIsLookedAtArrivesOnce) {
   const RenderTarget picture(kFrameWidth, kFrameHeight, RenderTarget::Depth::kNone);
   picture.Write(Colours());
   ExposureMeter meter;
-  EXPECT_FALSE(meter.Take({}).has_value()) << "nothing was looked at";
+  EXPECT_FALSE(meter.Poll({}).has_value()) << "nothing was looked at";
   meter.LookAt(picture);
   glFinish();
-  const std::optional<MeterReading> arrived = meter.Take({});
+  const std::optional<MeterReading> arrived = meter.Poll({});
   ASSERT_TRUE(arrived.has_value());
   EXPECT_EQ(arrived->ev100, meter.Read(picture, {}).ev100);
-  EXPECT_FALSE(meter.Take({}).has_value());
+  EXPECT_FALSE(meter.Poll({}).has_value());
 }
 
 // --- the table of the tone curve ---
