@@ -219,7 +219,7 @@ void AddPicture(CLI::App& sky, SkyOptions& options) {
       ->check(ReadableBy([](const std::string& text) { (void)WhiteBalanceFromText(text); }))
       ->capture_default_str();
   sky.add_option("--tone-map", options.curve, kToneMapHelp)
-      ->check(CLI::IsMember({"agx", "aces", "reinhard", "pbr-neutral", "linear", "local"}))
+      ->check(CLI::IsMember(LookNames()))
       ->capture_default_str();
   sky.add_option("--look", options.look, kLookHelp)
       ->check(CLI::IsMember(AgxLookNames()))

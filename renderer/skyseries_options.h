@@ -203,7 +203,7 @@ inline void AddDisplayOptions(CLI::App& app, PictureOptionTexts& texts) {
       ->check(ReadableBy([](const std::string& text) { (void)WhiteBalanceFromText(text); }))
       ->capture_default_str();
   app.add_option("--tone-map", texts.tone_curve, kToneMapHelp)
-      ->check(CLI::IsMember({"agx", "aces", "reinhard", "pbr-neutral", "linear", "local"}))
+      ->check(CLI::IsMember(LookNames()))
       ->capture_default_str();
   app.add_option("--look", texts.look, kLookHelp)
       ->check(CLI::IsMember(AgxLookNames()))

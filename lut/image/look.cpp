@@ -17,9 +17,21 @@
 
 namespace alpenglow::lut {
 
+namespace {
+
+constexpr char kLocal[] = "local";
+
+}  // namespace
+
 Look LookFromName(const std::string& name) {
-  if (name == "local") return {.curve = ToneCurve::kAgx, .local_exposure = true};
+  if (name == kLocal) return {.curve = ToneCurve::kAgx, .local_exposure = true};
   return {.curve = ToneCurveFromName(name)};
+}
+
+std::vector<std::string> LookNames() {
+  std::vector<std::string> names = ToneCurveNames();
+  names.emplace_back(kLocal);
+  return names;
 }
 
 std::string NameOf(const Look& look) {
@@ -207,5 +219,7 @@ ToneCurve ToneCurveFromName(const std::string& name) {
 }
 
 std::string NameOf(ToneCurve curve) { return kToneCurves.Of(curve); }
+
+std::vector<std::string> ToneCurveNames() { return kToneCurves.All(); }
 
 }  // namespace alpenglow::lut

@@ -7,6 +7,7 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "lut/image/image.h"
 #include "lut/image/metering.h"
@@ -28,6 +29,8 @@ struct Look {
 /// Returns the look with a tone curve by name, or "local": local exposure and AgX. Throws
 /// InputError for another name.
 [[nodiscard]] Look LookFromName(const std::string& name);
+/// Returns the names that LookFromName accepts.
+[[nodiscard]] std::vector<std::string> LookNames();
 /// Returns the name of the look without the white balance, which has its own name.
 [[nodiscard]] std::string NameOf(const Look& look);
 
@@ -131,5 +134,6 @@ struct ImageSize {
 /// "linear"; throws InputError for another name.
 [[nodiscard]] ToneCurve ToneCurveFromName(const std::string& name);
 [[nodiscard]] std::string NameOf(ToneCurve curve);
+[[nodiscard]] std::vector<std::string> ToneCurveNames();
 
 }  // namespace alpenglow::lut

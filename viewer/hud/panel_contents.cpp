@@ -22,7 +22,6 @@ constexpr double kStripWidth = 440.0;  // units
 constexpr double kStripHeight = 64.0;  // units
 constexpr double kNightShare = 0.35;   // brightness of the day strip in the night theme
 
-const std::vector<std::string> kCurves{"agx", "aces", "reinhard", "pbr-neutral", "linear"};
 const std::vector<std::string> kWhiteBalances{"camera", "daylight", "auto"};
 const std::vector<std::string> kQualities{"auto", "low", "medium", "high", "reference"};
 const std::vector<std::string> kThemes{"by exposure", "day", "night"};
@@ -178,7 +177,7 @@ void WhiteBalanceControls(const ExposureControl& exposure, Look& look) {
 
 void LookControls(ExposureControl& exposure) {
   Look look = exposure.look();
-  if (const auto curve = NameList("tone curve", NameOf(look.curve), kCurves))
+  if (const auto curve = NameList("tone curve", NameOf(look.curve), ToneCurveNames()))
     look.curve = ToneCurveFromName(*curve);
   if (look.curve == ToneCurve::kAgx) {
     if (const auto agx = NameList("look", NameOf(look.agx), AgxLookNames()))

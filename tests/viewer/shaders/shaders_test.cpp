@@ -10,11 +10,13 @@
 #include <cstddef>
 #include <cstdlib>
 #include <glm/geometric.hpp>
+#include <string>
 
 #include "atmosphere/astronomy/moon.h"
 #include "atmosphere/astronomy/sun.h"
 #include "atmosphere/colour/spectrum.h"
 #include "atmosphere/math/constants.h"
+#include "lut/image/look.h"
 #include "renderer/surface/scene_ground.h"
 #include "tests/fixtures/bare_scene.h"
 #include "tests/fixtures/shared_text_cases.h"
@@ -110,9 +112,9 @@ TEST_F(Glslang, AcceptsTheShadersOfLandShaftsAndDisplay) {
   ExpectAccepted({}, "view.full_screen.vert.glsl");
   ExpectAccepted({}, "hud.vert.glsl");
   ExpectAccepted({}, "hud.frag.glsl");
-  for (int curve = 0; curve < 5; ++curve) {
+  for (const std::string& curve : ToneCurveNames()) {
     for (const bool dithers : {false, true})
-      ExpectAccepted(ToneMapPassTexts(static_cast<ToneCurve>(curve), dithers),
+      ExpectAccepted(ToneMapPassTexts(ToneCurveFromName(curve), dithers),
                      "display.tone_map.frag.glsl");
   }
   const ShaderPiece single = {
