@@ -3,6 +3,10 @@
 """Compares the Markdown files with the tree and with the programs.
 
 - Every relative link leads to a file, and to a heading if it names one.
+- Every path of a file or folder in backticks, or in parentheses in a diagram, exists. It is relative
+  to the tree, to the document or to a layer; a name without a folder belongs to any file. Paths with
+  capitals or * are placeholders; out/ and build/ hold outputs. CHANGELOG.md names former files.
+- The table of tests/README.md has every header of tests/fixtures, and no others.
 - A manual has every option that --help of its program prints, and no option that it does not print.
 - The manuals of scene.toml and atmosphere.toml have every key that the readers accept. The readers
   list their keys in the message about an unknown one.
@@ -18,6 +22,10 @@ import tempfile
 TREE = pathlib.Path(__file__).resolve().parent.parent
 UNKNOWN = "qqqqqqqqqqqqqqqq"
 PLACE = "[place]\nlatitude = 46.5\nlongitude = 8.0\n"
+FORMER = "CHANGELOG.md"
+OUTPUTS = ("build/", "out/")
+FOLDERS_OF_PATHS = ("", "include", "atmosphere", "lut", "renderer", "viewer", "tests")
+SOURCES = "cpp|h|glsl|py|cmake"
 SHARED = ("lut/MANUAL.md", "What the three programs share")
 # Program, its manual, and its subcommands.
 PROGRAMS = (
@@ -63,6 +71,41 @@ def faults_of_links():
                 yield f"{file.relative_to(TREE)}: {target} does not exist"
             elif anchor and anchor not in map(anchor_of, headings(linked.read_text("utf-8"))):
                 yield f"{file.relative_to(TREE)}: {target} names no heading"
+
+
+def named_paths(text):
+    for path in re.findall(r"`([^`\n]+)`", without_code(text)):
+        if re.fullmatch(rf"[a-z0-9_.-]+(/[a-z0-9_.-]+)*(/|\.({SOURCES}))", path) \
+                or re.fullmatch(r"[a-z0-9_.-]+(/[a-z0-9_.-]+)+\.[a-z]+", path):
+            yield path
+    for block in re.findall(r"^```text\n.*?^```", text, flags=re.MULTILINE | re.DOTALL):
+        yield from re.findall(rf"\(([a-z0-9_./-]+\.(?:{SOURCES}))\)", block)
+
+
+def faults_of_paths():
+    names = {file.name for folder in FOLDERS_OF_PATHS[1:] for file in (TREE / folder).rglob("*")}
+    names |= {file.name for file in TREE.iterdir()}
+    for document in documents():
+        name = document.relative_to(TREE).as_posix()
+        if name == FORMER:
+            continue
+        folders = [document.parent] + [TREE / folder for folder in FOLDERS_OF_PATHS]
+        for path in dict.fromkeys(named_paths(document.read_text(encoding="utf-8"))):
+            if path.startswith(OUTPUTS) or ("/" not in path and path in names):
+                continue
+            if not any((folder / path).exists() for folder in folders):
+                yield f"{name}: {path} does not exist"
+
+
+def faults_of_fixtures():
+    text = text_of("tests/README.md")
+    table = text[text.index("| fixture |"):]
+    listed = set(re.findall(r"`([a-z_]+\.h)`",
+                            " ".join(re.findall(r"^\| ([^|]*)\|", table, flags=re.MULTILINE))))
+    present = {file.name for file in (TREE / "tests" / "fixtures").glob("*.h")}
+    for header in sorted(listed ^ present):
+        fault = "is not in the table" if header in present else "does not exist"
+        yield f"tests/README.md: fixtures/{header} {fault}"
 
 
 def section(text, heading):
@@ -187,7 +230,8 @@ def main():
         parser.add_argument(f"--{name}", help="the program")
     arguments = vars(parser.parse_args())
     programs = {name: path for name, path in arguments.items() if path}
-    faults = list(faults_of_links()) + list(faults_of_example()) + list(faults_of_options(programs))
+    faults = [*faults_of_links(), *faults_of_paths(), *faults_of_fixtures(), *faults_of_example(),
+              *faults_of_options(programs)]
     if "skyseries" in programs:
         with tempfile.TemporaryDirectory() as folder:
             for of_keys in (faults_of_scene_keys, faults_of_atmosphere_keys):
