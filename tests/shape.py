@@ -20,10 +20,10 @@ LAYERS = ("atmosphere", "lut", "renderer", "viewer")
 SOURCES = (".h", ".cpp", ".glsl")
 MOST_PUBLIC_METHODS = 20
 LIMITS = {
-    "source files of the four layers": 551,
+    "source files of the four layers": 504,
     "types with more than 20 public methods": 0,
     "lines of the viewer without OpenGL": 1403,
-    "files over 500 lines": 8,
+    "files over 500 lines": 5,
     "installed headers": 13,
     "comment blocks that start without a subject, %": 1.0,
 }

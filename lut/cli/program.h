@@ -41,7 +41,7 @@ void ThrowIfInterrupted();
 
 /// Returns program version, git describe, library versions and the SIMD set used, for --version.
 [[nodiscard]] std::string VersionText(const std::string& program);
-/// Returns "alpenglow 0.1.0 (git describe)", which is written into every output file.
+/// Returns "alpenglow 0.2.0 (git describe)", which is written into every output file.
 [[nodiscard]] std::string ProducerText();
 
 /// Limits the program to `threads` threads (0: all) during the lifetime of the object.
