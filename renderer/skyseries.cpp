@@ -167,7 +167,7 @@ class FramePictures {
   [[nodiscard]] NotedPicture Render(const Frame& frame, Progress& progress) {
     settings_.progress = &progress;
     const SceneRenderer& renderer = Loaded(&progress);
-    const CameraSample camera_sample = ShotAt(frame);
+    const CameraSample camera_sample = CameraSampleAt(frame);
     NotedPicture picture = Rendered(renderer, camera_sample);
     picture.notes[kIlluminanceNote] = fmt::format("{:.6g}", renderer.Illuminance(camera_sample));
     return picture;
@@ -175,10 +175,10 @@ class FramePictures {
   /// Returns the illuminance behind the polariser [lux].
   [[nodiscard]] double Illuminance(const Frame& frame) {
     const double behind_filter = plan_.scene.camera.polariser_rad ? 0.5 : 1.0;
-    return behind_filter * Loaded(nullptr).Illuminance(ShotAt(frame));
+    return behind_filter * Loaded(nullptr).Illuminance(CameraSampleAt(frame));
   }
   [[nodiscard]] Image Small(const Frame& frame) {
-    return Loaded(nullptr).Render(ShotAt(frame), preview_);
+    return Loaded(nullptr).Render(CameraSampleAt(frame), preview_);
   }
 
  private:
@@ -186,7 +186,7 @@ class FramePictures {
     if (!renderer_) renderer_ = Load(plan_.scene, progress);
     return *renderer_;
   }
-  [[nodiscard]] CameraSample ShotAt(const Frame& frame) {
+  [[nodiscard]] CameraSample CameraSampleAt(const Frame& frame) {
     CameraSample camera_sample =
         plan_.path ? CameraSampleOf(frame, *plan_.path, plan_.shutter * plan_.interval_s)
                    : CameraSample(frame.instant);

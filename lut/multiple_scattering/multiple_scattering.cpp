@@ -45,7 +45,7 @@ const Medium& Checked(const Medium& medium, const MultipleScatteringOptions& opt
   RequireInRange(options.sun_angles, 4, 1024, "sun_angles");
   RequireDegree(options.degree);
   if (options.delta_m && options.exact_orders)
-    throw InputError("forward_peak sums all orders; exact_orders wants some");
+    throw InputError("delta_m sums all orders; exact_orders wants some");
   RequireNodes(options);
   RequireInRange(options.max_orders, 1, 10000, "max_orders");
   RequireInRange(options.tolerance, 0.0, 1.0, "tolerance");

@@ -125,7 +125,7 @@ class MultipleScattering {
 
   /// Returns the factor of the light that is added near the sun to the moments of thin air
   /// (GlowAboutTheSun), over light scattered once by aerosol without its phase function [1/sr]; 0
-  /// with forward_peak or exact_orders.
+  /// with delta_m or exact_orders.
   /// @param column_km  as for GlowAboutTheSun::FactorOf.
   [[nodiscard]] Bands<float> GlowFactor(double nu, float column_km) const;
 
@@ -196,7 +196,7 @@ class MultipleScattering {
   MomentGrid grid_;
   std::optional<DeltaM> peak_;
   AirConstants<float> air_{};
-  std::optional<GlowAboutTheSun> glow_;  // only without forward_peak and exact_orders
+  std::optional<GlowAboutTheSun> glow_;  // only without delta_m and exact_orders
   std::vector<float> smooth_;
   std::vector<MomentBlock> blocks_;
   AlignedFloats packed_;           // a copy of the moments in the layout of the kernels

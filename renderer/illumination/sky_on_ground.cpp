@@ -160,8 +160,8 @@ SkyIrradianceGradient::SkyIrradianceGradient(const SingleScattering<float>& air,
 }
 
 std::array<float, 4> SkyIrradianceGradient::On(double n_up, double n_sunward) const {
-  const auto u = static_cast<float>(shared::OccludedSkyColumn(n_sunward));
-  const auto v = static_cast<float>(shared::OccludedSkyRow(n_up));
+  const auto u = static_cast<float>(shared::UnoccludedSkyColumn(n_sunward));
+  const auto v = static_cast<float>(shared::UnoccludedSkyRow(n_up));
   const auto column = std::min(static_cast<std::size_t>(u), kColumns - 2);
   const auto row = std::min(static_cast<std::size_t>(v), kRows - 2);
   const float right = u - static_cast<float>(column), above = v - static_cast<float>(row);

@@ -74,7 +74,7 @@ double OpenAltitude_m(const GroundSite& site) {
   return std::max(0.5 * (extent.lowest_m + extent.highest_m), 0.0);
 }
 
-SkyIrradianceGradient OccludedSkyUnder(const GroundSite& site, const SunPosition& disk) {
+SkyIrradianceGradient UnoccludedSkyUnder(const GroundSite& site, const SunPosition& disk) {
   return {*site.air().single_scattering, *site.air().multiple_scattering, OpenAltitude_m(site),
           std::sin(SunForAir(disk).elevation_rad)};
 }
@@ -89,11 +89,11 @@ std::array<float, 4> Over(const std::array<float, 4>& sky, const std::array<floa
 // Ratios of the light at a vertex to the light of the open sky on its slope: for sky and slopes
 // together, and for the sky alone. Shaders multiply them by the current light of the open sky
 // (GroundLightBlock), which follows the light source.
-struct SharesOfOccludedSky {
+struct SharesOfUnoccludedSky {
   std::array<float, 4> all, sky;
 };
-SharesOfOccludedSky SharesAt(const GroundVertex& vertex, const GroundSky& sky,
-                             const SkyIrradianceGradient& open) {
+SharesOfUnoccludedSky SharesAt(const GroundVertex& vertex, const GroundSky& sky,
+                               const SkyIrradianceGradient& open) {
   const glm::dvec3 normal = InDoubles(vertex.normal), to_sun = sky.lighting().to_sun;
   const glm::dvec3 up = sky.site().geometry().UpAt(InDoubles(vertex.position_m));
   const double flat = std::max(std::hypot(to_sun.x, to_sun.y), 1e-9);
@@ -131,10 +131,10 @@ class GroundFollower::Maker {
     if (site) {
       made.lit = std::make_shared<const LitGround>(site, LightingBy(view.by, view, *site));
       made.open_altitude_m = OpenAltitude_m(*site);
-      made.open = OccludedSkyUnder(*site, view.by);
+      made.open = UnoccludedSkyUnder(*site, view.by);
       if (view.other) {
         made.other = std::make_shared<const GroundSky>(site, LightingBy(*view.other, view, *site));
-        made.other_open = OccludedSkyUnder(*site, *view.other);
+        made.other_open = UnoccludedSkyUnder(*site, *view.other);
       }
     }
     made.making_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
@@ -300,7 +300,7 @@ std::optional<LightOfVertices> GroundFollower::Light() const {
     std::vector<VertexLight> light;
     light.reserve(vertices.size());
     for (const GroundVertex& vertex : VerticesIn(made.lit->site(), anchor, vertices)) {
-      const SharesOfOccludedSky by = SharesAt(vertex, made.lit->sky(), *made.open);
+      const SharesOfUnoccludedSky by = SharesAt(vertex, made.lit->sky(), *made.open);
       // A source that is not yet significant gets the ratios that it has when it becomes
       // significant: it is low and does not light slopes.
       const std::array<float, 4> other =

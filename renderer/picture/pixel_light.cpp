@@ -220,7 +220,7 @@ void PixelLight::TakeUpTo(int rays) {
   for (const Ray& seen : more) Add(seen);
 }
 
-void PixelLight::TakeOccludedSky() {
+void PixelLight::TakeUnoccludedSky() {
   const CameraRay ray = frame_->camera().MiddleRay(x_ + 0.5, y_ + 0.5);
   const Ray seen{ray, {}, AirFor({}, ray.through, *frame_, airs_), glm::dvec2(0.0)};
   AddNewAir(0);

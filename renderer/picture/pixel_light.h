@@ -85,7 +85,7 @@ class PixelLight {
   /// Adds rays until the pixel has `rays` of them. Air of earlier rays is reused.
   void TakeUpTo(int rays);
   /// Adds the first ray, through the middle of a pixel that sees only sky.
-  void TakeOccludedSky();
+  void TakeUnoccludedSky();
 
   [[nodiscard]] const PixelSum& sum() const { return sum_; }
   /// Length of the last ray that met a surface, or the expected length [m].

@@ -99,7 +99,7 @@ class TileRenderer {
   void AddRows(PixelWriter& writer) const;
   /// Adds the tiles of a picture whose pixels take as many rays as their noise requires.
   void AddTiles(PixelWriter& writer) const;
-  void AddTile(double floor, int x0, int y0, const OccludedSkyPixels& open_sky,
+  void AddTile(double floor, int x0, int y0, const UnoccludedSkyPixels& open_sky,
                PixelWriter& writer) const;
   void Write(int x, int y, const PixelLight& pixel, PixelWriter& writer) const;
   /// Returns the luminance floor of the relative noise: darker pixels count as if they had this
@@ -165,7 +165,7 @@ void TileRenderer::AddTiles(PixelWriter& writer) const {
   const int columns = (settings.width + Tile::kSide - 1) / Tile::kSide;
   const int tiles = columns * ((settings.height + Tile::kSide - 1) / Tile::kSide);
   const double floor = NoiseFloor();
-  const OccludedSkyPixels open_sky(shader_);
+  const UnoccludedSkyPixels open_sky(shader_);
   std::atomic<int> done{0};
   tbb::parallel_for(0, tiles, [&](int i) {
     const int x0 = i % columns * Tile::kSide, y0 = i / columns * Tile::kSide;
@@ -176,7 +176,7 @@ void TileRenderer::AddTiles(PixelWriter& writer) const {
 
 // Traces first rays of the tile and of a border of pixels around it. Border pixels belong to other
 // tiles; they only provide the noise estimate and their rays.
-void TileRenderer::AddTile(double floor, int x0, int y0, const OccludedSkyPixels& open_sky,
+void TileRenderer::AddTile(double floor, int x0, int y0, const UnoccludedSkyPixels& open_sky,
                            PixelWriter& writer) const {
   const RenderSettings& settings = frame_.settings();
   const int first = settings.samples_per_pixel, most = std::max(kMostRaysForNoise, first);
@@ -199,7 +199,7 @@ void TileRenderer::AddTile(double floor, int x0, int y0, const OccludedSkyPixels
     PixelLight& pixel = pixels.emplace_back(shader_, x, y, most, lattice, expected_m);
     is_done.push_back(open_sky.Has(x, y));
     if (is_done.back()) {
-      pixel.TakeOccludedSky();
+      pixel.TakeUnoccludedSky();
     } else {
       pixel.TakeUpTo(fewest);
     }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Renders pictures of a scene: terrain, sky, sun disk, lamps, and the air in front of everything.
 //
-// RenderSettings set the size and quality of a picture; Shot sets its time and camera.
+// RenderSettings set the size and quality of a picture; CameraSample sets its time and camera.
 //
 // Frame: ENU at the foot of the eye on the ellipsoid. The atmosphere is a shell on the sphere that
 // osculates the ellipsoid there, so the altitude of a point is its distance from that sphere. The
@@ -140,7 +140,7 @@ class SceneRenderer {
   /// without terrain [lux].
   [[nodiscard]] double Illuminance(const CameraSample& camera_sample) const;
 
-  /// Returns sun and moon at the eye, for Shot::bodies.
+  /// Returns sun and moon at the eye, for CameraSample::bodies.
   [[nodiscard]] SkyBodies BodiesOver(const CameraSample& camera_sample) const;
   /// Returns the sun as seen from the eye with refraction, where the picture shows it.
   [[nodiscard]] SunPosition ApparentSun(const CameraSample& camera_sample) const;

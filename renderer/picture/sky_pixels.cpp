@@ -228,7 +228,7 @@ double AroundPixel(const FrameContext& frame) {
 
 }  // namespace
 
-OccludedSkyPixels::OccludedSkyPixels(const PixelShader& shader)
+UnoccludedSkyPixels::UnoccludedSkyPixels(const PixelShader& shader)
     : frame_(shader.frame()), around_rad_(AroundPixel(frame_)) {
   const CameraRays& camera = frame_.camera();
   const PreparedScene& scene = frame_.scene();
@@ -243,7 +243,7 @@ OccludedSkyPixels::OccludedSkyPixels(const PixelShader& shader)
   skyline_.emplace(up, ArcAround(up), 0.5 * camera.PixelAngle(), sees_sky);
 }
 
-Skyline::Arc OccludedSkyPixels::ArcAround(const glm::dvec3& up) const {
+Skyline::Arc UnoccludedSkyPixels::ArcAround(const glm::dvec3& up) const {
   const CameraRays& camera = frame_.camera();
   const int width = frame_.settings().width, height = frame_.settings().height;
   const Skyline::Arc whole{0.0, 2.0 * kPi};
@@ -275,7 +275,7 @@ Skyline::Arc OccludedSkyPixels::ArcAround(const glm::dvec3& up) const {
   return {Skyline::AzimuthOf(ahead, up) + first, last - first};
 }
 
-bool OccludedSkyPixels::Has(int x, int y) const {
+bool UnoccludedSkyPixels::Has(int x, int y) const {
   if (!skyline_) return false;
   const glm::dvec3 middle = frame_.camera().Direction(x + 0.5, y + 0.5);
   const auto is_near = [&](const glm::dvec3& to_disk, double radius_rad) {

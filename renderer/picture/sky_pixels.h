@@ -8,10 +8,10 @@
 // not twinkle. During a long exposure the light is spread along its path, evenly in time, in steps
 // of half a pixel.
 //
-// OccludedSkyPixels finds the pixels that see only sky without tracing a ray: those well above the
-// skyline, and not near the sun or the moon. All rays of such a pixel have one sky radiance, that
-// of its middle (shared_samples.h), and so have all rays of its neighbours that count for it. One
-// ray through the middle gives the same result as many.
+// UnoccludedSkyPixels finds the pixels that see only sky without tracing a ray: those well above
+// the skyline, and not near the sun or the moon. All rays of such a pixel have one sky radiance,
+// that of its middle (shared_samples.h), and so have all rays of its neighbours that count for it.
+// One ray through the middle gives the same result as many.
 //
 // Skyline is the elevation of the ground around an eye. If the ground is solid below its surface, then along each azimuth all directions below one
 // elevation show ground and all above it show sky. The skyline is therefore one elevation per
@@ -111,11 +111,11 @@ class FrameContext;
 class PixelShader;
 
 /// Immutable, safe to share between threads. Refers to the frame.
-class OccludedSkyPixels {
+class UnoccludedSkyPixels {
  public:
   /// No pixel counts as open sky where sky can be visible below ground, a lens blurs, or the camera
   /// moves.
-  explicit OccludedSkyPixels(const PixelShader& shader);
+  explicit UnoccludedSkyPixels(const PixelShader& shader);
 
   /// Returns whether all rays that count for a pixel see only sky, without a disk in it.
   [[nodiscard]] bool Has(int x, int y) const;

@@ -172,16 +172,16 @@ void PaintedScene::KeepUpOpenSkies(const LightsOfSky& lights, Pace pace) {
   const double altitude_m = ground_.open_altitude_m();
   for (const SkyLight& light : lights) {
     const double elevation_rad = SunForAir(light.disk).elevation_rad;
-    std::optional<OccludedSkyOf>& sky = open_skies_[IndexOf(light.source())];
+    std::optional<UnoccludedSkyOf>& sky = open_skies_[IndexOf(light.source())];
     const double left_rad = pace == Pace::kWait ? 0.0 : kLeft_rad;
     if (sky && sky->air == known_air_ && sky->altitude_m == altitude_m &&
         std::abs(sky->elevation_rad - elevation_rad) <= left_rad)
       continue;
-    sky = OccludedSkyOf{known_air_,
-                        altitude_m,
-                        elevation_rad,
-                        {*single_scattering_, known_air_->multiple_scattering, altitude_m,
-                         std::sin(elevation_rad)}};
+    sky = UnoccludedSkyOf{known_air_,
+                          altitude_m,
+                          elevation_rad,
+                          {*single_scattering_, known_air_->multiple_scattering, altitude_m,
+                           std::sin(elevation_rad)}};
   }
 }
 

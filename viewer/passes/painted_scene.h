@@ -92,7 +92,7 @@ class PaintedScene {
   [[nodiscard]] const GroundFollower& ground() const { return ground_; }
   /// Directional variation of the unoccluded sky's irradiance under a source, which must be one of
   /// the lights, at the instant of the last Update or WaitUntilReady.
-  [[nodiscard]] const SkyIrradianceGradient& OccludedSkyIrradiance(LightSource source) const {
+  [[nodiscard]] const SkyIrradianceGradient& UnoccludedSkyIrradiance(LightSource source) const {
     return open_skies_[IndexOf(source)].value().light;
   }
   [[nodiscard]] const GroundTextures& ground_textures() const { return ground_textures_; }
@@ -117,7 +117,7 @@ class PaintedScene {
   enum class Pace { kFollow, kWait };
   void KeepUpAir(const PaintedView& view, const LightsOfSky& lights, Pace pace, double seconds);
   /// Irradiance of the unoccluded sky on slopes, and the inputs it was computed for.
-  struct OccludedSkyOf {
+  struct UnoccludedSkyOf {
     std::shared_ptr<const SolvedAir> air;
     double altitude_m, elevation_rad;
     SkyIrradianceGradient light;
@@ -136,7 +136,7 @@ class PaintedScene {
   AirFollower air_;                             // at sun_view_
   std::shared_ptr<const SolvedAir> known_air_;  // the medium in ground_textures_
   std::optional<SingleScattering<float>> single_scattering_;  // of known_air_
-  std::array<std::optional<OccludedSkyOf>, kLightSources> open_skies_;
+  std::array<std::optional<UnoccludedSkyOf>, kLightSources> open_skies_;
   std::optional<AirFollower> moon_air_;           // once the moon is a light
   std::shared_ptr<const SolvedAir> moon_air_of_;  // the medium of moon_air_
   std::unique_ptr<Landscape> land_;

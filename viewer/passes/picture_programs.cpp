@@ -103,7 +103,7 @@ GroundBlock GroundAround(const PaintedScene& scene, const PaintedView& view) {
 
 GroundLightBlock LightAround(const PaintedScene& scene, const PaintedView& view,
                              const SkyLight& light) {
-  GroundLightBlock block = GroundLightBlockOf(scene.OccludedSkyIrradiance(light.source()),
+  GroundLightBlock block = GroundLightBlockOf(scene.UnoccludedSkyIrradiance(light.source()),
                                               DirectionToSun(light.disk), PixelAngle(view));
   block.ground_view.y = scene.HasEdgesOf(light.source()) ? 1.0F : 0.0F;
   return block;
@@ -169,7 +169,7 @@ void PictureBlocks::UploadSkyByPixel(const PaintedScene& scene, const PaintedVie
   const LocalFrame eye(scene.fixed().ellipsoid, view.eye.place);
   UploadBlock(sky_by_pixel_, kSkyByPixelBinding,
               sky->BlockOf(light.source(), eye, DirectionToSun(SunForAir(light.disk)),
-                           scene.OccludedSkyIrradiance(light.source())));
+                           scene.UnoccludedSkyIrradiance(light.source())));
 }
 
 void PictureBlocks::UploadGround(const PaintedScene& scene, const PaintedView& view) const {

@@ -69,10 +69,10 @@ enum PictureUnit {
 inline constexpr LampUnits kLampUnits{kLampsBinding, kViewBinding, kSurfaceUnit, kLampUnit};
 inline constexpr FogUnits kFogUnits{kFogBinding, kFogUnit};
 
-/// Identifies one program of the picture. kOccludedSky is the sky above the horizon, see
+/// Identifies one program of the picture. kUnoccludedSky is the sky above the horizon, see
 /// RowsOfPlanet.
 struct PictureStage {
-  enum class Pass { kLand, kSky, kDisks, kOccludedSky, kNight };
+  enum class Pass { kLand, kSky, kDisks, kUnoccludedSky, kNight };
   Pass pass;
   bool has_shade = false, has_lamps = false;
   bool sky_by_pixel = false;  // SkyByPixel, for land only

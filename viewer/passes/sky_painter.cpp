@@ -223,10 +223,12 @@ void SkyPainter::DescribeDisks(const DisksInAir& seen) {
 void SkyPainter::MakeOneReady(const PaintedView& view, bool has_shade, bool has_lamps) {
   using enum PictureStage::Pass;
   for (const PictureStage& stage :
-       {PictureStage{kSky, has_shade, has_lamps}, PictureStage{kOccludedSky, has_shade, has_lamps},
+       {PictureStage{kSky, has_shade, has_lamps},
+        PictureStage{kUnoccludedSky, has_shade, has_lamps},
         PictureStage{kLand, !has_shade, has_lamps}, PictureStage{kSky, !has_shade, has_lamps},
-        PictureStage{kOccludedSky, !has_shade, has_lamps}, PictureStage{kDisks},
-        PictureStage{kNight}, PictureStage{kLand}, PictureStage{kSky}, PictureStage{kOccludedSky}})
+        PictureStage{kUnoccludedSky, !has_shade, has_lamps}, PictureStage{kDisks},
+        PictureStage{kNight}, PictureStage{kLand}, PictureStage{kSky},
+        PictureStage{kUnoccludedSky}})
     if (programs_.MakeReady(stage)) return;
   stars_.MakeReady(view, scene_.fog(), scene_.fixed().fog_phase);
 }
@@ -256,7 +258,7 @@ void SkyPainter::PaintSky(const PaintedView& view, const Lit& lit) {
   }
   if (rows < view.height) {
     const Scissor above({0, rows, view.width, view.height - rows});
-    programs_.Paint({kOccludedSky, lit.has_shade, lit.has_lamps}, lit.source);
+    programs_.Paint({kUnoccludedSky, lit.has_shade, lit.has_lamps}, lit.source);
   }
 }
 

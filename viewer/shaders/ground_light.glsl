@@ -56,8 +56,9 @@ vec3 NormalInLight(vec3 offset, vec3 mesh_normal, float footprint) {
 }
 
 // Returns the irradiance of the unoccluded sky on a surface, at half the height of the land.
-vec4 OccludedSkyOnSlope(vec3 normal, vec3 up) {
-  float u = OccludedSkyColumn(dot(normal, sky_towards.xyz)), v = OccludedSkyRow(dot(normal, up));
+vec4 UnoccludedSkyOnSlope(vec3 normal, vec3 up) {
+  float u = UnoccludedSkyColumn(dot(normal, sky_towards.xyz));
+  float v = UnoccludedSkyRow(dot(normal, up));
   int column = min(int(u), OPEN_SKY_COLUMNS - 2), row = min(int(v), OPEN_SKY_ROWS - 2);
   int low = row * OPEN_SKY_COLUMNS + column, high = low + OPEN_SKY_COLUMNS;
   float right = u - float(column);
@@ -121,7 +122,7 @@ SeenGround PlanetSeen(vec3 point_m, vec3 to_eye) {
 // Returns the irradiance of the sky if terrain leaves the fraction `share` of the unoccluded sky:
 // VertexLight (land_chunk.h).
 vec4 SkyByShare(SeenGround seen, vec4 share) {
-  return share * OccludedSkyOnSlope(seen.normal, seen.at.up);
+  return share * UnoccludedSkyOnSlope(seen.normal, seen.at.up);
 }
 
 // Returns the radiance of ground lit by sun and sky.

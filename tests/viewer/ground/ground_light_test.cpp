@@ -52,7 +52,7 @@ void Bind(const ShaderProgram& program, const char* name, GLuint binding, const 
   program.BindBlock(name, binding);
 }
 
-SkyIrradianceGradient OccludedSkyOver(const LitGround& lit) {
+SkyIrradianceGradient UnoccludedSkyOver(const LitGround& lit) {
   const SiteAir& air = lit.site().air();
   return {*air.single_scattering, *air.multiple_scattering, 1000.0, lit.lighting().to_sun.z};
 }
@@ -86,7 +86,7 @@ class Blocks {
     ground.mesh_up = {0.0F, 0.0F, 1.0F, 0.0F};
     Bind(program, "Ground", 2, ground_, ground);
     Bind(program, "GroundLight", 3, light_,
-         GroundLightBlockOf(OccludedSkyOver(lit_), light.to_sun, kPixel_rad));
+         GroundLightBlockOf(UnoccludedSkyOver(lit_), light.to_sun, kPixel_rad));
     Bind(program, "GroundSurface", 4, surface_,
          Draped(GroundSurfaceBlockOf(site.material()), Picture(), 0.0, 0.0));
     textures_.Bind(program, 0, LightSource::kSun);
@@ -95,7 +95,7 @@ class Blocks {
   /// The tables of the sky's light on slopes, for programs that read them.
   void UploadSkyByPixel(const ShaderProgram& program) {
     constexpr int kUnit = 3;
-    const SkyIrradianceGradient open = OccludedSkyOver(lit_);
+    const SkyIrradianceGradient open = UnoccludedSkyOver(lit_);
     sky_.Use(LightSource::kSun, {{std::shared_ptr<void>(), &lit_.sky()}, open});
     GeodeticPosition eye = lit_.site().ground().frame.origin();
     eye.height_m += eye_m_;
@@ -218,7 +218,7 @@ std::vector<double> Differences(const LitGround& lit, const Lighting& light, dou
 }
 
 std::vector<double> LandDifferences(const LitGround& lit) {
-  const SkyIrradianceGradient open = OccludedSkyOver(lit);
+  const SkyIrradianceGradient open = UnoccludedSkyOver(lit);
   const glm::dvec3& to_sun = lit.lighting().to_sun;
   const glm::dvec3 sunward = glm::normalize(glm::dvec3(to_sun.x, to_sun.y, 0.0));
   const auto shares = [open, sunward, &lit](const Case& c) {

@@ -190,7 +190,7 @@ TEST_F(Glslang, AcceptsEveryStageOfThePicture) {
     const GroundMaterial material(scene.ground, nullptr, scene.medium.wavelengths_nm);
     const auto fog = with_fog ? std::optional(PhaseKind::kHenyeyGreensteinDraine) : std::nullopt;
     for (const auto pass : {PictureStage::Pass::kLand, PictureStage::Pass::kSky,
-                            PictureStage::Pass::kOccludedSky, PictureStage::Pass::kDisks}) {
+                            PictureStage::Pass::kUnoccludedSky, PictureStage::Pass::kDisks}) {
       for (int choice = 0; choice < 4; ++choice) {
         const PictureStage stage{pass, choice % 2 == 1, choice / 2 == 1};
         ExpectAccepted(PictureTexts({material, painter, {true, true}, fog}, stage),
