@@ -224,8 +224,10 @@ Metadata MetadataOf(const SeriesPlan& plan, const RenderSettings& settings,
                     const std::optional<EffectBudget>& budget) {
   Metadata metadata = PictureMetadata(plan.scene, settings);
   if (plan.path) {
+    // Poses replace place and camera of the scene, which still place its mesh or range.
     metadata["alpenglow.path"] =
-        fmt::format("hash {}, shutter {} of {} s", Fingerprint({{"path", TextOf(*plan.path)}}),
+        fmt::format("hash {}, shutter {} of {} s",
+                    Fingerprint({{"path", TextOf(*plan.path)}, {"scene", Fingerprint(metadata)}}),
                     plan.shutter, plan.interval_s);
   }
   if (budget && budget->leave_out)

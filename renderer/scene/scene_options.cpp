@@ -19,7 +19,7 @@ namespace {
 
 // Returns the file that a grid's header names, or the grid itself.
 std::filesystem::path DataOfGrid(const Volume& volume) {
-  if (volume.grid.empty() || volume.grid_size) return volume.grid;
+  if (volume.grid_size) return volume.grid;
   try {
     return ReadNrrdHeader(volume.grid).data_file;
   } catch (const InputError&) {
@@ -28,6 +28,13 @@ std::filesystem::path DataOfGrid(const Volume& volume) {
 }
 
 }  // namespace
+
+std::vector<std::filesystem::path> FilesOf(const Volume& volume) {
+  if (volume.grid.empty()) return {};
+  const std::filesystem::path data = DataOfGrid(volume);
+  if (data == volume.grid) return {data};
+  return {volume.grid, data};
+}
 
 std::vector<NamedFile> FilesOf(const Scene& scene) {
   std::vector<NamedFile> files;
@@ -42,8 +49,7 @@ std::vector<NamedFile> FilesOf(const Scene& scene) {
     if (light.ies) add("light.ies", *light.ies);
   }
   for (const Volume& volume : scene.volumes) {
-    add("volume.grid", volume.grid);
-    if (const auto data = DataOfGrid(volume); data != volume.grid) add("volume.grid", data);
+    for (const std::filesystem::path& file : FilesOf(volume)) add("volume.grid", file);
   }
   return files;
 }

@@ -3,6 +3,7 @@
 // lists the files and the land of a scene.
 #pragma once
 
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
@@ -17,6 +18,9 @@ struct LandSource;  // renderer/terrain/land_source.h
 /// Returns every file that the scene names and that is read for rendering, with the name of its
 /// key.
 [[nodiscard]] std::vector<NamedFile> FilesOf(const Scene& scene);
+
+/// Returns the files of a volume's grid: none, one, or an NRRD header and the data that it names.
+[[nodiscard]] std::vector<std::filesystem::path> FilesOf(const Volume& volume);
 
 /// Returns the land source of a scene: its elevation model, its mesh or the built-in range.
 [[nodiscard]] LandSource LandSourceOf(const Scene& scene);

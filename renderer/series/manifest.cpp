@@ -53,6 +53,10 @@ std::string HeightText(const Height& height) {
                      height.above_ground ? "ground" : "ellipsoid");
 }
 
+std::string NameAndHashOf(const std::filesystem::path& file) {
+  return fmt::format("{}, hash {}", file.filename().string(), HashOfFile(file));
+}
+
 /// Returns the number of the elevation models, and a hash of their names and contents in their
 /// order.
 std::string TextOfModels(const Scene& scene) {
@@ -80,15 +84,12 @@ std::string TerrainText(const Scene& scene) {
                                DegreesText(terrain.centre->latitude_rad),
                                DegreesText(terrain.centre->longitude_rad));
     case TerrainSource::Kind::kElevationModel:
-      return fmt::format("{}, voids {}",
-                         terrain.HasManyModels()
-                             ? TextOfModels(scene)
-                             : fmt::format("{}, hash {}", terrain.file.filename().string(),
-                                           HashOfFile(terrain.file)),
-                         terrain.voids == VoidPolicy::kFill ? "filled" : "open");
+      return fmt::format(
+          "{}, voids {}",
+          terrain.HasManyModels() ? TextOfModels(scene) : NameAndHashOf(terrain.file),
+          terrain.voids == VoidPolicy::kFill ? "filled" : "open");
     case TerrainSource::Kind::kMesh:
-      return fmt::format("{}, hash {}{}", terrain.file.filename().string(),
-                         HashOfFile(terrain.file), terrain.up == UpAxis::kY ? ", y up" : "");
+      return NameAndHashOf(terrain.file) + (terrain.up == UpAxis::kY ? ", y up" : "");
     case TerrainSource::Kind::kNone:
       return "none";
   }
@@ -103,7 +104,7 @@ std::string LightText(const Light& light) {
       light.intensity_cd ? fmt::format("{}", *light.intensity_cd) : "as measured",
       light.temperature_k, light.radius_m);
   if (light.ies) {
-    text += fmt::format(", {}, hash {}", light.ies->filename().string(), HashOfFile(*light.ies));
+    text += ", " + NameAndHashOf(*light.ies);
   } else if (light.type == Light::Type::kPoint) {
     return text;
   }
@@ -114,30 +115,92 @@ std::string LightText(const Light& light) {
          fmt::format(", cone {} to {}", DegreesText(light.inner_rad), DegreesText(light.outer_rad));
 }
 
+/// The asymmetry parameter of droplets tells their diameter.
+std::string PhaseText(const PhaseFunction& phase) {
+  return fmt::format("{} g {}", NameOf(phase.kind), phase.g);
+}
+
 std::string FogText(const Fog& fog) {
-  return fmt::format("extinction {} per m at {}, scale height {} m, albedo {}, {} g {}",
+  return fmt::format("extinction {} per m at {}, scale height {} m, albedo {}, {}",
                      fog.extinction_per_m,
                      fog.base_height_m ? fmt::format("{} m", *fog.base_height_m) : "the ground",
-                     fog.scale_height_m, fog.albedo, NameOf(fog.phase.kind), fog.phase.g);
+                     fog.scale_height_m, fog.albedo, PhaseText(fog.phase));
+}
+
+/// Returns every value of [ground].
+Metadata KeysOf(const GroundCover& ground) {
+  Metadata values = {{"cover", fmt::format("{}", static_cast<int>(ground.kind))},
+                     {"albedo", fmt::format("{}", fmt::join(ground.albedo, " "))},
+                     {"roughness", fmt::format("{}", ground.roughness)},
+                     {"reflectance", fmt::format("{}", ground.reflectance)},
+                     {"wind_m_per_s", fmt::format("{}", ground.wind_m_per_s)},
+                     {"grain_diameter_m", fmt::format("{}", ground.grain_diameter_m)},
+                     {"wetness", fmt::format("{}", ground.wetness)}};
+  if (ground.sea_level_m) values["sea_level_m"] = fmt::format("{}", *ground.sea_level_m);
+  return values;
+}
+
+/// Returns every value of a [[volume]], with the hashes of its grid's files.
+Metadata KeysOf(const Volume& volume) {
+  Metadata values = {
+      {"shape", volume.shape == VolumePlacement::Shape::kBox ? "box" : "ellipsoid"},
+      {"latitude", DegreesText(volume.latitude_rad)},
+      {"longitude", DegreesText(volume.longitude_rad)},
+      {"height", HeightText(volume.height)},
+      {"size_m", fmt::format("{}", fmt::join(volume.size_m, " "))},
+      {"heading", DegreesText(volume.heading_rad)},
+      {"extinction_per_m", fmt::format("{}", fmt::join(volume.extinction_per_m, " "))},
+      {"albedo", fmt::format("{}", fmt::join(volume.albedo, " "))},
+      {"emission_per_m", fmt::format("{}", fmt::join(volume.emission_per_m, " "))},
+      {"phase", PhaseText(volume.phase)}};
+  if (volume.scale_height_m) values["scale_height_m"] = fmt::format("{}", *volume.scale_height_m);
+  if (volume.temperature_k) values["temperature_k"] = fmt::format("{}", *volume.temperature_k);
+  if (volume.grid_size) values["grid_size"] = fmt::format("{}", fmt::join(*volume.grid_size, " "));
+  std::string& grid = values["grid"];
+  for (const std::filesystem::path& file : FilesOf(volume)) grid += NameAndHashOf(file) + "; ";
+  return values;
+}
+
+/// Adds the air of a scene, and what lies in it.
+void AddAirOf(const Scene& scene, Metadata& metadata) {
+  const Medium& medium = scene.medium;
+  metadata["alpenglow.atmosphere"] = medium.name;
+  metadata["alpenglow.atmosphere_hash"] = fmt::format("{:016x}", MediumHash(medium));
+  metadata["alpenglow.refraction"] =
+      medium.refraction == RefractionBy::kAlmanacs ? "almanacs" : "molecules";
+  if (scene.town_zenith)
+    metadata["alpenglow.town_zenith_mag_per_arcsec2"] = fmt::format("{}", *scene.town_zenith);
+  if (scene.fog) metadata["alpenglow.fog"] = FogText(*scene.fog);
+  for (std::size_t i = 0; i < scene.volumes.size(); ++i) {
+    metadata[fmt::format("alpenglow.volume_{}_hash", i)] = Fingerprint(KeysOf(scene.volumes[i]));
+  }
+}
+
+/// Adds terrain and ground cover.
+void AddGroundOf(const Scene& scene, Metadata& metadata) {
+  const TerrainSource& terrain = scene.terrain;
+  metadata["alpenglow.terrain"] = TerrainText(scene);
+  if (!terrain.colour.empty()) metadata["alpenglow.terrain_colour"] = NameAndHashOf(terrain.colour);
+  if (!terrain.land_cover.empty())
+    metadata["alpenglow.land_cover"] = NameAndHashOf(terrain.land_cover);
+  metadata["alpenglow.ground_hash"] = Fingerprint(KeysOf(scene.ground));
 }
 
 }  // namespace
 
 Metadata SceneMetadata(const Scene& scene) {
   const Camera& camera = scene.camera;
-  Metadata metadata = {
-      {"Software", ProducerText()},
-      {"alpenglow.unit", "cd/m^2, linear sRGB (Rec. 709 primaries, D65)"},
-      {"alpenglow.atmosphere", scene.medium.name},
-      {"alpenglow.atmosphere_hash", fmt::format("{:016x}", MediumHash(scene.medium))},
-      {"alpenglow.latitude_deg", DegreesText(scene.place.latitude_rad)},
-      {"alpenglow.longitude_deg", DegreesText(scene.place.longitude_rad)},
-      {"alpenglow.camera_height", HeightText(camera.height)},
-      {"alpenglow.heading_deg", DegreesText(camera.heading_rad)},
-      {"alpenglow.pitch_deg", DegreesText(camera.pitch_rad)},
-      {"alpenglow.roll_deg", DegreesText(camera.roll_rad)},
-      {"alpenglow.fov_deg", DegreesText(camera.fov_rad)},
-      {"alpenglow.terrain", TerrainText(scene)}};
+  Metadata metadata = {{"Software", ProducerText()},
+                       {"alpenglow.unit", "cd/m^2, linear sRGB (Rec. 709 primaries, D65)"},
+                       {"alpenglow.latitude_deg", DegreesText(scene.place.latitude_rad)},
+                       {"alpenglow.longitude_deg", DegreesText(scene.place.longitude_rad)},
+                       {"alpenglow.camera_height", HeightText(camera.height)},
+                       {"alpenglow.heading_deg", DegreesText(camera.heading_rad)},
+                       {"alpenglow.pitch_deg", DegreesText(camera.pitch_rad)},
+                       {"alpenglow.roll_deg", DegreesText(camera.roll_rad)},
+                       {"alpenglow.fov_deg", DegreesText(camera.fov_rad)}};
+  AddAirOf(scene, metadata);
+  AddGroundOf(scene, metadata);
   if (camera.lens) {
     const ThinLens& lens = *camera.lens;
     metadata["alpenglow.lens"] =
@@ -150,9 +213,6 @@ Metadata SceneMetadata(const Scene& scene) {
   for (std::size_t i = 0; i < scene.lights.size(); ++i) {
     metadata[fmt::format("alpenglow.light_{}", i)] = LightText(scene.lights[i]);
   }
-  if (scene.town_zenith)
-    metadata["alpenglow.town_zenith_mag_per_arcsec2"] = fmt::format("{}", *scene.town_zenith);
-  if (scene.fog) metadata["alpenglow.fog"] = FogText(*scene.fog);
   return metadata;
 }
 

@@ -21,9 +21,10 @@
 
 namespace alpenglow::renderer {
 
-/// Returns program, air, place, camera, ground and lamps of a scene. Numbers are written so that
-/// they read back exactly. The content of the terrain's file is hashed: throws InputError when it
-/// cannot be read.
+/// Returns program, place, camera, air, fog, volumes, terrain, ground and lamps of a scene, except
+/// its time and zone: any other change of the scene that changes the picture changes a value.
+/// Numbers are written so that they read back exactly, or hashed. The contents of files are hashed:
+/// throws InputError when one cannot be read.
 [[nodiscard]] Metadata SceneMetadata(const Scene& scene);
 
 /// Returns place, height and angles of a camera, which replace those of SceneMetadata.

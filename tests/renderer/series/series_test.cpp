@@ -16,6 +16,7 @@
 #include "atmosphere/base/error.h"
 #include "lut/cli/program.h"
 #include "lut/image/eye.h"
+#include "renderer/scene/scene_options.h"
 #include "renderer/series/manifest.h"
 #include "renderer/series/picture_sequence.h"
 #include "tests/fixtures/fault_of.h"
@@ -499,6 +500,7 @@ TEST_F(Provenance, FingerprintsFollowSettingsAndTerrain) {
   for (const auto& change : std::vector<std::function<void(Scene&)>>{
            [](Scene& other) { other.camera.heading_rad += 1e-12; },
            [](Scene& other) { other.medium.mie_scattering_per_m[0] *= 1.0000001; },
+           [](Scene& other) { other.medium.refraction = RefractionBy::kMolecules; },
            [](Scene& other) { other.lights.emplace_back(); }}) {
     Scene other = scene;
     change(other);
@@ -508,6 +510,179 @@ TEST_F(Provenance, FingerprintsFollowSettingsAndTerrain) {
   EXPECT_NE(Fingerprint(SceneMetadata(scene)), first);
   fs::remove(folder_ / "dem.tif");
   EXPECT_THROW((void)SceneMetadata(scene), InputError);
+}
+
+/// A key of scene.toml with two values; an empty value leaves the key out.
+struct ChangedKey {
+  const char *section, *before, *after;
+};
+
+const std::vector<ChangedKey>& ChangedPlacesAndCameras() {
+  static const std::vector<ChangedKey> kKeys{
+      {"[place]\nlongitude = 8\n", "latitude = 46.5", "latitude = 46.6"},
+      {"[place]\nlatitude = 46.5\n", "longitude = 8", "longitude = 9"},
+      {"[camera]\n", "", "above_ground_m = 3"},
+      {"[camera]\n", "above_ground_m = 3", "height_m = 3"},
+      {"[camera]\n", "", "heading = 10"},
+      {"[camera]\n", "", "pitch = 10"},
+      {"[camera]\n", "", "roll = 10"},
+      {"[camera]\n", "", "fov = 50"},
+      {"[camera]\nfocal_length_mm = 50\n", "sensor_width_mm = 36", "sensor_width_mm = 35"},
+      {"[camera]\nfocal_length_mm = 50\nfocus_m = 10\n", "", "f_number = 2"},
+      {"[camera]\nf_number = 2\nfocus_m = 10\n", "focal_length_mm = 50", "focal_length_mm = 35"},
+      {"[camera]\nf_number = 2\nfocal_length_mm = 50\n", "focus_m = 10", "focus_m = 20"},
+      {"[camera]\nf_number = 2\nfocal_length_mm = 50\nfocus_m = 10\n", "", "blades = 6"},
+      {"[camera]\nf_number = 2\nfocal_length_mm = 50\nfocus_m = 10\nblades = 6\n", "",
+       "blade_rotation = 10"},
+      {"[camera]\n", "", "shutter_s = 30"},
+      {"[camera]\n", "", "polariser_deg = 0"},
+      {"[camera]\n", "polariser_deg = 0", "polariser_deg = 45"}};
+  return kKeys;
+}
+
+const std::vector<ChangedKey>& ChangedGrounds() {
+  static const std::vector<ChangedKey> kKeys{
+      {"[terrain]\n", "range = true", "none = true"},
+      {"[terrain]\n", "dem = 'one'", "dem = 'two'"},
+      {"[terrain]\n", "dem = 'one'", "mesh = 'one'"},
+      {"[terrain]\nmesh = 'one'\n", "", "up = 'y'"},
+      {"[terrain]\ndem = 'one'\n", "", "voids = 'open'"},
+      {"[terrain]\ndem = 'one'\n", "", "colour = 'one'"},
+      {"[terrain]\ndem = 'one'\n", "colour = 'one'", "colour = 'two'"},
+      {"[terrain]\ndem = 'one'\n", "colour = 'one'", "land_cover = 'one'"},
+      {"[terrain]\ndem = 'one'\n", "land_cover = 'one'", "land_cover = 'two'"},
+      {"[ground]\n", "", "cover = 'snow'"},
+      {"[ground]\n", "", "sea_level_m = 0"},
+      {"[ground]\n", "sea_level_m = 0", "sea_level_m = 1"},
+      {"[ground]\ncover = 'water'\n", "wind_m_per_s = 1", "wind_m_per_s = 15"},
+      {"[ground]\n", "", "wetness = 0.5"},
+      {"[ground]\ncover = 'lambert'\n", "albedo = 0.3", "albedo = [0.3, 0.3, 0.31]"},
+      {"[ground]\ncover = 'oren-nayar'\n", "", "roughness = 0.6"},
+      {"[ground]\ncover = 'blinn-phong'\n", "", "reflectance = 0.05"},
+      {"[ground]\ncover = 'snow'\n", "", "grain_diameter_mm = 0.6"}};
+  return kKeys;
+}
+
+constexpr char kPoint[] = "[[light]]\nlatitude = 46.5\nlongitude = 8\nintensity_cd = 9\n";
+constexpr char kSpot[] =
+    "[[light]]\ntype = 'spot'\nlatitude = 46.5\nlongitude = 8\nintensity_cd = 9\n";
+constexpr char kMeasured[] = "[[light]]\nlatitude = 46.5\nlongitude = 8\nies = 'one'\n";
+
+const std::vector<ChangedKey>& ChangedLights() {
+  static const std::vector<ChangedKey> kKeys{
+      {"", "", kPoint},
+      {"", kMeasured, kPoint},
+      {"[[light]]\nlongitude = 8\nintensity_cd = 9\n", "latitude = 46.5", "latitude = 46.6"},
+      {"[[light]]\nlatitude = 46.5\nintensity_cd = 9\n", "longitude = 8", "longitude = 9"},
+      {"[[light]]\nlatitude = 46.5\nlongitude = 8\n", "intensity_cd = 9", "intensity_cd = 10"},
+      {"[[light]]\nlatitude = 46.5\nlongitude = 8\n", "ies = 'one'", "ies = 'two'"},
+      {kPoint, "", "above_ground_m = 3"},
+      {kPoint, "above_ground_m = 3", "height_m = 3"},
+      {kPoint, "", "temperature_k = 3001"},
+      {kPoint, "", "radius_m = 0.2"},
+      {kMeasured, "", "intensity_cd = 9"},
+      {kMeasured, "", "heading = 10"},
+      {kMeasured, "", "pitch = 0"},
+      {kSpot, "cone = [10, 20]", "cone = [11, 20]"},
+      {kSpot, "cone = [10, 20]", "cone = [10, 21]"},
+      {kSpot, "cone = [10, 20]", "cone = [10, 20]\nheading = 10"},
+      {kSpot, "cone = [10, 20]", "cone = [10, 20]\npitch = 10"}};
+  return kKeys;
+}
+
+const std::vector<ChangedKey>& ChangedAir() {
+  static const std::vector<ChangedKey> kKeys{
+      {"[atmosphere]\n", "preset = 'earth'", "preset = 'hazy'"},
+      {"", "", "[night]\nbortle = 4"},
+      {"[night]\n", "bortle = 4", "bortle = 5"},
+      {"[night]\n", "zenith_mag_per_arcsec2 = 20", "zenith_mag_per_arcsec2 = 21"},
+      {"", "", "[fog]\nvisibility_m = 900"},
+      {"[fog]\n", "visibility_m = 900", "visibility_m = 901"},
+      {"[fog]\n", "extinction_per_m = 0.004", "extinction_per_m = 0.005"},
+      {"[fog]\nvisibility_m = 900\n", "", "scale_height_m = 25"},
+      {"[fog]\nvisibility_m = 900\n", "", "base_height_m = 0"},
+      {"[fog]\nvisibility_m = 900\n", "", "albedo = 0.9"},
+      {"[fog]\nvisibility_m = 900\n", "", "droplet_diameter_um = 16"},
+      {"[fog]\nvisibility_m = 900\n", "", "droplet_diameter_um = 4"},
+      {"[fog]\nvisibility_m = 900\n", "g = 0.8", "g = 0.81"}};
+  return kKeys;
+}
+
+constexpr char kVolume[] =
+    "[[volume]]\nlatitude = 46.5\nlongitude = 8\nsize_m = [4, 4, 4]\nvisibility_m = 9\n";
+constexpr char kBareVolume[] = "[[volume]]\nlatitude = 46.5\nlongitude = 8\nsize_m = [4, 4, 4]\n";
+
+const std::vector<ChangedKey>& ChangedVolumes() {
+  static const std::vector<ChangedKey> kKeys{
+      {"", "", kVolume},
+      {kVolume, "", kVolume},
+      {"[[volume]]\nlongitude = 8\nsize_m = [4, 4, 4]\nvisibility_m = 9\n", "latitude = 46.5",
+       "latitude = 46.6"},
+      {"[[volume]]\nlatitude = 46.5\nsize_m = [4, 4, 4]\nvisibility_m = 9\n", "longitude = 8",
+       "longitude = 9"},
+      {"[[volume]]\nlatitude = 46.5\nlongitude = 8\nvisibility_m = 9\n", "size_m = [4, 4, 4]",
+       "size_m = [4, 4, 5]"},
+      {kVolume, "", "shape = 'ellipsoid'"},
+      {kVolume, "", "above_ground_m = 3"},
+      {kVolume, "above_ground_m = 3", "height_m = 3"},
+      {kVolume, "", "heading = 10"},
+      {kVolume, "", "scale_height_m = 30"},
+      {kVolume, "", "albedo = 0.9"},
+      {kVolume, "", "emission_per_m = 1"},
+      {kVolume, "", "temperature_k = 1500"},
+      {kVolume, "", "g = 0.5"},
+      {kVolume, "", "droplet_diameter_um = 16"},
+      {kVolume, "grid_size = [2, 2, 3]\ngrid = 'one'", "grid_size = [2, 3, 2]\ngrid = 'one'"},
+      {kVolume, "grid_size = [2, 2, 3]\ngrid = 'one'", "grid_size = [2, 2, 3]\ngrid = 'two'"},
+      {kBareVolume, "visibility_m = 9", "visibility_m = 10"},
+      {kBareVolume, "extinction_per_m = 1", "extinction_per_m = [1, 1, 1, 1.1]"}};
+  return kKeys;
+}
+
+TEST_F(SeriesRun, ResumeRendersAgainAfterAnyChangeOfTheScene) {
+  for (const char* name : {"one", "two"}) WriteText(folder_ / name, name);
+  const auto settings = [&](const ChangedKey& key, const char* value) {
+    const std::string text = std::string(key.section) + value + "\n";
+    const bool has_place = text.find("[place]") != std::string::npos;
+    const std::string place = has_place ? "" : "[place]\nlatitude = 46.5\nlongitude = 8\n";
+    return SceneMetadata(SceneFromToml(place + text, "scene.toml", folder_));
+  };
+  SeriesSource source = Source();
+  SeriesOutput output = Output();
+  output.resume = true;
+  for (const auto& keys : {ChangedPlacesAndCameras(), ChangedGrounds(), ChangedLights(),
+                           ChangedAir(), ChangedVolumes()}) {
+    for (const ChangedKey& key : keys) {
+      const std::string before = Fingerprint(settings(key, key.before));
+      EXPECT_EQ(Fingerprint(settings(key, key.before)), before) << key.section << key.before;
+      EXPECT_NE(Fingerprint(settings(key, key.after)), before)
+          << key.section << key.before << " -> " << key.after;
+    }
+    source.settings = settings(keys.front(), keys.front().before);
+    Run(source, output, 1);
+    EXPECT_EQ(Run(source, output, 1).kept, 1) << keys.front().section;
+    source.settings = settings(keys.front(), keys.front().after);
+    EXPECT_EQ(Run(source, output, 1).rendered, 1) << keys.front().section;
+  }
+}
+
+TEST_F(Provenance, FingerprintsFollowTheContentOfEveryFile) {
+  for (const char* name : {"dem", "colour", "ies", "raw", "data"}) WriteText(folder_ / name, "one");
+  WriteText(folder_ / "smoke.nhdr",
+            "NRRD0004\ntype: uint8\ndimension: 3\nsizes: 2 2 2\nencoding: raw\ndata file: data\n");
+  const Scene scene =
+      SceneFromToml(fmt::format("[place]\nlatitude = 46.5\nlongitude = 8\n"
+                                "[terrain]\ndem = 'dem'\ncolour = 'colour'\n{}ies = 'ies'\n"
+                                "{}grid = 'raw'\ngrid_size = [2, 2, 2]\n{}grid = 'smoke.nhdr'\n",
+                                kPoint, kVolume, kVolume),
+                    "scene.toml", folder_);
+  std::string before = Fingerprint(SceneMetadata(scene));
+  for (const NamedFile& file : FilesOf(scene)) {
+    WriteText(file.file, ContentOf(file.file) + "\n");
+    EXPECT_NE(std::exchange(before, Fingerprint(SceneMetadata(scene))),
+              Fingerprint(SceneMetadata(scene)))
+        << file.file;
+  }
 }
 
 }  // namespace
