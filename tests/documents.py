@@ -5,7 +5,7 @@
 - Every relative link leads to a file, and to a heading if it names one.
 - Every path of a file or folder in backticks, or in parentheses in a diagram, exists. It is relative
   to the tree, to the document or to a layer; a name without a folder belongs to any file. Paths with
-  capitals or * are placeholders; out/ and build/ hold outputs. CHANGELOG.md names former files.
+  capitals or * stand for many names; out/ and build/ hold outputs. CHANGELOG.md names former files.
 - The table of tests/README.md has every header of tests/fixtures, and no others.
 - A manual has every option that --help of its program prints, and no option that it does not print.
 - The manuals of scene.toml and atmosphere.toml have every key that the readers accept. The readers

@@ -25,7 +25,7 @@ LIMITS = {
     "lines of the viewer without OpenGL": 1403,
     "files over 500 lines": 5,
     "installed headers": 13,
-    "comment blocks that start without a subject, %": 1.0,
+    "comment blocks that start without a subject, %": 0.1,
 }
 LEAST_MEDIAN = 120  # lines of a file, in every layer
 # The viewer is for windows and the GPU. A pair of header and source belongs there if one of them names OpenGL, ImGui
@@ -120,9 +120,9 @@ def lines_without_open_gl():
 
 
 def comment_blocks():
-    """The first line of every block of comments in the layers, without its slashes."""
-    for layer in LAYERS:
-        for file in files(layer):
+    """The first line of every block of comments in the layers and the tests, without its slashes."""
+    for folder in (*LAYERS, "tests"):
+        for file in files(folder):
             before = ""
             for line in text_of(file).splitlines():
                 now = line.strip()

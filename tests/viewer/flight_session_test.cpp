@@ -236,7 +236,7 @@ TEST_F(FlightsOverLand, AReplayOfARecordThatIsLowerThanTheLandStaysOverIt) {
   EXPECT_GT(OverTheGround_m(window), 0.05);
 }
 
-/// Of the larger of both, in the channel that differs most.
+/// Returns the difference in the channel that differs most, relative to the larger of both values.
 double Difference(const std::array<float, 3>& a, const std::array<float, 3>& b) {
   double most = 0.0;
   for (std::size_t c = 0; c < 3; ++c) {

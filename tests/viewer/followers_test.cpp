@@ -244,7 +244,7 @@ GroundFollower::View ViewFrom(const GeodeticPosition& place, double elevation_de
   return view;
 }
 
-/// What lies around a place of the built-in range, every `stride`-th sample.
+/// Returns every `stride`-th sample of the built-in range around a place.
 std::optional<ElevationGrid> RangeAround(const GeodeticPosition& place, double half_width_m,
                                          int most_samples) {
   static const ElevationGrid range = ProceduralMountains(kFollowedPlace);

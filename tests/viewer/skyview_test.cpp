@@ -152,28 +152,28 @@ TEST_F(Skyview, WithoutADisplayItWritesAPngWithInstrumentsOnlyWhereTheyAreAskedF
 
 TEST_F(Skyview, OfAQualityThatThereIsNotItSaysSo) {
   if (!tests::HasOpenGl()) GTEST_SKIP() << "EGL gives no OpenGL here";
-  const std::string camera_sample = InFolder("s.toml") + " --headless --size 16x9 --screenshot ";
-  const Outcome wrong = Run(camera_sample + InFolder("a.png") + " --quality best");
+  const std::string take_screenshot = InFolder("s.toml") + " --headless --size 16x9 --screenshot ";
+  const Outcome wrong = Run(take_screenshot + InFolder("a.png") + " --quality best");
   EXPECT_EQ(wrong.status, 3);
   EXPECT_THAT(wrong.error, HasSubstr("best"));
 }
 
 TEST_F(Skyview, ToTheEyeDuskIsDarkAndThePictureSaysHowItWasExposed) {
   if (!tests::HasOpenGl()) GTEST_SKIP() << "EGL gives no OpenGL here";
-  const auto camera_sample = [&](const std::string& name, const std::string& options) {
+  const auto take_screenshot = [&](const std::string& name, const std::string& options) {
     const Outcome outcome =
         Run(InFolder("s.toml") + " --headless --quality low --size 16x9 --time " + "civil-dusk " +
             options + " --screenshot " + InFolder(name));
     EXPECT_EQ(outcome.status, 0) << outcome.error;
     return ReadPngMetadata(InFolder(name));
   };
-  const Metadata camera = camera_sample("auto.png", "");
-  const Metadata eye = camera_sample("eye.png", "--exposure eye");
+  const Metadata camera = take_screenshot("auto.png", "");
+  const Metadata eye = take_screenshot("eye.png", "--exposure eye");
   EXPECT_EQ(camera.at("alpenglow.quality"), "low");
   EXPECT_EQ(camera.at("alpenglow.exposure"), "metered");
   EXPECT_EQ(eye.at("alpenglow.exposure"), "eye");
   EXPECT_EQ(eye.at("alpenglow.exposure_rule"), RuleInWords({ExposureRule::Kind::kEye}));
-  // What the meter said: the camera's exposure is a function of it that grows.
+  // The camera's exposure grows with the value of the meter, so that bisection finds that value.
   double metered = -12.0, too_much = 20.0;
   while (too_much - metered > 1e-6) {
     const double middle = 0.5 * (metered + too_much);
@@ -183,7 +183,7 @@ TEST_F(Skyview, ToTheEyeDuskIsDarkAndThePictureSaysHowItWasExposed) {
   EXPECT_NEAR(std::stod(eye.at("alpenglow.ev100")), EyeEv100(metered, {}), 2e-4)
       << "the functions of the series; four digits are written";
   const Metadata asked =
-      camera_sample("asked.png", "--exposure 7.5 --look punchy --white-balance 4000");
+      take_screenshot("asked.png", "--exposure 7.5 --look punchy --white-balance 4000");
   EXPECT_EQ(asked.at("alpenglow.exposure"), "fixed");
   EXPECT_EQ(asked.at("alpenglow.ev100"), "7.5000");
   EXPECT_EQ(asked.at("alpenglow.tone_curve"), "agx, punchy");
@@ -336,9 +336,9 @@ class SkyviewLand : public tests::LandFolder {
     tests::WriteTile(folder_ / "east.tif", tests::kTileSamples - 1, 0);
   }
 
-  /// Of 8 to 8.1 degrees east, 46.6 to 46.7 north and beyond.
-  [[nodiscard]] Outcome CameraSample(const std::string& arguments,
-                                     const std::string& name = "a.png") const {
+  /// Takes a screenshot of the terrain around 8 to 8.1 degrees east, 46.6 to 46.7 north.
+  [[nodiscard]] Outcome TakeScreenshot(const std::string& arguments,
+                                       const std::string& name = "a.png") const {
     return RunCommand(std::string("env -u DISPLAY -u WAYLAND_DISPLAY '") + tests::kSkyview +
                       "' --headless --size 32x18 --quality low --screenshot " + name + " " +
                       arguments);
@@ -347,21 +347,21 @@ class SkyviewLand : public tests::LandFolder {
 
 TEST_F(SkyviewLand, SeveralModelsAreOneLand) {
   const std::string both = "--dem west.tif --dem east.tif --pitch -20";
-  const Outcome outcome = CameraSample(both, "a.exr");
+  const Outcome outcome = TakeScreenshot(both, "a.exr");
   EXPECT_EQ(outcome.status, 0) << outcome.error;
   const std::string height = ReadExrMetadata(folder_ / "a.exr").at("alpenglow.camera_height");
   EXPECT_GT(std::stod(height), 300.0) << "over the ground in the middle of both: " << height;
   const Outcome beside =
-      CameraSample(both + " --latitude 47.5 --longitude 8 --altitude 3000", "b.exr");
+      TakeScreenshot(both + " --latitude 47.5 --longitude 8 --altitude 3000", "b.exr");
   EXPECT_EQ(beside.status, 0) << "land may be far from the eye: " << beside.error;
 }
 
 TEST_F(SkyviewLand, AFlightThatBeginsOverTheGroundIsRecordedReplayedAndRenderedThere) {
   Outcome outcome =
-      CameraSample("--dem west.tif --pitch -20 --time noon --record f.csv --frames 4");
+      TakeScreenshot("--dem west.tif --pitch -20 --time noon --record f.csv --frames 4");
   ASSERT_EQ(outcome.status, 0) << outcome.error;
   const DisplayImage flown = ReadPng(folder_ / "a.png");
-  outcome = CameraSample("--dem west.tif --replay f.csv --frames 2", "r.%04d.png");
+  outcome = TakeScreenshot("--dem west.tif --replay f.csv --frames 2", "r.%04d.png");
   ASSERT_EQ(outcome.status, 0) << outcome.error;
   const DisplayImage replayed = ReadPng(folder_ / "r.0001.png");
   ASSERT_EQ(replayed.rgb.size(), flown.rgb.size());
@@ -376,7 +376,7 @@ TEST_F(SkyviewLand, AFlightThatBeginsOverTheGroundIsRecordedReplayedAndRenderedT
 }
 
 TEST_F(SkyviewLand, WithAModelAndAPlaceItBeginsAtNoonOfThePlaceAndSaysWhatIsMissing) {
-  const Outcome outcome = CameraSample("--dem west.tif --place RJTT", "a.exr");
+  const Outcome outcome = TakeScreenshot("--dem west.tif --place RJTT", "a.exr");
   ASSERT_EQ(outcome.status, 0) << outcome.error;
   EXPECT_EQ(ReadExrMetadata(folder_ / "a.exr").at("alpenglow.time").substr(0, 15),
             "2026-06-21T02:4")
@@ -426,7 +426,7 @@ TEST_F(SkyviewLand, AnEventIsAtTheTimeThatSkyseriesLists) {
     const Outcome listed = RunCommand(std::string("'") + tests::kSkyseries + "' " + listed_at +
                                       " --list --at" + event);
     ASSERT_EQ(listed.status, 0) << listed.error;
-    const Outcome seen = CameraSample(seen_at + " --altitude 3000 --time" + event, "e.exr");
+    const Outcome seen = TakeScreenshot(seen_at + " --altitude 3000 --time" + event, "e.exr");
     ASSERT_EQ(seen.status, 0) << seen.error;
     const UtcInstant shown = ParseInstant(ReadExrMetadata(folder_ / "e.exr").at("alpenglow.time"));
     EXPECT_NEAR(SecondsBetween(FirstListed(listed.out), shown), 0.0, 0.51) << seen_at;
@@ -437,7 +437,7 @@ TEST_F(SkyviewLand, WhatIsLeftOutOfAFolderIsSaid) {
   std::filesystem::create_directory(folder_ / "land");
   tests::WriteTile(folder_ / "land/west.tif", 0, 0);
   WriteText(folder_ / "land/broken.tif", "not a picture at all");
-  const Outcome outcome = CameraSample("--dem land", "a.exr");
+  const Outcome outcome = TakeScreenshot("--dem land", "a.exr");
   EXPECT_EQ(outcome.status, 0) << outcome.error;
   EXPECT_THAT(outcome.error, HasSubstr("broken.tif"));
 }

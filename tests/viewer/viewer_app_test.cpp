@@ -19,7 +19,7 @@ namespace {
 using ::testing::HasSubstr;
 
 constexpr ImageSize kSize{320, 240};
-// Of GLFW.
+// GLFW gives these numbers to the keys.
 constexpr int kF1 = 290, kF2 = 291, kF3 = 292, kL = 76, kR = 82, kW = 87, kRightArrow = 262,
               kEscape = 256, kEnterKey = 257;
 

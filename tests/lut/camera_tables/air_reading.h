@@ -45,7 +45,7 @@ class AirReading {
  public:
   AirReading(const AirTables& tables, const MediumTables& medium)
       : AirReading(tables, medium, tables.eye) {}
-  /// As another eye sees them, under another sun: AirTextures::SetView.
+  /// The constructor reads the tables for another eye and another sun, as AirTextures::SetView does.
   AirReading(const AirTables& tables, const MediumTables& medium, const AirEye& eye)
       : tables_(tables),
         medium_(medium),

@@ -24,7 +24,7 @@ class AirReference {
   AirReference(const LitAir& air, const AirEye& eye)
       : exact_(air.medium), air_(air), sky_(air.medium, air.multiple_scattering), eye_(eye) {}
 
-  /// Of the whole ray; in the band.
+  /// Returns the light of the whole ray, in the band.
   [[nodiscard]] Bands<double> Sky(const AirMap& map, double angle, double azimuth) const {
     const ViewRay ray = RayOf(map, angle, azimuth);
     return sky_.Radiance(ray, SeenCosineOf(ray.mu, azimuth));
@@ -94,7 +94,7 @@ inline std::vector<LandPoint> LandPoints(const AirMap& map, int count) {
   return points;
 }
 
-/// Of the light of all orders in all bands.
+/// Returns errors of the light of all orders, in all bands.
 inline AirErrors WayErrors(const AirReference& reference, const AirReading& reading,
                            const AirMap& map, const std::vector<LandPoint>& points) {
   AirErrors errors;
@@ -117,7 +117,7 @@ inline AirErrors WayErrors(const AirReference& reference, const AirReading& read
   return WayErrors(reference, reading, map, LandPoints(map, count));
 }
 
-/// Of transmittance, absolute.
+/// Returns absolute errors of the transmittance.
 inline AirErrors TransmittanceErrors(const AirReference& reference, const AirReading& reading,
                                      const AirMap& map, int count) {
   AirErrors errors;

@@ -38,7 +38,7 @@ HeightRaster Raster(const Height& height, int side, double cell_m) {
   return raster;
 }
 
-/// Of a node, in the frame of the heights.
+/// Returns the place of a node in the frame of the heights.
 glm::dvec3 PlaceOf(const SunShadowMap& map, int column, int line) {
   return (map.first_u_m + map.cell_m * column) * map.sunwards +
          (map.first_v_m + map.cell_m * line) * map.across;

@@ -148,7 +148,7 @@ double Apart(const CameraPose& a, const CameraPose& b) {
   return glm::length((EcefFromGeodetic(kWgs84, a.place) - EcefFromGeodetic(kWgs84, b.place)).xyz);
 }
 
-/// The same controls for the same time, in frames of different lengths.
+/// Returns the pose after `seconds` with these controls, for frames of a given length.
 CameraPose FlownFor(FlightMode mode, const PilotControls& controls, double seconds,
                     double frame_s) {
   Pilot pilot(EyeAt(1500.0), kWgs84);
@@ -595,7 +595,7 @@ TEST_F(FlightRecords, OfALineThatWasCutTheLinesBeforeAreFlown) {
   WriteText(Part(), text.substr(0, text.size() - 20));
   const CameraPath cut = ReadFlight(Part());
   EXPECT_EQ(cut.points().size() + 1, ReadFlight(File()).points().size());
-  // What a loss of power leaves where the file had grown and its bytes had not come.
+  // After a loss of power the file can have grown while its bytes are still zero.
   WriteText(Part(), text + std::string(4000, '\0'));
   EXPECT_EQ(ReadFlight(Part()).points().size(), ReadFlight(File()).points().size());
   // Under its own name a half line is a fault.

@@ -57,7 +57,7 @@ SkyIrradianceGradient UnoccludedSkyOver(const LitGround& lit) {
   return {*air.single_scattering, *air.multiple_scattering, 1000.0, lit.lighting().to_sun.z};
 }
 
-/// What the shaders read for an eye over the origin of the site.
+/// The uniform blocks that shaders read for an eye over the origin of the site.
 class Blocks {
  public:
   Blocks(const LitGround& lit, const Lighting& light, double eye_m)
@@ -170,7 +170,7 @@ std::vector<Case> PlanetCases(const LitGround& lit, double eye_m) {
   return cases;
 }
 
-/// How a shader is asked for the light of a place.
+/// The arguments with which a shader computes the light of a place.
 struct Question {
   std::string radiance;
   bool asks_sky_by_pixel;

@@ -88,7 +88,7 @@ class HudPicture : public Headless {
     return target.Read();
   }
 
-  /// Where two pictures differ: [left, right) x [top, bottom); empty where they do not.
+  /// The area in which two pictures differ, [left, right) x [top, bottom); it is empty if they are equal.
   struct Box {
     int left, top, right, bottom;
     [[nodiscard]] bool empty() const { return right <= left; }

@@ -121,7 +121,7 @@ struct FogDeviation {
   double mean, p99, of_transmittance;
 };
 
-// Of radiance relative to the brightest a tenth of which is worth the name.
+// Deviations count where the radiance is at least a tenth of the brightest.
 FogDeviation CompareFog(const BothFogs& both) {
   const auto rays = Rays(both, 300);
   const std::vector<float> gpu =

@@ -152,7 +152,7 @@ Deviation Compare(const std::vector<float>& gpu, const std::vector<double>& trut
 
 using LampsOnTheCard = tests::Headless;
 
-/// Of the middle band of the scene's air.
+/// Returns the deviation in the middle band of the scene's air.
 Deviation GlowDeviation(const BothLamps& both, bool near_lamps = true) {
   constexpr int kBand = 2;
   const auto rays = Rays(both, 400, near_lamps);

@@ -37,7 +37,7 @@ struct LookOut {
     const double wide = std::tan(0.5 * fov_rad);
     return {wide * right, wide * kHeight / kWidth * glm::cross(right, forward), forward};
   }
-  /// Of a pixel, row 0 at the top; of any length.
+  /// Returns the ray of a pixel, with any length; row 0 is at the top.
   [[nodiscard]] glm::dvec3 Ray(int x, int y) const {
     const LandView view = View();
     return view.forward + (2.0 * (x + 0.5) / kWidth - 1.0 + shift.x) * view.right +
@@ -299,7 +299,7 @@ TEST_F(LandscapePictures, NoViewKeepsMoreChunksThanTheLimit) {
   }
 }
 
-// Of all buffers that there are; names are small numbers.
+// The sum is over all buffers that exist; their names are small numbers.
 std::size_t BytesOnTheCard() {
   std::size_t sum = 0;
   for (GLuint id = 1; id < 1000; ++id) {

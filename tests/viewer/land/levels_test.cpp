@@ -85,7 +85,7 @@ TEST_F(LevelRanges, ChunksCoverAllLandOnce) {
   }
 }
 
-// What keeps levels together, asked at each border of two chunks.
+// The test checks the condition that joins two levels, at each border of two chunks.
 TEST_F(LevelRanges, WhereTwoLevelsMeetTheFinerHasTurnedAndTheCoarserHasNotBegun) {
   int borders = 0;
   for (const LevelCase& each : Cases(*tiles_, *tree_)) {
@@ -190,7 +190,7 @@ class DrawnSurface {
   struct Height {
     double drawn_m, own_m, coarse_m;
   };
-  // Of the triangle over a place between samples.
+  // Returns the height of the triangle over a place between samples.
   [[nodiscard]] Height At(double column, double row) {
     for (int level = 0; level <= tree_.top(); ++level) {
       const double side = kChunkCells * std::exp2(level);
@@ -256,7 +256,7 @@ class DrawnSurface {
     return {};
   }
 
-  // Its place alone where it is far off.
+  // Returns the place alone of a corner that is far from (column, row).
   [[nodiscard]] Corner CornerOfCached(const LandChunk& chunk, std::uint16_t vertex, double column,
                                       double row) const {
     const ChunkVertex& v = chunk.vertices[vertex];

@@ -58,7 +58,7 @@ TEST_F(DisplayPassTest, LowQualityShowsWhatMediumDoes) {
   }
   std::sort(off.begin(), off.end());
   EXPECT_LE(off[off.size() / 2], 1) << "codes; dither and rounding";
-  // The same light is further apart on the display by the contrast of the look, 1.4.
+  // The contrast of the look, 1.4, enlarges differences of light on the display.
   const double contrast = GradeOf(AgxLook::kPhoto).contrast;
   EXPECT_LE(off[off.size() * 99 / 100], 6 * contrast) << "relief is as fine as the pixels of light";
   EXPECT_LE(off[off.size() * 995 / 1000], 9 * contrast) << "crests of coarser land lie a pixel off";

@@ -204,7 +204,7 @@ std::array<double, 3> CodeOf(const ToneTable& table, const std::array<double, 3>
   return code;
 }
 
-/// Of the table, in codes of 8 bits, ascending.
+/// Returns the errors of the table in codes of 8 bits, in ascending order.
 std::vector<double> ErrorsOf(AgxLook look) {
   const std::shared_future<ToneTable> made = ToneTableOf(look);
   const ToneTable& table = made.get();

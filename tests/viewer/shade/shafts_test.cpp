@@ -33,7 +33,7 @@ constexpr const char* kSingleTo =
     "  return vec4(1.0 - exp(-distance_km / vec2(12.0, 45.0)), 0.0, 0.0);\n}\n"
     "vec4 SkyRadiance(vec3 direction) { return SingleTo(direction, 1e9); }\n";
 
-/// What the shade takes along a path, as a share of the light of the whole ray.
+/// Returns the light that shade removes along a path, as a share of the light of the whole ray.
 double TakenOf(const SunlitPath& lit, double length_m, double reach_km) {
   constexpr int kSteps = 4000;
   double taken = 0.0, all = 0.0;
@@ -238,7 +238,7 @@ class ShaftPicture {
     ClampAndFilter(GL_TEXTURE_2D, false);
   }
 
-  /// What shade takes.
+  /// Returns the picture of the light that shade removes.
   [[nodiscard]] Image Painted(const ShadeTexture& shade, const ShaftDetail& detail) const {
     constexpr GLuint kViewBinding = 1;
     const std::vector<ShaderPiece> air = {ViewerPiece("viewer/shaders/view.block.glsl"),
