@@ -108,7 +108,7 @@ inline void AddPlaceOptions(CLI::App& app, SkyseriesOptions& options) {
                  "Horizontal field of view in degrees, 0.1 to 179, or 360 for a panorama (default: "
                  "60, or the view of the range)");
   AddWithoutFile(app, "--dem", scene.dem,
-                 "Elevation models: GeoTIFF, SRTM .hgt, USGS DEM, VRT, and folders of these files; "
+                 "Elevation models: GeoTIFF, SRTM .hgt, USGS DEM, and folders of these files; "
                  "several may be given (default: a built-in mountain range, different for each "
                  "place)");
 }
