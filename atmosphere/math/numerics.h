@@ -18,6 +18,7 @@
 #include <queue>
 #include <span>
 #include <string>
+#include <type_traits>
 #include <vector>
 
 namespace alpenglow::atmosphere {
@@ -72,40 +73,46 @@ inline constexpr int kMaxGaussNodes = 64;
 [[nodiscard]] const GaussRule& GaussLegendre(int n);
 
 /// Integral of a vector-valued function over consecutive panels, and an estimate of its error.
+/// @tparam Values  std::vector<double>, or std::array<double, n>, which needs no allocation
+template <typename Values>
 struct AdaptiveResult {
-  std::vector<double> value;
+  Values value;
   double error = 0.0;  // largest over components, relative to the largest component
   std::size_t panels = 0;
   bool converged = false;
 };
 
-/// Integrates f: double -> std::vector<double> (of `size` values) over the panels [b0, b1],
-/// [b1, b2], ... of ascending breakpoints. Panels are halved, worst first, until the difference
+/// Integrates f: double -> std::vector<double> (of `size` values) or std::array<double, size> over
+/// the panels [b0, b1], [b1, b2], ... of ascending breakpoints. Panels are halved, worst first, until the difference
 /// between the 10-point rule and its two halves, summed over panels, is below `relative_tolerance`
 /// times the largest component of the integral.
-template <typename Function>
-[[nodiscard]] AdaptiveResult IntegrateAdaptively(const Function& f, std::size_t size,
-                                                 std::span<const double> breakpoints,
-                                                 double relative_tolerance,
-                                                 std::size_t max_panels = 4096) {
+template <typename Function, typename Values = std::invoke_result_t<Function, double>>
+[[nodiscard]] AdaptiveResult<Values> IntegrateAdaptively(const Function& f, std::size_t size,
+                                                         std::span<const double> breakpoints,
+                                                         double relative_tolerance,
+                                                         std::size_t max_panels = 4096) {
   struct Panel {
     double low, high, error;
-    std::vector<double> whole, halves;
+    Values whole, halves;
     bool operator<(const Panel& other) const { return error < other.error; }
   };
   const GaussRule& rule = GaussLegendre(10);
+  const auto zeros = [size] {
+    if constexpr (std::is_same_v<Values, std::vector<double>>) return Values(size, 0.0);
+    return Values{};
+  };
   const auto apply = [&](double low, double high) {
-    std::vector<double> sum(size, 0.0);
+    Values sum = zeros();
     for (std::size_t i = 0; i < rule.node.size(); ++i) {
-      const std::vector<double> value = f(low + (high - low) * rule.node[i]);
+      const Values value = f(low + (high - low) * rule.node[i]);
       for (std::size_t k = 0; k < size; ++k) sum[k] += rule.weight[i] * (high - low) * value[k];
     }
     return sum;
   };
-  const auto panel = [&](double low, double high, std::vector<double> whole) {
+  const auto panel = [&](double low, double high, Values whole) {
     const double middle = 0.5 * (low + high);
     Panel made{low, high, 0.0, std::move(whole), apply(low, middle)};
-    const std::vector<double> right = apply(middle, high);
+    const Values right = apply(middle, high);
     for (std::size_t k = 0; k < size; ++k) {
       made.halves[k] += right[k];
       made.error = std::max(made.error, std::abs(made.halves[k] - made.whole[k]));
@@ -113,8 +120,8 @@ template <typename Function>
     return made;
   };
   std::priority_queue<Panel> open;
-  AdaptiveResult result;
-  result.value.assign(size, 0.0);
+  AdaptiveResult<Values> result;
+  result.value = zeros();
   double error = 0.0;
   const auto add = [&](Panel made) {
     for (std::size_t k = 0; k < size; ++k) result.value[k] += made.halves[k];

@@ -157,7 +157,7 @@ LampLight AirlightAlong(const LampAir& air, const Lamp& lamp, const LampSegment&
     }
     return value;
   };
-  const AdaptiveResult found =
+  const auto found =
       IntegrateAdaptively(source, bands, Breakpoints(lamp, segment, geometry, end), 1e-11, 20000);
   return {found.value, found.error, found.error < 1e-9};
 }

@@ -92,13 +92,10 @@ void AppendSunPerigees(const Line& line, const ViewRay& ray, Extended z, double 
   }
 }
 
-AdaptiveResult ColumnsAlong(const Medium& medium, const Line& line, double begin, double end,
-                            double tolerance) {
-  const auto densities = [&](double t) {
-    const Columns now = Densities(medium, line.Altitude(t));
-    return std::vector<double>(now.begin(), now.end());
-  };
-  return IntegrateAdaptively(densities, 3, Breakpoints(medium, line, begin, end), tolerance);
+Columns ColumnsAlong(const Medium& medium, const Line& line, double begin, double end,
+                     double tolerance) {
+  const auto densities = [&](double t) { return Densities(medium, line.Altitude(t)); };
+  return IntegrateAdaptively(densities, 3, Breakpoints(medium, line, begin, end), tolerance).value;
 }
 
 double TauAt(const Medium& medium, std::size_t band, std::span<const double> columns) {
@@ -131,9 +128,7 @@ SunPath TowardsSun(const Medium& medium, const Line& view, const ViewRay& ray, d
   const Extended top = view.radius + medium.atmosphere_height_m;
   const Extended end =
       -r * mu_s + std::sqrt(std::max<Extended>(r * r * mu_s * mu_s + (top - r) * (top + r), 0));
-  const AdaptiveResult columns =
-      ColumnsAlong(medium, sun, 0.0, static_cast<double>(end), tolerance);
-  return {true, {columns.value[0], columns.value[1], columns.value[2]}};
+  return {true, ColumnsAlong(medium, sun, 0.0, static_cast<double>(end), tolerance)};
 }
 
 // Returns the segment of a line in the planet's shadow, a half-cylinder away from the sun: the
@@ -177,7 +172,7 @@ OpticalDepth OpticalDepthAlong(const Medium& medium, const ViewRay& ray) {
       extinction[band] = TauAt(medium, band, now);
     return extinction;
   };
-  const AdaptiveResult result =
+  const auto result =
       IntegrateAdaptively(densities, medium.wavelengths_nm.size(),
                           Breakpoints(medium, line, extent.begin_m, extent.end_m), 1e-12);
   return {result.value, extent.end == RayEnd::kGround, result.error < 1e-10};
@@ -212,10 +207,10 @@ RayRadiance SingleScatteringAlong(const Medium& medium, const ViewRay& ray) {
     std::vector<double> scattered(bands, 0.0);
     const SunPath sun = TowardsSun(medium, line, ray, t, !is_dark(t), kInnerTolerance);
     if (!sun.lit) return scattered;
-    const AdaptiveResult view = ColumnsAlong(medium, line, extent.begin_m, t, kInnerTolerance);
+    const Columns view = ColumnsAlong(medium, line, extent.begin_m, t, kInnerTolerance);
     const Columns density = Densities(medium, line.Altitude(t));
     for (std::size_t band = 0; band < bands; ++band) {
-      const double tau = TauAt(medium, band, view.value) + TauAt(medium, band, sun.columns);
+      const double tau = TauAt(medium, band, view) + TauAt(medium, band, sun.columns);
       scattered[band] =
           std::exp(-tau) *
           (medium.rayleigh_scattering_per_m[band] * density[0] * phase_rayleigh[band] +
@@ -223,7 +218,7 @@ RayRadiance SingleScatteringAlong(const Medium& medium, const ViewRay& ray) {
     }
     return scattered;
   };
-  const AdaptiveResult scattered = IntegrateAdaptively(source, bands, points, kOuterTolerance);
+  const auto scattered = IntegrateAdaptively(source, bands, points, kOuterTolerance);
 
   RayRadiance result;
   result.inscatter = scattered.value;

@@ -256,9 +256,7 @@ double SunFunction(double u, double v) {
   const double end = u > 0.0 ? std::min(v, std::atan(40.0 / u)) : v;
   const std::array<double, 3> panels{0.0, std::min(0.5 * end, std::atan(1.0 / std::max(u, 1e-3))),
                                      end};
-  const auto integrand = [u](double xi) {
-    return std::vector<double>{std::exp(-u * std::tan(xi))};
-  };
+  const auto integrand = [u](double xi) { return std::array{std::exp(-u * std::tan(xi))}; };
   return IntegrateAdaptively(integrand, 1, panels, 1e-13).value[0];
 }
 

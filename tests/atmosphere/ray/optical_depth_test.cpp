@@ -66,7 +66,7 @@ Columns ColumnsByQuadrature(const Medium& medium, double altitude_m, double mu) 
     return std::vector<double>{MoleculeDensity(medium, h), std::exp(-h / medium.mie_scale_height_m),
                                OzoneDensity(medium.ozone, h)};
   };
-  const AdaptiveResult result = IntegrateAdaptively(densities, 3, points, 1e-12);
+  const auto result = IntegrateAdaptively(densities, 3, points, 1e-12);
   return {result.value[0], result.value[1], result.value[2]};
 }
 
