@@ -73,14 +73,9 @@ CameraPath PathOfTrack(const Track& track, TrackStyle style, const Scene& scene)
 /// The series that the options describe, resolved once before anything is rendered.
 struct SeriesPlan {
   Scene scene;
-  std::optional<CameraPath> path;
+  SeriesViewpoint viewpoint;
   std::vector<Frame> frames, selected;
   double shutter = 0.0, interval_s = 0.0;  // on a path: fraction of the time between frames
-
-  /// Returns the place of the eye in a frame; without a path, that of the scene.
-  [[nodiscard]] GeodeticPosition PlaceOf(const Frame& frame) const {
-    return path ? path->PoseAt(frame.path_s).place : scene.place;
-  }
 };
 
 /// Returns the frames of a series that does not follow a path.
@@ -98,23 +93,25 @@ SeriesPlan PlanOf(const SkyseriesOptions& options) {
   plan.scene = SceneOf(options, track);
   if (options.zone) plan.scene.zone = options.zone;
   const Scene& scene = plan.scene;
+  plan.viewpoint = {scene.place, scene.zone, {}, scene.medium.follows_wgs84};
+  std::optional<CameraPath>& path = plan.viewpoint.path;
   if (track) {
-    plan.path = PathOfTrack(*track, options.track, scene);
+    path = PathOfTrack(*track, options.track, scene);
   } else if (options.path) {
-    plan.path = ReadCameraPath(*options.path,
-                               {scene.place, scene.camera.heading_rad, scene.camera.pitch_rad,
-                                scene.camera.roll_rad, scene.camera.fov_rad});
+    path = ReadCameraPath(*options.path,
+                          {scene.place, scene.camera.heading_rad, scene.camera.pitch_rad,
+                           scene.camera.roll_rad, scene.camera.fov_rad});
   }
   EventDay day{scene.place, scene.zone, scene.time};
   if (options.date) day.around = DayFromText(*options.date, day);
   const TimesText& times = options.times;
-  if (plan.path) {
+  if (path) {
     const auto start = times.at.empty() ? scene.time : InstantFromText(times.at.front(), day);
-    if (!start && !plan.path->UtcAt(0.0)) throw InputError("a path without utc needs a time: --at");
+    if (!start && !path->UtcAt(0.0)) throw InputError("a path without utc needs a time: --at");
     const PathRate rate{times.every, times.count, options.frames_per_second};
-    plan.frames = FramesAlong(*plan.path, rate, start.value_or(UtcInstant{}));
+    plan.frames = FramesAlong(*path, rate, start.value_or(UtcInstant{}));
     plan.shutter = options.shutter;
-    plan.interval_s = FrameInterval(*plan.path, rate);
+    plan.interval_s = FrameInterval(*path, rate);
   } else {
     plan.frames = FramesAt(times, options.date.has_value(), scene, day);
   }
@@ -188,8 +185,9 @@ class FramePictures {
   }
   [[nodiscard]] CameraSample CameraSampleAt(const Frame& frame) {
     CameraSample camera_sample =
-        plan_.path ? CameraSampleOf(frame, *plan_.path, plan_.shutter * plan_.interval_s)
-                   : CameraSample(frame.instant);
+        plan_.viewpoint.path
+            ? CameraSampleOf(frame, *plan_.viewpoint.path, plan_.shutter * plan_.interval_s)
+            : CameraSample(frame.instant);
     const auto known = bodies_.find(frame.number);
     camera_sample.bodies =
         known != bodies_.end()
@@ -223,12 +221,12 @@ class FramePictures {
 Metadata MetadataOf(const SeriesPlan& plan, const RenderSettings& settings,
                     const std::optional<EffectBudget>& budget) {
   Metadata metadata = PictureMetadata(plan.scene, settings);
-  if (plan.path) {
+  if (plan.viewpoint.path) {
     // Poses replace place and camera of the scene, which still place its mesh or range.
-    metadata["alpenglow.path"] =
-        fmt::format("hash {}, shutter {} of {} s",
-                    Fingerprint({{"path", TextOf(*plan.path)}, {"scene", Fingerprint(metadata)}}),
-                    plan.shutter, plan.interval_s);
+    metadata["alpenglow.path"] = fmt::format(
+        "hash {}, shutter {} of {} s",
+        Fingerprint({{"path", TextOf(*plan.viewpoint.path)}, {"scene", Fingerprint(metadata)}}),
+        plan.shutter, plan.interval_s);
   }
   if (budget && budget->leave_out)
     metadata["alpenglow.effects"] += fmt::format(" within {}", budget->max_error);
@@ -240,13 +238,10 @@ SeriesSource SourceOf(const SeriesPlan& plan, Metadata metadata, FramePictures& 
   return {[&](const Frame& frame, Progress& progress) { return pictures.Render(frame, progress); },
           [&](const Frame& frame) { return pictures.Illuminance(frame); },
           std::move(metadata),
-          scene.place,
-          scene.zone,
-          plan.path,
+          plan.viewpoint,
           scene.camera.IsPanorama() ? Projection::kLatitudeLongitude : Projection::kCamera,
           scene.camera.fov_rad,
-          [&](const Frame& frame) { return pictures.Small(frame); },
-          scene.medium.follows_wgs84};
+          [&](const Frame& frame) { return pictures.Small(frame); }};
 }
 
 /// Prints the frames.
@@ -255,8 +250,7 @@ void List(const SeriesPlan& plan, const std::string& out) {
   if (!out.empty()) name.emplace(out);
   std::vector<FrameRecord> records;
   for (const Frame& frame : plan.selected) {
-    FrameRecord& record =
-        records.emplace_back(RecordOf(frame, plan.PlaceOf(frame), plan.scene.zone));
+    FrameRecord& record = records.emplace_back(plan.viewpoint.RecordOf(frame));
     if (name) record.Set("file", name->Exr(frame.number).string());
   }
   Print(ListOf(records));

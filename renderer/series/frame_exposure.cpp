@@ -97,7 +97,7 @@ Metadata HeaderOfDevelopment(const SeriesOutput& output, const Development& deve
 SeriesExposure::SeriesExposure(const SeriesSource& source, const std::vector<Frame>& frames,
                                const SeriesOutput& output)
     : source_(source), frames_(frames), output_(output) {
-  const std::optional<int> per_node = FramesPerNode(frames, source.path.has_value());
+  const std::optional<int> per_node = FramesPerNode(frames, source.viewpoint.path.has_value());
   if (!source.preview || !per_node) return;
   const ExposureRule::Kind kind = output.exposure.kind;
   if (kind == ExposureRule::Kind::kMetered) {

@@ -31,8 +31,8 @@ constexpr char kExposure[] = "alpenglow.exposure";
 /// fingerprint.
 Metadata RenderMetadata(const SeriesSource& source, const Frame& frame) {
   Metadata metadata = source.settings;
-  if (source.path) {
-    for (const auto& [name, value] : PoseMetadata(source.path->PoseAt(frame.path_s))) {
+  if (source.viewpoint.path) {
+    for (const auto& [name, value] : PoseMetadata(source.viewpoint.path->PoseAt(frame.path_s))) {
       metadata[name] = value;
     }
     metadata["alpenglow.path_s"] = fmt::format("{}", frame.path_s);
@@ -146,7 +146,7 @@ class Series {
 
   void WriteManifest() const {
     const std::vector<FrameRecord> records = Records();
-    const bool on_path = source_.path.has_value();
+    const bool on_path = source_.viewpoint.path.has_value();
     WriteTextAtomically(output_.name.Manifest(), CsvOfManifest(records, on_path));
     WriteTextAtomically(output_.name.JsonManifest(),
                         JsonOfManifest(records, source_.settings, on_path));
@@ -171,7 +171,7 @@ class Series {
                      [](const PlottedMoment& a, const PlottedMoment& b) {
                        return SecondsBetween(a.instant, b.instant) > 0.0;
                      });
-    WriteTextAtomically(*output_.plot, SvgOfDay(moments, source_.zone));
+    WriteTextAtomically(*output_.plot, SvgOfDay(moments, source_.viewpoint.zone));
   }
 
   /// Video and keogram take the developed pictures one by one, so the series is never held in
@@ -249,9 +249,10 @@ class Series {
 
   /// Returns what is known of a frame before it is rendered.
   [[nodiscard]] FrameRecord RecordBefore(const Frame& frame) const {
-    FrameRecord record = RecordOf(frame, source_.PlaceOf(frame), source_.zone, source_.has_moon);
+    FrameRecord record = source_.viewpoint.RecordOf(frame);
     record.Set("file", output_.name.Exr(frame.number).filename().string());
-    if (source_.path) AddPose(frame, source_.path->PoseAt(frame.path_s), record);
+    if (source_.viewpoint.path)
+      AddPose(frame, source_.viewpoint.path->PoseAt(frame.path_s), record);
     return record;
   }
 
@@ -323,9 +324,9 @@ std::size_t RemoveLeftovers(const fs::path& folder, const std::vector<NamedFile>
 }  // namespace
 
 Projection SeriesSource::ProjectionOf(const Frame& frame) const {
-  if (!path) return projection;
+  if (!viewpoint.path) return projection;
   Camera camera;
-  camera.fov_rad = path->PoseAt(frame.path_s).fov_rad;
+  camera.fov_rad = viewpoint.path->PoseAt(frame.path_s).fov_rad;
   return camera.IsPanorama() ? Projection::kLatitudeLongitude : Projection::kCamera;
 }
 

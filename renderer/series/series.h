@@ -17,6 +17,7 @@
 #include "lut/image/look.h"
 #include "renderer/camera/camera_path.h"
 #include "renderer/series/frame_times.h"
+#include "renderer/series/manifest.h"
 
 namespace alpenglow::renderer {
 
@@ -34,6 +35,23 @@ inline constexpr const char* kNotePrefix = "alpenglow.note.";
 /// plot and the manifest.
 inline constexpr const char* kIlluminanceNote = "alpenglow.note.illuminance_lx";
 
+/// Where the eye of a series is: at one place or along a path.
+struct SeriesViewpoint {
+  GeodeticPosition place;                // without a path
+  std::optional<std::string> zone = {};  // of the local times
+  std::optional<CameraPath> path = {};   // camera path of Frame::path_s
+  bool has_moon = true;  // the planet has the earth's moon, which can eclipse the sun
+
+  /// Returns the place of the eye in a frame.
+  [[nodiscard]] GeodeticPosition PlaceOf(const Frame& frame) const {
+    return path ? path->PoseAt(frame.path_s).place : place;
+  }
+  /// Returns the record of what is known before a frame is rendered (manifest.h).
+  [[nodiscard]] FrameRecord RecordOf(const Frame& frame) const {
+    return renderer::RecordOf(frame, PlaceOf(frame), zone, has_moon);
+  }
+};
+
 /// Source of the pictures of a series.
 struct SeriesSource {
   /// Renders a frame; reports its preparation steps and the finished part of the picture to the
@@ -45,23 +63,16 @@ struct SeriesSource {
   /// Everything that affects the pixels except the instant and the pose (SceneMetadata, size,
   /// samples, layers).
   Metadata settings;
-  GeodeticPosition place;
-  std::optional<std::string> zone;
-  std::optional<CameraPath> path;               // camera path of Frame::path_s
+  SeriesViewpoint viewpoint;
   Projection projection = Projection::kCamera;  // without a path
   double fov_rad = 0.0;                         // without a path
   /// Returns a small picture of a frame, for the meter of a series (frame_exposure.h); without it
   /// each frame is metered by itself.
   std::function<Image(const Frame&)> preview = {};
-  bool has_moon = true;  // the planet has the earth's moon, which can eclipse the sun
 
-  /// Returns the place of the eye in a frame.
-  [[nodiscard]] GeodeticPosition PlaceOf(const Frame& frame) const {
-    return path ? path->PoseAt(frame.path_s).place : place;
-  }
   [[nodiscard]] Projection ProjectionOf(const Frame& frame) const;
   [[nodiscard]] double FovOf(const Frame& frame) const {
-    return path ? path->PoseAt(frame.path_s).fov_rad : fov_rad;
+    return viewpoint.path ? viewpoint.path->PoseAt(frame.path_s).fov_rad : fov_rad;
   }
 };
 

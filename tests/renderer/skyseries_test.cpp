@@ -233,6 +233,11 @@ TEST_F(Skyseries, FilesOfAnEclipseHaveTheCoveredShare) {
   EXPECT_THAT(manifest, HasSubstr(",1.000000,"));
   EXPECT_THAT(ContentOf(folder_ / "e.manifest.json"), HasSubstr("\"sun_covered\":1.000000"));
   EXPECT_THAT(Run("--list " + command).out, HasSubstr(",1.0000,"));
+  EXPECT_THAT(Run("--list --latitude 42.3439 --longitude -3.6969 --atmosphere mars --at "
+                  "2026-08-12T18:29:00Z")
+                  .out,
+              HasSubstr(",0.0000,"))
+      << "the earth's moon covers no sun of another planet";
   const std::string times = InFolder("times.csv");
   ASSERT_EQ(
       Run("times --latitude 42.3439 --longitude -3.6969 --date 2026-08-12 --out " + times).status,

@@ -66,8 +66,8 @@ class SeriesRun : public TemporaryFolder {
       return Even({light, light, light});
     };
     source.settings = {{"alpenglow.fov_deg", "60"}};
-    source.place = PlaceFromDegrees(46.5, 8.0, 0.0);
-    source.zone = "Europe/Zurich";
+    source.viewpoint.place = PlaceFromDegrees(46.5, 8.0, 0.0);
+    source.viewpoint.zone = "Europe/Zurich";
     return source;
   }
   SeriesOutput Output(bool png = false) const {
