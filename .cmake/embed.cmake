@@ -26,7 +26,7 @@ file(WRITE "${OUTPUT}"
 namespace alpenglow::${FOLDER} {
 std::string_view FindEmbeddedText(std::string_view name);
 std::string_view FindEmbeddedText(std::string_view name) {
-  static constexpr std::pair<std::string_view, std::string_view> rows[] = {
+  static const std::pair<std::string_view, std::string_view> rows[] = {
 ${rows}  };
   for (const auto& [key, text] : rows) {
     if (key == name) return text;

@@ -52,9 +52,9 @@ const std::vector<Star>& Catalogue() {
 }  // namespace
 
 std::vector<PointLight> StarsAt(const UtcInstant& instant, double faintest) {
-  constexpr double kDayOf2000 = 51544.5, kDaysOfYear = 365.25;
+  constexpr double kModifiedDayOf2000 = 51544.5, kDaysOfYear = 365.25;
   const double years =
-      (instant.modified_julian_day + instant.second_of_day / kSecondsPerDay - kDayOf2000) /
+      (instant.modified_julian_day + instant.second_of_day / kSecondsPerDay - kModifiedDayOf2000) /
       kDaysOfYear;
   const glm::dmat3 ecef_from_gcrs = EcefFromGcrs(instant, DeltaT(instant));
   std::vector<PointLight> lights;

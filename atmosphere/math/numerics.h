@@ -97,7 +97,7 @@ template <typename Function, typename Values = std::invoke_result_t<Function, do
     bool operator<(const Panel& other) const { return error < other.error; }
   };
   const GaussRule& rule = GaussLegendre(10);
-  const auto zeros = [size] {
+  const auto zeros = [&] {
     if constexpr (std::is_same_v<Values, std::vector<double>>) return Values(size, 0.0);
     return Values{};
   };

@@ -206,7 +206,7 @@ TEST_F(CameraPathFiles, AFaultIsReportedWithItsLine) {
            {header, "no lines"},
            {start + ",fov\n0,46,8,100,200\n", "p.csv:2: fov is 200"},
            {start + ",utc\n0,46,8,100,soon\n", "p.csv:2: "}}) {
-    EXPECT_THAT(tests::FaultOf([&] { return Read(text); }), HasSubstr(fault)) << text;
+    EXPECT_THAT(tests::FaultOf([&, &text = text] { return Read(text); }), HasSubstr(fault)) << text;
   }
 }
 

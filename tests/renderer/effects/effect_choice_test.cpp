@@ -210,7 +210,9 @@ TEST(Effects, AnUnknownNameIsRefusedWithTheNearest) {
         {"sky,,aerial", "effect \"\" is not known"},
         {"", "effect \"\" is not known"},
         {"all,-rain", "effect \"rain\" is not known"}})
-    EXPECT_THAT(tests::FaultOf([&] { return EffectsFromText(text); }), HasSubstr(fault)) << text;
+    EXPECT_THAT(tests::FaultOf([&, &text = text] { return EffectsFromText(text); }),
+                HasSubstr(fault))
+        << text;
 }
 
 Image Grey(float value) {

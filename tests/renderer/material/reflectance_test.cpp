@@ -123,7 +123,10 @@ TEST(RoughDiffuse, AlbedoIsTheIntegralAndOneReflectsAllLight) {
     const RoughDiffuse surface(roughness);
     for (const double mu : {1.0, 0.5, 0.1}) {
       const double integral = AlbedoByQuadrature(
-          [&](const ReflectionAngles& at) { return Band0(surface.Brdf(Flat(albedo), at)); }, mu);
+          [&, &albedo = albedo](const ReflectionAngles& at) {
+            return Band0(surface.Brdf(Flat(albedo), at));
+          },
+          mu);
       if (albedo == 1.0F) {
         EXPECT_NEAR(integral, 1.0, 1e-3) << "roughness " << roughness << ", cosine " << mu;
       } else {
