@@ -96,7 +96,7 @@ TEST_F(LandChunks, TheFinestLevelIsTheRenderersMesh) {
   for (const auto& triangle : mesh.triangles) cut.insert(turned(triangle));
   for (const auto& [column, row] : {std::pair{0, 0}, {5, 7}, {14, 14}}) {
     const LandChunk chunk = Chunk(0, column, row);
-    const auto sample = [&](std::uint32_t v) {
+    const auto sample = [&, column = column, row = row](std::uint32_t v) {
       return static_cast<std::uint32_t>((16 * row + static_cast<int>(v) / kChunkSide) *
                                             kTileSamples +
                                         16 * column + static_cast<int>(v) % kChunkSide);
