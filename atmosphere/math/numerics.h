@@ -83,9 +83,9 @@ struct AdaptiveResult {
 };
 
 /// Integrates f: double -> std::vector<double> (of `size` values) or std::array<double, size> over
-/// the panels [b0, b1], [b1, b2], ... of ascending breakpoints. Panels are halved, worst first, until the difference
-/// between the 10-point rule and its two halves, summed over panels, is below `relative_tolerance`
-/// times the largest component of the integral.
+/// the panels [b0, b1], [b1, b2], ... of ascending breakpoints. Panels are halved, worst first,
+/// until the difference between the 10-point rule and its two halves, summed over panels, is below
+/// `relative_tolerance` times the largest component of the integral.
 template <typename Function, typename Values = std::invoke_result_t<Function, double>>
 [[nodiscard]] AdaptiveResult<Values> IntegrateAdaptively(const Function& f, std::size_t size,
                                                          std::span<const double> breakpoints,

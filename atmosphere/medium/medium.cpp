@@ -258,6 +258,7 @@ bool AllShareOnePhase(const Medium& medium) {
 
 std::vector<double> MiePhaseValues(const Medium& medium, double cos_scattering) {
   std::vector<double> values;
+  values.reserve(medium.wavelengths_nm.size());
   for (const PhaseFunction& phase : medium.mie_phase) {
     values.push_back(Phase(phase, cos_scattering));
   }
@@ -267,6 +268,7 @@ std::vector<double> MiePhaseValues(const Medium& medium, double cos_scattering) 
 
 std::vector<double> RayleighPhaseValues(const Medium& medium, double cos_scattering) {
   std::vector<double> values;
+  values.reserve(medium.wavelengths_nm.size());
   for (const double depolarisation : medium.rayleigh_depolarisation)
     values.push_back(shared::PhaseMolecules(cos_scattering, depolarisation));
   if (values.size() == 1) values.resize(medium.wavelengths_nm.size(), values.front());

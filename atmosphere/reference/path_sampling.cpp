@@ -10,21 +10,6 @@
 namespace alpenglow::atmosphere::reference {
 namespace {
 
-struct Cubic {
-  std::size_t first;
-  std::array<double, 4> weight;
-};
-
-// Returns the weights of Lagrange's cubic interpolation through the four nodes around x, out of
-// nodes 0, 1, ... count - 1.
-Cubic CubicAt(double x, int count) {
-  const int first = std::clamp(static_cast<int>(x) - 1, 0, count - 4);
-  const double t = x - first;
-  return {static_cast<std::size_t>(first),
-          {-(t - 1.0) * (t - 2.0) * (t - 3.0) / 6.0, t * (t - 2.0) * (t - 3.0) / 2.0,
-           -t * (t - 1.0) * (t - 3.0) / 2.0, t * (t - 1.0) * (t - 2.0) / 6.0}};
-}
-
 bool AnyAbove(const std::vector<double>& values, double limit) {
   return std::any_of(values.begin(), values.end(), [&](double value) { return value > limit; });
 }
@@ -77,26 +62,43 @@ ColumnTable::Layer ColumnTable::Tabulate(double scale_height_m) const {
   return layer;
 }
 
-double ColumnTable::MoleculesBeyond(double radius_m, double s_m) const {
-  const double column = Beyond(rayleigh_, radius_m, s_m);
-  if (deficit_share_ == 0.0) return column;
-  return (1.0 + deficit_share_) * column - deficit_share_ * Beyond(deficit_, radius_m, s_m);
+// Returns the weights of Lagrange's cubic interpolation through the four nodes around x, out of
+// nodes 0, 1, ... count - 1.
+inline ColumnTable::Cubic ColumnTable::CubicAt(double x, int count) {
+  const int first = std::clamp(static_cast<int>(x) - 1, 0, count - 4);
+  const double t = x - first;
+  return {static_cast<std::size_t>(first), -(t - 1.0) * (t - 2.0) * (t - 3.0) / 6.0,
+          t * (t - 2.0) * (t - 3.0) / 2.0, -t * (t - 1.0) * (t - 3.0) / 2.0,
+          t * (t - 1.0) * (t - 2.0) / 6.0};
 }
 
-double ColumnTable::Beyond(const Layer& layer, double radius_m, double s_m) const {
-  const double root = std::sqrt(radius_m * layer.scale_height_m);
-  const double t = s_m / (root * std::numbers::sqrt2);
+ColumnTable::Place ColumnTable::PlaceAt(double radius_m, double s_m) const {
   const double h = radius_m - planet_radius_m_;
   const double y = h / radius_m * top_radius_m_ / (top_radius_m_ - planet_radius_m_);
-  const Cubic across = CubicAt(y * (kRadii - 1), kRadii);
+  return {radius_m, s_m, h, CubicAt(y * (kRadii - 1), kRadii)};
+}
+
+double ColumnTable::MoleculesBeyond(const Place& place) const {
+  const double column = Beyond(rayleigh_, place);
+  if (deficit_share_ == 0.0) return column;
+  return (1.0 + deficit_share_) * column - deficit_share_ * Beyond(deficit_, place);
+}
+
+double ColumnTable::Beyond(const Layer& layer, const Place& place) {
+  const double root = std::sqrt(place.radius_m * layer.scale_height_m);
+  const double t = place.s_m / (root * std::numbers::sqrt2);
+  const Cubic& across = place.across;
   const Cubic along = CubicAt(t / (1.0 + t) * (kSlants - 1), kSlants);
+  const double* row = &layer.table[across.first * kSlants + along.first];
+  const auto in_row = [&](const double* at) {
+    return along.w0 * at[0] + along.w1 * at[1] + along.w2 * at[2] + along.w3 * at[3];
+  };
   double sum = 0.0;
-  for (std::size_t i = 0; i < 4; ++i) {
-    const double* row = &layer.table[(across.first + i) * kSlants + along.first];
-    sum += across.weight[i] * (along.weight[0] * row[0] + along.weight[1] * row[1] +
-                               along.weight[2] * row[2] + along.weight[3] * row[3]);
-  }
-  return std::exp(-h / layer.scale_height_m) * sum / (1.0 + t) * root;
+  sum += across.w0 * in_row(row);
+  sum += across.w1 * in_row(row + kSlants);
+  sum += across.w2 * in_row(row + 2 * kSlants);
+  sum += across.w3 * in_row(row + 3 * kSlants);
+  return std::exp(-place.height_m / layer.scale_height_m) * sum / (1.0 + t) * root;
 }
 
 // Returns an antiderivative of one side of the ozone tent (0: lower, rising; 1: upper, falling) at
@@ -152,7 +154,8 @@ AirColumns ColumnTable::Primitive(const Line& line, double s_m) const {
   const double p = line.perigee_radius_m;
   const double s = std::abs(s_m);
   const double r = std::sqrt(p * p + s * s);
-  AirColumns columns{MoleculesBeyond(r, s), Beyond(mie_, r, s), 0.0};
+  const Place place = PlaceAt(r, s);
+  AirColumns columns{MoleculesBeyond(place), Beyond(mie_, place), 0.0};
   if (!has_ozone_ || s <= line.ozone_edge_m[0]) return columns;
   if (ozone_.shape == OzoneShape::kSmooth) {
     columns.ozone = SmoothOzoneUpTo(line, s);

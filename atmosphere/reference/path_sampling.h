@@ -185,8 +185,22 @@ class ColumnTable {
     std::vector<double> table;  // F / sqrt(H r) (1 + t), t = mu sqrt(r / 2H); radius-major order
   };
   [[nodiscard]] Layer Tabulate(double scale_height_m) const;
-  [[nodiscard]] double Beyond(const Layer& layer, double radius_m, double s_m) const;
-  [[nodiscard]] double MoleculesBeyond(double radius_m, double s_m) const;
+
+  /// First of four nodes, and their weights.
+  struct Cubic {
+    std::size_t first;
+    double w0, w1, w2, w3;
+  };
+  [[nodiscard]] static Cubic CubicAt(double x, int count);
+
+  /// A point on a line, and its interpolation between the radii of the tables.
+  struct Place {
+    double radius_m, s_m, height_m;
+    Cubic across;
+  };
+  [[nodiscard]] Place PlaceAt(double radius_m, double s_m) const;
+  [[nodiscard]] static double Beyond(const Layer& layer, const Place& place);
+  [[nodiscard]] double MoleculesBeyond(const Place& place) const;
   [[nodiscard]] double SmoothOzoneUpTo(const Line& line, double s_m) const;
   [[nodiscard]] double OzoneSide(const Line& line, std::size_t side, double s_m) const;
 

@@ -444,9 +444,9 @@ void Tracer::Gather(const Piece& piece, std::vector<double>& light) {
 Responses Tracer::ResponsesToSun(const Piece& piece) const {
   const std::size_t bands = weight_.size();
   const double nu = std::clamp(glm::dot(piece.direction, scene_.sun()), -1.0, 1.0);
-  const std::vector<double> mie_phase = MiePhaseValues(scene_.medium(), nu);
+  std::vector<double> mie_phase = MiePhaseValues(scene_.medium(), nu);
   if (polarised_ == nullptr) {
-    return {RayleighPhaseValues(scene_.medium(), nu), mie_phase};
+    return {RayleighPhaseValues(scene_.medium(), nu), std::move(mie_phase)};
   }
   const PlaneTurn turn = TurnOf(piece.direction, reference_, scene_.sun());
   Responses responses{std::vector<double>(kStokes * bands), std::vector<double>(kStokes * bands)};

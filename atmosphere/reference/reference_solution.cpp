@@ -50,8 +50,11 @@ Columns Densities(const Medium& medium, Extended altitude) {
     ozone = (layer.top_m - h) / (layer.top_m - layer.peak_m);
   }
   const MoleculeDeficit& deficit = medium.rayleigh_deficit;
-  const double molecules = (1.0 + deficit.share) * std::exp(-h / medium.rayleigh_scale_height_m) -
-                           deficit.share * std::exp(-h / deficit.scale_height_m);
+  double molecules = std::exp(-h / medium.rayleigh_scale_height_m);
+  if (deficit.share != 0.0) {
+    molecules =
+        (1.0 + deficit.share) * molecules - deficit.share * std::exp(-h / deficit.scale_height_m);
+  }
   return {molecules, std::exp(-h / medium.mie_scale_height_m), ozone};
 }
 
@@ -59,7 +62,9 @@ Columns Densities(const Medium& medium, Extended altitude) {
 // of the ozone tent, the perigee, and a ladder of altitudes that brackets both scale heights, so
 // that no layer lies between the nodes of a first panel.
 std::vector<double> Breakpoints(const Medium& medium, const Line& line, double begin, double end) {
-  std::vector<double> points{begin, end};
+  std::vector<double> points;
+  points.reserve(2 + 1 + 2 * (3 + 6));
+  points.insert(points.end(), {begin, end});
   const Extended perigee = line.Perigee();
   if (perigee > begin && perigee < end) points.push_back(static_cast<double>(perigee));
   for (const double z : {medium.ozone.bottom_m, medium.ozone.peak_m, medium.ozone.top_m}) {
