@@ -9,7 +9,6 @@
 #include <cmath>
 #include <cstdint>
 #include <fstream>
-#include <iterator>
 #include <limits>
 #include <optional>
 
@@ -75,8 +74,9 @@ std::vector<float> RawTexels(const fs::path& file, std::size_t texels, TexelType
     RefuseFile(file, fmt::format("has {} bytes; such a table has {}", bytes, 4 * size * texels));
   }
   std::ifstream stream(file, std::ios::binary);
-  const std::string content{std::istreambuf_iterator<char>(stream), {}};
-  if (content.size() != bytes) RefuseFile(file, "cannot be read");
+  std::string content(bytes, '\0');
+  if (!stream.read(content.data(), static_cast<std::streamsize>(bytes)))
+    RefuseFile(file, "cannot be read");
   std::vector<float> values;
   values.reserve(4 * texels);
   for (std::size_t i = 0; i < 4 * texels; ++i) {
@@ -186,34 +186,34 @@ class Comparison {
   std::vector<std::pair<double, double>> pairs_;
 };
 
-/// Computes the texels of this program one by one.
+template <typename Real>
+Rgba TimesSun(const Medium& medium, const Bands<Real>& unit) {
+  Rgba rgba{};
+  for (std::size_t c = 0; c < 3; ++c) {
+    rgba[c] = static_cast<double>(unit[2 - c]) * medium.solar_irradiance[2 - c];
+  }
+  return rgba;
+}
+
+/// A texel of the scattering textures with the light that this program computes for it, without
+/// phase functions: scattered once, by molecules and by aerosol, and scattered more often.
+struct CheckedTexel {
+  std::size_t texel;
+  Rgba molecules, aerosol, more;
+};
+
+/// Computes checked texels one by one.
 class Reference {
  public:
   Reference(const Medium& medium, double lowest_mu_s)
       : medium_(medium), air_(medium), quick_air_(medium), map_(MapOf(medium, lowest_mu_s)) {}
 
-  /// Light scattered once, without phase functions: by molecules and by aerosol. Blue is the first
-  /// band.
-  struct Once {
-    Rgba molecules, aerosol;
-  };
-  [[nodiscard]] Once ScatteredOnceAt(std::size_t texel) const {
-    const auto light = air_.Scatter(air_.Sample(RayOf(texel), {.nodes = 24}));
-    return {TimesSun(light.rayleigh), TimesSun(light.mie)};
-  }
-  [[nodiscard]] Rgba HigherOrdersAt(std::size_t texel, const MultipleScattering& light) const {
+  [[nodiscard]] CheckedTexel At(std::size_t texel, const MultipleScattering& light) const {
     const ViewRay ray = RayOf(texel);
-    Rgba rgba = TimesSun(HigherOrdersAlong(quick_air_, light, ray));
-    for (double& value : rgba) value /= shared::PhaseRayleigh<double>(ray.nu);
-    return rgba;
-  }
-  template <typename Real>
-  [[nodiscard]] Rgba TimesSun(const Bands<Real>& unit) const {
-    Rgba rgba{};
-    for (std::size_t c = 0; c < 3; ++c) {
-      rgba[c] = static_cast<double>(unit[2 - c]) * medium_.solar_irradiance[2 - c];
-    }
-    return rgba;
+    const auto once = air_.Scatter(air_.Sample(ray, {.nodes = 24}));
+    Rgba more = TimesSun(medium_, HigherOrdersAlong(quick_air_, light, ray));
+    for (double& value : more) value /= shared::PhaseRayleigh<double>(ray.nu);
+    return {texel, TimesSun(medium_, once.rayleigh), TimesSun(medium_, once.mie), more};
   }
 
  private:
@@ -237,15 +237,19 @@ class Reference {
   ScatteringTable map_;
 };
 
-/// Returns texels distributed over a scattering texture; every call returns one fixed set.
-std::vector<std::size_t> CheckedTexels() {
+/// Returns texels distributed over a scattering texture; every call returns those of one fixed set.
+std::vector<CheckedTexel> CheckedTexels(const Medium& medium, double lowest_mu_s,
+                                        const MultipleScattering& light) {
+  const Reference reference(medium, lowest_mu_s);
   const ScatteringTableSize& size = kExchangeScatteringSize;
   const std::size_t all = size.nu * size.mu_s * size.mu * size.altitudes;
-  std::vector<std::size_t> texels;
+  std::vector<CheckedTexel> texels;
   // Multiples of the golden ratio are distributed most evenly (Weyl 1916, Math. Ann. 77, 313).
   for (std::size_t i = 0; i < kCheckedTexels; ++i) {
     const double x = static_cast<double>(i) * 0.6180339887498949;
-    texels.push_back(static_cast<std::size_t>((x - std::floor(x)) * static_cast<double>(all)));
+    const double share = x - std::floor(x);
+    texels.push_back(
+        reference.At(static_cast<std::size_t>(share * static_cast<double>(all)), light));
   }
   return texels;
 }
@@ -260,8 +264,8 @@ TexelErrors TransmittanceErrors(const std::vector<float>& texels, const Medium& 
   return comparison.Errors();
 }
 
-TexelErrors IrradianceErrors(const std::vector<float>& texels, const Reference& reference,
-                             const MultipleScattering& light, const Medium& medium) {
+TexelErrors IrradianceErrors(const std::vector<float>& texels, const MultipleScattering& light,
+                             const Medium& medium) {
   Comparison comparison;
   const auto unit = [](std::size_t i, std::size_t n) {
     return static_cast<double>(i) / static_cast<double>(n - 1);
@@ -270,51 +274,55 @@ TexelErrors IrradianceErrors(const std::vector<float>& texels, const Reference& 
     const double h_m =
         medium.atmosphere_height_m * unit(i / kIrradianceShape.width, kIrradianceShape.height);
     const double mu_s = 2.0 * unit(i % kIrradianceShape.width, kIrradianceShape.width) - 1.0;
-    const Rgba ours = reference.TimesSun(light.SkyIrradiance(h_m, mu_s));
+    const Rgba ours = TimesSun(medium, light.SkyIrradiance(h_m, mu_s));
     for (std::size_t c = 0; c < 3; ++c) comparison.Add(texels[4 * i + c], ours[c]);
   }
   return comparison.Errors();
 }
 
 /// Returns the errors of alpha in scattering, which holds the red light that aerosol scatters once.
-TexelErrors AlphaErrors(const std::vector<float>& scattering, const Reference& reference) {
+TexelErrors AlphaErrors(const std::vector<float>& scattering,
+                        const std::vector<CheckedTexel>& checked) {
   Comparison comparison;
-  for (const std::size_t texel : CheckedTexels()) {
-    comparison.Add(scattering[4 * texel + 3], reference.ScatteredOnceAt(texel).aerosol[0]);
-  }
+  for (const CheckedTexel& ours : checked)
+    comparison.Add(scattering[4 * ours.texel + 3], ours.aerosol[0]);
   return comparison.Errors();
 }
 
 TexelErrors ScatteringErrors(std::string_view name, const std::vector<float>& texels,
-                             const Reference& reference, const MultipleScattering& light) {
+                             const std::vector<CheckedTexel>& checked) {
   Comparison comparison;
-  for (const std::size_t texel : CheckedTexels()) {
-    const Reference::Once once = reference.ScatteredOnceAt(texel);
-    const Rgba more = reference.HigherOrdersAt(texel, light);
+  for (const auto& [texel, molecules, aerosol, more] : checked) {
     for (std::size_t c = 0; c < 3; ++c) {
-      const double truth = name == "scattering"                ? once.molecules[c] + more[c]
+      const double truth = name == "scattering"                ? molecules[c] + more[c]
                            : name == "higher_order_scattering" ? more[c]
-                                                               : once.aerosol[c];
+                                                               : aerosol[c];
       comparison.Add(texels[4 * texel + c], truth);
     }
   }
   return comparison.Errors();
 }
 
-/// Returns the lowest sun with which the texels agree best.
-double LowestSunIn(const std::vector<float>& scattering, const Medium& medium,
-                   const MultipleScattering& light, const ExchangeOptions& options) {
-  double best_deg = 0.0, least = std::numeric_limits<double>::infinity();
+/// The lowest sun with which the texels agree best, and this program's texels for it.
+struct BestSun {
+  double angle_deg = 0.0;
+  std::vector<CheckedTexel> checked;
+};
+
+BestSun LowestSunIn(const std::vector<float>& scattering, const Medium& medium,
+                    const MultipleScattering& light, const ExchangeOptions& options) {
+  BestSun best;
+  double least = std::numeric_limits<double>::infinity();
   for (const double angle_deg : {kDemoLowestSun_deg, kLowestSun_deg}) {
     ExchangeOptions tried = options;
     tried.lowest_sun_deg = angle_deg;
-    const Reference reference(medium, LowestSunOf(tried));
-    const double median = ScatteringErrors("scattering", scattering, reference, light).median;
+    std::vector<CheckedTexel> checked = CheckedTexels(medium, LowestSunOf(tried), light);
+    const double median = ScatteringErrors("scattering", scattering, checked).median;
     if (median >= least) continue;
     least = median;
-    best_deg = angle_deg;
+    best = {angle_deg, std::move(checked)};
   }
-  return best_deg;
+  return best;
 }
 
 void RequireAgreement(const fs::path& file, const TexelErrors& errors, const Medium& medium) {
@@ -352,14 +360,12 @@ LoadedTexture Load(const fs::path& folder, const TextureShape& shape,
   return loaded;
 }
 
-TexelErrors ErrorsOf(const LoadedTexture& texture, const Reference& reference,
+TexelErrors ErrorsOf(const LoadedTexture& texture, const std::vector<CheckedTexel>& checked,
                      const MultipleScattering& light, const Medium& medium) {
   const std::string_view name = texture.description.shape.name;
   if (name == kTransmittanceShape.name) return TransmittanceErrors(texture.texels, medium);
-  if (name == kIrradianceShape.name) {
-    return IrradianceErrors(texture.texels, reference, light, medium);
-  }
-  return ScatteringErrors(name, texture.texels, reference, light);
+  if (name == kIrradianceShape.name) return IrradianceErrors(texture.texels, light, medium);
+  return ScatteringErrors(name, texture.texels, checked);
 }
 
 std::string LineOf(const ExchangeDescription::Texture& texture) {
@@ -409,12 +415,12 @@ ExchangeDescription DescribeExchangeTables(const fs::path& folder) {
   }
   const LoadedTexture& scattering = loaded[2];
   const MultipleScattering light = FourOrdersOf(medium);
-  options.lowest_sun_deg = LowestSunIn(scattering.texels, medium, light, options);
-  const Reference reference(medium, LowestSunOf(options));
-  RequireAgreement(scattering.description.file, AlphaErrors(scattering.texels, reference), medium);
+  const auto [lowest_sun_deg, checked] = LowestSunIn(scattering.texels, medium, light, options);
+  options.lowest_sun_deg = lowest_sun_deg;
+  RequireAgreement(scattering.description.file, AlphaErrors(scattering.texels, checked), medium);
   if (const auto fault = FaultOf(options)) RefuseFile(scattering.description.file, *fault);
   for (LoadedTexture& texture : loaded) {
-    texture.description.errors = ErrorsOf(texture, reference, light, medium);
+    texture.description.errors = ErrorsOf(texture, checked, light, medium);
     RequireAgreement(texture.description.file, texture.description.errors, medium);
     description.textures.push_back(std::move(texture.description));
   }

@@ -198,16 +198,13 @@ void WriteExr(const fs::path& file, const ExchangeTexture& texture, const Exchan
 }
 
 std::string LittleEndian(const std::vector<float>& values, TexelType type) {
-  std::string bytes;
-  const auto append = [&](std::uint32_t bits, unsigned size) {
-    for (unsigned i = 0; i < size; ++i) bytes.push_back(static_cast<char>(bits >> (8U * i) & 255U));
-  };
+  const unsigned size = type == TexelType::kHalf ? 2 : 4;
+  std::string bytes(size * values.size(), '\0');
+  char* next = bytes.data();
   for (const float value : values) {
-    if (type == TexelType::kHalf) {
-      append(half(value).bits(), 2);
-    } else {
-      append(std::bit_cast<std::uint32_t>(value), 4);
-    }
+    const std::uint32_t bits =
+        type == TexelType::kHalf ? half(value).bits() : std::bit_cast<std::uint32_t>(value);
+    for (unsigned i = 0; i < size; ++i) *next++ = static_cast<char>(bits >> (8U * i) & 255U);
   }
   return bytes;
 }
