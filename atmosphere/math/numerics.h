@@ -82,46 +82,63 @@ struct AdaptiveResult {
   bool converged = false;
 };
 
-/// Integrates f: double -> std::vector<double> (of `size` values) or std::array<double, size> over
-/// the panels [b0, b1], [b1, b2], ... of ascending breakpoints. Panels are halved, worst first,
-/// until the difference between the 10-point rule and its two halves, summed over panels, is below
-/// `relative_tolerance` times the largest component of the integral.
-template <typename Function, typename Values = std::invoke_result_t<Function, double>>
-[[nodiscard]] AdaptiveResult<Values> IntegrateAdaptively(const Function& f, std::size_t size,
-                                                         std::span<const double> breakpoints,
-                                                         double relative_tolerance,
-                                                         std::size_t max_panels = 4096) {
-  struct Panel {
-    double low, high, error;
-    Values whole, halves;
-    bool operator<(const Panel& other) const { return error < other.error; }
-  };
-  const GaussRule& rule = GaussLegendre(10);
-  const auto zeros = [&] {
-    if constexpr (std::is_same_v<Values, std::vector<double>>) return Values(size, 0.0);
-    return Values{};
-  };
-  const auto apply = [&](double low, double high) {
-    Values sum = zeros();
-    for (std::size_t i = 0; i < rule.node.size(); ++i) {
-      const Values value = f(low + (high - low) * rule.node[i]);
-      for (std::size_t k = 0; k < size; ++k) sum[k] += rule.weight[i] * (high - low) * value[k];
+/// The 10-point rule: integrates f: double -> std::vector<double> (of `size` values) or
+/// std::array<double, size> over one panel.
+template <typename Function>
+class TenPointRule {
+ public:
+  using Values = std::invoke_result_t<Function, double>;
+
+  TenPointRule(const Function& f, std::size_t size) : f_(f), size_(size) {}
+
+  [[nodiscard]] Values operator()(double low, double high) const {
+    Values sum = Zeros();
+    for (std::size_t i = 0; i < rule_.node.size(); ++i) {
+      const Values value = f_(low + (high - low) * rule_.node[i]);
+      for (std::size_t k = 0; k < size_; ++k) sum[k] += rule_.weight[i] * (high - low) * value[k];
     }
     return sum;
+  }
+
+  [[nodiscard]] Values Zeros() const {
+    if constexpr (std::is_same_v<Values, std::vector<double>>) return Values(size_, 0.0);
+    return Values{};
+  }
+
+ private:
+  const Function& f_;
+  std::size_t size_;
+  const GaussRule& rule_ = GaussLegendre(10);
+};
+
+/// Integrates over the panels [b0, b1], [b1, b2], ... of ascending breakpoints. Panels are halved,
+/// worst first, until the difference between the rule of a panel and those of its halves, summed
+/// over panels, is below `relative_tolerance` times the largest component of the integral.
+/// @param apply  returns the integral over a panel, given both ends, by a rule.
+/// @param zeros  the integral over no panel.
+template <typename Apply, typename Values>
+[[nodiscard]] AdaptiveResult<Values> IntegratePanels(const Apply& apply, const Values& zeros,
+                                                     std::span<const double> breakpoints,
+                                                     double relative_tolerance,
+                                                     std::size_t max_panels = 4096) {
+  struct Panel {
+    double low, high, error;
+    Values left, right, halves;  // integrals over the first half, the second, and their sum
+    bool operator<(const Panel& other) const { return error < other.error; }
   };
-  const auto panel = [&](double low, double high, Values whole) {
+  const std::size_t size = zeros.size();
+  const auto panel = [&](double low, double high, const Values& whole) {
     const double middle = 0.5 * (low + high);
-    Panel made{low, high, 0.0, std::move(whole), apply(low, middle)};
-    const Values right = apply(middle, high);
+    Panel made{low, high, 0.0, apply(low, middle), apply(middle, high), zeros};
     for (std::size_t k = 0; k < size; ++k) {
-      made.halves[k] += right[k];
-      made.error = std::max(made.error, std::abs(made.halves[k] - made.whole[k]));
+      made.halves[k] = made.left[k] + made.right[k];
+      made.error = std::max(made.error, std::abs(made.halves[k] - whole[k]));
     }
     return made;
   };
   std::priority_queue<Panel> open;
   AdaptiveResult<Values> result;
-  result.value = zeros();
+  result.value = zeros;
   double error = 0.0;
   const auto add = [&](Panel made) {
     for (std::size_t k = 0; k < size; ++k) result.value[k] += made.halves[k];
@@ -144,8 +161,8 @@ template <typename Function, typename Values = std::invoke_result_t<Function, do
     for (std::size_t k = 0; k < size; ++k) result.value[k] -= worst.halves[k];
     error -= worst.error;
     const double middle = 0.5 * (worst.low + worst.high);
-    add(panel(worst.low, middle, apply(worst.low, middle)));
-    add(panel(middle, worst.high, apply(middle, worst.high)));
+    add(panel(worst.low, middle, worst.left));
+    add(panel(middle, worst.high, worst.right));
     // A sum of many differences drifts; the true sum of errors is never negative.
     error = std::max(error, 0.0);
   }
@@ -154,6 +171,16 @@ template <typename Function, typename Values = std::invoke_result_t<Function, do
   result.converged = error <= relative_tolerance * scale;
   result.error = scale > 0.0 ? error / scale : 0.0;
   return result;
+}
+
+/// Integrates f: double -> std::vector<double> (of `size` values) or std::array<double, size> by the
+/// 10-point rule (IntegratePanels).
+template <typename Function>
+[[nodiscard]] auto IntegrateAdaptively(const Function& f, std::size_t size,
+                                       std::span<const double> breakpoints,
+                                       double relative_tolerance, std::size_t max_panels = 4096) {
+  const TenPointRule<Function> rule(f, size);
+  return IntegratePanels(rule, rule.Zeros(), breakpoints, relative_tolerance, max_panels);
 }
 
 /// Solves a symmetric positive definite system by Cholesky's factorisation. Throws InternalError if

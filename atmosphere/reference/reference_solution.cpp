@@ -5,6 +5,8 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <map>
+#include <utility>
 
 #include "atmosphere/base/error.h"
 #include "atmosphere/math/constants.h"
@@ -102,6 +104,35 @@ Columns ColumnsAlong(const Medium& medium, const Line& line, double begin, doubl
   const auto densities = [&](double t) { return Densities(medium, line.Altitude(t)); };
   return IntegrateAdaptively(densities, 3, Breakpoints(medium, line, begin, end), tolerance).value;
 }
+
+/// Columns from the begin of a line to many points of it. What lies before the last breakpoint is
+/// integrated once.
+class ColumnsToPoints {
+ public:
+  ColumnsToPoints(const Medium& medium, const Line& line, double begin)
+      : medium_(medium), line_(line), begin_(begin) {}
+
+  /// @param end  a distance along the line, at or after its begin.
+  [[nodiscard]] Columns UpTo(double end, double tolerance) {
+    const auto densities = [&](double t) { return Densities(medium_, line_.Altitude(t)); };
+    const TenPointRule rule(densities, 3);
+    const std::vector<double> points = Breakpoints(medium_, line_, begin_, end);
+    const double last = points[points.size() - 2];
+    const auto apply = [&](double low, double high) {
+      if (high > last) return rule(low, high);
+      const auto [found, is_new] = panels_.try_emplace({low, high});
+      if (is_new) found->second = rule(low, high);
+      return found->second;
+    };
+    return IntegratePanels(apply, Columns{}, points, tolerance).value;
+  }
+
+ private:
+  const Medium& medium_;
+  Line line_;
+  double begin_;
+  std::map<std::pair<double, double>, Columns> panels_;  // integrals by begin and end
+};
 
 double TauAt(const Medium& medium, std::size_t band, std::span<const double> columns) {
   return medium.rayleigh_scattering_per_m[band] * columns[0] +
@@ -208,11 +239,12 @@ RayRadiance SingleScatteringAlong(const Medium& medium, const ViewRay& ray) {
   for (std::size_t band = 0; band < bands; ++band)
     phase_rayleigh.push_back(PhaseOfMolecules(Depolarisation(medium, band), ray.nu));
   const std::vector<double> phase_mie = MiePhaseValues(medium, ray.nu);
+  ColumnsToPoints seen(medium, line, extent.begin_m);
   const auto source = [&](double t) {
     std::vector<double> scattered(bands, 0.0);
     const SunPath sun = TowardsSun(medium, line, ray, t, !is_dark(t), kInnerTolerance);
     if (!sun.lit) return scattered;
-    const Columns view = ColumnsAlong(medium, line, extent.begin_m, t, kInnerTolerance);
+    const Columns view = seen.UpTo(t, kInnerTolerance);
     const Columns density = Densities(medium, line.Altitude(t));
     for (std::size_t band = 0; band < bands; ++band) {
       const double tau = TauAt(medium, band, view) + TauAt(medium, band, sun.columns);
