@@ -77,10 +77,11 @@ std::vector<float> RawTexels(const fs::path& file, std::size_t texels, TexelType
   std::string content(bytes, '\0');
   if (!stream.read(content.data(), static_cast<std::streamsize>(bytes)))
     RefuseFile(file, "cannot be read");
-  std::vector<float> values;
-  values.reserve(4 * texels);
-  for (std::size_t i = 0; i < 4 * texels; ++i) {
-    values.push_back(LittleEndianValue(&content[i * size], type));
+  std::vector<float> values(4 * texels);
+  const char* bytes_of_value = content.data();
+  for (float& value : values) {
+    value = LittleEndianValue(bytes_of_value, type);
+    bytes_of_value += size;
   }
   return values;
 }

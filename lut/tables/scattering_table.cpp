@@ -82,7 +82,9 @@ ScatteringTable::ScatteringTable(const Medium& medium, const ScatteringTableOpti
     throw InputError(fmt::format("single scattering table: {} values; its size needs {}",
                                  texels_.size(), expected));
   }
-  for (const float value : texels_) RequireInRange(value, 0.0, 1.0, "single scattering texel");
+  const auto wrong = std::find_if_not(texels_.begin(), texels_.end(),
+                                      [](float value) { return value >= 0.0F && value <= 1.0F; });
+  if (wrong != texels_.end()) RequireInRange(*wrong, 0.0, 1.0, "single scattering texel");
 }
 
 std::size_t ScatteringTable::IndexOf(std::size_t nu, std::size_t mu_s, std::size_t mu,
