@@ -110,7 +110,7 @@ TEST(DeltaM, HazeAgreesWithPathsToHalfAPercent) {
 }
 
 TEST(DeltaM, HazeOfOpticalDepthOneAgreesWithPathsToTwoPercent) {
-  const Medium haze = tests::WithBands(Haze(7.5e-4, 8.333e-4), 0, tests::ScaledDown(3, 1));
+  const Medium haze = Haze(7.5e-4, 8.333e-4);
   const std::vector<double> errors =
       ErrorsOf(haze, WithFewSuns(OptionsFor(haze)),
                {{2.0, 81.6667, 36.0, 57.5, kToSpace_m, {0.1010557, 0.1168100, 0.1310469}},
@@ -122,7 +122,7 @@ TEST(DeltaM, HazeOfOpticalDepthOneAgreesWithPathsToTwoPercent) {
 }
 
 TEST(DeltaM, DustOfMarsAgreesWithPathsToTwoPercent) {
-  const Medium mars = tests::WithBands(MediumPreset("mars"), 0, tests::ScaledDown(4, 2));
+  const Medium mars = MediumPreset("mars");
   const std::vector<double> errors = ErrorsOf(
       mars, WithFewSuns(OptionsFor(mars)),
       {{2.0, 81.6667, 36.0, 57.5, kToSpace_m, {0.06230871, 0.08721707, 0.1025269, 0.1209562}},
