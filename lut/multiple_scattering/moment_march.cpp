@@ -80,7 +80,7 @@ MarchDirection MomentMarches::Direction(std::size_t altitude, const March& march
 double MomentMarches::Nu(const March& march, std::size_t sun, std::size_t azimuth) const {
   const double mu = static_cast<double>(march.mu);
   const double nu = mu * mu_s_[sun] + SineOf(mu) * SineOf(mu_s_[sun]) *
-                                          static_cast<double>(AzimuthCosine(1, azimuth));
+                                          static_cast<double>(AzimuthCosines(1)[azimuth]);
   return std::clamp(nu, -1.0, 1.0);
 }
 

@@ -45,13 +45,13 @@ class MomentMarches {
   [[nodiscard]] const std::vector<March>& At(std::size_t altitude) const {
     return marches_[altitude];
   }
-  /// Returns cos(m phi) of an azimuth.
-  [[nodiscard]] float AzimuthCosine(std::size_t m, std::size_t azimuth) const {
-    return azimuth_cosines_[m].data()[azimuth];
+  /// Returns cos(m phi) of all azimuths.
+  [[nodiscard]] const float* AzimuthCosines(std::size_t m) const {
+    return azimuth_cosines_[m].data();
   }
-  /// Returns sin(m phi) for m = 1, 2.
-  [[nodiscard]] float AzimuthSine(std::size_t m, std::size_t azimuth) const {
-    return azimuth_sines_[m - 1].data()[azimuth];
+  /// Returns sin(m phi) of all azimuths for m = 1, 2.
+  [[nodiscard]] const float* AzimuthSines(std::size_t m) const {
+    return azimuth_sines_[m - 1].data();
   }
   [[nodiscard]] MarchDirection Direction(std::size_t altitude, const March& march) const;
   /// Returns the cosine of the angle between a march and the sun.

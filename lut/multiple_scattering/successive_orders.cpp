@@ -5,8 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <glm/common.hpp>
-#include <glm/vec4.hpp>
 
 #include "atmosphere/math/constants.h"
 #include "lut/multiple_scattering/moment_march.h"
@@ -15,7 +13,21 @@
 namespace alpenglow::lut {
 namespace {
 
-using Light = glm::vec4;  // one value per band of a block
+/// One value per band of a block.
+using Light = float __attribute__((vector_size(16)));
+
+Light LoadLight(const float* from) {
+  Light light;
+  __builtin_memcpy(&light, from, sizeof light);
+  return light;
+}
+
+void StoreLight(float* to, const Light& light) { __builtin_memcpy(to, &light, sizeof light); }
+
+Light NotNegative(const Light& light) {
+  const Light dark = {};
+  return light < dark ? dark : light;
+}
 
 /// Packed moments and sky irradiance at every node, divided by TwilightOf (and SinePower).
 struct Field {
@@ -34,7 +46,7 @@ struct Layout {
 };
 
 Light Of(const std::vector<double>& bands, std::size_t first_band) {
-  Light block(0.0F);
+  Light block = {};
   for (std::size_t lane = 0; lane < kBlockBands && first_band + lane < bands.size(); ++lane)
     block[static_cast<int>(lane)] = static_cast<float>(bands[first_band + lane]);
   return block;
@@ -43,8 +55,7 @@ Light Of(const std::vector<double>& bands, std::size_t first_band) {
 /// Four bands of the light that arrives along a march, one value per sun and azimuth. Q and U, in
 /// the frame of polarised_scattering.h, are present for polarised light only.
 struct MarchRadiance {
-  MarchRadiance(std::size_t rays, bool polarised)
-      : i(rays, Light(0.0F)), q(polarised ? rays : 0, Light(0.0F)), u(q) {}
+  MarchRadiance(std::size_t rays, bool polarised) : i(rays), q(polarised ? rays : 0), u(q) {}
   std::vector<Light> i, q, u;
 };
 
@@ -122,14 +133,12 @@ Transport::Transport(const MomentMarches& marches, std::size_t first_band)
 // Sums radiance over azimuths with cos(m phi), or with sin(m phi) for m = 1, 2.
 Transport::Around Transport::Harmonics(const Light* radiance, float share, bool sines) const {
   Around around;
-  const std::size_t last = sines ? 2 : layout_.degree;
+  const std::size_t last = sines ? 2 : layout_.degree, azimuths = marches_.azimuths();
   for (std::size_t m = sines ? 1 : 0; m <= last; ++m) {
-    around[m] = Light(0.0F);
-    for (std::size_t k = 0; k < marches_.azimuths(); ++k) {
-      around[m] +=
-          (sines ? marches_.AzimuthSine(m, k) : marches_.AzimuthCosine(m, k)) * radiance[k];
-    }
-    around[m] *= share;
+    const float* const factor = sines ? marches_.AzimuthSines(m) : marches_.AzimuthCosines(m);
+    Light sum = {};
+    for (std::size_t k = 0; k < azimuths; ++k) sum += factor[k] * radiance[k];
+    around[m] = sum * share;
   }
   return around;
 }
@@ -140,8 +149,8 @@ void Transport::AddMoments(const March& march, const Around& around, float sun_s
     for (std::size_t m = 0; m <= l; ++m) {
       float legendre = march.legendre[l * (l + 1) / 2 + m];
       if (polarised()) legendre /= SinePower(m, sun_sine);
-      float* moment = moments + PackedIndex(l, m);
-      for (int lane = 0; lane < 4; ++lane) moment[lane] += legendre * around[m][lane];
+      float* const moment = moments + PackedIndex(l, m);
+      StoreLight(moment, LoadLight(moment) + legendre * around[m]);
     }
   }
 }
@@ -160,13 +169,12 @@ void Transport::AddTensor(const March& march, const Around& i, const Around& q, 
   const Light tensor[kTensorMoments] = {
       (-kFactor / kTensorNorm[0]) * zz_less_mean, (-kFactor / kTensorNorm[1] / sun_sine) * xz,
       (-0.25F * kFactor / kTensorNorm[2] / SinePower(2, sun_sine)) * xx_less_yy};
-  float* trace = moments + PackedTensorTrace(layout_.degree);
-  for (int lane = 0; lane < 4; ++lane) {
-    for (std::size_t m = 0; m < kTensorMoments; ++m)
-      moments[PackedTensorIndex(layout_.degree, m) + static_cast<std::size_t>(lane)] +=
-          tensor[m][lane];
-    trace[lane] += march.legendre[0] * i[0][lane];
+  for (std::size_t m = 0; m < kTensorMoments; ++m) {
+    float* const moment = moments + PackedTensorIndex(layout_.degree, m);
+    StoreLight(moment, LoadLight(moment) + tensor[m]);
   }
+  float* const trace = moments + PackedTensorTrace(layout_.degree);
+  StoreLight(trace, LoadLight(trace) + march.legendre[0] * i[0]);
 }
 
 // Projects the radiance of all suns and azimuths along a march. Azimuths also represent their
@@ -199,8 +207,8 @@ void Transport::PolariseSunlight(const March& march, const SunlightOfMarch& sunl
     const std::size_t sun = ray / marches_.azimuths(), k = ray % marches_.azimuths();
     const auto mu_s = static_cast<float>(marches_.mu_s(sun));
     const float sun_sine = SunSine(marches_.mu_s(sun));
-    const float in_l = march.mu * marches_.AzimuthCosine(1, k) * sun_sine - march.sine * mu_s;
-    const float in_h = -marches_.AzimuthSine(1, k) * sun_sine;
+    const float in_l = march.mu * marches_.AzimuthCosines(1)[k] * sun_sine - march.sine * mu_s;
+    const float in_h = -marches_.AzimuthSines(1)[k] * sun_sine;
     for (std::size_t lane = 0; lane < kBlockBands && first_band_ + lane < bands; ++lane) {
       const float light = static_cast<float>(3.0 / (16.0 * kPi)) * 10.0F *
                           shape_.rayleigh_chi2[lane] *
@@ -230,10 +238,10 @@ void Transport::AddGroundLight(const March& march, const Light& reflected, const
                                std::vector<Light>& radiance) const {
   for (std::size_t ray = 0; ray < radiance.size(); ++ray) {
     const CubicTaps& taps = march.ground_taps[ray];
-    Light irradiance(0.0F);
+    Light irradiance = {};
     for (std::size_t tap = 0; tap < 4; ++tap)
       irradiance += taps.weight[tap] * previous.sky[taps.node[tap]];
-    radiance[ray] += reflected * glm::max(irradiance, Light(0.0F));
+    radiance[ray] += reflected * NotNegative(irradiance);
   }
 }
 
@@ -242,21 +250,20 @@ void Transport::NextOrder(std::size_t altitude, const Field& previous, Field& ne
   const std::size_t stokes = polarised() ? 3 : 1;
   const MomentKernel& kernel = Kernel<MomentKernel>();
   AlignedFloats rows((layout_.suns + 2) * (layout_.degree / 2 + 3) * 8);
+  AlignedFloats arriving(rays * stokes * 8);
   MarchRadiance radiance(rays, polarised());
   for (std::size_t i = 0; i < marches_.At(altitude).size(); ++i) {
     const March& march = marches_.At(altitude)[i];
-    AlignedFloats arriving(rays * stokes * 8);
+    std::fill_n(arriving.data(), arriving.size(), 0.0F);
     kernel.arrive(marches_.grid(), marches_.Direction(altitude, march), march.points.data(),
                   lights_[altitude][i].data(), march.points.size(), shape_, previous.moments.data(),
                   rows.data(), arriving.data());
     for (std::size_t ray = 0; ray < rays; ++ray) {
-      const float* halves = arriving.data() + ray * stokes * 8;
-      for (int lane = 0; lane < 4; ++lane)
-        radiance.i[ray][lane] = std::max(halves[lane] + halves[lane + 4], 0.0F);
-      for (int lane = 0; lane < 4 && polarised(); ++lane) {
-        radiance.q[ray][lane] = halves[lane + 8] + halves[lane + 12];
-        radiance.u[ray][lane] = halves[lane + 16] + halves[lane + 20];
-      }
+      const float* const halves = arriving.data() + ray * stokes * 8;
+      radiance.i[ray] = NotNegative(LoadLight(halves) + LoadLight(halves + 4));
+      if (!polarised()) continue;
+      radiance.q[ray] = LoadLight(halves + 8) + LoadLight(halves + 12);
+      radiance.u[ray] = LoadLight(halves + 16) + LoadLight(halves + 20);
     }
     if (march.hits_ground) {
       const Light reflected =
@@ -281,8 +288,7 @@ class Block {
 
   [[nodiscard]] const Transport& transport() const { return transport_; }
   [[nodiscard]] Field Empty() const {
-    return {AlignedFloats(layout_.nodes * layout_.stride),
-            std::vector<Light>(layout_.nodes, Light(0.0F))};
+    return {AlignedFloats(layout_.nodes * layout_.stride), std::vector<Light>(layout_.nodes)};
   }
 
   struct Sum {
@@ -294,8 +300,7 @@ class Block {
 
  private:
   [[nodiscard]] Light Isotropic(const Field& field, std::size_t node) const {
-    const float* moment = field.moments.data() + node * layout_.stride;
-    return {moment[0], moment[1], moment[2], moment[3]};
+    return LoadLight(field.moments.data() + node * layout_.stride);
   }
   [[nodiscard]] double LargestShare(const Field& part, const Field& whole) const;
   void AddTail(const Field& last, const Field& before, const Field& second_before,
@@ -329,16 +334,17 @@ void Block::AddTail(const Field& last, const Field& before, const Field& second_
   constexpr float kLargest = 0.96F;
   for (std::size_t node = 0; node < layout_.nodes; ++node) {
     const Light now = Isotropic(last, node), then = Isotropic(second_before, node);
-    Light factor(0.0F);
+    Light factor = {};
     for (int lane = 0; lane < static_cast<int>(kBlockBands); ++lane) {
       if (then[lane] <= 0.0F) continue;
       const float ratio = std::clamp(now[lane] / then[lane], 0.0F, kLargest);
       factor[lane] = ratio / (1.0F - ratio);
     }
-    for (std::size_t i = 0; i < layout_.stride; ++i) {
+    for (std::size_t i = 0; i < layout_.stride; i += kBlockBands) {
       const std::size_t at = node * layout_.stride + i;
-      total.moments.data()[at] += factor[static_cast<int>(i % kBlockBands)] *
-                                  (last.moments.data()[at] + before.moments.data()[at]);
+      const Light two = LoadLight(last.moments.data() + at) + LoadLight(before.moments.data() + at);
+      float* const sum = total.moments.data() + at;
+      StoreLight(sum, LoadLight(sum) + factor * two);
     }
     total.sky[node] += factor * (last.sky[node] + before.sky[node]);
   }
@@ -351,8 +357,10 @@ constexpr int kFewestOrders = 3;
 constexpr int kOrdersOfThinAir = 16;
 
 void Accumulate(const Field& part, Field& total) {
-  for (std::size_t i = 0; i < total.moments.size(); ++i)
-    total.moments.data()[i] += part.moments.data()[i];
+  float* const sum = total.moments.data();
+  const float* const term = part.moments.data();
+  for (std::size_t i = 0; i < total.moments.size(); i += kBlockBands)
+    StoreLight(sum + i, LoadLight(sum + i) + LoadLight(term + i));
   for (std::size_t i = 0; i < total.sky.size(); ++i) total.sky[i] += part.sky[i];
 }
 
@@ -500,7 +508,7 @@ void MissedPeak::AddBand(const Bands<float>& peak, std::size_t node, std::size_t
   const std::size_t sun = node % layout.suns;
   const auto mu_s = static_cast<float>(marches_.mu_s(sun));
   const Moments towards = LegendreTerms(static_cast<int>(layout.degree), mu_s);
-  Light light(0.0F);
+  Light light = {};
   for (std::size_t lane = 0; lane < kBlockBands && first_band + lane < peak.count; ++lane)
     light[static_cast<int>(lane)] = peak[first_band + lane] / twilight_[sun];
   float* moments = field.moments.data() + node * layout.stride;
