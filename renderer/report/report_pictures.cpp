@@ -109,8 +109,8 @@ class PicturesTopic {
  public:
   explicit PicturesTopic(const ReportEffort& effort)
       : effort_(effort),
-        width_(effort.quick ? 24 : 192),
-        height_(effort.quick ? 14 : 108),
+        width_(effort.quick ? 16 : 192),
+        height_(effort.quick ? 9 : 108),
         topic_(WordsOfPictures()) {
     const std::uint64_t before = ResidentBytes();
     const auto renderer_of = [](const Scene& scene) {
@@ -315,7 +315,10 @@ ReportTopic MeasurePictures(const ReportEffort& effort) {
   PicturesTopic topic(effort);
   for (const int samples : {1, 4, 16}) topic.AddSamples(samples);
   if (!effort.quick) topic.AddSamples(32);
-  for (const double noise : {0.04, 0.02, 0.01}) topic.AddNoise(noise);
+  topic.AddNoise(0.04);
+  if (!effort.quick) {
+    for (const double noise : {0.02, 0.01}) topic.AddNoise(noise);
+  }
   if (!effort.quick) topic.AddNodes(2);
   topic.AddNodes(4);
   if (!effort.quick) {

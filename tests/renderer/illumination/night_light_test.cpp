@@ -262,7 +262,7 @@ TEST(DarkSun, AirIsDarkFromTheDepressionThatStepsAlongRaysFind) {
 }
 
 TEST(DarkSun, IsOmittedWhereItIsLessThanTheErrorOfTheTables) {
-  const SceneRenderer renderer(BareScene(2.0, 240.0, 15.0, 60.0));
+  const SceneRenderer renderer(QuickScene(2.0, 240.0, 15.0, 60.0));
   RenderSettings settings;
   settings.width = 6;
   settings.height = 4;

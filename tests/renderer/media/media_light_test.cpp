@@ -41,7 +41,7 @@ struct MediaStage {
   const tests::LitAir& lit_air;
   const Medium& medium = lit_air.medium;
   Scene scene = [this] {
-    Scene bare = BareScene(50.0, 0.0, 0.0, 60.0);
+    Scene bare = QuickScene(50.0, 0.0, 0.0, 60.0);
     bare.medium = medium;
     return bare;
   }();
@@ -299,7 +299,7 @@ const UtcInstant kMediaNoon = ParseInstant("2026-06-21T10:00:00Z");
 const UtcInstant kMediaNight = ParseInstant("2026-01-01T00:00:00Z");
 
 Scene WithoutVolume() {
-  Scene scene = BareScene(50.0, 0.0, 0.0, 40.0);
+  Scene scene = QuickScene(50.0, 0.0, 0.0, 40.0);
   scene.medium = MediumPreset("bruneton2017");
   return scene;
 }

@@ -61,7 +61,7 @@ Look SiriusAt(const UtcInstant& instant) {
 TEST(NightPicture, AStarHasTheSameLuxAtEverySizeOfThePicture) {
   const Look sirius = SiriusAt(kMoonless);
   ASSERT_GT(sirius.elevation, 20.0);
-  const SceneRenderer renderer(BareScene(2.0, sirius.azimuth, sirius.elevation + 0.1, 4.0));
+  const SceneRenderer renderer(QuickScene(2.0, sirius.azimuth, sirius.elevation + 0.1, 4.0));
   std::vector<double> lux;
   for (const int side : {24, 60, 111}) {
     const double pixel_rad = 2.0 * std::tan(2.0 * kRadiansPerDegree) / side;
@@ -79,7 +79,7 @@ TEST(NightPicture, AStarHasTheSameLuxAtEverySizeOfThePicture) {
 
 TEST(NightPicture, TrailsHaveTheLuxOfTheirStarAndTheirLength) {
   const Look sirius = SiriusAt(kMoonless);
-  Scene scene = BareScene(2.0, sirius.azimuth, sirius.elevation + 0.1, 4.0);
+  Scene scene = QuickScene(2.0, sirius.azimuth, sirius.elevation + 0.1, 4.0);
   const SceneRenderer still(scene);
   scene.camera.shutter_s = 300.0;
   const SceneRenderer open(scene);
@@ -109,8 +109,8 @@ TEST(NightPicture, TrailsHaveTheLuxOfTheirStarAndTheirLength) {
 
 TEST(NightPicture, TheMoonDrawsATrailOfItsLight) {
   const MoonPosition moon = MoonAt(PlaceFromDegrees(46.5, 8.0, 2.0), kFullMoon);
-  Scene scene = BareScene(2.0, moon.azimuth_rad / kRadiansPerDegree,
-                          moon.elevation_rad / kRadiansPerDegree, 8.0);
+  Scene scene = QuickScene(2.0, moon.azimuth_rad / kRadiansPerDegree,
+                           moon.elevation_rad / kRadiansPerDegree, 8.0);
   const RenderSettings settings = Small(64, 64);
   const double pixel_rad = 2.0 * std::tan(4.0 * kRadiansPerDegree) / 64;
   const Image still = SceneRenderer(scene).Render(kFullMoon, settings);
@@ -138,7 +138,7 @@ TEST(NightPicture, TheMoonDrawsATrailOfItsLight) {
 TEST(NightPicture, OrionStandsInTheSouthOfAJanuaryNight) {
   const Look sirius = SiriusAt(kMoonless);
   EXPECT_NEAR(sirius.azimuth, 172.0, 3.0) << "an hour before it culminates";
-  const SceneRenderer renderer(BareScene(2.0, sirius.azimuth, sirius.elevation, 4.0));
+  const SceneRenderer renderer(QuickScene(2.0, sirius.azimuth, sirius.elevation, 4.0));
   const Image image = renderer.Render(kMoonless, Small(41, 41));
   int x_of_brightest = 0, y_of_brightest = 0;
   for (int y = 0; y < 41; ++y) {
@@ -154,14 +154,14 @@ TEST(NightPicture, OrionStandsInTheSouthOfAJanuaryNight) {
 }
 
 TEST(NightPicture, MoonlessAndMoonlitNightsHaveTheirIlluminance) {
-  const SceneRenderer renderer(BareScene(2.0, 0.0, 45.0, 60.0));
+  const SceneRenderer renderer(QuickScene(2.0, 0.0, 45.0, 60.0));
   EXPECT_NEAR(renderer.Illuminance(kMoonless), 1e-3, 0.4e-3);
   EXPECT_GT(renderer.Illuminance(kFullMoon), 0.2);
   EXPECT_LT(renderer.Illuminance(kFullMoon), 0.4) << "near its perigee, 65 degrees up";
 }
 
 TEST(NightPicture, MoonlitGroundHasTheLuminanceOfItsLux) {
-  Scene scene = BareScene(1000.0, 40.0, -80.0, 10.0);
+  Scene scene = QuickScene(1000.0, 40.0, -80.0, 10.0);
   scene.medium.ground_albedo.assign(scene.medium.wavelengths_nm.size(), 0.2);
   const SceneRenderer renderer(scene);
   const Image ground = renderer.Render(kFullMoon, Small(4, 4));
@@ -171,7 +171,7 @@ TEST(NightPicture, MoonlitGroundHasTheLuminanceOfItsLux) {
 }
 
 TEST(NightPicture, AMoonlitSkyIsLessBlueThanASunlitOne) {
-  const SceneRenderer renderer(BareScene(2.0, 0.0, 60.0, 30.0));
+  const SceneRenderer renderer(QuickScene(2.0, 0.0, 60.0, 30.0));
   const auto blue_by_red = [&](const UtcInstant& instant, EffectSet without) {
     const auto rgb = renderer.Render(instant, Small(1, 1, Without(without))).at(0, 0);
     return static_cast<double>(rgb[2] / rgb[0]);
@@ -184,7 +184,7 @@ TEST(NightPicture, AMoonlitSkyIsLessBlueThanASunlitOne) {
 }
 
 TEST(NightPicture, ByDayLightsOfTheNightAreAbsent) {
-  const SceneRenderer renderer(BareScene(2.0, 120.0, 20.0, 60.0));
+  const SceneRenderer renderer(QuickScene(2.0, 120.0, 20.0, 60.0));
   EffectBudget budget;
   const ChosenPicture day = renderer.RenderWithin(kNoon, Small(32, 18), budget);
   int found = 0;
@@ -200,7 +200,7 @@ TEST(NightPicture, ByDayLightsOfTheNightAreAbsent) {
 }
 
 TEST(NightPicture, DuskFallsWithoutAStepWhereTheMoonBegins) {
-  const SceneRenderer renderer(BareScene(2.0, 120.0, 30.0, 60.0));
+  const SceneRenderer renderer(QuickScene(2.0, 120.0, 30.0, 60.0));
   double before = renderer.Illuminance(ParseInstant("2026-12-23T15:10:00Z"));
   for (int minute = 11; minute < 30; ++minute) {
     const double now =
@@ -214,7 +214,7 @@ TEST(NightPicture, DuskFallsWithoutAStepWhereTheMoonBegins) {
 /// Returns a small picture of the night sky around a direction.
 Image NightAround(double azimuth_rad, double elevation_rad, const UtcInstant& instant) {
   const Scene scene =
-      BareScene(2.0, azimuth_rad / kRadiansPerDegree, elevation_rad / kRadiansPerDegree, 2.0);
+      QuickScene(2.0, azimuth_rad / kRadiansPerDegree, elevation_rad / kRadiansPerDegree, 2.0);
   RenderSettings settings;
   settings.width = settings.height = 64;
   settings.samples_per_pixel = 1;
@@ -284,7 +284,7 @@ enum class Moon { kThere, kAbsent };
 /// Returns the bare ellipsoid at Burgos; without its moon the planet has the same radius.
 const SceneRenderer& OverBurgos(Moon moon) {
   const auto scene_of = [](Moon of) {
-    Scene scene = BareScene(kBurgosEye_m, 0.0, 0.0, 60.0);
+    Scene scene = QuickScene(kBurgosEye_m, 0.0, 0.0, 60.0);
     scene.place = PlaceFromDegrees(42.3439, -3.6969, 0.0);
     if (of == Moon::kThere) return scene;
     scene.medium.follows_wgs84 = false;

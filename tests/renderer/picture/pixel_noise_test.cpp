@@ -184,7 +184,7 @@ TEST_F(NoisyPicture, HasTheSkyOfAllItsRays) {
 }
 
 TEST_F(NoisyPicture, TheSunsLimbCoversPartsOfPixels) {
-  Scene scene = BareScene(1000.0, 0.0, 0.0, 3.0);
+  Scene scene = QuickScene(1000.0, 0.0, 0.0, 3.0);
   const SunPosition sun = tests::SunSeenIn(scene, kEvening);
   scene.camera = CameraFromDegrees({1000.0, false}, sun.azimuth_rad / kRadiansPerDegree + 0.1,
                                    sun.elevation_rad / kRadiansPerDegree, 0.0, 3.0);

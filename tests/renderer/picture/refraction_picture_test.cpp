@@ -42,7 +42,7 @@ double TrueElevation(const Medium& medium, double apparent_rad, double height_m)
 }
 
 TEST(RefractedPlaces, TheSunIsWhereTheRayEquationSays) {
-  const SceneRenderer renderer(BareScene(2.0, 0.0, 0.0, 60.0));
+  const SceneRenderer renderer(QuickScene(2.0, 0.0, 0.0, 60.0));
   for (const double height_m : {2.0, 3000.0}) {
     const GeodeticPosition eye = PlaceFromDegrees(46.5, 8.0, height_m);
     int seen = 0;
@@ -90,7 +90,7 @@ TEST(RefractedPlaces, StarsAreWhereTheRayEquationSays) {
 }
 
 TEST(RefractedPlaces, OnMarsAlmostNothingIsLifted) {
-  Scene scene = BareScene(2.0, 0.0, 0.0, 60.0);
+  Scene scene = QuickScene(2.0, 0.0, 0.0, 60.0);
   scene.medium = MediumPreset("mars");
   const UtcInstant evening = ParseInstant("2026-06-21T19:15:00Z");
   const SunPosition sun = tests::SunSeenIn(scene, evening);
@@ -148,8 +148,8 @@ TEST(RefractedPlaces, TheRisingMoonIsAsFlatAsTheRayEquationSays) {
   const Medium medium =
       OnOsculatingSphere(MediumPreset("earth"), PlaceFromDegrees(46.5, 8.0, 0.0).latitude_rad);
   const MoonPosition moon = ApparentMoonAt(eye, instant, GentleAirOf(medium));
-  const SceneRenderer renderer(BareScene(20.0, moon.azimuth_rad / kRadiansPerDegree,
-                                         moon.elevation_rad / kRadiansPerDegree, 1.2));
+  const SceneRenderer renderer(QuickScene(20.0, moon.azimuth_rad / kRadiansPerDegree,
+                                          moon.elevation_rad / kRadiansPerDegree, 1.2));
   const auto truly = [&](double apparent) { return TrueElevation(medium, apparent, 20.0); };
   const double upper = moon.elevation_rad + 0.85 * moon.angular_radius_rad;
   const double lower = moon.elevation_rad - 0.85 * moon.angular_radius_rad;
@@ -167,7 +167,7 @@ TEST(RefractedPlaces, TheRisingMoonIsAsFlatAsTheRayEquationSays) {
 
 TEST(RefractedPlaces, TheDiskOfASettingSunIsFlat) {
   const UtcInstant evening = ParseInstant("2026-06-21T19:20:30Z");
-  Scene scene = BareScene(20.0, 0.0, 0.0, 1.2);
+  Scene scene = QuickScene(20.0, 0.0, 0.0, 1.2);
   const SunPosition sun = tests::SunSeenIn(scene, evening);
   scene.camera =
       CameraFromDegrees({20.0, false}, sun.azimuth_rad / kRadiansPerDegree, 0.3, 0.0, 1.2);
@@ -186,7 +186,7 @@ TEST(RefractedPlaces, TheDiskOfASettingSunIsFlat) {
 // Hard case 20.
 TEST(RefractedPlaces, TheSeaEndsAtTheHorizonOfStraightOrRefractedRays) {
   constexpr double kHeight_m = 10000.0;
-  const Scene scene = BareScene(kHeight_m, 0.0, -3.0, 2.0);
+  const Scene scene = QuickScene(kHeight_m, 0.0, -3.0, 2.0);
   const SceneRenderer renderer(scene);
   const CameraRays camera(scene.camera, 8, 400);
   const double radius = renderer.medium().planet_radius_m;
@@ -212,7 +212,7 @@ TEST(RefractedPlaces, TheSeaEndsAtTheHorizonOfStraightOrRefractedRays) {
 
 TEST_F(RefractedTerrain, HiddenPeaksAppearWhereTheRayEquationSays) {
   const Medium medium =
-      OnOsculatingSphere(MediumPreset("earth"), BareScene(0.0, 0.0, 0.0, 1.0).place.latitude_rad);
+      OnOsculatingSphere(MediumPreset("earth"), QuickScene(0.0, 0.0, 0.0, 1.0).place.latitude_rad);
   const double radius_m = medium.planet_radius_m;
   for (const FarPeak& peak :
        {FarPeak{20.0, 110e3, 650.0}, FarPeak{20.0, 150e3, 1350.0}, FarPeak{3000.0, 300e3, 800.0}}) {
@@ -280,10 +280,10 @@ double MiddleOfAureole(const Image& image, double pixel_rad) {
 TEST(TwilightAir, TheAureoleSurroundsTheVisibleDisk) {
   constexpr double kFov_deg = 5.0;
   const UtcInstant evening = ParseInstant("2026-06-21T19:12:00Z");
-  const SunPosition sun = tests::SunSeenIn(BareScene(20.0, 0.0, 0.0, kFov_deg), evening);
+  const SunPosition sun = tests::SunSeenIn(QuickScene(20.0, 0.0, 0.0, kFov_deg), evening);
   EXPECT_GT(sun.lower_for_air_rad, 15.0 * kArcminute) << "another sun lights the air";
-  const SceneRenderer renderer(BareScene(20.0, sun.azimuth_rad / kRadiansPerDegree,
-                                         sun.elevation_rad / kRadiansPerDegree, kFov_deg));
+  const SceneRenderer renderer(QuickScene(20.0, sun.azimuth_rad / kRadiansPerDegree,
+                                          sun.elevation_rad / kRadiansPerDegree, kFov_deg));
   RenderSettings settings{.width = 81,
                           .height = 81,
                           .samples_per_pixel = 4,
@@ -304,7 +304,7 @@ double SkyAt(const SceneRenderer& renderer, const UtcInstant& instant) {
 }
 
 TEST(TwilightAir, DarkensWithoutAStepWhileTheSunSets) {
-  const SceneRenderer renderer(BareScene(20.0, 0.0, 30.0, 1.0));
+  const SceneRenderer renderer(QuickScene(20.0, 0.0, 30.0, 1.0));
   // The sun moves from 1 degree above the horizon to 4 below. Its direct light ends at 34', its
   // effect on the air at 3.5 degrees.
   const UtcInstant begin = ParseInstant("2026-06-21T19:11:00Z");
@@ -324,7 +324,7 @@ TEST(TwilightAir, DarkensWithoutAStepWhileTheSunSets) {
 }
 
 TEST(LowSun, LightsLevelGroundByItsRefractedBeam) {
-  const SceneRenderer renderer(BareScene(2.0, 0.0, -90.0, 1.0));
+  const SceneRenderer renderer(QuickScene(2.0, 0.0, -90.0, 1.0));
   const Medium& medium = renderer.medium();
   const BandColour colour(medium.wavelengths_nm);
   const tests::RefractedTwilight rays(medium);

@@ -42,7 +42,7 @@ const RenderSettings kSmall{
     .width = 16, .height = 9, .samples_per_pixel = 1, .air_nodes = 16, .layers = {}};
 
 TEST(Render, SkyPixelsAreReferenceSingleScatteringPlusTheRest) {
-  const SceneRenderer renderer(BareScene(1000.0, 180.0, 20.0, 40.0));
+  const SceneRenderer renderer(QuickScene(1000.0, 180.0, 20.0, 40.0));
   const UtcInstant noon = ParseInstant("2026-06-21T10:00:00Z");
   const Image image = renderer.Render(noon, kSmall);
   const SunPosition sun = renderer.ApparentSun(noon);
@@ -73,7 +73,7 @@ TEST(Render, SkyPixelsAreReferenceSingleScatteringPlusTheRest) {
 
 TEST(Render, NoonSkyHasThePublishedOrderOfLuminance) {
   // Clear zenith skies at high sun: 1e3 to 1e4 cd/m^2.
-  const SceneRenderer renderer(BareScene(500.0, 0.0, 60.0, 20.0));
+  const SceneRenderer renderer(QuickScene(500.0, 0.0, 60.0, 20.0));
   const Image image = renderer.Render(ParseInstant("2026-06-21T11:30:00Z"), kSmall);
   EXPECT_GT(Luminance(image.at(8, 4)), 1e3);
   EXPECT_LT(Luminance(image.at(8, 4)), 1e4);
@@ -82,7 +82,7 @@ TEST(Render, NoonSkyHasThePublishedOrderOfLuminance) {
 
 // Hard case 23.
 TEST(Render, NightsAreFiniteAndNotNegative) {
-  const SceneRenderer renderer(BareScene(2.0, 0.0, 10.0, 360.0));
+  const SceneRenderer renderer(QuickScene(2.0, 0.0, 10.0, 360.0));
   for (const char* time :
        {"2026-01-01T00:00:00Z", "2026-01-01T05:00:00Z", "2026-01-01T06:00:00Z"}) {
     for (const auto& rgb : renderer.Render(ParseInstant(time), kSmall).rgb) {
@@ -94,7 +94,7 @@ TEST(Render, NightsAreFiniteAndNotNegative) {
 
 // Hard case 43.
 TEST(Render, BytesAreTheSameForAnyNumberOfThreads) {
-  const SceneRenderer renderer(BareScene(2.0, 120.0, 5.0, 60.0));
+  const SceneRenderer renderer(QuickScene(2.0, 120.0, 5.0, 60.0));
   const UtcInstant dawn = ParseInstant("2026-06-21T03:40:00Z");
   static_cast<void>(
       tests::SameForAnyNumberOfThreads([&] { return renderer.Render(dawn, kSmall); }));
@@ -119,10 +119,10 @@ double MostRelativeDifference(const Image& a, const Image& b) {
 TEST(Render, AnEyeOnAPathSeesTheSameAsOneThatStandsThere) {
   // The eye is 80 km away: its vertical differs from the frame's by 0.7 degrees.
   const UtcInstant evening = ParseInstant("2026-06-21T18:40:00Z");
-  const SceneRenderer from(BareScene(1000.0, 0.0, 0.0, 40.0));
+  const SceneRenderer from(QuickScene(1000.0, 0.0, 0.0, 40.0));
   CameraSample camera_sample(evening);
   camera_sample.poses = {PoseAt(46.0, 8.8, 3000.0, 300.0, 4.0)};
-  Scene there = BareScene(3000.0, 300.0, 4.0, 40.0);
+  Scene there = QuickScene(3000.0, 300.0, 4.0, 40.0);
   there.place = PlaceFromDegrees(46.0, 8.8, 0.0);
   const SceneRenderer at(there);
   EXPECT_LT(MostRelativeDifference(from.Render(camera_sample, kSmall), at.Render(evening, kSmall)),
@@ -133,7 +133,7 @@ TEST(Render, AnEyeOnAPathSeesTheSameAsOneThatStandsThere) {
 
 TEST(Render, AMovingCameraSeesTheMeanOfItsViews) {
   const UtcInstant noon = ParseInstant("2026-06-21T11:30:00Z");
-  const SceneRenderer renderer(BareScene(1000.0, 0.0, 0.0, 40.0));
+  const SceneRenderer renderer(QuickScene(1000.0, 0.0, 0.0, 40.0));
   RenderSettings settings = kSmall;
   settings.samples_per_pixel = 64;
   settings.filter = PixelFilter::Kind::kBox;
@@ -162,7 +162,7 @@ TEST(Render, AMovingCameraSeesTheMeanOfItsViews) {
 }
 
 TEST(Render, ImpossibleEyesLayersAndSizesAreRefused) {
-  const SceneRenderer renderer(BareScene(1000.0, 0.0, 0.0, 40.0));
+  const SceneRenderer renderer(QuickScene(1000.0, 0.0, 0.0, 40.0));
   const UtcInstant noon = ParseInstant("2026-06-21T11:30:00Z");
   CameraSample camera_sample(noon);
   for (const CameraPose& pose : {PoseAt(46.5, 8.0, -5.0, 0.0, 0.0),      // below the ground
@@ -180,7 +180,7 @@ TEST(Render, ImpossibleEyesLayersAndSizesAreRefused) {
 TEST(Render, TheDiskInThePictureHasTheSunsIlluminance) {
   // The radiance of the disk's pixels sums to the direct normal illuminance.
   const UtcInstant noon = ParseInstant("2026-06-21T11:30:00Z");
-  Scene at_sun = BareScene(2.0, 0.0, 0.0, 1.0);
+  Scene at_sun = QuickScene(2.0, 0.0, 0.0, 1.0);
   const SunPosition sun = tests::SunSeenIn(at_sun, noon);
   at_sun.camera = CameraFromDegrees({2.0, false}, sun.azimuth_rad / kRadiansPerDegree,
                                     sun.elevation_rad / kRadiansPerDegree, 0.0, 1.0);
@@ -209,7 +209,7 @@ class RenderOfFiles : public TemporaryFolder {};
 TEST_F(RenderOfFiles, SummitOfFujiIsLitBeforeTheLakeBelow) {
   if (!std::filesystem::exists(tests::FujiModel()))
     GTEST_SKIP() << "no elevation model at " << tests::FujiModel();
-  Scene scene = BareScene(0.0, 0.0, 0.0, 8.0);
+  Scene scene = QuickScene(0.0, 0.0, 0.0, 8.0);
   scene.place = PlaceFromDegrees(35.50, 138.76, 0.0);
   scene.terrain = {TerrainSource::Kind::kElevationModel, tests::CoarseFuji(folder_),
                    VoidPolicy::kFill};
@@ -247,7 +247,7 @@ TEST_F(RenderOfFiles, SummitOfFujiIsLitBeforeTheLakeBelow) {
 
 // Hard case 22.
 TEST(Render, IlluminanceFallsSmoothlyFromNoonIntoTheNight) {
-  const SceneRenderer renderer(BareScene(2.0, 0.0, 0.0, 60.0));
+  const SceneRenderer renderer(QuickScene(2.0, 0.0, 0.0, 60.0));
   const UtcInstant noon = ParseInstant("2026-06-21T11:30:00Z");
   const double at_noon = renderer.Illuminance(noon);
   EXPECT_GT(at_noon, 90e3) << "a clear June noon at 46.5 degrees: about 110 klx";
@@ -267,7 +267,7 @@ TEST(Render, IlluminanceFallsSmoothlyFromNoonIntoTheNight) {
 }
 
 TEST(Render, TheScotopicLayerIsThatOfTheRods) {
-  const SceneRenderer renderer(BareScene(1000.0, 180.0, 20.0, 40.0));
+  const SceneRenderer renderer(QuickScene(1000.0, 180.0, 20.0, 40.0));
   RenderSettings settings = kSmall;
   settings.layers = {PictureLayer::kScotopic};
   const Image image = renderer.Render(ParseInstant("2026-06-21T10:00:00Z"), settings);
@@ -293,7 +293,7 @@ Image Through(Scene scene, std::optional<double> polariser_deg, int width, int h
 }
 
 TEST(Polariser, HalvesUnpolarisedLightToTheLastBit) {
-  Scene scene = BareScene(300.0, 60.0, 0.0, 90.0);
+  Scene scene = QuickScene(300.0, 60.0, 0.0, 90.0);
   scene.medium.polarised = false;
   const Image bare = Through(scene, std::nullopt, 16, 9);
   const Image through = Through(scene, 30.0, 16, 9);
@@ -474,7 +474,7 @@ TEST(PictureLayers, LightOfOneBandAloneHasLuminance) {
 }
 
 TEST(RecentSunlight, IsKeptForTheLastTwoSuns) {
-  const SceneGround ground = LoadGround(BareScene(2.0, 0.0, 0.0, 60.0));
+  const SceneGround ground = LoadGround(QuickScene(2.0, 0.0, 0.0, 60.0));
   RecentSunlight recent(ground);
   constexpr double kRadius = 4.6e-3;
   const auto at = [&](double elevation_deg, double radius) {

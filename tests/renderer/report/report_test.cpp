@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "tests/fixtures/bare_scene.h"
 #include "tests/fixtures/report_files.h"
 #include "tests/fixtures/report_rows.h"
 #include "tests/fixtures/temporary_folder.h"
@@ -23,7 +24,7 @@ namespace fs = std::filesystem;
 /// Returns a quick report of the default air, measured once.
 const Report& QuickReport() {
   static const Report report =
-      MeasurePictureReport({.mediums = {MediumPreset("earth")}, .quick = true});
+      MeasurePictureReport({.mediums = {QuickMedium("earth")}, .quick = true});
   return report;
 }
 
