@@ -18,6 +18,7 @@
 #include "tests/fixtures/bare_scene.h"
 #include "tests/fixtures/lamp_site.h"
 #include "tests/fixtures/luminance.h"
+#include "tests/fixtures/sanitized.h"
 #include "tests/fixtures/temporary_folder.h"
 #include "tests/fixtures/thread_counts.h"
 
@@ -54,7 +55,7 @@ double MeanLuminance(const SceneRenderer& renderer, const CameraSample& camera_s
 /// Returns the luminance of a view over the sea under the low sun; angles are in degrees.
 double OverTheSea(double heading, double pitch) {
   static const SceneRenderer renderer([] {
-    Scene scene = BareScene(200.0, 0.0, 0.0, 20.0);
+    Scene scene = QuickScene(200.0, 0.0, 0.0, 20.0);
     scene.ground.kind = GroundCover::Kind::kWater;
     return scene;
   }());
@@ -78,7 +79,7 @@ TEST(GroundLight, WaterMirrorsTheSkyByFresnelsLaw) {
 }
 
 TEST(GroundLight, CoversAreAsBrightAsTheirAlbedos) {
-  Scene scene = BareScene(200.0, 0.0, -60.0, 20.0);
+  Scene scene = QuickScene(200.0, 0.0, -60.0, 20.0);
   scene.ground.kind = GroundCover::Kind::kSnow;
   const double snow = MeanLuminance(SceneRenderer(scene), kHighSun);
   scene.ground.kind = GroundCover::Kind::kLambert;
@@ -108,7 +109,7 @@ class Valley : public TemporaryFolder {
         text += fmt::format("f {} {} {} {}\n", first, first + 1, above + 1, above);
       }
     }
-    Scene scene = MeshScene(BareScene(400.0, 0.0, -70.0, 60.0), folder_ / "valley.obj", text);
+    Scene scene = MeshScene(QuickScene(400.0, 0.0, -70.0, 60.0), folder_ / "valley.obj", text);
     scene.ground.kind = GroundCover::Kind::kSnow;
     return scene;
   }
@@ -142,7 +143,7 @@ TEST_F(Valley, HasTheSameBytesForAnyNumberOfThreads) {
                                    camera.heading_rad, camera.pitch_rad, 0.0, camera.fov_rad});
   }
   RenderSettings settings = kSmallGround;
-  settings.samples_per_pixel = 7;
+  settings.samples_per_pixel = tests::ScaledDown(7, 3);
   settings.layers = {PictureLayer::kDepth, PictureLayer::kLamps};
   const Image image = tests::SameForAnyNumberOfThreads(
       [&] { return SceneRenderer(scene).Render(camera_sample, settings); });
@@ -163,7 +164,7 @@ const UtcInstant kRangeMorning = ParseInstant("2026-06-21T04:20:00Z");
 TEST(RenderAir, SharedAirOfAPixelIsRightToATenthOfAPercent) {
   // The camera stands above a hill in the built-in range and looks past the morning sun, with
   // pixels of a tenth of a degree.
-  Scene scene = BareScene(0.0, 0.0, 0.0, 60.0);
+  Scene scene = QuickScene(0.0, 0.0, 0.0, 60.0);
   scene.camera = CameraFromDegrees({300.0, true}, 72.0, 0.0, 0.0, 4.2);
   scene.terrain = {};
   const SceneRenderer renderer(scene);
@@ -193,7 +194,7 @@ TEST(RenderAir, SharedAirOfAPixelIsRightToATenthOfAPercent) {
 TEST_F(RenderAirFiles, ShadedAirBeforeAMountainHasNoGlow) {
   // A ridge across the view is 1500 m high and 4 km away; the low sun is behind it.
   const Scene scene =
-      MeshScene(BareScene(50.0, 62.0, 4.0, 10.0), folder_ / "ridge.obj",
+      MeshScene(QuickScene(50.0, 62.0, 4.0, 10.0), folder_ / "ridge.obj",
                 "v 3000 -60000 0\nv 3000 60000 0\nv 4000 -60000 1500\nv 4000 60000 1500\n"
                 "v 9000 -60000 0\nv 9000 60000 0\nf 1 3 2\nf 2 3 4\nf 3 5 4\nf 4 5 6\n");
   const SceneRenderer renderer(scene);
@@ -211,7 +212,7 @@ TEST_F(RenderAirFiles, ShadedAirBeforeAMountainHasNoGlow) {
 }
 
 TEST(RenderAir, TheSeaHidesTheFootOfDistantMountains) {
-  Scene scene = BareScene(10.0, 180.0, 0.5, 0.1);
+  Scene scene = QuickScene(10.0, 180.0, 0.5, 0.1);
   scene.terrain = {};
   scene.terrain.centre = PlaceFromDegrees(45.5, 8.0, 0.0);  // 111 km to the south
   const SceneRenderer renderer(scene);
@@ -244,7 +245,7 @@ TEST_F(RenderAirFiles, ARidgeOfNoThicknessHasADarkSide) {
   // A sheet across the view is 1500 m high and 4 km away, with the low sun behind it.
   for (const char* faces : {"f 1 3 2\nf 2 3 4\n", "f 1 2 3\nf 2 4 3\n"}) {
     const Scene scene =
-        MeshScene(BareScene(50.0, 72.0, 4.0, 10.0), folder_ / "sheet.obj",
+        MeshScene(QuickScene(50.0, 72.0, 4.0, 10.0), folder_ / "sheet.obj",
                   "v 4000 -60000 -300\nv 4000 60000 -300\nv 4000 -60000 1500\nv 4000 60000 1500\n" +
                       std::string(faces));
     const SceneRenderer renderer(scene);
@@ -295,7 +296,7 @@ class Terminator : public TemporaryFolder {
         if (b != d) text += fmt::format("f {} {} {}\n", c, b, d);
       }
     }
-    scene_ = MeshScene(BareScene(kEyeHeight_m, 0.0, 0.0, 32.0), folder_ / "ball.obj", text);
+    scene_ = MeshScene(QuickScene(kEyeHeight_m, 0.0, 0.0, 32.0), folder_ / "ball.obj", text);
   }
 
   static std::string VertexAt(double polar, double turn) {
