@@ -216,9 +216,9 @@ TEST_F(LampPlans, TenTimesTheLampsCostThreeTimesAsMuch) {
   std::vector<double> nodes;
   for (const int rows : {50, tests::ScaledDown(500, 100)}) {
     const LampSite site(RunwayScene(rows));
-    const CameraRays camera(site.scene.camera, 160, 90);
+    const CameraRays camera(site.scene.camera, 320, 180);
     // The left half of the picture.
-    const LampPlan plan = site.light.PlanFor(camera, 80, 90, {}, ToPlane(kLampEye_m));
+    const LampPlan plan = site.light.PlanFor(camera, 160, 180, {}, ToPlane(kLampEye_m));
     nodes.push_back(0.0);
     for (const LampTile& tile : plan.tiles)
       nodes.back() += static_cast<double>(tile.near_air.size() + tile.far_air.size());
