@@ -21,60 +21,90 @@ namespace {
 constexpr int kSize = kDitherTileSize;
 constexpr int kCells = kSize * kSize;
 
-/// Returns a Gaussian of the distance on the torus, sigma 1.9 pixels (Ulichney's 1.5 leaves more
-/// low frequencies in tiles this small), in integers so that sums are exact.
+// Points farther away than this along x or y add less than half a unit of the kernel, which is 0.
+constexpr int kReach = 10;
+constexpr int kKernelSide = 2 * kReach + 1;
+
+/// Returns a Gaussian of the distance, sigma 1.9 pixels (Ulichney's 1.5 leaves more low frequencies
+/// in tiles this small), in integers so that sums are exact. Element 0 is at (-kReach, -kReach).
 std::vector<int> DitherKernel() {
-  std::vector<int> kernel(kCells);
-  for (int y = 0; y < kSize; ++y) {
-    for (int x = 0; x < kSize; ++x) {
-      const double dx = std::min(x, kSize - x);
-      const double dy = std::min(y, kSize - y);
-      const double gauss = std::exp(-(dx * dx + dy * dy) / (2.0 * 1.9 * 1.9));
-      kernel[static_cast<std::size_t>(y * kSize + x)] = static_cast<int>(std::lround(1e6 * gauss));
+  std::vector<int> kernel;
+  for (int dy = -kReach; dy <= kReach; ++dy) {
+    for (int dx = -kReach; dx <= kReach; ++dx) {
+      const double gauss = std::exp(-static_cast<double>(dx * dx + dy * dy) / (2.0 * 1.9 * 1.9));
+      kernel.push_back(static_cast<int>(std::lround(1e6 * gauss)));
     }
   }
   return kernel;
 }
 
+/// The extreme cells of a row of a pattern; -1: it has none. They are found when they are needed.
+struct PatternRow {
+  bool is_known = false;
+  int cluster = -1, gap = -1;
+};
+
 /// A pattern of points on the torus, with the crowding of every cell.
 class Pattern {
  public:
-  Pattern() : kernel_(DitherKernel()), crowding_(kCells, 0), set_(kCells, false) {}
+  Pattern() : kernel_(DitherKernel()), crowding_(kCells, 0), set_(kCells, 0) {}
 
   void Add(int cell) { Change(cell, true, 1); }
   void Remove(int cell) { Change(cell, false, -1); }
 
-  [[nodiscard]] int TightestCluster() const { return Extreme(true, 1); }
-  [[nodiscard]] int LargestVoid() const { return Extreme(false, -1); }
+  /// Returns the point with the largest crowding; of equal ones the first.
+  [[nodiscard]] int TightestCluster() {
+    return Extreme(&PatternRow::cluster, [](int a, int b) { return a > b; });
+  }
+  /// Returns the cell without a point that has the smallest crowding; of equal ones the first.
+  [[nodiscard]] int LargestVoid() {
+    return Extreme(&PatternRow::gap, [](int a, int b) { return a < b; });
+  }
 
  private:
   void Change(int cell, bool set, int sign) {
-    set_[static_cast<std::size_t>(cell)] = set;
-    const int x0 = cell % kSize;
-    const int y0 = cell / kSize;
-    for (int y = 0; y < kSize; ++y) {
-      const int row = (y - y0 + kSize) % kSize * kSize;
-      for (int x = 0; x < kSize; ++x) {
-        crowding_[static_cast<std::size_t>(y * kSize + x)] +=
-            sign * kernel_[static_cast<std::size_t>(row + (x - x0 + kSize) % kSize)];
-      }
+    set_[static_cast<std::size_t>(cell)] = set ? 1 : 0;
+    const int x0 = cell % kSize + kSize - kReach;
+    const int y0 = cell / kSize + kSize - kReach;
+    for (int dy = 0; dy < kKernelSide; ++dy) {
+      const int y = (y0 + dy) % kSize;
+      rows_[static_cast<std::size_t>(y)].is_known = false;
+      int* const row = crowding_.data() + y * kSize;
+      const int* const kernel = kernel_.data() + dy * kKernelSide;
+      for (int dx = 0; dx < kKernelSide; ++dx) row[(x0 + dx) % kSize] += sign * kernel[dx];
     }
   }
-  /// Returns the cell of state `set` with the largest sign * crowding; of equal cells the first.
-  [[nodiscard]] int Extreme(bool set, int sign) const {
+  [[nodiscard]] PatternRow ExtremesOfRow(int y) const {
+    PatternRow row{.is_known = true};
+    const int* const crowding = crowding_.data();
+    for (int cell = y * kSize; cell < (y + 1) * kSize; ++cell) {
+      if (set_[static_cast<std::size_t>(cell)] != 0) {
+        if (row.cluster < 0 || crowding[cell] > crowding[row.cluster]) row.cluster = cell;
+      } else if (row.gap < 0 || crowding[cell] < crowding[row.gap]) {
+        row.gap = cell;
+      }
+    }
+    return row;
+  }
+  template <typename Exceeds>
+  [[nodiscard]] int Extreme(int PatternRow::*of_row, const Exceeds& exceeds) {
     int best = -1;
-    for (int i = 0; i < kCells; ++i) {
-      const auto cell = static_cast<std::size_t>(i);
-      if (set_[cell] != set) continue;
-      if (best < 0 || sign * crowding_[cell] > sign * crowding_[static_cast<std::size_t>(best)]) {
-        best = i;
+    for (int y = 0; y < kSize; ++y) {
+      PatternRow& row = rows_[static_cast<std::size_t>(y)];
+      if (!row.is_known) row = ExtremesOfRow(y);
+      const int cell = row.*of_row;
+      if (cell < 0) continue;
+      if (best < 0 || exceeds(crowding_[static_cast<std::size_t>(cell)],
+                              crowding_[static_cast<std::size_t>(best)])) {
+        best = cell;
       }
     }
     return best;
   }
 
   std::vector<int> kernel_, crowding_;
-  std::vector<bool> set_;
+  std::vector<std::uint8_t> set_;
+  std::array<PatternRow, kSize> rows_;
 };
 
 /// Returns a tenth of the cells, chosen at random. Regular starts, lattices among them, survive the
