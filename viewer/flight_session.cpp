@@ -40,7 +40,7 @@ FlightSession::FlightSession(const Scene& scene, const UtcInstant& start,
       controller_(EyeOfScene(scene), EllipsoidOf(scene.medium), start,
                   [this](const GeodeticPosition& place) { return edits_.GroundAt(place); }),
       exposure_(settings.exposure, settings.look),
-      display_pass_(InDaylight(settings.look), settings.first_air
+      display_pass_(InDaylight(settings.look), IsDraft(settings.first_air)
                                                    ? ToneMapPass::FirstPictures::kDraft
                                                    : ToneMapPass::FirstPictures::kWait),
       painter_(scene, settings.land,

@@ -29,7 +29,7 @@ struct FlightSessionSettings {
   std::optional<int> largest_part = {};
   ExposureRule exposure = {};  // metered, eye or fixed
   Look look = {};              // without local exposure and night vision
-  FirstAir first_air = {};     // computed while the window is created, for an early first frame
+  FirstAir first_air = {};     // null: the flight solves its air
 };
 
 /// Scene and settings from which a flight starts.

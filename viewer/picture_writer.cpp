@@ -172,7 +172,7 @@ void GiveWayToTheWindow() {
 
 // Written pictures use the complete atmosphere and exact tables from the start.
 FlightSessionSettings WithoutDrafts(FlightSessionSettings settings) {
-  settings.first_air = {};
+  if (IsDraft(settings.first_air)) settings.first_air = {};
   return settings;
 }
 

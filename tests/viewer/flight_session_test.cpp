@@ -18,6 +18,7 @@
 #include "renderer/scene/places.h"
 #include "renderer/scene/scene_options.h"
 #include "tests/fixtures/temporary_folder.h"
+#include "tests/viewer/air/shared_air.h"
 #include "tests/viewer/land/headless_land.h"
 #include "tests/viewer/shaders/headless.h"
 #include "viewer/gl/picture_tiles.h"
@@ -46,6 +47,7 @@ class FlightsOverLand : public tests::HeadlessTile {
     settings.land = LandSourceOf(scene);
     settings.quality = {Quality::kLow};
     settings.size = size;
+    settings.first_air = tests::SharedAirOf(scene);
     return settings;
   }
   [[nodiscard]] static UtcInstant Evening() { return ParseInstant("2026-06-21T18:20:00Z"); }
@@ -63,7 +65,7 @@ double OverTheGround_m(FlightSession& flight) {
 
 TEST_F(FlightsOverLand, AnEyeThatIsPutOverGroundStandsThereWhenTheGroundIsKnown) {
   constexpr int kFar = 6000;  // samples; 190 km, whose land is not loaded before the eye is there
-  tests::WriteTile(folder_ / "far.tif", kFar, 0);
+  tests::WriteQuickTile(folder_ / "far.tif", kFar, 0);
   const Scene scene = SceneAt({300.0, true});
   FlightSessionSettings settings = SettingsFor(scene);
   settings.land.files = {File("land.tif"), File("far.tif")};

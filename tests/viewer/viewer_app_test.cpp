@@ -11,6 +11,7 @@
 #include "renderer/scene/scene_options.h"
 #include "tests/fixtures/bare_scene.h"
 #include "tests/fixtures/temporary_folder.h"
+#include "tests/viewer/air/shared_air.h"
 #include "tests/viewer/land/headless_land.h"
 
 namespace alpenglow::viewer {
@@ -31,6 +32,7 @@ struct BareFlight {
     FlightSessionSettings settings;
     settings.quality = {Quality::kLow};
     settings.size = kSize;
+    settings.first_air = tests::SharedAirOf(scene);
     return {scene, ParseInstant("2026-06-21T10:00:00Z"), settings};
   }
 
@@ -325,6 +327,7 @@ TEST_F(ViewerAppOverLand, NothingIsNotedBeforeTheGroundUnderTheEyeIsKnown) {
   settings.land = LandSourceOf(scene);
   settings.quality = {Quality::kLow};
   settings.size = kSize;
+  settings.first_air = tests::SharedAirOf(scene);
   FlightSession flight(scene, ParseInstant("2026-06-21T10:00:00Z"), settings);
   FlightRecorder recorder(folder_ / "f.csv");
   ViewerApp deck(flight, recorder, {});

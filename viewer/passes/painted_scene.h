@@ -26,11 +26,14 @@
 
 namespace alpenglow::viewer {
 
-/// The solved medium of a scene, prepared before the PaintedScene. Null: PaintedScene solves it at
-/// full accuracy.
+/// The solved medium of a scene, prepared before the PaintedScene: a draft for an early first frame,
+/// or a full solution that scenes share. Null: PaintedScene solves it at full accuracy.
 using FirstAir = std::shared_ptr<const SolvedAir>;
 /// Returns a draft solution. Throws for a medium as the constructor of PaintedScene does.
 [[nodiscard]] FirstAir DraftOfAir(const Scene& scene);
+[[nodiscard]] inline bool IsDraft(const FirstAir& air) {
+  return air && air->solution == AirSolution::kDraft;
+}
 
 /// The parts of a scene that do not change during a flight.
 struct FixedScene {

@@ -16,6 +16,7 @@
 #include "tests/fixtures/fault_of.h"
 #include "tests/fixtures/parity_views.h"
 #include "tests/fixtures/sanitized.h"
+#include "tests/viewer/air/shared_air.h"
 #include "tests/viewer/land/headless_land.h"
 #include "viewer/flight_session.h"
 #include "viewer/gl/gl_objects.h"
@@ -35,6 +36,7 @@ class DisplayPassTest : public tests::HeadlessTile {
     settings.land = LandSourceOf(scene);
     settings.quality = {quality};
     settings.size = kScreen;
+    settings.first_air = tests::SharedAirOf(scene);
     FlightSession flight(scene, ParseInstant("2026-06-21T18:40:00Z"), settings);
     flight.WaitUntilReady(kScreen);
     flight.exposure().Set(15.0);
@@ -85,7 +87,8 @@ class SmallPictures : public tests::Headless {
     eye.place.height_m = eye_m;
     const auto part = [&](int side) { return static_cast<int>(std::lround(painted.scale * side)); };
     const PaintedView view{eye, window.now, part(kScreen.width), part(kScreen.height)};
-    SkyPainter painter(window.scene, LandSourceOf(window.scene), view, SizesOf(painted));
+    SkyPainter painter(window.scene, LandSourceOf(window.scene), view, SizesOf(painted),
+                       tests::SharedAirOf(window.scene));
     if (window.has_landing_light) painter.SetLandingLight(LandingLightOf(eye));
     painter.WaitUntilReady(view);
     const RenderTarget screen(kScreen.width, kScreen.height, {PixelFormat::kRgba8},

@@ -16,6 +16,7 @@
 #include "renderer/surface/scene_ground.h"
 #include "tests/fixtures/far_peak.h"
 #include "tests/fixtures/temporary_folder.h"
+#include "tests/viewer/air/shared_air.h"
 #include "tests/viewer/shaders/gpu_values.h"
 #include "tests/viewer/shaders/headless.h"
 #include "viewer/passes/painted_view.h"
@@ -35,7 +36,8 @@ PaintedView ViewFrom(const Scene& scene, const UtcInstant& now, int width, int h
 }
 
 Image Painted(const Scene& scene, const PaintedView& view) {
-  SkyPainter painter(scene, LandSourceOf(scene), view, SizesOf(Quality::kLow));
+  SkyPainter painter(scene, LandSourceOf(scene), view, SizesOf(Quality::kLow),
+                     tests::SharedAirOf(scene));
   painter.WaitUntilReady(view);
   painter.Paint(view);
   return painter.picture().Read();
@@ -177,7 +179,8 @@ TEST_F(RefractedPeak, BehindTheGeometricHorizonStandsWhereTheRayEquationHasIt) {
         tests::SceneOf(peak, expected / kRadiansPerDegree, 0.4, medium.planet_radius_m, folder_);
     constexpr int kAcross = 32, kDown = 64;
     const PaintedView view = ViewFrom(scene, noon, kAcross, kDown);
-    SkyPainter painter(scene, LandSourceOf(scene), view, SizesOf(Quality::kLow));
+    SkyPainter painter(scene, LandSourceOf(scene), view, SizesOf(Quality::kLow),
+                       tests::SharedAirOf(scene));
     painter.WaitUntilReady(view);
     painter.Paint(view);
     const CameraRays camera(scene.camera, kAcross, kDown);
