@@ -15,8 +15,8 @@
 #include "tests/fixtures/lost_messages.h"
 #include "tests/fixtures/obj_texts.h"
 #include "tests/fixtures/places.h"
-#include "tests/renderer/terrain/land_files.h"
-#include "tests/viewer/shaders/headless.h"
+#include "tests/fixtures/sanitized.h"
+#include "tests/viewer/land/headless_land.h"
 #include "viewer/gl/picture_tiles.h"
 
 namespace alpenglow::viewer {
@@ -332,8 +332,8 @@ class SkyviewLand : public tests::LandFolder {
   void SetUp() override {
     LandFolder::SetUp();
     if (!tests::HasOpenGl()) GTEST_SKIP() << "EGL gives no OpenGL here";
-    tests::WriteTile(folder_ / "west.tif", 0, 0);
-    tests::WriteTile(folder_ / "east.tif", tests::kTileSamples - 1, 0);
+    tests::WriteQuickTile(folder_ / "west.tif", 0, 0);
+    tests::WriteQuickTile(folder_ / "east.tif", tests::kTileSamples - 1, 0);
   }
 
   /// Takes a screenshot of the terrain around 8 to 8.1 degrees east, 46.6 to 46.7 north.
@@ -435,7 +435,7 @@ TEST_F(SkyviewLand, AnEventIsAtTheTimeThatSkyseriesLists) {
 
 TEST_F(SkyviewLand, WhatIsLeftOutOfAFolderIsSaid) {
   std::filesystem::create_directory(folder_ / "land");
-  tests::WriteTile(folder_ / "land/west.tif", 0, 0);
+  tests::WriteQuickTile(folder_ / "land/west.tif", 0, 0);
   WriteText(folder_ / "land/broken.tif", "not a picture at all");
   const Outcome outcome = TakeScreenshot("--dem land", "a.exr");
   EXPECT_EQ(outcome.status, 0) << outcome.error;
@@ -502,7 +502,9 @@ TEST_F(MeshPictures, AMeshFarAwayIsLitAsTheRendererLightsIt) {
 }
 
 TEST_F(MeshPictures, AReplayMayComeFromFarToTheMesh) {
-  WriteScene(tests::ObjOf({{20.0, 0.0}}),
+  // The viewer lights a mesh on a grid of 1 cm, at most 1024 samples wide.
+  const double half_m = tests::ScaledDown(20.0, 1.0);
+  WriteScene(tests::ObjOf({{half_m, 0.0}}),
              "height_m = 60.0\nheading = 270.0\npitch = -90.0\nfov = 20.0");
   WriteText(folder_ / "p.csv",
             "t_s,latitude,longitude,height_m,heading,pitch\n0,46.5,9,3000,270,-90\n"

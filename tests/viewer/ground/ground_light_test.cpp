@@ -13,6 +13,7 @@
 #include "atmosphere/math/numerics.h"
 #include "lut/image/image.h"
 #include "tests/fixtures/class_map.h"
+#include "tests/fixtures/sanitized.h"
 #include "tests/renderer/picture/rough_site.h"
 #include "tests/viewer/ground/sun_in_closed_form.h"
 #include "tests/viewer/shaders/gpu_values.h"
@@ -289,7 +290,8 @@ TEST_F(GroundOnGpu, BlocksLieWhereTheDriverLooks) {
 
 TEST_F(GroundOnGpu, MountainsAreTheRenderers) {
   const auto site = tests::RoughSite();
-  for (const double elevation_deg : {50.0, 12.0, -3.0}) {
+  for (const double elevation_deg :
+       tests::ScaledDown(std::vector{50.0, 12.0, -3.0}, {12.0, -3.0})) {
     const std::vector<double> differences =
         LandDifferences(LitGround(site, tests::RoughSun(*site, elevation_deg)));
     EXPECT_LT(LightQuantile(differences, 0.5), elevation_deg > 0.0 ? 4e-3 : 1e-2) << elevation_deg;
@@ -300,7 +302,8 @@ TEST_F(GroundOnGpu, MountainsAreTheRenderers) {
 
 TEST_F(GroundOnGpu, PixelByPixelTheSkysLightOnMountainsIsTheRenderers) {
   const auto site = tests::RoughSite();
-  for (const double elevation_deg : {50.0, 12.0, -3.0, -8.0}) {
+  for (const double elevation_deg :
+       tests::ScaledDown(std::vector{50.0, 12.0, -3.0, -8.0}, {12.0, -8.0})) {
     const std::vector<double> differences =
         DifferencesByPixel(LitGround(site, tests::RoughSun(*site, elevation_deg)));
     EXPECT_LT(LightQuantile(differences, 0.5), 1e-3) << elevation_deg;
@@ -320,7 +323,7 @@ TEST_F(GroundOnGpu, CoversOfOneColourAreTheRenderers) {
                                            {GroundCover::Kind::kBlinnPhong, 0.03, 0.1}}) {
     cover.kind = kind;
     const auto site = tests::RoughSite(cover);
-    for (const double elevation_deg : {50.0, 12.0}) {
+    for (const double elevation_deg : tests::ScaledDown(std::vector{50.0, 12.0}, {12.0})) {
       const std::vector<double> differences =
           LandDifferences(LitGround(site, tests::RoughSun(*site, elevation_deg)));
       EXPECT_LT(LightQuantile(differences, 0.5), median) << elevation_deg;
@@ -374,7 +377,8 @@ TEST_F(GroundOnGpu, ThePlanetBeyondIsTheRenderers) {
   sea.sea_level_m = 0.0;
   for (const GroundCover& cover : {land, sea}) {
     const auto site = tests::RoughSite(cover);
-    for (const double elevation_deg : {50.0, 12.0, 2.0, -2.0}) {
+    for (const double elevation_deg :
+         tests::ScaledDown(std::vector{50.0, 12.0, 2.0, -2.0}, {12.0, -2.0})) {
       const LitGround lit(site, tests::RoughSun(*site, elevation_deg));
       for (const double eye_m : {1e3, 40e3}) {
         const std::vector<double> differences = PlanetDifferences(lit, eye_m);

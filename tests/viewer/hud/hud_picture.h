@@ -3,6 +3,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cstring>
 #include <optional>
 #include <string>
 #include <utility>
@@ -95,7 +96,9 @@ class HudPicture : public Headless {
   };
   static Box Difference(const Image& a, const Image& b) {
     Box box{a.width, a.height, 0, 0};
+    const auto row_bytes = static_cast<std::size_t>(a.width) * sizeof(a.rgb[0]);
     for (int y = 0; y < a.height; ++y) {
+      if (std::memcmp(&a.at(0, y), &b.at(0, y), row_bytes) == 0) continue;
       for (int x = 0; x < a.width; ++x) {
         if (a.at(x, y) == b.at(x, y)) continue;
         box = {std::min(box.left, x), std::min(box.top, y), std::max(box.right, x + 1),

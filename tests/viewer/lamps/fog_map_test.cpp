@@ -11,6 +11,7 @@
 #include "atmosphere/ray/shell.h"
 #include "renderer/media/media_light.h"
 #include "tests/fixtures/bare_scene.h"
+#include "tests/fixtures/sanitized.h"
 #include "tests/viewer/shaders/gpu_values.h"
 #include "tests/viewer/shaders/headless.h"
 #include "viewer/lamps/fog.h"
@@ -123,7 +124,7 @@ struct FogDeviation {
 
 // Deviations count where the radiance is at least a tenth of the brightest.
 FogDeviation CompareFog(const BothFogs& both) {
-  const auto rays = Rays(both, 300);
+  const auto rays = Rays(both, tests::ScaledDown(300, 120));
   const std::vector<float> gpu =
       both.OnGpu("FogTo(vec3(a[0], a[1], a[2]), a[3]).radiance[1]", rays);
   const std::vector<float> left =
@@ -216,7 +217,7 @@ TEST_F(FogOnTheCard, StretchesDimALightThatRisesEvenlyAsTheFogDoes) {
   for (const LocalMedium& fog :
        {FogOf(0.002, 80.0, 0.0), FogOf(0.013, std::numeric_limits<double>::infinity(), 0.0)}) {
     const BothFogs both(fog, 10.0);
-    const auto rays = Rays(both, 60);
+    const auto rays = Rays(both, tests::ScaledDown(60, 30));
     const std::vector<float> gpu = both.OnGpu(LightInFog(), rays);
     for (std::size_t i = 0; i < rays.size(); ++i) {
       const glm::dvec3 way = glm::normalize(glm::dvec3(rays[i][0], rays[i][1], rays[i][2]));

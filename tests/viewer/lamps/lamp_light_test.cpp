@@ -16,6 +16,7 @@
 #include "renderer/lamps/lamp_light.h"
 #include "renderer/material/band_light.h"
 #include "tests/fixtures/bare_scene.h"
+#include "tests/fixtures/sanitized.h"
 #include "tests/renderer/lamps/ridge.h"
 #include "tests/viewer/shaders/gpu_values.h"
 #include "tests/viewer/shaders/headless.h"
@@ -155,7 +156,7 @@ using LampsOnTheCard = tests::Headless;
 /// Returns the deviation in the middle band of the scene's air.
 Deviation GlowDeviation(const BothLamps& both, bool near_lamps = true) {
   constexpr int kBand = 2;
-  const auto rays = Rays(both, 400, near_lamps);
+  const auto rays = Rays(both, tests::ScaledDown(400, 150), near_lamps);
   const std::vector<float> gpu =
       both.OnGpu("LampAirlightIn(vec3(a[0], a[1], a[2]), a[3], 1.0)[2]", rays);
   std::vector<double> truth;
@@ -241,7 +242,7 @@ std::vector<tests::Arguments<float>> Points(int count, bool with_slopes) {
 
 /// Relative to what level ground there gets.
 Deviation GroundDeviation(const BothLamps& both, bool with_slopes) {
-  std::vector<tests::Arguments<float>> points = Points(400, with_slopes);
+  std::vector<tests::Arguments<float>> points = Points(tests::ScaledDown(400, 150), with_slopes);
   std::vector<double> truth, level;
   for (auto& point : points) {
     const glm::dvec3 normal = glm::normalize(glm::dvec3(point[3], point[4], point[5]));
@@ -382,14 +383,15 @@ TEST_F(LampsOnTheCard, AMeasuredLampLightsTheGroundAsTheRenderer) {
 TEST_F(LampsOnTheCard, ManyLampsBecomeSixtyFourNodesThatShineAlike) {
   Scene scene = Night(6.0, 0.0, 1.0);
   scene.lights.clear();
-  for (int i = 0; i < 300; ++i) {
+  constexpr int kLamps = tests::ScaledDown(300, 150);
+  for (int i = 0; i < kLamps; ++i) {
     scene.lights.push_back(LightAt(200.0 + 30.0 * (i / 2), i % 2 == 0 ? 20.0 : -20.0, 0.5, 500.0));
   }
   BothLamps both(scene);
   const SceneLamps::InView in_view = both.lamps.Before(
       {both.eye_m, glm::dmat3(1.0), both.eye_m.z, kLitPixel_rad}, {0.0, 0.0}, 0.0);
   EXPECT_EQ(in_view.block.count.x, 64.0F);
-  EXPECT_EQ(in_view.disks.size(), 300U) << "each lamp itself is seen";
+  EXPECT_EQ(in_view.disks.size(), std::size_t{kLamps}) << "each lamp itself is seen";
   EXPECT_LT(GlowDeviation(both, false).mean, 0.02)
       << "in all directions; close to one of the lamps that a node stands for its own glow is "
          "missing";
@@ -522,12 +524,14 @@ glm::dvec3 DirectionOf(int x, int y) {
   return glm::normalize(glm::dvec3(right, 1.0, up));
 }
 
-/// By every third pixel each way.
+constexpr int kEvery = tests::ScaledDown(3, 5);
+
+/// By every third pixel each way; by every fifth under the sanitizers.
 std::vector<double> Deviations(const Image& image,
                                const std::function<double(int x, int y)>& truth) {
   std::vector<double> deviations;
-  for (int y = 1; y < kGlowHeight; y += 3) {
-    for (int x = 1; x < kGlowWidth; x += 3) {
+  for (int y = 1; y < kGlowHeight; y += kEvery) {
+    for (int x = 1; x < kGlowWidth; x += kEvery) {
       deviations.push_back(std::abs(double{image.at(x, y)[1]} / truth(x, y) - 1.0));
     }
   }

@@ -11,6 +11,7 @@
 #include "atmosphere/astronomy/sun.h"
 #include "renderer/elevation/obj_file.h"
 #include "renderer/terrain/terrain.h"
+#include "tests/fixtures/sanitized.h"
 #include "tests/viewer/land/headless_land.h"
 #include "viewer/land/land_pass.h"
 #include "viewer/shaders/pass_setup.h"
@@ -210,7 +211,7 @@ TEST_F(LandscapePictures, WhatNearLandHidesIsLeftOutAndNothingElse) {
 TEST_F(LandscapePictures, NoPixelBelowTheSkylineIsWithoutTerrain) {
   WriteTiles(3);
   Landscape land(Folder(), {64.0}, kWgs84);
-  for (int i = 0; i < 24; ++i) {
+  for (int i = 0; i < 24; i += ScaledDown(1, 2)) {
     SCOPED_TRACE(i);
     LookOut eye{PlaceOfSample(40.0 + 640.0 * std::fmod(0.7549 * i, 1.0),
                               40.0 + 640.0 * std::fmod(0.5698 * i, 1.0), 0.0),
@@ -293,9 +294,10 @@ TEST_F(LandscapePictures, NoViewKeepsMoreChunksThanTheLimit) {
       EXPECT_GT(land.Figures().chunks, 0);
       return land.Figures().kept_chunks;
     };
-    constexpr int kMost = 1500;
+    constexpr int kMost = ScaledDown(1500, 500);
     EXPECT_LE(kept(kMost), kMost) << wants.name;
-    EXPECT_GT(kept(LandSize().most_chunks), kMost) << wants.name << " would take more";
+    EXPECT_GT(kept(ScaledDown(LandSize().most_chunks, 1500)), kMost)
+        << wants.name << " would take more";
   }
 }
 
@@ -411,7 +413,7 @@ TEST_F(LandscapePictures, FarFromWhereItBeganTheLandIsAsExact) {
 // of heights each has the other drawn.
 TEST_F(LandscapePictures, WhatIsSettledDoesNotDependOnWhereTheEyeWasBefore) {
   WriteTiles(2);
-  for (int i = 0; i < 12; ++i) {
+  for (int i = 0; i < 12; i += ScaledDown(1, 2)) {
     const double height_m = 5400.0 + 15.0 * i;
     SCOPED_TRACE(height_m);
     const LookOut eye{PlaceOfSample(200.3, 91.7, height_m), 2.8, -0.3};
