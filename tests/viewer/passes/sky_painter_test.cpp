@@ -38,11 +38,11 @@ constexpr PictureSize kFull{96, 54}, kScaled = tests::ScaledDown(kFull, {64, 36}
 // Rays of both fall on different places of rough ground: the fewer, the farther they are apart.
 constexpr int kSamples = 32;
 
-RenderSettings ReferenceSettings(const PictureSize& size) {
+RenderSettings ReferenceSettings(const PictureSize& size, int samples) {
   RenderSettings settings;
   settings.width = size.width;
   settings.height = size.height;
-  settings.samples_per_pixel = kSamples;
+  settings.samples_per_pixel = samples;
   settings.filter = PixelFilter::Kind::kBox;
   settings.layers = LayersOfEdges();
   return settings;
@@ -59,21 +59,21 @@ PaintedView ViewOf(const Scene& scene, double eye_height_m, const UtcInstant& no
 /// The renderer and the painter of a scene, for as many views as one likes.
 class BothPrograms {
  public:
-  explicit BothPrograms(const Scene& scene, const UtcInstant& first, PictureSize size = kScaled)
-      : size_(size),
+  explicit BothPrograms(const Scene& scene, const UtcInstant& first, int samples = kSamples)
+      : samples_(samples),
         ground_(std::make_shared<const SceneGround>(LoadGround(scene))),
         reference_(scene, ground_),
-        painter_(scene, LandSourceOf(scene), ViewOf(scene, ground_->eye_height_m, first, size),
+        painter_(scene, LandSourceOf(scene), ViewOf(scene, ground_->eye_height_m, first, kScaled),
                  SizesOf(Quality::kHigh), tests::SharedAirOf(scene)) {}
 
   ViewDifference Difference(PaintedView view) {
-    view.width = size_.width;
-    view.height = size_.height;
+    view.width = kScaled.width;
+    view.height = kScaled.height;
     CameraSample camera_sample(view.now);
     camera_sample.poses = {view.eye};
-    painter_.WaitUntilReady(view, kSamples);
-    painter_.Paint(view, kSamples);
-    return DifferenceOf(reference_.Render(camera_sample, ReferenceSettings(size_)),
+    painter_.WaitUntilReady(view, samples_);
+    painter_.Paint(view, samples_);
+    return DifferenceOf(reference_.Render(camera_sample, ReferenceSettings(kScaled, samples_)),
                         painter_.picture().Read());
   }
   /// @param view  from the height over the ground that the scene was made with.
@@ -83,7 +83,7 @@ class BothPrograms {
   [[nodiscard]] double eye_m() const { return ground_->eye_height_m; }
 
  private:
-  PictureSize size_;
+  int samples_;
   std::shared_ptr<const SceneGround> ground_;
   SceneRenderer reference_;
   SkyPainter painter_;
@@ -94,9 +94,8 @@ struct Bounds {
 };
 /// @param bounds  half as much again as was measured, in pictures 160 pixels wide. Differences at rims
 /// of the ground grow with the width of a pixel.
-void ExpectWithin(const ViewDifference& is, const Bounds& bounds, const char* why,
-                  const PictureSize& size = kScaled) {
-  const double pixel_width = 160.0 / size.width;
+void ExpectWithin(const ViewDifference& is, const Bounds& bounds, const char* why) {
+  const double pixel_width = 160.0 / kScaled.width;
   EXPECT_LT(is.mean, pixel_width * bounds.mean) << why;
   EXPECT_LT(is.at_99_percent, pixel_width * bounds.at_99_percent) << why;
   EXPECT_LT(is.edge_share, 0.6) << "there is enough left to compare";
@@ -194,7 +193,8 @@ TEST_F(SkyPainterTest, FogIsTheRenderersAndShadedByMountains) {
     view.scene.fog->scale_height_m = c.scale_height_m;
     view.scene.fog->base_height_m = c.base_height_m;
     view.scene.fog->phase = FogPhase(14.0);
-    ExpectWithin(BothPrograms(view.scene, view.instant).Difference(view), c.bounds,
+    const int samples = tests::ScaledDown(kSamples, 16);
+    ExpectWithin(BothPrograms(view.scene, view.instant, samples).Difference(view), c.bounds,
                  "light of the fog and its shade are maps, and light of the air before it is "
                  "weighed in a few stretches");
   }
@@ -385,7 +385,8 @@ Scene QuickScene(double heading, double pitch, double fov) {
 using BarePlanet = tests::Headless;
 
 void ExpectTheRenderers(const Scene& scene, const std::vector<const char*>& instants) {
-  BothPrograms both(scene, ParseInstant(instants.front()));
+  // The ground is smooth, so that fewer rays a pixel have little more noise.
+  BothPrograms both(scene, ParseInstant(instants.front()), tests::ScaledDown(kSamples, 8));
   for (const char* utc : instants) {
     const ViewDifference is =
         both.Difference(ViewOf(scene, scene.camera.height.value_m, ParseInstant(utc)));
