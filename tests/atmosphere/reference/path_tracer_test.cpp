@@ -228,12 +228,15 @@ TEST(PathTracer, WhatComesInLeavesThroughTheTopWithoutAbsorption) {
 TEST(PathTracer, RefusesWhatIsNotARayOrAnOption) {
   const Medium medium = MediumPreset("bruneton2017");
   const ViewRay ray = RayFromAngles(0.0, 10.0, 0.0, 20.0);
-  EXPECT_THROW(TraceRadiance(medium, ray, {.max_order = 0}), InputError);
-  EXPECT_THROW(TraceRadiance(medium, ray, {.relative_error = -1.0}), InputError);
-  EXPECT_THROW(TraceRadiance(medium, ray, {.relative_error = std::nan("")}), InputError);
-  EXPECT_THROW(TraceRadiance(medium, {0.0, std::nan(""), 1.0, 1.0}), InputError);
-  EXPECT_THROW(TraceIrradiance(medium, -5.0, 0.5, PlaneSide::kFromAbove), InputError);
-  EXPECT_THROW(TraceIrradiance(medium, 0.0, 1.5, PlaneSide::kFromAbove), InputError);
+  EXPECT_THROW(static_cast<void>(TraceRadiance(medium, ray, {.max_order = 0})), InputError);
+  EXPECT_THROW(static_cast<void>(TraceRadiance(medium, ray, {.relative_error = -1.0})), InputError);
+  EXPECT_THROW(static_cast<void>(TraceRadiance(medium, ray, {.relative_error = std::nan("")})),
+               InputError);
+  EXPECT_THROW(static_cast<void>(TraceRadiance(medium, {0.0, std::nan(""), 1.0, 1.0})), InputError);
+  EXPECT_THROW(static_cast<void>(TraceIrradiance(medium, -5.0, 0.5, PlaneSide::kFromAbove)),
+               InputError);
+  EXPECT_THROW(static_cast<void>(TraceIrradiance(medium, 0.0, 1.5, PlaneSide::kFromAbove)),
+               InputError);
 }
 
 /// Returns the first two of these cases under the sanitizers, otherwise all.
@@ -405,10 +408,12 @@ TEST(PathTracedStokes, RefuseWhatIsNoScattering) {
   const Medium medium = MediumPreset("bruneton2017");
   const ViewRay ray = RayFromAngles(0.0, 10.0, 0.0, 20.0);
   const SphereRatios lame{.a3 = {1.0, -1.0}, .b1 = {0.0}, .b2 = {0.0, 0.0}};
-  EXPECT_THROW(TraceStokes(medium, {{0.03}}, ray), InputError) << "three wavelengths";
-  EXPECT_THROW(TraceStokes(medium, {{0.0, 0.0, 0.6}}, ray), InputError);
-  EXPECT_THROW(TraceStokes(medium, {{0.0, 0.0, 0.0}, {lame}}, ray), InputError);
-  EXPECT_THROW(TraceStokes(medium, {{0.0, 0.0, 0.0}, {{}, {}}}, ray), InputError);
+  EXPECT_THROW(static_cast<void>(TraceStokes(medium, {{0.03}}, ray)), InputError)
+      << "three wavelengths";
+  EXPECT_THROW(static_cast<void>(TraceStokes(medium, {{0.0, 0.0, 0.6}}, ray)), InputError);
+  EXPECT_THROW(static_cast<void>(TraceStokes(medium, {{0.0, 0.0, 0.0}, {lame}}, ray)), InputError);
+  EXPECT_THROW(static_cast<void>(TraceStokes(medium, {{0.0, 0.0, 0.0}, {{}, {}}}, ray)),
+               InputError);
 }
 
 void ExpectStoredStokes(const std::set<std::string>& all) {

@@ -643,10 +643,11 @@ TEST(IntegralEvaluator, OptionsOutOfRangeAreRefused) {
   for (const IntegralOptions& options : {IntegralOptions{.samples = 1, .max_error = {}},
                                          {.samples = 33, .max_error = {}},
                                          {.samples = 16, .max_error = 1e-12}})
-    EXPECT_THROW(MakeIntegralEvaluator(medium, options), InputError);
+    EXPECT_THROW(static_cast<void>(MakeIntegralEvaluator(medium, options)), InputError);
   std::vector<double> wavelengths;
   for (int i = 0; i < 41; ++i) wavelengths.push_back(400.0 + 5.0 * i);
-  EXPECT_THROW(MakeIntegralEvaluator(MediumPreset("earth", wavelengths)), InputError);
+  EXPECT_THROW(static_cast<void>(MakeIntegralEvaluator(MediumPreset("earth", wavelengths))),
+               InputError);
   EXPECT_DOUBLE_EQ(RelativeErrorFromText("0.2%").value_or(0.0), 0.002);
   EXPECT_DOUBLE_EQ(RelativeErrorFromText("1e-6").value_or(0.0), 1e-6);
   for (const char* text : {"", "%", "0", "2", "101%", "nan", "-1%", "0.1%%", "1e-9", "half"})
