@@ -302,7 +302,7 @@ TEST(TerrainIrradiance, SlopesLightEachOtherWithoutAir) {
 
 TEST(TerrainIrradiance, IsTheSameForAnyNumberOfThreads) {
   static_cast<void>(tests::EqualForAnyNumberOfThreads([] {
-    const Mountains mountains(20.0, 0.5F, 17);
+    const Mountains mountains(20.0, 0.5F, 33);
     const TerrainHit hit = mountains.Ground(321.0, -543.0);
     return mountains.light().Irradiance(mountains.At(hit.smooth_point, hit.normal))[1];
   }));
