@@ -19,7 +19,7 @@
 // Number(0.1) intentionally rounds a literal to the type for which the text is compiled.
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Wfloat-conversion"
-#ifdef __clang__  // has a name of its own for literals that lose digits
+#ifdef __clang__  // clang has another name for the rounding of literals
 #pragma GCC diagnostic ignored "-Wimplicit-float-conversion"
 #endif
 
