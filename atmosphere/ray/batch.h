@@ -61,7 +61,7 @@ template <typename Real>
 using BatchOf = PlainNumber<Real>;
 #endif
 
-/// Compiles the contents of shared_math.h, shell.h and shell.h again, with the linkage that a
+/// Compiles the contents of shared_math.h and shell.h again, with the linkage that a
 /// kernel needs.
 namespace shared {
 #include "atmosphere/shared_glsl/shared_builtins.h"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Sixteen or eight lanes as vectors of the instruction set, and positions, densities and columns at
-// the nodes of such a vector (formulas in direct_columns.glsl and direct_panels.h). Only
-// direct_kernel.cpp may include this header. Lengths are in km.
+// the nodes of such a vector (formulas in optical_depth.glsl, ray_map.glsl and direct_panels.h).
+// Only direct_kernel.cpp may include this header. Lengths are in km.
 #pragma once
 
 #include <bit>
@@ -104,14 +104,6 @@ T PowerOfTwo(const T& x) {
   return TimesPowerOfTwo(p, shifted);
 }
 
-namespace shared {
-// clang-format off
-#include "atmosphere/shared_glsl/shared_begin.h"
-#include "atmosphere/ray/direct_columns.glsl"
-#include "atmosphere/shared_glsl/shared_end.h"
-// clang-format on
-}  // namespace shared
-
 constexpr std::size_t kHalf = kDirectLanes / 2;
 
 // Factor 1 for lanes that belong to the second panel of a group, else 0.
@@ -199,7 +191,7 @@ struct TwoColumns {
 };
 
 /// A layer at some altitudes: its density relative to the ground, and its upward column divided by
-/// the shape of direct_columns.glsl.
+/// the shape of DirectColumnShape.
 template <typename T>
 struct LayerAt {
   const DirectLayer& layer;

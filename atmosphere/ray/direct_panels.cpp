@@ -8,7 +8,6 @@
 #include "atmosphere/math/constants.h"
 #include "atmosphere/math/numerics.h"
 #include "atmosphere/ray/ray.h"
-#include "atmosphere/ray/ray_panels.h"
 #include "atmosphere/ray/shell.h"
 
 namespace alpenglow::atmosphere {

@@ -2,7 +2,7 @@
 // Set-up of direct integration (direct_scattering.h): a medium prepared for it, and the panels of a
 // ray with the lanes that they use.
 //
-// The medium has the constants of direct_columns.glsl for each layer, and the columns of smooth
+// The medium has the constants of DirectColumnShape for each layer, and the columns of smooth
 // ozone as polynomials.
 //
 //   (|mu| + k) column(h, mu) = sum over a, q of  c_qa Y^a U^q,   a <= 12, q <= 5
@@ -10,8 +10,8 @@
 //
 // Lengths are in km. Extinctions contain a factor log2(e), because kernels use powers of two.
 //
-// A ray is cut at its perigee and at the edges of the planet's shadow. Each panel has a map of
-// direct_columns.glsl with the slope
+// A ray is cut at its perigee and at the edges of the planet's shadow. Each panel has the map
+// DirectDistance (ray_map.glsl) with the slope
 //
 //   s = min(kappa half / L, 1)
 //

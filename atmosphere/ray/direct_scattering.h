@@ -5,7 +5,7 @@
 // A ray costs one pass over 8 or 16 SIMD lanes. The set-up is scalar (direct_panels.h). Altitude,
 // densities and columns are then computed at all nodes at once, without exp, log or ray marching:
 // the map of a panel is a polynomial, columns upwards are rational functions with one division
-// (direct_columns.glsl), and columns of smooth ozone are polynomials (direct_panels.h). Two
+// (optical_depth.glsl), and columns of smooth ozone are polynomials (direct_panels.h). Two
 // weightless nodes, at the entry and at the perigee, give the columns from which the columns along
 // the ray follow by subtraction.
 //

@@ -5,9 +5,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 #include "atmosphere/base/error.h"
 #include "atmosphere/math/constants.h"
+#include "atmosphere/math/numerics.h"
 #include "atmosphere/ray/shell.h"
 
 namespace alpenglow::atmosphere {
@@ -119,6 +121,204 @@ ShadowSpan PlanetShadow(const ViewRay& ray, const RayExtent& extent, double plan
       std::min<Extended>(extent.end_m, shared::ShadowEnd(h, mu, mu_s, nu, a, radius));
   if (!(begin < end)) return {};
   return {static_cast<double>(begin), static_cast<double>(end)};
+}
+
+namespace {
+
+/// Distances at which a ray is cut, in any order.
+class PanelEnds {
+ public:
+  explicit PanelEnds(double length) : length_(length) {
+    Add(0.0);
+    Add(length);
+  }
+
+  void Add(double distance) {
+    ALPENGLOW_ENSURE(count_, <, distance_.size());
+    distance_[count_++] = std::clamp(distance, 0.0, length_);
+  }
+
+  void Add(const LineCrossings& crossings) {
+    for (std::size_t i = 0; i < crossings.count; ++i) Add(crossings.distance[i]);
+  }
+
+  /// Returns the distances in ascending order.
+  [[nodiscard]] std::span<const double> Sorted() {
+    std::sort(distance_.begin(), distance_.begin() + count_);
+    return {distance_.data(), count_};
+  }
+
+ private:
+  double length_;
+  std::array<double, RayPanels::kMost + 1> distance_{};
+  std::size_t count_ = 0;
+};
+
+// Returns the points at which the sunbeam through the point at distance t of the ray has its
+// perigee at altitude z: these are the crossings of a cylinder of radius R + z around the axis from
+// the planet's centre to the sun. Only beams from below the horizontal have a perigee.
+LineCrossings SunPerigees(const RayEntry& entry, double z, double radius) {
+  const double r = radius + entry.altitude_km;
+  const double a = (1.0 - entry.nu) * (1.0 + entry.nu);
+  const double b = r * (entry.mu - entry.mu_s * entry.nu);
+  const double c = (entry.altitude_km - z) * (2.0 * radius + entry.altitude_km + z) -
+                   r * r * entry.mu_s * entry.mu_s;
+  const double discriminant = b * b - a * c;
+  LineCrossings found{0, {}};
+  if (a < 1e-12 || discriminant <= 0.0) return found;
+  for (const double t : {(-b - std::sqrt(discriminant)) / a, (-b + std::sqrt(discriminant)) / a}) {
+    if (r * entry.mu_s + t * entry.nu < 0.0) found.distance[found.count++] = t;
+  }
+  return found;
+}
+
+void AddTent(const RayEntry& entry, const OzoneLayer& ozone, double radius, PanelEnds& cuts) {
+  for (const double z : {ozone.bottom_m, ozone.peak_m, ozone.top_m}) {
+    cuts.Add(CrossingsOf(entry.altitude_km, entry.mu, Kilometres(z), radius));
+    cuts.Add(SunPerigees(entry, Kilometres(z), radius));
+  }
+}
+
+/// The dark part of a ray [km from the entry]; empty if begin == end.
+struct DarkSpan {
+  double begin = 0.0, end = 0.0;
+};
+
+DarkSpan DarkSpanOf(const ViewRay& ray, const RayExtent& extent, const Medium& medium) {
+  const ShadowSpan shadow = PlanetShadow(ray, extent, medium.planet_radius_m);
+  if (!(shadow.dark_begin_m < shadow.dark_end_m)) return {};
+  return {Kilometres(shadow.dark_begin_m - extent.begin_m),
+          Kilometres(shadow.dark_end_m - extent.begin_m)};
+}
+
+double LargestExtinctionPerKm(const Medium& medium) {
+  double largest = 0.0;
+  for (std::size_t band = 0; band < medium.wavelengths_nm.size(); ++band) {
+    largest = std::max(largest,
+                       medium.rayleigh_scattering_per_m[band] + medium.mie_extinction_per_m[band]);
+  }
+  return largest * kMetresPerKilometre;
+}
+
+// Returns the vertical optical depth of a layer divided by that of both layers, largest over bands.
+double LargestShare(const std::vector<double>& of, const std::vector<double>& other) {
+  double largest = 0.0;
+  for (std::size_t band = 0; band < of.size(); ++band) {
+    const double all = of[band] + other[band];
+    if (all > 0.0) largest = std::max(largest, of[band] / all);
+  }
+  return largest;
+}
+
+/// Properties of the lower end of a panel that determine its number of nodes.
+struct LowerEnd {
+  double altitude_km, cosine;  // altitude: of air as deep as the Earth's
+  bool grazed;                 // by sunbeams from below the horizontal, or at the shadow
+  bool at_perigee;             // the lower end is the perigee of the ray
+  bool ahead;                  // the ray descends to it
+  bool from_above;             // and began in air too thin to hide anything
+};
+
+// Returns the number of nodes: extra nodes are counted in halves of the ordinary number. A long
+// path down through the air hides its lower end, which has most nodes; above 50 km the air is too
+// thin for that.
+int NodesOf(const LowerEnd& low, int nodes) {
+  int halves = low.grazed ? 3 : 2;
+  const bool slanting = low.ahead && low.cosine < 0.3;
+  if (low.altitude_km < 50.0) {
+    if (low.at_perigee || slanting)
+      halves += low.from_above || low.grazed ? 2 : 1;
+    else if (low.ahead && low.from_above)
+      halves += 1;
+  }
+  return std::min((nodes * halves + 1) / 2, kMaxGaussNodes);
+}
+
+std::vector<double> Times(std::vector<double> values, double factor) {
+  for (double& value : values) value *= factor;
+  return values;
+}
+
+}  // namespace
+
+double MapLengthsPerKm(const Medium& medium) {
+  constexpr double kLeastShare = 0.05, kDeepAir_km = 6.4;
+  const double molecules_m = medium.rayleigh_scale_height_m;
+  const double aerosol_m = medium.mie_scale_height_m;
+  const std::vector<double> molecules = Times(medium.rayleigh_scattering_per_m, molecules_m);
+  const std::vector<double> aerosol = Times(medium.mie_extinction_per_m, aerosol_m);
+  double deepest_m = 0.0;
+  if (LargestShare(molecules, aerosol) > kLeastShare) deepest_m = molecules_m;
+  if (LargestShare(aerosol, molecules) > kLeastShare) deepest_m = std::max(deepest_m, aerosol_m);
+  return deepest_m > 0.0 ? std::max(kDeepAir_km / Kilometres(deepest_m), 1.0) : 1.0;
+}
+
+LineCrossings CrossingsOf(double h, double mu, double z, double radius) {
+  const double a = (radius + h) * mu;
+  const double discriminant = a * a - (h - z) * (2.0 * radius + h + z);
+  if (discriminant <= 0.0) return {0, {}};
+  const double root = std::sqrt(discriminant);
+  return {2, {-a - root, -a + root}};
+}
+
+RayEntry EntryOf(const ViewRay& ray, const RayExtent& extent, const Medium& medium) {
+  const double radius = Kilometres(medium.planet_radius_m);
+  const double h = Kilometres(std::max(ray.altitude_m, 0.0));
+  const double d = Kilometres(extent.begin_m);
+  if (d == 0.0) return {h, ray.mu, ray.mu_s, ray.nu};
+  const double altitude = Kilometres(medium.atmosphere_height_m);
+  return {altitude, shared::ZenithCosineAlongRay<double>(h, ray.mu, d, altitude, radius),
+          shared::SunCosineAlongRay<double>(h, ray.mu_s, ray.nu, d, altitude, radius), ray.nu};
+}
+
+RayPanels PanelsOf(const ViewRay& ray, const RayExtent& extent, const RayEntry& entry,
+                   const Medium& medium, const Sampling& sampling) {
+  const double radius = Kilometres(medium.planet_radius_m);
+  const double length = Kilometres(extent.end_m - extent.begin_m);
+  const double perigee = -(radius + entry.altitude_km) * entry.mu;
+  const double extinction = LargestExtinctionPerKm(medium);
+  const double map = MapLengthsPerKm(medium);
+  const DarkSpan dark = DarkSpanOf(ray, extent, medium);
+  PanelEnds cuts(length);
+  if (perigee > 0.0 && perigee < length) cuts.Add(perigee);
+  if (dark.begin < dark.end) {
+    cuts.Add(dark.begin);
+    cuts.Add(dark.end);
+  }
+  if (sampling.split_ozone && medium.ozone.shape == OzoneShape::kTent) {
+    AddTent(entry, medium.ozone, radius, cuts);
+  }
+  const std::span<const double> ends = cuts.Sorted();
+  RayPanels panels;
+  for (std::size_t i = 0; i + 1 < ends.size(); ++i) {
+    const double begin = ends[i], end = ends[i + 1];
+    if (end - begin <= 1e-12 * length) continue;
+    const double middle = 0.5 * (begin + end);
+    const bool lit = !(middle > dark.begin && middle < dark.end);
+    if (!lit && !sampling.dark_samples) continue;
+    const bool rises = middle > perigee;
+    const double at = rises ? begin : end;
+    const double altitude =
+        std::max(shared::AltitudeAlongRay<double>(entry.altitude_km, entry.mu, at, radius), 0.0);
+    const bool at_shadow = lit && dark.begin < dark.end && (at == dark.begin || at == dark.end);
+    const double sun = (radius + entry.altitude_km) * entry.mu_s + at * entry.nu;
+    const LowerEnd low{map * altitude,
+                       std::abs(shared::ZenithCosineAlongRay<double>(entry.altitude_km, entry.mu,
+                                                                     at, altitude, radius)),
+                       lit && (at_shadow || sun < 0.0),
+                       at == perigee,
+                       !rises,
+                       map * entry.altitude_km > 60.0};
+    panels.panel[panels.count++] = {
+        begin,
+        end,
+        lit,
+        rises,
+        shared::PanelStretch<double>(map * altitude, low.cosine, map * (end - begin),
+                                     extinction / map, at_shadow ? 1.0 : 0.0, map * radius),
+        NodesOf(low, sampling.nodes)};
+  }
+  return panels;
 }
 
 }  // namespace alpenglow::atmosphere

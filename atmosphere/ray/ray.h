@@ -1,7 +1,11 @@
 // SPDX-License-Identifier: MIT
 // View rays in a spherical atmosphere lit by a distant sun, with their extent and shadow, their
-// samples, and sums over the samples. Samples and sums are plain data, shared by kernels and their
-// callers.
+// samples, sums over the samples, and their panels. Samples and sums are plain data, shared by
+// kernels and their callers.
+//
+// On a panel the integrand of single scattering is smooth. PanelsOf cuts a ray at the planet's
+// shadow and at its perigee (and, on request, at the kinks of an ozone tent). In each panel the map
+// of distance, that of ray_map.glsl, places samples densely in dense air.
 #pragma once
 
 #include <algorithm>
@@ -9,6 +13,7 @@
 #include <cstddef>
 #include <limits>
 
+#include "atmosphere/math/constants.h"
 #include "atmosphere/math/numerics.h"
 #include "atmosphere/medium/medium.h"
 
@@ -88,7 +93,7 @@ struct Bands {
 /// Number and placement of samples along a ray.
 struct Sampling {
   /// Gauss nodes of an ordinary ray, in [1, 32]. Rays past the limb and through the edge of the
-  /// planet's shadow automatically have more (ray_panels.h).
+  /// planet's shadow automatically have more (PanelsOf).
   int nodes = 12;
   bool split_ozone = false;   // cut panels where an ozone tent has a kink
   bool dark_samples = false;  // also in the planet's shadow (for multiple scattering)
@@ -172,5 +177,52 @@ template <typename T>
   return extinction.rayleigh * columns.rayleigh + extinction.mie * columns.mie +
          extinction.ozone * columns.ozone;
 }
+
+/// The observer, moved to the entry of the ray into the air; all distances are counted from here.
+struct RayEntry {
+  double altitude_km, mu, mu_s, nu;
+};
+
+[[nodiscard]] inline double Kilometres(double metres) { return metres / kMetresPerKilometre; }
+
+/// A segment of the ray on which the altitude is monotone [km from the entry].
+struct RayPanel {
+  double begin, end;
+  bool lit;        // outside the shadow of the planet
+  bool rises;      // its lower end is its beginning
+  double stretch;  // b of ray_map.glsl
+  int nodes;
+};
+
+struct RayPanels {
+  static constexpr std::size_t kMost = kMaxRayPanels;
+  std::array<RayPanel, kMost> panel;
+  std::size_t count = 0;
+};
+
+/// Returns the factor that scales kilometres for the map of ray_map.glsl, whose lengths refer to
+/// air as deep as the Earth's: 1 for such air and deeper. In a layer of scale height 100 m it is
+/// 64, so that nodes are placed in the air.
+[[nodiscard]] double MapLengthsPerKm(const Medium& medium);
+
+/// Returns the entry of a ray into the air: the observer, or the first point in the shell.
+[[nodiscard]] RayEntry EntryOf(const ViewRay& ray, const RayExtent& extent, const Medium& medium);
+
+/// Returns the panels of a ray. The number of nodes is chosen so that all panels have about the
+/// same error.
+/// @param sampling  nodes of an ordinary panel. A panel has half as many more if sunbeams graze its
+/// lower end, or if the planet's shadow begins there. So has a panel that descends through the air
+/// at a slant, or continues from the perigee of such a ray; it has twice this increase if the ray
+/// began above 60 km or sunbeams graze it. The maximum is 64.
+[[nodiscard]] RayPanels PanelsOf(const ViewRay& ray, const RayExtent& extent, const RayEntry& entry,
+                                 const Medium& medium, const Sampling& sampling);
+
+/// Distances at which the line from altitude h along mu crosses altitude z [km], both inside and
+/// outside of [0, length]; none if it passes above.
+struct LineCrossings {
+  std::size_t count;
+  std::array<double, 2> distance;
+};
+[[nodiscard]] LineCrossings CrossingsOf(double h, double mu, double z, double radius);
 
 }  // namespace alpenglow::atmosphere

@@ -29,12 +29,7 @@ template <typename Real>
   return {air.rayleigh[band], air.mie_extinction[band], air.ozone[band]};
 }
 
-/// The observer, moved to the entry of the ray into the air; all distances are counted from here.
-struct RayEntry {
-  double altitude_km, mu, mu_s, nu;
-};
-
-/// A panel of a ray (ray_panels.h) and its Gauss rule, both rows padded with zeros to a multiple of
+/// A panel of a ray (RayPanel) and its Gauss rule, both rows padded with zeros to a multiple of
 /// the lanes.
 template <typename Real>
 struct PanelRule {

@@ -1,6 +1,6 @@
 // Positions of samples along a ray, and the planet's shadow on the ray. Lengths have one unit,
 // kilometres unless stated otherwise. Lengths for the stretch are in kilometres of air as deep as
-// the Earth's, to which shallower air is scaled (MapLengthsPerKm of ray_panels.h).
+// the Earth's, to which shallower air is scaled (MapLengthsPerKm, ray.h).
 //
 // A panel is a segment of the ray on which the altitude is monotone; t is the distance from its
 // lower end. With v in [0, 1] of a Gauss rule,
@@ -50,6 +50,22 @@ SHARED Length StretchedDistance(Length scale, Number g) {
 // Returns dt / dv at g = exp(b v).
 SHARED Length StretchedSlope(Length scale, Number b, Number g) {
   return scale * b * Number(0.5) * (g + Number(1.0) / g);
+}
+
+// Returns the distance from the low end of a panel at v in [0, 1], divided by the length of the
+// panel, by the map of direct integration (direct_scattering.h). A slope s = 1 gives v itself;
+// smaller slopes move the nodes towards the low end. No exponential is needed.
+SHARED Number DirectDistance(Number v, Number s) {
+  Number square = v * v;
+  Number bend = square * (Number(0.3) + Number(0.7) * square);
+  return v * (s + (Number(1.0) - s) * bend);
+}
+
+// Returns the derivative of DirectDistance by v.
+SHARED Number DirectSlope(Number v, Number s) {
+  Number square = v * v;
+  Number bend = square * (Number(0.9) + Number(3.5) * square);
+  return s + (Number(1.0) - s) * bend;
 }
 
 // The shadow is the half of a cylinder behind the planet. At distance t of the ray the squared

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Compiles the shared texts of this folder as C++: templates over double, float and SIMD batches.
 // shell.glsl and optical_depth.glsl hold the geometry of the shell and columns of air; ray_map.glsl
-// the panels of a ray and the planet's shadow on it; direct_columns.glsl columns with one division,
-// and the map of a panel.
+// the panels of a ray and the planet's shadow on it.
 // Lengths are kilometres here; the classes based on them (single_scattering.h) take metres.
 #pragma once
 
@@ -14,7 +13,6 @@ namespace alpenglow::shared {
 #include "atmosphere/ray/shell.glsl"
 #include "atmosphere/ray/optical_depth.glsl"
 #include "atmosphere/ray/ray_map.glsl"
-#include "atmosphere/ray/direct_columns.glsl"
 #include "atmosphere/shared_glsl/shared_end.h"
 // clang-format on
 }  // namespace alpenglow::shared

@@ -11,7 +11,7 @@
 #include "atmosphere/math/numerics.h"
 #include "atmosphere/medium/phase_table.h"
 #include "atmosphere/medium/phase_text.h"
-#include "atmosphere/ray/ray_panels.h"
+#include "atmosphere/ray/ray.h"
 #include "atmosphere/ray/shell.h"
 
 namespace alpenglow::atmosphere {

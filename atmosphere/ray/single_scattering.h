@@ -5,7 +5,7 @@
 //   L = sum over species  phase(nu)  integral of  sigma_s(h) T(observer to point) T(point to sun)
 //   ds
 //
-// The ray is cut where the integrand is not smooth and sampled densely in dense air (ray_panels.h),
+// The ray is cut where the integrand is not smooth and sampled densely in dense air (PanelsOf),
 // so that a few nodes resolve both scale heights. Transmittance needs no ray marching: columns
 // between any two points are differences of the closed form in optical_depth.glsl.
 //

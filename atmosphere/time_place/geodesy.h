@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: MIT
 // Conversion of places between geodetic, earth-centred earth-fixed (ECEF) and east-north-up (ENU)
-// coordinates, in double.
+// coordinates, in double, and the transform of points and directions between two local frames.
 //
 // Values have their frame as a type: Point<Ecef> - Point<Enu> does not compile. A difference of
 // points is a Vector of that frame. Arithmetic is GeographicLib's (Karney): error below 10 nm near
 // the earth.
 #pragma once
 
+#include <glm/mat3x3.hpp>
 #include <glm/vec3.hpp>
 
 namespace alpenglow::atmosphere {
@@ -95,5 +96,34 @@ class LocalFrame {
   Point<Ecef> origin_ecef_;
   glm::dvec3 east_, north_, up_;  // unit vectors in ECEF
 };
+
+/// A rigid transform from one local frame (east, north, up) to another of the same ellipsoid.
+class FrameTransform {
+ public:
+  FrameTransform(const LocalFrame& to, const LocalFrame& from);
+
+  /// Returns a point [m] of the frame `from` in the frame `to`.
+  [[nodiscard]] glm::dvec3 Point(const glm::dvec3& point_m) const {
+    return origin_m_ + axes_ * point_m;
+  }
+  /// Returns a direction of the frame `from` in the frame `to`.
+  [[nodiscard]] glm::dvec3 Along(const glm::dvec3& direction) const { return axes_ * direction; }
+  /// Returns a point [m] of the frame `to` in the frame `from`.
+  [[nodiscard]] glm::dvec3 PointBack(const glm::dvec3& point_m) const {
+    return (point_m - origin_m_) * axes_;
+  }
+
+  /// Returns east, north and up of the frame `from`, as columns, in the frame `to`.
+  [[nodiscard]] const glm::dmat3& axes() const { return axes_; }
+  /// Returns the origin of the frame `from` in the frame `to` [m].
+  [[nodiscard]] const glm::dvec3& origin_m() const { return origin_m_; }
+
+ private:
+  glm::dmat3 axes_;
+  glm::dvec3 origin_m_;
+};
+
+/// Returns the distance between the origins of two frames of the same ellipsoid [m].
+[[nodiscard]] double DistanceBetween(const LocalFrame& a, const LocalFrame& b);
 
 }  // namespace alpenglow::atmosphere

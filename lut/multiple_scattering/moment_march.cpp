@@ -10,7 +10,7 @@
 #include "atmosphere/math/numerics.h"
 #include "atmosphere/medium/phase.h"
 #include "atmosphere/medium/phase_text.h"
-#include "atmosphere/ray/ray_panels.h"
+#include "atmosphere/ray/ray.h"
 #include "atmosphere/ray/shell.h"
 #include "lut/multiple_scattering/spherical_harmonics.h"
 

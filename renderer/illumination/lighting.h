@@ -11,7 +11,6 @@
 #include <optional>
 #include <vector>
 
-#include "atmosphere/astronomy/eclipse.h"
 #include "atmosphere/astronomy/moon.h"
 #include "atmosphere/astronomy/sky_bodies.h"
 #include "atmosphere/astronomy/sun.h"

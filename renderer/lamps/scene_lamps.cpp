@@ -13,7 +13,7 @@
 #include "atmosphere/base/error.h"
 #include "atmosphere/colour/spectrum.h"
 #include "atmosphere/math/constants.h"
-#include "renderer/terrain/frame_transform.h"
+#include "atmosphere/time_place/geodesy.h"
 
 namespace alpenglow::renderer {
 

@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "atmosphere/ray/single_scattering.h"
-#include "renderer/terrain/frame_transform.h"
+#include "atmosphere/time_place/geodesy.h"
 
 namespace alpenglow::renderer {
 namespace {

@@ -23,6 +23,7 @@
 #include <span>
 #include <vector>
 
+#include "atmosphere/time_place/geodesy.h"
 #include "renderer/elevation/mesh.h"
 #include "renderer/illumination/lighting.h"
 #include "renderer/illumination/terrain_irradiance.h"
@@ -33,7 +34,6 @@
 #include "renderer/surface/scene_geometry.h"
 #include "renderer/surface/scene_ground.h"
 #include "renderer/surface/surface.h"
-#include "renderer/terrain/frame_transform.h"
 #include "renderer/visibility/shadow_heights.h"
 
 namespace alpenglow::renderer {

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "atmosphere/astronomy/eclipse.h"
+#include "atmosphere/astronomy/sky_bodies.h"
 #include "atmosphere/astronomy/time_text.h"
 #include "atmosphere/time_place/time.h"
 #include "renderer/layer.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Frames of a series: their instants from text (time_list.h) or along a camera path, and their file
+// Frames of a series: their instants from text (time_text.h) or along a camera path, and their file
 // names "DIR/frame.%04d.exr".
 #pragma once
 
@@ -9,7 +9,7 @@
 #include <string_view>
 #include <vector>
 
-#include "atmosphere/astronomy/time_list.h"
+#include "atmosphere/astronomy/time_text.h"
 #include "atmosphere/time_place/time.h"
 #include "renderer/camera/camera_path.h"
 #include "renderer/picture/render.h"

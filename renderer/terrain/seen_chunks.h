@@ -17,7 +17,7 @@
 #include <span>
 #include <vector>
 
-#include "renderer/terrain/frame_transform.h"
+#include "atmosphere/time_place/geodesy.h"
 #include "renderer/terrain/land_chunk.h"
 
 namespace alpenglow::renderer {

@@ -7,6 +7,7 @@
 #include <limits>
 #include <utility>
 
+#include "atmosphere/astronomy/sun.h"
 #include "atmosphere/base/error.h"
 
 namespace alpenglow::renderer {

@@ -9,31 +9,20 @@
 // crosses the disk.
 //
 // Features thinner than the distance of two probes, and their shadows, can be missed.
-//
-// This header also reads the shared text sunlight_over_edge.glsl as C++.
 #pragma once
 
 #include <glm/vec3.hpp>
 #include <optional>
 #include <vector>
 
-#include "atmosphere/shared_glsl/shared_math.h"
 #include "renderer/terrain/terrain.h"
-
-namespace alpenglow::shared {
-// clang-format off
-#include "atmosphere/shared_glsl/shared_begin.h"
-#include "renderer/visibility/sunlight_over_edge.glsl"
-#include "atmosphere/shared_glsl/shared_end.h"
-// clang-format on
-}  // namespace alpenglow::shared
 
 namespace alpenglow::renderer {
 
 /// Returns the fraction of sunlight that passes a straight edge across the sun's disk, in [0, 1].
 /// @param x  height of the disk's centre over the edge in radii of the disk: all of the light
 ///     passes for 1 and more, none for -1 and less.
-/// Integral of LimbDarkening(rho) (sun.h) over the circular segment: sunlight_over_edge.glsl.
+/// Integral of LimbDarkening(rho) (sun.h) over the circular segment: disk_light.glsl.
 /// The law of a single wavelength from 440 to 680 nm is within 0.01.
 [[nodiscard]] double SunlightOverEdge(double x);
 

@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "atmosphere/math/constants.h"
-#include "renderer/terrain/frame_transform.h"
+#include "atmosphere/time_place/geodesy.h"
 #include "viewer/gl/render_target.h"
 #include "viewer/shaders/pass_setup.h"
 

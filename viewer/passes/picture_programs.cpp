@@ -7,9 +7,9 @@
 #include <cmath>
 #include <utility>
 
+#include "atmosphere/time_place/geodesy.h"
 #include "lut/camera_tables/air_rows.h"
 #include "renderer/surface/surface.h"
-#include "renderer/terrain/frame_transform.h"
 #include "viewer/air/air_follower.h"
 #include "viewer/gl/gl_objects.h"
 #include "viewer/ground/ground_block.h"

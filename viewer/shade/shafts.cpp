@@ -10,7 +10,7 @@
 #include <utility>
 
 #include "atmosphere/base/error.h"
-#include "renderer/terrain/frame_transform.h"
+#include "atmosphere/time_place/geodesy.h"
 #include "renderer/visibility/shade_map.h"
 #include "viewer/gl/gl_context.h"
 #include "viewer/gl/render_target.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "atmosphere/astronomy/eclipse.h"
+#include "atmosphere/astronomy/sky_bodies.h"
 
 #include <gtest/gtest.h>
 

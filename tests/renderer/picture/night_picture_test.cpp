@@ -7,9 +7,9 @@
 #include <glm/geometric.hpp>
 #include <vector>
 
-#include "atmosphere/astronomy/eclipse.h"
 #include "atmosphere/astronomy/moon.h"
 #include "atmosphere/astronomy/night_sky.h"
+#include "atmosphere/astronomy/sky_bodies.h"
 #include "atmosphere/math/constants.h"
 #include "renderer/picture/render.h"
 #include "tests/fixtures/bare_scene.h"
