@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Conversions between values of the public headers and those of this layer. Of a ray,
+// Conversions between values of the public headers and those of this layer, and the state of a sky
+// of the public headers. Of a ray,
 //
 //   altitude = z + (x^2 + y^2) / (r + R + z),     r = distance from the centre of the planet
 //
@@ -8,12 +9,15 @@
 
 #include <alpenglow/geometry.h>
 #include <alpenglow/image.h>
+#include <alpenglow/sky.h>
 
 #include <glm/vec3.hpp>
 #include <limits>
 
 #include "atmosphere/ray/ray.h"
+#include "atmosphere/ray/single_scattering.h"
 #include "lut/image/image.h"
+#include "lut/table_io/table_folder.h"
 
 namespace alpenglow {
 
@@ -35,5 +39,18 @@ struct AltitudeAndZenith {
 
 /// Returns the image with its layers; the metadata is empty.
 [[nodiscard]] HdrImage HdrImageFrom(lut::Image image);
+
+struct Sky::State {
+  /// @param tables  with multiple scattering, of the medium of the atmosphere.
+  State(Atmosphere air_parameters, lut::TableFolder tables);
+
+  [[nodiscard]] const lut::MultipleScattering& multiple_scattering() const {
+    return *lookup.tables().multiple_scattering;
+  }
+
+  Atmosphere parameters;
+  atmosphere::SingleScattering<float> air;
+  lut::TableLookup lookup;
+};
 
 }  // namespace alpenglow

@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "atmosphere/math/constants.h"
-#include "lut/api/sky_state.h"
+#include "lut/api/conversions.h"
 #include "lut/cli/program.h"
 #include "lut/sky/panorama.h"
 

@@ -10,7 +10,6 @@
 #include <utility>
 
 #include "lut/api/conversions.h"
-#include "lut/api/sky_state.h"
 #include "lut/version.h"
 
 namespace alpenglow {

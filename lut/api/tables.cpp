@@ -4,7 +4,7 @@
 
 #include <utility>
 
-#include "lut/api/sky_state.h"
+#include "lut/api/conversions.h"
 #include "lut/cli/output_file.h"
 #include "lut/table_io/exchange_tables.h"
 #include "lut/table_io/table_folder.h"

@@ -143,7 +143,7 @@ void RequireFourBands(const Medium& medium);
 struct MediumTables {
   /// Phase function of the aerosol, [node]: PhaseNode of phase.glsl, from forward to backward.
   AirTexels phase;
-  /// On the map of transmittance_map.glsl, [zenith cosine, altitude]: the first half of the rows
+  /// On the map of table_maps.glsl, [zenith cosine, altitude]: the first half of the rows
   /// holds the transmittance of straight rays to space, by which air is illuminated. The second
   /// half holds the transmitted fraction of the beam of a disk on ground and fog
   /// (RefractedBeam::Left).

@@ -11,7 +11,6 @@
 #include <random>
 
 #include "atmosphere/base/error.h"
-#include "lut/image/local_exposure.h"
 #include "lut/image/look.h"
 #include "lut/image/tone_mapping.h"
 

@@ -27,8 +27,6 @@
 // the curve can still reproduce need no correction: w rises from 0 at 16 times white to 1 at 256,
 // so that the image does not change abruptly while the sun sets. Beside an aureole of over half of
 // white, in which the edge is not visible, w falls to 0 at white.
-//
-// The header also includes the shared text dither.glsl as C++.
 #pragma once
 
 #include <array>
@@ -36,16 +34,7 @@
 #include <optional>
 #include <vector>
 
-#include "atmosphere/shared_glsl/shared_math.h"
 #include "lut/image/image.h"
-
-namespace alpenglow::shared {
-// clang-format off
-#include "atmosphere/shared_glsl/shared_begin.h"
-#include "lut/image/dither.glsl"
-#include "atmosphere/shared_glsl/shared_end.h"
-// clang-format on
-}  // namespace alpenglow::shared
 
 namespace alpenglow::lut {
 

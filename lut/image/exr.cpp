@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: MIT
 // This file reads and writes EXR through OpenEXR 3
 // (https://openexr.com/en/latest/OpenEXRFileLayout.html).
-#include "lut/image/exr.h"
-
 #include <ImfArray.h>
 #include <ImfChannelList.h>
 #include <ImfFrameBuffer.h>

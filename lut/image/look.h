@@ -17,8 +17,8 @@ namespace alpenglow::lut {
 
 struct Look {
   ToneCurve curve = ToneCurve::kAgx;
-  bool local_exposure = false;  // lut/image/local_exposure.h
-  bool rolls_off = false;       // lut/image/local_exposure.h
+  bool local_exposure = false;  // LocallyExposed
+  bool rolls_off = false;       // WithHighlightsRolledOff
   bool night_vision = false;    // lut/image/eye.h
   AgxLook agx = AgxLook::kPhoto;
   WhiteBalance white = {};

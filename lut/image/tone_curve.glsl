@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // This text provides the tone curves: from exposed linear sRGB (1 saturates) to linear light of an
-// sRGB display in [0, 1]. Each function returns one channel and is called three times.
+// sRGB display in [0, 1]. Each function returns one channel and is called three times. Dither noise
+// is added to the code values.
 //
 //   scene rgb --ExposedChannel--> exposed --InnerChannel--> no negative channel
 //     --PrintedChannel--> middle grey at 0.18 --curve--> display light --SrgbCode--> code value
@@ -197,8 +198,7 @@ SHARED Number NeutralLight(Number value, Number largest, Number smallest) {
   return min(max(light, Number(0.0)), Number(1.0));
 }
 
-// ---- The display
-// ---------------------------------------------------------------------------------
+// ---- The display --------------------------------------------------------------------------------
 
 // Returns the code value in [0, 1] of linear light in [0, 1]. IEC 61966-2-1.
 SHARED Number SrgbCode(Number light) {
@@ -213,4 +213,21 @@ SHARED Number SrgbLight(Number code) {
   Number bounded = min(max(code, Number(0.0)), Number(1.0));
   Number curved = pow((max(bounded, Number(0.04045)) + Number(0.055)) / Number(1.055), Number(2.4));
   return select(bounded <= Number(0.04045), bounded / Number(12.92), curved);
+}
+
+// ---- Dither noise of 8-bit images (development.h) -----------------------------------------------
+
+// Returns the place in the tile at which a repetition of it begins: column in the lowest bits, row
+// eight bits up. It is 0 at the origin.
+SHARED_BITS Bits DitherHash(Bits tile_x, Bits tile_y) {
+  Bits hash = tile_x * 73856093u ^ tile_y * 19349663u;
+  hash = (hash ^ (hash >> 13)) * 0x85ebca6bu;
+  return hash ^ (hash >> 16);
+}
+
+// Returns a code in [0, 255] with noise, before rounding. Within half a code of the ends the noise
+// is reduced, so that exact black and white are unchanged.
+SHARED Number DitheredValue(Number code, Number noise) {
+  Number room = min(Number(1.0), min(Number(2.0) * code, Number(2.0) * (Number(255.0) - code)));
+  return min(max(code + noise * max(room, Number(0.0)), Number(0.0)), Number(255.0));
 }

@@ -1,8 +1,16 @@
 // SPDX-License-Identifier: MIT
-// This header provides the axes of MultipleScattering's table to code outside the kernels.
+// This header provides the axes of MultipleScattering's table to code outside the kernels, the
+// directions from the nodes of this table, and the points along them. Successive orders march along
+// these for every band and order.
+//
+// It also provides the first of the successive orders: sunlight that arrives at the nodes after one
+// scattering or after reflection by the ground.
 #pragma once
 
+#include <vector>
+
 #include "atmosphere/medium/medium.h"
+#include "atmosphere/ray/single_scattering.h"
 #include "lut/multiple_scattering/moment_kernel.h"
 #include "lut/multiple_scattering/multiple_scattering.h"
 #include "lut/multiple_scattering/polarised_scattering.h"
@@ -63,5 +71,78 @@ namespace alpenglow::lut {
 [[nodiscard]] constexpr std::size_t PackedTensorTrace(std::size_t degree) {
   return PackedTensorIndex(degree, 3);
 }
+
+/// One direction at one altitude, for all suns and azimuths.
+struct March {
+  float mu = 0.0F, sine = 0.0F;
+  float solid_angle = 0.0F;  // of the direction and its mirror image, per azimuth of half a turn
+  std::array<float, kMaxMoments> legendre{};
+  std::vector<MarchPoint> points;
+  std::vector<std::array<float, 6>>
+      air;                     // per point: weight [km], densities, columns from the node
+  std::vector<double> panels;  // distances where the ray begins, is lowest (if between), ends [km]
+  bool hits_ground = false;
+  double ground_distance_km = 0.0;
+  Bands<float> ground_transmittance;
+  std::vector<CubicTaps> ground_taps;  // [sun * azimuths + azimuth], for divided moments
+};
+
+class MomentMarches {
+ public:
+  /// @param chi  Legendre coefficients of aerosol scattering: degree l of a band at [l * bands +
+  ///   band].
+  MomentMarches(const SingleScattering<float>& air, const MultipleScatteringOptions& options,
+                const std::vector<double>& chi);
+
+  [[nodiscard]] const SingleScattering<float>& air() const { return *air_; }
+  [[nodiscard]] const MomentGrid& grid() const { return grid_; }
+  [[nodiscard]] const std::vector<double>& chi() const { return *chi_; }
+  [[nodiscard]] std::size_t azimuths() const { return azimuths_; }
+  [[nodiscard]] double altitude_km(std::size_t i) const { return altitude_km_[i]; }
+  [[nodiscard]] double mu_s(std::size_t sun) const { return mu_s_[sun]; }
+  [[nodiscard]] double radius_km() const { return radius_km_; }
+  [[nodiscard]] const std::vector<March>& At(std::size_t altitude) const {
+    return marches_[altitude];
+  }
+  /// Returns cos(m phi) of all azimuths.
+  [[nodiscard]] const float* AzimuthCosines(std::size_t m) const {
+    return azimuth_cosines_[m].data();
+  }
+  /// Returns sin(m phi) of all azimuths for m = 1, 2.
+  [[nodiscard]] const float* AzimuthSines(std::size_t m) const {
+    return azimuth_sines_[m - 1].data();
+  }
+  [[nodiscard]] MarchDirection Direction(std::size_t altitude, const March& march) const;
+  /// Returns the cosine of the angle between a march and the sun.
+  [[nodiscard]] double Nu(const March& march, std::size_t sun, std::size_t azimuth) const;
+
+ private:
+  [[nodiscard]] std::vector<March> MarchesAt(std::size_t altitude,
+                                             const MultipleScatteringOptions& options) const;
+  void AddPoints(std::size_t altitude, const MultipleScatteringOptions& options, double mu,
+                 March& march) const;
+  void AddGround(std::size_t altitude, March& march) const;
+
+  const SingleScattering<float>* air_;
+  const std::vector<double>* chi_;
+  MomentGrid grid_;
+  double radius_km_;
+  std::size_t azimuths_;
+  std::vector<double> altitude_km_, mu_s_;
+  std::vector<float> mu_s_floats_, sine_s_;
+  std::array<AlignedFloats, kMaxDegree + 1> azimuth_cosines_;
+  std::array<AlignedFloats, 2> azimuth_sines_;
+  std::vector<std::vector<March>> marches_;
+};
+
+/// Light along one march per unit solar irradiance: [(band * suns + sun) * azimuths + azimuth].
+struct SunlightOfMarch {
+  std::vector<float> radiance;   // [1/sr]
+  std::vector<float> molecules;  // light that molecules scatter, without phase function [1]
+};
+
+[[nodiscard]] SunlightOfMarch SunlightScatteredOnce(const MomentMarches& marches,
+                                                    std::size_t altitude, const March& march,
+                                                    const MultipleScatteringOptions& options);
 
 }  // namespace alpenglow::lut

@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "atmosphere/math/constants.h"
-#include "lut/multiple_scattering/moment_march.h"
+#include "lut/multiple_scattering/moment_grid.h"
 #include "lut/multiple_scattering/spherical_harmonics.h"
 
 namespace alpenglow::lut {

@@ -5,7 +5,7 @@
 // At every node (altitude, sun angle) the radiance of one order is marched through the previous
 // order's moments, along directions of a Gauss grid split at the horizon, and projected onto
 // moments. Kernels process four bands at a time (moment_kernel.h). Sunlight scattered once is
-// integrated over the lit pieces of each direction (moment_march.h). Light scattered more often is
+// integrated over the lit pieces of each direction (moment_grid.h). Light scattered more often is
 // smooth, so fewer directions serve it from the third step on. When the orders have become a
 // geometric series, each in proportion to the second one before it, the rest of the series is
 // summed in closed form.

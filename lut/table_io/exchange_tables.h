@@ -3,11 +3,10 @@
 // three-atmosphere (takram), texel for texel.
 //
 // Red, green and blue of the textures are the three wavelengths of the medium, longest first. The
-// mapping is that of transmittance_map.glsl and scattering_map.glsl, with the sun down to mu_s_min,
-// which is a constant of the loading program: cos 120 degrees in three-atmosphere. In Bruneton's
-// demo it is cos 102 degrees when compiled for half precision, which is the default, whatever the
-// precision of the files, and cos 120 degrees when compiled for single precision. The textures
-// hold:
+// mapping is that of table_maps.glsl, with the sun down to mu_s_min, which is a constant of the
+// loading program: cos 120 degrees in three-atmosphere. In Bruneton's demo it is cos 102 degrees
+// when compiled for half precision, which is the default, whatever the precision of the files, and
+// cos 120 degrees when compiled for single precision. The textures hold:
 //
 //   transmittance           256 x 64        mu, r               to the top of the air; A = 1
 //   irradiance              64 x 16         mu_s, r (linear)    of the sky on a horizontal plane,

@@ -34,8 +34,8 @@
 
 namespace alpenglow::lut {
 
-/// Versions of the maps of transmittance_map.glsl and scattering_map.glsl, and of the nodes of
-/// MultipleScattering. Readers refuse tables of other versions.
+/// Versions of the maps of table_maps.glsl, and of the nodes of MultipleScattering. Readers refuse
+/// tables of other versions.
 inline constexpr int kTransmittanceMapVersion = 1;
 inline constexpr int kScatteringMapVersion = 1;
 inline constexpr int kMultipleScatteringMapVersion = 1;

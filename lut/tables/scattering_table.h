@@ -8,18 +8,13 @@
 // applied at the look-up (SingleScattering::Inscatter), which keeps the aureole sharp. There are
 // two sets of axes:
 //
-//   Bruneton   those of scattering_map.glsl, quadrilinear; angles nu that are impossible for a
-//              texel's mu and mu_s are moved to the nearest possible, so that interpolation never
-//              uses an invented value. After Bruneton and Neyret (2008), Computer Graphics Forum
-//              27, 1079.
+//   Bruneton   those of table_maps.glsl, quadrilinear; angles nu that are impossible for a texel's
+//              mu and mu_s are moved to the nearest possible, so that interpolation never uses an
+//              invented value. After Bruneton and Neyret (2008), Computer Graphics Forum 27, 1079.
 //   azimuth    r and mu as above; the azimuth from the sun, 0 to pi in equal steps, in place of nu,
 //              so that no texel is wasted; the sun's zenith cosine dense around the terminator, as
 //              in MultipleScattering; cubic except for mu. Texels hold fourth roots, so that light
-// which
-//              falls by decades in twilight is smooth. For programs of this project.
-//
-// This header also includes the shared text scattering_map.glsl as C++ templates over double, float
-// and SIMD batches. Lengths are kilometres there and metres in the table.
+//              which falls by decades in twilight is smooth. For programs of this project.
 #pragma once
 
 #include <array>
@@ -34,14 +29,6 @@
 #include "lut/cli/messages.h"
 #include "lut/tables/table_axes.h"
 #include "lut/tables/transmittance_table.h"
-
-namespace alpenglow::shared {
-// clang-format off
-#include "atmosphere/shared_glsl/shared_begin.h"
-#include "lut/tables/scattering_map.glsl"
-#include "atmosphere/shared_glsl/shared_end.h"
-// clang-format on
-}  // namespace alpenglow::shared
 
 namespace alpenglow::lut {
 

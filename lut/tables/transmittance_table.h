@@ -4,12 +4,12 @@
 //
 //   texel (i, j) = T(h_j, mu_i) per band, stored as float, rays to space only
 //
-// The map is that of transmittance_map.glsl: columns run from the zenith to the horizon, rows from
-// the ground to the top. SingleScattering computes this transmittance faster and more accurately
-// (see its header). The table is for programs that load tables, and for comparison with it.
+// The map is that of table_maps.glsl: columns run from the zenith to the horizon, rows from the
+// ground to the top. SingleScattering computes this transmittance faster and more accurately (see
+// its header). The table is for programs that load tables, and for comparison with it.
 //
-// This header also includes the shared text transmittance_map.glsl as C++ templates over double,
-// float and SIMD batches. Lengths are kilometres there and metres in the table.
+// This header also includes the shared text table_maps.glsl as C++ templates over double, float and
+// SIMD batches. Lengths are kilometres there and metres in the tables.
 #pragma once
 
 #include <cstddef>
@@ -25,7 +25,7 @@
 namespace alpenglow::shared {
 // clang-format off
 #include "atmosphere/shared_glsl/shared_begin.h"
-#include "lut/tables/transmittance_map.glsl"
+#include "lut/tables/table_maps.glsl"
 #include "atmosphere/shared_glsl/shared_end.h"
 // clang-format on
 }  // namespace alpenglow::shared

@@ -28,7 +28,6 @@
 #include "atmosphere/astronomy/moon.h"
 #include "atmosphere/astronomy/sun.h"
 #include "atmosphere/math/constants.h"
-#include "lut/image/local_exposure.h"
 #include "lut/image/look.h"
 #include "lut/image/tone_mapping.h"
 #include "renderer/picture/render.h"

@@ -106,8 +106,7 @@ std::vector<ShaderPiece> SharedTexts() {
         "atmosphere/lamp/lamp_ray.glsl", "atmosphere/astronomy/disk_light.glsl"}) {
     pieces.push_back({name, std::string(atmosphere::EmbeddedText(name))});
   }
-  for (const char* name : {"lut/tables/transmittance_map.glsl", "lut/tables/scattering_map.glsl",
-                           "lut/image/tone_curve.glsl", "lut/image/dither.glsl"}) {
+  for (const char* name : {"lut/tables/table_maps.glsl", "lut/image/tone_curve.glsl"}) {
     pieces.push_back({name, std::string(lut::EmbeddedText(name))});
   }
   for (const char* name :

@@ -12,7 +12,6 @@
 #include "atmosphere/colour/spectrum.h"
 #include "atmosphere/reference/reference_solution.h"
 #include "lut/api/conversions.h"
-#include "lut/api/sky_state.h"
 #include "lut/cli/program.h"
 
 namespace alpenglow {

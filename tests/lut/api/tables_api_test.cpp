@@ -5,7 +5,6 @@
 #include <gtest/gtest.h>
 
 #include "lut/api/conversions.h"
-#include "lut/api/sky_state.h"
 #include "lut/sky/panorama.h"
 #include "lut/table_io/exchange_check.h"
 #include "tests/fixtures/temporary_folder.h"

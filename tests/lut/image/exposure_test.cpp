@@ -5,7 +5,6 @@
 #include <cmath>
 
 #include "lut/image/image.h"
-#include "lut/image/local_exposure.h"
 #include "lut/image/metering.h"
 #include "lut/image/tone_mapping.h"
 

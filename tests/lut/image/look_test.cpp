@@ -10,7 +10,6 @@
 
 #include "atmosphere/base/error.h"
 #include "lut/image/eye.h"
-#include "lut/image/local_exposure.h"
 #include "lut/image/metering.h"
 #include "lut/image/tone_mapping.h"
 
