@@ -29,12 +29,10 @@
 
 #include "renderer/camera/camera_rays.h"
 #include "renderer/picture/picture_layers.h"
-#include "renderer/picture/segment_air.h"
+#include "renderer/picture/pixel_shader.h"
 #include "renderer/picture/shared_samples.h"
 
 namespace alpenglow::renderer {
-
-class PixelShader;
 
 /// Air of a rectangle of pixels. Cells are computed on demand, by one thread. Refers to the
 /// shader and its frame.

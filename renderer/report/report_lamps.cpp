@@ -115,8 +115,8 @@ constexpr std::array<ReportRegime, 4> kCounts{{{"1", "1 lamp", {}},
 constexpr std::array<int, 4> kLampCounts{1, 10, 100, 1000};
 
 /// The parts of a scene that the lamp light of a picture needs, without its sky.
-struct LampStage {
-  explicit LampStage(const Scene& of)
+struct RunwayStage {
+  explicit RunwayStage(const Scene& of)
       : scene(of),
         ground(LoadGround(scene)),
         medium(OnOsculatingSphere(scene.medium, scene.place.latitude_rad)),
@@ -140,8 +140,8 @@ class Runways {
 
   explicit Runways(std::size_t counts) {
     for (std::size_t r = 0; r < counts; ++r) {
-      stages_.push_back(std::make_unique<LampStage>(RunwayScene(kLampCounts[r], false)));
-      const LampStage& stage = *stages_.back();
+      stages_.push_back(std::make_unique<RunwayStage>(RunwayScene(kLampCounts[r], false)));
+      const RunwayStage& stage = *stages_.back();
       auto [light, seconds] = Built([&] {
         return std::make_unique<LampLight>(stage.scene, stage.ground, stage.medium, stage.colour);
       });
@@ -175,7 +175,7 @@ class Runways {
   }
 
  private:
-  std::vector<std::unique_ptr<LampStage>> stages_;  // owns the grounds that lamps refer to
+  std::vector<std::unique_ptr<RunwayStage>> stages_;  // owns the grounds that lamps refer to
   std::vector<std::unique_ptr<LampLight>> light_;
   double tree_s_ = 0.0;
 };

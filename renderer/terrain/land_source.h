@@ -1,19 +1,156 @@
 // SPDX-License-Identifier: MIT
-// Sources of terrain: elevation models from files and folders, a mesh, or the built-in range.
+// Tiles of terrain: their sources (elevation models from files and folders, a mesh, or the built-in
+// range), the lattice of all levels of detail, and the heights of one tile at all levels.
+//
+// The lattice has equal steps of latitude and longitude. Level k has every 2^k-th sample of both
+// axes, counted from the north-west corner of the lattice, and always its last row and column, so
+// that every level ends at the same rim. A sample is identified by its column and row of level 0, a
+// vertex of level k by i and j: column min(i 2^k, last).
+//
+// A level of a HeightPyramid is the binomial mean (1 2 1) of the next finer level along each axis.
+// On the rim of a tile the mean is taken along the rim only, so that two tiles that share samples
+// there have equal heights at every level.
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <filesystem>
 #include <memory>
+#include <numbers>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "atmosphere/time_place/geodesy.h"
 #include "renderer/elevation/elevation.h"
 #include "renderer/elevation/mesh.h"
-#include "renderer/terrain/height_pyramid.h"
+#include "renderer/layer.h"
 
 namespace alpenglow::renderer {
+
+/// A rectangle of samples of level 0, both ends included.
+struct LatticeBox {
+  int first_column = 0, first_row = 0;
+  int last_column = -1, last_row = -1;
+
+  [[nodiscard]] bool Holds(int column, int row) const {
+    return column >= first_column && column <= last_column && row >= first_row && row <= last_row;
+  }
+  [[nodiscard]] bool Touches(const LatticeBox& other) const {
+    return first_column <= other.last_column && other.first_column <= last_column &&
+           first_row <= other.last_row && other.first_row <= last_row;
+  }
+};
+
+/// A position between the samples, in columns and rows of level 0.
+struct LatticePlace {
+  double column = 0.0, row = 0.0;
+};
+
+struct LandLattice {
+  double west_rad = 0.0, north_rad = 0.0;  // of sample (0, 0)
+  double step_lon_rad = 0.0, step_lat_rad = 0.0;
+  int last_column = 0, last_row = 0;
+
+  /// Returns the index of the last vertex of a level.
+  [[nodiscard]] int LastVertex(int last_sample, int level) const {
+    return (last_sample + (1 << level) - 1) >> level;
+  }
+  [[nodiscard]] int LastI(int level) const { return LastVertex(last_column, level); }
+  [[nodiscard]] int LastJ(int level) const { return LastVertex(last_row, level); }
+  [[nodiscard]] int ColumnOf(int i, int level) const {
+    return std::clamp(i * (1 << level), 0, last_column);
+  }
+  [[nodiscard]] int RowOf(int j, int level) const {
+    return std::clamp(j * (1 << level), 0, last_row);
+  }
+
+  /// Returns the position of a sample. Rows beyond a pole are moved to the pole.
+  [[nodiscard]] GeodeticPosition PlaceOf(int column, int row, double height_m) const {
+    constexpr double kPole = 0.5 * std::numbers::pi;
+    return {std::clamp(north_rad - row * step_lat_rad, -kPole, kPole),
+            west_rad + column * step_lon_rad, height_m};
+  }
+
+  /// Returns the lattice position of a place. Of the equivalent longitudes (modulo 2 pi), it takes
+  /// the one nearest to the middle of the lattice.
+  [[nodiscard]] LatticePlace At(double latitude_rad, double longitude_rad) const {
+    const double middle = west_rad + 0.5 * last_column * step_lon_rad;
+    const double east = std::remainder(longitude_rad - middle, 2.0 * std::numbers::pi);
+    return {0.5 * last_column + east / step_lon_rad, (north_rad - latitude_rad) / step_lat_rad};
+  }
+};
+
+/// Heights [m]; NaN where there is none. Heights that are all whole metres take two bytes per
+/// sample, others four.
+class HeightSamples {
+ public:
+  explicit HeightSamples(std::vector<float> height_m);
+  [[nodiscard]] float at(std::size_t index) const {
+    if (whole_m_.empty()) return real_m_[index];
+    return whole_m_[index] == kNone ? std::numeric_limits<float>::quiet_NaN()
+                                    : static_cast<float>(whole_m_[index]);
+  }
+  [[nodiscard]] std::size_t bytes() const {
+    return sizeof(float) * real_m_.size() + sizeof(std::int16_t) * whole_m_.size();
+  }
+
+ private:
+  static constexpr std::int16_t kNone = std::numeric_limits<std::int16_t>::min();
+  std::vector<float> real_m_;
+  std::vector<std::int16_t> whole_m_;
+};
+
+/// The samples of a level along one axis of a box: multiples of 2^level, and the last sample of the
+/// box.
+struct LevelAxis {
+  int first = 0, last = -1, level = 0;
+
+  LevelAxis(int first_sample, int last_sample, int of_level)
+      : first(((first_sample + (1 << of_level) - 1) >> of_level) << of_level),
+        last(last_sample),
+        level(of_level) {}
+  [[nodiscard]] int count() const {
+    return first > last ? 1 : ((last - first + (1 << level) - 1) >> level) + 1;
+  }
+  [[nodiscard]] int SampleOf(int index) const { return std::min(first + (index << level), last); }
+  /// Returns the index of a sample, which the level must have.
+  [[nodiscard]] int IndexOf(int sample) const {
+    return sample == last ? count() - 1 : (sample - first) >> level;
+  }
+};
+
+/// Heights of one tile at all its levels of detail. Immutable. The finest levels may be left out.
+class HeightPyramid {
+ public:
+  /// @param box       samples of the tile.
+  /// @param level     level of the given heights, whose spacing is that of the tile's own samples.
+  /// @param height_m  rows from the north, over the LevelAxis of columns and rows.
+  HeightPyramid(const LatticeBox& box, int level, std::vector<float> height_m);
+
+  /// Returns a copy without the levels finer than `level`.
+  [[nodiscard]] HeightPyramid From(int level) const;
+
+  /// Returns the height [m] at a sample of the box that `level` has. If the pyramid has no level as
+  /// fine, the height is interpolated bilinearly. NaN: no height.
+  [[nodiscard]] float At(int level, int column, int row) const;
+
+  [[nodiscard]] const LatticeBox& box() const { return box_; }
+  /// The finest level that is stored.
+  [[nodiscard]] int finest() const { return finest_; }
+  [[nodiscard]] std::size_t bytes() const;
+  /// Returns the largest size [bytes] of such a pyramid if `level` is its finest level.
+  [[nodiscard]] static std::size_t BytesOf(const LatticeBox& box, int level);
+
+ private:
+  [[nodiscard]] std::size_t IndexOf(int level, int column, int row) const;
+  [[nodiscard]] float Between(int column, int row) const;
+
+  LatticeBox box_;
+  int finest_;
+  std::vector<std::shared_ptr<const HeightSamples>> levels_;  // [0] is level finest_
+};
 
 struct LandSource {
   /// Elevation models in the formats of ReadElevation, and folders of such files (.hgt, .tif,

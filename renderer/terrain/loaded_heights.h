@@ -20,7 +20,6 @@
 #include "atmosphere/time_place/geodesy.h"
 #include "renderer/elevation/elevation.h"
 #include "renderer/layer.h"
-#include "renderer/terrain/height_pyramid.h"
 #include "renderer/terrain/land_source.h"
 
 namespace alpenglow::renderer {

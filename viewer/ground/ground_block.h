@@ -23,7 +23,7 @@
 #include "lut/camera_tables/air_tables.h"
 #include "renderer/illumination/lighting.h"
 #include "renderer/illumination/sky_on_ground.h"
-#include "renderer/picture/ground_follower.h"
+#include "renderer/picture/lit_ground.h"
 #include "renderer/scene/scene.h"
 #include "renderer/surface/colour_drape.h"
 #include "renderer/surface/scene_ground.h"

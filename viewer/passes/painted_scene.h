@@ -11,7 +11,7 @@
 #include "atmosphere/astronomy/sun.h"
 #include "atmosphere/ray/single_scattering.h"
 #include "renderer/illumination/sky_on_ground.h"
-#include "renderer/picture/ground_follower.h"
+#include "renderer/picture/lit_ground.h"
 #include "renderer/scene/scene.h"
 #include "renderer/surface/scene_ground.h"
 #include "renderer/surface/surface.h"
