@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "renderer/scene/scene.h"
+#include "viewer/flight/flight_controller.h"
 #include "viewer/flight/flight_recorder.h"
-#include "viewer/input/flight_controller.h"
 #include "viewer/passes/display_pass.h"
 #include "viewer/passes/exposure_control.h"
 #include "viewer/passes/frame_renderer.h"

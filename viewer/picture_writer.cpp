@@ -18,7 +18,6 @@
 #include "lut/cli/program.h"
 #include "renderer/series/manifest.h"
 #include "viewer/gl/gl_context.h"
-#include "viewer/gl/picture_tiles.h"
 #include "viewer/gl/render_target.h"
 
 namespace alpenglow::viewer {

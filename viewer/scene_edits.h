@@ -12,7 +12,7 @@
 #include "atmosphere/medium/medium_presets.h"
 #include "renderer/picture/reference_picture.h"
 #include "renderer/scene/scene.h"
-#include "viewer/input/flight_controller.h"
+#include "viewer/flight/flight_controller.h"
 #include "viewer/passes/sky_painter.h"
 
 namespace alpenglow::viewer {

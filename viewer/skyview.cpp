@@ -16,7 +16,6 @@
 #include "viewer/flight/flight_recorder.h"
 #include "viewer/flight_session.h"
 #include "viewer/gl/gl_context.h"
-#include "viewer/gl/picture_tiles.h"
 #include "viewer/gl/render_target.h"
 #include "viewer/picture_writer.h"
 #include "viewer/reports.h"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Provides ViewerApp, the user interface of a flight: keyboard, mouse and gamepad input,
-// instruments, panels and messages. It also keeps a log of the flight, which can be saved and
-// replayed.
+// instruments, panels and messages, and the values of the flight that these show. It also keeps a
+// log of the flight, which can be saved and replayed.
 #pragma once
 
 #include <deque>
@@ -12,6 +12,7 @@
 #include "viewer/flight/flight_recorder.h"
 #include "viewer/flight_session.h"
 #include "viewer/hud/hud.h"
+#include "viewer/hud/hud_model.h"
 #include "viewer/input/action.h"
 #include "viewer/input/controls.h"
 #include "viewer/picture_writer.h"
@@ -117,5 +118,8 @@ class ViewerApp final : public FlightCommands {
   bool leaves_ = false, full_screen_ = false;
   PictureQueue pictures_;
 };
+
+/// Returns the model of the HUD, without messages and the other values of the user interface.
+[[nodiscard]] HudModel ReadInstruments(FlightSession& flight);
 
 }  // namespace alpenglow::viewer

@@ -21,7 +21,6 @@
 #include "tests/viewer/air/shared_air.h"
 #include "tests/viewer/land/headless_land.h"
 #include "tests/viewer/shaders/headless.h"
-#include "viewer/gl/picture_tiles.h"
 #include "viewer/gl/render_target.h"
 #include "viewer/picture_writer.h"
 #include "viewer/reports.h"

@@ -17,7 +17,7 @@
 #include "tests/fixtures/places.h"
 #include "tests/fixtures/sanitized.h"
 #include "tests/viewer/land/headless_land.h"
-#include "viewer/gl/picture_tiles.h"
+#include "viewer/gl/render_target.h"
 
 namespace alpenglow::viewer {
 namespace {

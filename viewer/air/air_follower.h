@@ -18,7 +18,7 @@
 
 #include "atmosphere/base/async_value.h"
 #include "lut/camera_tables/air_tables.h"
-#include "viewer/gl/gl_objects.h"
+#include "viewer/gl/gl_context.h"
 #include "viewer/gl/shader.h"
 #include "viewer/layer.h"
 

@@ -141,4 +141,26 @@ void CheckGl(const char* where) {
   throw InternalError(fmt::format("{}: OpenGL error 0x{:04x}", where, error));
 }
 
+void ClampAndFilter(GLenum target, bool linear) {
+  const GLint filter = linear ? GL_LINEAR : GL_NEAREST;
+  glTexParameteri(target, GL_TEXTURE_MIN_FILTER, filter);
+  glTexParameteri(target, GL_TEXTURE_MAG_FILTER, filter);
+  glTexParameteri(target, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
+  glTexParameteri(target, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
+}
+
+void UploadTexture(GLenum target, const GlTexture& texture, const Texels& of) {
+  const auto internal = static_cast<GLint>(of.internal_format);
+  glBindTexture(target, texture.id());
+  if (target == GL_TEXTURE_1D) {
+    glTexImage1D(target, 0, internal, of.width, 0, of.format, of.type, of.data);
+  } else if (target == GL_TEXTURE_2D) {
+    glTexImage2D(target, 0, internal, of.width, of.height, 0, of.format, of.type, of.data);
+  } else {
+    glTexImage3D(target, 0, internal, of.width, of.height, of.depth, 0, of.format, of.type,
+                 of.data);
+  }
+  ClampAndFilter(target, true);
+}
+
 }  // namespace alpenglow::viewer

@@ -4,11 +4,18 @@
 //
 // This file provides the headless context (EGL, no display); window.h provides the context of a
 // window. All GL calls of this folder use the context that is current on the calling thread.
+//
+// It also provides owners of OpenGL object names, the upload of textures and uniform blocks and
+// their binding, and a scissor rectangle for its scope. An object must not outlive the context in
+// which it was created.
 #pragma once
+
+#include <epoxy/gl.h>
 
 #include <array>
 #include <memory>
 #include <string>
+#include <utility>
 
 namespace alpenglow::viewer {
 
@@ -49,5 +56,97 @@ void RequireContext();
 /// Throws an error if GL has recorded one since the last call: DisplayError for insufficient memory
 /// or a lost context, otherwise InternalError that names `where`.
 void CheckGl(const char* where);
+
+/// An object name that Kind::Make creates and Kind::Free releases. It can be moved but not copied.
+template <typename Kind>
+class GlObject {
+ public:
+  GlObject() : id_(Kind::Make()) {}
+  ~GlObject() {
+    if (id_ != 0) Kind::Free(id_);
+  }
+  GlObject(GlObject&& other) noexcept : id_(std::exchange(other.id_, 0)) {}
+  GlObject& operator=(GlObject&& other) noexcept {
+    std::swap(id_, other.id_);
+    return *this;
+  }
+
+  [[nodiscard]] GLuint id() const { return id_; }
+
+ private:
+  GLuint id_;
+};
+
+namespace gl_kind {
+
+/// Objects whose names OpenGL returns in an array, by the functions glGen... and glDelete...
+template <auto& kGenerate, auto& kDelete>
+struct Named {
+  static GLuint Make() {
+    GLuint id = 0;
+    kGenerate(1, &id);
+    return id;
+  }
+  static void Free(GLuint id) { kDelete(1, &id); }
+};
+
+struct Program {
+  static GLuint Make() { return glCreateProgram(); }
+  static void Free(GLuint id) { glDeleteProgram(id); }
+};
+
+}  // namespace gl_kind
+
+using GlBuffer = GlObject<gl_kind::Named<glGenBuffers, glDeleteBuffers>>;
+using GlVertexArray = GlObject<gl_kind::Named<glGenVertexArrays, glDeleteVertexArrays>>;
+using GlTexture = GlObject<gl_kind::Named<glGenTextures, glDeleteTextures>>;
+using GlFramebuffer = GlObject<gl_kind::Named<glGenFramebuffers, glDeleteFramebuffers>>;
+using GlQuery = GlObject<gl_kind::Named<glGenQueries, glDeleteQueries>>;
+using GlProgram = GlObject<gl_kind::Program>;
+
+/// Binds a texture to a unit, which becomes the active one.
+inline void BindTexture(int unit, GLenum target, const GlTexture& texture) {
+  glActiveTexture(GL_TEXTURE0 + static_cast<GLenum>(unit));
+  glBindTexture(target, texture.id());
+}
+
+/// Sets the filter of a bound texture to linear or nearest, and clamps it at its edges.
+void ClampAndFilter(GLenum target, bool linear);
+
+/// Values of a texture: their format on the GPU, their number, and their format in memory.
+struct Texels {
+  GLenum internal_format;
+  int width, height, depth;  // depth of a three-dimensional texture, or the number of layers
+  GLenum format, type;
+  const void* data;  // null: the values are undefined
+};
+
+/// Replaces the values of a texture, which is bound to the active unit. Between the texels it is
+/// interpolated, and it is clamped at its edges except along depth.
+void UploadTexture(GLenum target, const GlTexture& texture, const Texels& texels);
+
+/// Uploads a uniform block, a struct of vec4, and binds it.
+template <typename Block>
+void UploadBlock(const GlBuffer& buffer, GLuint binding, const Block& block) {
+  glBindBufferBase(GL_UNIFORM_BUFFER, binding, buffer.id());
+  glBufferData(GL_UNIFORM_BUFFER, sizeof(block), &block, GL_DYNAMIC_DRAW);
+}
+
+/// A rectangle of pixels; (x, y) is its lower left pixel.
+struct PixelBox {
+  int x, y, width, height;
+};
+
+/// Restricts draw calls to the pixels of a box during its lifetime. Scissors cannot be nested.
+class Scissor {
+ public:
+  explicit Scissor(const PixelBox& box) {
+    glEnable(GL_SCISSOR_TEST);
+    glScissor(box.x, box.y, box.width, box.height);
+  }
+  ~Scissor() { glDisable(GL_SCISSOR_TEST); }
+  Scissor(const Scissor&) = delete;
+  Scissor& operator=(const Scissor&) = delete;
+};
 
 }  // namespace alpenglow::viewer

@@ -16,7 +16,7 @@
 #include <string_view>
 #include <vector>
 
-#include "viewer/gl/gl_objects.h"
+#include "viewer/gl/gl_context.h"
 
 namespace alpenglow::viewer {
 

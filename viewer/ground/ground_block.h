@@ -28,7 +28,7 @@
 #include "renderer/surface/colour_drape.h"
 #include "renderer/surface/scene_ground.h"
 #include "renderer/surface/surface.h"
-#include "viewer/gl/gl_objects.h"
+#include "viewer/gl/gl_context.h"
 #include "viewer/gl/shader.h"
 #include "viewer/layer.h"
 

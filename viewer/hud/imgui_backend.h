@@ -15,7 +15,7 @@
 #include <optional>
 #include <vector>
 
-#include "viewer/gl/gl_objects.h"
+#include "viewer/gl/gl_context.h"
 #include "viewer/gl/shader.h"
 #include "viewer/hud/hud_model.h"
 #include "viewer/input/controls.h"

@@ -15,7 +15,7 @@
 
 #include "atmosphere/medium/medium_presets.h"
 #include "viewer/flight/flight.h"
-#include "viewer/input/flight_controller.h"
+#include "viewer/flight/flight_controller.h"
 #include "viewer/passes/auto_quality.h"
 #include "viewer/passes/exposure_control.h"
 

@@ -16,7 +16,7 @@
 #include "renderer/media/fog_light.h"
 #include "renderer/media/local_media.h"
 #include "viewer/flight/flight.h"
-#include "viewer/gl/gl_objects.h"
+#include "viewer/gl/gl_context.h"
 #include "viewer/gl/shader.h"
 #include "viewer/layer.h"
 

@@ -20,7 +20,7 @@
 #include "renderer/terrain/level_ranges.h"
 #include "renderer/terrain/loaded_heights.h"
 #include "renderer/terrain/seen_chunks.h"
-#include "viewer/gl/gl_objects.h"
+#include "viewer/gl/gl_context.h"
 #include "viewer/layer.h"
 
 namespace alpenglow::viewer {

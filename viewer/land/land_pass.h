@@ -21,7 +21,7 @@
 
 #include "atmosphere/time_place/geodesy.h"
 #include "renderer/visibility/horizon_map.h"
-#include "viewer/gl/gl_objects.h"
+#include "viewer/gl/gl_context.h"
 #include "viewer/gl/render_target.h"
 #include "viewer/gl/shader.h"
 #include "viewer/land/chunk_set.h"

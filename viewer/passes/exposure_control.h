@@ -7,7 +7,7 @@
 
 #include "lut/image/eye.h"
 #include "lut/image/look.h"
-#include "viewer/passes/tone_map_pass.h"
+#include "viewer/passes/display_pass.h"
 
 namespace alpenglow::viewer {
 

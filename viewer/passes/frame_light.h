@@ -21,7 +21,7 @@
 #include "atmosphere/time_place/time.h"
 #include "lut/camera_tables/air_tables.h"
 #include "renderer/illumination/lighting.h"
-#include "viewer/gl/gl_objects.h"
+#include "viewer/gl/gl_context.h"
 #include "viewer/gl/shader.h"
 #include "viewer/layer.h"
 #include "viewer/passes/painted_view.h"

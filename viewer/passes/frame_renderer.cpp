@@ -9,7 +9,7 @@
 
 #include "lut/cli/program.h"
 #include "viewer/gl/gl_context.h"
-#include "viewer/gl/picture_tiles.h"
+#include "viewer/gl/render_target.h"
 
 namespace alpenglow::viewer {
 namespace {

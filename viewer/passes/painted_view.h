@@ -20,7 +20,7 @@
 #include "atmosphere/refraction/refracted_view.h"
 #include "lut/camera_tables/air_tables.h"
 #include "viewer/flight/flight.h"
-#include "viewer/gl/gl_objects.h"
+#include "viewer/gl/gl_context.h"
 #include "viewer/land/land_pass.h"
 
 namespace alpenglow::viewer {

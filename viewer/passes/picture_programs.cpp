@@ -11,7 +11,7 @@
 #include "lut/camera_tables/air_rows.h"
 #include "renderer/surface/surface.h"
 #include "viewer/air/air_follower.h"
-#include "viewer/gl/gl_objects.h"
+#include "viewer/gl/gl_context.h"
 #include "viewer/ground/ground_block.h"
 #include "viewer/lamps/fog.h"
 #include "viewer/passes/painted_view.h"

@@ -24,7 +24,7 @@
 #include "renderer/illumination/lighting.h"
 #include "renderer/surface/surface.h"
 #include "viewer/air/air_follower.h"
-#include "viewer/gl/gl_objects.h"
+#include "viewer/gl/gl_context.h"
 #include "viewer/gl/shader.h"
 #include "viewer/ground/ground_block.h"
 #include "viewer/lamps/fog.h"

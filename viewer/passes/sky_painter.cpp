@@ -10,7 +10,6 @@
 #include "renderer/illumination/lighting.h"
 #include "renderer/surface/scene_ground.h"
 #include "viewer/gl/gl_context.h"
-#include "viewer/gl/gl_objects.h"
 #include "viewer/passes/painted_view.h"
 #include "viewer/passes/picture_programs.h"
 

@@ -17,7 +17,7 @@
 #include "atmosphere/astronomy/moon.h"
 #include "lut/image/image.h"
 #include "renderer/scene/scene.h"
-#include "viewer/gl/gl_objects.h"
+#include "viewer/gl/gl_context.h"
 #include "viewer/gl/pass_timer.h"
 #include "viewer/gl/render_target.h"
 #include "viewer/lamps/lamp_painter.h"

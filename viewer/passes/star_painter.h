@@ -21,7 +21,7 @@
 #include "atmosphere/medium/medium.h"
 #include "atmosphere/refraction/refracted_view.h"
 #include "renderer/illumination/night_light.h"
-#include "viewer/gl/gl_objects.h"
+#include "viewer/gl/gl_context.h"
 #include "viewer/gl/shader.h"
 #include "viewer/lamps/fog.h"
 #include "viewer/passes/frame_light.h"

@@ -40,7 +40,7 @@
 #include "atmosphere/time_place/geodesy.h"
 #include "renderer/terrain/loaded_heights.h"
 #include "renderer/visibility/shade_map.h"
-#include "viewer/gl/gl_objects.h"
+#include "viewer/gl/gl_context.h"
 #include "viewer/gl/render_target.h"
 #include "viewer/gl/shader.h"
 

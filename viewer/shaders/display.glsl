@@ -3,7 +3,7 @@
 
 //// display.tone_map.frag.glsl
 // Tone mapping of the picture for a display: white balance, exposure, gamut, tone curve and dither,
-// as in Develop (look.h). AgX is read from its table (tone_map_pass.h). Defined before this text:
+// as in Develop (look.h). AgX is read from its table (display_pass.h). Defined before this text:
 // CURVE, a ToneCurve; DITHERS, 0 for codes that display.upscale.frag.glsl reads, else 1.
 uniform sampler2D linear_picture;  // any size
 uniform sampler3D tone_table;

@@ -17,7 +17,7 @@
 #include "atmosphere/medium/medium.h"
 #include "renderer/material/band_light.h"
 #include "renderer/surface/surface.h"
-#include "viewer/gl/gl_objects.h"
+#include "viewer/gl/gl_context.h"
 #include "viewer/gl/shader.h"
 #include "viewer/layer.h"
 

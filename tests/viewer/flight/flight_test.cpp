@@ -15,7 +15,7 @@
 #include "atmosphere/base/error.h"
 #include "atmosphere/math/constants.h"
 #include "tests/fixtures/temporary_folder.h"
-#include "viewer/flight/clock.h"
+#include "viewer/flight/flight_controller.h"
 #include "viewer/flight/flight_recorder.h"
 #include "viewer/flight/pilot.h"
 #include "viewer/flight_session.h"

@@ -11,7 +11,6 @@
 #include "tests/viewer/shaders/headless.h"
 #include "viewer/gl/gl_context.h"
 #include "viewer/gl/pass_timer.h"
-#include "viewer/gl/picture_tiles.h"
 #include "viewer/gl/shader.h"
 
 namespace alpenglow::viewer {

@@ -16,7 +16,6 @@
 #include "atmosphere/math/constants.h"
 #include "tests/viewer/hud/hud_picture.h"
 #include "viewer/hud/imgui_backend.h"
-#include "viewer/hud/panels.h"
 
 namespace alpenglow::viewer {
 namespace {

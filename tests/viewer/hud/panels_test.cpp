@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Panels: where they stand, what they ask for, and whether all letters can be read.
-#include "viewer/hud/panels.h"
+#include "viewer/hud/hud.h"
 
 #define GLFW_INCLUDE_NONE
 #include <GLFW/glfw3.h>

@@ -17,8 +17,8 @@
 #include "tests/fixtures/places.h"
 #include "tests/viewer/input/hands.h"
 #include "tests/viewer/input/recorded_commands.h"
+#include "viewer/flight/flight_controller.h"
 #include "viewer/input/action.h"
-#include "viewer/input/flight_controller.h"
 
 namespace alpenglow::viewer {
 namespace {

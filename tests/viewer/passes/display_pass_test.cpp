@@ -19,7 +19,7 @@
 #include "tests/viewer/air/shared_air.h"
 #include "tests/viewer/land/headless_land.h"
 #include "viewer/flight_session.h"
-#include "viewer/gl/gl_objects.h"
+#include "viewer/gl/gl_context.h"
 #include "viewer/passes/auto_quality.h"
 
 namespace alpenglow::viewer {

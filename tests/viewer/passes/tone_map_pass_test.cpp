@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Pictures developed and metered on the graphics card.
-#include "viewer/passes/tone_map_pass.h"
+#include "viewer/passes/display_pass.h"
 
 #include <gtest/gtest.h>
 

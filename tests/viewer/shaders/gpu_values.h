@@ -9,7 +9,6 @@
 
 #include "tests/fixtures/shared_text_cases.h"
 #include "viewer/gl/gl_context.h"
-#include "viewer/gl/gl_objects.h"
 #include "viewer/gl/render_target.h"
 #include "viewer/gl/shader.h"
 

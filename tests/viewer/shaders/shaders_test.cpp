@@ -30,7 +30,6 @@
 #include "viewer/land/land_pass.h"
 #include "viewer/passes/display_pass.h"
 #include "viewer/passes/picture_programs.h"
-#include "viewer/passes/tone_map_pass.h"
 #include "viewer/shade/shafts.h"
 #include "viewer/shaders/pass_setup.h"
 
