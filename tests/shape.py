@@ -20,9 +20,9 @@ LAYERS = ("atmosphere", "lut", "renderer", "viewer")
 SOURCES = (".h", ".cpp", ".glsl")
 MOST_PUBLIC_METHODS = 20
 LIMITS = {
-    "source files of the four layers": 504,
+    "source files of the four layers": 468,
     "types with more than 20 public methods": 0,
-    "lines of the viewer without OpenGL": 1403,
+    "lines of the viewer without OpenGL": 1264,
     "files over 500 lines": 5,
     "installed headers": 13,
     "comment blocks that start without a subject, %": 0.1,
