@@ -99,8 +99,9 @@ namespace {
 
 // Above this elevation the sun contributes more than a thousand times the brightest moon.
 constexpr double kMoonDoesNotCount_rad = 1.0 * kRadiansPerDegree;
-// Below this elevation the sun lights no land: from 4 km the horizon is 2 degrees down.
-constexpr double kSetOnLand_rad = -2.5 * kRadiansPerDegree;
+// Below this elevation the sun lights no land, and land shades no air: from the highest summit the
+// horizon is 3.02 degrees down, and the sun's radius is 0.27 degrees.
+constexpr double kSetOnLand_rad = -3.5 * kRadiansPerDegree;
 
 std::size_t GreenBand(const std::vector<double>& wavelengths_nm) {
   const auto off = [](double nm) { return std::abs(nm - 555.0); };

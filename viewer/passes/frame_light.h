@@ -6,8 +6,10 @@
 // The lights of the sky in a picture: a list of the sun, the moon, or both.
 //
 // In a solar eclipse the sunlight is what the moon leaves uncovered as seen from the eye, for the
-// whole picture. The first light casts the shadows: the sun until it has set for all land, at 2.5
-// degrees below the horizontal, then the moon if it is bright enough.
+// whole picture. The first light casts the shadows: the sun until it has set for all land, at 3.5
+// degrees below the horizontal, then the moon if it is bright enough. The shadows of the second
+// light are omitted: while the sun is first, the moon's beams bring less than 0.4 % of the sun's
+// light on level ground, and afterwards land intercepts none of the sun's.
 #pragma once
 
 #include <glm/vec4.hpp>

@@ -194,5 +194,69 @@ TEST(NightSkyMap, BetweenTexelsTheSkyIsThatOfTheRenderer) {
   EXPECT_LT(sum / count, 0.005) << "texels of 1.4 degrees";
 }
 
+// --- the lights of the sky ---
+
+double SunElevationAt(const GeodeticPosition& eye, const UtcInstant& now) {
+  return ApparentSunAt(eye, now).elevation_rad;
+}
+
+// Returns the instant of the evening at which the sun has sunk to an elevation.
+UtcInstant WhenTheSunIsAt(double elevation_rad, const GeodeticPosition& eye,
+                          const UtcInstant& noon) {
+  double before_s = 0.0, after_s = 43200.0;
+  while (after_s - before_s > 1.0) {
+    const double middle_s = 0.5 * (before_s + after_s);
+    const bool is_higher = SunElevationAt(eye, AddSeconds(noon, middle_s)) > elevation_rad;
+    (is_higher ? before_s : after_s) = middle_s;
+  }
+  return AddSeconds(noon, after_s);
+}
+
+// Returns the illuminance of a surface that faces a light, without the sky [lux].
+double BeamIlluminance(const SkyLight& light, const SolvedAir& air, double altitude_m) {
+  const double mu = std::sin(light.disk.elevation_rad);
+  BandLight beam = air.beam.Left(SingleScattering<float>(air.medium), altitude_m, mu);
+  for (std::size_t band = 0; band < beam.count; ++band)
+    beam[band] *= light.irradiance[static_cast<glm::length_t>(band)];
+  return BandColour(air.medium.wavelengths_nm).Xyz(InDouble(beam))[1];
+}
+
+TEST(LightsOfSky, OfTheSecondNoShadowIsSeenInAnyEveningOfAMonth) {
+  const GeodeticPosition eye = PlaceFromDegrees(46.5, 8.0, 2000.0);
+  const auto air =
+      SolveAir(OnOsculatingSphere(MediumPreset("earth"), eye.latitude_rad), AirSolution::kDraft);
+  const BandColour colour(air->medium.wavelengths_nm);
+  double most = 0.0;
+  int moonlit = 0;
+  for (int day = 0; day < 30; ++day) {
+    for (const double elevation_deg : {0.5, -1.0, -2.5, -3.49}) {
+      const UtcInstant now =
+          WhenTheSunIsAt(elevation_deg * kDegree, eye, UtcInstant{61058 + day, 41400.0});
+      const LightsOfSky lights = LightsOfSkyAt(eye, now, ApparentSunAt(eye, now), *air);
+      ASSERT_FALSE(lights.front().is_moon) << day << ' ' << elevation_deg;
+      if (lights.size() == 1) continue;
+      ++moonlit;
+      most = std::max(most, BeamIlluminance(lights.back(), *air, eye.height_m) /
+                                LevelIlluminance(lights.front(), *air, eye.height_m, colour));
+    }
+  }
+  EXPECT_GT(moonlit, 10);
+  EXPECT_LT(most, 0.004) << "the most in a year is 0.0033; seen from the equator it is 0.0032";
+}
+
+TEST(LightsOfSky, WhenTheMoonIsFirstNoSummitIsLitByTheSun) {
+  constexpr double kHighestSummit_m = 8849.0, kRadius_m = 6371e3;
+  const double dip = std::acos(kRadius_m / (kRadius_m + kHighestSummit_m));
+  const GeodeticPosition eye = PlaceFromDegrees(46.5, 8.0, 2000.0);
+  const auto air = SolveAir(MediumPreset("earth"), AirSolution::kDraft);
+  // The moon is full on the 3rd of January 2026 and rises before the sun has set.
+  const UtcInstant now = WhenTheSunIsAt(-3.51 * kDegree, eye, UtcInstant{61043, 41400.0});
+  const LightsOfSky lights = LightsOfSkyAt(eye, now, ApparentSunAt(eye, now), *air);
+  ASSERT_EQ(lights.size(), 2U);
+  EXPECT_TRUE(lights.front().is_moon);
+  const SunPosition& sun = lights.back().disk;
+  EXPECT_LT(sun.elevation_rad + sun.angular_radius_rad, -dip);
+}
+
 }  // namespace
 }  // namespace alpenglow::viewer
