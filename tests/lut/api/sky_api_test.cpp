@@ -6,6 +6,7 @@
 
 #include <array>
 #include <cmath>
+#include <glm/geometric.hpp>
 #include <limits>
 #include <vector>
 
