@@ -37,10 +37,11 @@ std::vector<int> DitherKernel() {
   return kernel;
 }
 
-/// The extreme cells of a row of a pattern; -1: it has none. They are found when they are needed.
+/// The extreme cells of a row of a pattern, each if the row has one. They are found when they are
+/// needed.
 struct PatternRow {
   bool is_known = false;
-  int cluster = -1, gap = -1;
+  std::optional<int> cluster, gap;
 };
 
 /// A pattern of points on the torus, with the crowding of every cell.
@@ -74,31 +75,32 @@ class Pattern {
     }
   }
   [[nodiscard]] PatternRow ExtremesOfRow(int y) const {
-    PatternRow row{.is_known = true};
+    PatternRow row;
+    row.is_known = true;
     const int* const crowding = crowding_.data();
     for (int cell = y * kSize; cell < (y + 1) * kSize; ++cell) {
       if (set_[static_cast<std::size_t>(cell)] != 0) {
-        if (row.cluster < 0 || crowding[cell] > crowding[row.cluster]) row.cluster = cell;
-      } else if (row.gap < 0 || crowding[cell] < crowding[row.gap]) {
+        if (!row.cluster || crowding[cell] > crowding[*row.cluster]) row.cluster = cell;
+      } else if (!row.gap || crowding[cell] < crowding[*row.gap]) {
         row.gap = cell;
       }
     }
     return row;
   }
   template <typename Exceeds>
-  [[nodiscard]] int Extreme(int PatternRow::*of_row, const Exceeds& exceeds) {
-    int best = -1;
+  [[nodiscard]] int Extreme(std::optional<int> PatternRow::*of_row, const Exceeds& exceeds) {
+    std::optional<int> best;
     for (int y = 0; y < kSize; ++y) {
       PatternRow& row = rows_[static_cast<std::size_t>(y)];
       if (!row.is_known) row = ExtremesOfRow(y);
-      const int cell = row.*of_row;
-      if (cell < 0) continue;
-      if (best < 0 || exceeds(crowding_[static_cast<std::size_t>(cell)],
-                              crowding_[static_cast<std::size_t>(best)])) {
+      const std::optional<int> cell = row.*of_row;
+      if (!cell) continue;
+      if (!best || exceeds(crowding_[static_cast<std::size_t>(*cell)],
+                           crowding_[static_cast<std::size_t>(*best)])) {
         best = cell;
       }
     }
-    return best;
+    return best.value();
   }
 
   std::vector<int> kernel_, crowding_;
