@@ -76,6 +76,8 @@ struct SeriesPlan {
   SeriesViewpoint viewpoint;
   std::vector<Frame> frames, selected;
   double shutter = 0.0, interval_s = 0.0;  // on a path: fraction of the time between frames
+  RenderSettings settings;
+  std::optional<EffectBudget> budget;  // none: all effects of the settings are rendered
 };
 
 /// Returns the frames of a series that does not follow a path.
@@ -116,6 +118,8 @@ SeriesPlan PlanOf(const SkyseriesOptions& options) {
     plan.frames = FramesAt(times, options.date.has_value(), scene, day);
   }
   plan.selected = options.frames ? SelectFrames(plan.frames, *options.frames) : plan.frames;
+  plan.settings = options.settings;
+  plan.budget = options.budget;
   return plan;
 }
 
@@ -153,13 +157,10 @@ RenderSettings PreviewSettings(const RenderSettings& settings, bool night_vision
 /// moon of a frame are computed once.
 class FramePictures {
  public:
-  /// @param budget  of the choice of effects; none: all effects of the settings are rendered.
-  FramePictures(const SeriesPlan& plan, const RenderSettings& settings,
-                const std::optional<EffectBudget>& budget, bool night_vision)
+  FramePictures(const SeriesPlan& plan, bool night_vision)
       : plan_(plan),
-        settings_(settings),
-        budget_(budget),
-        preview_(PreviewSettings(settings, night_vision)) {}
+        settings_(plan.settings),
+        preview_(PreviewSettings(plan.settings, night_vision)) {}
 
   [[nodiscard]] NotedPicture Render(const Frame& frame, Progress& progress) {
     settings_.progress = &progress;
@@ -198,12 +199,12 @@ class FramePictures {
   }
   [[nodiscard]] NotedPicture Rendered(const SceneRenderer& renderer,
                                       const CameraSample& camera_sample) const {
-    if (!budget_) {
+    if (!plan_.budget) {
       CountedPicture picture = renderer.RenderCounted(camera_sample, settings_);
       return {std::move(picture.image), NotesOn(picture.rays, settings_)};
     }
-    ChosenPicture picture = renderer.RenderWithin(camera_sample, settings_, *budget_);
-    if (budget_->explain)
+    ChosenPicture picture = renderer.RenderWithin(camera_sample, settings_, *plan_.budget);
+    if (plan_.budget->explain)
       Print(fmt::format("{}\n{}\n", FormatUtc(camera_sample.instant), ExplainText(picture.choice)));
     Metadata notes = NotesOn(picture.choice);
     notes.merge(NotesOn(picture.rays, settings_));
@@ -211,16 +212,14 @@ class FramePictures {
   }
 
   const SeriesPlan& plan_;
-  RenderSettings settings_;
-  const std::optional<EffectBudget>& budget_;
+  RenderSettings settings_;  // those of the plan, and the progress of a frame
   const RenderSettings preview_;
   std::unique_ptr<SceneRenderer> renderer_;
   std::map<int, SkyBodies> bodies_;  // by the number of the frame
 };
 
-Metadata MetadataOf(const SeriesPlan& plan, const RenderSettings& settings,
-                    const std::optional<EffectBudget>& budget) {
-  Metadata metadata = PictureMetadata(plan.scene, settings);
+Metadata MetadataOf(const SeriesPlan& plan) {
+  Metadata metadata = PictureMetadata(plan.scene, plan.settings);
   if (plan.viewpoint.path) {
     // Poses replace place and camera of the scene, which still place its mesh or range.
     metadata["alpenglow.path"] = fmt::format(
@@ -228,16 +227,16 @@ Metadata MetadataOf(const SeriesPlan& plan, const RenderSettings& settings,
         Fingerprint({{"path", TextOf(*plan.viewpoint.path)}, {"scene", Fingerprint(metadata)}}),
         plan.shutter, plan.interval_s);
   }
-  if (budget && budget->leave_out)
-    metadata["alpenglow.effects"] += fmt::format(" within {}", budget->max_error);
+  if (plan.budget && plan.budget->leave_out)
+    metadata["alpenglow.effects"] += fmt::format(" within {}", plan.budget->max_error);
   return metadata;
 }
 
-SeriesSource SourceOf(const SeriesPlan& plan, Metadata metadata, FramePictures& pictures) {
+SeriesSource SourceOf(const SeriesPlan& plan, FramePictures& pictures) {
   const Scene& scene = plan.scene;
   return {[&](const Frame& frame, Progress& progress) { return pictures.Render(frame, progress); },
           [&](const Frame& frame) { return pictures.Illuminance(frame); },
-          std::move(metadata),
+          MetadataOf(plan),
           plan.viewpoint,
           scene.camera.IsPanorama() ? Projection::kLatitudeLongitude : Projection::kCamera,
           scene.camera.fov_rad,
@@ -271,10 +270,9 @@ int Run(const SkyseriesOptions& options) {
   output.name = FrameName(options.out);
   const SeriesPlan plan = PlanOf(options);
   output.inputs = InputsOf(options, plan.scene);
-  FramePictures pictures(plan, options.settings, options.budget, output.look.night_vision);
-  const SeriesSource source =
-      SourceOf(plan, MetadataOf(plan, options.settings, options.budget), pictures);
-  const SeriesSummary summary = RunSeries(source, plan.frames, plan.selected, output);
+  FramePictures pictures(plan, output.look.night_vision);
+  const SeriesSummary summary =
+      RunSeries(SourceOf(plan, pictures), plan.frames, plan.selected, output);
   if (!options.common.quiet) PrintSummary(summary);
   return 0;
 }
