@@ -2,26 +2,17 @@
 #include "lut/multiple_scattering/azimuth_fan_kernel.h"
 
 #include "atmosphere/ray/batch.h"
+#include "lut/multiple_scattering/four_bands.h"
 #include "lut/multiple_scattering/polarised_scattering.h"
 
 namespace alpenglow::lut {
 namespace {
 
-using Four = float __attribute__((vector_size(16)));
-
-inline Four Load(const float* from) {
-  Four four;
-  __builtin_memcpy(&four, from, sizeof four);
-  return four;
-}
-
-inline void Store(float* to, Four four) { __builtin_memcpy(to, &four, sizeof four); }
-
 inline Four BetweenAltitudes(const FanContraction& work, std::size_t offset) {
-  return work.weights[0] * Load(work.nodes[0] + offset) +
-         work.weights[1] * Load(work.nodes[1] + offset) +
-         work.weights[2] * Load(work.nodes[2] + offset) +
-         work.weights[3] * Load(work.nodes[3] + offset);
+  return work.weights[0] * LoadFour(work.nodes[0] + offset) +
+         work.weights[1] * LoadFour(work.nodes[1] + offset) +
+         work.weights[2] * LoadFour(work.nodes[2] + offset) +
+         work.weights[3] * LoadFour(work.nodes[3] + offset);
 }
 
 void Contract(const FanContraction& work) {
@@ -35,15 +26,15 @@ void Contract(const FanContraction& work) {
         const auto moment = static_cast<std::size_t>(l * (l + 1) / 2 + m);
         const std::size_t offset = at + moment * work.moment_stride;
         const Four there = BetweenAltitudes(work, offset);
-        sum += Load(work.factors + 4 * moment) * there;
+        sum += LoadFour(work.factors + 4 * moment) * there;
       }
       if (work.tensor > 0 && m < static_cast<int>(kTensorMoments)) {
         const std::size_t channel = work.tensor + static_cast<std::size_t>(m);
         const std::size_t offset = at + channel * work.moment_stride;
         const Four there = BetweenAltitudes(work, offset);
-        sum += Load(work.factors + 4 * channel) * there;
+        sum += LoadFour(work.factors + 4 * channel) * there;
       }
-      Store(row + 4 * m, sum);
+      StoreFour(row + 4 * m, sum);
     }
   }
 }
@@ -90,8 +81,8 @@ void Gather(const FanGathering& work) {
     float before = cosine, now = 1.0F;  // cos((m - 1) phi), cos(m phi)
     Four sum = {};
     for (std::size_t m = 0; m < orders; ++m, row += 4) {
-      const Four there = w0 * Load(row) + w1 * Load(row + 4 * orders) +
-                         w2 * Load(row + 8 * orders) + w3 * Load(row + 12 * orders);
+      const Four there = w0 * LoadFour(row) + w1 * LoadFour(row + 4 * orders) +
+                         w2 * LoadFour(row + 8 * orders) + w3 * LoadFour(row + 12 * orders);
       sum += now * SinePower(m, sine) * there;
       const float next = 2.0F * cosine * now - before;
       before = now;
@@ -100,7 +91,7 @@ void Gather(const FanGathering& work) {
     sum *= work.twilight[k];
     const Four dark = {};
     float* light = work.light + 4 * k;
-    Store(light, Load(light) + (sum > dark ? sum : dark));
+    StoreFour(light, LoadFour(light) + (sum > dark ? sum : dark));
   }
 }
 

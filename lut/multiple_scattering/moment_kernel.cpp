@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "atmosphere/math/constants.h"
+#include "lut/multiple_scattering/four_bands.h"
 #include "lut/multiple_scattering/march_lanes.h"
 #include "lut/multiple_scattering/moment_lanes.h"
 
@@ -254,15 +255,6 @@ Scattered ScatteredByMolecules(const Chunk& chunk, std::size_t s, const Taps& ta
   }
 }
 
-/// Four bands.
-using Four = float __attribute__((vector_size(16)));
-
-inline Four LoadFour(const float* from) {
-  Four four;
-  __builtin_memcpy(&four, from, sizeof four);
-  return four;
-}
-
 // Returns the sum of both halves, clamped to at least 0.
 Four SumOfHalves(const Eight& eight) {
   alignas(64) float halves[8];
@@ -293,8 +285,7 @@ Taps TapsOf(const MomentGrid& grid, const Chunk& chunk, std::size_t s, const flo
   for (int a = 0; a < 4; ++a) {
     const float* row = moments + within(first_altitude + a, last_altitude) * grid.suns * kNode;
     for (int b = 0; b < 4; ++b) taps.node[a * 4 + b] = row + column[b];
-    const Four weight = chunk.altitude_weight[a][s] * of_suns;
-    __builtin_memcpy(taps.weight + a * 4, &weight, sizeof weight);
+    StoreFour(taps.weight + a * 4, chunk.altitude_weight[a][s] * of_suns);
   }
   return taps;
 }
@@ -369,7 +360,7 @@ void InscatterOfDegree(const MomentGrid& grid, const RaySamples<float>& samples,
         sum += AtSample(attenuation, s) * SourceAt<kPolarised>(grid, chunk, s, samples, first + s,
                                                                ready, moments + b * block_stride);
       }
-      __builtin_memcpy(light + b * kBlockBands, &sum, sizeof sum);
+      StoreFour(light + b * kBlockBands, sum);
     }
   }
 }

@@ -57,7 +57,8 @@ struct TensorStokes {
 };
 
 template <typename Number>
-[[nodiscard]] TensorStokes<Number> TensorStokesAlong(const Number& mu, const Number& sine) {
+[[nodiscard, gnu::always_inline]] inline TensorStokes<Number> TensorStokesAlong(
+    const Number& mu, const Number& sine) {
   const Number n20(kTensorNorm[0]), n21(kTensorNorm[1]), n22(kTensorNorm[2]);
   return {Number(-1.5F) * n20 * sine * sine, Number(3.0F) * n21 * mu * sine,
           Number(-3.0F) * n22 * (Number(1.0F) + mu * mu), Number(-3.0F) * n21 * sine,

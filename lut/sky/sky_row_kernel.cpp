@@ -2,6 +2,7 @@
 #include "lut/sky/sky_row_kernel.h"
 
 #include "atmosphere/ray/batch.h"
+#include "lut/multiple_scattering/four_bands.h"
 
 namespace alpenglow::lut {
 namespace {
@@ -45,18 +46,10 @@ void FindAngles(const SkyRowWork& work, std::size_t first, std::size_t count, An
   }
 }
 
-/// Four floats that are processed by one instruction on processors that support it (gcc and clang).
-using Four = float __attribute__((vector_size(16)));
-
-inline Four Load(const float* from) {
-  Four four;
-  __builtin_memcpy(&four, from, sizeof four);
-  return four;
-}
-
 inline Four Weighted(const float* weight, const float* node) {
-  return weight[0] * Load(node) + weight[1] * Load(node + kSkyNodeFloats) +
-         weight[2] * Load(node + 2 * kSkyNodeFloats) + weight[3] * Load(node + 3 * kSkyNodeFloats);
+  return weight[0] * LoadFour(node) + weight[1] * LoadFour(node + kSkyNodeFloats) +
+         weight[2] * LoadFour(node + 2 * kSkyNodeFloats) +
+         weight[3] * LoadFour(node + 3 * kSkyNodeFloats);
 }
 
 void Fill(const SkyRowWork& work) {
@@ -69,8 +62,8 @@ void Fill(const SkyRowWork& work) {
           work.row + kSkyNodeFloats * static_cast<std::size_t>(work.cell[first + i]);
       const float* weight = work.weights + 4 * (first + i);
       const float* phase = work.phase + 4 * static_cast<std::size_t>(angles.node[i]);
-      const Four lower = Load(phase);
-      const Four mie = lower + angles.fraction[i] * (Load(phase + 4) - lower);
+      const Four lower = LoadFour(phase);
+      const Four mie = lower + angles.fraction[i] * (LoadFour(phase + 4) - lower);
       const Four light = angles.rayleigh[i] * Weighted(weight, node) +
                          mie * Weighted(weight, node + 4) + Weighted(weight, node + 8);
       const Four dark = {};
