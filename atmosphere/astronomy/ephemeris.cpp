@@ -134,9 +134,9 @@ constexpr Polynomial kMoonLongitude{Arcseconds(218.0, 18.0, 59.95571 - 0.07008),
 constexpr Polynomial kPerigee{Arcseconds(83.0, 21.0, 11.67475 + 0.20794),
                               14643420.3171 + 0.08017 - 0.0040985, -38.2631 + 0.00470602,
                               -0.045047 - 0.00025213, 0.00021301};
-constexpr Polynomial kNode{Arcseconds(125.0, 2.0, 40.39816 - 0.07215),
-                           -6967919.5383 - 0.04317 + 0.0000009, 6.359 - 0.0026107,
-                           0.007625 - 0.00010712, -3.586e-5};
+constexpr Polynomial kAscendingNode{Arcseconds(125.0, 2.0, 40.39816 - 0.07215),
+                                    -6967919.5383 - 0.04317 + 0.0000009, 6.359 - 0.0026107,
+                                    0.007625 - 0.00010712, -3.586e-5};
 constexpr Polynomial kEarthLongitude{Arcseconds(100.0, 27.0, 59.13885 - 0.00033),
                                      129597742.293 + 0.00732, -0.0202, 9e-6, 1.5e-7};
 constexpr Polynomial kPerihelion{Arcseconds(102.0, 56.0, 14.45766 - 0.00749), 1161.24342, 0.529265,
@@ -165,7 +165,7 @@ constexpr double kEquinox_rad = -0.05028 * kArcsecond;
 std::array<double, kArguments> ArgumentsAt(double centuries) {
   const double moon = Value(kMoonLongitude, centuries), earth = Value(kEarthLongitude, centuries);
   std::array<double, kArguments> all{
-      moon - earth + Arcseconds(180.0, 0.0, 0.0), moon - Value(kNode, centuries),
+      moon - earth + Arcseconds(180.0, 0.0, 0.0), moon - Value(kAscendingNode, centuries),
       moon - Value(kPerigee, centuries), earth - Value(kPerihelion, centuries)};
   for (std::size_t i = 0; i < kPlanets.size(); ++i) all[4 + i] = Value(kPlanets[i], centuries);
   all[12] = moon + kPrecession * centuries;

@@ -18,7 +18,7 @@
 namespace alpenglow::renderer {
 namespace {
 
-constexpr double kDark = 1e-30;  // lower bound for logarithms [m^-1]
+constexpr double kLeastLight_per_m = 1e-30;  // lower bound for logarithms [m^-1]
 constexpr std::size_t kSlopeTerms = kGlowTerms - 1;
 using SlopeTerms = std::array<glm::vec4, kSlopeTerms>;
 
@@ -102,7 +102,7 @@ SlopeTerms FitOf(const LampSeen& view) {
   for (const FitSlope& slope : FittedSlopes()) {
     const Bands<double> light = view.On(slope.normal);
     for (std::size_t band = 0; band < level.count; ++band) {
-      const double over_level = light[band] / std::max(level[band], kDark) - 1.0;
+      const double over_level = light[band] / std::max(level[band], kLeastLight_per_m) - 1.0;
       for (std::size_t i = 0; i < kSlopeTerms; ++i)
         sums[band][i] += slope.weight * slope.of_term[i] * over_level;
     }
@@ -119,10 +119,10 @@ SlopeTerms FitOf(const LampSeen& view) {
 /// Returns the logarithm of the light on level ground times the distance.
 glm::vec4 LogLevelOf(const LampSeen& view) {
   const Bands<double> level = view.OnLevel();
-  glm::vec4 logs(static_cast<float>(std::log(kDark)));
+  glm::vec4 logs(static_cast<float>(std::log(kLeastLight_per_m)));
   for (std::size_t band = 0; band < level.count; ++band) {
     logs[static_cast<glm::length_t>(band)] =
-        static_cast<float>(std::log(std::max(level[band], kDark) * view.distance_m));
+        static_cast<float>(std::log(std::max(level[band], kLeastLight_per_m) * view.distance_m));
   }
   return logs;
 }

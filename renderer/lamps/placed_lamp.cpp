@@ -17,7 +17,7 @@
 namespace alpenglow::renderer {
 namespace {
 
-Bands<double> InDoubles(const std::vector<double>& values, double scale) {
+Bands<double> ScaledBands(const std::vector<double>& values, double scale) {
   Bands<double> bands(values.size());
   for (std::size_t band = 0; band < values.size(); ++band) bands[band] = scale * values[band];
   return bands;
@@ -35,8 +35,8 @@ LampLayer Drops(const Fog& fog, double base_m, std::size_t bands) {
   drops.scale_height_m = fog.scale_height_m;
   drops.base_m = base_m;
   const std::vector<double> grey(bands, fog.extinction_per_m);
-  drops.scattering_per_m = InDoubles(grey, fog.albedo);
-  drops.extinction_per_m = InDoubles(grey, 1.0);
+  drops.scattering_per_m = ScaledBands(grey, fog.albedo);
+  drops.extinction_per_m = ScaledBands(grey, 1.0);
   drops.phase = fog.phase;
   return drops;
 }
@@ -46,13 +46,13 @@ std::vector<LampLayer> LayersOf(const Medium& medium, const std::optional<Fog>& 
                                 double fog_base_m) {
   LampLayer molecules;
   molecules.scale_height_m = MoleculeHeight_m(medium);
-  molecules.scattering_per_m = InDoubles(medium.rayleigh_scattering_per_m, 1.0);
+  molecules.scattering_per_m = ScaledBands(medium.rayleigh_scattering_per_m, 1.0);
   molecules.extinction_per_m = molecules.scattering_per_m;
   molecules.phase.kind = PhaseKind::kRayleigh;
   LampLayer aerosol;
   aerosol.scale_height_m = medium.mie_scale_height_m;
-  aerosol.scattering_per_m = InDoubles(medium.mie_scattering_per_m, 1.0);
-  aerosol.extinction_per_m = InDoubles(medium.mie_extinction_per_m, 1.0);
+  aerosol.scattering_per_m = ScaledBands(medium.mie_scattering_per_m, 1.0);
+  aerosol.extinction_per_m = ScaledBands(medium.mie_extinction_per_m, 1.0);
   // Paths from lamps are short, so their light is scattered with the phase function of the middle
   // wavelength.
   aerosol.phase = MiePhase(medium, medium.wavelengths_nm.size() / 2);

@@ -76,11 +76,11 @@ std::vector<NamedPlace> ReadPlaces() {
 /// Returns the letters without accent for a letter of Latin-1 or Latin Extended-A (two bytes of
 /// UTF-8).
 std::string_view WithoutAccent(int code_point) {
-  struct Range {
+  struct LetterRange {
     int first, last;
     std::string_view letter;
   };
-  constexpr Range kRanges[] = {
+  constexpr LetterRange kRanges[] = {
       {0xC0, 0xC5, "a"},    {0xC6, 0xC6, "ae"},  {0xC7, 0xC7, "c"},   {0xC8, 0xCB, "e"},
       {0xCC, 0xCF, "i"},    {0xD0, 0xD0, "d"},   {0xD1, 0xD1, "n"},   {0xD2, 0xD6, "o"},
       {0xD8, 0xD8, "o"},    {0xD9, 0xDC, "u"},   {0xDD, 0xDD, "y"},   {0xDE, 0xDE, "th"},
@@ -92,7 +92,7 @@ std::string_view WithoutAccent(int code_point) {
       {0x128, 0x131, "i"},  {0x139, 0x142, "l"}, {0x143, 0x148, "n"}, {0x14C, 0x151, "o"},
       {0x152, 0x153, "oe"}, {0x154, 0x159, "r"}, {0x15A, 0x161, "s"}, {0x162, 0x167, "t"},
       {0x168, 0x173, "u"},  {0x179, 0x17E, "z"}};
-  for (const Range& range : kRanges) {
+  for (const LetterRange& range : kRanges) {
     if (code_point >= range.first && code_point <= range.last) return range.letter;
   }
   return "";
@@ -142,13 +142,13 @@ struct Ranked {
 
 /// Returns the matching places, best first; places of equal rank keep the order of the list.
 std::vector<Ranked> RankedPlaces(std::string_view text) {
-  constexpr int kNone = 3;
+  constexpr int kNoMatch = 3;
   const std::string folded = Folded(text);
   std::vector<Ranked> ranked;
   if (folded.empty()) return ranked;
   for (const NamedPlace& place : NamedPlaces()) {
     const int rank = RankOf(place, folded);
-    if (rank < kNone) ranked.push_back({rank, &place});
+    if (rank < kNoMatch) ranked.push_back({rank, &place});
   }
   std::stable_sort(ranked.begin(), ranked.end(),
                    [](const Ranked& a, const Ranked& b) { return a.rank < b.rank; });

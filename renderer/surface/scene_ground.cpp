@@ -145,7 +145,7 @@ GridWindow WindowAround(const ElevationGrid& grid, const GeodeticPosition& place
 namespace {
 
 // Returns the grid of all models together, without heights.
-ElevationGrid ExtentOf(const LandLattice& lattice) {
+ElevationGrid OutlineOf(const LandLattice& lattice) {
   ElevationGrid extent;
   extent.west_rad = lattice.west_rad;
   extent.north_rad = lattice.north_rad;
@@ -159,7 +159,7 @@ ElevationGrid ExtentOf(const LandLattice& lattice) {
 ModelInSight ReadModelsInSight(const Scene& scene) {
   constexpr int kMostSamples = 1 << 13;
   const auto tiles = std::make_shared<const LandTiles>(LandSourceOf(scene));
-  ModelInSight loaded{{}, ExtentOf(tiles->lattice()), ""};
+  ModelInSight loaded{{}, OutlineOf(tiles->lattice()), ""};
   std::vector<std::string> notes = tiles->notes();
   double eye_m = scene.camera.height.value_m;
   if (scene.camera.height.above_ground) {
