@@ -366,11 +366,12 @@ TEST(GroundFollower, ARunningSunIsMetWhereItWillStand) {
 
 // --- shade of the terrain ---
 
-const GeodeticPosition kPlace = PlaceFromDegrees(46.5, 8.0, 0.0);
+const GeodeticPosition kShadePlace = PlaceFromDegrees(46.5, 8.0, 0.0);
 constexpr int kShadeUnit = 3;
 
 GeodeticPosition Eye(double degrees_north) {
-  return {kPlace.latitude_rad + degrees_north * kRadiansPerDegree, kPlace.longitude_rad, 900.0};
+  return {kShadePlace.latitude_rad + degrees_north * kRadiansPerDegree, kShadePlace.longitude_rad,
+          900.0};
 }
 
 SunPosition SunAtDegrees(double elevation) {
@@ -394,8 +395,8 @@ GroundSampler Mountain(std::atomic<int>& asked) {
     grid.west_rad = place.longitude_rad - half_rad / std::cos(place.latitude_rad);
     for (int row = 0; row < grid.rows; ++row) {
       for (int column = 0; column < grid.columns; ++column) {
-        const double y = (grid.LatitudeOfRow(row) - kPlace.latitude_rad) * 6.37e6;
-        const double x = (grid.LongitudeOfColumn(column) - kPlace.longitude_rad) * 4.38e6;
+        const double y = (grid.LatitudeOfRow(row) - kShadePlace.latitude_rad) * 6.37e6;
+        const double x = (grid.LongitudeOfColumn(column) - kShadePlace.longitude_rad) * 4.38e6;
         grid.height_m.push_back(static_cast<float>(2000.0 * std::exp(-1e-7 * (x * x + y * y))));
       }
     }

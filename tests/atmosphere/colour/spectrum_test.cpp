@@ -273,15 +273,14 @@ std::vector<double> TestWavelengths() {
   return wavelengths_nm;
 }
 
-double Radians(double degrees) { return degrees * kRadiansPerDegree; }
-
 ViewRay RayTowards(double view_zenith, double azimuth, double sun_elevation) {
   ViewRay ray;
   ray.altitude_m = 10.0;
-  ray.mu = std::cos(Radians(view_zenith));
-  ray.mu_s = std::sin(Radians(sun_elevation));
-  ray.nu = ray.mu * ray.mu_s + std::sin(Radians(view_zenith)) * std::cos(Radians(sun_elevation)) *
-                                   std::cos(Radians(azimuth));
+  ray.mu = std::cos(view_zenith * kRadiansPerDegree);
+  ray.mu_s = std::sin(sun_elevation * kRadiansPerDegree);
+  ray.nu = ray.mu * ray.mu_s + std::sin(view_zenith * kRadiansPerDegree) *
+                                   std::cos(sun_elevation * kRadiansPerDegree) *
+                                   std::cos(azimuth * kRadiansPerDegree);
   return ray;
 }
 
@@ -311,7 +310,8 @@ std::vector<TestLight> MakeTestLights() {
         for (const double azimuth : {0.0, 90.0, 180.0})
           AddSky(medium, RayTowards(view_zenith, azimuth, elevation), lights);
       if (elevation < 0.0) continue;
-      AddLight(reference::SunIrradiance(medium, 10.0, std::sin(Radians(elevation))), lights);
+      AddLight(reference::SunIrradiance(medium, 10.0, std::sin(elevation * kRadiansPerDegree)),
+               lights);
     }
   }
   return lights;
@@ -429,7 +429,7 @@ TEST(BandColour, SunAboveTheAirHasTheSameColourOnEveryWavelengthSet) {
 TEST(BandColour, WhiteOfPaperByDayIsWithinTwoPercentInEverySet) {
   // The sun at 30 degrees shines through the default air on white paper.
   const std::vector<double> relative = reference::SunIrradiance(
-      MediumPreset("earth", TestWavelengths()), 10.0, std::sin(Radians(30.0)));
+      MediumPreset("earth", TestWavelengths()), 10.0, std::sin(30.0 * kRadiansPerDegree));
   const SampledFunction light(TestWavelengths(), relative);
   const Triple truth = TrueXyz(light);
   for (const int bands : kWavelengthSetSizes) {

@@ -16,8 +16,8 @@
 namespace alpenglow::atmosphere {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+constexpr double kInfinite = std::numeric_limits<double>::infinity();
+constexpr double kNotANumber = std::numeric_limits<double>::quiet_NaN();
 
 double Distance(const glm::dvec3& a, const glm::dvec3& b) { return glm::length(a - b); }
 
@@ -101,7 +101,7 @@ TEST(Geodesy, LongitudesWrapIntoOneTurn) {
   EXPECT_EQ(WrappedLongitude(1.25), 1.25);
   EXPECT_NEAR(WrappedLongitude(1.25 + 6.0 * kPi), 1.25, 1e-14);
   EXPECT_NEAR(WrappedLongitude(-1.25 - 2.0 * kPi), -1.25, 1e-14);
-  EXPECT_THROW((void)WrappedLongitude(kNan), InputError);
+  EXPECT_THROW((void)WrappedLongitude(kNotANumber), InputError);
 }
 
 TEST(Geodesy, LocalFrameIsARightHandedRotation) {
@@ -185,11 +185,11 @@ TEST(Geodesy, ImpossiblePlacesAreRefusedByName) {
       {90.0000001, 0, 0, "latitude is 90.0000001; it must lie in [-90, 90]"},
       {-91, 0, 0, "latitude is -91; it must lie in [-90, 90]"},
       {0, 540, 0, "longitude is 540; it must lie in [-180, 360]"},
-      {0, kNan, 0, "longitude is nan"},
-      {kNan, 0, 0, "latitude is nan"},
+      {0, kNotANumber, 0, "longitude is nan"},
+      {kNotANumber, 0, 0, "latitude is nan"},
       {0, 0, -12001, "height_m is -12001; it must be finite and at least -12000"},
-      {0, 0, kInfinity, "height_m is inf"},
-      {0, 0, kNan, "height_m is nan"},
+      {0, 0, kInfinite, "height_m is inf"},
+      {0, 0, kNotANumber, "height_m is nan"},
   };
   for (const auto& place : places) {
     EXPECT_THAT(tests::FaultOf([&] {
@@ -202,12 +202,12 @@ TEST(Geodesy, ImpossiblePlacesAreRefusedByName) {
 // Hard case 3.
 TEST(Geodesy, NonsenseIsNeverAnsweredWithAPlace) {
   EXPECT_THROW((void)EcefFromGeodetic(kWgs84, {1.6, 0.0, 0.0}), InputError) << "91.7 degrees";
-  EXPECT_THROW((void)EcefFromGeodetic(kWgs84, {kNan, 0.0, 0.0}), InputError);
-  EXPECT_THROW((void)EcefFromGeodetic(kWgs84, {0.0, kInfinity, 0.0}), InputError);
-  EXPECT_THROW((void)EcefFromGeodetic(kWgs84, {0.0, 0.0, kNan}), InputError);
+  EXPECT_THROW((void)EcefFromGeodetic(kWgs84, {kNotANumber, 0.0, 0.0}), InputError);
+  EXPECT_THROW((void)EcefFromGeodetic(kWgs84, {0.0, kInfinite, 0.0}), InputError);
+  EXPECT_THROW((void)EcefFromGeodetic(kWgs84, {0.0, 0.0, kNotANumber}), InputError);
   EXPECT_THROW((void)EcefFromGeodetic({-1.0, 0.0}, {}), InputError);
   EXPECT_THROW((void)EcefFromGeodetic({6e6, 1.5}, {}), InputError);
-  EXPECT_TRUE(std::isnan(GeodeticFromEcef(kWgs84, {{kNan, 0.0, 0.0}}).height_m));
+  EXPECT_TRUE(std::isnan(GeodeticFromEcef(kWgs84, {{kNotANumber, 0.0, 0.0}}).height_m));
 }
 
 TEST(Geodesy, TheCentreOfTheEarthIsUnderTheNorthPole) {

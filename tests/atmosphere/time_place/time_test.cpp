@@ -17,7 +17,8 @@
 namespace alpenglow::atmosphere {
 namespace {
 
-std::string FaultOf(std::string_view text, const std::optional<std::string>& zone = std::nullopt) {
+std::string FaultOfInstant(std::string_view text,
+                           const std::optional<std::string>& zone = std::nullopt) {
   return tests::FaultOf([&] { return ParseInstant(text, zone); });
 }
 
@@ -49,7 +50,7 @@ struct RefusedInstant {
 
 void ExpectRefused(std::span<const RefusedInstant> instants) {
   for (const auto& [text, fault, zone] : instants)
-    EXPECT_THAT(FaultOf(text, zone), testing::HasSubstr(fault)) << text;
+    EXPECT_THAT(FaultOfInstant(text, zone), testing::HasSubstr(fault)) << text;
 }
 
 TEST(Time, WhatIsNotAnInstantIsRefusedWithTextAndFault) {
@@ -101,7 +102,7 @@ TEST(Time, WhatIsNotAnInstantIsRefusedWithTextAndFault) {
                            "2024-06-21T-4:00:00Z",
                            "2024-06-21T04:00:0xZ",
                            "nan"}) {
-    EXPECT_NE(FaultOf(text), "no fault") << text;
+    EXPECT_NE(FaultOfInstant(text), "no fault") << text;
   }
 }
 
@@ -127,7 +128,7 @@ TEST(Time, ThereAre27LeapSecondsUntil2026AndNoOthersAreAccepted) {
   EXPECT_EQ(leap_seconds, 27) << "IERS bulletin C: 1972-06-30 to 2016-12-31";
   for (const char* text : {"2018-12-31T23:59:60Z", "2016-12-31T22:59:60Z",
                            "2016-12-31T23:59:60+09:00", "2050-06-30T23:59:60Z"})
-    EXPECT_THAT(FaultOf(text), testing::HasSubstr("there is no leap second"));
+    EXPECT_THAT(FaultOfInstant(text), testing::HasSubstr("there is no leap second"));
 }
 
 // Hard case 26.

@@ -27,7 +27,7 @@ Medium Haze(double scattering_per_m, double extinction_per_m) {
 
 /// A view into the air, degrees and metres, and the radiance of paths in every band
 /// (skylut eval --method path-trace --max-error 0.25%).
-struct Traced {
+struct TracedView {
   double altitude_m, zenith_deg, azimuth_deg, sun_zenith_deg, length_m;
   std::vector<double> radiance;
 };
@@ -36,12 +36,12 @@ constexpr double kToSpace_m = 1e9;
 /// Returns relative errors of light of all orders, in the bands of the medium, which may be fewer
 /// than were traced.
 std::vector<double> ErrorsOf(const Medium& medium, const MultipleScatteringOptions& options,
-                             const std::vector<Traced>& views) {
+                             const std::vector<TracedView>& views) {
   const MultipleScattering light(medium, options);
   const SingleScattering<float> air(medium);
   std::vector<double> errors;
   const std::size_t bands = medium.wavelengths_nm.size();
-  for (const Traced& view : views) {
+  for (const TracedView& view : views) {
     ViewRay ray =
         RayFromAngles(view.altitude_m, view.zenith_deg, view.azimuth_deg, view.sun_zenith_deg);
     if (view.length_m < kToSpace_m) ray.length_m = view.length_m;

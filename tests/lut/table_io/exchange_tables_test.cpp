@@ -25,6 +25,7 @@
 #include "lut/cli/program.h"
 #include "lut/table_io/exchange_check.h"
 #include "tests/fixtures/fault_of.h"
+#include "tests/fixtures/quantile.h"
 #include "tests/fixtures/sanitized.h"
 #include "tests/fixtures/temporary_folder.h"
 
@@ -309,7 +310,7 @@ struct Errors {
   void Add(double value, double truth) { relative.push_back(std::abs(value / truth - 1.0)); }
   [[nodiscard]] double Quantile(double share) {
     std::sort(relative.begin(), relative.end());
-    return relative[static_cast<std::size_t>(share * static_cast<double>(relative.size() - 1))];
+    return tests::Quantile(relative, share);
   }
 };
 

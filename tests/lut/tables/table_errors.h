@@ -6,6 +6,8 @@
 #include <cmath>
 #include <vector>
 
+#include "tests/fixtures/quantile.h"
+
 namespace alpenglow::lut {
 
 /// Collects differences between a method and the reference solution on the same work.
@@ -30,7 +32,7 @@ class ErrorStatistics {
   [[nodiscard]] double Quantile(double share) const {
     std::vector<double> sorted = absolute_;
     std::sort(sorted.begin(), sorted.end());
-    return sorted[static_cast<std::size_t>(share * static_cast<double>(sorted.size() - 1))];
+    return tests::Quantile(sorted, share);
   }
 
  private:

@@ -47,19 +47,19 @@ double Lux(const Image& image, double pixel_rad) {
 }
 
 /// A direction as azimuth and elevation [degrees].
-struct Look {
+struct StarView {
   double azimuth, elevation;
 };
 
 /// Returns the direction of Sirius at the place of BareScene.
-Look SiriusAt(const UtcInstant& instant) {
+StarView SiriusAt(const UtcInstant& instant) {
   const LocalFrame frame(kWgs84, PlaceFromDegrees(46.5, 8.0, 2.0));
   const glm::dvec3 enu = frame.EnuFromEcef(StarsAt(instant).front().direction).xyz;
   return {std::atan2(enu.x, enu.y) / kRadiansPerDegree, std::asin(enu.z) / kRadiansPerDegree};
 }
 
 TEST(NightPicture, AStarHasTheSameLuxAtEverySizeOfThePicture) {
-  const Look sirius = SiriusAt(kMoonless);
+  const StarView sirius = SiriusAt(kMoonless);
   ASSERT_GT(sirius.elevation, 20.0);
   const SceneRenderer renderer(QuickScene(2.0, sirius.azimuth, sirius.elevation + 0.1, 4.0));
   std::vector<double> lux;
@@ -78,7 +78,7 @@ TEST(NightPicture, AStarHasTheSameLuxAtEverySizeOfThePicture) {
 }
 
 TEST(NightPicture, TrailsHaveTheLuxOfTheirStarAndTheirLength) {
-  const Look sirius = SiriusAt(kMoonless);
+  const StarView sirius = SiriusAt(kMoonless);
   Scene scene = QuickScene(2.0, sirius.azimuth, sirius.elevation + 0.1, 4.0);
   const SceneRenderer still(scene);
   scene.camera.shutter_s = 300.0;
@@ -136,7 +136,7 @@ TEST(NightPicture, TheMoonDrawsATrailOfItsLight) {
 }
 
 TEST(NightPicture, OrionStandsInTheSouthOfAJanuaryNight) {
-  const Look sirius = SiriusAt(kMoonless);
+  const StarView sirius = SiriusAt(kMoonless);
   EXPECT_NEAR(sirius.azimuth, 172.0, 3.0) << "an hour before it culminates";
   const SceneRenderer renderer(QuickScene(2.0, sirius.azimuth, sirius.elevation, 4.0));
   const Image image = renderer.Render(kMoonless, Small(41, 41));

@@ -332,7 +332,6 @@ TEST(Aircraft, TheEyeLooksAlongTheNoseWithTheWingsOfTheAircraft) {
 // --- the autopilot ---
 
 constexpr double kPilotStep_s = 1.0 / 120.0;
-constexpr double kDegree = kRadiansPerDegree;
 
 /// An aircraft with its autopilot, far over the ground.
 struct Held {
@@ -366,7 +365,8 @@ double Apart(double heading_rad, double other_rad) {
 
 TEST(Autopilot, ANewHeadingIsReachedTheShortWayWithoutOvershootBeyondTwoDegrees) {
   for (const AircraftKind& kind : {kLightAircraft, kSmallJet}) {
-    for (const double target : {90.0 * kDegree, -135.0 * kDegree, 10.0 * kDegree}) {
+    for (const double target :
+         {90.0 * kRadiansPerDegree, -135.0 * kRadiansPerDegree, 10.0 * kRadiansPerDegree}) {
       Held held(kind, 1500.0);
       held.autopilot.Set({.heading_rad = target});
       double over = 0.0, steepest = 0.0;
@@ -375,9 +375,10 @@ TEST(Autopilot, ANewHeadingIsReachedTheShortWayWithoutOvershootBeyondTwoDegrees)
         over = std::max(over, target > 0.0 ? apart : -apart);
         steepest = std::max(steepest, std::abs(held.Read().bank_rad));
       });
-      EXPECT_LT(over, 2.0 * kDegree) << kind.name << " to " << target / kDegree;
-      EXPECT_NEAR(Apart(held.Read().heading_rad, target) / kDegree, 0.0, 0.1) << kind.name;
-      EXPECT_LT(steepest, 26.0 * kDegree) << kind.name;
+      EXPECT_LT(over, 2.0 * kRadiansPerDegree) << kind.name << " to " << target / kRadiansPerDegree;
+      EXPECT_NEAR(Apart(held.Read().heading_rad, target) / kRadiansPerDegree, 0.0, 0.1)
+          << kind.name;
+      EXPECT_LT(steepest, 26.0 * kRadiansPerDegree) << kind.name;
       EXPECT_NEAR(held.Height(), 1500.0, 20.0) << kind.name;
     }
   }
@@ -431,7 +432,7 @@ TEST(Autopilot, EngagedInATurnItJerksNothing) {
   held.Fly(20.0, [&](double t) {
     const AircraftReadout now = held.Read();
     if (t > 0.5) {
-      EXPECT_LT(std::abs(now.bank_rad - before.bank_rad) / kPilotStep_s, 12.0 * kDegree)
+      EXPECT_LT(std::abs(now.bank_rad - before.bank_rad) / kPilotStep_s, 12.0 * kRadiansPerDegree)
           << "8 degrees a second are asked for";
     }
     EXPECT_LT(std::abs(now.load - before.load) / kPilotStep_s, 2.0) << "loads a second";
@@ -444,10 +445,11 @@ TEST(Autopilot, HandsMoveWhatIsHeld) {
   held.autopilot.Set({.heading_rad = 0.0, .height_m = 1500.0, .speed_m_per_s = 50.0});
   for (int i = 0; i < 120; ++i)
     held.Step({.pitch_up = 1.0, .roll_right = -1.0, .throttle_up = -1.0});
-  EXPECT_NEAR(*held.autopilot.targets().heading_rad, -10.0 * kDegree, 1e-9);
+  EXPECT_NEAR(*held.autopilot.targets().heading_rad, -10.0 * kRadiansPerDegree, 1e-9);
   EXPECT_NEAR(*held.autopilot.targets().height_m, 1520.0, 1e-9);
   EXPECT_NEAR(*held.autopilot.targets().speed_m_per_s, 45.0, 1e-9);
-  EXPECT_LT(std::abs(held.Read().bank_rad), 10.0 * kDegree) << "the stick itself flies nothing";
+  EXPECT_LT(std::abs(held.Read().bank_rad), 10.0 * kRadiansPerDegree)
+      << "the stick itself flies nothing";
 }
 
 TEST(Autopilot, WhatCannotBeTogetherReplacesEachOther) {

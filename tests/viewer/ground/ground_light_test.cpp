@@ -13,6 +13,7 @@
 #include "atmosphere/math/numerics.h"
 #include "lut/image/image.h"
 #include "tests/fixtures/class_map.h"
+#include "tests/fixtures/quantile.h"
 #include "tests/fixtures/sanitized.h"
 #include "tests/renderer/picture/rough_site.h"
 #include "tests/viewer/ground/sun_in_closed_form.h"
@@ -118,7 +119,7 @@ class Blocks {
   GlBuffer air_, view_, ground_, light_, surface_, sky_block_;
 };
 
-struct Case {
+struct SeenPoint {
   Hit hit;
   LitVertex light;
   glm::dvec3 to_eye;
@@ -127,13 +128,13 @@ struct Case {
 const glm::dvec3 kEye(0.0, 0.0, kEye_m);
 
 /// Places of the terrain that see all of the sun or nothing: the renderer takes a point of it.
-std::vector<Case> LandCases(const LitGround& lit) {
+std::vector<SeenPoint> LandPoints(const LitGround& lit) {
   const Terrain& terrain = *lit.site().ground().terrain;
-  std::vector<Case> cases;
+  std::vector<SeenPoint> cases;
   for (int i = 1; i <= 400; ++i) {
     const glm::dvec3 above(6000.0 * (Halton(i, 2) - 0.5), 6000.0 * (Halton(i, 3) - 0.5), 9000.0);
     const auto found = terrain.Intersect(above, {0.0, 0.0, -1.0});
-    Case c;
+    SeenPoint c;
     c.hit.kind = HitKind::kTerrain;
     c.hit.point = above - glm::dvec3(0.0, 0.0, found->distance_m);
     c.hit.smooth_point = found->smooth_point;
@@ -154,15 +155,15 @@ std::vector<Case> LandCases(const LitGround& lit) {
 }
 
 /// Places of the planet that an eye sees beyond the mountains, in all directions.
-std::vector<Case> PlanetCases(const LitGround& lit, double eye_m) {
-  std::vector<Case> cases;
+std::vector<SeenPoint> PlanetPoints(const LitGround& lit, double eye_m) {
+  std::vector<SeenPoint> cases;
   for (int i = 1; i <= 300; ++i) {
     const double azimuth = 2.0 * kPi * Halton(i, 2);
     const double dip = std::atan(eye_m / (25e3 * std::pow(8.0, Halton(i, 3))));
     const glm::dvec3 direction(std::cos(dip) * std::cos(azimuth), std::cos(dip) * std::sin(azimuth),
                                -std::sin(dip));
     const SceneGround bare{lit.site().ground().frame, std::nullopt, 0.0, "", true};
-    Case c;
+    SeenPoint c;
     c.hit = SceneGeometry(bare, lit.site().medium(), false)
                 .Trace({0.0, 0.0, eye_m}, direction, kPixel_rad);
     c.to_eye = -direction;
@@ -175,12 +176,13 @@ std::vector<Case> PlanetCases(const LitGround& lit, double eye_m) {
 struct Question {
   std::string radiance;
   bool asks_sky_by_pixel;
-  std::function<tests::Arguments<float>(const Case&)> arguments;
+  std::function<tests::Arguments<float>(const SeenPoint&)> arguments;
 };
 
 /// The point from the eye, and what of the normal is needed to know it, before what a question
 /// adds.
-tests::Arguments<float> PlaceOf(const Case& c, double eye_m, const std::array<float, 3>& more) {
+tests::Arguments<float> PlaceOf(const SeenPoint& c, double eye_m,
+                                const std::array<float, 3>& more) {
   const auto point = tests::InFloats(c.hit.point - glm::dvec3(0.0, 0.0, eye_m));
   const auto normal = tests::InFloats(c.hit.mesh_normal);
   return {point[0], point[1], point[2], normal[0], normal[1], more[0], more[1], more[2]};
@@ -192,10 +194,10 @@ const std::string kNormal = "vec3(a[3], a[4], sqrt(1.0 - a[3] * a[3] - a[4] * a[
 
 /// Ascending relative differences of the sum of two bands: of light, arguments hold no more.
 std::vector<double> Differences(const LitGround& lit, const Lighting& light, double eye_m,
-                                const std::vector<Case>& cases, const Question& question) {
+                                const std::vector<SeenPoint>& cases, const Question& question) {
   Blocks blocks(lit, light, eye_m);
   std::vector<tests::Arguments<float>> points;
-  for (const Case& c : cases) points.push_back(question.arguments(c));
+  for (const SeenPoint& c : cases) points.push_back(question.arguments(c));
   const std::vector<float> gpu = tests::EvaluateOnGpu(
       Texts(lit.site().material()), "dot(" + question.radiance + ", vec4(1.0, 0.0, 1.0, 0.0))",
       points, [&](const ShaderProgram& program) {
@@ -222,24 +224,24 @@ std::vector<double> LandDifferences(const LitGround& lit) {
   const SkyIrradianceGradient open = UnoccludedSkyOver(lit);
   const glm::dvec3& to_sun = lit.lighting().to_sun;
   const glm::dvec3 sunward = glm::normalize(glm::dvec3(to_sun.x, to_sun.y, 0.0));
-  const auto shares = [open, sunward, &lit](const Case& c) {
+  const auto shares = [open, sunward, &lit](const SeenPoint& c) {
     const glm::dvec3& normal = c.hit.mesh_normal;
     const std::array<float, 4> of = open.On(
         glm::dot(normal, lit.site().geometry().UpAt(c.hit.point)), glm::dot(normal, sunward));
     return std::array<float, 3>{c.light.sun_x, c.light.sky[0] / of[0], c.light.sky[2] / of[2]};
   };
-  return Differences(lit, lit.lighting(), kEye_m, LandCases(lit),
+  return Differences(lit, lit.lighting(), kEye_m, LandPoints(lit),
                      {"GroundRadiance(" + kPoint + ", " + kNormal +
                           ", a[5], vec4(a[6], 0.0, a[7], 0.0), " + kToEye + ")",
-                      false, [&](const Case& c) { return PlaceOf(c, kEye_m, shares(c)); }});
+                      false, [&](const SeenPoint& c) { return PlaceOf(c, kEye_m, shares(c)); }});
 }
 
 std::vector<double> DifferencesByPixel(const LitGround& lit) {
   const std::string seen = "LandSeen(" + kPoint + ", " + kNormal + ", " + kToEye + ")";
-  return Differences(lit, lit.lighting(), kEye_m, LandCases(lit),
+  return Differences(lit, lit.lighting(), kEye_m, LandPoints(lit),
                      {"SentOn(" + seen + ", a[5], SkyAtPixel(GroundPlaceAt(" + kPoint + "), " +
                           kPoint + ", " + seen + ".normal), " + kToEye + ")",
-                      true, [](const Case& c) {
+                      true, [](const SeenPoint& c) {
                         return PlaceOf(c, kEye_m, {c.light.sun_x, 0.0F, 0.0F});
                       }});
 }
@@ -250,13 +252,9 @@ std::vector<double> PlanetDifferences(const LitGround& lit, double eye_m) {
   const SiteAir& air = lit.site().air();
   light.on_terrain = std::make_shared<const TerrainIrradiance>(
       nullptr, *air.single_scattering, *air.multiple_scattering, light.to_sun);
-  return Differences(lit, light, eye_m, PlanetCases(lit, eye_m),
+  return Differences(lit, light, eye_m, PlanetPoints(lit, eye_m),
                      {"PlanetRadiance(" + kPoint + ", " + kToEye + ")", false,
-                      [eye_m](const Case& c) { return PlaceOf(c, eye_m, {}); }});
-}
-
-double LightQuantile(const std::vector<double>& ascending, double share) {
-  return ascending[static_cast<std::size_t>(share * static_cast<double>(ascending.size() - 1))];
+                      [eye_m](const SeenPoint& c) { return PlaceOf(c, eye_m, {}); }});
 }
 
 GLint OffsetOf(const ShaderProgram& program, const char* member) {
@@ -294,8 +292,9 @@ TEST_F(GroundOnGpu, MountainsAreTheRenderers) {
        tests::ScaledDown(std::vector{50.0, 12.0, -3.0}, {12.0, -3.0})) {
     const std::vector<double> differences =
         LandDifferences(LitGround(site, tests::RoughSun(*site, elevation_deg)));
-    EXPECT_LT(LightQuantile(differences, 0.5), elevation_deg > 0.0 ? 4e-3 : 1e-2) << elevation_deg;
-    EXPECT_LT(LightQuantile(differences, 0.9), 0.03)
+    EXPECT_LT(tests::Quantile(differences, 0.5), elevation_deg > 0.0 ? 4e-3 : 1e-2)
+        << elevation_deg;
+    EXPECT_LT(tests::Quantile(differences, 0.9), 0.03)
         << "the sky's light on relief is corrected by that of an open place";
   }
 }
@@ -306,8 +305,8 @@ TEST_F(GroundOnGpu, PixelByPixelTheSkysLightOnMountainsIsTheRenderers) {
        tests::ScaledDown(std::vector{50.0, 12.0, -3.0, -8.0}, {12.0, -8.0})) {
     const std::vector<double> differences =
         DifferencesByPixel(LitGround(site, tests::RoughSun(*site, elevation_deg)));
-    EXPECT_LT(LightQuantile(differences, 0.5), 1e-3) << elevation_deg;
-    EXPECT_LT(LightQuantile(differences, 0.9), 5e-3) << elevation_deg;
+    EXPECT_LT(tests::Quantile(differences, 0.5), 1e-3) << elevation_deg;
+    EXPECT_LT(tests::Quantile(differences, 0.9), 5e-3) << elevation_deg;
   }
 }
 
@@ -326,8 +325,8 @@ TEST_F(GroundOnGpu, CoversOfOneColourAreTheRenderers) {
     for (const double elevation_deg : tests::ScaledDown(std::vector{50.0, 12.0}, {12.0})) {
       const std::vector<double> differences =
           LandDifferences(LitGround(site, tests::RoughSun(*site, elevation_deg)));
-      EXPECT_LT(LightQuantile(differences, 0.5), median) << elevation_deg;
-      EXPECT_LT(LightQuantile(differences, 0.9), most) << elevation_deg;
+      EXPECT_LT(tests::Quantile(differences, 0.5), median) << elevation_deg;
+      EXPECT_LT(tests::Quantile(differences, 0.9), most) << elevation_deg;
     }
   }
 }
@@ -348,8 +347,8 @@ TEST_F(GroundOnGpu, DrapedColoursAreTheRenderers) {
   std::filesystem::remove(file);
   const std::vector<double> differences =
       LandDifferences(LitGround(site, tests::RoughSun(*site, 50.0)));
-  EXPECT_LT(LightQuantile(differences, 0.5), 5e-3);
-  EXPECT_LT(LightQuantile(differences, 0.98), 0.02)
+  EXPECT_LT(tests::Quantile(differences, 0.5), 5e-3);
+  EXPECT_LT(tests::Quantile(differences, 0.98), 0.02)
       << "a picture resampled at its own width of a pixel";
 }
 
@@ -366,8 +365,8 @@ TEST_F(GroundOnGpu, MappedLandCoverIsTheRenderers) {
   std::filesystem::remove(file);
   const std::vector<double> differences =
       LandDifferences(LitGround(site, tests::RoughSun(*site, 50.0)));
-  EXPECT_LT(LightQuantile(differences, 0.5), 5e-3);
-  EXPECT_LT(LightQuantile(differences, 0.9), 0.03)
+  EXPECT_LT(tests::Quantile(differences, 0.5), 5e-3);
+  EXPECT_LT(tests::Quantile(differences, 0.9), 0.03)
       << "shores, and steep edges of snow, are elsewhere by "
          "a texel of the map resampled";
 }
@@ -382,9 +381,9 @@ TEST_F(GroundOnGpu, ThePlanetBeyondIsTheRenderers) {
       const LitGround lit(site, tests::RoughSun(*site, elevation_deg));
       for (const double eye_m : {1e3, 40e3}) {
         const std::vector<double> differences = PlanetDifferences(lit, eye_m);
-        EXPECT_LT(LightQuantile(differences, 0.5), elevation_deg > 0.0 ? 0.01 : 0.06)
+        EXPECT_LT(tests::Quantile(differences, 0.5), elevation_deg > 0.0 ? 0.01 : 0.06)
             << elevation_deg << " " << eye_m;
-        EXPECT_LT(LightQuantile(differences, 0.98), elevation_deg > 0.0 ? 0.07 : 0.12)
+        EXPECT_LT(tests::Quantile(differences, 0.98), elevation_deg > 0.0 ? 0.07 : 0.12)
             << "the reference solution's sky is linear between sectors of 22.5 degrees, and in "
                "twilight between "
                "suns a degree apart";

@@ -15,6 +15,7 @@
 #include "lut/image/image.h"
 #include "lut/image/tone_mapping.h"
 #include "lut/sky/sky_view.h"
+#include "tests/fixtures/lit_air.h"
 #include "tests/viewer/hud/hud_picture.h"
 #include "viewer/hud/hud_model.h"
 #include "viewer/hud/panel_controls.h"
@@ -338,20 +339,11 @@ TEST(HudTheme, ADuskDoesNotFlicker) {
 
 // --- the strip of the day ---
 
-/// Air of four bands with all of its light, solved once.
-struct Air {
-  std::shared_ptr<const SingleScattering<float>> air =
-      std::make_shared<SingleScattering<float>>(MediumPreset("earth"));
-  std::shared_ptr<const MultipleScattering> multiple_scattering =
-      std::make_shared<MultipleScattering>(MediumPreset("earth"));
-};
-const Air& Earth() {
-  static const Air earth;
-  return earth;
-}
-
 DayStripRequest Alps() {
-  DayStripRequest request{Earth().multiple_scattering, PlaceFromDegrees(46.0, 8.0, 500.0), {}, 24};
+  // The light is not the request's own: it lasts as long as the tests.
+  const std::shared_ptr<const MultipleScattering> light(std::shared_ptr<void>(),
+                                                        &tests::Earth().multiple_scattering);
+  DayStripRequest request{light, PlaceFromDegrees(46.0, 8.0, 500.0), {}, 24};
   request.begin = ParseInstant("2026-03-19T23:28:00Z");  // midnight of the mean sun
   return request;
 }
@@ -372,11 +364,11 @@ TEST(DayStrip, NoonIsBlueMidnightBlackAndDuskRedBelow) {
 TEST(DayStrip, ColoursAreThoseOfTheSky) {
   const DayStripRequest request = Alps();
   const DayStrip strip = MakeDayStrip(request);
-  const Medium& medium = Earth().air->medium();
+  const Medium& medium = tests::Earth().medium;
   for (const int column : {7, 12, 18}) {
     const SunPosition sun =
         ApparentSunAt(request.place, AddSeconds(request.begin, 3600.0 * (column + 0.5)));
-    const SkyView view(*Earth().air, *request.multiple_scattering, request.place.height_m,
+    const SkyView view(tests::Earth().air, *request.multiple_scattering, request.place.height_m,
                        std::sin(sun.elevation_rad));
     const double dip =
         std::acos(medium.planet_radius_m / (medium.planet_radius_m + request.place.height_m));

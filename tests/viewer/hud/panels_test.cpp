@@ -278,12 +278,12 @@ TEST_F(PanelsTest, OutsideOfTheAircraftThereIsNoThrottle) {
 
 constexpr double kLeastContrast = 4.5;  // WCAG 2.1, 1.4.3
 
-using Rgb = std::array<float, 3>;
+using ScreenColour = std::array<float, 3>;
 
 /// A letter on the screen: its box [pixels] and its colour.
 struct Letter {
   ImVec2 from, to;
-  Rgb colour;
+  ScreenColour colour;
 };
 
 bool IsLetter(const ImDrawVert* v) {
@@ -318,8 +318,8 @@ std::vector<Letter> TakeLetters(Of which) {
   return letters;
 }
 
-double LightOf(const Rgb& codes) {
-  Rgb light{};
+double LightOf(const ScreenColour& codes) {
+  ScreenColour light{};
   for (std::size_t c = 0; c < 3; ++c) {
     light[c] =
         codes[c] <= 0.04045F ? codes[c] / 12.92F : std::pow((codes[c] + 0.055F) / 1.055F, 2.4F);
@@ -327,7 +327,7 @@ double LightOf(const Rgb& codes) {
   return tests::Luminance(light);
 }
 
-double Contrast(const Rgb& a, const Rgb& b) {
+double Contrast(const ScreenColour& a, const ScreenColour& b) {
   const double one = LightOf(a) + 0.05, other = LightOf(b) + 0.05;
   return std::max(one, other) / std::min(one, other);
 }
@@ -341,7 +341,7 @@ struct Worst {
 /// A picture whose left and right halves have a colour each.
 struct Halves {
   const char* name;
-  Rgb left, right;
+  ScreenColour left, right;
 };
 
 // Black night, the grey of middle codes, the beige of a lit fog, snow, and edges between them.
@@ -361,7 +361,7 @@ class Readable : public tests::HudPicture {
     target.Bind();
     glEnable(GL_SCISSOR_TEST);
     for (const bool right : {false, true}) {
-      const Rgb& rgb = right ? halves.right : halves.left;
+      const ScreenColour& rgb = right ? halves.right : halves.left;
       glScissor(right ? width / 2 : 0, 0, width, height);
       glClearColor(rgb[0], rgb[1], rgb[2], 1.0F);
       glClear(GL_COLOR_BUFFER_BIT);

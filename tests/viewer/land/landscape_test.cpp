@@ -11,6 +11,7 @@
 #include "atmosphere/astronomy/sun.h"
 #include "renderer/elevation/obj_file.h"
 #include "renderer/terrain/terrain.h"
+#include "tests/fixtures/quantile.h"
 #include "tests/fixtures/sanitized.h"
 #include "tests/viewer/land/headless_land.h"
 #include "viewer/land/land_pass.h"
@@ -130,10 +131,6 @@ Misses MissesOf(const std::vector<glm::vec4>& picture, const LookOut& eye, const
   return misses;
 }
 
-double Quantile(const std::vector<double>& sorted, double share) {
-  return sorted[static_cast<std::size_t>(share * static_cast<double>(sorted.size() - 1))];
-}
-
 TEST_F(LandscapePictures, DistanceAndNormalAreTheRenderersFromTheGroundToOrbit) {
   WriteTile(folder_ / "a.tif", 0, 0);
   const GeodeticPosition middle = PlaceOfSample(120.0, 120.0, 0.0);
@@ -158,11 +155,11 @@ TEST_F(LandscapePictures, DistanceAndNormalAreTheRenderersFromTheGroundToOrbit) 
     const Misses misses = MissesOf(Settled(land, eye), eye, terrain, frame);
     ASSERT_GT(misses.both, 500);
     EXPECT_LE(misses.only_one, 4 + misses.both / 30) << "rims of mountains and of the land";
-    EXPECT_LT(Quantile(misses.distance, 0.5), view.middling);
-    EXPECT_LT(Quantile(misses.distance, 0.95), view.most);
-    EXPECT_TRUE(view.above_m > 10.0 || Quantile(misses.normal, 0.5) < 5e-5)
+    EXPECT_LT(tests::Quantile(misses.distance, 0.5), view.middling);
+    EXPECT_LT(tests::Quantile(misses.distance, 0.95), view.most);
+    EXPECT_TRUE(view.above_m > 10.0 || tests::Quantile(misses.normal, 0.5) < 5e-5)
         << "16 bits a coordinate";
-    EXPECT_TRUE(view.above_m > 3e3 || Quantile(misses.normal, 0.5) < 0.03)
+    EXPECT_TRUE(view.above_m > 3e3 || tests::Quantile(misses.normal, 0.5) < 0.03)
         << "slopes of the next finer level; the level's own triangles have 0.04";
   }
 }
@@ -181,7 +178,7 @@ TEST_F(LandscapePictures, DistanceIsThatAlongTheRayOfAPixelNotAlongItsMiddle) {
   eye.shift = {1.0 / kWidth, 1.0 / kHeight};
   const Misses misses = MissesOf(Settled(land, eye), eye, terrain, frame);
   ASSERT_GT(misses.both, 500);
-  EXPECT_LT(Quantile(misses.distance, 0.5), 1e-5) << "1e-3 along the middle";
+  EXPECT_LT(tests::Quantile(misses.distance, 0.5), 1e-5) << "1e-3 along the middle";
 }
 
 // With every sample drawn, the picture is the renderer's wherever nothing is left out that is seen.
@@ -203,7 +200,7 @@ TEST_F(LandscapePictures, WhatNearLandHidesIsLeftOutAndNothingElse) {
     fewest = std::min(fewest, land.Figures().chunks);
     most = std::max(most, land.Figures().chunks);
     EXPECT_LE(misses.only_one, 4) << "pixels on a rim";
-    EXPECT_LT(Quantile(misses.distance, 0.99), 1e-3) << "the rest lies on crests";
+    EXPECT_LT(tests::Quantile(misses.distance, 0.99), 1e-3) << "the rest lies on crests";
   }
   EXPECT_LT(4 * fewest, most) << "in a valley little is seen";
 }
@@ -406,7 +403,8 @@ TEST_F(LandscapePictures, FarFromWhereItBeganTheLandIsAsExact) {
       MeshFromElevation(ReadElevation(folder_ / "b.tif", VoidPolicy::kFill).grid, frame));
   const Misses misses = MissesOf(Settled(land, eye), eye, terrain, frame);
   EXPECT_GT(misses.both, 500);
-  EXPECT_LT(Quantile(misses.distance, 0.5), 1e-4) << "2 m over ground that floats place to 1 mm";
+  EXPECT_LT(tests::Quantile(misses.distance, 0.5), 1e-4)
+      << "2 m over ground that floats place to 1 mm";
 }
 
 // Beside these tiles coarse land reaches 130 m higher than the fine land in its place: over a range
@@ -488,8 +486,8 @@ TEST_F(LandscapePictures, AMeshIsDrawnWhole) {
   const LocalFrame frame(kWgs84, {0.81, 0.14, 0.0});
   const Misses misses = MissesOf(picture, eye, Terrain(ReadObj(folder_ / "hill.obj").mesh), frame);
   EXPECT_GT(misses.both, 500);
-  EXPECT_LT(Quantile(misses.distance, 1.0), 1e-5);
-  EXPECT_LT(Quantile(misses.normal, 1.0), 1e-4);
+  EXPECT_LT(tests::Quantile(misses.distance, 1.0), 1e-5);
+  EXPECT_LT(tests::Quantile(misses.normal, 1.0), 1e-4);
   const auto grid = land.ground().Sampler()(eye.place, 1000.0, 9);
   ASSERT_TRUE(grid);
   EXPECT_NEAR(*grid->HeightAt(0.81, 0.14), 200.0, 0.1);

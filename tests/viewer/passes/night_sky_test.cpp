@@ -19,8 +19,6 @@
 namespace alpenglow::viewer {
 namespace {
 
-constexpr double kDegree = kRadiansPerDegree;
-
 PaintedView ViewOf(const Scene& scene, int width, int height) {
   return {{scene.place, scene.camera.heading_rad, scene.camera.pitch_rad, scene.camera.roll_rad,
            scene.camera.fov_rad},
@@ -35,7 +33,9 @@ StarLight StarAt(double elevation_deg, double azimuth_deg, double lux) {
   BandLight light(4);
   for (std::size_t band = 0; band < 4; ++band)
     light[band] = static_cast<float>(lux * static_cast<double>(1 + band));
-  return {DirectionFromAngles(elevation_deg * kDegree, azimuth_deg * kDegree).xyz, light, lux};
+  return {
+      DirectionFromAngles(elevation_deg * kRadiansPerDegree, azimuth_deg * kRadiansPerDegree).xyz,
+      light, lux};
 }
 
 std::vector<StarPoint> PointsOf(const PaintedView& view, const std::vector<StarLight>& lights,
@@ -96,10 +96,11 @@ TEST(StarPoints, ThoseTooFaintBehindTheEyeOrBehindTheMoonAreLeftOut) {
 }
 
 TEST(StarPoints, TheSkyTurnsWestwardsAboutThePoleOnceASiderealDay) {
-  const double latitude = 46.5 * kDegree;
+  const double latitude = 46.5 * kRadiansPerDegree;
   const glm::dvec3 pole(0.0, std::cos(latitude), std::sin(latitude));
   EXPECT_NEAR(glm::length(TurnOfSky(latitude, 7000.0) * pole - pole), 0.0, 1e-14);
-  const glm::dvec3 south = DirectionFromAngles(30.0 * kDegree, 180.0 * kDegree).xyz;
+  const glm::dvec3 south =
+      DirectionFromAngles(30.0 * kRadiansPerDegree, 180.0 * kRadiansPerDegree).xyz;
   EXPECT_LT((TurnOfSky(latitude, 600.0) * south).x, 0.0) << "west of the meridian later on";
   EXPECT_NEAR(glm::length(TurnOfSky(latitude, 86164.0905) * south - south), 0.0, 1e-12);
 }
@@ -134,9 +135,10 @@ TEST(StarPoints, LowStarsOfAnOldListStandWhereTheNextOneHasThem) {
     int low = 0;
     for (std::size_t i = 0; i < now.size(); ++i) {
       const double over_rad = std::asin(now[i].direction.z) - view.horizon_rad();
-      if (over_rad < 0.0 || over_rad > 10.0 * kDegree) continue;
+      if (over_rad < 0.0 || over_rad > 10.0 * kRadiansPerDegree) continue;
       ++low;
-      EXPECT_LT(glm::length(TowardsStar(before[i], sky) - now[i].direction), 0.1 / 60.0 * kDegree)
+      EXPECT_LT(glm::length(TowardsStar(before[i], sky) - now[i].direction),
+                0.1 / 60.0 * kRadiansPerDegree)
           << "a tenth of a minute of arc, as RefractedView; " << height_m << " m";
     }
     EXPECT_GT(low, 20);
@@ -231,7 +233,7 @@ TEST(LightsOfSky, OfTheSecondNoShadowIsSeenInAnyEveningOfAMonth) {
   for (int day = 0; day < 30; ++day) {
     for (const double elevation_deg : {0.5, -1.0, -2.5, -3.49}) {
       const UtcInstant now =
-          WhenTheSunIsAt(elevation_deg * kDegree, eye, UtcInstant{61058 + day, 41400.0});
+          WhenTheSunIsAt(elevation_deg * kRadiansPerDegree, eye, UtcInstant{61058 + day, 41400.0});
       const LightsOfSky lights = LightsOfSkyAt(eye, now, ApparentSunAt(eye, now), *air);
       ASSERT_FALSE(lights.front().is_moon) << day << ' ' << elevation_deg;
       if (lights.size() == 1) continue;
@@ -250,7 +252,7 @@ TEST(LightsOfSky, WhenTheMoonIsFirstNoSummitIsLitByTheSun) {
   const GeodeticPosition eye = PlaceFromDegrees(46.5, 8.0, 2000.0);
   const auto air = SolveAir(MediumPreset("earth"), AirSolution::kDraft);
   // The moon is full on the 3rd of January 2026 and rises before the sun has set.
-  const UtcInstant now = WhenTheSunIsAt(-3.51 * kDegree, eye, UtcInstant{61043, 41400.0});
+  const UtcInstant now = WhenTheSunIsAt(-3.51 * kRadiansPerDegree, eye, UtcInstant{61043, 41400.0});
   const LightsOfSky lights = LightsOfSkyAt(eye, now, ApparentSunAt(eye, now), *air);
   ASSERT_EQ(lights.size(), 2U);
   EXPECT_TRUE(lights.front().is_moon);

@@ -36,7 +36,7 @@ struct PictureSize {
 };
 constexpr PictureSize kFull{96, 54}, kScaled = tests::ScaledDown(kFull, {64, 36});
 // Rays of both fall on different places of rough ground: the fewer, the farther they are apart.
-constexpr int kSamples = 32;
+constexpr int kPictureSamples = 32;
 
 RenderSettings ReferenceSettings(const PictureSize& size, int samples) {
   RenderSettings settings;
@@ -59,7 +59,7 @@ PaintedView ViewOf(const Scene& scene, double eye_height_m, const UtcInstant& no
 /// The renderer and the painter of a scene, for as many views as one likes.
 class BothPrograms {
  public:
-  explicit BothPrograms(const Scene& scene, const UtcInstant& first, int samples = kSamples)
+  explicit BothPrograms(const Scene& scene, const UtcInstant& first, int samples = kPictureSamples)
       : samples_(samples),
         ground_(std::make_shared<const SceneGround>(LoadGround(scene))),
         reference_(scene, ground_),
@@ -193,7 +193,7 @@ TEST_F(SkyPainterTest, FogIsTheRenderersAndShadedByMountains) {
     view.scene.fog->scale_height_m = c.scale_height_m;
     view.scene.fog->base_height_m = c.base_height_m;
     view.scene.fog->phase = FogPhase(14.0);
-    const int samples = tests::ScaledDown(kSamples, 16);
+    const int samples = tests::ScaledDown(kPictureSamples, 16);
     ExpectWithin(BothPrograms(view.scene, view.instant, samples).Difference(view), c.bounds,
                  "light of the fog and its shade are maps, and light of the air before it is "
                  "weighed in a few stretches");
@@ -386,7 +386,7 @@ using BarePlanet = tests::Headless;
 
 void ExpectTheRenderers(const Scene& scene, const std::vector<const char*>& instants) {
   // The ground is smooth, so that fewer rays a pixel have little more noise.
-  BothPrograms both(scene, ParseInstant(instants.front()), tests::ScaledDown(kSamples, 8));
+  BothPrograms both(scene, ParseInstant(instants.front()), tests::ScaledDown(kPictureSamples, 8));
   for (const char* utc : instants) {
     const ViewDifference is =
         both.Difference(ViewOf(scene, scene.camera.height.value_m, ParseInstant(utc)));

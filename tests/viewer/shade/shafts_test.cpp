@@ -12,6 +12,7 @@
 #include "renderer/terrain/terrain.h"
 #include "renderer/visibility/shade_map.h"
 #include "renderer/visibility/shadow_heights.h"
+#include "tests/fixtures/quantile.h"
 #include "tests/fixtures/rough_land.h"
 #include "tests/viewer/shaders/gpu_values.h"
 #include "tests/viewer/shaders/headless.h"
@@ -109,10 +110,6 @@ std::vector<double> ErrorsUnder(double sun_degrees, const ShadeSteps& steps) {
   return errors;
 }
 
-double Quantile(const std::vector<double>& ascending, double share) {
-  return ascending[static_cast<std::size_t>(share * static_cast<double>(ascending.size() - 1))];
-}
-
 using Shafts = tests::Headless;
 
 TEST_F(Shafts, TakeWhatTheRenderersShadowHeightsTake) {
@@ -122,14 +119,14 @@ TEST_F(Shafts, TakeWhatTheRenderersShadowHeightsTake) {
   for (const Case& c : {Case{15.0, 0.005, 0.02}, Case{8.0, 0.015, 0.02}, Case{3.0, 0.01, 0.03},
                         Case{1.0, 0.015, 0.05}}) {
     const std::vector<double> fine = ErrorsUnder(c.sun_degrees, {16, 8});
-    EXPECT_LT(Quantile(fine, 0.5), 1e-3);
-    EXPECT_LT(Quantile(fine, 0.99), c.fine_p99)
+    EXPECT_LT(tests::Quantile(fine, 0.5), 1e-3);
+    EXPECT_LT(tests::Quantile(fine, 0.99), c.fine_p99)
         << "of the light of the unshaded ray: crests are cut off between samples of 60 m, their "
            "shade between steps; sun at "
         << c.sun_degrees;
     const std::vector<double> coarse = ErrorsUnder(c.sun_degrees, {4, 6});
-    EXPECT_LT(Quantile(coarse, 0.9), 0.015);
-    EXPECT_LT(Quantile(coarse, 0.99), c.coarse_p99) << c.sun_degrees;
+    EXPECT_LT(tests::Quantile(coarse, 0.9), 0.015);
+    EXPECT_LT(tests::Quantile(coarse, 0.99), c.coarse_p99) << c.sun_degrees;
   }
 }
 
@@ -301,7 +298,7 @@ TEST_F(Shafts, OfEveryFourthPixelAreTakenBetweenRaysThatComeAsFar) {
   std::sort(apart.begin(), apart.end());
   EXPECT_GT(largest, 0.12) << "of the light of a ray of any length";
   EXPECT_GT(jump, 0.1) << "near and far stand side by side";
-  EXPECT_LT(Quantile(apart, 0.95), 0.01) << "and do not run into each other";
+  EXPECT_LT(tests::Quantile(apart, 0.95), 0.01) << "and do not run into each other";
   EXPECT_LT(apart.back(), 0.05) << "an edge of shade across rays a degree apart";
 }
 
