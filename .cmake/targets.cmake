@@ -44,11 +44,11 @@ function(alpenglow_precompiled_headers)
 endfunction()
 alpenglow_precompiled_headers()
 
-# alpenglow_many_as_one(<library>): fewer and longer compilations than those of programs (8 sources), because the
-# code of templates that sources share is generated once. They take at most 1 GB.
-function(alpenglow_many_as_one target)
-  target_precompile_headers(${target} REUSE_FROM alpenglow_precompiled)
-  set_target_properties(${target} PROPERTIES UNITY_BUILD_BATCH_SIZE 16)
+# alpenglow_many_as_one(<target> <owner of precompiled headers>): twenty sources are compiled as one where the
+# default is eight, because the code of templates that sources share is generated once. They take at most 1 GB.
+function(alpenglow_many_as_one target headers)
+  target_precompile_headers(${target} REUSE_FROM ${headers})
+  set_target_properties(${target} PROPERTIES UNITY_BUILD_BATCH_SIZE 20)
 endfunction()
 
 # alpenglow_library(<folder> SOURCES a.cpp ... API b.cpp ...): the sources in API implement the public headers,
@@ -66,7 +66,7 @@ function(alpenglow_library folder)
     $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}>
     $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
   target_link_libraries(${target} PRIVATE $<BUILD_INTERFACE:alpenglow_warnings>)
-  alpenglow_many_as_one(${target})
+  alpenglow_many_as_one(${target} alpenglow_precompiled)
   install(TARGETS ${target} EXPORT alpenglow ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
 endfunction()
 
@@ -99,9 +99,10 @@ set(ALPENGLOW_OPTIONS_Avx512 ${ALPENGLOW_OPTIONS_Avx2}
   # gcc 12 takes its own _mm512_undefined_ps for a mistake.
   $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized> $<$<CXX_COMPILER_ID:GNU>:-Wno-uninitialized>)
 
-# alpenglow_kernels(<library target> a_kernel.cpp ...): compiles each file once per instruction set and
+# alpenglow_kernels(<library target> a_kernel.cpp ...): compiles the files once per instruction set and
 # puts the objects into the library. Optimised in every configuration: without inlining their symbols
-# would leak.
+# would leak. Under sanitizers batches at -O1 are half as fast,
+# and scalar kernels at -O2 take three times as long to compile.
 function(alpenglow_kernels target)
   set(sets)
   if("Avx2" IN_LIST ALPENGLOW_INSTRUCTION_SETS)
@@ -109,25 +110,23 @@ function(alpenglow_kernels target)
   endif()
   # The choice is made in a header, so all who include it must see the same sets.
   target_compile_definitions(${target} PUBLIC ${sets})
-  foreach(source ${ARGN})
-    get_filename_component(name ${source} NAME_WE)
-    foreach(set ${ALPENGLOW_INSTRUCTION_SETS})
-      set(objects alpenglow_${name}_${set})
-      add_library(${objects} OBJECT ${source})
-      target_compile_features(${objects} PRIVATE cxx_std_20)
-      target_include_directories(${objects} PRIVATE
-        $<TARGET_PROPERTY:${target},INCLUDE_DIRECTORIES>)
-      target_compile_definitions(${objects} PRIVATE ${sets} ALPENGLOW_KERNEL_SET=k${set}
-        $<$<NOT:$<STREQUAL:${set},Scalar>>:ALPENGLOW_BATCHES>)
-      target_compile_options(${objects} PRIVATE
-        $<TARGET_PROPERTY:alpenglow_warnings,INTERFACE_COMPILE_OPTIONS>
-        $<$<CONFIG:Debug,Sanitize>:-O2> $<$<CONFIG:Check>:-O1> ${ALPENGLOW_OPTIONS_${set}}
-        # Batches are passed by reference. Checks of their scope, on top of the four that are off, make
-        # kernels 14 times slower, and they take 5 times as long to compile.
-        $<$<CONFIG:Sanitize>:-fno-sanitize-address-use-after-scope>)
-      target_sources(${target} PRIVATE $<TARGET_OBJECTS:${objects}>)
-      set_property(GLOBAL APPEND PROPERTY ALPENGLOW_KERNEL_OBJECTS ${objects})
-    endforeach()
+  foreach(set ${ALPENGLOW_INSTRUCTION_SETS})
+    set(objects ${target}_kernels_${set})
+    add_library(${objects} OBJECT ${ARGN})
+    target_compile_features(${objects} PRIVATE cxx_std_20)
+    target_include_directories(${objects} PRIVATE
+      $<TARGET_PROPERTY:${target},INCLUDE_DIRECTORIES>)
+    target_compile_definitions(${objects} PRIVATE ${sets} ALPENGLOW_KERNEL_SET=k${set}
+      $<$<NOT:$<STREQUAL:${set},Scalar>>:ALPENGLOW_BATCHES>)
+    target_compile_options(${objects} PRIVATE
+      $<TARGET_PROPERTY:alpenglow_warnings,INTERFACE_COMPILE_OPTIONS>
+      $<$<CONFIG:Debug>:-O2> $<$<CONFIG:Check>:-O1>
+      $<$<AND:$<CONFIG:Sanitize>,$<NOT:$<STREQUAL:${set},Scalar>>>:-O2> ${ALPENGLOW_OPTIONS_${set}}
+      # Batches are passed by reference. Checks of their scope, on top of the four that are off, make
+      # kernels 14 times slower, and they take 5 times as long to compile.
+      $<$<CONFIG:Sanitize>:-fno-sanitize-address-use-after-scope>)
+    target_sources(${target} PRIVATE $<TARGET_OBJECTS:${objects}>)
+    set_property(GLOBAL APPEND PROPERTY ALPENGLOW_KERNEL_OBJECTS ${objects})
   endforeach()
 endfunction()
 
@@ -260,7 +259,7 @@ function(alpenglow_tests program)
   target_link_libraries(${program} PRIVATE
     alpenglow_test_headers ${arg_LIBRARIES} GTest::gtest_main)
   alpenglow_places(${program} ${arg_PROGRAMS})
-  target_precompile_headers(${program} REUSE_FROM alpenglow_test_headers)
+  alpenglow_many_as_one(${program} alpenglow_test_headers)
   set(all "")
   foreach(source ${arg_LONG} ${arg_SOURCES})
     get_filename_component(name ${source} NAME_WE)

@@ -20,7 +20,7 @@ LAYERS = ("atmosphere", "lut", "renderer", "viewer")
 SOURCES = (".h", ".cpp", ".glsl")
 MOST_PUBLIC_METHODS = 20
 LIMITS = {
-    "source files of the four layers": 468,
+    "source files of the four layers": 470,
     "types with more than 20 public methods": 0,
     "lines of the viewer without OpenGL": 1264,
     "files over 500 lines": 5,
