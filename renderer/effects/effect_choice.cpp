@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <numeric>
 
 #include "atmosphere/base/error.h"
@@ -239,7 +238,6 @@ std::vector<PixelPlace> PreviewGrid(int width, int height, int count) {
 
 std::vector<PixelPlace> PilotSpiral(int width, int height, const std::array<double, 2>& centre,
                                     double radius, int count) {
-  constexpr double kGoldenAngle = std::numbers::pi * (3.0 - 2.2360679774997896964);
   std::vector<PixelPlace> places;
   for (int i = 0; i < count; ++i) {
     const double r = radius * std::sqrt((i + 0.5) / count);

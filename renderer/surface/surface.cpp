@@ -39,8 +39,6 @@ constexpr std::array<Noise, kGroundNoises> kNoises{{
     {shared::kWaveWave_m, shared::kWaveOctaves, shared::kWaveSeed, shared::kWaveFall},
 }};
 
-constexpr double kGoldenAngle = 2.399963229728653;  // no two octaves lean or travel alike
-
 // Waves travel to the east with a spread of 50 degrees to either side, 29 rms.
 void SetTravelling(NoiseOctave& wave, int octave) {
   constexpr double kNoiseWaves = 4.1;  // rms slope of the noise over its rms height, per square
@@ -53,6 +51,7 @@ void SetTravelling(NoiseOctave& wave, int octave) {
 }
 
 std::vector<NoiseOctave> MadeOctaves(GroundNoise family) {
+  // By multiples of the golden angle no two octaves lean or travel alike.
   constexpr double kLean = 0.6;
   const Noise& noise = kNoises[static_cast<std::size_t>(family)];
   std::vector<NoiseOctave> octaves;

@@ -140,8 +140,8 @@ HeightRaster HeightsAround(const ElevationGrid& grid, const LocalFrame& frame, d
 
 namespace {
 
-constexpr double kLowestSun_rad = -3.0 * kRadiansPerDegree;
-constexpr double kHighestSun_rad = 80.0 * kRadiansPerDegree;
+constexpr double kLowestMappedSun_rad = -3.0 * kRadiansPerDegree;
+constexpr double kHighestMappedSun_rad = 80.0 * kRadiansPerDegree;
 
 // Height below any shadow. It is finite because maps are interpolated.
 constexpr float kNoShade_m = -1e5F;
@@ -272,7 +272,8 @@ SunShadowMap SunShadowMapOf(const HeightRaster& heights, const glm::dvec3& to_su
   ALPENGLOW_ENSURE(std::abs(glm::length(to_sun) - 1.0), <, 1e-6);
   ALPENGLOW_ENSURE(most_side, >=, 2);
   const double elevation = std::asin(std::clamp(to_sun.z, -1.0, 1.0));
-  if (elevation < kLowestSun_rad || elevation > kHighestSun_rad || heights.z_m.empty()) return {};
+  if (elevation < kLowestMappedSun_rad || elevation > kHighestMappedSun_rad || heights.z_m.empty())
+    return {};
   SunShadowMap map = EmptyMap(heights, to_sun, most_side);
   map.height.resize(static_cast<std::size_t>(map.columns) * static_cast<std::size_t>(map.lines));
   // At least two steps per cell of the map, and at least one per cell of the heights.

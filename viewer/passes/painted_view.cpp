@@ -124,7 +124,7 @@ namespace {
 /// The nodes extend to this many radii from the centre of the disk. The disk may move by the
 /// remainder.
 constexpr double kReach = 1.25;
-constexpr double kMostWay_rad = 1.0 / 60.0 * kRadiansPerDegree;
+constexpr double kMostDiskTurn_rad = 1.0 / 60.0 * kRadiansPerDegree;
 
 }  // namespace
 
@@ -174,7 +174,7 @@ const RefractedDisk* RefractedDiskFollower::Follow(const std::shared_ptr<const S
   const double height_step_m = 0.002 * std::max(height_m, 1.0);
   const bool suits = made_ && made_->air == air &&
                      std::abs(made_->height_m - height_m) < height_step_m &&
-                     std::abs(made_->elevation_rad - elevation_rad) < kMostWay_rad;
+                     std::abs(made_->elevation_rad - elevation_rad) < kMostDiskTurn_rad;
   if (!suits)
     made_ = {air, height_m, elevation_rad,
              RefractedDiskOf(air->medium, height_m, elevation_rad, radius_rad)};
