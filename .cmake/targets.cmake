@@ -101,8 +101,8 @@ set(ALPENGLOW_OPTIONS_Avx512 ${ALPENGLOW_OPTIONS_Avx2}
 
 # alpenglow_kernels(<library target> a_kernel.cpp ...): compiles the files once per instruction set and
 # puts the objects into the library. Optimised in every configuration: without inlining their symbols
-# would leak. Under sanitizers batches at -O1 are half as fast,
-# and scalar kernels at -O2 take three times as long to compile.
+# would leak. Under sanitizers, batches at -O1 are half as fast, and scalar kernels at -O2 take three
+# times as long to compile.
 function(alpenglow_kernels target)
   set(sets)
   if("Avx2" IN_LIST ALPENGLOW_INSTRUCTION_SETS)

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "lut/multiple_scattering/successive_orders.h"
+#include "lut/multiple_scattering/four_bands.h"
 
 #include <tbb/parallel_for.h>
 
@@ -13,27 +14,15 @@
 namespace alpenglow::lut {
 namespace {
 
-/// One value per band of a block. The compiler adds two such vectors by one instruction. Lanes of a
-/// glm vector are added one by one, and the sanitizers check each.
-using Light = float __attribute__((vector_size(16)));
-
-Light LoadLight(const float* from) {
-  Light light;
-  __builtin_memcpy(&light, from, sizeof light);
-  return light;
-}
-
-void StoreLight(float* to, const Light& light) { __builtin_memcpy(to, &light, sizeof light); }
-
-Light NotNegative(const Light& light) {
-  const Light dark = {};
+Four NotNegative(const Four& light) {
+  const Four dark = {};
   return light < dark ? dark : light;
 }
 
 /// Packed moments and sky irradiance at every node, divided by TwilightOf (and SinePower).
 struct Field {
   AlignedFloats moments;
-  std::vector<Light> sky;
+  std::vector<Four> sky;
 };
 
 /// Memory layout of the nodes.
@@ -46,8 +35,8 @@ struct Layout {
   std::size_t degree, suns, nodes, stride;
 };
 
-Light Of(const std::vector<double>& bands, std::size_t first_band) {
-  Light block = {};
+Four Of(const std::vector<double>& bands, std::size_t first_band) {
+  Four block = {};
   for (std::size_t lane = 0; lane < kBlockBands && first_band + lane < bands.size(); ++lane)
     block[static_cast<int>(lane)] = static_cast<float>(bands[first_band + lane]);
   return block;
@@ -57,7 +46,7 @@ Light Of(const std::vector<double>& bands, std::size_t first_band) {
 /// the frame of polarised_scattering.h, are present for polarised light only.
 struct MarchRadiance {
   MarchRadiance(std::size_t rays, bool polarised) : i(rays), q(polarised ? rays : 0), u(q) {}
-  std::vector<Light> i, q, u;
+  std::vector<Four> i, q, u;
 };
 
 /// Transport of four bands along the marches of one set.
@@ -72,27 +61,27 @@ class Transport {
                Field& field) const;
 
  private:
-  using Around = std::array<Light, kMaxDegree + 1>;
+  using Around = std::array<Four, kMaxDegree + 1>;
   [[nodiscard]] bool polarised() const { return marches_.grid().polarised; }
   void ProjectMarch(const March& march, std::size_t altitude, const MarchRadiance& radiance,
                     Field& field) const;
-  [[nodiscard]] Around Harmonics(const Light* radiance, float share, bool sines) const;
+  [[nodiscard]] Around Harmonics(const Four* radiance, float share, bool sines) const;
   void AddMoments(const March& march, const Around& around, float sun_sine, float* moments) const;
   void AddTensor(const March& march, const Around& i, const Around& q, const Around& u,
                  float sun_sine, float* moments) const;
   void PolariseSunlight(const March& march, const SunlightOfMarch& sunlight,
                         MarchRadiance& radiance) const;
-  void AddGroundLight(const March& march, const Light& reflected, const Field& previous,
-                      std::vector<Light>& radiance) const;
+  void AddGroundLight(const March& march, const Four& reflected, const Field& previous,
+                      std::vector<Four>& radiance) const;
 
   const MomentMarches& marches_;
   Layout layout_;
   std::size_t first_band_;
-  Light albedo_;
+  Four albedo_;
   BlockShape shape_;
   std::vector<float> twilight_;
   std::vector<std::vector<std::vector<MarchLight>>> lights_;  // [altitude][march][point]
-  std::vector<std::vector<Light>> ground_transmittance_;      // [altitude][march]
+  std::vector<std::vector<Four>> ground_transmittance_;       // [altitude][march]
 };
 
 // Returns the transmittance to a point of a march, times its weight and scattering coefficients.
@@ -132,12 +121,12 @@ Transport::Transport(const MomentMarches& marches, std::size_t first_band)
 }
 
 // Sums radiance over azimuths with cos(m phi), or with sin(m phi) for m = 1, 2.
-Transport::Around Transport::Harmonics(const Light* radiance, float share, bool sines) const {
+Transport::Around Transport::Harmonics(const Four* radiance, float share, bool sines) const {
   Around around;
   const std::size_t last = sines ? 2 : layout_.degree, azimuths = marches_.azimuths();
   for (std::size_t m = sines ? 1 : 0; m <= last; ++m) {
     const float* const factor = sines ? marches_.AzimuthSines(m) : marches_.AzimuthCosines(m);
-    Light sum = {};
+    Four sum = {};
     for (std::size_t k = 0; k < azimuths; ++k) sum += factor[k] * radiance[k];
     around[m] = sum * share;
   }
@@ -151,7 +140,7 @@ void Transport::AddMoments(const March& march, const Around& around, float sun_s
       float legendre = march.legendre[l * (l + 1) / 2 + m];
       if (polarised()) legendre /= SinePower(m, sun_sine);
       float* const moment = moments + PackedIndex(l, m);
-      StoreLight(moment, LoadLight(moment) + legendre * around[m]);
+      StoreFour(moment, LoadFour(moment) + legendre * around[m]);
     }
   }
 }
@@ -162,20 +151,20 @@ void Transport::AddTensor(const March& march, const Around& i, const Around& q, 
                           float sun_sine, float* moments) const {
   constexpr float kFactor = static_cast<float>(5.0 / (2.0 * kPi));
   const float mu = march.mu, sine = march.sine;
-  const Light ll0 = 0.5F * (i[0] + q[0]), hh0 = 0.5F * (i[0] - q[0]);
-  const Light ll2 = 0.5F * (i[2] + q[2]), hh2 = 0.5F * (i[2] - q[2]);
-  const Light zz_less_mean = (sine * sine - 0.5F * mu * mu) * ll0 - 0.5F * hh0;
-  const Light xz = sine * (0.5F * u[1] - 0.5F * mu * (i[1] + q[1]));
-  const Light xx_less_yy = mu * mu * ll2 - hh2 - mu * u[2];
-  const Light tensor[kTensorMoments] = {
+  const Four ll0 = 0.5F * (i[0] + q[0]), hh0 = 0.5F * (i[0] - q[0]);
+  const Four ll2 = 0.5F * (i[2] + q[2]), hh2 = 0.5F * (i[2] - q[2]);
+  const Four zz_less_mean = (sine * sine - 0.5F * mu * mu) * ll0 - 0.5F * hh0;
+  const Four xz = sine * (0.5F * u[1] - 0.5F * mu * (i[1] + q[1]));
+  const Four xx_less_yy = mu * mu * ll2 - hh2 - mu * u[2];
+  const Four tensor[kTensorMoments] = {
       (-kFactor / kTensorNorm[0]) * zz_less_mean, (-kFactor / kTensorNorm[1] / sun_sine) * xz,
       (-0.25F * kFactor / kTensorNorm[2] / SinePower(2, sun_sine)) * xx_less_yy};
   for (std::size_t m = 0; m < kTensorMoments; ++m) {
     float* const moment = moments + PackedTensorIndex(layout_.degree, m);
-    StoreLight(moment, LoadLight(moment) + tensor[m]);
+    StoreFour(moment, LoadFour(moment) + tensor[m]);
   }
   float* const trace = moments + PackedTensorTrace(layout_.degree);
-  StoreLight(trace, LoadLight(trace) + march.legendre[0] * i[0]);
+  StoreFour(trace, LoadFour(trace) + march.legendre[0] * i[0]);
 }
 
 // Projects the radiance of all suns and azimuths along a march. Azimuths also represent their
@@ -235,11 +224,11 @@ void Transport::Project(const March& march, std::size_t altitude, const Sunlight
 }
 
 // Adds the light of the previous order that the ground reflects into the march.
-void Transport::AddGroundLight(const March& march, const Light& reflected, const Field& previous,
-                               std::vector<Light>& radiance) const {
+void Transport::AddGroundLight(const March& march, const Four& reflected, const Field& previous,
+                               std::vector<Four>& radiance) const {
   for (std::size_t ray = 0; ray < radiance.size(); ++ray) {
     const CubicTaps& taps = march.ground_taps[ray];
-    Light irradiance = {};
+    Four irradiance = {};
     for (std::size_t tap = 0; tap < 4; ++tap)
       irradiance += taps.weight[tap] * previous.sky[taps.node[tap]];
     radiance[ray] += reflected * NotNegative(irradiance);
@@ -261,13 +250,13 @@ void Transport::NextOrder(std::size_t altitude, const Field& previous, Field& ne
                   rows.data(), arriving.data());
     for (std::size_t ray = 0; ray < rays; ++ray) {
       const float* const halves = arriving.data() + ray * stokes * 8;
-      radiance.i[ray] = NotNegative(LoadLight(halves) + LoadLight(halves + 4));
+      radiance.i[ray] = NotNegative(LoadFour(halves) + LoadFour(halves + 4));
       if (!polarised()) continue;
-      radiance.q[ray] = LoadLight(halves + 8) + LoadLight(halves + 12);
-      radiance.u[ray] = LoadLight(halves + 16) + LoadLight(halves + 20);
+      radiance.q[ray] = LoadFour(halves + 8) + LoadFour(halves + 12);
+      radiance.u[ray] = LoadFour(halves + 16) + LoadFour(halves + 20);
     }
     if (march.hits_ground) {
-      const Light reflected =
+      const Four reflected =
           ground_transmittance_[altitude][i] * albedo_ * static_cast<float>(1.0 / kPi);
       AddGroundLight(march, reflected, previous, radiance.i);
     }
@@ -289,7 +278,7 @@ class Block {
 
   [[nodiscard]] const Transport& transport() const { return transport_; }
   [[nodiscard]] Field Empty() const {
-    return {AlignedFloats(layout_.nodes * layout_.stride), std::vector<Light>(layout_.nodes)};
+    return {AlignedFloats(layout_.nodes * layout_.stride), std::vector<Four>(layout_.nodes)};
   }
 
   struct Sum {
@@ -300,8 +289,8 @@ class Block {
   [[nodiscard]] Sum Solve(Field first_order) const;
 
  private:
-  [[nodiscard]] Light Isotropic(const Field& field, std::size_t node) const {
-    return LoadLight(field.moments.data() + node * layout_.stride);
+  [[nodiscard]] Four Isotropic(const Field& field, std::size_t node) const {
+    return LoadFour(field.moments.data() + node * layout_.stride);
   }
   [[nodiscard]] double LargestShare(const Field& part, const Field& whole) const;
   void AddTail(const Field& last, const Field& before, const Field& second_before,
@@ -318,7 +307,7 @@ double Block::LargestShare(const Field& part, const Field& whole) const {
   constexpr float kNight = 1e-9F;  // nodes with less light are ignored
   double largest = 0.0;
   for (std::size_t node = 0; node < layout_.nodes; ++node) {
-    const Light share = Isotropic(part, node), of = Isotropic(whole, node);
+    const Four share = Isotropic(part, node), of = Isotropic(whole, node);
     for (int lane = 0; lane < static_cast<int>(kBlockBands); ++lane) {
       if (of[lane] * twilight_[node % layout_.suns] <= kNight) continue;
       largest = std::max(largest, static_cast<double>(share[lane] / of[lane]));
@@ -334,8 +323,8 @@ void Block::AddTail(const Field& last, const Field& before, const Field& second_
                     Field& total) const {
   constexpr float kLargest = 0.96F;
   for (std::size_t node = 0; node < layout_.nodes; ++node) {
-    const Light now = Isotropic(last, node), then = Isotropic(second_before, node);
-    Light factor = {};
+    const Four now = Isotropic(last, node), then = Isotropic(second_before, node);
+    Four factor = {};
     for (int lane = 0; lane < static_cast<int>(kBlockBands); ++lane) {
       if (then[lane] <= 0.0F) continue;
       const float ratio = std::clamp(now[lane] / then[lane], 0.0F, kLargest);
@@ -343,9 +332,9 @@ void Block::AddTail(const Field& last, const Field& before, const Field& second_
     }
     for (std::size_t i = 0; i < layout_.stride; i += kBlockBands) {
       const std::size_t at = node * layout_.stride + i;
-      const Light two = LoadLight(last.moments.data() + at) + LoadLight(before.moments.data() + at);
+      const Four two = LoadFour(last.moments.data() + at) + LoadFour(before.moments.data() + at);
       float* const sum = total.moments.data() + at;
-      StoreLight(sum, LoadLight(sum) + factor * two);
+      StoreFour(sum, LoadFour(sum) + factor * two);
     }
     total.sky[node] += factor * (last.sky[node] + before.sky[node]);
   }
@@ -361,7 +350,7 @@ void Accumulate(const Field& part, Field& total) {
   float* const sum = total.moments.data();
   const float* const term = part.moments.data();
   for (std::size_t i = 0; i < total.moments.size(); i += kBlockBands)
-    StoreLight(sum + i, LoadLight(sum + i) + LoadLight(term + i));
+    StoreFour(sum + i, LoadFour(sum + i) + LoadFour(term + i));
   for (std::size_t i = 0; i < total.sky.size(); ++i) total.sky[i] += part.sky[i];
 }
 
@@ -509,7 +498,7 @@ void MissedPeak::AddBand(const Bands<float>& peak, std::size_t node, std::size_t
   const std::size_t sun = node % layout.suns;
   const auto mu_s = static_cast<float>(marches_.mu_s(sun));
   const Moments towards = LegendreTerms(static_cast<int>(layout.degree), mu_s);
-  Light light = {};
+  Four light = {};
   for (std::size_t lane = 0; lane < kBlockBands && first_band + lane < peak.count; ++lane)
     light[static_cast<int>(lane)] = peak[first_band + lane] / twilight_[sun];
   float* moments = field.moments.data() + node * layout.stride;

@@ -68,8 +68,7 @@ void Fill(const SkyRowWork& work) {
                          mie * Weighted(weight, node + 4) + Weighted(weight, node + 8);
       const Four dark = {};
       const Four radiance = light > dark ? light : dark;
-      __builtin_memcpy(work.radiance + work.radiance_stride * (first + i), &radiance,
-                       sizeof radiance);
+      StoreFour(work.radiance + work.radiance_stride * (first + i), radiance);
     }
   }
 }
