@@ -210,7 +210,7 @@ void SolveDirections(PanoramaStudy& study, const Medium& medium,
 /// Adds a method with one table for each sun. @param make  makes the table of a sun of a regime.
 template <typename Make>
 void AddTables(PanoramaStudy& study, ReportRow row, const Make& make) {
-  const auto [first, seconds] = Built([&] { return make(0, 1); });
+  const auto [first, seconds] = Built(study.effort(), [&] { return make(0, 1); });
   row.build_s = seconds;
   row.memory_bytes = first.bytes();
   study.AddPrepared(std::move(row), [&](std::size_t r, ReportRow&) {
@@ -272,12 +272,13 @@ void AddLatitudes(PanoramaStudy& study, const PanoramaAir& shared, int width, in
 }
 
 /// Returns the wall time of a whole image on all threads, with the sun at 25 degrees, in words.
-std::string PictureTimeText(const PanoramaAir& shared, int width) {
+std::string PictureTimeText(const PanoramaAir& shared, const ReportEffort& effort) {
+  const int width = effort.quick ? 128 : 2048;
   PanoramaSettings settings;
   settings.width = width;
   settings.height = width / 2;
   settings.sun.elevation_rad = 25.0 * kRadiansPerDegree;
-  const double seconds = Built([&] {
+  const double seconds = Built(effort, [&] {
                            return RenderPanorama(shared.air, shared.multiple_scattering, settings);
                          }).second;
   return fmt::format(
@@ -318,7 +319,7 @@ ReportTopic MeasurePanoramas(const Medium& medium, const ReportEffort& effort) {
     AddSkyView(study, shared, SkyViewSize{.sky_rows = 80, .ground_rows = 48, .azimuths = 33});
   AddLatitudes(study, shared, 96, 54);
   if (!effort.quick) AddLatitudes(study, shared, 192, 108);
-  study.topic().notes += PictureTimeText(shared, effort.quick ? 128 : 2048);
+  study.topic().notes += PictureTimeText(shared, effort);
   return std::move(study).Finished();
 }
 

@@ -225,7 +225,7 @@ void RayStudy::AddScatteringMarch(MarchRule rule, int steps, bool in_summary) {
 }
 
 void RayStudy::AddScatteringTable(ReportRow row, const ScatteringTableOptions& options) {
-  const auto [table, seconds] = Built([&] { return ScatteringTable(medium_, options); });
+  const auto [table, seconds] = Built(effort(), [&] { return ScatteringTable(medium_, options); });
   const ScatteringTableSize& size = options.size;
   row.parameter = fmt::format("{} x {} x {} x {}", size.altitudes, size.mu, size.mu_s, size.nu);
   row.memory_bytes = table.bytes();
@@ -290,7 +290,8 @@ void AddClosedFormOfMany(RayStudy& study) {
 }
 
 void AddTransmittanceTable(RayStudy& study, const TransmittanceTableSize& size) {
-  const auto [table, seconds] = Built([&] { return TransmittanceTable(study.medium(), size); });
+  const auto [table, seconds] =
+      Built(study.effort(), [&] { return TransmittanceTable(study.medium(), size); });
   study.Add({.series = "table",
              .parameter = fmt::format("{} x {}", size.mu, size.altitudes),
              .in_summary = size.mu == 256,  // the published size
@@ -397,7 +398,7 @@ void SolveLines(LineStudy& study, const Medium& medium) {
 }
 
 void AddTables(LineStudy& study, const Medium& medium) {
-  const auto [one, seconds] = Built([&] { return RefractedView(medium, 0.0); });
+  const auto [one, seconds] = Built(study.effort(), [&] { return RefractedView(medium, 0.0); });
   const auto prepare = [&](std::size_t r, ReportRow&) {
     std::vector<RefractedView> views;
     for (std::size_t eye = 0; eye < kEyes; ++eye) views.emplace_back(medium, EyeHeight(r, eye));

@@ -125,7 +125,8 @@ void AddOnGauss(RayStudy& study, ReportRow row, const Higher& higher) {
 
 /// Adds the default moments on the nodes of direct integration.
 void AddMomentsOnDirectNodes(RayStudy& study, const DirectScattering& direct, DirectMode mode) {
-  const auto [light, seconds] = Built([&] { return MultipleScattering(study.medium()); });
+  const auto [light, seconds] =
+      Built(study.effort(), [&] { return MultipleScattering(study.medium()); });
   AddOnSamples(
       study,
       {.series = "moments on direct nodes",
@@ -147,7 +148,8 @@ void AddNothing(RayStudy& study) {
 }
 
 void AddIsotropic(RayStudy& study, const IsotropicTable::Size& size, bool published) {
-  const auto [table, seconds] = Built([&] { return IsotropicTable(study.medium(), size); });
+  const auto [table, seconds] =
+      Built(study.effort(), [&] { return IsotropicTable(study.medium(), size); });
   AddOnGauss(study,
              {.series = "isotropic table (Hillaire 2020)",
               .parameter = fmt::format("{} x {}, {} directions", size.side, size.side,
@@ -163,7 +165,8 @@ void AddIsotropic(RayStudy& study, const IsotropicTable::Size& size, bool publis
 
 void AddMoments(RayStudy& study, ReportRow row, const Medium& medium,
                 const MultipleScatteringOptions& options) {
-  const auto [light, seconds] = Built([&] { return MultipleScattering(medium, options); });
+  const auto [light, seconds] =
+      Built(study.effort(), [&] { return MultipleScattering(medium, options); });
   row.parameter = fmt::format("{} x {}", options.altitudes, options.sun_angles);
   row.memory_bytes = light.values().size() * sizeof(float);
   row.build_s = seconds;

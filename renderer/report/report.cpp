@@ -140,7 +140,7 @@ void AddFroxels(RayStudy& study, const std::string& series, const Value& value) 
   constexpr std::uint64_t kColumns = FroxelColumn::kSide * FroxelColumn::kSide;
   const auto prepare = [&](std::size_t r, ReportRow& row) {
     const std::vector<ViewRay>& rays = study.cases(r);
-    auto [columns, seconds] = Built([&] {
+    auto [columns, seconds] = Built(study.effort(), [&] {
       std::vector<FroxelColumn> made;
       for (const ViewRay& ray : rays) made.emplace_back(study.air(), ray);
       return made;
@@ -173,7 +173,8 @@ void AddClosedForms(RayStudy& study) {
 
 void AddTransmittanceTable(RayStudy& study) {
   const TransmittanceTableSize size;
-  const auto [table, seconds] = Built([&] { return TransmittanceTable(study.medium(), size); });
+  const auto [table, seconds] =
+      Built(study.effort(), [&] { return TransmittanceTable(study.medium(), size); });
   study.Add({.series = "two look-ups (Bruneton)",
              .parameter = fmt::format("{} x {}", size.mu, size.altitudes),
              .origin = MethodOrigin::kLiterature,

@@ -138,11 +138,11 @@ class Runways {
  public:
   static constexpr int kWidth = 160, kHeight = 90;
 
-  explicit Runways(std::size_t counts) {
+  Runways(std::size_t counts, const ReportEffort& effort) {
     for (std::size_t r = 0; r < counts; ++r) {
       stages_.push_back(std::make_unique<RunwayStage>(RunwayScene(kLampCounts[r], false)));
       const RunwayStage& stage = *stages_.back();
-      auto [light, seconds] = Built([&] {
+      auto [light, seconds] = Built(effort, [&] {
         return std::make_unique<LampLight>(stage.scene, stage.ground, stage.medium, stage.colour);
       });
       light_.push_back(std::move(light));
@@ -197,7 +197,7 @@ void AddTree(PixelStudy& study, const Runways& runways, double share_of_error) {
   const LampSettings settings{.share_of_error = share_of_error};
   const auto prepare = [&](std::size_t r, ReportRow& row) {
     const CameraRays camera = runways.CameraOf(r);
-    auto [plan, seconds] = Built([&] {
+    auto [plan, seconds] = Built(study.effort(), [&] {
       return runways.Light(r).PlanFor(
           camera, Runways::kWidth, Runways::kHeight, settings,
           [&](const CameraRay& ray) { return runways.LengthOf(ray.direction); });
@@ -259,9 +259,9 @@ ReportTopic MeasureAirlight(const ReportEffort& effort) {
 ReportTopic MeasureManyLamps(const ReportEffort& effort) {
   constexpr int kReferenceNodes = 32;
   const std::size_t counts = effort.quick ? 3 : kLampCounts.size();
-  const Runways runways(counts);
+  const Runways runways(counts, effort);
   ReportEffort fewer = effort;
-  fewer.passes = 2;
+  fewer.passes = std::min<std::size_t>(effort.passes, 2);
   PixelStudy study(WordsOfManyLamps(counts), fewer, kRelativeToTruth);
   study.topic().medium = runways.medium();
   study.topic().reference.text = fmt::format("every lamp by itself with {} nodes", kReferenceNodes);

@@ -155,7 +155,7 @@ void AddHeights(ShaftStudy& study, const ShaftScene& scene) {
   std::vector<ShadowHeights> heights;
   ReportRow row{.series = "shadow heights", .parameter = "", .in_summary = true};
   for (const ShaftView& view : scene.views) {
-    auto [made, seconds] = Built([&] {
+    auto [made, seconds] = Built(study.effort(), [&] {
       return ShadowHeights(scene.place.terrain.mesh(), view.to_sun, view.sun_radius_rad);
     });
     row.memory_bytes = std::max<std::uint64_t>(row.memory_bytes, made.bytes());
@@ -217,7 +217,7 @@ ReportTopic WordsOfShafts(bool quick) {
 ReportTopic MeasureShafts(const ReportEffort& effort) {
   const ShaftScene scene(effort.quick);
   ReportEffort fewer = effort;
-  fewer.passes = 3;
+  fewer.passes = std::min<std::size_t>(effort.passes, 3);
   fewer.time_every = 4;
   const ErrorRule in_float{[](double value, double truth, double scale) {
                              return static_cast<double>(std::abs(static_cast<float>(value) -
