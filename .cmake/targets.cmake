@@ -291,12 +291,15 @@ function(alpenglow_tests program)
   endif()
 endfunction()
 
+# The heights of the built-in range are made once for the tests of all presets. Not those of who tests.
+set(ALPENGLOW_TEST_CACHE ${PROJECT_BINARY_DIR}/cache CACHE PATH "Where tests keep the built-in range")
+
 # One CTest line: the tests of a program that a filter takes.
 function(alpenglow_test_line line program filter)
   add_test(NAME ${line} COMMAND ${program} "--gtest_filter=${filter}"
     --gtest_output=xml:${CMAKE_CURRENT_BINARY_DIR}/results/${line}.xml)
   set_tests_properties(${line} PROPERTIES TIMEOUT 1800
-    ENVIRONMENT "ALPENGLOW_CACHE=${PROJECT_BINARY_DIR}/cache")  # not the one of who tests
+    ENVIRONMENT "ALPENGLOW_CACHE=${ALPENGLOW_TEST_CACHE}")
 endfunction()
 
 # The package that find_package(alpenglow) reads.
