@@ -17,6 +17,7 @@
 #include "renderer/procedural_mountains/procedural_mountains.h"
 #include "renderer/scene/places.h"
 #include "renderer/scene/scene_options.h"
+#include "tests/fixtures/bare_scene.h"
 #include "tests/fixtures/temporary_folder.h"
 #include "tests/viewer/air/shared_air.h"
 #include "tests/viewer/land/headless_land.h"
@@ -275,6 +276,12 @@ TEST_F(FlightsOverLand, PicturesInPartsArePicturesInOnePieceAndExposedAsAWhole) 
 
 class PictureQueueTest : public FlightsOverLand {
  protected:
+  /// Air of three bands over the bare planet, for tests of the queue alone.
+  [[nodiscard]] static Scene BarePlanetScene() {
+    Scene scene = BareScene(3500.0, 330.0, -8.0, 75.0);
+    scene.medium = MediumPreset("bruneton2017");
+    return scene;
+  }
   /// Frames of a window, until all that was asked for has ended.
   static std::vector<PictureOutcome> DrawUntilEnd(PictureQueue& queue) {
     while (queue.UnderWay()) {
@@ -350,7 +357,7 @@ TEST_F(PictureQueueTest, FramesAreDrawnBetweenThePartsOfAPicture) {
 }
 
 TEST_F(PictureQueueTest, AFolderThatIsGoneIsToldAndTheNextPictureIsWritten) {
-  const Scene scene = Mountains();
+  const Scene scene = BarePlanetScene();
   const FlightSessionSettings settings = SettingsFor(scene);
   PictureQueue queue(scene, settings);
   FlightSession flight(scene, Evening(), settings);
@@ -364,7 +371,7 @@ TEST_F(PictureQueueTest, AFolderThatIsGoneIsToldAndTheNextPictureIsWritten) {
 }
 
 TEST_F(PictureQueueTest, AQueueThatGoesHasWrittenWhatWasAskedFor) {
-  const Scene scene = Mountains();
+  const Scene scene = BarePlanetScene();
   const FlightSessionSettings settings = SettingsFor(scene);
   FlightSession flight(scene, Evening(), settings);
   {
@@ -375,7 +382,7 @@ TEST_F(PictureQueueTest, AQueueThatGoesHasWrittenWhatWasAskedFor) {
 }
 
 TEST_F(PictureQueueTest, WithoutAWindowPicturesWithInstrumentsAreNotWritten) {
-  const Scene scene = Mountains();
+  const Scene scene = BarePlanetScene();
   const FlightSessionSettings settings = SettingsFor(scene);
   FlightSession flight(scene, Evening(), settings);
   PictureQueue queue(scene, settings);

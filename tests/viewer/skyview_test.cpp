@@ -503,9 +503,8 @@ TEST_F(MeshPictures, AMeshFarAwayIsLitAsTheRendererLightsIt) {
 }
 
 TEST_F(MeshPictures, AReplayMayComeFromFarToTheMesh) {
-  // The viewer lights a mesh on a grid of 1 cm, at most 1024 samples wide.
-  const double half_m = tests::ScaledDown(20.0, 1.0);
-  WriteScene(tests::ObjOf({{half_m, 0.0}}),
+  // The viewer lights a mesh on a grid of 1 cm, at most 1024 samples wide: this is a small one.
+  WriteScene(tests::ObjOf({{1.0, 0.0}}),
              "height_m = 60.0\nheading = 270.0\npitch = -90.0\nfov = 20.0");
   WriteText(folder_ / "p.csv",
             "t_s,latitude,longitude,height_m,heading,pitch\n0,46.5,9,3000,270,-90\n"

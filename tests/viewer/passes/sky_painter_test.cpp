@@ -34,7 +34,7 @@ namespace {
 struct PictureSize {
   int width, height;
 };
-constexpr PictureSize kFull{96, 54}, kScaled = tests::ScaledDown(kFull, {64, 36});
+constexpr PictureSize kFull{96, 54}, kScaled = tests::ScaledDown(kFull, {48, 27});
 // Rays of both fall on different places of rough ground: the fewer, the farther they are apart.
 constexpr int kPictureSamples = 32;
 
@@ -115,7 +115,7 @@ class Tile {
  public:
   Tile() : folder_(std::filesystem::temp_directory_path() / fmt::format("tile-{}", getpid())) {
     std::filesystem::create_directory(folder_);
-    tests::WriteTile(folder_ / "land.tif", 0, 0);
+    tests::WriteQuickTile(folder_ / "land.tif", 0, 0);
   }
   ~Tile() { std::filesystem::remove_all(folder_); }
   Tile(const Tile&) = delete;
