@@ -125,7 +125,7 @@ class Tile {
   [[nodiscard]] ParityView View(const Height& height, double heading, double pitch,
                                 const char* utc) const {
     ParityView view{"", {}, ParseInstant(utc)};
-    view.scene.medium = MediumPreset("earth");
+    view.scene.medium = QuickMedium("earth");
     view.scene.place = tests::PlaceOfSample(200, 160, 0);
     view.scene.camera = CameraFromDegrees(height, heading, pitch, 0.0, 60.0);
     view.scene.terrain.kind = TerrainSource::Kind::kElevationModel;
