@@ -34,7 +34,7 @@ namespace {
 struct PictureSize {
   int width, height;
 };
-constexpr PictureSize kFull{96, 54}, kScaled = tests::ScaledDown(kFull, {48, 27});
+constexpr PictureSize kFull{96, 54}, kScaled = tests::ScaledDown(kFull, {64, 36});
 // Rays of both fall on different places of rough ground: the fewer, the farther they are apart.
 constexpr int kPictureSamples = 32;
 
