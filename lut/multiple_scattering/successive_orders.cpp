@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
 #include "lut/multiple_scattering/successive_orders.h"
-#include "lut/multiple_scattering/four_bands.h"
 
 #include <tbb/parallel_for.h>
 
@@ -8,6 +7,7 @@
 #include <cmath>
 
 #include "atmosphere/math/constants.h"
+#include "lut/multiple_scattering/four_bands.h"
 #include "lut/multiple_scattering/moment_grid.h"
 #include "lut/multiple_scattering/spherical_harmonics.h"
 

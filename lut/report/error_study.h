@@ -70,7 +70,15 @@ struct ReportEffort {
   double seconds = 0.02;       // and minimum duration [s]
   std::size_t time_every = 1;  // every n-th case is timed
 
-  [[nodiscard]] static ReportEffort Quick() { return {true, 40, 6, 2000, 1, 0.0, 4}; }
+  [[nodiscard]] static ReportEffort Quick() {
+    return {.quick = true,
+            .rays = 40,
+            .traced_rays = 6,
+            .paths = 2000,
+            .passes = 1,
+            .seconds = 0.0,
+            .time_every = 4};
+  }
 };
 
 /// Measures wall time.

@@ -288,9 +288,9 @@ TEST_F(Skyseries, AWrongCommandLineExitsWith2) {
       "--max-error 101%;--from sunrise;--progress loud;--at noon --from sunrise --to sunset;"
       "--from sunrise --to sunset --every 1h --count 3;--keogram k.jpg;--plot p.png;"
       "--contact-sheet sheet.jpg;--fps 5;--track-speed 5;--latitude 3");
-  int number = 0;
+  int number = 0;  // Each command line starts a program. The sanitizers run every fourth.
   for (std::string options; std::getline(wrong, options, ';'); ++number) {
-    if (number % tests::ScaledDown(1, 4) != 0) continue;  // each starts a program
+    if (number % tests::ScaledDown(1, 4) != 0) continue;
     const Outcome outcome = Run(SmallStill() + " " + options);
     EXPECT_EQ(outcome.status, 2) << options << "\n" << outcome.error;
   }

@@ -13,8 +13,8 @@ using namespace viewer;
 
 using HeadlessLand = HeadlessWith<LandFolder>;
 
-/// Writes a tile of mountains; under the sanitizers one of every fourth sample, which is prepared in
-/// a tenth of the time.
+/// Writes a tile of mountains; under the sanitizers one of every fourth sample, which is prepared
+/// in less time.
 /// @param first_column, first_row  the sample of the land in the north-western corner.
 inline void WriteQuickTile(const std::filesystem::path& file, int first_column, int first_row) {
   constexpr int kStride = ScaledDown(1, 4);
