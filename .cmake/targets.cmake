@@ -33,8 +33,10 @@ set(CMAKE_C_FLAGS_SANITIZE "${CMAKE_CXX_FLAGS_SANITIZE}")
 set(CMAKE_EXE_LINKER_FLAGS_SANITIZE "-fsanitize=address,undefined")
 
 # Programs and tests spend their time in the libraries and are optimised little: the templates of CLI11 and
-# GoogleTest take long to optimise, with sanitizers three times as long as all other code.
+# GoogleTest take long to optimise, with sanitizers three times as long as all other code. Tests are not
+# optimised at all: they take a third less to compile than at -O1, and a twentieth more to run.
 set(ALPENGLOW_LITTLE_OPTIMISATION $<$<CONFIG:Release>:-O1> $<$<CONFIG:Sanitize>:-O0>)
+set(ALPENGLOW_NO_OPTIMISATION $<$<CONFIG:Release,Sanitize>:-O0>)
 
 # alpenglow_precompiled: all libraries share its precompiled headers. It has no macros of one library, because
 # gcc rejects precompiled headers with other macros.
@@ -191,13 +193,13 @@ inline std::string_view EmbeddedText(std::string_view name) {
   target_include_directories(${target} PUBLIC $<BUILD_INTERFACE:${generated}>)
 endfunction()
 
-# alpenglow_test_headers: all tests share its precompiled headers and are optimised little.
+# alpenglow_test_headers: all tests share its precompiled headers and are not optimised.
 function(alpenglow_test_headers)
   file(CONFIGURE OUTPUT ${CMAKE_CURRENT_BINARY_DIR}/test_headers.cpp CONTENT "")
   add_library(alpenglow_test_headers OBJECT ${CMAKE_CURRENT_BINARY_DIR}/test_headers.cpp)
   target_link_libraries(alpenglow_test_headers PUBLIC
     alpenglow::renderer alpenglow_warnings TBB::tbb GTest::gmock GTest::gtest)
-  target_compile_options(alpenglow_test_headers PUBLIC ${ALPENGLOW_LITTLE_OPTIMISATION})
+  target_compile_options(alpenglow_test_headers PUBLIC ${ALPENGLOW_NO_OPTIMISATION})
   target_precompile_headers(alpenglow_test_headers PRIVATE
     <.cmake/precompiled.h> <gmock/gmock.h> <gtest/gtest.h>)
 endfunction()
