@@ -13,10 +13,11 @@
 
 #include "atmosphere/math/constants.h"
 #include "renderer/elevation/mesh.h"
+#include "tests/fixtures/sanitized.h"
 #include "tests/renderer/terrain/land_files.h"
 #include "viewer/land/mesh_land.h"
 
-#ifdef __SANITIZE_ADDRESS__
+#ifdef ALPENGLOW_TESTS_SANITIZED
 // A function of the sanitizers' runtime; gcc does not install the header that declares it.
 extern "C" std::size_t __sanitizer_get_current_allocated_bytes();
 #endif
@@ -59,7 +60,7 @@ glm::dvec3 Normal(const LandChunk& chunk, int i, int j) {
 /// The bytes that all threads have taken from the heap and not given back. The sanitizer's heap is
 /// its own.
 std::size_t HeapBytes() {
-#ifdef __SANITIZE_ADDRESS__
+#ifdef ALPENGLOW_TESTS_SANITIZED
   return __sanitizer_get_current_allocated_bytes();
 #else
   const struct mallinfo2 heap = mallinfo2();
