@@ -299,7 +299,7 @@ endfunction()
 
 # Tests do not use the user's caches. The presets name one folder, so that the heights of the built-in range are
 # made once for the tests of all presets, and so are the shaders of software OpenGL (Mesa). Those are not
-# optimised: for the small pictures of tests they run as fast, and they take half as long to compile.
+# optimised: for the small pictures of tests they run as fast, and they take a third less to compile.
 set(ALPENGLOW_TEST_CACHE ${PROJECT_BINARY_DIR}/cache CACHE PATH "Where tests keep the built-in range and shaders")
 set(ALPENGLOW_TEST_ENVIRONMENT
   ALPENGLOW_CACHE=${ALPENGLOW_TEST_CACHE} MESA_SHADER_CACHE_DIR=${ALPENGLOW_TEST_CACHE} GALLIVM_PERF=nopt)
