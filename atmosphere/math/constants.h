@@ -8,8 +8,8 @@ namespace alpenglow::atmosphere {
 
 inline constexpr double kPi = std::numbers::pi;
 inline constexpr double kRadiansPerDegree = kPi / 180.0;
-/// Angle between neighbours of a spiral that fills a disk evenly [rad]: pi (3 - sqrt 5). Vogel (1979),
-/// Math. Biosciences 44, 179-189.
+/// Angle between neighbours of a spiral that fills a disk evenly [rad]: pi (3 - sqrt 5). Vogel
+/// (1979), Math. Biosciences 44, 179-189.
 inline constexpr double kGoldenAngle = kPi * (3.0 - 2.2360679774997896964);
 inline constexpr double kMetresPerKilometre = 1000.0;
 inline constexpr double kSecondsPerDay = 86400.0;

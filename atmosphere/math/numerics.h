@@ -173,8 +173,8 @@ template <typename Apply, typename Values>
   return result;
 }
 
-/// Integrates f: double -> std::vector<double> (of `size` values) or std::array<double, size> by the
-/// 10-point rule (IntegratePanels).
+/// Integrates f: double -> std::vector<double> (of `size` values) or std::array<double, size> by
+/// the 10-point rule (IntegratePanels).
 template <typename Function>
 [[nodiscard]] auto IntegrateAdaptively(const Function& f, std::size_t size,
                                        std::span<const double> breakpoints,

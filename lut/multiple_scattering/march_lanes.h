@@ -213,8 +213,9 @@ void AddTensorLight(const MarchPoint& point, const TensorStokes<float>& stokes,
   }
 }
 
-// Finds the source of a march point at every sun node, in rows that begin one node before the first.
-// With polarised light, the tensor provides the light of molecules in the last two vectors of a row.
+// Finds the source of a march point at every sun node, in rows that begin one node before the
+// first. With polarised light, the tensor provides the light of molecules in the last two vectors
+// of a row.
 template <std::size_t kDegree, bool kPolarised, std::size_t kRow>
 void Contract(const MomentGrid& grid, const MarchPoint& point, const MarchLight& light,
               const BlockShape& shape, const float* previous, float* rows) {

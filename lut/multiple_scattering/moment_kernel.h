@@ -137,8 +137,8 @@ struct MomentKernel {
   /// Adds the light of the previous order that arrives along a march to arriving[((sun * azimuths)
   /// + azimuth) * 8 + half * 4 + band], or, for a polarised grid, I, Q and U in the frame of
   /// polarised_scattering.h to arriving[(((sun * azimuths) + azimuth) * 3 + stokes) * 8 + half * 4
-  /// + band]. The caller adds the two halves. `rows` is scratch space for (suns + 2) * (degree / 2 +
-  /// 3) * 8 floats. All arrays begin at multiples of 64 bytes.
+  /// + band]. The caller adds the two halves. `rows` is scratch space for (suns + 2) * (degree / 2
+  /// + 3) * 8 floats. All arrays begin at multiples of 64 bytes.
   void (*arrive)(const MomentGrid& grid, const MarchDirection& direction, const MarchPoint* points,
                  const MarchLight* lights, std::size_t count, const BlockShape& shape,
                  const float* previous, float* rows, float* arriving);

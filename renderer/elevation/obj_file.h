@@ -2,13 +2,14 @@
 // This header provides terrain from a Wavefront OBJ file: the file, the statements of its text, and
 // the triangles of its polygons.
 //
-// TrianglesOfPolygon keeps the total area of a polygon in space. The polygon is projected along the axis nearest to its normal, which changes no coordinate, and
-// triangles are cut off at its corners (Meisters 1975, "Polygons have ears"). Signs of areas are
-// exact for corners in single precision.
+// TrianglesOfPolygon keeps the total area of a polygon in space. The polygon is projected along the
+// axis nearest to its normal, which changes no coordinate, and triangles are cut off at its corners
+// (Meisters 1975, "Polygons have ears"). Signs of areas are exact for corners in single precision.
 //
-// ParseObj parses the statements that describe polygons. Supported: v, vn, f, s; lines continued by a backslash; comments anywhere; any line ends; a
-// byte-order mark of UTF-8. Names, materials, texture coordinates, points and lines do not describe
-// surfaces and are skipped. Other statements, such as free-form surfaces, are counted.
+// ParseObj parses the statements that describe polygons. Supported: v, vn, f, s; lines continued by
+// a backslash; comments anywhere; any line ends; a byte-order mark of UTF-8. Names, materials,
+// texture coordinates, points and lines do not describe surfaces and are skipped. Other statements,
+// such as free-form surfaces, are counted.
 #pragma once
 
 #include <array>

@@ -2,8 +2,8 @@
 // The data that all pixels of one picture share: camera, distant lights with their shadows and
 // their light on terrain and in media, lamps, night sky, stars and refraction.
 //
-// RefractedViewRays holds the refracted rays of a picture: whether refraction moves anything visible,
-// and where refracted rays meet the ground.
+// RefractedViewRays holds the refracted rays of a picture: whether refraction moves anything
+// visible, and where refracted rays meet the ground.
 #pragma once
 
 #include <cstddef>

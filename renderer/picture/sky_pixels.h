@@ -13,10 +13,11 @@
 // that of its middle (shared_samples.h), and so have all rays of its neighbours that count for it.
 // One ray through the middle gives the same result as many.
 //
-// Skyline is the elevation of the ground around an eye. If the ground is solid below its surface, then along each azimuth all directions below one
-// elevation show ground and all above it show sky. The skyline is therefore one elevation per
-// azimuth, which bisection finds. Azimuths are half a pixel apart. Between two azimuths, the ground
-// is assumed to exceed both elevations by no more than the margin requested around a direction.
+// Skyline is the elevation of the ground around an eye. If the ground is solid below its surface,
+// then along each azimuth all directions below one elevation show ground and all above it show sky.
+// The skyline is therefore one elevation per azimuth, which bisection finds. Azimuths are half a
+// pixel apart. Between two azimuths, the ground is assumed to exceed both elevations by no more
+// than the margin requested around a direction.
 #pragma once
 
 #include <array>

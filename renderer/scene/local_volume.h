@@ -8,9 +8,10 @@
 //
 // A volume is flat: the planet's curvature below it is ignored (over 2 km, 0.1 m).
 //
-// VolumeGrid holds densities on a regular grid within a box. Samples lie at the centres of nx x ny x nz equal cells of the unit cube; density is trilinear
-// between them and constant beyond the outermost ones. Along a straight line such a density is a
-// cubic between the planes of samples, so two Gauss points per piece give its integral exactly.
+// VolumeGrid holds densities on a regular grid within a box. Samples lie at the centres of nx x ny
+// x nz equal cells of the unit cube; density is trilinear between them and constant beyond the
+// outermost ones. Along a straight line such a density is a cubic between the planes of samples, so
+// two Gauss points per piece give its integral exactly.
 //
 // Blocks of 4 samples a side store their largest density: rays skip empty blocks, and ray marching
 // gets an upper bound of the density ahead.

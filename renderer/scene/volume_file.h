@@ -2,8 +2,8 @@
 // Reads densities on a grid from files: NRRD and raw.
 //
 // ReadNrrdHeader reads the header of an NRRD file (http://teem.sourceforge.net/nrrd/format.html):
-// lines "field: value" after a line "NRRD000x", up to an empty line. The data follow, or are in a separate file that the
-// header names.
+// lines "field: value" after a line "NRRD000x", up to an empty line. The data follow, or are in a
+// separate file that the header names.
 //
 // Fields that describe data or their display (content, number, units, labels, spacings,
 // thicknesses, space origin, ...) are ignored: the scene gives the place and size of a volume. All

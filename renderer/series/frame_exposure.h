@@ -77,8 +77,8 @@ class SeriesExposure {
   SeriesExposure& operator=(const SeriesExposure&) = delete;
 
   /// Returns the development of a frame.
-  /// @param rendered  false: its file existed before, and the values that it stores are used if this
-  ///     run would develop it in the same way.
+  /// @param rendered  false: its file existed before, and the values that it stores are used if
+  ///   this run would develop it in the same way.
   [[nodiscard]] Development DevelopmentOf(const Frame& frame, const Image& image, bool rendered);
 
   /// Returns the picture before tone mapping: with the eye's glare if requested, white-balanced,

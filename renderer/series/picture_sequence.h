@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
-// A sequence of pictures as one file: a contact sheet of all pictures, each small and with a line of
-// text; a keogram, which places the middle columns of the pictures side by side, so that one image
-// shows their course (Eather, Mende, Reference 1976, J. Geophys. Res. 81, 3219); and a film, for
-// which developed pictures are piped to ffmpeg one by one.
+// A sequence of pictures as one file: a contact sheet of all pictures, each small and with a line
+// of text; a keogram, which places the middle columns of the pictures side by side, so that one
+// image shows their course (Eather, Mende, Reference 1976, J. Geophys. Res. 81, 3219); and a film,
+// for which developed pictures are piped to ffmpeg one by one.
 #pragma once
 
 #include <filesystem>

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Measures the change of whole pictures and the time saved when effects are left out, and compares
 // both with the prediction of the preview. Run by hand; results are in README.md.
-//   studies effects_error [WIDTH HEIGHT [SCENE [preview]]]         preview: only the cost of the choice
+//   studies effects_error [WIDTH HEIGHT [SCENE [preview]]]
+// With "preview" it measures only the cost of the choice.
 #include <fmt/core.h>
 
 #include <cstdlib>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Measures the errors of the tables of the viewer's air by eye, sun and quality, and the time to
-// compute them. Run by hand: studies viewer_error QUALITY "ALTITUDES [m]" "ELEVATIONS OF THE SUN [deg]"
-// MEDIUM
+// compute them. Run by hand:
+//   studies viewer_error QUALITY "ALTITUDES [m]" "ELEVATIONS OF THE SUN [deg]" MEDIUM
 #include <fmt/format.h>
 
 #include <chrono>

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Values that threads make beside drawing: of the air, the ground and the shade that follow an eye and a sun.
+// Tests of values that threads compute while frames are drawn: air, ground and shade follow an eye
+// and a sun.
 #include "atmosphere/base/async_value.h"
 
 #include <gtest/gtest.h>

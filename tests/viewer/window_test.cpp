@@ -50,8 +50,8 @@ std::vector<std::string> Shown(const std::string& printed) {
 
 // Hard case 49.
 TEST_F(SkyviewWindow, MinimisedResizedAndMovedToAnotherDisplayItGoesOn) {
-  // The window opens, is minimised, moves to a display of twice the density, and shrinks to a pixel and
-  // to a column.
+  // The window opens, is minimised, moves to a display of twice the density, and shrinks to a pixel
+  // and to a column.
   const Outcome outcome = Run("ALPENGLOW_DISPLAY='64x36 0x0 0x0 128x72 1x1 1x40'", "--hud off");
   EXPECT_EQ(outcome.status, 0) << outcome.error;
   EXPECT_THAT(Shown(outcome.out), ElementsAre("64x36", "128x72", "1x1", "1x40"))

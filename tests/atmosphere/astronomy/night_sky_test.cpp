@@ -91,8 +91,8 @@ TEST(Stars, AreFiveThousandToTheSixthMagnitudeBrightestFirst) {
 }
 
 TEST(Stars, SiriusHasMovedAndTheEarthHasTurned) {
-  // The declination of Sirius is -16 42.97' in 2000, with -1.2 arcseconds a year of proper motion and
-  // -3.9 by precession, 20.04 times the cosine of the right ascension.
+  // The declination of Sirius is -16 42.97' in 2000, with -1.2 arcseconds a year of proper motion
+  // and -3.9 by precession, 20.04 times the cosine of the right ascension.
   const auto then = StarsAt(ParseInstant("2000-01-01T12:00:00Z")).front();
   const auto now = StarsAt(ParseInstant("2050-01-01T12:00:00Z")).front();
   EXPECT_NEAR(Declination(then.direction), -16.7161, 0.005) << "nutation: 9 arcseconds";

@@ -317,8 +317,8 @@ std::vector<TestLight> MakeTestLights() {
   return lights;
 }
 
-/// The percentile of a third of the lights may be a tenth larger. Only the preset without sanitizers,
-/// with all lights, asserts the bound itself.
+/// The percentile of a third of the lights may be a tenth larger. Only the preset without
+/// sanitizers, with all lights, asserts the bound itself.
 constexpr double kFewLights = tests::ScaledDown(1.0, 1.1);
 
 const std::vector<TestLight>& TestLights() {

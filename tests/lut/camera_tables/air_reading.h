@@ -45,7 +45,8 @@ class AirReading {
  public:
   AirReading(const AirTables& tables, const MediumTables& medium)
       : AirReading(tables, medium, tables.eye) {}
-  /// The constructor reads the tables for another eye and another sun, as AirTextures::SetView does.
+  /// The constructor reads the tables for another eye and another sun, as AirTextures::SetView
+  /// does.
   AirReading(const AirTables& tables, const MediumTables& medium, const AirEye& eye)
       : tables_(tables),
         medium_(medium),

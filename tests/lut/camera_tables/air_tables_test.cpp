@@ -18,8 +18,8 @@ namespace alpenglow::lut {
 namespace {
 
 constexpr int kRays = tests::ScaledDown(200, 60);
-/// A few large errors make up most of an rms, so that 60 rays determine it to a third. Only the preset
-/// without sanitizers, with 200 rays, asserts the bounds themselves.
+/// A few large errors make up most of an rms, so that 60 rays determine it to a third. Only the
+/// preset without sanitizers, with 200 rays, asserts the bounds themselves.
 constexpr double kSampling = tests::ScaledDown(1.0, 1.5);
 
 const tests::LitAir& Hazy() {

@@ -34,7 +34,8 @@ const MultipleScattering& Quick() {
   return light;
 }
 
-/// The finest solution of scalar light of the earth in one band; the usual one under the sanitizers.
+/// The finest solution of scalar light of the earth in one band; the usual one under the
+/// sanitizers.
 const MultipleScattering& EarthFinest() {
   static const MultipleScattering light = [] {
     const Medium medium = InScalarLight(MediumPreset("earth", {550.0}));

@@ -34,7 +34,8 @@ struct Valley {
   }
 };
 
-/// Returns the distance of a place from the edge of shade on a level [m], as a shader interpolates it.
+/// Returns the distance of a place from the edge of shade on a level [m], as a shader interpolates
+/// it.
 double FromEdge(const LampShadowField& plan, int level, const glm::dvec3& from_lamp) {
   const double step_m = std::ldexp(kPlanStep_m, level);
   const double x = from_lamp.x / step_m + kPlanSide / 2.0,
@@ -49,8 +50,8 @@ double FromEdge(const LampShadowField& plan, int level, const glm::dvec3& from_l
   return step_m * kPlanRange_steps * (std::lerp(south, north, y - row) - 128.0) / 127.0;
 }
 
-/// Returns the share of places on the wrong side, among those between two distances east or north of
-/// the lamp.
+/// Returns the share of places on the wrong side, among those between two distances east or north
+/// of the lamp.
 double WrongShare(const Valley& valley, const LampShadowField& plan, int level, double from_m,
                   double to_m) {
   std::mt19937 random(2);

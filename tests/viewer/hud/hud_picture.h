@@ -89,7 +89,8 @@ class HudPicture : public Headless {
     return target.Read();
   }
 
-  /// The area in which two pictures differ, [left, right) x [top, bottom); it is empty if they are equal.
+  /// The area in which two pictures differ, [left, right) x [top, bottom); it is empty if they are
+  /// equal.
   struct Box {
     int left, top, right, bottom;
     [[nodiscard]] bool empty() const { return right <= left; }
