@@ -218,9 +218,9 @@ UtcInstant NextMoonTransit(const GeodeticPosition& place, const UtcInstant& afte
 }
 
 std::optional<MoonEvent> MoonEventFromName(std::string_view name) {
-  constexpr EnumNames<MoonEvent, 3> kNames({{MoonEvent::kMoonrise, "moonrise"},
-                                            {MoonEvent::kMoonset, "moonset"},
-                                            {MoonEvent::kMoonTransit, "moon-transit"}});
+  constexpr EnumNames kNames{{std::pair{MoonEvent::kMoonrise, "moonrise"},
+                              {MoonEvent::kMoonset, "moonset"},
+                              {MoonEvent::kMoonTransit, "moon-transit"}}};
   return kNames.Find(name);
 }
 

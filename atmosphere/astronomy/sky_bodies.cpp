@@ -173,11 +173,11 @@ std::optional<SolarEclipse> FindSolarEclipse(const GeodeticPosition& place, cons
 }
 
 std::optional<EclipseEvent> EclipseEventFromName(std::string_view name) {
-  constexpr EnumNames<EclipseEvent, 5> kNames({{EclipseEvent::kFirstContact, "first-contact"},
-                                               {EclipseEvent::kSecondContact, "second-contact"},
-                                               {EclipseEvent::kMaximum, "eclipse-maximum"},
-                                               {EclipseEvent::kThirdContact, "third-contact"},
-                                               {EclipseEvent::kLastContact, "last-contact"}});
+  constexpr EnumNames kNames{{std::pair{EclipseEvent::kFirstContact, "first-contact"},
+                              {EclipseEvent::kSecondContact, "second-contact"},
+                              {EclipseEvent::kMaximum, "eclipse-maximum"},
+                              {EclipseEvent::kThirdContact, "third-contact"},
+                              {EclipseEvent::kLastContact, "last-contact"}}};
   return kNames.Find(name);
 }
 

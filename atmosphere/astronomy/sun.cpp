@@ -97,8 +97,8 @@ constexpr double kEventStep_s = 1800.0;
 constexpr int kEventSteps = 48;
 constexpr double kEventTolerance_s = 0.01;
 
-constexpr EnumNames<SunEvent, 9> kSunEvents({
-    {SunEvent::kNoon, "noon"},
+constexpr EnumNames kSunEvents{{
+    std::pair{SunEvent::kNoon, "noon"},
     {SunEvent::kSunrise, "sunrise"},
     {SunEvent::kSunset, "sunset"},
     {SunEvent::kCivilDawn, "civil-dawn"},
@@ -107,7 +107,7 @@ constexpr EnumNames<SunEvent, 9> kSunEvents({
     {SunEvent::kNauticalDusk, "nautical-dusk"},
     {SunEvent::kAstronomicalDawn, "astronomical-dawn"},
     {SunEvent::kAstronomicalDusk, "astronomical-dusk"},
-});
+}};
 
 /// The crossing that defines an event: elevation, limb or centre, and direction.
 struct Crossing {

@@ -11,6 +11,8 @@
 // list the names.
 //
 //   constexpr EnumNames kNames{{std::pair{ToneCurve::kAgx, "agx"}, {ToneCurve::kAces, "aces"}}};
+//
+// The compiler counts the entries, so that a table has no entry without a name.
 #pragma once
 
 #include <algorithm>

@@ -67,8 +67,8 @@ ScatteringMatrix SphereMatrix(const SphereRatios& ratios, double phase_per_sr,
 
 namespace {
 
-constexpr EnumNames<PhaseKind, 8> kPhaseNames({
-    {PhaseKind::kRayleigh, "rayleigh"},
+constexpr EnumNames kPhaseNames{{
+    std::pair{PhaseKind::kRayleigh, "rayleigh"},
     {PhaseKind::kHenyeyGreenstein, "henyey-greenstein"},
     {PhaseKind::kDoubleHenyeyGreenstein, "double-henyey-greenstein"},
     {PhaseKind::kCornetteShanks, "cornette-shanks"},
@@ -76,7 +76,7 @@ constexpr EnumNames<PhaseKind, 8> kPhaseNames({
     {PhaseKind::kDraine, "draine"},
     {PhaseKind::kHenyeyGreensteinDraine, "henyey-greenstein-draine"},
     {PhaseKind::kTable, "table"},
-});
+}};
 
 double SchlickK(double g) { return g * (1.55 - 0.55 * g * g); }
 

@@ -113,10 +113,10 @@ std::string DurationText(double seconds) {
 }
 
 ProgressStyle ProgressStyleFromName(const std::string& name) {
-  constexpr EnumNames<ProgressStyle, 4> kNames({{ProgressStyle::kAuto, "auto"},
-                                                {ProgressStyle::kPlain, "plain"},
-                                                {ProgressStyle::kJson, "json"},
-                                                {ProgressStyle::kQuiet, "quiet"}});
+  constexpr EnumNames kNames{{std::pair{ProgressStyle::kAuto, "auto"},
+                              {ProgressStyle::kPlain, "plain"},
+                              {ProgressStyle::kJson, "json"},
+                              {ProgressStyle::kQuiet, "quiet"}}};
   return kNames.Named(name, "--progress is \"{0}\"; it must be {2}");
 }
 

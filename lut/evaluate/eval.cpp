@@ -32,8 +32,8 @@ constexpr std::array<std::string_view, 7> kColumnNames{"id",
                                                        "sun_zenith_deg",
                                                        "distance_m"};
 
-constexpr EnumNames<Quantity, 9> kQuantities({
-    {Quantity::kInscatterSingle, "inscatter_single"},
+constexpr EnumNames kQuantities{{
+    std::pair{Quantity::kInscatterSingle, "inscatter_single"},
     {Quantity::kIrradianceSky, "irradiance_sky"},
     {Quantity::kIrradianceSun, "irradiance_sun"},
     {Quantity::kOpticalDepth, "optical_depth"},
@@ -42,7 +42,7 @@ constexpr EnumNames<Quantity, 9> kQuantities({
     {Quantity::kStokesU, "stokes_u"},
     {Quantity::kTotal, "total"},
     {Quantity::kTransmittance, "transmittance"},
-});
+}};
 
 }  // namespace
 

@@ -64,9 +64,9 @@ std::optional<std::string> FaultyValue(const Image& image) {
 
 namespace {
 
-constexpr EnumNames<StokesLayer, 3> kStokesNames({{StokesLayer::kQ, "stokes_q"},
-                                                  {StokesLayer::kU, "stokes_u"},
-                                                  {StokesLayer::kPolarisation, "polarisation"}});
+constexpr EnumNames kStokesNames{{std::pair{StokesLayer::kQ, "stokes_q"},
+                                  {StokesLayer::kU, "stokes_u"},
+                                  {StokesLayer::kPolarisation, "polarisation"}}};
 
 }  // namespace
 

@@ -68,8 +68,8 @@ ExposureRule ExposureRuleFromText(const std::string& text) {
 
 std::string NameOf(ExposureRule::Kind kind) {
   using enum ExposureRule::Kind;
-  constexpr EnumNames<ExposureRule::Kind, 4> kNames(
-      {{kMetered, "metered"}, {kIncident, "incident"}, {kFixed, "fixed"}, {kEye, "eye"}});
+  constexpr EnumNames kNames{
+      {std::pair{kMetered, "metered"}, {kIncident, "incident"}, {kFixed, "fixed"}, {kEye, "eye"}}};
   return kNames.Of(kind);
 }
 
@@ -206,11 +206,11 @@ std::optional<double> Ev100FromText(const std::string& text) {
 
 namespace {
 
-constexpr EnumNames<ToneCurve, 5> kToneCurves({{ToneCurve::kAgx, "agx"},
-                                               {ToneCurve::kAces, "aces"},
-                                               {ToneCurve::kReinhard, "reinhard"},
-                                               {ToneCurve::kPbrNeutral, "pbr-neutral"},
-                                               {ToneCurve::kLinear, "linear"}});
+constexpr EnumNames kToneCurves{{std::pair{ToneCurve::kAgx, "agx"},
+                                 {ToneCurve::kAces, "aces"},
+                                 {ToneCurve::kReinhard, "reinhard"},
+                                 {ToneCurve::kPbrNeutral, "pbr-neutral"},
+                                 {ToneCurve::kLinear, "linear"}}};
 
 }  // namespace
 

@@ -16,11 +16,11 @@
 namespace alpenglow::lut {
 namespace {
 
-constexpr EnumNames<AgxLook, 5> kLooks({{AgxLook::kPhoto, "photo"},
-                                        {AgxLook::kNone, "none"},
-                                        {AgxLook::kPunchy, "punchy"},
-                                        {AgxLook::kMedium, "medium"},
-                                        {AgxLook::kHigh, "high"}});
+constexpr EnumNames kLooks{{std::pair{AgxLook::kPhoto, "photo"},
+                            {AgxLook::kNone, "none"},
+                            {AgxLook::kPunchy, "punchy"},
+                            {AgxLook::kMedium, "medium"},
+                            {AgxLook::kHigh, "high"}}};
 
 }  // namespace
 

@@ -78,14 +78,14 @@ PolarisedLight PolarisedRow::At(double azimuth_rad) const {
 
 namespace {
 
-constexpr EnumNames<PanoramaOrientation, 6> kOrientations({
-    {PanoramaOrientation::kNorth, "north"},
+constexpr EnumNames kOrientations{{
+    std::pair{PanoramaOrientation::kNorth, "north"},
     {PanoramaOrientation::kBlender, "blender"},
     {PanoramaOrientation::kOpenExr, "openexr"},
     {PanoramaOrientation::kThree, "three"},
     {PanoramaOrientation::kUnity, "unity"},
     {PanoramaOrientation::kGodot, "godot"},
-});
+}};
 
 /// View directions of the pixels of a latitude-longitude picture.
 struct PanoramaGrid {

@@ -222,14 +222,14 @@ std::string MediumText(const Medium& medium, const ExchangeOptions& options) {
 }  // namespace
 
 TexelType TexelTypeFromName(std::string_view name) {
-  constexpr EnumNames<TexelType, 2> kNames(
-      {{TexelType::kFloat, "float"}, {TexelType::kHalf, "half"}});
+  constexpr EnumNames kNames{{std::pair{TexelType::kFloat, "float"}, {TexelType::kHalf, "half"}}};
   return kNames.Named(name, "type is \"{0}\"; it must be {2}");
 }
 
 TexelFormat TexelFormatFromName(std::string_view name) {
-  constexpr EnumNames<TexelFormat, 3> kNames(
-      {{TexelFormat::kExr, "exr"}, {TexelFormat::kBin, "bin"}, {TexelFormat::kDat, "dat"}});
+  constexpr EnumNames kNames{{std::pair{TexelFormat::kExr, "exr"},
+                              {TexelFormat::kBin, "bin"},
+                              {TexelFormat::kDat, "dat"}}};
   return kNames.Named(name, "format is \"{0}\"; it must be {2}");
 }
 

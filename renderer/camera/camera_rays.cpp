@@ -125,10 +125,9 @@ double PixelFilter::Weight(double x) const { return Shape(x) / integral_; }
 
 namespace {
 
-constexpr EnumNames<PixelFilter::Kind, 3> kPixelFilters({{PixelFilter::Kind::kBox, "box"},
-                                                         {PixelFilter::Kind::kGaussian, "gaussian"},
-                                                         {PixelFilter::Kind::kBlackmanHarris,
-                                                          "blackman-harris"}});
+constexpr EnumNames kPixelFilters{{std::pair{PixelFilter::Kind::kBox, "box"},
+                                   {PixelFilter::Kind::kGaussian, "gaussian"},
+                                   {PixelFilter::Kind::kBlackmanHarris, "blackman-harris"}}};
 
 }  // namespace
 

@@ -14,10 +14,10 @@
 namespace alpenglow::viewer {
 namespace {
 
-constexpr EnumNames<Quality, 4> kQualities({{Quality::kLow, "low"},
-                                            {Quality::kMedium, "medium"},
-                                            {Quality::kHigh, "high"},
-                                            {Quality::kReference, "reference"}});
+constexpr EnumNames kQualities{{std::pair{Quality::kLow, "low"},
+                                {Quality::kMedium, "medium"},
+                                {Quality::kHigh, "high"},
+                                {Quality::kReference, "reference"}}};
 
 /// A rendering configuration and its approximate relative cost.
 struct Step {
