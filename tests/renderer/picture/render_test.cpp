@@ -30,8 +30,8 @@
 #include "tests/fixtures/luminance.h"
 #include "tests/fixtures/temporary_folder.h"
 #include "tests/fixtures/thread_counts.h"
+#include "tests/renderer/elevation/coarse_fuji.h"
 #include "tests/renderer/picture/sun_seen.h"
-#include "tests/renderer/terrain/coarse_fuji.h"
 
 namespace alpenglow::renderer {
 namespace {

@@ -25,7 +25,7 @@
 #include "tests/fixtures/sanitized.h"
 #include "tests/fixtures/temporary_folder.h"
 #include "tests/fixtures/thread_counts.h"
-#include "tests/renderer/terrain/coarse_fuji.h"
+#include "tests/renderer/elevation/coarse_fuji.h"
 
 namespace alpenglow::renderer {
 namespace {
