@@ -8,6 +8,7 @@
 #include <cstddef>
 #include <filesystem>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -64,6 +65,10 @@ struct ElevationModel {
 /// Returns a line on voids, units and datum of a model, with the name of its file; empty if there
 /// is nothing to report.
 [[nodiscard]] std::string NoteOn(const ElevationModel& model, const std::string& file);
+
+/// Returns the extensions of elevation models, with the point. They select the files of a folder;
+/// a file that is named is read whatever its extension is.
+[[nodiscard]] std::span<const char* const> ElevationExtensions();
 
 /// Reads a digital elevation model: GeoTIFF, SRTM .hgt, USGS DEM; any coordinate system of the
 /// earth (resampled to geographic WGS84 unless its samples already lie on such a grid). Heights are

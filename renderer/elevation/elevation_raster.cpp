@@ -19,6 +19,7 @@
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -43,6 +44,12 @@ std::string LastGdalError() {
   return text.empty() ? "no reason given" : text;
 }
 
+// The formats of elevation models: their names for messages, GDAL's drivers and the extensions of
+// their files.
+constexpr char kElevationFormats[] = "GeoTIFF, SRTM .hgt or USGS DEM";
+constexpr const char* kElevationDrivers[] = {"GTiff", "SRTMHGT", "USGSDEM", nullptr};
+constexpr const char* kElevationExtensions[] = {".hgt", ".tif", ".tiff", ".dem"};
+
 void RegisterDrivers() {
   static std::once_flag once;
   std::call_once(once, [] {
@@ -56,11 +63,10 @@ Dataset Open(const std::filesystem::path& file) {
   std::error_code ignored;
   if (!std::filesystem::is_regular_file(file, ignored)) RefuseFile(file, "there is no such file");
   RegisterDrivers();
-  static const char* const kDrivers[] = {"GTiff", "SRTMHGT", "USGSDEM", nullptr};
   Dataset dataset(static_cast<GDALDataset*>(GDALOpenEx(
-      file.c_str(), GDAL_OF_RASTER | GDAL_OF_VERBOSE_ERROR, kDrivers, nullptr, nullptr)));
+      file.c_str(), GDAL_OF_RASTER | GDAL_OF_VERBOSE_ERROR, kElevationDrivers, nullptr, nullptr)));
   if (!dataset) {
-    RefuseFile(file, "not a readable GeoTIFF, SRTM .hgt or USGS DEM (" + LastGdalError() + ")");
+    RefuseFile(file, fmt::format("not a readable {} ({})", kElevationFormats, LastGdalError()));
   }
   return dataset;
 }
@@ -286,6 +292,8 @@ ElevationRaster HeaderOf(const std::filesystem::path& file, GDALDataset& dataset
 }
 
 }  // namespace
+
+std::span<const char* const> ElevationExtensions() { return kElevationExtensions; }
 
 ElevationRaster ReadElevationHeader(const std::filesystem::path& file) {
   const QuietGdal quiet;

@@ -8,13 +8,35 @@
 #include <atomic>
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <iterator>
 #include <limits>
 #include <optional>
 
 #include "atmosphere/base/error.h"
+#include "atmosphere/base/parsing.h"
 #include "atmosphere/math/constants.h"
+#include "renderer/elevation/obj_file.h"
 
 namespace alpenglow::renderer {
+namespace {
+
+/// A format of mesh files and its reader.
+struct MeshFormat {
+  const char* extension;
+  MeshModel (*read)(const std::filesystem::path& file, UpAxis up);
+};
+
+// The first format is also that of files with an unknown extension.
+constexpr MeshFormat kMeshFormats[] = {{".obj", ReadObj}};
+
+}  // namespace
+
+MeshModel ReadMesh(const std::filesystem::path& file, UpAxis up) {
+  const auto* const format =
+      std::find_if(std::begin(kMeshFormats), std::end(kMeshFormats),
+                   [&](const MeshFormat& known) { return HasExtension(file, known.extension); });
+  return (format == std::end(kMeshFormats) ? kMeshFormats[0] : *format).read(file, up);
+}
 
 std::vector<std::array<float, 3>> SmoothNormals(
     const std::vector<glm::dvec3>& positions,

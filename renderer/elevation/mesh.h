@@ -2,15 +2,18 @@
 // This header provides the ground as triangles in a local frame. It contains the split of four
 // samples into two triangles and the height on these, normals for each vertex (means of the normals
 // of its triangles, weighted by their areas), heights of a mesh on a regular grid in the mesh's
-// frame, and MeshHeights, fast heights of a mesh that is one surface.
+// frame, and MeshHeights, fast heights of a mesh that is one surface. ReadMesh reads a mesh from a
+// file.
 #pragma once
 
 #include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <filesystem>
 #include <glm/vec3.hpp>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "atmosphere/time_place/geodesy.h"
@@ -73,6 +76,17 @@ struct TriangleMesh {
   std::vector<std::array<float, 3>> normals;            // unit, one per position
   std::vector<std::array<std::uint32_t, 3>> triangles;  // counter-clockwise seen from outside
 };
+
+/// A mesh that was read from a file.
+struct MeshModel {
+  TriangleMesh mesh;
+  std::string message;  // one line on parts of the file that the mesh omits; empty: none
+};
+
+/// Reads a file whose coordinates are metres from the place of the scene. Its extension determines
+/// its format, and a file with an unknown extension is read as Wavefront OBJ (ReadObj). Throws
+/// InputError, naming the file, if it cannot be read or has no triangles.
+[[nodiscard]] MeshModel ReadMesh(const std::filesystem::path& file, UpAxis up);
 
 /// Converts a position or a normal of a mesh to double precision.
 [[nodiscard]] inline glm::dvec3 ToDouble(const std::array<float, 3>& v) {

@@ -169,7 +169,7 @@ class ObjMesher {
     from_file_.assign(text.positions.size(), ObjText::kNone);
   }
 
-  ObjMesh Mesh() {
+  MeshModel Mesh() {
     for (const ObjText::Face& face : text_.faces) AddFace(face);
     if (mesh_.triangles.empty()) {
       throw InputError(fmt::format("{}: has no triangles{}", name_,
@@ -285,7 +285,7 @@ class ObjMesher {
 
 }  // namespace
 
-ObjMesh ReadObj(const std::filesystem::path& file, UpAxis up) {
+MeshModel ReadObj(const std::filesystem::path& file, UpAxis up) {
   ObjText text = ParseObj(ReadText(file), file.string());
   if (up == UpAxis::kY) TurnUp(text);
   return ObjMesher(text, file.string()).Mesh();

@@ -77,11 +77,6 @@ struct ObjText {
 /// @param name  name of the file, for messages.
 [[nodiscard]] ObjText ParseObj(std::string_view text, const std::string& name);
 
-struct ObjMesh {
-  TriangleMesh mesh;
-  std::string message;  // one line on parts of the file that the mesh omits; empty: none
-};
-
 /// Reads a file whose coordinates are metres from the place of the scene. Polygons are cut into
 /// triangles of equal total area. Normals are those of the file (vn) where it has any. Otherwise
 /// they are averaged over the triangles of a smoothing group, or of all triangles if there are no
@@ -90,6 +85,6 @@ struct ObjMesh {
 /// direction, self-intersecting polygons and unknown statements, and states whether the mesh is so
 /// far from the place that its coordinates cannot be metres from there. Throws InputError, naming
 /// the file, if there are no triangles, and the errors of ParseObj.
-[[nodiscard]] ObjMesh ReadObj(const std::filesystem::path& file, UpAxis up = UpAxis::kZ);
+[[nodiscard]] MeshModel ReadObj(const std::filesystem::path& file, UpAxis up = UpAxis::kZ);
 
 }  // namespace alpenglow::renderer

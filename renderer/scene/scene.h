@@ -64,7 +64,7 @@ struct TerrainSource {
   enum class Kind {
     kProceduralMountains,  // ProceduralMountains
     kElevationModel,       // file, see ReadElevation
-    kMesh,                 // file, see ReadObj
+    kMesh,                 // file, see ReadMesh
     kNone,                 // the ellipsoid alone
   };
   Kind kind = Kind::kProceduralMountains;

@@ -10,7 +10,7 @@
 
 #include "atmosphere/base/error.h"
 #include "atmosphere/math/constants.h"
-#include "renderer/elevation/obj_file.h"
+#include "renderer/elevation/mesh.h"
 #include "renderer/procedural_mountains/procedural_mountains.h"
 #include "renderer/scene/scene_options.h"
 #include "renderer/terrain/loaded_heights.h"
@@ -322,7 +322,7 @@ LoadedMesh LoadMesh(const Scene& scene, const LocalFrame& frame, Progress* progr
       return MeshOf(model.grid, frame, Joined(message, NoteOn(model, scene.terrain.file.string())));
     }
     case TerrainSource::Kind::kMesh: {
-      ObjMesh read = ReadObj(scene.terrain.file, scene.terrain.up);
+      MeshModel read = ReadMesh(scene.terrain.file, scene.terrain.up);
       return {std::move(read.mesh), std::move(read.message)};
     }
     case TerrainSource::Kind::kNone:

@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -202,9 +201,9 @@ ElevationGrid Closed(ElevationGrid grid) {
 }
 
 bool IsModel(const std::filesystem::path& file) {
-  constexpr std::array<const char*, 4> kEndings{".hgt", ".tif", ".tiff", ".dem"};
-  return std::any_of(kEndings.begin(), kEndings.end(),
-                     [&](const char* ending) { return HasExtension(file, ending); });
+  const auto extensions = ElevationExtensions();
+  return std::any_of(extensions.begin(), extensions.end(),
+                     [&](const char* extension) { return HasExtension(file, extension); });
 }
 
 }  // namespace
@@ -297,8 +296,8 @@ void LandTiles::AddFolder(const std::filesystem::path& folder) {
     }
   }
   if (tiles_.size() == before)
-    throw InputError(fmt::format("{}: no elevation model (.hgt, .tif, .tiff, .dem) in this folder",
-                                 folder.string()));
+    throw InputError(fmt::format("{}: no elevation model ({}) in this folder", folder.string(),
+                                 fmt::join(ElevationExtensions(), ", ")));
 }
 
 void LandTiles::LayLattice() {

@@ -162,7 +162,7 @@ struct LandSource {
   /// land.
   std::optional<GeodeticPosition> range_centre;
   std::uint32_t range_seed = 0;
-  /// A mesh (ReadObj) in metres east, north and up of a place on the ellipsoid. It replaces all
+  /// A mesh (ReadMesh) in metres east, north and up of a place on the ellipsoid. It replaces all
   /// other sources.
   struct Mesh {
     std::filesystem::path file;

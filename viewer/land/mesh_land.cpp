@@ -8,7 +8,7 @@
 #include <limits>
 
 #include "atmosphere/math/constants.h"
-#include "renderer/elevation/obj_file.h"
+#include "renderer/elevation/mesh.h"
 #include "renderer/surface/scene_ground.h"
 #include "renderer/terrain/loaded_heights.h"
 
@@ -146,7 +146,7 @@ std::vector<ChunkLight> LightOfMesh(const TriangleMesh& mesh, const LocalFrame& 
 MeshLand::MeshLand(const LandSource::Mesh& source, const Ellipsoid& ellipsoid)
     : frame_(ellipsoid, source.place),
       reader_([](const LandSource::Mesh& mesh) {
-        ObjMesh read = ReadObj(mesh.file, mesh.up);
+        MeshModel read = ReadMesh(mesh.file, mesh.up);
         return Read{std::make_shared<const Terrain>(std::move(read.mesh)), std::move(read.message)};
       }),
       lighter_([frame = frame_](const Order& order) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Terrain from a single mesh (OBJ): read, lit and drawn as a whole, and sampled on a grid of
+// Terrain from a single mesh: read, lit and drawn as a whole, and sampled on a grid of
 // latitude and longitude for the lighting and shadow code.
 #pragma once
 
@@ -37,7 +37,7 @@ class MeshLand {
   /// Starts to read a mesh.
   MeshLand(const LandSource::Mesh& source, const Ellipsoid& ellipsoid);
 
-  /// Collects finished work. Throws InputError if the file cannot be read (ReadObj).
+  /// Collects finished work. Throws InputError if the file cannot be read (ReadMesh).
   /// @param seconds  time since the last call.
   void Update(double seconds);
   void Wait() {
@@ -56,7 +56,7 @@ class MeshLand {
   [[nodiscard]] std::optional<double> HighestGround(const GeodeticPosition& place) const;
   /// Returns GridOverMesh of the mesh loaded now. Any thread may call it, at any later time.
   [[nodiscard]] GroundSampler Sampler() const;
-  /// Returns the warnings about the file, once (ObjMesh).
+  /// Returns the warnings about the file, once (MeshModel).
   [[nodiscard]] std::vector<std::string> PollNotes() { return std::exchange(notes_, {}); }
   /// Returns the size of the vertices and triangles, in memory and on the GPU.
   [[nodiscard]] std::size_t bytes() const;

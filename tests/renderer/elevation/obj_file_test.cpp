@@ -41,13 +41,13 @@ double AreaOf(const TriangleMesh& mesh) {
 class ObjFile : public TemporaryFolder {
  protected:
   [[nodiscard]] fs::path File() const { return folder_ / "mesh.obj"; }
-  [[nodiscard]] ObjMesh ReadAll(const std::string& text, UpAxis up = UpAxis::kZ) const {
+  [[nodiscard]] MeshModel ReadAll(const std::string& text, UpAxis up = UpAxis::kZ) const {
     WriteText(File(), text);
     return ReadObj(File(), up);
   }
   /// Reads a file that gives no cause for a message.
   [[nodiscard]] TriangleMesh Read(const std::string& text) const {
-    ObjMesh read = ReadAll(text);
+    MeshModel read = ReadAll(text);
     EXPECT_EQ(read.message, "") << text;
     return std::move(read.mesh);
   }
@@ -171,21 +171,21 @@ TEST_F(ObjFile, TrianglesFaceTheSideOfTheirNormals) {
 }
 
 TEST_F(ObjFile, NormalsWithoutDirectionAreCountedAndReplaced) {
-  const ObjMesh read = ReadAll(kSquare + "vn 0 0 0\nvn nan 0 1\nf 1//1 2//2 3//1 4//1\n");
+  const MeshModel read = ReadAll(kSquare + "vn 0 0 0\nvn nan 0 1\nf 1//1 2//2 3//1 4//1\n");
   EXPECT_THAT(read.message, HasSubstr("2 normals without direction"));
   for (const auto& normal : read.mesh.normals)
     EXPECT_EQ(normal, (std::array<float, 3>{0.0F, 0.0F, 1.0F}));
 }
 
 TEST_F(ObjFile, FacesWithoutAreaAreLeftOutAndCounted) {
-  const ObjMesh read = ReadAll(kSquare + "f 1 2 3 4\nf 1 1 2\nf 1 3 1\n");
+  const MeshModel read = ReadAll(kSquare + "f 1 2 3 4\nf 1 1 2\nf 1 3 1\n");
   EXPECT_EQ(read.mesh.triangles.size(), 2U);
   EXPECT_EQ(read.message,
             File().string() + ": 2 faces without area left out (the first in line 6)");
 }
 
 TEST_F(ObjFile, TheYAxisPointsUpIfAskedFor) {
-  const ObjMesh read =
+  const MeshModel read =
       ReadAll("v 1 2 3\nv 11 2 3\nv 1 2 -7\nvn 0 1 0\nf 1//1 2//1 3//1\n", UpAxis::kY);
   EXPECT_EQ(read.message, "");
   EXPECT_EQ(read.mesh.positions[0], (std::array<float, 3>{1.0F, -3.0F, 2.0F})) << "z is south";
@@ -269,6 +269,18 @@ TEST_F(ObjFile, BadFilesAreRefusedByLine) {
            {kRoof + "s smooth\nf 1 4 3 2\n", ":7: smoothing group 'smooth'"}})
     ExpectRefused(text, fault);
   EXPECT_NE(tests::FaultOf([&] { return ReadObj(folder_ / "none.obj"); }), "no fault");
+}
+
+TEST_F(ObjFile, IsRecognisedByItsExtensionAndReadWithAnyOther) {
+  for (const char* name : {"square.obj", "SQUARE.OBJ", "square.txt", "square"}) {
+    WriteText(folder_ / name, kSquare + "f 1 2 3 4\nl 1 2\ncurv 0 1\n");
+    const MeshModel model = ReadMesh(folder_ / name, UpAxis::kY);
+    const MeshModel same = ReadObj(folder_ / name, UpAxis::kY);
+    EXPECT_EQ(model.mesh.positions, same.mesh.positions) << name;
+    EXPECT_EQ(model.mesh.triangles.size(), 2U) << name;
+    EXPECT_EQ(model.message, same.message) << name;
+    EXPECT_THAT(model.message, HasSubstr("curv")) << name;
+  }
 }
 
 /// Returns the area of a polygon in any plane: half the length of the sum of cross products

@@ -309,7 +309,8 @@ TEST_F(LandSourceFiles, WhatCannotBeReadIsSaidByName) {
   };
   EXPECT_THAT(fault({{folder_ / "none.tif"}, VoidPolicy::kFill, std::nullopt}),
               HasSubstr("none.tif"));
-  EXPECT_THAT(fault({{folder_}, VoidPolicy::kFill, std::nullopt}), HasSubstr("no elevation model"));
+  EXPECT_THAT(fault({{folder_}, VoidPolicy::kFill, std::nullopt}),
+              HasSubstr("no elevation model (.hgt, .tif, .tiff, .dem) in this folder"));
   WriteTile(folder_ / "good.tif", 0, 0);
   WriteText(folder_ / "broken.tif", "this is no TIFF");
   const LandTiles tiles({{folder_}, VoidPolicy::kFill, std::nullopt});
