@@ -89,8 +89,8 @@ void PaintHeadless(const SkyviewOptions& options, FlightSession& flight, const I
   }
   if (options.hud == "on") {
     FlightRecorder none;
-    ViewerApp deck(flight, none, {options.hud_scale > 0.0 ? options.hud_scale : 1.0, true, {}});
-    deck.WritePicture(*options.screenshot, size);
+    ViewerApp app(flight, none, {options.hud_scale > 0.0 ? options.hud_scale : 1.0, true, {}});
+    app.WritePicture(*options.screenshot, size);
   } else {
     PictureWriter(flight).Write(*options.screenshot, size);
   }
@@ -103,15 +103,15 @@ ToneMapPass::Screen ScreenOf(const Window& window) { return {0, window.width(), 
 /// is lost.
 class LossOfDisplay {
  public:
-  LossOfDisplay(Window& window, FlightRecorder& recorder, ViewerApp& deck)
+  LossOfDisplay(Window& window, FlightRecorder& recorder, ViewerApp& app)
       : window_(window), recorder_(recorder) {
-    window.AtLostDisplay([&recorder, &deck] {
+    window.AtLostDisplay([&recorder, &app] {
       try {
         recorder.Finish();
       } catch (const OutputError& fault) {
         Log(fmt::format("skyview: {}\n", fault.what()));
       }
-      deck.FinishWithoutWindow();
+      app.FinishWithoutWindow();
     });
   }
   ~LossOfDisplay() {
@@ -130,29 +130,29 @@ void Fly(const SkyviewOptions& options, FlightSession& flight, Window& window,
   using Clock = std::chrono::steady_clock;
   int frames = 0;
   const double scale = options.hud_scale > 0.0 ? options.hud_scale : window.content_scale();
-  ViewerApp deck(flight, recorder,
-                 {scale,
-                  options.hud != "off",
-                  {.invert_y = options.invert_y, .invert_look_y = options.invert_y}});
+  ViewerApp app(flight, recorder,
+                {scale,
+                 options.hud != "off",
+                 {.invert_y = options.invert_y, .invert_look_y = options.invert_y}});
   flight.standpoint().AwaitGround();
-  const LossOfDisplay loss(window, recorder, deck);
+  const LossOfDisplay loss(window, recorder, app);
   bool looks = false;
   for (Clock::time_point before = Clock::now();;) {
     ThrowIfInterrupted();
     const WindowEvents events = window.Poll();
-    if (events.close) deck.Leave();
-    if (deck.quit()) return;
+    if (events.close) app.Leave();
+    if (app.quit()) return;
     const Clock::time_point now = Clock::now();
     const double seconds = std::chrono::duration<double>(now - before).count();
     before = now;
-    deck.Advance({events, {window.width(), window.height()}, seconds});
-    if (deck.TakeFullScreen()) window.SetFullscreen(!window.fullscreen());
-    if (looks != (deck.mouse_mode() == MouseMode::kLook)) {
+    app.Advance({events, {window.width(), window.height()}, seconds});
+    if (app.TakeFullScreen()) window.SetFullscreen(!window.fullscreen());
+    if (looks != (app.mouse_mode() == MouseMode::kLook)) {
       looks = !looks;
       window.CapturePointer(looks);
     }
     if (events.minimised || window.width() == 0 || window.height() == 0) continue;
-    deck.Paint(ScreenOf(window), seconds);
+    app.Paint(ScreenOf(window), seconds);
     window.Swap();
     flight.frames().RecordFrame(std::chrono::duration<double>(Clock::now() - now).count());
     if (options.screenshot && ++frames == options.frames) {

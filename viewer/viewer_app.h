@@ -27,8 +27,8 @@ class ViewerApp final : public FlightCommands {
     bool shows_hud = true;
     ControlSettings controls;
   };
-  /// Keeps references to the flight and to the recorder. The panels start and stop the recorder. It
-  /// outlives the deck, so that the recorded flight is complete however the deck ends.
+  /// Keeps references to the flight and to the recorder. The panels start and stop the recorder. The
+  /// recorder outlives the ViewerApp, so that the recorded flight is complete however that ends.
   ViewerApp(FlightSession& flight, FlightRecorder& recorder, const Settings& settings);
   /// Finishes the requested pictures and writes their outcomes that were not yet displayed to
   /// standard error.

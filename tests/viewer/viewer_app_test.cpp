@@ -51,25 +51,25 @@ class ViewerAppTest : public tests::HeadlessSharing<BareFlight> {
     flight_->controller().pilot().SetTrack(nullptr);
     flight_->controller().clock().SetRate(1.0);
     flight_->TakeUp(shared().begin);
-    deck_ = std::make_unique<ViewerApp>(*flight_, recorder_, ViewerApp::Settings{});
+    app_ = std::make_unique<ViewerApp>(*flight_, recorder_, ViewerApp::Settings{});
     screen_ = std::make_unique<RenderTarget>(kSize.width, kSize.height, RenderTarget::Depth::kNone);
     flight_->WaitUntilReady(kSize);
   }
   void TearDown() override {
     screen_.reset();
-    deck_.reset();
+    app_.reset();
   }
   /// A key that goes down and up.
   void Press(int key, int modifiers = 0) {
     WindowEvents events;
     events.keys = {{key, 0, 1, modifiers, ""}, {key, 0, 0, modifiers, ""}};
-    deck_->Advance({events, kSize, kFrame_s});
+    app_->Advance({events, kSize, kFrame_s});
   }
   /// Keys that go down or up, and a frame.
   void Hold(std::initializer_list<int> keys, bool down) {
     WindowEvents events;
     for (const int key : keys) events.keys.push_back({key, 0, down ? 1 : 0, 0, ""});
-    deck_->Advance({events, kSize, kFrame_s});
+    app_->Advance({events, kSize, kFrame_s});
   }
   struct Moment {
     CameraPose eye;
@@ -78,31 +78,31 @@ class ViewerAppTest : public tests::HeadlessSharing<BareFlight> {
   std::vector<Moment> Fly(int frames) {
     std::vector<Moment> moments;
     for (int i = 0; i < frames; ++i) {
-      deck_->Advance({{}, kSize, kFrame_s});
+      app_->Advance({{}, kSize, kFrame_s});
       moments.push_back({flight_->eye(), flight_->now()});
     }
     return moments;
   }
   DisplayImage Shown() {
-    deck_->Advance({{}, kSize, kFrame_s});
-    deck_->Paint({screen_->framebuffer(), kSize.width, kSize.height}, kFrame_s);
+    app_->Advance({{}, kSize, kFrame_s});
+    app_->Paint({screen_->framebuffer(), kSize.width, kSize.height}, kFrame_s);
     return screen_->ReadBytes();
   }
   /// Flies on until the pictures that were asked for are written, or not; counts frames.
   int FlyUntilPicturesEnd() {
     int frames = 0;
-    for (; deck_->Model().progress; ++frames) static_cast<void>(Shown());
+    for (; app_->Model().progress; ++frames) static_cast<void>(Shown());
     static_cast<void>(Fly(1));
     return frames;
   }
   /// The commands that keys and panels give.
-  [[nodiscard]] FlightCommands& Commands() { return *deck_; }
-  [[nodiscard]] std::vector<HudMessage> Messages() const { return deck_->Model().messages; }
+  [[nodiscard]] FlightCommands& Commands() { return *app_; }
+  [[nodiscard]] std::vector<HudMessage> Messages() const { return app_->Model().messages; }
 
   static constexpr double kFrame_s = 1.0 / 60.0;
   FlightSession* flight_ = nullptr;
   FlightRecorder recorder_;
-  std::unique_ptr<ViewerApp> deck_;
+  std::unique_ptr<ViewerApp> app_;
   std::unique_ptr<RenderTarget> screen_;
 };
 
@@ -148,8 +148,8 @@ TEST_F(ViewerAppFiles, F3WritesAPictureIntoTheCurrentFolder) {
   static_cast<void>(Shown());
   Press(kF3);
   Press(kF3);
-  ASSERT_TRUE(deck_->Model().progress);
-  EXPECT_EQ(deck_->Model().progress->text, "Picture skyview-0001.png (1 more to come):");
+  ASSERT_TRUE(app_->Model().progress);
+  EXPECT_EQ(app_->Model().progress->text, "Picture skyview-0001.png (1 more to come):");
   EXPECT_GE(FlyUntilPicturesEnd(), 4) << "a frame for each ray of a pixel at least";
   EXPECT_EQ(ReadPng("skyview-0001.png").width, kSize.width);
   ASSERT_FALSE(Messages().empty());
@@ -162,36 +162,36 @@ TEST_F(ViewerAppFiles, F3WritesAPictureIntoTheCurrentFolder) {
 TEST_F(ViewerAppFiles, WhoLeavesDoesNotLoseThePictureUnderWay) {
   static_cast<void>(Shown());
   Press(kF3);
-  deck_->Leave();
-  EXPECT_FALSE(deck_->quit());
+  app_->Leave();
+  EXPECT_FALSE(app_->quit());
   EXPECT_THAT(Messages().back().text, HasSubstr("leaving when the pictures are written"));
   static_cast<void>(FlyUntilPicturesEnd());
-  EXPECT_TRUE(deck_->quit());
+  EXPECT_TRUE(app_->quit());
   EXPECT_TRUE(std::filesystem::exists("skyview-0001.png"));
 }
 
 TEST_F(ViewerAppFiles, WhoLeavesTwiceGivesUpThePicture) {
   static_cast<void>(Shown());
   Press(kF3);
-  deck_->Leave();
-  deck_->Leave();
+  app_->Leave();
+  app_->Leave();
   static_cast<void>(FlyUntilPicturesEnd());
-  EXPECT_TRUE(deck_->quit());
+  EXPECT_TRUE(app_->quit());
   EXPECT_TRUE(std::filesystem::is_empty(".")) << "nor is there a part of it";
 }
 
-TEST_F(ViewerAppFiles, ADeckThatGoesHasWrittenItsPictures) {
+TEST_F(ViewerAppFiles, AnAppThatEndsHasWrittenItsPictures) {
   static_cast<void>(Shown());
   Press(kF3);
   Commands().Request({false, ImageSize{320, 240}, true});
-  deck_.reset();
+  app_.reset();
   EXPECT_TRUE(std::filesystem::exists("skyview-0001.png"));
   EXPECT_TRUE(std::filesystem::exists("skyview-0002.png")) << "with its instruments";
 }
 
 TEST_F(ViewerAppFiles, ThePanelWritesPicturesWithInstrumentsAndWithout) {
   static_cast<void>(Shown());
-  deck_->Advance({{}, kSize, kFrame_s});
+  app_->Advance({{}, kSize, kFrame_s});
   Commands().Request({false, ImageSize{480, 360}, true});
   Commands().Request({false, ImageSize{480, 360}, false});
   static_cast<void>(FlyUntilPicturesEnd());
@@ -201,7 +201,7 @@ TEST_F(ViewerAppFiles, ThePanelWritesPicturesWithInstrumentsAndWithout) {
   EXPECT_LT(Changed(with, without), 480 * 360) << "over the same picture";
   Commands().Request({true, ImageSize{480, 360}, true});
   EXPECT_TRUE(Messages().back().is_warning) << "instruments are no light";
-  EXPECT_FALSE(deck_->Model().progress);
+  EXPECT_FALSE(app_->Model().progress);
   EXPECT_FALSE(std::filesystem::exists("skyview-0003.exr"));
 }
 
@@ -228,7 +228,7 @@ TEST_F(ViewerAppTest, CtrlRFliesTheSameFlightAgainAndThenItGoesOn) {
   Press(kR, kControlKey);
   ASSERT_FALSE(Messages().empty());
   EXPECT_THAT(Messages().back().text, HasSubstr("2 s"));
-  EXPECT_EQ(deck_->Model().flight.mode, "replay");
+  EXPECT_EQ(app_->Model().flight.mode, "replay");
   EXPECT_LT(Apart_m(flight_->eye(), flown[0].eye), 1.0) << "from where it began";
   const std::vector<Moment> again = Fly(100);
   for (std::size_t i = 0; i < again.size(); ++i) {
@@ -239,7 +239,7 @@ TEST_F(ViewerAppTest, CtrlRFliesTheSameFlightAgainAndThenItGoesOn) {
     EXPECT_NEAR(again[i].eye.heading_rad, flown[i + 1].eye.heading_rad, 1e-3);
   }
   const std::vector<Moment> on = Fly(40);
-  EXPECT_EQ(deck_->Model().flight.mode, "free camera");
+  EXPECT_EQ(app_->Model().flight.mode, "free camera");
   EXPECT_THAT(Messages().back().text, HasSubstr("ends"));
   EXPECT_GT(Apart_m(on.back().eye, flown.back().eye), 100.0) << "the key is still held";
   EXPECT_LT(Apart_m(on.back().eye, flown.back().eye), 20 * 20.0) << "but was not while it replayed";
@@ -267,7 +267,7 @@ TEST_F(ViewerAppTest, WhereNothingWasFlownThereIsNothingToFlyAgain) {
   EXPECT_TRUE(Messages().back().is_warning);
   EXPECT_THAT(Messages().back().text, HasSubstr("nothing has been flown"));
   EXPECT_EQ(flight_->eye(), before);
-  EXPECT_EQ(deck_->Model().flight.mode, "free camera");
+  EXPECT_EQ(app_->Model().flight.mode, "free camera");
 }
 
 TEST_F(ViewerAppFiles, ShiftF2WritesTheFlightSoFarAndItFliesOn) {
@@ -290,14 +290,14 @@ TEST_F(ViewerAppFiles, ShiftF2WritesTheFlightSoFarAndItFliesOn) {
 TEST_F(ViewerAppFiles, ThePanelBeginsAndEndsARecord) {
   Hold({kW}, true);
   static_cast<void>(Fly(30));
-  EXPECT_FALSE(deck_->Model().recording);
+  EXPECT_FALSE(app_->Model().recording);
   Commands().Record(true);
-  EXPECT_TRUE(deck_->Model().recording);
+  EXPECT_TRUE(app_->Model().recording);
   const std::vector<Moment> flown = Fly(61);
   EXPECT_EQ(ReadFlight("flight-0001.csv.part").points().size(), 21U)
       << "every third frame is on the disk before the next one";
   Commands().Record(false);
-  EXPECT_FALSE(deck_->Model().recording);
+  EXPECT_FALSE(app_->Model().recording);
   const CameraPath path = ReadFlight("flight-0001.csv");
   EXPECT_EQ(path.begin_s(), 0.0) << "of the record, not of the flight";
   EXPECT_LT(Apart_m(path.points().front().pose, flown.front().eye), 1e-3);
@@ -307,12 +307,12 @@ TEST_F(ViewerAppFiles, ThePanelBeginsAndEndsARecord) {
   Commands().Record(false);
 }
 
-TEST_F(ViewerAppFiles, ARecordThatNobodyEndedIsWholeWhenTheDeckHasGone) {
+TEST_F(ViewerAppFiles, ARecordThatNobodyEndedIsWholeWhenTheAppHasEnded) {
   {
     FlightRecorder recorder;
-    ViewerApp deck(*flight_, recorder, {});
-    static_cast<FlightCommands&>(deck).Record(true);
-    deck.Advance({{}, kSize, kFrame_s});
+    ViewerApp app(*flight_, recorder, {});
+    static_cast<FlightCommands&>(app).Record(true);
+    app.Advance({{}, kSize, kFrame_s});
   }
   EXPECT_EQ(ReadFlight("flight-0001.csv").points().size(), 1U);
 }
@@ -330,11 +330,11 @@ TEST_F(ViewerAppOverLand, NothingIsNotedBeforeTheGroundUnderTheEyeIsKnown) {
   settings.first_air = tests::SharedAirOf(scene);
   FlightSession flight(scene, ParseInstant("2026-06-21T10:00:00Z"), settings);
   FlightRecorder recorder(folder_ / "f.csv");
-  ViewerApp deck(flight, recorder, {});
+  ViewerApp app(flight, recorder, {});
   const RenderTarget screen(kSize.width, kSize.height, RenderTarget::Depth::kNone);
   const auto fly = [&](const WindowEvents& events) {
-    deck.Advance({events, kSize, 1.0 / 60.0});
-    deck.Paint({screen.framebuffer(), kSize.width, kSize.height}, 1.0 / 60.0);
+    app.Advance({events, kSize, 1.0 / 60.0});
+    app.Paint({screen.framebuffer(), kSize.width, kSize.height}, 1.0 / 60.0);
   };
   int frames = 0;
   for (; !flight.standpoint().KnowsGround(); ++frames) fly({});
@@ -343,7 +343,7 @@ TEST_F(ViewerAppOverLand, NothingIsNotedBeforeTheGroundUnderTheEyeIsKnown) {
   WindowEvents again;
   again.keys = {{kR, 0, 1, kControlKey, ""}, {kR, 0, 0, kControlKey, ""}};
   fly(again);
-  EXPECT_THAT(deck.Model().messages.back().text, HasSubstr("nothing has been flown"))
+  EXPECT_THAT(app.Model().messages.back().text, HasSubstr("nothing has been flown"))
       << "the eye has stood, though the ground came up to it";
   EXPECT_TRUE(recorder.Finish());
   const CameraPath path = ReadFlight(folder_ / "f.csv");
@@ -368,7 +368,7 @@ TEST_F(ViewerAppTest, APlaceThatNobodyKnowsIsAWarningAndTheEyeStays) {
   ASSERT_EQ(Messages().size(), 1U);
   EXPECT_TRUE(Messages().back().is_warning);
   EXPECT_THAT(Messages().back().text, HasSubstr("Nowhere at all"));
-  EXPECT_FALSE(deck_->quit());
+  EXPECT_FALSE(app_->quit());
 }
 
 TEST_F(ViewerAppTest, CtrlLSwitchesTheLandingLightAsThePanelDoes) {
@@ -431,16 +431,16 @@ TEST_F(ViewerAppTest, KeysEnterTheModesThatThereAre) {
 }
 
 TEST_F(ViewerAppTest, ThrottleAndHeldSpeedOfTheAircraftAreShown) {
-  EXPECT_FALSE(deck_->Model().flight.throttle) << "the free camera has none";
+  EXPECT_FALSE(app_->Model().flight.throttle) << "the free camera has none";
   Press('2');
   PilotedAircraft* aircraft = flight_->controller().pilot().aircraft();
   ASSERT_NE(aircraft, nullptr);
   aircraft->SetThrottle(0.25);
-  EXPECT_EQ(deck_->Model().flight.throttle, 0.25);
+  EXPECT_EQ(app_->Model().flight.throttle, 0.25);
   aircraft->autopilot().Set({.speed_m_per_s = 55.0});
-  EXPECT_EQ(deck_->Model().autopilot.speed_m_per_s, 55.0);
+  EXPECT_EQ(app_->Model().autopilot.speed_m_per_s, 55.0);
   aircraft->SetThrottle(0.25);
-  EXPECT_EQ(deck_->Model().autopilot.speed_m_per_s, std::nullopt) << "a hand has the throttle";
+  EXPECT_EQ(app_->Model().autopilot.speed_m_per_s, std::nullopt) << "a hand has the throttle";
 }
 
 TEST_F(ViewerAppTest, AnotherLookAndWhiteBalanceChangeThePicture) {
@@ -463,10 +463,10 @@ TEST_F(ViewerAppTest, AnotherLookAndWhiteBalanceChangeThePicture) {
 
 TEST_F(ViewerAppTest, EscAsksAndEnterLeaves) {
   Press(kEscape);
-  EXPECT_FALSE(deck_->quit());
+  EXPECT_FALSE(app_->quit());
   static_cast<void>(Fly(2));
   Press(kEnterKey);
-  EXPECT_TRUE(deck_->quit());
+  EXPECT_TRUE(app_->quit());
 }
 
 TEST_F(ViewerAppTest, EscTwiceStays) {
@@ -475,14 +475,14 @@ TEST_F(ViewerAppTest, EscTwiceStays) {
   Press(kEscape);
   Press(kEnterKey);
   static_cast<void>(Fly(2));
-  EXPECT_FALSE(deck_->quit());
+  EXPECT_FALSE(app_->quit());
 }
 
 TEST_F(ViewerAppTest, MessagesGoAfterAWhile) {
-  deck_->Report("hello");
-  deck_->Advance({{}, kSize, 4.0});
+  app_->Report("hello");
+  app_->Advance({{}, kSize, 4.0});
   EXPECT_EQ(Messages().size(), 1U);
-  deck_->Advance({{}, kSize, 5.0});
+  app_->Advance({{}, kSize, 5.0});
   EXPECT_TRUE(Messages().empty());
 }
 

@@ -19,8 +19,7 @@ static_assert(kShiftKey == GLFW_MOD_SHIFT && kControlKey == GLFW_MOD_CONTROL &&
               kAltKey == GLFW_MOD_ALT);
 
 constexpr Modes kAll{true, true, true}, kFree{true, false, false}, kAircraft{false, true, false},
-    kTrack{false, false, true}, kFlightController{false, true, true},
-    kNotAircraft{true, false, true};
+    kTrack{false, false, true}, kNotFree{false, true, true}, kNotAircraft{true, false, true};
 constexpr std::string_view kAllKeys = "Everywhere", kCameraKeys = "Free camera",
                            kSpeedKeys = "Free camera and track", kTrackKeys = "Track",
                            kAircraftKeys = "Aircraft", kAutopilotKeys = "Autopilot of the aircraft",
@@ -57,8 +56,8 @@ constexpr Action OnWheel(int step, Action action) {
   action.wheel = step;
   return action;
 }
-constexpr Action InFlightController(std::string_view keys, Action action) {
-  action.keys_in_cockpit = keys;
+constexpr Action OutsideFreeCamera(std::string_view keys, Action action) {
+  action.keys_outside_free_camera = keys;
   return action;
 }
 constexpr Action NeedsPicture(Action action) {
@@ -268,10 +267,10 @@ constexpr Action kActions[] = {
     Again(kTimeKeys, "rate of time down, and backwards", "Shift+T", StepTimeRate<-1>),
     Once(kTimeKeys, "real time", "Shift+P", UseRealTime),
     OnPad(GLFW_GAMEPAD_BUTTON_DPAD_RIGHT,
-          InFlightController("W", Again(kTimeKeys, "a minute later", "]", Shift<kMinute_s>))),
-    OnPad(GLFW_GAMEPAD_BUTTON_DPAD_LEFT,
-          InFlightController("Shift+W",
-                             Again(kTimeKeys, "a minute earlier", "[", Shift<-kMinute_s>))),
+          OutsideFreeCamera("W", Again(kTimeKeys, "a minute later", "]", Shift<kMinute_s>))),
+    OnPad(
+        GLFW_GAMEPAD_BUTTON_DPAD_LEFT,
+        OutsideFreeCamera("Shift+W", Again(kTimeKeys, "a minute earlier", "[", Shift<-kMinute_s>))),
     Again(kTimeKeys, "an hour later", "Shift+]", Shift<kHour_s>),
     Again(kTimeKeys, "an hour earlier", "Shift+[", Shift<-kHour_s>),
     Again(kTimeKeys, "a day later", "Ctrl+]", Shift<kDay_s>),
@@ -360,8 +359,8 @@ std::vector<Binding> AllBindings() {
   for (const Action& action : kActions) {
     for (const std::string_view key : SplitAtCommas(action.keys))
       bindings.push_back({KeyChordFromText(key), &action, action.modes});
-    for (const std::string_view key : SplitAtCommas(action.keys_in_cockpit))
-      bindings.push_back({KeyChordFromText(key), &action, kFlightController});
+    for (const std::string_view key : SplitAtCommas(action.keys_outside_free_camera))
+      bindings.push_back({KeyChordFromText(key), &action, kNotFree});
   }
   return bindings;
 }
@@ -436,8 +435,8 @@ int PrintedKey(int key, const char* name) {
 }
 
 std::string KeysText(const Action& action) {
-  if (action.keys_in_cockpit.empty()) return std::string(action.keys);
-  return fmt::format("{}; {} (aircraft, track)", action.keys, action.keys_in_cockpit);
+  if (action.keys_outside_free_camera.empty()) return std::string(action.keys);
+  return fmt::format("{}; {} (aircraft, track)", action.keys, action.keys_outside_free_camera);
 }
 
 std::string ControlsMarkdown() {

@@ -110,14 +110,15 @@ struct Action {
   Modes modes = {};
   void (*run)(FlightCommands& flight) = nullptr;  // null for a held key
   HeldControl moves = {};                         // of a held key
-  std::string_view keys_in_cockpit = "";          // additional keys in aircraft and track modes
+  // Additional keys in aircraft and track modes.
+  std::string_view keys_outside_free_camera = "";
   PadButton pad = {};
   int wheel = 0;               // 1, -1: a step of the mouse wheel forward or back also acts
   bool needs_picture = false;  // refused while the window is minimised
 };
 
-/// Returns all lines, those with the same heading in sequence: first the actions of all modes, then
-/// those of each mode, then those of the view.
+/// Returns all lines. Those with the same heading follow one another. Modes and window come first,
+/// then the flight in each mode, then exposure, view, time and capture.
 [[nodiscard]] std::span<const Action> ActionTable();
 
 /// The lines under one heading.

@@ -337,15 +337,15 @@ TEST(Action, EveryControlHasOneKeyForEachDirection) {
   }
 }
 
-/// All keys that the table names: chord, row, and whether in the flight controller alone.
+/// Visits all keys of the table: chord, row, and whether the key acts only outside the free camera.
 template <typename Visit>
 void ForEachKey(const Visit& visit) {
   for (const Action& row : ActionTable()) {
-    for (const bool controller : {false, true}) {
-      std::string keys(controller ? row.keys_in_cockpit : row.keys);
+    for (const bool not_free : {false, true}) {
+      std::string keys(not_free ? row.keys_outside_free_camera : row.keys);
       for (std::size_t begin = 0; begin < keys.size();) {
         const std::size_t end = std::min(keys.find(", ", begin), keys.size());
-        visit(keys.substr(begin, end - begin), row, controller);
+        visit(keys.substr(begin, end - begin), row, not_free);
         begin = end + 2;
       }
     }
@@ -354,10 +354,10 @@ void ForEachKey(const Visit& visit) {
 
 TEST(Action, EveryKeyOfTheTableDoesWhatItsLineSaysAndNoneDoesTwoThings) {
   int keys = 0;
-  ForEachKey([&](const std::string& text, const Action& row, bool controller) {
+  ForEachKey([&](const std::string& text, const Action& row, bool not_free) {
     const KeyChord chord = KeyChordFromText(text);
     for (const FlightMode mode : kModes) {
-      if (!row.modes.Has(mode) || (controller && mode == FlightMode::kFree)) continue;
+      if (!row.modes.Has(mode) || (not_free && mode == FlightMode::kFree)) continue;
       const Action* action = ActionOfKey(chord.key, chord.modifiers, mode);
       ASSERT_NE(action, nullptr) << text;
       EXPECT_EQ(action->help, row.help) << text << " in mode " << static_cast<int>(mode);
@@ -370,8 +370,8 @@ TEST(Action, EveryKeyOfTheTableDoesWhatItsLineSaysAndNoneDoesTwoThings) {
 TEST(Action, NoKeyIsListedTwiceForOneMode) {
   for (const FlightMode mode : kModes) {
     std::vector<std::pair<int, int>> chords;
-    ForEachKey([&](const std::string& text, const Action& row, bool controller) {
-      if (!row.modes.Has(mode) || (controller && mode == FlightMode::kFree)) return;
+    ForEachKey([&](const std::string& text, const Action& row, bool not_free) {
+      if (!row.modes.Has(mode) || (not_free && mode == FlightMode::kFree)) return;
       const KeyChord chord = KeyChordFromText(text);
       const std::pair<int, int> pair{chord.key, chord.modifiers};
       EXPECT_THAT(chords, ::testing::Not(::testing::Contains(pair)))
@@ -505,10 +505,10 @@ TEST(Action, TheManualShowsTheTable) {
 
 // --- pilot and clock under one hand ---
 
-double FlightControllerSea(const GeodeticPosition&) { return 0.0; }
+double FlatSea(const GeodeticPosition&) { return 0.0; }
 double Airport(const GeodeticPosition&) { return 423.0; }
 
-FlightController NewFlightController(const GroundHeight& ground = FlightControllerSea) {
+FlightController NewFlightController(const GroundHeight& ground = FlatSea) {
   return {
       {PlaceFromDegrees(47.0, 8.0, 1500.0)}, kWgs84, ParseInstant("2026-06-21T12:00:00Z"), ground};
 }
@@ -649,7 +649,7 @@ TEST(FlightController, WhatIsFlownAgainEndsInTheFlightThatGoesOn) {
   controller.Enter(FlightMode::kAircraft);
   controller.ToggleHold(Autopilot::Hold::kHeading);
   controller.Advance({.stick = {.roll_right = 1.0}}, 3.0);
-  const FlightReadout flown = controller.pilot().Readout(FlightControllerSea);
+  const FlightReadout flown = controller.pilot().Readout(FlatSea);
   for (int time = 0; time < 2; ++time) {  // asked for in the middle, it begins again
     controller.FlyAgain(AnHour());
     EXPECT_TRUE(controller.pilot().Replays());
@@ -658,7 +658,7 @@ TEST(FlightController, WhatIsFlownAgainEndsInTheFlightThatGoesOn) {
   EXPECT_TRUE(controller.pilot().Replays());
   controller.Advance({}, 5.0);
   EXPECT_EQ(controller.pilot().mode(), FlightMode::kAircraft);
-  const FlightReadout on = controller.pilot().Readout(FlightControllerSea);
+  const FlightReadout on = controller.pilot().Readout(FlatSea);
   EXPECT_EQ(on.aircraft->bank_rad, flown.aircraft->bank_rad);
   EXPECT_EQ(on.above_ground_m, flown.above_ground_m);
   EXPECT_EQ(on.autopilot, flown.autopilot);
