@@ -8,7 +8,6 @@
 
 #include "atmosphere/colour/spectrum.h"
 #include "atmosphere/math/numerics.h"
-#include "atmosphere/ray/shell.h"
 
 namespace alpenglow::atmosphere {
 namespace {
@@ -168,18 +167,6 @@ std::optional<RefractedGroundRay> RefractedView::ToGround(double elevation_rad) 
   const double bending = bending_[below] + share * (bending_[below + 1] - bending_[below]);
   return RefractedGroundRay{-elevation_rad - at_ground + bending, at_ground};
 }
-
-}  // namespace alpenglow::atmosphere
-
-namespace alpenglow::shared {
-// clang-format off
-#include "atmosphere/shared_glsl/shared_begin.h"
-#include "atmosphere/refraction/land_lift.glsl"
-#include "atmosphere/shared_glsl/shared_end.h"
-// clang-format on
-}  // namespace alpenglow::shared
-
-namespace alpenglow::atmosphere {
 
 namespace {
 

@@ -37,8 +37,17 @@
 #include <vector>
 
 #include "atmosphere/medium/medium.h"
+#include "atmosphere/ray/shell.h"
 #include "atmosphere/ray/single_scattering.h"
 #include "atmosphere/refraction/refraction.h"
+
+namespace alpenglow::shared {
+// clang-format off
+#include "atmosphere/shared_glsl/shared_begin.h"
+#include "atmosphere/refraction/land_lift.glsl"
+#include "atmosphere/shared_glsl/shared_end.h"
+// clang-format on
+}  // namespace alpenglow::shared
 
 namespace alpenglow::atmosphere {
 
