@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <chrono>
 #include <cmath>
 #include <cstddef>
@@ -145,6 +146,16 @@ namespace {
 
 enum ToneMapPassUnit { kPicture, kDither, kTable };
 
+// Returns the macro that selects a tone curve in the shader: CURVE_PBR_NEUTRAL for "pbr-neutral".
+std::string MacroOf(ToneCurve curve) {
+  std::string macro = "CURVE_" + NameOf(curve);
+  for (char& letter : macro) {
+    if (letter == '-') letter = '_';
+    letter = static_cast<char>(std::toupper(static_cast<unsigned char>(letter)));
+  }
+  return macro;
+}
+
 ShaderProgram ProgramOf(ToneCurve curve, bool dithers) {
   ShaderProgram program = FullScreenProgram(WithViewerPieces(
       ToneMapPassTexts(curve, dithers), {"viewer/shaders/display.tone_map.frag.glsl"}));
@@ -167,8 +178,8 @@ void Upload(const GlTexture& texture, const ToneTable& table) {
 
 std::vector<ShaderPiece> ToneMapPassTexts(ToneCurve curve, bool dithers) {
   std::vector<ShaderPiece> texts = SharedTexts();
-  texts.push_back({"curve", fmt::format("#define CURVE {}\n#define DITHERS {}\n",
-                                        static_cast<int>(curve), dithers ? 1 : 0)});
+  texts.push_back(
+      {"curve", fmt::format("#define {}\n#define DITHERS {}\n", MacroOf(curve), dithers ? 1 : 0)});
   return WithViewerPieces(std::move(texts), {"viewer/shaders/display.dither.glsl"});
 }
 

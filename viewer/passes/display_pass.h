@@ -167,7 +167,7 @@ class ToneMapPass {
   DitherTexture dither_;
 };
 
-/// Returns the shader texts that display.tone_map.frag.glsl is built from.
+/// Returns the shader texts before display.tone_map.frag.glsl. They define the macro of the curve.
 [[nodiscard]] std::vector<ShaderPiece> ToneMapPassTexts(ToneCurve curve, bool dithers);
 
 class Upscaler {

@@ -4,7 +4,8 @@
 //// display.tone_map.frag.glsl
 // Tone mapping of the picture for a display: white balance, exposure, gamut, tone curve and dither,
 // as in Develop (look.h). AgX is read from its table (display_pass.h). Defined before this text:
-// CURVE, a ToneCurve; DITHERS, 0 for codes that display.upscale.frag.glsl reads, else 1.
+// CURVE_ and the name of the tone curve in capitals (CURVE_PBR_NEUTRAL for pbr-neutral); DITHERS, 0
+// for codes that display.upscale.frag.glsl reads, else 1.
 uniform sampler2D linear_picture;  // any size
 uniform sampler3D tone_table;
 uniform vec2 stops;        // relative to saturation, at the first and last node of the table
@@ -12,7 +13,7 @@ uniform float exposure;
 uniform mat3 balance;      // white balance, linear sRGB to linear sRGB
 out vec4 display;
 
-#if CURVE == 0
+#ifdef CURVE_AGX
 vec3 CodesOf(vec3 inside) {
   vec3 share = (log2(max(inside, vec3(1e-9))) - stops.x) / (stops.y - stops.x);
   float side = float(textureSize(tone_table, 0).x);
@@ -21,11 +22,11 @@ vec3 CodesOf(vec3 inside) {
 }
 #else
 vec3 LightOf(vec3 inside) {
-#if CURVE == 4
+#ifdef CURVE_LINEAR
   return min(inside, vec3(1.0));
 #else
   float r = PrintedChannel(inside.r), g = PrintedChannel(inside.g), b = PrintedChannel(inside.b);
-#if CURVE == 1
+#ifdef CURVE_ACES
   float red = AcesCurve(AcesRed(r, g, b));
   float green = AcesCurve(AcesGreen(r, g, b));
   float blue = AcesCurve(AcesBlue(r, g, b));
@@ -33,14 +34,16 @@ vec3 LightOf(vec3 inside) {
               AcesLightBlue(red, green, blue));
 #else
   float largest = max(r, max(g, b));
-#if CURVE == 2
+#if defined(CURVE_REINHARD)
   float y = Luminance(r, g, b);
   return vec3(ReinhardLight(r, largest, y), ReinhardLight(g, largest, y),
               ReinhardLight(b, largest, y));
-#else
+#elif defined(CURVE_PBR_NEUTRAL)
   float smallest = min(r, min(g, b));
   return vec3(NeutralLight(r, largest, smallest), NeutralLight(g, largest, smallest),
               NeutralLight(b, largest, smallest));
+#else
+#error no branch for this tone curve
 #endif
 #endif
 #endif
@@ -97,7 +100,7 @@ vec3 Dithered(vec3 codes) {
 // surface as this fragment, they are interpolated bilinearly. At an edge of land, whose position
 // `outline` holds at screen resolution, the pixels at about the fragment's distance are used.
 // DITHERS is 1 for display codes, else 0.
-uniform sampler2D small_picture;  // inverse depth of land (gbuffer.inverse_depth.glsl) in the fourth component
+uniform sampler2D small_picture;  // fourth component: InverseDepthOf (gbuffer.inverse_depth.glsl)
 uniform sampler2D outline;        // depth of DepthPrepass; of the screen's size
 uniform vec2 half_view;           // tangents of half the horizontal and vertical field of view
 in vec2 screen;
