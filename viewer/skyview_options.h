@@ -40,8 +40,8 @@ struct SkyviewOptions {
   std::optional<double> benchmark;  // seconds
   double fps = 30.0;                // frame rate of the film
   int frames = 1;
-  std::string vsync = "on", quality = "auto", hud = "auto", exposure = "auto", look = "photo",
-              white_balance = "camera";
+  std::string vsync = "on", quality = "auto", hud = "auto", exposure = "auto", tone_curve = "agx",
+              look = "photo", white_balance = "camera";
   double frame_rate = 20.0;  // target of automatic quality
   double hud_scale = 0.0;    // 0: the scale of the desktop
   bool invert_y = false, explain = false;
@@ -62,13 +62,16 @@ inline void AddPictureLooks(CLI::App& app, SkyviewOptions& options) {
   app.add_option("--white-balance", options.white_balance, kWhiteBalanceHelp)
       ->check(ReadableBy([](const std::string& text) { (void)WhiteBalanceFromText(text); }))
       ->capture_default_str();
+  app.add_option("--tone-map", options.tone_curve, "Tone curve of the screen and of PNG files")
+      ->check(CLI::IsMember(ToneCurveNames()))
+      ->capture_default_str();
   app.add_option("--look", options.look, kLookHelp)
       ->check(CLI::IsMember(AgxLookNames()))
       ->capture_default_str();
 }
 
 [[nodiscard]] inline Look LookOf(const SkyviewOptions& options) {
-  Look look;
+  Look look{.curve = ToneCurveFromName(options.tone_curve)};
   look.agx = AgxLookFromName(options.look);
   look.white = WhiteBalanceFromText(options.white_balance);
   return look;

@@ -188,6 +188,9 @@ TEST_F(Skyview, ToTheEyeDuskIsDarkAndThePictureSaysHowItWasExposed) {
   EXPECT_EQ(asked.at("alpenglow.ev100"), "7.5000");
   EXPECT_EQ(asked.at("alpenglow.tone_curve"), "agx, punchy");
   EXPECT_EQ(asked.at("alpenglow.white_balance"), "4000 K, CAT16");
+  const Metadata neutral = take_screenshot("neutral.png", "--exposure 7.5 --tone-map pbr-neutral");
+  EXPECT_EQ(neutral.at("alpenglow.tone_curve"), "pbr-neutral");
+  EXPECT_NE(ReadPng(InFolder("neutral.png")).rgb, ReadPng(InFolder("asked.png")).rgb);
 }
 
 TEST_F(Skyview, APathOfAnotherProgramIsReplayed) {
@@ -223,7 +226,7 @@ TEST_F(Skyview, AWrongCommandLineEndsWithStatusTwo) {
   for (const char* wrong :
        {"--size 0x10", "--size 40000x10", "--latitude 91", "--pitch -100", "--altitude 1e10",
         "--vsync maybe", "--hud-scale 9", "--frame-rate 0", "--exposure incident",
-        "--exposure bright", "--look golden", "--white-balance 900"}) {
+        "--exposure bright", "--look golden", "--tone-map local", "--white-balance 900"}) {
     const Outcome outcome = Run(std::string("--headless --screenshot a.png ") + wrong);
     EXPECT_EQ(outcome.status, 2) << wrong;
     EXPECT_THAT(outcome.error, HasSubstr(std::string(wrong).substr(0, 6)));
