@@ -10,6 +10,8 @@
 - Public headers include the standard library and each other, as <alpenglow/NAME.h>, and nothing else.
 - The top level of the repository has only the known entries.
 - Every file that begins with an interpreter can be run.
+- Every function of a text of SharedTexts (viewer/gl/shader.cpp) has a case in tests/fixtures/shared_text_cases.cpp, or
+  a function that calls it has one.
 - Programs write to standard output and error only through lut/cli/messages.h: fmt::print throws
   where standard error takes nothing, which would end the work.
 
@@ -29,6 +31,7 @@ TOP_LEVEL = {"CHANGELOG.md", "CITATION.cff", "CMakeLists.txt", "CMakePresets.jso
              "README.md", "atmosphere", "build", "include", "lut", "out", "quickstart.sh", "renderer", "tests", "viewer"}
 SPEECH = ("fmt::print", "std::cerr", "std::cout <<", "printf(")
 INCLUDE = re.compile(r'^\s*#\s*include\s*["<](?:alpenglow/)?([^">]+)[">]')
+CASE = re.compile(r"ALPENGLOW_SHARED_CASE\((.*?)grid::", re.DOTALL)
 NAMESPACE = re.compile(r"^namespace alpenglow::(\w+)", re.MULTILINE)
 
 
@@ -84,6 +87,21 @@ def speech(path, text):
     return [f"{path}: {words} does not go through lut/cli/messages.h" for words in SPEECH if words in text]
 
 
+def functions_without_case(shared, cases):
+    """The functions of shared texts that no case calls, neither itself nor by another function."""
+    called_by = {}
+    for text in shared:
+        for function in re.split(r"^SHARED\s+\w+\s+", re.sub(r"//.*", "", text), flags=re.MULTILINE)[1:]:
+            name, _, rest = function.partition("(")
+            called_by[name] = set(re.findall(r"\b(\w+)\(", rest))
+    reached = set()
+    new = {name for case in CASE.findall(cases) for name in re.findall(r"\b(\w+)\(", case)}
+    while new:
+        reached |= new
+        new = {name for caller in new for name in called_by.get(caller, ())} - reached
+    return sorted(set(called_by) - reached)
+
+
 def check_examples():
     """Every rule finds what breaks it, and nothing else."""
     order = {"atmosphere": ["base", "medium"], "lut": ["image", "sky"], "renderer": ["terrain"], "viewer": []}
@@ -108,6 +126,9 @@ def check_examples():
     assert not list(foreign_includes("a.h", "#include <vector>\n#include <alpenglow/b.h>\n"))
     assert not list(foreign_namespaces("lut/sky/a.h", "namespace alpenglow::lut {\nnamespace alpenglow::shared {\n"))
     assert len(speech("lut/a.cpp", 'std::cerr << "x";')) == 1
+    shared = "SHARED Number A(Number x) {\n  return B(x);  // C(x)\n}\nSHARED Number B(Number x) { return x; }\n"
+    assert functions_without_case([shared, "SHARED Number C(Number x) { return x; }\n"],
+                                  "ALPENGLOW_SHARED_CASE(A(a[0]), grid::Rays())\nC(1.0)\n") == ["C"]
     assert folders_of("| `air/` | media |\n| `ray.h` | no folder |\n") == ["air"]
 
 
@@ -130,6 +151,11 @@ def broken_rules():
                 yield from speech(path, text)
     for file in sorted((TREE / "include").rglob("*.h")):
         yield from foreign_includes(str(file.relative_to(TREE)), file.read_text(encoding="utf-8"))
+    shared = re.findall(r'"([\w/]+\.glsl)"', (TREE / "viewer/gl/shader.cpp").read_text(encoding="utf-8"))
+    cases = (TREE / "tests/fixtures/shared_text_cases.cpp").read_text(encoding="utf-8")
+    assert len(shared) > 10, "the rule must have looked at the shared texts"
+    for name in functions_without_case([(TREE / path).read_text(encoding="utf-8") for path in shared], cases):
+        yield f"tests/fixtures/shared_text_cases.cpp: {name} of a shared text has no case"
     for entry in sorted(TREE.iterdir()):
         if entry.name[0] != "." and entry.name not in TOP_LEVEL:
             yield f"{entry.name}: the top level is closed"
