@@ -13,7 +13,7 @@
 #include "atmosphere/medium/medium_presets.h"
 #include "atmosphere/refraction/refracted_view.h"
 #include "lut/cli/output_file.h"
-#include "lut/image/look.h"
+#include "lut/image/look_options.h"
 #include "lut/sky/panorama.h"
 
 namespace alpenglow::lut {
@@ -21,8 +21,8 @@ namespace {
 
 struct SkyOptions {
   std::optional<std::string> atmosphere, png, time, zone;
-  std::string out, size = "2048x1024", orientation = "north", exposure = "auto", curve = "agx",
-                   look = "photo", white_balance = "camera";
+  std::string out, size = "2048x1024", orientation = "north", exposure = "auto";
+  LookTexts look;
   std::optional<double> sun_elevation, latitude, longitude;
   std::vector<std::string> layers;
   double sun_azimuth = 180.0, altitude = 2.0;
@@ -141,10 +141,8 @@ void RequireOutputs(const SkyOptions& options) {
 void MakeSky(const SkyOptions& options, const CommonOptions& common) {
   RequireOutputs(options);
   const ExposureRule rule = ExposureRuleFromText(options.exposure);
-  Look look = LookFromName(options.curve);
-  look.agx = AgxLookFromName(options.look);
+  Look look = LookFromTexts(options.look);
   look.night_vision = options.night_vision;
-  look.white = WhiteBalanceFromText(options.white_balance);
   look = LookUnder(rule, look);
   SkyJob job = JobFrom(options);
   const RenderedSky sky = Rendered(job, common.progress_style());
@@ -215,15 +213,7 @@ void AddPicture(CLI::App& sky, SkyOptions& options) {
                  "-30 to 30")
       ->check(ReadableBy([](const std::string& text) { (void)ExposureRuleFromText(text); }))
       ->capture_default_str();
-  sky.add_option("--white-balance", options.white_balance, kWhiteBalanceHelp)
-      ->check(ReadableBy([](const std::string& text) { (void)WhiteBalanceFromText(text); }))
-      ->capture_default_str();
-  sky.add_option("--tone-map", options.curve, kToneMapHelp)
-      ->check(CLI::IsMember(LookNames()))
-      ->capture_default_str();
-  sky.add_option("--look", options.look, kLookHelp)
-      ->check(CLI::IsMember(AgxLookNames()))
-      ->capture_default_str();
+  AddLookOptions(sky, options.look, LookNames(), kToneMapHelp);
   sky.add_flag("--night-vision", options.night_vision, kNightVisionHelp);
 }
 

@@ -14,7 +14,7 @@
 #include "lut/cli/command_line.h"
 #include "lut/cli/output_file.h"
 #include "lut/evaluate/eval.h"
-#include "lut/image/look.h"
+#include "lut/image/look_options.h"
 #include "renderer/camera/camera_rays.h"
 #include "renderer/camera/track.h"
 #include "renderer/effects/effect_choice.h"
@@ -65,8 +65,8 @@ struct SkyseriesOptions {
 /// Texts of the options of light and picture, as typed. ReadPictureOptions reads them once the
 /// whole command line is known, because they depend on each other.
 struct PictureOptionTexts {
-  std::string size = "1280x720", exposure = "auto", tone_curve = "agx", look = "photo",
-              filter = "blackman-harris", glare = "none", white_balance = "camera";
+  std::string size = "1280x720", exposure = "auto", filter = "blackman-harris", glare = "none";
+  LookTexts look;
   std::optional<int> samples;
   std::optional<std::string> effects, max_error, noise;
   std::vector<std::string> layers;
@@ -199,15 +199,7 @@ inline void AddDisplayOptions(CLI::App& app, PictureOptionTexts& texts) {
                  "frame; smooth from day to night) or an EV at ISO 100, -30 to 30")
       ->check(ReadableBy([](const std::string& text) { (void)ExposureRuleFromText(text); }))
       ->capture_default_str();
-  app.add_option("--white-balance", texts.white_balance, kWhiteBalanceHelp)
-      ->check(ReadableBy([](const std::string& text) { (void)WhiteBalanceFromText(text); }))
-      ->capture_default_str();
-  app.add_option("--tone-map", texts.tone_curve, kToneMapHelp)
-      ->check(CLI::IsMember(LookNames()))
-      ->capture_default_str();
-  app.add_option("--look", texts.look, kLookHelp)
-      ->check(CLI::IsMember(AgxLookNames()))
-      ->capture_default_str();
+  AddLookOptions(app, texts.look, LookNames(), kToneMapHelp);
   app.add_flag("--night-vision", texts.night_vision, kNightVisionHelp);
   app.add_option("--glare", texts.glare,
                  "\"eye\" adds to the PNG the light that the eye scatters around sun and lamps. It "
@@ -288,10 +280,8 @@ inline void AddEffectOptions(CLI::App& app, PictureOptionTexts& texts) {
 /// Sets exposure and look of the developed pictures.
 inline void SetDevelopment(const PictureOptionTexts& texts, SeriesOutput& output) {
   output.exposure = ExposureRuleFromText(texts.exposure);
-  output.look = LookFromName(texts.tone_curve);
-  output.look.agx = AgxLookFromName(texts.look);
+  output.look = LookFromTexts(texts.look);
   output.look.night_vision = texts.night_vision;
-  output.look.white = WhiteBalanceFromText(texts.white_balance);
   output.look = LookUnder(output.exposure, output.look);
   output.glare = texts.glare == "eye";
 }

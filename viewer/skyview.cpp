@@ -272,7 +272,7 @@ int Run(const SkyviewOptions& options) {
   FlightSession flight(
       scene, start,
       {LandSourceOf(scene), QualityRuleFromText(options.quality), options.frame_rate, size,
-       std::nullopt, FlightExposureFromText(options.exposure), LookOf(options),
+       std::nullopt, FlightExposureFromText(options.exposure), LookFromTexts(options.look),
        first_air.valid() ? first_air.get() : FirstAir()});
   flight.standpoint().Place(PlacementOf(options));
   if (options.place) flight.standpoint().GoTo(*options.place);

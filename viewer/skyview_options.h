@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "lut/cli/command_line.h"
-#include "lut/image/look.h"
+#include "lut/image/look_options.h"
 #include "renderer/scene/scene_options.h"
 #include "viewer/input/action.h"
 #include "viewer/layer.h"
@@ -40,8 +40,8 @@ struct SkyviewOptions {
   std::optional<double> benchmark;  // seconds
   double fps = 30.0;                // frame rate of the film
   int frames = 1;
-  std::string vsync = "on", quality = "auto", hud = "auto", exposure = "auto", tone_curve = "agx",
-              look = "photo", white_balance = "camera";
+  std::string vsync = "on", quality = "auto", hud = "auto", exposure = "auto";
+  LookTexts look;
   double frame_rate = 20.0;  // target of automatic quality
   double hud_scale = 0.0;    // 0: the scale of the desktop
   bool invert_y = false, explain = false;
@@ -59,22 +59,7 @@ inline void AddPictureLooks(CLI::App& app, SkyviewOptions& options) {
          "than day) or a fixed EV at ISO 100, -30 to 30")
       ->check(ReadableBy([](const std::string& text) { (void)FlightExposureFromText(text); }))
       ->capture_default_str();
-  app.add_option("--white-balance", options.white_balance, kWhiteBalanceHelp)
-      ->check(ReadableBy([](const std::string& text) { (void)WhiteBalanceFromText(text); }))
-      ->capture_default_str();
-  app.add_option("--tone-map", options.tone_curve, "Tone curve of the screen and of PNG files")
-      ->check(CLI::IsMember(ToneCurveNames()))
-      ->capture_default_str();
-  app.add_option("--look", options.look, kLookHelp)
-      ->check(CLI::IsMember(AgxLookNames()))
-      ->capture_default_str();
-}
-
-[[nodiscard]] inline Look LookOf(const SkyviewOptions& options) {
-  Look look{.curve = ToneCurveFromName(options.tone_curve)};
-  look.agx = AgxLookFromName(options.look);
-  look.white = WhiteBalanceFromText(options.white_balance);
-  return look;
+  AddLookOptions(app, options.look, ToneCurveNames(), "Tone curve of the screen and of PNG files");
 }
 
 inline void AddPlaceOptions(CLI::App& app, SkyviewOptions& options) {

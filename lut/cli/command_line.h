@@ -59,13 +59,6 @@ inline void AddAtmosphereOption(CLI::App& command, std::optional<std::string>& a
 /// Help texts of options that several programs have.
 inline constexpr char kToneMapHelp[] =
     "Tone curve of the PNG. \"local\" applies local exposure, then agx";
-inline constexpr char kLookHelp[] =
-    "Look of the tone curve agx: photo, or a look of the authors of agx: none, punchy, medium or "
-    "high contrast";
-inline constexpr char kWhiteBalanceHelp[] =
-    "Light that is shown as white: camera (daylight by day, 4000 K by night), daylight, auto (the "
-    "mean colour of the picture, limited to 3000 to 7000 K) or a temperature in kelvins, 1500 to "
-    "25000";
 inline constexpr char kNightVisionHelp[] =
     "Show in the PNG what an eye sees that is adapted to the dark: below 5 cd/m^2 colour fades and "
     "fine detail is lost";
