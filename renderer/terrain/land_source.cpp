@@ -165,7 +165,6 @@ std::size_t HeightPyramid::BytesOf(const LatticeBox& box, int level) {
 
 namespace {
 
-constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
 constexpr double kPole = 0.5 * std::numbers::pi;
 
 // Returns the mean height of a row.
