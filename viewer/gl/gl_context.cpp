@@ -6,7 +6,9 @@
 #include <epoxy/gl.h>
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <optional>
+#include <string_view>
 #include <vector>
 
 #include "atmosphere/base/error.h"
@@ -120,6 +122,15 @@ std::string GlDescription() {
     return bytes == nullptr ? std::string("unknown") : reinterpret_cast<const char*>(bytes);
   };
   return fmt::format("OpenGL {} on {}", text(GL_VERSION), text(GL_RENDERER));
+}
+
+bool IsSoftwareOpenGl() {
+  const auto* bytes = reinterpret_cast<const char*>(glGetString(GL_RENDERER));
+  const std::string_view renderer = bytes == nullptr ? "" : bytes;
+  const auto names = {"llvmpipe", "softpipe", "SWR", "SwiftShader", "Software"};
+  return std::any_of(names.begin(), names.end(), [&](const char* name) {
+    return renderer.find(name) != std::string_view::npos;
+  });
 }
 
 void RequireContext() {

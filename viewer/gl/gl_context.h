@@ -49,6 +49,9 @@ class HeadlessContext {
 /// (...)".
 [[nodiscard]] std::string GlDescription();
 
+/// Returns whether the current context draws without a GPU.
+[[nodiscard]] bool IsSoftwareOpenGl();
+
 /// Throws DisplayError if the context is lost because the GPU or its driver was reset. Detection
 /// requires a context that reports resets (OpenGL 4.5 or KHR_robustness).
 void RequireContext();

@@ -94,6 +94,10 @@ class LandscapePictures : public HeadlessLand {
     return Draw(land, eye);
   }
 
+  /// Returns the relative error of distances to triangles that the renderer has, too. A GPU (NVIDIA
+  /// H100) interpolates 1 / w to 3e-5.
+  [[nodiscard]] static double ErrorOfDistances() { return IsSoftwareOpenGl() ? 1e-5 : 4e-5; }
+
   std::optional<GBuffer> map_;
 };
 
@@ -143,10 +147,10 @@ TEST_F(LandscapePictures, DistanceAndNormalAreTheRenderersFromTheGroundToOrbit) 
     double above_m, column, row, pitch_rad, fov_rad;
     double middling, most;  // of the relative error of distances: median, 95 %
   };
-  for (const View& view :
-       {View{2.0, 120.0, 60.0, 0.0, 1.2, 1e-5, 2e-3}, View{2e3, 120.0, 20.0, -0.4, 1.2, 2e-3, 1e-2},
-        View{100e3, 120.0, 120.0, -1.57, 0.1, 1e-3, 3e-3},
-        View{400e3, 120.0, 120.0, -1.57, 0.03, 5e-4, 1e-3}}) {
+  for (const View& view : {View{2.0, 120.0, 60.0, 0.0, 1.2, ErrorOfDistances(), 2e-3},
+                           View{2e3, 120.0, 20.0, -0.4, 1.2, 2e-3, 1e-2},
+                           View{100e3, 120.0, 120.0, -1.57, 0.1, 1e-3, 3e-3},
+                           View{400e3, 120.0, 120.0, -1.57, 0.03, 5e-4, 1e-3}}) {
     SCOPED_TRACE(view.above_m);
     LookOut eye{PlaceOfSample(view.column + 0.3, view.row + 0.4, 0.0), 2.8, view.pitch_rad,
                 view.fov_rad};
@@ -178,7 +182,7 @@ TEST_F(LandscapePictures, DistanceIsThatAlongTheRayOfAPixelNotAlongItsMiddle) {
   eye.shift = {1.0 / kWidth, 1.0 / kHeight};
   const Misses misses = MissesOf(Settled(land, eye), eye, terrain, frame);
   ASSERT_GT(misses.both, 500);
-  EXPECT_LT(tests::Quantile(misses.distance, 0.5), 1e-5) << "1e-3 along the middle";
+  EXPECT_LT(tests::Quantile(misses.distance, 0.5), ErrorOfDistances()) << "1e-3 along the middle";
 }
 
 // With every sample drawn, the picture is the renderer's wherever nothing is left out that is seen.
@@ -356,11 +360,11 @@ TEST_F(LandscapePictures, NewLightTakesThePlaceOfTheOldWhenAllOfItIsThere) {
   };
   const auto middle = [&] { return PixelAt(Draw(land, eye), kWidth / 2, kHeight - 11); };
   land.WaitUntilReady(eye.place, eye.View());
-  EXPECT_EQ(middle().z, 4.0F) << "without a function the whole sun shines";
+  EXPECT_NEAR(middle().z, 4.0F, 1e-6F) << "without a function the whole sun shines";
   land.Relight(light(-2.0F));
   land.Update(eye.place, eye.View(), 0.0);
   EXPECT_TRUE(land.IsRelighting());
-  EXPECT_EQ(middle().z, 4.0F) << "the old light stays until the new is there";
+  EXPECT_NEAR(middle().z, 4.0F, 1e-6F) << "the old light stays until the new is there";
   land.WaitUntilReady(eye.place, eye.View());
   EXPECT_FALSE(land.IsRelighting());
   EXPECT_NEAR(middle().z, -2.0F, 1e-3F);
@@ -488,7 +492,7 @@ TEST_F(LandscapePictures, AMeshIsDrawnWhole) {
   const LocalFrame frame(kWgs84, {0.81, 0.14, 0.0});
   const Misses misses = MissesOf(picture, eye, Terrain(ReadObj(folder_ / "hill.obj").mesh), frame);
   EXPECT_GT(misses.both, 500);
-  EXPECT_LT(tests::Quantile(misses.distance, 1.0), 1e-5);
+  EXPECT_LT(tests::Quantile(misses.distance, 1.0), ErrorOfDistances());
   EXPECT_LT(tests::Quantile(misses.normal, 1.0), 1e-4);
   const auto grid = land.ground().Sampler()(eye.place, 1000.0, 9);
   ASSERT_TRUE(grid);
