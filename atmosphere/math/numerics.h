@@ -23,6 +23,11 @@
 
 namespace alpenglow::atmosphere {
 
+/// Returns the value, limited to finite half floats (-65504 to 65504).
+[[nodiscard]] inline float WithinHalf(float value) {
+  return std::clamp(value, -65504.0F, 65504.0F);
+}
+
 /// Returns a point within `tolerance` of a root of the continuous function f in [low, high]; f(low)
 /// and f(high) have different signs or are 0. The tolerance must be larger than the rounding of the
 /// bounds. The method is false position with the Illinois weights (Dowell and Jarratt 1971, BIT 11,

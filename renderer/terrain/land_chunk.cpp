@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "atmosphere/base/error.h"
+#include "atmosphere/math/numerics.h"
 #include "renderer/elevation/mesh.h"
 
 namespace alpenglow::renderer {
@@ -315,11 +316,6 @@ class ChunkMaker {
   LandChunk chunk_;
 };
 
-std::array<std::uint16_t, 4> Halves(const std::array<float, 4>& values) {
-  return {glm::packHalf1x16(values[0]), glm::packHalf1x16(values[1]), glm::packHalf1x16(values[2]),
-          glm::packHalf1x16(values[3])};
-}
-
 VertexLight MeanLight(const VertexLight& a, const VertexLight& b) {
   VertexLight mean;
   for (std::size_t band = 0; band < mean.sky.size(); ++band) {
@@ -345,6 +341,13 @@ LandChunk MakeChunk(const LoadedHeights& heights, const ChunkKey& key, int top,
   return ChunkMaker(heights, key, top, anchor).Make();
 }
 
+std::array<std::uint16_t, 4> PackedShares(const std::array<float, 4>& values) {
+  std::array<std::uint16_t, 4> halves{};
+  for (std::size_t i = 0; i < values.size(); ++i)
+    halves[i] = glm::packHalf1x16(WithinHalf(values[i]));
+  return halves;
+}
+
 std::size_t BytesOf(const LandChunk& chunk) {
   return sizeof(LandChunk) + chunk.vertices.capacity() * sizeof(ChunkVertex) +
          (chunk.own.capacity() + chunk.coarse.capacity()) * sizeof(LandVertex) +
@@ -364,10 +367,10 @@ std::vector<ChunkLight> LightOfChunk(const LandChunk& chunk, const LocalFrame& f
                                    ? lit[i]
                                    : MeanLight(lit[chunk.own.size() + chunk.ends[i].first],
                                                lit[chunk.own.size() + chunk.ends[i].second]);
-    packed.push_back({Halves(lit[i].sky),
-                      Halves(coarse.sky),
-                      Halves(lit[i].moon_sky),
-                      Halves(coarse.moon_sky),
+    packed.push_back({PackedShares(lit[i].sky),
+                      PackedShares(coarse.sky),
+                      PackedShares(lit[i].moon_sky),
+                      PackedShares(coarse.moon_sky),
                       {glm::packHalf1x16(lit[i].disk_x), glm::packHalf1x16(coarse.disk_x)}});
   }
   return packed;

@@ -91,6 +91,11 @@ struct ChunkLight {
 };
 static_assert(sizeof(ChunkLight) == 36);
 
+/// Returns the shares of a VertexLight as half floats. With the sun more than 60 degrees down, its
+/// sky is 20 orders of magnitude darker than that of the night, and shares of 3e5 occur. They
+/// become 65504, because infinity times that sky would be infinite.
+[[nodiscard]] std::array<std::uint16_t, 4> PackedShares(const std::array<float, 4>& values);
+
 /// The two vertices of the next coarser level whose mean a vertex morphs into, as indices into
 /// LandChunk::coarse. Both are equal if the vertex is one of that level.
 struct CoarseEnds {

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "atmosphere/math/constants.h"
+#include "atmosphere/math/numerics.h"
 #include "viewer/gl/render_target.h"
 #include "viewer/land/land_pass.h"
 #include "viewer/shaders/pass_setup.h"
@@ -200,18 +201,9 @@ constexpr auto kAzimuths = static_cast<int>(kHorizonAzimuths);
 constexpr std::size_t kFour = 4;  // components of a texel
 constexpr std::size_t kWeightLayers = kHorizonAzimuths / kFour;
 
-// Reorders the renderer's layout [level][azimuth][node][A, B][band] to rows of nodes.
 void UploadIntegrals(const GlTexture& texture, const OccludedSkyIrradiance::Tables& tables) {
-  constexpr std::size_t kNodes = OccludedSkyIrradiance::kNodes,
-                        kHorizonRows = OccludedSkyIrradiance::kLevels * kHorizonAzimuths;
-  std::vector<float> texels(tables.integral.size());
-  for (std::size_t row = 0; row < kHorizonRows; ++row) {
-    for (std::size_t node = 0; node < kNodes; ++node) {
-      for (std::size_t part = 0; part < 2; ++part)
-        std::copy_n(&tables.integral[((row * kNodes + node) * 2 + part) * kFour], kFour,
-                    &texels[((row * 2 + part) * kNodes + node) * kFour]);
-    }
-  }
+  constexpr std::size_t kNodes = OccludedSkyIrradiance::kNodes;
+  const std::vector<float> texels = IntegralTexels(tables);
   UploadTexture(
       GL_TEXTURE_2D_ARRAY, texture,
       {GL_RGBA16F, static_cast<int>(kNodes), 2 * kAzimuths,
@@ -260,6 +252,22 @@ void UploadSlopes(const GlTexture& texture, const TerrainInterreflection& slopes
 }
 
 }  // namespace
+
+std::vector<float> IntegralTexels(const OccludedSkyIrradiance::Tables& tables) {
+  constexpr std::size_t kNodes = OccludedSkyIrradiance::kNodes,
+                        kHorizonRows = OccludedSkyIrradiance::kLevels * kHorizonAzimuths;
+  std::vector<float> texels(tables.integral.size());
+  for (std::size_t row = 0; row < kHorizonRows; ++row) {
+    for (std::size_t node = 0; node < kNodes; ++node) {
+      for (std::size_t part = 0; part < 2; ++part) {
+        const float* from = &tables.integral[((row * kNodes + node) * 2 + part) * kFour];
+        std::transform(from, from + kFour, &texels[((row * 2 + part) * kNodes + node) * kFour],
+                       WithinHalf);
+      }
+    }
+  }
+  return texels;
+}
 
 void SkyByPixel::UploadHorizons(const TerrainHorizons& horizons) {
   const std::span<const std::uint16_t> packed = horizons.map().packed();

@@ -115,15 +115,10 @@ void DescribeVectors(GLuint location, const GlBuffer& buffer) {
 }
 
 ChunkLight PackedLight(const VertexLight& light) {
-  ChunkLight packed{};
-  for (std::size_t band = 0; band < light.sky.size(); ++band) {
-    packed.sky[band] = glm::packHalf1x16(light.sky[band]);
-    packed.moon_sky[band] = glm::packHalf1x16(light.moon_sky[band]);
-  }
-  packed.coarse_sky = packed.sky;
-  packed.coarse_moon_sky = packed.moon_sky;
-  packed.disk_x.fill(glm::packHalf1x16(light.disk_x));
-  return packed;
+  const std::array<std::uint16_t, 4> sky = PackedShares(light.sky),
+                                     moon_sky = PackedShares(light.moon_sky);
+  const std::uint16_t disk_x = glm::packHalf1x16(light.disk_x);
+  return {sky, sky, moon_sky, moon_sky, {disk_x, disk_x}};
 }
 
 std::vector<ChunkLight> LightOfMesh(const TriangleMesh& mesh, const LocalFrame& frame,

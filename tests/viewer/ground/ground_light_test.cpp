@@ -310,6 +310,23 @@ TEST_F(GroundOnGpu, PixelByPixelTheSkysLightOnMountainsIsTheRenderers) {
   }
 }
 
+// NVIDIA's driver makes infinity of larger values, so that land was infinitely bright at midnight.
+TEST(IntegralTexels, AreFiniteHalfFloatsInTheOrderOfTheTexture) {
+  using Sky = OccludedSkyIrradiance;
+  std::vector<float> integral(Sky::kLevels * kHorizonAzimuths * Sky::kNodes * 2 * 4, 0.5F);
+  integral[4] = 3e5F;  // part B of the first node
+  integral[5] = -3e5F;
+  integral[8] = 0.25F;  // part A of the second
+  Sky::Tables tables{};
+  tables.integral = integral;
+  const std::vector<float> texels = IntegralTexels(tables);
+  ASSERT_EQ(texels.size(), integral.size());
+  EXPECT_EQ(texels[Sky::kNodes * 4], 65504.0F) << "the row of B follows that of A";
+  EXPECT_EQ(texels[Sky::kNodes * 4 + 1], -65504.0F);
+  EXPECT_EQ(texels[4], 0.25F);
+  EXPECT_EQ(texels.back(), 0.5F);
+}
+
 TEST_F(GroundOnGpu, CoversOfOneColourAreTheRenderers) {
   GroundCover cover;
   struct Bound {

@@ -226,6 +226,15 @@ TEST_F(LandChunks, TheNextLevelsLightIsTheMeanOfItsVerticesLight) {
   }
 }
 
+// An infinite share of a sky without light would be an infinite radiance.
+TEST(LightOfVertices, SharesOfADarkSkyAreFiniteHalfFloats) {
+  const std::array<std::uint16_t, 4> halves = PackedShares({3e5F, 65504.0F, 1e-9F, 0.25F});
+  EXPECT_EQ(glm::unpackHalf1x16(halves[0]), 65504.0F);
+  EXPECT_EQ(glm::unpackHalf1x16(halves[1]), 65504.0F);
+  EXPECT_EQ(glm::unpackHalf1x16(halves[2]), 0.0F);
+  EXPECT_EQ(glm::unpackHalf1x16(halves[3]), 0.25F);
+}
+
 // --- grids over meshes ---
 
 const GeodeticPosition kPlace = PlaceFromDegrees(46.5, 8.0, 0.0);
