@@ -311,6 +311,7 @@ TEST_F(GroundOnGpu, PixelByPixelTheSkysLightOnMountainsIsTheRenderers) {
 }
 
 // NVIDIA's driver makes infinity of larger values, so that land was infinitely bright at midnight.
+// Hard case 23.
 TEST(IntegralTexels, AreFiniteHalfFloatsInTheOrderOfTheTexture) {
   using Sky = OccludedSkyIrradiance;
   std::vector<float> integral(Sky::kLevels * kHorizonAzimuths * Sky::kNodes * 2 * 4, 0.5F);

@@ -227,6 +227,7 @@ TEST_F(LandChunks, TheNextLevelsLightIsTheMeanOfItsVerticesLight) {
 }
 
 // An infinite share of a sky without light would be an infinite radiance.
+// Hard case 23.
 TEST(LightOfVertices, SharesOfADarkSkyAreFiniteHalfFloats) {
   const std::array<std::uint16_t, 4> halves = PackedShares({3e5F, 65504.0F, 1e-9F, 0.25F});
   EXPECT_EQ(glm::unpackHalf1x16(halves[0]), 65504.0F);
