@@ -10,6 +10,7 @@
 - Public headers include the standard library and each other, as <alpenglow/NAME.h>, and nothing else.
 - The top level of the repository has only the known entries.
 - Every file that begins with an interpreter can be run.
+- No source includes a header twice.
 - Every function of a text of SharedTexts (viewer/gl/shader.cpp) has a case in tests/fixtures/shared_text_cases.cpp, or
   a function that calls it has one.
 - Programs write to standard output and error only through lut/cli/messages.h: fmt::print throws
@@ -83,6 +84,13 @@ def foreign_includes(path, text):
             yield f"{path}: a public header includes {included}"
 
 
+def repeated_includes(path, text):
+    """The headers that a source includes again."""
+    included = re.findall(r'^#include ["<](.*)[">]', text, flags=re.MULTILINE)
+    for again in sorted({header for header in included if included.count(header) > 1}):
+        yield f"{path}: {again} is included twice"
+
+
 def speech(path, text):
     return [f"{path}: {words} does not go through lut/cli/messages.h" for words in SPEECH if words in text]
 
@@ -126,6 +134,8 @@ def check_examples():
     assert not list(foreign_includes("a.h", "#include <vector>\n#include <alpenglow/b.h>\n"))
     assert not list(foreign_namespaces("lut/sky/a.h", "namespace alpenglow::lut {\nnamespace alpenglow::shared {\n"))
     assert len(speech("lut/a.cpp", 'std::cerr << "x";')) == 1
+    assert list(repeated_includes("a.cpp", '#include <a>\n#include "b.h"\n#include "b.h"\n')) == [
+        "a.cpp: b.h is included twice"]
     shared = "SHARED Number A(Number x) {\n  return B(x);  // C(x)\n}\nSHARED Number B(Number x) { return x; }\n"
     assert functions_without_case([shared, "SHARED Number C(Number x) { return x; }\n"],
                                   "ALPENGLOW_SHARED_CASE(A(a[0]), grid::Rays())\nC(1.0)\n") == ["C"]
@@ -159,6 +169,9 @@ def broken_rules():
     for entry in sorted(TREE.iterdir()):
         if entry.name[0] != "." and entry.name not in TOP_LEVEL:
             yield f"{entry.name}: the top level is closed"
+    for file in files_of_the_repository():
+        if file.suffix in (".h", ".cpp"):
+            yield from repeated_includes(str(file.relative_to(TREE)), file.read_text(encoding="utf-8"))
     scripts = [file for file in files_of_the_repository() if file.open("rb").read(2) == b"#!"]
     assert len(scripts) > 3, "the rule must have looked at the scripts"
     for file in scripts:

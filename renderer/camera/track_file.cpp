@@ -11,7 +11,6 @@
 
 #include "atmosphere/base/error.h"
 #include "atmosphere/base/parsing.h"
-#include "renderer/camera/track.h"
 
 namespace alpenglow::renderer {
 namespace {

@@ -16,7 +16,6 @@
 
 #include "atmosphere/base/error.h"
 #include "renderer/elevation/mesh.h"
-#include "renderer/elevation/obj_file.h"
 
 namespace alpenglow::renderer {
 namespace {

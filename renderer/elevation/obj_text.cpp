@@ -9,7 +9,6 @@
 #include <optional>
 
 #include "atmosphere/base/error.h"
-#include "renderer/elevation/obj_file.h"
 #include "renderer/layer.h"
 
 namespace alpenglow::renderer {

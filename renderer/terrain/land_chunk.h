@@ -91,9 +91,9 @@ struct ChunkLight {
 };
 static_assert(sizeof(ChunkLight) == 36);
 
-/// Returns the shares of a VertexLight as half floats. With the sun more than 60 degrees down, its
-/// sky is 20 orders of magnitude darker than that of the night, and shares of 3e5 occur. They
-/// become 65504, because infinity times that sky would be infinite.
+/// Returns the shares of a VertexLight as half floats. With the sun 66 degrees down, its sky has
+/// less than 1e-23 of sunlight, and some shares exceed the largest half float, 65504. They become
+/// 65504, because infinity times that sky would be infinite.
 [[nodiscard]] std::array<std::uint16_t, 4> PackedShares(const std::array<float, 4>& values);
 
 /// The two vertices of the next coarser level whose mean a vertex morphs into, as indices into

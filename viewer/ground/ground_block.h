@@ -133,10 +133,10 @@ struct SkyByPixelBlock {
 static_assert(sizeof(SkyByPixelBlock) == 7 * sizeof(glm::vec4));
 
 /// Returns the integrals of a sky in rows of nodes, from the renderer's layout
-/// [level][azimuth][node][A, B][band], for a texture of half floats. With the sun more than 60
-/// degrees down, its sky is 20 orders of magnitude darker than that of the night, and integrals of
-/// 3e5 times the irradiance of level ground occur. They become 65504, because infinity times that
-/// irradiance would be infinite.
+/// [level][azimuth][node][A, B][band], for a texture of half floats. With the sun 66
+/// degrees down, level ground receives less than 1e-23 of sunlight from its sky, and some integrals
+/// are 3e5 times as large. They become 65504, because infinity times that irradiance would be
+/// infinite. With the sun up to 33 degrees down, integrals are below 15.
 [[nodiscard]] std::vector<float> IntegralTexels(const OccludedSkyIrradiance::Tables& tables);
 
 class SkyByPixel {

@@ -15,7 +15,7 @@
 #include <vector>
 
 #include "atmosphere/math/constants.h"
-#include "renderer/elevation/obj_file.h"
+#include "renderer/elevation/mesh.h"
 #include "renderer/layer.h"
 #include "tests/fixtures/fault_of.h"
 #include "tests/fixtures/temporary_folder.h"
