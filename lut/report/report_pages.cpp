@@ -338,7 +338,7 @@ std::string SummaryRow(const ReportRow& row) {
                   row.memory_bytes == 0 ? "-" : MemoryText(row.memory_bytes),
                   row.build_s == 0.0 ? "-" : TimeText(row.build_s), TimeText(SlowestAnswer(row)));
   for (const RegimeResult& result : row.at) {
-    text += result.IsMeasured() ? " " + ErrorText(result.error) + " |" : " |";
+    text += result.IsMeasured() ? fmt::format(" {} |", ErrorText(result.error)) : " |";
   }
   return text + "\n";
 }
