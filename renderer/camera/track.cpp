@@ -6,7 +6,9 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/vec3.hpp>
+#include <iterator>
 #include <optional>
+#include <span>
 
 #include "atmosphere/base/error.h"
 #include "atmosphere/math/constants.h"
@@ -23,6 +25,20 @@ constexpr double kSmooth_s = 4.0;
 bool HasTimes(const Track& track) {
   return std::all_of(track.points.begin(), track.points.end(),
                      [](const TrackPoint& point) { return point.utc.has_value(); });
+}
+
+/// Marks the points after pauses of a track with times.
+void MarkPauses(std::vector<CameraPathPoint>& knots) {
+  constexpr double kLong_s = 600.0, kTimesLonger = 100.0;
+  std::vector<double> steps_s;
+  for (std::size_t i = 1; i < knots.size(); ++i)
+    steps_s.push_back(knots[i].time_s - knots[i - 1].time_s);
+  std::vector<double> sorted_s = steps_s;
+  const auto middle = sorted_s.begin() + static_cast<std::ptrdiff_t>(sorted_s.size() / 2);
+  std::nth_element(sorted_s.begin(), middle, sorted_s.end());
+  const double pause_s = std::max(kLong_s, kTimesLonger * *middle);
+  for (std::size_t i = 1; i < knots.size(); ++i)
+    knots[i].after_gap = knots[i].after_gap || steps_s[i - 1] > pause_s;
 }
 
 /// Returns the points with their times.
@@ -46,9 +62,11 @@ std::vector<CameraPathPoint> Knots(const Track& track, const TrackStyle& style) 
     segment = point.segment;
   }
   if (knots.size() < 2) {
-    throw InputError(fmt::format("{}: the track has fewer than two points apart",
-                                 track.file.empty() ? "a track" : track.file));
+    throw InputError(fmt::format("{}: the track has fewer than two points apart{}",
+                                 track.file.empty() ? "a track" : track.file,
+                                 track.note.empty() ? "" : fmt::format(" ({})", track.note)));
   }
+  if (timed) MarkPauses(knots);
   return knots;
 }
 
@@ -109,7 +127,7 @@ void LookAlong(const CameraPath& places, std::vector<CameraPathPoint>& points) {
 
 /// Returns for each point the number of points within kSmooth_s on either side, equal before and
 /// after.
-std::vector<int> ReachOf(const std::vector<CameraPathPoint>& points) {
+std::vector<int> ReachOf(std::span<const CameraPathPoint> points) {
   const auto last = static_cast<int>(points.size()) - 1;
   const double step_s = (points.back().time_s - points.front().time_s) / last;
   const int most = static_cast<int>(std::lround(kSmooth_s / step_s));
@@ -209,7 +227,7 @@ void SmoothSpeed(const CameraPath& way, std::vector<CameraPathPoint>& points) {
 }
 
 /// Sets the roll as an aircraft banks in the turns of the headings, with gradual onset.
-void Bank(std::vector<CameraPathPoint>& points) {
+void Bank(std::span<CameraPathPoint> points) {
   constexpr double kMost_rad = 35.0 * kRadiansPerDegree;
   std::vector<double> bank_rad(points.size(), 0.0);
   for (std::size_t i = 1; i + 1 < points.size(); ++i) {
@@ -231,12 +249,45 @@ void Bank(std::vector<CameraPathPoint>& points) {
   for (std::size_t i = 0; i < points.size(); ++i) points[i].pose.roll_rad = smooth_rad[i];
 }
 
-std::vector<CameraPathPoint> EvenPoints(const CameraPath& knots, const TrackStyle& style) {
+/// Returns the segments between gaps.
+std::vector<CameraPath> SegmentsOf(const std::vector<CameraPathPoint>& knots) {
+  std::vector<CameraPath> segments;
+  for (auto begin = knots.begin(); begin != knots.end();) {
+    const auto end = std::find_if(std::next(begin), knots.end(),
+                                  [](const CameraPathPoint& knot) { return knot.after_gap; });
+    std::vector<CameraPathPoint> part(begin, end);
+    part.front().after_gap = false;
+    segments.emplace_back(std::move(part));
+    begin = end;
+  }
+  return segments;
+}
+
+/// Returns the number of steps into which each segment is divided.
+std::vector<int> StepsOf(const std::vector<CameraPath>& segments) {
+  constexpr double kMost = 200e3, kLeastInAll = 200.0, kLeast = 8.0, kStepsPerKnot = 2.0;
+  double total_s = 0.0;
+  for (const CameraPath& segment : segments) total_s += segment.end_s() - segment.begin_s();
+  const double per_s = std::min(kMost / std::max(total_s, 1.0), 1.0);
+  const double least = std::max(kLeast, kLeastInAll / static_cast<double>(segments.size()));
+  std::vector<int> steps;
+  for (const CameraPath& segment : segments) {
+    const double span_s = segment.end_s() - segment.begin_s();
+    const double recorded = kStepsPerKnot * static_cast<double>(segment.points().size());
+    const double wanted =
+        std::max(std::ceil(span_s * per_s), std::min(std::ceil(span_s), recorded));
+    steps.push_back(span_s > 0.0 ? static_cast<int>(std::max(wanted, std::ceil(least))) : 0);
+  }
+  return steps;
+}
+
+/// Returns points at equal steps of time, both ends included.
+std::vector<CameraPathPoint> EvenPoints(const CameraPath& knots, const TrackStyle& style,
+                                        int steps) {
   const double span_s = knots.end_s() - knots.begin_s();
-  const int count = static_cast<int>(std::clamp(std::ceil(span_s), 200.0, 20000.0));
   std::vector<CameraPathPoint> points;
-  for (int i = 0; i <= count; ++i) {
-    const double time_s = i == count ? knots.end_s() : knots.begin_s() + span_s * i / count;
+  for (int i = 0; i <= steps; ++i) {
+    const double time_s = i == steps ? knots.end_s() : knots.begin_s() + span_s * i / steps;
     CameraPose pose = knots.PoseAt(time_s);
     pose.fov_rad = style.fov_rad;
     points.push_back({time_s, pose, knots.UtcAt(time_s)});
@@ -244,17 +295,58 @@ std::vector<CameraPathPoint> EvenPoints(const CameraPath& knots, const TrackStyl
   return points;
 }
 
+/// Returns the points of a segment, level and not yet turned.
+std::vector<CameraPathPoint> PlacesOf(const CameraPath& knots, const TrackStyle& style, int steps) {
+  std::vector<CameraPathPoint> points = EvenPoints(knots, style, steps);
+  if (steps > 0) SmoothSpeed(knots, points);
+  return points;
+}
+
+/// Returns the points between two segments, without its ends: on a straight line.
+std::vector<CameraPathPoint> PlacesBetween(const CameraPathPoint& from, const CameraPathPoint& to,
+                                           const TrackStyle& style, std::size_t gaps) {
+  constexpr double kMost = 100.0, kMostInAll = 100e3;
+  CameraPathPoint end = to;
+  end.after_gap = true;
+  const double most = std::min(kMost, std::ceil(kMostInAll / static_cast<double>(gaps)));
+  const auto steps = static_cast<int>(std::clamp(std::floor(end.time_s - from.time_s), 1.0, most));
+  std::vector<CameraPathPoint> points = EvenPoints(CameraPath({from, end}), style, steps);
+  return {points.begin() + 1, points.end() - 1};
+}
+
+/// A stretch of the path with even steps.
+struct Part {
+  std::size_t begin, end;  // indices of points
+};
+
 }  // namespace
 
 CameraPath PathAlong(const Track& track, const TrackStyle& style, const GroundHeight& ground) {
   RequireInRange(style.speed_m_per_s, 0.1, 1e5, "speed of the track");
   RequireInRange(style.over_ground_m, 0.0, 1e6, "height over the ground of the track");
-  const CameraPath knots(Knots(track, style));
-  std::vector<CameraPathPoint> points = EvenPoints(knots, style);
-  SmoothSpeed(knots, points);
-  if (track.heights != TrackHeights::kSea) LiftOverGround(track, style, ground, points);
+  const std::vector<CameraPath> segments = SegmentsOf(Knots(track, style));
+  const std::vector<int> steps = StepsOf(segments);
+  std::vector<CameraPathPoint> points;
+  std::vector<Part> banked;
+  const auto append = [&](std::vector<CameraPathPoint> part) {
+    if (track.heights != TrackHeights::kSea) LiftOverGround(track, style, ground, part);
+    points.insert(points.end(), part.begin(), part.end());
+  };
+  for (std::size_t i = 0; i < segments.size(); ++i) {
+    if (i > 0) {
+      const std::size_t begin = points.size();
+      append(PlacesBetween(segments[i - 1].points().back(), segments[i].points().front(), style,
+                           segments.size() - 1));
+      for (std::size_t k = begin; k < points.size(); ++k) points[k].after_gap = true;
+    }
+    const std::size_t begin = points.size();
+    append(PlacesOf(segments[i], style, steps[i]));
+    points[begin].after_gap = i > 0;
+    if (steps[i] > 0) banked.push_back({begin, points.size()});
+  }
   LookAlong(CameraPath(points), points);
-  Bank(points);
+  for (const Part& part : banked)
+    Bank(std::span(points).subspan(part.begin, part.end - part.begin));
   return CameraPath(std::move(points));
 }
 

@@ -86,54 +86,50 @@ class TrackReader {
     return last == std::string_view::npos ? text : text.substr(0, last + 1);
   }
 
-  [[nodiscard]] double Number(std::string_view text, const XMLElement& at,
-                              std::string_view what) const {
-    // Numbers in XML may have a plus sign, which from_chars does not accept.
-    if (text.starts_with('+')) text.remove_prefix(1);
-    double value = 0.0;
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-    if (text.empty() || error != std::errc() || end != text.data() + text.size()) {
-      Fail(at.GetLineNum(), fmt::format("{} is \"{}\"; it must be a number", what, text));
+  /// Returns what `read` returns; nothing if it throws InputError, which is remembered if it is the
+  /// first. One value that cannot be read does not spoil the file.
+  template <typename Read>
+  [[nodiscard]] auto Tried(const XMLElement& at, const Read& read) -> decltype(read()) {
+    try {
+      return read();
+    } catch (const InputError& fault) {
+      if (!first_fault_) first_fault_ = Fault{at.GetLineNum(), fault.what()};
+      return std::nullopt;
     }
+  }
+
+  [[nodiscard]] static double Number(std::string_view text, std::string_view what) {
+    // Numbers in XML may have a plus sign, which from_chars does not accept.
+    const std::string_view digits = text.starts_with('+') ? text.substr(1) : text;
+    double value = 0.0;
+    const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
+    if (digits.empty() || error != std::errc() || end != digits.data() + digits.size())
+      throw InputError(fmt::format("{} is \"{}\"; it must be a number", what, text));
     return value;
   }
 
-  [[nodiscard]] GeodeticPosition Place(double latitude, double longitude, double height_m,
-                                       const XMLElement& at) const {
-    try {
-      // The range is wider than paths may reach, as in camera path files.
-      return PlaceFromDegrees(latitude, longitude,
-                              RequireInRange(height_m, -12000.0, 1e9, "height"));
-    } catch (const InputError& error) {
-      Fail(at.GetLineNum(), error.what());
-    }
-  }
-
-  [[nodiscard]] UtcInstant Instant(const XMLElement& element) const {
-    try {
-      return ParseInstant(TextOf(&element), "Etc/UTC");
-    } catch (const InputError& error) {
-      Fail(element.GetLineNum(), error.what());
-    }
-  }
-
   /// Returns empty for blank text or nan, which receivers without a fix write.
-  [[nodiscard]] std::optional<double> NumberIfAny(std::string_view text, const XMLElement& at,
-                                                  std::string_view what) const {
+  [[nodiscard]] static std::optional<double> NumberIfAny(std::string_view text,
+                                                         std::string_view what) {
     if (text.find_first_not_of(kTrackBlanks) == std::string_view::npos) return std::nullopt;
-    const double value = Number(text, at, what);
+    const double value = Number(text, what);
     return std::isnan(value) ? std::nullopt : std::optional<double>(value);
   }
 
-  [[nodiscard]] std::optional<double> Attribute(const XMLElement& point, const char* name) const {
+  [[nodiscard]] static std::optional<double> Attribute(const XMLElement& point, const char* name) {
     const char* text = point.Attribute(name);
-    if (text == nullptr) {
-      Fail(point.GetLineNum(), fmt::format("<{}> has no {}", point.Name(), name));
-    }
-    return NumberIfAny(text, point, name);
+    if (text == nullptr) throw InputError(fmt::format("<{}> has no {}", point.Name(), name));
+    return NumberIfAny(text, name);
   }
 
-  [[nodiscard]] Track ReadGpx(const XMLElement& gpx) const {
+  /// Returns nothing if there is no text.
+  [[nodiscard]] std::optional<UtcInstant> Instant(const XMLElement* element) {
+    const std::string_view text = TextOf(element);
+    if (text.empty()) return std::nullopt;
+    return Tried(*element, [&] { return std::optional(ParseInstant(text, "Etc/UTC")); });
+  }
+
+  [[nodiscard]] Track ReadGpx(const XMLElement& gpx) {
     std::vector<RecordedSegment> segments;
     for (const XMLElement* segment : All(gpx, "trkseg"))
       segments.push_back(GpxPoints(All(*segment, "trkpt")));
@@ -166,39 +162,52 @@ class TrackReader {
   [[nodiscard]] Track Made(const std::vector<RecordedSegment>& segments, TrackHeights heights,
                            const XMLElement& at) const {
     Track track = TrackOf(segments, heights);
-    if (track.points.empty()) Fail(at.GetLineNum(), "none of its points has a place");
-    return track;
+    if (!track.points.empty()) return track;
+    if (!first_fault_) Fail(at.GetLineNum(), "none of its points has a place");
+    Fail(first_fault_->line,
+         fmt::format("none of the points of the file has a place: {}", first_fault_->text));
   }
 
-  [[nodiscard]] RecordedSegment GpxPoints(const std::vector<const XMLElement*>& points) const {
+  [[nodiscard]] RecordedSegment GpxPoints(const std::vector<const XMLElement*>& points) {
     RecordedSegment segment;
     for (const XMLElement* point : points) segment.push_back(GpxPoint(*point));
     return segment;
   }
 
-  [[nodiscard]] RecordedPoint GpxPoint(const XMLElement& point) const {
+  [[nodiscard]] RecordedPoint GpxPoint(const XMLElement& point) {
     const XMLElement* height = ChildOf(point, "ele");
-    const XMLElement* time = ChildOf(point, "time");
-    const std::optional<double> height_m =
-        height == nullptr ? std::nullopt : NumberIfAny(TextOf(height), *height, "ele");
-    RecordedPoint read =
-        Recorded(Attribute(point, "lat"), Attribute(point, "lon"), height_m, point);
-    if (!TextOf(time).empty()) read.utc = Instant(*time);
+    RecordedPoint read;
+    const auto latitude = Tried(point, [&] { return Attribute(point, "lat"); });
+    const auto longitude = Tried(point, [&] { return Attribute(point, "lon"); });
+    SetPlace(latitude, longitude, point, read);
+    if (height != nullptr) {
+      read.height_m = Tried(*height, [&] { return HeightIn(NumberIfAny(TextOf(height), "ele")); });
+    }
+    read.utc = Instant(ChildOf(point, "time"));
     return read;
   }
 
-  [[nodiscard]] RecordedPoint Recorded(std::optional<double> latitude,
-                                       std::optional<double> longitude,
-                                       std::optional<double> height_m, const XMLElement& at) const {
-    RecordedPoint point;
-    if (!latitude || !longitude) return point;
-    point.place = Place(*latitude, *longitude, height_m.value_or(0.0), at);
-    point.place->height_m = 0.0;
-    point.height_m = height_m;
-    return point;
+  /// Returns the height if there is one. The range is wider than paths may reach, as in camera path
+  /// files.
+  [[nodiscard]] static std::optional<double> HeightIn(const std::optional<double>& height_m) {
+    if (height_m) (void)RequireInRange(*height_m, -12000.0, 1e9, "height");
+    return height_m;
   }
 
-  [[nodiscard]] Track ReadKml(const XMLElement& kml) const {
+  void SetPlace(std::optional<double> latitude, std::optional<double> longitude,
+                const XMLElement& at, RecordedPoint& point) {
+    if (!latitude || !longitude) return;
+    point.is_pause = IsPauseMark(*latitude);
+    point.place =
+        Tried(at, [&] { return std::optional(PlaceFromDegrees(*latitude, *longitude, 0.0)); });
+  }
+
+  /// OpenTracks marks the begin of a pause with latitude 100 and its end with latitude 200.
+  [[nodiscard]] static bool IsPauseMark(double latitude) {
+    return latitude == 100.0 || latitude == 200.0;
+  }
+
+  [[nodiscard]] Track ReadKml(const XMLElement& kml) {
     std::vector<const XMLElement*> lines = All(kml, "Track");
     const bool recorded = !lines.empty();
     if (!recorded) lines = All(kml, "LineString");
@@ -266,19 +275,24 @@ class TrackReader {
 
   /// Parses "8.5 47.3 410" or "8.5,47.3,410": longitude first. The height is optional.
   [[nodiscard]] RecordedPoint Coordinate(std::string_view text, std::string_view separators,
-                                         const XMLElement& at) const {
+                                         const XMLElement& at) {
     const std::string_view all = text;
-    std::optional<double> values[3];
-    std::size_t count = 0;
-    for (; !text.empty() && count < 3; ++count)
-      values[count] = NumberIfAny(TakePart(text, separators), at, "a coordinate");
-    if (count < 2 || !text.empty()) {
-      Fail(at.GetLineNum(), fmt::format("\"{}\" is no coordinate", all));
-    }
-    return Recorded(values[1], values[0], values[2], at);
+    std::vector<std::string_view> parts;
+    while (!text.empty()) parts.push_back(TakePart(text, separators));
+    RecordedPoint point;
+    const auto value = [&](std::size_t i) -> std::optional<double> {
+      if (parts.size() < 2 || parts.size() > 3)
+        throw InputError(fmt::format("\"{}\" is no coordinate", all));
+      return i < parts.size() ? NumberIfAny(parts[i], "a coordinate") : std::nullopt;
+    };
+    const auto longitude = Tried(at, [&] { return value(0); });
+    const auto latitude = Tried(at, [&] { return value(1); });
+    SetPlace(latitude, longitude, at, point);
+    point.height_m = Tried(at, [&] { return HeightIn(value(2)); });
+    return point;
   }
 
-  [[nodiscard]] RecordedSegment LineString(const XMLElement& line) const {
+  [[nodiscard]] RecordedSegment LineString(const XMLElement& line) {
     const XMLElement* coordinates = ChildOf(line, "coordinates");
     std::string_view text = TextOf(coordinates);
     RecordedSegment segment;
@@ -287,7 +301,7 @@ class TrackReader {
     return segment;
   }
 
-  [[nodiscard]] RecordedSegment KmlTrack(const XMLElement& element) const {
+  [[nodiscard]] RecordedSegment KmlTrack(const XMLElement& element) {
     const std::vector<const XMLElement*> places = All(element, "coord");
     const std::vector<const XMLElement*> times = All(element, "when");
     if (places.size() != times.size()) {
@@ -299,12 +313,18 @@ class TrackReader {
       const std::string_view text = TextOf(places[i]);
       RecordedPoint point;
       if (!text.empty()) point = Coordinate(text, kTrackBlanks, *places[i]);
-      if (!TextOf(times[i]).empty()) point.utc = Instant(*times[i]);
+      point.utc = Instant(times[i]);
       segment.push_back(point);
     }
     return segment;
   }
 
+  struct Fault {
+    int line;
+    std::string text;
+  };
+
+  std::optional<Fault> first_fault_;  // of a value of a point
   std::string file_;
   tinyxml2::XMLDocument document_;
 };

@@ -9,6 +9,7 @@
 
 #include "atmosphere/math/constants.h"
 #include "renderer/camera/camera_path.h"
+#include "renderer/camera/odd_points.h"
 
 namespace alpenglow::renderer {
 namespace {
@@ -20,8 +21,9 @@ struct PlacedPoint {
 };
 
 struct Counts {
-  std::size_t points = 0, lost_fixes = 0, heights = 0, odd_times = 0, times = 0;
-  bool times_dropped = false;
+  std::size_t points = 0, lost_fixes = 0, odd_places = 0, heights = 0, odd_heights = 0,
+              odd_times = 0, times = 0;
+  bool times_dropped = false, times_contradict = false;
 };
 
 std::vector<UtcInstant> TimesOf(const RecordedSegment& segment) {
@@ -54,10 +56,14 @@ UtcInstant MedianTime(const RecordedSegment& segment) {
   return *middle;
 }
 
-RecordedSegment WithPlaces(const RecordedSegment& segment) {
-  RecordedSegment placed;
-  std::copy_if(segment.begin(), segment.end(), std::back_inserter(placed),
-               [](const RecordedPoint& point) { return point.place.has_value(); });
+/// Returns the points with a place; a mark of a pause ends a segment.
+std::vector<RecordedSegment> WithPlaces(const RecordedSegment& segment) {
+  std::vector<RecordedSegment> placed(1);
+  for (const RecordedPoint& point : segment) {
+    if (point.place) placed.back().push_back(point);
+    if (point.is_pause) placed.emplace_back();
+  }
+  std::erase_if(placed, [](const RecordedSegment& part) { return part.empty(); });
   return placed;
 }
 
@@ -83,10 +89,12 @@ std::vector<PlacedPoint> PlacedPointsOf(const std::vector<RecordedSegment>& segm
                                         Counts& counts) {
   std::vector<RecordedSegment> placed;
   for (const RecordedSegment& segment : segments) {
-    placed.push_back(WithPlaces(segment));
     counts.points += segment.size();
-    counts.lost_fixes += segment.size() - placed.back().size();
-    if (placed.back().empty()) placed.pop_back();
+    counts.lost_fixes += segment.size();
+    for (RecordedSegment& part : WithPlaces(segment)) {
+      counts.lost_fixes -= part.size();
+      placed.push_back(std::move(part));
+    }
   }
   std::vector<PlacedPoint> points;
   int number = 0;
@@ -124,7 +132,24 @@ std::vector<std::size_t> LongestGrowing(const std::vector<std::optional<double>>
   return run;
 }
 
-/// Removes end points that lie far in time from the rest, such as those with another year.
+/// Keeps the larger part of a run at each step of a year and more: a clock that was not set shows
+/// the year 1970, 1980 or 2000, and one whose count of weeks has overflowed is 20 years behind.
+void CutOtherYears(const std::vector<std::optional<double>>& times_s,
+                   std::vector<std::size_t>& run) {
+  constexpr double kYear_s = 365.0 * kSecondsPerDay;
+  for (std::size_t k = 1; k < run.size();) {
+    if (*times_s[run[k]] - *times_s[run[k - 1]] < kYear_s) {
+      ++k;
+    } else if (2 * k <= run.size()) {
+      run.erase(run.begin(), run.begin() + static_cast<std::ptrdiff_t>(k));
+      k = 1;
+    } else {
+      run.resize(k);
+    }
+  }
+}
+
+/// Removes end points that lie far in time from the rest.
 void CutFarEnds(const std::vector<std::optional<double>>& times_s, std::vector<std::size_t>& run) {
   constexpr double kFar_s = kSecondsPerDay;
   constexpr double kLengths = 100.0;
@@ -157,13 +182,19 @@ bool IsSamePlace(const RecordedPoint& one, const RecordedPoint& other) {
   return DistanceBetween(*one.place, *other.place) < kSamePlace_m;
 }
 
-/// Returns the points with increasing times, and the points without a time.
+void DropTimes(std::vector<PlacedPoint>& points) {
+  for (PlacedPoint& point : points) point.recorded.utc.reset();
+}
+
+/// Returns the points with increasing times, and the points without a time. If these are fewer than
+/// half of the times, it returns all points, without times.
 std::vector<PlacedPoint> WithoutOddTimes(const std::vector<PlacedPoint>& points, Counts& counts) {
   const std::vector<std::optional<double>> times_s = SecondsOf(points);
   std::vector<std::size_t> run = LongestGrowing(times_s);
+  CutOtherYears(times_s, run);
   CutFarEnds(times_s, run);
   std::vector<PlacedPoint> kept;
-  std::size_t next = 0;
+  std::size_t next = 0, fitting = 0;
   for (std::size_t i = 0; i < points.size(); ++i) {
     const bool is_next = next < run.size() && run[next] == i;
     if (is_next) ++next;
@@ -175,9 +206,45 @@ std::vector<PlacedPoint> WithoutOddTimes(const std::vector<PlacedPoint>& points,
       return other < points.size() && times_s[i] == times_s[other] &&
              IsSamePlace(points[i].recorded, points[other].recorded);
     };
-    if (!repeats(i + 1) && !(i > 0 && repeats(i - 1))) ++counts.odd_times;
+    if (repeats(i + 1) || (i > 0 && repeats(i - 1))) {
+      ++fitting;
+    } else {
+      ++counts.odd_times;
+    }
   }
+  if (counts.odd_times <= run.size() + fitting) return kept;
+  counts.odd_times = 0;
+  counts.times_contradict = true;
+  kept = points;
+  DropTimes(kept);
   return kept;
+}
+
+PlacesInTime PlacesInTimeOf(const std::vector<PlacedPoint>& points) {
+  PlacesInTime all{{}, SecondsOf(points)};
+  for (const PlacedPoint& point : points) all.places.push_back(*point.recorded.place);
+  return all;
+}
+
+std::vector<PlacedPoint> WithoutOddPlaces(std::vector<PlacedPoint> points, Counts& counts) {
+  const std::vector<bool> odd = OddPlaces(PlacesInTimeOf(points));
+  std::vector<PlacedPoint> kept;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (!odd[i]) kept.push_back(points[i]);
+  }
+  counts.odd_places = points.size() - kept.size();
+  return kept;
+}
+
+void DropOddHeights(std::vector<PlacedPoint>& points, Counts& counts) {
+  std::vector<std::optional<double>> heights_m;
+  for (const PlacedPoint& point : points) heights_m.push_back(point.recorded.height_m);
+  const std::vector<bool> odd = OddHeights(PlacesInTimeOf(points), heights_m);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (!odd[i]) continue;
+    points[i].recorded.height_m.reset();
+    ++counts.odd_heights;
+  }
 }
 
 /// Returns the distance along the points from the first [m].
@@ -225,7 +292,8 @@ void CompleteHeights(std::vector<PlacedPoint>& points, Counts& counts) {
   const std::vector<double> way_m = WayOf(points);
   std::vector<std::optional<double>> known;
   for (const PlacedPoint& point : points) known.push_back(point.recorded.height_m);
-  counts.heights = static_cast<std::size_t>(std::count(known.begin(), known.end(), std::nullopt));
+  counts.heights = static_cast<std::size_t>(std::count(known.begin(), known.end(), std::nullopt)) -
+                   counts.odd_heights;
   const std::vector<double> heights_m =
       Completed(known, way_m, [&](std::size_t i, std::size_t near, std::size_t next) {
         const double step_m = std::abs(way_m[next] - way_m[near]);
@@ -262,10 +330,14 @@ std::string NoteOf(const Counts& counts) {
   };
   add(counts.lost_fixes, "have no place (a lost fix) and are left out");
   add(counts.odd_times, "have a time that does not fit the others' and are left out");
+  add(counts.odd_places, "have a place that does not fit the others' and are left out");
   add(counts.heights, "have no height, which is interpolated");
+  add(counts.odd_heights, "have a height that does not fit the others', which is interpolated");
   add(counts.times, "have no time, which is interpolated");
   if (counts.times_dropped)
     parts.emplace_back("fewer than two points have a time: the track is flown with an even speed");
+  if (counts.times_contradict)
+    parts.emplace_back("most times contradict each other: the track is flown with an even speed");
   return fmt::format("{}", fmt::join(parts, "; "));
 }
 
@@ -279,12 +351,14 @@ Track TrackOf(const std::vector<RecordedSegment>& segments, TrackHeights heights
       return (point.recorded.*member).has_value();
     });
   };
+  if (has(&RecordedPoint::utc) > 1) points = WithoutOddTimes(points, counts);
+  points = WithoutOddPlaces(std::move(points), counts);
+  if (heights != TrackHeights::kOnGround) DropOddHeights(points, counts);
   if (has(&RecordedPoint::utc) > 1) {
-    points = WithoutOddTimes(points, counts);
     CompleteTimes(points, counts);
   } else if (has(&RecordedPoint::utc) == 1 && points.size() > 1) {
     counts.times_dropped = true;
-    for (PlacedPoint& point : points) point.recorded.utc.reset();
+    DropTimes(points);
   }
   Track track;
   const bool has_heights = has(&RecordedPoint::height_m) > 0;

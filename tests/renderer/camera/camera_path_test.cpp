@@ -365,6 +365,58 @@ TEST(TrackPath, GoesStraightAndEvenlyThroughAGap) {
   }
 }
 
+/// Adds five minutes on a circle of 120 m, a point each second, 20 s a turn.
+void AddCircling(double begin_s, int segment, Track& track) {
+  const LocalFrame frame(kWgs84, PlaceFromDegrees(46.5, 8.0, 0.0));
+  for (int i = 0; i < 300; ++i) {
+    const double angle = 18.0 * i * kRadiansPerDegree;
+    GeodeticPosition place =
+        frame.GeodeticFromEnu(Point<Enu>{{120.0 * std::sin(angle), 120.0 * std::cos(angle), 0.0}});
+    place.height_m = 2000.0 + 2.0 * i;
+    track.points.push_back({place, AddSeconds(kStart, begin_s + i), segment});
+  }
+}
+
+// Two flights with days between them, in two segments and in one.
+TEST(TrackPath, DaysWithoutDataDoNotCoarsenTheFlights) {
+  for (const int second : {1, 0}) {
+    Track track, alone;
+    AddCircling(0.0, 0, track);
+    AddCircling(7.0 * 86400.0, second, track);
+    AddCircling(0.0, 0, alone);
+    const CameraPath path = PathAlong(track, {}, Sea), flight = PathAlong(alone, {}, Sea);
+    EXPECT_LT(path.points().size(), 2000U) << "not a point for each second of a week";
+    const LocalFrame frame(kWgs84, PlaceFromDegrees(46.5, 8.0, 0.0));
+    for (double t = 0.0; t <= 299.0; t += 0.7) {
+      for (const double begin_s : {0.0, 7.0 * 86400.0}) {
+        const CameraPose pose = path.PoseAt(begin_s + t), single = flight.PoseAt(t);
+        EXPECT_LT(Apart(pose.place, single.place), 0.5) << begin_s + t;
+        EXPECT_NEAR(std::remainder(pose.heading_rad - single.heading_rad, 2.0 * kPi), 0.0, 0.02)
+            << begin_s + t;
+        GeodeticPosition level = pose.place;
+        level.height_m = 0.0;
+        EXPECT_NEAR(glm::length(frame.EnuFromGeodetic(level).xyz), 120.0, 4.0)
+            << "a smoothed curve through points 38 m apart";
+      }
+    }
+  }
+}
+
+// Three days with a point every minute are longer than the path has points at one a second.
+TEST(TrackPath, LongTracksKeepTheRecordedRateInBoundedMemory) {
+  Track track;
+  for (int i = 0; i < 4500; ++i) {
+    const double east_deg = i % 2 == 0 ? 1e-3 : -1e-3;  // every point is a corner
+    track.points.push_back(
+        {PlaceFromDegrees(46.0 + 1e-4 * i, 8.0 + east_deg, 1000.0), AddSeconds(kStart, 60.0 * i)});
+  }
+  const CameraPath path = PathAlong(track, {}, Sea);
+  EXPECT_LE(path.points().size(), 200010U);
+  for (std::size_t i = 0; i < track.points.size(); i += 100)
+    EXPECT_LT(Apart(path.PoseAt(60.0 * static_cast<double>(i)).place, track.points[i].place), 5.0)
+        << i << "; 155 m from point to point, in steps of 1.4 s";
+}
+
 TEST(TrackPath, LooksAheadBeforeItMoves) {
   const CameraPath path = PathAlong(Eastward({{8.0, 0.0}, {8.0, 60.0}, {8.02, 120.0}}), {}, Sea);
   EXPECT_NEAR(DegreesOf(path.PoseAt(1.0).heading_rad), 90.0, 0.01);
