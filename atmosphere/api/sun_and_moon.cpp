@@ -9,6 +9,7 @@
 #include "atmosphere/astronomy/sun.h"
 #include "atmosphere/math/constants.h"
 #include "atmosphere/medium/medium.h"
+#include "atmosphere/refraction/observer_refraction.h"
 #include "atmosphere/refraction/refracted_view.h"
 
 namespace alpenglow {
@@ -19,9 +20,21 @@ namespace {
 
 constexpr int kUnixEpochModifiedJulianDay = 40587;
 
+/// Returns the air of the atmosphere on the sphere that osculates the ellipsoid at the place. The
+/// last result is kept, because testing whether air bends rays gently takes longer than a position.
 atmosphere::BendingAir AirAt(const Atmosphere& atmosphere, const Place& place) {
-  return atmosphere::GentleAirOf(
-      atmosphere::OnOsculatingSphere(atmosphere.medium(), GeodeticFromPlace(place).latitude_rad));
+  const atmosphere::Medium& medium = atmosphere.medium();
+  atmosphere::BendingAir air = atmosphere::BendingAirOf(medium, atmosphere::kHorizonWavelength_nm);
+  if (medium.follows_wgs84) {
+    air.planet_radius_m =
+        atmosphere::OsculatingRadius(atmosphere::kWgs84, GeodeticFromPlace(place).latitude_rad);
+  }
+  thread_local atmosphere::BendingAir tested, result;
+  if (!atmosphere::IsSame(tested, air)) {
+    tested = result = air;
+    if (!atmosphere::GentlyBends(air)) result.refractivity = 0.0;
+  }
+  return result;
 }
 
 }  // namespace

@@ -10,6 +10,7 @@
 #include <numeric>
 #include <vector>
 
+#include "atmosphere/astronomy/ephemeris_tables.h"
 #include "atmosphere/base/parsing.h"
 #include "atmosphere/math/constants.h"
 
@@ -68,28 +69,17 @@ TerrestrialTime TerrestrialTimeAt(const UtcInstant& instant, double delta_t_s) {
 }
 
 glm::dmat3 EcefFromGcrs(const UtcInstant& instant, double delta_t_s) {
-  const double day = kModifiedJulianEpoch + instant.modified_julian_day;
-  const double ut1 = instant.second_of_day / kSecondsPerDay;
-  const double tt = TerrestrialTimeAt(instant, delta_t_s).part;
-  double true_from_gcrs[3][3];
-  eraPnm06a(day, tt, true_from_gcrs);
-  double r[3][3];
-  eraCr(true_from_gcrs, r);
-  eraRz(eraGst06(day, ut1, day, tt, true_from_gcrs), r);
-  return {r[0][0], r[1][0], r[2][0], r[0][1], r[1][1], r[2][1], r[0][2], r[1][2], r[2][2]};
+  const EarthAndAxes earth = EarthAndAxesAt(TerrestrialTimeAt(instant, delta_t_s));
+  const double angle_rad = eraEra00(kModifiedJulianEpoch + instant.modified_julian_day,
+                                    instant.second_of_day / kSecondsPerDay) -
+                           earth.equation_of_the_origins_rad;
+  const double sine = std::sin(angle_rad), cosine = std::cos(angle_rad);
+  return glm::dmat3(cosine, -sine, 0.0, sine, cosine, 0.0, 0.0, 0.0, 1.0) * earth.true_from_gcrs;
 }
 
-// Status 1 of eraEpv00, outside 1900-2100, only means that the error is no longer bounded by 0.02
-// arcseconds. TDB - TT, below 2 ms, moves the sun by 1e-4 arcseconds.
+// TDB - TT, below 2 ms, moves the sun by 1e-4 arcseconds.
 EarthAndSun EarthAndSunAt(const UtcInstant& instant, double delta_t_s) {
-  double heliocentric[2][3];
-  double barycentric[2][3];
-  const TerrestrialTime time = TerrestrialTimeAt(instant, delta_t_s);
-  eraEpv00(time.day, time.part, heliocentric, barycentric);
-  const BodyState earth{Vec(barycentric[0]), Vec(barycentric[1])};
-  return {
-      earth,
-      {earth.position_au - Vec(heliocentric[0]), earth.velocity_au_per_day - Vec(heliocentric[1])}};
+  return EarthAndAxesAt(TerrestrialTimeAt(instant, delta_t_s)).bodies;
 }
 
 ApparentPlace SeenFrom(const GeodeticPosition& place, const glm::dmat3& ecef_from_gcrs,

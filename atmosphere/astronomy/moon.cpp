@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "atmosphere/astronomy/ephemeris.h"
+#include "atmosphere/astronomy/ephemeris_tables.h"
 #include "atmosphere/astronomy/sky_bodies.h"
 #include "atmosphere/astronomy/sun.h"
 #include "atmosphere/base/error.h"
@@ -66,7 +67,7 @@ namespace {
 
 // Returns the geometric state of the moon; bodies move about the barycentre.
 BodyState MoonOf(const BodyState& earth, const UtcInstant& instant, double delta_t_s) {
-  const BodyState moon = MoonFromEarth(TerrestrialTimeAt(instant, delta_t_s));
+  const BodyState moon = TabulatedMoonFromEarth(TerrestrialTimeAt(instant, delta_t_s));
   return {earth.position_au + moon.position_au,
           earth.velocity_au_per_day + moon.velocity_au_per_day};
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Times of events of the sun: a function of time is sampled every half hour of the local mean solar
+// Times of events of the sun: a function of time is sampled every hour of the local mean solar
 // day, its extrema are refined where they could hide a crossing, and each change of sign is
 // located.
 #include "atmosphere/astronomy/sun.h"
@@ -93,8 +93,8 @@ double CircleOfLight(double share) {
 
 namespace {
 
-constexpr double kEventStep_s = 1800.0;
-constexpr int kEventSteps = 48;
+constexpr double kEventStep_s = 3600.0;
+constexpr int kEventSteps = 24;
 constexpr double kEventTolerance_s = 0.01;
 
 constexpr EnumNames kSunEvents{{
@@ -183,7 +183,7 @@ EventSample Extremum(const Function& f, double low_s, double high_s, bool larges
   return sign * left.value > sign * right.value ? left : right;
 }
 
-/// Returns samples from half an hour before the day to half an hour after it, ascending, dense
+/// Returns samples from an hour before the day to an hour after it, ascending, dense
 /// enough that the sign changes at most once between two.
 template <typename Function>
 std::vector<EventSample> Samples(const Function& f) {
@@ -224,8 +224,9 @@ double NoonOf(const GeodeticPosition& place, const UtcInstant& midnight) {
     const glm::dvec3 sun = SunAt(place, AddSeconds(midnight, time_s)).direction.xyz;
     return WrappedLongitude(place.longitude_rad - std::atan2(sun.y, sun.x));
   };
-  return BracketedRoot(hour_angle, 0.5 * kSecondsPerDay - kEventStep_s,
-                       0.5 * kSecondsPerDay + kEventStep_s, kEventTolerance_s);
+  constexpr double kReach_s = 1800.0;
+  return BracketedRoot(hour_angle, 0.5 * kSecondsPerDay - kReach_s, 0.5 * kSecondsPerDay + kReach_s,
+                       kEventTolerance_s);
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 
 #include "atmosphere/base/error.h"
 #include "atmosphere/math/numerics.h"
+#include "atmosphere/refraction/observer_refraction.h"
 
 namespace alpenglow::atmosphere {
 namespace {
@@ -133,20 +134,12 @@ double GrazingElevation(const BendingAir& air, double height_m) {
 }
 
 double RefractionSeenAt(const BendingAir& air, double apparent_elevation_rad, double height_m) {
-  const double elevation = std::max(apparent_elevation_rad, GrazingElevation(air, height_m));
-  return RefractedRay(air, elevation, height_m).BendingToSpace();
+  return RefractionOfObserver(air, height_m).SeenAt(apparent_elevation_rad);
 }
 
 std::optional<double> ApparentElevation(const BendingAir& air, double true_elevation_rad,
                                         double height_m) {
-  const double grazing = GrazingElevation(air, height_m);
-  const double largest = RefractionSeenAt(air, grazing, height_m);
-  if (true_elevation_rad < grazing - largest) return std::nullopt;
-  const auto error = [&](double apparent) {
-    return apparent - RefractionSeenAt(air, apparent, height_m) - true_elevation_rad;
-  };
-  const double low = std::max(true_elevation_rad, grazing);
-  return BracketedRoot(error, low, true_elevation_rad + largest + 1e-9, 1e-12);
+  return RefractionOfObserver(air, height_m).ApparentElevationOf(true_elevation_rad);
 }
 
 namespace {
@@ -196,11 +189,6 @@ double FadedRefraction(double elevation_rad) {
   return t * t * ((3.0 - 2.0 * t) * begin.value + (t - 1.0) * kWidth * begin.slope);
 }
 
-double SmoothStep(double x) {
-  const double t = std::clamp(x, 0.0, 1.0);
-  return t * t * (3.0 - 2.0 * t);
-}
-
 }  // namespace
 
 BendingAir AlmanacAir(double earth_radius_m) {
@@ -225,23 +213,16 @@ double RefractionFromHeight(double true_elevation_rad, double height_m, double e
 }
 
 double RefractionFromHeight(const BendingAir& air, double true_elevation_rad, double height_m) {
-  const double horizon = GrazingElevation(air, height_m);
-  const double on_horizon = RefractionSeenAt(air, horizon, height_m);
-  const double last_seen = horizon - on_horizon;
-  if (true_elevation_rad <= last_seen) {
-    constexpr double kFade_rad = 3.0 * kRadiansPerDegree;  // peaks are sunlit for most of it
-    return SmoothStep(1.0 - (last_seen - true_elevation_rad) / kFade_rad) * on_horizon;
-  }
-  const auto apparent = ApparentElevation(air, true_elevation_rad, height_m);
-  return apparent.value_or(horizon) - true_elevation_rad;
+  return RefractionOfObserver(air, height_m).AtTrue(true_elevation_rad);
 }
 
 double LiftForAir(const BendingAir& air, double true_elevation_rad) {
   constexpr double kShare = 0.2;
-  const double on_horizon = RefractionSeenAt(air, 0.0, 0.0);
-  return kShare * (true_elevation_rad > -on_horizon
-                       ? RefractionFromHeight(air, true_elevation_rad, 0.0)
-                       : on_horizon);
+  const ObserverRefraction& at_sea_level = RefractionOfObserver(air, 0.0);
+  if (true_elevation_rad >= 0.0) return kShare * at_sea_level.AtTrue(true_elevation_rad);
+  const double on_horizon = at_sea_level.SeenAt(0.0);
+  return kShare *
+         (true_elevation_rad > -on_horizon ? at_sea_level.AtTrue(true_elevation_rad) : on_horizon);
 }
 
 double Refraction(double true_elevation_rad, const AirAtObserver& air) {

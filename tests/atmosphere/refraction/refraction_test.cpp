@@ -7,11 +7,13 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <vector>
 
 #include "atmosphere/astronomy/moon.h"
 #include "atmosphere/astronomy/sun.h"
 #include "atmosphere/base/error.h"
 #include "atmosphere/math/constants.h"
+#include "atmosphere/refraction/observer_refraction.h"
 #include "atmosphere/refraction/refracted_view.h"
 #include "tests/fixtures/refracted_twilight.h"
 
@@ -102,6 +104,84 @@ TEST(Refraction, StandardAtmosphereBendsRaysAsMuch) {
     EXPECT_NEAR(RefractionOfRay(apparent * kDegree, 0.0) / kMinute,
                 RayThroughStandardAtmosphere(apparent * kDegree) / kMinute, 1.0)
         << "its lapse rate gives 33.0' at the horizon, almanacs count 34'";
+  }
+}
+
+/// Returns the bending to space by the integral over the elevation, in many parts: dense where the
+/// ray is low, and where thin layers take a small part of it.
+double BendingInParts(const BendingAir& air, double elevation_rad, double height_m) {
+  const RefractedRay ray(air, elevation_rad, height_m);
+  const double exit_rad = ray.ElevationAt(air.top_m);
+  const auto rising = [&](double low_rad, double high_rad) {
+    constexpr int kParts = 60;
+    double sum = 0.0;
+    for (int i = 0; i < kParts; ++i) {
+      const auto at = [&](int part) {
+        const double share = static_cast<double>(part) / kParts;
+        return low_rad + (high_rad - low_rad) * share * share * share;
+      };
+      sum += ray.Bending(at(i), at(i + 1));
+    }
+    return sum;
+  };
+  const bool is_inside = height_m < air.top_m;
+  if (elevation_rad >= 0.0) return is_inside ? rising(elevation_rad, exit_rad) : 0.0;
+  return rising(0.0, exit_rad) + rising(0.0, is_inside ? -elevation_rad : exit_rad);
+}
+
+/// Returns air of the earth, of a small and of a large planet, and with a thin layer at the ground.
+std::vector<BendingAir> DifferentAirs() {
+  const auto layers = [](double height_m, double thin_share, double thin_m) {
+    return RefractivityLayers{{{1.0 - thin_share, height_m}, {thin_share, thin_m}, {0.0, 1.0}}};
+  };
+  return {AlmanacAir(),
+          AlmanacAir(6.4e6),
+          {2.8e-4, layers(8000.0, 0.0, 1.0), 60e3, 6.36e6},
+          {2.8e-4, layers(8000.0, 0.15, 500.0), 120e3, 6.4e6},
+          {4e-6, layers(11100.0, 0.0, 1.0), 80e3, 3.39e6},
+          {2e-3, layers(34000.0, 0.0, 1.0), 1.4e6, 1.1e7},
+          {1.5e-3, layers(28000.0, 0.0, 1.0), 1.05e6, 7e5},
+          {0.0, layers(8000.0, 0.0, 1.0), 60e3, 6.36e6}};
+}
+
+// The bound of observer_refraction.h.
+TEST(ObserverRefraction, IsTheIntegralOverTheElevationInEveryAir) {
+  for (const BendingAir& air : DifferentAirs()) {
+    ASSERT_TRUE(GentlyBends(air));
+    const double most = 2e-6 * BendingInParts(air, 0.0, 0.0) + 1e-15;
+    for (const double share : {0.0, 1e-4, 0.03, 0.3, 0.99, 1.5, 40.0}) {
+      const double height_m = share * air.top_m;
+      const ObserverRefraction table(air, height_m);
+      for (const double over : {0.0, 1e-5, 1e-3, 0.02, 0.3, 1.2}) {
+        const double seen = table.horizon_rad() + over;
+        EXPECT_NEAR(table.SeenAt(seen), BendingInParts(air, seen, height_m), most)
+            << air.planet_radius_m << " m, from " << height_m << " m, " << over << " up";
+      }
+    }
+  }
+}
+
+TEST(ObserverRefraction, TheInverseFindsTheRayInEveryAir) {
+  for (const BendingAir& air : DifferentAirs()) {
+    for (const double share : {0.0, 1e-4, 0.03, 0.3, 1.5}) {
+      const ObserverRefraction table(air, share * air.top_m);
+      for (const double over : {1e-6, 1e-3, 0.02, 0.3, 1.2}) {
+        const double seen = table.horizon_rad() + over;
+        const auto found = table.ApparentElevationOf(seen - table.SeenAt(seen));
+        ASSERT_TRUE(found);
+        EXPECT_NEAR(*found, seen, 1e-10) << air.planet_radius_m << " " << share << " " << over;
+      }
+      EXPECT_FALSE(table.ApparentElevationOf(table.horizon_rad() - table.on_horizon_rad() - 1e-6));
+    }
+  }
+}
+
+// Tables are kept from call to call: an answer must not depend on the calls before it.
+TEST(ObserverRefraction, AnAnswerDoesNotDependOnEarlierOnes) {
+  const double alone = ObserverRefraction(AlmanacAir(), 1234.0).AtTrue(0.01);
+  for (int i = 0; i < 3; ++i) {
+    for (const BendingAir& air : DifferentAirs()) (void)RefractionFromHeight(air, 0.01, 1234.0 + i);
+    EXPECT_EQ(RefractionFromHeight(0.01, 1234.0), alone);
   }
 }
 
