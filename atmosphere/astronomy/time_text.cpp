@@ -78,7 +78,7 @@ std::optional<int> DaysFromToday(std::string_view word) {
 
 /// Returns "18:30" for "1830", also with "Z" after it; no value for other texts.
 std::optional<std::string> FourDigitClockTime(std::string_view text) {
-  const std::string_view zulu = text.ends_with('Z') ? "Z" : "";
+  const std::string_view zulu = text.ends_with('Z') || text.ends_with('z') ? "Z" : "";
   text.remove_suffix(zulu.size());
   if (text.size() != 4 || !std::all_of(text.begin(), text.end(), IsDigit)) return std::nullopt;
   return fmt::format("{}:{}{}", text.substr(0, 2), text.substr(2), zulu);
@@ -122,6 +122,21 @@ void RefuseOtherClockTimes(std::string_view text) {
       fmt::format("time \"{}\": \"{}\" is no time; did you mean {}?", text, clock, *meant));
 }
 
+/// Rejects a text that begins with a year with a sign, "-0044-03-15", or of more than four digits:
+/// astronomy knows such years, and this program has no positions for them.
+void RefuseOtherYears(std::string_view text, std::string_view what) {
+  std::string_view digits = text;
+  const bool has_sign = digits.starts_with('-') || digits.starts_with('+');
+  if (has_sign) digits.remove_prefix(1);
+  const std::size_t year = std::min(digits.find_first_not_of("0123456789"), digits.size());
+  const std::string_view rest = digits.substr(year);
+  const bool is_date = rest.size() >= 6 && rest[0] == '-' && IsDigit(rest[1]) && IsDigit(rest[2]) &&
+                       rest[3] == '-' && IsDigit(rest[4]) && IsDigit(rest[5]);
+  if (!is_date || year == 0 || (!has_sign && year == 4)) return;
+  throw InputError(
+      fmt::format("{} \"{}\": the year must be four digits and lie in [1900, 2100]", what, text));
+}
+
 [[noreturn]] void RefuseEvent(std::string_view name, std::string_view text) {
   if (name.empty() && !text.empty()) {
     throw InputError(fmt::format(
@@ -162,9 +177,9 @@ std::optional<UtcInstant> FindMidnight(const GeodeticPosition& place, const UtcI
 /// comes 50 minutes later from day to day, so once a month a date has none.
 std::optional<UtcInstant> FindMoonEvent(MoonEvent event, const UtcInstant& around,
                                         const EventDay& day) {
-  constexpr double kBefore_s = 1.5 * kSecondsPerDay;  // the date can begin a day before
+  constexpr double kBefore_s = 14.0 * 3600.0;  // clock changes move the begin of a date by hours
   const std::string date = DateAt(around, day);
-  UtcInstant after = AddSeconds(around, -kBefore_s);
+  UtcInstant after = AddSeconds(DayFromText(date, day), -kBefore_s);
   while (true) {
     const std::optional<UtcInstant> next = NextMoonEvent(event, day.place, after);
     if (!next || DateAt(*next, day) > date) return std::nullopt;
@@ -216,6 +231,7 @@ std::string DateAt(const UtcInstant& instant, const EventDay& day) {
 }
 
 UtcInstant DayFromText(std::string_view date, const EventDay& day) {
+  RefuseOtherYears(date, "date");
   if (const std::optional<int> days = DaysFromToday(date)) {
     const UtcInstant noon_today = DayFromText(DateAt(day.now, day), day);
     const UtcInstant near_noon = AddSeconds(noon_today, *days * kSecondsPerDay);
@@ -276,6 +292,7 @@ std::optional<UtcInstant> FindDailyEvent(std::string_view text, const EventDay& 
 }
 
 UtcInstant InstantFromText(std::string_view text, const EventDay& day) {
+  RefuseOtherYears(text, "time");
   if (IsNow(text)) return AddSeconds(day.now, OffsetOf(SplitEvent(text)));
   if (EndOfDay(text)) {
     const TimeOfDay time = TimeOfDayFromText(text, day);

@@ -52,7 +52,7 @@ class InstantReader {
 
   WrittenTime Read() {
     const sys_days day = Date();
-    if (!cursor_.Accept('T') && !cursor_.Accept(' ')) {
+    if (!cursor_.Accept('T') && !cursor_.Accept('t') && !cursor_.Accept(' ')) {
       Refuse("expected T or a space, and a time, after the date");
     }
     WrittenTime written = TimeOfDay(day);
@@ -101,7 +101,7 @@ class InstantReader {
     written.is_leap_second = second == 60;
     written.second = sys_seconds(day) + std::chrono::hours(hour) + std::chrono::minutes(minute) +
                      seconds(std::min(second, 59));
-    if (cursor_.Accept('.')) {
+    if (cursor_.Accept('.') || cursor_.Accept(',')) {
       // More digits than nanoseconds, as some recorders write, could round up to the next second.
       constexpr std::size_t kDigits = 9;
       const std::string_view digits = cursor_.Run("0123456789").substr(0, kDigits);
@@ -124,7 +124,7 @@ class InstantReader {
   }
 
   std::optional<seconds> Offset() {
-    if (cursor_.Accept('Z')) return seconds(0);
+    if (cursor_.Accept('Z') || cursor_.Accept('z')) return seconds(0);
     const std::string_view whole = cursor_.rest();
     const bool west = cursor_.Accept('-');
     if (!west && !cursor_.Accept('+')) return std::nullopt;

@@ -30,11 +30,14 @@ TEST(Time, InstantsAreReadInUtcAndWithOffsets) {
   EXPECT_EQ(ParseInstant("2026-06-20T18:30:00-09:30"), expected);
   EXPECT_EQ(ParseInstant("2026-06-21T04:00Z"), expected);
   EXPECT_EQ(ParseInstant("2026-06-21 04:00:00Z"), expected) << "a space stands for the T";
+  EXPECT_EQ(ParseInstant("2026-06-21t04:00:00z"), expected) << "RFC 3339, 5.6";
   EXPECT_EQ(ParseInstant("2026-06-21T13:00:00", "Asia/Tokyo"), expected);
   EXPECT_EQ(ParseInstant("2026-06-21T04:00:00Z", "Asia/Tokyo"), expected) << "the text decides";
   EXPECT_EQ(ParseInstant("2000-01-01T12:00:00Z"), (UtcInstant{51544, 43200.0})) << "J2000";
   EXPECT_EQ(ParseInstant("2024-02-29T00:00:00Z").modified_julian_day, 60369);
   EXPECT_NEAR(ParseInstant("2026-06-21T04:00:30.125Z").second_of_day, 14430.125, 1e-9);
+  EXPECT_NEAR(ParseInstant("2026-06-21T04:00:30,125Z").second_of_day, 14430.125, 1e-9)
+      << "ISO 8601 prefers the comma";
   EXPECT_LT(ParseInstant("2026-06-21T23:59:59.999999999Z").second_of_day, 86400.0);
   EXPECT_LT(ParseInstant("2026-06-21T23:59:59.99999999999999999999Z").second_of_day, 86400.0);
   EXPECT_NEAR(ParseInstant("2026-06-21T00:00:01.1234567890123Z").second_of_day, 1.123456789, 1e-9);
@@ -87,10 +90,8 @@ TEST(Time, WhatIsNotAnInstantIsRefusedWithTextAndFault) {
                            "2024-6-21T04:00:00Z",
                            "24-06-21T04:00:00Z",
                            "2024-06-21  04:00:00Z",
-                           "2024-06-21t04:00:00z",
                            "2024-06-21T4:00:00Z",
                            "2024-06-21T04:00:00.Z",
-                           "2024-06-21T04:00:00,5Z",
                            "2024-06-21T04:00:00+9:00",
                            "2024-06-21T04:00:00+16:00",
                            "2024-06-21T04:00:00+09:60",

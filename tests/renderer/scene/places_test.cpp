@@ -86,6 +86,11 @@ TEST(Places, OthersAreRefusedWithWhatCouldBeMeant) {
   EXPECT_THAT(fault("Mount"), HasSubstr("could be Mount "));
   EXPECT_THAT(fault("qqqqqqqqqq"), HasSubstr("there is no place \"qqqqqqqqqq\" in the list"));
   EXPECT_THAT(fault(""), HasSubstr("there is no place"));
+  for (const char* far : {"", "x", "K", "東京", "Wuppertal", "Ürümqi", "zz", "qq"})
+    EXPECT_THAT(fault(far), Not(HasSubstr("did you mean"))) << far;
+  EXPECT_EQ(PlaceNamed("Köln").name, "Cologne");
+  EXPECT_THAT(fault("Kölm"), HasSubstr("did you mean Cologne?")) << "one letter, of two bytes";
+  EXPECT_THAT(fault("Zermatz"), HasSubstr("did you mean Zermatt?"));
 }
 
 TEST(Places, ASearchGivesTheBestFirstAndNoMoreThanAskedFor) {

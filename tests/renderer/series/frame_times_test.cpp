@@ -82,7 +82,13 @@ TEST(TimeText, UnknownTextsNameTheNearestKnown) {
       {"tomorrow 6pm", "did you mean 18:00?"},
       {"2026-06-21T18:00:00+0200", "the offset \"+0200\" is written +02:00"},
       {"18:00-03", "the offset \"-03\" is written -03:00"},
-      {"+0200", "an offset follows a time"}};
+      {"+0200", "an offset follows a time"},
+      {"-0044-03-15T12:00:00Z", "the year must be four digits and lie in [1900, 2100]"},
+      {"+12026-06-21T12:00:00Z", "the year must be four digits and lie in [1900, 2100]"},
+      {"12026-06-21T12:00:00Z", "the year must be four digits and lie in [1900, 2100]"},
+      {"0044-03-15T12:00:00Z", "the year must be four digits and lie in [1900, 2100]"},
+      {"2101-01-01T12:00:00Z", "the year must be four digits and lie in [1900, 2100]"},
+      {"-0044-03-15", "the year must be four digits and lie in [1900, 2100]"}};
   for (const auto& [text, message] : cases) EXPECT_THAT(FaultAt(text), HasSubstr(message)) << text;
   for (const char* text :
        {"", "sunrise+", "sunrise-1x", "2024-02-30T00:00:00Z", "sunrise 1h", "2460", "183", "18300"})
