@@ -4,15 +4,20 @@
 #pragma once
 
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cstddef>
 #include <functional>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "atmosphere/base/error.h"
+#include "lut/cli/command_words.h"
 #include "lut/cli/program.h"
+#include "lut/cli/terminal.h"
 #include "lut/layer.h"
 
 namespace alpenglow::lut {
@@ -93,16 +98,36 @@ inline void AddCommonOptions(CLI::App& app, const std::string& program, CommonOp
   return CLI::Validator(fault, "");
 }
 
-/// Returns the long names of the options of a command and of the subcommands that were named.
+/// Returns the long names of the options that a command line may have: those of the subcommand that
+/// was named, and those of the program if the subcommand passes them on to it (fallthrough).
 [[nodiscard]] inline std::vector<std::string> OptionNamesOf(const CLI::App& app) {
   std::vector<std::string> names;
-  for (const CLI::Option* option : app.get_options())
-    names.insert(names.end(), option->get_lnames().begin(), option->get_lnames().end());
-  for (const CLI::App* command : app.get_subcommands()) {
+  const std::vector<CLI::App*> named = app.get_subcommands();
+  for (const CLI::App* command : named) {
     const std::vector<std::string> more = OptionNamesOf(*command);
     names.insert(names.end(), more.begin(), more.end());
   }
+  if (!named.empty() && !named.back()->get_fallthrough()) return names;
+  for (const CLI::Option* option : app.get_options())
+    names.insert(names.end(), option->get_lnames().begin(), option->get_lnames().end());
   return names;
+}
+
+/// Returns the commands (the program without its subcommands, or a subcommand) that have an option
+/// of exactly this name, except the one that was named.
+[[nodiscard]] inline std::vector<std::string> CommandsWith(const CLI::App& app,
+                                                           const std::string& name) {
+  const auto has = [&](const CLI::App& command) {
+    const std::vector<const CLI::Option*> options = command.get_options();
+    return std::any_of(options.begin(), options.end(),
+                       [&](const CLI::Option* option) { return option->check_lname(name); });
+  };
+  std::vector<std::string> commands;
+  if (has(app)) commands.push_back(app.get_name());
+  for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; })) {
+    if (has(*command)) commands.push_back(app.get_name() + " " + command->get_name());
+  }
+  return commands;
 }
 
 /// Describes the fault of the first word, or of the first unknown option; empty if there is none.
@@ -116,10 +141,27 @@ inline void AddCommonOptions(CLI::App& app, const std::string& program, CommonOp
     if (std::string fault = FaultOfCommand(argv[1], commands); !fault.empty()) return fault;
   }
   for (const std::string& word : app.remaining(true)) {
-    if (word.size() > 1 && word.starts_with('-'))
-      return FaultOfUnknownOption(word, OptionNamesOf(app));
+    if (word.size() <= 1 || !word.starts_with('-')) continue;
+    const std::vector<std::string> others = CommandsWith(app, LongNameOf(word));
+    return others.empty() ? FaultOfUnknownOption(word, OptionNamesOf(app))
+                          : FaultOfOptionOfOthers(word, others);
   }
   return "";
+}
+
+/// Prints the help in lines that the terminal holds.
+inline void PrintHelp(const CLI::App& app) {
+  constexpr int kUsualColumns = 100, kLeastColumns = 20;
+  const int columns = std::max(ColumnsOf(STDOUT_FILENO, kUsualColumns), kLeastColumns);
+  const CLI::App* root = &app;
+  while (root->get_parent() != nullptr) root = root->get_parent();
+  Print(Wrapped(app.help(), static_cast<std::size_t>(columns), root->get_name() + " "));
+}
+
+/// Returns the subcommand that was named, or the program.
+[[nodiscard]] inline const CLI::App& NamedCommandOf(const CLI::App& app) {
+  const std::vector<CLI::App*> named = app.get_subcommands();
+  return named.empty() ? app : NamedCommandOf(*named.back());
 }
 
 /// Parses the command line. Returns an exit status if the program has nothing left to do: 0 after
@@ -128,6 +170,9 @@ inline std::optional<int> ParseCommandLine(CLI::App& app, int argc, char** argv)
   try {
     app.parse(argc, argv);
     if (FaultOfWords(app, argc, argv).empty()) return std::nullopt;
+  } catch (const CLI::CallForHelp&) {
+    PrintHelp(NamedCommandOf(app));
+    return 0;
   } catch (const CLI::ParseError& error) {
     const bool is_fault = error.get_exit_code() != 0;
     if (!is_fault || FaultOfWords(app, argc, argv).empty()) return app.exit(error) == 0 ? 0 : 2;

@@ -11,6 +11,7 @@
 #include <chrono>
 #include <cmath>
 #include <cstdio>
+#include <functional>
 #include <iostream>
 #include <mutex>
 #include <optional>
@@ -19,6 +20,7 @@
 
 #include "atmosphere/base/error.h"
 #include "atmosphere/base/parsing.h"
+#include "lut/cli/terminal.h"
 #include "lut/layer.h"
 
 namespace alpenglow::lut {
@@ -63,6 +65,7 @@ void FlushStandardOutput() {
   const bool streams = static_cast<bool>(std::cout.flush());
   if (!streams || std::fflush(stdout) != 0 || std::ferror(stdout) != 0) RememberOutputFault();
   if (const int fault = output_fault.exchange(0); fault != 0) {
+    if (fault == EPIPE) throw ReaderLeft("standard output: nobody reads it any more");
     throw OutputError("standard output: cannot be written: " +
                       std::generic_category().message(fault));
   }
@@ -97,10 +100,22 @@ Form FormOf(ProgressStyle style) {
   throw InternalError("unknown progress style");
 }
 
-constexpr std::size_t kBarWidth = 30;
-
-std::string Bar(std::size_t filled) {
-  return std::string(filled, '#') + std::string(kBarWidth - filled, '.');
+/// Returns the bar and its text in fewer columns than the terminal has: in the last one some
+/// terminals begin a new line. The bar is the first to become shorter.
+/// @param complete  number of complete parts out of a number of parts.
+std::string BarLine(const std::string& label,
+                    const std::function<std::size_t(std::size_t)>& complete,
+                    const std::string& text) {
+  constexpr std::size_t kLongest = 30, kShortest = 5;
+  constexpr int kUsualColumns = 80;
+  const auto columns =
+      static_cast<std::size_t>(std::max(ColumnsOf(STDERR_FILENO, kUsualColumns), 2)) - 1;
+  const std::size_t others = label.size() + text.size() + 4;  // with brackets and spaces
+  const std::size_t width = std::min(kLongest, columns - std::min(columns, others));
+  const std::size_t filled = width < kShortest ? 0 : complete(width);
+  const std::string bar =
+      width < kShortest ? "" : fmt::format("[{:#<{}}{:.<{}}] ", "", filled, "", width - filled);
+  return fmt::format("{} {}{}", label, bar, text).substr(0, columns);
 }
 
 }  // namespace
@@ -133,7 +148,8 @@ struct Progress::State {
   std::string step{};             // current step of its preparation
   std::set<std::string> named{};  // steps for which a line was written
   Clock::time_point step_start{};
-  double prepared_s = 0.0;         // before the first unit was done; not part of the speed
+  double prepared_s = 0.0;  // before the first unit was done; not part of the speed
+  std::size_t bar_length = 0;
   std::size_t reported_steps = 0;  // number of parts of the resolution in the last reported line
 
   [[nodiscard]] double ElapsedSeconds() const {
@@ -204,8 +220,12 @@ struct Progress::State {
                              : !step.empty() ? step
                              : left          ? DurationText(*left) + " left"
                                              : "";
-    Log(fmt::format("\r{} [{}] {:3} % {}/{} {:<20}", label, Bar(Complete(kBarWidth)), Percent(),
-                    done, total, note));
+    const std::string line = BarLine(
+        label, [this](std::size_t whole) { return Complete(whole); },
+        fmt::format("{:3} % {}/{} {}", Percent(), done, total, note));
+    const std::size_t over = bar_length - std::min(bar_length, line.size());  // to be erased
+    bar_length = line.size();
+    Log("\r" + line + std::string(over, ' '));
   }
   void PrintLine() {
     drawn = Clock::now();

@@ -12,14 +12,18 @@
 #include <atomic>
 #include <cerrno>
 #include <cstdint>
+#include <exception>
 #include <fstream>
+#include <mutex>
 #include <random>
 #include <regex>
+#include <set>
 #include <string>
 #include <system_error>
 
 #include "atmosphere/base/error.h"
 #include "atmosphere/base/parsing.h"
+#include "lut/cli/outputs.h"
 #include "lut/layer.h"
 
 namespace alpenglow::lut {
@@ -78,6 +82,35 @@ int CreateLocked(const fs::path& name) {
   }
 }
 
+/// The temporaries that exist, for RemoveTemporariesOfThisProcess.
+class Temporaries {
+ public:
+  void Add(const fs::path& name) {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    names_.insert(name);
+  }
+  void Remove(const fs::path& name) {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    std::error_code ignored;
+    fs::remove(name, ignored);
+    names_.erase(name);
+  }
+  void RemoveAll() {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    std::error_code ignored;
+    for (const fs::path& name : names_) fs::remove(name, ignored);
+    names_.clear();
+  }
+  [[nodiscard]] static Temporaries& OfThisProcess() {
+    static Temporaries temporaries;
+    return temporaries;
+  }
+
+ private:
+  std::mutex mutex_;
+  std::set<fs::path> names_;
+};
+
 /// A file that is deleted with the object, and locked during its lifetime:
 /// RemoveAbandonedTemporaries.
 class Temporary {
@@ -85,11 +118,9 @@ class Temporary {
   explicit Temporary(const fs::path& target)
       : name_(TemporaryName(target)), file_(CreateLocked(name_)) {
     if (!file_.valid()) Fail(target, "cannot be written: " + LastSystemError());
+    Temporaries::OfThisProcess().Add(name_);
   }
-  ~Temporary() {
-    std::error_code ignored;
-    fs::remove(name_, ignored);
-  }
+  ~Temporary() { Temporaries::OfThisProcess().Remove(name_); }
   Temporary(const Temporary&) = delete;
   Temporary& operator=(const Temporary&) = delete;
 
@@ -184,6 +215,14 @@ void MakeFolder(const fs::path& folder) {
 }
 
 void RequireWritable(const fs::path& target) { const Temporary probe(FinalName(target)); }
+
+void RemoveTemporariesOfThisProcess() noexcept {
+  try {
+    Temporaries::OfThisProcess().RemoveAll();
+  } catch (const std::exception&) {
+    // They are removed as abandoned later.
+  }
+}
 
 std::size_t RemoveAbandonedTemporaries(const fs::path& folder) {
   std::size_t removed = 0;

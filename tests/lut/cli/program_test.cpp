@@ -4,22 +4,29 @@
 #include <fcntl.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <oneapi/tbb/global_control.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <csignal>
 #include <cstdio>
 #include <fstream>
+#include <iostream>
 #include <iterator>
 #include <sstream>
 #include <string>
+#include <system_error>
 #include <thread>
 #include <vector>
 
 #include "atmosphere/base/error.h"
 #include "lut/cli/output_file.h"
+#include "lut/cli/outputs.h"
+#include "lut/cli/terminal.h"
 #include "lut/layer.h"
 #include "tests/fixtures/fault_of.h"
 #include "tests/fixtures/lost_messages.h"
@@ -89,6 +96,92 @@ TEST(Program, ASignalStopsTheWorkBetweenUnitsAndSetsTheStatus) {
   EXPECT_EQ(RunBody([] { return Interrupted() ? 1 : 0; }).status, 0) << "a new run starts afresh";
 }
 
+/// Runs a body in a child process that gets a signal, and returns the status of the program.
+int StatusOfSignalled(int signal, const std::function<int()>& body) {
+  const pid_t child = fork();
+  if (child == 0) {
+    static_cast<void>(!freopen("/dev/null", "w", stderr));
+    _exit(RunProgram("skytest", [&] {
+      std::raise(signal);
+      return body();
+    }));
+  }
+  int status = 0;
+  waitpid(child, &status, 0);
+  return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+}
+
+// A loop that never looks for signals, while it writes a file.
+TEST_F(AtomicFile, ASignalEndsWorkThatDoesNotLookForIt) {
+  for (const int signal : {SIGINT, SIGTERM}) {
+    const int status = StatusOfSignalled(signal, [&] {
+      WriteTextAtomically(folder_ / "done.txt", "whole");
+      WriteFileAtomically(folder_ / "half.txt", [](const fs::path&) {
+        for (;;) pause();
+      });
+      return 0;
+    });
+    EXPECT_EQ(status, 128 + signal);
+    EXPECT_EQ(ContentOf(folder_ / "done.txt"), "whole") << "finished work is kept";
+    EXPECT_EQ(FileCount(), 1U) << "and nothing else";
+  }
+}
+
+TEST(Program, ALostReaderOfTheResultEndsTheWorkWithoutAMessage) {
+  std::array<int, 2> ends{};
+  ASSERT_EQ(pipe(ends.data()), 0);
+  std::fflush(stdout);
+  const int before = dup(STDOUT_FILENO);
+  dup2(ends[1], STDOUT_FILENO);
+  close(ends[0]);
+  close(ends[1]);
+  int lines = 0;
+  const Outcome outcome = RunBody([&] {
+    for (; lines < 1000; ++lines) PrintNow("a line\n");
+    return 0;
+  });
+  dup2(before, STDOUT_FILENO);
+  std::clearerr(stdout);
+  std::cout.clear();
+  close(before);
+  EXPECT_EQ(outcome.status, 4);
+  EXPECT_EQ(outcome.error_text, "");
+  EXPECT_EQ(lines, 0) << "at the first line that nobody reads";
+}
+
+TEST(Program, AThreadThatCannotBeStartedIsNoFaultOfTheProgram) {
+  const Outcome outcome = RunBody([]() -> int {
+    throw std::system_error(std::make_error_code(std::errc::resource_unavailable_try_again));
+  });
+  EXPECT_EQ(outcome.status, 4);
+  EXPECT_THAT(outcome.error_text, HasSubstr("a thread cannot be started: give fewer --threads"));
+}
+
+TEST(Program, HelpIsAsWideAsTheTerminal) {
+  const std::string text =
+      "Options:\n  --height,--altitude FLOAT   Height of the camera in metres above the ellipsoid\n"
+      "Example: a picture\n  skytest --latitude 35.36 --longitude 138.73 --out fuji.exr\n";
+  EXPECT_EQ(Wrapped(text, 200, "skytest "), text);
+  EXPECT_EQ(Wrapped(text, 59, "skytest "),
+            "Options:\n  --height,--altitude FLOAT   Height of the camera in\n"
+            "                              metres above the ellipsoid\n"
+            "Example: a picture\n  skytest --latitude 35.36 --longitude 138.73 --out \\\n"
+            "    fuji.exr\n");
+  for (std::size_t columns = 30; columns < 100; ++columns) {
+    std::istringstream lines(Wrapped(text, columns, "skytest "));
+    for (std::string line; std::getline(lines, line);) EXPECT_LE(line.size(), columns) << line;
+  }
+}
+
+TEST(Program, DirectionsAreInTheHalfOpenCircleAfterRounding) {
+  EXPECT_EQ(DirectionText(359.9998, 3), "0.000");
+  EXPECT_EQ(DirectionText(359.9994, 3), "359.999");
+  EXPECT_EQ(DirectionText(-1e-12, 6), "0.000000");
+  EXPECT_EQ(DirectionText(-90.0, 1), "270.0");
+  EXPECT_EQ(DirectionText(360.0, 0), "0");
+  EXPECT_EQ(DirectionText(359.6, 0), "0");
+}
+
 TEST(Program, VersionNamesProgramReleaseAndLibraries) {
   const std::string text = VersionText("skytest");
   EXPECT_THAT(text, testing::StartsWith("skytest of alpenglow "));
@@ -100,6 +193,26 @@ TEST(Program, VersionNamesProgramReleaseAndLibraries) {
 TEST(Program, ANegativeNumberOfThreadsIsRefused) {
   EXPECT_THROW(ThreadLimit{-1}, InputError);
   EXPECT_NO_THROW(ThreadLimit{0});
+}
+
+// As a user who may start no thread at all, or two. Limits of root do not hold.
+TEST(Program, FewerThreadsThanAskedForAreUsedIfThereMayBeNoMore) {
+  if (geteuid() != 0) GTEST_SKIP() << "only root can become a user without processes";
+  for (const rlim_t most : {1U, 3U}) {
+    const pid_t child = fork();
+    if (child == 0) {
+      const rlimit limit{most, most};
+      if (setrlimit(RLIMIT_NPROC, &limit) != 0 || setuid(54321) != 0) _exit(100);
+      const ThreadLimit threads(8);
+      _exit(static_cast<int>(
+          tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism)));
+    }
+    int status = 0;
+    waitpid(child, &status, 0);
+    ASSERT_TRUE(WIFEXITED(status));
+    EXPECT_GE(WEXITSTATUS(status), 1);
+    EXPECT_LE(WEXITSTATUS(status), static_cast<int>(most));
+  }
 }
 
 TEST(Program, ResultsThatStandardOutputDoesNotTakeAreStatus4AfterTheWork) {
@@ -132,6 +245,36 @@ TEST_F(AtomicFile, ContentArrivesWholeUnderLongNamesToo) {
   const fs::path target = folder_ / (std::string(250, 'n') + ".exr");  // of 255 bytes
   WriteTextAtomically(target, "one");
   EXPECT_EQ(ContentOf(target), "one");
+}
+
+TEST_F(AtomicFile, TwoOutputsMayNotBeOneFileWhateverTheirNames) {
+  fs::create_directory(folder_ / "d");
+  fs::create_directory_symlink(folder_ / "d", folder_ / "link");
+  fs::create_symlink("d/a.png", folder_ / "to_a.png");
+  const fs::path before = fs::current_path();
+  fs::current_path(folder_);
+  for (const char* other :
+       {"d/a.png", "./d/a.png", "d/../d/a.png", "link/a.png", "to_a.png", "new/../d/a.png"}) {
+    const auto outputs = [&](const fs::path& file) {
+      return std::vector<NamedFile>{
+          {"--out", "x.exr"}, {"--png", folder_ / "d" / "a.png"}, {"--keogram", file}};
+    };
+    EXPECT_THROW(RequireDifferent(outputs(other)), OptionError) << other;
+    EXPECT_THROW(RequireDifferent(outputs(folder_ / other)), OptionError) << other;
+  }
+  EXPECT_NO_THROW(RequireDifferent({{"--out", "a.png"}, {"--png", "d/a.png"}, {"--k", "b.png"}}));
+  fs::current_path(before);
+}
+
+TEST_F(AtomicFile, OutputsGetTheirFoldersBeforeTheWork) {
+  PrepareOutputs({{"--out", folder_ / "new" / "deep" / "x.exr"}}, {});
+  EXPECT_TRUE(fs::is_directory(folder_ / "new" / "deep"));
+  EXPECT_EQ(FileCount(), 1U) << "and no file yet";
+  WriteText(folder_ / "in.csv", "1");
+  EXPECT_THROW(PrepareOutputs({{"--out", folder_ / "new" / ".." / "in.csv"}},
+                              {{"--cases", folder_ / "in.csv"}}),
+               InputError);
+  EXPECT_THROW(PrepareOutputs({{"--out", folder_ / "in.csv" / "x.exr"}}, {}), OutputError);
 }
 
 TEST_F(AtomicFile, ModeFollowsTheUmask) {
