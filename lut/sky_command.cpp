@@ -13,6 +13,8 @@
 #include "atmosphere/medium/medium_presets.h"
 #include "atmosphere/refraction/refracted_view.h"
 #include "lut/cli/output_file.h"
+#include "lut/cli/outputs.h"
+#include "lut/cli/terminal.h"
 #include "lut/image/look_options.h"
 #include "lut/sky/panorama.h"
 
@@ -94,7 +96,7 @@ void Describe(SkyJob& job) {
   metadata["alpenglow.atmosphere_hash"] = fmt::format("{:016x}", MediumHash(job.medium));
   metadata["alpenglow.altitude_m"] = fmt::format("{}", settings.altitude_m);
   metadata["alpenglow.sun_elevation_deg"] = Degrees(sun.elevation_rad);
-  metadata["alpenglow.sun_azimuth_deg"] = Degrees(sun.azimuth_rad);
+  metadata["alpenglow.sun_azimuth_deg"] = DirectionText(sun.azimuth_rad / kRadiansPerDegree, 6);
   metadata["alpenglow.sun_distance"] = fmt::format("{:.6f}", sun.distance);
   metadata["alpenglow.sun_disk"] = settings.sun_disk ? "drawn" : "left out";
   if (settings.compass) metadata["alpenglow.compass"] = "painted";
@@ -102,7 +104,8 @@ void Describe(SkyJob& job) {
   for (const StokesLayer layer : settings.layers) layers.push_back(NameOf(layer));
   if (!layers.empty()) metadata["alpenglow.layers"] = fmt::format("{}", fmt::join(layers, ","));
   metadata["alpenglow.orientation"] = NameOf(settings.orientation);
-  metadata["alpenglow.centre_azimuth_deg"] = Degrees(CentreAzimuth(settings.orientation));
+  metadata["alpenglow.centre_azimuth_deg"] =
+      DirectionText(CentreAzimuth(settings.orientation) / kRadiansPerDegree, 6);
 }
 
 /// The image, and the illuminance on a horizontal plane at the observer.
@@ -127,19 +130,15 @@ double Ev100Of(const RenderedSky& sky, const Image& seen, const ExposureRule& ru
       rule, MeterEv100(seen, kSunDiskLuminance_cd_per_m2, Projection::kLatitudeLongitude), look);
 }
 
-/// Checks, before the image is rendered, that all output files can be written and that none of them
-/// replaces an input file.
-void RequireOutputs(const SkyOptions& options) {
-  std::vector<NamedFile> outputs{{"--out", options.out}};
+void PrepareOutputsOf(const SkyOptions& options) {
+  std::vector<NamedFile> outputs{{"--out", options.out}}, inputs;
   if (options.png) outputs.push_back({"--png", *options.png});
-  for (const NamedFile& output : outputs) {
-    if (options.atmosphere) RequireNoInput(output, {{"--atmosphere", *options.atmosphere}});
-    RequireWritable(output.file);
-  }
+  if (options.atmosphere) inputs.push_back({"--atmosphere", *options.atmosphere});
+  PrepareOutputs(outputs, inputs);
 }
 
 void MakeSky(const SkyOptions& options, const CommonOptions& common) {
-  RequireOutputs(options);
+  PrepareOutputsOf(options);
   const ExposureRule rule = ExposureRuleFromText(options.exposure);
   Look look = LookFromTexts(options.look);
   look.night_vision = options.night_vision;

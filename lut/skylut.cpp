@@ -8,6 +8,7 @@
 #include "atmosphere/medium/medium_presets.h"
 #include "lut/cli/command_line.h"
 #include "lut/cli/output_file.h"
+#include "lut/cli/outputs.h"
 #include "lut/cli/program.h"
 #include "lut/commands.h"
 #include "lut/evaluate/eval.h"
@@ -119,8 +120,7 @@ std::vector<NamedFile> InputsOf(const Options& options) {
 }
 
 void Evaluate(const Options& options) {
-  RequireNoInput({"--out", options.results}, InputsOf(options));
-  RequireWritable(options.results);
+  PrepareOutputs({{"--out", options.results}}, InputsOf(options));
   const ProgressStyle style = options.common.progress_style();
   if (!HoldsLampCases(options.cases)) {
     EvaluateFile(options.cases, options.results, *EvaluatorFor(options), style);

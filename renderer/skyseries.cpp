@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 // skyseries renders pictures of a scene through the day. A single picture is a series of one.
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <map>
@@ -12,6 +13,7 @@
 
 #include "atmosphere/base/parsing.h"
 #include "atmosphere/math/constants.h"
+#include "lut/cli/terminal.h"
 #include "renderer/camera/track.h"
 #include "renderer/scene/places.h"
 #include "renderer/scene/scene_options.h"
@@ -243,16 +245,17 @@ SeriesSource SourceOf(const SeriesPlan& plan, FramePictures& pictures) {
           [&](const Frame& frame) { return pictures.Small(frame); }};
 }
 
-/// Prints the frames.
+/// Prints the frames, each as soon as it is known.
 void List(const SeriesPlan& plan, const std::string& out) {
   std::optional<FrameName> name;
   if (!out.empty()) name.emplace(out);
-  std::vector<FrameRecord> records;
+  PrintNow(HeaderOfList());
   for (const Frame& frame : plan.selected) {
-    FrameRecord& record = records.emplace_back(plan.viewpoint.RecordOf(frame));
+    ThrowIfInterrupted();
+    FrameRecord record = plan.viewpoint.RecordOf(frame);
     if (name) record.Set("file", name->Exr(frame.number).string());
+    PrintNow(ListLineOf(record));
   }
-  Print(ListOf(records));
 }
 
 void PrintSummary(const SeriesSummary& summary) {
@@ -260,8 +263,11 @@ void PrintSummary(const SeriesSummary& summary) {
     Log(fmt::format("skyseries: removed {} unfinished files of runs that were killed\n",
                     summary.removed));
   }
-  Log(fmt::format("skyseries: {} rendered, {} developed again, {} kept\n", summary.rendered,
-                  summary.developed, summary.kept));
+  constexpr int kAnyColumns = 1000, kLeastColumns = 20;
+  const int columns = std::max(ColumnsOf(STDERR_FILENO, kAnyColumns), kLeastColumns);
+  Log(Wrapped(fmt::format("skyseries: {} rendered, {} developed again, {} kept", summary.rendered,
+                          summary.developed, summary.kept),
+              static_cast<std::size_t>(columns), ""));
 }
 
 int Run(const SkyseriesOptions& options) {
@@ -292,6 +298,7 @@ int Main(int argc, char** argv) {
   } else if (app.got_subcommand("times")) {
     times();
   } else if (options.list) {
+    const ThreadLimit threads(options.common.threads);
     List(PlanOf(options), options.out);
   } else {
     return Run(options);

@@ -13,11 +13,15 @@
 #include "atmosphere/medium/medium.h"
 #include "lut/cli/messages.h"
 #include "lut/cli/output_file.h"
+#include "lut/cli/outputs.h"
 #include "lut/cli/program.h"
+#include "lut/cli/terminal.h"
 #include "lut/image/look.h"
 #include "renderer/picture/render.h"
 #include "renderer/report/report.h"
+#include "renderer/scene/places.h"
 #include "renderer/scene/scene.h"
+#include "renderer/scene/scene_options.h"
 #include "renderer/series/day_times.h"
 
 namespace alpenglow::renderer {
@@ -69,7 +73,7 @@ namespace {
 
 struct TimesOptions {
   CommonOptions common;
-  std::optional<std::string> scene_file, zone, out;
+  std::optional<std::string> scene_file, place, zone, out;
   std::optional<double> latitude_deg, longitude_deg;
   double height_m = 0.0;
   std::string date = "today";
@@ -78,11 +82,20 @@ struct TimesOptions {
   double every_min = 30.0;
 };
 
+/// Returns the place on the ellipsoid.
+GeodeticPosition PlaceOf(const TimesOptions& options) {
+  if (!options.place) return PlaceFromDegrees(*options.latitude_deg, *options.longitude_deg, 0.0);
+  GeodeticPosition place = PlaceNamed(*options.place).place;
+  place.height_m = 0.0;
+  return place;
+}
+
 /// Returns the scene, or a place without terrain.
 Scene SceneOf(const TimesOptions& options) {
   if (options.scene_file) return ReadScene(*options.scene_file);
   Scene scene;
-  scene.place = PlaceFromDegrees(*options.latitude_deg, *options.longitude_deg, 0.0);
+  scene.place = PlaceOf(options);
+  if (options.place) scene.zone = PlaceNamed(*options.place).zone;
   scene.camera.height = {std::max(options.height_m, 0.0), false};
   scene.medium = MediumPreset("earth");
   scene.terrain.kind = TerrainSource::Kind::kNone;
@@ -92,8 +105,7 @@ Scene SceneOf(const TimesOptions& options) {
 /// Returns the place and the first day.
 EventDay FirstDayOf(const TimesOptions& options, const Scene& scene) {
   EventDay day{scene.place, options.zone ? options.zone : scene.zone, {}};
-  if (!options.scene_file)
-    day.place = PlaceFromDegrees(*options.latitude_deg, *options.longitude_deg, options.height_m);
+  if (!options.scene_file) day.place.height_m = options.height_m;
   day.around = DayFromText(options.date, day);
   return day;
 }
@@ -114,14 +126,27 @@ void WritePlot(const TimesOptions& options, const Scene& scene, const EventDay& 
   WriteTextAtomically(*options.plot, SvgOfDay(moments, first.zone, PublishedLightLevels()));
 }
 
+void PrepareOutputsOf(const TimesOptions& options, const Scene& scene) {
+  std::vector<NamedFile> inputs = FilesOf(scene), outputs;
+  if (options.scene_file) inputs.push_back({"the scene", *options.scene_file});
+  if (options.out) outputs.push_back({"--out", *options.out});
+  if (options.plot) outputs.push_back({"--plot", *options.plot});
+  PrepareOutputs(outputs, inputs);
+}
+
 void WriteTimes(const TimesOptions& options) {
+  const ThreadLimit threads(options.common.threads);
   const Scene scene = SceneOf(options);
   const EventDay first = FirstDayOf(options, scene);
-  const std::vector<DayTimes> days = TimesOfDays(first, options.days);
+  PrepareOutputsOf(options, scene);
   if (options.out) {
-    WriteTextAtomically(*options.out, CsvOf(days));
+    std::string csv = HeaderOfTimesCsv();
+    VisitTimesOfDays(first, options.days, [&](const DayTimes& day) { csv += CsvLineOf(day); });
+    WriteTextAtomically(*options.out, csv);
   } else {
-    Print(TableOf(days, first.zone));
+    PrintNow(HeadOfTable(first.zone));
+    VisitTimesOfDays(first, options.days,
+                     [&](const DayTimes& day) { PrintNow(LinesOf(day, first.zone)); });
   }
   if (options.plot) WritePlot(options, scene, first);
 }
@@ -158,12 +183,21 @@ std::function<void()> AddTimesCommand(CLI::App& app) {
       times.add_option("--latitude", options->latitude_deg, "Degrees north, -90 to 90")
           ->check(CLI::Range(-90.0, 90.0))
           ->excludes(file);
+  CLI::Option* place =
+      times
+          .add_option(
+              "--place", options->place,
+              "Airport, peak or city by name or code: LSZH, \"Mont Blanc\". Its time zone is "
+              "the default of --zone")
+          ->excludes(file)
+          ->excludes(latitude);
   times.add_option("--longitude", options->longitude_deg, "Degrees east, -180 to 360")
       ->check(CLI::Range(-180.0, 360.0))
       ->needs(latitude);
   latitude->needs("--longitude");
-  times.parse_complete_callback([file, latitude] {
-    if (!*file && !*latitude) throw CLI::RequiresError("times", "SCENE, or --latitude");
+  times.parse_complete_callback([file, latitude, place] {
+    if (!*file && !*latitude && !*place)
+      throw CLI::RequiresError("times", "SCENE, --place, or --latitude");
   });
   times
       .add_option(
@@ -186,6 +220,8 @@ std::function<void()> AddTimesCommand(CLI::App& app) {
   AddTimesOutput(times, *options);
   AddCommonOptions(times, "skyseries", options->common);
   times.footer(
+      "Example: the week in Zermatt\n"
+      "  skyseries times --place Zermatt --days 7\n"
       "Example: a year on Mount Fuji\n"
       "  skyseries times --latitude 35.36 --longitude 138.73 --zone Asia/Tokyo --date 2026-01-01 "
       "--days 365 --out fuji.csv\n"

@@ -43,7 +43,7 @@ int LargestPartOf(const ImageSize& size) {
 
 void RequirePictureName(const std::filesystem::path& file) {
   if (HasExtension(file, ".png") || HasExtension(file, ".exr")) return;
-  throw InputError(
+  throw OptionError(
       fmt::format("\"{}\" is no picture's name; it must end in .png or .exr", file.string()));
 }
 

@@ -8,6 +8,7 @@
 #include "atmosphere/base/error.h"
 #include "atmosphere/math/constants.h"
 #include "lut/cli/output_file.h"
+#include "lut/cli/outputs.h"
 #include "renderer/camera/track.h"
 #include "renderer/scene/places.h"
 #include "renderer/scene/scene_options.h"
@@ -226,16 +227,6 @@ std::vector<NamedFile> OutputsOf(const SkyviewOptions& options) {
   return outputs;
 }
 
-/// Reports errors that would prevent the pictures and the flight from being written, before the
-/// flight starts.
-void RequireOutputs(const SkyviewOptions& options, const Scene& scene) {
-  const std::vector<NamedFile> inputs = InputsOf(options, scene);
-  for (const NamedFile& output : OutputsOf(options)) {
-    RequireNoInput(output, inputs);
-    RequireWritable(output.file);
-  }
-}
-
 /// Writes the notes about the land to standard error.
 void LogNotes(FlightSession& flight) {
   for (const std::string& note : flight.edits().PollNotes())
@@ -256,9 +247,13 @@ int Run(const SkyviewOptions& options) {
   const UtcInstant start = StartOf(options, scene);
   std::optional<CameraPath> path;
   if (options.replay) path = ReadFlight(*options.replay);
-  RequireOutputs(options, scene);
+  PrepareOutputs(OutputsOf(options), InputsOf(options, scene));  // before the flight
   std::future<FirstAir> first_air;  // computed while the window is being created
-  if (!options.headless) first_air = std::async(std::launch::async, DraftOfAir, std::cref(scene));
+  if (!options.headless) {
+    // Without a further thread it is computed when it is needed.
+    first_air =
+        std::async(std::launch::async | std::launch::deferred, DraftOfAir, std::cref(scene));
+  }
   // Declared first: the context must outlive the objects that are created in it.
   const auto headless = options.headless ? std::make_unique<HeadlessContext>() : nullptr;
   const auto window =

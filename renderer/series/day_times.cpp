@@ -12,6 +12,7 @@
 #include "atmosphere/astronomy/sun.h"
 #include "atmosphere/base/error.h"
 #include "atmosphere/math/constants.h"
+#include "lut/cli/program.h"
 #include "lut/report/svg_plot.h"
 
 namespace alpenglow::renderer {
@@ -118,45 +119,44 @@ std::string FieldsOf(const std::optional<SeenEclipse>& eclipse) {
 
 }  // namespace
 
-std::vector<DayTimes> TimesOfDays(const EventDay& first, int count) {
+void VisitTimesOfDays(const EventDay& first, int count,
+                      const std::function<void(const DayTimes&)>& visit) {
   if (!first.around) throw InputError("times of which days? give a date");
-  std::vector<DayTimes> days;
   for (int i = 0; i < count; ++i) {
+    ThrowIfInterrupted();
     EventDay day = first;
     day.around = AddSeconds(*first.around, i * kSecondsPerDay);
-    days.push_back(TimesOf(day));
+    visit(TimesOf(day));
   }
-  return days;
 }
 
-std::string TableOf(const std::vector<DayTimes>& days, const std::optional<std::string>& zone) {
+std::string HeadOfTable(const std::optional<std::string>& zone) {
   std::string text;
   for (std::size_t line = 0; line < 2; ++line) {
     text += fmt::format("{:<10}", line == 0 ? "" : zone.value_or("UTC").substr(0, 10));
     for (const auto& head : kHeads) text += fmt::format(" {:>5}", head[line]);
     text += line == 0 ? "  noon  moon\n" : "   sun   lit\n";
   }
-  for (const DayTimes& day : days) {
-    text += day.date;
-    for (const auto& instant : day.at) text += fmt::format(" {}", ClockTime(instant, zone));
-    text +=
-        fmt::format(" {:5.1f} {:4.0f}%\n", day.noon_elevation_deg, 100.0 * day.moon_illuminated);
-    if (day.eclipse) text += LineOf(*day.eclipse, zone);
-  }
   return text;
 }
 
-std::string CsvOf(const std::vector<DayTimes>& days) {
-  std::string text = fmt::format("date,{},noon_elevation_deg,moon_illuminated{}\n",
-                                 fmt::join(kTimesOfDay, ","), kEclipseFields);
-  for (const DayTimes& day : days) {
-    text += day.date;
-    for (const auto& instant : day.at)
-      text += fmt::format(",{}", instant ? FormatUtc(*instant) : "");
-    text += fmt::format(",{:.3f},{:.4f}{}\n", day.noon_elevation_deg, day.moon_illuminated,
-                        FieldsOf(day.eclipse));
-  }
-  return text;
+std::string LinesOf(const DayTimes& day, const std::optional<std::string>& zone) {
+  std::string text = day.date;
+  for (const auto& instant : day.at) text += fmt::format(" {}", ClockTime(instant, zone));
+  text += fmt::format(" {:5.1f} {:4.0f}%\n", day.noon_elevation_deg, 100.0 * day.moon_illuminated);
+  return day.eclipse ? text + LineOf(*day.eclipse, zone) : text;
+}
+
+std::string HeaderOfTimesCsv() {
+  return fmt::format("date,{},noon_elevation_deg,moon_illuminated{}\n", fmt::join(kTimesOfDay, ","),
+                     kEclipseFields);
+}
+
+std::string CsvLineOf(const DayTimes& day) {
+  std::string text = day.date;
+  for (const auto& instant : day.at) text += fmt::format(",{}", instant ? FormatUtc(*instant) : "");
+  return text + fmt::format(",{:.3f},{:.4f}{}\n", day.noon_elevation_deg, day.moon_illuminated,
+                            FieldsOf(day.eclipse));
 }
 
 namespace {

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <array>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -38,23 +39,26 @@ struct DayTimes {
   std::optional<SeenEclipse> eclipse = std::nullopt;
 };
 
-/// Returns the times of consecutive days, starting with the day of `first.around`. Throws
-/// InputError if it is not given.
+/// Computes the times of consecutive days, starting with the day of `first.around`, and passes each
+/// day to `visit` as soon as it is known. Throws InputError if the first day is not given; a signal
+/// stops it between days (ThrowIfInterrupted).
 /// @param count  at least 1.
-[[nodiscard]] std::vector<DayTimes> TimesOfDays(const EventDay& first, int count);
+void VisitTimesOfDays(const EventDay& first, int count,
+                      const std::function<void(const DayTimes&)>& visit);
 
-/// Returns a text table: hours and minutes in the zone, or in UTC without one, rounded to the
-/// minute, "--:--" for events that do not happen; each line ends with a newline. An eclipse has a
-/// line under its day, to the second.
-[[nodiscard]] std::string TableOf(const std::vector<DayTimes>& days,
-                                  const std::optional<std::string>& zone);
+/// Returns the head of a text table, and the lines of a day: hours and minutes in the zone, or in
+/// UTC without one, rounded to the minute, "--:--" for events that do not happen; each line ends
+/// with a newline. An eclipse has a line under its day, to the second.
+[[nodiscard]] std::string HeadOfTable(const std::optional<std::string>& zone);
+[[nodiscard]] std::string LinesOf(const DayTimes& day, const std::optional<std::string>& zone);
 
-/// Returns CSV with a header: date, the events as instants of UTC to the second (empty where there
-/// are none), noon_elevation_deg, moon_illuminated; and for a visible eclipse
+/// Returns the header of a CSV, and the line of a day: date, the events as instants of UTC to the
+/// second (empty where there are none), noon_elevation_deg, moon_illuminated; and for a visible eclipse
 /// eclipse_first_contact, eclipse_second_contact, eclipse_deepest, eclipse_third_contact,
 /// eclipse_last_contact (empty while the sun is down), eclipse_magnitude (fraction of the diameter)
 /// and eclipse_obscuration (fraction of the area), both at the deepest visible moment.
-[[nodiscard]] std::string CsvOf(const std::vector<DayTimes>& days);
+[[nodiscard]] std::string HeaderOfTimesCsv();
+[[nodiscard]] std::string CsvLineOf(const DayTimes& day);
 
 /// Values of a frame in the plot.
 struct PlottedMoment {

@@ -18,7 +18,7 @@ namespace alpenglow::renderer {
 namespace {
 
 [[noreturn]] void Refuse(const std::string& pattern, const std::string& fault) {
-  throw InputError(fmt::format("--out is \"{}\"; {}", pattern, fault));
+  throw OptionError(fmt::format("--out is \"{}\"; {}", pattern, fault));
 }
 
 struct Conversion {
@@ -180,7 +180,9 @@ std::vector<Frame> FramesAlong(const CameraPath& path, const PathRate& rate,
   const double count =
       rate.count ? *rate.count : std::floor(length_s / interval_s * (1.0 + kRounding)) + 1.0;
   if (!(count <= kMostFrames)) {
-    throw InputError(fmt::format("the path has {:.0f} frames; at most {}", count, kMostFrames));
+    throw InputError(fmt::format(
+        "the path has {:.0f} frames; there may be {}: give a longer --every or a lower --fps",
+        count, kMostFrames));
   }
   std::vector<Frame> frames;
   for (int i = 0; i < static_cast<int>(count); ++i) {

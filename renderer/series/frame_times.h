@@ -21,7 +21,7 @@ namespace alpenglow::renderer {
 /// zeros as in ffmpeg; %% is a per cent sign.
 class FrameName {
  public:
-  /// Throws InputError for other conversions, for more than one, and for names that do not end in
+  /// Throws OptionError for other conversions, for more than one, and for names that do not end in
   /// .exr.
   explicit FrameName(const std::string& pattern);
 

@@ -14,6 +14,7 @@
 #include "atmosphere/math/constants.h"
 #include "lut/cli/messages.h"
 #include "lut/cli/program.h"
+#include "lut/cli/terminal.h"
 #include "renderer/scene/scene_options.h"
 #include "renderer/terrain/land_source.h"
 
@@ -315,7 +316,7 @@ constexpr std::array<RecordField, 8> kPoseFields{{{"t_s", "{:.6f}"},
                                                   {"latitude", "{:.8f}"},
                                                   {"longitude", "{:.8f}"},
                                                   {"height_m", "{:.3f}"},
-                                                  {"heading", "{:.6f}"},
+                                                  {"heading", "", 6},
                                                   {"pitch", "{:.6f}"},
                                                   {"roll", "{:.6f}"},
                                                   {"fov", "{:.6f}"}}};
@@ -326,7 +327,7 @@ std::vector<RecordField> FirstFields(const std::vector<RecordField>& more) {
                                   {"file"},
                                   {"utc"},
                                   {"local_time"},
-                                  {"sun_azimuth_deg", "{:.4f}"},
+                                  {"sun_azimuth_deg", "", 4},
                                   {"sun_elevation_deg", "{:.4f}"},
                                   {"sun_covered", "{:.6f}"}};
   fields.insert(fields.end(), more.begin(), more.end());
@@ -341,7 +342,7 @@ std::vector<RecordField> CsvFields(bool on_path) {
 }
 
 std::vector<RecordField> JsonFields(bool on_path) {
-  std::vector<RecordField> fields = FirstFields({{"moon_azimuth_deg", "{:.4f}"},
+  std::vector<RecordField> fields = FirstFields({{"moon_azimuth_deg", "", 4},
                                                  {"moon_elevation_deg", "{:.4f}"},
                                                  {"moon_illuminated", "{:.4f}"},
                                                  {"illuminance_lx", "{:.6g}"},
@@ -355,10 +356,10 @@ const std::vector<RecordField>& ListFields() {
   static const std::vector<RecordField> kFields{{"frame"},
                                                 {"utc"},
                                                 {"local_time"},
-                                                {"sun_azimuth_deg", "{:.3f}"},
+                                                {"sun_azimuth_deg", "", 3},
                                                 {"sun_elevation_deg", "{:.3f}"},
                                                 {"sun_covered", "{:.4f}"},
-                                                {"moon_azimuth_deg", "{:.3f}"},
+                                                {"moon_azimuth_deg", "", 3},
                                                 {"moon_elevation_deg", "{:.3f}"},
                                                 {"moon_illuminated", "{:.3f}"},
                                                 {"file"}};
@@ -369,25 +370,32 @@ const std::vector<RecordField>& ListFields() {
 std::string TextOf(const FrameRecord& record, const RecordField& field) {
   return std::visit(
       [&](const auto& value) -> std::string {
-        if constexpr (std::is_same_v<std::decay_t<decltype(value)>, std::monostate>)
-          return "";
-        else
+        using Type = std::decay_t<decltype(value)>;
+        if constexpr (std::is_same_v<Type, std::monostate>) return "";
+        if constexpr (std::is_same_v<Type, double>) {
+          if (field.decimals_of_direction)
+            return DirectionText(value, *field.decimals_of_direction);
+        }
+        if constexpr (!std::is_same_v<Type, std::monostate>)
           return fmt::format(fmt::runtime(field.format), value);
       },
       record.At(field.key));
 }
 
-std::string Csv(const std::vector<FrameRecord>& records, const std::vector<RecordField>& fields) {
+template <typename Cell>
+std::string CsvLine(const std::vector<RecordField>& fields, const Cell& cell) {
   std::string text;
-  const auto add = [&](const RecordField& field, const std::string& cell) {
-    text += cell;
-    text += &field == &fields.back() ? '\n' : ',';
-  };
-  for (const RecordField& field : fields) add(field, field.key);
-  for (const FrameRecord& record : records) {
-    for (const RecordField& field : fields) add(field, TextOf(record, field));
-  }
+  for (const RecordField& field : fields)
+    text += cell(field) + (&field == &fields.back() ? "\n" : ",");
   return text;
+}
+
+std::string CsvHeader(const std::vector<RecordField>& fields) {
+  return CsvLine(fields, [](const RecordField& field) { return std::string(field.key); });
+}
+
+std::string CsvLineOf(const FrameRecord& record, const std::vector<RecordField>& fields) {
+  return CsvLine(fields, [&](const RecordField& field) { return TextOf(record, field); });
 }
 
 std::string JsonObject(const FrameRecord& record, const std::vector<RecordField>& fields) {
@@ -412,17 +420,22 @@ Metadata HeaderOf(const FrameRecord& record) {
     if (!text.empty()) metadata[fmt::format("alpenglow.{}", field.key)] = text;
   };
   for (const RecordField& field :
-       {RecordField{"frame"}, RecordField{"sun_azimuth_deg", "{:.6f}"},
+       {RecordField{"frame"}, RecordField{"sun_azimuth_deg", "", 6},
         RecordField{"sun_elevation_deg", "{:.6f}"}, RecordField{"local_time"}})
     add(field);
   if (record.Number("sun_covered").value_or(0.0) > 0.0) add({"sun_covered", "{:.6f}"});
   return metadata;
 }
 
-std::string ListOf(const std::vector<FrameRecord>& records) { return Csv(records, ListFields()); }
+std::string HeaderOfList() { return CsvHeader(ListFields()); }
+
+std::string ListLineOf(const FrameRecord& record) { return CsvLineOf(record, ListFields()); }
 
 std::string CsvOfManifest(const std::vector<FrameRecord>& records, bool on_path) {
-  return Csv(records, CsvFields(on_path));
+  const std::vector<RecordField> fields = CsvFields(on_path);
+  std::string text = CsvHeader(fields);
+  for (const FrameRecord& record : records) text += CsvLineOf(record, fields);
+  return text;
 }
 
 std::string JsonOfManifest(const std::vector<FrameRecord>& records, const Metadata& settings,

@@ -68,19 +68,22 @@ class FrameRecord {
 /// Adds the position of a frame on a path, and its pose.
 void AddPose(const Frame& frame, const CameraPose& pose, FrameRecord& record);
 
-/// A value that an output of records has, and its format (that of fmt).
+/// A value that an output of records has, and its format (that of fmt). Directions in degrees are
+/// written in [0, 360) after rounding.
 struct RecordField {
   const char* key;
   const char* format = "{}";
+  std::optional<int> decimals_of_direction = {};  // instead of the format
 };
 
 /// Returns the values for the header of a picture that RecordOf knows.
 [[nodiscard]] Metadata HeaderOf(const FrameRecord& record);
 
-/// Returns CSV with a header: frame, utc, local_time (empty without a zone), sun_azimuth_deg,
-/// sun_elevation_deg, sun_covered, moon_azimuth_deg, moon_elevation_deg, moon_illuminated, file
-/// (empty if it is not known).
-[[nodiscard]] std::string ListOf(const std::vector<FrameRecord>& records);
+/// Returns the header of a CSV, and the line of a frame: frame, utc, local_time (empty without a
+/// zone), sun_azimuth_deg, sun_elevation_deg, sun_covered, moon_azimuth_deg, moon_elevation_deg,
+/// moon_illuminated, file (empty if it is not known).
+[[nodiscard]] std::string HeaderOfList();
+[[nodiscard]] std::string ListLineOf(const FrameRecord& record);
 
 /// Returns CSV with a header: frame, file, utc, local_time, sun_azimuth_deg, sun_elevation_deg,
 /// sun_covered, ev100; on a path also t_s and the pose; exposure. Unknown values are empty.

@@ -360,7 +360,7 @@ void RequireVideo(const fs::path& file) {
   constexpr std::array<std::string_view, 3> kKinds{".mp4", ".mov", ".mkv"};
   const auto is_of = [&](std::string_view kind) { return HasExtension(file, kind); };
   if (std::none_of(kKinds.begin(), kKinds.end(), is_of)) {
-    throw InputError(
+    throw OptionError(
         fmt::format("\"{}\" is no film's name; it must end in .mp4, .mov or .mkv", file.string()));
   }
   static_cast<void>(Ffmpeg());

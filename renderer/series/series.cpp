@@ -6,10 +6,12 @@
 #include <algorithm>
 #include <map>
 #include <set>
+#include <system_error>
 #include <variant>
 
 #include "atmosphere/base/error.h"
 #include "atmosphere/math/constants.h"
+#include "lut/cli/outputs.h"
 #include "lut/cli/program.h"
 #include "lut/image/look.h"
 #include "renderer/picture/render.h"
@@ -110,9 +112,16 @@ Metadata FrameMetadata(const SeriesSource& source, const SeriesOutput& output, c
 
 class Series {
  public:
-  Series(const SeriesSource& source, const std::vector<Frame>& frames, const SeriesOutput& output)
-      : source_(source), frames_(frames), output_(output), exposure_(source, frames, output) {
-    for (const Frame& frame : frames) records_.push_back(RecordBefore(frame));
+  Series(const SeriesSource& source, const std::vector<Frame>& frames,
+         const std::vector<Frame>& selected, const SeriesOutput& output)
+      : source_(source),
+        listed_(frames.size() > kMostListed ? selected : frames),
+        output_(output),
+        exposure_(source, frames, output) {
+    for (const Frame& frame : listed_) {
+      ThrowIfInterrupted();
+      records_.push_back(RecordBefore(frame));
+    }
   }
 
   /// Renders or updates a frame. @return whether it was rendered.
@@ -162,9 +171,9 @@ class Series {
     if (!output_.plot) return;
     std::vector<PlottedMoment> moments;
     const std::vector<FrameRecord> records = Records();
-    for (std::size_t i = 0; i < frames_.size(); ++i) {
+    for (std::size_t i = 0; i < listed_.size(); ++i) {
       const auto value = [&](const char* key) { return records[i].Number(key); };
-      moments.push_back({frames_[i].instant, *value("sun_elevation_deg"),
+      moments.push_back({listed_[i].instant, *value("sun_elevation_deg"),
                          *value("moon_elevation_deg"), value("illuminance_lx"), value("ev100")});
     }
     std::stable_sort(moments.begin(), moments.end(),
@@ -241,7 +250,10 @@ class Series {
   }
 
   [[nodiscard]] std::size_t IndexOf(const Frame& frame) const {
-    return static_cast<std::size_t>(frame.number - frames_.front().number);
+    const auto found =
+        std::lower_bound(listed_.begin(), listed_.end(), frame.number,
+                         [](const Frame& listed, int number) { return listed.number < number; });
+    return static_cast<std::size_t>(found - listed_.begin());
   }
   [[nodiscard]] const FrameRecord& RecordOfFrame(const Frame& frame) const {
     return records_[IndexOf(frame)];
@@ -258,6 +270,8 @@ class Series {
 
   /// Adds the values of a frame that another run (or machine) has rendered, from its file.
   void AddFoundElsewhere(const Frame& frame, FrameRecord& record) const {
+    std::error_code none;  // a frame that cannot be asked for is not there
+    if (!fs::exists(output_.name.Exr(frame.number), none)) return;
     const std::string wanted = RenderMetadata(source_, frame).at(kRenderFingerprint);
     try {
       const Metadata header = ReadExrMetadata(output_.name.Exr(frame.number));
@@ -268,19 +282,20 @@ class Series {
     }
   }
 
-  /// Returns the records of all frames with the values of those that exist.
+  /// Returns the records of the listed frames with the values of those that exist.
   [[nodiscard]] std::vector<FrameRecord> Records() const {
     std::vector<FrameRecord> records = records_;
-    for (const Frame& frame : frames_) {
+    for (const Frame& frame : listed_) {
       if (!made_.contains(frame.number)) AddFoundElsewhere(frame, records[IndexOf(frame)]);
     }
     return records;
   }
 
   const SeriesSource& source_;
-  const std::vector<Frame>& frames_;
+  const std::vector<Frame>& listed_;  // in the manifests
   const SeriesOutput& output_;
-  std::vector<FrameRecord> records_;  // of all frames, with the values of those made by this run
+  std::vector<FrameRecord>
+      records_;  // of the listed frames, with the values of those made by this run
   std::set<int> made_;
   SeriesSummary summary_;
   SeriesExposure exposure_;
@@ -301,15 +316,17 @@ std::vector<NamedFile> MadeOfTheFrames(const SeriesOutput& output) {
   return files;
 }
 
-void RequireNoInputAmongTheOutputs(const std::vector<Frame>& frames, const SeriesOutput& output,
-                                   const std::vector<NamedFile>& made_of_all) {
-  RequireNoInput({"--out: the manifest", output.name.Manifest()}, output.inputs);
-  RequireNoInput({"--out: the manifest", output.name.JsonManifest()}, output.inputs);
-  for (const NamedFile& made : made_of_all) RequireNoInput(made, output.inputs);
-  for (const Frame& frame : frames) {
-    RequireNoInput({"--out", output.name.Exr(frame.number)}, output.inputs);
-    if (output.png) RequireNoInput({"--png", output.name.Png(frame.number)}, output.inputs);
+/// Returns all files that a run writes.
+std::vector<NamedFile> OutputsOf(const std::vector<Frame>& selected, const SeriesOutput& output,
+                                 std::vector<NamedFile> made_of_all) {
+  std::vector<NamedFile> outputs = std::move(made_of_all);
+  outputs.push_back({"--out: the manifest", output.name.Manifest()});
+  outputs.push_back({"--out: the manifest", output.name.JsonManifest()});
+  for (const Frame& frame : selected) {
+    outputs.push_back({"--out", output.name.Exr(frame.number)});
+    if (output.png) outputs.push_back({"--png", output.name.Png(frame.number)});
   }
+  return outputs;
 }
 
 std::size_t RemoveLeftovers(const fs::path& folder, const std::vector<NamedFile>& made_of_all) {
@@ -341,15 +358,14 @@ SeriesSummary RunSeries(const SeriesSource& source, const std::vector<Frame>& fr
       throw InputError("--glare is of an eye that looks one way, not of a panorama");
   }
   const std::vector<NamedFile> made_of_all = MadeOfTheFrames(output);
-  RequireNoInputAmongTheOutputs(frames, output, made_of_all);
+  const std::vector<NamedFile> outputs = OutputsOf(selected, output, made_of_all);
+  for (const NamedFile& file : outputs) RequireNoInput(file, output.inputs);
+  RequireDifferent(outputs);
+  if (output.video) RequireVideo(*output.video);
   const fs::path folder = output.name.Folder();
   MakeFolder(folder);
-  if (output.video) RequireVideo(*output.video);
-  for (const NamedFile& made : made_of_all) {
-    MakeFolder(made.file.parent_path());
-    RequireWritable(made.file);
-  }
-  Series series(source, frames, output);
+  PrepareOutputs(made_of_all, output.inputs);
+  Series series(source, frames, selected, output);
   series.WarnOfTotality(selected);
   const std::size_t removed = output.resume ? RemoveLeftovers(folder, made_of_all) : 0;
   series.WriteManifest();  // before rendering, to detect a folder that is not writable

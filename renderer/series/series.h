@@ -3,6 +3,7 @@
 // series.
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
 #include <functional>
 #include <optional>
@@ -93,6 +94,9 @@ struct SeriesOutput {
   double video_frames_per_s = 25.0;
 };
 
+/// Largest number of frames of a series that a run of some of them lists in the manifests.
+inline constexpr std::size_t kMostListed = 20000;
+
 /// Numbers of processed frames.
 struct SeriesSummary {
   int rendered = 0;
@@ -115,11 +119,14 @@ struct SeriesSummary {
 /// folders (RemoveAbandonedTemporaries). A signal stops the series between frames
 /// (ThrowIfInterrupted); finished frames and the manifest are kept.
 ///
+/// A run of some frames of a series of more than kMostListed lists these frames alone, in manifests
+/// and plot: a process of a farm prepares what it renders. A run of all frames lists all.
+///
 /// A warning names frames in the totality of a solar eclipse, where light is missing.
 ///
 /// Throws OutputError, also for a video without an ffmpeg, before the first frame; InputError for
 /// several frames under a name without a number, and when a file of the series is one of its
-/// inputs.
+/// inputs; OptionError if two of its files have one name.
 SeriesSummary RunSeries(const SeriesSource& source, const std::vector<Frame>& frames,
                         const std::vector<Frame>& selected, const SeriesOutput& output);
 

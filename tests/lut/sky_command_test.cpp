@@ -54,7 +54,24 @@ TEST_F(SkylutSky, AWrongInputIsStatus3AndNamedInOneLine) {
   EXPECT_EQ(FileCount(), 0U);
 }
 
-TEST_F(SkylutSky, AFolderThatIsMissingIsStatus4) {
+TEST_F(SkylutSky, AFolderThatIsMissingIsMade) {
+  const Outcome outcome =
+      Run("--size 8x4 --sun-elevation 10 --out new/deep/a.exr --png other/a.png --quiet");
+  EXPECT_EQ(outcome.status, 0) << outcome.error;
+  EXPECT_NO_THROW((void)ReadExr(folder_ / "new" / "deep" / "a.exr"));
+  EXPECT_NO_THROW((void)ReadPng(folder_ / "other" / "a.png"));
+}
+
+TEST_F(SkylutSky, TwoOutputsOfOneNameAreRefused) {
+  fs::create_symlink("a.exr", folder_ / "a.png");
+  const Outcome outcome = Run("--size 8x4 --sun-elevation 10 --out a.exr --png a.png --quiet");
+  EXPECT_EQ(outcome.status, 2);
+  EXPECT_THAT(outcome.error, HasSubstr("are the same file"));
+  EXPECT_EQ(FileCount(), 1U) << "only the link";
+}
+
+TEST_F(SkylutSky, AFolderThatCannotBeMadeIsStatus4) {
+  WriteText(folder_ / "no", "in the way");
   for (const char* outputs : {"--out no/where/a.exr", "--out a.exr --png no/where/a.png"}) {
     const Outcome outcome =
         Run(std::string("--progress plain --size 8x4 --sun-elevation 10 ") + outputs);
@@ -63,7 +80,7 @@ TEST_F(SkylutSky, AFolderThatIsMissingIsStatus4) {
     EXPECT_EQ(std::count(outcome.error.begin(), outcome.error.end(), '\n'), 1)
         << "no row was rendered for nothing: " << outcome.error;
   }
-  EXPECT_EQ(FileCount(), 0U);
+  EXPECT_EQ(FileCount(), 1U) << "only what is in the way";
 }
 
 TEST_F(SkylutSky, TheAtmosphereIsNeverOverwritten) {

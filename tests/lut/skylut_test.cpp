@@ -268,9 +268,10 @@ TEST_F(Skylut, OutputsThatCannotBeWrittenAreStatus4) {
   const Outcome build = Run("build --out cases.csv/tables --quality preview --quiet");
   EXPECT_EQ(build.status, 4) << build.error;
   EXPECT_THAT(build.error, HasSubstr("cases.csv/tables"));
-  const Outcome eval = Run("eval --cases cases.csv --out none/r.csv --method integral --quiet");
+  const Outcome eval =
+      Run("eval --cases cases.csv --out cases.csv/r.csv --method integral --quiet");
   EXPECT_EQ(eval.status, 4) << eval.error;
-  EXPECT_THAT(eval.error, HasSubstr("none/r.csv"));
+  EXPECT_THAT(eval.error, HasSubstr("cases.csv"));
 }
 
 TEST_F(Skylut, ASetForAnotherProgramThatIsNotWholeIsRefusedByName) {

@@ -307,6 +307,62 @@ TEST_F(Skyseries, UnknownWordsNameTheNearestKnown) {
   for (const auto& [arguments, message] : cases) ExpectFault(arguments, 2, message);
 }
 
+TEST_F(Skyseries, AnOptionOfAnotherCommandNamesThatCommand) {
+  ExpectFault("times --latitude 3 --longitude 4 --samples 4", 2,
+              "--samples is an option of skyseries, not of this command");
+  ExpectFault("report --days 3 --out r", 2,
+              "--days is an option of skyseries times, not of this command");
+  const Outcome times = Run("times --place Zurich --date 2026-06-21 --days 2");
+  ASSERT_EQ(times.status, 0) << times.error;
+  EXPECT_THAT(times.out, HasSubstr("Europe/Zur"));
+  EXPECT_EQ(Run("times --place Zurich --latitude 3 --longitude 4").status, 2);
+  ExpectFault("times --place Nowhereville", 3, "there is no place \"Nowhereville\"");
+}
+
+TEST_F(Skyseries, AnOutputWithAWrongNameIsAWrongCommandLine) {
+  const std::string scene = InFolder("s.toml") + " --size 16x9 --samples 1 ";
+  ExpectFault(scene + "--out " + InFolder("f.%s.exr"), 2, "frame number is written");
+  ExpectFault(scene + "--out " + InFolder("f.png"), 2, "must end in .exr");
+  ExpectFault(SmallStill() + " --video " + InFolder("f.gif"), 2, "must end in .mp4");
+}
+
+TEST_F(Skyseries, TwoOutputsOfOneNameAreRefused) {
+  fs::create_directory(folder_ / "d");
+  fs::create_symlink(folder_ / "still.png", folder_ / "d" / "link.png");
+  const std::string frames = InFolder("s.toml") +
+                             " --size 16x9 --samples 1 --png --from noon --to noon+20m --every 10m"
+                             " --out " +
+                             InFolder("f.%02d.exr");
+  for (const std::string& arguments :
+       {SmallStill() + " --png --contact-sheet " + InFolder("still.png"),
+        SmallStill() + " --png --keogram " + InFolder("d/../still.png"),
+        SmallStill() + " --png --keogram " + InFolder("d/link.png"),
+        SmallStill() + " --contact-sheet " + InFolder("k.png") + " --keogram " + InFolder("k.png"),
+        frames + " --keogram " + InFolder("f.01.png"),
+        "times " + InFolder("s.toml") + " --out " + InFolder("t.csv") + " --plot " +
+            InFolder("p.svg") + " --date 1850-01-01"}) {
+    const Outcome outcome = Run(arguments);
+    EXPECT_EQ(outcome.status, arguments.starts_with("times") ? 3 : 2) << outcome.error;
+    EXPECT_THAT(outcome.error, HasSubstr(outcome.status == 2 ? "are the same file" : "1900"));
+  }
+  EXPECT_EQ(FileCount(), 2U) << "only the scene and the folder";
+}
+
+// A signal between two days, and a reader who has seen enough.
+TEST_F(Skyseries, TimesStopAtASignalAndWhenNobodyReadsThem) {
+  const std::string times = std::string("'") + tests::kSkyseries +
+                            "' times --latitude 46.5 --longitude 8 --date 2026-01-01 --days 3660";
+  const Outcome signalled =
+      RunCommand("bash -c \"" + times +
+                 " > all.txt & p=\\$!; while [ ! -s all.txt ]; do sleep 0.01; "
+                 "done; kill -TERM \\$p; wait \\$p\"");
+  EXPECT_EQ(signalled.status, 143) << signalled.error;
+  const Outcome head = RunCommand("bash -c \"" + times + " | head -1; exit \\${PIPESTATUS[0]}\"");
+  EXPECT_EQ(head.status, 4);
+  EXPECT_EQ(head.error, "");
+  EXPECT_THAT(head.out, HasSubstr("naut."));
+}
+
 TEST_F(Skyseries, FileTypesOfOutputsIgnoreCase) {
   const Outcome outcome =
       Run(InFolder("s.toml") + " --list --at noon --plot P.SVG --keogram K.PNG" +
@@ -347,8 +403,6 @@ TEST_F(Skyseries, ABadInputExitsWith3AndOneLine) {
       {still + " --at 2024-02-30T00:00:00Z", "2024-02-30"},
       {still + " --frames 5", "the series has 0 to 0"},
       {still + " --from sunrise --to sunset --count 3", "no frame number"},
-      {InFolder("s.toml") + " --out " + InFolder("f.%s.exr"), "frame number is written"},
-      {InFolder("s.toml") + " --out " + InFolder("f.png"), "must end in .exr"},
       {InFolder("lamp.toml") + out, "none.ies"},
       {"--list --at noon --atmosphere hzay", "neither a file nor a preset; did you mean hazy?"},
       {"--latitude 91" + out, "latitude is 91"},

@@ -129,6 +129,24 @@ EventDay TromsoInJune() {
   return day;
 }
 
+std::vector<DayTimes> TimesOfDays(const EventDay& first, int count) {
+  std::vector<DayTimes> days;
+  VisitTimesOfDays(first, count, [&](const DayTimes& day) { days.push_back(day); });
+  return days;
+}
+
+std::string TableOf(const std::vector<DayTimes>& days, const std::optional<std::string>& zone) {
+  std::string text = HeadOfTable(zone);
+  for (const DayTimes& day : days) text += LinesOf(day, zone);
+  return text;
+}
+
+std::string CsvOf(const std::vector<DayTimes>& days) {
+  std::string text = HeaderOfTimesCsv();
+  for (const DayTimes& day : days) text += CsvLineOf(day);
+  return text;
+}
+
 TEST(DayTimes, MissingEventsAreLeftOut) {
   const std::vector<DayTimes> days = TimesOfDays(TromsoInJune(), 2);
   ASSERT_EQ(days.size(), 2U);
@@ -201,10 +219,23 @@ TEST(FrameList, HasALineForEachFrameWithSunAndMoon) {
     records.push_back(RecordOf(frame, day.place, day.zone));
     records.back().Set("file", FrameName("night.%03d.exr").Exr(frame.number).string());
   }
-  const std::string text = ListOf(records);
+  std::string text = HeaderOfList();
+  for (const FrameRecord& record : records) text += ListLineOf(record);
   EXPECT_THAT(text, HasSubstr("\n0,2026-06-21T10:4"));
   EXPECT_THAT(text, HasSubstr("\n1,2026-06-21T22:00:00Z,2026-06-22T00:00:00+02:00,"));
   EXPECT_THAT(text, HasSubstr(",night.001.exr\n"));
+}
+
+TEST(FrameList, AzimuthsAreInTheHalfOpenCircleAfterRounding) {
+  FrameRecord record;
+  record.Set("sun_azimuth_deg", 359.9998);
+  record.Set("moon_azimuth_deg", 359.9994);
+  EXPECT_EQ(ListLineOf(record), ",,,0.000,,,359.999,,,\n");
+  record.Set("heading", -1e-9);
+  record.Set("sun_azimuth_deg", 359.99996);
+  EXPECT_THAT(CsvOfManifest({record}, true), HasSubstr("\n,,,,0.0000,,,,,,,,0.000000,,,,\n"));
+  record.Set("heading", -90.0);
+  EXPECT_THAT(JsonOfManifest({record}, {}, true), HasSubstr("\"heading\":270.000000,"));
 }
 
 class Videos : public TemporaryFolder {

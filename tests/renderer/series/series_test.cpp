@@ -5,6 +5,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <csignal>
 #include <cstdlib>
@@ -357,6 +358,25 @@ TEST_F(SeriesRun, OnlySelectedFramesAreRendered) {
   EXPECT_EQ(has_ev, (std::vector<bool>{true, true, true, false, true, false}))
       << "title, then frames 1 to 5: those of the earlier run are remembered\n"
       << manifest;
+}
+
+// A process of a farm, of a week at one frame a second.
+TEST_F(SeriesRun, AProcessOfALongSeriesListsItsOwnFramesAlone) {
+  std::vector<Frame> frames;
+  for (int i = 0; i < 604800; ++i) frames.push_back({i, AddSeconds(UtcInstant{61212, 0.0}, i)});
+  RunSeries(Source(), frames, SelectFrames(frames, "400000-400001"), Output());
+  EXPECT_EQ(renderings_, 2);
+  const std::string manifest = ContentOf(folder_ / "frame.manifest.csv");
+  EXPECT_EQ(std::count(manifest.begin(), manifest.end(), '\n'), 3);
+  EXPECT_THAT(manifest, HasSubstr("\n400001,frame.400001.exr,2026-06-25T15:06:41Z,"));
+}
+
+TEST_F(SeriesRun, TwoOutputsOfOneNameAreRefusedBeforeTheWork) {
+  SeriesOutput output = Output(true);
+  output.keogram = folder_ / "x" / ".." / "frame.0002.png";
+  EXPECT_THROW(Run(Source(), output), OptionError);
+  EXPECT_EQ(renderings_, 0);
+  EXPECT_EQ(FileCount(), 0U);
 }
 
 // Hard case 45.
