@@ -96,7 +96,9 @@ class TextCursor {
 [[nodiscard]] std::string ReadTextFile(const std::filesystem::path& file);
 
 /// Returns the element of `known` with the smallest edit distance to `name`, if the distance is
-/// small enough for a typing error; else std::nullopt.
+/// small enough for a typing error: a third of the characters of the name, and one for short ones.
+/// Otherwise it returns the first that begins with the name, or with which the name begins (three
+/// characters at least), or std::nullopt. It never returns the name itself.
 [[nodiscard]] std::optional<std::string> NearestName(std::string_view name,
                                                      const std::vector<std::string>& known);
 

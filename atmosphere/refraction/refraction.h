@@ -158,8 +158,8 @@ class RefractedRay {
                                       double height_m);
 
 /// Returns the apparent elevation [rad] of an object at a true elevation; std::nullopt if it is
-/// behind the ground. The cost is about ten calls of RefractionSeenAt, which takes some ten
-/// microseconds.
+/// behind the ground. The functions of refraction at a height use tables (observer_refraction.h):
+/// a call for the air and height of the call before it takes a microsecond above the horizontal.
 [[nodiscard]] std::optional<double> ApparentElevation(const BendingAir& air,
                                                       double true_elevation_rad, double height_m);
 
@@ -186,7 +186,7 @@ struct SeaHorizon {
 /// Returns refraction [rad] as a function of the *true* elevation, seen from `height_m`: like
 /// atmosphere::Refraction, for an observer on a mountain, in an aeroplane or in orbit. Below the
 /// sea horizon, where only sunlit peaks indicate the position of the sun, the refraction at the
-/// horizon fades to 0 within 3 degrees. A call takes some ten microseconds.
+/// horizon fades to 0 within 3 degrees.
 [[nodiscard]] double RefractionFromHeight(double true_elevation_rad, double height_m,
                                           double earth_radius_m = kEarthMeanRadius_m);
 /// Returns the refraction in any air that bends rays gently.

@@ -24,8 +24,8 @@ struct UtcInstant {
 /// Returns the mean solar midnight at a longitude [rad], in (-pi, pi], at or before an instant.
 [[nodiscard]] UtcInstant MeanSolarMidnight(double longitude_rad, const UtcInstant& around);
 
-/// Reads ISO 8601: "2026-06-21T04:00:00Z", "2026-06-21T13:00:00+09:00"; a space for the T and
-/// fractions of a second are allowed. Without Z or an offset, `zone` (IANA name) is needed; a local
+/// Reads ISO 8601: "2026-06-21T04:00:00Z", "2026-06-21T13:00:00+09:00"; a space for the T, t and z
+/// (RFC 3339), and fractions of a second after a point or a comma are allowed. Without Z or an offset, `zone` (IANA name) is needed; a local
 /// time in a DST gap or overlap is rejected with a message that requests the offset. If the text
 /// contains the offset, `zone` is not used. Years 1900 to 2100. Throws InputError naming text and
 /// fault.

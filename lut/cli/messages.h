@@ -22,8 +22,8 @@ void Log(std::string_view text) noexcept;
 /// Writes a result to standard output. An error is remembered until FlushStandardOutput.
 void Print(std::string_view text) noexcept;
 
-/// Flushes the buffers of Print and std::cout. Throws OutputError if standard output has not
-/// accepted everything.
+/// Flushes the buffers of Print and std::cout. Throws ReaderLeft (terminal.h) if nobody reads
+/// standard output any more, and OutputError if it has not accepted everything for another reason.
 void FlushStandardOutput();
 
 /// Opens an unwritable file for each of the descriptors 0, 1 and 2 that is closed: otherwise the

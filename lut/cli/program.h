@@ -31,7 +31,9 @@ namespace alpenglow::lut {
 /// signal of a kind ends the program at once. SIGXFSZ, SIGPIPE and SIGHUP are ignored: a file over
 /// the limit and a result that nobody reads are OutputErrors, and if the terminal is closed,
 /// messages are dropped but the run continues. If standard error is closed, messages are dropped
-/// and are not written into any file (OccupyStandardDescriptors).
+/// and are not written into any file (OccupyStandardDescriptors). If the reader of standard output
+/// has left (ReaderLeft), the status is 4 without a message. A body that does not end within a
+/// second of a signal is ended: its temporary files are removed, files that it has completed stay.
 int RunProgram(const std::string& name, const std::function<int()>& body);
 
 /// Returns true once SIGINT or SIGTERM has arrived. Long loops check it and call ThrowIfInterrupted
@@ -44,7 +46,8 @@ void ThrowIfInterrupted();
 /// Returns "alpenglow 0.2.0 (git describe)", which is written into every output file.
 [[nodiscard]] std::string ProducerText();
 
-/// Limits the program to `threads` threads (0: all) during the lifetime of the object.
+/// Limits the program to `threads` threads (0: all) during the lifetime of the object; to fewer if
+/// the machine does not let it start as many (a limit of the user, of a container).
 class ThreadLimit {
  public:
   /// Throws InputError for a negative number.
