@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include <alpenglow/atmosphere.h>
+#include <fmt/format.h>
 
 #include <utility>
 
@@ -74,8 +75,8 @@ std::uint64_t Atmosphere::hash() const { return atmosphere::MediumHash(medium())
 LinearRgb Atmosphere::ColourOf(const Spectrum& light) const {
   const std::vector<double>& sun = medium().solar_irradiance;
   if (light.size() != sun.size()) {
-    throw InputError("a spectrum has " + std::to_string(light.size()) + " bands; it must have " +
-                     std::to_string(sun.size()));
+    throw InputError(
+        fmt::format("a spectrum has {} bands; it must have {}", light.size(), sun.size()));
   }
   std::array<double, Spectrum::kMostBands> scaled{};
   for (std::size_t band = 0; band < sun.size(); ++band) {

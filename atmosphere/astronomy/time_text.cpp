@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <cmath>
 #include <utility>
 #include <vector>
@@ -100,9 +99,7 @@ std::optional<std::string> ClockTimeMeant(std::string_view text) {
   if (has_separator) text.remove_prefix(1);
   const int minute = has_separator ? number(2).value_or(0) : 0;
   text.remove_prefix(std::min(text.find_first_not_of(' '), text.size()));
-  std::string half(text);
-  std::transform(half.begin(), half.end(), half.begin(),
-                 [](unsigned char letter) { return static_cast<char>(std::tolower(letter)); });
+  const std::string half = LowerCase(text);
   const bool is_afternoon = half == "pm" || half == "p.m.";
   const bool is_half = is_afternoon || half == "am" || half == "a.m.";
   if (!hour || (!is_half && !half.empty()) || (is_half && (*hour < 1 || *hour > 12)))

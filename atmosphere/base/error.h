@@ -14,6 +14,11 @@
 
 namespace alpenglow::atmosphere {
 
+/// Returns the text for a terminal or a log. Control characters, and bytes that are not UTF-8, are
+/// written as "\\x1b", so that no text of a file can move the cursor or end a message. The
+/// characters of `kept` remain.
+[[nodiscard]] std::string Printable(std::string_view text, std::string_view kept = "");
+
 /// An option needs a capability that this machine lacks; the message names the option. Exit status
 /// 2.
 class OptionError : public InputError {

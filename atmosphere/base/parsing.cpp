@@ -10,54 +10,68 @@
 #include <numeric>
 #include <utility>
 
+#include "atmosphere/base/csv.h"
 #include "atmosphere/base/error.h"
+#include "atmosphere/base/file_format.h"
 #include "atmosphere/embedded_text.h"
 
 namespace alpenglow::atmosphere {
 
 namespace {
 
-std::string_view TakeUntil(std::string_view& text, char end) {
-  const std::size_t length = std::min(text.find(end), text.size());
-  const std::string_view piece = text.substr(0, length);
-  text.remove_prefix(std::min(length + 1, text.size()));
-  return piece;
+/// Returns the text without a plus sign, which std::from_chars does not accept.
+std::string_view WithoutPlus(std::string_view text) {
+  const bool has_plus = text.size() > 1 && text[0] == '+' && text[1] != '-';
+  return has_plus ? text.substr(1) : text;
 }
 
-double ToNumber(std::string_view field, std::string_view file) {
-  double value = 0.0;
-  const auto result = std::from_chars(field.data(), field.data() + field.size(), value);
-  if (result.ec != std::errc() || result.ptr != field.data() + field.size()) {
-    throw InternalError(fmt::format("{}: \"{}\" is not a number", file, field));
-  }
+template <typename Number>
+std::optional<Number> ParseAs(std::string_view text) {
+  const std::string_view digits = WithoutPlus(text);
+  Number value{};
+  const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
+  if (error != std::errc() || end != digits.data() + digits.size()) return std::nullopt;
   return value;
 }
 
-std::string_view Field(std::string_view line, int column) {
-  std::string_view field = TakeUntil(line, ',');
-  for (int i = 0; i < column; ++i) field = TakeUntil(line, ',');
-  return field;
-}
-
-template <typename Visit>
-void VisitRows(std::string_view file, const Visit& visit) {
-  std::string_view text = EmbeddedText(file);
-  bool names_seen = false;
-  while (!text.empty()) {
-    const std::string_view line = TakeUntil(text, '\n');
-    if (line.empty() || line.front() == '#') continue;
-    if (std::exchange(names_seen, true)) visit(line);
-  }
-}
+constexpr std::string_view kBlanks = " \t\r\n";
 
 }  // namespace
+
+std::string LowerCase(std::string_view text) {
+  std::string lower(text);
+  for (char& letter : lower) letter = LowerCase(letter);
+  return lower;
+}
+
+std::string_view Trimmed(std::string_view text) {
+  text.remove_prefix(std::min(text.find_first_not_of(kBlanks), text.size()));
+  return text.substr(0, text.find_last_not_of(kBlanks) + 1);
+}
+
+std::vector<std::string_view> WordsOf(std::string_view text) {
+  std::vector<std::string_view> words;
+  while (!(text = Trimmed(text)).empty()) {
+    const std::size_t end = std::min(text.find_first_of(kBlanks), text.size());
+    words.push_back(text.substr(0, end));
+    text.remove_prefix(end);
+  }
+  return words;
+}
+
+std::optional<double> ParseNumber(std::string_view text) { return ParseAs<double>(text); }
+
+std::optional<int> ParseWholeNumber(std::string_view text) { return ParseAs<int>(text); }
 
 std::vector<std::vector<double>> ReadColumns(std::string_view file,
                                              const std::vector<int>& columns) {
   std::vector<std::vector<double>> values(columns.size());
-  VisitRows(file, [&](std::string_view line) {
+  VisitCsvRows(EmbeddedText(file), [&](const CsvRecord& row) {
     for (std::size_t i = 0; i < columns.size(); ++i) {
-      values[i].push_back(ToNumber(Field(line, columns[i]), file));
+      const std::string_view field = row.fields.at(static_cast<std::size_t>(columns[i]));
+      const std::optional<double> number = ParseNumber(field);
+      if (!number) throw InternalError(fmt::format("{}: \"{}\" is not a number", file, field));
+      values[i].push_back(*number);
     }
   });
   return values;
@@ -65,7 +79,9 @@ std::vector<std::vector<double>> ReadColumns(std::string_view file,
 
 std::vector<std::string> ReadTextColumn(std::string_view file, int column) {
   std::vector<std::string> values;
-  VisitRows(file, [&](std::string_view line) { values.emplace_back(Field(line, column)); });
+  VisitCsvRows(EmbeddedText(file), [&](const CsvRecord& row) {
+    values.emplace_back(row.fields.at(static_cast<std::size_t>(column)));
+  });
   return values;
 }
 
@@ -147,6 +163,8 @@ toml::table Parse(std::string_view text, const std::string& origin) {
   try {
     return toml::parse(text);
   } catch (const toml::parse_error& error) {
+    const std::optional<FileFormat> format = FormatOf(text, text.size());
+    if (format && format->is_text) RefuseFormat(origin, *format, "TOML is read");
     throw InputError(fmt::format("{}:{}: not valid TOML: {}", origin, error.source().begin.line,
                                  error.description()));
   }
@@ -155,20 +173,30 @@ toml::table Parse(std::string_view text, const std::string& origin) {
 }  // namespace
 
 std::string ReadTextFile(const fs::path& file) {
-  constexpr std::uintmax_t kMostBytes = 16U << 20U;
+  constexpr std::size_t kMostBytes = 16U << 20U;
   std::error_code error;
-  const std::uintmax_t size = fs::file_size(file, error);
-  if (error) {
-    throw InputError(fmt::format("{}: cannot be read: {}", file.string(), error.message()));
-  }
-  if (size > kMostBytes) {
-    throw InputError(
-        fmt::format("{}: has {} bytes; it must have at most {}", file.string(), size, kMostBytes));
-  }
+  const fs::file_status status = fs::status(file, error);
+  if (error) RefuseFile(file, fmt::format("cannot be read: {}", error.message()));
+  if (status.type() == fs::file_type::directory) RefuseFile(file, "is a folder");
   std::ifstream stream(file, std::ios::binary);
-  std::string text(std::istreambuf_iterator<char>(stream), {});
-  if (!stream) throw InputError(fmt::format("{}: cannot be read", file.string()));
+  std::string text;
+  for (std::array<char, 1U << 16U> part; stream && text.size() <= kMostBytes;) {
+    stream.read(part.data(), part.size());
+    text.append(part.data(), static_cast<std::size_t>(stream.gcount()));
+  }
+  if (!stream && !stream.eof()) RefuseFile(file, "cannot be read");
+  if (text.size() > kMostBytes)
+    RefuseFile(file, fmt::format("has more than {} bytes, the most of a text file", kMostBytes));
+  const std::optional<FileFormat> format = FormatOf(text, text.size());
+  if (format && !format->is_text) RefuseFormat(file, *format, "text is read");
   return text;
+}
+
+fs::path FolderOf(const fs::path& file) {
+  std::error_code ignored;
+  const fs::file_type type = fs::status(file, ignored).type();
+  const bool is_pipe = type == fs::file_type::fifo || type == fs::file_type::character;
+  return is_pipe ? fs::path() : file.parent_path();
 }
 
 std::optional<std::string> NearestName(std::string_view name,
@@ -238,7 +266,8 @@ struct NumberOrFault {
 
 NumberOrFault NumberIn(const toml::node& node, const std::string& name, double low, double high) {
   if (!node.is_number()) {
-    return {0.0, fmt::format("{} is {}; it must be a number", name, KindOf(node))};
+    return {0.0, fmt::format("{} is {}; it must be a number in [{}, {}]", name, KindOf(node), low,
+                             high)};
   }
   const double number = *node.value<double>();
   if (number >= low && number <= high) return {number, ""};  // written so that NaN is a fault

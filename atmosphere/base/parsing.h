@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
-// Strict parsing: file extensions, short texts, embedded CSV tables, and TOML files.
+// Strict parsing: file extensions, numbers, short texts, embedded CSV tables, and TOML files.
 //
-// Short texts are read from left to right, independent of the locale. TOML files are read strictly:
+// Numbers and letters do not depend on the locale of the host program, which may write "0,5" for
+// 0.5. Short texts are read from left to right. TOML files are read strictly:
 // unknown content is rejected, with file, line and key.
 //
 // Numbers that are NaN or infinite, values of another type, values out of range, duplicate and
@@ -17,7 +18,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <cstddef>
 #include <filesystem>
 #include <memory>
@@ -32,16 +32,40 @@
 
 namespace alpenglow::atmosphere {
 
+/// Converts the letters A to Z to lower case; other bytes remain.
+[[nodiscard]] constexpr char LowerCase(char letter) {
+  return letter >= 'A' && letter <= 'Z' ? static_cast<char>(letter - 'A' + 'a') : letter;
+}
+[[nodiscard]] std::string LowerCase(std::string_view text);
+/// Converts the letters a to z to upper case; other bytes remain.
+[[nodiscard]] constexpr char UpperCase(char letter) {
+  return letter >= 'a' && letter <= 'z' ? static_cast<char>(letter - 'a' + 'A') : letter;
+}
+[[nodiscard]] constexpr bool IsLetterOrDigit(char letter) {
+  return (LowerCase(letter) >= 'a' && LowerCase(letter) <= 'z') || (letter >= '0' && letter <= '9');
+}
+
+/// Returns the text without blanks, tabs and line ends at its ends.
+[[nodiscard]] std::string_view Trimmed(std::string_view text);
+
+/// Returns the words between blanks, tabs and line ends.
+[[nodiscard]] std::vector<std::string_view> WordsOf(std::string_view text);
+
+/// Returns the number that the whole text is, with a decimal point and possibly a plus sign;
+/// nullopt for another text and for numbers that a double cannot hold. NaN and infinity count as
+/// numbers.
+[[nodiscard]] std::optional<double> ParseNumber(std::string_view text);
+
+/// Returns the whole number that the whole text is, possibly with a plus sign.
+[[nodiscard]] std::optional<int> ParseWholeNumber(std::string_view text);
+
 /// Returns whether a name ends in an extension such as ".gpx", ignoring case: cameras and recorders
 /// also write ".GPX" and ".TIF".
 [[nodiscard]] inline bool HasExtension(const std::filesystem::path& file,
                                        std::string_view extension) {
-  const auto lower = [](unsigned char letter) { return std::tolower(letter); };
   const std::string own = file.extension().string();
-  return std::equal(
-      own.begin(), own.end(), extension.begin(), extension.end(), [&](char one, char other) {
-        return lower(static_cast<unsigned char>(one)) == lower(static_cast<unsigned char>(other));
-      });
+  return std::equal(own.begin(), own.end(), extension.begin(), extension.end(),
+                    [](char one, char other) { return LowerCase(one) == LowerCase(other); });
 }
 
 class TextCursor {
@@ -92,8 +116,12 @@ class TextCursor {
 /// Returns one column of an embedded table as text.
 [[nodiscard]] std::vector<std::string> ReadTextColumn(std::string_view file, int column);
 
-/// Returns the content of a text file. Throws InputError if it cannot be read or is over 16 MiB.
+/// Returns the content of a text file or of a pipe. Throws InputError if it cannot be read, is over
+/// 16 MiB, or has the format of files that hold no text (FormatOf).
 [[nodiscard]] std::string ReadTextFile(const std::filesystem::path& file);
+
+/// Returns the folder to which names in a file are relative: its own; for a pipe the current one.
+[[nodiscard]] std::filesystem::path FolderOf(const std::filesystem::path& file);
 
 /// Returns the element of `known` with the smallest edit distance to `name`, if the distance is
 /// small enough for a typing error: a third of the characters of the name, and one for short ones.

@@ -4,12 +4,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
 #include <map>
 #include <string_view>
 #include <utility>
 
+#include "atmosphere/base/csv.h"
 #include "atmosphere/base/error.h"
+#include "atmosphere/base/file_format.h"
 #include "atmosphere/base/parsing.h"
 #include "atmosphere/math/constants.h"
 #include "atmosphere/math/numerics.h"
@@ -190,35 +191,21 @@ namespace {
 
 constexpr std::array<std::string_view, 3> kColumns{"wavelength_nm", "angle_deg", "phase_per_sr"};
 
-std::string_view Trimmed(std::string_view text) {
-  constexpr std::string_view kSpace = " \t\r";
-  const std::size_t first = text.find_first_not_of(kSpace);
-  if (first == std::string_view::npos) return {};
-  return text.substr(first, text.find_last_not_of(kSpace) - first + 1);
-}
-
-std::vector<std::string_view> FieldsOf(std::string_view line) {
-  std::vector<std::string_view> fields;
-  for (;;) {
-    const std::size_t comma = line.find(',');
-    fields.push_back(Trimmed(line.substr(0, comma)));
-    if (comma == std::string_view::npos) return fields;
-    line.remove_prefix(comma + 1);
-  }
-}
-
 class PhaseFileReader {
  public:
   explicit PhaseFileReader(const std::filesystem::path& file)
       : name_(file.string()), text_(ReadTextFile(file)) {}
 
   SpectralPhase Read() {
-    std::string_view rest = text_;
+    if (const auto format = FormatOf(text_, text_.size()))
+      RefuseFormat(name_, *format, "phase functions are read as CSV");
+    std::string_view rest = WithoutByteOrderMark(text_);
     while (!rest.empty()) {
-      const std::size_t end = std::min(rest.find('\n'), rest.size());
+      const std::size_t end = std::min(rest.find_first_of("\r\n"), rest.size());
+      const bool is_pair = rest.substr(end, 2) == "\r\n";
       ++line_;
-      ReadLine(Trimmed(rest.substr(0, end)));
-      rest.remove_prefix(std::min(end + 1, rest.size()));
+      ReadLine(rest.substr(0, end));
+      rest.remove_prefix(std::min(end + (is_pair ? 2 : 1), rest.size()));
     }
     return Collected();
   }
@@ -229,8 +216,11 @@ class PhaseFileReader {
   }
 
   void ReadLine(std::string_view line) {
-    if (line.empty() || line.front() == '#') return;
-    const std::vector<std::string_view> fields = FieldsOf(line);
+    if (order_.empty()) syntax_.separator = SeparatorOf(line);
+    const CsvRecord record = SplitCsv(line, syntax_);
+    if (!record.fault.empty()) Fail(record.fault);
+    const std::vector<std::string_view>& fields = record.fields;
+    if (fields.size() == 1 && fields.front().empty()) return;
     if (fields.size() != kColumns.size()) {
       Fail(fmt::format("{} fields; there must be {}: {}", fields.size(), kColumns.size(),
                        fmt::join(kColumns, ", ")));
@@ -254,11 +244,10 @@ class PhaseFileReader {
     std::array<double, kColumns.size()> number{};
     for (std::size_t i = 0; i < number.size(); ++i) {
       const std::string_view field = fields[order_[i]];
-      const auto result = std::from_chars(field.data(), field.data() + field.size(), number[i]);
-      if (result.ec != std::errc() || result.ptr != field.data() + field.size() ||
-          !std::isfinite(number[i])) {
+      const std::optional<double> parsed = ParseNumber(field);
+      if (!parsed || !std::isfinite(*parsed))
         Fail(fmt::format("{} is \"{}\"; it must be a number", kColumns[i], field));
-      }
+      number[i] = *parsed;
     }
     if (!samples_[number[0]].emplace(number[1], number[2]).second) {
       Fail(fmt::format("{} nm has {} degrees twice", number[0], number[1]));
@@ -292,6 +281,7 @@ class PhaseFileReader {
 
   std::string name_, text_;
   int line_ = 0;
+  CsvSyntax syntax_{.has_comments = true};
   std::vector<std::size_t> order_;                      // position of each of kColumns in the file
   std::map<double, std::map<double, double>> samples_;  // value by wavelength and angle
 };

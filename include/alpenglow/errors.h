@@ -4,20 +4,23 @@
 #pragma once
 
 #include <stdexcept>
+#include <string>
 
 namespace alpenglow::atmosphere {
 
 /// The input is wrong: a value, a name or a file. The message is one line with file, line or key,
-/// value and allowed range. Programs exit with status 3.
+/// value and allowed range. It is UTF-8 text without control characters: such bytes of the input
+/// are written as "\x1b". Programs exit with status 3.
 class InputError : public std::runtime_error {
  public:
-  using std::runtime_error::runtime_error;
+  explicit InputError(const std::string& message);
 };
 
-/// An output could not be written; the message names the file. Programs exit with status 4.
+/// An output could not be written; the message, which is text like that of InputError, names the
+/// file. Programs exit with status 4.
 class OutputError : public std::runtime_error {
  public:
-  using std::runtime_error::runtime_error;
+  explicit OutputError(const std::string& message);
 };
 
 /// A fault of the library itself; please report it. Programs exit with status 70.

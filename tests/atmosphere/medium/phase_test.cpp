@@ -15,6 +15,7 @@
 #include "atmosphere/math/constants.h"
 #include "atmosphere/medium/phase_table.h"
 #include "atmosphere/medium/phase_text.h"
+#include "tests/fixtures/comma_locale.h"
 #include "tests/fixtures/fault_of.h"
 #include "tests/fixtures/temporary_folder.h"
 
@@ -413,6 +414,30 @@ TEST_F(PhaseFile, ColumnsAndRowsMayComeInAnyOrder) {
   EXPECT_EQ(phase.wavelength_nm, (std::vector<double>{400.0, 600.0}));
   EXPECT_EQ(phase.angle_deg, OpacAngles());
   EXPECT_EQ(phase.per_sr[0], ValuesAt(OpacAngles(), Lobe(0.5)));
+}
+
+TEST_F(PhaseFile, QuotesSeparatorsAndLineEndsOfOtherProgramsAreRead) {
+  const std::string plain_text = Text().substr(Text().find('\n') + 1);  // without its comment
+  std::string text = "\xEF\xBB\xBF\"";
+  for (const char letter : plain_text) {
+    if (letter == ',') {
+      text += "\";\"";
+    } else if (letter == '\n') {
+      text += "\"\r\n\"";
+    } else {
+      text += letter;
+    }
+  }
+  text.pop_back();
+  WriteText(folder_ / "plain.csv", plain_text);
+  WriteText(folder_ / "p.csv", text);
+  const tests::CommaLocale locale(folder_);
+  const SpectralPhase plain = ReadSpectralPhase(folder_ / "plain.csv");
+  const SpectralPhase phase = ReadSpectralPhase(folder_ / "p.csv");
+  EXPECT_EQ(phase.wavelength_nm, plain.wavelength_nm);
+  EXPECT_EQ(phase.per_sr, plain.per_sr);
+  EXPECT_THAT(FaultOfText("{\"a\": 1}"),
+              HasSubstr("p.csv: this is JSON; phase functions are read"));
 }
 
 TEST_F(PhaseFile, FaultsAreNamedWithFileAndLine) {

@@ -4,15 +4,15 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <clocale>
 #include <cmath>
-#include <locale>
 #include <span>
 #include <string>
 
 #include "atmosphere/base/error.h"
 #include "atmosphere/time_place/time_zone.h"
+#include "tests/fixtures/comma_locale.h"
 #include "tests/fixtures/fault_of.h"
+#include "tests/fixtures/temporary_folder.h"
 
 namespace alpenglow::atmosphere {
 namespace {
@@ -255,19 +255,14 @@ TEST(Time, DurationsAreNumbersWithUnits) {
   }
 }
 
-class CommaPunctuation : public std::numpunct<char> {
-  char do_decimal_point() const override { return ','; }
-  char do_thousands_sep() const override { return '.'; }
-  std::string do_grouping() const override { return "\3"; }
-};
+using TimeInOtherLocale = TemporaryFolder;
 
-TEST(Time, ALocaleWithADecimalCommaChangesNothing) {
-  const std::locale before =
-      std::locale::global(std::locale(std::locale::classic(), new CommaPunctuation));
+TEST_F(TimeInOtherLocale, ADecimalCommaChangesNothing) {
+  const tests::CommaLocale locale(folder_);
   EXPECT_NEAR(ParseInstant("2026-06-21T04:00:30.125Z").second_of_day, 14430.125, 1e-9);
   EXPECT_EQ(ParseDuration("1.5s"), 1.5);
   EXPECT_EQ(FormatUtc({61212, 14400.125}, 3), "2026-06-21T04:00:00.125Z");
-  std::locale::global(before);
+  EXPECT_EQ(FormatInZone({61212, 14400.0}, "Europe/Zurich"), "2026-06-21T06:00:00+02:00");
 }
 
 TEST(Time, DeltaTIsTheObservedOne) {
