@@ -79,9 +79,7 @@ void ReadNumber(const TomlTable& table, const std::string& key, const Range& ran
 class AtmosphereFile {
  public:
   AtmosphereFile(std::string_view text, const std::string& origin)
-      : root_(text, origin),
-        folder_(std::filesystem::path(origin).parent_path()),
-        preset_(PresetOf(root_)) {
+      : root_(text, origin), folder_(FolderOf(origin)), preset_(PresetOf(root_)) {
     planet_ = Section("planet", kPlanetKeys);
     spectrum_ = Section("spectrum", kSpectrumKeys);
     rayleigh_ = Section("rayleigh", kRayleighKeys);
@@ -580,12 +578,27 @@ class AtmosphereFile {
     RequireList(medium.ozone_absorption_per_m, "ozone.absorption_per_m");
   }
 
+  /// Throws the fault with the line of its key, or else of the first of its causes that the file
+  /// has: what the file does not set is that of the preset.
   void RequireFaultless(const Medium& medium) const {
     const std::optional<MediumFault> fault = FindFault(medium);
     if (!fault) return;
-    const std::size_t dot = fault->key.find('.');
-    const std::optional<TomlTable> section = root_.Table(fault->key.substr(0, dot));
-    (section ? *section : root_).Fail(fault->key.substr(dot + 1), fault->text);
+    FailAtKey(fault->key, fault->text);
+    for (const std::string& cause : fault->causes) FailAtKey(cause, fault->text);
+    const std::optional<TomlTable> section = SectionOf(fault->key);
+    (section ? *section : root_).Fail(KeyInSection(fault->key), fault->text);
+  }
+
+  [[nodiscard]] static std::string KeyInSection(const std::string& key) {
+    return key.substr(key.find('.') + 1);
+  }
+  [[nodiscard]] std::optional<TomlTable> SectionOf(const std::string& key) const {
+    return root_.Table(key.substr(0, key.find('.')));
+  }
+  /// Throws if the file has the key.
+  void FailAtKey(const std::string& key, const std::string& fault) const {
+    const std::optional<TomlTable> section = SectionOf(key);
+    if (section && section->Has(KeyInSection(key))) section->Fail(KeyInSection(key), fault);
   }
 
   TomlTable root_;

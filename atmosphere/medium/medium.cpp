@@ -77,7 +77,8 @@ Fault FaultOfExtinction(const Medium& medium) {
       return MediumFault{"mie.scattering_per_m",
                          fmt::format("mie.scattering_per_m is {} at {} nm; it must not exceed "
                                      "mie.extinction_per_m, {}",
-                                     scattering, medium.wavelengths_nm[i], extinction)};
+                                     scattering, medium.wavelengths_nm[i], extinction),
+                         {"mie.extinction_per_m"}};
     }
   }
   return std::nullopt;
@@ -96,7 +97,8 @@ Fault FaultOfDeficit(const Medium& medium) {
       "rayleigh.deficit_scale_height_m",
       fmt::format("rayleigh.deficit_scale_height_m is {}; with this deficit it must lie in [{}, "
                   "{}], so that the air thins out upwards",
-                  deficit.scale_height_m, least, medium.rayleigh_scale_height_m)};
+                  deficit.scale_height_m, least, medium.rayleigh_scale_height_m),
+      {"rayleigh.deficit", "rayleigh.scale_height_m"}};
 }
 
 Fault FaultOfScalars(const Medium& medium) {
@@ -121,13 +123,22 @@ Fault FaultOfScalars(const Medium& medium) {
   }
   if (Fault fault = FaultOfDeficit(medium)) return fault;
   const OzoneLayer& ozone = medium.ozone;
+  if (ozone.shape == OzoneShape::kTent &&
+      !(ozone.top_m - ozone.bottom_m >= 2.0 * ranges::kLeastOzoneSide_m)) {
+    return MediumFault{"ozone.top_m",
+                       fmt::format("ozone.top_m is {} and ozone.bottom_m {}; the top must lie {} m "
+                                   "or more above the bottom, and ozone.peak_m between them",
+                                   ozone.top_m, ozone.bottom_m, 2.0 * ranges::kLeastOzoneSide_m),
+                       {"ozone.bottom_m"}};
+  }
   if (!(ozone.peak_m - ozone.bottom_m >= ranges::kLeastOzoneSide_m &&
         ozone.top_m - ozone.peak_m >= ranges::kLeastOzoneSide_m)) {
     return MediumFault{
         "ozone.peak_m",
         fmt::format("ozone.peak_m is {}; it must lie between ozone.bottom_m, {}, and "
                     "ozone.top_m, {}, {} m or more from each",
-                    ozone.peak_m, ozone.bottom_m, ozone.top_m, ranges::kLeastOzoneSide_m)};
+                    ozone.peak_m, ozone.bottom_m, ozone.top_m, ranges::kLeastOzoneSide_m),
+        {"ozone.bottom_m", "ozone.top_m"}};
   }
   if (ozone.shape == OzoneShape::kSmooth && ozone != SmoothOzone(ozone.peak_m)) {
     return MediumFault{"ozone.profile",
@@ -138,23 +149,37 @@ Fault FaultOfScalars(const Medium& medium) {
   return std::nullopt;
 }
 
-/// A limit that depends on another parameter, and the reason for it.
+/// A limit that depends on another parameter.
 struct Limit {
   double value;
-  std::string reason;
+  std::string reason;  // "with rayleigh.scale_height_m 100"; empty for a limit of its own
+  std::string key;     // of the other parameter
+  std::string remedy;  // how to change that one for a wider range
 };
 
+// Two limits of different causes may leave no value; the message then names both.
 Fault OutOfLimits(const std::string& key, double value, const Limit& low, const Limit& high) {
   if (value >= low.value && value <= high.value) return std::nullopt;
-  const std::string& reason = value < low.value ? low.reason : high.reason;
-  return MediumFault{key, fmt::format("{} is {}; {} it must lie in [{}, {}]", key, value, reason,
-                                      low.value, high.value)};
+  const bool is_low = value < low.value;
+  const std::vector<std::string> causes{is_low ? low.key : high.key, is_low ? high.key : low.key};
+  if (low.value > high.value) {
+    return MediumFault{key,
+                       fmt::format("{} is {}, but no value is possible: {} it must be at least {}, "
+                                   "and {} at most {}; {}, or {}",
+                                   key, value, low.reason, low.value, high.reason, high.value,
+                                   high.remedy, low.remedy),
+                       causes};
+  }
+  return MediumFault{key,
+                     fmt::format("{} is {}; {} it must lie in [{}, {}]", key, value,
+                                 is_low ? low.reason : high.reason, low.value, high.value),
+                     causes};
 }
 
 // The closed forms are series in scale height over radius.
 Fault FaultOfRadius(const Medium& medium) {
   const auto with = [](double factor, const char* key, double value) {
-    return Limit{factor * value, fmt::format("with {} {}", key, value)};
+    return Limit{factor * value, fmt::format("with {} {}", key, value), key, ""};
   };
   Limit low = with(ranges::kLeastRadiusInScaleHeights, "rayleigh.scale_height_m",
                    medium.rayleigh_scale_height_m);
@@ -164,32 +189,41 @@ Fault FaultOfRadius(const Medium& medium) {
   if (medium.ozone.shape == OzoneShape::kSmooth) {
     const Limit of_ozone = {
         ranges::kLeastRadiusInSmoothOzone * medium.ozone.top_m,
-        fmt::format("with the smooth ozone layer of ozone.peak_m {}", medium.ozone.peak_m)};
+        fmt::format("with the smooth ozone layer of ozone.peak_m {}", medium.ozone.peak_m),
+        "ozone.peak_m", ""};
     if (of_ozone.value > low.value) low = of_ozone;
   }
   return OutOfLimits("planet.radius_m", medium.planet_radius_m, low,
-                     {ranges::kPlanetRadius_m.high, ""});
+                     {ranges::kPlanetRadius_m.high, "", "", ""});
 }
 
 // The closed forms for columns of ozone and of the molecules' deficit integrate each layer to its
 // own end, not to the top of the atmosphere.
 Fault FaultOfTop(const Medium& medium) {
-  Limit low = {ranges::kAtmosphereTop_m.low, ""};
+  const double scale_height_m = medium.rayleigh_scale_height_m;
+  Limit high = {ranges::kHighestTopInScaleHeights * scale_height_m,
+                fmt::format("with rayleigh.scale_height_m {}", scale_height_m),
+                "rayleigh.scale_height_m", ""};
+  Limit low = {ranges::kAtmosphereTop_m.low, "", "", ""};
   const std::vector<double>& ozone = medium.ozone_absorption_per_m;
   if (std::any_of(ozone.begin(), ozone.end(), [](double peak) { return peak > 0.0; })) {
     const bool smooth = medium.ozone.shape == OzoneShape::kSmooth;
-    low = {(smooth ? ranges::kEndOfSmoothOzone : 1.0) * medium.ozone.top_m,
-           fmt::format("with ozone up to {}", medium.ozone.top_m)};
+    const double part = smooth ? ranges::kEndOfSmoothOzone : 1.0;
+    const char* key = smooth ? "ozone.peak_m" : "ozone.top_m";
+    const double highest = high.value / part / (smooth ? SmoothOzone(1.0).top_m : 1.0);
+    low = {part * medium.ozone.top_m, fmt::format("with ozone up to {}", medium.ozone.top_m), key,
+           fmt::format("lower {} to {:.6g} or leave out ozone (ozone.dobson = 0)", key, highest)};
   }
   const MoleculeDeficit& deficit = medium.rayleigh_deficit;
   const double end_of_deficit = ranges::kEndOfDeficit * deficit.scale_height_m;
   if (deficit.share > 0.0 && end_of_deficit > low.value) {
-    low = {end_of_deficit,
-           fmt::format("with rayleigh.deficit_scale_height_m {}", deficit.scale_height_m)};
+    const char* key = "rayleigh.deficit_scale_height_m";
+    low = {end_of_deficit, fmt::format("with {} {}", key, deficit.scale_height_m), key,
+           fmt::format("lower {} to {:.6g}", key, high.value / ranges::kEndOfDeficit)};
   }
-  const Limit high = {
-      ranges::kHighestTopInScaleHeights * medium.rayleigh_scale_height_m,
-      fmt::format("with rayleigh.scale_height_m {}", medium.rayleigh_scale_height_m)};
+  high.remedy = fmt::format("raise rayleigh.scale_height_m to {:.6g} or more",
+                            low.value / ranges::kHighestTopInScaleHeights);
+  high.value = std::min(high.value, ranges::kAtmosphereTop_m.high);
   return OutOfLimits("planet.atmosphere_top_m", medium.atmosphere_height_m, low, high);
 }
 

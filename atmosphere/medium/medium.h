@@ -187,6 +187,7 @@ struct Medium {
 struct MediumFault {
   std::string key;
   std::string text;
+  std::vector<std::string> causes{};  // other keys on which the allowed range of `key` depends
 
   bool operator==(const MediumFault&) const = default;
 };

@@ -308,6 +308,35 @@ struct BadInput {
   const char* message;
 };
 
+TEST(AtmosphereFile, LimitsThatLeaveNoValueNameBothCauses) {
+  const BadInput inputs[] = {
+      {"# a thin atmosphere\npreset = \"earth\"\n[rayleigh]\nscale_height_m = 100\n",
+       "a.toml:4: planet.atmosphere_top_m is 120000, but no value is possible: with ozone up to "
+       "66000 it must be at least 59400, and with rayleigh.scale_height_m 100 at most 30000; raise "
+       "rayleigh.scale_height_m to 198 or more, or lower ozone.peak_m to 11111.1 or leave out "
+       "ozone (ozone.dobson = 0)"},
+      {"[planet]\natmosphere_top_m = 50000\n[rayleigh]\nscale_height_m = 100\n",
+       "a.toml:2: planet.atmosphere_top_m is 50000, but no value is possible"},
+      {"[ozone]\npeak_m = 2e6\n[planet]\nradius_m = 6e7\n",
+       "a.toml:2: planet.atmosphere_top_m is 120000, but no value is possible: with ozone up to "
+       "6000000 it must be at least 5400000, and with rayleigh.scale_height_m "},
+      {"[rayleigh]\nscale_height_m = 150\ndeficit = 0.5\ndeficit_scale_height_m = 140\n[ozone]\n"
+       "profile = \"tent\"\ntop_m = 60000\n",
+       "a.toml:2: planet.atmosphere_top_m is 120000, but no value is possible: with ozone up to "
+       "60000 it must be at least 60000, and with rayleigh.scale_height_m 150 at most 45000; raise "
+       "rayleigh.scale_height_m to 200 or more, or lower ozone.top_m to 45000"},
+      {"[ozone]\nbottom_m = 50000\n", "a.toml:2: ozone.top_m is 40000 and ozone.bottom_m 50000"}};
+  for (const BadInput& input : inputs)
+    EXPECT_THAT(FileFaultOf(input.text), HasSubstr(input.message)) << input.text;
+  // What the message proposes is accepted.
+  for (const char* ozone : {"dobson = 0", "peak_m = 11111.1"}) {
+    EXPECT_EQ(FileFaultOf("[planet]\natmosphere_top_m = 30000\n[rayleigh]\nscale_height_m = 100\n"
+                          "[ozone]\n" +
+                          std::string(ozone) + "\n"),
+              "no fault");
+  }
+}
+
 TEST(AtmosphereFile, BadInputsAreRefusedWithFileLineKeyAndRange) {
   const BadInput inputs[] = {
       {"[spectrum]\nbands = 7\n",
@@ -324,7 +353,8 @@ TEST(AtmosphereFile, BadInputsAreRefusedWithFileLineKeyAndRange) {
       {"[mie]\nscattering_per_m = [0, 0, 0, 0]\n[aerosol]\nturbidity = 2\n",
        "a.toml:2: mie.scattering_per_m is given beside [aerosol]"},
       {"[ozone]\ndobson = 300\nabsorption_per_m = [0, 0, 0, 0]\n", "give one of them"},
-      {"[ozone]\ndobson = 300\nbottom_m = 40000\n", "ozone.peak_m is 25000; it must lie between"},
+      {"[ozone]\ndobson = 300\nbottom_m = 40000\n",
+       "ozone.top_m is 40000 and ozone.bottom_m 40000; the top must lie 2 m or more above"},
       {"[ozone]\nprofile = \"box\"\n", "one of smooth, tent"},
       {"[ozone]\nprofile = \"smooth\"\ntop_m = 60000\n", "ozone.top_m has no effect"},
       {"[mie]\nalpha = 0.5\n", "a.toml:2: mie.alpha has no effect"},
@@ -416,10 +446,10 @@ TEST(AtmosphereFile, BadInputsAreRefusedWithFileLineKeyAndRange) {
        "a.toml:2: rayleigh.scale_height_m is 0; it must lie in [1"},
       {"[mie]\nscattering_per_m = [1, 1, 1, 1]\n",
        "a.toml:2: mie.scattering_per_m is 1 at 445 nm; it must not exceed mie.extinction_per_m"},
-      {"[mie]\nextinction_per_m = [0, 0, 0, 0]\n", "a.toml:1: mie.scattering_per_m is"},
+      {"[mie]\nextinction_per_m = [0, 0, 0, 0]\n", "a.toml:2: mie.scattering_per_m is"},
       {"[ozone]\nprofile = \"tent\"\npeak_m = 5000\n",
        "a.toml:3: ozone.peak_m is 5000; it must lie between"},
-      {"[ozone]\ntop_m = 20000\n", "a.toml:1: ozone.peak_m is 25000; it must lie between"},
+      {"[ozone]\ntop_m = 20000\n", "a.toml:2: ozone.peak_m is 25000; it must lie between"},
       {"[ozone]\npeak_m = 1e-300\n", "a.toml:2: ozone.peak_m is 1e-300; it must lie between"},
       {"[ozone]\nprofile = \"tent\"\nbottom_m = 24999.9\npeak_m = 25000\ntop_m = 40000\n",
        "a.toml:4: ozone.peak_m is 25000; it must lie between ozone.bottom_m, 24999.9, and "
@@ -432,8 +462,13 @@ TEST(AtmosphereFile, BadInputsAreRefusedWithFileLineKeyAndRange) {
       {"x = [[[[[[[[\n", "a.toml:"},
       {"\xff\xfe", "a.toml:1: "},
       {"preset = \"\xc3\x28\"\n", "a.toml:1: not valid TOML"},
+      {"# thin air\n[rayleigh]\nscale_height_m = 300\n",
+       "a.toml:3: planet.atmosphere_top_m is 120000; with rayleigh.scale_height_m 300 it must lie "
+       "in [59400, 90000]"},
+      {"{\"preset\": \"earth\"}\n", "a.toml: this is JSON; TOML is read"},
+      {"<?xml version=\"1.0\"?>\n<a/>\n", "a.toml: this is XML with the root <a>; TOML is read"},
   };
-  // A contradiction with a value that the file does not give has the line of its section.
+  // A contradiction with a value that the file does not give has the line of its cause.
   for (const BadInput& input : inputs) {
     EXPECT_THAT(FileFaultOf(input.text), HasSubstr(input.message)) << input.text;
   }
