@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include <alpenglow/errors.h>
 #include <alpenglow/image.h>
+#include <fmt/format.h>
 
 #include <cmath>
 #include <utility>
@@ -25,14 +26,14 @@ lut::Image CheckedImage(const HdrImage& image) {
   lut::Image checked(image.width, image.height);
   const std::size_t pixels = checked.rgb.size();
   if (image.rgb.size() != pixels) {
-    throw InputError("the image has " + std::to_string(image.rgb.size()) +
-                     " pixels; it must have " + std::to_string(pixels));
+    throw InputError(
+        fmt::format("the image has {} pixels; it must have {}", image.rgb.size(), pixels));
   }
   checked.rgb = image.rgb;
   for (const ImageLayer& layer : image.layers) {
     if (layer.name.empty() || layer.values.size() != pixels) {
-      throw InputError("the layer \"" + layer.name + "\" must have a name and " +
-                       std::to_string(pixels) + " values");
+      throw InputError(
+          fmt::format("the layer \"{}\" must have a name and {} values", layer.name, pixels));
     }
     checked.layers.push_back({layer.name, layer.values});
   }
@@ -97,7 +98,7 @@ void WritePng(const std::filesystem::path& file, const HdrImage& image,
               const DisplayOptions& options) {
   const Developed developed = DevelopedBy(image, options);
   lut::Metadata metadata = image.metadata;
-  metadata["alpenglow.ev100"] = std::to_string(developed.ev100);
+  metadata["alpenglow.ev100"] = fmt::format("{:.6f}", developed.ev100);
   metadata["alpenglow.tone_curve"] = lut::NameOf(developed.look);
   metadata["alpenglow.white_balance"] = lut::NameOf(developed.look.white);
   lut::WritePng(file, developed.display, metadata);

@@ -130,6 +130,25 @@ inline void AddCommonOptions(CLI::App& app, const std::string& program, CommonOp
   return commands;
 }
 
+/// Describes a value that is no number, with the option's help, which has its range; empty for
+/// another error.
+[[nodiscard]] inline std::string FaultOfNumber(const CLI::App& app, std::string_view message) {
+  for (const CLI::Option* option : app.get_options()) {
+    const std::string begin = fmt::format("Could not convert: {} = ", option->get_name());
+    if (!message.starts_with(begin)) continue;
+    const std::string_view value = message.substr(begin.size());
+    const bool is_whole = option->get_type_name().find("INT") != std::string::npos;
+    const bool has_comma = value.find(',') != std::string_view::npos;
+    return fmt::format("{} is \"{}\"; it must be a {}number{}: {}", option->get_name(), value,
+                       is_whole ? "whole " : "", has_comma ? " with a decimal point" : "",
+                       option->get_description());
+  }
+  for (const CLI::App* command : app.get_subcommands()) {
+    if (std::string fault = FaultOfNumber(*command, message); !fault.empty()) return fault;
+  }
+  return "";
+}
+
 /// Describes the fault of the first word, or of the first unknown option; empty if there is none.
 /// It must be called before other parser errors are reported, because they are consequences of this
 /// fault.
@@ -167,18 +186,21 @@ inline void PrintHelp(const CLI::App& app) {
 /// Parses the command line. Returns an exit status if the program has nothing left to do: 0 after
 /// --help and --version, 2 if the command line is wrong.
 inline std::optional<int> ParseCommandLine(CLI::App& app, int argc, char** argv) {
+  std::string fault;
   try {
     app.parse(argc, argv);
-    if (FaultOfWords(app, argc, argv).empty()) return std::nullopt;
+    fault = FaultOfWords(app, argc, argv);
+    if (fault.empty()) return std::nullopt;
   } catch (const CLI::CallForHelp&) {
     PrintHelp(NamedCommandOf(app));
     return 0;
   } catch (const CLI::ParseError& error) {
     const bool is_fault = error.get_exit_code() != 0;
-    if (!is_fault || FaultOfWords(app, argc, argv).empty()) return app.exit(error) == 0 ? 0 : 2;
+    if (is_fault) fault = FaultOfWords(app, argc, argv);
+    if (is_fault && fault.empty()) fault = FaultOfNumber(app, error.what());
+    if (fault.empty()) return app.exit(error) == 0 ? 0 : 2;
   }
-  Log(fmt::format("{}: {}\nRun with --help for more information.\n", app.get_name(),
-                  FaultOfWords(app, argc, argv)));
+  Log(fmt::format("{}: {}\nRun with --help for more information.\n", app.get_name(), fault));
   return 2;
 }
 

@@ -4,9 +4,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <charconv>
+#include <optional>
 
 #include "atmosphere/base/error.h"
+#include "atmosphere/base/file_format.h"
+#include "atmosphere/base/parsing.h"
 #include "lut/layer.h"
 
 namespace alpenglow::lut {
@@ -14,25 +16,6 @@ namespace {
 
 // Longer lines are rejected: in a binary file, for example, the first line could be the whole file.
 constexpr std::size_t kLongestLine = 4096;
-
-std::vector<std::string_view> FieldsOf(std::string_view line) {
-  std::vector<std::string_view> fields;
-  while (true) {
-    const std::size_t comma = line.find(',');
-    std::string_view field = line.substr(0, comma);
-    while (!field.empty() && field.front() == ' ') field.remove_prefix(1);
-    while (!field.empty() && field.back() == ' ') field.remove_suffix(1);
-    fields.push_back(field);
-    if (comma == std::string_view::npos) return fields;
-    line.remove_prefix(comma + 1);
-  }
-}
-
-std::vector<std::string_view> FieldsOfHeader(std::string_view header) {
-  constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
-  if (header.starts_with(kByteOrderMark)) header.remove_prefix(kByteOrderMark.size());
-  return FieldsOf(header);
-}
 
 }  // namespace
 
@@ -42,18 +25,23 @@ bool HeaderNames(const std::filesystem::path& file, std::string_view column) {
   stream.read(line.data(), static_cast<std::streamsize>(line.size()));
   line.resize(static_cast<std::size_t>(std::max<std::streamsize>(stream.gcount(), 0)));
   line.resize(std::min(line.size(), line.find_first_of("\r\n")));
-  const std::vector<std::string_view> fields = FieldsOfHeader(line);
-  return std::find(fields.begin(), fields.end(), column) != fields.end();
+  const std::string_view header = WithoutByteOrderMark(line);
+  const CsvRecord names = SplitCsv(header, {.separator = SeparatorOf(header)});
+  return std::find(names.fields.begin(), names.fields.end(), column) != names.fields.end();
 }
 
 CsvReader::CsvReader(const std::filesystem::path& file, std::span<const std::string_view> columns,
                      const Rules& rules)
-    : file_(file), columns_(columns.begin(), columns.end()), rules_(rules) {
+    : file_(file),
+      columns_(columns.begin(), columns.end()),
+      rules_(rules),
+      syntax_{.has_comments = rules.comments} {
   std::error_code error;
   if (!std::filesystem::is_regular_file(file, error)) {
     throw InputError(
         fmt::format("{}: {}", file.string(), error ? error.message() : "is not a regular file"));
   }
+  RefuseKnownFormats(file, "CSV is read");
   bytes_ = std::filesystem::file_size(file);
   stream_.open(file, std::ios::binary);
   if (!stream_) throw InputError(fmt::format("{}: cannot be read", file.string()));
@@ -69,10 +57,11 @@ bool CsvReader::ReadLine() {
   using Traits = std::ifstream::traits_type;
   bool any = false, ended = false;
   std::streambuf* buffer = stream_.rdbuf();
-  for (auto c = buffer->sbumpc(); !Traits::eq_int_type(c, Traits::eof()); c = buffer->sbumpc()) {
+  auto c = buffer->sbumpc();
+  for (; !Traits::eq_int_type(c, Traits::eof()); c = buffer->sbumpc()) {
     any = true;
     ++bytes_read_;
-    ended = Traits::to_char_type(c) == '\n';
+    ended = c == '\n' || c == '\r';
     if (ended) break;
     line_ += Traits::to_char_type(c);
     if (line_.size() > kLongestLine) {
@@ -80,27 +69,30 @@ bool CsvReader::ReadLine() {
     }
   }
   if (!any || (rules_.cut_short && !ended)) return false;
+  if (c == '\r' && buffer->sgetc() == '\n') {
+    buffer->sbumpc();
+    ++bytes_read_;
+  }
   ++line_number_;
-  if (!line_.empty() && line_.back() == '\r') line_.pop_back();
   return true;
 }
 
 void CsvReader::ReadHeader() {
-  if (!ReadLineOfData()) throw InputError(fmt::format("{}: is empty", file_.string()));
+  if (!ReadRecord()) throw InputError(fmt::format("{}: is empty", file_.string()));
   const std::size_t missing = columns_.size();
   position_.assign(columns_.size(), missing);
-  const std::vector<std::string_view> fields = FieldsOfHeader(line_);
-  for (std::size_t field = 0; field < fields.size(); ++field) {
-    const auto found = std::find(columns_.begin(), columns_.end(), fields[field]);
+  const std::vector<std::string_view>& names = record_.fields;
+  for (std::size_t field = 0; field < names.size(); ++field) {
+    const auto found = std::find(columns_.begin(), columns_.end(), names[field]);
     if (found == columns_.end()) {
-      Fail(line_number_, fmt::format("column \"{}\" is unknown; the columns are {}", fields[field],
+      Fail(line_number_, fmt::format("column \"{}\" is unknown; the columns are {}", names[field],
                                      fmt::join(columns_, ", ")));
     }
     std::size_t& position = position_[static_cast<std::size_t>(found - columns_.begin())];
-    if (position != missing) Fail(line_number_, fmt::format("column {} twice", fields[field]));
+    if (position != missing) Fail(line_number_, fmt::format("column {} twice", names[field]));
     position = field;
   }
-  fields_in_header_ = fields.size();
+  fields_in_header_ = names.size();
   for (std::size_t column = 0; column < rules_.needed; ++column) {
     if (position_[column] == missing) {
       Fail(line_number_, fmt::format("column {} is missing", columns_[column]));
@@ -108,38 +100,45 @@ void CsvReader::ReadHeader() {
   }
 }
 
-bool CsvReader::ReadLineOfData() {
+bool CsvReader::ReadRecord() {
+  const bool is_header = line_number_ == 0 || position_.empty();
   while (ReadLine()) {
-    if (!rules_.comments) return true;
-    line_.resize(std::min(line_.size(), line_.find('#')));
-    if (line_.find_first_not_of(" \t") != std::string::npos) return true;
+    if (line_number_ == 1) line_ = WithoutByteOrderMark(line_);
+    if (is_header) syntax_.separator = SeparatorOf(line_);
+    record_ = SplitCsv(line_, syntax_);
+    if (!record_.fault.empty()) Fail(line_number_, record_.fault);
+    const bool is_blank = record_.fields.size() == 1 && record_.fields.front().empty();
+    if (!rules_.comments || !is_blank) return true;
   }
   return false;
 }
 
 bool CsvReader::Next() {
-  if (!ReadLineOfData()) {
+  if (!ReadRecord()) {
     if (!any_) throw InputError(fmt::format("{}: has no lines below its header", file_.string()));
     return false;
   }
   any_ = true;
-  fields_ = FieldsOf(line_);
-  if (fields_.size() != fields_in_header_) {
+  if (record_.fields.size() != fields_in_header_) {
     Fail(line_number_,
-         fmt::format("has {} fields; it must have {}", fields_.size(), fields_in_header_));
+         fmt::format("has {} fields; it must have {}", record_.fields.size(), fields_in_header_));
   }
   return true;
 }
 
-std::string_view CsvReader::Field(std::size_t column) const { return fields_[position_[column]]; }
+std::string_view CsvReader::Field(std::size_t column) const {
+  return record_.fields[position_[column]];
+}
 
 double CsvReader::Number(std::size_t column, double low, double high) const {
   const std::string_view text = Field(column);
-  double value = 0.0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc() || end != text.data() + text.size() || text.empty()) {
-    Fail(line_number_, fmt::format("{} is \"{}\"; it must be a number", columns_[column], text));
+  const std::optional<double> number = ParseNumber(text);
+  if (!number) {
+    const bool has_comma = text.find(',') != std::string_view::npos;
+    Fail(line_number_, fmt::format("{} is \"{}\"; it must be a number{}", columns_[column], text,
+                                   has_comma ? " with a decimal point" : ""));
   }
+  const double value = *number;
   if (!(value >= low && value <= high)) {
     Fail(line_number_,
          fmt::format("{} is {}; it must lie in [{}, {}]", columns_[column], text, low, high));

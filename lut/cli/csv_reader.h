@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-// Reader of CSV files with a header and lines of numbers and names: columns in any order, no
-// quotes. Lines are read one at a time: a file of a million lines needs the memory of one line.
+// Reader of CSV files with a header and lines of numbers and names (atmosphere/base/csv.h): columns
+// in any order, separated by commas, semicolons or tabs. Lines end with CR, LF or both and are read
+// one at a time: a file of a million lines needs the memory of one line.
 #pragma once
 
 #include <cstddef>
@@ -12,6 +13,8 @@
 #include <string_view>
 #include <vector>
 
+#include "atmosphere/base/csv.h"
+
 namespace alpenglow::lut {
 
 /// Returns whether a file names a column in its header; the rest of the file is not checked. Throws
@@ -22,7 +25,7 @@ class CsvReader {
  public:
   /// Opens the file and reads its header. Throws InputError, here and in every other member, with
   /// file, line and fault: a missing, unknown or repeated column, too few or too many fields, text
-  /// that is not a number, a value out of range, a file without lines.
+  /// that is not a number, a value out of range, a file without lines, a file of another format.
   /// @param columns  names of the columns; a column's index in the list is its number below.
   CsvReader(const std::filesystem::path& file, std::span<const std::string_view> columns)
       : CsvReader(file, columns, {columns.size(), false}) {}
@@ -56,7 +59,7 @@ class CsvReader {
 
  private:
   [[nodiscard]] bool ReadLine();
-  [[nodiscard]] bool ReadLineOfData();
+  [[nodiscard]] bool ReadRecord();
   void ReadHeader();
 
   std::filesystem::path file_;
@@ -67,10 +70,11 @@ class CsvReader {
   std::size_t line_number_ = 0;
   bool any_ = false;
   Rules rules_;
+  atmosphere::CsvSyntax syntax_;
   std::size_t fields_in_header_ = 0;
   std::string line_;
-  std::vector<std::string_view> fields_;  // fields of line_
-  std::vector<std::size_t> position_;     // of each column in the file; columns_.size(): missing
+  atmosphere::CsvRecord record_;       // fields of line_
+  std::vector<std::size_t> position_;  // of each column in the file; columns_.size(): missing
 };
 
 }  // namespace alpenglow::lut

@@ -50,10 +50,17 @@ void RememberOutputFault() {
 
 }  // namespace
 
-void Log(std::string_view text) noexcept {
+namespace {
+
+// Writes text to standard error unchanged.
+void WriteError(std::string_view text) noexcept {
   std::fwrite(text.data(), 1, text.size(), stderr);
   std::fflush(stderr);
 }
+
+}  // namespace
+
+void Log(std::string_view text) noexcept { WriteError(Printable(text, "\n")); }
 
 void Print(std::string_view text) noexcept {
   errno = 0;
@@ -225,7 +232,7 @@ struct Progress::State {
         fmt::format("{:3} % {}/{} {}", Percent(), done, total, note));
     const std::size_t over = bar_length - std::min(bar_length, line.size());  // to be erased
     bar_length = line.size();
-    Log("\r" + line + std::string(over, ' '));
+    WriteError("\r" + line + std::string(over, ' '));
   }
   void PrintLine() {
     drawn = Clock::now();

@@ -16,7 +16,8 @@ namespace alpenglow::lut {
 /// Returns the text in quotes, with quotes, backslashes and control characters escaped.
 [[nodiscard]] std::string JsonString(std::string_view text);
 
-/// Writes text to standard error unchanged; the text must include its line end.
+/// Writes lines to standard error; the text must include its line end. Control characters, which
+/// names and contents of files may have, are escaped (Printable).
 void Log(std::string_view text) noexcept;
 
 /// Writes a result to standard output. An error is remembered until FlushStandardOutput.

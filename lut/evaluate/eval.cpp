@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <map>
 #include <string>
@@ -132,10 +131,9 @@ double ClosedFormError(const Medium& medium) {
 std::optional<double> RelativeErrorFromText(std::string_view text) {
   const bool percent = text.ends_with('%');
   if (percent) text.remove_suffix(1);
-  double value = 0.0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
-  if (percent) value /= 100.0;
+  const std::optional<double> number = ParseNumber(text);
+  if (!number) return std::nullopt;
+  const double value = percent ? *number / 100.0 : *number;
   return value >= kSmallestMaxError && value <= 1.0 ? std::optional(value) : std::nullopt;
 }
 

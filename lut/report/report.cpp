@@ -9,9 +9,9 @@
 #include <ctime>
 #include <fstream>
 #include <functional>
-#include <sstream>
 #include <utility>
 
+#include "atmosphere/base/parsing.h"
 #include "atmosphere/medium/medium_presets.h"
 #include "atmosphere/refraction/refracted_view.h"
 #include "lut/cli/program.h"
@@ -34,9 +34,9 @@ std::string ProcessorText(const std::string& key) {
 
 /// Returns the widest vector instruction set of the processor.
 std::string VectorInstructions() {
-  std::istringstream flags(ProcessorText("flags"));
+  const std::string flags = ProcessorText("flags");
   std::string widest = "unknown";
-  for (std::string flag; flags >> flag;) {
+  for (const std::string_view flag : WordsOf(flags)) {
     if (flag == "avx512f") return "AVX-512";
     if (flag == "avx2") widest = "AVX2";
     if (flag == "sse2" && widest == "unknown") widest = "SSE2";
@@ -52,11 +52,10 @@ std::string SystemText() {
 
 /// Returns the SIMD line of --version, which names the instruction set that the program uses.
 std::string SimdLine() {
-  std::istringstream text(VersionText("skylut"));
-  for (std::string line; std::getline(text, line);) {
-    if (line.rfind("SIMD: ", 0) == 0) return line.substr(6);
-  }
-  return "unknown";
+  const std::string text = VersionText("skylut");
+  const std::size_t begin = text.find("SIMD: ");
+  if (begin == std::string::npos) return "unknown";
+  return text.substr(begin + 6, text.find('\n', begin) - begin - 6);
 }
 
 ReportMaker Maker() {

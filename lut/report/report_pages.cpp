@@ -4,12 +4,12 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <limits>
 #include <map>
 #include <system_error>
 
 #include "atmosphere/base/error.h"
+#include "atmosphere/base/parsing.h"
 #include "lut/cli/output_file.h"
 #include "lut/embedded_text.h"
 #include "lut/report/report.h"
@@ -34,7 +34,7 @@ std::string CsvText(const std::string& text) {
 std::string FileKey(const std::string& text) {
   std::string key;
   for (const char c : text) {
-    const bool plain = std::isalnum(static_cast<unsigned char>(c)) != 0;
+    const bool plain = IsLetterOrDigit(c);
     if (plain || (!key.empty() && key.back() != '-')) key += plain ? c : '-';
   }
   return key;

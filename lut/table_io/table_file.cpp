@@ -7,9 +7,9 @@
 #include <charconv>
 #include <cmath>
 #include <set>
-#include <sstream>
 
 #include "atmosphere/base/error.h"
+#include "atmosphere/base/parsing.h"
 #include "atmosphere/medium/medium.h"
 #include "lut/cli/program.h"
 #include "lut/multiple_scattering/moment_grid.h"
@@ -117,7 +117,7 @@ TextAttributes AttributesOf(const Kind& kind, const Medium& medium,
           {"alpenglow.axes", kind.axes},
           {"alpenglow.axisSizes", fmt::format("{}", fmt::join(sizes, " "))},
           {"alpenglow.layout", kind.layout},
-          {"alpenglow.mapVersion", std::to_string(kind.map_version)},
+          {"alpenglow.mapVersion", fmt::format("{}", kind.map_version)},
           {"alpenglow.mediumHash", HashText(MediumHash(medium))},
           {"alpenglow.mediumName", medium.name},
           {"alpenglow.medium", TomlFromMedium(medium)},
@@ -164,7 +164,7 @@ void RequireKind(const TableImageReader& image, const Kind& kind) {
                fmt::format("is a table of {}; it must be one of {}", name, kind.name));
   }
   if (const std::string version = image.Attribute("alpenglow.mapVersion");
-      version != std::to_string(kind.map_version)) {
+      version != fmt::format("{}", kind.map_version)) {
     RefuseFile(image.file(), fmt::format("alpenglow.mapVersion is {}; this program reads {}",
                                          version, kind.map_version));
   }
@@ -217,12 +217,10 @@ std::vector<float> CheckedValues(const TableImageReader& image, const Kind& kind
 /// Parses a number of a text attribute; throws for any other text.
 double NumberOf(const TableImageReader& image, const std::string& name) {
   const std::string text = image.Attribute(name);
-  double value = 0.0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc() || end != text.data() + text.size()) {
+  const std::optional<double> value = ParseNumber(text);
+  if (!value)
     RefuseFile(image.file(), fmt::format("{} is \"{}\"; it must be a number", name, text));
-  }
-  return value;
+  return *value;
 }
 
 /// Adds the file's name to errors that the tables detect themselves (sizes, ranges).
@@ -387,12 +385,12 @@ void WriteTable(const fs::path& file, const MultipleScattering& light, const Fol
   const auto rows = static_cast<std::size_t>(options.altitudes);
   const Kind kind = MultipleScatteringKind(options.degree, light.medium().polarised);
   TextAttributes attributes = AttributesOf(kind, light.medium(), {columns, rows});
-  attributes["alpenglow.degree"] = std::to_string(options.degree);
-  attributes["alpenglow.orders"] = std::to_string(light.orders());
+  attributes["alpenglow.degree"] = fmt::format("{}", options.degree);
+  attributes["alpenglow.orders"] = fmt::format("{}", light.orders());
   attributes["alpenglow.forwardPeak"] = options.delta_m ? "yes" : "no";
   attributes["alpenglow.converged"] = light.converged() ? "yes" : "no";
   attributes["alpenglow.sunCosines"] = SunCosinesText(columns, light.medium().polarised);
-  attributes["alpenglow.rayNodes"] = std::to_string(use.ray_nodes);
+  attributes["alpenglow.rayNodes"] = fmt::format("{}", use.ray_nodes);
   attributes["alpenglow.tables"] = TablesText(use);
   WriteTableImage(file, {columns, rows, ChannelNames(kind, light.medium()), light.values(),
                          std::move(attributes)});

@@ -4,8 +4,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
-#include <charconv>
 #include <cmath>
 #include <glm/vec3.hpp>
 #include <string>
@@ -14,6 +12,7 @@
 #include <vector>
 
 #include "atmosphere/base/error.h"
+#include "atmosphere/base/file_format.h"
 #include "atmosphere/base/parsing.h"
 #include "atmosphere/math/constants.h"
 
@@ -186,12 +185,15 @@ std::string WithLineFeeds(std::string_view text) {
   return plain;
 }
 
+bool IsIesBlank(char c) {
+  return std::string_view(" \t\n\v\f\r").find(c) != std::string_view::npos;
+}
+
 /// Returns the line in upper case, without white space.
 std::string Compact(std::string_view line) {
   std::string compact;
   for (const char c : line) {
-    const auto letter = static_cast<unsigned char>(c);
-    if (std::isspace(letter) == 0) compact += static_cast<char>(std::toupper(letter));
+    if (!IsIesBlank(c)) compact += UpperCase(c);
   }
   return compact;
 }
@@ -207,13 +209,10 @@ class Numbers {
     if (rest_.empty() || rest_.front() == kEndOfDosFile) {
       Fail(fmt::format("{} is missing: the file ends", what));
     }
-    std::string_view token = Token();
-    if (token.starts_with('+')) token.remove_prefix(1);
-    double value = 0.0;
-    const auto [end, error] = std::from_chars(token.data(), token.data() + token.size(), value);
-    if (error != std::errc() || end != token.data() + token.size()) {
-      Fail(fmt::format("{} is \"{}\"; it must be a number", what, token));
-    }
+    const std::string_view token = Token();
+    const std::optional<double> number = ParseNumber(token);
+    if (!number) Fail(fmt::format("{} is \"{}\"; it must be a number", what, token));
+    const double value = *number;
     if (!(value >= low && value <= high)) {
       Fail(fmt::format("{} is {}; it must lie in [{}, {}]", what, value, low, high));
     }
@@ -256,9 +255,7 @@ class Numbers {
   }
 
  private:
-  static bool IsBlank(char c) {
-    return c == ',' || std::isspace(static_cast<unsigned char>(c)) != 0;
-  }
+  static bool IsBlank(char c) { return c == ',' || IsIesBlank(c); }
   [[nodiscard]] std::string_view Token() const {
     return rest_.substr(0, static_cast<std::size_t>(
                                std::find_if(rest_.begin(), rest_.end(), IsBlank) - rest_.begin()));
@@ -406,7 +403,11 @@ IesLamp IesFromText(std::string_view text, const std::string& origin) {
 }
 
 IesLamp ReadIes(const std::filesystem::path& file) {
-  return IesFromText(ReadTextFile(file), file.string());
+  const std::string text = ReadTextFile(file);
+  const std::optional<FileFormat> format = FormatOf(text, text.size());
+  if (format && format->name != "IES photometry")
+    RefuseFormat(file, *format, "lamps are read as IES photometry");
+  return IesFromText(text, file.string());
 }
 
 }  // namespace alpenglow::renderer

@@ -13,6 +13,7 @@
 #include <utility>
 #include <vector>
 
+#include "atmosphere/base/parsing.h"
 #include "atmosphere/math/constants.h"
 #include "lut/cli/program.h"
 #include "renderer/effects/effect_choice.h"
@@ -38,9 +39,11 @@ constexpr std::array<SceneText, kScenes> kSceneTexts{{{"noon", "Noon", "noon"},
 /// Returns the resident memory of this program [bytes]; 0 where the system does not report it.
 std::uint64_t ResidentBytes() {
   std::ifstream text("/proc/self/statm");
-  std::uint64_t all = 0, resident = 0;
-  text >> all >> resident;
-  return resident * static_cast<std::uint64_t>(sysconf(_SC_PAGESIZE));
+  std::string line;
+  std::getline(text, line);
+  const std::vector<std::string_view> pages = WordsOf(line);
+  const double resident = pages.size() < 2 ? 0.0 : ParseNumber(pages[1]).value_or(0.0);
+  return static_cast<std::uint64_t>(resident) * static_cast<std::uint64_t>(sysconf(_SC_PAGESIZE));
 }
 
 /// Returns the processor time of all threads [s].

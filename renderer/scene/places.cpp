@@ -5,10 +5,10 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <utility>
 
+#include "atmosphere/base/csv.h"
 #include "atmosphere/base/error.h"
 #include "atmosphere/base/parsing.h"
 #include "atmosphere/math/constants.h"
@@ -17,26 +17,10 @@
 namespace alpenglow::renderer {
 namespace {
 
-constexpr std::size_t kFields = 9;
-
-using Fields = std::array<std::string_view, kFields>;
-
-Fields FieldsOfLine(std::string_view line) {
-  Fields fields;
-  for (std::size_t i = 0; i < kFields; ++i) {
-    const std::size_t comma = std::min(line.find(','), line.size());
-    fields[i] = line.substr(0, comma);
-    line.remove_prefix(std::min(comma + 1, line.size()));
-  }
-  return fields;
-}
-
 double ExactNumber(std::string_view text) {
-  double value = 0.0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  const bool whole = error == std::errc() && end == text.data() + text.size();
-  ALPENGLOW_ENSURE(whole, ==, true);
-  return value;
+  const std::optional<double> number = ParseNumber(text);
+  ALPENGLOW_ENSURE(number.has_value(), ==, true);
+  return *number;
 }
 
 PlaceKind KindOf(std::string_view text) {
@@ -46,7 +30,8 @@ PlaceKind KindOf(std::string_view text) {
   return static_cast<PlaceKind>(at);
 }
 
-NamedPlace PlaceOf(const Fields& fields) {
+NamedPlace PlaceOf(const std::vector<std::string_view>& fields) {
+  ALPENGLOW_ENSURE(fields.size(), ==, std::size_t{9});
   NamedPlace place{};
   place.kind = KindOf(fields[0]);
   place.code = fields[1];
@@ -60,16 +45,10 @@ NamedPlace PlaceOf(const Fields& fields) {
 }
 
 std::vector<NamedPlace> ReadPlaces() {
-  std::string_view text = renderer::EmbeddedText("renderer/data/places.csv");
   std::vector<NamedPlace> places;
-  bool has_header = false;
-  while (!text.empty()) {
-    const std::size_t end = std::min(text.find('\n'), text.size());
-    const std::string_view line = text.substr(0, end);
-    text.remove_prefix(std::min(end + 1, text.size()));
-    if (line.empty() || line.front() == '#') continue;
-    if (std::exchange(has_header, true)) places.push_back(PlaceOf(FieldsOfLine(line)));
-  }
+  atmosphere::VisitCsvRows(
+      renderer::EmbeddedText("renderer/data/places.csv"),
+      [&](const atmosphere::CsvRecord& row) { places.push_back(PlaceOf(row.fields)); });
   return places;
 }
 

@@ -11,6 +11,7 @@
 #include "atmosphere/astronomy/moon.h"
 #include "atmosphere/astronomy/sun.h"
 #include "atmosphere/base/error.h"
+#include "atmosphere/base/parsing.h"
 #include "atmosphere/math/constants.h"
 #include "lut/cli/program.h"
 #include "lut/report/svg_plot.h"
@@ -216,8 +217,10 @@ class TimeAxis {
   [[nodiscard]] std::vector<std::pair<UtcInstant, std::string>> Ticks() const {
     const double step_s = Step();
     const std::string local = Local(first_);
-    const double clock_s = 3600.0 * std::stoi(local.substr(11, 2)) +
-                           60.0 * std::stoi(local.substr(14, 2)) + std::stoi(local.substr(17, 2));
+    const auto digits = [&](std::size_t at) {
+      return ParseWholeNumber(std::string_view(local).substr(at, 2)).value();
+    };
+    const double clock_s = 3600.0 * digits(11) + 60.0 * digits(14) + digits(17);
     std::vector<std::pair<UtcInstant, std::string>> ticks;
     const double before_s = std::fmod(clock_s, std::min(step_s, kSecondsPerDay));
     for (double at_s = before_s > 0.0 ? std::min(step_s, kSecondsPerDay) - before_s : 0.0;

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <utility>
 
+#include "atmosphere/base/parsing.h"
 #include "atmosphere/math/constants.h"
 #include "lut/image/eye.h"
 
@@ -165,7 +166,7 @@ std::optional<double> SeriesExposure::KeptWhite(const Frame& frame) const {
   const auto rule = kept.find(kWhiteRule), kelvin = kept.find(kWhite_k);
   if (rule == kept.end() || rule->second != smooth_mired_->InWords() || kelvin == kept.end())
     return std::nullopt;
-  return std::stod(kelvin->second);
+  return ParseNumber(kelvin->second);
 }
 
 double SeriesExposure::Metered(const Frame& frame, const Image& image, const Look& look) const {
@@ -203,7 +204,7 @@ std::optional<double> SeriesExposure::KeptEv100(const Frame& frame, const Look& 
   wanted.erase(kEv100Key);
   wanted.merge(HeaderOfLook(look));
   if (!std::includes(kept.begin(), kept.end(), wanted.begin(), wanted.end())) return std::nullopt;
-  return std::stod(kept.at(kEv100Key));
+  return ParseNumber(kept.at(kEv100Key));
 }
 
 Image SeriesExposure::Seen(const Frame& frame, const Image& image, const Look& look) const {

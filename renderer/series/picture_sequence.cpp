@@ -16,7 +16,6 @@
 #include <cstdlib>
 #include <fstream>
 #include <optional>
-#include <sstream>
 #include <string>
 #include <string_view>
 #include <system_error>
@@ -205,8 +204,10 @@ namespace fs = std::filesystem;
 
 std::optional<fs::path> OnPath(const std::string& program) {
   const char* path = std::getenv("PATH");
-  std::istringstream folders(path == nullptr ? "" : path);
-  for (std::string folder; std::getline(folders, folder, ':');) {
+  std::string_view folders = path == nullptr ? "" : path;
+  while (!folders.empty()) {
+    const std::string_view folder = folders.substr(0, folders.find(':'));
+    folders.remove_prefix(std::min(folder.size() + 1, folders.size()));
     const fs::path candidate = fs::path(folder.empty() ? "." : folder) / program;
     if (fs::is_regular_file(candidate) && access(candidate.c_str(), X_OK) == 0) return candidate;
   }

@@ -10,6 +10,7 @@
 #include <variant>
 
 #include "atmosphere/base/error.h"
+#include "atmosphere/base/parsing.h"
 #include "atmosphere/math/constants.h"
 #include "lut/cli/outputs.h"
 #include "lut/cli/program.h"
@@ -61,9 +62,9 @@ void AddFound(const Metadata& header, FrameRecord& record) {
     const auto found = header.find(name);
     return found == header.end() ? std::string() : found->second;
   };
-  const std::string ev100 = value(kEv100Key), illuminance = value(kIlluminanceNote);
-  if (!ev100.empty()) record.Set("ev100", std::stod(ev100));
-  if (!illuminance.empty()) record.Set("illuminance_lx", std::stod(illuminance));
+  if (const auto ev100 = ParseNumber(value(kEv100Key))) record.Set("ev100", *ev100);
+  if (const auto illuminance = ParseNumber(value(kIlluminanceNote)))
+    record.Set("illuminance_lx", *illuminance);
   record.Set("exposure", value(kExposure));
 }
 

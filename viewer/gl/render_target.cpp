@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "atmosphere/base/error.h"
+#include "atmosphere/base/parsing.h"
 #include "viewer/gl/gl_context.h"
 
 namespace alpenglow::viewer {
@@ -197,10 +198,10 @@ PictureTile WithRim(const PictureTile& tile, int rim, int width, int height) {
 /// Returns the memory that Linux reports as available without taking memory from other programs.
 std::optional<double> SpareBytes() {
   std::ifstream meminfo("/proc/meminfo");
-  std::string name;
-  double kilobytes = 0.0;
-  for (std::string unit; meminfo >> name >> kilobytes && std::getline(meminfo, unit);) {
-    if (name == "MemAvailable:") return 1024.0 * kilobytes;
+  for (std::string line; std::getline(meminfo, line);) {
+    const std::vector<std::string_view> words = WordsOf(line);
+    if (words.size() < 2 || words[0] != "MemAvailable:") continue;
+    if (const std::optional<double> kilobytes = ParseNumber(words[1])) return 1024.0 * *kilobytes;
   }
   return std::nullopt;
 }

@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <chrono>
 #include <cmath>
 #include <cstddef>
@@ -16,6 +15,7 @@
 #include <utility>
 #include <vector>
 
+#include "atmosphere/base/parsing.h"
 #include "lut/image/development.h"
 #include "lut/image/tone_mapping.h"
 #include "viewer/gl/gl_context.h"
@@ -149,10 +149,7 @@ enum ToneMapPassUnit { kPicture, kDither, kTable };
 // Returns the macro that selects a tone curve in the shader: CURVE_PBR_NEUTRAL for "pbr-neutral".
 std::string MacroOf(ToneCurve curve) {
   std::string macro = "CURVE_" + NameOf(curve);
-  for (char& letter : macro) {
-    if (letter == '-') letter = '_';
-    letter = static_cast<char>(std::toupper(static_cast<unsigned char>(letter)));
-  }
+  for (char& letter : macro) letter = letter == '-' ? '_' : UpperCase(letter);
   return macro;
 }
 

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "lut/image/look.h"
+#include "tests/fixtures/comma_locale.h"
 #include "tests/fixtures/temporary_folder.h"
 
 namespace alpenglow {
@@ -72,6 +73,20 @@ TEST_F(ApiImage, WrongImagesOptionsAndFilesAreRefused) {
   image = Gradient();
   image.layers[0].values.pop_back();
   EXPECT_THROW(WriteExr(folder_ / "a.exr", image), InputError);
+}
+
+TEST_F(ApiImage, NumbersInFilesDoNotFollowTheLocale) {
+  const HdrImage image = Gradient();
+  WritePng(folder_ / "plain.png", image);
+  WriteExr(folder_ / "plain.exr", image);
+  const tests::CommaLocale locale(folder_);
+  WritePng(folder_ / "comma.png", image);
+  WriteExr(folder_ / "comma.exr", image);
+  EXPECT_EQ(ContentOf(folder_ / "comma.png"), ContentOf(folder_ / "plain.png"));
+  EXPECT_EQ(ContentOf(folder_ / "comma.exr"), ContentOf(folder_ / "plain.exr"));
+  const std::string ev100 = lut::ReadPngMetadata(folder_ / "comma.png").at("alpenglow.ev100");
+  EXPECT_EQ(ev100.find(','), std::string::npos) << ev100;
+  EXPECT_NE(ev100.find('.'), std::string::npos) << ev100;
 }
 
 }  // namespace
