@@ -51,6 +51,8 @@ SceneEdits::SceneEdits(const Scene& scene, const LandSource& land, SkyPainter& p
       has_one_model_(IsOneModel(land)),
       changes_{first_terrain_, scene.medium, {}, {}} {
   scene_.terrain = first_terrain_;
+  const SceneDrape& drape = painter.scene().fixed().drape;
+  if (drape.colours && !drape.colours->note().empty()) notes_.push_back(drape.colours->note());
 }
 
 void SceneEdits::Use(const AirChoice& choice, const GeodeticPosition& place) {

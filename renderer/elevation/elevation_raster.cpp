@@ -9,21 +9,21 @@
 #include "renderer/elevation/elevation_raster.h"
 
 #include <fmt/format.h>
-#include <gdal_priv.h>
 
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
-#include <memory>
 #include <mutex>
 #include <optional>
 #include <span>
+#include <string_view>
 #include <utility>
 #include <vector>
 
 #include "atmosphere/base/error.h"
+#include "atmosphere/base/parsing.h"
 #include "renderer/layer.h"
 
 namespace alpenglow::renderer {
@@ -32,17 +32,6 @@ namespace {
 constexpr double kDeepestGround_m = -12000.0;  // the Challenger Deep is at -10,935 m
 constexpr double kHighestGround_m = 9000.0;
 constexpr float kVoid = std::numeric_limits<float>::quiet_NaN();
-
-struct CloseDataset {
-  void operator()(GDALDataset* dataset) const { GDALClose(dataset); }
-};
-using Dataset = std::unique_ptr<GDALDataset, CloseDataset>;
-
-std::string LastGdalError() {
-  std::string text = CPLGetLastErrorMsg();
-  std::replace(text.begin(), text.end(), '\n', ' ');
-  return text.empty() ? "no reason given" : text;
-}
 
 // The formats of elevation models: their names for messages, GDAL's drivers and the extensions of
 // their files.
@@ -59,16 +48,30 @@ void RegisterDrivers() {
   });
 }
 
-Dataset Open(const std::filesystem::path& file) {
-  std::error_code ignored;
-  if (!std::filesystem::is_regular_file(file, ignored)) RefuseFile(file, "there is no such file");
-  RegisterDrivers();
-  Dataset dataset(static_cast<GDALDataset*>(GDALOpenEx(
-      file.c_str(), GDAL_OF_RASTER | GDAL_OF_VERBOSE_ERROR, kElevationDrivers, nullptr, nullptr)));
-  if (!dataset) {
-    RefuseFile(file, fmt::format("not a readable {} ({})", kElevationFormats, LastGdalError()));
+// The place of an SRTM tile stands in its name only: GDAL reads N46E008.hgt, with more words behind
+// the first dot, but no "N46E008 (1).hgt".
+bool IsNamedByPlace(const std::filesystem::path& file) {
+  const std::string name = file.filename().string();
+  constexpr std::string_view kPattern = "NddEddd.";  // a digit for each d, a side for each letter
+  for (std::size_t i = 0; i < kPattern.size(); ++i) {
+    const char letter = i < name.size() ? UpperCase(name[i]) : '\0';
+    const bool fits = kPattern[i] == 'd'   ? letter >= '0' && letter <= '9'
+                      : kPattern[i] == 'N' ? letter == 'N' || letter == 'S'
+                      : kPattern[i] == 'E' ? letter == 'E' || letter == 'W'
+                                           : letter == kPattern[i];
+    if (!fits) return false;
   }
-  return dataset;
+  return true;
+}
+
+RasterFile Open(const std::filesystem::path& file) {
+  if (HasExtension(file, ".hgt") && !IsNamedByPlace(file)) {
+    RefuseFile(file,
+               "not a readable SRTM .hgt: its name must be the place of its south-western "
+               "corner, as N46E008.hgt");
+  }
+  RegisterDrivers();
+  return OpenRaster(file, {kElevationFormats, kElevationDrivers, "elevation models"});
 }
 
 // Returns whether there is one band of heights, possibly with an alpha band that marks valid
@@ -111,10 +114,13 @@ std::array<double, 6> ReadGeotransform(const std::filesystem::path& file, GDALDa
 
 OGRSpatialReference ReadCrs(const std::filesystem::path& file, GDALDataset& dataset) {
   const OGRSpatialReference* stored = dataset.GetSpatialRef();
-  if (stored == nullptr || stored->IsEmpty()) RefuseFile(file, "has no coordinate system");
-  if (!stored->IsGeographic() && !stored->IsProjected()) {
-    RefuseFile(file, "has a coordinate system that is neither geographic nor projected");
+  const bool is_known = stored != nullptr && (stored->IsGeographic() || stored->IsProjected());
+  if (!is_known) {
+    if (const std::string fault = FaultOfProj(); !fault.empty()) RefuseFile(file, fault);
   }
+  if (stored == nullptr || stored->IsEmpty()) RefuseFile(file, "has no coordinate system");
+  if (!is_known)
+    RefuseFile(file, "has a coordinate system that is neither geographic nor projected");
   const double equatorial = stored->GetSemiMajor();
   const double polar = stored->GetSemiMinor();
   const auto of_the_earth = [](double radius_m) { return radius_m > 6.35e6 && radius_m < 6.39e6; };
@@ -135,31 +141,68 @@ struct HeightUnit {
   std::string note;  // empty: none
 };
 
+constexpr double kInternationalFoot_m = 0.3048;
+constexpr double kUsSurveyFoot_m = 1200.0 / 3937.0;
+constexpr std::pair<std::string_view, double> kHeightUnits[] = {
+    {"", 1.0},
+    {"m", 1.0},
+    {"metre", 1.0},
+    {"meter", 1.0},
+    {"metres", 1.0},
+    {"meters", 1.0},
+    {"mm", 1e-3},
+    {"millimetre", 1e-3},
+    {"millimeter", 1e-3},
+    {"cm", 1e-2},
+    {"centimetre", 1e-2},
+    {"centimeter", 1e-2},
+    {"centimetres", 1e-2},
+    {"centimeters", 1e-2},
+    {"dm", 0.1},
+    {"decimetre", 0.1},
+    {"decimeter", 0.1},
+    {"decimetres", 0.1},
+    {"decimeters", 0.1},
+    {"km", 1000.0},
+    {"kilometre", 1000.0},
+    {"kilometer", 1000.0},
+    {"kilometres", 1000.0},
+    {"kilometers", 1000.0},
+    {"ft", kInternationalFoot_m},
+    {"foot", kInternationalFoot_m},
+    {"feet", kInternationalFoot_m},
+    {"international foot", kInternationalFoot_m},
+    {"us-ft", kUsSurveyFoot_m},
+    {"ftus", kUsSurveyFoot_m},
+    {"us ft", kUsSurveyFoot_m},
+    {"us foot", kUsSurveyFoot_m},
+    {"us survey foot", kUsSurveyFoot_m},
+    {"us survey feet", kUsSurveyFoot_m},
+    {"us_survey_foot", kUsSurveyFoot_m},
+    {"foot_us", kUsSurveyFoot_m},
+    {"survey foot", kUsSurveyFoot_m},
+};
+
+// Returns the name of a unit without what describes the heights: "m a.s.l." are metres.
+std::string UnitOnly(std::string_view text) {
+  const std::string lower = LowerCase(text);
+  std::string_view unit = Trimmed(lower);
+  for (const std::string_view height : {"a.s.l.", "asl", "amsl", "above sea level"}) {
+    if (unit.ends_with(height)) unit.remove_suffix(height.size());
+  }
+  return std::string(Trimmed(unit));
+}
+
 // Returns the metres per unit. GDAL reports the vertical unit of a compound system and of USGS DEM
 // files as the band's unit.
 double MetresPerUnit(const std::filesystem::path& file, const std::string& unit) {
-  static const std::pair<const char*, double> kUnits[] = {
-      {"", 1.0},
-      {"m", 1.0},
-      {"metre", 1.0},
-      {"meter", 1.0},
-      {"metres", 1.0},
-      {"meters", 1.0},
-      {"ft", 0.3048},
-      {"foot", 0.3048},
-      {"feet", 0.3048},
-      {"us-ft", 1200.0 / 3937.0},
-      {"us survey foot", 1200.0 / 3937.0},
-      {"us survey feet", 1200.0 / 3937.0},
-      {"foot_us", 1200.0 / 3937.0},
-  };
-  std::string name = unit;
-  std::transform(name.begin(), name.end(), name.begin(),
-                 [](unsigned char letter) { return static_cast<char>(std::tolower(letter)); });
-  for (const auto& [known, metres] : kUnits) {
+  const std::string name = UnitOnly(unit);
+  for (const auto& [known, metres] : kHeightUnits) {
     if (name == known) return metres;
   }
-  RefuseFile(file, "has heights in '" + unit + "'; metres and feet are read");
+  RefuseFile(file, fmt::format("has heights in '{}'; metres (also mm, cm, dm, km) and feet (also "
+                               "US survey feet) are read",
+                               unit));
 }
 
 // Returns the unit of heights. Without a declared unit it is feet on a map in feet, as in surveys
@@ -170,115 +213,115 @@ HeightUnit UnitOf(const std::filesystem::path& file, GDALRasterBand& band,
   if (!unit.empty()) return {MetresPerUnit(file, unit), ""};
   const char* name = nullptr;
   const double map_unit_m = crs.IsProjected() != 0 ? crs.GetLinearUnits(&name) : 1.0;
-  constexpr double kFoot_m = 0.3048, kFeetDiffer_m = 1e-5, kRounding = 1e-9;
+  constexpr double kFeetDiffer_m = 1e-5, kRounding = 1e-9;
   if (std::abs(map_unit_m - 1.0) < kRounding) return {};
-  const bool is_in_feet = std::abs(map_unit_m - kFoot_m) < kFeetDiffer_m;
+  const bool is_in_feet = std::abs(map_unit_m - kInternationalFoot_m) < kFeetDiffer_m;
   return {is_in_feet ? map_unit_m : 1.0,
           fmt::format("heights have no unit, and the map is in {}; they are taken in {} (declare "
                       "the unit of the band otherwise)",
                       name, is_in_feet ? name : "metre")};
 }
 
-// Returns whether a value is customarily nodata, even if the file does not declare it.
-bool IsCustomaryVoid(double value) {
-  return value == -32768.0 || value == -32767.0 || value == -9999.0 ||
-         value == static_cast<double>(std::numeric_limits<float>::lowest());
+// Returns whether a height in the unit of its file is customarily a void. It counts only in files
+// that declare no nodata value and have no mask.
+bool IsCustomaryVoid(double height) {
+  return height == -32768.0 || height == -32767.0 || height == -9999.0 ||
+         height == static_cast<double>(std::numeric_limits<float>::lowest()) ||
+         height == std::numeric_limits<double>::lowest();
 }
 
-// Returns the values of a band within a window; nullopt if the file is damaged.
-template <typename Value>
-std::optional<std::vector<Value>> ValuesIn(GDALRasterBand& band, const PixelWindow& window,
-                                           GDALDataType type) {
-  std::vector<Value> values(static_cast<std::size_t>(window.columns) *
-                            static_cast<std::size_t>(window.rows));
-  if (band.RasterIO(GF_Read, window.column, window.row, window.columns, window.rows, values.data(),
-                    window.columns, window.rows, type, 0, 0, nullptr) != CE_None) {
-    return std::nullopt;
-  }
-  return values;
+void RequireHoldable(const std::filesystem::path& file, GDALRasterBand& band,
+                     const PixelWindow& window) {
+  if (std::int64_t{window.columns} * window.rows <= kMostElevationSamples) return;
+  RefuseFile(file, fmt::format("has {} x {} samples{}; at most {} can be held", window.columns,
+                               window.rows, window.columns < band.GetXSize() ? " in sight" : "",
+                               kMostElevationSamples));
 }
 
-std::vector<float> ReadSamples(const std::filesystem::path& file, GDALRasterBand& band,
-                               const PixelWindow& window) {
-  if (std::int64_t{window.columns} * window.rows > kMostElevationSamples) {
-    RefuseFile(file, fmt::format("has {} x {} samples{}; at most {} can be held", window.columns,
-                                 window.rows, window.columns < band.GetXSize() ? " in sight" : "",
-                                 kMostElevationSamples));
-  }
-  std::optional<std::vector<float>> samples = ValuesIn<float>(band, window, GDT_Float32);
-  if (!samples) RefuseFile(file, "is damaged or cut short (" + LastGdalError() + ")");
-  return std::move(*samples);
-}
+/// Returns for each sample of a window whether it is valid; empty if the file has no such band.
+using ValidSamples = std::vector<bool>;
 
 // Reads an alpha band as a mask, because GDAL makes no mask of an alpha band of floats.
-std::vector<std::uint8_t> ReadAlpha(const std::filesystem::path& file, GDALRasterBand& alpha,
-                                    const PixelWindow& window) {
-  const std::optional<std::vector<float>> values = ValuesIn<float>(alpha, window, GDT_Float32);
-  if (!values) RefuseFile(file, "has a damaged alpha band (" + LastGdalError() + ")");
-  std::vector<std::uint8_t> mask;
-  mask.reserve(values->size());
-  for (const float value : *values) mask.push_back(value > 0.0F ? 255 : 0);
-  return mask;
-}
-
-// Returns the file's mask or alpha band, 0 where a sample is invalid; empty if there is none.
-std::vector<std::uint8_t> ReadMask(const std::filesystem::path& file, GDALRasterBand& band,
-                                   const PixelWindow& window) {
+ValidSamples ReadMask(const std::filesystem::path& file, GDALRasterBand& band,
+                      const PixelWindow& window) {
   GDALDataset& dataset = *band.GetDataset();
-  if (dataset.GetRasterCount() == 2) return ReadAlpha(file, *dataset.GetRasterBand(2), window);
-  if ((band.GetMaskFlags() & (GMF_PER_DATASET | GMF_ALPHA)) == 0) return {};
-  std::optional<std::vector<std::uint8_t>> mask =
-      ValuesIn<std::uint8_t>(*band.GetMaskBand(), window, GDT_Byte);
-  if (!mask) RefuseFile(file, "has a damaged mask (" + LastGdalError() + ")");
-  return std::move(*mask);
+  const bool has_alpha = dataset.GetRasterCount() == 2;
+  if (!has_alpha && (band.GetMaskFlags() & (GMF_PER_DATASET | GMF_ALPHA)) == 0) return {};
+  GDALRasterBand& mask = has_alpha ? *dataset.GetRasterBand(2) : *band.GetMaskBand();
+  std::vector<float> values(static_cast<std::size_t>(window.columns) *
+                            static_cast<std::size_t>(window.rows));
+  if (mask.RasterIO(GF_Read, window.column, window.row, window.columns, window.rows, values.data(),
+                    window.columns, window.rows, GDT_Float32, 0, 0, nullptr) != CE_None) {
+    RefuseFile(file, fmt::format("has a damaged {} ({})", has_alpha ? "alpha band" : "mask",
+                                 LastGdalError()));
+  }
+  ValidSamples valid;
+  valid.reserve(values.size());
+  for (const float value : values) valid.push_back(value > 0.0F);
+  return valid;
 }
 
-// Converts a band's samples to heights.
-class Decoder {
+/// Reads the heights of a band in parts.
+class HeightReader {
  public:
-  Decoder(GDALRasterBand& band, double unit_m)
-      : unit_m_(unit_m), scale_(band.GetScale()), offset_(band.GetOffset()) {
-    int has_nodata = 0;
-    const double nodata = band.GetNoDataValue(&has_nodata);
-    if (has_nodata != 0) nodata_ = static_cast<float>(nodata);
-  }
-  [[nodiscard]] bool IsVoid(float raw) const {
-    return std::isnan(raw) || raw == nodata_ || IsCustomaryVoid(static_cast<double>(raw));
-  }
-  [[nodiscard]] double Height(float raw) const {
-    return (static_cast<double>(raw) * scale_ + offset_) * unit_m_;
+  HeightReader(const std::filesystem::path& file, GDALRasterBand& band, double unit_m)
+      : file_(file), band_(band), values_(file, band), unit_m_(unit_m) {}
+
+  /// Returns metres, and NaN for voids.
+  [[nodiscard]] std::vector<float> Heights(const PixelWindow& window) const {
+    const ValidSamples valid = ReadMask(file_, band_, window);
+    std::optional<std::vector<double>> stored = values_.Read(window);
+    if (!stored) RefuseFile(file_, "is damaged or cut short (" + LastGdalError() + ")");
+    const bool is_declared = values_.nodata().has_value() || !valid.empty();
+    std::vector<float> height_m(stored->size(), kVoid);
+    for (std::size_t i = 0; i < stored->size(); ++i) {
+      const double sample = (*stored)[i], height = values_.Value(sample);
+      if (values_.IsNodata(sample) || (!valid.empty() && !valid[i])) continue;
+      if (!is_declared && IsCustomaryVoid(height)) continue;
+      if (!(height * unit_m_ >= kDeepestGround_m && height * unit_m_ <= kHighestGround_m))
+        FailAt(window, i, height * unit_m_);
+      height_m[i] = static_cast<float>(height * unit_m_);
+    }
+    return height_m;
   }
 
  private:
-  double unit_m_, scale_, offset_;
-  std::optional<float> nodata_;
+  [[noreturn]] void FailAt(const PixelWindow& window, std::size_t sample, double height_m) const {
+    const auto columns = static_cast<std::size_t>(window.columns);
+    RefuseFile(
+        file_,
+        fmt::format("has the height {} m at row {}, column {}; the ground of the earth lies in "
+                    "[{}, {}] m, and {}",
+                    height_m, sample / columns + static_cast<std::size_t>(window.row),
+                    sample % columns + static_cast<std::size_t>(window.column), kDeepestGround_m,
+                    kHighestGround_m,
+                    values_.nodata()
+                        ? fmt::format("{} is the declared nodata value", *values_.nodata())
+                        : "no nodata value is declared"));
+  }
+
+  const std::filesystem::path& file_;
+  GDALRasterBand& band_;
+  BandValues values_;
+  double unit_m_;
 };
 
-// Converts raw samples into metres and NaN, in place; returns the number of voids.
-std::size_t ConvertToMetres(const std::filesystem::path& file, GDALRasterBand& band,
-                            const PixelWindow& window, double unit_m, std::vector<float>& samples) {
-  const std::vector<std::uint8_t> mask = ReadMask(file, band, window);
-  const Decoder decoder(band, unit_m);
-  std::size_t voids = 0;
-  for (std::size_t i = 0; i < samples.size(); ++i) {
-    if (decoder.IsVoid(samples[i]) || (!mask.empty() && mask[i] == 0)) {
-      samples[i] = kVoid;
-      ++voids;
-      continue;
-    }
-    const double height_m = decoder.Height(samples[i]);
-    if (!(height_m >= kDeepestGround_m && height_m <= kHighestGround_m)) {
-      const auto columns = static_cast<std::size_t>(window.columns);
-      RefuseFile(
-          file, fmt::format("has the height {} m at row {}, column {}; the ground of the earth "
-                            "lies in [{}, {}] m",
-                            height_m, i / columns + static_cast<std::size_t>(window.row),
-                            i % columns + static_cast<std::size_t>(window.column), kDeepestGround_m,
-                            kHighestGround_m));
-    }
-    samples[i] = static_cast<float>(height_m);
+// Reads a window by rows, so that the samples in double precision need little memory.
+std::vector<float> ReadHeights(const std::filesystem::path& file, GDALRasterBand& band,
+                               const PixelWindow& window, double unit_m) {
+  RequireHoldable(file, band, window);
+  constexpr int kSamplesAtOnce = 1 << 22;
+  const HeightReader reader(file, band, unit_m);
+  const int rows_at_once = std::max(kSamplesAtOnce / window.columns, 1);
+  std::vector<float> height_m;
+  height_m.reserve(static_cast<std::size_t>(window.columns) *
+                   static_cast<std::size_t>(window.rows));
+  for (int row = 0; row < window.rows; row += rows_at_once) {
+    const std::vector<float> part = reader.Heights({window.column, window.row + row, window.columns,
+                                                    std::min(rows_at_once, window.rows - row)});
+    height_m.insert(height_m.end(), part.begin(), part.end());
   }
-  return voids;
+  return height_m;
 }
 
 ElevationRaster HeaderOf(const std::filesystem::path& file, GDALDataset& dataset) {
@@ -297,14 +340,14 @@ std::span<const char* const> ElevationExtensions() { return kElevationExtensions
 
 ElevationRaster ReadElevationHeader(const std::filesystem::path& file) {
   const QuietGdal quiet;
-  const Dataset dataset = Open(file);
+  const RasterFile dataset = Open(file);
   return HeaderOf(file, *dataset);
 }
 
 ElevationRaster ReadElevationRaster(const std::filesystem::path& file,
                                     const std::optional<PixelWindow>& window) {
   const QuietGdal quiet;
-  const Dataset dataset = Open(file);
+  const RasterFile dataset = Open(file);
   ElevationRaster raster = HeaderOf(file, *dataset);
   const PixelWindow wanted = window.value_or(PixelWindow{0, 0, raster.columns, raster.rows});
   raster.geotransform[0] += wanted.column * raster.geotransform[1];
@@ -314,8 +357,9 @@ ElevationRaster ReadElevationRaster(const std::filesystem::path& file,
   GDALRasterBand& band = *dataset->GetRasterBand(1);
   const HeightUnit unit = UnitOf(file, band, raster.crs);
   raster.unit_note = unit.note;
-  raster.height_m = ReadSamples(file, band, wanted);
-  raster.voids = ConvertToMetres(file, band, wanted, unit.metres, raster.height_m);
+  raster.height_m = ReadHeights(file, band, wanted, unit.metres);
+  raster.voids = static_cast<std::size_t>(std::count_if(
+      raster.height_m.begin(), raster.height_m.end(), [](float h) { return std::isnan(h); }));
   if (!window && raster.voids == raster.height_m.size())
     RefuseFile(file, "has no valid sample, only voids");
   return raster;

@@ -3,7 +3,6 @@
 // voids, resampling to geographic WGS84.
 #pragma once
 
-#include <cpl_error.h>
 #include <ogr_spatialref.h>
 
 #include <array>
@@ -15,24 +14,12 @@
 #include <vector>
 
 #include "renderer/elevation/elevation.h"
+#include "renderer/elevation/gdal_file.h"
 
 namespace alpenglow::renderer {
 
 /// Largest number of samples of a model: 1 GiB of heights.
 inline constexpr std::int64_t kMostElevationSamples = std::int64_t{1} << 28;
-
-/// While an object of this class exists, GDAL stores its messages (CPLGetLastErrorMsg) instead of
-/// printing them.
-class QuietGdal {
- public:
-  QuietGdal() {
-    CPLPushErrorHandler(CPLQuietErrorHandler);
-    CPLErrorReset();
-  }
-  ~QuietGdal() { CPLPopErrorHandler(); }
-  QuietGdal(const QuietGdal&) = delete;
-  QuietGdal& operator=(const QuietGdal&) = delete;
-};
 
 /// Heights [m] in the file's own coordinate system, north or south up.
 struct ElevationRaster {
@@ -50,12 +37,6 @@ struct ElevationRaster {
   [[nodiscard]] double CentreY(double row) const {
     return geotransform[3] + (row + 0.5) * geotransform[5];
   }
-};
-
-/// A part of the pixels of a file.
-struct PixelWindow {
-  int column = 0, row = 0;
-  int columns = 0, rows = 0;
 };
 
 /// Reads and checks a file, or a window of it, which must lie within the file and may contain only

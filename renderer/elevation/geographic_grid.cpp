@@ -52,7 +52,10 @@ Transformation MakeTransformation(const OGRSpatialReference& from, const OGRSpat
                                   const std::string& file) {
   Transformation made(OGRCreateCoordinateTransformation(&from, &to));
   if (!made) {
-    throw InputError(file + ": no transformation between its coordinate system and WGS84 is known");
+    const std::string fault = FaultOfProj();
+    RefuseFile(file, fault.empty()
+                         ? "no transformation between its coordinate system and WGS84 is known"
+                         : fault);
   }
   return made;
 }

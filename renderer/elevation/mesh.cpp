@@ -13,6 +13,7 @@
 #include <optional>
 
 #include "atmosphere/base/error.h"
+#include "atmosphere/base/file_format.h"
 #include "atmosphere/base/parsing.h"
 #include "atmosphere/math/constants.h"
 #include "renderer/elevation/obj_file.h"
@@ -32,6 +33,7 @@ constexpr MeshFormat kMeshFormats[] = {{".obj", ReadObj}};
 }  // namespace
 
 MeshModel ReadMesh(const std::filesystem::path& file, UpAxis up) {
+  RefuseKnownFormats(file, "meshes are read as Wavefront OBJ");
   const auto* const format =
       std::find_if(std::begin(kMeshFormats), std::end(kMeshFormats),
                    [&](const MeshFormat& known) { return HasExtension(file, known.extension); });

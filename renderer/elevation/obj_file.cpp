@@ -10,7 +10,6 @@
 #include <glm/geometric.hpp>
 #include <glm/vec2.hpp>
 #include <limits>
-#include <sstream>
 #include <unordered_map>
 #include <utility>
 
@@ -20,15 +19,16 @@
 namespace alpenglow::renderer {
 namespace {
 
-std::string ReadText(const std::filesystem::path& file) {
-  std::error_code ignored;
+std::string ReadObjText(const std::filesystem::path& file) {
+  std::error_code error;
+  const std::uintmax_t size = std::filesystem::file_size(file, error);
   std::ifstream stream(file, std::ios::binary);
-  if (!std::filesystem::is_regular_file(file, ignored) || !stream) {
-    throw InputError(file.string() + ": there is no such file");
-  }
-  std::ostringstream text;
-  text << stream.rdbuf();
-  return std::move(text).str();
+  if (!std::filesystem::is_regular_file(file, error) || !stream)
+    RefuseFile(file, "there is no such file");
+  std::string text(size, '\0');
+  stream.read(text.data(), static_cast<std::streamsize>(size));
+  if (!stream) RefuseFile(file, "cannot be read");
+  return text;
 }
 
 /// Rotates a vector by a quarter turn about x, from y up to z up.
@@ -285,7 +285,7 @@ class ObjMesher {
 }  // namespace
 
 MeshModel ReadObj(const std::filesystem::path& file, UpAxis up) {
-  ObjText text = ParseObj(ReadText(file), file.string());
+  ObjText text = ParseObj(ReadObjText(file), file.string());
   if (up == UpAxis::kY) TurnUp(text);
   return ObjMesher(text, file.string()).Mesh();
 }

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "renderer/picture/prepared_scene.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
@@ -63,6 +65,12 @@ std::optional<BandLight> SkyglowOf(const Scene& scene, const SceneGround& ground
   return Skyglow(*scene.town_zenith, ground_m, models.whole().air, colour);
 }
 
+std::string MessageOf(const SceneGround& ground, const GroundMaterial& material) {
+  if (material.drape() == nullptr || material.drape()->note().empty()) return ground.message;
+  return fmt::format("{}{}{}", ground.message, ground.message.empty() ? "" : "; ",
+                     material.drape()->note());
+}
+
 }  // namespace
 
 PreparedScene::PreparedScene(const Scene& scene, std::shared_ptr<const SceneGround> ground,
@@ -79,6 +87,7 @@ PreparedScene::PreparedScene(const Scene& scene, std::shared_ptr<const SceneGrou
       sunlight_(other ? other->sunlight_ : std::make_shared<RecentSunlight>(*ground_)),
       moonlight_(other ? other->moonlight_ : std::make_shared<RecentSunlight>(*ground_)),
       material_(scene_.ground, ColourDrape::Of(scene_, *ground_), medium_.wavelengths_nm),
+      terrain_message_(MessageOf(*ground_, material_)),
       models_(medium_, {*ground_, geometry_, lamps_, *horizons_, material_}),
       towns_(SkyglowOf(scene_, *ground_, models_, colour_)) {}
 

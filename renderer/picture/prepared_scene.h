@@ -116,6 +116,8 @@ class PreparedScene {
 
   [[nodiscard]] const Scene& scene() const { return scene_; }
   [[nodiscard]] const SceneGround& ground() const { return *ground_; }
+  /// Returns what was noted on reading the terrain and what is draped over it; empty: nothing.
+  [[nodiscard]] const std::string& terrain_message() const { return terrain_message_; }
   /// Returns the medium on the osculating sphere.
   [[nodiscard]] const Medium& medium() const { return medium_; }
   [[nodiscard]] const BandColour& colour() const { return colour_; }
@@ -159,6 +161,7 @@ class PreparedScene {
   std::shared_ptr<const HorizonsOnDemand> horizons_;
   std::shared_ptr<RecentSunlight> sunlight_, moonlight_;
   GroundMaterial material_;
+  std::string terrain_message_;
   AirModels models_;
   std::optional<BandLight> towns_;
   mutable std::once_flag few_bands_asked_;

@@ -149,7 +149,8 @@ class SceneRenderer {
   [[nodiscard]] const Medium& medium() const;
   /// Returns the height of the eye over the ellipsoid [m].
   [[nodiscard]] double eye_height_m() const;
-  /// Returns the message of the terrain loader (voids found and filled); empty if there is none.
+  /// Returns what was noted on reading the terrain (voids found and filled) and what is draped over
+  /// it (values out of range); empty: nothing.
   [[nodiscard]] const std::string& terrain_message() const;
 
  private:

@@ -9,9 +9,11 @@
 
 #include "atmosphere/astronomy/night_sky.h"
 #include "atmosphere/base/error.h"
+#include "atmosphere/base/file_format.h"
 #include "atmosphere/base/parsing.h"
 #include "atmosphere/math/constants.h"
 #include "atmosphere/medium/medium_presets.h"
+#include "renderer/scene/volume_file.h"
 
 namespace alpenglow::renderer {
 namespace {
@@ -455,6 +457,8 @@ void ReadDensity(const TomlTable& table, const fs::path& folder, Volume& volume)
     RefuseKeys(table, {"grid_size"}, "is for a raw grid; an NRRD file says its own");
     return;
   }
+  if (!table.Has("grid_size"))
+    At(table, "grid", [&] { RefuseKnownFormats(volume.grid, kVolumesWanted); });
   const std::array<double, 3> sides = ThreeOf(table, "grid_size", 2.0, kMostGridSamples);
   volume.grid_size.emplace();
   for (std::size_t i = 0; i < 3; ++i) {
@@ -542,7 +546,8 @@ Scene SceneFromToml(std::string_view text, const std::string& origin, const fs::
 }
 
 Scene ReadScene(const fs::path& file) {
-  return SceneFromToml(ReadTextFile(file), file.string(), file.parent_path());
+  const fs::path folder = FolderOf(file);  // before a pipe ends
+  return SceneFromToml(ReadTextFile(file), file.string(), folder);
 }
 
 }  // namespace alpenglow::renderer

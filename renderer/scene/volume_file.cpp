@@ -6,21 +6,20 @@
 
 #include <algorithm>
 #include <bit>
-#include <cctype>
-#include <charconv>
 #include <cmath>
 #include <cstdint>
-#include <cstdlib>
 #include <fstream>
 #include <map>
 #include <optional>
 #include <set>
-#include <sstream>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "atmosphere/base/csv.h"
 #include "atmosphere/base/error.h"
+#include "atmosphere/base/file_format.h"
+#include "atmosphere/base/parsing.h"
 #include "renderer/layer.h"
 
 namespace alpenglow::renderer {
@@ -40,46 +39,21 @@ std::string FirstBytes(const fs::path& file) {
   return text;
 }
 
-// Converts to lower case: names of fields and of values are case-insensitive.
-std::string Lower(std::string_view text) {
-  std::string lower;
-  for (const char c : text) {
-    lower += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  }
-  return lower;
-}
-
-std::string_view Trimmed(std::string_view text) {
-  const std::size_t first = text.find_first_not_of(" \t");
-  if (first == std::string_view::npos) return {};
-  return text.substr(first, text.find_last_not_of(" \t") - first + 1);
-}
-
-std::vector<std::string> WordsOf(const std::string& value) {
-  std::istringstream stream(value);
-  std::vector<std::string> words;
-  for (std::string word; stream >> word;) words.push_back(word);
-  return words;
-}
-
-std::optional<int> WholeNumber(std::string_view text) {
-  int value = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
-  return value;
-}
-
 // Parses "(1,0,0) (0,1,0) (0,0,1)" into rows; empty for any other text.
-std::vector<std::array<double, 3>> VectorsOf(const std::string& value) {
-  std::istringstream stream(value);
+std::vector<std::array<double, 3>> VectorsOf(std::string_view value) {
   std::vector<std::array<double, 3>> vectors;
-  char open = 0;
-  while (stream >> open) {
-    std::array<double, 3> v{};
-    char comma = 0, second = 0, close = 0;
-    stream >> v[0] >> comma >> v[1] >> second >> v[2] >> close;
-    if (!stream || open != '(' || comma != ',' || second != ',' || close != ')') return {};
-    vectors.push_back(v);
+  for (value = Trimmed(value); !value.empty(); value = Trimmed(value)) {
+    const std::size_t close = value.find(')');
+    if (value.front() != '(' || close == std::string_view::npos) return {};
+    const CsvRecord parts = SplitCsv(value.substr(1, close - 1));
+    if (parts.fields.size() != 3) return {};
+    std::array<double, 3>& vector = vectors.emplace_back();
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const std::optional<double> number = ParseNumber(parts.fields[axis]);
+      if (!number) return {};
+      vector[axis] = *number;
+    }
+    value.remove_prefix(close + 1);
   }
   return vectors;
 }
@@ -155,7 +129,7 @@ class HeaderReader {
     const std::size_t colon = line.find(':');
     if (colon == std::string_view::npos) Fail("a line of the header without \":\"");
     if (line.substr(colon, 2) == ":=") return;  // user-defined key and value
-    std::string field = Lower(Trimmed(line.substr(0, colon)));
+    std::string field = LowerCase(Trimmed(line.substr(0, colon)));
     if (field == "datafile") field = "data file";
     if (field == "lineskip") field = "line skip";
     if (field == "byteskip") field = "byte skip";
@@ -231,11 +205,13 @@ class HeaderReader {
   // Reads the spacing of the samples, or the positions of the first and the last sample; no axis
   // may run backwards.
   void TakeAlongAxes(const std::string& field, const std::string& value) {
-    const std::vector<std::string> words = WordsOf(value);
+    const std::vector<std::string_view> words = WordsOf(value);
     if (words.size() != 3) Fail(fmt::format("{} are \"{}\"; they must be three", field, value));
     std::array<double, 3>& numbers = along_[field];
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      numbers[axis] = std::strtod(words[axis].c_str(), nullptr);
+      const std::optional<double> number = ParseNumber(words[axis]);
+      if (!number) Fail(fmt::format("{} are \"{}\"; they must be numbers", field, value));
+      numbers[axis] = *number;
       const bool is_backward = field == "spacings"
                                    ? numbers[axis] < 0.0
                                    : along_.count("axis mins") * along_.count("axis maxs") > 0 &&
@@ -248,10 +224,10 @@ class HeaderReader {
   }
 
   void TakeSizes(const std::string& value) {
-    const std::vector<std::string> words = WordsOf(value);
+    const std::vector<std::string_view> words = WordsOf(value);
     bool is_good = words.size() == 3;
     for (std::size_t axis = 0; is_good && axis < 3; ++axis) {
-      const std::optional<int> size = WholeNumber(words[axis]);
+      const std::optional<int> size = ParseWholeNumber(words[axis]);
       is_good = size.has_value();
       header_.size[axis] = size.value_or(0);
     }
@@ -259,7 +235,7 @@ class HeaderReader {
   }
 
   int Skip(const std::string& field, const std::string& value, int least) {
-    const std::optional<int> count = WholeNumber(value);
+    const std::optional<int> count = ParseWholeNumber(value);
     if (!count || *count < least) {
       Fail(fmt::format("{} is \"{}\"; it must be a whole number, {} or more", field, value, least));
     }
@@ -270,14 +246,15 @@ class HeaderReader {
   Value Among(const Word<Value> (&words)[kCount], const std::string& field,
               const std::string& value, const char* known) {
     for (const Word<Value>& word : words) {
-      if (Lower(value) == word.name) return word.value;
+      if (LowerCase(value) == word.name) return word.value;
     }
     Fail(fmt::format("{} is \"{}\"; it must be {}", field, value, known));
   }
 
   void RequireWords(const std::string& field, const std::string& value,
                     std::initializer_list<const char*> known, const char* named) {
-    for (const std::string& word : WordsOf(Lower(value))) {
+    const std::string lower = LowerCase(value);
+    for (const std::string_view word : WordsOf(lower)) {
       if (std::find(known.begin(), known.end(), word) != known.end()) continue;
       Fail(fmt::format("{} are \"{}\"; they must be {}", field, value, named));
     }
@@ -329,12 +306,14 @@ class HeaderReader {
 };
 
 std::string BytesAfter(const fs::path& file, std::size_t begin) {
+  std::error_code error;
+  const std::uintmax_t size = fs::file_size(file, error);
   std::ifstream stream(file, std::ios::binary);
+  std::string bytes(error ? 0 : size - std::min<std::uintmax_t>(size, begin), '\0');
   stream.seekg(static_cast<std::streamoff>(begin));
-  std::ostringstream text;
-  if (stream.peek() != std::ifstream::traits_type::eof()) text << stream.rdbuf();
-  if (stream.bad() || !stream.is_open() || !text) throw InputError("cannot be read");
-  return std::move(text).str();
+  if (error || !stream.read(bytes.data(), static_cast<std::streamsize>(bytes.size())))
+    throw InputError("cannot be read");
+  return bytes;
 }
 
 /// Returns the number of bytes of the values.
@@ -475,6 +454,8 @@ VolumeGrid NamingItsFile(const fs::path& file, const Read& read) {
 
 NrrdHeader ReadNrrdHeader(const fs::path& file) {
   const std::string text = FirstBytes(file);
+  const std::optional<FileFormat> format = FormatOfFile(file);
+  if (format && !text.starts_with("NRRD000")) RefuseFormat(file, *format, kVolumesWanted);
   return HeaderReader(file, text).Header();
 }
 
@@ -489,6 +470,8 @@ VolumeGrid ReadNrrd(const fs::path& file) {
 VolumeGrid ReadRawGrid(const fs::path& file, const std::array<int, 3>& size) {
   NrrdHeader header;
   header.size = size;
+  std::error_code error;
+  if (fs::file_size(file, error) != StoredBytesOf(header)) RefuseKnownFormats(file, kVolumesWanted);
   return NamingItsFile(file, [&] {
     CheckGridSize(size);
     return FromBytes(header, BytesAfter(file, 0));

@@ -18,6 +18,9 @@
 
 namespace alpenglow::renderer {
 
+/// What messages about files of other formats (RefuseFormat) say about volumes.
+inline constexpr char kVolumesWanted[] = "grids of volumes are read as NRRD or raw floats";
+
 struct NrrdHeader {
   enum class Type { kFloat, kByte };
   enum class Encoding { kRaw, kGzip };
@@ -51,7 +54,7 @@ struct NrrdHeader {
 [[nodiscard]] VolumeGrid ReadNrrd(const std::filesystem::path& file);
 
 /// Reads a file that consists only of nx * ny * nz floats, little endian, x fastest. Throws
-/// InputError "file: ..." when it has another length.
+/// InputError "file: ..." when it has another length, which names the format that the bytes show.
 [[nodiscard]] VolumeGrid ReadRawGrid(const std::filesystem::path& file,
                                      const std::array<int, 3>& size);
 

@@ -1,171 +1,29 @@
 // SPDX-License-Identifier: MIT
 #include "renderer/surface/colour_drape.h"
 
-#include <fmt/format.h>
 #include <gdal_priv.h>
 #include <ogr_spatialref.h>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <mutex>
 
 #include "atmosphere/base/error.h"
 #include "atmosphere/colour/spectrum.h"
 #include "atmosphere/math/constants.h"
-#include "renderer/elevation/elevation_raster.h"
-#include "renderer/material/land_cover.h"
+#include "renderer/elevation/gdal_file.h"
+#include "renderer/surface/drape_file.h"
 
 namespace alpenglow::renderer {
 namespace {
 
-constexpr std::int64_t kMostPixels = std::int64_t{1} << 26;
 constexpr int kGridNodes = 33;  // of the grid of places, per side
-
-struct CloseImage {
-  void operator()(GDALDataset* dataset) const { GDALClose(dataset); }
-};
-using ImageDataset = std::unique_ptr<GDALDataset, CloseImage>;
-
-ImageDataset OpenImage(const std::filesystem::path& file, bool is_land_cover) {
-  static std::once_flag once;
-  std::call_once(once, [] {
-    GDALRegister_GTiff();
-    GDALRegister_PNG();
-  });
-  std::error_code ignored;
-  if (!std::filesystem::is_regular_file(file, ignored)) RefuseFile(file, "there is no such file");
-  static const char* const kDrivers[] = {"GTiff", "PNG", nullptr};
-  ImageDataset dataset(static_cast<GDALDataset*>(GDALOpenEx(
-      file.c_str(), GDAL_OF_RASTER | GDAL_OF_VERBOSE_ERROR, kDrivers, nullptr, nullptr)));
-  if (!dataset)
-    RefuseFile(file, fmt::format("not a readable GeoTIFF or PNG ({})", CPLGetLastErrorMsg()));
-  const int bands = dataset->GetRasterCount();
-  if (is_land_cover) {
-    if (bands != 1 || dataset->GetRasterBand(1)->GetRasterDataType() != GDT_Byte)
-      RefuseFile(file, "is no map of land cover, which has one band of 8 bits");
-  } else if (bands < 1 || (bands < 3 && dataset->GetRasterBand(1)->GetColorTable() != nullptr))
-    RefuseFile(file, "has a palette; colours are read from red, green and blue bands");
-  if (std::int64_t{dataset->GetRasterXSize()} * dataset->GetRasterYSize() > kMostPixels) {
-    RefuseFile(file,
-               fmt::format("has {} x {} pixels; at most {} can be held", dataset->GetRasterXSize(),
-                           dataset->GetRasterYSize(), kMostPixels));
-  }
-  return dataset;
-}
-
-// sRGB decoding, IEC 61966-2-1.
-double Linear(double encoded) {
-  return encoded <= 0.04045 ? encoded / 12.92 : std::pow((encoded + 0.055) / 1.055, 2.4);
-}
-
-/// Decodes stored values of a band to 16-bit linear values.
-class ImageDecoder {
- public:
-  explicit ImageDecoder(GDALDataType type) : type_(type) {
-    if (type != GDT_Byte && type != GDT_UInt16) return;
-    const std::size_t codes = type == GDT_Byte ? 256 : 65536;
-    for (std::size_t code = 0; code < codes; ++code) {
-      table_.push_back(
-          ToStored(Linear(static_cast<double>(code) / static_cast<double>(codes - 1))));
-    }
-  }
-  [[nodiscard]] std::uint16_t operator()(float value) const {
-    if (table_.empty()) return ToStored(static_cast<double>(value));
-    return table_[static_cast<std::size_t>(
-        std::clamp(value, 0.0F, static_cast<float>(table_.size() - 1)))];
-  }
-  [[nodiscard]] bool IsKnown() const {
-    return !table_.empty() || type_ == GDT_Float32 || type_ == GDT_Float64;
-  }
-
- private:
-  static std::uint16_t ToStored(double linear) {
-    const double clamped = std::isfinite(linear) ? std::clamp(linear, 0.0, 1.0) : 0.0;
-    return static_cast<std::uint16_t>(std::lround(65535.0 * clamped));
-  }
-  GDALDataType type_;
-  std::vector<std::uint16_t> table_;
-};
-
-// Reads a row of a band, converted to the type of `row`'s elements.
-template <typename Value>
-void ReadRow(const std::filesystem::path& file, GDALRasterBand& band, GDALDataType type, int y,
-             std::vector<Value>& row) {
-  const int columns = band.GetXSize();
-  if (band.RasterIO(GF_Read, 0, y, columns, 1, row.data(), columns, 1, type, 0, 0) != CE_None)
-    RefuseFile(file, fmt::format("damaged ({})", CPLGetLastErrorMsg()));
-}
-
-// Returns the opacity of each pixel, 255 for an opaque one, from the alpha band, the mask or the
-// nodata values of the file. A pixel is transparent where every band has its nodata value.
-std::vector<std::uint8_t> ReadWeights(const std::filesystem::path& file, GDALDataset& dataset) {
-  const int columns = dataset.GetRasterXSize(), rows = dataset.GetRasterYSize();
-  const std::size_t pixels = static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows);
-  std::vector<std::uint8_t> weights;
-  std::vector<std::uint8_t> row(static_cast<std::size_t>(columns));
-  const int bands = dataset.GetRasterCount() < 3 ? 1 : 3;
-  for (int number = 1; number <= bands; ++number) {
-    GDALRasterBand& band = *dataset.GetRasterBand(number);
-    if ((band.GetMaskFlags() & GMF_ALL_VALID) != 0) return std::vector<std::uint8_t>(pixels, 255);
-    weights.resize(pixels, 0);
-    for (int y = 0; y < rows; ++y) {
-      ReadRow(file, *band.GetMaskBand(), GDT_Byte, y, row);
-      std::uint8_t* known = weights.data() + static_cast<std::size_t>(y) * row.size();
-      for (std::size_t x = 0; x < row.size(); ++x) known[x] = std::max(known[x], row[x]);
-    }
-  }
-  return weights;
-}
 
 using Pixel = std::array<std::uint16_t, 4>;
 
-// Returns colours times their weight, and the weight.
-std::vector<Pixel> ReadPixels(const std::filesystem::path& file, GDALDataset& dataset) {
-  const int rows = dataset.GetRasterYSize();
-  const std::vector<std::uint8_t> weights = ReadWeights(file, dataset);
-  std::vector<Pixel> pixels(weights.size());
-  std::vector<float> row(static_cast<std::size_t>(dataset.GetRasterXSize()));
-  for (int channel = 0; channel < 3; ++channel) {
-    GDALRasterBand* band = dataset.GetRasterBand(dataset.GetRasterCount() < 3 ? 1 : channel + 1);
-    const ImageDecoder decoder(band->GetRasterDataType());
-    if (!decoder.IsKnown())
-      RefuseFile(file, "has values that are neither 8 nor 16 bits nor floats");
-    for (int y = 0; y < rows; ++y) {
-      ReadRow(file, *band, GDT_Float32, y, row);
-      for (std::size_t x = 0; x < row.size(); ++x) {
-        const std::size_t i = static_cast<std::size_t>(y) * row.size() + x;
-        const unsigned weighted = decoder(row[x]) * unsigned{weights[i]};
-        pixels[i][static_cast<std::size_t>(channel)] = static_cast<std::uint16_t>(weighted / 255);
-        pixels[i][3] = static_cast<std::uint16_t>(257U * weights[i]);
-      }
-    }
-  }
-  return pixels;
-}
-
-Pixel SharesOfClass(const std::filesystem::path& file, std::uint8_t number) {
-  const auto cover = CoverOfClass(number);
-  if (!cover) RefuseFile(file, fmt::format("has {}, which is no class of land cover", number));
-  Pixel stored{0, 0, 0, 65535};
-  for (std::size_t k = 0; k < 3; ++k)
-    stored[k] = static_cast<std::uint16_t>(std::lround(65535.0 * (*cover)[k]));
-  return stored;
-}
-
-std::vector<Pixel> ReadClasses(const std::filesystem::path& file, GDALDataset& dataset) {
-  const std::vector<std::uint8_t> weights = ReadWeights(file, dataset);
-  std::vector<Pixel> shares;
-  shares.reserve(weights.size());
-  std::vector<std::uint8_t> row(static_cast<std::size_t>(dataset.GetRasterXSize()));
-  for (int y = 0; y < dataset.GetRasterYSize(); ++y) {
-    ReadRow(file, *dataset.GetRasterBand(1), GDT_Byte, y, row);
-    for (const std::uint8_t number : row) {
-      const bool is_there = weights[shares.size()] > 0;
-      shares.push_back(is_there ? SharesOfClass(file, number) : Pixel{});
-    }
-  }
-  return shares;
+// Throws the fault of PROJ instead of its consequences.
+void RequireProj(const std::filesystem::path& file) {
+  if (const std::string fault = FaultOfProj(); !fault.empty()) RefuseFile(file, fault);
 }
 
 /// Maps longitude and latitude to pixels, by the file's own coordinate system.
@@ -176,8 +34,11 @@ class Georeference {
     Georeference reference;
     const OGRSpatialReference* crs = dataset.GetSpatialRef();
     std::array<double, 6> forward{};
-    if (crs == nullptr || crs->IsEmpty() || dataset.GetGeoTransform(forward.data()) != CE_None)
+    if (dataset.GetGeoTransform(forward.data()) != CE_None) return std::nullopt;
+    if (crs == nullptr || crs->IsEmpty()) {
+      RequireProj(file);
       return std::nullopt;
+    }
     if (GDALInvGeoTransform(forward.data(), reference.pixel_from_crs_.data()) == 0)
       RefuseFile(file, "has a geotransform that cannot be inverted");
     OGRSpatialReference wgs84, own = *crs;
@@ -185,9 +46,11 @@ class Georeference {
     wgs84.SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
     own.SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
     reference.crs_from_geographic_.reset(OGRCreateCoordinateTransformation(&wgs84, &own));
-    if (!reference.crs_from_geographic_)
+    if (!reference.crs_from_geographic_) {
+      RequireProj(file);
       RefuseFile(file,
                  "has a coordinate system that cannot be reached from longitude and latitude");
+    }
     return reference;
   }
 
@@ -273,10 +136,11 @@ ColourDrape::ColourDrape(const std::filesystem::path& file, bool is_land_cover,
     : frame_(ground.frame),
       radius_m_(ground.frame.ellipsoid().equatorial_radius_m),
       is_land_cover_(is_land_cover) {
-  const ImageDataset dataset = OpenImage(file, is_land_cover);
+  const RasterFile dataset = OpenDrape(file, is_land_cover);
+  DrapePixels read = is_land_cover ? ReadLandCover(file, *dataset) : ReadColours(file, *dataset);
+  note_ = std::move(read.note);
   std::vector<Level> levels;
-  levels.push_back({dataset->GetRasterXSize(), dataset->GetRasterYSize(),
-                    is_land_cover ? ReadClasses(file, *dataset) : ReadPixels(file, *dataset)});
+  levels.push_back({dataset->GetRasterXSize(), dataset->GetRasterYSize(), std::move(read.pixels)});
   while (levels.back().columns > 1 && levels.back().rows > 1) {
     const Level& fine = levels.back();
     Level coarse{fine.columns / 2, fine.rows / 2, {}};

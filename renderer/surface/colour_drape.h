@@ -2,8 +2,7 @@
 // This header provides a picture draped over the terrain: colours of an orthophoto, or a map of
 // land cover.
 //
-// GDAL reads the picture: GeoTIFF and PNG with 8 or 16 bits (sRGB-encoded) or floating point
-// (linear), with one band (grey), or with three or more (the first three are red, green, blue).
+// The picture is a GeoTIFF or PNG file; renderer/surface/drape_file.h describes its colours.
 // With a coordinate system, the picture is placed by it; without one, it covers the whole extent of
 // the terrain, with its upper edge in the north. A map of land cover has one band of 8 bits with
 // the classes of land_cover.h. An alpha band, a mask or a nodata value can leave pixels out: the
@@ -18,6 +17,7 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "renderer/material/band_light.h"
@@ -58,6 +58,9 @@ class ColourDrape {
   /// Returns whether the drape holds shares of land cover rather than colours.
   [[nodiscard]] bool IsLandCover() const { return is_land_cover_; }
 
+  /// Returns a line on values that the drape does not show as they are; empty if there are none.
+  [[nodiscard]] const std::string& note() const { return note_; }
+
   /// Approximate width of a pixel [m].
   [[nodiscard]] double pixel_m() const { return pixel_m_; }
 
@@ -92,6 +95,7 @@ class ColourDrape {
   double radius_m_ = 0.0;
   double pixel_m_ = 1.0;
   bool is_land_cover_;
+  std::string note_;
 };
 
 }  // namespace alpenglow::renderer

@@ -20,6 +20,7 @@
 #include "tests/fixtures/bare_scene_folder.h"
 #include "tests/fixtures/lost_messages.h"
 #include "tests/fixtures/places.h"
+#include "tests/fixtures/raster_file.h"
 #include "tests/fixtures/sanitized.h"
 
 namespace alpenglow::renderer {
@@ -295,6 +296,11 @@ TEST_F(Skyseries, AWrongCommandLineExitsWith2) {
     EXPECT_EQ(outcome.status, 2) << options << "\n" << outcome.error;
   }
   EXPECT_EQ(FileCount(), 1U) << "only the scene";
+  ExpectFault(
+      "--list --at noon --latitude 46,5", 2,
+      "--latitude is \"46,5\"; it must be a number with a decimal point: Degrees north, -90 "
+      "to 90");
+  ExpectFault("--list --at noon --latitude 46.5N", 2, "it must be a number: Degrees north");
 }
 
 TEST_F(Skyseries, UnknownWordsNameTheNearestKnown) {
@@ -417,6 +423,53 @@ TEST_F(Skyseries, ABadInputExitsWith3AndOneLine) {
     EXPECT_EQ(std::count(outcome.error.begin(), outcome.error.end(), '\n'), 1) << outcome.error;
   }
   EXPECT_FALSE(fs::exists(folder_ / "still.exr"));
+}
+
+TEST_F(Skyseries, FilesOfOtherFormatsAreNamedWithoutTheirBytes) {
+  using namespace std::string_view_literals;
+  WriteText(folder_ / "flight.kmz", std::string("PK\x03\x04\x14\0doc.kml"sv));
+  WriteText(folder_ / "escape.csv", "\x1B[31mred\x1B]0;title\x07,latitude\n0,1\n");
+  WriteText(folder_ / "scene.png", "\x89PNG\r\n\x1A\n");
+  const std::pair<std::string, const char*> cases[] = {
+      {"s.toml --list --path flight.kmz", "flight.kmz: this is a zip archive"},
+      {"s.toml --list --path escape.csv", R"(escape.csv:1: column "\x1b[31mred\x1b]0;title\x07")"},
+      {"scene.png --list", "scene.png: this is a PNG picture; text is read"},
+      {"--list --at noon --atmosphere \"$(printf '\\033[31m.toml')\"", R"(\x1b[31m.toml)"}};
+  for (const auto& [arguments, message] : cases) {
+    const Outcome outcome = Run(arguments);
+    EXPECT_EQ(outcome.status, 3) << arguments;
+    EXPECT_THAT(outcome.error, HasSubstr(message));
+    const auto is_control = [](char c) { return c != '\n' && c >= '\0' && c < ' '; };
+    EXPECT_EQ(std::count_if(outcome.error.begin(), outcome.error.end(), is_control), 0);
+  }
+}
+
+TEST_F(Skyseries, APathMayHaveQuotesAndASceneComeThroughAPipe) {
+  WriteText(folder_ / "path.csv",
+            "\xEF\xBB\xBF\"t_s\";\"latitude\";\"longitude\";\"height_m\";\"utc\"\r\n"
+            "\"0\";\"46.5\";\"8\";\"+3000\";\"2026-06-21T10:00:00Z\"\r\n"
+            "\"10\";\"46.51\";\"8.01\";\"3000\";\"2026-06-21T10:00:10Z\"\r\n");
+  const Outcome list = Run("s.toml --list --count 2 --path path.csv");
+  EXPECT_EQ(list.status, 0) << list.error;
+  EXPECT_THAT(list.out, HasSubstr("\n0,2026-06-21T10:00:00Z,"));
+  const Outcome piped = RunCommand(std::string("mkfifo pipe && (cat s.toml >pipe &) && '") +
+                                   tests::kSkyseries + "' pipe --list --count 2 --path path.csv");
+  EXPECT_EQ(piped.status, 0) << piped.error;
+  EXPECT_EQ(piped.out, list.out);
+}
+
+TEST_F(Skyseries, AMissingDatabaseOfProjIsNamed) {
+  tests::Raster map;
+  map.epsg = 2056;  // Switzerland, in metres
+  map.geotransform = {2600000.0, 100.0, 0.0, 1200000.0, 0.0, -100.0};
+  tests::WriteRaster(folder_, map);
+  const Outcome outcome = RunCommand(
+      std::string("PROJ_LIB=/none PROJ_DATA=/none '") + tests::kSkyseries +
+      "' --dem dem.tif --latitude 46.95 --longitude 7.45 --at 2026-06-21T10:00:00Z --size 8x4 "
+      "--out still.exr");
+  EXPECT_EQ(outcome.status, 3);
+  EXPECT_THAT(outcome.error, HasSubstr("dem.tif: PROJ finds no usable proj.db (PROJ_DATA=/none, "
+                                       "PROJ_LIB=/none): "));
 }
 
 // Hard case 46.

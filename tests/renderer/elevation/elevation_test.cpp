@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "renderer/elevation/elevation.h"
 
+#include <fmt/format.h>
 #include <gdal_priv.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -13,12 +14,15 @@
 #include <functional>
 #include <limits>
 #include <numbers>
+#include <optional>
 #include <string>
+#include <tuple>
 #include <utility>
 #include <vector>
 
 #include "atmosphere/base/error.h"
 #include "renderer/layer.h"
+#include "tests/fixtures/comma_locale.h"
 #include "tests/fixtures/fault_of.h"
 #include "tests/fixtures/places.h"
 #include "tests/fixtures/raster_file.h"
@@ -297,6 +301,194 @@ void AddMask(const fs::path& file, const char* inside) {
   LeaveColumnsOut(*dataset->GetRasterBand(1)->GetMaskBand());
   GDALClose(dataset);
   CPLSetThreadLocalConfigOption("GDAL_TIFF_INTERNAL_MASK", nullptr);
+}
+
+/// What a band declares about its numbers.
+struct BandDeclaration {
+  GDALDataType type = GDT_Float32;
+  double scale = 1.0, offset = 0.0;
+  std::optional<double> nodata = std::nullopt;
+  std::string unit = {};
+  float elsewhere = 100.0F;  // the stored number of the other samples
+};
+
+// Writes 3 x 2 samples: this one at row 1, column 1.
+template <typename Sample>
+fs::path WriteStored(const fs::path& folder, const BandDeclaration& declared, Sample sample,
+                     GDALDataType type_of_sample) {
+  Raster raster;
+  raster.columns = 3;
+  raster.rows = 2;
+  raster.type = declared.type;
+  raster.unit = declared.unit;
+  raster.height = [&](int, int) { return declared.elsewhere; };
+  const fs::path file = tests::WriteRaster(folder, raster);
+  fs::remove(file.string() + ".aux.xml");
+  auto* dataset = static_cast<GDALDataset*>(GDALOpen(file.c_str(), GA_Update));
+  GDALRasterBand& band = *dataset->GetRasterBand(1);
+  band.SetScale(declared.scale);
+  band.SetOffset(declared.offset);
+  if (declared.nodata && declared.type == GDT_Int64) {
+    band.SetNoDataValueAsInt64(static_cast<std::int64_t>(*declared.nodata));
+  } else if (declared.nodata) {
+    band.SetNoDataValue(*declared.nodata);
+  }
+  EXPECT_EQ(band.RasterIO(GF_Write, 1, 1, 1, 1, &sample, 1, 1, type_of_sample, 0, 0), CE_None);
+  GDALClose(dataset);
+  return file;
+}
+
+fs::path WriteStored(const fs::path& folder, const BandDeclaration& declared, double sample) {
+  return WriteStored(folder, declared, sample, GDT_Float64);
+}
+
+// Returns the height of that sample; NaN for a void.
+double HeightFromStored(const fs::path& file) {
+  return static_cast<double>(ReadElevation(file, VoidPolicy::kLeaveOpen).grid.at(1, 1));
+}
+
+TEST_F(ElevationFile, DeclaredNodataValuesWinOverCustomaryOnes) {
+  // A lake at 1000.1 m whose stored number is -9999.
+  const BandDeclaration scaled{GDT_Int16, 0.1, 2000.0, -32768.0};
+  EXPECT_NEAR(HeightFromStored(WriteStored(folder_, scaled, -9999.0)), 1000.1, 1e-4);
+  EXPECT_TRUE(std::isnan(HeightFromStored(WriteStored(folder_, scaled, -32768.0))));
+  // The floor of the Mariana Trench at -9999 m.
+  for (const GDALDataType type : {GDT_Int16, GDT_Int32, GDT_Int64, GDT_Float32, GDT_Float64}) {
+    SCOPED_TRACE(GDALGetDataTypeName(type));
+    const BandDeclaration declared{type, 1.0, 0.0, -32768.0};
+    EXPECT_EQ(HeightFromStored(WriteStored(folder_, declared, -9999.0)), -9999.0);
+    EXPECT_TRUE(std::isnan(HeightFromStored(WriteStored(folder_, declared, -32768.0))));
+    const BandDeclaration undeclared{type};
+    EXPECT_TRUE(std::isnan(HeightFromStored(WriteStored(folder_, undeclared, -9999.0))));
+    EXPECT_TRUE(std::isnan(HeightFromStored(WriteStored(folder_, undeclared, -32768.0))));
+  }
+}
+
+TEST_F(ElevationFile, CustomaryVoidsAreHeightsAndNotStoredNumbers) {
+  const BandDeclaration scaled{GDT_Int16, 0.1, 2000.0};
+  EXPECT_NEAR(HeightFromStored(WriteStored(folder_, scaled, -9999.0)), 1000.1, 1e-4);
+  EXPECT_NEAR(HeightFromStored(WriteStored(folder_, scaled, -32767.0)), -1276.7, 1e-3);
+  EXPECT_TRUE(std::isnan(HeightFromStored(WriteStored(folder_, {GDT_Int32, 0.5}, -19998.0))));
+  EXPECT_TRUE(std::isnan(
+      HeightFromStored(WriteStored(folder_, {GDT_Float32, 1.0, 0.0, std::nullopt, "ft"}, -9999.0))))
+      << "heights in the unit of the file";
+}
+
+TEST_F(ElevationFile, AMaskDeclaresWhatIsValid) {
+  Raster raster = WesternSea();
+  raster.height = [](int, int column) { return column < 2 ? 0.0F : -9999.0F; };
+  const fs::path file = Write(raster);
+  AddMask(file, "YES");
+  const ElevationModel model = ReadElevation(file, VoidPolicy::kLeaveOpen);
+  EXPECT_EQ(model.voids, 2U * 12U);
+  EXPECT_EQ(model.grid.at(5, 5), -9999.0F);
+}
+
+TEST_F(ElevationFile, NodataOfEveryTypeIsRecognised) {
+  constexpr double kLowestFloat = static_cast<double>(std::numeric_limits<float>::lowest());
+  constexpr double kLowestDouble = std::numeric_limits<double>::lowest();
+  const std::pair<GDALDataType, double> cases[] = {
+      {GDT_Byte, 255.0},          {GDT_UInt16, 65535.0},        {GDT_UInt32, 4294967295.0},
+      {GDT_Int32, -2147483648.0}, {GDT_Int64, -9999999999.0},   {GDT_Float32, kLowestFloat},
+      {GDT_Float32, 1e20},        {GDT_Float64, kLowestDouble}, {GDT_Float64, 0.1}};
+  for (const auto& [type, nodata] : cases) {
+    SCOPED_TRACE(fmt::format("{} {}", GDALGetDataTypeName(type), nodata));
+    const BandDeclaration declared{type, 1.0, 0.0, nodata};
+    EXPECT_TRUE(std::isnan(HeightFromStored(WriteStored(folder_, declared, nodata))));
+    EXPECT_EQ(HeightFromStored(WriteStored(folder_, declared, 200.0)), 200.0);
+  }
+  // Programs round this value as they write it as text.
+  const BandDeclaration rounded{GDT_Float32, 1.0, 0.0, -3.40282e38};
+  EXPECT_TRUE(std::isnan(HeightFromStored(WriteStored(folder_, rounded, kLowestFloat))));
+  const BandDeclaration of_double{GDT_Float32, 1.0, 0.0, kLowestDouble};
+  EXPECT_TRUE(std::isnan(HeightFromStored(WriteStored(folder_, of_double, kLowestFloat))));
+  EXPECT_TRUE(std::isnan(HeightFromStored(WriteStored(folder_, {GDT_Float64}, kLowestDouble))));
+  EXPECT_TRUE(std::isnan(HeightFromStored(WriteStored(folder_, {GDT_Float32}, kLowestFloat))));
+}
+
+TEST_F(ElevationFile, LargeIntegersAreExact) {
+  // Tenths of a millimetre: a float has 24 bits, and rounds to 4 of them.
+  const BandDeclaration fine{GDT_Int32, 1e-4, 0.0, -2147483648.0};
+  EXPECT_NEAR(HeightFromStored(WriteStored(folder_, fine, 88488600.0)), 8848.86, 1e-3);
+  const BandDeclaration shifted{GDT_UInt32, 1.0, -4294960000.0, 0.0, "", 4294960007.0F};
+  EXPECT_EQ(HeightFromStored(WriteStored(folder_, shifted, 4294960007.0)), 7.0);
+  const BandDeclaration wide{GDT_Int64, 1e-9, 0.0, -1.0};
+  EXPECT_NEAR(HeightFromStored(WriteStored(folder_, wide, std::int64_t{1234567890123}, GDT_Int64)),
+              1234.568, 1e-3);
+}
+
+TEST_F(ElevationFile, SignedBytesHaveTheirSign) {
+  Raster raster;
+  raster.type = GDT_Byte;
+  raster.height = [](int, int) { return 251.0F; };
+  EXPECT_EQ(HeightFromStored(Write(raster)), 251.0);
+  const fs::path file = folder_ / "signed.tif";
+  const char* const options[] = {"PIXELTYPE=SIGNEDBYTE", nullptr};
+  auto* source = static_cast<GDALDataset*>(GDALOpen(Write(raster).c_str(), GA_ReadOnly));
+  GDALClose(GetGDALDriverManager()->GetDriverByName("GTiff")->CreateCopy(
+      file.c_str(), source, FALSE, const_cast<char**>(options), nullptr, nullptr));
+  GDALClose(source);
+  EXPECT_EQ(HeightFromStored(file), -5.0);
+}
+
+TEST_F(ElevationFile, DeclaredScalesMustBeUsable) {
+  ExpectRefused(WriteStored(folder_, {GDT_Int16, 0.0}, 7.0), "declares scale 0");
+  ExpectRefused(WriteStored(folder_, {GDT_Int16, std::numeric_limits<double>::infinity()}, 7.0),
+                "declares scale inf");
+  ExpectRefused(WriteStored(folder_, {GDT_Float32, 1.0, std::nan("")}, 7.0), "offset nan");
+}
+
+TEST_F(ElevationFile, ImpossibleHeightsNameTheDeclaredNodata) {
+  ExpectRefused(WriteStored(folder_, {GDT_Int16, 1.0, 0.0, 0.0}, -32768.0),
+                "has the height -32768 m at row 1, column 1; the ground of the earth lies in "
+                "[-12000, 9000] m, and 0 is the declared nodata value");
+  ExpectRefused(WriteStored(folder_, {GDT_Float64}, -9e307), "no nodata value is declared");
+}
+
+TEST_F(ElevationFile, UnitsOfHeightsHaveTheirFactors) {
+  for (const auto& [unit, metres] : {std::pair{"mm", 1e-3},
+                                     {"cm", 0.01},
+                                     {"Centimetre", 0.01},
+                                     {"dm", 0.1},
+                                     {"km", 1000.0},
+                                     {"m ", 1.0},
+                                     {" Metres", 1.0},
+                                     {"m a.s.l.", 1.0},
+                                     {"metres above sea level", 1.0},
+                                     {"ftUS", 1200.0 / 3937.0},
+                                     {"US_survey_foot", 1200.0 / 3937.0},
+                                     {"Foot ", 0.3048}}) {
+    const double stored = 7.0;
+    EXPECT_NEAR(HeightFromStored(WriteStored(folder_, {GDT_Float32, 1e-3, 0.0, std::nullopt, unit},
+                                             1e3 * stored)),
+                stored * metres, 1e-3 * metres)
+        << unit;
+  }
+}
+
+TEST_F(ElevationFile, NumbersOfFilesDoNotFollowTheLocale) {
+  const fs::path file = WriteStored(folder_, {GDT_Int16, 0.1, 2000.5, -32768.0, "cm"}, -9999.0);
+  const double plain = HeightFromStored(file);
+  const tests::CommaLocale locale(folder_);
+  EXPECT_EQ(HeightFromStored(file), plain);
+}
+
+TEST_F(ElevationFile, OtherFormatsAreNamed) {
+  for (const auto& [name, bytes, format] :
+       {std::tuple{"a.hgt.gz", "\x1F\x8B\x08 and more", "this is gzip-compressed; "},
+        {"N46E008.hgt", "PK\x03\x04 and more", "this is a zip archive"},
+        {"a.asc", "ncols 3\nnrows 2\n", "this is an Arc/Info ASCII grid"},
+        {"a.vrt", "<VRTDataset rasterXSize=\"2\"/>", "this is a virtual raster"},
+        {"a.nc", "\x89HDF\r\n\x1A\n", "this is HDF5 or NetCDF-4"},
+        {"a.img", "EHFA_HEADER_TAG", "this is ERDAS Imagine"}}) {
+    WriteText(folder_ / name, bytes);
+    ExpectRefused(folder_ / name, format);
+    ExpectRefused(folder_ / name, "elevation models are read as GeoTIFF, SRTM .hgt or USGS DEM");
+  }
+  for (const char* name : {"N46E008 (1).hgt", "N46E8.hgt", "46N008E.hgt"}) {
+    WriteText(folder_ / name, std::string(2 * 1201 * 1201, '\0'));
+    ExpectRefused(folder_ / name, "its name must be the place of its south-western corner");
+  }
 }
 
 TEST_F(ElevationFile, WhatAMaskOrAnAlphaBandLeavesOutIsAVoid) {

@@ -11,6 +11,8 @@
 #include <glm/vec3.hpp>
 #include <random>
 #include <string>
+#include <string_view>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -280,6 +282,30 @@ TEST_F(ObjFile, IsRecognisedByItsExtensionAndReadWithAnyOther) {
     EXPECT_EQ(model.mesh.triangles.size(), 2U) << name;
     EXPECT_EQ(model.message, same.message) << name;
     EXPECT_THAT(model.message, HasSubstr("curv")) << name;
+  }
+}
+
+TEST_F(ObjFile, MeshesOfOtherFormatsAreNamed) {
+  using namespace std::string_view_literals;
+  std::string binary_stl(80, '\0');
+  binary_stl += "\1\0\0\0"sv;
+  binary_stl.resize(84 + 50);
+  for (const auto& [name, bytes, format] :
+       {std::tuple{"a.stl", std::string_view(binary_stl), "this is STL"},
+        {"b.stl", "solid hill\n  facet normal 0 0 1\n"sv, "this is STL"},
+        {"a.obj", "solid hill\n  facet normal 0 0 1\n"sv, "this is STL"},
+        {"a.ply", "ply\nformat ascii 1.0\n"sv, "this is PLY"},
+        {"a.glb", "glTF\2\0\0\0"sv, "this is binary glTF"},
+        {"a.gltf", "{\n \"asset\": {\"version\": \"2.0\"}}"sv, "this is glTF"},
+        {"a.fbx", "Kaydara FBX Binary  \0"sv, "this is FBX"},
+        {"b.fbx", "; FBX 7.4.0 project file\n"sv, "this is FBX"},
+        {"a.dae", "<?xml version=\"1.0\"?>\n<COLLADA>"sv, "this is COLLADA"},
+        {"a.usdz", "PK\x03\x04"sv, "this is a zip archive"},
+        {"a.off", "OFF\n3 1 0\n"sv, "this is OFF"}}) {
+    WriteText(folder_ / name, std::string(bytes));
+    EXPECT_THAT(tests::FaultOf([&] { return ReadMesh(folder_ / name, UpAxis::kZ); }),
+                AllOf(HasSubstr(std::string(name) + ": " + format),
+                      HasSubstr("meshes are read as Wavefront OBJ")));
   }
 }
 

@@ -12,6 +12,8 @@
 #include <cstddef>
 #include <glm/geometric.hpp>
 #include <string>
+#include <string_view>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -20,6 +22,7 @@
 #include "renderer/media/local_media.h"
 #include "renderer/procedural_mountains/lattice_noise.h"
 #include "renderer/scene/scene_options.h"
+#include "tests/fixtures/comma_locale.h"
 #include "tests/fixtures/fault_of.h"
 #include "tests/fixtures/temporary_folder.h"
 
@@ -387,6 +390,36 @@ TEST_F(Nrrd, RawGridsOfAnotherLengthAreRefused) {
               (void)ReadRawGrid(file, {2, 3, 3});
             }),
             file.string() + ": 48 bytes of data; 2 x 3 x 3 floats are 72");
+}
+
+TEST_F(Nrrd, FilesOfOtherFormatsAreNamed) {
+  using namespace std::string_view_literals;
+  for (const auto& [name, bytes, format] :
+       {std::tuple{"a.vdb", " BDV\0\0\0\0\xE0\0\0\0"sv, "this is OpenVDB"},
+        {"a.npy", "\x93NUMPY\x01\0"sv, "this is a NumPy array"},
+        {"a.nrrd.gz", "\x1F\x8B\x08\0"sv, "this is gzip-compressed"},
+        {"a.mhd", "ObjectType = Image\n"sv, "this is MetaImage"},
+        {"a.vti", "<?xml version=\"1.0\"?>\n<VTKFile type=\"ImageData\">"sv, "this is VTK"},
+        {"a.h5", "\x89HDF\r\n\x1A\n"sv, "this is HDF5"}}) {
+    WriteText(folder_ / name, std::string(bytes));
+    const auto expected = AllOf(HasSubstr(std::string(name) + ": " + format),
+                                HasSubstr("grids of volumes are read as NRRD or raw floats"));
+    EXPECT_THAT(FaultOf([&] { return ReadNrrd(folder_ / name); }), expected);
+    EXPECT_THAT(FaultOf([&] { return ReadRawGrid(folder_ / name, {2, 2, 2}); }), expected);
+  }
+  // Samples may begin like another format: their number decides.
+  WriteText(folder_ / "g.raw", "BZh" + std::string(29, '\0'));
+  EXPECT_EQ(FaultOf([&] { return ReadRawGrid(folder_ / "g.raw", {2, 2, 2}); }), "no fault");
+}
+
+TEST_F(Nrrd, NumbersDoNotFollowTheLocale) {
+  const std::string text = Counting(
+      "space directions: (0.5,0,0) (0,-1.5,0) (0,0,+2e-1)\n"
+      "spacings: 1.5 +2.5 0.5\n");
+  const VolumeGrid plain = Read(text);
+  const tests::CommaLocale locale(folder_);
+  EXPECT_EQ(Read(text).values(), plain.values());
+  EXPECT_THAT(Fault(Counting("spacings: 1,5 1 1\n")), HasSubstr("they must be numbers"));
 }
 
 }  // namespace

@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: MIT
+#include "renderer/elevation/gdal_file.h"
+
+#include <fmt/format.h>
+#include <ogr_spatialref.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <limits>
+#include <string_view>
+
+#include "atmosphere/base/error.h"
+#include "atmosphere/base/file_format.h"
+#include "renderer/layer.h"
+
+namespace alpenglow::renderer {
+namespace {
+
+// A nodata value of this size is no value of any quantity; text in a file often rounds it.
+constexpr double kBeyondAllValues = 1e30;
+constexpr double kRoundingOfText = 1e-4;
+
+// GDAL returns the nodata value of 64-bit integers by other functions only.
+std::optional<double> DeclaredNodata(GDALRasterBand& band) {
+  int is_declared = 0;
+  double nodata = 0.0;
+  switch (band.GetRasterDataType()) {
+    case GDT_Int64:
+      nodata = static_cast<double>(band.GetNoDataValueAsInt64(&is_declared));
+      break;
+    case GDT_UInt64:
+      nodata = static_cast<double>(band.GetNoDataValueAsUInt64(&is_declared));
+      break;
+    default:
+      nodata = band.GetNoDataValue(&is_declared);
+  }
+  if (is_declared == 0) return std::nullopt;
+  constexpr double kLargestFloat = static_cast<double>(std::numeric_limits<float>::max());
+  if (band.GetRasterDataType() == GDT_Float32 && !std::isnan(nodata))
+    nodata =
+        static_cast<double>(static_cast<float>(std::clamp(nodata, -kLargestFloat, kLargestFloat)));
+  return nodata;
+}
+
+std::string EnvironmentText(const char* name) {
+  const char* value = std::getenv(name);
+  return fmt::format("{}={}", name, value == nullptr ? "" : value);
+}
+
+}  // namespace
+
+std::string LastGdalError() {
+  std::string text = CPLGetLastErrorMsg();
+  std::replace(text.begin(), text.end(), '\n', ' ');
+  return text.empty() ? "no reason given" : text;
+}
+
+RasterFile OpenRaster(const std::filesystem::path& file, const RasterFormats& formats) {
+  std::error_code ignored;
+  if (!std::filesystem::is_regular_file(file, ignored)) RefuseFile(file, "there is no such file");
+  RasterFile dataset(static_cast<GDALDataset*>(GDALOpenEx(
+      file.c_str(), GDAL_OF_RASTER | GDAL_OF_VERBOSE_ERROR, formats.drivers, nullptr, nullptr)));
+  if (dataset) return dataset;
+  const std::string reason = LastGdalError();
+  const std::optional<FileFormat> format = FormatOfFile(file);
+  const bool is_wanted =
+      GDALIdentifyDriverEx(file.c_str(), GDAL_OF_RASTER, formats.drivers, nullptr) != nullptr;
+  if (format && !is_wanted)
+    RefuseFormat(file, *format, fmt::format("{} are read as {}", formats.purpose, formats.names));
+  RefuseFile(file, fmt::format("not a readable {} ({})", formats.names, reason));
+}
+
+std::string FaultOfProj() {
+  CPLErrorReset();
+  constexpr int kWgs84 = 4326;
+  OGRSpatialReference known;
+  if (known.importFromEPSG(kWgs84) == OGRERR_NONE) return "";
+  return fmt::format("PROJ finds no usable proj.db ({}, {}): {}", EnvironmentText("PROJ_DATA"),
+                     EnvironmentText("PROJ_LIB"), LastGdalError());
+}
+
+BandValues::BandValues(const std::filesystem::path& file, GDALRasterBand& band)
+    : band_(band),
+      scale_(band.GetScale()),
+      offset_(band.GetOffset()),
+      nodata_(DeclaredNodata(band)) {
+  // GDAL up to 3.6 reads signed bytes as unsigned ones and declares them by this item.
+  const char* type = band.GetMetadataItem("PIXELTYPE", "IMAGE_STRUCTURE");
+  has_signed_bytes_ = type != nullptr && std::string_view(type) == "SIGNEDBYTE";
+  if (scale_ == 0.0 || !std::isfinite(scale_) || !std::isfinite(offset_)) {
+    RefuseFile(file, fmt::format("declares scale {} and offset {}; both must be finite, and the "
+                                 "scale other than 0",
+                                 scale_, offset_));
+  }
+}
+
+std::optional<std::vector<double>> BandValues::Read(const PixelWindow& window) const {
+  std::vector<double> stored(static_cast<std::size_t>(window.columns) *
+                             static_cast<std::size_t>(window.rows));
+  if (band_.RasterIO(GF_Read, window.column, window.row, window.columns, window.rows, stored.data(),
+                     window.columns, window.rows, GDT_Float64, 0, 0, nullptr) != CE_None) {
+    return std::nullopt;
+  }
+  if (has_signed_bytes_) {
+    for (double& sample : stored) sample -= sample > 127.0 ? 256.0 : 0.0;
+  }
+  return stored;
+}
+
+bool BandValues::IsNodata(double stored) const {
+  if (std::isnan(stored)) return true;
+  if (!nodata_) return false;
+  const double nodata = *nodata_;
+  return stored == nodata || (std::abs(nodata) > kBeyondAllValues &&
+                              std::abs(stored - nodata) <= kRoundingOfText * std::abs(nodata));
+}
+
+}  // namespace alpenglow::renderer
