@@ -15,6 +15,8 @@
   a function that calls it has one.
 - Programs write to standard output and error only through lut/cli/messages.h: fmt::print throws
   where standard error takes nothing, which would end the work.
+- Nothing reads or writes numbers, or changes the case of letters, by the locale of the host program: it may write
+  "0,5" for 0.5 and group thousands. fmt::format, ParseNumber, ParseWholeNumber, LowerCase and UpperCase have no locale.
 
 Every rule is also run on small examples that break it, so that a rule that finds nothing is noticed.
 """
@@ -31,6 +33,11 @@ LOWEST = ("embedded_text.h", "version.h", "layer.h")
 TOP_LEVEL = {"CHANGELOG.md", "CITATION.cff", "CMakeLists.txt", "CMakePresets.json", "CONTRIBUTING.md", "LICENSE",
              "README.md", "atmosphere", "build", "include", "lut", "out", "quickstart.sh", "renderer", "tests", "viewer"}
 SPEECH = ("fmt::print", "std::cerr", "std::cout <<", "printf(")
+BY_LOCALE = re.compile(
+    r"\bstd::to_w?string\(|\b(?:std::)?sto(?:[dfi]|l|ld|ll|ul|ull)\(|\b(?:std::)?strto\w+\(|\b(?:std::)?ato(?:[fil]|ll)\(|"
+    r"\b\w*(?:scanf|printf|strftime)\(|\b[io]?stringstream\b|\bstd::(?:setprecision|put_time|get_time|locale)\b|"
+    r"\b(?:std::)?(?:is(?:alnum|alpha|digit|lower|print|punct|space|upper)|tolower|toupper)\(|\{[\w.:]*:[^{}]*L\}|"
+    r"\b\w*(?:file|stream|text|line|info)\w* >> ")
 INCLUDE = re.compile(r'^\s*#\s*include\s*["<](?:alpenglow/)?([^">]+)[">]')
 CASE = re.compile(r"ALPENGLOW_SHARED_CASE\((.*?)grid::", re.DOTALL)
 NAMESPACE = re.compile(r"^namespace alpenglow::(\w+)", re.MULTILINE)
@@ -95,6 +102,14 @@ def speech(path, text):
     return [f"{path}: {words} does not go through lut/cli/messages.h" for words in SPEECH if words in text]
 
 
+def by_locale(path, text):
+    """The calls that depend on the locale, outside comments."""
+    for number, line in enumerate(text.splitlines(), 1):
+        found = BY_LOCALE.search(line.partition("//")[0])
+        if found:
+            yield f"{path}:{number}: {found[0]} depends on the locale of the host program"
+
+
 def functions_without_case(shared, cases):
     """The functions of shared texts that no case calls, neither itself nor by another function."""
     called_by = {}
@@ -134,6 +149,11 @@ def check_examples():
     assert not list(foreign_includes("a.h", "#include <vector>\n#include <alpenglow/b.h>\n"))
     assert not list(foreign_namespaces("lut/sky/a.h", "namespace alpenglow::lut {\nnamespace alpenglow::shared {\n"))
     assert len(speech("lut/a.cpp", 'std::cerr << "x";')) == 1
+    for call in ("std::to_string(x)", "std::stod(t)", "stoul(t)", "std::strtod(t, nullptr)", "strtof(t, &e)", "atof(t)",
+                 "sscanf(t, f, &x)", "std::snprintf(b, 9, f, x)", "std::istringstream s(t)", "std::tolower(c)",
+                 "isspace(c)", "out << std::setprecision(3)", 'fmt::format("{:L}", x)', "file >> x"):
+        assert len(list(by_locale("a.cpp", f"  {call};\n"))) == 1, call
+    assert not list(by_locale("a.cpp", 'fmt::format("{:.3f}", LowerCase(x));  // not std::stod(x)\ncustom(restore(x));\n'))
     assert list(repeated_includes("a.cpp", '#include <a>\n#include "b.h"\n#include "b.h"\n')) == [
         "a.cpp: b.h is included twice"]
     shared = "SHARED Number A(Number x) {\n  return B(x);  // C(x)\n}\nSHARED Number B(Number x) { return x; }\n"
@@ -159,6 +179,7 @@ def broken_rules():
             if not path.endswith(".glsl"):
                 yield from foreign_namespaces(path, text)
                 yield from speech(path, text)
+                yield from by_locale(path, text)
     for file in sorted((TREE / "include").rglob("*.h")):
         yield from foreign_includes(str(file.relative_to(TREE)), file.read_text(encoding="utf-8"))
     shared = re.findall(r'"([\w/]+\.glsl)"', (TREE / "viewer/gl/shader.cpp").read_text(encoding="utf-8"))
