@@ -20,6 +20,16 @@ namespace alpenglow::renderer {
 double SlabField::DownwardFlux() const { return kPi * (mean + 2.0 / 3.0 * slope); }
 double SlabField::UpwardFlux() const { return kPi * (mean - 2.0 / 3.0 * slope); }
 
+namespace {
+
+/// Returns the fraction of the scattered light that is in the forward peak. A lobe that scatters
+/// backwards has none, although its second coefficient is positive.
+double ForwardPeak(const SlabScattering& scattering) {
+  return std::clamp(scattering.chi_1, 0.0, std::max(scattering.chi_2, 0.0));
+}
+
+}  // namespace
+
 EddingtonSlab::EddingtonSlab(const SlabScattering& scattering, double depth, double ground_albedo,
                              double mu0) {
   ALPENGLOW_ENSURE(depth, >=, 0.0);
@@ -29,10 +39,12 @@ EddingtonSlab::EddingtonSlab(const SlabScattering& scattering, double depth, dou
   // millionth separates them, and removes a millionth of the light per unit of depth.
   constexpr double kMostAlbedo = 1.0 - 1e-6;
   const double w_true = std::min(scattering.albedo, kMostAlbedo);
-  const double f = std::max(scattering.chi_2, 0.0);
+  const double f = ForwardPeak(scattering);
   scale_ = 1.0 - w_true * f;
   const double w = w_true * (1.0 - f) / scale_;
-  const double g = (scattering.chi_1 - f) / (1.0 - f);
+  // Eddington's phase function 1 + 3 g mu sends more light back than arrives if g is below -2/3 and
+  // the beam is vertical.
+  const double g = std::max((scattering.chi_1 - f) / (1.0 - f), -2.0 / 3.0);
   depth_ = scale_ * depth;
   k_ = std::sqrt(3.0 * (1.0 - w) * (1.0 - w * g));
   slope_of_k_ = k_ / (1.0 - w * g);
@@ -76,6 +88,13 @@ namespace {
 constexpr double kSkyCosine = 0.6;
 constexpr int kGlowNodes = 65;
 
+BandLight NotNegative(BandLight light) {
+  for (std::size_t band = 0; band < light.count; ++band) {
+    light[band] = std::max(light[band], 0.0F);
+  }
+  return light;
+}
+
 std::vector<double> AltitudesOver(double bottom_m, const FogLayer& layer) {
   constexpr double kEndless_m = 8000.0;
   const double step = std::isinf(layer.scale_height_m()) ? kEndless_m : layer.scale_height_m();
@@ -98,7 +117,7 @@ FogLight::FogLight(const LocalMedium& fog, const MultipleScattering& diffuse, co
       sky_(diffuse, {0.0, 0.0, 1.0}, sun.to_light_for_air, AltitudesOver(bottom_m, *fog.fog())),
       ground_(diffuse.bands()) {
   const double albedo = fog.optics.scattering_per_m[0] / extinction_per_m_;
-  peak_scale_ = 1.0 - albedo * std::max(chi_[2], 0.0);
+  peak_scale_ = 1.0 - albedo * ForwardPeak({albedo, chi_[1], chi_[2]});
   broad_.kind = PhaseKind::kHenyeyGreenstein;
   broad_.g = std::clamp(chi_[1], -0.99, 0.99);
   const BandLight sky = diffuse.SkyIrradiance(std::max(bottom_m, 0.0), sky_.mu_s());
@@ -170,9 +189,15 @@ FogLight::Scattered FogLight::At(const Look& look, double altitude_m, const Band
   // upwards.
   const auto tilt = static_cast<float>(chi_[1] * look.down);
   const Place place = PlaceOf(altitude_m);
-  return {once * sun + lit * (At(of_sun_.mean, place) + tilt * At(of_sun_.slope, place)),
-          SkyLeft(altitude_m) * sky_.At(look.sky, altitude_m) + At(of_sky_.mean, place) +
-              tilt * At(of_sky_.slope, place)};
+  return {once * sun + lit * Field(of_sun_, place, tilt),
+          SkyLeft(altitude_m) * NotNegative(sky_.At(look.sky, altitude_m)) +
+              Field(of_sky_, place, tilt)};
+}
+
+// At the edge of a layer, a radiance that is linear in the cosine is negative in directions from
+// which no light arrives.
+BandLight FogLight::Field(const Glow& glow, const Place& place, float tilt) {
+  return NotNegative(At(glow.mean, place) + tilt * At(glow.slope, place));
 }
 
 float FogLight::SkyLeft(double altitude_m) const {
@@ -191,10 +216,7 @@ BandLight FogLight::OnSurface(double altitude_m, double cos_up) const {
       tilt * (At(of_sun_.slope, place) + At(of_sky_.slope, place));
   // The light of the ground is already part of the clear sky's irradiance of a slope.
   const auto twice = static_cast<float>(kPi * 0.5 * (1.0 - cos_up)) * SkyLeft(altitude_m);
-  for (std::size_t band = 0; band < irradiance.count; ++band) {
-    irradiance[band] = std::max(irradiance[band] - twice * ground_[band], 0.0F);
-  }
-  return irradiance;
+  return NotNegative(irradiance + -twice * ground_);
 }
 
 namespace {
@@ -304,9 +326,8 @@ class FogMarch {
         const double h = layer_.scale_height_m();
         const double by_fall =
             std::isinf(h) ? piece.end_m : kFall * h / std::max(std::abs(rise), 1e-3);
-        double step =
-            std::clamp(std::min({kDepth / per_m, by_fall, 0.05 * (piece.end_m - piece.begin_m)}),
-                       kShortest_m, piece.end_m - t);
+        double step = std::min({kDepth / per_m, by_fall, 0.05 * (piece.end_m - piece.begin_m)});
+        step = std::min(std::max(step, kShortest_m), piece.end_m - t);
         const double middle = t + 0.5 * step;
         tau += step * extinction *
                (layer_.DensityAt(point) + 4.0 * layer_.DensityAt(eye_ + middle * direction) +

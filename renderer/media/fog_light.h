@@ -12,7 +12,9 @@
 // The boundary conditions are no diffuse light from above, and the ground's reflection from below.
 // The forward peak is removed by
 //
-//   tau' = (1 - w f) tau,   w' = w (1 - f) / (1 - w f),   g' = (g - f) / (1 - f),   f = chi_2:
+//   tau' = (1 - w f) tau,   w' = w (1 - f) / (1 - w f),   g' = (g - f) / (1 - f),   f = chi_2
+//
+// at most g, and 0 if g < 0, because a lobe that scatters backwards has no forward peak:
 //
 // Joseph, Wiscombe, Weinman (1976), "The delta-Eddington approximation for radiative flux
 // transfer", J. Atmos. Sci. 33, 2452. For the layer, see Shettle and Weinman (1970), J. Atmos. Sci.
@@ -62,7 +64,7 @@ namespace alpenglow::renderer {
 struct SlabScattering {
   double albedo = 1.0;  // w, [0, 1]
   double chi_1 = 0.0;   // mean cosine of the phase function
-  double chi_2 = 0.0;   // its second Legendre coefficient, < 1: fraction in the forward peak
+  double chi_2 = 0.0;   // its second Legendre coefficient, < 1
 };
 
 /// The diffuse field at a depth.
@@ -153,6 +155,9 @@ class FogLight {
   [[nodiscard]] double DepthAbove(double altitude_m) const;
   [[nodiscard]] Place PlaceOf(double altitude_m) const;
   [[nodiscard]] static BandLight At(const std::vector<BandLight>& nodes, const Place& place);
+  /// Returns the diffuse light scattered at a place, at least 0.
+  /// @param tilt  the mean cosine of the phase function times Look::down.
+  [[nodiscard]] static BandLight Field(const Glow& glow, const Place& place, float tilt);
   void Solve(double albedo, double mu0, const BandLight& sun, const BandLight& sky,
              const std::vector<double>& ground_albedo);
 

@@ -160,13 +160,22 @@ double FogBase(const Fog& fog, const SceneGround& ground) {
   return hit ? kAboveMedia_m - hit->distance_m : 0.0;
 }
 
-double FogBottom(const FogLayer& fog, const SceneGround& ground) {
-  if (!ground.terrain) return std::max(fog.base_m(), 0.0);
-  double lowest = std::numeric_limits<double>::infinity();
-  for (const auto& [x, y, z] : ground.terrain->mesh().positions) {
-    lowest = std::min(lowest, fog.AltitudeOf({x, y, z}));
+/// Returns the altitude of the lowest ground under the fog: that of the terrain, or of the planet
+/// around it if the fog lies wholly below the terrain; no value if there is no fog above the ground.
+std::optional<double> FogBottom(const FogLayer& fog, const SceneGround& ground) {
+  std::vector<double> lowest_m;
+  if (ground.terrain) {
+    lowest_m.push_back(std::numeric_limits<double>::infinity());
+    for (const auto& [x, y, z] : ground.terrain->mesh().positions) {
+      lowest_m.front() = std::min(lowest_m.front(), fog.AltitudeOf({x, y, z}));
+    }
   }
-  return std::max(fog.base_m(), lowest);
+  lowest_m.push_back(0.0);
+  for (const double lowest : lowest_m) {
+    const double bottom = std::max(fog.base_m(), lowest);
+    if (fog.ColumnAbove(bottom) > 0.0) return bottom;
+  }
+  return std::nullopt;
 }
 
 }  // namespace
@@ -213,10 +222,12 @@ LocalMedia::LocalMedia(const Scene& scene, const SceneGround& ground, const Medi
     }
   }
   if (scene.fog && scene.fog->extinction_per_m > 0.0) {
-    all_.push_back({FogLayer(FogBase(*scene.fog, ground), scene.fog->scale_height_m,
-                             medium.planet_radius_m, medium.atmosphere_height_m),
-                    OpticsOf(*scene.fog, bands_)});
-    fog_bottom_m_ = FogBottom(*all_.back().fog(), ground);
+    const FogLayer layer(FogBase(*scene.fog, ground), scene.fog->scale_height_m,
+                         medium.planet_radius_m, medium.atmosphere_height_m);
+    if (const std::optional<double> bottom_m = FogBottom(layer, ground)) {
+      all_.push_back({layer, OpticsOf(*scene.fog, bands_)});
+      fog_bottom_m_ = *bottom_m;
+    }
   }
 }
 

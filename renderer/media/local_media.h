@@ -95,6 +95,7 @@ struct LocalMedium {
 class LocalMedia {
  public:
   /// Reads the grids of volumes. Throws InputError "volume N: ..." for grids that cannot be read.
+  /// Fog that lies wholly below the ground is left out.
   LocalMedia(const Scene& scene, const SceneGround& ground, const Medium& medium);
   /// Takes any bodies, each of `bands` bands. Fog must be the last one; its ground is at its base.
   LocalMedia(std::vector<LocalMedium> all, std::size_t bands);

@@ -257,16 +257,21 @@ Bands<double> MediaLight::State::VolumesToSun(const glm::dvec3& point) const {
 
 namespace {
 
-/// The air along one ray, at knots so close that values between them are linear.
+/// The air along one ray, at knots so close that values between them are linear. The knots begin
+/// where the ray enters the air; before the air and behind it, nothing is interpolated.
 class AirOnRay {
  public:
   AirOnRay(const MediaLight::State& light, const glm::dvec3& origin, const glm::dvec3& direction)
       : light_(light), origin_(origin), direction_(direction) {
     constexpr double kLongest_m = 2000.0, kHighest_m = 100.0;
-    const glm::dvec3 up = light.geometry.UpAt(origin);
     ray_.altitude_m = light.geometry.AltitudeOf(origin);
-    ray_.mu = std::clamp(glm::dot(direction, up), -1.0, 1.0);
-    step_m_ = std::min(kLongest_m, kHighest_m / std::max(std::abs(ray_.mu), 1e-3));
+    ray_.mu = SineAt(0.0);
+    const double top_m = light.air.medium().atmosphere_height_m;
+    const RayExtent in_air = ExtentOf(ray_, light.geometry.radius_m(), top_m);
+    begin_m_ = in_air.begin_m;
+    // A basin can lie below the planet's sphere.
+    if (in_air.end == RayEnd::kSpace) end_m_ = in_air.end_m;
+    step_m_ = std::min(kLongest_m, kHighest_m / std::max(std::abs(SineAt(begin_m_)), 1e-3));
   }
 
   struct Knot {
@@ -280,12 +285,24 @@ class AirOnRay {
     BandLight left, sun;
   };
   [[nodiscard]] Light At(double distance_m) {
-    const double u = distance_m / step_m_;
+    if (distance_m < begin_m_ || distance_m > end_m_) {
+      const Knot here = Computed(distance_m);
+      return Between(here, here, 0.0F);
+    }
+    const double u = (distance_m - begin_m_) / step_m_;
     const auto low = static_cast<std::size_t>(u);
     if (knots_.size() < low + 2) knots_.resize(low + 2);
     const Knot& a = Known(low);
     const Knot& b = Known(low + 1);
-    const auto share = static_cast<float>(u - static_cast<double>(low));
+    return Between(a, b, static_cast<float>(u - static_cast<double>(low)));
+  }
+
+ private:
+  [[nodiscard]] double SineAt(double distance_m) const {
+    const glm::dvec3 up = light_.geometry.UpAt(origin_ + distance_m * direction_);
+    return std::clamp(glm::dot(direction_, up), -1.0, 1.0);
+  }
+  [[nodiscard]] Light Between(const Knot& a, const Knot& b, float share) const {
     Light light{BandLight(light_.bands()), BandLight(light_.bands())};
     for (std::size_t band = 0; band < light.left.count; ++band) {
       light.left[band] = std::exp(-((1.0F - share) * a.depth[band] + share * b.depth[band]));
@@ -293,24 +310,23 @@ class AirOnRay {
     }
     return light;
   }
-
- private:
+  [[nodiscard]] Knot Computed(double distance_m) const {
+    ViewRay ray = ray_;
+    ray.length_m = distance_m;
+    const BandLight none(light_.bands());
+    return {true, distance_m <= begin_m_ ? none : light_.air.OpticalDepthAlong(ray),
+            light_.SunInAir(origin_ + distance_m * direction_)};
+  }
   const Knot& Known(std::size_t index) {
     Knot& knot = knots_[index];
-    if (knot.is_known) return knot;
-    const double distance = static_cast<double>(index) * step_m_;
-    ViewRay ray = ray_;
-    ray.length_m = distance;
-    knot.depth = index == 0 ? BandLight(light_.bands()) : light_.air.OpticalDepthAlong(ray);
-    knot.sun = light_.SunInAir(origin_ + distance * direction_);
-    knot.is_known = true;
+    if (!knot.is_known) knot = Computed(begin_m_ + static_cast<double>(index) * step_m_);
     return knot;
   }
 
   const MediaLight::State& light_;
   glm::dvec3 origin_, direction_;
   ViewRay ray_;
-  double step_m_;
+  double begin_m_ = 0.0, end_m_ = kEndless, step_m_;  // of the knots
   std::vector<Knot> knots_;
 };
 

@@ -65,7 +65,8 @@ FixedScene::FixedScene(const Scene& scene, bool has_land)
       drape(DrapeOf(scene, lamp_ground)),
       material(scene.ground, drape.colours, scene.medium.wavelengths_nm),
       land_kind{has_land, scene.terrain.HasFineRelief()},
-      fog_phase(scene.fog ? std::optional(scene.fog->phase.kind) : std::nullopt) {}
+      fog(LocalMedia(scene, lamp_ground, MediumAt(scene)).Only(false, true)),
+      fog_phase(fog.IsNothing() ? std::nullopt : std::optional(fog.fog()->optics.phase.kind)) {}
 
 PaintedScene::PaintedScene(const Scene& scene, const LandSource& land, const PaintedView& first,
                            const PaintSizes& sizes, FirstAir first_air)
@@ -80,10 +81,9 @@ PaintedScene::PaintedScene(const Scene& scene, const LandSource& land, const Pai
       shade_(fixed_.ellipsoid),
       awaits_land_(!land.IsEmpty()) {
   if (!land.range_centre) land_->BeginReading(first.eye.place);
-  if (scene.fog) {
+  if (fixed_.fog_phase) {
     for (std::optional<SceneFog>* fog : {&fog_, &moon_fog_})
-      fog->emplace(LocalMedia(scene, fixed_.lamp_ground, MediumAt(scene)).Only(false, true),
-                   sizes.fog, kFogUnits);
+      fog->emplace(fixed_.fog, sizes.fog, kFogUnits);
   }
   shade_.SetSize(sizes.shade.size);
   if (fixed_.drape.colours) ground_textures_.SetDrape(TexelsOf(fixed_.drape));

@@ -46,6 +46,7 @@ struct FixedScene {
   SceneDrape drape;
   GroundMaterial material;
   LandKind land_kind;
+  LocalMedia fog;                      // nothing without fog above the ground
   std::optional<PhaseKind> fog_phase;  // nullopt without fog
 };
 

@@ -199,6 +199,34 @@ TEST(EddingtonSlab, FluxesAreThoseOfTracedPhotons) {
   EXPECT_LT(WorstFlux(0.1), 0.16) << "Eddington's approximation is weak where the sun grazes";
 }
 
+TEST(EddingtonSlab, LobesBackwardsSendNoNegativeLight) {
+  for (const double g : {-0.3, -0.6, -0.7, -0.9, -0.99}) {
+    for (const double depth : {0.05, 0.5, 4.0, 20.0}) {
+      for (const double mu0 : {0.2, 0.6, 1.0}) {
+        const EddingtonSlab fast({1.0, g, g * g}, depth, 0.0, mu0);
+        const double up = fast.At(0.0).UpwardFlux(), down = fast.At(depth).DownwardFlux();
+        EXPECT_GT(fast.At(0.0).mean, 0.0) << g << " " << depth << " " << mu0;
+        EXPECT_GE(up, 0.0) << g << " " << depth << " " << mu0;
+        EXPECT_GE(down, -1e-9) << g << " " << depth << " " << mu0;
+        EXPECT_NEAR((up + down + mu0 * fast.BeamLeft(depth / mu0)) / mu0, 1.0, 2e-3 + 1e-6 * depth)
+            << "an albedo of 1 counts as 1 - 1e-6";
+      }
+    }
+  }
+}
+
+TEST(EddingtonSlab, FluxesOfLobesBackwardsAreThoseOfTracedPhotons) {
+  for (const double g : {-0.5, -0.8}) {
+    for (const double depth : {0.3, 1.0, 4.0}) {
+      const Slab slab{depth, 1.0, 0.2, 0.6, Lobe(g)};
+      const Fluxes traced = TracedFluxes(slab, 10000);
+      const EddingtonSlab fast({1.0, g, g * g}, depth, 0.2, slab.mu0);
+      EXPECT_NEAR(fast.At(0.0).UpwardFlux() / slab.mu0, traced.up, 0.1) << g << " " << depth;
+      EXPECT_NEAR(fast.At(depth).DownwardFlux() / slab.mu0, traced.down, 0.1) << g << " " << depth;
+    }
+  }
+}
+
 TEST(EddingtonSlab, RadiancesAreThoseOfTracedPaths) {
   double squares = 0.0, least = 1.0, most = 1.0;
   int count = 0;

@@ -14,6 +14,7 @@
 #include "atmosphere/math/constants.h"
 #include "lut/multiple_scattering/spherical_harmonics.h"
 #include "renderer/illumination/occluded_sky.h"
+#include "renderer/media/fog_light.h"
 #include "renderer/picture/render.h"
 #include "tests/fixtures/bare_scene.h"
 #include "tests/fixtures/fault_of.h"
@@ -294,6 +295,63 @@ TEST(DimmedByMedia, LightIsDimmedByTheMediaInFrontOfIt) {
   EXPECT_NEAR(static_cast<double>(dimmed[0]) / expected, 1.0, 1e-3);
 }
 
+PhaseFunction LobeOf(double g) {
+  PhaseFunction phase;
+  phase.kind = PhaseKind::kHenyeyGreenstein;
+  phase.g = g;
+  return phase;
+}
+
+TEST(FogLight, IsNowhereNegative) {
+  const MediaStage& stage = TheStage();
+  const FogLayer layer(0.0, 30.0, stage.medium.planet_radius_m, 120e3);
+  for (const double g : {-0.99, -0.9, -0.6, 0.0, 0.85, 0.99}) {
+    LocalMedium fog{layer, Optics(0.02, 1.0)};
+    fog.optics.phase = LobeOf(g);
+    BandLight sun(3);
+    std::fill_n(sun.value.begin(), sun.count, 0.8F);
+    const FogLight lit(fog, stage.lit_air.multiple_scattering, {kToSun, kToSun, sun}, 0.0);
+    for (const double height_m : {0.0, 10.0, 60.0, 200.0}) {
+      for (const double z : {-1.0, -0.5, 0.0, 0.5, 1.0}) {
+        const glm::dvec3 look(std::sqrt(1.0 - z * z), 0.0, z);
+        // Sunlight behind an optically thick wall: only the glow is left.
+        const FogLight::Scattered light = lit.At(lit.LookAlong(look), height_m, sun, sun, 30.0);
+        const BandLight ground = lit.OnSurface(height_m, z);
+        for (std::size_t band = 0; band < 3; ++band) {
+          EXPECT_GE(light.of_sun[band], 0.0F) << g << " " << height_m << " " << z;
+          EXPECT_GE(light.of_sky[band], 0.0F) << g << " " << height_m << " " << z;
+          EXPECT_GE(ground[band], 0.0F) << g << " " << height_m << " " << z;
+        }
+      }
+    }
+  }
+}
+
+TEST(MediaLight, FogSeenFromSpaceIsThatSeenFromTheTopOfTheAir) {
+  const MediaStage& stage = TheStage();
+  const double radius_m = stage.medium.planet_radius_m;
+  const double top_m = stage.medium.atmosphere_height_m;
+  const std::vector<LocalMedium> fog{{FogLayer(0.0, 200.0, radius_m, top_m), Optics(1e-3, 0.9)}};
+  const MediaLight lit = stage.Lit(fog);
+  for (const double tilt : {0.0, 0.6, 1.2}) {  // of the ray at the ground, from the vertical
+    const glm::dvec3 out(std::sin(tilt), 0.0, std::cos(tilt));
+    const double to_top_m =
+        std::sqrt(radius_m * radius_m * out.z * out.z + top_m * (2.0 * radius_m + top_m)) -
+        radius_m * out.z;
+    const MarchedLight near = lit.Along(to_top_m * out, -out, to_top_m, nullptr);
+    for (const double far_m : {4e7, 1e9}) {
+      const MarchedLight far = lit.Along(far_m * out, -out, far_m, nullptr);
+      for (std::size_t band = 0; band < 3; ++band) {
+        EXPECT_NEAR(static_cast<double>(far.radiance[band] / near.radiance[band]), 1.0,
+                    2.0 * kMarchTolerance)
+            << far_m;
+        EXPECT_NEAR(static_cast<double>(far.transmittance[band]),
+                    static_cast<double>(near.transmittance[band]), kMarchTolerance);
+      }
+    }
+  }
+}
+
 const RenderSettings kSmallMedia{.width = 24, .height = 14, .samples_per_pixel = 1, .layers = {}};
 const UtcInstant kMediaNoon = ParseInstant("2026-06-21T10:00:00Z");
 const UtcInstant kMediaNight = ParseInstant("2026-01-01T00:00:00Z");
@@ -331,6 +389,32 @@ Scene WithVolume(double extinction, double albedo) {
 
 TEST(RenderMedia, EmptyVolumesChangeNoByte) {
   EXPECT_EQ(Rendered(WithVolume(0.0, 1.0), kMediaNoon).rgb, ClearNoon().rgb);
+}
+
+TEST(RenderMedia, FogWhollyBelowTheGroundChangesNoByte) {
+  Scene scene = WithoutVolume();
+  scene.fog = FogIn(0.004, 25.0);
+  scene.fog->base_height_m = -1000.0;
+  EXPECT_EQ(Rendered(scene, kMediaNoon).rgb, ClearNoon().rgb);
+}
+
+TEST(LocalMedia, FogBelowTheTerrainLiesOnThePlanetAroundIt) {
+  Scene scene = WithoutVolume();
+  SceneGround ground = LoadGround(scene);
+  TriangleMesh plateau;
+  plateau.positions = {{-1e3F, -1e3F, 800.0F}, {1e3F, -1e3F, 800.0F}, {0.0F, 1e3F, 800.0F}};
+  plateau.normals.assign(3, {0.0F, 0.0F, 1.0F});
+  plateau.triangles = {{0, 1, 2}};
+  ground.terrain.emplace(std::move(plateau));
+  const auto bottom = [&](double base_m) -> std::optional<double> {
+    scene.fog = FogIn(0.004, 25.0);
+    scene.fog->base_height_m = base_m;
+    const LocalMedia media(scene, ground, scene.medium);
+    return media.fog() != nullptr ? std::optional(media.fog_bottom_m()) : std::nullopt;
+  };
+  EXPECT_NEAR(bottom(700.0).value(), 800.0, 0.1) << "it reaches over the plateau";
+  EXPECT_EQ(bottom(10.0), 10.0) << "it lies around the plateau";
+  EXPECT_EQ(bottom(-1000.0), std::nullopt);
 }
 
 TEST(RenderMedia, OpaqueBlackVolumeLeavesOnlyTheAirInFrontOfIt) {
