@@ -96,7 +96,23 @@ double LampStage::HeightOverGround(const glm::dvec3& point) const {
   return std::max(point.z - TerrainUnder(point, none), 0.0);
 }
 
+double LampStage::PlanetUnder(const glm::dvec3& point) const {
+  const double across = std::min(std::hypot(point.x, point.y) / planet_radius_m_, 1.0);
+  return -planet_radius_m_ * across * across / (1.0 + std::sqrt(1.0 - across * across));
+}
+
+bool LampStage::HiddenByPlanet(const glm::dvec3& from, const glm::dvec3& to) const {
+  constexpr double kTouches_m = 0.01;  // on the sphere except for rounding
+  const glm::dvec3 way = to - from;
+  const double along =
+      -glm::dot(from + glm::dvec3(0.0, 0.0, planet_radius_m_), way) / glm::dot(way, way);
+  if (!(along > 0.0 && along < 1.0)) return false;
+  const glm::dvec3 lowest = from + along * way;
+  return AltitudeOf(lowest) < -kTouches_m && !TerrainAt(lowest);
+}
+
 bool LampStage::Sees(const glm::dvec3& from, const glm::dvec3& to) const {
+  if (HiddenByPlanet(from, to)) return false;
   if (!ground_->terrain) return true;
   const glm::dvec3 way = to - from;
   const double length = glm::length(way);
@@ -108,6 +124,7 @@ bool LampStage::Shades(const Lamp& lamp, const glm::dvec3& smooth_point,
                        const glm::dvec3& geometric_normal) const {
   const glm::dvec3 way = lamp.position_m - smooth_point;
   const double distance = std::max(glm::length(way), lamp.radius_m);
+  if (HiddenByPlanet(smooth_point, lamp.position_m)) return true;
   return ground_->terrain &&
          ground_->terrain->Occluded(smooth_point, geometric_normal, way / distance, distance);
 }
@@ -127,7 +144,7 @@ Bands<float> LampStage::FogTransmittance(const glm::dvec3& from, const glm::dvec
   if (!has_fog_) return left;
   const LampLayer& fog = layers_.back();
   // Fog ends where it is 50 scale heights thin; homogeneous fog has no end.
-  const double length = std::min(length_m, 1e6);
+  const double length = std::isinf(length_m) ? 1e6 : length_m;
   const double column =
       fog.ColumnBetween(length, AltitudeOf(from), AltitudeOf(from + length * direction));
   for (std::size_t band = 0; band < left.count; ++band) {
@@ -326,7 +343,6 @@ double Reach(const PlacedLamp& placed, double length_m) {
 std::vector<std::array<double, 2>> PiecesLitBy(const PlacedLamp& placed, const LampStage& stage,
                                                const glm::dvec3& eye, const glm::dvec3& direction,
                                                double length_m) {
-  if (!stage.ground().terrain) return {{0.0, length_m}};
   const glm::dvec3 to_lamp = placed.lamp.position_m - eye;
   const double nearest = glm::dot(to_lamp, direction);
   const double approach =
@@ -340,13 +356,18 @@ std::vector<std::array<double, 2>> PiecesLitBy(const PlacedLamp& placed, const L
     return stage.Sees(placed.lamp.position_m, eye + 0.9999 * distance(theta) * direction);
   };
   constexpr int kSteps = 12;
+  std::array<bool, kSteps + 1> lit_at{};
+  for (int i = 0; i <= kSteps; ++i)
+    lit_at.at(static_cast<std::size_t>(i)) = is_lit(low + (high - low) * i / kSteps);
+  const bool all_lit = std::all_of(lit_at.begin(), lit_at.end(), [](bool lit) { return lit; });
+  if (all_lit && !stage.ground().terrain) return {{0.0, length_m}};
   std::vector<std::array<double, 2>> pieces;
   double begin = low;
-  bool lit = is_lit(low);
+  bool lit = lit_at.front();
   for (int i = 1; i <= kSteps; ++i) {
     double from = low + (high - low) * (i - 1) / kSteps;
     double to = low + (high - low) * i / kSteps;
-    if (is_lit(to) == lit) continue;
+    if (lit_at.at(static_cast<std::size_t>(i)) == lit) continue;
     for (int step = 0; step < 6; ++step) {
       const double middle = 0.5 * (from + to);
       (is_lit(middle) == lit ? from : to) = middle;

@@ -40,14 +40,17 @@ class LampStage {
   [[nodiscard]] double TerrainUnder(const glm::dvec3& point, double otherwise) const;
   /// Returns the height above the terrain [m]; 0 below it.
   [[nodiscard]] double HeightOverGround(const glm::dvec3& point) const;
-  /// Returns whether no terrain lies between two points.
+  /// Returns whether neither terrain nor the planet lies between two points.
   [[nodiscard]] bool Sees(const glm::dvec3& from, const glm::dvec3& to) const;
 
-  /// Returns whether terrain shades a surface from a lamp.
+  /// Returns whether terrain or the planet shades a surface from a lamp.
   /// @param smooth_point  TerrainHit::smooth_point, where shadow rays start.
   /// @param geometric_normal  unit.
   [[nodiscard]] bool Shades(const Lamp& lamp, const glm::dvec3& smooth_point,
                             const glm::dvec3& geometric_normal) const;
+
+  /// Returns the height of the sphere of the planet at a point [m along z].
+  [[nodiscard]] double PlanetUnder(const glm::dvec3& point) const;
 
   /// Returns the layers above the plane that touches the sphere below a point.
   [[nodiscard]] LampAir AirAround(const glm::dvec3& middle) const;
@@ -56,6 +59,10 @@ class LampStage {
                                               double length_m) const;
 
  private:
+  /// Returns whether the planet lies between two points. Where terrain covers the planet, only
+  /// terrain hides: a basin can lie below the sphere.
+  [[nodiscard]] bool HiddenByPlanet(const glm::dvec3& from, const glm::dvec3& to) const;
+
   const SceneGround* ground_;
   double planet_radius_m_;
   std::vector<LampLayer> layers_;
@@ -81,7 +88,7 @@ struct PlacedLamp {
   double distance_m = 0.0;    // from the eye
   glm::dvec3 direction{0.0};  // from the eye, unit
   double blur = 0.0;          // radius in the picture, as in CameraRays::BlurRadius
-  bool is_hidden = false;     // from the eye, by terrain
+  bool is_hidden = false;     // from the eye, by terrain or the planet
   Bands<float> towards_eye;   // intensity, dimmed by the air
 
   /// Returns whether the eye is inside the luminous sphere.

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
+#include <limits>
 #include <numeric>
 #include <queue>
 
@@ -14,6 +15,7 @@
 #include "atmosphere/colour/spectrum.h"
 #include "atmosphere/math/constants.h"
 #include "atmosphere/time_place/geodesy.h"
+#include "renderer/surface/scene_geometry.h"
 
 namespace alpenglow::renderer {
 
@@ -59,7 +61,8 @@ glm::vec4 FloatsOf(const Values& values, std::size_t count) {
 /// `reference_m`.
 class LampPacking {
  public:
-  LampPacking(const LampView& view, double reference_m) : view_(view), reference_m_(reference_m) {}
+  LampPacking(const LampView& view, double reference_m, double planet_radius_m)
+      : view_(view), reference_m_(reference_m), planet_radius_m_(planet_radius_m) {}
 
   [[nodiscard]] GpuLamp Packed(const ChosenLamp& chosen, bool with_core) const {
     const PlacedLamp& placed = *chosen.placed;
@@ -76,7 +79,8 @@ class LampPacking {
     gpu.at_eye = {Densities(placed.air, z_eye), z_lamp - reference_m_};
     gpu.at_lamp = {Densities(placed.air, z_lamp), placed.lamp.radius_m};
     gpu.glow = {placed.mean_share, chosen.glow, with_core ? CoreOf(placed) : 0.0, 0.0};
-    gpu.shade = {chosen.shade, chosen.plan.first, chosen.plan.levels, 0.0};
+    gpu.shade = {chosen.shade, chosen.plan.first, chosen.plan.levels,
+                 AltitudeOverSphere(placed.lamp.position_m, planet_radius_m_)};
     return gpu;
   }
 
@@ -104,7 +108,7 @@ class LampPacking {
   }
 
   const LampView& view_;
-  double reference_m_;
+  double reference_m_, planet_radius_m_;
 };
 
 void PutAir(const std::vector<LampLayer>& layers, std::size_t bands, double reference_m,
@@ -163,7 +167,7 @@ LampsBlock LampsBlockOf(std::vector<ChosenLamp> lamps, const std::vector<LampLay
   for (glm::length_t axis = 0; axis < 3; ++axis) {
     block.ground[static_cast<std::size_t>(axis)] = {glm::vec3(view.eye_from_ground[axis]), 0.0F};
   }
-  const LampPacking packing(view, reference_m);
+  const LampPacking packing(view, reference_m, medium.planet_radius_m);
   for (std::size_t i = 0; i < lamps.size(); ++i) {
     block.lamps[i] = packing.Packed(lamps[i], core_rad[1] > 0.0);
   }
@@ -262,10 +266,9 @@ int SceneLamps::PlanLayerCount() const {
 std::vector<float> ShadeAround(const LampStage& stage, const glm::dvec3& place) {
   // These steps are short enough not to miss crests of 45 m cells by much.
   constexpr double kStep_m = 5.0, kMostSteps = 16.0;
-  constexpr double kNothing = -1e6;
   const double ratio = std::pow(kFarthestShade_m / kNearestShade_m, 1.0 / (kShadeRings - 1));
   std::vector<float> shade;
-  std::vector<double> steepest(kShadeTurns, kNothing);
+  std::vector<double> steepest(kShadeTurns, -std::numeric_limits<double>::infinity());
   for (int ring = 0; ring < kShadeRings; ++ring) {
     const double before = kNearestShade_m * std::pow(ratio, ring - 1);
     const int steps =
@@ -276,9 +279,10 @@ std::vector<float> ShadeAround(const LampStage& stage, const glm::dvec3& place) 
       for (int i = 1; i <= steps; ++i) {
         const double far = before * std::pow(ratio, i / static_cast<double>(steps));
         const glm::dvec3 point = place + far * glm::dvec3(std::cos(angle), std::sin(angle), 0.0);
-        slope = std::max(slope, (stage.TerrainUnder(point, kNothing) - place.z) / far);
+        const double ground_m = stage.TerrainUnder(point, stage.PlanetUnder(point));
+        slope = std::max(slope, (ground_m - place.z) / far);
       }
-      shade.push_back(static_cast<float>(std::max(slope, kNothing)));
+      shade.push_back(static_cast<float>(slope));
     }
   }
   return shade;

@@ -161,7 +161,8 @@ LampNodes MembersOf(const LampTree& tree, std::uint32_t number) {
 bool IsHiddenAsItsLamps(const LampTree& tree, const LampStage& stage, std::uint32_t number,
                         const TileRays& tile, const glm::dvec3& eye) {
   constexpr int kPoints = 6;
-  if (!stage.ground().terrain) return true;
+  // Without terrain, only the planet can hide lamps.
+  if (!stage.ground().terrain && stage.Sees(tree.Light(number).lamp.position_m, eye)) return true;
   const LampNodes members = MembersOf(tree, number);
   const PlacedLamp& light = tree.Light(number);
   for (const std::size_t corner : {0UL, 1UL, 4UL}) {

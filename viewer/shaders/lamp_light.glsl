@@ -23,7 +23,7 @@ struct Lamp {
   vec4 at_lamp;    // densities at the lamp; its own radius
   vec4 glow;       // mean of its profile; layer of glow_map; size of its core, 0: none
   vec4 shade;      // layer of lamp_shades, -1: none; first layer and number of levels in
-                   // lamp_plans
+                   // lamp_plans; altitude of the lamp over the sphere
 };
 
 layout(std140) uniform Lamps {
@@ -147,12 +147,24 @@ vec3 LampOfTerrain(vec3 way) {
               dot(way, lamp_ground[2].xyz));
 }
 
+// Returns the height of a point at `way` from the lamp above the shadow of the bare planet, in two
+// thousandths of its distance, plus 1. The shadow begins at the horizon of the lamp.
+float LampOverHorizon(Lamp lamp, vec3 way) {
+  float far = length(way);
+  float diameter = 2e3 * lamp_planet.x;
+  float beyond = far - sqrt(diameter * max(lamp.shade.w, 0.0));
+  if (beyond <= 0.0) return 1.0;
+  vec3 at = lamp.position.xyz + way;
+  float altitude = 1e3 * lamp_planet.y + at.z + dot(at.xy, at.xy) / diameter;
+  return 1.0 + (altitude - beyond * beyond / diameter) / (2e-3 * max(far, 1e-3));
+}
+
 // Returns the height of a point at `way` from the lamp above the shadow of terrain, in two
 // thousandths of its distance. The terrain up to one ring nearer is considered, and a point may be
 // one such unit lower and still be lit, so that ground does not shadow itself.
 float LampClearance(Lamp lamp, vec3 way) {
 #ifdef LAMP_SHADE
-  if (lamp.shade.x < -0.5) return 1.0;
+  if (lamp.shade.x < -0.5) return LampOverHorizon(lamp, way);
   vec3 at = LampOfTerrain(way);
   float far = max(length(at.xy), LAMP_SHADE_NEAREST);
   vec2 size = vec2(textureSize(lamp_shades, 0).xy);
@@ -162,11 +174,11 @@ float LampClearance(Lamp lamp, vec3 way) {
       textureLod(lamp_shades, vec3(turn, TexelFromUnit(ring, size.y), lamp.shade.x), 0.0).x;
   return 1.0 + (at.z - slope * far) / (2e-3 * max(length(at), 1e-3));
 #else
-  return 1.0;
+  return LampOverHorizon(lamp, way);
 #endif
 }
 
-// Returns the fraction of a lamp's light that terrain lets through.
+// Returns the fraction of a lamp's light that terrain and the planet let through.
 float LampLit(Lamp lamp, vec3 way) { return clamp(LampClearance(lamp, way), 0.0, 1.0); }
 
 // Returns this fraction for ground, from its distance to the shadow edge, which is blurred to the
@@ -183,7 +195,7 @@ float LampLitGround(Lamp lamp, vec3 way, float ray_width_m) {
   float over_edge = step_m * LAMP_PLAN_RANGE * (255.0 * texel - 128.0) / 127.0;
   return clamp(0.5 + over_edge / ray_width_m, 0.0, 1.0);
 #else
-  return 1.0;
+  return LampLit(lamp, way);
 #endif
 }
 
@@ -235,10 +247,8 @@ vec4 GlowOfLamp(Lamp lamp, vec3 direction, float distance_m, bool shaped) {
   vec3 log_eye = LampLogDensities(lamp.up.w);
   vec3 log_lamp = LampLogDensities(lamp.at_eye.w);
   vec4 sum = vec4(0.0);
-#ifdef LAMP_SHADE
   vec4 light_before = vec4(0.0);
   float clear_before = 0.0;
-#endif
   for (int i = 0; i < LAMP_NODES; ++i) {
     float angle = exp(low + span * lamp_gauss[i].x);
     float fold = min(angle, 3.14159265 - angle);
@@ -264,7 +274,6 @@ vec4 GlowOfLamp(Lamp lamp, vec3 direction, float distance_m, bool shaped) {
     float weight = lamp_gauss[i].y * angle;
     if (shaped && !inside) weight *= LampShare(lamp, sine * across - cosine * along);
     vec4 light = (weight * source) * LampLeft(LampDepth(columns));
-#ifdef LAMP_SHADE
     // A node represents half the distance to its neighbours, of which the shadow edge may cut a
     // part. The light is then continuous when the edge passes a node.
     float clear = LampClearance(lamp, t * direction - lamp.position.xyz);
@@ -274,13 +283,8 @@ vec4 GlowOfLamp(Lamp lamp, vec3 direction, float distance_m, bool shaped) {
                                LampLitBetween(clear, middle) * light);
     light_before = light;
     clear_before = clear;
-#else
-    sum += light;
-#endif
   }
-#ifdef LAMP_SHADE
   sum += 0.5 * LampLitBetween(clear_before, clear_before) * light_before;
-#endif
   return lamp.intensity * (sum * (max(span, 0.0) * share / approach));
 }
 
@@ -364,9 +368,7 @@ vec4 LampOnGround(Lamp lamp, vec3 point_m, vec3 normal, float ray_width_m, bool 
                              exp(log_density));
   float facing = max(dot(normal, towards), 0.0) / (far * far);
   if (shaped) facing *= LampShare(lamp, LampCosines(lamp, -towards));
-#ifdef LAMP_SHADE
   facing *= LampLitGround(lamp, -way, ray_width_m);
-#endif
   vec4 light = facing * LampLeft(LampDepth(columns));
 #ifdef LAMP_GLOW_MAP
   light += lamp.glow.x * LampAirOnSurface(lamp, towards, far, normal);

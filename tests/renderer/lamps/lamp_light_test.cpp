@@ -430,6 +430,46 @@ TEST(LampExtremes, FogOverAHighBaseIsLitAsFogOverTheGround) {
   }
 }
 
+TEST(LampExtremes, ThePlanetHidesALampBeyondTheHorizon) {
+  Scene scene = NightScene();
+  scene.camera = CameraFromDegrees({2.0, false}, 0.0, 0.0, 0.0, 60.0);
+  // Both horizons together are 10.1 km away.
+  for (const double far_m : {9e3, 11e3, 100e3}) {
+    scene.lights = {tests::LampNear(scene.place, far_m, 0.0, 2.0, 1e9)};
+    const LampSite site(scene);
+    const bool is_seen = far_m < 10e3;
+    const CameraRays camera = CameraOn(site.ground, scene.camera, {}, 160, 90).middle();
+    const LampLight light = site.light.SeenBy(camera);
+    const glm::dvec3 to_lamp = glm::normalize(site.Place(scene.lights[0]) - camera.eye());
+    const Bands<float> seen =
+        light.Seen(light.All(), {camera.eye(), camera.eye(), to_lamp, to_lamp}, 1e-3);
+    EXPECT_EQ(site.Luminance(seen) > 0.0, is_seen) << far_m;
+    // Air along a ray to the sea is beyond the horizon of a far lamp.
+    const double low = site.InAir({0.0, 1.0, -1e-3}, 2000.0, 12);
+    EXPECT_EQ(low > 0.0, is_seen) << far_m;
+    const double high = site.InAir(glm::normalize(glm::dvec3(0.0, 1.0, 0.05)), INFINITY, 12);
+    EXPECT_GT(high, 0.0) << far_m << ": it lights the air above its horizon";
+  }
+}
+
+TEST(LampExtremes, AirIsLitWhereNoSeaIsBetweenItAndTheLamp) {
+  Scene scene = NightScene();
+  scene.lights = {tests::LampNear(scene.place, 40e3, 0.0, 2.0, 1e9)};
+  const LampSite site(scene);
+  const LampStage stage(scene, site.ground, site.medium);
+  const glm::dvec3 lamp = site.Place(scene.lights[0]);
+  constexpr double kHorizon_m = 5048.0;  // of the lamp
+  for (const double north_m : {1e3, 10e3, 20e3, 30e3}) {
+    const double shadow_m = std::pow(40e3 - north_m - kHorizon_m, 2.0) / (2.0 * 6.378e6);
+    for (const double off_m : {-2.0, 2.0}) {
+      const GeodeticPosition place{scene.place.latitude_rad + north_m / 6.371e6,
+                                   scene.place.longitude_rad, shadow_m + off_m};
+      EXPECT_EQ(stage.Sees(lamp, site.ground.frame.EnuFromGeodetic(place).xyz), off_m > 0.0)
+          << north_m << " m north";
+    }
+  }
+}
+
 TEST(LampExtremes, NoLampIsSeenThroughFogFarBelowItsBase) {
   Scene scene = FoggyNight(7.0, 5000.0);
   scene.lights = {LampToTheNorth(30.0, 100.0)};

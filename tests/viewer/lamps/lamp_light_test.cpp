@@ -324,6 +324,41 @@ TEST_F(LampsOnTheCard, ARidgeHidesALampFromGroundAndAirBehindIt) {
   EXPECT_LT(worst, 0.08) << "12 nodes find the edge of the shade";
 }
 
+TEST_F(LampsOnTheCard, ThePlanetShadesTheAirBeyondItsHorizon) {
+  Scene scene = Night(2.0, 0.0, 1.0);
+  scene.lights = {LightAt(40e3, 0.0, 2.0, 1e9)};
+  const BothLamps both(scene);
+  const LampStage stage(both.scene, both.ground, both.medium);
+  const glm::dvec3 lamp = both.light.At(0).lamp.position_m;
+  std::vector<tests::Arguments<float>> points;
+  std::vector<bool> lit;
+  for (const double north_m : {1e3, 10e3, 20e3, 30e3}) {
+    for (const double up_m : {0.0, 20.0, 150.0, 400.0}) {
+      const glm::dvec3 from_eye(0.0, north_m, up_m);
+      points.push_back({0.0F, static_cast<float>(north_m), static_cast<float>(up_m), 0, 0, 0});
+      lit.push_back(stage.Sees(lamp, both.eye_m + from_eye));
+    }
+  }
+  const std::vector<float> shares =
+      both.OnGpu("LampLit(lamps[0], vec3(a[0], a[1], a[2]) - lamps[0].position.xyz)", points);
+  for (std::size_t i = 0; i < points.size(); ++i)
+    EXPECT_EQ(shares[i] > 0.5F, lit[i]) << points[i][1] << " " << points[i][2];
+  const auto glow = [&](const glm::dvec3& way, double length_m) {
+    const auto x = static_cast<float>(way.x), y = static_cast<float>(way.y),
+               z = static_cast<float>(way.z), m = static_cast<float>(length_m);
+    const double card = double{both.OnGpu("LampAirlightIn(vec3(a[0], a[1], a[2]), a[3], 1.0)[2]",
+                                          {{x, y, z, m, 0.0F, 0.0F}})[0]};
+    return std::array<double, 2>{
+        card, double{both.light.InAir(both.light.All(), {way, length_m}, kLitPixel_rad, 32)[2]}};
+  };
+  const auto low = glow(glm::normalize(glm::dvec3(0.0, 1.0, -1e-3)), 2000.0);
+  EXPECT_EQ(low[0], 0.0) << "air over the nearest sea";
+  EXPECT_EQ(low[1], 0.0);
+  const auto high = glow(glm::normalize(glm::dvec3(0.0, 1.0, 0.03)), 1e9);
+  EXPECT_GT(high[1], 0.0);
+  EXPECT_NEAR(high[0] / high[1], 1.0, 0.1) << "12 nodes find the edge of the shade";
+}
+
 /// Points of the surface around the ridge, seen from the eye.
 std::vector<tests::Arguments<float>> OnRidge(const LampStage& stage, const glm::dvec3& eye_m) {
   std::mt19937 random(5);
