@@ -221,7 +221,7 @@ class FramePictures {
 };
 
 Metadata MetadataOf(const SeriesPlan& plan) {
-  Metadata metadata = PictureMetadata(plan.scene, plan.settings);
+  Metadata metadata = PictureMetadata(plan.scene, HashFilesOf(plan.scene), plan.settings);
   if (plan.viewpoint.path) {
     // Poses replace place and camera of the scene, which still place its mesh or range.
     metadata["alpenglow.path"] = fmt::format(

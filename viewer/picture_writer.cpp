@@ -67,8 +67,8 @@ Metadata PictureWriter::HeaderOf(const ImageSize& size, const Development& devel
   settings.height = size.height;
   settings.samples_per_pixel = kPictureSamples;
   settings.filter = PixelFilter::Kind::kBox;
-  Metadata metadata =
-      PictureMetadata(flight_.edits().SeenBy(flight_.eye(), flight_.now()), settings);
+  Metadata metadata = PictureMetadata(flight_.edits().SeenBy(flight_.eye(), flight_.now()),
+                                      flight_.edits().file_hashes(), settings);
   metadata["alpenglow.time"] = FormatUtc(flight_.now(), 3);
   metadata["alpenglow.painter"] = "skyview";
   metadata["alpenglow.quality"] = NameOf(flight_.frames().still_quality());

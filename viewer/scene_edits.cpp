@@ -53,6 +53,20 @@ SceneEdits::SceneEdits(const Scene& scene, const LandSource& land, SkyPainter& p
   scene_.terrain = first_terrain_;
   const SceneDrape& drape = painter.scene().fixed().drape;
   if (drape.colours && !drape.colours->note().empty()) notes_.push_back(drape.colours->note());
+  BeginHashing();
+}
+
+void SceneEdits::BeginHashing() {
+  std::promise<FileHashes> promise;
+  file_hashes_ = promise.get_future().share();
+  hashing_ = std::jthread(
+      [scene = scene_, promise = std::move(promise)](const std::stop_token& stop) mutable {
+        try {
+          promise.set_value(HashFilesOf(scene, stop));
+        } catch (...) {
+          promise.set_exception(std::current_exception());
+        }
+      });
 }
 
 void SceneEdits::Use(const AirChoice& choice, const GeodeticPosition& place) {
@@ -140,7 +154,6 @@ Scene SceneEdits::SeenBy(const CameraPose& eye, const UtcInstant& now) const {
   Scene seen = scene_;
   seen.place = eye.place;
   seen.place.height_m = 0.0;
-  if (!has_one_model_) seen.terrain.kind = TerrainSource::Kind::kNone;
   seen.time = now;
   seen.camera.height = {eye.place.height_m, false};
   seen.camera.heading_rad = eye.heading_rad;
@@ -152,7 +165,9 @@ Scene SceneEdits::SeenBy(const CameraPose& eye, const UtcInstant& now) const {
 
 ReferenceScene SceneEdits::ForRenderer(const CameraPose& eye, const UtcInstant& now) const {
   ReferenceScene scene{SeenBy(eye, now), nullptr};
-  if (!has_one_model_) scene.ground = GroundAround(eye.place);
+  if (has_one_model_) return scene;
+  scene.scene.terrain.kind = TerrainSource::Kind::kNone;
+  scene.ground = GroundAround(eye.place);
   return scene;
 }
 

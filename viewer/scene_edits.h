@@ -4,14 +4,17 @@
 #pragma once
 
 #include <functional>
+#include <future>
 #include <memory>
 #include <optional>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include "atmosphere/medium/medium_presets.h"
 #include "renderer/picture/reference_picture.h"
 #include "renderer/scene/scene.h"
+#include "renderer/series/manifest.h"
 #include "viewer/flight/flight_controller.h"
 #include "viewer/passes/sky_painter.h"
 
@@ -62,8 +65,11 @@ class SceneEdits {
   /// Returns a number that increases with each change.
   [[nodiscard]] int version() const { return version_; }
 
-  /// Returns the scene as seen by an eye, without land of several elevation models.
+  /// Returns the scene as seen by an eye.
   [[nodiscard]] Scene SeenBy(const CameraPose& eye, const UtcInstant& now) const;
+  /// Returns hashes of the files of the scene, which were read when the scene was loaded. Throws
+  /// InputError if one could not be read.
+  [[nodiscard]] const FileHashes& file_hashes() const { return file_hashes_.get(); }
   /// Returns the scene for the renderer. A scene file cannot describe land of several elevation
   /// models; for those it holds the land that is loaded around the eye.
   [[nodiscard]] ReferenceScene ForRenderer(const CameraPose& eye, const UtcInstant& now) const;
@@ -73,6 +79,7 @@ class SceneEdits {
   [[nodiscard]] std::vector<std::string> PollNotes();
 
  private:
+  void BeginHashing();
   void UseRange(const TerrainSource& range);
   /// Returns a function that samples the loaded land around the eye for the renderer.
   [[nodiscard]] std::function<std::shared_ptr<const SceneGround>()> GroundAround(
@@ -86,6 +93,8 @@ class SceneEdits {
   SceneChanges changes_;
   int version_ = 0;
   std::vector<std::string> notes_;
+  std::shared_future<FileHashes> file_hashes_;
+  std::jthread hashing_;  // last member: its thread ends before the other members
 };
 
 /// Place of the eye over the ground. The ground may be known only after the eye is there: until the

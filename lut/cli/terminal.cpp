@@ -28,8 +28,8 @@ int ColumnsOf(int descriptor, int otherwise) {
   winsize size = {};
   if (ioctl(descriptor, TIOCGWINSZ, &size) == 0 && size.ws_col > 0) return size.ws_col;
   const char* const given = std::getenv("COLUMNS");
-  const int columns = given == nullptr ? 0 : std::atoi(given);
-  return columns > 0 ? columns : otherwise;
+  const std::optional<double> columns = atmosphere::ParseNumber(given == nullptr ? "" : given);
+  return columns && *columns >= 1.0 && *columns < 10000.0 ? static_cast<int>(*columns) : otherwise;
 }
 
 namespace {

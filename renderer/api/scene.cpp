@@ -19,10 +19,12 @@ namespace alpenglow {
 using atmosphere::kRadiansPerDegree;
 
 struct Scene::State {
-  explicit State(const renderer::Scene& loaded) : scene(loaded), renderer(loaded) {}
+  explicit State(const renderer::Scene& loaded)
+      : scene(loaded), renderer(loaded), hashes(renderer::HashFilesOf(loaded)) {}
 
   renderer::Scene scene;
   renderer::SceneRenderer renderer;
+  renderer::FileHashes hashes;  // of what has been loaded
 };
 
 namespace {
@@ -91,7 +93,7 @@ HdrImage Scene::Render(UtcTime time, const StillOptions& options) const {
   settings.layers = renderer::LayersFromNames(options.layers);
   HdrImage still = HdrImageFrom(state_->renderer.Render(InstantFromTime(time), settings));
   still.is_panorama = state_->scene.camera.IsPanorama();
-  still.metadata = renderer::PictureMetadata(state_->scene, settings);
+  still.metadata = renderer::PictureMetadata(state_->scene, state_->hashes, settings);
   still.metadata["alpenglow.utc"] = TextFromTime(time);
   return still;
 }

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <fstream>
 #include <type_traits>
@@ -35,13 +36,15 @@ class Hash {
   std::uint64_t value_ = 0xcbf29ce484222325U;
 };
 
-std::string HashOfFile(const std::filesystem::path& file) {
+std::string HashOfFile(const std::filesystem::path& file, const std::stop_token& stop) {
   std::ifstream stream(file, std::ios::binary);
   Hash hash;
   std::vector<char> block(1U << 20U);
   while (stream.read(block.data(), static_cast<std::streamsize>(block.size())) ||
          stream.gcount() > 0) {
     hash.Add({block.data(), static_cast<std::size_t>(stream.gcount())});
+    if (stop.stop_requested())
+      throw InputError(fmt::format("{}: is not read to its end", file.string()));
   }
   if (!stream.eof()) throw InputError(fmt::format("{}: cannot be read", file.string()));
   return hash.Text();
@@ -54,25 +57,21 @@ std::string HeightText(const Height& height) {
                      height.above_ground ? "ground" : "ellipsoid");
 }
 
-std::string NameAndHashOf(const std::filesystem::path& file) {
-  return fmt::format("{}, hash {}", file.filename().string(), HashOfFile(file));
-}
-
 /// Returns the number of the elevation models, and a hash of their names and contents in their
 /// order.
-std::string TextOfModels(const Scene& scene) {
+std::string TextOfModels(const Scene& scene, const std::stop_token& stop) {
   const LandTiles tiles(LandSourceOf(scene));
   Metadata files;
   std::filesystem::path last;
   for (const LandTile& tile : tiles.tiles()) {
     if (std::exchange(last, tile.file) == tile.file) continue;  // another part of a large file
     files[fmt::format("{:06} {}", files.size(), tile.file.filename().string())] =
-        HashOfFile(tile.file);
+        HashOfFile(tile.file, stop);
   }
   return fmt::format("{} elevation models, hash {}", files.size(), Fingerprint(files));
 }
 
-std::string TerrainText(const Scene& scene) {
+std::string TerrainText(const Scene& scene, const FileHashes& hashes) {
   const TerrainSource& terrain = scene.terrain;
   switch (terrain.kind) {
     case TerrainSource::Kind::kProceduralMountains:
@@ -87,17 +86,17 @@ std::string TerrainText(const Scene& scene) {
     case TerrainSource::Kind::kElevationModel:
       return fmt::format(
           "{}, voids {}",
-          terrain.HasManyModels() ? TextOfModels(scene) : NameAndHashOf(terrain.file),
+          hashes.models.empty() ? hashes.names_and_hashes.at(terrain.file) : hashes.models,
           terrain.voids == VoidPolicy::kFill ? "filled" : "open");
     case TerrainSource::Kind::kMesh:
-      return NameAndHashOf(terrain.file) + (terrain.up == UpAxis::kY ? ", y up" : "");
+      return hashes.names_and_hashes.at(terrain.file) + (terrain.up == UpAxis::kY ? ", y up" : "");
     case TerrainSource::Kind::kNone:
       return "none";
   }
   throw InternalError("unknown kind of terrain");
 }
 
-std::string LightText(const Light& light) {
+std::string LightText(const Light& light, const FileHashes& hashes) {
   std::string text = fmt::format(
       "{} at {}, {}, {}: {} cd, {} K, radius {} m",
       light.type == Light::Type::kSpot ? "spot" : "point", DegreesText(light.latitude_rad),
@@ -105,7 +104,7 @@ std::string LightText(const Light& light) {
       light.intensity_cd ? fmt::format("{}", *light.intensity_cd) : "as measured",
       light.temperature_k, light.radius_m);
   if (light.ies) {
-    text += ", " + NameAndHashOf(*light.ies);
+    text += ", " + hashes.names_and_hashes.at(*light.ies);
   } else if (light.type == Light::Type::kPoint) {
     return text;
   }
@@ -141,8 +140,9 @@ Metadata KeysOf(const GroundCover& ground) {
   return values;
 }
 
-/// Returns every value of a [[volume]], with the hashes of its grid's files.
-Metadata KeysOf(const Volume& volume) {
+/// Returns every value of a [[volume]].
+/// @param grid  names and hashes of its grid's files.
+Metadata KeysOf(const Volume& volume, const std::string& grid) {
   Metadata values = {
       {"shape", volume.shape == VolumePlacement::Shape::kBox ? "box" : "ellipsoid"},
       {"latitude", DegreesText(volume.latitude_rad)},
@@ -157,13 +157,12 @@ Metadata KeysOf(const Volume& volume) {
   if (volume.scale_height_m) values["scale_height_m"] = fmt::format("{}", *volume.scale_height_m);
   if (volume.temperature_k) values["temperature_k"] = fmt::format("{}", *volume.temperature_k);
   if (volume.grid_size) values["grid_size"] = fmt::format("{}", fmt::join(*volume.grid_size, " "));
-  std::string& grid = values["grid"];
-  for (const std::filesystem::path& file : FilesOf(volume)) grid += NameAndHashOf(file) + "; ";
+  values["grid"] = grid;
   return values;
 }
 
 /// Adds the air of a scene, and what lies in it.
-void AddAirOf(const Scene& scene, Metadata& metadata) {
+void AddAirOf(const Scene& scene, const FileHashes& hashes, Metadata& metadata) {
   const Medium& medium = scene.medium;
   metadata["alpenglow.atmosphere"] = medium.name;
   metadata["alpenglow.atmosphere_hash"] = fmt::format("{:016x}", MediumHash(medium));
@@ -173,23 +172,49 @@ void AddAirOf(const Scene& scene, Metadata& metadata) {
     metadata["alpenglow.town_zenith_mag_per_arcsec2"] = fmt::format("{}", *scene.town_zenith);
   if (scene.fog) metadata["alpenglow.fog"] = FogText(*scene.fog);
   for (std::size_t i = 0; i < scene.volumes.size(); ++i) {
-    metadata[fmt::format("alpenglow.volume_{}_hash", i)] = Fingerprint(KeysOf(scene.volumes[i]));
+    metadata[fmt::format("alpenglow.volume_{}_hash", i)] =
+        Fingerprint(KeysOf(scene.volumes[i], hashes.grids.at(i)));
   }
 }
 
 /// Adds terrain and ground cover.
-void AddGroundOf(const Scene& scene, Metadata& metadata) {
+void AddGroundOf(const Scene& scene, const FileHashes& hashes, Metadata& metadata) {
   const TerrainSource& terrain = scene.terrain;
-  metadata["alpenglow.terrain"] = TerrainText(scene);
-  if (!terrain.colour.empty()) metadata["alpenglow.terrain_colour"] = NameAndHashOf(terrain.colour);
+  metadata["alpenglow.terrain"] = TerrainText(scene, hashes);
+  if (!terrain.colour.empty())
+    metadata["alpenglow.terrain_colour"] = hashes.names_and_hashes.at(terrain.colour);
   if (!terrain.land_cover.empty())
-    metadata["alpenglow.land_cover"] = NameAndHashOf(terrain.land_cover);
+    metadata["alpenglow.land_cover"] = hashes.names_and_hashes.at(terrain.land_cover);
   metadata["alpenglow.ground_hash"] = Fingerprint(KeysOf(scene.ground));
 }
 
 }  // namespace
 
-Metadata SceneMetadata(const Scene& scene) {
+FileHashes HashFilesOf(const Scene& scene, const std::stop_token& stop) {
+  FileHashes hashes;
+  std::vector<std::filesystem::path> models;
+  if (scene.terrain.HasManyModels()) {
+    models = LandSourceOf(scene).files;
+    hashes.models = TextOfModels(scene, stop);
+  }
+  for (const NamedFile& named : FilesOf(scene)) {
+    if (std::find(models.begin(), models.end(), named.file) != models.end()) continue;
+    const auto [known, is_new] = hashes.names_and_hashes.try_emplace(named.file);
+    if (is_new)
+      known->second =
+          fmt::format("{}, hash {}", named.file.filename().string(), HashOfFile(named.file, stop));
+  }
+  for (const Volume& volume : scene.volumes) {
+    std::string& grid = hashes.grids.emplace_back();
+    for (const std::filesystem::path& file : FilesOf(volume))
+      grid += hashes.names_and_hashes.at(file) + "; ";
+  }
+  return hashes;
+}
+
+Metadata SceneMetadata(const Scene& scene) { return SceneMetadata(scene, HashFilesOf(scene)); }
+
+Metadata SceneMetadata(const Scene& scene, const FileHashes& hashes) {
   const Camera& camera = scene.camera;
   Metadata metadata = {{"Software", ProducerText()},
                        {"alpenglow.unit", "cd/m^2, linear sRGB (Rec. 709 primaries, D65)"},
@@ -200,8 +225,8 @@ Metadata SceneMetadata(const Scene& scene) {
                        {"alpenglow.pitch_deg", DegreesText(camera.pitch_rad)},
                        {"alpenglow.roll_deg", DegreesText(camera.roll_rad)},
                        {"alpenglow.fov_deg", DegreesText(camera.fov_rad)}};
-  AddAirOf(scene, metadata);
-  AddGroundOf(scene, metadata);
+  AddAirOf(scene, hashes, metadata);
+  AddGroundOf(scene, hashes, metadata);
   if (camera.lens) {
     const ThinLens& lens = *camera.lens;
     metadata["alpenglow.lens"] =
@@ -212,7 +237,7 @@ Metadata SceneMetadata(const Scene& scene) {
     metadata["alpenglow.polariser_deg"] = DegreesText(*camera.polariser_rad);
   if (camera.shutter_s > 0.0) metadata["alpenglow.shutter_s"] = fmt::format("{}", camera.shutter_s);
   for (std::size_t i = 0; i < scene.lights.size(); ++i) {
-    metadata[fmt::format("alpenglow.light_{}", i)] = LightText(scene.lights[i]);
+    metadata[fmt::format("alpenglow.light_{}", i)] = LightText(scene.lights[i], hashes);
   }
   return metadata;
 }
@@ -227,8 +252,9 @@ Metadata PoseMetadata(const CameraPose& pose) {
           {"alpenglow.fov_deg", DegreesText(pose.fov_rad)}};
 }
 
-Metadata PictureMetadata(const Scene& scene, const RenderSettings& settings) {
-  Metadata metadata = SceneMetadata(scene);
+Metadata PictureMetadata(const Scene& scene, const FileHashes& hashes,
+                         const RenderSettings& settings) {
+  Metadata metadata = SceneMetadata(scene, hashes);
   metadata["alpenglow.size"] = fmt::format("{}x{}", settings.width, settings.height);
   metadata["alpenglow.samples"] = fmt::format("{}", settings.samples_per_pixel);
   if (settings.noise) metadata["alpenglow.noise"] = fmt::format("{}", *settings.noise);

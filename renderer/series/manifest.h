@@ -5,7 +5,10 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
+#include <map>
 #include <optional>
+#include <stop_token>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -21,17 +24,31 @@
 
 namespace alpenglow::renderer {
 
+/// Names of the files of a scene, with hashes of their contents.
+struct FileHashes {
+  std::map<std::filesystem::path, std::string> names_and_hashes;
+  std::string models;              // of all elevation models; empty if there are not several
+  std::vector<std::string> grids;  // of each volume
+};
+/// Reads all files of a scene. Throws InputError when one cannot be read, or when a stop is
+/// requested.
+[[nodiscard]] FileHashes HashFilesOf(const Scene& scene, const std::stop_token& stop = {});
+
 /// Returns program, place, camera, air, fog, volumes, terrain, ground and lamps of a scene, except
 /// its time and zone: any other change of the scene that changes the picture changes a value.
-/// Numbers are written so that they read back exactly, or hashed. The contents of files are hashed:
-/// throws InputError when one cannot be read.
+/// Numbers are written so that they read back exactly, or hashed.
+/// @param hashes  of the files of this scene, taken when the scene was loaded.
+[[nodiscard]] Metadata SceneMetadata(const Scene& scene, const FileHashes& hashes);
+/// Does the same with hashes of the files as they are now. Throws InputError when one cannot be
+/// read.
 [[nodiscard]] Metadata SceneMetadata(const Scene& scene);
 
 /// Returns place, height and angles of a camera, which replace those of SceneMetadata.
 [[nodiscard]] Metadata PoseMetadata(const CameraPose& pose);
 
 /// Returns SceneMetadata and the settings that affect the pixels.
-[[nodiscard]] Metadata PictureMetadata(const Scene& scene, const RenderSettings& settings);
+[[nodiscard]] Metadata PictureMetadata(const Scene& scene, const FileHashes& hashes,
+                                       const RenderSettings& settings);
 
 /// Returns the ray statistics of a picture for its header.
 [[nodiscard]] Metadata NotesOn(const RayCount& rays, const RenderSettings& settings);

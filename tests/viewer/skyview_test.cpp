@@ -353,7 +353,9 @@ TEST_F(SkyviewLand, SeveralModelsAreOneLand) {
   const std::string both = "--dem west.tif --dem east.tif --pitch -20";
   const Outcome outcome = TakeScreenshot(both, "a.exr");
   EXPECT_EQ(outcome.status, 0) << outcome.error;
-  const std::string height = ReadExrMetadata(folder_ / "a.exr").at("alpenglow.camera_height");
+  const Metadata header = ReadExrMetadata(folder_ / "a.exr");
+  EXPECT_THAT(header.at("alpenglow.terrain"), HasSubstr("2 elevation models, hash "));
+  const std::string height = header.at("alpenglow.camera_height");
   EXPECT_GT(std::stod(height), 300.0) << "over the ground in the middle of both: " << height;
   const Outcome beside =
       TakeScreenshot(both + " --latitude 47.5 --longitude 8 --altitude 3000", "b.exr");

@@ -3,6 +3,8 @@
 #include <alpenglow/scene.h>
 #include <gtest/gtest.h>
 
+#include <filesystem>
+
 #include "renderer/picture/render.h"
 #include "tests/fixtures/temporary_folder.h"
 
@@ -60,6 +62,21 @@ TEST_F(ApiScene, WrongInputIsRefused) {
   sea.elevation_model = folder_ / "none.tif";
   EXPECT_THROW((void)Scene(sea), InputError);
   EXPECT_THROW((void)Scene::Read(folder_ / "none.toml"), InputError);
+}
+
+TEST_F(ApiScene, ARenderedSceneNeedsItsFilesNoMore) {
+  WriteText(folder_ / "flat.obj", "v -900 -900 0\nv 900 -900 0\nv 0 900 0\nf 1 2 3\n");
+  WriteText(folder_ / "flat.toml",
+            "[place]\nlatitude = 46.5\nlongitude = 8.0\n[camera]\nheight_m = 300.0\n"
+            "[terrain]\nmesh = \"flat.obj\"\n");
+  const Scene scene = Scene::Read(folder_ / "flat.toml");
+  const UtcTime time = TimeFromText("2026-06-21T16:00:00Z");
+  const HdrImage first = scene.Render(time, kSmall);
+  EXPECT_NE(first.metadata.at("alpenglow.terrain").find("flat.obj, hash "), std::string::npos);
+  WriteText(folder_ / "flat.obj", "something else");
+  EXPECT_EQ(scene.Render(time, kSmall).metadata, first.metadata) << "the file that was loaded";
+  std::filesystem::remove(folder_ / "flat.obj");
+  EXPECT_EQ(scene.Render(time, kSmall).metadata, first.metadata);
 }
 
 TEST(BuiltInScene, LooksAtTheMountainsFromTheGround) {
