@@ -15,7 +15,9 @@ namespace {
 /// Returns a direction to a point of the sun's disk, drawn from the limb-darkened distribution of
 /// its light.
 glm::dvec3 TowardsDisk(const Lighting& light, std::array<double, 2> sample) {
-  const glm::dvec3 side = glm::normalize(glm::cross(light.to_sun, glm::dvec3(0.3, -0.5, 0.8)));
+  glm::dvec3 across = glm::cross(light.to_sun, glm::dvec3(0.3, -0.5, 0.8));
+  if (glm::dot(across, across) < 1e-6) across = glm::cross(light.to_sun, glm::dvec3(1.0, 0.0, 0.0));
+  const glm::dvec3 side = glm::normalize(across);
   const double rho = light.sun_radius_rad * CircleOfLight(sample[0]);
   const double angle = 2.0 * kPi * sample[1];
   return glm::normalize(light.to_sun + rho * (std::cos(angle) * side +
@@ -114,7 +116,7 @@ BandLight GroundLight::SkyIrradiance(const Hit& hit, const GroundSources& from,
 GroundPatch GroundLight::PatchAt(const Hit& hit, const Lighting& light, const glm::dvec3& up,
                                  double cosine) const {
   GroundPoint at = parts_.geometry.GroundAt(hit.point, hit.footprint_m, cosine);
-  at.normal_north = hit.mesh_normal.y;
+  at.normal_north = parts_.geometry.pattern().Northward(hit.mesh_normal, up);
   at.sea_s = light.sea_s;
   if (hit.kind == HitKind::kTerrain) {
     return parts_.material.OfTerrain(at, hit.point, glm::dot(hit.mesh_normal, up), light.surface);
@@ -160,7 +162,8 @@ SeenGround GroundLight::SeenFrom(const Hit& hit, const glm::dvec3& to_eye,
   SeenGround seen{PatchAt(hit, light, up, glm::dot(hit.mesh_normal, to_eye)), hit, {}, up, to_eye};
   if (seen.patch.IsWater()) {
     seen.hit.mesh_normal = up;
-    seen.hit.normal = seen.patch.WaterNormal(up);
+    const GroundPattern& pattern = parts_.geometry.pattern();
+    seen.hit.normal = pattern.FromPattern(seen.patch.WaterNormal(pattern.ToPattern(up)));
   }
   const double mu_eye = AnglesBetween(seen.hit.normal, seen.hit.normal, to_eye).mu_eye;
   seen.albedo = seen.patch.BodyAlbedo(mu_eye);

@@ -216,6 +216,7 @@ double TopOf(const SceneGround& ground, double radius_m) {
 SceneGeometry::SceneGeometry(const SceneGround& ground, const Medium& medium, bool with_relief)
     : ground_(ground),
       medium_(medium),
+      pattern_(ground.frame),
       with_relief_(with_relief),
       top_m_(TopOf(ground, medium.planet_radius_m)),
       bottom_m_(BottomOf(ground)) {}
@@ -230,13 +231,15 @@ glm::dvec3 SceneGeometry::UpAt(const glm::dvec3& point) const {
 
 GroundPoint SceneGeometry::GroundAt(const glm::dvec3& point, double footprint_m,
                                     double cosine) const {
-  const GeodeticPosition& origin = ground_.frame.origin();
-  return {origin.longitude_rad * std::cos(origin.latitude_rad) * radius_m() + point.x,
-          origin.latitude_rad * radius_m() + point.y,
-          std::max(AltitudeOf(point), 0.0),
-          footprint_m,
-          cosine,
-          point.z};
+  GroundPoint at = pattern_.At(point);
+  at.altitude_m = std::max(AltitudeOf(point), 0.0);
+  at.across_m = footprint_m;
+  at.cosine = cosine;
+  return at;
+}
+
+glm::dvec3 SceneGeometry::DetailedNormal(const GroundPoint& at, const glm::dvec3& normal) const {
+  return pattern_.FromPattern(MountainSurface::DetailedNormal(at, pattern_.ToPattern(normal)));
 }
 
 // Returns whether the bare planet stands between the eye and terrain beyond its horizon: the ray
@@ -270,7 +273,7 @@ Hit SceneGeometry::OnTerrain(const TerrainHit& hit, const glm::dvec3& origin,
             hit.geometric_normal, origin + hit.distance_m * direction,
             hit.smooth_point,     distance_m * pixel_angle_rad};
   if (with_relief_) {
-    found.normal = MountainSurface::DetailedNormal(
+    found.normal = DetailedNormal(
         GroundAt(found.point, found.footprint_m, -glm::dot(found.normal, direction)), found.normal);
   }
   return found;

@@ -40,6 +40,7 @@
 #include "atmosphere/medium/medium.h"
 #include "atmosphere/refraction/refraction.h"
 #include "renderer/layer.h"
+#include "renderer/surface/ground_pattern.h"
 #include "renderer/surface/scene_ground.h"
 #include "renderer/surface/surface.h"
 #include "renderer/visibility/shadow_heights.h"
@@ -142,6 +143,9 @@ class SceneGeometry {
   /// @param cosine  between the ray and the normal of the mesh.
   [[nodiscard]] GroundPoint GroundAt(const glm::dvec3& point, double footprint_m,
                                      double cosine = 1.0) const;
+  [[nodiscard]] const GroundPattern& pattern() const { return pattern_; }
+  /// Returns MountainSurface::DetailedNormal in the frame of the ground.
+  [[nodiscard]] glm::dvec3 DetailedNormal(const GroundPoint& at, const glm::dvec3& normal) const;
 
   /// @param direction  unit.
   /// @param pixel_angle_rad  between neighbouring pixels.
@@ -181,6 +185,7 @@ class SceneGeometry {
 
   const SceneGround& ground_;
   const Medium& medium_;
+  GroundPattern pattern_;
   bool with_relief_;
   double top_m_;     // no terrain is above this altitude
   double bottom_m_;  // no terrain is below this altitude

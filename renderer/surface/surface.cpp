@@ -197,7 +197,8 @@ glm::dvec3 MountainSurface::DetailedNormal(const GroundPoint& point, const glm::
 }
 
 glm::dvec3 WavySurface::Normal(const glm::dvec3& up) const {
-  return glm::normalize(up - glm::dvec3(slope_east, slope_north, 0.0));
+  const glm::dvec3 tilt(slope_east, slope_north, 0.0);
+  return glm::normalize(up - tilt + glm::dot(tilt, up) * up);
 }
 
 WavySurface WavesAt(const GroundPoint& point, double slope_variance) {

@@ -23,12 +23,12 @@ namespace alpenglow::renderer {
 
 /// A point of the ground with the inputs of its material.
 struct GroundPoint {
-  double east_m, north_m;  // anchored to the planet, so that the pattern does not move with the eye
+  double east_m, north_m;  // in the plane of the pattern (ground_pattern.h)
   double altitude_m;
   double across_m;            // width of a camera ray: finer detail is left out
   double cosine = 1.0;        // of the ray and the normal of the mesh
-  double up_m = 0.0;          // in the frame of east_m, above the plane of the pattern
-  double normal_north = 0.0;  // component of the normal of the mesh
+  double up_m = 0.0;          // above the plane of the pattern
+  double normal_north = 0.0;  // northward component of the normal of the mesh
   double sea_s = 0.0;         // time of the waves
 };
 
@@ -67,6 +67,7 @@ struct WavySurface {
   double slope_east = 0.0, slope_north = 0.0;
   double slope_variance;  // of the waves that are not resolved
 
+  /// @param up  in the frame of the pattern, like the result.
   [[nodiscard]] glm::dvec3 Normal(const glm::dvec3& up) const;
 };
 
@@ -102,7 +103,7 @@ class MountainSurface {
                                     const std::optional<MappedCover>& mapped = std::nullopt) const;
 
   /// Returns the unit normal with the relief that a mesh of 30 to 100 m spacing lacks, in waves of
-  /// 220 to 7 m. The normal is tilted by about 6.4 degrees rms where the footprint is small, and
+  /// 220 to 7 m, in the frame of the pattern like `normal`. The normal is tilted by about 6.4 degrees rms where the footprint is small, and
   /// unchanged where it is over 110 m.
   [[nodiscard]] static glm::dvec3 DetailedNormal(const GroundPoint& point,
                                                  const glm::dvec3& normal);
@@ -125,6 +126,7 @@ class GroundPatch {
 
   [[nodiscard]] bool IsWater() const { return kind_ == GroundCover::Kind::kWater; }
   /// Returns the normal of water, with the resolved waves.
+  /// @param up  in the frame of the pattern, like the result.
   [[nodiscard]] glm::dvec3 WaterNormal(const glm::dvec3& up) const { return waves_.Normal(up); }
   /// Returns whether the patch mirrors the sky.
   [[nodiscard]] bool IsGlossy() const {

@@ -128,11 +128,13 @@ GroundSurfaceBlock GroundSurfaceBlockOf(const GroundMaterial& material) {
   return block;
 }
 
-GroundSurfaceBlock Draped(GroundSurfaceBlock block, const FlatRectangle& picture, double eye_x_m,
-                          double eye_y_m) {
+GroundSurfaceBlock Draped(GroundSurfaceBlock block, const FlatRectangle& picture,
+                          const FrameTransform& eye_from_drape, const GroundPattern& pattern) {
   block.drape_place = {picture.west_m, picture.south_m, 1.0 / picture.width_m,
                        1.0 / picture.depth_m};
-  block.drape_eye = {eye_x_m, eye_y_m, 0.0, 0.0};
+  block.drape_eye = glm::vec4(eye_from_drape.PointBack(glm::dvec3(0.0)), 0.0);
+  block.drape_east = glm::vec4(pattern.ToPattern(eye_from_drape.axes()[0]), 0.0);
+  block.drape_north = glm::vec4(pattern.ToPattern(eye_from_drape.axes()[1]), 0.0);
   return block;
 }
 

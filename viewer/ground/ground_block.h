@@ -26,6 +26,7 @@
 #include "renderer/picture/lit_ground.h"
 #include "renderer/scene/scene.h"
 #include "renderer/surface/colour_drape.h"
+#include "renderer/surface/ground_pattern.h"
 #include "renderer/surface/scene_ground.h"
 #include "renderer/surface/surface.h"
 #include "viewer/gl/gl_context.h"
@@ -80,19 +81,20 @@ static_assert(offsetof(GroundLightBlock, ground_view) == sizeof(glm::vec4));
 /// Mirrors the uniform block `GroundSurface` of ground_surface.glsl.
 struct GroundSurfaceBlock {
   glm::vec4 cover_albedo, rough, coat, water, under_water, snow_y;
-  glm::vec4 drape_red, drape_green, drape_blue, drape_place, drape_eye;
+  glm::vec4 drape_red, drape_green, drape_blue, drape_place, drape_eye, drape_east, drape_north;
   std::array<glm::vec4, 17> by_root_mu;
 };
-static_assert(sizeof(GroundSurfaceBlock) == 28 * sizeof(glm::vec4));
+static_assert(sizeof(GroundSurfaceBlock) == 30 * sizeof(glm::vec4));
 static_assert(offsetof(GroundSurfaceBlock, drape_red) == 6 * sizeof(glm::vec4));
-static_assert(offsetof(GroundSurfaceBlock, by_root_mu) == 11 * sizeof(glm::vec4));
+static_assert(offsetof(GroundSurfaceBlock, by_root_mu) == 13 * sizeof(glm::vec4));
 
 /// Returns the block with all values that do not depend on the eye.
 [[nodiscard]] GroundSurfaceBlock GroundSurfaceBlockOf(const GroundMaterial& material);
-/// Returns the block with the rectangle of a drape.
-/// @param eye_x_m, eye_y_m  position of the eye in the frame of the ground.
+/// Returns the block with the rectangle of a drape, seen by an eye at the origin of its frame.
+/// @param eye_from_drape  from the frame of the drape to that of the eye.
 [[nodiscard]] GroundSurfaceBlock Draped(GroundSurfaceBlock block, const FlatRectangle& picture,
-                                        double eye_x_m, double eye_y_m);
+                                        const FrameTransform& eye_from_drape,
+                                        const GroundPattern& pattern);
 
 /// Properties of the terrain of a scene that select shader code.
 struct LandKind {

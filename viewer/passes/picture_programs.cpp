@@ -9,6 +9,7 @@
 
 #include "atmosphere/time_place/geodesy.h"
 #include "lut/camera_tables/air_rows.h"
+#include "renderer/surface/ground_pattern.h"
 #include "renderer/surface/surface.h"
 #include "viewer/air/air_follower.h"
 #include "viewer/gl/gl_context.h"
@@ -66,38 +67,15 @@ std::vector<ShaderPiece> PictureTexts(const PictureKind& kind, const PictureStag
 
 namespace {
 
-// Returns the frame of the ground's pattern, in which a draped image also lies.
-LocalFrame PatternOf(const PaintedScene& scene) {
-  GeodeticPosition origin = scene.fixed().place;
-  origin.height_m = 0.0;
-  return {scene.fixed().ellipsoid, origin};
-}
-
-// Returns the eye's point in the pattern's coordinates.
-GroundPoint OnPattern(const PaintedScene& scene, const glm::dvec3& eye, const UtcInstant& now) {
-  const Medium& medium = scene.air().air()->medium;
-  const GeodeticPosition& origin = scene.fixed().place;
-  const double radius =
-      medium.follows_wgs84 ? OsculatingRadius(kWgs84, origin.latitude_rad) : medium.planet_radius_m;
-  GroundPoint at{origin.longitude_rad * std::cos(origin.latitude_rad) * radius + eye.x,
-                 origin.latitude_rad * radius + eye.y, eye.z, 0.0};
-  at.up_m = eye.z;
-  at.sea_s = SeaTime(now);
-  return at;
-}
-
 GroundBlock GroundAround(const PaintedScene& scene, const PaintedView& view) {
-  const FrameTransform from_pattern(LocalFrame(scene.fixed().ellipsoid, view.eye.place),
-                                    PatternOf(scene));
   const MountainSurface surface(scene.air().air()->medium.wavelengths_nm,
                                 CoverInSeason(view.eye.place, view.now.modified_julian_day),
                                 scene.fixed().material.cover().wetness);
-  GroundBlock block = GroundBlockOf(
-      surface, OnPattern(scene, PatternOf(scene).EnuFromGeodetic(view.eye.place).xyz, view.now));
+  const GroundPattern pattern(LocalFrame(scene.fixed().ellipsoid, view.eye.place));
+  GroundPoint eye = pattern.At(glm::dvec3(0.0));
+  eye.sea_s = SeaTime(view.now);
+  GroundBlock block = WithAxesOf(pattern, GroundBlockOf(surface, eye));
   block.cover_lines.z = static_cast<float>(scene.sizes().dropped_octaves);
-  block.mesh_east = glm::vec4(from_pattern.axes()[0], 0.0);
-  block.mesh_north = glm::vec4(from_pattern.axes()[1], 0.0);
-  block.mesh_up = glm::vec4(from_pattern.axes()[2], 0.0);
   return block;
 }
 
@@ -112,8 +90,12 @@ GroundLightBlock LightAround(const PaintedScene& scene, const PaintedView& view,
 GroundSurfaceBlock SurfaceAround(const PaintedScene& scene, const CameraPose& eye) {
   const GroundSurfaceBlock cover = GroundSurfaceBlockOf(scene.fixed().material);
   if (!scene.fixed().drape.colours) return cover;
-  const glm::dvec3 at = PatternOf(scene).EnuFromGeodetic(eye.place).xyz;
-  return Draped(cover, scene.fixed().drape.place, at.x, at.y);
+  GeodeticPosition origin = scene.fixed().place;
+  origin.height_m = 0.0;
+  const LocalFrame frame(scene.fixed().ellipsoid, eye.place);
+  return Draped(cover, scene.fixed().drape.place,
+                FrameTransform(frame, LocalFrame(scene.fixed().ellipsoid, origin)),
+                GroundPattern(frame));
 }
 
 // Sets the refraction of the view. Without refraction the planet appears with its true radius.

@@ -2,7 +2,7 @@
 // Albedo of the ground around the eye, and relief finer than the mesh: GroundBlock of
 // pass_setup.h, with the functions of ground_cover.glsl and lattice_noise.glsl.
 //
-// Positions are in metres from the eye along the east, north and upward axes of the mesh. For every
+// Positions are in metres from the eye along the axes of the pattern (ground_pattern.h). For every
 // octave the eye's position is given as a lattice cell and a fraction of it, so that floats suffice
 // for places thousands of kilometres from the origin of the pattern.
 #define BROAD 0
@@ -25,9 +25,10 @@ layout(std140) uniform Ground {
   vec4 green_lines;      // lines of leaves, bare trees, grass and broad-leaved woods [m]
   ivec4 octave_cell[33]; // cell of the eye, east and north: NoiseOctave, octaves of all families
   vec4 octave_place[33]; // fraction of the cell, east and north; lean, east and north
-  vec4 mesh_east;        // axes of the mesh in the frame of the eye
-  vec4 mesh_north;
-  vec4 mesh_up;
+  vec4 pattern_east;     // axes of the pattern in the frame of the eye
+  vec4 pattern_north;
+  vec4 pattern_up;
+  vec4 pole;             // direction of the north pole in the frame of the eye
 };
 
 ivec4 NoiseOf(int family) {  // longest wave [m], octaves, seed, fall
@@ -155,7 +156,8 @@ vec4 GroundAlbedo(vec3 offset, float altitude, vec2 tilt, float footprint, vec4 
 // Returns the normal including the relief that the mesh does not have.
 vec3 DetailedNormal(vec3 offset, vec3 normal, float footprint) {
   vec3 slope = float(kReliefHeight_m) * DetailSlope(offset, RELIEF, DetailFootprint(footprint));
-  vec3 tilt = -slope.x * mesh_east.xyz - slope.y * mesh_north.xyz - slope.z * mesh_up.xyz;
+  vec3 tilt =
+      -slope.x * pattern_east.xyz - slope.y * pattern_north.xyz - slope.z * pattern_up.xyz;
   return normalize(normal + tilt - dot(tilt, normal) * normal);
 }
 

@@ -19,7 +19,10 @@ struct GroundPlace {
 };
 
 // Returns the components of a normal upwards and to the north.
-vec2 TiltOf(vec3 normal, vec3 up) { return vec2(dot(normal, up), dot(normal, mesh_north.xyz)); }
+vec2 TiltOf(vec3 normal, vec3 up) {
+  vec3 north = pole.xyz - dot(pole.xyz, up) * up;
+  return vec2(dot(normal, up), dot(normal, north) * inversesqrt(max(dot(north, north), 1e-12)));
+}
 
 // @param point  from the eye [m].
 GroundPlace GroundPlaceAt(vec3 point) {
@@ -28,8 +31,8 @@ GroundPlace GroundPlaceAt(vec3 point) {
   float h = AltitudeAlongRay(EYE_ALTITUDE, at.z / max(d, 1e-9), d, RADIUS);
   return GroundPlace(normalize(vec3(at.xy, RADIUS + EYE_ALTITUDE + at.z)), max(h, 0.0),
                      1e3 * d * ground_view.x,
-                     vec3(dot(point, mesh_east.xyz), dot(point, mesh_north.xyz),
-                          dot(point, mesh_up.xyz)));
+                     vec3(dot(point, pattern_east.xyz), dot(point, pattern_north.xyz),
+                          dot(point, pattern_up.xyz)));
 }
 
 vec2 DiskOver(GroundPlace at, vec3 to_sun) {

@@ -23,6 +23,8 @@ layout(std140) uniform GroundSurface {
   vec4 drape_blue;
   vec4 drape_place;  // of the picture in the mesh's frame: west, south [m]; 1 / size [1/m]
   vec4 drape_eye;    // position of the eye in that frame [m]
+  vec4 drape_east;   // axes of that frame in the frame of the pattern
+  vec4 drape_north;
   // Values at even steps of the square root of a cosine: for snow the factor of a direction, for a
   // coat the fraction of a uniform sky that it reflects.
   vec4 by_root_mu[17];
@@ -75,7 +77,8 @@ vec4 SkyInWater(vec3 up, vec3 to_eye) {
 vec4 WaterRadiance(vec3 up, vec3 offset, float footprint, float cosine, vec4 across,
                    vec4 sky_irradiance, vec3 to_eye) {
   vec3 waves = WavesAt(offset, SeenFootprint(footprint, cosine), water.x, cosine);
-  vec3 normal = normalize(up - waves.x * mesh_east.xyz - waves.y * mesh_north.xyz);
+  vec3 tilt = waves.x * pattern_east.xyz + waves.y * pattern_north.xyz;
+  vec3 normal = normalize(up - tilt + dot(tilt, up) * up);
   vec3 angles = ReflectionAngles(normal, sun.xyz, to_eye);
   vec4 body = WaterLetsIn(WATER_INDEX, angles.y) * under_water;
   return max(dot(normal, sun.xyz), 0.0) * across * WaterBrdf(angles, waves.z) +
@@ -167,7 +170,8 @@ vec4 CoverRadiance(vec4 albedo, vec3 normal, vec4 across, vec4 sky_irradiance, v
 // @param offset  from the eye in the plane of the pattern [m].
 // @param altitude  [m].
 vec4 DrapeAt(vec3 offset, float altitude, float footprint) {
-  vec2 foot = (offset.xy + drape_eye.xy) * (1e3 * RADIUS / (1e3 * RADIUS + altitude));
+  vec2 from_eye = vec2(dot(offset, drape_east.xyz), dot(offset, drape_north.xyz));
+  vec2 foot = (from_eye + drape_eye.xy) * (1e3 * RADIUS / (1e3 * RADIUS + altitude));
   vec2 at = (foot - drape_place.xy) * drape_place.zw;
   float level = log2(max(footprint * drape_place.z * float(textureSize(drape, 0).x), 1.0));
   vec4 shown = textureLod(drape, clamp(at, 0.0, 1.0), level);

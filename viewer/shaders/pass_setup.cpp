@@ -186,4 +186,15 @@ GroundBlock GroundBlockOf(const MountainSurface& surface, const GroundPoint& eye
   return block;
 }
 
+GroundBlock WithAxesOf(const GroundPattern& pattern, GroundBlock block) {
+  const auto axis = [&](const glm::dvec3& of_pattern) {
+    return glm::vec4(pattern.FromPattern(of_pattern), 0.0);
+  };
+  block.pattern_east = axis({1.0, 0.0, 0.0});
+  block.pattern_north = axis({0.0, 1.0, 0.0});
+  block.pattern_up = axis({0.0, 0.0, 1.0});
+  block.pole = glm::vec4(pattern.pole(), 0.0);
+  return block;
+}
+
 }  // namespace alpenglow::viewer

@@ -16,6 +16,7 @@
 
 #include "atmosphere/medium/medium.h"
 #include "renderer/material/band_light.h"
+#include "renderer/surface/ground_pattern.h"
 #include "renderer/surface/surface.h"
 #include "viewer/gl/gl_context.h"
 #include "viewer/gl/shader.h"
@@ -84,19 +85,22 @@ struct GroundBlock {
   glm::vec4 cover_lines, green_lines;
   std::array<glm::ivec4, 33> octave_cell;
   std::array<glm::vec4, 33> octave_place;
-  glm::vec4 mesh_east, mesh_north, mesh_up;
+  glm::vec4 pattern_east, pattern_north, pattern_up, pole;
 };
-static_assert(sizeof(GroundBlock) == 79 * sizeof(glm::vec4));
+static_assert(sizeof(GroundBlock) == 80 * sizeof(glm::vec4));
 static_assert(offsetof(GroundBlock, octave_place) == 43 * sizeof(glm::vec4));
-static_assert(offsetof(GroundBlock, mesh_up) == 78 * sizeof(glm::vec4));
+static_assert(offsetof(GroundBlock, pole) == 79 * sizeof(glm::vec4));
 
 /// Returns the block of a medium. Throws InputError if it has more than kGpuBands wavelengths.
 [[nodiscard]] AirBlock AirBlockOf(const Medium& medium);
 
-/// Returns the materials and the noise around the eye. The caller sets the axes of the mesh and the
-/// number of omitted octaves.
+/// Returns the materials and the noise around the eye. The caller sets the axes of the pattern and
+/// the number of omitted octaves.
 /// @param eye  position in the pattern, and the time for its waves.
 [[nodiscard]] GroundBlock GroundBlockOf(const MountainSurface& surface, const GroundPoint& eye);
+/// Returns the block with the axes of the pattern.
+/// @param pattern  in the frame of the eye.
+[[nodiscard]] GroundBlock WithAxesOf(const GroundPattern& pattern, GroundBlock block);
 
 /// Return one value per band and 0 for the remaining components.
 [[nodiscard]] glm::vec4 GpuBandsOf(const std::vector<double>& per_band);

@@ -220,7 +220,7 @@ TEST(LitGround, ReliefChangesTheSkysLightAsTheOpenSkys) {
     for (int i = 1; i <= kPlaces; ++i) {
       const Interpolated place = PlaceOfCase(lit, i);
       const TerrainHit hit = GroundAt(place.x, place.y);
-      const glm::dvec3 relief = MountainSurface::DetailedNormal(
+      const glm::dvec3 relief = TheSite()->geometry().DetailedNormal(
           TheSite()->geometry().GroundAt(hit.smooth_point, 1.0), place.normal);
       const auto sky = [&](const glm::dvec3& n) {
         return static_cast<double>(lit.At(tests::VertexAt(*TheSite(), hit.smooth_point, n)).sky[1]);

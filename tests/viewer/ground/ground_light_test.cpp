@@ -40,12 +40,6 @@ std::vector<ShaderPiece> Texts(const GroundMaterial& material) {
   return pieces;
 }
 
-GroundPoint EyeOver(GroundPoint origin, double eye_m, double sea_s) {
-  origin.up_m += eye_m;
-  origin.sea_s = sea_s;
-  return origin;
-}
-
 template <typename Block>
 void Bind(const ShaderProgram& program, const char* name, GLuint binding, const GlBuffer& buffer,
           const Block& block) {
@@ -81,16 +75,15 @@ class Blocks {
     view.sun_for_air = {glm::vec3(light.to_sun_for_air), 0.0F};
     view.eye = {eye_m_ / 1e3, 0.0, 0.0, 0.0};
     Bind(program, "View", 1, view_, view);
-    const GroundPoint origin = site.geometry().GroundAt({0.0, 0.0, 0.0}, 0.0);
-    GroundBlock ground = GroundBlockOf(light.surface, EyeOver(origin, eye_m_, light.sea_s));
-    ground.mesh_east = {1.0F, 0.0F, 0.0F, 0.0F};
-    ground.mesh_north = {0.0F, 1.0F, 0.0F, 0.0F};
-    ground.mesh_up = {0.0F, 0.0F, 1.0F, 0.0F};
-    Bind(program, "Ground", 2, ground_, ground);
+    const GroundPattern& pattern = site.geometry().pattern();
+    GroundPoint eye = pattern.At({0.0, 0.0, eye_m_});
+    eye.sea_s = light.sea_s;
+    Bind(program, "Ground", 2, ground_, WithAxesOf(pattern, GroundBlockOf(light.surface, eye)));
     Bind(program, "GroundLight", 3, light_,
          GroundLightBlockOf(UnoccludedSkyOver(lit_), light.to_sun, kPixel_rad));
     Bind(program, "GroundSurface", 4, surface_,
-         Draped(GroundSurfaceBlockOf(site.material()), Picture(), 0.0, 0.0));
+         Draped(GroundSurfaceBlockOf(site.material()), Picture(),
+                FrameTransform(site.ground().frame, site.ground().frame), pattern));
     textures_.Bind(program, 0, LightSource::kSun);
   }
 
@@ -142,7 +135,7 @@ std::vector<SeenPoint> LandPoints(const LitGround& lit) {
     c.hit.geometric_normal = found->geometric_normal;
     c.to_eye = glm::normalize(kEye - c.hit.point);
     c.hit.footprint_m = kPixel_rad * glm::length(c.hit.point - kEye);
-    c.hit.normal = MountainSurface::DetailedNormal(
+    c.hit.normal = lit.site().geometry().DetailedNormal(
         lit.site().geometry().GroundAt(c.hit.point, c.hit.footprint_m,
                                        glm::dot(c.hit.mesh_normal, c.to_eye)),
         c.hit.mesh_normal);

@@ -317,9 +317,10 @@ TEST_F(UniformBlocks, GroundLiesWhereTheDriverLooks) {
                           {"green_lines", offsetof(GroundBlock, green_lines)},
                           {"octave_cell[0]", offsetof(GroundBlock, octave_cell)},
                           {"octave_place[0]", offsetof(GroundBlock, octave_place)},
-                          {"mesh_east", offsetof(GroundBlock, mesh_east)},
-                          {"mesh_north", offsetof(GroundBlock, mesh_north)},
-                          {"mesh_up", offsetof(GroundBlock, mesh_up)}});
+                          {"pattern_east", offsetof(GroundBlock, pattern_east)},
+                          {"pattern_north", offsetof(GroundBlock, pattern_north)},
+                          {"pattern_up", offsetof(GroundBlock, pattern_up)},
+                          {"pole", offsetof(GroundBlock, pole)}});
 }
 
 TEST(AirBlock, AMediumOfFiveWavelengthsIsRefused) {
@@ -369,9 +370,9 @@ std::vector<float> GroundValues(const MountainSurface& surface, const std::strin
   eye.up_m = kUp_m;
   eye.sea_s = kSea_s;
   GroundBlock block = GroundBlockOf(surface, eye);
-  block.mesh_east = {1.0F, 0.0F, 0.0F, 0.0F};
-  block.mesh_north = {0.0F, 1.0F, 0.0F, 0.0F};
-  block.mesh_up = {0.0F, 0.0F, 1.0F, 0.0F};
+  block.pattern_east = {1.0F, 0.0F, 0.0F, 0.0F};
+  block.pattern_north = {0.0F, 1.0F, 0.0F, 0.0F};
+  block.pattern_up = {0.0F, 0.0F, 1.0F, 0.0F};
   const GlBuffer buffer;
   const std::vector<ShaderPiece> texts =
       WithViewerPieces(SharedTexts(), {"viewer/shaders/ground.glsl"});
