@@ -127,6 +127,18 @@ void RequireOrder(const std::vector<CameraPathPoint>& points) {
   }
 }
 
+/// Throws InputError if two successive points are on opposite sides of the planet: no way between
+/// them is the shortest.
+void RequireWays(const std::vector<glm::dvec3>& normals) {
+  constexpr double kOpposite = 1e-9;
+  for (std::size_t i = 1; i < normals.size(); ++i) {
+    if (glm::length(normals[i - 1] + normals[i]) < kOpposite) {
+      throw InputError(fmt::format(
+          "points {} and {} of the camera path are on opposite sides of the planet", i, i + 1));
+    }
+  }
+}
+
 }  // namespace
 
 CameraPath::CameraPath(std::vector<CameraPathPoint> points) : points_(std::move(points)) {
@@ -141,6 +153,7 @@ CameraPath::CameraPath(std::vector<CameraPathPoint> points) : points_(std::move(
   }
   constexpr std::size_t kOfHeading = 1, kOfRoll = 3;
   for (const std::size_t k : {kOfHeading, kOfRoll}) scalars_[k] = Unwound(std::move(scalars_[k]));
+  RequireWays(normals_);
   normal_slopes_ = SlopesOf(points_, normals_, LimitedSlope);
   for (std::size_t k = 0; k < kScalars; ++k) {
     scalar_slopes_[k] = SlopesOf(points_, scalars_[k], SlopeWithoutOvershoot);

@@ -31,10 +31,18 @@ BandLight LampsOfUnitLuminance(const BandColour& colour) {
   return sum;
 }
 
+bool Scatters(const Medium& medium) {
+  const auto any = [](const std::vector<double>& per_m) {
+    return std::any_of(per_m.begin(), per_m.end(), [](double value) { return value > 0.0; });
+  };
+  return any(medium.rayleigh_scattering_per_m) || any(medium.mie_scattering_per_m);
+}
+
 }  // namespace
 
 BandLight Skyglow(double zenith, double ground_m, const SingleScattering<float>& air,
                   const BandColour& colour) {
+  if (!Scatters(air.medium())) return BandLight(air.bands());
   const double wanted = std::max(
       LuminanceOfSurfaceBrightness(zenith) - LuminanceOfSurfaceBrightness(kNaturalZenith), 0.0);
   const BandLight lamps = LampsOfUnitLuminance(colour);

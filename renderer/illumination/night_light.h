@@ -44,7 +44,7 @@
 
 namespace alpenglow::renderer {
 
-/// Returns J of light pollution [W m^-2 sr^-1 nm^-1].
+/// Returns J of light pollution [W m^-2 sr^-1 nm^-1]; 0 in air that does not scatter.
 /// @param zenith  [V magnitudes per square arcsecond]; J is 0 if it is darker than kNaturalZenith.
 /// @param ground_m  altitude of the place with this zenith, >= 0.
 [[nodiscard]] BandLight Skyglow(double zenith, double ground_m, const SingleScattering<float>& air,

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <limits>
+#include <optional>
 #include <utility>
 
 #include "atmosphere/base/error.h"
@@ -39,15 +40,21 @@ double ReferenceExtinction(const Medium& medium, double altitude_m) {
 }
 
 glm::dvec3 NormalAt(const HeightRaster& heights, int column, int row) {
-  const auto height = [&](int c, int r) {
-    const float z =
-        heights.at(std::clamp(c, 0, heights.columns - 1), std::clamp(r, 0, heights.rows - 1));
-    return static_cast<double>(z <= HeightRaster::kNothing ? heights.at(column, row) : z);
+  const auto height = [&](int c, int r) -> std::optional<double> {
+    if (c < 0 || c >= heights.columns || r < 0 || r >= heights.rows) return std::nullopt;
+    const float z = heights.at(c, r);
+    if (z <= HeightRaster::kNothing) return std::nullopt;
+    return static_cast<double>(z);
   };
-  const double step = 2.0 * heights.cell_m;
-  return glm::normalize(glm::dvec3((height(column - 1, row) - height(column + 1, row)) / step,
-                                   (height(column, row - 1) - height(column, row + 1)) / step,
-                                   1.0));
+  const auto here = static_cast<double>(heights.at(column, row));
+  // At the rim and beside a void, the slope is that to the only neighbour.
+  const auto fall = [&](const std::optional<double>& before, const std::optional<double>& after) {
+    const int cells = (before ? 1 : 0) + (after ? 1 : 0);
+    return cells == 0 ? 0.0
+                      : (before.value_or(here) - after.value_or(here)) / (cells * heights.cell_m);
+  };
+  return glm::normalize(glm::dvec3(fall(height(column - 1, row), height(column + 1, row)),
+                                   fall(height(column, row - 1), height(column, row + 1)), 1.0));
 }
 
 /// Ground between two elevations.

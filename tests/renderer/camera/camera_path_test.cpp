@@ -56,6 +56,16 @@ TEST(CameraPath, GoesThroughItsPointsAndStandsBeforeAndAfter) {
   EXPECT_EQ(path.PoseAt(99.0).place.height_m, 1500.0);
 }
 
+TEST(CameraPath, BetweenOppositePointsThereIsNoWay) {
+  EXPECT_THAT(tests::FaultOf([] {
+                CameraPath({PointAt(0.0, 46.5, 8.0, 0.0, 0.0), PointAt(1.0, 20.0, 8.0, 0.0, 0.0),
+                            PointAt(2.0, -20.0, -172.0, 0.0, 0.0)});
+              }),
+              HasSubstr("points 2 and 3 of the camera path are on opposite sides"));
+  const CameraPath nearly({PointAt(0.0, 0.0, 0.0, 0.0, 0.0), PointAt(1.0, 0.01, 180.0, 0.0, 0.0)});
+  EXPECT_TRUE(std::isfinite(nearly.PoseAt(0.5).place.latitude_rad));
+}
+
 TEST(CameraPath, SpeedHasNoJumps) {
   const CameraPath path = Loop();
   constexpr double kStep_s = 1e-4;

@@ -19,6 +19,7 @@
 #include "tests/fixtures/bare_scene.h"
 #include "tests/fixtures/lit_air.h"
 #include "tests/fixtures/luminance.h"
+#include "tests/fixtures/media.h"
 
 namespace alpenglow::renderer {
 namespace {
@@ -168,6 +169,13 @@ NightSky SkyOfApril() {
 }
 
 double Magnitudes(double cd_per_m2) { return -2.5 * std::log10(cd_per_m2 / 10.8e4); }
+
+TEST(Skyglow, IsDarkWithoutAir) {
+  const Medium airless = tests::WithoutAir(tests::Earth().medium);
+  const SingleScattering<float> air(airless);
+  const BandLight light = Skyglow(18.0, 0.0, air, BandColour(airless.wavelengths_nm));
+  for (std::size_t band = 0; band < light.count; ++band) EXPECT_EQ(light[band], 0.0F);
+}
 
 TEST(NightLight, ADarkZenithHas21Point6MagnitudesAndGroundAMillilux) {
   const GeodeticPosition paranal = PlaceFromDegrees(-24.63, -70.40, kMaunaKea_m);
