@@ -48,6 +48,45 @@ double ChangeOfDisk(const RefractedView& view, double elevation_rad, double radi
 
 }  // namespace
 
+LimbView::LimbView(const SceneGeometry& geometry, const Medium& medium, const CameraRays& camera,
+                   const PixelFilter& filter)
+    : up_(geometry.UpAt(camera.eye())),
+      bending_air_(GentleAirOf(medium)),
+      radius_m_(geometry.radius_m()),
+      altitude_m_(geometry.AltitudeOf(camera.eye())),
+      top_m_(medium.atmosphere_height_m),
+      pixel_rad_(camera.PixelAngle()),
+      filter_rad_(filter.radius() * pixel_rad_),
+      molecules_m_(medium.rayleigh_scale_height_m),
+      haze_m_(std::min(medium.mie_scale_height_m, molecules_m_)) {
+  constexpr double kThinHaze = 0.05;  // relative to the molecules
+  const std::size_t middle = medium.wavelengths_nm.size() / 2;
+  const double haze = medium.mie_extinction_per_m[middle];
+  const double molecules = kThinHaze * medium.rayleigh_scattering_per_m[middle];
+  hazy_below_m_ = haze > molecules && haze_m_ < molecules_m_
+                      ? std::log(haze / molecules) / (1.0 / haze_m_ - 1.0 / molecules_m_)
+                      : 0.0;
+}
+
+bool LimbView::IsSteepAt(const glm::dvec3& direction) const {
+  constexpr double kSteep = 0.15;
+  const double mu = glm::dot(direction, up_);
+  if (mu >= 0.0) return false;
+  const double eye_m = radius_m_ + altitude_m_;
+  const double lowest_m = altitude_m_ - eye_m * mu * mu / (1.0 + std::sqrt(1.0 - mu * mu));
+  const double distance_m = -eye_m * mu;
+  if (lowest_m - filter_rad_ * distance_m > top_m_) return false;
+  const double scale_m = lowest_m < hazy_below_m_ ? haze_m_ : molecules_m_;
+  return pixel_rad_ * distance_m > kSteep * scale_m;
+}
+
+double LimbView::GroundCosine(double mu) const {
+  const double eye_m = radius_m_ + altitude_m_;
+  const double square =
+      (eye_m * mu * eye_m * mu - altitude_m_ * (eye_m + radius_m_)) / (radius_m_ * radius_m_);
+  return mu < 0.0 && square > 0.0 ? std::sqrt(square) : 0.0;
+}
+
 double RefractedViewRays::ElevationOf(const glm::dvec3& direction) const {
   return Elevation(direction, up);
 }
@@ -63,6 +102,45 @@ double MostLift(const FrameContext& frame, double eye_height_m) {
   const LandBend bend = LandBendOf(GentleAirOf(frame.scene().medium()), eye_height_m);
   return MostLiftOfPlanet(bend, eye_height_m,
                           frame.scene().geometry().FarthestFrom(frame.camera().eye()));
+}
+
+/// Elevations of the rays of a picture, at 16 x 16 places with those of its corners.
+struct Elevations {
+  double lowest_rad, highest_rad;
+};
+Elevations ElevationsIn(const FrameContext& frame, const glm::dvec3& up) {
+  constexpr int kPlaces = 16;
+  Elevations seen{0.5 * kPi, -0.5 * kPi};
+  for (int i = 0; i < kPlaces * kPlaces; ++i) {
+    const double x = i % kPlaces * frame.settings().width / (kPlaces - 1.0);
+    const double y = i / kPlaces * frame.settings().height / (kPlaces - 1.0);
+    const double elevation_rad = Elevation(frame.camera().Direction(x, y), up);
+    seen = {std::min(seen.lowest_rad, elevation_rad), std::max(seen.highest_rad, elevation_rad)};
+  }
+  return seen;
+}
+
+/// Returns whether refraction may move the sea by more than an angle, in a picture that shows
+/// elevations. It moves the sea most where a ray meets it at the lowest angle, by at most the
+/// refraction of a plane layer.
+bool MayMoveSea(const LimbView& limb, const Elevations& seen, double horizon_rad,
+                double angle_rad) {
+  if (seen.lowest_rad > horizon_rad) return false;
+  if (seen.highest_rad > horizon_rad) return true;
+  const double cosine = limb.GroundCosine(std::sin(seen.highest_rad));
+  const BendingAir& air = limb.bending_air();
+  const double bends = RefractivityAt(air, 0.0) - RefractivityAt(air, limb.altitude_m());
+  return bends * std::sqrt(1.0 - cosine * cosine) > angle_rad * cosine;
+}
+
+/// Returns the angle, seen from the eye, between a ray to the sea and the place where it ends.
+double LiftOfSea(const RefractedView& view, double radius_m, double height_m,
+                 double elevation_rad) {
+  const auto met = view.ToGround(elevation_rad);
+  if (!met) return 0.0;
+  const double sine = std::sin(0.5 * met->angle_rad);
+  return elevation_rad - std::atan2(-(height_m + 2.0 * radius_m * sine * sine),
+                                    radius_m * std::sin(met->angle_rad));
 }
 
 }  // namespace
@@ -82,16 +160,6 @@ std::shared_ptr<const RefractedViewRays> RefractedViewRaysOf(const FrameContext&
     return at && (*at)[0] > -margin && (*at)[0] < frame.settings().width + margin &&
            (*at)[1] > -margin && (*at)[1] < frame.settings().height + margin;
   };
-  const auto horizon_in_picture = [&](double elevation_rad) {
-    constexpr int kPlaces = 16;
-    bool above = false, below = false;
-    for (int i = 0; i <= kPlaces * kPlaces; ++i) {
-      const double x = i % kPlaces * frame.settings().width / (kPlaces - 1.0);
-      const double y = i / kPlaces * frame.settings().height / (kPlaces - 1.0);
-      (Elevation(camera.Direction(x, y), up) > elevation_rad ? above : below) = true;
-    }
-    return above && below;
-  };
   constexpr double kLow_rad = 10.0 * kRadiansPerDegree;
   const double geometric_rad = -std::acos(geometry.radius_m() / (geometry.radius_m() + height_m));
   const auto may_see = [&](const glm::dvec3& to_disk, double radius_rad) {
@@ -102,7 +170,9 @@ std::shared_ptr<const RefractedViewRays> RefractedViewRaysOf(const FrameContext&
   const Lighting& light = frame.light();
   const bool may_see_sun = may_see(light.to_sun, light.sun_radius_rad);
   const bool may_see_moon = light.moon && may_see(light.moon->to_moon, light.moon->radius_rad);
-  const bool may_see_sea = !geometry.HasTerrain() && horizon_in_picture(geometric_rad);
+  const Elevations seen = ElevationsIn(frame, up);
+  const bool may_see_sea =
+      !geometry.HasTerrain() && MayMoveSea(frame.limb(), seen, geometric_rad, half_pixel);
   const bool moves_terrain = geometry.HasTerrain() && MostLift(frame, height_m) > half_pixel;
   if (!may_see_sun && !may_see_moon && !may_see_sea && !moves_terrain) return nullptr;
   const glm::dmat3& frame_from_enu = observer.stand.frame_from_enu;
@@ -118,7 +188,11 @@ std::shared_ptr<const RefractedViewRays> RefractedViewRaysOf(const FrameContext&
   };
   const bool moves_disk = (may_see_sun && moves(light.to_sun, light.sun_radius_rad)) ||
                           (may_see_moon && moves(light.moon->to_moon, light.moon->radius_rad));
-  const bool moves_sea = may_see_sea && bent->view.horizon_rad() - geometric_rad > half_pixel;
+  const double horizon_rad = bent->view.horizon_rad();
+  const bool moves_sea = may_see_sea && (seen.highest_rad > geometric_rad
+                                             ? horizon_rad - geometric_rad
+                                             : LiftOfSea(bent->view, geometry.radius_m(), height_m,
+                                                         seen.highest_rad)) > half_pixel;
   if (moves_terrain) {
     bent->fan = std::make_shared<RefractedFan>(bent->view.air(), camera.eye(), up,
                                                geometry.FarthestFrom(camera.eye()));
@@ -221,6 +295,7 @@ FrameContext::FrameContext(const PreparedScene& scene, const CameraSample& camer
       moving_(CameraOn(scene.ground(), scene.scene().camera, camera_sample.poses, settings.width,
                        settings.height)),
       filter_(settings.filter),
+      limb_(scene.geometry(), scene.medium(), camera(), filter_),
       is_polarised_(NeedsStokes(camera(), settings.layers)),
       lamps_(std::make_shared<LampLight>(scene.lamps().SeenBy(camera()))),
       plan_(std::make_shared<LampPlan>()) {
@@ -247,10 +322,32 @@ FrameContext::FrameContext(const PreparedScene& scene, const CameraSample& camer
   LightMedia();
   LightTerrain();
   if (Has(Effect::kStars)) AddStars(observer);
+  AddSmallDisks();
+}
+
+void FrameContext::AddSmallDisks() {
+  sky_lights_.small_sun = sky_lights_.small_moon = nullptr;
+  if (camera().HasLens() || moving().IsMoving()) return;
+  constexpr double kRefracted = 2.0;  // a refracted disk is not wider than two radii
+  const PixelShader shader(*this);
+  const auto made = [&](const glm::dvec3& to_disk, double radius_rad,
+                        const SmallDisk::Seen& seen) -> std::shared_ptr<const SmallDisk> {
+    if (2.0 * radius_rad >= camera().PixelAngle()) return nullptr;
+    return std::make_shared<const SmallDisk>(camera(), filter_, settings_.width, settings_.height,
+                                             to_disk, kRefracted * radius_rad, seen);
+  };
+  const auto small_sun = made(light().to_sun, light().sun_radius_rad,
+                              [&](const glm::dvec3& from) { return shader.SunFrom(from); });
+  std::shared_ptr<const SmallDisk> small_moon;
+  if (light().moon && glm::length(light().moon_turn) == 0.0)
+    small_moon = made(light().moon->to_moon, light().moon->radius_rad,
+                      [&](const glm::dvec3& from) { return shader.MoonFrom(from); });
+  sky_lights_.small_sun = small_sun;
+  sky_lights_.small_moon = small_moon;
 }
 
 void FrameContext::LightNight() {
-  if (Has(Effect::kNightSky)) night_ = light().night;
+  if (Has(Effect::kNightSky)) sky_lights_.night = light().night;
   if (!Has(Effect::kMoonlight) || !light().moonlight) return;
   FrameLight moon{light().By(*light().moonlight), BandLight(light().irradiance.count),
                   std::make_shared<const TerrainSunlight>(), nullptr};
@@ -310,7 +407,7 @@ void FrameContext::AddStars(const Observer& observer) {
   }
   if (lights.empty()) return;
   const PixelShader shader(*this);
-  stars_ = std::make_shared<StarPixels>(
+  sky_lights_.stars = std::make_shared<StarPixels>(
       camera(), settings_.width, settings_.height, lights,
       [&](double x, double y) { return shader.LeftOfSpace(x, y); },
       [&](double x, double y) {
@@ -330,8 +427,8 @@ FrameContext FrameContext::Reduced(EffectSet effects) const {
   FrameContext frame = *this;
   frame.settings_.effects = effects;
   frame.model_ = &scene_->models().With(effects);
-  if (!effects.Has(Effect::kNightSky)) frame.night_ = nullptr;
-  if (!effects.Has(Effect::kStars)) frame.stars_ = nullptr;
+  if (!effects.Has(Effect::kNightSky)) frame.sky_lights_.night = nullptr;
+  if (!effects.Has(Effect::kStars)) frame.sky_lights_.stars = nullptr;
   if (!effects.Has(Effect::kRefraction)) frame.refracted_ = nullptr;
   if (!effects.Has(Effect::kMoonlight))
     frame.lights_.erase(frame.lights_.begin() + 1, frame.lights_.end());
@@ -342,6 +439,7 @@ FrameContext FrameContext::Reduced(EffectSet effects) const {
   if (!effects.Has(Effect::kLights)) frame.plan_ = std::make_shared<LampPlan>();
   if (!are_alike(kThatLightMedia)) frame.LightMedia();
   if (!are_alike(kThatLightTerrain)) frame.LightTerrain();
+  frame.AddSmallDisks();
   return frame;
 }
 

@@ -4,9 +4,13 @@
 //
 // RefractedViewRays holds the refracted rays of a picture: whether refraction moves anything
 // visible, and where refracted rays meet the ground.
+//
+// LimbView describes the air at the limb of the planet, seen from above. There the light of the sky
+// can change by a factor e within a fraction of a pixel.
 #pragma once
 
 #include <cstddef>
+#include <glm/geometric.hpp>
 #include <glm/vec3.hpp>
 #include <memory>
 #include <vector>
@@ -26,6 +30,38 @@
 namespace alpenglow::renderer {
 
 class FrameContext;
+
+/// Straight rays past the planet and down to it, from one eye. Immutable.
+class LimbView {
+ public:
+  LimbView(const SceneGeometry& geometry, const Medium& medium, const CameraRays& camera,
+           const PixelFilter& filter);
+
+  [[nodiscard]] const glm::dvec3& up() const { return up_; }
+  [[nodiscard]] double radius_m() const { return radius_m_; }
+  [[nodiscard]] double altitude_m() const { return altitude_m_; }
+  /// Returns the air that bends rays.
+  [[nodiscard]] const BendingAir& bending_air() const { return bending_air_; }
+
+  /// Returns whether the density of the air at the lowest point ahead changes by more than 15 %
+  /// within a pixel. Where it changes by less, and with it the light of the sky, the sky in the
+  /// middle of a pixel is the mean over the pixel within 3e-3.
+  [[nodiscard]] bool IsSteepAt(const glm::dvec3& direction) const;
+  /// Returns the cosine between the vertical and a ray where it meets the planet; 0 if it does not.
+  /// @param mu  sine of the ray's elevation at the eye.
+  [[nodiscard]] double GroundCosine(double mu) const;
+  [[nodiscard]] double GroundCosine(const glm::dvec3& direction) const {
+    return GroundCosine(glm::dot(direction, up_));
+  }
+
+ private:
+  glm::dvec3 up_;
+  BendingAir bending_air_;
+  double radius_m_, altitude_m_, top_m_;
+  double pixel_rad_, filter_rad_;  // width of a pixel; radius of its filter
+  double molecules_m_, haze_m_;    // scale heights
+  double hazy_below_m_;            // altitude below which haze matters
+};
 
 /// Effect of refraction on the sun, on terrain and on the horizon of a sea without terrain.
 struct RefractedViewRays {
@@ -60,6 +96,14 @@ struct FrameLight {
   std::shared_ptr<const MediaLight> media;         // null: no volumes, and only lamps light fog
 
   [[nodiscard]] GroundSources ground_sources() const { return {light, media.get()}; }
+};
+
+/// Lights of the sky besides the scattered light of sun and moon; null: not visible.
+struct SkyLights {
+  std::shared_ptr<const NightLight> night;
+  std::shared_ptr<const StarPixels> stars;
+  /// The disks if they are less than a pixel wide; else rays meet them.
+  std::shared_ptr<const SmallDisk> small_sun, small_moon;
 };
 
 /// Immutable, safe to share between threads. Copies share the parts that take long to prepare.
@@ -100,10 +144,8 @@ class FrameContext {
   [[nodiscard]] const MediaLight* media() const { return lights_.front().media.get(); }
   [[nodiscard]] const LampLight& lamps() const { return *lamps_; }
   [[nodiscard]] const LampPlan& plan() const { return *plan_; }
-  /// Returns null if the night sky is not visible.
-  [[nodiscard]] const NightLight* night() const { return night_.get(); }
-  /// Returns null if no star is visible.
-  [[nodiscard]] const StarPixels* stars() const { return stars_.get(); }
+  [[nodiscard]] const SkyLights& sky_lights() const { return sky_lights_; }
+  [[nodiscard]] const LimbView& limb() const { return limb_; }
   /// Returns null if refraction moves nothing.
   [[nodiscard]] const RefractedViewRays* bent() const { return refracted_.get(); }
 
@@ -116,18 +158,19 @@ class FrameContext {
   /// Computes the terrain's illumination by all lights.
   void LightTerrain();
   void AddStars(const Observer& observer);
+  void AddSmallDisks();
 
   const PreparedScene* scene_;
   RenderSettings settings_;
   const AirModel* model_;
   MovingCamera moving_;
   PixelFilter filter_;
+  LimbView limb_;
   bool is_polarised_ = false;
   std::vector<FrameLight> lights_;
   std::shared_ptr<const LampLight> lamps_;
   std::shared_ptr<const LampPlan> plan_;
-  std::shared_ptr<const NightLight> night_;
-  std::shared_ptr<const StarPixels> stars_;
+  SkyLights sky_lights_;
   std::shared_ptr<const RefractedViewRays> refracted_;
   double shadows_s_ = 0.0, plan_s_ = 0.0, slopes_s_ = 0.0;
 };

@@ -78,7 +78,7 @@ AirInterpolationGrid::AirInterpolationGrid(const PixelShader& shader, int x0, in
 AirInterpolationGrid::Corner AirInterpolationGrid::Computed(double x, double y) const {
   const CameraRay ray = frame_->camera().MiddleRay(x, y);
   const Hit hit = shader_->Trace(ray);
-  SharedSegmentAir air{hit.kind, hit.distance_m, ray.through, ray.through, hit.distance_m, 1};
+  SharedSegmentAir air = SharedSegmentAir::Of(hit, ray.through, *frame_);
   AddAir(*frame_, air);
   return {hit.kind, hit.distance_m, air.air};
 }
@@ -195,7 +195,8 @@ void PixelLight::AddNewAir(std::size_t known) {
   // The filter is symmetric, so the direction of the pixel's centre is the exact mean over all
   // rays. The mean over some of them is less accurate.
   if (airs_.size() == 1 && known == 0 && !frame_->moving().IsMoving()) {
-    airs_.front().direction_sum = frame_->camera().Direction(x_ + 0.5, y_ + 0.5);
+    const glm::dvec3 middle = frame_->camera().Direction(x_ + 0.5, y_ + 0.5);
+    if (airs_.front().MayLookAlong(middle, *frame_)) airs_.front().direction_sum = middle;
   }
   for (std::size_t i = known; i < airs_.size(); ++i) {
     const auto shared = around_ != nullptr ? around_->Before(airs_[i]) : std::nullopt;
@@ -233,7 +234,7 @@ void PixelLight::Add(const Ray& seen) {
                                        samples_.Point(sum_.rays, SampleOf::kSunDisk));
   spread_.Add(frame_->scene().colour().LinearSrgb(InDouble(shaded.radiance)));
   const BandLight glow = shaded.lamps + shaded.volumes;
-  const bool sees_sky = seen.hit.kind == HitKind::kSky;
+  const bool sees_sky = seen.hit.kind == HitKind::kSky && !airs_[seen.air].is_alone;
   if (sees_sky && !sky_) sky_ = shaded.inscatter;
   BandLight shared = shaded.radiance + -1.0F * glow;
   if (sees_sky) shared = shared + -1.0F * *sky_;

@@ -16,33 +16,95 @@
 namespace alpenglow::renderer {
 namespace {
 
+/// The straight ray along which the air in front of a hit is computed.
+struct AirRay {
+  glm::dvec3 direction;  // unit
+  double length_m;
+  bool ends_by_itself;  // at the planet or in space; the length would only add a rounding error
+};
+
+/// Most of the haze is below this height above the ground.
+constexpr double kHaze_m = 3000.0;
+
+/// Returns the elevation, at the ground, of the straight ray with nearly the columns of the
+/// refracted ray that arrives there: the chord of the refracted ray up to kHaze_m. Compared with columns along refracted rays, from 3 km up into space and down to 0.02
+/// degrees below the horizon, those of haze are within 3 % and those of molecules within 3 %; the
+/// chord up to the eye is off by 14 % (tests/renderer/picture/refraction_picture_test.cpp).
+/// @param chord_rad  elevation of the eye, seen from the ground.
+/// @param eye_rad  apparent elevation of the ground, seen from the eye.
+double ElevationOfEqualAir(const BendingAir& air, double eye_height_m, double eye_rad,
+                           double ground_height_m, double chord_rad) {
+  const double arriving_rad = RefractedRay(air, eye_rad, eye_height_m).ElevationAt(ground_height_m);
+  const double bends_per_m = -CurvaturePerMetreAt(air, ground_height_m + 0.5 * kHaze_m);
+  const double sine = std::sin(arriving_rad);
+  const double falls_per_m = 1.0 / (air.planet_radius_m + ground_height_m) - bends_per_m;
+  const double length_m =
+      2.0 * kHaze_m / (sine + std::sqrt(sine * sine + 2.0 * kHaze_m * falls_per_m));
+  return std::max(chord_rad, arriving_rad - 0.5 * bends_per_m * std::cos(arriving_rad) * length_m);
+}
+
+/// Returns the straight ray from an eye to a height below it, in the vertical plane of `direction`,
+/// that has an elevation seen from its end.
+AirRay RayDownTo(const LimbView& limb, const glm::dvec3& direction, double ground_height_m,
+                 double elevation_rad) {
+  const double eye_m = limb.radius_m() + limb.altitude_m();
+  const double end_m = limb.radius_m() + ground_height_m;
+  const double fall_m = limb.altitude_m() - ground_height_m;
+  const double rise_m = end_m * std::sin(elevation_rad);
+  const double across = end_m * std::cos(elevation_rad) / eye_m;
+  const double along_m = std::sqrt(fall_m * (eye_m + end_m) + rise_m * rise_m);
+  const glm::dvec3 level = glm::normalize(direction - glm::dot(direction, limb.up()) * limb.up());
+  return {across * level - along_m / eye_m * limb.up(),
+          fall_m * (eye_m + end_m) / (along_m + rise_m), false};
+}
+
+/// Returns the ray through the air in front of rays. A refracted ray is replaced by a straight one
+/// that ends at the same height.
+AirRay AirRayOf(const FrameContext& frame, const SharedSegmentAir& rays) {
+  const bool is_bent = frame.bent() && frame.bent()->moves_ground;
+  AirRay seen{rays.Direction(), rays.length_m(),
+              rays.kind == HitKind::kSky || (rays.kind == HitKind::kPlanet && !is_bent)};
+  if (rays.kind == HitKind::kSky || !frame.Has(Effect::kRefraction)) return seen;
+  const SceneGeometry& geometry = frame.scene().geometry();
+  const LimbView& limb = frame.limb();
+  const glm::dvec3 point = rays.point_sum / static_cast<double>(rays.rays);
+  const glm::dvec3 to_point = point - frame.camera().eye();
+  const double chord_m = glm::length(to_point);
+  const glm::dvec3 chord = to_point / chord_m;
+  const double ground_m = rays.kind == HitKind::kPlanet ? 0.0 : geometry.AltitudeOf(point);
+  const double chord_rad = -std::asin(std::clamp(glm::dot(chord, geometry.UpAt(point)), -1.0, 1.0));
+  const double eye_rad = std::asin(std::clamp(glm::dot(seen.direction, limb.up()), -1.0, 1.0));
+  if (limb.altitude_m() > ground_m + kHaze_m && chord_rad > 0.0 && eye_rad < 0.0) {
+    const double equal_rad =
+        ElevationOfEqualAir(limb.bending_air(), limb.altitude_m(), eye_rad, ground_m, chord_rad);
+    if (equal_rad > chord_rad) return RayDownTo(limb, seen.direction, ground_m, equal_rad);
+  }
+  const bool is_beyond_horizon = is_bent && rays.kind == HitKind::kPlanet;
+  return is_beyond_horizon ? AirRay{chord, chord_m, false} : seen;
+}
+
 /// Air along a ray, with the effects of a picture.
 class AirTo {
  public:
-  AirTo(const FrameContext& frame, const FrameLight& source, const SharedSegmentAir& rays,
-        const glm::dvec3& direction)
+  AirTo(const FrameContext& frame, const FrameLight& source, HitKind kind, const AirRay& through)
       : frame_(frame),
         sunlight_(*source.shadows),
         is_lit_(source.light.shows),
-        kind_(rays.kind),
-        direction_(direction),
+        kind_(kind),
+        direction_(through.direction),
         to_sun_(source.light.to_sun_for_air),
-        nu_seen_(std::clamp(glm::dot(direction, source.light.to_sun), -1.0, 1.0)),
-        up_(frame.scene().geometry().UpAt(frame.camera().eye())) {
+        nu_seen_(std::clamp(glm::dot(direction_, source.light.to_sun), -1.0, 1.0)),
+        up_(frame.limb().up()) {
     const SceneGeometry& geometry = frame.scene().geometry();
     const glm::dvec3& from = frame.camera().eye();
-    ray_ = {geometry.AltitudeOf(from), std::clamp(glm::dot(direction, up_), -1.0, 1.0),
+    ray_ = {geometry.AltitudeOf(from), std::clamp(glm::dot(direction_, up_), -1.0, 1.0),
             std::clamp(glm::dot(to_sun_, up_), -1.0, 1.0),
-            std::clamp(glm::dot(direction, to_sun_), -1.0, 1.0)};
-    // A straight ray ends at the planet's own horizon by itself; a length would only add a rounding
-    // error. Refracted rays also see the planet beyond that horizon.
-    const bool is_bent = frame.bent() && frame.bent()->moves_ground;
-    if (kind_ == HitKind::kTerrain || (kind_ == HitKind::kPlanet && is_bent))
-      ray_.length_m = rays.length_m();
+            std::clamp(glm::dot(direction_, to_sun_), -1.0, 1.0)};
+    if (!through.ends_by_itself) ray_.length_m = through.length_m;
     if (!sunlight_.IsBroken()) return;
     const RayExtent extent =
         ExtentOf(ray_, geometry.radius_m(), frame.scene().medium().atmosphere_height_m);
-    path_ = sunlight_.Along(from, direction, extent.end_m);
+    path_ = sunlight_.Along(from, direction_, extent.end_m);
   }
 
   [[nodiscard]] const SunlitPath* sunlit() const { return sunlight_.IsBroken() ? &path_ : nullptr; }
@@ -88,11 +150,43 @@ class AirTo {
 
 }  // namespace
 
-bool SharedSegmentAir::Takes(const Hit& hit, const glm::dvec3& direction, double widest_rad) const {
+SharedSegmentAir SharedSegmentAir::Of(const Hit& hit, const glm::dvec3& direction,
+                                      const FrameContext& frame) {
+  SharedSegmentAir air{hit.kind,
+                       hit.distance_m,
+                       direction,
+                       frame.limb().GroundCosine(direction),
+                       hit.kind == HitKind::kSky && frame.limb().IsSteepAt(direction),
+                       glm::dvec3(0.0),
+                       glm::dvec3(0.0),
+                       0.0,
+                       0};
+  air.Add(hit, direction);
+  return air;
+}
+
+void SharedSegmentAir::Add(const Hit& hit, const glm::dvec3& direction) {
+  direction_sum += direction;
+  point_sum += hit.point;
+  distance_sum_m += hit.distance_m;
+  ++rays;
+}
+
+bool SharedSegmentAir::MayLookAlong(const glm::dvec3& direction, const FrameContext& frame) const {
+  constexpr double kSameCosine = 0.02;
+  if (kind == HitKind::kTerrain) return true;
+  if (kind == HitKind::kSky) return !is_alone && !frame.limb().IsSteepAt(direction);
+  return std::abs(frame.limb().GroundCosine(direction) - first_cosine) <=
+         kSameCosine * first_cosine;
+}
+
+bool SharedSegmentAir::Takes(const Hit& hit, const glm::dvec3& direction, double widest_rad,
+                             const FrameContext& frame) const {
   constexpr double kSameDistance = 0.01;
   if (hit.kind != kind || glm::length(direction - first_direction) > widest_rad) return false;
-  return kind == HitKind::kSky ||
-         std::abs(hit.distance_m - first_distance_m) <= kSameDistance * first_distance_m;
+  return MayLookAlong(direction, frame) &&
+         (kind == HitKind::kSky ||
+          std::abs(hit.distance_m - first_distance_m) <= kSameDistance * first_distance_m);
 }
 
 std::size_t AirFor(const Hit& hit, const glm::dvec3& direction, const FrameContext& frame,
@@ -103,14 +197,13 @@ std::size_t AirFor(const Hit& hit, const glm::dvec3& direction, const FrameConte
   const double widest_rad =
       3.0 * frame.filter().radius() * frame.camera().PixelAngle() + kSameSky_rad;
   auto known = std::find_if(airs.begin(), airs.end(), [&](const SharedSegmentAir& shared) {
-    return frame.settings().share_air && shared.Takes(hit, direction, widest_rad);
+    return frame.settings().share_air && shared.Takes(hit, direction, widest_rad, frame);
   });
   if (known == airs.end()) {
-    known = airs.insert(airs.end(), {hit.kind, hit.distance_m, direction, glm::dvec3(0.0), 0.0, 0});
+    airs.push_back(SharedSegmentAir::Of(hit, direction, frame));
+    return airs.size() - 1;
   }
-  known->direction_sum += direction;
-  known->distance_sum_m += hit.distance_m;
-  ++known->rays;
+  known->Add(hit, direction);
   return static_cast<std::size_t>(known - airs.begin());
 }
 
@@ -139,13 +232,13 @@ AirAlongRay ThroughMedia(const std::vector<MarchedPiece>& pieces, const AirTo& a
 /// Adds the light of one source in air and media. The first source also determines the
 /// transmittance and the pieces of media.
 void AddSource(const FrameContext& frame, const FrameLight& source, bool is_first,
-               const glm::dvec3& direction, SharedSegmentAir& rays) {
-  const AirTo air(frame, source, rays, direction);
+               const AirRay& through, SharedSegmentAir& rays) {
+  const AirTo air(frame, source, rays.kind, through);
   AirAlongRay lit = air(std::numeric_limits<double>::infinity());
   if (is_first) rays.media = BandLight(lit.inscatter.count);
   if (source.media) {
-    MarchedLight marched =
-        source.media->Along(frame.camera().eye(), direction, rays.length_m(), air.sunlit());
+    MarchedLight marched = source.media->Along(frame.camera().eye(), through.direction,
+                                               through.length_m, air.sunlit());
     lit = ThroughMedia(marched.pieces, air, lit);
     lit.transmittance = lit.transmittance * marched.transmittance;
     rays.media = rays.media + marched.radiance;
@@ -162,10 +255,10 @@ void AddSource(const FrameContext& frame, const FrameLight& source, bool is_firs
 }  // namespace
 
 void AddAir(const FrameContext& frame, SharedSegmentAir& rays) {
-  const glm::dvec3 direction = glm::normalize(rays.direction_sum);
+  const AirRay through = AirRayOf(frame, rays);
   bool is_first = true;
   for (const FrameLight& source : frame.lights()) {
-    AddSource(frame, source, is_first, direction, rays);
+    AddSource(frame, source, is_first, through, rays);
     is_first = false;
   }
 }
@@ -176,15 +269,16 @@ BandLight UnmarchedFog(const FrameContext& frame, const glm::dvec3& direction, d
 }
 
 void AddLamps(const FrameContext& frame, int x, int y, SharedSegmentAir& rays) {
-  const glm::dvec3 direction = glm::normalize(rays.direction_sum);
-  rays.fog = UnmarchedFog(frame, direction, rays.length_m());
+  const AirRay through = AirRayOf(frame, rays);
+  rays.fog = UnmarchedFog(frame, through.direction, through.length_m);
   rays.lamp_light = BandLight(rays.media.count);
   if (frame.plan().tiles.empty() || !frame.Has(Effect::kBeams)) return;
   const auto upto = [&](double length_m) {
-    return frame.lamps().InAir(frame.plan(), x, y, {direction, std::min(length_m, rays.length_m())},
+    return frame.lamps().InAir(frame.plan(), x, y,
+                               {through.direction, std::min(length_m, through.length_m)},
                                frame.camera().PixelAngle(), frame.settings().lamps.nodes);
   };
-  rays.lamp_light = DimmedByMedia(rays.pieces, upto, upto(rays.length_m()), Behind::kVolumes);
+  rays.lamp_light = DimmedByMedia(rays.pieces, upto, upto(through.length_m), Behind::kVolumes);
 }
 
 namespace {
@@ -318,10 +412,35 @@ std::optional<BandLight> PixelShader::LeftOfSpace(double x, double y) const {
   const CameraRay ray = frame_->camera().MiddleRay(x, y);
   const Hit hit = Trace(ray);
   if (hit.kind != HitKind::kSky) return std::nullopt;
-  SharedSegmentAir air{hit.kind, hit.distance_m, ray.through, ray.through, hit.distance_m, 1};
+  SharedSegmentAir air = SharedSegmentAir::Of(hit, ray.through, *frame_);
   AddAir(*frame_, air);
   const BandLight left = UnmarchedFog(*frame_, ray.through, air.length_m()) * air.air.transmittance;
   return frame_->camera().HasPolariser() ? 0.5F * left : left;
+}
+
+BandLight PixelShader::SunFrom(const glm::dvec3& direction) const {
+  return DiskFrom(direction, SunDiskRadiance);
+}
+
+BandLight PixelShader::MoonFrom(const glm::dvec3& direction) const {
+  return DiskFrom(direction, MoonDiskRadiance);
+}
+
+BandLight PixelShader::DiskFrom(const glm::dvec3& direction, DiskBehind disk) const {
+  const BandLight none(frame_->scene().medium().wavelengths_nm.size());
+  AirAlongRay clear{none, none};
+  std::fill_n(clear.transmittance.value.begin(), none.count, 1.0F);
+  const BandLight bare = disk(*frame_, direction, clear);
+  if (std::all_of(bare.value.begin(), bare.value.begin() + static_cast<int>(bare.count),
+                  [](float band) { return band <= 0.0F; }))
+    return none;
+  const glm::dvec3 eye = frame_->camera().eye();
+  const Hit hit = Trace({eye, eye, direction, direction});
+  if (hit.kind != HitKind::kSky) return none;
+  SharedSegmentAir air = SharedSegmentAir::Of(hit, direction, *frame_);
+  AddAir(*frame_, air);
+  const BandLight left = UnmarchedFog(*frame_, direction, air.length_m()) * bare;
+  return (frame_->camera().HasPolariser() ? 0.5F : 1.0F) * (air.air.transmittance * left);
 }
 
 PolarisedLight PixelShader::PolarisedGround(const Hit& hit, const CameraRay& ray,
@@ -375,7 +494,7 @@ Shaded PixelShader::WithoutPolariser(const Hit& hit, const SharedSegmentAir& thr
                                      const CameraRay& ray, const LampTile& near,
                                      std::array<double, 2> disk_sample) const {
   const FrameContext& frame = *frame_;
-  const NightLight* night = frame.night();
+  const NightLight* night = frame.sky_lights().night.get();
   Shaded shaded;
   shaded.inscatter = through.fog * (frame_->light().irradiance * through.air.inscatter);
   shaded.transmittance = through.fog * through.air.transmittance;
@@ -394,9 +513,12 @@ Shaded PixelShader::WithoutPolariser(const Hit& hit, const SharedSegmentAir& thr
   shaded.volumes = through.media;
   shaded.radiance = shaded.inscatter + shaded.lamps + shaded.volumes;
   if (hit.kind == HitKind::kSky) {
-    shaded.radiance =
-        shaded.radiance + through.fog * (SunDiskRadiance(frame, ray.direction, through.air) +
-                                         MoonDiskRadiance(frame, ray.direction, through.air));
+    if (!frame.sky_lights().small_sun)
+      shaded.radiance =
+          shaded.radiance + through.fog * SunDiskRadiance(frame, ray.direction, through.air);
+    if (!frame.sky_lights().small_moon)
+      shaded.radiance =
+          shaded.radiance + through.fog * MoonDiskRadiance(frame, ray.direction, through.air);
     if (night)
       shaded.radiance = shaded.radiance + shaded.transmittance * night->Above(ray.direction);
   } else {
@@ -417,7 +539,7 @@ void PixelShader::AddGround(const Hit& hit, const CameraRay& ray, const LampTile
     if (&source == &frame_->lights().front()) shaded.sun_visibility = sent.disk_visibility;
     natural = natural + sent.radiance;
   }
-  if (const NightLight* night = frame_->night()) {
+  if (const NightLight* night = frame_->sky_lights().night.get()) {
     const double cos_up = glm::dot(hit.normal, seen.up);
     natural = natural + static_cast<float>(1.0 / kPi) * (seen.albedo * night->OnSurface(cos_up));
   }

@@ -5,6 +5,7 @@
 #pragma once
 
 #include <array>
+#include <glm/geometric.hpp>
 #include <glm/vec3.hpp>
 #include <limits>
 #include <optional>
@@ -25,7 +26,10 @@ struct SharedSegmentAir {
   HitKind kind;
   double first_distance_m;     // of the first ray
   glm::dvec3 first_direction;  // of the first ray, unit
+  double first_cosine;         // LimbView::GroundCosine of the first ray
+  bool is_alone;               // the light of the air changes too much around the ray to be shared
   glm::dvec3 direction_sum;    // sum of unit vectors
+  glm::dvec3 point_sum;        // sum of the points that the rays hit; 0 for sky
   double distance_sum_m;
   int rays;
   // Values along the mean direction of the rays, to their mean distance:
@@ -39,8 +43,17 @@ struct SharedSegmentAir {
     return kind == HitKind::kSky ? std::numeric_limits<double>::infinity() : distance_sum_m / rays;
   }
 
+  /// Returns the air of one ray.
+  [[nodiscard]] static SharedSegmentAir Of(const Hit& hit, const glm::dvec3& direction,
+                                           const FrameContext& frame);
+  void Add(const Hit& hit, const glm::dvec3& direction);
+  [[nodiscard]] glm::dvec3 Direction() const { return glm::normalize(direction_sum); }
+
+  /// Returns whether the air along a direction may replace the mean over the rays.
+  [[nodiscard]] bool MayLookAlong(const glm::dvec3& direction, const FrameContext& frame) const;
   /// @param widest_rad  largest angle between two rays that share air.
-  [[nodiscard]] bool Takes(const Hit& hit, const glm::dvec3& direction, double widest_rad) const;
+  [[nodiscard]] bool Takes(const Hit& hit, const glm::dvec3& direction, double widest_rad,
+                           const FrameContext& frame) const;
 };
 
 /// Returns the index of the air of a pixel that a ray looks through; adds a new one if no air fits,
@@ -77,8 +90,17 @@ class PixelShader {
   /// Returns the fraction of light from space that air, fog and a polariser let through at a place
   /// of the picture; no value where ground is in front.
   [[nodiscard]] std::optional<BandLight> LeftOfSpace(double x, double y) const;
+  /// Returns the light of the disk of the sun, or of the moon, that arrives from a direction; 0
+  /// beside the disk and where ground is in front.
+  [[nodiscard]] BandLight SunFrom(const glm::dvec3& direction) const;
+  [[nodiscard]] BandLight MoonFrom(const glm::dvec3& direction) const;
 
  private:
+  /// Returns the light of a disk that arrives from a direction.
+  /// @param disk  returns its light behind the air along a ray.
+  using DiskBehind = BandLight (*)(const FrameContext& frame, const glm::dvec3& direction,
+                                   const AirAlongRay& through);
+  [[nodiscard]] BandLight DiskFrom(const glm::dvec3& direction, DiskBehind disk) const;
   /// Computes Shade() without a polariser and without Shaded::polarised.
   [[nodiscard]] Shaded WithoutPolariser(const Hit& hit, const SharedSegmentAir& through,
                                         const CameraRay& ray, const LampTile& near,

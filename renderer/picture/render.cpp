@@ -74,10 +74,15 @@ double VarianceAmong(const std::vector<RaySpread>& spreads, const Tile& tile, in
   return all.RelativeVariance(floor);
 }
 
-/// Adds the light of stars at the pixel, which rays do not meet.
+/// Adds the light of stars and small disks at the pixel, which rays do not meet.
 PixelSum WithStars(const FrameContext& frame, int x, int y, PixelSum rays) {
-  const BandLight* star = frame.stars() ? frame.stars()->At(x, y) : nullptr;
-  if (star != nullptr) rays.radiance = rays.radiance + static_cast<float>(rays.rays) * *star;
+  const auto add = [&](const auto& lights) {
+    const BandLight* light = lights ? lights->At(x, y) : nullptr;
+    if (light != nullptr) rays.radiance = rays.radiance + static_cast<float>(rays.rays) * *light;
+  };
+  add(frame.sky_lights().stars);
+  add(frame.sky_lights().small_sun);
+  add(frame.sky_lights().small_moon);
   return rays;
 }
 
@@ -276,8 +281,8 @@ EffectSet Present(const FrameContext& frame) {
   present = without(present, scene.media().HasVolumes(), {Effect::kVolumes});
   present = without(present, scene.media().fog() != nullptr, {Effect::kFogGlow});
   present = without(present, frame.lights().size() > 1, {Effect::kMoonlight});
-  present = without(present, frame.night() != nullptr, {Effect::kNightSky});
-  present = without(present, frame.stars() != nullptr, {Effect::kStars});
+  present = without(present, frame.sky_lights().night != nullptr, {Effect::kNightSky});
+  present = without(present, frame.sky_lights().stars != nullptr, {Effect::kStars});
   present = without(present, frame.bent() != nullptr, {Effect::kRefraction});
   return without(present, &scene.OnFewBands() != &scene, {Effect::kFineSpectrum});
 }
@@ -344,8 +349,8 @@ ChosenPicture SceneRenderer::RenderWithin(const CameraSample& camera_sample,
   };
   EffectPreview preview;
   std::vector<glm::dvec3> points = frame.lamps().Directions();
-  if (frame.stars() != nullptr) {
-    const auto& stars = frame.stars()->directions();
+  if (const auto& known = frame.sky_lights().stars) {
+    const auto& stars = known->directions();
     points.insert(points.end(), stars.begin(), stars.end());
   }
   preview.groups =

@@ -217,6 +217,66 @@ const BandLight* StarPixels::At(int x, int y) const {
   return found == pixels_.end() ? nullptr : &found->second;
 }
 
+SmallDisk::SmallDisk(const CameraRays& camera, const PixelFilter& filter, int width, int height,
+                     const glm::dvec3& to_disk, double around_rad, const Seen& seen)
+    : width_(width), height_(height) {
+  constexpr int kSide = 48;  // the area of a disk of half this width is then right within 1 %
+  const glm::dvec3 other =
+      std::abs(to_disk.z) < 0.9 ? glm::dvec3(0.0, 0.0, 1.0) : glm::dvec3(1.0, 0.0, 0.0);
+  const glm::dvec3 across = glm::normalize(glm::cross(to_disk, other));
+  const glm::dvec3 along = glm::cross(to_disk, across);
+  const double step = 2.0 * around_rad / kSide;
+  for (int i = 0; i < kSide * kSide; ++i) {
+    const glm::dvec3 off = (i % kSide + 0.5 - 0.5 * kSide) * step * across +
+                           (i / kSide + 0.5 - 0.5 * kSide) * step * along;
+    const glm::dvec3 direction = glm::normalize(to_disk + off);
+    const auto place = camera.PlaceOf(direction);
+    if (!place) continue;
+    const auto [x, y] = *place;
+    const double reach = filter.radius();
+    if (x < -reach || x > width + reach || y < -reach || y > height + reach) continue;
+    Spread(camera, filter, x, y, static_cast<float>(step * step) * seen(direction));
+  }
+}
+
+// The weights of the pixels around a point are scaled so that they sum to one: the illuminance in
+// the picture is that of the disk.
+void SmallDisk::Spread(const CameraRays& camera, const PixelFilter& filter, double x, double y,
+                       const BandLight& irradiance) {
+  const bool is_dark = std::all_of(irradiance.value.begin(),
+                                   irradiance.value.begin() + static_cast<int>(irradiance.count),
+                                   [](float band) { return band <= 0.0F; });
+  if (is_dark) return;
+  constexpr int kReach = 2;
+  struct Share {
+    int column, row;
+    double weight;
+  };
+  std::vector<Share> shares;
+  double sum = 0.0;
+  for (int j = -kReach; j <= kReach; ++j) {
+    const int row = static_cast<int>(std::floor(y)) + j;
+    for (int i = -kReach; i <= kReach; ++i) {
+      const int column = static_cast<int>(std::floor(x)) + i;
+      const double right = x - column - 0.5, down = y - row - 0.5;
+      if (std::max(std::abs(right), std::abs(down)) > filter.radius()) continue;
+      shares.push_back({column, row, filter.Weight(right) * filter.Weight(down)});
+      sum += shares.back().weight;
+    }
+  }
+  const double per_sr = 1.0 / SolidAngle(camera, x, y);
+  for (const auto& [column, row, weight] : shares) {
+    if (row < 0 || row >= height_ || column < 0 || column >= width_) continue;
+    const auto at = pixels_.try_emplace(row * width_ + column, irradiance.count).first;
+    at->second = at->second + static_cast<float>(per_sr * weight / sum) * irradiance;
+  }
+}
+
+const BandLight* SmallDisk::At(int x, int y) const {
+  const auto found = pixels_.find(y * width_ + x);
+  return found == pixels_.end() ? nullptr : &found->second;
+}
+
 namespace {
 
 // Returns the angular radius around a pixel that must be free of ground and disks: a ray counts for
@@ -278,6 +338,7 @@ Skyline::Arc UnoccludedSkyPixels::ArcAround(const glm::dvec3& up) const {
 bool UnoccludedSkyPixels::Has(int x, int y) const {
   if (!skyline_) return false;
   const glm::dvec3 middle = frame_.camera().Direction(x + 0.5, y + 0.5);
+  if (frame_.limb().IsSteepAt(middle)) return false;
   const auto is_near = [&](const glm::dvec3& to_disk, double radius_rad) {
     return glm::length(middle - to_disk) < 2.0 * radius_rad + around_rad_;
   };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Stars and planets in a picture, and the pixels that see only sky.
+// Stars and planets in a picture, disks much smaller than a pixel, and the pixels that see only sky.
 //
 // Stars and planets are points whose light is spread over the pixels around them. A light of
 // illuminance E adds the radiance w E / Omega to a pixel of solid angle Omega. The weights w come
@@ -8,8 +8,11 @@
 // not twinkle. During a long exposure the light is spread along its path, evenly in time, in steps
 // of half a pixel.
 //
+// A disk of sun or moon that is less than a pixel wide is integrated over the pixels around it,
+// because rays would miss it: a dozen rays of a pixel, of which none meets the disk, do not differ.
+//
 // UnoccludedSkyPixels finds the pixels that see only sky without tracing a ray: those well above
-// the skyline, and not near the sun or the moon. All rays of such a pixel have one sky radiance,
+// the skyline, not near the sun or the moon, and not at the limb of the planet (LimbView). All rays of such a pixel have one sky radiance,
 // that of its middle (shared_samples.h), and so have all rays of its neighbours that count for it.
 // One ray through the middle gives the same result as many.
 //
@@ -106,6 +109,27 @@ class StarPixels {
   int width_, height_;
   std::unordered_map<int, BandLight> pixels_;
   std::vector<glm::dvec3> directions_;
+};
+
+/// A disk of sun or moon, integrated over the pixels that it lights. Immutable.
+class SmallDisk {
+ public:
+  /// Returns the radiance that arrives from a direction; 0 beside the disk and where it is hidden.
+  using Seen = std::function<BandLight(const glm::dvec3& direction)>;
+
+  /// @param around_rad  > 0: everything farther from the middle of the disk is dark.
+  SmallDisk(const CameraRays& camera, const PixelFilter& filter, int width, int height,
+            const glm::dvec3& to_disk, double around_rad, const Seen& seen);
+
+  /// Returns the radiance to add to a pixel, W m^-2 sr^-1 nm^-1; null: nothing to add.
+  [[nodiscard]] const BandLight* At(int x, int y) const;
+
+ private:
+  void Spread(const CameraRays& camera, const PixelFilter& filter, double x, double y,
+              const BandLight& irradiance);
+
+  int width_, height_;
+  std::unordered_map<int, BandLight> pixels_;
 };
 
 class FrameContext;

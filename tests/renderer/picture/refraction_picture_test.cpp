@@ -15,6 +15,9 @@
 #include "atmosphere/refraction/refracted_view.h"
 #include "atmosphere/refraction/refraction.h"
 #include "renderer/illumination/night_light.h"
+#include "renderer/picture/frame_context.h"
+#include "renderer/picture/pixel_shader.h"
+#include "renderer/picture/prepared_scene.h"
 #include "renderer/picture/render.h"
 #include "tests/fixtures/bare_scene.h"
 #include "tests/fixtures/far_peak.h"
@@ -275,6 +278,77 @@ double MiddleOfAureole(const Image& image, double pixel_rad) {
   const double lower = 0.5 * (contrast(near) + contrast(far)),
                higher = 0.5 * (contrast(-near) + contrast(-far));
   return 0.5 * (lower - higher) / slope * pixel_rad;
+}
+
+/// The air before the sea in the middle of a picture that looks below the horizon from space.
+class AirFromSpace {
+ public:
+  explicit AirFromSpace(double height_m)
+      : height_m_(height_m),
+        scene_(Sea(height_m), static_cast<Progress*>(nullptr)),
+        air_(GentleAirOf(scene_.medium())) {}
+
+  [[nodiscard]] std::size_t last_band() const { return scene_.medium().wavelengths_nm.size() - 1; }
+  [[nodiscard]] double horizon_rad() const { return GrazingElevation(air_, height_m_); }
+  /// Returns the optical depth in a band, in the middle of a picture with a field of view.
+  [[nodiscard]] double Depth(double elevation_rad, double fov, std::size_t band) const {
+    CameraSample camera_sample(kRefractedNoon);
+    camera_sample.poses = {
+        {PlaceFromDegrees(46.5, 8.0, height_m_), 0.0, elevation_rad, 0.0, fov * kRadiansPerDegree}};
+    const FrameContext frame(scene_, camera_sample, {.width = 65, .height = 37, .layers = {}});
+    const PixelShader shader(frame);
+    const CameraRay ray = frame.camera().MiddleRay(32.5, 18.5);
+    SharedSegmentAir air = SharedSegmentAir::Of(shader.Trace(ray), ray.through, frame);
+    EXPECT_EQ(air.kind, HitKind::kPlanet);
+    AddAir(frame, air);
+    return -std::log(static_cast<double>(air.air.transmittance[band]));
+  }
+  /// Returns the optical depth along the refracted ray.
+  [[nodiscard]] double DepthOfRay(double elevation_rad, std::size_t band) const {
+    const Medium& medium = scene_.medium();
+    const double at_sea_rad = RefractedRay(air_, elevation_rad, height_m_).ElevationAt(0.0);
+    const auto to_space = [&](double from_rad, double from_m) {
+      return RefractedRay(air_, from_rad, from_m).ColumnToSpace([&](double height_m) {
+        return medium.rayleigh_scattering_per_m[band] * MoleculeDensity(medium, height_m) +
+               medium.mie_extinction_per_m[band] * std::exp(-height_m / medium.mie_scale_height_m);
+      });
+    };
+    return to_space(at_sea_rad, 0.0) - to_space(-elevation_rad, height_m_);
+  }
+
+ private:
+  static Scene Sea(double height_m) {
+    Scene scene = QuickScene(height_m, 0.0, -20.0, 10.0);
+    for (double& ozone : scene.medium.ozone_absorption_per_m) ozone = 0.0;
+    return scene;
+  }
+
+  double height_m_;
+  PreparedScene scene_;
+  BendingAir air_;
+};
+
+TEST(RefractedAir, BeforeTheSeaHasTheColumnsOfTheRefractedRay) {
+  for (const double height_m :
+       tests::ScaledDown<std::vector<double>>({10e3, 400e3, 36e6}, {400e3})) {
+    const AirFromSpace seen(height_m);
+    for (const double below : {0.02, 0.1, 0.4}) {
+      const double elevation_rad = seen.horizon_rad() - below * kRadiansPerDegree;
+      for (const std::size_t band : {0UL, seen.last_band()}) {
+        EXPECT_NEAR(seen.Depth(elevation_rad, 1.0, band) / seen.DepthOfRay(elevation_rad, band),
+                    1.0, 0.03)
+            << height_m << " m, " << below << " degrees below the horizon";
+      }
+    }
+  }
+}
+
+TEST(RefractedAir, BeforeTheSeaIsTheSameAtEveryFieldOfView) {
+  const AirFromSpace seen(400e3);
+  const double elevation_rad = seen.horizon_rad() - 0.4 * kRadiansPerDegree;
+  const double depth = seen.Depth(elevation_rad, 1.0, 0);
+  for (const double fov : {0.1, 3.0, 4.0, 6.0, 60.0})
+    EXPECT_NEAR(seen.Depth(elevation_rad, fov, 0) / depth, 1.0, 2e-3) << fov << " degrees";
 }
 
 TEST(TwilightAir, TheAureoleSurroundsTheVisibleDisk) {

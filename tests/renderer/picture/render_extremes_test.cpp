@@ -61,6 +61,44 @@ TEST(RenderExtremes, OnTheGroundTheHorizonIsTheHorizontal) {
   }
 }
 
+/// Returns the mean luminance of each pixel, from a picture that is `finer` times as fine.
+std::vector<double> MeansOf(const Image& image, int finer) {
+  const int columns = image.width / finer, rows = image.height / finer;
+  std::vector<double> means(static_cast<std::size_t>(columns * rows));
+  for (int y = 0; y < image.height; ++y) {
+    for (int x = 0; x < image.width; ++x)
+      means[static_cast<std::size_t>(y / finer * columns + x / finer)] +=
+          Luminance(image.at(x, y)) / (finer * finer);
+  }
+  return means;
+}
+
+/// Compares the limb of the planet with a picture of many more pixels.
+/// @param pitch  to the limb. @param fov  of eight columns.
+void ExpectSmoothLimb(double height_m, double pitch, double fov, int rows) {
+  constexpr int kColumns = 8, kFiner = 12;
+  const SceneRenderer renderer(QuickScene(height_m, 0.0, pitch, fov));
+  const std::vector<double> expected =
+      MeansOf(renderer.Render(kExtremeNoon, Settings(kFiner * kColumns, kFiner * rows)), kFiner);
+  for (const bool is_noise_bounded : {false, true}) {
+    RenderSettings settings = Settings(kColumns, rows);
+    settings.filter = PixelFilter::Kind::kBox;
+    settings.samples_per_pixel = is_noise_bounded ? 16 : 256;
+    if (is_noise_bounded) settings.noise = 0.005;
+    const Image image = renderer.Render(kExtremeNoon, settings);
+    for (std::size_t i = 0; i < expected.size(); ++i) {
+      EXPECT_NEAR(Luminance(image.rgb[i]), expected[i], 0.05 * expected[i] + 0.05)
+          << height_m << " m, row " << i / kColumns << ": rays of the noise asked for";
+    }
+  }
+}
+
+// Hard case 6.
+TEST(RenderExtremes, TheLimbOfThePlanetIsTheMeanOverEachPixel) {
+  ExpectSmoothLimb(400e3, -17.0, 3.2, 18);
+  if (!tests::kSanitized) ExpectSmoothLimb(36e6, -81.3, 1.0, 9);
+}
+
 // Hard case 6.
 TEST(RenderExtremes, AClimbToOrbitIsContinuous) {
   const SceneRenderer renderer(QuickScene(1.7, 40.0, 0.0, 20.0));

@@ -176,6 +176,19 @@ TEST(Render, ImpossibleEyesLayersAndSizesAreRefused) {
   EXPECT_THROW((void)renderer.Render(noon, settings), InputError);
 }
 
+/// Returns the illuminance of a surface 2 m up that faces the sun, without the sky [lx].
+double SunIlluminance(const SceneRenderer& renderer, const SunPosition& sun) {
+  const SingleScattering<float> air(renderer.medium());
+  const auto transmittance = air.TransmittanceToSpace(2.0, std::sin(sun.elevation_rad));
+  std::vector<double> direct;
+  for (std::size_t band = 0; band < air.bands(); ++band) {
+    direct.push_back(static_cast<double>(transmittance[band]) *
+                     renderer.medium().solar_irradiance[band] /
+                     (sun.distance_au * sun.distance_au));
+  }
+  return BandColour(renderer.medium().wavelengths_nm).Xyz(direct)[1];
+}
+
 // Hard case 32.
 TEST(Render, TheDiskInThePictureHasTheSunsIlluminance) {
   // The radiance of the disk's pixels sums to the direct normal illuminance.
@@ -191,20 +204,35 @@ TEST(Render, TheDiskInThePictureHasTheSunsIlluminance) {
   const double pixel = std::pow(CameraRays(at_sun.camera, 100, 100).PixelAngle(), 2);
   double illuminance = 0.0;
   for (const auto& rgb : image.rgb) illuminance += Luminance(rgb) * pixel;
-  const SingleScattering<float> air(renderer.medium());
-  const auto transmittance = air.TransmittanceToSpace(2.0, std::sin(sun.elevation_rad));
-  std::vector<double> direct;
-  for (std::size_t band = 0; band < air.bands(); ++band) {
-    direct.push_back(static_cast<double>(transmittance[band]) *
-                     renderer.medium().solar_irradiance[band] /
-                     (sun.distance_au * sun.distance_au));
-  }
-  const double expected = BandColour(renderer.medium().wavelengths_nm).Xyz(direct)[1];
-  EXPECT_NEAR(illuminance / expected, 1.0, 0.01)
+  EXPECT_NEAR(illuminance / SunIlluminance(renderer, sun), 1.0, 0.01)
       << "edge pixels of a disk 53 pixels wide, aureole included";
 }
 
 class RenderOfFiles : public TemporaryFolder {};
+
+// Hard case 32.
+TEST(Render, ADiskSmallerThanAPixelHasTheSunsIlluminance) {
+  const UtcInstant noon = ParseInstant("2026-06-21T11:30:00Z");
+  Scene at_sun = QuickScene(2.0, 0.0, 0.0, 90.0);
+  const SunPosition sun = tests::SunSeenIn(at_sun, noon);
+  at_sun.camera = CameraFromDegrees({2.0, false}, sun.azimuth_rad / kRadiansPerDegree + 1.0,
+                                    sun.elevation_rad / kRadiansPerDegree + 1.0, 0.0, 90.0);
+  const SceneRenderer renderer(at_sun);
+  RenderSettings settings{.width = 48, .height = 27, .layers = {}};
+  const double pixel = std::pow(CameraRays(at_sun.camera, 48, 27).PixelAngle(), 2);
+  const double expected = SunIlluminance(renderer, sun);
+  for (const bool is_fixed : {false, true}) {
+    if (!is_fixed) settings.noise = 0.02;
+    settings.samples_per_pixel = is_fixed ? 1 : 4;
+    double illuminance = 0.0;
+    const Image image = renderer.Render(noon, settings);
+    for (const auto& rgb : image.rgb) {
+      if (Luminance(rgb) > 1e5) illuminance += Luminance(rgb) * pixel;
+    }
+    EXPECT_NEAR(illuminance / expected, 1.0, 0.03) << "pixels beside the middle are smaller";
+    settings.noise = std::nullopt;
+  }
+}
 
 TEST_F(RenderOfFiles, SummitOfFujiIsLitBeforeTheLakeBelow) {
   if (!std::filesystem::exists(tests::FujiModel()))
