@@ -7,7 +7,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <optional>
 
+#include "atmosphere/base/parsing.h"
 #include "lut/cli/messages.h"
 
 namespace alpenglow::lut {
