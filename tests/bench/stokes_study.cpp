@@ -96,7 +96,7 @@ void PrintSlab() {
   PrintHead();
   std::map<std::string, Comparison> comparisons;
   std::size_t number = 0;
-  for (const stored::Row& cells : stored::Read("../tables/rayleigh_slab_stokes_natraj2009.csv")) {
+  for (const stored::Row& cells : stored::ReadData("tables/rayleigh_slab_stokes_natraj2009.csv")) {
     const slab::Row row = FromCells(cells);
     if (row.mu < 0.15 || row.mu0 < 0.15 || ++number % 37 != 0) continue;
     const Medium medium = slab::Layer(row.tau, row.albedo);

@@ -90,10 +90,7 @@ TEST(Sun, StandsWhereSpaPutsItWithinTwoArcseconds) {
 }
 
 TEST(Sun, WholeTableOfSpaIsMatchedWithinTwoArcseconds) {
-  const std::filesystem::path path =
-      std::filesystem::path(tests::kSharedFolder) / "tables" / "sun_nrel_spa.csv";
-  std::ifstream file(path);
-  if (!file) GTEST_SKIP() << "the reference table is not here: " << path;
+  std::ifstream file(stored::DataFile("tables/sun_nrel_spa.csv"));
   int rows = 0;
   double largest = 0.0;
   for (std::string line; std::getline(file, line);) {

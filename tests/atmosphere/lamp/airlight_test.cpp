@@ -87,7 +87,6 @@ TEST(Airlight, SixteenSamplesKeepAThousandth) {
 }
 
 TEST(Airlight, AgreesWithTheStoredCasesBySamplesAndByReference) {
-  if (!stored::Available()) GTEST_SKIP() << "no stored cases at " << stored::Folder();
   const auto cases = stored::LampCases();
   EXPECT_EQ(cases.size(), 50U);
   for (const auto& [id, air, lamp, segment, radiance] : cases) {

@@ -69,7 +69,6 @@ TEST(SingleScattering, DaySunsetAndTwilightAgreeWithTheReference) {
 }
 
 TEST(SingleScattering, StoredCasesAgreeToOnePartInTenThousand) {
-  if (!stored::Available()) GTEST_SKIP() << "no stored cases at " << stored::Folder();
   const auto media = stored::Media();
   const auto is_no_limb_ray = [&](const stored::Row& row) {
     const ViewRay ray = stored::RayOf(row);

@@ -248,7 +248,6 @@ std::set<std::string> TracedIds(std::set<std::string> ids) {
 // Stored cases have errors of up to half a percent of the value; ours are a little larger.
 void ExpectStoredRadiance(const std::set<std::string>& all) {
   const std::set<std::string> ids = TracedIds(all);
-  if (!stored::Available()) GTEST_SKIP() << "no stored cases at " << stored::Folder();
   constexpr double kError = tests::ScaledDown(0.008, 0.05);
   const int compared = stored::Compare(
       "multiple", [&](const stored::Row& row) { return ids.contains(row.at("id")); },
@@ -281,7 +280,6 @@ TEST(PathTracer, AgreesWithStoredViewsFromSpaceAndThroughAir) {
 }
 
 TEST(PathTracer, AgreesWithStoredIrradiance) {
-  if (!stored::Available()) GTEST_SKIP() << "no stored cases at " << stored::Folder();
   constexpr double kError = tests::ScaledDown(0.007, 0.03);
   const int compared =
       stored::Compare("irradiance", stored::All, [](const stored::Row& row, const Medium& medium) {
@@ -418,7 +416,6 @@ TEST(PathTracedStokes, RefuseWhatIsNoScattering) {
 
 void ExpectStoredStokes(const std::set<std::string>& all) {
   const std::set<std::string> ids = TracedIds(all);
-  if (!stored::Available()) GTEST_SKIP() << "no stored cases at " << stored::Folder();
   constexpr double kError = tests::ScaledDown(0.008, 0.05);
   const int compared = stored::Compare(
       "polarised", [&](const stored::Row& row) { return ids.contains(row.at("id")); },

@@ -53,7 +53,6 @@ TEST(Reference, ThinUniformAirScattersLengthTimesCoefficientTimesPhase) {
 }
 
 TEST(Reference, StoredOpticalDepthsAgreeToOnePartInAHundredMillion) {
-  if (!stored::Available()) GTEST_SKIP() << "no stored cases at " << stored::Folder();
   const int compared =
       stored::Compare("transmittance", stored::All, [](const stored::Row& row, const Medium& air) {
         const auto depth = reference::OpticalDepthAlong(air, stored::RayOf(row));
@@ -68,7 +67,6 @@ TEST(Reference, StoredOpticalDepthsAgreeToOnePartInAHundredMillion) {
 }
 
 TEST(Reference, StoredSingleScatteringAgreesToOnePartInTenMillion) {
-  if (!stored::Available()) GTEST_SKIP() << "no stored cases at " << stored::Folder();
   int number = 0;
   const auto is_kept = [&](const stored::Row&) { return ++number % tests::ScaledDown(1, 5) == 0; };
   const int compared =

@@ -108,11 +108,6 @@ using Evaluators = std::map<std::string, std::unique_ptr<Evaluator>>;
 /// Evaluates every stored case of a file and compares one column of its results.
 class StoredEval : public Eval {
  protected:
-  void SetUp() override {
-    Eval::SetUp();
-    if (!stored::Available()) GTEST_SKIP() << "no stored cases at " << stored::Folder();
-  }
-
   template <typename Keep>
   [[nodiscard]] Comparison Compare(const std::string& name, const std::string& quantity,
                                    const std::string& column, const IntegralOptions& options,
@@ -738,7 +733,6 @@ void ExpectStored(const std::map<std::string, Estimate>& found, double tolerance
 }
 
 TEST_F(LampCases, StoredCasesAreAsNearAsIsAskedFor) {
-  if (!stored::Available()) GTEST_SKIP() << "no stored cases at " << stored::Folder();
   ExpectStored(Evaluate(StoredAsCases(), {}), 1e-3);
   for (const double error : {1e-4, 1e-8})
     ExpectStored(Evaluate(StoredAsCases(), {.max_error = error}), error);

@@ -112,8 +112,6 @@ void ExpectErrorsOfPublished(const Errors& errors) {
 TEST(PolarisedLight, IsThePublishedOneOfALayerOfMolecules) {
   const auto rows = std::span(slab::kRows).last(tests::ScaledDown<std::size_t>(9, 3));
   ExpectErrorsOfPublished(ErrorsOver(rows, OptionsFor));
-  // The finer options are compared with other rows of the tables where these are available.
-  if (!stored::Available()) ExpectErrorsOfPublished(ErrorsOver(rows, Fine));
 }
 
 TEST(PolarisedLight, OfThinAndThickLayersIsRightToATenthOfAPercent) {
@@ -126,12 +124,10 @@ TEST(PolarisedLight, OfThinAndThickLayersIsRightToATenthOfAPercent) {
 }
 
 TEST(PolarisedLight, IsThePublishedOneInEveryDirection) {
-  if (!stored::Available()) GTEST_SKIP() << "no stored tables at " << stored::Folder();
-  // Few of the rows, of all angles, are enough.
-  constexpr int kEvery = tests::ScaledDown(11, 211);
+  constexpr int kEvery = tests::ScaledDown(1, 19);
   int rows_read = 0;
   std::map<std::pair<double, double>, std::vector<slab::Row>> layers;
-  for (const stored::Row& row : stored::Read("../tables/rayleigh_slab_stokes_natraj2009.csv")) {
+  for (const stored::Row& row : stored::ReadData("tables/rayleigh_slab_stokes_natraj2009.csv")) {
     const auto number = [&row](const char* key) { return stored::Number(row, key); };
     const slab::Row at{number("tau"), number("albedo"), row.at("direction") == "UP",
                        number("mu0"), number("mu"),     number("phi_deg"),
@@ -149,7 +145,6 @@ TEST(PolarisedLight, IsThePublishedOneInEveryDirection) {
 }
 
 TEST(PolarisedLight, AgreesWithStoredSkiesOnTheSphere) {
-  if (!stored::Available()) GTEST_SKIP() << "no stored cases at " << stored::Folder();
   const auto media = stored::Media();
   const auto results = stored::Results("polarised_results.csv");
   std::map<std::string, Sky> skies;

@@ -35,9 +35,10 @@ namespace {
 constexpr double kNightSky_lux = 0.0005;  // what the table adds (Janiczek, DeYoung 1987)
 constexpr int kBands = tests::ScaledDown(8, 4);
 
-/// Returns two columns of a published table as x -> y, or nothing where the table is absent.
+/// Returns two columns of a published table as x -> y.
 std::map<double, double> Table(const std::string& file, std::size_t x, std::size_t y) {
-  std::ifstream in(std::filesystem::path(tests::kSharedFolder) / "tables" / file);
+  std::ifstream in(std::filesystem::path(tests::kSourceFolder) / "tests" / "data" / "tables" /
+                   file);
   std::map<double, double> table;
   for (std::string line; std::getline(in, line);) {
     if (line.empty() || (line[0] != '-' && (line[0] < '0' || line[0] > '9'))) continue;
@@ -92,7 +93,6 @@ double RatioToTable(const Daylight& daylight, double apparent_deg) {
 
 TEST(Twilight, MoleculesThinOutAsInTheStandardAtmosphere) {
   const std::map<double, double> standard = Table("ussa76_profile.csv", 0, 6);
-  if (standard.empty()) GTEST_SKIP() << "../shared/tables is not here";
   const Medium medium = MediumPreset("earth");
   double column_m = 0.0, last_km = 0.0, last_density = 1.0;
   for (const auto& [altitude_km, density] : standard) {
@@ -110,7 +110,6 @@ TEST(Twilight, MoleculesThinOutAsInTheStandardAtmosphere) {
 
 // Hard case 22.
 TEST(Twilight, IsAsBrightAsPublished) {
-  if (PublishedLux().empty()) GTEST_SKIP() << "../shared/tables is not here";
   const Daylight daylight(MediumPreset("earth", WavelengthSet(kBands)));
   for (const double apparent_deg : {0.0, -3.0, -6.0, -9.0, -12.0}) {
     const double ratio = RatioToTable(daylight, apparent_deg);
@@ -121,7 +120,6 @@ TEST(Twilight, IsAsBrightAsPublished) {
 }
 
 TEST(Twilight, OfOneExponentialIsTooBrightBecauseAirIsTooDenseHighUp) {
-  if (PublishedLux().empty()) GTEST_SKIP() << "../shared/tables is not here";
   const double height_m = 8000.0;
   const double too_dense = std::exp(-40e3 / height_m) / DensityAt40Km();
   EXPECT_NEAR(too_dense, 2.1, 0.1) << "the reason: molecules at 40 km, times too many";
