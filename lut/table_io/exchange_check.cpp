@@ -211,7 +211,9 @@ class Reference {
 
   [[nodiscard]] CheckedTexel At(std::size_t texel, const MultipleScattering& light) const {
     const ViewRay ray = RayOf(texel);
-    const auto once = air_.Scatter(air_.Sample(ray, {.nodes = 24}));
+    auto once = air_.Scatter(air_.Sample(ray, {.nodes = 24}));
+    for (std::size_t band = 0; band < once.rayleigh.count; ++band)
+      once.rayleigh[band] *= PhaseOverThatOfLoaders(medium_, band, ray.nu);
     Rgba more = TimesSun(medium_, HigherOrdersAlong(quick_air_, light, ray));
     for (double& value : more) value /= shared::PhaseRayleigh<double>(ray.nu);
     return {texel, TimesSun(medium_, once.rayleigh), TimesSun(medium_, once.mie), more};

@@ -150,9 +150,14 @@ std::array<ExchangeTexture, 3> ScatteringTextures(const Medium& medium,
     for (std::size_t x = 0; x < width; ++x) {
       Bands<float> molecules(3), mie(3), orders(3);
       const float* texel = &once.texels()[6 * (row * width + x)];
+      const double nu = once.RayOfTexel(x / kScatteringSize.mu_s, x % kScatteringSize.mu_s,
+                                        row % kScatteringSize.mu, row / kScatteringSize.mu)
+                            .nu;
       for (std::size_t band = 0; band < 3; ++band) {
         orders[band] = more[3 * x + band];
-        molecules[band] = texel[band] + orders[band];
+        molecules[band] =
+            texel[band] * static_cast<float>(PhaseOverThatOfLoaders(medium, band, nu)) +
+            orders[band];
         mie[band] = texel[3 + band];
       }
       const std::array<float, 4> mie_rgb = RgbaTexel(medium, mie, true, 1.0F);
@@ -220,6 +225,11 @@ std::string MediumText(const Medium& medium, const ExchangeOptions& options) {
 }
 
 }  // namespace
+
+double PhaseOverThatOfLoaders(const Medium& medium, std::size_t band, double nu) {
+  return shared::PhaseMolecules<double>(nu, Depolarisation(medium, band)) /
+         shared::PhaseRayleigh<double>(nu);
+}
 
 TexelType TexelTypeFromName(std::string_view name) {
   constexpr EnumNames kNames{{std::pair{TexelType::kFloat, "float"}, {TexelType::kHalf, "half"}}};

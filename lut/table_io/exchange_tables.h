@@ -11,10 +11,11 @@
 //   transmittance           256 x 64        mu, r               to the top of the air; A = 1
 //   irradiance              64 x 16         mu_s, r (linear)    of the sky on a horizontal plane,
 //                                                               without the sun's; A = 1
-//   scattering              256 x 128 x 32  (nu, mu_s), mu, r   light scattered once by molecules,
-//                           without phase function, + orders 2 to 4 divided by the molecules' phase
-//                           function at nu; A = light scattered once by aerosol at the longest
-//                           wavelength, without phase function
+//   scattering              256 x 128 x 32  (nu, mu_s), mu, r   light scattered by molecules once
+//                           + orders 2 to 4, both divided by the phase function at nu by which
+//                           loaders multiply, that of molecules that do not depolarise; A = light
+//                           scattered once by aerosol at the longest wavelength, without phase
+//                           function
 //   higher_order_scattering 256 x 128 x 32  orders 2 to 4 only; A = 0            (takram only)
 //   single_mie_scattering   256 x 128 x 32  scattered once by aerosol; A = 1     (takram only)
 //
@@ -52,6 +53,10 @@ enum class TexelFormat { kExr, kBin, kDat };
 /// Parse "float" or "half", and "exr", "bin" or "dat". Throw InputError for other names.
 [[nodiscard]] TexelType TexelTypeFromName(std::string_view name);
 [[nodiscard]] TexelFormat TexelFormatFromName(std::string_view name);
+
+/// Returns the phase function of molecules of a medium over that by which loaders multiply.
+/// @param nu  cosine of the scattering angle.
+[[nodiscard]] double PhaseOverThatOfLoaders(const Medium& medium, std::size_t band, double nu);
 
 struct ExchangeOptions {
   ExchangeLayout layout = ExchangeLayout::kTakram;
