@@ -19,6 +19,7 @@
 #include <cstdint>
 #include <fstream>
 #include <functional>
+#include <mutex>
 #include <string>
 #include <system_error>
 
@@ -35,8 +36,11 @@ constexpr std::uint32_t kSeveralParts = 0x1000;  // flag in the version
 
 class HeaderReader {
  public:
-  explicit HeaderReader(const std::filesystem::path& file)
-      : file_(file), stream_(file, std::ios::binary), left_(std::filesystem::file_size(file)) {}
+  HeaderReader(const std::filesystem::path& file, std::int64_t longest_side)
+      : file_(file),
+        longest_side_(longest_side),
+        stream_(file, std::ios::binary),
+        left_(std::filesystem::file_size(file)) {}
 
   /// Checks the headers. Files that are not OpenEXR files pass.
   void Check() {
@@ -87,18 +91,32 @@ class HeaderReader {
   void SkipAttribute(const std::string& name) {
     static_cast<void>(Text());  // type of the attribute
     const std::uint32_t size = Number();
+    if (name == "dataWindow" && size == 4 * sizeof(std::int32_t)) return CheckDataWindow();
     Take(size, "attribute " + name);
     stream_.seekg(size, std::ios::cur);
   }
 
+  void CheckDataWindow() {
+    std::array<std::int64_t, 4> window{};  // least x and y, largest x and y
+    for (std::int64_t& side : window) side = static_cast<std::int32_t>(Number());
+    const std::int64_t width = window[2] - window[0] + 1, height = window[3] - window[1] + 1;
+    if (width > longest_side_ || height > longest_side_) {
+      Fail(fmt::format("its data window has {} x {} pixels; a side may have up to {}", width,
+                       height, longest_side_));
+    }
+  }
+
   const std::filesystem::path& file_;
+  std::int64_t longest_side_;
   std::ifstream stream_;
   std::uint64_t left_;
 };
 
 }  // namespace
 
-void RequireBoundedExrHeader(const std::filesystem::path& file) { HeaderReader(file).Check(); }
+void RequireBoundedExrHeader(const std::filesystem::path& file, std::int64_t longest_side) {
+  HeaderReader(file, longest_side).Check();
+}
 
 namespace {
 
@@ -142,7 +160,11 @@ Imf::Header HeaderOf(const Image& image, const Metadata& metadata, Projection pr
   header.zipCompressionLevel() = kLevel;
   Imf::addWhiteLuminance(header, 1.0F);
   if (projection == Projection::kLatitudeLongitude) Imf::addEnvmap(header, Imf::ENVMAP_LATLONG);
-  for (const auto& [name, value] : metadata) header.insert(name, Imf::StringAttribute(value));
+  for (const auto& [name, value] : metadata) {
+    if (header.find(name) != header.end())
+      throw InputError(fmt::format("metadata {}: OpenEXR uses this name itself", name));
+    header.insert(name, Imf::StringAttribute(value));
+  }
   for (const char* name : {"R", "G", "B"}) {
     header.channels().insert(name, Imf::Channel(Imf::FLOAT));
   }
@@ -172,23 +194,42 @@ Imf::FrameBuffer FrameBufferOf(const Image& image) {
   return buffer;
 }
 
-// Sets the number of threads in which OpenEXR compresses blocks of lines to the number that the
-// rest of the program may use. The bytes do not depend on it.
-int CompressionThreads() {
-  using oneapi::tbb::global_control;
-  const auto threads =
-      static_cast<int>(global_control::active_value(global_control::max_allowed_parallelism));
-  const int wanted = threads > 1 ? threads : 0;
-  if (Imf::globalThreadCount() != wanted) Imf::setGlobalThreadCount(wanted);
-  return wanted;
-}
+/// Lets OpenEXR compress blocks of lines in as many threads as the rest of the program may use,
+/// unless the process has already chosen a number. OpenEXR has one number for the whole process: the
+/// last of the objects that exist at a time restores it. The bytes of a file do not depend on it.
+class CompressionThreads {
+ public:
+  CompressionThreads() {
+    using oneapi::tbb::global_control;
+    const std::lock_guard lock(mutex_);
+    if (users_++ > 0 || Imf::globalThreadCount() > 0) return;
+    const auto threads =
+        static_cast<int>(global_control::active_value(global_control::max_allowed_parallelism));
+    if (threads < 2) return;
+    Imf::setGlobalThreadCount(threads);
+    is_ours_ = true;
+  }
+  ~CompressionThreads() {
+    const std::lock_guard lock(mutex_);
+    if (--users_ > 0 || !is_ours_) return;
+    Imf::setGlobalThreadCount(0);
+    is_ours_ = false;
+  }
+  CompressionThreads(const CompressionThreads&) = delete;
+  CompressionThreads& operator=(const CompressionThreads&) = delete;
+
+ private:
+  inline static std::mutex mutex_;
+  inline static int users_ = 0;
+  inline static bool is_ours_ = false;  // the number of threads is that of the first object
+};
 
 void WritePixels(const fs::path& name, const Image& image, const Metadata& metadata,
                  Projection projection) {
   CheckedStream stream(name);
   {
-    const int threads = CompressionThreads();
-    Imf::OutputFile file(stream, HeaderOf(image, metadata, projection), threads);
+    const CompressionThreads threads;
+    Imf::OutputFile file(stream, HeaderOf(image, metadata, projection), Imf::globalThreadCount());
     file.setFrameBuffer(FrameBufferOf(image));
     file.writePixels(image.height);
   }

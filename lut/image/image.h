@@ -80,13 +80,16 @@ void WriteExr(const std::filesystem::path& file, const Image& image, const Metad
 
 /// Checks the headers of an EXR file before the library reads them: OpenEXR allocates the memory
 /// that an attribute claims before it detects that the file is shorter, so two damaged bytes can
-/// cost two gigabytes. Throws InputError naming the file if an attribute extends beyond the end of
-/// the file, or if a header is not terminated. Other errors are left to the library.
+/// cost two gigabytes, and it allocates a table of all lines of the data window. Throws InputError
+/// naming the file if an attribute extends beyond the end of the file, if a side of a data window is
+/// longer than `longest_side`, or if a header is not terminated. Other errors are left to the
+/// library.
 ///
 /// Layout of the file, "OpenEXR File Layout" (openexr.com): magic number and version, 4 bytes each;
 /// attributes: name and type, each ended by 0, size, 4 bytes, little-endian, value; a 0 ends a
 /// header; in files of several parts headers follow each other, and another 0 ends them.
-void RequireBoundedExrHeader(const std::filesystem::path& file);
+void RequireBoundedExrHeader(const std::filesystem::path& file,
+                             std::int64_t longest_side = kLargestImageSide);
 
 /// Returns the scale from luminance to exposed values for an exposure value at ISO 100. A luminance
 /// of 2^EV100 * 1.2 cd/m^2 saturates (Lagarde, de Rousiers 2014).

@@ -102,7 +102,7 @@ void RequireReadable(const fs::path& file) {
   if (!Imf::isOpenExrFile(file.c_str())) {
     throw InputError(fmt::format("{}: is not an OpenEXR file", file.string()));
   }
-  RequireBoundedExrHeader(file);
+  RequireBoundedExrHeader(file, kLongestSide);
 }
 
 }  // namespace
@@ -142,10 +142,7 @@ struct TableImageReader::State {
 
 TableImageReader::TableImageReader(const fs::path& file) : file_(file) {
   RequireReadable(file);
-  state_ = NamingDamage(file, [&] {
-    Imf::Header::setMaxImageSize(kLongestSide, kLongestSide);  // before its line table is allocated
-    return std::make_unique<State>(file);
-  });
+  state_ = NamingDamage(file, [&] { return std::make_unique<State>(file); });
   const auto fail = [&](const std::string& fault) {
     throw InputError(fmt::format("{}: {}", file.string(), fault));
   };
