@@ -58,7 +58,8 @@ PanoramaSun SunFromTime(const GeodeticPosition& eye, const UtcInstant& instant,
 
 SkyJob JobFrom(const SkyOptions& options) {
   SkyJob job;
-  job.medium = options.atmosphere ? MediumFromChoice(*options.atmosphere) : MediumPreset("earth");
+  job.medium = options.atmosphere ? MediumFromChoice(*options.atmosphere, kForPictures)
+                                  : MediumPreset("earth");
   const ImageSize size = ImageSizeFromText(options.size);
   job.settings.width = size.width;
   job.settings.height = size.height;

@@ -92,7 +92,9 @@ void CheckMethod(const CLI::App& eval, const Options& options) {
 std::unique_ptr<Evaluator> EvaluatorFor(const Options& options) {
   std::optional<Medium> medium;
   std::optional<std::uint64_t> hash;
-  if (options.atmosphere) hash = MediumHash(medium.emplace(MediumFromChoice(*options.atmosphere)));
+  const MediumUse use = options.method == "path-trace" ? MediumUse{} : kForLight;
+  if (options.atmosphere)
+    hash = MediumHash(medium.emplace(MediumFromChoice(*options.atmosphere, use)));
   if (options.tables) {
     TableFolder tables = ReadTableFolder(*options.tables, hash);
     if (options.method == "table") {

@@ -89,8 +89,8 @@ std::string LobeText(const Medium& medium) {
 void BuildExchangeTables(const BuildOptions& options, const ExchangeOptions& exchange,
                          const CommonOptions& common) {
   RequireAtmosphereElsewhere(options, kMediumFileName);
-  const Medium medium =
-      options.atmosphere ? MediumFromChoice(*options.atmosphere) : MediumPreset("bruneton2017");
+  const Medium medium = options.atmosphere ? MediumFromChoice(*options.atmosphere, kForLight)
+                                           : MediumPreset("bruneton2017");
   MakeFolder(options.out);  // before the tables are computed
   WriteExchangeTables(MakeExchangeTextures(medium, exchange, common.progress_style()), medium,
                       exchange, options.out);
@@ -109,7 +109,7 @@ void Build(const BuildOptions& options, const CommonOptions& common) {
     return;
   }
   const Medium medium =
-      options.atmosphere ? MediumFromChoice(*options.atmosphere) : MediumPreset("earth");
+      options.atmosphere ? MediumFromChoice(*options.atmosphere, kForLight) : MediumPreset("earth");
   if (const auto max_error = RelativeErrorFromText(options.max_error.value_or(""))) {
     MakeFolder(options.out);  // before the tables are computed
     const TableChoice choice = ChooseTables(

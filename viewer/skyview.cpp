@@ -41,7 +41,7 @@ void StandOverTheLand(const SkyviewOptions& options, SceneOptions& typed) {
 }
 
 Scene SceneOf(const SkyviewOptions& options) {
-  if (!options.scene_file.empty()) return ReadScene(options.scene_file);
+  if (!options.scene_file.empty()) return ReadScene(options.scene_file, kForViewer);
   SceneOptions typed;
   typed.place = options.place;
   typed.latitude = options.latitude;

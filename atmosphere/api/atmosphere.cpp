@@ -2,8 +2,12 @@
 #include <alpenglow/atmosphere.h>
 #include <fmt/format.h>
 
+#include <array>
+#include <optional>
+#include <string>
 #include <utility>
 
+#include "atmosphere/api/conversions.h"
 #include "atmosphere/base/error.h"
 #include "atmosphere/colour/spectrum.h"
 #include "atmosphere/math/constants.h"
@@ -13,9 +17,15 @@ namespace alpenglow {
 
 using atmosphere::Medium;
 
+static_assert(Spectrum::kMostBands == atmosphere::kMaxBands);
+
 struct Atmosphere::State {
+  explicit State(const Medium& of_medium) : medium(of_medium) {
+    if (!atmosphere::FaultOfColours(medium.wavelengths_nm)) colour.emplace(medium.wavelengths_nm);
+  }
+
   Medium medium;
-  atmosphere::BandColour colour;
+  std::optional<atmosphere::BandColour> colour;  // empty: the wavelengths show no colours
 };
 
 Atmosphere::Atmosphere() {
@@ -24,12 +34,8 @@ Atmosphere::Atmosphere() {
 }
 
 Atmosphere::Atmosphere(const Medium& medium) {
-  atmosphere::Validate(medium);
-  atmosphere::RequireInRange(static_cast<double>(medium.wavelengths_nm.size()), 1.0,
-                             static_cast<double>(Spectrum::kMostBands),
-                             "the number of wavelengths");
-  state_ =
-      std::make_shared<const State>(State{medium, atmosphere::BandColour(medium.wavelengths_nm)});
+  atmosphere::Validate(medium, atmosphere::kForLight);
+  state_ = std::make_shared<const State>(medium);
 }
 
 Atmosphere Atmosphere::Preset(std::string_view name) {
@@ -43,11 +49,11 @@ Atmosphere Atmosphere::Preset(std::string_view name, const std::vector<double>& 
 std::vector<std::string> Atmosphere::PresetNames() { return atmosphere::MediumPresetNames(); }
 
 Atmosphere Atmosphere::Read(const std::filesystem::path& file) {
-  return Atmosphere(atmosphere::ReadMedium(file));
+  return Atmosphere(atmosphere::ReadMedium(file, atmosphere::kForLight));
 }
 
 Atmosphere Atmosphere::FromToml(std::string_view text) {
-  return Atmosphere(atmosphere::MediumFromToml(text, "atmosphere"));
+  return Atmosphere(atmosphere::MediumFromToml(text, "atmosphere", atmosphere::kForLight));
 }
 
 std::string Atmosphere::ToToml() const { return atmosphere::TomlFromMedium(medium()); }
@@ -78,17 +84,32 @@ LinearRgb Atmosphere::ColourOf(const Spectrum& light) const {
     throw InputError(
         fmt::format("a spectrum has {} bands; it must have {}", light.size(), sun.size()));
   }
+  if (!state_->colour) throw InputError(*atmosphere::FaultOfColours(medium().wavelengths_nm));
   std::array<double, Spectrum::kMostBands> scaled{};
   for (std::size_t band = 0; band < sun.size(); ++band) {
+    RequireFinite(light[band], "band " + std::to_string(band) + " of the spectrum");
     scaled[band] = sun[band] * static_cast<double>(light[band]);
   }
-  const auto [red, green, blue] = state_->colour.LinearSrgb({scaled.data(), sun.size()});
+  const auto [red, green, blue] = state_->colour->LinearSrgb({scaled.data(), sun.size()});
   return {red, green, blue};
 }
 
 const Medium& Atmosphere::medium() const { return state_->medium; }
 
+void Spectrum::RefuseSize(std::size_t bands) {
+  throw InputError("bands is " + std::to_string(bands) + "; it must lie in [0, " +
+                   std::to_string(kMostBands) + "]");
+}
+
+void Spectrum::RefuseBand(std::size_t band, std::size_t size) {
+  throw InputError("band is " + std::to_string(band) + "; the spectrum has " +
+                   std::to_string(size) + " bands");
+}
+
 double Luminance(const LinearRgb& colour) {
+  RequireFinite(colour.red, "red");
+  RequireFinite(colour.green, "green");
+  RequireFinite(colour.blue, "blue");
   const auto& row = atmosphere::XyzFromLinearSrgb()[1];
   return row[0] * colour.red + row[1] * colour.green + row[2] * colour.blue;
 }

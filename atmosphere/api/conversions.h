@@ -3,6 +3,9 @@
 #pragma once
 
 #include <alpenglow/place_time.h>
+#include <alpenglow/sun_and_moon.h>
+
+#include <string_view>
 
 #include "atmosphere/time_place/geodesy.h"
 #include "atmosphere/time_place/time.h"
@@ -12,10 +15,17 @@ namespace alpenglow {
 /// Returns the place. Throws InputError as PlaceFromDegrees does.
 [[nodiscard]] atmosphere::GeodeticPosition GeodeticFromPlace(const Place& place);
 
+/// Throws InputError for a year outside [kFirstYear, kLastYear].
 [[nodiscard]] atmosphere::UtcInstant InstantFromTime(UtcTime time);
 
 /// Returns the time, rounded to microseconds. A leap second becomes the first second of the next
 /// day.
 [[nodiscard]] UtcTime TimeFromInstant(const atmosphere::UtcInstant& instant);
+
+/// Throws InputError that names the member out of range.
+void RequireValid(const SunInSky& sun);
+
+/// Throws InputError that names the value unless it is finite.
+void RequireFinite(double value, std::string_view name);
 
 }  // namespace alpenglow

@@ -2,11 +2,14 @@
 #include <alpenglow/errors.h>
 #include <alpenglow/sun_and_moon.h>
 
+#include <fmt/format.h>
+
 #include <cmath>
 
 #include "atmosphere/api/conversions.h"
 #include "atmosphere/astronomy/moon.h"
 #include "atmosphere/astronomy/sun.h"
+#include "atmosphere/base/error.h"
 #include "atmosphere/math/constants.h"
 #include "atmosphere/medium/medium.h"
 #include "atmosphere/refraction/observer_refraction.h"
@@ -15,10 +18,18 @@
 namespace alpenglow {
 
 using atmosphere::kRadiansPerDegree;
+using atmosphere::RequireInRange;
 
 namespace {
 
 constexpr int kUnixEpochModifiedJulianDay = 40587;
+
+Direction Towards(double elevation_deg, double azimuth_deg) {
+  const glm::dvec3 unit = atmosphere::DirectionFromAngles(elevation_deg * kRadiansPerDegree,
+                                                          azimuth_deg * kRadiansPerDegree)
+                              .xyz;
+  return {unit.x, unit.y, unit.z};
+}
 
 /// Returns the air of the atmosphere on the sphere that osculates the ellipsoid at the place. The
 /// last result is kept, because testing whether air bends rays gently takes longer than a position.
@@ -40,10 +51,22 @@ atmosphere::BendingAir AirAt(const Atmosphere& atmosphere, const Place& place) {
 }  // namespace
 
 Direction DirectionFromAngles(double elevation_deg, double azimuth_deg) {
-  const glm::dvec3 unit = atmosphere::DirectionFromAngles(elevation_deg * kRadiansPerDegree,
-                                                          azimuth_deg * kRadiansPerDegree)
-                              .xyz;
-  return {unit.x, unit.y, unit.z};
+  RequireInRange(elevation_deg, -90.0, 90.0, "elevation_deg");
+  RequireInRange(azimuth_deg, -360.0, 360.0, "azimuth_deg");
+  return Towards(elevation_deg, azimuth_deg);
+}
+
+void RequireFinite(double value, std::string_view name) {
+  if (!std::isfinite(value))
+    throw InputError(fmt::format("{} is {}; it must be finite", name, value));
+}
+
+void RequireValid(const SunInSky& sun) {
+  RequireInRange(sun.elevation_deg, -90.0, 90.0, "sun.elevation_deg");
+  RequireInRange(sun.azimuth_deg, -360.0, 360.0, "sun.azimuth_deg");
+  RequireInRange(sun.distance_au, 5e-3, 1e5, "sun.distance_au");
+  RequireInRange(sun.angular_radius_deg, 1e-6, 90.0, "sun.angular_radius_deg");
+  RequireInRange(sun.lower_for_air_deg, -90.0, 90.0, "sun.lower_for_air_deg");
 }
 
 atmosphere::GeodeticPosition GeodeticFromPlace(const Place& place) {
@@ -52,6 +75,13 @@ atmosphere::GeodeticPosition GeodeticFromPlace(const Place& place) {
 
 atmosphere::UtcInstant InstantFromTime(UtcTime time) {
   const auto day = std::chrono::floor<std::chrono::days>(time);
+  constexpr auto kFirst = std::chrono::year(atmosphere::kFirstYear) / std::chrono::January / 1;
+  constexpr auto kLast = std::chrono::year(atmosphere::kLastYear) / std::chrono::December / 31;
+  if (day < std::chrono::sys_days(kFirst) || day > std::chrono::sys_days(kLast)) {
+    throw InputError(
+        fmt::format("time lies {} days after 1970-01-01; its year must lie in [{}, {}]",
+                    day.time_since_epoch().count(), atmosphere::kFirstYear, atmosphere::kLastYear));
+  }
   return {kUnixEpochModifiedJulianDay + static_cast<int>(day.time_since_epoch().count()),
           std::chrono::duration<double>(time - day).count()};
 }
@@ -68,10 +98,14 @@ UtcTime TimeFromText(std::string_view text, const std::string& zone) {
 
 std::string TextFromTime(UtcTime time) { return atmosphere::FormatUtc(InstantFromTime(time)); }
 
-Direction SunInSky::ToSun() const { return DirectionFromAngles(elevation_deg, azimuth_deg); }
+Direction SunInSky::ToSun() const {
+  RequireValid(*this);
+  return Towards(elevation_deg, azimuth_deg);
+}
 
 Direction SunInSky::ToSunForAir() const {
-  return DirectionFromAngles(elevation_deg - lower_for_air_deg, azimuth_deg);
+  RequireValid(*this);
+  return Towards(elevation_deg - lower_for_air_deg, azimuth_deg);
 }
 
 SunInSky SunAt(const Place& place, UtcTime time, const Atmosphere& atmosphere) {

@@ -15,6 +15,8 @@
 // simulated skies.
 #include "atmosphere/colour/band_colour.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -298,6 +300,23 @@ Triple Product(std::span<const double> matrix, std::span<const double> bands) {
 }
 
 }  // namespace
+
+std::optional<std::string> FaultOfColours(std::span<const double> wavelengths_nm) {
+  constexpr double kBlue_nm = 480.0, kRed_nm = 600.0, kWidestGap_nm = 300.0;
+  std::string fault;
+  if (wavelengths_nm.front() > kBlue_nm || wavelengths_nm.back() < kRed_nm)
+    fault = fmt::format("reaches from {} to {}", wavelengths_nm.front(), wavelengths_nm.back());
+  for (std::size_t i = 1; i < wavelengths_nm.size() && fault.empty(); ++i) {
+    const double low = wavelengths_nm[i - 1], high = wavelengths_nm[i];
+    if (high - low > kWidestGap_nm && low < kRed_nm && high > kBlue_nm)
+      fault = fmt::format("has nothing between {} and {}", low, high);
+  }
+  if (fault.empty()) return std::nullopt;
+  return fmt::format(
+      "spectrum.wavelengths_nm {}; for colours it must reach from at most {} to at "
+      "least {} with gaps of at most {}",
+      fault, kBlue_nm, kRed_nm, kWidestGap_nm);
+}
 
 BandColour::BandColour(std::vector<double> wavelengths_nm)
     : wavelengths_nm_(std::move(wavelengths_nm)) {

@@ -4,7 +4,9 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <span>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -65,7 +67,13 @@ using Matrix3 = std::array<std::array<double, 3>, 3>;
 [[nodiscard]] std::array<double, 3> operator*(const Matrix3& matrix,
                                               const std::array<double, 3>& vector);
 
-/// Converts spectral radiance in bands to colour.
+/// Returns what is wrong with wavelengths whose light shall become colours, or std::nullopt.
+/// Wavelengths must reach from at most 480 nm to at least 600 nm, and neighbours in between must
+/// not be more than 300 nm apart. Light at other wavelengths says too little about the light that
+/// the eye sees: from 200 and 210 nm, a sky would have a luminance below zero.
+[[nodiscard]] std::optional<std::string> FaultOfColours(std::span<const double> wavelengths_nm);
+
+/// Converts spectral radiance in bands to colour. The wavelengths should have no FaultOfColours.
 ///
 /// XYZ [cd m^-2 when radiance is W m^-2 sr^-1 nm^-1; Y is luminance] is a 3 x N matrix times the
 /// bands. For the sets of WavelengthSet the matrix is trained on simulated skies

@@ -78,8 +78,11 @@ void ReadNumber(const TomlTable& table, const std::string& key, const Range& ran
 
 class AtmosphereFile {
  public:
-  AtmosphereFile(std::string_view text, const std::string& origin)
-      : root_(text, origin), folder_(FolderOf(origin)), preset_(PresetOf(root_)) {
+  AtmosphereFile(std::string_view text, const std::string& origin, const MediumUse& use)
+      : root_(text, origin),
+        use_(use),
+        folder_(FolderOf(origin)),
+        preset_(PresetOf(root_)) {
     planet_ = Section("planet", kPlanetKeys);
     spectrum_ = Section("spectrum", kSpectrumKeys);
     rayleigh_ = Section("rayleigh", kRayleighKeys);
@@ -136,16 +139,19 @@ class AtmosphereFile {
   std::optional<Values> Wavelengths() {
     if (!spectrum_) return std::nullopt;
     RequireOneOf(*spectrum_, {"wavelengths_nm", "bands"});
-    if (const auto bands = spectrum_->Number("bands", 3.0, 40.0)) return SetOfBands(*bands);
+    if (const auto bands = spectrum_->Number("bands", 3.0, 40.0)) {
+      Values set = SetOfBands(*bands);
+      if (set.size() > use_.most_wavelengths) {
+        spectrum_->Fail("bands", fmt::format("spectrum.bands is {}; it must be at most {} for {}",
+                                             *bands, use_.most_wavelengths, use_.purpose));
+      }
+      return set;
+    }
     const std::string key = "wavelengths_nm";
     std::optional<Values> values =
         spectrum_->Numbers(key, ranges::kWavelength_nm.low, ranges::kWavelength_nm.high);
     if (!values) return std::nullopt;
-    if (values->empty() || values->size() > ranges::kMostWavelengths) {
-      spectrum_->Fail(key,
-                      fmt::format("spectrum.wavelengths_nm has {} values; it must have 1 to {}",
-                                  values->size(), ranges::kMostWavelengths));
-    }
+    if (values->empty()) spectrum_->Fail(key, FaultOfWavelengths(*values, use_)->text);
     reversed_ = values->front() > values->back();
     if (reversed_) std::reverse(values->begin(), values->end());
     for (std::size_t i = 1; i < values->size(); ++i) {
@@ -154,6 +160,7 @@ class AtmosphereFile {
                                        "ascend or strictly descend",
                                        (*values)[i - 1], (*values)[i]));
     }
+    if (const auto fault = FaultOfWavelengths(*values, use_)) spectrum_->Fail(key, fault->text);
     return values;
   }
 
@@ -581,7 +588,7 @@ class AtmosphereFile {
   /// Throws the fault with the line of its key, or else of the first of its causes that the file
   /// has: what the file does not set is that of the preset.
   void RequireFaultless(const Medium& medium) const {
-    const std::optional<MediumFault> fault = FindFault(medium);
+    const std::optional<MediumFault> fault = FindFault(medium, use_);
     if (!fault) return;
     FailAtKey(fault->key, fault->text);
     for (const std::string& cause : fault->causes) FailAtKey(cause, fault->text);
@@ -602,6 +609,7 @@ class AtmosphereFile {
   }
 
   TomlTable root_;
+  MediumUse use_;
   std::filesystem::path folder_;  // folder of the file; names of other files are relative to it
   std::string preset_;
   std::optional<TomlTable> planet_, spectrum_, rayleigh_, mie_, aerosol_, ozone_;
@@ -610,12 +618,12 @@ class AtmosphereFile {
 
 }  // namespace
 
-Medium MediumFromToml(std::string_view text, const std::string& origin) {
-  return AtmosphereFile(text, origin).Read();
+Medium MediumFromToml(std::string_view text, const std::string& origin, const MediumUse& use) {
+  return AtmosphereFile(text, origin, use).Read();
 }
 
-Medium ReadMedium(const std::filesystem::path& file) {
-  return MediumFromToml(ReadTextFile(file), file.string());
+Medium ReadMedium(const std::filesystem::path& file, const MediumUse& use) {
+  return MediumFromToml(ReadTextFile(file), file.string(), use);
 }
 
 }  // namespace alpenglow::atmosphere

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "atmosphere/base/error.h"
+#include "atmosphere/colour/spectrum.h"
 #include "atmosphere/math/numerics.h"
 #include "atmosphere/medium/phase_table.h"
 #include "atmosphere/medium/phase_text.h"
@@ -25,11 +26,15 @@ Fault OutOfRange(const std::string& key, double value, const Range& range) {
       key, fmt::format("{} is {}; it must lie in [{}, {}]", key, value, range.low, range.high)};
 }
 
-Fault FaultOfWavelengths(const std::vector<double>& wavelengths_nm) {
+}  // namespace
+
+std::optional<MediumFault> FaultOfWavelengths(const std::vector<double>& wavelengths_nm,
+                                              const MediumUse& use) {
   const std::string key = "spectrum.wavelengths_nm";
-  if (wavelengths_nm.empty() || wavelengths_nm.size() > ranges::kMostWavelengths) {
-    return MediumFault{key, fmt::format("{} has {} values; it must have 1 to {}", key,
-                                        wavelengths_nm.size(), ranges::kMostWavelengths)};
+  if (wavelengths_nm.empty() || wavelengths_nm.size() > use.most_wavelengths) {
+    return MediumFault{
+        key, fmt::format("{} has {} values; it must have 1 to {}{}{}", key, wavelengths_nm.size(),
+                         use.most_wavelengths, use.purpose.empty() ? "" : " for ", use.purpose)};
   }
   for (std::size_t i = 0; i < wavelengths_nm.size(); ++i) {
     if (Fault fault = OutOfRange(key, wavelengths_nm[i], ranges::kWavelength_nm)) return fault;
@@ -38,8 +43,12 @@ Fault FaultOfWavelengths(const std::vector<double>& wavelengths_nm) {
                                           wavelengths_nm[i], wavelengths_nm[i - 1])};
     }
   }
+  if (!use.shows_colours) return std::nullopt;
+  if (const auto fault = FaultOfColours(wavelengths_nm)) return MediumFault{key, *fault};
   return std::nullopt;
 }
+
+namespace {
 
 struct NamedList {
   const char* key;
@@ -320,8 +329,8 @@ double EquivalentDepth_m(const OzoneLayer& layer) {
   return layer.top_m * kPeak * kBeta;
 }
 
-std::optional<MediumFault> FindFault(const Medium& medium) {
-  if (Fault fault = FaultOfWavelengths(medium.wavelengths_nm)) return fault;
+std::optional<MediumFault> FindFault(const Medium& medium, const MediumUse& use) {
+  if (Fault fault = FaultOfWavelengths(medium.wavelengths_nm, use)) return fault;
   if (Fault fault = FaultOfScalars(medium)) return fault;
   if (Fault fault = FaultOfLists(medium)) return fault;
   if (Fault fault = FaultOfRadius(medium)) return fault;
@@ -331,8 +340,8 @@ std::optional<MediumFault> FindFault(const Medium& medium) {
   return FaultOfPhase(medium);
 }
 
-void Validate(const Medium& medium) {
-  if (const Fault fault = FindFault(medium)) throw InputError(fault->text);
+void Validate(const Medium& medium, const MediumUse& use) {
+  if (const Fault fault = FindFault(medium, use)) throw InputError(fault->text);
 }
 
 std::uint64_t MediumHash(const Medium& medium) {

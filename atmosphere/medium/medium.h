@@ -192,11 +192,29 @@ struct MediumFault {
   bool operator==(const MediumFault&) const = default;
 };
 
+/// What the light of a medium is needed for, which limits its wavelengths.
+struct MediumUse {
+  std::size_t most_wavelengths = ranges::kMostWavelengths;
+  bool shows_colours = false;     // the wavelengths have no FaultOfColours (colour/spectrum.h)
+  std::string_view purpose = "";  // in messages, such as "pictures"
+};
+
+/// Largest number of bands of light (Bands of atmosphere/ray/ray.h).
+inline constexpr std::size_t kMaxBands = 40;
+inline constexpr MediumUse kForLight{.most_wavelengths = kMaxBands,
+                                     .purpose = "integrals and tables"};
+inline constexpr MediumUse kForPictures{
+    .most_wavelengths = kMaxBands, .shows_colours = true, .purpose = "pictures"};
+
+/// Returns what is wrong with the wavelengths of a medium, if anything is.
+[[nodiscard]] std::optional<MediumFault> FaultOfWavelengths(
+    const std::vector<double>& wavelengths_nm, const MediumUse& use);
+
 /// Returns the first parameter out of range, if there is one.
-[[nodiscard]] std::optional<MediumFault> FindFault(const Medium& medium);
+[[nodiscard]] std::optional<MediumFault> FindFault(const Medium& medium, const MediumUse& use = {});
 
 /// Throws InputError naming the key, the value and the range of the first parameter out of range.
-void Validate(const Medium& medium);
+void Validate(const Medium& medium, const MediumUse& use = {});
 
 /// Returns a 64-bit hash (FNV-1a over the bit patterns, -0 read as 0) of everything that a table
 /// depends on: all parameters except the name and the refraction. It is stable over programs,
@@ -242,10 +260,12 @@ inline constexpr double kLastPresetWavelength_nm = 830.0;
 /// (with the nearest known one), wrong types, NaN, infinities, lists of unequal length, values out
 /// of range, keys that contradict each other or would have no effect, and malformed text. The name
 /// of the medium is the preset's, or "custom (from PRESET)" if the file changes anything.
-[[nodiscard]] Medium ReadMedium(const std::filesystem::path& file);
+/// @param use  of the medium; wavelengths that it does not allow are an error too.
+[[nodiscard]] Medium ReadMedium(const std::filesystem::path& file, const MediumUse& use = {});
 
 /// Reads a medium like ReadMedium, from text; messages contain `origin` in place of the file name.
-[[nodiscard]] Medium MediumFromToml(std::string_view text, const std::string& origin);
+[[nodiscard]] Medium MediumFromToml(std::string_view text, const std::string& origin,
+                                    const MediumUse& use = {});
 
 /// Writes every parameter, in the shortest digits that give the same double back:
 /// MediumHash(MediumFromToml(TomlFromMedium(m), "")) == MediumHash(m). The name is not written.

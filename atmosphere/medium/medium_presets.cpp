@@ -359,14 +359,15 @@ bool LooksLikeFile(const std::string& text) {
 
 }  // namespace
 
-Medium MediumFromChoice(const std::string& preset_or_file, const std::filesystem::path& folder) {
+Medium MediumFromChoice(const std::string& preset_or_file, const MediumUse& use,
+                        const std::filesystem::path& folder) {
   const std::vector<std::string> presets = MediumPresetNames();
   if (std::find(presets.begin(), presets.end(), preset_or_file) != presets.end())
     return MediumPreset(preset_or_file);
   const std::filesystem::path file = folder / preset_or_file;
   std::error_code error;
   if (std::filesystem::exists(file, error) || LooksLikeFile(preset_or_file))
-    return ReadMedium(file);
+    return ReadMedium(file, use);
   const std::optional<std::string> nearest = NearestName(preset_or_file, presets);
   throw InputError(fmt::format("atmosphere \"{}\" is neither a file nor a preset; {}",
                                preset_or_file,

@@ -31,7 +31,7 @@ namespace alpenglow::atmosphere {
 /// Returns MediumPreset of a name in MediumPresetNames, else ReadMedium of the file, whose name is
 /// relative to `folder`. Throws InputError as these two functions do; for a word that is neither,
 /// the message names the nearest preset, or all presets.
-[[nodiscard]] Medium MediumFromChoice(const std::string& preset_or_file,
+[[nodiscard]] Medium MediumFromChoice(const std::string& preset_or_file, const MediumUse& use,
                                       const std::filesystem::path& folder = {});
 
 /// Changes of a medium; unset values keep those of the medium.

@@ -78,6 +78,11 @@ bool EndsWellInside(const ViewRay& ray, double planet_radius_m, double atmospher
 
 }  // namespace
 
+void RefuseBands(std::size_t bands) {
+  throw InputError(fmt::format("spectrum.wavelengths_nm has {} values; it must have 1 to {}", bands,
+                               kMaxBands));
+}
+
 RayExtent ExtentOf(const ViewRay& ray, double planet_radius_m, double atmosphere_height_m) {
   RequireFinite(ray, planet_radius_m);
   if (EndsWellInside(ray, planet_radius_m, atmosphere_height_m))

@@ -65,13 +65,15 @@ struct ShadowSpan {
 [[nodiscard]] ShadowSpan PlanetShadow(const ViewRay& ray, const RayExtent& extent,
                                       double planet_radius_m);
 
-inline constexpr std::size_t kMaxBands = 40;
 /// Maximum number of panels of a ray: it is cut at the six edges of the tent, six edges in the
 /// sunbeams, the perigee, both edges of the planet's shadow and both ends.
 inline constexpr std::size_t kMaxRayPanels = 17;
 /// Capacity for every panel with the largest number of nodes, and for padding to SIMD lanes.
 inline constexpr std::size_t kMaxRaySamples =
     kMaxRayPanels * static_cast<std::size_t>(kMaxGaussNodes) + 16;
+
+/// Throws the InputError of a number of wavelengths beyond kMaxBands.
+[[noreturn]] void RefuseBands(std::size_t bands);
 
 /// One value per wavelength.
 template <typename Real>
@@ -80,8 +82,11 @@ struct Bands {
   std::size_t count = 0;
 
   Bands() = default;
-  /// Sets all values to zero.
-  explicit Bands(std::size_t bands) : count(bands) { std::fill_n(value.begin(), bands, Real(0)); }
+  /// Sets all values to zero. Throws InputError for more than kMaxBands.
+  explicit Bands(std::size_t bands) : count(bands) {
+    if (bands > kMaxBands) RefuseBands(bands);
+    std::fill_n(value.begin(), bands, Real(0));
+  }
   Real& operator[](std::size_t band) { return value[band]; }
   const Real& operator[](std::size_t band) const { return value[band]; }
   friend bool operator==(const Bands& a, const Bands& b) {

@@ -272,9 +272,7 @@ Sampling SamplingForError(double max_error) {
 
 template <typename Real>
 SingleScattering<Real>::SingleScattering(const Medium& medium) : medium_(medium), constants_{} {
-  Validate(medium_);
-  RequireInRange(static_cast<double>(bands()), 1.0, static_cast<double>(kMaxBands),
-                 "number of spectrum.wavelengths_nm");
+  Validate(medium_, kForLight);
   constants_ = ConstantsOf<Real>(medium_);
   if (std::is_same_v<Real, float> && medium_.mie_phase.front().kind == PhaseKind::kTable)
     phase_nodes_ = PhaseNodes(medium_);

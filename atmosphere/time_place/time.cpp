@@ -30,8 +30,6 @@ using std::chrono::seconds;
 using std::chrono::sys_days;
 using std::chrono::sys_seconds;
 
-constexpr int kFirstYear = 1900;
-constexpr int kLastYear = 2100;
 constexpr int kUnixEpoch = 40587;  // modified Julian day of 1970-01-01
 constexpr int kDay_s = static_cast<int>(kSecondsPerDay);
 

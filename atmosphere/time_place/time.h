@@ -9,6 +9,9 @@
 
 namespace alpenglow::atmosphere {
 
+/// Range of the years of instants: positions of sun and moon are known within stated errors.
+inline constexpr int kFirstYear = 1900, kLastYear = 2100;
+
 /// An instant of UTC as a day and the second in it. Second 86400.x exists on days with a leap
 /// second.
 struct UtcInstant {
@@ -27,7 +30,7 @@ struct UtcInstant {
 /// Reads ISO 8601: "2026-06-21T04:00:00Z", "2026-06-21T13:00:00+09:00"; a space for the T, t and z
 /// (RFC 3339), and fractions of a second after a point or a comma are allowed. Without Z or an offset, `zone` (IANA name) is needed; a local
 /// time in a DST gap or overlap is rejected with a message that requests the offset. If the text
-/// contains the offset, `zone` is not used. Years 1900 to 2100. Throws InputError naming text and
+/// contains the offset, `zone` is not used. Years kFirstYear to kLastYear. Throws InputError naming text and
 /// fault.
 [[nodiscard]] UtcInstant ParseInstant(std::string_view text,
                                       const std::optional<std::string>& zone = std::nullopt);

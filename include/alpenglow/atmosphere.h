@@ -51,7 +51,8 @@ class Atmosphere {
   [[nodiscard]] std::string ToToml() const;
 
   /// Returns this atmosphere over the sphere that osculates the WGS84 ellipsoid at a latitude. A
-  /// planet that is a sphere by itself ("mars") is unchanged.
+  /// planet that is a sphere by itself ("mars") is unchanged. Throws InputError for a latitude out
+  /// of range.
   /// @param latitude_deg  in [-90, 90].
   [[nodiscard]] Atmosphere AtLatitude(double latitude_deg) const;
 
@@ -73,7 +74,9 @@ class Atmosphere {
   ///
   /// The error of the default bands is a CIEDE2000 of 0.2 in the mean and 0.6 at the 95th
   /// percentile, over skies from noon to deep twilight (asserted by spectrum_test and
-  /// band_training_test).
+  /// band_training_test). Throws InputError for a spectrum of another number of bands or with values
+  /// that are not finite, and if the wavelengths do not show colours: they must reach from at most
+  /// 480 nm to at least 600 nm, with gaps of at most 300 nm in between.
   /// @param light  per unit of solar irradiance, as returned by Sky.
   [[nodiscard]] LinearRgb ColourOf(const Spectrum& light) const;
 

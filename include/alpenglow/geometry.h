@@ -22,9 +22,9 @@ struct Direction {
   double up = 1.0;     ///< z
 };
 
-/// Returns the unit vector of a direction.
-/// @param elevation_deg  above the horizontal plane.
-/// @param azimuth_deg  clockwise from north.
+/// Returns the unit vector of a direction. Throws InputError for an angle out of range.
+/// @param elevation_deg  above the horizontal plane, in [-90, 90].
+/// @param azimuth_deg  clockwise from north, in [-360, 360].
 [[nodiscard]] Direction DirectionFromAngles(double elevation_deg, double azimuth_deg);
 
 }  // namespace alpenglow

@@ -44,8 +44,10 @@ struct DisplayOptions {
 };
 
 /// Writes float RGB and all layers as OpenEXR (ZIP), replacing the file atomically. Throws
-/// OutputError if the file cannot be written, and InputError unless all planes have width * height
-/// finite values.
+/// OutputError if the file cannot be written. Throws InputError unless both sides lie in
+/// [1, 32768], all planes have width * height finite values, and the layers have names of their own
+/// other than R, G and B; and for metadata whose name is not 1 to 79 printable characters of ASCII
+/// or that of another attribute of OpenEXR.
 void WriteExr(const std::filesystem::path& file, const HdrImage& image);
 
 /// Reads an OpenEXR file of scan lines with channels R, G and B. Throws InputError for a file that

@@ -24,7 +24,7 @@ enum class PanoramaCentre {
 struct PanoramaOptions {
   int width = 2048;         ///< in [1, 32768]
   int height = 1024;        ///< in [1, 32768]
-  double altitude_m = 2.0;  ///< of the observer
+  double altitude_m = 2.0;  ///< of the observer, in [-12000, 1e9]; below 0 the view is that from 0
   SunInSky sun;             ///< its default stands 45 degrees high in the south
   PanoramaCentre centre = PanoramaCentre::kNorth;  ///< convention of the program that reads it
   bool draws_sun = false;  ///< draw the disk: a few pixels of some 1e9 cd/m^2
@@ -35,11 +35,13 @@ struct PanoramaOptions {
 ///
 /// Error of the luminance against evaluation at the centres of pixels, relative to it or to 1e-4 of
 /// the brightest pixel: below 0.1 % (rms) with the sun above 10 degrees, below 0.3 % down to -10
-/// degrees (asserted by panorama_test). Throws InputError for a size out of range.
+/// degrees (asserted by panorama_test). Throws InputError for a member out of range, and for an
+/// atmosphere whose wavelengths show no colours (Atmosphere::ColourOf).
 [[nodiscard]] HdrImage RenderPanorama(const Sky& sky, const PanoramaOptions& options);
 
 /// Returns the illuminance of sun and sky on a horizontal plane at the observer [lx]; the horizon
-/// cuts the disk of the sun.
+/// cuts the disk of the sun. Throws InputError as RenderPanorama() does.
+/// @param altitude_m  in [-12000, 1e9].
 [[nodiscard]] double HorizontalIlluminance(const Sky& sky, double altitude_m, const SunInSky& sun);
 
 }  // namespace alpenglow

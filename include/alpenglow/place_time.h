@@ -26,7 +26,8 @@ using UtcTime = std::chrono::sys_time<std::chrono::microseconds>;
 /// @param zone  IANA name of the zone of a text without an offset, such as "Asia/Tokyo".
 [[nodiscard]] UtcTime TimeFromText(std::string_view text, const std::string& zone = "");
 
-/// Returns a text such as "2026-06-21T04:00:00Z", rounded to seconds.
+/// Returns a text such as "2026-06-21T04:00:00Z", rounded to seconds. Throws InputError for a year
+/// outside [1900, 2100].
 [[nodiscard]] std::string TextFromTime(UtcTime time);
 
 }  // namespace alpenglow

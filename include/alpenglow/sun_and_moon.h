@@ -12,14 +12,15 @@
 
 namespace alpenglow {
 
-/// The sun as seen from a place. Its default is a sun in the south at its mean distance.
+/// The sun as seen from a place. Its default is a sun in the south at its mean distance. Functions
+/// throw InputError that names a member out of its range.
 struct SunInSky {
-  double elevation_deg = 45.0;         ///< of the centre, with refraction
-  double azimuth_deg = 180.0;          ///< clockwise from north
-  double distance_au = 1.0;            ///< from the place
-  double angular_radius_deg = 0.2666;  ///< of the disk
-  /// The air is lit by a sun that stands lower by this angle [degrees]: refraction bends rays less
-  /// before they reach high air than before they reach the observer.
+  double elevation_deg = 45.0;         ///< of the centre, with refraction, in [-90, 90]
+  double azimuth_deg = 180.0;          ///< clockwise from north, in [-360, 360]
+  double distance_au = 1.0;            ///< from the place, in [0.005, 100000]
+  double angular_radius_deg = 0.2666;  ///< of the disk, in [0.000001, 90]
+  /// The air is lit by a sun that stands lower by this angle [degrees], in [-90, 90]: refraction
+  /// bends rays less before they reach high air than before they reach the observer.
   double lower_for_air_deg = 0.0;
 
   /// Returns the direction in which the sun is visible: for its disk and for light on surfaces.
@@ -40,16 +41,17 @@ struct MoonInSky {
 
 /// Returns the sun as seen from a place, with the refraction of an atmosphere. Without refraction
 /// the direction is within 2 arcseconds of the NREL Solar Position Algorithm (asserted by
-/// sun_test). Throws InputError for a place out of range.
+/// sun_test). Throws InputError for a place out of range and a year outside [1900, 2100].
 [[nodiscard]] SunInSky SunAt(const Place& place, UtcTime time, const Atmosphere& atmosphere = {});
 
 /// Returns the moon as seen from a place, with the refraction of an atmosphere. Throws InputError
-/// for a place out of range.
+/// for a place out of range and a year outside [1900, 2100].
 [[nodiscard]] MoonInSky MoonAt(const Place& place, UtcTime time, const Atmosphere& atmosphere = {});
 
 /// Returns the time of an event on the local solar day that contains `around`, or std::nullopt if
 /// it does not happen on that day, as in polar night. Error of the search: below 0.1 s (asserted by
-/// sun_events_test). Throws InputError for an unknown name or a place out of range.
+/// sun_events_test). Throws InputError for an unknown name, a place out of range and a year outside
+/// [1900, 2100].
 /// @param event  "noon", "sunrise", "sunset", or "civil-", "nautical-" or "astronomical-" before
 ///   "dawn" or "dusk".
 /// @param place  of the observer; its height lowers the horizon.

@@ -29,8 +29,12 @@ struct AltitudeAndZenith {
   double altitude_m;
   glm::dvec3 up;  // unit vector
 };
-/// Throws InputError for a point that is not finite or not above the centre of the planet.
+/// Throws InputError for a point that is not finite, lower than half a radius below altitude 0, or
+/// higher than 1e12 m.
 [[nodiscard]] AltitudeAndZenith AltitudeOf(const LocalPoint& point, double planet_radius_m);
+
+/// Returns the cosine of the angle between two unit vectors, whose product may exceed 1 by rounding.
+[[nodiscard]] double CosineBetween(const glm::dvec3& a, const glm::dvec3& b);
 
 /// @param view, to_sun  unit vectors.
 [[nodiscard]] atmosphere::ViewRay RayFrom(

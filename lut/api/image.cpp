@@ -3,7 +3,9 @@
 #include <alpenglow/image.h>
 #include <fmt/format.h>
 
-#include <cmath>
+#include <algorithm>
+#include <set>
+#include <string>
 #include <utility>
 
 #include "atmosphere/base/error.h"
@@ -15,6 +17,8 @@ namespace alpenglow {
 namespace {
 
 constexpr const char* kProjectionKey = "alpenglow.projection";
+constexpr std::size_t kLongestChannel = 255;   // of OpenEXR
+constexpr std::size_t kLongestAttribute = 79;  // of PNG
 
 lut::Projection ProjectionOf(const HdrImage& image) {
   return image.is_panorama ? lut::Projection::kLatitudeLongitude : lut::Projection::kCamera;
@@ -23,22 +27,48 @@ lut::Projection ProjectionOf(const HdrImage& image) {
 /// Returns the image. Throws InputError for a wrong number of values and for values that are not
 /// finite.
 lut::Image CheckedImage(const HdrImage& image) {
-  lut::Image checked(image.width, image.height);
-  const std::size_t pixels = checked.rgb.size();
+  atmosphere::RequireInRange(image.width, 1, lut::kLargestImageSide, "width");
+  atmosphere::RequireInRange(image.height, 1, lut::kLargestImageSide, "height");
+  const std::size_t pixels =
+      static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height);
   if (image.rgb.size() != pixels) {
-    throw InputError(
-        fmt::format("the image has {} pixels; it must have {}", image.rgb.size(), pixels));
+    throw InputError(fmt::format("rgb has {} pixels; it must have {} times {}", image.rgb.size(),
+                                 image.width, image.height));
   }
+  lut::Image checked;
+  checked.width = image.width;
+  checked.height = image.height;
   checked.rgb = image.rgb;
+  std::set<std::string> names{"R", "G", "B"};
   for (const ImageLayer& layer : image.layers) {
-    if (layer.name.empty() || layer.values.size() != pixels) {
-      throw InputError(
-          fmt::format("the layer \"{}\" must have a name and {} values", layer.name, pixels));
+    if (layer.name.empty() || layer.name.size() > kLongestChannel ||
+        layer.values.size() != pixels) {
+      throw InputError(fmt::format(
+          "the layer \"{}\" has {} values; it must have {}, and a name of 1 to {} bytes",
+          layer.name, layer.values.size(), pixels, kLongestChannel));
     }
+    if (!names.insert(layer.name).second)
+      throw InputError(fmt::format("the layer \"{}\" is there twice", layer.name));
     checked.layers.push_back({layer.name, layer.values});
   }
   if (const auto fault = lut::FaultyValue(checked)) throw InputError(*fault);
   return checked;
+}
+
+/// Returns the attributes of a file. Throws InputError for names that EXR or PNG cannot store.
+lut::Metadata CheckedMetadata(const HdrImage& image) {
+  for (const auto& [name, value] : image.metadata) {
+    const bool is_printable =
+        std::all_of(name.begin(), name.end(), [](char c) { return c > ' ' && c <= '~'; });
+    if (name.empty() || name.size() > kLongestAttribute || !is_printable) {
+      throw InputError(fmt::format(
+          "metadata has the name \"{}\"; it must have 1 to {} letters, digits or signs of ASCII",
+          name, kLongestAttribute));
+    }
+    if (value.find('\0') != std::string::npos)
+      throw InputError(fmt::format("metadata {} contains a byte 0", name));
+  }
+  return image.metadata;
 }
 
 struct Developed {
@@ -78,7 +108,7 @@ HdrImage HdrImageFrom(lut::Image image) {
 }
 
 void WriteExr(const std::filesystem::path& file, const HdrImage& image) {
-  lut::Metadata metadata = image.metadata;
+  lut::Metadata metadata = CheckedMetadata(image);
   if (image.is_panorama) metadata[kProjectionKey] = "latlong";
   lut::WriteExr(file, CheckedImage(image), metadata, ProjectionOf(image));
 }
@@ -96,6 +126,7 @@ std::vector<std::uint8_t> ForDisplay(const HdrImage& image, const DisplayOptions
 
 void WritePng(const std::filesystem::path& file, const HdrImage& image,
               const DisplayOptions& options) {
+  lut::Metadata metadata = CheckedMetadata(image);
   const Developed developed = DevelopedBy(image, options);
   lut::Metadata metadata = image.metadata;
   metadata["alpenglow.ev100"] = fmt::format("{:.6f}", developed.ev100);

@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: MIT
+#include <alpenglow/errors.h>
 #include <alpenglow/panorama.h>
 
 #include <utility>
 
+#include "atmosphere/api/conversions.h"
+#include "atmosphere/base/error.h"
 #include "atmosphere/math/constants.h"
 #include "lut/api/conversions.h"
 #include "lut/cli/program.h"
@@ -15,6 +18,7 @@ using atmosphere::kRadiansPerDegree;
 namespace {
 
 lut::PanoramaSun SunOf(const SunInSky& sun) {
+  RequireValid(sun);
   return {sun.elevation_deg * kRadiansPerDegree, sun.azimuth_deg * kRadiansPerDegree,
           sun.distance_au, sun.angular_radius_deg * kRadiansPerDegree,
           sun.lower_for_air_deg * kRadiansPerDegree};
@@ -35,12 +39,19 @@ lut::PanoramaOrientation OrientationOf(PanoramaCentre centre) {
     case PanoramaCentre::kGodot:
       return lut::PanoramaOrientation::kGodot;
   }
-  return lut::PanoramaOrientation::kNorth;
+  throw InputError("centre is no PanoramaCentre");
+}
+
+// Throws InputError for an altitude out of range, and for wavelengths without colours.
+void RequireVisible(const Sky& sky, double altitude_m) {
+  atmosphere::RequireInRange(altitude_m, -12e3, 1e9, "altitude_m");
+  atmosphere::Validate(sky.atmosphere().medium(), atmosphere::kForPictures);
 }
 
 }  // namespace
 
 HdrImage RenderPanorama(const Sky& sky, const PanoramaOptions& options) {
+  RequireVisible(sky, options.altitude_m);
   lut::PanoramaSettings settings;
   settings.width = options.width;
   settings.height = options.height;
@@ -63,6 +74,7 @@ HdrImage RenderPanorama(const Sky& sky, const PanoramaOptions& options) {
 }
 
 double HorizontalIlluminance(const Sky& sky, double altitude_m, const SunInSky& sun) {
+  RequireVisible(sky, altitude_m);
   return lut::HorizontalIlluminance(sky.state().air, sky.state().multiple_scattering(), altitude_m,
                                     SunOf(sun));
 }

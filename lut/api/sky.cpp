@@ -2,6 +2,7 @@
 #include <alpenglow/errors.h>
 #include <alpenglow/sky.h>
 #include <alpenglow/version.h>
+#include <fmt/format.h>
 #include <oneapi/tbb/parallel_for.h>
 
 #include <algorithm>
@@ -21,30 +22,41 @@ std::string_view Version() { return version::kRelease; }
 
 glm::dvec3 UnitVectorOf(const Direction& direction) {
   const glm::dvec3 vector{direction.east, direction.north, direction.up};
-  const double length = glm::length(vector);
-  if (!(length > 0.0 && std::isfinite(length))) {
-    throw InputError("a direction must be finite and longer than 0");
+  // The squares of very long and of very short directions have no double.
+  const double largest = std::max({std::abs(vector.x), std::abs(vector.y), std::abs(vector.z)});
+  if (!(largest > 0.0 && std::isfinite(vector.x) && std::isfinite(vector.y) &&
+        std::isfinite(vector.z))) {
+    throw InputError(fmt::format(
+        "a direction is (east {}, north {}, up {}); it must be finite and longer than 0", vector.x,
+        vector.y, vector.z));
   }
-  return vector / length;
+  return glm::normalize(vector / largest);
 }
 
 AltitudeAndZenith AltitudeOf(const LocalPoint& point, double planet_radius_m) {
   const glm::dvec3 from_centre{point.east_m, point.north_m, planet_radius_m + point.up_m};
   const double radius_m = glm::length(from_centre);
   const double across2 = point.east_m * point.east_m + point.north_m * point.north_m;
-  if (!(from_centre.z > 0.0 && std::isfinite(radius_m))) {
-    throw InputError("a point must be finite and above the centre of the planet");
+  // A point beside or behind the planet has no digits to lose, and z is no divisor for it.
+  const double altitude_m = from_centre.z > 0.0 ? point.up_m + across2 / (radius_m + from_centre.z)
+                                                : radius_m - planet_radius_m;
+  constexpr double kHighest_m = 1e12;
+  if (!(altitude_m >= -0.5 * planet_radius_m && altitude_m <= kHighest_m)) {
+    throw InputError(fmt::format(
+        "a point (east_m {}, north_m {}, up_m {}) has an altitude of {} m; it must lie in [{}, {}]",
+        point.east_m, point.north_m, point.up_m, altitude_m, -0.5 * planet_radius_m, kHighest_m));
   }
-  return {point.up_m + across2 / (radius_m + from_centre.z), from_centre / radius_m};
+  return {altitude_m, from_centre / radius_m};
+}
+
+double CosineBetween(const glm::dvec3& a, const glm::dvec3& b) {
+  return std::clamp(glm::dot(a, b), -1.0, 1.0);
 }
 
 ViewRay RayFrom(const AltitudeAndZenith& eye, const glm::dvec3& view, const glm::dvec3& to_sun,
                 double length_m) {
-  const auto cosine = [](const glm::dvec3& a, const glm::dvec3& b) {
-    return std::clamp(glm::dot(a, b), -1.0, 1.0);
-  };
-  return {eye.altitude_m, cosine(view, eye.up), cosine(to_sun, eye.up), cosine(view, to_sun),
-          length_m};
+  return {eye.altitude_m, CosineBetween(view, eye.up), CosineBetween(to_sun, eye.up),
+          CosineBetween(view, to_sun), length_m};
 }
 
 namespace {
@@ -77,9 +89,9 @@ class RaysFrom {
   }
 
   [[nodiscard]] AirBetween Between(const LocalPoint& object) const {
+    static_cast<void>(AltitudeOf(object, sky_.parameters.planet_radius_m()));  // checks it
     const glm::dvec3 way = glm::dvec3{object.east_m, object.north_m, object.up_m} - eye_;
     const double length_m = glm::length(way);
-    if (!std::isfinite(length_m)) throw InputError("a point must be finite");
     const glm::dvec3 view = length_m > 0.0 ? way / length_m : place_.up;
     const ViewRay ray = RayFrom(place_, view, to_sun_, length_m);
     const atmosphere::SingleScattering<float>& air = sky_.air;
@@ -149,14 +161,14 @@ std::vector<AirBetween> Sky::Between(const LocalPoint& eye, std::span<const Loca
 
 Spectrum Sky::SunIrradiance(const LocalPoint& point, const Direction& to_sun) const {
   const AltitudeAndZenith place = AltitudeOf(point, atmosphere().planet_radius_m());
-  return SpectrumOf(
-      state_->lookup.SunIrradiance(place.altitude_m, glm::dot(UnitVectorOf(to_sun), place.up)));
+  return SpectrumOf(state_->lookup.SunIrradiance(place.altitude_m,
+                                                 CosineBetween(UnitVectorOf(to_sun), place.up)));
 }
 
 Spectrum Sky::SkyIrradiance(const LocalPoint& point, const Direction& to_sun) const {
   const AltitudeAndZenith place = AltitudeOf(point, atmosphere().planet_radius_m());
-  return SpectrumOf(
-      state_->lookup.SkyIrradiance(place.altitude_m, glm::dot(UnitVectorOf(to_sun), place.up)));
+  return SpectrumOf(state_->lookup.SkyIrradiance(place.altitude_m,
+                                                 CosineBetween(UnitVectorOf(to_sun), place.up)));
 }
 
 }  // namespace alpenglow

@@ -21,7 +21,17 @@ const char* NameOf(BakeQuality quality) {
     case BakeQuality::kFine:
       return "fine";
   }
-  throw InternalError("a quality without a name");
+  throw InputError("quality is no BakeQuality");
+}
+
+lut::ExchangeLayout LayoutOf(TableUser user) {
+  switch (user) {
+    case TableUser::kBrunetonDemo:
+      return lut::ExchangeLayout::kBruneton;
+    case TableUser::kThreeAtmosphere:
+      return lut::ExchangeLayout::kTakram;
+  }
+  throw InputError("user is no TableUser");
 }
 
 }  // namespace
@@ -57,8 +67,7 @@ std::string DescribeTables(const std::filesystem::path& file_or_folder) {
 void ExportTables(const Atmosphere& atmosphere, const std::filesystem::path& folder,
                   TableUser user) {
   lut::ExchangeOptions options;
-  options.layout = user == TableUser::kBrunetonDemo ? lut::ExchangeLayout::kBruneton
-                                                    : lut::ExchangeLayout::kTakram;
+  options.layout = LayoutOf(user);
   lut::RequireThreeBands(atmosphere.medium());
   lut::MakeFolder(folder);  // before the tables are computed
   lut::WriteExchangeTables(

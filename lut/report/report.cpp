@@ -114,7 +114,7 @@ Report MeasureTopics(ReportWords words, bool quick, ProgressStyle style,
 }
 
 std::vector<Medium> MediumsOfReport(const std::optional<std::string>& atmosphere_file, bool quick) {
-  if (atmosphere_file) return {MediumFromChoice(*atmosphere_file)};
+  if (atmosphere_file) return {MediumFromChoice(*atmosphere_file, kForPictures)};
   std::vector<Medium> mediums{MediumPreset("earth")};
   if (!quick) mediums.push_back(MediumPreset("hazy"));
   return mediums;

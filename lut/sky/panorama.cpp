@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <cstdlib>
 #include <utility>
 
@@ -175,33 +176,62 @@ double HalfSine2(double zenith_a, double zenith_b, double azimuth) {
   return across * across + std::sin(zenith_a) * std::sin(zenith_b) * along * along;
 }
 
+/// Parts of a pixel, by index: those from `first` on, before `last`.
+struct PartsRange {
+  std::int64_t first, last;
+};
+
+// Returns the parts of a pixel, of `count`, that can lie on a disk. Without this choice a small
+// disk would need the work of its radius for all pixels near it.
+// @param centre, half  of the disk, in pixels from the begin of this one.
+PartsRange PartsAround(double centre, double half, std::int64_t count) {
+  constexpr double kMargin = 2.0;  // in parts: more than rounding moves them
+  const auto parts = static_cast<double>(count);
+  const auto part = [parts](double at, double margin) {
+    return static_cast<std::int64_t>(std::clamp(at * parts + margin, 0.0, parts));
+  };
+  return {part(centre - half, -kMargin), part(centre + half, kMargin)};
+}
+
+// Returns the largest difference in azimuth between the centre of a disk and its points at a zenith
+// angle.
+double HalfWidthOfDisk(double angle, double zenith, double radius) {
+  const double across = std::sin(0.5 * radius), down = std::sin(0.5 * (angle - zenith));
+  const double left = std::max((across - down) * (across + down), 0.0);
+  const double reach = std::sin(angle) * std::sin(zenith);
+  return left >= reach ? 2.0 * kPi : 2.0 * std::asin(std::sqrt(left / reach));
+}
+
 /// Divides all pixels near the sun into parts that are small relative to its disk.
 std::vector<DiskPiece> PiecesOfDisk(const PanoramaGrid& grid, const PanoramaSun& sun) {
   constexpr int kPiecesPerRadius = 12;
   const double zenith = 0.5 * kPi - sun.elevation_rad;
   const double radius = sun.angular_radius_rad;
-  const int down =
-      std::max(1, static_cast<int>(std::ceil(kPiecesPerRadius * kPi / grid.height / radius)));
-  const int across =
-      std::max(1, static_cast<int>(std::ceil(kPiecesPerRadius * 2.0 * kPi / grid.width / radius)));
+  const auto parts_of = [radius](double pixel_rad) {
+    return static_cast<std::int64_t>(
+        std::max(std::ceil(kPiecesPerRadius * pixel_rad / radius), 1.0));
+  };
+  const std::int64_t down = parts_of(kPi / grid.height), across = parts_of(2.0 * kPi / grid.width);
   const auto row_of = [&](double angle) {
     return std::clamp(static_cast<int>(std::floor(angle / kPi * grid.height)), 0, grid.height - 1);
   };
   std::vector<DiskPiece> pieces;
   for (int y = row_of(zenith - radius); y <= row_of(zenith + radius); ++y) {
-    for (int j = 0; j < down; ++j) {
-      const double angle = grid.ZenithAngle(y + (j + 0.5) / down);
-      // Rows of parts above and below the disk hold none of it; the margin exceeds the rounding of
-      // rho. Without this, the work for a small picture is that of a large one.
-      if (std::abs(angle - zenith) > radius * (1.0 + 1e-9)) continue;
+    const PartsRange rows =
+        PartsAround(zenith / kPi * grid.height - y, radius / kPi * grid.height, down);
+    for (std::int64_t j = rows.first; j < rows.last; ++j) {
+      const double angle =
+          grid.ZenithAngle(y + (static_cast<double>(j) + 0.5) / static_cast<double>(down));
+      const double width_rad = HalfWidthOfDisk(angle, zenith, radius);
       for (int x = 0; x < grid.width; ++x) {
-        const double middle = grid.Azimuth(x + 0.5) - sun.azimuth_rad;
-        const double reach = std::sin(angle) * std::sin(zenith);
-        const double half = std::sin(0.5 * std::abs(std::remainder(middle, 2.0 * kPi)));
-        const double edge = 0.5 * radius + std::sqrt(std::max(reach, 0.0)) * kPi / grid.width;
-        if (std::sqrt(std::max(reach, 0.0)) * half > 2.0 * edge) continue;
-        for (int i = 0; i < across; ++i) {
-          const double azimuth = grid.Azimuth(x + (i + 0.5) / across) - sun.azimuth_rad;
+        const double from_sun = grid.Azimuth(x) - sun.azimuth_rad;
+        const double centre =
+            std::remainder(-from_sun - kPi / grid.width, 2.0 * kPi) + kPi / grid.width;
+        const PartsRange columns = PartsAround(centre / (2.0 * kPi) * grid.width,
+                                               width_rad / (2.0 * kPi) * grid.width, across);
+        for (std::int64_t i = columns.first; i < columns.last; ++i) {
+          const double at = (static_cast<double>(i) + 0.5) / static_cast<double>(across);
+          const double azimuth = grid.Azimuth(x + at) - sun.azimuth_rad;
           const double rho =
               2.0 * std::asin(std::sqrt(std::min(HalfSine2(angle, zenith, azimuth), 1.0))) / radius;
           if (rho >= 1.0) continue;

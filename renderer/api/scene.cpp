@@ -42,6 +42,8 @@ renderer::TerrainSource TerrainOf(const SceneDescription& description) {
     case TerrainKind::kNone:
       terrain.kind = renderer::TerrainSource::Kind::kNone;
       break;
+    default:
+      throw InputError("terrain is no TerrainKind");
   }
   terrain.is_default = false;
   return terrain;
@@ -56,6 +58,7 @@ renderer::Scene SceneFrom(const SceneDescription& description) {
                                              camera.heading_deg, camera.pitch_deg, camera.roll_deg,
                                              camera.fov_deg, "camera.");
   scene.medium = description.atmosphere.medium();
+  atmosphere::Validate(scene.medium, atmosphere::kForPictures);
   scene.terrain = TerrainOf(description);
   return scene;
 }

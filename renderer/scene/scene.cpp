@@ -170,7 +170,7 @@ Camera CameraOf(const TomlTable& document) {
   return camera;
 }
 
-Medium MediumOf(const TomlTable& document, const fs::path& folder) {
+Medium MediumOf(const TomlTable& document, const fs::path& folder, const MediumUse& use) {
   const std::optional<TomlTable> table = document.Table("atmosphere");
   if (!table) return MediumPreset("earth");
   table->AllowOnly({"file", "preset"});
@@ -181,7 +181,7 @@ Medium MediumOf(const TomlTable& document, const fs::path& folder) {
   }
   if (preset) return At(*table, "preset", [&] { return MediumPreset(*preset); });
   if (!file) table->Fail("file", "atmosphere.file is missing");
-  return MediumFromChoice(*file, folder);
+  return MediumFromChoice(*file, use, folder);
 }
 
 UpAxis UpAxisOf(const TomlTable& terrain) {
@@ -517,7 +517,8 @@ Camera CameraFromDegrees(const Height& height, double heading, double pitch, dou
   return camera;
 }
 
-Scene SceneFromToml(std::string_view text, const std::string& origin, const fs::path& folder) {
+Scene SceneFromToml(std::string_view text, const std::string& origin, const fs::path& folder,
+                    const MediumUse& use) {
   const TomlTable document(text, origin);
   document.AllowOnly({"place", "time", "camera", "atmosphere", "terrain", "ground", "light", "fog",
                       "volume", "night"});
@@ -527,7 +528,7 @@ Scene SceneFromToml(std::string_view text, const std::string& origin, const fs::
   scene.zone = place.zone;
   scene.time = TimeOf(document, place.zone);
   scene.camera = CameraOf(document);
-  scene.medium = MediumOf(document, folder);
+  scene.medium = MediumOf(document, folder, use);
   scene.terrain = TerrainOf(document, folder);
   scene.ground = GroundOf(document);
   if (!scene.terrain.land_cover.empty() && scene.ground.kind != GroundCover::Kind::kMountain) {
@@ -545,9 +546,9 @@ Scene SceneFromToml(std::string_view text, const std::string& origin, const fs::
   return scene;
 }
 
-Scene ReadScene(const fs::path& file) {
+Scene ReadScene(const fs::path& file, const MediumUse& use) {
   const fs::path folder = FolderOf(file);  // before a pipe ends
-  return SceneFromToml(ReadTextFile(file), file.string(), folder);
+  return SceneFromToml(ReadTextFile(file), file.string(), folder, use);
 }
 
 }  // namespace alpenglow::renderer

@@ -182,12 +182,15 @@ struct Scene {
 /// Reads scene.toml. File names in it are relative to it. Throws InputError "file:line: key ..."
 /// for unknown keys (with the nearest known one), wrong types, values out of range, a missing
 /// place, malformed text, and errors of ReadMedium. Files of the terrain are not opened here.
-[[nodiscard]] Scene ReadScene(const std::filesystem::path& file);
+/// @param use  of the medium.
+[[nodiscard]] Scene ReadScene(const std::filesystem::path& file,
+                              const MediumUse& use = kForPictures);
 
 /// Reads a scene from text, like ReadScene. `origin` replaces the file's name in messages, and file
 /// names are relative to `folder`.
 [[nodiscard]] Scene SceneFromToml(std::string_view text, const std::string& origin,
-                                  const std::filesystem::path& folder);
+                                  const std::filesystem::path& folder,
+                                  const MediumUse& use = kForPictures);
 
 /// Returns a camera from checked values: heading [-360, 360], pitch [-90, 90], roll [-180, 180],
 /// fov [0.1, 179] or 360, all in degrees. Throws InputError that names the value with `prefix` in

@@ -169,7 +169,7 @@ Scene SceneFromOptions(const SceneOptions& options) {
   scene.camera = CameraFromDegrees(
       HeightFrom(options, view.height), options.heading.value_or(view.heading),
       options.pitch.value_or(view.pitch), 0.0, options.fov.value_or(view.fov), "--");
-  scene.medium = MediumFromChoice(options.atmosphere.value_or("earth"));
+  scene.medium = MediumFromChoice(options.atmosphere.value_or("earth"), kForPictures);
   if (options.bortle) {
     RequireInRange(*options.bortle, 1.0, 9.0, "--bortle");
     scene.town_zenith = ZenithOfBortleClass(*options.bortle);

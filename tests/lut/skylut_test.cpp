@@ -20,6 +20,7 @@ namespace alpenglow::lut {
 namespace {
 
 namespace fs = std::filesystem;
+using testing::AllOf;
 using testing::HasSubstr;
 
 class Skylut : public TemporaryFolder {
@@ -361,6 +362,30 @@ TEST_F(Skylut, AnInterruptLeavesNothingHalfWritten) {
     ++files;
   }
   EXPECT_EQ(files, 1U) << "no temporary stays";
+}
+
+TEST_F(Skylut, WavelengthsThatACommandDoesNotTakeAreRefusedWithFileAndLine) {
+  std::string fine = "[spectrum]\nwavelengths_nm = [380";
+  for (int wavelength_nm = 390; wavelength_nm <= 800; wavelength_nm += 10)
+    fine += ", " + std::to_string(wavelength_nm);
+  WriteText(folder_ / "fine.toml", fine + "]\n");
+  WriteText(folder_ / "infrared.toml", "[spectrum]\nwavelengths_nm = [700, 800]\n");
+  WriteCases();
+  const std::string sky = "sky --out s.exr --sun-elevation 10 --size 8x4 --quiet --atmosphere ";
+  for (const std::string& command :
+       {sky + "fine.toml", std::string("build --out t --quiet --atmosphere fine.toml"),
+        std::string("eval --cases cases.csv --out r.csv --quiet --atmosphere fine.toml")}) {
+    const Outcome refused = Run(command);
+    EXPECT_EQ(refused.status, 3) << command;
+    EXPECT_THAT(refused.error,
+                AllOf(HasSubstr("fine.toml:2: spectrum.wavelengths_nm has 43 values"),
+                      HasSubstr("1 to 40")));
+  }
+  const Outcome grey = Run(sky + "infrared.toml");
+  EXPECT_EQ(grey.status, 3);
+  EXPECT_THAT(grey.error, AllOf(HasSubstr("infrared.toml:2: spectrum.wavelengths_nm"),
+                                HasSubstr("for colours")));
+  EXPECT_FALSE(fs::exists(folder_ / "s.exr"));
 }
 
 }  // namespace

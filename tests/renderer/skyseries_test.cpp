@@ -662,5 +662,22 @@ TEST_F(Skyseries, TwoProcessesOnTheSameFramesBothSucceed) {
   EXPECT_EQ(WholeFrames(), 5);
 }
 
+TEST_F(Skyseries, AnAtmosphereOfTooManyWavelengthsIsRefusedWithFileAndLine) {
+  std::string fine = "preset = \"earth\"\n[spectrum]\nwavelengths_nm = [380";
+  for (int wavelength_nm = 390; wavelength_nm <= 800; wavelength_nm += 10)
+    fine += ", " + std::to_string(wavelength_nm);
+  WriteText(folder_ / "air.toml", fine + "]\n");
+  WriteText(folder_ / "scene.toml",
+            "[place]\nlatitude = 46.5\nlongitude = 8.0\n[time]\nutc = \"2026-06-21T12:00:00Z\"\n"
+            "[terrain]\nnone = true\n[atmosphere]\nfile = \"air.toml\"\n");
+  for (const std::string& scene :
+       {InFolder("scene.toml"), "--atmosphere " + InFolder("air.toml")}) {
+    const Outcome refused = Run(scene + " --size 8x4 --quiet --out " + InFolder("x.exr"));
+    EXPECT_EQ(refused.status, 3) << scene;
+    EXPECT_THAT(refused.error, HasSubstr("air.toml:3: spectrum.wavelengths_nm has 43 values; it "
+                                         "must have 1 to 40 for pictures"));
+  }
+}
+
 }  // namespace
 }  // namespace alpenglow::renderer

@@ -135,10 +135,8 @@ glm::vec4 GpuBandsOf(const BandLight& light) {
 }
 
 AirBlock AirBlockOf(const Medium& medium) {
-  if (medium.wavelengths_nm.size() > kGpuBands) {
-    throw InputError(fmt::format("spectrum: {} wavelengths; the viewer draws with at most {}",
-                                 medium.wavelengths_nm.size(), kGpuBands));
-  }
+  if (const auto fault = FaultOfWavelengths(medium.wavelengths_nm, kForViewer))
+    throw InputError(fault->text);
   const BandColour colour(medium.wavelengths_nm);
   const auto row = [&](std::size_t channel) {
     const auto all = colour.linear_srgb_from_bands();

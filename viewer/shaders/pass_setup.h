@@ -58,6 +58,8 @@ class PassArea {
 /// Number of bands: one component of a vec4 each. A medium may have fewer; the remaining ones are
 /// 0.
 inline constexpr std::size_t kGpuBands = 4;
+inline constexpr MediumUse kForViewer{
+    .most_wavelengths = kGpuBands, .shows_colours = true, .purpose = "skyview"};
 
 /// Mirrors the uniform block `Air` of air.block.glsl. Lengths in km.
 struct AirBlock {
@@ -91,7 +93,8 @@ static_assert(sizeof(GroundBlock) == 80 * sizeof(glm::vec4));
 static_assert(offsetof(GroundBlock, octave_place) == 43 * sizeof(glm::vec4));
 static_assert(offsetof(GroundBlock, pole) == 79 * sizeof(glm::vec4));
 
-/// Returns the block of a medium. Throws InputError if it has more than kGpuBands wavelengths.
+/// Returns the block of a medium. Throws InputError if it has more than kGpuBands wavelengths, or
+/// wavelengths with FaultOfColours.
 [[nodiscard]] AirBlock AirBlockOf(const Medium& medium);
 
 /// Returns the materials and the noise around the eye. The caller sets the axes of the pattern and

@@ -35,6 +35,21 @@ TEST(PlaceTime, WrongTextsAreRefused) {
   EXPECT_THROW((void)TimeFromText("2026-06-21T13:00:00", "Asia/Atlantis"), InputError);
 }
 
+TEST(PlaceTime, YearsWithoutKnownPositionsAreRefused) {
+  const auto new_year = [](int year) {
+    return UtcTime(std::chrono::sys_days(std::chrono::year(year) / 1 / 1));
+  };
+  for (const UtcTime time : {new_year(1899), new_year(2101), new_year(3000), new_year(20000),
+                             UtcTime::min(), UtcTime::max()}) {
+    EXPECT_THROW((void)SunAt(kFuji, time), InputError);
+    EXPECT_THROW((void)MoonAt(kFuji, time), InputError);
+    EXPECT_THROW((void)SunEventTime("noon", kFuji, time), InputError);
+    EXPECT_THROW((void)TextFromTime(time), InputError);
+  }
+  EXPECT_EQ(TextFromTime(new_year(1900)), "1900-01-01T00:00:00Z");
+  EXPECT_EQ(TextFromTime(new_year(2101) - std::chrono::seconds(1)), "2100-12-31T23:59:59Z");
+}
+
 TEST(SunInSky, IsTheSunOfTheLayerBelow) {
   const auto medium =
       atmosphere::OnOsculatingSphere(atmosphere::MediumPreset("earth"), 35.36 * kRadiansPerDegree);

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: MIT
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -498,6 +499,29 @@ TEST(AtmosphereFile, FilesAreReadAndNamedInFaults) {
               StartsWith(file.string() + ":3: mie.g is 2"));
   std::filesystem::remove(file);
   EXPECT_THROW((void)ReadMedium(file), InputError);
+}
+
+TEST(AtmosphereFile, WavelengthsThatAUseDoesNotTakeAreRefusedWithTheirLine) {
+  std::string fine = "preset = \"earth\"\n[spectrum]\nwavelengths_nm = [380";
+  for (int wavelength_nm = 390; wavelength_nm <= 800; wavelength_nm += 10)
+    fine += fmt::format(", {}", wavelength_nm);
+  fine += "]\n";
+  EXPECT_EQ(MediumFromToml(fine, "air.toml").wavelengths_nm.size(), 43U) << "for the path tracer";
+  const auto fault = [](const std::string& text, const MediumUse& use) {
+    return tests::FaultOf([&] { return MediumFromToml(text, "air.toml", use); });
+  };
+  EXPECT_EQ(fault(fine, kForPictures),
+            "air.toml:3: spectrum.wavelengths_nm has 43 values; it must have 1 to 40 for pictures");
+  EXPECT_THAT(fault(fine, kForLight), StartsWith("air.toml:3: spectrum.wavelengths_nm has 43"));
+  constexpr MediumUse kFew{.most_wavelengths = 4, .shows_colours = true, .purpose = "skyview"};
+  EXPECT_EQ(fault("[spectrum]\nbands = 8\n", kFew),
+            "air.toml:2: spectrum.bands is 8; it must be at most 4 for skyview");
+  const std::string ultraviolet = "[spectrum]\nwavelengths_nm = [400, 410]\n";
+  EXPECT_THAT(fault(ultraviolet, kForPictures),
+              StartsWith("air.toml:2: spectrum.wavelengths_nm reaches from 400 to 410"));
+  EXPECT_EQ(fault(ultraviolet, kForLight), "no fault");
+  EXPECT_THAT(fault("[spectrum]\nwavelengths_nm = [800, 400]\n", kForPictures),
+              StartsWith("air.toml:2: spectrum.wavelengths_nm has nothing between 400 and 800"));
 }
 
 }  // namespace

@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: MIT
+#include <OpenEXR/ImfThreading.h>
 #include <alpenglow/errors.h>
 #include <alpenglow/image.h>
 #include <gtest/gtest.h>
 
+#include <filesystem>
 #include <limits>
+#include <string>
 
 #include "lut/image/look.h"
 #include "tests/fixtures/comma_locale.h"
@@ -40,6 +43,39 @@ TEST_F(ApiImage, ComesBackFromItsFile) {
   EXPECT_EQ(read.layers[0].values, image.layers[0].values);
   EXPECT_TRUE(read.is_panorama);
   EXPECT_EQ(read.metadata.at("alpenglow.utc"), "2026-06-21T04:00:00Z");
+}
+
+TEST_F(ApiImage, SizesLayersAndMetadataThatNoFileCanHoldAreRefused) {
+  const auto refuses = [&](const auto& change) {
+    HdrImage image = Gradient();
+    change(image);
+    EXPECT_THROW(WriteExr(folder_ / "a.exr", image), InputError);
+    EXPECT_FALSE(std::filesystem::exists(folder_ / "a.exr"));
+  };
+  refuses([](HdrImage& image) { image.width = -8; });
+  refuses([](HdrImage& image) { image.width = 0; });
+  refuses([](HdrImage& image) { image.height = 100000; });
+  refuses([](HdrImage& image) { image.width = image.height = 32768; });
+  refuses([](HdrImage& image) { image.layers[0].name = ""; });
+  refuses([](HdrImage& image) { image.layers[0].name = "R"; });
+  refuses([](HdrImage& image) { image.layers[0].name = std::string(300, 'a'); });
+  refuses([](HdrImage& image) { image.layers.push_back(image.layers[0]); });
+  refuses([](HdrImage& image) { image.metadata[""] = "nothing"; });
+  refuses([](HdrImage& image) { image.metadata[std::string(80, 'a')] = "long"; });
+  refuses([](HdrImage& image) { image.metadata["dataWindow"] = "of OpenEXR"; });
+  refuses([](HdrImage& image) { image.metadata["a\nb"] = "two lines"; });
+  HdrImage image = Gradient();
+  image.metadata[std::string(80, 'a')] = "long";
+  EXPECT_THROW(WritePng(folder_ / "a.png", image), InputError);
+}
+
+TEST_F(ApiImage, LeavesTheThreadsOfOpenExrToTheProcess) {
+  for (const int threads : {0, 1, 3}) {
+    Imf::setGlobalThreadCount(threads);
+    WriteExr(folder_ / "a.exr", Gradient());
+    EXPECT_EQ(Imf::globalThreadCount(), threads);
+  }
+  Imf::setGlobalThreadCount(0);
 }
 
 TEST_F(ApiImage, IsShownAsByTheLayerBelow) {

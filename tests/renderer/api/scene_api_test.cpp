@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
+#include <limits>
 
 #include "renderer/picture/render.h"
 #include "tests/fixtures/temporary_folder.h"
@@ -77,6 +78,40 @@ TEST_F(ApiScene, ARenderedSceneNeedsItsFilesNoMore) {
   EXPECT_EQ(scene.Render(time, kSmall).metadata, first.metadata) << "the file that was loaded";
   std::filesystem::remove(folder_ / "flat.obj");
   EXPECT_EQ(scene.Render(time, kSmall).metadata, first.metadata);
+}
+
+TEST_F(ApiScene, ValuesThatCannotBeAreRefused) {
+  SceneDescription sea = Sea();
+  sea.terrain = static_cast<TerrainKind>(7);
+  EXPECT_THROW((void)Scene(sea), InputError);
+  sea = Sea();
+  sea.place.latitude_deg = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_THROW((void)Scene(sea), InputError);
+  sea = Sea();
+  sea.atmosphere = Atmosphere::FromToml(
+      "[spectrum]\nwavelengths_nm = [200, 210]\nsolar_irradiance = [0.01, 0.01]\n"
+      "[rayleigh]\nscattering_per_m = [9e-4, 7e-4]\n[mie]\nscattering_per_m = [1e-5, 1e-5]\n"
+      "extinction_per_m = [1e-5, 1e-5]\n[ozone]\nabsorption_per_m = [0, 0]\n"
+      "[planet]\nground_albedo = [0.1, 0.1]\n");
+  EXPECT_THROW((void)Scene(sea), InputError) << "no colours";
+  const Scene scene(Sea());
+  const UtcTime year_20000{std::chrono::sys_days(std::chrono::year(20000) / 1 / 1)};
+  EXPECT_THROW((void)scene.Render(year_20000, kSmall), InputError);
+  EXPECT_THROW((void)scene.HorizontalIlluminance(year_20000), InputError);
+  const UtcTime time = TimeFromText("2026-06-21T16:00:00Z");
+  for (const double noise : {0.0, -1.0, std::numeric_limits<double>::quiet_NaN()}) {
+    StillOptions options = kSmall;
+    options.noise = noise;
+    EXPECT_THROW((void)scene.Render(time, options), InputError) << noise;
+  }
+  for (int StillOptions::*number :
+       {&StillOptions::width, &StillOptions::height, &StillOptions::samples_per_pixel}) {
+    for (const int value : {-1, 0, 1 << 20}) {
+      StillOptions options = kSmall;
+      options.*number = value;
+      EXPECT_THROW((void)scene.Render(time, options), InputError) << value;
+    }
+  }
 }
 
 TEST(BuiltInScene, LooksAtTheMountainsFromTheGround) {
