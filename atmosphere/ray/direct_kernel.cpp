@@ -272,7 +272,8 @@ void Sample(const DirectWork& work, RaySamples<float>& samples, ScatteredOnce<fl
   T sum[kFour] = {T(0.0F), T(0.0F), T(0.0F), T(0.0F)};
   for (std::size_t i = 0; i < kHalf; i += kLanesOf<T>) {
     const T position = LoadLanes<T>(eight.node.data() + i) * T(panel.length);
-    const T altitude = max(AltitudeOnPanel<T>(PanelLanes<T>{{panel, panel}, i}, position), T(0.0F));
+    const T altitude =
+        max(AltitudeOnPanel<T>(air, PanelLanes<T>{{panel, panel}, i}, position), T(0.0F));
     const T weight = LoadLanes<T>(eight.weight.data() + i);
     const NodeDensities<T> here = DensitiesAt<T>(air, altitude);
     sum[0] += weight * here.rayleigh;

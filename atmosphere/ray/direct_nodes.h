@@ -158,12 +158,14 @@ T Position(const PanelLanes<T>& panel, const T& v, const T& slope, const T& leng
 }
 
 template <typename T>
-T AltitudeOnPanel(const PanelLanes<T>& panel, const T& position) {
+T AltitudeOnPanel(const DirectAir& air, const PanelLanes<T>& panel, const T& position) {
   using namespace shared;
   const T inverse = panel(&DirectPanel::inverse_radius);
   const T x = position * (position + T(2.0F) * panel(&DirectPanel::from_perigee)) *
               (T(0.5F) * inverse * inverse);
-  return panel(&DirectPanel::altitude) + panel(&DirectPanel::radius) * x * ClimbSeries<T>(x);
+  const T climb = air.is_tall ? T(2.0F) / (T(1.0F) + sqrt(max(T(1.0F) + T(2.0F) * x, T(0.0F))))
+                              : ClimbSeries<T>(x);
+  return panel(&DirectPanel::altitude) + panel(&DirectPanel::radius) * x * climb;
 }
 
 template <typename T>
@@ -175,7 +177,7 @@ NodePlaces<T> PlacesOf(const DirectAir& air, const DirectRule& rule, const Panel
   at.weight = LoadLanes<T>(rule.weight.data() + panel.first) * length * DirectSlope<T>(v, slope);
   at.position = Position(panel, v, slope, length);
   const T from_perigee = panel(&DirectPanel::from_perigee), r = panel(&DirectPanel::radius);
-  at.altitude = max(AltitudeOnPanel<T>(panel, at.position), T(0.0F));
+  at.altitude = max(AltitudeOnPanel<T>(air, panel, at.position), T(0.0F));
   at.radius = at.altitude + T(static_cast<float>(air.radius));
   const T per_radius = T(1.0F) / at.radius;
   at.mu = abs(at.position + from_perigee) * per_radius;

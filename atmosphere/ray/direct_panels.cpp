@@ -160,6 +160,7 @@ DirectAir DirectAirOf(const Medium& medium) {
   air.radius = shell.radius;
   air.top = shell.top;
   air.has_deficit = share > 0.0;
+  air.is_tall = IsTall(shell.top, shell.radius);
   air.deficit_share = static_cast<float>(share);
   air.rayleigh = LayerOf(Kilometres(medium.rayleigh_scale_height_m), 1.0 + share, shell);
   air.deficit = LayerOf(Kilometres(medium.rayleigh_deficit.scale_height_m), share, shell);

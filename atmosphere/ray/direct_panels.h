@@ -55,6 +55,9 @@ struct DirectAir {
   float deficit_share;  // d of MoleculeDeficit
   bool has_deficit, has_ozone, smooth_ozone;
   bool reaches_top;  // the columns above the top are not negligible
+  /// The air is so tall, relative to the radius, that ClimbSeries is not valid: altitudes need a
+  /// square root.
+  bool is_tall;
   float ozone_bottom, ozone_peak, ozone_top;
   OzoneFit ozone_fit;
   float largest_extinction;  // of molecules and aerosol at altitude 0 [1/km]

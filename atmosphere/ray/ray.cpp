@@ -62,39 +62,58 @@ ViewRay RayFromAngles(double altitude_m, double view_zenith_deg, double relative
 
 namespace {
 
+// Returns the lowest altitude of a ray of finite length.
+double LowestAltitude(const ViewRay& ray, double planet_radius_m) {
+  const double perigee_m = -(planet_radius_m + ray.altitude_m) * ray.mu;
+  return shared::AltitudeAlongRay<double>(
+      ray.altitude_m, ray.mu, std::clamp(perigee_m, 0.0, ray.length_m), planet_radius_m);
+}
+
 // Returns whether a ray of finite length stays more than a metre inside the shell, away from ground
 // and top.
 bool EndsWellInside(const ViewRay& ray, double planet_radius_m, double atmosphere_height_m) {
   constexpr double kMargin_m = 1.0;
   if (!(ray.length_m < 1e6)) return false;
-  const auto altitude = [&](double distance_m) {
-    return shared::AltitudeAlongRay<double>(ray.altitude_m, ray.mu, distance_m, planet_radius_m);
-  };
-  const double perigee_m = -(planet_radius_m + ray.altitude_m) * ray.mu;
-  const double lowest = altitude(std::clamp(perigee_m, 0.0, ray.length_m));
-  const double highest = std::max(ray.altitude_m, altitude(ray.length_m));
-  return lowest > kMargin_m && highest < atmosphere_height_m - kMargin_m;
+  const double end_m =
+      shared::AltitudeAlongRay<double>(ray.altitude_m, ray.mu, ray.length_m, planet_radius_m);
+  return LowestAltitude(ray, planet_radius_m) > kMargin_m &&
+         std::max(ray.altitude_m, end_m) < atmosphere_height_m - kMargin_m;
 }
 
 }  // namespace
 
 void RefuseBands(std::size_t bands) {
-  throw InputError(fmt::format("spectrum.wavelengths_nm has {} values; it must have 1 to {}", bands,
-                               kMaxBands));
+  throw InputError(
+      fmt::format("spectrum.wavelengths_nm has {} values; it must have 1 to {}", bands, kMaxBands));
+}
+
+namespace {
+
+// Returns whether the ground does not end a ray: it is a segment, no part of which is too deep.
+bool IsSegmentOfAir(const ViewRay& ray, double planet_radius_m) {
+  if (std::isinf(ray.length_m)) return false;
+  return LowestAltitude(ray, planet_radius_m) >= -DeepestAir(planet_radius_m);
+}
+
+}  // namespace
+
+double StartAltitude(const ViewRay& ray, double planet_radius_m) {
+  const bool is_above = ray.altitude_m >= 0.0 || IsSegmentOfAir(ray, planet_radius_m);
+  return is_above ? ray.altitude_m : 0.0;
 }
 
 RayExtent ExtentOf(const ViewRay& ray, double planet_radius_m, double atmosphere_height_m) {
   RequireFinite(ray, planet_radius_m);
   if (EndsWellInside(ray, planet_radius_m, atmosphere_height_m))
     return {0.0, ray.length_m, RayEnd::kLength};
-  const Extended h = std::max(ray.altitude_m, 0.0);
+  const Extended h = StartAltitude(ray, planet_radius_m);
   const Crossings top = CrossAltitude(h, ray.mu, atmosphere_height_m, planet_radius_m);
   if (!top.exist || top.far <= 0) return {};
   RayExtent extent;
   extent.begin_m = static_cast<double>(std::max<Extended>(top.near, 0));
   if (h <= atmosphere_height_m) extent.begin_m = 0.0;
   extent.end_m = static_cast<double>(top.far);
-  if (ray.mu < 0.0) {
+  if (ray.mu < 0.0 && !IsSegmentOfAir(ray, planet_radius_m)) {
     if (const Crossings ground = CrossAltitude(h, ray.mu, 0, planet_radius_m); ground.exist) {
       extent.end_m = static_cast<double>(std::max<Extended>(ground.near, 0));
       extent.end = RayEnd::kGround;
@@ -111,12 +130,23 @@ bool BringsLightOfGround(const ViewRay& ray, const RayExtent& extent) {
   return extent.end == RayEnd::kGround && std::isinf(ray.length_m);
 }
 
+SubmergedSpan SubmergedPart(const ViewRay& ray, const RayExtent& extent, double planet_radius_m) {
+  if (!IsSegmentOfAir(ray, planet_radius_m)) return {};
+  const Crossings ground = CrossAltitude(ray.altitude_m, ray.mu, 0, planet_radius_m);
+  if (!ground.exist) return {};
+  const Extended begin = std::clamp<Extended>(ground.near, extent.begin_m, extent.end_m);
+  const Extended end = std::clamp<Extended>(ground.far, extent.begin_m, extent.end_m);
+  return {static_cast<double>(begin), static_cast<double>(end),
+          static_cast<double>((ground.far - ground.near) / (2 * Extended(planet_radius_m)))};
+}
+
 ShadowSpan PlanetShadow(const ViewRay& ray, const RayExtent& extent, double planet_radius_m) {
   // If the sun is above the plane through the planet's centre at both ends, there is no shadow in
   // between.
-  const double height_m = (planet_radius_m + std::max(ray.altitude_m, 0.0)) * ray.mu_s;
+  const double altitude_m = StartAltitude(ray, planet_radius_m);
+  const double height_m = (planet_radius_m + altitude_m) * ray.mu_s;
   if (height_m + extent.begin_m * ray.nu > 0.0 && height_m + extent.end_m * ray.nu > 0.0) return {};
-  const Extended h = std::max(ray.altitude_m, 0.0), mu = ray.mu, mu_s = ray.mu_s, nu = ray.nu;
+  const Extended h = altitude_m, mu = ray.mu, mu_s = ray.mu_s, nu = ray.nu;
   const Extended a = (1 - nu) * (1 + nu);
   const Extended radius = planet_radius_m;
   if (shared::MeetsShadow(h, mu, mu_s, nu, a, radius) == 0) return {};
@@ -268,12 +298,20 @@ LineCrossings CrossingsOf(double h, double mu, double z, double radius) {
 
 RayEntry EntryOf(const ViewRay& ray, const RayExtent& extent, const Medium& medium) {
   const double radius = Kilometres(medium.planet_radius_m);
-  const double h = Kilometres(std::max(ray.altitude_m, 0.0));
+  const double h = Kilometres(StartAltitude(ray, medium.planet_radius_m));
   const double d = Kilometres(extent.begin_m);
-  if (d == 0.0) return {h, ray.mu, ray.mu_s, ray.nu};
-  const double altitude = Kilometres(medium.atmosphere_height_m);
-  return {altitude, shared::ZenithCosineAlongRay<double>(h, ray.mu, d, altitude, radius),
-          shared::SunCosineAlongRay<double>(h, ray.mu_s, ray.nu, d, altitude, radius), ray.nu};
+  RayEntry entry{h, ray.mu, ray.mu_s, ray.nu};
+  if (d > 0.0) {
+    const double altitude = Kilometres(medium.atmosphere_height_m);
+    entry = {altitude, shared::ZenithCosineAlongRay<double>(h, ray.mu, d, altitude, radius),
+             shared::SunCosineAlongRay<double>(h, ray.mu_s, ray.nu, d, altitude, radius), ray.nu};
+  }
+  const SubmergedSpan below = SubmergedPart(ray, extent, medium.planet_radius_m);
+  if (!below.Exists()) return entry;
+  entry.submerged_begin_km = Kilometres(below.begin_m) - d;
+  entry.submerged_end_km = Kilometres(below.end_m) - d;
+  entry.mu_ground = below.mu_ground;
+  return entry;
 }
 
 RayPanels PanelsOf(const ViewRay& ray, const RayExtent& extent, const RayEntry& entry,
@@ -285,7 +323,12 @@ RayPanels PanelsOf(const ViewRay& ray, const RayExtent& extent, const RayEntry& 
   const double map = MapLengthsPerKm(medium);
   const DarkSpan dark = DarkSpanOf(ray, extent, medium);
   PanelEnds cuts(length);
-  if (perigee > 0.0 && perigee < length) cuts.Add(perigee);
+  if (entry.IsSubmerged()) {
+    cuts.Add(entry.submerged_begin_km);
+    cuts.Add(entry.submerged_end_km);
+  } else if (perigee > 0.0 && perigee < length) {
+    cuts.Add(perigee);
+  }
   if (dark.begin < dark.end) {
     cuts.Add(dark.begin);
     cuts.Add(dark.end);

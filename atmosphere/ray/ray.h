@@ -42,19 +42,49 @@ struct RayExtent {
   RayEnd end = RayEnd::kSpace;
 };
 
-/// Clips a ray to the shell between ground and top. A horizontal ray at altitude 0 does not hit the
-/// ground; a ray below the horizontal hits it there at distance 0. For an observer below the ground
-/// the sky is that seen from the ground. Error below 1e-6 m for observers within 1e8 m
-/// (extended precision). Throws InputError for a ray that is not finite or not above the centre of
-/// the planet.
+/// Clips a ray to the air. A ray without a given length ends at the ground, which is the sphere of
+/// altitude 0, or at the top. A horizontal ray at altitude 0 does not hit the ground; a ray below
+/// the horizontal hits it there at distance 0. For an observer below the ground the sky is that
+/// seen from the ground.
+///
+/// A ray of a given length is a segment of air between two points, neither of which needs to lie
+/// above altitude 0: land lies below the sea at some places, and the line between two points at the
+/// shore dips below it. Below altitude 0 air has the density of altitude 0, so that both directions
+/// of a segment pass through the same air. The ground ends only segments that lead deeper than
+/// DeepestAir, as no line between two places of a planet does that can see each other.
+///
+/// Error below 1e-6 m for observers within 1e8 m (extended precision). Throws InputError for a ray
+/// that is not finite, lower than half a radius below altitude 0, or higher than 1e12 m.
 [[nodiscard]] RayExtent ExtentOf(const ViewRay& ray, double planet_radius_m,
                                  double atmosphere_height_m);
 
 /// Returns whether light reflected by the ground is part of the light along a ray: true for rays
-/// without a given length that hit the ground. A ray with a given length is a segment of air. It
-/// stops at the ground if that is nearer. Light reflected at its end is not included: the caller
-/// adds it.
+/// without a given length that hit the ground. A ray with a given length is a segment of air. Light
+/// reflected at its end is not included: the caller adds it.
 [[nodiscard]] bool BringsLightOfGround(const ViewRay& ray, const RayExtent& extent);
+
+/// Returns the depth below altitude 0 to which air continues for segments [m]: 12 km, more than that
+/// of any land, and on small planets a fiftieth of the radius.
+[[nodiscard]] constexpr double DeepestAir(double planet_radius_m) {
+  return std::min(12e3, 0.02 * planet_radius_m);
+}
+
+/// Returns the altitude from which the air along a ray is computed [m]: that of the observer for
+/// segments no part of which is deeper than DeepestAir, else at least 0.
+[[nodiscard]] double StartAltitude(const ViewRay& ray, double planet_radius_m);
+
+/// The part of a segment below altitude 0, as distances from the observer. Empty if begin_m ==
+/// end_m.
+struct SubmergedSpan {
+  double begin_m = 0.0;
+  double end_m = 0.0;
+  /// Cosine at which the line of the segment crosses altitude 0, without sign.
+  double mu_ground = 0.0;
+
+  [[nodiscard]] bool Exists() const { return begin_m < end_m; }
+};
+[[nodiscard]] SubmergedSpan SubmergedPart(const ViewRay& ray, const RayExtent& extent,
+                                          double planet_radius_m);
 
 /// The segment of a ray in the shadow of the planet (a half-cylinder behind it), clipped to
 /// [begin_m, end_m]. Empty if dark_begin_m == dark_end_m.
@@ -66,7 +96,8 @@ struct ShadowSpan {
                                       double planet_radius_m);
 
 /// Maximum number of panels of a ray: it is cut at the six edges of the tent, six edges in the
-/// sunbeams, the perigee, both edges of the planet's shadow and both ends.
+/// sunbeams, the perigee or both crossings of altitude 0, both edges of the planet's shadow and
+/// both ends.
 inline constexpr std::size_t kMaxRayPanels = 17;
 /// Capacity for every panel with the largest number of nodes, and for padding to SIMD lanes.
 inline constexpr std::size_t kMaxRaySamples =
@@ -186,7 +217,16 @@ template <typename T>
 /// The observer, moved to the entry of the ray into the air; all distances are counted from here.
 struct RayEntry {
   double altitude_km, mu, mu_s, nu;
+  /// SubmergedSpan, as distances from the entry. The columns of such a ray consist of those above
+  /// altitude 0 and the length below it.
+  double submerged_begin_km = 0.0, submerged_end_km = 0.0, mu_ground = 0.0;
+
+  [[nodiscard]] bool IsSubmerged() const { return submerged_begin_km < submerged_end_km; }
 };
+
+/// Returns whether ClimbSeries (optical_depth.glsl) is not valid up to the top of the air: its error
+/// is 3e-6 of a climb by a twentieth of the radius, and beyond the radius it has no bound.
+[[nodiscard]] constexpr bool IsTall(double top, double radius) { return top > 0.05 * radius; }
 
 [[nodiscard]] inline double Kilometres(double metres) { return metres / kMetresPerKilometre; }
 

@@ -19,12 +19,13 @@ struct ShellLengths {
         ozone_bottom(air.ozone_bottom),
         ozone_peak(air.ozone_peak),
         ozone_top(air.ozone_top),
+        is_tall(IsTall(static_cast<double>(air.top), static_cast<double>(air.radius))),
         has_deficit(air.deficit > Real(0)),
         smooth_ozone(air.smooth_ozone),
         mie_ends_below_top(air.mie_ends_below_top) {}
 
   T radius, top, rayleigh, mie, deficit, deficit_height, ozone_bottom, ozone_peak, ozone_top;
-  bool has_deficit, smooth_ozone, mie_ends_below_top;
+  bool is_tall, has_deficit, smooth_ozone, mie_ends_below_top;
 };
 
 template <typename Real, typename T>
@@ -135,6 +136,35 @@ struct RayInLanes {
   T h0, mu0, mu_s0, nu;
 };
 
+/// The part of a ray below altitude 0 (SubmergedSpan), where air has the density of altitude 0.
+/// Without one the columns are those of the closed forms alone.
+template <typename Real, typename T>
+struct BelowGround {
+  explicit BelowGround(const RayEntry& entry)
+      : exists(entry.IsSubmerged()),
+        begin(static_cast<Real>(entry.submerged_begin_km)),
+        end(static_cast<Real>(entry.submerged_end_km)),
+        mu(static_cast<Real>(entry.mu_ground)) {}
+
+  /// Returns the columns up from a point of the ray; points below altitude 0 have those of the
+  /// crossing.
+  [[nodiscard]] ColumnSet<T> Up(const ShellLengths<Real, T>& shell, const T& h,
+                                const T& cosine) const {
+    using namespace shared;
+    return ColumnsUp(shell, h, T(max(T(abs(cosine)), mu)));
+  }
+  /// Adds the length below altitude 0 on the way to distance d.
+  void AddTo(ColumnSet<T>& columns, const T& d) const {
+    using namespace shared;
+    const T length = min(max(d, begin), end) - begin;
+    columns.rayleigh += length;
+    columns.mie += length;
+  }
+
+  bool exists;
+  T begin, end, mu;
+};
+
 // Fills all values at the lanes from the i-th sample on, except the columns from the observer.
 // Returns altitudes.
 template <typename Real, typename T>
@@ -166,23 +196,26 @@ void Fill(const AirConstants<Real>& air, const RayEntry& entry, RaySamples<Real>
   const RayInLanes<Real, T> ray(air, entry);
   const ShellLengths<Real, T>& shell = ray.shell;
   const T zero(Real(0));
-  const ColumnSet<T> perigee =
-      entry.mu < 0.0 ? ColumnsAtPerigee(shell, ray.h0, ray.mu0) : ColumnSet<T>{zero, zero, zero};
+  const BelowGround<Real, T> below(entry);
+  ColumnSet<T> perigee{zero, zero, zero};
+  if (entry.mu < 0.0)
+    perigee = below.exists ? below.Up(shell, zero, zero) : ColumnsAtPerigee(shell, ray.h0, ray.mu0);
   // If all samples fit into one SIMD load with room to spare, the last lane is not a sample and
   // lies at the entry.
   const bool entry_among_samples =
       samples.padded == Lanes::kLanes && samples.count < samples.padded;
   ColumnSet<T> origin = perigee;
-  if (!entry_among_samples) origin = ColumnsUp(shell, ray.h0, T(abs(ray.mu0)));
+  if (!entry_among_samples) origin = below.Up(shell, T(max(ray.h0, zero)), ray.mu0);
   for (std::size_t i = 0; i < samples.padded; i += Lanes::kLanes) {
     const T h = FillButView<Real, T>(ray, i, samples);
     const T mu = Lanes::Load(&samples.mu[i]);
-    const ColumnSet<T> point = ColumnsUp(shell, h, T(abs(mu)));
+    const ColumnSet<T> point = below.Up(shell, h, mu);
     if (entry_among_samples) {
       origin = {T(Lanes::Last(point.rayleigh)), T(Lanes::Last(point.mie)),
                 T(Lanes::Last(point.ozone))};
     }
-    const ColumnSet<T> view = Between<T>(ray.mu0, mu, origin, point, perigee);
+    ColumnSet<T> view = Between<T>(ray.mu0, mu, origin, point, perigee);
+    if (below.exists) below.AddTo(view, T(Lanes::Load(&samples.distance[i])));
     Lanes::Store(&samples.view_rayleigh[i], view.rayleigh);
     Lanes::Store(&samples.view_mie[i], view.mie);
     Lanes::Store(&samples.view_ozone[i], view.ozone);
@@ -209,7 +242,9 @@ void FillSteps(const RayInLanes<Real, T>& ray, const Real* before, std::size_t i
   const T per_deficit = T(Real(-1)) / shell.deficit_height;
   for (std::size_t k = 0; k < kNodes; ++k) {
     const T d = begin + T(kNode[k]) * length;
-    const T h = max(AltitudeNearby<T>(ray.h0, ray.mu0, d, shell.radius), T(Real(0)));
+    const T along = shell.is_tall ? AltitudeAlongRay<T>(ray.h0, ray.mu0, d, shell.radius)
+                                  : AltitudeNearby<T>(ray.h0, ray.mu0, d, shell.radius);
+    const T h = max(along, T(Real(0)));
     const T weight(kWeight[k]);
     T molecules = exp(h * per_rayleigh);
     if (shell.has_deficit) molecules += shell.deficit * (molecules - exp(h * per_deficit));

@@ -83,7 +83,8 @@ SHARED Length ShadowSlope(Length h, Number mu, Number mu_s, Number nu, Length R)
 SHARED Length ShadowClearance(Length h, Number mu_s, Length R) {
   Length sun = (R + h) * mu_s;
   Length horizon = HorizonDistance(h, R);
-  return (horizon - sun) * (horizon + sun);
+  Length below = min(h, Length(0.0)) * (Number(2.0) * R + h);
+  return (horizon - sun) * (horizon + sun) + below;
 }
 
 // Returns 1 if the ray, as an infinite line, has a dark segment: between ShadowBegin and ShadowEnd.

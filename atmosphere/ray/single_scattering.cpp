@@ -220,6 +220,17 @@ double ShortOzoneColumn(const RayEntry& entry, double length, double radius,
                      [top](double h) { return shared::SmoothOzoneDensity<double>(h, top); });
 }
 
+// Returns the column of a layer above and below altitude 0. The density has a kink there, across
+// which no rule integrates.
+template <typename Density>
+double ShortColumnBelowToo(const RayEntry& entry, double length, double radius,
+                           const Density& density) {
+  if (!entry.IsSubmerged()) return ShortColumn(entry, 0.0, length, radius, density);
+  return ShortColumn(entry, 0.0, entry.submerged_begin_km, radius, density) +
+         (entry.submerged_end_km - entry.submerged_begin_km) * density(0.0) +
+         ShortColumn(entry, entry.submerged_end_km, length, radius, density);
+}
+
 // Returns the columns along a segment. The difference of two closed forms is accurate to 1e-7 of
 // the whole column, which is too inaccurate for a short segment; short segments are integrated.
 template <typename Real>
@@ -233,19 +244,24 @@ ColumnSet<Real> SegmentColumns(const AirConstants<Real>& air, const Medium& medi
       ZenithCosineAlongRay<double>(entry.altitude_km, entry.mu, length, h_end, radius);
   const double perigee = PerigeeAltitude<double>(entry.altitude_km, entry.mu, radius);
   const bool through = entry.mu < 0.0 && mu_end > 0.0;
-  const double low = through ? perigee : std::min(entry.altitude_km, h_end);
-  const double span = std::max(entry.altitude_km, h_end) - low;
+  const double h_begin = std::max(entry.altitude_km, 0.0);
+  const double low = through ? std::max(perigee, 0.0) : std::min(h_begin, h_end);
+  const double span = std::max(h_begin, h_end) - low;
+  const bool below = entry.IsSubmerged();
 
   const auto real = [](double value) { return static_cast<Real>(value); };
   const RayKernel<Real>& kernel = Kernel<RayKernel<Real>>();
   ColumnRows<Real> rows;
-  rows.Set(0, entry.altitude_km, std::abs(entry.mu));
-  rows.Set(1, h_end, std::abs(mu_end));
-  rows.Set(2, std::max(perigee, -1.0), 0.0);
+  rows.Set(0, h_begin, std::max(std::abs(entry.mu), entry.mu_ground));
+  rows.Set(1, h_end, std::max(std::abs(mu_end), entry.mu_ground));
+  rows.Set(2, std::max(perigee, below ? 0.0 : -1.0), entry.mu_ground);
   kernel.columns_up(air, RoundUp(3, kernel.lanes), rows.altitude.data(), rows.mu.data(),
                     rows.Targets());
   ColumnSet<Real> columns =
       ColumnsBetween<Real>(real(entry.mu), real(mu_end), rows.At(0), rows.At(1), rows.At(2));
+  const Real submerged = real(entry.submerged_end_km - entry.submerged_begin_km);
+  columns.rayleigh += submerged;
+  columns.mie += submerged;
   const auto molecules = [&medium](double h) {
     return MoleculeDensity(medium, h * kMetresPerKilometre);
   };
@@ -255,8 +271,8 @@ ColumnSet<Real> SegmentColumns(const AirConstants<Real>& air, const Medium& medi
   const double rayleigh = medium.rayleigh_scale_height_m / kMetresPerKilometre;
   const double mie = medium.mie_scale_height_m / kMetresPerKilometre;
   if (span < 4.0 * rayleigh)
-    columns.rayleigh = real(ShortColumn(entry, 0.0, length, radius, molecules));
-  if (span < 4.0 * mie) columns.mie = real(ShortColumn(entry, 0.0, length, radius, aerosol));
+    columns.rayleigh = real(ShortColumnBelowToo(entry, length, radius, molecules));
+  if (span < 4.0 * mie) columns.mie = real(ShortColumnBelowToo(entry, length, radius, aerosol));
   if (span < 2.0) columns.ozone = real(ShortOzoneColumn(entry, length, radius, medium.ozone));
   return columns;
 }

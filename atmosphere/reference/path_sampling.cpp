@@ -153,9 +153,11 @@ ColumnTable::Line ColumnTable::LineAt(double perigee_radius_m) const {
 AirColumns ColumnTable::Primitive(const Line& line, double s_m) const {
   const double p = line.perigee_radius_m;
   const double s = std::abs(s_m);
-  const double r = std::sqrt(p * p + s * s);
-  const Place place = PlaceAt(r, s);
-  AirColumns columns{MoleculesBeyond(place), Beyond(mie_, place), 0.0};
+  // Below altitude 0 air has the density of altitude 0.
+  const double s_ground = std::sqrt(std::max((planet_radius_m_ - p) * (planet_radius_m_ + p), 0.0));
+  const double below = std::max(s_ground - s, 0.0), s_above = s + below;
+  const Place place = PlaceAt(std::sqrt(p * p + s_above * s_above), s_above);
+  AirColumns columns{MoleculesBeyond(place) + below, Beyond(mie_, place) + below, 0.0};
   if (!has_ozone_ || s <= line.ozone_edge_m[0]) return columns;
   if (ozone_.shape == OzoneShape::kSmooth) {
     columns.ozone = SmoothOzoneUpTo(line, s);

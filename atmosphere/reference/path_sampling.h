@@ -148,8 +148,8 @@ struct AirColumns {
   double rayleigh = 0.0, mie = 0.0, ozone = 0.0;
 };
 
-/// Computes columns along any line outside the planet. The relative error of an optical depth to
-/// space is below 1e-6 (asserted).
+/// Computes columns along any line; below altitude 0 air has the density of altitude 0. The relative
+/// error of an optical depth to space is below 1e-6 (asserted).
 class ColumnTable {
  public:
   explicit ColumnTable(const Medium& medium);
@@ -169,7 +169,7 @@ class ColumnTable {
   [[nodiscard]] AirColumns Primitive(const Line& line, double s_m) const;
 
   /// Returns the column between s0 and s1 >= s0, given their primitives. A line from s0 < 0 to
-  /// s1 > 0 must have its perigee above the ground, and needs the primitive there.
+  /// s1 > 0 needs the primitive at its perigee.
   [[nodiscard]] static AirColumns Difference(double s0_m, const AirColumns& at_s0, double s1_m,
                                              const AirColumns& at_s1, const AirColumns& at_perigee);
 

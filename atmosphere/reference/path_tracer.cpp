@@ -83,11 +83,18 @@ class Scene {
   [[nodiscard]] double top_m() const { return planet_m() + medium_.atmosphere_height_m; }
   [[nodiscard]] bool has_aerosol() const { return mie_per_m_ > 0.0; }
 
+  /// Below altitude 0 air has the density of altitude 0.
   [[nodiscard]] double RayleighDensity(double radius_m) const {
-    return MoleculeDensity(medium_, radius_m - planet_m());
+    return MoleculeDensity(medium_, std::max(radius_m - planet_m(), 0.0));
   }
   [[nodiscard]] double MieDensity(double radius_m) const {
-    return std::exp(-(radius_m - planet_m()) / medium_.mie_scale_height_m);
+    return std::exp(-std::max(radius_m - planet_m(), 0.0) / medium_.mie_scale_height_m);
+  }
+  /// Returns the point, or the point of altitude 0 above it: light of air below altitude 0 is that
+  /// of altitude 0.
+  [[nodiscard]] Vector Raised(const Vector& point) const {
+    const double radius = glm::length(point);
+    return radius < planet_m() ? planet_m() / radius * point : point;
   }
   [[nodiscard]] double OpticalDepth(std::size_t band, const AirColumns& columns) const {
     return medium_.rayleigh_scattering_per_m[band] * columns.rayleigh +
@@ -473,9 +480,9 @@ ScatteringMatrix Tracer::AerosolMatrix(std::size_t band, double mie_phase, doubl
 void Tracer::GatherFromAir(const Piece& piece, const Point& point, const Responses& responses,
                            std::vector<double>& light) const {
   const Medium& medium = scene_.medium();
-  const double radius = piece.Radius(point.distance_m);
+  const double radius = std::max(piece.Radius(point.distance_m), scene_.planet_m());
   const double towards_sun =
-      glm::dot(piece.origin + point.distance_m * piece.direction, scene_.sun());
+      glm::dot(scene_.Raised(piece.origin + point.distance_m * piece.direction), scene_.sun());
   if (!scene_.Lit(radius, towards_sun)) return;
   const AirColumns sun = scene_.ColumnsToSun(radius, towards_sun);
   const AirColumns both{point.view.rayleigh + sun.rayleigh, point.view.mie + sun.mie,
@@ -562,7 +569,7 @@ Piece Tracer::Continue(const Piece& piece, PathRandom& random) {
   }
   const double distance = at_ground ? piece.length_m : points_[drawn].distance_m;
   Vector from = piece.origin + distance * piece.direction;
-  if (at_ground) from *= scene_.planet_m() / glm::length(from);
+  from = at_ground ? scene_.planet_m() / glm::length(from) * from : scene_.Raised(from);
   const Vector direction = at_ground ? TurnAtGround(from, choice, u, v)
                                      : TurnInAir(piece, points_[drawn], from, choice, u, v);
   return scene_.PieceFrom(from, direction);
@@ -842,7 +849,7 @@ Vector ViewDirection(const ViewRay& ray) {
 // Returns the part of the view ray inside the shell.
 Piece ViewPiece(const Medium& medium, const ViewRay& ray, const RayExtent& extent) {
   Piece piece;
-  const double radius = medium.planet_radius_m + std::max(ray.altitude_m, 0.0);
+  const double radius = medium.planet_radius_m + StartAltitude(ray, medium.planet_radius_m);
   piece.direction = ViewDirection(ray);
   piece.origin = Vector(0.0, 0.0, radius) + extent.begin_m * piece.direction;
   piece.perigee_m = radius * std::sqrt(std::max((1.0 - ray.mu) * (1.0 + ray.mu), 0.0));

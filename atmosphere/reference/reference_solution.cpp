@@ -39,9 +39,10 @@ struct Line {
   }
 };
 
+// Below altitude 0 air has the density of altitude 0.
 Columns Densities(const Medium& medium, Extended altitude) {
   const OzoneLayer& layer = medium.ozone;
-  const double h = static_cast<double>(altitude);
+  const double h = std::max(static_cast<double>(altitude), 0.0);
   double ozone = 0.0;
   if (layer.shape == OzoneShape::kSmooth) {
     const double y = h / layer.top_m;
@@ -61,15 +62,15 @@ Columns Densities(const Medium& medium, Extended altitude) {
 }
 
 // Returns the points at which the integrands along the line have a kink or a large curvature: edges
-// of the ozone tent, the perigee, and a ladder of altitudes that brackets both scale heights, so
+// of the ozone tent, the perigee, altitude 0, and a ladder of altitudes that brackets both scale heights, so
 // that no layer lies between the nodes of a first panel.
 std::vector<double> Breakpoints(const Medium& medium, const Line& line, double begin, double end) {
   std::vector<double> points;
-  points.reserve(2 + 1 + 2 * (3 + 6));
+  points.reserve(2 + 1 + 2 * (4 + 6));
   points.insert(points.end(), {begin, end});
   const Extended perigee = line.Perigee();
   if (perigee > begin && perigee < end) points.push_back(static_cast<double>(perigee));
-  for (const double z : {medium.ozone.bottom_m, medium.ozone.peak_m, medium.ozone.top_m}) {
+  for (const double z : {0.0, medium.ozone.bottom_m, medium.ozone.peak_m, medium.ozone.top_m}) {
     line.AppendCrossings(z, begin, end, points);
   }
   for (const double height : {medium.rayleigh_scale_height_m, medium.mie_scale_height_m}) {
@@ -156,7 +157,7 @@ struct SunPath {
 SunPath TowardsSun(const Medium& medium, const Line& view, const ViewRay& ray, double t, bool lit,
                    double tolerance) {
   if (!lit) return {false, {}};
-  const Extended h = view.Altitude(t);
+  const Extended h = std::max<Extended>(view.Altitude(t), 0);
   const Extended r = view.radius + h;
   const Extended mu_s = std::clamp((view.r * ray.mu_s + static_cast<Extended>(t) * ray.nu) / r,
                                    Extended(-1), Extended(1));
@@ -200,7 +201,7 @@ ShadowSpan DarkPart(const Line& line, const ViewRay& ray, const RayExtent& exten
 OpticalDepth OpticalDepthAlong(const Medium& medium, const ViewRay& ray) {
   const RayExtent extent = ExtentOf(ray, medium.planet_radius_m, medium.atmosphere_height_m);
   const Extended radius = medium.planet_radius_m;
-  const Line line{radius + std::max(ray.altitude_m, 0.0), ray.mu, radius};
+  const Line line{radius + StartAltitude(ray, medium.planet_radius_m), ray.mu, radius};
   const auto densities = [&](double t) {
     const Columns now = Densities(medium, line.Altitude(t));
     std::vector<double> extinction(medium.wavelengths_nm.size());
@@ -220,7 +221,7 @@ RayRadiance SingleScatteringAlong(const Medium& medium, const ViewRay& ray) {
   const std::size_t bands = medium.wavelengths_nm.size();
   const RayExtent extent = ExtentOf(ray, medium.planet_radius_m, medium.atmosphere_height_m);
   const Extended radius = medium.planet_radius_m;
-  const Line line{radius + std::max(ray.altitude_m, 0.0), ray.mu, radius};
+  const Line line{radius + StartAltitude(ray, medium.planet_radius_m), ray.mu, radius};
   const ShadowSpan shadow = DarkPart(line, ray, extent);
 
   std::vector<double> points = Breakpoints(medium, line, extent.begin_m, extent.end_m);

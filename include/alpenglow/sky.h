@@ -49,7 +49,10 @@ class Sky {
                                   const Direction& to_sun) const;
 
   /// Returns the aerial perspective: the effect of the air between the eye and an opaque object.
-  /// The ray stops at the ground (altitude 0) if it is nearer than the object.
+  /// Both may lie below altitude 0, and the line between them may dip below it: air continues there
+  /// with the density of altitude 0, and the transmittance is the same in both directions. Only a
+  /// line that leads deeper than 12 km (on small planets a fiftieth of the radius) stops at the
+  /// ground.
   ///
   /// Error of the transmittance: 1e-4 of its optical depth, or 1e-6. Light scattered once has a
   /// relative error below 0.1 % (both asserted by sky_api_test between points up to 100 km apart);

@@ -223,6 +223,8 @@ AirTables MakeAirTables(const SingleScattering<float>& air,
       map,
       mix,
       SingleMix(air, map),
+      Vec4Of(air.constants().rayleigh, air.bands()) +
+          Vec4Of(air.constants().mie_extinction, air.bands()),
       std::move(sky_phase),
       std::move(sky),
       ThroughTexels(air, map, eye, size),

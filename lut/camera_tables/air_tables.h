@@ -126,6 +126,9 @@ struct AirTables {
   AirMap map;
   std::array<glm::vec4, 3> sky_mix;     // m_R, m_M, m_0
   std::array<glm::vec4, 2> single_mix;  // a_R, a_M
+  /// Extinction at altitude 0 and below [1/km]: a ray that goes on below altitude 0 is lit as at its
+  /// crossing, and one from an eye at or below altitude 0 as the horizontal ray.
+  glm::vec4 extinction_below;
   /// Phase function for whole rays: MediumTables::phase with the glow around the sun
   /// (MultipleScattering::GlowFactor).
   AirTexels sky_phase;

@@ -140,13 +140,19 @@ const MultipleScattering& TableLookup::multiple_scattering() const {
   return *tables_.multiple_scattering;
 }
 
+bool TableLookup::HasTransmittanceFor(const ViewRay& ray) const {
+  const Medium& air = tables_.medium;
+  const RayExtent extent = ExtentOf(ray, air.planet_radius_m, air.atmosphere_height_m);
+  return tables_.transmittance && !SubmergedPart(ray, extent, air.planet_radius_m).Exists();
+}
+
 Bands<float> TableLookup::Transmittance(const ViewRay& ray) const {
-  if (tables_.transmittance) return tables_.transmittance->LookupAlong(ray);
+  if (HasTransmittanceFor(ray)) return tables_.transmittance->LookupAlong(ray);
   return air_.TransmittanceAlong(ray);
 }
 
 Bands<float> TableLookup::OpticalDepth(const ViewRay& ray) const {
-  if (!tables_.transmittance) return air_.OpticalDepthAlong(ray);
+  if (!HasTransmittanceFor(ray)) return air_.OpticalDepthAlong(ray);
   Bands<float> depth = tables_.transmittance->LookupAlong(ray);
   // A transmittance that the table stores as 0 gets the optical depth of the smallest float.
   constexpr float kSmallest = std::numeric_limits<float>::denorm_min();

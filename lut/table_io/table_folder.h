@@ -92,6 +92,7 @@ class TableLookup {
  private:
   [[nodiscard]] const MultipleScattering& multiple_scattering() const;
   [[nodiscard]] bool HasTableFor(const ViewRay& ray) const;
+  [[nodiscard]] bool HasTransmittanceFor(const ViewRay& ray) const;
 
   TableFolder tables_;
   SingleScattering<float> air_;

@@ -276,7 +276,8 @@ double AerialPerspective::StretchOf(const ViewRay& ray, double length_m, double 
 template <typename OfSegment, typename OfWhole>
 auto AerialPerspective::OfRay(const ViewRay& ray, const OfSegment& of_segment,
                               const OfWhole& of_whole) const {
-  if (std::isfinite(ray.length_m)) {
+  // Direct integration ends rays at altitude 0.
+  if (std::isfinite(ray.length_m) && ray.altitude_m >= 0.0) {
     const DirectRay placed = segments_.Place(ray);
     if (placed.extent.end == RayEnd::kLength && placed.panels > 0) return of_segment(placed);
   }
@@ -309,13 +310,19 @@ RaySamples<float> AerialPerspective::SampleWhole(const ViewRay& ray, const Sunli
   const double radius = medium.planet_radius_m;
   const RayExtent extent = ExtentOf(ray, radius, medium.atmosphere_height_m);
   const ShadowSpan shadow = PlanetShadow(ray, extent, radius);
-  std::array<double, 5> cut{extent.begin_m, extent.end_m, -(radius + ray.altitude_m) * ray.mu,
-                            shadow.dark_begin_m, shadow.dark_end_m};
+  const SubmergedSpan below = SubmergedPart(ray, extent, radius);
+  const double perigee_m = -(radius + ray.altitude_m) * ray.mu;
+  std::array<double, 6> cut{extent.begin_m,
+                            extent.end_m,
+                            below.Exists() ? below.begin_m : perigee_m,
+                            below.Exists() ? below.end_m : perigee_m,
+                            shadow.dark_begin_m,
+                            shadow.dark_end_m};
   for (double& at : cut) at = std::clamp(at, extent.begin_m, extent.end_m);
   std::sort(cut.begin(), cut.end());
 
-  std::array<RayNode, 4 * kMostShaftNodes + 1> node;
-  std::array<float, 4 * kMostShaftNodes + 1> light;
+  std::array<RayNode, 5 * kMostShaftNodes + 1> node;
+  std::array<float, 5 * kMostShaftNodes + 1> light;
   std::size_t count = 0;
   for (std::size_t i = 0; i + 1 < cut.size(); ++i) {
     if (cut[i + 1] - cut[i] <= 1e-12 * (extent.end_m - extent.begin_m)) continue;

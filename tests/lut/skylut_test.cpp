@@ -388,5 +388,33 @@ TEST_F(Skylut, WavelengthsThatACommandDoesNotTakeAreRefusedWithFileAndLine) {
   EXPECT_FALSE(fs::exists(folder_ / "s.exr"));
 }
 
+// Hard case 2.
+TEST_F(Skylut, SegmentsBelowTheSeaHaveTheirAirByEveryMethod) {
+  WriteText(
+      folder_ / "below.csv",
+      "id,quantity,altitude_m,view_zenith_deg,relative_azimuth_deg,sun_zenith_deg,distance_m\n"
+      "down,transmittance,-400,90.2168558,0,50,10000\n"
+      "up,transmittance,-430,89.8730814,0,50,10000\n"
+      "light,inscatter_single,-430,90.5,0,50,10000\n");
+  const Outcome integral = Run("eval --cases below.csv --out i.csv --quiet");
+  ASSERT_EQ(integral.status, 0) << integral.error;
+  const auto value = [](const std::string& text, const std::string& id) {
+    const std::size_t line = text.find("\n" + id + ",");
+    const std::size_t second = text.find(',', text.find(',', line + 1) + 1);
+    return std::stod(text.substr(second + 1));
+  };
+  const std::string light = ContentOf(folder_ / "i.csv");
+  EXPECT_NEAR(value(light, "down"), value(light, "up"), 1e-5) << "the ends swapped";
+  EXPECT_LT(value(light, "down"), 0.9) << "ten kilometres of air";
+  WriteText(
+      folder_ / "traced.csv",
+      "id,quantity,altitude_m,view_zenith_deg,relative_azimuth_deg,sun_zenith_deg,distance_m\n"
+      "light,inscatter_single,-430,90.5,0,50,10000\n");
+  ASSERT_EQ(Run("eval --cases traced.csv --out p.csv --method path-trace --quiet").status, 0);
+  const double traced = value(ContentOf(folder_ / "p.csv"), "light");
+  EXPECT_GT(traced, 0.0);
+  EXPECT_NEAR(value(light, "light"), traced, 0.025 * traced) << "five standard errors of 0.5 %";
+}
+
 }  // namespace
 }  // namespace alpenglow::lut

@@ -122,6 +122,7 @@ void AirTextures::Upload(const AirTables& tables) {
   values_.distances = AxesOf(size.distances, size.extinction_distances);
   values_.sky_mix = tables.sky_mix;
   values_.single_mix = tables.single_mix;
+  values_.extinction_below = tables.extinction_below;
   CheckGl("AirTextures::Upload");
 }
 

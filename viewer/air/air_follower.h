@@ -37,8 +37,9 @@ struct AirTablesBlock {
   glm::vec4 sky_rows, through_rows, way_rows, extinction_rows, distances, phase_nodes;
   std::array<glm::vec4, 3> sky_mix;
   std::array<glm::vec4, 2> single_mix;
+  glm::vec4 extinction_below;
 };
-static_assert(sizeof(AirTablesBlock) == 18 * sizeof(glm::vec4));
+static_assert(sizeof(AirTablesBlock) == 19 * sizeof(glm::vec4));
 
 /// Returns the pieces of a shader that calls the functions of air.tables.glsl; they follow
 /// SharedTexts().

@@ -82,6 +82,7 @@ layout(std140) uniform AirTables {
   vec4 air_phase_nodes;  // nodes of the aerosol's phase function
   vec4 air_sky_mix[3];   // factors of PhaseRayleigh, of the aerosol's phase and of 1
   vec4 air_single_mix[2];
+  vec4 air_extinction_below;  // per km at altitude 0 and below
 };
 
 uniform sampler2D air_sky;
@@ -190,15 +191,17 @@ struct AirWay {
   float half_sine_squared;  // of the angle to the apparent sun
 };
 
+// Below altitude 0 air has the density of altitude 0. A ray that goes on below it is lit as at its
+// crossing; one from an eye at or below altitude 0 as the horizontal ray, which the tables have.
 AirWay WayTo(vec3 direction, float distance_km) {
-  float rise = HalfTangent(direction);
-  bool ground = rise < 0.0;
   float h = air_shell.x;
   float radius = air_shell.w;
-  float entry = AirEntry(h, direction.z, air_shell.z, radius);
-  float near = AirEntry(h, direction.z, air_shell.y, radius);
-  float end =
-      ground ? AirEndDown(h, direction.z, radius) : AirEndUp(h, direction.z, air_shell.y, radius);
+  float rise = h > 0.0 ? HalfTangent(direction) : max(HalfTangent(direction), 0.0);
+  float mu = h > 0.0 ? direction.z : max(direction.z, 0.0);
+  bool ground = rise < 0.0;
+  float entry = AirEntry(h, mu, air_shell.z, radius);
+  float near = AirEntry(h, mu, air_shell.y, radius);
+  float end = ground ? AirEndDown(h, mu, radius) : AirEndUp(h, mu, air_shell.y, radius);
   float reach = max(end - near, 1e-3);
   float beyond = clamp(distance_km - near, 0.0, reach);
   float w = AirNodeFromShare(beyond / reach, ground ? air_crowding.y : air_crowding.x);
@@ -206,6 +209,8 @@ AirWay WayTo(vec3 direction, float distance_km) {
   float row = RowOf(rise, air_ranges.y, air_extinction_rows);
   float length_km = clamp(distance_km, entry, near + reach) - entry;
   vec4 tau = length_km * textureLod(air_extinction, vec2(distances.y, row), 0.0);
+  float below_km = ground ? max(distance_km - near - reach, 0.0) : 0.0;
+  tau += below_km * air_extinction_below;
   AirWay way;
   way.at = vec3(air_columns.z + air_columns.w * ColumnOf(direction),
                 RowOf(rise, air_ranges.y, air_way_rows), distances.x);

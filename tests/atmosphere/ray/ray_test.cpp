@@ -31,10 +31,33 @@ TEST(Ray, HorizonSeparatesGroundFromSkyWithinOneUlp) {
   }
 }
 
-TEST(Ray, GivenLengthEndsItUnlessTheGroundIsNearer) {
+TEST(Ray, GivenLengthEndsItUnlessItLeadsThroughThePlanet) {
   EXPECT_EQ(ExtentOf({100.0, 0.2, 1.0, 0.2, 5000.0}, kRadius_m, kTop_m).end, RayEnd::kLength);
-  EXPECT_EQ(ExtentOf({100.0, -1.0, 1.0, -1.0, 5000.0}, kRadius_m, kTop_m).end, RayEnd::kGround);
+  EXPECT_EQ(ExtentOf({100.0, -1.0, 1.0, -1.0, 5000.0}, kRadius_m, kTop_m).end, RayEnd::kLength);
+  EXPECT_EQ(ExtentOf({100.0, -1.0, 1.0, -1.0, 13e3}, kRadius_m, kTop_m).end, RayEnd::kGround);
   EXPECT_EQ(ExtentOf({100.0, 0.2, 1.0, 0.2, 0.0}, kRadius_m, kTop_m).end_m, 0.0);
+}
+
+// Hard case 2.
+TEST(Ray, ASegmentBelowAltitudeZeroIsKnownFromBothEnds) {
+  // A chord from 50 m above to 400 m below altitude 0, and back.
+  constexpr double kLength_m = 9000.0, kFrom_m = 50.0, kTo_m = -400.0;
+  const double from = kRadius_m + kFrom_m, to = kRadius_m + kTo_m;
+  const auto cosine = [](double at, double other) {
+    return (other * other - at * at - kLength_m * kLength_m) / (2.0 * at * kLength_m);
+  };
+  const ViewRay down{kFrom_m, cosine(from, to), 1.0, 0.0, kLength_m};
+  const ViewRay up{kTo_m, cosine(to, from), 1.0, 0.0, kLength_m};
+  const auto part = [](const ViewRay& ray) {
+    return SubmergedPart(ray, ExtentOf(ray, kRadius_m, kTop_m), kRadius_m);
+  };
+  EXPECT_NEAR(part(down).end_m, kLength_m, 1e-6);
+  EXPECT_EQ(part(up).begin_m, 0.0);
+  EXPECT_NEAR(part(down).end_m - part(down).begin_m, part(up).end_m, 1e-6);
+  EXPECT_NEAR(part(down).mu_ground, part(up).mu_ground, 1e-9);
+  ViewRay sky = down;
+  sky.length_m = std::numeric_limits<double>::infinity();
+  EXPECT_FALSE(part(sky).Exists()) << "the ground ends it";
 }
 
 // Hard case 39.
@@ -47,13 +70,23 @@ TEST(Ray, AShortRayEndsAtGroundOrTopOnlyIfItReachesThem) {
     const double deepest_m = -(kRadius_m + kFrom_m) * mu;
     const ViewRay through{kFrom_m, mu, 1.0, 0.0, 1.5 * deepest_m};
     const RayExtent extent = ExtentOf(through, kRadius_m, kTop_m);
-    EXPECT_EQ(extent.end == RayEnd::kGround, perigee_m < 0.0) << perigee_m;
-    EXPECT_EQ(extent.end_m == through.length_m, perigee_m > 0.0);
+    EXPECT_EQ(extent.end, RayEnd::kLength) << perigee_m;
+    EXPECT_EQ(extent.end_m, through.length_m);
+    EXPECT_EQ(SubmergedPart(through, extent, kRadius_m).Exists(), perigee_m < 0.0) << perigee_m;
+    ViewRay whole = through;
+    whole.length_m = std::numeric_limits<double>::infinity();
+    EXPECT_EQ(ExtentOf(whole, kRadius_m, kTop_m).end == RayEnd::kGround, perigee_m < 0.0);
   }
   for (const double over_m : {-2.0, -0.5, 0.5, 2.0}) {
     const ViewRay up{kTop_m - 500.0, 1.0, 1.0, 1.0, 500.0 + over_m};
     EXPECT_EQ(ExtentOf(up, kRadius_m, kTop_m).end == RayEnd::kSpace, over_m > 0.0) << over_m;
   }
+}
+
+TEST(Bands, MoreThanThereIsRoomForAreRefused) {
+  EXPECT_EQ(Bands<float>(kMaxBands).count, kMaxBands);
+  EXPECT_THROW(Bands<float>(kMaxBands + 1), InputError);
+  EXPECT_THROW(Bands<double>(512), InputError);
 }
 
 TEST(PlanetShadow, ZenithViewEntersLightWhereTheShadowEnds) {

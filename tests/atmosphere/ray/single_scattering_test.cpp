@@ -88,6 +88,88 @@ TEST(SingleScattering, StoredCasesAgreeToOnePartInTenThousand) {
   EXPECT_GT(compared, 300);
 }
 
+/// A segment by the altitudes of its ends, and the same segment from its other end.
+struct BothWays {
+  ViewRay there, back;
+};
+BothWays SegmentBetween(double from_m, double to_m, double length_m, double radius_m,
+                        double sun_zenith_deg) {
+  const auto cosine = [length_m](double at, double other) {
+    return ((other - at) * (other + at) - length_m * length_m) / (2.0 * at * length_m);
+  };
+  const double mu = cosine(radius_m + from_m, radius_m + to_m);
+  const double mu_s = std::cos(sun_zenith_deg * kRadiansPerDegree);
+  const double nu = mu * mu_s + 0.5 * std::sqrt((1.0 - mu * mu) * (1.0 - mu_s * mu_s));
+  const double back_mu = cosine(radius_m + to_m, radius_m + from_m);
+  const double back_mu_s = ((radius_m + from_m) * mu_s + length_m * nu) / (radius_m + to_m);
+  return {{from_m, mu, mu_s, nu, length_m}, {to_m, back_mu, back_mu_s, -nu, length_m}};
+}
+
+struct SegmentEnds {
+  double from_m, to_m, length_m;
+};
+constexpr std::array kSegmentsBelow{
+    SegmentEnds{-400.0, -430.0, 10e3}, SegmentEnds{-430.0, -400.0, 10e3},
+    SegmentEnds{100.0, -430.0, 10e3},  SegmentEnds{0.0, 0.0, 10e3},
+    SegmentEnds{2.0, 2.0, 60e3},       SegmentEnds{3000.0, -10e3, 40e3},
+    SegmentEnds{-8000.0, 20e3, 90e3},  SegmentEnds{20.0, -1.0, 300.0},
+    SegmentEnds{400e3, -430.0, 900e3}, SegmentEnds{60e3, 50e3, 1050e3}};
+
+// Hard case 2.
+TEST(SingleScattering, AirContinuesBelowAltitudeZeroInBothDirections) {
+  for (const char* preset : {"earth", "bruneton2017", "mars"}) {
+    const Medium medium = MediumPreset(preset);
+    const SingleScattering<double> exact(medium);
+    const SingleScattering<float> quick(medium);
+    for (const SegmentEnds& ends : kSegmentsBelow) {
+      SCOPED_TRACE(::testing::Message() << preset << ", " << ends.from_m << " m to " << ends.to_m);
+      const auto [there, back] =
+          SegmentBetween(ends.from_m, ends.to_m, ends.length_m, medium.planet_radius_m, 60.0);
+      const auto depth = exact.OpticalDepthAlong(there), other = exact.OpticalDepthAlong(back);
+      const auto in_float = quick.OpticalDepthAlong(there);
+      const auto truth = reference::OpticalDepthAlong(medium, there);
+      for (std::size_t band = 0; band < depth.count; ++band) {
+        EXPECT_NEAR(depth[band], truth.tau[band], 2e-5 * truth.tau[band]) << "closed forms";
+        EXPECT_NEAR(depth[band], other[band], 2e-5 * depth[band]);
+        EXPECT_NEAR(static_cast<double>(in_float[band]), truth.tau[band], 1e-4 * truth.tau[band]);
+      }
+    }
+  }
+}
+
+TEST(SingleScattering, BelowAltitudeZeroDepthIsLengthTimesExtinction) {
+  const Medium medium = MediumPreset("bruneton2017");
+  const BothWays ways = SegmentBetween(-400.0, -430.0, 10e3, medium.planet_radius_m, 60.0);
+  for (const ViewRay& ray : {ways.there, ways.back}) {
+    const auto depth = SingleScattering<double>(medium).OpticalDepthAlong(ray);
+    for (std::size_t band = 0; band < depth.count; ++band) {
+      EXPECT_NEAR(
+          depth[band],
+          10e3 * (medium.rayleigh_scattering_per_m[band] + medium.mie_extinction_per_m[band]),
+          1e-9);
+    }
+  }
+}
+
+// Hard case 2.
+TEST(SingleScattering, LightBelowAltitudeZeroAgreesWithTheReference) {
+  const Medium medium = MediumPreset("bruneton2017");
+  for (const double sun_zenith_deg : {60.0, 88.0, 93.0}) {
+    for (const SegmentEnds& ends : std::span(kSegmentsBelow).first(tests::ScaledDown(8U, 3U))) {
+      SCOPED_TRACE(::testing::Message()
+                   << ends.from_m << " m to " << ends.to_m << ", sun " << sun_zenith_deg);
+      const auto ways = SegmentBetween(ends.from_m, ends.to_m, ends.length_m,
+                                       medium.planet_radius_m, sun_zenith_deg);
+      for (const ViewRay& ray : {ways.there, ways.back}) {
+        const auto truth = reference::SingleScatteringAlong(medium, ray).inscatter;
+        const auto found = Inscatter(SingleScattering<double>(medium), ray, kFine);
+        for (std::size_t band = 0; band < found.count; ++band)
+          EXPECT_NEAR(found[band], truth[band], 1e-3 * truth[band] + 1e-12);
+      }
+    }
+  }
+}
+
 double ErrorOf(const Medium& medium, const tests::SunHeights& sun, tests::RayView view,
                const Sampling& sampling) {
   return tests::ErrorOfRegime(medium, sun, view, sampling, 200).rms;

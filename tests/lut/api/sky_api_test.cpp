@@ -8,6 +8,7 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <limits>
+#include <utility>
 #include <vector>
 
 #include "atmosphere/colour/spectrum.h"
@@ -163,6 +164,25 @@ TEST(Sky, BelowAltitudeZeroIsThatOfAltitudeZero) {
   EXPECT_TRUE(std::isfinite(air.inscattered[0]));
   EXPECT_LT(air.transmittance[0], 1.0F);
   EXPECT_TRUE(std::isfinite(Earth().SkyIrradiance({.up_m = -430.0}, Suns()[0])[0]));
+}
+
+// Hard case 2.
+TEST(Sky, AirBelowAltitudeZeroIsTheSameFromBothEnds) {
+  const Direction sun = DirectionFromAngles(40.0, 100.0);
+  for (const auto& [a, b] : {std::pair{LocalPoint{.up_m = -400.0}, LocalPoint{0.0, 10e3, -430.0}},
+                             {LocalPoint{.up_m = -430.0}, LocalPoint{0.0, 10e3, -400.0}},
+                             {LocalPoint{.up_m = 200.0}, LocalPoint{5e3, 8e3, -430.0}},
+                             {LocalPoint{}, LocalPoint{0.0, 20e3, -31.4}},
+                             {LocalPoint{.up_m = -8e3}, LocalPoint{30e3, 0.0, 9e3}}}) {
+    const AirBetween there = Earth().Between(a, b, sun), back = Earth().Between(b, a, sun);
+    for (std::size_t band = 0; band < there.transmittance.size(); ++band) {
+      EXPECT_NEAR(there.transmittance[band], back.transmittance[band],
+                  1e-5F * there.transmittance[band]);
+      EXPECT_LT(there.transmittance[band], 0.95F);
+      EXPECT_GT(there.inscattered[band], 0.0F);
+      EXPECT_GT(back.inscattered[band], 0.0F);
+    }
+  }
 }
 
 TEST(Sky, PointsAndDirectionsThatCannotBeAreRefused) {

@@ -81,8 +81,9 @@ class AirReading {
     using namespace shared;
     const AirMap& map = tables_.map;
     const AirTablesSize& size = tables_.size;
-    const bool ground = angle < 0.0;
-    const double mu = std::sin(angle - dip_);
+    const double over = map.altitude > 0.0 ? angle : std::max(angle, 0.0);
+    const bool ground = over < 0.0;
+    const double mu = std::sin(over - dip_);
     const double begin = AirEntry<double>(map.altitude, mu, map.top, map.radius);
     const double end = ground ? AirEndDown<double>(map.altitude, mu, map.radius)
                               : AirEndUp<double>(map.altitude, mu, map.ceiling, map.radius);
@@ -92,11 +93,13 @@ class AirReading {
     const double way = std::clamp(distance_km, begin, near + reach) - begin;
     const double w =
         AirNodeFromShare<double>(beyond / reach, ground ? map.ground_crowding : map.sky_crowding);
+    const double below = ground ? std::max(distance_km - near - reach, 0.0) : 0.0;
     const glm::dvec4 tau = way * Linear(tables_.extinction, w * (size.extinction_distances - 1),
-                                        Row(angle, map.air_sky_range, size.extinction_rows,
-                                            size.extinction_ground_rows));
+                                        Row(over, map.air_sky_range, size.extinction_rows,
+                                            size.extinction_ground_rows)) +
+                           below * glm::dvec4(tables_.extinction_below);
     const double x = Column(azimuth, size.columns);
-    const double y = Row(angle, map.air_sky_range, size.rows, size.ground_rows);
+    const double y = Row(over, map.air_sky_range, size.rows, size.ground_rows);
     const double z = w * (size.distances - 1);
     glm::dvec4 absorbed;
     for (int band = 0; band < 4; ++band) absorbed[band] = -std::expm1(-tau[band]);

@@ -61,7 +61,9 @@ std::vector<ViewRay> RaysBetweenMountains(std::size_t count, double planet_radiu
     const double nu =
         mu * std::cos(sun) + std::sqrt(1.0 - mu * mu) * std::sin(sun) * std::cos(azimuth);
     const ViewRay ray{eye_m, mu, std::cos(sun), nu, length_m};
-    if (ExtentOf(ray, planet_radius_m, 100e3).end == RayEnd::kLength) rays.push_back(ray);
+    const RayExtent extent = ExtentOf(ray, planet_radius_m, 100e3);
+    if (extent.end == RayEnd::kLength && !SubmergedPart(ray, extent, planet_radius_m).Exists())
+      rays.push_back(ray);
   }
   return rays;
 }
@@ -111,6 +113,26 @@ TEST(AerialPerspective, AirTo100KilometresIsRightToATenthOfAPercent) {
     EXPECT_LT(error.worst, 5e-3);
     EXPECT_LT(error.nodes, air.nodes) << "of rays 100 m to 100 km long in clear air, in the mean";
     EXPECT_LT(error.transmittance, 3e-7) << "sums of columns in single precision";
+  }
+}
+
+// Hard case 2.
+TEST(AerialPerspective, LandBelowTheSeaHasAirInFrontOfIt) {
+  const Air air(WithOpticalDepth(0.1));
+  const SingleScattering<double> exact(air.single_scattering.medium());
+  // Down to the shore of the Dead Sea, along it, and up from it, with the sun at 30 degrees.
+  for (const auto& [altitude_m, mu] :
+       {std::pair{100.0, -0.053}, {-400.0, -0.003}, {-430.0, 0.0}, {-430.0, 0.05}, {0.0, -1e-4}}) {
+    const ViewRay ray{altitude_m, mu, 0.5, 0.5 * mu + 0.6 * std::sqrt(1.0 - mu * mu), 10e3};
+    const auto truth = exact.Inscatter(exact.Scatter(exact.Sample(ray, {.nodes = 32})), ray.nu);
+    const auto through = exact.TransmittanceAlong(ray);
+    const Bands<float> found = Once(air, ray, nullptr);
+    const Bands<float> seen = air.aerial.Along(ray, {}).transmittance;
+    for (std::size_t band = 0; band < truth.count; ++band) {
+      EXPECT_NEAR(static_cast<double>(found[band]), truth[band], 5e-3 * truth[band]);
+      EXPECT_NEAR(static_cast<double>(seen[band]), through[band], 1e-5) << altitude_m << " " << mu;
+      EXPECT_LT(seen[band], 0.95F) << "10 km of air";
+    }
   }
 }
 
