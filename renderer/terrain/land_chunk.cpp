@@ -37,7 +37,7 @@ class SurfacePatch {
     if (level_ > 0) TakeFinerSlopes(frame);
   }
 
-  [[nodiscard]] bool Has(int i, int j) const { return has_[At(i, j)] != 0; }
+  [[nodiscard]] bool Has(int i, int j) const { return has_[At(i, j)] == Vertex::kOnThisSide; }
   [[nodiscard]] const glm::dvec3& Position(int i, int j) const { return position_m_[At(i, j)]; }
   [[nodiscard]] glm::dvec3 Normal(int i, int j) const {
     const glm::dvec3& sum = normal_sum_[At(i, j)];
@@ -48,8 +48,8 @@ class SurfacePatch {
 
   // Returns whether the cell south-east of a vertex is cut from north-west to south-east.
   [[nodiscard]] bool IsFalling(int i, int j) const {
-    const bool void_off_falling = !Has(i + 1, j) || !Has(i, j + 1);
-    const bool void_off_rising = !Has(i, j) || !Has(i + 1, j + 1);
+    const bool void_off_falling = !IsKnown(i + 1, j) || !IsKnown(i, j + 1);
+    const bool void_off_rising = !IsKnown(i, j) || !IsKnown(i + 1, j + 1);
     if (void_off_falling || void_off_rising) return void_off_falling;
     if (level_ > 0) return true;
     CellHeights around{};
@@ -60,20 +60,27 @@ class SurfacePatch {
   }
 
  private:
+  // Vertices beyond the first or last column of a lattice that closes around the earth are those of
+  // its other side. They only give the vertices of the rim their normals.
+  enum class Vertex : char { kNone, kAcrossSeam, kOnThisSide };
+
   [[nodiscard]] std::size_t At(int i, int j) const {
     return static_cast<std::size_t>((j - first_j_) * side_ + (i - first_i_));
   }
+  [[nodiscard]] bool IsKnown(int i, int j) const { return has_[At(i, j)] != Vertex::kNone; }
 
   void PlaceVertices(const LocalFrame& frame) {
     const auto count = static_cast<std::size_t>(side_ * side_);
     position_m_.resize(count);
     normal_sum_.resize(count, glm::dvec3(0.0));
-    has_.resize(count, 0);
+    has_.resize(count, Vertex::kNone);
+    const bool closes = lattice_.ClosesAroundTheEarth();
     for (int j = first_j_; j < first_j_ + side_; ++j) {
       if (j < 0 || j > lattice_.LastJ(level_)) continue;
       for (int i = first_i_; i < first_i_ + side_; ++i) {
-        if (i < 0 || i > lattice_.LastI(level_) || std::isnan(block_.at(i, j))) continue;
-        has_[At(i, j)] = 1;
+        const bool is_on_lattice = i >= 0 && i <= lattice_.LastI(level_);
+        if (!(is_on_lattice || closes) || std::isnan(block_.at(i, j))) continue;
+        has_[At(i, j)] = is_on_lattice ? Vertex::kOnThisSide : Vertex::kAcrossSeam;
         position_m_[At(i, j)] = frame
                                     .EnuFromGeodetic(lattice_.PlaceOf(
                                         lattice_.ColumnOf(i, level_), lattice_.RowOf(j, level_),
@@ -132,7 +139,8 @@ class SurfacePatch {
   }
 
   void AddTriangle(std::size_t a, std::size_t b, std::size_t c) {
-    if (has_[a] == 0 || has_[b] == 0 || has_[c] == 0) return;
+    for (const std::size_t corner : {a, b, c})
+      if (has_[corner] == Vertex::kNone) return;
     const glm::dvec3 twice_area =
         glm::cross(position_m_[b] - position_m_[a], position_m_[c] - position_m_[a]);
     for (const std::size_t corner : {a, b, c}) normal_sum_[corner] += twice_area;
@@ -142,7 +150,7 @@ class SurfacePatch {
   int level_, first_i_, first_j_, side_;
   HeightBlock block_, finer_;
   std::vector<glm::dvec3> position_m_, normal_sum_;
-  std::vector<char> has_;
+  std::vector<Vertex> has_;
 };
 
 // The vertices of the next coarser level at the ends of the edge on which a vertex lies.

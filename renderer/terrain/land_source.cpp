@@ -336,9 +336,19 @@ void LandTiles::PlaceTile(std::size_t index) {
 }
 
 std::vector<int> LandTiles::Touching(const LatticeBox& box) const {
+  const int turns = lattice_.ClosesAroundTheEarth() ? 1 : 0;
+  const auto touches = [&](const LandTile& tile) {
+    for (int turn = -turns; turn <= turns; ++turn) {
+      LatticeBox moved = box;
+      moved.first_column += turn * lattice_.last_column;
+      moved.last_column += turn * lattice_.last_column;
+      if (tile.box.Touches(moved)) return true;
+    }
+    return false;
+  };
   std::vector<int> touching;
   for (std::size_t tile = 0; tile < tiles_.size(); ++tile)
-    if (tiles_[tile].box.Touches(box)) touching.push_back(static_cast<int>(tile));
+    if (touches(tiles_[tile])) touching.push_back(static_cast<int>(tile));
   return touching;
 }
 

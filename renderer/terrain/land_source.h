@@ -53,14 +53,31 @@ struct LandLattice {
   double step_lon_rad = 0.0, step_lat_rad = 0.0;
   int last_column = 0, last_row = 0;
 
+  /// Returns whether the columns go once around the earth, so that the last one is the first one
+  /// again.
+  [[nodiscard]] bool ClosesAroundTheEarth() const {
+    return last_column > 0 &&
+           std::abs(last_column * step_lon_rad - 2.0 * std::numbers::pi) < 1e-3 * step_lon_rad;
+  }
+  /// Returns the column from 0 to last_column - 1 on the meridian of a column of a lattice that
+  /// closes around the earth.
+  [[nodiscard]] double WithinTurn(double column) const {
+    return column - last_column * std::floor(column / last_column);
+  }
+
   /// Returns the index of the last vertex of a level.
   [[nodiscard]] int LastVertex(int last_sample, int level) const {
     return (last_sample + (1 << level) - 1) >> level;
   }
   [[nodiscard]] int LastI(int level) const { return LastVertex(last_column, level); }
   [[nodiscard]] int LastJ(int level) const { return LastVertex(last_row, level); }
+  /// Returns the column of a vertex. Beyond the rim it is that of the rim, unless the lattice closes
+  /// around the earth: columns then go on, and WithinTurn returns the sample at the same place.
   [[nodiscard]] int ColumnOf(int i, int level) const {
-    return std::clamp(i * (1 << level), 0, last_column);
+    const int step = 1 << level;
+    if (!ClosesAroundTheEarth()) return std::clamp(i * step, 0, last_column);
+    const int last_i = LastI(level);
+    return i > last_i ? last_column + (i - last_i) * step : std::min(i * step, last_column);
   }
   [[nodiscard]] int RowOf(int j, int level) const {
     return std::clamp(j * (1 << level), 0, last_row);
@@ -78,7 +95,19 @@ struct LandLattice {
   [[nodiscard]] LatticePlace At(double latitude_rad, double longitude_rad) const {
     const double middle = west_rad + 0.5 * last_column * step_lon_rad;
     const double east = std::remainder(longitude_rad - middle, 2.0 * std::numbers::pi);
-    return {0.5 * last_column + east / step_lon_rad, (north_rad - latitude_rad) / step_lat_rad};
+    return {0.5 * last_column + east / step_lon_rad, RowAt(latitude_rad)};
+  }
+  /// Returns the row of a latitude. Between a pole and a row beyond it, rows are as PlaceOf moves
+  /// them: the pole has that row.
+  [[nodiscard]] double RowAt(double latitude_rad) const {
+    constexpr double kPole = 0.5 * std::numbers::pi;
+    const double row = (north_rad - latitude_rad) / step_lat_rad;
+    const double north_pole = (north_rad - kPole) / step_lat_rad;
+    const double south_pole = (north_rad + kPole) / step_lat_rad;
+    if (north_pole > 0.0 && row < 1.0) return (row - north_pole) / (1.0 - north_pole);
+    if (south_pole < last_row && row > last_row - 1.0)
+      return last_row - (south_pole - row) / (south_pole - (last_row - 1.0));
+    return row;
   }
 };
 
@@ -215,7 +244,8 @@ class LandTiles {
   [[nodiscard]] GeodeticPosition Middle() const {
     return lattice_.PlaceOf(lattice_.last_column / 2, lattice_.last_row / 2, 0.0);
   }
-  /// Returns the indices of the tiles that touch a box, in ascending order.
+  /// Returns the indices of the tiles that touch a box, in ascending order. If the lattice closes
+  /// around the earth, the columns of the box may lie beyond it.
   [[nodiscard]] std::vector<int> Touching(const LatticeBox& box) const;
   /// One line per file that was left out.
   [[nodiscard]] const std::vector<std::string>& notes() const { return notes_; }

@@ -3,8 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <glm/vec2.hpp>
 #include <limits>
+#include <numbers>
 
 namespace alpenglow::renderer {
 namespace {
@@ -12,23 +12,67 @@ namespace {
 constexpr double kAhead = 1.25;       // chunks are requested before they are needed
 constexpr double kLatestStart = 0.9;  // of a level's morph range, as a fraction of its end
 
-// Returns the distance from a place to a range, 0 inside it.
-double Outside(double place, double first, double last) {
-  return std::max({first - place, place - last, 0.0});
+LatticeArea AreaOf(const ChunkKey& key) {
+  const double side = std::exp2(key.level) * kChunkCells;
+  return {key.column * side, key.row * side, (key.column + 1) * side, (key.row + 1) * side};
 }
 
-// Returns the distances to the nearest point of a chunk along columns and rows [m].
-glm::dvec2 Away(const ChunkKey& key, const LandEye& eye) {
-  const double side = std::exp2(key.level) * kChunkCells;
-  return {Outside(eye.at.column, key.column * side, (key.column + 1) * side) * eye.size.column_m,
-          Outside(eye.at.row, key.row * side, (key.row + 1) * side) * eye.size.row_m};
-}
+// Returns the number of chunks along an axis.
+int ChunksAlong(int last_vertex) { return (last_vertex + kChunkCells - 1) / kChunkCells; }
 
 double RangeOfLevel(int level, const LandEye& eye, double detail) {
   return detail * std::sqrt(eye.size.column_m * eye.size.row_m) * std::exp2(level);
 }
 
 }  // namespace
+
+LandEye::LandEye(const LandLattice& lattice, const GeodeticPosition& place, double height_above_m,
+                 double farthest_m)
+    : at{lattice.At(place.latitude_rad, place.longitude_rad).column,
+         (lattice.north_rad - place.latitude_rad) / lattice.step_lat_rad},
+      size(SampleSizeAt(lattice, place.latitude_rad)),
+      above_m(height_above_m),
+      sight_m(farthest_m),
+      latitude_rad(place.latitude_rad),
+      step_lon_rad(lattice.step_lon_rad),
+      step_lat_rad(lattice.step_lat_rad) {
+  const double southern_rad = lattice.north_rad - lattice.last_row * lattice.step_lat_rad;
+  nearest_equator_rad = std::max({southern_rad, -lattice.north_rad, 0.0});
+}
+
+// The chord is that of the haversine formula, which is exact for small angles.
+double LandEye::ChordTo(const LatticePlace& place) const {
+  const double north_rad = (at.row - place.row) * step_lat_rad;
+  const double x = std::sin(0.5 * (place.column - at.column) * step_lon_rad);
+  const double y = std::sin(0.5 * north_rad);
+  // A row beyond a pole is drawn at the pole.
+  const double across = std::cos(latitude_rad) * std::max(std::cos(latitude_rad + north_rad), 0.0);
+  return 2.0 * radius_m() * std::sqrt(std::max(y * y + across * x * x, 0.0));
+}
+
+double LandEye::ChordTo(const LatticeArea& area) const {
+  const double turn = 2.0 * std::numbers::pi / step_lon_rad;  // columns
+  const double from_first = at.column - area.first_column;
+  const bool is_on_meridians =
+      from_first - turn * std::floor(from_first / turn) <= area.last_column - area.first_column;
+  const auto beside = [&](double column) {
+    return std::abs(std::remainder(column - at.column, turn));
+  };
+  const double columns =
+      is_on_meridians ? 0.0 : std::min(beside(area.first_column), beside(area.last_column));
+  const auto chord = [&](double row) { return ChordTo(LatticePlace{at.column + columns, row}); };
+  const auto row_of = [&](double latitude) {
+    return at.row + (latitude_rad - latitude) / step_lat_rad;
+  };
+  constexpr double kPole_rad = 0.5 * std::numbers::pi;
+  const double first = std::max(area.first_row, row_of(kPole_rad));
+  const double last = std::min(area.last_row, row_of(-kPole_rad));
+  // The nearest point of a meridian's great circle.
+  const double nearest_rad =
+      std::atan2(std::sin(latitude_rad), std::cos(latitude_rad) * std::cos(columns * step_lon_rad));
+  const double row = row_of(nearest_rad);
+  return row > first && row < last ? chord(row) : std::min(chord(first), chord(last));
+}
 
 ChunkTree::ChunkTree(const LandTiles& tiles) : tiles_(tiles) {
   const LandLattice& lattice = tiles.lattice();
@@ -41,19 +85,17 @@ ChunkTree::ChunkTree(const LandTiles& tiles) : tiles_(tiles) {
 }
 
 std::vector<ChunkKey> ChunkTree::Roots(const LandEye& eye) const {
-  const double side = std::exp2(top_) * kChunkCells;
-  const auto range = [&](double place, double step_m, int last_vertex) {
-    const double reach = eye.sight_m / step_m;
-    const double last = (last_vertex - 1) / kChunkCells;
-    return std::pair{static_cast<int>(std::clamp(std::floor((place - reach) / side), 0.0, last)),
-                     static_cast<int>(std::clamp(std::floor((place + reach) / side), 0.0, last))};
-  };
   std::vector<ChunkKey> roots;
   if (tiles_.tiles().empty()) return roots;
-  const auto [west, east] = range(eye.at.column, eye.size.column_m, tiles_.lattice().LastI(top_));
-  const auto [north, south] = range(eye.at.row, eye.size.row_m, tiles_.lattice().LastJ(top_));
-  for (int row = north; row <= south; ++row) {
-    for (int column = west; column <= east; ++column) {
+  const double side = std::exp2(top_) * kChunkCells;
+  const double reach_rows = std::max(eye.sight_m, eye.above_m) / eye.size.row_m;
+  const int columns = ChunksAlong(tiles_.lattice().LastI(top_));
+  const double last_row = ChunksAlong(tiles_.lattice().LastJ(top_)) - 1.0;
+  const auto row_at = [&](double row) {
+    return static_cast<int>(std::clamp(std::floor(row / side), 0.0, last_row));
+  };
+  for (int row = row_at(eye.at.row - reach_rows); row <= row_at(eye.at.row + reach_rows); ++row) {
+    for (int column = 0; column < columns; ++column) {
       const ChunkKey root{top_, column, row};
       if (Exists(root) && Distance(root, eye) <= std::max(eye.sight_m, eye.above_m))
         roots.push_back(root);
@@ -84,17 +126,28 @@ bool ChunkTree::Exists(const ChunkKey& key) const {
 }
 
 double ChunkTree::Distance(const ChunkKey& key, const LandEye& eye) {
-  const glm::dvec2 away = Away(key, eye);
-  return std::hypot(away.x, away.y, eye.above_m);
+  return eye.DistanceOver(Beside(key, eye));
 }
 
 double ChunkTree::Beside(const ChunkKey& key, const LandEye& eye) {
-  const glm::dvec2 away = Away(key, eye);
-  return std::hypot(away.x, away.y);
+  return eye.ChordTo(AreaOf(key));
 }
 
-double ChunkTree::Diagonal(int level, const LandEye& eye) {
-  return std::exp2(level) * kChunkCells * std::hypot(eye.size.column_m, eye.size.row_m);
+double ChunkTree::Diagonal(int level, const LandEye& eye, double within_m) {
+  const double samples = std::exp2(level) * kChunkCells;
+  const double angle_rad = within_m / eye.radius_m() + samples * eye.step_lat_rad;
+  const double widest_rad =
+      std::max(std::abs(eye.latitude_rad) - angle_rad, eye.nearest_equator_rad);
+  return samples *
+         std::hypot(eye.radius_m() * std::cos(widest_rad) * eye.step_lon_rad, eye.size.row_m);
+}
+
+ChunkKey ChunkTree::Neighbour(const ChunkKey& key, int columns, int rows) const {
+  ChunkKey next{key.level, key.column + columns, key.row + rows};
+  if (!tiles_.lattice().ClosesAroundTheEarth()) return next;
+  const int all = ChunksAlong(tiles_.lattice().LastI(key.level));
+  next.column = (next.column + all) % all;
+  return next;
 }
 
 LatticeBox ChunkTree::Reads(const ChunkKey& key) const { return BoxOf(key, 4); }
@@ -188,7 +241,7 @@ class Drawing {
   [[nodiscard]] unsigned CoarseSides(const ChunkKey& key) const {
     if (key.level == tree_.top()) return 0;
     const auto side = [&](int columns, int rows, unsigned bit) {
-      const ChunkKey next = ChunkKey{key.level, key.column + columns, key.row + rows}.Parent();
+      const ChunkKey next = tree_.Neighbour(key, columns, rows).Parent();
       return next != key.Parent() && tree_.Exists(next) && !IsSplit(next) ? bit : 0U;
     };
     return side(0, -1, kNorthSide) | side(1, 0, kEastSide) | side(0, 1, kSouthSide) |
@@ -215,12 +268,12 @@ std::vector<LevelRange> RangesOf(const std::vector<double>& reach_m, const LandE
   double most = std::numeric_limits<double>::infinity();  // bound for the next finer level's end
   for (std::size_t level = reach_m.size() - 1; level-- > 0;) {
     const double finer = std::max(std::min(reach_m[level], most), 0.0);
-    const double diagonal = ChunkTree::Diagonal(static_cast<int>(level) + 1, eye);
+    const double diagonal = ChunkTree::Diagonal(static_cast<int>(level) + 1, eye, finer);
     LevelRange& coarser = ranges[level + 1];
     if (level + 2 < reach_m.size() && finer > 0.0)
       coarser.start_m = std::max(coarser.start_m, finer + diagonal);
     ranges[level] = {0.6 * finer, finer};
-    most = kLatestStart * finer - ChunkTree::Diagonal(static_cast<int>(level), eye);
+    most = kLatestStart * finer - ChunkTree::Diagonal(static_cast<int>(level), eye, finer);
   }
   return ranges;
 }

@@ -2,9 +2,9 @@
 // Selection of the chunks to draw, and of the ranges over which levels morph into the next coarser
 // one.
 //
-// One distance controls both: d^2 = (columns from the eye)^2 + (rows from the eye)^2 + h^2 [m],
-// where h is the height of the eye above all nearby ground. Chunks of level k + 1 nearer than
-// end(k) are replaced by their four children of level k. Vertices of level k have their own
+// One distance controls both: d^2 = c^2 + h^2, where c is the chord of a sphere from the place under
+// the eye [m], which has no seam at poles and meridians, and h is the height of the eye above all
+// nearby ground. Chunks of level k + 1 nearer than end(k) are replaced by their four children of level k. Vertices of level k have their own
 // position up to start(k) and that of the coarser level from end(k) on. There are no cracks and no
 // popping:
 //   - where level k meets a chunk of level k + 1, that chunk is beyond end(k), so the vertices on
@@ -16,6 +16,7 @@
 // hold during loading.
 #pragma once
 
+#include <cmath>
 #include <functional>
 #include <unordered_map>
 #include <vector>
@@ -24,12 +25,34 @@
 
 namespace alpenglow::renderer {
 
+/// A rectangle of the lattice between samples.
+struct LatticeArea {
+  double first_column, first_row, last_column, last_row;
+};
+
 /// The eye's position on the lattice.
 struct LandEye {
-  LatticePlace at;
+  LatticePlace at;       // rows are equidistant, also beside a pole
   SampleSize size;       // of one step at the eye
   double above_m = 0.0;  // h
   double sight_m = 0.0;  // largest distance of visible ground
+  double latitude_rad = 0.0;
+  double step_lon_rad = 0.0, step_lat_rad = 0.0;  // of the lattice
+  double nearest_equator_rad = 0.0;               // least distance of the lattice from the equator
+
+  LandEye() = default;
+  LandEye(const LandLattice& lattice, const GeodeticPosition& place, double height_above_m,
+          double farthest_m);
+
+  /// Radius of the sphere on which distances are measured [m].
+  [[nodiscard]] double radius_m() const { return size.row_m / step_lat_rad; }
+  /// Returns the chord c from the place under the eye to a place on the lattice [m]. Turned() of
+  /// land.vert.glsl computes the same.
+  [[nodiscard]] double ChordTo(const LatticePlace& place) const;
+  /// Returns the chord to the nearest point of an area [m].
+  [[nodiscard]] double ChordTo(const LatticeArea& area) const;
+  /// Returns d for a chord.
+  [[nodiscard]] double DistanceOver(double chord_m) const { return std::hypot(chord_m, above_m); }
 };
 
 struct LevelRange {
@@ -51,8 +74,12 @@ class ChunkTree {
   [[nodiscard]] static double Distance(const ChunkKey& key, const LandEye& eye);
   /// Returns the horizontal distance (d without h) to the nearest point of a chunk [m].
   [[nodiscard]] static double Beside(const ChunkKey& key, const LandEye& eye);
-  /// Returns the diagonal of a chunk of this level [m].
-  [[nodiscard]] static double Diagonal(int level, const LandEye& eye);
+  /// Returns the largest diagonal of a chunk of this level that begins within a distance of the eye
+  /// [m].
+  [[nodiscard]] static double Diagonal(int level, const LandEye& eye, double within_m);
+  /// Returns the chunk some columns and rows away, also across the first column of a lattice that
+  /// closes around the earth. It need not exist.
+  [[nodiscard]] ChunkKey Neighbour(const ChunkKey& key, int columns, int rows) const;
   /// Returns the samples that building a chunk reads: its own and those around it, of its level and
   /// the next one.
   [[nodiscard]] LatticeBox Reads(const ChunkKey& key) const;

@@ -223,27 +223,77 @@ SampleSize SampleSizeAt(const LandLattice& lattice, double latitude_rad) {
   return {lattice.step_lon_rad * across * cosine, lattice.step_lat_rad * across * (1.0 - e2) / w2};
 }
 
+namespace {
+
+/// The vertices of one level in a part of the lattice.
+class LevelHeights {
+ public:
+  LevelHeights(const LandTiles& tiles,
+               const std::vector<std::shared_ptr<const HeightPyramid>>& heights, int level,
+               const LatticeBox& box)
+      : lattice_(tiles.lattice()), level_(level) {
+    for (const int tile : tiles.Touching(box))
+      if (heights[static_cast<std::size_t>(tile)])
+        near_.push_back(heights[static_cast<std::size_t>(tile)].get());
+  }
+
+  /// Returns the height at a vertex.
+  [[nodiscard]] float At(int column, int row) const {
+    for (const HeightPyramid* pyramid : near_) {
+      if (!pyramid->box().Holds(column, row)) continue;
+      const float height = pyramid->At(level_, column, row);
+      if (!std::isnan(height)) return height;
+    }
+    return kNoHeight;
+  }
+  /// Returns the bilinear height between the vertices. If the lattice closes around the earth, the
+  /// column may be any.
+  [[nodiscard]] float Between(double column, double row) const {
+    const bool closes = lattice_.ClosesAroundTheEarth();
+    const Step x = StepAt(closes ? lattice_.WithinTurn(column) : column, lattice_.last_column);
+    const Step y = StepAt(row, lattice_.last_row);
+    const auto along = [&](int at_row) {
+      const float west = At(x.low, at_row);
+      return x.share == 0.0F ? west : std::lerp(west, At(x.high, at_row), x.share);
+    };
+    const float north = along(y.low);
+    return y.share == 0.0F ? north : std::lerp(north, along(y.high), y.share);
+  }
+
+ private:
+  struct Step {
+    int low, high;
+    float share;
+  };
+  [[nodiscard]] Step StepAt(double sample, int last) const {
+    const double within = std::clamp(sample, 0.0, static_cast<double>(last));
+    const int low = std::min((static_cast<int>(within) >> level_) << level_, last);
+    const int high = std::min(low + (1 << level_), last);
+    const double share = high > low ? (within - low) / (high - low) : 0.0;
+    return {low, high, static_cast<float>(share)};
+  }
+
+  const LandLattice& lattice_;
+  int level_;
+  std::vector<const HeightPyramid*> near_;
+};
+
+}  // namespace
+
 HeightBlock LoadedHeights::Block(int level, int first_i, int first_j, int columns, int rows) const {
   const LandLattice& lattice = tiles_->lattice();
   HeightBlock block{first_i, first_j, columns, rows, {}};
   block.height_m.reserve(static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows));
-  const LatticeBox box{lattice.ColumnOf(first_i, level), lattice.RowOf(first_j, level),
-                       lattice.ColumnOf(first_i + columns - 1, level),
-                       lattice.RowOf(first_j + rows - 1, level)};
-  std::vector<const HeightPyramid*> near;
-  for (const int tile : tiles_->Touching(box))
-    if (heights_[static_cast<std::size_t>(tile)])
-      near.push_back(heights_[static_cast<std::size_t>(tile)].get());
+  const LevelHeights heights(
+      *tiles_, heights_, level,
+      {lattice.ColumnOf(first_i, level), lattice.RowOf(first_j, level),
+       lattice.ColumnOf(first_i + columns - 1, level), lattice.RowOf(first_j + rows - 1, level)});
   for (int j = first_j; j < first_j + rows; ++j) {
     const int row = lattice.RowOf(j, level);
     for (int i = first_i; i < first_i + columns; ++i) {
       const int column = lattice.ColumnOf(i, level);
-      float height = kNoHeight;
-      for (const HeightPyramid* pyramid : near) {
-        if (!std::isnan(height)) break;
-        if (pyramid->box().Holds(column, row)) height = pyramid->At(level, column, row);
-      }
-      block.height_m.push_back(height);
+      const bool is_beyond = column < 0 || column > lattice.last_column;
+      block.height_m.push_back(is_beyond ? heights.Between(column, row) : heights.At(column, row));
     }
   }
   return block;
@@ -306,11 +356,120 @@ std::optional<VertexSpan> SpanAround(const LandLattice& lattice, const GeodeticP
 
 }  // namespace
 
+namespace {
+
+constexpr double kPoleLatitude_rad = 0.5 * std::numbers::pi;
+
+/// A grid without heights, and the level of the lattice whose vertices it interpolates.
+struct GridOnLevel {
+  ElevationGrid grid;
+  int level;
+};
+
+/// The rows of a lattice within an angle of a place.
+struct RowsAround {
+  double north_rad, south_rad;
+  bool north_pole, south_pole;  // whether they contain a pole
+
+  RowsAround(const LandLattice& lattice, double latitude_rad, double reach_rad) {
+    constexpr double kRounding_rad = 1e-12;
+    const double southern = lattice.north_rad - lattice.last_row * lattice.step_lat_rad;
+    north_rad = std::min(latitude_rad + reach_rad, lattice.north_rad);
+    south_rad = std::max(latitude_rad - reach_rad, southern);
+    north_pole = north_rad >= kPoleLatitude_rad - kRounding_rad;
+    south_pole = south_rad <= kRounding_rad - kPoleLatitude_rad;
+    north_rad = std::min(north_rad, kPoleLatitude_rad);
+    south_rad = std::max(south_rad, -kPoleLatitude_rad);
+  }
+};
+
+// Returns the smallest level at which a number of steps has no more than most_samples vertices.
+int LevelFor(double steps, int most_samples) {
+  return std::max(static_cast<int>(std::ceil(std::log2(steps / (most_samples - 1.0)))), 0);
+}
+
+// Returns the half width in longitude of a circle around a place; pi if it contains a pole.
+double HalfTurn(double latitude_rad, double reach_rad) {
+  const double sine = std::sin(reach_rad) / std::max(std::cos(latitude_rad), 1e-12);
+  return std::abs(latitude_rad) + reach_rad < kPoleLatitude_rad && sine < 1.0
+             ? std::asin(sine)
+             : 2.0 * kPoleLatitude_rad;
+}
+
+// Sets the rows of a grid: multiples of its step from a pole, otherwise from the first row of the
+// lattice.
+void SetRows(ElevationGrid& grid, const LandLattice& lattice, const RowsAround& rows) {
+  const double step = grid.step_lat_rad;
+  const double first =
+      rows.north_pole ? rows.north_rad
+                      : lattice.north_rad -
+                            step * std::ceil((lattice.north_rad - rows.north_rad) / step - 1e-6);
+  const auto steps = [&](double from) {
+    return static_cast<int>(std::floor((from - rows.south_rad) / step + 1e-6));
+  };
+  const int count = steps(rows.south_pole ? rows.north_rad : first);
+  grid.north_rad = rows.south_pole ? rows.south_rad + count * step : first;
+  grid.rows = count + 1;
+}
+
+// Returns a grid over the part of a lattice around the earth that lies within half_width_m of a
+// place, if this part contains a pole of the lattice or crosses its first column; else nullopt.
+std::optional<GridOnLevel> GridOverSeam(const LandLattice& lattice, const GeodeticPosition& place,
+                                        double half_width_m, int most_samples) {
+  if (!lattice.ClosesAroundTheEarth()) return std::nullopt;
+  const double reach_rad =
+      half_width_m * lattice.step_lat_rad / SampleSizeAt(lattice, place.latitude_rad).row_m;
+  const RowsAround rows(lattice, place.latitude_rad, reach_rad);
+  const double half = HalfTurn(place.latitude_rad, reach_rad) / lattice.step_lon_rad;
+  const double middle = lattice.At(place.latitude_rad, place.longitude_rad).column;
+  const bool is_whole = 2.0 * half >= lattice.last_column;
+  const bool crosses = middle - half < 0.0 || middle + half > lattice.last_column;
+  if (!(rows.north_rad > rows.south_rad) || !(is_whole || crosses)) return std::nullopt;
+  const double wide = is_whole ? lattice.last_column : 2.0 * half;
+  const int row_level =
+      LevelFor((rows.north_rad - rows.south_rad) / lattice.step_lat_rad, most_samples);
+  const int column_level = LevelFor(wide, most_samples - 1);
+  const double step = 1 << column_level;
+  const double first = is_whole ? 0.0 : std::floor((middle - half) / step) * step;
+  GridOnLevel outline{{}, std::min(row_level, column_level)};
+  ElevationGrid& grid = outline.grid;
+  grid.step_lat_rad = lattice.step_lat_rad * (1 << row_level);
+  SetRows(grid, lattice, rows);
+  grid.columns =
+      static_cast<int>(is_whole ? std::round(wide / step) : std::ceil(wide / step) + 1.0);
+  grid.step_lon_rad =
+      is_whole ? 4.0 * kPoleLatitude_rad / grid.columns : step * lattice.step_lon_rad;
+  grid.west_rad = lattice.west_rad + first * lattice.step_lon_rad;
+  return grid.rows < 2 || grid.columns < 2 ? std::nullopt : std::optional(outline);
+}
+
+// Returns the samples of a lattice that contain a grid.
+LatticeBox BoxAround(const LandLattice& lattice, const ElevationGrid& grid) {
+  const double first = (grid.west_rad - lattice.west_rad) / lattice.step_lon_rad;
+  const double wide = grid.columns * grid.step_lon_rad / lattice.step_lon_rad;
+  return {static_cast<int>(std::floor(first)), 0, static_cast<int>(std::ceil(first + wide)),
+          lattice.last_row};
+}
+
+}  // namespace
+
 std::optional<ElevationGrid> LoadedHeights::SampledGrid(const GeodeticPosition& place,
                                                         double half_width_m,
                                                         int most_samples) const {
   if (tiles_->tiles().empty()) return std::nullopt;
   const LandLattice& lattice = tiles_->lattice();
+  if (const auto over = GridOverSeam(lattice, place, half_width_m, most_samples)) {
+    ElevationGrid grid = over->grid;
+    const LevelHeights heights(*tiles_, heights_, over->level, BoxAround(lattice, grid));
+    grid.height_m.reserve(grid.index(grid.rows, 0));
+    for (int row = 0; row < grid.rows; ++row) {
+      const double at_row = lattice.RowAt(grid.LatitudeOfRow(row));
+      for (int column = 0; column < grid.columns; ++column)
+        grid.height_m.push_back(heights.Between(
+            (grid.LongitudeOfColumn(column) - lattice.west_rad) / lattice.step_lon_rad, at_row));
+    }
+    return grid;
+  }
   const std::optional<VertexSpan> span = SpanAround(lattice, place, half_width_m, most_samples);
   if (!span) return std::nullopt;
   const auto [level, i0, j0, i1, j1] = *span;
@@ -327,18 +486,39 @@ std::optional<ElevationGrid> LoadedHeights::SampledGrid(const GeodeticPosition& 
   return grid;
 }
 
+namespace {
+
+/// The samples that SampledGrid needs, and their level.
+struct NeededSamples {
+  LatticeBox box;
+  int level;
+};
+
+std::optional<NeededSamples> SamplesAround(const LandLattice& lattice,
+                                           const GeodeticPosition& place, double half_width_m,
+                                           int most_samples) {
+  if (const auto over = GridOverSeam(lattice, place, half_width_m, most_samples))
+    return NeededSamples{BoxAround(lattice, over->grid), over->level};
+  const std::optional<VertexSpan> span = SpanAround(lattice, place, half_width_m, most_samples);
+  if (!span) return std::nullopt;
+  const int level = span->level;
+  return NeededSamples{{lattice.ColumnOf(span->first_i, level), lattice.RowOf(span->first_j, level),
+                        lattice.ColumnOf(span->last_i, level), lattice.RowOf(span->last_j, level)},
+                       level};
+}
+
+}  // namespace
+
 std::optional<ElevationGrid> ReadHeightsAround(const std::shared_ptr<const LandTiles>& tiles,
                                                const GeodeticPosition& place, double half_width_m,
                                                int most_samples, std::vector<std::string>& notes) {
   if (tiles->tiles().empty()) return std::nullopt;
-  const LandLattice& lattice = tiles->lattice();
-  const std::optional<VertexSpan> span = SpanAround(lattice, place, half_width_m, most_samples);
-  if (!span) return std::nullopt;
-  const int level = span->level;
+  const std::optional<NeededSamples> part =
+      SamplesAround(tiles->lattice(), place, half_width_m, most_samples);
+  if (!part) return std::nullopt;
+  const auto& [box, level] = *part;
   std::vector<std::shared_ptr<const HeightPyramid>> heights(tiles->tiles().size());
-  for (const int tile : tiles->Touching(
-           {lattice.ColumnOf(span->first_i, level), lattice.RowOf(span->first_j, level),
-            lattice.ColumnOf(span->last_i, level), lattice.RowOf(span->last_j, level)})) {
+  for (const int tile : tiles->Touching(box)) {
     const auto index = static_cast<std::size_t>(tile);
     try {
       ReadTile read = ReadLandTile(*tiles, tile, level);

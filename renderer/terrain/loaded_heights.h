@@ -68,7 +68,7 @@ class LoadedHeights {
   }
 
   /// Returns vertices [first_i, first_i + columns) x [first_j, first_j + rows) of a level. Beyond
-  /// the lattice its rim is repeated.
+  /// the lattice its rim is repeated, except that columns go on around the earth if it closes.
   [[nodiscard]] HeightBlock Block(int level, int first_i, int first_j, int columns, int rows) const;
 
   /// Returns the height of the ground [m] at a place, on the two triangles of the cell around it,
@@ -77,7 +77,9 @@ class LoadedHeights {
 
   /// Returns the heights within `half_width_m` of a place, at most `most_samples` per side: every
   /// 2^k-th sample of the lattice, as binomial means. A lattice with no more than `most_samples` is
-  /// returned whole. NaN where nothing is loaded; empty if no land is near.
+  /// returned whole. If the lattice closes around the earth and the heights lie around a pole or on
+  /// both sides of its first column, they are interpolated: rows begin at the pole, and the columns
+  /// go once around it. NaN where nothing is loaded; empty if no land is near.
   [[nodiscard]] std::optional<ElevationGrid> SampledGrid(const GeodeticPosition& place,
                                                          double half_width_m,
                                                          int most_samples) const;

@@ -30,12 +30,10 @@ TileCache::TileCache(std::shared_ptr<const LandTiles> tiles, const ChunkTree& tr
       }) {}
 
 double TileCache::Distance(const LandTile& tile, const LandEye& eye) const {
-  const auto outside = [](double place, double first, double last) {
-    return std::max({first - place, place - last, 0.0});
-  };
-  return std::hypot(
-      outside(eye.at.column, tile.box.first_column, tile.box.last_column) * eye.size.column_m,
-      outside(eye.at.row, tile.box.first_row, tile.box.last_row) * eye.size.row_m, eye.above_m);
+  const LatticeBox& box = tile.box;
+  return eye.DistanceOver(eye.ChordTo(
+      LatticeArea{static_cast<double>(box.first_column), static_cast<double>(box.first_row),
+                  static_cast<double>(box.last_column), static_cast<double>(box.last_row)}));
 }
 
 // Returns the finest level of a tile that the chunks in reach need, see DemandOf.
@@ -43,12 +41,12 @@ int TileCache::LevelWanted(const LandTile& tile, const LandEye& eye) const {
   const double distance = Distance(tile, eye);
   const double sample_m = std::sqrt(eye.size.column_m * eye.size.row_m);
   for (int level = 0; level < tree_.top(); ++level) {
-    const double reach =
-        1.3 * detail_ * sample_m * std::exp2(level) + 1.5 * ChunkTree::Diagonal(level + 1, eye);
+    const double range = 1.3 * detail_ * sample_m * std::exp2(level);
+    const double reach = range + 1.5 * ChunkTree::Diagonal(level + 1, eye, range);
     if (distance <= reach) return std::max(level - 1, tile.level);  // normals need one level finer
   }
   const double sight = std::max(eye.sight_m, eye.above_m);
-  const bool in_sight = distance <= sight + 1.5 * ChunkTree::Diagonal(tree_.top(), eye);
+  const bool in_sight = distance <= sight + 1.5 * ChunkTree::Diagonal(tree_.top(), eye, sight);
   return in_sight ? std::max(tree_.top() - 1, tile.level) : kNotWanted;
 }
 

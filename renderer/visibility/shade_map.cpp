@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <glm/geometric.hpp>
 #include <limits>
+#include <optional>
 #include <vector>
 
 #include "atmosphere/base/error.h"
@@ -49,15 +50,16 @@ NodePlace ExactPlace(const ElevationGrid& grid, const LocalFrame& frame, double 
 /// The surface of the samples as triangles.
 class Facets {
  public:
-  explicit Facets(const ElevationGrid& grid) : grid_(grid) {
+  explicit Facets(const ElevationGrid& grid) : grid_(grid), closes_(grid.ClosesAroundTheEarth()) {
     for (int row = 0; row + 1 < grid.rows; ++row) {
-      for (int column = 0; column + 1 < grid.columns; ++column)
+      for (int column = 0; column < columns(); ++column)
         falling_.push_back(FallingDiagonalFits(Around(row, column)));
     }
   }
 
-  [[nodiscard]] float HeightAt(const NodePlace& place) const {
-    if (!(place.column >= 0.0 && place.column < grid_.columns - 1 && place.row >= 0.0 &&
+  [[nodiscard]] float HeightAt(NodePlace place) const {
+    if (closes_) place.column -= grid_.columns * std::floor(place.column / grid_.columns);
+    if (!(place.column >= 0.0 && place.column < columns() && place.row >= 0.0 &&
           place.row < grid_.rows - 1))
       return HeightRaster::kNothing;
     const int column = static_cast<int>(place.column), row = static_cast<int>(place.row);
@@ -67,12 +69,17 @@ class Facets {
   }
 
  private:
+  // Returns the number of cells of a row.
+  [[nodiscard]] int columns() const { return closes_ ? grid_.columns : grid_.columns - 1; }
+
   [[nodiscard]] CellHeights Around(int row, int column) const {
     CellHeights around{};
     for (int i = 0; i < 16; ++i) {
+      const int beside = column + i % 4 - 1;
       around[static_cast<std::size_t>(i)] =
           static_cast<double>(grid_.at(std::clamp(row + i / 4 - 1, 0, grid_.rows - 1),
-                                       std::clamp(column + i % 4 - 1, 0, grid_.columns - 1)));
+                                       closes_ ? (beside + grid_.columns) % grid_.columns
+                                               : std::clamp(beside, 0, grid_.columns - 1)));
     }
     return around;
   }
@@ -80,9 +87,10 @@ class Facets {
   // Interpolates within a cell.
   // @param x, y  from the cell's north-western corner, east and south, in [0, 1].
   [[nodiscard]] float Between(int row, int column, float x, float y) const {
-    const float* north = &grid_.height_m[grid_.index(row, column)];
-    const float* south = north + grid_.columns;
-    const auto cell = static_cast<std::size_t>(row) * static_cast<std::size_t>(grid_.columns - 1) +
+    const int east = (column + 1) % grid_.columns;
+    const std::array<float, 2> north{grid_.at(row, column), grid_.at(row, east)};
+    const std::array<float, 2> south{grid_.at(row + 1, column), grid_.at(row + 1, east)};
+    const auto cell = static_cast<std::size_t>(row) * static_cast<std::size_t>(columns()) +
                       static_cast<std::size_t>(column);
     if (falling_[cell]) {
       return x > y ? north[0] + x * (north[1] - north[0]) + y * (south[1] - north[1])
@@ -94,6 +102,7 @@ class Facets {
   }
 
   const ElevationGrid& grid_;
+  bool closes_;
   std::vector<std::uint8_t> falling_;  // whether a cell is cut from north-west to south-east
 };
 
@@ -102,12 +111,17 @@ struct Net {
   int side;
   std::vector<NodePlace> places;
 
-  [[nodiscard]] NodePlace At(int column, int row) const {
+  // Returns an interpolated place; nullopt where columns change so much within a cell of the net
+  // that they cannot be interpolated: beside a pole, and where they begin again.
+  [[nodiscard]] std::optional<NodePlace> At(int column, int row, double most_columns) const {
     const double x = static_cast<double>(column % kStride) / kStride;
     const double y = static_cast<double>(row % kStride) / kStride;
     const NodePlace* low =
         &places[static_cast<std::size_t>(row / kStride * side + column / kStride)];
     const NodePlace* high = low + side;
+    const auto [least, most] =
+        std::minmax({low[0].column, low[1].column, high[0].column, high[1].column});
+    if (most - least > most_columns) return std::nullopt;
     return (1.0 - y) * ((1.0 - x) * low[0] + x * low[1]) + y * ((1.0 - x) * high[0] + x * high[1]);
   }
 };
@@ -129,11 +143,19 @@ HeightRaster HeightsAround(const ElevationGrid& grid, const LocalFrame& frame, d
                                       raster.first_y_m + raster.cell_m * kStride * row));
     }
   }
+  // Over a smaller angle, positions on a meridian bend by less than 0.05^2 / 8 of their distance
+  // from the pole.
+  constexpr double kMostTurn_rad = 0.05;
   const Facets facets(grid);
   raster.z_m.reserve(raster.index(0, side));
   for (int row = 0; row < side; ++row) {
-    for (int column = 0; column < side; ++column)
-      raster.z_m.push_back(facets.HeightAt(net.At(column, row)));
+    for (int column = 0; column < side; ++column) {
+      const auto place = net.At(column, row, kMostTurn_rad / grid.step_lon_rad);
+      raster.z_m.push_back(
+          facets.HeightAt(place ? *place
+                                : ExactPlace(grid, frame, raster.first_x_m + raster.cell_m * column,
+                                             raster.first_y_m + raster.cell_m * row)));
+    }
   }
   return raster;
 }

@@ -99,10 +99,10 @@ struct LandBlock {
   glm::vec4 east, north, up;
   glm::vec4 eye_sample, eye_above, pixel;
   glm::vec4 horizon_u, horizon_v;
-  glm::vec4 risen;
+  glm::vec4 risen, globe;
   std::array<glm::vec4, kMostLevels> turning;
 };
-static_assert(sizeof(LandBlock) == (11 + LandBlock::kMostLevels) * sizeof(glm::vec4));
+static_assert(sizeof(LandBlock) == (12 + LandBlock::kMostLevels) * sizeof(glm::vec4));
 
 /// Returns a block without levels, in which vertices do not morph. The size of the picture is that
 /// of the viewport.

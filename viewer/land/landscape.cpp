@@ -57,12 +57,8 @@ Landscape::Landscape(const LandSource& source, const LandSize& size, const Ellip
 Landscape::~Landscape() = default;
 
 LandEye Landscape::EyeAt(const GeodeticPosition& eye) const {
-  const LandLattice& lattice = tiles_->lattice();
-  LandEye at{lattice.At(eye.latitude_rad, eye.longitude_rad),
-             SampleSizeAt(lattice, eye.latitude_rad), 0.0, 0.0};
-  at.above_m = std::max(eye.height_m - ceiling_m_.value_or(0.0), 0.0);
-  at.sight_m = SightFrom(eye.height_m);
-  return at;
+  return {tiles_->lattice(), eye, std::max(eye.height_m - ceiling_m_.value_or(0.0), 0.0),
+          SightFrom(eye.height_m)};
 }
 
 // Adapts the detail gradually, so that a zoom does not pop. From high above less land is near, so
@@ -233,9 +229,13 @@ void Landscape::WaitUntilReady(const GeodeticPosition& eye, const LandView& view
 
 LandBlock Landscape::Block() const {
   LandBlock block = LandBlockOf(set_->anchor().frame, eye_place_, fade_.share());
+  const LandLattice& lattice = tiles_->lattice();
   block.eye_sample =
       glm::vec4(glm::dvec4(eye_.at.column - set_->anchor().column, eye_.at.row - set_->anchor().row,
-                           eye_.size.column_m, eye_.size.row_m));
+                           eye_.step_lon_rad, eye_.step_lat_rad));
+  block.globe = glm::vec4(glm::dvec4(std::sin(eye_.latitude_rad), std::cos(eye_.latitude_rad),
+                                     eye_.radius_m(),
+                                     lattice.ClosesAroundTheEarth() ? lattice.last_column : 0.0));
   block.eye_above.x = static_cast<float>(eye_.above_m);
   for (std::size_t level = 0; level < ranges_.size(); ++level) {
     // Rounding to float must not leave a vertex at the end of the range with a weight below 1.

@@ -11,13 +11,15 @@ layout(std140) uniform Land {
   vec4 east;      // axes of the eye's frame in the anchor's
   vec4 north;
   vec4 up;
-  vec4 eye_sample;  // column and row of the eye from the anchor's; metres per column and row
+  vec4 eye_sample;  // column and row of the eye from the anchor's; radians per column and row
   vec4 eye_above;   // height over all nearby ground [m]; weight of the new light; 1: reversed
                     // depth; weight of horizon_sines in the shadow edges
   vec4 pixel;       // width and height of a pixel, in a picture from (-1, -1) to (1, 1)
   vec4 horizon_u;   // from (x, y, z, 1) in the anchor's frame to coordinates of horizon_sines
   vec4 horizon_v;
   vec4 risen;       // rise of the disk since the old and new shadow edges [its radii]
+  vec4 globe;       // sine and cosine of the eye's latitude; radius [m]; columns of a whole turn, 0
+                    // if the land does not close around the earth
   vec4 turning[32];  // by level: start of the morph range [m], inverse of its length [1/m]
 };
 
@@ -41,11 +43,19 @@ out float sunk;  // [km]; positive: hidden by the planet
 
 vec3 InEyeFrame(vec3 v) { return vec3(dot(v, east.xyz), dot(v, north.xyz), dot(v, up.xyz)); }
 
+// Returns the square of the chord from the place under the eye: LandEye::ChordTo of level_ranges.h.
+float SquareOfChord() {
+  float turns = round((sample_place.x - eye_sample.x) / max(globe.w, 1.0));
+  vec2 near = vec2(sample_place.x - globe.w * turns, sample_place.y);
+  vec2 s = sin(0.5 * (near - eye_sample.xy) * eye_sample.zw);  // of half the angles
+  float cosine = globe.y * (1.0 - 2.0 * s.y * s.y) + globe.x * 2.0 * s.y * sqrt(1.0 - s.y * s.y);
+  return 4.0 * globe.z * globe.z * (s.y * s.y + globe.y * max(cosine, 0.0) * s.x * s.x);
+}
+
 // Returns the morph weight: 0 for the own level, 1 for the coarser level.
 float Turned() {
-  vec2 away = (sample_place - eye_sample.xy) * eye_sample.zw;
   vec2 range = turning[int(normal.w)].xy;
-  float d = sqrt(dot(away, away) + eye_above.x * eye_above.x);
+  float d = sqrt(SquareOfChord() + eye_above.x * eye_above.x);
   return clamp((d - range.x) * range.y, 0.0, 1.0);
 }
 

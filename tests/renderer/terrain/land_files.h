@@ -79,6 +79,27 @@ inline void WriteTile(const std::filesystem::path& file, int first_column, int f
              });
 }
 
+/// Height [m] of smooth land around a pole: a plane, seen from the pole, and a wave.
+inline float HeightNearPole(double latitude_deg, double longitude_deg) {
+  const double from_pole = 90.0 - std::abs(latitude_deg), turn = longitude_deg * kRadiansPerDegree;
+  const double x = from_pole * std::cos(turn), y = from_pole * std::sin(turn);
+  return static_cast<float>(1500.0 + 60.0 * x - 40.0 * y + 200.0 * std::sin(0.5 * x + 0.2));
+}
+
+/// Writes a model around a pole with 512 columns and 64 rows. Its rim is half a row from the pole.
+/// @param hemisphere  1: north, -1: south.
+inline void WritePolarModel(const std::filesystem::path& file, double hemisphere,
+                            double row_deg = 0.1) {
+  constexpr int kColumns = 512, kRows = 64;
+  constexpr double kColumn_deg = 360.0 / kColumns;
+  const double first = 90.0 - 0.5 * row_deg;
+  const double north = hemisphere > 0.0 ? first : -first + (kRows - 1) * row_deg;
+  WriteModel(file, {-180.0, north, kColumn_deg, row_deg, kColumns, kRows},
+             [&](int column, int row) {
+               return HeightNearPole(north - row * row_deg, -180.0 + column * kColumn_deg);
+             });
+}
+
 /// A folder of side x side tiles.
 class LandFolder : public TemporaryFolder {
  protected:

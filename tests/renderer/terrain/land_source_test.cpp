@@ -303,6 +303,80 @@ TEST_F(LandSourceFiles, ASampledGridIsTheLandAroundAPlace) {
   EXPECT_FALSE(heights.SampledGrid({0.0, 0.0, 0.0}, 30e3, 64));
 }
 
+/// Land around a pole.
+class PolarLand : public LandFolder, public ::testing::WithParamInterface<double> {
+ protected:
+  void SetUp() override {
+    LandFolder::SetUp();
+    WritePolarModel(folder_ / "pole.tif", GetParam());
+  }
+  [[nodiscard]] LoadedHeights Heights() const {
+    return AllHeights({{folder_ / "pole.tif"}, VoidPolicy::kFill, std::nullopt});
+  }
+};
+INSTANTIATE_TEST_SUITE_P(BothPoles, PolarLand, ::testing::Values(1.0, -1.0));
+
+// Hard case 17.
+TEST_P(PolarLand, ASampledGridHasTheLandOnAllSidesOfThePole) {
+  const LoadedHeights heights = Heights();
+  constexpr double kHalf_m = 150e3;
+  for (const double from_pole : {0.0, 0.03, 0.3, 1.2}) {
+    const auto place = PlaceFromDegrees(GetParam() * (90.0 - from_pole), 50.0, 0.0);
+    const auto grid = heights.SampledGrid(place, kHalf_m, 128);
+    ASSERT_TRUE(grid) << from_pole;
+    EXPECT_LE(std::max(grid->columns, grid->rows), 128);
+    EXPECT_LE(std::max(std::abs(grid->north_rad), std::abs(grid->LatitudeOfRow(grid->rows - 1))),
+              0.5 * kPi + 1e-12);
+    const LocalFrame frame(kWgs84, place);
+    for (int i = 0; i < 200; ++i) {
+      const double turn = 2.4 * i, away_m = 0.9 * kHalf_m * std::sqrt((i + 0.5) / 200.0);
+      const GeodeticPosition at =
+          frame.GeodeticFromEnu({{away_m * std::cos(turn), away_m * std::sin(turn), 0.0}});
+      const auto height = grid->HeightAt(at.latitude_rad, at.longitude_rad);
+      ASSERT_TRUE(height) << from_pole << ": no ground at " << at.latitude_rad / kRadiansPerDegree
+                          << ", " << at.longitude_rad / kRadiansPerDegree;
+      EXPECT_NEAR(*height,
+                  static_cast<double>(HeightNearPole(at.latitude_rad / kRadiansPerDegree,
+                                                     at.longitude_rad / kRadiansPerDegree)),
+                  8.0)
+          << "the wave is curved by 50 m a square degree, over steps of up to 0.3 degrees";
+    }
+    EXPECT_FALSE(MeshFromElevation(*grid, frame).triangles.empty());
+  }
+}
+
+// Hard case 17.
+TEST_P(PolarLand, ASampledGridCrossesTheDateLine) {
+  const LoadedHeights heights = Heights();
+  const auto place = PlaceFromDegrees(GetParam() * 86.0, 179.9, 0.0);
+  const auto grid = heights.SampledGrid(place, 50e3, 512);
+  ASSERT_TRUE(grid);
+  for (const double longitude : {176.0, 179.5, 179.9, -179.9, -179.0, -177.0}) {
+    const auto height = grid->HeightAt(place.latitude_rad, longitude * kRadiansPerDegree);
+    ASSERT_TRUE(height) << longitude;
+    EXPECT_NEAR(*height, static_cast<double>(HeightNearPole(GetParam() * 86.0, longitude)), 3.0)
+        << "linear between samples 0.1 and 0.7 degrees apart";
+  }
+}
+
+// Hard case 17.
+TEST_P(PolarLand, TheGroundUnderAnEyeIsContinuousOverThePole) {
+  const LoadedHeights heights = Heights();
+  double before = 0.0;
+  for (int i = -100; i <= 100; ++i) {
+    const double along = 0.003 * i;  // degrees from the pole, on the date line and on longitude 0
+    const auto ground = heights.HeightUnder(
+        GetParam() * (90.0 - std::abs(along)) * kRadiansPerDegree, along < 0.0 ? kPi : 0.0);
+    ASSERT_TRUE(ground) << along;
+    EXPECT_NEAR(
+        *ground,
+        static_cast<double>(HeightNearPole(90.0 - std::abs(along), along < 0.0 ? 180.0 : 0.0)), 3.0)
+        << along << ": a row is 0.1 degrees, the wave bends by 0.3 m over it";
+    if (i > -100) EXPECT_NEAR(*ground, before, 1.5) << "160 m a degree, 0.003 degrees apart";
+    before = *ground;
+  }
+}
+
 TEST_F(LandSourceFiles, WhatCannotBeReadIsSaidByName) {
   const auto fault = [](const LandSource& source) {
     return FaultOf([&] { return LandTiles(source); });

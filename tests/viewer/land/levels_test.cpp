@@ -6,6 +6,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <glm/geometric.hpp>
 #include <map>
 #include <set>
 
@@ -27,7 +29,7 @@ class LevelRanges : public LandFolder {
     tree_.emplace(*tiles_);
   }
   [[nodiscard]] LandEye EyeAt(double column, double row, double above_m) const {
-    return {{column, row}, SampleSizeAt(tiles_->lattice(), 0.81), above_m, 1e6};
+    return {tiles_->lattice(), PlaceOfSample(column, row, 0.0), above_m, 1e6};
   }
   [[nodiscard]] static bool All(const ChunkKey&) { return true; }
 
@@ -37,8 +39,7 @@ class LevelRanges : public LandFolder {
 
 // d of a sample, as level_ranges.h has it.
 double DistanceOf(const LandEye& eye, double column, double row) {
-  return std::hypot((column - eye.at.column) * eye.size.column_m,
-                    (row - eye.at.row) * eye.size.row_m, eye.above_m);
+  return eye.DistanceOver(eye.ChordTo(LatticePlace{column, row}));
 }
 
 // Samples of all corners that a chunk's cells have.
@@ -51,14 +52,16 @@ struct LevelCase {
 };
 
 // Eyes low and high, with everything there and with levels that do not reach out yet.
-std::vector<LevelCase> Cases(const LandTiles& tiles, const ChunkTree& tree) {
+// @param place_of  a place for a column and a row from -90 to 810.
+std::vector<LevelCase> CasesOn(
+    const LandTiles& tiles, const ChunkTree& tree,
+    const std::function<GeodeticPosition(double column, double row)>& place_of) {
   std::vector<LevelCase> cases;
-  const SampleSize size = SampleSizeAt(tiles.lattice(), 0.81);
   for (int i = 0; i < 60; ++i) {
     const double column = 900.0 * std::fmod(0.7549 * i, 1.0) - 90.0;
     const double row = 900.0 * std::fmod(0.5698 * i, 1.0) - 90.0;
-    const LandEye eye{
-        {column, row}, size, i % 3 == 0 ? 4000.0 * std::fmod(0.61 * i, 1.0) : 0.0, 1e6};
+    const LandEye eye(tiles.lattice(), place_of(column, row),
+                      i % 3 == 0 ? 4000.0 * std::fmod(0.61 * i, 1.0) : 0.0, 1e6);
     LandDemand demand =
         DemandOf(tree, eye, i % 2 == 0 ? 96.0 : 64.0, [](const ChunkKey&) { return true; });
     if (i % 4 == 1) {
@@ -70,6 +73,11 @@ std::vector<LevelCase> Cases(const LandTiles& tiles, const ChunkTree& tree) {
     cases.push_back(made);
   }
   return cases;
+}
+
+std::vector<LevelCase> Cases(const LandTiles& tiles, const ChunkTree& tree) {
+  return CasesOn(tiles, tree,
+                 [](double column, double row) { return PlaceOfSample(column, row, 0.0); });
 }
 
 TEST_F(LevelRanges, ChunksCoverAllLandOnce) {
@@ -85,10 +93,11 @@ TEST_F(LevelRanges, ChunksCoverAllLandOnce) {
   }
 }
 
-// The test checks the condition that joins two levels, at each border of two chunks.
-TEST_F(LevelRanges, WhereTwoLevelsMeetTheFinerHasTurnedAndTheCoarserHasNotBegun) {
+// Checks the condition that joins two levels, at each border of two chunks. Returns the number of
+// borders between levels.
+int CheckBorders(const ChunkTree& tree, const std::vector<LevelCase>& cases) {
   int borders = 0;
-  for (const LevelCase& each : Cases(*tiles_, *tree_)) {
+  for (const LevelCase& each : cases) {
     std::set<ChunkKey> drawn;
     for (const DrawnChunk& chunk : each.drawn) drawn.insert(chunk.key);
     for (const DrawnChunk& chunk : each.drawn) {
@@ -99,15 +108,15 @@ TEST_F(LevelRanges, WhereTwoLevelsMeetTheFinerHasTurnedAndTheCoarserHasNotBegun)
       };
       for (const auto& [columns, rows, bit] :
            {Next{0, -1, kNorthSide}, {1, 0, kEastSide}, {0, 1, kSouthSide}, {-1, 0, kWestSide}}) {
-        const ChunkKey beside{level, column + columns, row + rows};
-        if (!tree_->Exists(beside) || drawn.contains(beside)) {
+        const ChunkKey beside = tree.Neighbour(chunk.key, columns, rows);
+        if (!tree.Exists(beside) || drawn.contains(beside)) {
           EXPECT_EQ(chunk.coarse_sides & bit, 0U);
           continue;
         }
         if (!drawn.contains(beside.Parent())) {
           EXPECT_EQ(chunk.coarse_sides & bit, 0U) << "finer ones lie there";
           bool finer = false;
-          for (const ChunkKey& child : tree_->Children(beside)) finer |= drawn.contains(child);
+          for (const ChunkKey& child : tree.Children(beside)) finer |= drawn.contains(child);
           EXPECT_TRUE(finer) << "levels that meet differ by one";
           continue;
         }
@@ -123,14 +132,104 @@ TEST_F(LevelRanges, WhereTwoLevelsMeetTheFinerHasTurnedAndTheCoarserHasNotBegun)
           const double d = DistanceOf(each.eye, at_column, at_row);
           const auto fine = static_cast<std::size_t>(level);
           EXPECT_GE(d, each.ranges[fine].end_m) << "the finer side is the coarser surface";
-          if (level + 1 < tree_->top()) {
+          if (level + 1 < tree.top()) {
             EXPECT_LE(d, each.ranges[fine + 1].start_m) << "which is still its own";
           }
         }
       }
     }
   }
-  EXPECT_GT(borders, 500) << "there was something to test";
+  return borders;
+}
+
+TEST_F(LevelRanges, WhereTwoLevelsMeetTheFinerHasTurnedAndTheCoarserHasNotBegun) {
+  EXPECT_GT(CheckBorders(*tree_, Cases(*tiles_, *tree_)), 500) << "there was something to test";
+}
+
+/// Land around a pole, whose cells are about square 50 km away.
+class PolarLevels : public LandFolder, public ::testing::WithParamInterface<double> {
+ protected:
+  void SetUp() override {
+    LandFolder::SetUp();
+    WritePolarModel(folder_ / "pole.tif", GetParam(), 0.01);
+    tiles_.emplace(LandSource{{folder_ / "pole.tif"}, VoidPolicy::kFill, std::nullopt});
+    tree_.emplace(*tiles_);
+  }
+  std::optional<LandTiles> tiles_;
+  std::optional<ChunkTree> tree_;
+};
+INSTANTIATE_TEST_SUITE_P(BothPoles, PolarLevels, ::testing::Values(1.0, -1.0));
+
+// Hard case 17.
+TEST_P(PolarLevels, LevelsMeetAroundThePoleAndAcrossTheDateLine) {
+  const auto near_pole = [](double column, double row) {
+    return PlaceFromDegrees(GetParam() * (90.0 - 0.7 * std::abs(row) / 810.0),
+                            std::remainder(180.0 + 0.2 * column, 360.0), 0.0);
+  };
+  EXPECT_GT(CheckBorders(*tree_, CasesOn(*tiles_, *tree_, near_pole)), 100);
+}
+
+// Hard case 17.
+TEST_P(PolarLevels, LandIsAsNearAcrossThePoleAsOnThisSide) {
+  const auto all = [](const ChunkKey&) { return true; };
+  for (const double longitude : {0.0, 75.0, 180.0}) {
+    const LandEye eye(tiles_->lattice(), PlaceFromDegrees(GetParam() * 89.99, longitude, 0.0), 0.0,
+                      1e6);
+    const auto drawn =
+        DrawnChunks(*tree_, eye, RangesOf(DemandOf(*tree_, eye, 64.0, all).reach_m, eye), all);
+    for (const double around : {0.0, 90.0, 180.0, 270.0}) {
+      LatticePlace there = tiles_->lattice().At(GetParam() * 89.95 * kRadiansPerDegree,
+                                                (longitude + around) * kRadiansPerDegree);
+      there.column = tiles_->lattice().WithinTurn(there.column);
+      const auto holds = [&](const DrawnChunk& chunk) {
+        const double side = Side(chunk.key);
+        return there.column >= chunk.key.column * side &&
+               there.column < (chunk.key.column + 1) * side && there.row >= chunk.key.row * side &&
+               there.row < (chunk.key.row + 1) * side;
+      };
+      const auto found = std::find_if(drawn.begin(), drawn.end(), holds);
+      ASSERT_NE(found, drawn.end());
+      EXPECT_EQ(found->key.level, 0) << "up to seven kilometres away, " << around << " degrees on";
+    }
+  }
+}
+
+// The least distance of many points of an area, on a sphere of this radius.
+double LeastChord(const LandEye& eye, const LatticeArea& area, double north_rad) {
+  const auto unit = [](double latitude, double longitude) {
+    return glm::dvec3(std::cos(latitude) * std::cos(longitude),
+                      std::cos(latitude) * std::sin(longitude), std::sin(latitude));
+  };
+  const glm::dvec3 from = unit(eye.latitude_rad, eye.at.column * eye.step_lon_rad);
+  double least = 2.0;
+  constexpr int kSteps = 64;
+  for (int i = 0; i <= kSteps; ++i) {
+    for (int j = 0; j <= kSteps; ++j) {
+      const double column = area.first_column + (area.last_column - area.first_column) * i / kSteps;
+      const double row = area.first_row + (area.last_row - area.first_row) * j / kSteps;
+      least = std::min(least, glm::distance(from, unit(north_rad - row * eye.step_lat_rad,
+                                                       column * eye.step_lon_rad)));
+    }
+  }
+  return eye.radius_m() * least;
+}
+
+// Hard case 17.
+TEST_P(PolarLevels, TheDistanceOfAChunkIsThatOfItsNearestPoint) {
+  const LandLattice& lattice = tiles_->lattice();
+  for (int i = 0; i < 200; ++i) {
+    const auto random = [&](double factor) { return std::fmod(factor * (i + 1), 1.0); };
+    const LandEye eye(lattice,
+                      PlaceFromDegrees(GetParam() * (90.0 - 1.0 * random(0.7549)),
+                                       360.0 * random(0.5698) - 180.0, 0.0),
+                      0.0, 1e6);
+    const double first = std::floor(480.0 * random(0.61)),
+                 row = 1.0 + std::floor(30.0 * random(0.33));
+    const LatticeArea area{first, row, first + 16.0, row + 16.0};
+    const double chord = eye.ChordTo(area), least = LeastChord(eye, area, lattice.north_rad);
+    EXPECT_LE(chord, least + 1.0) << "no point is nearer";
+    EXPECT_NEAR(chord, least, 500.0) << "points are up to a step of 64 apart: 0.4 km";
+  }
 }
 
 TEST_F(LevelRanges, ALevelTurnsOverAStretchThatIsNotShort) {
@@ -221,8 +320,7 @@ class DrawnSurface {
     };
     const double column = static_cast<double>(v.sample[0]) + anchor_.column;
     const double row = static_cast<double>(v.sample[1]) + anchor_.row;
-    const double d = std::hypot((column - eye_.at.column) * eye_.size.column_m,
-                                (row - eye_.at.row) * eye_.size.row_m, eye_.above_m);
+    const double d = DistanceOf(eye_, column, row);
     const LevelRange& range = ranges_[static_cast<std::size_t>(chunk.key.level)];
     const double turned =
         std::clamp((d - range.start_m) / (0.999 * range.end_m - range.start_m), 0.0, 1.0);
@@ -283,21 +381,22 @@ TEST_F(LandInFlight, NothingPops) {
   WriteTiles(3);
   const LoadedHeights heights = AllHeights({{folder_}, VoidPolicy::kFill, std::nullopt});
   DrawnSurface surface(heights);
-  LandEye eye{{}, SampleSizeAt(heights.tiles().lattice(), 0.81), 0.0, 1e6};
+  LandEye eye;
   constexpr int kSteps = 120, kPlaces = 12;
   constexpr double kStep_m = 20.0;
   std::vector<double> before;
   double fastest = 0.0, widest = 0.0;  // [rad]
   for (int step = 0; step < kSteps; ++step) {
     // Level, then upwards.
-    eye.at = {20.0 + std::min(step, 80) * kStep_m / eye.size.column_m, 360.0};
-    eye.above_m = std::max(step - 80, 0) * kStep_m;
+    constexpr double kColumn_m = 31.8;
+    eye = LandEye(heights.tiles().lattice(),
+                  PlaceOfSample(20.0 + std::min(step, 80) * kStep_m / kColumn_m, 360.0, 0.0),
+                  std::max(step - 80, 0) * kStep_m, 1e6);
     surface.Look(eye);
     for (std::size_t place = 0; place < kPlaces; ++place) {
       const double column = 30.3 + 55.0 * static_cast<double>(place), row = 330.7;
       const auto height = surface.At(column, row);
-      const double d = std::hypot((column - eye.at.column) * eye.size.column_m,
-                                  (row - eye.at.row) * eye.size.row_m, eye.above_m);
+      const double d = DistanceOf(eye, column, row);
       widest = std::max(widest, std::abs(height.own_m - height.coarse_m) / d);
       if (step > 0) fastest = std::max(fastest, std::abs(height.drawn_m - before[place]) / d);
       before.resize(kPlaces);
