@@ -45,6 +45,17 @@ GeodeticPosition PlaceOfNormal(const glm::dvec3& normal, double height_m) {
           height_m};
 }
 
+/// Returns the change of the heading of a direction that is carried along the great circle from one
+/// place to another [rad]: the excess of the triangle with the pole (Napier's analogies). Over a
+/// pole it is half a turn.
+double TurnOfHeading(const GeodeticPosition& from, const GeodeticPosition& to) {
+  const double half_east = 0.5 * std::remainder(to.longitude_rad - from.longitude_rad, 2.0 * kPi);
+  const double mean = 0.5 * (from.latitude_rad + to.latitude_rad);
+  const double half_north = 0.5 * (to.latitude_rad - from.latitude_rad);
+  return 2.0 * std::atan2(std::sin(mean) * std::sin(half_east),
+                          std::cos(half_north) * std::cos(half_east));
+}
+
 /// Returns the cubic between two values with given slopes at both ends.
 template <typename Value>
 Value Hermite(const Value& a, const Value& slope_a, const Value& b, const Value& slope_b,
@@ -143,11 +154,15 @@ void RequireWays(const std::vector<glm::dvec3>& normals) {
 
 CameraPath::CameraPath(std::vector<CameraPathPoint> points) : points_(std::move(points)) {
   RequireOrder(points_);
+  GeodeticPosition last_place;
+  double turned_rad = 0.0;  // of a direction that is carried along from the first point
   for (const CameraPathPoint& point : points_) {
     const CameraPose& pose = point.pose;
+    if (!normals_.empty()) turned_rad += TurnOfHeading(last_place, pose.place);
+    last_place = pose.place;
     normals_.push_back(NormalAt(pose.place));
-    const std::array<double, kScalars> values{pose.place.height_m, pose.heading_rad, pose.pitch_rad,
-                                              pose.roll_rad, pose.fov_rad};
+    const std::array<double, kScalars> values{pose.place.height_m, pose.heading_rad - turned_rad,
+                                              pose.pitch_rad, pose.roll_rad, pose.fov_rad};
     for (std::size_t k = 0; k < kScalars; ++k) scalars_[k].push_back(values[k]);
     if (point.utc) utc_s_.push_back(SecondsBetween(*points_[0].utc, *point.utc));
   }
@@ -188,7 +203,10 @@ CameraPose CameraPath::PoseAt(double time_s) const {
   const auto scalar = [&](std::size_t k) { return Between(scalars_[k], scalar_slopes_[k], span); };
   CameraPose pose;
   pose.place = PlaceOfNormal(glm::normalize(Between(normals_, normal_slopes_, span)), scalar(0));
-  pose.heading_rad = std::remainder(scalar(1), 2.0 * kPi);
+  const CameraPose& left = points_[span.left].pose;
+  const double turned_rad = scalar(1) - scalars_[1][span.left];
+  pose.heading_rad = std::remainder(
+      left.heading_rad + turned_rad + TurnOfHeading(left.place, pose.place), 2.0 * kPi);
   pose.pitch_rad = scalar(2);
   pose.roll_rad = std::remainder(scalar(3), 2.0 * kPi);
   pose.fov_rad = scalar(4);

@@ -25,8 +25,9 @@
 // at constant speed, and the slopes on either side ignore the gap.
 // Height and angles are monotone cubics without overshoot (Fritsch and Butland 1984, SIAM J. Sci.
 // Stat. Comput. 5, 300): they are never below the lower of two points, and constant between two
-// equal points. Angles take the shorter way around; a level camera stays level. On a path over a
-// pole the heading turns by half a circle there, so points near a pole should be closely spaced.
+// equal points. Angles take the shorter way around; a level camera stays level. The heading is
+// interpolated relative to a direction that is carried along the path, so that a camera that looks
+// ahead also looks ahead over a pole, where its heading turns by half a circle.
 #pragma once
 
 #include <array>
@@ -106,7 +107,8 @@ class CameraPath {
 
   std::vector<CameraPathPoint> points_;
   std::vector<glm::dvec3> normals_, normal_slopes_;  // of the ellipsoid, earth-fixed
-  /// Height, heading, pitch, roll and fov; angles are unwrapped.
+  /// Height, heading, pitch, roll and fov; angles are unwrapped. The heading is relative to a
+  /// direction that is carried along the path from the first point.
   static constexpr std::size_t kScalars = 5;
   std::array<std::vector<double>, kScalars> scalars_, scalar_slopes_;
   std::vector<double> utc_s_;  // since the first point

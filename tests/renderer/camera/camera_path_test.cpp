@@ -528,6 +528,43 @@ TEST(CameraPath, GoesTheShortWayAcrossTheDateLine) {
   EXPECT_NEAR(DegreesOf(path.PoseAt(0.5 * path.end_s()).heading_rad), 90.0, 0.1);
 }
 
+// Hard case 27.
+TEST(CameraPath, ACameraThatLooksAheadLooksAheadOverAPole) {
+  for (const double hemisphere : {1.0, -1.0}) {
+    const double towards = hemisphere > 0.0 ? 0.0 : 180.0;
+    const double latitude = hemisphere * 89.9;
+    const CameraPath path({PointAt(0.0, latitude, 20.0, 100.0, towards),
+                           PointAt(100.0, latitude, -160.0, 100.0, 180.0 - towards)});
+    for (int i = 1; i < 200; ++i) {
+      const double time_s = 0.5 * i;
+      const CameraPose pose = path.PoseAt(time_s);
+      const glm::dvec3 ahead = Ecef(path.PoseAt(std::min(time_s + 1.0, 100.0)).place) -
+                               Ecef(path.PoseAt(time_s - 0.5).place);
+      const LocalFrame here(kWgs84, pose.place);
+      const glm::dvec3 looks = here.EcefFromEnu(Vector<Enu>{{std::sin(pose.heading_rad),
+                                                             std::cos(pose.heading_rad), 0.0}})
+                                   .xyz;
+      EXPECT_GT(glm::dot(glm::normalize(ahead), looks), 0.999) << time_s << " s, " << hemisphere;
+    }
+  }
+}
+
+// Hard case 27.
+TEST(CameraPath, BetweenPointsTheHeadingFollowsTheGreatCircle) {
+  // At 60 degrees north a great circle between meridians 30 degrees apart has a heading of 76.9
+  // degrees at its beginning and 103.1 at its end.
+  const double turn =
+      DegreesOf(std::atan(std::sin(60.0 * kRadiansPerDegree) * std::tan(15.0 * kRadiansPerDegree)));
+  const CameraPath path(
+      {PointAt(0.0, 60.0, 170.0, 0.0, 90.0 - turn), PointAt(1.0, 60.0, -160.0, 0.0, 90.0 + turn)});
+  EXPECT_NEAR(DegreesOf(path.PoseAt(0.5).heading_rad), 90.0, 1e-9);
+  const CameraPose quarter = path.PoseAt(0.25);
+  const CameraPose later = path.PoseAt(0.2501);
+  const glm::dvec3 step = LocalFrame(kWgs84, quarter.place).EnuFromGeodetic(later.place).xyz;
+  EXPECT_NEAR(DegreesOf(quarter.heading_rad), DegreesOf(std::atan2(step.x, step.y)), 0.1)
+      << "the ellipsoid's geodesic is not quite the normal's great circle";
+}
+
 TEST(TrackPath, ATrackThatGoesNowhereIsRefused) {
   const auto fault = [](const Track& track) {
     return tests::FaultOf([&] { return PathAlong(track, {}, Sea).end_s(); });
