@@ -1,13 +1,25 @@
 // SPDX-License-Identifier: MIT
-// Provides tables of the sky's light: LevelSky, the irradiance on level ground, SeaMirror, the sky
-// as mirrored by waves, and SkyIrradianceGradient, the irradiance of the open sky on slopes.
+// Provides tables of the sky's light: LevelSky, the irradiance on level ground, GlossMirror, the sky
+// as mirrored by waves and by glossy land between mountains, and SkyIrradianceGradient, the
+// irradiance of the open sky on slopes.
 //
-// SeaMirror tabulates what Water::Mirrored sums ray by ray, over the zenith cosine of the eye and
-// its azimuth from that of the sun. Nodes are equidistant in sqrt(mu_eye), and therefore dense for
-// grazing views along the water. They are also equidistant in the sine of half the azimuth from the
-// direction to the eye that faces the sun, and therefore dense in its glare. Values are relative to
-// LevelSky at altitude 0 under the same sun. At places with another elevation of the sun the sky
-// has the same distribution, scaled with the irradiance on level ground there.
+// GlossMirror tabulates what GroundLight::Mirrored sums ray by ray. The sky and the slopes below the
+// horizon are summed apart:
+//
+//   sum of w_k ((1 - g_k) S_k + g_k G)  =  A(h) + B(h) G
+//
+// w_k is the weight of a mirrored ray, S_k the sky in its direction, and g_k the part of its
+// directions that lies below a horizon whose elevation has the sine h. G is the radiance of the
+// slopes there, which varies little from ray to ray. The arguments of A are the elevation of the
+// mirrored direction, its azimuth from that of the sun, the horizon, and the altitude, which is
+// interpolated between two. The rays of waves are those of a level surface. The weights of land add
+// up to 1.
+//
+// Rows are equidistant in the square root of the sine of the elevation, and therefore dense for
+// grazing views along the water. Columns are equidistant in the sine of half the azimuth from that
+// of the sun, and therefore dense in its glare. Values are relative to LevelSky at altitude
+// 0 under the same sun. At places with another elevation of the sun the sky has the same
+// distribution, scaled with the irradiance on level ground there.
 //
 // SkyIrradianceGradient tabulates for one position of the sun
 //
@@ -48,14 +60,31 @@ struct LevelSky {
                                        double sun_elevation_rad);
 };
 
-/// Mirrored radiance [1/sr] relative to LevelSky; a row has one mu_eye.
-struct SeaMirror {
+/// The light that a glossy surface mirrors, relative to LevelSky, in layers of kSide x kSide texels.
+struct GlossMirror {
   static constexpr std::size_t kSide = 48;
+  static constexpr std::size_t kHorizons = 24, kAltitudes = 2;
+  /// Layers A of all horizons at the lower altitude, those at the higher one, and one layer B, whose
+  /// rows are those of A and whose columns are horizons. B is in the first band.
+  static constexpr std::size_t kLayers = kAltitudes * kHorizons + 1;
 
-  /// @param sky  sky of the same sun.
-  [[nodiscard]] static std::vector<BandTexel> Of(const OccludedSkyIrradiance& sky,
-                                                 const MultipleScattering& multiple_scattering,
-                                                 const Water& water, const glm::dvec3& to_sun);
+  std::vector<BandTexel> waves;          // kLayers; empty: there is no water
+  std::vector<BandTexel> land;           // likewise for Blinn-Phong land
+  double lower_m = 0.0, higher_m = 0.0;  // the two altitudes
+
+  /// Returns the sine of a horizon's elevation at a fraction of the layers, in [0, 1].
+  [[nodiscard]] static double HorizonAt(double share);
+
+  /// The surfaces to tabulate; null: none of this kind.
+  struct Surfaces {
+    const Water* water = nullptr;
+    const Glossy* land = nullptr;
+  };
+  /// @param sky  sky of the same sun over these altitudes.
+  [[nodiscard]] static GlossMirror Of(const OccludedSkyIrradiance& sky,
+                                      const MultipleScattering& multiple_scattering,
+                                      const Surfaces& surfaces, const glm::dvec3& to_sun,
+                                      double lower_altitude_m, double higher_altitude_m);
 };
 
 }  // namespace alpenglow::renderer

@@ -350,9 +350,6 @@ BandLight TerrainIrradiance::SkyRadiance(const SlopePoint& at, const glm::dvec3&
   return sky_.Radiance(at.altitude_m, at.mu_s, AtPlace(direction, at.up));
 }
 
-namespace {
-
-// Returns the fraction of a direction's spread that lies below a horizon.
 double GroundShare(double sine, const Spread& spread, double horizon) {
   constexpr double kSharpest =
       0.011;  // a step of OccludedSkyIrradiance; neither sky nor horizons are finer
@@ -362,8 +359,6 @@ double GroundShare(double sine, const Spread& spread, double horizon) {
   const double at_horizontal = std::clamp((horizon - sine) / kSharpest, 0.0, 1.0);
   return within + spread.lifted * (at_horizontal - within);
 }
-
-}  // namespace
 
 BandLight TerrainIrradiance::Radiance(const SlopePoint& at, const glm::dvec3& direction,
                                       const Spread& spread) const {

@@ -159,6 +159,10 @@ struct SlopePoint {
   double mu_s;  // zenith cosine there of the sun that lights the air
 };
 
+/// Returns the fraction of a direction's spread that lies below a horizon.
+/// @param sine, horizon  of the elevations of direction and horizon.
+[[nodiscard]] double GroundShare(double sine, const Spread& spread, double horizon);
+
 /// Indirect light on terrain for one position of the sun. Immutable; safe to use from many threads.
 ///
 /// Error of Irradiance against rays that hit sky, air and slopes, with slopes lit by sun and sky,

@@ -216,9 +216,6 @@ class GroundFollower::Maker {
     Made made;
     made.casts = view.casts;
     made.land = request.land;
-    made.sea_mirrors[IndexOf(view.casts)] = MirrorFor(request, view.by);
-    if (view.other)
-      made.sea_mirrors[IndexOf(OtherThan(view.casts))] = MirrorFor(request, *view.other);
     if (site) {
       made.lit = std::make_shared<const LitGround>(site, LightingBy(view.by, view, *site));
       made.open_altitude_m = OpenAltitude_m(*site);
@@ -228,6 +225,7 @@ class GroundFollower::Maker {
         made.other_open = UnoccludedSkyUnder(*site, *view.other);
       }
     }
+    AddMirrors(request, made);
     made.making_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
     return made;
   }
@@ -243,18 +241,41 @@ class GroundFollower::Maker {
     return light;
   }
 
+  void AddMirrors(const Request& request, Made& made) const {
+    const View& view = request.view;
+    const GroundSky* const sky = made.lit ? &made.lit->sky() : nullptr;
+    made.gloss_mirrors[IndexOf(view.casts)] = MirrorFor(request, view.by, sky);
+    if (view.other)
+      made.gloss_mirrors[IndexOf(OtherThan(view.casts))] =
+          MirrorFor(request, *view.other, made.other.get());
+  }
+
   // The mirror is also computed without land, because the sea mirrors the sky there too.
-  [[nodiscard]] std::vector<BandTexel> MirrorFor(const Request& request,
-                                                 const SunPosition& disk) const {
+  // @param over_land  sky of this source over the land, or null.
+  [[nodiscard]] GlossMirror MirrorFor(const Request& request, const SunPosition& disk,
+                                      const GroundSky* over_land) const {
     const Medium medium = OnOsculatingSphere(request.air->medium, request.view.eye.latitude_rad);
     const GroundMaterial material(cover_, drape_, medium.wavelengths_nm);
     if (!material.HasGloss()) return {};
-    const SingleScattering<float> single_scattering(medium);
+    const GlossMirror::Surfaces surfaces{
+        material.HasWater() ? &material.water() : nullptr,
+        cover_.kind == GroundCover::Kind::kBlinnPhong ? &material.glossy() : nullptr};
     const MultipleScattering& multiple_scattering = request.air->multiple_scattering;
+    if (over_land != nullptr) {
+      const OccludedSkyIrradiance::Extent& extent = over_land->site().horizons()->extent();
+      const double lowest_m = std::max(extent.lowest_m, 0.0);
+      const double highest_m =
+          std::clamp(surfaces.land == nullptr ? material.WaterLine_m().value_or(extent.highest_m)
+                                              : extent.highest_m,
+                     lowest_m, std::max(extent.highest_m, lowest_m));
+      return GlossMirror::Of(over_land->lighting().on_terrain->sky(), multiple_scattering, surfaces,
+                             over_land->lighting().to_sun_for_air, lowest_m, highest_m);
+    }
+    const SingleScattering<float> single_scattering(medium);
     const glm::dvec3 to_sun = Direction(SunForAir(disk));
     const OccludedSkyIrradiance sky(single_scattering, multiple_scattering, to_sun,
                                     OccludedSkyIrradiance::Extent{0.0, 1.0, 5e5});
-    return SeaMirror::Of(sky, multiple_scattering, material.water(), to_sun);
+    return GlossMirror::Of(sky, multiple_scattering, surfaces, to_sun, 0.0, 0.0);
   }
 
   std::shared_ptr<const GroundSite> SiteFor(const Request& request) {

@@ -261,10 +261,10 @@ class GroundFollower {
   /// Returns a function for the light of vertices in the frame of any anchor; nullopt without
   /// lit().
   [[nodiscard]] std::optional<LightOfVertices> Light() const;
-  /// Returns the sky of a source as mirrored by waves (SeaMirror); empty if nothing mirrors and for
-  /// a source that was not significant.
-  [[nodiscard]] const std::vector<BandTexel>& sea_mirror(LightSource source) const {
-    return made_.sea_mirrors[IndexOf(source)];
+  /// Returns the sky of a source as mirrored by waves and land; empty if nothing mirrors and for a
+  /// source that was not significant.
+  [[nodiscard]] const GlossMirror& gloss_mirror(LightSource source) const {
+    return made_.gloss_mirrors[IndexOf(source)];
   }
   /// Returns the altitude of the open sky to which the light of vertices is relative: half the
   /// height of the land.
@@ -285,7 +285,7 @@ class GroundFollower {
     std::shared_ptr<const LitGround> lit;
     std::shared_ptr<const GroundSky> other;                 // null: it is not significant
     std::optional<SkyIrradianceGradient> open, other_open;  // light of the open sky of each source
-    std::array<std::vector<BandTexel>, kLightSources> sea_mirrors;
+    std::array<GlossMirror, kLightSources> gloss_mirrors;
     double open_altitude_m = 0.0;
     double making_s = 0.0;
     int land = 0;

@@ -286,9 +286,10 @@ GroundMaterial::GroundMaterial(const GroundCover& cover, std::shared_ptr<const C
       water_(cover.wind_m_per_s, wavelengths_nm),
       snow_(cover.grain_diameter_m, wavelengths_nm) {}
 
-bool GroundMaterial::HasGloss() const {
-  return cover_.kind == Kind::kWater || cover_.kind == Kind::kBlinnPhong || cover_.sea_level_m ||
-         HasLandCover();
+bool GroundMaterial::HasGloss() const { return cover_.kind == Kind::kBlinnPhong || HasWater(); }
+
+bool GroundMaterial::HasWater() const {
+  return cover_.kind == Kind::kWater || cover_.sea_level_m || HasLandCover();
 }
 
 std::optional<double> GroundMaterial::WaterLine_m() const {

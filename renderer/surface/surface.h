@@ -171,6 +171,8 @@ class GroundMaterial {
 
   /// Returns whether any of the ground mirrors the sky.
   [[nodiscard]] bool HasGloss() const;
+  /// Returns whether a part of the ground may be water.
+  [[nodiscard]] bool HasWater() const;
 
   [[nodiscard]] const GroundCover& cover() const { return cover_; }
   [[nodiscard]] const ColourDrape* drape() const { return drape_.get(); }

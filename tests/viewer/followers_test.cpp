@@ -296,8 +296,11 @@ TEST(GroundFollower, ASeaWithoutLandMirrorsTheSky) {
   GroundFollower follower(sea, nullptr, kSmall);
   EXPECT_TRUE(follower.WaitUntilReady(Air(), ViewFrom(kFollowedPlace, 30.0)));
   EXPECT_EQ(follower.lit(), nullptr);
-  ASSERT_EQ(follower.sea_mirror(LightSource::kSun).size(), SeaMirror::kSide * SeaMirror::kSide);
-  for (const BandTexel& texel : follower.sea_mirror(LightSource::kSun)) EXPECT_GT(texel[1], 0.0F);
+  const GlossMirror& mirror = follower.gloss_mirror(LightSource::kSun);
+  constexpr std::size_t kLayer = GlossMirror::kSide * GlossMirror::kSide;
+  ASSERT_EQ(mirror.waves.size(), kLayer * GlossMirror::kLayers);
+  EXPECT_TRUE(mirror.land.empty()) << "nothing else mirrors";
+  for (std::size_t i = 0; i < kLayer; ++i) EXPECT_GT(mirror.waves[i][1], 0.0F) << "no horizon";
 }
 
 TEST(GroundFollower, OnTheRangeThereIsLightOfTheSunThatWasAskedFor) {

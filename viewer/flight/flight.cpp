@@ -128,8 +128,7 @@ CameraPose Turned(const CameraPose& eye, double right_rad, double up_rad) {
 
 CameraPose Zoomed(const CameraPose& eye, double factor) {
   CameraPose zoomed = eye;
-  zoomed.fov_rad =
-      std::clamp(eye.fov_rad * factor, 1.0 * kRadiansPerDegree, 120.0 * kRadiansPerDegree);
+  zoomed.fov_rad = std::clamp(eye.fov_rad * factor, kNarrowestView_rad, kWidestView_rad);
   return zoomed;
 }
 

@@ -5,6 +5,7 @@
 
 #include <optional>
 
+#include "atmosphere/math/constants.h"
 #include "atmosphere/time_place/geodesy.h"
 #include "renderer/camera/camera_path.h"
 #include "renderer/scene/places.h"
@@ -69,8 +70,15 @@ struct ViewAxes {
 /// Returns the eye turned to the right and upwards [rad] in its own frame, which may be rolled.
 [[nodiscard]] CameraPose Turned(const CameraPose& eye, double right_rad, double up_rad);
 
-/// Returns the eye with its field of view multiplied by `factor` and clamped to [1, 120] degrees.
+/// Limits of the field of view in windows and under instruments. Written pictures have any field of
+/// view of a scene.
+inline constexpr double kNarrowestView_rad = 1.0 * kRadiansPerDegree;
+inline constexpr double kWidestView_rad = 120.0 * kRadiansPerDegree;
+
+/// Returns the eye with its field of view multiplied by `factor` and clamped to these limits.
 [[nodiscard]] CameraPose Zoomed(const CameraPose& eye, double factor);
+/// Returns the eye with the field of view that a window shows.
+[[nodiscard]] inline CameraPose InWindow(const CameraPose& eye) { return Zoomed(eye, 1.0); }
 
 /// Returns the eye raised to at least `clearance_m` above ground of height `ground_m`.
 [[nodiscard]] CameraPose KeptAbove(const CameraPose& eye, double ground_m, double clearance_m);

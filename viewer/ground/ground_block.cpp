@@ -128,6 +128,13 @@ GroundSurfaceBlock GroundSurfaceBlockOf(const GroundMaterial& material) {
   return block;
 }
 
+GroundSurfaceBlock Mirrored(GroundSurfaceBlock block, const GlossMirror& mirror) {
+  const double rise_km = (mirror.higher_m - mirror.lower_m) / kMetresPerKilometre;
+  block.mirror_place = glm::vec4(glm::dvec4(mirror.lower_m / kMetresPerKilometre,
+                                            rise_km > 0.0 ? 1.0 / rise_km : 0.0, 0.0, 0.0));
+  return block;
+}
+
 GroundSurfaceBlock Draped(GroundSurfaceBlock block, const FlatRectangle& picture,
                           const FrameTransform& eye_from_drape, const GroundPattern& pattern) {
   block.drape_place = {picture.west_m, picture.south_m, 1.0 / picture.width_m,
@@ -138,45 +145,69 @@ GroundSurfaceBlock Draped(GroundSurfaceBlock block, const FlatRectangle& picture
   return block;
 }
 
+namespace {
+
+ShaderPiece SkyByPixelSizes() {
+  return {"sky by pixel",
+          fmt::format("#define SKY_LOWEST ({:.9f})\n#define SKY_NODES {}.0\n"
+                      "#define SKY_LEVELS {}.0\n#define SKY_SUNS {}.0\n",
+                      HorizonMap::kLowest, OccludedSkyIrradiance::kNodes,
+                      OccludedSkyIrradiance::kLevels, OccludedSkyIrradiance::kSuns)};
+}
+
+}  // namespace
+
 std::vector<ShaderPiece> GroundTexts(const GroundMaterial& material, const LandKind& land) {
   const auto water_line_m = material.WaterLine_m();
   const bool planet_is_water =
       (water_line_m && *water_line_m >= 0.0) || material.cover().kind == GroundCover::Kind::kWater;
-  return {
-      {"ground constants",
-       fmt::format("#define GROUND_COVER {}\n#define HAS_SEA {}\n#define HAS_DRAPE {}\n#define "
-                   "HAS_LAND_COVER {}\n"
-                   "#define PLANET_IS_WATER {}\n#define PLANET_IS_LAND {}\n"
-                   "#define HAS_FINE_RELIEF {}\n"
-                   "#define LEVEL_SKY_LOWEST {:.9f}\n"
-                   "#define LEVEL_SKY_RANGE {:.9f}\n#define LEVEL_SKY_NODES {}.0\n"
-                   "#define SEA_MIRROR_SIDE {}.0\n"
-                   "#define OPEN_SKY_COLUMNS {}\n#define OPEN_SKY_ROWS {}\n",
-                   static_cast<int>(material.cover().kind), water_line_m ? 1 : 0,
-                   material.drape() != nullptr ? 1 : 0,
-                   material.drape() != nullptr && material.drape()->IsLandCover() ? 1 : 0,
-                   planet_is_water ? 1 : 0, land.is_there ? 1 : 0, land.has_fine_relief ? 1 : 0,
-                   LevelSky::kLowest_rad, LevelSky::kRange_rad, LevelSky::kNodes, SeaMirror::kSide,
-                   SkyIrradianceGradient::kColumns, SkyIrradianceGradient::kRows)},
-      ViewerPiece("renderer/illumination/sky_irradiance_gradient.glsl"),
-      ViewerPiece("viewer/shaders/ground.glsl"),
-      ViewerPiece("viewer/shaders/ground_surface.glsl"),
-      ViewerPiece("viewer/shaders/ground_light.glsl")};
+  return {{"ground constants",
+           fmt::format("#define GROUND_COVER {}\n#define HAS_SEA {}\n#define HAS_DRAPE {}\n#define "
+                       "HAS_LAND_COVER {}\n"
+                       "#define PLANET_IS_WATER {}\n#define PLANET_IS_LAND {}\n"
+                       "#define HAS_FINE_RELIEF {}\n"
+                       "#define LEVEL_SKY_LOWEST {:.9f}\n"
+                       "#define LEVEL_SKY_RANGE {:.9f}\n#define LEVEL_SKY_NODES {}.0\n"
+                       "#define HAS_WATER {}\n#define HAS_GLOSS {}\n"
+                       "#define GLOSS_MIRROR_SIDE {}.0\n#define GLOSS_MIRROR_HORIZONS {}.0\n"
+                       "#define GLOSS_MIRROR_LAYERS {}.0\n#define GLOSS_MIRROR_OF_LAND {}.0\n"
+                       "#define OPEN_SKY_COLUMNS {}\n#define OPEN_SKY_ROWS {}\n",
+                       static_cast<int>(material.cover().kind), water_line_m ? 1 : 0,
+                       material.drape() != nullptr ? 1 : 0,
+                       material.drape() != nullptr && material.drape()->IsLandCover() ? 1 : 0,
+                       planet_is_water ? 1 : 0, land.is_there ? 1 : 0, land.has_fine_relief ? 1 : 0,
+                       LevelSky::kLowest_rad, LevelSky::kRange_rad, LevelSky::kNodes,
+                       material.HasWater() ? 1 : 0, material.HasGloss() ? 1 : 0, GlossMirror::kSide,
+                       GlossMirror::kHorizons, GlossMirror::kLayers,
+                       material.HasWater() ? GlossMirror::kLayers : 0,
+                       SkyIrradianceGradient::kColumns, SkyIrradianceGradient::kRows)},
+          ViewerPiece("renderer/illumination/sky_irradiance_gradient.glsl"),
+          ViewerPiece("viewer/shaders/ground.glsl"),
+          SkyByPixelSizes(),
+          ViewerPiece("viewer/shaders/sky_by_pixel.tables.glsl"),
+          ViewerPiece("viewer/shaders/ground_surface.glsl"),
+          ViewerPiece("viewer/shaders/ground_light.glsl")};
 }
 
 GroundTextures::GroundTextures(const MultipleScattering& multiple_scattering) {
   SetAir(multiple_scattering);
-  const std::vector<BandTexel> black(SeaMirror::kSide * SeaMirror::kSide);
-  for (const LightSource source : {LightSource::kSun, LightSource::kMoon})
-    SetSeaMirror(source, black);
+  constexpr BandTexel kBlack{};
+  for (const GlTexture& mirror : gloss_mirrors_)
+    UploadTexture(GL_TEXTURE_2D_ARRAY, mirror,
+                  {GL_RGBA32F, 1, 1, 1, GL_RGBA, GL_FLOAT, kBlack.data()});
 }
 
 void GroundTextures::SetAir(const MultipleScattering& multiple_scattering) const {
   Upload(level_sky_, LevelSky::kNodes, 1, LevelSky::Of(multiple_scattering));
 }
 
-void GroundTextures::SetSeaMirror(LightSource source, const std::vector<BandTexel>& texels) const {
-  Upload(sea_mirrors_[IndexOf(source)], SeaMirror::kSide, SeaMirror::kSide, texels);
+void GroundTextures::SetGlossMirror(LightSource source, const GlossMirror& mirror) const {
+  std::vector<BandTexel> texels = mirror.waves;
+  texels.insert(texels.end(), mirror.land.begin(), mirror.land.end());
+  constexpr auto kSide = static_cast<int>(GlossMirror::kSide);
+  UploadTexture(GL_TEXTURE_2D_ARRAY, gloss_mirrors_[IndexOf(source)],
+                {GL_RGBA32F, kSide, kSide, static_cast<int>(texels.size()) / (kSide * kSide),
+                 GL_RGBA, GL_FLOAT, texels.data()});
 }
 
 void GroundTextures::SetDrape(const DrapeTexels& texels) const {
@@ -188,12 +219,18 @@ void GroundTextures::SetDrape(const DrapeTexels& texels) const {
 }
 
 void GroundTextures::Bind(const ShaderProgram& program, int first_unit, LightSource source) const {
+  struct Slot {
+    const char* sampler;
+    GLenum target;
+    const GlTexture* texture;
+  };
   int unit = first_unit;
-  for (const auto& [sampler, texture] : {std::pair{"level_sky", &level_sky_},
-                                         {"sea_mirror", &sea_mirrors_[IndexOf(source)]},
-                                         {"drape", &drape_}}) {
-    program.BindSampler(sampler, unit);
-    BindTexture(unit++, GL_TEXTURE_2D, *texture);
+  for (const Slot& slot :
+       {Slot{"level_sky", GL_TEXTURE_2D, &level_sky_},
+        Slot{"gloss_mirror", GL_TEXTURE_2D_ARRAY, &gloss_mirrors_[IndexOf(source)]},
+        Slot{"drape", GL_TEXTURE_2D, &drape_}}) {
+    program.BindSampler(slot.sampler, unit);
+    BindTexture(unit++, slot.target, *slot.texture);
   }
 }
 
@@ -326,30 +363,29 @@ SkyByPixelBlock SkyByPixel::BlockOf(LightSource source, const LocalFrame& eye,
   return block;
 }
 
+namespace {
+
+constexpr std::array<const char*, 4> kSkySamplers{"horizons_around", "sky_integrals",
+                                                  "level_irradiance", "light_of_slopes"};
+
+}  // namespace
+
+void SkyByPixel::Connect(const ShaderProgram& program, int first_unit) {
+  int unit = first_unit;
+  for (const char* const sampler : kSkySamplers) program.BindSampler(sampler, unit++);
+}
+
 void SkyByPixel::Bind(const ShaderProgram& program, int first_unit, LightSource source) const {
   const OfSource& of = *of_source_[IndexOf(source)];
-  struct Slot {
-    const char* sampler;
-    GLenum target;
-    const GlTexture* texture;
-  };
-  int unit = first_unit;
-  for (const Slot& slot : {Slot{"horizons_around", GL_TEXTURE_2D_ARRAY, &horizon_texture_},
-                           Slot{"sky_integrals", GL_TEXTURE_2D_ARRAY, &of.integrals},
-                           Slot{"level_irradiance", GL_TEXTURE_2D, &of.level_irradiance},
-                           Slot{"light_of_slopes", GL_TEXTURE_2D_ARRAY, &of.slopes}}) {
-    program.BindSampler(slot.sampler, unit);
-    BindTexture(unit++, slot.target, *slot.texture);
-  }
+  Connect(program, first_unit);
+  BindTexture(first_unit, GL_TEXTURE_2D_ARRAY, horizon_texture_);
+  BindTexture(first_unit + 1, GL_TEXTURE_2D_ARRAY, of.integrals);
+  BindTexture(first_unit + 2, GL_TEXTURE_2D, of.level_irradiance);
+  BindTexture(first_unit + 3, GL_TEXTURE_2D_ARRAY, of.slopes);
 }
 
 std::vector<ShaderPiece> SkyByPixelTexts() {
-  return {
-      {"sky by pixel", fmt::format("#define SKY_LOWEST ({:.9f})\n#define SKY_NODES {}.0\n"
-                                   "#define SKY_LEVELS {}.0\n#define SKY_SUNS {}.0\n",
-                                   HorizonMap::kLowest, OccludedSkyIrradiance::kNodes,
-                                   OccludedSkyIrradiance::kLevels, OccludedSkyIrradiance::kSuns)},
-      ViewerPiece("viewer/shaders/sky_by_pixel.glsl")};
+  return {ViewerPiece("viewer/shaders/sky_by_pixel.irradiance.glsl")};
 }
 
 }  // namespace alpenglow::viewer

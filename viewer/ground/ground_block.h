@@ -9,7 +9,8 @@
 // evaluates them for every pixel. Light that is interpolated between vertices has errors of up to
 // 10 % at dusk, where a horizon hides the glow (tests/bench/README.md).
 //
-// A pixel reads 56 texels of half floats per source, so only the high quality uses these tables.
+// A pixel reads 56 texels of half floats per source for its irradiance, so only the high quality
+// uses these tables for it. Water and glossy land look up what they mirror at every quality.
 #pragma once
 
 #include <array>
@@ -83,13 +84,16 @@ struct GroundSurfaceBlock {
   glm::vec4 cover_albedo, rough, coat, water, under_water, snow_y;
   glm::vec4 drape_red, drape_green, drape_blue, drape_place, drape_eye, drape_east, drape_north;
   std::array<glm::vec4, 17> by_root_mu;
+  glm::vec4 mirror_place;
 };
-static_assert(sizeof(GroundSurfaceBlock) == 30 * sizeof(glm::vec4));
+static_assert(sizeof(GroundSurfaceBlock) == 31 * sizeof(glm::vec4));
 static_assert(offsetof(GroundSurfaceBlock, drape_red) == 6 * sizeof(glm::vec4));
 static_assert(offsetof(GroundSurfaceBlock, by_root_mu) == 13 * sizeof(glm::vec4));
 
 /// Returns the block with all values that do not depend on the eye.
 [[nodiscard]] GroundSurfaceBlock GroundSurfaceBlockOf(const GroundMaterial& material);
+/// Returns the block with the altitudes of a mirror.
+[[nodiscard]] GroundSurfaceBlock Mirrored(GroundSurfaceBlock block, const GlossMirror& mirror);
 /// Returns the block with the rectangle of a drape, seen by an eye at the origin of its frame.
 /// @param eye_from_drape  from the frame of the drape to that of the eye.
 [[nodiscard]] GroundSurfaceBlock Draped(GroundSurfaceBlock block, const FlatRectangle& picture,
@@ -115,17 +119,18 @@ class GroundTextures {
 
   /// Updates the textures for another medium.
   void SetAir(const MultipleScattering& multiple_scattering) const;
-  void SetSeaMirror(LightSource source, const std::vector<BandTexel>& texels) const;
+  /// Nothing mirrors before the first call.
+  void SetGlossMirror(LightSource source, const GlossMirror& mirror) const;
   void SetDrape(const DrapeTexels& texels) const;
 
   /// Binds the textures to three units, beginning with `first_unit`, and assigns the samplers of a
   /// program to them.
-  /// @param source  light source whose sky is mirrored by waves.
+  /// @param source  light source whose sky is mirrored.
   void Bind(const ShaderProgram& program, int first_unit, LightSource source) const;
 
  private:
   GlTexture level_sky_, drape_;
-  std::array<GlTexture, kLightSources> sea_mirrors_;
+  std::array<GlTexture, kLightSources> gloss_mirrors_;
 };
 
 /// Mirrors the uniform block `SkyByPixel` of sky_by_pixel.glsl.
@@ -158,9 +163,9 @@ class SkyByPixel {
                                         const glm::dvec3& to_sun_for_air,
                                         const SkyIrradianceGradient& now) const;
 
-  /// Binds four textures, beginning with `first_unit`, and assigns the samplers of a program to
-  /// them.
-  static constexpr int kUnits = 4;
+  /// Assigns the samplers of a program to four units, beginning with `first_unit`.
+  static void Connect(const ShaderProgram& program, int first_unit);
+  /// Connects a program and binds the textures of a source.
   void Bind(const ShaderProgram& program, int first_unit, LightSource source) const;
 
  private:

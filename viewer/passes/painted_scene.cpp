@@ -122,14 +122,15 @@ void PaintedScene::UpdateLight() {
                               lit->site().ground().frame});
   if (std::optional<LightOfVertices> light = ground_.Light()) land_->Relight(std::move(*light));
   for (const LightSource source : {LightSource::kSun, LightSource::kMoon}) {
-    if (ground_.sea_mirror(source).empty()) continue;
+    const GlossMirror& mirror = ground_.gloss_mirror(source);
+    if (mirror.waves.empty() && mirror.land.empty()) continue;
     glActiveTexture(GL_TEXTURE0 + kUploadUnit);
-    ground_textures_.SetSeaMirror(source, ground_.sea_mirror(source));
+    ground_textures_.SetGlossMirror(source, mirror);
   }
 }
 
 void PaintedScene::TakeSkyByPixel() {
-  if (!sizes_.sky_by_pixel) return;
+  if (!sizes_.sky_by_pixel && !fixed_.material.HasGloss()) return;
   glActiveTexture(GL_TEXTURE0 + kUploadUnit);
   for (const LightSource source : {LightSource::kSun, LightSource::kMoon}) {
     if (const auto sky = ground_.SkyOf(source)) {

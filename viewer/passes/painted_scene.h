@@ -100,10 +100,11 @@ class PaintedScene {
     return open_skies_[IndexOf(source)].value().light;
   }
   [[nodiscard]] const GroundTextures& ground_textures() const { return ground_textures_; }
-  /// Returns null if vertices hold the sky irradiance of this source: because of the quality, or
-  /// until the tables are ready.
+  /// Returns the tables of the surroundings, for the light of the sky on each pixel (at a quality
+  /// with PaintSizes::sky_by_pixel) and for what the ground mirrors; null if nothing needs them, or
+  /// until they are ready.
   [[nodiscard]] const SkyByPixel* sky_by_pixel(LightSource source) const {
-    return sizes_.sky_by_pixel && sky_by_pixel_.Has(source) ? &sky_by_pixel_ : nullptr;
+    return sky_by_pixel_.Has(source) ? &sky_by_pixel_ : nullptr;
   }
   [[nodiscard]] const ShadeFollower& shade() const { return shade_; }
   /// Returns whether all shadow edges on land belong to this source.

@@ -88,7 +88,8 @@ GroundLightBlock LightAround(const PaintedScene& scene, const PaintedView& view,
 }
 
 GroundSurfaceBlock SurfaceAround(const PaintedScene& scene, const CameraPose& eye) {
-  const GroundSurfaceBlock cover = GroundSurfaceBlockOf(scene.fixed().material);
+  const GroundSurfaceBlock cover = Mirrored(GroundSurfaceBlockOf(scene.fixed().material),
+                                            scene.ground().gloss_mirror(scene.ground().casts()));
   if (!scene.fixed().drape.colours) return cover;
   GeodeticPosition origin = scene.fixed().place;
   origin.height_m = 0.0;
@@ -96,6 +97,13 @@ GroundSurfaceBlock SurfaceAround(const PaintedScene& scene, const CameraPose& ey
   return Draped(cover, scene.fixed().drape.place,
                 FrameTransform(frame, LocalFrame(scene.fixed().ellipsoid, origin)),
                 GroundPattern(frame));
+}
+
+// Returns the angle to which edges of disks are softened. In the middle of a view wider than windows
+// show, pixels are so large that a disk below the horizon would reach above it.
+double RayAngle(PaintedView view) {
+  view.eye.fov_rad = std::min(view.eye.fov_rad, kWidestView_rad);
+  return PixelAngle(view);
 }
 
 // Sets the refraction of the view. Without refraction the planet appears with its true radius.
@@ -130,7 +138,7 @@ void PictureBlocks::UploadView(const PaintedScene& scene, const PaintedView& vie
   ViewBlock block{};
   block.view_right = {glm::vec3(axes.right), 0.0F};
   block.view_up = {glm::vec3(axes.up), 0.0F};
-  block.view_forward = {glm::vec3(axes.forward), PixelAngle(view) / std::sqrt(ray.of)};
+  block.view_forward = {glm::vec3(axes.forward), RayAngle(view) / std::sqrt(ray.of)};
   block.sun = {glm::vec3(DirectionToSun(key.disk)), key.disk.angular_radius_rad};
   block.sun_for_air = {glm::vec3(DirectionToSun(SunForAir(key.disk))), 0.0F};
   block.sun_irradiance = key.irradiance;
@@ -147,7 +155,7 @@ void PictureBlocks::UploadGroundLight(const PaintedScene& scene, const PaintedVi
 void PictureBlocks::UploadSkyByPixel(const PaintedScene& scene, const PaintedView& view,
                                      const SkyLight& light) const {
   const SkyByPixel* sky = scene.sky_by_pixel(light.source());
-  if (sky == nullptr) return;
+  if (sky == nullptr) return UploadBlock(sky_by_pixel_, kSkyByPixelBinding, SkyByPixelBlock{});
   const LocalFrame eye(scene.fixed().ellipsoid, view.eye.place);
   UploadBlock(sky_by_pixel_, kSkyByPixelBinding,
               sky->BlockOf(light.source(), eye, DirectionToSun(SunForAir(light.disk)),
@@ -182,6 +190,7 @@ void ConnectMaps(const ShaderProgram& program) {
   program.BindSampler("sky_on_surface", kSkyOnSurfaceUnit);
   program.BindSampler("shaft_map", kShaftUnit);
   program.BindSampler("fog_shaft_map", kFogShaftUnit);
+  SkyByPixel::Connect(program, kSkyByPixelUnit);
 }
 
 }  // namespace
@@ -212,7 +221,8 @@ const ShaderProgram& PicturePrograms::Of(const PictureStage& stage) {
 void PicturePrograms::Paint(const PictureStage& stage, LightSource source) {
   const ShaderProgram& program = Of(stage);
   scene_.ground_textures().Bind(program, kGroundUnit, source);
-  if (stage.sky_by_pixel) scene_.sky_by_pixel(source)->Bind(program, kSkyByPixelUnit, source);
+  if (const SkyByPixel* const sky = scene_.sky_by_pixel(source))
+    sky->Bind(program, kSkyByPixelUnit, source);
   if (stage.has_shade) shafts_.Bind(program, kShaftUnit);
   program.Use();
   glDepthFunc(DepthTestOf(stage.pass));

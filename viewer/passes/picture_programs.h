@@ -105,7 +105,7 @@ class PictureBlocks {
   void UploadGround(const PaintedScene& scene, const PaintedView& view) const;
   void UploadGroundLight(const PaintedScene& scene, const PaintedView& view,
                          const SkyLight& light) const;
-  /// Does nothing if vertices hold the sky irradiance.
+  /// Without tables the block says so.
   void UploadSkyByPixel(const PaintedScene& scene, const PaintedView& view,
                         const SkyLight& light) const;
 

@@ -264,7 +264,7 @@ void SkyPainter::PaintSky(const PaintedView& view, const Lit& lit) {
 void SkyPainter::PaintLandAndSky(const PaintedView& view, const Lit& lit) {
   if (!scene_.AwaitsLand())
     programs_.Paint({PictureStage::Pass::kLand, lit.has_shade, lit.has_lamps,
-                     scene_.sky_by_pixel(lit.source) != nullptr},
+                     scene_.sizes().sky_by_pixel && scene_.sky_by_pixel(lit.source) != nullptr},
                     lit.source);
   PaintSky(view, lit);
 }

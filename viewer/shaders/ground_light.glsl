@@ -10,14 +10,6 @@ layout(std140) uniform GroundLight {
   vec4 open_sky[OPEN_SKY_COLUMNS * OPEN_SKY_ROWS];  // nodes of SkyIrradianceGradient, by band
 };
 
-// A place on the ground, with the quantities that its lighting and material need.
-struct GroundPlace {
-  vec3 up;
-  float altitude;   // km
-  float footprint;  // across the ray [m]
-  vec3 offset;      // from the eye, east, north and upwards in the frame of the pattern [m]
-};
-
 // Returns the components of a normal upwards and to the north.
 vec2 TiltOf(vec3 normal, vec3 up) {
   vec3 north = pole.xyz - dot(pole.xyz, up) * up;
@@ -32,7 +24,8 @@ GroundPlace GroundPlaceAt(vec3 point) {
   return GroundPlace(normalize(vec3(at.xy, RADIUS + EYE_ALTITUDE + at.z)), max(h, 0.0),
                      1e3 * d * ground_view.x,
                      vec3(dot(point, pattern_east.xyz), dot(point, pattern_north.xyz),
-                          dot(point, pattern_up.xyz)));
+                          dot(point, pattern_up.xyz)),
+                     point);
 }
 
 vec2 DiskOver(GroundPlace at, vec3 to_sun) {
@@ -77,12 +70,11 @@ struct SeenGround {
   vec3 normal;       // with the finer relief
   vec4 albedo;       // diffuse albedo of land
   bool is_water;
+  bool among_land;  // false: beyond the terrain, which it does not see
 };
 
-#define MAY_BE_WATER (GROUND_COVER == WATER_COVER || HAS_SEA || HAS_LAND_COVER || PLANET_IS_WATER)
-
-SeenGround WaterSeen(GroundPlace at, vec3 mesh_normal) {
-  return SeenGround(at, mesh_normal, at.up, vec4(0.0), true);
+SeenGround WaterSeen(GroundPlace at, vec3 mesh_normal, bool among_land) {
+  return SeenGround(at, mesh_normal, at.up, vec4(0.0), true, among_land);
 }
 
 // Returns the ground of the terrain.
@@ -91,17 +83,17 @@ SeenGround WaterSeen(GroundPlace at, vec3 mesh_normal) {
 SeenGround LandSeen(vec3 point_m, vec3 mesh_normal, vec3 to_eye) {
   GroundPlace at = GroundPlaceAt(point_m);
 #if GROUND_COVER == WATER_COVER
-  return WaterSeen(at, mesh_normal);
+  return WaterSeen(at, mesh_normal, true);
 #else
   float altitude = 1e3 * at.altitude;
   float footprint = LandFootprint(at.footprint, dot(mesh_normal, to_eye));
   vec4 draped = DrapeAt(at.offset, altitude, at.footprint);
 #if HAS_SEA || HAS_LAND_COVER
-  if (IsWater(altitude, draped)) return WaterSeen(at, mesh_normal);
+  if (IsWater(altitude, draped)) return WaterSeen(at, mesh_normal, true);
 #endif
   return SeenGround(at, mesh_normal, NormalInLight(at.offset, mesh_normal, footprint),
                     LandAlbedo(at.offset, altitude, TiltOf(mesh_normal, at.up), footprint, draped),
-                    false);
+                    false, true);
 #endif
 }
 
@@ -110,15 +102,15 @@ SeenGround LandSeen(vec3 point_m, vec3 mesh_normal, vec3 to_eye) {
 SeenGround PlanetSeen(vec3 point_m, vec3 to_eye) {
   GroundPlace at = GroundPlaceAt(point_m);
 #if PLANET_IS_WATER
-  return WaterSeen(at, at.up);
+  return WaterSeen(at, at.up, false);
 #elif GROUND_COVER == MOUNTAIN_COVER && PLANET_IS_LAND
   vec4 albedo = GroundAlbedo(at.offset, 0.0, TiltOf(at.up, at.up),
                              LandFootprint(at.footprint, dot(at.up, to_eye)), vec4(0.0));
-  return SeenGround(at, at.up, at.up, albedo, false);
+  return SeenGround(at, at.up, at.up, albedo, false, false);
 #elif GROUND_COVER == MOUNTAIN_COVER
-  return SeenGround(at, at.up, at.up, ground_albedo, false);
+  return SeenGround(at, at.up, at.up, ground_albedo, false, false);
 #else
-  return SeenGround(at, at.up, at.up, cover_albedo, false);
+  return SeenGround(at, at.up, at.up, cover_albedo, false, false);
 #endif
 }
 
@@ -133,20 +125,20 @@ vec4 SkyByShare(SeenGround seen, vec4 share) {
 // @param sky_irradiance  on seen.normal.
 vec4 SentOn(SeenGround seen, float sun_x, vec4 sky_irradiance, vec3 to_eye) {
   GroundPlace at = seen.at;
-#if MAY_BE_WATER
+#if HAS_WATER
   if (seen.is_water)
-    return WaterRadiance(at.up, at.offset, at.footprint, dot(seen.mesh_normal, to_eye),
-                         SunAcross(at, at.up, sun_x), sky_irradiance, to_eye);
+    return WaterRadiance(at, dot(seen.mesh_normal, to_eye), SunAcross(at, at.up, sun_x),
+                         sky_irradiance, to_eye, seen.among_land);
 #endif
-  return CoverRadiance(seen.albedo, seen.normal, SunAcross(at, seen.mesh_normal, sun_x),
-                       sky_irradiance, to_eye);
+  return CoverRadiance(at, seen.albedo, seen.normal, SunAcross(at, seen.mesh_normal, sun_x),
+                       sky_irradiance, to_eye, seen.among_land);
 }
 
 // Returns the diffuse radiance for an irradiance without direction, of lamps or at night.
 vec4 SentOfIrradiance(SeenGround seen, vec4 irradiance, vec3 to_eye) {
   float mu_eye = clamp(dot(seen.normal, to_eye), 1e-4, 1.0);
   vec4 albedo = CoverBodyAlbedo(seen.albedo, mu_eye);
-#if MAY_BE_WATER
+#if HAS_WATER
   if (seen.is_water) albedo = WaterLetsIn(WATER_INDEX, mu_eye) * under_water;
 #endif
   return albedo / 3.14159265359 * irradiance;

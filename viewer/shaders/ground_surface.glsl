@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Reflection by surfaces of the ground: reflectance.glsl with the parameters of one scene,
-// GroundSurface of ground_block.h. GROUND_COVER is a GroundCover::Kind; HAS_SEA, HAS_DRAPE and
-// HAS_LAND_COVER (of the drape) are 1 or 0, because software drivers evaluate both sides of every
-// branch.
+// GroundSurface of ground_block.h. GROUND_COVER is a GroundCover::Kind; HAS_SEA, HAS_DRAPE,
+// HAS_LAND_COVER (of the drape), HAS_WATER and HAS_GLOSS (water or a coat) are 1 or 0, because
+// software drivers evaluate both sides of every branch.
 #define MOUNTAIN_COVER 0
 #define LAMBERT_COVER 1
 #define OREN_NAYAR_COVER 2
@@ -28,13 +28,24 @@ layout(std140) uniform GroundSurface {
   // Values at even steps of the square root of a cosine: for snow the factor of a direction, for a
   // coat the fraction of a uniform sky that it reflects.
   vec4 by_root_mu[17];
+  // GlossMirror: altitude of its first sky [km], 1 / distance of its second sky above it [1/km].
+  vec4 mirror_place;
 };
 
-uniform sampler2D sea_mirror;  // SeaMirror of sky_on_ground.h
-uniform sampler2D level_sky;   // LevelSky of sky_on_ground.h
+uniform sampler2DArray gloss_mirror;  // GlossMirror of sky_on_ground.h: waves, then land
+uniform sampler2D level_sky;          // LevelSky of sky_on_ground.h
 #if HAS_DRAPE
 uniform sampler2D drape;  // linear sRGB, or fractions of land cover; fourth: 1 inside the picture
 #endif
+
+// A place on the ground, with the quantities that its lighting and material need.
+struct GroundPlace {
+  vec3 up;
+  float altitude;   // km
+  float footprint;  // across the ray [m]
+  vec3 offset;      // from the eye, east, north and upwards in the frame of the pattern [m]
+  vec3 point;       // from the eye, east, north and upwards there [m]
+};
 
 // Returns the cosines between normal and light, normal and eye, light and eye: AnglesBetween of
 // reflectance.h.
@@ -57,33 +68,109 @@ vec4 WaterBrdf(vec3 angles, float variance) {
   return vec4(glitter) + through / 3.14159265359 * under_water;
 }
 
-// Returns the radiance of the sky reflected by waves [1/sr].
-vec4 SkyInWater(vec3 up, vec3 to_eye) {
-  float mu_eye = clamp(dot(up, to_eye), 0.0, 1.0);
-  float mu_s = dot(up, sun_for_air.xyz);
-  vec3 flat_eye = to_eye - mu_eye * up;
-  vec3 flat_sun = sun_for_air.xyz - mu_s * up;
-  float lengths = max(length(flat_eye) * length(flat_sun), 1e-9);
-  float apart = clamp(dot(flat_eye, flat_sun) / lengths, -1.0, 1.0);  // 1: eye opposite the sun
-  vec2 unit = vec2(sqrt(0.5 * (1.0 + apart)), sqrt(mu_eye));
-  vec2 texel = vec2(TexelFromUnit(unit.x, SEA_MIRROR_SIDE), TexelFromUnit(unit.y, SEA_MIRROR_SIDE));
-  return texture(sea_mirror, texel) * LevelSky(mu_s);
+#if HAS_GLOSS
+// A mirrored direction, and what its place sees there.
+struct Mirror {
+  GroundPlace at;
+  float sine;  // of the elevation of the direction
+  vec3 direction;
+  Surroundings around;
+  float first_layer;  // of GlossMirror
+};
+
+// @param among_land  false: ground beyond the terrain, which sees none.
+Mirror MirrorOf(GroundPlace at, vec3 direction, bool among_land, float first_layer) {
+  Surroundings around = SurroundingsTowards(at.point, direction);
+  if (!among_land || slope_unit.x <= 0.0) around = kNoSurroundings;
+  return Mirror(at, dot(direction, at.up), direction, around, first_layer);
+}
+
+// Returns a texel of GlossMirror.
+// @param sine  of the elevation of a mirrored direction.
+vec4 MirrorTexel(Mirror mirror, float sine, float column, float layer) {
+  vec2 unit = vec2(column, sqrt(clamp(sine, 0.0, 1.0)));
+  vec2 texel =
+      vec2(TexelFromUnit(unit.x, GLOSS_MIRROR_SIDE), TexelFromUnit(unit.y, GLOSS_MIRROR_SIDE));
+  return textureLod(gloss_mirror, vec3(texel, mirror.first_layer + layer), 0.0);
+}
+
+// Returns the part of the mirrored weights that a horizon hides, from its place among the layers.
+float HiddenWeight(Mirror mirror, float sine, float place) {
+  return MirrorTexel(mirror, sine, place, GLOSS_MIRROR_LAYERS - 1.0).x;
+}
+
+// Returns the light of the sky above the horizon of a layer.
+vec4 SkyAbove(Mirror mirror, float column, float layer) {
+  float altitude = (mirror.at.altitude - mirror_place.x) * mirror_place.y;
+  return mix(MirrorTexel(mirror, mirror.sine, column, layer),
+             MirrorTexel(mirror, mirror.sine, column, layer + GLOSS_MIRROR_HORIZONS),
+             clamp(altitude, 0.0, 1.0));
+}
+
+// Returns the column of GlossMirror for the azimuth of a mirrored direction from that of the sun.
+float MirrorColumn(Mirror mirror) {
+  vec3 up = mirror.at.up;
+  vec3 flat_ray = mirror.direction - mirror.sine * up;
+  vec3 flat_sun = sun_for_air.xyz - dot(up, sun_for_air.xyz) * up;
+  float lengths = max(length(flat_ray) * length(flat_sun), 1e-9);
+  return sqrt(0.5 * (1.0 - clamp(dot(flat_ray, flat_sun) / lengths, -1.0, 1.0)));
+}
+
+// Returns the place of the horizon among the layers, in [0, 1]. A direction below the horizontal
+// sees as much more of the ground.
+float HorizonPlace(Mirror mirror) {
+  float over_lowest = mirror.around.horizon - min(mirror.sine, 0.0) - SKY_LOWEST;
+  bool is_open = mirror.around.horizon <= SKY_LOWEST;
+  return is_open ? 0.0 : sqrt(clamp(over_lowest / (1.0 - SKY_LOWEST), 0.0, 1.0));
+}
+
+// Returns the radiance of sky and slopes in a mirror [1/sr].
+vec4 SeenInMirror(Mirror mirror) {
+  const float steps = GLOSS_MIRROR_HORIZONS - 1.0;
+  float column = MirrorColumn(mirror), at = HorizonPlace(mirror) * steps;
+  float layer = min(floor(at), steps - 1.0), share = at - layer;
+  vec4 below = SkyAbove(mirror, column, layer), above = SkyAbove(mirror, column, layer + 1.0);
+  vec2 hides = vec2(HiddenWeight(mirror, mirror.sine, layer / steps),
+                    HiddenWeight(mirror, mirror.sine, (layer + 1.0) / steps));
+  vec4 sky = mix(below, above, share);
+  float hidden = mix(hides.x, hides.y, share);
+  // The sky between the two horizons stands for the sky over the horizon; where nothing is mirrored
+  // from there, the sky that is hidden does.
+  const float little = 0.01;
+  vec4 all = SkyAbove(mirror, column, 0.0);
+  vec4 over_horizon = max(below - above + little * (all - sky), vec4(0.0)) /
+                      max(hides.y - hides.x + little * hidden, 1e-9);
+  vec4 level = LevelSky(dot(mirror.at.up, sun_for_air.xyz));
+  float weight = mirror.around.weight, missing = mirror.around.missing_weight;
+  vec4 slopes = (mirror.around.slopes + missing * over_horizon * level) /
+                max(weight + missing, 1e-9);
+  return sky * level + hidden * slopes;
+}
+#endif
+
+#if HAS_WATER
+// Returns the radiance of sky and slopes reflected by waves [1/sr].
+// @param normal  of the waves that are resolved. The reflectance is theirs.
+vec4 MirroredByWaves(GroundPlace at, vec3 normal, vec3 to_eye, bool among_land) {
+  float mu_eye = clamp(dot(normal, to_eye), 0.0, 1.0);
+  Mirror mirror = MirrorOf(at, 2.0 * mu_eye * normal - to_eye, among_land, 0.0);
+  float reflected = HiddenWeight(mirror, mu_eye, 1.0);
+  return reflected / max(HiddenWeight(mirror, mirror.sine, 1.0), 1e-9) * SeenInMirror(mirror);
 }
 
 // Returns the radiance of water. `across` is the sun's irradiance perpendicular to its beams.
-// @param offset  from the eye in the plane of the pattern [m].
-// @param footprint  across the ray [m].
 // @param cosine  between the eye and the normal of the mesh.
-vec4 WaterRadiance(vec3 up, vec3 offset, float footprint, float cosine, vec4 across,
-                   vec4 sky_irradiance, vec3 to_eye) {
-  vec3 waves = WavesAt(offset, SeenFootprint(footprint, cosine), water.x, cosine);
+vec4 WaterRadiance(GroundPlace at, float cosine, vec4 across, vec4 sky_irradiance, vec3 to_eye,
+                   bool among_land) {
+  vec3 waves = WavesAt(at.offset, SeenFootprint(at.footprint, cosine), water.x, cosine);
   vec3 tilt = waves.x * pattern_east.xyz + waves.y * pattern_north.xyz;
-  vec3 normal = normalize(up - tilt + dot(tilt, up) * up);
+  vec3 normal = normalize(at.up - tilt + dot(tilt, at.up) * at.up);
   vec3 angles = ReflectionAngles(normal, sun.xyz, to_eye);
   vec4 body = WaterLetsIn(WATER_INDEX, angles.y) * under_water;
   return max(dot(normal, sun.xyz), 0.0) * across * WaterBrdf(angles, waves.z) +
-         body / 3.14159265359 * sky_irradiance + SkyInWater(normal, to_eye);
+         body / 3.14159265359 * sky_irradiance + MirroredByWaves(at, normal, to_eye, among_land);
 }
+#endif
 
 float ByRootOf(float mu) {
   float at = 64.0 * sqrt(mu);
@@ -148,21 +235,23 @@ vec4 CoverBodyAlbedo(vec4 albedo, float mu_eye) {
 #endif
 }
 
-// Returns the radiance of the sky, assumed uniform, reflected by a glossy coat.
-vec4 SkyInCoat(float mu_eye, vec4 sky_irradiance) {
+// Returns the radiance of sky and slopes reflected by a glossy coat.
+vec4 MirroredByCoat(GroundPlace at, vec3 normal, float mu_eye, vec3 to_eye, bool among_land) {
 #if GROUND_COVER == BLINN_PHONG_COVER
-  return ByRootOf(mu_eye) / 3.14159265359 * sky_irradiance;
+  return ByRootOf(mu_eye) *
+         SeenInMirror(MirrorOf(at, reflect(-to_eye, normal), among_land, GLOSS_MIRROR_OF_LAND));
 #else
   return vec4(0.0);
 #endif
 }
 
 // Radiance of land.
-vec4 CoverRadiance(vec4 albedo, vec3 normal, vec4 across, vec4 sky_irradiance, vec3 to_eye) {
+vec4 CoverRadiance(GroundPlace at, vec4 albedo, vec3 normal, vec4 across, vec4 sky_irradiance,
+                   vec3 to_eye, bool among_land) {
   vec3 angles = ReflectionAngles(normal, sun.xyz, to_eye);
   return max(dot(normal, sun.xyz), 0.0) * across * CoverBrdf(albedo, angles) +
          CoverBodyAlbedo(albedo, angles.y) / 3.14159265359 * sky_irradiance +
-         SkyInCoat(angles.y, sky_irradiance);
+         MirroredByCoat(at, normal, angles.y, to_eye, among_land);
 }
 
 #if HAS_DRAPE

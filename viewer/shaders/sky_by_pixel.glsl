@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: MIT
-// Irradiance of a surface between mountains by the sky and by other slopes, computed per pixel as
-// in the renderer (OccludedSkyIrradiance::Irradiance and TerrainInterreflection::Irradiance) from
-// the tables of ground_block.h.
+// The surroundings of a place between mountains, and the light that it receives from them, computed
+// per pixel as in the renderer from the tables of ground_block.h.
+
+//// sky_by_pixel.tables.glsl
+// The tables, and what of the surroundings lies in one direction.
 #define SKY_AZIMUTHS 16
 
 layout(std140) uniform SkyByPixel {
@@ -12,7 +14,7 @@ layout(std140) uniform SkyByPixel {
   vec4 sky_moment;  // current irradiance of the unoccluded sky relative to the tables, by band
   vec4 sky_place;   // altitude [km] to the tables' levels, zenith cosine of the sun to their suns:
                     // offset and factor of the altitude, offset and factor of the cosine
-  vec4 slope_unit;  // unit of the stored light of slopes
+  vec4 slope_unit;  // unit of the stored light of slopes; 0: there are no tables
 };
 
 uniform sampler2DArray horizons_around;  // four azimuths per layer; SKY_LOWEST .. 1 stored as 0 .. 1
@@ -20,16 +22,55 @@ uniform sampler2DArray sky_integrals;    // node; A and B of an azimuth; level
 uniform sampler2D level_irradiance;      // sun; level
 uniform sampler2DArray light_of_slopes;  // one azimuth per layer; then their weights, four per layer
 
+// Returns the texture coordinate among n nodes: 0 is the centre of the first texel, 1 of the last.
+float AmongNodes(float share, float n) {
+  return (0.5 + clamp(share, 0.0, 1.0) * (n - 1.0)) / n;
+}
+
+// Land around a place in one direction.
+struct Surroundings {
+  float horizon;        // sine of the elevation of the horizon; SKY_LOWEST: there is none
+  vec4 slopes;          // radiance of the slopes below it, times `weight`
+  float weight;         // TerrainInterreflection::Radiance explains the weights
+  float missing_weight; // of radiance that replaces slopes which the tables do not resolve
+};
+
+const Surroundings kNoSurroundings = Surroundings(SKY_LOWEST, vec4(0.0), 0.0, 1.0);
+
+float OfAzimuth(sampler2DArray four_a_layer, vec2 place, int first_layer, int azimuth) {
+  return textureLod(four_a_layer, vec3(place, float(first_layer + azimuth / 4)), 0.0)[azimuth % 4];
+}
+
+// Returns what a place sees of land: BetweenAzimuths and TerrainInterreflection::Radiance.
+// @param point  from the eye [m]; direction: not vertical.
+Surroundings SurroundingsTowards(vec3 point, vec3 direction) {
+  vec4 place = vec4(point, 1.0);
+  vec2 on_horizons = vec2(dot(horizon_u, place), dot(horizon_v, place));
+  vec2 on_slopes = vec2(dot(slope_u, place), dot(slope_v, place));
+  float turn = fract(atan(direction.y, direction.x) / 6.28318530718) * float(SKY_AZIMUTHS);
+  int before = min(int(turn), SKY_AZIMUTHS - 1), after = (before + 1) % SKY_AZIMUTHS;
+  float along = turn - float(before);
+  float horizon = mix(OfAzimuth(horizons_around, on_horizons, 0, before),
+                      OfAzimuth(horizons_around, on_horizons, 0, after), along);
+  float weight = mix(OfAzimuth(light_of_slopes, on_slopes, SKY_AZIMUTHS, before),
+                     OfAzimuth(light_of_slopes, on_slopes, SKY_AZIMUTHS, after), along);
+  vec4 slopes = mix(textureLod(light_of_slopes, vec3(on_slopes, float(before)), 0.0),
+                    textureLod(light_of_slopes, vec3(on_slopes, float(after)), 0.0), along);
+  float sine = SKY_LOWEST + (1.0 - SKY_LOWEST) * horizon;
+  float known = max(sine, 0.0) + 0.005;
+  return Surroundings(sine, sky_moment * slope_unit * slopes, weight,
+                      max(0.05 * known * known - weight, 0.0));
+}
+
+//// sky_by_pixel.irradiance.glsl
+// Irradiance of a surface by the sky and by other slopes: OccludedSkyIrradiance::Irradiance and
+// TerrainInterreflection::Irradiance of the renderer.
+
 // Returns the integral of sqrt(1 - s^2), with two Gauss nodes.
 float DiskAreaBetween(float low, float high) {
   float middle = 0.5 * (low + high), aside = 0.28867513 * (high - low);
   float a = middle - aside, b = middle + aside;
   return 0.5 * (high - low) * (sqrt(max(1.0 - a * a, 0.0)) + sqrt(max(1.0 - b * b, 0.0)));
-}
-
-// Returns the texture coordinate among n nodes: 0 is the centre of the first texel, 1 of the last.
-float AmongNodes(float share, float n) {
-  return (0.5 + clamp(share, 0.0, 1.0) * (n - 1.0)) / n;
 }
 
 // Accumulated irradiance of a surface.

@@ -60,10 +60,14 @@ class Blocks {
       : lit_(lit), eye_m_(eye_m), textures_(*lit.site().air().multiple_scattering) {
     if (const ColourDrape* drape = lit.site().material().drape())
       textures_.SetDrape(DrapeTexels(*drape, Picture(), 256));
-    textures_.SetSeaMirror(
-        LightSource::kSun,
-        SeaMirror::Of(light.on_terrain->sky(), *lit.site().air().multiple_scattering,
-                      lit.site().material().water(), lit.lighting().to_sun));
+    const GroundMaterial& material = lit.site().material();
+    const OccludedSkyIrradiance::Extent& extent = lit.site().horizons()->extent();
+    mirror_ = GlossMirror::Of(
+        light.on_terrain->sky(), *lit.site().air().multiple_scattering,
+        {material.HasWater() ? &material.water() : nullptr,
+         material.cover().kind == GroundCover::Kind::kBlinnPhong ? &material.glossy() : nullptr},
+        lit.lighting().to_sun, std::max(extent.lowest_m, 0.0), std::max(extent.highest_m, 0.0));
+    textures_.SetGlossMirror(LightSource::kSun, mirror_);
   }
 
   void Upload(const ShaderProgram& program) const {
@@ -82,7 +86,7 @@ class Blocks {
     Bind(program, "GroundLight", 3, light_,
          GroundLightBlockOf(UnoccludedSkyOver(lit_), light.to_sun, kPixel_rad));
     Bind(program, "GroundSurface", 4, surface_,
-         Draped(GroundSurfaceBlockOf(site.material()), Picture(),
+         Draped(Mirrored(GroundSurfaceBlockOf(site.material()), mirror_), Picture(),
                 FrameTransform(site.ground().frame, site.ground().frame), pattern));
     textures_.Bind(program, 0, LightSource::kSun);
   }
@@ -90,6 +94,7 @@ class Blocks {
   /// The tables of the sky's light on slopes, for programs that read them.
   void UploadSkyByPixel(const ShaderProgram& program) {
     constexpr int kUnit = 3;
+    glActiveTexture(GL_TEXTURE0 + kUnit);  // where the tables are uploaded
     const SkyIrradianceGradient open = UnoccludedSkyOver(lit_);
     sky_.Use(LightSource::kSun, {{std::shared_ptr<void>(), &lit_.sky()}, open});
     GeodeticPosition eye = lit_.site().ground().frame.origin();
@@ -107,6 +112,7 @@ class Blocks {
 
   const LitGround& lit_;
   double eye_m_;
+  GlossMirror mirror_;
   GroundTextures textures_;
   SkyByPixel sky_;
   GlBuffer air_, view_, ground_, light_, surface_, sky_block_;
@@ -168,7 +174,6 @@ std::vector<SeenPoint> PlanetPoints(const LitGround& lit, double eye_m) {
 /// The arguments with which a shader computes the light of a place.
 struct Question {
   std::string radiance;
-  bool asks_sky_by_pixel;
   std::function<tests::Arguments<float>(const SeenPoint&)> arguments;
 };
 
@@ -195,7 +200,7 @@ std::vector<double> Differences(const LitGround& lit, const Lighting& light, dou
       Texts(lit.site().material()), "dot(" + question.radiance + ", vec4(1.0, 0.0, 1.0, 0.0))",
       points, [&](const ShaderProgram& program) {
         blocks.Upload(program);
-        if (question.asks_sky_by_pixel) blocks.UploadSkyByPixel(program);
+        blocks.UploadSkyByPixel(program);
       });
   std::vector<double> differences;
   for (std::size_t i = 0; i < cases.size(); ++i) {
@@ -226,7 +231,7 @@ std::vector<double> LandDifferences(const LitGround& lit) {
   return Differences(lit, lit.lighting(), kEye_m, LandPoints(lit),
                      {"GroundRadiance(" + kPoint + ", " + kNormal +
                           ", a[5], vec4(a[6], 0.0, a[7], 0.0), " + kToEye + ")",
-                      false, [&](const SeenPoint& c) { return PlaceOf(c, kEye_m, shares(c)); }});
+                      [&](const SeenPoint& c) { return PlaceOf(c, kEye_m, shares(c)); }});
 }
 
 std::vector<double> DifferencesByPixel(const LitGround& lit) {
@@ -234,7 +239,7 @@ std::vector<double> DifferencesByPixel(const LitGround& lit) {
   return Differences(lit, lit.lighting(), kEye_m, LandPoints(lit),
                      {"SentOn(" + seen + ", a[5], SkyAtPixel(GroundPlaceAt(" + kPoint + "), " +
                           kPoint + ", " + seen + ".normal), " + kToEye + ")",
-                      true, [](const SeenPoint& c) {
+                      [](const SeenPoint& c) {
                         return PlaceOf(c, kEye_m, {c.light.sun_x, 0.0F, 0.0F});
                       }});
 }
@@ -246,7 +251,7 @@ std::vector<double> PlanetDifferences(const LitGround& lit, double eye_m) {
   light.on_terrain = std::make_shared<const TerrainIrradiance>(
       nullptr, *air.single_scattering, *air.multiple_scattering, light.to_sun);
   return Differences(lit, light, eye_m, PlanetPoints(lit, eye_m),
-                     {"PlanetRadiance(" + kPoint + ", " + kToEye + ")", false,
+                     {"PlanetRadiance(" + kPoint + ", " + kToEye + ")",
                       [eye_m](const SeenPoint& c) { return PlaceOf(c, eye_m, {}); }});
 }
 
@@ -277,6 +282,7 @@ TEST_F(GroundOnGpu, BlocksLieWhereTheDriverLooks) {
        {"cover_albedo", "rough", "coat", "water", "under_water", "snow_y", "drape_red",
         "drape_green", "drape_blue", "drape_place", "drape_eye", "by_root_mu[0]"})
     EXPECT_EQ(OffsetOf(program, name), 16 * member++) << name;
+  EXPECT_EQ(OffsetOf(program, "mirror_place"), 16 * 28) << "after 17 values by_root_mu";
 }
 
 TEST_F(GroundOnGpu, MountainsAreTheRenderers) {
@@ -339,6 +345,19 @@ TEST_F(GroundOnGpu, CoversOfOneColourAreTheRenderers) {
       EXPECT_LT(tests::Quantile(differences, 0.5), median) << elevation_deg;
       EXPECT_LT(tests::Quantile(differences, 0.9), most) << elevation_deg;
     }
+  }
+}
+
+TEST_F(GroundOnGpu, WaterBetweenMountainsMirrorsSkyAndSlopesAsTheRenderer) {
+  GroundCover water;
+  water.kind = GroundCover::Kind::kWater;
+  const auto site = tests::RoughSite(water);
+  for (const double elevation_deg :
+       tests::ScaledDown(std::vector{50.0, 12.0, -3.0}, {12.0, -3.0})) {
+    const std::vector<double> differences =
+        DifferencesByPixel(LitGround(site, tests::RoughSun(*site, elevation_deg)));
+    EXPECT_LT(tests::Quantile(differences, 0.5), 0.03) << elevation_deg;
+    EXPECT_LT(tests::Quantile(differences, 0.9), 0.1) << elevation_deg;
   }
 }
 
