@@ -51,9 +51,12 @@ constexpr double kMetresPerNauticalMile = 1852.0;  // exact (Monaco, 1929)
 constexpr double kLargeNumber = 1e5;
 constexpr double kFastNumber = 1e4;
 
+// Angles that round to 0 or 180 degrees have one text on both sides.
 std::string CoordinateText(double angle_rad, char positive, char negative) {
-  const double degrees = angle_rad / kRadiansPerDegree;
-  return fmt::format("{:.4f}° {}", std::abs(degrees), degrees < 0.0 ? negative : positive);
+  constexpr double kSteps = 1e4;  // per degree
+  const double degrees = std::round(kSteps * angle_rad / kRadiansPerDegree) / kSteps;
+  return fmt::format("{:.4f}° {}", std::abs(degrees),
+                     degrees < 0.0 && degrees > -180.0 ? negative : positive);
 }
 
 /// Rounds to an integer, and writes "0" for "-0".

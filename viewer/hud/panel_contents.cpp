@@ -98,7 +98,7 @@ void PlaceControls(const PanelChange& change, PanelTyping& typing) {
   typing.is_place_typed |= ImGui::InputDouble("height", &height, 0.0, 0.0, "%.0f m");
   if (!ImGui::Button("go there")) return;
   typing.is_place_typed = false;
-  change.flight.Place({std::clamp(latitude, -90.0, 90.0), std::clamp(longitude, -180.0, 180.0),
+  change.flight.Place({std::clamp(latitude, -90.0, 90.0), std::clamp(longitude, -180.0, 360.0),
                        height, std::nullopt, std::nullopt});
 }
 

@@ -221,6 +221,10 @@ TEST(HudText, PlacesNameTheirHemisphere) {
   EXPECT_EQ(LatitudeText(Radians(-33.0)), "33.0000° S");
   EXPECT_EQ(LongitudeText(Radians(-8.25)), "8.2500° W");
   EXPECT_EQ(LongitudeText(Radians(179.9)), "179.9000° E");
+  EXPECT_EQ(LatitudeText(Radians(-90.0)), "90.0000° S");
+  for (const double longitude : {180.0, -180.0, 179.99999, -179.99999})
+    EXPECT_EQ(LongitudeText(Radians(longitude)), "180.0000° E") << "one meridian has one name";
+  EXPECT_EQ(LongitudeText(Radians(-0.00001)), "0.0000° E");
 }
 
 TEST(HudText, HeadingsAreThreeDigitsBelow360) {
