@@ -15,6 +15,7 @@
 #include "atmosphere/math/constants.h"
 #include "lut/cli/terminal.h"
 #include "renderer/camera/track.h"
+#include "renderer/camera/track_names.h"
 #include "renderer/scene/places.h"
 #include "renderer/scene/scene_options.h"
 #include "renderer/series/frame_times.h"
@@ -26,10 +27,6 @@
 
 namespace alpenglow::renderer {
 namespace {
-
-bool IsTrack(const std::filesystem::path& file) {
-  return HasExtension(file, ".gpx") || HasExtension(file, ".kml");
-}
 
 /// Returns the place of a path: its middle, from which most of it is visible. A flight over the
 /// built-in range begins at the view of the range.

@@ -14,7 +14,7 @@ CameraPose EyeOfScene(const Scene& scene) {
   CameraPose eye{scene.place, scene.camera.heading_rad, scene.camera.pitch_rad,
                  scene.camera.roll_rad, scene.camera.fov_rad};
   eye.place.height_m = scene.camera.height.value_m;
-  return Zoomed(eye, 1.0);
+  return eye;
 }
 
 Look InDaylight(Look look) {
@@ -44,7 +44,7 @@ FlightSession::FlightSession(const Scene& scene, const UtcInstant& start,
                                                    ? ToneMapPass::FirstPictures::kDraft
                                                    : ToneMapPass::FirstPictures::kWait),
       painter_(scene, settings.land,
-               {EyeOfScene(scene), start, settings.size.width, settings.size.height},
+               {InWindow(EyeOfScene(scene)), start, settings.size.width, settings.size.height},
                SizesOf(QualityOf(settings).painted().quality), settings.first_air),
       edits_(scene, settings.land, painter_),
       standpoint_(controller_, edits_, painter_),
@@ -69,7 +69,7 @@ void FlightSession::FlyAgain(const CameraPath& flown) {
 }
 
 void FlightSession::Show(const ReplayFrame& frame) {
-  const CameraPathPoint shown{frame.path_s, Zoomed(frame.eye, 1.0), frame.now};
+  const CameraPathPoint shown{frame.path_s, frame.eye, frame.now};
   Replay(CameraPath(std::vector{shown}));
 }
 
@@ -79,15 +79,16 @@ void FlightSession::Advance(const PilotControls& controls, double seconds) {
 }
 
 void FlightSession::Paint(const ToneMapPass::Screen& screen, double seconds) {
-  const auto scene = [this] { return edits_.ForRenderer(eye(), now()); };
-  frames_.Paint(eye(), now(), {scene, edits_.version()}, screen, seconds);
+  const CameraPose shown = InWindow(eye());
+  const auto scene = [&] { return edits_.ForRenderer(shown, now()); };
+  frames_.Paint(shown, now(), {scene, edits_.version()}, screen, seconds);
 }
 
-void FlightSession::WaitUntilReady(const ImageSize& size, int samples) {
-  painter_.WaitUntilReady(ViewOf(size), samples);
+void FlightSession::WaitUntilReady(const ImageSize& size) {
+  painter_.WaitUntilReady(InWindow(ViewOf(size)));
   if (standpoint_.KnowsGround()) return;
   standpoint_.StandOnGround();
-  painter_.WaitUntilReady(ViewOf(size), samples);
+  painter_.WaitUntilReady(InWindow(ViewOf(size)));
 }
 
 FlightMoment FlightSession::Moment() const {

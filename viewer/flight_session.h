@@ -73,9 +73,8 @@ class FlightSession {
   /// Paints onto a screen with the exposure of the meter. `seconds` is the time since the previous
   /// picture.
   void Paint(const ToneMapPass::Screen& screen, double seconds);
-  /// Waits until all data for a picture of this size are ready.
-  /// @param samples  rays per pixel of that picture.
-  void WaitUntilReady(const ImageSize& size, int samples = 1);
+  /// Waits until the eye stands where it belongs and all data for a frame of this size are ready.
+  void WaitUntilReady(const ImageSize& size);
 
   /// Returns everything that another flight with the same start needs to make the same pictures.
   [[nodiscard]] FlightMoment Moment() const;
@@ -88,6 +87,8 @@ class FlightSession {
   [[nodiscard]] const UtcInstant& now() const { return controller_.clock().now(); }
   /// Returns the name of the time zone at the eye.
   [[nodiscard]] std::string zone() const { return edits_.ZoneAt(eye().place); }
+  /// Returns the view of a written picture. Its field of view is that of the scene or path, up to
+  /// 179 degrees, or it is a panorama.
   [[nodiscard]] PaintedView ViewOf(const ImageSize& size) const {
     return {eye(), now(), size.width, size.height};
   }

@@ -19,6 +19,7 @@
 #include "renderer/series/manifest.h"
 #include "viewer/gl/gl_context.h"
 #include "viewer/gl/render_target.h"
+#include "viewer/passes/panorama.h"
 
 namespace alpenglow::viewer {
 namespace {
@@ -48,26 +49,49 @@ void RequirePictureName(const std::filesystem::path& file) {
 }
 
 Image PictureWriter::Picture(const ImageSize& size, int samples, const PictureProgress& progress) {
-  const FrameRenderer::StillSizes still_sizes(flight_.frames());
-  if (progress) progress(kBegunShare);
-  flight_.WaitUntilReady(size, samples);
-  if (progress) progress(kReadyShare);
-  PictureProgress painted;
-  if (progress) {
-    painted = [&](double share) { progress(kReadyShare + (kPaintedShare - kReadyShare) * share); };
-  }
-  const std::optional<int> largest_part = flight_.start().settings.largest_part;
-  return flight_.frames().PaintInParts(flight_.ViewOf(size), samples,
-                                       largest_part.value_or(LargestPartOf(size)), painted);
+  return PictureOf(flight_.ViewOf(size), samples, progress);
 }
 
-Metadata PictureWriter::HeaderOf(const ImageSize& size, const Development& development) const {
+namespace {
+
+// Returns the progress of the part of a picture that begins at a share; empty if nobody asks.
+PictureProgress PartOf(const PictureProgress& progress, double begin, double range) {
+  if (!progress) return {};
+  return [=](double share) { progress(begin + range * share); };
+}
+
+}  // namespace
+
+Image PictureWriter::PictureOf(const PaintedView& view, int samples,
+                               const PictureProgress& progress) {
+  const FrameRenderer::StillSizes still_sizes(flight_.frames());
+  if (progress) progress(kBegunShare);
+  flight_.WaitUntilReady({view.width, view.height});
+  const std::optional<int> largest_part = flight_.start().settings.largest_part;
+  const auto paint = [&](PaintedView part, const PictureProgress& painted) {
+    part.eye.place = flight_.eye().place;  // the eye may have been put on the ground
+    return flight_.frames().PaintInParts(
+        part, samples, largest_part.value_or(LargestPartOf({part.width, part.height})), painted);
+  };
+  if (progress) progress(kReadyShare);
+  constexpr double kRange = kPaintedShare - kReadyShare;
+  if (!IsPanorama(view)) return paint(view, PartOf(progress, kReadyShare, kRange));
+  int sides = 0;
+  return PaintPanorama(view, [&](const PaintedView& side) {
+    const double begin = kReadyShare + kRange * sides++ / kPanoramaSides;
+    return paint(side, PartOf(progress, begin, kRange / kPanoramaSides));
+  });
+}
+
+Metadata PictureWriter::HeaderOf(const PaintedView& view, const Development& development) const {
   RenderSettings settings;
-  settings.width = size.width;
-  settings.height = size.height;
+  settings.width = view.width;
+  settings.height = view.height;
   settings.samples_per_pixel = kPictureSamples;
   settings.filter = PixelFilter::Kind::kBox;
-  Metadata metadata = PictureMetadata(flight_.edits().SeenBy(flight_.eye(), flight_.now()),
+  CameraPose eye = flight_.eye();
+  eye.fov_rad = view.eye.fov_rad;
+  Metadata metadata = PictureMetadata(flight_.edits().SeenBy(eye, flight_.now()),
                                       flight_.edits().file_hashes(), settings);
   metadata["alpenglow.time"] = FormatUtc(flight_.now(), 3);
   metadata["alpenglow.painter"] = "skyview";
@@ -78,12 +102,12 @@ Metadata PictureWriter::HeaderOf(const ImageSize& size, const Development& devel
 
 Metadata PictureWriter::PaintStill(const ToneMapPass::Screen& screen,
                                    const PictureProgress& progress) {
-  const ImageSize size{screen.width, screen.height};
-  const Image image = Picture(size, kPictureSamples, progress);
+  const PaintedView view = InWindow(flight_.ViewOf({screen.width, screen.height}));
+  const Image image = PictureOf(view, kPictureSamples, progress);
   const Development development = flight_.exposure().DevelopmentOf(image);
   flight_.exposure().Record(development);
   flight_.frames().ShowStill(image, development, screen);
-  return HeaderOf(size, development);
+  return HeaderOf(view, development);
 }
 
 void PictureWriter::Write(const std::filesystem::path& file, const ImageSize& size,
@@ -92,7 +116,7 @@ void PictureWriter::Write(const std::filesystem::path& file, const ImageSize& si
   Image image = Picture(size, kPictureSamples, progress);
   const Development development = flight_.exposure().DevelopmentOf(image);
   const auto& [look, ev100] = development;
-  const Metadata metadata = HeaderOf(size, development);
+  const Metadata metadata = HeaderOf(flight_.ViewOf(size), development);
   if (HasExtension(file, ".exr")) {
     WriteExr(file, image, metadata);
   } else {

@@ -37,15 +37,15 @@ class PictureWriter {
   explicit PictureWriter(FlightSession& flight) : flight_(flight) {}
 
   /// Returns the linear picture as seen by the eye, with everything that is visible there. Any size
-  /// is possible: a picture that OpenGL cannot draw as a whole is painted in tiles. Throws
-  /// OptionError if memory is insufficient.
+  /// is possible: a picture that OpenGL cannot draw as a whole is painted in tiles, and a panorama
+  /// is assembled from perspectives. Throws OptionError if memory is insufficient.
   [[nodiscard]] Image Picture(const ImageSize& size, int samples,
                               const PictureProgress& progress = {});
   /// Paints the view again with several rays per pixel and writes it: a .png is developed, an .exr
   /// is linear. Both have the settings of the picture in their headers. Throws OutputError.
   void Write(const std::filesystem::path& file, const ImageSize& size,
              const PictureProgress& progress = {});
-  /// Paints the picture of Write and develops it onto a screen.
+  /// Paints the picture of a window as Write does, and develops it onto a screen.
   /// @return the metadata of the picture.
   [[nodiscard]] Metadata PaintStill(const ToneMapPass::Screen& screen,
                                     const PictureProgress& progress = {});
@@ -58,7 +58,9 @@ class PictureWriter {
   [[nodiscard]] DisplayImage Film(const ReplayFrame& frame, const ImageSize& size, double seconds);
 
  private:
-  [[nodiscard]] Metadata HeaderOf(const ImageSize& size, const Development& development) const;
+  [[nodiscard]] Image PictureOf(const PaintedView& view, int samples,
+                                const PictureProgress& progress);
+  [[nodiscard]] Metadata HeaderOf(const PaintedView& view, const Development& development) const;
 
   FlightSession& flight_;
 };

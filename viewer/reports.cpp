@@ -16,6 +16,7 @@
 #include "renderer/picture/reference_picture.h"
 #include "renderer/picture/render.h"
 #include "viewer/passes/display_pass.h"
+#include "viewer/passes/panorama.h"
 
 namespace alpenglow::viewer {
 namespace {
@@ -166,12 +167,24 @@ double LeastMs(const std::function<void()>& draw) {
   return least_ms;
 }
 
-TimedPicture Paint(SkyPainter& painter, const PaintedView& view, const PaintSizes& sizes) {
-  painter.Use(sizes);
+TimedPicture PaintPerspective(SkyPainter& painter, const PaintedView& view) {
   painter.WaitUntilReady(view);
   const double best_ms = LeastMs([&] { painter.Paint(view); });
   painter.Paint(view, kSamples);
   return {painter.picture().Read(), best_ms};
+}
+
+// The time of a panorama is that of its sides.
+TimedPicture Paint(SkyPainter& painter, const PaintedView& view, const PaintSizes& sizes) {
+  painter.Use(sizes);
+  if (!IsPanorama(view)) return PaintPerspective(painter, view);
+  double sum_ms = 0.0;
+  Image image = PaintPanorama(view, [&](const PaintedView& side) {
+    TimedPicture painted = PaintPerspective(painter, side);
+    sum_ms += painted.frame_ms;
+    return std::move(painted.image);
+  });
+  return {std::move(image), sum_ms};
 }
 
 /// A picture of linear light with one ray per pixel of the screen, or with fewer rays and upscaled.
@@ -236,6 +249,11 @@ std::string ExplainView(SkyPainter& painter, const ReferenceScene& scene, const 
                         Quality quality) {
   const PaintSizes sizes = SizesOf(quality);
   const Image by_renderer = ReferenceOf(scene, view);
+  const std::vector<bool> edges = EdgesOf(by_renderer);
+  if (std::find(edges.begin(), edges.end(), false) == edges.end()) {
+    return fmt::format("quality {}, {}x{}: every pixel is an edge, so that none can be compared\n",
+                       NameOf(quality), view.width, view.height);
+  }
   const TimedPicture painted = Paint(painter, view, sizes);
   const ViewDifference all = DifferenceOf(by_renderer, painted.image);
   std::string text = fmt::format(
@@ -255,7 +273,8 @@ std::string ExplainView(SkyPainter& painter, const ReferenceScene& scene, const 
   }
   painter.Use(sizes);
   const double scale = PaintedAlways(quality).scale;
-  return scale < 1.0 ? text + FewerRays(painter, view, by_renderer.layers, scale) : text;
+  const bool is_upscaled = scale < 1.0 && !IsPanorama(view);  // windows show no panoramas
+  return is_upscaled ? text + FewerRays(painter, view, by_renderer.layers, scale) : text;
 }
 
 }  // namespace alpenglow::viewer

@@ -114,6 +114,8 @@ double SceneEdits::GroundAt(const GeodeticPosition& place) const {
   return painter_.land().ground().HeightUnder(place).value_or(0.0);
 }
 
+void SceneEdits::AwaitGround(const GeodeticPosition& place) { painter_.land().AwaitGround(place); }
+
 void SceneEdits::BringRangeTo(const GeodeticPosition& place) {
   const auto reaches = [&](const TerrainSource& range) {
     return ProceduralMountainsExtent(*range.centre).Covers(place.latitude_rad, place.longitude_rad);

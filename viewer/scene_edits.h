@@ -54,6 +54,8 @@ class SceneEdits {
   /// bare planet. Near the view of the built-in mountain range it returns the known height before
   /// the range is loaded.
   [[nodiscard]] double GroundAt(const GeodeticPosition& place) const;
+  /// Waits until the land at a place is loaded, if there is any.
+  void AwaitGround(const GeodeticPosition& place);
 
   [[nodiscard]] const Scene& scene() const { return scene_; }
   [[nodiscard]] const Landscape& land() const { return painter_.land(); }

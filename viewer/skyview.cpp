@@ -10,6 +10,7 @@
 #include "lut/cli/output_file.h"
 #include "lut/cli/outputs.h"
 #include "renderer/camera/track.h"
+#include "renderer/camera/track_names.h"
 #include "renderer/scene/places.h"
 #include "renderer/scene/scene_options.h"
 #include "renderer/series/frame_times.h"
@@ -40,7 +41,9 @@ void StandOverTheLand(const SkyviewOptions& options, SceneOptions& typed) {
   if (!options.altitude) typed.above_ground_m = 300.0;
 }
 
-Scene SceneOf(const SkyviewOptions& options) {
+/// @param track  the track of --path, if it is one: without another place, the scene is that of its
+///     middle, as in skyseries.
+Scene SceneOf(const SkyviewOptions& options, const std::optional<Track>& track) {
   if (!options.scene_file.empty()) return ReadScene(options.scene_file, kForViewer);
   SceneOptions typed;
   typed.place = options.place;
@@ -50,6 +53,11 @@ Scene SceneOf(const SkyviewOptions& options) {
   typed.heading = options.heading;
   typed.pitch = options.pitch;
   typed.dem = options.dem;
+  if (track && !typed.place && !typed.latitude && !typed.longitude) {
+    const GeodeticPosition middle = track->points[track->points.size() / 2].place;
+    typed.latitude = middle.latitude_rad / kRadiansPerDegree;
+    typed.longitude = middle.longitude_rad / kRadiansPerDegree;
+  }
   StandOverTheLand(options, typed);
   Scene scene = SceneFromOptions(typed);
   scene.time.reset();  // StartOf uses noon at the place instead of noon in Greenwich
@@ -233,9 +241,36 @@ void LogNotes(FlightSession& flight) {
     Log(fmt::format("skyview: {}\n", note));
 }
 
+/// Writes a message if windows or instruments show another field of view than the scene's.
+void LogFieldOfView(const CameraPose& eye) {
+  const double shown_rad = InWindow(eye).fov_rad;
+  if (shown_rad == eye.fov_rad) return;
+  Log(fmt::format(
+      "skyview: the field of view is {:.4g} degrees; windows and instruments show {:.4g}"
+      ", pictures without instruments all of it\n",
+      eye.fov_rad / kRadiansPerDegree, shown_rad / kRadiansPerDegree));
+}
+
 /// Returns whether only linear pictures are requested; these can be assembled from tiles.
 bool PaintsInParts(const SkyviewOptions& options) {
   return !options.benchmark && !options.explain && options.hud != "on";
+}
+
+Track ReadTrackWithNote(const std::string& file) {
+  Track track = ReadTrack(file);
+  if (!track.note.empty()) Log(fmt::format("skyview: warning: {}: {}\n", file, track.note));
+  return track;
+}
+
+/// Returns a track as the path that skyseries flies. Waits for land where the track needs its
+/// height.
+CameraPath PathOfTrack(const Track& track, const Scene& scene, FlightSession& flight) {
+  TrackStyle style;
+  style.fov_rad = scene.camera.fov_rad;
+  return PathAlong(track, style, [&](const GeodeticPosition& place) {
+    flight.edits().AwaitGround(place);
+    return flight.edits().GroundAt(place);
+  });
 }
 
 int Run(const SkyviewOptions& options) {
@@ -243,10 +278,12 @@ int Run(const SkyviewOptions& options) {
   const ImageSize size = SizeFromText(options.size);
   if (options.screenshot) RequirePictureName(*options.screenshot);
   if (options.video) RequireVideo(*options.video);
-  const Scene scene = SceneOf(options);
+  std::optional<Track> flown;  // --path, if it is a track
+  if (options.replay && IsTrack(*options.replay)) flown = ReadTrackWithNote(*options.replay);
+  const Scene scene = SceneOf(options, flown);
   const UtcInstant start = StartOf(options, scene);
   std::optional<CameraPath> path;
-  if (options.replay) path = ReadFlight(*options.replay);
+  if (options.replay && !flown) path = ReadFlight(*options.replay);
   PrepareOutputs(OutputsOf(options), InputsOf(options, scene));  // before the flight
   std::future<FirstAir> first_air;  // computed while the window is being created
   if (!options.headless) {
@@ -272,13 +309,14 @@ int Run(const SkyviewOptions& options) {
   flight.standpoint().Place(PlacementOf(options));
   if (options.place) flight.standpoint().GoTo(*options.place);
   if (options.track) {
-    const Track track = ReadTrack(*options.track);
-    if (!track.note.empty())
-      Log(fmt::format("skyview: warning: {}: {}\n", *options.track, track.note));
+    const Track track = ReadTrackWithNote(*options.track);
     flight.edits().BringRangeTo(track.points[track.points.size() / 2].place);
     flight.Follow(PathAlong(track, {}, flight.controller().ground()));
   }
   if (path) flight.edits().BringRangeTo(path->PoseAt(path->begin_s()).place);
+  if (flown) path = PathOfTrack(*flown, scene, flight);
+  if (window || options.benchmark || options.hud == "on")
+    LogFieldOfView(path ? path->PoseAt(path->begin_s()) : flight.eye());
   FlightRecorder recorder = options.record ? FlightRecorder(*options.record) : FlightRecorder();
   if (window) window->AtLostDisplay([&recorder] { recorder.Finish(); });
   if (options.explain) {

@@ -90,8 +90,8 @@ inline void AddPlaceOptions(CLI::App& app, SkyviewOptions& options) {
       ->excludes(file);
   app.add_option("--track", options.track, "Follow a GPX or KML track");
   app.add_option("--replay,--path", options.replay,
-                 "Fly along a recorded path. Without a display, --screenshot out.%04d.png "
-                 "--frames N writes pictures along it");
+                 "Fly along a recorded path, or a GPX or KML track. Without a display, "
+                 "--screenshot out.%04d.png --frames N writes pictures along it");
   BeginGroup(app, kTimeGroup);
   app.add_option("--time,--at", options.time,
                  "Time at the start: 2026-06-21T04:00:00Z, or an event of the day of the scene: "

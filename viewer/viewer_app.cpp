@@ -314,7 +314,7 @@ void ViewerApp::Paint(const ToneMapPass::Screen& screen, double seconds) {
 namespace {
 
 HudFlight FlightOf(FlightSession& flight) {
-  const CameraPose& eye = flight.eye();
+  const CameraPose eye = InWindow(flight.eye());
   const FlightReadout readout = flight.controller().pilot().Readout(flight.controller().ground());
   HudFlight shown;
   shown.mode = readout.aircraft ? std::string(readout.aircraft_name) : NameOf(readout.mode);

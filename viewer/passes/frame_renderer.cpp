@@ -180,6 +180,7 @@ void FrameRenderer::Paint(const CameraPose& eye, const UtcInstant& now,
 Image FrameRenderer::PaintInParts(const PaintedView& whole, int samples, int largest_part,
                                   const PictureProgress& progress) {
   AimLandingLight(whole.eye);
+  painter_.WaitUntilReady(whole, samples);
   TiledPicture picture(whole.width, whole.height, largest_part);
   const auto slices = static_cast<double>(picture.tiles().size()) * samples;
   int slices_before = 0;

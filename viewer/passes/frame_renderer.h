@@ -93,8 +93,8 @@ class FrameRenderer {
   void SetTimer(PassTimer* timer);
   [[nodiscard]] PassTimer* timer() const { return timer_; }
 
-  /// Returns a linear picture that is painted in tiles of at most `largest_part` pixels a side,
-  /// with everything ready for its view (FlightSession::WaitUntilReady) and StillSizes.
+  /// Waits until everything is ready for a view, and returns its linear picture, which is painted
+  /// in tiles of at most `largest_part` pixels a side. Call it with StillSizes.
   /// @param progress  called after each ray of a tile; may be empty.
   [[nodiscard]] Image PaintInParts(const PaintedView& whole, int samples, int largest_part,
                                    const PictureProgress& progress);

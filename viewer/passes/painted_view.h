@@ -33,6 +33,12 @@ struct PaintedView {
   glm::dvec4 part{0.0, 0.0, 1.0, 1.0};  // part of the whole view, as in ViewOfTile
 };
 
+/// Returns the view with a field of view that a window shows.
+[[nodiscard]] inline PaintedView InWindow(PaintedView view) {
+  view.eye = InWindow(view.eye);
+  return view;
+}
+
 /// Returns the angle between neighbouring pixels in the centre of the view [rad].
 [[nodiscard]] double PixelAngle(const PaintedView& view);
 
