@@ -148,38 +148,44 @@ vec3 LampOfTerrain(vec3 way) {
 }
 
 // Returns the height of a point at `way` from the lamp above the shadow of the bare planet, in two
-// thousandths of its distance, plus 1. The shadow begins at the horizon of the lamp.
-float LampOverHorizon(Lamp lamp, vec3 way) {
+// thousandths of its distance, plus `margin`. The shadow begins at the horizon of the lamp.
+float LampOverHorizon(Lamp lamp, vec3 way, float margin) {
   float far = length(way);
   float diameter = 2e3 * lamp_planet.x;
   float beyond = far - sqrt(diameter * max(lamp.shade.w, 0.0));
   if (beyond <= 0.0) return 1.0;
   vec3 at = lamp.position.xyz + way;
   float altitude = 1e3 * lamp_planet.y + at.z + dot(at.xy, at.xy) / diameter;
-  return 1.0 + (altitude - beyond * beyond / diameter) / (2e-3 * max(far, 1e-3));
+  return margin + (altitude - beyond * beyond / diameter) / (2e-3 * max(far, 1e-3));
 }
 
 // Returns the height of a point at `way` from the lamp above the shadow of terrain, in two
-// thousandths of its distance. The terrain up to one ring nearer is considered, and a point may be
-// one such unit lower and still be lit, so that ground does not shadow itself.
-float LampClearance(Lamp lamp, vec3 way) {
+// thousandths of its distance, plus `margin`: half of the light reaches a point at 0.5. The terrain
+// up to a number of rings nearer is considered.
+float LampClearance(Lamp lamp, vec3 way, float rings_nearer, float margin) {
 #ifdef LAMP_SHADE
-  if (lamp.shade.x < -0.5) return LampOverHorizon(lamp, way);
+  if (lamp.shade.x < -0.5) return LampOverHorizon(lamp, way, margin);
   vec3 at = LampOfTerrain(way);
   float far = max(length(at.xy), LAMP_SHADE_NEAREST);
   vec2 size = vec2(textureSize(lamp_shades, 0).xy);
-  float ring = LampAirlightUnit(far, LAMP_SHADE_NEAREST, LAMP_SHADE_FARTHEST) - 1.0 / (size.y - 1.0);
+  float ring = LampAirlightUnit(far, LAMP_SHADE_NEAREST, LAMP_SHADE_FARTHEST) -
+               rings_nearer / (size.y - 1.0);
   float turn = atan(at.y, at.x) * 0.159154943 + 0.5 / size.x;
   float slope =
       textureLod(lamp_shades, vec3(turn, TexelFromUnit(ring, size.y), lamp.shade.x), 0.0).x;
-  return 1.0 + (at.z - slope * far) / (2e-3 * max(length(at), 1e-3));
+  return margin + (at.z - slope * far) / (2e-3 * max(length(at), 1e-3));
 #else
-  return LampOverHorizon(lamp, way);
+  return LampOverHorizon(lamp, way, margin);
 #endif
 }
 
-// Returns the fraction of a lamp's light that terrain and the planet let through.
-float LampLit(Lamp lamp, vec3 way) { return clamp(LampClearance(lamp, way), 0.0, 1.0); }
+// Returns the clearance of a point in the air. Rings are interpolated: half a ring nearer, the
+// terrain up to the point is considered on average.
+float LampClearanceInAir(Lamp lamp, vec3 way) { return LampClearance(lamp, way, 0.5, 0.5); }
+
+// Returns the fraction of a lamp's light that terrain and the planet let through to the ground. The
+// terrain around the point is left out, and the margin is larger, so that ground does not shadow itself.
+float LampLit(Lamp lamp, vec3 way) { return clamp(LampClearance(lamp, way, 1.0, 1.0), 0.0, 1.0); }
 
 // Returns this fraction for ground, from its distance to the shadow edge, which is blurred to the
 // width of a ray.
@@ -276,7 +282,7 @@ vec4 GlowOfLamp(Lamp lamp, vec3 direction, float distance_m, bool shaped) {
     vec4 light = (weight * source) * LampLeft(LampDepth(columns));
     // A node represents half the distance to its neighbours, of which the shadow edge may cut a
     // part. The light is then continuous when the edge passes a node.
-    float clear = LampClearance(lamp, t * direction - lamp.position.xyz);
+    float clear = LampClearanceInAir(lamp, t * direction - lamp.position.xyz);
     float middle = 0.5 * (clear_before + clear);
     sum += 0.5 * (i == 0 ? LampLitBetween(clear, clear) * light
                          : LampLitBetween(clear_before, middle) * light_before +
