@@ -7,6 +7,8 @@
 
 #include <array>
 #include <cmath>
+#include <stdexcept>
+#include <utility>
 
 #include "lut/image/image.h"
 #include "lut/image/look.h"
@@ -24,6 +26,7 @@ namespace {
 
 namespace fs = std::filesystem;
 using ::testing::HasSubstr;
+using ::testing::Not;
 
 class Skyview : public BareSceneFolder {
  protected:
@@ -205,6 +208,98 @@ TEST_F(Skyview, APathOfAnotherProgramIsReplayed) {
   EXPECT_EQ(middle.at("alpenglow.time"), "2026-06-21T13:00:00.000Z");
   EXPECT_THAT(middle.at("alpenglow.camera_height"), HasSubstr("4000"));
   EXPECT_EQ(Run(replay + InFolder("f.exr")).status, 3) << "three pictures under one name";
+}
+
+// Mean and largest relative difference of the luminance of two pictures, and of their means.
+struct PictureDifference {
+  double mean, of_means;
+};
+PictureDifference Apart(const Image& a, const Image& b) {
+  double sum_a = 0.0, sum_b = 0.0, apart = 0.0;
+  for (std::size_t i = 0; i < a.rgb.size(); ++i) {
+    const auto at = static_cast<double>(a.rgb[i][1]), bt = static_cast<double>(b.rgb[i][1]);
+    sum_a += at, sum_b += bt, apart += std::abs(at - bt) / std::max(at, 1e-6);
+  }
+  return {apart / static_cast<double>(a.rgb.size()), std::abs(sum_b / sum_a - 1.0)};
+}
+
+TEST_F(Skyview, WideViewsAndPanoramasHaveTheProjectionOfSkyseries) {
+  if (!tests::HasOpenGl()) GTEST_SKIP() << "EGL gives no OpenGL here";
+  for (const int fov : {150, 170, 360}) {
+    // Neither sun nor moon is up: their disks are smaller than a pixel.
+    WriteText(folder_ / "wide.toml", std::string(kBareSceneText) +
+                                         fmt::format("[camera]\nheight_m = 2000.0\nheading = 20\n"
+                                                     "pitch = 10\nroll = 5\nfov = {}\n",
+                                                     fov));
+    const std::string size = " --size 48x24 ";
+    Outcome outcome =
+        Run(InFolder("wide.toml") + " --headless --time 2026-06-15T19:45:00Z --quality high" +
+            size + "--screenshot " + InFolder("v.exr"));
+    ASSERT_EQ(outcome.status, 0) << outcome.error;
+    outcome = RunCommand(std::string("'") + tests::kSkyseries + "' " + InFolder("wide.toml") +
+                         " --at 2026-06-15T19:45:00Z --filter box --samples 16" + size + "--out " +
+                         InFolder("s.exr"));
+    ASSERT_EQ(outcome.status, 0) << outcome.error;
+    const auto [mean, of_means] = Apart(ReadExr(InFolder("s.exr")), ReadExr(InFolder("v.exr")));
+    EXPECT_LT(mean, 0.03)
+        << fov << ": as narrower views over the bare planet, after sunset without a moon";
+    EXPECT_LT(of_means, 0.03) << fov;
+    EXPECT_NEAR(std::stod(ReadExrMetadata(InFolder("v.exr")).at("alpenglow.fov_deg")), fov, 1e-9);
+  }
+}
+
+TEST_F(Skyview, InstrumentsUnderAWideViewComeWithAMessage) {
+  if (!tests::HasOpenGl()) GTEST_SKIP() << "EGL gives no OpenGL here";
+  WriteText(folder_ / "wide.toml",
+            std::string(kBareSceneText) + "[camera]\nheight_m = 2000.0\nfov = 360\n");
+  const std::string picture =
+      InFolder("wide.toml") + " --headless --size 64x36 --screenshot " + InFolder("v.png");
+  const Outcome with = Run(picture + " --hud on");
+  EXPECT_EQ(with.status, 0) << with.error;
+  EXPECT_THAT(with.error, HasSubstr("the field of view is 360 degrees; windows and instruments "
+                                    "show 120"));
+  EXPECT_THAT(Run(picture).error, Not(HasSubstr("field of view"))) << "it is all shown";
+}
+
+TEST_F(Skyview, APictureOfEdgesAloneIsExplainedAsSuch) {
+  if (!tests::HasOpenGl()) GTEST_SKIP() << "EGL gives no OpenGL here";
+  WriteText(folder_ / "s.toml",
+            std::string(kBareSceneText) +
+                "[camera]\nheight_m = 2000.0\npitch = -1.5\nroll = 5\nfov = 60\n");
+  const Outcome outcome = Run(InFolder("s.toml") + " --headless --explain --size 2x1");
+  EXPECT_EQ(outcome.status, 0) << outcome.error;
+  EXPECT_THAT(outcome.out, HasSubstr("every pixel is an edge"));
+}
+
+TEST_F(Skyview, ATrackIsFlownAsSkyseriesFliesIt) {
+  if (!tests::HasOpenGl()) GTEST_SKIP() << "EGL gives no OpenGL here";
+  std::string points;
+  for (int i = 0; i < 10; ++i) {
+    points += fmt::format(
+        "<trkpt lat=\"{}\" lon=\"{}\"><ele>{}</ele><time>2026-06-21T10:00:{:02}Z</time></trkpt>\n",
+        46.5 + 1e-3 * i, 8.0 + 1e-3 * i, 1200 + 10 * i, 5 * i);
+  }
+  WriteText(folder_ / "t.gpx",
+            "<?xml version=\"1.0\"?><gpx version=\"1.1\" "
+            "xmlns=\"http://www.topografix.com/GPX/1/1\"><trk><trkseg>\n" +
+                points + "</trkseg></trk></gpx>\n");
+  const std::string path = InFolder("s.toml") + " --path " + InFolder("t.gpx") + " --size 16x9 ";
+  Outcome outcome = Run(path + "--headless --frames 3 --screenshot " + InFolder("v.%d.exr"));
+  ASSERT_EQ(outcome.status, 0) << outcome.error;
+  outcome = RunCommand(std::string("'") + tests::kSkyseries + "' " + path +
+                       "--count 3 --effects sky --out " + InFolder("s.%d.exr"));
+  ASSERT_EQ(outcome.status, 0) << outcome.error;
+  for (int i = 0; i < 3; ++i) {
+    const Metadata viewer = ReadExrMetadata(InFolder(fmt::format("v.{}.exr", i)));
+    const Metadata series = ReadExrMetadata(InFolder(fmt::format("s.{}.exr", i)));
+    EXPECT_EQ(viewer.at("alpenglow.time"), series.at("alpenglow.utc")) << i;
+    for (const char* angle :
+         {"alpenglow.latitude_deg", "alpenglow.longitude_deg", "alpenglow.heading_deg",
+          "alpenglow.pitch_deg", "alpenglow.roll_deg", "alpenglow.fov_deg"}) {
+      EXPECT_NEAR(std::stod(viewer.at(angle)), std::stod(series.at(angle)), 1e-6)
+          << i << ": " << angle;
+    }
+  }
 }
 
 // Hard case 49.
@@ -401,6 +496,14 @@ TEST_F(SkyviewLand, SkyseriesTakesThePlaceFromAFlightOverAModel) {
   EXPECT_EQ(outcome.status, 0) << "the place without a path is off this model: " << outcome.error;
 }
 
+/// The mean error of a report of --explain [%].
+double MeanErrorIn(const std::string& report) {
+  const std::string row = "picture, from renderer's";
+  const std::size_t at = report.find(row);
+  if (at == std::string::npos) throw std::runtime_error(report);
+  return std::stod(report.substr(at + row.size()));
+}
+
 TEST_F(SkyviewLand, AViewOverSeveralModelsIsExplainedOnTheLandThatIsLoaded) {
   const Outcome outcome =
       RunCommand(std::string("env -u DISPLAY -u WAYLAND_DISPLAY '") + tests::kSkyview +
@@ -409,11 +512,55 @@ TEST_F(SkyviewLand, AViewOverSeveralModelsIsExplainedOnTheLandThatIsLoaded) {
   ASSERT_EQ(outcome.status, 0) << outcome.error;
   for (const char* said : {"air tables", "levels of land", "saves"})
     EXPECT_THAT(outcome.out, HasSubstr(said));
-  const std::string row = "picture, from renderer's";
-  const std::size_t at = outcome.out.find(row);
-  ASSERT_NE(at, std::string::npos) << outcome.out;
-  EXPECT_LT(std::stod(outcome.out.substr(at + row.size())), 1.0)
+  EXPECT_LT(MeanErrorIn(outcome.out), 1.0)
       << "per cent, as over one model; without land, or with every second sample, it would be more";
+}
+
+TEST_F(SkyviewLand, ALakeBetweenMountainsMirrorsThemAsInSkyseries) {
+  if (!tests::HasOpenGl()) GTEST_SKIP() << "EGL gives no OpenGL here";
+  for (const char* const ground : {"sea_level_m = 1450.0", "cover = \"water\""}) {
+    WriteText(folder_ / "lake.toml",
+              fmt::format("[place]\nlatitude = 46.65\nlongitude = 8.05\n"
+                          "[time]\nutc = \"2026-06-15T16:30:00Z\"\n"
+                          "[atmosphere]\npreset = \"bruneton2017\"\n"
+                          "[camera]\nheight_m = 2900.0\nheading = 250\npitch = -20\nfov = 70\n"
+                          "[terrain]\ndem = \"west.tif\"\n[ground]\n{}\n",
+                          ground));
+    Outcome outcome = RunCommand(std::string("'") + tests::kSkyseries +
+                                 "' lake.toml --filter box --samples 16 --size 32x18 --out s.exr");
+    ASSERT_EQ(outcome.status, 0) << outcome.error;
+    for (const char* const quality : {"low", "high"}) {
+      outcome = RunCommand(std::string("env -u DISPLAY -u WAYLAND_DISPLAY '") + tests::kSkyview +
+                           "' lake.toml --headless --size 32x18 --quality " + quality +
+                           " --screenshot v.exr");
+      ASSERT_EQ(outcome.status, 0) << outcome.error;
+      EXPECT_LT(Apart(ReadExr(folder_ / "s.exr"), ReadExr(folder_ / "v.exr")).mean, 0.04)
+          << ground << ", " << quality << ": edges of shadows and crests included";
+    }
+  }
+}
+
+// Hard case 17.
+TEST_F(SkyviewLand, OverBothPolesAndTheDateLineItShowsTheLandOfTheRenderer) {
+  if (!tests::HasOpenGl()) GTEST_SKIP() << "EGL gives no OpenGL here";
+  struct Place {
+    double hemisphere, from_pole, longitude;
+    const char* time;
+  };
+  for (const auto& [hemisphere, from_pole, longitude, time] :
+       {Place{1.0, 0.02, 179.99, "2026-06-21T09:00:00Z"},
+        {-1.0, 0.0, 0.0, "2026-12-21T09:00:00Z"}}) {
+    tests::WritePolarModel(folder_ / "pole.tif", hemisphere);
+    const Outcome outcome = RunCommand(fmt::format(
+        "env -u DISPLAY -u WAYLAND_DISPLAY '{}' --headless --size 32x18 --quality medium "
+        "--dem pole.tif --latitude {} --longitude {} --altitude 9000 --heading 300 --pitch -30 "
+        "--time {} --explain",
+        tests::kSkyview, hemisphere * (90.0 - from_pole), longitude, time));
+    ASSERT_EQ(outcome.status, 0) << outcome.error;
+    EXPECT_LT(MeanErrorIn(outcome.out), 3.0)
+        << from_pole << " degrees from the pole, hemisphere " << hemisphere
+        << ": land that is missing, flat or unlit on one side would be more";
+  }
 }
 
 /// The instant of the first frame of a list of skyseries.
