@@ -159,12 +159,12 @@ TEST(Program, AThreadThatCannotBeStartedIsNoFaultOfTheProgram) {
 
 TEST(Program, HelpIsAsWideAsTheTerminal) {
   const std::string text =
-      "Options:\n  --height,--altitude FLOAT   Height of the camera in metres above the ellipsoid\n"
+      "Options:\n  --height,--altitude FLOAT  Height of the camera in metres above the ellipsoid\n"
       "Example: a picture\n  skytest --latitude 35.36 --longitude 138.73 --out fuji.exr\n";
   EXPECT_EQ(Wrapped(text, 200, "skytest "), text);
   EXPECT_EQ(Wrapped(text, 59, "skytest "),
-            "Options:\n  --height,--altitude FLOAT   Height of the camera in\n"
-            "                              metres above the ellipsoid\n"
+            "Options:\n  --height,--altitude FLOAT  Height of the camera in metres\n"
+            "                             above the ellipsoid\n"
             "Example: a picture\n  skytest --latitude 35.36 --longitude 138.73 --out \\\n"
             "    fuji.exr\n");
   for (std::size_t columns = 30; columns < 100; ++columns) {
