@@ -70,11 +70,11 @@ constexpr Signature kBinary[] = {
     {0, "SQLite format 3\0"sv, "SQLite (GeoPackage and MBTiles are such)"},
     {8, ".FIT"sv, "FIT, a track", "convert it to GPX"},
     {0, "\xD0\xCF\x11\xE0"sv, "an Office document"},
-    {0, "\x7F\x45LF"sv, "a program"},
-    {0, "\xFF\xFE"sv, "UTF-16 text", kSaveAsUtf8},
-    {0, "\xFE\xFF"sv, "UTF-16 text", kSaveAsUtf8}};
+    {0, "\x7F\x45LF"sv, "a program"}};
 
-constexpr Signature kText[] = {{0, "ply\n"sv, "PLY, a mesh or a point cloud"},
+constexpr Signature kText[] = {{0, "\xFF\xFE"sv, "UTF-16 text", kSaveAsUtf8},
+                               {0, "\xFE\xFF"sv, "UTF-16 text", kSaveAsUtf8},
+                               {0, "ply\n"sv, "PLY, a mesh or a point cloud"},
                                {0, "ply\r"sv, "PLY, a mesh or a point cloud"},
                                {0, "OFF\n"sv, "OFF, a mesh"},
                                {0, "OFF\r"sv, "OFF, a mesh"},

@@ -461,7 +461,7 @@ TEST(AtmosphereFile, BadInputsAreRefusedWithFileLineKeyAndRange) {
       {"preset = \n", "a.toml:1: not valid TOML"},
       {"preset = \"earth\n", "a.toml:1: not valid TOML"},
       {"x = [[[[[[[[\n", "a.toml:"},
-      {"\xff\xfe", "a.toml:1: "},
+      {"\xff\xfe", "a.toml: this is UTF-16 text; TOML is read: save it as UTF-8"},
       {"preset = \"\xc3\x28\"\n", "a.toml:1: not valid TOML"},
       {"# thin air\n[rayleigh]\nscale_height_m = 300\n",
        "a.toml:3: planet.atmosphere_top_m is 120000; with rayleigh.scale_height_m 300 it must lie "
