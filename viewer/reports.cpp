@@ -57,6 +57,7 @@ bool Benchmark::NextFrame() {
   if (!first_) first_ = now;
   if (begin_) EndFrame(now);
   begin_ = now;
+  begin_cpu_ms_ = MillisecondsOfThisThread();
   elapsed_s_ = Seconds(now - *first_);
   times_passes_ = clock_ == PassClock::kQueries || !times_passes_;
   timer_.SetClock(times_passes_ ? clock_ : PassClock::kNone);
@@ -84,6 +85,7 @@ void Benchmark::EndFrame(Clock::time_point now) {
 
 void Benchmark::RecordFrame(double ms) {
   frame_ms_.push_back(ms);
+  frame_cpu_ms_.push_back(MillisecondsOfThisThread() - begin_cpu_ms_);
   if (ms <= worst_ms_) return;
   worst_ms_ = ms;
   worst_at_s_ = elapsed_s_;
@@ -102,7 +104,7 @@ std::string Benchmark::Text() const {
   for (const std::string& pass : passes_) {
     text += LineOf(pass, ms_.at(pass)) + LineOf(pass + ".cpu", cpu_ms_.at(pass));
   }
-  return text + LineOf("frame", frame_ms_);
+  return text + LineOf("frame", frame_ms_) + LineOf("frame.cpu", frame_cpu_ms_);
 }
 
 std::string Benchmark::WorstText() const {

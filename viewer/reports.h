@@ -56,8 +56,8 @@ class Benchmark {
   /// Returns the timer to which the passes of a frame are reported.
   [[nodiscard]] PassTimer& timer() { return timer_; }
 
-  /// Returns the lines of the report, of which "frame" is the last. Call it after NextFrame has
-  /// returned false.
+  /// Returns the lines of the report, of which "frame" is the last but one, and "frame.cpu" the
+  /// last. Call it after NextFrame has returned false.
   [[nodiscard]] std::string Text() const;
   /// Returns a line such as "812 frames, the worst of them 93.1 ms, 2.3 times the median, after
   /// 34.5 s".
@@ -74,13 +74,14 @@ class Benchmark {
   PassClock clock_;
   PassTimer timer_;
   std::optional<Clock::time_point> first_, begin_;
+  double begin_cpu_ms_ = 0.0;  // of the drawing thread
   double elapsed_s_ = 0.0;
   bool times_passes_ = false;
   int timed_frames_ = 0;
   GLsync drawn_ = nullptr;
   std::vector<std::string> passes_;                         // in the order of their first draw
   std::map<std::string, std::vector<double>> ms_, cpu_ms_;  // by name of the pass
-  std::vector<double> frame_ms_;
+  std::vector<double> frame_ms_, frame_cpu_ms_;
   double worst_ms_ = 0.0, worst_at_s_ = 0.0;
 };
 

@@ -6,15 +6,12 @@
 #include <utility>
 
 namespace alpenglow::viewer {
-namespace {
 
 double MillisecondsOfThisThread() {
   timespec time = {};
   clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
   return 1e3 * static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_nsec);
 }
-
-}  // namespace
 
 PassClock TruthfulPassClock() {
   if (IsSoftwareOpenGl()) return PassClock::kFinishes;

@@ -28,6 +28,9 @@ enum class PassClock {
 /// Returns the clock that is accurate on the driver of the current context.
 [[nodiscard]] PassClock TruthfulPassClock();
 
+/// Returns the CPU time of the calling thread [ms].
+[[nodiscard]] double MillisecondsOfThisThread();
+
 struct PassTime {
   std::string pass;
   double ms;      // on the GPU
