@@ -127,9 +127,8 @@ void PutAir(const std::vector<LampLayer>& layers, std::size_t bands, double refe
   block.fog_phase = ParametersOf(fog.phase);
 }
 
-void PutColours(const Medium& medium, LampsBlock& block) {
-  const BandColour colour(medium.wavelengths_nm);
-  const std::size_t bands = medium.wavelengths_nm.size();
+void PutColours(const BandColour& colour, LampsBlock& block) {
+  const std::size_t bands = colour.wavelengths_nm().size();
   const auto rows = colour.linear_srgb_from_bands();
   for (std::size_t channel = 0; channel < 3; ++channel) {
     glm::vec4& row = channel == 0 ? block.red : channel == 1 ? block.green : block.blue;
@@ -146,7 +145,7 @@ LampView LampViewFrom(const LocalFrame& ground, const GeodeticPosition& eye,
 }
 
 LampsBlock LampsBlockOf(std::vector<ChosenLamp> lamps, const std::vector<LampLayer>& layers,
-                        const Medium& medium, const LampView& view,
+                        const Medium& medium, const BandColour& colour, const LampView& view,
                         std::array<double, 2> core_rad) {
   ALPENGLOW_ENSURE(lamps.size(), <=, kMostGpuLamps);
   double reference_m = view.altitude_m;
@@ -163,7 +162,7 @@ LampsBlock LampsBlockOf(std::vector<ChosenLamp> lamps, const std::vector<LampLay
   block.planet = {medium.planet_radius_m / 1000.0, std::max(view.altitude_m, 0.0) / 1000.0, 0.0,
                   0.0};
   PutAir(layers, medium.wavelengths_nm.size(), reference_m, block);
-  PutColours(medium, block);
+  PutColours(colour, block);
   for (glm::length_t axis = 0; axis < 3; ++axis) {
     block.ground[static_cast<std::size_t>(axis)] = {glm::vec3(view.eye_from_ground[axis]), 0.0F};
   }
@@ -335,7 +334,8 @@ PlacedLamp SceneLamps::Landing(const LampView& view) const {
 
 SceneLamps::InView SceneLamps::Before(const LampView& view, std::array<double, 2> core_rad,
                                       double dimmest_cd_per_m2, std::size_t most) {
-  tree_.StandBefore({view.eye_m, std::nullopt}, stage_);
+  if (stands_at_m_ != view.eye_m) tree_.StandBefore({view.eye_m, std::nullopt}, stage_);
+  stands_at_m_ = view.eye_m;
   InView in_view;
   std::vector<ChosenLamp> chosen;
   std::optional<PlacedLamp> landing;
@@ -351,7 +351,7 @@ SceneLamps::InView SceneLamps::Before(const LampView& view, std::array<double, 2
   std::sort(bright.begin(), bright.end());
   bright.resize(std::min(bright.size(), most - chosen.size()));
   for (const auto& [minus_promise, node] : bright) chosen.push_back(Choose(node));
-  in_view.block = LampsBlockOf(chosen, layers(), medium_, view, core_rad);
+  in_view.block = LampsBlockOf(chosen, layers(), medium_, colour_, view, core_rad);
   for (std::uint32_t i = 0; i < tree_.lamps(); ++i) {
     const PlacedLamp& lamp = tree_.Light(i);
     if (!lamp.HoldsEye() && !lamp.is_hidden) in_view.disks.push_back(DiskOf(lamp, view));

@@ -198,6 +198,7 @@ class SceneLamps {
   BandColour colour_;
   LampStage stage_;
   LampTree tree_;
+  std::optional<glm::dvec3> stands_at_m_;  // the eye for which the tree is prepared
   std::optional<LandingLight> landing_;
   std::vector<LampProfile> tables_;
   std::vector<int> table_of_lamp_;
