@@ -87,7 +87,7 @@ LinearRgb Atmosphere::ColourOf(const Spectrum& light) const {
   if (!state_->colour) throw InputError(*atmosphere::FaultOfColours(medium().wavelengths_nm));
   std::array<double, Spectrum::kMostBands> scaled{};
   for (std::size_t band = 0; band < sun.size(); ++band) {
-    RequireFinite(light[band], "band " + std::to_string(band) + " of the spectrum");
+    RequireFinite(light[band], fmt::format("band {} of the spectrum", band));
     scaled[band] = sun[band] * static_cast<double>(light[band]);
   }
   const auto [red, green, blue] = state_->colour->LinearSrgb({scaled.data(), sun.size()});
@@ -97,13 +97,11 @@ LinearRgb Atmosphere::ColourOf(const Spectrum& light) const {
 const Medium& Atmosphere::medium() const { return state_->medium; }
 
 void Spectrum::RefuseSize(std::size_t bands) {
-  throw InputError("bands is " + std::to_string(bands) + "; it must lie in [0, " +
-                   std::to_string(kMostBands) + "]");
+  throw InputError(fmt::format("bands is {}; it must lie in [0, {}]", bands, kMostBands));
 }
 
 void Spectrum::RefuseBand(std::size_t band, std::size_t size) {
-  throw InputError("band is " + std::to_string(band) + "; the spectrum has " +
-                   std::to_string(size) + " bands");
+  throw InputError(fmt::format("band is {}; the spectrum has {} bands", band, size));
 }
 
 double Luminance(const LinearRgb& colour) {
