@@ -51,7 +51,13 @@ struct BatchOf {
   static Type Load(const Real* from) { return Type::load_aligned(from); }
   static void Store(Real* to, const Type& value) { value.store_aligned(to); }
   static void StoreAnywhere(Real* to, const Type& value) { value.store_unaligned(to); }
-  static Real Sum(const Type& value) { return xsimd::hadd(value); }
+  static Real Sum(const Type& value) {
+    // xsimd 9 calls hadd reduce_add.
+    if constexpr (requires { reduce_add(value); })
+      return reduce_add(value);
+    else
+      return hadd(value);
+  }
   static bool All(const typename Type::batch_bool_type& condition) { return xsimd::all(condition); }
   static Real Last(const Type& value) { return value.get(kLanes - 1); }
   static Type Floor(const Type& value) { return xsimd::floor(value); }

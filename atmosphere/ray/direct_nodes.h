@@ -60,8 +60,9 @@ template <typename A>
 xsimd::batch<float, A> TimesPowerOfTwo(const xsimd::batch<float, A>& value,
                                        const xsimd::batch<float, A>& shifted) {
   using Whole = xsimd::batch<std::int32_t, A>;
-  const Whole exponent = xsimd::bitwise_cast<Whole>(shifted) << 23;
-  return xsimd::bitwise_cast<xsimd::batch<float, A>>(xsimd::bitwise_cast<Whole>(value) + exponent);
+  // Not xsimd::bitwise_cast, whose template argument is another one since xsimd 11.
+  const Whole exponent = std::bit_cast<Whole>(shifted) << 23;
+  return std::bit_cast<xsimd::batch<float, A>>(std::bit_cast<Whole>(value) + exponent);
 }
 #else
 template <std::size_t count>

@@ -1,10 +1,15 @@
 // SPDX-License-Identifier: MIT
 #include "renderer/terrain/terrain.h"
 
-#include <embree3/rtcore.h>
 #include <fmt/format.h>
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_reduce.h>
+
+#if __has_include(<embree4/rtcore.h>)
+#include <embree4/rtcore.h>
+#else
+#include <embree3/rtcore.h>
+#endif
 
 #include <algorithm>
 #include <cmath>
@@ -18,6 +23,26 @@
 
 namespace alpenglow::renderer {
 namespace {
+
+// Embree 4 has no context of a query.
+void TraceNearest(RTCScene scene, RTCRayHit& query) {
+#if RTC_VERSION_MAJOR >= 4
+  rtcIntersect1(scene, &query);
+#else
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  rtcIntersect1(scene, &context, &query);
+#endif
+}
+void TraceAny(RTCScene scene, RTCRay& ray) {
+#if RTC_VERSION_MAJOR >= 4
+  rtcOccluded1(scene, &ray);
+#else
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  rtcOccluded1(scene, &context, &ray);
+#endif
+}
 
 // Half an ulp of 1 in float, and the error bound of n successive roundings (Higham 2002, section
 // 3.1).
@@ -300,9 +325,7 @@ std::optional<TerrainHit> Terrain::Intersect(const glm::dvec3& origin, const glm
   query.ray = MakeRay(start, unit, inside->end - inside->begin);
   query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
   query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
-  RTCIntersectContext context;
-  rtcInitIntersectContext(&context);
-  rtcIntersect1(scene_->scene, &context, &query);
+  TraceNearest(scene_->scene, query);
   if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return std::nullopt;
   return HitAt(scene_->CornersOf(query.hit.primID), origin, unit, query.hit);
 }
@@ -316,9 +339,7 @@ bool Terrain::Occluded(const glm::dvec3& origin, const glm::dvec3& normal,
   const std::optional<Interval> inside = Clip(scene_->bounds, lifted, unit, length_m);
   if (!inside) return false;
   RTCRay ray = MakeRay(lifted + inside->begin * unit, unit, inside->end - inside->begin);
-  RTCIntersectContext context;
-  rtcInitIntersectContext(&context);
-  rtcOccluded1(scene_->scene, &context, &ray);
+  TraceAny(scene_->scene, ray);
   return ray.tfar < 0.0F;
 }
 
