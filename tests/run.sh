@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Installs packages, then builds and runs every test in the presets named as arguments (default: ci and
-# sanitize; see CMakePresets.json). Fails when a test fails, and when one is skipped for a reason that
+# Installs packages, then builds and runs every test in the presets named as arguments (default: ci; see
+# CMakePresets.json). Fails when a test fails, and when one is skipped for a reason that
 # tests/allowed_skips.txt does not list.
 #
 # SHAKE=N runs the tests of each preset N times more, in random order, with memory that is filled with
@@ -10,7 +10,7 @@ cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
 bash .ci/install-packages.sh
 presets=("$@")
-[ "${#presets[@]}" -gt 0 ] || presets=(ci sanitize)
+[ "${#presets[@]}" -gt 0 ] || presets=(ci)
 # Where a library has been loaded late, LeakSanitizer of gcc 12 reads thread-local storage where there
 # is none: what it intercepts is not what this glibc gives it (log_threads=1 shows "DTLS 21 at 0x2ac6").
 # Five frames of the place of an allocation are enough to find it, and recording more costs a seventh of
