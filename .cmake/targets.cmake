@@ -9,6 +9,8 @@ target_compile_options(alpenglow_warnings INTERFACE
   # Not -ffast-math: infinities and NaN mean what they mean. Contraction is off so that one source
   # gives one result on every machine.
   -fno-math-errno -fno-trapping-math -ffp-contract=off
+  # Messages and debug information name files from the top of the tree.
+  -ffile-prefix-map=${PROJECT_SOURCE_DIR}/=
   # Of a type in an anonymous namespace it warns where that stands in an included file. All sources are
   # included where several are compiled as one (CMAKE_UNITY_BUILD).
   $<$<AND:$<BOOL:${CMAKE_UNITY_BUILD}>,$<CXX_COMPILER_ID:GNU>>:-Wno-subobject-linkage>)
@@ -48,7 +50,6 @@ function(alpenglow_precompiled_headers)
   target_link_libraries(alpenglow_precompiled PRIVATE alpenglow_warnings glm::glm fmt::fmt TBB::tbb)
   target_precompile_headers(alpenglow_precompiled PRIVATE <.cmake/precompiled.h>)
 endfunction()
-alpenglow_precompiled_headers()
 
 # alpenglow_many_as_one(<target> <owner of precompiled headers>): twenty sources are compiled as one where the
 # default is eight, because the code of templates that sources share is generated once. They take at most 1 GB.
@@ -57,38 +58,47 @@ function(alpenglow_many_as_one target headers)
   set_target_properties(${target} PROPERTIES UNITY_BUILD_BATCH_SIZE 20)
 endfunction()
 
-# alpenglow_library(<folder> SOURCES a.cpp ... API b.cpp ...): the sources in API implement the public headers,
-# and only they see them. They are compiled one by one, because some public types have names of a layer's types.
+# alpenglow_library(<folder> [ABOVE <folder below>] SOURCES a.cpp ... API b.cpp ...): links to the library below it.
+# The sources in API implement the public headers, and only they see them. They are compiled one by one, because some public types have names of a layer's types.
+#
+# The library is static: programs and tests need what the public headers do not have. With BUILD_SHARED_LIBS, a
+# shared library of the same name is built for others: it exports what the public headers declare
+# (include/alpenglow/export.h), and contains what it needs of the static libraries.
 function(alpenglow_library folder)
-  cmake_parse_arguments(PARSE_ARGV 1 arg "" "" "SOURCES;API")
+  cmake_parse_arguments(PARSE_ARGV 1 arg "" "ABOVE" "SOURCES;API")
   set(target alpenglow_${folder})
   add_library(${target} STATIC ${arg_SOURCES} ${arg_API})
   set_source_files_properties(${arg_API} PROPERTIES
     INCLUDE_DIRECTORIES ${PROJECT_SOURCE_DIR}/include SKIP_UNITY_BUILD_INCLUSION ON)
   add_library(alpenglow::${folder} ALIAS ${target})
-  set_target_properties(${target} PROPERTIES EXPORT_NAME ${folder})
   target_compile_features(${target} PUBLIC cxx_std_20)
-  target_include_directories(${target} PUBLIC
-    $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}>
-    $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
+  target_include_directories(${target} PUBLIC $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}>)
   target_link_libraries(${target} PRIVATE $<BUILD_INTERFACE:alpenglow_warnings>)
+  if(arg_ABOVE)
+    target_link_libraries(${target} PUBLIC alpenglow_${arg_ABOVE})
+  endif()
   alpenglow_many_as_one(${target} alpenglow_precompiled)
-  install(TARGETS ${target} EXPORT alpenglow ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
-endfunction()
-
-# alpenglow::alpenglow: the public headers and all libraries. In the installed package the libraries have the
-# headers too: scene.h needs alpenglow::renderer, and the others need alpenglow::lut. In the tree only this target
-# has them, so that no source of a layer can include them.
-function(alpenglow_public_headers)
-  add_library(alpenglow_alpenglow INTERFACE)
-  add_library(alpenglow::alpenglow ALIAS alpenglow_alpenglow)
-  set_target_properties(alpenglow_alpenglow PROPERTIES EXPORT_NAME alpenglow)
-  target_include_directories(alpenglow_alpenglow INTERFACE
-    $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/include>
-    $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
-  target_link_libraries(alpenglow_alpenglow INTERFACE alpenglow_renderer)
-  install(TARGETS alpenglow_alpenglow EXPORT alpenglow)
-  install(DIRECTORY ${PROJECT_SOURCE_DIR}/include/alpenglow DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
+  set(installed ${target})
+  if(BUILD_SHARED_LIBS)
+    set(installed ${target}_shared)
+    add_library(${installed} SHARED ${arg_API})
+    target_compile_features(${installed} PUBLIC cxx_std_20)
+    if(arg_ABOVE)
+      # First, so that public functions of the layer below come from its shared library.
+      target_link_libraries(${installed} PUBLIC alpenglow_${arg_ABOVE}_shared)
+    endif()
+    target_link_libraries(${installed} PRIVATE ${target} alpenglow_warnings)
+    set_target_properties(${installed} PROPERTIES OUTPUT_NAME ${target} VERSION ${PROJECT_VERSION}
+      SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR})
+  else()
+    # A plug-in that links the library does not export its symbols.
+    target_compile_definitions(${target} PRIVATE ALPENGLOW_EXPORT=)
+  endif()
+  set_target_properties(${installed} PROPERTIES EXPORT_NAME ${folder})
+  target_include_directories(${installed} PUBLIC $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
+  install(TARGETS ${installed} EXPORT alpenglow_${folder} COMPONENT ${folder}
+    ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR}
+    LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} NAMELINK_COMPONENT ${folder})
 endfunction()
 
 # The instruction sets that kernels are compiled for (atmosphere/shared_glsl/instruction_set.h), and their options.
@@ -114,8 +124,8 @@ function(alpenglow_kernels target)
   if("Avx2" IN_LIST ALPENGLOW_INSTRUCTION_SETS)
     set(sets ALPENGLOW_X86_KERNELS)
   endif()
-  # The choice is made in a header, so all who include it must see the same sets.
-  target_compile_definitions(${target} PUBLIC ${sets})
+  # The choice is made in a header, so all who include it must see the same sets. That header is not installed.
+  target_compile_definitions(${target} PUBLIC $<BUILD_INTERFACE:${sets}>)
   foreach(set ${ALPENGLOW_INSTRUCTION_SETS})
     set(objects ${target}_kernels_${set})
     add_library(${objects} OBJECT ${ARGN})
@@ -142,7 +152,7 @@ function(alpenglow_program name source)
   add_executable(${name} ${source} ${arg_SOURCES})
   target_link_libraries(${name} PRIVATE ${arg_LIBRARIES} alpenglow_warnings)
   target_compile_options(${name} PRIVATE ${ALPENGLOW_LITTLE_OPTIMISATION})
-  install(TARGETS ${name} RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
+  install(TARGETS ${name} RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT programs)
 endfunction()
 
 # alpenglow_embed(<target> <files>...): the text of each file becomes a string in the library, all in one
@@ -310,21 +320,4 @@ function(alpenglow_test_line line program filter)
     --gtest_output=xml:${CMAKE_CURRENT_BINARY_DIR}/results/${line}.xml)
   set_tests_properties(${line} PROPERTIES TIMEOUT 1800
     ENVIRONMENT "${ALPENGLOW_TEST_ENVIRONMENT}")
-endfunction()
-
-# The package that find_package(alpenglow) reads.
-function(alpenglow_install_package)
-  include(CMakePackageConfigHelpers)
-  set(destination ${CMAKE_INSTALL_LIBDIR}/cmake/alpenglow)
-  set(config ${CMAKE_CURRENT_BINARY_DIR}/alpenglowConfig.cmake)
-  file(CONFIGURE OUTPUT ${config} CONTENT
-"include(\"\${CMAKE_CURRENT_LIST_DIR}/dependencies.cmake\")
-include(\"\${CMAKE_CURRENT_LIST_DIR}/alpenglowTargets.cmake\")
-" @ONLY)
-  write_basic_package_version_file(${CMAKE_CURRENT_BINARY_DIR}/alpenglowConfigVersion.cmake
-    COMPATIBILITY SameMinorVersion)
-  install(FILES ${config} ${CMAKE_CURRENT_BINARY_DIR}/alpenglowConfigVersion.cmake
-                ${PROJECT_SOURCE_DIR}/.cmake/dependencies.cmake
-          DESTINATION ${destination})
-  install(EXPORT alpenglow NAMESPACE alpenglow:: FILE alpenglowTargets.cmake DESTINATION ${destination})
 endfunction()

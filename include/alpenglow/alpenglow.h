@@ -8,6 +8,7 @@
 
 #include <alpenglow/atmosphere.h>
 #include <alpenglow/errors.h>
+#include <alpenglow/export.h>
 #include <alpenglow/geometry.h>
 #include <alpenglow/image.h>
 #include <alpenglow/panorama.h>

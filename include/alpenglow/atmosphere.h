@@ -11,13 +11,14 @@
 #include <string_view>
 #include <vector>
 
+#include <alpenglow/export.h>
 #include <alpenglow/spectrum.h>
 
 namespace alpenglow::atmosphere {
 struct Medium;
 }
 
-namespace alpenglow {
+namespace ALPENGLOW_EXPORT alpenglow {
 
 /// The parameters of an atmosphere. Immutable; copies share their memory.
 class Atmosphere {

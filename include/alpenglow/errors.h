@@ -6,25 +6,27 @@
 #include <stdexcept>
 #include <string>
 
+#include "export.h"
+
 namespace alpenglow::atmosphere {
 
 /// The input is wrong: a value, a name or a file. The message is one line with file, line or key,
 /// value and allowed range. It is UTF-8 text without control characters: such bytes of the input
 /// are written as "\x1b". Programs exit with status 3.
-class InputError : public std::runtime_error {
+class ALPENGLOW_EXPORT InputError : public std::runtime_error {
  public:
   explicit InputError(const std::string& message);
 };
 
 /// An output could not be written; the message, which is text like that of InputError, names the
 /// file. Programs exit with status 4.
-class OutputError : public std::runtime_error {
+class ALPENGLOW_EXPORT OutputError : public std::runtime_error {
  public:
   explicit OutputError(const std::string& message);
 };
 
 /// A fault of the library itself; please report it. Programs exit with status 70.
-class InternalError : public std::logic_error {
+class ALPENGLOW_EXPORT InternalError : public std::logic_error {
  public:
   using std::logic_error::logic_error;
 };
@@ -35,7 +37,7 @@ class InternalError : public std::logic_error {
 ///
 /// Any function may throw InternalError and std::bad_alloc. The other exceptions are part of the
 /// description of each function.
-namespace alpenglow {
+namespace ALPENGLOW_EXPORT alpenglow {
 
 using atmosphere::InputError;
 using atmosphere::InternalError;

@@ -6,7 +6,9 @@
 /// below the plane z = 0: a point 10 km north of the origin with up_m = 0 has an altitude of 8 m.
 #pragma once
 
-namespace alpenglow {
+#include <alpenglow/export.h>
+
+namespace ALPENGLOW_EXPORT alpenglow {
 
 /// A point relative to the origin of the local frame.
 struct LocalPoint {

@@ -11,7 +11,9 @@
 #include <string>
 #include <vector>
 
-namespace alpenglow {
+#include <alpenglow/export.h>
+
+namespace ALPENGLOW_EXPORT alpenglow {
 
 /// A plane of values beside the colours of an image, row 0 at the top.
 struct ImageLayer {

@@ -3,11 +3,12 @@
 /// Panoramas of the whole sphere around one observer, for lighting.
 #pragma once
 
+#include <alpenglow/export.h>
 #include <alpenglow/image.h>
 #include <alpenglow/sky.h>
 #include <alpenglow/sun_and_moon.h>
 
-namespace alpenglow {
+namespace ALPENGLOW_EXPORT alpenglow {
 
 /// The direction in the centre of a panorama. East is +x in all programs; panoramas are never
 /// mirrored.

@@ -7,7 +7,9 @@
 #include <string>
 #include <string_view>
 
-namespace alpenglow {
+#include <alpenglow/export.h>
+
+namespace ALPENGLOW_EXPORT alpenglow {
 
 /// A place in geodetic coordinates (WGS84).
 struct Place {

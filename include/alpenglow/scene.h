@@ -12,10 +12,11 @@
 #include <vector>
 
 #include <alpenglow/atmosphere.h>
+#include <alpenglow/export.h>
 #include <alpenglow/image.h>
 #include <alpenglow/place_time.h>
 
-namespace alpenglow {
+namespace ALPENGLOW_EXPORT alpenglow {
 
 /// A camera. Its eye is at the place of the scene.
 struct Camera {

@@ -8,10 +8,11 @@
 #include <vector>
 
 #include <alpenglow/atmosphere.h>
+#include <alpenglow/export.h>
 #include <alpenglow/geometry.h>
 #include <alpenglow/spectrum.h>
 
-namespace alpenglow {
+namespace ALPENGLOW_EXPORT alpenglow {
 
 /// The effect of the air between two points: an object with radiance L at the far point is seen
 /// with radiance transmittance * L + inscattered.

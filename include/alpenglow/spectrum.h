@@ -7,7 +7,9 @@
 #include <cstddef>
 #include <span>
 
-namespace alpenglow {
+#include <alpenglow/export.h>
+
+namespace ALPENGLOW_EXPORT alpenglow {
 
 /// One value for each wavelength of an atmosphere. It is a plain value without memory on the heap.
 class Spectrum {

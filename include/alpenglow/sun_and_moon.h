@@ -7,10 +7,11 @@
 #include <string_view>
 
 #include <alpenglow/atmosphere.h>
+#include <alpenglow/export.h>
 #include <alpenglow/geometry.h>
 #include <alpenglow/place_time.h>
 
-namespace alpenglow {
+namespace ALPENGLOW_EXPORT alpenglow {
 
 /// The sun as seen from a place. Its default is a sun in the south at its mean distance. Functions
 /// throw InputError that names a member out of its range.

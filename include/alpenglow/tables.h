@@ -7,9 +7,10 @@
 #include <string>
 
 #include <alpenglow/atmosphere.h>
+#include <alpenglow/export.h>
 #include <alpenglow/sky.h>
 
-namespace alpenglow {
+namespace ALPENGLOW_EXPORT alpenglow {
 
 /// Resolution of tables. For the four bands of "earth", a folder holds about 2.5, 26 and 96 MB of
 /// values.

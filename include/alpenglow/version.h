@@ -5,7 +5,9 @@
 
 #include <string_view>
 
-namespace alpenglow {
+#include <alpenglow/export.h>
+
+namespace ALPENGLOW_EXPORT alpenglow {
 
 /// Returns the release of the linked library, such as "0.2.0" (Semantic Versioning).
 [[nodiscard]] std::string_view Version();
