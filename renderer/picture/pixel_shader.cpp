@@ -58,8 +58,15 @@ AirRay RayDownTo(const LimbView& limb, const glm::dvec3& direction, double groun
           fall_m * (eye_m + end_m) / (along_m + rise_m), false};
 }
 
+AirRay Between(const AirRay& a, const AirRay& b, double share) {
+  if (share == 1.0) return b;
+  return {glm::normalize(a.direction + share * (b.direction - a.direction)),
+          std::lerp(a.length_m, b.length_m, share), false};
+}
+
 /// Returns the ray through the air in front of rays. A refracted ray is replaced by a straight one
-/// that ends at the same height.
+/// that ends at the same height. Where refraction does not move the planet in the picture, or
+/// terrain is seen, this begins gradually from kHaze_m above the ground on.
 AirRay AirRayOf(const FrameContext& frame, const SharedSegmentAir& rays) {
   const bool is_bent = frame.bent() && frame.bent()->moves_ground;
   AirRay seen{rays.Direction(), rays.length_m(),
@@ -74,13 +81,17 @@ AirRay AirRayOf(const FrameContext& frame, const SharedSegmentAir& rays) {
   const double ground_m = rays.kind == HitKind::kPlanet ? 0.0 : geometry.AltitudeOf(point);
   const double chord_rad = -std::asin(std::clamp(glm::dot(chord, geometry.UpAt(point)), -1.0, 1.0));
   const double eye_rad = std::asin(std::clamp(glm::dot(seen.direction, limb.up()), -1.0, 1.0));
-  if (limb.altitude_m() > ground_m + kHaze_m && chord_rad > 0.0 && eye_rad < 0.0) {
+  const bool is_bent_to_planet = is_bent && rays.kind == HitKind::kPlanet;
+  const double share = is_bent_to_planet
+                           ? 1.0
+                           : std::clamp((limb.altitude_m() - ground_m) / kHaze_m - 1.0, 0.0, 1.0);
+  if (share > 0.0 && chord_rad > 0.0 && eye_rad < 0.0) {
     const double equal_rad =
         ElevationOfEqualAir(limb.bending_air(), limb.altitude_m(), eye_rad, ground_m, chord_rad);
-    if (equal_rad > chord_rad) return RayDownTo(limb, seen.direction, ground_m, equal_rad);
+    if (equal_rad > chord_rad)
+      return Between(seen, RayDownTo(limb, seen.direction, ground_m, equal_rad), share);
   }
-  const bool is_beyond_horizon = is_bent && rays.kind == HitKind::kPlanet;
-  return is_beyond_horizon ? AirRay{chord, chord_m, false} : seen;
+  return is_bent_to_planet ? AirRay{chord, chord_m, false} : seen;
 }
 
 /// Air along a ray, with the effects of a picture.
