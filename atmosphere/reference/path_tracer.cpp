@@ -329,7 +329,8 @@ class Tracer {
   void GatherFromGround(const Piece& piece, std::vector<double>& light);
   [[nodiscard]] double ExpectedLight(const Piece& piece, double distance_m) const;
   [[nodiscard]] double SumOfShares() const;
-  [[nodiscard]] static Copies CopiesOf(double promise, double u);
+  [[nodiscard]] double AureoleAlong(const Piece& piece) const;
+  [[nodiscard]] static Copies CopiesOf(double promise, double aureole, double u);
   [[nodiscard]] Piece Continue(const Piece& piece, PathRandom& random);
   [[nodiscard]] std::size_t Draw(double u) const;
   [[nodiscard]] Vector TurnInAir(const Piece& piece, const Point& point, const Vector& from,
@@ -371,7 +372,8 @@ void Tracer::Follow(const Piece& first, double factor, PathRandom& random, Gathe
     Gather(branch.piece, order_ == 1 ? light.single : light.total);
     if (order_ == 1) first_shares_ = SumOfShares();
     if (order_ == max_order_ || first_shares_ <= 0.0) continue;
-    const Copies copies = CopiesOf(SumOfShares() / first_shares_, random.Next());
+    const Copies copies =
+        CopiesOf(SumOfShares() / first_shares_, AureoleAlong(branch.piece), random.Next());
     for (int copy = 0; copy < copies.count; ++copy) {
       for (std::size_t band = 0; band < weight_.size(); ++band)
         weight_[band] = branch.weight[band] * copies.factor;
@@ -540,11 +542,22 @@ double Tracer::SumOfShares() const {
   return sum;
 }
 
-// Applies Russian roulette and splitting. @param promise  expected contribution of the segment,
-// relative to that of the first segment.
-Tracer::Copies Tracer::CopiesOf(double promise, double u) {
-  if (promise < kRouletteShare) {
-    const double survival = promise / kRouletteShare;
+// Returns how many times as much light as from a mean direction the aerosol scatters from the sun
+// into the segment, at least 1.
+double Tracer::AureoleAlong(const Piece& piece) const {
+  const double nu = std::clamp(glm::dot(piece.direction, scene_.sun()), -1.0, 1.0);
+  const std::vector<double> phase = MiePhaseValues(scene_.medium(), nu);
+  return std::max(4.0 * kPi * *std::max_element(phase.begin(), phase.end()), 1.0);
+}
+
+// Applies Russian roulette and splitting. Paths towards the sun have small weights, because
+// directions there are sampled often; roulette takes them for what they bring.
+// @param promise  expected contribution of the segment, relative to that of the first segment, in
+//   light of a mean direction.
+// @param aureole  light of the segment's direction, relative to the mean.
+Tracer::Copies Tracer::CopiesOf(double promise, double aureole, double u) {
+  if (promise * aureole < kRouletteShare) {
+    const double survival = promise * aureole / kRouletteShare;
     return u < survival ? Copies{1, 1.0 / survival} : Copies{0, 0.0};
   }
   const double count = std::clamp(std::floor(promise / kSplitShare), 1.0, kMostCopies);
@@ -692,17 +705,33 @@ struct PlaneDirection {
   double weight;
 };
 
+// Samples the cosine law, the glow of twilight and the aerosol's lobe around the sun. Without the
+// lobe, few paths would find the light of a narrow forward peak, and their mean and its standard
+// error would both be too small.
 PlaneDirection DirectionAbove(const Scene& scene, const Vector& from, const Vector& normal,
                               int order, double choice, double u, double v) {
   const bool faces_sky = glm::dot(from, normal) > 0.0;
-  const double share = faces_sky ? GuidanceAt(scene, from, order).glow : 0.0;
+  const Guidance guidance = faces_sky ? GuidanceAt(scene, from, order) : Guidance{0.0, 0.0};
   const Glow glow(from, scene.sun(), scene.planet_m());
-  const Vector direction = choice < share
-                               ? glow.Sample(u, v)
-                               : FrameAround(normal).Direction(std::sqrt(v), 2.0 * kPi * u);
+  const std::vector<double> share(scene.bands(), 1.0);
+  const double azimuth = 2.0 * kPi * u;
+  Vector direction;
+  if (choice < guidance.glow) {
+    direction = glow.Sample(u, v);
+  } else if (choice < guidance.glow + guidance.aureole) {
+    const double rest = (choice - guidance.glow) / guidance.aureole;
+    direction =
+        FrameAround(scene.sun()).Direction(SampleAerosol(scene.medium(), share, rest, v), azimuth);
+  } else {
+    direction = FrameAround(normal).Direction(std::sqrt(v), azimuth);
+  }
   const double cosine = std::max(glm::dot(direction, normal), 0.0);
-  double density = (1.0 - share) * cosine / kPi;
-  if (share > 0.0) density += share * glow.Density(direction);
+  double density = (1.0 - guidance.glow - guidance.aureole) * cosine / kPi;
+  if (guidance.glow > 0.0) density += guidance.glow * glow.Density(direction);
+  if (guidance.aureole > 0.0) {
+    const double to_sun = std::clamp(glm::dot(direction, scene.sun()), -1.0, 1.0);
+    density += guidance.aureole * MeanBy(share, MiePhaseValues(scene.medium(), to_sun));
+  }
   return {direction, density > 0.0 ? cosine / density : 0.0};
 }
 
