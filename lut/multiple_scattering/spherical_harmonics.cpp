@@ -69,23 +69,71 @@ float AzimuthCosine(float mu, float mu_s, float nu) {
 
 namespace {
 
-// Returns the edges of panels, as ascending cosines. The phase function is smooth on the scale of
-// each panel: the panels of a table end at its nodes, others shrink towards the forward peak, so
-// that g = 0.999 is resolved.
-std::vector<double> PanelEdges(const PhaseFunction& phase) {
+// Returns the coefficients of a Henyey-Greenstein lobe: the powers of g.
+std::vector<double> CoefficientsOfLobe(double g, int degree) {
+  std::vector<double> chi{1.0};
+  while (chi.size() <= static_cast<std::size_t>(degree)) chi.push_back(g * chi.back());
+  return chi;
+}
+
+// Returns the coefficients of Draine's lobe, which is Henyey-Greenstein times 1 + alpha x^2 over
+// the mean of that factor. The recurrence x P_l = ((l + 1) P_{l+1} + l P_{l-1}) / (2 l + 1), used
+// twice, gives those of the lobe times x^2.
+std::vector<double> CoefficientsOfDraine(double g, double alpha, int degree) {
+  const std::vector<double> lobe = CoefficientsOfLobe(g, degree + 2);
+  const double mean = 1.0 + alpha * (1.0 + 2.0 * g * g) / 3.0;
+  std::vector<double> chi;
+  for (std::size_t i = 0; i <= static_cast<std::size_t>(degree); ++i) {
+    const auto l = static_cast<double>(i);
+    const double two = 2.0 * l;
+    double squared = (l + 1.0) * (l + 2.0) / ((two + 1.0) * (two + 3.0)) * lobe[i + 2] +
+                     (two * l + two - 1.0) / ((two - 1.0) * (two + 3.0)) * lobe[i];
+    if (i >= 2) squared += l * (l - 1.0) / ((two + 1.0) * (two - 1.0)) * lobe[i - 2];
+    chi.push_back((lobe[i] + alpha * squared) / mean);
+  }
+  return chi;
+}
+
+std::vector<double> Mixed(std::vector<double> first, const std::vector<double>& second,
+                          double share_of_second) {
+  for (std::size_t l = 0; l < first.size(); ++l)
+    first[l] = std::lerp(first[l], second[l], share_of_second);
+  return first;
+}
+
+// Returns the edges of panels, as ascending cosines. The phase function and the Legendre
+// polynomials up to `degree` are smooth on the scale of each panel: panels are at most 40 / degree
+// wide and shrink towards both ends of the axis, so that lobes a microradian wide are resolved.
+std::vector<double> PanelEdges(int degree) {
+  const double widest = 40.0 / std::max(degree, 40);
+  std::vector<double> angle;  // descending, of the half in front
+  for (double next = 0.5 * kPi; next > 1e-6; next -= std::min(0.5 * next, widest))
+    angle.push_back(next);
   std::vector<double> edges{-1.0};
-  if (phase.kind == PhaseKind::kTable) {
-    constexpr double kLast = static_cast<double>(PhaseTable::kNodes - 1);
-    for (std::size_t node = PhaseTable::kNodes - 2; node > 0; --node) {
-      const double s = static_cast<double>(node) / kLast;
-      edges.push_back(std::cos(kPi * s * s * s));
-    }
-  } else {
-    edges.push_back(0.0);
-    for (double gap = 0.5; gap > 1e-9; gap *= 0.5) edges.push_back(1.0 - gap);
+  for (auto next = angle.rbegin(); next != angle.rend(); ++next) edges.push_back(-std::cos(*next));
+  for (auto next = angle.begin() + 1; next != angle.end(); ++next) edges.push_back(std::cos(*next));
+  edges.push_back(1.0);
+  return edges;
+}
+
+// Returns the edges of the panels of tables, as ascending cosines: their nodes.
+std::vector<double> PanelEdgesOfTables() {
+  std::vector<double> edges{-1.0};
+  constexpr double kLast = static_cast<double>(PhaseTable::kNodes - 1);
+  for (std::size_t node = PhaseTable::kNodes - 2; node > 0; --node) {
+    const double s = static_cast<double>(node) / kLast;
+    edges.push_back(std::cos(kPi * s * s * s));
   }
   edges.push_back(1.0);
   return edges;
+}
+
+// Returns the number of Gauss nodes that integrate Legendre polynomials up to `degree` over a panel
+// of this width [rad], in which they turn by degree * width: half a node per radian of half the
+// width, and a margin that grows more slowly.
+int NodesOver(double width_rad, int degree) {
+  const double turn = width_rad * degree;
+  return std::min(4 + static_cast<int>(0.25 * turn + 2.0 * std::sqrt(turn)), kMaxGaussNodes);
 }
 
 /// Cosines with their weights; padded with weights of 0 to a multiple of kLanes.
@@ -94,7 +142,8 @@ struct PhaseQuadrature {
   std::vector<double> cosine, weight;
 };
 
-PhaseQuadrature QuadratureOver(const std::vector<double>& edges, const GaussRule& rule) {
+PhaseQuadrature QuadratureOver(const std::vector<double>& edges, int nodes) {
+  const GaussRule& rule = GaussLegendre(nodes);
   PhaseQuadrature quadrature;
   for (std::size_t panel = 0; panel + 1 < edges.size(); ++panel) {
     const double width = edges[panel + 1] - edges[panel];
@@ -116,46 +165,52 @@ struct TableQuadrature {
   std::vector<double> position;
 };
 
-TableQuadrature MakeTableQuadrature() {
-  TableQuadrature of_tables{
-      QuadratureOver(PanelEdges({.kind = PhaseKind::kTable}), GaussLegendre(4)), {}};
+TableQuadrature MakeTableQuadrature(int degree) {
+  constexpr double kWidest_rad = 3.0 * kPi / static_cast<double>(PhaseTable::kNodes - 1);
+  TableQuadrature of_tables{QuadratureOver(PanelEdgesOfTables(), NodesOver(kWidest_rad, degree)),
+                            {}};
   for (const double cosine : of_tables.rule.cosine)
     of_tables.position.push_back(PhaseTable::Position(cosine));
   return of_tables;
 }
 
-// Returns the quadrature; its weights include the phase function.
-PhaseQuadrature QuadratureOf(const PhaseFunction& phase) {
-  if (phase.kind == PhaseKind::kTable) {
-    static const TableQuadrature of_tables = MakeTableQuadrature();
-    PhaseQuadrature rule = of_tables.rule;
-    for (std::size_t i = 0; i < rule.weight.size(); ++i)
-      rule.weight[i] *= phase.table->At(of_tables.position[i]);
-    return rule;
+// Returns a quadrature for the degree or a higher one, made once.
+const TableQuadrature& QuadratureOfTables(int degree) {
+  constexpr int kLow = 16, kMiddle = 170;
+  if (degree <= kLow) {
+    static const TableQuadrature low = MakeTableQuadrature(kLow);
+    return low;
   }
-  PhaseQuadrature rule = QuadratureOver(PanelEdges(phase), GaussLegendre(32));
+  if (degree <= kMiddle) {
+    static const TableQuadrature middle = MakeTableQuadrature(kMiddle);
+    return middle;
+  }
+  static const TableQuadrature high = MakeTableQuadrature(8200);
+  return high;
+}
+
+PhaseQuadrature QuadratureOf(const PhaseTable& table, const TableQuadrature& of_tables) {
+  PhaseQuadrature rule = of_tables.rule;
+  for (std::size_t i = 0; i < rule.weight.size(); ++i)
+    rule.weight[i] *= table.At(of_tables.position[i]);
+  return rule;
+}
+
+// Returns the quadrature; its weights include the phase function.
+PhaseQuadrature QuadratureOf(const PhaseFunction& phase, int degree) {
+  if (phase.kind == PhaseKind::kTable) {
+    return QuadratureOf(*phase.table, QuadratureOfTables(degree));
+  }
+  PhaseQuadrature rule = QuadratureOver(PanelEdges(degree), 32);
   for (std::size_t i = 0; i < rule.weight.size(); ++i)
     rule.weight[i] *= Phase(phase, rule.cosine[i]);
   return rule;
 }
 
-}  // namespace
-
-std::vector<double> LegendreSeries(int degree, double nu) {
-  std::vector<double> value(static_cast<std::size_t>(degree) + 1);
-  double before = 0.0, now = 1.0;
-  for (int l = 0; l <= degree; ++l) {
-    value[static_cast<std::size_t>(l)] = (2.0 * l + 1.0) / (4.0 * kPi) * now;
-    const double next = ((2.0 * l + 1.0) * nu * now - l * before) / (l + 1.0);
-    before = now;
-    now = next;
-  }
-  return value;
-}
-
-std::vector<double> LegendreCoefficients(const PhaseFunction& phase, int degree) {
+// Returns the coefficients by quadrature.
+std::vector<double> IntegratedCoefficients(const PhaseFunction& phase, int degree) {
   constexpr std::size_t kLanes = PhaseQuadrature::kLanes;  // hides the latency of a recurrence
-  const PhaseQuadrature rule = QuadratureOf(phase);
+  const PhaseQuadrature rule = QuadratureOf(phase, degree);
   std::vector<double> sums(kLanes * (static_cast<std::size_t>(degree) + 1), 0.0);
   for (std::size_t first = 0; first < rule.cosine.size(); first += kLanes) {
     const double* x = &rule.cosine[first];
@@ -176,6 +231,42 @@ std::vector<double> LegendreCoefficients(const PhaseFunction& phase, int degree)
   for (auto sum = sums.begin(); sum != sums.end(); sum += kLanes)
     chi.push_back(std::accumulate(sum, sum + kLanes, 0.0));
   return chi;
+}
+
+}  // namespace
+
+std::vector<double> LegendreSeries(int degree, double nu) {
+  std::vector<double> value(static_cast<std::size_t>(degree) + 1);
+  double before = 0.0, now = 1.0;
+  for (int l = 0; l <= degree; ++l) {
+    value[static_cast<std::size_t>(l)] = (2.0 * l + 1.0) / (4.0 * kPi) * now;
+    const double next = ((2.0 * l + 1.0) * nu * now - l * before) / (l + 1.0);
+    before = now;
+    now = next;
+  }
+  return value;
+}
+
+std::vector<double> LegendreCoefficients(const PhaseFunction& phase, int degree) {
+  switch (phase.kind) {
+    case PhaseKind::kHenyeyGreenstein:
+      return CoefficientsOfLobe(phase.g, degree);
+    case PhaseKind::kDoubleHenyeyGreenstein:
+      return Mixed(CoefficientsOfLobe(phase.g, degree), CoefficientsOfLobe(phase.g_back, degree),
+                   phase.back_weight);
+    case PhaseKind::kCornetteShanks:
+      return CoefficientsOfDraine(phase.g, 1.0, degree);
+    case PhaseKind::kDraine:
+      return CoefficientsOfDraine(phase.g, phase.alpha, degree);
+    case PhaseKind::kHenyeyGreensteinDraine:
+      return Mixed(CoefficientsOfLobe(phase.g, degree),
+                   CoefficientsOfDraine(phase.g_back, phase.alpha, degree), phase.back_weight);
+    case PhaseKind::kRayleigh:
+    case PhaseKind::kSchlick:
+    case PhaseKind::kTable:
+      return IntegratedCoefficients(phase, degree);
+  }
+  throw InternalError("unknown kind of phase function");
 }
 
 std::vector<double> MieLegendreCoefficients(const Medium& medium, int degree) {
