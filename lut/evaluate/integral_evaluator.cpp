@@ -56,6 +56,13 @@ constexpr MultipleScatteringOptions kMiddlingLight{.altitudes = 12,
 // molecules of optical depths 0.1 to 5 (eval.h has the result).
 constexpr double kShareOfDifferences = 0.6;
 constexpr double kFloorOfHigherOrders = 3e-3;
+// Narrow backward lobes are blurred in all three solutions, which then agree better with each other
+// than with paths.
+constexpr double kFactorOfBackwardLobes = 3.0;
+
+// Light of higher orders below this fraction of the sun's is not resolved [1/sr]: it comes from air
+// beyond the horizon, between the directions of the solution.
+constexpr double kLeastLight = 1e-12;
 
 MultipleScatteringOptions With(bool delta_m, MultipleScatteringOptions options) {
   options.delta_m = delta_m;
@@ -140,7 +147,11 @@ class IntegralEvaluator final : public Evaluator {
     const bool delta_m = fine_light_->options().delta_m;
     coarse_light_.emplace(medium(), With(delta_m, kCoarseLight));
     middling_light_.emplace(medium(), With(delta_m, kMiddlingLight));
-    if (!delta_m) missing_degrees_.emplace(medium(), fine_light_->options().degree);
+    if (!delta_m) {
+      missing_degrees_.emplace(medium(), fine_light_->options().degree);
+    } else if (DeltaM peak(medium(), fine_light_->options().degree); peak.HasBackwardLobe()) {
+      backward_lobe_.emplace(std::move(peak));
+    }
   }
 
   [[nodiscard]] Estimates Evaluate(const Case& work) const override {
@@ -262,15 +273,17 @@ class IntegralEvaluator final : public Evaluator {
                       SunIrradiance(0.0, *mu_s) + SkyIrradiance(0.0, *mu_s));
   }
 
-  /// Combines both differences and a floor into the error.
+  /// Combines both differences and the floors into the error.
+  /// @param least  error of light that is not resolved.
   [[nodiscard]] static Estimates Differences(const Bands<float>& fine, const Bands<float>& middling,
-                                             const Bands<float>& coarse, double share) {
+                                             const Bands<float>& coarse, double least) {
     Estimates result(fine.count);
     for (std::size_t band = 0; band < fine.count; ++band) {
       const double value = fine[band];
       const double differences =
           std::abs(value - double{middling[band]}) + std::abs(value - double{coarse[band]});
-      result[band] = {value, share * differences + kFloorOfHigherOrders * std::abs(value)};
+      result[band] = {value, kShareOfDifferences * differences +
+                                 kFloorOfHigherOrders * std::abs(value) + least};
     }
     return result;
   }
@@ -278,10 +291,14 @@ class IntegralEvaluator final : public Evaluator {
   [[nodiscard]] Estimates HigherOrders(const ViewRay& ray) const {
     const RaySamples<float> samples =
         quick_air_.Sample(ray, {.nodes = 24, .split_ozone = false, .dark_samples = true});
-    Estimates result =
-        Differences(fine_light_->InscatterAlong(samples, ray.nu),
-                    middling_light_->InscatterAlong(samples, ray.nu),
-                    coarse_light_->InscatterAlong(samples, ray.nu), kShareOfDifferences);
+    Estimates result = Differences(fine_light_->InscatterAlong(samples, ray.nu),
+                                   middling_light_->InscatterAlong(samples, ray.nu),
+                                   coarse_light_->InscatterAlong(samples, ray.nu), kLeastLight);
+    if (backward_lobe_) {
+      const Bands<float> lobe = backward_lobe_->BackwardError(samples, ray.nu);
+      for (std::size_t band = 0; band < result.size(); ++band)
+        result[band].error = kFactorOfBackwardLobes * result[band].error + double{lobe[band]};
+    }
     if (!missing_degrees_) return result;
     const std::vector<double> missing =
         missing_degrees_->Along(quick_air_.constants(), samples, ray.nu);
@@ -308,15 +325,14 @@ class IntegralEvaluator final : public Evaluator {
       }
       return result;
     };
-    return StokesOf(work,
-                    sum(once.q, Differences(fine.q, middling.q, coarse.q, kShareOfDifferences)),
-                    sum(once.u, Differences(fine.u, middling.u, coarse.u, kShareOfDifferences)));
+    return StokesOf(work, sum(once.q, Differences(fine.q, middling.q, coarse.q, kLeastLight)),
+                    sum(once.u, Differences(fine.u, middling.u, coarse.u, kLeastLight)));
   }
 
   [[nodiscard]] Estimates SkyIrradiance(double altitude_m, double mu_s) const {
     return Differences(fine_light_->SkyIrradiance(altitude_m, mu_s),
                        middling_light_->SkyIrradiance(altitude_m, mu_s),
-                       coarse_light_->SkyIrradiance(altitude_m, mu_s), 1.0);
+                       coarse_light_->SkyIrradiance(altitude_m, mu_s), kPi * kLeastLight);
   }
 
   SingleScattering<double> air_;
@@ -326,6 +342,7 @@ class IntegralEvaluator final : public Evaluator {
   double closed_form_error_, fast_path_floor_;  // relative errors
   std::optional<MultipleScattering> fine_light_, middling_light_, coarse_light_;
   std::optional<TruncationError> missing_degrees_;
+  std::optional<DeltaM> backward_lobe_;
 };
 
 }  // namespace

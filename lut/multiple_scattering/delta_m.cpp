@@ -13,9 +13,14 @@
 namespace alpenglow::lut {
 namespace {
 
-// Highest degree of the forward peak. Beyond it the peak of any dust or haze is narrower than half
-// a degree of arc times its share.
-constexpr int kLastDegree = 160;
+// The forward peak has as many degrees as it takes until its coefficients are this small. Light that
+// is scattered twice has their squares. A peak with more than kMostDegrees is narrower than 0.02
+// degrees, a thirtieth of the sun's disk; its last degrees fade out, and its tip with them.
+constexpr double kNegligible = 5e-3;
+// A backward lobe is narrow if its coefficient of the first degree that is not kept is this large.
+constexpr double kNarrowBackward = 0.03;
+constexpr int kFewestDegrees = 160;
+constexpr int kMostDegrees = 8192;
 
 // Number of angles = pi s^2 with s in [0, 1], dense near the peak.
 constexpr std::size_t kAngles = 256;
@@ -23,15 +28,16 @@ constexpr std::size_t kAngles = 256;
 // and ends at this node, at 30 degrees.
 constexpr std::size_t kGlowAngles = 104;
 constexpr double kGlowFades_rad = 15.0 * kRadiansPerDegree;
-// Number of depths y = kDeepest u^2. Light behind larger depths has lost its direction.
-constexpr std::size_t kDepths = 32;
-constexpr double kDeepest = 40.0;
-// For larger depths the glow of this depth is used. Such air is thick and needs a separate forward
-// peak.
-constexpr float kDeepestGlow = 4.0F;
-constexpr std::size_t kGlowDepths = 12;  // depths beyond kDeepestGlow
-// Highest degree of the glow. Light of higher degrees that is scattered twice is narrower than two
-// degrees.
+// Number of depths of the peak, and how many times the depth over which delta-M scaled air scatters
+// the largest of them is. Hardly any light passes through more.
+constexpr std::size_t kDepths = 64;
+constexpr double kDeepest = 16.0;
+constexpr double kDeepestOfAll = 4000.0;
+// The glow belongs to thin air. For larger depths the glow of this depth is used.
+constexpr double kDeepestGlow = 4.0;
+constexpr std::size_t kGlowDepths = 24;
+// Highest degree of the glow. OptionsFor (multiple_scattering.h) treats air separately whose
+// aerosol has much light in higher degrees.
 constexpr int kLastGlowDegree = 96;
 
 double AngleAt(std::size_t i) {
@@ -39,15 +45,38 @@ double AngleAt(std::size_t i) {
   return kPi * s * s;
 }
 
-double DepthAt(std::size_t i) {
-  const double u = static_cast<double>(i) / static_cast<double>(kDepths - 1);
-  return kDeepest * u * u;
+// Returns exp(-rate y) [(exp(chi y) - 1) / y - chi].
+double HigherOrders(double chi, double y, double rate) {
+  if (y * std::abs(chi) < 1e-4) return 0.5 * chi * chi * y * std::exp(-rate * y);
+  return (std::exp((chi - rate) * y) - std::exp(-rate * y)) / y - chi * std::exp(-rate * y);
 }
 
-// Returns exp(-y) [(exp(chi y) - 1) / y - chi].
-double HigherOrders(double chi, double y) {
-  if (y * std::abs(chi) < 1e-4) return 0.5 * chi * chi * y * std::exp(-y);
-  return (std::exp((chi - 1.0) * y) - std::exp(-y)) / y - chi * std::exp(-y);
+// Returns exp(-rate y) [(chi - share) exp(share y) + (exp(share y) - 1) / y - chi].
+double LowOrders(double chi, double share, double y, double rate) {
+  return HigherOrders(share, y, rate) + (chi - share) * std::exp(-rate * y) * std::expm1(share * y);
+}
+
+// Returns the part of the backward lobe that is blurred at a degree up to `last`, the first that is
+// not kept.
+double BlurOf(std::size_t l, std::size_t last) {
+  const double x = std::min(static_cast<double>(l) / static_cast<double>(last), 1.0);
+  return 1.0 - (1.0 - x * x) * (1.0 - x * x);
+}
+
+// Returns (-1)^l, the value of P_l at -1.
+double SignOf(std::size_t l) { return l % 2 == 0 ? 1.0 : -1.0; }
+
+/// Halves of a phase function: (1 + x) / 2 and (1 - x) / 2 times it. Only the forward half has a
+/// forward peak.
+enum class Half { kForward, kBackward };
+
+// Returns the coefficient of degree l of a half of a phase function, from three of its own:
+// (2 l + 1) x P_l = (l + 1) P_{l+1} + l P_{l-1}. The backward half is mirrored, so that the
+// coefficients of a backward lobe are positive.
+double HalfOf(Half half, std::size_t l, double before, double chi, double after) {
+  const auto degree = static_cast<double>(l);
+  const double times_x = (degree * before + (degree + 1.0) * after) / (2.0 * degree + 1.0);
+  return half == Half::kForward ? 0.5 * (chi + times_x) : 0.5 * SignOf(l) * (chi - times_x);
 }
 
 // Returns the columns on the path of sunlight that is scattered once at a sample.
@@ -56,7 +85,7 @@ ColumnSet<float> FromSunToEye(const RaySamples<float>& samples, std::size_t i) {
           samples.view_mie[i] + samples.sun_mie[i], samples.view_ozone[i] + samples.sun_ozone[i]};
 }
 
-// Returns exp(-depth) (exp(peak) - 1) for peak < depth without cancellation or overflow.
+// Returns exp(-depth) (exp(peak) - 1) for peak <= depth without cancellation or overflow.
 float Gain(float peak, float depth) {
   if (peak < 1.0F) return std::exp(-depth) * std::expm1(peak);
   return std::exp(peak - depth) - std::exp(-depth);
@@ -75,52 +104,151 @@ Place PlaceOfAngle(double nu) {
   return {cell, static_cast<float>(at - static_cast<double>(cell))};
 }
 
-Place PlaceOfDepth(float y) {
-  constexpr auto kLast = static_cast<float>(kDepths - 1);
-  constexpr float kScale = kLast * kLast / static_cast<float>(kDeepest);
-  const float squared = std::min(y * kScale, kLast * kLast);
-  const auto cell = std::min(static_cast<std::size_t>(std::sqrt(squared)), kDepths - 2);
-  const auto low = static_cast<float>(cell);
-  return {cell, (squared - low * low) / (2.0F * low + 1.0F)};
+Place PlaceOfDepth(const PeakShape& shape, float y) {
+  const std::size_t last = shape.depth.size() - 1;
+  const auto at = static_cast<std::size_t>(shape.depths_a_log * std::log1p(y));
+  const std::size_t cell = std::min(at, last - 1);
+  const float share = (y - shape.depth[cell]) / (shape.depth[cell + 1] - shape.depth[cell]);
+  return {cell, std::clamp(share, 0.0F, 1.0F)};
 }
 
-/// Part of a shape that is filled; the rest is 0.
-struct ShapeSize {
-  int last_degree;
+/// The nodes of a shape. Beyond `angles` the shape is 0.
+struct ShapeNodes {
   std::size_t angles, depths;
+  double deepest;
 };
 
-PeakShape ShapeOf(const PhaseFunction& phase, int degree, const ShapeSize& size) {
-  const std::vector<double> chi = LegendreCoefficients(phase, size.last_degree);
-  const auto first = static_cast<std::size_t>(degree) + 1;
-  std::vector<std::array<double, kDepths>> above(chi.size());
-  for (std::size_t l = first; l < chi.size(); ++l) {
-    for (std::size_t y = 0; y < size.depths; ++y) above[l][y] = HigherOrders(chi[l], DepthAt(y));
-  }
-  PeakShape shape{std::vector<float>(kAngles), std::vector<float>(kAngles * kDepths)};
-  for (std::size_t angle = 0; angle < size.angles; ++angle) {
-    const std::vector<double> series = LegendreSeries(size.last_degree, std::cos(AngleAt(angle)));
-    double low = 0.0;
-    for (std::size_t l = 0; l < first; ++l) low += series[l] * chi[l];
-    std::array<double, kDepths> high{};
-    for (std::size_t l = first; l < chi.size(); ++l) {
-      for (std::size_t y = 0; y < size.depths; ++y) high[y] += series[l] * above[l][y];
-    }
-    shape.low[angle] = static_cast<float>(low);
-    for (std::size_t y = 0; y < size.depths; ++y)
-      shape.high[angle * kDepths + y] = static_cast<float>(high[y]);
-  }
+// Returns a shape without light, with depths uniform in log(1 + y).
+PeakShape ShapeAt(const ShapeNodes& nodes, double rate) {
+  const double unit = static_cast<double>(nodes.depths - 1) / std::log1p(nodes.deepest);
+  PeakShape shape{.rate = static_cast<float>(rate),
+                  .depths_a_log = static_cast<float>(unit),
+                  .depth = {},
+                  .high = std::vector<float>(kAngles * nodes.depths),
+                  .twice_back = {},
+                  .blurred_back = {}};
+  for (std::size_t i = 0; i < nodes.depths; ++i)
+    shape.depth.push_back(static_cast<float>(std::expm1(static_cast<double>(i) / unit)));
   return shape;
 }
 
-// Returns the light of higher degrees at one angle, for all depths.
-std::array<float, kDepths> HighAt(const PeakShape& shape, const Place& angle) {
-  std::array<float, kDepths> high;
-  for (std::size_t y = 0; y < kDepths; ++y) {
-    const float low = shape.high[angle.cell * kDepths + y];
-    high[y] = low + angle.share * (shape.high[(angle.cell + 1) * kDepths + y] - low);
+// Fills the light by depth at the first angles: the sum over degrees of light_of(degree, y).
+template <typename Light>
+void FillHigh(std::size_t degrees, std::size_t angles, const Light& light_of, PeakShape& shape) {
+  const std::size_t depths = shape.depth.size();
+  std::vector<double> light(degrees * depths);
+  for (std::size_t l = 0; l < degrees; ++l) {
+    for (std::size_t y = 0; y < depths; ++y)
+      light[l * depths + y] = light_of(l, static_cast<double>(shape.depth[y]));
   }
-  return high;
+  for (std::size_t angle = 0; angle < angles; ++angle) {
+    const std::vector<double> series =
+        LegendreSeries(static_cast<int>(degrees) - 1, std::cos(AngleAt(angle)));
+    std::vector<double> sum(depths);
+    for (std::size_t l = 0; l < degrees; ++l) {
+      for (std::size_t y = 0; y < depths; ++y) sum[y] += series[l] * light[l * depths + y];
+    }
+    std::transform(sum.begin(), sum.end(), &shape.high[angle * depths],
+                   [](double value) { return static_cast<float>(value); });
+  }
+}
+
+// Returns the series with these coefficients at every angle.
+std::vector<float> SeriesAtAngles(const std::vector<double>& coefficients) {
+  std::vector<float> values;
+  for (std::size_t angle = 0; angle < kAngles; ++angle) {
+    const std::vector<double> series =
+        LegendreSeries(static_cast<int>(coefficients.size()) - 1, std::cos(AngleAt(angle)));
+    values.push_back(static_cast<float>(
+        std::inner_product(series.begin(), series.end(), coefficients.begin(), 0.0)));
+  }
+  return values;
+}
+
+std::vector<double> CoefficientsOf(Half half, const PhaseFunction& phase, int degree) {
+  const std::vector<double> chi = LegendreCoefficients(phase, degree + 1);
+  std::vector<double> coefficients;
+  for (std::size_t l = 0; l + 1 < chi.size(); ++l)
+    coefficients.push_back(HalfOf(half, l, l > 0 ? chi[l - 1] : 0.0, chi[l], chi[l + 1]));
+  return coefficients;
+}
+
+bool EndsSmall(const std::vector<double>& chi) {
+  constexpr std::ptrdiff_t kLast = 16;  // one coefficient can be small by chance
+  return std::all_of(chi.end() - kLast, chi.end(),
+                     [](double value) { return std::abs(value) < kNegligible; });
+}
+
+// Returns the coefficients of a half up to the degree where they become negligible.
+std::vector<double> AllCoefficientsOf(Half half, const PhaseFunction& phase) {
+  int degree = kFewestDegrees;
+  std::vector<double> chi = CoefficientsOf(half, phase, degree);
+  while (!EndsSmall(chi) && degree < kMostDegrees) {
+    degree = std::min(2 * degree, kMostDegrees);
+    chi = CoefficientsOf(half, phase, degree);
+  }
+  if (EndsSmall(chi)) return chi;
+  for (std::size_t l = chi.size() / 2; l < chi.size(); ++l) {
+    const double x = 2.0 * static_cast<double>(l) / static_cast<double>(chi.size()) - 1.0;
+    chi[l] *= (1.0 - x * x) * (1.0 - x * x);
+  }
+  return chi;
+}
+
+// Fills the light that a narrow backward lobe scatters twice, once up and once down again: what
+// moments with the blurred lobe lack, and what they hold. Nothing without such a lobe.
+void FillBackward(const PhaseFunction& phase, std::size_t first, PeakShape& shape) {
+  std::vector<double> chi = AllCoefficientsOf(Half::kBackward, phase);
+  const double cut = std::max(chi[first], 0.0);
+  if (cut < kNarrowBackward) return;
+  std::vector<double> kept(chi.size());
+  for (std::size_t l = 0; l < chi.size(); ++l) {
+    const double blurred = l < first ? chi[l] - cut * BlurOf(l, first) : 0.0;
+    kept[l] = blurred * blurred;
+    chi[l] = chi[l] * chi[l] - kept[l];
+  }
+  shape.twice_back = SeriesAtAngles(chi);
+  shape.blurred_back = SeriesAtAngles(kept);
+}
+
+// Returns the shape of the peak of air that is scaled to this degree.
+PeakShape ScaledShapeOf(const PhaseFunction& phase, int degree) {
+  const std::vector<double> chi = AllCoefficientsOf(Half::kForward, phase);
+  const auto first = static_cast<std::size_t>(degree) + 1;
+  const double share = std::max(chi[first], 0.0);
+  const double rate = std::max(*std::max_element(chi.begin() + degree + 1, chi.end()), 0.0);
+  PeakShape shape =
+      ShapeAt({kAngles, kDepths, std::min(kDeepest / (1.0 - rate), kDeepestOfAll)}, rate);
+  FillHigh(
+      chi.size(), kAngles,
+      [&](std::size_t l, double y) {
+        return l < first ? LowOrders(chi[l], share, y, rate) : HigherOrders(chi[l], y, rate);
+      },
+      shape);
+  FillBackward(phase, first, shape);
+  return shape;
+}
+
+/// Position between the nodes of a table of angles, for cubic interpolation.
+struct AngleTaps {
+  std::array<std::size_t, 4> node;
+  std::array<float, 4> weight;
+
+  /// Returns the value of column `at` of a table with rows of `stride`.
+  [[nodiscard]] float Of(const std::vector<float>& table, std::size_t stride,
+                         std::size_t at) const {
+    float sum = 0.0F;
+    for (std::size_t tap = 0; tap < 4; ++tap) sum += weight[tap] * table[node[tap] * stride + at];
+    return sum;
+  }
+};
+
+AngleTaps TapsOfAngle(double nu) {
+  const auto [cell, t] = PlaceOfAngle(nu);
+  const float u = 1.0F - t;
+  return {{cell > 0 ? cell - 1 : 0, cell, cell + 1, std::min(cell + 2, kAngles - 1)},
+          {-0.5F * t * u * u, u * (1.0F + t - 1.5F * t * t), t * (1.0F + u - 1.5F * u * u),
+           -0.5F * u * t * t}};
 }
 
 }  // namespace
@@ -128,16 +256,22 @@ std::array<float, kDepths> HighAt(const PeakShape& shape, const Place& angle) {
 DeltaScaledMedium WithoutPeak(const Medium& medium, int degree) {
   const std::size_t bands = medium.wavelengths_nm.size();
   const auto last = static_cast<std::size_t>(degree) + 1;
-  DeltaScaledMedium air{medium, {}, MieLegendreCoefficients(medium, degree + 1)};
+  DeltaScaledMedium air{medium, {}, MieLegendreCoefficients(medium, degree + 2)};
   for (std::size_t band = 0; band < bands; ++band) {
-    const double share = std::max(air.chi[last * bands + band], 0.0);
+    const auto chi_of = [&](std::size_t l) { return air.chi[l * bands + band]; };
+    const auto half_of = [&](Half half) {
+      return std::max(HalfOf(half, last, chi_of(last - 1), chi_of(last), chi_of(last + 1)), 0.0);
+    };
+    const double share = half_of(Half::kForward);
+    double backward = half_of(Half::kBackward);
+    if (backward < kNarrowBackward) backward = 0.0;
     const double peak_per_m = share * medium.mie_scattering_per_m[band];
     air.share.push_back(share);
     air.medium.mie_scattering_per_m[band] -= peak_per_m;
     air.medium.mie_extinction_per_m[band] -= peak_per_m;
-    for (std::size_t l = 0; l <= last; ++l) {
+    for (std::size_t l = 0; l <= last + 1; ++l) {
       double& chi = air.chi[l * bands + band];
-      chi = (chi - share) / (1.0 - share);
+      chi = (chi - SignOf(l) * BlurOf(l, last) * backward - share) / (1.0 - share);
     }
   }
   return air;
@@ -152,10 +286,17 @@ float GlowShare(std::size_t angle) {
 }
 
 PeakShape GlowOf(const PhaseFunction& phase, int degree) {
-  PeakShape shape = ShapeOf(phase, degree, {kLastGlowDegree, kGlowAngles, kGlowDepths});
+  const std::vector<double> chi = LegendreCoefficients(phase, kLastGlowDegree);
+  PeakShape shape = ShapeAt({kGlowAngles, kGlowDepths, kDeepestGlow}, 1.0);
+  FillHigh(
+      chi.size(), kGlowAngles,
+      [&](std::size_t l, double y) {
+        return l <= static_cast<std::size_t>(degree) ? 0.0 : HigherOrders(chi[l], y, 1.0);
+      },
+      shape);
   for (std::size_t angle = 0; angle < kGlowAngles; ++angle) {
     for (std::size_t y = 0; y < kGlowDepths; ++y)
-      shape.high[angle * kDepths + y] *= GlowShare(angle);
+      shape.high[angle * kGlowDepths + y] *= GlowShare(angle);
   }
   return shape;
 }
@@ -179,11 +320,11 @@ Bands<float> GlowAboutTheSun::FactorOf(double nu, float column_km) const {
   const Place angle = PlaceOfAngle(nu);
   for (std::size_t band = 0; band < factor.count; ++band) {
     const PeakShape& shape = shapes_[shapes_.size() > 1 ? band : 0];
-    const float y = std::min(scattering_per_km_[band] * column_km, kDeepestGlow);
-    const Place place = PlaceOfDepth(y);
+    const float y = std::min(scattering_per_km_[band] * column_km, shape.depth.back());
+    const Place place = PlaceOfDepth(shape, y);
     const auto at = [&](std::size_t depth) {
-      const float* high = &shape.high[angle.cell * kDepths + depth];
-      return high[0] + angle.share * (high[kDepths] - high[0]);
+      const float* high = &shape.high[angle.cell * kGlowDepths + depth];
+      return high[0] + angle.share * (high[kGlowDepths] - high[0]);
     };
     const float low = at(place.cell);
     factor[band] = std::exp(y) * (low + place.share * (at(place.cell + 1) - low));
@@ -191,15 +332,19 @@ Bands<float> GlowAboutTheSun::FactorOf(double nu, float column_km) const {
   return factor;
 }
 
-DeltaM::DeltaM(const Medium& medium, int degree) : air_(medium), degree_(degree) {
+ScaledBeam::ScaledBeam(const Medium& medium, int degree) : air_(medium) {
   const std::vector<double> share = WithoutPeak(medium, degree).share;
   share_.assign(share.begin(), share.end());
-  for (const PhaseFunction& phase : medium.mie_phase)
-    shapes_.push_back(ShapeOf(phase, degree, {kLastDegree, kAngles, kDepths}));
 }
 
-Bands<float> DeltaM::Beam(double altitude_m, double mu_s) const {
+DeltaM::DeltaM(const Medium& medium, int degree) : beam_(medium, degree), degree_(degree) {
+  for (const PhaseFunction& phase : medium.mie_phase)
+    shapes_.push_back(ScaledShapeOf(phase, degree));
+}
+
+Bands<float> ScaledBeam::At(double height_m, double mu_s) const {
   const Medium& medium = air_.medium();
+  const double altitude_m = std::max(height_m, 0.0);
   const RayExtent extent =
       ExtentOf({altitude_m, mu_s, 1.0, 1.0}, medium.planet_radius_m, medium.atmosphere_height_m);
   if (extent.end == RayEnd::kGround || altitude_m >= medium.atmosphere_height_m)
@@ -214,81 +359,164 @@ Bands<float> DeltaM::Beam(double altitude_m, double mu_s) const {
   return beam;
 }
 
-float DeltaM::SumAlong(std::size_t band, const RaySamples<float>& samples, double nu, float ahead,
-                       float base) const {
-  const AirConstants<float>& air = air_.constants();
-  const Place angle = PlaceOfAngle(nu);
+namespace {
+
+// Returns the sunlight, relative to that at a sample, that a backward delta function would send up
+// to the sample from the air below it, down to the ground: of what that air takes from a beam on
+// its way down and up, half the aerosol's share.
+float UpFromBelow(const AirConstants<float>& air, std::size_t band, float share,
+                  const RaySamples<float>& samples, std::size_t i) {
+  const float gas = samples.rayleigh_density[i], aerosol = samples.mie_density[i];
+  if (aerosol < 1e-6F) return 0.0F;
+  const float column = std::max(samples.sun_mie[i] * (1.0F / aerosol - 1.0F), 0.0F);
+  const float scattering = air.mie_scattering[band] * column;
+  const float extinction =
+      air.mie_extinction[band] * column - share * scattering +
+      air.rayleigh[band] * samples.sun_rayleigh[i] * std::max(1.0F / gas - 1.0F, 0.0F);
+  if (extinction < 1e-4F) return scattering;
+  return -0.5F * std::expm1(-2.0F * extinction) * scattering / extinction;
+}
+
+}  // namespace
+
+DeltaM::Angle DeltaM::AngleOf(double nu) const { return {nu, air().AerosolPhases(nu)}; }
+
+float DeltaM::SumAlong(std::size_t band, const RaySamples<float>& samples, const Angle& angle,
+                       const PathAhead& ahead) const {
+  const AirConstants<float>& air = beam_.air().constants();
   const PeakShape& shape = shapes_[shapes_.size() > 1 ? band : 0];
-  const float low =
-      shape.low[angle.cell] + angle.share * (shape.low[angle.cell + 1] - shape.low[angle.cell]);
-  const std::array<float, kDepths> high = HighAt(shape, angle);
-  const std::vector<double> series = LegendreSeries(degree_, nu);
-  const auto narrow = static_cast<float>(std::accumulate(series.begin(), series.end(), 0.0));
-  const auto gas =
-      static_cast<float>(shared::PhaseMolecules(nu, Depolarisation(air_.medium(), band))) *
-      air.rayleigh[band];
-  const float mie = air.mie_scattering[band], f = share_[band];
+  const AngleTaps taps = TapsOfAngle(angle.nu);
+  std::array<float, kDepths> high;
+  for (std::size_t y = 0; y < kDepths; ++y) high[y] = taps.Of(shape.high, kDepths, y);
+  const float twice = shape.twice_back.empty() ? 0.0F : taps.Of(shape.twice_back, 1, 0);
+  const float back = 0.5F * static_cast<float>(1.0 - angle.nu) * angle.aerosol[band];
+  const auto gas = static_cast<float>(shared::PhaseMolecules(
+                       angle.nu, Depolarisation(beam_.air().medium(), band))) *
+                   air.rayleigh[band];
+  const float mie = air.mie_scattering[band], f = beam_.share()[band];
   // Returns the formula minus its value at y = 0, times exp(-depth).
   const auto formula = [&](float y, float depth, float of_gas, float of_aerosol) {
-    const float clear = std::exp(-depth), more = Gain(f * y, depth);
-    const float once = (y > 1e-4F ? more / y : f * clear) - f * (clear + more);
-    const Place place = PlaceOfDepth(y);
+    const float more = Gain(f * y, depth);
+    const Place place = PlaceOfDepth(shape, y);
     const float above = high[place.cell] + place.share * (high[place.cell + 1] - high[place.cell]);
-    return more * (of_gas + of_aerosol * low) + once * of_aerosol * narrow +
-           std::exp(y - depth) * of_aerosol * above;
+    return more * (of_gas + of_aerosol * back) +
+           std::exp(shape.rate * y - depth) * of_aerosol * above;
   };
   float sum = 0.0F;
   for (std::size_t i = 0; i < samples.count; ++i) {
     const float lit = samples.weight[i] * samples.lit[i];
     if (!(lit > 0.0F)) continue;
     const float y = mie * (samples.sun_mie[i] + samples.view_mie[i]);
-    const float depth = OpticalDepthOf(ExtinctionAt(air, band), FromSunToEye(samples, i));
+    const float depth =
+        ahead.depth + OpticalDepthOf(ExtinctionAt(air, band), FromSunToEye(samples, i));
     const float of_gas = gas * samples.rayleigh_density[i];
     const float of_aerosol = mie * samples.mie_density[i];
-    sum += lit * formula(y + ahead, depth, of_gas, of_aerosol);
-    if (base != 0.0F) sum -= lit * formula(base * y, depth, of_gas, of_aerosol);
+    sum += lit * formula(y + ahead.scattering, depth, of_gas, of_aerosol);
+    if (ahead.depth > 0.0F) sum -= lit * formula(y, depth, of_gas, of_aerosol);
+    if (twice != 0.0F) {
+      sum += lit * of_aerosol * twice * UpFromBelow(air, band, f, samples, i) *
+             std::exp(f * (y + ahead.scattering) - depth);
+    }
   }
   return sum;
 }
 
 Bands<float> DeltaM::Along(const RaySamples<float>& samples, double nu) const {
-  Bands<float> light(air_.bands());
+  const Angle angle = AngleOf(nu);
+  Bands<float> light(air().bands());
   for (std::size_t band = 0; band < light.count; ++band)
-    light[band] = SumAlong(band, samples, nu, 0.0F, 0.0F);
+    light[band] = SumAlong(band, samples, angle, {});
   return light;
 }
 
 Bands<float> DeltaM::Behind(const Way& way, const RaySamples<float>& samples, double nu) const {
-  Bands<float> light(air_.bands());
-  for (std::size_t band = 0; band < light.count; ++band)
-    light[band] = way.clear[band] * SumAlong(band, samples, nu, way.scattering[band], 1.0F);
+  const Angle angle = AngleOf(nu);
+  Bands<float> light(air().bands());
+  for (std::size_t band = 0; band < light.count; ++band) {
+    if (way.scattering[band] > 0.0F)
+      light[band] = SumAlong(band, samples, angle, {way.depth[band], way.scattering[band]});
+  }
   return light;
 }
 
+bool DeltaM::HasBackwardLobe() const {
+  return std::any_of(shapes_.begin(), shapes_.end(),
+                     [](const PeakShape& shape) { return !shape.twice_back.empty(); });
+}
+
+Bands<float> DeltaM::BackwardError(const RaySamples<float>& samples, double nu) const {
+  // Shares that contain the errors of path-traced lobes with g of -0.9 to -0.999: light of four
+  // scatterings, of three, and of two at intermediate angles.
+  constexpr float kFourTimes = 0.4F, kThrice = 0.1F, kBlurred = 0.5F;
+  const AirConstants<float>& constants = air().constants();
+  const Angle angle = AngleOf(nu);
+  const AngleTaps taps = TapsOfAngle(nu);
+  Bands<float> error(constants.bands);
+  for (std::size_t band = 0; band < error.count; ++band) {
+    const PeakShape& shape = shapes_[shapes_.size() > 1 ? band : 0];
+    if (shape.twice_back.empty()) continue;
+    const float back = 0.5F * static_cast<float>(1.0 - nu) * angle.aerosol[band];
+    const float light = kFourTimes * std::abs(taps.Of(shape.twice_back, 1, 0)) + kThrice * back +
+                        kBlurred * std::abs(taps.Of(shape.blurred_back, 1, 0));
+    for (std::size_t i = 0; i < samples.count; ++i) {
+      const float lit = samples.weight[i] * samples.lit[i];
+      if (!(lit > 0.0F)) continue;
+      const float depth = OpticalDepthOf(ExtinctionAt(constants, band), FromSunToEye(samples, i));
+      const float up = UpFromBelow(constants, band, beam_.share()[band], samples, i);
+      error[band] += lit * constants.mie_scattering[band] * samples.mie_density[i] * light * up *
+                     std::exp(-depth);
+    }
+  }
+  return error;
+}
+
+std::size_t LastSample(const RaySamples<float>& samples) {
+  const float* begin = samples.distance.data();
+  return static_cast<std::size_t>(std::max_element(begin, begin + samples.count) - begin);
+}
+
 DeltaM::Way DeltaM::WayTo(const RaySamples<float>& samples) const {
-  const AirConstants<float>& air = air_.constants();
+  const AirConstants<float>& air = beam_.air().constants();
   float rayleigh = 0.0F, mie = 0.0F;
   for (std::size_t i = 0; i < samples.count; ++i) {
     rayleigh += samples.weight[i] * samples.rayleigh_density[i];
     mie += samples.weight[i] * samples.mie_density[i];
   }
-  const float ozone = samples.count > 0 ? samples.view_ozone[samples.count - 1] : 0.0F;
-  const Bands<float> none(air_.bands());
-  Way way{none, none, none};
+  const float ozone = samples.count > 0 ? samples.view_ozone[LastSample(samples)] : 0.0F;
+  const Bands<float> none(air.bands);
+  Way way{none, none, none, none};
   for (std::size_t band = 0; band < none.count; ++band) {
-    const float depth = OpticalDepthOf(ExtinctionAt(air, band), {rayleigh, mie, ozone});
-    way.clear[band] = std::exp(-depth);
+    way.depth[band] = OpticalDepthOf(ExtinctionAt(air, band), {rayleigh, mie, ozone});
+    way.clear[band] = std::exp(-way.depth[band]);
     way.scattering[band] = air.mie_scattering[band] * mie;
-    way.more[band] = Gain(share_[band] * way.scattering[band], depth);
+    way.more[band] = Gain(beam_.share()[band] * way.scattering[band], way.depth[band]);
   }
   return way;
 }
 
 namespace {
 
-// Highest degree of the estimate. Beyond it the peak of any dust or haze is narrower than half a
-// degree of arc times its share.
+// Highest degree of the estimate. OptionsFor (multiple_scattering.h) treats air separately whose
+// aerosol has much light in higher degrees.
 constexpr int kLastMissingDegree = 64;
+
+}  // namespace
+
+double NarrowLobes(const Medium& medium) {
+  constexpr std::size_t kFirst = kLastMissingDegree - 15;  // one can be small by chance
+  const std::size_t bands = medium.wavelengths_nm.size();
+  double largest = 0.0;
+  for (std::size_t band = 0; band < bands; ++band) {
+    if (band > 0 && medium.mie_phase.size() == 1) break;
+    const std::vector<double> chi =
+        LegendreCoefficients(medium.mie_phase[band], kLastMissingDegree);
+    for (std::size_t l = kFirst; l < chi.size(); ++l) largest = std::max(largest, chi[l] * chi[l]);
+  }
+  return largest * medium.mie_scale_height_m *
+         *std::max_element(medium.mie_scattering_per_m.begin(), medium.mie_scattering_per_m.end());
+}
+
+namespace {
 
 // Returns P_l(nu) for l = 0 ... kLastMissingDegree.
 std::vector<double> LegendreValues(double nu) {

@@ -25,6 +25,14 @@
 //   (exp(chi_l y) - 1) / y                       l > L
 //
 // times T sigma_M (2 l + 1)/(4 pi) P_l(nu). The light of molecules has p_R exp(f y) instead of p_R.
+// Only the forward half (1 + nu)/2 of the phase function has these coefficients; the backward half
+// scatters the sun's beam once, with exp(f y). The series ends where its coefficients are
+// negligible, at degree 160 for dust and haze, and at most at 8192. All degrees are summed before
+// they are tabulated: at wide angles the low and the high ones cancel.
+//
+// A narrow backward lobe has no closed form. The moments hold it blurred: of its coefficient b of
+// degree L + 1, degree l keeps the part (1 - (l/(L + 1))^2)^2. Light that is sent up by the lobe and
+// down again lies around the sun; it is computed in closed form from the column below each sample.
 // Light from behind the end of the ray, seen through that medium, is brighter than through the true
 // one by T (exp(f y) - 1), with y along the ray.
 //
@@ -62,17 +70,28 @@ namespace alpenglow::lut {
 struct DeltaScaledMedium {
   Medium medium;
   std::vector<double> share;  // f per band, in [0, 1)
-  std::vector<double> chi;    // chi'_l at [l * bands + band], l = 0 ... degree
+  std::vector<double> chi;    // chi'_l at [l * bands + band], l = 0 ... degree + 2; blurred
 };
 
 [[nodiscard]] DeltaScaledMedium WithoutPeak(const Medium& medium, int degree);
 
-/// Shape of the peak of one phase function: the sum of its degrees up to L, and the light of higher
-/// degrees by depth.
+/// Shape of the peak of one phase function: sums over its degrees at every angle.
 struct PeakShape {
-  std::vector<float> low;   // [angle]: phase function up to degree L
-  std::vector<float> high;  // [angle * depths + depth], times exp(-y)
+  float rate;                       // `high` is scaled by exp(-rate y)
+  float depths_a_log;               // nodes of depth per unit of log(1 + y)
+  std::vector<float> depth;         // y, from 0
+  std::vector<float> high;          // [angle * depths + depth]: light by depth
+  std::vector<float> twice_back;    // light of a narrow backward lobe; empty without one
+  std::vector<float> blurred_back;  // the same light as the moments keep it; empty without one
 };
+
+/// Returns the light of narrow lobes, forward and backward, that thin air scatters twice: the square
+/// of the largest coefficient of degrees 49 to 64 of the medium's aerosol, times the optical depth
+/// that the aerosol scatters of a vertical beam.
+[[nodiscard]] double NarrowLobes(const Medium& medium);
+
+/// Returns the sample that is farthest from the observer. There must be one.
+[[nodiscard]] std::size_t LastSample(const RaySamples<float>& samples);
 
 /// Light near the sun that thin air scatters more than once towards the eye, beyond moments of some
 /// degree. Immutable.
@@ -93,19 +112,39 @@ class GlowAboutTheSun {
   std::vector<PeakShape> shapes_;  // one for all bands, or one per band
 };
 
+/// The sun's beam in the medium after delta-M scaling. Immutable.
+class ScaledBeam {
+ public:
+  ScaledBeam(const Medium& medium, int degree);
+
+  /// Returns T' - T from a point to the sun; 0 where the ground hides the sun.
+  /// @param height_m  below 0, the beam is that of altitude 0.
+  [[nodiscard]] Bands<float> At(double height_m, double mu_s) const;
+
+  [[nodiscard]] const SingleScattering<float>& air() const { return air_; }
+  [[nodiscard]] const std::vector<float>& share() const { return share_; }
+
+ private:
+  SingleScattering<float> air_;
+  std::vector<float> share_;  // f per band
+};
+
 /// The forward peak of all orders, prepared for look-ups. Immutable.
 class DeltaM {
  public:
   DeltaM(const Medium& medium, int degree);
 
-  /// Returns T' - T from a point to the sun; 0 where the ground hides the sun.
-  [[nodiscard]] Bands<float> Beam(double altitude_m, double mu_s) const;
+  /// Returns ScaledBeam::At.
+  [[nodiscard]] Bands<float> Beam(double height_m, double mu_s) const {
+    return beam_.At(height_m, mu_s);
+  }
 
   /// The path from the observer to the end of samples of the true medium.
   struct Way {
     Bands<float> clear;       // T
     Bands<float> more;        // T' - T
     Bands<float> scattering;  // optical depth of scattering by aerosol
+    Bands<float> depth;       // optical depth
   };
   [[nodiscard]] Way WayTo(const RaySamples<float>& samples) const;
 
@@ -118,16 +157,36 @@ class DeltaM {
   [[nodiscard]] Bands<float> Behind(const Way& way, const RaySamples<float>& samples,
                                     double nu) const;
 
-  [[nodiscard]] const SingleScattering<float>& air() const { return air_; }
+  /// Returns whether an aerosol has a narrow backward lobe, whose light of more than two
+  /// scatterings is blurred.
+  [[nodiscard]] bool HasBackwardLobe() const;
+
+  /// Returns an estimate of the light of a narrow backward lobe that Along and the moments of scaled
+  /// air lack or misplace [1/sr].
+  [[nodiscard]] Bands<float> BackwardError(const RaySamples<float>& samples, double nu) const;
+
+  [[nodiscard]] const SingleScattering<float>& air() const { return beam_.air(); }
 
  private:
-  /// Returns the sum of formula(y + ahead) - formula(base y) along samples.
-  [[nodiscard]] float SumAlong(std::size_t band, const RaySamples<float>& samples, double nu,
-                               float ahead, float base) const;
+  /// A direction relative to the sun.
+  struct Angle {
+    double nu;             // its cosine
+    Bands<float> aerosol;  // phase functions
+  };
+  [[nodiscard]] Angle AngleOf(double nu) const;
 
-  SingleScattering<float> air_;
+  /// Optical depths between the observer and the start of the samples.
+  struct PathAhead {
+    float depth = 0.0F;
+    float scattering = 0.0F;  // by aerosol
+  };
+  /// Returns the sum of formula(y + ahead.scattering) along samples, seen through the path ahead,
+  /// minus the same sum with formula(y) if there is such a path.
+  [[nodiscard]] float SumAlong(std::size_t band, const RaySamples<float>& samples,
+                               const Angle& angle, const PathAhead& ahead) const;
+
+  ScaledBeam beam_;
   int degree_;
-  std::vector<float> share_;       // f per band
   std::vector<PeakShape> shapes_;  // one for all bands, or one per band
 };
 

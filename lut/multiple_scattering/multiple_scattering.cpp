@@ -77,14 +77,14 @@ void AddBeam(const MultipleScatteringOptions& options, const Bands<float>& beam,
 // Returns the values at all nodes plus `times` times the beam.
 std::vector<float> WithBeam(const Medium& medium, const MultipleScatteringOptions& options,
                             float times, std::vector<float> values) {
-  const DeltaM peak(medium, options.degree);
+  const ScaledBeam beam(medium, options.degree);
   const MomentGrid grid = GridOf(medium, options);
   const std::size_t floats = values.size() / (grid.altitudes * grid.suns);
   for (std::size_t node = 0; node < grid.altitudes * grid.suns; ++node) {
     const double u =
         static_cast<double>(node / grid.suns) / static_cast<double>(grid.altitudes - 1);
     const double mu_s = MuSOfNode(grid, node % grid.suns);
-    AddBeam(options, peak.Beam(medium.atmosphere_height_m * u * u, mu_s), mu_s, times,
+    AddBeam(options, beam.At(medium.atmosphere_height_m * u * u, mu_s), mu_s, times,
             medium.polarised, &values[node * floats]);
   }
   return values;
@@ -106,7 +106,7 @@ MultipleScatteringOptions OptionsFor(const Medium& medium) {
   const double molecules =
       thickest(medium.rayleigh_scattering_per_m, medium.rayleigh_scale_height_m);
   MultipleScatteringOptions options;
-  if (aerosol > 0.08) {
+  if (aerosol > 0.08 || NarrowLobes(medium) > 2e-4) {
     options.degree = kMaxDegree;
     options.delta_m = true;
     // There must be more azimuths than degrees, to avoid aliasing of the highest degrees.
@@ -302,7 +302,7 @@ Bands<float> MultipleScattering::GroundLight(double mu_s) const {
 
 // Returns the continuation of the ray at its end, from the last of its samples.
 ViewRay MultipleScattering::RayBehind(const RaySamples<float>& samples, double nu) const {
-  const std::size_t last = samples.count - 1;
+  const std::size_t last = LastSample(samples);
   const double radius_m = medium_.planet_radius_m;
   const double from_m = 1000.0 * static_cast<double>(samples.altitude[last]);
   const double mu = static_cast<double>(samples.mu[last]);
