@@ -138,8 +138,8 @@ double IntegratedSquareOfQuantile(double s, double g) {
 }
 
 // With the quantile s of the Henyey-Greenstein lobe as the variable, Draine's density is
-// (1 + alpha c(s)^2) over its mean: up to a constant factor between 1 and 2, for every g. Newton's
-// method with a bracket converges in a few steps.
+// (1 + alpha c(s)^2) over its mean: up to a constant factor between 1 and 1 + alpha, for every g.
+// Newton's method with a bracket converges in a few steps for alpha up to 1, and ends after 60.
 double SampleDraine(double u, double g, double alpha) {
   if (g < 0.0) return -SampleDraine(1.0 - u, -g, alpha);
   const double whole = 2.0 * (1.0 + alpha * (1.0 + 2.0 * g * g) / 3.0);

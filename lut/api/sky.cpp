@@ -10,6 +10,7 @@
 #include <glm/geometric.hpp>
 #include <utility>
 
+#include "atmosphere/base/finite.h"
 #include "lut/api/conversions.h"
 #include "lut/version.h"
 
@@ -62,6 +63,7 @@ ViewRay RayFrom(const AltitudeAndZenith& eye, const glm::dvec3& view, const glm:
 namespace {
 
 Spectrum SpectrumOf(const Bands<float>& bands) {
+  atmosphere::RequireFinite(std::span(bands.value.data(), bands.count), "light of a sky");
   Spectrum spectrum(bands.count);
   for (std::size_t band = 0; band < bands.count; ++band) spectrum[band] = bands[band];
   return spectrum;

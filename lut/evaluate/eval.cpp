@@ -45,6 +45,14 @@ constexpr EnumNames kQuantities{{
 
 }  // namespace
 
+void CaseIds::Add(const std::string& id, const CsvReader& lines) {
+  if (id.empty()) lines.Fail(lines.line(), "id is empty");
+  const auto [same, is_new] = line_of_.try_emplace(id, lines.line());
+  if (is_new) return;
+  lines.Fail(lines.line(),
+             fmt::format("id is \"{}\", as in line {}; ids must be different", id, same->second));
+}
+
 CaseReader::CaseReader(const std::filesystem::path& file) : lines_(file, kColumnNames) {}
 
 std::optional<Case> CaseReader::Next() {
@@ -52,7 +60,7 @@ std::optional<Case> CaseReader::Next() {
   Case result;
   result.line = lines_.line();
   result.id = lines_.Field(kId);
-  if (result.id.empty()) Fail(result.line, "id is empty");
+  ids_.Add(result.id, lines_);
   if (lines_.Field(kQuantity) == "airlight") {
     Fail(result.line,
          "quantity airlight has columns of its own; put such cases in a file of theirs");

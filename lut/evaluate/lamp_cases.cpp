@@ -62,7 +62,8 @@ std::optional<LampCase> LampCaseReader::Next() {
   const auto fail = [&](const std::string& fault) { lines_.Fail(lines_.line(), fault); };
   LampCase made;
   made.id = lines_.Field(kLampId);
-  if (made.id.empty()) fail("id is empty");
+  made.line = lines_.line();
+  ids_.Add(made.id, lines_);
   if (lines_.Field(kLampQuantity) != "airlight") {
     fail(fmt::format("quantity is \"{}\"; in a file of lamps it must be airlight",
                      lines_.Field(kLampQuantity)));

@@ -26,6 +26,7 @@ namespace alpenglow::lut {
 
 struct LampCase {
   std::string id;
+  std::size_t line = 0;
   LampAir air;
   Lamp lamp;
   LampSegment segment;
@@ -41,6 +42,11 @@ class LampCaseReader {
   /// Returns the next case; std::nullopt at the end.
   [[nodiscard]] std::optional<LampCase> Next();
 
+  /// Throws an InputError "file:line: fault".
+  [[noreturn]] void Fail(std::size_t line, const std::string& fault) const {
+    lines_.Fail(line, fault);
+  }
+
   [[nodiscard]] std::uint64_t bytes_read() const { return lines_.bytes_read(); }
   [[nodiscard]] std::uint64_t bytes() const { return lines_.bytes(); }
 
@@ -50,6 +56,7 @@ class LampCaseReader {
   void ReadAxis(Lamp& lamp) const;
 
   CsvReader lines_;
+  CaseIds ids_;
 };
 
 /// Returns whether a file contains cases of lamps: its header names light_along_m.

@@ -4,6 +4,7 @@
 #include <oneapi/tbb/parallel_for.h>
 
 #include "atmosphere/base/error.h"
+#include "atmosphere/base/finite.h"
 
 namespace alpenglow::lut {
 namespace {
@@ -67,6 +68,7 @@ ErrorStatistics StatisticsOf(const std::vector<ReferenceValue>& references,
 
 ErrorStatistics StatisticsOfErrors(std::vector<double> errors, double noise) {
   if (errors.empty()) return {};
+  RequireFinite(errors, "errors of a method");
   std::sort(errors.begin(), errors.end());
   const std::size_t n = errors.size();
   double squares = 0.0;

@@ -13,6 +13,7 @@
 #include <utility>
 
 #include "atmosphere/base/error.h"
+#include "atmosphere/base/finite.h"
 #include "atmosphere/base/parsing.h"
 #include "atmosphere/math/constants.h"
 #include "atmosphere/medium/medium.h"
@@ -339,6 +340,7 @@ void WriteExchangeTables(const std::vector<ExchangeTexture>& textures, const Med
   const TexelFormat format = FormatOf(options);
   for (const ExchangeTexture& texture : textures) {
     const fs::path file = folder / (texture.name + SuffixOf(format));
+    RequireFinite(texture.rgba, file.string());
     if (format == TexelFormat::kExr) {
       WriteExr(file, texture, options, medium);
     } else {

@@ -21,6 +21,7 @@
 #include <type_traits>
 
 #include "atmosphere/base/error.h"
+#include "atmosphere/base/finite.h"
 #include "lut/cli/output_file.h"
 #include "lut/image/image.h"
 #include "lut/tables/table_axes.h"
@@ -109,6 +110,7 @@ void RequireReadable(const fs::path& file) {
 
 void WriteTableImage(const fs::path& file, const TableImage& image) {
   ALPENGLOW_ENSURE(image.values.size(), ==, image.width * image.height * image.channels.size());
+  RequireFinite(image.values, file.string());
   WriteFileAtomically(file, [&](const fs::path& name) {
     try {
       Imf::Header header(static_cast<int>(image.width), static_cast<int>(image.height));

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "atmosphere/base/error.h"
+#include "atmosphere/base/finite.h"
 #include "atmosphere/math/constants.h"
 #include "atmosphere/math/numerics.h"
 #include "atmosphere/reference/path_tracer.h"
@@ -154,6 +155,7 @@ ReferenceViews::ReferenceViews(const Medium& medium, const MultipleScattering& f
 }
 
 ViewErrors ErrorsOfViews(std::vector<double> errors) {
+  RequireFinite(errors, "errors of views");
   std::sort(errors.begin(), errors.end());
   const auto count = static_cast<double>(errors.size());
   const double rms = RmsOf(errors), squares = rms * rms;

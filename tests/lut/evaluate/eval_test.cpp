@@ -289,6 +289,190 @@ TEST_F(Eval, ErrorsOfAllOrdersAreTrueInHazeDustAndThickAir) {
   EXPECT_LT(shares[shares.size() / 2], 0.15) << "and are of use: the true errors are 4 % (rms)";
 }
 
+/// Views [degrees] near and far from a sun 50 degrees from the zenith.
+struct NearTheSun {
+  double altitude_m, zenith_deg, azimuth_deg;
+};
+constexpr std::array<NearTheSun, 8> kViewsByAngle{{{2.0, 52.0, 0.0},
+                                                   {2.0, 57.0, 0.0},
+                                                   {2.0, 63.0, 0.0},
+                                                   {2.0, 50.0, 30.0},
+                                                   {2.0, 50.0, 45.0},
+                                                   {2.0, 50.0, 90.0},
+                                                   {2.0, 50.0, 180.0},
+                                                   {3000.0, 130.0, 180.0}}};
+
+/// Aerosol with a narrow lobe, its radiances by reference::TraceRadiance with their standard
+/// errors, and the largest error of the sky.
+struct NarrowLobe {
+  const char* name;
+  PhaseFunction phase;
+  double optical_depth, bound;
+  std::array<Estimate, 8> traced;
+};
+
+PhaseFunction OneLobe(double g) { return {.kind = PhaseKind::kHenyeyGreenstein, .g = g}; }
+
+std::vector<NarrowLobe> NarrowLobesOfPaths() {
+  return {{"droplets of 4 um",
+           FogPhase(4.0),
+           0.5,
+           0.02,
+           {{{8.3205, 0.0047},
+             {0.99107, 0.0019},
+             {0.38488, 0.00093},
+             {0.1479, 0.00029},
+             {0.08897, 0.00022},
+             {0.026058, 0.00016},
+             {0.017497, 9.5e-05},
+             {0.035276, 0.00019}}}},
+          {"droplets of 20 um",
+           FogPhase(20.0),
+           0.1,
+           0.02,
+           {{{1.2635, 0.00097},
+             {0.13519, 6.8e-05},
+             {0.10986, 7e-05},
+             {0.05215, 4.3e-05},
+             {0.032946, 5.1e-05},
+             {0.013857, 4.6e-05},
+             {0.011701, 4e-05},
+             {0.02881, 3.7e-05}}}},
+          {"droplets of 50 um",
+           FogPhase(50.0),
+           0.5,
+           0.02,
+           {{{1.9804, 0.0052},
+             {0.42389, 0.00074},
+             {0.36419, 0.00064},
+             {0.16403, 0.00032},
+             {0.087691, 0.00026},
+             {0.021084, 0.00012},
+             {0.014658, 8.3e-05},
+             {0.032079, 0.00018}}}},
+          {"g = 0.999",
+           OneLobe(0.999),
+           0.5,
+           0.02,
+           {{{2.3728, 0.006},
+             {0.082549, 0.00023},
+             {0.035401, 0.0002},
+             {0.017973, 0.0001},
+             {0.01578, 9.2e-05},
+             {0.011623, 5.8e-05},
+             {0.010649, 6.1e-05},
+             {0.026603, 0.00016}}}},
+          {"g = 0.999, thin",
+           OneLobe(0.999),
+           0.03,
+           0.02,
+           {{{0.1642, 8.1e-05},
+             {0.024887, 3.9e-05},
+             {0.025129, 3.9e-05},
+             {0.017149, 4.1e-05},
+             {0.015855, 3.3e-05},
+             {0.011891, 3.6e-05},
+             {0.010897, 3.5e-05},
+             {0.027696, 2.5e-05}}}},
+          {"g = -0.9",
+           OneLobe(-0.9),
+           0.5,
+           0.06,
+           {{{0.3046, 0.0012},
+             {0.23913, 0.0012},
+             {0.15372, 0.00086},
+             {0.054372, 0.00029},
+             {0.03401, 0.00019},
+             {0.020646, 0.0001},
+             {0.0206, 0.00011},
+             {4.3712, 0.00093}}}},
+          {"g = -0.99",
+           OneLobe(-0.99),
+           0.05,
+           0.25,
+           {{{0.12394, 0.00071},
+             {0.026405, 5.4e-05},
+             {0.026374, 4.7e-05},
+             {0.018349, 6.8e-05},
+             {0.017014, 4e-05},
+             {0.013104, 3.7e-05},
+             {0.012136, 4e-05},
+             {82.648, 0.0012}}}}};
+}
+
+// Two standard errors of the paths are added to the estimates and to the bounds of the sky.
+TEST_F(Eval, LightOfNarrowLobesAndItsErrorsAreThoseOfPaths) {
+  Comparison all;
+  const std::vector<NarrowLobe> lobes = NarrowLobesOfPaths();
+  for (std::size_t i = 0; i < lobes.size(); i += tests::ScaledDown<std::size_t>(1, 4)) {
+    Medium medium = InScalarLight(MediumPreset("earth", {550.0}));
+    medium.mie_phase = {lobes[i].phase};
+    medium.mie_extinction_per_m = {lobes[i].optical_depth / 1200.0};
+    medium.mie_scattering_per_m = {0.97 * lobes[i].optical_depth / 1200.0};
+    const auto evaluator = MakeIntegralEvaluator(medium);
+    const Case prepared{"", 0, Quantity::kTotal, {}};
+    evaluator->Prepare({&prepared, 1});
+    for (std::size_t k = 0; k < kViewsByAngle.size(); ++k) {
+      const NearTheSun& view = kViewsByAngle[k];
+      const ViewRay ray = RayFromAngles(view.altitude_m, view.zenith_deg, view.azimuth_deg, 50.0);
+      const Estimate found = evaluator->Evaluate({"", 0, Quantity::kTotal, ray}).front();
+      const Estimate& truth = lobes[i].traced[k];
+      all.Add(lobes[i].name, found, truth.value, 2.0 * truth.error);
+      EXPECT_NEAR(found.value, truth.value, lobes[i].bound * truth.value + 2.0 * truth.error)
+          << lobes[i].name << ", view " << k;
+    }
+  }
+  EXPECT_GE(all.honest, 0.95 * all.compared);
+}
+
+// Paths find 5e-13 in the sky of the largest planet, which the air beyond the horizon brings.
+TEST_F(Eval, LightThatIsNotResolvedHasAnError) {
+  Medium giant = MediumPreset("bruneton2017");
+  giant.planet_radius_m = 1e8;
+  const auto evaluator = MakeIntegralEvaluator(giant);
+  for (const Quantity quantity : {Quantity::kTotal, Quantity::kIrradianceSky}) {
+    const Case work{"", 0, quantity, RayFromAngles(2.0, 50.0, 90.0, 95.0)};
+    evaluator->Prepare({&work, 1});
+    for (const Estimate& found : evaluator->Evaluate(work)) EXPECT_GE(found.error, 1e-12);
+  }
+}
+
+/// An evaluator whose results are not finite, or which refuses its second case.
+class FaultyEvaluator final : public Evaluator {
+ public:
+  explicit FaultyEvaluator(double value) : value_(value) {}
+  [[nodiscard]] const Medium& medium() const override { return medium_; }
+  [[nodiscard]] std::optional<std::string> Refusal(Quantity) const override { return std::nullopt; }
+  void Prepare(std::span<const Case>) override {}
+  [[nodiscard]] Estimates Evaluate(const Case& work) const override {
+    if (work.id == "refused") throw InputError("it cannot be");
+    return {{value_, 0.0}};
+  }
+
+ private:
+  Medium medium_ = MediumPreset("bruneton2017");
+  double value_;
+};
+
+TEST_F(Eval, ResultsThatAreNotFiniteAreNotWritten) {
+  WriteText(cases_, std::string(kHeader) + "a,total,0,60,0,30,\n");
+  for (const double value : {std::nan(""), HUGE_VAL}) {
+    FaultyEvaluator evaluator(value);
+    EXPECT_THAT(tests::FaultOf<InternalError>(
+                    [&] { EvaluateFile(cases_, results_, evaluator, ProgressStyle::kQuiet); }),
+                HasSubstr("case a at "));
+    EXPECT_FALSE(fs::exists(results_));
+  }
+}
+
+TEST_F(Eval, ACaseThatIsRefusedWhileEvaluatedIsNamedByItsLine) {
+  WriteText(cases_, std::string(kHeader) + "a,total,0,60,0,30,\nrefused,total,0,60,0,30,\n");
+  FaultyEvaluator evaluator(1.0);
+  EXPECT_EQ(
+      tests::FaultOf([&] { EvaluateFile(cases_, results_, evaluator, ProgressStyle::kQuiet); }),
+      cases_.string() + ":3: it cannot be");
+}
+
 // The radiances are those of reference::TraceRadiance, to 0.15 %.
 TEST_F(Eval, AllOrdersAgreeWithPathsOnTheSmallestAndLargestPlanet) {
   struct Traced {
@@ -609,6 +793,7 @@ TEST_F(Eval, BadCaseFilesAreRefusedWithTheirLine) {
       {good + "b,transmittance,0,60,0,30,,\n", ":3: has 8 fields"},
       {good + "\n", ":3: has 1 fields"},
       {good + ",transmittance,0,60,0,30,\n", ":3: id is empty"},
+      {good + "a,total,0,60,0,30,\n", ":3: id is \"a\", as in line 2"},
       {header + "b,airlight,0,60,0,30,\n", "quantity airlight has columns of its own"},
       {header + "b,luminance,0,60,0,30,\n", "quantity is \"luminance\""},
       {header + "b,transmittance,-6371000,60,0,30,\n", ":2: altitude_m"},

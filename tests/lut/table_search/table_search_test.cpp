@@ -151,6 +151,10 @@ TEST(ErrorsOfViews, OfFourErrorsAreTheFormulas) {
   EXPECT_EQ(errors.percentile_99, 0.03);
 }
 
+TEST(ErrorsOfViews, ThatAreNotFiniteAreNoErrorsOfZero) {
+  EXPECT_THROW(static_cast<void>(ErrorsOfViews({0.01, std::nan("")})), InternalError);
+}
+
 /// Returns the share of samples of 160 errors with the rms of the law below their `rms_at_most`.
 template <typename Law>
 double ShareUnderTheLimit(Law law, double rms) {
