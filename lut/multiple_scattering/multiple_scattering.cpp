@@ -455,7 +455,6 @@ PolarisedLight MultipleScattering::PolarisationAlong(const RaySamples<float>& sa
                                                      double nu) const {
   PolarisedLight light{Bands<float>(bands_), Bands<float>(bands_)};
   if (!medium_.polarised) return light;
-  const AirConstants<float> air = SingleScattering<float>(medium_).constants();
   for (std::size_t s = 0; s < samples.count; ++s) {
     const float mu = samples.mu[s], mu_s = samples.mu_s[s];
     const float sine = SunSine(static_cast<double>(mu));
@@ -468,9 +467,9 @@ PolarisedLight MultipleScattering::PolarisationAlong(const RaySamples<float>& sa
     for (std::size_t band = 0; band < bands_; ++band) {
       const auto tensor = [&](std::size_t m) { return here[m][band]; };
       const float depth =
-          OpticalDepthOf(ExtinctionAt(air, band),
+          OpticalDepthOf(ExtinctionAt(air_, band),
                          {samples.view_rayleigh[s], samples.view_mie[s], samples.view_ozone[s]});
-      const float share = samples.weight[s] * std::exp(-depth) * air.rayleigh[band] *
+      const float share = samples.weight[s] * std::exp(-depth) * air_.rayleigh[band] *
                           samples.rayleigh_density[s] * RayleighChi2(medium_, band);
       light.q[band] += share * (stokes.q20 * tensor(0) + stokes.q21 * cosine * tensor(1) +
                                 stokes.q22 * (2.0F * cosine * cosine - 1.0F) * tensor(2));
