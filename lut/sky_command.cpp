@@ -117,7 +117,7 @@ struct RenderedSky {
 
 RenderedSky Rendered(const SkyJob& job, ProgressStyle style) {
   const SingleScattering<float> air(job.medium);
-  const MultipleScattering multiple_scattering(job.medium);
+  const MultipleScattering multiple_scattering(job.medium, OptionsFor(job.medium));
   Progress progress("rows", static_cast<std::size_t>(job.settings.height), style);
   return {
       RenderPanorama(air, multiple_scattering, job.settings, [&] { progress.Advance(); }),

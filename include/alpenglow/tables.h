@@ -27,6 +27,10 @@ void BakeTables(const Atmosphere& atmosphere, const std::filesystem::path& folde
 /// in the tables; aerial perspective between two points is integrated with their multiple
 /// scattering. A table returns exactly the values that were written. Throws InputError naming the
 /// file if a table is missing, damaged or made for another atmosphere than the others.
+///
+/// Error of Radiance() against that of a Sky of the same atmosphere, from the ground to 3 km, for
+/// every preset and every mixture of aerosols: below 8 % (rms) with tables of the quality kPreview,
+/// in twilight and in thin air with coarse aerosol; mostly below 2 % (asserted by same_light_test).
 [[nodiscard]] Sky ReadTables(const std::filesystem::path& folder);
 
 /// Reads a folder like ReadTables(folder) and throws InputError unless it was made for this

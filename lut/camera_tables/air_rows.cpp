@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <glm/common.hpp>
 #include <glm/exponential.hpp>
 
 #include "atmosphere/math/constants.h"
@@ -239,15 +240,34 @@ struct SunColumns {
   std::vector<float> rayleigh, mie, ozone;
 };
 
-/// Single scattering along the rays of one row, up to each distance.
-class SingleOfRow {
+/// Light up to one distance, for the tables single and diffuse.
+struct SunlightTo {
+  glm::vec4 single, diffuse;
+};
+
+// Divides light scattered once, and what is added to it around the sun, between the tables.
+SunlightTo Divided(const glm::vec4& once, const glm::vec4& added) {
+  const glm::vec4 single = glm::max(once + added, 0.5F * once);
+  return {single, once + added - single};
+}
+
+/// Sunlight along the rays of one row, up to each distance: scattered once, and what is added around
+/// the sun to the light of the moments.
+class SunlightOfRow {
  public:
-  SingleOfRow(const SingleScattering<float>& air, const AirPhases& phases, const AirEye& eye,
-              const AirMap& map, const Reach& reach, const RowOfRays& rays)
-      : air_(air), phases_(phases), eye_(eye), map_(map), reach_(reach), rays_(rays) {}
+  SunlightOfRow(const SingleScattering<float>& air, const MultipleScattering& multiple_scattering,
+                const AirPhases& phases, const AirTables& tables, const Reach& reach,
+                const RowOfRays& rays)
+      : air_(air),
+        multiple_scattering_(multiple_scattering),
+        phases_(phases),
+        eye_(tables.eye),
+        map_(tables.map),
+        reach_(reach),
+        rays_(rays) {}
 
   /// @param nu_seen  cosine between the ray and the direction in which the sun is seen.
-  [[nodiscard]] std::vector<glm::vec4> Along(double nu, double nu_seen) const {
+  [[nodiscard]] std::vector<SunlightTo> Along(double nu, double nu_seen) const {
     const ViewRay ray{eye_.altitude_m, reach_.row.mu, eye_.mu_s, nu};
     const RayExtent extent{reach_.begin_m, reach_.end_m, RayEnd::kLength};
     const ShadowSpan shadow = PlanetShadow(ray, extent, air_.medium().planet_radius_m);
@@ -286,33 +306,93 @@ class SingleOfRow {
     return {std::move(columns[0]), std::move(columns[1]), std::move(columns[2])};
   }
 
-  [[nodiscard]] std::vector<glm::vec4> Gathered(const RaySamples<float>& samples,
-                                                const std::vector<std::size_t>& ends,
-                                                const SunColumns& sun, double nu_seen) const {
-    const AirConstants<float>& air = air_.constants();
-    glm::vec4 molecules = Vec4Of(air.rayleigh, air.bands);
-    const std::vector<double> phase = RayleighPhaseValues(air_.medium(), nu_seen);
-    for (std::size_t band = 0; band < air.bands; ++band)
+  [[nodiscard]] std::vector<SunlightTo> Gathered(const RaySamples<float>& samples,
+                                                 const std::vector<std::size_t>& ends,
+                                                 const SunColumns& sun, double nu_seen) const {
+    return multiple_scattering_.peak()
+               ? WithPeak(*multiple_scattering_.peak(), samples, ends, sun, nu_seen)
+               : WithGlow(samples, ends, sun, nu_seen);
+  }
+
+  /// Returns the scattering coefficients of molecules times their phase function.
+  [[nodiscard]] glm::vec4 MoleculesAt(double nu) const {
+    glm::vec4 molecules = Vec4Of(air_.constants().rayleigh, air_.bands());
+    const std::vector<double> phase = RayleighPhaseValues(air_.medium(), nu);
+    for (std::size_t band = 0; band < phase.size(); ++band)
       molecules[static_cast<glm::length_t>(band)] *= static_cast<float>(phase[band]);
-    const glm::vec4 aerosol = phases_.OfAerosol(nu_seen) * Vec4Of(air.mie_scattering, air.bands);
-    std::vector<glm::vec4> light;
-    glm::vec4 sum(0.0F);
+    return molecules;
+  }
+
+  // The glow is that of the mean column over sunlit aerosol, as in MultipleScattering.
+  [[nodiscard]] std::vector<SunlightTo> WithGlow(const RaySamples<float>& samples,
+                                                 const std::vector<std::size_t>& ends,
+                                                 const SunColumns& sun, double nu_seen) const {
+    const AirConstants<float>& air = air_.constants();
+    const glm::vec4 molecules = MoleculesAt(nu_seen), phase = phases_.OfAerosol(nu_seen);
+    const glm::vec4 scattering = Vec4Of(air.mie_scattering, air.bands);
+    const bool glows = GlowAboutTheSun::Reaches(nu_seen);
+    std::vector<SunlightTo> light;
+    glm::vec4 of_molecules(0.0F), of_aerosol(0.0F);
+    float lit_km = 0.0F, column = 0.0F;
     std::size_t s = 0;
     for (const std::size_t end : ends) {
       for (; s < end; ++s) {
         if (samples.weight[s] == 0.0F) continue;
-        const glm::vec4 depth =
-            DepthOf(air, samples.view_rayleigh[s] + sun.rayleigh[s],
-                    samples.view_mie[s] + sun.mie[s], samples.view_ozone[s] + sun.ozone[s]);
-        sum += samples.weight[s] * glm::exp(-depth) *
-               (samples.rayleigh_density[s] * molecules + samples.mie_density[s] * aerosol);
+        const glm::vec4 seen = samples.weight[s] * glm::exp(-DepthAt(samples, sun, s));
+        of_molecules += seen * samples.rayleigh_density[s];
+        of_aerosol += seen * samples.mie_density[s];
+        lit_km += samples.weight[s] * samples.mie_density[s];
+        column += samples.weight[s] * samples.mie_density[s] * (samples.view_mie[s] + sun.mie[s]);
       }
-      light.push_back(sum);
+      const glm::vec4 aerosol = scattering * of_aerosol;
+      const glm::vec4 once = molecules * of_molecules + phase * aerosol;
+      glm::vec4 glow(0.0F);
+      if (glows && lit_km > 0.0F)
+        glow = aerosol * Vec4Of(multiple_scattering_.GlowFactor(nu_seen, column / lit_km));
+      light.push_back(Divided(once, glow));
     }
     return light;
   }
 
+  [[nodiscard]] std::vector<SunlightTo> WithPeak(const DeltaM& peak,
+                                                 const RaySamples<float>& samples,
+                                                 const std::vector<std::size_t>& ends,
+                                                 const SunColumns& sun, double nu_seen) const {
+    const AirConstants<float>& air = air_.constants();
+    const glm::vec4 molecules = MoleculesAt(nu_seen), phase = phases_.OfAerosol(nu_seen);
+    const std::vector<PeakAtAngle> peaks = peak.At(nu_seen);
+    std::vector<SunlightTo> light;
+    glm::vec4 once(0.0F), added(0.0F);
+    std::size_t s = 0;
+    for (const std::size_t end : ends) {
+      for (; s < end; ++s) {
+        if (samples.weight[s] == 0.0F) continue;
+        const glm::vec4 depth = DepthAt(samples, sun, s);
+        for (std::size_t band = 0; band < air.bands; ++band) {
+          const auto i = static_cast<glm::length_t>(band);
+          const float mie = air.mie_scattering[band];
+          const float of_gas = molecules[i] * samples.rayleigh_density[s];
+          const float of_aerosol = mie * samples.mie_density[s];
+          once[i] += samples.weight[s] * std::exp(-depth[i]) * (of_gas + of_aerosol * phase[i]);
+          added[i] +=
+              samples.weight[s] * peaks[band].LightOf(mie * (samples.view_mie[s] + sun.mie[s]),
+                                                      depth[i], of_gas, of_aerosol);
+        }
+      }
+      light.push_back(Divided(once, added));
+    }
+    return light;
+  }
+
+  /// Returns the optical depth from the sun to a sample and on to the eye.
+  [[nodiscard]] glm::vec4 DepthAt(const RaySamples<float>& samples, const SunColumns& sun,
+                                  std::size_t s) const {
+    return DepthOf(air_.constants(), samples.view_rayleigh[s] + sun.rayleigh[s],
+                   samples.view_mie[s] + sun.mie[s], samples.view_ozone[s] + sun.ozone[s]);
+  }
+
   const SingleScattering<float>& air_;
+  const MultipleScattering& multiple_scattering_;
   const AirPhases& phases_;
   const AirEye& eye_;
   const AirMap& map_;
@@ -323,10 +403,12 @@ class SingleOfRow {
 class WayBuilder {
  public:
   WayBuilder(const SingleScattering<float>& air, const MultipleScattering& multiple_scattering,
-             const AirPhases& phases, AirTables& tables)
+             const AirPhases& once, AirTables& tables)
       : air_(air),
+        multiple_scattering_(multiple_scattering),
         fan_(multiple_scattering),
-        phases_(phases),
+        once_(once),
+        phases_(tables.phase),
         tables_(tables),
         azimuths_(AzimuthsOf(tables.size.columns)) {}
 
@@ -353,21 +435,24 @@ class WayBuilder {
     std::vector<double> nus;
     for (const double azimuth : azimuths_)
       nus.push_back(SunCosineOf(reach.row, tables_.eye.mu_s, azimuth));
-    const SingleOfRow single(air_, phases_, tables_.eye, tables_.map, reach, rays);
+    const SunlightOfRow sunlight(air_, multiple_scattering_, once_, tables_, reach, rays);
     for (std::size_t x = 0; x < nus.size(); ++x) {
       const double nu_seen = SunCosineOf(reach.row, mu_s_seen, azimuths_[x]);
       const glm::vec4 mix = AirPhases::OfMolecules(nu_seen) * tables_.single_mix[0] +
                             phases_.OfAerosol(nu_seen) * tables_.single_mix[1];
-      const std::vector<glm::vec4> light = single.Along(nus[x], nu_seen);
-      for (std::size_t j = 0; j < light.size(); ++j)
-        Texel(tables_.single, x, y, j) = Quotient(light[j], absorbed[j] * mix);
+      const std::vector<SunlightTo> light = sunlight.Along(nus[x], nu_seen);
+      for (std::size_t j = 0; j < light.size(); ++j) {
+        Texel(tables_.single, x, y, j) = Quotient(light[j].single, absorbed[j] * mix);
+        Texel(tables_.multiple_scattering, x, y, j) = light[j].diffuse;
+      }
     }
-    FillDiffuse(y, reach, rays, absorbed, {nus.begin(), nus.end()});
+    AddMoments(y, reach, rays, absorbed, {nus.begin(), nus.end()});
     DivideByTwilight(y, reach, nus);
   }
 
-  void FillDiffuse(int y, const Reach& reach, const RowOfRays& rays,
-                   const std::vector<glm::vec4>& absorbed, const std::vector<float>& nus) {
+  // Adds the light of the moments to the light in the table.
+  void AddMoments(int y, const Reach& reach, const RowOfRays& rays,
+                  const std::vector<glm::vec4>& absorbed, const std::vector<float>& nus) {
     const ViewRay ray{tables_.eye.altitude_m, reach.row.mu, tables_.eye.mu_s, 0.0};
     const std::size_t bands = air_.bands();
     std::vector<glm::vec4> sum(nus.size(), glm::vec4(0.0F));
@@ -376,7 +461,8 @@ class WayBuilder {
       for (std::size_t x = 0; x < nus.size(); ++x) {
         for (std::size_t band = 0; band < bands; ++band)
           sum[x][static_cast<glm::length_t>(band)] += piece[x * bands + band];
-        Texel(tables_.multiple_scattering, x, y, j) = Quotient(sum[x], absorbed[j]);
+        glm::vec4& texel = Texel(tables_.multiple_scattering, x, y, j);
+        texel = Quotient(texel + sum[x], absorbed[j]);
       }
     }
   }
@@ -406,8 +492,9 @@ class WayBuilder {
   }
 
   const SingleScattering<float>& air_;
+  const MultipleScattering& multiple_scattering_;
   AzimuthFan fan_;
-  const AirPhases& phases_;
+  AirPhases once_, phases_;
   AirTables& tables_;
   std::vector<double> azimuths_;
 };
@@ -415,8 +502,8 @@ class WayBuilder {
 }  // namespace
 
 void FillWays(const SingleScattering<float>& air, const MultipleScattering& multiple_scattering,
-              const AirPhases& phases, AirTables& tables) {
-  WayBuilder(air, multiple_scattering, phases, tables).Fill();
+              const AirPhases& once, AirTables& tables) {
+  WayBuilder(air, multiple_scattering, once, tables).Fill();
 }
 
 }  // namespace alpenglow::lut

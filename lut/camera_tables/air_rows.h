@@ -43,8 +43,8 @@ struct AirRow {
 /// Phase functions as evaluated by shaders.
 class AirPhases {
  public:
-  /// @param nodes  phase function of the aerosol, as in MediumTables::phase; the caller keeps it
-  ///     alive.
+  /// @param nodes  phase function of the aerosol, as in MediumTables::phase or AirTables::phase; the
+  ///     caller keeps it alive.
   explicit AirPhases(const AirTexels& nodes) : nodes_(nodes) {}
 
   [[nodiscard]] static float OfMolecules(double nu);
@@ -58,7 +58,8 @@ class AirPhases {
 [[nodiscard]] float TwilightAt(const AirMap& map, double mu_s, double nu, double distance_km);
 
 /// Fills single, diffuse and extinction of the tables; all other members must be set.
+/// @param once  phases of light scattered once.
 void FillWays(const SingleScattering<float>& air, const MultipleScattering& multiple_scattering,
-              const AirPhases& phases, AirTables& tables);
+              const AirPhases& once, AirTables& tables);
 
 }  // namespace alpenglow::lut

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <glm/common.hpp>
 #include <utility>
 
 #include "atmosphere/base/error.h"
@@ -53,26 +54,24 @@ constexpr int kSunCosines = 256, kSunAltitudes = 64;
 // Returns the contributions of molecules, aerosol and everything else in the direction of the sun,
 // or in the nearest direction of its azimuth that passes through air. In bands without light there,
 // all three are equal.
-std::array<glm::vec4, 3> SkyMix(const SingleScattering<float>& air, const SkyView& view,
-                                const AirMap& map, const AirPhases& phases, const AirEye& eye) {
+std::array<glm::vec4, 3> SkyMix(const SingleScattering<float>& air,
+                                const MultipleScattering& multiple_scattering, const SkyView& view,
+                                const AirMap& map, const AirEye& eye) {
   const double sun = eye.zenith_angle_seen_rad();
   const double horizon = view.map().horizon_zenith_angle_rad();
   const double margin = std::min(0.02, 0.05 * map.sky_range);
   const double zenith = std::clamp(
       sun, horizon - map.sky_range + (map.altitude > map.top ? margin : 0.0), horizon - margin);
-  const double nu = std::cos(zenith - sun);
   const ViewRay ray{eye.altitude_m, std::cos(zenith), eye.mu_s,
                     std::cos(zenith - sun - eye.lower_for_air_rad)};
-  const ScatteredOnce<float> once = air.Scatter(air.Sample(ray, {}));
-  const glm::vec4 aerosol = phases.OfAerosol(nu);
+  const RaySamples<float> samples = air.Sample(ray, {.dark_samples = true});
+  const ScatteredOnce<float> once = air.Scatter(samples);
+  const glm::vec4 all = Vec4Of(view.Radiance(zenith, 0.0));
   std::array<glm::vec4, 3> mix{Vec4Of(once.rayleigh), Vec4Of(once.mie),
-                               Vec4Of(view.Radiance(zenith, 0.0))};
+                               Vec4Of(multiple_scattering.InscatterByMoments(samples, ray.nu))};
   for (glm::length_t band = 0; band < 4; ++band) {
-    const float all = mix[2][band];
-    const float rest =
-        all - AirPhases::OfMolecules(nu) * mix[0][band] - aerosol[band] * mix[1][band];
-    mix[2][band] = std::max(rest, 1e-3F * all);
-    if (all > 0.0F) continue;
+    if (!(mix[2][band] > 0.0F)) mix[2][band] = 1e-3F * all[band];
+    if (all[band] > 0.0F) continue;
     for (glm::vec4& share : mix) share[band] = 1.0F;
   }
   return mix;
@@ -83,13 +82,17 @@ double CosineOfPhaseNode(int node) {
   return 1.0 - 2.0 * half_sine * half_sine;
 }
 
-AirTexels SkyPhase(const SingleScattering<float>& air,
-                   const MultipleScattering& multiple_scattering, const AirTexels& aerosol,
-                   const AirEye& eye) {
+AirTexels PhaseAround(const SingleScattering<float>& air,
+                      const MultipleScattering& multiple_scattering, const AirTexels& aerosol,
+                      const AirEye& eye) {
   const float column_km = GlowColumn_km(air, eye.altitude_m, eye.mu_s);
   AirTexels phase = aerosol;
-  for (int k = 0; k < phase.width; ++k)
-    phase.At(k, 0) += Vec4Of(multiple_scattering.GlowFactor(CosineOfPhaseNode(k), column_km));
+  for (int k = 0; k < phase.width; ++k) {
+    const glm::vec4 once = phase.At(k, 0);
+    phase.At(k, 0) =
+        glm::max(once + Vec4Of(multiple_scattering.GlowFactor(CosineOfPhaseNode(k), column_km)),
+                 0.1F * once);
+  }
   return phase;
 }
 
@@ -212,10 +215,10 @@ AirTables MakeAirTables(const SingleScattering<float>& air,
   const SkyView view = ViewOf(air, multiple_scattering, eye, size.sky_fineness);
   const AirMap map(air.medium(), eye.altitude_m, eye.ceiling_m,
                    static_cast<double>(multiple_scattering.grid().twilight_fall));
-  AirTexels sky_phase = SkyPhase(air, multiple_scattering, medium.phase, eye);
-  const AirPhases phases(medium.phase), sky_phases(sky_phase);
-  const std::array<glm::vec4, 3> mix = SkyMix(air, view, map, sky_phases, eye);
-  AirTexels sky = SkyTexels(view, map, sky_phases, eye, mix, size);
+  AirTexels phase = PhaseAround(air, multiple_scattering, medium.phase, eye);
+  const AirPhases phases(phase);
+  const std::array<glm::vec4, 3> mix = SkyMix(air, multiple_scattering, view, map, eye);
+  AirTexels sky = SkyTexels(view, map, phases, eye, mix, size);
   const int rows = size.rows + size.ground_rows;
   AirTables tables{
       size,
@@ -225,13 +228,13 @@ AirTables MakeAirTables(const SingleScattering<float>& air,
       SingleMix(air, map),
       Vec4Of(air.constants().rayleigh, air.bands()) +
           Vec4Of(air.constants().mie_extinction, air.bands()),
-      std::move(sky_phase),
+      std::move(phase),
       std::move(sky),
       ThroughTexels(air, map, eye, size),
       AirTexels(size.extinction_distances, size.extinction_rows + size.extinction_ground_rows),
       AirTexels(size.columns, rows, size.distances),
       AirTexels(size.columns, rows, size.distances)};
-  FillWays(air, multiple_scattering, phases, tables);
+  FillWays(air, multiple_scattering, AirPhases(medium.phase), tables);
   return tables;
 }
 
@@ -268,11 +271,12 @@ std::shared_ptr<const SolvedAir> SolveAir(const Medium& medium, AirSolution solu
   return one_thread.execute([&] {
     RefractedBeam beam(medium);
     MediumTables tables = MakeMediumTables(air, beam);
-    return std::make_shared<const SolvedAir>(SolvedAir{
-        medium, solution, std::move(beam),
-        MultipleScattering(medium,
-                           solution == AirSolution::kDraft ? kDraft : MultipleScatteringOptions{}),
-        std::move(tables)});
+    return std::make_shared<const SolvedAir>(
+        SolvedAir{medium, solution, std::move(beam),
+                  MultipleScattering(medium, RaisedFor(medium, solution == AirSolution::kDraft
+                                                                   ? kDraft
+                                                                   : MultipleScatteringOptions{})),
+                  std::move(tables)});
   });
 }
 

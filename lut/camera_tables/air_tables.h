@@ -10,16 +10,19 @@
 //   L(direction) = sky(direction) [p_R(nu) m_R + p_M(nu) m_M + m_0],
 //
 // where nu is the cosine of the angle to the direction in which the sun is seen. An aureole is
-// therefore as sharp as the phase function at the pixel. Here p_M includes the glow of light that
-// aerosol scatters more than once. Light scattered on the way to a point is also divided by 1 - T,
+// therefore as sharp as the phase function at the pixel. Here p_M includes the light that aerosol
+// scatters more than once around the sun (MultipleScattering::GlowFactor), for the column of aerosol
+// in the direction of the sun. For other columns the quotient varies, but slowly: where that light
+// varies within a degree it is near the sun. Light scattered on the way to a point is also divided by 1 - T,
 // where T is the transmittance along the way. The result is a mean source, which hardly changes
 // with distance,
 //
 //   S(direction, d) = single (1 - T) [p_R(nu) a_R + p_M(nu) a_M],
 //   D(direction, d) = diffuse (1 - T),   T = exp(-d extinction)
 //
-// S is sunlight scattered once outside of the planet's own shadow, without the shadows of terrain.
-// D is all light scattered more than once. air_map.glsl defines the axes.
+// S is sunlight outside of the planet's own shadow, without the shadows of terrain: scattered once,
+// and with what is added around the sun. Where the latter would take more than half of the former,
+// away from the sun, the rest belongs to D. D is all other light scattered more than once. air_map.glsl defines the axes.
 //
 // This header also reads the shared text air_map.glsl as C++.
 #pragma once
@@ -129,9 +132,9 @@ struct AirTables {
   /// Extinction at altitude 0 and below [1/km]: a ray that goes on below altitude 0 is lit as at its
   /// crossing, and one from an eye at or below altitude 0 as the horizontal ray.
   glm::vec4 extinction_below;
-  /// Phase function for whole rays: MediumTables::phase with the glow around the sun
-  /// (MultipleScattering::GlowFactor).
-  AirTexels sky_phase;
+  /// Phase function by which the light is divided: MediumTables::phase with the light around the
+  /// sun (MultipleScattering::GlowFactor), and at least a tenth of it.
+  AirTexels phase;
   AirTexels sky;         // [azimuth, row]: rows above the horizon, then rows below it
   AirTexels to_space;    // [row]: transmittance of whole rays, to space or to the bare ground
   AirTexels extinction;  // [distance, row]: mean along the path [1/km]

@@ -30,12 +30,13 @@ struct AzimuthFan::Line {
 AzimuthFan::AzimuthFan(const MultipleScattering& light)
     : light_(light),
       stride_((light.bands() + kLanes - 1) / kLanes * kLanes),
-      chi_mie_(MieLegendreCoefficients(light.medium(), light.options().degree)),
+      scattering_(ScatteringMedium(light.medium(), light.options())),
       twilight_(TwilightAtNodes(light.grid())) {
   if (const std::size_t bands = light.bands(); stride_ != bands) {
-    padded_.resize(light.values().size() / bands * stride_);
-    for (std::size_t i = 0; i < light.values().size(); ++i)
-      padded_[i / bands * stride_ + i % bands] = light.values()[i];
+    const std::vector<float>& values = light.smooth();
+    padded_.resize(values.size() / bands * stride_);
+    for (std::size_t i = 0; i < values.size(); ++i)
+      padded_[i / bands * stride_ + i % bands] = values[i];
   }
   for (int i = 0; i <= kTableCells; ++i) {
     const double mu_s = 2.0 * i / kTableCells - 1.0;
@@ -48,14 +49,14 @@ AzimuthFan::AzimuthFan(const MultipleScattering& light)
 }
 
 const float* AzimuthFan::Values() const {
-  return padded_.empty() ? light_.values().data() : padded_.data();
+  return padded_.empty() ? light_.smooth().data() : padded_.data();
 }
 
 // Returns the light that each moment and component of the tensor at a sample sends to the eye, in
 // four bands. If the medium has fewer bands left, the remaining lanes repeat its last band.
 AzimuthFan::Factors AzimuthFan::FactorsAt(const RaySamples<float>& samples, std::size_t s,
                                           std::size_t first_band) const {
-  const Medium& medium = light_.medium();
+  const Medium& medium = scattering_.medium;
   const std::size_t bands = light_.bands();
   const auto orders = static_cast<std::size_t>(light_.options().degree) + 1;
   const Moments legendre = LegendreTerms(light_.options().degree, samples.mu[s]);
@@ -75,15 +76,15 @@ AzimuthFan::Factors AzimuthFan::FactorsAt(const RaySamples<float>& samples, std:
     const float chi2 = RayleighChi2(medium, band);
     for (std::size_t l = 0; l < orders; ++l) {
       const float rayleigh_chi = l == 0 ? 1.0F : l == 2 && !medium.polarised ? chi2 : 0.0F;
-      const float source =
-          molecules * rayleigh_chi + aerosol * static_cast<float>(chi_mie_[l * bands + band]);
+      const float source = molecules * rayleigh_chi +
+                           aerosol * static_cast<float>(scattering_.chi[l * bands + band]);
       for (std::size_t m = 0; m <= l; ++m) {
         const std::size_t i = l * (l + 1) / 2 + m;
         factors[i * kLanes + lane] = source * legendre[i];
       }
     }
     for (std::size_t m = 0; m < kTensorMoments; ++m) {
-      factors[(light_.moments() + m) * kLanes + lane] =
+      factors[(MomentCount(light_.options().degree) + m) * kLanes + lane] =
           molecules * chi2 * legendre[MomentIndex(2, static_cast<int>(m))];
     }
   }
@@ -107,7 +108,7 @@ void AzimuthFan::FillRows(const RaySamples<float>& samples, std::size_t s, std::
   contraction.sun_stride = node_floats;
   contraction.moment_stride = stride_;
   contraction.degree = options.degree;
-  contraction.tensor = light_.medium().polarised ? light_.moments() : 0;
+  contraction.tensor = light_.medium().polarised ? MomentCount(light_.options().degree) : 0;
   contraction.factors = factors.data();
   contraction.rows = rows + width;
   for (std::size_t a = 0; a < 4; ++a) {

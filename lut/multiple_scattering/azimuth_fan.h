@@ -29,9 +29,8 @@ class AzimuthFan {
   /// @param ray      altitude, zenith cosine and sun zenith cosine at the observer; its nu is not
   ///   used.
   /// @param nus      cosine of the angle between each direction and the sun.
-  /// Agrees with MultipleScattering::InscatterAlong of these samples to 1e-4 of the brightest value
-  /// if the forward peak is not treated separately. Otherwise the result covers only the degrees
-  /// that the moments keep.
+  /// Agrees with MultipleScattering::InscatterByMoments of these samples to 1e-4 of the brightest
+  /// value.
   [[nodiscard]] std::vector<float> InscatterAlong(const RaySamples<float>& samples,
                                                   const ViewRay& ray,
                                                   std::span<const float> nus) const;
@@ -52,9 +51,9 @@ class AzimuthFan {
   [[nodiscard]] const float* Values() const;
 
   const MultipleScattering& light_;
-  std::size_t stride_;           // number of bands, rounded up to whole blocks
-  std::vector<float> padded_;    // values of light_ with stride_; empty if light_ already has it
-  std::vector<double> chi_mie_;  // [l * bands + band]
+  std::size_t stride_;            // number of bands, rounded up to whole blocks
+  DeltaScaledMedium scattering_;  // medium in which the moments are transported
+  std::vector<float> padded_;     // smooth() of light_ with stride_; empty if it already has it
   std::vector<float> position_of_mu_s_;  // over [-1, 1]: position among the sun nodes
   std::vector<float> twilight_of_mu_s_;  // TwilightOf at the same values of mu_s
   std::vector<float> twilight_;          // TwilightOf at the nodes

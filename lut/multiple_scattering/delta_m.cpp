@@ -30,7 +30,7 @@ constexpr std::size_t kGlowAngles = 104;
 constexpr double kGlowFades_rad = 15.0 * kRadiansPerDegree;
 // Number of depths of the peak, and how many times the depth over which delta-M scaled air scatters
 // the largest of them is. Hardly any light passes through more.
-constexpr std::size_t kDepths = 64;
+constexpr std::size_t kDepths = kPeakShapeDepths;
 constexpr double kDeepest = 16.0;
 constexpr double kDeepestOfAll = 4000.0;
 // The glow belongs to thin air. For larger depths the glow of this depth is used.
@@ -77,12 +77,6 @@ double HalfOf(Half half, std::size_t l, double before, double chi, double after)
   const auto degree = static_cast<double>(l);
   const double times_x = (degree * before + (degree + 1.0) * after) / (2.0 * degree + 1.0);
   return half == Half::kForward ? 0.5 * (chi + times_x) : 0.5 * SignOf(l) * (chi - times_x);
-}
-
-// Returns the columns on the path of sunlight that is scattered once at a sample.
-ColumnSet<float> FromSunToEye(const RaySamples<float>& samples, std::size_t i) {
-  return {samples.view_rayleigh[i] + samples.sun_rayleigh[i],
-          samples.view_mie[i] + samples.sun_mie[i], samples.view_ozone[i] + samples.sun_ozone[i]};
 }
 
 // Returns exp(-depth) (exp(peak) - 1) for peak <= depth without cancellation or overflow.
@@ -379,29 +373,48 @@ float UpFromBelow(const AirConstants<float>& air, std::size_t band, float share,
 
 }  // namespace
 
-DeltaM::Angle DeltaM::AngleOf(double nu) const { return {nu, air().AerosolPhases(nu)}; }
+PeakAtAngle::PeakAtAngle(const PeakShape& shape, double nu, float share, float phase)
+    : shape_(&shape), share_(share), back_(0.5F * static_cast<float>(1.0 - nu) * phase) {
+  const AngleTaps taps = TapsOfAngle(nu);
+  for (std::size_t y = 0; y < kDepths; ++y) high_[y] = taps.Of(shape.high, kDepths, y);
+  twice_back_ = shape.twice_back.empty() ? 0.0F : taps.Of(shape.twice_back, 1, 0);
+}
 
-float DeltaM::SumAlong(std::size_t band, const RaySamples<float>& samples, const Angle& angle,
-                       const PathAhead& ahead) const {
+// The value of the formulas at y = 0 is subtracted, times exp(-depth).
+float PeakAtAngle::LightOf(float y, float depth, float of_gas, float of_aerosol) const {
+  const float more = Gain(share_ * y, depth);
+  const Place place = PlaceOfDepth(*shape_, y);
+  const float above = high_[place.cell] + place.share * (high_[place.cell + 1] - high_[place.cell]);
+  return more * (of_gas + of_aerosol * back_) +
+         std::exp(shape_->rate * y - depth) * of_aerosol * above;
+}
+
+std::vector<PeakAtAngle> DeltaM::At(double nu) const {
+  const Bands<float> phase = air().AerosolPhases(nu);
+  std::vector<PeakAtAngle> peaks;
+  for (std::size_t band = 0; band < phase.count; ++band)
+    peaks.emplace_back(shapes_[shapes_.size() > 1 ? band : 0], nu, share(band), phase[band]);
+  return peaks;
+}
+
+Bands<float> DeltaM::FactorOf(double nu, float column_km) const {
+  constexpr auto kDeepestFactor = static_cast<float>(kDeepestGlow);
+  const std::vector<PeakAtAngle> peaks = At(nu);
+  Bands<float> factor(peaks.size());
+  for (std::size_t band = 0; band < factor.count; ++band) {
+    const float y = std::min(air().constants().mie_scattering[band] * column_km, kDeepestFactor);
+    factor[band] = std::exp(y) * peaks[band].LightOf(y, y, 0.0F, 1.0F);
+  }
+  return factor;
+}
+
+float DeltaM::SumAlong(std::size_t band, const RaySamples<float>& samples, double nu,
+                       const PeakAtAngle& peak, const PathAhead& ahead) const {
   const AirConstants<float>& air = beam_.air().constants();
-  const PeakShape& shape = shapes_[shapes_.size() > 1 ? band : 0];
-  const AngleTaps taps = TapsOfAngle(angle.nu);
-  std::array<float, kDepths> high;
-  for (std::size_t y = 0; y < kDepths; ++y) high[y] = taps.Of(shape.high, kDepths, y);
-  const float twice = shape.twice_back.empty() ? 0.0F : taps.Of(shape.twice_back, 1, 0);
-  const float back = 0.5F * static_cast<float>(1.0 - angle.nu) * angle.aerosol[band];
-  const auto gas = static_cast<float>(shared::PhaseMolecules(
-                       angle.nu, Depolarisation(beam_.air().medium(), band))) *
-                   air.rayleigh[band];
-  const float mie = air.mie_scattering[band], f = beam_.share()[band];
-  // Returns the formula minus its value at y = 0, times exp(-depth).
-  const auto formula = [&](float y, float depth, float of_gas, float of_aerosol) {
-    const float more = Gain(f * y, depth);
-    const Place place = PlaceOfDepth(shape, y);
-    const float above = high[place.cell] + place.share * (high[place.cell + 1] - high[place.cell]);
-    return more * (of_gas + of_aerosol * back) +
-           std::exp(shape.rate * y - depth) * of_aerosol * above;
-  };
+  const auto gas =
+      static_cast<float>(shared::PhaseMolecules(nu, Depolarisation(beam_.air().medium(), band))) *
+      air.rayleigh[band];
+  const float mie = air.mie_scattering[band], f = share(band);
   float sum = 0.0F;
   for (std::size_t i = 0; i < samples.count; ++i) {
     const float lit = samples.weight[i] * samples.lit[i];
@@ -411,10 +424,10 @@ float DeltaM::SumAlong(std::size_t band, const RaySamples<float>& samples, const
         ahead.depth + OpticalDepthOf(ExtinctionAt(air, band), FromSunToEye(samples, i));
     const float of_gas = gas * samples.rayleigh_density[i];
     const float of_aerosol = mie * samples.mie_density[i];
-    sum += lit * formula(y + ahead.scattering, depth, of_gas, of_aerosol);
-    if (ahead.depth > 0.0F) sum -= lit * formula(y, depth, of_gas, of_aerosol);
-    if (twice != 0.0F) {
-      sum += lit * of_aerosol * twice * UpFromBelow(air, band, f, samples, i) *
+    sum += lit * peak.LightOf(y + ahead.scattering, depth, of_gas, of_aerosol);
+    if (ahead.depth > 0.0F) sum -= lit * peak.LightOf(y, depth, of_gas, of_aerosol);
+    if (peak.twice_back() != 0.0F) {
+      sum += lit * of_aerosol * peak.twice_back() * UpFromBelow(air, band, f, samples, i) *
              std::exp(f * (y + ahead.scattering) - depth);
     }
   }
@@ -422,19 +435,21 @@ float DeltaM::SumAlong(std::size_t band, const RaySamples<float>& samples, const
 }
 
 Bands<float> DeltaM::Along(const RaySamples<float>& samples, double nu) const {
-  const Angle angle = AngleOf(nu);
+  const std::vector<PeakAtAngle> peaks = At(nu);
   Bands<float> light(air().bands());
   for (std::size_t band = 0; band < light.count; ++band)
-    light[band] = SumAlong(band, samples, angle, {});
+    light[band] = SumAlong(band, samples, nu, peaks[band], {});
   return light;
 }
 
 Bands<float> DeltaM::Behind(const Way& way, const RaySamples<float>& samples, double nu) const {
-  const Angle angle = AngleOf(nu);
+  const std::vector<PeakAtAngle> peaks = At(nu);
   Bands<float> light(air().bands());
   for (std::size_t band = 0; band < light.count; ++band) {
-    if (way.scattering[band] > 0.0F)
-      light[band] = SumAlong(band, samples, angle, {way.depth[band], way.scattering[band]});
+    if (way.scattering[band] > 0.0F) {
+      light[band] =
+          SumAlong(band, samples, nu, peaks[band], {way.depth[band], way.scattering[band]});
+    }
   }
   return light;
 }
@@ -449,13 +464,13 @@ Bands<float> DeltaM::BackwardError(const RaySamples<float>& samples, double nu) 
   // scatterings, of three, and of two at intermediate angles.
   constexpr float kFourTimes = 0.4F, kThrice = 0.1F, kBlurred = 0.5F;
   const AirConstants<float>& constants = air().constants();
-  const Angle angle = AngleOf(nu);
+  const Bands<float> aerosol = air().AerosolPhases(nu);
   const AngleTaps taps = TapsOfAngle(nu);
   Bands<float> error(constants.bands);
   for (std::size_t band = 0; band < error.count; ++band) {
     const PeakShape& shape = shapes_[shapes_.size() > 1 ? band : 0];
     if (shape.twice_back.empty()) continue;
-    const float back = 0.5F * static_cast<float>(1.0 - nu) * angle.aerosol[band];
+    const float back = 0.5F * static_cast<float>(1.0 - nu) * aerosol[band];
     const float light = kFourTimes * std::abs(taps.Of(shape.twice_back, 1, 0)) + kThrice * back +
                         kBlurred * std::abs(taps.Of(shape.blurred_back, 1, 0));
     for (std::size_t i = 0; i < samples.count; ++i) {

@@ -56,6 +56,8 @@
 // where there is no aerosol.
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <vector>
 
 #include "atmosphere/medium/medium.h"
@@ -66,6 +68,13 @@
 
 namespace alpenglow::lut {
 
+/// Returns the columns on the path of sunlight that is scattered once at a sample [km].
+[[nodiscard]] inline ColumnSet<float> FromSunToEye(const RaySamples<float>& samples,
+                                                   std::size_t i) {
+  return {samples.view_rayleigh[i] + samples.sun_rayleigh[i],
+          samples.view_mie[i] + samples.sun_mie[i], samples.view_ozone[i] + samples.sun_ozone[i]};
+}
+
 /// The medium after delta-M scaling.
 struct DeltaScaledMedium {
   Medium medium;
@@ -74,6 +83,9 @@ struct DeltaScaledMedium {
 };
 
 [[nodiscard]] DeltaScaledMedium WithoutPeak(const Medium& medium, int degree);
+
+/// Number of depths of the peak.
+inline constexpr std::size_t kPeakShapeDepths = 64;
 
 /// Shape of the peak of one phase function: sums over its degrees at every angle.
 struct PeakShape {
@@ -129,10 +141,43 @@ class ScaledBeam {
   std::vector<float> share_;  // f per band
 };
 
+/// The formulas above for one band at one angle to the sun, without light scattered once.
+class PeakAtAngle {
+ public:
+  /// @param shape   of the band; the caller keeps it alive.
+  /// @param share   f.
+  /// @param phase   phase function of the aerosol at this angle.
+  PeakAtAngle(const PeakShape& shape, double nu, float share, float phase);
+
+  /// Returns the light per length of a path on which aerosol scatters with optical depth y [1/km].
+  /// @param depth  optical depth of the path, >= f y.
+  /// @param of_gas, of_aerosol  scattering coefficients at the point [1/km]; that of molecules times
+  ///   their phase function.
+  [[nodiscard]] float LightOf(float y, float depth, float of_gas, float of_aerosol) const;
+
+  /// Returns PeakShape::twice_back at the angle.
+  [[nodiscard]] float twice_back() const { return twice_back_; }
+
+ private:
+  const PeakShape* shape_;
+  float share_, back_, twice_back_;
+  std::array<float, kPeakShapeDepths> high_;
+};
+
 /// The forward peak of all orders, prepared for look-ups. Immutable.
 class DeltaM {
  public:
   DeltaM(const Medium& medium, int degree);
+
+  /// Returns f of a band.
+  [[nodiscard]] float share(std::size_t band) const { return beam_.share()[band]; }
+  /// Returns the formulas at an angle for every band. They refer to this object.
+  [[nodiscard]] std::vector<PeakAtAngle> At(double nu) const;
+
+  /// Returns the light of aerosol over light that it scatters once, without its phase function
+  /// [1/sr]. Depths over 4 count as 4.
+  /// @param column_km  as for GlowAboutTheSun::FactorOf.
+  [[nodiscard]] Bands<float> FactorOf(double nu, float column_km) const;
 
   /// Returns ScaledBeam::At.
   [[nodiscard]] Bands<float> Beam(double height_m, double mu_s) const {
@@ -168,22 +213,15 @@ class DeltaM {
   [[nodiscard]] const SingleScattering<float>& air() const { return beam_.air(); }
 
  private:
-  /// A direction relative to the sun.
-  struct Angle {
-    double nu;             // its cosine
-    Bands<float> aerosol;  // phase functions
-  };
-  [[nodiscard]] Angle AngleOf(double nu) const;
-
   /// Optical depths between the observer and the start of the samples.
   struct PathAhead {
     float depth = 0.0F;
     float scattering = 0.0F;  // by aerosol
   };
-  /// Returns the sum of formula(y + ahead.scattering) along samples, seen through the path ahead,
-  /// minus the same sum with formula(y) if there is such a path.
-  [[nodiscard]] float SumAlong(std::size_t band, const RaySamples<float>& samples,
-                               const Angle& angle, const PathAhead& ahead) const;
+  /// Returns the sum of the formulas for y + ahead.scattering along samples, seen through the path ahead,
+  /// minus the same sum for y if there is such a path.
+  [[nodiscard]] float SumAlong(std::size_t band, const RaySamples<float>& samples, double nu,
+                               const PeakAtAngle& peak, const PathAhead& ahead) const;
 
   ScaledBeam beam_;
   int degree_;

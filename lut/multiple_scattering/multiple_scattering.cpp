@@ -130,6 +130,19 @@ MultipleScatteringOptions OptionsFor(const Medium& medium) {
   return options;
 }
 
+MultipleScatteringOptions RaisedFor(const Medium& medium, MultipleScatteringOptions options) {
+  using Options = MultipleScatteringOptions;
+  const Options needed = OptionsFor(medium), usual;
+  for (const auto number :
+       {&Options::altitudes, &Options::sun_angles, &Options::degree, &Options::zenith_nodes,
+        &Options::azimuth_nodes, &Options::ray_nodes, &Options::later_zenith_nodes,
+        &Options::later_azimuth_nodes, &Options::later_ray_nodes}) {
+    if (needed.*number > usual.*number) options.*number = std::max(options.*number, needed.*number);
+  }
+  options.delta_m = needed.delta_m;
+  return options;
+}
+
 MultipleScattering::MultipleScattering(const Medium& medium,
                                        const MultipleScatteringOptions& options)
     : MultipleScattering(medium, options, Solved(medium, options)) {}
@@ -270,6 +283,7 @@ Bands<float> MultipleScattering::InscatterAlong(const RaySamples<float>& samples
 }
 
 Bands<float> MultipleScattering::GlowFactor(double nu, float column_km) const {
+  if (peak_) return peak_->FactorOf(nu, column_km);
   return glow_ ? glow_->FactorOf(nu, column_km) : Bands<float>(bands_);
 }
 

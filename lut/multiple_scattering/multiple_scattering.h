@@ -71,6 +71,10 @@ struct MultipleScatteringOptions {
 /// Radiances of all orders are then within 0.5 % (rms) of path tracing at an aerosol optical depth
 /// of 0.1, 2 % at 1 and in the dust of Mars, 1 % through molecules of optical depth 5.
 [[nodiscard]] MultipleScatteringOptions OptionsFor(const Medium& medium);
+/// Returns `options` with what the medium needs more than clear air: where OptionsFor has more
+/// nodes than the defaults, at least as many, and its degree and forward peak.
+[[nodiscard]] MultipleScatteringOptions RaisedFor(const Medium& medium,
+                                                  MultipleScatteringOptions options);
 
 /// State of the end of a ray that ends in the air: more air follows, or an object hides it.
 enum class SegmentEnd { kOpen, kOpaque };
@@ -101,7 +105,8 @@ class MultipleScattering {
   /// Returns the axes, for code that interpolates values() itself (moment_grid.h).
   [[nodiscard]] const MomentGrid& grid() const { return grid_; }
   [[nodiscard]] std::size_t bands() const { return bands_; }
-  [[nodiscard]] std::size_t moments() const { return moments_; }
+  /// Returns the forward peak that is added to the moments; std::nullopt without delta_m.
+  [[nodiscard]] const std::optional<DeltaM>& peak() const { return peak_; }
 
   /// Returns the in-scattered light of orders two and up along a sampled ray [1/sr].
   /// The samples must include the dark ones (Sampling::dark_samples).
@@ -123,9 +128,9 @@ class MultipleScattering {
   /// azimuths.
   [[nodiscard]] Bands<float> InscatterByMoments(const RaySamples<float>& samples, double nu) const;
 
-  /// Returns the factor of the light that is added near the sun to the moments of thin air
-  /// (GlowAboutTheSun), over light scattered once by aerosol without its phase function [1/sr]; 0
-  /// with delta_m or exact_orders.
+  /// Returns the factor of the light of aerosol that is added near the sun to the moments
+  /// (GlowAboutTheSun in thin air, DeltaM::FactorOf with delta_m), over light scattered once by
+  /// aerosol without its phase function [1/sr]; 0 with exact_orders.
   /// @param column_km  as for GlowAboutTheSun::FactorOf.
   [[nodiscard]] Bands<float> GlowFactor(double nu, float column_km) const;
 
@@ -165,14 +170,16 @@ class MultipleScattering {
   [[nodiscard]] static double SunCoordinate(double mu_s);
 
  private:
+  friend class AzimuthFan;  // reads smooth()
+
+  /// Returns the values that are interpolated: values(), minus the beam of peak() if that exists.
+  [[nodiscard]] const std::vector<float>& smooth() const { return peak_ ? smooth_ : values_; }
   [[nodiscard]] std::vector<MomentBlock> BlocksOf() const;
   [[nodiscard]] Bands<float> GlowAlong(const RaySamples<float>& samples, double nu) const;
   [[nodiscard]] Bands<float> GroundLight(double mu_s) const;
   [[nodiscard]] ViewRay RayBehind(const RaySamples<float>& samples, double nu) const;
   [[nodiscard]] Bands<float> PeakBehind(const RaySamples<float>& samples, double nu,
                                         double nu_seen) const;
-  /// Returns the values that are interpolated: values(), minus the beam of peak_ if that exists.
-  [[nodiscard]] const std::vector<float>& smooth() const { return peak_ ? smooth_ : values_; }
   [[nodiscard]] AlignedFloats Packed() const;
   [[nodiscard]] std::vector<float> PackedSky() const;
   /// Calls visit(node, weight, sun) with the 16 nodes around a point; `sun` is the index of the

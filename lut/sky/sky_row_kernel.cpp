@@ -46,30 +46,44 @@ void FindAngles(const SkyRowWork& work, std::size_t first, std::size_t count, An
   }
 }
 
+template <std::size_t kNodeFloats>
 inline Four Weighted(const float* weight, const float* node) {
-  return weight[0] * LoadFour(node) + weight[1] * LoadFour(node + kSkyNodeFloats) +
-         weight[2] * LoadFour(node + 2 * kSkyNodeFloats) +
-         weight[3] * LoadFour(node + 3 * kSkyNodeFloats);
+  return weight[0] * LoadFour(node) + weight[1] * LoadFour(node + kNodeFloats) +
+         weight[2] * LoadFour(node + 2 * kNodeFloats) +
+         weight[3] * LoadFour(node + 3 * kNodeFloats);
 }
 
-void Fill(const SkyRowWork& work) {
+template <std::size_t kTerms>
+void FillTerms(const SkyRowWork& work) {
+  constexpr std::size_t kNode = SkyNodeFloats(kTerms), kPhases = 4 * kTerms;
   Angles angles;
   for (std::size_t first = 0; first < work.count; first += kAtOnce) {
     const std::size_t count = work.count - first < kAtOnce ? work.count - first : kAtOnce;
     FindAngles(work, first, count, angles);
     for (std::size_t i = 0; i < count; ++i) {
-      const float* node =
-          work.row + kSkyNodeFloats * static_cast<std::size_t>(work.cell[first + i]);
+      const float* node = work.row + kNode * static_cast<std::size_t>(work.cell[first + i]);
       const float* weight = work.weights + 4 * (first + i);
-      const float* phase = work.phase + 4 * static_cast<std::size_t>(angles.node[i]);
-      const Four lower = LoadFour(phase);
-      const Four mie = lower + angles.fraction[i] * (LoadFour(phase + 4) - lower);
-      const Four light = angles.rayleigh[i] * Weighted(weight, node) +
-                         mie * Weighted(weight, node + 4) + Weighted(weight, node + 8);
+      const float* phase = work.phase + kPhases * static_cast<std::size_t>(angles.node[i]);
+      Four light =
+          angles.rayleigh[i] * Weighted<kNode>(weight, node) + Weighted<kNode>(weight, node + 4);
+      for (std::size_t term = 0; term < kTerms; ++term) {
+        const Four lower = LoadFour(phase + 4 * term);
+        const Four upper = LoadFour(phase + kPhases + 4 * term);
+        light = light + (lower + angles.fraction[i] * (upper - lower)) *
+                            Weighted<kNode>(weight, node + 8 + 4 * term);
+      }
       const Four dark = {};
       const Four radiance = light > dark ? light : dark;
       StoreFour(work.radiance + work.radiance_stride * (first + i), radiance);
     }
+  }
+}
+
+void Fill(const SkyRowWork& work) {
+  if (work.terms == 1) {
+    FillTerms<1>(work);
+  } else {
+    FillTerms<kSkyPeakTerms>(work);
   }
 }
 

@@ -10,15 +10,19 @@
 
 namespace alpenglow::lut {
 
-/// Number of coefficients of one node: R, M and D of four bands.
-inline constexpr std::size_t kSkyNodeFloats = 12;
-/// Size of the table of the aerosol's phase function: node k is at the scattering angle
-/// pi (k / n)^2, k = 0 ... n, with four bands per node, linear between nodes.
+/// Number of terms M of aerosol with a separate forward peak: light scattered once, and the peak
+/// by depth. Otherwise there is one term.
+inline constexpr std::size_t kSkyPeakTerms = 6;
+/// Returns the number of coefficients of one node: R, D and every M of four bands.
+[[nodiscard]] constexpr std::size_t SkyNodeFloats(std::size_t terms) { return 8 + 4 * terms; }
+/// Size of the table of the phase functions of the terms: node k is at the scattering angle
+/// pi (k / n)^2, k = 0 ... n, with all terms of four bands per node, linear between nodes.
 inline constexpr int kSkyPhaseNodes = 1024;
 
 struct SkyRowWork {
-  const float* row;             // coefficients of the row, kSkyNodeFloats per column
-  const float* phase;           // kSkyPhaseNodes + 1 nodes of 4 floats
+  std::size_t terms;            // number of terms of aerosol: 1 or kSkyPeakTerms
+  const float* row;             // coefficients of the row, SkyNodeFloats(terms) per column
+  const float* phase;           // kSkyPhaseNodes + 1 nodes of 4 floats for every term
   const std::int32_t* cell;     // first column of every look-up
   const float* weights;         // four per look-up
   const float* half_sine2;      // sin^2 of half the azimuth

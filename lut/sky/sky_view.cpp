@@ -128,22 +128,111 @@ void SplineMirroredLine(const Line& line) {
   std::copy_n(line.node(n - 2), line.width, line.node(n));
 }
 
-// Returns the aerosol's phase function including the glow around the sun: a table for every four
-// bands.
+constexpr std::size_t kPeakDepths = kSkyPeakTerms - 1;
+
+/// Depths of the forward peak of one band, between which its light is interpolated; at 0 it is dark.
+/// With z = f y, Lagrange's polynomials in z / (z + 4) between Chebyshev's extrema have errors below
+/// 0.3 % of the aerosol's light up to y = 12, for Henyey-Greenstein's g up to 0.98.
+class PeakDepths {
+ public:
+  /// @param share    f, >= 0.
+  /// @param deepest  largest depth y; depths beyond it count as it.
+  PeakDepths(float share, double deepest) : share_(share) {
+    constexpr double kLargest = 20.0, kSmallest = 1e-6;
+    const double z = std::clamp(double{share} * deepest, kSmallest, kLargest);
+    last_ = static_cast<float>(z / (z + double{kScale}));
+    for (std::size_t k = 0; k < kPeakDepths; ++k) {
+      const double turn = kPi * static_cast<double>(k + 1) / static_cast<double>(kPeakDepths);
+      place_[k] = last_ * static_cast<float>(0.5 - 0.5 * std::cos(turn));
+    }
+    for (std::size_t k = 0; k < kPeakDepths; ++k) scale_[k] = 1.0F / Product(place_[k], k);
+  }
+
+  /// Returns P of depth k at one angle.
+  [[nodiscard]] float LightAt(const PeakAtAngle& peak, std::size_t k) const {
+    const float z = kScale * place_[k] / (1.0F - place_[k]);
+    return share_ > 0.0F ? peak.LightOf(z / share_, z, 0.0F, 1.0F) : 0.0F;
+  }
+
+  /// Returns the polynomials at z.
+  [[nodiscard]] std::array<float, kPeakDepths> WeightsAt(float z) const {
+    const float place = std::min(z / (z + kScale), last_);
+    std::array<float, kPeakDepths> weights;
+    for (std::size_t k = 0; k < kPeakDepths; ++k) weights[k] = scale_[k] * Product(place, k);
+    return weights;
+  }
+
+ private:
+  static constexpr float kScale = 4.0F;
+
+  // Returns the product of distances to 0 and to all nodes but k.
+  [[nodiscard]] float Product(float place, std::size_t k) const {
+    float product = place;
+    for (std::size_t other = 0; other < kPeakDepths; ++other)
+      product *= other == k ? 1.0F : place - place_[other];
+    return product;
+  }
+
+  float share_, last_ = 0.0F;
+  std::array<float, kPeakDepths> place_{}, scale_{};
+};
+
+// Returns the depths of every band: up to that of two horizontal paths on the ground, at most 40,
+// the last depth of PeakShape.
+std::vector<PeakDepths> DepthsFor(const SingleScattering<float>& air, const DeltaM& peak) {
+  constexpr double kDeepest = 40.0;
+  const double column_m = double{air.ColumnsToSpace(0.0, 0.0)[1]};
+  std::vector<PeakDepths> depths;
+  for (std::size_t band = 0; band < air.bands(); ++band) {
+    const double depth = 2.0 * column_m * air.medium().mie_scattering_per_m[band];
+    depths.emplace_back(peak.share(band), std::min(depth, kDeepest));
+  }
+  return depths;
+}
+
+/// Terms of aerosol that the tables of phase functions and the nodes of a view share.
+struct AerosolTerms {
+  std::size_t count;  // 1, or kSkyPeakTerms
+  float glow_column_km;
+  std::vector<PeakDepths> depths;  // by band, with a forward peak
+};
+
+// Returns the phase functions of the terms of aerosol at one angle: of light scattered once, with
+// the glow around the sun, or with the forward peak by depth.
+std::vector<Bands<float>> PhasesAt(const SingleScattering<float>& air,
+                                   const MultipleScattering& multiple_scattering,
+                                   const AerosolTerms& terms, double nu) {
+  std::vector<Bands<float>> phases(terms.count, air.AerosolPhases(nu));
+  const std::optional<DeltaM>& peak = multiple_scattering.peak();
+  if (!peak) {
+    const Bands<float> glow = multiple_scattering.GlowFactor(nu, terms.glow_column_km);
+    for (std::size_t band = 0; band < glow.count; ++band) phases[0][band] += glow[band];
+    return phases;
+  }
+  const std::vector<PeakAtAngle> at = peak->At(nu);
+  for (std::size_t band = 0; band < air.bands(); ++band) {
+    for (std::size_t k = 0; k < kPeakDepths; ++k)
+      phases[k + 1][band] = terms.depths[band].LightAt(at[band], k);
+  }
+  return phases;
+}
+
+// Returns a table of the phase functions of all terms for every four bands.
 std::vector<std::vector<float>> PhaseTables(const SingleScattering<float>& air,
                                             const MultipleScattering& multiple_scattering,
-                                            float column_km) {
+                                            const AerosolTerms& terms) {
   const std::size_t blocks = (air.bands() + kViewLanes - 1) / kViewLanes;
-  std::vector<std::vector<float>> tables(blocks,
-                                         std::vector<float>(kViewLanes * (kSkyPhaseNodes + 1)));
+  const std::size_t width = kViewLanes * terms.count;
+  std::vector<std::vector<float>> tables(blocks, std::vector<float>(width * (kSkyPhaseNodes + 1)));
   for (std::size_t k = 0; k <= kSkyPhaseNodes; ++k) {
     const double x = static_cast<double>(k) / kSkyPhaseNodes;
-    const double nu = std::cos(kPi * x * x);
-    const Bands<float> phase = air.AerosolPhases(nu),
-                       glow = multiple_scattering.GlowFactor(nu, column_km);
-    for (std::size_t lane = 0; lane < blocks * kViewLanes; ++lane) {
-      const std::size_t band = std::min(lane, phase.count - 1);
-      tables[lane / kViewLanes][kViewLanes * k + lane % kViewLanes] = phase[band] + glow[band];
+    const auto phases = PhasesAt(air, multiple_scattering, terms, std::cos(kPi * x * x));
+    for (std::size_t term = 0; term < terms.count; ++term) {
+      for (std::size_t lane = 0; lane < blocks * kViewLanes; ++lane) {
+        const std::size_t band = std::min(lane, air.bands() - 1);
+        tables[lane / kViewLanes][width * k + kViewLanes * term + lane % kViewLanes] =
+            phases[term][band];
+      }
     }
   }
   return tables;
@@ -261,9 +350,11 @@ class GroundLight {
 class SkyView::Builder {
  public:
   Builder(const SingleScattering<float>& air, const MultipleScattering& multiple_scattering,
-          double altitude_m, double mu_s, SkyView& view)
+          double altitude_m, double mu_s, const std::vector<PeakDepths>& depths, SkyView& view)
       : air_(air),
         direct_(air.medium()),
+        peak_(multiple_scattering.peak()),
+        depths_(depths),
         fan_(multiple_scattering),
         altitude_m_(altitude_m),
         mu_s_(std::clamp(mu_s, -1.0, 1.0)),
@@ -279,7 +370,7 @@ class SkyView::Builder {
     const std::size_t columns = Columns();
     const auto rows = static_cast<std::size_t>(view_.size_.sky_rows + view_.size_.ground_rows + 4);
     for (Block& block : view_.blocks_)
-      block.coefficients.assign(rows * columns * kSkyNodeFloats, 0.0F);
+      block.coefficients.assign(rows * columns * NodeFloats(), 0.0F);
     for (int i = 0; i < view_.size_.sky_rows; ++i) {
       const double v = static_cast<double>(i) / (view_.size_.sky_rows - 1);
       FillRow(view_.map_.SkyZenithAngle(v), 1 + i, false, i == 0);
@@ -312,8 +403,9 @@ class SkyView::Builder {
   [[nodiscard]] float* Node(Block& block, int row, int column) const {
     return &block.coefficients[(static_cast<std::size_t>(row) * Columns() +
                                 static_cast<std::size_t>(column)) *
-                               kSkyNodeFloats];
+                               NodeFloats()];
   }
+  [[nodiscard]] std::size_t NodeFloats() const { return SkyNodeFloats(view_.terms_); }
 
   // The two sides differ on the horizon: the zenith angle of each row there is moved slightly to
   // its own side.
@@ -329,24 +421,58 @@ class SkyView::Builder {
     AddOnce(mu, sines, row);
     AddRest(mu, nus, row);
     for (Block& block : view_.blocks_) {
-      SplineMirroredLine(
-          {Node(block, row, 0), kSkyNodeFloats, kSkyNodeFloats, view_.size_.azimuths});
+      SplineMirroredLine({Node(block, row, 0), NodeFloats(), NodeFloats(), view_.size_.azimuths});
     }
   }
 
   void AddOnce(double mu, double sines, int row) {
     for (std::size_t k = 0; k < cosines_.size(); ++k) {
       const double nu = std::clamp(mu * mu_s_ + sines * cosines_[k], -1.0, 1.0);
-      const ScatteredOnce<float> once =
-          direct_.Scatter({altitude_m_, mu, mu_s_, nu}, DirectMode::kNormal);
-      for (std::size_t band = 0; band < view_.bands_; ++band) {
-        float* node = Node(view_.blocks_[band / kViewLanes], row, static_cast<int>(k) + 1);
-        const float round = 10.0F * RayleighChi2(air_.medium(), band);
-        node[band % kViewLanes] = round * once.rayleigh[band];
-        node[2 * kViewLanes + band % kViewLanes] =
-            (1.0F - round) * static_cast<float>(0.25 / kPi) * once.rayleigh[band];
-        node[kViewLanes + band % kViewLanes] = once.mie[band];
+      const ViewRay ray{altitude_m_, mu, mu_s_, nu};
+      if (peak_) {
+        AddPeak(air_.Sample(ray, {.nodes = view_.size_.ray_nodes}), row, static_cast<int>(k) + 1);
+        continue;
       }
+      const ScatteredOnce<float> once = direct_.Scatter(ray, DirectMode::kNormal);
+      for (std::size_t band = 0; band < view_.bands_; ++band) {
+        float* node = BandOfNode(row, static_cast<int>(k) + 1, band);
+        AddMolecules(band, once.rayleigh[band], node);
+        node[2 * kViewLanes] = once.mie[band];
+      }
+    }
+  }
+
+  // Returns the coefficient R of a band; those of D and of the terms M follow at every fourth place.
+  [[nodiscard]] float* BandOfNode(int row, int column, std::size_t band) const {
+    return Node(view_.blocks_[band / kViewLanes], row, column) + band % kViewLanes;
+  }
+
+  // Divides the light of molecules into that with Rayleigh's phase function and a uniform rest.
+  void AddMolecules(std::size_t band, float light, float* node) const {
+    const float round = 10.0F * RayleighChi2(air_.medium(), band);
+    node[0] = round * light;
+    node[kViewLanes] = (1.0F - round) * static_cast<float>(0.25 / kPi) * light;
+  }
+
+  void AddPeak(const RaySamples<float>& samples, int row, int column) {
+    const AirConstants<float>& air = air_.constants();
+    for (std::size_t band = 0; band < view_.bands_; ++band) {
+      float* node = BandOfNode(row, column, band);
+      float molecules = 0.0F;
+      for (std::size_t i = 0; i < samples.count; ++i) {
+        const float lit = samples.weight[i] * samples.lit[i];
+        if (!(lit > 0.0F)) continue;
+        const float y = air.mie_scattering[band] * (samples.sun_mie[i] + samples.view_mie[i]);
+        const float depth = OpticalDepthOf(ExtinctionAt(air, band), FromSunToEye(samples, i));
+        const float aerosol = lit * air.mie_scattering[band] * samples.mie_density[i];
+        const float z = peak_->share(band) * y, spread = std::exp(z - depth);
+        molecules += lit * air.rayleigh[band] * samples.rayleigh_density[i] * spread;
+        node[2 * kViewLanes] += aerosol * std::exp(-depth);
+        const std::array<float, kPeakDepths> weights = depths_[band].WeightsAt(z);
+        for (std::size_t k = 0; k < kPeakDepths; ++k)
+          node[(3 + k) * kViewLanes] += aerosol * spread * weights[k];
+      }
+      AddMolecules(band, molecules, node);
     }
   }
 
@@ -359,8 +485,7 @@ class SkyView::Builder {
     const std::vector<float> rest =
         fan_.InscatterAlong(samples, {altitude_m_, mu, mu_s_, 0.0}, nus);
     const bool ground = samples.extent.end == RayEnd::kGround;
-    const Bands<float> through =
-        ground ? air_.TransmittanceAlong(under_zenith_sun) : Bands<float>(view_.bands_);
+    const Bands<float> through = ground ? Through(under_zenith_sun, samples) : Bands<float>(0);
     const double r = air_.medium().planet_radius_m + std::max(altitude_m_, 0.0);
     for (std::size_t k = 0; k < nus.size(); ++k) {
       Bands<float> reflected(view_.bands_);
@@ -370,20 +495,30 @@ class SkyView::Builder {
             -1.0, 1.0));
       }
       for (std::size_t band = 0; band < view_.bands_; ++band) {
-        float* node = Node(view_.blocks_[band / kViewLanes], row, static_cast<int>(k) + 1);
-        node[2 * kViewLanes + band % kViewLanes] +=
-            rest[k * view_.bands_ + band] + through[band] * reflected[band];
+        BandOfNode(row, static_cast<int>(k) + 1, band)[kViewLanes] +=
+            rest[k * view_.bands_ + band] + (ground ? through[band] * reflected[band] : 0.0F);
       }
     }
   }
 
+  // Returns the fraction of the light of the ground that is seen around its true direction.
+  [[nodiscard]] Bands<float> Through(const ViewRay& ray, const RaySamples<float>& samples) const {
+    Bands<float> through = air_.TransmittanceAlong(ray);
+    if (!peak_) return through;
+    const DeltaM::Way way = peak_->WayTo(samples);
+    for (std::size_t band = 0; band < through.count; ++band) through[band] += way.more[band];
+    return through;
+  }
+
   void SplineColumns(Block& block, int first_row, int rows) {
-    const std::size_t width = Columns() * kSkyNodeFloats;
+    const std::size_t width = Columns() * NodeFloats();
     SplineOpenLine({Node(block, first_row, 0), width, width, rows});
   }
 
   const SingleScattering<float>& air_;
   DirectScattering direct_;
+  const std::optional<DeltaM>& peak_;
+  const std::vector<PeakDepths>& depths_;
   AzimuthFan fan_;
   double altitude_m_, mu_s_;
   SkyView& view_;
@@ -401,15 +536,19 @@ SkyView::SkyView(const SingleScattering<float>& air, const MultipleScattering& m
     : map_(air.medium(), altitude_m, mu_s),
       size_(size),
       bands_(air.bands()),
+      terms_(multiple_scattering.peak() ? kSkyPeakTerms : 1),
       sun_zenith_angle_rad_(std::acos(std::clamp(mu_s, -1.0, 1.0))),
       blocks_((air.bands() + kViewLanes - 1) / kViewLanes) {
   RequireInRange(size.sky_rows, 5, 4096, "sky_rows");
   RequireInRange(size.ground_rows, 5, 4096, "ground_rows");
   RequireInRange(size.azimuths, 3, 4096, "azimuths");
   ALPENGLOW_ENSURE(multiple_scattering.bands(), ==, bands_);
-  auto phases = PhaseTables(air, multiple_scattering, GlowColumn_km(air, altitude_m, mu_s));
+  const std::optional<DeltaM>& peak = multiple_scattering.peak();
+  const AerosolTerms terms{terms_, GlowColumn_km(air, altitude_m, mu_s),
+                           peak ? DepthsFor(air, *peak) : std::vector<PeakDepths>()};
+  auto phases = PhaseTables(air, multiple_scattering, terms);
   for (std::size_t i = 0; i < blocks_.size(); ++i) blocks_[i].phase = std::move(phases[i]);
-  Builder(air, multiple_scattering, altitude_m, mu_s, *this).Fill();
+  Builder(air, multiple_scattering, altitude_m, mu_s, terms.depths, *this).Fill();
 }
 
 std::size_t SkyView::bytes() const {
@@ -448,13 +587,14 @@ void SkyView::FillRow(double zenith_angle_rad, const SkyAzimuths& azimuths,
     std::fill(radiance.begin(), radiance.end(), 0.0F);
     return;
   }
-  const std::size_t width = static_cast<std::size_t>(size_.azimuths + 2) * kSkyNodeFloats;
+  const std::size_t node_floats = SkyNodeFloats(terms_);
+  const std::size_t width = static_cast<std::size_t>(size_.azimuths + 2) * node_floats;
   std::vector<float> row(width);
   const SkyRowKernel& kernel = Kernel<SkyRowKernel>();
   for (std::size_t i = 0; i < blocks_.size(); ++i) {
     kernel.blend({&blocks_[i].coefficients[at->first_row * width], width, width, at->weights.data(),
                   row.data()});
-    kernel.fill({row.data(), blocks_[i].phase.data(), azimuths.cell_.data(),
+    kernel.fill({terms_, row.data(), blocks_[i].phase.data(), azimuths.cell_.data(),
                  azimuths.weights_.data(), azimuths.half_sine2_.data(), at->offset, at->scale,
                  azimuths.count(), radiance.data() + kViewLanes * i, stride()});
   }
@@ -466,16 +606,17 @@ Bands<float> SkyView::Radiance(double zenith_angle_rad, double azimuth_rad) cons
   const std::optional<RowPosition> at = PositionOfRow(zenith_angle_rad);
   if (!at) return radiance;
   const AzimuthTap tap = TapAt(map_, size_.azimuths, azimuth_rad);
-  const std::size_t width = static_cast<std::size_t>(size_.azimuths + 2) * kSkyNodeFloats;
+  const std::size_t node_floats = SkyNodeFloats(terms_);
+  const std::size_t width = static_cast<std::size_t>(size_.azimuths + 2) * node_floats;
   const SkyRowKernel& kernel = Kernel<SkyRowKernel>();
-  std::array<float, 4 * kSkyNodeFloats> nodes;
+  std::array<float, 4 * SkyNodeFloats(kSkyPeakTerms)> nodes;
   std::array<float, kViewLanes> light;
   constexpr std::int32_t kFirst = 0;
   for (std::size_t i = 0; i < blocks_.size(); ++i) {
     kernel.blend({&blocks_[i].coefficients[at->first_row * width +
-                                           static_cast<std::size_t>(tap.cell) * kSkyNodeFloats],
-                  width, nodes.size(), at->weights.data(), nodes.data()});
-    kernel.fill({nodes.data(), blocks_[i].phase.data(), &kFirst, tap.weights.data(),
+                                           static_cast<std::size_t>(tap.cell) * node_floats],
+                  width, 4 * node_floats, at->weights.data(), nodes.data()});
+    kernel.fill({terms_, nodes.data(), blocks_[i].phase.data(), &kFirst, tap.weights.data(),
                  &tap.half_sine2, at->offset, at->scale, 1, light.data(), kViewLanes});
     for (std::size_t lane = 0; lane < kViewLanes && kViewLanes * i + lane < bands_; ++lane)
       radiance[kViewLanes * i + lane] = light[lane];

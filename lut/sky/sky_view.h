@@ -10,7 +10,20 @@
 // R and M are single scattering by molecules and by aerosol without the phase function, D is all
 // other light: multiple scattering, and light from the ground. Sharp phase functions are applied at
 // the look-up, so that the aureole is as accurate as its surroundings; the stored values are
-// smooth. Rows of one zenith angle are split at the horizon (sky_view_map.h); columns are uniform
+// smooth.
+//
+// Where the forward peak of the aerosol is separate (delta_m.h), the aerosol's light of all orders
+// depends on nu and on the optical depth y of scattering on the path of the light. Divided by its
+// transmittance in the medium without the peak, exp(f y - tau), it is interpolated in f y between a
+// few depths y_k by Lagrange's polynomials l_k,
+//
+//   L = p_R(nu) R + p_M(nu) M + sum over k of P(nu, y_k) M_k + D,
+//   M_k = integral of sigma_M exp(f y - tau) l_k(f y) ds,
+//
+// where P(nu, y) is PeakAtAngle::LightOf aerosol at optical depth f y, and R includes the factor
+// exp(f y). Only P varies fast with the direction.
+//
+// Rows of one zenith angle are split at the horizon (sky_view_map.h); columns are uniform
 // in azimuth over half a turn, and the other half is its mirror image. Between nodes the table is
 // interpolated by the tensor product of cubic splines, stored as coefficients of B-splines, of
 // which a look-up reads four by four.
@@ -105,11 +118,11 @@ class SkyView {
                std::span<float> radiance) const;
 
  private:
-  /// Coefficients of four bands: [(row * columns + column) * 12]: R, M and D of each band. The rows
-  /// of the ground follow those of the sky.
+  /// Coefficients of four bands: R, D and the terms M of each band for every column of a row. The
+  /// rows of the ground follow those of the sky.
   struct Block {
     std::vector<float> coefficients;
-    std::vector<float> phase;  // phase function of the aerosol, four values per node
+    std::vector<float> phase;  // phase functions of the terms M, four values each, by node
   };
   class Builder;
   struct RowPosition;
@@ -119,6 +132,7 @@ class SkyView {
   SkyViewMap map_;
   SkyViewSize size_;
   std::size_t bands_;
+  std::size_t terms_;  // number of terms M
   double sun_zenith_angle_rad_;
   std::vector<Block> blocks_;
 };

@@ -60,7 +60,7 @@ void BuildTableFolder(const Medium& medium, const TableQuality& quality, TableOr
                                                                  &progress));
   if (orders == TableOrders::kSingleOnly) return;
   WriteTable(folder / kMultipleScatteringFileName,
-             MultipleScattering(medium, quality.multiple_scattering),
+             MultipleScattering(medium, RaisedFor(medium, quality.multiple_scattering)),
              {.ray_nodes = quality.ray_nodes});
 }
 

@@ -27,7 +27,7 @@ namespace alpenglow::lut {
 struct TableQuality {
   TransmittanceTableSize transmittance;
   ScatteringTableSize single_scattering;
-  MultipleScatteringOptions multiple_scattering;
+  MultipleScatteringOptions multiple_scattering;  // in clear air; see RaisedFor
   int ray_nodes = 12;
 };
 

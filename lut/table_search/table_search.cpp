@@ -222,7 +222,9 @@ MultipleScattering Resampled(const MultipleScattering& light, int altitudes, int
       const std::vector<float> all = light.ValuesAt(share(a, altitudes), share(s, sun_angles));
       const auto bands = static_cast<std::ptrdiff_t>(light.bands());
       const auto kept = static_cast<std::ptrdiff_t>(moments) * bands;
-      const auto rest = static_cast<std::ptrdiff_t>(light.channels() - light.moments()) * bands;
+      const auto rest =
+          static_cast<std::ptrdiff_t>(light.channels() - MomentCount(light.options().degree)) *
+          bands;
       solved.values.insert(solved.values.end(), all.begin(), all.begin() + kept);
       solved.values.insert(solved.values.end(), all.end() - rest, all.end());
     }

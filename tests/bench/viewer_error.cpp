@@ -28,7 +28,7 @@ void Study(const alpenglow::tests::LitAir& air, AirQuality quality, const AirEye
   const auto start = std::chrono::steady_clock::now();
   const AirTables tables = MakeAirTables(air.air, air.multiple_scattering, medium, eye, size);
   const std::chrono::duration<double, std::milli> time = std::chrono::steady_clock::now() - start;
-  const alpenglow::tests::AirReading reading(tables, medium);
+  const alpenglow::tests::AirReading reading(tables);
   const alpenglow::tests::AirReference reference(air, eye);
   constexpr int kRays = 1500;
   fmt::print("{:9.0f} {:6.1f} {:>3}x{}x{:<3} {:7.2f} | {} | {} | {}\n", eye.altitude_m,

@@ -190,8 +190,7 @@ double ErrorOfOld(const AirEye& made, const AirEye& now) {
   const AirTables old = MakeAirTables(air.air, air.multiple_scattering, medium, made, size);
   const AirMap map(air.medium, now.altitude_m, now.ceiling_m,
                    static_cast<double>(air.multiple_scattering.grid().twilight_fall));
-  return tests::SkyErrors(tests::AirReference(air, now), tests::AirReading(old, medium, now), map,
-                          200)
+  return tests::SkyErrors(tests::AirReference(air, now), tests::AirReading(old, now), map, 200)
       .Rms();
 }
 

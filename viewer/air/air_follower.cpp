@@ -47,15 +47,6 @@ void UploadTexels(const GlTexture& texture, GLenum target, const AirTexels& texe
   glTexParameteri(target, GL_TEXTURE_WRAP_R, GL_CLAMP_TO_EDGE);
 }
 
-// Returns two rows with the aerosol's phase function: one for its own use, one that the sky_phase
-// of AirTables will replace.
-AirTexels WithRowOfSky(const AirTexels& phase) {
-  AirTexels both(phase.width, 2);
-  for (const int row : {0, 1})
-    std::copy(phase.texel.begin(), phase.texel.end(), both.texel.begin() + row * phase.width);
-  return both;
-}
-
 /// Texture coordinates of an axis: centre of its first texel and distance to its last. The axis has
 /// n of `all` nodes, from node `first`.
 struct Axis {
@@ -86,10 +77,7 @@ std::vector<ShaderPiece> AirTableTexts() {
 AirTextures::AirTextures() = default;
 
 void AirTextures::Upload(const MediumTables& tables) {
-  UploadTexels(texture_[kPhase], kSlots[kPhase].target, WithRowOfSky(tables.phase), false);
   UploadTexels(texture_[kToSun], kSlots[kToSun].target, tables.to_sun, false);
-  const Axis phase(0, tables.phase.width, tables.phase.width);
-  values_.phase_nodes = {phase.begin, phase.width, 0.0F, 0.0F};
   CheckGl("AirTextures::Upload");
 }
 
@@ -99,13 +87,13 @@ void AirTextures::Upload(const AirTables& tables) {
     UploadTexels(texture_[table], kSlots[table].target, texels, same_size);
   };
   upload(kSky, tables.sky);
-  glBindTexture(GL_TEXTURE_2D, texture_[kPhase].id());
-  glTexSubImage2D(GL_TEXTURE_2D, 0, 0, 1, tables.sky_phase.width, 1, GL_RGBA, GL_FLOAT,
-                  tables.sky_phase.texel.data());
+  upload(kPhase, tables.phase);
   upload(kThrough, tables.to_space);
   upload(kExtinction, tables.extinction);
   upload(kSingle, tables.single);
   upload(kDiffuse, tables.multiple_scattering);
+  const Axis phase(0, tables.phase.width, tables.phase.width);
+  values_.phase_nodes = {phase.begin, phase.width, 0.0F, 0.0F};
   const AirMap& map = tables.map;
   const AirTablesSize& size = tables.size;
   values_.shell = {map.altitude, map.ceiling, map.top, map.radius};

@@ -90,12 +90,12 @@ uniform sampler1D air_through;
 uniform sampler2D air_extinction;
 uniform sampler3D air_single;
 uniform sampler3D air_diffuse;
-uniform sampler2D air_phase;  // row 0: phase of the aerosol; row 1: with the glow around the sun
+uniform sampler2D air_phase;  // phase function of the aerosol with its light of all orders
 uniform sampler2D air_to_sun;  // row 0: straight rays; row 1: refracted beam for ground and fog
 
 struct AirTo {
-  vec4 single;   // single scattering of sunlight, without terrain shadows
-  vec4 diffuse;  // multiple scattering
+  vec4 single;   // sunlight scattered once or, by aerosol, forward, without terrain shadows
+  vec4 diffuse;  // other multiple scattering
   vec4 transmittance;
 };
 
@@ -105,14 +105,12 @@ float HalfSineSquared(vec3 direction) {
   return min(0.25 * dot(between, between), 1.0);
 }
 
-vec4 PhaseOfRow(float half_sine_squared, float row) {
+// Returns the phase function of the aerosol including the light that aerosol scatters more than once
+// around the sun.
+vec4 AerosolPhase(float half_sine_squared) {
   float node = air_phase_nodes.x + air_phase_nodes.y * PhaseNode(half_sine_squared);
-  return textureLod(air_phase, vec2(node, row), 0.0);
+  return textureLod(air_phase, vec2(node, 0.5), 0.0);
 }
-vec4 AerosolPhase(float half_sine_squared) { return PhaseOfRow(half_sine_squared, 0.25); }
-// Returns the phase function including the light that aerosol scatters more than once around the
-// sun.
-vec4 AerosolPhaseOfSky(float half_sine_squared) { return PhaseOfRow(half_sine_squared, 0.75); }
 
 // Returns the tangent of half the elevation above the horizon.
 float HalfTangent(vec3 direction) {
@@ -150,7 +148,7 @@ vec4 SkyRadiance(vec3 direction) {
                  RowOf(rise, air_ranges.x, air_sky_rows));
   float h2 = HalfSineSquared(direction);
   vec4 phases = PhaseRayleigh(1.0 - 2.0 * h2) * air_sky_mix[0] +
-                AerosolPhaseOfSky(h2) * air_sky_mix[1] + air_sky_mix[2];
+                AerosolPhase(h2) * air_sky_mix[1] + air_sky_mix[2];
   float foot = AirFoot(air_shell.x, direction.z, rise < 0.0 ? 1.0 : 0.0, air_shell.w);
   phases *= TwilightAt(direction, foot);
   return AboveAir(rise) ? vec4(0.0) : phases * textureLod(air_sky, at, 0.0);

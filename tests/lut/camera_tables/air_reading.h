@@ -43,13 +43,11 @@ struct AirToPoint {
 
 class AirReading {
  public:
-  AirReading(const AirTables& tables, const MediumTables& medium)
-      : AirReading(tables, medium, tables.eye) {}
+  explicit AirReading(const AirTables& tables) : AirReading(tables, tables.eye) {}
   /// The constructor reads the tables for another eye and another sun, as AirTextures::SetView
   /// does.
-  AirReading(const AirTables& tables, const MediumTables& medium, const AirEye& eye)
+  AirReading(const AirTables& tables, const AirEye& eye)
       : tables_(tables),
-        medium_(medium),
         mu_s_(eye.mu_s),
         sun_(std::acos(std::clamp(eye.mu_s, -1.0, 1.0))),
         sun_seen_(eye.zenith_angle_seen_rad()),
@@ -64,8 +62,7 @@ class AirReading {
     const double mu = std::sin(angle - dip_);
     const double foot =
         shared::AirFoot<double>(map.altitude, mu, angle < 0.0 ? 1.0 : 0.0, map.radius);
-    return Twilight(angle, azimuth, foot) *
-           Mix(angle, azimuth, tables_.sky_phase, tables_.sky_mix) *
+    return Twilight(angle, azimuth, foot) * Mix(angle, azimuth, tables_.sky_mix) *
            Linear(tables_.sky, Column(azimuth, size.sky_columns),
                   Row(angle, map.sky_range, size.sky_rows, size.sky_ground_rows));
   }
@@ -104,8 +101,7 @@ class AirReading {
     glm::dvec4 absorbed;
     for (int band = 0; band < 4; ++band) absorbed[band] = -std::expm1(-tau[band]);
     absorbed *= Twilight(angle, azimuth, near + 0.5 * beyond);
-    return {Mix(angle, azimuth, medium_.phase,
-                {tables_.single_mix[0], tables_.single_mix[1], glm::vec4(0.0F)}) *
+    return {Mix(angle, azimuth, {tables_.single_mix[0], tables_.single_mix[1], glm::vec4(0.0F)}) *
                 absorbed * Linear(tables_.single, x, y, z),
             absorbed * Linear(tables_.multiple_scattering, x, y, z), glm::exp(-tau)};
   }
@@ -132,18 +128,17 @@ class AirReading {
                                        distance_km, map.twilight_fall, map.twilight_reference,
                                        map.radius);
   }
-  /// @param phase  of the aerosol; mix: of molecules, aerosol and the rest.
-  [[nodiscard]] glm::dvec4 Mix(double angle, double azimuth, const AirTexels& phase,
+  /// @param mix  of molecules, aerosol and the rest.
+  [[nodiscard]] glm::dvec4 Mix(double angle, double azimuth,
                                const std::array<glm::vec4, 3>& mix) const {
     const double nu = SunCosine(angle, azimuth, sun_seen_);
     const double node =
-        shared::PhaseNode<double>(std::max(0.5 - 0.5 * nu, 0.0)) * (phase.width - 1);
+        shared::PhaseNode<double>(std::max(0.5 - 0.5 * nu, 0.0)) * (tables_.phase.width - 1);
     return 0.0596831036594607509 * (1.0 + nu * nu) * glm::dvec4(mix[0]) +
-           Linear(phase, node) * glm::dvec4(mix[1]) + glm::dvec4(mix[2]);
+           Linear(tables_.phase, node) * glm::dvec4(mix[1]) + glm::dvec4(mix[2]);
   }
 
   const AirTables& tables_;
-  const MediumTables& medium_;
   double mu_s_, sun_, sun_seen_, dip_;
 };
 

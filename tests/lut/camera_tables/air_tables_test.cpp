@@ -47,7 +47,7 @@ void ExpectErrorsBelow(const tests::LitAir& air, const AirEye& eye, AirQuality q
                            eye.altitude_m, eye.mu_s));
   const MediumTables medium = MakeMediumTables(air.air, air.beam);
   const AirTables tables = TablesOf(air, eye, quality);
-  const tests::AirReading reading(tables, medium);
+  const tests::AirReading reading(tables);
   const tests::AirReference reference(air, eye);
   const auto expect = [](const tests::AirErrors& errors, double bound, const char* what) {
     EXPECT_LT(errors.Rms(), kSampling * bound) << what << ": a third more than measured";
@@ -84,7 +84,7 @@ TEST(AirTables, HaveTheAureoleWhereTheSunIsSeen) {
   const tests::AirReference reference(tests::Earth(), eye);
   // Largest error of the sky within two degrees of the sun and of the horizon.
   const auto worst_of = [&](const AirTables& tables) {
-    const tests::AirReading reading(tables, medium, eye);
+    const tests::AirReading reading(tables, eye);
     double worst = 0.0;
     for (const double angle_deg : {-1.5, -0.7, -0.3, -0.1, 0.1, 0.4, 0.8, 1.5}) {
       for (const double azimuth_deg : {0.0, 0.3, 0.8, 2.0}) {
@@ -137,7 +137,7 @@ TEST(AirTables, HaveAnAureoleAsSharpAsThePhaseFunction) {
   const AirEye eye = EyeUnder(300.0, 20.0);
   const MediumTables medium = MakeMediumTables(dusty.air, dusty.beam);
   const AirTables tables = TablesOf(dusty, eye, AirQuality::kLow);
-  const tests::AirReading reading(tables, medium);
+  const tests::AirReading reading(tables);
   const tests::AirReference reference(dusty, eye);
   const double sun = std::asin(eye.mu_s) + tables.map.horizon_dip;
   for (int i = 1; i <= 60; ++i) {

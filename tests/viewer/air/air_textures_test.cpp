@@ -28,7 +28,7 @@ struct BothTables {
       : medium(MakeMediumTables(tests::Earth().air, tests::Earth().beam)),
         tables(MakeAirTables(tests::Earth().air, tests::Earth().multiple_scattering, medium,
                              {altitude_m, mu_s}, AirTablesSizeOf(AirQuality::kLow, altitude_m))),
-        reading(tables, medium) {
+        reading(tables) {
     textures.Upload(medium);
     textures.Upload(tables);
     const double sine = std::sqrt((1.0 - mu_s) * (1.0 + mu_s));
@@ -189,7 +189,7 @@ TEST_F(AirTexturesOnGpu, AnEyeThatHasMovedSeesThemFromItsOwnHorizonUnderItsOwnSu
   const double sine = std::sqrt((1.0 - moved.mu_s) * (1.0 + moved.mu_s));
   const glm::dvec3 sun(-0.6 * sine, -0.8 * sine, moved.mu_s);
   both.textures.SetView(moved.altitude_m, {sun, sun});
-  const tests::AirReading reading(both.tables, both.medium, moved);
+  const tests::AirReading reading(both.tables, moved);
   const AirMap map(tests::Earth().medium, moved.altitude_m, moved.ceiling_m,
                    both.tables.map.twilight_fall);
   std::vector<tests::Arguments<float>> points;

@@ -1,0 +1,292 @@
+// SPDX-License-Identifier: MIT
+// Whoever asks for the light of the sky gets the same: by the library, in panoramas, from tables in
+// files, by `skylut eval`, and from the tables of `skyview`. `skylut sky` renders the panoramas, and
+// `skyseries` asks as the library does.
+#include <alpenglow/panorama.h>
+#include <alpenglow/sky.h>
+#include <alpenglow/tables.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "atmosphere/medium/aerosol_mixture.h"
+#include "atmosphere/medium/medium_presets.h"
+#include "lut/api/conversions.h"
+#include "lut/evaluate/eval.h"
+#include "tests/fixtures/sanitized.h"
+#include "tests/fixtures/temporary_folder.h"
+#include "tests/lut/camera_tables/air_reading.h"
+
+namespace alpenglow::lut {
+namespace {
+
+constexpr int kWidth = 72, kHeight = 36;  // of panoramas; pixels of 5 degrees
+
+/// A place, a sun, and the pixels of the sky that are compared.
+struct Setting {
+  double eye_m, sun_elevation_deg;
+
+  [[nodiscard]] LocalPoint eye() const { return {.up_m = eye_m}; }
+  [[nodiscard]] SunInSky sun() const {
+    SunInSky sun;
+    sun.elevation_deg = sun_elevation_deg;
+    sun.azimuth_deg = 180.0;
+    return sun;
+  }
+};
+
+/// A pixel of a panorama that is centred on north, above the horizontal.
+struct SkyPixel {
+  int x, y;
+
+  [[nodiscard]] double elevation_deg() const { return 90.0 - 180.0 * (y + 0.5) / kHeight; }
+  [[nodiscard]] double azimuth_deg() const { return 360.0 * (x + 0.5) / kWidth - 180.0; }
+  [[nodiscard]] Direction direction() const {
+    return DirectionFromAngles(elevation_deg(), azimuth_deg());
+  }
+};
+
+// Returns pixels all over the sky, of which those in column 0 are within 3 degrees of the azimuth of
+// the sun.
+std::vector<SkyPixel> SkyPixels() {
+  std::vector<SkyPixel> pixels;
+  for (const int x : {0, 2, 8, 20, 35}) {
+    for (int y = x % 3; y < kHeight / 2; y += 3) pixels.push_back({x, y});
+  }
+  for (const int y : {10, 11, 12, 17}) pixels.push_back({0, y});
+  return pixels;
+}
+
+/// Luminance [cd/m^2] of the pixels.
+using Luminances = std::vector<double>;
+
+// Returns the root mean square of differences relative to the light, or to a thousandth of the
+// mean light where that is more.
+double Difference(const Luminances& light, const Luminances& expected) {
+  double mean = 0.0, squares = 0.0;
+  for (const double value : expected) mean += value / static_cast<double>(expected.size());
+  for (std::size_t i = 0; i < light.size(); ++i) {
+    const double error = (light[i] - expected[i]) / std::max(expected[i], 1e-3 * mean);
+    squares += error * error;
+  }
+  return std::sqrt(squares / static_cast<double>(light.size()));
+}
+
+/// All ways to the light of one atmosphere. Each returns the light of the pixels.
+class Ways {
+ public:
+  Ways(const Atmosphere& atmosphere, const std::filesystem::path& folder)
+      : atmosphere_(atmosphere),
+        sky_(atmosphere),
+        viewer_(MakeMediumTables(sky_.state().air, RefractedBeam(atmosphere.medium()))),
+        evaluator_(MakeIntegralEvaluator(atmosphere.medium())) {
+    BakeTables(atmosphere, folder, BakeQuality::kPreview);
+    baked_.emplace(ReadTables(folder, atmosphere));
+    Case any;
+    any.quantity = Quantity::kTotal;
+    evaluator_->Prepare(std::span(&any, 1));
+  }
+
+  [[nodiscard]] Luminances Radiance(const Setting& at) const { return RadianceOf(sky_, at); }
+  [[nodiscard]] Luminances Tables(const Setting& at) const { return RadianceOf(*baked_, at); }
+
+  // Returns the light in front of an object beyond the air.
+  [[nodiscard]] Luminances Between(const Setting& at) const {
+    constexpr double kFar_m = 1e7;
+    return Over([&](const SkyPixel& pixel) {
+      const Direction view = pixel.direction();
+      const LocalPoint object{.east_m = kFar_m * view.east,
+                              .north_m = kFar_m * view.north,
+                              .up_m = at.eye_m + kFar_m * view.up};
+      return LuminanceOf(sky_.Between(at.eye(), object, at.sun().ToSunForAir()).inscattered);
+    });
+  }
+
+  [[nodiscard]] Luminances Panorama(const Setting& at) const {
+    PanoramaOptions options;
+    options.width = kWidth;
+    options.height = kHeight;
+    options.altitude_m = at.eye_m;
+    options.sun = at.sun();
+    const HdrImage image = RenderPanorama(sky_, options);
+    return Over([&](const SkyPixel& pixel) {
+      const auto& rgb = image.rgb[static_cast<std::size_t>(pixel.y * kWidth + pixel.x)];
+      return Luminance({rgb[0], rgb[1], rgb[2]});
+    });
+  }
+
+  [[nodiscard]] Luminances Eval(const Setting& at) const {
+    return Over([&](const SkyPixel& pixel) {
+      Case work;
+      work.quantity = Quantity::kTotal;
+      work.ray = RayOf(at, pixel);
+      const Estimates light = evaluator_->Evaluate(work);
+      return LuminanceOf([&](std::size_t band) { return light[band].value; });
+    });
+  }
+
+  [[nodiscard]] Luminances Viewer(const Setting& at) const {
+    const AirEye eye{at.eye_m, std::sin(at.sun_elevation_deg * kRadiansPerDegree)};
+    const AirTables tables =
+        MakeAirTables(sky_.state().air, sky_.state().multiple_scattering(), viewer_, eye,
+                      AirTablesSizeOf(AirQuality::kLow, at.eye_m));
+    const tests::AirReading reading(tables);
+    return Over([&](const SkyPixel& pixel) {
+      const double above_horizon =
+          pixel.elevation_deg() * kRadiansPerDegree + tables.map.horizon_dip;
+      const glm::dvec4 light =
+          reading.Sky(above_horizon, (180.0 + pixel.azimuth_deg()) * kRadiansPerDegree);
+      return LuminanceOf([&](std::size_t band) { return light[static_cast<glm::length_t>(band)]; });
+    });
+  }
+
+ private:
+  [[nodiscard]] static Luminances Over(const std::function<double(const SkyPixel&)>& light) {
+    Luminances luminances;
+    for (const SkyPixel& pixel : SkyPixels()) luminances.push_back(light(pixel));
+    return luminances;
+  }
+  [[nodiscard]] double LuminanceOf(const Spectrum& light) const {
+    return Luminance(atmosphere_.ColourOf(light));
+  }
+  [[nodiscard]] double LuminanceOf(const std::function<double(std::size_t)>& band) const {
+    Spectrum light(sky_.state().air.bands());
+    for (std::size_t i = 0; i < light.size(); ++i) light[i] = static_cast<float>(band(i));
+    return LuminanceOf(light);
+  }
+  [[nodiscard]] Luminances RadianceOf(const Sky& sky, const Setting& at) const {
+    return Over([&](const SkyPixel& pixel) {
+      return LuminanceOf(sky.Radiance(at.eye(), pixel.direction(), at.sun().ToSunForAir()));
+    });
+  }
+  [[nodiscard]] ViewRay RayOf(const Setting& at, const SkyPixel& pixel) const {
+    return RayFrom(AltitudeOf(at.eye(), atmosphere_.planet_radius_m()),
+                   UnitVectorOf(pixel.direction()), UnitVectorOf(at.sun().ToSunForAir()));
+  }
+
+  Atmosphere atmosphere_;
+  Sky sky_;
+  MediumTables viewer_;
+  std::unique_ptr<Evaluator> evaluator_;
+  std::optional<Sky> baked_;
+};
+
+/// Text of an atmosphere file for each preset and each mixture of aerosols.
+std::vector<std::string> AllAir() {
+  std::vector<std::string> texts;
+  for (const std::string& preset : MediumPresetNames())
+    texts.push_back("preset = \"" + preset + "\"\n");
+  for (const std::string& mixture : AerosolMixtureNames())
+    texts.push_back("[aerosol]\nmixture = \"" + mixture + "\"\n");
+  return texts;
+}
+
+std::vector<Setting> Settings() {
+  std::vector<Setting> settings{
+      {2.0, 4.0}, {2.0, 33.0}, {2.0, -3.0}, {3000.0, 33.0}, {3000.0, -3.0}};
+  settings.resize(tests::ScaledDown<std::size_t>(settings.size(), 1));
+  return settings;
+}
+
+class TheLightOf : public TemporaryFolder, public testing::WithParamInterface<std::string> {};
+
+// The largest differences of panoramas and of the viewer are those of thin maritime air under a low
+// sun, 0.6 %: the glow around the sun is that of one column of aerosol. Tables of the quality
+// "preview" have moments to degree 2 in thin air, and 6 azimuths of light scattered once.
+TEST_P(TheLightOf, AnAirIsTheSameByEveryWay) {
+  const Ways ways(Atmosphere::FromToml(GetParam()), folder_ / "baked");
+  for (const Setting& at : Settings()) {
+    SCOPED_TRACE(testing::Message()
+                 << "eye at " << at.eye_m << " m, sun at " << at.sun_elevation_deg << " degrees");
+    const Luminances expected = ways.Radiance(at);
+    EXPECT_LT(Difference(ways.Between(at), expected), 1e-5);
+    EXPECT_LT(Difference(ways.Eval(at), expected), 1e-3);
+    EXPECT_LT(Difference(ways.Panorama(at), expected), 7.5e-3);
+    EXPECT_LT(Difference(ways.Viewer(at), expected), 7.5e-3);
+    EXPECT_LT(Difference(ways.Tables(at), expected), 0.08);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(PresetsAndMixtures, TheLightOf, testing::ValuesIn(AllAir()));
+
+/// Luminance at whole degrees below the sun.
+struct Aureole {
+  Luminances library, panorama, viewer;
+};
+
+Aureole AureoleOf(const Atmosphere& atmosphere, double sun_elevation_deg) {
+  constexpr int kHalfHeight = 90, kDegrees = 15;
+  const Sky sky(atmosphere);
+  PanoramaOptions options;
+  options.width = 4 * kHalfHeight;
+  options.height = 2 * kHalfHeight;
+  options.sun.elevation_deg = sun_elevation_deg;
+  options.sun.azimuth_deg = 180.5;  // of the centre of a column
+  options.centre = PanoramaCentre::kOpenExr;
+  const HdrImage image = RenderPanorama(sky, options);
+  const SingleScattering<float>& air = sky.state().air;
+  const MediumTables medium = MakeMediumTables(air, RefractedBeam(atmosphere.medium()));
+  const AirEye eye{options.altitude_m, std::sin(sun_elevation_deg * kRadiansPerDegree)};
+  const AirTables tables = MakeAirTables(air, sky.state().multiple_scattering(), medium, eye,
+                                         AirTablesSizeOf(AirQuality::kLow, eye.altitude_m));
+  const tests::AirReading reading(tables);
+  Aureole aureole;
+  for (int below = 1; below <= kDegrees; ++below) {
+    const double elevation_deg = sun_elevation_deg - below;
+    const Spectrum light =
+        sky.Radiance({.up_m = options.altitude_m}, DirectionFromAngles(elevation_deg, 180.5),
+                     options.sun.ToSunForAir());
+    aureole.library.push_back(Luminance(atmosphere.ColourOf(light)));
+    const auto row = static_cast<int>(kHalfHeight - elevation_deg);
+    const auto& rgb = image.rgb[static_cast<std::size_t>(row * image.width + image.width / 2)];
+    aureole.panorama.push_back(Luminance({rgb[0], rgb[1], rgb[2]}));
+    const glm::dvec4 read =
+        reading.Sky(elevation_deg * kRadiansPerDegree + tables.map.horizon_dip, 0.0);
+    Spectrum seen(air.bands());
+    for (std::size_t band = 0; band < seen.size(); ++band)
+      seen[band] = static_cast<float>(read[static_cast<glm::length_t>(band)]);
+    aureole.viewer.push_back(Luminance(atmosphere.ColourOf(seen)));
+  }
+  return aureole;
+}
+
+class AnAureole : public testing::TestWithParam<const char*> {};
+
+// The bound is a third more than measured with g = 0.999. Beyond six degrees below the sun the sky
+// gets brighter towards the horizon again.
+// Hard cases 12, 23, 31.
+TEST_P(AnAureole, OfASharpPhaseFunctionFallsSteadily) {
+  constexpr std::size_t kSteady = 6;
+  for (const double sun_elevation_deg : {60.5, 29.5}) {
+    const Aureole aureole =
+        AureoleOf(Atmosphere::FromToml("[mie]\n" + std::string(GetParam())), sun_elevation_deg);
+    for (std::size_t i = 0; i < aureole.library.size(); ++i) {
+      SCOPED_TRACE(testing::Message() << i + 1 << " degrees below a sun at " << sun_elevation_deg);
+      EXPECT_GT(aureole.library[i], 0.0);
+      EXPECT_NEAR(aureole.panorama[i] / aureole.library[i], 1.0, 0.025);
+      EXPECT_NEAR(aureole.viewer[i] / aureole.library[i], 1.0, 0.025);
+      if (i == 0 || i >= kSteady) continue;
+      EXPECT_LT(aureole.library[i], aureole.library[i - 1]);
+      EXPECT_LT(aureole.panorama[i], aureole.panorama[i - 1]);
+      EXPECT_LT(aureole.viewer[i], aureole.viewer[i - 1]);
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    SharpPhases, AnAureole,
+    testing::Values(
+        "phase = \"henyey-greenstein\"\ng = 0.95\n", "phase = \"henyey-greenstein\"\ng = 0.99\n",
+        "phase = \"henyey-greenstein\"\ng = 0.999\n",
+        "phase = \"fog\"\ndroplet_diameter_um = 10\n[aerosol]\nvisibility_m = 10000\n",
+        "phase = \"fog\"\ndroplet_diameter_um = 50\n[aerosol]\nvisibility_m = 10000\n"));
+
+}  // namespace
+}  // namespace alpenglow::lut
