@@ -17,7 +17,6 @@
 namespace alpenglow::atmosphere {
 namespace {
 
-constexpr double kModifiedJulianEpoch = 2400000.5;
 constexpr double kSpeedOfLight_m_per_s = 299792458.0;  // exact, SI
 constexpr double kLightDaysPerAu = kAstronomicalUnit_m / kSpeedOfLight_m_per_s / kSecondsPerDay;
 

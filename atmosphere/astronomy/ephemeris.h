@@ -27,6 +27,9 @@
 
 namespace alpenglow::atmosphere {
 
+/// Julian date at which the modified Julian date is 0 [days].
+inline constexpr double kModifiedJulianEpoch = 2400000.5;
+
 /// Angular velocity of the earth's rotation. WGS84, NIMA TR8350.2 table 3.1.
 inline constexpr double kEarthRotation_rad_per_s = 7.292115e-5;
 

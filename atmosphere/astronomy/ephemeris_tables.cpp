@@ -15,8 +15,6 @@
 namespace alpenglow::atmosphere {
 namespace {
 
-constexpr double kModifiedJulianEpoch = 2400000.5;
-
 /// Values of several functions of time.
 template <std::size_t kFunctions>
 using ValuesInTime = std::array<double, kFunctions>;

@@ -128,7 +128,6 @@ void WritePng(const std::filesystem::path& file, const HdrImage& image,
               const DisplayOptions& options) {
   lut::Metadata metadata = CheckedMetadata(image);
   const Developed developed = DevelopedBy(image, options);
-  lut::Metadata metadata = image.metadata;
   metadata["alpenglow.ev100"] = fmt::format("{:.6f}", developed.ev100);
   metadata["alpenglow.tone_curve"] = lut::NameOf(developed.look);
   metadata["alpenglow.white_balance"] = lut::NameOf(developed.look.white);
