@@ -105,7 +105,7 @@ float LargestHazeShare(const AirConstants<float>& air) {
 }
 
 // Returns the sunlight that planet and terrain let through at each lane.
-LaneLight Shaded(const DirectRay& placed, const SunlitPath& sunlit) {
+LaneLight LaneLightInShade(const DirectRay& placed, const SunlitPath& sunlit) {
   LaneLight light;
   VisitPanels(placed, [&](const PanelNodes& nodes) {
     const DirectPanel& panel = placed.panel[nodes.panel];
@@ -204,7 +204,7 @@ SegmentAir::Lit SegmentAir::LightOf(const ViewRay& ray, const DirectRay& placed,
   } else {
     lit.placed = direct_.Place(ray, {.mode = DirectMode::kNormal, .dark_samples = true});
   }
-  if (shafts) lit.light = Shaded(lit.placed, *sunlit);
+  if (shafts) lit.light = LaneLightInShade(lit.placed, *sunlit);
   return lit;
 }
 
