@@ -4,9 +4,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
-#include "atmosphere/astronomy/moon.h"
 #include "atmosphere/base/error.h"
 #include "atmosphere/base/parsing.h"
 #include "atmosphere/math/constants.h"
@@ -354,12 +354,13 @@ HudTime TimeOf(FlightSession& flight) {
   return time;
 }
 
-HudSky SkyOf(FlightSession& flight) {
-  const BendingAir air = GentleAirOf(flight.edits().planet());
-  const SunPosition sun = ApparentSunAt(flight.eye().place, flight.now(), air);
-  const MoonPosition moon = ApparentMoonAt(flight.eye().place, flight.now(), air);
-  return {sun.azimuth_rad, sun.elevation_rad,
-          HudMoon{moon.azimuth_rad, moon.elevation_rad, moon.IlluminatedFraction()}};
+HudSky SkyOf(const FrameSky& sky) {
+  HudSky shown{sky.sun.azimuth_rad, sky.sun.elevation_rad};
+  if (!sky.moon) return shown;
+  shown.moon =
+      HudMoon{sky.bodies.moon.azimuth_rad, std::asin(std::clamp(sky.moon->to_moon.z, -1.0, 1.0)),
+              sky.bodies.moon.IlluminatedFraction()};
+  return shown;
 }
 
 HudAir AirOf(FlightSession& flight) {
@@ -411,7 +412,7 @@ HudModel ReadInstruments(FlightSession& flight) {
   model.latitude_rad = flight.eye().place.latitude_rad;
   model.longitude_rad = flight.eye().place.longitude_rad;
   model.time = TimeOf(flight);
-  model.sky = SkyOf(flight);
+  model.sky = SkyOf(*flight.frames().SkyAt(flight.eye().place, flight.now()));
   model.exposure = ExposureOf(flight.exposure());
   model.air = AirOf(flight);
   model.landing_light = flight.frames().has_landing_light();

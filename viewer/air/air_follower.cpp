@@ -6,6 +6,7 @@
 #include <functional>
 #include <glm/geometric.hpp>
 #include <glm/vec2.hpp>
+#include <string>
 #include <tuple>
 #include <utility>
 
@@ -71,7 +72,8 @@ glm::vec4 AxesOf(int one, int other) {
 }  // namespace
 
 std::vector<ShaderPiece> AirTableTexts() {
-  return WithViewerPieces({}, {"lut/camera_tables/air_map.glsl", "viewer/shaders/air.tables.glsl"});
+  return WithViewerPieces({}, {"viewer/shaders/view.lights.glsl", "lut/camera_tables/air_map.glsl",
+                               "viewer/shaders/air.tables.glsl"});
 }
 
 AirTextures::AirTextures() = default;
@@ -129,6 +131,14 @@ void AirTextures::Prepare(const ShaderProgram& program, int first_unit, GLuint b
   for (std::size_t i = 0; i < kSlots.size(); ++i)
     program.BindSampler(kSlots[i].sampler, first_unit + static_cast<int>(i));
   program.BindBlock("AirTables", binding);
+}
+
+void AirTextures::PrepareOther(const ShaderProgram& program, int first_unit, GLuint binding) {
+  for (std::size_t i = 0; i < kSlots.size(); ++i) {
+    program.BindSampler((std::string("other_") + kSlots[i].sampler).c_str(),
+                        first_unit + static_cast<int>(i));
+  }
+  program.BindBlock("OtherAirTables", binding);
 }
 
 void AirTextures::Bind(int first_unit, GLuint binding) const {

@@ -170,10 +170,29 @@ void ShaderProgram::Link() {
   if (linked != GL_TRUE) {
     throw InternalError(fmt::format("shaders did not link:\n{}", LogOfProgram(program_.id())));
   }
+  FindUniforms();
+}
+
+// Members of blocks have no location. The name of an array ends with "[0]".
+void ShaderProgram::FindUniforms() {
+  GLint count = 0, longest = 0;
+  glGetProgramiv(program_.id(), GL_ACTIVE_UNIFORMS, &count);
+  glGetProgramiv(program_.id(), GL_ACTIVE_UNIFORM_MAX_LENGTH, &longest);
+  std::string name(static_cast<std::size_t>(longest), '\0');
+  for (GLuint i = 0; i < static_cast<GLuint>(count); ++i) {
+    GLsizei length = 0;
+    GLint size = 0;
+    GLenum type = 0;
+    glGetActiveUniform(program_.id(), i, longest, &length, &size, &type, name.data());
+    const std::string found(name, 0, static_cast<std::size_t>(length));
+    uniforms_[found.substr(0, found.find("[0]"))] =
+        glGetUniformLocation(program_.id(), found.c_str());
+  }
 }
 
 GLint ShaderProgram::Uniform(const char* name) const {
-  return glGetUniformLocation(program_.id(), name);
+  const auto found = uniforms_.find(name);
+  return found != uniforms_.end() ? found->second : -1;
 }
 
 void ShaderProgram::BindBlock(const char* block, GLuint binding) const {

@@ -7,6 +7,8 @@
 // not usable: Mesa 22 omits it in most messages.)
 #pragma once
 
+#include <functional>
+#include <map>
 #include <span>
 #include <string>
 #include <string_view>
@@ -67,8 +69,10 @@ class ShaderProgram {
   ShaderProgram() = default;
   void Attach(GLenum kind, const std::vector<ShaderPiece>& pieces);
   void Link();
+  void FindUniforms();
 
   GlProgram program_;
+  std::map<std::string, GLint, std::less<>> uniforms_;  // locations by name
 };
 
 }  // namespace alpenglow::viewer

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <span>
 #include <utility>
 
 #include "atmosphere/math/constants.h"
@@ -182,6 +183,7 @@ std::vector<ShaderPiece> GroundTexts(const GroundMaterial& material, const LandK
                        material.HasWater() ? GlossMirror::kLayers : 0,
                        SkyIrradianceGradient::kColumns, SkyIrradianceGradient::kRows)},
           ViewerPiece("renderer/illumination/sky_irradiance_gradient.glsl"),
+          ViewerPiece("viewer/shaders/view.lights.glsl"),
           ViewerPiece("viewer/shaders/ground.glsl"),
           SkyByPixelSizes(),
           ViewerPiece("viewer/shaders/sky_by_pixel.tables.glsl"),
@@ -218,20 +220,25 @@ void GroundTextures::SetDrape(const DrapeTexels& texels) const {
   glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR_MIPMAP_LINEAR);
 }
 
-void GroundTextures::Bind(const ShaderProgram& program, int first_unit, LightSource source) const {
-  struct Slot {
-    const char* sampler;
-    GLenum target;
-    const GlTexture* texture;
-  };
-  int unit = first_unit;
-  for (const Slot& slot :
-       {Slot{"level_sky", GL_TEXTURE_2D, &level_sky_},
-        Slot{"gloss_mirror", GL_TEXTURE_2D_ARRAY, &gloss_mirrors_[IndexOf(source)]},
-        Slot{"drape", GL_TEXTURE_2D, &drape_}}) {
-    program.BindSampler(slot.sampler, unit);
-    BindTexture(unit++, slot.target, *slot.texture);
-  }
+namespace {
+
+void ConnectSamplers(const ShaderProgram& program, int unit, std::span<const char* const> names) {
+  for (const char* const name : names) program.BindSampler(name, unit++);
+}
+
+}  // namespace
+
+void GroundTextures::Connect(const ShaderProgram& program, int first_unit) {
+  constexpr std::array<const char*, kUnits> kNames{"level_sky", "drape", "gloss_mirror",
+                                                   "other_gloss_mirror"};
+  ConnectSamplers(program, first_unit, kNames);
+}
+
+void GroundTextures::Bind(int first_unit, LightSource source, LightSource other) const {
+  BindTexture(first_unit, GL_TEXTURE_2D, level_sky_);
+  BindTexture(first_unit + 1, GL_TEXTURE_2D, drape_);
+  BindTexture(first_unit + 2, GL_TEXTURE_2D_ARRAY, gloss_mirrors_[IndexOf(source)]);
+  BindTexture(first_unit + 3, GL_TEXTURE_2D_ARRAY, gloss_mirrors_[IndexOf(other)]);
 }
 
 namespace {
@@ -339,6 +346,18 @@ void SkyByPixel::Use(LightSource source, const GroundFollower::SkyOfSource& sky)
   UploadSlopes(of->slopes, *light.slopes(), of->slope_unit);
 }
 
+SkyByPixelBlock WithLights(const SkyByPixelBlock& first, const SkyByPixelBlock& other) {
+  const bool has_first = first.slope_unit.x > 0.0F;
+  SkyByPixelBlock block = has_first ? first : other;
+  block.sky_moment = first.sky_moment;
+  block.sky_place = first.sky_place;
+  block.slope_unit = first.slope_unit;
+  block.other_sky_moment = other.sky_moment;
+  block.other_sky_place = other.sky_place;
+  block.other_slope_unit = other.slope_unit;
+  return block;
+}
+
 SkyByPixelBlock SkyByPixel::BlockOf(LightSource source, const LocalFrame& eye,
                                     const glm::dvec3& to_sun_for_air,
                                     const SkyIrradianceGradient& now) const {
@@ -348,7 +367,7 @@ SkyByPixelBlock SkyByPixel::BlockOf(LightSource source, const LocalFrame& eye,
   const PlaceOnGrid horizon = PlaceOnGridOf(horizons_->map().grid(), site, eye);
   const PlaceOnGrid slope = PlaceOnGridOf(horizons_->views().heights(), site, eye);
   const std::array<float, 4> light_now = now.On(1.0, 0.0), light_then = of.sky.open.On(1.0, 0.0);
-  SkyByPixelBlock block{horizon.u, horizon.v, slope.u, slope.v, {}, {}, of.slope_unit};
+  SkyByPixelBlock block{horizon.u, horizon.v, slope.u, slope.v, {}, {}, of.slope_unit, {}, {}, {}};
   for (glm::length_t band = 0; band < 4; ++band) {
     const auto i = static_cast<std::size_t>(band);
     block.sky_moment[band] = light_then[i] > 0.0F ? light_now[i] / light_then[i] : 0.0F;
@@ -363,25 +382,27 @@ SkyByPixelBlock SkyByPixel::BlockOf(LightSource source, const LocalFrame& eye,
   return block;
 }
 
-namespace {
-
-constexpr std::array<const char*, 4> kSkySamplers{"horizons_around", "sky_integrals",
-                                                  "level_irradiance", "light_of_slopes"};
-
-}  // namespace
-
 void SkyByPixel::Connect(const ShaderProgram& program, int first_unit) {
-  int unit = first_unit;
-  for (const char* const sampler : kSkySamplers) program.BindSampler(sampler, unit++);
+  constexpr std::array<const char*, kUnits> kNames{
+      "horizons_around",     "sky_integrals",          "level_irradiance",     "light_of_slopes",
+      "other_sky_integrals", "other_level_irradiance", "other_light_of_slopes"};
+  ConnectSamplers(program, first_unit, kNames);
 }
 
-void SkyByPixel::Bind(const ShaderProgram& program, int first_unit, LightSource source) const {
+void SkyByPixel::BindLight(int first_unit, LightSource source) const {
   const OfSource& of = *of_source_[IndexOf(source)];
-  Connect(program, first_unit);
+  BindTexture(first_unit, GL_TEXTURE_2D_ARRAY, of.integrals);
+  BindTexture(first_unit + 1, GL_TEXTURE_2D, of.level_irradiance);
+  BindTexture(first_unit + 2, GL_TEXTURE_2D_ARRAY, of.slopes);
+}
+
+void SkyByPixel::Bind(int first_unit, LightSource source) const {
   BindTexture(first_unit, GL_TEXTURE_2D_ARRAY, horizon_texture_);
-  BindTexture(first_unit + 1, GL_TEXTURE_2D_ARRAY, of.integrals);
-  BindTexture(first_unit + 2, GL_TEXTURE_2D, of.level_irradiance);
-  BindTexture(first_unit + 3, GL_TEXTURE_2D_ARRAY, of.slopes);
+  BindLight(first_unit + 1, source);
+}
+
+void SkyByPixel::BindOther(int first_unit, LightSource source) const {
+  BindLight(first_unit + 4, source);
 }
 
 std::vector<ShaderPiece> SkyByPixelTexts() {

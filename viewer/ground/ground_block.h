@@ -123,10 +123,13 @@ class GroundTextures {
   void SetGlossMirror(LightSource source, const GlossMirror& mirror) const;
   void SetDrape(const DrapeTexels& texels) const;
 
-  /// Binds the textures to three units, beginning with `first_unit`, and assigns the samplers of a
-  /// program to them.
-  /// @param source  light source whose sky is mirrored.
-  void Bind(const ShaderProgram& program, int first_unit, LightSource source) const;
+  /// Assigns the samplers of a program to kUnits units, beginning with `first_unit`.
+  static constexpr int kUnits = 4;
+  static void Connect(const ShaderProgram& program, int first_unit);
+  /// Binds the textures to these units.
+  /// @param source  first light of the sky, which water and glossy land mirror.
+  /// @param other  second light, for programs with TWO_LIGHTS.
+  void Bind(int first_unit, LightSource source, LightSource other) const;
 
  private:
   GlTexture level_sky_, drape_;
@@ -136,8 +139,14 @@ class GroundTextures {
 /// Mirrors the uniform block `SkyByPixel` of sky_by_pixel.glsl.
 struct SkyByPixelBlock {
   glm::vec4 horizon_u, horizon_v, slope_u, slope_v, sky_moment, sky_place, slope_unit;
+  glm::vec4 other_sky_moment, other_sky_place, other_slope_unit;
 };
-static_assert(sizeof(SkyByPixelBlock) == 7 * sizeof(glm::vec4));
+static_assert(sizeof(SkyByPixelBlock) == 10 * sizeof(glm::vec4));
+
+/// Returns the block of two lights of the sky over one terrain, from the block of each. Without
+/// tables a light has a block of zeros.
+[[nodiscard]] SkyByPixelBlock WithLights(const SkyByPixelBlock& first,
+                                         const SkyByPixelBlock& other);
 
 /// Returns the integrals of a sky in rows of nodes, from the renderer's layout
 /// [level][azimuth][node][A, B][band], for a texture of half floats. With the sun 66
@@ -163,10 +172,13 @@ class SkyByPixel {
                                         const glm::dvec3& to_sun_for_air,
                                         const SkyIrradianceGradient& now) const;
 
-  /// Assigns the samplers of a program to four units, beginning with `first_unit`.
+  /// Assigns the samplers of a program to kUnits units, beginning with `first_unit`.
+  static constexpr int kUnits = 7;
   static void Connect(const ShaderProgram& program, int first_unit);
-  /// Connects a program and binds the textures of a source.
-  void Bind(const ShaderProgram& program, int first_unit, LightSource source) const;
+  /// Binds the textures of the first light of the sky to these units.
+  void Bind(int first_unit, LightSource source) const;
+  /// Binds the textures of the second light.
+  void BindOther(int first_unit, LightSource source) const;
 
  private:
   struct OfSource {
@@ -175,6 +187,7 @@ class SkyByPixel {
     glm::vec4 slope_unit{1.0F};
   };
   void UploadHorizons(const TerrainHorizons& horizons);
+  void BindLight(int first_unit, LightSource source) const;
 
   std::shared_ptr<const TerrainHorizons> horizons_;  // horizons in the texture
   GlTexture horizon_texture_;

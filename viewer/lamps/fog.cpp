@@ -39,6 +39,7 @@ FogBlock FogBlockOf(const FogMap& map, const FogView& now) {
 
 std::vector<ShaderPiece> FogTexts(PhaseKind kind) {
   return {{"fog constants", fmt::format("#define FOG_PHASE(c, p) {}\n", PhaseExpression(kind))},
+          ViewerPiece("viewer/shaders/view.lights.glsl"),
           ViewerPiece("viewer/shaders/fog.light.glsl")};
 }
 
@@ -49,6 +50,8 @@ void FogPainter::Connect(const ShaderProgram& program) const {
   program.BindBlock("Fog", units_.block);
   program.BindSampler("fog_light_map", units_.first);
   program.BindSampler("fog_surface_map", units_.first + 1);
+  program.BindSampler("other_fog_light_map", units_.first + 2);
+  program.BindSampler("other_fog_surface_map", units_.first + 3);
 }
 
 void FogPainter::Upload(const FogMap& map) {
@@ -62,10 +65,21 @@ void FogPainter::Upload(const FogMap& map) {
   CheckGl("FogPainter::Upload");
 }
 
-void FogPainter::Bind(const FogMap& map, const FogView& now) const {
-  UploadBlock(block_, units_.block, FogBlockOf(map, now));
+void FogPainter::Bind(const FogBlock& block) const {
+  UploadBlock(block_, units_.block, block);
   BindTexture(units_.first, GL_TEXTURE_3D, light_);
   BindTexture(units_.first + 1, GL_TEXTURE_2D, surface_);
+}
+
+void FogPainter::Bind(const FogMap& map, const FogView& now) const { Bind(FogBlockOf(map, now)); }
+
+void FogPainter::Bind(const FogMap& map, const FogView& now, const FogPainter& other,
+                      const FogView& other_now) const {
+  FogBlock block = FogBlockOf(map, now);
+  block.other_sun = FogBlockOf(map, other_now).sun;
+  Bind(block);
+  BindTexture(units_.first + 2, GL_TEXTURE_3D, other.light_);
+  BindTexture(units_.first + 3, GL_TEXTURE_2D, other.surface_);
 }
 
 namespace {
@@ -128,6 +142,11 @@ double SceneFog::ExtinctionAt(double altitude_m) const {
 
 void SceneFog::Bind(const CameraPose& eye, const SunPosition& sun) const {
   painter_.Bind(*maps_->value(), FogViewOf(eye, sun));
+}
+
+void SceneFog::Bind(const CameraPose& eye, const SunPosition& sun, const SceneFog& other,
+                    const SunPosition& other_sun) const {
+  painter_.Bind(*maps_->value(), FogViewOf(eye, sun), other.painter_, FogViewOf(eye, other_sun));
 }
 
 }  // namespace alpenglow::viewer

@@ -24,9 +24,9 @@ namespace alpenglow::viewer {
 
 /// Mirrors the uniform block `Fog` of fog.light.glsl.
 struct FogBlock {
-  glm::vec4 layer, eye, sun, phase, map_size;
+  glm::vec4 layer, eye, sun, phase, map_size, other_sun;
 };
-static_assert(sizeof(FogBlock) == 5 * sizeof(glm::vec4));
+static_assert(sizeof(FogBlock) == 6 * sizeof(glm::vec4));
 
 /// Returns texts for a fragment stage, which follow SharedTexts(): FogTo(direction, distance_km)
 /// and the rest of fog.light.glsl. @param kind  kind of the fog's phase function.
@@ -38,7 +38,7 @@ static_assert(sizeof(FogBlock) == 5 * sizeof(glm::vec4));
 /// Binding points of the fog's data.
 struct FogUnits {
   GLuint block = 9;
-  int first = 13;  // first of two texture units
+  int first = 13;  // first of four texture units: two for each light of the sky
 };
 
 class FogPainter {
@@ -50,8 +50,14 @@ class FogPainter {
   /// Binds everything for the next draw call of a program of FogTexts(). @param map  the last
   /// uploaded map.
   void Bind(const FogMap& map, const FogView& now) const;
+  /// The same for a program with TWO_LIGHTS. @param other  the painter of the second light, whose
+  /// map has the same size.
+  void Bind(const FogMap& map, const FogView& now, const FogPainter& other,
+            const FogView& other_now) const;
 
  private:
+  void Bind(const FogBlock& block) const;
+
   FogUnits units_;
   GlBuffer block_;
   GlTexture light_, surface_;
@@ -82,6 +88,9 @@ class SceneFog {
   /// Binds everything for the next draw call of such a program. Call it after Follow or
   /// WaitUntilReady.
   void Bind(const CameraPose& eye, const SunPosition& sun) const;
+  /// The same for a program with TWO_LIGHTS. @param other  the fog lit by the second light.
+  void Bind(const CameraPose& eye, const SunPosition& sun, const SceneFog& other,
+            const SunPosition& other_sun) const;
 
  private:
   void BeginIn(const std::shared_ptr<const SolvedAir>& air, double latitude_rad);

@@ -68,6 +68,8 @@ class LampPainter {
   /// @param dimmest_cd_per_m2, most  see SceneLamps::Before.
   void Prepare(SceneLamps& lamps, const LampView& view, double dimmest_cd_per_m2,
                std::size_t most = kMostGpuLamps);
+  /// Prepares a view without lamps.
+  void PutOut() { lamps_ = disks_ = 0; }
   /// Returns whether a quality uses the same programs; then SetStep is sufficient to select it.
   [[nodiscard]] bool Suits(const LampQuality& quality) const {
     return quality.nodes == quality_.nodes && (quality.step == 1) == (quality_.step == 1);

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "viewer/land/land_pass.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
@@ -61,23 +63,28 @@ namespace {
 
 constexpr GLuint kLandBinding = 8;
 
-std::vector<ShaderPiece> Vertices() {
-  return WithViewerPieces(
-      SharedTexts(), {"viewer/shaders/view.block.glsl", "viewer/shaders/view.refracted_rays.glsl",
-                      "viewer/shaders/land.block.glsl", "viewer/shaders/land.vert.glsl"});
-}
-
 // Returns whether depth can run from 1 at the near plane to 0 at infinity. A float depth buffer
 // then has a nearly constant relative precision.
 bool CanReverseDepth() {
   return epoxy_gl_version() >= 45 || epoxy_has_gl_extension("GL_ARB_clip_control");
 }
 
-ShaderProgram LandProgram(const char* fragment) {
+ShaderPiece DefinesOf(const LandProgramKind& kind) {
+  return {"kind of land",
+          fmt::format("#define BENDS {:d}\n#define MOONLIT {:d}\n"
+                      "#define FADES {:d}\n#define MOMENTARY_EDGES {:d}\n",
+                      kind.bends, kind.moonlit, kind.fades, kind.has_momentary_edges)};
+}
+
+ShaderProgram LandProgram(const LandProgramKind& kind) {
   std::vector<VertexAttribute> attributes;
   for (const char* const name : LandPass::kAttributes)
     attributes.push_back({static_cast<GLuint>(attributes.size()), name});
-  return ShaderProgram(Vertices(), WithViewerPieces(LandTexts(LandPass::DepthText()), {fragment}),
+  const char* const fragment = kind.drawn == LandDrawn::kSurface
+                                   ? "viewer/shaders/land.frag.glsl"
+                                   : "viewer/shaders/land.depth_prepass.frag.glsl";
+  return ShaderProgram(WithViewerPieces(LandVertexTexts(kind), {"viewer/shaders/land.vert.glsl"}),
+                       WithViewerPieces(LandFragmentTexts(kind, LandPass::DepthText()), {fragment}),
                        attributes);
 }
 
@@ -104,20 +111,25 @@ LandBlock LandBlockOf(const LocalFrame& anchor, const GeodeticPosition& eye, dou
 
 LandPass::LandPass() : reversed_depth_(CanReverseDepth()) {}
 
-const ShaderProgram& LandPass::ProgramOf(LandDrawn drawn) const {
-  const bool is_surface = drawn == LandDrawn::kSurface;
-  std::optional<ShaderProgram>& program = is_surface ? surface_ : outline_;
-  if (!program) {
-    program.emplace(LandProgram(is_surface ? "viewer/shaders/land.frag.glsl"
-                                           : "viewer/shaders/land.depth_prepass.frag.glsl"));
-  }
-  return *program;
+const ShaderProgram& LandPass::ProgramOf(const LandProgramKind& kind) {
+  const auto found = programs_.find(kind);
+  if (found != programs_.end()) return found->second;
+  return programs_.emplace(kind, LandProgram(kind)).first->second;
 }
 
-std::vector<ShaderPiece> LandTexts(const ShaderPiece& depth) {
+std::vector<ShaderPiece> LandVertexTexts(const LandProgramKind& kind) {
+  std::vector<ShaderPiece> texts = SharedTexts();
+  texts.push_back(DefinesOf(kind));
+  return WithViewerPieces(std::move(texts), {"viewer/shaders/view.block.glsl",
+                                             "viewer/shaders/view.refracted_rays.glsl",
+                                             "viewer/shaders/land.block.glsl"});
+}
+
+std::vector<ShaderPiece> LandFragmentTexts(const LandProgramKind& kind, const ShaderPiece& depth) {
   std::vector<ShaderPiece> texts = WithViewerPieces(
-      {}, {"viewer/shaders/view.block.glsl", "viewer/shaders/land.block.glsl",
-           "viewer/shaders/gbuffer.octahedral.glsl", "viewer/shaders/gbuffer.inverse_depth.glsl"});
+      {DefinesOf(kind)},
+      {"viewer/shaders/view.block.glsl", "viewer/shaders/land.block.glsl",
+       "viewer/shaders/gbuffer.octahedral.glsl", "viewer/shaders/gbuffer.inverse_depth.glsl"});
   texts.push_back(depth);
   return WithViewerPieces(std::move(texts), {"viewer/shaders/land.seen.glsl"});
 }
@@ -158,13 +170,18 @@ glm::vec4 LandPass::RisenSinceMade(const LocalFrame& anchor) const {
       glm::dvec4(risen(edges_of_vertices_.from), risen(edges_of_vertices_.to), 0.0, 0.0));
 }
 
-void LandPass::Run(LandDrawn drawn, LandBlock block, const LocalFrame& anchor, GLuint view_binding,
-                   bool one_side, const std::function<void()>& draw) {
-  const ShaderProgram& program = ProgramOf(drawn);
+// An outline has no light.
+void LandPass::Run(LandDrawn drawn, const LandLook& look, LandBlock block, const LocalFrame& anchor,
+                   GLuint view_binding, bool one_side, const std::function<void()>& draw) {
+  const bool is_surface = drawn == LandDrawn::kSurface;
+  const LandProgramKind kind{drawn, look.bends, is_surface && look.moonlit,
+                             is_surface && block.eye_above.y < 1.0F,
+                             is_surface && edges_.share > 0.0 && horizon_.HasAny()};
+  const ShaderProgram& program = ProgramOf(kind);
   block.eye_above.z = reversed_depth_ ? 1.0F : 0.0F;
   program.Use();
   block.risen = RisenSinceMade(anchor);
-  if (drawn == LandDrawn::kSurface && edges_.share > 0.0 && horizon_.HasAny()) {
+  if (kind.has_momentary_edges) {
     const PlaceOnGrid place = horizon_.PlaceIn(anchor);
     block.horizon_u = place.u;
     block.horizon_v = place.v;
@@ -176,11 +193,15 @@ void LandPass::Run(LandDrawn drawn, LandBlock block, const LocalFrame& anchor, G
   program.BindBlock("View", view_binding);
   if (reversed_depth_) glClipControl(GL_LOWER_LEFT, GL_ZERO_TO_ONE);
   if (one_side) glEnable(GL_CULL_FACE);
+  const GLboolean writes_moon_sky = kind.moonlit ? GL_TRUE : GL_FALSE;
+  glColorMaski(GBuffer::kMoonSky, writes_moon_sky, writes_moon_sky, writes_moon_sky,
+               writes_moon_sky);
   glEnable(GL_DEPTH_TEST);
   glDepthFunc(GL_GREATER);
   draw();
   glDisable(GL_DEPTH_TEST);
   glDisable(GL_CULL_FACE);
+  glColorMaski(GBuffer::kMoonSky, GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
   if (reversed_depth_) glClipControl(GL_LOWER_LEFT, GL_NEGATIVE_ONE_TO_ONE);
 }
 

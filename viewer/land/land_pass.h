@@ -15,6 +15,7 @@
 #include <glm/geometric.hpp>
 #include <glm/vec3.hpp>
 #include <glm/vec4.hpp>
+#include <map>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -121,6 +122,26 @@ struct MomentaryEdges {
 /// Target of a terrain pass: all outputs of a GBuffer, or only depth into a DepthPrepass.
 enum class LandDrawn { kSurface, kOutline };
 
+/// What land needs in a picture.
+struct LandLook {
+  bool bends = true;    // refraction of the block View
+  bool moonlit = true;  // the output GBuffer::kMoonSky, which is undefined otherwise
+};
+
+/// Identifies one program of land.
+struct LandProgramKind {
+  LandDrawn drawn;
+  bool bends, moonlit;
+  bool fades;                // the old light of vertices has a weight
+  bool has_momentary_edges;  // MomentaryEdges
+
+  auto operator<=>(const LandProgramKind&) const = default;
+};
+/// Returns the texts of a program before land.vert.glsl and before its fragment stage.
+[[nodiscard]] std::vector<ShaderPiece> LandVertexTexts(const LandProgramKind& kind);
+[[nodiscard]] std::vector<ShaderPiece> LandFragmentTexts(const LandProgramKind& kind,
+                                                         const ShaderPiece& depth);
+
 class LandPass {
  public:
   LandPass();
@@ -149,14 +170,14 @@ class LandPass {
   /// to `view_binding`. Texture unit 0 is used.
   /// @param anchor    frame of the vertices.
   /// @param one_side  whether triangles that face away are culled.
-  void Run(LandDrawn drawn, LandBlock block, const LocalFrame& anchor, GLuint view_binding,
-           bool one_side, const std::function<void()>& draw);
+  void Run(LandDrawn drawn, const LandLook& look, LandBlock block, const LocalFrame& anchor,
+           GLuint view_binding, bool one_side, const std::function<void()>& draw);
 
   /// Returns the shader text for the depth mode that the current OpenGL context supports.
   [[nodiscard]] static ShaderPiece DepthText();
 
  private:
-  [[nodiscard]] const ShaderProgram& ProgramOf(LandDrawn drawn) const;
+  [[nodiscard]] const ShaderProgram& ProgramOf(const LandProgramKind& kind);
   void BindEdges(const ShaderProgram& program);
   [[nodiscard]] glm::vec4 RisenSinceMade(const LocalFrame& anchor) const;
 
@@ -165,11 +186,7 @@ class LandPass {
   EdgesOfVertices edges_of_vertices_;
   bool reversed_depth_;
   GlBuffer block_;
-  mutable std::optional<ShaderProgram> surface_, outline_;  // created on first use
+  std::map<LandProgramKind, ShaderProgram> programs_;  // created on first use
 };
-
-/// Returns the shader texts that land.frag.glsl and land.depth_prepass.frag.glsl are built from.
-/// @param depth  text of a depth mode: LandPass::DepthText, or the other one.
-[[nodiscard]] std::vector<ShaderPiece> LandTexts(const ShaderPiece& depth);
 
 }  // namespace alpenglow::viewer

@@ -247,13 +247,13 @@ LandBlock Landscape::Block() const {
   return block;
 }
 
-void Landscape::Draw(LandDrawn what, GLuint view_binding) {
+void Landscape::Draw(LandDrawn what, GLuint view_binding, const LandLook& look) {
   LandPass::Clear(what);
-  if (mesh_) mesh_->Draw(pass_, what, eye_place_, view_binding);
+  if (mesh_) mesh_->Draw(pass_, what, look, eye_place_, view_binding);
   if (!set_ || drawn_.empty()) return;
   pass_.Use(fade_.edges());
   // Seen from above the ground, back faces are always hidden, so they can be culled.
-  pass_.Run(what, Block(), set_->anchor().frame, view_binding, over_ground_,
+  pass_.Run(what, look, Block(), set_->anchor().frame, view_binding, over_ground_,
             [&] { set_->Draw(drawn_, fade_.from()); });
 }
 

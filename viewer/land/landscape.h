@@ -109,7 +109,7 @@ class Landscape {
   void AwaitGround(const GeodeticPosition& place);
   /// Draws the chunks that the last Update chose, with its view, into the bound GBuffer or
   /// DepthPrepass, which is cleared first. The uniform block View must be bound to `view_binding`.
-  void Draw(LandDrawn what, GLuint view_binding);
+  void Draw(LandDrawn what, GLuint view_binding, const LandLook& look = {});
 
   /// Relights all vertices with this function on a worker thread. When the new light is complete,
   /// the old one fades into it. If called again meanwhile, the most recent light follows.

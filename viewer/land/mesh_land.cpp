@@ -193,15 +193,15 @@ void MeshLand::Update(double seconds) {
   if (fade_.number() != before) lighter_.Request({terrain_, fade_.light().value()});
 }
 
-void MeshLand::Draw(LandPass& pass, LandDrawn what, const GeodeticPosition& eye,
-                    GLuint view_binding) {
+void MeshLand::Draw(LandPass& pass, LandDrawn what, const LandLook& look,
+                    const GeodeticPosition& eye, GLuint view_binding) {
   if (!terrain_) return;
   glBindVertexArray(layout_.id());
   DescribeLight(LightOn(fade_.from()), LandPass::kOldLight);
   DescribeLight(LightOn(Other(fade_.from())), LandPass::kNewLight);
   const LandBlock block = LandBlockOf(frame_, eye, fade_.share());
   pass.Use(fade_.edges());
-  pass.Run(what, block, frame_, view_binding, false, [&] {
+  pass.Run(what, look, block, frame_, view_binding, false, [&] {
     glDrawElements(GL_TRIANGLES, static_cast<GLsizei>(3 * terrain_->mesh().triangles.size()),
                    GL_UNSIGNED_INT, nullptr);
   });

@@ -44,7 +44,8 @@ class MeshLand {
     reader_.Wait();
     lighter_.Wait();
   }
-  void Draw(LandPass& pass, LandDrawn what, const GeodeticPosition& eye, GLuint view_binding);
+  void Draw(LandPass& pass, LandDrawn what, const LandLook& look, const GeodeticPosition& eye,
+            GLuint view_binding);
 
   void Relight(LightOfVertices light) { fade_.Request(std::move(light)); }
   [[nodiscard]] EdgesOfVertices edges() const { return fade_.edges(); }

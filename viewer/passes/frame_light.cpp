@@ -87,14 +87,6 @@ void NightSkyMapFollower::Follow(const PaintedView& view,
   maker_.RequestWhenIdle(wanted);
 }
 
-void NightSkyMapFollower::Bind(const ShaderProgram& program, int unit) const {
-  program.BindSampler("night_sky", unit);
-  BindTexture(unit, GL_TEXTURE_2D, map_);
-  program.Use();
-  glUniform4fv(program.Uniform("night_scattered"), 1, &scattered_.x);
-  glUniform4fv(program.Uniform("night_level"), 1, &level_.x);
-}
-
 namespace {
 
 // Above this elevation the sun contributes more than a thousand times the brightest moon.
@@ -111,14 +103,18 @@ std::size_t GreenBand(const std::vector<double>& wavelengths_nm) {
       wavelengths_nm.begin());
 }
 
-// Returns the irradiance of a level surface for unit irradiance above the atmosphere.
-BandLight LevelLight(const SolvedAir& air, double altitude_m, const SunPosition& disk) {
-  const double mu = std::sin(disk.elevation_rad);
-  const BandLight sky =
-      air.multiple_scattering.SkyIrradiance(altitude_m, std::sin(SunForAir(disk).elevation_rad));
-  if (mu <= 0.0) return sky;
-  const SingleScattering<float> single_scattering(air.medium);
-  return sky + static_cast<float>(mu) * air.beam.Left(single_scattering, altitude_m, mu);
+// Returns the irradiance of a level surface by a light and the sky that it lights.
+BandLight LevelLight(const SkyLight& source, const AirOfSky& air, double altitude_m) {
+  const double mu = std::sin(source.disk.elevation_rad);
+  BandLight light = air.air->multiple_scattering.SkyIrradiance(
+      altitude_m, std::sin(SunForAir(source.disk).elevation_rad));
+  if (mu > 0.0) {
+    light =
+        light + static_cast<float>(mu) * air.air->beam.Left(air.single_scattering, altitude_m, mu);
+  }
+  for (std::size_t band = 0; band < light.count; ++band)
+    light[band] *= source.irradiance[static_cast<glm::length_t>(band)];
+  return light;
 }
 
 // Returns the sunlight that the moon does not cover.
@@ -150,35 +146,64 @@ SkyLight SunAsLight(const SunPosition& sun, const Medium& medium) {
   return {sun, at_1_au * GpuBandsOf(medium.solar_irradiance)};
 }
 
-LightsOfSky LightsOfSkyAt(const GeodeticPosition& eye, const UtcInstant& now,
-                          const SunPosition& sun, const SolvedAir& air) {
+namespace {
+
+SkyLight MoonAsLight(const MoonDisk& disk, const SkyBodies& bodies, const SkyLight& whole_sun,
+                     const std::vector<double>& wavelengths_nm) {
+  BandLight solar(wavelengths_nm.size());
+  for (std::size_t band = 0; band < solar.count; ++band)
+    solar[band] = whole_sun.irradiance[static_cast<glm::length_t>(band)];
+  const DistantLight moon = MoonlightOf(disk, bodies, MoonColour(disk, wavelengths_nm), solar);
+  return {AsPosition(moon, whole_sun.disk.distance_au), GpuBandsOf(moon.irradiance), true};
+}
+
+// Returns the lights of a planet with a moon.
+LightsOfSky LightsOf(const SkyBodies& bodies, const SunPosition& sun, const MoonDisk& moon,
+                     const AirOfSky& air, double altitude_m) {
   // A sky that contributes a ten-thousandth on a level surface contributes a five-hundredth near
   // the horizon below its light.
   constexpr double kUnseenShare = 1e-4;
-  const SkyLight whole_sun = SunAsLight(sun, air.medium);
-  if (!air.medium.follows_wgs84) return {whole_sun};
-  const SkyBodies bodies = SkyBodiesAt(eye, now);
-  const SkyLight by_sun = BesideMoon(whole_sun, bodies, air.medium);
+  const Medium& medium = air.air->medium;
+  const SkyLight whole_sun = SunAsLight(sun, medium);
+  const SkyLight by_sun = BesideMoon(whole_sun, bodies, medium);
   if (sun.elevation_rad > kMoonDoesNotCount_rad) return {by_sun};
-  const MoonDisk disk = bodies.ApparentMoonDisk(GentleAirOf(air.medium));
-  BandLight solar(air.medium.wavelengths_nm.size());
-  for (std::size_t band = 0; band < solar.count; ++band)
-    solar[band] = whole_sun.irradiance[static_cast<glm::length_t>(band)];
-  const DistantLight moon =
-      MoonlightOf(disk, bodies, MoonColour(disk, air.medium.wavelengths_nm), solar);
-  const SkyLight by_moon{AsPosition(moon, sun.distance_au), GpuBandsOf(moon.irradiance), true};
-  const double altitude_m = std::max(eye.height_m, 0.0);
-  const auto green = static_cast<glm::length_t>(GreenBand(air.medium.wavelengths_nm));
-  const auto brings = [&](const SkyLight& key) {
-    return static_cast<double>(key.irradiance[green]) *
-           static_cast<double>(
-               LevelLight(air, altitude_m, key.disk)[static_cast<std::size_t>(green)]);
-  };
-  const double of_sun = brings(by_sun), of_moon = brings(by_moon);
+  const SkyLight by_moon = MoonAsLight(moon, bodies, whole_sun, medium.wavelengths_nm);
+  const std::size_t green = GreenBand(medium.wavelengths_nm);
+  const auto of_sun = double{LevelLight(by_sun, air, altitude_m)[green]};
+  const auto of_moon = double{LevelLight(by_moon, air, altitude_m)[green]};
   if (of_moon <= kUnseenShare * of_sun) return {by_sun};
   if (of_sun <= kUnseenShare * of_moon) return {by_moon};
   if (sun.elevation_rad < kSetOnLand_rad) return {by_moon, by_sun};
   return {by_sun, by_moon};
+}
+
+}  // namespace
+
+FrameSky FrameSkyAt(const GeodeticPosition& eye, const UtcInstant& now, const AirOfSky& air) {
+  const SkyBodies bodies = SkyBodiesAt(eye, now);
+  FrameSky sky{bodies, bodies.ApparentSun(air.refracting), std::nullopt, false, {}, 0.0};
+  const double altitude_m = std::max(eye.height_m, 0.0);
+  if (air.air->medium.follows_wgs84) {
+    sky.moon = bodies.ApparentMoonDisk(air.refracting);
+    sky.lights = LightsOf(bodies, sky.sun, *sky.moon, air, altitude_m);
+    sky.is_eclipse = bodies.Eclipse().IsCovered();
+    if (sky.is_eclipse) sky.moon->to_moon = ToMoonBefore(sky.sun, bodies);
+  } else {
+    sky.lights = {SunAsLight(sky.sun, air.air->medium)};
+  }
+  for (const SkyLight& light : sky.lights)
+    sky.level_lux += LevelIlluminance(light, air, altitude_m);
+  return sky;
+}
+
+const std::shared_ptr<const FrameSky>& FrameSkyFollower::At(
+    const GeodeticPosition& eye, const UtcInstant& now,
+    const std::shared_ptr<const SolvedAir>& air) {
+  const bool is_same_air = air_ && air_->air == air;
+  if (is_same_air && sky_->bodies.place == eye && sky_->bodies.instant == now) return sky_;
+  if (!is_same_air) air_.emplace(air);
+  sky_ = std::make_shared<const FrameSky>(FrameSkyAt(eye, now, *air_));
+  return sky_;
 }
 
 const SkyLight* OfSource(const LightsOfSky& lights, LightSource source) {
@@ -187,12 +212,8 @@ const SkyLight* OfSource(const LightsOfSky& lights, LightSource source) {
   return nullptr;
 }
 
-double LevelIlluminance(const SkyLight& source, const SolvedAir& air, double altitude_m,
-                        const BandColour& colour) {
-  BandLight light = LevelLight(air, altitude_m, source.disk);
-  for (std::size_t band = 0; band < light.count; ++band)
-    light[band] *= source.irradiance[static_cast<glm::length_t>(band)];
-  return colour.Xyz(InDouble(light))[1];
+double LevelIlluminance(const SkyLight& source, const AirOfSky& air, double altitude_m) {
+  return air.colour.Xyz(InDouble(LevelLight(source, air, altitude_m)))[1];
 }
 
 }  // namespace alpenglow::viewer

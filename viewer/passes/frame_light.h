@@ -15,16 +15,21 @@
 #include <glm/vec4.hpp>
 #include <memory>
 #include <optional>
+#include <utility>
 #include <vector>
 
+#include "atmosphere/astronomy/moon.h"
+#include "atmosphere/astronomy/sky_bodies.h"
 #include "atmosphere/astronomy/sun.h"
 #include "atmosphere/base/async_value.h"
 #include "atmosphere/colour/spectrum.h"
+#include "atmosphere/ray/single_scattering.h"
+#include "atmosphere/refraction/refracted_view.h"
 #include "atmosphere/time_place/time.h"
 #include "lut/camera_tables/air_tables.h"
 #include "renderer/illumination/lighting.h"
 #include "viewer/gl/gl_context.h"
-#include "viewer/gl/shader.h"
+#include "viewer/gl/render_target.h"
 #include "viewer/layer.h"
 #include "viewer/passes/painted_view.h"
 
@@ -61,8 +66,11 @@ class NightSkyMapFollower {
   /// @param waits  whether to wait for the map of exactly this instant.
   void Follow(const PaintedView& view, const std::shared_ptr<const SolvedAir>& air, bool waits);
   [[nodiscard]] bool HasAny() const { return has_map_; }
-  /// Sets the inputs of a program of the night pass of picture.frag.glsl for its next draw.
-  void Bind(const ShaderProgram& program, int unit) const;
+  /// Binds the map to a texture unit.
+  void Bind(int unit) const { BindTexture(unit, GL_TEXTURE_2D, map_); }
+  /// Returns NightSkyMap::scattered and level of the map.
+  [[nodiscard]] const glm::vec4& scattered() const { return scattered_; }
+  [[nodiscard]] const glm::vec4& level() const { return level_; }
 
  private:
   struct Request {
@@ -101,15 +109,50 @@ using LightsOfSky = std::vector<SkyLight>;
 /// Returns the light of a source, or null if it is not in the list.
 [[nodiscard]] const SkyLight* OfSource(const LightsOfSky& lights, LightSource source);
 
-/// Returns the lights of the sky. A light is included if its contribution on a level surface at the
-/// eye, in the band nearest to 555 nm, exceeds a ten-thousandth of the other's. Planets other than
-/// the Earth have no moon; their only light is the sun.
-[[nodiscard]] LightsOfSky LightsOfSkyAt(const GeodeticPosition& eye, const UtcInstant& now,
-                                        const SunPosition& sun, const SolvedAir& air);
+/// A solved medium, with values of it that would take milliseconds in every frame.
+struct AirOfSky {
+  explicit AirOfSky(std::shared_ptr<const SolvedAir> solved)
+      : air(std::move(solved)),
+        single_scattering(air->medium),
+        colour(air->medium.wavelengths_nm),
+        refracting(GentleAirOf(air->medium)) {}
+
+  std::shared_ptr<const SolvedAir> air;
+  SingleScattering<float> single_scattering;
+  BandColour colour;
+  BendingAir refracting;
+};
 
 /// Returns the illuminance [lux] of a level surface by a light and the sky that it lights.
-/// @param colour  of the medium's bands.
-[[nodiscard]] double LevelIlluminance(const SkyLight& source, const SolvedAir& air,
-                                      double altitude_m, const BandColour& colour);
+[[nodiscard]] double LevelIlluminance(const SkyLight& source, const AirOfSky& air,
+                                      double altitude_m);
+
+/// Sun, moon and their light, as one place sees them at one instant.
+struct FrameSky {
+  SkyBodies bodies;              // without refraction
+  SunPosition sun;               // apparent
+  std::optional<MoonDisk> moon;  // apparent, before the sun in an eclipse; empty: there is none
+  bool is_eclipse;               // whether the moon covers part of the sun
+  LightsOfSky lights;
+  double level_lux;  // illuminance of level ground at the eye by the lights and their skies
+};
+
+/// Computes the sky of an eye. A light is included if its contribution on a level surface at the
+/// eye, in the band nearest to 555 nm, exceeds a ten-thousandth of the other's. Planets other than
+/// the Earth have no moon and no eclipses; their only light is the sun.
+[[nodiscard]] FrameSky FrameSkyAt(const GeodeticPosition& eye, const UtcInstant& now,
+                                  const AirOfSky& air);
+
+/// Keeps the sky of the newest place, time and medium, so that it is computed once per frame.
+class FrameSkyFollower {
+ public:
+  [[nodiscard]] const std::shared_ptr<const FrameSky>& At(
+      const GeodeticPosition& eye, const UtcInstant& now,
+      const std::shared_ptr<const SolvedAir>& air);
+
+ private:
+  std::optional<AirOfSky> air_;
+  std::shared_ptr<const FrameSky> sky_;
+};
 
 }  // namespace alpenglow::viewer

@@ -82,6 +82,11 @@ class FrameRenderer {
   void RecordFrame(double seconds) { quality_.Record(seconds); }
   /// Returns the linear picture of the last frame.
   [[nodiscard]] const RenderTarget& picture() const { return painter_.picture(); }
+  /// Returns the sky of an eye (SkyPainter::SkyAt).
+  [[nodiscard]] const std::shared_ptr<const FrameSky>& SkyAt(const GeodeticPosition& eye,
+                                                             const UtcInstant& now) {
+    return painter_.SkyAt(eye, now);
+  }
   /// Returns the luminance [cd/m^2] in a picture of one or two frames ago, at fractions of its
   /// width and height from the upper left corner. Call it once a frame. Returns nullopt outside of
   /// the picture.

@@ -17,6 +17,7 @@
 #include "renderer/surface/surface.h"
 #include "viewer/air/air_follower.h"
 #include "viewer/ground/ground_block.h"
+#include "viewer/ground/open_sky_follower.h"
 #include "viewer/lamps/fog.h"
 #include "viewer/land/landscape.h"
 #include "viewer/passes/auto_quality.h"
@@ -97,7 +98,7 @@ class PaintedScene {
   /// Directional variation of the unoccluded sky's irradiance under a source, which must be one of
   /// the lights, at the instant of the last Update or WaitUntilReady.
   [[nodiscard]] const SkyIrradianceGradient& UnoccludedSkyIrradiance(LightSource source) const {
-    return open_skies_[IndexOf(source)].value().light;
+    return open_skies_[IndexOf(source)].light();
   }
   [[nodiscard]] const GroundTextures& ground_textures() const { return ground_textures_; }
   /// Returns the tables of the surroundings, for the light of the sky on each pixel (at a quality
@@ -121,12 +122,6 @@ class PaintedScene {
   /// Followers either do their work in the background (Update) or complete it (WaitUntilReady).
   enum class Pace { kFollow, kWait };
   void KeepUpAir(const PaintedView& view, const LightsOfSky& lights, Pace pace, double seconds);
-  /// Irradiance of the unoccluded sky on slopes, and the inputs it was computed for.
-  struct UnoccludedSkyOf {
-    std::shared_ptr<const SolvedAir> air;
-    double altitude_m, elevation_rad;
-    SkyIrradianceGradient light;
-  };
   void KeepUpOpenSkies(const LightsOfSky& lights, Pace pace);
   [[nodiscard]] bool HasEdgesNear(const Vector<Ecef>& to_light) const;
   void KeepUpEdges(const PaintedView& view, const SkyLight& key, double seconds);
@@ -140,8 +135,8 @@ class PaintedScene {
   AirView sun_view_;                            // the last view in which the sun was a light
   AirFollower air_;                             // at sun_view_
   std::shared_ptr<const SolvedAir> known_air_;  // the medium in ground_textures_
-  std::optional<SingleScattering<float>> single_scattering_;  // of known_air_
-  std::array<std::optional<UnoccludedSkyOf>, kLightSources> open_skies_;
+  std::shared_ptr<const SingleScattering<float>> single_scattering_;  // of known_air_
+  std::array<OpenSkyFollower, kLightSources> open_skies_;
   std::optional<AirFollower> moon_air_;           // once the moon is a light
   std::shared_ptr<const SolvedAir> moon_air_of_;  // the medium of moon_air_
   std::unique_ptr<Landscape> land_;

@@ -23,13 +23,18 @@ namespace alpenglow::viewer {
 namespace {
 
 ShaderPiece DefinesOf(const PictureKind& kind, const PictureStage& stage) {
-  return {"stage",
-          fmt::format("#define LAND_PASS 0\n#define SKY_PASS 1\n#define DISK_PASS 2\n"
-                      "#define OPEN_SKY_PASS 3\n#define NIGHT_PASS 4\n"
-                      "#define PASS {}\n#define HAS_SHADE {}\n#define HAS_LAMPS {}\n"
-                      "#define HAS_FOG {}\n#define SKY_BY_PIXEL {}\n",
-                      static_cast<int>(stage.pass), stage.has_shade ? 1 : 0,
-                      stage.has_lamps ? 1 : 0, kind.fog ? 1 : 0, stage.sky_by_pixel ? 1 : 0)};
+  return {
+      "stage",
+      fmt::format("#define LAND_PASS 0\n#define SKY_PASS 1\n#define DISK_PASS 2\n"
+                  "#define OPEN_SKY_PASS 3\n"
+                  "#define PASS {}\n#define HAS_SHADE {}\n#define HAS_LAMPS {}\n"
+                  "#define HAS_FOG {}\n#define SKY_BY_PIXEL {}\n#define HAS_NIGHT {}\n",
+                  static_cast<int>(stage.pass), stage.has_shade ? 1 : 0, stage.has_lamps ? 1 : 0,
+                  kind.fog ? 1 : 0, stage.sky_by_pixel ? 1 : 0, stage.has_night ? 1 : 0)};
+}
+
+void Append(std::vector<ShaderPiece>& texts, std::vector<ShaderPiece> pieces) {
+  for (ShaderPiece& piece : pieces) texts.push_back(std::move(piece));
 }
 
 }  // namespace
@@ -37,15 +42,15 @@ ShaderPiece DefinesOf(const PictureKind& kind, const PictureStage& stage) {
 std::vector<ShaderPiece> AirTexts() {
   std::vector<ShaderPiece> texts = WithViewerPieces(
       SharedTexts(), {"viewer/shaders/view.block.glsl", "viewer/shaders/view.refracted_rays.glsl"});
-  for (ShaderPiece& piece : AirTableTexts()) texts.push_back(std::move(piece));
+  Append(texts, AirTableTexts());
   return texts;
 }
 
 std::vector<ShaderPiece> PictureTexts(const PictureKind& kind, const PictureStage& stage) {
-  std::vector<ShaderPiece> texts = AirTexts();
-  const auto add = [&](std::vector<ShaderPiece> pieces) {
-    for (ShaderPiece& piece : pieces) texts.push_back(std::move(piece));
-  };
+  std::vector<ShaderPiece> texts;
+  const auto add = [&](std::vector<ShaderPiece> pieces) { Append(texts, std::move(pieces)); };
+  if (stage.two_lights) texts.push_back({"lights", "#define TWO_LIGHTS\n"});
+  add(AirTexts());
   texts.push_back(DefinesOf(kind, stage));
   add(kind.fog ? FogTexts(*kind.fog) : NoFogTexts());
   // On the ground, the transmittance of sunlight includes that of the fog above.
@@ -106,6 +111,11 @@ double RayAngle(PaintedView view) {
   return PixelAngle(view);
 }
 
+// Returns the direction and the angular radius of a light's disk.
+glm::vec4 ApparentDiskOf(const SkyLight& light) {
+  return {glm::vec3(DirectionToSun(light.disk)), light.disk.angular_radius_rad};
+}
+
 // Sets the refraction of the view. Without refraction the planet appears with its true radius.
 void SetBend(ViewBlock& block, const std::optional<LandBend>& bend) {
   block.bend.x = block.eye.w;
@@ -128,38 +138,50 @@ void PictureBlocks::UploadAir(const PaintedScene& scene, const CameraPose& eye) 
   UploadBlock(air_, kAirBinding, air_block_);
 }
 
-void PictureBlocks::UploadView(const PaintedScene& scene, const PaintedView& view,
-                               const SkyLight& key, const PixelRay& ray) const {
+void PictureBlocks::UploadView(const PaintedScene& scene, const SeenRays& seen,
+                               const LightsOfView& lights) const {
+  const PaintedView& view = seen.view;
   const Medium& medium = scene.air().air()->medium;
   const LandView axes = LandViewOf(view);
-  const glm::dvec2 shift = ShiftOf(ray, view);
+  const glm::dvec2 shift = ShiftOf(seen.ray, view);
   const glm::dvec2 moved(view.part.x * view.part.z + shift.x, view.part.y * view.part.w + shift.y);
   const double altitude_km = std::max(view.eye.place.height_m, 0.0) / kMetresPerKilometre;
   ViewBlock block{};
   block.view_right = {glm::vec3(axes.right), 0.0F};
   block.view_up = {glm::vec3(axes.up), 0.0F};
-  block.view_forward = {glm::vec3(axes.forward), RayAngle(view) / std::sqrt(ray.of)};
-  block.sun = {glm::vec3(DirectionToSun(key.disk)), key.disk.angular_radius_rad};
-  block.sun_for_air = {glm::vec3(DirectionToSun(SunForAir(key.disk))), 0.0F};
-  block.sun_irradiance = key.irradiance;
+  block.view_forward = {glm::vec3(axes.forward), RayAngle(view) / std::sqrt(seen.ray.of)};
+  const SkyLight &first = lights.of_sky.front(), &other = lights.of_sky.back();
+  block.sun = ApparentDiskOf(first);
+  block.sun_for_air = {glm::vec3(DirectionToSun(SunForAir(first.disk))), 0.0F};
+  block.sun_irradiance = first.irradiance;
+  block.other_sun = ApparentDiskOf(other);
+  block.other_sun_for_air = {glm::vec3(DirectionToSun(SunForAir(other.disk))), 0.0F};
+  block.other_sun_irradiance = other.irradiance;
+  block.night_scattered = lights.night_scattered;
+  block.night_level = lights.night_level;
   block.eye = {altitude_km, moved.x, moved.y, RadiusUnder(view.eye, medium)};
-  SetBend(block, BendOf(view, medium, scene.land().farthest_m()));
+  SetBend(block, seen.bend);
   UploadBlock(view_, kViewBinding, block);
 }
 
 void PictureBlocks::UploadGroundLight(const PaintedScene& scene, const PaintedView& view,
-                                      const SkyLight& light) const {
-  UploadBlock(ground_light_, kGroundLightBinding, LightAround(scene, view, light));
+                                      const LightsOfSky& lights) const {
+  UploadBlock(ground_light_, kGroundLightBinding, LightAround(scene, view, lights.front()));
+  UploadBlock(other_ground_light_, kOtherGroundLightBinding,
+              LightAround(scene, view, lights.back()));
 }
 
 void PictureBlocks::UploadSkyByPixel(const PaintedScene& scene, const PaintedView& view,
-                                     const SkyLight& light) const {
-  const SkyByPixel* sky = scene.sky_by_pixel(light.source());
-  if (sky == nullptr) return UploadBlock(sky_by_pixel_, kSkyByPixelBinding, SkyByPixelBlock{});
+                                     const LightsOfSky& lights) const {
   const LocalFrame eye(scene.fixed().ellipsoid, view.eye.place);
+  const auto block_of = [&](const SkyLight& light) {
+    const SkyByPixel* sky = scene.sky_by_pixel(light.source());
+    return sky == nullptr ? SkyByPixelBlock{}
+                          : sky->BlockOf(light.source(), eye, DirectionToSun(SunForAir(light.disk)),
+                                         scene.UnoccludedSkyIrradiance(light.source()));
+  };
   UploadBlock(sky_by_pixel_, kSkyByPixelBinding,
-              sky->BlockOf(light.source(), eye, DirectionToSun(SunForAir(light.disk)),
-                           scene.UnoccludedSkyIrradiance(light.source())));
+              WithLights(block_of(lights.front()), block_of(lights.back())));
 }
 
 void PictureBlocks::UploadGround(const PaintedScene& scene, const PaintedView& view) const {
@@ -172,7 +194,6 @@ namespace {
 // Fragments have depth 0 and are tested against the depth of land: either it is nearer (land), or
 // there is no land.
 GLenum DepthTestOf(PictureStage::Pass pass) {
-  if (pass == PictureStage::Pass::kNight) return GL_ALWAYS;
   return pass == PictureStage::Pass::kLand ? GL_LESS : GL_EQUAL;
 }
 
@@ -181,6 +202,7 @@ void ConnectBlocks(const ShaderProgram& program) {
   program.BindBlock("View", kViewBinding);
   program.BindBlock("Ground", kGroundBinding);
   program.BindBlock("GroundLight", kGroundLightBinding);
+  program.BindBlock("OtherGroundLight", kOtherGroundLightBinding);
   program.BindBlock("GroundSurface", kGroundSurfaceBinding);
   program.BindBlock("SkyByPixel", kSkyByPixelBinding);
 }
@@ -188,9 +210,14 @@ void ConnectBlocks(const ShaderProgram& program) {
 void ConnectMaps(const ShaderProgram& program) {
   program.BindSampler("surface_map", kSurfaceUnit);
   program.BindSampler("sky_on_surface", kSkyOnSurfaceUnit);
+  program.BindSampler("other_sky_on_surface", kOtherSkyOnSurfaceUnit);
   program.BindSampler("shaft_map", kShaftUnit);
   program.BindSampler("fog_shaft_map", kFogShaftUnit);
+  program.BindSampler("night_sky", kNightUnit);
+  GroundTextures::Connect(program, kGroundUnit);
   SkyByPixel::Connect(program, kSkyByPixelUnit);
+  AirTextures::Prepare(program, kAirUnit, kTablesBinding);
+  AirTextures::PrepareOther(program, kOtherAirUnit, kOtherTablesBinding);
 }
 
 }  // namespace
@@ -206,7 +233,6 @@ ShaderProgram PicturePrograms::Made(const PictureStage& stage) const {
       WithViewerPieces(PictureTexts(kind, stage), {"viewer/shaders/picture.frag.glsl"}));
   ConnectBlocks(made);
   ConnectMaps(made);
-  AirTextures::Prepare(made, kAirUnit, kTablesBinding);
   if (stage.has_lamps) lamps_.Connect(made);
   if (scene_.fog() != nullptr) scene_.fog()->Connect(made);
   return made;
@@ -218,11 +244,8 @@ const ShaderProgram& PicturePrograms::Of(const PictureStage& stage) {
   return made_.emplace(stage, Made(stage)).first->second;
 }
 
-void PicturePrograms::Paint(const PictureStage& stage, LightSource source) {
+void PicturePrograms::Paint(const PictureStage& stage) {
   const ShaderProgram& program = Of(stage);
-  scene_.ground_textures().Bind(program, kGroundUnit, source);
-  if (const SkyByPixel* const sky = scene_.sky_by_pixel(source))
-    sky->Bind(program, kSkyByPixelUnit, source);
   if (stage.has_shade) shafts_.Bind(program, kShaftUnit);
   program.Use();
   glDepthFunc(DepthTestOf(stage.pass));

@@ -4,7 +4,8 @@
 // Every uniform block and texture has a binding number of its own, so that passes do not overwrite
 // each other's bindings. The fragment stages share one text, picture.frag.glsl, for land, sky and
 // disks, preceded by texts that depend on the scene. There is one program per stage, created on
-// first use and kept.
+// first use and kept. A program adds the light of sun, moon and night sky, because most of its time
+// is needed for what they light: the ground's pattern and the transmittance of the air.
 //
 // Drivers finish compiling a program on its first draw, which takes tenths of a second. Stages that
 // will be needed later, when shadowing begins or ends or a disk comes into view, are therefore
@@ -47,22 +48,26 @@ enum PictureBinding : GLuint {
   kSkyByPixelBinding,
   kTablesBinding,
   kLampsBinding,
-  kFogBinding
+  kFogBinding,  // also used by LandPass, before fog is bound
+  kOtherTablesBinding,
+  kOtherGroundLightBinding
 };
 
 /// Texture units.
 enum PictureUnit {
   kSurfaceUnit,
   kSkyOnSurfaceUnit,
+  kOtherSkyOnSurfaceUnit,
   kShaftUnit,
   kFogShaftUnit,
   kShadeUnit,
   kUploadUnit,
   kAirUnit,
-  kGroundUnit = kAirUnit + AirTextures::kUnits,
-  kLampUnit = kGroundUnit + 3,
+  kOtherAirUnit = kAirUnit + AirTextures::kUnits,
+  kGroundUnit = kOtherAirUnit + AirTextures::kUnits,
+  kLampUnit = kGroundUnit + GroundTextures::kUnits,
   kFogUnit = kLampUnit + 6,
-  kNightUnit = kFogUnit + 2,
+  kNightUnit = kFogUnit + 4,
   kSkyByPixelUnit = kNightUnit + 1,
 };
 
@@ -72,10 +77,19 @@ inline constexpr FogUnits kFogUnits{kFogBinding, kFogUnit};
 /// Identifies one program of the picture. kUnoccludedSky is the sky above the horizon, see
 /// RowsOfPlanet.
 struct PictureStage {
-  enum class Pass { kLand, kSky, kDisks, kUnoccludedSky, kNight };
+  enum class Pass { kLand, kSky, kDisks, kUnoccludedSky };
   Pass pass;
   bool has_shade = false, has_lamps = false;
+  bool two_lights = false, has_night = false;
   bool sky_by_pixel = false;  // SkyByPixel, for land only
+
+  /// Returns the stage of another pass, without properties that this pass does not have.
+  [[nodiscard]] PictureStage In(Pass other) const {
+    PictureStage stage = *this;
+    stage.pass = other;
+    stage.sky_by_pixel = sky_by_pixel && other == Pass::kLand;
+    return stage;
+  }
 
   auto operator<=>(const PictureStage&) const = default;
 };
@@ -95,22 +109,35 @@ struct PictureKind {
 /// Returns the first of these texts: the view and the medium.
 [[nodiscard]] std::vector<ShaderPiece> AirTexts();
 
+/// The light of a picture. Of a single light of the sky, "the second light" is a copy, which no
+/// program reads.
+struct LightsOfView {
+  LightsOfSky of_sky;
+  glm::vec4 night_scattered{0.0F}, night_level{0.0F};  // NightSkyMap; 0 without it
+};
+
+/// The rays of a picture: one of each pixel.
+struct SeenRays {
+  const PaintedView& view;
+  const std::optional<LandBend>& bend;  // refraction of the view (BendOf)
+  PixelRay ray;
+};
+
 /// The uniform blocks of a picture. Each call fills blocks and binds them (PictureBinding).
 class PictureBlocks {
  public:
   void UploadAir(const PaintedScene& scene, const CameraPose& eye);
-  /// @param ray  the ray of each pixel that is drawn.
-  void UploadView(const PaintedScene& scene, const PaintedView& view, const SkyLight& key,
-                  const PixelRay& ray) const;
+  void UploadView(const PaintedScene& scene, const SeenRays& seen,
+                  const LightsOfView& lights) const;
   void UploadGround(const PaintedScene& scene, const PaintedView& view) const;
   void UploadGroundLight(const PaintedScene& scene, const PaintedView& view,
-                         const SkyLight& light) const;
-  /// Without tables the block says so.
+                         const LightsOfSky& lights) const;
+  /// For a light without tables the block says so.
   void UploadSkyByPixel(const PaintedScene& scene, const PaintedView& view,
-                        const SkyLight& light) const;
+                        const LightsOfSky& lights) const;
 
  private:
-  GlBuffer air_, view_, ground_, ground_light_, ground_surface_, sky_by_pixel_;
+  GlBuffer air_, view_, ground_, ground_light_, other_ground_light_, ground_surface_, sky_by_pixel_;
   // The block of the last medium is kept, since computing the colours of its bands takes
   // milliseconds.
   std::shared_ptr<const SolvedAir> known_air_;
@@ -123,10 +150,9 @@ class PicturePrograms {
   PicturePrograms(const PaintedScene& scene, const LampPainter& lamps, const ShaftPass& shafts);
 
   /// Draws the whole viewport. Land is drawn only over land, sky and disks only where there is no
-  /// land, by a test against the depth of the bound target. The depth test must be enabled.
-  /// @param source  the light whose sky is mirrored by water waves. Its air, blocks and maps must
-  ///   be bound.
-  void Paint(const PictureStage& stage, LightSource source = LightSource::kSun);
+  /// land, by a test against the depth of the bound target. The depth test must be enabled. Air,
+  /// blocks and maps of the lights must be bound.
+  void Paint(const PictureStage& stage);
   /// Draws once with a stage that was not drawn yet, and returns whether this was necessary.
   bool MakeReady(const PictureStage& stage);
 

@@ -6,6 +6,7 @@
 
 #include "atmosphere/astronomy/moon.h"
 #include "atmosphere/astronomy/sky_bodies.h"
+#include "atmosphere/math/constants.h"
 #include "atmosphere/refraction/refracted_view.h"
 #include "renderer/illumination/lighting.h"
 #include "renderer/surface/scene_ground.h"
@@ -72,34 +73,24 @@ SkyPainter::SkyPainter(const Scene& scene, const LandSource& land, const Painted
   CheckGl("SkyPainter");
 }
 
-const SkyPainter::Shining& SkyPainter::LightsOf(const PaintedView& view) {
-  const std::shared_ptr<const SolvedAir>& air = scene_.air().air();
-  const bool is_known = shining_ && shining_->view.now == view.now &&
-                        shining_->view.eye == view.eye && shining_->air == air;
-  if (!is_known) {
-    const SunPosition sun = ApparentSunAt(view.eye.place, view.now, GentleAirOf(air->medium));
-    shining_ = {view, sun, air, LightsOfSkyAt(view.eye.place, view.now, sun, *air)};
-  }
-  return *shining_;
-}
-
 void SkyPainter::Update(const PaintedView& view, double seconds) {
-  const LightsOfSky& lights = LightsOf(view).lights;
   Begin("update");
-  scene_.Update(view, lights, seconds);
-  stars_.Follow(view, lights, *scene_.air().air());
+  const std::shared_ptr<const FrameSky> sky = SkyAt(view.eye.place, view.now);
+  scene_.Update(view, sky->lights, seconds);
+  stars_.Follow(view, *sky, scene_.air().air());
   // After a jump in time into the night, wait for the first map.
   if (HasNightSkyMap()) night_sky_map_.Follow(view, scene_.air().air(), !night_sky_map_.HasAny());
 }
 
 void SkyPainter::WaitUntilReady(const PaintedView& view, int samples) {
-  scene_.WaitUntilReady(view, LightsOf(view).lights, samples);
+  scene_.WaitUntilReady(view, SkyOf(view).lights, samples);
   lamps_.WaitForPlans();
-  stars_.WaitUntilReady(view, LightsOf(view).lights, *scene_.air().air());
+  stars_.WaitUntilReady(view, SkyOf(view), scene_.air().air());
   if (HasNightSkyMap()) night_sky_map_.Follow(view, scene_.air().air(), true);
 }
 
 void SkyPainter::PrepareLamps(const PaintedView& view) {
+  if (lamps_.IsDark()) return lamp_painter_.PutOut();
   // Lamps dimmer than this are invisible against other light.
   constexpr double kDimmest_cd_per_m2 = 1e-5;
   const LampView seen =
@@ -115,6 +106,14 @@ void SkyPainter::PrepareLamps(const PaintedView& view) {
   lamp_painter_.Prepare(lamps_, seen, kDimmest_cd_per_m2, sizes.most_lamps);
 }
 
+std::optional<LandBend> SkyPainter::BendIn(const PaintedView& view) const {
+  return BendOf(view, scene_.air().air()->medium, scene_.land().farthest_m());
+}
+
+LandLook SkyPainter::LookOfLand(const PaintedView& view) {
+  return {bend_.has_value(), OfSource(SkyOf(view).lights, LightSource::kMoon) != nullptr};
+}
+
 void SkyPainter::PaintLand(const PaintedView& view) {
   Begin("land");
   Fit(surface_, view.width, view.height);
@@ -122,7 +121,7 @@ void SkyPainter::PaintLand(const PaintedView& view) {
   if (scene_.AwaitsLand()) {
     LandPass::Clear(LandDrawn::kSurface);
   } else {
-    scene_.land().Draw(LandDrawn::kSurface, kViewBinding);
+    scene_.land().Draw(LandDrawn::kSurface, kViewBinding, LookOfLand(view));
   }
   surface_->BindTexture(kSurfaceUnit, GBuffer::kSurface);
 }
@@ -131,7 +130,7 @@ void SkyPainter::PaintOutline(const DepthPrepass& outline) {
   Begin("outline");
   outline.Bind();
   if (scene_.AwaitsLand()) return LandPass::Clear(LandDrawn::kOutline);
-  scene_.land().Draw(LandDrawn::kOutline, kViewBinding);
+  scene_.land().Draw(LandDrawn::kOutline, kViewBinding, {bend_.has_value(), false});
 }
 
 bool SkyPainter::HasShade(const PaintedView& view, const SkyLight& key) const {
@@ -141,7 +140,7 @@ bool SkyPainter::HasShade(const PaintedView& view, const SkyLight& key) const {
 }
 
 void SkyPainter::PaintShafts(const PaintedView& view) {
-  if (!HasShade(view, LightsOf(view).lights.front())) return;
+  if (!HasShade(view, SkyOf(view).lights.front())) return;
   Begin("shafts");
   const ShadeFollower& shade = scene_.shade();
   shaft_pass_.Paint(shade.shade(), shade.MapFromEye(view.eye.place), view.width, view.height,
@@ -180,7 +179,7 @@ void SendAir(const ShaderProgram& program, const RefractedDisk& sun, const Refra
 
 // If the moon covers part of the sun, both disks use the same refraction, so that their edges
 // match.
-SkyPainter::DisksInAir SkyPainter::InAir(const SkyDisks& disks, const PaintedView& view) {
+SkyPainter::DisksInAir SkyPainter::InAir(const FrameSky& sky, const PaintedView& view) {
   const auto follow = [&](RefractedDiskFollower& follower, const glm::dvec3& apparent,
                           double radius) -> const RefractedDisk* {
     if (!PixelsOfDisk(apparent, radius, view)) return nullptr;
@@ -188,20 +187,20 @@ SkyPainter::DisksInAir SkyPainter::InAir(const SkyDisks& disks, const PaintedVie
                            std::asin(std::clamp(apparent.z, -1.0, 1.0)), radius,
                            0.5 * PixelAngle(view));
   };
-  const GeodeticPosition& place = view.eye.place;
-  DisksInAir seen{disks,
-                  follow(refracted_sun_, DirectionToSun(disks.sun), disks.sun.angular_radius_rad),
-                  follow(refracted_moon_, disks.moon.to_moon, disks.moon.radius_rad)};
-  const MoonPosition moon = MoonAt(place, view.now);
-  if (EclipsedDiskOf(disks.sun, moon).IsCovered()) seen.moon = seen.sun;
-  if (seen.sun != nullptr) seen.disks.sun = SunAt(place, view.now);
-  if (seen.moon != nullptr)
-    seen.disks.moon.to_moon = DirectionFromAngles(moon.elevation_rad, moon.azimuth_rad).xyz;
+  DisksInAir seen{
+      sky.sun, sky.moon.value_or(MoonDisk{}),
+      follow(refracted_sun_, DirectionToSun(sky.sun), sky.sun.angular_radius_rad),
+      sky.moon ? follow(refracted_moon_, sky.moon->to_moon, sky.moon->radius_rad) : nullptr};
+  if (sky.is_eclipse) seen.refracted_moon = seen.refracted_sun;
+  if (seen.refracted_sun != nullptr) seen.sun = sky.bodies.sun;
+  const MoonPosition& moon = sky.bodies.moon;
+  if (seen.refracted_moon != nullptr)
+    seen.moon.to_moon = DirectionFromAngles(moon.elevation_rad, moon.azimuth_rad).xyz;
   return seen;
 }
 
 void SkyPainter::DescribeDisks(const DisksInAir& seen) {
-  const MoonDisk& moon = seen.disks.moon;
+  const MoonDisk& moon = seen.moon;
   const ShaderProgram& program = programs_.Of({PictureStage::Pass::kDisks});
   program.Use();
   glUniform4f(program.Uniform("moon"), static_cast<float>(moon.to_moon.x),
@@ -214,30 +213,44 @@ void SkyPainter::DescribeDisks(const DisksInAir& seen) {
   glUniform4f(program.Uniform("moon_colour"), colour.x, colour.y, colour.z, colour.w);
   glUniform1f(program.Uniform("moon_earthshine"),
               static_cast<float>(moon.earthshine_per_irradiance));
-  SendAir(program, seen.sun != nullptr ? *seen.sun : kUnbent,
-          seen.moon != nullptr ? *seen.moon : kUnbent);
+  SendAir(program, seen.refracted_sun != nullptr ? *seen.refracted_sun : kUnbent,
+          seen.refracted_moon != nullptr ? *seen.refracted_moon : kUnbent);
 }
 
-// Prepares one stage per frame, since each takes tenths of a second.
-void SkyPainter::MakeOneReady(const PaintedView& view, bool has_shade, bool has_lamps) {
+namespace {
+
+// Returns the stages that may follow a stage, for all passes, the most urgent first.
+std::vector<PictureStage> StagesAfter(const PictureStage& stage, const FrameSky& sky) {
   using enum PictureStage::Pass;
-  for (const PictureStage& stage :
-       {PictureStage{kSky, has_shade, has_lamps},
-        PictureStage{kUnoccludedSky, has_shade, has_lamps},
-        PictureStage{kLand, !has_shade, has_lamps}, PictureStage{kSky, !has_shade, has_lamps},
-        PictureStage{kUnoccludedSky, !has_shade, has_lamps}, PictureStage{kDisks},
-        PictureStage{kNight}, PictureStage{kLand}, PictureStage{kSky},
-        PictureStage{kUnoccludedSky}})
-    if (programs_.MakeReady(stage)) return;
+  // From this elevation on, the moon or the night sky may soon become lights.
+  constexpr double kBeforeDusk_rad = 5.0 * kRadiansPerDegree;
+  std::vector<PictureStage> next(4, stage);
+  next[1].has_shade = !stage.has_shade;
+  next[2].two_lights = !stage.two_lights;
+  next[3].has_night = !stage.has_night;
+  if (!sky.moon || sky.sun.elevation_rad > kBeforeDusk_rad) next.resize(2);
+  std::vector<PictureStage> stages;
+  for (const PictureStage& one : next)
+    for (const PictureStage::Pass pass : {kSky, kUnoccludedSky, kLand})
+      stages.push_back(one.In(pass));
+  stages.insert(stages.begin() + 3, {kDisks});
+  return stages;
+}
+
+}  // namespace
+
+// Prepares one stage per frame, since each takes tenths of a second.
+void SkyPainter::MakeOneReady(const PaintedView& view, const PictureStage& stage) {
+  for (const PictureStage& next : StagesAfter(stage, SkyOf(view)))
+    if (programs_.MakeReady(next)) return;
   stars_.MakeReady(view, scene_.fog(), scene_.fixed().fog_phase);
 }
 
 // Returns the number of rows below the horizon. The horizon is that of straight rays over a planet
 // with the apparent radius.
 int SkyPainter::RowsUnderHorizon(const PaintedView& view) const {
-  const Medium& medium = scene_.air().air()->medium;
-  const auto bend = BendOf(view, medium, scene_.land().farthest_m());
-  return RowsOfPlanet(view, bend ? bend->look_radius_km : RadiusUnder(view.eye, medium));
+  return RowsOfPlanet(
+      view, bend_ ? bend_->look_radius_km : RadiusUnder(view.eye, scene_.air().air()->medium));
 }
 
 // Returns the number of rows with the planet's ground. Before land is loaded, sky is drawn in its
@@ -248,50 +261,43 @@ int SkyPainter::RowsOfGround(const PaintedView& view) const {
 
 // Draws the sky in two parts, since software drivers evaluate the planet for every pixel of a
 // program that includes it.
-void SkyPainter::PaintSky(const PaintedView& view, const Lit& lit) {
+void SkyPainter::PaintSky(const PaintedView& view, const PictureStage& stage) {
   using enum PictureStage::Pass;
   const int rows = RowsOfGround(view);
   if (rows > 0) {
     const Scissor below({0, 0, view.width, rows});
-    programs_.Paint({kSky, lit.has_shade, lit.has_lamps}, lit.source);
+    programs_.Paint(stage.In(kSky));
   }
   if (rows < view.height) {
     const Scissor above({0, rows, view.width, view.height - rows});
-    programs_.Paint({kUnoccludedSky, lit.has_shade, lit.has_lamps}, lit.source);
+    programs_.Paint(stage.In(kUnoccludedSky));
   }
 }
 
-void SkyPainter::PaintLandAndSky(const PaintedView& view, const Lit& lit) {
-  if (!scene_.AwaitsLand())
-    programs_.Paint({PictureStage::Pass::kLand, lit.has_shade, lit.has_lamps,
-                     scene_.sizes().sky_by_pixel && scene_.sky_by_pixel(lit.source) != nullptr},
-                    lit.source);
-  PaintSky(view, lit);
-}
-
 std::vector<PixelBox> SkyPainter::DisksSeen(const PaintedView& view) {
-  const SkyDisks disks = DisksOf(view);
+  const FrameSky& sky = SkyOf(view);
   std::vector<PixelBox> boxes;
   const auto add = [&](const std::optional<PixelBox>& box) {
     if (box) boxes.push_back(*box);
   };
-  add(PixelsOfDisk(DirectionToSun(disks.sun), disks.sun.angular_radius_rad, view));
-  add(PixelsOfDisk(disks.moon.to_moon, disks.moon.radius_rad, view));
+  add(PixelsOfDisk(DirectionToSun(sky.sun), sky.sun.angular_radius_rad, view));
+  if (sky.moon) add(PixelsOfDisk(sky.moon->to_moon, sky.moon->radius_rad, view));
   return boxes;
 }
 
 std::vector<PixelBox> SkyPainter::BodiesSeen(const PaintedView& view) {
   std::vector<PixelBox> boxes = DisksSeen(view);
-  const std::vector<PixelBox> stars = stars_.Seen(view, DisksOf(view).moon);
+  const std::vector<PixelBox> stars = stars_.Seen(view, SkyOf(view));
   boxes.insert(boxes.end(), stars.begin(), stars.end());
   return boxes;
 }
 
 // Draws the disks. The sun's disk always uses sunlight, even if the moon lights the air.
 void SkyPainter::PaintDisks(const PaintedView& view, const PixelRay& ray) {
-  const DisksInAir seen = InAir(DisksOf(view), view);
-  const SkyLight sun = SunAsLight(seen.disks.sun, scene_.air().air()->medium);
-  blocks_.UploadView(scene_, view, sun, ray);
+  const DisksInAir seen = InAir(SkyOf(view), view);
+  const std::optional<LandBend> bend = BendIn(view);
+  blocks_.UploadView(scene_, {view, bend, ray},
+                     {{SunAsLight(seen.sun, scene_.air().air()->medium)}});
   const std::vector<PixelBox> boxes = DisksSeen(view);
   if (boxes.empty()) return;
   const double share = 1.0 / ray.of;
@@ -311,23 +317,72 @@ void SkyPainter::PaintBodiesOver(const RenderTarget& target, const DepthPrepass&
   PaintDisks(view, {});
   if (stars_.HasAny()) {
     const BesideLand beside;
-    stars_.Paint(view, DisksOf(view).moon, StarPainter::Land::kByDepth, scene_.fog(),
+    stars_.Paint(view, SkyOf(view), StarPainter::Land::kByDepth, scene_.fog(),
                  scene_.fixed().fog_phase);
   }
   CheckGl("SkyPainter::PaintBodiesOver");
 }
 
-// Binds the inputs that depend on one light of the sky.
-void SkyPainter::BindLight(const PaintedView& view, const SkyLight& light, const PixelRay& ray) {
-  blocks_.UploadView(scene_, view, light, ray);
-  blocks_.UploadGroundLight(scene_, view, light);
-  blocks_.UploadSkyByPixel(scene_, view, light);
-  scene_.air_textures(light.source()).Bind(kAirUnit, kTablesBinding);
+namespace {
+
+// Returns whether the light of the sky on land is computed for each pixel, for all these lights.
+bool HasSkyByPixel(const PaintedScene& scene, const LightsOfSky& lights) {
+  return scene.sizes().sky_by_pixel &&
+         std::all_of(lights.begin(), lights.end(), [&](const SkyLight& light) {
+           return scene.sky_by_pixel(light.source()) != nullptr;
+         });
 }
 
-void SkyPainter::BindMaps(const PaintedView& view, const SkyLight& light) {
-  surface_->BindTexture(kSkyOnSurfaceUnit, light.is_moon ? GBuffer::kMoonSky : GBuffer::kSky);
-  if (scene_.fog() != nullptr) scene_.fog(light.source())->Bind(view.eye, light.disk);
+}  // namespace
+
+LightsOfView SkyPainter::LightsOf(const PaintedView& view) {
+  LightsOfView lights{SkyOf(view).lights};
+  if (!HasNightSkyMap()) return lights;
+  lights.night_scattered = night_sky_map_.scattered();
+  lights.night_level = night_sky_map_.level();
+  return lights;
+}
+
+// Binds the inputs that depend on the lights of the sky.
+void SkyPainter::BindLights(const PaintedView& view, const PixelRay& ray) {
+  const LightsOfView lights = LightsOf(view);
+  const SkyLight &first = lights.of_sky.front(), &other = lights.of_sky.back();
+  blocks_.UploadView(scene_, {view, bend_, ray}, lights);
+  blocks_.UploadGroundLight(scene_, view, lights.of_sky);
+  scene_.air_textures(first.source()).Bind(kAirUnit, kTablesBinding);
+  scene_.air_textures(other.source()).Bind(kOtherAirUnit, kOtherTablesBinding);
+  scene_.ground_textures().Bind(kGroundUnit, first.source(), other.source());
+  blocks_.UploadSkyByPixel(scene_, view, lights.of_sky);
+  if (const SkyByPixel* const sky = scene_.sky_by_pixel(first.source()))
+    sky->Bind(kSkyByPixelUnit, first.source());
+  if (const SkyByPixel* const sky = scene_.sky_by_pixel(other.source()))
+    sky->BindOther(kSkyByPixelUnit, other.source());
+}
+
+// Binds the inputs that are pictures of land or that passes before the picture may have replaced.
+void SkyPainter::BindMaps(const PaintedView& view) {
+  const LightsOfSky& lights = SkyOf(view).lights;
+  const auto sky_of = [](const SkyLight& light) {
+    return light.is_moon ? GBuffer::kMoonSky : GBuffer::kSky;
+  };
+  surface_->BindTexture(kSkyOnSurfaceUnit, sky_of(lights.front()));
+  surface_->BindTexture(kOtherSkyOnSurfaceUnit, sky_of(lights.back()));
+  night_sky_map_.Bind(kNightUnit);
+  if (scene_.fog() == nullptr) return;
+  scene_.fog(lights.front().source())
+      ->Bind(view.eye, lights.front().disk, *scene_.fog(lights.back().source()),
+             lights.back().disk);
+}
+
+PictureStage SkyPainter::StageOf(const PaintedView& view) {
+  const LightsOfSky& lights = SkyOf(view).lights;
+  PictureStage stage{PictureStage::Pass::kLand};
+  stage.has_shade = HasShade(view, lights.front());
+  stage.has_lamps = HasLamps();
+  stage.two_lights = lights.size() > 1;
+  stage.has_night = HasNightSkyMap() && night_sky_map_.HasAny();
+  stage.sky_by_pixel = HasSkyByPixel(scene_, lights);
+  return stage;
 }
 
 void SkyPainter::PaintPicture(const PaintedView& view, double share) {
@@ -335,32 +390,13 @@ void SkyPainter::PaintPicture(const PaintedView& view, double share) {
   picture_->Bind();
   picture_->UseDepthOf(*surface_);
   lamp_painter_.Bind();
-  const SkyLight& key = LightsOf(view).lights.front();
   const BesideLand beside;
   std::optional<Adding> adding;
   if (share < 1.0) adding.emplace(share);
-  const Lit lit{key.source(), HasShade(view, key), HasLamps()};
-  if (share == 1.0 && programs_.HasPainted()) MakeOneReady(view, lit.has_shade, lit.has_lamps);
-  PaintLandAndSky(view, lit);
-}
-
-// Adds the lights that cast no shadows. The inverse depth of land in the fourth component is not
-// written again.
-void SkyPainter::PaintOtherLights(const PaintedView& view, const PixelRay& ray) {
-  const LightsOfSky& lights = LightsOf(view).lights;
-  if (lights.size() == 1) return;
-  Begin("other light");
-  for (std::size_t i = 1; i < lights.size(); ++i) {
-    BindLight(view, lights[i], ray);
-    BindMaps(view, lights[i]);
-    const BesideLand beside;
-    const Adding adding(1.0 / ray.of);
-    glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_FALSE);
-    PaintLandAndSky(view, {lights[i].source(), false, false});
-    glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
-  }
-  BindLight(view, lights.front(), ray);
-  BindMaps(view, lights.front());
+  const PictureStage stage = StageOf(view);
+  if (share == 1.0 && programs_.HasPainted()) MakeOneReady(view, stage);
+  if (!scene_.AwaitsLand()) programs_.Paint(stage);
+  PaintSky(view, stage);
 }
 
 void SkyPainter::PaintLampsOver(const PaintedView& view) {
@@ -375,49 +411,26 @@ bool SkyPainter::HasNightSkyMap() const {
   return stars_.sky_lux() > 0.0 && stars_.sky_lux() < (has_towns_ ? kMostOverTowns_lux : kMost_lux);
 }
 
-void SkyPainter::PaintNightSkyMap(const PaintedView& view, double share) {
-  Begin("night sky");
-  const BesideLand any_depth;
-  const Adding adding(share);
-  const PictureStage stage{PictureStage::Pass::kNight};
-  std::optional<Scissor> above;
-  if (scene_.AwaitsLand()) {
-    const int rows = RowsUnderHorizon(view);
-    above.emplace(PixelBox{0, rows, view.width, view.height - rows});
-  }
-  night_sky_map_.Bind(programs_.Of(stage), kNightUnit);
-  programs_.Paint(stage);
-}
-
-void SkyPainter::PaintStars(const PaintedView& view, const MoonDisk& moon) {
+void SkyPainter::PaintStars(const PaintedView& view) {
   if (!stars_.HasAny()) return;
   Begin("stars");
-  stars_.Paint(view, moon, StarPainter::Land::kBySurface, scene_.fog(), scene_.fixed().fog_phase);
+  stars_.Paint(view, SkyOf(view), StarPainter::Land::kBySurface, scene_.fog(),
+               scene_.fixed().fog_phase);
 }
 
 void SkyPainter::PaintSample(const PaintedView& view, Bodies bodies, const PixelRay& ray) {
-  BindLight(view, LightsOf(view).lights.front(), ray);
+  BindLights(view, ray);
   PaintLand(view);
-  BindMaps(view, LightsOf(view).lights.front());
+  BindMaps(view);
   PaintShafts(view);
   PaintLamps(view);
   PaintPicture(view, 1.0 / ray.of);
-  PaintOtherLights(view, ray);
-  if (HasNightSkyMap() && night_sky_map_.HasAny()) PaintNightSkyMap(view, 1.0 / ray.of);
   if (bodies == Bodies::kAll) PaintDisks(view, ray);
-}
-
-SkyPainter::SkyDisks SkyPainter::DisksOf(const PaintedView& view) {
-  const SunPosition& sun = LightsOf(view).sun;
-  const SkyBodies bodies = SkyBodiesAt(view.eye.place, view.now);
-  SkyDisks disks{sun, bodies.ApparentMoonDisk(GentleAirOf(scene_.air().air()->medium))};
-  if (bodies.Eclipse().IsCovered()) disks.moon.to_moon = ToMoonBefore(sun, bodies);
-  return disks;
 }
 
 void SkyPainter::Paint(const PaintedView& view, int samples, Bodies bodies,
                        const std::function<void(int)>& after_sample) {
-  const SkyDisks disks = DisksOf(view);
+  bend_ = BendIn(view);
   Fit(picture_, view.width, view.height);
   blocks_.UploadAir(scene_, view.eye);
   blocks_.UploadGround(scene_, view);
@@ -430,7 +443,7 @@ void SkyPainter::Paint(const PaintedView& view, int samples, Bodies bodies,
     if (after_sample) after_sample(sample + 1);
   }
   PaintLampsOver(view);
-  if (bodies != Bodies::kNone) PaintStars(view, disks.moon);
+  if (bodies != Bodies::kNone) PaintStars(view);
   if (timer_ != nullptr) timer_->End();
   CheckGl("SkyPainter::Paint");
 }

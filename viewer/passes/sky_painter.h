@@ -3,8 +3,8 @@
 // tables, maps and vertex lighting, and the GPU interpolates them.
 //
 // The passes of a frame: the visible land (Landscape), the light that shadows remove along rays
-// (ShaftPass), the glow of lamps (LampPainter), the linear picture, by night the light of the night
-// sky (NightSkyMapFollower), then the lamps and stars (StarPainter). ToneMapPass displays the
+// (ShaftPass), the glow of lamps (LampPainter), the linear picture in the light of sun, moon and
+// night sky (PicturePrograms), then the lamps and stars (StarPainter). ToneMapPass displays the
 // result. Its difference from SceneRenderer is reported in tests/bench/README.md, and for one view
 // by `skyview --explain`.
 #pragma once
@@ -15,6 +15,7 @@
 #include <optional>
 
 #include "atmosphere/astronomy/moon.h"
+#include "atmosphere/astronomy/sun.h"
 #include "lut/image/image.h"
 #include "renderer/scene/scene.h"
 #include "viewer/gl/gl_context.h"
@@ -88,57 +89,49 @@ class SkyPainter {
   [[nodiscard]] const Landscape& land() const { return scene_.land(); }
   [[nodiscard]] Landscape& land() { return scene_.land(); }
   [[nodiscard]] const PaintedScene& scene() const { return scene_; }
+  /// Returns the sky of an eye in the current medium. All calls of a frame return the same object.
+  [[nodiscard]] const std::shared_ptr<const FrameSky>& SkyAt(const GeodeticPosition& eye,
+                                                             const UtcInstant& now) {
+    return sky_.At(eye, now, scene_.air().air());
+  }
 
  private:
-  struct SkyDisks {
+  /// True positions of disks that refraction changes, with that refraction. Null: a disk is drawn
+  /// at its apparent position.
+  struct DisksInAir {
     SunPosition sun;
     MoonDisk moon;
+    const RefractedDisk *refracted_sun, *refracted_moon;
   };
-  /// Disks at their true positions, with the refraction across them. Null: a disk is drawn at its
-  /// apparent position.
-  struct DisksInAir {
-    SkyDisks disks;
-    const RefractedDisk *sun, *moon;
-  };
-  /// The sun and the lights of the sky in a view.
-  struct Shining {
-    PaintedView view;
-    SunPosition sun;
-    std::shared_ptr<const SolvedAir> air;
-    LightsOfSky lights;
-  };
-  [[nodiscard]] const Shining& LightsOf(const PaintedView& view);
-  [[nodiscard]] SkyDisks DisksOf(const PaintedView& view);
+  [[nodiscard]] const FrameSky& SkyOf(const PaintedView& view) {
+    return *SkyAt(view.eye.place, view.now);
+  }
   [[nodiscard]] std::vector<PixelBox> DisksSeen(const PaintedView& view);
   void PrepareLamps(const PaintedView& view);
-  [[nodiscard]] DisksInAir InAir(const SkyDisks& disks, const PaintedView& view);
+  [[nodiscard]] DisksInAir InAir(const FrameSky& sky, const PaintedView& view);
   void DescribeDisks(const DisksInAir& seen);
   [[nodiscard]] int RowsUnderHorizon(const PaintedView& view) const;
   void PaintSample(const PaintedView& view, Bodies bodies, const PixelRay& ray);
+  [[nodiscard]] std::optional<LandBend> BendIn(const PaintedView& view) const;
+  [[nodiscard]] LandLook LookOfLand(const PaintedView& view);
   void PaintLand(const PaintedView& view);
   /// Returns whether terrain shadows the air from the key light, and that effect is drawn.
   [[nodiscard]] bool HasShade(const PaintedView& view, const SkyLight& key) const;
   void PaintShafts(const PaintedView& view);
   void PaintLamps(const PaintedView& view);
-  /// The light and the options that a picture is drawn with.
-  struct Lit {
-    LightSource source;
-    bool has_shade, has_lamps;
-  };
-  void BindLight(const PaintedView& view, const SkyLight& light, const PixelRay& ray);
-  void BindMaps(const PaintedView& view, const SkyLight& light);
+  [[nodiscard]] LightsOfView LightsOf(const PaintedView& view);
+  void BindLights(const PaintedView& view, const PixelRay& ray);
+  void BindMaps(const PaintedView& view);
+  [[nodiscard]] PictureStage StageOf(const PaintedView& view);
   void PaintPicture(const PaintedView& view, double share);
-  void PaintOtherLights(const PaintedView& view, const PixelRay& ray);
-  void MakeOneReady(const PaintedView& view, bool has_shade, bool has_lamps);
-  void PaintSky(const PaintedView& view, const Lit& lit);
+  void MakeOneReady(const PaintedView& view, const PictureStage& stage);
+  void PaintSky(const PaintedView& view, const PictureStage& stage);
   [[nodiscard]] bool HasLamps() const { return !scene_.AwaitsLand() && !lamp_painter_.IsDark(); }
   [[nodiscard]] int RowsOfGround(const PaintedView& view) const;
-  void PaintLandAndSky(const PaintedView& view, const Lit& lit);
   void PaintDisks(const PaintedView& view, const PixelRay& ray);
   void PaintLampsOver(const PaintedView& view);
   [[nodiscard]] bool HasNightSkyMap() const;
-  void PaintNightSkyMap(const PaintedView& view, double share);
-  void PaintStars(const PaintedView& view, const MoonDisk& moon);
+  void PaintStars(const PaintedView& view);
   void Begin(const char* pass) const {
     if (timer_ != nullptr) timer_->Begin(pass);
   }
@@ -155,7 +148,8 @@ class SkyPainter {
   RefractedDiskFollower refracted_sun_, refracted_moon_;
   std::optional<GBuffer> surface_;
   std::optional<RenderTarget> picture_;
-  std::optional<Shining> shining_;  // for the most recent view
+  FrameSkyFollower sky_;
+  std::optional<LandBend> bend_;  // refraction of the view that Paint draws
   PassTimer* timer_ = nullptr;
 };
 

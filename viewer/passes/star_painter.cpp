@@ -120,27 +120,22 @@ StarPainter::StarPainter()
     : maker_(
           [](const Request& request) {
             constexpr double kAll = std::numeric_limits<double>::infinity();
-            const RefractedView bent(request.medium, request.place.height_m);
+            const RefractedView bent(request.air->medium, request.place.height_m);
             return Made{request, bent,
                         StarLightsOver(request.place, request.now, bent, *request.colour, kAll)};
           },
           Suits) {}
 
-bool StarPainter::IsNight(const PaintedView& view, const LightsOfSky& lights,
-                          const SolvedAir& air) {
-  constexpr double kSureDay_rad = 12.0 * kRadiansPerDegree;
+bool StarPainter::IsNight(const FrameSky& sky, const std::shared_ptr<const SolvedAir>& air) {
   constexpr double kNightSky_lux = 1e-3;
   sky_lux_ = 0.0;
-  if (!air.medium.follows_wgs84) return false;  // stars are known for the Earth only
-  const SkyLight* sun = OfSource(lights, LightSource::kSun);
-  if (sun != nullptr && sun->disk.elevation_rad > kSureDay_rad) return false;
-  if (!colour_ || colour_->wavelengths_nm() != air.medium.wavelengths_nm)
-    colour_ = std::make_shared<const BandColour>(air.medium.wavelengths_nm);
-  const double altitude_m = std::max(view.eye.place.height_m, 0.0);
-  double lux = kNightSky_lux;
-  for (const SkyLight& light : lights) lux += LevelIlluminance(light, air, altitude_m, *colour_);
-  if (lux <= kDaylight_lux) sky_lux_ = lux;
-  return sky_lux_ > 0.0;
+  if (!air->medium.follows_wgs84) return false;  // stars are known for the Earth only
+  const double lux = kNightSky_lux + sky.level_lux;
+  if (lux > kDaylight_lux) return false;
+  sky_lux_ = lux;
+  if (!colour_ || colour_->wavelengths_nm() != air->medium.wavelengths_nm)
+    colour_ = std::make_shared<const BandColour>(air->medium.wavelengths_nm);
+  return true;
 }
 
 bool StarPainter::Suits(const Request& requested, const Request& wanted) {
@@ -151,17 +146,18 @@ bool StarPainter::Suits(const Request& requested, const Request& wanted) {
          std::abs(requested.place.height_m - wanted.place.height_m) < kMostRise_m;
 }
 
-void StarPainter::Follow(const PaintedView& view, const LightsOfSky& lights, const SolvedAir& air) {
-  if (!IsNight(view, lights, air)) return;
+void StarPainter::Follow(const PaintedView& view, const FrameSky& sky,
+                         const std::shared_ptr<const SolvedAir>& air) {
+  if (!IsNight(sky, air)) return;
   maker_.Update();
-  maker_.RequestWhenIdle({view.eye.place, view.now, colour_, air.medium});
+  maker_.RequestWhenIdle({view.eye.place, view.now, colour_, air});
 }
 
-void StarPainter::WaitUntilReady(const PaintedView& view, const LightsOfSky& lights,
-                                 const SolvedAir& air) {
-  if (!IsNight(view, lights, air)) return;
+void StarPainter::WaitUntilReady(const PaintedView& view, const FrameSky& sky,
+                                 const std::shared_ptr<const SolvedAir>& air) {
+  if (!IsNight(sky, air)) return;
   maker_.Forget();
-  maker_.WaitUntilReady({view.eye.place, view.now, colour_, air.medium});
+  maker_.WaitUntilReady({view.eye.place, view.now, colour_, air});
   maker_.Update();
 }
 
@@ -211,28 +207,29 @@ void StarPainter::MakeReady(const PaintedView& view, const SceneFog* fog,
   Draw({StarPoint{}}, view, Land::kBySurface);
 }
 
-std::vector<StarPoint> StarPainter::PointsIn(const PaintedView& view, const MoonDisk& moon) const {
+std::vector<StarPoint> StarPainter::PointsIn(const PaintedView& view, const FrameSky& sky) const {
   if (!HasAny()) return {};
   const double faintest_lux = IlluminanceOf(FaintestStar(sky_lux_, PixelAngle(view)));
   const Made& made = maker_.value().value();
   const glm::dmat3 turn =
       TurnOfSky(view.eye.place.latitude_rad, SecondsBetween(made.request.now, view.now));
+  const MoonDisk moon = sky.moon.value_or(MoonDisk{});
   return StarPointsIn(view,
                       {made.lights, turn, faintest_lux, moon.to_moon, moon.radius_rad, &made.bent});
 }
 
-std::vector<PixelBox> StarPainter::Seen(const PaintedView& view, const MoonDisk& moon) const {
+std::vector<PixelBox> StarPainter::Seen(const PaintedView& view, const FrameSky& sky) const {
   constexpr int kSide = 2 * kStarReach + 1;
   std::vector<PixelBox> boxes;
-  for (const StarPoint& point : PointsIn(view, moon))
+  for (const StarPoint& point : PointsIn(view, sky))
     boxes.push_back(
         {static_cast<int>(point.corner.x), static_cast<int>(point.corner.y), kSide, kSide});
   return boxes;
 }
 
-void StarPainter::Paint(const PaintedView& view, const MoonDisk& moon, Land land,
+void StarPainter::Paint(const PaintedView& view, const FrameSky& sky, Land land,
                         const SceneFog* fog, std::optional<PhaseKind> fog_phase) {
-  const std::vector<StarPoint> points = PointsIn(view, moon);
+  const std::vector<StarPoint> points = PointsIn(view, sky);
   if (points.empty()) return;
   Connect(fog, fog_phase);
   Draw(points, view, land);

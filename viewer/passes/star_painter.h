@@ -67,9 +67,11 @@ class StarPainter {
 
   /// Takes over a finished list and requests a new one if needed. Call it once per frame. Never
   /// waits.
-  void Follow(const PaintedView& view, const LightsOfSky& lights, const SolvedAir& air);
+  void Follow(const PaintedView& view, const FrameSky& sky,
+              const std::shared_ptr<const SolvedAir>& air);
   /// Waits for the list of exactly this instant.
-  void WaitUntilReady(const PaintedView& view, const LightsOfSky& lights, const SolvedAir& air);
+  void WaitUntilReady(const PaintedView& view, const FrameSky& sky,
+                      const std::shared_ptr<const SolvedAir>& air);
 
   /// Illuminance of a level surface by the sky in which the stars are seen; 0 by day.
   [[nodiscard]] double sky_lux() const { return sky_lux_; }
@@ -79,13 +81,13 @@ class StarPainter {
   /// which takes tenths of a second.
   void MakeReady(const PaintedView& view, const SceneFog* fog, std::optional<PhaseKind> fog_phase);
   /// Returns the pixels that stars cover in a picture of a view.
-  [[nodiscard]] std::vector<PixelBox> Seen(const PaintedView& view, const MoonDisk& moon) const;
+  [[nodiscard]] std::vector<PixelBox> Seen(const PaintedView& view, const FrameSky& sky) const;
   /// Source of occlusion by land: the surface map, which has the size of the target, at the pixel
   /// of the star's centre; or the depth of the target for each pixel, if the depth test is enabled.
   enum class Land { kBySurface, kByDepth };
   /// Adds the stars to the bound target. Surface map, air and blocks must be bound.
   /// @param fog  null: none.
-  void Paint(const PaintedView& view, const MoonDisk& moon, Land land, const SceneFog* fog,
+  void Paint(const PaintedView& view, const FrameSky& sky, Land land, const SceneFog* fog,
              std::optional<PhaseKind> fog_phase);
 
  private:
@@ -93,7 +95,7 @@ class StarPainter {
     GeodeticPosition place;
     UtcInstant now;
     std::shared_ptr<const BandColour> colour;
-    Medium medium;  // refracts their light
+    std::shared_ptr<const SolvedAir> air;  // refracts their light
   };
   struct Made {
     Request request;
@@ -101,12 +103,10 @@ class StarPainter {
     std::vector<StarLight> lights;
   };
 
-  [[nodiscard]] bool IsNight(const PaintedView& view, const LightsOfSky& lights,
-                             const SolvedAir& air);
+  [[nodiscard]] bool IsNight(const FrameSky& sky, const std::shared_ptr<const SolvedAir>& air);
   [[nodiscard]] static bool Suits(const Request& requested, const Request& wanted);
   void Connect(const SceneFog* fog, std::optional<PhaseKind> fog_phase);
-  [[nodiscard]] std::vector<StarPoint> PointsIn(const PaintedView& view,
-                                                const MoonDisk& moon) const;
+  [[nodiscard]] std::vector<StarPoint> PointsIn(const PaintedView& view, const FrameSky& sky) const;
   void Draw(const std::vector<StarPoint>& points, const PaintedView& view, Land land) const;
 
   GlBuffer buffer_;

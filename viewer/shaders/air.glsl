@@ -65,25 +65,29 @@ vec3 LinearSrgb(vec4 radiance) {
 // in the eye's frame (east, north, up); distances are in kilometres from the eye.
 
 // AirTablesBlock of air_follower.h.
-layout(std140) uniform AirTables {
-  vec4 air_sun;       // unit vector to the sun that lights the air
-  vec4 air_sun_seen;  // unit vector to the apparent sun, the centre of aureoles
-  vec4 air_frame;     // horizontal unit vector to its azimuth; sine and cosine of the dip
-  vec4 air_shell;     // altitude of the tables, ceiling of land, top of the air, radius [km]
-  vec4 air_ranges;    // tangents of half the ranges of rows: sky, aerial perspective above the
-                      // horizon, below it; fourth: 1 if the eye is above the air
-  vec4 air_crowding;  // of distances, above and below the horizon; twilight fall and reference
-  vec4 air_columns;   // first texel and number of columns: sky; aerial perspective
-  vec4 air_sky_rows;  // first texel and number of rows: above the horizon; below it
-  vec4 air_through_rows;
-  vec4 air_way_rows;
-  vec4 air_extinction_rows;
-  vec4 air_distances;    // nodes of distance: scattering; extinction
-  vec4 air_phase_nodes;  // nodes of the aerosol's phase function
-  vec4 air_sky_mix[3];   // factors of PhaseRayleigh, of the aerosol's phase and of 1
-  vec4 air_single_mix[2];
-  vec4 air_extinction_below;  // per km at altitude 0 and below
+struct AirTablesOf {
+  vec4 towards;   // unit vector to the sun that lights the air
+  vec4 sun_seen;  // unit vector to the apparent sun, the centre of aureoles
+  vec4 frame;     // horizontal unit vector to its azimuth; sine and cosine of the dip
+  vec4 shell;     // altitude of the tables, ceiling of land, top of the air, radius [km]
+  vec4 ranges;    // tangents of half the ranges of rows: sky, aerial perspective above the
+                  // horizon, below it; fourth: 1 if the eye is above the air
+  vec4 crowding;  // of distances, above and below the horizon; twilight fall and reference
+  vec4 columns;   // first texel and number of columns: sky; aerial perspective
+  vec4 sky_rows;  // first texel and number of rows: above the horizon; below it
+  vec4 through_rows;
+  vec4 way_rows;
+  vec4 extinction_rows;
+  vec4 distances;    // nodes of distance: scattering; extinction
+  vec4 phase_nodes;  // nodes of the aerosol's phase function
+  vec4 sky_of_molecules;  // factors of PhaseRayleigh, of the aerosol's phase and of 1
+  vec4 sky_of_aerosol;
+  vec4 sky_of_all;
+  vec4 single_of_molecules;
+  vec4 single_of_aerosol;
+  vec4 extinction_below;  // per km at altitude 0 and below
 };
+layout(std140) uniform AirTables { AirTablesOf air_tables; };
 
 uniform sampler2D air_sky;
 uniform sampler1D air_through;
@@ -93,6 +97,16 @@ uniform sampler3D air_diffuse;
 uniform sampler2D air_phase;  // phase function of the aerosol with its light of all orders
 uniform sampler2D air_to_sun;  // row 0: straight rays; row 1: refracted beam for ground and fog
 
+// The tables of the second light. Transmittance is taken from those of the first.
+#ifdef TWO_LIGHTS
+layout(std140) uniform OtherAirTables { AirTablesOf other_air_tables; };
+uniform sampler2D other_air_sky;
+uniform sampler3D other_air_single;
+uniform sampler3D other_air_diffuse;
+uniform sampler2D other_air_phase;
+#endif
+#define AIR OF_LIGHT(air_tables, other_air_tables)
+
 struct AirTo {
   vec4 single;   // sunlight scattered once or, by aerosol, forward, without terrain shadows
   vec4 diffuse;  // other multiple scattering
@@ -101,73 +115,76 @@ struct AirTo {
 
 // Returns sin^2 of half the angle to the apparent sun.
 float HalfSineSquared(vec3 direction) {
-  vec3 between = direction - air_sun_seen.xyz;
+  vec3 between = direction - AIR.sun_seen.xyz;
   return min(0.25 * dot(between, between), 1.0);
 }
 
 // Returns the phase function of the aerosol including the light that aerosol scatters more than once
 // around the sun.
 vec4 AerosolPhase(float half_sine_squared) {
-  float node = air_phase_nodes.x + air_phase_nodes.y * PhaseNode(half_sine_squared);
-  return textureLod(air_phase, vec2(node, 0.5), 0.0);
+  float node = AIR.phase_nodes.x + AIR.phase_nodes.y * PhaseNode(half_sine_squared);
+  return TEXEL_OF_LIGHT(air_phase, other_air_phase, vec2(node, 0.5));
 }
 
 // Returns the tangent of half the elevation above the horizon.
 float HalfTangent(vec3 direction) {
   float flat_length = length(direction.xy);
-  float up = direction.z * air_frame.w + flat_length * air_frame.z;
-  return up / (1.0 + flat_length * air_frame.w - direction.z * air_frame.z);
+  float up = direction.z * air_tables.frame.w + flat_length * air_tables.frame.z;
+  return up / (1.0 + flat_length * air_tables.frame.w - direction.z * air_tables.frame.z);
 }
 
 float ColumnOf(vec3 direction) {
-  float along = dot(direction.xy, air_frame.xy);
+  float along = dot(direction.xy, AIR.frame.xy);
   return AirColumn(0.5 - 0.5 * along / max(length(direction.xy), 1e-12));
 }
 
 // Returns the texture coordinate of a row.
+// @param sky_range, ground_range  ranges of the table above and below the horizon.
 // @param rows  first texel and number of rows above and below the horizon, as in the block.
-float RowOf(float half_tangent, float sky_range, vec4 rows) {
+float RowOf(float half_tangent, float sky_range, float ground_range, vec4 rows) {
   bool ground = half_tangent < 0.0;
-  float v = AirRow(abs(half_tangent), ground ? air_ranges.z : sky_range);
+  float v = AirRow(abs(half_tangent), ground ? ground_range : sky_range);
   return ground ? rows.z + rows.w * v : rows.x + rows.y * v;
 }
 
 // Returns the factor by which texels were divided, at distance d along a ray.
 float TwilightAt(vec3 direction, float d) {
-  return AirTwilight(air_shell.x, air_sun.z, dot(direction, air_sun.xyz), d, air_crowding.z,
-                     air_crowding.w, air_shell.w);
+  return AirTwilight(AIR.shell.x, AIR.towards.z, dot(direction, AIR.towards.xyz), d, AIR.crowding.z,
+                     AIR.crowding.w, AIR.shell.w);
 }
 
 // Returns whether a direction passes above all air.
-bool AboveAir(float half_tangent) { return air_ranges.w > 0.5 && half_tangent > air_ranges.x; }
+bool AboveAir(float half_tangent) {
+  return air_tables.ranges.w > 0.5 && half_tangent > air_tables.ranges.x;
+}
 
 // Returns the radiance of the whole ray: to space, or to the bare planet with its lit ground.
 vec4 SkyRadiance(vec3 direction) {
   float rise = HalfTangent(direction);
-  vec2 at = vec2(air_columns.x + air_columns.y * ColumnOf(direction),
-                 RowOf(rise, air_ranges.x, air_sky_rows));
+  vec2 at = vec2(AIR.columns.x + AIR.columns.y * ColumnOf(direction),
+                 RowOf(rise, AIR.ranges.x, AIR.ranges.z, AIR.sky_rows));
   float h2 = HalfSineSquared(direction);
-  vec4 phases = PhaseRayleigh(1.0 - 2.0 * h2) * air_sky_mix[0] +
-                AerosolPhase(h2) * air_sky_mix[1] + air_sky_mix[2];
-  float foot = AirFoot(air_shell.x, direction.z, rise < 0.0 ? 1.0 : 0.0, air_shell.w);
+  vec4 phases = PhaseRayleigh(1.0 - 2.0 * h2) * AIR.sky_of_molecules +
+                AerosolPhase(h2) * AIR.sky_of_aerosol + AIR.sky_of_all;
+  float foot = AirFoot(AIR.shell.x, direction.z, rise < 0.0 ? 1.0 : 0.0, AIR.shell.w);
   phases *= TwilightAt(direction, foot);
-  return AboveAir(rise) ? vec4(0.0) : phases * textureLod(air_sky, at, 0.0);
+  return AboveAir(rise) ? vec4(0.0) : phases * TEXEL_OF_LIGHT(air_sky, other_air_sky, at);
 }
 
 // Returns the transmittance of the whole view ray, to space or to the bare ground.
 vec4 TransmittanceToSpace(vec3 direction) {
   float rise = HalfTangent(direction);
-  float at = RowOf(rise, air_ranges.x, air_through_rows);
+  float at = RowOf(rise, air_tables.ranges.x, air_tables.ranges.z, air_tables.through_rows);
   return AboveAir(rise) ? vec4(1.0) : textureLod(air_through, at, 0.0);
 }
 
 // Returns the transmittance to the sun.
 // @param beam  0: straight rays; 1: refracted beam.
 vec4 ToSun(float altitude_km, float mu_s, float beam) {
-  float h = clamp(altitude_km, 0.0, air_shell.z);
+  float h = clamp(altitude_km, 0.0, air_tables.shell.z);
   float x =
-      UnitFromSkyCosine(h, max(mu_s, HorizonCosine(h, air_shell.w)), air_shell.z, air_shell.w);
-  float y = UnitFromAltitude(h, air_shell.z, air_shell.w);
+      UnitFromSkyCosine(h, max(mu_s, HorizonCosine(h, air_tables.shell.w)), air_tables.shell.z, air_tables.shell.w);
+  float y = UnitFromAltitude(h, air_tables.shell.z, air_tables.shell.w);
   vec2 size = vec2(textureSize(air_to_sun, 0)) * vec2(1.0, 0.5);
   vec2 at = vec2(TexelFromUnit(x, size.x), 0.5 * (TexelFromUnit(y, size.y) + beam));
   return textureLod(air_to_sun, at, 0.0);
@@ -181,6 +198,46 @@ vec4 TransmittanceToSun(float altitude_km, float mu_s) { return ToSun(altitude_k
 // atmosphere/refraction/refracted_view.h.
 vec4 BeamOfSun(float altitude_km, float mu_s) { return ToSun(altitude_km, mu_s, 1.0); }
 
+// Distances along a ray in tables of aerial perspective, and a point on it.
+struct AirStretch {
+  float entry, near, reach;  // of the air, of the first node, and from it to the last [km]
+  float beyond;              // of the point, from the first node [km]
+  float below;               // of the point, from the last [km], in air below altitude 0
+  float rise;                // HalfTangent of the ray that the tables have
+  vec2 nodes;                // texture coordinates of the point's distance: AirTablesOf.distances
+};
+
+// Below altitude 0 air has the density of altitude 0. A ray that goes on below it is lit as at its
+// crossing; one from an eye at or below altitude 0 as the horizontal ray, which the tables have.
+AirStretch StretchTo(AirTablesOf tables, vec3 direction, float distance_km) {
+  float h = tables.shell.x, radius = tables.shell.w;
+  float mu = h > 0.0 ? direction.z : max(direction.z, 0.0);
+  AirStretch stretch;
+  stretch.rise = h > 0.0 ? HalfTangent(direction) : max(HalfTangent(direction), 0.0);
+  bool ground = stretch.rise < 0.0;
+  stretch.entry = AirEntry(h, mu, tables.shell.z, radius);
+  stretch.near = AirEntry(h, mu, tables.shell.y, radius);
+  float end = ground ? AirEndDown(h, mu, radius) : AirEndUp(h, mu, tables.shell.y, radius);
+  stretch.reach = max(end - stretch.near, 1e-3);
+  stretch.beyond = clamp(distance_km - stretch.near, 0.0, stretch.reach);
+  stretch.below = ground ? max(distance_km - stretch.near - stretch.reach, 0.0) : 0.0;
+  float w = AirNodeFromShare(stretch.beyond / stretch.reach,
+                             ground ? tables.crowding.y : tables.crowding.x);
+  stretch.nodes = tables.distances.xz + tables.distances.yw * w;
+  return stretch;
+}
+
+// Returns the transmittance of the air from the eye to a point.
+vec4 TransmittanceTo(vec3 direction, float distance_km) {
+  AirStretch stretch = StretchTo(air_tables, direction, distance_km);
+  float row =
+      RowOf(stretch.rise, air_tables.ranges.y, air_tables.ranges.z, air_tables.extinction_rows);
+  float length_km =
+      clamp(distance_km, stretch.entry, stretch.near + stretch.reach) - stretch.entry;
+  return exp(-length_km * textureLod(air_extinction, vec2(stretch.nodes.y, row), 0.0) -
+             stretch.below * air_tables.extinction_below);
+}
+
 // Position of a point in the aerial-perspective tables, and factors of the table values.
 struct AirWay {
   vec3 at;  // in the 3D tables
@@ -189,46 +246,30 @@ struct AirWay {
   float half_sine_squared;  // of the angle to the apparent sun
 };
 
-// Below altitude 0 air has the density of altitude 0. A ray that goes on below it is lit as at its
-// crossing; one from an eye at or below altitude 0 as the horizontal ray, which the tables have.
 AirWay WayTo(vec3 direction, float distance_km) {
-  float h = air_shell.x;
-  float radius = air_shell.w;
-  float rise = h > 0.0 ? HalfTangent(direction) : max(HalfTangent(direction), 0.0);
-  float mu = h > 0.0 ? direction.z : max(direction.z, 0.0);
-  bool ground = rise < 0.0;
-  float entry = AirEntry(h, mu, air_shell.z, radius);
-  float near = AirEntry(h, mu, air_shell.y, radius);
-  float end = ground ? AirEndDown(h, mu, radius) : AirEndUp(h, mu, air_shell.y, radius);
-  float reach = max(end - near, 1e-3);
-  float beyond = clamp(distance_km - near, 0.0, reach);
-  float w = AirNodeFromShare(beyond / reach, ground ? air_crowding.y : air_crowding.x);
-  vec2 distances = air_distances.xz + air_distances.yw * w;
-  float row = RowOf(rise, air_ranges.y, air_extinction_rows);
-  float length_km = clamp(distance_km, entry, near + reach) - entry;
-  vec4 tau = length_km * textureLod(air_extinction, vec2(distances.y, row), 0.0);
-  float below_km = ground ? max(distance_km - near - reach, 0.0) : 0.0;
-  tau += below_km * air_extinction_below;
+  AirStretch stretch = StretchTo(AIR, direction, distance_km);
   AirWay way;
-  way.at = vec3(air_columns.z + air_columns.w * ColumnOf(direction),
-                RowOf(rise, air_ranges.y, air_way_rows), distances.x);
+  way.at = vec3(AIR.columns.z + AIR.columns.w * ColumnOf(direction),
+                RowOf(stretch.rise, AIR.ranges.y, AIR.ranges.z, AIR.way_rows), stretch.nodes.x);
   way.half_sine_squared = HalfSineSquared(direction);
-  way.transmittance = exp(-tau);
-  way.scattered = (1.0 - way.transmittance) * TwilightAt(direction, near + 0.5 * beyond);
+  way.transmittance = TransmittanceTo(direction, distance_km);
+  way.scattered = (1.0 - way.transmittance) *
+                  TwilightAt(direction, stretch.near + 0.5 * stretch.beyond);
   return way;
 }
 
 vec4 SingleOf(AirWay way) {
   float h2 = way.half_sine_squared;
-  vec4 phases =
-      PhaseRayleigh(1.0 - 2.0 * h2) * air_single_mix[0] + AerosolPhase(h2) * air_single_mix[1];
-  return phases * way.scattered * textureLod(air_single, way.at, 0.0);
+  vec4 phases = PhaseRayleigh(1.0 - 2.0 * h2) * AIR.single_of_molecules +
+                AerosolPhase(h2) * AIR.single_of_aerosol;
+  return phases * way.scattered * TEXEL_OF_LIGHT(air_single, other_air_single, way.at);
 }
 
 // Returns the light and transmittance of the air from the eye to a point.
 AirTo AirToPoint(vec3 direction, float distance_km) {
   AirWay way = WayTo(direction, distance_km);
-  return AirTo(SingleOf(way), way.scattered * textureLod(air_diffuse, way.at, 0.0),
+  return AirTo(SingleOf(way),
+               way.scattered * TEXEL_OF_LIGHT(air_diffuse, other_air_diffuse, way.at),
                way.transmittance);
 }
 

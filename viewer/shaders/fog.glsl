@@ -17,10 +17,16 @@ layout(std140) uniform Fog {
   vec4 fog_sun;  // unit vector; g of the lobe that scatters the forward peak's light
   vec4 fog_phase;     // g, g of the second lobe, its weight, alpha
   vec4 fog_map_size;  // elevations, azimuths, depths
+  vec4 fog_other_sun;  // as fog_sun, of the second light
 };
 
 uniform sampler3D fog_light_map;
 uniform sampler2D fog_surface_map;
+#ifdef TWO_LIGHTS
+uniform sampler3D other_fog_light_map;
+uniform sampler2D other_fog_surface_map;
+#endif
+#define FOG_SUN OF_LIGHT(fog_sun, fog_other_sun)
 
 float FogDensityAt(float h) {
   return fog_layer.y > 0.0 ? FogDensity(h - fog_layer.z, fog_layer.y) : h < fog_layer.w ? 1.0 : 0.0;
@@ -72,9 +78,9 @@ struct FogAlong {
 vec3 FogPlace(vec3 direction, float taken) {
   float whole = 1.0 - exp(-FogDepthOfRay(direction));
   float share = clamp(taken / max(whole, 1e-9), 0.0, 1.0);
-  vec2 sun = fog_sun.xy;
-  float along = dot(direction.xy, sun);
-  float across = abs(direction.x * sun.y - direction.y * sun.x);
+  vec2 level = FOG_SUN.xy;
+  float along = dot(direction.xy, level);
+  float across = abs(direction.x * level.y - direction.y * level.x);
   float azimuth = along * along + across * across > 0.0 ? atan(across, along) * 0.318309886 : 0.0;
   float root = sqrt(abs(direction.z));
   float elevation = 0.5 + (direction.z < 0.0 ? -0.5 : 0.5) * root;
@@ -83,7 +89,7 @@ vec3 FogPlace(vec3 direction, float taken) {
 }
 
 vec4 FogQuantity(vec3 place, float number) {
-  return textureLod(fog_light_map, place + vec3(0.0, 0.0, 0.25 * number), 0.0);
+  return TEXEL_OF_LIGHT(fog_light_map, other_fog_light_map, place + vec3(0.0, 0.0, 0.25 * number));
 }
 
 // Returns the scattered light of the sun alone, above ground without shadows. Terrain shadows
@@ -91,18 +97,18 @@ vec4 FogQuantity(vec3 place, float number) {
 vec4 FogSunTo(vec3 direction, float distance_km) {
   float taken = 1.0 - FogTransmittance(direction, distance_km);
   vec3 place = FogPlace(direction, taken);
-  float cosine = dot(direction, fog_sun.xyz);
+  float cosine = dot(direction, FOG_SUN.xyz);
   return taken * (FOG_PHASE(cosine, fog_phase) * FogQuantity(place, 0.0) +
-                  PhaseHenyeyGreenstein(cosine, fog_sun.w) * FogQuantity(place, 1.0) +
+                  PhaseHenyeyGreenstein(cosine, FOG_SUN.w) * FogQuantity(place, 1.0) +
                   FogQuantity(place, 2.0));
 }
 
 FogAlong FogTo(vec3 direction, float distance_km) {
   float left = FogTransmittance(direction, distance_km);
   vec3 place = FogPlace(direction, 1.0 - left);
-  float cosine = dot(direction, fog_sun.xyz);
+  float cosine = dot(direction, FOG_SUN.xyz);
   vec4 source = FOG_PHASE(cosine, fog_phase) * FogQuantity(place, 0.0) +
-                PhaseHenyeyGreenstein(cosine, fog_sun.w) * FogQuantity(place, 1.0) +
+                PhaseHenyeyGreenstein(cosine, FOG_SUN.w) * FogQuantity(place, 1.0) +
                 FogQuantity(place, 2.0) + FogQuantity(place, 3.0);
   return FogAlong(vec4(left), (1.0 - left) * source);
 }
@@ -184,14 +190,16 @@ float FogSkyLeft(float h) { return exp(-fog_eye.w * FogDepthAbove(h) * 1.6666666
 vec4 FogOnSurface(float h, float cos_up) {
   float unit = sqrt(sqrt(FogDepthAbove(h) / max(fog_eye.z, 1e-9)));
   float x = TexelFromUnit(unit, float(textureSize(fog_surface_map, 0).x));
-  vec4 level = textureLod(fog_surface_map, vec2(x, 0.25), 0.0);
-  vec4 upright = textureLod(fog_surface_map, vec2(x, 0.75), 0.0);
+  vec4 level = TEXEL_OF_LIGHT(fog_surface_map, other_fog_surface_map, vec2(x, 0.25));
+  vec4 upright = TEXEL_OF_LIGHT(fog_surface_map, other_fog_surface_map, vec2(x, 0.75));
   return max(level + (1.0 - cos_up) * upright, vec4(0.0));
 }
 
 //// fog.none.glsl
 // Replaces fog.light.glsl in scenes without fog.
 #define FOG_STRETCHES 1
+
+const float kOutOfFog_km = 1e3;
 
 struct FogAlong {
   vec4 transmittance;

@@ -10,6 +10,17 @@ layout(std140) uniform GroundLight {
   vec4 open_sky[OPEN_SKY_COLUMNS * OPEN_SKY_ROWS];  // nodes of SkyIrradianceGradient, by band
 };
 
+// The same of the second light.
+#ifdef TWO_LIGHTS
+layout(std140) uniform OtherGroundLight {
+  vec4 other_sky_towards;
+  vec4 other_ground_view;
+  vec4 other_open_sky[OPEN_SKY_COLUMNS * OPEN_SKY_ROWS];
+};
+#endif
+
+vec4 OpenSky(int node) { return OF_LIGHT(open_sky[node], other_open_sky[node]); }
+
 // Returns the components of a normal upwards and to the north.
 vec2 TiltOf(vec3 normal, vec3 up) {
   vec3 north = pole.xyz - dot(pole.xyz, up) * up;
@@ -53,13 +64,13 @@ vec3 NormalInLight(vec3 offset, vec3 mesh_normal, float footprint) {
 
 // Returns the irradiance of the unoccluded sky on a surface, at half the height of the land.
 vec4 UnoccludedSkyOnSlope(vec3 normal, vec3 up) {
-  float u = UnoccludedSkyColumn(dot(normal, sky_towards.xyz));
+  float u = UnoccludedSkyColumn(dot(normal, OF_LIGHT(sky_towards, other_sky_towards).xyz));
   float v = UnoccludedSkyRow(dot(normal, up));
   int column = min(int(u), OPEN_SKY_COLUMNS - 2), row = min(int(v), OPEN_SKY_ROWS - 2);
   int low = row * OPEN_SKY_COLUMNS + column, high = low + OPEN_SKY_COLUMNS;
   float right = u - float(column);
-  return mix(mix(open_sky[low], open_sky[low + 1], right),
-             mix(open_sky[high], open_sky[high + 1], right), v - float(row));
+  return mix(mix(OpenSky(low), OpenSky(low + 1), right), mix(OpenSky(high), OpenSky(high + 1), right),
+             v - float(row));
 }
 
 // Ground at the end of a ray, on land or on the planet beyond it, with the quantities for all
@@ -160,8 +171,7 @@ vec4 PlanetRadiance(vec3 point_m, vec3 to_eye) {
 
 // Returns the planet's radiance minus that of uniform ground with the medium's albedo, which the
 // sky table contains.
-vec4 PlanetBeyondEven(vec3 point_m, vec3 to_eye) {
-  SeenGround seen = PlanetSeen(point_m, to_eye);
+vec4 PlanetBeyondEven(SeenGround seen, vec3 to_eye) {
   vec4 sky = SkyOnPlanet(seen);
   float mu_s = max(dot(seen.at.up, sun_for_air.xyz), 0.0);
   vec2 disk = DiskOver(seen.at, sun_for_air.xyz);

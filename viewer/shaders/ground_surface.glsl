@@ -33,6 +33,9 @@ layout(std140) uniform GroundSurface {
 };
 
 uniform sampler2DArray gloss_mirror;  // GlossMirror of sky_on_ground.h: waves, then land
+#ifdef TWO_LIGHTS
+uniform sampler2DArray other_gloss_mirror;  // of the second light
+#endif
 uniform sampler2D level_sky;          // LevelSky of sky_on_ground.h
 #if HAS_DRAPE
 uniform sampler2D drape;  // linear sRGB, or fractions of land cover; fourth: 1 inside the picture
@@ -81,7 +84,7 @@ struct Mirror {
 // @param among_land  false: ground beyond the terrain, which sees none.
 Mirror MirrorOf(GroundPlace at, vec3 direction, bool among_land, float first_layer) {
   Surroundings around = SurroundingsTowards(at.point, direction);
-  if (!among_land || slope_unit.x <= 0.0) around = kNoSurroundings;
+  if (!among_land || OF_LIGHT(slope_unit, other_slope_unit).x <= 0.0) around = kNoSurroundings;
   return Mirror(at, dot(direction, at.up), direction, around, first_layer);
 }
 
@@ -91,7 +94,8 @@ vec4 MirrorTexel(Mirror mirror, float sine, float column, float layer) {
   vec2 unit = vec2(column, sqrt(clamp(sine, 0.0, 1.0)));
   vec2 texel =
       vec2(TexelFromUnit(unit.x, GLOSS_MIRROR_SIDE), TexelFromUnit(unit.y, GLOSS_MIRROR_SIDE));
-  return textureLod(gloss_mirror, vec3(texel, mirror.first_layer + layer), 0.0);
+  return TEXEL_OF_LIGHT(gloss_mirror, other_gloss_mirror,
+                        vec3(texel, mirror.first_layer + layer));
 }
 
 // Returns the part of the mirrored weights that a horizon hides, from its place among the layers.

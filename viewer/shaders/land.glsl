@@ -25,19 +25,35 @@ layout(std140) uniform Land {
 
 //// land.vert.glsl
 // Vertices of land relative to the eye, morphed between their own level of detail and the next
-// coarser one (see viewer/land/level_ranges.h).
+// coarser one (see viewer/land/level_ranges.h). Defined before this text, because software drivers
+// evaluate both sides of every branch (LandProgramKind of land_pass.h):
+//   BENDS            refraction lifts land
+//   MOONLIT          moonlight is an output
+//   FADES            the old light has a weight; otherwise the new one has all of it
+//   MOMENTARY_EDGES  horizon_sines have a weight
 in vec3 position;  // [m]
 in vec3 coarse_position;
 in vec2 sample_place;
 in vec4 normal;  // of any length; fourth: the level
 in vec4 coarse_normal;
 // ChunkLight of land_chunk.h, of the vertex's own level and of the coarser level.
-in vec4 sky, coarse_sky, moon_sky, coarse_moon_sky;
-in vec2 disk_over_edge;
-in vec4 new_sky, new_coarse_sky, new_moon_sky, new_coarse_moon_sky;
+in vec4 new_sky, new_coarse_sky;
 in vec2 new_disk_over_edge;
+#if MOONLIT
+in vec4 new_moon_sky, new_coarse_moon_sky;
+#endif
+#if FADES
+in vec4 sky, coarse_sky;
+in vec2 disk_over_edge;
+#endif
+#if FADES && MOONLIT
+in vec4 moon_sky, coarse_moon_sky;
+#endif
 out vec3 facing;  // normal, in the eye's frame: east, north, up
-out vec4 sky_light, moon_sky_light;
+out vec4 sky_light;
+#if MOONLIT
+out vec4 moon_sky_light;
+#endif
 out float disk_height;
 out float sunk;  // [km]; positive: hidden by the planet
 
@@ -59,6 +75,7 @@ float Turned() {
   return clamp((d - range.x) * range.y, 0.0, 1.0);
 }
 
+#if MOMENTARY_EDGES
 // Sines of the horizon's elevation towards the current sun: HorizonTexture.
 uniform sampler2D horizon_sines;
 
@@ -70,6 +87,7 @@ float DiskOverHorizonHere(vec3 at, vec3 from_eye) {
   vec3 up_here = normalize(from_eye + vec3(0.0, 0.0, 1e3 * (PLANET_RADIUS + EYE_ALTITUDE)));
   return (asin(dot(up_here, sun.xyz)) - asin(textureLod(horizon_sines, place, 0.0).x)) / sun.w;
 }
+#endif
 
 // Returns how far the ray to a place beyond the horizon dips below all land, which is half a
 // kilometre under the sphere.
@@ -89,15 +107,27 @@ void main() {
   vec3 at = turned == 1.0 ? coarse_position : mix(position, coarse_position, turned);
   vec3 from_eye = InEyeFrame((at - eye_high.xyz) - eye_low.xyz);
   facing = InEyeFrame(mix(normal.xyz, coarse_normal.xyz, turned));
-  sky_light = mix(mix(sky, coarse_sky, turned), mix(new_sky, new_coarse_sky, turned), eye_above.y);
-  moon_sky_light = mix(mix(moon_sky, coarse_moon_sky, turned),
-                       mix(new_moon_sky, new_coarse_moon_sky, turned), eye_above.y);
-  disk_height = mix(mix(disk_over_edge.x, disk_over_edge.y, turned) + risen.x,
-                    mix(new_disk_over_edge.x, new_disk_over_edge.y, turned) + risen.y,
+  sky_light = mix(new_sky, new_coarse_sky, turned);
+  disk_height = mix(new_disk_over_edge.x, new_disk_over_edge.y, turned) + risen.y;
+#if MOONLIT
+  moon_sky_light = mix(new_moon_sky, new_coarse_moon_sky, turned);
+#endif
+#if FADES
+  sky_light = mix(mix(sky, coarse_sky, turned), sky_light, eye_above.y);
+  disk_height = mix(mix(disk_over_edge.x, disk_over_edge.y, turned) + risen.x, disk_height,
                     eye_above.y);
-  if (eye_above.w > 0.0)
-    disk_height = mix(disk_height, DiskOverHorizonHere(at, from_eye), eye_above.w);
+#endif
+#if FADES && MOONLIT
+  moon_sky_light = mix(mix(moon_sky, coarse_moon_sky, turned), moon_sky_light, eye_above.y);
+#endif
+#if MOMENTARY_EDGES
+  disk_height = mix(disk_height, DiskOverHorizonHere(at, from_eye), eye_above.w);
+#endif
+#if BENDS
   vec3 from_eye_seen = SeenAt(from_eye);
+#else
+  vec3 from_eye_seen = from_eye;
+#endif
   sunk = SunkBehindPlanet(from_eye_seen);
   float along_view = dot(from_eye_seen, view_forward.xyz);
   float width = dot(view_right.xyz, view_right.xyz);
@@ -123,14 +153,17 @@ float Distance() {
 }
 
 //// land.frag.glsl
-// Writes the visible land to a GBuffer.
+// Writes the visible land to a GBuffer. MOONLIT as in land.vert.glsl.
 in vec3 facing;
-in vec4 sky_light, moon_sky_light;
+in vec4 sky_light;
 in float disk_height;
 // Outputs of GBuffer of land_pass.h. The normal points to the visible side.
 layout(location = 0) out vec4 surface;
 layout(location = 1) out vec4 sky_irradiance;
+#if MOONLIT
+in vec4 moon_sky_light;
 layout(location = 2) out vec4 moon_sky_irradiance;
+#endif
 
 void main() {
   if (sunk > 0.0) discard;
@@ -138,7 +171,9 @@ void main() {
   vec3 n = gl_FrontFacing ? facing : -facing;
   surface = vec4(OctahedralFromVector(n), disk_height, d);
   sky_irradiance = sky_light;
+#if MOONLIT
   moon_sky_irradiance = moon_sky_light;
+#endif
   WriteDepth(d);
 }
 

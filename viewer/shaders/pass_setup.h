@@ -77,9 +77,12 @@ struct ViewBlock {
   glm::vec4 sun, sun_for_air, sun_irradiance;
   glm::vec4 bend, bend_slopes, bend_falls;
   glm::vec4 eye;
+  glm::vec4 other_sun, other_sun_for_air, other_sun_irradiance;
+  glm::vec4 night_scattered, night_level;
 };
-static_assert(sizeof(ViewBlock) == 10 * sizeof(glm::vec4));
+static_assert(sizeof(ViewBlock) == 15 * sizeof(glm::vec4));
 static_assert(offsetof(ViewBlock, eye) == 9 * sizeof(glm::vec4));
+static_assert(offsetof(ViewBlock, night_level) == 14 * sizeof(glm::vec4));
 
 /// Mirrors the uniform block `Ground` of ground.glsl.
 struct GroundBlock {

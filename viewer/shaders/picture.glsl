@@ -2,20 +2,26 @@
 // The linear picture of land, sky and disks.
 
 //// picture.frag.glsl
-// The linear picture [cd/m^2, linear sRGB] lit by the sun or the moon, whichever the block View
-// holds as its sun, and the inverse depth of land (gbuffer.inverse_depth.glsl). The passes are separated by
-// the depth test against land, because software drivers evaluate both sides of a branch. Defined
-// before this text:
+// The linear picture [cd/m^2, linear sRGB] lit by the lights of the sky, and the inverse depth of
+// land (gbuffer.inverse_depth.glsl). The passes are separated by the depth test against land, because
+// software drivers evaluate both sides of a branch. Defined before this text:
 //   PASS          LAND_PASS: land and the air in front of it; SKY_PASS: sky and bare planet;
-//                 OPEN_SKY_PASS: sky above the planet; DISK_PASS: disks of sun and moon;
-//                 NIGHT_PASS: light of the night sky on land, air and sky
+//                 OPEN_SKY_PASS: sky above the planet; DISK_PASS: disks of sun and moon
+//   TWO_LIGHTS    defined if there is a second light, which casts no shadows (frame_light.h)
+//   HAS_NIGHT     light of the night sky on land, air and sky
 //   HAS_SHADE, HAS_LAMPS, HAS_FOG
 //   SKY_BY_PIXEL  irradiance by the sky on land is computed here (sky_by_pixel.glsl), not by vertex
 in vec2 screen;
 out vec4 picture;
 
 uniform sampler2D surface_map;     // output of land.frag.glsl
-uniform sampler2D sky_on_surface;  // output of land.frag.glsl for the current light
+uniform sampler2D sky_on_surface;  // output of land.frag.glsl for the first light
+#ifdef TWO_LIGHTS
+uniform sampler2D other_sky_on_surface;
+#endif
+
+// Returns whether the current light casts shadows.
+bool CastsShadows() { return OF_LIGHT(true, false); }
 
 // Returns the light of the air before a distance, attenuated by fog. `all` is that of the whole
 // path without fog.
@@ -53,6 +59,7 @@ vec4 ThroughFog(vec3 direction, float distance_km, vec4 air, vec4 behind) {
 vec4 ShadeOnTheWay(vec3 direction, float distance_km, float shaded_km, vec4 single) {
   vec4 taken = vec4(0.0);
 #if HAS_SHADE
+  if (!CastsShadows()) return taken;
   taken = TakenByShade(shaded_km, single);
 #if HAS_FOG
   taken += FogTakenByShade(shaded_km, FogSunTo(direction, distance_km));
@@ -86,6 +93,18 @@ vec4 LampsReflected(SeenGround seen, vec3 place, vec3 direction) {
 }
 #endif
 
+#if HAS_NIGHT
+// Returns the radiance of the night sky that the air on a path scatters, and what is behind it.
+// @param left  transmittance of the path.
+vec4 NightThrough(vec4 left, vec4 behind) { return (1.0 - left) * night_scattered + left * behind; }
+
+// Returns the light reflected by ground that sees the part of a uniform sky left by its tilt.
+vec4 NightReflected(SeenGround seen, vec3 to_eye) {
+  vec4 level = 0.5 * (1.0 + dot(seen.normal, seen.at.up)) * night_level;
+  return SentOfIrradiance(seen, level, to_eye);
+}
+#endif
+
 #if PASS == LAND_PASS
 // Returns the elevation of the disk above the shadow edge, scaled so that an edge is at least as
 // wide as the pixels that it crosses. Across crests, where distances are discontinuous, it is not
@@ -96,52 +115,154 @@ float OverSmoothEdge(vec4 surface) {
   return surface.z / (is_crest ? 1.0 : max(half_step * RAY_ANGLE / ground_view.x, 1.0));
 }
 
+// Land in a pixel, with all that does not depend on a light.
+struct LandPixel {
+  vec3 direction, place;
+  vec4 surface;
+  float over_edge;  // of the first light
+  SeenGround seen;
+};
+
+// Returns the radiance of land and air lit by the current light.
+vec4 LandInLight(LandPixel land) {
+  float distance_km = 1e-3 * land.surface.w;
+  AirTo air = AirToPoint(land.direction, distance_km);
+#if SKY_BY_PIXEL
+  vec4 sky = SkyAtPixel(land.seen.at, land.place, land.seen.normal);
+#else
+  ivec2 pixel = ivec2(gl_FragCoord.xy);
+  vec4 sky = SkyByShare(land.seen, OF_LIGHT(texelFetch(sky_on_surface, pixel, 0),
+                                            texelFetch(other_sky_on_surface, pixel, 0)));
+#endif
+  float over_edge = CastsShadows() ? land.over_edge : kNoEdge;
+  vec4 ground = air.transmittance * SunlitGround(land.seen, over_edge, sky, -land.direction);
+  vec4 radiance = ThroughFog(land.direction, distance_km, air.single + air.diffuse, ground) -
+                  ShadeOnTheWay(land.direction, distance_km, distance_km, air.single);
+  return sun_irradiance * radiance;
+}
+
 void main() {
   vec3 direction = ViewDirection(screen);
-  ivec2 pixel = ivec2(gl_FragCoord.xy);
-  vec4 surface = texelFetch(surface_map, pixel, 0);
-  float distance_km = 1e-3 * surface.w;
-  AirTo air = AirToPoint(direction, distance_km);
+  vec4 surface = texelFetch(surface_map, ivec2(gl_FragCoord.xy), 0);
   vec3 place = PlaceSeen(direction, surface.w);
-  SeenGround seen = LandOf(surface, place, direction);
-#if SKY_BY_PIXEL
-  vec4 sky = SkyAtPixel(seen.at, place, seen.normal);
-#else
-  vec4 sky = SkyByShare(seen, texelFetch(sky_on_surface, pixel, 0));
-#endif
   float over_edge = ground_view.y > 0.0 ? OverSmoothEdge(surface) : kNoEdge;
-  vec4 ground = air.transmittance * SunlitGround(seen, over_edge, sky, -direction);
-  vec4 radiance = ThroughFog(direction, distance_km, air.single + air.diffuse, ground) -
-                  ShadeOnTheWay(direction, distance_km, distance_km, air.single);
+  LandPixel land =
+      LandPixel(direction, place, surface, over_edge, LandOf(surface, place, direction));
+  vec4 bands = LandInLight(land);
+#ifdef TWO_LIGHTS
+  of_other = true;
+  bands += LandInLight(land);
+#endif
+#if HAS_NIGHT || HAS_LAMPS
+  float distance_km = 1e-3 * surface.w;
+  vec4 left =
+      TransmittanceTo(direction, distance_km) * FogTransmittance(direction, distance_km);
+#endif
+#if HAS_NIGHT
+  bands += NightThrough(left, NightReflected(land.seen, -direction));
+#endif
   float along_m = surface.w * dot(direction, view_forward.xyz);
-  picture = vec4(LinearSrgb(sun_irradiance * radiance), InverseDepth(along_m));
+  picture = vec4(LinearSrgb(bands), InverseDepth(along_m));
 #if HAS_LAMPS
-  vec4 left = air.transmittance * FogTransmittance(direction, distance_km);
-  picture.rgb += LampRgb(left * LampsReflected(seen, place, direction)) +
+  picture.rgb += LampRgb(left * LampsReflected(land.seen, place, direction)) +
                  LampAirlightRgb(direction, LampRayEnd(direction, surface.w));
 #endif
 }
 #endif
 
 #if PASS == SKY_PASS || PASS == OPEN_SKY_PASS
+#if HAS_NIGHT
+uniform sampler2D night_sky;  // NightSkyMap of frame_light.h
+
+vec4 NightAbove(vec3 direction) {
+  float elevation = AngleOfSine(clamp(direction.z, -1.0, 1.0));
+  vec2 place = vec2(0.5 * atan(direction.x, direction.y), elevation) / 3.14159265359;
+  return textureLod(night_sky, place + vec2(0.0, 0.5), 0.0);
+}
+
+#endif
+
+// Returns the radiance of the whole path minus the light that shadows remove. The sky table holds
+// the path in the direction `straight`.
+vec4 SkyInLight(vec3 direction, vec3 straight) {
+  vec4 clear = SkyRadiance(straight);
+  vec4 radiance = ThroughFog(direction, kOutOfFog_km, clear, vec4(0.0));
+  return radiance - min(ShadeOnTheWay(direction, kOutOfFog_km, 1e9, clear), radiance);
+}
+
+#if PASS == SKY_PASS
 // True if the sky table holds the planet's ground without changes.
 #define PLANET_IS_PLAIN (!HAS_FOG && GROUND_COVER == MOUNTAIN_COVER && !PLANET_IS_WATER)
 
-vec4 PlanetThroughAir(vec3 direction) {
+// A direction in which the bare planet may be seen, with all that does not depend on a light.
+struct PlanetPixel {
+  bool is_seen;
+  vec3 direction, straight, place;
+  float distance_km;
+  SeenGround seen;
+};
+
+PlanetPixel PlanetIn(vec3 direction) {
+  bool is_seen = SeesPlanet(direction);
+  vec3 straight = is_seen ? StraightToPlanet(direction) : direction;
   float distance_km = PlanetDistance(direction);
-  AirTo air = AirToPoint(direction, distance_km);
-  SeenGround seen = PlanetSeen(PlanetPlace(direction, distance_km), -direction);
-  vec4 ground = air.transmittance * SunlitGround(seen, kNoEdge, SkyOnPlanet(seen), -direction);
-  return ThroughFog(direction, distance_km, air.single + air.diffuse, ground);
+  vec3 place = PlanetPlace(direction, distance_km);
+  return PlanetPixel(is_seen, direction, straight, place, distance_km,
+                     PlanetSeen(place, -direction));
 }
 
+// Returns the radiance of planet or sky lit by the current light.
+vec4 PlanetInLight(PlanetPixel planet) {
+  vec4 radiance = SkyInLight(planet.direction, planet.straight);
+  if (planet.is_seen) {
+#if PLANET_IS_PLAIN
+    vec4 beyond = PlanetBeyondEven(planet.seen, -planet.direction);
+    radiance = max(radiance + TransmittanceToSpace(planet.straight) * beyond, vec4(0.0));
+#else
+    AirTo air = AirToPoint(planet.direction, planet.distance_km);
+    vec4 ground = air.transmittance * SunlitGround(planet.seen, kNoEdge, SkyOnPlanet(planet.seen),
+                                                   -planet.direction);
+    radiance = ThroughFog(planet.direction, planet.distance_km, air.single + air.diffuse, ground);
+#endif
+  }
+  return sun_irradiance * radiance;
+}
+
+#if HAS_NIGHT
+vec4 NightOf(PlanetPixel planet) {
+  float distance_km = planet.is_seen ? planet.distance_km : kOutOfFog_km;
+  vec4 left =
+      TransmittanceToSpace(planet.straight) * FogTransmittance(planet.direction, distance_km);
+  vec4 behind = planet.is_seen ? NightReflected(planet.seen, -planet.direction)
+                               : NightAbove(planet.direction);
+  return NightThrough(left, behind);
+}
+#endif
+
 #if HAS_LAMPS
-vec4 PlanetUnderLamps(vec3 direction) {
-  float distance_km = PlanetDistance(direction);
-  vec4 left = AirToPoint(direction, distance_km).transmittance *
-              FogTransmittance(direction, distance_km);
-  vec3 place = PlanetPlace(direction, distance_km);
-  return left * LampsReflected(PlanetSeen(place, -direction), place, direction);
+vec4 PlanetUnderLamps(PlanetPixel planet) {
+  vec4 left = TransmittanceTo(planet.direction, planet.distance_km) *
+              FogTransmittance(planet.direction, planet.distance_km);
+  return left * LampsReflected(planet.seen, planet.place, planet.direction);
+}
+#endif
+
+void main() {
+  vec3 direction = ViewDirection(screen);
+  PlanetPixel planet = PlanetIn(direction);
+  vec4 bands = PlanetInLight(planet);
+#ifdef TWO_LIGHTS
+  of_other = true;
+  bands += PlanetInLight(planet);
+#endif
+#if HAS_NIGHT
+  bands += NightOf(planet);
+#endif
+  picture = vec4(LinearSrgb(bands), 0.0);
+#if HAS_LAMPS
+  picture.rgb += LampAirlightRgb(direction, LampRayEnd(direction, 0.0));
+  if (planet.is_seen) picture.rgb += LampRgb(PlanetUnderLamps(planet));
+#endif
 }
 #endif
 
@@ -153,41 +274,24 @@ vec3 NotUnderHorizon(vec3 direction) {
   vec3 raised = vec3(direction.xy * (sqrt(1.0 - horizon * horizon) / max(level, 1e-6)), horizon);
   return direction.z < horizon ? raised : direction;
 }
-#endif
 
 void main() {
-  vec3 direction = ViewDirection(screen);
-#if PASS == OPEN_SKY_PASS
-  direction = NotUnderHorizon(direction);
-  vec4 clear = SkyRadiance(direction);
-#else
-  bool planet = SeesPlanet(direction);
-  vec3 straight = planet ? StraightToPlanet(direction) : direction;
-  vec4 clear = SkyRadiance(straight);
+  vec3 direction = NotUnderHorizon(ViewDirection(screen));
+  vec4 bands = sun_irradiance * SkyInLight(direction, direction);
+#ifdef TWO_LIGHTS
+  of_other = true;
+  bands += sun_irradiance * SkyInLight(direction, direction);
 #endif
-  vec4 radiance = clear;
-#if HAS_FOG
-  radiance = ThroughFog(direction, kOutOfFog_km, clear, vec4(0.0));
-  radiance -= min(ShadeOnTheWay(direction, kOutOfFog_km, 1e9, clear), radiance);
-#elif HAS_SHADE
-  radiance -= min(TakenByShade(1e9, clear), clear);
+#if HAS_NIGHT
+  vec4 left = TransmittanceToSpace(direction) * FogTransmittance(direction, kOutOfFog_km);
+  bands += NightThrough(left, NightAbove(direction));
 #endif
-#if PASS == SKY_PASS && !PLANET_IS_PLAIN
-  if (planet) radiance = PlanetThroughAir(direction);
-#elif PASS == SKY_PASS
-  if (planet) {
-    vec4 beyond = PlanetBeyondEven(PlanetPlace(direction, PlanetDistance(direction)), -direction);
-    radiance = max(radiance + TransmittanceToSpace(straight) * beyond, vec4(0.0));
-  }
-#endif
-  picture = vec4(LinearSrgb(sun_irradiance * radiance), 0.0);
+  picture = vec4(LinearSrgb(bands), 0.0);
 #if HAS_LAMPS
   picture.rgb += LampAirlightRgb(direction, LampRayEnd(direction, 0.0));
-#if PASS == SKY_PASS
-  if (planet) picture.rgb += LampRgb(PlanetUnderLamps(direction));
-#endif
 #endif
 }
+#endif
 #endif
 
 #if PASS == DISK_PASS
@@ -199,43 +303,5 @@ void main() {
   radiance *= FogTransmittance(direction, 1e3);
 #endif
   picture = vec4(LinearSrgb(sun_irradiance * radiance), 0.0);
-}
-#endif
-
-#if PASS == NIGHT_PASS
-uniform sampler2D night_sky;   // NightSkyMap of night_sky_map.h
-uniform vec4 night_scattered;  // radiance of an infinite path of air [W m^-2 sr^-1 nm^-1]
-uniform vec4 night_level;      // irradiance of level ground [W m^-2 nm^-1]
-
-vec4 NightAbove(vec3 direction) {
-  float elevation = AngleOfSine(clamp(direction.z, -1.0, 1.0));
-  vec2 place = vec2(0.5 * atan(direction.x, direction.y), elevation) / 3.14159265359;
-  return textureLod(night_sky, place + vec2(0.0, 0.5), 0.0);
-}
-
-// Returns the light reflected by ground that sees the part of a uniform sky left by its tilt.
-vec4 NightReflected(SeenGround seen, vec3 to_eye) {
-  vec4 level = 0.5 * (1.0 + dot(seen.normal, seen.at.up)) * night_level;
-  return SentOfIrradiance(seen, level, to_eye);
-}
-
-void main() {
-  vec3 direction = ViewDirection(screen);
-  vec4 surface = texelFetch(surface_map, ivec2(gl_FragCoord.xy), 0);
-  bool land = surface.w > 0.0;
-  bool planet = !land && SeesPlanet(direction);
-  float distance_km = land ? 1e-3 * surface.w : planet ? PlanetDistance(direction) : 1e3;
-  float clear = FogTransmittance(direction, distance_km);
-  vec4 left = TransmittanceToSpace(planet ? StraightToPlanet(direction) : direction) * clear;
-  vec4 behind;
-  if (land) {
-    left = AirToPoint(direction, distance_km).transmittance * clear;
-    behind = NightReflected(LandOf(surface, PlaceSeen(direction, surface.w), direction), -direction);
-  } else if (planet) {
-    behind = NightReflected(PlanetSeen(PlanetPlace(direction, distance_km), -direction), -direction);
-  } else {
-    behind = NightAbove(direction);
-  }
-  picture = vec4(LinearSrgb((1.0 - left) * night_scattered + left * behind), 0.0);
 }
 #endif

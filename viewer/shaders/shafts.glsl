@@ -200,8 +200,8 @@ void main() {
   shaft = ShaftTexel(MarchedShade(direction, distance_km) / max(light, vec4(1e-20)), distance_km);
 #if HAS_FOG
   float in_fog_km = min(distance_km, kOutOfFog_km);
-  vec4 sun = max(FogSunTo(direction, in_fog_km), vec4(1e-20));
-  fog_shaft = ShaftTexel(MarchedFogShade(direction, in_fog_km) / sun, distance_km);
+  vec4 unshaded = max(FogSunTo(direction, in_fog_km), vec4(1e-20));
+  fog_shaft = ShaftTexel(MarchedFogShade(direction, in_fog_km) / unshaded, distance_km);
 #endif
 }
 

@@ -15,12 +15,21 @@ layout(std140) uniform SkyByPixel {
   vec4 sky_place;   // altitude [km] to the tables' levels, zenith cosine of the sun to their suns:
                     // offset and factor of the altitude, offset and factor of the cosine
   vec4 slope_unit;  // unit of the stored light of slopes; 0: there are no tables
+  // The last three of the second light.
+  vec4 other_sky_moment;
+  vec4 other_sky_place;
+  vec4 other_slope_unit;
 };
 
 uniform sampler2DArray horizons_around;  // four azimuths per layer; SKY_LOWEST .. 1 stored as 0 .. 1
 uniform sampler2DArray sky_integrals;    // node; A and B of an azimuth; level
 uniform sampler2D level_irradiance;      // sun; level
 uniform sampler2DArray light_of_slopes;  // one azimuth per layer; then their weights, four per layer
+#ifdef TWO_LIGHTS
+uniform sampler2DArray other_sky_integrals;
+uniform sampler2D other_level_irradiance;
+uniform sampler2DArray other_light_of_slopes;
+#endif
 
 // Returns the texture coordinate among n nodes: 0 is the centre of the first texel, 1 of the last.
 float AmongNodes(float share, float n) {
@@ -37,8 +46,18 @@ struct Surroundings {
 
 const Surroundings kNoSurroundings = Surroundings(SKY_LOWEST, vec4(0.0), 0.0, 1.0);
 
-float OfAzimuth(sampler2DArray four_a_layer, vec2 place, int first_layer, int azimuth) {
-  return textureLod(four_a_layer, vec3(place, float(first_layer + azimuth / 4)), 0.0)[azimuth % 4];
+// Returns the sine of the horizon in one of the azimuths, as it is stored.
+float HorizonIn(int azimuth, vec2 place) {
+  return textureLod(horizons_around, vec3(place, float(azimuth / 4)), 0.0)[azimuth % 4];
+}
+
+float SlopeWeightIn(int azimuth, vec2 place) {
+  return TEXEL_OF_LIGHT(light_of_slopes, other_light_of_slopes,
+                        vec3(place, float(SKY_AZIMUTHS + azimuth / 4)))[azimuth % 4];
+}
+
+vec4 SlopesIn(int azimuth, vec2 place) {
+  return TEXEL_OF_LIGHT(light_of_slopes, other_light_of_slopes, vec3(place, float(azimuth)));
 }
 
 // Returns what a place sees of land: BetweenAzimuths and TerrainInterreflection::Radiance.
@@ -50,16 +69,13 @@ Surroundings SurroundingsTowards(vec3 point, vec3 direction) {
   float turn = fract(atan(direction.y, direction.x) / 6.28318530718) * float(SKY_AZIMUTHS);
   int before = min(int(turn), SKY_AZIMUTHS - 1), after = (before + 1) % SKY_AZIMUTHS;
   float along = turn - float(before);
-  float horizon = mix(OfAzimuth(horizons_around, on_horizons, 0, before),
-                      OfAzimuth(horizons_around, on_horizons, 0, after), along);
-  float weight = mix(OfAzimuth(light_of_slopes, on_slopes, SKY_AZIMUTHS, before),
-                     OfAzimuth(light_of_slopes, on_slopes, SKY_AZIMUTHS, after), along);
-  vec4 slopes = mix(textureLod(light_of_slopes, vec3(on_slopes, float(before)), 0.0),
-                    textureLod(light_of_slopes, vec3(on_slopes, float(after)), 0.0), along);
+  float horizon = mix(HorizonIn(before, on_horizons), HorizonIn(after, on_horizons), along);
+  float weight = mix(SlopeWeightIn(before, on_slopes), SlopeWeightIn(after, on_slopes), along);
+  vec4 slopes = OF_LIGHT(sky_moment, other_sky_moment) * OF_LIGHT(slope_unit, other_slope_unit) *
+                mix(SlopesIn(before, on_slopes), SlopesIn(after, on_slopes), along);
   float sine = SKY_LOWEST + (1.0 - SKY_LOWEST) * horizon;
   float known = max(sine, 0.0) + 0.005;
-  return Surroundings(sine, sky_moment * slope_unit * slopes, weight,
-                      max(0.05 * known * known - weight, 0.0));
+  return Surroundings(sine, slopes, weight, max(0.05 * known * known - weight, 0.0));
 }
 
 //// sky_by_pixel.irradiance.glsl
@@ -88,12 +104,13 @@ void AddAzimuth(inout SkySum sum, int azimuth, float up, float along, float hori
   float node = AmongNodes((from - SKY_LOWEST) / (1.0 - SKY_LOWEST), SKY_NODES);
   float row = 2.0 * float(azimuth) + 0.5;
   const float rows = 2.0 * float(SKY_AZIMUTHS);
-  sum.sky += up * textureLod(sky_integrals, vec3(node, row / rows, level), 0.0) +
-             along * textureLod(sky_integrals, vec3(node, (row + 1.0) / rows, level), 0.0);
+  sum.sky += up * TEXEL_OF_LIGHT(sky_integrals, other_sky_integrals, vec3(node, row / rows, level)) +
+             along * TEXEL_OF_LIGHT(sky_integrals, other_sky_integrals,
+                                    vec3(node, (row + 1.0) / rows, level));
   float area = DiskAreaBetween(plane, from);
   float ground = max(0.5 * up * (from * from - plane * plane) + along * area, 0.0);
   sum.slopes += ground / (slope_weight + 1e-9) *
-                textureLod(light_of_slopes, vec3(slope_place, float(azimuth)), 0.0);
+                SlopesIn(azimuth, slope_place);
 }
 
 // Returns the irradiance by the current sky, per unit solar irradiance.
@@ -102,9 +119,10 @@ vec4 SkyAtPixel(GroundPlace at, vec3 point, vec3 normal) {
   vec4 place = vec4(point, 1.0);
   vec2 horizon_place = vec2(dot(horizon_u, place), dot(horizon_v, place));
   vec2 slope_place = vec2(dot(slope_u, place), dot(slope_v, place));
-  float altitude = clamp((at.altitude + sky_place.x) * sky_place.y, 0.0, 1.0);
+  vec4 levels = OF_LIGHT(sky_place, other_sky_place);
+  float altitude = clamp((at.altitude + levels.x) * levels.y, 0.0, 1.0);
   float nearest_level = floor(altitude * (SKY_LEVELS - 1.0) + 0.5);
-  float sun_node = AmongNodes((dot(at.up, sun_for_air.xyz) + sky_place.z) * sky_place.w, SKY_SUNS);
+  float sun_node = AmongNodes((dot(at.up, sun_for_air.xyz) + levels.z) * levels.w, SKY_SUNS);
   float up = dot(normal, at.up);
   vec2 aside = normal.xy - up * at.up.xy;
   const float sector = 2.0 * 3.14159265359 / float(SKY_AZIMUTHS);
@@ -122,6 +140,8 @@ vec4 SkyAtPixel(GroundPlace at, vec3 point, vec3 normal) {
       towards = turn * towards;
     }
   }
-  vec4 open = textureLod(level_irradiance, vec2(sun_node, AmongNodes(altitude, SKY_LEVELS)), 0.0);
-  return sector * sky_moment * (open * max(sum.sky, vec4(0.0)) + slope_unit * sum.slopes);
+  vec4 open = TEXEL_OF_LIGHT(level_irradiance, other_level_irradiance,
+                             vec2(sun_node, AmongNodes(altitude, SKY_LEVELS)));
+  return sector * OF_LIGHT(sky_moment, other_sky_moment) *
+         (open * max(sum.sky, vec4(0.0)) + OF_LIGHT(slope_unit, other_slope_unit) * sum.slopes);
 }

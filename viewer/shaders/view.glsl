@@ -2,7 +2,7 @@
 // The view: its block, its rays, disks seen in it, and the vertices of a pass over the whole picture.
 
 //// view.block.glsl
-// Position and view of the eye, and position of the sun: ViewBlock of pass_setup.h. Frame:
+// Position and view of the eye, and the lights of the sky: ViewBlock of pass_setup.h. Frame:
 // east, north, up at the eye.
 layout(std140) uniform View {
   vec4 view_right;      // times the tangent of half the horizontal field of view
@@ -17,7 +17,18 @@ layout(std140) uniform View {
   vec4 bend_falls;   // decrease of the curvature with altitude [1/km]
   vec4 eye;  // altitude of the eye [km]; offset of the ray from the pixel, in half widths
              // and heights of the picture; radius of the planet [km], 0: not in sight
+  vec4 other_sun;             // the second light of the sky, in programs with TWO_LIGHTS
+  vec4 other_sun_for_air;
+  vec4 other_sun_irradiance;
+  vec4 night_scattered;  // the night sky: radiance of an infinite path of air [W m^-2 sr^-1 nm^-1],
+  vec4 night_level;      // and irradiance of level ground [W m^-2 nm^-1]; in programs with HAS_NIGHT
 };
+
+#ifdef TWO_LIGHTS
+#define sun (of_other ? other_sun : sun)
+#define sun_for_air (of_other ? other_sun_for_air : sun_for_air)
+#define sun_irradiance (of_other ? other_sun_irradiance : sun_irradiance)
+#endif
 
 #define EYE_ALTITUDE eye.x
 #define PICTURE_SHIFT eye.yz
@@ -33,6 +44,22 @@ vec3 ViewDirection(vec2 screen) {
   return normalize(view_forward.xyz + at.x * view_right.xyz + at.y * view_up.xyz);
 }
 
+//// view.lights.glsl
+// "The sun" of all texts is a light of the sky, sun or moon. Programs with TWO_LIGHTS evaluate
+// their functions for the first light, and then for the second one, with of_other set. It is set
+// to constants only, so that compilers remove the branches. Every text that uses these macros is
+// preceded by this one, which may therefore come several times.
+#ifndef OF_LIGHT
+#ifdef TWO_LIGHTS
+bool of_other = false;
+#define OF_LIGHT(first, second) (of_other ? second : first)
+#define TEXEL_OF_LIGHT(first, second, at) (of_other ? textureLod(second, at, 0.0) : textureLod(first, at, 0.0))
+#else
+#define OF_LIGHT(first, second) first
+#define TEXEL_OF_LIGHT(first, second, at) textureLod(first, at, 0.0)
+#endif
+#endif
+
 //// view.refracted_rays.glsl
 // Apparent positions of land and of the bare planet under refraction
 // (atmosphere/refraction/refracted_view.h), with the parameters of the block View. Without
@@ -45,6 +72,21 @@ float LiftAt(float altitude_km, float distance_km) {
   return LandLift(EYE_ALTITUDE, altitude_km, distance_km, PLANET_RADIUS, BEND_TOP, BEND_USUAL,
                   bend_slopes.x, bend_slopes.y, bend_slopes.z, bend_falls.x, bend_falls.y,
                   bend_falls.z);
+}
+
+// Returns LiftAt with one node of the quadrature instead of three, which is exact where the curvature
+// is linear along the ray. It needs a third of the exponentials, most of the time of LiftAt.
+float RoughLiftAt(float altitude_km, float distance_km) {
+  const float t = 0.333333333;
+  float above = WayAbove(EYE_ALTITUDE, altitude_km, distance_km, BEND_TOP, PLANET_RADIUS);
+  float below = distance_km - above;
+  float sag = below * below / (2.0 * PLANET_RADIUS);
+  float bump = 0.5 * BEND_USUAL * below * below;
+  float at = mix(min(EYE_ALTITUDE, BEND_TOP), altitude_km, t) +
+             (1.0 - t) * (bump * (above / distance_km + t) - sag * t);
+  float curvature = CurvatureAt(at, bend_slopes.x, bend_slopes.y, bend_slopes.z, bend_falls.x,
+                                bend_falls.y, bend_falls.z);
+  return 0.5 * curvature * below * below / distance_km;
 }
 
 // Returns v rotated upwards by a small angle [rad] in its vertical plane; `level` is length(v.xy).
@@ -71,7 +113,7 @@ vec3 PlaceSeen(vec3 direction, float distance_m) {
   float altitude = AltitudeAlongRay(EYE_ALTITUDE, direction.z, distance_km, PLANET_RADIUS);
   float rise = level * level * distance_km;
   // The true altitude is lower than the apparent one, which changes the lift slightly.
-  float lower = altitude - rise * LiftAt(altitude, distance_km);
+  float lower = altitude - rise * RoughLiftAt(altitude, distance_km);
   return TurnedUp(seen, distance_m * level, -LiftAt(lower, distance_km));
 }
 

@@ -101,21 +101,22 @@ TEST_F(AirTexturesOnGpu, BlockLiesWhereTheDriverLooks) {
   glGetActiveUniformBlockiv(program.id(), block, GL_UNIFORM_BLOCK_DATA_SIZE, &size);
   EXPECT_EQ(size, static_cast<GLint>(sizeof(AirTablesBlock)));
   const std::vector<std::pair<const char*, std::size_t>> members{
-      {"air_sun", offsetof(AirTablesBlock, sun)},
-      {"air_sun_seen", offsetof(AirTablesBlock, sun_seen)},
-      {"air_frame", offsetof(AirTablesBlock, frame)},
-      {"air_shell", offsetof(AirTablesBlock, shell)},
-      {"air_ranges", offsetof(AirTablesBlock, ranges)},
-      {"air_crowding", offsetof(AirTablesBlock, crowding)},
-      {"air_columns", offsetof(AirTablesBlock, columns)},
-      {"air_sky_rows", offsetof(AirTablesBlock, sky_rows)},
-      {"air_through_rows", offsetof(AirTablesBlock, through_rows)},
-      {"air_way_rows", offsetof(AirTablesBlock, way_rows)},
-      {"air_extinction_rows", offsetof(AirTablesBlock, extinction_rows)},
-      {"air_distances", offsetof(AirTablesBlock, distances)},
-      {"air_phase_nodes", offsetof(AirTablesBlock, phase_nodes)},
-      {"air_sky_mix[0]", offsetof(AirTablesBlock, sky_mix)},
-      {"air_single_mix[0]", offsetof(AirTablesBlock, single_mix)}};
+      {"air_tables.towards", offsetof(AirTablesBlock, sun)},
+      {"air_tables.sun_seen", offsetof(AirTablesBlock, sun_seen)},
+      {"air_tables.frame", offsetof(AirTablesBlock, frame)},
+      {"air_tables.shell", offsetof(AirTablesBlock, shell)},
+      {"air_tables.ranges", offsetof(AirTablesBlock, ranges)},
+      {"air_tables.crowding", offsetof(AirTablesBlock, crowding)},
+      {"air_tables.columns", offsetof(AirTablesBlock, columns)},
+      {"air_tables.sky_rows", offsetof(AirTablesBlock, sky_rows)},
+      {"air_tables.through_rows", offsetof(AirTablesBlock, through_rows)},
+      {"air_tables.way_rows", offsetof(AirTablesBlock, way_rows)},
+      {"air_tables.extinction_rows", offsetof(AirTablesBlock, extinction_rows)},
+      {"air_tables.distances", offsetof(AirTablesBlock, distances)},
+      {"air_tables.phase_nodes", offsetof(AirTablesBlock, phase_nodes)},
+      {"air_tables.sky_of_molecules", offsetof(AirTablesBlock, sky_mix)},
+      {"air_tables.single_of_molecules", offsetof(AirTablesBlock, single_mix)},
+      {"air_tables.extinction_below", offsetof(AirTablesBlock, extinction_below)}};
   for (const auto& [name, expected] : members) {
     GLuint index = GL_INVALID_INDEX;
     glGetUniformIndices(program.id(), 1, &name, &index);

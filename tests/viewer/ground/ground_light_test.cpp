@@ -88,12 +88,13 @@ class Blocks {
     Bind(program, "GroundSurface", 4, surface_,
          Draped(Mirrored(GroundSurfaceBlockOf(site.material()), mirror_), Picture(),
                 FrameTransform(site.ground().frame, site.ground().frame), pattern));
-    textures_.Bind(program, 0, LightSource::kSun);
+    GroundTextures::Connect(program, 0);
+    textures_.Bind(0, LightSource::kSun, LightSource::kSun);
   }
 
   /// The tables of the sky's light on slopes, for programs that read them.
   void UploadSkyByPixel(const ShaderProgram& program) {
-    constexpr int kUnit = 3;
+    constexpr int kUnit = GroundTextures::kUnits;
     glActiveTexture(GL_TEXTURE0 + kUnit);  // where the tables are uploaded
     const SkyIrradianceGradient open = UnoccludedSkyOver(lit_);
     sky_.Use(LightSource::kSun, {{std::shared_ptr<void>(), &lit_.sky()}, open});
@@ -102,7 +103,8 @@ class Blocks {
     const LocalFrame here(lit_.site().ground().frame.ellipsoid(), eye);
     Bind(program, "SkyByPixel", 5, sky_block_,
          sky_.BlockOf(LightSource::kSun, here, lit_.lighting().to_sun, open));
-    sky_.Bind(program, kUnit, LightSource::kSun);
+    SkyByPixel::Connect(program, kUnit);
+    sky_.Bind(kUnit, LightSource::kSun);
   }
 
  private:
@@ -283,6 +285,29 @@ TEST_F(GroundOnGpu, BlocksLieWhereTheDriverLooks) {
         "drape_green", "drape_blue", "drape_place", "drape_eye", "by_root_mu[0]"})
     EXPECT_EQ(OffsetOf(program, name), 16 * member++) << name;
   EXPECT_EQ(OffsetOf(program, "mirror_place"), 16 * 28) << "after 17 values by_root_mu";
+}
+
+// Returns a block in which all components of a vector are the same number, of the second light none.
+SkyByPixelBlock BlockOfNumbers(float first) {
+  const auto all = [first](int more) { return glm::vec4(first + static_cast<float>(more)); };
+  return {all(0), all(1), all(2), all(3), all(4), all(5), all(6), {}, {}, {}};
+}
+
+TEST(SkyByPixelBlock, OfTwoLightsHasThePlacesOfAnyLightWithTables) {
+  const SkyByPixelBlock ten = BlockOfNumbers(10.0F), twenty = BlockOfNumbers(20.0F), none{};
+  const SkyByPixelBlock both = WithLights(ten, twenty);
+  EXPECT_EQ(both.slope_v.x, 13.0F);
+  EXPECT_EQ(both.slope_unit.x, 16.0F);
+  EXPECT_EQ(both.other_sky_moment.x, 24.0F);
+  EXPECT_EQ(both.other_sky_place.x, 25.0F);
+  EXPECT_EQ(both.other_slope_unit.x, 26.0F);
+  const SkyByPixelBlock second = WithLights(none, twenty);
+  EXPECT_EQ(second.horizon_u.x, 20.0F);
+  EXPECT_EQ(second.slope_v.x, 23.0F);
+  EXPECT_EQ(second.slope_unit.x, 0.0F) << "the first light has no tables";
+  EXPECT_EQ(second.other_slope_unit.x, 26.0F);
+  EXPECT_EQ(WithLights(ten, none).horizon_u.x, 10.0F);
+  EXPECT_EQ(WithLights(ten, none).other_slope_unit.x, 0.0F);
 }
 
 TEST_F(GroundOnGpu, MountainsAreTheRenderers) {

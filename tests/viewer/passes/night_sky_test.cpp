@@ -215,31 +215,30 @@ UtcInstant WhenTheSunIsAt(double elevation_rad, const GeodeticPosition& eye,
 }
 
 // Returns the illuminance of a surface that faces a light, without the sky [lux].
-double BeamIlluminance(const SkyLight& light, const SolvedAir& air, double altitude_m) {
+double BeamIlluminance(const SkyLight& light, const AirOfSky& air, double altitude_m) {
   const double mu = std::sin(light.disk.elevation_rad);
-  BandLight beam = air.beam.Left(SingleScattering<float>(air.medium), altitude_m, mu);
+  BandLight beam = air.air->beam.Left(air.single_scattering, altitude_m, mu);
   for (std::size_t band = 0; band < beam.count; ++band)
     beam[band] *= light.irradiance[static_cast<glm::length_t>(band)];
-  return BandColour(air.medium.wavelengths_nm).Xyz(InDouble(beam))[1];
+  return air.colour.Xyz(InDouble(beam))[1];
 }
 
 TEST(LightsOfSky, OfTheSecondNoShadowIsSeenInAnyEveningOfAMonth) {
   const GeodeticPosition eye = PlaceFromDegrees(46.5, 8.0, 2000.0);
-  const auto air =
-      SolveAir(OnOsculatingSphere(MediumPreset("earth"), eye.latitude_rad), AirSolution::kDraft);
-  const BandColour colour(air->medium.wavelengths_nm);
+  const AirOfSky air(
+      SolveAir(OnOsculatingSphere(MediumPreset("earth"), eye.latitude_rad), AirSolution::kDraft));
   double most = 0.0;
   int moonlit = 0;
   for (int day = 0; day < 30; ++day) {
     for (const double elevation_deg : {0.5, -1.0, -2.5, -3.49}) {
       const UtcInstant now =
           WhenTheSunIsAt(elevation_deg * kRadiansPerDegree, eye, UtcInstant{61058 + day, 41400.0});
-      const LightsOfSky lights = LightsOfSkyAt(eye, now, ApparentSunAt(eye, now), *air);
+      const LightsOfSky lights = FrameSkyAt(eye, now, air).lights;
       ASSERT_FALSE(lights.front().is_moon) << day << ' ' << elevation_deg;
       if (lights.size() == 1) continue;
       ++moonlit;
-      most = std::max(most, BeamIlluminance(lights.back(), *air, eye.height_m) /
-                                LevelIlluminance(lights.front(), *air, eye.height_m, colour));
+      most = std::max(most, BeamIlluminance(lights.back(), air, eye.height_m) /
+                                LevelIlluminance(lights.front(), air, eye.height_m));
     }
   }
   EXPECT_GT(moonlit, 10);
@@ -250,10 +249,10 @@ TEST(LightsOfSky, WhenTheMoonIsFirstNoSummitIsLitByTheSun) {
   constexpr double kHighestSummit_m = 8849.0, kRadius_m = 6371e3;
   const double dip = std::acos(kRadius_m / (kRadius_m + kHighestSummit_m));
   const GeodeticPosition eye = PlaceFromDegrees(46.5, 8.0, 2000.0);
-  const auto air = SolveAir(MediumPreset("earth"), AirSolution::kDraft);
+  const AirOfSky air(SolveAir(MediumPreset("earth"), AirSolution::kDraft));
   // The moon is full on the 3rd of January 2026 and rises before the sun has set.
   const UtcInstant now = WhenTheSunIsAt(-3.51 * kRadiansPerDegree, eye, UtcInstant{61043, 41400.0});
-  const LightsOfSky lights = LightsOfSkyAt(eye, now, ApparentSunAt(eye, now), *air);
+  const LightsOfSky lights = FrameSkyAt(eye, now, air).lights;
   ASSERT_EQ(lights.size(), 2U);
   EXPECT_TRUE(lights.front().is_moon);
   const SunPosition& sun = lights.back().disk;

@@ -4,9 +4,11 @@
 
 #include <fmt/format.h>
 #include <gdal_priv.h>
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <limits>
@@ -81,6 +83,7 @@ class BothPrograms {
     return Difference(ViewOf(view.scene, eye_m(), view.instant));
   }
   [[nodiscard]] double eye_m() const { return ground_->eye_height_m; }
+  [[nodiscard]] SkyPainter& painter() { return painter_; }
 
  private:
   int samples_;
@@ -177,6 +180,43 @@ TEST_F(LandPictures, WhereSunAndMoonBothCountAreLitByBoth) {
         "noise of thirty-two rays a pixel, fewer in small pictures, on moonlit rough ground");
 }
 
+// Returns the names of the passes of a picture.
+std::vector<std::string> PassesOf(SkyPainter& painter, const PaintedView& view) {
+  PassTimer timer(PassClock::kFinishes);
+  painter.SetTimer(&timer);
+  painter.Paint(view, 1, SkyPainter::Bodies::kNone);
+  painter.SetTimer(nullptr);
+  std::vector<std::string> names;
+  for (const PassTime& pass : timer.PollAll()) names.push_back(pass.pass);
+  return names;
+}
+
+TEST_F(LandPictures, MoonAndNightSkyNeedNoPassOfTheirOwn) {
+  const ParityView dusk =
+      shared().tile.View(BothTiles::kHeight, 270.0, -6.0, "2026-12-23T16:45:00Z");
+  const PaintedView view = ViewOf(dusk.scene, shared().both.eye_m(), dusk.instant);
+  SkyPainter& painter = shared().both.painter();
+  painter.WaitUntilReady(view);
+  ASSERT_EQ(painter.SkyAt(view.eye.place, view.now)->lights.size(), 2U);
+  ASSERT_LT(painter.SkyAt(view.eye.place, view.now)->level_lux, 10.0) << "the night sky counts";
+  const std::vector<std::string> passes = PassesOf(painter, view);
+  EXPECT_THAT(passes, testing::IsSubsetOf({"land", "shafts", "picture"}));
+  EXPECT_EQ(std::count(passes.begin(), passes.end(), "picture"), 1);
+}
+
+TEST_F(LandPictures, TheSkyOfAFrameIsComputedOnce) {
+  const PaintedView view =
+      ViewOf(shared().first.scene, shared().both.eye_m(), AddSeconds(shared().first.instant, 20.0));
+  SkyPainter& painter = shared().both.painter();
+  painter.Update(view, 0.04);
+  const std::shared_ptr<const FrameSky> sky = painter.SkyAt(view.eye.place, view.now);
+  painter.Paint(view);
+  EXPECT_EQ(painter.SkyAt(view.eye.place, view.now), sky);
+  static_cast<void>(painter.BodiesSeen(view));
+  EXPECT_EQ(painter.SkyAt(view.eye.place, view.now), sky);
+  EXPECT_NE(painter.SkyAt(view.eye.place, AddSeconds(view.now, 1.0)), sky);
+}
+
 TEST_F(SkyPainterTest, FogIsTheRenderersAndShadedByMountains) {
   const Tile tile;
   struct Case {
@@ -219,12 +259,38 @@ TEST_F(SkyPainterTest, ASunWithTheMoonBeforeItIsTheRenderers) {
   ExpectWithin(BothPrograms(scene, now).Difference(ViewOf(scene, 2.0, now)), {0.0031, 0.0041},
                "tables between nodes, within four degrees of the sun");
   const SunPosition sun = ApparentSunAt(scene.place, now);
-  const std::shared_ptr<const SolvedAir> air = SolveAir(scene.medium, AirSolution::kDraft);
-  const double left = double{LightsOfSkyAt(scene.place, now, sun, *air).front().irradiance[1]} /
+  const AirOfSky air(SolveAir(scene.medium, AirSolution::kDraft));
+  const double left = double{FrameSkyAt(scene.place, now, air).lights.front().irradiance[1]} /
                       double{SunAsLight(sun, scene.medium).irradiance[1]};
   const double covered = SkyBodiesAt(scene.place, now).CoveredLight();
   EXPECT_NEAR(covered, 0.9, 0.02);
   EXPECT_NEAR(left / (1.0 - covered), 1.0, 0.02) << "of 550 nm and of the second band";
+}
+
+TEST_F(SkyPainterTest, TheMoonOfTheEarthIsNotInTheSkyOfMars) {
+  const UtcInstant now = ParseInstant("2026-06-29T22:00:00Z");
+  Scene scene = BareScene(300.0, 0.0, 0.0, 20.0);
+  const MoonPosition moon = ApparentMoonAt(scene.place, now);
+  ASSERT_GT(moon.elevation_rad, 0.1);
+  scene.camera.heading_rad = moon.azimuth_rad;
+  scene.camera.pitch_rad = moon.elevation_rad;
+  for (const char* planet : {"earth", "mars"}) {
+    scene.medium = MediumPreset(planet);
+    const PaintedView view = ViewOf(scene, 300.0, now);
+    SkyPainter painter(scene, LandSourceOf(scene), view, SizesOf(Quality::kLow),
+                       SolveAir(scene.medium, AirSolution::kDraft));
+    EXPECT_EQ(painter.BodiesSeen(view).empty(), scene.medium.name == "mars") << planet;
+  }
+}
+
+TEST(FrameSky, OnMarsThereIsNeitherAMoonNorAnEclipseNorAnotherLight) {
+  const AirOfSky mars(SolveAir(MediumPreset("mars"), AirSolution::kDraft));
+  const GeodeticPosition burgos = PlaceFromDegrees(42.3439, -3.6969, 0.0);
+  const FrameSky sky = FrameSkyAt(burgos, ParseInstant("2026-08-12T18:23:00Z"), mars);
+  EXPECT_FALSE(sky.moon);
+  EXPECT_FALSE(sky.is_eclipse);
+  ASSERT_EQ(sky.lights.size(), 1U);
+  EXPECT_EQ(sky.lights[0].irradiance, SunAsLight(sky.sun, mars.air->medium).irradiance);
 }
 
 struct MeanLuminance {

@@ -130,16 +130,17 @@ TEST_F(Glslang, AcceptsTheShadersOfLandShaftsAndDisplay) {
   for (ShaderPiece& piece : FogTexts(PhaseKind::kHenyeyGreenstein))
     in_fog.push_back(std::move(piece));
   ExpectAccepted(ShaftPassTexts(std::move(in_fog), true), "shafts.frag.glsl");
-  std::vector<ShaderPiece> land = SharedTexts();
-  land.push_back(view);
-  land.push_back(ViewerPiece("viewer/shaders/view.refracted_rays.glsl"));
-  land.push_back(ViewerPiece("viewer/shaders/land.block.glsl"));
-  ExpectAccepted(land, "land.vert.glsl");
+  constexpr auto kSurface = LandDrawn::kSurface;
+  const std::vector<LandProgramKind> kinds{{kSurface, false, false, false, false},
+                                           {kSurface, true, true, true, true},
+                                           {kSurface, true, false, true, false}};
+  for (const LandProgramKind& kind : kinds) ExpectAccepted(LandVertexTexts(kind), "land.vert.glsl");
   for (const char* depth : {"reversed", "logarithmic"}) {
     const ShaderPiece depth_text =
         ViewerPiece(fmt::format("viewer/shaders/gbuffer.{}_depth.glsl", depth));
     for (const char* drawn : {"land.frag.glsl", "land.depth_prepass.frag.glsl"})
-      ExpectAccepted(LandTexts(depth_text), drawn);
+      for (const LandProgramKind& kind : kinds)
+        ExpectAccepted(LandFragmentTexts(kind, depth_text), drawn);
     for (const auto shows : {Upscaler::Shows::kCodes, Upscaler::Shows::kLight})
       ExpectAccepted(UpscalerTexts(shows, depth_text), "display.upscale.frag.glsl");
   }
@@ -182,6 +183,18 @@ TEST_F(Glslang, AcceptsTheShadersOfLampsWithAndWithoutFog) {
   }
 }
 
+// Returns stages with each property, alone and all together.
+std::vector<PictureStage> StagesOfLights() {
+  constexpr auto kLand = PictureStage::Pass::kLand;
+  return {{kLand},
+          {.pass = kLand, .has_shade = true},
+          {.pass = kLand, .has_lamps = true},
+          {.pass = kLand, .two_lights = true},
+          {.pass = kLand, .has_night = true},
+          {.pass = kLand, .sky_by_pixel = true},
+          {kLand, true, true, true, true, true}};
+}
+
 TEST_F(Glslang, AcceptsEveryStageOfThePicture) {
   const std::unique_ptr<HeadlessContext> context = tests::ContextOrNone();
   if (!context) GTEST_SKIP() << "EGL gives no OpenGL here";
@@ -193,13 +206,33 @@ TEST_F(Glslang, AcceptsEveryStageOfThePicture) {
     const auto fog = with_fog ? std::optional(PhaseKind::kHenyeyGreensteinDraine) : std::nullopt;
     for (const auto pass : {PictureStage::Pass::kLand, PictureStage::Pass::kSky,
                             PictureStage::Pass::kUnoccludedSky, PictureStage::Pass::kDisks}) {
-      for (int choice = 0; choice < 4; ++choice) {
-        const PictureStage stage{pass, choice % 2 == 1, choice / 2 == 1};
+      for (const PictureStage& of_lights : StagesOfLights()) {
+        const PictureStage stage = of_lights.In(pass);
         ExpectAccepted(PictureTexts({material, painter, {true, true}, fog}, stage),
                        "picture.frag.glsl");
       }
     }
   }
+}
+
+// Returns a program of land and planet.
+// @param lights  definitions that precede all texts.
+std::vector<ShaderPiece> TextsOfCover(const GroundCover& cover, const char* lights) {
+  std::vector<ShaderPiece> texts{{"lights", lights}};
+  for (ShaderPiece& piece : WithViewerPieces(
+           SharedTexts(), {"viewer/shaders/air.block.glsl", "viewer/shaders/view.block.glsl",
+                           "viewer/shaders/view.lights.glsl", "viewer/shaders/air.sun_light.glsl"}))
+    texts.push_back(std::move(piece));
+  texts.push_back(tests::SunInClosedForm());
+  const std::vector<double> bands{450.0, 550.0, 650.0};
+  for (ShaderPiece& piece :
+       GroundTexts(GroundMaterial(cover, nullptr, bands),
+                   {!cover.sea_level_m, cover.kind != GroundCover::Kind::kOrenNayar}))
+    texts.push_back(std::move(piece));
+  texts.push_back({"main",
+                   "out vec4 sent;\nvoid main() {\n  vec3 p = gl_FragCoord.xyz;\n  sent = "
+                   "GroundRadiance(p, p, 1.0, vec4(1.0), p) + PlanetRadiance(p, p);\n}\n"});
+  return texts;
 }
 
 TEST_F(Glslang, AcceptsEveryCoverOfTheGround) {
@@ -209,19 +242,8 @@ TEST_F(Glslang, AcceptsEveryCoverOfTheGround) {
     GroundCover cover;
     cover.kind = kind;
     if (kind == GroundCover::Kind::kLambert) cover.sea_level_m = 0.0;
-    std::vector<ShaderPiece> texts = WithViewerPieces(
-        SharedTexts(), {"viewer/shaders/air.block.glsl", "viewer/shaders/view.block.glsl",
-                        "viewer/shaders/air.sun_light.glsl"});
-    texts.push_back(tests::SunInClosedForm());
-    const std::vector<double> bands{450.0, 550.0, 650.0};
-    for (ShaderPiece& piece :
-         GroundTexts(GroundMaterial(cover, nullptr, bands),
-                     {!cover.sea_level_m, kind != GroundCover::Kind::kOrenNayar}))
-      texts.push_back(std::move(piece));
-    texts.push_back({"main",
-                     "out vec4 sent;\nvoid main() {\n  vec3 p = gl_FragCoord.xyz;\n  sent = "
-                     "GroundRadiance(p, p, 1.0, vec4(1.0), p) + PlanetRadiance(p, p);\n}\n"});
-    ExpectTextAccepted(texts, "ground.frag.glsl");
+    for (const char* lights : {"", "#define TWO_LIGHTS\n"})
+      ExpectTextAccepted(TextsOfCover(cover, lights), "ground.frag.glsl");
   }
 }
 
@@ -299,7 +321,12 @@ TEST_F(UniformBlocks, ViewLiesWhereTheDriverLooks) {
                           {"bend", offsetof(ViewBlock, bend)},
                           {"bend_slopes", offsetof(ViewBlock, bend_slopes)},
                           {"bend_falls", offsetof(ViewBlock, bend_falls)},
-                          {"eye", offsetof(ViewBlock, eye)}});
+                          {"eye", offsetof(ViewBlock, eye)},
+                          {"other_sun", offsetof(ViewBlock, other_sun)},
+                          {"other_sun_for_air", offsetof(ViewBlock, other_sun_for_air)},
+                          {"other_sun_irradiance", offsetof(ViewBlock, other_sun_irradiance)},
+                          {"night_scattered", offsetof(ViewBlock, night_scattered)},
+                          {"night_level", offsetof(ViewBlock, night_level)}});
 }
 
 TEST_F(UniformBlocks, GroundLiesWhereTheDriverLooks) {
