@@ -372,7 +372,9 @@ TEST_P(PolarLand, TheGroundUnderAnEyeIsContinuousOverThePole) {
         *ground,
         static_cast<double>(HeightNearPole(90.0 - std::abs(along), along < 0.0 ? 180.0 : 0.0)), 3.0)
         << along << ": a row is 0.1 degrees, the wave bends by 0.3 m over it";
-    if (i > -100) EXPECT_NEAR(*ground, before, 1.5) << "160 m a degree, 0.003 degrees apart";
+    if (i > -100) {
+      EXPECT_NEAR(*ground, before, 1.5) << "160 m a degree, 0.003 degrees apart";
+    }
     before = *ground;
   }
 }
