@@ -53,10 +53,7 @@ void CaseIds::Add(const std::string& id, const CsvReader& lines) {
              fmt::format("id is \"{}\", as in line {}; ids must be different", id, same->second));
 }
 
-CaseReader::CaseReader(const std::filesystem::path& file, const Medium& medium)
-    : lines_(file, kColumnNames),
-      planet_radius_m_(medium.planet_radius_m),
-      atmosphere_height_m_(medium.atmosphere_height_m) {}
+CaseReader::CaseReader(const std::filesystem::path& file) : lines_(file, kColumnNames) {}
 
 std::optional<Case> CaseReader::Next() {
   if (!lines_.Next()) return std::nullopt;
@@ -80,10 +77,7 @@ std::optional<Case> CaseReader::Next() {
   result.ray = RayFromAngles(altitude_m, view_deg, result.relative_azimuth_deg,
                              lines_.Number(kSun, 0.0, 180.0));
   if (!lines_.Field(kDistance).empty()) {
-    const RayExtent whole = ExtentOf(result.ray, planet_radius_m_, atmosphere_height_m_);
     result.ray.length_m = lines_.Number(kDistance, 0.0, 1e12);
-    if (altitude_m >= 0.0 && whole.end == RayEnd::kGround)
-      result.ray.length_m = std::min(result.ray.length_m, whole.end_m);
   }
   return result;
 }
@@ -157,7 +151,7 @@ std::string FaultOfRelativeError(const std::string& text) {
 
 void EvaluateFile(const std::filesystem::path& cases, const std::filesystem::path& results,
                   Evaluator& evaluator, ProgressStyle style) {
-  CaseReader reader(cases, evaluator.medium());
+  CaseReader reader(cases);
   const auto prepare = [&](std::span<const Case> work) {
     for (const Case& next : work) {
       if (const auto refusal = evaluator.Refusal(next.quantity)) {

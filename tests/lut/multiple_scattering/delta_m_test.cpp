@@ -45,9 +45,7 @@ std::vector<double> ErrorsOf(const Medium& medium, const MultipleScatteringOptio
   for (const TracedView& view : views) {
     ViewRay ray =
         RayFromAngles(view.altitude_m, view.zenith_deg, view.azimuth_deg, view.sun_zenith_deg);
-    // The traced segments ended at the ground.
-    const RayExtent whole = ExtentOf(ray, medium.planet_radius_m, medium.atmosphere_height_m);
-    if (view.length_m < kToSpace_m) ray.length_m = std::min(view.length_m, whole.end_m);
+    if (view.length_m < kToSpace_m) ray.length_m = view.length_m;
     const auto samples = air.Sample(ray, {.nodes = 20, .split_ozone = true, .dark_samples = true});
     const auto once = air.Inscatter(air.Scatter(samples), ray.nu);
     const auto more = light.InscatterAlong(samples, ray.nu);
