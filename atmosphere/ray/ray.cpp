@@ -91,7 +91,7 @@ namespace {
 
 // Returns whether the ground does not end a ray: it is a segment, no part of which is too deep.
 bool IsSegmentOfAir(const ViewRay& ray, double planet_radius_m) {
-  if (std::isinf(ray.length_m)) return false;
+  if (std::isinf(ray.length_m) || (ray.altitude_m >= 0.0 && !ray.passes_ground)) return false;
   return LowestAltitude(ray, planet_radius_m) >= -DeepestAir(planet_radius_m);
 }
 

@@ -26,6 +26,9 @@ struct ViewRay {
   double nu = 1.0;          // cosine between view direction and direction to the sun, [-1, 1]
   /// The ray ends at this distance, or at the ground or the top if nearer.
   double length_m = std::numeric_limits<double>::infinity();
+  /// Whether the point at length_m is reached although it lies below altitude 0, or behind a dip of
+  /// the line below altitude 0. Otherwise the ground ends a ray from altitude 0 or above.
+  bool passes_ground = false;
 };
 
 /// Returns the ray with the given angles.
@@ -47,11 +50,12 @@ struct RayExtent {
 /// the horizontal hits it there at distance 0. For an observer below the ground the sky is that
 /// seen from the ground.
 ///
-/// A ray of a given length is a segment of air between two points, neither of which needs to lie
-/// above altitude 0: land lies below the sea at some places, and the line between two points at the
-/// shore dips below it. Below altitude 0 air has the density of altitude 0, so that both directions
-/// of a segment pass through the same air. The ground ends only segments that lead deeper than
-/// DeepestAir, as no line between two places of a planet does that can see each other.
+/// A ray of a given length that begins below altitude 0 or passes the ground is a segment of air
+/// between two points, neither of which needs to lie above altitude 0: land lies below the sea at
+/// some places, and the line between two points at the shore dips below it. Below altitude 0 air has
+/// the density of altitude 0, so that both directions of a segment pass through the same air. The
+/// ground ends only segments that lead deeper than DeepestAir, as no line between two places of a
+/// planet does that can see each other.
 ///
 /// Error below 1e-6 m for observers within 1e8 m (extended precision). Throws InputError for a ray
 /// that is not finite, lower than half a radius below altitude 0, or higher than 1e12 m.

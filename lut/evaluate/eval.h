@@ -7,10 +7,10 @@
 //   id,quantity,altitude_m,view_zenith_deg,relative_azimuth_deg,sun_zenith_deg,distance_m
 //
 // If distance_m is empty, the ray extends to the ground, whose light is included, or leaves the
-// atmosphere through the top. If it is given, the segment stops there, or at the top if nearer, and
-// light reflected by the ground is not included. Air continues below altitude 0 with the density of
-// altitude 0; the ground ends only segments that lead deeper than 12 km (DeepestAir of ray.h). For
-// relative_azimuth_deg in (0, 180) the sun is to the left of the view, beyond
+// atmosphere through the top. If it is given, the segment stops there, or at the ground or the top
+// if nearer, and light reflected by the ground is not included even if the segment reaches the
+// ground. From below altitude 0 air continues with the density of altitude 0, and the ground ends
+// only segments that lead deeper than 12 km (DeepestAir of ray.h). For relative_azimuth_deg in (0, 180) the sun is to the left of the view, beyond
 // (and below 0) to its right, where stokes_u has the opposite sign. Cases of lamps have their own
 // columns: lamp_cases.h.
 //

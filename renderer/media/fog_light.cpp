@@ -357,6 +357,7 @@ class FogMarch {
         static_cast<float>(fog_.optics.scattering_per_m[0] / fog_.optics.extinction_per_m[0]);
     ViewRay ray{eye_.z, direction.z, 0.0, 0.0};
     ray.length_m = step.middle_m;
+    ray.passes_ground = true;
     const BandLight left = scattered * air_.air.TransmittanceAlong(ray);
     return {InFloats(direct * (left * sun)),
             InFloats((light_.BeamLeft(slant) - direct) * (left * sun)),

@@ -313,6 +313,7 @@ class AirOnRay {
   [[nodiscard]] Knot Computed(double distance_m) const {
     ViewRay ray = ray_;
     ray.length_m = distance_m;
+    ray.passes_ground = true;
     const BandLight none(light_.bands());
     return {true, distance_m <= begin_m_ ? none : light_.air.OpticalDepthAlong(ray),
             light_.SunInAir(origin_ + distance_m * direction_)};

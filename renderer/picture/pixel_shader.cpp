@@ -111,7 +111,10 @@ class AirTo {
     ray_ = {geometry.AltitudeOf(from), std::clamp(glm::dot(direction_, up_), -1.0, 1.0),
             std::clamp(glm::dot(to_sun_, up_), -1.0, 1.0),
             std::clamp(glm::dot(direction_, to_sun_), -1.0, 1.0)};
-    if (!through.ends_by_itself) ray_.length_m = through.length_m;
+    if (!through.ends_by_itself) {
+      ray_.length_m = through.length_m;
+      ray_.passes_ground = true;  // terrain may lie below altitude 0
+    }
     if (!sunlight_.IsBroken()) return;
     const RayExtent extent =
         ExtentOf(ray_, geometry.radius_m(), frame.scene().medium().atmosphere_height_m);

@@ -121,12 +121,14 @@ TEST(TomlTable, WhatIsNoTomlIsRefusedWithItsLine) {
       "1\0",
       6);
   for (const std::string& text : {std::string("a = 1\na = 2\n"), std::string("a = \n"),
-                                  std::string("[a\n"), std::string("\xff\xfe"), utf16, deep}) {
+                                  std::string("[a\n"), std::string("\xff\xff"), utf16, deep}) {
     EXPECT_THAT(FaultOf([&] { TomlTable(text, "s.toml"); }),
                 testing::MatchesRegex("s\\.toml:[0-9]+: .*"));
   }
   EXPECT_THAT(FaultOf([] { TomlTable("a = 1\na = 2\n", "s.toml"); }),
               testing::HasSubstr("s.toml:2: not valid TOML"));
+  EXPECT_THAT(FaultOf([] { TomlTable("\xff\xfe", "s.toml"); }),
+              testing::HasSubstr("s.toml: this is UTF-16 text"));
 }
 
 TEST(TomlTable, KeysDeeperThanTheStackAreRefused) {

@@ -31,10 +31,14 @@ TEST(Ray, HorizonSeparatesGroundFromSkyWithinOneUlp) {
   }
 }
 
-TEST(Ray, GivenLengthEndsItUnlessItLeadsThroughThePlanet) {
+TEST(Ray, GivenLengthEndsItUnlessTheGroundIsNearer) {
   EXPECT_EQ(ExtentOf({100.0, 0.2, 1.0, 0.2, 5000.0}, kRadius_m, kTop_m).end, RayEnd::kLength);
-  EXPECT_EQ(ExtentOf({100.0, -1.0, 1.0, -1.0, 5000.0}, kRadius_m, kTop_m).end, RayEnd::kLength);
-  EXPECT_EQ(ExtentOf({100.0, -1.0, 1.0, -1.0, 13e3}, kRadius_m, kTop_m).end, RayEnd::kGround);
+  EXPECT_EQ(ExtentOf({100.0, -1.0, 1.0, -1.0, 5000.0}, kRadius_m, kTop_m).end, RayEnd::kGround);
+  const auto passing = [](double length_m) {
+    return ExtentOf({100.0, -1.0, 1.0, -1.0, length_m, true}, kRadius_m, kTop_m).end;
+  };
+  EXPECT_EQ(passing(5000.0), RayEnd::kLength);
+  EXPECT_EQ(passing(13e3), RayEnd::kGround) << "no land is so deep";
   EXPECT_EQ(ExtentOf({100.0, 0.2, 1.0, 0.2, 0.0}, kRadius_m, kTop_m).end_m, 0.0);
 }
 
@@ -46,7 +50,7 @@ TEST(Ray, ASegmentBelowAltitudeZeroIsKnownFromBothEnds) {
   const auto cosine = [](double at, double other) {
     return (other * other - at * at - kLength_m * kLength_m) / (2.0 * at * kLength_m);
   };
-  const ViewRay down{kFrom_m, cosine(from, to), 1.0, 0.0, kLength_m};
+  const ViewRay down{kFrom_m, cosine(from, to), 1.0, 0.0, kLength_m, true};
   const ViewRay up{kTo_m, cosine(to, from), 1.0, 0.0, kLength_m};
   const auto part = [](const ViewRay& ray) {
     return SubmergedPart(ray, ExtentOf(ray, kRadius_m, kTop_m), kRadius_m);
@@ -68,7 +72,7 @@ TEST(Ray, AShortRayEndsAtGroundOrTopOnlyIfItReachesThem) {
     const double sine = (kRadius_m + perigee_m) / (kRadius_m + kFrom_m);
     const double mu = -std::sqrt((1.0 - sine) * (1.0 + sine));
     const double deepest_m = -(kRadius_m + kFrom_m) * mu;
-    const ViewRay through{kFrom_m, mu, 1.0, 0.0, 1.5 * deepest_m};
+    const ViewRay through{kFrom_m, mu, 1.0, 0.0, 1.5 * deepest_m, true};
     const RayExtent extent = ExtentOf(through, kRadius_m, kTop_m);
     EXPECT_EQ(extent.end, RayEnd::kLength) << perigee_m;
     EXPECT_EQ(extent.end_m, through.length_m);

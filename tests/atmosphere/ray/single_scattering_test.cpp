@@ -102,7 +102,7 @@ BothWays SegmentBetween(double from_m, double to_m, double length_m, double radi
   const double nu = mu * mu_s + 0.5 * std::sqrt((1.0 - mu * mu) * (1.0 - mu_s * mu_s));
   const double back_mu = cosine(radius_m + to_m, radius_m + from_m);
   const double back_mu_s = ((radius_m + from_m) * mu_s + length_m * nu) / (radius_m + to_m);
-  return {{from_m, mu, mu_s, nu, length_m}, {to_m, back_mu, back_mu_s, -nu, length_m}};
+  return {{from_m, mu, mu_s, nu, length_m, true}, {to_m, back_mu, back_mu_s, -nu, length_m, true}};
 }
 
 struct SegmentEnds {

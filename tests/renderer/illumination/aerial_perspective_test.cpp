@@ -123,7 +123,7 @@ TEST(AerialPerspective, LandBelowTheSeaHasAirInFrontOfIt) {
   // Down to the shore of the Dead Sea, along it, and up from it, with the sun at 30 degrees.
   for (const auto& [altitude_m, mu] :
        {std::pair{100.0, -0.053}, {-400.0, -0.003}, {-430.0, 0.0}, {-430.0, 0.05}, {0.0, -1e-4}}) {
-    const ViewRay ray{altitude_m, mu, 0.5, 0.5 * mu + 0.6 * std::sqrt(1.0 - mu * mu), 10e3};
+    const ViewRay ray{altitude_m, mu, 0.5, 0.5 * mu + 0.6 * std::sqrt(1.0 - mu * mu), 10e3, true};
     const auto truth = exact.Inscatter(exact.Scatter(exact.Sample(ray, {.nodes = 32})), ray.nu);
     const auto through = exact.TransmittanceAlong(ray);
     const Bands<float> found = Once(air, ray, nullptr);
