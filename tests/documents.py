@@ -10,7 +10,7 @@
 - A manual has every option that --help of its program prints, and no option that it does not print.
 - The manuals of scene.toml and atmosphere.toml have every key that the readers accept. The readers
   list their keys in the message about an unknown one.
-- The first example of README.md is the one that tests/consumer builds.
+- The first example of README.md is the project in tests/consumer/readme.
 """
 import argparse
 import pathlib
@@ -213,7 +213,7 @@ def faults_of_atmosphere_keys(skyseries, folder):
 
 
 def faults_of_example():
-    consumer = TREE / "tests" / "consumer"
+    consumer = TREE / "tests" / "consumer" / "readme"
     built = {"cpp": consumer / "sky_radiance.cpp", "cmake": consumer / "CMakeLists.txt"}
     for language, file in built.items():
         shown = re.search(rf"^```{language}\n(.*?)^```", text_of("README.md"),

@@ -11,14 +11,16 @@ function(run)
     message(FATAL_ERROR "${ARGN}\nexit status ${status}\n${output}")
   endif()
 endfunction()
-set(configure ${CMAKE_COMMAND} -G Ninja -S ${SOURCE} -DCMAKE_PREFIX_PATH=${PREFIX} -DCMAKE_BUILD_TYPE=${TYPE}
+set(configure ${CMAKE_COMMAND} -G Ninja -DCMAKE_PREFIX_PATH=${PREFIX} -DCMAKE_BUILD_TYPE=${TYPE}
   -DCMAKE_CXX_FLAGS=${FLAGS} -DCMAKE_CXX_COMPILER=${COMPILER})
 
 file(REMOVE_RECURSE ${PREFIX} ${BINARY})
 run(${CMAKE_COMMAND} --install ${BUILD} --prefix ${PREFIX})
-run(${configure} -B ${BINARY})
+run(${configure} -S ${SOURCE} -B ${BINARY})
 run(${CMAKE_COMMAND} --build ${BINARY})
-run(${BINARY}/sky_radiance)
+run(${configure} -S ${SOURCE}/readme -B ${BINARY}/readme)
+run(${CMAKE_COMMAND} --build ${BINARY}/readme)
+run(${BINARY}/readme/sky_radiance)
 run(${BINARY}/tables ${BINARY}/baked)
 run(${PYTHON} -c "import math, struct
 heights = (int(900 + 600 * math.sin(x / 40) * math.cos(y / 55)) for y in range(1201) for x in range(1201))
@@ -56,12 +58,12 @@ endforeach()
 
 # The component lut is enough for tables, without what only renderer needs.
 file(REMOVE_RECURSE ${BINARY}/lut)
-run(${configure} -B ${BINARY}/lut -DCOMPONENTS=lut -DCMAKE_DISABLE_FIND_PACKAGE_GDAL=ON
+run(${configure} -S ${SOURCE} -B ${BINARY}/lut -DCOMPONENTS=lut -DCMAKE_DISABLE_FIND_PACKAGE_GDAL=ON
   -DCMAKE_DISABLE_FIND_PACKAGE_embree=ON -DCMAKE_DISABLE_FIND_PACKAGE_tinyxml2=ON)
 run(${CMAKE_COMMAND} --build ${BINARY}/lut --target tables)
 
 # Another component is refused by its name.
-attempt(status output ${configure} -B ${BINARY}/unknown -DCOMPONENTS=clouds)
+attempt(status output ${configure} -S ${SOURCE} -B ${BINARY}/unknown -DCOMPONENTS=clouds)
 if(status EQUAL 0 OR NOT output MATCHES "no component \"clouds\"")
   message(FATAL_ERROR "component clouds: exit status ${status}\n${output}")
 endif()
