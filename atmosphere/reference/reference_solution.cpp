@@ -62,15 +62,21 @@ Columns Densities(const Medium& medium, Extended altitude) {
 }
 
 // Returns the points at which the integrands along the line have a kink or a large curvature: edges
-// of the ozone tent, the perigee, altitude 0, and a ladder of altitudes that brackets both scale heights, so
-// that no layer lies between the nodes of a first panel.
+// of the ozone tent, the perigee, altitude 0 where the line passes it, and a ladder of altitudes that
+// brackets both scale heights, so that no layer lies between the nodes of a first panel.
 std::vector<double> Breakpoints(const Medium& medium, const Line& line, double begin, double end) {
   std::vector<double> points;
   points.reserve(2 + 1 + 2 * (4 + 6));
   points.insert(points.end(), {begin, end});
   const Extended perigee = line.Perigee();
   if (perigee > begin && perigee < end) points.push_back(static_cast<double>(perigee));
-  for (const double z : {0.0, medium.ozone.bottom_m, medium.ozone.peak_m, medium.ozone.top_m}) {
+  // A line that ends at the ground does not pass altitude 0: a panel of rounding errors there could
+  // lie outside the planet's shadow.
+  constexpr Extended kRounding_m = 1e-3;
+  const Extended deepest = std::clamp<Extended>(perigee, begin, end);
+  if (line.Altitude(static_cast<double>(deepest)) < -kRounding_m)
+    line.AppendCrossings(0.0, begin, end, points);
+  for (const double z : {medium.ozone.bottom_m, medium.ozone.peak_m, medium.ozone.top_m}) {
     line.AppendCrossings(z, begin, end, points);
   }
   for (const double height : {medium.rayleigh_scale_height_m, medium.mie_scale_height_m}) {
