@@ -280,11 +280,11 @@ TEST_F(GroundOnGpu, BlocksLieWhereTheDriverLooks) {
        {"horizon_u", "horizon_v", "slope_u", "slope_v", "sky_moment", "sky_place", "slope_unit"})
     EXPECT_EQ(OffsetOf(program, name), 16 * member++) << name;
   member = 0;
-  for (const char* name :
-       {"cover_albedo", "rough", "coat", "water", "under_water", "snow_y", "drape_red",
-        "drape_green", "drape_blue", "drape_place", "drape_eye", "by_root_mu[0]"})
+  for (const char* name : {"cover_albedo", "rough", "coat", "water", "under_water", "snow_y",
+                           "drape_red", "drape_green", "drape_blue", "drape_place", "drape_eye",
+                           "drape_east", "drape_north", "by_root_mu[0]"})
     EXPECT_EQ(OffsetOf(program, name), 16 * member++) << name;
-  EXPECT_EQ(OffsetOf(program, "mirror_place"), 16 * 28) << "after 17 values by_root_mu";
+  EXPECT_EQ(OffsetOf(program, "mirror_place"), 16 * 30) << "after 17 values by_root_mu";
 }
 
 // Returns a block in which all components of a vector are the same number, of the second light none.
