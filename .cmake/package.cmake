@@ -123,7 +123,7 @@ endforeach()
     COMPATIBILITY SameMinorVersion)
   install(FILES ${config} ${CMAKE_CURRENT_BINARY_DIR}/alpenglowConfigVersion.cmake DESTINATION ${destination})
   # Packages of pkg-config that a static library links to, and libraries without such a package.
-  set(requires_atmosphere fmt tbb geographiclib erfa)
+  set(requires_atmosphere fmt tbb geographiclib erfa tomlplusplus)
   set(libraries_atmosphere -ldate-tz)
   set(requires_lut OpenEXR libpng)
   set(requires_renderer gdal tinyxml2 zlib)

@@ -89,7 +89,7 @@ function(alpenglow_library folder)
     endif()
     target_link_libraries(${installed} PRIVATE ${target} alpenglow_warnings)
     set_target_properties(${installed} PROPERTIES OUTPUT_NAME ${target} VERSION ${PROJECT_VERSION}
-      SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR})
+      SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR} INSTALL_RPATH "$ORIGIN")
   else()
     # A plug-in that links the library does not export its symbols.
     target_compile_definitions(${target} PRIVATE ALPENGLOW_EXPORT=)

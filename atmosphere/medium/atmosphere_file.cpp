@@ -79,10 +79,7 @@ void ReadNumber(const TomlTable& table, const std::string& key, const Range& ran
 class AtmosphereFile {
  public:
   AtmosphereFile(std::string_view text, const std::string& origin, const MediumUse& use)
-      : root_(text, origin),
-        use_(use),
-        folder_(FolderOf(origin)),
-        preset_(PresetOf(root_)) {
+      : root_(text, origin), use_(use), folder_(FolderOf(origin)), preset_(PresetOf(root_)) {
     planet_ = Section("planet", kPlanetKeys);
     spectrum_ = Section("spectrum", kSpectrumKeys);
     rayleigh_ = Section("rayleigh", kRayleighKeys);

@@ -192,7 +192,7 @@ struct MediumFault {
   bool operator==(const MediumFault&) const = default;
 };
 
-/// What the light of a medium is needed for, which limits its wavelengths.
+/// The use of the light of a medium, which limits its wavelengths.
 struct MediumUse {
   std::size_t most_wavelengths = ranges::kMostWavelengths;
   bool shows_colours = false;     // the wavelengths have no FaultOfColours (colour/spectrum.h)

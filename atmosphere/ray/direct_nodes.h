@@ -60,7 +60,7 @@ template <typename A>
 xsimd::batch<float, A> TimesPowerOfTwo(const xsimd::batch<float, A>& value,
                                        const xsimd::batch<float, A>& shifted) {
   using Whole = xsimd::batch<std::int32_t, A>;
-  // Not xsimd::bitwise_cast, whose template argument is another one since xsimd 11.
+  // The template argument of xsimd::bitwise_cast is another one since xsimd 11.
   const Whole exponent = std::bit_cast<Whole>(shifted) << 23;
   return std::bit_cast<xsimd::batch<float, A>>(std::bit_cast<Whole>(value) + exponent);
 }

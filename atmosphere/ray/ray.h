@@ -26,8 +26,8 @@ struct ViewRay {
   double nu = 1.0;          // cosine between view direction and direction to the sun, [-1, 1]
   /// The ray ends at this distance, or at the ground or the top if nearer.
   double length_m = std::numeric_limits<double>::infinity();
-  /// Whether the point at length_m is reached although it lies below altitude 0, or behind a dip of
-  /// the line below altitude 0. Otherwise the ground ends a ray from altitude 0 or above.
+  /// True if the ray reaches the point at length_m although it lies below altitude 0, or behind a dip
+  /// of the line below altitude 0. Otherwise the ground ends a ray from altitude 0 or above.
   bool passes_ground = false;
 };
 

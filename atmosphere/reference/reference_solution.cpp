@@ -168,6 +168,9 @@ SunPath TowardsSun(const Medium& medium, const Line& view, const ViewRay& ray, d
   const Extended mu_s = std::clamp((view.r * ray.mu_s + static_cast<Extended>(t) * ray.nu) / r,
                                    Extended(-1), Extended(1));
   const Line sun{r, mu_s, view.radius};
+  // At the ends of the dark part, the line to the sun may lead through the planet.
+  constexpr Extended kRounding_m = 1e-3;
+  if (mu_s < 0 && sun.Altitude(sun.Perigee()) < -kRounding_m) return {false, {}};
   const Extended top = view.radius + medium.atmosphere_height_m;
   const Extended end =
       -r * mu_s + std::sqrt(std::max<Extended>(r * r * mu_s * mu_s + (top - r) * (top + r), 0));

@@ -15,6 +15,7 @@ namespace alpenglow::atmosphere {
 /// are written as "\x1b". Programs exit with status 3.
 class ALPENGLOW_EXPORT InputError : public std::runtime_error {
  public:
+  /// Makes the exception from one line of text; control characters of the text are escaped.
   explicit InputError(const std::string& message);
 };
 
@@ -22,6 +23,7 @@ class ALPENGLOW_EXPORT InputError : public std::runtime_error {
 /// file. Programs exit with status 4.
 class ALPENGLOW_EXPORT OutputError : public std::runtime_error {
  public:
+  /// Makes the exception from one line of text; control characters of the text are escaped.
   explicit OutputError(const std::string& message);
 };
 

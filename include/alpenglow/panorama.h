@@ -43,7 +43,9 @@ struct PanoramaOptions {
 
 /// Returns the illuminance of sun and sky on a horizontal plane at the observer [lx]; the horizon
 /// cuts the disk of the sun. Throws InputError as RenderPanorama() does.
-/// @param altitude_m  in [-12000, 1e9].
+/// @param sky         light of an atmosphere.
+/// @param altitude_m  of the observer, in [-12000, 1e9].
+/// @param sun         position of the sun.
 [[nodiscard]] double HorizontalIlluminance(const Sky& sky, double altitude_m, const SunInSky& sun);
 
 }  // namespace alpenglow

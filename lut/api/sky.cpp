@@ -56,8 +56,12 @@ double CosineBetween(const glm::dvec3& a, const glm::dvec3& b) {
 
 ViewRay RayFrom(const AltitudeAndZenith& eye, const glm::dvec3& view, const glm::dvec3& to_sun,
                 double length_m) {
-  return {eye.altitude_m, CosineBetween(view, eye.up), CosineBetween(to_sun, eye.up),
-          CosineBetween(view, to_sun), length_m, true};
+  return {eye.altitude_m,
+          CosineBetween(view, eye.up),
+          CosineBetween(to_sun, eye.up),
+          CosineBetween(view, to_sun),
+          length_m,
+          true};
 }
 
 namespace {

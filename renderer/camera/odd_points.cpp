@@ -157,7 +157,7 @@ void MarkUnreachable(const std::vector<std::size_t>& rest, const CanReach& can_r
   for (std::size_t k = 0; k < rest.size(); ++k) odd[rest[k]] = outside[k];
 }
 
-/// How fast a value of a track can change.
+/// The largest rate at which a value of a track can change.
 struct RateLimit {
   double per_s;         // at least
   double median_times;  // or this multiple of the median rate of the track

@@ -18,7 +18,7 @@
 
 namespace alpenglow::renderer {
 
-/// What messages about files of other formats (RefuseFormat) say about volumes.
+/// Text about volumes for messages about files of other formats (RefuseFormat).
 inline constexpr char kVolumesWanted[] = "grids of volumes are read as NRRD or raw floats";
 
 struct NrrdHeader {

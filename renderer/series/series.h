@@ -36,7 +36,7 @@ inline constexpr const char* kNotePrefix = "alpenglow.note.";
 /// plot and the manifest.
 inline constexpr const char* kIlluminanceNote = "alpenglow.note.illuminance_lx";
 
-/// Where the eye of a series is: at one place or along a path.
+/// The eye of a series: at one place or along a path.
 struct SeriesViewpoint {
   GeodeticPosition place;                // without a path
   std::optional<std::string> zone = {};  // of the local times

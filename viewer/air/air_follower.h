@@ -62,7 +62,7 @@ class AirTextures {
   /// Call once for each program: its samplers read from kUnits units, beginning with first_unit,
   /// its block from `binding`.
   static void Prepare(const ShaderProgram& program, int first_unit, GLuint binding);
-  /// The same for the samplers and the block of the second light of a program with TWO_LIGHTS.
+  /// Prepares the samplers and the block of the second light of a program with TWO_LIGHTS.
   static void PrepareOther(const ShaderProgram& program, int first_unit, GLuint binding);
 
   /// Binds the textures and the block for draw calls of prepared programs.

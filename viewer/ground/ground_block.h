@@ -119,7 +119,7 @@ class GroundTextures {
 
   /// Updates the textures for another medium.
   void SetAir(const MultipleScattering& multiple_scattering) const;
-  /// Nothing mirrors before the first call.
+  /// Sets what water and glossy land mirror. They mirror nothing before the first call.
   void SetGlossMirror(LightSource source, const GlossMirror& mirror) const;
   void SetDrape(const DrapeTexels& texels) const;
 

@@ -19,7 +19,7 @@
 
 namespace alpenglow::viewer {
 
-/// What the irradiance of an unoccluded sky depends on.
+/// The values that the irradiance of an unoccluded sky depends on.
 struct OpenSky {
   std::shared_ptr<const SolvedAir> air;
   std::shared_ptr<const SingleScattering<float>> single_scattering;  // of this air

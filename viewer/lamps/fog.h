@@ -50,7 +50,7 @@ class FogPainter {
   /// Binds everything for the next draw call of a program of FogTexts(). @param map  the last
   /// uploaded map.
   void Bind(const FogMap& map, const FogView& now) const;
-  /// The same for a program with TWO_LIGHTS. @param other  the painter of the second light, whose
+  /// Binds the fog for a program with TWO_LIGHTS. @param other  the painter of the second light, whose
   /// map has the same size.
   void Bind(const FogMap& map, const FogView& now, const FogPainter& other,
             const FogView& other_now) const;
@@ -88,7 +88,7 @@ class SceneFog {
   /// Binds everything for the next draw call of such a program. Call it after Follow or
   /// WaitUntilReady.
   void Bind(const CameraPose& eye, const SunPosition& sun) const;
-  /// The same for a program with TWO_LIGHTS. @param other  the fog lit by the second light.
+  /// Binds the fog for a program with TWO_LIGHTS. @param other  the fog lit by the second light.
   void Bind(const CameraPose& eye, const SunPosition& sun, const SceneFog& other,
             const SunPosition& other_sun) const;
 

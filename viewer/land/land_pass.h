@@ -122,7 +122,7 @@ struct MomentaryEdges {
 /// Target of a terrain pass: all outputs of a GBuffer, or only depth into a DepthPrepass.
 enum class LandDrawn { kSurface, kOutline };
 
-/// What land needs in a picture.
+/// The parts of the land program that a picture needs.
 struct LandLook {
   bool bends = true;    // refraction of the block View
   bool moonlit = true;  // the output GBuffer::kMoonSky, which is undefined otherwise

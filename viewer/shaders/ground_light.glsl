@@ -10,7 +10,7 @@ layout(std140) uniform GroundLight {
   vec4 open_sky[OPEN_SKY_COLUMNS * OPEN_SKY_ROWS];  // nodes of SkyIrradianceGradient, by band
 };
 
-// The same of the second light.
+// GroundLight of the second light.
 #ifdef TWO_LIGHTS
 layout(std140) uniform OtherGroundLight {
   vec4 other_sky_towards;

@@ -329,7 +329,7 @@ TEST(AtmosphereFile, LimitsThatLeaveNoValueNameBothCauses) {
       {"[ozone]\nbottom_m = 50000\n", "a.toml:2: ozone.top_m is 40000 and ozone.bottom_m 50000"}};
   for (const BadInput& input : inputs)
     EXPECT_THAT(FileFaultOf(input.text), HasSubstr(input.message)) << input.text;
-  // What the message proposes is accepted.
+  // The change that the message proposes is accepted.
   for (const char* ozone : {"dobson = 0", "peak_m = 11111.1"}) {
     EXPECT_EQ(FileFaultOf("[planet]\natmosphere_top_m = 30000\n[rayleigh]\nscale_height_m = 100\n"
                           "[ozone]\n" +

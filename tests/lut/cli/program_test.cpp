@@ -195,7 +195,7 @@ TEST(Program, ANegativeNumberOfThreadsIsRefused) {
   EXPECT_NO_THROW(ThreadLimit{0});
 }
 
-// As a user who may start no thread at all, or two. Limits of root do not hold.
+// A user who may start no thread at all, or two. Limits of root do not hold.
 TEST(Program, FewerThreadsThanAskedForAreUsedIfThereMayBeNoMore) {
   if (geteuid() != 0) GTEST_SKIP() << "only root can become a user without processes";
   for (const rlim_t most : {1U, 3U}) {

@@ -82,7 +82,7 @@ TEST(DeltaM, TakesNoAbsorptionAwayAndEndsThePhaseFunction) {
     EXPECT_NEAR(rest.medium.mie_extinction_per_m[band] - rest.medium.mie_scattering_per_m[band],
                 absorbed, 1e-12 * mars.mie_extinction_per_m[band]);
     EXPECT_NEAR(rest.chi[band], 1.0, 1e-12) << "what is left scatters all that it takes";
-    // Of the first degree that is not kept, only the smooth backward half remains.
+    // Only the smooth backward half remains of the first degree that is not kept.
     EXPECT_NEAR(rest.chi[9 * bands + band], 0.0, 5e-3);
     EXPECT_GT(rest.share[band], 0.1) << "of dust";
   }

@@ -303,7 +303,7 @@ void AddMask(const fs::path& file, const char* inside) {
   CPLSetThreadLocalConfigOption("GDAL_TIFF_INTERNAL_MASK", nullptr);
 }
 
-/// What a band declares about its numbers.
+/// Declarations of a band about its numbers.
 struct BandDeclaration {
   GDALDataType type = GDT_Float32;
   double scale = 1.0, offset = 0.0;
