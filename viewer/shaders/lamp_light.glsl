@@ -148,15 +148,16 @@ vec3 LampOfTerrain(vec3 way) {
 }
 
 // Returns the height of a point at `way` from the lamp above the shadow of the bare planet, in two
-// thousandths of its distance, plus `margin`. The shadow begins at the horizon of the lamp.
-float LampOverHorizon(Lamp lamp, vec3 way, float margin) {
+// thousandths of its distance, plus 0.5: half of the light reaches the edge of the shadow, which begins
+// at the horizon of the lamp.
+float LampOverHorizon(Lamp lamp, vec3 way) {
   float far = length(way);
   float diameter = 2e3 * lamp_planet.x;
   float beyond = far - sqrt(diameter * max(lamp.shade.w, 0.0));
   if (beyond <= 0.0) return 1.0;
   vec3 at = lamp.position.xyz + way;
   float altitude = 1e3 * lamp_planet.y + at.z + dot(at.xy, at.xy) / diameter;
-  return margin + (altitude - beyond * beyond / diameter) / (2e-3 * max(far, 1e-3));
+  return 0.5 + (altitude - beyond * beyond / diameter) / (2e-3 * max(far, 1e-3));
 }
 
 // Returns the height of a point at `way` from the lamp above the shadow of terrain, in two
@@ -164,7 +165,7 @@ float LampOverHorizon(Lamp lamp, vec3 way, float margin) {
 // up to a number of rings nearer is considered.
 float LampClearance(Lamp lamp, vec3 way, float rings_nearer, float margin) {
 #ifdef LAMP_SHADE
-  if (lamp.shade.x < -0.5) return LampOverHorizon(lamp, way, margin);
+  if (lamp.shade.x < -0.5) return LampOverHorizon(lamp, way);
   vec3 at = LampOfTerrain(way);
   float far = max(length(at.xy), LAMP_SHADE_NEAREST);
   vec2 size = vec2(textureSize(lamp_shades, 0).xy);
@@ -175,7 +176,7 @@ float LampClearance(Lamp lamp, vec3 way, float rings_nearer, float margin) {
       textureLod(lamp_shades, vec3(turn, TexelFromUnit(ring, size.y), lamp.shade.x), 0.0).x;
   return margin + (at.z - slope * far) / (2e-3 * max(length(at), 1e-3));
 #else
-  return LampOverHorizon(lamp, way, margin);
+  return LampOverHorizon(lamp, way);
 #endif
 }
 
