@@ -100,11 +100,13 @@ bool Skyline::IsBelow(const glm::dvec3& direction, double around_rad) const {
 
 namespace {
 
-/// Returns the solid angle of the pixel around a place of the picture.
+/// Returns the solid angle of the pixel around a place of the picture. An eighth of the pixel is
+/// measured, because the two sides of a pixel that holds a whole panorama are one direction.
 double SolidAngle(const CameraRays& camera, double x, double y) {
-  const glm::dvec3 across = camera.Direction(x + 0.5, y) - camera.Direction(x - 0.5, y);
-  const glm::dvec3 down = camera.Direction(x, y + 0.5) - camera.Direction(x, y - 0.5);
-  return glm::length(glm::cross(across, down));
+  constexpr double kHalf = 0.0625, kPixels = 1.0 / (2.0 * kHalf);
+  const glm::dvec3 across = camera.Direction(x + kHalf, y) - camera.Direction(x - kHalf, y);
+  const glm::dvec3 down = camera.Direction(x, y + kHalf) - camera.Direction(x, y - kHalf);
+  return kPixels * kPixels * glm::length(glm::cross(across, down));
 }
 
 }  // namespace

@@ -298,7 +298,7 @@ TEST_F(Skylut, LostMessagesLoseNoResultAndGoIntoNoFile) {
     EXPECT_EQ(ContentOf(folder_ / "r.csv"), ContentOf(folder_ / "told.csv"))
         << static_cast<int>(how);
     std::vector<std::string> wrong = eval;
-    wrong.back() = (folder_ / "none" / "r.csv").string();
+    wrong.back() = (folder_ / "cases.csv" / "r.csv").string();
     EXPECT_EQ(tests::StatusWithLostMessages(wrong, how).value_or(4), 4) << "the status still tells";
   }
 }
@@ -374,7 +374,8 @@ TEST_F(Skylut, WavelengthsThatACommandDoesNotTakeAreRefusedWithFileAndLine) {
   const std::string sky = "sky --out s.exr --sun-elevation 10 --size 8x4 --quiet --atmosphere ";
   for (const std::string& command :
        {sky + "fine.toml", std::string("build --out t --quiet --atmosphere fine.toml"),
-        std::string("eval --cases cases.csv --out r.csv --quiet --atmosphere fine.toml")}) {
+        std::string("eval --method integral --cases cases.csv --out r.csv --quiet --atmosphere "
+                    "fine.toml")}) {
     const Outcome refused = Run(command);
     EXPECT_EQ(refused.status, 3) << command;
     EXPECT_THAT(refused.error,
@@ -396,7 +397,7 @@ TEST_F(Skylut, SegmentsBelowTheSeaHaveTheirAirByEveryMethod) {
       "down,transmittance,-400,90.2168558,0,50,10000\n"
       "up,transmittance,-430,89.8730814,0,50,10000\n"
       "light,inscatter_single,-430,90.5,0,50,10000\n");
-  const Outcome integral = Run("eval --cases below.csv --out i.csv --quiet");
+  const Outcome integral = Run("eval --method integral --cases below.csv --out i.csv --quiet");
   ASSERT_EQ(integral.status, 0) << integral.error;
   const auto value = [](const std::string& text, const std::string& id) {
     const std::size_t line = text.find("\n" + id + ",");
