@@ -357,7 +357,7 @@ TEST_F(Skyview, AMediumOfManyBandsIsRefused) {
 
 TEST_F(Skyview, APictureThatCannotBeWrittenEndsWithStatusFourBeforeTheFlight) {
   const Outcome outcome =
-      Run(InFolder("s.toml") + " --headless --size 16x9 --screenshot /no/such/folder/a.png");
+      Run(InFolder("s.toml") + " --headless --size 16x9 --screenshot " + InFolder("s.toml/a.png"));
   EXPECT_EQ(outcome.status, 4) << outcome.error;
 }
 
