@@ -98,7 +98,7 @@ foreach(alpenglow_component ${alpenglow_FIND_COMPONENTS})
     set(alpenglow_FOUND FALSE)
     list(JOIN alpenglow_installed ", " alpenglow_names)
     set(alpenglow_NOT_FOUND_MESSAGE
-      "alpenglow has no component "${alpenglow_component}"; it has: ${alpenglow_names}")
+      "alpenglow has no component ${alpenglow_component} (components: ${alpenglow_names})")
     return()
   endif()
 endforeach()
