@@ -3,7 +3,7 @@
 // that a recorder writes when it has none, and values that nothing could reach and leave again in
 // the time between the points.
 //
-// Of the values in the order of the track the longest chain is kept in which each can be reached
+// The longest chain of values in the order of the track is kept in which each can be reached
 // from the one before; the others are odd, at the start, in the middle and at the end alike. If no
 // chain contains more than half of the values, nothing tells the odd ones from the others, and all
 // are kept.

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // Pixels of a picture or a map of land cover that is draped over terrain, from GeoTIFF and PNG.
 //
-// What a file declares about its bands decides which of them are red, green, blue, grey and alpha:
+// Declarations of a file about its bands decide which of them are red, green, blue, grey and alpha:
 // their colour interpretation, or else their description ("red", "NIR"). Only if it declares none,
 // the first three bands are red, green and blue, and a single one is grey. Declared bands of other
 // quantities are passed over if red, green and blue are there.
