@@ -31,21 +31,11 @@ Direction Towards(double elevation_deg, double azimuth_deg) {
   return {unit.x, unit.y, unit.z};
 }
 
-/// Returns the air of the atmosphere on the sphere that osculates the ellipsoid at the place. The
-/// last result is kept, because testing whether air bends rays gently takes longer than a position.
+/// Returns the air of the atmosphere on the sphere that osculates the ellipsoid at the place.
 atmosphere::BendingAir AirAt(const Atmosphere& atmosphere, const Place& place) {
   const atmosphere::Medium& medium = atmosphere.medium();
-  atmosphere::BendingAir air = atmosphere::BendingAirOf(medium, atmosphere::kHorizonWavelength_nm);
-  if (medium.follows_wgs84) {
-    air.planet_radius_m =
-        atmosphere::OsculatingRadius(atmosphere::kWgs84, GeodeticFromPlace(place).latitude_rad);
-  }
-  thread_local atmosphere::BendingAir tested, result;
-  if (!atmosphere::IsSame(tested, air)) {
-    tested = result = air;
-    if (!atmosphere::GentlyBends(air)) result.refractivity = 0.0;
-  }
-  return result;
+  return atmosphere::GentleAirOf(
+      medium, atmosphere::OsculatingRadius(medium, GeodeticFromPlace(place).latitude_rad));
 }
 
 }  // namespace

@@ -130,8 +130,8 @@ void RefuseOtherYears(std::string_view text, std::string_view what) {
   const bool is_date = rest.size() >= 6 && rest[0] == '-' && IsDigit(rest[1]) && IsDigit(rest[2]) &&
                        rest[3] == '-' && IsDigit(rest[4]) && IsDigit(rest[5]);
   if (!is_date || year == 0 || (!has_sign && year == 4)) return;
-  throw InputError(
-      fmt::format("{} \"{}\": the year must be four digits and lie in [1900, 2100]", what, text));
+  throw InputError(fmt::format("{} \"{}\": the year must be four digits and lie in [{}, {}]", what,
+                               text, kFirstYear, kLastYear));
 }
 
 [[noreturn]] void RefuseEvent(std::string_view name, std::string_view text) {

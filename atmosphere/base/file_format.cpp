@@ -21,6 +21,7 @@ struct Signature {
 };
 
 constexpr const char* kUnzip = "unzip it and name a file in it";
+constexpr const char* kConvertToGpx = "convert it to GPX";
 constexpr const char* kUnpack = "decompress it";
 constexpr const char* kSaveAsUtf8 = "save it as UTF-8";
 
@@ -39,7 +40,6 @@ constexpr Signature kBinary[] = {
     {0, "\0\0\0\x0CjP  "sv, "a JPEG 2000 picture"},
     {0, "\xFF\x4F\xFF\x51"sv, "a JPEG 2000 picture"},
     {0, "GIF8"sv, "a GIF picture"},
-    {8, "WEBP"sv, "a WebP picture"},
     {0, "II*\0"sv, "TIFF"},
     {0, "MM\0*"sv, "TIFF"},
     {0, "II+\0"sv, "TIFF"},
@@ -68,7 +68,6 @@ constexpr Signature kBinary[] = {
     {0, "CDF\x05"sv, "NetCDF"},
     {0, "GRIB"sv, "GRIB"},
     {0, "SQLite format 3\0"sv, "SQLite (GeoPackage and MBTiles are such)"},
-    {8, ".FIT"sv, "FIT, a track", "convert it to GPX"},
     {0, "\xD0\xCF\x11\xE0"sv, "an Office document"},
     {0, "\x7F\x45LF"sv, "a program"}};
 
@@ -89,9 +88,9 @@ constexpr Signature kText[] = {{0, "\xFF\xFE"sv, "UTF-16 text", kSaveAsUtf8},
                                {0, "DSAA"sv, "a Surfer grid"},
                                {0, "ncols "sv, "an Arc/Info ASCII grid (.asc)"},
                                {0, "NCOLS "sv, "an Arc/Info ASCII grid (.asc)"},
-                               {0, "HFDTE"sv, "IGC, a track", "convert it to GPX"},
-                               {0, "$GP"sv, "NMEA, a track", "convert it to GPX"},
-                               {0, "$GN"sv, "NMEA, a track", "convert it to GPX"}};
+                               {0, "HFDTE"sv, "IGC, a track", kConvertToGpx},
+                               {0, "$GP"sv, "NMEA, a track", kConvertToGpx},
+                               {0, "$GN"sv, "NMEA, a track", kConvertToGpx}};
 
 struct XmlRoot {
   std::string_view root;  // without its namespace
@@ -101,7 +100,7 @@ struct XmlRoot {
 
 constexpr XmlRoot kXmlRoots[] = {{"gpx", "GPX, a track"},
                                  {"kml", "KML, a track"},
-                                 {"TrainingCenterDatabase", "TCX, a track", "convert it to GPX"},
+                                 {"TrainingCenterDatabase", "TCX, a track", kConvertToGpx},
                                  {"COLLADA", "COLLADA, a mesh"},
                                  {"X3D", "X3D, a scene"},
                                  {"VTKFile", "VTK"},
@@ -173,6 +172,17 @@ std::optional<FileFormat> StlFormat(std::string_view bytes, std::uint64_t file_b
   return Found("STL, a mesh", "", is_text);
 }
 
+/// Formats with their name at byte 8, where a text may have any word, and a number or another name
+/// before it.
+std::optional<FileFormat> FormatNamedAtByte8(std::string_view bytes) {
+  if (bytes.size() < 12) return std::nullopt;
+  const std::string_view name = bytes.substr(8, 4);
+  if (bytes.starts_with("RIFF") && name == "WEBP") return Found("a WebP picture", "", false);
+  const bool has_fit_header = bytes[0] == 12 || bytes[0] == 14;  // bytes of the header
+  if (has_fit_header && name == ".FIT") return Found("FIT, a track", kConvertToGpx, false);
+  return std::nullopt;
+}
+
 // Records of IGC follow a line with the recorder's name.
 bool IsIgc(std::string_view text) {
   return text.starts_with('A') && text.find("\nHFDTE") != std::string_view::npos;
@@ -191,10 +201,11 @@ std::optional<FileFormat> Among(const Signature* first, const Signature* last,
 
 std::optional<FileFormat> FormatOf(std::string_view first_bytes, std::uint64_t file_bytes) {
   if (auto found = Among(std::begin(kBinary), std::end(kBinary), first_bytes, false)) return found;
+  if (auto found = FormatNamedAtByte8(first_bytes)) return found;
   if (auto found = StlFormat(first_bytes, file_bytes)) return found;
   const std::string_view text = WithoutBlanks(first_bytes);
   if (auto found = Among(std::begin(kText), std::end(kText), text, true)) return found;
-  if (IsIgc(text)) return Found("IGC, a track", "convert it to GPX", true);
+  if (IsIgc(text)) return Found("IGC, a track", kConvertToGpx, true);
   if (auto found = XmlFormat(text)) return found;
   return JsonFormat(text);
 }

@@ -386,8 +386,12 @@ double MoleculeColumn_m(const Medium& medium) {
          deficit.share * deficit.scale_height_m;
 }
 
+double OsculatingRadius(const Medium& medium, double latitude_rad) {
+  return medium.follows_wgs84 ? OsculatingRadius(kWgs84, latitude_rad) : medium.planet_radius_m;
+}
+
 Medium OnOsculatingSphere(Medium medium, double latitude_rad) {
-  if (medium.follows_wgs84) medium.planet_radius_m = OsculatingRadius(kWgs84, latitude_rad);
+  medium.planet_radius_m = OsculatingRadius(medium, latitude_rad);
   return medium;
 }
 

@@ -221,8 +221,11 @@ void Validate(const Medium& medium, const MediumUse& use = {});
 /// machines and versions.
 [[nodiscard]] std::uint64_t MediumHash(const Medium& medium);
 
-/// Returns the medium over the sphere that osculates the ellipsoid at a latitude if follows_wgs84
-/// is set; returns it unchanged if the planet is a sphere.
+/// Returns the radius [m] of the sphere that osculates the ellipsoid at a latitude if follows_wgs84
+/// is set, and the planet's radius if the planet is a sphere.
+[[nodiscard]] double OsculatingRadius(const Medium& medium, double latitude_rad);
+
+/// Returns the medium over the sphere with this radius.
 [[nodiscard]] Medium OnOsculatingSphere(Medium medium, double latitude_rad);
 
 /// Returns one of "earth", "bruneton2017", "clear-mountain", "hazy", "mars". Without wavelengths,

@@ -229,7 +229,7 @@ struct RayEntry {
 };
 
 /// Returns whether ClimbSeries (optical_depth.glsl) is not valid up to the top of the air: its error
-/// is 3e-6 of a climb by a twentieth of the radius, and beyond the radius it has no bound.
+/// is 6e-6 of a climb by a twentieth of the radius, and beyond the radius it has no bound.
 [[nodiscard]] constexpr bool IsTall(double top, double radius) { return top > 0.05 * radius; }
 
 [[nodiscard]] inline double Kilometres(double metres) { return metres / kMetresPerKilometre; }

@@ -8,6 +8,7 @@
 
 #include "atmosphere/colour/spectrum.h"
 #include "atmosphere/math/numerics.h"
+#include "atmosphere/refraction/observer_refraction.h"
 
 namespace alpenglow::atmosphere {
 namespace {
@@ -60,10 +61,18 @@ BendingAir BendingAirOf(const Medium& medium, double wavelength_nm) {
           .planet_radius_m = medium.planet_radius_m};
 }
 
-BendingAir GentleAirOf(const Medium& medium) {
+BendingAir GentleAirOf(const Medium& medium) { return GentleAirOf(medium, medium.planet_radius_m); }
+
+BendingAir GentleAirOf(const Medium& medium, double planet_radius_m) {
   BendingAir air = BendingAirOf(medium, kHorizonWavelength_nm);
-  if (!GentlyBends(air)) air.refractivity = 0.0;
-  return air;
+  air.planet_radius_m = planet_radius_m;
+  // Testing whether air bends rays gently takes longer than a position of the sun.
+  thread_local BendingAir tested, gentle;
+  if (!IsSame(tested, air)) {
+    tested = gentle = air;
+    if (!GentlyBends(air)) gentle.refractivity = 0.0;
+  }
+  return gentle;
 }
 
 RefractedLight RefractedLightOf(const Medium& medium, const BendingAir& air, double elevation_rad,

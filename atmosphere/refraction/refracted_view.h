@@ -56,6 +56,8 @@ namespace alpenglow::atmosphere {
 /// Returns the air that lifts sun, moon and stars: at kHorizonWavelength_nm, with refractivity 0 if
 /// the medium would not bend rays gently.
 [[nodiscard]] BendingAir GentleAirOf(const Medium& medium);
+/// @param planet_radius_m  the radius at a place (OsculatingRadius), instead of the medium's.
+[[nodiscard]] BendingAir GentleAirOf(const Medium& medium, double planet_radius_m);
 
 /// A ray that ends on the ground.
 struct RefractedGroundRay {

@@ -198,7 +198,8 @@ inline std::optional<int> ParseCommandLine(CLI::App& app, int argc, char** argv)
     const bool is_fault = error.get_exit_code() != 0;
     if (is_fault) fault = FaultOfWords(app, argc, argv);
     if (is_fault && fault.empty()) fault = FaultOfNumber(app, error.what());
-    if (fault.empty()) return app.exit(error) == 0 ? 0 : 2;
+    if (!is_fault) return app.exit(error);
+    if (fault.empty()) fault = error.what();
   }
   Log(fmt::format("{}: {}\nRun with --help for more information.\n", app.get_name(), fault));
   return 2;

@@ -3,6 +3,8 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <limits.h>
+#include <poll.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -61,6 +63,14 @@ void WriteError(std::string_view text) noexcept {
 }  // namespace
 
 void Log(std::string_view text) noexcept { WriteError(Printable(text, "\n")); }
+
+void LogWithoutWaiting(std::string_view text) noexcept {
+  pollfd error{STDERR_FILENO, POLLOUT, 0};
+  if (poll(&error, 1, 0) != 1 || (error.revents & POLLOUT) == 0) return;
+  const std::string printable = Printable(text, "\n");
+  [[maybe_unused]] const ssize_t written =
+      write(STDERR_FILENO, printable.data(), std::min<std::size_t>(printable.size(), PIPE_BUF));
+}
 
 void Print(std::string_view text) noexcept {
   errno = 0;

@@ -149,9 +149,9 @@ void FlushToDisk(const fs::path& file, const fs::path& target) {
 void CallWriter(const fs::path& target, const fs::path& temporary,
                 const std::function<void(const fs::path&)>& write) {
   const auto rethrow = [&](std::string fault) {
-    const std::string hidden = temporary.string();
+    const std::string hidden = Printable(temporary.string());
     if (const std::size_t at = fault.find(hidden); at != std::string::npos) {
-      throw OutputError(fault.replace(at, hidden.size(), target.string()));
+      throw OutputError(fault.replace(at, hidden.size(), Printable(target.string())));
     }
     Fail(target, fault);
   };

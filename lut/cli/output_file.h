@@ -71,6 +71,9 @@ void RequireWritable(const std::filesystem::path& target);
 /// removed. Returns the number of removed files.
 std::size_t RemoveAbandonedTemporaries(const std::filesystem::path& folder);
 
+/// Removes the temporaries that this process is writing, before it ends without unwinding.
+void RemoveTemporariesOfThisProcess() noexcept;
+
 /// A file to which lines are appended. One thread appends and finishes; another may call Sync.
 class GrowingFile {
  public:

@@ -16,7 +16,4 @@ void RequireDifferent(const std::vector<NamedFile>& outputs);
 /// their folders are made, and each file can be written (OutputError).
 void PrepareOutputs(const std::vector<NamedFile>& outputs, const std::vector<NamedFile>& inputs);
 
-/// Removes the temporaries that this process is writing, before it ends without unwinding.
-void RemoveTemporariesOfThisProcess() noexcept;
-
 }  // namespace alpenglow::lut

@@ -25,7 +25,8 @@
 #include "atmosphere/base/parsing.h"
 #include "atmosphere/shared_glsl/instruction_set.h"
 #include "lut/cli/command_words.h"
-#include "lut/cli/outputs.h"
+#include "lut/cli/messages.h"
+#include "lut/cli/output_file.h"
 #include "lut/cli/terminal.h"
 #include "lut/layer.h"
 #include "lut/version.h"
@@ -136,7 +137,8 @@ class SignalWatch {
     if (is_over_.load()) return;
     RemoveTemporariesOfThisProcess();
     const int signal = received_signal.load();
-    Log(fmt::format("{}: {}\n", name_, signal == SIGINT ? "interrupted" : "terminated"));
+    LogWithoutWaiting(
+        fmt::format("{}: {}\n", name_, signal == SIGINT ? "interrupted" : "terminated"));
     _exit(128 + signal);
   }
 

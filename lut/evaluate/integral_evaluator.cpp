@@ -206,8 +206,11 @@ class IntegralEvaluator final : public Evaluator {
     const auto exponential = [](const Estimates& depth) {
       Estimates transmittance;
       for (const Estimate& tau : depth) {
+        // Behind thick air the first factor underflows before the second overflows.
         const double value = std::exp(-tau.value);
-        transmittance.push_back({value, value * std::expm1(tau.error)});
+        const double error =
+            value > 0.0 ? value * std::expm1(tau.error) : std::exp(tau.error - tau.value);
+        transmittance.push_back({value, error});
       }
       return transmittance;
     };

@@ -134,7 +134,9 @@ void ForEachCase(std::size_t count, const std::function<void(std::size_t)>& work
 /// Return all values of an answer, and the first one.
 template <typename Real>
 [[nodiscard]] std::vector<double> ValuesOf(const Bands<Real>& bands) {
-  return {bands.value.begin(), bands.value.begin() + static_cast<std::ptrdiff_t>(bands.count)};
+  std::vector<double> values(bands.count);
+  for (std::size_t band = 0; band < bands.count; ++band) values[band] = bands[band];
+  return values;
 }
 [[nodiscard]] inline std::vector<double> ValuesOf(double value) { return {value}; }
 template <typename Real>

@@ -9,10 +9,12 @@
 #include <cmath>
 #include <cstdint>
 #include <cstdlib>
+#include <span>
 #include <utility>
 
 #include "atmosphere/astronomy/sun.h"
 #include "atmosphere/base/error.h"
+#include "atmosphere/base/finite.h"
 #include "atmosphere/base/parsing.h"
 #include "atmosphere/colour/spectrum.h"
 #include "atmosphere/math/constants.h"
@@ -211,7 +213,7 @@ std::vector<DiskPiece> PiecesOfDisk(const PanoramaGrid& grid, const PanoramaSun&
     return static_cast<std::int64_t>(
         std::max(std::ceil(kPiecesPerRadius * pixel_rad / radius), 1.0));
   };
-  const std::int64_t down = parts_of(kPi / grid.height), across = parts_of(2.0 * kPi / grid.width);
+  const std::int64_t down = parts_of(kPi / grid.height);
   const auto row_of = [&](double angle) {
     return std::clamp(static_cast<int>(std::floor(angle / kPi * grid.height)), 0, grid.height - 1);
   };
@@ -222,6 +224,9 @@ std::vector<DiskPiece> PiecesOfDisk(const PanoramaGrid& grid, const PanoramaSun&
     for (std::int64_t j = rows.first; j < rows.last; ++j) {
       const double angle =
           grid.ZenithAngle(y + (static_cast<double>(j) + 0.5) / static_cast<double>(down));
+      // Columns narrow towards the zenith and the nadir, and need fewer parts there.
+      const std::int64_t across = parts_of(2.0 * kPi / grid.width * std::sin(angle));
+      const double weight = std::sin(angle) / static_cast<double>(across);
       const double width_rad = HalfWidthOfDisk(angle, zenith, radius);
       for (int x = 0; x < grid.width; ++x) {
         const double from_sun = grid.Azimuth(x) - sun.azimuth_rad;
@@ -235,7 +240,7 @@ std::vector<DiskPiece> PiecesOfDisk(const PanoramaGrid& grid, const PanoramaSun&
           const double rho =
               2.0 * std::asin(std::sqrt(std::min(HalfSine2(angle, zenith, azimuth), 1.0))) / radius;
           if (rho >= 1.0) continue;
-          pieces.push_back({x, y, angle, rho, std::sin(angle)});
+          pieces.push_back({x, y, angle, rho, weight});
         }
       }
     }
@@ -373,6 +378,7 @@ Image RenderPanorama(const SingleScattering<float>& air,
   ThrowIfInterrupted();
   if (settings.compass) PaintCompass(grid, image);
   if (settings.sun_disk) DrawSunDisk(air, settings, grid, srgb, image);
+  for (const auto& pixel : image.rgb) RequireFinite(std::span(pixel), "light of a panorama");
   return image;
 }
 
@@ -393,6 +399,7 @@ double HorizontalIlluminance(const SingleScattering<float>& air,
     light.push_back(medium.solar_irradiance[band] / (sun.distance * sun.distance) *
                     (double{sky[band]} + disk.fraction * std::max(mu, 0.0) * double{direct[band]}));
   }
+  RequireFinite(std::span<const double>(light), "light of the ground");
   return BandColour(medium.wavelengths_nm).Xyz(light)[1];
 }
 

@@ -73,7 +73,7 @@ void FillTerms(const SkyRowWork& work) {
                             Weighted<kNode>(weight, node + 8 + 4 * term);
       }
       const Four dark = {};
-      const Four radiance = light > dark ? light : dark;
+      const Four radiance = dark > light ? dark : light;  // light that is not a number stays so
       StoreFour(work.radiance + work.radiance_stride * (first + i), radiance);
     }
   }

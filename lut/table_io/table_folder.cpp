@@ -129,8 +129,9 @@ void TableLookup::ReplaceMultipleScattering(MultipleScattering light) {
 
 bool TableLookup::HasTableFor(const ViewRay& ray) const {
   const Medium& air = tables_.medium;
-  return tables_.single_scattering &&
-         ExtentOf(ray, air.planet_radius_m, air.atmosphere_height_m).end != RayEnd::kLength;
+  const RayExtent extent = ExtentOf(ray, air.planet_radius_m, air.atmosphere_height_m);
+  return tables_.single_scattering && extent.end != RayEnd::kLength &&
+         !SubmergedPart(ray, extent, air.planet_radius_m).Exists();
 }
 
 const MultipleScattering& TableLookup::multiple_scattering() const {

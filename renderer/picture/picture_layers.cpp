@@ -216,16 +216,16 @@ Image PixelWriter::Take() { return std::move(image_); }
 
 namespace {
 
-const std::vector<float>* FindLayer(const Image& image, const std::string& name) {
+const std::vector<float>* FindLayer(const Image& image, std::string_view name) {
   for (const Channel& channel : image.layers) {
     if (channel.name == name) return &channel.values;
   }
   return nullptr;
 }
 
-const std::vector<float>& LayerOf(const Image& image, const std::string& name) {
+const std::vector<float>& LayerOf(const Image& image, std::string_view name) {
   if (const std::vector<float>* layer = FindLayer(image, name)) return *layer;
-  throw InternalError("the renderer's picture has no layer " + name);
+  throw InternalError("the renderer's picture has no layer " + std::string(name));
 }
 
 /// Minimum and maximum of a layer in the neighbourhood of a pixel.

@@ -75,7 +75,8 @@ TEST(FileFormat, XmlIsNamedByItsRootAndJsonByItsKeys) {
 TEST(FileFormat, WhatReadersReadIsNoKnownFormat) {
   for (const std::string_view bytes :
        {""sv, "t_s,latitude\n0,1"sv, "[place]\nlatitude = 1"sv, "[[volume]]\n"sv, "# comment"sv,
-        "o cube\nv 0 0 0"sv, "solid = true\n"sv, "\0\0\0\0\0\0\x80\x3F"sv, "preset = \"mars\""sv}) {
+        "o cube\nv 0 0 0"sv, "solid = true\n"sv, "# using WEBP files"sv, "# flight.FIT exported"sv,
+        "\0\0\0\0\0\0\x80\x3F"sv, "preset = \"mars\""sv}) {
     EXPECT_EQ(NameOf(bytes), "none") << bytes;
   }
 }

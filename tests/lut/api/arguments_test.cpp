@@ -116,17 +116,24 @@ TEST(Arguments, OfPanoramasAreRefusedByName) {
 }
 
 TEST(Arguments, TheSmallestSunIsDrawnWithAllItsLight) {
-  const auto light = [](double radius_deg, bool draws) {
+  const auto light = [](double elevation_deg, double radius_deg, bool draws) {
     PanoramaOptions options = Small(16, 8);
+    options.sun.elevation_deg = elevation_deg;
     options.sun.angular_radius_deg = radius_deg;
     options.draws_sun = draws;
     double sum = 0.0;
     for (const auto& pixel : RenderPanorama(Earth(), options).rgb) sum += double{pixel[1]};
     return sum;
   };
-  const double usual = light(0.2666, true) - light(0.2666, false);
-  EXPECT_NEAR((light(1e-6, true) - light(1e-6, false)) / usual, 1.0, 0.02)
-      << "the air varies by less than 2 % over the disk of the sun";
+  // Near the zenith a disk spans all azimuths.
+  for (const double elevation_deg : {45.0, 89.9999, 90.0}) {
+    const auto disk = [&](double radius_deg) {
+      return light(elevation_deg, radius_deg, true) - light(elevation_deg, radius_deg, false);
+    };
+    EXPECT_NEAR(disk(1e-6) / disk(0.2666), 1.0, 0.02)
+        << elevation_deg << ": the air varies by less than 2 % over the disk of the sun";
+  }
+  EXPECT_EQ(light(-90.0, 1e-6, true), light(-90.0, 1e-6, false)) << "the ground is before it";
 }
 
 TEST(Arguments, PointsOutOfRangeAreRefusedWithTheirAltitude) {

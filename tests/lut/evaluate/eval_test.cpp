@@ -437,6 +437,21 @@ TEST_F(Eval, LightThatIsNotResolvedHasAnError) {
   }
 }
 
+TEST_F(Eval, NoLightPassesThickAirAndItsErrorIsFinite) {
+  Medium medium = MediumPreset("bruneton2017");
+  medium.mie_extinction_per_m.assign(medium.wavelengths_nm.size(), 1000.0);
+  const auto evaluator = MakeIntegralEvaluator(medium);
+  for (const Quantity quantity :
+       {Quantity::kTransmittance, Quantity::kSingle, Quantity::kIrradianceSun}) {
+    const Case work{"", 0, quantity, RayFromAngles(2.0, 50.0, 90.0, 50.0)};
+    evaluator->Prepare({&work, 1});
+    for (const Estimate& found : evaluator->Evaluate(work)) {
+      EXPECT_LT(found.value, 1e-3);
+      EXPECT_LE(found.error, 1.0);
+    }
+  }
+}
+
 /// An evaluator whose results are not finite, or which refuses its second case.
 class FaultyEvaluator final : public Evaluator {
  public:

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Light of the twilight sky is compared with the published illuminances of the U.S. Naval
-// Observatory (Brown 1952; shared/tables), average clear sky at sea level. Skies of Mars have the
+// Observatory (Brown 1952), average clear sky at sea level. Skies of Mars have the
 // colours that people see: butterscotch by day, a blue glow around the setting sun.
 //
 // Deep twilight is light scattered at 20 to 80 km, where the air is thinner than an exponential of

@@ -5,10 +5,12 @@
 
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <vector>
 
 #include "atmosphere/base/error.h"
 #include "atmosphere/colour/spectrum.h"
+#include "lut/sky/sky_row_kernel.h"
 #include "tests/fixtures/bands_near.h"
 #include "tests/fixtures/lit_air.h"
 #include "tests/fixtures/sanitized.h"
@@ -288,6 +290,31 @@ TEST(SkyView, DeepTwilightHasNegativeRedAndNoNegativeLight) {
     }
   }
   EXPECT_GT(with_negative_red, 100) << "ozone leaves a blue that displays do not have";
+}
+
+TEST(SkyRowKernel, LightThatIsNotANumberStaysSoAndNoneIsNegative) {
+  std::vector<float> row(4 * SkyNodeFloats(1), 0.0F), phase(4 * (kSkyPhaseNodes + 1), 0.0F);
+  row[4] = std::nanf("");
+  row[5] = -1.0F;
+  row[6] = 2.0F;
+  const std::int32_t cell = 0;
+  const std::array<float, 4> weights{1.0F, 0.0F, 0.0F, 0.0F};
+  const float half_sine2 = 0.5F;
+  std::array<float, 4> radiance{};
+  Kernel<SkyRowKernel>().fill({.terms = 1,
+                               .row = row.data(),
+                               .phase = phase.data(),
+                               .cell = &cell,
+                               .weights = weights.data(),
+                               .half_sine2 = &half_sine2,
+                               .offset = 0.0F,
+                               .scale = 1.0F,
+                               .count = 1,
+                               .radiance = radiance.data(),
+                               .radiance_stride = 4});
+  EXPECT_TRUE(std::isnan(radiance[0]));
+  EXPECT_EQ(radiance[1], 0.0F);
+  EXPECT_EQ(radiance[2], 2.0F);
 }
 
 }  // namespace
