@@ -8,6 +8,7 @@
 #include <cmath>
 #include <map>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "atmosphere/math/constants.h"
@@ -67,9 +68,10 @@ TEST(PolarisedRow, IsTheLightOfItsDirectionsOnBothSidesOfTheSun) {
 }
 
 /// Returns the air of a preset in three bands, which is solved once.
-const LitAir& AirOf(const std::string& preset) {
+const LitAir& AirOf(std::string_view preset) {
   static std::map<std::string, LitAir> airs;
-  return airs.try_emplace(preset, MediumPreset(preset, {450.0, 550.0, 650.0})).first->second;
+  const std::string name(preset);
+  return airs.try_emplace(name, MediumPreset(name, {450.0, 550.0, 650.0})).first->second;
 }
 
 /// The meridian of the sun, by degrees over the horizon under it: beyond 90 on the other side.

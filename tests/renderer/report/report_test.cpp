@@ -9,6 +9,7 @@
 #include <cmath>
 #include <set>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "tests/fixtures/bare_scene.h"
@@ -28,7 +29,7 @@ const Report& QuickReport() {
   return report;
 }
 
-const ReportRow& RowOf(const std::string& topic, const std::string& name) {
+const ReportRow& RowOf(std::string_view topic, std::string_view name) {
   return tests::RowOf(QuickReport(), topic, name);
 }
 
