@@ -50,10 +50,6 @@ void RememberOutputFault() {
   output_fault.compare_exchange_strong(none, errno == 0 ? EIO : errno);
 }
 
-}  // namespace
-
-namespace {
-
 // Writes text to standard error unchanged.
 void WriteError(std::string_view text) noexcept {
   std::fwrite(text.data(), 1, text.size(), stderr);

@@ -354,10 +354,6 @@ std::optional<VertexSpan> SpanAround(const LandLattice& lattice, const GeodeticP
   return VertexSpan{level, i0, j0, i1, j1};
 }
 
-}  // namespace
-
-namespace {
-
 constexpr double kPoleLatitude_rad = 0.5 * std::numbers::pi;
 
 /// A grid without heights, and the level of the lattice whose vertices it interpolates.
