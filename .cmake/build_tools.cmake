@@ -29,3 +29,6 @@ endif()
 if(CMAKE_UNITY_BUILD AND CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
   add_compile_options(--param=ggc-min-heapsize=2000000)
 endif()
+
+# tinyxml2 of Debian 13 defines this for what links to it. Precompiled headers are read only where the same is defined.
+add_compile_definitions(_FILE_OFFSET_BITS=64)
