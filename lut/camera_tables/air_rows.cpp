@@ -374,9 +374,14 @@ class SunlightOfRow {
           const float of_gas = molecules[i] * samples.rayleigh_density[s];
           const float of_aerosol = mie * samples.mie_density[s];
           once[i] += samples.weight[s] * std::exp(-depth[i]) * (of_gas + of_aerosol * phase[i]);
+          const float y = mie * (samples.view_mie[s] + sun.mie[s]);
+          added[i] += samples.weight[s] * peaks[band].LightOf(y, depth[i], of_gas, of_aerosol);
+          if (peaks[band].twice_back() == 0.0F) continue;
+          const SunlitPoint point{samples.rayleigh_density[s], samples.mie_density[s],
+                                  sun.rayleigh[s], sun.mie[s]};
           added[i] +=
-              samples.weight[s] * peaks[band].LightOf(mie * (samples.view_mie[s] + sun.mie[s]),
-                                                      depth[i], of_gas, of_aerosol);
+              samples.weight[s] * of_aerosol *
+              peaks[band].TwiceBackOf(UpFromBelow(air, band, peak.share(band), point), y, depth[i]);
         }
       }
       light.push_back(Divided(once, added));

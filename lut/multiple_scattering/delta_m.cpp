@@ -189,37 +189,53 @@ std::vector<double> AllCoefficientsOf(Half half, const PhaseFunction& phase) {
   return chi;
 }
 
+/// Coefficients of a narrow backward lobe; all are 0 without one.
+struct BackwardLobe {
+  std::vector<double> chi;   // of the backward half
+  std::vector<double> kept;  // by the moments, which blur it
+};
+
+BackwardLobe BackwardLobeOf(const PhaseFunction& phase, std::size_t first) {
+  BackwardLobe lobe{AllCoefficientsOf(Half::kBackward, phase), {}};
+  const double cut = lobe.chi[first];
+  if (cut < kNarrowBackward) return {};
+  lobe.kept.resize(lobe.chi.size());
+  for (std::size_t l = 0; l < first; ++l) lobe.kept[l] = lobe.chi[l] - cut * BlurOf(l, first);
+  return lobe;
+}
+
 // Fills the light that a narrow backward lobe scatters twice, once up and once down again: what
-// moments with the blurred lobe lack, and what they hold. Nothing without such a lobe.
-void FillBackward(const PhaseFunction& phase, std::size_t first, PeakShape& shape) {
-  std::vector<double> chi = AllCoefficientsOf(Half::kBackward, phase);
-  const double cut = std::max(chi[first], 0.0);
-  if (cut < kNarrowBackward) return;
-  std::vector<double> kept(chi.size());
-  for (std::size_t l = 0; l < chi.size(); ++l) {
-    const double blurred = l < first ? chi[l] - cut * BlurOf(l, first) : 0.0;
-    kept[l] = blurred * blurred;
-    chi[l] = chi[l] * chi[l] - kept[l];
+// moments with the blurred lobe lack, and what they hold.
+void FillTwiceBack(const BackwardLobe& lobe, PeakShape& shape) {
+  if (lobe.chi.empty()) return;
+  std::vector<double> lacking, kept;
+  for (std::size_t l = 0; l < lobe.chi.size(); ++l) {
+    kept.push_back(lobe.kept[l] * lobe.kept[l]);
+    lacking.push_back(lobe.chi[l] * lobe.chi[l] - kept[l]);
   }
-  shape.twice_back = SeriesAtAngles(chi);
+  shape.twice_back = SeriesAtAngles(lacking);
   shape.blurred_back = SeriesAtAngles(kept);
 }
 
 // Returns the shape of the peak of air that is scaled to this degree.
 PeakShape ScaledShapeOf(const PhaseFunction& phase, int degree) {
-  const std::vector<double> chi = AllCoefficientsOf(Half::kForward, phase);
+  std::vector<double> chi = AllCoefficientsOf(Half::kForward, phase);
   const auto first = static_cast<std::size_t>(degree) + 1;
+  const BackwardLobe lobe = BackwardLobeOf(phase, first);
+  chi.resize(std::max(chi.size(), lobe.chi.size()), 0.0);
   const double share = std::max(chi[first], 0.0);
   const double rate = std::max(*std::max_element(chi.begin() + degree + 1, chi.end()), 0.0);
   PeakShape shape =
       ShapeAt({kAngles, kDepths, std::min(kDeepest / (1.0 - rate), kDeepestOfAll)}, rate);
-  FillHigh(
-      chi.size(), kAngles,
-      [&](std::size_t l, double y) {
-        return l < first ? LowOrders(chi[l], share, y, rate) : HigherOrders(chi[l], y, rate);
-      },
-      shape);
-  FillBackward(phase, first, shape);
+  const auto light_of = [&](std::size_t l, double y) {
+    const double forward =
+        l < first ? LowOrders(chi[l], share, y, rate) : HigherOrders(chi[l], y, rate);
+    if (l >= lobe.chi.size()) return forward;
+    return forward + SignOf(l) * (lobe.chi[l] - lobe.kept[l]) *
+                         (std::exp((chi[l] - rate) * y) - std::exp((share - rate) * y));
+  };
+  FillHigh(chi.size(), kAngles, light_of, shape);
+  FillTwiceBack(lobe, shape);
   return shape;
 }
 
@@ -331,7 +347,7 @@ ScaledBeam::ScaledBeam(const Medium& medium, int degree) : air_(medium) {
   share_.assign(share.begin(), share.end());
 }
 
-DeltaM::DeltaM(const Medium& medium, int degree) : beam_(medium, degree), degree_(degree) {
+DeltaM::DeltaM(const Medium& medium, int degree) : beam_(medium, degree) {
   for (const PhaseFunction& phase : medium.mie_phase)
     shapes_.push_back(ScaledShapeOf(phase, degree));
 }
@@ -355,23 +371,29 @@ Bands<float> ScaledBeam::At(double height_m, double mu_s) const {
 
 namespace {
 
-// Returns the sunlight, relative to that at a sample, that a backward delta function would send up
-// to the sample from the air below it, down to the ground: of what that air takes from a beam on
-// its way down and up, half the aerosol's share.
-float UpFromBelow(const AirConstants<float>& air, std::size_t band, float share,
-                  const RaySamples<float>& samples, std::size_t i) {
-  const float gas = samples.rayleigh_density[i], aerosol = samples.mie_density[i];
-  if (aerosol < 1e-6F) return 0.0F;
-  const float column = std::max(samples.sun_mie[i] * (1.0F / aerosol - 1.0F), 0.0F);
-  const float scattering = air.mie_scattering[band] * column;
-  const float extinction =
-      air.mie_extinction[band] * column - share * scattering +
-      air.rayleigh[band] * samples.sun_rayleigh[i] * std::max(1.0F / gas - 1.0F, 0.0F);
-  if (extinction < 1e-4F) return scattering;
-  return -0.5F * std::expm1(-2.0F * extinction) * scattering / extinction;
+// Returns the column [km] below a point of density `density` in the direction from the sun, down to
+// the ground, of a gas of this scale height; those of two gases are as their scale heights.
+float ColumnBelow(float density, float sun_column, float otherwise) {
+  constexpr float kLeastDensity = 1e-20F;  // quotients of smaller densities are not accurate
+  return density < kLeastDensity ? otherwise : std::max(sun_column * (1.0F / density - 1.0F), 0.0F);
 }
 
 }  // namespace
+
+float UpFromBelow(const AirConstants<float>& air, std::size_t band, float share,
+                  const SunlitPoint& point) {
+  constexpr float kLeastAerosol = 1e-6F;
+  if (point.mie_density < kLeastAerosol) return 0.0F;
+  const float slant = point.sun_mie / (point.mie_density * air.mie_height);
+  const float aerosol = ColumnBelow(point.mie_density, point.sun_mie, 0.0F);
+  const float gas =
+      ColumnBelow(point.rayleigh_density, point.sun_rayleigh, slant * air.rayleigh_height);
+  const float scattering = air.mie_scattering[band] * aerosol;
+  const float extinction =
+      air.mie_extinction[band] * aerosol - share * scattering + air.rayleigh[band] * gas;
+  if (extinction < 1e-4F) return scattering;
+  return -0.5F * std::expm1(-2.0F * extinction) * scattering / extinction;
+}
 
 PeakAtAngle::PeakAtAngle(const PeakShape& shape, double nu, float share, float phase)
     : shape_(&shape), share_(share), back_(0.5F * static_cast<float>(1.0 - nu) * phase) {
@@ -414,7 +436,7 @@ float DeltaM::SumAlong(std::size_t band, const RaySamples<float>& samples, doubl
   const auto gas =
       static_cast<float>(shared::PhaseMolecules(nu, Depolarisation(beam_.air().medium(), band))) *
       air.rayleigh[band];
-  const float mie = air.mie_scattering[band], f = share(band);
+  const float mie = air.mie_scattering[band];
   float sum = 0.0F;
   for (std::size_t i = 0; i < samples.count; ++i) {
     const float lit = samples.weight[i] * samples.lit[i];
@@ -424,12 +446,15 @@ float DeltaM::SumAlong(std::size_t band, const RaySamples<float>& samples, doubl
         ahead.depth + OpticalDepthOf(ExtinctionAt(air, band), FromSunToEye(samples, i));
     const float of_gas = gas * samples.rayleigh_density[i];
     const float of_aerosol = mie * samples.mie_density[i];
-    sum += lit * peak.LightOf(y + ahead.scattering, depth, of_gas, of_aerosol);
-    if (ahead.depth > 0.0F) sum -= lit * peak.LightOf(y, depth, of_gas, of_aerosol);
-    if (peak.twice_back() != 0.0F) {
-      sum += lit * of_aerosol * peak.twice_back() * UpFromBelow(air, band, f, samples, i) *
-             std::exp(f * (y + ahead.scattering) - depth);
-    }
+    const float up = peak.twice_back() == 0.0F
+                         ? 0.0F
+                         : UpFromBelow(air, band, share(band), SunlitPointOf(samples, i));
+    const auto light_of = [&](float scattering) {
+      return peak.LightOf(scattering, depth, of_gas, of_aerosol) +
+             of_aerosol * peak.TwiceBackOf(up, scattering, depth);
+    };
+    sum += lit * light_of(y + ahead.scattering);
+    if (ahead.depth > 0.0F) sum -= lit * light_of(y);
   }
   return sum;
 }
@@ -477,7 +502,7 @@ Bands<float> DeltaM::BackwardError(const RaySamples<float>& samples, double nu) 
       const float lit = samples.weight[i] * samples.lit[i];
       if (!(lit > 0.0F)) continue;
       const float depth = OpticalDepthOf(ExtinctionAt(constants, band), FromSunToEye(samples, i));
-      const float up = UpFromBelow(constants, band, beam_.share()[band], samples, i);
+      const float up = UpFromBelow(constants, band, beam_.share()[band], SunlitPointOf(samples, i));
       error[band] += lit * constants.mie_scattering[band] * samples.mie_density[i] * light * up *
                      std::exp(-depth);
     }

@@ -30,9 +30,11 @@
 // negligible, at degree 160 for dust and haze, and at most at 8192. All degrees are summed before
 // they are tabulated: at wide angles the low and the high ones cancel.
 //
-// A narrow backward lobe has no closed form. The moments hold it blurred: of its coefficient b of
-// degree L + 1, degree l keeps the part (1 - (l/(L + 1))^2)^2. Light that is sent up by the lobe and
-// down again lies around the sun; it is computed in closed form from the column below each sample.
+// A narrow backward lobe has no closed form in all orders. The moments hold it blurred: of its
+// coefficient b of degree L + 1, degree l loses the part 1 - (1 - (l/(L + 1))^2)^2. The forward peak
+// spreads what the moments lack of the lobe, (-1)^l b_l, by the factor exp(chi_l y) instead of
+// exp(f y). Light that is sent up by the lobe and down again lies around the sun; it is computed in
+// closed form from the column below each sample.
 // Light from behind the end of the ray, seen through that medium, is brighter than through the true
 // one by T (exp(f y) - 1), with y along the ray.
 //
@@ -57,6 +59,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <vector>
 
@@ -141,6 +144,24 @@ class ScaledBeam {
   std::vector<float> share_;  // f per band
 };
 
+/// Densities relative to those on the ground, and columns to the sun [km], at a point.
+struct SunlitPoint {
+  float rayleigh_density, mie_density;
+  float sun_rayleigh, sun_mie;
+};
+
+[[nodiscard]] inline SunlitPoint SunlitPointOf(const RaySamples<float>& samples, std::size_t i) {
+  return {samples.rayleigh_density[i], samples.mie_density[i], samples.sun_rayleigh[i],
+          samples.sun_mie[i]};
+}
+
+/// Returns the sunlight, relative to that at the point, that a backward delta function would send up
+/// to it from the air below it, down to the ground: of what that air takes from a beam on its way
+/// down and up, half the aerosol's share.
+/// @param share  f.
+[[nodiscard]] float UpFromBelow(const AirConstants<float>& air, std::size_t band, float share,
+                                const SunlitPoint& point);
+
 /// The formulas above for one band at one angle to the sun, without light scattered once.
 class PeakAtAngle {
  public:
@@ -157,6 +178,11 @@ class PeakAtAngle {
 
   /// Returns PeakShape::twice_back at the angle.
   [[nodiscard]] float twice_back() const { return twice_back_; }
+  /// Returns the light of the backward lobe per scattering by aerosol on the path of LightOf.
+  /// @param up  UpFromBelow.
+  [[nodiscard]] float TwiceBackOf(float up, float y, float depth) const {
+    return twice_back_ * up * std::exp(share_ * y - depth);
+  }
 
  private:
   const PeakShape* shape_;
@@ -218,13 +244,12 @@ class DeltaM {
     float depth = 0.0F;
     float scattering = 0.0F;  // by aerosol
   };
-  /// Returns the sum of the formulas for y + ahead.scattering along samples, seen through the path ahead,
-  /// minus the same sum for y if there is such a path.
+  /// Returns the sum of the formulas for y + ahead.scattering along samples, seen through the path
+  /// ahead, minus the same sum for y if there is such a path.
   [[nodiscard]] float SumAlong(std::size_t band, const RaySamples<float>& samples, double nu,
                                const PeakAtAngle& peak, const PathAhead& ahead) const;
 
   ScaledBeam beam_;
-  int degree_;
   std::vector<PeakShape> shapes_;  // one for all bands, or one per band
 };
 

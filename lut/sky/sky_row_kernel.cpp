@@ -82,8 +82,10 @@ void FillTerms(const SkyRowWork& work) {
 void Fill(const SkyRowWork& work) {
   if (work.terms == 1) {
     FillTerms<1>(work);
-  } else {
+  } else if (work.terms == kSkyPeakTerms) {
     FillTerms<kSkyPeakTerms>(work);
+  } else {
+    FillTerms<kSkyLobeTerms>(work);
   }
 }
 

@@ -11,8 +11,9 @@
 namespace alpenglow::lut {
 
 /// Number of terms M of aerosol with a separate forward peak: light scattered once, and the peak
-/// by depth. Otherwise there is one term.
+/// by depth. A narrow backward lobe adds another term. Otherwise there is one term.
 inline constexpr std::size_t kSkyPeakTerms = 6;
+inline constexpr std::size_t kSkyLobeTerms = kSkyPeakTerms + 1;
 /// Returns the number of coefficients of one node: R, D and every M of four bands.
 [[nodiscard]] constexpr std::size_t SkyNodeFloats(std::size_t terms) { return 8 + 4 * terms; }
 /// Size of the table of the phase functions of the terms: node k is at the scattering angle
@@ -20,7 +21,7 @@ inline constexpr std::size_t kSkyPeakTerms = 6;
 inline constexpr int kSkyPhaseNodes = 1024;
 
 struct SkyRowWork {
-  std::size_t terms;            // number of terms of aerosol: 1 or kSkyPeakTerms
+  std::size_t terms;            // of aerosol: 1, kSkyPeakTerms or kSkyLobeTerms
   const float* row;             // coefficients of the row, SkyNodeFloats(terms) per column
   const float* phase;           // kSkyPhaseNodes + 1 nodes of 4 floats for every term
   const std::int32_t* cell;     // first column of every look-up

@@ -130,40 +130,38 @@ void SplineMirroredLine(const Line& line) {
 
 constexpr std::size_t kPeakDepths = kSkyPeakTerms - 1;
 
-/// Depths of the forward peak of one band, between which its light is interpolated; at 0 it is dark.
-/// With z = f y, Lagrange's polynomials in z / (z + 4) between Chebyshev's extrema have errors below
-/// 0.3 % of the aerosol's light up to y = 12, for Henyey-Greenstein's g up to 0.98.
+/// Depths y of the forward peak of one band, between which its light is interpolated; at 0 it is
+/// dark. Lagrange's polynomials in y / (y + scale) go through Chebyshev's extrema.
 class PeakDepths {
  public:
   /// @param share    f, >= 0.
-  /// @param deepest  largest depth y; depths beyond it count as it.
-  PeakDepths(float share, double deepest) : share_(share) {
-    constexpr double kLargest = 20.0, kSmallest = 1e-6;
-    const double z = std::clamp(double{share} * deepest, kSmallest, kLargest);
-    last_ = static_cast<float>(z / (z + double{kScale}));
+  /// @param deepest  largest depth; depths beyond it count as it.
+  PeakDepths(float share, double deepest) : share_(share), scale_(4.0F / std::max(share, 0.1F)) {
+    constexpr double kSmallest = 1e-4;  // products of places are normal numbers
+    last_ = PlaceOf(static_cast<float>(std::max(deepest, kSmallest)));
     for (std::size_t k = 0; k < kPeakDepths; ++k) {
       const double turn = kPi * static_cast<double>(k + 1) / static_cast<double>(kPeakDepths);
       place_[k] = last_ * static_cast<float>(0.5 - 0.5 * std::cos(turn));
     }
-    for (std::size_t k = 0; k < kPeakDepths; ++k) scale_[k] = 1.0F / Product(place_[k], k);
+    for (std::size_t k = 0; k < kPeakDepths; ++k) factor_[k] = 1.0F / Product(place_[k], k);
   }
 
   /// Returns P of depth k at one angle.
   [[nodiscard]] float LightAt(const PeakAtAngle& peak, std::size_t k) const {
-    const float z = kScale * place_[k] / (1.0F - place_[k]);
-    return share_ > 0.0F ? peak.LightOf(z / share_, z, 0.0F, 1.0F) : 0.0F;
+    const float y = scale_ * place_[k] / (1.0F - place_[k]);
+    return peak.LightOf(y, share_ * y, 0.0F, 1.0F);
   }
 
-  /// Returns the polynomials at z.
-  [[nodiscard]] std::array<float, kPeakDepths> WeightsAt(float z) const {
-    const float place = std::min(z / (z + kScale), last_);
+  /// Returns the polynomials at y.
+  [[nodiscard]] std::array<float, kPeakDepths> WeightsAt(float y) const {
+    const float place = std::min(PlaceOf(y), last_);
     std::array<float, kPeakDepths> weights;
-    for (std::size_t k = 0; k < kPeakDepths; ++k) weights[k] = scale_[k] * Product(place, k);
+    for (std::size_t k = 0; k < kPeakDepths; ++k) weights[k] = factor_[k] * Product(place, k);
     return weights;
   }
 
  private:
-  static constexpr float kScale = 4.0F;
+  [[nodiscard]] float PlaceOf(float y) const { return y / (y + scale_); }
 
   // Returns the product of distances to 0 and to all nodes but k.
   [[nodiscard]] float Product(float place, std::size_t k) const {
@@ -173,32 +171,40 @@ class PeakDepths {
     return product;
   }
 
-  float share_, last_ = 0.0F;
-  std::array<float, kPeakDepths> place_{}, scale_{};
+  float share_, scale_, last_ = 0.0F;
+  std::array<float, kPeakDepths> place_{}, factor_{};
 };
 
-// Returns the depths of every band: up to that of two horizontal paths on the ground, at most 40,
-// the last depth of PeakShape.
+// Returns the depths of every band: up to that of two horizontal paths on the ground, and to f y =
+// 20, behind which hardly any light is left but that of peaks narrower than the sun.
 std::vector<PeakDepths> DepthsFor(const SingleScattering<float>& air, const DeltaM& peak) {
-  constexpr double kDeepest = 40.0;
+  constexpr double kDeepest = 40.0, kDeepestPeak = 20.0;
   const double column_m = double{air.ColumnsToSpace(0.0, 0.0)[1]};
   std::vector<PeakDepths> depths;
   for (std::size_t band = 0; band < air.bands(); ++band) {
+    const float share = peak.share(band);
     const double depth = 2.0 * column_m * air.medium().mie_scattering_per_m[band];
-    depths.emplace_back(peak.share(band), std::min(depth, kDeepest));
+    const double most = std::min(kDeepest, kDeepestPeak / std::max(double{share}, 1e-3));
+    depths.emplace_back(share, std::min(depth, most));
   }
   return depths;
 }
 
 /// Terms of aerosol that the tables of phase functions and the nodes of a view share.
 struct AerosolTerms {
-  std::size_t count;  // 1, or kSkyPeakTerms
+  std::size_t count;  // 1, kSkyPeakTerms or kSkyLobeTerms
   float glow_column_km;
   std::vector<PeakDepths> depths;  // by band, with a forward peak
 };
 
+std::size_t TermsOf(const MultipleScattering& multiple_scattering) {
+  const std::optional<DeltaM>& peak = multiple_scattering.peak();
+  if (!peak) return 1;
+  return peak->HasBackwardLobe() ? kSkyLobeTerms : kSkyPeakTerms;
+}
+
 // Returns the phase functions of the terms of aerosol at one angle: of light scattered once, with
-// the glow around the sun, or with the forward peak by depth.
+// the glow around the sun, or with the forward peak by depth and the backward lobe.
 std::vector<Bands<float>> PhasesAt(const SingleScattering<float>& air,
                                    const MultipleScattering& multiple_scattering,
                                    const AerosolTerms& terms, double nu) {
@@ -213,6 +219,7 @@ std::vector<Bands<float>> PhasesAt(const SingleScattering<float>& air,
   for (std::size_t band = 0; band < air.bands(); ++band) {
     for (std::size_t k = 0; k < kPeakDepths; ++k)
       phases[k + 1][band] = terms.depths[band].LightAt(at[band], k);
+    if (terms.count == kSkyLobeTerms) phases[kSkyPeakTerms][band] = at[band].twice_back();
   }
   return phases;
 }
@@ -465,12 +472,16 @@ class SkyView::Builder {
         const float y = air.mie_scattering[band] * (samples.sun_mie[i] + samples.view_mie[i]);
         const float depth = OpticalDepthOf(ExtinctionAt(air, band), FromSunToEye(samples, i));
         const float aerosol = lit * air.mie_scattering[band] * samples.mie_density[i];
-        const float z = peak_->share(band) * y, spread = std::exp(z - depth);
+        const float spread = std::exp(peak_->share(band) * y - depth);
         molecules += lit * air.rayleigh[band] * samples.rayleigh_density[i] * spread;
         node[2 * kViewLanes] += aerosol * std::exp(-depth);
-        const std::array<float, kPeakDepths> weights = depths_[band].WeightsAt(z);
+        const std::array<float, kPeakDepths> weights = depths_[band].WeightsAt(y);
         for (std::size_t k = 0; k < kPeakDepths; ++k)
           node[(3 + k) * kViewLanes] += aerosol * spread * weights[k];
+        if (view_.terms_ != kSkyLobeTerms) continue;
+        node[(2 + kSkyPeakTerms) * kViewLanes] +=
+            aerosol * spread *
+            UpFromBelow(air, band, peak_->share(band), SunlitPointOf(samples, i));
       }
       AddMolecules(band, molecules, node);
     }
@@ -536,7 +547,7 @@ SkyView::SkyView(const SingleScattering<float>& air, const MultipleScattering& m
     : map_(air.medium(), altitude_m, mu_s),
       size_(size),
       bands_(air.bands()),
-      terms_(multiple_scattering.peak() ? kSkyPeakTerms : 1),
+      terms_(TermsOf(multiple_scattering)),
       sun_zenith_angle_rad_(std::acos(std::clamp(mu_s, -1.0, 1.0))),
       blocks_((air.bands() + kViewLanes - 1) / kViewLanes) {
   RequireInRange(size.sky_rows, 5, 4096, "sky_rows");
@@ -609,7 +620,7 @@ Bands<float> SkyView::Radiance(double zenith_angle_rad, double azimuth_rad) cons
   const std::size_t node_floats = SkyNodeFloats(terms_);
   const std::size_t width = static_cast<std::size_t>(size_.azimuths + 2) * node_floats;
   const SkyRowKernel& kernel = Kernel<SkyRowKernel>();
-  std::array<float, 4 * SkyNodeFloats(kSkyPeakTerms)> nodes;
+  std::array<float, 4 * SkyNodeFloats(kSkyLobeTerms)> nodes;
   std::array<float, kViewLanes> light;
   constexpr std::int32_t kFirst = 0;
   for (std::size_t i = 0; i < blocks_.size(); ++i) {

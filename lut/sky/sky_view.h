@@ -14,14 +14,15 @@
 //
 // Where the forward peak of the aerosol is separate (delta_m.h), the aerosol's light of all orders
 // depends on nu and on the optical depth y of scattering on the path of the light. Divided by its
-// transmittance in the medium without the peak, exp(f y - tau), it is interpolated in f y between a
+// transmittance in the medium without the peak, exp(f y - tau), it is interpolated in y between a
 // few depths y_k by Lagrange's polynomials l_k,
 //
-//   L = p_R(nu) R + p_M(nu) M + sum over k of P(nu, y_k) M_k + D,
-//   M_k = integral of sigma_M exp(f y - tau) l_k(f y) ds,
+//   L = p_R(nu) R + p_M(nu) M + sum over k of P(nu, y_k) M_k + B(nu) M_B + D,
+//   M_k = integral of sigma_M exp(f y - tau) l_k(y) ds,
 //
 // where P(nu, y) is PeakAtAngle::LightOf aerosol at optical depth f y, and R includes the factor
-// exp(f y). Only P varies fast with the direction.
+// exp(f y). Only P varies fast with the direction. With a narrow backward lobe, B is
+// PeakAtAngle::twice_back, and M_B is the integral of sigma_M exp(f y - tau) times UpFromBelow.
 //
 // Rows of one zenith angle are split at the horizon (sky_view_map.h); columns are uniform
 // in azimuth over half a turn, and the other half is its mirror image. Between nodes the table is
