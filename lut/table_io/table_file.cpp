@@ -165,7 +165,8 @@ void RequireKind(const TableImageReader& image, const Kind& kind) {
   }
   if (const std::string version = image.Attribute("alpenglow.mapVersion");
       version != fmt::format("{}", kind.map_version)) {
-    RefuseFile(image.file(), fmt::format("alpenglow.mapVersion is {}; this program reads {}",
+    RefuseFile(image.file(), fmt::format("alpenglow.mapVersion is {}; this program reads {}: build "
+                                         "the tables again",
                                          version, kind.map_version));
   }
   for (const auto& [name, text] : {std::pair{"units", kind.units},

@@ -38,7 +38,7 @@ namespace alpenglow::lut {
 /// tables of other versions.
 inline constexpr int kTransmittanceMapVersion = 1;
 inline constexpr int kScatteringMapVersion = 1;
-inline constexpr int kMultipleScatteringMapVersion = 1;
+inline constexpr int kMultipleScatteringMapVersion = 2;  // 1 had another share of forward peaks
 
 /// Names in a folder of tables.
 inline constexpr const char* kTransmittanceFileName = "transmittance.exr";

@@ -198,7 +198,7 @@ TEST_F(TableFile, MultipleScatteringWithOtherAttributesIsRefused) {
                                    {"alpenglow.rayNodes", "99"},
                                    {"alpenglow.tables", "all"},
                                    {"alpenglow.sunCosines", "0 1"},
-                                   {"alpenglow.mapVersion", "0"},
+                                   {"alpenglow.mapVersion", "1"},
                                    {"alpenglow.axisSizes", "6 7"}}) {
     Imf::Header changed = header;
     changed.insert(name, Imf::StringAttribute(text));
@@ -206,6 +206,11 @@ TEST_F(TableFile, MultipleScatteringWithOtherAttributesIsRefused) {
     EXPECT_THROW(static_cast<void>(ReadMultipleScattering(bad_)), InputError)
         << name << " = " << text;
   }
+  Imf::Header of_before = header;
+  of_before.insert("alpenglow.mapVersion", Imf::StringAttribute("1"));
+  WriteImage(of_before);
+  EXPECT_THAT(tests::FaultOf([&] { return ReadMultipleScattering(bad_); }),
+              HasSubstr("alpenglow.mapVersion is 1; this program reads 2: build the tables again"));
   for (const std::string degree : {"0", "3", "5", "7"}) {
     Imf::Header changed = header;
     changed.insert("alpenglow.degree", Imf::StringAttribute(degree));
