@@ -60,6 +60,10 @@ constexpr double kFloorOfHigherOrders = 3e-3;
 // than with paths.
 constexpr double kFactorOfBackwardLobes = 3.0;
 
+// Share of the light from behind the end of a segment that a forward peak adds to it. Towards a low
+// sun this light reaches the end on ways that are not those of the closed form.
+constexpr double kShareOfLightBehind = 0.1;
+
 // Light of higher orders below this fraction of the sun's is not resolved [1/sr]: it comes from air
 // beyond the horizon, between the directions of the solution.
 constexpr double kLeastLight = 1e-12;
@@ -301,6 +305,13 @@ class IntegralEvaluator final : public Evaluator {
       const Bands<float> lobe = backward_lobe_->BackwardError(samples, ray.nu);
       for (std::size_t band = 0; band < result.size(); ++band)
         result[band].error = kFactorOfBackwardLobes * result[band].error + double{lobe[band]};
+    }
+    if (fine_light_->peak() && samples.extent.end == RayEnd::kLength) {
+      const Bands<float> opaque = fine_light_->InscatterAlong(samples, ray.nu, SegmentEnd::kOpaque);
+      for (std::size_t band = 0; band < result.size(); ++band) {
+        result[band].error +=
+            kShareOfLightBehind * std::abs(result[band].value - double{opaque[band]});
+      }
     }
     if (!missing_degrees_) return result;
     const std::vector<double> missing =

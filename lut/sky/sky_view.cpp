@@ -175,8 +175,8 @@ class PeakDepths {
   std::array<float, kPeakDepths> place_{}, factor_{};
 };
 
-// Returns the depths of every band: up to that of two horizontal paths on the ground, and to f y =
-// 20, behind which hardly any light is left but that of peaks narrower than the sun.
+// Returns the depths of every band: up to that of two horizontal paths on the ground, but not beyond
+// 40 and f y = 20, which is enough in mist (same_light_test).
 std::vector<PeakDepths> DepthsFor(const SingleScattering<float>& air, const DeltaM& peak) {
   constexpr double kDeepest = 40.0, kDeepestPeak = 20.0;
   const double column_m = double{air.ColumnsToSpace(0.0, 0.0)[1]};

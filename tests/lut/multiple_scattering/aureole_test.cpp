@@ -191,8 +191,9 @@ double NuOf(double mu, double mu_s, double azimuth_rad) {
   return mu * mu_s + std::sqrt((1.0 - mu * mu) * (1.0 - mu_s * mu_s)) * std::cos(azimuth_rad);
 }
 
-void ExpectMultipleScatteringOfEveryAzimuth(const Medium& medium) {
-  const MultipleScattering light(medium, kSmall);
+void ExpectMultipleScatteringOfEveryAzimuth(const Medium& medium,
+                                            const MultipleScatteringOptions& options = kSmall) {
+  const MultipleScattering light(medium, options);
   const SingleScattering<float> air(medium);
   const AzimuthFan fan(light);
   for (const double altitude_m : {0.0, 10e3, 400e3}) {
@@ -234,6 +235,12 @@ TEST_P(AzimuthFanOf, BandsIsTheLightOfEveryAzimuthScalarOrPolarised) {
   ExpectMultipleScatteringOfEveryAzimuth(
       InScalarLight(MediumPreset("earth", WavelengthSet(GetParam()))));
   ExpectMultipleScatteringOfEveryAzimuth(MediumPreset("earth", WavelengthSet(GetParam())));
+}
+
+TEST(AzimuthFan, IsTheLightOfEveryAzimuthWithASeparatePeak) {
+  MultipleScatteringOptions options = kSmall;
+  options.delta_m = true;
+  ExpectMultipleScatteringOfEveryAzimuth(MediumPreset("mars", {550.0, 650.0}), options);
 }
 
 INSTANTIATE_TEST_SUITE_P(AnyNumber, AzimuthFanOf, testing::Values(3, 4, 6));
