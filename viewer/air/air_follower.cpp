@@ -7,7 +7,6 @@
 #include <glm/geometric.hpp>
 #include <glm/vec2.hpp>
 #include <string>
-#include <tuple>
 #include <utility>
 
 #include "atmosphere/math/constants.h"
@@ -32,19 +31,10 @@ constexpr std::array<Slot, AirTextures::kUnits> kSlots{{{"air_sky", GL_TEXTURE_2
                                                         {"air_phase", GL_TEXTURE_2D},
                                                         {"air_to_sun", GL_TEXTURE_2D}}};
 
-// Uploads texels. A texture that already has this size is overwritten in place.
-void UploadTexels(const GlTexture& texture, GLenum target, const AirTexels& texels,
-                  bool same_size) {
-  glBindTexture(target, texture.id());
-  const void* data = texels.texel.data();
-  const auto [width, height, depth] = std::tuple(texels.width, texels.height, texels.depth);
-  if (target == GL_TEXTURE_2D && same_size) {
-    glTexSubImage2D(target, 0, 0, 0, width, height, GL_RGBA, GL_FLOAT, data);
-  } else if (target == GL_TEXTURE_3D && same_size) {
-    glTexSubImage3D(target, 0, 0, 0, 0, width, height, depth, GL_RGBA, GL_FLOAT, data);
-  } else {
-    UploadTexture(target, texture, {GL_RGBA32F, width, height, depth, GL_RGBA, GL_FLOAT, data});
-  }
+void UploadTexels(const GlTexture& texture, GLenum target, const AirTexels& texels) {
+  UploadTexture(target, texture,
+                {GL_RGBA32F, texels.width, texels.height, texels.depth, GL_RGBA, GL_FLOAT,
+                 texels.texel.data()});
   glTexParameteri(target, GL_TEXTURE_WRAP_R, GL_CLAMP_TO_EDGE);
 }
 
@@ -79,14 +69,13 @@ std::vector<ShaderPiece> AirTableTexts() {
 AirTextures::AirTextures() = default;
 
 void AirTextures::Upload(const MediumTables& tables) {
-  UploadTexels(texture_[kToSun], kSlots[kToSun].target, tables.to_sun, false);
+  UploadTexels(texture_[kToSun], kSlots[kToSun].target, tables.to_sun);
   CheckGl("AirTextures::Upload");
 }
 
 void AirTextures::Upload(const AirTables& tables) {
-  const bool same_size = std::exchange(size_, tables.size) == tables.size;
   const auto upload = [&](Table table, const AirTexels& texels) {
-    UploadTexels(texture_[table], kSlots[table].target, texels, same_size);
+    UploadTexels(texture_[table], kSlots[table].target, texels);
   };
   upload(kSky, tables.sky);
   upload(kPhase, tables.phase);

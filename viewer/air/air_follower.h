@@ -70,7 +70,6 @@ class AirTextures {
 
  private:
   std::array<GlTexture, kUnits> texture_;
-  std::optional<AirTablesSize> size_;  // size of the uploaded tables
   GlBuffer block_;
   AirTablesBlock values_{};
 };

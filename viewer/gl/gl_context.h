@@ -124,8 +124,9 @@ struct Texels {
   const void* data;  // null: the values are undefined
 };
 
-/// Replaces the values of a texture, which is bound to the active unit. Between the texels it is
-/// interpolated, and it is clamped at its edges except along depth.
+/// Replaces the values of a texture, which is bound to the active unit; its storage is kept if size
+/// and format stay the same. Between the texels it is interpolated, and it is clamped at its edges
+/// except along depth.
 void UploadTexture(GLenum target, const GlTexture& texture, const Texels& texels);
 
 /// Uploads a uniform block, a struct of vec4, and binds it.

@@ -84,6 +84,50 @@ TEST_F(RenderTargets, MakingOneLeavesWhatIsBoundToATextureUnit) {
   EXPECT_EQ(static_cast<GLuint>(bound), texture.id());
 }
 
+/// Counts how often storage of a two-dimensional texture is made during its lifetime.
+class StorageCounter {
+ public:
+  StorageCounter() {
+    const RenderTarget any(1, 1);  // epoxy replaces the function in its first call
+    own_ = epoxy_glTexImage2D;
+    made_ = 0;
+    epoxy_glTexImage2D = Count;
+  }
+  ~StorageCounter() { epoxy_glTexImage2D = own_; }
+  StorageCounter(const StorageCounter&) = delete;
+  StorageCounter& operator=(const StorageCounter&) = delete;
+
+  [[nodiscard]] int made() const { return made_; }
+
+ private:
+  static void Count(GLenum target, GLint level, GLint internal, GLsizei width, GLsizei height,
+                    GLint border, GLenum format, GLenum type, const void* data) {
+    ++made_;
+    own_(target, level, internal, width, height, border, format, type, data);
+  }
+  static inline int made_ = 0;
+  static inline PFNGLTEXIMAGE2DPROC own_ = nullptr;
+};
+
+TEST_F(RenderTargets, ATextureKeepsItsStorageForValuesOfOneSizeAndFormat) {
+  const GlTexture texture;
+  const auto read_after = [&](GLenum format, int width, float value) {
+    const std::vector<float> values(static_cast<std::size_t>(2 * width), value);
+    UploadTexture(GL_TEXTURE_2D, texture, {format, width, 2, 1, GL_RED, GL_FLOAT, values.data()});
+    std::vector<float> read(values.size());
+    glGetTexImage(GL_TEXTURE_2D, 0, GL_RED, GL_FLOAT, read.data());
+    return read.back();
+  };
+  const StorageCounter storage;
+  EXPECT_EQ(read_after(GL_R32F, 4, 1.0F), 1.0F);
+  EXPECT_EQ(read_after(GL_R32F, 4, 2.0F), 2.0F);
+  EXPECT_EQ(storage.made(), 1);
+  EXPECT_EQ(read_after(GL_R32F, 8, 3.0F), 3.0F);
+  EXPECT_EQ(read_after(GL_R16F, 8, 4.0F), 4.0F);
+  EXPECT_EQ(storage.made(), 3) << "another size, and another format";
+  CheckGl("RenderTargets");
+}
+
 TEST_F(RenderTargets, ATargetIsMadeAnewForAnotherSizeAlone) {
   std::optional<RenderTarget> target;
   Fit(target, 3, 2);
