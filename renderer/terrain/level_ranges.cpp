@@ -34,6 +34,8 @@ LandEye::LandEye(const LandLattice& lattice, const GeodeticPosition& place, doub
       above_m(height_above_m),
       sight_m(farthest_m),
       latitude_rad(place.latitude_rad),
+      sin_latitude(std::sin(place.latitude_rad)),
+      cos_latitude(std::cos(place.latitude_rad)),
       step_lon_rad(lattice.step_lon_rad),
       step_lat_rad(lattice.step_lat_rad) {
   const double southern_rad = lattice.north_rad - lattice.last_row * lattice.step_lat_rad;
@@ -42,12 +44,16 @@ LandEye::LandEye(const LandLattice& lattice, const GeodeticPosition& place, doub
 
 // The chord is that of the haversine formula, which is exact for small angles.
 double LandEye::ChordTo(const LatticePlace& place) const {
-  const double north_rad = (at.row - place.row) * step_lat_rad;
   const double x = std::sin(0.5 * (place.column - at.column) * step_lon_rad);
+  return ChordToRow(place.row, x * x);
+}
+
+double LandEye::ChordToRow(double row, double square_across) const {
+  const double north_rad = (at.row - row) * step_lat_rad;
   const double y = std::sin(0.5 * north_rad);
   // A row beyond a pole is drawn at the pole.
-  const double across = std::cos(latitude_rad) * std::max(std::cos(latitude_rad + north_rad), 0.0);
-  return 2.0 * radius_m() * std::sqrt(std::max(y * y + across * x * x, 0.0));
+  const double across = cos_latitude * std::max(std::cos(latitude_rad + north_rad), 0.0);
+  return 2.0 * radius_m() * std::sqrt(std::max(y * y + across * square_across, 0.0));
 }
 
 double LandEye::ChordTo(const LatticeArea& area) const {
@@ -60,7 +66,8 @@ double LandEye::ChordTo(const LatticeArea& area) const {
   };
   const double columns =
       is_on_meridians ? 0.0 : std::min(beside(area.first_column), beside(area.last_column));
-  const auto chord = [&](double row) { return ChordTo(LatticePlace{at.column + columns, row}); };
+  const double x = std::sin(0.5 * columns * step_lon_rad);
+  const auto chord = [&](double row) { return ChordToRow(row, x * x); };
   const auto row_of = [&](double latitude) {
     return at.row + (latitude_rad - latitude) / step_lat_rad;
   };
@@ -68,8 +75,7 @@ double LandEye::ChordTo(const LatticeArea& area) const {
   const double first = std::max(area.first_row, row_of(kPole_rad));
   const double last = std::min(area.last_row, row_of(-kPole_rad));
   // The nearest point of a meridian's great circle.
-  const double nearest_rad =
-      std::atan2(std::sin(latitude_rad), std::cos(latitude_rad) * std::cos(columns * step_lon_rad));
+  const double nearest_rad = std::atan2(sin_latitude, cos_latitude * (1.0 - 2.0 * x * x));
   const double row = row_of(nearest_rad);
   return row > first && row < last ? chord(row) : std::min(chord(first), chord(last));
 }

@@ -37,6 +37,7 @@ struct LandEye {
   double above_m = 0.0;  // h
   double sight_m = 0.0;  // largest distance of visible ground
   double latitude_rad = 0.0;
+  double sin_latitude = 0.0, cos_latitude = 1.0;  // of latitude_rad
   double step_lon_rad = 0.0, step_lat_rad = 0.0;  // of the lattice
   double nearest_equator_rad = 0.0;               // least distance of the lattice from the equator
 
@@ -53,6 +54,11 @@ struct LandEye {
   [[nodiscard]] double ChordTo(const LatticeArea& area) const;
   /// Returns d for a chord.
   [[nodiscard]] double DistanceOver(double chord_m) const { return std::hypot(chord_m, above_m); }
+
+ private:
+  /// Returns the chord to a place on a row, from the squared sine of half the angle between its
+  /// meridian and the eye's.
+  [[nodiscard]] double ChordToRow(double row, double square_across) const;
 };
 
 struct LevelRange {

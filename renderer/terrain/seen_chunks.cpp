@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kTurn = 2.0 * std::numbers::pi;
 
-double Along(const glm::dvec3& p) { return std::hypot(p.x, p.y); }
+double Along(const glm::dvec3& p) { return std::sqrt(p.x * p.x + p.y * p.y); }
 
 // Returns the azimuth, clockwise from north, in units of 1/`bins` of the circle.
 double BinOf(const glm::dvec3& p, int bins) { return std::atan2(p.x, p.y) / kTurn * bins; }

@@ -13,26 +13,11 @@
 #include "atmosphere/base/error.h"
 #include "atmosphere/math/constants.h"
 #include "lut/cli/program.h"
-#include "renderer/terrain/seen_chunks.h"
 
 namespace alpenglow::viewer {
 namespace {
 
 constexpr double kReachTime_s = 0.7;  // time for a new level to reach its full range
-
-// Returns the distance of the horizon from a height, over a sphere a little larger than the earth
-// [m].
-double HorizonDistance(double height_m) {
-  constexpr double kRadius_m = 6.4e6;
-  const double above = std::max(height_m, 0.0);
-  return std::sqrt(above * (above + 2.0 * kRadius_m));
-}
-
-// Returns the distance of the farthest ground that may be visible [m].
-double SightFrom(double height_m) {
-  constexpr double kHighestGround_m = 9000.0;
-  return HorizonDistance(height_m) + HorizonDistance(kHighestGround_m);
-}
 
 }  // namespace
 
@@ -44,7 +29,8 @@ Landscape::Landscape(const LandSource& source, const LandSize& size, const Ellip
       tree_(*tiles_),
       cache_(tiles_, tree_, size.most_bytes),
       reach_m_(static_cast<std::size_t>(tree_.top()) + 1, 0.0),
-      worker_(MakeChunks) {
+      worker_(MakeChunks),
+      chooser_(ChooseLand) {
   RequireInRange(size.detail, LandSize::kLeastDetail, LandSize::kMostDetail,
                  "the detail of the land");
   if (source.mesh) {
@@ -56,8 +42,14 @@ Landscape::Landscape(const LandSource& source, const LandSize& size, const Ellip
 
 Landscape::~Landscape() = default;
 
+const LandChoice& Landscape::Choice() const {
+  chooser_.Wait();
+  if (std::optional<LandChoice> made = chooser_.Poll()) choice_ = std::move(*made);
+  return choice_;
+}
+
 LandEye Landscape::EyeAt(const GeodeticPosition& eye) const {
-  return {tiles_->lattice(), eye, std::max(eye.height_m - ceiling_m_.value_or(0.0), 0.0),
+  return {tiles_->lattice(), eye, std::max(eye.height_m - Choice().ceiling_m.value_or(0.0), 0.0),
           SightFrom(eye.height_m)};
 }
 
@@ -103,44 +95,16 @@ EdgesOfVertices Landscape::edges() const { return mesh_ ? mesh_->edges() : fade_
 
 bool Landscape::IsRelighting() const { return mesh_ ? mesh_->IsRelighting() : fade_.IsChanging(); }
 
-// Updates the ceiling. The ground around the eye is as high as any chunk near it, minus its
-// distance.
-void Landscape::RaiseAbove(double seconds) {
-  constexpr double kTime_s = 0.3;
-  double highest = -1e9;
-  for (const DrawnChunk& near : around_) {
-    const ChunkSet::Kept* const kept = set_->Find(near.key);
-    if (kept == nullptr || kept->chunk->triangles.empty()) continue;
-    highest = std::max(highest, kept->chunk->highest_m - near.beside_m);
-  }
-  if (highest < -1e8) return;
-  const double share = ceiling_m_ ? 1.0 - std::exp(-seconds / kTime_s) : 1.0;
-  // lerp() reaches its end exactly. A running sum would keep changing by rounding, and
-  // WaitUntilReady would not end.
-  ceiling_m_ = std::lerp(ceiling_m_.value_or(highest), highest, share);
-}
-
-void Landscape::FindAround() {
-  around_ = DrawnChunks(tree_, eye_, ranges_, [&](const ChunkKey& key) { return set_->Has(key); });
+void Landscape::Choose(double seconds) {
   const std::optional<double> ground = ground_.HeightUnder(eye_place_);
   over_ground_ = ground && eye_place_.height_m > *ground;
+  chooser_.Request({&tree_, set_.get(), ellipsoid_, eye_place_, eye_, view_, ranges_, over_ground_,
+                    choice_.ceiling_m, seconds});
 }
 
-void Landscape::ChooseDrawn() {
-  drawn_.clear();
-  farthest_m_ = mesh_ ? SightFrom(eye_place_.height_m) : 0.0;
-  if (!set_) return;
-  for (const DrawnChunk& near : around_) {
-    const ChunkSet::Kept* const kept = set_->Find(near.key);
-    if (kept == nullptr || kept->slot < 0) continue;
-    drawn_.push_back({kept->slot, kept->chunk.get(), near.coarse_sides});
-  }
-  const FrameTransform eye(set_->anchor().frame, LocalFrame(ellipsoid_, eye_place_));
-  farthest_m_ = FarthestOf(drawn_, eye);
-  drawn_ = InView(std::move(drawn_), eye, view_);
-  constexpr double kHigh_m = 5000.0;  // over all ground nearby; little is hidden from there
-  if (over_ground_ && eye_.above_m < kHigh_m)
-    drawn_ = WithoutHidden(drawn_, eye, view_.bends_per_m);
+double Landscape::farthest_m() const {
+  if (set_) return Choice().farthest_m;
+  return mesh_ ? SightFrom(eye_place_.height_m) : 0.0;
 }
 
 void Landscape::BeginReading(const GeodeticPosition& place) {
@@ -161,11 +125,6 @@ void Landscape::AwaitGround(const GeodeticPosition& place) {
 }
 
 void Landscape::Update(const GeodeticPosition& eye, const LandView& view, double seconds) {
-  Advance(eye, view, seconds);
-  ChooseDrawn();
-}
-
-void Landscape::Advance(const GeodeticPosition& eye, const LandView& view, double seconds) {
   ++frame_;
   eye_place_ = eye;
   view_ = view;
@@ -185,9 +144,8 @@ void Landscape::Advance(const GeodeticPosition& eye, const LandView& view, doubl
   fade_.Advance(seconds, set_->IsLitBy(fade_.number()));
   RequestChunks();
   RequestLight();
-  FindAround();
-  RaiseAbove(seconds);
   set_->Evict(demand_.wanted.size() + demand_.wanted.size() / 4 + 64, frame_);
+  Choose(seconds);
 }
 
 void Landscape::WaitForWork() {
@@ -213,10 +171,10 @@ void Landscape::WaitUntilReady(const GeodeticPosition& eye, const LandView& view
   for (int still = 0; still < 3;) {
     ThrowIfInterrupted();
     const std::size_t chunks = set_ ? set_->size() : 0;
-    ceilings.push_back(ceiling_m_);
+    ceilings.push_back(Choice().ceiling_m);
     WaitForWork();
-    Advance(eye, view, kLong_s);
-    const auto round = std::find(ceilings.begin(), ceilings.end(), ceiling_m_);
+    Update(eye, view, kLong_s);
+    const auto round = std::find(ceilings.begin(), ceilings.end(), Choice().ceiling_m);
     if (!IsAllThere(chunks)) {
       still = 0;
       ceilings.clear();
@@ -224,7 +182,6 @@ void Landscape::WaitUntilReady(const GeodeticPosition& eye, const LandView& view
       still += ceilings.back() == *std::min_element(round, ceilings.end()) ? 1 : 0;
     }
   }
-  ChooseDrawn();
 }
 
 LandBlock Landscape::Block() const {
@@ -250,11 +207,11 @@ LandBlock Landscape::Block() const {
 void Landscape::Draw(LandDrawn what, GLuint view_binding, const LandLook& look) {
   LandPass::Clear(what);
   if (mesh_) mesh_->Draw(pass_, what, look, eye_place_, view_binding);
-  if (!set_ || drawn_.empty()) return;
+  if (!set_ || Choice().drawn.empty()) return;
   pass_.Use(fade_.edges());
   // Seen from above the ground, back faces are always hidden, so they can be culled.
   pass_.Run(what, look, Block(), set_->anchor().frame, view_binding, over_ground_,
-            [&] { set_->Draw(drawn_, fade_.from()); });
+            [&] { set_->Draw(choice_.drawn, fade_.from()); });
 }
 
 std::optional<double> LandGround::HeightUnder(const GeodeticPosition& place) const {
@@ -277,6 +234,7 @@ bool Landscape::HasCome() const {
   if (!set_ || !ground_.IsKnownAt(eye_place_)) return false;
   if (!ground_.HeightUnder(eye_place_)) return true;
   if (!fade_.HasShown()) return false;
+  Choice();  // afterwards no other thread uses the tree
   const std::vector<ChunkKey> roots = tree_.Roots(eye_);
   const bool has_roots = std::all_of(roots.begin(), roots.end(), [&](const ChunkKey& root) {
     return set_->Has(root) || ChunkTree::Distance(root, eye_) > kAbout_m;
@@ -326,8 +284,8 @@ LandFigures Landscape::Figures() const {
   figures.tile_bytes = cache_.bytes();
   if (mesh_) figures.card_bytes = mesh_->bytes();
   if (!set_) return figures;
-  figures.chunks = static_cast<int>(drawn_.size());
-  for (const auto& drawn : drawn_)
+  figures.chunks = static_cast<int>(Choice().drawn.size());
+  for (const auto& drawn : choice_.drawn)
     figures.triangles += static_cast<int>(drawn.chunk->triangles.size() / 3);
   for (const ChunkSet* const set : {set_.get(), next_set_.get()}) {
     if (set == nullptr) continue;
@@ -379,7 +337,7 @@ void Landscape::MoveAnchor() {
         });
     if (!has_all) return;
     set_ = std::move(next_set_);
-    drawn_.clear();
+    choice_.drawn.clear();
     return;
   }
   GeodeticPosition foot = eye_place_;

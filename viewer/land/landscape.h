@@ -17,6 +17,7 @@
 #include "renderer/terrain/loaded_heights.h"
 #include "renderer/terrain/tile_cache.h"
 #include "viewer/land/chunk_set.h"
+#include "viewer/land/land_choice.h"
 #include "viewer/land/land_pass.h"
 #include "viewer/land/mesh_land.h"
 
@@ -97,7 +98,7 @@ class Landscape {
   Landscape(const Landscape&) = delete;
   Landscape& operator=(const Landscape&) = delete;
 
-  /// Collects finished work, requests missing tiles and chunks, and chooses the chunks to draw.
+  /// Collects finished work, requests what is missing, and begins to choose the chunks to draw.
   /// Never waits. Throws InputError if a file that was named explicitly turns out to be damaged.
   /// @param seconds  time since the last call, by which new levels and lights fade in.
   void Update(const GeodeticPosition& eye, const LandView& view, double seconds);
@@ -141,7 +142,7 @@ class Landscape {
   [[nodiscard]] std::vector<std::string> PollNotes();
   [[nodiscard]] LandFigures Figures() const;
   /// Upper bound for the distance [m] from the eye to loaded land around it, in view or not.
-  [[nodiscard]] double farthest_m() const { return farthest_m_; }
+  [[nodiscard]] double farthest_m() const;
   [[nodiscard]] const LandTiles& tiles() const { return *tiles_; }
 
  private:
@@ -159,11 +160,10 @@ class Landscape {
   void RequestChunks();
   void RequestLight();
   [[nodiscard]] std::vector<ChunkKey> Missing(const ChunkSet& set) const;
-  /// Does all work of a frame except the choice of the chunks in view.
-  void Advance(const GeodeticPosition& eye, const LandView& view, double seconds);
-  void FindAround();
-  void ChooseDrawn();
-  void RaiseAbove(double seconds);
+  /// Begins the choice of the chunks to draw. Set and tree must not be used until Choice().
+  void Choose(double seconds);
+  /// Waits for the choice, and returns it.
+  const LandChoice& Choice() const;
   void WaitForWork();
   [[nodiscard]] bool IsAllThere(std::size_t chunks_before) const;
   [[nodiscard]] LandBlock Block() const;
@@ -178,14 +178,11 @@ class Landscape {
   LandEye eye_;
   LandView view_;
   bool over_ground_ = false;
-  std::optional<double> ceiling_m_;  // height of the ground around the eye, over the ellipsoid
   std::unique_ptr<ChunkSet> set_, next_set_;
   LandDemand demand_;
   std::vector<double> reach_m_;
   std::vector<LevelRange> ranges_;
-  std::vector<DrawnChunk> around_;  // in view or not
-  std::vector<SeenChunk> drawn_;    // in view
-  double farthest_m_ = 0.0;
+  mutable LandChoice choice_;  // the newest that Choice() has returned
   LightFade fade_;
   long frame_ = 0;
   bool is_working_ = false;
@@ -193,7 +190,9 @@ class Landscape {
   LandPass pass_;
   std::optional<MeshLand> mesh_;  // instead of tiles
   LandGround ground_{cache_, mesh_};
-  AsyncValue<ChunkOrder, MadeChunks> worker_;  // last member: it uses those above
+  // Last members: their threads use those above.
+  AsyncValue<ChunkOrder, MadeChunks> worker_;
+  mutable AsyncValue<LandChoiceOrder, LandChoice> chooser_;
 };
 
 }  // namespace alpenglow::viewer

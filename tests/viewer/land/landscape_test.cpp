@@ -9,6 +9,7 @@
 #include <glm/geometric.hpp>
 
 #include "atmosphere/astronomy/sun.h"
+#include "atmosphere/math/constants.h"
 #include "renderer/elevation/obj_file.h"
 #include "renderer/terrain/terrain.h"
 #include "tests/fixtures/quantile.h"
@@ -207,6 +208,28 @@ TEST_F(LandscapePictures, WhatNearLandHidesIsLeftOutAndNothingElse) {
     EXPECT_LT(tests::Quantile(misses.distance, 0.99), 1e-3) << "the rest lies on crests";
   }
   EXPECT_LT(4 * fewest, most) << "in a valley little is seen";
+}
+
+// The choice is made on another thread.
+TEST_F(LandscapePictures, TheChunksOfAFrameAreThoseOfItsOwnView) {
+  WriteTile(folder_ / "a.tif", 0, 0);
+  Landscape land(Folder(), {64.0}, kWgs84);
+  LookOut inwards{PlaceOfSample(60.0, 120.0, 0.0), 0.5 * kPi}, outwards = inwards;
+  land.WaitUntilReady(inwards.place, inwards.View());
+  inwards.place.height_m = *land.ground().HeightUnder(inwards.place) + 1000.0;
+  outwards.place = inwards.place;
+  outwards.heading_rad = -inwards.heading_rad;
+  const auto chunks = [&](const LookOut& eye) {
+    land.Update(eye.place, eye.View(), 0.0);
+    return land.Figures().chunks;
+  };
+  land.WaitUntilReady(inwards.place, inwards.View());
+  const int many = chunks(inwards), few = chunks(outwards);
+  ASSERT_GT(many, few);
+  for (int turn = 0; turn < 20; ++turn) {
+    ASSERT_EQ(chunks(inwards), many);
+    ASSERT_EQ(chunks(outwards), few);
+  }
 }
 
 TEST_F(LandscapePictures, NoPixelBelowTheSkylineIsWithoutTerrain) {
