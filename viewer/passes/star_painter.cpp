@@ -66,9 +66,18 @@ std::vector<StarPoint> StarPointsIn(const PaintedView& view, const StarrySky& sk
         x > -margin && x < view.width + margin && y > -margin && y < view.height + margin;
     return is_in ? std::optional(glm::dvec2(x, y)) : std::nullopt;
   };
+  // Most stars are farther from the axis than the farthest corner.
+  const auto widest = [&](double part, int side, const glm::dvec3& axis) {
+    return (std::abs(part) + 1.0 + 2.0 * reach / side) * glm::length(axis);
+  };
+  const double least_cosine =
+      1.0 / std::hypot(1.0, widest(view.part.x * view.part.z, view.width, axes.right),
+                       widest(view.part.y * view.part.w, view.height, axes.up));
+  const glm::dvec3 forward_then = axes.forward * sky.turn;  // turned back
   std::vector<StarPoint> points;
   for (const StarLight& light : sky.lights) {
-    if (light.lux < sky.faintest_lux) continue;
+    if (light.lux < sky.faintest_lux) break;
+    if (glm::dot(light.direction, forward_then) < least_cosine) continue;
     if (!place_of(sky.turn * light.direction, reach)) continue;
     const glm::dvec3 towards = TowardsStar(light, sky);
     const auto at = place_of(towards, kStarReach);
@@ -121,8 +130,11 @@ StarPainter::StarPainter()
           [](const Request& request) {
             constexpr double kAll = std::numeric_limits<double>::infinity();
             const RefractedView bent(request.air->medium, request.place.height_m);
-            return Made{request, bent,
-                        StarLightsOver(request.place, request.now, bent, *request.colour, kAll)};
+            std::vector<StarLight> lights =
+                StarLightsOver(request.place, request.now, bent, *request.colour, kAll);
+            std::stable_sort(lights.begin(), lights.end(),
+                             [](const StarLight& a, const StarLight& b) { return a.lux > b.lux; });
+            return Made{request, bent, std::move(lights)};
           },
           Suits) {}
 

@@ -41,10 +41,10 @@ struct StarPoint {
 
 /// The stars above an eye.
 struct StarrySky {
-  const std::vector<StarLight>& lights;
-  glm::dmat3 turn;      // from the directions of the lights to the current ones
-  double faintest_lux;  // fainter stars are not drawn
-  glm::dvec3 to_moon;   // unit vector to the moon, which hides stars
+  const std::vector<StarLight>& lights;  // the brightest first
+  glm::dmat3 turn;                       // from the directions of the lights to the current ones
+  double faintest_lux;                   // fainter stars are not drawn
+  glm::dvec3 to_moon;                    // unit vector to the moon, which hides stars
   double moon_radius_rad;
   const RefractedView* bent =
       nullptr;  // refraction that raised the lights; null: they have true directions

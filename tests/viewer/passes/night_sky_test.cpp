@@ -4,7 +4,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <glm/geometric.hpp>
 #include <map>
 
@@ -14,6 +16,7 @@
 #include "renderer/illumination/night_light.h"
 #include "renderer/picture/sky_pixels.h"
 #include "tests/fixtures/bare_scene.h"
+#include "viewer/gl/render_target.h"
 #include "viewer/passes/frame_light.h"
 
 namespace alpenglow::viewer {
@@ -53,7 +56,7 @@ double ShareOfRow(const StarPoint& star, int i) {
 
 TEST(StarPoints, PixelsAreThoseOfTheRendererWithItsRadianceAtEverySize) {
   const Scene scene = SkyScene();
-  const std::vector<StarLight> lights{StarAt(20.0, 150.0, 1e-6), StarAt(31.3, 128.7, 2e-6),
+  const std::vector<StarLight> lights{StarAt(31.3, 128.7, 2e-6), StarAt(20.0, 150.0, 1e-6),
                                       StarAt(9.1, 172.4, 5e-7)};
   for (const auto& [width, height] : {std::pair{160, 90}, {640, 360}, {1280, 720}}) {
     const StarPixels reference(
@@ -93,6 +96,42 @@ TEST(StarPoints, ThoseTooFaintBehindTheEyeOrBehindTheMoonAreLeftOut) {
       StarPointsIn(view, {{star}, glm::dmat3(1.0), 0.0, StarAt(20.1, 150.1, 1.0).direction, 0.0045})
           .size(),
       0U);
+}
+
+// Tiles at the corners are seen obliquely.
+TEST(StarPoints, AViewAndItsTilesHaveAllStarsBetweenTheirSides) {
+  const PaintedView whole = ViewOf(SkyScene(), 320, 180);
+  const LandView axes = LandViewOf(whole);
+  std::vector<StarLight> stars;
+  int seen = 0;
+  for (int elevation_deg = -89; elevation_deg < 90; ++elevation_deg) {
+    for (int azimuth_deg = 0; azimuth_deg < 360; ++azimuth_deg) {
+      stars.push_back(StarAt(elevation_deg, azimuth_deg, 1e-6));
+      const glm::dvec3& to = stars.back().direction;
+      const auto is_between = [&](const glm::dvec3& axis) {
+        return std::abs(glm::dot(to, axis)) < glm::dot(axis, axis) * glm::dot(to, axes.forward);
+      };
+      seen += is_between(axes.right) && is_between(axes.up) ? 1 : 0;
+    }
+  }
+  const auto count = [&](const PaintedView& view) {
+    const std::vector<StarPoint> points = PointsOf(view, stars);
+    return std::count_if(points.begin(), points.end(), [&](const StarPoint& star) {
+      const auto column = static_cast<int>(star.corner.z), row = static_cast<int>(star.corner.w);
+      return column >= 0 && column < view.width && row >= 0 && row < view.height;
+    });
+  };
+  EXPECT_GT(seen, 1000);
+  EXPECT_EQ(count(whole), seen);
+  std::ptrdiff_t in_tiles = 0;
+  for (const PictureTile& tile : TilesOf(whole.width, whole.height, 100)) {
+    PaintedView part = whole;
+    part.width = tile.width;
+    part.height = tile.height;
+    part.part = ViewOfTile(tile, whole.width, whole.height);
+    in_tiles += count(part);
+  }
+  EXPECT_EQ(in_tiles, seen);
 }
 
 TEST(StarPoints, TheSkyTurnsWestwardsAboutThePoleOnceASiderealDay) {
