@@ -9,7 +9,7 @@
 #include <glm/vec3.hpp>
 
 #include "atmosphere/math/constants.h"
-#include "renderer/camera/camera_path.h"
+#include "renderer/camera/along_way.h"
 
 namespace alpenglow::renderer {
 namespace {
@@ -79,34 +79,40 @@ std::vector<glm::dvec3> PositionsOf(const std::vector<GeodeticPosition>& places)
   return positions_m;
 }
 
+/// Returns whether the track has times: a single one gives no speed.
 bool IsTimed(const PlacesInTime& points) {
-  return std::any_of(points.times_s.begin(), points.times_s.end(),
-                     [](const auto& time_s) { return time_s.has_value(); });
+  const auto times = std::count_if(points.times_s.begin(), points.times_s.end(),
+                                   [](const auto& time_s) { return time_s.has_value(); });
+  return times > 1;
 }
 
-/// Returns times for all points: missing ones lie evenly between their neighbours, and beyond them
-/// in steps of the mean.
-std::vector<double> TimesOfAll(const std::vector<std::optional<double>>& times_s) {
-  constexpr double kUnknownStep_s = 60.0;  // of a single time
-  std::vector<std::size_t> known;
-  for (std::size_t i = 0; i < times_s.size(); ++i) {
-    if (times_s[i]) known.push_back(i);
+/// Returns times of the points at `rest`, 0 of the others. Missing ones follow from the way between
+/// points with a time, and beyond them from the mean speed of all.
+std::vector<double> TimesAlong(const std::vector<glm::dvec3>& positions_m,
+                               const std::vector<std::optional<double>>& times_s,
+                               const std::vector<std::size_t>& rest) {
+  constexpr double kUnknown_s_per_m = 1.0;  // of points with times that all have one place
+  std::vector<double> way_m, all(times_s.size(), 0.0);
+  std::vector<std::optional<double>> known;
+  for (std::size_t k = 0; k < rest.size(); ++k) {
+    const double step_m =
+        k > 0 ? glm::distance(positions_m[rest[k - 1]], positions_m[rest[k]]) : 0.0;
+    way_m.push_back(k > 0 ? way_m.back() + step_m : 0.0);
+    known.push_back(times_s[rest[k]]);
   }
-  const auto step = [&](std::size_t a, std::size_t b) {
-    return (*times_s[b] - *times_s[a]) / static_cast<double>(b - a);
-  };
-  const double mean_s = known.size() > 1 ? step(known.front(), known.back()) : kUnknownStep_s;
-  std::vector<double> all;
-  std::size_t right = 0;  // the first known index from here on
-  for (std::size_t i = 0; i < times_s.size(); ++i) {
-    while (right < known.size() && known[right] < i) ++right;
-    const std::size_t at = right > 0 ? known[right - 1] : known.front();
-    const bool is_between = right > 0 && right < known.size();
-    const double step_s = is_between ? step(at, known[right]) : mean_s;
-    all.push_back(times_s[i]
-                      ? *times_s[i]
-                      : *times_s[at] + step_s * (static_cast<double>(i) - static_cast<double>(at)));
+  std::vector<std::size_t> timed;
+  for (std::size_t k = 0; k < rest.size(); ++k) {
+    if (known[k]) timed.push_back(k);
   }
+  if (timed.empty()) return all;
+  const double whole_m = way_m[timed.back()] - way_m[timed.front()];
+  const double whole_s = *known[timed.back()] - *known[timed.front()];
+  const double s_per_m = whole_m > 0.0 && whole_s > 0.0 ? whole_s / whole_m : kUnknown_s_per_m;
+  const std::vector<double> completed =
+      CompletedAlong(way_m, known, [&](std::size_t k, std::size_t near, std::size_t) {
+        return *known[near] + (way_m[k] - way_m[near]) * s_per_m;
+      });
+  for (std::size_t k = 0; k < rest.size(); ++k) all[rest[k]] = completed[k];
   return all;
 }
 
@@ -201,7 +207,7 @@ std::vector<bool> OddPlaces(const PlacesInTime& points) {
     return glm::distance(positions_m[a], positions_m[b]);
   };
   if (IsTimed(points)) {
-    MarkTooFast(rest, TimesOfAll(points.times_s), kLimit, apart_m, odd);
+    MarkTooFast(rest, TimesAlong(positions_m, points.times_s, rest), kLimit, apart_m, odd);
     return odd;
   }
   std::vector<double> steps_m;
@@ -225,11 +231,12 @@ std::vector<bool> OddHeights(const PlacesInTime& points,
   const auto apart_m = [&](std::size_t a, std::size_t b) {
     return std::abs(*heights_m[a] - *heights_m[b]);
   };
+  const std::vector<glm::dvec3> positions_m = PositionsOf(points.places);
   if (IsTimed(points)) {
-    MarkTooFast(rest, TimesOfAll(points.times_s), kLimit, apart_m, odd);
+    const std::vector<std::size_t> all = Rest(std::vector<bool>(points.places.size()));
+    MarkTooFast(rest, TimesAlong(positions_m, points.times_s, all), kLimit, apart_m, odd);
     return odd;
   }
-  const std::vector<glm::dvec3> positions_m = PositionsOf(points.places);
   MarkUnreachable(
       rest,
       [&](std::size_t a, std::size_t b) {

@@ -19,24 +19,25 @@ namespace alpenglow::renderer {
 
 /// The points of a track that have a place, in order, for the functions below.
 struct PlacesInTime {
-  std::vector<GeodeticPosition> places;        // with height 0
-  std::vector<std::optional<double>> times_s;  // increasing where known; all empty: a drawn track
+  std::vector<GeodeticPosition> places;  // with height 0
+  std::vector<std::optional<double>>
+      times_s;  // increasing where known; fewer than 2: a drawn track
 };
 
 /// Returns which places are odd:
 /// - latitude 0 and longitude 0 to a metre, more than 100 km from the places before and after: what
 ///   a receiver without a fix writes;
 /// - places that need more than 400 m/s (the ground speed of an airliner in a jet stream is 350) or
-///   five times the median speed of the track, whichever is more, beyond 200 m of noise. Between
-///   points without times, places that lie farther than 500 km or 200 times the median step.
+///   five times the median speed of the track, whichever is more, beyond 200 m of noise. Missing
+///   times are interpolated along the path. If fewer than two points have a time, places that lie farther than 500 km or 200 times the median step.
 [[nodiscard]] std::vector<bool> OddPlaces(const PlacesInTime& points);
 
 /// Returns which of the known heights are odd:
 /// - customary values of a missing height: -999, -9999, -99999, 9999, 99999, 65535, 32767, -32767
 ///   and -32768;
 /// - heights that need more than 100 m/s up or down, or 20 times the median rate of the track,
-///   whichever is more, beyond 300 m of noise. Between points without times, heights that need a
-///   slope of more than 2, beyond 1000 m.
+///   whichever is more, beyond 300 m of noise. If fewer than two points have a time, heights that
+///   need a slope of more than 2, beyond 1000 m.
 [[nodiscard]] std::vector<bool> OddHeights(const PlacesInTime& points,
                                            const std::vector<std::optional<double>>& heights_m);
 

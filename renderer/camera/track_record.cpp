@@ -8,6 +8,7 @@
 #include <iterator>
 
 #include "atmosphere/math/constants.h"
+#include "renderer/camera/along_way.h"
 #include "renderer/camera/camera_path.h"
 #include "renderer/camera/odd_points.h"
 
@@ -257,37 +258,6 @@ std::vector<double> WayOf(const std::vector<PlacedPoint>& points) {
   return way_m;
 }
 
-/// Interpolates values from the known ones, linearly along the path, and evenly where the path
-/// stands still. `beyond`(at, neighbour, next) extrapolates past the first and the last known
-/// value.
-template <typename Beyond>
-std::vector<double> Completed(const std::vector<std::optional<double>>& known,
-                              const std::vector<double>& way_m, const Beyond& beyond) {
-  std::vector<std::size_t> at;
-  for (std::size_t i = 0; i < known.size(); ++i) {
-    if (known[i]) at.push_back(i);
-  }
-  std::vector<double> values;
-  std::size_t right = 0;  // the first known index from here on
-  for (std::size_t i = 0; i < known.size(); ++i) {
-    while (right < at.size() && at[right] < i) ++right;
-    if (known[i]) {
-      values.push_back(*known[i]);
-    } else if (right == 0) {
-      values.push_back(beyond(i, at.front(), at[std::min<std::size_t>(1, at.size() - 1)]));
-    } else if (right == at.size()) {
-      values.push_back(beyond(i, at.back(), at[at.size() - std::min<std::size_t>(2, at.size())]));
-    } else {
-      const std::size_t a = at[right - 1], b = at[right];
-      const double step_m = way_m[b] - way_m[a];
-      const double share = step_m > 0.0 ? (way_m[i] - way_m[a]) / step_m
-                                        : static_cast<double>(i - a) / static_cast<double>(b - a);
-      values.push_back(*known[a] + share * (*known[b] - *known[a]));
-    }
-  }
-  return values;
-}
-
 void CompleteHeights(std::vector<PlacedPoint>& points, Counts& counts) {
   const std::vector<double> way_m = WayOf(points);
   std::vector<std::optional<double>> known;
@@ -295,7 +265,7 @@ void CompleteHeights(std::vector<PlacedPoint>& points, Counts& counts) {
   counts.heights = static_cast<std::size_t>(std::count(known.begin(), known.end(), std::nullopt)) -
                    counts.odd_heights;
   const std::vector<double> heights_m =
-      Completed(known, way_m, [&](std::size_t i, std::size_t near, std::size_t next) {
+      CompletedAlong(way_m, known, [&](std::size_t i, std::size_t near, std::size_t next) {
         const double step_m = std::abs(way_m[next] - way_m[near]);
         if (!(step_m > 0.0)) return *known[near];
         const double share = std::min(std::abs(way_m[i] - way_m[near]) / step_m, 1.0);
@@ -313,7 +283,7 @@ void CompleteTimes(std::vector<PlacedPoint>& points, Counts& counts) {
   const UtcInstant origin = *first->recorded.utc;
   counts.times = static_cast<std::size_t>(std::count(known.begin(), known.end(), std::nullopt));
   const std::vector<double> times_s =
-      Completed(known, way_m, [&](std::size_t i, std::size_t near, std::size_t next) {
+      CompletedAlong(way_m, known, [&](std::size_t i, std::size_t near, std::size_t next) {
         const double step_m = way_m[next] - way_m[near];
         if (step_m == 0.0) return *known[near];
         return *known[near] + (way_m[i] - way_m[near]) * (*known[next] - *known[near]) / step_m;

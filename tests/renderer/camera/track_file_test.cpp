@@ -374,6 +374,37 @@ TEST_F(TrackFile, PlacesThatCanBeReachedAreKept) {
             5U);
 }
 
+// A single time is no measure of speed: steps of 100 km each are those of a drawn route.
+TEST_F(TrackFile, ASingleTimeDropsNoPoint) {
+  std::string points;
+  for (int i = 0; i < 10; ++i)
+    points +=
+        fmt::format("<trkpt lat='{}' lon='8'><ele>{}</ele>{}</trkpt>", 40.0 + 0.9 * i,
+                    i % 2 == 0 ? 1000 : 9000, i == 3 ? "<time>2026-06-21T10:00:00Z</time>" : "");
+  const Track track = Read(GpxOf(points));
+  EXPECT_EQ(track.points.size(), 10U) << track.note;
+  EXPECT_NEAR(track.points[5].place.height_m, 9000.0, 1e-6)
+      << "8 km up in 100 km is a slope of 0.08";
+  EXPECT_THAT(track.note, HasSubstr("fewer than two points have a time"));
+  EXPECT_THAT(track.note, Not(HasSubstr("does not fit")));
+}
+
+// 208 km in an hour: the long leg takes its share of the way, not a ninth of the hour.
+TEST_F(TrackFile, ALongLegWithoutTimesIsFlownAtTheSpeedOfTheRest) {
+  std::string points;
+  double latitude = 46.0;
+  for (int i = 0; i < 10; ++i) {
+    const char* const time = i == 0   ? "<time>2026-06-21T10:00:00Z</time>"
+                             : i == 9 ? "<time>2026-06-21T11:00:00Z</time>"
+                                      : "";
+    points += fmt::format("<trkpt lat='{}' lon='8'><ele>1000</ele>{}</trkpt>", latitude, time);
+    latitude += i == 4 ? 1.8 : 0.009;
+  }
+  const Track track = Read(GpxOf(points));
+  EXPECT_EQ(track.points.size(), 10U) << track.note;
+  EXPECT_THAT(track.note, Not(HasSubstr("does not fit")));
+}
+
 TEST_F(TrackFile, PointsAreInTheOrderOfTheirTimes) {
   const std::string newer = TrackPointText(4, "1", "2:00") + TrackPointText(6, "1", "3:00");
   const std::string older = TrackPointText(0, "1", "0:00") + TrackPointText(2, "1", "1:00");
