@@ -29,7 +29,8 @@ struct PlacesInTime {
 ///   a receiver without a fix writes;
 /// - places that need more than 400 m/s (the ground speed of an airliner in a jet stream is 350) or
 ///   five times the median speed of the track, whichever is more, beyond 200 m of noise. Missing
-///   times are interpolated along the path. If fewer than two points have a time, places that lie farther than 500 km or 200 times the median step.
+///   times are interpolated along the path. If fewer than two points have a time, places that lie
+///   farther than 500 km or 200 times the median step.
 [[nodiscard]] std::vector<bool> OddPlaces(const PlacesInTime& points);
 
 /// Returns which of the known heights are odd:
