@@ -272,6 +272,45 @@ std::optional<std::array<double, 2>> CameraRays::PlaceOf(const glm::dvec3& direc
   return std::array{0.5 * width_ + right / (ahead * scale), 0.5 * height_ - up / (ahead * scale)};
 }
 
+std::optional<ArrivingRay> CameraRays::RayFrom(const glm::dvec3& direction,
+                                               std::array<double, 2> lens) const {
+  glm::dvec3 offset(0.0), through = direction;
+  if (lens_) {
+    const double ahead = glm::dot(direction, forward_);
+    if (ahead <= 0.0) return std::nullopt;
+    const glm::dvec2 point = lens_->radius_m * lens_->iris.Point(lens);
+    offset = point.x * right_ + point.y * up_;
+    through = glm::normalize(offset + lens_->focus_m / ahead * direction);
+  }
+  const auto place = PlaceOf(through);
+  if (!place) return std::nullopt;
+  return ArrivingRay{{eye_, eye_ + offset, direction, through}, (*place)[0], (*place)[1]};
+}
+
+// An eighth of the pixel is measured, because the two sides of a pixel that holds a whole panorama
+// are one direction.
+CameraRays::PixelExtent CameraRays::PixelExtentAt(double x, double y) const {
+  constexpr double kHalf = 0.0625, kPixels = 1.0 / (2.0 * kHalf);
+  return {kPixels * glm::length(Direction(x + kHalf, y) - Direction(x - kHalf, y)),
+          kPixels * glm::length(Direction(x, y + kHalf) - Direction(x, y - kHalf))};
+}
+
+// A rectangle of the plane one unit ahead, from the foot of the eye to (x, y), has the solid angle
+// atan(x y / sqrt(1 + x^2 + y^2)).
+double CameraRays::PixelSolidAngle(int column, int row) const {
+  if (panorama_) {
+    const double top = (0.5 - static_cast<double>(row) / height_) * kPi;
+    return 2.0 * kPi / width_ * (std::sin(top) - std::sin(top - kPi / height_));
+  }
+  const double scale = 2.0 * tangent_ / width_;
+  const double left = (column - 0.5 * width_) * scale, upper = (row - 0.5 * height_) * scale;
+  const auto from_foot = [](double x, double y) {
+    return std::atan(x * y / std::sqrt(1.0 + x * x + y * y));
+  };
+  return from_foot(left + scale, upper + scale) - from_foot(left, upper + scale) -
+         from_foot(left + scale, upper) + from_foot(left, upper);
+}
+
 PictureAxes CameraRays::AxesAt(const glm::dvec3& direction) const {
   const glm::dvec3 level = panorama_ ? glm::cross(direction, up_) : right_;
   const glm::dvec3 up = glm::normalize(glm::cross(level, direction));
@@ -341,11 +380,15 @@ MovingCamera::MovingCamera(std::vector<CameraRays> steps) : steps_(std::move(ste
   ALPENGLOW_ENSURE(steps_.size(), >=, std::size_t{1});
 }
 
-CameraRay MovingCamera::Ray(double x, double y, std::array<double, 2> lens, double time) const {
-  if (!IsMoving()) return steps_.front().Ray(x, y, lens);
+CameraRays MovingCamera::At(double time) const {
+  if (!IsMoving()) return steps_.front();
   const double at = time * static_cast<double>(steps_.size() - 1);
   const auto i = std::min(static_cast<std::size_t>(at), steps_.size() - 2);
-  return Between(steps_[i], steps_[i + 1], at - static_cast<double>(i)).Ray(x, y, lens);
+  return Between(steps_[i], steps_[i + 1], at - static_cast<double>(i));
+}
+
+CameraRay MovingCamera::Ray(double x, double y, std::array<double, 2> lens, double time) const {
+  return IsMoving() ? At(time).Ray(x, y, lens) : steps_.front().Ray(x, y, lens);
 }
 
 }  // namespace alpenglow::renderer

@@ -153,6 +153,12 @@ struct CameraRay {
   glm::dvec3 through{0.0};    // unit, from the centre of the lens to the same point in focus
 };
 
+/// A ray that arrives from infinity, and the point of the picture that it lights.
+struct ArrivingRay {
+  CameraRay ray;
+  double x, y;
+};
+
 /// Unit vectors perpendicular to a viewing direction, oriented like the picture.
 struct PictureAxes {
   glm::dvec3 up{0.0};
@@ -187,6 +193,20 @@ class CameraRays {
   /// Returns the point of the picture plane, possibly outside the picture, that a direction
   /// projects to; empty for directions behind a perspective camera.
   [[nodiscard]] std::optional<std::array<double, 2>> PlaceOf(const glm::dvec3& direction) const;
+
+  /// Returns the ray from a direction through a point of the lens: the inverse of Ray, for a light
+  /// at infinity. Empty for directions behind a perspective camera.
+  [[nodiscard]] std::optional<ArrivingRay> RayFrom(const glm::dvec3& direction,
+                                                   std::array<double, 2> lens) const;
+
+  /// Returns the angles that a pixel around a point of the picture spans [rad].
+  struct PixelExtent {
+    double across_rad, down_rad;
+  };
+  [[nodiscard]] PixelExtent PixelExtentAt(double x, double y) const;
+
+  /// Returns the solid angle of a pixel [sr].
+  [[nodiscard]] double PixelSolidAngle(int column, int row) const;
 
   /// Returns the picture's vertical and horizontal axes, perpendicular to a direction.
   [[nodiscard]] PictureAxes AxesAt(const glm::dvec3& direction) const;
@@ -252,6 +272,10 @@ class MovingCamera {
   [[nodiscard]] bool IsMoving() const { return steps_.size() > 1; }
   /// The camera halfway through the exposure.
   [[nodiscard]] const CameraRays& middle() const { return steps_[steps_.size() / 2]; }
+
+  /// Returns the camera at a time during the exposure.
+  /// @param time  in [0, 1): fraction of the time that the shutter is open.
+  [[nodiscard]] CameraRays At(double time) const;
 
   /// Returns a ray as CameraRays::Ray does, at a time during the exposure.
   /// @param time  in [0, 1): fraction of the time that the shutter is open.

@@ -325,23 +325,40 @@ FrameContext::FrameContext(const PreparedScene& scene, const CameraSample& camer
   AddSmallDisks();
 }
 
+namespace {
+
+/// Returns the larger of the angles that a pixel spans where a direction appears; that of the
+/// middle for a direction that does not.
+double WidestPixelAt(const CameraRays& camera, const glm::dvec3& direction) {
+  const auto place = camera.PlaceOf(direction);
+  if (!place) return camera.PixelAngle();
+  const auto [across_rad, down_rad] = camera.PixelExtentAt((*place)[0], (*place)[1]);
+  return std::max(across_rad, down_rad);
+}
+
+}  // namespace
+
 void FrameContext::AddSmallDisks() {
   sky_lights_.small_sun = sky_lights_.small_moon = nullptr;
-  if (camera().HasLens() || moving().IsMoving()) return;
   constexpr double kRefracted = 2.0;  // a refracted disk is not wider than two radii
   const PixelShader shader(*this);
-  const auto made = [&](const glm::dvec3& to_disk, double radius_rad,
-                        const SmallDisk::Seen& seen) -> std::shared_ptr<const SmallDisk> {
-    if (2.0 * radius_rad >= camera().PixelAngle()) return nullptr;
-    return std::make_shared<const SmallDisk>(camera(), filter_, settings_.width, settings_.height,
-                                             to_disk, kRefracted * radius_rad, seen);
+  const auto made = [&](const DiskInSky& disk) -> std::shared_ptr<const SmallDisk> {
+    const double width_rad = 2.0 / kRefracted * disk.around_rad;
+    if (width_rad >= WidestPixelAt(camera(), disk.to_disk)) return nullptr;
+    return std::make_shared<const SmallDisk>(moving(), filter_, settings_.width, settings_.height,
+                                             disk);
   };
-  const auto small_sun = made(light().to_sun, light().sun_radius_rad,
-                              [&](const glm::dvec3& from) { return shader.SunFrom(from); });
+  const auto is_open = [&](const CameraRay& ray) {
+    return shader.Trace(ray).kind == HitKind::kSky;
+  };
+  const auto small_sun =
+      made({light().to_sun, kRefracted * light().sun_radius_rad, glm::dvec3(0.0),
+            [&](const glm::dvec3& from) { return shader.SunFrom(from); }, is_open});
   std::shared_ptr<const SmallDisk> small_moon;
-  if (light().moon && glm::length(light().moon_turn) == 0.0)
-    small_moon = made(light().moon->to_moon, light().moon->radius_rad,
-                      [&](const glm::dvec3& from) { return shader.MoonFrom(from); });
+  if (light().moon)
+    small_moon =
+        made({light().moon->to_moon, kRefracted * light().moon->radius_rad, light().moon_turn,
+              [&](const glm::dvec3& from) { return shader.MoonFrom(from); }, is_open});
   sky_lights_.small_sun = small_sun;
   sky_lights_.small_moon = small_moon;
 }

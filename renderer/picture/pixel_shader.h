@@ -90,8 +90,8 @@ class PixelShader {
   /// Returns the fraction of light from space that air, fog and a polariser let through at a place
   /// of the picture; no value where ground is in front.
   [[nodiscard]] std::optional<BandLight> LeftOfSpace(double x, double y) const;
-  /// Returns the light of the disk of the sun, or of the moon, that arrives from a direction; 0
-  /// beside the disk and where ground is in front.
+  /// Returns the light of the disk of the sun, or of the moon, that arrives from a direction if no
+  /// ground is in front; 0 beside the disk.
   [[nodiscard]] BandLight SunFrom(const glm::dvec3& direction) const;
   [[nodiscard]] BandLight MoonFrom(const glm::dvec3& direction) const;
 

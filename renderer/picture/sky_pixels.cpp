@@ -4,6 +4,8 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <cmath>
 #include <glm/geometric.hpp>
 
@@ -100,16 +102,38 @@ bool Skyline::IsBelow(const glm::dvec3& direction, double around_rad) const {
 
 namespace {
 
-/// Returns the solid angle of the pixel around a place of the picture. An eighth of the pixel is
-/// measured, because the two sides of a pixel that holds a whole panorama are one direction.
-double SolidAngle(const CameraRays& camera, double x, double y) {
-  constexpr double kHalf = 0.0625, kPixels = 1.0 / (2.0 * kHalf);
-  const glm::dvec3 across = camera.Direction(x + kHalf, y) - camera.Direction(x - kHalf, y);
-  const glm::dvec3 down = camera.Direction(x, y + kHalf) - camera.Direction(x, y - kHalf);
-  return kPixels * kPixels * glm::length(glm::cross(across, down));
+/// Returns the pixel of a closed panorama; columns and rows may lie beyond its edges.
+std::array<int, 2> InPanorama(int column, int row, int width, int height) {
+  while (row < 0 || row >= height) {
+    row = row < 0 ? -1 - row : 2 * height - 1 - row;
+    column += width / 2;
+  }
+  return {((column % width) + width) % width, row};
 }
 
 }  // namespace
+
+void SpreadLight::Add(const CameraRays& camera, int column, int row, const BandLight& irradiance) {
+  if (camera.IsPanorama()) {
+    const auto pixel = InPanorama(column, row, width_, height_);
+    column = pixel[0];
+    row = pixel[1];
+  }
+  if (row < 0 || row >= height_ || column < 0 || column >= width_) return;
+  auto at = pixels_.find(row * width_ + column);
+  if (at == pixels_.end()) {
+    const double per_sr = 1.0 / camera.PixelSolidAngle(column, row);
+    at =
+        pixels_.emplace(row * width_ + column, LitPixel{per_sr, BandLight(irradiance.count)}).first;
+  }
+  LitPixel& pixel = at->second;
+  pixel.radiance = pixel.radiance + static_cast<float>(pixel.per_sr) * irradiance;
+}
+
+const BandLight* SpreadLight::At(int x, int y) const {
+  const auto found = pixels_.find(y * width_ + x);
+  return found == pixels_.end() ? nullptr : &found->second.radiance;
+}
 
 StarBell StarBellAround(double place) {
   constexpr double kDeviation = 0.5;
@@ -125,7 +149,7 @@ StarBell StarBellAround(double place) {
 
 StarPixels::StarPixels(const CameraRays& camera, int width, int height,
                        const std::vector<StarLight>& lights, const Left& left, const Hidden& hidden)
-    : width_(width), height_(height) {
+    : width_(width), height_(height), spread_(width, height) {
   for (const StarLight& light : lights) {
     if (light.way.empty()) {
       AddPoint(camera, light, left);
@@ -153,17 +177,18 @@ void StarPixels::AddPoint(const CameraRays& camera, const StarLight& light, cons
 
 void StarPixels::AddTrail(const CameraRays& camera, const StarLight& light, const Left& left,
                           const Hidden& hidden) {
-  const std::size_t known = pixels_.size();
+  const std::size_t known = spread_.size();
   const auto steps = static_cast<float>(light.way.size() - 1);
   for (std::size_t i = 0; i + 1 < light.way.size(); ++i) {
     const auto from = camera.PlaceOf(light.way[i]), to = camera.PlaceOf(light.way[i + 1]);
     if (!from || !to) continue;
-    // Skip steps that cross the seam of a panorama.
-    if (std::abs((*to)[0] - (*from)[0]) > 0.5 * width_ && camera.IsPanorama()) continue;
-    AddStep(camera, {(*from)[0], (*from)[1]}, {(*to)[0], (*to)[1]},
-            (1.0F / steps) * light.irradiance, left, hidden);
+    const double right = (*to)[0] - (*from)[0];  // the shorter way, across the seam of a panorama
+    const double to_x =
+        (*from)[0] + (camera.IsPanorama() ? std::remainder(right, 1.0 * width_) : right);
+    AddStep(camera, {(*from)[0], (*from)[1]}, {to_x, (*to)[1]}, (1.0F / steps) * light.irradiance,
+            left, hidden);
   }
-  if (pixels_.size() > known) directions_.push_back(light.direction);
+  if (spread_.size() > known) directions_.push_back(light.direction);
 }
 
 // Transmittance changes little from end to end of a step. If ground hides one end, it is evaluated
@@ -200,83 +225,162 @@ void StarPixels::AddStep(const CameraRays& camera, const Place& from, const Plac
 void StarPixels::Spread(const CameraRays& camera, const Place& place, const BandLight& irradiance) {
   const auto [x, y] = place;
   const StarBell across = StarBellAround(x), down = StarBellAround(y);
-  const double per_sr = 1.0 / SolidAngle(camera, x, y);
   for (int j = 0; j < 2 * kStarReach + 1; ++j) {
-    const int row = static_cast<int>(std::floor(y)) + j - kStarReach;
     for (int i = 0; i < 2 * kStarReach + 1; ++i) {
-      const int column = static_cast<int>(std::floor(x)) + i - kStarReach;
-      if (row < 0 || row >= height_ || column < 0 || column >= width_) continue;
       const double share =
-          across.at(static_cast<std::size_t>(i)) * down.at(static_cast<std::size_t>(j)) * per_sr;
-      const auto at = pixels_.try_emplace(row * width_ + column, irradiance.count).first;
-      at->second = at->second + static_cast<float>(share) * irradiance;
+          across.at(static_cast<std::size_t>(i)) * down.at(static_cast<std::size_t>(j));
+      spread_.Add(camera, static_cast<int>(std::floor(x)) + i - kStarReach,
+                  static_cast<int>(std::floor(y)) + j - kStarReach,
+                  static_cast<float>(share) * irradiance);
     }
   }
 }
 
-const BandLight* StarPixels::At(int x, int y) const {
-  const auto found = pixels_.find(y * width_ + x);
-  return found == pixels_.end() ? nullptr : &found->second;
+namespace {
+
+/// Rotates a direction by Rodrigues' formula. @param axis  unit.
+glm::dvec3 TurnedAbout(const glm::dvec3& axis, double angle_rad, const glm::dvec3& direction) {
+  return std::cos(angle_rad) * direction + std::sin(angle_rad) * glm::cross(axis, direction) +
+         (1.0 - std::cos(angle_rad)) * glm::dot(axis, direction) * axis;
 }
 
-SmallDisk::SmallDisk(const CameraRays& camera, const PixelFilter& filter, int width, int height,
-                     const glm::dvec3& to_disk, double around_rad, const Seen& seen)
-    : width_(width), height_(height) {
-  constexpr int kSide = 48;  // the area of a disk of half this width is then right within 1 %
-  const glm::dvec3 other =
-      std::abs(to_disk.z) < 0.9 ? glm::dvec3(0.0, 0.0, 1.0) : glm::dvec3(1.0, 0.0, 0.0);
-  const glm::dvec3 across = glm::normalize(glm::cross(to_disk, other));
-  const glm::dvec3 along = glm::cross(to_disk, across);
-  const double step = 2.0 * around_rad / kSide;
-  for (int i = 0; i < kSide * kSide; ++i) {
-    const glm::dvec3 off = (i % kSide + 0.5 - 0.5 * kSide) * step * across +
-                           (i / kSide + 0.5 - 0.5 * kSide) * step * along;
-    const glm::dvec3 direction = glm::normalize(to_disk + off);
-    const auto place = camera.PlaceOf(direction);
-    if (!place) continue;
-    const auto [x, y] = *place;
+}  // namespace
+
+/// The cells that cover a disk and its motion, in angles around the axis of the motion and towards
+/// it. The area of a disk of half the width of a grid at rest is right within 1 %.
+class SmallDisk::Grid {
+ public:
+  explicit Grid(const DiskInSky& disk) : to_disk_(disk.to_disk) {
+    constexpr int kSide = 48;
+    const double turn_rad = glm::length(disk.turn);
+    const glm::dvec3 other =
+        std::abs(to_disk_.z) < 0.9 ? glm::dvec3(0.0, 0.0, 1.0) : glm::dvec3(1.0, 0.0, 0.0);
+    const glm::dvec3 beside = glm::normalize(glm::cross(to_disk_, other));
+    axis_ = turn_rad > 0.0 ? disk.turn / turn_rad : beside;
+    const glm::dvec3 towards = axis_ - glm::dot(axis_, to_disk_) * to_disk_;
+    const double sine = glm::length(towards);  // > 0: sun and moon do not stand at a celestial pole
+    towards_axis_ = towards / sine;
+    down_rad_ = 2.0 * disk.around_rad / kSide;
+    across_rad_ = down_rad_ / sine;
+    rows_ = kSide;
+    columns_ = kSide + static_cast<int>(std::ceil(turn_rad / across_rad_));
+  }
+
+  [[nodiscard]] int size() const { return columns_ * rows_; }
+  /// Width of a cell [rad].
+  [[nodiscard]] double width_rad() const { return down_rad_; }
+  /// Returns the direction of a point of a cell, in [0, 1) x [0, 1).
+  [[nodiscard]] glm::dvec3 DirectionIn(int cell, const std::array<double, 2>& point) const {
+    const double across = (cell % columns_ + point[0] - 0.5 * columns_) * across_rad_;
+    const double towards = TowardsAxis(cell, point[1]);
+    return TurnedAbout(axis_, across,
+                       std::cos(towards) * to_disk_ + std::sin(towards) * towards_axis_);
+  }
+  /// Returns the solid angle of a cell [sr].
+  [[nodiscard]] double SolidAngleOf(int cell) const {
+    const double towards = TowardsAxis(cell, 0.5);
+    const glm::dvec3 in_row = std::cos(towards) * to_disk_ + std::sin(towards) * towards_axis_;
+    return across_rad_ * down_rad_ * glm::length(glm::cross(axis_, in_row));
+  }
+  /// Returns the samples of the picture, of the lens and of the time that belong to a cell.
+  [[nodiscard]] PixelSamples SamplesOf(int cell, int count) const {
+    return {cell % columns_, cell / columns_, count};
+  }
+
+ private:
+  [[nodiscard]] double TowardsAxis(int cell, double point) const {
+    return (cell / columns_ + point - 0.5 * rows_) * down_rad_;
+  }
+
+  glm::dvec3 to_disk_, axis_{0.0}, towards_axis_{0.0};
+  double across_rad_ = 0.0, down_rad_ = 0.0;  // of a cell; across: around the axis
+  int columns_ = 0, rows_ = 0;
+};
+
+SmallDisk::SmallDisk(const MovingCamera& camera, const PixelFilter& filter, int width, int height,
+                     const DiskInSky& disk)
+    : width_(width), height_(height), spread_(width, height) {
+  const Grid grid(disk);
+  for (int cell = 0; cell < grid.size(); ++cell) AddCell(camera, filter, disk, grid, cell);
+}
+
+namespace {
+
+/// Returns the number of samples of a cell around a point of the picture, a power of 2: each covers
+/// half a pixel at most, and blurred cells share the places of the blur among them.
+int SamplesOfCell(const MovingCamera& camera, const ArrivingRay& middle, double width_rad) {
+  constexpr double kPerPixel = 2.0;
+  constexpr unsigned kBlurred = 64;
+  const auto [across_rad, down_rad] = camera.middle().PixelExtentAt(middle.x, middle.y);
+  const double pixel_rad = std::max(std::min(across_rad, down_rad), 1e-9);
+  const double side = std::clamp(std::ceil(kPerPixel * width_rad / pixel_rad), 1.0, 32.0);
+  const auto fine = static_cast<unsigned>(side * side);
+  const bool is_blurred = camera.IsMoving() || camera.middle().HasLens();
+  return static_cast<int>(std::bit_ceil(is_blurred ? std::max(fine, kBlurred) : fine));
+}
+
+bool IsDark(const BandLight& light) {
+  return std::all_of(light.value.begin(), light.value.begin() + static_cast<int>(light.count),
+                     [](float band) { return band <= 0.0F; });
+}
+
+}  // namespace
+
+void SmallDisk::AddCell(const MovingCamera& camera, const PixelFilter& filter,
+                        const DiskInSky& disk, const Grid& grid, int cell) {
+  constexpr std::array kMiddle{0.5, 0.5};
+  const glm::dvec3 middle = grid.DirectionIn(cell, kMiddle);
+  const auto seen = camera.middle().RayFrom(middle, kMiddle);
+  if (!seen && !camera.IsMoving()) return;
+  const int count =
+      seen ? SamplesOfCell(camera, *seen, grid.width_rad()) : PixelSamples::kMostSamples;
+  const PixelSamples samples = grid.SamplesOf(cell, count);
+  std::optional<BandLight> share;  // of a sample, known when the first of them is seen
+  for (int i = 0; i < count; ++i) {
+    const auto of = [&](SampleOf decision) {
+      return count == 1 ? kMiddle : samples.Point(i, decision);
+    };
+    const CameraRays& then =
+        camera.IsMoving() ? camera.At(of(SampleOf::kTime)[0]) : camera.middle();
+    const auto ray =
+        then.RayFrom(grid.DirectionIn(cell, of(SampleOf::kPixel)), of(SampleOf::kLens));
     const double reach = filter.radius();
-    if (x < -reach || x > width + reach || y < -reach || y > height + reach) continue;
-    Spread(camera, filter, x, y, static_cast<float>(step * step) * seen(direction));
+    if (!ray || ray->x < -reach || ray->x > width_ + reach || ray->y < -reach ||
+        ray->y > height_ + reach || !disk.is_open(ray->ray))
+      continue;
+    if (!share) share = static_cast<float>(grid.SolidAngleOf(cell) / count) * disk.radiance(middle);
+    if (IsDark(*share)) return;
+    Spread(camera.middle(), filter, *ray, *share);
   }
 }
 
 // The weights of the pixels around a point are scaled so that they sum to one: the illuminance in
 // the picture is that of the disk.
-void SmallDisk::Spread(const CameraRays& camera, const PixelFilter& filter, double x, double y,
+void SmallDisk::Spread(const CameraRays& camera, const PixelFilter& filter, const ArrivingRay& at,
                        const BandLight& irradiance) {
-  const bool is_dark = std::all_of(irradiance.value.begin(),
-                                   irradiance.value.begin() + static_cast<int>(irradiance.count),
-                                   [](float band) { return band <= 0.0F; });
-  if (is_dark) return;
   constexpr int kReach = 2;
-  struct Share {
-    int column, row;
-    double weight;
-  };
-  std::vector<Share> shares;
-  double sum = 0.0;
-  for (int j = -kReach; j <= kReach; ++j) {
-    const int row = static_cast<int>(std::floor(y)) + j;
+  using Weights = std::array<double, 2 * kReach + 1>;
+  const auto weights_around = [&](double place) {
+    Weights weights{};
+    double sum = 0.0;
     for (int i = -kReach; i <= kReach; ++i) {
-      const int column = static_cast<int>(std::floor(x)) + i;
-      const double right = x - column - 0.5, down = y - row - 0.5;
-      if (std::max(std::abs(right), std::abs(down)) > filter.radius()) continue;
-      shares.push_back({column, row, filter.Weight(right) * filter.Weight(down)});
-      sum += shares.back().weight;
+      const double off = place - std::floor(place) - i - 0.5;
+      if (std::abs(off) > filter.radius()) continue;
+      sum += weights.at(static_cast<std::size_t>(i + kReach)) = filter.Weight(off);
+    }
+    for (double& weight : weights) weight /= sum;
+    return weights;
+  };
+  const Weights across = weights_around(at.x), down = weights_around(at.y);
+  for (int j = -kReach; j <= kReach; ++j) {
+    for (int i = -kReach; i <= kReach; ++i) {
+      const double weight = across.at(static_cast<std::size_t>(i + kReach)) *
+                            down.at(static_cast<std::size_t>(j + kReach));
+      if (weight == 0.0) continue;
+      spread_.Add(camera, static_cast<int>(std::floor(at.x)) + i,
+                  static_cast<int>(std::floor(at.y)) + j, static_cast<float>(weight) * irradiance);
     }
   }
-  const double per_sr = 1.0 / SolidAngle(camera, x, y);
-  for (const auto& [column, row, weight] : shares) {
-    if (row < 0 || row >= height_ || column < 0 || column >= width_) continue;
-    const auto at = pixels_.try_emplace(row * width_ + column, irradiance.count).first;
-    at->second = at->second + static_cast<float>(per_sr * weight / sum) * irradiance;
-  }
-}
-
-const BandLight* SmallDisk::At(int x, int y) const {
-  const auto found = pixels_.find(y * width_ + x);
-  return found == pixels_.end() ? nullptr : &found->second;
 }
 
 namespace {

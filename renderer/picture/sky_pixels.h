@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Stars and planets in a picture, disks much smaller than a pixel, and the pixels that see only sky.
+// Stars and planets in a picture, disks narrower than a pixel, and the pixels that see only sky.
 //
 // Stars and planets are points whose light is spread over the pixels around them. A light of
 // illuminance E adds the radiance w E / Omega to a pixel of solid angle Omega. The weights w come
@@ -8,13 +8,21 @@
 // not twinkle. During a long exposure the light is spread along its path, evenly in time, in steps
 // of half a pixel.
 //
-// A disk of sun or moon that is less than a pixel wide is integrated over the pixels around it,
-// because rays would miss it: a dozen rays of a pixel, of which none meets the disk, do not differ.
+// A disk of sun or moon that is narrower than a pixel at its place is integrated over the pixels
+// around it, because rays would miss it: a dozen rays of a pixel, of which none meets the disk, do
+// not differ. While the shutter is open the light follows the motion of the camera and of the disk,
+// and a lens blurs it, as they do with the rays of other pixels.
+//
+// In both cases each pixel's share of the light is divided by the solid angle of this pixel. The
+// sum of radiance times solid angle is therefore the illuminance everywhere in a picture, at the
+// rim of a wide view and at the poles of a panorama too. A panorama is closed: light beyond its
+// left edge is that at its right edge, and light beyond a pole lies on the other side of the pole.
 //
 // UnoccludedSkyPixels finds the pixels that see only sky without tracing a ray: those well above
-// the skyline, not near the sun or the moon, and not at the limb of the planet (LimbView). All rays of such a pixel have one sky radiance,
-// that of its middle (shared_samples.h), and so have all rays of its neighbours that count for it.
-// One ray through the middle gives the same result as many.
+// the skyline, not near the sun or the moon, and not at the limb of the planet (LimbView). All rays
+// of such a pixel have one sky radiance, that of its middle (shared_samples.h), and so have all
+// rays of its neighbours that count for it. One ray through the middle gives the same result as
+// many.
 //
 // Skyline is the elevation of the ground around an eye. If the ground is solid below its surface,
 // then along each azimuth all directions below one elevation show ground and all above it show sky.
@@ -73,6 +81,30 @@ inline constexpr int kStarReach = 2;
 using StarBell = std::array<double, 2 * kStarReach + 1>;
 [[nodiscard]] StarBell StarBellAround(double place);
 
+/// Light of points, spread over the pixels of a picture.
+class SpreadLight {
+ public:
+  SpreadLight(int width, int height) : width_(width), height_(height) {}
+
+  /// Adds the light that falls on a pixel, W m^-2 nm^-1; nothing outside a picture that is no
+  /// panorama.
+  void Add(const CameraRays& camera, int column, int row, const BandLight& irradiance);
+
+  /// Returns the radiance to add to a pixel, W m^-2 sr^-1 nm^-1; null: nothing to add.
+  [[nodiscard]] const BandLight* At(int x, int y) const;
+  /// Number of pixels with light.
+  [[nodiscard]] std::size_t size() const { return pixels_.size(); }
+
+ private:
+  struct LitPixel {
+    double per_sr;
+    BandLight radiance;
+  };
+
+  int width_, height_;
+  std::unordered_map<int, LitPixel> pixels_;
+};
+
 /// Stars of one picture. Immutable.
 class StarPixels {
  public:
@@ -89,7 +121,7 @@ class StarPixels {
              const Left& left, const Hidden& hidden);
 
   /// Returns the radiance to add to a pixel, W m^-2 sr^-1 nm^-1; null: nothing to add.
-  [[nodiscard]] const BandLight* At(int x, int y) const;
+  [[nodiscard]] const BandLight* At(int x, int y) const { return spread_.At(x, y); }
   /// Directions of the lights within the picture, brightest first.
   [[nodiscard]] const std::vector<glm::dvec3>& directions() const { return directions_; }
 
@@ -107,29 +139,41 @@ class StarPixels {
   void Spread(const CameraRays& camera, const Place& place, const BandLight& irradiance);
 
   int width_, height_;
-  std::unordered_map<int, BandLight> pixels_;
+  SpreadLight spread_;
   std::vector<glm::dvec3> directions_;
 };
 
-/// A disk of sun or moon, integrated over the pixels that it lights. Immutable.
+/// A disk of sun or moon in the sky of a picture.
+struct DiskInSky {
+  glm::dvec3 to_disk{0.0};  // unit, in the middle of the exposure
+  double around_rad = 0.0;  // > 0: everything farther from the middle of the disk is dark
+  glm::dvec3 turn{0.0};     // axis and angle [rad] of its motion while the shutter is open
+  /// Returns the radiance that arrives from a direction if nothing hides it, its mean while the
+  /// shutter is open; 0 beside the disk.
+  std::function<BandLight(const glm::dvec3& direction)> radiance;
+  /// Returns whether a ray meets nothing but sky.
+  std::function<bool(const CameraRay& ray)> is_open;
+};
+
+/// A disk, integrated over the pixels that it lights: within 1 % of its illuminance, if its radius
+/// is at least half of DiskInSky::around_rad. Immutable.
 class SmallDisk {
  public:
-  /// Returns the radiance that arrives from a direction; 0 beside the disk and where it is hidden.
-  using Seen = std::function<BandLight(const glm::dvec3& direction)>;
-
-  /// @param around_rad  > 0: everything farther from the middle of the disk is dark.
-  SmallDisk(const CameraRays& camera, const PixelFilter& filter, int width, int height,
-            const glm::dvec3& to_disk, double around_rad, const Seen& seen);
+  SmallDisk(const MovingCamera& camera, const PixelFilter& filter, int width, int height,
+            const DiskInSky& disk);
 
   /// Returns the radiance to add to a pixel, W m^-2 sr^-1 nm^-1; null: nothing to add.
-  [[nodiscard]] const BandLight* At(int x, int y) const;
+  [[nodiscard]] const BandLight* At(int x, int y) const { return spread_.At(x, y); }
 
  private:
-  void Spread(const CameraRays& camera, const PixelFilter& filter, double x, double y,
+  class Grid;
+  void AddCell(const MovingCamera& camera, const PixelFilter& filter, const DiskInSky& disk,
+               const Grid& grid, int cell);
+  void Spread(const CameraRays& camera, const PixelFilter& filter, const ArrivingRay& at,
               const BandLight& irradiance);
 
   int width_, height_;
-  std::unordered_map<int, BandLight> pixels_;
+  SpreadLight spread_;
 };
 
 class FrameContext;

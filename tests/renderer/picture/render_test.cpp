@@ -210,28 +210,120 @@ TEST(Render, TheDiskInThePictureHasTheSunsIlluminance) {
 
 class RenderOfFiles : public TemporaryFolder {};
 
+/// Returns the solid angle of a pixel by summing over its parts, which are nearly flat.
+double SolidAngleBySum(const CameraRays& camera, int column, int row) {
+  constexpr int kParts = 32;
+  double sum = 0.0;
+  for (int i = 0; i < kParts * kParts; ++i) {
+    const double x = column + (i % kParts) / (1.0 * kParts),
+                 y = row + (i / kParts) / (1.0 * kParts);
+    constexpr double kSide = 1.0 / kParts;
+    const glm::dvec3 down = camera.Direction(x + kSide, y + kSide) - camera.Direction(x, y);
+    const glm::dvec3 rise = camera.Direction(x + kSide, y) - camera.Direction(x, y + kSide);
+    sum += 0.5 * glm::length(glm::cross(down, rise));
+  }
+  return sum;
+}
+
+/// Returns the illuminance that the pixels much brighter than the sky around the sun add up to.
+double IlluminanceOfBrightPixels(const Image& image, const CameraRays& camera) {
+  double illuminance = 0.0;
+  for (int y = 0; y < image.height; ++y) {
+    for (int x = 0; x < image.width; ++x) {
+      const double luminance = Luminance(image.at(x, y));
+      if (luminance > 1e5) illuminance += luminance * SolidAngleBySum(camera, x, y);
+    }
+  }
+  return illuminance;
+}
+
 // Hard case 32.
 TEST(Render, ADiskSmallerThanAPixelHasTheSunsIlluminance) {
+  const UtcInstant noon = ParseInstant("2026-06-21T11:30:00Z");
+  const Scene bare = QuickScene(2.0, 0.0, 0.0, 90.0);
+  const SunPosition sun = tests::SunSeenIn(bare, noon);
+  const double azimuth = sun.azimuth_rad / kRadiansPerDegree;
+  const double elevation = sun.elevation_rad / kRadiansPerDegree;
+  const Height height{2.0, false};
+  const ThinLens lens{2.0, 0.05, 1.0};  // blurs a point at infinity by 25 mrad
+  struct Case {
+    const char* name;
+    Camera camera;
+    std::optional<ThinLens> lens = {};
+  };
+  // The zenith of a panorama follows the pitch of its camera.
+  const std::vector<Case> cases{
+      {"near the middle", CameraFromDegrees(height, azimuth + 1.0, elevation + 1.0, 0.0, 90.0)},
+      {"at the rim of a wide view",
+       CameraFromDegrees(height, azimuth, elevation - 80.0, 30.0, 170.0)},
+      {"on the seam", CameraFromDegrees(height, azimuth - 180.0, 0.0, 0.0, 360.0)},
+      {"beside the seam", CameraFromDegrees(height, azimuth - 178.0, 0.0, 0.0, 360.0)},
+      {"at the zenith", CameraFromDegrees(height, azimuth, elevation - 90.0, 0.0, 360.0)},
+      {"beside the zenith", CameraFromDegrees(height, azimuth, elevation - 88.7, 0.0, 360.0)},
+      {"at the nadir", CameraFromDegrees(height, azimuth, elevation - 90.0, 180.0, 360.0)},
+      {"through a lens", CameraFromDegrees(height, azimuth, elevation, 0.0, 90.0), lens},
+  };
+  for (Case one : cases) {
+    one.camera.lens = one.lens;
+    Scene scene = bare;
+    scene.camera = one.camera;
+    const SceneRenderer renderer(scene);
+    const RenderSettings settings{.width = 48, .height = 27, .samples_per_pixel = 1, .layers = {}};
+    const Image image = renderer.Render(noon, settings);
+    EXPECT_NEAR(IlluminanceOfBrightPixels(image, CameraRays(one.camera, 48, 27)) /
+                    SunIlluminance(renderer, sun),
+                1.0, 0.01)
+        << one.name << ": the sum over cells of a 24th of the disk";
+  }
+}
+
+// Hard case 32.
+TEST(Render, ASmallDiskIsFoundWithABoundOnTheNoise) {
   const UtcInstant noon = ParseInstant("2026-06-21T11:30:00Z");
   Scene at_sun = QuickScene(2.0, 0.0, 0.0, 90.0);
   const SunPosition sun = tests::SunSeenIn(at_sun, noon);
   at_sun.camera = CameraFromDegrees({2.0, false}, sun.azimuth_rad / kRadiansPerDegree + 1.0,
                                     sun.elevation_rad / kRadiansPerDegree + 1.0, 0.0, 90.0);
   const SceneRenderer renderer(at_sun);
-  RenderSettings settings{.width = 48, .height = 27, .layers = {}};
-  const double pixel = std::pow(CameraRays(at_sun.camera, 48, 27).PixelAngle(), 2);
-  const double expected = SunIlluminance(renderer, sun);
-  for (const bool is_fixed : {false, true}) {
-    if (!is_fixed) settings.noise = 0.02;
-    settings.samples_per_pixel = is_fixed ? 1 : 4;
-    double illuminance = 0.0;
-    const Image image = renderer.Render(noon, settings);
-    for (const auto& rgb : image.rgb) {
-      if (Luminance(rgb) > 1e5) illuminance += Luminance(rgb) * pixel;
+  RenderSettings settings{.width = 48, .height = 27, .samples_per_pixel = 4, .layers = {}};
+  settings.noise = 0.02;
+  const Image image = renderer.Render(noon, settings);
+  EXPECT_NEAR(IlluminanceOfBrightPixels(image, CameraRays(at_sun.camera, 48, 27)) /
+                  SunIlluminance(renderer, sun),
+              1.0, 0.01)
+      << "as without the bound";
+}
+
+// Hard case 32.
+TEST(Render, AMovingCameraBlursADiskSmallerThanAPixel) {
+  const UtcInstant noon = ParseInstant("2026-06-21T11:30:00Z");
+  const Scene scene = QuickScene(1000.0, 0.0, 0.0, 90.0);
+  const SunPosition sun = tests::SunSeenIn(scene, noon);
+  const SceneRenderer renderer(scene);
+  const auto view = [&](double turn_deg) {
+    return CameraFromDegrees({1000.0, false}, sun.azimuth_rad / kRadiansPerDegree + turn_deg,
+                             sun.elevation_rad / kRadiansPerDegree, 0.0, 90.0);
+  };
+  const RenderSettings settings{.width = 48, .height = 27, .samples_per_pixel = 1, .layers = {}};
+  const auto render = [&](double half_turn_deg) {
+    CameraSample sample(noon);
+    for (int i = 0; i <= 16; ++i) {
+      const Camera at = view(half_turn_deg * (i / 8.0 - 1.0));
+      sample.poses.push_back(
+          {PlaceFromDegrees(46.5, 8.0, 1000.0), at.heading_rad, at.pitch_rad, 0.0, at.fov_rad});
     }
-    EXPECT_NEAR(illuminance / expected, 1.0, 0.03) << "pixels beside the middle are smaller";
-    settings.noise = std::nullopt;
-  }
+    return renderer.Render(sample, settings);
+  };
+  const CameraRays camera(view(0.0), 48, 27);
+  const auto brightest = [](const Image& image) {
+    double most = 0.0;
+    for (const auto& rgb : image.rgb) most = std::max(most, Luminance(rgb));
+    return most;
+  };
+  const Image still = render(0.001), moved = render(20.0);
+  EXPECT_NEAR(IlluminanceOfBrightPixels(moved, camera) / IlluminanceOfBrightPixels(still, camera),
+              1.0, 0.01);
+  EXPECT_LT(brightest(moved), 0.5 * brightest(still)) << "a trail over many pixels";
 }
 
 TEST_F(RenderOfFiles, SummitOfFujiIsLitBeforeTheLakeBelow) {
