@@ -54,6 +54,18 @@ Image PictureWriter::Picture(const ImageSize& size, int samples, const PicturePr
 
 namespace {
 
+Projection ProjectionOf(const PaintedView& view) {
+  return IsPanorama(view) ? Projection::kLatitudeLongitude : Projection::kCamera;
+}
+
+// A panorama is held together with one side of the cube that it is made of: 3 GB at this width.
+void RequirePanoramaSize(const PaintedView& view) {
+  constexpr int kWidest = 16384;
+  if (view.width <= kWidest) return;
+  throw OptionError(fmt::format("a panorama of {} x {} pixels is too large; it may be {} wide",
+                                view.width, view.height, kWidest));
+}
+
 // Returns the progress of the part of a picture that begins at a share; empty if nobody asks.
 PictureProgress PartOf(const PictureProgress& progress, double begin, double range) {
   if (!progress) return {};
@@ -64,6 +76,7 @@ PictureProgress PartOf(const PictureProgress& progress, double begin, double ran
 
 Image PictureWriter::PictureOf(const PaintedView& view, int samples,
                                const PictureProgress& progress) {
+  if (IsPanorama(view)) RequirePanoramaSize(view);
   const FrameRenderer::StillSizes still_sizes(flight_.frames());
   if (progress) progress(kBegunShare);
   flight_.WaitUntilReady({view.width, view.height});
@@ -114,11 +127,13 @@ void PictureWriter::Write(const std::filesystem::path& file, const ImageSize& si
                           const PictureProgress& progress) {
   RequirePictureName(file);
   Image image = Picture(size, kPictureSamples, progress);
-  const Development development = flight_.exposure().DevelopmentOf(image);
+  const PaintedView view = flight_.ViewOf(size);
+  const Projection projection = ProjectionOf(view);
+  const Development development = flight_.exposure().DevelopmentOf(image, projection);
   const auto& [look, ev100] = development;
-  const Metadata metadata = HeaderOf(flight_.ViewOf(size), development);
+  const Metadata metadata = HeaderOf(view, development);
   if (HasExtension(file, ".exr")) {
-    WriteExr(file, image, metadata);
+    WriteExr(file, image, metadata, projection);
   } else {
     WritePng(file, Develop(Balanced(std::move(image), look.white), ev100, look), metadata);
   }
@@ -142,7 +157,8 @@ DisplayImage PictureWriter::Film(const ReplayFrame& frame, const ImageSize& size
   flight_.Show(frame);
   Image image = Picture(size, kPictureSamples);
   ExposureControl& exposure = flight_.exposure();
-  exposure.Follow(ReadingOf(image, exposure.look()), flight_.now(), seconds);
+  exposure.Follow(ReadingOf(image, exposure.look(), ProjectionOf(flight_.ViewOf(size))),
+                  flight_.now(), seconds);
   const Look look = exposure.ShownLook();
   return Develop(Balanced(std::move(image), look.white), *exposure.exposure().ev100, look);
 }

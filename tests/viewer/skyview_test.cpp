@@ -244,7 +244,15 @@ TEST_F(Skyview, WideViewsAndPanoramasHaveTheProjectionOfSkyseries) {
     EXPECT_LT(mean, 0.03)
         << fov << ": as narrower views over the bare planet, after sunset without a moon";
     EXPECT_LT(of_means, 0.03) << fov;
-    EXPECT_NEAR(std::stod(ReadExrMetadata(InFolder("v.exr")).at("alpenglow.fov_deg")), fov, 1e-9);
+    const Metadata header = ReadExrMetadata(InFolder("v.exr"));
+    EXPECT_NEAR(std::stod(header.at("alpenglow.fov_deg")), fov, 1e-9);
+    const bool is_panorama = fov == 360;
+    EXPECT_EQ(ContentOf(folder_ / "v.exr").find("envmap") != std::string::npos, is_panorama);
+    const double metered =
+        MeterEv100(ReadExr(folder_ / "v.exr"), kSunDiskLuminance_cd_per_m2,
+                   is_panorama ? Projection::kLatitudeLongitude : Projection::kCamera);
+    EXPECT_NEAR(std::stod(header.at("alpenglow.ev100")), Ev100By({}, metered, {}), 0.01)
+        << fov << ": rows of a panorama count as their solid angle";
   }
 }
 

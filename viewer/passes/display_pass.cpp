@@ -25,10 +25,10 @@
 
 namespace alpenglow::viewer {
 
-MeterReading ReadingOf(const Image& picture, const Look& look) {
-  const WhiteBalance white = Settled(look.white, picture, Projection::kCamera);
-  const auto ev100 = [](const Image& seen) {
-    return MeterEv100(seen, kSunDiskLuminance_cd_per_m2);
+MeterReading ReadingOf(const Image& picture, const Look& look, Projection projection) {
+  const WhiteBalance white = Settled(look.white, picture, projection);
+  const auto ev100 = [&](const Image& seen) {
+    return MeterEv100(seen, kSunDiskLuminance_cd_per_m2, projection);
   };
   return {white.IsDaylight() ? ev100(picture) : ev100(Balanced(picture, white)), white};
 }
