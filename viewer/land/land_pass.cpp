@@ -11,6 +11,7 @@
 #include "atmosphere/math/constants.h"
 #include "atmosphere/time_place/geodesy.h"
 #include "viewer/gl/render_target.h"
+#include "viewer/shaders/block_bindings.h"
 #include "viewer/shaders/pass_setup.h"
 
 namespace alpenglow::viewer {
@@ -60,8 +61,6 @@ void HorizonTexture::Bind(int unit, const Vector<Ecef>& to_sun) {
 }
 
 namespace {
-
-constexpr GLuint kLandBinding = 8;
 
 // Returns whether depth can run from 1 at the near plane to 0 at infinity. A float depth buffer
 // then has a nearly constant relative precision.
@@ -115,6 +114,29 @@ const ShaderProgram& LandPass::ProgramOf(const LandProgramKind& kind) {
   const auto found = programs_.find(kind);
   if (found != programs_.end()) return found->second;
   return programs_.emplace(kind, LandProgram(kind)).first->second;
+}
+
+// The kinds that differ from the last one in one property. The triangle that each draws has no
+// vertices and covers no pixel.
+bool LandPass::MakeOneReady() {
+  if (!last_kind_) return false;
+  for (bool LandProgramKind::*const property :
+       {&LandProgramKind::fades, &LandProgramKind::has_momentary_edges, &LandProgramKind::moonlit,
+        &LandProgramKind::bends}) {
+    LandProgramKind next = *last_kind_;
+    next.*property = !(next.*property);
+    if (next.has_momentary_edges && !horizon_.HasAny()) continue;
+    if (programs_.count(next) > 0) continue;
+    const ShaderProgram& program = ProgramOf(next);
+    program.Use();
+    if (next.has_momentary_edges) BindEdges(program);
+    Draw(next, program, false, [&] {
+      glBindVertexArray(no_vertices_.id());
+      glDrawArrays(GL_TRIANGLES, 0, 3);
+    });
+    return true;
+  }
+  return false;
 }
 
 std::vector<ShaderPiece> LandVertexTexts(const LandProgramKind& kind) {
@@ -177,6 +199,7 @@ void LandPass::Run(LandDrawn drawn, const LandLook& look, LandBlock block, const
   const LandProgramKind kind{drawn, look.bends, is_surface && look.moonlit,
                              is_surface && block.eye_above.y < 1.0F,
                              is_surface && edges_.share > 0.0 && horizon_.HasAny()};
+  if (is_surface) last_kind_ = kind;
   const ShaderProgram& program = ProgramOf(kind);
   block.eye_above.z = reversed_depth_ ? 1.0F : 0.0F;
   program.Use();
@@ -189,8 +212,15 @@ void LandPass::Run(LandDrawn drawn, const LandLook& look, LandBlock block, const
     BindEdges(program);
   }
   UploadBlock(block_, kLandBinding, block);
+  view_binding_ = view_binding;
+  Draw(kind, program, one_side, draw);
+}
+
+// Sets the state of the pipeline that belongs to a kind, and draws.
+void LandPass::Draw(const LandProgramKind& kind, const ShaderProgram& program, bool one_side,
+                    const std::function<void()>& draw) const {
   program.BindBlock("Land", kLandBinding);
-  program.BindBlock("View", view_binding);
+  program.BindBlock("View", view_binding_);
   if (reversed_depth_) glClipControl(GL_LOWER_LEFT, GL_ZERO_TO_ONE);
   if (one_side) glEnable(GL_CULL_FACE);
   const GLboolean writes_moon_sky = kind.moonlit ? GL_TRUE : GL_FALSE;

@@ -173,11 +173,18 @@ class LandPass {
   void Run(LandDrawn drawn, const LandLook& look, LandBlock block, const LocalFrame& anchor,
            GLuint view_binding, bool one_side, const std::function<void()>& draw);
 
+  /// Creates one program that the next pictures may need, and returns whether there was one left.
+  /// Drivers finish a program on its first draw, which takes tenths of a second. The targets of the
+  /// last surface must be bound; nothing is drawn into them.
+  bool MakeOneReady();
+
   /// Returns the shader text for the depth mode that the current OpenGL context supports.
   [[nodiscard]] static ShaderPiece DepthText();
 
  private:
   [[nodiscard]] const ShaderProgram& ProgramOf(const LandProgramKind& kind);
+  void Draw(const LandProgramKind& kind, const ShaderProgram& program, bool one_side,
+            const std::function<void()>& draw) const;
   void BindEdges(const ShaderProgram& program);
   [[nodiscard]] glm::vec4 RisenSinceMade(const LocalFrame& anchor) const;
 
@@ -186,6 +193,9 @@ class LandPass {
   EdgesOfVertices edges_of_vertices_;
   bool reversed_depth_;
   GlBuffer block_;
+  GLuint view_binding_ = 0;                   // of the last surface or outline
+  std::optional<LandProgramKind> last_kind_;  // of the last surface
+  GlVertexArray no_vertices_;
   std::map<LandProgramKind, ShaderProgram> programs_;  // created on first use
 };
 

@@ -111,6 +111,8 @@ class Landscape {
   /// Draws the chunks that the last Update chose, with its view, into the bound GBuffer or
   /// DepthPrepass, which is cleared first. The uniform block View must be bound to `view_binding`.
   void Draw(LandDrawn what, GLuint view_binding, const LandLook& look = {});
+  /// See LandPass.
+  bool MakeOneReady() { return pass_.MakeOneReady(); }
 
   /// Relights all vertices with this function on a worker thread. When the new light is complete,
   /// the old one fades into it. If called again meanwhile, the most recent light follows.

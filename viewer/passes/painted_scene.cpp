@@ -238,4 +238,8 @@ void PaintedScene::WaitUntilReady(const PaintedView& view, const LightsOfSky& li
   awaits_land_ = false;
 }
 
+bool HasSkyByPixel(const PaintedScene& scene, const LightsOfSky& lights) {
+  return scene.sizes().sky_by_pixel && scene.sky_by_pixel(lights.front().source()) != nullptr;
+}
+
 }  // namespace alpenglow::viewer

@@ -153,4 +153,10 @@ class PaintedScene {
   bool awaits_land_;
 };
 
+/// Returns whether the light of the sky on land is computed for each pixel. The second light may
+/// lack its tables while they are computed: its block is then zero, and so is its light from the
+/// sky, which is faint beside that of the first. The land would otherwise change twice where it is
+/// lit by the first light.
+[[nodiscard]] bool HasSkyByPixel(const PaintedScene& scene, const LightsOfSky& lights);
+
 }  // namespace alpenglow::viewer

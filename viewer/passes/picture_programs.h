@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // The shader programs of a picture: their bindings, shader texts and uniform blocks.
 //
-// Every uniform block and texture has a binding number of its own, so that passes do not overwrite
-// each other's bindings. The fragment stages share one text, picture.frag.glsl, for land, sky and
+// Every uniform block (block_bindings.h) and texture has a binding number of its own, so that passes
+// do not overwrite each other's bindings. The fragment stages share one text, picture.frag.glsl, for land, sky and
 // disks, preceded by texts that depend on the scene. There is one program per stage, created on
 // first use and kept. A program adds the light of sun, moon and night sky, because most of its time
 // is needed for what they light: the ground's pattern and the transmittance of the air.
@@ -34,24 +34,10 @@
 #include "viewer/passes/painted_scene.h"
 #include "viewer/passes/painted_view.h"
 #include "viewer/shade/shafts.h"
+#include "viewer/shaders/block_bindings.h"
 #include "viewer/shaders/pass_setup.h"
 
 namespace alpenglow::viewer {
-
-/// Binding points of uniform blocks.
-enum PictureBinding : GLuint {
-  kAirBinding,
-  kViewBinding,
-  kGroundBinding,
-  kGroundLightBinding,
-  kGroundSurfaceBinding,
-  kSkyByPixelBinding,
-  kTablesBinding,
-  kLampsBinding,
-  kFogBinding,  // also used by LandPass, before fog is bound
-  kOtherTablesBinding,
-  kOtherGroundLightBinding
-};
 
 /// Texture units.
 enum PictureUnit {

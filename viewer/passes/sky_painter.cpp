@@ -122,6 +122,7 @@ void SkyPainter::PaintLand(const PaintedView& view) {
     LandPass::Clear(LandDrawn::kSurface);
   } else {
     scene_.land().Draw(LandDrawn::kSurface, kViewBinding, LookOfLand(view));
+    if (programs_.HasPainted()) scene_.land().MakeOneReady();
   }
   surface_->BindTexture(kSurfaceUnit, GBuffer::kSurface);
 }
@@ -322,18 +323,6 @@ void SkyPainter::PaintBodiesOver(const RenderTarget& target, const DepthPrepass&
   }
   CheckGl("SkyPainter::PaintBodiesOver");
 }
-
-namespace {
-
-// Returns whether the light of the sky on land is computed for each pixel, for all these lights.
-bool HasSkyByPixel(const PaintedScene& scene, const LightsOfSky& lights) {
-  return scene.sizes().sky_by_pixel &&
-         std::all_of(lights.begin(), lights.end(), [&](const SkyLight& light) {
-           return scene.sky_by_pixel(light.source()) != nullptr;
-         });
-}
-
-}  // namespace
 
 LightsOfView SkyPainter::LightsOf(const PaintedView& view) {
   LightsOfView lights{SkyOf(view).lights};

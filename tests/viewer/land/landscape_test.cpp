@@ -372,6 +372,21 @@ TEST_F(LandscapePictures, ADamagedFileThatWasNamedIsRefused) {
   EXPECT_THROW(land.WaitUntilReady(eye.place, eye.View()), InputError);
 }
 
+// Without a horizon of the terrain, three properties of a program can change: fading light,
+// moonlight and refraction.
+TEST_F(LandscapePictures, ProgramsThatMayBeNeededAreMadeOneByOne) {
+  WriteTile(folder_ / "a.tif", 0, 0);
+  Landscape land(Folder(), {64.0}, kWgs84);
+  EXPECT_FALSE(land.MakeOneReady()) << "nothing has been drawn that could change";
+  const LookOut eye{PlaceOfSample(120.0, 60.0, 3000.0), 3.1, -0.3};
+  const std::vector<glm::vec4> drawn = Settled(land, eye);
+  for (int i = 0; i < 3; ++i) EXPECT_TRUE(land.MakeOneReady()) << i;
+  EXPECT_FALSE(land.MakeOneReady());
+  CheckGl("MakeOneReady");
+  EXPECT_EQ(map_->ReadValues(GBuffer::kSurface), drawn) << "nothing is drawn over the land";
+  EXPECT_EQ(Draw(land, eye), drawn);
+}
+
 TEST_F(LandscapePictures, NewLightTakesThePlaceOfTheOldWhenAllOfItIsThere) {
   WriteTile(folder_ / "a.tif", 0, 0);
   Landscape land(Folder(), {64.0}, kWgs84);

@@ -9,6 +9,7 @@
 #include <functional>
 #include <map>
 
+#include "atmosphere/math/constants.h"
 #include "lut/image/tone_mapping.h"
 #include "renderer/picture/reference_picture.h"
 #include "renderer/scene/scene_options.h"
@@ -16,6 +17,7 @@
 #include "tests/fixtures/fault_of.h"
 #include "tests/fixtures/parity_views.h"
 #include "tests/fixtures/sanitized.h"
+#include "tests/renderer/picture/sun_seen.h"
 #include "tests/viewer/air/shared_air.h"
 #include "tests/viewer/land/headless_land.h"
 #include "viewer/flight_session.h"
@@ -144,6 +146,28 @@ TEST_F(SmallPictures, ALandingLightInFogHasNoSteps) {
   EXPECT_LE(off[off.size() * 99 / 100], 6)
       << "codes; a beam's edge between rays a 320th of it apart";
   EXPECT_LE(off.back(), 16);
+}
+
+// The outline of land is drawn before the sun, in a pass with a uniform block of its own.
+TEST_F(SmallPictures, TheSunInFogIsAsBrightAsOnTheScreen) {
+  Window window{RangeScene({2500.0, false}, 0.0, 0.0), ParseInstant("2026-06-21T16:00:00Z"), 20.0};
+  window.scene.medium = MediumPreset("bruneton2017");
+  window.scene.fog.emplace();
+  window.scene.fog->extinction_per_m = 0.002;
+  window.scene.fog->scale_height_m = 1500.0;
+  const SunPosition sun = tests::SunSeenIn(window.scene, window.now);
+  window.scene.camera = CameraFromDegrees({2500.0, false}, sun.azimuth_rad / kRadiansPerDegree,
+                                          sun.elevation_rad / kRadiansPerDegree - 8.0, 0.0, 40.0);
+  const DisplayImage full = Shown(window, {Quality::kHigh, 1.0});
+  const DisplayImage small = Shown(window, {Quality::kLow, 0.25, Saving::kNearLand});
+  int disk = 0, alike = 0;
+  for (std::size_t i = 0; i < full.rgb.size(); ++i) {
+    if (full.rgb[i] < 128) continue;
+    ++disk;
+    if (std::abs(full.rgb[i] - small.rgb[i]) <= 4) ++alike;
+  }
+  EXPECT_GT(disk, 50) << "channels of pixels of the sun's disk, 8 pixels wide";
+  EXPECT_GT(alike, disk * 9 / 10) << "the air before the sun is interpolated";
 }
 
 // One ray a pixel against many: an edge of shade that one ray sees or does not makes stairs.
