@@ -27,7 +27,8 @@
 // Stat. Comput. 5, 300): they are never below the lower of two points, and constant between two
 // equal points. Angles take the shorter way around; a level camera stays level. The heading is
 // interpolated relative to a direction that is carried along the path, so that a camera that looks
-// ahead also looks ahead over a pole, where its heading turns by half a circle.
+// ahead also looks ahead over a pole, where its heading turns by half a circle. Between two points
+// with equal headings it may therefore change, except where the path stands still.
 #pragma once
 
 #include <array>

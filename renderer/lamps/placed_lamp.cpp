@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <glm/geometric.hpp>
 
@@ -107,8 +108,15 @@ bool LampStage::HiddenByPlanet(const glm::dvec3& from, const glm::dvec3& to) con
   const double along =
       -glm::dot(from + glm::dvec3(0.0, 0.0, planet_radius_m_), way) / glm::dot(way, way);
   if (!(along > 0.0 && along < 1.0)) return false;
-  const glm::dvec3 lowest = from + along * way;
-  return AltitudeOf(lowest) < -kTouches_m && !TerrainAt(lowest);
+  const double lowest_m = AltitudeOf(from + along * way);
+  if (lowest_m >= -kTouches_m) return false;
+  // Terrain hides instead of the planet only where it covers all of the part inside the planet. The
+  // half of that part is a side of the triangle with the lowest point and the centre.
+  const double half = std::sqrt(-lowest_m * (2.0 * planet_radius_m_ + lowest_m)) / glm::length(way);
+  const std::array<double, 3> inside{std::max(along - half, 0.0), along,
+                                     std::min(along + half, 1.0)};
+  return std::any_of(inside.begin(), inside.end(),
+                     [&](double share) { return !TerrainAt(from + share * way); });
 }
 
 bool LampStage::Sees(const glm::dvec3& from, const glm::dvec3& to) const {

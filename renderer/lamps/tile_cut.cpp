@@ -161,9 +161,14 @@ LampNodes MembersOf(const LampTree& tree, std::uint32_t number) {
 bool IsHiddenAsItsLamps(const LampTree& tree, const LampStage& stage, std::uint32_t number,
                         const TileRays& tile, const glm::dvec3& eye) {
   constexpr int kPoints = 6;
-  // Without terrain, only the planet can hide lamps.
-  if (!stage.ground().terrain && stage.Sees(tree.Light(number).lamp.position_m, eye)) return true;
   const LampNodes members = MembersOf(tree, number);
+  // Without terrain, only the planet can hide lamps.
+  const auto sees_eye = [&](std::uint32_t lamp) {
+    return stage.Sees(tree.Light(lamp).lamp.position_m, eye);
+  };
+  if (!stage.ground().terrain && sees_eye(number) &&
+      std::all_of(members.begin(), members.end(), sees_eye))
+    return true;
   const PlacedLamp& light = tree.Light(number);
   for (const std::size_t corner : {0UL, 1UL, 4UL}) {
     const LampRayEnd& ray = tile.rays[corner];

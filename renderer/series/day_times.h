@@ -53,8 +53,8 @@ void VisitTimesOfDays(const EventDay& first, int count,
 [[nodiscard]] std::string LinesOf(const DayTimes& day, const std::optional<std::string>& zone);
 
 /// Returns the header of a CSV, and the line of a day: date, the events as instants of UTC to the
-/// second (empty where there are none), noon_elevation_deg, moon_illuminated; and for a visible eclipse
-/// eclipse_first_contact, eclipse_second_contact, eclipse_deepest, eclipse_third_contact,
+/// second (empty where there are none), noon_elevation_deg, moon_illuminated; and for a visible
+/// eclipse eclipse_first_contact, eclipse_second_contact, eclipse_deepest, eclipse_third_contact,
 /// eclipse_last_contact (empty while the sun is down), eclipse_magnitude (fraction of the diameter)
 /// and eclipse_obscuration (fraction of the area), both at the deepest visible moment.
 [[nodiscard]] std::string HeaderOfTimesCsv();

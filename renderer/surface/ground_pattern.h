@@ -4,10 +4,11 @@
 // The pattern is plane, and extruded along lines (NoiseOctave of surface.h). No plane suits the
 // whole planet, so the planet has 184 of them: they touch it at parallels 15 degrees apart, and at
 // each pole. Along a parallel they are as far apart as across it, and one of them touches the
-// parallel at the meridian of 8 degrees, in the middle of the Alps. A picture uses the plane that
-// is nearest to its eye. All pictures of some land therefore have one pattern as long as their eyes
-// have the same plane, wherever they are. The ground is inclined to its plane by at most 12 degrees,
-// which stretches the pattern by 2 %.
+// parallel at the meridian of 8 degrees, in the middle of the Alps. `skyseries` uses the plane that
+// is nearest to the scene's place, `skyview` the one that is nearest to the eye. All pictures of
+// some land therefore have one pattern as long as these places have the same plane. Beyond the
+// border between two planes the pattern is another one. The ground is inclined to its plane by at
+// most 12 degrees, which stretches the pattern by 2 %.
 #pragma once
 
 #include <glm/geometric.hpp>

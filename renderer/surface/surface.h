@@ -103,8 +103,8 @@ class MountainSurface {
                                     const std::optional<MappedCover>& mapped = std::nullopt) const;
 
   /// Returns the unit normal with the relief that a mesh of 30 to 100 m spacing lacks, in waves of
-  /// 220 to 7 m, in the frame of the pattern like `normal`. The normal is tilted by about 6.4 degrees rms where the footprint is small, and
-  /// unchanged where it is over 110 m.
+  /// 220 to 7 m, in the frame of the pattern like `normal`. The normal is tilted by about 6.4
+  /// degrees rms where the footprint is small, and unchanged where it is over 110 m.
   [[nodiscard]] static glm::dvec3 DetailedNormal(const GroundPoint& point,
                                                  const glm::dvec3& normal);
 

@@ -58,7 +58,10 @@ class Facets {
   }
 
   [[nodiscard]] float HeightAt(NodePlace place) const {
-    if (closes_) place.column -= grid_.columns * std::floor(place.column / grid_.columns);
+    if (closes_) {
+      place.column -= grid_.columns * std::floor(place.column / grid_.columns);
+      if (place.column >= grid_.columns) place.column = 0.0;  // a sum just below 0 has been rounded
+    }
     if (!(place.column >= 0.0 && place.column < columns() && place.row >= 0.0 &&
           place.row < grid_.rows - 1))
       return HeightRaster::kNothing;

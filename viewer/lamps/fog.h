@@ -50,8 +50,8 @@ class FogPainter {
   /// Binds everything for the next draw call of a program of FogTexts(). @param map  the last
   /// uploaded map.
   void Bind(const FogMap& map, const FogView& now) const;
-  /// Binds the fog for a program with TWO_LIGHTS. @param other  the painter of the second light, whose
-  /// map has the same size.
+  /// Binds the fog for a program with TWO_LIGHTS.
+  /// @param other  the painter of the second light, whose map has the same size.
   void Bind(const FogMap& map, const FogView& now, const FogPainter& other,
             const FogView& other_now) const;
 

@@ -3,8 +3,7 @@
 //
 //   Prepare          selects lamps for a view
 //   PaintGlow        their light in the air at every few pixels, unless it is summed for each pixel
-//   Bind             for the program that has texts(): LampsOnGround and LampAirlightRgb in the
-// picture
+//   Bind             for the program that has texts(), for LampsOnGround and LampAirlightRgb
 //   PaintOver        adds the disks of lamps and the bright cores of their light to the picture
 //
 // tests/viewer/lamps/lamp_light_test.cpp bounds the errors against LampLight without shadows of

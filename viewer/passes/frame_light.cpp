@@ -201,8 +201,10 @@ const std::shared_ptr<const FrameSky>& FrameSkyFollower::At(
     const std::shared_ptr<const SolvedAir>& air) {
   const bool is_same_air = air_ && air_->air == air;
   if (is_same_air && sky_->bodies.place == eye && sky_->bodies.instant == now) return sky_;
-  if (!is_same_air) air_.emplace(air);
-  sky_ = std::make_shared<const FrameSky>(FrameSkyAt(eye, now, *air_));
+  std::optional<AirOfSky> next;  // kept only with its sky, in case an error leaves this function
+  if (!is_same_air) next.emplace(air);
+  sky_ = std::make_shared<const FrameSky>(FrameSkyAt(eye, now, next ? *next : *air_));
+  if (next) air_ = std::move(next);
   return sky_;
 }
 

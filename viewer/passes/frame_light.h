@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 // The light of the night sky: airglow, zodiacal light and faint stars behind the atmosphere, their
 // scattered light, and their light on the ground. It is the renderer's NightLight as a map of the
-// sky, made on a worker thread, and used where sun and moon contribute less than 10 lux.
+// sky, made on a worker thread, and used where sun and moon contribute less than 10 lux, over towns
+// less than 1000 lux.
 //
 // The lights of the sky in a picture: a list of the sun, the moon, or both.
 //
