@@ -215,6 +215,49 @@ TEST_F(Glslang, AcceptsEveryStageOfThePicture) {
   }
 }
 
+using TexturesOfThePicture = tests::Headless;
+
+// Returns the number of textures that a program reads.
+int TexturesOf(const ShaderProgram& program) {
+  GLint uniforms = 0;
+  glGetProgramiv(program.id(), GL_ACTIVE_UNIFORMS, &uniforms);
+  int textures = 0;
+  for (GLint i = 0; i < uniforms; ++i) {
+    const auto index = static_cast<GLuint>(i);
+    GLint type = 0;
+    glGetActiveUniformsiv(program.id(), 1, &index, GL_UNIFORM_TYPE, &type);
+    switch (type) {
+      case GL_SAMPLER_1D:
+      case GL_SAMPLER_2D:
+      case GL_SAMPLER_3D:
+      case GL_SAMPLER_2D_ARRAY:
+        ++textures;
+        break;
+      default:
+        break;
+    }
+  }
+  return textures;
+}
+
+TEST_F(TexturesOfThePicture, AreNoMoreThanAStageMayRead) {
+  const Scene scene = LampScene(true);
+  const SceneLamps lamps(scene, LoadGround(scene), scene.medium);
+  const LampPainter painter(lamps, kMediumLamps, {});
+  GroundCover sea;
+  sea.sea_level_m = 0.0;
+  const GroundMaterial material(sea, nullptr, scene.medium.wavelengths_nm);
+  GLint most = 0;
+  glGetIntegerv(GL_MAX_TEXTURE_IMAGE_UNITS, &most);
+  for (const PictureStage& stage : StagesOfLights()) {
+    const ShaderProgram program = FullScreenProgram(WithViewerPieces(
+        PictureTexts({material, painter, {true, true}, PhaseKind::kHenyeyGreensteinDraine}, stage),
+        {"viewer/shaders/picture.frag.glsl"}));
+    EXPECT_GT(TexturesOf(program), 0);
+    EXPECT_LE(TexturesOf(program), most) << "OpenGL 3.3 guarantees 16, today's drivers 32";
+  }
+}
+
 // Returns a program of land and planet.
 // @param lights  definitions that precede all texts.
 std::vector<ShaderPiece> TextsOfCover(const GroundCover& cover, const char* lights) {
