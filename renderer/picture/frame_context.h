@@ -44,8 +44,8 @@ class LimbView {
   [[nodiscard]] const BendingAir& bending_air() const { return bending_air_; }
 
   /// Returns whether the density of the air at the lowest point ahead changes by more than 15 %
-  /// within a pixel. Where it changes by less, and with it the light of the sky, the sky that is
-  /// seen from space in the middle of a pixel is the mean over the pixel within 3e-3.
+  /// within a pixel. There the light of the sky differs within a pixel, and pixels are sampled;
+  /// elsewhere the sky in the middle of a pixel stands for the whole.
   [[nodiscard]] bool IsSteepAt(const glm::dvec3& direction) const;
   /// Returns the cosine between the vertical and a ray where it meets the planet; 0 if it does not.
   /// @param mu  sine of the ray's elevation at the eye.

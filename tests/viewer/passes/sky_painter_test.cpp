@@ -217,6 +217,82 @@ TEST_F(LandPictures, TheSkyOfAFrameIsComputedOnce) {
   EXPECT_NE(painter.SkyAt(view.eye.place, AddSeconds(view.now, 1.0)), sky);
 }
 
+/// A straight flight over a place with a seam of coordinates.
+struct FlightOver {
+  const char* place;
+  const char* utc;  // the sun is up
+  double from_latitude, from_longitude, to_latitude, to_longitude, from_heading, to_heading;
+  double hemisphere;  // of the pole; 0: none
+};
+
+/// Returns the mean change of luminance, as its logarithm, from picture to picture.
+std::vector<double> ChangesIn(const Scene& scene, const FlightOver& flight) {
+  constexpr int kSteps = tests::ScaledDown(20, 8);
+  const auto point = [&](double time_s, double latitude, double longitude, double heading) {
+    const Camera look = CameraFromDegrees({}, heading, -20.0, 0.0, 60.0);
+    return CameraPathPoint{time_s,
+                           {PlaceFromDegrees(latitude, longitude, 4000.0), look.heading_rad,
+                            look.pitch_rad, 0.0, look.fov_rad}};
+  };
+  const CameraPath path(
+      {point(0.0, flight.from_latitude, flight.from_longitude, flight.from_heading),
+       point(kSteps, flight.to_latitude, flight.to_longitude, flight.to_heading)});
+  const auto view_at = [&](int step) {
+    return PaintedView{path.PoseAt(step), ParseInstant(flight.utc), 32, 18};
+  };
+  SkyPainter painter(scene, LandSourceOf(scene), view_at(0), SizesOf(Quality::kMedium),
+                     tests::SharedAirOf(scene));
+  std::vector<double> changes;
+  std::optional<Image> last;
+  for (int step = 0; step <= kSteps; ++step) {
+    painter.WaitUntilReady(view_at(step));
+    painter.Paint(view_at(step), 4, SkyPainter::Bodies::kNone);
+    Image shown = painter.picture().Read();
+    double sum = 0.0;
+    for (std::size_t i = 0; last && i < shown.rgb.size(); ++i)
+      sum += std::abs(std::log(static_cast<double>(shown.rgb[i][1] / last->rgb[i][1])));
+    if (last) changes.push_back(sum / static_cast<double>(shown.rgb.size()));
+    last = std::move(shown);
+  }
+  return changes;
+}
+
+// A place where land, light or pattern differs on the two sides of a seam makes one picture change
+// more than the motion does. Steps are 110 m; the ground of a pixel is wider.
+TEST_F(SkyPainterTest, FlightsOverPolesAndTheDateLineAreContinuous) {
+  const std::filesystem::path model =
+      std::filesystem::temp_directory_path() / fmt::format("seam-{}.tif", getpid());
+  for (const FlightOver& flight : {FlightOver{"north pole", "2026-06-21T09:00:00Z", 89.99, 30.0,
+                                              89.99, -150.0, 0.0, 180.0, 1.0},
+                                   FlightOver{"south pole", "2026-12-21T09:00:00Z", -89.99, 179.0,
+                                              -89.99, -1.0, 180.0, 0.0, -1.0},
+                                   FlightOver{"date line", "2026-06-21T23:00:00Z", 40.0, 179.99,
+                                              40.0, -179.99, 90.0, 90.0, 0.0}}) {
+    for (const bool has_land : {false, true}) {
+      Scene scene = BareScene(4000.0, 0.0, -20.0, 60.0);
+      scene.medium = MediumPreset("bruneton2017");
+      scene.place = PlaceFromDegrees(flight.from_latitude, flight.from_longitude, 0.0);
+      if (has_land) {
+        if (flight.hemisphere != 0.0) {
+          tests::WritePolarModel(model, flight.hemisphere, 0.01);
+        } else {
+          tests::WriteModel(model, {179.5, 40.5, 0.01, 0.01, 100, 100}, [](int column, int row) {
+            return static_cast<float>(1500.0 + 300.0 * std::sin(0.7 * column + 0.3 * row));
+          });
+        }
+        scene.terrain = {TerrainSource::Kind::kElevationModel, model, VoidPolicy::kFill};
+      }
+      const std::vector<double> changes = ChangesIn(scene, flight);
+      std::vector<double> ascending = changes;
+      std::sort(ascending.begin(), ascending.end());
+      const double usual = ascending[ascending.size() / 2];
+      EXPECT_LT(ascending.back(), 1.5 * usual + 0.002)
+          << flight.place << (has_land ? " with land" : "") << ", usually " << usual;
+    }
+  }
+  std::filesystem::remove(model);
+}
+
 TEST_F(SkyPainterTest, FogIsTheRenderersAndShadedByMountains) {
   const Tile tile;
   struct Case {
