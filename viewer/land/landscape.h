@@ -111,8 +111,8 @@ class Landscape {
   /// Draws the chunks that the last Update chose, with its view, into the bound GBuffer or
   /// DepthPrepass, which is cleared first. The uniform block View must be bound to `view_binding`.
   void Draw(LandDrawn what, GLuint view_binding, const LandLook& look = {});
-  /// See LandPass.
-  bool MakeOneReady() { return pass_.MakeOneReady(); }
+  /// Returns the programs that draw.
+  [[nodiscard]] LandPass& pass() { return pass_; }
 
   /// Relights all vertices with this function on a worker thread. When the new light is complete,
   /// the old one fades into it. If called again meanwhile, the most recent light follows.
@@ -123,7 +123,6 @@ class Landscape {
   /// Terrain horizons, and the sun that they are evaluated for: see HorizonTexture.
   void Use(const TerrainHorizon& horizon) { pass_.Use(horizon); }
   void Use(const MomentaryEdges& edges) { pass_.Use(edges); }
-  [[nodiscard]] bool HasHorizon() const { return pass_.HasHorizon(); }
   [[nodiscard]] EdgesOfVertices edges() const;
 
   [[nodiscard]] const LandGround& ground() const { return ground_; }

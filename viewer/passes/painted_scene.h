@@ -110,7 +110,7 @@ class PaintedScene {
   [[nodiscard]] const ShadeFollower& shade() const { return shade_; }
   /// Returns whether all shadow edges on land belong to this source.
   [[nodiscard]] bool HasEdgesOf(LightSource source) const {
-    return source == casts_ && (momentary_edges_ == 1.0 ? land_->HasHorizon() : has_edges_);
+    return source == casts_ && (momentary_edges_ == 1.0 ? land_->pass().HasHorizon() : has_edges_);
   }
   /// The fog lit by a source. Null: no fog.
   [[nodiscard]] const SceneFog* fog(LightSource source = LightSource::kSun) const {

@@ -122,7 +122,7 @@ void SkyPainter::PaintLand(const PaintedView& view) {
     LandPass::Clear(LandDrawn::kSurface);
   } else {
     scene_.land().Draw(LandDrawn::kSurface, kViewBinding, LookOfLand(view));
-    if (programs_.HasPainted()) scene_.land().MakeOneReady();
+    if (programs_.HasPainted()) scene_.land().pass().MakeOneReady();
   }
   surface_->BindTexture(kSurfaceUnit, GBuffer::kSurface);
 }

@@ -377,11 +377,11 @@ TEST_F(LandscapePictures, ADamagedFileThatWasNamedIsRefused) {
 TEST_F(LandscapePictures, ProgramsThatMayBeNeededAreMadeOneByOne) {
   WriteTile(folder_ / "a.tif", 0, 0);
   Landscape land(Folder(), {64.0}, kWgs84);
-  EXPECT_FALSE(land.MakeOneReady()) << "nothing has been drawn that could change";
+  EXPECT_FALSE(land.pass().MakeOneReady()) << "nothing has been drawn that could change";
   const LookOut eye{PlaceOfSample(120.0, 60.0, 3000.0), 3.1, -0.3};
   const std::vector<glm::vec4> drawn = Settled(land, eye);
-  for (int i = 0; i < 3; ++i) EXPECT_TRUE(land.MakeOneReady()) << i;
-  EXPECT_FALSE(land.MakeOneReady());
+  for (int i = 0; i < 3; ++i) EXPECT_TRUE(land.pass().MakeOneReady()) << i;
+  EXPECT_FALSE(land.pass().MakeOneReady());
   CheckGl("MakeOneReady");
   EXPECT_EQ(map_->ReadValues(GBuffer::kSurface), drawn) << "nothing is drawn over the land";
   EXPECT_EQ(Draw(land, eye), drawn);
