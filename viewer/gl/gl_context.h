@@ -12,6 +12,7 @@
 
 #include <epoxy/gl.h>
 
+#include <algorithm>
 #include <array>
 #include <memory>
 #include <string>
@@ -140,6 +141,17 @@ void UploadBlock(const GlBuffer& buffer, GLuint binding, const Block& block) {
 struct PixelBox {
   int x, y, width, height;
 };
+
+[[nodiscard]] inline bool Overlap(const PixelBox& a, const PixelBox& b) {
+  return a.x < b.x + b.width && b.x < a.x + a.width && a.y < b.y + b.height && b.y < a.y + a.height;
+}
+
+/// Returns the smallest box that contains both.
+[[nodiscard]] inline PixelBox Around(const PixelBox& a, const PixelBox& b) {
+  const int x = std::min(a.x, b.x), y = std::min(a.y, b.y);
+  return {x, y, std::max(a.x + a.width, b.x + b.width) - x,
+          std::max(a.y + a.height, b.y + b.height) - y};
+}
 
 /// Restricts draw calls to the pixels of a box during its lifetime. Scissors cannot be nested.
 class Scissor {

@@ -275,11 +275,17 @@ void SkyPainter::PaintSky(const PaintedView& view, const PictureStage& stage) {
   }
 }
 
+// Light is added in every box, so a pixel must not lie in two.
 std::vector<PixelBox> SkyPainter::DisksSeen(const PaintedView& view) {
   const FrameSky& sky = SkyOf(view);
   std::vector<PixelBox> boxes;
   const auto add = [&](const std::optional<PixelBox>& box) {
-    if (box) boxes.push_back(*box);
+    if (!box) return;
+    if (!boxes.empty() && Overlap(boxes.back(), *box)) {
+      boxes.back() = Around(boxes.back(), *box);
+    } else {
+      boxes.push_back(*box);
+    }
   };
   add(PixelsOfDisk(DirectionToSun(sky.sun), sky.sun.angular_radius_rad, view));
   if (sky.moon) add(PixelsOfDisk(sky.moon->to_moon, sky.moon->radius_rad, view));

@@ -36,6 +36,22 @@ double Elevation(const glm::dvec3& direction) {
   return std::asin(std::clamp(direction.z, -1.0, 1.0));
 }
 
+/// Returns the weights of the pixels around a place, relative to the solid angle of each: it is
+/// proportional to the third power of the cosine to the axis of the view, which is `along` at the
+/// place.
+/// @param tangent      the place's coordinate in the plane at distance 1 before the eye.
+/// @param pixel_width  in this plane.
+StarBell BellPerPixel(double place, double tangent, double pixel_width, double along) {
+  StarBell bell = StarBellAround(place);
+  const double first = std::floor(place) - kStarReach + 0.5;
+  for (std::size_t i = 0; i < bell.size(); ++i) {
+    const double there = tangent + (first + static_cast<double>(i) - place) * pixel_width;
+    const double change = along * along * (there * there - tangent * tangent);
+    bell[i] *= static_cast<StarBell::value_type>(std::pow(1.0 + change, 1.5));
+  }
+  return bell;
+}
+
 }  // namespace
 
 glm::dvec3 TowardsStar(const StarLight& light, const StarrySky& sky) {
@@ -83,7 +99,12 @@ std::vector<StarPoint> StarPointsIn(const PaintedView& view, const StarrySky& sk
     const auto at = place_of(towards, kStarReach);
     if (!at || glm::length(towards - sky.to_moon) < sky.moon_radius_rad) continue;
     const double x = at->x, y = at->y, along = glm::dot(towards, axes.forward);
-    const StarBell across = StarBellAround(x), up = StarBellAround(y);
+    const glm::dvec2 pixel_width{2.0 * glm::length(axes.right) / view.width,
+                                 2.0 * glm::length(axes.up) / view.height};
+    const glm::dvec2 tangent{glm::dot(towards, axes.right) / glm::length(axes.right) / along,
+                             glm::dot(towards, axes.up) / glm::length(axes.up) / along};
+    const StarBell across = BellPerPixel(x, tangent.x, pixel_width.x, along),
+                   up = BellPerPixel(y, tangent.y, pixel_width.y, along);
     glm::vec4 radiance(0.0F);
     const auto per_sr = static_cast<float>(1.0 / PixelSolidAngle(view, along));
     for (std::size_t band = 0; band < light.irradiance.count; ++band)
