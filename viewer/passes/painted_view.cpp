@@ -65,10 +65,8 @@ std::optional<PixelBox> PixelsOfDisk(const glm::dvec3& direction, double radius_
   };
   const double x = pixel(axes.right, view.part.x * view.part.z, view.width);
   const double y = pixel(axes.up, view.part.y * view.part.w, view.height);
-  // A disk is drawn at least as large as a pixel. Off the centre of the view, disks are stretched, so
-  // twice the radius is used.
-  const double drawn_pixels = std::max(radius_rad / PixelAngle(view), 1.0);
-  const double reach = 2.0 * drawn_pixels / along + 2.0;
+  // Off the centre of the view, disks are stretched, so twice the radius is used.
+  const double reach = 2.0 * radius_rad / PixelAngle(view) / along + 2.0;
   if (x < -reach || y < -reach || x > view.width + reach || y > view.height + reach)
     return std::nullopt;
   const int side = static_cast<int>(std::ceil(2.0 * reach)) + 1;

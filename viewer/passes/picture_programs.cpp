@@ -147,7 +147,7 @@ void PictureBlocks::UploadView(const PaintedScene& scene, const SeenRays& seen,
   const glm::dvec2 moved(view.part.x * view.part.z + shift.x, view.part.y * view.part.w + shift.y);
   const double altitude_km = std::max(view.eye.place.height_m, 0.0) / kMetresPerKilometre;
   ViewBlock block{};
-  block.view_right = {glm::vec3(axes.right), RayAngle(view)};
+  block.view_right = {glm::vec3(axes.right), 0.0F};
   block.view_up = {glm::vec3(axes.up), 0.0F};
   block.view_forward = {glm::vec3(axes.forward), RayAngle(view) / std::sqrt(seen.ray.of)};
   const SkyLight &first = lights.of_sky.front(), &other = lights.of_sky.back();

@@ -303,65 +303,39 @@ vec2 DiskOverHorizon(float mu_s, float horizon_mu, float radius) {
   return vec2(area / 3.14159265359, sin(elevation + rise * radius));
 }
 
-// Widths of what a fragment stands for: x of its ray, y of its pixel, which may have several rays.
-
-// Returns the angular radius with which a disk is drawn: at least the width of a pixel, since the
-// light of a smaller one would depend on where the rays pass it.
-float DrawnRadius(float radius, vec2 width) { return max(radius, width.y); }
-
-// Returns the fraction of a ray's width that a disk covers: its edge is as wide.
-// @param rho  distance from the centre, in drawn radii.
-float CoveredByDisk(float rho, float radius, vec2 width) {
-  return clamp((1.0 - rho) * DrawnRadius(radius, width) / width.x + 0.5, 0.0, 1.0);
-}
-
-// Returns the solid angle of a disk divided by that of the disk as drawn: its soft edge has a
-// solid angle of pi/12 squared widths more than a sharp one.
-float ShareOfDrawnDisk(float radius, vec2 width) {
-  float drawn = DrawnRadius(radius, width);
-  return radius * radius / (drawn * drawn + width.x * width.x / 12.0);
-}
-
-// Returns the vector from the moon's centre to where a ray passes it, in drawn radii.
-vec3 BesideMoon(vec3 direction, vec2 width) {
+// Returns the fraction of a pixel that the moon's disk covers.
+float CoveredByMoon(vec3 direction, float width) {
   vec3 beside = direction - moon.xyz;
-  return (beside - dot(beside, moon.xyz) * moon.xyz) /
-         max(sin(DrawnRadius(moon.w, width)), 1e-6);
-}
-
-// Returns the fraction of a ray's width that the moon's disk covers.
-float CoveredByMoon(vec3 direction, vec2 width) {
-  return dot(direction, moon.xyz) <= 0.0
-             ? 0.0
-             : CoveredByDisk(length(BesideMoon(direction, width)), moon.w, width);
+  float rho = length(beside - dot(beside, moon.xyz) * moon.xyz) / max(sin(moon.w), 1e-6);
+  return dot(direction, moon.xyz) <= 0.0 ? 0.0 : clamp((1.0 - rho) * moon.w / width + 0.5, 0.0, 1.0);
 }
 
 // Returns the radiance of the sun's disk outside the air, per unit of its irradiance [1/sr], times
-// the fraction of the ray's width that the disk covers; one value per band.
-vec4 SunDiskRadiance(vec3 direction, vec2 width) {
+// the fraction of a pixel that the disk covers; one value per band.
+vec4 SunDiskRadiance(vec3 direction, float width) {
   float radius = sun.w;
-  float rho = 2.0 * asin(min(0.5 * length(direction - sun.xyz), 1.0)) / DrawnRadius(radius, width);
-  float covered = CoveredByDisk(rho, radius, width);
+  float rho = 2.0 * asin(min(0.5 * length(direction - sun.xyz), 1.0)) / radius;
+  float covered = clamp((1.0 - rho) * radius / width + 0.5, 0.0, 1.0);
   if (covered <= 0.0) return vec4(0.0);
   float half_sine = sin(0.5 * radius);
   vec4 darkening =
       vec4(SunLimbDarkeningAt(rho, wavelengths.x), SunLimbDarkeningAt(rho, wavelengths.y),
            SunLimbDarkeningAt(rho, wavelengths.z), SunLimbDarkeningAt(rho, wavelengths.w));
-  return covered * ShareOfDrawnDisk(radius, width) /
-         (4.0 * 3.14159265359 * half_sine * half_sine) * darkening;
+  return covered / (4.0 * 3.14159265359 * half_sine * half_sine) * darkening;
 }
 
 // Returns the radiance of the moon's disk outside the air, per unit of solar irradiance [1/sr],
-// times the fraction of the ray's width that the disk covers; one value per band.
-vec4 MoonRadiance(vec3 direction, vec2 width) {
+// times the fraction of a pixel that the disk covers; one value per band.
+vec4 MoonRadiance(vec3 direction, float width) {
+  vec3 beside = direction - moon.xyz;
+  vec3 at = (beside - dot(beside, moon.xyz) * moon.xyz) / max(sin(moon.w), 1e-6);
+  float rho = length(at);
   float covered = CoveredByMoon(direction, width);
   if (covered <= 0.0) return vec4(0.0);
-  vec3 at = BesideMoon(direction, width);
   // A pixel whose centre is beyond the limb has the radiance of the limb.
   const float kLimb = 0.999;
-  at *= min(kLimb / max(length(at), 1e-6), 1.0);
+  at *= min(kLimb / max(rho, 1e-6), 1.0);
   float mu_seen = sqrt(1.0 - dot(at, at));
   float mu_lit = dot(at - mu_seen * moon.xyz, moon_lit.xyz);
-  return covered * ShareOfDrawnDisk(moon.w, width) *
-         (moon_lit.w * LommelSeeliger(mu_lit, mu_seen) + moon_earthshine) * moon_colour;
+  return covered * (moon_lit.w * LommelSeeliger(mu_lit, mu_seen) + moon_earthshine) * moon_colour;
 }

@@ -297,7 +297,7 @@ void main() {
 #if PASS == DISK_PASS
 void main() {
   vec3 direction = ViewDirection(screen);
-  vec4 disks = RefractedDisks(direction) * TransmittanceToSpace(direction);
+  vec4 disks = RefractedDisks(direction, RAY_ANGLE) * TransmittanceToSpace(direction);
   vec4 radiance = SeesPlanet(direction) ? vec4(0.0) : disks;
 #if HAS_FOG
   radiance *= FogTransmittance(direction, 1e3);

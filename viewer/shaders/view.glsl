@@ -37,7 +37,6 @@ layout(std140) uniform View {
 #define BEND_TOP bend.y
 #define BEND_USUAL bend.z
 #define RAY_ANGLE view_forward.w
-#define PIXEL_ANGLE view_right.w
 
 // Returns the direction of a point in the picture, from (-1, -1) to (1, 1).
 vec3 ViewDirection(vec2 screen) {
@@ -180,8 +179,7 @@ DiskAir DiskAirAt(int of, float elevation) {
 
 // Returns the radiance of both disks per unit of the sun's irradiance [1/sr]: for each band,
 // SunDiskRadiance and MoonRadiance in the true direction.
-vec4 RefractedDisks(vec3 direction) {
-  vec2 width = vec2(RAY_ANGLE, PIXEL_ANGLE);
+vec4 RefractedDisks(vec3 direction, float width) {
   float level = length(direction.xy);
   float elevation = AngleOfSine(clamp(direction.z, -1.0, 1.0));
   DiskAir of_sun = DiskAirAt(0, elevation), of_moon = DiskAirAt(1, elevation);

@@ -217,39 +217,6 @@ TEST_F(LandPictures, TheSkyOfAFrameIsComputedOnce) {
   EXPECT_NE(painter.SkyAt(view.eye.place, AddSeconds(view.now, 1.0)), sky);
 }
 
-// A new moon stands 7 degrees beside the sun: a pixel of the small picture is 2.4 degrees wide.
-TEST_F(SkyPainterTest, TheSunBesideTheMoonHasItsLightInPixelsOfAnySize) {
-  Scene scene = BareScene(100.0, 180.0, 60.0, 90.0);
-  scene.medium = MediumPreset("bruneton2017");
-  scene.place = PlaceFromDegrees(46.5, 8.0, 0.0);
-  const auto light_of_disks = [&](int width, int height) {
-    const CameraPose pose{PlaceFromDegrees(46.5, 8.0, 100.0), kPi, 60.0 * kRadiansPerDegree, 0.0,
-                          90.0 * kRadiansPerDegree};
-    const PaintedView view{pose, ParseInstant("2026-06-15T11:30:00Z"), width, height};
-    SkyPainter painter(scene, LandSourceOf(scene), view, SizesOf(Quality::kMedium),
-                       tests::SharedAirOf(scene));
-    painter.WaitUntilReady(view);
-    const auto light = [&](SkyPainter::Bodies bodies) {
-      painter.Paint(view, 16, bodies);
-      const Image image = painter.picture().Read();
-      double sum = 0.0;
-      for (int y = 0; y < height; ++y) {
-        for (int x = 0; x < width; ++x) {
-          const double right = (2.0 * x + 1.0) / width - 1.0;
-          const double up = ((2.0 * y + 1.0) / height - 1.0) * height / width;
-          sum += double{image.at(x, y)[1]} / std::pow(1.0 + right * right + up * up, 1.5);
-        }
-      }
-      return sum * 4.0 / (width * width);
-    };
-    return light(SkyPainter::Bodies::kAll) - light(SkyPainter::Bodies::kNone);
-  };
-  const double fine = light_of_disks(480, 270);
-  EXPECT_GT(fine, 8e4) << "lux";
-  EXPECT_NEAR(light_of_disks(48, 27) / fine, 1.0, 0.08)
-      << "16 rays of a pixel, of which some 50 pass the disk as it is drawn";
-}
-
 /// A straight flight over a place with a seam of coordinates.
 struct FlightOver {
   const char* place;

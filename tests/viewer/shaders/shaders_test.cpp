@@ -564,7 +564,7 @@ TEST_F(SunLight, TheDiskIsDarkenedAtItsLimbAsTheRenderersIs) {
   const double mean = 1.0 / DiskSolidAngle(double{kRadius_rad});
   for (std::size_t band = 0; band < kWavelengths_nm.size(); ++band) {
     const std::vector<float> found = tests::EvaluateOnGpu(
-        pieces, fmt::format("SunDiskRadiance(vec3(a[0], a[1], a[2]), vec2(1e-5))[{}]", band), points);
+        pieces, fmt::format("SunDiskRadiance(vec3(a[0], a[1], a[2]), 1e-5)[{}]", band), points);
     for (std::size_t i = 0; i < points.size(); ++i) {
       const double expected =
           radii[i] < 1.0 ? mean * LimbDarkening(radii[i], kWavelengths_nm[band]) : 0.0;
@@ -593,7 +593,7 @@ TEST_F(SunLight, TheMoonIsThatOfTheRenderer) {
     }
   }
   const std::vector<float> found =
-      tests::EvaluateOnGpu(pieces, "MoonRadiance(vec3(a[0], a[1], a[2]), vec2(1e-5)).x", points,
+      tests::EvaluateOnGpu(pieces, "MoonRadiance(vec3(a[0], a[1], a[2]), 1e-5).x", points,
                            [&](const ShaderProgram& program) {
                              glUniform4f(program.Uniform("moon"), 0.6F, 0.0F, 0.8F, 0.0045F);
                              const glm::vec3 lit(moon.to_sun);
