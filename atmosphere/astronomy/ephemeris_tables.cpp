@@ -106,8 +106,8 @@ constexpr double kEarthSpan_days = 16.0, kMoonSpan_days = 8.0;
 using EarthPolynomials = SpanPolynomials<kEarthValues, 14>;
 using MoonPolynomials = SpanPolynomials<6, 16>;
 
-/// Returns earth, sun and axes by ERFA. Status 1 of eraEpv00, outside 1900-2100, only means that the
-/// error is no longer bounded by 0.02 arcseconds.
+/// Returns earth, sun and axes by ERFA. Status 1 of eraEpv00, outside 1900-2100, only means that
+/// the error is no longer bounded by 0.02 arcseconds.
 ValuesInTime<kEarthValues> EarthValuesAt(double day, double part) {
   double heliocentric[2][3], barycentric[2][3], true_from_gcrs[3][3];
   eraEpv00(day, part, heliocentric, barycentric);

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 // Earth, sun, moon and the axes of the earth as functions of time, from polynomials: the series of
 // ephemeris.h take tens of microseconds for each instant, and a search for an event asks for
-// thousands. Time is divided into spans; the first question about a span evaluates the series at its
-// Chebyshev nodes (Press et al. 2007, Numerical Recipes, 5.8). Which questions came before does not
-// change an answer.
+// thousands. Time is divided into spans; the first question about a span evaluates the series at
+// its Chebyshev nodes (Press et al. 2007, Numerical Recipes, 5.8). Which questions came before does
+// not change an answer.
 #pragma once
 
 #include <glm/mat3x3.hpp>

@@ -50,9 +50,9 @@ struct SampledLight {
 };
 
 /// A medium prepared for direct integration. Immutable, safe to share between threads. Rays are the
-/// same as for SingleScattering, whole rays and finite segments, except for segments that lead below
-/// altitude 0 (SubmergedPart): direct integration ends them there. Functions throw InputError as
-/// ExtentOf does.
+/// same as for SingleScattering, whole rays and finite segments, except for segments that lead
+/// below altitude 0 (SubmergedPart): direct integration ends them there. Functions throw InputError
+/// as ExtentOf does.
 class DirectScattering {
  public:
   explicit DirectScattering(const Medium& medium);

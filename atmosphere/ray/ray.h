@@ -26,8 +26,8 @@ struct ViewRay {
   double nu = 1.0;          // cosine between view direction and direction to the sun, [-1, 1]
   /// The ray ends at this distance, or at the ground or the top if nearer.
   double length_m = std::numeric_limits<double>::infinity();
-  /// True if the ray reaches the point at length_m although it lies below altitude 0, or behind a dip
-  /// of the line below altitude 0. Otherwise the ground ends a ray from altitude 0 or above.
+  /// True if the ray reaches the point at length_m although it lies below altitude 0, or behind a
+  /// dip of the line below altitude 0. Otherwise the ground ends a ray from altitude 0 or above.
   bool passes_ground = false;
 };
 
@@ -52,10 +52,10 @@ struct RayExtent {
 ///
 /// A ray of a given length that begins below altitude 0 or passes the ground is a segment of air
 /// between two points, neither of which needs to lie above altitude 0: land lies below the sea at
-/// some places, and the line between two points at the shore dips below it. Below altitude 0 air has
-/// the density of altitude 0, so that both directions of a segment pass through the same air. The
-/// ground ends only segments that lead deeper than DeepestAir, as no line between two places of a
-/// planet does that can see each other.
+/// some places, and the line between two points at the shore dips below it. Below altitude 0 air
+/// has the density of altitude 0, so that both directions of a segment pass through the same air.
+/// The ground ends only segments that lead deeper than DeepestAir, as no line between two places of
+/// a planet does that can see each other.
 ///
 /// Error below 1e-6 m for observers within 1e8 m (extended precision). Throws InputError for a ray
 /// that is not finite, lower than half a radius below altitude 0, or higher than 1e12 m.
@@ -67,8 +67,8 @@ struct RayExtent {
 /// reflected at its end is not included: the caller adds it.
 [[nodiscard]] bool BringsLightOfGround(const ViewRay& ray, const RayExtent& extent);
 
-/// Returns the depth below altitude 0 to which air continues for segments [m]: 12 km, more than that
-/// of any land, and on small planets a fiftieth of the radius.
+/// Returns the depth below altitude 0 to which air continues for segments [m]: 12 km, more than
+/// that of any land, and on small planets a fiftieth of the radius.
 [[nodiscard]] constexpr double DeepestAir(double planet_radius_m) {
   return std::min(12e3, 0.02 * planet_radius_m);
 }
@@ -228,8 +228,8 @@ struct RayEntry {
   [[nodiscard]] bool IsSubmerged() const { return submerged_begin_km < submerged_end_km; }
 };
 
-/// Returns whether ClimbSeries (optical_depth.glsl) is not valid up to the top of the air: its error
-/// is 6e-6 of a climb by a twentieth of the radius, and beyond the radius it has no bound.
+/// Returns whether ClimbSeries (optical_depth.glsl) is not valid up to the top of the air: its
+/// error is 6e-6 of a climb by a twentieth of the radius, and beyond the radius it has no bound.
 [[nodiscard]] constexpr bool IsTall(double top, double radius) { return top > 0.05 * radius; }
 
 [[nodiscard]] inline double Kilometres(double metres) { return metres / kMetresPerKilometre; }

@@ -148,8 +148,8 @@ struct AirColumns {
   double rayleigh = 0.0, mie = 0.0, ozone = 0.0;
 };
 
-/// Computes columns along any line; below altitude 0 air has the density of altitude 0. The relative
-/// error of an optical depth to space is below 1e-6 (asserted).
+/// Computes columns along any line; below altitude 0 air has the density of altitude 0. The
+/// relative error of an optical depth to space is below 1e-6 (asserted).
 class ColumnTable {
  public:
   explicit ColumnTable(const Medium& medium);

@@ -62,8 +62,8 @@ Columns Densities(const Medium& medium, Extended altitude) {
 }
 
 // Returns the points at which the integrands along the line have a kink or a large curvature: edges
-// of the ozone tent, the perigee, altitude 0 where the line passes it, and a ladder of altitudes that
-// brackets both scale heights, so that no layer lies between the nodes of a first panel.
+// of the ozone tent, the perigee, altitude 0 where the line passes it, and a ladder of altitudes
+// that brackets both scale heights, so that no layer lies between the nodes of a first panel.
 std::vector<double> Breakpoints(const Medium& medium, const Line& line, double begin, double end) {
   std::vector<double> points;
   points.reserve(2 + 1 + 2 * (4 + 6));

@@ -28,10 +28,10 @@ struct UtcInstant {
 [[nodiscard]] UtcInstant MeanSolarMidnight(double longitude_rad, const UtcInstant& around);
 
 /// Reads ISO 8601: "2026-06-21T04:00:00Z", "2026-06-21T13:00:00+09:00"; a space for the T, t and z
-/// (RFC 3339), and fractions of a second after a point or a comma are allowed. Without Z or an offset, `zone` (IANA name) is needed; a local
-/// time in a DST gap or overlap is rejected with a message that requests the offset. If the text
-/// contains the offset, `zone` is not used. Years kFirstYear to kLastYear. Throws InputError naming text and
-/// fault.
+/// (RFC 3339), and fractions of a second after a point or a comma are allowed. Without Z or an
+/// offset, `zone` (IANA name) is needed; a local time in a DST gap or overlap is rejected with a
+/// message that requests the offset. If the text contains the offset, `zone` is not used. Years
+/// kFirstYear to kLastYear. Throws InputError naming text and fault.
 [[nodiscard]] UtcInstant ParseInstant(std::string_view text,
                                       const std::optional<std::string>& zone = std::nullopt);
 

@@ -75,9 +75,9 @@ class Atmosphere {
   ///
   /// The error of the default bands is a CIEDE2000 of 0.2 in the mean and 0.6 at the 95th
   /// percentile, over skies from noon to deep twilight (asserted by spectrum_test and
-  /// band_training_test). Throws InputError for a spectrum of another number of bands or with values
-  /// that are not finite, and if the wavelengths do not show colours: they must reach from at most
-  /// 480 nm to at least 600 nm, with gaps of at most 300 nm in between.
+  /// band_training_test). Throws InputError for a spectrum of another number of bands or with
+  /// values that are not finite, and if the wavelengths do not show colours: they must reach from
+  /// at most 480 nm to at least 600 nm, with gaps of at most 300 nm in between.
   /// @param light  per unit of solar irradiance, as returned by Sky.
   [[nodiscard]] LinearRgb ColourOf(const Spectrum& light) const;
 

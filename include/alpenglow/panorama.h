@@ -36,10 +36,11 @@ struct PanoramaOptions {
 ///
 /// Error of the luminance against evaluation at the centres of pixels, relative to it or to 1e-4 of
 /// the brightest pixel: below 0.1 % (rms) with the sun above 10 degrees, below 0.3 % down to -10
-/// degrees in the air of the earth (asserted by panorama_test). Relative to it or to a thousandth of
-/// the mean of the sky it is below 0.75 % (rms) over the sky in every preset and with every mixture of
-/// aerosols, in mist and with narrow lobes to either side (asserted by same_light_test). Throws InputError for a member out
-/// of range, and for an atmosphere whose wavelengths show no colours (Atmosphere::ColourOf).
+/// degrees in the air of the earth (asserted by panorama_test). Relative to it or to a thousandth
+/// of the mean of the sky it is below 0.75 % (rms) over the sky in every preset and with every
+/// mixture of aerosols, in mist and with narrow lobes to either side (asserted by same_light_test).
+/// Throws InputError for a member out of range, and for an atmosphere whose wavelengths show no
+/// colours (Atmosphere::ColourOf).
 [[nodiscard]] HdrImage RenderPanorama(const Sky& sky, const PanoramaOptions& options);
 
 /// Returns the illuminance of sun and sky on a horizontal plane at the observer [lx]; the horizon

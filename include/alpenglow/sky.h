@@ -29,8 +29,8 @@ struct AirBetween {
 /// straight: directions to the sun should be those of SunInSky::ToSunForAir.
 ///
 /// Functions throw InputError for a direction of length 0, for coordinates that are not finite, and
-/// for points lower than half a radius of the planet below altitude 0 or higher than 1e12 m. The sky
-/// of a point below altitude 0 is that of altitude 0.
+/// for points lower than half a radius of the planet below altitude 0 or higher than 1e12 m. The
+/// sky of a point below altitude 0 is that of altitude 0.
 class Sky {
  public:
   /// Solves multiple scattering, on all processors. This is slow compared with all other functions:

@@ -54,8 +54,8 @@ struct LinearRgb {
   double blue = 0.0;   ///< [cd/m^2] of radiances
 };
 
-/// Returns the luminance of a colour, in its unit (CIE 1931 Y; IEC 61966-2-1). Throws InputError for
-/// a channel that is not finite.
+/// Returns the luminance of a colour, in its unit (CIE 1931 Y; IEC 61966-2-1). Throws InputError
+/// for a channel that is not finite.
 [[nodiscard]] double Luminance(const LinearRgb& colour);
 
 }  // namespace alpenglow

@@ -28,10 +28,10 @@ void BakeTables(const Atmosphere& atmosphere, const std::filesystem::path& folde
 /// scattering. A table returns exactly the values that were written. Throws InputError naming the
 /// file if a table is missing, damaged or made for another atmosphere than the others.
 ///
-/// Error of the luminance of Radiance() against that of a Sky of the same atmosphere, from the ground
-/// to 3 km, relative to it or to a thousandth of the mean of the sky: below 8 % (rms) for every preset
-/// and every mixture of aerosols with tables of the quality kPreview, and below 2 % in the dust of
-/// "mars" with kStandard (asserted by same_light_test).
+/// Error of the luminance of Radiance() against that of a Sky of the same atmosphere, from the
+/// ground to 3 km, relative to it or to a thousandth of the mean of the sky: below 8 % (rms) for
+/// every preset and every mixture of aerosols with tables of the quality kPreview, and below 2 % in
+/// the dust of "mars" with kStandard (asserted by same_light_test).
 [[nodiscard]] Sky ReadTables(const std::filesystem::path& folder);
 
 /// Reads a folder like ReadTables(folder) and throws InputError unless it was made for this

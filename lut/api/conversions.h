@@ -33,7 +33,8 @@ struct AltitudeAndZenith {
 /// higher than 1e12 m.
 [[nodiscard]] AltitudeAndZenith AltitudeOf(const LocalPoint& point, double planet_radius_m);
 
-/// Returns the cosine of the angle between two unit vectors, whose product may exceed 1 by rounding.
+/// Returns the cosine of the angle between two unit vectors, whose product may exceed 1 by
+/// rounding.
 [[nodiscard]] double CosineBetween(const glm::dvec3& a, const glm::dvec3& b);
 
 /// @param view, to_sun  unit vectors.

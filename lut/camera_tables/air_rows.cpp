@@ -251,8 +251,8 @@ SunlightTo Divided(const glm::vec4& once, const glm::vec4& added) {
   return {single, once + added - single};
 }
 
-/// Sunlight along the rays of one row, up to each distance: scattered once, and what is added around
-/// the sun to the light of the moments.
+/// Sunlight along the rays of one row, up to each distance: scattered once, and what is added
+/// around the sun to the light of the moments.
 class SunlightOfRow {
  public:
   SunlightOfRow(const SingleScattering<float>& air, const MultipleScattering& multiple_scattering,

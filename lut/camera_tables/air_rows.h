@@ -43,8 +43,8 @@ struct AirRow {
 /// Phase functions as evaluated by shaders.
 class AirPhases {
  public:
-  /// @param nodes  phase function of the aerosol, as in MediumTables::phase or AirTables::phase; the
-  ///     caller keeps it alive.
+  /// @param nodes  phase function of the aerosol, as in MediumTables::phase or AirTables::phase;
+  ///     the caller keeps it alive.
   explicit AirPhases(const AirTexels& nodes) : nodes_(nodes) {}
 
   [[nodiscard]] static float OfMolecules(double nu);

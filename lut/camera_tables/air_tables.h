@@ -11,18 +11,19 @@
 //
 // where nu is the cosine of the angle to the direction in which the sun is seen. An aureole is
 // therefore as sharp as the phase function at the pixel. Here p_M includes the light that aerosol
-// scatters more than once around the sun (MultipleScattering::GlowFactor), for the column of aerosol
-// in the direction of the sun. For other columns the quotient varies, but slowly: where that light
-// varies within a degree it is near the sun. Light scattered on the way to a point is also divided by 1 - T,
-// where T is the transmittance along the way. The result is a mean source, which hardly changes
-// with distance,
+// scatters more than once around the sun (MultipleScattering::GlowFactor), for the column of
+// aerosol in the direction of the sun. For other columns the quotient varies, but slowly: where
+// that light varies within a degree it is near the sun. Light scattered on the way to a point is
+// also divided by 1 - T, where T is the transmittance along the way. The result is a mean source,
+// which hardly changes with distance,
 //
 //   S(direction, d) = single (1 - T) [p_R(nu) a_R + p_M(nu) a_M],
 //   D(direction, d) = diffuse (1 - T),   T = exp(-d extinction)
 //
 // S is sunlight outside of the planet's own shadow, without the shadows of terrain: scattered once,
 // and with what is added around the sun. Where the latter would take more than half of the former,
-// away from the sun, the rest belongs to D. D is all other light scattered more than once. air_map.glsl defines the axes.
+// away from the sun, the rest belongs to D. D is all other light scattered more than once.
+// air_map.glsl defines the axes.
 //
 // This header also reads the shared text air_map.glsl as C++.
 #pragma once
@@ -129,8 +130,8 @@ struct AirTables {
   AirMap map;
   std::array<glm::vec4, 3> sky_mix;     // m_R, m_M, m_0
   std::array<glm::vec4, 2> single_mix;  // a_R, a_M
-  /// Extinction at altitude 0 and below [1/km]: a ray that goes on below altitude 0 is lit as at its
-  /// crossing, and one from an eye at or below altitude 0 as the horizontal ray.
+  /// Extinction at altitude 0 and below [1/km]: a ray that goes on below altitude 0 is lit as at
+  /// its crossing, and one from an eye at or below altitude 0 as the horizontal ray.
   glm::vec4 extinction_below;
   /// Phase function by which the light is divided: MediumTables::phase with the light around the
   /// sun (MultipleScattering::GlowFactor), and at least a tenth of it.

@@ -20,8 +20,8 @@ namespace alpenglow::lut {
 /// names and contents of files may have, are escaped (Printable).
 void Log(std::string_view text) noexcept;
 
-/// As Log, for a thread that ends the process: it takes no lock, and drops the text where the
-/// reader of standard error does not read.
+/// Writes lines as Log does, for a thread that ends the process: it takes no lock, and drops the
+/// text if the reader of standard error does not read.
 void LogWithoutWaiting(std::string_view text) noexcept;
 
 /// Writes a result to standard output. An error is remembered until FlushStandardOutput.

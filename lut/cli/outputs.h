@@ -12,8 +12,8 @@ namespace alpenglow::lut {
 /// relative and absolute paths.
 void RequireDifferent(const std::vector<NamedFile>& outputs);
 
-/// Prepares the outputs of a program: none is an input (InputError) or another output (OptionError),
-/// their folders are made, and each file can be written (OutputError).
+/// Prepares the outputs of a program: none is an input (InputError) or another output
+/// (OptionError), their folders are made, and each file can be written (OutputError).
 void PrepareOutputs(const std::vector<NamedFile>& outputs, const std::vector<NamedFile>& inputs);
 
 }  // namespace alpenglow::lut

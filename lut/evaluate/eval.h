@@ -10,9 +10,9 @@
 // atmosphere through the top. If it is given, the segment stops there, or at the ground or the top
 // if nearer, and light reflected by the ground is not included even if the segment reaches the
 // ground. From below altitude 0 air continues with the density of altitude 0, and the ground ends
-// only segments that lead deeper than 12 km (DeepestAir of ray.h). For relative_azimuth_deg in (0, 180) the sun is to the left of the view, beyond
-// (and below 0) to its right, where stokes_u has the opposite sign. Cases of lamps have their own
-// columns: lamp_cases.h.
+// only segments that lead deeper than 12 km (DeepestAir of ray.h). For relative_azimuth_deg in (0,
+// 180) the sun is to the left of the view, beyond (and below 0) to its right, where stokes_u has
+// the opposite sign. Cases of lamps have their own columns: lamp_cases.h.
 //
 // Methods:
 //
@@ -26,9 +26,9 @@
 //             delta_m.h computes that light itself), plus 0.3 % of the light and 1e-12 of the
 //             sun's, below which light is not resolved. For narrow backward lobes the differences
 //             count three times, and light that delta_m.h blurs is added. A tenth of what a forward
-//             peak adds to the light from behind the end of a segment is added. At least 95 % of the
-//             values are within it, by air at least 90 %: in clear air, haze, dust, thick air and
-//             air with narrow lobes to either side, and of irradiances of the sky (asserted by
+//             peak adds to the light from behind the end of a segment is added. At least 95 % of
+//             the values are within it, by air at least 90 %: in clear air, haze, dust, thick air
+//             and air with narrow lobes to either side, and of irradiances of the sky (asserted by
 //             eval_test).
 //   table     look-ups in stored tables; quantities that are not in them are integrated with the
 //             tables' number of nodes. The error is the difference to the integral.

@@ -295,12 +295,16 @@ class IntegralEvaluator final : public Evaluator {
     return result;
   }
 
+  /// Returns the least error of light of higher orders [1/sr]. Where orders are missing, nothing is
+  /// known of the rest but that it is less than the sunlight.
+  [[nodiscard]] double LeastLight() const { return fine_light_->converged() ? kLeastLight : 1.0; }
+
   [[nodiscard]] Estimates HigherOrders(const ViewRay& ray) const {
     const RaySamples<float> samples =
         quick_air_.Sample(ray, {.nodes = 24, .split_ozone = false, .dark_samples = true});
     Estimates result = Differences(fine_light_->InscatterAlong(samples, ray.nu),
                                    middling_light_->InscatterAlong(samples, ray.nu),
-                                   coarse_light_->InscatterAlong(samples, ray.nu), kLeastLight);
+                                   coarse_light_->InscatterAlong(samples, ray.nu), LeastLight());
     if (backward_lobe_) {
       const Bands<float> lobe = backward_lobe_->BackwardError(samples, ray.nu);
       for (std::size_t band = 0; band < result.size(); ++band)
@@ -339,14 +343,14 @@ class IntegralEvaluator final : public Evaluator {
       }
       return result;
     };
-    return StokesOf(work, sum(once.q, Differences(fine.q, middling.q, coarse.q, kLeastLight)),
-                    sum(once.u, Differences(fine.u, middling.u, coarse.u, kLeastLight)));
+    return StokesOf(work, sum(once.q, Differences(fine.q, middling.q, coarse.q, LeastLight())),
+                    sum(once.u, Differences(fine.u, middling.u, coarse.u, LeastLight())));
   }
 
   [[nodiscard]] Estimates SkyIrradiance(double altitude_m, double mu_s) const {
     return Differences(fine_light_->SkyIrradiance(altitude_m, mu_s),
                        middling_light_->SkyIrradiance(altitude_m, mu_s),
-                       coarse_light_->SkyIrradiance(altitude_m, mu_s), kPi * kLeastLight);
+                       coarse_light_->SkyIrradiance(altitude_m, mu_s), kPi * LeastLight());
   }
 
   SingleScattering<double> air_;

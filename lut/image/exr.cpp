@@ -195,8 +195,9 @@ Imf::FrameBuffer FrameBufferOf(const Image& image) {
 }
 
 /// Lets OpenEXR compress blocks of lines in as many threads as the rest of the program may use,
-/// unless the process has already chosen a number. OpenEXR has one number for the whole process: the
-/// last of the objects that exist at a time restores it. The bytes of a file do not depend on it.
+/// unless the process has already chosen a number. OpenEXR has one number for the whole process:
+/// the last of the objects that exist at a time restores it. The bytes of a file do not depend on
+/// it.
 class CompressionThreads {
  public:
   CompressionThreads() {

@@ -81,8 +81,8 @@ void WriteExr(const std::filesystem::path& file, const Image& image, const Metad
 /// Checks the headers of an EXR file before the library reads them: OpenEXR allocates the memory
 /// that an attribute claims before it detects that the file is shorter, so two damaged bytes can
 /// cost two gigabytes, and it allocates a table of all lines of the data window. Throws InputError
-/// naming the file if an attribute extends beyond the end of the file, if a side of a data window is
-/// longer than `longest_side`, or if a header is not terminated. Other errors are left to the
+/// naming the file if an attribute extends beyond the end of the file, if a side of a data window
+/// is longer than `longest_side`, or if a header is not terminated. Other errors are left to the
 /// library.
 ///
 /// Layout of the file, "OpenEXR File Layout" (openexr.com): magic number and version, 4 bytes each;

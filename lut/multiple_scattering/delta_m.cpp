@@ -13,9 +13,9 @@
 namespace alpenglow::lut {
 namespace {
 
-// The forward peak has as many degrees as it takes until its coefficients are this small. Light that
-// is scattered twice has their squares. A peak with more than kMostDegrees is narrower than 0.02
-// degrees, a thirtieth of the sun's disk; its last degrees fade out, and its tip with them.
+// The forward peak has as many degrees as it takes until its coefficients are this small. Light
+// that is scattered twice has their squares. A peak with more than kMostDegrees is narrower than
+// 0.02 degrees, a thirtieth of the sun's disk; its last degrees fade out, and its tip with them.
 constexpr double kNegligible = 5e-3;
 // A backward lobe is narrow if its coefficient of the first degree that is not kept is this large.
 constexpr double kNarrowBackward = 0.03;

@@ -31,8 +31,8 @@
 // they are tabulated: at wide angles the low and the high ones cancel.
 //
 // A narrow backward lobe has no closed form in all orders. The moments hold it blurred: of its
-// coefficient b of degree L + 1, degree l loses the part 1 - (1 - (l/(L + 1))^2)^2. The forward peak
-// spreads what the moments lack of the lobe, (-1)^l b_l, by the factor exp(chi_l y) instead of
+// coefficient b of degree L + 1, degree l loses the part 1 - (1 - (l/(L + 1))^2)^2. The forward
+// peak spreads what the moments lack of the lobe, (-1)^l b_l, by the factor exp(chi_l y) instead of
 // exp(f y). Light that is sent up by the lobe and down again lies around the sun; it is computed in
 // closed form from the column below each sample.
 // Light from behind the end of the ray, seen through that medium, is brighter than through the true
@@ -100,9 +100,9 @@ struct PeakShape {
   std::vector<float> blurred_back;  // the same light as the moments keep it; empty without one
 };
 
-/// Returns the light of narrow lobes, forward and backward, that thin air scatters twice: the square
-/// of the largest coefficient of degrees 49 to 64 of the medium's aerosol, times the optical depth
-/// that the aerosol scatters of a vertical beam.
+/// Returns the light of narrow lobes, forward and backward, that thin air scatters twice: the
+/// square of the largest coefficient of degrees 49 to 64 of the medium's aerosol, times the optical
+/// depth that the aerosol scatters of a vertical beam.
 [[nodiscard]] double NarrowLobes(const Medium& medium);
 
 /// Returns the sample that is farthest from the observer. There must be one.
@@ -155,9 +155,9 @@ struct SunlitPoint {
           samples.sun_mie[i]};
 }
 
-/// Returns the sunlight, relative to that at the point, that a backward delta function would send up
-/// to it from the air below it, down to the ground: of what that air takes from a beam on its way
-/// down and up, half the aerosol's share.
+/// Returns the sunlight, relative to that at the point, that a backward delta function would send
+/// up to it from the air below it, down to the ground: of what that air takes from a beam on its
+/// way down and up, half the aerosol's share.
 /// @param share  f.
 [[nodiscard]] float UpFromBelow(const AirConstants<float>& air, std::size_t band, float share,
                                 const SunlitPoint& point);
@@ -172,8 +172,8 @@ class PeakAtAngle {
 
   /// Returns the light per length of a path on which aerosol scatters with optical depth y [1/km].
   /// @param depth  optical depth of the path, >= f y.
-  /// @param of_gas, of_aerosol  scattering coefficients at the point [1/km]; that of molecules times
-  ///   their phase function.
+  /// @param of_gas, of_aerosol  scattering coefficients at the point [1/km]; that of molecules
+  ///   times their phase function.
   [[nodiscard]] float LightOf(float y, float depth, float of_gas, float of_aerosol) const;
 
   /// Returns PeakShape::twice_back at the angle.
@@ -232,8 +232,8 @@ class DeltaM {
   /// scatterings is blurred.
   [[nodiscard]] bool HasBackwardLobe() const;
 
-  /// Returns an estimate of the light of a narrow backward lobe that Along and the moments of scaled
-  /// air lack or misplace [1/sr].
+  /// Returns an estimate of the light of a narrow backward lobe that Along and the moments of
+  /// scaled air lack or misplace [1/sr].
   [[nodiscard]] Bands<float> BackwardError(const RaySamples<float>& samples, double nu) const;
 
   [[nodiscard]] const SingleScattering<float>& air() const { return beam_.air(); }

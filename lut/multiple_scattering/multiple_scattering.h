@@ -65,9 +65,9 @@ struct MultipleScatteringOptions {
   bool delta_m = false;
 };
 
-/// Returns the default options in clear air. If aerosol scatters more than 8 % of a vertical beam or
-/// has narrow lobes (NarrowLobes of delta_m.h), returns degree 12 with the forward peak in closed form; if all scattering takes more than 60 %,
-/// or molecules more than 33 %, more nodes.
+/// Returns the default options in clear air. If aerosol scatters more than 8 % of a vertical beam
+/// or has narrow lobes (NarrowLobes of delta_m.h), returns degree 12 with the forward peak in
+/// closed form; if all scattering takes more than 60 %, or molecules more than 33 %, more nodes.
 /// Radiances of all orders are then within 0.5 % (rms) of path tracing at an aerosol optical depth
 /// of 0.1, 2 % at 1 and in the dust of Mars, 1 % through molecules of optical depth 5.
 [[nodiscard]] MultipleScatteringOptions OptionsFor(const Medium& medium);

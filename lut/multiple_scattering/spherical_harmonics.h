@@ -71,8 +71,9 @@ constexpr HarmonicNorms kHarmonicNorm = FindHarmonicNorms();
 [[nodiscard]] std::vector<double> LegendreSeries(int degree, double nu);
 
 /// Returns the Legendre coefficients chi_l = 2 pi integral of p(x) P_l(x) dx, l = 0 ... degree;
-/// chi_0 = 1. The error is below 1e-6 up to degree 170 and, for lobes of Henyey and Greenstein, up to
-/// degree 8192; for tables it is below 2e-6 up to degree 600 (asserted by multiple_scattering_test).
+/// chi_0 = 1. The error is below 1e-6 up to degree 170 and, for lobes of Henyey and Greenstein, up
+/// to degree 8192; for tables it is below 2e-6 up to degree 600 (asserted by
+/// multiple_scattering_test).
 [[nodiscard]] std::vector<double> LegendreCoefficients(const PhaseFunction& phase, int degree);
 
 /// Returns the Legendre coefficients of the medium's aerosol at every wavelength: chi_l of a band

@@ -293,7 +293,7 @@ class Block {
     return LoadFour(field.moments.data() + node * layout_.stride);
   }
   [[nodiscard]] double LargestShare(const Field& part, const Field& whole) const;
-  void AddTail(const Field& last, const Field& before, const Field& second_before,
+  void AddTail(const Field& last, const Field& before, const Field& second_before, double largest,
                Field& total) const;
 
   const MultipleScatteringOptions& options_;
@@ -319,15 +319,15 @@ double Block::LargestShare(const Field& part, const Field& whole) const {
 // Adds (last + before) (q + q^2 + ...) for the ratio q of an order to the second one before it.
 // Over bright ground orders come in pairs: light that the ground reflects, and the part of it that
 // the air scatters down again.
+// @param largest  upper bound of q.
 void Block::AddTail(const Field& last, const Field& before, const Field& second_before,
-                    Field& total) const {
-  constexpr float kLargest = 0.96F;
+                    double largest, Field& total) const {
   for (std::size_t node = 0; node < layout_.nodes; ++node) {
     const Four now = Isotropic(last, node), then = Isotropic(second_before, node);
     Four factor = {};
     for (int lane = 0; lane < static_cast<int>(kBlockBands); ++lane) {
       if (then[lane] <= 0.0F) continue;
-      const float ratio = std::clamp(now[lane] / then[lane], 0.0F, kLargest);
+      const float ratio = std::clamp(now[lane] / then[lane], 0.0F, static_cast<float>(largest));
       factor[lane] = ratio / (1.0F - ratio);
     }
     for (std::size_t i = 0; i < layout_.stride; i += kBlockBands) {
@@ -346,6 +346,9 @@ constexpr int kFewestOrders = 3;
 // Upper bound of the number of orders needed in clear and hazy air.
 constexpr int kOrdersOfThinAir = 16;
 
+// Largest ratio of an order to the one before it at which light is known to decay.
+constexpr double kSlowestDecay = 0.9999;
+
 void Accumulate(const Field& part, Field& total) {
   float* const sum = total.moments.data();
   const float* const term = part.moments.data();
@@ -359,7 +362,7 @@ Block::Sum Block::Solve(Field first_order) const {
   Field total = order;
   Field before, second_before;
   int orders = 1;
-  double share = 1.0, rest = 1.0, ratio = 0.0;
+  double share = 1.0, rest = 1.0, ratio = 0.0, change = 1.0;
   const auto goes_on = [&] {
     if (options_.exact_orders) return orders < *options_.exact_orders;
     if (share <= 0.0 || orders >= options_.max_orders) return false;
@@ -378,16 +381,25 @@ Block::Sum Block::Solve(Field first_order) const {
     const double share_before = share;
     share = LargestShare(order, total);
     const double ratio_before = ratio;
-    ratio = std::clamp(share / share_before, 0.0, 0.999);
+    ratio = share / share_before;
+    // The largest change of the last orders: two equal ratios may be chance.
+    change = std::max(std::abs(ratio - ratio_before), 0.7 * change);
+    // Deep in thick air, light increases from order to order before it decays.
+    if (ratio >= kSlowestDecay) continue;
     rest = share * ratio / (1.0 - ratio);
     // In thick air all nodes soon decay at one rate, long before the remaining light is small. The
     // uncertainty of the rest is then the change of its ratio from order to order.
-    if (orders > kOrdersOfThinAir)
-      rest *= std::min(10.0 * std::abs(ratio - ratio_before) / (1.0 - ratio), 1.0);
+    if (orders > kOrdersOfThinAir) rest *= std::min(10.0 * change / (1.0 - ratio), 1.0);
   }
   if (options_.exact_orders) return {std::move(total), orders, true};
-  if (orders >= kFewestOrders) AddTail(order, before, second_before, total);
-  return {std::move(total), orders, rest <= options_.tolerance || share == 0.0};
+  // Nodes of thin air may decay more slowly than the one with the largest share; of thick air, all
+  // decay at one rate. Shares decay faster than the light, because the sum of all orders increases.
+  constexpr double kOfThinAir = 0.96;
+  const bool converged = rest <= options_.tolerance || share == 0.0;
+  const double decay = converged ? std::min(ratio * (1.0 + share), kSlowestDecay) : 0.0;
+  if (orders >= kFewestOrders)
+    AddTail(order, before, second_before, std::max(decay * decay, kOfThinAir), total);
+  return {std::move(total), orders, converged};
 }
 
 // Values of one block of bands in the order of MultipleScattering::values().

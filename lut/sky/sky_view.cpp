@@ -175,7 +175,8 @@ class PeakDepths {
   std::array<float, kPeakDepths> place_{}, factor_{};
 };
 
-// Returns the depths of every band: up to that of two horizontal paths on the ground, but not beyond
+// Returns the depths of every band: up to that of two horizontal paths on the ground, but not
+// beyond
 // 40 and f y = 20, which is enough in mist (same_light_test).
 std::vector<PeakDepths> DepthsFor(const SingleScattering<float>& air, const DeltaM& peak) {
   constexpr double kDeepest = 40.0, kDeepestPeak = 20.0;
@@ -449,7 +450,8 @@ class SkyView::Builder {
     }
   }
 
-  // Returns the coefficient R of a band; those of D and of the terms M follow at every fourth place.
+  // Returns the coefficient R of a band; those of D and of the terms M follow at every fourth
+  // place.
   [[nodiscard]] float* BandOfNode(int row, int column, std::size_t band) const {
     return Node(view_.blocks_[band / kViewLanes], row, column) + band % kViewLanes;
   }

@@ -20,8 +20,8 @@ namespace alpenglow::renderer {
 /// The points of a track that have a place, in order, for the functions below.
 struct PlacesInTime {
   std::vector<GeodeticPosition> places;  // with height 0
-  std::vector<std::optional<double>>
-      times_s;  // increasing where known; fewer than 2: a drawn track
+  /// Increasing where they are known. With fewer than two, the track was drawn.
+  std::vector<std::optional<double>> times_s;
 };
 
 /// Returns which places are odd:

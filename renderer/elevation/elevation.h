@@ -73,15 +73,16 @@ struct ElevationModel {
 /// Reads a digital elevation model: GeoTIFF, SRTM .hgt, USGS DEM; any coordinate system of the
 /// earth (resampled to geographic WGS84 unless its samples already lie on such a grid). Heights are
 /// in metres (also mm, cm, dm, km) or feet, with the declared scale and offset. Without a unit they
-/// are in feet on a map in feet, else in metres; unit_note reports this if the map is not in metres.
-/// They are interpreted as above the ellipsoid, whatever vertical datum is declared. Voids are NaN,
-/// the declared nodata value, and samples that a mask or an alpha band excludes. In a file that
-/// declares neither they are the heights -32768, -32767, -9999, the lowest float and the lowest
-/// double, in its unit. kFill fills them with a membrane (Laplace's equation) spanned over their rims; places outside
-/// the footprint of a resampled file stay open. Throws InputError naming the file and the fault for
-/// a coordinate system that is missing or not of the earth, a rotated or missing geotransform,
-/// several bands of heights, complex samples, a scale of 0, latitudes over 90, one row or column, no valid
-/// sample, heights that no ground on earth has, damaged or truncated files.
+/// are in feet on a map in feet, else in metres; unit_note reports this if the map is not in
+/// metres. They are interpreted as above the ellipsoid, whatever vertical datum is declared. Voids
+/// are NaN, the declared nodata value, and samples that a mask or an alpha band excludes. In a file
+/// that declares neither they are the heights -32768, -32767, -9999, the lowest float and the
+/// lowest double, in its unit. kFill fills them with a membrane (Laplace's equation) spanned over
+/// their rims; places outside the footprint of a resampled file stay open. Throws InputError naming
+/// the file and the fault for a coordinate system that is missing or not of the earth, a rotated or
+/// missing geotransform, several bands of heights, complex samples, a scale of 0, latitudes over
+/// 90, one row or column, no valid sample, heights that no ground on earth has, damaged or
+/// truncated files.
 [[nodiscard]] ElevationModel ReadElevation(const std::filesystem::path& file, VoidPolicy voids);
 
 /// Reads only the samples of `window`: at least 2 x 2 of the grid of ReadElevationExtent, from a

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
-// Provides tables of the sky's light: LevelSky, the irradiance on level ground, GlossMirror, the sky
-// as mirrored by waves and by glossy land between mountains, and SkyIrradianceGradient, the
+// Provides tables of the sky's light: LevelSky, the irradiance on level ground, GlossMirror, the
+// sky as mirrored by waves and by glossy land between mountains, and SkyIrradianceGradient, the
 // irradiance of the open sky on slopes.
 //
-// GlossMirror tabulates what GroundLight::Mirrored sums ray by ray. The sky and the slopes below the
-// horizon are summed apart:
+// GlossMirror tabulates what GroundLight::Mirrored sums ray by ray. The sky and the slopes below
+// the horizon are summed apart:
 //
 //   sum of w_k ((1 - g_k) S_k + g_k G)  =  A(h) + B(h) G
 //
@@ -60,12 +60,13 @@ struct LevelSky {
                                        double sun_elevation_rad);
 };
 
-/// The light that a glossy surface mirrors, relative to LevelSky, in layers of kSide x kSide texels.
+/// The light that a glossy surface mirrors, relative to LevelSky, in layers of kSide x kSide
+/// texels.
 struct GlossMirror {
   static constexpr std::size_t kSide = 48;
   static constexpr std::size_t kHorizons = 24, kAltitudes = 2;
-  /// Layers A of all horizons at the lower altitude, those at the higher one, and one layer B, whose
-  /// rows are those of A and whose columns are horizons. B is in the first band.
+  /// Layers A of all horizons at the lower altitude, those at the higher one, and one layer B,
+  /// whose rows are those of A and whose columns are horizons. B is in the first band.
   static constexpr std::size_t kLayers = kAltitudes * kHorizons + 1;
 
   std::vector<BandTexel> waves;          // kLayers; empty: there is no water

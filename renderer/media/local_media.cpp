@@ -161,7 +161,8 @@ double FogBase(const Fog& fog, const SceneGround& ground) {
 }
 
 /// Returns the altitude of the lowest ground under the fog: that of the terrain, or of the planet
-/// around it if the fog lies wholly below the terrain; no value if there is no fog above the ground.
+/// around it if the fog lies wholly below the terrain; no value if there is no fog above the
+/// ground.
 std::optional<double> FogBottom(const FogLayer& fog, const SceneGround& ground) {
   std::vector<double> lowest_m;
   if (ground.terrain) {

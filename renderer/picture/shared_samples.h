@@ -43,8 +43,8 @@
 // sky is visible, not its radiance. So L_r is the light relative to the sky of the ray's own pixel,
 // and a pixel adds its own sky in proportion to its visible fraction: sum_r g(r) [r sees sky] /
 // sum_r g(r). Otherwise a sky whose radiance grows by a quarter from row to row would come out up
-// to a fifth too bright above a ridge, whose pixels have many rays. Rays past the limb of the planet
-// have a sky of their own (LimbView), which counts like the light of ground.
+// to a fifth too bright above a ridge, whose pixels have many rays. Rays past the limb of the
+// planet have a sky of their own (LimbView), which counts like the light of ground.
 //
 // The combined rays have 0.6 times the error of the mean of each pixel's own rays.
 #pragma once

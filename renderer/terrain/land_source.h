@@ -71,8 +71,9 @@ struct LandLattice {
   }
   [[nodiscard]] int LastI(int level) const { return LastVertex(last_column, level); }
   [[nodiscard]] int LastJ(int level) const { return LastVertex(last_row, level); }
-  /// Returns the column of a vertex. Beyond the rim it is that of the rim, unless the lattice closes
-  /// around the earth: columns then go on, and WithinTurn returns the sample at the same place.
+  /// Returns the column of a vertex. Beyond the rim it is that of the rim, unless the lattice
+  /// closes around the earth: columns then go on, and WithinTurn returns the sample at the same
+  /// place.
   [[nodiscard]] int ColumnOf(int i, int level) const {
     const int step = 1 << level;
     if (!ClosesAroundTheEarth()) return std::clamp(i * step, 0, last_column);

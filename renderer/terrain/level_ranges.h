@@ -4,9 +4,9 @@
 //
 // One distance controls both: d^2 = c^2 + h^2, where c is the chord of a sphere from the place
 // under the eye [m], which has no seam at poles and meridians, and h is the height of the eye above
-// all nearby ground. Chunks of level k + 1 nearer than end(k) are replaced by their four children of
-// level k. Vertices of level k have their own position up to start(k) and that of the coarser level
-// from end(k) on. There are no cracks and no popping:
+// all nearby ground. Chunks of level k + 1 nearer than end(k) are replaced by their four children
+// of level k. Vertices of level k have their own position up to start(k) and that of the coarser
+// level from end(k) on. There are no cracks and no popping:
 //   - where level k meets a chunk of level k + 1, that chunk is beyond end(k), so the vertices on
 //     the finer side have the positions of the coarser level;
 //   - start(k + 1) >= end(k) + the diagonal of a chunk of level k + 1, so the vertices on the

@@ -104,8 +104,8 @@ GroundSurfaceBlock SurfaceAround(const PaintedScene& scene, const CameraPose& ey
                 GroundPattern(frame));
 }
 
-// Returns the angle to which edges of disks are softened. In the middle of a view wider than windows
-// show, pixels are so large that a disk below the horizon would reach above it.
+// Returns the angle to which edges of disks are softened. In the middle of a view wider than
+// windows show, pixels are so large that a disk below the horizon would reach above it.
 double RayAngle(PaintedView view) {
   view.eye.fov_rad = std::min(view.eye.fov_rad, kWidestView_rad);
   return PixelAngle(view);

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: MIT
 // The shader programs of a picture: their bindings, shader texts and uniform blocks.
 //
-// Every uniform block (block_bindings.h) and texture has a binding number of its own, so that passes
-// do not overwrite each other's bindings. The fragment stages share one text, picture.frag.glsl, for land, sky and
-// disks, preceded by texts that depend on the scene. There is one program per stage, created on
-// first use and kept. A program adds the light of sun, moon and night sky, because most of its time
-// is needed for what they light: the ground's pattern and the transmittance of the air.
+// Every uniform block (block_bindings.h) and texture has a binding number of its own, so that
+// passes do not overwrite each other's bindings. The fragment stages share one text,
+// picture.frag.glsl, for land, sky and disks, preceded by texts that depend on the scene. There is
+// one program per stage, created on first use and kept. A program adds the light of sun, moon and
+// night sky, because most of its time is needed for what they light: the ground's pattern and the
+// transmittance of the air.
 //
 // Drivers finish compiling a program on its first draw, which takes tenths of a second. Stages that
 // will be needed later, when shadowing begins or ends or a disk comes into view, are therefore

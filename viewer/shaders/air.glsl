@@ -119,8 +119,8 @@ float HalfSineSquared(vec3 direction) {
   return min(0.25 * dot(between, between), 1.0);
 }
 
-// Returns the phase function of the aerosol including the light that aerosol scatters more than once
-// around the sun.
+// Returns the phase function of the aerosol including the light that aerosol scatters more than
+// once around the sun.
 vec4 AerosolPhase(float half_sine_squared) {
   float node = AIR.phase_nodes.x + AIR.phase_nodes.y * PhaseNode(half_sine_squared);
   return TEXEL_OF_LIGHT(air_phase, other_air_phase, vec2(node, 0.5));

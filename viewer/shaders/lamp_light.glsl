@@ -148,8 +148,8 @@ vec3 LampOfTerrain(vec3 way) {
 }
 
 // Returns the height of a point at `way` from the lamp above the shadow of the bare planet, in two
-// thousandths of its distance, plus 0.5: half of the light reaches the edge of the shadow, which begins
-// at the horizon of the lamp.
+// thousandths of its distance, plus 0.5: half of the light reaches the edge of the shadow, which
+// begins at the horizon of the lamp.
 float LampOverHorizon(Lamp lamp, vec3 way) {
   float far = length(way);
   float diameter = 2e3 * lamp_planet.x;
@@ -185,7 +185,8 @@ float LampClearance(Lamp lamp, vec3 way, float rings_nearer, float margin) {
 float LampClearanceInAir(Lamp lamp, vec3 way) { return LampClearance(lamp, way, 0.5, 0.5); }
 
 // Returns the fraction of a lamp's light that terrain and the planet let through to the ground. The
-// terrain around the point is left out, and the margin is larger, so that ground does not shadow itself.
+// terrain around the point is left out, and the margin is larger, so that ground does not shadow
+// itself.
 float LampLit(Lamp lamp, vec3 way) { return clamp(LampClearance(lamp, way, 1.0, 1.0), 0.0, 1.0); }
 
 // Returns this fraction for ground, from its distance to the shadow edge, which is blurred to the

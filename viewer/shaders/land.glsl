@@ -25,7 +25,7 @@ layout(std140) uniform Land {
 
 //// land.vert.glsl
 // Vertices of land relative to the eye, morphed between their own level of detail and the next
-// coarser one (see viewer/land/level_ranges.h). Defined before this text, because software drivers
+// coarser one (see renderer/terrain/level_ranges.h). Defined before this text, because software drivers
 // evaluate both sides of every branch (LandProgramKind of land_pass.h):
 //   BENDS            refraction lifts land
 //   MOONLIT          moonlight is an output

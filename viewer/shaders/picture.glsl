@@ -3,8 +3,8 @@
 
 //// picture.frag.glsl
 // The linear picture [cd/m^2, linear sRGB] lit by the lights of the sky, and the inverse depth of
-// land (gbuffer.inverse_depth.glsl). The passes are separated by the depth test against land, because
-// software drivers evaluate both sides of a branch. Defined before this text:
+// land (gbuffer.inverse_depth.glsl). The passes are separated by the depth test against land,
+// because software drivers evaluate both sides of a branch. Defined before this text:
 //   PASS          LAND_PASS: land and the air in front of it; SKY_PASS: sky and bare planet;
 //                 OPEN_SKY_PASS: sky above the planet; DISK_PASS: disks of sun and moon
 //   TWO_LIGHTS    defined if there is a second light, which casts no shadows (frame_light.h)

@@ -74,8 +74,9 @@ float LiftAt(float altitude_km, float distance_km) {
                   bend_falls.z);
 }
 
-// Returns LiftAt with one node of the quadrature instead of three, which is exact where the curvature
-// is linear along the ray. It needs a third of the exponentials, most of the time of LiftAt.
+// Returns LiftAt with one node of the quadrature instead of three, which is exact where the
+// curvature is linear along the ray. It needs a third of the exponentials, most of the time of
+// LiftAt.
 float RoughLiftAt(float altitude_km, float distance_km) {
   const float t = 0.333333333;
   float above = WayAbove(EYE_ALTITUDE, altitude_km, distance_km, BEND_TOP, PLANET_RADIUS);

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Whoever asks for the light of the sky gets the same: by the library, in panoramas, from tables in
-// files, by `skylut eval`, and from the tables of `skyview`. No program is started, which would solve
-// every air again: `skylut sky` calls lut::RenderPanorama as the library does, and `skyseries` asks
-// for radiances as the library does.
+// files, by `skylut eval`, and from the tables of `skyview`. No program is started, which would
+// solve every air again: `skylut sky` calls lut::RenderPanorama as the library does, and
+// `skyseries` asks for radiances as the library does.
 #include <alpenglow/panorama.h>
 #include <alpenglow/sky.h>
 #include <alpenglow/tables.h>
@@ -54,8 +54,8 @@ struct SkyPixel {
   }
 };
 
-// Returns pixels all over the sky, of which those in column 0 are within 3 degrees of the azimuth of
-// the sun.
+// Returns pixels all over the sky, of which those in column 0 are within 3 degrees of the azimuth
+// of the sun.
 std::vector<SkyPixel> SkyPixels() {
   std::vector<SkyPixel> pixels;
   for (const int x : {0, 2, 8, 20, 35}) {
@@ -197,6 +197,26 @@ std::vector<Setting> Settings() {
   return settings;
 }
 
+/// The largest differences from Sky::Radiance.
+struct Bounds {
+  double eval, viewer, viewer_in_twilight, tables;
+};
+
+void ExpectTheSame(const Ways& ways, const Bounds& bounds) {
+  for (const Setting& at : Settings()) {
+    SCOPED_TRACE(testing::Message()
+                 << "eye at " << at.eye_m << " m, sun at " << at.sun_elevation_deg << " degrees");
+    const bool is_day = at.sun_elevation_deg > 0.0;
+    const Luminances expected = ways.Radiance(at);
+    EXPECT_LT(Difference(ways.Between(at), expected), 1e-5);
+    EXPECT_LT(Difference(ways.Panorama(at), expected), 7.5e-3);
+    EXPECT_LT(Difference(ways.Eval(at), expected), bounds.eval);
+    EXPECT_LT(Difference(ways.Viewer(at), expected),
+              is_day ? bounds.viewer : bounds.viewer_in_twilight);
+    EXPECT_LT(Difference(ways.Tables(at), expected), bounds.tables);
+  }
+}
+
 class TheLightOf : public TemporaryFolder, public testing::WithParamInterface<std::string> {};
 
 // The largest differences of panoramas and of the viewer are those of thin maritime air under a low
@@ -204,16 +224,7 @@ class TheLightOf : public TemporaryFolder, public testing::WithParamInterface<st
 // "preview" have moments to degree 2 in thin air, and 6 azimuths of light scattered once.
 TEST_P(TheLightOf, AnAirIsTheSameByEveryWay) {
   const Ways ways(Atmosphere::FromToml(GetParam()), folder_ / "baked");
-  for (const Setting& at : Settings()) {
-    SCOPED_TRACE(testing::Message()
-                 << "eye at " << at.eye_m << " m, sun at " << at.sun_elevation_deg << " degrees");
-    const Luminances expected = ways.Radiance(at);
-    EXPECT_LT(Difference(ways.Between(at), expected), 1e-5);
-    EXPECT_LT(Difference(ways.Eval(at), expected), 1e-3);
-    EXPECT_LT(Difference(ways.Panorama(at), expected), 7.5e-3);
-    EXPECT_LT(Difference(ways.Viewer(at), expected), 7.5e-3);
-    EXPECT_LT(Difference(ways.Tables(at), expected), 0.08);
-  }
+  ExpectTheSame(ways, {1e-3, 7.5e-3, 7.5e-3, 0.08});
 }
 
 INSTANTIATE_TEST_SUITE_P(PresetsAndMixtures, TheLightOf, testing::ValuesIn(AllAir()));
@@ -237,21 +248,13 @@ std::vector<std::string> OddAir() {
 
 class TheLightOfOddAir : public TheLightOf {};
 
-// The bound of panoramas is that of usual air. The other ways differ by 1 % by day; the viewer by 5 %
-// in the twilight of the small planet and by 3.5 % in that of the narrower lobe, and the tables by
+// The bound of panoramas is that of usual air. The other ways differ by 1 % by day; the viewer by 5
+// % in the twilight of the small planet and by 3.5 % in that of the narrower lobe, and the tables
+// by
 // 10 % around the sun behind that lobe.
 TEST_P(TheLightOfOddAir, IsTheSameByEveryWay) {
   const Ways ways(Atmosphere::FromToml(GetParam()), folder_ / "baked");
-  for (const Setting& at : Settings()) {
-    SCOPED_TRACE(testing::Message()
-                 << "eye at " << at.eye_m << " m, sun at " << at.sun_elevation_deg << " degrees");
-    const Luminances expected = ways.Radiance(at);
-    EXPECT_LT(Difference(ways.Between(at), expected), 1e-5);
-    EXPECT_LT(Difference(ways.Eval(at), expected), 3e-3);
-    EXPECT_LT(Difference(ways.Panorama(at), expected), 7.5e-3);
-    EXPECT_LT(Difference(ways.Viewer(at), expected), at.sun_elevation_deg > 0.0 ? 0.012 : 0.06);
-    EXPECT_LT(Difference(ways.Tables(at), expected), 0.12);
-  }
+  ExpectTheSame(ways, {3e-3, 0.012, 0.06, 0.12});
 }
 
 INSTANTIATE_TEST_SUITE_P(LobesMistAndSmallPlanets, TheLightOfOddAir, testing::ValuesIn(OddAir()));
@@ -259,13 +262,11 @@ INSTANTIATE_TEST_SUITE_P(LobesMistAndSmallPlanets, TheLightOfOddAir, testing::Va
 class BakedTables : public TemporaryFolder {};
 
 TEST_F(BakedTables, OfStandardQualityHaveTheLightOfDust) {
-  constexpr BakeQuality kQuality =
-      tests::kSanitized ? BakeQuality::kPreview : BakeQuality::kStandard;
-  const Ways ways(Atmosphere::FromToml("preset = \"mars\"\n"), folder_ / "baked", kQuality);
+  const Ways ways(Atmosphere::FromToml("preset = \"mars\"\n"), folder_ / "baked",
+                  BakeQuality::kStandard);
   for (const Setting& at : Settings()) {
-    SCOPED_TRACE(testing::Message()
-                 << "eye at " << at.eye_m << " m, sun at " << at.sun_elevation_deg << " degrees");
-    EXPECT_LT(Difference(ways.Tables(at), ways.Radiance(at)), tests::kSanitized ? 0.08 : 0.02);
+    EXPECT_LT(Difference(ways.Tables(at), ways.Radiance(at)), 0.02)
+        << "eye at " << at.eye_m << " m, sun at " << at.sun_elevation_deg << " degrees";
   }
 }
 

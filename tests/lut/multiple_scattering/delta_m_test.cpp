@@ -242,9 +242,9 @@ Medium WithBackwardLobe() {
   return medium;
 }
 
-// The radiances are those of paths, with standard errors of 0.4 % at the long segments and 1 % at the
-// short ones (skylut eval --method path-trace). Directly above the ground, the blurred lobe of the
-// moments makes the air half too bright.
+// The radiances are those of paths, with standard errors of 0.4 % at the long segments and 1 % at
+// the short ones (skylut eval --method path-trace). Directly above the ground, the blurred lobe of
+// the moments makes the air half too bright.
 TEST(DeltaM, LightOfShortSegmentsTendsToNothing) {
   const Medium medium = WithBackwardLobe();
   const MultipleScattering light(medium, WithFewSuns(OptionsFor(medium)));

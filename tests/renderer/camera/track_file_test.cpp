@@ -374,7 +374,8 @@ TEST_F(TrackFile, PlacesThatCanBeReachedAreKept) {
             5U);
 }
 
-// A single time is no measure of speed: a leg of 50 km beside steps of 1 km is one of a drawn route.
+// A single time is no measure of speed: a leg of 50 km beside steps of 1 km is one of a drawn
+// route.
 TEST_F(TrackFile, ASingleTimeDropsNoPoint) {
   std::string points;
   for (int i = 0; i < 10; ++i)

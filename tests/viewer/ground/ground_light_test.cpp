@@ -287,7 +287,8 @@ TEST_F(GroundOnGpu, BlocksLieWhereTheDriverLooks) {
   EXPECT_EQ(OffsetOf(program, "mirror_place"), 16 * 30) << "after 17 values by_root_mu";
 }
 
-// Returns a block in which all components of a vector are the same number, of the second light none.
+// Returns a block in which all components of a vector are the same number, of the second light
+// none.
 SkyByPixelBlock BlockOfNumbers(float first) {
   const auto all = [first](int more) { return glm::vec4(first + static_cast<float>(more)); };
   return {all(0), all(1), all(2), all(3), all(4), all(5), all(6), {}, {}, {}};

@@ -41,8 +41,8 @@ class CountedMaker {
   std::shared_ptr<std::atomic<int>> all_ = std::make_shared<std::atomic<int>>(0);
 };
 
-// Follows a sky until a number of tables has been made, for a minute at most, and some calls longer:
-// these take the last one over, and would make more if they were missing.
+// Follows a sky until a number of tables has been made, for a minute at most, and some calls
+// longer: these take the last one over, and would make more if they were missing.
 void FollowUntilMade(OpenSkyFollower& follower, const CountedMaker& maker, const OpenSky& sky,
                      int tables) {
   constexpr int kMostWaits = 60000, kCallsMore = 25;  // a millisecond apart

@@ -112,17 +112,27 @@ class SmallPictures : public tests::Headless {
   }
 };
 
+/// Numbers of channels that are bright, and of those that are alike in the other picture.
+struct Channels {
+  int bright = 0, alike = 0;
+};
+
+Channels BrightChannels(const DisplayImage& full, const DisplayImage& small) {
+  Channels channels;
+  for (std::size_t i = 0; i < full.rgb.size(); ++i) {
+    if (full.rgb[i] < 128) continue;
+    ++channels.bright;
+    if (std::abs(full.rgb[i] - small.rgb[i]) <= 4) ++channels.alike;
+  }
+  return channels;
+}
+
 TEST_F(SmallPictures, StarsAreAsSharpAsTheScreen) {
   const Window night{BareScene(2000.0, 180.0, 30.0, 40.0), ParseInstant("2026-01-15T22:00:00Z"),
                      -8.0};
   const DisplayImage full = Shown(night, {Quality::kHigh, 1.0});
   const DisplayImage small = Shown(night, {Quality::kLow, 0.25, Saving::kNearLand});
-  int stars = 0, alike = 0;
-  for (std::size_t i = 0; i < full.rgb.size(); ++i) {
-    if (full.rgb[i] < 128) continue;
-    ++stars;
-    if (std::abs(full.rgb[i] - small.rgb[i]) <= 4) ++alike;
-  }
+  const auto [stars, alike] = BrightChannels(full, small);
   EXPECT_GT(stars, 100) << "channels of pixels that a bright star is in";
   EXPECT_GT(alike, stars * 95 / 100) << "the sky behind them is interpolated";
 }
@@ -160,12 +170,7 @@ TEST_F(SmallPictures, TheSunInFogIsAsBrightAsOnTheScreen) {
                                           sun.elevation_rad / kRadiansPerDegree - 8.0, 0.0, 40.0);
   const DisplayImage full = Shown(window, {Quality::kHigh, 1.0});
   const DisplayImage small = Shown(window, {Quality::kLow, 0.25, Saving::kNearLand});
-  int disk = 0, alike = 0;
-  for (std::size_t i = 0; i < full.rgb.size(); ++i) {
-    if (full.rgb[i] < 128) continue;
-    ++disk;
-    if (std::abs(full.rgb[i] - small.rgb[i]) <= 4) ++alike;
-  }
+  const auto [disk, alike] = BrightChannels(full, small);
   EXPECT_GT(disk, 50) << "channels of pixels of the sun's disk, 8 pixels wide";
   EXPECT_GT(alike, disk * 9 / 10) << "the air before the sun is interpolated";
 }
