@@ -29,6 +29,16 @@ SHARED_CONSTANT int kWaveOctaves = 14;
 SHARED_CONSTANT int kWaveFall = 2;
 SHARED_CONSTANT Bits kWaveSeed = 131u;
 
+// Octaves of the noise on land lean (NoiseOctave of surface.h): their lattice shifts with height. Each
+// lean is that of the next longer octave, turned by the golden angle, so that no two lean alike.
+SHARED Number FirstLean() { return Number(0.6); }
+SHARED Number NextLeanEast(Number east, Number north) {
+  return Number(-0.7373688780783197) * east - Number(0.6754902942615238) * north;
+}
+SHARED Number NextLeanNorth(Number east, Number north) {
+  return Number(0.6754902942615238) * east - Number(0.7373688780783197) * north;
+}
+
 // Fraction of an octave that is kept if a camera ray is `footprint` wide: octaves shorter than two
 // footprints fade out, so that distant ground does not alias.
 SHARED Number OctaveShare(Length wavelength, Length footprint) {

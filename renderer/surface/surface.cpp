@@ -39,7 +39,8 @@ constexpr std::array<Noise, kGroundNoises> kNoises{{
     {shared::kWaveWave_m, shared::kWaveOctaves, shared::kWaveSeed, shared::kWaveFall},
 }};
 
-// Waves travel to the east with a spread of 50 degrees to either side, 29 rms.
+// Waves travel to the east with a spread of 50 degrees to either side, 29 rms. By multiples of the
+// golden angle no two octaves travel alike.
 void SetTravelling(NoiseOctave& wave, int octave) {
   constexpr double kNoiseWaves = 4.1;  // rms slope of the noise over its rms height, per square
   constexpr double kSpread_rad = 50.0 * kRadiansPerDegree;
@@ -51,20 +52,20 @@ void SetTravelling(NoiseOctave& wave, int octave) {
 }
 
 std::vector<NoiseOctave> MadeOctaves(GroundNoise family) {
-  // By multiples of the golden angle no two octaves lean or travel alike.
-  constexpr double kLean = 0.6;
   const Noise& noise = kNoises[static_cast<std::size_t>(family)];
   std::vector<NoiseOctave> octaves;
   double wavelength_m = noise.longest_m;
+  glm::dvec2 lean(shared::FirstLean<double>(), 0.0);
   for (int octave = 0; octave < noise.octaves; ++octave, wavelength_m *= 0.5) {
     NoiseOctave made{wavelength_m, noise.seed + static_cast<std::uint32_t>(octave), 0.0, 0.0, 0.0,
                      0.0};
     if (family == GroundNoise::kWaves) {
       SetTravelling(made, octave);
     } else {
-      made.lean_east = kLean * std::cos(octave * kGoldenAngle);
-      made.lean_north = kLean * std::sin(octave * kGoldenAngle);
+      made.lean_east = lean.x;
+      made.lean_north = lean.y;
     }
+    lean = {shared::NextLeanEast(lean.x, lean.y), shared::NextLeanNorth(lean.x, lean.y)};
     octaves.push_back(made);
   }
   return octaves;

@@ -2,9 +2,9 @@
 // Albedo of the ground around the eye, and relief finer than the mesh: GroundBlock of
 // pass_setup.h, with the functions of ground_cover.glsl and lattice_noise.glsl.
 //
-// Positions are in metres from the eye along the axes of the pattern (ground_pattern.h). For every
-// octave the eye's position is given as a lattice cell and a fraction of it, so that floats suffice
-// for places thousands of kilometres from the origin of the pattern.
+// Positions are in metres from the eye along the axes of the pattern (ground_pattern.h). The eye's
+// position is given as a cell of a lattice and a fraction of it, so that floats suffice for places
+// thousands of kilometres from the origin of the pattern.
 #define BROAD 0
 #define FINE 1
 #define RELIEF 2
@@ -23,8 +23,11 @@ layout(std140) uniform Ground {
   vec4 cover_lines;      // tree line, snow line [m]; number of finest octaves that are omitted
                          // to save time; extent to which the sun is in the south
   vec4 green_lines;      // lines of leaves, bare trees, grass and broad-leaved woods [m]
-  ivec4 octave_cell[33]; // cell of the eye, east and north: NoiseOctave, octaves of all families
-  vec4 octave_place[33]; // fraction of the cell, east and north; lean, east and north
+  ivec4 noise_cell[4];   // of the eye in the longest octave (NoiseOctave) of BROAD to GRAIN: cell to
+                         // the east and north, without the shift by the lean
+  vec4 noise_place[4];   // fraction of the cell; height of the eye over the pattern's plane [cells]
+  ivec4 wave_cell[14];   // of the eye in the octaves of WAVES, east and north
+  vec4 wave_place[14];   // fraction of the cell
   vec4 pattern_east;     // axes of the pattern in the frame of the eye
   vec4 pattern_north;
   vec4 pattern_up;
@@ -37,14 +40,6 @@ ivec4 NoiseOf(int family) {  // longest wave [m], octaves, seed, fall
   if (family == GRAIN) return ivec4(kGrainWave_m, kGrainOctaves, kGrainSeed, kGrainFall);
   if (family == WAVES) return ivec4(kWaveWave_m, kWaveOctaves, kWaveSeed, kWaveFall);
   return ivec4(kReliefWave_m, kReliefOctaves, kReliefSeed, kReliefFall);
-}
-
-int FirstOctave(int family) {
-  if (family == BROAD) return 0;
-  if (family == FINE) return kBroadOctaves;
-  if (family == RELIEF) return kBroadOctaves + kFineOctaves;
-  if (family == GRAIN) return kBroadOctaves + kFineOctaves + kReliefOctaves;
-  return kBroadOctaves + kFineOctaves + kReliefOctaves + kGrainOctaves;
 }
 
 // A position in a cell of the lattice, and the hashes of the cell's corners.
@@ -62,11 +57,32 @@ NoiseCell NoiseCellAt(ivec2 cell, vec2 place, uint seed) {
                    LatticePoint(at.x + 1u, at.y + 1u, seed));
 }
 
-// @param octave  index over all families.
-NoiseCell OctaveCell(vec3 offset, int octave, float wavelength, uint seed) {
-  vec4 at = octave_place[octave];
-  vec2 place = at.xy + (offset.xy + offset.z * at.zw) / wavelength;
-  return NoiseCellAt(octave_cell[octave].xy, place, seed);
+// A point in an octave that leans. Every value follows from that of the next longer octave: software
+// drivers load an element of a uniform array, selected by a loop, for each pixel on its own.
+struct Octave {
+  ivec2 cell;  // of the eye
+  vec2 place;  // from that cell, without the shift by the lean [cells]
+  float rise;  // over the plane of the pattern [cells]
+  vec2 lean;   // shift to the east and north per height
+  float wavelength;
+};
+
+Octave LongestOctave(vec3 offset, int family) {
+  float wavelength = float(NoiseOf(family).x);
+  vec4 eye_at = noise_place[family];
+  return Octave(noise_cell[family].xy, eye_at.xy + offset.xy / wavelength,
+                eye_at.z + offset.z / wavelength, vec2(FirstLean(), 0.0), wavelength);
+}
+
+// Returns the octave with half the wavelength.
+Octave NextOctave(Octave o) {
+  return Octave(2 * o.cell, 2.0 * o.place, 2.0 * o.rise,
+                vec2(NextLeanEast(o.lean.x, o.lean.y), NextLeanNorth(o.lean.x, o.lean.y)),
+                0.5 * o.wavelength);
+}
+
+NoiseCell CellIn(Octave o, uint seed) {
+  return NoiseCellAt(o.cell, o.place + o.rise * o.lean, seed);
 }
 
 vec2 SlopeOf(NoiseCell c) {
@@ -89,14 +105,13 @@ float DetailNoise(vec3 offset, int family, float footprint) {
   int octaves = OctavesKept(of, footprint);
   float sum = 0.0;
   float amplitude = 1.0;
-  float wavelength = float(of.x);
-  int first = FirstOctave(family);
+  Octave at = LongestOctave(offset, family);
   for (int octave = 0; octave < octaves; ++octave) {
-    NoiseCell c = OctaveCell(offset, first + octave, wavelength, uint(of.z + octave));
-    sum += OctaveShare(wavelength, footprint) * amplitude *
+    NoiseCell c = CellIn(at, uint(of.z + octave));
+    sum += OctaveShare(at.wavelength, footprint) * amplitude *
            NoiseOfHashes(c.sw, c.se, c.nw, c.ne, c.place.x, c.place.y);
     amplitude /= float(of.w);
-    wavelength *= 0.5;
+    at = NextOctave(at);
   }
   return sum;
 }
@@ -107,14 +122,13 @@ vec3 DetailSlope(vec3 offset, int family, float footprint) {
   int octaves = OctavesKept(of, footprint);
   vec3 sum = vec3(0.0);
   float amplitude = 1.0;
-  float wavelength = float(of.x);
-  int first = FirstOctave(family);
+  Octave at = LongestOctave(offset, family);
   for (int octave = 0; octave < octaves; ++octave) {
-    vec2 slope = SlopeOf(OctaveCell(offset, first + octave, wavelength, uint(of.z + octave)));
-    sum += OctaveShare(wavelength, footprint) * (amplitude / wavelength) *
-           vec3(slope, dot(slope, octave_place[first + octave].zw));
+    vec2 slope = SlopeOf(CellIn(at, uint(of.z + octave)));
+    sum += OctaveShare(at.wavelength, footprint) * (amplitude / at.wavelength) *
+           vec3(slope, dot(slope, at.lean));
     amplitude /= float(of.w);
-    wavelength *= 0.5;
+    at = NextOctave(at);
   }
   return sum;
 }
@@ -174,11 +188,11 @@ vec3 WavesAt(vec3 offset, float footprint, float variance, float cosine) {
   float shown = WaveShown(max(cosine, 0.0), variance);
   vec3 waves = vec3(0.0, 0.0, variance);
   float wavelength = float(of.x);
-  int first = FirstOctave(WAVES);
   for (int octave = 0; octave < octaves; ++octave) {
     float kept = shown * OctaveShare(wavelength, width) * WaveRaised(wavelength, longest);
     if (kept > 0.0) {
-      NoiseCell c = OctaveCell(offset, first + octave, wavelength, uint(of.z + octave));
+      NoiseCell c = NoiseCellAt(wave_cell[octave].xy, wave_place[octave].xy + offset.xy / wavelength,
+                                uint(of.z + octave));
       waves.xy += kept * WaveSlope(each) * SlopeOf(c);
       waves.z -= kept * kept * each;
     }

@@ -104,15 +104,33 @@ glm::vec4 PerKilometre(const std::vector<double>& per_m) {
   return GpuBandsOf(per_km);
 }
 
-// Sets the octaves of all families in sequence, with the eye's position in each.
+// A position in an octave: the cell, and the fraction of it.
+struct PlaceInOctave {
+  glm::ivec4 cell;
+  glm::vec4 fraction;
+};
+
+PlaceInOctave PlaceIn(const NoiseOctave& octave, const GroundPoint& point) {
+  const glm::dvec2 at = octave.PlaceOf(point), cell = glm::floor(at), fraction = at - cell;
+  return {{glm::ivec2(cell), 0, 0}, {fraction.x, fraction.y, 0.0, 0.0}};
+}
+
+// Sets the eye's position in the longest octave of each family that leans, and in all waves.
 void SetOctaves(GroundBlock& block, const GroundPoint& eye) {
-  std::size_t i = 0;
-  for (std::size_t family = 0; family < kGroundNoises; ++family) {
-    for (const NoiseOctave& octave : OctavesOf(static_cast<GroundNoise>(family))) {
-      const glm::dvec2 at = octave.PlaceOf(eye), cell = glm::floor(at), place = at - cell;
-      block.octave_cell.at(i) = {glm::ivec2(cell), 0, 0};
-      block.octave_place.at(i++) = {place.x, place.y, octave.lean_east, octave.lean_north};
-    }
+  GroundPoint foot = eye;
+  foot.up_m = 0.0;
+  for (std::size_t family = 0; family < block.noise_cell.size(); ++family) {
+    const NoiseOctave& longest = OctavesOf(static_cast<GroundNoise>(family)).front();
+    const PlaceInOctave at = PlaceIn(longest, foot);
+    block.noise_cell[family] = at.cell;
+    block.noise_place[family] = at.fraction;
+    block.noise_place[family].z = static_cast<float>(eye.up_m / longest.wavelength_m);
+  }
+  const std::span<const NoiseOctave> waves = OctavesOf(GroundNoise::kWaves);
+  for (std::size_t i = 0; i < block.wave_cell.size(); ++i) {
+    const PlaceInOctave at = PlaceIn(waves[i], eye);
+    block.wave_cell[i] = at.cell;
+    block.wave_place[i] = at.fraction;
   }
 }
 

@@ -88,13 +88,15 @@ static_assert(offsetof(ViewBlock, night_level) == 14 * sizeof(glm::vec4));
 struct GroundBlock {
   glm::vec4 conifers, leaves, yellow_leaves, bare_trees, meadow, dry_meadow, rock, snow;
   glm::vec4 cover_lines, green_lines;
-  std::array<glm::ivec4, 33> octave_cell;
-  std::array<glm::vec4, 33> octave_place;
+  std::array<glm::ivec4, 4> noise_cell;
+  std::array<glm::vec4, 4> noise_place;
+  std::array<glm::ivec4, 14> wave_cell;
+  std::array<glm::vec4, 14> wave_place;
   glm::vec4 pattern_east, pattern_north, pattern_up, pole;
 };
-static_assert(sizeof(GroundBlock) == 80 * sizeof(glm::vec4));
-static_assert(offsetof(GroundBlock, octave_place) == 43 * sizeof(glm::vec4));
-static_assert(offsetof(GroundBlock, pole) == 79 * sizeof(glm::vec4));
+static_assert(sizeof(GroundBlock) == 50 * sizeof(glm::vec4));
+static_assert(offsetof(GroundBlock, wave_cell) == 18 * sizeof(glm::vec4));
+static_assert(offsetof(GroundBlock, pole) == 49 * sizeof(glm::vec4));
 
 /// Returns the block of a medium. Throws InputError if it has more than kGpuBands wavelengths, or
 /// wavelengths with FaultOfColours.
