@@ -327,6 +327,21 @@ std::optional<glm::dvec3> CameraRays::PassedBy(const glm::dvec3& direction) cons
   return glm::normalize(glm::cross(cosine * right_ - sine * up_, direction));
 }
 
+// A ray from infinity meets the plane of the picture, one unit ahead, as far from the foot of its
+// direction as the point of the lens divided by the distance in focus.
+double CameraRays::WidestAngle(double beyond) const {
+  if (panorama_) return kPi;
+  const double scale = 2.0 * tangent_ / width_;
+  const double corner = scale * std::hypot(0.5 * width_ + beyond, 0.5 * height_ + beyond);
+  return std::atan(corner + (lens_ ? lens_->radius_m / lens_->focus_m : 0.0));
+}
+
+double CameraRays::AngleTo(const CameraRays& other) const { return AngleTo(other.forward_); }
+
+double CameraRays::AngleTo(const glm::dvec3& direction) const {
+  return std::atan2(glm::length(glm::cross(forward_, direction)), glm::dot(forward_, direction));
+}
+
 double CameraRays::PixelAngle() const {
   return panorama_ ? 2.0 * kPi / width_ : 2.0 * tangent_ / width_;
 }
@@ -389,6 +404,17 @@ CameraRays MovingCamera::At(double time) const {
 
 CameraRay MovingCamera::Ray(double x, double y, std::array<double, 2> lens, double time) const {
   return IsMoving() ? At(time).Ray(x, y, lens) : steps_.front().Ray(x, y, lens);
+}
+
+// Between two steps the viewing direction stays on the arc between theirs, and the field of view
+// between theirs.
+bool MovingCamera::MaySee(const glm::dvec3& direction, double around_rad, double beyond) const {
+  for (std::size_t i = 0; i < steps_.size(); ++i) {
+    const CameraRays& next = steps_[std::min(i + 1, steps_.size() - 1)];
+    const double widest = std::max(steps_[i].WidestAngle(beyond), next.WidestAngle(beyond));
+    if (steps_[i].AngleTo(direction) - steps_[i].AngleTo(next) <= widest + around_rad) return true;
+  }
+  return false;
 }
 
 }  // namespace alpenglow::renderer

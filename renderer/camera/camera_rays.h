@@ -215,6 +215,14 @@ class CameraRays {
   /// empty without a polariser.
   [[nodiscard]] std::optional<glm::dvec3> PassedBy(const glm::dvec3& direction) const;
 
+  /// Returns an angle around the viewing direction outside which no direction lights a point of the
+  /// picture or up to `beyond` pixels beside it, through any point of the lens [rad]; pi: none.
+  [[nodiscard]] double WidestAngle(double beyond) const;
+  /// Returns the angle between the viewing directions of two cameras [rad].
+  [[nodiscard]] double AngleTo(const CameraRays& other) const;
+  /// Returns the angle between the viewing direction and a unit vector [rad].
+  [[nodiscard]] double AngleTo(const glm::dvec3& direction) const;
+
   /// Angle between neighbouring pixels at the centre of the picture [rad].
   [[nodiscard]] double PixelAngle() const;
 
@@ -280,6 +288,10 @@ class MovingCamera {
   /// Returns a ray as CameraRays::Ray does, at a time during the exposure.
   /// @param time  in [0, 1): fraction of the time that the shutter is open.
   [[nodiscard]] CameraRay Ray(double x, double y, std::array<double, 2> lens, double time) const;
+
+  /// Returns false only if no direction within an angle of `direction` lights a point of the picture
+  /// or up to `beyond` pixels beside it, at any time and through any point of the lens.
+  [[nodiscard]] bool MaySee(const glm::dvec3& direction, double around_rad, double beyond) const;
 
  private:
   std::vector<CameraRays> steps_;

@@ -267,6 +267,10 @@ class SmallDisk::Grid {
   }
 
   [[nodiscard]] int size() const { return columns_ * rows_; }
+  /// Angle around the middle of the disk that contains all cells [rad].
+  [[nodiscard]] double around_rad() const {
+    return std::hypot(0.5 * columns_ * across_rad_, 0.5 * rows_ * down_rad_);
+  }
   /// Width of a cell [rad].
   [[nodiscard]] double width_rad() const { return down_rad_; }
   /// Returns the direction of a point of a cell, in [0, 1) x [0, 1).
@@ -301,6 +305,7 @@ SmallDisk::SmallDisk(const MovingCamera& camera, const PixelFilter& filter, int 
                      const DiskInSky& disk)
     : width_(width), height_(height), spread_(width, height) {
   const Grid grid(disk);
+  if (!camera.MaySee(disk.to_disk, grid.around_rad(), filter.radius())) return;
   for (int cell = 0; cell < grid.size(); ++cell) AddCell(camera, filter, disk, grid, cell);
 }
 

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <set>
+#include <utility>
 #include <vector>
 
 #include "atmosphere/base/error.h"
@@ -443,6 +444,49 @@ TEST(PixelSamples, ErrorsOfNeighbouringPixelsCancel) {
     }
   }
   EXPECT_LT(std::sqrt(together / alone), 0.25) << "independent pixels: 0.5";
+}
+
+/// A camera that turns, zooms and rolls while the shutter is open.
+MovingCamera TurningCamera(double turn_deg, bool has_lens) {
+  std::vector<CameraRays> steps;
+  for (int i = 0; i <= 4; ++i) {
+    const double share = 0.25 * i;
+    Camera camera = CameraFromDegrees({}, 20.0 + share * turn_deg, 10.0 - 5.0 * share, 40.0 * share,
+                                      60.0 + 20.0 * share);
+    if (has_lens) camera.lens = ThinLens{2.0, 0.05, 1.0};
+    steps.emplace_back(camera, 64, 36);
+  }
+  return MovingCamera(std::move(steps));
+}
+
+// Directions on a spiral over the sphere: 500 of them are 9 degrees apart.
+TEST(MovingCamera, MaySeeAllThatLightsThePictureAndLittleElse) {
+  constexpr int kDirections = 500;
+  constexpr double kBeyond = 2.0;
+  for (const auto& [turn_deg, has_lens] : {std::pair{0.0, false}, {0.0, true}, {60.0, true}}) {
+    const MovingCamera camera = TurningCamera(turn_deg, has_lens);
+    int seen = 0, may_be_seen = 0;
+    for (int i = 0; i < kDirections; ++i) {
+      const double z = 1.0 - (2.0 * i + 1.0) / kDirections, level = std::sqrt(1.0 - z * z);
+      const glm::dvec3 direction(level * std::cos(2.4 * i), level * std::sin(2.4 * i), z);
+      bool lights = false;
+      const PixelSamples samples(i % 64, i / 64, 64);
+      for (int k = 0; k < 64; ++k) {
+        const auto ray = camera.At(samples.Point(k, SampleOf::kTime)[0])
+                             .RayFrom(direction, samples.Point(k, SampleOf::kLens));
+        lights |= ray && ray->x > -kBeyond && ray->x < 64.0 + kBeyond && ray->y > -kBeyond &&
+                  ray->y < 36.0 + kBeyond;
+      }
+      const bool may_see = camera.MaySee(direction, 0.0, kBeyond);
+      EXPECT_TRUE(may_see || !lights) << turn_deg << ": " << i;
+      EXPECT_TRUE(camera.MaySee(direction, 3.2, kBeyond))
+          << "all directions are within 180 degrees";
+      seen += lights ? 1 : 0;
+      may_be_seen += may_see ? 1 : 0;
+    }
+    EXPECT_GT(seen, kDirections / 20) << turn_deg;
+    EXPECT_LT(may_be_seen, kDirections / 2) << "nothing that is behind the camera: " << turn_deg;
+  }
 }
 
 TEST(PixelSamples, AreTheSameOnEveryMachine) {
