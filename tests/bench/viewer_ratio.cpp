@@ -16,6 +16,7 @@
 
 #include "renderer/scene/scene_options.h"
 #include "tests/fixtures/bare_scene.h"
+#include "tests/viewer/air/shared_air.h"
 #include "viewer/gl/gl_context.h"
 #include "viewer/gl/pass_timer.h"
 #include "viewer/passes/auto_quality.h"
@@ -112,7 +113,8 @@ Times TimesOf(const View& view) {
   const double scale = PaintedAlways(view.quality).scale;
   const PaintedView painted{eye, ParseInstant("2026-06-21T05:30:00Z"),
                             static_cast<int>(scale * kWidth), static_cast<int>(scale * kHeight)};
-  SkyPainter painter(view.scene, LandSourceOf(view.scene), painted, SizesOf(view.quality));
+  SkyPainter painter(view.scene, LandSourceOf(view.scene), painted, SizesOf(view.quality),
+                     tests::SharedAirOf(view.scene));
   painter.WaitUntilReady(painted);
   DisplayPass display_pass(Look{});
   FrameDisplay display(painter, display_pass);
