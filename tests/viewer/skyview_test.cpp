@@ -439,8 +439,8 @@ class SkyviewLand : public tests::LandFolder {
   void SetUp() override {
     LandFolder::SetUp();
     if (!tests::HasOpenGl()) GTEST_SKIP() << "EGL gives no OpenGL here";
-    tests::WriteQuickTile(folder_ / "west.tif", 0, 0);
-    tests::WriteQuickTile(folder_ / "east.tif", tests::kTileSamples - 1, 0);
+    tests::WriteCoarseTile(folder_ / "west.tif", 0, 0);
+    tests::WriteCoarseTile(folder_ / "east.tif", tests::kTileSamples - 1, 0);
   }
 
   /// Takes a screenshot of the terrain around 8 to 8.1 degrees east, 46.6 to 46.7 north.
@@ -537,7 +537,10 @@ TEST_F(SkyviewLand, ALakeBetweenMountainsMirrorsThemAsInSkyseries) {
     Outcome outcome = RunCommand(std::string("'") + tests::kSkyseries +
                                  "' lake.toml --filter box --samples 16 --size 32x18 --out s.exr");
     ASSERT_EQ(outcome.status, 0) << outcome.error;
-    for (const char* const quality : {"low", "high"}) {
+    const bool is_sea = std::string(ground).starts_with("sea");
+    for (const std::string& quality :
+         tests::ScaledDown(std::vector<std::string>{"low", "high"},
+                           std::vector<std::string>{is_sea ? "low" : "high"})) {
       outcome = RunCommand(std::string("env -u DISPLAY -u WAYLAND_DISPLAY '") + tests::kSkyview +
                            "' lake.toml --headless --size 32x18 --quality " + quality +
                            " --screenshot v.exr");
@@ -559,11 +562,15 @@ TEST_F(SkyviewLand, OverBothPolesAndTheDateLineItShowsTheLandOfTheRenderer) {
        {Place{1.0, 0.02, 179.99, "2026-06-21T09:00:00Z"},
         {-1.0, 0.0, 0.0, "2026-12-21T09:00:00Z"}}) {
     tests::WritePolarModel(folder_ / "pole.tif", hemisphere);
+    WriteText(folder_ / "pole.toml",
+              fmt::format("[place]\nlatitude = {}\nlongitude = {}\n[time]\nutc = \"{}\"\n"
+                          "[terrain]\ndem = \"pole.tif\"\n"
+                          "[atmosphere]\npreset = \"bruneton2017\"\n",
+                          hemisphere * (90.0 - from_pole), longitude, time));
     const Outcome outcome = RunCommand(fmt::format(
-        "env -u DISPLAY -u WAYLAND_DISPLAY '{}' --headless --size 32x18 --quality medium "
-        "--dem pole.tif --latitude {} --longitude {} --altitude 9000 --heading 300 --pitch -30 "
-        "--time {} --explain",
-        tests::kSkyview, hemisphere * (90.0 - from_pole), longitude, time));
+        "env -u DISPLAY -u WAYLAND_DISPLAY '{}' pole.toml --headless --size 32x18 --quality medium "
+        "--altitude 9000 --heading 300 --pitch -30 --explain",
+        tests::kSkyview));
     ASSERT_EQ(outcome.status, 0) << outcome.error;
     EXPECT_LT(MeanErrorIn(outcome.out), 3.0)
         << from_pole << " degrees from the pole, hemisphere " << hemisphere
@@ -596,7 +603,7 @@ TEST_F(SkyviewLand, AnEventIsAtTheTimeThatSkyseriesLists) {
 
 TEST_F(SkyviewLand, WhatIsLeftOutOfAFolderIsSaid) {
   std::filesystem::create_directory(folder_ / "land");
-  tests::WriteQuickTile(folder_ / "land/west.tif", 0, 0);
+  tests::WriteCoarseTile(folder_ / "land/west.tif", 0, 0);
   WriteText(folder_ / "land/broken.tif", "not a picture at all");
   const Outcome outcome = TakeScreenshot("--dem land", "a.exr");
   EXPECT_EQ(outcome.status, 0) << outcome.error;

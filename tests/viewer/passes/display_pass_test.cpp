@@ -71,7 +71,7 @@ TEST_F(DisplayPassTest, LowQualityShowsWhatMediumDoes) {
 }
 
 /// A scene in a window, its light painted at some scale.
-class SmallPictures : public tests::Headless {
+class SmallPictures : public tests::HeadlessTile {
  protected:
   static constexpr ImageSize kScreen{640, 360};
 
@@ -160,13 +160,15 @@ TEST_F(SmallPictures, ALandingLightInFogHasNoSteps) {
 
 // The outline of land is drawn before the sun, in a pass with a uniform block of its own.
 TEST_F(SmallPictures, TheSunInFogIsAsBrightAsOnTheScreen) {
-  Window window{RangeScene({2500.0, false}, 0.0, 0.0), ParseInstant("2026-06-21T16:00:00Z"), 20.0};
-  window.scene.medium = MediumPreset("bruneton2017");
+  const Height eye{2500.0, false};
+  Window window{SceneOverTile(tests::PlaceOfSample(225.0, 215.0, 0.0),
+                              CameraFromDegrees(eye, 0.0, 0.0, 0.0, 40.0)),
+                ParseInstant("2026-06-21T16:00:00Z"), 20.0};
   window.scene.fog.emplace();
   window.scene.fog->extinction_per_m = 0.002;
   window.scene.fog->scale_height_m = 1500.0;
   const SunPosition sun = tests::SunSeenIn(window.scene, window.now);
-  window.scene.camera = CameraFromDegrees({2500.0, false}, sun.azimuth_rad / kRadiansPerDegree,
+  window.scene.camera = CameraFromDegrees(eye, sun.azimuth_rad / kRadiansPerDegree,
                                           sun.elevation_rad / kRadiansPerDegree - 8.0, 0.0, 40.0);
   const DisplayImage full = Shown(window, {Quality::kHigh, 1.0});
   const DisplayImage small = Shown(window, {Quality::kLow, 0.25, Saving::kNearLand});
@@ -182,7 +184,8 @@ TEST_F(SmallPictures, EdgesOfShadeAreAsWideAsTheirPixels) {
                  scene.camera.fov_rad};
   eye.place.height_m = scene.camera.height.value_m;
   const PaintedView view{eye, ParseInstant("2026-06-21T18:10:00Z"), 160, 90};
-  SkyPainter painter(scene, LandSourceOf(scene), view, SizesOf(Quality::kLow));
+  SkyPainter painter(scene, LandSourceOf(scene), view, SizesOf(Quality::kLow),
+                     tests::SharedAirOf(scene));
   painter.WaitUntilReady(view);
   painter.Paint(view, 1, SkyPainter::Bodies::kNone);
   const Image one = painter.picture().Read();

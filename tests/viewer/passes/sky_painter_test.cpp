@@ -398,12 +398,10 @@ MeanLuminance MeanLuminanceOf(const Image& picture) {
   return {sum[0] / count[0], sum[1] / count[1], (sum[0] + sum[1]) / (count[0] + count[1])};
 }
 
-/// The built-in range, painted while time jumps or runs.
+/// The built-in range, painted while time jumps or runs. Under the sanitizers it is the tile.
 class RangeInTime {
  public:
-  RangeInTime() : painter_(scene_, LandSourceOf(scene_), At(kNoon), SizesOf(Quality::kLow)) {
-    painter_.WaitUntilReady(At(kNoon));
-  }
+  RangeInTime() { painter_.WaitUntilReady(At(kNoon)); }
 
   MeanLuminance Frame(const UtcInstant& now) {
     painter_.Update(At(now), 0.04);
@@ -425,7 +423,7 @@ class RangeInTime {
 
  private:
   [[nodiscard]] PaintedView At(const UtcInstant& now) const {
-    return ViewOf(scene_, kRangeViewGround_m + 200.0, now, {64, 36});
+    return ViewOf(scene_, eye_m_, now, {64, 36});
   }
   MeanLuminance Paint(const PaintedView& view) {
     painter_.Paint(view, 1, SkyPainter::Bodies::kNone);
@@ -433,8 +431,13 @@ class RangeInTime {
   }
 
   static constexpr UtcInstant kNoon{61397, 39600.0};  // 2026-12-23
-  Scene scene_ = RangeScene({200.0, true}, 250.0, -8.0);
-  SkyPainter painter_;
+  Tile tile_;
+  Scene scene_ = tests::kSanitized
+                     ? tile_.View({200.0, true}, 250.0, -8.0, "2026-12-23T11:00:00Z").scene
+                     : RangeScene({200.0, true}, 250.0, -8.0);
+  double eye_m_ = tests::kSanitized ? LoadGround(scene_).eye_height_m : kRangeViewGround_m + 200.0;
+  SkyPainter painter_{scene_, LandSourceOf(scene_), At(kNoon), SizesOf(Quality::kLow),
+                      tests::SharedAirOf(scene_)};
 };
 
 using RangeInTimePictures = tests::HeadlessSharing<RangeInTime>;
