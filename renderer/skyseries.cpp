@@ -69,6 +69,25 @@ CameraPath PathOfTrack(const Track& track, TrackStyle style, const Scene& scene)
   });
 }
 
+/// Throws InputError with the file and the point if the scene cannot be seen from a point of a path.
+/// Land is not loaded: over land, only the distance from the scene's place is checked here.
+void RequireVisible(const CameraPath& path, const std::string& file, const Scene& scene) {
+  Scene bare = scene;
+  bare.terrain = {};
+  bare.terrain.kind = TerrainSource::Kind::kNone;
+  const SceneGround ground = LoadGround(bare);
+  const bool has_land = scene.terrain.kind != TerrainSource::Kind::kNone;
+  for (std::size_t i = 0; i < path.points().size(); ++i) {
+    GeodeticPosition place = path.points()[i].pose.place;
+    if (has_land) place.height_m = std::max(place.height_m, 0.0);
+    try {
+      static_cast<void>(StandAt(ground, place));
+    } catch (const InputError& error) {
+      throw InputError(fmt::format("{}: point {}: {}", file, i + 1, error.what()));
+    }
+  }
+}
+
 /// The series that the options describe, resolved once before anything is rendered.
 struct SeriesPlan {
   Scene scene;
@@ -102,6 +121,7 @@ SeriesPlan PlanOf(const SkyseriesOptions& options) {
     path = ReadCameraPath(*options.path,
                           {scene.place, scene.camera.heading_rad, scene.camera.pitch_rad,
                            scene.camera.roll_rad, scene.camera.fov_rad});
+    RequireVisible(*path, *options.path, scene);
   }
   EventDay day{scene.place, scene.zone, scene.time};
   if (options.date) day.around = DayFromText(*options.date, day);

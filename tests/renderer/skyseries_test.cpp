@@ -514,6 +514,21 @@ TEST_F(Skyseries, FramesOfAPathAreKeptUntilItChanges) {
   ExpectFault(command, 3, "p.csv:3: t_s is 0; it must grow");
 }
 
+TEST_F(Skyseries, APathThatLeavesTheSceneIsRefusedByFileAndPoint) {
+  const std::string command = InFolder("s.toml") + " --path " + InFolder("p.csv") +
+                              " --size 16x9 --every 2s --effects sky --out " + InFolder("f.%d.exr");
+  const std::string begin = "t_s,latitude,longitude,height_m,heading\n0,46.5,8.0,1000,350\n";
+  for (const auto& [point, fault] :
+       {std::pair{"2,46.5,8.0,-200,350\n", "-200.0 m high; the ground there is at 0 m"},
+        {"2,52.5,8.0,1000,350\n", "km from the scene's place; at most 500 km"}}) {
+    WriteText(folder_ / "p.csv", begin + point + "4,46.5,8.0,1000,350\n");
+    const Outcome outcome = Run(command);
+    EXPECT_EQ(outcome.status, 3);
+    EXPECT_THAT(outcome.error, AllOf(HasSubstr("p.csv: point 2: the eye at"), HasSubstr(fault)));
+    EXPECT_EQ(FileCount(), 2U) << "the scene and the path: no manifest, no picture";
+  }
+}
+
 TEST_F(Skyseries, TracksOfGpxAreFlown) {
   WriteText(folder_ / "t.gpx",
             "<gpx><trk><trkseg>"
