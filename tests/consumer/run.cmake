@@ -57,7 +57,7 @@ foreach(library ${libraries})
 endforeach()
 
 # What follows does not depend on the build: one preset of tests/run.sh is enough.
-if(NOT FLAGS STREQUAL "")
+if(NOT "${FLAGS}" STREQUAL "")
   return()
 endif()
 
