@@ -113,16 +113,51 @@ FogAlong FogTo(vec3 direction, float distance_km) {
   return FogAlong(vec4(left), (1.0 - left) * source);
 }
 
-// Returns the distance at which the fog reaches an optical depth along a ray, assuming a flat
-// ground.
-float FogDistanceOf(vec3 direction, float depth, float distance_km) {
+// Returns the distance at which fog around the eye reaches an optical depth, assuming a flat ground.
+float FogDistanceFromWithin(float mu, float depth, float distance_km) {
   float per_km = fog_layer.x * FogDensityAt(fog_eye.x);
-  float bend = fog_layer.y > 0.0 ? direction.z / fog_layer.y : 0.0;
+  float bend = fog_layer.y > 0.0 ? mu / fog_layer.y : 0.0;
   float level = depth / max(per_km, 1e-30);
   float argument = 1.0 - bend * level;
-  float far = abs(bend * level) < 1e-4 ? level
-              : argument > 0.0         ? -log(argument) / bend
-                                       : distance_km;
+  return abs(bend * level) < 1e-4 ? level
+         : argument > 0.0         ? -log(argument) / bend
+                                  : distance_km;
+}
+
+// Returns the distance at which a ray from an eye above the fog, where the density may be too small
+// for a float, has passed a share of the fog before its end. Down to the end the fog is that over
+// flat ground; around the lowest point of a ray it is a logistic curve with the slope of its bell,
+// exp(-x^2 / (2 R H)), in the middle.
+float FogDistanceFromAbove(float mu, float share, float distance_km) {
+  float h = fog_eye.x, radius = fog_eye.y, scale = fog_layer.y;
+  float h_end = AltitudeAlongRay(h, mu, distance_km, radius);
+  float perigee_km = -(radius + h) * mu;
+  if (distance_km < perigee_km) {
+    float fall = max(h - h_end, 0.0);
+    float down = fall + scale * log(mix(exp(-fall / scale), 1.0, share));
+    return DistanceDownTo(h, mu, h - clamp(down, 0.0, fall), radius);
+  }
+  float width_km = 0.62665707 * sqrt(radius * scale);
+  float beyond = 1.0 / (1.0 + exp((distance_km - perigee_km) / width_km));
+  float passed = share * (1.0 - beyond);
+  return perigee_km + width_km * log(max(passed, 1e-6) / max(1.0 - passed, 1e-6));
+}
+
+// Returns the distance at which the fog reaches an optical depth along a ray.
+// @param whole  optical depth of the fog on the ray.
+float FogDistanceOf(vec3 direction, float depth, float whole, float distance_km) {
+  const float kAbove = 4.0;  // scale heights over the lowest point of the ray
+  float h = fog_eye.x, mu = direction.z, radius = fog_eye.y;
+  float far;
+  if (fog_layer.y > 0.0) {
+    float end = AltitudeAlongRay(h, mu, min(distance_km, max(-(radius + h) * mu, 0.0)), radius);
+    far = h - end > kAbove * fog_layer.y
+              ? FogDistanceFromAbove(mu, clamp(depth / max(whole, 1e-30), 0.0, 1.0), distance_km)
+              : FogDistanceFromWithin(mu, depth, distance_km);
+  } else {
+    float entry_km = h > fog_layer.w ? DistanceDownTo(h, min(mu, -1e-9), fog_layer.w, radius) : 0.0;
+    far = entry_km + depth / fog_layer.x;
+  }
   return clamp(far, 0.0, distance_km);
 }
 
@@ -146,13 +181,15 @@ float FogMean(vec3 direction, float from_km, float to_km, float a, float b) {
 }
 
 FogStretches FogStretchesTo(vec3 direction, float distance_km) {
-  float left = FogTransmittance(direction, distance_km);
+  float whole = FogDepthTo(direction, distance_km);
+  float left = exp(-whole);
   vec4 ends;
   vec4 at;
   // A downward ray passes clear air before fog, an upward ray after it.
   vec3 shares = direction.z < 0.0 ? vec3(0.97, 0.5, 0.02) : vec3(0.5, 0.12, 0.015);
   for (int i = 0; i < 3; ++i) {
-    at[i] = FogDistanceOf(direction, -log(left + shares[i] * (1.0 - left)), distance_km);
+    at[i] =
+        FogDistanceOf(direction, -log(left + shares[i] * (1.0 - left)), whole, distance_km);
     ends[i] = FogTransmittance(direction, at[i]);
   }
   at.w = distance_km;

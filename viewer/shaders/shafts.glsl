@@ -132,6 +132,7 @@ vec4 MarchedFogShade(vec3 direction, float distance_km) {
   int steps = stretch.x < stretch.y ? kFogSteps * shade_pieces : 0;
   float from = FogTransmittance(direction, 1e-3 * stretch.x);
   float to = FogTransmittance(direction, 1e-3 * stretch.y);
+  float whole = FogDepthTo(direction, distance_km);
   vec4 shaded = vec4(0.0);
   vec4 light = FogSunTo(direction, 1e-3 * stretch.x);
   vec2 over = OverShade(ray, stretch.x);
@@ -139,7 +140,8 @@ vec4 MarchedFogShade(vec3 direction, float distance_km) {
     float even = float(step) / float(steps);
     float left = mix(from, to, even * even);
     float depth = -log(max(left, 1e-30));
-    float end_km = step < steps ? FogDistanceOf(direction, depth, distance_km) : 1e-3 * stretch.y;
+    float end_km = step < steps ? FogDistanceOf(direction, depth, whole, distance_km)
+                                : 1e-3 * stretch.y;
     end_km = clamp(end_km, 1e-3 * stretch.x, 1e-3 * stretch.y);
     vec2 next = OverShade(ray, 1e3 * end_km);
     vec4 farther = FogSunTo(direction, end_km);

@@ -204,6 +204,33 @@ TEST(FogMap, ServesWhileTheEyeStandsAndNotWhenItHasRisen) {
   EXPECT_FALSE(Serves(made, {100.0, kToSun, kToSun, kFogSunRadius_rad}, 60.0));
 }
 
+TEST_F(FogOnTheCard, ReachesADepthWhereItHasThatDepthForAnyEye) {
+  const std::string ray = "vec3(a[0], a[1], a[2])";
+  const std::string whole = "FogDepthTo(" + ray + ", a[3])";
+  for (const double eye_m : {10.0, 2e3, 2e4, 4e5, 3.6e7}) {
+    const BothFogs both(FogOf(0.003, 100.0, 0.0), eye_m);
+    const double radius = TheStage().scene.medium.planet_radius_m;
+    // Directions to ground in the distance, to the nadir and a fifth of the way to the horizon.
+    std::vector<tests::Arguments<float>> rays;
+    for (const double to_horizon : {1e-3, 0.2}) {
+      const double horizon = std::acos(-shared::HorizonCosine(eye_m, radius));
+      const double off = to_horizon * horizon, mu = -std::cos(off);
+      rays.push_back({0.0F, static_cast<float>(std::sin(off)), static_cast<float>(mu),
+                      static_cast<float>(shared::DistanceDownTo(eye_m, mu, 0.0, radius) / 1000.0)});
+    }
+    for (const char* share : {"0.02", "0.5", "0.97"}) {
+      const std::string depth = whole + " * " + share;
+      const std::vector<float> found =
+          both.OnGpu("FogDepthTo(" + ray + ", FogDistanceOf(" + ray + ", " + depth + ", " + whole +
+                         ", a[3])) / (" + depth + ")",
+                     rays);
+      for (std::size_t i = 0; i < rays.size(); ++i)
+        EXPECT_NEAR(found[i], 1.0F, eye_m > 1e6 ? 0.2F : 0.01F)
+            << eye_m << " m, " << share << ": floats of 36000 km are 4 m apart";
+    }
+  }
+}
+
 /// The shader's sum of a light that rises by 1 a kilometre of the ray (x, y, z) until its end, 20
 /// km at most.
 std::string LightInFog() {
