@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "atmosphere/api/conversions.h"
@@ -95,7 +96,7 @@ Direction SunInSky::ToSun() const {
 
 Direction SunInSky::ToSunForAir() const {
   RequireValid(*this);
-  return Towards(elevation_deg - lower_for_air_deg, azimuth_deg);
+  return Towards(std::clamp(elevation_deg - lower_for_air_deg, -90.0, 90.0), azimuth_deg);
 }
 
 SunInSky SunAt(const Place& place, UtcTime time, const Atmosphere& atmosphere) {

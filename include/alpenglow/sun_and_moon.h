@@ -20,8 +20,9 @@ struct SunInSky {
   double azimuth_deg = 180.0;          ///< clockwise from north, in [-360, 360]
   double distance_au = 1.0;            ///< from the place, in [0.005, 100000]
   double angular_radius_deg = 0.2666;  ///< of the disk, in [0.000001, 90]
-  /// The air is lit by a sun that stands lower by this angle [degrees], in [-90, 90]: refraction
-  /// bends rays less before they reach high air than before they reach the observer.
+  /// The air is lit by a sun that stands lower by this angle [degrees], in [-90, 90], but at most at
+  /// the nadir or the zenith: refraction bends rays less before they reach high air than before they
+  /// reach the observer.
   double lower_for_air_deg = 0.0;
 
   /// Returns the direction in which the sun is visible: for its disk and for light on surfaces.

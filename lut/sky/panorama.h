@@ -19,6 +19,7 @@
 //   Godot                      +y   +z = south        +x = east               -z
 #pragma once
 
+#include <algorithm>
 #include <functional>
 #include <optional>
 #include <string>
@@ -69,8 +70,11 @@ struct PanoramaSun {
   double angular_radius_rad = kSunAngularRadius_rad;
   double lower_for_air_rad = 0.0;  // as in SunPosition (sun.h)
 
-  /// Returns the elevation [rad] of the sun that lights the air.
-  [[nodiscard]] double elevation_for_air_rad() const { return elevation_rad - lower_for_air_rad; }
+  /// Returns the elevation [rad] of the sun that lights the air, which is never beyond the zenith or
+  /// the nadir.
+  [[nodiscard]] double elevation_for_air_rad() const {
+    return std::clamp(elevation_rad - lower_for_air_rad, -0.5 * kPi, 0.5 * kPi);
+  }
 };
 
 struct PanoramaSettings {

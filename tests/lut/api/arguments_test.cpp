@@ -96,6 +96,22 @@ TEST(Arguments, OfTheSunAreRefusedByNameWhereverASunIsTaken) {
   }
 }
 
+TEST(Arguments, TheSunForTheAirIsNeverBeyondTheNadirOrTheZenith) {
+  for (const double sign : {-1.0, 1.0}) {
+    for (const double lower_deg : {0.5, 45.0, 90.0}) {
+      SunInSky sun;
+      sun.elevation_deg = 89.5 * sign;
+      sun.lower_for_air_deg = -sign * lower_deg;
+      EXPECT_NEAR(sun.ToSunForAir().up, sign, 1e-12) << lower_deg;
+      SunInSky at_end = sun;
+      at_end.lower_for_air_deg = -0.5 * sign;
+      EXPECT_NEAR(HorizontalIlluminance(Earth(), 2.0, sun),
+                  HorizontalIlluminance(Earth(), 2.0, at_end), 1e-6)
+          << lower_deg;
+    }
+  }
+}
+
 TEST(Arguments, OfPanoramasAreRefusedByName) {
   const auto fault = [](const std::function<void(PanoramaOptions&)>& change) {
     PanoramaOptions options = Small();
