@@ -93,6 +93,15 @@ class Directions {
     return elevation.x * (azimuth.x * axes_.forward + azimuth.y * axes_.right) +
            elevation.y * axes_.up;
   }
+  /// Returns the cosine of the elevation in a row of directions.
+  [[nodiscard]] double Cosine(std::size_t row) const { return elevations_[row].x; }
+  /// Returns its sum over the rows of directions in a row of pixels.
+  [[nodiscard]] double SumOfCosines(int row) const {
+    double sum = 0.0;
+    for (int part = 0; part < kDirections; ++part)
+      sum += Cosine(static_cast<std::size_t>(kDirections * row + part));
+    return sum;
+  }
   [[nodiscard]] std::size_t SideFor(const glm::dvec3& direction) const {
     std::size_t nearest = 0;
     for (std::size_t side = 1; side < kSides; ++side) {
@@ -108,17 +117,18 @@ class Directions {
   std::array<ViewAxes, kSides> sides_;
 };
 
-// Adds the directions that a side shows to the pixels of a panorama.
+// Adds the directions that a side shows to the pixels of a panorama. They count as the solid angle
+// that they stand for, so that a panorama has the light of a small source.
 void AddSide(const Directions& directions, std::size_t number, const Side& side, Image& panorama) {
-  constexpr double kWeight = 1.0 / (kDirections * kDirections);
   tbb::parallel_for(0, panorama.height, [&](int row) {
+    const double per_cosine = 1.0 / (kDirections * directions.SumOfCosines(row));
     for (int i = 0; i < kDirections * kDirections * panorama.width; ++i) {
       const int column = i / (kDirections * kDirections), part = i % (kDirections * kDirections);
-      const glm::dvec3 direction =
-          directions.At(static_cast<std::size_t>(kDirections * column + part % kDirections),
-                        static_cast<std::size_t>(kDirections * row + part / kDirections));
+      const auto direction_row = static_cast<std::size_t>(kDirections * row + part / kDirections);
+      const glm::dvec3 direction = directions.At(
+          static_cast<std::size_t>(kDirections * column + part % kDirections), direction_row);
       if (directions.SideFor(direction) != number) continue;
-      const glm::dvec3 light = kWeight * side.At(direction);
+      const glm::dvec3 light = per_cosine * directions.Cosine(direction_row) * side.At(direction);
       std::array<float, 3>& rgb = panorama.at(column, row);
       for (glm::length_t k = 0; k < 3; ++k)
         rgb[static_cast<std::size_t>(k)] += static_cast<float>(light[k]);

@@ -104,13 +104,6 @@ GroundSurfaceBlock SurfaceAround(const PaintedScene& scene, const CameraPose& ey
                 GroundPattern(frame));
 }
 
-// Returns the angle to which edges of disks are softened. In the middle of a view wider than
-// windows show, pixels are so large that a disk below the horizon would reach above it.
-double RayAngle(PaintedView view) {
-  view.eye.fov_rad = std::min(view.eye.fov_rad, kWidestView_rad);
-  return PixelAngle(view);
-}
-
 // Returns the direction and the angular radius of a light's disk.
 glm::vec4 ApparentDiskOf(const SkyLight& light) {
   return {glm::vec3(DirectionToSun(light.disk)), light.disk.angular_radius_rad};
@@ -149,7 +142,7 @@ void PictureBlocks::UploadView(const PaintedScene& scene, const SeenRays& seen,
   ViewBlock block{};
   block.view_right = {glm::vec3(axes.right), 0.0F};
   block.view_up = {glm::vec3(axes.up), 0.0F};
-  block.view_forward = {glm::vec3(axes.forward), RayAngle(view) / std::sqrt(seen.ray.of)};
+  block.view_forward = {glm::vec3(axes.forward), PixelAngle(view) / std::sqrt(seen.ray.of)};
   const SkyLight &first = lights.of_sky.front(), &other = lights.of_sky.back();
   block.sun = ApparentDiskOf(first);
   block.sun_for_air = {glm::vec3(DirectionToSun(SunForAir(first.disk))), 0.0F};

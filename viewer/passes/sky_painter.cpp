@@ -200,7 +200,8 @@ SkyPainter::DisksInAir SkyPainter::InAir(const FrameSky& sky, const PaintedView&
   return seen;
 }
 
-void SkyPainter::DescribeDisks(const DisksInAir& seen) {
+// @param shares  factors of the light of sun and moon.
+void SkyPainter::DescribeDisks(const DisksInAir& seen, const glm::dvec2& shares) {
   const MoonDisk& moon = seen.moon;
   const ShaderProgram& program = programs_.Of({PictureStage::Pass::kDisks});
   program.Use();
@@ -214,6 +215,8 @@ void SkyPainter::DescribeDisks(const DisksInAir& seen) {
   glUniform4f(program.Uniform("moon_colour"), colour.x, colour.y, colour.z, colour.w);
   glUniform1f(program.Uniform("moon_earthshine"),
               static_cast<float>(moon.earthshine_per_irradiance));
+  glUniform2f(program.Uniform("disk_shares"), static_cast<float>(shares.x),
+              static_cast<float>(shares.y));
   SendAir(program, seen.refracted_sun != nullptr ? *seen.refracted_sun : kUnbent,
           seen.refracted_moon != nullptr ? *seen.refracted_moon : kUnbent);
 }
@@ -275,45 +278,110 @@ void SkyPainter::PaintSky(const PaintedView& view, const PictureStage& stage) {
   }
 }
 
-// Light is added in every box, so a pixel must not lie in two.
-std::vector<PixelBox> SkyPainter::DisksSeen(const PaintedView& view) {
+std::vector<SkyPainter::SkyDisk> SkyPainter::DisksSeen(const PaintedView& view) {
   const FrameSky& sky = SkyOf(view);
+  std::vector<SkyDisk> disks{
+      {LightSource::kSun, DirectionToSun(sky.sun), sky.sun.angular_radius_rad}};
+  if (sky.moon) disks.push_back({LightSource::kMoon, sky.moon->to_moon, sky.moon->radius_rad});
+  std::erase_if(disks, [&](const SkyDisk& disk) {
+    return !PixelsOfDisk(disk.towards, disk.radius_rad, view);
+  });
+  return disks;
+}
+
+namespace {
+
+// Returns the boxes of disks, of which two that overlap become one: light is added in every box, so
+// a pixel must not lie in two.
+template <typename Disk>
+std::vector<PixelBox> BoxesAround(const std::vector<Disk>& disks, const PaintedView& view) {
   std::vector<PixelBox> boxes;
-  const auto add = [&](const std::optional<PixelBox>& box) {
-    if (!box) return;
-    if (!boxes.empty() && Overlap(boxes.back(), *box)) {
-      boxes.back() = Around(boxes.back(), *box);
+  for (const Disk& disk : disks) {
+    const PixelBox box = *PixelsOfDisk(disk.towards, disk.radius_rad, view);
+    if (!boxes.empty() && Overlap(boxes.back(), box)) {
+      boxes.back() = Around(boxes.back(), box);
     } else {
-      boxes.push_back(*box);
+      boxes.push_back(box);
     }
-  };
-  add(PixelsOfDisk(DirectionToSun(sky.sun), sky.sun.angular_radius_rad, view));
-  if (sky.moon) add(PixelsOfDisk(sky.moon->to_moon, sky.moon->radius_rad, view));
+  }
   return boxes;
 }
 
+}  // namespace
+
 std::vector<PixelBox> SkyPainter::BodiesSeen(const PaintedView& view) {
-  std::vector<PixelBox> boxes = DisksSeen(view);
+  std::vector<PixelBox> boxes = BoxesAround(DisksSeen(view), view);
   const std::vector<PixelBox> stars = stars_.Seen(view, SkyOf(view));
   boxes.insert(boxes.end(), stars.begin(), stars.end());
   return boxes;
 }
 
-// Draws the disks. The sun's disk always uses sunlight, even if the moon lights the air.
+// The sun's disk always uses sunlight, even if the moon lights the air.
+void SkyPainter::UploadDisks(const PaintedView& view, const DisksInAir& seen, const PixelRay& ray) {
+  blocks_.UploadView(scene_, {view, BendIn(view), ray},
+                     {{SunAsLight(seen.sun, scene_.air().air()->medium)}});
+}
+
+// Draws the disks that are large enough for the rays of the view.
 void SkyPainter::PaintDisks(const PaintedView& view, const PixelRay& ray) {
   const DisksInAir seen = InAir(SkyOf(view), view);
-  const std::optional<LandBend> bend = BendIn(view);
-  blocks_.UploadView(scene_, {view, bend, ray},
-                     {{SunAsLight(seen.sun, scene_.air().air()->medium)}});
-  const std::vector<PixelBox> boxes = DisksSeen(view);
-  if (boxes.empty()) return;
-  const double share = 1.0 / ray.of;
-  DescribeDisks(seen);
+  UploadDisks(view, seen, ray);
+  std::vector<SkyDisk> disks = DisksSeen(view);
+  std::erase_if(
+      disks, [&](const SkyDisk& disk) { return IsSmallDisk(disk.towards, disk.radius_rad, view); });
+  if (disks.empty()) return;
+  const auto share = [&](LightSource of) {
+    return std::any_of(disks.begin(), disks.end(),
+                       [&](const SkyDisk& disk) { return disk.of == of; })
+               ? 1.0
+               : 0.0;
+  };
+  DescribeDisks(seen, {share(LightSource::kSun), share(LightSource::kMoon)});
   const BesideLand beside;
-  const Adding adding(share);
-  for (const PixelBox& box : boxes) {
+  const Adding adding(1.0 / ray.of);
+  for (const PixelBox& box : BoxesAround(disks, view)) {
     const Scissor within(box);
     programs_.Paint({PictureStage::Pass::kDisks});
+  }
+}
+
+// Draws one disk and the land before it in the view of this disk.
+void SkyPainter::PaintAlone(const SkyDisk& disk, double drawn_rad, const PaintedView& alone) {
+  DisksInAir seen = InAir(SkyOf(alone), alone);
+  glm::dvec2 shares(1.0, 0.0);
+  if (disk.of == LightSource::kSun) {
+    seen.sun.angular_radius_rad = drawn_rad;  // the sun has its whole irradiance at any size
+  } else {
+    seen.moon.radius_rad = drawn_rad;
+    shares = {0.0, std::pow(disk.radius_rad / drawn_rad, 2)};
+  }
+  UploadDisks(alone, seen, {});
+  small_disk_.outline().Bind();
+  if (scene_.AwaitsLand()) {
+    LandPass::Clear(LandDrawn::kOutline);
+  } else {
+    scene_.land().Draw(LandDrawn::kOutline, kViewBinding, {BendIn(alone).has_value(), false});
+  }
+  small_disk_.light().Bind();
+  glClearColor(0.0F, 0.0F, 0.0F, 0.0F);
+  glClear(GL_COLOR_BUFFER_BIT);
+  DescribeDisks(seen, shares);
+  const BesideLand beside;
+  programs_.Paint({PictureStage::Pass::kDisks});
+}
+
+// Adds the light of the other disks.
+void SkyPainter::PaintSmallDisks(const PaintedView& view, const RenderTarget& target) {
+  for (const SkyDisk& disk : DisksSeen(view)) {
+    if (!IsSmallDisk(disk.towards, disk.radius_rad, view)) continue;
+    const double drawn_rad = std::max(disk.radius_rad, SmallDisk::SmallestRadius(view));
+    const PaintedView alone = SmallDisk::ViewOf(disk.towards, drawn_rad, view);
+    PaintAlone(disk, drawn_rad, alone);
+    target.Bind();
+    UploadDisks(view, InAir(SkyOf(view), view), {});
+    const Adding adding(1.0);
+    const Scissor within(*PixelsOfDisk(disk.towards, drawn_rad, view));
+    small_disk_.AddTo(view, alone);
   }
 }
 
@@ -322,6 +390,7 @@ void SkyPainter::PaintBodiesOver(const RenderTarget& target, const DepthPrepass&
   target.Bind();
   target.UseDepthOf(outline);
   PaintDisks(view, {});
+  PaintSmallDisks(view, target);
   if (stars_.HasAny()) {
     const BesideLand beside;
     stars_.Paint(view, SkyOf(view), StarPainter::Land::kByDepth, scene_.fog(),
@@ -437,6 +506,7 @@ void SkyPainter::Paint(const PaintedView& view, int samples, Bodies bodies,
     PaintSample(view, bodies, {sample, samples});
     if (after_sample) after_sample(sample + 1);
   }
+  if (bodies == Bodies::kAll) PaintSmallDisks(view, *picture_);
   PaintLampsOver(view);
   if (bodies != Bodies::kNone) PaintStars(view);
   if (timer_ != nullptr) timer_->End();

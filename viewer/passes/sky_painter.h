@@ -4,8 +4,8 @@
 //
 // The passes of a frame: the visible land (Landscape), the light that shadows remove along rays
 // (ShaftPass), the glow of lamps (LampPainter), the linear picture in the light of sun, moon and
-// night sky (PicturePrograms), then the lamps and stars (StarPainter). ToneMapPass displays the
-// result. Its difference from SceneRenderer is reported in tests/bench/README.md, and for one view
+// night sky (PicturePrograms), disks smaller than the rays see (SmallDisk), then the lamps and stars
+// (StarPainter). ToneMapPass displays the result. Its difference from SceneRenderer is reported in tests/bench/README.md, and for one view
 // by `skyview --explain`.
 #pragma once
 
@@ -28,6 +28,7 @@
 #include "viewer/passes/painted_scene.h"
 #include "viewer/passes/painted_view.h"
 #include "viewer/passes/picture_programs.h"
+#include "viewer/passes/small_disk.h"
 #include "viewer/passes/star_painter.h"
 #include "viewer/shade/shafts.h"
 
@@ -80,7 +81,7 @@ class SkyPainter {
   /// was drawn last.
   [[nodiscard]] std::vector<PixelBox> BodiesSeen(const PaintedView& view);
   /// Adds the celestial bodies to such a picture with one ray per pixel, where an outline of its
-  /// size has no land.
+  /// size has no land, and the light of disks with a radius of less than 2.5 pixels.
   void PaintBodiesOver(const RenderTarget& target, const DepthPrepass& outline,
                        const PaintedView& view);
   /// Sets the timer that receives the times of the passes; null: none.
@@ -106,10 +107,16 @@ class SkyPainter {
   [[nodiscard]] const FrameSky& SkyOf(const PaintedView& view) {
     return *SkyAt(view.eye.place, view.now);
   }
-  [[nodiscard]] std::vector<PixelBox> DisksSeen(const PaintedView& view);
+  /// A disk in the sky, at its apparent position.
+  struct SkyDisk {
+    LightSource of;
+    glm::dvec3 towards;
+    double radius_rad;
+  };
+  [[nodiscard]] std::vector<SkyDisk> DisksSeen(const PaintedView& view);
   void PrepareLamps(const PaintedView& view);
   [[nodiscard]] DisksInAir InAir(const FrameSky& sky, const PaintedView& view);
-  void DescribeDisks(const DisksInAir& seen);
+  void DescribeDisks(const DisksInAir& seen, const glm::dvec2& shares);
   [[nodiscard]] int RowsUnderHorizon(const PaintedView& view) const;
   void PaintSample(const PaintedView& view, Bodies bodies, const PixelRay& ray);
   [[nodiscard]] std::optional<LandBend> BendIn(const PaintedView& view) const;
@@ -128,7 +135,10 @@ class SkyPainter {
   void PaintSky(const PaintedView& view, const PictureStage& stage);
   [[nodiscard]] bool HasLamps() const { return !scene_.AwaitsLand() && !lamp_painter_.IsDark(); }
   [[nodiscard]] int RowsOfGround(const PaintedView& view) const;
+  void UploadDisks(const PaintedView& view, const DisksInAir& seen, const PixelRay& ray);
   void PaintDisks(const PaintedView& view, const PixelRay& ray);
+  void PaintAlone(const SkyDisk& disk, double drawn_rad, const PaintedView& alone);
+  void PaintSmallDisks(const PaintedView& view, const RenderTarget& target);
   void PaintLampsOver(const PaintedView& view);
   [[nodiscard]] bool HasNightSkyMap() const;
   void PaintStars(const PaintedView& view);
@@ -140,6 +150,7 @@ class SkyPainter {
   SceneLamps lamps_;
   LampPainter lamp_painter_;
   ShaftPass shaft_pass_;
+  SmallDisk small_disk_;
   StarPainter stars_;
   NightSkyMapFollower night_sky_map_;
   bool has_towns_;

@@ -297,7 +297,9 @@ void main() {
 #if PASS == DISK_PASS
 void main() {
   vec3 direction = ViewDirection(screen);
-  vec4 disks = RefractedDisks(direction, RAY_ANGLE) * TransmittanceToSpace(direction);
+  // Off the middle of a view its rays are closer together.
+  float width = RAY_ANGLE * dot(direction, view_forward.xyz);
+  vec4 disks = RefractedDisks(direction, width) * TransmittanceToSpace(direction);
   vec4 radiance = SeesPlanet(direction) ? vec4(0.0) : disks;
 #if HAS_FOG
   radiance *= FogTransmittance(direction, 1e3);
@@ -305,3 +307,31 @@ void main() {
   picture = vec4(LinearSrgb(sun_irradiance * radiance), 0.0);
 }
 #endif
+
+//// picture.small_disk.frag.glsl
+// The light of a disk that is too small for the rays of a picture, from a picture of the disk alone
+// (small_disk.h). Each texel is a point whose light falls on the pixels around it: its weights are
+// triangles of whole widths in pixels, so that they sum to 1 wherever the point is.
+in vec2 screen;
+out vec4 picture;
+
+uniform sampler2D disk_light;
+uniform vec4 disk_place;  // place of the lower left texel, and half widths of the triangles [pixels]
+uniform vec4 disk_steps;  // from texel to texel to the right, and upwards [pixels]
+uniform float texel_per_pixel;  // solid angle of a texel, over that of a pixel in the view's middle
+
+void main() {
+  ivec2 size = textureSize(disk_light, 0);
+  vec3 light = vec3(0.0);
+  for (int row = 0; row < size.y; ++row) {
+    for (int column = 0; column < size.x; ++column) {
+      vec2 place = disk_place.xy + float(column) * disk_steps.xy + float(row) * disk_steps.zw;
+      vec2 weight =
+          max(1.0 - abs(gl_FragCoord.xy - place) / disk_place.zw, 0.0) / disk_place.zw;
+      if (weight.x * weight.y > 0.0)
+        light += weight.x * weight.y * texelFetch(disk_light, ivec2(column, row), 0).rgb;
+    }
+  }
+  float along = dot(ViewDirection(screen), view_forward.xyz);
+  picture = vec4(texel_per_pixel / (along * along * along) * light, 0.0);
+}

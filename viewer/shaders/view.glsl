@@ -161,6 +161,7 @@ vec3 StraightToPlanet(vec3 direction) {
 uniform vec4 disk_lift[2 * DISK_NODES];   // apparent minus true elevation [rad]
 uniform vec4 disk_depth[2 * DISK_NODES];  // optical depth minus that of a straight ray
 uniform vec4 disk_nodes;  // of sun and moon: elevation of the first node [rad], nodes per radian
+uniform vec2 disk_shares;  // factors of the light of sun and moon; 0: the disk is not drawn
 
 struct DiskAir {
   vec4 lift, depth;
@@ -180,6 +181,7 @@ DiskAir DiskAirAt(int of, float elevation) {
 
 // Returns the radiance of both disks per unit of the sun's irradiance [1/sr]: for each band,
 // SunDiskRadiance and MoonRadiance in the true direction.
+// @param width  angle between rays in this direction [rad].
 vec4 RefractedDisks(vec3 direction, float width) {
   float level = length(direction.xy);
   float elevation = AngleOfSine(clamp(direction.z, -1.0, 1.0));
@@ -189,8 +191,9 @@ vec4 RefractedDisks(vec3 direction, float width) {
     vec3 to_sun = TurnedUp(direction, level, -of_sun.lift[band]);
     vec3 to_moon = TurnedUp(direction, level, -of_moon.lift[band]);
     float beside_moon = 1.0 - CoveredByMoon(to_moon, width);
-    disks[band] = beside_moon * exp(-of_sun.depth[band]) * SunDiskRadiance(to_sun, width)[band] +
-                  exp(-of_moon.depth[band]) * MoonRadiance(to_moon, width)[band];
+    float by_sun = exp(-of_sun.depth[band]) * SunDiskRadiance(to_sun, width)[band];
+    float by_moon = exp(-of_moon.depth[band]) * MoonRadiance(to_moon, width)[band];
+    disks[band] = disk_shares.x * beside_moon * by_sun + disk_shares.y * by_moon;
   }
   return disks;
 }

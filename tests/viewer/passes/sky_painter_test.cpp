@@ -29,6 +29,7 @@
 #include "tests/viewer/land/headless_land.h"
 #include "viewer/flight/flight_recorder.h"
 #include "viewer/passes/frame_light.h"
+#include "viewer/passes/panorama.h"
 
 namespace alpenglow::viewer {
 namespace {
@@ -229,6 +230,174 @@ TEST_F(SkyPainterTest, NoPixelGetsTheLightOfSunAndMoonTwice) {
   EXPECT_EQ(painter.BodiesSeen(view).size(), 1U) << "one box around both";
 }
 
+/// Sums of the light of sun and moon in pictures of one place.
+class LightOfDisks {
+ public:
+  /// @param first  a view of the painter's scene.
+  LightOfDisks(SkyPainter& painter, const PaintedView& first) : painter_(painter), first_(first) {
+    painter_.WaitUntilReady(first_);
+  }
+
+  [[nodiscard]] const FrameSky& sky() { return *painter_.SkyAt(first_.eye.place, first_.now); }
+  /// Returns the view whose middle is so many degrees below a direction.
+  [[nodiscard]] PaintedView Beside(const glm::dvec3& towards, double fov_deg, double below_deg,
+                                   const PictureSize& size) const {
+    PaintedView view{first_.eye, first_.now, size.width, size.height};
+    view.eye.heading_rad = std::atan2(towards.x, towards.y);
+    view.eye.pitch_rad = std::asin(towards.z) - below_deg * kRadiansPerDegree;
+    view.eye.roll_rad = 1.05;
+    view.eye.fov_rad = fov_deg * kRadiansPerDegree;
+    return view;
+  }
+  /// Returns the sum of the light of the disks in a view, in green [lux].
+  [[nodiscard]] double In(const PaintedView& view, int samples) {
+    painter_.WaitUntilReady(view, samples);
+    return SumOf(view, samples, SkyPainter::Bodies::kAll) -
+           SumOf(view, samples, SkyPainter::Bodies::kStars);
+  }
+  /// Returns the sum of the light of a picture, in green [lux].
+  [[nodiscard]] static double SumOf(const Image& image, double fov_rad) {
+    const double half = std::tan(0.5 * fov_rad);
+    const auto solid_angle = [&](int x, int y) {
+      if (fov_rad > kPi) {
+        const double row_rad = kPi / image.height;
+        return 2.0 * kPi / image.width * (std::cos(row_rad * y) - std::cos(row_rad * (y + 1)));
+      }
+      const double right = half * ((2.0 * x + 1.0) / image.width - 1.0);
+      const double up = half * ((2.0 * y + 1.0) - image.height) / image.width;
+      return std::pow(2.0 * half / image.width, 2) / std::pow(1.0 + right * right + up * up, 1.5);
+    };
+    double sum = 0.0;
+    for (int y = 0; y < image.height; ++y) {
+      for (int x = 0; x < image.width; ++x) sum += solid_angle(x, y) * double{image.at(x, y)[1]};
+    }
+    return sum;
+  }
+  /// Returns the same as In with one disk alone, 64 pixels wide.
+  [[nodiscard]] double Reference(const glm::dvec3& towards, double radius_rad) {
+    return In(Beside(towards, 3.0 * radius_rad / kRadiansPerDegree, 0.0, {96, 96}), 1);
+  }
+
+ private:
+  double SumOf(const PaintedView& view, int samples, SkyPainter::Bodies bodies) {
+    const auto paint = [&](const PaintedView& part) {
+      painter_.Paint(part, samples, bodies);
+      return painter_.picture().Read();
+    };
+    return SumOf(IsPanorama(view) ? PaintPanorama(view, paint) : paint(view), view.eye.fov_rad);
+  }
+
+  SkyPainter& painter_;
+  PaintedView first_;
+};
+
+/// A painter of the bare planet at noon in a summer of the Alps, with a new moon beside the sun.
+struct BareNoon {
+  Scene scene = QuickScene(100.0, 180.0, 60.0, 90.0);
+  PaintedView view = ViewOf(scene, 100.0, ParseInstant("2026-06-15T11:30:00Z"), {48, 27});
+  SkyPainter painter{scene, LandSourceOf(scene), view, SizesOf(Quality::kMedium),
+                     tests::SharedAirOf(scene)};
+};
+
+using DisksInTheSky = tests::HeadlessSharing<BareNoon>;
+
+// Hard case 32.
+TEST_F(DisksInTheSky, HaveTheirLightInPicturesOfAnySize) {
+  LightOfDisks light(shared().painter, shared().view);
+  const SunPosition sun = light.sky().sun;
+  const glm::dvec3 to_sun = DirectionToSun(sun);
+  const double whole = light.Reference(to_sun, sun.angular_radius_rad);
+  PaintedView alone = light.Beside(to_sun, 1.0, 0.0, {64, 64});
+  CameraSample camera_sample(alone.now);
+  camera_sample.poses = {alone.eye};
+  const Image rendered =
+      SceneRenderer(shared().scene).Render(camera_sample, ReferenceSettings({64, 64}, 4));
+  EXPECT_NEAR(whole / LightOfDisks::SumOf(rendered, alone.eye.fov_rad), 1.0, 0.02)
+      << "with the sky around the disk, which has a thousandth of the light";
+  for (const PictureSize& size : {PictureSize{16, 9}, {48, 27}, {160, 90}, {640, 360}}) {
+    for (const double fov : {40.0, 90.0, 170.0}) {
+      for (const double of_half : {0.02, 0.8}) {
+        const int samples = fov == 90.0 ? 4 : 1;
+        const PaintedView view = light.Beside(to_sun, fov, 0.5 * of_half * fov, size);
+        EXPECT_NEAR(light.In(view, samples) / whole, 1.0, 0.03)
+            << size.width << " pixels, field of view " << fov << ", " << of_half
+            << " of the way to the rim: rays that pass a disk of five pixels";
+      }
+    }
+  }
+}
+
+TEST_F(DisksInTheSky, HaveTheirLightInPanoramas) {
+  LightOfDisks light(shared().painter, shared().view);
+  const SunPosition sun = light.sky().sun;
+  const glm::dvec3 to_sun = DirectionToSun(sun);
+  const double whole = light.Reference(to_sun, sun.angular_radius_rad);
+  for (const PictureSize& size : {PictureSize{16, 8}, {48, 24}}) {
+    for (const double heading : {0.0, 20.0, 45.0}) {
+      PaintedView view = light.Beside(to_sun, 360.0, 0.0, size);
+      view.eye.heading_rad += heading * kRadiansPerDegree;
+      view.eye.pitch_rad = view.eye.roll_rad = 0.0;
+      EXPECT_NEAR(light.In(view, 1) / whole, 1.0, 0.05)
+          << size.width << " pixels, " << heading
+          << " degrees beside: 16 directions a pixel between rays to sides of a cube";
+    }
+  }
+}
+
+TEST_F(DisksInTheSky, OfAFullMoonAndACrescentHaveTheirLight) {
+  for (const char* utc : {"2026-06-29T22:00:00Z", "2026-06-18T20:00:00Z"}) {
+    PaintedView view = shared().view;
+    view.now = ParseInstant(utc);
+    LightOfDisks light(shared().painter, view);
+    const MoonDisk moon = light.sky().moon.value();
+    const double whole = light.Reference(moon.to_moon, moon.radius_rad);
+    ASSERT_GT(whole, 1e-3) << utc;
+    for (const double fov : {12.0, 40.0, 150.0}) {
+      EXPECT_NEAR(light.In(light.Beside(moon.to_moon, fov, 0.2 * fov, {64, 36}), 4) / whole, 1.0,
+                  0.05)
+          << utc << ", field of view " << fov;
+    }
+  }
+}
+
+TEST_F(DisksInTheSky, HaveTheLightOfTheirVisiblePartAtTheHorizon) {
+  // The sun is low, a quarter and nine tenths hidden, and has set.
+  for (const double seconds : {0.0, 150.0, 230.0, 420.0}) {
+    PaintedView evening = shared().view;
+    evening.now = AddSeconds(ParseInstant("2026-06-15T19:22:00Z"), seconds);
+    LightOfDisks light(shared().painter, evening);
+    const SunPosition sun = light.sky().sun;
+    const glm::dvec3 to_sun = DirectionToSun(sun);
+    const double visible = light.Reference(to_sun, sun.angular_radius_rad);
+    for (const double fov : {40.0, 150.0}) {
+      EXPECT_NEAR(light.In(light.Beside(to_sun, fov, 7.0, {16, 9}), 1), visible,
+                  0.05 * visible + 5.0)
+          << seconds << " s, field of view " << fov;
+    }
+  }
+}
+
+TEST_F(LandPictures, DisksBehindLandHaveTheLightOfTheirVisiblePart) {
+  // A third of the sun is behind mountains, and three minutes later all of it.
+  double last_lux = 0.0;
+  for (const double seconds : {-120.0, 60.0}) {
+    const PaintedView view = ViewOf(shared().first.scene, shared().both.eye_m(),
+                                    AddSeconds(shared().first.instant, seconds));
+    LightOfDisks light(shared().both.painter(), view);
+    const SunPosition sun = light.sky().sun;
+    const glm::dvec3 to_sun = DirectionToSun(sun);
+    last_lux = light.Reference(to_sun, sun.angular_radius_rad);
+    for (const double fov : {40.0, 150.0}) {
+      EXPECT_NEAR(light.In(light.Beside(to_sun, fov, 7.0, {16, 9}), 1), last_lux, 0.05 * last_lux)
+          << seconds << " s, field of view " << fov;
+    }
+    if (seconds < 0.0) {
+      EXPECT_GT(last_lux, 2e4);
+    }
+  }
+  EXPECT_EQ(last_lux, 0.0);
+}
+
 /// A straight flight over a place with a seam of coordinates.
 struct FlightOver {
   const char* place;
@@ -303,6 +472,35 @@ TEST_F(SkyPainterTest, FlightsOverPolesAndTheDateLineAreContinuous) {
     }
   }
   std::filesystem::remove(model);
+}
+
+// Fog that absorbs nothing takes no light from a view of dark ground.
+TEST_F(SkyPainterTest, FogUnderAnyEyeIsTheRenderers) {
+  for (const double eye_m : {2e4, 4e5, 3.6e7}) {
+    Scene scene = BareScene(eye_m, 0.0, eye_m == 4e5 ? -50.0 : -90.0, eye_m > 1e6 ? 2.0 : 20.0);
+    scene.medium = MediumPreset("bruneton2017");
+    scene.fog.emplace();
+    scene.fog->extinction_per_m = 3.0 / 900.0;
+    scene.fog->scale_height_m = 100.0;
+    const PaintedView view = ViewOf(scene, eye_m, ParseInstant("2026-06-21T10:00:00Z"), {8, 6});
+    SkyPainter painter(scene, LandSourceOf(scene), view, SizesOf(Quality::kHigh),
+                       tests::SharedAirOf(scene));
+    painter.WaitUntilReady(view);
+    painter.Paint(view, 4, SkyPainter::Bodies::kNone);
+    CameraSample camera_sample(view.now);
+    camera_sample.poses = {view.eye};
+    const Image rendered = SceneRenderer(scene).Render(camera_sample, ReferenceSettings({8, 6}, 4));
+    const Image painted = painter.picture().Read();
+    for (const std::size_t band : {0, 1, 2}) {
+      double of_painted = 0.0, of_rendered = 0.0;
+      for (std::size_t i = 0; i < painted.rgb.size(); ++i) {
+        of_painted += double{painted.rgb[i][band]};
+        of_rendered += double{rendered.rgb[i][band]};
+      }
+      EXPECT_NEAR(of_painted / of_rendered, 1.0, 0.015)
+          << eye_m << " m: light of the air in four stretches, and noise of four rays";
+    }
+  }
 }
 
 TEST_F(SkyPainterTest, FogIsTheRenderersAndShadedByMountains) {
