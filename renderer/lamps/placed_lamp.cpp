@@ -13,6 +13,7 @@
 #include "atmosphere/lamp/lamp.h"
 #include "atmosphere/math/constants.h"
 #include "atmosphere/math/numerics.h"
+#include "renderer/surface/inside_planet.h"
 #include "renderer/surface/scene_geometry.h"
 
 namespace alpenglow::renderer {
@@ -103,20 +104,8 @@ double LampStage::PlanetUnder(const glm::dvec3& point) const {
 }
 
 bool LampStage::HiddenByPlanet(const glm::dvec3& from, const glm::dvec3& to) const {
-  constexpr double kTouches_m = 0.01;  // on the sphere except for rounding
-  const glm::dvec3 way = to - from;
-  const double along =
-      -glm::dot(from + glm::dvec3(0.0, 0.0, planet_radius_m_), way) / glm::dot(way, way);
-  if (!(along > 0.0 && along < 1.0)) return false;
-  const double lowest_m = AltitudeOf(from + along * way);
-  if (lowest_m >= -kTouches_m) return false;
-  // Terrain hides instead of the planet only where it covers all of the part inside the planet. The
-  // half of that part is a side of the triangle with the lowest point and the centre.
-  const double half = std::sqrt(-lowest_m * (2.0 * planet_radius_m_ + lowest_m)) / glm::length(way);
-  const std::array<double, 3> inside{std::max(along - half, 0.0), along,
-                                     std::min(along + half, 1.0)};
-  return std::any_of(inside.begin(), inside.end(),
-                     [&](double share) { return !TerrainAt(from + share * way); });
+  return PlanetHides(from, to, planet_radius_m_,
+                     [&](const glm::dvec3& point) { return TerrainAt(point).has_value(); });
 }
 
 bool LampStage::Sees(const glm::dvec3& from, const glm::dvec3& to) const {

@@ -11,6 +11,7 @@
 
 #include "atmosphere/math/constants.h"
 #include "atmosphere/ray/ray.h"
+#include "renderer/surface/inside_planet.h"
 
 namespace alpenglow::renderer {
 namespace {
@@ -242,20 +243,11 @@ glm::dvec3 SceneGeometry::DetailedNormal(const GroundPoint& at, const glm::dvec3
   return pattern_.FromPattern(MountainSurface::DetailedNormal(at, pattern_.ToPattern(normal)));
 }
 
-// Returns whether the bare planet stands between the eye and terrain beyond its horizon: the ray
-// enters the planet, leaves it again before the terrain, and no terrain covers the planet there (a
-// ray through a basin below the sphere is in free air).
+// Returns whether the bare planet stands between the eye and terrain beyond its horizon.
 bool SceneGeometry::HiddenByPlanet(const glm::dvec3& origin, const glm::dvec3& direction,
                                    double distance_m) const {
-  const double mu = std::clamp(glm::dot(direction, UpAt(origin)), -1.0, 1.0);
-  if (mu >= 0.0) return false;
-  const double altitude = AltitudeOf(origin);
-  const double deepest_m = -(radius_m() + altitude) * mu;
-  if (distance_m < deepest_m) return false;  // the ray would leave beyond the terrain
-  const RayExtent extent =
-      ExtentOf({altitude, mu, 1.0, mu}, radius_m(), medium_.atmosphere_height_m);
-  if (extent.end != RayEnd::kGround || 2.0 * deepest_m - extent.end_m > distance_m) return false;
-  return !CoversPlanetAt(origin + deepest_m * direction);
+  return PlanetHides(origin, origin + distance_m * direction, radius_m(),
+                     [&](const glm::dvec3& point) { return CoversPlanetAt(point); });
 }
 
 bool SceneGeometry::CoversPlanetAt(const glm::dvec3& point) const {

@@ -104,6 +104,31 @@ TEST(SceneGeometry, HorizonsOfEllipsoidAndSphericalSkyAgreeToAPixel) {
   }
 }
 
+TEST(SceneGeometry, ThePlanetHidesLandUnlessLandCoversTheWholeWay) {
+  const LocalFrame frame(kWgs84, {0.0, 0.0, 0.0});
+  const Medium medium = OnOsculatingSphere(MediumPreset("earth"), 0.0);
+  // Land from some latitude to 1 degree, below the sphere, with a wall at 100 km. The ray to the
+  // wall is inside the sphere from 8 to 85 km.
+  const auto kind_from = [&](double south_deg) {
+    constexpr double kStep_deg = 0.01;
+    ElevationGrid grid;
+    grid.rows = static_cast<int>(std::lround((1.0 - south_deg) / kStep_deg)) + 1;
+    grid.columns = 11;
+    grid.north_rad = kRadiansPerDegree;
+    grid.west_rad = -0.05 * kRadiansPerDegree;
+    grid.step_lat_rad = grid.step_lon_rad = kStep_deg * kRadiansPerDegree;
+    for (int i = 0; i < grid.rows * grid.columns; ++i)
+      grid.height_m.push_back(i < 10 * grid.columns ? 3000.0F : -400.0F);
+    const SceneGround ground{frame, Terrain(MeshFromElevation(grid, frame)), 2.0, "", true};
+    const SceneGeometry geometry(ground, medium, false);
+    const glm::dvec3 eye(0.0, 0.0, 2.0);
+    const glm::dvec3 wall(0.0, 100e3, 100.0 - 1e10 / (2.0 * geometry.radius_m()));
+    return geometry.Trace(eye, glm::normalize(wall - eye), kPixel_rad).kind;
+  };
+  EXPECT_EQ(kind_from(-0.05), HitKind::kTerrain) << "a basin all the way";
+  EXPECT_EQ(kind_from(0.3), HitKind::kPlanet) << "the sea from 5 to 33 km, and land under the ray";
+}
+
 TEST(SceneGeometry, HitsLieOnTheRayAndAreLitOnTheSmoothSurface) {
   constexpr double kCell_m = 50.0, kWave_m = 30.0;
   ElevationGrid grid = SeaLevelAround(45.0, 0.01);
