@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cstdlib>
 #include <optional>
 #include <string_view>
 #include <vector>
@@ -131,6 +132,13 @@ bool IsSoftwareOpenGl() {
   return std::any_of(names.begin(), names.end(), [&](const char* name) {
     return renderer.find(name) != std::string_view::npos;
   });
+}
+
+int TextureUnitsOfDriver() {
+  GLint units = 0;
+  glGetIntegerv(GL_MAX_TEXTURE_IMAGE_UNITS, &units);
+  const char* const fewer = std::getenv("ALPENGLOW_TEXTURE_UNITS");
+  return fewer == nullptr ? units : std::min(units, std::atoi(fewer));
 }
 
 void RequireContext() {

@@ -53,6 +53,10 @@ class HeadlessContext {
 /// Returns whether the current context draws without a GPU.
 [[nodiscard]] bool IsSoftwareOpenGl();
 
+/// Returns the number of textures that one stage of a program may read: at least 16. The environment
+/// variable ALPENGLOW_TEXTURE_UNITS lowers it, to see what other drivers draw.
+[[nodiscard]] int TextureUnitsOfDriver();
+
 /// Throws DisplayError if the context is lost because the GPU or its driver was reset. Detection
 /// requires a context that reports resets (OpenGL 4.5 or KHR_robustness).
 void RequireContext();

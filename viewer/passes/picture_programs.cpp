@@ -7,8 +7,10 @@
 #include <cmath>
 #include <utility>
 
+#include "atmosphere/base/error.h"
 #include "atmosphere/time_place/geodesy.h"
 #include "lut/camera_tables/air_rows.h"
+#include "lut/cli/messages.h"
 #include "renderer/surface/ground_pattern.h"
 #include "renderer/surface/surface.h"
 #include "viewer/air/air_follower.h"
@@ -68,6 +70,54 @@ std::vector<ShaderPiece> PictureTexts(const PictureKind& kind, const PictureStag
   add(ShaftTexts());
   add(stage.has_lamps ? kind.lamps.texts() : NoLampTexts());
   return texts;
+}
+
+int TexturesOf(const PictureKind& kind, const PictureStage& stage) {
+  using enum PictureStage::Pass;
+  const bool is_land = stage.pass == kLand, is_ground = is_land || stage.pass == kSky;
+  const int lights = stage.two_lights ? 2 : 1;
+  const bool has_gloss = is_ground && kind.material.HasGloss();
+  int textures = (is_land ? 1 : 3) + 3 * lights;  // the air: to a point, and all of it
+  textures += is_land ? 1 : lights;               // the surface; the whole sky
+  if (is_land && !stage.sky_by_pixel) textures += lights;
+  if (is_ground) textures += kind.material.drape() != nullptr ? 2 : 1;
+  if (has_gloss) textures += 2 + lights;
+  if (has_gloss || stage.sky_by_pixel) textures += 1 + 3 * lights;
+  if (kind.fog) textures += 2 * lights;
+  if (stage.has_shade) textures += kind.fog ? 2 : 1;
+  if (stage.has_lamps) textures += 6;
+  if (stage.has_night && !is_land) textures += 1;
+  return textures;
+}
+
+FittingStage Fitting(const PictureKind& kind, const PictureStage& stage, int units) {
+  using enum PictureStage::Pass;
+  const auto needed = [&](const PictureStage& of) {
+    return std::max({TexturesOf(kind, of.In(kLand)), TexturesOf(kind, of.In(kSky)),
+                     TexturesOf(kind, of.In(kUnoccludedSky))});
+  };
+  FittingStage fitting{stage, {}};
+  fitting.stage.pass = kLand;
+  for (const auto& [property, name] :
+       {std::pair{&PictureStage::has_shade, "shadows of mountains in the air"},
+        std::pair{&PictureStage::two_lights, "the weaker light of sun and moon"},
+        std::pair{&PictureStage::sky_by_pixel, "light of the sky by pixel instead of by vertex"},
+        std::pair{&PictureStage::has_lamps, "lamps"},
+        std::pair{&PictureStage::has_night, "the night sky"}}) {
+    if (!(fitting.stage.*property)) continue;
+    const int with = needed(fitting.stage);
+    if (with <= units) break;
+    fitting.stage.*property = false;
+    fitting.omitted.push_back(fmt::format("{} ({} textures)", name, with));
+  }
+  if (needed(fitting.stage) > units)
+    throw DisplayError(
+        fmt::format("pictures of this scene read {} textures in a stage, and the OpenGL driver has "
+                    "units for {}; "
+                    "a driver in software, LIBGL_ALWAYS_SOFTWARE=1, has 32",
+                    needed(fitting.stage), units));
+  fitting.stage = fitting.stage.In(stage.pass);
+  return fitting;
 }
 
 namespace {
@@ -217,13 +267,27 @@ void ConnectMaps(const ShaderProgram& program) {
 
 PicturePrograms::PicturePrograms(const PaintedScene& scene, const LampPainter& lamps,
                                  const ShaftPass& shafts)
-    : scene_(scene), lamps_(lamps), shafts_(shafts) {}
+    : scene_(scene), lamps_(lamps), shafts_(shafts), units_(TextureUnitsOfDriver()) {}
+
+PictureKind PicturePrograms::Kind() const {
+  return {scene_.fixed().material, lamps_, scene_.fixed().land_kind, scene_.fixed().fog_phase};
+}
+
+PictureStage PicturePrograms::Fitting(const PictureStage& stage) {
+  const FittingStage fitting = viewer::Fitting(Kind(), stage, units_);
+  for (const std::string& name : fitting.omitted) {
+    if (omitted_.insert(name).second)
+      Log(
+          fmt::format("skyview: the OpenGL driver has {} texture units; pictures lack {}. A driver "
+                      "in software, LIBGL_ALWAYS_SOFTWARE=1, has 32\n",
+                      units_, name));
+  }
+  return fitting.stage;
+}
 
 ShaderProgram PicturePrograms::Made(const PictureStage& stage) const {
-  const PictureKind kind{scene_.fixed().material, lamps_, scene_.fixed().land_kind,
-                         scene_.fixed().fog_phase};
   ShaderProgram made = FullScreenProgram(
-      WithViewerPieces(PictureTexts(kind, stage), {"viewer/shaders/picture.frag.glsl"}));
+      WithViewerPieces(PictureTexts(Kind(), stage), {"viewer/shaders/picture.frag.glsl"}));
   ConnectBlocks(made);
   ConnectMaps(made);
   if (stage.has_lamps) lamps_.Connect(made);

@@ -18,6 +18,7 @@
 #include <memory>
 #include <optional>
 #include <set>
+#include <string>
 #include <vector>
 
 #include "atmosphere/astronomy/sun.h"
@@ -93,6 +94,20 @@ struct PictureKind {
 [[nodiscard]] std::vector<ShaderPiece> PictureTexts(const PictureKind& kind,
                                                     const PictureStage& stage);
 
+/// Returns the number of textures that the program of a stage reads: drivers may have 16 units for
+/// those of one stage, llvmpipe has 32. Some may be too many by the textures that a compiler omits.
+[[nodiscard]] int TexturesOf(const PictureKind& kind, const PictureStage& stage);
+
+/// A stage that a driver can link, and what it lacks.
+struct FittingStage {
+  PictureStage stage;
+  std::vector<std::string> omitted;  // in words
+};
+/// Returns the stage without as many properties as all passes need to read at most `units` textures:
+/// first the shadows in the air, then the second light, the light of the sky by pixel, lamps, and
+/// the night sky. Throws DisplayError that names the numbers if that is not enough.
+[[nodiscard]] FittingStage Fitting(const PictureKind& kind, const PictureStage& stage, int units);
+
 /// Returns the first of these texts: the view and the medium.
 [[nodiscard]] std::vector<ShaderPiece> AirTexts();
 
@@ -136,6 +151,10 @@ class PicturePrograms {
   /// The arguments must outlive this object.
   PicturePrograms(const PaintedScene& scene, const LampPainter& lamps, const ShaftPass& shafts);
 
+  /// Returns the stage that the driver of the current context can link, and tells the user once what
+  /// pictures lack because of it.
+  [[nodiscard]] PictureStage Fitting(const PictureStage& stage);
+
   /// Draws the whole viewport. Land is drawn only over land, sky and disks only where there is no
   /// land, by a test against the depth of the bound target. The depth test must be enabled. Air,
   /// blocks and maps of the lights must be bound.
@@ -153,11 +172,14 @@ class PicturePrograms {
   void ForgetThoseWithLamps();
 
  private:
+  [[nodiscard]] PictureKind Kind() const;
   [[nodiscard]] ShaderProgram Made(const PictureStage& stage) const;
 
   const PaintedScene& scene_;
   const LampPainter& lamps_;
   const ShaftPass& shafts_;
+  int units_;                      // of the textures of a fragment stage
+  std::set<std::string> omitted_;  // as told
   std::map<PictureStage, ShaderProgram> made_;
   std::set<PictureStage> ready_;  // stages that have been drawn
   GlVertexArray no_vertices_;

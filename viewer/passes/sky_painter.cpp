@@ -246,7 +246,7 @@ std::vector<PictureStage> StagesAfter(const PictureStage& stage, const FrameSky&
 // Prepares one stage per frame, since each takes tenths of a second.
 void SkyPainter::MakeOneReady(const PaintedView& view, const PictureStage& stage) {
   for (const PictureStage& next : StagesAfter(stage, SkyOf(view)))
-    if (programs_.MakeReady(next)) return;
+    if (programs_.MakeReady(programs_.Fitting(next))) return;
   stars_.MakeReady(view, scene_.fog(), scene_.fixed().fog_phase);
 }
 
@@ -446,7 +446,7 @@ PictureStage SkyPainter::StageOf(const PaintedView& view) {
   stage.two_lights = lights.size() > 1;
   stage.has_night = HasNightSkyMap() && night_sky_map_.HasAny();
   stage.sky_by_pixel = HasSkyByPixel(scene_, lights);
-  return stage;
+  return programs_.Fitting(stage);
 }
 
 void SkyPainter::PaintPicture(const PaintedView& view, double share) {

@@ -14,6 +14,7 @@
 
 #include "atmosphere/astronomy/moon.h"
 #include "atmosphere/astronomy/sun.h"
+#include "atmosphere/base/error.h"
 #include "atmosphere/colour/spectrum.h"
 #include "atmosphere/math/constants.h"
 #include "lut/image/look.h"
@@ -261,22 +262,64 @@ int TexturesOf(const ShaderProgram& program) {
   return textures;
 }
 
-TEST_F(TexturesOfThePicture, AreNoMoreThanAStageMayRead) {
-  const Scene scene = LampScene(true);
-  const SceneLamps lamps(scene, LoadGround(scene), scene.medium);
-  const LampPainter painter(lamps, kMediumLamps, {});
-  GroundCover sea;
-  sea.sea_level_m = 0.0;
-  const GroundMaterial material(sea, nullptr, scene.medium.wavelengths_nm);
-  GLint most = 0;
-  glGetIntegerv(GL_MAX_TEXTURE_IMAGE_UNITS, &most);
-  for (const PictureStage& stage : StagesOfLights()) {
-    const ShaderProgram program = FullScreenProgram(WithViewerPieces(
-        PictureTexts({material, painter, {true, true}, PhaseKind::kHenyeyGreensteinDraine}, stage),
-        {"viewer/shaders/picture.frag.glsl"}));
-    EXPECT_GT(TexturesOf(program), 0);
-    EXPECT_LE(TexturesOf(program), most) << "OpenGL 3.3 guarantees 16, today's drivers 32";
+/// A sea in fog with a lamp, whose programs read the most textures, or bare land.
+struct SceneOfTextures {
+  explicit SceneOfTextures(bool is_heavy)
+      : scene(LampScene(is_heavy)),
+        lamps(scene, LoadGround(scene), scene.medium),
+        painter(lamps, kMediumLamps, {}),
+        fog(is_heavy ? std::optional(PhaseKind::kHenyeyGreensteinDraine) : std::nullopt) {
+    if (is_heavy) cover.sea_level_m = 0.0;
   }
+
+  [[nodiscard]] PictureKind Kind() const { return {material, painter, {true, true}, fog}; }
+
+  Scene scene;
+  SceneLamps lamps;
+  LampPainter painter;
+  std::optional<PhaseKind> fog;
+  GroundCover cover;
+  GroundMaterial material{cover, nullptr, scene.medium.wavelengths_nm};
+};
+
+TEST_F(TexturesOfThePicture, AreNoMoreThanTheirNumberSays) {
+  for (const bool is_heavy : {false, true}) {
+    const SceneOfTextures of(is_heavy);
+    for (const PictureStage& of_land : StagesOfLights()) {
+      for (const auto pass : {PictureStage::Pass::kLand, PictureStage::Pass::kSky,
+                              PictureStage::Pass::kUnoccludedSky}) {
+        const PictureStage stage = of_land.In(pass);
+        const int read = TexturesOf(FullScreenProgram(WithViewerPieces(
+            PictureTexts(of.Kind(), stage), {"viewer/shaders/picture.frag.glsl"})));
+        const int said = TexturesOf(of.Kind(), stage);
+        EXPECT_LE(read, said);
+        // Of lamps, those of a scene with all kinds are counted; of the sky, those of any planet.
+        if (pass == PictureStage::Pass::kLand && !stage.has_lamps) {
+          EXPECT_EQ(read, said);
+        }
+      }
+    }
+  }
+}
+
+TEST_F(TexturesOfThePicture, ThatDoNotFitADriverAreLeftOutInWords) {
+  constexpr PictureStage kAll{PictureStage::Pass::kLand, true, true, true, true, true};
+  const SceneOfTextures heavy(true), bare(false);
+  EXPECT_EQ(Fitting(heavy.Kind(), kAll, 32).stage, kAll);
+  EXPECT_TRUE(Fitting(heavy.Kind(), kAll, 32).omitted.empty());
+  int last = 0;
+  for (const int units : {16, 18, 20, 24, 28}) {
+    const FittingStage fitting = Fitting(bare.Kind(), kAll, units);
+    EXPECT_LE(TexturesOf(bare.Kind(), fitting.stage), units);
+    EXPECT_LE(TexturesOf(bare.Kind(), fitting.stage.In(PictureStage::Pass::kSky)), units);
+    EXPECT_GE(TexturesOf(bare.Kind(), fitting.stage), last) << "more units, more properties";
+    last = TexturesOf(bare.Kind(), fitting.stage);
+  }
+  EXPECT_THAT(Fitting(bare.Kind(), kAll, 16).omitted.front(),
+              testing::HasSubstr("shadows of mountains in the air ("));
+  EXPECT_THAT([&] { static_cast<void>(Fitting(bare.Kind(), kAll, 4)); },
+              testing::ThrowsMessage<DisplayError>(
+                  testing::HasSubstr("the OpenGL driver has units for 4")));
 }
 
 // Returns a program of land and planet.
