@@ -218,6 +218,40 @@ TEST_F(LandPictures, TheSkyOfAFrameIsComputedOnce) {
   EXPECT_NE(painter.SkyAt(view.eye.place, AddSeconds(view.now, 1.0)), sky);
 }
 
+// The bounds are the numbers of viewer/MANUAL.md, Limits.
+TEST_F(LandPictures, WithGlossAndLampsAreWithinTheNumbersOfTheManual) {
+  struct Case {
+    const char* name;
+    ParityView view;
+    Bounds bounds;
+  };
+  const auto view = [&](double height_m, double heading, double pitch, const char* utc) {
+    return shared().tile.View({height_m, true}, heading, pitch, utc);
+  };
+  std::vector<Case> cases{
+      {"a sea", view(30.0, 290.0, -3.0, "2026-06-15T17:55:00Z"), {0.017, 0.15}},
+      {"Blinn-Phong", view(100.0, 270.0, -3.0, "2026-06-15T15:55:00Z"), {0.019, 0.07}},
+      {"lamps", view(50.0, 0.0, -10.0, "2026-06-15T22:55:00Z"), {0.011, 0.032}},
+  };
+  cases[0].view.scene.terrain = {};
+  cases[0].view.scene.terrain.kind = TerrainSource::Kind::kNone;
+  cases[0].view.scene.ground.kind = GroundCover::Kind::kWater;
+  cases[1].view.scene.ground.kind = GroundCover::Kind::kBlinnPhong;
+  cases[1].view.scene.ground.roughness = 0.2;
+  cases[1].view.scene.ground.reflectance = 0.3;
+  Scene& with_lamps = cases[2].view.scene;
+  with_lamps.lights = {LampAt(with_lamps.place, 450.0, 0.0),
+                       LampAt(with_lamps.place, 780.0, 230.0)};
+  for (Light& lamp : with_lamps.lights) lamp.height = {10.0, true};
+  cases.resize(tests::ScaledDown(cases.size(), std::size_t{1}));
+  for (const Case& one : cases) {
+    const ViewDifference is = BothPrograms(one.view.scene, one.view.instant).Difference(one.view);
+    EXPECT_LT(is.mean, one.bounds.mean) << one.name;
+    EXPECT_LT(is.at_99_percent, one.bounds.at_99_percent) << one.name;
+    EXPECT_LT(is.edge_share, 0.6) << one.name;
+  }
+}
+
 // A new moon stands 7 degrees beside the sun, and the pixels are 2.4 degrees wide.
 TEST_F(SkyPainterTest, NoPixelGetsTheLightOfSunAndMoonTwice) {
   Scene scene = BareScene(100.0, 180.0, 60.0, 90.0);
