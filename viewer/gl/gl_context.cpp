@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <charconv>
 #include <cstdlib>
 #include <optional>
 #include <string_view>
@@ -137,8 +138,11 @@ bool IsSoftwareOpenGl() {
 int TextureUnitsOfDriver() {
   GLint units = 0;
   glGetIntegerv(GL_MAX_TEXTURE_IMAGE_UNITS, &units);
-  const char* const fewer = std::getenv("ALPENGLOW_TEXTURE_UNITS");
-  return fewer == nullptr ? units : std::min(units, std::atoi(fewer));
+  const char* const text = std::getenv("ALPENGLOW_TEXTURE_UNITS");
+  const std::string_view asked = text == nullptr ? "" : text;
+  GLint fewer = units;
+  std::from_chars(asked.data(), asked.data() + asked.size(), fewer);
+  return std::min(units, fewer);
 }
 
 void RequireContext() {
