@@ -109,6 +109,67 @@ bool OnlyMolecules(const AirConstants<float>& air, float rayleigh_density, float
   return true;
 }
 
+// Vertical optical depth from which light is scattered so often that marches are cut at optical
+// depths.
+constexpr double kDeepAir = 0.9;
+// Optical depths of the cuts, and Gauss nodes of each part.
+constexpr std::array kCutDepths{1.5, 6.0, 24.0};
+constexpr int kNodesOfPart = 10;
+
+ColumnSet<float> ColumnsUpTo(const SingleScattering<float>& air, ViewRay ray, double length_m) {
+  if (length_m <= 0.0) return {0.0F, 0.0F, 0.0F};
+  ray.length_m = length_m;
+  return air.ColumnsAlong(ray);
+}
+
+// Returns the largest optical depth of scattering air between the observer and a distance.
+double DepthUpTo(const SingleScattering<float>& air, const ViewRay& ray, double length_m) {
+  const ColumnSet<float> columns = ColumnsUpTo(air, ray, length_m);
+  float depth = 0.0F;
+  for (std::size_t band = 0; band < air.bands(); ++band) {
+    const Extinction<float> extinction = ExtinctionAt(air.constants(), band);
+    depth = std::max(depth, extinction.rayleigh * columns.rayleigh + extinction.mie * columns.mie);
+  }
+  return static_cast<double>(depth);
+}
+
+// Returns the distance at which a ray reaches an optical depth [m], to a tenth, which is enough for
+// a cut.
+double DistanceOfDepth(const SingleScattering<float>& air, const ViewRay& ray, double end_m,
+                       double depth) {
+  double shortest = 1e-6 * end_m, longest = end_m;
+  while (longest > 1.1 * shortest) {
+    const double middle = std::sqrt(shortest * longest);
+    (DepthUpTo(air, ray, middle) < depth ? shortest : longest) = middle;
+  }
+  return longest;
+}
+
+// Returns the distances at which a ray through deep air is cut [m]; none in other air. What a node
+// sees lies within a few optical depths, and the Gauss nodes of the whole ray would miss it.
+std::vector<double> CutsOf(const SingleScattering<float>& air, const ViewRay& ray,
+                           const RayExtent& extent) {
+  const ViewRay up{0.0, 1.0, 1.0, 1.0};
+  std::vector<double> cuts_m;
+  if (DepthUpTo(air, up, air.medium().atmosphere_height_m) < kDeepAir) return cuts_m;
+  const double depth = DepthUpTo(air, ray, extent.end_m);
+  for (const double cut : kCutDepths) {
+    if (depth <= 1.5 * cut) break;
+    const double at_m = DistanceOfDepth(air, ray, extent.end_m, cut);
+    if (at_m < 0.99 * extent.end_m) cuts_m.push_back(at_m);
+  }
+  return cuts_m;
+}
+
+// Returns the ray that begins at a distance of another one.
+ViewRay PointAlong(const ViewRay& ray, double distance_m, double radius_km) {
+  if (distance_m <= 0.0) return ray;
+  const double h = ray.altitude_m / 1000.0, d = distance_m / 1000.0;
+  const double there = std::max(shared::AltitudeAlongRay<double>(h, ray.mu, d, radius_km), 0.0);
+  const double mu = shared::ZenithCosineAlongRay<double>(h, ray.mu, d, there, radius_km);
+  return {1000.0 * there, std::clamp(mu, -1.0, 1.0), ray.mu_s, ray.nu};
+}
+
 }  // namespace
 
 MomentMarches::MomentMarches(const SingleScattering<float>& air,
@@ -194,12 +255,37 @@ void MomentMarches::AddPoints(std::size_t altitude, const MultipleScatteringOpti
   // With the sun in the zenith no part of the ray is in shadow, so one set of panels serves every
   // sun.
   const ViewRay ray{altitude_km_[altitude] * 1000.0, mu, 1.0, mu};
-  const RaySamples<float> samples =
-      air_->Sample(ray, {.nodes = options.ray_nodes, .split_ozone = false, .dark_samples = true});
+  const RayExtent extent =
+      ExtentOf(ray, air_->medium().planet_radius_m, air_->medium().atmosphere_height_m);
+  const std::vector<double> cuts_m = CutsOf(*air_, ray, extent);
+  const int nodes = cuts_m.empty() ? options.ray_nodes : std::min(options.ray_nodes, kNodesOfPart);
+  double begin_m = 0.0;
+  for (std::size_t i = 0; i <= cuts_m.size(); ++i) {
+    ViewRay part = PointAlong(ray, begin_m, radius_km_);
+    if (i < cuts_m.size()) part.length_m = cuts_m[i] - begin_m;
+    const RaySamples<float> samples =
+        air_->Sample(part, {.nodes = nodes, .split_ozone = false, .dark_samples = true});
+    AppendPoints(samples, {begin_m / 1000.0, ColumnsUpTo(*air_, ray, begin_m)}, options.degree,
+                 march);
+    begin_m = i < cuts_m.size() ? cuts_m[i] : begin_m;
+  }
+  const double end = extent.end_m / 1000.0;
+  const double lowest = -(radius_km_ + altitude_km_[altitude]) * mu;
+  march.panels = {0.0, end};
+  if (lowest > 0.0 && lowest < end) march.panels = {0.0, lowest, end};
+  const ColumnSet<float> whole = air_->ColumnsAlong(ray);
+  march.columns_km = {whole.rayleigh, whole.mie, whole.ozone};
+  march.hits_ground = extent.end == RayEnd::kGround;
+  march.ground_distance_km = end;
+  if (march.hits_ground) AddGround(altitude, march);
+}
+
+void MomentMarches::AppendPoints(const RaySamples<float>& samples, const PartOfMarch& part,
+                                 int degree, March& march) const {
   for (std::size_t s = 0; s < samples.count; ++s) {
     const float h = samples.altitude[s];
     const CubicTaps taps =
-        TapsAt(std::sqrt(static_cast<double>(h / grid_.top_km)), options.altitudes);
+        TapsAt(std::sqrt(static_cast<double>(h / grid_.top_km)), static_cast<int>(grid_.altitudes));
     MarchPoint point{};
     for (std::size_t tap = 0; tap < 4; ++tap) {
       point.altitude_node[tap] = static_cast<std::uint32_t>(taps.node[tap]);
@@ -207,23 +293,18 @@ void MomentMarches::AddPoints(std::size_t altitude, const MultipleScatteringOpti
     }
     point.mu = samples.mu[s];
     point.sine = static_cast<float>(SineOf(static_cast<double>(point.mu)));
-    point.distance_km = samples.distance[s];
+    point.distance_km = static_cast<float>(part.begin_km) + samples.distance[s];
     point.inverse_radius = static_cast<float>(1.0 / (radius_km_ + static_cast<double>(h)));
     point.only_molecules =
         OnlyMolecules(air_->constants(), samples.rayleigh_density[s], samples.mie_density[s]);
-    const Moments legendre = LegendreTerms(options.degree, point.mu);
+    const Moments legendre = LegendreTerms(degree, point.mu);
     std::copy(legendre.begin(), legendre.end(), point.legendre.begin());
     march.points.push_back(point);
     march.air.push_back({samples.weight[s], samples.rayleigh_density[s], samples.mie_density[s],
-                         samples.view_rayleigh[s], samples.view_mie[s], samples.view_ozone[s]});
+                         part.columns.rayleigh + samples.view_rayleigh[s],
+                         part.columns.mie + samples.view_mie[s],
+                         part.columns.ozone + samples.view_ozone[s]});
   }
-  const double end = samples.extent.end_m / 1000.0;
-  const double lowest = -(radius_km_ + altitude_km_[altitude]) * mu;
-  march.panels = {0.0, end};
-  if (lowest > 0.0 && lowest < end) march.panels = {0.0, lowest, end};
-  march.hits_ground = samples.extent.end == RayEnd::kGround;
-  march.ground_distance_km = end;
-  if (march.hits_ground) AddGround(altitude, march);
 }
 
 void MomentMarches::AddGround(std::size_t altitude, March& march) const {

@@ -79,7 +79,8 @@ struct March {
   std::array<float, kMaxMoments> legendre{};
   std::vector<MarchPoint> points;
   std::vector<std::array<float, 6>>
-      air;                     // per point: weight [km], densities, columns from the node
+      air;                            // per point: weight [km], densities, columns from the node
+  std::array<float, 3> columns_km{};  // of the whole march
   std::vector<double> panels;  // distances where the ray begins, is lowest (if between), ends [km]
   bool hits_ground = false;
   double ground_distance_km = 0.0;
@@ -119,8 +120,15 @@ class MomentMarches {
  private:
   [[nodiscard]] std::vector<March> MarchesAt(std::size_t altitude,
                                              const MultipleScatteringOptions& options) const;
+  /// Begin of a part of a march: distance and columns from the node.
+  struct PartOfMarch {
+    double begin_km;
+    ColumnSet<float> columns;
+  };
   void AddPoints(std::size_t altitude, const MultipleScatteringOptions& options, double mu,
                  March& march) const;
+  void AppendPoints(const RaySamples<float>& samples, const PartOfMarch& part, int degree,
+                    March& march) const;
   void AddGround(std::size_t altitude, March& march) const;
 
   const SingleScattering<float>* air_;

@@ -5,12 +5,16 @@
 
 #include <algorithm>
 #include <cmath>
+#include <mutex>
+#include <set>
+#include <string>
 
 #include "atmosphere/base/error.h"
 #include "atmosphere/math/constants.h"
 #include "atmosphere/math/numerics.h"
 #include "atmosphere/ray/shell.h"
 #include "atmosphere/shared_glsl/instruction_set.h"
+#include "lut/cli/messages.h"
 #include "lut/multiple_scattering/moment_grid.h"
 #include "lut/multiple_scattering/successive_orders.h"
 #include "lut/tables/table_axes.h"
@@ -90,6 +94,21 @@ std::vector<float> WithBeam(const Medium& medium, const MultipleScatteringOption
   return values;
 }
 
+// Writes, once for each air, that its light is not converged.
+void WarnOfMissingOrders(const Medium& medium, int orders) {
+  static std::mutex asking;
+  static std::set<std::string> said;
+  const std::string& name = medium.name.empty() ? "the medium" : medium.name;
+  {
+    const std::scoped_lock lock(asking);
+    if (!said.insert(name).second) return;
+  }
+  Log(fmt::format(
+      "warning: the air of {} is too thick: {} orders of scattering are too few, and its "
+      "light may be wrong by as much as the sunlight\n",
+      name, orders));
+}
+
 SolvedOrders Solved(const Medium& medium, const MultipleScatteringOptions& options) {
   SolvedOrders solved = SolveSuccessiveOrders(Checked(medium, options), options);
   if (options.delta_m) solved.values = WithBeam(medium, options, 1.0F, std::move(solved.values));
@@ -166,6 +185,7 @@ MultipleScattering::MultipleScattering(const Medium& medium,
   for (const float value : values_) {
     if (!std::isfinite(value)) throw InputError("diffuse light: a value is not finite");
   }
+  if (!converged_) WarnOfMissingOrders(medium_, orders_);
   grid_ = GridOf(medium_, options_);
   if (options_.delta_m) {
     peak_.emplace(medium_, options_.degree);

@@ -5,9 +5,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "atmosphere/math/constants.h"
 #include "lut/multiple_scattering/four_bands.h"
+#include "lut/multiple_scattering/lane_krylov.h"
 #include "lut/multiple_scattering/moment_grid.h"
 #include "lut/multiple_scattering/spherical_harmonics.h"
 
@@ -19,12 +21,6 @@ Four NotNegative(const Four& light) {
   return light < dark ? dark : light;
 }
 
-/// Packed moments and sky irradiance at every node, divided by TwilightOf (and SinePower).
-struct Field {
-  AlignedFloats moments;
-  std::vector<Four> sky;
-};
-
 /// Memory layout of the nodes.
 struct Layout {
   explicit Layout(const MomentGrid& grid)
@@ -33,6 +29,30 @@ struct Layout {
         nodes(grid.altitudes * grid.suns),
         stride(PackedVectors(grid.degree, grid.polarised) * 8) {}
   std::size_t degree, suns, nodes, stride;
+};
+
+/// Packed moments and sky irradiance at every node, divided by TwilightOf (and SinePower).
+class Field {
+ public:
+  Field() = default;
+  explicit Field(const Layout& layout)
+      : values_(layout.nodes * (layout.stride + kBlockBands)),
+        moments_(layout.nodes * layout.stride) {}
+
+  [[nodiscard]] float* moments() { return values_.data(); }
+  [[nodiscard]] const float* moments() const { return values_.data(); }
+  [[nodiscard]] Four Sky(std::size_t node) const {
+    return LoadFour(values_.data() + moments_ + node * kBlockBands);
+  }
+  void AddSky(std::size_t node, const Four& light) {
+    StoreFour(values_.data() + moments_ + node * kBlockBands, Sky(node) + light);
+  }
+  [[nodiscard]] AlignedFloats& values() { return values_; }
+  [[nodiscard]] const AlignedFloats& values() const { return values_; }
+
+ private:
+  AlignedFloats values_;
+  std::size_t moments_ = 0;  // number of floats before the irradiances
 };
 
 Four Of(const std::vector<double>& bands, std::size_t first_band) {
@@ -55,7 +75,9 @@ class Transport {
   Transport(const MomentMarches& marches, std::size_t first_band);
 
   /// Finds the moments of the light of the previous order that arrives at one altitude's nodes.
-  void NextOrder(std::size_t altitude, const Field& previous, Field& next) const;
+  /// @param is_light  whether negative values are errors, and become 0; a difference has both
+  ///   signs.
+  void NextOrder(std::size_t altitude, const Field& previous, Field& next, bool is_light) const;
   /// Finds the moments of sunlight from the radiance that SunlightScatteredOnce returns.
   void Project(const March& march, std::size_t altitude, const SunlightOfMarch& sunlight,
                Field& field) const;
@@ -72,7 +94,7 @@ class Transport {
   void PolariseSunlight(const March& march, const SunlightOfMarch& sunlight,
                         MarchRadiance& radiance) const;
   void AddGroundLight(const March& march, const Four& reflected, const Field& previous,
-                      std::vector<Four>& radiance) const;
+                      bool is_light, std::vector<Four>& radiance) const;
 
   const MomentMarches& marches_;
   Layout layout_;
@@ -84,18 +106,39 @@ class Transport {
   std::vector<std::vector<Four>> ground_transmittance_;       // [altitude][march]
 };
 
-// Returns the transmittance to a point of a march, times its weight and scattering coefficients.
-MarchLight LightOf(const AirConstants<float>& air, std::size_t first_band,
-                   const std::array<float, 6>& at) {
-  MarchLight light{};
+// Returns the factor of the weights of a march with which the light of a constant source, without
+// ozone, is exact: 1 less the transmittance of the march. Without it each order would gain or lose
+// the error of the quadrature, 1e-3 to 1e-2 in thick air, and hundreds of orders would have lost
+// much of the light.
+float FactorOfWeights(const AirConstants<float>& air, std::size_t band, const March& march) {
+  const Extinction<float> extinction = ExtinctionAt(air, band);
+  float sum = 0.0F;
+  for (const auto& at : march.air) {
+    sum += at[0] * (extinction.rayleigh * at[1] + extinction.mie * at[2]) *
+           std::exp(-extinction.rayleigh * at[3] - extinction.mie * at[4]);
+  }
+  const float exact = -std::expm1(-extinction.rayleigh * march.columns_km[0] -
+                                  extinction.mie * march.columns_km[1]);
+  return sum > 0.0F ? exact / sum : 1.0F;
+}
+
+// Returns the transmittances to the points of a march, times their weights and scattering
+// coefficients.
+std::vector<MarchLight> LightsOf(const AirConstants<float>& air, std::size_t first_band,
+                                 const March& march) {
+  std::vector<MarchLight> lights(march.air.size());
   for (std::size_t lane = 0; lane < kBlockBands && first_band + lane < air.bands; ++lane) {
     const std::size_t band = first_band + lane;
-    const float depth = OpticalDepthOf(ExtinctionAt(air, band), {at[3], at[4], at[5]});
-    const float share = at[0] * std::exp(-depth);
-    light.rayleigh[lane] = share * air.rayleigh[band] * at[1];
-    light.mie[lane] = share * air.mie_scattering[band] * at[2];
+    const float factor = FactorOfWeights(air, band, march);
+    for (std::size_t i = 0; i < lights.size(); ++i) {
+      const std::array<float, 6>& at = march.air[i];
+      const float depth = OpticalDepthOf(ExtinctionAt(air, band), {at[3], at[4], at[5]});
+      const float share = factor * at[0] * std::exp(-depth);
+      lights[i].rayleigh[lane] = share * air.rayleigh[band] * at[1];
+      lights[i].mie[lane] = share * air.mie_scattering[band] * at[2];
+    }
   }
-  return light;
+  return lights;
 }
 
 Transport::Transport(const MomentMarches& marches, std::size_t first_band)
@@ -110,8 +153,7 @@ Transport::Transport(const MomentMarches& marches, std::size_t first_band)
     auto& lights = lights_.emplace_back();
     auto& transmittance = ground_transmittance_.emplace_back();
     for (const March& march : marches.At(altitude)) {
-      auto& of_march = lights.emplace_back();
-      for (const auto& at : march.air) of_march.push_back(LightOf(air, first_band, at));
+      lights.push_back(LightsOf(air, first_band, march));
       const Bands<float>& ground = march.ground_transmittance;
       transmittance.push_back(Of(
           {ground.value.begin(), ground.value.begin() + static_cast<std::ptrdiff_t>(ground.count)},
@@ -176,14 +218,14 @@ void Transport::ProjectMarch(const March& march, std::size_t altitude,
     const std::size_t ray = sun * marches_.azimuths();
     const float share = march.solid_angle / twilight_[sun];
     const float sun_sine = SunSine(marches_.mu_s(sun));
-    float* moments = field.moments.data() + node * layout_.stride;
+    float* moments = field.moments() + node * layout_.stride;
     const Around i = Harmonics(&radiance.i[ray], share, false);
     AddMoments(march, i, sun_sine, moments);
     if (polarised()) {
       AddTensor(march, i, Harmonics(&radiance.q[ray], share, false),
                 Harmonics(&radiance.u[ray], share, true), sun_sine, moments);
     }
-    if (march.mu > 0.0F) field.sky[node] += march.mu * i[0];
+    if (march.mu > 0.0F) field.AddSky(node, march.mu * i[0]);
   }
 }
 
@@ -225,17 +267,18 @@ void Transport::Project(const March& march, std::size_t altitude, const Sunlight
 
 // Adds the light of the previous order that the ground reflects into the march.
 void Transport::AddGroundLight(const March& march, const Four& reflected, const Field& previous,
-                               std::vector<Four>& radiance) const {
+                               bool is_light, std::vector<Four>& radiance) const {
   for (std::size_t ray = 0; ray < radiance.size(); ++ray) {
     const CubicTaps& taps = march.ground_taps[ray];
     Four irradiance = {};
     for (std::size_t tap = 0; tap < 4; ++tap)
-      irradiance += taps.weight[tap] * previous.sky[taps.node[tap]];
-    radiance[ray] += reflected * NotNegative(irradiance);
+      irradiance += taps.weight[tap] * previous.Sky(taps.node[tap]);
+    radiance[ray] += reflected * (is_light ? NotNegative(irradiance) : irradiance);
   }
 }
 
-void Transport::NextOrder(std::size_t altitude, const Field& previous, Field& next) const {
+void Transport::NextOrder(std::size_t altitude, const Field& previous, Field& next,
+                          bool is_light) const {
   const std::size_t rays = layout_.suns * marches_.azimuths();
   const std::size_t stokes = polarised() ? 3 : 1;
   const MomentKernel& kernel = Kernel<MomentKernel>();
@@ -246,11 +289,12 @@ void Transport::NextOrder(std::size_t altitude, const Field& previous, Field& ne
     const March& march = marches_.At(altitude)[i];
     std::fill_n(arriving.data(), arriving.size(), 0.0F);
     kernel.arrive(marches_.grid(), marches_.Direction(altitude, march), march.points.data(),
-                  lights_[altitude][i].data(), march.points.size(), shape_, previous.moments.data(),
+                  lights_[altitude][i].data(), march.points.size(), shape_, previous.moments(),
                   rows.data(), arriving.data());
     for (std::size_t ray = 0; ray < rays; ++ray) {
       const float* const halves = arriving.data() + ray * stokes * 8;
-      radiance.i[ray] = NotNegative(LoadFour(halves) + LoadFour(halves + 4));
+      radiance.i[ray] = LoadFour(halves) + LoadFour(halves + 4);
+      if (is_light) radiance.i[ray] = NotNegative(radiance.i[ray]);
       if (!polarised()) continue;
       radiance.q[ray] = LoadFour(halves + 8) + LoadFour(halves + 12);
       radiance.u[ray] = LoadFour(halves + 16) + LoadFour(halves + 20);
@@ -258,7 +302,7 @@ void Transport::NextOrder(std::size_t altitude, const Field& previous, Field& ne
     if (march.hits_ground) {
       const Four reflected =
           ground_transmittance_[altitude][i] * albedo_ * static_cast<float>(1.0 / kPi);
-      AddGroundLight(march, reflected, previous, radiance.i);
+      AddGroundLight(march, reflected, previous, is_light, radiance.i);
     }
     ProjectMarch(march, altitude, radiance, next);
   }
@@ -277,24 +321,25 @@ class Block {
         later_(later, first_band) {}
 
   [[nodiscard]] const Transport& transport() const { return transport_; }
-  [[nodiscard]] Field Empty() const {
-    return {AlignedFloats(layout_.nodes * layout_.stride), std::vector<Four>(layout_.nodes)};
-  }
+  [[nodiscard]] Field Empty() const { return Field(layout_); }
 
+  /// A sum of orders.
   struct Sum {
     Field total;
-    int orders;
+    int orders;  // number of orders computed
     bool converged;
   };
   [[nodiscard]] Sum Solve(Field first_order) const;
 
  private:
   [[nodiscard]] Four Isotropic(const Field& field, std::size_t node) const {
-    return LoadFour(field.moments.data() + node * layout_.stride);
+    return LoadFour(field.moments() + node * layout_.stride);
   }
   [[nodiscard]] double LargestShare(const Field& part, const Field& whole) const;
+  [[nodiscard]] Field After(const Transport& transport, const Field& field, bool is_light) const;
   void AddTail(const Field& last, const Field& before, const Field& second_before, double largest,
                Field& total) const;
+  [[nodiscard]] Sum SumAfter(const Field& order, const Field& sum_before, int most) const;
 
   const MultipleScatteringOptions& options_;
   Layout layout_;
@@ -302,7 +347,8 @@ class Block {
   Transport transport_, later_;
 };
 
-// Returns the largest ratio over nodes of the isotropic moment of `part` to that of `whole`.
+// Returns the largest ratio over nodes of the size of the isotropic moment of `part` to that of
+// `whole`.
 double Block::LargestShare(const Field& part, const Field& whole) const {
   constexpr float kNight = 1e-9F;  // nodes with less light are ignored
   double largest = 0.0;
@@ -310,10 +356,18 @@ double Block::LargestShare(const Field& part, const Field& whole) const {
     const Four share = Isotropic(part, node), of = Isotropic(whole, node);
     for (int lane = 0; lane < static_cast<int>(kBlockBands); ++lane) {
       if (of[lane] * twilight_[node % layout_.suns] <= kNight) continue;
-      largest = std::max(largest, static_cast<double>(share[lane] / of[lane]));
+      largest = std::max(largest, static_cast<double>(std::abs(share[lane]) / of[lane]));
     }
   }
   return largest;
+}
+
+// Returns the light that follows from light by one more scattering or reflection.
+Field Block::After(const Transport& transport, const Field& field, bool is_light) const {
+  Field next = Empty();
+  tbb::parallel_for(std::size_t{0}, layout_.nodes / layout_.suns,
+                    [&](std::size_t i) { transport.NextOrder(i, field, next, is_light); });
+  return next;
 }
 
 // Adds (last + before) (q + q^2 + ...) for the ratio q of an order to the second one before it.
@@ -332,29 +386,90 @@ void Block::AddTail(const Field& last, const Field& before, const Field& second_
     }
     for (std::size_t i = 0; i < layout_.stride; i += kBlockBands) {
       const std::size_t at = node * layout_.stride + i;
-      const Four two = LoadFour(last.moments.data() + at) + LoadFour(before.moments.data() + at);
-      float* const sum = total.moments.data() + at;
+      const Four two = LoadFour(last.moments() + at) + LoadFour(before.moments() + at);
+      float* const sum = total.moments() + at;
       StoreFour(sum, LoadFour(sum) + factor * two);
     }
-    total.sky[node] += factor * (last.sky[node] + before.sky[node]);
+    total.AddSky(node, factor * (last.Sky(node) + before.Sky(node)));
   }
 }
 
 // Number of orders that AddTail reads.
 constexpr int kFewestOrders = 3;
 
-// Upper bound of the number of orders needed in clear and hazy air.
-constexpr int kOrdersOfThinAir = 16;
+// Number of orders that are summed one by one. Clear and hazy air needs no more.
+constexpr int kMostSingleOrders = 16;
 
 // Largest ratio of an order to the one before it at which light is known to decay.
 constexpr double kSlowestDecay = 0.9999;
 
-void Accumulate(const Field& part, Field& total) {
-  float* const sum = total.moments.data();
-  const float* const term = part.moments.data();
-  for (std::size_t i = 0; i < total.moments.size(); i += kBlockBands)
-    StoreFour(sum + i, LoadFour(sum + i) + LoadFour(term + i));
-  for (std::size_t i = 0; i < total.sky.size(); ++i) total.sky[i] += part.sky[i];
+// Adds `times` times a part.
+void Accumulate(const Field& part, float times, Field& total) {
+  float* const sum = total.values().data();
+  const float* const term = part.values().data();
+  for (std::size_t i = 0; i < total.values().size(); i += kBlockBands)
+    StoreFour(sum + i, LoadFour(sum + i) + times * LoadFour(term + i));
+}
+
+Field Difference(Field from, const Field& part) {
+  Accumulate(part, -1.0F, from);
+  return from;
+}
+
+Field Plus(Field sum, const Field& part) {
+  Accumulate(part, 1.0F, sum);
+  return sum;
+}
+
+// Returns the largest ratio of two norms.
+double LargestRatio(const LaneNumbers& now, const LaneNumbers& before) {
+  double largest = 0.0;
+  for (std::size_t lane = 0; lane < kBlockBands; ++lane)
+    if (before[lane] > 0.0) largest = std::max(largest, now[lane] / before[lane]);
+  return largest;
+}
+
+// Returns the sum of all orders after `order`. In thick air they decay slowly: at an optical depth
+// of 40, each is larger than 0.998 of the one before it. With S for one scattering, the sum x
+// solves x = S (order + x) and is found by LaneKrylov from the residual S (order + x) - x.
+// @param sum_before  of all orders up to `order`.
+// @param most        largest number of scatterings to compute.
+Block::Sum Block::SumAfter(const Field& order, const Field& sum_before, int most) const {
+  constexpr int kBasis = 48;  // vectors in memory
+  constexpr int kStepsBetweenChecks = 8;
+  constexpr double kLargestResidual = 0.1;  // over the tolerance
+  Sum sum{Empty(), 0, false};
+  const auto scatter = [&](const Field& field, bool is_light) {
+    ++sum.orders;
+    return After(later_, field, is_light);
+  };
+  Field scattered = scatter(order, true);
+  LaneNumbers residual = Norms(scattered.values());
+  while (!sum.converged && sum.orders < most) {
+    const Field begin = sum.total;
+    LaneKrylov krylov(Difference(scattered, begin).values());
+    for (int step = 1; step <= kBasis && !sum.converged && sum.orders < most; ++step) {
+      Field newest = Empty();
+      newest.values() = krylov.Newest();
+      krylov.Extend(Difference(newest, scatter(newest, false)).values());
+      if (step % kStepsBetweenChecks != 0 && sum.orders + 1 < most) continue;
+      Field next = Empty();
+      next.values() = krylov.Solution();
+      next = Plus(std::move(next), begin);
+      const Field change = Difference(next, sum.total);
+      sum.total = std::move(next);
+      scattered = scatter(Plus(order, sum.total), true);
+      const Field rest = Difference(scattered, sum.total), whole = Plus(sum_before, scattered);
+      const LaneNumbers residual_before = std::exchange(residual, Norms(rest.values()));
+      // The error decreases like the residual; the last change is the difference of two errors.
+      const double q = LargestRatio(residual, residual_before);
+      sum.converged = q < 1.0 &&
+                      LargestShare(change, whole) * q / (1.0 - q) <= options_.tolerance &&
+                      LargestShare(rest, whole) <= kLargestResidual * options_.tolerance;
+    }
+  }
+  sum.total = std::move(scattered);
+  return sum;
 }
 
 Block::Sum Block::Solve(Field first_order) const {
@@ -362,40 +477,36 @@ Block::Sum Block::Solve(Field first_order) const {
   Field total = order;
   Field before, second_before;
   int orders = 1;
-  double share = 1.0, rest = 1.0, ratio = 0.0, change = 1.0;
+  double share = 1.0, rest = 1.0, ratio = 0.0;
+  const int most = options_.exact_orders.value_or(std::min(options_.max_orders, kMostSingleOrders));
   const auto goes_on = [&] {
-    if (options_.exact_orders) return orders < *options_.exact_orders;
-    if (share <= 0.0 || orders >= options_.max_orders) return false;
+    if (options_.exact_orders) return orders < most;
+    if (share <= 0.0 || orders >= most) return false;
     return orders < kFewestOrders || rest > options_.tolerance;
   };
   while (goes_on()) {
-    Field next = Empty();
-    const Transport& transport = orders == 1 ? transport_ : later_;
-    tbb::parallel_for(std::size_t{0}, layout_.nodes / layout_.suns,
-                      [&](std::size_t i) { transport.NextOrder(i, order, next); });
-    Accumulate(next, total);
+    Field next = After(orders == 1 ? transport_ : later_, order, true);
+    Accumulate(next, 1.0F, total);
     second_before = std::move(before);
     before = std::move(order);
     order = std::move(next);
     ++orders;
     const double share_before = share;
     share = LargestShare(order, total);
-    const double ratio_before = ratio;
     ratio = share / share_before;
-    // The largest change of the last orders: two equal ratios may be chance.
-    change = std::max(std::abs(ratio - ratio_before), 0.7 * change);
     // Deep in thick air, light increases from order to order before it decays.
-    if (ratio >= kSlowestDecay) continue;
-    rest = share * ratio / (1.0 - ratio);
-    // In thick air all nodes soon decay at one rate, long before the remaining light is small. The
-    // uncertainty of the rest is then the change of its ratio from order to order.
-    if (orders > kOrdersOfThinAir) rest *= std::min(10.0 * change / (1.0 - ratio), 1.0);
+    rest = ratio < kSlowestDecay ? share * ratio / (1.0 - ratio) : 1.0;
   }
   if (options_.exact_orders) return {std::move(total), orders, true};
-  // Nodes of thin air may decay more slowly than the one with the largest share; of thick air, all
-  // decay at one rate. Shares decay faster than the light, because the sum of all orders increases.
-  constexpr double kOfThinAir = 0.96;
+  if (rest > options_.tolerance && share > 0.0 && orders < options_.max_orders) {
+    const Sum more = SumAfter(order, total, options_.max_orders - orders);
+    Accumulate(more.total, 1.0F, total);
+    return {std::move(total), orders + more.orders, more.converged};
+  }
   const bool converged = rest <= options_.tolerance || share == 0.0;
+  // Nodes of thin air may decay more slowly than the one with the largest share. Shares decay
+  // faster than the light, because the sum of all orders increases.
+  constexpr double kOfThinAir = 0.96;
   const double decay = converged ? std::min(ratio * (1.0 + share), kSlowestDecay) : 0.0;
   if (orders >= kFewestOrders)
     AddTail(order, before, second_before, std::max(decay * decay, kOfThinAir), total);
@@ -411,7 +522,7 @@ void Unpack(const MomentGrid& grid, const Field& field, std::size_t first_band, 
   for (std::size_t node = 0; node < layout.nodes; ++node) {
     const float factor = twilight[node % layout.suns];
     const float sun_sine = SunSine(MuSOfNode(grid, node % layout.suns));
-    const float* moments = field.moments.data() + node * layout.stride;
+    const float* moments = field.moments() + node * layout.stride;
     for (std::size_t lane = 0; lane < kBlockBands && first_band + lane < bands; ++lane) {
       float* value = &values[node * channels * bands + first_band + lane];
       for (std::size_t l = 0; l <= layout.degree; ++l) {
@@ -422,7 +533,7 @@ void Unpack(const MomentGrid& grid, const Field& field, std::size_t first_band, 
         *value = factor * SinePowerOf(grid, m, sun_sine) *
                  moments[PackedTensorIndex(layout.degree, m) + lane];
       }
-      *value = factor * field.sky[node][static_cast<int>(lane)];
+      *value = factor * field.Sky(node)[static_cast<int>(lane)];
     }
   }
 }
@@ -513,7 +624,7 @@ void MissedPeak::AddBand(const Bands<float>& peak, std::size_t node, std::size_t
   Four light = {};
   for (std::size_t lane = 0; lane < kBlockBands && first_band + lane < peak.count; ++lane)
     light[static_cast<int>(lane)] = peak[first_band + lane] / twilight_[sun];
-  float* moments = field.moments.data() + node * layout.stride;
+  float* moments = field.moments() + node * layout.stride;
   for (std::size_t l = 0; l <= layout.degree; ++l) {
     for (std::size_t m = 0; m <= l; ++m) {
       const float share = SpreadOf(layout.degree, l) *
@@ -528,7 +639,7 @@ void MissedPeak::AddBand(const Bands<float>& peak, std::size_t node, std::size_t
       }
     }
   }
-  field.sky[node] += std::max(mu_s, 0.0F) * light;
+  field.AddSky(node, std::max(mu_s, 0.0F) * light);
 }
 
 // Returns the options of the orders after the second. They are smooth, so fewer directions suffice.
