@@ -52,9 +52,9 @@ struct MultipleScatteringOptions {
   int later_zenith_nodes = 6;
   int later_azimuth_nodes = 5;
   int later_ray_nodes = 6;
-  int max_orders = 200;  // in [1, 10000]
+  int max_orders = 200;  // scatterings to compute, in [1, 10000]
   // Largest fraction of the light that may be summed as a geometric series instead of being
-  // computed. In thick air: ten times the uncertainty of that sum.
+  // computed. In thick air: largest estimated error of the sum of all orders.
   double tolerance = 1e-2;
   /// Computes exactly this number of orders of the multiply scattered light (1: scattered or
   /// reflected once) and sums no rest. InscatterAlong then returns orders 2 to exact_orders + 1.
@@ -82,15 +82,17 @@ enum class SegmentEnd { kOpen, kOpaque };
 /// Contents of the table and the state of the solver.
 struct SolvedOrders {
   std::vector<float> values;  // indexed like MultipleScattering::values()
-  int orders = 0;             // largest number of orders computed for any band
+  int orders = 0;             // largest number of scatterings computed for any band
   bool converged = true;      // every band reached the tolerance within max_orders
 };
 
 /// Multiply scattered light of all orders. Immutable; look-ups are safe from many threads.
 class MultipleScattering {
  public:
-  /// Solves for the medium. The result does not depend on the number of threads. Thick or
-  /// conservative air may need more than max_orders; converged() is then false.
+  /// Solves for the medium. The result does not depend on the number of threads. Very thick air
+  /// may need more than max_orders; converged() is then false. A warning on standard error names
+  /// each such air once, here and where a stored solution is restored. Scalar light on the ground
+  /// under molecules is within 3 % of paths at optical depth 20, and 6 % at 40.
   explicit MultipleScattering(const Medium& medium, const MultipleScatteringOptions& options = {});
 
   /// Restores a stored solution: values, orders and converged as returned by the accessors. Throws
