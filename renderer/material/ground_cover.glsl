@@ -30,8 +30,9 @@ SHARED_CONSTANT int kWaveFall = 2;
 SHARED_CONSTANT Bits kWaveSeed = 131u;
 
 // Octaves of the noise on land lean (NoiseOctave of surface.h): their lattice shifts with height. Each
-// lean is that of the next longer octave, turned by the golden angle, so that no two lean alike.
-SHARED Number FirstLean() { return Number(0.6); }
+// lean is that of the next longer octave, turned by the golden angle, so that no two lean alike. The
+// first is to the east.
+SHARED_CONSTANT int kLean_percent = 60;  // shift per height
 SHARED Number NextLeanEast(Number east, Number north) {
   return Number(-0.7373688780783197) * east - Number(0.6754902942615238) * north;
 }

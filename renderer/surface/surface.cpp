@@ -55,7 +55,7 @@ std::vector<NoiseOctave> MadeOctaves(GroundNoise family) {
   const Noise& noise = kNoises[static_cast<std::size_t>(family)];
   std::vector<NoiseOctave> octaves;
   double wavelength_m = noise.longest_m;
-  glm::dvec2 lean(shared::FirstLean<double>(), 0.0);
+  glm::dvec2 lean(0.01 * shared::kLean_percent, 0.0);
   for (int octave = 0; octave < noise.octaves; ++octave, wavelength_m *= 0.5) {
     NoiseOctave made{wavelength_m, noise.seed + static_cast<std::uint32_t>(octave), 0.0, 0.0, 0.0,
                      0.0};

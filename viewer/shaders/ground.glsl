@@ -71,7 +71,7 @@ Octave LongestOctave(vec3 offset, int family) {
   float wavelength = float(NoiseOf(family).x);
   vec4 eye_at = noise_place[family];
   return Octave(noise_cell[family].xy, eye_at.xy + offset.xy / wavelength,
-                eye_at.z + offset.z / wavelength, vec2(FirstLean(), 0.0), wavelength);
+                eye_at.z + offset.z / wavelength, vec2(0.01 * float(kLean_percent), 0.0), wavelength);
 }
 
 // Returns the octave with half the wavelength.

@@ -572,10 +572,20 @@ TEST(MultipleScattering, ThickMoleculesLightTheGroundLikePaths) {
       EXPECT_NEAR(static_cast<double>(light.SkyIrradiance(0.0, mu_s)[0]) / paths, 1.0,
                   depth > 20.0 ? 0.06 : 0.03)
           << depth << " " << albedo << " " << mu_s
-          << ": the nodes are 1 to 4 optical depths apart; without exact weights 25 % is missing "
-             "at 20";
+          << ": measured; without exact weights of the marches 25 % is missing at 20";
     }
   }
+}
+
+// The irradiance is that of skylut eval --method path-trace --max-error 3%: 0.0352, with a standard
+// error of 0.001. It contains polarisation.
+TEST(MultipleScattering, ThickPolarisedMoleculesLightTheGroundLikePaths) {
+  if (tests::kSanitized) return;
+  const Medium thick = ThickMolecules(16.0);
+  const MultipleScattering light(thick, OptionsFor(thick));
+  EXPECT_TRUE(light.converged());
+  EXPECT_NEAR(static_cast<double>(light.SkyIrradiance(0.0, 0.5)[0]) / 0.0352, 1.0, 0.06)
+      << "two standard errors";
 }
 
 TEST(MultipleScattering, DefaultOptionsKeepTheLightOfThickMolecules) {
