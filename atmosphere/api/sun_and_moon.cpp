@@ -94,9 +94,13 @@ Direction SunInSky::ToSun() const {
   return Towards(elevation_deg, azimuth_deg);
 }
 
+double ElevationForAir_deg(const SunInSky& sun) {
+  return std::clamp(sun.elevation_deg - sun.lower_for_air_deg, -90.0, 90.0);
+}
+
 Direction SunInSky::ToSunForAir() const {
   RequireValid(*this);
-  return Towards(std::clamp(elevation_deg - lower_for_air_deg, -90.0, 90.0), azimuth_deg);
+  return Towards(ElevationForAir_deg(*this), azimuth_deg);
 }
 
 SunInSky SunAt(const Place& place, UtcTime time, const Atmosphere& atmosphere) {

@@ -21,7 +21,7 @@ lut::PanoramaSun SunOf(const SunInSky& sun) {
   RequireValid(sun);
   return {sun.elevation_deg * kRadiansPerDegree, sun.azimuth_deg * kRadiansPerDegree,
           sun.distance_au, sun.angular_radius_deg * kRadiansPerDegree,
-          sun.lower_for_air_deg * kRadiansPerDegree};
+          (sun.elevation_deg - ElevationForAir_deg(sun)) * kRadiansPerDegree};
 }
 
 lut::PanoramaOrientation OrientationOf(PanoramaCentre centre) {

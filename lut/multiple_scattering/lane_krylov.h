@@ -20,6 +20,7 @@ using LaneNumbers = std::array<double, kBlockBands>;
 /// Returns the square roots of the sums of squares.
 [[nodiscard]] LaneNumbers Norms(const AlignedFloats& vector);
 
+/// The search for the solutions. It adds one vector to each subspace at a time.
 class LaneKrylov {
  public:
   /// Begins with the vectors of zeros as solutions.

@@ -145,13 +145,16 @@ double DistanceOfDepth(const SingleScattering<float>& air, const ViewRay& ray, d
   return longest;
 }
 
-// Returns the distances at which a ray through deep air is cut [m]; none in other air. What a node
-// sees lies within a few optical depths, and the Gauss nodes of the whole ray would miss it.
+bool IsDeep(const SingleScattering<float>& air) {
+  const ViewRay up{0.0, 1.0, 1.0, 1.0};
+  return DepthUpTo(air, up, air.medium().atmosphere_height_m) >= kDeepAir;
+}
+
+// Returns the distances at which a ray through deep air is cut [m]. What a node sees lies within a
+// few optical depths, and the Gauss nodes of the whole ray would miss it.
 std::vector<double> CutsOf(const SingleScattering<float>& air, const ViewRay& ray,
                            const RayExtent& extent) {
-  const ViewRay up{0.0, 1.0, 1.0, 1.0};
   std::vector<double> cuts_m;
-  if (DepthUpTo(air, up, air.medium().atmosphere_height_m) < kDeepAir) return cuts_m;
   const double depth = DepthUpTo(air, ray, extent.end_m);
   for (const double cut : kCutDepths) {
     if (depth <= 1.5 * cut) break;
@@ -179,6 +182,7 @@ MomentMarches::MomentMarches(const SingleScattering<float>& air,
       chi_(&chi),
       grid_(GridOf(air.medium(), options)),
       radius_km_(air.medium().planet_radius_m / 1000.0),
+      is_deep_(IsDeep(air)),
       azimuths_(static_cast<std::size_t>(options.azimuth_nodes)) {
   for (int i = 0; i < options.altitudes; ++i) {
     const double u = static_cast<double>(i) / (options.altitudes - 1);
@@ -257,7 +261,7 @@ void MomentMarches::AddPoints(std::size_t altitude, const MultipleScatteringOpti
   const ViewRay ray{altitude_km_[altitude] * 1000.0, mu, 1.0, mu};
   const RayExtent extent =
       ExtentOf(ray, air_->medium().planet_radius_m, air_->medium().atmosphere_height_m);
-  const std::vector<double> cuts_m = CutsOf(*air_, ray, extent);
+  const std::vector<double> cuts_m = is_deep_ ? CutsOf(*air_, ray, extent) : std::vector<double>();
   const int nodes = cuts_m.empty() ? options.ray_nodes : std::min(options.ray_nodes, kNodesOfPart);
   double begin_m = 0.0;
   for (std::size_t i = 0; i <= cuts_m.size(); ++i) {

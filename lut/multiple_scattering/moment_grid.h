@@ -135,6 +135,7 @@ class MomentMarches {
   const std::vector<double>* chi_;
   MomentGrid grid_;
   double radius_km_;
+  bool is_deep_;  // marches are cut at optical depths
   std::size_t azimuths_;
   std::vector<double> altitude_km_, mu_s_;
   std::vector<float> mu_s_floats_, sine_s_;

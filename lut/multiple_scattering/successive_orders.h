@@ -9,8 +9,8 @@
 // smooth, so fewer directions serve it from the third step on. When the orders have become a
 // geometric series, each in proportion to the second one before it, the rest of the series is
 // summed in closed form. In thick air orders decay too slowly for that. After 16 orders the sum of
-// all further ones is therefore found from a linear equation (lane_krylov.h), by 28 and 64
-// scatterings at optical depths of 20 and 40. It is converged when the estimated error of every
+// all further ones is therefore found from a linear equation (lane_krylov.h): up to an optical depth
+// of 40, fewer than 120 scatterings suffice. The sum is converged when the estimated error of every
 // node is below the tolerance and what one more scattering changes is below a tenth of it.
 #pragma once
 

@@ -19,7 +19,6 @@
 //   Godot                      +y   +z = south        +x = east               -z
 #pragma once
 
-#include <algorithm>
 #include <functional>
 #include <optional>
 #include <string>
@@ -70,11 +69,8 @@ struct PanoramaSun {
   double angular_radius_rad = kSunAngularRadius_rad;
   double lower_for_air_rad = 0.0;  // as in SunPosition (sun.h)
 
-  /// Returns the elevation [rad] of the sun that lights the air, which is never beyond the zenith or
-  /// the nadir.
-  [[nodiscard]] double elevation_for_air_rad() const {
-    return std::clamp(elevation_rad - lower_for_air_rad, -0.5 * kPi, 0.5 * kPi);
-  }
+  /// Returns the elevation [rad] of the sun that lights the air.
+  [[nodiscard]] double elevation_for_air_rad() const { return elevation_rad - lower_for_air_rad; }
 };
 
 struct PanoramaSettings {

@@ -140,8 +140,12 @@ int TextureUnitsOfDriver() {
   glGetIntegerv(GL_MAX_TEXTURE_IMAGE_UNITS, &units);
   const char* const text = std::getenv("ALPENGLOW_TEXTURE_UNITS");
   const std::string_view asked = text == nullptr ? "" : text;
-  GLint fewer = units;
-  std::from_chars(asked.data(), asked.data() + asked.size(), fewer);
+  if (asked.empty()) return units;  // a shell can only clear it
+  GLint fewer = 0;
+  const auto [end, error] = std::from_chars(asked.data(), asked.data() + asked.size(), fewer);
+  if (error != std::errc() || end != asked.data() + asked.size() || fewer < 1)
+    throw InputError(
+        fmt::format("ALPENGLOW_TEXTURE_UNITS is \"{}\"; it must be a whole number from 1", asked));
   return std::min(units, fewer);
 }
 

@@ -54,7 +54,8 @@ class HeadlessContext {
 [[nodiscard]] bool IsSoftwareOpenGl();
 
 /// Returns the number of textures that one stage of a program may read: at least 16. The environment
-/// variable ALPENGLOW_TEXTURE_UNITS lowers it, to see what other drivers draw.
+/// variable ALPENGLOW_TEXTURE_UNITS lowers it, to see what other drivers draw. Throws InputError if
+/// that is not a whole number from 1.
 [[nodiscard]] int TextureUnitsOfDriver();
 
 /// Throws DisplayError if the context is lost because the GPU or its driver was reset. Detection

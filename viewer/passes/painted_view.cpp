@@ -66,7 +66,7 @@ std::optional<PixelBox> PixelsOfDisk(const glm::dvec3& direction, double radius_
   const double x = pixel(axes.right, view.part.x * view.part.z, view.width);
   const double y = pixel(axes.up, view.part.y * view.part.w, view.height);
   // Off the centre of the view, disks are stretched: tan(a + r) - tan(a) = sin(r) / (cos(a) cos(a +
-  // r)). Light of small disks falls beside them (small_disk.h), by a tenth of that and a pixel.
+  // r)). Light of small disks falls beside them (small_disk_painter.h), by a tenth of that and a pixel.
   const double off_rad = std::acos(std::min(along, 1.0)) + radius_rad;
   const double stretch = 1.0 / (along * std::max(std::cos(off_rad), 0.01));
   const double reach = 1.2 * std::sin(radius_rad) / PixelAngle(view) * stretch + 2.0;

@@ -81,8 +81,13 @@ int TexturesOf(const PictureKind& kind, const PictureStage& stage) {
   textures += is_land ? 1 : lights;               // the surface; the whole sky
   if (is_land && !stage.sky_by_pixel) textures += lights;
   if (is_ground) textures += kind.material.drape() != nullptr ? 2 : 1;
-  if (has_gloss) textures += 2 + lights;
-  if (has_gloss || stage.sky_by_pixel) textures += 1 + 3 * lights;
+  if (has_gloss) textures += 1 + lights;
+  // What land mirrors is among the textures of the sky by pixel.
+  if (stage.sky_by_pixel) {
+    textures += 1 + 3 * lights;
+  } else if (has_gloss) {
+    textures += 1 + lights;
+  }
   if (kind.fog) textures += 2 * lights;
   if (stage.has_shade) textures += kind.fog ? 2 : 1;
   if (stage.has_lamps) textures += 6;
@@ -112,9 +117,8 @@ FittingStage Fitting(const PictureKind& kind, const PictureStage& stage, int uni
   }
   if (needed(fitting.stage) > units)
     throw DisplayError(
-        fmt::format("pictures of this scene read {} textures in a stage, and the OpenGL driver has "
-                    "units for {}; "
-                    "a driver in software, LIBGL_ALWAYS_SOFTWARE=1, has 32",
+        fmt::format("a program for this scene reads {} textures, and the OpenGL driver has units "
+                    "for {}; the software driver, LIBGL_ALWAYS_SOFTWARE=1, has 32",
                     needed(fitting.stage), units));
   fitting.stage = fitting.stage.In(stage.pass);
   return fitting;
@@ -277,10 +281,10 @@ PictureStage PicturePrograms::Fitting(const PictureStage& stage) {
   const FittingStage fitting = viewer::Fitting(Kind(), stage, units_);
   for (const std::string& name : fitting.omitted) {
     if (omitted_.insert(name).second)
-      Log(
-          fmt::format("skyview: the OpenGL driver has {} texture units; pictures lack {}. A driver "
-                      "in software, LIBGL_ALWAYS_SOFTWARE=1, has 32\n",
-                      units_, name));
+      Log(fmt::format(
+          "skyview: warning: the OpenGL driver has {} texture units; pictures lack {}. The "
+          "software driver, LIBGL_ALWAYS_SOFTWARE=1, has 32\n",
+          units_, name));
   }
   return fitting.stage;
 }

@@ -94,8 +94,8 @@ struct PictureKind {
 [[nodiscard]] std::vector<ShaderPiece> PictureTexts(const PictureKind& kind,
                                                     const PictureStage& stage);
 
-/// Returns the number of textures that the program of a stage reads: drivers may have 16 units for
-/// those of one stage, llvmpipe has 32. Some may be too many by the textures that a compiler omits.
+/// Returns the number of textures that the program of a stage reads. It counts all textures of lamps
+/// and of the sky, some of which a compiler may omit.
 [[nodiscard]] int TexturesOf(const PictureKind& kind, const PictureStage& stage);
 
 /// A stage that a driver can link, and what it lacks.

@@ -356,13 +356,13 @@ void SkyPainter::PaintAlone(const SkyDisk& disk, double drawn_rad, const Painted
     shares = {0.0, std::pow(disk.radius_rad / drawn_rad, 2)};
   }
   UploadDisks(alone, seen, {});
-  small_disk_.outline().Bind();
+  small_disk_painter_.outline().Bind();
   if (scene_.AwaitsLand()) {
     LandPass::Clear(LandDrawn::kOutline);
   } else {
     scene_.land().Draw(LandDrawn::kOutline, kViewBinding, {BendIn(alone).has_value(), false});
   }
-  small_disk_.light().Bind();
+  small_disk_painter_.light().Bind();
   glClearColor(0.0F, 0.0F, 0.0F, 0.0F);
   glClear(GL_COLOR_BUFFER_BIT);
   DescribeDisks(seen, shares);
@@ -374,14 +374,14 @@ void SkyPainter::PaintAlone(const SkyDisk& disk, double drawn_rad, const Painted
 void SkyPainter::PaintSmallDisks(const PaintedView& view, const RenderTarget& target) {
   for (const SkyDisk& disk : DisksSeen(view)) {
     if (!IsSmallDisk(disk.towards, disk.radius_rad, view)) continue;
-    const double drawn_rad = std::max(disk.radius_rad, SmallDisk::SmallestRadius(view));
-    const PaintedView alone = SmallDisk::ViewOf(disk.towards, drawn_rad, view);
+    const double drawn_rad = std::max(disk.radius_rad, SmallDiskPainter::SmallestRadius(view));
+    const PaintedView alone = SmallDiskPainter::ViewOf(disk.towards, drawn_rad, view);
     PaintAlone(disk, drawn_rad, alone);
     target.Bind();
     UploadDisks(view, InAir(SkyOf(view), view), {});
     const Adding adding(1.0);
     const Scissor within(*PixelsOfDisk(disk.towards, drawn_rad, view));
-    small_disk_.AddTo(view, alone);
+    small_disk_painter_.AddTo(view, alone);
   }
 }
 

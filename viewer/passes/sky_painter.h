@@ -4,9 +4,9 @@
 //
 // The passes of a frame: the visible land (Landscape), the light that shadows remove along rays
 // (ShaftPass), the glow of lamps (LampPainter), the linear picture in the light of sun, moon and
-// night sky (PicturePrograms), disks smaller than the rays see (SmallDisk), then the lamps and stars
-// (StarPainter). ToneMapPass displays the result. Its difference from SceneRenderer is reported in tests/bench/README.md, and for one view
-// by `skyview --explain`.
+// night sky (PicturePrograms), disks that are too small for the rays (SmallDiskPainter), then the
+// lamps and stars (StarPainter). ToneMapPass displays the result. Its difference from SceneRenderer
+// is reported in tests/bench/README.md, and for one view by `skyview --explain`.
 #pragma once
 
 #include <functional>
@@ -28,7 +28,7 @@
 #include "viewer/passes/painted_scene.h"
 #include "viewer/passes/painted_view.h"
 #include "viewer/passes/picture_programs.h"
-#include "viewer/passes/small_disk.h"
+#include "viewer/passes/small_disk_painter.h"
 #include "viewer/passes/star_painter.h"
 #include "viewer/shade/shafts.h"
 
@@ -150,7 +150,7 @@ class SkyPainter {
   SceneLamps lamps_;
   LampPainter lamp_painter_;
   ShaftPass shaft_pass_;
-  SmallDisk small_disk_;
+  SmallDiskPainter small_disk_painter_;
   StarPainter stars_;
   NightSkyMapFollower night_sky_map_;
   bool has_towns_;

@@ -310,7 +310,7 @@ void main() {
 
 //// picture.small_disk.frag.glsl
 // The light of a disk that is too small for the rays of a picture, from a picture of the disk alone
-// (small_disk.h). Each texel is a point whose light falls on the pixels around it: its weights are
+// (small_disk_painter.h). Each texel is a point whose light falls on the pixels around it: its weights are
 // triangles of whole widths in pixels, so that they sum to 1 wherever the point is.
 in vec2 screen;
 out vec4 picture;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "viewer/passes/small_disk.h"
+#include "viewer/passes/small_disk_painter.h"
 
 #include <algorithm>
 #include <cmath>
@@ -36,7 +36,7 @@ bool IsSmallDisk(const glm::dvec3& towards, double radius_rad, const PaintedView
   return radius_rad < kLeast_pixels * PixelAngle(view) * along;
 }
 
-SmallDisk::SmallDisk()
+SmallDiskPainter::SmallDiskPainter()
     : program_(FullScreenProgram(WithViewerPieces(
           SharedTexts(),
           {"viewer/shaders/view.block.glsl", "viewer/shaders/picture.small_disk.frag.glsl"}))),
@@ -47,8 +47,8 @@ SmallDisk::SmallDisk()
   light_.UseDepthOf(outline_);
 }
 
-PaintedView SmallDisk::ViewOf(const glm::dvec3& towards, double radius_rad,
-                              const PaintedView& whole) {
+PaintedView SmallDiskPainter::ViewOf(const glm::dvec3& towards, double radius_rad,
+                                     const PaintedView& whole) {
   PaintedView view{whole.eye, whole.now, kSide, kSide};
   view.eye.heading_rad = std::atan2(towards.x, towards.y);
   view.eye.pitch_rad = std::asin(std::clamp(towards.z, -1.0, 1.0));
@@ -57,14 +57,14 @@ PaintedView SmallDisk::ViewOf(const glm::dvec3& towards, double radius_rad,
   return view;
 }
 
-double SmallDisk::SmallestRadius(const PaintedView& whole) {
+double SmallDiskPainter::SmallestRadius(const PaintedView& whole) {
   constexpr double kResolved_rad = 1e-4;
   return std::min(kResolved_rad, 0.5 * PixelAngle(whole));
 }
 
 // The map from one picture to the other is linear over the disk: its ends are off by a share of
 // r tan(a), with the angle a from the middle of the view.
-void SmallDisk::AddTo(const PaintedView& whole, const PaintedView& alone) const {
+void SmallDiskPainter::AddTo(const PaintedView& whole, const PaintedView& alone) const {
   const LandView axes = LandViewOf(alone);
   const auto place = [&](double x, double y) {
     return PixelOf(axes.forward + x * axes.right + y * axes.up, whole);

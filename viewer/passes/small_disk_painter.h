@@ -25,13 +25,13 @@ namespace alpenglow::viewer {
 [[nodiscard]] bool IsSmallDisk(const glm::dvec3& towards, double radius_rad,
                                const PaintedView& view);
 
-/// The picture of one disk. An OpenGL context must be current in all calls.
-class SmallDisk {
+/// Paints the light of one disk after the other. An OpenGL context must be current in all calls.
+class SmallDiskPainter {
  public:
   /// Width and height of the picture. The disk has a radius of 12 texels.
   static constexpr int kSide = 32;
 
-  SmallDisk();
+  SmallDiskPainter();
 
   /// Returns the view in which a disk is drawn, of kSide x kSide pixels.
   /// @param radius_rad  at least SmallestRadius.
