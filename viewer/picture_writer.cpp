@@ -1,11 +1,6 @@
 // SPDX-License-Identifier: MIT
 #include "viewer/picture_writer.h"
 
-#ifdef __linux__
-#include <sys/resource.h>
-#include <unistd.h>
-#endif
-
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -14,6 +9,7 @@
 
 #include "atmosphere/base/error.h"
 #include "atmosphere/base/parsing.h"
+#include "atmosphere/base/thread_priority.h"
 #include "lut/cli/output_file.h"
 #include "lut/cli/program.h"
 #include "renderer/series/manifest.h"
@@ -199,15 +195,9 @@ namespace {
 /// Exception that ends a picture that is no longer wanted.
 struct Dropped {};
 
-// Lowers the priority of this thread. On Linux each thread has its own priority, and the threads
-// that it starts inherit it: those of the scene, and those of a driver that renders on the CPU.
-// They get a third of the weight of the window's thread.
-void GiveWayToTheWindow() {
-#ifdef __linux__
-  constexpr int kNice = 5;
-  static_cast<void>(setpriority(PRIO_PROCESS, static_cast<id_t>(gettid()), kNice));
-#endif
-}
+// The threads that the writer starts have its priority: those of the scene, and those of a driver
+// that renders on the CPU. They get a third of the weight of the window's thread.
+constexpr int kStepsBelowTheWindow = 5;
 
 // Written pictures use the complete atmosphere and exact tables from the start.
 FlightSessionSettings WithoutDrafts(FlightSessionSettings settings) {
@@ -363,7 +353,7 @@ std::string PictureQueue::Make(const PictureRequest& request,
 }
 
 void PictureQueue::Run(const std::stop_token& stop) {
-  GiveWayToTheWindow();
+  LowerPriorityOfThread(kStepsBelowTheWindow);
   std::unique_ptr<SecondFlight> second;
   std::unique_lock lock(mutex_);
   while (changed_.wait(lock, stop, [this] { return !requests_.empty(); })) {

@@ -2,6 +2,7 @@
 // Provides AsyncValue, a value that is computed on a background thread and follows its input.
 #pragma once
 
+#include <atomic>
 #include <chrono>
 #include <condition_variable>
 #include <exception>
@@ -10,6 +11,8 @@
 #include <optional>
 #include <thread>
 #include <utility>
+
+#include "atmosphere/base/thread_priority.h"
 
 namespace alpenglow::atmosphere {
 
@@ -22,7 +25,7 @@ namespace alpenglow::atmosphere {
 /// The policy of requests is a function, Suits, and a rest. RequestIfNeeded requests a value unless
 /// the newest request suits the input, so that a small change of the input causes no work.
 /// RequestWhenIdle also waits for the end of a computation and of the rest after it, which leaves
-/// the CPU to other threads; it is called once a frame.
+/// the CPU to other threads, and calls GiveWay; it is called once a frame.
 template <typename Input, typename Value>
 class AsyncValue {
  public:
@@ -59,8 +62,13 @@ class AsyncValue {
     Request(wanted);
     return true;
   }
+  /// Lowers the priority of computations that begin from now on, for good. Where drawing takes all
+  /// cores, because the driver has no graphics card, a frame then does not wait for tables that are
+  /// needed some frames later. Do not call it where drawing waits for each value.
+  void GiveWay() { gives_way_ = true; }
   /// Does nothing while a value is being computed and during a rest.
   void RequestWhenIdle(const Input& wanted) {
+    GiveWay();
     if (!IsBusy() && !IsResting()) RequestIfNeeded(wanted);
   }
   /// Returns the newest request; empty without a policy.
@@ -114,12 +122,18 @@ class AsyncValue {
  private:
   using Clock = std::chrono::steady_clock;
 
+  // Of a core that drawing wants, too, a thread ten steps lower gets a tenth.
+  static constexpr int kStepsBelowDrawing = 10;
+
   void Run(const std::stop_token& stop) {
+    bool has_given_way = false;
     std::unique_lock lock(mutex_);
     while (has_request_.wait(lock, stop, [this] { return waiting_.has_value(); })) {
       const Input input = *std::exchange(waiting_, std::nullopt);
       is_working_ = true;
       lock.unlock();
+      if (gives_way_ && !std::exchange(has_given_way, true))
+        LowerPriorityOfThread(kStepsBelowDrawing);
       const Clock::time_point begin = Clock::now();
       std::optional<Value> made;
       std::exception_ptr failed;
@@ -146,6 +160,7 @@ class AsyncValue {
   std::optional<Value> value_;
   double making_s_ = 0.0;
   Clock::time_point rests_until_{};
+  std::atomic<bool> gives_way_ = false;
 
   mutable std::mutex mutex_;  // guards the members below, which the thread shares
   std::condition_variable_any has_request_, is_idle_;

@@ -3,10 +3,17 @@
 // and a sun.
 #include "atmosphere/base/async_value.h"
 
+#ifdef __linux__
+#include <sys/resource.h>
+#include <unistd.h>
+#endif
+
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <functional>
 #include <future>
 #include <glm/geometric.hpp>
 #include <stdexcept>
@@ -68,6 +75,27 @@ TEST(AsyncValue, EndsWithARequestWaiting) {
   value.Request(1);
   SUCCEED() << "the destructor returns";
 }
+
+#ifdef __linux__
+int PriorityOfThisThread() { return getpriority(PRIO_PROCESS, static_cast<id_t>(gettid())); }
+
+// A thread cannot raise its priority, so that a screenshot, which waits for each value, must not
+// lower it. 19 is the lowest priority of Linux.
+TEST(AsyncValue, GivesWayToDrawingOnlyWhereItIsAskedToAndForGood) {
+  AsyncValue<int, int> value([](const int&) { return PriorityOfThisThread(); },
+                             std::equal_to<int>());
+  const int usual = PriorityOfThisThread();
+  value.WaitUntilReady(1);
+  EXPECT_EQ(value.Poll(), std::optional(usual));
+  value.RequestWhenIdle(2);
+  value.Wait();
+  EXPECT_EQ(value.Poll(), std::optional(std::min(usual + 10, 19)));
+  value.RequestWhenIdle(3);
+  value.Wait();
+  EXPECT_EQ(value.Poll(), std::optional(std::min(usual + 10, 19)));
+  EXPECT_EQ(PriorityOfThisThread(), usual);
+}
+#endif
 
 TEST(AsyncValue, FollowsItsInputAccordingToThePolicy) {
   AsyncValue<double, double> value([](const double& input) { return 2.0 * input; },

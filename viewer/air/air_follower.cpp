@@ -240,6 +240,7 @@ bool AirFollower::IsDue(const Request& wanted) const {
 }
 
 void AirFollower::Follow(const AirView& view, double seconds) {
+  if (seconds > 0.0) maker_.GiveWay();
   PollFinished();
   RefineDraft();
   const Request wanted = Wanted(Ahead(view, seconds));

@@ -374,6 +374,7 @@ std::vector<ChunkKey> Landscape::Missing(const ChunkSet& set) const {
 void Landscape::Request(const ChunkSet& set, std::vector<ChunkKey> make,
                         std::vector<std::shared_ptr<const LandChunk>> relight) {
   if (make.empty() && relight.empty()) return;
+  if (fade_.HasShown()) worker_.GiveWay();
   worker_.Request({cache_.loaded(), set.anchor(), std::move(make), std::move(relight), tree_.top(),
                    fade_.light(), fade_.number(), &set == next_set_.get()});
   is_working_ = true;

@@ -191,6 +191,7 @@ void MeshLand::Update(double seconds) {
   const int before = fade_.number();
   fade_.Advance(seconds, light.has_value());
   if (fade_.number() != before) lighter_.Request({terrain_, fade_.light().value()});
+  if (fade_.HasShown()) lighter_.GiveWay();
 }
 
 void MeshLand::Draw(LandPass& pass, LandDrawn what, const LandLook& look,

@@ -97,7 +97,9 @@ uniform sampler3D air_diffuse;
 uniform sampler2D air_phase;  // phase function of the aerosol with its light of all orders
 uniform sampler2D air_to_sun;  // row 0: straight rays; row 1: refracted beam for ground and fog
 
-// The tables of the second light. Transmittance is taken from those of the first.
+// The tables of the second light. Transmittance is taken from those of the first, and so is the
+// geometry of rays (AirStretch): both tables are of one eye, and the places for which they were made
+// are so close that the error of the tables is small (AirFollower).
 #ifdef TWO_LIGHTS
 layout(std140) uniform OtherAirTables { AirTablesOf other_air_tables; };
 uniform sampler2D other_air_sky;
@@ -149,8 +151,8 @@ float RowOf(float half_tangent, float sky_range, float ground_range, vec4 rows) 
 
 // Returns the factor by which texels were divided, at distance d along a ray.
 float TwilightAt(vec3 direction, float d) {
-  return AirTwilight(AIR.shell.x, AIR.towards.z, dot(direction, AIR.towards.xyz), d, AIR.crowding.z,
-                     AIR.crowding.w, AIR.shell.w);
+  return AirTwilight(air_tables.shell.x, AIR.towards.z, dot(direction, AIR.towards.xyz), d,
+                     AIR.crowding.z, AIR.crowding.w, air_tables.shell.w);
 }
 
 // Returns whether a direction passes above all air.
@@ -162,11 +164,12 @@ bool AboveAir(float half_tangent) {
 vec4 SkyRadiance(vec3 direction) {
   float rise = HalfTangent(direction);
   vec2 at = vec2(AIR.columns.x + AIR.columns.y * ColumnOf(direction),
-                 RowOf(rise, AIR.ranges.x, AIR.ranges.z, AIR.sky_rows));
+                 RowOf(rise, air_tables.ranges.x, air_tables.ranges.z, AIR.sky_rows));
   float h2 = HalfSineSquared(direction);
   vec4 phases = PhaseRayleigh(1.0 - 2.0 * h2) * AIR.sky_of_molecules +
                 AerosolPhase(h2) * AIR.sky_of_aerosol + AIR.sky_of_all;
-  float foot = AirFoot(AIR.shell.x, direction.z, rise < 0.0 ? 1.0 : 0.0, AIR.shell.w);
+  float foot =
+      AirFoot(air_tables.shell.x, direction.z, rise < 0.0 ? 1.0 : 0.0, air_tables.shell.w);
   phases *= TwilightAt(direction, foot);
   return AboveAir(rise) ? vec4(0.0) : phases * TEXEL_OF_LIGHT(air_sky, other_air_sky, at);
 }
@@ -204,37 +207,37 @@ struct AirStretch {
   float beyond;              // of the point, from the first node [km]
   float below;               // of the point, from the last [km], in air below altitude 0
   float rise;                // HalfTangent of the ray that the tables have
-  vec2 nodes;                // texture coordinates of the point's distance: AirTablesOf.distances
+  float node;                // of the point's distance among the nodes, in [0, 1]
 };
 
 // Below altitude 0 air has the density of altitude 0. A ray that goes on below it is lit as at its
 // crossing; one from an eye at or below altitude 0 as the horizontal ray, which the tables have.
-AirStretch StretchTo(AirTablesOf tables, vec3 direction, float distance_km) {
-  float h = tables.shell.x, radius = tables.shell.w;
+AirStretch StretchTo(vec3 direction, float distance_km) {
+  float h = air_tables.shell.x, radius = air_tables.shell.w;
   float mu = h > 0.0 ? direction.z : max(direction.z, 0.0);
   AirStretch stretch;
   stretch.rise = h > 0.0 ? HalfTangent(direction) : max(HalfTangent(direction), 0.0);
   bool ground = stretch.rise < 0.0;
-  stretch.entry = AirEntry(h, mu, tables.shell.z, radius);
-  stretch.near = AirEntry(h, mu, tables.shell.y, radius);
-  float end = ground ? AirEndDown(h, mu, radius) : AirEndUp(h, mu, tables.shell.y, radius);
+  stretch.entry = AirEntry(h, mu, air_tables.shell.z, radius);
+  stretch.near = AirEntry(h, mu, air_tables.shell.y, radius);
+  float end = ground ? AirEndDown(h, mu, radius) : AirEndUp(h, mu, air_tables.shell.y, radius);
   stretch.reach = max(end - stretch.near, 1e-3);
   stretch.beyond = clamp(distance_km - stretch.near, 0.0, stretch.reach);
   stretch.below = ground ? max(distance_km - stretch.near - stretch.reach, 0.0) : 0.0;
-  float w = AirNodeFromShare(stretch.beyond / stretch.reach,
-                             ground ? tables.crowding.y : tables.crowding.x);
-  stretch.nodes = tables.distances.xz + tables.distances.yw * w;
+  stretch.node = AirNodeFromShare(stretch.beyond / stretch.reach,
+                                  ground ? air_tables.crowding.y : air_tables.crowding.x);
   return stretch;
 }
 
 // Returns the transmittance of the air from the eye to a point.
 vec4 TransmittanceTo(vec3 direction, float distance_km) {
-  AirStretch stretch = StretchTo(air_tables, direction, distance_km);
-  float row =
-      RowOf(stretch.rise, air_tables.ranges.y, air_tables.ranges.z, air_tables.extinction_rows);
+  AirStretch stretch = StretchTo(direction, distance_km);
+  vec2 at = vec2(
+      air_tables.distances.z + air_tables.distances.w * stretch.node,
+      RowOf(stretch.rise, air_tables.ranges.y, air_tables.ranges.z, air_tables.extinction_rows));
   float length_km =
       clamp(distance_km, stretch.entry, stretch.near + stretch.reach) - stretch.entry;
-  return exp(-length_km * textureLod(air_extinction, vec2(stretch.nodes.y, row), 0.0) -
+  return exp(-length_km * textureLod(air_extinction, at, 0.0) -
              stretch.below * air_tables.extinction_below);
 }
 
@@ -247,10 +250,11 @@ struct AirWay {
 };
 
 AirWay WayTo(vec3 direction, float distance_km) {
-  AirStretch stretch = StretchTo(AIR, direction, distance_km);
+  AirStretch stretch = StretchTo(direction, distance_km);
   AirWay way;
   way.at = vec3(AIR.columns.z + AIR.columns.w * ColumnOf(direction),
-                RowOf(stretch.rise, AIR.ranges.y, AIR.ranges.z, AIR.way_rows), stretch.nodes.x);
+                RowOf(stretch.rise, air_tables.ranges.y, air_tables.ranges.z, AIR.way_rows),
+                AIR.distances.x + AIR.distances.y * stretch.node);
   way.half_sine_squared = HalfSineSquared(direction);
   way.transmittance = TransmittanceTo(direction, distance_km);
   way.scattered = (1.0 - way.transmittance) *
