@@ -72,18 +72,16 @@ void RequireAtmosphereElsewhere(const BuildOptions& options, const char* name) {
                  {{"--atmosphere", *options.atmosphere}});
 }
 
-/// Returns a warning for media whose aerosol has a tabulated phase function. The exported tables
+/// Writes a warning about media whose aerosol has a tabulated phase function. The exported tables
 /// hold no phase functions, and the programs that load them use a single lobe.
-std::string LobeText(const Medium& medium) {
-  if (medium.mie_phase.front().kind != PhaseKind::kTable) return "";
+void WarnOfLobe(const Medium& medium) {
+  if (medium.mie_phase.front().kind != PhaseKind::kTable) return;
   const std::size_t middle = medium.wavelengths_nm.size() / 2;
-  return fmt::format(
-      "skylut: warning: the aerosol of {} has a tabulated phase function, and these programs have "
-      "one lobe of Cornette and Shanks; with g = {:.3f} it has the same mean cosine at {:g} nm, "
-      "but "
-      "no aureole\n",
+  Warn(fmt::format(
+      "the aerosol of {} has a tabulated phase function, and these programs have one lobe of "
+      "Cornette and Shanks; with g = {:.3f} it has the same mean cosine at {:g} nm, but no aureole",
       medium.name, CornetteShanksG(MeanCosine(MiePhase(medium, middle))),
-      medium.wavelengths_nm[middle]);
+      medium.wavelengths_nm[middle]));
 }
 
 void BuildExchangeTables(const BuildOptions& options, const ExchangeOptions& exchange,
@@ -95,11 +93,10 @@ void BuildExchangeTables(const BuildOptions& options, const ExchangeOptions& exc
   WriteExchangeTables(MakeExchangeTextures(medium, exchange, common.progress_style()), medium,
                       exchange, options.out);
   if (!IsTheMediumThatLoadersAssume(medium)) {
-    Log(fmt::format(
-        "skylut: warning: programs with fixed constants assume the preset bruneton2017; "
-        "these tables are for {}\n",
+    Warn(fmt::format(
+        "programs with fixed constants assume the preset bruneton2017; these tables are for {}",
         medium.name));
-    Log(LobeText(medium));
+    WarnOfLobe(medium);
   }
 }
 

@@ -19,6 +19,7 @@
 #include <optional>
 #include <set>
 #include <system_error>
+#include <utility>
 
 #include "atmosphere/base/error.h"
 #include "atmosphere/base/parsing.h"
@@ -59,6 +60,37 @@ void WriteError(std::string_view text) noexcept {
 }  // namespace
 
 void Log(std::string_view text) noexcept { WriteError(Printable(text, "\n")); }
+
+namespace {
+
+constexpr const char* kNameOfLibrary = "alpenglow";
+
+/// The name before warnings.
+struct NameOfProgram {
+  std::mutex mutex{};
+  std::string text = kNameOfLibrary;
+
+  void Set(std::string name) {
+    const std::scoped_lock lock(mutex);
+    text = std::move(name);
+  }
+};
+
+NameOfProgram& WarningName() {
+  static NameOfProgram name;
+  return name;
+}
+
+}  // namespace
+
+void Warn(std::string_view text) noexcept {
+  NameOfProgram& name = WarningName();
+  const std::scoped_lock lock(name.mutex);
+  Log(fmt::format("{}: warning: {}\n", name.text, text));
+}
+
+WarningsOf::WarningsOf(std::string program) { WarningName().Set(std::move(program)); }
+WarningsOf::~WarningsOf() { WarningName().Set(kNameOfLibrary); }
 
 void LogWithoutWaiting(std::string_view text) noexcept {
   pollfd error{STDERR_FILENO, POLLOUT, 0};

@@ -20,6 +20,19 @@ namespace alpenglow::lut {
 /// names and contents of files may have, are escaped (Printable).
 void Log(std::string_view text) noexcept;
 
+/// Writes a line "NAME: warning: text" as Log does. NAME is that of the running program
+/// (WarningsOf), or alpenglow in other programs that use the library.
+void Warn(std::string_view text) noexcept;
+
+/// Gives warnings the name of a program during the lifetime of the object.
+class WarningsOf {
+ public:
+  explicit WarningsOf(std::string program);
+  ~WarningsOf();
+  WarningsOf(const WarningsOf&) = delete;
+  WarningsOf& operator=(const WarningsOf&) = delete;
+};
+
 /// Writes lines as Log does, for a thread that ends the process: it takes no lock, and drops the
 /// text if the reader of standard error does not read.
 void LogWithoutWaiting(std::string_view text) noexcept;

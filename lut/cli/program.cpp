@@ -186,6 +186,7 @@ std::string SimdText() {
 int RunProgram(const std::string& name, const std::function<int()>& body) {
   OccupyStandardDescriptors();
   const SignalWatch watch(name);
+  const WarningsOf warnings(name);
   InstallHandlers();
   try {
     const int status = body();

@@ -60,6 +60,17 @@ TEST(Program, StatusOfTheBodyIsTheStatusOfTheProgram) {
   EXPECT_EQ(RunBody([] { return 2; }).status, 2);
 }
 
+TEST(Program, WarningsHaveTheNameOfTheProgram) {
+  const auto warning = [] {
+    Warn("thick air");
+    return 0;
+  };
+  EXPECT_EQ(RunBody(warning).error_text, "skytest: warning: thick air\n");
+  testing::internal::CaptureStderr();
+  Warn("thick air");
+  EXPECT_EQ(testing::internal::GetCapturedStderr(), "alpenglow: warning: thick air\n");
+}
+
 TEST(Program, EveryKindOfFailureHasItsStatusAndOneLine) {
   const std::vector<std::pair<int, std::function<int()>>> cases = {
       {2, []() -> int { throw OptionError("--size 99999x1"); }},
