@@ -68,9 +68,14 @@ constexpr double kShareOfLightBehind = 0.1;
 // beyond the horizon, between the directions of the solution.
 constexpr double kLeastLight = 1e-12;
 
-MultipleScatteringOptions With(bool delta_m, MultipleScatteringOptions options) {
-  options.delta_m = delta_m;
-  return options;
+// Returns coarser options that can be compared with a solution. In air that needs many altitudes
+// they have two thirds of them: with a few its light would not be of the same size.
+MultipleScatteringOptions ComparableWith(const MultipleScatteringOptions& fine,
+                                         MultipleScatteringOptions coarse) {
+  constexpr int kFewInThickAir = 24;
+  coarse.delta_m = fine.delta_m;
+  if (fine.altitudes > kFewInThickAir) coarse.altitudes = 2 * fine.altitudes / 3;
+  return coarse;
 }
 
 double Sum(const Estimate& a) { return std::abs(a.value) + a.error; }
@@ -148,12 +153,12 @@ class IntegralEvaluator final : public Evaluator {
       return;
     }
     fine_light_.emplace(medium(), OptionsFor(medium()));
-    const bool delta_m = fine_light_->options().delta_m;
-    coarse_light_.emplace(medium(), With(delta_m, kCoarseLight));
-    middling_light_.emplace(medium(), With(delta_m, kMiddlingLight));
-    if (!delta_m) {
-      missing_degrees_.emplace(medium(), fine_light_->options().degree);
-    } else if (DeltaM peak(medium(), fine_light_->options().degree); peak.HasBackwardLobe()) {
+    const MultipleScatteringOptions& fine = fine_light_->options();
+    coarse_light_.emplace(medium(), ComparableWith(fine, kCoarseLight));
+    middling_light_.emplace(medium(), ComparableWith(fine, kMiddlingLight));
+    if (!fine.delta_m) {
+      missing_degrees_.emplace(medium(), fine.degree);
+    } else if (DeltaM peak(medium(), fine.degree); peak.HasBackwardLobe()) {
       backward_lobe_.emplace(std::move(peak));
     }
   }

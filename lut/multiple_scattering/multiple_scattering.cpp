@@ -5,9 +5,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <mutex>
 #include <set>
-#include <string>
 
 #include "atmosphere/base/error.h"
 #include "atmosphere/math/constants.h"
@@ -97,22 +97,34 @@ std::vector<float> WithBeam(const Medium& medium, const MultipleScatteringOption
 // Writes, once for each air, that its light is not converged.
 void WarnOfMissingOrders(const Medium& medium, int orders) {
   static std::mutex asking;
-  static std::set<std::string> said;
-  const std::string& name = medium.name.empty() ? "the medium" : medium.name;
+  static std::set<std::uint64_t> said;
   {
     const std::scoped_lock lock(asking);
-    if (!said.insert(name).second) return;
+    if (!said.insert(MediumHash(medium)).second) return;
   }
-  Log(fmt::format(
-      "warning: the air of {} is too thick: {} orders of scattering are too few, and its "
-      "light may be wrong by as much as the sunlight\n",
-      name, orders));
+  Warn(fmt::format(
+      "the air of {} is too thick: {} orders of scattering are too few, and its light may be wrong "
+      "by as much as the sunlight",
+      medium.name.empty() ? "the medium" : medium.name, orders));
 }
 
 SolvedOrders Solved(const Medium& medium, const MultipleScatteringOptions& options) {
   SolvedOrders solved = SolveSuccessiveOrders(Checked(medium, options), options);
   if (options.delta_m) solved.values = WithBeam(medium, options, 1.0F, std::move(solved.values));
   return solved;
+}
+
+}  // namespace
+
+namespace {
+
+// Returns the number of altitudes, quadratic in altitude, with which light in an exponential layer
+// is interpolated well: density falls as a Gaussian function of the coordinate, and three nodes lie
+// within its width.
+int AltitudesOfLayer(const Medium& medium, double scale_height_m) {
+  constexpr int kFewest = 24, kMost = 64;
+  const double widths = std::sqrt(2.0 * medium.atmosphere_height_m / scale_height_m);
+  return std::clamp(1 + static_cast<int>(std::ceil(3.0 * widths)), kFewest, kMost);
 }
 
 }  // namespace
@@ -146,6 +158,11 @@ MultipleScatteringOptions OptionsFor(const Medium& medium) {
     options.later_ray_nodes = 24;
     options.later_zenith_nodes = 12;
   }
+  // Projections on moments of degree 12 by fewer directions bring light from one degree to another,
+  // and each of many orders gains energy.
+  if (aerosol > 1.5) options.later_zenith_nodes = std::max(options.later_zenith_nodes, 8);
+  // Light diffuses along its gradient, which fewer altitudes would flatten.
+  if (aerosol > 3.0) options.altitudes = AltitudesOfLayer(medium, medium.mie_scale_height_m);
   return options;
 }
 

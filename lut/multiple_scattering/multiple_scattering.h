@@ -67,7 +67,8 @@ struct MultipleScatteringOptions {
 
 /// Returns the default options in clear air. If aerosol scatters more than 8 % of a vertical beam
 /// or has narrow lobes (NarrowLobes of delta_m.h), returns degree 12 with the forward peak in
-/// closed form; if all scattering takes more than 60 %, or molecules more than 33 %, more nodes.
+/// closed form; if all scattering takes more than 60 %, or molecules more than 33 %, more nodes; if
+/// aerosol has an optical depth of more than 3, as many altitudes as its layer needs.
 /// Radiances of all orders are then within 0.5 % (rms) of path tracing at an aerosol optical depth
 /// of 0.1, 2 % at 1 and in the dust of Mars, 1 % through molecules of optical depth 5.
 [[nodiscard]] MultipleScatteringOptions OptionsFor(const Medium& medium);
@@ -92,7 +93,8 @@ class MultipleScattering {
   /// Solves for the medium. The result does not depend on the number of threads. Very thick air
   /// may need more than max_orders; converged() is then false. A warning on standard error names
   /// each such air once, here and where a stored solution is restored. Scalar light on the ground
-  /// under molecules is within 3 % of paths at optical depth 20, and 6 % at 40.
+  /// under molecules is within 3 % of paths at optical depth 20 and 6 % at 40, and under fog with a
+  /// lobe of g = 0.85 within 4 % at 15.65.
   explicit MultipleScattering(const Medium& medium, const MultipleScatteringOptions& options = {});
 
   /// Restores a stored solution: values, orders and converged as returned by the accessors. Throws

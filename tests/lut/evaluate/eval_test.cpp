@@ -11,6 +11,7 @@
 #include <map>
 #include <span>
 #include <sstream>
+#include <tuple>
 
 #include "atmosphere/base/error.h"
 #include "atmosphere/math/constants.h"
@@ -296,6 +297,21 @@ TEST_F(Eval, ErrorsOfAllOrdersAreTrueInHazeDustAndThickAir) {
   EXPECT_GE(all.honest, 0.95 * all.compared);
   std::nth_element(shares.begin(), shares.begin() + shares.size() / 2, shares.end());
   EXPECT_LT(shares[shares.size() / 2], 0.15) << "and are of use: the true errors are 4 % (rms)";
+}
+
+// The radiances are those of skylut eval --method path-trace --max-error 0.7%, along the horizon and
+// 5 degrees above it.
+TEST_F(Eval, DustAtTheHorizonIsWithinItsEstimateOfPaths) {
+  const auto evaluator = MakeIntegralEvaluator(MediumPreset("mars", {445.0}));
+  const Case prepared{"", 0, Quantity::kTotal, {}};
+  evaluator->Prepare({&prepared, 1});
+  for (const auto& [zenith_deg, traced, bound] :
+       {std::tuple{90.0, 0.03685, 0.08}, {85.0, 0.04212, 0.02}}) {
+    const ViewRay ray = RayFromAngles(2.0, zenith_deg, 60.0, 40.0);
+    const Estimate found = evaluator->Evaluate({"", 0, Quantity::kTotal, ray}).front();
+    EXPECT_LE(std::abs(found.value - traced), found.error + 0.014 * traced) << zenith_deg;
+    EXPECT_NEAR(found.value / traced, 1.0, bound) << zenith_deg << ": measured, 7 % and 0.1 %";
+  }
 }
 
 /// Views [degrees] near and far from a sun 50 degrees from the zenith.

@@ -538,17 +538,24 @@ Medium ThickMolecules(double optical_depth) {
   return medium;
 }
 
-TEST(MultipleScattering, AirWithMissingOrdersIsNamedOnStandardError) {
+TEST(MultipleScattering, EachAirWithMissingOrdersIsNamedOnStandardError) {
   MultipleScatteringOptions few = tests::kSmallLight;
   few.max_orders = 20;
-  Medium thick = ThickMolecules(20.0);
-  thick.name = "the thick test";
-  testing::internal::CaptureStderr();
-  EXPECT_FALSE(MultipleScattering(thick, few).converged())
-      << "the light on the ground still increases from order to order";
-  const std::string said = testing::internal::GetCapturedStderr();
-  EXPECT_NE(said.find("warning: the air of the thick test is too thick"), std::string::npos)
-      << said;
+  int airs = 0;
+  for (const double depth : {20.0, 30.0, 20.0}) {
+    Medium thick = ThickMolecules(depth);
+    thick.name = "the thick test";
+    testing::internal::CaptureStderr();
+    EXPECT_FALSE(MultipleScattering(thick, few).converged())
+        << "the light on the ground still increases from order to order";
+    const std::string said = testing::internal::GetCapturedStderr();
+    if (++airs <= 2) {
+      EXPECT_EQ(said.find("alpenglow: warning: the air of the thick test is too thick"), 0U)
+          << said;
+    } else {
+      EXPECT_EQ(said, "") << "the air of the first warning";
+    }
+  }
 }
 
 // The irradiances are those of 1e6 paths each of scalar light through a plane layer, with a standard
@@ -575,6 +582,24 @@ TEST(MultipleScattering, ThickMoleculesLightTheGroundLikePaths) {
           << depth << " " << albedo << " " << mu_s
           << ": measured; without exact weights of the marches 25 % is missing at 20";
     }
+  }
+}
+
+// The irradiances are those of 1e6 paths through a plane layer, with a standard error of 0.1 to
+// 0.2 %.
+TEST(MultipleScattering, ThickFogLightsTheGroundLikePaths) {
+  Medium medium = ThickMolecules(0.0);
+  medium.polarised = false;
+  medium.mie_scale_height_m = 1200.0;
+  medium.mie_phase = {{.kind = PhaseKind::kHenyeyGreenstein, .g = 0.85}};
+  medium.mie_scattering_per_m = medium.mie_extinction_per_m = {15.65 / 1200.0};
+  MultipleScatteringOptions options = OptionsFor(medium);
+  options.sun_angles = 12;
+  options.max_orders = 40;
+  const MultipleScattering light(medium, options);
+  for (const auto& [mu_s, paths] : {std::pair{0.5, 0.16367}, {1.0, 0.47967}}) {
+    EXPECT_NEAR(static_cast<double>(light.SkyIrradiance(0.0, mu_s)[0]) / paths, 1.0, 0.04)
+        << mu_s << ": measured; with fewer directions the light is 50 % too bright";
   }
 }
 
