@@ -313,6 +313,14 @@ endfunction()
 set(ALPENGLOW_TEST_CACHE ${PROJECT_BINARY_DIR}/cache CACHE PATH "Where tests keep the built-in range and shaders")
 set(ALPENGLOW_TEST_ENVIRONMENT
   ALPENGLOW_CACHE=${ALPENGLOW_TEST_CACHE} MESA_SHADER_CACHE_DIR=${ALPENGLOW_TEST_CACHE} GALLIVM_PERF=nopt)
+# Memory comes in pages of 2 MB where the kernel has them, and freed memory stays in the process: glibc returns
+# each large block to the kernel, and the next one costs a page fault every 4 kB. Tests of the viewer take 4 to 22 %
+# less processor time. The sanitizers have an allocator of their own.
+if(NOT CMAKE_BUILD_TYPE STREQUAL "Sanitize")
+  string(JOIN ":" kept_memory glibc.malloc.hugetlb=1 glibc.malloc.mmap_max=0
+    glibc.malloc.trim_threshold=4000000000 glibc.malloc.top_pad=67108864)
+  list(APPEND ALPENGLOW_TEST_ENVIRONMENT GLIBC_TUNABLES=${kept_memory})
+endif()
 
 # One CTest line: the tests of a program that a filter takes.
 function(alpenglow_test_line line program filter)
