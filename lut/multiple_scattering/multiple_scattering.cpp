@@ -114,10 +114,6 @@ SolvedOrders Solved(const Medium& medium, const MultipleScatteringOptions& optio
   return solved;
 }
 
-}  // namespace
-
-namespace {
-
 // Returns the number of altitudes, quadratic in altitude, with which light in an exponential layer
 // is interpolated well: density falls as a Gaussian function of the coordinate, and three nodes lie
 // within its width.
