@@ -112,29 +112,6 @@ std::array<double, 6> ReadGeotransform(const std::filesystem::path& file, GDALDa
   return transform;
 }
 
-OGRSpatialReference ReadCrs(const std::filesystem::path& file, GDALDataset& dataset) {
-  const OGRSpatialReference* stored = dataset.GetSpatialRef();
-  const bool is_known = stored != nullptr && (stored->IsGeographic() || stored->IsProjected());
-  if (!is_known) {
-    if (const std::string fault = FaultOfProj(); !fault.empty()) RefuseFile(file, fault);
-  }
-  if (stored == nullptr || stored->IsEmpty()) RefuseFile(file, "has no coordinate system");
-  if (!is_known)
-    RefuseFile(file, "has a coordinate system that is neither geographic nor projected");
-  const double equatorial = stored->GetSemiMajor();
-  const double polar = stored->GetSemiMinor();
-  const auto of_the_earth = [](double radius_m) { return radius_m > 6.35e6 && radius_m < 6.39e6; };
-  if (!of_the_earth(equatorial) || !of_the_earth(polar)) {
-    RefuseFile(file,
-               fmt::format("has the coordinate system of a body with radii {} and {} m; it must "
-                           "be of the earth",
-                           equatorial, polar));
-  }
-  OGRSpatialReference crs = *stored;
-  crs.SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
-  return crs;
-}
-
 /// The unit of heights, and a note on it.
 struct HeightUnit {
   double metres = 1.0;
@@ -329,7 +306,7 @@ ElevationRaster HeaderOf(const std::filesystem::path& file, GDALDataset& dataset
   ElevationRaster raster;
   raster.columns = dataset.GetRasterXSize();
   raster.rows = dataset.GetRasterYSize();
-  raster.crs = ReadCrs(file, dataset);
+  raster.crs = CrsOfTheEarth(file, dataset);
   raster.geotransform = ReadGeotransform(file, dataset);
   return raster;
 }

@@ -80,6 +80,29 @@ std::string FaultOfProj() {
                      EnvironmentText("PROJ_LIB"), LastGdalError());
 }
 
+OGRSpatialReference CrsOfTheEarth(const std::filesystem::path& file, GDALDataset& dataset) {
+  const OGRSpatialReference* stored = dataset.GetSpatialRef();
+  const bool is_known = stored != nullptr && (stored->IsGeographic() || stored->IsProjected());
+  if (!is_known) {
+    if (const std::string fault = FaultOfProj(); !fault.empty()) RefuseFile(file, fault);
+  }
+  if (stored == nullptr || stored->IsEmpty()) RefuseFile(file, "has no coordinate system");
+  if (!is_known)
+    RefuseFile(file, "has a coordinate system that is neither geographic nor projected");
+  const double equatorial = stored->GetSemiMajor();
+  const double polar = stored->GetSemiMinor();
+  const auto of_the_earth = [](double radius_m) { return radius_m > 6.35e6 && radius_m < 6.39e6; };
+  if (!of_the_earth(equatorial) || !of_the_earth(polar)) {
+    RefuseFile(file,
+               fmt::format("has the coordinate system of a body with radii {} and {} m; it must "
+                           "be of the earth",
+                           equatorial, polar));
+  }
+  OGRSpatialReference crs = *stored;
+  crs.SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
+  return crs;
+}
+
 BandValues::BandValues(const std::filesystem::path& file, GDALRasterBand& band)
     : band_(band),
       scale_(band.GetScale()),

@@ -50,6 +50,12 @@ struct RasterFormats {
 /// reports another reason or none.
 [[nodiscard]] std::string FaultOfProj();
 
+/// Returns the coordinate system of a file on a map of the earth, with x to the east and y to the
+/// north. Throws InputError if the file has none, or one that is neither geographic nor projected,
+/// or one of another body.
+[[nodiscard]] OGRSpatialReference CrsOfTheEarth(const std::filesystem::path& file,
+                                                GDALDataset& dataset);
+
 /// A part of the pixels of a file.
 struct PixelWindow {
   int column = 0, row = 0;

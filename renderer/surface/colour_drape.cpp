@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "renderer/surface/colour_drape.h"
 
+#include <fmt/format.h>
 #include <gdal_priv.h>
 #include <ogr_spatialref.h>
 
@@ -39,12 +40,19 @@ class Georeference {
       RequireProj(file);
       return std::nullopt;
     }
-    if (GDALInvGeoTransform(forward.data(), reference.pixel_from_crs_.data()) == 0)
+    const bool is_finite = std::all_of(forward.begin(), forward.end(),
+                                       [](double term) { return std::isfinite(term); });
+    if (!is_finite || GDALInvGeoTransform(forward.data(), reference.pixel_from_crs_.data()) == 0)
       RefuseFile(file, "has a geotransform that cannot be inverted");
-    OGRSpatialReference wgs84, own = *crs;
+    OGRSpatialReference own = CrsOfTheEarth(file, dataset);
+    own.StripVertical();
+    own.SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
+    OGRSpatialReference wgs84;
     wgs84.SetWellKnownGeogCS("WGS84");
     wgs84.SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
-    own.SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
+    if (own.IsGeographic() != 0) reference.turn_ = 2.0 * kPi / own.GetAngularUnits();
+    reference.near_x_ = forward[0] + 0.5 * (forward[1] * dataset.GetRasterXSize() +
+                                            forward[2] * dataset.GetRasterYSize());
     reference.crs_from_geographic_.reset(OGRCreateCoordinateTransformation(&wgs84, &own));
     if (!reference.crs_from_geographic_) {
       RequireProj(file);
@@ -54,16 +62,37 @@ class Georeference {
     return reference;
   }
 
+  /// Counts whole turns of longitude so that places near this one lie beside it, and this one
+  /// beside the picture.
+  void CentreOn(const GeodeticPosition& place) {
+    if (const auto xy = CrsOf(place)) near_x_ = (*xy)[0];
+  }
+
   [[nodiscard]] std::array<double, 2> PixelOf(const GeodeticPosition& place) const {
-    double x = place.longitude_rad / kRadiansPerDegree, y = place.latitude_rad / kRadiansPerDegree;
-    if (crs_from_geographic_->Transform(1, &x, &y) == 0)
+    const auto xy = CrsOf(place);
+    if (!xy)
       return {std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
+    const auto [x, y] = *xy;
     return {pixel_from_crs_[0] + pixel_from_crs_[1] * x + pixel_from_crs_[2] * y,
             pixel_from_crs_[3] + pixel_from_crs_[4] * x + pixel_from_crs_[5] * y};
   }
 
+  /// Returns the columns of a full turn of longitude; 0 where columns do not follow longitudes.
+  [[nodiscard]] double ColumnsOfTurn() const {
+    return pixel_from_crs_[4] == 0.0 ? std::abs(pixel_from_crs_[1]) * turn_ : 0.0;
+  }
+
  private:
+  [[nodiscard]] std::optional<std::array<double, 2>> CrsOf(const GeodeticPosition& place) const {
+    double x = place.longitude_rad / kRadiansPerDegree, y = place.latitude_rad / kRadiansPerDegree;
+    if (crs_from_geographic_->Transform(1, &x, &y) == 0) return std::nullopt;
+    if (turn_ > 0.0) x -= turn_ * std::round((x - near_x_) / turn_);
+    return std::array<double, 2>{x, y};
+  }
+
   std::array<double, 6> pixel_from_crs_{};
+  double turn_ = 0.0;    // of longitude, in the unit of x; 0 on projected maps
+  double near_x_ = 0.0;  // longitudes are counted within half a turn of this one
   std::unique_ptr<OGRCoordinateTransformation> crs_from_geographic_;
 };
 
@@ -167,7 +196,12 @@ ColourDrape::ColourDrape(const std::filesystem::path& file, bool is_land_cover,
   first_y_m_ = bounds.south;
   step_x_m_ = std::max(bounds.east - bounds.west, 1e-3) / (kGridNodes - 1);
   step_y_m_ = std::max(bounds.north - bounds.south, 1e-3) / (kGridNodes - 1);
-  const auto reference = Georeference::Of(file, *dataset);
+  auto reference = Georeference::Of(file, *dataset);
+  if (reference) {
+    reference->CentreOn(ground.frame.GeodeticFromEnu(Point<Enu>{
+        glm::dvec3(0.5 * (bounds.west + bounds.east), 0.5 * (bounds.south + bounds.north), 0.0)}));
+    columns_of_turn_ = reference->ColumnsOfTurn();
+  }
   for (int row = 0; row < kGridNodes; ++row) {
     for (int column = 0; column < kGridNodes; ++column) {
       const double x = first_x_m_ + column * step_x_m_, y = first_y_m_ + row * step_y_m_;
@@ -182,10 +216,28 @@ ColourDrape::ColourDrape(const std::filesystem::path& file, bool is_land_cover,
       places_.push_back({px, py});
     }
   }
+  if (IsBesideTheLand())
+    note_ = fmt::format("{}{}{}: lies beside the land of the scene, which keeps its own cover",
+                        note_, note_.empty() ? "" : "; ", file.string());
   const Place& a = places_.front();
   const Place& b = places_.back();
   const double across = std::hypot(step_x_m_, step_y_m_) * (kGridNodes - 1);
   pixel_m_ = across / std::max(std::hypot(b.x - a.x, b.y - a.y), 1e-6);
+}
+
+bool ColourDrape::IsBesideTheLand() const {
+  constexpr double kFar = std::numeric_limits<double>::infinity();
+  Place least{kFar, kFar}, most{-kFar, -kFar};
+  for (const Place& place : places_) {
+    if (!std::isfinite(place.x) || !std::isfinite(place.y)) continue;
+    least = {std::min(least.x, place.x), std::min(least.y, place.y)};
+    most = {std::max(most.x, place.x), std::max(most.y, place.y)};
+  }
+  const Level& picture = levels_->front();
+  const double first_turn = columns_of_turn_ > 0.0 ? std::ceil(-most.x / columns_of_turn_) : 0.0;
+  const double turned_m = first_turn * columns_of_turn_;
+  return !(least.x + turned_m <= picture.columns && most.x + turned_m >= 0.0 &&
+           least.y <= picture.rows && most.y >= 0.0);
 }
 
 std::array<double, 4> ColourDrape::Bilinear(std::size_t number, const Place& at) const {
@@ -227,8 +279,10 @@ std::optional<std::array<double, 3>> ColourDrape::At(const glm::dvec3& point, do
     const double north = high[0].*of + fx * (high[1].*of - high[0].*of);
     return south + fy * (north - south);
   };
-  const Place at{between(&Place::x), between(&Place::y)};
+  Place at{between(&Place::x), between(&Place::y)};
   const Level& finest_level = levels_->front();
+  if (columns_of_turn_ > 0.0 && (at.x < 0.0 || at.x > finest_level.columns))
+    at.x -= columns_of_turn_ * std::floor(at.x / columns_of_turn_);
   if (!(at.x >= 0.0 && at.y >= 0.0 && at.x <= finest_level.columns && at.y <= finest_level.rows))
     return std::nullopt;
   const double wanted = std::log2(std::max(footprint_m / pixel_m_, 1.0));

@@ -58,7 +58,8 @@ class ColourDrape {
   /// Returns whether the drape holds shares of land cover rather than colours.
   [[nodiscard]] bool IsLandCover() const { return is_land_cover_; }
 
-  /// Returns a line on values that the drape does not show as they are; empty if there are none.
+  /// Returns a line on values that the drape does not show as they are, and on a picture beside the
+  /// land; empty if there is nothing to say.
   [[nodiscard]] const std::string& note() const { return note_; }
 
   /// Approximate width of a pixel [m].
@@ -83,6 +84,7 @@ class ColourDrape {
   };
 
   ColourDrape(const std::filesystem::path& file, bool is_land_cover, const SceneGround& ground);
+  [[nodiscard]] bool IsBesideTheLand() const;
   [[nodiscard]] std::array<double, 4> Bilinear(std::size_t level, const Place& at) const;
 
   std::shared_ptr<const std::vector<Level>> levels_;  // each at half the resolution of the last
@@ -92,6 +94,7 @@ class ColourDrape {
   // Positions in the picture at the nodes of a grid over the frame's plane.
   double first_x_m_ = 0.0, first_y_m_ = 0.0, step_x_m_ = 1.0, step_y_m_ = 1.0;
   std::vector<Place> places_;
+  double columns_of_turn_ = 0.0;  // of longitude; 0: columns do not close around the planet
   double radius_m_ = 0.0;
   double pixel_m_ = 1.0;
   bool is_land_cover_;

@@ -215,7 +215,7 @@ class ColourDecoder {
     for (int code = 0; code < palette->GetColorEntryCount(); ++code) {
       const GDALColorEntry& entry = *palette->GetColorEntry(code);
       const std::array<short, 3> rgb{entry.c1, entry.c2, entry.c3};
-      table.push_back(entry.c4 == 0 ? kNoColour : Linear(rgb[channel] / 255.0));
+      table.push_back(Linear(rgb[channel] / 255.0));
     }
     return table;
   }
@@ -246,6 +246,11 @@ class Opacity {
       if (has_masks) masks_.push_back(band->GetMaskBand());
     }
     if (alpha_ != nullptr) largest_alpha_ = LargestCode(*alpha_).value_or(1.0);
+    const GDALColorTable* palette = bands.rgb[0]->GetColorTable();
+    if (bands.rgb[0]->GetColorInterpretation() != GCI_PaletteIndex || palette == nullptr) return;
+    palette_ = bands.rgb[0];
+    for (int code = 0; code < palette->GetColorEntryCount(); ++code)
+      weights_of_entries_.push_back(palette->GetColorEntry(code)->c4 / 255.0);
   }
 
   /// Returns the weights of a row, in [0, 1]. A pixel is transparent where every band has its
@@ -257,6 +262,7 @@ class Opacity {
       for (std::size_t x = 0; x < row_.size(); ++x)
         weights[x] = std::max(weights[x], std::clamp(row_[x] / 255.0, 0.0, 1.0));
     }
+    if (palette_ != nullptr) WeighEntries(y, weights);
     if (alpha_ == nullptr) return weights;
     ReadRow(file_, *alpha_, GDT_Float64, y, row_);
     for (std::size_t x = 0; x < row_.size(); ++x) {
@@ -267,8 +273,19 @@ class Opacity {
   }
 
  private:
+  // A code without an entry has no colour, whatever its weight is.
+  void WeighEntries(int y, std::vector<double>& weights) {
+    ReadRow(file_, *palette_, GDT_Float64, y, row_);
+    for (std::size_t x = 0; x < row_.size(); ++x) {
+      const auto code = static_cast<std::size_t>(row_[x]);
+      if (code < weights_of_entries_.size()) weights[x] *= weights_of_entries_[code];
+    }
+  }
+
   const std::filesystem::path& file_;
   GDALRasterBand* alpha_;
+  GDALRasterBand* palette_ = nullptr;  // null: none
+  std::vector<double> weights_of_entries_;
   std::vector<GDALRasterBand*> masks_;
   std::vector<double> row_;
   double largest_alpha_ = 1.0;

@@ -7,8 +7,8 @@
 // quantities are passed over if red, green and blue are there.
 //
 // Integers of 8 and 16 bits, or of as many as the file declares (NBITS), and palettes are encoded
-// like sRGB. Floating point numbers, and any numbers with a declared scale or offset, are linear
-// reflectances in [0, 1].
+// like sRGB; entries of palettes may be transparent. Floating point numbers, and any numbers with a
+// declared scale or offset, are linear reflectances in [0, 1].
 #pragma once
 
 #include <gdal_priv.h>

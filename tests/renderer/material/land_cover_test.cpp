@@ -11,6 +11,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <vector>
 
@@ -33,10 +34,10 @@ using LandCover = TemporaryFolder;
 constexpr std::uint32_t kCoverSide = 16;  // pixels of 500 m
 constexpr MountainCover kSummer{2100.0, 2900.0};
 
-/// Returns a plain of 8 km x 8 km at 46 N 8 E.
-SceneGround Plain() {
-  SceneGround ground{LocalFrame(kWgs84, PlaceFromDegrees(46.0, 8.0, 0.0)), std::nullopt, 2.0, "",
-                     true};
+/// Returns a plain of 8 km x 8 km at 46 N, by default at 8 E.
+SceneGround Plain(double longitude = 8.0) {
+  SceneGround ground{LocalFrame(kWgs84, PlaceFromDegrees(46.0, longitude, 0.0)), std::nullopt, 2.0,
+                     "", true};
   ground.terrain.emplace(LandMesh([](double, double) { return 0.0; }, 33, 250.0));
   return ground;
 }
@@ -117,7 +118,8 @@ void CopyBand(GDALRasterBand& band, GDALRWFlag direction, Bytes& values) {
 
 // Writes a picture in which red grows eastwards and green southwards.
 std::filesystem::path WritePicture(const std::filesystem::path& file,
-                                   const std::array<double, 6>* transform = nullptr) {
+                                   const std::array<double, 6>* transform = nullptr,
+                                   const char* crs = "WGS84") {
   GDALRegister_GTiff();
   GDALDriver* driver = GetGDALDriverManager()->GetDriverByName("GTiff");
   GDALDataset* dataset =
@@ -133,9 +135,9 @@ std::filesystem::path WritePicture(const std::filesystem::path& file,
   if (transform != nullptr) {
     std::array<double, 6> copy = *transform;
     dataset->SetGeoTransform(copy.data());
-    OGRSpatialReference wgs84;
-    wgs84.SetWellKnownGeogCS("WGS84");
-    dataset->SetSpatialRef(&wgs84);
+    OGRSpatialReference reference;
+    reference.SetFromUserInput(crs);
+    dataset->SetSpatialRef(&reference);
   }
   GDALClose(dataset);
   return file;
@@ -178,10 +180,10 @@ void ExpectColour(const std::optional<std::array<double, 3>>& found,
 
 class DrapedColours : public TemporaryFolder {
  protected:
-  [[nodiscard]] static auto Drape(const std::filesystem::path& file) {
+  [[nodiscard]] static auto Drape(const std::filesystem::path& file, double longitude = 8.0) {
     Scene scene;
     scene.terrain.colour = file;
-    return ColourDrape::Of(scene, Plain());
+    return ColourDrape::Of(scene, Plain(longitude));
   }
 };
 
@@ -290,6 +292,65 @@ TEST_F(DrapedColours, LieWhereTheGeoreferenceSays) {
                  {3 * column, 3 * row, 90}, kShift);
   }
   EXPECT_FALSE(drape->At({-3900.0, 0.0, 0.0}, 0.0, 1.0).has_value()) << "west of the picture";
+}
+
+TEST_F(DrapedColours, LieThereInWhateverTurnLongitudesAreCounted) {
+  constexpr double kStep = 0.001;  // degrees
+  // The picture begins 0.03 degrees west of the middle of the land.
+  for (const auto& [land, west] : {std::pair{8.0, 367.97},
+                                   {8.0, -352.03},
+                                   {-8.0, 351.97},
+                                   {180.0, 179.97},
+                                   {180.0, -180.03}}) {
+    SCOPED_TRACE(testing::Message() << "land at " << land << ", picture from " << west);
+    const std::array<double, 6> transform{west, kStep, 0.0, 46.03, 0.0, -kStep};
+    const auto drape = Drape(WritePicture(folder_ / "placed.tif", &transform), land);
+    EXPECT_EQ(drape->note(), "");
+    for (const auto& [column, row] : {std::pair{2, 20}, {28, 33}, {33, 33}, {60, 50}}) {
+      const GeodeticPosition place = PlaceFromDegrees(46.03 - kStep * (row + 0.5),
+                                                      land - 0.03 + kStep * (column + 0.5), 800.0);
+      constexpr double kShift = 0.01;  // a hundredth of a pixel
+      ExpectColour(drape->At(Plain(land).frame.EnuFromGeodetic(place).xyz, 800.0, 1.0),
+                   {3 * column, 3 * row, 90}, kShift);
+    }
+  }
+}
+
+TEST_F(DrapedColours, OfTheWholeEarthCoverLandOverItsSeam) {
+  constexpr double kWide = 360.0 / kPictureSide;
+  const std::array<double, 6> transform{-180.0, kWide, 0.0, 90.0, 0.0, -0.5 * kWide};
+  const auto drape = Drape(WritePicture(folder_ / "earth.tif", &transform), 180.0);
+  // The land lies half a column or less from the seam, so that colours are those of a rim.
+  for (const auto& [east_m, column] :
+       {std::pair{-3000.0, 63}, {-10.0, 63}, {10.0, 0}, {3000.0, 0}}) {
+    const auto seen = drape->At({east_m, 0.0, 0.0}, 0.0, 1.0);
+    ASSERT_TRUE(seen.has_value()) << east_m;
+    EXPECT_NEAR((*seen)[0], Linear(3 * column), 1e-4) << east_m;
+  }
+}
+
+TEST_F(DrapedColours, BesideTheLandAreReported) {
+  const auto note = [&](const std::array<double, 6>& transform) {
+    return Drape(WritePicture(folder_ / "placed.tif", &transform))->note();
+  };
+  EXPECT_EQ(note({8.0, 1e-5, 0.0, 46.0, 0.0, -1e-5}), "") << "a small picture";
+  for (const double west : {20.0, -172.0, 188.0, 8.1})
+    EXPECT_THAT(note({west, 0.001, 0.0, 46.03, 0.0, -0.001}), HasSubstr("beside the land")) << west;
+  EXPECT_THAT(note({7.97, 0.001, 0.0, 48.0, 0.0, -0.001}), HasSubstr("beside the land"));
+}
+
+TEST_F(DrapedColours, OnNoMapOfTheEarthAreRefused) {
+  const auto fault = [&](const std::array<double, 6>& transform, const char* crs) {
+    const std::filesystem::path file = WritePicture(folder_ / "placed.tif", &transform, crs);
+    return tests::FaultOf([&] { return Drape(file); });
+  };
+  const std::array<double, 6> transform{7.97, 0.001, 0.0, 46.03, 0.0, -0.001};
+  EXPECT_THAT(fault(transform, "EPSG:4978"), HasSubstr("neither geographic nor projected"));
+  EXPECT_THAT(fault(transform, "+proj=longlat +a=3396190 +b=3376200"),
+              HasSubstr("it must be of the earth"));
+  std::array<double, 6> unknown = transform;
+  unknown[0] = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_THAT(fault(unknown, "WGS84"), HasSubstr("geotransform"));
 }
 
 TEST_F(DrapedColours, DistantGroundHasTheMeanColour) {

@@ -223,6 +223,25 @@ TEST_F(DrapeFile, PalettesHaveTheColoursOfTheirEntries) {
   ExpectPixel(Pixels(file), Orange());
 }
 
+TEST_F(DrapeFile, EntriesOfPalettesHaveWeights) {
+  for (const short weight : {255, 200, 50, 0}) {
+    SCOPED_TRACE(weight);
+    const std::filesystem::path bytes = Write({{1.0}});
+    auto* dataset = static_cast<GDALDataset*>(GDALOpen(bytes.c_str(), GA_Update));
+    GDALColorTable palette;
+    const GDALColorEntry half{0, 0, 0, 128}, orange{200, 100, 50, weight};
+    palette.SetColorEntry(0, &half);
+    palette.SetColorEntry(1, &orange);
+    ASSERT_EQ(dataset->GetRasterBand(1)->SetColorTable(&palette), CE_None);
+    GDALRegister_PNG();
+    const std::filesystem::path file = folder_ / "palette.png";
+    GDALClose(GetGDALDriverManager()->GetDriverByName("PNG")->CreateCopy(
+        file.c_str(), dataset, FALSE, nullptr, nullptr, nullptr));
+    GDALClose(dataset);
+    ExpectPixel(Pixels(file), Orange(), weight / 255.0);
+  }
+}
+
 TEST_F(DrapeFile, OtherFormatsAreNamed) {
   for (const auto& [name, bytes, format] :
        {std::tuple{"a.jpg", "\xFF\xD8\xFF\xE0 and more", "this is a JPEG picture"},
