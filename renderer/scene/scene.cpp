@@ -193,12 +193,22 @@ UpAxis UpAxisOf(const TomlTable& terrain) {
   return up == "y" ? UpAxis::kY : UpAxis::kZ;
 }
 
+/// Returns the file that a key names relative to the folder of the scene.
+std::optional<fs::path> FileNamedBy(const TomlTable& table, const std::string& key,
+                                    const fs::path& folder) {
+  const std::optional<std::string> name = table.Text(key);
+  if (!name) return std::nullopt;
+  if (name->empty())
+    table.Fail(key, table.FullName(key) + " is empty; it must be the name of a file");
+  return folder / *name;
+}
+
 TerrainSource TerrainOf(const TomlTable& document, const fs::path& folder) {
   const std::optional<TomlTable> table = document.Table("terrain");
   if (!table) return {};
   table->AllowOnly({"dem", "mesh", "up", "none", "range", "voids", "colour", "land_cover"});
-  const std::optional<std::string> dem = table->Text("dem");
-  const std::optional<std::string> mesh = table->Text("mesh");
+  const std::optional<fs::path> dem = FileNamedBy(*table, "dem", folder);
+  const std::optional<fs::path> mesh = FileNamedBy(*table, "mesh", folder);
   const bool none = table->Truth("none").value_or(false);
   const bool range = table->Truth("range").value_or(false);
   if (int{dem.has_value()} + int{mesh.has_value()} + int{none} + int{range} > 1) {
@@ -213,28 +223,28 @@ TerrainSource TerrainOf(const TomlTable& document, const fs::path& folder) {
                 fmt::format("terrain.voids is \"{}\"; it must be \"fill\" or \"open\"", voids));
   }
   if (table->Has("voids") && !dem) table->Fail("voids", "terrain.voids needs terrain.dem");
-  const std::optional<std::string> colour = table->Text("colour");
+  const std::optional<fs::path> colour = FileNamedBy(*table, "colour", folder);
   if (colour && none)
     table->Fail("colour", "terrain.colour lies over terrain; terrain.none is set");
-  const std::optional<std::string> land_cover = table->Text("land_cover");
+  const std::optional<fs::path> land_cover = FileNamedBy(*table, "land_cover", folder);
   if (land_cover && (none || colour)) {
     table->Fail("land_cover", none ? "terrain.land_cover lies over terrain; terrain.none is set"
                                    : "give one of terrain.colour and terrain.land_cover");
   }
   TerrainSource source;
   source.is_default = !dem && !mesh && !none && !range;
-  if (colour) source.colour = folder / *colour;
-  if (land_cover) source.land_cover = folder / *land_cover;
+  if (colour) source.colour = *colour;
+  if (land_cover) source.land_cover = *land_cover;
   source.up = UpAxisOf(*table);
   source.voids = voids == "fill" ? VoidPolicy::kFill : VoidPolicy::kLeaveOpen;
   if (none) source.kind = TerrainSource::Kind::kNone;
   if (dem) {
     source.kind = TerrainSource::Kind::kElevationModel;
-    source.file = folder / *dem;
+    source.file = *dem;
   }
   if (mesh) {
     source.kind = TerrainSource::Kind::kMesh;
-    source.file = folder / *mesh;
+    source.file = *mesh;
   }
   return source;
 }
@@ -330,7 +340,7 @@ void RefuseKeys(const TomlTable& table, std::initializer_list<const char*> keys,
 }
 
 void ReadDistribution(const TomlTable& table, const fs::path& folder, Light& light) {
-  const std::optional<std::string> ies = table.Text("ies");
+  const std::optional<fs::path> ies = FileNamedBy(table, "ies", folder);
   if (light.type == Light::Type::kSpot) {
     RefuseKeys(table, {"ies"}, "is for a point; this is a spot");
     ReadAxis(table, 0.0, light);
@@ -342,7 +352,7 @@ void ReadDistribution(const TomlTable& table, const fs::path& folder, Light& lig
     return;
   }
   RefuseKeys(table, {"cone"}, "is for a spot; this is a point");
-  light.ies = folder / *ies;
+  light.ies = *ies;
   ReadAxis(table, -90.0, light);
 }
 
@@ -446,13 +456,13 @@ VolumePlacement::Shape ShapeOf(const TomlTable& table) {
 
 void ReadDensity(const TomlTable& table, const fs::path& folder, Volume& volume) {
   volume.scale_height_m = table.Number("scale_height_m", 0.1, 1e5);
-  const std::optional<std::string> grid = table.Text("grid");
+  const std::optional<fs::path> grid = FileNamedBy(table, "grid", folder);
   if (!grid) {
     RefuseKeys(table, {"grid_size"}, "needs a grid");
     return;
   }
   RefuseKeys(table, {"scale_height_m"}, "is for a volume without a grid");
-  volume.grid = folder / *grid;
+  volume.grid = *grid;
   if (HasExtension(volume.grid, ".nrrd") || HasExtension(volume.grid, ".nhdr")) {
     RefuseKeys(table, {"grid_size"}, "is for a raw grid; an NRRD file says its own");
     return;
@@ -494,6 +504,19 @@ Volume VolumeOf(const TomlTable& table, const fs::path& folder, std::size_t band
   volume.albedo = PerBand(table, "albedo", 1.0, bands, 1.0);
   volume.emission_per_m = PerBand(table, "emission_per_m", 1e12, bands, 0.0);
   volume.temperature_k = table.Number("temperature_k", 100.0, 50000.0);
+  if (volume.temperature_k && table.Has("emission_per_m")) {
+    table.Fail("temperature_k",
+               fmt::format("give one of {} and {}", table.FullName("emission_per_m"),
+                           table.FullName("temperature_k")));
+  }
+  const bool absorbs = std::any_of(volume.albedo.begin(), volume.albedo.end(),
+                                   [](double albedo) { return albedo < 1.0; });
+  if (volume.temperature_k && !absorbs) {
+    table.Fail("temperature_k",
+               fmt::format("{} has no effect: what absorbs nothing does not glow; give an {} below "
+                           "1",
+                           table.FullName("temperature_k"), table.FullName("albedo")));
+  }
   volume.phase = DropletPhaseOf(table);
   return volume;
 }

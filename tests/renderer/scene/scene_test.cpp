@@ -192,7 +192,6 @@ grid = "smoke.raw"
 grid_size = [32, 48, 64]
 extinction_per_m = [0.1, 0.2, 0.3, 0.4]
 albedo = 0.6
-emission_per_m = 2.5
 temperature_k = 900
 g = 0.3
 [[volume]]
@@ -325,6 +324,10 @@ TEST(Scene, FogLampsVolumesAndGroundAreRefusedByKey) {
       {kSmoke + "albedo = [0.5, 0.5]\n", "volume[0].albedo has 2 values; give one, or 4"},
       {kSmoke + "emission_per_m = -1\n", "volume[0].emission_per_m is -1"},
       {kSmoke + "temperature_k = 5\n", "volume[0].temperature_k is 5"},
+      {kSmoke + "temperature_k = 900\n", "volume[0].temperature_k has no effect"},
+      {kSmoke + "albedo = 0.5\ntemperature_k = 900\nemission_per_m = 1\n",
+       "give one of volume[0].emission_per_m and volume[0].temperature_k"},
+      {kSmoke + "grid = \"\"\n", "volume[0].grid is empty"},
       {kSmoke + "shape = \"sphere\"\n", "it must be \"box\" or \"ellipsoid\""},
       {kSmoke + "grid_size = [4, 4, 4]\n", "volume[0].grid_size needs a grid"},
       {kSmoke + "grid = \"a.raw\"\n", "volume[0].grid_size is missing"},
@@ -350,6 +353,10 @@ TEST(Scene, FogLampsVolumesAndGroundAreRefusedByKey) {
       {kMap + "none = true\n", "terrain.land_cover lies over"},
       {kMap + "[ground]\ncover = \"snow\"\n", "terrain.land_cover is for"},
       {kPlace + "[terrain]\nnone = true\ncolour = \"a.tif\"\n", "terrain.colour"},
+      {kPlace + "[terrain]\ndem = \"\"\n", "terrain.dem is empty"},
+      {kPlace + "[terrain]\nmesh = \"\"\n", "terrain.mesh is empty"},
+      {kPlace + "[terrain]\ncolour = \"\"\n", "terrain.colour is empty"},
+      {kPlace + "[terrain]\nland_cover = \"\"\n", "terrain.land_cover is empty"},
   });
 }
 
