@@ -26,8 +26,11 @@ class TrackReader {
     if (text.starts_with("\xFF\xFE") || text.starts_with("\xFE\xFF"))
       Fail(1, "this is UTF-16; UTF-8 is read: save it as such");
     if (document_.Parse(text.data(), text.size()) == tinyxml2::XML_SUCCESS) return;
+    const bool is_xml = Trimmed(text).starts_with('<');
     Fail(std::max(document_.ErrorLineNum(), 1),
-         fmt::format("this is no XML ({})", document_.ErrorName()));
+         fmt::format("{} ({})",
+                     is_xml ? "its XML is cut off, damaged or nested too deeply" : "this is no XML",
+                     document_.ErrorName()));
   }
 
   [[nodiscard]] Track Read() {

@@ -171,8 +171,9 @@ class ObjMesher {
   MeshModel Mesh() {
     for (const ObjText::Face& face : text_.faces) AddFace(face);
     if (mesh_.triangles.empty()) {
-      throw InputError(fmt::format("{}: has no triangles{}", name_,
-                                   without_area_.count > 0 ? "; no face has an area" : ""));
+      throw InputError(fmt::format("{}: has no triangles{}{}", name_,
+                                   without_area_.count > 0 ? "; no face has an area" : "",
+                                   text_.other_statements > 0 ? "; " + NoteOnOthers() : ""));
     }
     AddVertices();
     std::string message = Message();
@@ -260,15 +261,16 @@ class ObjMesher {
           fmt::format("{} normal{} without direction, for which those of the triangles stand",
                       pointless, pointless == 1 ? "" : "s"));
     }
-    if (text_.other_statements > 0) {
-      parts.push_back(fmt::format("{} statement{} not read (the first, \"{}\", in line {})",
-                                  text_.other_statements, text_.other_statements == 1 ? "" : "s",
-                                  text_.first_other, text_.first_other_line));
-    }
+    if (text_.other_statements > 0) parts.push_back(NoteOnOthers());
     if (const std::string far = TextOnFar(mesh_); !far.empty()) parts.push_back(far);
     return parts.empty() ? "" : fmt::format("{}: {}", name_, fmt::join(parts, "; "));
   }
 
+  [[nodiscard]] std::string NoteOnOthers() const {
+    return fmt::format("{} statement{} not read (the first, \"{}\", in line {})",
+                       text_.other_statements, text_.other_statements == 1 ? "" : "s",
+                       text_.first_other, text_.first_other_line);
+  }
   static std::string Faces(std::size_t count) {
     return fmt::format("{} face{}", count, count == 1 ? "" : "s");
   }

@@ -362,6 +362,7 @@ class Inflater {
   std::string Unpacked(std::string packed, std::size_t most) {
     std::string data(most, '\0');
     std::size_t read = 0, written = 0;
+    bool is_whole = packed.empty();
     while (written < most && read < packed.size()) {
       stream_.next_in = reinterpret_cast<Bytef*>(packed.data() + read);
       stream_.next_out = reinterpret_cast<Bytef*>(data.data() + written);
@@ -370,12 +371,15 @@ class Inflater {
       const int status = inflate(&stream_, Z_NO_FLUSH);
       read += in - stream_.avail_in;
       written += out - stream_.avail_out;
-      if (status == Z_STREAM_END) {  // another member can follow
+      is_whole = status == Z_STREAM_END;
+      if (is_whole) {  // another member can follow
         inflateReset(&stream_);
       } else if (status != Z_OK) {
         throw InputError(fmt::format("the gzip data are damaged at byte {}", read));
       }
     }
+    if (!is_whole && written < most)
+      throw InputError(fmt::format("the gzip data are cut off at byte {}", read));
     data.resize(written);
     return data;
   }

@@ -294,9 +294,13 @@ void LandTiles::AddFolder(const std::filesystem::path& folder) {
       notes_.push_back(fmt::format("left out: {}", error.what()));
     }
   }
-  if (tiles_.size() == before)
-    throw InputError(fmt::format("{}: no elevation model ({}) in this folder", folder.string(),
-                                 fmt::join(ElevationExtensions(), ", ")));
+  if (tiles_.size() > before) return;
+  if (!files.empty()) {
+    throw InputError(fmt::format("{}: no elevation model in this folder can be read; {}",
+                                 folder.string(), notes_.back()));
+  }
+  throw InputError(fmt::format("{}: no elevation model ({}) in this folder", folder.string(),
+                               fmt::join(ElevationExtensions(), ", ")));
 }
 
 void LandTiles::LayLattice() {

@@ -119,7 +119,10 @@ TEST_F(TrackFile, AFaultIsReportedWithItsFileAndLine) {
   };
   const Case cases[] = {
       {"", 1, "this is no XML"},
-      {"<gpx>\n<trk>\n</gpx>", 2, "this is no XML (XML_ERROR_MISMATCHED_ELEMENT)"},
+      {"t_s,latitude", 1, "this is no XML"},
+      {"<gpx>\n<trk>\n</gpx>", 2,
+       "its XML is cut off, damaged or nested too deeply (XML_ERROR_MISMATCHED_ELEMENT)"},
+      {"<gpx>\n<trk><trkseg>\n<trkpt lat='46' lon='8'><ele>9", 3, "its XML is cut off"},
       {"<svg/>", 1, "<svg> is neither GPX nor KML"},
       {"\n<gpx/>", 2, "there is no trkpt, rtept or wpt in it"},
       {gpx("<trkpt lon='8'/>"), 3, "<trkpt> has no lat"},
@@ -474,7 +477,7 @@ TEST_F(TrackFile, EveryTruncationOfAFileIsRefused) {
 TEST_F(TrackFile, DeeplyNestedElementsAreRefused) {
   std::string deep = "<gpx>";
   for (int i = 0; i < 10000; ++i) deep += "<a>";
-  EXPECT_THAT(Fault(deep), HasSubstr("this is no XML"));
+  EXPECT_THAT(Fault(deep), HasSubstr("nested too deeply"));
 }
 
 }  // namespace

@@ -245,6 +245,8 @@ TEST_F(ObjFile, BadFilesAreRefusedByLine) {
   for (const auto& [text, fault] : std::vector<std::pair<std::string, const char*>>{
            {"", "no triangles"},
            {kCorners, "no triangles"},
+           {kCorners + "F 1 2 3\n",
+            "no triangles; 1 statement not read (the first, \"F\", in line 5)"},
            {"v 0 0 nan\n" + face, ":1: coordinate 'nan'"},
            {kCorners + "v inf 0 0\nf 1 2 3\n", ":5: coordinate 'inf'"},
            {"v 0 0 1e30\n" + face, ":1: coordinate '1e30'"},

@@ -387,8 +387,11 @@ TEST_F(LandSourceFiles, WhatCannotBeReadIsSaidByName) {
               HasSubstr("none.tif"));
   EXPECT_THAT(fault({{folder_}, VoidPolicy::kFill, std::nullopt}),
               HasSubstr("no elevation model (.hgt, .tif, .tiff, .dem) in this folder"));
-  WriteTile(folder_ / "good.tif", 0, 0);
   WriteText(folder_ / "broken.tif", "this is no TIFF");
+  EXPECT_THAT(fault({{folder_}, VoidPolicy::kFill, std::nullopt}),
+              testing::AllOf(HasSubstr("no elevation model in this folder can be read"),
+                             HasSubstr("broken.tif: not a readable GeoTIFF")));
+  WriteTile(folder_ / "good.tif", 0, 0);
   const LandTiles tiles({{folder_}, VoidPolicy::kFill, std::nullopt});
   EXPECT_EQ(tiles.tiles().size(), 1U);
   ASSERT_EQ(tiles.notes().size(), 1U);
