@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 #include "renderer/elevation/gdal_file.h"
 
+#include <cpl_conv.h>
+#include <cpl_minixml.h>
 #include <fmt/format.h>
 #include <ogr_spatialref.h>
 
@@ -103,10 +105,73 @@ OGRSpatialReference CrsOfTheEarth(const std::filesystem::path& file, GDALDataset
   return crs;
 }
 
+namespace {
+
+bool ReportsScale(GDALRasterBand& band) {
+  int has_scale = 0, has_offset = 0;
+  band.GetScale(&has_scale);
+  band.GetOffset(&has_offset);
+  return has_scale != 0 || has_offset != 0;
+}
+
+/// While an object of this class exists, GDAL ignores sidecars in this thread.
+class WithoutSidecars {
+ public:
+  WithoutSidecars() { CPLSetThreadLocalConfigOption(kOption, "NO"); }
+  ~WithoutSidecars() {
+    CPLSetThreadLocalConfigOption(kOption, before_ ? before_->c_str() : nullptr);
+  }
+  WithoutSidecars(const WithoutSidecars&) = delete;
+  WithoutSidecars& operator=(const WithoutSidecars&) = delete;
+
+ private:
+  static constexpr const char* kOption = "GDAL_PAM_ENABLED";
+  static std::optional<std::string> Now() {
+    const char* value = CPLGetThreadLocalConfigOption(kOption, nullptr);
+    return value == nullptr ? std::nullopt : std::optional<std::string>(value);
+  }
+  std::optional<std::string> before_ = Now();
+};
+
+struct DestroyXml {
+  void operator()(CPLXMLNode* node) const { CPLDestroyXMLNode(node); }
+};
+
+/// Returns whether a band has a scale or an offset in the sidecar (.aux.xml) of its file.
+bool SidecarDeclaresScale(const std::filesystem::path& file, int band) {
+  const std::string sidecar = file.string() + ".aux.xml";
+  std::error_code ignored;
+  if (!std::filesystem::is_regular_file(sidecar, ignored)) return false;
+  const std::unique_ptr<CPLXMLNode, DestroyXml> parsed(CPLParseXMLFile(sidecar.c_str()));
+  const CPLXMLNode* root = parsed ? CPLGetXMLNode(parsed.get(), "=PAMDataset") : nullptr;
+  for (const CPLXMLNode* node = root ? root->psChild : nullptr; node; node = node->psNext) {
+    if (node->eType != CXT_Element || !EQUAL(node->pszValue, "PAMRasterBand")) continue;
+    if (std::string_view(CPLGetXMLValue(node, "band", "")) != fmt::format("{}", band)) continue;
+    if (CPLGetXMLNode(node, "Scale") != nullptr || CPLGetXMLNode(node, "Offset") != nullptr)
+      return true;
+  }
+  return false;
+}
+
+/// Returns whether a file declares that a band has the scale 1 and the offset 0. GDAL reports both
+/// as declared if the file has a sidecar for any purpose, such as statistics. The file is therefore
+/// asked without its sidecar.
+bool DeclaresUnitScale(const std::filesystem::path& file, GDALRasterBand& band) {
+  if (!ReportsScale(band)) return false;
+  if (SidecarDeclaresScale(file, band.GetBand())) return true;
+  const WithoutSidecars without_sidecars;
+  const RasterFile alone(static_cast<GDALDataset*>(
+      GDALOpenEx(file.c_str(), GDAL_OF_RASTER, nullptr, nullptr, nullptr)));
+  return alone && ReportsScale(*alone->GetRasterBand(band.GetBand()));
+}
+
+}  // namespace
+
 BandValues::BandValues(const std::filesystem::path& file, GDALRasterBand& band)
     : band_(band),
       scale_(band.GetScale()),
       offset_(band.GetOffset()),
+      has_scale_(scale_ != 1.0 || offset_ != 0.0 || DeclaresUnitScale(file, band)),
       nodata_(DeclaredNodata(band)) {
   // GDAL up to 3.6 reads signed bytes as unsigned ones and declares them by this item.
   const char* type = band.GetMetadataItem("PIXELTYPE", "IMAGE_STRUCTURE");

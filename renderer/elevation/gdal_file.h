@@ -76,12 +76,14 @@ class BandValues {
   [[nodiscard]] double Value(double stored) const { return stored * scale_ + offset_; }
 
   [[nodiscard]] const std::optional<double>& nodata() const { return nodata_; }
-  [[nodiscard]] bool HasScale() const { return scale_ != 1.0 || offset_ != 0.0; }
+  /// Returns whether the file declares a scale or an offset, also of 1 and 0.
+  [[nodiscard]] bool HasScale() const { return has_scale_; }
 
  private:
   GDALRasterBand& band_;
   bool has_signed_bytes_;
   double scale_, offset_;
+  bool has_scale_;
   std::optional<double> nodata_;
 };
 

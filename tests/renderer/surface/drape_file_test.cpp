@@ -181,6 +181,47 @@ TEST_F(DrapeFile, DeclaredScalesMakeLinearReflectances) {
   EXPECT_THAT(FaultOf(Write({scaled(1.0, 0.0, 0.0)}, GDT_Int16)), HasSubstr("declares scale 0"));
 }
 
+/// Replaces the only occurrence of a text in a file by one of the same length.
+void Patch(const std::filesystem::path& file, std::string_view from, std::string_view to) {
+  std::string bytes = ContentOf(file);
+  const std::size_t at = bytes.find(from);
+  ASSERT_NE(at, std::string::npos);
+  ASSERT_EQ(from.size(), to.size());
+  bytes.replace(at, from.size(), to);
+  std::ofstream(file, std::ios::binary) << bytes;
+}
+
+void WriteSidecar(const std::filesystem::path& file, const std::string& of_band) {
+  std::ofstream(file.string() + ".aux.xml")
+      << "<PAMDataset><PAMRasterBand band=\"1\">" << of_band << "</PAMRasterBand></PAMDataset>";
+}
+
+TEST_F(DrapeFile, AScaleOfOneIsDeclaredLikeAnyOther) {
+  for (const GDALDataType type : {GDT_Byte, GDT_UInt16, GDT_Int16, GDT_Int32}) {
+    SCOPED_TRACE(GDALGetDataTypeName(type));
+    // GDAL writes no scale of 1 itself.
+    const std::filesystem::path file = Write({{1.0, GCI_GrayIndex, "", 2.0}}, type);
+    Patch(file, "role=\"scale\">2<", "role=\"scale\">1<");
+    ExpectPixel(Pixels(file), {1.0, 1.0, 1.0});
+    WriteSidecar(Write({{1.0, GCI_GrayIndex}}, type), "<Scale>1</Scale>");
+    ExpectPixel(Pixels(file), {1.0, 1.0, 1.0});
+    WriteSidecar(Write({{1.0, GCI_GrayIndex}}, type), "<Offset>0</Offset>");
+    ExpectPixel(Pixels(file), {1.0, 1.0, 1.0});
+  }
+  const std::filesystem::path bright = Write({{200.0, GCI_GrayIndex, "", 2.0}});
+  Patch(bright, "role=\"scale\">2<", "role=\"scale\">1<");
+  EXPECT_THAT(Pixels(bright).note, HasSubstr("reach 200 "));
+}
+
+TEST_F(DrapeFile, ASidecarWithoutScaleDeclaresNone) {
+  const double grey = LinearOfCode(200.0, 255.0);
+  const std::filesystem::path file = Write({{200.0, GCI_GrayIndex}});
+  WriteSidecar(file, "<Metadata><MDI key=\"STATISTICS_MEAN\">200</MDI></Metadata>");
+  ExpectPixel(Pixels(file), {grey, grey, grey});
+  WriteSidecar(Write({{200.0, GCI_GrayIndex}}, GDT_Int16), "<Description>heights</Description>");
+  EXPECT_THAT(FaultOf(file), HasSubstr("declares no scale"));
+}
+
 TEST_F(DrapeFile, ValuesOutOfRangeAreCutOffWithANote) {
   const DrapePixels bright = Pixels(Write({{188.0}}, GDT_Float32));
   ExpectPixel(bright, {1.0, 1.0, 1.0});
