@@ -28,6 +28,14 @@ SHARED Length WayAbove(Length h0, Length h1, Length d, Length top, Length R) {
   return select(h0 > top, min(enters, d), Length(0.0));
 }
 
+// Returns the altitude of the ray at a fraction t of its lower part, the chord of which begins at the
+// altitude `begin` and ends at h1.
+// @param bump, sag  of the ray over that chord, and of the chord into the planet, each divided by
+// t (1 - t); before: the length of the way before that chord, relative to the whole way.
+SHARED Length RayAltitude(Length begin, Length h1, Number t, Length bump, Length sag, Number before) {
+  return begin + (h1 - begin) * t + (Number(1.0) - t) * (bump * (before + t) - sag * t);
+}
+
 // Returns the lift [rad].
 // @param h0, h1  altitudes of observer and place; d: distance between them, > 0 [km]; R: radius of
 // the planet; top: rays are straight above; usual: approximate curvature of the ray [1/km].
@@ -40,10 +48,9 @@ SHARED Number LandLift(Length h0, Length h1, Length d, Length R, Length top, Num
   Length sag = below * below / (Number(2.0) * R);
   Length bump = Number(0.5) * usual * below * below;
   Number before = above / d;
-  Number t1 = Number(0.0885879595), t2 = Number(0.4094668644), t3 = Number(0.7876594618);
-  Length z1 = begin + (h1 - begin) * t1 + (Number(1.0) - t1) * (bump * (before + t1) - sag * t1);
-  Length z2 = begin + (h1 - begin) * t2 + (Number(1.0) - t2) * (bump * (before + t2) - sag * t2);
-  Length z3 = begin + (h1 - begin) * t3 + (Number(1.0) - t3) * (bump * (before + t3) - sag * t3);
+  Length z1 = RayAltitude(begin, h1, Number(0.0885879595), bump, sag, before);
+  Length z2 = RayAltitude(begin, h1, Number(0.4094668644), bump, sag, before);
+  Length z3 = RayAltitude(begin, h1, Number(0.7876594618), bump, sag, before);
   Number mean =
       Number(0.4018638275) *
           CurvatureAt(z1, slope_1, slope_2, slope_3, fall_1, fall_2, fall_3) +
@@ -51,4 +58,18 @@ SHARED Number LandLift(Length h0, Length h1, Length d, Length R, Length top, Num
           CurvatureAt(z2, slope_1, slope_2, slope_3, fall_1, fall_2, fall_3) +
       Number(0.1396539598) * CurvatureAt(z3, slope_1, slope_2, slope_3, fall_1, fall_2, fall_3);
   return Number(0.5) * mean * below * below / d;
+}
+
+// Returns LandLift with one node of the quadrature instead of three, which is exact where the
+// curvature is linear along the ray. It needs a third of the exponentials, most of the time.
+SHARED Number RoughLandLift(Length h0, Length h1, Length d, Length R, Length top, Number usual,
+                            Number slope_1, Number slope_2, Number slope_3, Number fall_1,
+                            Number fall_2, Number fall_3) {
+  Length above = WayAbove(h0, h1, d, top, R);
+  Length below = d - above;
+  Length sag = below * below / (Number(2.0) * R);
+  Length bump = Number(0.5) * usual * below * below;
+  Length z = RayAltitude(min(h0, top), h1, Number(1.0 / 3.0), bump, sag, above / d);
+  return Number(0.5) * CurvatureAt(z, slope_1, slope_2, slope_3, fall_1, fall_2, fall_3) * below *
+         below / d;
 }

@@ -42,18 +42,13 @@ LandEye::LandEye(const LandLattice& lattice, const GeodeticPosition& place, doub
   nearest_equator_rad = std::max({southern_rad, -lattice.north_rad, 0.0});
 }
 
-// The chord is that of the haversine formula, which is exact for small angles.
 double LandEye::ChordTo(const LatticePlace& place) const {
-  const double x = std::sin(0.5 * (place.column - at.column) * step_lon_rad);
-  return ChordToRow(place.row, x * x);
+  return ChordToRow(place.row, std::sin(0.5 * (place.column - at.column) * step_lon_rad));
 }
 
-double LandEye::ChordToRow(double row, double square_across) const {
-  const double north_rad = (at.row - row) * step_lat_rad;
-  const double y = std::sin(0.5 * north_rad);
-  // A row beyond a pole is drawn at the pole.
-  const double across = cos_latitude * std::max(std::cos(latitude_rad + north_rad), 0.0);
-  return 2.0 * radius_m() * std::sqrt(std::max(y * y + across * square_across, 0.0));
+double LandEye::ChordToRow(double row, double across) const {
+  const double south = std::sin(0.5 * (row - at.row) * step_lat_rad);
+  return radius_m() * std::sqrt(shared::ChordSquare(across, south, sin_latitude, cos_latitude));
 }
 
 double LandEye::ChordTo(const LatticeArea& area) const {
@@ -67,7 +62,7 @@ double LandEye::ChordTo(const LatticeArea& area) const {
   const double columns =
       is_on_meridians ? 0.0 : std::min(beside(area.first_column), beside(area.last_column));
   const double x = std::sin(0.5 * columns * step_lon_rad);
-  const auto chord = [&](double row) { return ChordToRow(row, x * x); };
+  const auto chord = [&](double row) { return ChordToRow(row, x); };
   const auto row_of = [&](double latitude) {
     return at.row + (latitude_rad - latitude) / step_lat_rad;
   };

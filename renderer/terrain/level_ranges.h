@@ -14,6 +14,8 @@
 //
 // end(k) is never beyond the nearest chunk that is wanted but not loaded yet, so both conditions
 // hold during loading.
+//
+// This header also provides the function of the shared text land_chord.glsl in C++.
 #pragma once
 
 #include <cmath>
@@ -21,7 +23,16 @@
 #include <unordered_map>
 #include <vector>
 
+#include "atmosphere/shared_glsl/shared_math.h"
 #include "renderer/terrain/land_chunk.h"
+
+namespace alpenglow::shared {
+// clang-format off
+#include "atmosphere/shared_glsl/shared_begin.h"
+#include "renderer/terrain/land_chord.glsl"
+#include "atmosphere/shared_glsl/shared_end.h"
+// clang-format on
+}  // namespace alpenglow::shared
 
 namespace alpenglow::renderer {
 
@@ -47,8 +58,7 @@ struct LandEye {
 
   /// Radius of the sphere on which distances are measured [m].
   [[nodiscard]] double radius_m() const { return size.row_m / step_lat_rad; }
-  /// Returns the chord c from the place under the eye to a place on the lattice [m]. Turned() of
-  /// land.vert.glsl computes the same.
+  /// Returns the chord c from the place under the eye to a place on the lattice [m].
   [[nodiscard]] double ChordTo(const LatticePlace& place) const;
   /// Returns the chord to the nearest point of an area [m].
   [[nodiscard]] double ChordTo(const LatticeArea& area) const;
@@ -56,9 +66,9 @@ struct LandEye {
   [[nodiscard]] double DistanceOver(double chord_m) const { return std::hypot(chord_m, above_m); }
 
  private:
-  /// Returns the chord to a place on a row, from the squared sine of half the angle between its
-  /// meridian and the eye's.
-  [[nodiscard]] double ChordToRow(double row, double square_across) const;
+  /// Returns the chord to a place on a row.
+  /// @param across  sine of half the angle between its meridian and the eye's.
+  [[nodiscard]] double ChordToRow(double row, double across) const;
 };
 
 struct LevelRange {

@@ -59,19 +59,14 @@ out float sunk;  // [km]; positive: hidden by the planet
 
 vec3 InEyeFrame(vec3 v) { return vec3(dot(v, east.xyz), dot(v, north.xyz), dot(v, up.xyz)); }
 
-// Returns the square of the chord from the place under the eye: LandEye::ChordTo of level_ranges.h.
-float SquareOfChord() {
-  float turns = round((sample_place.x - eye_sample.x) / max(globe.w, 1.0));
-  vec2 near = vec2(sample_place.x - globe.w * turns, sample_place.y);
-  vec2 s = sin(0.5 * (near - eye_sample.xy) * eye_sample.zw);  // of half the angles
-  float cosine = globe.y * (1.0 - 2.0 * s.y * s.y) + globe.x * 2.0 * s.y * sqrt(1.0 - s.y * s.y);
-  return 4.0 * globe.z * globe.z * (s.y * s.y + globe.y * max(cosine, 0.0) * s.x * s.x);
-}
-
 // Returns the morph weight: 0 for the own level, 1 for the coarser level.
 float Turned() {
   vec2 range = turning[int(normal.w)].xy;
-  float d = sqrt(SquareOfChord() + eye_above.x * eye_above.x);
+  float turns = round((sample_place.x - eye_sample.x) / max(globe.w, 1.0));
+  vec2 near = vec2(sample_place.x - globe.w * turns, sample_place.y);
+  vec2 s = sin(0.5 * (near - eye_sample.xy) * eye_sample.zw);  // of half the angles
+  float square = globe.z * globe.z * ChordSquare(s.x, s.y, globe.x, globe.y);
+  float d = sqrt(square + eye_above.x * eye_above.x);
   return clamp((d - range.x) * range.y, 0.0, 1.0);
 }
 

@@ -74,20 +74,10 @@ float LiftAt(float altitude_km, float distance_km) {
                   bend_falls.z);
 }
 
-// Returns LiftAt with one node of the quadrature instead of three, which is exact where the
-// curvature is linear along the ray. It needs a third of the exponentials, most of the time of
-// LiftAt.
 float RoughLiftAt(float altitude_km, float distance_km) {
-  const float t = 0.333333333;
-  float above = WayAbove(EYE_ALTITUDE, altitude_km, distance_km, BEND_TOP, PLANET_RADIUS);
-  float below = distance_km - above;
-  float sag = below * below / (2.0 * PLANET_RADIUS);
-  float bump = 0.5 * BEND_USUAL * below * below;
-  float at = mix(min(EYE_ALTITUDE, BEND_TOP), altitude_km, t) +
-             (1.0 - t) * (bump * (above / distance_km + t) - sag * t);
-  float curvature = CurvatureAt(at, bend_slopes.x, bend_slopes.y, bend_slopes.z, bend_falls.x,
-                                bend_falls.y, bend_falls.z);
-  return 0.5 * curvature * below * below / distance_km;
+  return RoughLandLift(EYE_ALTITUDE, altitude_km, distance_km, PLANET_RADIUS, BEND_TOP, BEND_USUAL,
+                       bend_slopes.x, bend_slopes.y, bend_slopes.z, bend_falls.x, bend_falls.y,
+                       bend_falls.z);
 }
 
 // Returns v rotated upwards by a small angle [rad] in its vertical plane; `level` is length(v.xy).
