@@ -42,20 +42,27 @@ SHARED Number SoftDiskPerSr(Number off, Number radius) {
   return inside * inside * Number(0.95492965855137202) / (radius * radius);
 }
 
+// Returns how much higher than a point a lamp is, relative to its distance: the sine of its elevation,
+// from which a lamp of the same altitude sinks by distance / diameter as the planet curves away. The
+// error is (distance / radius)^2 / 2.
+SHARED Number LampRise(Number sine, Number distance_over_diameter) {
+  Number rise = sine + (Number(1.0) - sine * sine) * distance_over_diameter;
+  return min(max(rise, Number(-1.0)), Number(1.0));
+}
+
 // Coordinates in the map of irradiance by airlight of a lamp (LampAirlightIrradiance): logarithmic
-// in the distance, piecewise linear in the sine of the lamp's elevation between 0, 0.04, 0.2, 0.6
-// and 1.
+// in the distance, piecewise linear in the rise of the lamp between 0, 0.04, 0.2, 0.6 and 1.
 SHARED Number LampAirlightUnit(Length distance, Length nearest, Length farthest) {
   return log(distance / nearest) / log(farthest / nearest);
 }
 
-SHARED Number LampRiseUnit(Number sine) {
-  Number a = min(abs(sine), Number(1.0));
+SHARED Number LampRiseUnit(Number rise) {
+  Number a = min(abs(rise), Number(1.0));
   Number steps = min(a / Number(0.04), Number(1.0)) +
                  min(max((a - Number(0.04)) / Number(0.16), Number(0.0)), Number(1.0)) +
                  min(max((a - Number(0.2)) / Number(0.4), Number(0.0)), Number(1.0)) +
                  max((a - Number(0.6)) / Number(0.4), Number(0.0));
-  return Number(0.5) + select(sine < Number(0.0), Number(-0.125), Number(0.125)) * steps;
+  return Number(0.5) + select(rise < Number(0.0), Number(-0.125), Number(0.125)) * steps;
 }
 
 SHARED Number LampRiseFromUnit(Number unit) {
@@ -64,6 +71,14 @@ SHARED Number LampRiseFromUnit(Number unit) {
              Number(0.16) * min(max(steps - Number(1.0), Number(0.0)), Number(1.0)) +
              Number(0.4) * max(steps - Number(2.0), Number(0.0));
   return select(unit < Number(0.5), -a, a);
+}
+
+// Returns the logarithm of a lamp's airlight times the distance beyond the last distance of a map,
+// from its logarithms there and one step before: light that decays between them continues to decay
+// exponentially, and no light grows.
+// @param steps  beyond the last distance.
+SHARED Number LampAirlightBeyond(Number last, Number before, Number steps) {
+  return last + min(last - before, Number(0.0)) * steps;
 }
 
 // Returns the irradiance of a slope by airlight of a lamp, relative to the irradiance of level

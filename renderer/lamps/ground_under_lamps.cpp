@@ -23,8 +23,9 @@ constexpr std::size_t kSlopeTerms = kGlowTerms - 1;
 using SlopeTerms = std::array<glm::vec4, kSlopeTerms>;
 
 double DistanceAt(double texel) {
-  return kNearestGlow_m *
-         std::pow(kFarthestGlow_m / kNearestGlow_m, texel / (kGlowDistances - 1.0));
+  constexpr double kNearest_m = LampAirlightIrradiance::kNearest_m;
+  return kNearest_m *
+         std::pow(LampAirlightIrradiance::kFarthest_m / kNearest_m, texel / (kGlowDistances - 1.0));
 }
 double RiseAt(double texel) { return shared::LampRiseFromUnit(texel / (kGlowRises - 1.0)); }
 
@@ -34,8 +35,7 @@ struct LampSeen {
   double distance_m, rise;
 
   [[nodiscard]] Bands<double> On(const glm::dvec3& normal) const {
-    const double across = std::sqrt(std::max(1.0 - rise * rise, 0.0));
-    return glow.On(distance_m * glm::dvec3(across, 0.0, rise), normal, {0.0, 0.0, 1.0});
+    return glow.On(glow.ToLamp(distance_m, rise), normal, {0.0, 0.0, 1.0});
   }
   [[nodiscard]] Bands<double> OnLevel() const { return On({0.0, 0.0, 1.0}); }
 };

@@ -34,10 +34,8 @@ namespace alpenglow::renderer {
 
 /// Size of the table. Distances and rises are spaced as in lamp_ray.glsl; each step of
 /// LampAirlightIrradiance is divided into four.
-inline constexpr int kGlowDistances = 61;
+inline constexpr int kGlowDistances = 81;
 inline constexpr int kGlowRises = 33;
-inline constexpr double kNearestGlow_m = 0.2;
-inline constexpr double kFarthestGlow_m = 2e4;
 inline constexpr int kGlowTerms = 6;
 
 /// Returns [(term * kGlowRises + rise) * kGlowDistances + distance]. Unused bands have no light on

@@ -12,6 +12,7 @@
 #include <limits>
 
 #include "atmosphere/base/error.h"
+#include "atmosphere/lamp/lamp.h"
 #include "atmosphere/math/constants.h"
 #include "atmosphere/math/numerics.h"
 #include "renderer/material/band_light.h"
@@ -19,16 +20,18 @@
 namespace alpenglow::renderer {
 namespace {
 
-constexpr int kDistances = 16;
-constexpr double kNearest_m = 0.2;
-constexpr double kFarthestLamp_m = 2e4;
+constexpr int kDistances = 21;
+/// Beyond this distance from a lamp, ground and air are spheres: it is 8 m lower there than a plane.
+constexpr double kPlane_m = 1e4;
 constexpr double kDarkest = 1e-250;  // lower limit of values in logarithms
-/// Sines of the lamp's elevation, dense near 0, where distant lamps on the ground are.
-constexpr std::array<double, 9> kSines{-1.0, -0.6, -0.2, -0.04, 0.0, 0.04, 0.2, 0.6, 1.0};
-constexpr int kElevations = static_cast<int>(kSines.size());
+/// Rises of the lamp, dense near 0, where distant lamps on the ground are.
+constexpr std::array<double, 9> kRises{-1.0, -0.6, -0.2, -0.04, 0.0, 0.04, 0.2, 0.6, 1.0};
+constexpr int kElevations = static_cast<int>(kRises.size());
 
 double DistanceNumber(int i) {
-  return kNearest_m * std::pow(kFarthestLamp_m / kNearest_m, i / (kDistances - 1.0));
+  constexpr double kNearest_m = LampAirlightIrradiance::kNearest_m;
+  return kNearest_m *
+         std::pow(LampAirlightIrradiance::kFarthest_m / kNearest_m, i / (kDistances - 1.0));
 }
 
 /// Returns the moments of the clamped cosine over those of Y_l0, so that E = sum of A_l L_lm Y_lm.
@@ -80,12 +83,12 @@ struct GlowPlace {
   int low;
   double share;  // weight of the next point
 };
-GlowPlace GlowPlaceOf(double sine) {
+GlowPlace GlowPlaceOf(double rise) {
   int low = 0;
-  while (low + 2 < kElevations && sine >= kSines[static_cast<std::size_t>(low + 1)]) ++low;
-  const double from = kSines[static_cast<std::size_t>(low)];
-  const double to = kSines[static_cast<std::size_t>(low + 1)];
-  return {low, std::clamp((sine - from) / (to - from), 0.0, 1.0)};
+  while (low + 2 < kElevations && rise >= kRises[static_cast<std::size_t>(low + 1)]) ++low;
+  const double from = kRises[static_cast<std::size_t>(low)];
+  const double to = kRises[static_cast<std::size_t>(low + 1)];
+  return {low, std::clamp((rise - from) / (to - from), 0.0, 1.0)};
 }
 
 /// Returns the harmonics of a normal about the direction to the lamp. `lift` is perpendicular to
@@ -110,50 +113,103 @@ double Facing(const Moments& lobe, const Moments& harmonics) {
 }  // namespace
 
 LampAirlightIrradiance::LampAirlightIrradiance(const std::vector<LampLayer>& layers,
-                                               double lamp_altitude_m, double ground_altitude_m)
-    : lamp_altitude_m_(lamp_altitude_m),
+                                               double planet_radius_m, double lamp_altitude_m,
+                                               double ground_altitude_m)
+    : planet_radius_m_(planet_radius_m),
+      lamp_altitude_m_(lamp_altitude_m),
       ground_altitude_m_(ground_altitude_m),
+      lowest_m_(std::min(ground_altitude_m, 0.0)),
       lights_(static_cast<std::size_t>(kDistances * kElevations) *
               layers.front().scattering_per_m.count) {
   ALPENGLOW_ENSURE(ground_altitude_m, <=, lamp_altitude_m);
   air_.layers = layers;
   tbb::parallel_for(0, kDistances * kElevations, [&](int entry) {
-    const std::vector<Light> lights = LightAt(
-        DistanceNumber(entry / kElevations), kSines[static_cast<std::size_t>(entry % kElevations)]);
+    const double distance_m = DistanceNumber(entry / kElevations);
+    const double rise = kRises[static_cast<std::size_t>(entry % kElevations)];
+    const std::vector<Light> lights =
+        LightAt(distance_m, std::min(rise, std::max(HighestRise(distance_m), -1.0)));
     std::copy(lights.begin(), lights.end(),
               lights_.begin() + entry * static_cast<std::ptrdiff_t>(lights.size()));
   });
+  for (int i = 0; i < kDistances; ++i) ExtrapolateBelowGround(i);
+}
+
+double LampAirlightIrradiance::HighestRise(double distance_m) const {
+  return (lamp_altitude_m_ - lowest_m_) / distance_m;
+}
+
+void LampAirlightIrradiance::ExtrapolateBelowGround(int distance_number) {
+  constexpr double kLeast = 1e-6;  // of a rise: the entries are those of one place
+  const double highest = HighestRise(DistanceNumber(distance_number));
+  const auto beyond = std::upper_bound(kRises.begin() + 1, kRises.end(), highest);
+  if (beyond == kRises.end()) return;
+  const double before = *(beyond - 1);
+  if (highest - before < kLeast) return;
+  const double share = (*beyond - before) / (highest - before);
+  const std::size_t bands = air_.bands();
+  const auto entry = static_cast<std::size_t>(distance_number * kElevations +
+                                              static_cast<int>(beyond - kRises.begin()));
+  for (std::size_t i = entry * bands; i < (entry + 1) * bands; ++i) {
+    Light& light = lights_[i];
+    const Light& above = lights_[i - bands];
+    const auto extended = [&](auto from, auto to) {
+      return from + static_cast<decltype(from)>(share) * (to - from);
+    };
+    light.log_mean = extended(above.log_mean, light.log_mean);
+    light.level = extended(above.level, light.level);
+    for (std::size_t k = 0; k < light.lobe.size(); ++k)
+      light.lobe[k] = extended(above.lobe[k], light.lobe[k]);
+  }
+}
+
+glm::dvec3 LampAirlightIrradiance::ToLamp(double distance_m, double rise) const {
+  const double lamp_m = planet_radius_m_ + lamp_altitude_m_;
+  const double point_m = std::max(lamp_m - rise * distance_m, 0.5 * planet_radius_m_);
+  const double sine =
+      std::clamp((rise * (lamp_m + point_m) - distance_m) / (2.0 * point_m), -1.0, 1.0);
+  return distance_m * glm::dvec3(std::sqrt(1.0 - sine * sine), 0.0, sine);
+}
+
+Bands<double> LampAirlightIrradiance::RadianceAt(const LampOverPlanet& at,
+                                                 const glm::dvec3& direction) const {
+  constexpr int kNodes = 8;
+  constexpr double kFar_m = 20e3;
+  const double distance_m = glm::length(at.to_lamp_m);
+  if (distance_m > kPlane_m) return AirlightOverPlanet(at, direction);
+  Lamp lamp;
+  lamp.position_m = {at.to_lamp_m.x, at.to_lamp_m.y, lamp_altitude_m_};
+  LampSegment segment;
+  segment.origin_m = {0.0, 0.0, at.point_altitude_m};
+  segment.direction = direction;
+  segment.end_m = 4.0 * distance_m + kFar_m;
+  if (direction.z < 0.0) {
+    segment.end_m =
+        std::min(segment.end_m, (segment.origin_m.z - at.ground_altitude_m) / -direction.z);
+  }
+  if (!(segment.end_m > 0.0)) return Bands<double>(air_.bands());
+  return Airlight(air_, lamp, segment, kNodes);
 }
 
 std::vector<LampAirlightIrradiance::Light> LampAirlightIrradiance::LightAt(double distance_m,
-                                                                           double sine) const {
-  constexpr int kNodes = 8;
-  constexpr double kFar_m = 20e3;
-  const double cosine = std::sqrt(std::max(1.0 - sine * sine, 0.0));
-  const glm::dvec3 point(0.0, 0.0, lamp_altitude_m_ - distance_m * sine);
-  const glm::dvec3 towards(cosine, 0.0, sine), lift(-sine, 0.0, cosine), side(0.0, 1.0, 0.0);
-  const double ground_m = std::min(ground_altitude_m_, point.z);
-  Lamp lamp;
-  lamp.position_m = point + distance_m * towards;
+                                                                           double rise) const {
+  const double altitude_m = lamp_altitude_m_ - distance_m * rise;
+  const LampOverPlanet at{air_.layers, planet_radius_m_, std::min(ground_altitude_m_, altitude_m),
+                          altitude_m, ToLamp(distance_m, rise)};
+  const glm::dvec3 towards = at.to_lamp_m / distance_m;
+  const glm::dvec3 lift(-towards.z, 0.0, towards.x), side(0.0, 1.0, 0.0);
   const std::size_t bands = air_.bands();
   std::vector<std::array<double, kMaxMoments>> sums(bands);
   std::vector<double> on_level(bands);
   for (const Around& around : DirectionsAround()) {
-    LampSegment segment;
-    segment.origin_m = point;
-    segment.direction =
+    const glm::dvec3 direction =
         std::cos(around.alpha) * towards +
         std::sin(around.alpha) * (std::cos(around.turn) * lift + std::sin(around.turn) * side);
-    segment.end_m = 4.0 * distance_m + kFar_m;
-    const double fall = -segment.direction.z;
-    if (fall > 0.0) segment.end_m = std::min(segment.end_m, (point.z - ground_m) / fall);
-    if (!(segment.end_m > 0.0)) continue;
-    const Bands<double> radiance = Airlight(air_, lamp, segment, kNodes);
+    const Bands<double> radiance = RadianceAt(at, direction);
     const Moments harmonics =
         SphericalHarmonics(kDegree, static_cast<float>(std::cos(around.alpha)),
                            static_cast<float>(std::cos(around.turn)));
     for (std::size_t band = 0; band < bands; ++band) {
-      on_level[band] += around.weight * radiance[band] * std::max(-fall, 0.0);
+      on_level[band] += around.weight * radiance[band] * std::max(direction.z, 0.0);
       for (std::size_t k = 0; k < MomentCount(kDegree); ++k)
         sums[band][k] += around.weight * radiance[band] * static_cast<double>(harmonics[k]);
     }
@@ -177,32 +233,36 @@ std::vector<LampAirlightIrradiance::Light> LampAirlightIrradiance::LightAt(doubl
 Bands<double> LampAirlightIrradiance::On(const glm::dvec3& to_lamp, const glm::dvec3& normal,
                                          const glm::dvec3& up) const {
   const double length = std::max(glm::length(to_lamp), 1e-6);
-  const double distance = std::clamp(length, kNearest_m, kFarthestLamp_m);
+  const double distance = std::max(length, kNearest_m);
   const glm::dvec3 towards = to_lamp / length;
   const double sine = std::clamp(glm::dot(towards, up), -1.0, 1.0);
   const Moments harmonics = HarmonicsOf(normal, towards, up - sine * towards);
-  const double u =
-      std::log(distance / kNearest_m) / std::log(kFarthestLamp_m / kNearest_m) * (kDistances - 1.0);
+  const double u = shared::LampAirlightUnit(distance, kNearest_m, kFarthest_m) * (kDistances - 1.0);
   const int low = std::min(static_cast<int>(u), kDistances - 2);
-  const GlowPlace elevation = GlowPlaceOf(sine);
+  const double rise = shared::LampRise(sine, length / (2.0 * planet_radius_m_));
+  const GlowPlace elevation = GlowPlaceOf(std::min(rise, HighestRise(distance)));
   const double upwards = std::max(glm::dot(normal, up), 0.0);
   const double levelness = upwards * upwards;
-  const double near = DistanceNumber(low);
-  const double share = (distance - near) / (DistanceNumber(low + 1) - near);
+  const double near = DistanceNumber(low), step = DistanceNumber(low + 1) - near;
+  const double share = std::min((distance - near) / step, 1.0);
+  const double beyond = std::max(distance - kFarthest_m, 0.0) / step;
   Bands<double> irradiance(air_.bands());
   for (std::size_t band = 0; band < irradiance.count; ++band) {
-    double log_mean = 0.0, facing = 0.0;
+    std::array<double, 2> log_mean{};
+    double facing = 0.0;
     for (const int i : {0, 1}) {
       for (const int j : {0, 1}) {
-        const double weight =
-            (i == 0 ? 1.0 - share : share) * (j == 0 ? 1.0 - elevation.share : elevation.share);
+        const double weight = j == 0 ? 1.0 - elevation.share : elevation.share;
         const auto entry = static_cast<std::size_t>((low + i) * kElevations + elevation.low + j);
         const Light& light = lights_[entry * irradiance.count + band];
-        log_mean += weight * light.log_mean;
-        facing += weight * (Facing(light.lobe, harmonics) + levelness * light.level);
+        log_mean[static_cast<std::size_t>(i)] += weight * light.log_mean;
+        facing += (i == 0 ? 1.0 - share : share) * weight *
+                  (Facing(light.lobe, harmonics) + levelness * light.level);
       }
     }
-    irradiance[band] = std::exp(log_mean) / distance * std::max(facing, 0.0);
+    const double log_here = std::lerp(log_mean[0], log_mean[1], share);
+    irradiance[band] = std::exp(shared::LampAirlightBeyond(log_here, log_mean[0], beyond)) /
+                       distance * std::max(facing, 0.0);
   }
   return irradiance;
 }
@@ -312,7 +372,7 @@ void LampTree::MakeGlows(const LampStage& stage) {
     if (same != stands.end()) continue;
     stands.push_back(here);
     glows_.push_back(std::make_shared<const LampAirlightIrradiance>(
-        stage.layers(), here.altitude_m, here.altitude_m - here.above_m));
+        stage.layers(), stage.planet_radius_m(), here.altitude_m, here.altitude_m - here.above_m));
   }
 }
 

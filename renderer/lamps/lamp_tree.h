@@ -3,18 +3,20 @@
 // that a lamp lights (LampAirlightIrradiance).
 //
 // LampAirlightIrradiance integrates lamp -> air -> surface, in air of exponential density over
-// level ground:
+// level ground, which is a plane up to 10 km from the lamp and a sphere beyond:
 //
 //   E(n) = integral over directions d with n.d > 0 of  L(d) n.d,    L = Airlight from the surface
 //
-// L is integrated over the sphere around points at several distances from the lamp and several
-// elevations of the lamp above their horizon. It is stored as moments of real spherical harmonics
+// L is integrated over all directions around points at several distances from the lamp and several
+// altitudes below or above it, relative to the distance (LampRise). It is stored as moments of real spherical harmonics
 // about the direction to the lamp, symmetric about the vertical plane through it. The irradiance of
 // any normal is then a short sum with the moments of the clamped cosine (Ramamoorthi, Hanrahan
 // 2001, SIGGRAPH, "An efficient representation for irradiance environment maps"). Between
 // distances, the logarithm of moment 00 times the distance is interpolated linearly, and level
-// ground has its exact irradiance. E falls as 1/d near a lamp and exponentially far from it. Rays
-// end at the level ground at the lamp's foot, or at the surface where that is lower.
+// ground has its exact irradiance. E falls as 1/d near a lamp and exponentially far from it; behind
+// the lamp's horizon it comes from the air above the planet's shadow. Surfaces below the lowest
+// ground, which is that at the lamp's foot or at altitude 0, get the light there. Rays end at the level ground at
+// the lamp's foot, or at the surface where that is lower.
 //
 // LampTree clusters lamps: an inner node represents all lamps below it (Walter et al. 2005,
 // "Lightcuts", ACM TOG 24, 1098). Only isotropic lamps are clustered; every other lamp is a node of
@@ -32,6 +34,7 @@
 #include "atmosphere/lamp/airlight.h"
 #include "lut/multiple_scattering/spherical_harmonics.h"
 #include "renderer/lamps/lamp_light.h"
+#include "renderer/lamps/lamp_over_planet.h"
 #include "renderer/lamps/placed_lamp.h"
 #include "renderer/layer.h"
 
@@ -43,15 +46,22 @@ class LampAirlightIrradiance {
   /// Degree of the moments.
   static constexpr int kDegree = 6;
 
+  /// Distances of the table [m]. Light beyond the last one is extrapolated (LampAirlightBeyond).
+  static constexpr double kNearest_m = 0.2;
+  static constexpr double kFarthest_m = 928317.766722556;  // 20/3 decades
+
   /// @param ground_altitude_m  at the lamp's foot, not above it.
-  LampAirlightIrradiance(const std::vector<LampLayer>& layers, double lamp_altitude_m,
-                         double ground_altitude_m);
+  LampAirlightIrradiance(const std::vector<LampLayer>& layers, double planet_radius_m,
+                         double lamp_altitude_m, double ground_altitude_m);
+
+  /// Returns the way from a point to the lamp, in a plane with the point's vertical z.
+  /// @param rise  how much higher the lamp is than the point, relative to its distance.
+  [[nodiscard]] glm::dvec3 ToLamp(double distance_m, double rise) const;
 
   /// Returns the irradiance of a surface [m^-2], in every band. Its error against quadrature over
   /// the hemisphere, in fog of scale heights of 25 to 100 m up to 4 optical depths from the lamp,
   /// relative to the irradiance of the normal with the largest one, is below 18 %, rms 5 %.
-  /// @param to_lamp  from the surface [m]; its length is clamped to the tabulated range, 0.2 m to
-  ///     20 km.
+  /// @param to_lamp  from the surface [m]; nearer than kNearest_m, the light is that there.
   /// @param normal, up  unit.
   [[nodiscard]] Bands<double> On(const glm::dvec3& to_lamp, const glm::dvec3& normal,
                                  const glm::dvec3& up) const;
@@ -65,10 +75,19 @@ class LampAirlightIrradiance {
     double level = 0.0;  // excess of level ground over the moments, relative to moment 00
   };
 
-  [[nodiscard]] std::vector<Light> LightAt(double distance_m, double sine) const;
+  [[nodiscard]] std::vector<Light> LightAt(double distance_m, double rise) const;
+  /// Returns the rise of the lamp over the lowest ground at a distance.
+  [[nodiscard]] double HighestRise(double distance_m) const;
+  /// Replaces the entries of a distance that would be below the lowest ground: the first of them
+  /// continues the line through the entry before it and the lowest ground.
+  void ExtrapolateBelowGround(int distance_number);
+
+  /// Returns the radiance at a point from a direction; z is the point's vertical.
+  [[nodiscard]] Bands<double> RadianceAt(const LampOverPlanet& at,
+                                         const glm::dvec3& direction) const;
 
   LampAir air_;
-  double lamp_altitude_m_, ground_altitude_m_;
+  double planet_radius_m_, lamp_altitude_m_, ground_altitude_m_, lowest_m_;
   std::vector<Light> lights_;  // [(distance * elevations + elevation) * bands + band]
 };
 

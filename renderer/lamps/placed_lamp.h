@@ -31,6 +31,7 @@ class LampStage {
   /// Layers of molecules, aerosol and fog; fog is the last one.
   [[nodiscard]] const std::vector<LampLayer>& layers() const { return layers_; }
   [[nodiscard]] std::size_t bands() const { return bands_; }
+  [[nodiscard]] double planet_radius_m() const { return planet_radius_m_; }
 
   [[nodiscard]] double AltitudeOf(const glm::dvec3& point) const;
   [[nodiscard]] glm::dvec3 UpAt(const glm::dvec3& point) const;

@@ -38,7 +38,8 @@ std::string DefinesOf(const SceneLamps& shape, const LampQuality& quality) {
       "#define LAMP_GLOW_FARTHEST {:.7f}\n#define LAMP_AIRLIGHT_TERMS {}\n",
       kMostGpuLamps, static_cast<int>(LampProfile::Kind::kCone),
       static_cast<int>(LampProfile::Kind::kTable), quality.nodes, quality.step > 1 ? 1 : 0,
-      PhaseExpression(layers[1].phase.kind), kNearestGlow_m, kFarthestGlow_m, kGlowTerms);
+      PhaseExpression(layers[1].phase.kind), LampAirlightIrradiance::kNearest_m,
+      LampAirlightIrradiance::kFarthest_m, kGlowTerms);
   if (!shape.tables().empty()) text += "#define LAMP_TABLES\n";
   if (!shape.shades().empty()) {
     text += fmt::format(

@@ -338,17 +338,34 @@ vec4 LampAirlightTerm(Lamp lamp, vec2 at, float term) {
   return textureLod(lamp_airlight_map, vec3(place, lamp.glow.y), 0.0);
 }
 
+// Returns the logarithm of the light on level ground times the distance.
+vec4 LampAirlightOnLevel(Lamp lamp, vec2 at, float distance_m) {
+  vec4 level = LampAirlightTerm(lamp, at, 0.0);
+  if (distance_m <= LAMP_GLOW_FARTHEST) return level;
+  float texels = float(textureSize(lamp_airlight_map, 0).x);
+  float step_m = LAMP_GLOW_FARTHEST *
+                 (1.0 - pow(LAMP_GLOW_NEAREST / LAMP_GLOW_FARTHEST, 1.0 / (texels - 1.0)));
+  vec4 before = LampAirlightTerm(lamp, at - vec2(1.0, 0.0), 0.0);
+  float steps = (distance_m - LAMP_GLOW_FARTHEST) / step_m;
+  for (int band = 0; band < 4; ++band)
+    level[band] = LampAirlightBeyond(level[band], before[band], steps);
+  return level;
+}
+
 // Returns the irradiance of a surface by the air that a lamp lights; see ground_under_lamps.h.
-vec4 LampAirOnSurface(Lamp lamp, vec3 towards, float distance_m, vec3 normal) {
-  float sine = dot(towards, lamp.up.xyz);
-  float up = dot(normal, lamp.up.xyz);
+vec4 LampAirOnSurface(Lamp lamp, vec3 point_m, vec3 towards, float distance_m, vec3 normal) {
+  vec3 vertical = normalize(point_m + vec3(0.0, 0.0, 1e3 * (lamp_planet.x + lamp_planet.y)));
+  float sine = dot(towards, vertical);
+  float up = dot(normal, vertical);
+  float rise = LampRise(sine, distance_m / (2e3 * lamp_planet.x));
   vec2 size = vec2(textureSize(lamp_airlight_map, 0).xy) / vec2(1.0, LAMP_AIRLIGHT_TERMS);
-  float far = clamp(distance_m, LAMP_GLOW_NEAREST, LAMP_GLOW_FARTHEST);
-  vec2 unit = vec2(LampAirlightUnit(far, LAMP_GLOW_NEAREST, LAMP_GLOW_FARTHEST), LampRiseUnit(sine));
+  float far = max(distance_m, LAMP_GLOW_NEAREST);
+  vec2 unit = vec2(min(LampAirlightUnit(far, LAMP_GLOW_NEAREST, LAMP_GLOW_FARTHEST), 1.0),
+                   LampRiseUnit(rise));
   vec2 at = vec2(TexelFromUnit(unit.x, size.x), TexelFromUnit(unit.y, size.y)) * size;
-  vec4 level = exp(LampAirlightTerm(lamp, at, 0.0)) / far;
+  vec4 level = exp(LampAirlightOnLevel(lamp, at, far)) / far;
 #ifdef LAMP_GLOW_OF_SLOPES
-  vec3 flat_way = towards - sine * lamp.up.xyz;
+  vec3 flat_way = towards - sine * vertical;
   float tilt = dot(normal, flat_way) / max(length(flat_way), 1e-6);
   vec4 steep = LampAirlightTerm(lamp, at, 1.0);
   vec4 facing = LampAirlightTerm(lamp, at, 2.0), facing_twice = LampAirlightTerm(lamp, at, 3.0);
@@ -379,7 +396,7 @@ vec4 LampOnGround(Lamp lamp, vec3 point_m, vec3 normal, float ray_width_m, bool 
   facing *= LampLitGround(lamp, -way, ray_width_m);
   vec4 light = facing * LampLeft(LampDepth(columns));
 #ifdef LAMP_GLOW_MAP
-  light += lamp.glow.x * LampAirOnSurface(lamp, towards, far, normal);
+  light += lamp.glow.x * LampAirOnSurface(lamp, point_m, towards, far, normal);
 #endif
   return lamp.intensity * light;
 }

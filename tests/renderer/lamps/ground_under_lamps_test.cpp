@@ -14,6 +14,7 @@
 #include "atmosphere/math/constants.h"
 #include "renderer/lamps/placed_lamp.h"
 #include "tests/fixtures/bare_scene.h"
+#include "tests/fixtures/lamp_site.h"
 #include "tests/renderer/lamps/ridge.h"
 
 namespace alpenglow::renderer {
@@ -128,8 +129,9 @@ struct Texel {
         map[static_cast<std::size_t>((term * kGlowRises + rise) * kGlowDistances + distance)][0]);
   }
   [[nodiscard]] double Far() const {
-    return kNearestGlow_m *
-           std::pow(kFarthestGlow_m / kNearestGlow_m, distance / (kGlowDistances - 1.0));
+    constexpr double kNearest_m = LampAirlightIrradiance::kNearest_m;
+    return kNearest_m * std::pow(LampAirlightIrradiance::kFarthest_m / kNearest_m,
+                                 distance / (kGlowDistances - 1.0));
   }
   [[nodiscard]] double ByMap(const glm::dvec3& normal) const {
     return std::exp(Term(0)) / Far() *
@@ -137,8 +139,8 @@ struct Texel {
                                        Term(5));
   }
   [[nodiscard]] double ByGlow(const glm::dvec3& normal) const {
-    const double sine = shared::LampRiseFromUnit(rise / (kGlowRises - 1.0));
-    return glow.On(Far() * glm::dvec3(std::sqrt(1.0 - sine * sine), 0.0, sine), normal, kGlowUp)[0];
+    return glow.On(glow.ToLamp(Far(), shared::LampRiseFromUnit(rise / (kGlowRises - 1.0))), normal,
+                   kGlowUp)[0];
   }
 };
 
@@ -184,7 +186,7 @@ SlopeDeviation OverSlopes(const LampAirlightIrradiance& glow, const std::vector<
 constexpr std::array<int, 2> kAllRises{4, 28};  // sines of -0.6 to 0.6
 
 TEST(LampAirlightMap, LevelGroundGetsWhatItGets) {
-  const LampAirlightIrradiance glow(ClearAir(), 1500.0, 1494.0);
+  const LampAirlightIrradiance glow(ClearAir(), tests::kLampPlanet_m, 1500.0, 1494.0);
   const std::vector<glm::vec4> map = SampledGlow(glow);
   for (int distance = 0; distance <= 48; distance += 6) {
     for (int rise = 16; rise < kGlowRises; rise += 3) {
@@ -196,7 +198,7 @@ TEST(LampAirlightMap, LevelGroundGetsWhatItGets) {
 }
 
 TEST(LampAirlightMap, SlopesInClearAirGetWhatLampAirlightSays) {
-  const LampAirlightIrradiance glow(ClearAir(), 1500.0, 1494.0);
+  const LampAirlightIrradiance glow(ClearAir(), tests::kLampPlanet_m, 1500.0, 1494.0);
   const std::vector<glm::vec4> map = SampledGlow(glow);
   const SlopeDeviation gentle = OverSlopes(glow, map, {0.0, 30.0}, kAllRises);
   const SlopeDeviation steep = OverSlopes(glow, map, {30.0, 60.0}, kAllRises);
@@ -207,7 +209,7 @@ TEST(LampAirlightMap, SlopesInClearAirGetWhatLampAirlightSays) {
 }
 
 TEST(LampAirlightMap, SlopesInLightFogGetWhatLampAirlightSays) {
-  const LampAirlightIrradiance glow(LightFog(), 6.0, 0.0);
+  const LampAirlightIrradiance glow(LightFog(), tests::kLampPlanet_m, 6.0, 0.0);
   const std::vector<glm::vec4> map = SampledGlow(glow);
   const std::array<int, 2> level{15, 17};  // the lamp stands about as high as the slope
   const SlopeDeviation gentle = OverSlopes(glow, map, {0.0, 30.0}, level);

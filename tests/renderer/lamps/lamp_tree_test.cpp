@@ -292,7 +292,7 @@ GlowError ErrorOver(const ErrorOf& error_of) {
   for (const double scale_height : {25.0, 100.0}) {
     const LampAir air = FogUnderClearAir(4.3e-3, scale_height);
     for (const double height : {0.35, 6.0, 24.0}) {
-      const LampAirlightIrradiance glow(air.layers, height, 0.0);
+      const LampAirlightIrradiance glow(air.layers, tests::kLampPlanet_m, height, 0.0);
       for (const double distance : {5.0, 20.0, 60.0, 200.0, 600.0}) {
         Lamp lamp;
         lamp.position_m = {distance, 0.0, height};
@@ -342,7 +342,7 @@ TEST(LampAirlightIrradiance, OnWallsIsTheLightOfTheirHemisphere) {
 
 TEST(LampAirlightIrradiance, FarFromTheGroundIsThatOfHomogeneousAir) {
   const LampAir air = HomogeneousAir(4e-3, 4e-3, {.kind = PhaseKind::kHenyeyGreenstein, .g = 0.5});
-  const LampAirlightIrradiance glow(air.layers, 5000.0, 0.0);
+  const LampAirlightIrradiance glow(air.layers, tests::kLampPlanet_m, 5000.0, 0.0);
   for (const double cosine : {1.0, 0.5, 0.0}) {
     const glm::dvec3 normal(cosine, std::sqrt(1.0 - cosine * cosine), 0.0);
     const double found = glow.On({30.0, 0.0, 0.0}, normal, kUpwards)[0];
@@ -352,7 +352,7 @@ TEST(LampAirlightIrradiance, FarFromTheGroundIsThatOfHomogeneousAir) {
 
 TEST(LampAirlightIrradiance, IsFiniteEverywhere) {
   const LampAir air = FogUnderClearAir(0.05, 5.0);
-  const LampAirlightIrradiance glow(air.layers, 3.0, 3.0);
+  const LampAirlightIrradiance glow(air.layers, tests::kLampPlanet_m, 3.0, 3.0);
   for (const double distance : {0.0, 1e-3, 0.2, 7.0, 3e3, 1e5}) {
     for (const glm::dvec3& towards : {kUpwards, -kUpwards, glm::dvec3(1.0, 0.0, 0.0)}) {
       const double found = glow.On(distance * towards, kUpwards, kUpwards)[0];

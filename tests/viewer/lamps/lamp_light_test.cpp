@@ -273,6 +273,16 @@ TEST_F(LampsOnTheCard, GroundUnderLampsAsTheRenderer) {
   EXPECT_LT(slopes.p99, 0.2);
 }
 
+TEST_F(LampsOnTheCard, GroundFarFromALampAsTheRenderer) {
+  for (const double north_m : {15e3, 40e3, 100e3, 180e3}) {
+    Scene scene = Night(6.0, 0.0, 1.0);
+    scene.lights = {LightAt(north_m, 0.0, 40.0, 1e6)};
+    const BothLamps both(scene);
+    EXPECT_GT(both.light.OnSurface(both.light.All(), {.point = {0.0, 0.0, 0.0}})[2], 0.0F);
+    EXPECT_LT(GroundDeviation(both, false).p99, 0.02) << north_m;
+  }
+}
+
 TEST_F(LampsOnTheCard, ARidgeHidesALampFromGroundAndAirBehindIt) {
   Scene scene = Night(6.0, 0.0, 1.0);
   scene.lights = {LightAt(400.0, 0.0, 5.0, 1000.0)};
