@@ -74,29 +74,42 @@ std::string MessageOf(const SceneGround& ground, const GroundMaterial& material)
 }  // namespace
 
 PreparedScene::PreparedScene(const Scene& scene, std::shared_ptr<const SceneGround> ground,
-                             const PreparedScene* other)
+                             const PreparedScene* other, const GeodeticPosition& pattern_eye)
     : scene_(scene),
       ground_(std::move(ground)),
       medium_(OnOsculatingSphere(scene_.medium, scene_.place.latitude_rad)),
       colour_(medium_.wavelengths_nm),
       lamps_(scene_, *ground_, medium_, colour_),
       media_(scene_, *ground_, medium_),
-      geometry_(*ground_, medium_, scene_.terrain.HasFineRelief()),
-      smooth_geometry_(*ground_, medium_, false),
+      geometry_(*ground_, medium_, scene_.terrain.HasFineRelief(), pattern_eye),
+      smooth_geometry_(*ground_, medium_, false, pattern_eye),
       horizons_(other ? other->horizons_ : std::make_shared<HorizonsOnDemand>(*ground_, medium_)),
       sunlight_(other ? other->sunlight_ : std::make_shared<RecentSunlight>(*ground_)),
       moonlight_(other ? other->moonlight_ : std::make_shared<RecentSunlight>(*ground_)),
       material_(scene_.ground, ColourDrape::Of(scene_, *ground_), medium_.wavelengths_nm),
       terrain_message_(MessageOf(*ground_, material_)),
       models_(medium_, {*ground_, geometry_, lamps_, *horizons_, material_}),
-      towns_(SkyglowOf(scene_, *ground_, models_, colour_)) {}
+      towns_(SkyglowOf(scene_, *ground_, models_, colour_)),
+      pattern_origin_(PatternOrigin(pattern_eye)) {}
 
 std::unique_ptr<PreparedScene> PreparedScene::OnOtherBands(int bands) const {
   const std::optional<Medium> other = OnBands(scene_.medium, bands);
   if (!other) return nullptr;
   Scene same = scene_;
   same.medium = *other;
-  return std::unique_ptr<PreparedScene>(new PreparedScene(same, ground_, this));
+  return std::unique_ptr<PreparedScene>(new PreparedScene(same, ground_, this, pattern_origin_));
+}
+
+const PreparedScene& PreparedScene::WithPatternAt(const GeodeticPosition& eye) const {
+  const GeodeticPosition origin = PatternOrigin(eye);
+  if (origin == pattern_origin_) return *this;
+  const std::lock_guard lock(patterns_mutex_);
+  for (const auto& other : other_patterns_) {
+    if (other->pattern_origin_ == origin) return *other;
+  }
+  other_patterns_.push_back(
+      std::unique_ptr<PreparedScene>(new PreparedScene(scene_, ground_, this, eye)));
+  return *other_patterns_.back();
 }
 
 const PreparedScene& PreparedScene::OnFewBands() const {

@@ -110,7 +110,7 @@ class PreparedScene {
       : PreparedScene(scene, std::make_shared<SceneGround>(LoadGround(scene, progress))) {}
   /// Uses loaded ground, in the frame of the scene's place.
   PreparedScene(const Scene& scene, std::shared_ptr<const SceneGround> ground)
-      : PreparedScene(scene, std::move(ground), nullptr) {}
+      : PreparedScene(scene, std::move(ground), nullptr, scene.place) {}
   PreparedScene(const PreparedScene&) = delete;
   PreparedScene& operator=(const PreparedScene&) = delete;
 
@@ -144,12 +144,16 @@ class PreparedScene {
   [[nodiscard]] const PreparedScene& For(EffectSet effects) const {
     return effects.Has(Effect::kFineSpectrum) ? *this : OnFewBands();
   }
+  /// Returns the scene with the pattern of the ground that belongs to an eye (GroundPattern): itself,
+  /// or a scene on the same ground, which is prepared on first use and kept.
+  [[nodiscard]] const PreparedScene& WithPatternAt(const GeodeticPosition& eye) const;
 
  private:
   /// @param other  a scene on the same ground, to share its horizons and its light in the air; may
   ///     be null.
+  /// @param pattern_eye  the eye to which the pattern of the ground belongs.
   PreparedScene(const Scene& scene, std::shared_ptr<const SceneGround> ground,
-                const PreparedScene* other);
+                const PreparedScene* other, const GeodeticPosition& pattern_eye);
 
   Scene scene_;
   std::shared_ptr<const SceneGround> ground_;
@@ -166,6 +170,9 @@ class PreparedScene {
   std::optional<BandLight> towns_;
   mutable std::once_flag few_bands_asked_;
   mutable std::unique_ptr<PreparedScene> few_bands_;
+  GeodeticPosition pattern_origin_;
+  mutable std::mutex patterns_mutex_;
+  mutable std::vector<std::unique_ptr<PreparedScene>> other_patterns_;
 };
 
 /// The eye of a picture, and sun and moon at its instant.

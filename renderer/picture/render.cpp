@@ -287,6 +287,12 @@ EffectSet Present(const FrameContext& frame) {
   return without(present, &scene.OnFewBands() != &scene, {Effect::kFineSpectrum});
 }
 
+/// Returns the scene with the pattern of the ground at the middle pose.
+const PreparedScene& PatternedScene(const PreparedScene& scene, const CameraSample& camera_sample) {
+  const auto pose = camera_sample.middle();
+  return pose ? scene.WithPatternAt(pose->place) : scene;
+}
+
 }  // namespace
 
 void ValidateSettings(const RenderSettings& settings) {
@@ -332,17 +338,19 @@ Image SceneRenderer::Render(const CameraSample& camera_sample,
 CountedPicture SceneRenderer::RenderCounted(const CameraSample& camera_sample,
                                             const RenderSettings& settings) const {
   ValidateSettings(settings);
-  return TileRenderer({scene_->For(settings.effects), camera_sample, settings}).Picture();
+  const PreparedScene& scene = PatternedScene(*scene_, camera_sample);
+  return TileRenderer({scene.For(settings.effects), camera_sample, settings}).Picture();
 }
 
 ChosenPicture SceneRenderer::RenderWithin(const CameraSample& camera_sample,
                                           const RenderSettings& settings,
                                           const EffectBudget& budget) const {
   ValidateSettings(settings);
-  const FrameContext frame(scene_->For(settings.effects), camera_sample, settings);
+  const PreparedScene& patterned = PatternedScene(*scene_, camera_sample);
+  const FrameContext frame(patterned.For(settings.effects), camera_sample, settings);
   std::optional<FrameContext> on_few_bands;
   const auto with = [&](EffectSet effects) {
-    const PreparedScene& scene = scene_->For(effects);
+    const PreparedScene& scene = patterned.For(effects);
     if (&scene == &frame.scene()) return frame.Reduced(effects);
     if (!on_few_bands) on_few_bands.emplace(scene, camera_sample, settings);
     return on_few_bands->Reduced(effects);

@@ -18,8 +18,8 @@ GeodeticPosition PatternOrigin(const GeodeticPosition& place) {
   return {latitude_rad, WrappedLongitude(kAlps_rad + steps * step_rad), 0.0};
 }
 
-GroundPattern::GroundPattern(const LocalFrame& frame)
-    : pattern_from_frame_(LocalFrame(frame.ellipsoid(), PatternOrigin(frame.origin())), frame),
+GroundPattern::GroundPattern(const LocalFrame& frame, const GeodeticPosition& eye)
+    : pattern_from_frame_(LocalFrame(frame.ellipsoid(), PatternOrigin(eye)), frame),
       pole_(0.0, std::cos(frame.origin().latitude_rad), std::sin(frame.origin().latitude_rad)) {}
 
 GroundPoint GroundPattern::At(const glm::dvec3& point) const {

@@ -4,9 +4,9 @@
 // The pattern is plane, and extruded along lines (NoiseOctave of surface.h). No plane suits the
 // whole planet, so the planet has 184 of them: they touch it at parallels 15 degrees apart, and at
 // each pole. Along a parallel they are as far apart as across it, and one of them touches the
-// parallel at the meridian of 8 degrees, in the middle of the Alps. `skyseries` uses the plane that
-// is nearest to the scene's place, `skyview` the one that is nearest to the eye. All pictures of
-// some land therefore have one pattern as long as these places have the same plane. Beyond the
+// parallel at the meridian of 8 degrees, in the middle of the Alps. Pictures use the
+// plane that is nearest to their eye, also along a path. All pictures of
+// some land therefore have one pattern as long as their eyes have the same plane. Beyond the
 // border between two planes the pattern is another one. The ground is inclined to its plane by at
 // most 12 degrees, which stretches the pattern by 2 %.
 #pragma once
@@ -28,7 +28,9 @@ namespace alpenglow::renderer {
 /// frame unless they are called those of the pattern. Immutable.
 class GroundPattern {
  public:
-  explicit GroundPattern(const LocalFrame& frame);
+  explicit GroundPattern(const LocalFrame& frame) : GroundPattern(frame, frame.origin()) {}
+  /// @param eye  selects the plane.
+  GroundPattern(const LocalFrame& frame, const GeodeticPosition& eye);
 
   /// Returns the coordinates of a point in the pattern [m], without altitude and width.
   [[nodiscard]] GroundPoint At(const glm::dvec3& point) const;

@@ -214,10 +214,11 @@ double TopOf(const SceneGround& ground, double radius_m) {
 
 }  // namespace
 
-SceneGeometry::SceneGeometry(const SceneGround& ground, const Medium& medium, bool with_relief)
+SceneGeometry::SceneGeometry(const SceneGround& ground, const Medium& medium, bool with_relief,
+                             const GeodeticPosition& eye)
     : ground_(ground),
       medium_(medium),
-      pattern_(ground.frame),
+      pattern_(ground.frame, eye),
       with_relief_(with_relief),
       top_m_(TopOf(ground, medium.planet_radius_m)),
       bottom_m_(BottomOf(ground)) {}

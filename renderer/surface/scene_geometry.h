@@ -132,7 +132,11 @@ struct Hit {
 class SceneGeometry {
  public:
   /// @param with_relief  adds relief finer than the elevation samples to the normals.
-  SceneGeometry(const SceneGround& ground, const Medium& medium, bool with_relief);
+  SceneGeometry(const SceneGround& ground, const Medium& medium, bool with_relief)
+      : SceneGeometry(ground, medium, with_relief, ground.frame.origin()) {}
+  /// @param eye  selects the pattern of the ground.
+  SceneGeometry(const SceneGround& ground, const Medium& medium, bool with_relief,
+                const GeodeticPosition& eye);
 
   [[nodiscard]] double radius_m() const { return medium_.planet_radius_m; }
   [[nodiscard]] bool HasTerrain() const { return ground_.terrain.has_value(); }

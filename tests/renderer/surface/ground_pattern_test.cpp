@@ -4,9 +4,14 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <filesystem>
 #include <numbers>
 
 #include "atmosphere/math/constants.h"
+#include "renderer/picture/render.h"
+#include "tests/fixtures/bare_scene.h"
+#include "tests/fixtures/temporary_folder.h"
+#include "tests/renderer/terrain/land_files.h"
 
 namespace alpenglow::renderer {
 namespace {
@@ -70,6 +75,41 @@ TEST(GroundPattern, KnowsWhereNorthIs) {
   }
   const GroundPattern at_pole(FrameAt(90.0, 0.0));
   EXPECT_LT(std::abs(at_pole.Northward({0.6, 0.8, 0.0}, {0.0, 0.0, 1.0})), 1e-6);
+}
+
+class PatternsOnAPath : public TemporaryFolder {};
+
+TEST_F(PatternsOnAPath, ShowTheGroundOfStillsAtTheirPlaces) {
+  // Planes change at 52.5 degrees north.
+  const std::filesystem::path model = folder_ / "land.tif";
+  tests::WriteModel(model, {7.6, 53.4, 0.01, 0.01, 80, 80}, [](int column, int row) {
+    return static_cast<float>(300.0 + 100.0 * std::sin(0.3 * column + 0.2 * row));
+  });
+  const auto scene_at = [&](double latitude, double height_m) {
+    Scene scene = BareScene(height_m, 0.0, -50.0, 20.0);
+    scene.medium = MediumPreset("bruneton2017");
+    scene.place = PlaceFromDegrees(latitude, 8.0, 0.0);
+    scene.terrain = {TerrainSource::Kind::kElevationModel, model, VoidPolicy::kFill};
+    return scene;
+  };
+  const UtcInstant noon = ParseInstant("2026-06-21T11:00:00Z");
+  RenderSettings settings;
+  settings.width = 24;
+  settings.height = 16;
+  settings.samples_per_pixel = 4;
+  CameraSample far(noon);
+  const Camera& camera = scene_at(53.0, 2500.0).camera;
+  far.poses = {{PlaceFromDegrees(53.0, 8.0, 2500.0), camera.heading_rad, camera.pitch_rad, 0.0,
+                camera.fov_rad}};
+  const Image frame = SceneRenderer(scene_at(52.0, 9000.0), nullptr).Render(far, settings);
+  const Image still = SceneRenderer(scene_at(53.0, 2500.0), nullptr).Render(noon, settings);
+  double squares = 0.0;
+  for (std::size_t i = 0; i < still.rgb.size(); ++i) {
+    const double change = std::log(double{frame.rgb[i][1]} / double{still.rgb[i][1]});
+    squares += change * change;
+  }
+  EXPECT_LT(std::sqrt(squares / static_cast<double>(still.rgb.size())), 0.01)
+      << "the spheres of the two scenes are 3 m apart";
 }
 
 }  // namespace
