@@ -77,15 +77,10 @@ void RequireVisible(const CameraPath& path, const std::string& file, const Scene
   bare.terrain.kind = TerrainSource::Kind::kNone;
   const SceneGround ground = LoadGround(bare);
   const bool has_land = scene.terrain.kind != TerrainSource::Kind::kNone;
-  for (std::size_t i = 0; i < path.points().size(); ++i) {
-    GeodeticPosition place = path.points()[i].pose.place;
+  CheckPoints(path, file, [&](GeodeticPosition place) {
     if (has_land) place.height_m = std::max(place.height_m, 0.0);
-    try {
-      static_cast<void>(StandAt(ground, place));
-    } catch (const InputError& error) {
-      throw InputError(fmt::format("{}: point {}: {}", file, i + 1, error.what()));
-    }
-  }
+    static_cast<void>(StandAt(ground, place));
+  });
 }
 
 /// The series that the options describe, resolved once before anything is rendered.

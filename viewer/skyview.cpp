@@ -273,6 +273,23 @@ CameraPath PathOfTrack(const Track& track, const Scene& scene, FlightSession& fl
   });
 }
 
+/// Throws InputError with the file and the point if a point of a path is below the ground.
+void RequirePointsOver(const CameraPath& path, const std::string& file,
+                       const GroundHeight& ground) {
+  CheckPoints(path, file,
+              [&](const GeodeticPosition& place) { RequireOverGround(place, ground(place)); });
+}
+
+/// Checks a path over land, for which it waits. A mesh is not checked, because it may have caves.
+void RequireOverLand(const CameraPath& path, const std::string& file, const Scene& scene,
+                     FlightSession& flight) {
+  if (scene.terrain.kind == TerrainSource::Kind::kMesh) return;
+  RequirePointsOver(path, file, [&](const GeodeticPosition& place) {
+    flight.edits().AwaitGround(place);
+    return flight.edits().GroundAt(place);
+  });
+}
+
 int Run(const SkyviewOptions& options) {
   const ThreadLimit threads(options.common.threads);
   const ImageSize size = SizeFromText(options.size);
@@ -284,6 +301,8 @@ int Run(const SkyviewOptions& options) {
   const UtcInstant start = StartOf(options, scene);
   std::optional<CameraPath> path;
   if (options.replay && !flown) path = ReadFlight(*options.replay);
+  const bool has_land = scene.terrain.kind != TerrainSource::Kind::kNone;
+  if (path && !has_land) RequirePointsOver(*path, *options.replay, [](auto&&) { return 0.0; });
   PrepareOutputs(OutputsOf(options), InputsOf(options, scene));  // before the flight
   std::future<FirstAir> first_air;  // computed while the window is being created
   if (!options.headless) {
@@ -314,6 +333,7 @@ int Run(const SkyviewOptions& options) {
     flight.Follow(PathAlong(track, {}, flight.controller().ground()));
   }
   if (path) flight.edits().BringRangeTo(path->PoseAt(path->begin_s()).place);
+  if (path && has_land) RequireOverLand(*path, *options.replay, scene, flight);
   if (flown) path = PathOfTrack(*flown, scene, flight);
   if (window || options.benchmark || options.hud == "on")
     LogFieldOfView(path ? path->PoseAt(path->begin_s()) : flight.eye());

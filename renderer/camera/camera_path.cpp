@@ -283,4 +283,15 @@ std::string TextOf(const CameraPath& path) {
   return text;
 }
 
+void CheckPoints(const CameraPath& path, const std::string& file,
+                 const std::function<void(const GeodeticPosition&)>& check) {
+  for (std::size_t i = 0; i < path.points().size(); ++i) {
+    try {
+      check(path.points()[i].pose.place);
+    } catch (const InputError& error) {
+      throw InputError(fmt::format("{}: point {}: {}", file, i + 1, error.what()));
+    }
+  }
+}
+
 }  // namespace alpenglow::renderer

@@ -115,6 +115,11 @@ class CameraPath {
   std::vector<double> utc_s_;  // since the first point
 };
 
+/// Calls a check with the place of every point of a path. Adds the file and the number of the point,
+/// counted from 1, to its InputError.
+void CheckPoints(const CameraPath& path, const std::string& file,
+                 const std::function<void(const GeodeticPosition&)>& check);
+
 /// Reads a path; `otherwise` supplies the values of columns that are left out. Throws InputError
 /// "file:line: ..." for unknown or missing columns, for values out of range, and for points that
 /// CameraPath rejects. If the file name ends in .part (a flight that is still being recorded), an

@@ -383,21 +383,6 @@ std::string TextOf(const GeodeticPosition& place) {
                      place.longitude_rad / kRadiansPerDegree);
 }
 
-void RequireOverGround(const SceneGround& ground, const GeodeticPosition& place) {
-  if (!ground.terrain) {
-    if (place.height_m < 0.0) {
-      throw InputError(fmt::format("{} is {:.1f} m high; the ground there is at 0 m", TextOf(place),
-                                   place.height_m));
-    }
-    return;
-  }
-  const auto there = GroundHeightsAt(*ground.terrain, ground.frame, place);
-  if (there && place.height_m < there->lowest_m) {
-    throw InputError(fmt::format("{} is {:.1f} m high; the ground there is at {:.1f} m",
-                                 TextOf(place), place.height_m, there->lowest_m));
-  }
-}
-
 /// Throws InputError if the place is too far from the scene's place.
 CameraStand StandOver(const SceneGround& ground, const GeodeticPosition& place) {
   const LocalFrame there(ground.frame.ellipsoid(), place);
@@ -425,9 +410,20 @@ CameraStand StandOfScene(const SceneGround& ground) {
   return {{0.0, 0.0, ground.eye_height_m}, glm::dmat3(1.0)};
 }
 
+void RequireOverGround(const GeodeticPosition& eye, double ground_m) {
+  if (eye.height_m >= ground_m) return;
+  throw InputError(fmt::format("{} is {:.1f} m high; the ground there is at {} m", TextOf(eye),
+                               eye.height_m,
+                               ground_m == 0.0 ? "0" : fmt::format("{:.1f}", ground_m)));
+}
+
 CameraStand StandAt(const SceneGround& ground, const GeodeticPosition& place) {
   const CameraStand stand = StandOver(ground, place);
-  RequireOverGround(ground, place);
+  if (!ground.terrain) {
+    RequireOverGround(place, 0.0);
+  } else if (const auto there = GroundHeightsAt(*ground.terrain, ground.frame, place)) {
+    RequireOverGround(place, there->lowest_m);
+  }
   return stand;
 }
 

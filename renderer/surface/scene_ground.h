@@ -99,6 +99,9 @@ struct SceneGround {
 /// @param progress  receives the names of the steps, if not null.
 [[nodiscard]] SceneGround LoadGround(const Scene& scene, Progress* progress = nullptr);
 
+/// Throws InputError if an eye is below ground of this height above the ellipsoid [m].
+void RequireOverGround(const GeodeticPosition& eye, double ground_m);
+
 /// Returns the scene's own eye.
 [[nodiscard]] CameraStand StandOfScene(const SceneGround& ground);
 

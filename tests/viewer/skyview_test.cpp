@@ -465,6 +465,22 @@ TEST_F(SkyviewLand, SeveralModelsAreOneLand) {
   EXPECT_EQ(beside.status, 0) << "land may be far from the eye: " << beside.error;
 }
 
+TEST_F(SkyviewLand, AReplayBelowTheGroundIsRefusedByFileAndPoint) {
+  const std::string begin = "t_s,latitude,longitude,height_m,heading\n0,46.65,8.05,9000,350\n";
+  for (const char* land : {"--dem west.tif", ""}) {
+    WriteText(folder_ / "s.toml", std::string("[place]\nlatitude = 46.65\nlongitude = 8.05\n") +
+                                      (*land == '\0' ? "[terrain]\nnone = true\n" : ""));
+    WriteText(folder_ / "p.csv", begin + "2,46.65,8.05,-200,350\n4,46.65,8.05,9000,350\n");
+    const Outcome outcome = TakeScreenshot(
+        std::string(land) + " --replay p.csv --frames 2 --time 2026-06-21T10:00:00Z", "r.%04d.png");
+    EXPECT_EQ(outcome.status, 3) << land;
+    EXPECT_THAT(outcome.error,
+                AllOf(HasSubstr("p.csv: point 2: the eye at 46.650000, 8.050000 is -200.0 m high"),
+                      HasSubstr("the ground there is at")));
+    EXPECT_FALSE(std::filesystem::exists(folder_ / "r.0000.png"));
+  }
+}
+
 TEST_F(SkyviewLand, AFlightThatBeginsOverTheGroundIsRecordedReplayedAndRenderedThere) {
   Outcome outcome =
       TakeScreenshot("--dem west.tif --pitch -20 --time noon --record f.csv --frames 4");
