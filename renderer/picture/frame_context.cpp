@@ -104,18 +104,25 @@ double MostLift(const FrameContext& frame, double eye_height_m) {
                           frame.scene().geometry().FarthestFrom(frame.camera().eye()));
 }
 
-/// Elevations of the rays of a picture, at 16 x 16 places with those of its corners.
-struct Elevations {
-  double lowest_rad, highest_rad;
+/// Elevations of the rays of a picture, and the least angle of a pixel where land may be refracted
+/// visibly, at 16 x 16 places with those of its corners.
+struct PictureExtent {
+  double lowest_rad, highest_rad, least_pixel_rad;
 };
-Elevations ElevationsIn(const FrameContext& frame, const glm::dvec3& up) {
+PictureExtent ExtentOfPicture(const FrameContext& frame, const glm::dvec3& up) {
   constexpr int kPlaces = 16;
-  Elevations seen{0.5 * kPi, -0.5 * kPi};
+  // The pixels of a panorama shrink to points at the zenith and the nadir, where nothing is lifted.
+  constexpr double kSteep_rad = 45.0 * kRadiansPerDegree;
+  PictureExtent seen{0.5 * kPi, -0.5 * kPi, frame.camera().PixelAngle()};
   for (int i = 0; i < kPlaces * kPlaces; ++i) {
     const double x = i % kPlaces * frame.settings().width / (kPlaces - 1.0);
     const double y = i / kPlaces * frame.settings().height / (kPlaces - 1.0);
     const double elevation_rad = Elevation(frame.camera().Direction(x, y), up);
-    seen = {std::min(seen.lowest_rad, elevation_rad), std::max(seen.highest_rad, elevation_rad)};
+    seen.lowest_rad = std::min(seen.lowest_rad, elevation_rad);
+    seen.highest_rad = std::max(seen.highest_rad, elevation_rad);
+    if (std::abs(elevation_rad) > kSteep_rad) continue;
+    const auto [across_rad, down_rad] = frame.camera().PixelExtentAt(x, y);
+    seen.least_pixel_rad = std::min({seen.least_pixel_rad, across_rad, down_rad});
   }
   return seen;
 }
@@ -123,7 +130,7 @@ Elevations ElevationsIn(const FrameContext& frame, const glm::dvec3& up) {
 /// Returns whether refraction may move the sea by more than an angle, in a picture that shows
 /// elevations. It moves the sea most where a ray meets it at the lowest angle, by at most the
 /// refraction of a plane layer.
-bool MayMoveSea(const LimbView& limb, const Elevations& seen, double horizon_rad,
+bool MayMoveSea(const LimbView& limb, const PictureExtent& seen, double horizon_rad,
                 double angle_rad) {
   if (seen.lowest_rad > horizon_rad) return false;
   if (seen.highest_rad > horizon_rad) return true;
@@ -150,8 +157,9 @@ std::shared_ptr<const RefractedViewRays> RefractedViewRaysOf(const FrameContext&
   const Medium& medium = frame.scene().medium();
   const SceneGeometry& geometry = frame.scene().geometry();
   const CameraRays& camera = frame.camera();
-  const double half_pixel = 0.5 * camera.PixelAngle();
   const glm::dvec3 up = geometry.UpAt(camera.eye());
+  const PictureExtent seen = ExtentOfPicture(frame, up);
+  const double half_pixel = 0.5 * seen.least_pixel_rad;
   const double height_m = std::max(geometry.AltitudeOf(camera.eye()), 0.0);
   // The margin around the picture admits bodies that only touch its edge.
   const auto in_picture = [&](const glm::dvec3& direction, double margin_rad) {
@@ -170,7 +178,6 @@ std::shared_ptr<const RefractedViewRays> RefractedViewRaysOf(const FrameContext&
   const Lighting& light = frame.light();
   const bool may_see_sun = may_see(light.to_sun, light.sun_radius_rad);
   const bool may_see_moon = light.moon && may_see(light.moon->to_moon, light.moon->radius_rad);
-  const Elevations seen = ElevationsIn(frame, up);
   const bool may_see_sea =
       !geometry.HasTerrain() && MayMoveSea(frame.limb(), seen, geometric_rad, half_pixel);
   const bool moves_terrain = geometry.HasTerrain() && MostLift(frame, height_m) > half_pixel;

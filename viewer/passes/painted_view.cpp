@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 
 #include "atmosphere/math/constants.h"
@@ -34,6 +35,13 @@ double LeastOf(const Function& function) {
 
 double PixelAngle(const PaintedView& view) {
   return 2.0 * std::tan(0.5 * view.eye.fov_rad) / (view.width * view.part.z);
+}
+
+// On a plane picture an angle a off its centre, pixels are smaller by the square of cos(a).
+double LeastPixelAngle(const PaintedView& view) {
+  const glm::dvec2 middle(view.part.x * view.part.z, view.part.y * view.part.w);
+  const glm::dvec2 corner = HalfViewOf(view) / view.part.z * (glm::abs(middle) + 1.0);
+  return PixelAngle(view) / (1.0 + glm::dot(corner, corner));
 }
 
 glm::dvec2 HalfViewOf(const PaintedView& view) {
@@ -117,7 +125,7 @@ std::optional<LandBend> BendOf(const PaintedView& view, const Medium& medium,
   air.planet_radius_m = RadiusUnder(view.eye, medium) * kMetresPerKilometre;
   const double height_m = std::max(view.eye.place.height_m, 0.0);
   const LandBend bend = LandBendOf(air, height_m);
-  if (MostLiftOfPlanet(bend, height_m, farthest_land_m) <= 0.5 * PixelAngle(view))
+  if (MostLiftOfPlanet(bend, height_m, farthest_land_m) <= 0.5 * LeastPixelAngle(view))
     return std::nullopt;
   return bend;
 }

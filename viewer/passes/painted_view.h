@@ -42,6 +42,10 @@ struct PaintedView {
 /// Returns the angle between neighbouring pixels in the centre of the view [rad].
 [[nodiscard]] double PixelAngle(const PaintedView& view);
 
+/// Returns the least angle between neighbouring pixels in the view [rad]: that in its farthest
+/// corner.
+[[nodiscard]] double LeastPixelAngle(const PaintedView& view);
+
 /// Returns the tangents of half the horizontal and half the vertical field of view, for a view that
 /// is drawn whole.
 [[nodiscard]] glm::dvec2 HalfViewOf(const PaintedView& view);

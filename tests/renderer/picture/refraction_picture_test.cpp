@@ -251,6 +251,16 @@ TEST_F(RefractedTerrain, HiddenPeaksAppearWhereTheRayEquationSays) {
   }
 }
 
+TEST(RefractedPlaces, WideViewsAreRefractedForTheirSmallestPixels) {
+  // The horizon is lifted by 12'; pixels have 4.5 degrees in the middle and 18' at the edges.
+  const SceneRenderer renderer(QuickScene(10e3, 0.0, 0.0, 150.0));
+  RenderSettings settings{
+      .width = 96, .height = 24, .samples_per_pixel = 1, .air_nodes = 4, .layers = {}};
+  const Image bent = renderer.Render(kRefractedNoon, settings);
+  settings.effects = settings.effects.Without(Effect::kRefraction);
+  EXPECT_NE(bent.rgb, renderer.Render(kRefractedNoon, settings).rgb);
+}
+
 TEST_F(RefractedTerrain, ShiftsBelowHalfAPixelAreIgnored) {
   const FarPeak peak{20.0, 40e3, 1500.0};  // lifted by 1.2'
   const double radius_m = MediumPreset("earth").planet_radius_m;

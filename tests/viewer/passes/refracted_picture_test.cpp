@@ -130,6 +130,19 @@ TEST(ViewBend, IsOffWhereNothingMovesByHalfAPixel) {
   EXPECT_TRUE(BendOf(ViewFrom(high, noon, 640, 360), medium, 0.0)) << "the horizon is, by 12'";
 }
 
+TEST(ViewBend, IsOnWhereOnlyPixelsAtTheEdgeAreSmall) {
+  const Medium medium = MediumPreset("earth");
+  const UtcInstant noon = ParseInstant("2026-06-21T11:30:00Z");
+  const Scene wide = BareScene(20.0, 0.0, 0.0, 120.0);
+  EXPECT_TRUE(BendOf(ViewFrom(wide, noon, 640, 360), medium, 120e3))
+      << "land rises by 5'; pixels have 18.6' in the middle and 3.8' in the corners";
+  const PaintedView whole = ViewFrom(wide, noon, 640, 360);
+  PaintedView part = whole;
+  part.width = 320;
+  part.part = {-0.5, 0.0, 2.0, 1.0};
+  EXPECT_NEAR(LeastPixelAngle(part), LeastPixelAngle(whole), 1e-12) << "both have that corner";
+}
+
 TEST_F(RefractedOnCard, ASettingSunAndTheSeaStandWhereTheRenderersDo) {
   Scene scene = BareScene(20.0, 306.0, 0.15, 1.2);
   scene.ground.kind = GroundCover::Kind::kWater;
