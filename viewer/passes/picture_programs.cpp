@@ -95,6 +95,21 @@ int TexturesOf(const PictureKind& kind, const PictureStage& stage) {
   return textures;
 }
 
+namespace {
+
+/// Returns advice on the parts of a scene that need textures; empty if it has none.
+std::string PartsToOmit(const PictureKind& kind) {
+  std::vector<const char*> parts;
+  if (kind.fog) parts.push_back("[fog]");
+  if (kind.material.HasWater()) parts.push_back("water");
+  if (kind.material.HasGloss() && !kind.material.HasWater()) parts.push_back("glossy ground");
+  if (kind.material.drape() != nullptr) parts.push_back("the picture on the terrain");
+  if (parts.empty()) return "";
+  return fmt::format("; the scene needs fewer without {}", fmt::join(parts, " or "));
+}
+
+}  // namespace
+
 FittingStage Fitting(const PictureKind& kind, const PictureStage& stage, int units) {
   using enum PictureStage::Pass;
   const auto needed = [&](const PictureStage& of) {
@@ -118,8 +133,8 @@ FittingStage Fitting(const PictureKind& kind, const PictureStage& stage, int uni
   if (needed(fitting.stage) > units)
     throw DisplayError(
         fmt::format("a program for this scene reads {} textures, and the OpenGL driver has units "
-                    "for {}; the software driver, LIBGL_ALWAYS_SOFTWARE=1, has 32",
-                    needed(fitting.stage), units));
+                    "for {}{}; the software driver, LIBGL_ALWAYS_SOFTWARE=1, has 32",
+                    needed(fitting.stage), units, PartsToOmit(kind)));
   fitting.stage = fitting.stage.In(stage.pass);
   return fitting;
 }

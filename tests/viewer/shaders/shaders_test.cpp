@@ -327,7 +327,10 @@ TEST_F(TexturesOfThePicture, ThatDoNotFitADriverAreLeftOutInWords) {
               testing::HasSubstr("shadows of mountains in the air ("));
   EXPECT_THAT([&] { static_cast<void>(Fitting(bare.Kind(), kAll, 4)); },
               testing::ThrowsMessage<DisplayError>(
-                  testing::HasSubstr("the OpenGL driver has units for 4")));
+                  testing::HasSubstr("the OpenGL driver has units for 4; the software driver")));
+  EXPECT_THAT([&] { static_cast<void>(Fitting(heavy.Kind(), kAll, 12)); },
+              testing::ThrowsMessage<DisplayError>(
+                  testing::HasSubstr("the scene needs fewer without [fog] or water")));
 }
 
 // Returns a program of land and planet.
