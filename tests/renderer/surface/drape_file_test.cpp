@@ -265,7 +265,7 @@ TEST_F(DrapeFile, PalettesHaveTheColoursOfTheirEntries) {
 }
 
 TEST_F(DrapeFile, EntriesOfPalettesHaveWeights) {
-  for (const short weight : {255, 200, 50, 0}) {
+  for (const short weight : std::array<short, 4>{255, 200, 50, 0}) {
     SCOPED_TRACE(weight);
     const std::filesystem::path bytes = Write({{1.0}});
     auto* dataset = static_cast<GDALDataset*>(GDALOpen(bytes.c_str(), GA_Update));
