@@ -513,8 +513,7 @@ Volume VolumeOf(const TomlTable& table, const fs::path& folder, std::size_t band
                                    [](double albedo) { return albedo < 1.0; });
   if (volume.temperature_k && !absorbs) {
     table.Fail("temperature_k",
-               fmt::format("{} has no effect: what absorbs nothing does not glow; give an {} below "
-                           "1",
+               fmt::format("{} has no effect: what absorbs nothing does not glow; set {} below 1",
                            table.FullName("temperature_k"), table.FullName("albedo")));
   }
   volume.phase = DropletPhaseOf(table);

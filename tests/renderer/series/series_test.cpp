@@ -649,7 +649,7 @@ const std::vector<ChangedKey>& ChangedVolumes() {
       {kVolume, "", "scale_height_m = 30"},
       {kVolume, "", "albedo = 0.9"},
       {kVolume, "", "emission_per_m = 1"},
-      {kVolume, "", "temperature_k = 1500"},
+      {kVolume, "albedo = 0.9", "albedo = 0.9\ntemperature_k = 1500"},
       {kVolume, "", "g = 0.5"},
       {kVolume, "", "droplet_diameter_um = 16"},
       {kVolume, "grid_size = [2, 2, 3]\ngrid = 'one'", "grid_size = [2, 3, 2]\ngrid = 'one'"},
