@@ -98,8 +98,8 @@ struct FarLamp {
   /// Returns the irradiance of level ground [m^-2]: a sum over elevations, azimuths and lengths,
   /// which are logarithmic.
   [[nodiscard]] double OnLevelGround() const {
-    const int elevations = tests::ScaledDown(30, 12), azimuths = tests::ScaledDown(16, 8),
-              lengths = tests::ScaledDown(160, 60);
+    const int elevations = tests::ScaledDown(30, 24), azimuths = tests::ScaledDown(16, 12),
+              lengths = tests::ScaledDown(160, 100);
     constexpr double kNearest_m = 2.0, kFarthest_m = 1.5e6, kTop_m = 1.2e5;
     const double ratio = std::log(kFarthest_m / kNearest_m) / lengths;
     double sum = 0.0;
