@@ -122,7 +122,7 @@ class AsyncValue {
  private:
   using Clock = std::chrono::steady_clock;
 
-  // Of a core that drawing wants, too, a thread ten steps lower gets a tenth.
+  // A thread ten steps lower gets a tenth of a core for which drawing competes with it.
   static constexpr int kStepsBelowDrawing = 10;
 
   void Run(const std::stop_token& stop) {

@@ -56,6 +56,11 @@ SHARED Number LampAirlightUnit(Length distance, Length nearest, Length farthest)
   return log(distance / nearest) / log(farthest / nearest);
 }
 
+// Returns the distance at a coordinate, the inverse of LampAirlightUnit.
+SHARED Length LampAirlightDistance(Number unit, Length nearest, Length farthest) {
+  return nearest * exp(unit * log(farthest / nearest));
+}
+
 SHARED Number LampRiseUnit(Number rise) {
   Number a = min(abs(rise), Number(1.0));
   Number steps = min(a / Number(0.04), Number(1.0)) +

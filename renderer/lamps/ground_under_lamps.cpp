@@ -23,9 +23,9 @@ constexpr std::size_t kSlopeTerms = kGlowTerms - 1;
 using SlopeTerms = std::array<glm::vec4, kSlopeTerms>;
 
 double DistanceAt(double texel) {
-  constexpr double kNearest_m = LampAirlightIrradiance::kNearest_m;
-  return kNearest_m *
-         std::pow(LampAirlightIrradiance::kFarthest_m / kNearest_m, texel / (kGlowDistances - 1.0));
+  return shared::LampAirlightDistance(texel / (kGlowDistances - 1.0),
+                                      LampAirlightIrradiance::kNearest_m,
+                                      LampAirlightIrradiance::kFarthest_m);
 }
 double RiseAt(double texel) { return shared::LampRiseFromUnit(texel / (kGlowRises - 1.0)); }
 

@@ -13,7 +13,7 @@
 namespace alpenglow::renderer {
 namespace {
 
-/// LayerDensities of the layers at a point, relative to their bases, and their logarithms.
+/// The densities of the layers at a point, relative to those at their bases, and the logarithms.
 struct LayerDensities {
   std::array<double, kMostLampLayers> log{}, value{};
 };

@@ -29,9 +29,8 @@ constexpr std::array<double, 9> kRises{-1.0, -0.6, -0.2, -0.04, 0.0, 0.04, 0.2, 
 constexpr int kElevations = static_cast<int>(kRises.size());
 
 double DistanceNumber(int i) {
-  constexpr double kNearest_m = LampAirlightIrradiance::kNearest_m;
-  return kNearest_m *
-         std::pow(LampAirlightIrradiance::kFarthest_m / kNearest_m, i / (kDistances - 1.0));
+  return shared::LampAirlightDistance(i / (kDistances - 1.0), LampAirlightIrradiance::kNearest_m,
+                                      LampAirlightIrradiance::kFarthest_m);
 }
 
 /// Returns the moments of the clamped cosine over those of Y_l0, so that E = sum of A_l L_lm Y_lm.

@@ -8,15 +8,15 @@
 //   E(n) = integral over directions d with n.d > 0 of  L(d) n.d,    L = Airlight from the surface
 //
 // L is integrated over all directions around points at several distances from the lamp and several
-// altitudes below or above it, relative to the distance (LampRise). It is stored as moments of real spherical harmonics
-// about the direction to the lamp, symmetric about the vertical plane through it. The irradiance of
-// any normal is then a short sum with the moments of the clamped cosine (Ramamoorthi, Hanrahan
-// 2001, SIGGRAPH, "An efficient representation for irradiance environment maps"). Between
-// distances, the logarithm of moment 00 times the distance is interpolated linearly, and level
-// ground has its exact irradiance. E falls as 1/d near a lamp and exponentially far from it; behind
-// the lamp's horizon it comes from the air above the planet's shadow. Surfaces below the lowest
-// ground, which is that at the lamp's foot or at altitude 0, get the light there. Rays end at the level ground at
-// the lamp's foot, or at the surface where that is lower.
+// altitudes below or above it, relative to the distance (LampRise). It is stored as moments of real
+// spherical harmonics about the direction to the lamp, symmetric about the vertical plane through
+// it. The irradiance of any normal is then a short sum with the moments of the clamped cosine
+// (Ramamoorthi, Hanrahan 2001, SIGGRAPH, "An efficient representation for irradiance environment
+// maps"). Between distances, the logarithm of moment 00 times the distance is interpolated
+// linearly, and level ground has its exact irradiance. E falls as 1/d near a lamp and exponentially
+// far from it; behind the lamp's horizon it comes from the air above the planet's shadow. Surfaces
+// below the lowest ground, which is that at the lamp's foot or at altitude 0, get the light there.
+// Rays end at the level ground at the lamp's foot, or at the surface where that is lower.
 //
 // LampTree clusters lamps: an inner node represents all lamps below it (Walter et al. 2005,
 // "Lightcuts", ACM TOG 24, 1098). Only isotropic lamps are clustered; every other lamp is a node of

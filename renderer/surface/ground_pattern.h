@@ -4,11 +4,11 @@
 // The pattern is plane, and extruded along lines (NoiseOctave of surface.h). No plane suits the
 // whole planet, so the planet has 184 of them: they touch it at parallels 15 degrees apart, and at
 // each pole. Along a parallel they are as far apart as across it, and one of them touches the
-// parallel at the meridian of 8 degrees, in the middle of the Alps. Pictures use the
-// plane that is nearest to their eye, also along a path. All pictures of
-// some land therefore have one pattern as long as their eyes have the same plane. Beyond the
-// border between two planes the pattern is another one. The ground is inclined to its plane by at
-// most 12 degrees, which stretches the pattern by 2 %.
+// parallel at the meridian of 8 degrees, in the middle of the Alps. Pictures use the plane that is
+// nearest to their eye, also along a path. All pictures of some land therefore have one pattern as
+// long as their eyes have the same plane. Beyond the border between two planes the pattern is
+// another one. The ground is inclined to its plane by at most 12 degrees, which stretches the
+// pattern by 2 %.
 #pragma once
 
 #include <glm/geometric.hpp>

@@ -79,8 +79,7 @@ TEST(AsyncValue, EndsWithARequestWaiting) {
 #ifdef __linux__
 int PriorityOfThisThread() { return getpriority(PRIO_PROCESS, static_cast<id_t>(gettid())); }
 
-// A thread cannot raise its priority, so that a screenshot, which waits for each value, must not
-// lower it. 19 is the lowest priority of Linux.
+// 19 is the lowest priority of Linux.
 TEST(AsyncValue, GivesWayToDrawingOnlyWhereItIsAskedToAndForGood) {
   AsyncValue<int, int> value([](const int&) { return PriorityOfThisThread(); },
                              std::equal_to<int>());

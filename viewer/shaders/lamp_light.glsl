@@ -343,10 +343,10 @@ vec4 LampAirlightOnLevel(Lamp lamp, vec2 at, float distance_m) {
   vec4 level = LampAirlightTerm(lamp, at, 0.0);
   if (distance_m <= LAMP_GLOW_FARTHEST) return level;
   float texels = float(textureSize(lamp_airlight_map, 0).x);
-  float step_m = LAMP_GLOW_FARTHEST *
-                 (1.0 - pow(LAMP_GLOW_NEAREST / LAMP_GLOW_FARTHEST, 1.0 / (texels - 1.0)));
+  float before_m = LampAirlightDistance((texels - 2.0) / (texels - 1.0), LAMP_GLOW_NEAREST,
+                                        LAMP_GLOW_FARTHEST);
   vec4 before = LampAirlightTerm(lamp, at - vec2(1.0, 0.0), 0.0);
-  float steps = (distance_m - LAMP_GLOW_FARTHEST) / step_m;
+  float steps = (distance_m - LAMP_GLOW_FARTHEST) / (LAMP_GLOW_FARTHEST - before_m);
   for (int band = 0; band < 4; ++band)
     level[band] = LampAirlightBeyond(level[band], before[band], steps);
   return level;
