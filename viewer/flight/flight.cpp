@@ -88,7 +88,7 @@ CameraPose Steer(const CameraPose& eye, const Steering& steering, const Ellipsoi
 
 CameraPose FreeFlight(const CameraPose& eye, const Steering& steering, const Ellipsoid& ellipsoid,
                       const GroundHeight& ground, double speed_factor, double seconds) {
-  constexpr double kLongest_s = 1.0 / 60.0, kClearance_m = 1.5;
+  constexpr double kLongest_s = 1.0 / 60.0;
   const auto steps =
       std::max(static_cast<std::int64_t>(std::ceil(seconds / kLongest_s)), std::int64_t{1});
   const double step_s = seconds / static_cast<double>(steps);
@@ -96,9 +96,10 @@ CameraPose FreeFlight(const CameraPose& eye, const Steering& steering, const Ell
   for (double* pace : {&scaled.forward, &scaled.right, &scaled.up}) *pace *= speed_factor;
   CameraPose moved = eye;
   for (std::int64_t i = 0; i < steps; ++i) {
-    const double above_m = std::max(moved.place.height_m - ground(moved.place), 0.0);
-    moved = Steer(moved, scaled, ellipsoid, above_m, step_s);
-    moved = KeptAbove(moved, ground(moved.place), kClearance_m);
+    const double ground_m = ground(moved.place);
+    const double clearance_m = ClearanceOf(moved, ground_m);
+    moved = Steer(moved, scaled, ellipsoid, std::max(moved.place.height_m - ground_m, 0.0), step_s);
+    moved = KeptAbove(moved, ground(moved.place), clearance_m);
   }
   return moved;
 }
@@ -130,6 +131,11 @@ CameraPose Zoomed(const CameraPose& eye, double factor) {
   CameraPose zoomed = eye;
   zoomed.fov_rad = std::clamp(eye.fov_rad * factor, kNarrowestView_rad, kWidestView_rad);
   return zoomed;
+}
+
+double ClearanceOf(const CameraPose& eye, double ground_m) {
+  const double above_m = eye.place.height_m - ground_m;
+  return above_m < 0.0 ? kStandingEye_m : std::clamp(above_m, kLowestEye_m, kStandingEye_m);
 }
 
 CameraPose KeptAbove(const CameraPose& eye, double ground_m, double clearance_m) {

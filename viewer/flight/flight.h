@@ -57,7 +57,7 @@ struct ViewAxes {
 
 /// Returns the eye after `seconds` of steering at `speed_factor` times SpeedAt its height over the
 /// ground, in steps of at most 1/60 s. One long frame therefore ends where several short ones do,
-/// within 1 % of the distance. The eye stays at least 1.5 m above the ground.
+/// within 1 % of the distance. The eye keeps its ClearanceOf while it moves.
 [[nodiscard]] CameraPose FreeFlight(const CameraPose& eye, const Steering& steering,
                                     const Ellipsoid& ellipsoid, const GroundHeight& ground,
                                     double speed_factor, double seconds);
@@ -79,6 +79,14 @@ inline constexpr double kWidestView_rad = 120.0 * kRadiansPerDegree;
 [[nodiscard]] CameraPose Zoomed(const CameraPose& eye, double factor);
 /// Returns the eye with the field of view that a window shows.
 [[nodiscard]] inline CameraPose InWindow(const CameraPose& eye) { return Zoomed(eye, 1.0); }
+
+/// Height [m] above the ground of an eye that stands on it, and the minimum of every eye. With a
+/// smaller minimum, rounding errors could show the land from below.
+inline constexpr double kStandingEye_m = 1.5, kLowestEye_m = 0.1;
+
+/// Returns the least height [m] above the ground that a free camera may come to. One that a scene
+/// puts lower than a standing eye stays there; one under the ground is raised to a standing eye.
+[[nodiscard]] double ClearanceOf(const CameraPose& eye, double ground_m);
 
 /// Returns the eye raised to at least `clearance_m` above ground of height `ground_m`.
 [[nodiscard]] CameraPose KeptAbove(const CameraPose& eye, double ground_m, double clearance_m);

@@ -142,10 +142,6 @@ Autopilot::Flown Autopilot::Fly(const AircraftState& state, const AircraftKind& 
 namespace {
 
 constexpr double kStep_s = 1.0 / 120.0;
-constexpr double kStanding_m = 1.5;  // minimum height of the eye above the ground
-// Minimum height in a replay, which goes as low as the recorded flight. With a smaller value,
-// rounding errors could show the land from below.
-constexpr double kReplayed_m = 0.1;
 constexpr double kOnGround_m = 15.0;  // below this height a flight begins on the wheels
 
 }  // namespace
@@ -154,7 +150,7 @@ void PilotedAircraft::Begin(GeodeticPosition place, double heading_rad,
                             const GroundHeight& ground) {
   const double ground_m = ground(place);
   const bool stands = place.height_m < ground_m + kOnGround_m;
-  if (stands) place.height_m = ground_m + kStanding_m;
+  if (stands) place.height_m = ground_m + kStandingEye_m;
   kind_ = !stands && place.height_m > kJetsFrom_m ? kSmallJet : kLightAircraft;
   state_ = LevelFlight(kind_, ellipsoid_, place, heading_rad);
   if (stands) {
@@ -305,7 +301,11 @@ void Pilot::Show(const GroundHeight& ground) {
     eye_ = Turned(track_.Pose(), look_right_rad_, look_up_rad_);
     if (track_lens_ == Lens::kOfEye) eye_.fov_rad = fov_rad;
   }
-  eye_ = KeptAbove(eye_, ground(eye_.place), Replays() ? kReplayed_m : kStanding_m);
+  const double ground_m = ground(eye_.place);
+  const double clearance_m = mode_ == FlightMode::kFree ? ClearanceOf(eye_, ground_m)
+                             : Replays()                ? kLowestEye_m
+                                                        : kStandingEye_m;
+  eye_ = KeptAbove(eye_, ground_m, clearance_m);
 }
 
 void Pilot::StepSpeed(int step) {

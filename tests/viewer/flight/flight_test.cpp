@@ -201,6 +201,20 @@ TEST(Pilot, TheFreeCameraIsNeverInTheGround) {
   }
 }
 
+TEST(Pilot, AFreeCameraPutLowStaysLowUntilItClimbs) {
+  constexpr double kLow_m = 0.4;
+  Pilot pilot(EyeAt(kLow_m), kWgs84);
+  pilot.KeepAbove(Sea);
+  EXPECT_EQ(pilot.eye().place.height_m, kLow_m) << "as in a picture of the renderer";
+  pilot.Advance({.camera = {.forward = 1.0, .up = -1.0}}, 0.5, Sea);
+  EXPECT_NEAR(pilot.eye().place.height_m, kLow_m, 1e-6) << "it came no lower";
+  pilot.Advance({.camera = {.up = 1.0}}, 2.0, Sea);
+  pilot.Advance({.camera = {.up = -1.0}}, 9.0, Sea);
+  EXPECT_NEAR(pilot.eye().place.height_m, kStandingEye_m, 1e-6);
+  pilot.PutAt(EyeAt(-5.0), Sea);
+  EXPECT_EQ(pilot.eye().place.height_m, kStandingEye_m) << "from under the ground";
+}
+
 TEST(Pilot, ChangingTheModeKeepsPlaceAndHeading) {
   Pilot pilot(EyeAt(1500.0, 77.0), kWgs84);
   ASSERT_FALSE(pilot.Enter(FlightMode::kAircraft, Sea));
