@@ -10,7 +10,6 @@
 #include <array>
 #include <charconv>
 #include <cmath>
-#include <numeric>
 
 #include "atmosphere/base/error.h"
 #include "atmosphere/colour/spectrum.h"
@@ -31,7 +30,31 @@ constexpr double kDarkShare = 0.40, kBrightShare = 0.95;
 constexpr double kLastSeen_stops = 6.0, kFade_stops = 4.0;
 constexpr double kPaper = 0.90, kGreyCard = 0.18;
 
-using Histogram = std::array<double, kBins>;
+/// Weights by bin of log2 luminance. Sums run over the range of bins with light, which is a quarter
+/// of all in a frame of a flight.
+class Histogram {
+ public:
+  void Add(std::size_t bin, double weight) {
+    weights_[bin] += weight;
+    begin_ = std::min(begin_, bin);
+    end_ = std::max(end_, bin + 1);
+  }
+  void Scale(std::size_t bin, double factor) { weights_[bin] *= factor; }
+  [[nodiscard]] double operator[](std::size_t bin) const { return weights_[bin]; }
+  [[nodiscard]] std::size_t begin() const { return begin_; }
+  [[nodiscard]] std::size_t end() const { return end_; }
+
+  [[nodiscard]] double SumBefore(std::size_t bin) const {
+    double sum = 0.0;
+    for (std::size_t i = begin_; i < bin; ++i) sum += weights_[i];
+    return sum;
+  }
+  [[nodiscard]] double Sum() const { return SumBefore(end_); }
+
+ private:
+  std::array<double, kBins> weights_ = {};
+  std::size_t begin_ = kBins, end_ = 0;
+};
 
 /// Returns the weight of a row: the solid angle of a latitude-longitude pixel decreases towards the
 /// poles.
@@ -60,20 +83,20 @@ double BinOf(double luminance) {
 }
 
 Histogram HistogramOf(const Image& image, double ignore_above_cd_per_m2, Projection projection) {
-  Histogram histogram = {};
+  Histogram histogram;
   VisitLight(image, ignore_above_cd_per_m2, projection,
              [&](const std::array<float, 3>&, double y, double weight) {
-               histogram[static_cast<std::size_t>(BinOf(y))] += weight;
+               histogram.Add(static_cast<std::size_t>(BinOf(y)), weight);
              });
   return histogram;
 }
 
 /// Returns the bin at which the cumulative histogram reaches a fraction of all pixels.
 std::size_t BinAtShare(const Histogram& histogram, double share) {
-  const double wanted = share * std::accumulate(histogram.begin(), histogram.end(), 0.0);
+  const double wanted = share * histogram.Sum();
   double seen = 0.0;
-  std::size_t bin = 0;
-  while (bin + 1 < kBins && seen + histogram[bin] < wanted) seen += histogram[bin++];
+  std::size_t bin = histogram.begin();
+  while (bin + 1 < histogram.end() && seen + histogram[bin] < wanted) seen += histogram[bin++];
   return bin;
 }
 
@@ -85,7 +108,7 @@ double MeanStop(const Histogram& histogram, double pixels, double low_share, dou
   double seen = 0.0;
   double weight = 0.0;
   double sum = 0.0;
-  for (std::size_t bin = 0; bin < kBins; ++bin) {
+  for (std::size_t bin = histogram.begin(); bin < histogram.end(); ++bin) {
     const double inside = std::min(seen + histogram[bin], high) - std::max(seen, low);
     seen += histogram[bin];
     if (!(inside > 0.0)) continue;
@@ -98,10 +121,9 @@ double MeanStop(const Histogram& histogram, double pixels, double low_share, dou
 /// Returns log2 of the luminance below which a fraction of all pixels lies. Pixels are assumed
 /// uniform within a bin.
 double StopAtShare(const Histogram& histogram, double share) {
-  const double wanted = share * std::accumulate(histogram.begin(), histogram.end(), 0.0);
+  const double wanted = share * histogram.Sum();
   const std::size_t bin = BinAtShare(histogram, share);
-  const double before =
-      std::accumulate(histogram.begin(), histogram.begin() + static_cast<std::ptrdiff_t>(bin), 0.0);
+  const double before = histogram.SumBefore(bin);
   const double inside = histogram[bin] > 0.0 ? (wanted - before) / histogram[bin] : 0.5;
   return kLowestStop + (static_cast<double>(bin) + inside) / kBinsPerStop;
 }
@@ -110,9 +132,9 @@ double StopAtShare(const Histogram& histogram, double share) {
 /// gradually, so that exposure does not jump between the images of a series.
 Histogram WithoutBlack(Histogram histogram) {
   const std::size_t bright = BinAtShare(histogram, kBrightShare);
-  for (std::size_t bin = 0; bin < bright; ++bin) {
+  for (std::size_t bin = histogram.begin(); bin < bright; ++bin) {
     const double under = static_cast<double>(bright - bin) / kBinsPerStop;
-    histogram[bin] *= std::clamp(1.0 - (under - kLastSeen_stops) / kFade_stops, 0.0, 1.0);
+    histogram.Scale(bin, std::clamp(1.0 - (under - kLastSeen_stops) / kFade_stops, 0.0, 1.0));
   }
   return histogram;
 }
@@ -138,7 +160,7 @@ std::string MeterRule() {
 
 double MeterEv100(const Image& image, double ignore_above_cd_per_m2, Projection projection) {
   const Histogram histogram = WithoutBlack(HistogramOf(image, ignore_above_cd_per_m2, projection));
-  const double pixels = std::accumulate(histogram.begin(), histogram.end(), 0.0);
+  const double pixels = histogram.Sum();
   if (pixels == 0.0) return kDarkestEv100;
   const double ev100 = GreyStop(histogram, pixels) + std::log2(100.0 / kMeterConstant);
   return std::clamp(ev100, kDarkestEv100, kBrightestEv100);
