@@ -75,8 +75,9 @@ struct ElevationModel {
 /// in metres (also mm, cm, dm, km) or feet, with the declared scale and offset. Without a unit they
 /// are in feet on a map in feet, else in metres; unit_note reports this if the map is not in
 /// metres. They are interpreted as above the ellipsoid, whatever vertical datum is declared. Voids
-/// are NaN, the declared nodata value, and samples that a mask or an alpha band excludes. In a file
-/// that declares neither they are the heights -32768, -32767, -9999, the lowest float and the
+/// are NaN, the declared nodata value, and samples that a mask or an alpha band excludes; declared
+/// values at the largest float, which texts round, and beyond it are one value. In a file that
+/// declares neither they are the heights -32768, -32767, -9999, the lowest float and the
 /// lowest double, in its unit. kFill fills them with a membrane (Laplace's equation) spanned over
 /// their rims; places outside the footprint of a resampled file stay open. Throws InputError naming
 /// the file and the fault for a coordinate system that is missing or not of the earth, a rotated or

@@ -23,6 +23,17 @@ namespace {
 constexpr double kBeyondAllValues = 1e30;
 constexpr double kRoundingOfText = 1e-4;
 
+constexpr double kLargestFloat = static_cast<double>(std::numeric_limits<float>::max());
+
+// Files use the largest float, the largest double or infinity for samples without data, declare one
+// and store another, and round them as text to as few digits as -3.4e38. This function makes them
+// one value.
+double WithOneLargestValue(double value) {
+  constexpr double kTwoDigits = 1e-3;
+  return std::abs(value) >= (1.0 - kTwoDigits) * kLargestFloat ? std::copysign(kLargestFloat, value)
+                                                               : value;
+}
+
 // GDAL returns the nodata value of 64-bit integers by other functions only.
 std::optional<double> DeclaredNodata(GDALRasterBand& band) {
   int is_declared = 0;
@@ -38,10 +49,8 @@ std::optional<double> DeclaredNodata(GDALRasterBand& band) {
       nodata = band.GetNoDataValue(&is_declared);
   }
   if (is_declared == 0) return std::nullopt;
-  constexpr double kLargestFloat = static_cast<double>(std::numeric_limits<float>::max());
-  if (band.GetRasterDataType() == GDT_Float32 && !std::isnan(nodata))
-    nodata =
-        static_cast<double>(static_cast<float>(std::clamp(nodata, -kLargestFloat, kLargestFloat)));
+  if (band.GetRasterDataType() == GDT_Float32 && std::abs(nodata) < kLargestFloat)
+    nodata = static_cast<double>(static_cast<float>(nodata));
   return nodata;
 }
 
@@ -199,9 +208,9 @@ std::optional<std::vector<double>> BandValues::Read(const PixelWindow& window) c
 bool BandValues::IsNodata(double stored) const {
   if (std::isnan(stored)) return true;
   if (!nodata_) return false;
-  const double nodata = *nodata_;
-  return stored == nodata || (std::abs(nodata) > kBeyondAllValues &&
-                              std::abs(stored - nodata) <= kRoundingOfText * std::abs(nodata));
+  const double nodata = WithOneLargestValue(*nodata_), sample = WithOneLargestValue(stored);
+  return sample == nodata || (std::abs(nodata) > kBeyondAllValues &&
+                              std::abs(sample - nodata) <= kRoundingOfText * std::abs(nodata));
 }
 
 }  // namespace alpenglow::renderer

@@ -406,6 +406,35 @@ TEST_F(ElevationFile, NodataOfEveryTypeIsRecognised) {
   EXPECT_TRUE(std::isnan(HeightFromStored(WriteStored(folder_, {GDT_Float32}, kLowestFloat))));
 }
 
+TEST_F(ElevationFile, NodataBeyondAllHeightsIsOneValue) {
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  // As programs write them: exact, rounded to six, two and eight digits, as doubles, and infinite.
+  const double values[] = {-3.4028234663852886e38,
+                           -3.40282e38,
+                           -3.4e38,
+                           -3.4028235e38,
+                           -3.5e38,
+                           std::numeric_limits<double>::lowest(),
+                           -kInfinity};
+  for (const GDALDataType type : {GDT_Float32, GDT_Float64}) {
+    for (const double side : {1.0, -1.0}) {
+      for (const double declared : values) {
+        SCOPED_TRACE(fmt::format("{} {}", GDALGetDataTypeName(type), side * declared));
+        const BandDeclaration band{type, 1.0, 0.0, side * declared};
+        for (const double stored : values)
+          EXPECT_TRUE(std::isnan(HeightFromStored(WriteStored(folder_, band, side * stored))));
+        EXPECT_EQ(HeightFromStored(WriteStored(folder_, band, 200.0)), 200.0);
+        ExpectRefused(WriteStored(folder_, band, side * kInfinity), "row 1, column 1");
+        ExpectRefused(WriteStored(folder_, band, side * -1e38), "row 1, column 1");
+      }
+    }
+    const BandDeclaration of_nan{type, 1.0, 0.0, std::nan("")};
+    EXPECT_TRUE(std::isnan(HeightFromStored(WriteStored(folder_, of_nan, std::nan("")))));
+    EXPECT_EQ(HeightFromStored(WriteStored(folder_, of_nan, 200.0)), 200.0);
+    ExpectRefused(WriteStored(folder_, of_nan, -kInfinity), "row 1, column 1");
+  }
+}
+
 TEST_F(ElevationFile, LargeIntegersAreExact) {
   // Tenths of a millimetre: a float has 24 bits, and rounds to 4 of them.
   const BandDeclaration fine{GDT_Int32, 1e-4, 0.0, -2147483648.0};
