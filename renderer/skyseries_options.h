@@ -144,8 +144,8 @@ inline void AddTimeOptions(CLI::App& app, SkyseriesOptions& options) {
   CLI::Option* to = app.add_option("--to", times.to, "Last time of the series");
   CLI::Option* every = app.add_option(
       "--every", times.every,
-      "Time between frames: 10m, 90s, 1h; 1d is a calendar day in the zone. With whole days and an "
-      "event in --from, each frame shows the event of its own day, and --to may be a day");
+      "Time between frames: 10m, 90s, 1h; 1d is a calendar day in the zone. With whole days "
+      "--to may be a day, and with an event in --from each frame shows the event of its own day");
   CLI::Option* count =
       app.add_option("--count", times.count, "Number of frames, including the first and the last");
   app.add_option("--date", options.date,

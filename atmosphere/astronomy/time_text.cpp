@@ -410,6 +410,28 @@ std::vector<UtcInstant> EveryDays(const UtcInstant& from, double span_s, const S
   return instants;
 }
 
+[[noreturn]] void RefuseDayBefore(const TimesText& times) {
+  throw InputError(fmt::format("--to {} is before the day of --from", *times.to));
+}
+
+/// Returns the day that a time was written with; that of the place for "now".
+std::string DayOf(std::string_view text, const UtcInstant& instant, const EventDay& day) {
+  const std::string_view begin = text.substr(0, kDateLength);
+  if (IsDayText(begin)) return std::string(begin);
+  const auto [time, written] = TimeOfDayFromText(text, day);
+  return DateAt(IsClockTime(time) ? AroundOf(time, written) : instant, day);
+}
+
+/// Returns the seconds from the first frame to the middle between the frame on the day of `to`,
+/// which clock changes move by hours, and the next one.
+double SpanUpToDay(const TimesText& times, const UtcInstant& from, const EventDay& day) {
+  const UtcInstant first = DayFromText(DayOf(*times.from, from, day), day);
+  const double days =
+      std::round(SecondsBetween(first, DayFromText(*times.to, day)) / kSecondsPerDay);
+  if (days < 0.0) RefuseDayBefore(times);
+  return (days + 0.5) * kSecondsPerDay;
+}
+
 /// Returns whether a text is an event, after a day or not.
 bool IsEvent(const std::string& text) { return IsDailyEvent(TimeOfDayFromText(text, {}).text); }
 
@@ -424,9 +446,7 @@ std::vector<UtcInstant> EventOfEachDay(const TimesText& times, const Step& every
     return MeanSolarMidnight(WrappedLongitude(day.place.longitude_rad), of);
   };
   const double span_s = SecondsBetween(midnight(*first.around), midnight(last));
-  if (span_s < 0.0) {
-    throw InputError(fmt::format("--to {} is before the day of --from", *times.to));
-  }
+  if (span_s < 0.0) RefuseDayBefore(times);
   std::vector<UtcInstant> instants;
   const int steps = StepsIn(span_s, every);
   for (int i = 0; i <= steps; ++i) {
@@ -470,7 +490,9 @@ std::vector<UtcInstant> InstantsFromTimes(const TimesText& times, const EventDay
   const UtcInstant from = InstantFromText(*times.from, day_of_from);
   EventDay day_of_to = day_of_from;
   if (!IsDailyEvent(*times.from)) day_of_to.around = from;
-  const double span_s = SecondsBetween(from, EndOf(times, day_of_to, from));
+  const bool ends_with_a_day = every && every->is_whole_days && IsDayText(*times.to);
+  const double span_s = ends_with_a_day ? SpanUpToDay(times, from, day_of_from)
+                                        : SecondsBetween(from, EndOf(times, day_of_to, from));
   if (span_s < 0.0) {
     throw InputError(fmt::format("--to {} is before --from {}", *times.to, *times.from));
   }

@@ -83,9 +83,9 @@ inline constexpr int kMostInstants = 1000000;
 /// `every`, such as "1d", is a calendar day, after which clocks of the zone show the same time;
 /// "24h" is 24 hours. A clock time that is skipped or repeated by a clock change uses the offset
 /// before the change. An instant at one end determines the day of the event at the other end. If
-/// `from` is an event and `every` is whole days, each instant is the event of its own day, from the
-/// day of `from` to that of `to`, which may be a day without a time; days without the event have no
-/// instant. Throws InputError for errors of InstantFromText, a `to` before `from`, an `every` that
+/// `every` is whole days, `to` may be a day without a time: the last day with an instant. If `from`
+/// is then an event, each instant is the event of its own day, from the day of `from` to that of
+/// `to`; days without the event have no instant. Throws InputError for errors of InstantFromText, a `to` before `from`, an `every` that
 /// is not positive, a `count` below 1, too many instants, no instant.
 [[nodiscard]] std::vector<UtcInstant> InstantsFromTimes(const TimesText& times,
                                                         const EventDay& day);

@@ -369,6 +369,56 @@ TEST(FrameTimes, AClockTimeThatADayLacksKeepsTheOffsetBefore) {
   EXPECT_EQ(FormatUtc(twice[2].instant), "2026-10-26T01:30:00Z");
 }
 
+TEST(FrameTimes, ADayAloneIsTheDayOfTheLastFrame) {
+  const std::vector<std::string> week{"2026-03-27T02:30", "2026-03-28T02:30", "2026-03-29T03:30",
+                                      "2026-03-30T02:30", "2026-03-31T02:30"};
+  for (const char* from : {"02:30", "0230", "2026-03-27 02:30", "2026-03-27T02:30:00"}) {
+    EXPECT_EQ(ClocksOf({{}, from, "2026-03-31", "1d", {}}, Zurich("2026-03-27")), week) << from;
+  }
+  EXPECT_EQ(ClocksOf({{}, "2026-10-24 23:59", "2026-10-26", "1d", {}}, Zurich("2026-06-21")),
+            (std::vector<std::string>{"2026-10-24T23:59", "2026-10-25T23:59", "2026-10-26T23:59"}));
+  EXPECT_EQ(ClocksOf({{}, "00:00", "2026-03-29", "24h", {}}, Zurich("2026-03-27")),
+            (std::vector<std::string>{"2026-03-27T00:00", "2026-03-28T00:00", "2026-03-29T00:00"}));
+  EXPECT_EQ(ClocksOf({{}, "18:00", "2026-06-24", "2d", {}}, Zurich("2026-06-21")),
+            (std::vector<std::string>{"2026-06-21T18:00", "2026-06-23T18:00"}));
+  EXPECT_EQ(ClocksOf({{}, "18:00", "2026-06-21", "1d", {}}, Zurich("2026-06-21")).size(), 1U);
+}
+
+TEST(FrameTimes, RelativeDaysEndASeriesAsWrittenOnesDo) {
+  EventDay day = Zurich("2026-06-21");
+  day.now = ParseInstant("2026-06-21T20:00:00Z");
+  EXPECT_EQ(ClocksOf({{}, "18:30", "tomorrow", "1d", {}}, day),
+            (std::vector<std::string>{"2026-06-21T18:30", "2026-06-22T18:30"}));
+  EXPECT_EQ(ClocksOf({{}, "now", "2026-06-23", "1d", {}}, day).back(), "2026-06-23T22:00");
+  EXPECT_EQ(ClocksOf({{}, "tomorrow 18:30", "2026-06-23", "1d", {}}, day).size(), 2U);
+  EXPECT_EQ(ClocksOf({{}, "today", "tomorrow", "1d", {}}, day).size(), 2U);
+}
+
+TEST(FrameTimes, DaysWithoutAZoneAreThoseThatAreWritten) {
+  // At longitude 170 degrees the day of the meridian begins at 12:40 UTC.
+  const auto last = [](const char* from) {
+    EventDay day{PlaceFromDegrees(0.0, 170.0, 0.0), {}, {}};
+    day.around = DayFromText("2026-06-21", day);
+    return FormatUtc(Range(from, "2026-06-23", "1d", {}, day).back().instant);
+  };
+  EXPECT_EQ(last("20:00Z"), "2026-06-23T20:00:00Z");
+  EXPECT_EQ(last("2026-06-21T20:00:00Z"), "2026-06-23T20:00:00Z");
+  EXPECT_EQ(last("05:00+09:00"), "2026-06-22T20:00:00Z");
+}
+
+TEST(FrameTimes, ADayAloneNeedsStepsOfDaysAndComesLast) {
+  const EventDay day = Zurich("2026-06-21");
+  for (const char* every : {"1h", "36h"})
+    EXPECT_THAT(FaultOf([&] { return Range("12:00", "2026-06-23", every, {}, day); }),
+                HasSubstr("at what time of that day"));
+  EXPECT_THAT(FaultOf([&] { return Range("12:00", "2026-06-23", {}, 3, day); }),
+              HasSubstr("at what time of that day"));
+  EXPECT_THAT(FaultOf([&] { return Range("2026-06-20", "2026-06-23", "1d", {}, day); }),
+              HasSubstr("at what time of that day"));
+  EXPECT_THAT(FaultOf([&] { return Range("12:00", "2026-06-20", "1d", {}, day); }),
+              HasSubstr("--to 2026-06-20 is before the day of --from"));
+}
+
 TEST(FrameTimes, ARangeOfClockTimesRollsOverMidnight) {
   EXPECT_EQ(ClocksOf({{}, "22:00", "02:00", "2h", {}}, Zurich("2026-06-21")),
             (std::vector<std::string>{"2026-06-21T22:00", "2026-06-22T00:00", "2026-06-22T02:00"}));
