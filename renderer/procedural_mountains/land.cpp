@@ -342,8 +342,11 @@ std::optional<fs::path> CacheFolder() {
     return *own == '\0' ? std::nullopt : std::optional<fs::path>(own);
   const char* const caches = std::getenv("XDG_CACHE_HOME");
   if (caches != nullptr && *caches == '/') return fs::path(caches) / "alpenglow";
+  // Users of services have a home that does not exist: /nonexistent. It must not come into being.
   const char* const home = std::getenv("HOME");
-  if (home != nullptr && *home == '/') return fs::path(home) / ".cache" / "alpenglow";
+  std::error_code ignored;
+  if (home != nullptr && *home == '/' && fs::is_directory(home, ignored))
+    return fs::path(home) / ".cache" / "alpenglow";
   return std::nullopt;
 }
 

@@ -103,7 +103,8 @@ inline constexpr double kRangeViewEast_m = 2000.0, kRangeViewNorth_m = 16560.0;
 /// Returns the FNV-1a hash, 64 bits, of the heights' bytes, little-endian.
 [[nodiscard]] std::uint64_t FingerprintOf(const std::vector<float>& height_m);
 
-/// Returns the folder of the cache; nullopt if the cache is disabled.
+/// Returns the folder of the cache; nullopt if the cache is disabled, or if no variable names a
+/// folder and the user has no home.
 [[nodiscard]] std::optional<std::filesystem::path> CacheFolder();
 
 /// Identification of heights in the cache.

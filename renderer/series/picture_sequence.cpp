@@ -4,6 +4,7 @@
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <spawn.h>
+#include <sys/mman.h>
 #include <sys/socket.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -14,7 +15,6 @@
 #include <cmath>
 #include <csignal>
 #include <cstdlib>
-#include <fstream>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -250,8 +250,9 @@ std::vector<std::string> ArgumentsOf(const fs::path& file, const VideoSettings& 
 /// when the process has ended. The destructor kills the process.
 class Encoder {
  public:
-  Encoder(const fs::path& program, std::vector<std::string> arguments, const fs::path& said)
-      : said_(said) {
+  Encoder(const fs::path& program, std::vector<std::string> arguments)
+      : said_(memfd_create("alpenglow_ffmpeg", MFD_CLOEXEC)) {
+    if (!said_.valid()) throw OutputError("ffmpeg cannot report: " + LastSystemError());
     std::array<int, 2> ends{-1, -1};
     if (socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends.data()) != 0) {
       throw OutputError("ffmpeg cannot be fed: " + LastSystemError());
@@ -299,8 +300,7 @@ class Encoder {
     posix_spawn_file_actions_init(&files);
     posix_spawn_file_actions_adddup2(&files, its_end, STDIN_FILENO);
     posix_spawn_file_actions_addopen(&files, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
-    posix_spawn_file_actions_addopen(&files, STDERR_FILENO, said_.c_str(), O_WRONLY | O_CREAT,
-                                     0600);
+    posix_spawn_file_actions_adddup2(&files, said_.number(), STDERR_FILENO);
     posix_spawnattr_t attributes;
     posix_spawnattr_init(&attributes);
     posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETPGROUP);
@@ -322,37 +322,20 @@ class Encoder {
   }
 
   [[nodiscard]] std::string LastWords() const {
-    std::ifstream file(said_);
-    std::string last = "it gives no reason";
-    for (std::string line; std::getline(file, line);) {
-      if (!line.empty()) last = line;
-    }
-    return last;
+    constexpr off_t kMost = 4096;
+    const off_t end = lseek(said_.number(), 0, SEEK_END);
+    std::string text(static_cast<std::size_t>(std::clamp<off_t>(end, 0, kMost)), '\0');
+    const ssize_t count =
+        pread(said_.number(), text.data(), text.size(), end - static_cast<off_t>(text.size()));
+    text.resize(static_cast<std::size_t>(std::max<ssize_t>(count, 0)));
+    const std::string_view lines = Trimmed(text);
+    if (lines.empty()) return "it gives no reason";
+    return std::string(lines.substr(lines.find_last_of('\n') + 1));
   }
 
-  fs::path said_;  // file of its standard error
+  Descriptor said_;  // its standard error, in memory: no folder for temporary files is needed
   Descriptor feed_{-1};
   pid_t process_ = 0;
-};
-
-/// A temporary file for the messages of ffmpeg; the destructor removes it.
-class Notes {
- public:
-  Notes() : name_((fs::temp_directory_path() / "alpenglow_ffmpeg_XXXXXX").string()) {
-    const Descriptor made(mkstemp(name_.data()));
-    if (!made.valid()) throw OutputError(name_ + ": cannot be written: " + LastSystemError());
-  }
-  ~Notes() {
-    std::error_code ignored;
-    fs::remove(name_, ignored);
-  }
-  Notes(const Notes&) = delete;
-  Notes& operator=(const Notes&) = delete;
-
-  [[nodiscard]] const std::string& name() const { return name_; }
-
- private:
-  std::string name_;
 };
 
 }  // namespace
@@ -371,8 +354,7 @@ void WriteVideo(const fs::path& file, const VideoSettings& settings, int frames,
                 const std::function<DisplayImage(int)>& frame) {
   RequireVideo(file);
   WriteFileAtomically(file, [&](const fs::path& temporary) {
-    const Notes notes;
-    Encoder encoder(Ffmpeg(), ArgumentsOf(temporary, settings), notes.name());
+    Encoder encoder(Ffmpeg(), ArgumentsOf(temporary, settings));
     for (int number = 0; number < frames; ++number) {
       ThrowIfInterrupted();
       const DisplayImage image = frame(number);

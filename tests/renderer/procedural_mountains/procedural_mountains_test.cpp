@@ -24,6 +24,7 @@
 #include "renderer/procedural_mountains/land.h"
 #include "renderer/procedural_mountains/lattice_noise.h"
 #include "renderer/terrain/terrain.h"
+#include "tests/fixtures/environment_variable.h"
 #include "tests/fixtures/sanitized.h"
 #include "tests/fixtures/temporary_folder.h"
 
@@ -343,22 +344,6 @@ TEST(Erosion, DistancesOfScatteredSamplesAreSymmetric) {
   }
 }
 
-// Sets an environment variable until the end of a scope.
-class Variable {
- public:
-  Variable(const char* name, const char* value) : name_(name) {
-    if (const char* const before = std::getenv(name)) before_ = before;
-    value == nullptr ? unsetenv(name) : setenv(name, value, 1);
-  }
-  ~Variable() { before_ ? setenv(name_, before_->c_str(), 1) : unsetenv(name_); }
-  Variable(const Variable&) = delete;
-  Variable& operator=(const Variable&) = delete;
-
- private:
-  const char* name_;
-  std::optional<std::string> before_;
-};
-
 class HeightCacheTest : public TemporaryFolder {
  protected:
   // Requests the heights, and returns whether they had to be made.
@@ -378,21 +363,21 @@ class HeightCacheTest : public TemporaryFolder {
 };
 
 TEST_F(HeightCacheTest, AreMadeOnceAndThenRead) {
-  const Variable cache("ALPENGLOW_CACHE", folder_.c_str());
+  const EnvironmentVariable cache("ALPENGLOW_CACHE", folder_.c_str());
   EXPECT_TRUE(HadToMake());
   EXPECT_FALSE(HadToMake());
   EXPECT_EQ(fs::file_size(OnlyFile()), 4 * sizeof(float));
 }
 
 TEST_F(HeightCacheTest, AreNotKeptIfTheVariableIsEmpty) {
-  const Variable cache("ALPENGLOW_CACHE", "");
+  const EnvironmentVariable cache("ALPENGLOW_CACHE", "");
   EXPECT_TRUE(HadToMake());
   EXPECT_TRUE(HadToMake());
   EXPECT_EQ(CacheFolder(), std::nullopt);
 }
 
 TEST_F(HeightCacheTest, DamagedOrTruncatedOnesAreMadeAgain) {
-  const Variable cache("ALPENGLOW_CACHE", folder_.c_str());
+  const EnvironmentVariable cache("ALPENGLOW_CACHE", folder_.c_str());
   EXPECT_TRUE(HadToMake());
   for (const char* damage : {"sixteen letters.", "short", ""}) {
     WriteText(OnlyFile(), damage);
@@ -402,7 +387,7 @@ TEST_F(HeightCacheTest, DamagedOrTruncatedOnesAreMadeAgain) {
 }
 
 TEST_F(HeightCacheTest, OldVersionsAreRemoved) {
-  const Variable cache("ALPENGLOW_CACHE", folder_.c_str());
+  const EnvironmentVariable cache("ALPENGLOW_CACHE", folder_.c_str());
   EXPECT_TRUE(HadToMake());
   height_m_[1] = 7.0F;
   EXPECT_EQ(HeightCache(wanted_, [&] { return std::vector<float>{1.0F}; }).size(), 4U);
@@ -412,7 +397,7 @@ TEST_F(HeightCacheTest, OldVersionsAreRemoved) {
 }
 
 TEST_F(HeightCacheTest, UnexpectedOnesAreNeverWritten) {
-  const Variable cache("ALPENGLOW_CACHE", folder_.c_str());
+  const EnvironmentVariable cache("ALPENGLOW_CACHE", folder_.c_str());
   wanted_.fingerprint += 1;  // as on a machine whose arithmetic is another
   EXPECT_TRUE(HadToMake());
   EXPECT_EQ(FileCount(), 0U);
@@ -421,19 +406,32 @@ TEST_F(HeightCacheTest, UnexpectedOnesAreNeverWritten) {
 TEST_F(HeightCacheTest, DoNotNeedAWritableFolder) {
   const fs::path file = folder_ / "file";
   WriteText(file, "no folder");
-  const Variable cache("ALPENGLOW_CACHE", (file / "cache").c_str());
+  const EnvironmentVariable cache("ALPENGLOW_CACHE", (file / "cache").c_str());
   EXPECT_TRUE(HadToMake());
 }
 
 TEST_F(HeightCacheTest, LieInTheCacheFolderOfTheDesktop) {
-  const Variable none("ALPENGLOW_CACHE", nullptr);
-  const Variable home("HOME", "/home/someone");
+  const EnvironmentVariable none("ALPENGLOW_CACHE", nullptr);
+  const EnvironmentVariable home("HOME", folder_.c_str());
   {
-    const Variable caches("XDG_CACHE_HOME", "/caches");
+    const EnvironmentVariable caches("XDG_CACHE_HOME", "/caches");
     EXPECT_EQ(CacheFolder(), fs::path("/caches/alpenglow"));
   }
-  const Variable caches("XDG_CACHE_HOME", nullptr);
-  EXPECT_EQ(CacheFolder(), fs::path("/home/someone/.cache/alpenglow"));
+  const EnvironmentVariable caches("XDG_CACHE_HOME", nullptr);
+  EXPECT_EQ(CacheFolder(), folder_ / ".cache" / "alpenglow");
+}
+
+TEST_F(HeightCacheTest, MakeNoHomeForUsersWithoutOne) {
+  const EnvironmentVariable none("ALPENGLOW_CACHE", nullptr);
+  const EnvironmentVariable caches("XDG_CACHE_HOME", nullptr);
+  const fs::path nobody = folder_ / "nobody";
+  for (const char* const home :
+       {nobody.c_str(), "relative", "", static_cast<const char*>(nullptr)}) {
+    const EnvironmentVariable of_user("HOME", home);
+    EXPECT_TRUE(HadToMake());
+    EXPECT_FALSE(fs::exists(nobody));
+    EXPECT_EQ(CacheFolder(), std::nullopt);
+  }
 }
 
 TEST(LatticeNoise, SlopesAreTheDifferencesOfNearbyValues) {

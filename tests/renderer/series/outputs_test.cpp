@@ -16,6 +16,7 @@
 #include "renderer/series/day_times.h"
 #include "renderer/series/manifest.h"
 #include "renderer/series/picture_sequence.h"
+#include "tests/fixtures/environment_variable.h"
 #include "tests/fixtures/temporary_folder.h"
 
 namespace alpenglow::renderer {
@@ -326,6 +327,12 @@ TEST_F(Videos, MessagesOfFfmpegAreReportedAndNoFileIsLeft) {
   UseFfmpeg("kill -9 $$");
   EXPECT_THAT(FaultOfVideo(100), HasSubstr("film.mp4")) << "the file that is missing is named";
   EXPECT_EQ(FileCount(), 1U) << "the folder of the script";
+}
+
+TEST_F(Videos, NeedNoFolderForTemporaries) {
+  const EnvironmentVariable missing("TMPDIR", (folder_ / "missing").c_str());
+  UseFfmpeg("echo Unknown encoder >&2; exit 1");
+  EXPECT_THAT(FaultOfVideo(100), HasSubstr("ffmpeg: Unknown encoder"));
 }
 
 TEST_F(Videos, AFrameThatFailsLeavesNoFileAndNoProcess) {
