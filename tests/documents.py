@@ -8,6 +8,7 @@
   capitals or * stand for many names; out/ and build/ hold outputs. CHANGELOG.md names former files.
 - The table of tests/README.md has every header of tests/fixtures, and no others.
 - A manual has every option that --help of its program prints, and no option that it does not print.
+  Its row of an option has both ends of the range that --help prints.
 - The manuals of scene.toml and atmosphere.toml have every key that the readers accept. The readers
   list their keys in the message about an unknown one.
 - The first example of README.md is the project in tests/consumer/readme.
@@ -126,15 +127,25 @@ def without_comments_in_code(text):
 
 
 def options_of_help(program, subcommand):
+    """The ends of the range of each option; None for an option without a range."""
     command = [program] + ([subcommand] if subcommand else []) + ["--help"]
     done = subprocess.run(command, capture_output=True, text=True, check=True)
-    options = set()
+    options = {}
     for line in done.stdout.splitlines():
         if re.match(r"^\s+-", line):
-            options.update(re.findall(r"--[a-z][a-z0-9-]*", line.split()[0]))
+            ends = re.search(r"in \[(\S+) - (\S+)\]", line)
+            for option in re.findall(r"--[a-z][a-z0-9-]*", line.split()[0]):
+                options[option] = (float(ends[1]), float(ends[2])) if ends else None
     if "--help" not in options:
         raise ValueError(f"{' '.join(command)} lists no options")
     return options
+
+
+def numbers_of_row(text, option):
+    """The numbers in the first row of a table whose first column has the option."""
+    row = re.search(rf"^\| [^|]*`{option}[` ][^\n]*", text, flags=re.MULTILINE)
+    numbers = re.findall(r"-?\d+(?:\.\d+)?(?:e\d+)?", row[0]) if row else []
+    return [float(number) for number in numbers]
 
 
 def options_of_manual(text):
@@ -144,7 +155,8 @@ def options_of_manual(text):
 
 
 def faults_of_options(programs):
-    shared = options_of_manual(section(text_of(SHARED[0]), SHARED[1]))
+    of_all = section(text_of(SHARED[0]), SHARED[1])
+    shared = options_of_manual(of_all)
     for name, manual, subcommands in PROGRAMS:
         if name not in programs:
             continue
@@ -152,12 +164,16 @@ def faults_of_options(programs):
         printed = set()
         for subcommand in ("",) + subcommands:
             of_help = options_of_help(programs[name], subcommand)
-            printed |= of_help
+            printed |= of_help.keys()
             called = f"{name} {subcommand}".strip()
             part = section(text, called) if subcommand else text
-            for option in sorted(of_help - shared):
+            for option in sorted(of_help.keys() - shared):
                 if not re.search(rf"`{option}[`=\s]", part):
                     yield f"{manual}: {option} of {called} is missing"
+            for option, ends in of_help.items():
+                stated = numbers_of_row(part, option) + numbers_of_row(of_all, option)
+                for end in sorted(set(ends or ()) - set(stated)):
+                    yield f"{manual}: {option} of {called} lacks the end {end:g} of its range"
         for option in sorted(options_of_manual(text) - printed - shared):
             yield f"{manual}: {name} has no option {option}"
 
