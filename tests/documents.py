@@ -9,6 +9,7 @@
 - The table of tests/README.md has every header of tests/fixtures, and no others.
 - A manual has every option that --help of its program prints, and no option that it does not print.
   Its row of an option has both ends of the range that --help prints.
+- skyseries accepts every command of it in the documents that needs no file: it lists the frames.
 - The manuals of scene.toml and atmosphere.toml have every key that the readers accept. The readers
   list their keys in the message about an unknown one.
 - The first example of README.md is the project in tests/consumer/readme.
@@ -16,6 +17,7 @@
 import argparse
 import pathlib
 import re
+import shlex
 import subprocess
 import sys
 import tempfile
@@ -178,6 +180,27 @@ def faults_of_options(programs):
             yield f"{manual}: {name} has no option {option}"
 
 
+def commands_in(text):
+    """The commands in the code blocks of a shell, as lists of words."""
+    for block in re.findall(r"^```sh\n(.*?)^```", text, flags=re.MULTILINE | re.DOTALL):
+        for line in block.replace("\\\n", " ").splitlines():
+            yield shlex.split(line, comments=True)
+
+
+def faults_of_commands(skyseries, folder):
+    for document in documents():
+        name = document.relative_to(TREE).as_posix()
+        for words in commands_in(document.read_text(encoding="utf-8")):
+            needs_files = any(re.search(r"\$|\.(toml|csv)$|^report$", word) for word in words)
+            if not words or pathlib.Path(words[0]).name != "skyseries" or needs_files:
+                continue
+            arguments = words[1:] if words[1] == "times" else words[1:] + ["--list"]
+            done = subprocess.run([skyseries, *arguments], capture_output=True, text=True,
+                                  check=False, cwd=folder)
+            if done.returncode != 0:
+                yield f"{name}: {shlex.join(words)} ends with {done.returncode}: {done.stderr}"
+
+
 def keys_known(skyseries, folder, table, in_atmosphere):
     """The keys that a reader accepts in a table ("" for the top level); none for a plain key."""
     unknown = f"{table}\n{UNKNOWN} = 1\n" if table else f"{UNKNOWN} = 1\n"
@@ -250,8 +273,9 @@ def main():
               *faults_of_options(programs)]
     if "skyseries" in programs:
         with tempfile.TemporaryDirectory() as folder:
-            for of_keys in (faults_of_scene_keys, faults_of_atmosphere_keys):
-                faults += of_keys(programs["skyseries"], pathlib.Path(folder))
+            skyseries = pathlib.Path(programs["skyseries"]).resolve()
+            for faults_of in (faults_of_scene_keys, faults_of_atmosphere_keys, faults_of_commands):
+                faults += faults_of(skyseries, pathlib.Path(folder))
     for fault in faults:
         print(fault)
     return 1 if faults else 0
