@@ -40,20 +40,26 @@ const LebedevRule& Lebedev() {
   return kRule;
 }
 
-/// Tabulates values at the centres of cells of the unit cube.
-template <typename Value>
-VolumeGrid Tabulated(const std::array<int, 3>& size, const Value& value) {
+/// Tabulates the values of each band at the centres of cells of the unit cube.
+template <typename Values>
+std::vector<VolumeGrid> Tabulated(const std::array<int, 3>& size, std::size_t bands,
+                                  const Values& values_at) {
   const int rows = size[1] * size[2];
   const auto columns = static_cast<std::size_t>(size[0]);
-  std::vector<float> values(columns * static_cast<std::size_t>(rows));
+  std::vector<std::vector<float>> values(
+      bands, std::vector<float>(columns * static_cast<std::size_t>(rows)));
   tbb::parallel_for(0, rows, [&](int row) {
     for (std::size_t x = 0; x < columns; ++x) {
       const glm::dvec3 unit((static_cast<double>(x) + 0.5) / size[0],
                             (row % size[1] + 0.5) / size[1], (row / size[1] + 0.5) / size[2]);
-      values[static_cast<std::size_t>(row) * columns + x] = static_cast<float>(value(unit));
+      const Bands<double> here = values_at(unit);
+      for (std::size_t band = 0; band < bands; ++band)
+        values[band][static_cast<std::size_t>(row) * columns + x] = static_cast<float>(here[band]);
     }
   });
-  return {size, std::move(values)};
+  std::vector<VolumeGrid> grids;
+  for (std::vector<float>& of_band : values) grids.emplace_back(size, std::move(of_band));
+  return grids;
 }
 
 /// A lamp that lights a volume.
@@ -156,9 +162,12 @@ VolumeGrid MediaLight::State::SunColumns(const LocalVolume& volume) const {
   constexpr int kMost = 64;
   std::array<int, 3> size = volume.grid()->size();
   for (int& side : size) side = std::min(side, kMost);
-  return Tabulated(size, [&](const glm::dvec3& unit) {
-    return volume.Column(volume.FrameFromUnit(unit), sun.to_light, kEndless);
-  });
+  const auto column = [&](const glm::dvec3& unit) {
+    Bands<double> of_all(1);
+    of_all[0] = volume.Column(volume.FrameFromUnit(unit), sun.to_light, kEndless);
+    return of_all;
+  };
+  return std::move(Tabulated(size, 1, column).front());
 }
 
 std::vector<VolumeLamp> MediaLight::State::LampsOf(const LocalVolume& volume) const {
@@ -189,22 +198,21 @@ VolumeLamp MediaLight::State::LampOf(const LocalVolume& volume, std::uint32_t nu
   if (volume.grid() != nullptr) size = volume.grid()->size();
   for (int& side : size) side = std::min(side, kMost);
   const glm::dvec3 lamp = lamps->At(number).lamp.position_m;
-  VolumeLamp seen{number, {}};
-  for (std::size_t band = 0; band < bands(); ++band) {
-    seen.depth.push_back(Tabulated(size, [&](const glm::dvec3& unit) {
-      const glm::dvec3 point = volume.FrameFromUnit(unit);
-      const double distance = std::max(glm::length(lamp - point), 1e-9);
-      double depth = lamps->DepthTo(number, point)[band];
-      for (const LocalMedium& medium : media.all()) {
-        const bool is_exact = medium.volume() == &volume && volume.grid() == nullptr;
-        if (medium.volume() == nullptr || is_exact) continue;
-        depth += medium.optics.extinction_per_m[band] *
-                 medium.volume()->Column(point, (lamp - point) / distance, distance);
-      }
-      return std::min(depth, kDark);
-    }));
-  }
-  return seen;
+  const auto depth_at = [&](const glm::dvec3& unit) {
+    const glm::dvec3 point = volume.FrameFromUnit(unit);
+    const double distance = std::max(glm::length(lamp - point), 1e-9);
+    Bands<double> depth = lamps->DepthTo(number, point);
+    for (const LocalMedium& medium : media.all()) {
+      const bool is_exact = medium.volume() == &volume && volume.grid() == nullptr;
+      if (medium.volume() == nullptr || is_exact) continue;
+      AddDepth(medium.optics, medium.volume()->Column(point, (lamp - point) / distance, distance),
+               depth);
+    }
+    for (std::size_t band = 0; band < depth.count; ++band)
+      depth[band] = std::min(depth[band], kDark);
+    return depth;
+  };
+  return {number, Tabulated(size, bands(), depth_at)};
 }
 
 // Returns the mean transmittance of the volumes over directions, weighted by the sky's radiance.
@@ -220,25 +228,25 @@ std::vector<VolumeGrid> MediaLight::State::SkyLeft(const LocalVolume& volume,
     weight[i] = static_cast<float>(rule.weight[i]) * sky.Towards(rule.direction[i], all)[1];
     sum = sum + weight[i];
   }
-  std::vector<VolumeGrid> left;
-  for (std::size_t band = 0; band < bands(); ++band) {
-    left.push_back(Tabulated(kSize, [&](const glm::dvec3& unit) {
-      if (!(sum[band] > 0.0F)) return 0.0;
-      const glm::dvec3 point = volume.FrameFromUnit(unit);
-      double mean = 0.0;
-      for (std::size_t i = 0; i < weight.size(); ++i) {
-        double depth = 0.0;
-        for (const LocalMedium& medium : media.all()) {
-          if (medium.volume() == nullptr) continue;
-          depth += medium.optics.extinction_per_m[band] *
-                   medium.volume()->Column(point, rule.direction[i], kEndless);
-        }
-        mean += static_cast<double>(weight[i][band]) * std::exp(-depth);
+  const bool is_dark = sum == BandLight(bands());
+  return Tabulated(kSize, bands(), [&](const glm::dvec3& unit) {
+    Bands<double> mean(bands());
+    if (is_dark) return mean;
+    const glm::dvec3 point = volume.FrameFromUnit(unit);
+    for (std::size_t i = 0; i < weight.size(); ++i) {
+      Bands<double> depth(bands());
+      for (const LocalMedium& medium : media.all()) {
+        if (medium.volume() != nullptr)
+          AddDepth(medium.optics, medium.volume()->Column(point, rule.direction[i], kEndless),
+                   depth);
       }
-      return mean / static_cast<double>(sum[band]);
-    }));
-  }
-  return left;
+      for (std::size_t band = 0; band < mean.count; ++band)
+        mean[band] += static_cast<double>(weight[i][band]) * std::exp(-depth[band]);
+    }
+    for (std::size_t band = 0; band < mean.count; ++band)
+      mean[band] = sum[band] > 0.0F ? mean[band] / static_cast<double>(sum[band]) : 0.0;
+    return mean;
+  });
 }
 
 Bands<double> MediaLight::State::VolumesToSun(const glm::dvec3& point) const {
