@@ -85,8 +85,9 @@ inline constexpr int kMostInstants = 1000000;
 /// before the change. An instant at one end determines the day of the event at the other end. If
 /// `every` is whole days, `to` may be a day without a time: the last day with an instant. If `from`
 /// is then an event, each instant is the event of its own day, from the day of `from` to that of
-/// `to`; days without the event have no instant. Throws InputError for errors of InstantFromText, a `to` before `from`, an `every` that
-/// is not positive, a `count` below 1, too many instants, no instant.
+/// `to`; days without the event have no instant. Throws InputError for errors of InstantFromText, a
+/// `to` before `from`, an `every` that is not positive, a `count` below 1, too many instants, no
+/// instant.
 [[nodiscard]] std::vector<UtcInstant> InstantsFromTimes(const TimesText& times,
                                                         const EventDay& day);
 
