@@ -22,7 +22,7 @@
 namespace alpenglow::viewer {
 namespace {
 
-constexpr int kPanoramaWidth = tests::ScaledDown(256, 64), kPanoramaHeight = kPanoramaWidth / 2;
+constexpr int kPanoramaWidth = 256, kPanoramaHeight = 128;
 constexpr double kSkyLatitude_deg = 46.5, kSkyLongitude_deg = 8.0;
 const char* const kSkyInstant = "2026-06-21T18:15:00Z";  // the sun is 9 degrees high
 
