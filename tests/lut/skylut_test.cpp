@@ -294,12 +294,14 @@ TEST_F(Skylut, LostMessagesLoseNoResultAndGoIntoNoFile) {
   for (const tests::Lost how :
        {tests::Lost::kFull, tests::Lost::kClosed, tests::Lost::kPipe, tests::Lost::kTerminal}) {
     fs::remove(folder_ / "r.csv");
-    EXPECT_EQ(tests::StatusWithLostMessages(eval, how).value_or(0), 0) << static_cast<int>(how);
+    const std::optional<int> status = tests::StatusWithLostMessages(eval, how);
+    if (!status) continue;  // a machine without /dev/pts has no terminal to lose
+    EXPECT_EQ(*status, 0) << static_cast<int>(how);
     EXPECT_EQ(ContentOf(folder_ / "r.csv"), ContentOf(folder_ / "told.csv"))
         << static_cast<int>(how);
     std::vector<std::string> wrong = eval;
     wrong.back() = (folder_ / "cases.csv" / "r.csv").string();
-    EXPECT_EQ(tests::StatusWithLostMessages(wrong, how).value_or(4), 4) << "the status still tells";
+    EXPECT_EQ(tests::StatusWithLostMessages(wrong, how), 4) << "the status still tells";
   }
 }
 

@@ -146,7 +146,8 @@ TEST_F(HudTest, AClickIntoTheStripOfTheDayIsAShareOfTheDay) {
 TEST_F(HudTest, ASliderAsksForWhatItIsDraggedTo) {
   Hud hud;
   hud.Toggle(HudPanel::kAir);
-  const double x = kHudWidth - 10.0 - 200.0;
+  // Beside the knob: Dear ImGui 1.90 changes nothing where the knob is pressed.
+  const double x = kHudWidth - 10.0 - 150.0;
   // From below: the ground's albedo, then ozone; lists are above them.
   const auto found = Find(
       hud, x, 300, 60, [](const Changes& request) { return request.air && request.air->ozone_du; });
