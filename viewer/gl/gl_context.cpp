@@ -9,6 +9,9 @@
 #include <algorithm>
 #include <charconv>
 #include <cstdlib>
+#include <map>
+#include <memory>
+#include <mutex>
 #include <optional>
 #include <string_view>
 #include <vector>
@@ -28,10 +31,10 @@ void RequireEglLibrary() {
   // The library stays open, because the drivers loaded by it do not support being unloaded.
 }
 
-// Returns the displays to try: first the GPUs in EGL's order, then Mesa's surfaceless platform,
-// then the default display.
+// Returns the displays to try: first the GPUs in EGL's order, then Mesa's surfaceless platform and
+// devices of software, then the default display.
 std::vector<EGLDisplay> CandidateDisplays() {
-  std::vector<EGLDisplay> displays;
+  std::vector<EGLDisplay> displays, of_software;
   if (epoxy_has_egl_extension(EGL_NO_DISPLAY, "EGL_EXT_device_enumeration") &&
       epoxy_has_egl_extension(EGL_NO_DISPLAY, "EGL_EXT_device_query") &&
       epoxy_has_egl_extension(EGL_NO_DISPLAY, "EGL_EXT_platform_device")) {
@@ -43,14 +46,15 @@ std::vector<EGLDisplay> CandidateDisplays() {
       const char* extensions = eglQueryDeviceStringEXT(device, EGL_EXTENSIONS);
       const bool software = extensions != nullptr &&
                             epoxy_extension_in_string(extensions, "EGL_MESA_device_software");
-      if (software) continue;
-      displays.push_back(eglGetPlatformDisplayEXT(EGL_PLATFORM_DEVICE_EXT, device, nullptr));
+      (software ? of_software : displays)
+          .push_back(eglGetPlatformDisplayEXT(EGL_PLATFORM_DEVICE_EXT, device, nullptr));
     }
   }
   if (epoxy_has_egl_extension(EGL_NO_DISPLAY, "EGL_MESA_platform_surfaceless")) {
     displays.push_back(
         eglGetPlatformDisplayEXT(EGL_PLATFORM_SURFACELESS_MESA, EGL_DEFAULT_DISPLAY, nullptr));
   }
+  displays.insert(displays.end(), of_software.begin(), of_software.end());
   displays.push_back(eglGetDisplay(EGL_DEFAULT_DISPLAY));
   return displays;
 }
@@ -78,38 +82,76 @@ EGLContext NewestContext(EGLDisplay display, EGLConfig config) {
   return EGL_NO_CONTEXT;
 }
 
+// Counts the contexts of each display.
+class DisplayUsers {
+ public:
+  // Returns the number of other contexts.
+  int Join(EGLDisplay display) {
+    const std::lock_guard lock(mutex_);
+    return users_[display]++;
+  }
+  void Leave(EGLDisplay display) {
+    const std::lock_guard lock(mutex_);
+    --users_[display];
+  }
+
+ private:
+  std::mutex mutex_;
+  std::map<EGLDisplay, int> users_;
+};
+
+DisplayUsers& Users() {
+  static DisplayUsers users;
+  return users;
+}
+
 }  // namespace
 
 struct HeadlessContext::State {
   EGLDisplay display;
   EGLContext context;
+  int others = 0;  // contexts of the display when this one was made
 
-  State(EGLDisplay on, EGLContext made) : display(on), context(made) {}
+  State(EGLDisplay on, EGLContext made)
+      : display(on), context(made), others(Users().Join(display)) {}
   State(const State&) = delete;
   State& operator=(const State&) = delete;
   // The display stays open: the whole process shares it, and other contexts may use it.
   ~State() {
     eglMakeCurrent(display, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
     eglDestroyContext(display, context);
+    Users().Leave(display);
   }
-};
 
-HeadlessContext::HeadlessContext() {
-  RequireEglLibrary();
-  bool any_initialised = false;
-  for (EGLDisplay display : CandidateDisplays()) {
-    if (display == EGL_NO_DISPLAY || !eglInitialize(display, nullptr, nullptr)) continue;
-    any_initialised = true;
+  // Returns a current context; null if the display gives none.
+  static std::unique_ptr<State> On(EGLDisplay display) {
     const std::optional<EGLConfig> config =
         eglBindAPI(EGL_OPENGL_API) ? AnyConfig(display) : std::nullopt;
     const EGLContext context = config ? NewestContext(display, *config) : EGL_NO_CONTEXT;
     if (context != EGL_NO_CONTEXT &&
         eglMakeCurrent(display, EGL_NO_SURFACE, EGL_NO_SURFACE, context)) {
-      state_ = std::make_unique<State>(display, context);
-      return;
+      return std::make_unique<State>(display, context);
     }
     if (context != EGL_NO_CONTEXT) eglDestroyContext(display, context);
     eglTerminate(display);
+    return nullptr;
+  }
+};
+
+// llvmpipe asks all contexts of a display, without a lock, whether they use a texture: two threads
+// that draw on one display read memory that the other has freed. On software OpenGL a context
+// therefore shares a display only if there is no other one.
+HeadlessContext::HeadlessContext() {
+  RequireEglLibrary();
+  bool any_initialised = false;
+  for (const bool shares : {false, true}) {
+    for (EGLDisplay display : CandidateDisplays()) {
+      if (display == EGL_NO_DISPLAY || !eglInitialize(display, nullptr, nullptr)) continue;
+      any_initialised = true;
+      state_ = State::On(display);
+      if (state_ && (shares || state_->others == 0 || !IsSoftwareOpenGl())) return;
+      state_.reset();
+    }
   }
   throw DisplayError(any_initialised
                          ? "the OpenGL that EGL gives without a display is older than 3.3"
