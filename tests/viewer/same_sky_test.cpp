@@ -58,9 +58,11 @@ double SkyDifferenceOf(const Image& image, const Image& expected) {
   return std::sqrt(squares / count);
 }
 
+// Sanitizers see one preset.
 std::vector<std::string> PresetsToShow() {
-  if (tests::kSanitized) return {"mars"};
-  return MediumPresetNames();
+  std::vector<std::string> presets = MediumPresetNames();
+  presets.resize(tests::ScaledDown<std::size_t>(presets.size(), 1));
+  return presets;
 }
 
 class PanoramasOfAllPrograms : public TemporaryFolder,

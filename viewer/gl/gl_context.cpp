@@ -9,7 +9,6 @@
 #include <algorithm>
 #include <charconv>
 #include <cstdlib>
-#include <map>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -82,27 +81,31 @@ EGLContext NewestContext(EGLDisplay display, EGLConfig config) {
   return EGL_NO_CONTEXT;
 }
 
-// Counts the contexts of each display.
-class DisplayUsers {
+// The displays on which software OpenGL has a context, once for each context.
+class SoftwareDisplays {
  public:
-  // Returns the number of other contexts.
-  int Join(EGLDisplay display) {
+  void Add(EGLDisplay display) {
     const std::lock_guard lock(mutex_);
-    return users_[display]++;
+    used_.push_back(display);
   }
-  void Leave(EGLDisplay display) {
+  void Remove(EGLDisplay display) {
     const std::lock_guard lock(mutex_);
-    --users_[display];
+    const auto one = std::find(used_.begin(), used_.end(), display);
+    if (one != used_.end()) used_.erase(one);
+  }
+  bool Has(EGLDisplay display) {
+    const std::lock_guard lock(mutex_);
+    return std::find(used_.begin(), used_.end(), display) != used_.end();
   }
 
  private:
   std::mutex mutex_;
-  std::map<EGLDisplay, int> users_;
+  std::vector<EGLDisplay> used_;
 };
 
-DisplayUsers& Users() {
-  static DisplayUsers users;
-  return users;
+SoftwareDisplays& UsedBySoftware() {
+  static SoftwareDisplays displays;
+  return displays;
 }
 
 }  // namespace
@@ -110,17 +113,17 @@ DisplayUsers& Users() {
 struct HeadlessContext::State {
   EGLDisplay display;
   EGLContext context;
-  int others = 0;  // contexts of the display when this one was made
 
-  State(EGLDisplay on, EGLContext made)
-      : display(on), context(made), others(Users().Join(display)) {}
+  State(EGLDisplay on, EGLContext made) : display(on), context(made) {
+    if (IsSoftwareOpenGl()) UsedBySoftware().Add(display);
+  }
   State(const State&) = delete;
   State& operator=(const State&) = delete;
   // The display stays open: the whole process shares it, and other contexts may use it.
   ~State() {
     eglMakeCurrent(display, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
     eglDestroyContext(display, context);
-    Users().Leave(display);
+    UsedBySoftware().Remove(display);
   }
 
   // Returns a current context; null if the display gives none.
@@ -138,19 +141,19 @@ struct HeadlessContext::State {
   }
 };
 
-// llvmpipe asks all contexts of a display, without a lock, whether they use a texture: two threads
-// that draw on one display read memory that the other has freed. On software OpenGL a context
-// therefore shares a display only if there is no other one.
+// Two threads that draw on one display of llvmpipe (Mesa 22.3) crash now and then in the driver,
+// where it reads memory that has been freed. A context of software OpenGL therefore shares a display
+// only if all displays have one.
 HeadlessContext::HeadlessContext() {
   RequireEglLibrary();
   bool any_initialised = false;
   for (const bool shares : {false, true}) {
     for (EGLDisplay display : CandidateDisplays()) {
-      if (display == EGL_NO_DISPLAY || !eglInitialize(display, nullptr, nullptr)) continue;
+      if (display == EGL_NO_DISPLAY || (!shares && UsedBySoftware().Has(display))) continue;
+      if (!eglInitialize(display, nullptr, nullptr)) continue;
       any_initialised = true;
       state_ = State::On(display);
-      if (state_ && (shares || state_->others == 0 || !IsSoftwareOpenGl())) return;
-      state_.reset();
+      if (state_) return;
     }
   }
   throw DisplayError(any_initialised

@@ -408,7 +408,7 @@ TEST_F(ElevationFile, NodataOfEveryTypeIsRecognised) {
 
 TEST_F(ElevationFile, NodataBeyondAllHeightsIsOneValue) {
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
-  // As programs write them: exact, rounded to six, two and eight digits, as doubles, and infinite.
+  // Programs write them exactly, rounded to six, two and eight digits, as doubles, and infinite.
   const double values[] = {-3.4028234663852886e38,
                            -3.40282e38,
                            -3.4e38,
