@@ -141,9 +141,10 @@ struct HeadlessContext::State {
   }
 };
 
-// Two threads that draw on one display of llvmpipe (Mesa 22.3) crash now and then in the driver,
-// where it reads memory that has been freed. A context of software OpenGL therefore shares a display
-// only if all displays have one.
+// Before llvmpipe touches a texture, it looks through the unfinished draws of all contexts of the
+// display (llvmpipe_flush_resource of Mesa 22.3), without a lock on them: where two threads draw, it
+// reads what the other has freed. A context of software OpenGL therefore shares a display only if
+// every display has one.
 HeadlessContext::HeadlessContext() {
   RequireEglLibrary();
   bool any_initialised = false;
