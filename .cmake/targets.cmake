@@ -1,4 +1,5 @@
-# alpenglow_library, alpenglow_kernels, alpenglow_program, alpenglow_tests, alpenglow_embed: a target is a few lines.
+# alpenglow_library, alpenglow_study, alpenglow_kernels, alpenglow_program, alpenglow_tests, alpenglow_embed: a target
+# is a few lines.
 
 add_library(alpenglow_warnings INTERFACE)
 target_compile_options(alpenglow_warnings INTERFACE
@@ -99,6 +100,16 @@ function(alpenglow_library folder)
   install(TARGETS ${installed} EXPORT alpenglow_${folder} COMPONENT ${folder}
     ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR}
     LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} NAMELINK_COMPONENT ${folder})
+endfunction()
+
+# alpenglow_study(<name> SOURCES a.cpp ... LIBRARIES ...): a static library that measures the others and is not
+# installed. Only programs and tests link to it.
+function(alpenglow_study name)
+  cmake_parse_arguments(PARSE_ARGV 1 arg "" "" "SOURCES;LIBRARIES")
+  set(target alpenglow_${name})
+  add_library(${target} STATIC ${arg_SOURCES})
+  target_link_libraries(${target} PUBLIC ${arg_LIBRARIES} PRIVATE alpenglow_warnings TBB::tbb)
+  alpenglow_many_as_one(${target} alpenglow_precompiled)
 endfunction()
 
 # The instruction sets that kernels are compiled for (atmosphere/shared_glsl/instruction_set.h), and their options.

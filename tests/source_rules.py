@@ -5,6 +5,8 @@
 - Folder order: a file includes nothing of a folder above its own. The four layers stand in the order
   atmosphere, lut, renderer, viewer; the folders of a layer stand in the order of the table in its README.
 - The README of a layer lists every folder of it.
+- Studies: the folders report/ measure the libraries and are not installed with them. Only programs (the sources above
+  the folders of a layer), tests and these folders include their headers.
 - Namespaces: a source of a layer declares nothing in the namespace of another one. Only the public headers and
   the folders api/, which implement them, declare names in namespace alpenglow.
 - Public headers include the standard library and each other, as <alpenglow/NAME.h>, and nothing else.
@@ -72,6 +74,15 @@ def includes_upwards(path, text, order):
         there = place_of(found[1], order) if found else None
         if there and (there[0] > here[0] or there[0] == here[0] and there[1] > here[1]):
             yield f"{path}:{number}: {found[1]} stands above this file"
+
+
+def includes_of_studies(path, text):
+    """The headers of the folders report/ that a source of an installed library includes."""
+    folder = path.split("/")[1:-1]
+    if not folder or folder == ["report"]:
+        return
+    for included in re.findall(r'^#include "(\w+/report/[^"]+)"', text, re.MULTILINE):
+        yield f"{path}: {included} is not installed"
 
 
 def foreign_namespaces(path, text):
@@ -144,6 +155,10 @@ def check_examples():
             ("lut/image/image.h", "atmosphere/medium/medium.h", 0)):
         found = list(includes_upwards(path, f'#include <vector>\n#include "{included}"\n', order))
         assert len(found) == expected, (path, included, found)
+    study = '#include "lut/report/report.h"\n'
+    assert len(list(includes_of_studies("renderer/series/a.cpp", study))) == 1
+    assert not list(includes_of_studies("renderer/report/a.h", study))
+    assert not list(includes_of_studies("lut/table_commands.cpp", study))
     assert len(list(foreign_namespaces("lut/sky/a.h", "namespace alpenglow::renderer {\n"))) == 1
     assert len(list(foreign_namespaces("lut/sky/a.h", "namespace alpenglow {\n"))) == 1
     assert not list(foreign_namespaces("lut/api/a.h", "namespace alpenglow {\n"))
@@ -178,6 +193,7 @@ def broken_rules():
             yield f"{layer}/README.md: {folder}/ is listed or there, not both"
         for path, text in sources(layer):
             yield from includes_upwards(path, text, order)
+            yield from includes_of_studies(path, text)
             if not path.endswith(".glsl"):
                 yield from foreign_namespaces(path, text)
                 yield from speech(path, text)

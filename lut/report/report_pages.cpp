@@ -11,8 +11,9 @@
 #include "atmosphere/base/error.h"
 #include "atmosphere/base/parsing.h"
 #include "lut/cli/output_file.h"
-#include "lut/embedded_text.h"
+#include "lut/image/svg_elements.h"
 #include "lut/report/report.h"
+#include "lut_report/embedded_text.h"
 
 namespace alpenglow::lut {
 namespace {
@@ -433,7 +434,7 @@ std::string SummaryOf(const Report& report) {
 }
 
 std::string PageOf(const Report& report) {
-  std::string page(lut::EmbeddedText("lut/report/report_page.html"));
+  std::string page(lut_report::EmbeddedText("lut/report/report_page.html"));
   Replace(page, "@title@", XmlText(report.words.title));
   Replace(page, "@lead@", XmlText(report.words.lead));
   Replace(page, "@minute@", XmlText(report.words.minute));

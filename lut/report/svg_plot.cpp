@@ -7,9 +7,9 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <string_view>
 
 #include "atmosphere/base/error.h"
+#include "lut/image/svg_elements.h"
 #include "lut/layer.h"
 
 namespace alpenglow::lut {
@@ -75,16 +75,15 @@ double TextWidth(const std::string& text, double size) {
   return 0.6 * size * static_cast<double>(letters);
 }
 
+/// Returns a text of a class of the style sheet.
 std::string TextElement(double x, double y, const std::string& kind, const std::string& text,
                         const std::string& more = "") {
-  return fmt::format("<text x=\"{:.1f}\" y=\"{:.1f}\" class=\"{}\"{}>{}</text>\n", x, y, kind, more,
-                     XmlText(text));
+  return SvgText({x, y}, fmt::format("class=\"{}\"{}", kind, more), text);
 }
 
+/// Returns a line of a class of the style sheet.
 std::string LineElement(double x0, double y0, double x1, double y1, const std::string& kind) {
-  return fmt::format(
-      "<line x1=\"{:.1f}\" y1=\"{:.1f}\" x2=\"{:.1f}\" y2=\"{:.1f}\" class=\"{}\"/>\n", x0, y0, x1,
-      y1, kind);
+  return SvgLine({x0, y0}, {x1, y1}, fmt::format("class=\"{}\"", kind));
 }
 
 std::string StyleSheet() {
@@ -197,10 +196,11 @@ std::string GroupOf(std::size_t i, const PlotSeries& series) {
 
 std::string SeriesText(const Frame& frame, std::size_t i, const PlotSeries& series) {
   const std::vector<PlotPoint> points = DrawablePoints(series);
-  std::string text = GroupOf(i, series), run;
+  std::string text = GroupOf(i, series);
+  std::vector<SvgPoint> run;
   for (const PlotPoint& point : points) {
     const double x = frame.X(point.x), y = frame.Y(point.y);
-    run += fmt::format("{:.1f},{:.1f} ", x, y);
+    run.push_back({x, y});
     if (point.y_high && *point.y_high > point.y)
       text += LineElement(x, y, x, frame.Y(*point.y_high), "tail");
     const bool is_end = &point == &points.front() || &point == &points.back();
@@ -209,7 +209,7 @@ std::string SeriesText(const Frame& frame, std::size_t i, const PlotSeries& seri
                   ? TextElement(x + 6.0, y - 5.0, "note", point.note)
                   : TextElement(x - 6.0, y - 5.0, "note", point.note, " text-anchor=\"end\"");
   }
-  if (points.size() > 1) text += fmt::format("<polyline class=\"run\" points=\"{}\"/>\n", run);
+  if (run.size() > 1) text += SvgPolyline(run, "class=\"run\"");
   for (const PlotPoint& point : points) text += Marker(i, frame.X(point.x), frame.Y(point.y));
   return text + "</g>\n";
 }
@@ -308,17 +308,6 @@ std::string QuantityText(double value, PlotUnit unit) {
                             : WithPrefix(value, {{1e9, "GB"}, {1e6, "MB"}, {1e3, "kB"}});
   }
   throw InternalError("a unit without a text");
-}
-
-std::string XmlText(const std::string& text) {
-  constexpr std::string_view kReserved = "&<>\"'";
-  constexpr std::array<const char*, 5> kEntities{"&amp;", "&lt;", "&gt;", "&quot;", "&#39;"};
-  std::string result;
-  for (const char c : text) {
-    const std::size_t at = kReserved.find(c);
-    result += at == std::string_view::npos ? std::string(1, c) : kEntities[at];
-  }
-  return result;
 }
 
 std::string SvgOfPlot(const Plot& plot) {

@@ -58,9 +58,6 @@ struct Plot {
 /// Formats a value: "1.5 µs", "0.1 %", "32", "64 kB": two significant digits, powers of ten short.
 [[nodiscard]] std::string QuantityText(double value, PlotUnit unit);
 
-/// Returns `text` with the five characters that XML reserves written as entities.
-[[nodiscard]] std::string XmlText(const std::string& text);
-
 /// Returns the plot as one <svg> element, 1080 wide. Points that are not positive and finite are
 /// omitted.
 [[nodiscard]] std::string SvgOfPlot(const Plot& plot);

@@ -14,7 +14,7 @@
 #include "atmosphere/base/parsing.h"
 #include "atmosphere/math/constants.h"
 #include "lut/cli/program.h"
-#include "lut/report/svg_plot.h"
+#include "lut/image/svg_elements.h"
 
 namespace alpenglow::renderer {
 namespace {
@@ -167,8 +167,8 @@ constexpr double kWidth = 960.0, kLeft = 70.0, kRight = 20.0, kTop = 48.0, kPlot
 constexpr int kPanels = 3;
 constexpr double kPlotHeight = kTop + kPanels * kPanelHeight + (kPanels - 1) * kPlotGap + kBottom;
 
-// Attributes replace a style sheet, which not all SVG readers support; colours of Okabe and Ito, as
-// in svg_plot.h.
+// Attributes replace a style sheet, which not all SVG readers support; colours of Okabe and Ito
+// (2008), Color Universal Design, which colour-blind readers can distinguish.
 constexpr char kSunColour[] = "#d55e00", kMoonColour[] = "#0072b2", kLightColour[] = "#b87f00",
                kEvColour[] = "#4b3fa7";
 

@@ -12,6 +12,7 @@
 #include <set>
 
 #include "atmosphere/math/constants.h"
+#include "lut/image/svg_elements.h"
 #include "lut/multiple_scattering/multiple_scattering.h"
 #include "lut/report/report_baselines.h"
 #include "lut/report/report_rays.h"

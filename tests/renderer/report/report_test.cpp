@@ -12,6 +12,7 @@
 #include <string_view>
 #include <vector>
 
+#include "lut/image/svg_elements.h"
 #include "tests/fixtures/bare_scene.h"
 #include "tests/fixtures/report_files.h"
 #include "tests/fixtures/report_rows.h"
