@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Implements the reader of atmosphere.toml. ATMOSPHERE_FILE.md describes every key.
+// Implements the reader and the writer of atmosphere.toml. ATMOSPHERE_FILE.md describes every key,
+// and medium_fields.h has the tables of the keys.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -13,6 +14,7 @@
 #include "atmosphere/math/constants.h"
 #include "atmosphere/medium/aerosol_mixture.h"
 #include "atmosphere/medium/medium.h"
+#include "atmosphere/medium/medium_fields.h"
 #include "atmosphere/medium/medium_presets.h"
 #include "atmosphere/medium/phase_table.h"
 
@@ -22,32 +24,12 @@ namespace {
 using Names = std::vector<std::string>;
 using Values = std::vector<double>;
 using Phases = std::vector<PhaseFunction>;
-using ranges::Range;
 
-const Names kSections{"preset",   "polarised", "planet",  "spectrum",
-                      "rayleigh", "mie",       "aerosol", "ozone"};
-const Names kPlanetKeys{"radius_m", "follows_wgs84", "atmosphere_top_m", "ground_albedo"};
-const Names kSpectrumKeys{"wavelengths_nm", "bands", "solar_irradiance"};
-const Names kRayleighKeys{"scattering_per_m",       "scale_height_m", "deficit",
-                          "deficit_scale_height_m", "depolarisation", "refraction"};
-const Names kMieKeys{
-    "scattering_per_m", "extinction_per_m",   "scale_height_m", "phase",      "g",
-    "g_back",           "back_weight",        "alpha",          "phase_file", "phase_angles_deg",
-    "phase_per_sr",     "droplet_diameter_um"};
 // Values of mie.phase that are not a PhaseKind, or that need more than parameters.
 constexpr const char* kFog = "fog";
 constexpr const char* kTablePhase = "table";
-constexpr const char* kByMolecules = "molecules";
-constexpr const char* kByAlmanacs = "almanacs";
 const Names kTableKeys{"phase_file", "phase_angles_deg", "phase_per_sr"};
 const Names kAerosolAmounts{"visibility_m", "turbidity", "optical_depth_550"};
-const Names kAerosolKeys{"visibility_m",
-                         "turbidity",
-                         "optical_depth_550",
-                         "angstrom_exponent",
-                         "single_scattering_albedo",
-                         "mixture"};
-const Names kOzoneKeys{"absorption_per_m", "dobson", "profile", "bottom_m", "peak_m", "top_m"};
 
 // Throws if a table contains two keys that set the same quantity.
 void RequireOneOf(const TomlTable& table, const Names& keys) {
@@ -71,21 +53,16 @@ void RequireNameIn(const TomlTable& table, const std::string& key, const std::st
                        fmt::join(names, ", "), nearest ? "; did you mean " + *nearest + "?" : ""));
 }
 
-void ReadNumber(const TomlTable& table, const std::string& key, const Range& range,
-                double& target) {
-  if (const auto number = table.Number(key, range.low, range.high)) target = *number;
-}
-
 class AtmosphereFile {
  public:
   AtmosphereFile(std::string_view text, const std::string& origin, const MediumUse& use)
       : root_(text, origin), use_(use), folder_(FolderOf(origin)), preset_(PresetOf(root_)) {
-    planet_ = Section("planet", kPlanetKeys);
-    spectrum_ = Section("spectrum", kSpectrumKeys);
-    rayleigh_ = Section("rayleigh", kRayleighKeys);
-    mie_ = Section("mie", kMieKeys);
-    aerosol_ = Section("aerosol", kAerosolKeys);
-    ozone_ = Section("ozone", kOzoneKeys);
+    planet_ = Section("planet");
+    spectrum_ = Section("spectrum");
+    rayleigh_ = Section("rayleigh");
+    mie_ = Section("mie");
+    aerosol_ = Section("aerosol");
+    ozone_ = Section("ozone");
   }
 
   Medium Read() {
@@ -95,10 +72,7 @@ class AtmosphereFile {
                  ? InPolarisedLight(std::move(medium), preset_)
                  : InScalarLight(std::move(medium));
     if (planet_) ReadPlanet(medium);
-    if (spectrum_) {
-      ReadList(*spectrum_, "solar_irradiance", ranges::kSolarIrradiance, medium.solar_irradiance,
-               medium.wavelengths_nm.size());
-    }
+    if (spectrum_) ReadFields(*spectrum_, "spectrum", medium);
     if (rayleigh_) ReadRayleigh(medium);
     if (mie_) ReadMie(medium);
     if (aerosol_) ReadAerosol(scattering_share, medium);
@@ -111,16 +85,45 @@ class AtmosphereFile {
 
  private:
   static std::string PresetOf(const TomlTable& root) {
-    root.AllowOnly(kSections);
+    Names names;
+    for (const TomlKey& key : TopFieldsOfMedium().Keys()) names.push_back(key.key);
+    for (const TomlFields<Medium>& section : SectionsOfMedium()) names.push_back(section.name);
+    root.AllowOnly(names);
     const std::string preset = root.Text("preset").value_or("earth");
     RequireNameIn(root, "preset", preset, MediumPresetNames());
     return preset;
   }
 
-  std::optional<TomlTable> Section(const std::string& name, const Names& keys) const {
-    std::optional<TomlTable> section = root_.Table(name);
-    if (section) section->AllowOnly(keys);
-    return section;
+  /// Returns the section, all of whose values are accepted by the rows of its keys.
+  [[nodiscard]] std::optional<TomlSection> Section(const std::string& name) const {
+    const std::optional<TomlTable> table = root_.Table(name);
+    if (!table) return std::nullopt;
+    return TomlSection(*table, SectionOfMedium(name).Keys());
+  }
+
+  /// Sets the members of the keys that a section has.
+  void ReadFields(const TomlSection& section, const std::string& name, Medium& medium) const {
+    for (const TomlField<Medium>& field : SectionOfMedium(name).fields) {
+      if (!field.member.set) continue;
+      std::optional<TomlValue> value = section.Value(field.key);
+      if (!value) continue;
+      if (auto* const list = std::get_if<Values>(&*value)) {
+        const bool is_for_all = list->size() == 1 && field.member.type.one_for_all;
+        if (!is_for_all) PutInOrder(section, field.key, medium.wavelengths_nm.size(), *list);
+      }
+      field.member.set(*value, medium);
+    }
+  }
+
+  /// Puts a list of the file into the order of ascending wavelengths. Throws InputError unless it
+  /// has one value per wavelength.
+  void PutInOrder(const TomlTable& table, const std::string& key, std::size_t count,
+                  Values& values) const {
+    if (values.size() != count) {
+      table.Fail(key, fmt::format("{} has {} values; it must have {}, one per wavelength",
+                                  table.FullName(key), values.size(), count));
+    }
+    if (reversed_) std::reverse(values.begin(), values.end());
   }
 
   Values SetOfBands(double bands) const {
@@ -136,7 +139,7 @@ class AtmosphereFile {
   std::optional<Values> Wavelengths() {
     if (!spectrum_) return std::nullopt;
     RequireOneOf(*spectrum_, {"wavelengths_nm", "bands"});
-    if (const auto bands = spectrum_->Number("bands", 3.0, 40.0)) {
+    if (const auto bands = spectrum_->Number("bands")) {
       Values set = SetOfBands(*bands);
       if (set.size() > use_.most_wavelengths) {
         spectrum_->Fail("bands", fmt::format("spectrum.bands is {}; it must be at most {} for {}",
@@ -145,8 +148,7 @@ class AtmosphereFile {
       return set;
     }
     const std::string key = "wavelengths_nm";
-    std::optional<Values> values =
-        spectrum_->Numbers(key, ranges::kWavelength_nm.low, ranges::kWavelength_nm.high);
+    std::optional<Values> values = spectrum_->Numbers(key);
     if (!values) return std::nullopt;
     if (values->empty()) spectrum_->Fail(key, FaultOfWavelengths(*values, use_)->text);
     reversed_ = values->front() > values->back();
@@ -181,84 +183,25 @@ class AtmosphereFile {
     return medium;
   }
 
-  // `target` has one value per wavelength, or is empty if the preset has no data.
-  void ReadList(const TomlTable& table, const std::string& key, const Range& range, Values& target,
-                std::size_t count) const {
-    std::optional<Values> values = table.Numbers(key, range.low, range.high);
-    if (!values) return;
-    if (values->size() != count) {
-      table.Fail(key, fmt::format("{} has {} values; it must have {}, one per wavelength",
-                                  table.FullName(key), values->size(), count));
-    }
-    if (reversed_) std::reverse(values->begin(), values->end());
-    target = std::move(*values);
-  }
-
   void ReadPlanet(Medium& medium) const {
-    const TomlTable& table = *planet_;
-    ReadNumber(table, "radius_m", ranges::kPlanetRadius_m, medium.planet_radius_m);
-    if (table.Has("radius_m")) medium.follows_wgs84 = false;
-    if (const auto follows = table.Truth("follows_wgs84")) medium.follows_wgs84 = *follows;
-    ReadNumber(table, "atmosphere_top_m", ranges::kAtmosphereTop_m, medium.atmosphere_height_m);
-    const auto albedo = table.Numbers("ground_albedo", ranges::kAlbedo.low, ranges::kAlbedo.high);
-    if (albedo && albedo->size() == 1) {
-      medium.ground_albedo.assign(medium.wavelengths_nm.size(), albedo->front());
-    } else {
-      ReadList(table, "ground_albedo", ranges::kAlbedo, medium.ground_albedo,
-               medium.wavelengths_nm.size());
-    }
+    if (planet_->Has("radius_m")) medium.follows_wgs84 = false;
+    ReadFields(*planet_, "planet", medium);
   }
 
+  // If the file gives the density profile of the molecules, refraction follows that profile.
   void ReadRayleigh(Medium& medium) const {
-    ReadList(*rayleigh_, "scattering_per_m", ranges::kCoefficient_per_m,
-             medium.rayleigh_scattering_per_m, medium.wavelengths_nm.size());
-    ReadNumber(*rayleigh_, "scale_height_m", ranges::kScaleHeight_m,
-               medium.rayleigh_scale_height_m);
     if (rayleigh_->Has("scale_height_m")) medium.rayleigh_deficit = {};
-    ReadNumber(*rayleigh_, "deficit", ranges::kDeficit, medium.rayleigh_deficit.share);
-    ReadNumber(*rayleigh_, "deficit_scale_height_m", ranges::kScaleHeight_m,
-               medium.rayleigh_deficit.scale_height_m);
+    if (rayleigh_->Has("scale_height_m") || rayleigh_->Has("deficit"))
+      medium.refraction = RefractionBy::kMolecules;
+    ReadFields(*rayleigh_, "rayleigh", medium);
     if (rayleigh_->Has("deficit_scale_height_m") && medium.rayleigh_deficit.share == 0.0) {
       rayleigh_->Fail("deficit_scale_height_m",
                       "rayleigh.deficit_scale_height_m has no effect without rayleigh.deficit");
     }
-    ReadDepolarisation(medium);
-    ReadRefraction(medium);
-  }
-
-  // If the file gives the density profile of the molecules, refraction follows that profile.
-  void ReadRefraction(Medium& medium) const {
-    if (rayleigh_->Has("scale_height_m") || rayleigh_->Has("deficit"))
-      medium.refraction = RefractionBy::kMolecules;
-    const auto name = rayleigh_->Text("refraction");
-    if (!name) return;
-    if (*name != kByMolecules && *name != kByAlmanacs) {
-      rayleigh_->Fail("refraction",
-                      fmt::format("rayleigh.refraction is \"{}\"; it must be one of {}, {}", *name,
-                                  kByMolecules, kByAlmanacs));
-    }
-    medium.refraction = *name == kByAlmanacs ? RefractionBy::kAlmanacs : RefractionBy::kMolecules;
-  }
-
-  void ReadDepolarisation(Medium& medium) const {
-    const std::string key = "depolarisation";
-    const auto values =
-        rayleigh_->Numbers(key, ranges::kDepolarisation.low, ranges::kDepolarisation.high);
-    if (values && values->size() == 1) {
-      medium.rayleigh_depolarisation = *values;
-    } else {
-      ReadList(*rayleigh_, key, ranges::kDepolarisation, medium.rayleigh_depolarisation,
-               medium.wavelengths_nm.size());
-    }
   }
 
   void ReadMie(Medium& medium) const {
-    const std::size_t count = medium.wavelengths_nm.size();
-    ReadList(*mie_, "scattering_per_m", ranges::kCoefficient_per_m, medium.mie_scattering_per_m,
-             count);
-    ReadList(*mie_, "extinction_per_m", ranges::kCoefficient_per_m, medium.mie_extinction_per_m,
-             count);
-    ReadNumber(*mie_, "scale_height_m", ranges::kScaleHeight_m, medium.mie_scale_height_m);
+    ReadFields(*mie_, "mie", medium);
     ReadPhase(medium);
   }
 
@@ -313,8 +256,7 @@ class AtmosphereFile {
   }
 
   PhaseFunction FogOfFile() const {
-    const auto diameter_um =
-        mie_->Number("droplet_diameter_um", kSmallestDroplet_um, kLargestDroplet_um);
+    const auto diameter_um = mie_->Number("droplet_diameter_um");
     if (!diameter_um) mie_->Fail("phase", "mie.phase is \"fog\": give mie.droplet_diameter_um too");
     return FogPhase(*diameter_um);
   }
@@ -335,8 +277,8 @@ class AtmosphereFile {
       }
       return phases;
     }
-    const auto angles = mie_->Numbers("phase_angles_deg", 0.0, 180.0);
-    const auto values = mie_->Numbers("phase_per_sr", 0.0, 1e12);
+    const auto angles = mie_->Numbers("phase_angles_deg");
+    const auto values = mie_->Numbers("phase_per_sr");
     if (!angles || !values || angles->empty()) {
       mie_->Fail("phase",
                  "mie.phase is \"table\": give mie.phase_file too, or mie.phase_angles_deg "
@@ -382,13 +324,12 @@ class AtmosphereFile {
           key, fmt::format("mie.{} has no effect: the phase function {} has no such parameter", key,
                            NameOf(phases.front().kind)));
     }
-    const Range range = key == "alpha" ? Range{0.0, 100.0} : Range{-1.0, 1.0};
-    Values values = *mie_->Numbers(key, range.low, range.high);
+    Values values = *mie_->Numbers(key);
     const std::size_t count = medium.wavelengths_nm.size();
     if (values.size() == 1) {
       values.resize(phases.size(), values.front());
     } else {
-      ReadList(*mie_, key, range, values, count);
+      PutInOrder(*mie_, key, count, values);
       if (phases.size() != count) phases.resize(count, phases.front());
     }
     for (std::size_t i = 0; i < values.size(); ++i) phases[i].*parameter = values[i];
@@ -418,16 +359,16 @@ class AtmosphereFile {
   }
 
   double AerosolAt550(const Medium& medium) const {
-    const TomlTable& table = *aerosol_;
-    if (const auto depth = table.Number("optical_depth_550", 0.0, 100.0)) {
+    const TomlSection& table = *aerosol_;
+    if (const auto depth = table.Number("optical_depth_550")) {
       return *depth / medium.mie_scale_height_m;
     }
     RequireList(medium.rayleigh_scattering_per_m, "rayleigh.scattering_per_m");
     const double molecules = MoleculesAt550(medium);
-    if (const auto turbidity = table.Number("turbidity", 1.0, 1000.0)) {
+    if (const auto turbidity = table.Number("turbidity")) {
       return (*turbidity - 1.0) * molecules * MoleculeColumn_m(medium) / medium.mie_scale_height_m;
     }
-    const double visibility_m = *table.Number("visibility_m", 1.0, 1e7);
+    const double visibility_m = *table.Number("visibility_m");
     const double extinction = kOpticalDepthOfVisibility / visibility_m - molecules;
     if (!(extinction >= 0.0)) {
       table.Fail("visibility_m",
@@ -446,7 +387,7 @@ class AtmosphereFile {
   // Applies the spectrum, phase function and layer of the mixture, and its load unless the file
   // gives one.
   void ReadMixture(const std::string& name, Medium& medium) const {
-    const TomlTable& table = *aerosol_;
+    const TomlSection& table = *aerosol_;
     RequireNameIn(table, "mixture", name, AerosolMixtureNames());
     if (table.Has("angstrom_exponent")) {
       table.Fail("angstrom_exponent",
@@ -461,7 +402,7 @@ class AtmosphereFile {
     AerosolOptics optics = AerosolMixture(name, medium.wavelengths_nm);
     if (!(mie_ && mie_->Has("scale_height_m"))) medium.mie_scale_height_m = optics.scale_height_m;
     if (!(mie_ && mie_->Has("phase"))) medium.mie_phase = std::move(optics.phase);
-    const auto albedo = table.Number("single_scattering_albedo", 0.0, 1.0);
+    const auto albedo = table.Number("single_scattering_albedo");
     const double scale = HasAmount() ? AerosolAt550(medium) / optics.extinction_550_per_m : 1.0;
     medium.mie_extinction_per_m = std::move(optics.extinction_per_m);
     medium.mie_scattering_per_m = std::move(optics.scattering_per_m);
@@ -473,7 +414,7 @@ class AtmosphereFile {
   }
 
   void ReadAerosol(Values scattering_share, Medium& medium) const {
-    const TomlTable& table = *aerosol_;
+    const TomlSection& table = *aerosol_;
     RequireOneOf(table, kAerosolAmounts);
     if (!HasAmount() && !table.Has("mixture")) {
       root_.Fail("aerosol", fmt::format("aerosol needs mixture or one of {}",
@@ -485,11 +426,11 @@ class AtmosphereFile {
       }
     }
     if (const auto mixture = table.Text("mixture")) return ReadMixture(*mixture, medium);
-    if (const auto albedo = table.Number("single_scattering_albedo", 0.0, 1.0)) {
+    if (const auto albedo = table.Number("single_scattering_albedo")) {
       scattering_share.assign(medium.wavelengths_nm.size(), *albedo);
     }
     RequireList(scattering_share, "aerosol.single_scattering_albedo");
-    const double exponent = table.Number("angstrom_exponent", -1.0, 4.0).value_or(1.3);
+    const double exponent = table.Number("angstrom_exponent").value_or(1.3);
     const double at_550 = AerosolAt550(medium);
     medium.mie_extinction_per_m.clear();
     medium.mie_scattering_per_m.clear();
@@ -501,15 +442,11 @@ class AtmosphereFile {
   }
 
   OzoneShape ShapeOfOzone(OzoneShape of_preset) const {
-    const TomlTable& table = *ozone_;
+    const TomlSection& table = *ozone_;
     const bool edges = table.Has("bottom_m") || table.Has("top_m");
     const auto name = table.Text("profile");
     if (!name) return edges ? OzoneShape::kTent : of_preset;
     if (*name == "tent") return OzoneShape::kTent;
-    if (*name != "smooth") {
-      table.Fail("profile",
-                 fmt::format("ozone.profile is \"{}\"; it must be one of smooth, tent", *name));
-    }
     for (const char* edge : {"bottom_m", "top_m"}) {
       if (table.Has(edge)) {
         table.Fail(edge, fmt::format("ozone.{} has no effect: a smooth profile reaches from the "
@@ -520,32 +457,26 @@ class AtmosphereFile {
     return OzoneShape::kSmooth;
   }
 
+  // A profile of another shape keeps the column of the preset.
   void ReadProfile(Medium& medium) const {
-    const TomlTable& table = *ozone_;
     const OzoneLayer of_preset = medium.ozone;
-    OzoneLayer& ozone = medium.ozone;
     const OzoneShape shape = ShapeOfOzone(of_preset.shape);
-    if (shape != of_preset.shape) {
-      ozone = shape == OzoneShape::kTent ? OzoneLayer{} : SmoothOzone();
-    }
-    ReadNumber(table, "bottom_m", ranges::kOzoneAltitude_m, ozone.bottom_m);
-    ReadNumber(table, "peak_m", ranges::kOzoneAltitude_m, ozone.peak_m);
-    ReadNumber(table, "top_m", ranges::kOzoneAltitude_m, ozone.top_m);
-    if (shape == OzoneShape::kSmooth) ozone = SmoothOzone(ozone.peak_m);
-    if (shape == of_preset.shape) return;
+    if (shape != of_preset.shape)
+      medium.ozone = shape == OzoneShape::kTent ? OzoneLayer{} : SmoothOzone();
+    ReadFields(*ozone_, "ozone", medium);
+    if (shape == OzoneShape::kSmooth) medium.ozone = SmoothOzone(medium.ozone.peak_m);
+    if (shape == of_preset.shape || ozone_->Has("absorption_per_m")) return;
     for (double& peak : medium.ozone_absorption_per_m) {
-      peak *= EquivalentDepth_m(of_preset) / EquivalentDepth_m(ozone);
+      peak *= EquivalentDepth_m(of_preset) / EquivalentDepth_m(medium.ozone);
     }
   }
 
   void ReadOzone(Medium& medium) const {
-    const TomlTable& table = *ozone_;
+    const TomlSection& table = *ozone_;
     RequireOneOf(table, {"absorption_per_m", "dobson"});
     ReadProfile(medium);
     if (!(medium.ozone.bottom_m < medium.ozone.top_m)) RequireFaultless(medium);
-    ReadList(table, "absorption_per_m", ranges::kCoefficient_per_m, medium.ozone_absorption_per_m,
-             medium.wavelengths_nm.size());
-    const auto dobson = table.Number("dobson", 0.0, 10000.0);
+    const auto dobson = table.Number("dobson");
     if (!dobson) return;
     if (medium.wavelengths_nm.front() < kFirstPresetWavelength_nm) {
       table.Fail("dobson", fmt::format("ozone.dobson needs cross sections, which are known from {} "
@@ -609,7 +540,7 @@ class AtmosphereFile {
   MediumUse use_;
   std::filesystem::path folder_;  // folder of the file; names of other files are relative to it
   std::string preset_;
-  std::optional<TomlTable> planet_, spectrum_, rayleigh_, mie_, aerosol_, ozone_;
+  std::optional<TomlSection> planet_, spectrum_, rayleigh_, mie_, aerosol_, ozone_;
   bool reversed_ = false;
 };
 
@@ -621,6 +552,88 @@ Medium MediumFromToml(std::string_view text, const std::string& origin, const Me
 
 Medium ReadMedium(const std::filesystem::path& file, const MediumUse& use) {
   return MediumFromToml(ReadTextFile(file), file.string(), use);
+}
+
+namespace {
+
+std::string ListOf(const std::vector<double>& values) {
+  return fmt::format("[{}]", fmt::join(values, ", "));
+}
+
+// Writes one value if all wavelengths share the phase function, else one value per wavelength.
+std::string ParameterLine(const char* key, double PhaseFunction::*parameter,
+                          const std::vector<PhaseFunction>& phases) {
+  std::vector<double> values;
+  for (const PhaseFunction& phase : phases) values.push_back(phase.*parameter);
+  return fmt::format("{} = {}\n", key, ListOf(values));
+}
+
+// Tables with different angles at different wavelengths cannot be written as text.
+std::string TableLines(const std::vector<PhaseFunction>& phases) {
+  std::vector<double> values;
+  for (const PhaseFunction& phase : phases) {
+    const std::vector<double>& row = phase.table->per_sr();
+    values.insert(values.end(), row.begin(), row.end());
+  }
+  return fmt::format("phase = \"table\"\nphase_angles_deg = {}\nphase_per_sr = {}\n",
+                     ListOf(phases.front().table->angle_deg()), ListOf(values));
+}
+
+std::string PhaseLines(const std::vector<PhaseFunction>& phases) {
+  const PhaseKind kind = phases.front().kind;
+  if (kind == PhaseKind::kTable) return TableLines(phases);
+  std::string lines = fmt::format("phase = \"{}\"\n", NameOf(kind));
+  if (kind != PhaseKind::kRayleigh) lines += ParameterLine("g", &PhaseFunction::g, phases);
+  if (kind == PhaseKind::kDoubleHenyeyGreenstein || kind == PhaseKind::kHenyeyGreensteinDraine) {
+    lines += ParameterLine("g_back", &PhaseFunction::g_back, phases);
+    lines += ParameterLine("back_weight", &PhaseFunction::back_weight, phases);
+  }
+  if (kind == PhaseKind::kDraine || kind == PhaseKind::kHenyeyGreensteinDraine)
+    lines += ParameterLine("alpha", &PhaseFunction::alpha, phases);
+  return lines;
+}
+
+std::string TextOf(const TomlValue& value) {
+  if (const auto* const list = std::get_if<Values>(&value)) return ListOf(*list);
+  if (const auto* const name = std::get_if<std::string>(&value))
+    return fmt::format("\"{}\"", *name);
+  if (const auto* const truth = std::get_if<bool>(&value)) return fmt::format("{}", *truth);
+  return fmt::format("{}", std::get<double>(value));
+}
+
+/// Returns whether a key has an effect. Keys without effect, and the default of refraction, are not
+/// written.
+bool IsWritten(const std::string& section, const std::string& key, const Medium& medium) {
+  if (section == "rayleigh" && key.starts_with("deficit"))
+    return medium.rayleigh_deficit.share != 0.0;
+  if (key == "refraction") return medium.refraction == RefractionBy::kAlmanacs;
+  if (section == "ozone" && (key == "bottom_m" || key == "top_m"))
+    return medium.ozone.shape == OzoneShape::kTent;
+  return true;
+}
+
+std::string LinesOf(const TomlFields<Medium>& section, const Medium& medium) {
+  std::string lines;
+  for (const TomlField<Medium>& field : section.fields) {
+    if (!field.member.get || !IsWritten(section.name, field.key, medium)) continue;
+    if (const auto value = field.member.get(medium))
+      lines += fmt::format("{} = {}\n", field.key, TextOf(*value));
+  }
+  if (section.name == "mie") lines += PhaseLines(medium.mie_phase);
+  if (lines.empty() || section.name.empty()) return lines;
+  return fmt::format("[{}]\n{}", section.name, lines);
+}
+
+}  // namespace
+
+std::string TomlFromMedium(const Medium& medium) {
+  std::string text = LinesOf(TopFieldsOfMedium(), medium);
+  for (const TomlFields<Medium>& section : SectionsOfMedium()) text += LinesOf(section, medium);
+  if (MediumHash(MediumFromToml(text, "medium")) != MediumHash(medium)) {
+    throw InputError(fmt::format(
+        "medium {}: its phase function has a parameter set that it does not use", medium.name));
+  }
+  return text;
 }
 
 }  // namespace alpenglow::atmosphere

@@ -5,10 +5,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <type_traits>
+#include <variant>
 
 #include "atmosphere/base/error.h"
 #include "atmosphere/colour/spectrum.h"
 #include "atmosphere/math/numerics.h"
+#include "atmosphere/medium/medium_fields.h"
 #include "atmosphere/medium/phase_table.h"
 #include "atmosphere/medium/phase_text.h"
 #include "atmosphere/time_place/geodesy.h"
@@ -50,29 +53,31 @@ std::optional<MediumFault> FaultOfWavelengths(const std::vector<double>& wavelen
 
 namespace {
 
-struct NamedList {
-  const char* key;
-  const std::vector<double>& values;
-  const Range& range;
-};
+Fault FaultOfList(const std::string& key, const std::vector<double>& values, const TomlType& type,
+                  const Medium& medium) {
+  if (values.size() != medium.wavelengths_nm.size()) {
+    return MediumFault{key, fmt::format("{} has {} values; it must have {}, one per wavelength",
+                                        key, values.size(), medium.wavelengths_nm.size())};
+  }
+  for (const double value : values) {
+    if (Fault fault = OutOfRange(key, value, {type.low, type.high})) return fault;
+  }
+  return std::nullopt;
+}
 
-Fault FaultOfLists(const Medium& medium) {
-  const NamedList lists[] = {
-      {"spectrum.solar_irradiance", medium.solar_irradiance, ranges::kSolarIrradiance},
-      {"planet.ground_albedo", medium.ground_albedo, ranges::kAlbedo},
-      {"rayleigh.scattering_per_m", medium.rayleigh_scattering_per_m, ranges::kCoefficient_per_m},
-      {"mie.scattering_per_m", medium.mie_scattering_per_m, ranges::kCoefficient_per_m},
-      {"mie.extinction_per_m", medium.mie_extinction_per_m, ranges::kCoefficient_per_m},
-      {"ozone.absorption_per_m", medium.ozone_absorption_per_m, ranges::kCoefficient_per_m},
-  };
-  for (const NamedList& list : lists) {
-    if (list.values.size() != medium.wavelengths_nm.size()) {
-      return MediumFault{
-          list.key, fmt::format("{} has {} values; it must have {}, one per wavelength", list.key,
-                                list.values.size(), medium.wavelengths_nm.size())};
-    }
-    for (const double value : list.values) {
-      if (Fault fault = OutOfRange(list.key, value, list.range)) return fault;
+/// Checks all members that are numbers, or all that are lists.
+Fault FaultOfFields(const Medium& medium, TomlType::Kind kind) {
+  for (const TomlFields<Medium>& section : SectionsOfMedium()) {
+    for (const TomlField<Medium>& field : section.fields) {
+      const TomlType& type = field.member.type;
+      if (type.kind != kind || !field.member.get) continue;
+      const std::string key = section.name + "." + field.key;
+      if (key == "rayleigh.depolarisation") continue;  // FaultOfDepolarisation
+      const TomlValue value = *field.member.get(medium);
+      Fault fault = kind == TomlType::Kind::kNumber
+                        ? OutOfRange(key, std::get<double>(value), {type.low, type.high})
+                        : FaultOfList(key, std::get<std::vector<double>>(value), type, medium);
+      if (fault) return fault;
     }
   }
   return std::nullopt;
@@ -111,25 +116,7 @@ Fault FaultOfDeficit(const Medium& medium) {
 }
 
 Fault FaultOfScalars(const Medium& medium) {
-  const struct {
-    const char* key;
-    double value;
-    const Range& range;
-  } scalars[] = {
-      {"planet.radius_m", medium.planet_radius_m, ranges::kPlanetRadius_m},
-      {"planet.atmosphere_top_m", medium.atmosphere_height_m, ranges::kAtmosphereTop_m},
-      {"rayleigh.scale_height_m", medium.rayleigh_scale_height_m, ranges::kScaleHeight_m},
-      {"rayleigh.deficit", medium.rayleigh_deficit.share, ranges::kDeficit},
-      {"rayleigh.deficit_scale_height_m", medium.rayleigh_deficit.scale_height_m,
-       ranges::kScaleHeight_m},
-      {"mie.scale_height_m", medium.mie_scale_height_m, ranges::kScaleHeight_m},
-      {"ozone.bottom_m", medium.ozone.bottom_m, ranges::kOzoneAltitude_m},
-      {"ozone.peak_m", medium.ozone.peak_m, ranges::kOzoneAltitude_m},
-      {"ozone.top_m", medium.ozone.top_m, ranges::kOzoneAltitude_m},
-  };
-  for (const auto& scalar : scalars) {
-    if (Fault fault = OutOfRange(scalar.key, scalar.value, scalar.range)) return fault;
-  }
+  if (Fault fault = FaultOfFields(medium, TomlType::Kind::kNumber)) return fault;
   if (Fault fault = FaultOfDeficit(medium)) return fault;
   const OzoneLayer& ozone = medium.ozone;
   if (ozone.shape == OzoneShape::kTent &&
@@ -282,6 +269,27 @@ void AddPhase(const PhaseFunction& phase, Fnv1a& fnv) {
   if (phase.table) fnv.Add(phase.table->hash());
 }
 
+// Parameters that are as old as the hash are added in a fixed order; later ones are added by name,
+// so that a medium with their default keeps its hash.
+void AddLaterParameters(const Medium& medium, Fnv1a& fnv) {
+  const Medium plain;
+  for (const TomlFields<Medium>& section : SectionsOfMedium()) {
+    for (const TomlField<Medium>& field : section.fields) {
+      if (!field.is_recorded_by_name) continue;
+      const std::optional<TomlValue> value = field.member.get(medium);
+      if (!value || value == field.member.get(plain)) continue;
+      fnv.Add(section.name + "." + field.key);
+      std::visit(
+          [&](const auto& one) {
+            using Type = std::decay_t<decltype(one)>;
+            if constexpr (std::is_same_v<Type, bool>) fnv.Add(std::uint64_t{one});
+            if constexpr (!std::is_same_v<Type, bool>) fnv.Add(one);
+          },
+          *value);
+    }
+  }
+}
+
 // Scalar light without depolarisation adds nothing to the hash, so such a medium keeps the hash
 // that it had before these two parameters existed.
 void AddPolarisation(const Medium& medium, Fnv1a& fnv) {
@@ -332,7 +340,7 @@ double EquivalentDepth_m(const OzoneLayer& layer) {
 std::optional<MediumFault> FindFault(const Medium& medium, const MediumUse& use) {
   if (Fault fault = FaultOfWavelengths(medium.wavelengths_nm, use)) return fault;
   if (Fault fault = FaultOfScalars(medium)) return fault;
-  if (Fault fault = FaultOfLists(medium)) return fault;
+  if (Fault fault = FaultOfFields(medium, TomlType::Kind::kNumbers)) return fault;
   if (Fault fault = FaultOfRadius(medium)) return fault;
   if (Fault fault = FaultOfTop(medium)) return fault;
   if (Fault fault = FaultOfExtinction(medium)) return fault;
@@ -371,6 +379,7 @@ std::uint64_t MediumHash(const Medium& medium) {
   fnv.Add(medium.ozone.top_m);
   if (medium.ozone.shape != OzoneShape::kTent) fnv.Add(std::uint64_t{1});
   AddPolarisation(medium, fnv);
+  AddLaterParameters(medium, fnv);
   return fnv.hash();
 }
 
@@ -393,87 +402,6 @@ double OsculatingRadius(const Medium& medium, double latitude_rad) {
 Medium OnOsculatingSphere(Medium medium, double latitude_rad) {
   medium.planet_radius_m = OsculatingRadius(medium, latitude_rad);
   return medium;
-}
-
-namespace {
-
-std::string ListOf(const std::vector<double>& values) {
-  return fmt::format("[{}]", fmt::join(values, ", "));
-}
-
-// Writes one value if all wavelengths share the phase function, else one value per wavelength.
-std::string ParameterLine(const char* key, double PhaseFunction::*parameter,
-                          const std::vector<PhaseFunction>& phases) {
-  std::vector<double> values;
-  for (const PhaseFunction& phase : phases) values.push_back(phase.*parameter);
-  return fmt::format("{} = {}\n", key, ListOf(values));
-}
-
-// Tables with different angles at different wavelengths cannot be written as text.
-std::string TableLines(const std::vector<PhaseFunction>& phases) {
-  std::vector<double> values;
-  for (const PhaseFunction& phase : phases) {
-    const std::vector<double>& row = phase.table->per_sr();
-    values.insert(values.end(), row.begin(), row.end());
-  }
-  return fmt::format("phase = \"table\"\nphase_angles_deg = {}\nphase_per_sr = {}\n",
-                     ListOf(phases.front().table->angle_deg()), ListOf(values));
-}
-
-std::string PhaseLines(const std::vector<PhaseFunction>& phases) {
-  const PhaseKind kind = phases.front().kind;
-  if (kind == PhaseKind::kTable) return TableLines(phases);
-  std::string lines = fmt::format("phase = \"{}\"\n", NameOf(kind));
-  if (kind != PhaseKind::kRayleigh) lines += ParameterLine("g", &PhaseFunction::g, phases);
-  if (kind == PhaseKind::kDoubleHenyeyGreenstein || kind == PhaseKind::kHenyeyGreensteinDraine) {
-    lines += ParameterLine("g_back", &PhaseFunction::g_back, phases);
-    lines += ParameterLine("back_weight", &PhaseFunction::back_weight, phases);
-  }
-  if (kind == PhaseKind::kDraine || kind == PhaseKind::kHenyeyGreensteinDraine)
-    lines += ParameterLine("alpha", &PhaseFunction::alpha, phases);
-  return lines;
-}
-
-std::string LayerLines(const OzoneLayer& ozone) {
-  if (ozone.shape == OzoneShape::kSmooth) {
-    return fmt::format("profile = \"smooth\"\npeak_m = {}\n", ozone.peak_m);
-  }
-  return fmt::format("profile = \"tent\"\nbottom_m = {}\npeak_m = {}\ntop_m = {}\n", ozone.bottom_m,
-                     ozone.peak_m, ozone.top_m);
-}
-
-std::string DeficitLines(const MoleculeDeficit& deficit) {
-  if (deficit.share == 0.0) return "";
-  return fmt::format("deficit = {}\ndeficit_scale_height_m = {}\n", deficit.share,
-                     deficit.scale_height_m);
-}
-
-}  // namespace
-
-std::string TomlFromMedium(const Medium& medium) {
-  const std::string text =
-      fmt::format("polarised = {}\n", medium.polarised) +
-      fmt::format("[planet]\nradius_m = {}\nfollows_wgs84 = {}\natmosphere_top_m = {}\n",
-                  medium.planet_radius_m, medium.follows_wgs84, medium.atmosphere_height_m) +
-      fmt::format("ground_albedo = {}\n", ListOf(medium.ground_albedo)) +
-      fmt::format("[spectrum]\nwavelengths_nm = {}\nsolar_irradiance = {}\n",
-                  ListOf(medium.wavelengths_nm), ListOf(medium.solar_irradiance)) +
-      fmt::format("[rayleigh]\nscattering_per_m = {}\nscale_height_m = {}\n",
-                  ListOf(medium.rayleigh_scattering_per_m), medium.rayleigh_scale_height_m) +
-      DeficitLines(medium.rayleigh_deficit) +
-      fmt::format("depolarisation = {}\n", ListOf(medium.rayleigh_depolarisation)) +
-      (medium.refraction == RefractionBy::kAlmanacs ? "refraction = \"almanacs\"\n" : "") +
-      fmt::format("[mie]\nscattering_per_m = {}\nextinction_per_m = {}\nscale_height_m = {}\n",
-                  ListOf(medium.mie_scattering_per_m), ListOf(medium.mie_extinction_per_m),
-                  medium.mie_scale_height_m) +
-      PhaseLines(medium.mie_phase) +
-      fmt::format("[ozone]\nabsorption_per_m = {}\n", ListOf(medium.ozone_absorption_per_m)) +
-      LayerLines(medium.ozone);
-  if (MediumHash(MediumFromToml(text, "medium")) != MediumHash(medium)) {
-    throw InputError(fmt::format(
-        "medium {}: its phase function has a parameter set that it does not use", medium.name));
-  }
-  return text;
 }
 
 }  // namespace alpenglow::atmosphere

@@ -10,10 +10,14 @@
 #include <vector>
 
 #include "atmosphere/base/error.h"
+#include "atmosphere/base/parsing.h"
 #include "atmosphere/colour/spectrum.h"
 #include "atmosphere/medium/aerosol_mixture.h"
 #include "atmosphere/medium/medium.h"
+#include "atmosphere/medium/medium_fields.h"
 #include "tests/fixtures/fault_of.h"
+#include "tests/fixtures/places.h"
+#include "tests/fixtures/toml_keys.h"
 
 namespace alpenglow::atmosphere {
 namespace {
@@ -338,16 +342,65 @@ TEST(AtmosphereFile, LimitsThatLeaveNoValueNameBothCauses) {
   }
 }
 
+TEST(AtmosphereFile, EveryKeyRefusesValuesThatItDoesNotAccept) {
+  for (const TomlFields<Medium>& section : SectionsOfMedium()) {
+    for (const TomlKey& key : section.Keys()) {
+      const std::string name = section.name + "." + key.key;
+      for (const auto& [value, fault] : tests::RefusedValues(key, name)) {
+        EXPECT_EQ(FileFaultOf(fmt::format("[{}]\n\n{} = {}\n", section.name, key.key, value)),
+                  "a.toml:3: " + fault);
+      }
+      EXPECT_EQ(FileFaultOf(fmt::format("[{}]\n{}q = 1\n", section.name, key.key)),
+                fmt::format("a.toml:2: unknown key {}q; did you mean {}?", name, key.key));
+    }
+  }
+}
+
+TEST(AtmosphereFile, TheManualHasTheTablesOfKeys) {
+  const std::string manual = ReadTextFile(std::filesystem::path(tests::kSourceFolder) /
+                                          "atmosphere" / "ATMOSPHERE_FILE.md");
+  EXPECT_THAT(tests::Between(manual, "## Top level\n\n", "\n\n") + "\n",
+              tests::MarkdownTable(TopFieldsOfMedium().Keys()));
+  for (const TomlFields<Medium>& section : SectionsOfMedium()) {
+    const std::string text =
+        tests::Between(manual, fmt::format("## `[{}]`", section.name), "\n## ");
+    EXPECT_THAT(text + "\n", HasSubstr("\n" + tests::MarkdownTable(section.Keys())));
+  }
+}
+
+/// Returns a medium in which the value of a key is another one than before.
+Medium WithAnotherValue(const TomlField<Medium>& field, Medium medium) {
+  TomlValue value = *field.member.get(medium);
+  if (auto* const truth = std::get_if<bool>(&value)) *truth = !*truth;
+  if (auto* const number = std::get_if<double>(&value)) *number = 0.5 * *number + 0.2;
+  if (auto* const list = std::get_if<std::vector<double>>(&value)) list->front() += 0.01;
+  if (auto* const name = std::get_if<std::string>(&value))
+    *name = *name == field.member.type.names[0] ? field.member.type.names[1]
+                                                : field.member.type.names[0];
+  field.member.set(value, medium);
+  return medium;
+}
+
+TEST(AtmosphereFile, EveryKeyButRefractionChangesTheHashOfAMedium) {
+  Medium earth = MediumPreset("earth");
+  earth.rayleigh_deficit.share = 0.5;
+  for (const TomlFields<Medium>& section : SectionsOfMedium()) {
+    for (const TomlField<Medium>& field : section.fields) {
+      if (!field.member.set) continue;
+      EXPECT_EQ(MediumHash(WithAnotherValue(field, earth)) == MediumHash(earth),
+                field.key == "refraction")
+          << section.name << "." << field.key;
+    }
+  }
+}
+
 TEST(AtmosphereFile, BadInputsAreRefusedWithFileLineKeyAndRange) {
   const BadInput inputs[] = {
       {"[spectrum]\nbands = 7\n",
        "a.toml:2: spectrum.bands is 7; it must be one of 3, 4, 5, 6, 8, 16, 40"},
       {"[spectrum]\nbands = 4\nwavelengths_nm = [500]\n", "give one of"},
       {"[rayleigh]\nscale_height_m = 7000\ndeficit_scale_height_m = 2500\n", "no effect"},
-      {"[rayleigh]\ndeficit = 2\n", "[0, 1]"},
-      {"[rayleigh]\nrefraction = \"none\"\n", "molecules, almanacs"},
       {"[aerosol]\nvisibility_m = 400000\n", "the molecules alone limit it to 340"},
-      {"[aerosol]\nturbidity = 0.5\n", "[1, 1000]"},
       {"[aerosol]\nturbidity = 2\nvisibility_m = 23000\n",
        "a.toml:2: aerosol.turbidity is given beside aerosol.visibility_m"},
       {"[aerosol]\nangstrom_exponent = 1\n", "aerosol needs mixture or one of"},
@@ -356,7 +409,6 @@ TEST(AtmosphereFile, BadInputsAreRefusedWithFileLineKeyAndRange) {
       {"[ozone]\ndobson = 300\nabsorption_per_m = [0, 0, 0, 0]\n", "give one of them"},
       {"[ozone]\ndobson = 300\nbottom_m = 40000\n",
        "ozone.top_m is 40000 and ozone.bottom_m 40000; the top must lie 2 m or more above"},
-      {"[ozone]\nprofile = \"box\"\n", "one of smooth, tent"},
       {"[ozone]\nprofile = \"smooth\"\ntop_m = 60000\n", "ozone.top_m has no effect"},
       {"[mie]\nalpha = 0.5\n", "a.toml:2: mie.alpha has no effect"},
       {"[mie]\nphase = \"henyey-greenstein\"\n", "give mie.g too"},
@@ -365,8 +417,6 @@ TEST(AtmosphereFile, BadInputsAreRefusedWithFileLineKeyAndRange) {
       {"[mie]\ng = [0.7, 0.8]\n",
        "a.toml:2: mie.g has 2 values; it must have 4, one per wavelength"},
       {"[mie]\nphase = \"fog\"\n", "give mie.droplet_diameter_um too"},
-      {"[mie]\nphase = \"fog\"\ndroplet_diameter_um = 60\n",
-       "a.toml:3: mie.droplet_diameter_um is 60; it must lie in [1.5, 50]"},
       {"[mie]\ndroplet_diameter_um = 10\n", "no effect without phase = \"fog\""},
       {"[mie]\nphase = \"fog\"\ndroplet_diameter_um = 12\ng = 0.8\n", "mie.g has no effect"},
       {"[mie]\nphase = \"table\"\n", "give mie.phase_file too"},
@@ -401,11 +451,6 @@ TEST(AtmosphereFile, BadInputsAreRefusedWithFileLineKeyAndRange) {
       {"\npreset = \"earht\"\n",
        "a.toml:2: preset is \"earht\"; it must be one of earth, clear-mountain, hazy, mars, "
        "bruneton2017; did you mean earth?"},
-      {"[planet]\nradius_m = \"big\"\n", "a.toml:2: planet.radius_m is the text \"big\""},
-      {"[planet]\nradius_m = true\n", "a.toml:2: planet.radius_m is true; it must be a number"},
-      {"[planet]\nradius_m = -1\n", "a.toml:2: planet.radius_m is -1; it must lie in [1000, "},
-      {"[planet]\nradius_m = nan\n", "a.toml:2: planet.radius_m is nan; it must lie in [1000, "},
-      {"[planet]\nradius_m = inf\n", "a.toml:2: planet.radius_m is inf; it must lie in [1000, "},
       {"[planet]\nradius_m = 1e999\n", "a.toml:2: "},
       {"[planet]\nradius_m = 30000\n",
        "a.toml:2: planet.radius_m is 30000; with the smooth ozone layer of ozone.peak_m 22000 it "
@@ -413,18 +458,11 @@ TEST(AtmosphereFile, BadInputsAreRefusedWithFileLineKeyAndRange) {
       {"[planet]\natmosphere_top_m = 30000\n",
        "a.toml:2: planet.atmosphere_top_m is 30000; with ozone up to 66000 it must lie in "
        "[59400, "},
-      {"[mie]\nscale_height_m = 1\n",
-       "a.toml:2: mie.scale_height_m is 1; it must lie in [100, 200000]"},
-      {"[planet]\nradius_m = [1]\n", "a.toml:2: planet.radius_m is a list"},
-      {"[planet]\nradius_m = 2020-01-01\n", "a.toml:2: planet.radius_m is a date"},
-      {"[planet]\nground_albedo = 1.5\n", "a.toml:2: planet.ground_albedo is 1.5"},
       {"[planet]\nground_albedo = [0.1, 0.2]\n",
        "a.toml:2: planet.ground_albedo has 2 values; it must have 4, one per wavelength"},
-      {"[planet]\natmosphere_top_m = 0\n", "a.toml:2: planet.atmosphere_top_m is 0"},
       {"planet = 3\n", "a.toml:1: planet is 3; it must be a table"},
       {"[[planet]]\nradius_m = 1e6\n", "a.toml:1: planet is a list; it must be a table"},
       {"polarised = 1\n", "a.toml:1: polarised is 1"},
-      {"[rayleigh]\ndepolarisation = 0.6\n", "a.toml:2: rayleigh.depolarisation is 0.6"},
       {"[rayleigh]\ndepolarisation = [0.1, 0.2]\n",
        "a.toml:2: rayleigh.depolarisation has 2 values; it must have 4"},
       {"preset = 3\n", "a.toml:1: preset is 3; it must be text"},
@@ -434,17 +472,8 @@ TEST(AtmosphereFile, BadInputsAreRefusedWithFileLineKeyAndRange) {
       {"[spectrum]\nwavelengths_nm = [199]\n",
        "a.toml:2: spectrum.wavelengths_nm[0] is 199; it must "
        "lie in [200, 4000]"},
-      {"[spectrum]\nwavelengths_nm = [4001]\n", "a.toml:2: spectrum.wavelengths_nm[0] is 4001"},
-      {"[spectrum]\nwavelengths_nm = [\"red\"]\n",
-       "a.toml:2: spectrum.wavelengths_nm[0] is the text"},
-      {"[spectrum]\nsolar_irradiance = [1, 2, 3, nan]\n",
-       "a.toml:2: spectrum.solar_irradiance[3] is"},
       {"[rayleigh]\nscattering_per_m = [1e-6, 1e-6, 1e-6]\n",
        "a.toml:2: rayleigh.scattering_per_m has 3 values; it must have 4"},
-      {"[rayleigh]\nscattering_per_m = [-1e-6, 0, 0, 0]\n",
-       "a.toml:2: rayleigh.scattering_per_m[0] is -1e-06; it must lie in [0, 100000]"},
-      {"[rayleigh]\nscale_height_m = 0\n",
-       "a.toml:2: rayleigh.scale_height_m is 0; it must lie in [1"},
       {"[mie]\nscattering_per_m = [1, 1, 1, 1]\n",
        "a.toml:2: mie.scattering_per_m is 1 at 445 nm; it must not exceed mie.extinction_per_m"},
       {"[mie]\nextinction_per_m = [0, 0, 0, 0]\n", "a.toml:2: mie.scattering_per_m is"},
@@ -455,7 +484,6 @@ TEST(AtmosphereFile, BadInputsAreRefusedWithFileLineKeyAndRange) {
       {"[ozone]\nprofile = \"tent\"\nbottom_m = 24999.9\npeak_m = 25000\ntop_m = 40000\n",
        "a.toml:4: ozone.peak_m is 25000; it must lie between ozone.bottom_m, 24999.9, and "
        "ozone.top_m, 40000, 1 m or more from each"},
-      {"[ozone]\ndobson = -1\n", "a.toml:2: ozone.dobson is -1"},
       {"a = 1\na = 2\n", "a.toml:2: not valid TOML"},
       {"[planet]\n[planet]\n", "a.toml:2: not valid TOML"},
       {"preset = \n", "a.toml:1: not valid TOML"},
