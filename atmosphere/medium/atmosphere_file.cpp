@@ -16,6 +16,7 @@
 #include "atmosphere/medium/medium.h"
 #include "atmosphere/medium/medium_fields.h"
 #include "atmosphere/medium/medium_presets.h"
+#include "atmosphere/medium/phase_forms.h"
 #include "atmosphere/medium/phase_table.h"
 
 namespace alpenglow::atmosphere {
@@ -217,14 +218,10 @@ class AtmosphereFile {
       const PhaseKind kind = name ? KindOf(*name) : PhaseKind::kCornetteShanks;
       if (kind != phases.front().kind) phases = {LobeInsteadOf(phases.front().kind, kind)};
     }
-    const PhaseKind kind = phases.front().kind;
-    const bool mixed = kind == PhaseKind::kHenyeyGreensteinDraine && name != kFog;
-    const bool two_lobes = mixed || kind == PhaseKind::kDoubleHenyeyGreenstein;
-    const bool has_g = kind != PhaseKind::kRayleigh && kind != PhaseKind::kTable;
-    ReadParameter("g", has_g && name != kFog, &PhaseFunction::g, medium);
-    ReadParameter("g_back", two_lobes, &PhaseFunction::g_back, medium);
-    ReadParameter("back_weight", two_lobes, &PhaseFunction::back_weight, medium);
-    ReadParameter("alpha", mixed || kind == PhaseKind::kDraine, &PhaseFunction::alpha, medium);
+    for (const PhaseParameter& parameter : PhaseParameters()) {
+      const PhaseForm& form = FormOf(phases.front().kind);
+      ReadParameter(parameter, name != kFog && ParameterOf(form, parameter.key), medium);
+    }
     const bool equal = std::equal(phases.begin() + 1, phases.end(), phases.begin());
     if (equal) phases.resize(1);
   }
@@ -315,8 +312,8 @@ class AtmosphereFile {
   }
 
   // Reads one value for all wavelengths, or one value per wavelength.
-  void ReadParameter(const std::string& key, bool has_it, double PhaseFunction::*parameter,
-                     Medium& medium) const {
+  void ReadParameter(const PhaseParameter& parameter, bool has_it, Medium& medium) const {
+    const std::string key = parameter.key;
     if (!mie_->Has(key)) return;
     Phases& phases = medium.mie_phase;
     if (!has_it) {
@@ -332,7 +329,7 @@ class AtmosphereFile {
       PutInOrder(*mie_, key, count, values);
       if (phases.size() != count) phases.resize(count, phases.front());
     }
-    for (std::size_t i = 0; i < values.size(); ++i) phases[i].*parameter = values[i];
+    for (std::size_t i = 0; i < values.size(); ++i) phases[i].*parameter.member = values[i];
   }
 
   // Returns the single scattering albedo of the preset's aerosol; empty if the preset has no data.
@@ -393,7 +390,8 @@ class AtmosphereFile {
       table.Fail("angstrom_exponent",
                  "aerosol.angstrom_exponent has no effect: the mixture has a spectrum of its own");
     }
-    for (const char* key : {"g", "g_back", "back_weight", "alpha"}) {
+    for (const PhaseParameter& parameter : PhaseParameters()) {
+      const char* key = parameter.key;
       if (!mie_ || !mie_->Has(key) || mie_->Has("phase")) continue;
       mie_->Fail(key, fmt::format("mie.{} has no effect: the mixture has a phase function of its "
                                   "own; give mie.phase too",
@@ -560,12 +558,11 @@ std::string ListOf(const std::vector<double>& values) {
   return fmt::format("[{}]", fmt::join(values, ", "));
 }
 
-// Writes one value if all wavelengths share the phase function, else one value per wavelength.
-std::string ParameterLine(const char* key, double PhaseFunction::*parameter,
+std::string ParameterLine(const PhaseParameter& parameter,
                           const std::vector<PhaseFunction>& phases) {
   std::vector<double> values;
-  for (const PhaseFunction& phase : phases) values.push_back(phase.*parameter);
-  return fmt::format("{} = {}\n", key, ListOf(values));
+  for (const PhaseFunction& phase : phases) values.push_back(phase.*parameter.member);
+  return fmt::format("{} = {}\n", parameter.key, ListOf(values));
 }
 
 // Tables with different angles at different wavelengths cannot be written as text.
@@ -583,13 +580,8 @@ std::string PhaseLines(const std::vector<PhaseFunction>& phases) {
   const PhaseKind kind = phases.front().kind;
   if (kind == PhaseKind::kTable) return TableLines(phases);
   std::string lines = fmt::format("phase = \"{}\"\n", NameOf(kind));
-  if (kind != PhaseKind::kRayleigh) lines += ParameterLine("g", &PhaseFunction::g, phases);
-  if (kind == PhaseKind::kDoubleHenyeyGreenstein || kind == PhaseKind::kHenyeyGreensteinDraine) {
-    lines += ParameterLine("g_back", &PhaseFunction::g_back, phases);
-    lines += ParameterLine("back_weight", &PhaseFunction::back_weight, phases);
-  }
-  if (kind == PhaseKind::kDraine || kind == PhaseKind::kHenyeyGreensteinDraine)
-    lines += ParameterLine("alpha", &PhaseFunction::alpha, phases);
+  for (const PhaseParameter& parameter : FormOf(kind).parameters)
+    lines += ParameterLine(parameter, phases);
   return lines;
 }
 

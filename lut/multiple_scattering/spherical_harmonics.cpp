@@ -11,6 +11,7 @@
 #include "atmosphere/base/error.h"
 #include "atmosphere/math/constants.h"
 #include "atmosphere/math/numerics.h"
+#include "atmosphere/medium/phase_forms.h"
 #include "atmosphere/medium/phase_table.h"
 
 namespace alpenglow::lut {
@@ -68,38 +69,6 @@ float AzimuthCosine(float mu, float mu_s, float nu) {
 }
 
 namespace {
-
-// Returns the coefficients of a Henyey-Greenstein lobe: the powers of g.
-std::vector<double> CoefficientsOfLobe(double g, int degree) {
-  std::vector<double> chi{1.0};
-  while (chi.size() <= static_cast<std::size_t>(degree)) chi.push_back(g * chi.back());
-  return chi;
-}
-
-// Returns the coefficients of Draine's lobe, which is Henyey-Greenstein times 1 + alpha x^2 over
-// the mean of that factor. The recurrence x P_l = ((l + 1) P_{l+1} + l P_{l-1}) / (2 l + 1), used
-// twice, gives those of the lobe times x^2.
-std::vector<double> CoefficientsOfDraine(double g, double alpha, int degree) {
-  const std::vector<double> lobe = CoefficientsOfLobe(g, degree + 2);
-  const double mean = 1.0 + alpha * (1.0 + 2.0 * g * g) / 3.0;
-  std::vector<double> chi;
-  for (std::size_t i = 0; i <= static_cast<std::size_t>(degree); ++i) {
-    const auto l = static_cast<double>(i);
-    const double two = 2.0 * l;
-    double squared = (l + 1.0) * (l + 2.0) / ((two + 1.0) * (two + 3.0)) * lobe[i + 2] +
-                     (two * l + two - 1.0) / ((two - 1.0) * (two + 3.0)) * lobe[i];
-    if (i >= 2) squared += l * (l - 1.0) / ((two + 1.0) * (two - 1.0)) * lobe[i - 2];
-    chi.push_back((lobe[i] + alpha * squared) / mean);
-  }
-  return chi;
-}
-
-std::vector<double> Mixed(std::vector<double> first, const std::vector<double>& second,
-                          double share_of_second) {
-  for (std::size_t l = 0; l < first.size(); ++l)
-    first[l] = std::lerp(first[l], second[l], share_of_second);
-  return first;
-}
 
 // Returns the edges of panels, as ascending cosines. The phase function and the Legendre
 // polynomials up to `degree` are smooth on the scale of each panel: panels are at most 40 / degree
@@ -248,25 +217,9 @@ std::vector<double> LegendreSeries(int degree, double nu) {
 }
 
 std::vector<double> LegendreCoefficients(const PhaseFunction& phase, int degree) {
-  switch (phase.kind) {
-    case PhaseKind::kHenyeyGreenstein:
-      return CoefficientsOfLobe(phase.g, degree);
-    case PhaseKind::kDoubleHenyeyGreenstein:
-      return Mixed(CoefficientsOfLobe(phase.g, degree), CoefficientsOfLobe(phase.g_back, degree),
-                   phase.back_weight);
-    case PhaseKind::kCornetteShanks:
-      return CoefficientsOfDraine(phase.g, 1.0, degree);
-    case PhaseKind::kDraine:
-      return CoefficientsOfDraine(phase.g, phase.alpha, degree);
-    case PhaseKind::kHenyeyGreensteinDraine:
-      return Mixed(CoefficientsOfLobe(phase.g, degree),
-                   CoefficientsOfDraine(phase.g_back, phase.alpha, degree), phase.back_weight);
-    case PhaseKind::kRayleigh:
-    case PhaseKind::kSchlick:
-    case PhaseKind::kTable:
-      return IntegratedCoefficients(phase, degree);
-  }
-  throw InternalError("unknown kind of phase function");
+  const PhaseForm& form = FormOf(phase.kind);
+  return form.legendre != nullptr ? form.legendre(phase, degree)
+                                  : IntegratedCoefficients(phase, degree);
 }
 
 std::vector<double> MieLegendreCoefficients(const Medium& medium, int degree) {

@@ -34,9 +34,7 @@
 
 namespace alpenglow::renderer {
 
-/// Returns an expression of a cosine `c` and a vector `p` of parameters, ParametersOf(). A shader
-/// reads a phase function of kind table from a texture instead.
-[[nodiscard]] std::string PhaseExpression(PhaseKind kind);
+/// Returns the vector `p` of PhaseForm::expression.
 [[nodiscard]] glm::vec4 ParametersOf(const PhaseFunction& phase);
 
 /// Maximum number of lamps in the block. They fit into the smallest uniform block that every OpenGL

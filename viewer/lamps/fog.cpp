@@ -11,6 +11,7 @@
 #include "atmosphere/astronomy/sun.h"
 #include "atmosphere/base/error.h"
 #include "atmosphere/math/constants.h"
+#include "atmosphere/medium/phase_forms.h"
 #include "renderer/lamps/scene_lamps.h"
 #include "viewer/gl/gl_context.h"
 #include "viewer/gl/render_target.h"
@@ -38,7 +39,7 @@ FogBlock FogBlockOf(const FogMap& map, const FogView& now) {
 }  // namespace
 
 std::vector<ShaderPiece> FogTexts(PhaseKind kind) {
-  return {{"fog constants", fmt::format("#define FOG_PHASE(c, p) {}\n", PhaseExpression(kind))},
+  return {{"fog constants", fmt::format("#define FOG_PHASE(c, p) {}\n", FormOf(kind).expression)},
           ViewerPiece("viewer/shaders/view.lights.glsl"),
           ViewerPiece("viewer/shaders/fog.light.glsl")};
 }

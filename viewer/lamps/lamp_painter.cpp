@@ -7,6 +7,7 @@
 
 #include "atmosphere/base/error.h"
 #include "atmosphere/math/numerics.h"
+#include "atmosphere/medium/phase_forms.h"
 #include "atmosphere/medium/phase_table.h"
 #include "renderer/lamps/ground_under_lamps.h"
 #include "renderer/lamps/scene_lamps.h"
@@ -38,7 +39,7 @@ std::string DefinesOf(const SceneLamps& shape, const LampQuality& quality) {
       "#define LAMP_GLOW_FARTHEST {:.7f}\n#define LAMP_AIRLIGHT_TERMS {}\n",
       kMostGpuLamps, static_cast<int>(LampProfile::Kind::kCone),
       static_cast<int>(LampProfile::Kind::kTable), quality.nodes, quality.step > 1 ? 1 : 0,
-      PhaseExpression(layers[1].phase.kind), LampAirlightIrradiance::kNearest_m,
+      FormOf(layers[1].phase.kind).expression, LampAirlightIrradiance::kNearest_m,
       LampAirlightIrradiance::kFarthest_m, kGlowTerms);
   if (!shape.tables().empty()) text += "#define LAMP_TABLES\n";
   if (!shape.shades().empty()) {
@@ -59,7 +60,7 @@ std::string DefinesOf(const SceneLamps& shape, const LampQuality& quality) {
   if (layers[1].phase.kind == PhaseKind::kTable) text += "#define LAMP_MIE_TABLE\n";
   if (shape.HasFog()) {
     text += fmt::format("#define LAMP_FOG\n#define LAMP_PHASE_FOG(c, p) {}\n",
-                        PhaseExpression(layers[2].phase.kind));
+                        FormOf(layers[2].phase.kind).expression);
   }
   return text;
 }

@@ -9,10 +9,12 @@
 #include <functional>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "atmosphere/base/error.h"
 #include "atmosphere/math/constants.h"
+#include "atmosphere/medium/phase_forms.h"
 #include "atmosphere/medium/phase_table.h"
 #include "atmosphere/medium/phase_text.h"
 #include "tests/fixtures/comma_locale.h"
@@ -63,10 +65,14 @@ std::vector<PhaseFunction> ManyPhases() {
                                     MakeDouble(0.5, -0.5, 1.0)};
   for (const double g : {-0.999, -0.9, -0.3, -0.01, -1e-9, 0.0, 1e-9, 0.05, 0.0999, 0.1001, 0.3,
                          0.5, 0.76, 0.8, 0.93, 0.99, 0.999}) {
-    phases.push_back(Make(PhaseKind::kHenyeyGreenstein, g));
-    phases.push_back(Make(PhaseKind::kCornetteShanks, g));
-    phases.push_back(Make(PhaseKind::kDraine, g, 0.35));
-    if (std::abs(g) < kLargestSchlickG) phases.push_back(Make(PhaseKind::kSchlick, g));
+    for (const PhaseForm& form : PhaseForms()) {
+      const std::optional<PhaseParameter> of_lobe = ParameterOf(form, "g");
+      if (!of_lobe || !(std::abs(g) < of_lobe->high)) continue;
+      phases.push_back(Make(form.kind, g, 0.35));
+      if (!ParameterOf(form, "back_weight")) continue;
+      phases.back().g_back = -0.5 * g;
+      phases.back().back_weight = 0.3;
+    }
   }
   return phases;
 }
