@@ -47,8 +47,9 @@ struct TomlKey {
   std::string key;
   TomlType type;
   std::string unit;
-  std::string limits;  // what else limits the value, as a continuation of its range or names
-  std::string text;    // the meaning
+  std::string limits;        // what else limits the value, as a continuation of its range or names
+  std::string text;          // the meaning
+  std::string example = {};  // a value in the manual's example; "# 5" in a line that has no effect
 };
 
 /// A table of a TOML file, all of whose values are accepted by its keys.
@@ -92,7 +93,7 @@ template <typename Object>
 struct TomlField {
   std::string key;
   TomlMember<Object> member;
-  std::string unit, limits, text;  // as in TomlKey
+  std::string unit, limits, text, example = {};  // as in TomlKey
   /// True if records of an object (hashes, headers of pictures) contain the key and its value
   /// wherever the value is not the default; false if they contain it in their own words.
   bool is_recorded_by_name = false;
@@ -106,7 +107,8 @@ struct TomlFields {
   [[nodiscard]] std::vector<TomlKey> Keys() const {
     std::vector<TomlKey> keys;
     for (const TomlField<Object>& field : fields)
-      keys.push_back({field.key, field.member.type, field.unit, field.limits, field.text});
+      keys.push_back(
+          {field.key, field.member.type, field.unit, field.limits, field.text, field.example});
     return keys;
   }
   /// Sets the members of the keys that the section has.
@@ -194,6 +196,17 @@ TomlMember<Object> Truth() {
 template <typename Object>
 TomlMember<Object> Text() {
   return {{TomlType::Kind::kText}};
+}
+template <typename Object>
+TomlMember<Object> Text(std::optional<std::string> Object::*member) {
+  return {{TomlType::Kind::kText},
+          [=](const TomlValue& value, Object& object) {
+            object.*member = std::get<std::string>(value);
+          },
+          [=](const Object& object) -> std::optional<TomlValue> {
+            if (!(object.*member)) return std::nullopt;
+            return TomlValue(*(object.*member));
+          }};
 }
 
 /// The member is the value that `names` gives to a text.

@@ -4,7 +4,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <utility>
 
@@ -23,11 +22,15 @@ double ExactNumber(std::string_view text) {
   return *number;
 }
 
+constexpr EnumNames kPlaceKinds{{std::pair{PlaceKind::kAirport, "airport"},
+                                 {PlaceKind::kPeak, "peak"},
+                                 {PlaceKind::kCity, "city"},
+                                 {PlaceKind::kPole, "pole"}}};
+
 PlaceKind KindOf(std::string_view text) {
-  constexpr std::array<std::string_view, 4> kNames{"airport", "peak", "city", "pole"};
-  const auto at = std::find(kNames.begin(), kNames.end(), text) - kNames.begin();
-  ALPENGLOW_ENSURE(at, <, std::ptrdiff_t{4});
-  return static_cast<PlaceKind>(at);
+  const std::optional<PlaceKind> kind = kPlaceKinds.Find(text);
+  ALPENGLOW_ENSURE(kind.has_value(), ==, true);
+  return *kind;
 }
 
 NamedPlace PlaceOf(const std::vector<std::string_view>& fields) {

@@ -13,6 +13,7 @@
 #include "atmosphere/base/parsing.h"
 #include "atmosphere/math/constants.h"
 #include "atmosphere/medium/medium_presets.h"
+#include "renderer/scene/scene_fields.h"
 #include "renderer/scene/volume_file.h"
 
 namespace alpenglow::renderer {
@@ -20,16 +21,23 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double kHighestEye_m = 1e9;
-constexpr double kDeepestPlace_m = -12000.0;  // the limit of PlaceFromDegrees
-constexpr double kLongestExposure_s = 43200.0;
-
 double Radians(double degrees) { return degrees * kRadiansPerDegree; }
 
-double Required(const TomlTable& table, const std::string& key, double low, double high) {
-  const std::optional<double> value = table.Number(key, low, high);
-  if (!value) table.Fail(key, table.FullName(key) + " is missing");
-  return *value;
+/// Returns the section, all of whose values are accepted by its keys.
+template <typename Object>
+std::optional<TomlSection> SectionOf(const TomlTable& document, const TomlFields<Object>& fields) {
+  const std::optional<TomlTable> table = document.Table(fields.name);
+  if (!table) return std::nullopt;
+  return TomlSection(*table, fields.Keys());
+}
+
+void Require(const TomlTable& table, const std::string& key) {
+  if (!table.Has(key)) table.Fail(key, table.FullName(key) + " is missing");
+}
+
+double Required(const TomlSection& table, const std::string& key) {
+  Require(table, key);
+  return *table.Number(key);
 }
 
 /// Calls `read` and prefixes the message of its InputError with file and line of `key`.
@@ -42,9 +50,9 @@ auto At(const TomlTable& table, const std::string& key, const Read& read) {
   }
 }
 
-Height HeightOf(const TomlTable& table, const Height& fallback) {
-  const std::optional<double> height = table.Number("height_m", kDeepestPlace_m, kHighestEye_m);
-  const std::optional<double> above = table.Number("above_ground_m", 0.0, kHighestEye_m);
+Height HeightOf(const TomlSection& table, const Height& fallback) {
+  const std::optional<double> height = table.Number("height_m");
+  const std::optional<double> above = table.Number("above_ground_m");
   if (height && above) {
     table.Fail("above_ground_m",
                fmt::format("{} and {} are both given; give one", table.FullName("height_m"),
@@ -55,27 +63,20 @@ Height HeightOf(const TomlTable& table, const Height& fallback) {
   return fallback;
 }
 
-struct Place {
-  GeodeticPosition position;
-  std::optional<std::string> zone;
-};
-
-Place PlaceOf(const TomlTable& document) {
-  const std::optional<TomlTable> table = document.Table("place");
+void ReadPlace(const TomlTable& document, Scene& scene) {
+  const std::optional<TomlSection> table = SectionOf(document, PlaceFields());
   if (!table) document.Fail("place", "[place] with latitude and longitude is missing");
-  table->AllowOnly({"latitude", "longitude", "zone"});
-  const double latitude = Required(*table, "latitude", -90.0, 90.0);
-  const double longitude = Required(*table, "longitude", -180.0, 360.0);
-  const std::optional<std::string> zone = table->Text("zone");
-  if (zone) At(*table, "zone", [&] { return FormatInZone(UtcInstant{}, *zone); });
-  return {PlaceFromDegrees(latitude, longitude, 0.0), zone};
+  const double latitude = Required(*table, "latitude");
+  const double longitude = Required(*table, "longitude");
+  PlaceFields().Read(*table, scene);
+  if (scene.zone) At(*table, "zone", [&] { return FormatInZone(UtcInstant{}, *scene.zone); });
+  scene.place = PlaceFromDegrees(latitude, longitude, 0.0);
 }
 
 std::optional<UtcInstant> TimeOf(const TomlTable& document,
                                  const std::optional<std::string>& zone) {
-  const std::optional<TomlTable> table = document.Table("time");
+  const std::optional<TomlSection> table = SectionOf(document, TimeFields());
   if (!table) return std::nullopt;
-  table->AllowOnly({"utc", "local"});
   const std::optional<std::string> utc = table->Text("utc");
   const std::optional<std::string> local = table->Text("local");
   if (utc && local) table->Fail("local", "time.utc and time.local are both given; give one");
@@ -85,8 +86,8 @@ std::optional<UtcInstant> TimeOf(const TomlTable& document,
   return At(*table, "local", [&] { return ParseInstant(*local, zone); });
 }
 
-int BladesOf(const TomlTable& table) {
-  const double blades = table.Number("blades", 0.0, 64.0).value_or(0.0);
+int BladesOf(const TomlSection& table) {
+  const double blades = table.Number("blades").value_or(0.0);
   if (blades != std::floor(blades) || blades == 1.0 || blades == 2.0) {
     table.Fail("blades", fmt::format("{} is {}; it must be 0, a round iris, or 3 to 64",
                                      table.FullName("blades"), blades));
@@ -98,12 +99,12 @@ int BladesOf(const TomlTable& table) {
 /// leaves room for exaggerated effects.
 constexpr double kWidestLens = 0.1;
 
-std::optional<ThinLens> LensOf(const TomlTable& table) {
-  const double f_number = table.Number("f_number", 0.0, 1000.0).value_or(0.0);
-  const std::optional<double> focal_length_mm = table.Number("focal_length_mm", 0.1, 10000.0);
-  const std::optional<double> focus_m = table.Number("focus_m", 0.01, 1e9);
+std::optional<ThinLens> LensOf(const TomlSection& table) {
+  const double f_number = table.Number("f_number").value_or(0.0);
+  const std::optional<double> focal_length_mm = table.Number("focal_length_mm");
+  const std::optional<double> focus_m = table.Number("focus_m");
   const int blades = BladesOf(table);
-  const double rotation = table.Number("blade_rotation", -360.0, 360.0).value_or(0.0);
+  const double rotation = table.Number("blade_rotation").value_or(0.0);
   if (f_number == 0.0) return std::nullopt;
   if (f_number < kWidestLens) {
     table.Fail("f_number", fmt::format("{} is {}; it must be 0, a pinhole, or from {} to 1000",
@@ -126,19 +127,19 @@ std::optional<ThinLens> LensOf(const TomlTable& table) {
 /// Returns the field of view [degrees] of a sensor of `camera.sensor_width_mm`: it is f s / (s - f)
 /// behind the lens, where objects at the focus distance s are sharp, or f behind it without a focus
 /// distance. No value if no sensor is given.
-std::optional<double> FovOfSensor(const TomlTable& table, const std::optional<ThinLens>& lens) {
-  const std::optional<double> width_mm = table.Number("sensor_width_mm", 0.1, 1e5);
+std::optional<double> FovOfSensor(const TomlSection& table, const std::optional<ThinLens>& lens) {
+  const std::optional<double> width_mm = table.Number("sensor_width_mm");
   if (!width_mm) return std::nullopt;
-  const double f = Required(table, "focal_length_mm", 0.1, 10000.0);
+  const double f = Required(table, "focal_length_mm");
   const double v = lens ? f / (1.0 - 1e-3 * f / lens->focus_m) : f;
   return 2.0 * std::atan(0.5 * *width_mm / v) / kRadiansPerDegree;
 }
 
 /// Returns the field of view: the given one, that of sensor and focal length, or 60 degrees. If
 /// both are given, they may differ by as much as focusing and rounding change it.
-double FovOf(const TomlTable& table, const std::optional<ThinLens>& lens) {
+double FovOf(const TomlSection& table, const std::optional<ThinLens>& lens) {
   constexpr double kSame = 0.05;
-  const std::optional<double> given = table.Number("fov", 0.1, 360.0);
+  const std::optional<double> given = table.Number("fov");
   const std::optional<double> of_sensor = FovOfSensor(table, lens);
   if (given && of_sensor && !(std::abs(*given / *of_sensor - 1.0) <= kSame)) {
     table.Fail("fov",
@@ -150,30 +151,20 @@ double FovOf(const TomlTable& table, const std::optional<ThinLens>& lens) {
 }
 
 Camera CameraOf(const TomlTable& document) {
-  const std::optional<TomlTable> table = document.Table("camera");
+  const std::optional<TomlSection> table = SectionOf(document, CameraFields());
   if (!table) return {};
-  table->AllowOnly({"height_m", "above_ground_m", "heading", "pitch", "roll", "fov", "f_number",
-                    "focal_length_mm", "focus_m", "sensor_width_mm", "blades", "blade_rotation",
-                    "polariser_deg", "shutter_s"});
-  const double heading = table->Number("heading", -360.0, 360.0).value_or(0.0);
-  const double pitch = table->Number("pitch", -90.0, 90.0).value_or(0.0);
-  const double roll = table->Number("roll", -180.0, 180.0).value_or(0.0);
   const std::optional<ThinLens> lens = LensOf(*table);
   const double fov = FovOf(*table, lens);
   const Height height = HeightOf(*table, Height{});
-  Camera camera =
-      At(*table, "fov", [&] { return CameraFromDegrees(height, heading, pitch, roll, fov); });
+  Camera camera = At(*table, "fov", [&] { return CameraFromDegrees(height, 0.0, 0.0, 0.0, fov); });
   camera.lens = lens;
-  camera.shutter_s = table->Number("shutter_s", 0.0, kLongestExposure_s).value_or(0.0);
-  if (const auto polariser = table->Number("polariser_deg", -180.0, 180.0))
-    camera.polariser_rad = Radians(*polariser);
+  CameraFields().Read(*table, camera);
   return camera;
 }
 
 Medium MediumOf(const TomlTable& document, const fs::path& folder, const MediumUse& use) {
-  const std::optional<TomlTable> table = document.Table("atmosphere");
+  const std::optional<TomlSection> table = SectionOf(document, AtmosphereFields());
   if (!table) return MediumPreset("earth");
-  table->AllowOnly({"file", "preset"});
   const std::optional<std::string> file = table->Text("file");
   const std::optional<std::string> preset = table->Text("preset");
   if (file && preset) {
@@ -184,17 +175,8 @@ Medium MediumOf(const TomlTable& document, const fs::path& folder, const MediumU
   return MediumFromChoice(*file, use, folder);
 }
 
-UpAxis UpAxisOf(const TomlTable& terrain) {
-  const std::string up = terrain.Text("up").value_or("z");
-  if (up != "y" && up != "z")
-    terrain.Fail("up", fmt::format("terrain.up is \"{}\"; it must be \"y\" or \"z\"", up));
-  if (terrain.Has("up") && !terrain.Has("mesh"))
-    terrain.Fail("up", "terrain.up needs terrain.mesh");
-  return up == "y" ? UpAxis::kY : UpAxis::kZ;
-}
-
 /// Returns the file that a key names relative to the folder of the scene.
-std::optional<fs::path> FileNamedBy(const TomlTable& table, const std::string& key,
+std::optional<fs::path> FileNamedBy(const TomlSection& table, const std::string& key,
                                     const fs::path& folder) {
   const std::optional<std::string> name = table.Text(key);
   if (!name) return std::nullopt;
@@ -204,9 +186,8 @@ std::optional<fs::path> FileNamedBy(const TomlTable& table, const std::string& k
 }
 
 TerrainSource TerrainOf(const TomlTable& document, const fs::path& folder) {
-  const std::optional<TomlTable> table = document.Table("terrain");
+  const std::optional<TomlSection> table = SectionOf(document, TerrainFields());
   if (!table) return {};
-  table->AllowOnly({"dem", "mesh", "up", "none", "range", "voids", "colour", "land_cover"});
   const std::optional<fs::path> dem = FileNamedBy(*table, "dem", folder);
   const std::optional<fs::path> mesh = FileNamedBy(*table, "mesh", folder);
   const bool none = table->Truth("none").value_or(false);
@@ -217,12 +198,8 @@ TerrainSource TerrainOf(const TomlTable& document, const fs::path& folder) {
                        : "range",
                 "give one of terrain.dem, terrain.mesh, terrain.none and terrain.range");
   }
-  const std::string voids = table->Text("voids").value_or("fill");
-  if (voids != "fill" && voids != "open") {
-    table->Fail("voids",
-                fmt::format("terrain.voids is \"{}\"; it must be \"fill\" or \"open\"", voids));
-  }
   if (table->Has("voids") && !dem) table->Fail("voids", "terrain.voids needs terrain.dem");
+  if (table->Has("up") && !mesh) table->Fail("up", "terrain.up needs terrain.mesh");
   const std::optional<fs::path> colour = FileNamedBy(*table, "colour", folder);
   if (colour && none)
     table->Fail("colour", "terrain.colour lies over terrain; terrain.none is set");
@@ -235,8 +212,7 @@ TerrainSource TerrainOf(const TomlTable& document, const fs::path& folder) {
   source.is_default = !dem && !mesh && !none && !range;
   if (colour) source.colour = *colour;
   if (land_cover) source.land_cover = *land_cover;
-  source.up = UpAxisOf(*table);
-  source.voids = voids == "fill" ? VoidPolicy::kFill : VoidPolicy::kLeaveOpen;
+  TerrainFields().Read(*table, source);
   if (none) source.kind = TerrainSource::Kind::kNone;
   if (dem) {
     source.kind = TerrainSource::Kind::kElevationModel;
@@ -249,24 +225,6 @@ TerrainSource TerrainOf(const TomlTable& document, const fs::path& folder) {
   return source;
 }
 
-GroundCover::Kind CoverOf(const TomlTable& table) {
-  static const std::pair<const char*, GroundCover::Kind> kKinds[] = {
-      {"mountain", GroundCover::Kind::kMountain},
-      {"lambert", GroundCover::Kind::kLambert},
-      {"oren-nayar", GroundCover::Kind::kOrenNayar},
-      {"blinn-phong", GroundCover::Kind::kBlinnPhong},
-      {"water", GroundCover::Kind::kWater},
-      {"snow", GroundCover::Kind::kSnow}};
-  const std::string cover = table.Text("cover").value_or("mountain");
-  std::vector<std::string> names;
-  for (const auto& [name, kind] : kKinds) {
-    if (cover == name) return kind;
-    names.push_back(fmt::format("\"{}\"", name));
-  }
-  table.Fail("cover", fmt::format("ground.cover is \"{}\"; it must be one of {}", cover,
-                                  fmt::join(names, ", ")));
-}
-
 /// Rejects keys of [ground] that have no effect with the chosen cover.
 void RequireCover(const TomlTable& table, const char* key, bool has_effect, const char* covers) {
   if (table.Has(key) && !has_effect)
@@ -275,13 +233,13 @@ void RequireCover(const TomlTable& table, const char* key, bool has_effect, cons
 
 GroundCover GroundOf(const TomlTable& document) {
   using Kind = GroundCover::Kind;
-  const std::optional<TomlTable> table = document.Table("ground");
+  const std::optional<TomlSection> table = SectionOf(document, GroundFields());
   if (!table) return {};
-  table->AllowOnly({"cover", "albedo", "roughness", "reflectance", "wind_m_per_s",
-                    "grain_diameter_mm", "sea_level_m", "wetness"});
+  const std::size_t albedos = table->Numbers("albedo").value_or(std::vector{0.0}).size();
+  if (albedos != 1 && albedos != 3)
+    table->Fail("albedo", "ground.albedo must be one value, or red, green and blue (linear)");
   GroundCover ground;
-  ground.kind = CoverOf(*table);
-  ground.sea_level_m = table->Number("sea_level_m", kDeepestPlace_m, 9000.0);
+  GroundFields().Read(*table, ground);
   const bool has_water = ground.kind == Kind::kWater || ground.sea_level_m;
   const bool is_rough = ground.kind == Kind::kOrenNayar || ground.kind == Kind::kBlinnPhong;
   RequireCover(*table, "albedo", is_rough || ground.kind == Kind::kLambert,
@@ -294,36 +252,14 @@ GroundCover GroundOf(const TomlTable& document) {
                    ground.kind == Kind::kOrenNayar,
                "mountain, lambert and oren-nayar");
   RequireCover(*table, "grain_diameter_mm", ground.kind == Kind::kSnow, "snow");
-  if (const auto albedo = table->Numbers("albedo", 0.0, 1.0)) {
-    if (albedo->size() != 1 && albedo->size() != 3)
-      table->Fail("albedo", "ground.albedo must be one value, or red, green and blue (linear)");
-    for (std::size_t c = 0; c < 3; ++c) ground.albedo[c] = (*albedo)[albedo->size() == 1 ? 0 : c];
-  }
-  const double smoothest = ground.kind == Kind::kBlinnPhong ? 0.1 : 0.0;
-  ground.roughness = table->Number("roughness", smoothest, 1.0).value_or(ground.roughness);
-  ground.reflectance = table->Number("reflectance", 0.0, 1.0).value_or(ground.reflectance);
-  ground.wind_m_per_s = table->Number("wind_m_per_s", 0.0, 20.0).value_or(ground.wind_m_per_s);
-  ground.wetness = table->Number("wetness", 0.0, 1.0).value_or(ground.wetness);
-  if (const auto grain = table->Number("grain_diameter_mm", 0.05, 5.0))
-    ground.grain_diameter_m = 1e-3 * *grain;
+  constexpr double kSmoothestPhong = 0.1;
+  if (ground.kind == Kind::kBlinnPhong && ground.roughness < kSmoothestPhong)
+    (void)table->TomlTable::Number("roughness", kSmoothestPhong, 1.0);
   return ground;
 }
 
-Light::Type LightTypeOf(const TomlTable& table) {
-  const std::string type = table.Text("type").value_or("point");
-  if (type == "point") return Light::Type::kPoint;
-  if (type == "spot") return Light::Type::kSpot;
-  table.Fail("type", fmt::format("{} is \"{}\"; it must be \"point\" or \"spot\"",
-                                 table.FullName("type"), type));
-}
-
-void ReadAxis(const TomlTable& table, double pitch_default_deg, Light& light) {
-  light.heading_rad = Radians(table.Number("heading", -360.0, 360.0).value_or(0.0));
-  light.pitch_rad = Radians(table.Number("pitch", -90.0, 90.0).value_or(pitch_default_deg));
-}
-
-void ReadCone(const TomlTable& table, Light& light) {
-  const std::optional<std::vector<double>> cone = table.Numbers("cone", 0.0, 180.0);
+void ReadCone(const TomlSection& table, Light& light) {
+  const std::optional<std::vector<double>> cone = table.Numbers("cone");
   if (!cone || cone->size() != 2 || !((*cone)[0] < (*cone)[1])) {
     table.Fail("cone", fmt::format("{} must be two half angles, the smaller one first",
                                    table.FullName("cone")));
@@ -339,46 +275,34 @@ void RefuseKeys(const TomlTable& table, std::initializer_list<const char*> keys,
   }
 }
 
-void ReadDistribution(const TomlTable& table, const fs::path& folder, Light& light) {
-  const std::optional<fs::path> ies = FileNamedBy(table, "ies", folder);
+void ReadDistribution(const TomlSection& table, const fs::path& folder, Light& light) {
+  light.ies = FileNamedBy(table, "ies", folder);
   if (light.type == Light::Type::kSpot) {
     RefuseKeys(table, {"ies"}, "is for a point; this is a spot");
-    ReadAxis(table, 0.0, light);
     ReadCone(table, light);
     return;
   }
-  if (!ies) {
-    RefuseKeys(table, {"heading", "pitch", "cone"}, "is for a spot; this is a point");
-    return;
-  }
   RefuseKeys(table, {"cone"}, "is for a spot; this is a point");
-  light.ies = *ies;
-  ReadAxis(table, -90.0, light);
+  if (!light.ies) RefuseKeys(table, {"heading", "pitch"}, "is for a spot; this is a point");
+  if (light.ies && !table.Has("pitch")) light.pitch_rad = Radians(-90.0);
 }
 
-Light LightOf(const TomlTable& table, const fs::path& folder) {
-  table.AllowOnly({"type", "latitude", "longitude", "height_m", "above_ground_m", "intensity_cd",
-                   "temperature_k", "radius_m", "ies", "heading", "pitch", "cone"});
+Light LightOf(const TomlTable& entry, const fs::path& folder) {
+  const TomlSection table(entry, LightFields().Keys());
+  for (const char* key : {"latitude", "longitude"}) Require(table, key);
   Light light;
-  light.type = LightTypeOf(table);
-  light.latitude_rad = Radians(Required(table, "latitude", -90.0, 90.0));
-  light.longitude_rad = Radians(Required(table, "longitude", -180.0, 360.0));
+  LightFields().Read(table, light);
   light.height = HeightOf(table, Height{});
-  light.temperature_k = table.Number("temperature_k", 500.0, 50000.0).value_or(3000.0);
-  light.radius_m = table.Number("radius_m", 0.001, 100.0).value_or(0.1);
   ReadDistribution(table, folder, light);
-  light.intensity_cd = table.Number("intensity_cd", 0.0, 1e12);
-  if (!light.intensity_cd && !light.ies) (void)Required(table, "intensity_cd", 0.0, 1e12);
+  if (!light.ies) Require(table, "intensity_cd");
   return light;
 }
 
 std::optional<double> TownZenithOf(const TomlTable& document) {
-  const std::optional<TomlTable> table = document.Table("night");
+  const std::optional<TomlSection> table = SectionOf(document, NightFields());
   if (!table) return std::nullopt;
-  table->AllowOnly({"bortle", "zenith_mag_per_arcsec2"});
-  const std::optional<double> bortle = table->Number("bortle", 1.0, 9.0);
-  const std::optional<double> zenith =
-      table->Number("zenith_mag_per_arcsec2", 14.0, kNaturalZenith);
+  const std::optional<double> bortle = table->Number("bortle");
+  const std::optional<double> zenith = table->Number("zenith_mag_per_arcsec2");
   if (bortle.has_value() == zenith.has_value())
     table->Fail("bortle", "give one of night.bortle and night.zenith_mag_per_arcsec2");
   if (!bortle) return zenith;
@@ -388,10 +312,9 @@ std::optional<double> TownZenithOf(const TomlTable& document) {
 }
 
 // Returns the phase function; by default that of droplets.
-PhaseFunction DropletPhaseOf(const TomlTable& table) {
-  const std::optional<double> g = table.Number("g", -0.99, 0.99);
-  const std::optional<double> droplet =
-      table.Number("droplet_diameter_um", kSmallestDroplet_um, kLargestDroplet_um);
+PhaseFunction DropletPhaseOf(const TomlSection& table) {
+  const std::optional<double> g = table.Number("g");
+  const std::optional<double> droplet = table.Number("droplet_diameter_um");
   if (g && droplet) {
     table.Fail("g", fmt::format("{} and {} are both given; give one", table.FullName("g"),
                                 table.FullName("droplet_diameter_um")));
@@ -404,58 +327,38 @@ PhaseFunction DropletPhaseOf(const TomlTable& table) {
 }
 
 std::optional<Fog> FogOf(const TomlTable& document) {
-  const std::optional<TomlTable> table = document.Table("fog");
+  const std::optional<TomlSection> table = SectionOf(document, FogFields());
   if (!table) return std::nullopt;
-  table->AllowOnly({"visibility_m", "extinction_per_m", "scale_height_m", "base_height_m", "albedo",
-                    "droplet_diameter_um", "g"});
-  const std::optional<double> visibility = table->Number("visibility_m", 1.0, 1e6);
-  const std::optional<double> extinction = table->Number("extinction_per_m", 0.0, 10.0);
+  const std::optional<double> visibility = table->Number("visibility_m");
+  const std::optional<double> extinction = table->Number("extinction_per_m");
   if (visibility.has_value() == extinction.has_value()) {
     table->Fail("visibility_m", "give one of fog.visibility_m and fog.extinction_per_m");
   }
   Fog fog;
   fog.extinction_per_m = extinction ? *extinction : kOpticalDepthOfVisibility / *visibility;
-  fog.scale_height_m =
-      table->Number("scale_height_m", 1.0, 1e5).value_or(std::numeric_limits<double>::infinity());
-  fog.base_height_m = table->Number("base_height_m", kDeepestPlace_m, 1e5);
-  fog.albedo = table->Number("albedo", 0.0, 1.0).value_or(1.0);
+  fog.scale_height_m = std::numeric_limits<double>::infinity();
+  FogFields().Read(*table, fog);
   fog.phase = DropletPhaseOf(*table);
   return fog;
 }
 
-// Returns one value for every wavelength, from one value or a full list.
-std::vector<double> PerBand(const TomlTable& table, const std::string& key, double high,
-                            std::size_t bands, double fallback) {
-  const std::optional<std::vector<double>> values = table.Numbers(key, 0.0, high);
-  if (!values) return {fallback};
-  if (values->size() != 1 && values->size() != bands) {
-    table.Fail(key, fmt::format("{} has {} values; give one, or {}: one per wavelength",
-                                table.FullName(key), values->size(), bands));
-  }
-  return *values;
+/// Refuses a list that has neither one value nor one per wavelength.
+void RequirePerBand(const TomlSection& table, const std::string& key, std::size_t bands) {
+  const std::optional<std::vector<double>> values = table.Numbers(key);
+  if (!values || values->size() == 1 || values->size() == bands) return;
+  table.Fail(key, fmt::format("{} has {} values; give one, or {}: one per wavelength",
+                              table.FullName(key), values->size(), bands));
 }
 
-std::array<double, 3> ThreeOf(const TomlTable& table, const std::string& key, double low,
-                              double high) {
-  const std::optional<std::vector<double>> values = table.Numbers(key, low, high);
-  if (!values) table.Fail(key, table.FullName(key) + " is missing");
-  if (values->size() != 3) {
-    table.Fail(key, fmt::format("{} has {} values; it must have three", table.FullName(key),
-                                values->size()));
-  }
-  return {(*values)[0], (*values)[1], (*values)[2]};
+std::vector<double> RequireThree(const TomlSection& table, const std::string& key) {
+  Require(table, key);
+  std::vector<double> values = *table.Numbers(key);
+  if (values.size() == 3) return values;
+  table.Fail(
+      key, fmt::format("{} has {} values; it must have three", table.FullName(key), values.size()));
 }
 
-VolumePlacement::Shape ShapeOf(const TomlTable& table) {
-  const std::string shape = table.Text("shape").value_or("box");
-  if (shape == "box") return VolumePlacement::Shape::kBox;
-  if (shape == "ellipsoid") return VolumePlacement::Shape::kEllipsoid;
-  table.Fail("shape", fmt::format("{} is \"{}\"; it must be \"box\" or \"ellipsoid\"",
-                                  table.FullName("shape"), shape));
-}
-
-void ReadDensity(const TomlTable& table, const fs::path& folder, Volume& volume) {
-  volume.scale_height_m = table.Number("scale_height_m", 0.1, 1e5);
+void ReadDensity(const TomlSection& table, const fs::path& folder, Volume& volume) {
   const std::optional<fs::path> grid = FileNamedBy(table, "grid", folder);
   if (!grid) {
     RefuseKeys(table, {"grid_size"}, "needs a grid");
@@ -469,7 +372,7 @@ void ReadDensity(const TomlTable& table, const fs::path& folder, Volume& volume)
   }
   if (!table.Has("grid_size"))
     At(table, "grid", [&] { RefuseKnownFormats(volume.grid, kVolumesWanted); });
-  const std::array<double, 3> sides = ThreeOf(table, "grid_size", 2.0, kMostGridSamples);
+  const std::vector<double> sides = RequireThree(table, "grid_size");
   volume.grid_size.emplace();
   for (std::size_t i = 0; i < 3; ++i) {
     if (sides[i] != std::floor(sides[i])) {
@@ -480,30 +383,28 @@ void ReadDensity(const TomlTable& table, const fs::path& folder, Volume& volume)
   }
 }
 
-Volume VolumeOf(const TomlTable& table, const fs::path& folder, std::size_t bands) {
-  table.AllowOnly({"shape", "latitude", "longitude", "height_m", "above_ground_m", "size_m",
-                   "heading", "scale_height_m", "grid", "grid_size", "extinction_per_m",
-                   "visibility_m", "albedo", "emission_per_m", "temperature_k",
-                   "droplet_diameter_um", "g"});
-  Volume volume;
-  volume.shape = ShapeOf(table);
-  volume.latitude_rad = Radians(Required(table, "latitude", -90.0, 90.0));
-  volume.longitude_rad = Radians(Required(table, "longitude", -180.0, 360.0));
-  volume.height = HeightOf(table, Height{0.0, true});
-  volume.size_m = ThreeOf(table, "size_m", 0.01, 2e5);
-  volume.heading_rad = Radians(table.Number("heading", -360.0, 360.0).value_or(0.0));
-  ReadDensity(table, folder, volume);
-  const std::optional<double> visibility = table.Number("visibility_m", 0.1, 1e6);
+/// Returns the extinction: the given one, or that of a visibility.
+std::vector<double> ExtinctionOf(const TomlSection& table) {
+  const std::optional<double> visibility = table.Number("visibility_m");
   if (visibility.has_value() == table.Has("extinction_per_m")) {
     table.Fail("visibility_m", fmt::format("give one of {} and {}", table.FullName("visibility_m"),
                                            table.FullName("extinction_per_m")));
   }
-  volume.extinction_per_m = visibility
-                                ? std::vector<double>{kOpticalDepthOfVisibility / *visibility}
-                                : PerBand(table, "extinction_per_m", 1e4, bands, 0.0);
-  volume.albedo = PerBand(table, "albedo", 1.0, bands, 1.0);
-  volume.emission_per_m = PerBand(table, "emission_per_m", 1e12, bands, 0.0);
-  volume.temperature_k = table.Number("temperature_k", 100.0, 50000.0);
+  if (visibility) return {kOpticalDepthOfVisibility / *visibility};
+  return *table.Numbers("extinction_per_m");
+}
+
+Volume VolumeOf(const TomlTable& entry, const fs::path& folder, std::size_t bands) {
+  const TomlSection table(entry, VolumeFields().Keys());
+  for (const char* key : {"latitude", "longitude"}) Require(table, key);
+  (void)RequireThree(table, "size_m");
+  for (const char* key : {"extinction_per_m", "albedo", "emission_per_m"})
+    RequirePerBand(table, key, bands);
+  Volume volume;
+  VolumeFields().Read(table, volume);
+  volume.height = HeightOf(table, Height{0.0, true});
+  ReadDensity(table, folder, volume);
+  volume.extinction_per_m = ExtinctionOf(table);
   if (volume.temperature_k && table.Has("emission_per_m")) {
     table.Fail("temperature_k",
                fmt::format("give one of {} and {}", table.FullName("emission_per_m"),
@@ -542,13 +443,12 @@ Camera CameraFromDegrees(const Height& height, double heading, double pitch, dou
 Scene SceneFromToml(std::string_view text, const std::string& origin, const fs::path& folder,
                     const MediumUse& use) {
   const TomlTable document(text, origin);
-  document.AllowOnly({"place", "time", "camera", "atmosphere", "terrain", "ground", "light", "fog",
-                      "volume", "night"});
-  const Place place = PlaceOf(document);
+  std::vector<std::string> sections;
+  for (const SceneSection& section : SectionsOfScene()) sections.push_back(section.name);
+  document.AllowOnly(sections);
   Scene scene;
-  scene.place = place.position;
-  scene.zone = place.zone;
-  scene.time = TimeOf(document, place.zone);
+  ReadPlace(document, scene);
+  scene.time = TimeOf(document, scene.zone);
   scene.camera = CameraOf(document);
   scene.medium = MediumOf(document, folder, use);
   scene.terrain = TerrainOf(document, folder);

@@ -16,6 +16,7 @@
 #include "lut/cli/messages.h"
 #include "lut/cli/program.h"
 #include "lut/cli/terminal.h"
+#include "renderer/scene/scene_fields.h"
 #include "renderer/scene/scene_options.h"
 #include "renderer/terrain/land_source.h"
 
@@ -55,6 +56,50 @@ std::string DegreesText(double radians) { return fmt::format("{}", radians / kRa
 std::string HeightText(const Height& height) {
   return fmt::format("{} m above the {}", height.value_m,
                      height.above_ground ? "ground" : "ellipsoid");
+}
+
+/// Returns a value in the units of scene.toml.
+std::string ValueText(const TomlValue& value) {
+  if (const auto* const list = std::get_if<std::vector<double>>(&value))
+    return fmt::format("{}", fmt::join(*list, " "));
+  return std::visit(
+      [](const auto& one) -> std::string {
+        using Type = std::decay_t<decltype(one)>;
+        if constexpr (std::is_same_v<Type, std::vector<double>>) return "";
+        if constexpr (!std::is_same_v<Type, std::vector<double>>) return fmt::format("{}", one);
+      },
+      value);
+}
+
+/// Returns the values of all members in a table of fields.
+template <typename Object>
+Metadata ValuesOf(const TomlFields<Object>& fields, const Object& object) {
+  Metadata values;
+  for (const TomlField<Object>& field : fields.fields) {
+    if (!field.member.get) continue;
+    if (const auto value = field.member.get(object)) values[field.key] = ValueText(*value);
+  }
+  return values;
+}
+
+/// Returns the values that are recorded by name, except defaults.
+template <typename Object>
+Metadata NamedValuesOf(const TomlFields<Object>& fields, const Object& object) {
+  Metadata values;
+  for (const TomlField<Object>& field : fields.fields) {
+    if (!field.is_recorded_by_name) continue;
+    const auto value = field.member.get(object);
+    if (value && value != field.member.get(Object{})) values[field.key] = ValueText(*value);
+  }
+  return values;
+}
+
+template <typename Object>
+std::string NamedText(const TomlFields<Object>& fields, const Object& object) {
+  std::string text;
+  for (const auto& [key, value] : NamedValuesOf(fields, object))
+    text += fmt::format(", {} {}", key, value);
+  return text;
 }
 
 /// Returns the number of the elevation models, and a hash of their names and contents in their
@@ -129,33 +174,19 @@ std::string FogText(const Fog& fog) {
 
 /// Returns every value of [ground].
 Metadata KeysOf(const GroundCover& ground) {
-  Metadata values = {{"cover", fmt::format("{}", static_cast<int>(ground.kind))},
-                     {"albedo", fmt::format("{}", fmt::join(ground.albedo, " "))},
-                     {"roughness", fmt::format("{}", ground.roughness)},
-                     {"reflectance", fmt::format("{}", ground.reflectance)},
-                     {"wind_m_per_s", fmt::format("{}", ground.wind_m_per_s)},
-                     {"grain_diameter_m", fmt::format("{}", ground.grain_diameter_m)},
-                     {"wetness", fmt::format("{}", ground.wetness)}};
-  if (ground.sea_level_m) values["sea_level_m"] = fmt::format("{}", *ground.sea_level_m);
+  Metadata values = ValuesOf(GroundFields(), ground);
+  values["cover"] = fmt::format("{}", static_cast<int>(ground.kind));
+  values.erase("grain_diameter_mm");
+  values["grain_diameter_m"] = fmt::format("{}", ground.grain_diameter_m);
   return values;
 }
 
 /// Returns every value of a [[volume]].
 /// @param grid  names and hashes of its grid's files.
 Metadata KeysOf(const Volume& volume, const std::string& grid) {
-  Metadata values = {
-      {"shape", volume.shape == VolumePlacement::Shape::kBox ? "box" : "ellipsoid"},
-      {"latitude", DegreesText(volume.latitude_rad)},
-      {"longitude", DegreesText(volume.longitude_rad)},
-      {"height", HeightText(volume.height)},
-      {"size_m", fmt::format("{}", fmt::join(volume.size_m, " "))},
-      {"heading", DegreesText(volume.heading_rad)},
-      {"extinction_per_m", fmt::format("{}", fmt::join(volume.extinction_per_m, " "))},
-      {"albedo", fmt::format("{}", fmt::join(volume.albedo, " "))},
-      {"emission_per_m", fmt::format("{}", fmt::join(volume.emission_per_m, " "))},
-      {"phase", PhaseText(volume.phase)}};
-  if (volume.scale_height_m) values["scale_height_m"] = fmt::format("{}", *volume.scale_height_m);
-  if (volume.temperature_k) values["temperature_k"] = fmt::format("{}", *volume.temperature_k);
+  Metadata values = ValuesOf(VolumeFields(), volume);
+  values["height"] = HeightText(volume.height);
+  values["phase"] = PhaseText(volume.phase);
   if (volume.grid_size) values["grid_size"] = fmt::format("{}", fmt::join(*volume.grid_size, " "));
   values["grid"] = grid;
   return values;
@@ -170,7 +201,8 @@ void AddAirOf(const Scene& scene, const FileHashes& hashes, Metadata& metadata) 
       medium.refraction == RefractionBy::kAlmanacs ? "almanacs" : "molecules";
   if (scene.town_zenith)
     metadata["alpenglow.town_zenith_mag_per_arcsec2"] = fmt::format("{}", *scene.town_zenith);
-  if (scene.fog) metadata["alpenglow.fog"] = FogText(*scene.fog);
+  if (scene.fog)
+    metadata["alpenglow.fog"] = FogText(*scene.fog) + NamedText(FogFields(), *scene.fog);
   for (std::size_t i = 0; i < scene.volumes.size(); ++i) {
     metadata[fmt::format("alpenglow.volume_{}_hash", i)] =
         Fingerprint(KeysOf(scene.volumes[i], hashes.grids.at(i)));
@@ -180,7 +212,7 @@ void AddAirOf(const Scene& scene, const FileHashes& hashes, Metadata& metadata) 
 /// Adds terrain and ground cover.
 void AddGroundOf(const Scene& scene, const FileHashes& hashes, Metadata& metadata) {
   const TerrainSource& terrain = scene.terrain;
-  metadata["alpenglow.terrain"] = TerrainText(scene, hashes);
+  metadata["alpenglow.terrain"] = TerrainText(scene, hashes) + NamedText(TerrainFields(), terrain);
   if (!terrain.colour.empty())
     metadata["alpenglow.terrain_colour"] = hashes.names_and_hashes.at(terrain.colour);
   if (!terrain.land_cover.empty())
@@ -233,11 +265,11 @@ Metadata SceneMetadata(const Scene& scene, const FileHashes& hashes) {
         fmt::format("f/{}, {} m, focus {} m, {} blades from {}", lens.f_number, lens.focal_length_m,
                     lens.focus_m, lens.blades, DegreesText(lens.blade_rotation_rad));
   }
-  if (camera.polariser_rad)
-    metadata["alpenglow.polariser_deg"] = DegreesText(*camera.polariser_rad);
-  if (camera.shutter_s > 0.0) metadata["alpenglow.shutter_s"] = fmt::format("{}", camera.shutter_s);
+  for (const auto& [key, value] : NamedValuesOf(CameraFields(), camera))
+    metadata["alpenglow." + key] = value;
   for (std::size_t i = 0; i < scene.lights.size(); ++i) {
-    metadata[fmt::format("alpenglow.light_{}", i)] = LightText(scene.lights[i], hashes);
+    metadata[fmt::format("alpenglow.light_{}", i)] =
+        LightText(scene.lights[i], hashes) + NamedText(LightFields(), scene.lights[i]);
   }
   return metadata;
 }

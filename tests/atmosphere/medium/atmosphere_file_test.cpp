@@ -15,6 +15,7 @@
 #include "atmosphere/medium/aerosol_mixture.h"
 #include "atmosphere/medium/medium.h"
 #include "atmosphere/medium/medium_fields.h"
+#include "atmosphere/medium/phase_forms.h"
 #include "tests/fixtures/fault_of.h"
 #include "tests/fixtures/places.h"
 #include "tests/fixtures/toml_keys.h"
@@ -368,17 +369,18 @@ TEST(AtmosphereFile, TheManualHasTheTablesOfKeys) {
   }
 }
 
-/// Returns a medium in which the value of a key is another one than before.
-Medium WithAnotherValue(const TomlField<Medium>& field, Medium medium) {
-  TomlValue value = *field.member.get(medium);
-  if (auto* const truth = std::get_if<bool>(&value)) *truth = !*truth;
-  if (auto* const number = std::get_if<double>(&value)) *number = 0.5 * *number + 0.2;
-  if (auto* const list = std::get_if<std::vector<double>>(&value)) list->front() += 0.01;
-  if (auto* const name = std::get_if<std::string>(&value))
-    *name = *name == field.member.type.names[0] ? field.member.type.names[1]
-                                                : field.member.type.names[0];
-  field.member.set(value, medium);
-  return medium;
+TEST(AtmosphereFile, TheManualHasTheParametersOfEveryPhaseFunction) {
+  const std::string manual = ReadTextFile(std::filesystem::path(tests::kSourceFolder) /
+                                          "atmosphere" / "ATMOSPHERE_FILE.md");
+  for (const PhaseForm& form : PhaseForms()) {
+    if (form.kind == PhaseKind::kTable) continue;
+    std::vector<std::string> keys;
+    for (const PhaseParameter& parameter : form.parameters)
+      keys.push_back(fmt::format("`{}`", parameter.key));
+    EXPECT_THAT(manual, HasSubstr(fmt::format(
+                            "\n| `{}` | {} |\n", form.name,
+                            keys.empty() ? "none" : fmt::format("{}", fmt::join(keys, ", ")))));
+  }
 }
 
 TEST(AtmosphereFile, EveryKeyButRefractionChangesTheHashOfAMedium) {
@@ -387,7 +389,7 @@ TEST(AtmosphereFile, EveryKeyButRefractionChangesTheHashOfAMedium) {
   for (const TomlFields<Medium>& section : SectionsOfMedium()) {
     for (const TomlField<Medium>& field : section.fields) {
       if (!field.member.set) continue;
-      EXPECT_EQ(MediumHash(WithAnotherValue(field, earth)) == MediumHash(earth),
+      EXPECT_EQ(MediumHash(tests::WithAnotherValue(field, earth)) == MediumHash(earth),
                 field.key == "refraction")
           << section.name << "." << field.key;
     }

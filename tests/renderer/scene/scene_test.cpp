@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
 #include "renderer/scene/scene.h"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -18,10 +19,12 @@
 #include "lut/image/look.h"
 #include "renderer/procedural_mountains/procedural_mountains.h"
 #include "renderer/scene/places.h"
+#include "renderer/scene/scene_fields.h"
 #include "renderer/scene/scene_options.h"
 #include "tests/fixtures/fault_of.h"
 #include "tests/fixtures/places.h"
 #include "tests/fixtures/temporary_folder.h"
+#include "tests/fixtures/toml_keys.h"
 
 namespace alpenglow::renderer {
 namespace {
@@ -280,6 +283,45 @@ TEST(Scene, PolesAndTheDateLineArePlaces) {
   }
 }
 
+/// Returns the example of the manual, which has every key.
+std::string ExampleOfFields() {
+  std::string example;
+  for (const SceneSection& section : SectionsOfScene()) {
+    std::string lines;
+    bool has_effect = false;
+    for (const TomlKey& key : section.keys) {
+      lines += tests::ExampleLine(key);
+      has_effect = has_effect || !key.example.starts_with("# ");
+    }
+    const std::string name =
+        fmt::format(fmt::runtime(section.is_list ? "[[{}]]" : "[{}]"), section.name);
+    example += (example.empty() ? "" : "\n") +
+               tests::CommentedLine((has_effect ? "" : "# ") + name, section.text) + lines;
+  }
+  return example;
+}
+
+TEST(Scene, TheManualHasTheExampleOfTheFields) { EXPECT_EQ(Manual(), ExampleOfFields()); }
+
+TEST(Scene, EveryKeyRefusesValuesThatItDoesNotAccept) {
+  for (const SceneSection& section : SectionsOfScene()) {
+    const std::string head = section.name == "place" ? "" : kPlace;
+    const std::string table =
+        fmt::format(fmt::runtime(section.is_list ? "[[{}]]\n" : "[{}]\n"), section.name);
+    const std::string path = section.name + (section.is_list ? "[0]." : ".");
+    const int line = head.empty() ? 2 : 5;
+    for (const TomlKey& key : section.keys) {
+      for (const auto& [value, fault] : tests::RefusedValues(key, path + key.key)) {
+        EXPECT_EQ(FaultOf(fmt::format("{}{}{} = {}\n", head, table, key.key, value)),
+                  fmt::format("s.toml:{}: {}", line, fault));
+      }
+      EXPECT_EQ(FaultOf(fmt::format("{}{}{}q = 1\n", head, table, key.key)),
+                fmt::format("s.toml:{}: unknown key {}{}q; did you mean {}?", line, path, key.key,
+                            key.key));
+    }
+  }
+}
+
 /// Expects that each text is refused with one line that contains the message.
 void ExpectFaults(const std::vector<std::pair<std::string, std::string>>& faults) {
   for (const auto& [text, message] : faults) {
@@ -305,15 +347,11 @@ TEST(Scene, FogLampsVolumesAndGroundAreRefusedByKey) {
       {kFog + "visibility_m = 300\ng = 0.5\ndroplet_diameter_um = 9\n", "give one"},
       {kLamp, "light[0].intensity_cd is missing"},
       {kLamp + "intensity_cd = -1\n", "s.toml:7: light[0].intensity_cd is -1"},
-      {kLamp + "intensity_cd = inf\n", "intensity_cd is inf"},
-      {kLamp + "intensity_cd = -inf\n", "intensity_cd"},
-      {kLamp + "intensity_cd = nan\n", "intensity_cd is nan"},
       {kLamp + "ies = \"a\"\ncone = [1, 2]\n", "cone is for"},
       {kLamp + "intensity_cd = 1\ncone = [1, 2]\n", "is for a spot"},
       {kLamp + "type = \"spot\"\nies = \"a\"\n", "ies is for"},
       {kLamp + "type = \"spot\"\nintensity_cd = 1\n", "light[0].cone must be two half angles"},
       {kLamp + "type = \"spot\"\nintensity_cd = 1\ncone = [25, 10]\n", "s.toml:9: light[0].cone"},
-      {kPlace + "[[light]]\ntype = \"tube\"\n", "\"point\" or \"spot\""},
       {kVolume + "visibility_m = 50\n", "volume[0].size_m is missing"},
       {kVolume + "size_m = [9, 9]\nvisibility_m = 50\n", "volume[0].size_m has 2 values"},
       {kVolume + "size_m = [9, 0, 9]\nvisibility_m = 50\n", "s.toml:7: volume[0].size_m[1] is 0"},
@@ -322,13 +360,10 @@ TEST(Scene, FogLampsVolumesAndGroundAreRefusedByKey) {
       {kSmoke + "extinction_per_m = 0.1\n", "give one of volume[0].visibility_m and"},
       {kSmoke + "albedo = 1.5\n", "volume[0].albedo is 1.5"},
       {kSmoke + "albedo = [0.5, 0.5]\n", "volume[0].albedo has 2 values; give one, or 4"},
-      {kSmoke + "emission_per_m = -1\n", "volume[0].emission_per_m is -1"},
-      {kSmoke + "temperature_k = 5\n", "volume[0].temperature_k is 5"},
       {kSmoke + "temperature_k = 900\n", "volume[0].temperature_k has no effect"},
       {kSmoke + "albedo = 0.5\ntemperature_k = 900\nemission_per_m = 1\n",
        "give one of volume[0].emission_per_m and volume[0].temperature_k"},
       {kSmoke + "grid = \"\"\n", "volume[0].grid is empty"},
-      {kSmoke + "shape = \"sphere\"\n", "it must be \"box\" or \"ellipsoid\""},
       {kSmoke + "grid_size = [4, 4, 4]\n", "volume[0].grid_size needs a grid"},
       {kSmoke + "grid = \"a.raw\"\n", "volume[0].grid_size is missing"},
       {kSmoke + "grid = \"a.raw\"\ngrid_size = [4, 4, 4.5]\n", "whole numbers"},
@@ -338,7 +373,6 @@ TEST(Scene, FogLampsVolumesAndGroundAreRefusedByKey) {
       {kSmoke + "grid = \"a.nrrd\"\nscale_height_m = 4\n", "is for a volume without a grid"},
       {kSmoke + "g = 0.5\ndroplet_diameter_um = 9\n", "both given"},
       {kSmoke + "extinctoin = 1\n", "volume[0].extinctoin"},
-      {kGround + "cover = \"lava\"\n", "ground.cover is \"lava\""},
       {kGround + "colour = 1\n", "ground.colour"},
       {kGround + "albedo = 0.5\n", "ground.albedo is for lambert"},
       {kGround + "wind_m_per_s = 5\n", "ground.wind_m_per_s is for water"},
@@ -346,8 +380,6 @@ TEST(Scene, FogLampsVolumesAndGroundAreRefusedByKey) {
       {kGround + "cover = \"lambert\"\nalbedo = [0.1, 0.2]\n", "ground.albedo"},
       {kGround + "cover = \"lambert\"\nroughness = 0.5\n", "ground.roughness is for"},
       {kGround + "cover = \"blinn-phong\"\nroughness = 0.05\n", "[0.1, 1]"},
-      {kGround + "cover = \"snow\"\ngrain_diameter_mm = 50\n", "[0.05, 5]"},
-      {kGround + "wetness = 1.1\n", "[0, 1]"},
       {kGround + "cover = \"snow\"\nwetness = 1\n", "ground.wetness is for"},
       {kMap + "colour = \"a.tif\"\n", "give one of terrain.colour"},
       {kMap + "none = true\n", "terrain.land_cover lies over"},
@@ -409,25 +441,17 @@ TEST(Scene, BadInputIsReportedWithLineKeyValueAndRange) {
       {"[place]\nlatitud = 3\n", "unknown key place.latitud; did you mean latitude?"},
       {kPlace + "zone = \"Asia/Tokio\"\n", "s.toml:4: place.zone"},
       {kPlace + "[camer]\n", "unknown key camer; did you mean camera?"},
-      {kPlace + "[camera]\nfov = 0\n", "s.toml:5: camera.fov is 0"},
       {kPlace + "[camera]\nfov = 200\n", "[0.1, 179] or be 360"},
-      {kPlace + "[camera]\nfov = inf\n", "camera.fov is inf"},
       {kPlace + "[camera]\nheight_m = 1e999\n", "s.toml:5"},
-      {kPlace + "[camera]\nheight_m = -20000\n", "camera.height_m is -20000"},
       {kPlace + "[camera]\nheight_m = 1\nabove_ground_m = 1\n", "both given"},
-      {kPlace + "[camera]\nabove_ground_m = -1\n", "camera.above_ground_m is -1"},
       {kPlace + "[camera]\nf_number = 2\n", "camera.focal_length_mm is missing"},
       {kPlace + "[camera]\nf_number = 2\nfocal_length_mm = 50\nfocus_m = 0.05\n", "beyond the"},
-      {kPlace + "[camera]\nf_number = -1\n", "camera.f_number is -1"},
       {kPlace + "[camera]\nf_number = 1e-300\nfocal_length_mm = 50\nfocus_m = 5\n",
        "camera.f_number is 1e-300; it must be 0, a pinhole, or from 0.1 to 1000"},
       {kPlace + "[camera]\nblades = 2\n", "camera.blades is 2"},
-      {kPlace + "[camera]\npolariser_deg = 200\n", "camera.polariser_deg is 200"},
-      {kPlace + "[camera]\nshutter_s = -1\n", "camera.shutter_s is -1"},
       {kPlace + "[night]\n", "give one of night.bortle"},
       {kPlace + "[night]\nbortle = 4.5\n", "night.bortle is 4.5; it must be a class"},
       {kPlace + "[night]\nbortle = 4\nzenith_mag_per_arcsec2 = 20\n", "give one of night.bortle"},
-      {kPlace + "[night]\nzenith_mag_per_arcsec2 = 22\n", "night.zenith_mag_per_arcsec2 is 22"},
       {kPlace + "[camera]\nblades = 5.5\n", "camera.blades is 5.5"},
       {kPlace + "[camera]\nsensor_width_mm = 36\n", "camera.focal_length_mm is missing"},
       {kPlace + "[camera]\nfov = 60\nsensor_width_mm = 36\nfocal_length_mm = 50\n",
@@ -437,15 +461,10 @@ TEST(Scene, BadInputIsReportedWithLineKeyValueAndRange) {
       {kPlace + "[camera]\nfov = 3\nfov = 4\n", "s.toml:6: not valid TOML"},
       {kPlace + "[time]\nutc = \"2024-02-30T00:00:00Z\"\n", "s.toml:5: time.utc"},
       {kPlace + "[time]\nutc = \"2026-06-21T04:00:00\"\n", "s.toml:5: time.utc"},
-      {kPlace + "[time]\nutc = 2026-06-21T04:00:00Z\n", "must be text in quotes"},
       {kPlace + "[time]\n", "time.utc is missing"},
       {kPlace + "[time]\nlocal = \"2026-06-21T13:00:00\"\n", "time.local needs place.zone"},
-      {kPlace + "[terrain]\ndem = 5\n", "terrain.dem is 5; it must be text"},
       {kPlace + "[terrain]\ndem = \"a\"\nmesh = \"b\"\n", "give one of"},
-      {kPlace + "[terrain]\ndem = \"a\"\nvoids = \"sometimes\"\n", "\"fill\" or \"open\""},
       {kPlace + "[terrain]\nvoids = \"fill\"\n", "terrain.voids needs terrain.dem"},
-      {kPlace + "[terrain]\nmesh = \"a\"\nup = \"x\"\n",
-       "s.toml:6: terrain.up is \"x\"; it must be \"y\" or \"z\""},
       {kPlace + "[terrain]\ndem = \"a\"\nup = \"y\"\n", "terrain.up needs terrain.mesh"},
       {kPlace + "[atmosphere]\npreset = \"venus\"\n", "s.toml:5: atmosphere.preset"},
       {kPlace + "[atmosphere]\nfile = \"none.toml\"\n", "folder/none.toml"},

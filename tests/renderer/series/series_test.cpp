@@ -17,11 +17,13 @@
 #include "atmosphere/base/error.h"
 #include "lut/cli/program.h"
 #include "lut/image/eye.h"
+#include "renderer/scene/scene_fields.h"
 #include "renderer/scene/scene_options.h"
 #include "renderer/series/manifest.h"
 #include "renderer/series/picture_sequence.h"
 #include "tests/fixtures/fault_of.h"
 #include "tests/fixtures/temporary_folder.h"
+#include "tests/fixtures/toml_keys.h"
 
 namespace alpenglow::renderer {
 namespace {
@@ -684,6 +686,32 @@ TEST_F(SeriesRun, ResumeRendersAgainAfterAnyChangeOfTheScene) {
     source.settings = settings(keys.front(), keys.front().after);
     EXPECT_EQ(Run(source, output, 1).rendered, 1) << keys.front().section;
   }
+}
+
+/// Expects that every member of a table of fields changes the record of a scene.
+/// @param part  returns the object of the table in a scene.
+template <typename Object, typename Part>
+void ExpectRecorded(const TomlFields<Object>& fields, const Scene& scene, const Part& part) {
+  for (const TomlField<Object>& field : fields.fields) {
+    if (!field.member.set || !field.member.get) continue;
+    Scene other = scene;
+    part(other) = tests::WithAnotherValue(field, part(other));
+    EXPECT_NE(Fingerprint(SceneMetadata(other)), Fingerprint(SceneMetadata(scene)))
+        << fields.name << "." << field.key;
+  }
+}
+
+TEST(Manifest, EveryMemberOfTheTablesOfFieldsIsRecorded) {
+  Scene scene = SceneFromToml(
+      "[place]\nlatitude = 46.5\nlongitude = 8\n[fog]\nvisibility_m = 900\n", "scene.toml", "");
+  scene.lights.resize(1);
+  scene.lights[0].type = Light::Type::kSpot;
+  scene.volumes.resize(1);
+  ExpectRecorded(CameraFields(), scene, [](Scene& of) -> Camera& { return of.camera; });
+  ExpectRecorded(GroundFields(), scene, [](Scene& of) -> GroundCover& { return of.ground; });
+  ExpectRecorded(LightFields(), scene, [](Scene& of) -> Light& { return of.lights[0]; });
+  ExpectRecorded(FogFields(), scene, [](Scene& of) -> Fog& { return *of.fog; });
+  ExpectRecorded(VolumeFields(), scene, [](Scene& of) -> Volume& { return of.volumes[0]; });
 }
 
 TEST_F(Provenance, FingerprintsFollowTheContentOfEveryFile) {

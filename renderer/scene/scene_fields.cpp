@@ -1,0 +1,279 @@
+// SPDX-License-Identifier: MIT
+#include "renderer/scene/scene_fields.h"
+
+#include <array>
+#include <utility>
+
+#include "atmosphere/astronomy/night_sky.h"
+#include "atmosphere/math/constants.h"
+#include "renderer/scene/volume_file.h"
+
+namespace alpenglow::renderer {
+namespace {
+
+constexpr EnumNames kUpAxes{{std::pair{UpAxis::kY, "y"}, {UpAxis::kZ, "z"}}};
+constexpr EnumNames kVoidPolicies{
+    {std::pair{VoidPolicy::kFill, "fill"}, {VoidPolicy::kLeaveOpen, "open"}}};
+constexpr EnumNames kCovers{{std::pair{GroundCover::Kind::kMountain, "mountain"},
+                             {GroundCover::Kind::kLambert, "lambert"},
+                             {GroundCover::Kind::kOrenNayar, "oren-nayar"},
+                             {GroundCover::Kind::kBlinnPhong, "blinn-phong"},
+                             {GroundCover::Kind::kWater, "water"},
+                             {GroundCover::Kind::kSnow, "snow"}}};
+constexpr EnumNames kLightTypes{
+    {std::pair{Light::Type::kPoint, "point"}, {Light::Type::kSpot, "spot"}}};
+constexpr EnumNames kVolumeShapes{{std::pair{VolumePlacement::Shape::kBox, "box"},
+                                   {VolumePlacement::Shape::kEllipsoid, "ellipsoid"}}};
+
+constexpr std::pair kLatitudes{-90.0, 90.0};
+constexpr std::pair kLongitudes{-180.0, 360.0};
+constexpr std::pair kHeadings{-360.0, 360.0};
+constexpr std::pair kPitches{-90.0, 90.0};
+
+/// A number in degrees in the file, and in radians in the object.
+template <typename Object, typename Angle>
+TomlMember<Object> Degrees(Angle Object::*member, std::pair<double, double> range) {
+  return Number(member, range, kRadiansPerDegree);
+}
+
+/// A list of three numbers; the file may have one for all of them if `one_for_all` is set.
+template <typename Object>
+TomlMember<Object> Three(std::array<double, 3> Object::*member, std::pair<double, double> range) {
+  TomlMember<Object> three = Numbers<Object>(range);
+  three.set = [=](const TomlValue& value, Object& object) {
+    const auto& list = std::get<std::vector<double>>(value);
+    for (std::size_t i = 0; i < 3; ++i) (object.*member)[i] = list[list.size() == 1 ? 0 : i];
+  };
+  three.get = [=](const Object& object) {
+    const std::array<double, 3>& values = object.*member;
+    return TomlValue(std::vector<double>(values.begin(), values.end()));
+  };
+  return three;
+}
+
+template <typename Object>
+TomlField<Object> HeightRow(const char* example) {
+  return {"height_m", Number<Object>({kDeepestPlace_m, kHighestPlace_m}), "m",
+          "",         "above the ellipsoid, instead of above_ground_m",   example};
+}
+
+template <typename Object>
+TomlField<Object> AboveGroundRow(const char* text, const char* example) {
+  return {"above_ground_m", Number<Object>({0.0, kHighestPlace_m}), "m", "", text, example};
+}
+
+}  // namespace
+
+const TomlFields<Scene>& PlaceFields() {
+  static const TomlFields<Scene> fields{
+      "place",
+      {{"latitude", Number<Scene>(kLatitudes), "degrees north", "required", "", "46.5"},
+       {"longitude", Number<Scene>(kLongitudes), "degrees east", "required", "", "8.0"},
+       {"zone", Text(&Scene::zone), "", "", "IANA name; local times need it",
+        "\"Europe/Zurich\""}}};
+  return fields;
+}
+
+const TomlFields<Scene>& TimeFields() {
+  static const TomlFields<Scene> fields{
+      "time",
+      {{"utc", Text<Scene>(), "", "", "date and time", "\"2026-06-21T04:00:00Z\""},
+       {"local", Text<Scene>(), "", "", "in place.zone, instead of utc",
+        "# \"2026-06-21T06:00:00\""}}};
+  return fields;
+}
+
+const TomlFields<Camera>& CameraFields() {
+  static const TomlFields<Camera> fields{
+      "camera",
+      {HeightRow<Camera>("# 2500.0"),
+       AboveGroundRow<Camera>("", "2.0"),
+       {"heading", Degrees(&Camera::heading_rad, kHeadings), "degrees", "", "clockwise from north",
+        "0.0"},
+       {"pitch", Degrees(&Camera::pitch_rad, kPitches), "degrees", "", "above the horizontal",
+        "0.0"},
+       {"roll", Degrees(&Camera::roll_rad, {-180.0, 180.0}), "degrees", "",
+        "clockwise as seen from behind", "0.0"},
+       {"fov", Number<Camera>({0.1, 360.0}), "degrees", "",
+        "horizontal, at most 179; 360 is a panorama", "60.0"},
+       {"f_number", Number<Camera>({0.0, 1000.0}), "", "",
+        "at least 0.1; 0 is a pinhole, for which the lens has no effect", "0.0"},
+       {"focal_length_mm", Number<Camera>({0.1, 10000.0}), "mm", "required with an f_number", "",
+        "50.0"},
+       {"focus_m", Number<Camera>({0.01, 1e9}), "m", "required with an f_number",
+        "distance of sharp objects", "10.0"},
+       {"sensor_width_mm", Number<Camera>({0.1, 1e5}), "mm", "",
+        "with focal_length_mm, instead of fov", "# 36.0"},
+       {"blades", Number<Camera>({0.0, 64.0}), "", "", "of the iris, at least 3; 0 is a round iris",
+        "0"},
+       {"blade_rotation", Number<Camera>({-360.0, 360.0}), "degrees", "", "", "0.0"},
+       {"polariser_deg", Degrees(&Camera::polariser_rad, {-180.0, 180.0}), "degrees", "",
+        "a linear polariser, its axis clockwise from the vertical", "# 0.0", true},
+       {"shutter_s", Number(&Camera::shutter_s, {0.0, 43200.0}), "s", "",
+        "stars, planets and the moon draw trails", "0.0", true}}};
+  return fields;
+}
+
+const TomlFields<Scene>& AtmosphereFields() {
+  static const TomlFields<Scene> fields{
+      "atmosphere",
+      {{"file", Text<Scene>(), "", "", "atmosphere/ATMOSPHERE_FILE.md, instead of a preset",
+        "# \"atmosphere.toml\""},
+       {"preset", Text<Scene>(), "", "", "the presets of atmosphere/ATMOSPHERE_FILE.md",
+        "\"earth\""}}};
+  return fields;
+}
+
+const TomlFields<TerrainSource>& TerrainFields() {
+  static const TomlFields<TerrainSource> fields{
+      "terrain",
+      {{"dem", Text<TerrainSource>(), "", "", "GeoTIFF, SRTM, USGS DEM or a folder",
+        "\"N46E008.hgt\""},
+       {"mesh", Text<TerrainSource>(), "", "", "in metres from the place", "# \"x.obj\""},
+       {"up", Name(&TerrainSource::up, kUpAxes, OneOfQuoted), "", "",
+        "of a mesh: \"z\" (x east, y north, z up) or \"y\" (x east, y up, z south)", "# \"z\""},
+       {"none", Truth<TerrainSource>(), "", "", "the ellipsoid alone", "# true"},
+       {"range", Truth<TerrainSource>(), "", "", "the built-in mountain range", "# true"},
+       {"voids", Name(&TerrainSource::voids, kVoidPolicies, OneOfQuoted), "", "",
+        "holes where an elevation model has no data (nodata, mask or alpha)", "\"fill\""},
+       {"colour", Text<TerrainSource>(), "", "",
+        "draped over the terrain by its georeference, or over the terrain's extent; where it is "
+        "more than half transparent, the ground has its own cover",
+        "\"colour.tif\""},
+       {"land_cover", Text<TerrainSource>(), "", "",
+        "instead of colour: classes of ESA WorldCover, for the cover \"mountain\"",
+        "# \"worldcover.tif\""}}};
+  return fields;
+}
+
+const TomlFields<GroundCover>& GroundFields() {
+  static const TomlFields<GroundCover> fields{
+      "ground",
+      {{"cover", Name(&GroundCover::kind, kCovers, OneOfQuoted), "", "",
+        "a mountain is covered by altitude, slope, place and season", "\"mountain\""},
+       {"albedo", Three(&GroundCover::albedo, {0.0, 1.0}), "", "",
+        "of lambert, oren-nayar, blinn-phong: one value, or linear sRGB", "# [0.2, 0.2, 0.2]"},
+       {"roughness", Number(&GroundCover::roughness, {0.0, 1.0}), "", "",
+        "of oren-nayar, and at least 0.1 of blinn-phong", "# 0.5"},
+       {"reflectance", Number(&GroundCover::reflectance, {0.0, 1.0}), "", "",
+        "of the coat of blinn-phong", "# 0.04"},
+       {"wind_m_per_s", Number(&GroundCover::wind_m_per_s, {0.0, 20.0}), "m/s", "", "above water",
+        "5.0"},
+       {"grain_diameter_mm", Number(&GroundCover::grain_diameter_m, {0.05, 5.0}, 1e-3), "mm", "",
+        "of snow", "# 0.5"},
+       {"sea_level_m", Number(&GroundCover::sea_level_m, {kDeepestPlace_m, 9000.0}), "m", "",
+        "lower ground is water; without the key there is no sea", "0.0"},
+       {"wetness", Number(&GroundCover::wetness, {0.0, 1.0}), "", "",
+        "rock, grass, colour and one albedo after rain; not wood and snow", "0.0"}}};
+  return fields;
+}
+
+const TomlFields<Light>& LightFields() {
+  static const TomlFields<Light> fields{
+      "light",
+      {{"type", Name(&Light::type, kLightTypes, OneOfQuoted), "", "", "default \"point\"",
+        "\"spot\""},
+       {"latitude", Degrees(&Light::latitude_rad, kLatitudes), "degrees north", "required", "",
+        "46.51"},
+       {"longitude", Degrees(&Light::longitude_rad, kLongitudes), "degrees east", "required", "",
+        "8.0"},
+       HeightRow<Light>("# 700.0"),
+       AboveGroundRow<Light>("", "2.0"),
+       {"intensity_cd", Number(&Light::intensity_cd, {0.0, 1e12}), "cd",
+        "required without an IES file", "the largest intensity", "20000.0"},
+       {"temperature_k", Number(&Light::temperature_k, {500.0, 50000.0}), "K", "", "", "3000.0"},
+       {"radius_m", Number(&Light::radius_m, {0.001, 100.0}), "m", "",
+        "of the luminous sphere; a camera inside sees its luminance", "0.1"},
+       {"ies", Text<Light>(), "", "",
+        "of a point: IES LM-63 of 1986 to 2019, types A, B and C (Measured lamps)",
+        "# \"lamp.ies\""},
+       {"heading", Degrees(&Light::heading_rad, kHeadings), "degrees", "",
+        "of a spot, or of the C 0 plane of an IES file", "180.0"},
+       {"pitch", Degrees(&Light::pitch_rad, kPitches), "degrees", "",
+        "for an IES file the default is -90, straight down", "0.0"},
+       {"cone", Numbers<Light>({0.0, 180.0}), "degrees", "",
+        "half angles of a spot: full inside the first, none outside the second", "[10.0, 25.0]"}}};
+  return fields;
+}
+
+const TomlFields<Fog>& FogFields() {
+  static const TomlFields<Fog> fields{
+      "fog",
+      {{"visibility_m", Number<Fog>({1.0, 1e6}), "m", "", "", "900.0"},
+       {"extinction_per_m", ReadApart(Number(&Fog::extinction_per_m, {0.0, 10.0})), "1/m", "",
+        "instead of visibility_m", "# 0.004"},
+       {"scale_height_m", Number(&Fog::scale_height_m, {1.0, 1e5}), "m", "",
+        "without the key the density is the same at every height", "25.0"},
+       {"base_height_m", Number(&Fog::base_height_m, {kDeepestPlace_m, 1e5}), "m", "",
+        "above the ellipsoid; default: the ground under the camera", "400.0"},
+       {"albedo", Number(&Fog::albedo, {0.0, 1.0}), "", "", "", "1.0"},
+       {"droplet_diameter_um", Number<Fog>({kSmallestDroplet_um, kLargestDroplet_um}),
+        "micrometres", "", "", "15.0"},
+       {"g", Number<Fog>({-0.99, 0.99}), "", "",
+        "of Henyey and Greenstein, instead of droplet_diameter_um", "# 0.85"}}};
+  return fields;
+}
+
+const TomlFields<Scene>& NightFields() {
+  static const TomlFields<Scene> fields{
+      "night",
+      {{"bortle", Number<Scene>({1.0, 9.0}), "", "", "class of the sky", "# 4"},
+       {"zenith_mag_per_arcsec2", Number<Scene>({14.0, kNaturalZenith}), "", "",
+        "brightness of the zenith, instead of bortle", "# 20.5"}}};
+  return fields;
+}
+
+const TomlFields<Volume>& VolumeFields() {
+  static const TomlFields<Volume> fields{
+      "volume",
+      {{"shape", Name(&Volume::shape, kVolumeShapes, OneOfQuoted), "", "", "", "\"box\""},
+       {"latitude", Degrees(&Volume::latitude_rad, kLatitudes), "degrees north", "required", "",
+        "46.52"},
+       {"longitude", Degrees(&Volume::longitude_rad, kLongitudes), "degrees east", "required", "",
+        "8.0"},
+       HeightRow<Volume>("# 700.0"),
+       AboveGroundRow<Volume>("of its underside", "0.0"),
+       {"size_m", Three(&Volume::size_m, {0.01, 2e5}), "m", "required",
+        "across its heading, along it, up", "[400.0, 200.0, 80.0]"},
+       {"heading", Degrees(&Volume::heading_rad, kHeadings), "degrees", "", "clockwise from north",
+        "0.0"},
+       {"scale_height_m", Number(&Volume::scale_height_m, {0.1, 1e5}), "m", "",
+        "without the key the density is the same throughout", "30.0"},
+       {"grid", Text<Volume>(), "", "", "densities on a grid: NRRD (Grids of densities), or raw",
+        "# \"smoke.nrrd\""},
+       {"grid_size", Numbers<Volume>({2.0, kMostGridSamples}), "", "required for a raw grid",
+        "samples along x, y and z", "# [64, 64, 32]"},
+       {"extinction_per_m", ReadApart(OneForAll(Numbers(&Volume::extinction_per_m, {0.0, 1e4}))),
+        "1/m", "", "one value, or one per wavelength", "0.01"},
+       {"visibility_m", Number<Volume>({0.1, 1e6}), "m", "", "instead of extinction_per_m",
+        "# 400.0"},
+       {"albedo", OneForAll(Numbers(&Volume::albedo, {0.0, 1.0})), "", "",
+        "one value, or one per wavelength", "1.0"},
+       {"emission_per_m", OneForAll(Numbers(&Volume::emission_per_m, {0.0, 1e12})),
+        "W m^-2 sr^-1 nm^-1 per m", "", "one value, or one per wavelength", "0.0"},
+       {"temperature_k", Number(&Volume::temperature_k, {100.0, 50000.0}), "K", "",
+        "emission of a black body, instead of emission_per_m; needs an albedo below 1, because "
+        "what absorbs nothing does not glow",
+        "# 1500.0"},
+       {"droplet_diameter_um", Number<Volume>({kSmallestDroplet_um, kLargestDroplet_um}),
+        "micrometres", "", "instead of g", "# 15.0"},
+       {"g", Number<Volume>({-0.99, 0.99}), "", "", "of Henyey and Greenstein", "0.5"}}};
+  return fields;
+}
+
+std::vector<SceneSection> SectionsOfScene() {
+  return {
+      {"place", false, "of the camera", PlaceFields().Keys()},
+      {"time", false, "used if the command line gives no time", TimeFields().Keys()},
+      {"camera", false, "", CameraFields().Keys()},
+      {"atmosphere", false, "", AtmosphereFields().Keys()},
+      {"terrain", false, "one of dem, mesh, none and range; without them range, with a warning",
+       TerrainFields().Keys()},
+      {"ground", false, "", GroundFields().Keys()},
+      {"light", true, "a lamp; any number", LightFields().Keys()},
+      {"fog", false, "over the whole scene", FogFields().Keys()},
+      {"volume", true, "smoke, a bank of fog, a glowing gas; any number", VolumeFields().Keys()},
+      {"night", false, "light of towns in the air", NightFields().Keys()}};
+}
+
+}  // namespace alpenglow::renderer
