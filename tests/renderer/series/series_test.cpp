@@ -703,7 +703,9 @@ void ExpectRecorded(const TomlFields<Object>& fields, const Scene& scene, const 
 
 TEST(Manifest, EveryMemberOfTheTablesOfFieldsIsRecorded) {
   Scene scene = SceneFromToml(
-      "[place]\nlatitude = 46.5\nlongitude = 8\n[fog]\nvisibility_m = 900\n", "scene.toml", "");
+      "[place]\nlatitude = 46.5\nlongitude = 8\n[fog]\nvisibility_m = 900\n"
+      "scale_height_m = 30\n",
+      "scene.toml", "");
   scene.lights.resize(1);
   scene.lights[0].type = Light::Type::kSpot;
   scene.volumes.resize(1);
