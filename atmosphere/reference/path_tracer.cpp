@@ -14,6 +14,8 @@
 
 #include "atmosphere/base/error.h"
 #include "atmosphere/math/constants.h"
+#include "atmosphere/reference/column_table.h"
+#include "atmosphere/reference/path_analyser.h"
 #include "atmosphere/reference/path_sampling.h"
 
 namespace alpenglow::atmosphere::reference {

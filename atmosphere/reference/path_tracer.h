@@ -11,11 +11,11 @@
 // the aerosol's lobe around the sun and, in twilight, the glow along the sunward horizon. Paths end
 // by Russian roulette.
 //
-// The estimate is unbiased except for the tables of columns (1e-6, path_sampling.h). The shared
+// The estimate is unbiased except for the tables of columns (1e-6, column_table.h). The shared
 // sources, the closed forms and the tables of lut/ are not used, except for the values of phase
 // functions. The sun is a point, there is no refraction, and the ground is Lambertian and lit where
 // mu_s >= 0. Light is scalar or polarised (TraceStokes); for polarised light the path carries
-// weights over Stokes parameters instead of a number (path_sampling.h), with the same distribution
+// weights over Stokes parameters instead of a number (path_analyser.h), with the same distribution
 // of points and directions.
 #pragma once
 

@@ -15,6 +15,7 @@
 #include "atmosphere/base/error.h"
 #include "atmosphere/math/constants.h"
 #include "atmosphere/math/numerics.h"
+#include "atmosphere/reference/column_table.h"
 #include "atmosphere/reference/path_sampling.h"
 #include "atmosphere/reference/reference_solution.h"
 #include "tests/fixtures/lorenz_mie.h"

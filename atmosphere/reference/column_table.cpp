@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "atmosphere/reference/path_sampling.h"
+#include "atmosphere/reference/column_table.h"
 
 #include <algorithm>
 #include <cmath>
