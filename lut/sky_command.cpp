@@ -15,7 +15,11 @@
 #include "lut/cli/output_file.h"
 #include "lut/cli/outputs.h"
 #include "lut/cli/terminal.h"
+#include "lut/image/development.h"
+#include "lut/image/exr.h"
 #include "lut/image/look_options.h"
+#include "lut/image/metering.h"
+#include "lut/image/png.h"
 #include "lut/sky/panorama.h"
 
 namespace alpenglow::lut {

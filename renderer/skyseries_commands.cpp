@@ -22,6 +22,7 @@
 #include "renderer/scene/places.h"
 #include "renderer/scene/scene.h"
 #include "renderer/scene/scene_options.h"
+#include "renderer/series/day_plot.h"
 #include "renderer/series/day_times.h"
 
 namespace alpenglow::renderer {

@@ -13,10 +13,13 @@
 #include "atmosphere/refraction/refracted_view.h"
 #include "lut/cli/messages.h"
 #include "lut/cli/output_file.h"
+#include "lut/image/png.h"
 #include "lut/sky/sky_view_map.h"
 #include "renderer/scene/places.h"
 #include "viewer/gl/render_target.h"
 #include "viewer/passes/picture_programs.h"
+#include "viewer/picture_name.h"
+#include "viewer/picture_writer.h"
 
 namespace alpenglow::viewer {
 namespace {

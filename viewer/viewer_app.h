@@ -9,13 +9,15 @@
 #include <optional>
 #include <string>
 
+#include "atmosphere/base/async_value.h"
 #include "viewer/flight/flight_recorder.h"
 #include "viewer/flight_session.h"
+#include "viewer/hud/day_strip.h"
 #include "viewer/hud/hud.h"
 #include "viewer/hud/hud_model.h"
 #include "viewer/input/action.h"
 #include "viewer/input/controls.h"
-#include "viewer/picture_writer.h"
+#include "viewer/picture_queue.h"
 
 namespace alpenglow::viewer {
 

@@ -10,8 +10,12 @@
 
 #include "atmosphere/base/error.h"
 #include "lut/api/conversions.h"
+#include "lut/image/development.h"
+#include "lut/image/exr.h"
 #include "lut/image/image.h"
 #include "lut/image/look.h"
+#include "lut/image/metering.h"
+#include "lut/image/png.h"
 
 namespace alpenglow {
 namespace {

@@ -12,6 +12,7 @@
 
 #include "atmosphere/base/error.h"
 #include "lut/image/look.h"
+#include "lut/image/metering.h"
 #include "lut/image/tone_mapping.h"
 
 namespace alpenglow::lut {

@@ -35,6 +35,8 @@
 #include <vector>
 
 #include "lut/image/image.h"
+#include "lut/image/look.h"
+#include "lut/image/tone_mapping.h"
 
 namespace alpenglow::lut {
 
@@ -75,5 +77,11 @@ struct ClippedEdge {
 /// @param white  luminance that a display shows as white, in the image's unit, > 0.
 [[nodiscard]] std::optional<ClippedEdge> ClippedEdgeAt(const Image& image, int x, int y,
                                                        float white);
+
+/// Develops an image from Seen(). Throws InternalError for a pixel that is not finite.
+[[nodiscard]] DisplayImage Develop(const Image& seen, double ev100, const Look& look);
+
+/// Exposes, tone-maps and dithers an image. Throws InternalError for a pixel that is not finite.
+[[nodiscard]] DisplayImage Develop(const Image& image, double ev100, ToneCurve curve);
 
 }  // namespace alpenglow::lut

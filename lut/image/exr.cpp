@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: MIT
 // This file reads and writes EXR through OpenEXR 3
 // (https://openexr.com/en/latest/OpenEXRFileLayout.html).
+#include "lut/image/exr.h"
+
 #include <ImfArray.h>
 #include <ImfChannelList.h>
 #include <ImfFrameBuffer.h>
@@ -25,11 +27,12 @@
 
 #include "atmosphere/base/error.h"
 #include "lut/cli/output_file.h"
-#include "lut/image/image.h"
 #include "lut/layer.h"
 
 namespace alpenglow::lut {
 namespace {
+
+namespace fs = std::filesystem;
 
 constexpr std::uint32_t kMagic = 20000630;
 constexpr std::uint32_t kSeveralParts = 0x1000;  // flag in the version
@@ -111,16 +114,6 @@ class HeaderReader {
   std::ifstream stream_;
   std::uint64_t left_;
 };
-
-}  // namespace
-
-void RequireBoundedExrHeader(const std::filesystem::path& file, std::int64_t longest_side) {
-  HeaderReader(file, longest_side).Check();
-}
-
-namespace {
-
-namespace fs = std::filesystem;
 
 /// A file stream that checks every write including the last one. OpenEXR's own stream closes in a
 /// destructor, which cannot report that the disk is full.
@@ -290,6 +283,10 @@ void AddLayers(const fs::path& file, const Imf::ChannelList& channels, Image& im
 }
 
 }  // namespace
+
+void RequireBoundedExrHeader(const std::filesystem::path& file, std::int64_t longest_side) {
+  HeaderReader(file, longest_side).Check();
+}
 
 void WriteExr(const fs::path& file, const Image& image, const Metadata& metadata,
               Projection projection) {

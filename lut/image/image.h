@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-// This header provides images: linear in memory, EXR (linear, with metadata) and PNG (exposed,
-// tone-mapped, dithered).
+// This header provides images: linear with layers, and developed for a display; with their metadata.
+//
+// exr.h and png.h read and write them.
 //
 // Layers of images and panoramas can hold the polarisation of the light. Q is positive for light
 // that vibrates along the image's vertical rather than across it, U for light that vibrates from
@@ -9,7 +10,6 @@
 
 #include <array>
 #include <cstdint>
-#include <filesystem>
 #include <map>
 #include <optional>
 #include <string>
@@ -66,57 +66,6 @@ using Metadata = std::map<std::string, std::string>;
 /// (OpenEXR's attribute envmap = latlong).
 enum class Projection { kCamera, kLatitudeLongitude };
 
-/// Writes float RGB and the layers, ZIP, atomically, with the metadata as text attributes and
-/// whiteLuminance 1 (the unit is cd/m^2). Throws OutputError. If there is a FaultyValue, throws
-/// InternalError naming file, pixel and layer before it writes anything.
-void WriteExr(const std::filesystem::path& file, const Image& image, const Metadata& metadata,
-              Projection projection = Projection::kCamera);
-/// Reads an EXR file as written by WriteExr (any scan-line EXR with R, G, B); every other channel
-/// becomes a layer. Throws InputError for a file that is missing, truncated, of another format, or
-/// has no R, G or B.
-[[nodiscard]] Image ReadExr(const std::filesystem::path& file);
-/// Reads the text attributes of the header. Throws InputError.
-[[nodiscard]] Metadata ReadExrMetadata(const std::filesystem::path& file);
-
-/// Checks the headers of an EXR file before the library reads them: OpenEXR allocates the memory
-/// that an attribute claims before it detects that the file is shorter, so two damaged bytes can
-/// cost two gigabytes, and it allocates a table of all lines of the data window. Throws InputError
-/// naming the file if an attribute extends beyond the end of the file, if a side of a data window
-/// is longer than `longest_side`, or if a header is not terminated. Other errors are left to the
-/// library.
-///
-/// Layout of the file, "OpenEXR File Layout" (openexr.com): magic number and version, 4 bytes each;
-/// attributes: name and type, each ended by 0, size, 4 bytes, little-endian, value; a 0 ends a
-/// header; in files of several parts headers follow each other, and another 0 ends them.
-void RequireBoundedExrHeader(const std::filesystem::path& file,
-                             std::int64_t longest_side = kLargestImageSide);
-
-/// Returns the scale from luminance to exposed values for an exposure value at ISO 100. A luminance
-/// of 2^EV100 * 1.2 cd/m^2 saturates (Lagarde, de Rousiers 2014).
-[[nodiscard]] double ExposureScale(double ev100);
-
-/// Constant K of reflected-light meters [cd s / (m^2 ISO)], ISO 2720: EV100 = log2(100 L / K).
-inline constexpr double kMeterConstant = 12.5;
-
-/// Range of the meter: from a moonless night to the sun's surroundings.
-inline constexpr double kDarkestEv100 = -12.0;
-inline constexpr double kBrightestEv100 = 20.0;
-
-/// Luminance above which the exposure meter treats a pixel as part of the sun's disk [cd/m^2].
-inline constexpr double kSunDiskLuminance_cd_per_m2 = 1e6;
-
-/// Returns the EV100 of a histogram meter (metering.h): mean luminance between the 40th and 95th
-/// percentile mapped to middle grey by K = 12.5, or more if the 95th percentile would exceed white
-/// by day. Pixels brighter than `ignore_above_cd_per_m2` (the sun's disk), pixels without light,
-/// and pixels that stay black beside the rest (space) do not count. Pixels of a panorama are
-/// weighted by their solid angle. The result lies within [kDarkestEv100, kBrightestEv100], the
-/// limits of the camera: a night of stars by f/1.4 for 30 s at ISO 25600, and sunlit snow eight
-/// times over. Without light it is kDarkestEv100.
-[[nodiscard]] double MeterEv100(const Image& image, double ignore_above_cd_per_m2,
-                                Projection projection = Projection::kCamera);
-
-enum class ToneCurve { kAgx, kAces, kReinhard, kPbrNeutral, kLinear };
-
 /// 8-bit sRGB of the exposed image, dithered by triangular blue noise of +-1 code (development.h;
 /// identical in every run). For out-of-gamut colours see tone_curve.glsl.
 struct DisplayImage {
@@ -124,17 +73,6 @@ struct DisplayImage {
   int height = 0;
   std::vector<std::uint8_t> rgb;
 };
-/// Exposes, tone-maps and dithers an image. Throws InternalError for a pixel that is not finite.
-[[nodiscard]] DisplayImage Develop(const Image& image, double ev100, ToneCurve curve);
-
-/// Writes 8-bit RGB with an sRGB chunk and the metadata as text chunks, atomically. Throws
-/// OutputError.
-void WritePng(const std::filesystem::path& file, const DisplayImage& image,
-              const Metadata& metadata);
-/// Reads a PNG. Throws InputError for a file that is missing, truncated or not a PNG.
-[[nodiscard]] DisplayImage ReadPng(const std::filesystem::path& file);
-/// Reads the text chunks before the pixels. Throws InputError.
-[[nodiscard]] Metadata ReadPngMetadata(const std::filesystem::path& file);
 
 enum class StokesLayer {
   kQ,             // stokes_q.R, .G, .B: linear sRGB [cd/m^2], of either sign

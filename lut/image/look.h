@@ -47,9 +47,6 @@ struct PictureView {
 /// the colours and acuity of the dark-adapted eye (eye.h). @param look  must be settled.
 [[nodiscard]] Image Seen(const Image& image, const Look& look, const PictureView& view = {});
 
-/// Develops an image from Seen(). Throws InternalError for a pixel that is not finite.
-[[nodiscard]] DisplayImage Develop(const Image& seen, double ev100, const Look& look);
-
 /// Rule that determines the exposure of an image.
 struct ExposureRule {
   enum class Kind {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-// This header provides the light meter of cameras and flights (MeterEv100, image.h), and white
+// This header provides the light meter of cameras and flights (MeterEv100), and white
 // balance.
 //
 // The meter weights every pixel by its solid angle. It excludes
@@ -44,6 +44,30 @@
 #include "lut/layer.h"
 
 namespace alpenglow::lut {
+
+/// Returns the scale from luminance to exposed values for an exposure value at ISO 100. A luminance
+/// of 2^EV100 * 1.2 cd/m^2 saturates (Lagarde, de Rousiers 2014).
+[[nodiscard]] double ExposureScale(double ev100);
+
+/// Constant K of reflected-light meters [cd s / (m^2 ISO)], ISO 2720: EV100 = log2(100 L / K).
+inline constexpr double kMeterConstant = 12.5;
+
+/// Range of the meter: from a moonless night to the sun's surroundings.
+inline constexpr double kDarkestEv100 = -12.0;
+inline constexpr double kBrightestEv100 = 20.0;
+
+/// Luminance above which the exposure meter treats a pixel as part of the sun's disk [cd/m^2].
+inline constexpr double kSunDiskLuminance_cd_per_m2 = 1e6;
+
+/// Returns the EV100 of a histogram meter: mean luminance between the 40th and 95th
+/// percentile mapped to middle grey by K = 12.5, or more if the 95th percentile would exceed white
+/// by day. Pixels brighter than `ignore_above_cd_per_m2` (the sun's disk), pixels without light,
+/// and pixels that stay black beside the rest (space) do not count. Pixels of a panorama are
+/// weighted by their solid angle. The result lies within [kDarkestEv100, kBrightestEv100], the
+/// limits of the camera: a night of stars by f/1.4 for 30 s at ISO 25600, and sunlit snow eight
+/// times over. Without light it is kDarkestEv100.
+[[nodiscard]] double MeterEv100(const Image& image, double ignore_above_cd_per_m2,
+                                Projection projection = Projection::kCamera);
 
 /// Returns the rule in words, for the metadata of output files.
 [[nodiscard]] std::string MeterRule();

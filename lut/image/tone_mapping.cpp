@@ -11,6 +11,7 @@
 
 #include "atmosphere/base/error.h"
 #include "atmosphere/base/parsing.h"
+#include "lut/image/metering.h"
 #include "lut/layer.h"
 
 namespace alpenglow::lut {

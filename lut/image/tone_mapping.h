@@ -67,6 +67,8 @@
 
 namespace alpenglow::lut {
 
+enum class ToneCurve { kAgx, kAces, kReinhard, kPbrNeutral, kLinear };
+
 enum class AgxLook { kPhoto, kNone, kPunchy, kMedium, kHigh };
 
 /// Largest ratio of the chroma on the display to that of the scene at equal lightness.

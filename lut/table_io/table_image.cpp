@@ -23,6 +23,7 @@
 #include "atmosphere/base/error.h"
 #include "atmosphere/base/finite.h"
 #include "lut/cli/output_file.h"
+#include "lut/image/exr.h"
 #include "lut/image/image.h"
 #include "lut/tables/table_axes.h"
 

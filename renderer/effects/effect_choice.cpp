@@ -11,6 +11,7 @@
 #include "atmosphere/math/constants.h"
 #include "atmosphere/math/numerics.h"
 #include "lut/cli/program.h"
+#include "lut/image/metering.h"
 
 namespace alpenglow::renderer {
 namespace {

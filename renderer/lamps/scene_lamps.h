@@ -27,7 +27,7 @@
 #include "atmosphere/medium/medium.h"
 #include "atmosphere/medium/phase.h"
 #include "atmosphere/time_place/geodesy.h"
-#include "renderer/lamps/ground_under_lamps.h"
+#include "renderer/lamps/lamp_shadow_field.h"
 #include "renderer/lamps/lamp_tree.h"
 #include "renderer/lamps/placed_lamp.h"
 #include "renderer/layer.h"

@@ -10,7 +10,9 @@
 
 #include "atmosphere/base/parsing.h"
 #include "atmosphere/math/constants.h"
+#include "lut/image/exr.h"
 #include "lut/image/eye.h"
+#include "lut/image/metering.h"
 
 namespace alpenglow::renderer {
 namespace {

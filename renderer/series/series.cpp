@@ -14,12 +14,17 @@
 #include "atmosphere/math/constants.h"
 #include "lut/cli/outputs.h"
 #include "lut/cli/program.h"
+#include "lut/image/development.h"
+#include "lut/image/exr.h"
 #include "lut/image/look.h"
+#include "lut/image/png.h"
 #include "renderer/picture/render.h"
-#include "renderer/series/day_times.h"
+#include "renderer/series/contact_sheet.h"
+#include "renderer/series/day_plot.h"
 #include "renderer/series/frame_exposure.h"
+#include "renderer/series/keogram.h"
 #include "renderer/series/manifest.h"
-#include "renderer/series/picture_sequence.h"
+#include "renderer/series/video.h"
 
 namespace alpenglow::renderer {
 namespace {

@@ -88,9 +88,9 @@ struct SeriesOutput {
   std::optional<std::filesystem::path> contact_sheet = std::nullopt;  // PNG
   ProgressStyle progress = ProgressStyle::kAuto;
   bool glare = false;  // developed pictures have the glare of the eye (eye.h); EXRs never have it
-  std::optional<std::filesystem::path> keogram = std::nullopt;  // PNG (picture_sequence.h)
-  std::optional<std::filesystem::path> plot = std::nullopt;     // SVG (day_times.h)
-  std::optional<std::filesystem::path> video = std::nullopt;    // picture_sequence.h
+  std::optional<std::filesystem::path> keogram = std::nullopt;  // PNG (keogram.h)
+  std::optional<std::filesystem::path> plot = std::nullopt;     // SVG (day_plot.h)
+  std::optional<std::filesystem::path> video = std::nullopt;    // video.h
   double video_frames_per_s = 25.0;
 };
 

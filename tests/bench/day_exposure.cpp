@@ -29,6 +29,7 @@
 #include "atmosphere/astronomy/sun.h"
 #include "atmosphere/math/constants.h"
 #include "lut/image/look.h"
+#include "lut/image/metering.h"
 #include "lut/image/tone_mapping.h"
 #include "renderer/picture/render.h"
 #include "renderer/scene/scene_options.h"

@@ -15,6 +15,11 @@
 #include <string>
 
 #include "atmosphere/base/error.h"
+#include "lut/image/development.h"
+#include "lut/image/exr.h"
+#include "lut/image/metering.h"
+#include "lut/image/png.h"
+#include "lut/image/tone_mapping.h"
 #include "renderer/effects/effect_choice.h"
 #include "renderer/picture/reference_picture.h"
 #include "renderer/picture/render.h"

@@ -9,7 +9,9 @@
 #include <cmath>
 #include <string>
 
+#include "lut/image/exr.h"
 #include "lut/image/image.h"
+#include "lut/image/png.h"
 #include "tests/fixtures/places.h"
 #include "tests/fixtures/temporary_folder.h"
 

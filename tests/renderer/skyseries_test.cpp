@@ -16,7 +16,9 @@
 
 #include "atmosphere/base/parsing.h"
 #include "atmosphere/time_place/time.h"
+#include "lut/image/exr.h"
 #include "lut/image/image.h"
+#include "lut/image/png.h"
 #include "tests/fixtures/bare_scene_folder.h"
 #include "tests/fixtures/lost_messages.h"
 #include "tests/fixtures/places.h"

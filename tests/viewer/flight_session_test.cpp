@@ -14,6 +14,8 @@
 #include <thread>
 
 #include "atmosphere/math/constants.h"
+#include "lut/image/exr.h"
+#include "lut/image/png.h"
 #include "renderer/procedural_mountains/procedural_mountains.h"
 #include "renderer/scene/places.h"
 #include "renderer/scene/scene_options.h"
@@ -23,6 +25,8 @@
 #include "tests/viewer/land/headless_land.h"
 #include "tests/viewer/shaders/headless.h"
 #include "viewer/gl/render_target.h"
+#include "viewer/picture_name.h"
+#include "viewer/picture_queue.h"
 #include "viewer/picture_writer.h"
 #include "viewer/reports.h"
 

@@ -12,6 +12,7 @@
 #include "atmosphere/astronomy/sun.h"
 #include "atmosphere/math/constants.h"
 #include "atmosphere/medium/medium_presets.h"
+#include "lut/image/exr.h"
 #include "lut/image/image.h"
 #include "lut/image/tone_mapping.h"
 #include "tests/fixtures/places.h"

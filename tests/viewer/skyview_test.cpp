@@ -10,8 +10,11 @@
 #include <stdexcept>
 #include <utility>
 
+#include "lut/image/exr.h"
 #include "lut/image/image.h"
 #include "lut/image/look.h"
+#include "lut/image/metering.h"
+#include "lut/image/png.h"
 #include "renderer/camera/camera_path.h"
 #include "tests/fixtures/bare_scene_folder.h"
 #include "tests/fixtures/lost_messages.h"

@@ -8,11 +8,13 @@
 #include <glm/geometric.hpp>
 
 #include "atmosphere/math/constants.h"
+#include "lut/image/png.h"
 #include "renderer/scene/scene_options.h"
 #include "tests/fixtures/bare_scene.h"
 #include "tests/fixtures/temporary_folder.h"
 #include "tests/viewer/air/shared_air.h"
 #include "tests/viewer/land/headless_land.h"
+#include "viewer/picture_writer.h"
 
 namespace alpenglow::viewer {
 namespace {

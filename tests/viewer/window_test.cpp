@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "lut/image/image.h"
+#include "lut/image/png.h"
 #include "renderer/camera/camera_path.h"
 #include "tests/fixtures/bare_scene.h"
 #include "tests/fixtures/places.h"

@@ -1,78 +1,21 @@
 // SPDX-License-Identifier: MIT
-// Head-up display on Dear ImGui: instruments over the picture; panels with settings and
-// information, the menu that opens them, and the help panel with the keys: each action once, under
-// the heading of its mode.
+// Head-up display on Dear ImGui: instruments over the picture, and panels with settings and
+// information.
 //
 // It does not use a window: the input of a frame arrives as an InputFrame. So pictures without a
 // display have instruments too, and tests can click.
 #pragma once
 
-#include <array>
-#include <cstddef>
 #include <filesystem>
 #include <memory>
 #include <optional>
-#include <vector>
 
 #include "viewer/gl/gl_context.h"
 #include "viewer/hud/hud_model.h"
-#include "viewer/hud/panel_contents.h"
-#include "viewer/hud/panel_controls.h"
-#include "viewer/input/action.h"
+#include "viewer/hud/panels.h"
 #include "viewer/input/controls.h"
 
 namespace alpenglow::viewer {
-
-/// Draws the keys into the current Dear ImGui window, in as many columns as fit side by side.
-void ShowKeyHelp(const PanelView& view);
-
-using HelpColumns = std::vector<std::vector<ActionSection>>;
-/// Returns the sections in their order, in columns with the smallest possible maximum length.
-/// @param most_columns  >= 1.
-[[nodiscard]] HelpColumns InColumns(const std::vector<ActionSection>& sections,
-                                    std::size_t most_columns);
-
-enum class HudPanel {
-  kPlaceAndTime,
-  kAir,
-  kLights,
-  kExposure,
-  kFlight,
-  kTables,
-  kCapture,
-  kHelp,
-  kLeave
-};
-inline constexpr std::size_t kHudPanels = 9;
-
-/// Open panels, and the text being typed into them. Uses the current Dear ImGui context, between
-/// its NewFrame and Render.
-class Panels {
- public:
-  void Toggle(HudPanel panel) { Open(panel) = !Open(panel); }
-  [[nodiscard]] bool IsOpen(HudPanel panel) const { return open_[static_cast<std::size_t>(panel)]; }
-  /// Closes all panels and returns whether any was open.
-  bool CloseAll();
-  void ToggleMenu() { menu_ = !menu_; }
-  /// Returns the height of the menu at the upper edge [pixels].
-  [[nodiscard]] int MenuHeight() const;
-
-  /// Draws the open panels, which change the flight and the preferences.
-  void Draw(const PanelView& view, HudPreferences& preferences, FlightCommands& flight);
-
- private:
-  bool& Open(HudPanel panel) { return open_[static_cast<std::size_t>(panel)]; }
-  void DrawMenu();
-  void DrawPanel(HudPanel panel, const PanelChange& change);
-  void DrawContents(HudPanel panel, const PanelChange& change);
-
-  std::array<bool, kHudPanels> open_{};
-  std::array<int, kHudPanels> frames_{};  // since the panel appeared
-  bool menu_ = false;
-  PanelTyping typing_;
-  std::array<int, 2> picture_{};  // size of the last picture [pixels]
-  bool resized_ = false;          // since the last frame: panels are placed again
-};
 
 struct HudSettings {
   double scale = 1.0;  // pixels per unit, [0.5, 8]: 1 for 96 dots per inch

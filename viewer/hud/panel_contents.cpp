@@ -11,6 +11,7 @@
 #include "lut/image/image.h"
 #include "lut/image/look.h"
 #include "lut/image/metering.h"
+#include "lut/image/tone_mapping.h"
 #include "viewer/hud/hud_model.h"
 #include "viewer/hud/panel_controls.h"
 

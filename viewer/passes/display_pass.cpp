@@ -17,6 +17,7 @@
 
 #include "atmosphere/base/parsing.h"
 #include "lut/image/development.h"
+#include "lut/image/metering.h"
 #include "lut/image/tone_mapping.h"
 #include "viewer/gl/gl_context.h"
 #include "viewer/gl/render_target.h"

@@ -50,7 +50,7 @@ uniform vec2 lamp_gauss[LAMP_NODES];  // nodes in [0, 1] and weights
 uniform sampler2DArray lamp_tables;  // relative intensity by angle from the axis and around it
 #endif
 #ifdef LAMP_GLOW_MAP
-uniform sampler2DArray lamp_airlight_map;  // irradiance by the air around a lamp; see ground_under_lamps.h
+uniform sampler2DArray lamp_airlight_map;  // irradiance by the air around a lamp; see sampled_glow.h
 #endif
 #ifdef LAMP_SHADE
 uniform sampler2DArray lamp_shades;  // slope above which a lamp is visible, by azimuth and distance
@@ -352,7 +352,7 @@ vec4 LampAirlightOnLevel(Lamp lamp, vec2 at, float distance_m) {
   return level;
 }
 
-// Returns the irradiance of a surface by the air that a lamp lights; see ground_under_lamps.h.
+// Returns the irradiance of a surface by the air that a lamp lights; see sampled_glow.h.
 vec4 LampAirOnSurface(Lamp lamp, vec3 point_m, vec3 towards, float distance_m, vec3 normal) {
   vec3 vertical = normalize(point_m + vec3(0.0, 0.0, 1e3 * (lamp_planet.x + lamp_planet.y)));
   float sine = dot(towards, vertical);

@@ -8,7 +8,10 @@
 #include <limits>
 #include <string>
 
+#include "lut/image/development.h"
 #include "lut/image/look.h"
+#include "lut/image/metering.h"
+#include "lut/image/png.h"
 #include "tests/fixtures/comma_locale.h"
 #include "tests/fixtures/temporary_folder.h"
 

@@ -15,7 +15,10 @@
 
 #include "atmosphere/base/error.h"
 #include "lut/image/development.h"
+#include "lut/image/exr.h"
 #include "lut/image/look.h"
+#include "lut/image/png.h"
+#include "lut/image/tone_mapping.h"
 #include "lut/layer.h"
 #include "tests/fixtures/fault_of.h"
 #include "tests/fixtures/temporary_folder.h"

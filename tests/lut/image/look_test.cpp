@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "atmosphere/base/error.h"
+#include "lut/image/development.h"
 #include "lut/image/eye.h"
 #include "lut/image/metering.h"
 #include "lut/image/tone_mapping.h"

@@ -11,6 +11,7 @@
 #include "atmosphere/base/error.h"
 #include "atmosphere/math/constants.h"
 #include "lut/image/look.h"
+#include "lut/image/metering.h"
 #include "tests/fixtures/bands_near.h"
 
 namespace alpenglow::lut {

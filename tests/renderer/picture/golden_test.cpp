@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "lut/image/exr.h"
 #include "renderer/picture/render.h"
 #include "renderer/series/frame_times.h"
 #include "tests/fixtures/picture_tolerance.h"

@@ -10,6 +10,7 @@
 
 #include "atmosphere/colour/spectrum.h"
 #include "atmosphere/math/constants.h"
+#include "lut/image/exr.h"
 #include "renderer/camera/camera_rays.h"
 #include "renderer/picture/render.h"
 #include "tests/fixtures/bare_scene.h"

@@ -13,9 +13,11 @@
 #include "atmosphere/base/error.h"
 #include "atmosphere/math/constants.h"
 #include "lut/cli/messages.h"
+#include "renderer/series/day_plot.h"
 #include "renderer/series/day_times.h"
+#include "renderer/series/keogram.h"
 #include "renderer/series/manifest.h"
-#include "renderer/series/picture_sequence.h"
+#include "renderer/series/video.h"
 #include "tests/fixtures/environment_variable.h"
 #include "tests/fixtures/temporary_folder.h"
 

@@ -12,6 +12,7 @@
 
 #include "atmosphere/math/numerics.h"
 #include "lut/image/image.h"
+#include "lut/image/png.h"
 #include "tests/fixtures/class_map.h"
 #include "tests/fixtures/quantile.h"
 #include "tests/fixtures/sanitized.h"

@@ -16,6 +16,7 @@
 #include "atmosphere/math/constants.h"
 #include "tests/viewer/hud/hud_picture.h"
 #include "viewer/hud/imgui_backend.h"
+#include "viewer/hud/key_help.h"
 
 namespace alpenglow::viewer {
 namespace {

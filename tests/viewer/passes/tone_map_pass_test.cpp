@@ -13,8 +13,10 @@
 #include <thread>
 
 #include "atmosphere/math/numerics.h"
+#include "lut/image/development.h"
 #include "lut/image/image.h"
 #include "lut/image/look.h"
+#include "lut/image/metering.h"
 #include "lut/image/tone_mapping.h"
 #include "tests/viewer/shaders/headless.h"
 

@@ -1,16 +1,5 @@
 // SPDX-License-Identifier: MIT
-// Provides the light of lamps on the ground for interpolation by the GPU: SampledGlow, the light
-// that the illuminated air around a lamp brings to surfaces, and LampShadowField, the lit and
-// shadowed ground around a lamp.
-//
-// SampledGlow tabulates LampAirlightIrradiance (renderer/lamps/lamp_tree.h) with six terms over
-// distance and rise of the lamp.
-//
-//   E(n) = exp(term 0) / d * LampAirlightOnSlope(n, terms 1 to 5)             [m^-2], by band
-//
-// Term 0 is the logarithm of the light on level ground times the distance. The other terms, defined
-// in atmosphere/lamp/lamp_ray.glsl, are fitted by least squares to slopes of up to 60 degrees.
-// Gentle slopes have larger weights than steep ones (the fourth power of the cosine).
+// Provides LampShadowField: the lit and shadowed ground around a lamp, for interpolation by the GPU.
 //
 // A LampShadowField is a horizontal map of the signed distance to the edge of the shadows of
 // terrain, found with the renderer's own shadow rays (LampStage::Shades). Shadows end at sides of
@@ -23,24 +12,12 @@
 #pragma once
 
 #include <cstdint>
-#include <glm/vec4.hpp>
 #include <vector>
 
-#include "renderer/lamps/lamp_tree.h"
 #include "renderer/lamps/placed_lamp.h"
 #include "renderer/layer.h"
 
 namespace alpenglow::renderer {
-
-/// Size of the table. Distances and rises are spaced as in lamp_ray.glsl; each step of
-/// LampAirlightIrradiance is divided into four.
-inline constexpr int kGlowDistances = 81;
-inline constexpr int kGlowRises = 33;
-inline constexpr int kGlowTerms = 6;
-
-/// Returns [(term * kGlowRises + rise) * kGlowDistances + distance]. Unused bands have no light on
-/// level ground and equal light on all slopes. At most four bands.
-[[nodiscard]] std::vector<glm::vec4> SampledGlow(const LampAirlightIrradiance& glow);
 
 /// Nodes per side of a level; the middle one is below the lamp.
 inline constexpr int kPlanSide = 512;
