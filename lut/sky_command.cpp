@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "lut/commands.h"
+#include "lut/sky_command.h"
 
 #include <fmt/format.h>
 

@@ -10,9 +10,11 @@
 #include "lut/cli/output_file.h"
 #include "lut/cli/outputs.h"
 #include "lut/cli/program.h"
-#include "lut/commands.h"
 #include "lut/evaluate/eval.h"
+#include "lut/evaluate/integral_evaluator.h"
 #include "lut/evaluate/lamp_cases.h"
+#include "lut/sky_command.h"
+#include "lut/table_commands.h"
 #include "lut/table_io/exchange_check.h"
 #include "lut/table_io/table_folder.h"
 

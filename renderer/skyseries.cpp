@@ -15,6 +15,7 @@
 #include "atmosphere/math/constants.h"
 #include "lut/cli/terminal.h"
 #include "renderer/camera/track.h"
+#include "renderer/camera/track_file.h"
 #include "renderer/camera/track_names.h"
 #include "renderer/scene/places.h"
 #include "renderer/scene/scene_options.h"

@@ -10,6 +10,7 @@
 #include "lut/cli/output_file.h"
 #include "lut/cli/outputs.h"
 #include "renderer/camera/track.h"
+#include "renderer/camera/track_file.h"
 #include "renderer/camera/track_names.h"
 #include "renderer/scene/places.h"
 #include "renderer/scene/scene_options.h"

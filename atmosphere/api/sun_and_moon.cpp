@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-#include <alpenglow/errors.h>
 #include <alpenglow/sun_and_moon.h>
+
+#include <alpenglow/errors.h>
 
 #include <fmt/format.h>
 

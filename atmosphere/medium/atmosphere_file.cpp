@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Implements the reader and the writer of atmosphere.toml. ATMOSPHERE_FILE.md describes every key,
-// and medium_fields.h has the tables of the keys.
+#include "atmosphere/medium/atmosphere_file.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -13,7 +13,6 @@
 #include "atmosphere/colour/spectrum.h"
 #include "atmosphere/math/constants.h"
 #include "atmosphere/medium/aerosol_mixture.h"
-#include "atmosphere/medium/medium.h"
 #include "atmosphere/medium/medium_fields.h"
 #include "atmosphere/medium/medium_presets.h"
 #include "atmosphere/medium/phase_forms.h"

@@ -22,6 +22,7 @@
 #include "atmosphere/colour/spectrum.h"
 #include "atmosphere/math/constants.h"
 #include "atmosphere/medium/aerosol_mixture.h"
+#include "atmosphere/medium/atmosphere_file.h"
 #include "atmosphere/medium/medium.h"
 #include "atmosphere/medium/phase.h"
 #include "atmosphere/medium/phase_table.h"

@@ -168,7 +168,7 @@ class RefractedBeam {
   /// Returns F, by band. Below the horizon it is the value at the horizon, above the air the value
   /// at its top. Irradiance of the beam is within 2 % of an integration along refracted rays from
   /// 0.1 degrees up at 0, 3 and 8 km, and within 3 % from 0.3 degrees over the horizon between the
-  /// table's heights (tests/atmosphere/refraction/refracted_beam_test.cpp).
+  /// table's heights (tests/atmosphere/refraction/refracted_rays_test.cpp).
   [[nodiscard]] Bands<float> OverStraight(double altitude_m, double mu) const;
 
   /// Returns the irradiance perpendicular to the beams of a sun with unit irradiance above the air.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-#include <alpenglow/errors.h>
 #include <alpenglow/image.h>
+
+#include <alpenglow/errors.h>
 #include <fmt/format.h>
 
 #include <algorithm>

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-#include <alpenglow/errors.h>
 #include <alpenglow/panorama.h>
+
+#include <alpenglow/errors.h>
 
 #include <utility>
 

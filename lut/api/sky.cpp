@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: MIT
-#include <alpenglow/errors.h>
 #include <alpenglow/sky.h>
+
+#include <alpenglow/errors.h>
 #include <alpenglow/version.h>
 #include <fmt/format.h>
 #include <oneapi/tbb/parallel_for.h>

@@ -17,6 +17,7 @@
 #include "atmosphere/reference/path_tracer.h"
 #include "lut/cli/program.h"
 #include "lut/evaluate/case_results.h"
+#include "lut/evaluate/integral_evaluator.h"
 #include "lut/table_io/table_folder.h"
 
 namespace alpenglow::lut {

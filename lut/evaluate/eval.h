@@ -16,9 +16,9 @@
 //
 // Methods:
 //
-//   integral  SingleScattering in double; light of all orders from MultipleScattering. The error is
-// the
-//             difference between two numbers of nodes plus the error of closed forms (bounds
+//   integral  (integral_evaluator.h)
+//             SingleScattering in double; light of all orders from MultipleScattering. The error is
+//             the difference between two numbers of nodes plus the error of closed forms (bounds
 //             below). For smaller errors than that, the reference solution is used. The error of
 //             light of higher orders is 0.6 times the sum of the differences to two coarser
 //             solutions (one difference alone can be small by chance) and of the light in those
@@ -123,21 +123,11 @@ struct Estimate {
 /// One estimate per wavelength.
 using Estimates = std::vector<Estimate>;
 
-struct IntegralOptions {
-  int samples = 16;  // Gauss nodes per panel, in [2, 32]
-  /// Relative error that determines the samples of every case, and the use of the reference
-  /// solution if they do not suffice. It does not affect the error of light of higher orders.
-  std::optional<double> max_error;
-};
-
 struct PathTraceOptions {
   double max_error = 0.005;  // relative error: paths are added until one standard error is below it
   std::size_t max_paths = std::size_t{1} << 22U;  // maximum per case; larger errors remain after it
   std::uint64_t seed = 1;                         // a case's value does not depend on other cases
 };
-
-inline constexpr int kFewestSamples = 2;
-inline constexpr int kMostSamples = 32;
 
 /// The smallest error that may be requested: the accuracy of the reference solution.
 inline constexpr double kSmallestMaxError = 1e-8;
@@ -188,9 +178,6 @@ class Evaluator {
   [[nodiscard]] virtual Estimates Evaluate(const Case& work) const = 0;
 };
 
-/// Throws InputError for more than kMaxBands wavelengths, and options out of range.
-[[nodiscard]] std::unique_ptr<Evaluator> MakeIntegralEvaluator(const Medium& medium,
-                                                               const IntegralOptions& options = {});
 /// Makes an evaluator that rejects light of all orders if the tables hold single scattering only.
 /// Throws InputError for tables of different media.
 [[nodiscard]] std::unique_ptr<Evaluator> MakeTableEvaluator(TableFolder tables);

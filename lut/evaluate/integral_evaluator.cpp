@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: MIT
+#include "lut/evaluate/integral_evaluator.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -9,7 +11,6 @@
 #include "atmosphere/base/error.h"
 #include "atmosphere/math/constants.h"
 #include "atmosphere/reference/reference_solution.h"
-#include "lut/evaluate/eval.h"
 #include "lut/multiple_scattering/delta_m.h"
 #include "lut/multiple_scattering/multiple_scattering.h"
 

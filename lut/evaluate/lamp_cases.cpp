@@ -14,6 +14,7 @@
 #include "atmosphere/math/constants.h"
 #include "atmosphere/reference/airlight_reference.h"
 #include "lut/evaluate/case_results.h"
+#include "lut/evaluate/integral_evaluator.h"
 
 namespace alpenglow::lut {
 namespace {

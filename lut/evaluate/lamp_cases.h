@@ -21,6 +21,7 @@
 #include "atmosphere/lamp/airlight.h"
 #include "lut/cli/csv_reader.h"
 #include "lut/evaluate/eval.h"
+#include "lut/evaluate/integral_evaluator.h"
 
 namespace alpenglow::lut {
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// This header provides images: linear with layers, and developed for a display; with their metadata.
+// This header provides images: linear with layers, and developed for a display; with their
+// metadata.
 //
 // exr.h and png.h read and write them.
 //

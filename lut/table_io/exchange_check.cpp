@@ -15,6 +15,7 @@
 #include "atmosphere/base/error.h"
 #include "atmosphere/base/parsing.h"
 #include "atmosphere/math/constants.h"
+#include "atmosphere/medium/atmosphere_file.h"
 #include "atmosphere/medium/phase_text.h"
 #include "lut/table_io/table_image.h"
 #include "lut/tables/transmittance_table.h"

@@ -16,6 +16,7 @@
 #include "atmosphere/base/finite.h"
 #include "atmosphere/base/parsing.h"
 #include "atmosphere/math/constants.h"
+#include "atmosphere/medium/atmosphere_file.h"
 #include "atmosphere/medium/medium.h"
 #include "atmosphere/medium/phase_text.h"
 #include "lut/cli/output_file.h"

@@ -10,6 +10,7 @@
 
 #include "atmosphere/base/error.h"
 #include "atmosphere/base/parsing.h"
+#include "atmosphere/medium/atmosphere_file.h"
 #include "atmosphere/medium/medium.h"
 #include "lut/cli/program.h"
 #include "lut/multiple_scattering/moment_grid.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "renderer/camera/track.h"
+#include "renderer/camera/track_file.h"
 
 #include <fmt/format.h>
 #include <tinyxml2.h>
@@ -11,6 +11,7 @@
 
 #include "atmosphere/base/error.h"
 #include "atmosphere/base/parsing.h"
+#include "renderer/camera/track_record.h"
 
 namespace alpenglow::renderer {
 namespace {

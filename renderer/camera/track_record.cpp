@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "renderer/camera/track.h"
+#include "renderer/camera/track_record.h"
 
 #include <fmt/format.h>
 

@@ -12,6 +12,7 @@
 
 #include "atmosphere/base/error.h"
 #include "renderer/elevation/elevation_raster.h"
+#include "renderer/elevation/geographic_grid.h"
 #include "renderer/layer.h"
 
 namespace alpenglow::renderer {

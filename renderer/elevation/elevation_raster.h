@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: MIT
-// This header provides the steps of ReadElevation: reading a raster as stored in its file, filling
-// voids, resampling to geographic WGS84.
+// This header provides rasters of heights as stored in their files, and fills their voids.
 #pragma once
 
 #include <ogr_spatialref.h>
@@ -51,21 +50,5 @@ struct ElevationRaster {
 /// rim as boundary (free at the raster's edge), so that a hole in a plane is filled by the plane.
 /// At least one sample must be valid. Returns the number of filled samples.
 std::size_t FillVoids(std::vector<float>& height, int rows, int columns);
-
-/// Converts a raster to a grid of latitudes and longitudes of about equal spacing. Samples that
-/// already lie on such a grid are copied; otherwise they are interpolated bilinearly, with NaN
-/// outside the footprint. Throws InputError, naming `file`, for places that are not on the earth.
-[[nodiscard]] ElevationGrid GeographicGrid(const ElevationRaster& raster, const std::string& file);
-
-/// Returns the pixels of those samples of the raster's own grid; nullopt if its samples do not lie
-/// on a grid of latitudes and longitudes or run westwards. The window may not run past the last
-/// column.
-[[nodiscard]] std::optional<PixelWindow> PixelsOf(const ElevationRaster& raster,
-                                                  const GridWindow& window,
-                                                  const std::string& file);
-
-/// Returns the grid of GeographicGrid without heights; the raster may have none either.
-[[nodiscard]] ElevationGrid GeographicExtent(const ElevationRaster& raster,
-                                             const std::string& file);
 
 }  // namespace alpenglow::renderer

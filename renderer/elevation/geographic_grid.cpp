@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// This file resamples a raster of any projection to a grid of latitudes and longitudes.
+#include "renderer/elevation/geographic_grid.h"
+
 #include <fmt/format.h>
 #include <ogr_spatialref.h>
 
@@ -11,7 +12,6 @@
 #include <vector>
 
 #include "atmosphere/base/error.h"
-#include "renderer/elevation/elevation_raster.h"
 #include "renderer/layer.h"
 
 namespace alpenglow::renderer {

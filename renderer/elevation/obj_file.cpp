@@ -15,6 +15,8 @@
 
 #include "atmosphere/base/error.h"
 #include "renderer/elevation/mesh.h"
+#include "renderer/elevation/obj_text.h"
+#include "renderer/elevation/polygon_triangles.h"
 
 namespace alpenglow::renderer {
 namespace {

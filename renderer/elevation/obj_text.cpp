@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "renderer/elevation/obj_file.h"
+#include "renderer/elevation/obj_text.h"
 
 #include <fmt/format.h>
 
@@ -9,6 +9,7 @@
 #include <optional>
 
 #include "atmosphere/base/error.h"
+#include "renderer/elevation/polygon_triangles.h"
 #include "renderer/layer.h"
 
 namespace alpenglow::renderer {

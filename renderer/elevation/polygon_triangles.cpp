@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "renderer/elevation/obj_file.h"
+#include "renderer/elevation/polygon_triangles.h"
 
 #include <algorithm>
 #include <cmath>

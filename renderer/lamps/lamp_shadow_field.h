@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Provides LampShadowField: the lit and shadowed ground around a lamp, for interpolation by the GPU.
+// Provides LampShadowField: the lit and shadowed ground around a lamp, for interpolation by the
+// GPU.
 //
 // A LampShadowField is a horizontal map of the signed distance to the edge of the shadows of
 // terrain, found with the renderer's own shadow rays (LampStage::Shades). Shadows end at sides of

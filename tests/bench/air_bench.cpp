@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "atmosphere/medium/atmosphere_file.h"
 #include "atmosphere/medium/phase_table.h"
 #include "atmosphere/ray/direct_scattering.h"
 #include "atmosphere/ray/single_scattering.h"

@@ -12,6 +12,7 @@
 #include "atmosphere/math/constants.h"
 #include "atmosphere/reference/path_tracer.h"
 #include "lut/evaluate/eval.h"
+#include "lut/evaluate/integral_evaluator.h"
 #include "tests/bench/studies.h"
 
 namespace alpenglow::lut {

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "atmosphere/medium/atmosphere_file.h"
 #include "atmosphere/medium/medium.h"
 #include "lut/camera_tables/air_tables.h"
 #include "tests/fixtures/lit_air.h"

@@ -13,6 +13,7 @@
 #include "atmosphere/base/parsing.h"
 #include "atmosphere/colour/spectrum.h"
 #include "atmosphere/medium/aerosol_mixture.h"
+#include "atmosphere/medium/atmosphere_file.h"
 #include "atmosphere/medium/medium.h"
 #include "atmosphere/medium/medium_fields.h"
 #include "atmosphere/medium/phase_forms.h"

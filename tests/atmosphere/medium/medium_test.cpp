@@ -14,6 +14,7 @@
 #include "atmosphere/colour/spectrum.h"
 #include "atmosphere/math/constants.h"
 #include "atmosphere/medium/aerosol_mixture.h"
+#include "atmosphere/medium/atmosphere_file.h"
 #include "atmosphere/medium/medium_presets.h"
 #include "atmosphere/medium/phase.h"
 #include "tests/fixtures/fault_of.h"

@@ -12,6 +12,7 @@
 #include "atmosphere/base/error.h"
 #include "atmosphere/math/constants.h"
 #include "atmosphere/math/numerics.h"
+#include "atmosphere/medium/atmosphere_file.h"
 #include "atmosphere/ray/shell.h"
 #include "atmosphere/reference/reference_solution.h"
 #include "tests/fixtures/bands_near.h"

@@ -21,6 +21,7 @@
 #include "atmosphere/medium/medium_presets.h"
 #include "lut/api/conversions.h"
 #include "lut/evaluate/eval.h"
+#include "lut/evaluate/integral_evaluator.h"
 #include "tests/fixtures/sanitized.h"
 #include "tests/fixtures/temporary_folder.h"
 #include "tests/lut/camera_tables/air_reading.h"

@@ -11,6 +11,7 @@
 
 #include "atmosphere/base/error.h"
 #include "atmosphere/colour/spectrum.h"
+#include "atmosphere/medium/atmosphere_file.h"
 #include "tests/fixtures/sanitized.h"
 #include "tests/lut/camera_tables/air_reference.h"
 

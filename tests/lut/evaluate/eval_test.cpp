@@ -15,7 +15,9 @@
 
 #include "atmosphere/base/error.h"
 #include "atmosphere/math/constants.h"
+#include "atmosphere/medium/atmosphere_file.h"
 #include "lut/cli/program.h"
+#include "lut/evaluate/integral_evaluator.h"
 #include "lut/evaluate/lamp_cases.h"
 #include "tests/fixtures/fault_of.h"
 #include "tests/fixtures/media.h"

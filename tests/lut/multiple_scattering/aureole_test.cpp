@@ -8,6 +8,7 @@
 
 #include "atmosphere/colour/spectrum.h"
 #include "atmosphere/math/constants.h"
+#include "atmosphere/medium/atmosphere_file.h"
 #include "atmosphere/ray/single_scattering.h"
 #include "lut/multiple_scattering/azimuth_fan.h"
 #include "lut/multiple_scattering/multiple_scattering.h"

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "atmosphere/math/constants.h"
+#include "atmosphere/medium/atmosphere_file.h"
 #include "atmosphere/medium/medium_presets.h"
 #include "lut/multiple_scattering/multiple_scattering.h"
 #include "tests/fixtures/media.h"

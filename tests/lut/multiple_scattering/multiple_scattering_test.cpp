@@ -13,6 +13,7 @@
 #include "atmosphere/base/error.h"
 #include "atmosphere/math/constants.h"
 #include "atmosphere/math/numerics.h"
+#include "atmosphere/medium/atmosphere_file.h"
 #include "atmosphere/shared_glsl/instruction_set.h"
 #include "tests/fixtures/bands_near.h"
 #include "tests/fixtures/fault_of.h"

@@ -20,6 +20,7 @@
 #include <span>
 
 #include "atmosphere/base/error.h"
+#include "atmosphere/medium/atmosphere_file.h"
 #include "atmosphere/medium/medium.h"
 #include "atmosphere/reference/path_tracer.h"
 #include "atmosphere/reference/reference_solution.h"

@@ -25,6 +25,7 @@
 #include <vector>
 
 #include "atmosphere/base/error.h"
+#include "atmosphere/medium/atmosphere_file.h"
 #include "atmosphere/medium/medium.h"
 #include "lut/table_io/table_image.h"
 #include "tests/fixtures/fault_of.h"

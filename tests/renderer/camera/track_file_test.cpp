@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "atmosphere/math/constants.h"
+#include "renderer/camera/track_file.h"
 #include "tests/fixtures/fault_of.h"
 #include "tests/fixtures/temporary_folder.h"
 

@@ -18,6 +18,7 @@
 
 #include "atmosphere/math/constants.h"
 #include "renderer/elevation/mesh.h"
+#include "renderer/elevation/polygon_triangles.h"
 #include "renderer/layer.h"
 #include "tests/fixtures/fault_of.h"
 #include "tests/fixtures/temporary_folder.h"

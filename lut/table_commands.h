@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
-// This header declares the subcommands of skylut: `build` writes the tables of an atmosphere to a
-// folder, `report` measures speed against error and writes the results to a folder
-// (table_commands.cpp), and `sky` renders panoramas for lighting (sky_command.cpp).
+// Subcommands of skylut: `build` writes the tables of an atmosphere to a folder, and `report`
+// measures speed against error and writes the results to a folder.
 #pragma once
 
 #include "lut/cli/command_line.h"
@@ -12,6 +11,5 @@ namespace alpenglow::lut {
 /// been parsed.
 [[nodiscard]] Subcommand AddBuildCommand(CLI::App& app);
 [[nodiscard]] Subcommand AddReportCommand(CLI::App& app);
-[[nodiscard]] Subcommand AddSkyCommand(CLI::App& app);
 
 }  // namespace alpenglow::lut
