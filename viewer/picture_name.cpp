@@ -8,6 +8,7 @@
 
 #include "atmosphere/base/error.h"
 #include "atmosphere/base/parsing.h"
+#include "lut/cli/growing_file.h"
 #include "lut/cli/output_file.h"
 
 namespace alpenglow::viewer {

@@ -12,6 +12,7 @@
 #include "lut/image/development.h"
 #include "lut/image/exr.h"
 #include "lut/image/png.h"
+#include "lut/image/white_balance.h"
 #include "renderer/series/manifest.h"
 #include "viewer/gl/render_target.h"
 #include "viewer/passes/panorama.h"

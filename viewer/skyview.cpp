@@ -7,6 +7,7 @@
 
 #include "atmosphere/base/error.h"
 #include "atmosphere/math/constants.h"
+#include "lut/cli/growing_file.h"
 #include "lut/cli/output_file.h"
 #include "lut/cli/outputs.h"
 #include "renderer/camera/track.h"

@@ -17,6 +17,7 @@
 #include "lut/image/look.h"
 #include "lut/image/metering.h"
 #include "lut/image/png.h"
+#include "lut/image/white_balance.h"
 
 namespace alpenglow {
 namespace {

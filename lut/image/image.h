@@ -67,7 +67,7 @@ using Metadata = std::map<std::string, std::string>;
 /// (OpenEXR's attribute envmap = latlong).
 enum class Projection { kCamera, kLatitudeLongitude };
 
-/// 8-bit sRGB of the exposed image, dithered by triangular blue noise of +-1 code (development.h;
+/// 8-bit sRGB of the exposed image, dithered by triangular blue noise of +-1 code (dither.h;
 /// identical in every run). For out-of-gamut colours see tone_curve.glsl.
 struct DisplayImage {
   int width = 0;

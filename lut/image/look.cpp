@@ -10,9 +10,10 @@
 
 #include "atmosphere/base/error.h"
 #include "atmosphere/base/parsing.h"
-#include "lut/image/eye.h"
 #include "lut/image/metering.h"
+#include "lut/image/night_vision.h"
 #include "lut/image/tone_mapping.h"
+#include "lut/image/white_balance.h"
 #include "lut/layer.h"
 
 namespace alpenglow::lut {

@@ -12,6 +12,7 @@
 #include "lut/image/image.h"
 #include "lut/image/metering.h"
 #include "lut/image/tone_mapping.h"
+#include "lut/image/white_balance.h"
 
 namespace alpenglow::lut {
 
@@ -19,7 +20,7 @@ struct Look {
   ToneCurve curve = ToneCurve::kAgx;
   bool local_exposure = false;  // LocallyExposed
   bool rolls_off = false;       // WithHighlightsRolledOff
-  bool night_vision = false;    // lut/image/eye.h
+  bool night_vision = false;    // lut/image/night_vision.h
   AgxLook agx = AgxLook::kPhoto;
   WhiteBalance white = {};
 
@@ -44,7 +45,7 @@ struct PictureView {
 [[nodiscard]] Look Settled(Look look, const Image& image, const PictureView& view = {});
 
 /// Returns an image ready for metering and developing: white-balanced and, with night vision, with
-/// the colours and acuity of the dark-adapted eye (eye.h). @param look  must be settled.
+/// the colours and acuity of the dark-adapted eye (night_vision.h). @param look  must be settled.
 [[nodiscard]] Image Seen(const Image& image, const Look& look, const PictureView& view = {});
 
 /// Rule that determines the exposure of an image.

@@ -8,6 +8,7 @@
 
 #include "lut/cli/command_line.h"
 #include "lut/image/look.h"
+#include "lut/image/white_balance.h"
 
 namespace alpenglow::lut {
 

@@ -215,7 +215,7 @@ SHARED Number SrgbLight(Number code) {
   return select(bounded <= Number(0.04045), bounded / Number(12.92), curved);
 }
 
-// ---- Dither noise of 8-bit images (development.h) -----------------------------------------------
+// ---- Dither noise of 8-bit images (dither.h) ----------------------------------------------------
 
 // Returns the place in the tile at which a repetition of it begins: column in the lowest bits, row
 // eight bits up. It is 0 at the origin.

@@ -179,13 +179,13 @@ class PeakDepths {
 // beyond
 // 40 and f y = 20, which is enough in mist (same_light_test).
 std::vector<PeakDepths> DepthsFor(const SingleScattering<float>& air, const DeltaM& peak) {
-  constexpr double kDeepest = 40.0, kDeepestPeak = 20.0;
+  constexpr double kDeepestAir = 40.0, kDeepestPeak = 20.0;
   const double column_m = double{air.ColumnsToSpace(0.0, 0.0)[1]};
   std::vector<PeakDepths> depths;
   for (std::size_t band = 0; band < air.bands(); ++band) {
     const float share = peak.share(band);
     const double depth = 2.0 * column_m * air.medium().mie_scattering_per_m[band];
-    const double most = std::min(kDeepest, kDeepestPeak / std::max(double{share}, 1e-3));
+    const double most = std::min(kDeepestAir, kDeepestPeak / std::max(double{share}, 1e-3));
     depths.emplace_back(share, std::min(depth, most));
   }
   return depths;

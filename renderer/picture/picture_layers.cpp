@@ -8,8 +8,8 @@
 
 #include "atmosphere/base/error.h"
 #include "atmosphere/colour/spectrum.h"
-#include "lut/image/eye.h"
 #include "lut/image/image.h"
+#include "lut/image/night_vision.h"
 #include "renderer/effects/effect_choice.h"
 #include "renderer/surface/scene_geometry.h"
 

@@ -11,7 +11,8 @@
 #include "atmosphere/base/parsing.h"
 #include "atmosphere/math/constants.h"
 #include "lut/image/exr.h"
-#include "lut/image/eye.h"
+#include "lut/image/eye_adaptation.h"
+#include "lut/image/glare.h"
 #include "lut/image/metering.h"
 
 namespace alpenglow::renderer {

@@ -87,7 +87,7 @@ struct SeriesOutput {
   std::vector<NamedFile> inputs = {};  // files that the series must not overwrite
   std::optional<std::filesystem::path> contact_sheet = std::nullopt;  // PNG
   ProgressStyle progress = ProgressStyle::kAuto;
-  bool glare = false;  // developed pictures have the glare of the eye (eye.h); EXRs never have it
+  bool glare = false;  // developed pictures have the glare of the eye (glare.h); EXRs never have it
   std::optional<std::filesystem::path> keogram = std::nullopt;  // PNG (keogram.h)
   std::optional<std::filesystem::path> plot = std::nullopt;     // SVG (day_plot.h)
   std::optional<std::filesystem::path> video = std::nullopt;    // video.h

@@ -9,6 +9,7 @@
 
 #include "atmosphere/math/constants.h"
 #include "lut/image/png.h"
+#include "lut/image/white_balance.h"
 #include "renderer/scene/scene_options.h"
 #include "tests/fixtures/bare_scene.h"
 #include "tests/fixtures/temporary_folder.h"

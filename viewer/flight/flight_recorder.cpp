@@ -6,6 +6,7 @@
 #include "atmosphere/base/async_value.h"
 #include "atmosphere/base/error.h"
 #include "atmosphere/base/parsing.h"
+#include "lut/cli/growing_file.h"
 #include "lut/cli/messages.h"
 #include "lut/cli/output_file.h"
 #include "renderer/series/frame_times.h"

@@ -12,6 +12,7 @@
 #include "lut/image/look.h"
 #include "lut/image/metering.h"
 #include "lut/image/tone_mapping.h"
+#include "lut/image/white_balance.h"
 #include "viewer/hud/hud_model.h"
 #include "viewer/hud/panel_controls.h"
 

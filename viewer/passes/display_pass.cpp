@@ -17,8 +17,10 @@
 
 #include "atmosphere/base/parsing.h"
 #include "lut/image/development.h"
+#include "lut/image/dither.h"
 #include "lut/image/metering.h"
 #include "lut/image/tone_mapping.h"
+#include "lut/image/white_balance.h"
 #include "viewer/gl/gl_context.h"
 #include "viewer/gl/render_target.h"
 #include "viewer/land/land_pass.h"

@@ -26,6 +26,7 @@
 
 #include "lut/image/look.h"
 #include "lut/image/tone_mapping.h"
+#include "lut/image/white_balance.h"
 #include "viewer/gl/gl_context.h"
 #include "viewer/gl/pass_timer.h"
 #include "viewer/gl/render_target.h"
@@ -83,7 +84,7 @@ class SpotMeter {
   std::optional<double> luminance_;
 };
 
-/// DitherNoise (lut/image/development.h) as a texture, four floats per pixel.
+/// DitherNoise (lut/image/dither.h) as a texture, four floats per pixel.
 class DitherTexture {
  public:
   DitherTexture();

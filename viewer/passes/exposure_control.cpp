@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "lut/image/white_balance.h"
+
 namespace alpenglow::viewer {
 
 double AdaptedEv100(std::optional<double> before, double metered, double seconds) {

@@ -5,8 +5,9 @@
 
 #include <optional>
 
-#include "lut/image/eye.h"
+#include "lut/image/eye_adaptation.h"
 #include "lut/image/look.h"
+#include "lut/image/white_balance.h"
 #include "viewer/passes/display_pass.h"
 
 namespace alpenglow::viewer {

@@ -8,6 +8,7 @@
 #include <optional>
 #include <string>
 
+#include "lut/image/white_balance.h"
 #include "renderer/picture/reference_picture.h"
 #include "viewer/passes/auto_quality.h"
 #include "viewer/passes/display_pass.h"

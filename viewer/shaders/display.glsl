@@ -76,7 +76,7 @@ void main() {
 uniform sampler2D dither_noise;  // [codes]; a tile, row 0 at the top of the picture
 uniform vec2 screen_size;        // pixels
 
-// Returns DitherNoise (lut/image/development.h).
+// Returns DitherNoise (lut/image/dither.h).
 vec3 NoiseAt(ivec2 pixel) {
   ivec2 tile = textureSize(dither_noise, 0);
   uvec2 repetition = uvec2(pixel / tile);

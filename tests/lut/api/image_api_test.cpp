@@ -12,6 +12,7 @@
 #include "lut/image/look.h"
 #include "lut/image/metering.h"
 #include "lut/image/png.h"
+#include "lut/image/white_balance.h"
 #include "tests/fixtures/comma_locale.h"
 #include "tests/fixtures/temporary_folder.h"
 

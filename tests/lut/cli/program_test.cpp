@@ -24,6 +24,7 @@
 #include <vector>
 
 #include "atmosphere/base/error.h"
+#include "lut/cli/growing_file.h"
 #include "lut/cli/output_file.h"
 #include "lut/cli/outputs.h"
 #include "lut/cli/terminal.h"

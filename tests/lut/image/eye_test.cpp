@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: MIT
-#include "lut/image/eye.h"
 
 #include <gtest/gtest.h>
 
@@ -8,6 +7,9 @@
 
 #include "atmosphere/base/error.h"
 #include "atmosphere/math/constants.h"
+#include "lut/image/eye_adaptation.h"
+#include "lut/image/glare.h"
+#include "lut/image/night_vision.h"
 #include "lut/image/tone_mapping.h"
 #include "lut/layer.h"
 

@@ -14,7 +14,9 @@
 #include <limits>
 
 #include "atmosphere/base/error.h"
+#include "lut/image/clipped_edge.h"
 #include "lut/image/development.h"
+#include "lut/image/dither.h"
 #include "lut/image/exr.h"
 #include "lut/image/look.h"
 #include "lut/image/png.h"

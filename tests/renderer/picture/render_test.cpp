@@ -20,7 +20,7 @@
 #include "atmosphere/medium/medium_presets.h"
 #include "atmosphere/reference/reference_solution.h"
 #include "atmosphere/refraction/refracted_view.h"
-#include "lut/image/eye.h"
+#include "lut/image/night_vision.h"
 #include "lut/multiple_scattering/multiple_scattering.h"
 #include "renderer/camera/camera_rays.h"
 #include "renderer/illumination/aerial_perspective.h"

@@ -8,6 +8,7 @@
 #include <string>
 #include <utility>
 
+#include "lut/image/white_balance.h"
 #include "tests/viewer/input/recorded_commands.h"
 #include "tests/viewer/shaders/headless.h"
 #include "viewer/gl/render_target.h"

@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "atmosphere/math/constants.h"
+#include "lut/image/white_balance.h"
 #include "tests/fixtures/luminance.h"
 #include "tests/fixtures/sanitized.h"
 #include "tests/viewer/hud/hud_picture.h"

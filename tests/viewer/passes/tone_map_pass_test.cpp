@@ -18,6 +18,7 @@
 #include "lut/image/look.h"
 #include "lut/image/metering.h"
 #include "lut/image/tone_mapping.h"
+#include "lut/image/white_balance.h"
 #include "tests/viewer/shaders/headless.h"
 
 namespace alpenglow::viewer {
