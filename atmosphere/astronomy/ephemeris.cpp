@@ -60,43 +60,6 @@ double Azimuth(const glm::dvec3& enu) {
   return turned < 2.0 * kPi ? turned : 0.0;  // -1e-17 + 2 pi rounds to 2 pi
 }
 
-}  // namespace
-
-TerrestrialTime TerrestrialTimeAt(const UtcInstant& instant, double delta_t_s) {
-  return {kModifiedJulianEpoch + instant.modified_julian_day,
-          (instant.second_of_day + delta_t_s) / kSecondsPerDay};
-}
-
-glm::dmat3 EcefFromGcrs(const UtcInstant& instant, double delta_t_s) {
-  const EarthAndAxes earth = EarthAndAxesAt(TerrestrialTimeAt(instant, delta_t_s));
-  const double angle_rad = eraEra00(kModifiedJulianEpoch + instant.modified_julian_day,
-                                    instant.second_of_day / kSecondsPerDay) -
-                           earth.equation_of_the_origins_rad;
-  const double sine = std::sin(angle_rad), cosine = std::cos(angle_rad);
-  return glm::dmat3(cosine, -sine, 0.0, sine, cosine, 0.0, 0.0, 0.0, 1.0) * earth.true_from_gcrs;
-}
-
-// TDB - TT, below 2 ms, moves the sun by 1e-4 arcseconds.
-EarthAndSun EarthAndSunAt(const UtcInstant& instant, double delta_t_s) {
-  return EarthAndAxesAt(TerrestrialTimeAt(instant, delta_t_s)).bodies;
-}
-
-ApparentPlace SeenFrom(const GeodeticPosition& place, const glm::dmat3& ecef_from_gcrs,
-                       const EarthAndSun& bodies, const BodyState& body) {
-  const LocalFrame frame(kWgs84, place);
-  const BodyState observer =
-      ObserverOf(bodies.earth, EcefFromGeodetic(kWgs84, place), glm::transpose(ecef_from_gcrs));
-  const glm::dvec3 path_au = LightPath_au(body, observer);
-  const double sun_au = glm::length(bodies.sun.position_au - observer.position_au);
-  const Vector<Ecef> direction{
-      glm::normalize(ecef_from_gcrs * Aberrated(path_au, observer.velocity_au_per_day, sun_au))};
-  const glm::dvec3 enu = frame.EnuFromEcef(direction).xyz;
-  return {std::atan2(enu.z, std::hypot(enu.x, enu.y)), Azimuth(enu), glm::length(path_au),
-          direction};
-}
-
-namespace {
-
 constexpr double kArcsecond = kRadiansPerDegree / 3600.0;
 constexpr double kDayOf2000 = 2451545.0;
 constexpr double kDaysOfCentury = 36525.0;
@@ -234,20 +197,6 @@ glm::dvec3 PositionAt(double centuries) {
   return OnEquator(OnEclipticOf2000(distance_au * direction, centuries));
 }
 
-}  // namespace
-
-BodyState MoonFromEarth(const TerrestrialTime& time) {
-  const auto centuries = [&](double after_days) {
-    return (time.day - kDayOf2000 + (time.part + after_days)) / kDaysOfCentury;
-  };
-  // The velocity is used for the 1.3 seconds of light time, in which its error is 0.2 m.
-  constexpr double kMinute = 1.0 / 1440.0;
-  const glm::dvec3 position = PositionAt(centuries(0.0));
-  return {position, (PositionAt(centuries(kMinute)) - position) / kMinute};
-}
-
-namespace {
-
 struct Planet {
   int number;                      // number in eraPlan94
   double magnitude;                // at 1 au from sun and earth, fully lit
@@ -295,6 +244,49 @@ double MagnitudeOf(const Planet& planet, const BodyState& body, const EarthAndSu
 }
 
 }  // namespace
+
+TerrestrialTime TerrestrialTimeAt(const UtcInstant& instant, double delta_t_s) {
+  return {kModifiedJulianEpoch + instant.modified_julian_day,
+          (instant.second_of_day + delta_t_s) / kSecondsPerDay};
+}
+
+glm::dmat3 EcefFromGcrs(const UtcInstant& instant, double delta_t_s) {
+  const EarthAndAxes earth = EarthAndAxesAt(TerrestrialTimeAt(instant, delta_t_s));
+  const double angle_rad = eraEra00(kModifiedJulianEpoch + instant.modified_julian_day,
+                                    instant.second_of_day / kSecondsPerDay) -
+                           earth.equation_of_the_origins_rad;
+  const double sine = std::sin(angle_rad), cosine = std::cos(angle_rad);
+  return glm::dmat3(cosine, -sine, 0.0, sine, cosine, 0.0, 0.0, 0.0, 1.0) * earth.true_from_gcrs;
+}
+
+// TDB - TT, below 2 ms, moves the sun by 1e-4 arcseconds.
+EarthAndSun EarthAndSunAt(const UtcInstant& instant, double delta_t_s) {
+  return EarthAndAxesAt(TerrestrialTimeAt(instant, delta_t_s)).bodies;
+}
+
+ApparentPlace SeenFrom(const GeodeticPosition& place, const glm::dmat3& ecef_from_gcrs,
+                       const EarthAndSun& bodies, const BodyState& body) {
+  const LocalFrame frame(kWgs84, place);
+  const BodyState observer =
+      ObserverOf(bodies.earth, EcefFromGeodetic(kWgs84, place), glm::transpose(ecef_from_gcrs));
+  const glm::dvec3 path_au = LightPath_au(body, observer);
+  const double sun_au = glm::length(bodies.sun.position_au - observer.position_au);
+  const Vector<Ecef> direction{
+      glm::normalize(ecef_from_gcrs * Aberrated(path_au, observer.velocity_au_per_day, sun_au))};
+  const glm::dvec3 enu = frame.EnuFromEcef(direction).xyz;
+  return {std::atan2(enu.z, std::hypot(enu.x, enu.y)), Azimuth(enu), glm::length(path_au),
+          direction};
+}
+
+BodyState MoonFromEarth(const TerrestrialTime& time) {
+  const auto centuries = [&](double after_days) {
+    return (time.day - kDayOf2000 + (time.part + after_days)) / kDaysOfCentury;
+  };
+  // The velocity is used for the 1.3 seconds of light time, in which its error is 0.2 m.
+  constexpr double kMinute = 1.0 / 1440.0;
+  const glm::dvec3 position = PositionAt(centuries(0.0));
+  return {position, (PositionAt(centuries(kMinute)) - position) / kMinute};
+}
 
 std::array<PointLight, 5> PlanetsAt(const GeodeticPosition& place, const UtcInstant& instant) {
   const double delta_t_s = DeltaT(instant);

@@ -49,36 +49,6 @@ const std::vector<Star>& Catalogue() {
   return kStars;
 }
 
-}  // namespace
-
-std::vector<PointLight> StarsAt(const UtcInstant& instant, double faintest) {
-  constexpr double kModifiedDayOf2000 = 51544.5, kDaysOfYear = 365.25;
-  const double years =
-      (instant.modified_julian_day + instant.second_of_day / kSecondsPerDay - kModifiedDayOf2000) /
-      kDaysOfYear;
-  const glm::dmat3 ecef_from_gcrs = EcefFromGcrs(instant, DeltaT(instant));
-  std::vector<PointLight> lights;
-  for (const Star& star : Catalogue()) {
-    if (star.magnitude > faintest) break;
-    const glm::dvec3 now = glm::normalize(star.direction + years * star.motion_per_year);
-    lights.push_back({{ecef_from_gcrs * now}, star.magnitude, star.colour_index});
-  }
-  return lights;
-}
-
-double IlluminanceOf(double magnitude) {
-  return kOfMagnitude0_lux * std::pow(10.0, -0.4 * magnitude);
-}
-
-double MagnitudeOf(double lux) { return -2.5 * std::log10(lux / kOfMagnitude0_lux); }
-
-double TemperatureOf(double colour_index) {
-  const double scaled = 0.92 * colour_index;
-  return 4600.0 * (1.0 / (scaled + 1.7) + 1.0 / (scaled + 0.62));
-}
-
-namespace {
-
 constexpr double kLayer_m = 90e3;
 constexpr double kAirglow_S10 = 180.0;
 
@@ -148,6 +118,32 @@ Angles AnglesOf(const glm::dvec3& unit) {
 }
 
 }  // namespace
+
+std::vector<PointLight> StarsAt(const UtcInstant& instant, double faintest) {
+  constexpr double kModifiedDayOf2000 = 51544.5, kDaysOfYear = 365.25;
+  const double years =
+      (instant.modified_julian_day + instant.second_of_day / kSecondsPerDay - kModifiedDayOf2000) /
+      kDaysOfYear;
+  const glm::dmat3 ecef_from_gcrs = EcefFromGcrs(instant, DeltaT(instant));
+  std::vector<PointLight> lights;
+  for (const Star& star : Catalogue()) {
+    if (star.magnitude > faintest) break;
+    const glm::dvec3 now = glm::normalize(star.direction + years * star.motion_per_year);
+    lights.push_back({{ecef_from_gcrs * now}, star.magnitude, star.colour_index});
+  }
+  return lights;
+}
+
+double IlluminanceOf(double magnitude) {
+  return kOfMagnitude0_lux * std::pow(10.0, -0.4 * magnitude);
+}
+
+double MagnitudeOf(double lux) { return -2.5 * std::log10(lux / kOfMagnitude0_lux); }
+
+double TemperatureOf(double colour_index) {
+  const double scaled = 0.92 * colour_index;
+  return 4600.0 * (1.0 / (scaled + 1.7) + 1.0 / (scaled + 0.62));
+}
 
 double LuminanceOfSurfaceBrightness(double magnitudes) {
   return 10.8e4 * std::pow(10.0, -0.4 * magnitudes);

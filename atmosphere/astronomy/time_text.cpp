@@ -219,103 +219,6 @@ std::string NoSuchEvent(std::string_view text, const EventDay& day) {
   return fault;
 }
 
-}  // namespace
-
-std::string DateAt(const UtcInstant& instant, const EventDay& day) {
-  if (day.zone) return FormatInZone(instant, *day.zone).substr(0, kDateLength);
-  const double turns = WrappedLongitude(day.place.longitude_rad) / (2.0 * kPi);
-  return FormatUtc(AddSeconds(instant, kSecondsPerDay * turns)).substr(0, kDateLength);
-}
-
-UtcInstant DayFromText(std::string_view date, const EventDay& day) {
-  RefuseOtherYears(date, "date");
-  if (const std::optional<int> days = DaysFromToday(date)) {
-    const UtcInstant noon_today = DayFromText(DateAt(day.now, day), day);
-    const UtcInstant near_noon = AddSeconds(noon_today, *days * kSecondsPerDay);
-    return DayFromText(DateAt(near_noon, day), day);  // the clocks can change in between
-  }
-  if (date.size() != kDateLength) {
-    throw InputError(
-        fmt::format("date is \"{}\"; write it as 2026-06-21, today, tomorrow or yesterday", date));
-  }
-  const std::string noon = fmt::format("{}T12:00:00", date);
-  if (day.zone) return ParseInstant(noon, day.zone);
-  const double turns = WrappedLongitude(day.place.longitude_rad) / (2.0 * kPi);
-  return AddSeconds(ParseInstant(noon + "Z"), -kSecondsPerDay * turns);
-}
-
-bool IsDayText(std::string_view text) {
-  return DaysFromToday(text).has_value() ||
-         (text.size() == kDateLength && IsDigit(text[0]) && text[4] == '-' && text[7] == '-');
-}
-
-TimeOfDay TimeOfDayFromText(std::string_view text, const EventDay& day) {
-  TimeOfDay time{std::string(text), day};
-  if (const std::optional<std::size_t> end = EndOfDay(text)) {
-    time.text = text.substr(*end + 1);
-    time.day.around = DayFromText(text.substr(0, *end), day);
-  }
-  return time;
-}
-
-bool IsClockTime(std::string_view text) {
-  return (text.size() >= 5 && IsDigit(text[0]) && IsDigit(text[1]) && text[2] == ':') ||
-         FourDigitClockTime(text).has_value();
-}
-
-bool IsDailyEvent(std::string_view text) {
-  return !text.empty() && !IsDigit(text.front()) && !IsNow(text) && !IsDayText(text) &&
-         !EndOfDay(text);
-}
-
-std::optional<UtcInstant> FindDailyEvent(std::string_view text, const EventDay& day) {
-  const EventText parts = SplitEvent(text);
-  if (parts.name.empty()) RefuseEvent(parts.name, text);
-  const double offset_s = OffsetOf(parts);
-  std::optional<UtcInstant> instant;
-  if (parts.name == "midnight") {
-    instant = FindMidnight(day.place, AroundOf(text, day));
-  } else if (const std::optional<SunEvent> sun = SunEventFromName(parts.name)) {
-    instant = FindSunEvent(*sun, day.place, AroundOf(text, day));
-  } else if (const std::optional<MoonEvent> moon = MoonEventFromName(parts.name)) {
-    instant = FindMoonEvent(*moon, AroundOf(text, day), day);
-  } else if (const std::optional<EclipseEvent> eclipse = EclipseEventFromName(parts.name)) {
-    instant = FindEclipseEvent(*eclipse, AroundOf(text, day), day);
-  } else {
-    RefuseEvent(parts.name, text);
-  }
-  if (instant) instant = AddSeconds(*instant, offset_s);
-  return instant;
-}
-
-UtcInstant InstantFromText(std::string_view text, const EventDay& day) {
-  RefuseOtherYears(text, "time");
-  if (IsNow(text)) return AddSeconds(day.now, OffsetOf(SplitEvent(text)));
-  if (EndOfDay(text)) {
-    const TimeOfDay time = TimeOfDayFromText(text, day);
-    return InstantFromText(time.text, time.day);
-  }
-  if (DaysFromToday(text)) return InstantFromText(fmt::format("{} noon", text), day);
-  if (IsDayText(text)) {
-    throw InputError(fmt::format(
-        "time \"{0}\": at what time of that day? write \"{0} 18:30\" or \"{0} sunrise\"", text));
-  }
-  if (const std::optional<std::string> clock = FourDigitClockTime(text))
-    return InstantFromText(*clock, day);
-  if (IsClockTime(text)) {
-    return ParseInstant(fmt::format("{}T{}", DateAt(AroundOf(text, day), day), text), day.zone);
-  }
-  if (!IsDailyEvent(text)) {
-    RefuseOtherClockTimes(text);
-    return ParseInstant(text, day.zone);
-  }
-  const std::optional<UtcInstant> instant = FindDailyEvent(text, day);
-  if (!instant) throw InputError(NoSuchEvent(text, day));
-  return *instant;
-}
-
-namespace {
-
 /// An instant at one end determines the day of the event at the other end.
 EventDay DayOfFrom(const TimesText& times, const EventDay& day) {
   EventDay of_from = day;
@@ -473,6 +376,99 @@ std::vector<UtcInstant> CountBetween(const UtcInstant& from, double span_s, int 
 }
 
 }  // namespace
+
+std::string DateAt(const UtcInstant& instant, const EventDay& day) {
+  if (day.zone) return FormatInZone(instant, *day.zone).substr(0, kDateLength);
+  const double turns = WrappedLongitude(day.place.longitude_rad) / (2.0 * kPi);
+  return FormatUtc(AddSeconds(instant, kSecondsPerDay * turns)).substr(0, kDateLength);
+}
+
+UtcInstant DayFromText(std::string_view date, const EventDay& day) {
+  RefuseOtherYears(date, "date");
+  if (const std::optional<int> days = DaysFromToday(date)) {
+    const UtcInstant noon_today = DayFromText(DateAt(day.now, day), day);
+    const UtcInstant near_noon = AddSeconds(noon_today, *days * kSecondsPerDay);
+    return DayFromText(DateAt(near_noon, day), day);  // the clocks can change in between
+  }
+  if (date.size() != kDateLength) {
+    throw InputError(
+        fmt::format("date is \"{}\"; write it as 2026-06-21, today, tomorrow or yesterday", date));
+  }
+  const std::string noon = fmt::format("{}T12:00:00", date);
+  if (day.zone) return ParseInstant(noon, day.zone);
+  const double turns = WrappedLongitude(day.place.longitude_rad) / (2.0 * kPi);
+  return AddSeconds(ParseInstant(noon + "Z"), -kSecondsPerDay * turns);
+}
+
+bool IsDayText(std::string_view text) {
+  return DaysFromToday(text).has_value() ||
+         (text.size() == kDateLength && IsDigit(text[0]) && text[4] == '-' && text[7] == '-');
+}
+
+TimeOfDay TimeOfDayFromText(std::string_view text, const EventDay& day) {
+  TimeOfDay time{std::string(text), day};
+  if (const std::optional<std::size_t> end = EndOfDay(text)) {
+    time.text = text.substr(*end + 1);
+    time.day.around = DayFromText(text.substr(0, *end), day);
+  }
+  return time;
+}
+
+bool IsClockTime(std::string_view text) {
+  return (text.size() >= 5 && IsDigit(text[0]) && IsDigit(text[1]) && text[2] == ':') ||
+         FourDigitClockTime(text).has_value();
+}
+
+bool IsDailyEvent(std::string_view text) {
+  return !text.empty() && !IsDigit(text.front()) && !IsNow(text) && !IsDayText(text) &&
+         !EndOfDay(text);
+}
+
+std::optional<UtcInstant> FindDailyEvent(std::string_view text, const EventDay& day) {
+  const EventText parts = SplitEvent(text);
+  if (parts.name.empty()) RefuseEvent(parts.name, text);
+  const double offset_s = OffsetOf(parts);
+  std::optional<UtcInstant> instant;
+  if (parts.name == "midnight") {
+    instant = FindMidnight(day.place, AroundOf(text, day));
+  } else if (const std::optional<SunEvent> sun = SunEventFromName(parts.name)) {
+    instant = FindSunEvent(*sun, day.place, AroundOf(text, day));
+  } else if (const std::optional<MoonEvent> moon = MoonEventFromName(parts.name)) {
+    instant = FindMoonEvent(*moon, AroundOf(text, day), day);
+  } else if (const std::optional<EclipseEvent> eclipse = EclipseEventFromName(parts.name)) {
+    instant = FindEclipseEvent(*eclipse, AroundOf(text, day), day);
+  } else {
+    RefuseEvent(parts.name, text);
+  }
+  if (instant) instant = AddSeconds(*instant, offset_s);
+  return instant;
+}
+
+UtcInstant InstantFromText(std::string_view text, const EventDay& day) {
+  RefuseOtherYears(text, "time");
+  if (IsNow(text)) return AddSeconds(day.now, OffsetOf(SplitEvent(text)));
+  if (EndOfDay(text)) {
+    const TimeOfDay time = TimeOfDayFromText(text, day);
+    return InstantFromText(time.text, time.day);
+  }
+  if (DaysFromToday(text)) return InstantFromText(fmt::format("{} noon", text), day);
+  if (IsDayText(text)) {
+    throw InputError(fmt::format(
+        "time \"{0}\": at what time of that day? write \"{0} 18:30\" or \"{0} sunrise\"", text));
+  }
+  if (const std::optional<std::string> clock = FourDigitClockTime(text))
+    return InstantFromText(*clock, day);
+  if (IsClockTime(text)) {
+    return ParseInstant(fmt::format("{}T{}", DateAt(AroundOf(text, day), day), text), day.zone);
+  }
+  if (!IsDailyEvent(text)) {
+    RefuseOtherClockTimes(text);
+    return ParseInstant(text, day.zone);
+  }
+  const std::optional<UtcInstant> instant = FindDailyEvent(text, day);
+  if (!instant) throw InputError(NoSuchEvent(text, day));
+  return *instant;
+}
 
 std::vector<UtcInstant> InstantsFromTimes(const TimesText& times, const EventDay& day) {
   if (!times.at.empty()) {

@@ -36,57 +36,6 @@ std::optional<Number> ParseAs(std::string_view text) {
 
 constexpr std::string_view kBlanks = " \t\r\n";
 
-}  // namespace
-
-std::string LowerCase(std::string_view text) {
-  std::string lower(text);
-  for (char& letter : lower) letter = LowerCase(letter);
-  return lower;
-}
-
-std::string_view Trimmed(std::string_view text) {
-  text.remove_prefix(std::min(text.find_first_not_of(kBlanks), text.size()));
-  return text.substr(0, text.find_last_not_of(kBlanks) + 1);
-}
-
-std::vector<std::string_view> WordsOf(std::string_view text) {
-  std::vector<std::string_view> words;
-  while (!(text = Trimmed(text)).empty()) {
-    const std::size_t end = std::min(text.find_first_of(kBlanks), text.size());
-    words.push_back(text.substr(0, end));
-    text.remove_prefix(end);
-  }
-  return words;
-}
-
-std::optional<double> ParseNumber(std::string_view text) { return ParseAs<double>(text); }
-
-std::optional<int> ParseWholeNumber(std::string_view text) { return ParseAs<int>(text); }
-
-std::vector<std::vector<double>> ReadColumns(std::string_view file,
-                                             const std::vector<int>& columns) {
-  std::vector<std::vector<double>> values(columns.size());
-  VisitCsvRows(EmbeddedText(file), [&](const CsvRecord& row) {
-    for (std::size_t i = 0; i < columns.size(); ++i) {
-      const std::string_view field = row.fields.at(static_cast<std::size_t>(columns[i]));
-      const std::optional<double> number = ParseNumber(field);
-      if (!number) throw InternalError(fmt::format("{}: \"{}\" is not a number", file, field));
-      values[i].push_back(*number);
-    }
-  });
-  return values;
-}
-
-std::vector<std::string> ReadTextColumn(std::string_view file, int column) {
-  std::vector<std::string> values;
-  VisitCsvRows(EmbeddedText(file), [&](const CsvRecord& row) {
-    values.emplace_back(row.fields.at(static_cast<std::size_t>(column)));
-  });
-  return values;
-}
-
-namespace {
-
 namespace fs = std::filesystem;
 
 /// Returns the characters of UTF-8; each byte of other text.
@@ -170,7 +119,70 @@ toml::table Parse(std::string_view text, const std::string& origin) {
   }
 }
 
+/// The number, or the reason why there is none.
+struct NumberOrFault {
+  double number = 0.0;
+  std::string fault;
+};
+
+NumberOrFault NumberIn(const toml::node& node, const std::string& name, double low, double high) {
+  if (!node.is_number()) {
+    return {0.0, fmt::format("{} is {}; it must be a number in [{}, {}]", name, KindOf(node), low,
+                             high)};
+  }
+  const double number = *node.value<double>();
+  if (number >= low && number <= high) return {number, ""};  // written so that NaN is a fault
+  return {0.0, fmt::format("{} is {}; it must lie in [{}, {}]", name, number, low, high)};
+}
+
 }  // namespace
+
+std::string LowerCase(std::string_view text) {
+  std::string lower(text);
+  for (char& letter : lower) letter = LowerCase(letter);
+  return lower;
+}
+
+std::string_view Trimmed(std::string_view text) {
+  text.remove_prefix(std::min(text.find_first_not_of(kBlanks), text.size()));
+  return text.substr(0, text.find_last_not_of(kBlanks) + 1);
+}
+
+std::vector<std::string_view> WordsOf(std::string_view text) {
+  std::vector<std::string_view> words;
+  while (!(text = Trimmed(text)).empty()) {
+    const std::size_t end = std::min(text.find_first_of(kBlanks), text.size());
+    words.push_back(text.substr(0, end));
+    text.remove_prefix(end);
+  }
+  return words;
+}
+
+std::optional<double> ParseNumber(std::string_view text) { return ParseAs<double>(text); }
+
+std::optional<int> ParseWholeNumber(std::string_view text) { return ParseAs<int>(text); }
+
+std::vector<std::vector<double>> ReadColumns(std::string_view file,
+                                             const std::vector<int>& columns) {
+  std::vector<std::vector<double>> values(columns.size());
+  VisitCsvRows(EmbeddedText(file), [&](const CsvRecord& row) {
+    for (std::size_t i = 0; i < columns.size(); ++i) {
+      const std::string_view field = row.fields.at(static_cast<std::size_t>(columns[i]));
+      const std::optional<double> number = ParseNumber(field);
+      if (!number) throw InternalError(fmt::format("{}: \"{}\" is not a number", file, field));
+      values[i].push_back(*number);
+    }
+  });
+  return values;
+}
+
+std::vector<std::string> ReadTextColumn(std::string_view file, int column) {
+  std::vector<std::string> values;
+  VisitCsvRows(EmbeddedText(file), [&](const CsvRecord& row) {
+    values.emplace_back(row.fields.at(static_cast<std::size_t>(column)));
+  });
+  return values;
+}
 
 std::string ReadTextFile(const fs::path& file) {
   constexpr std::size_t kMostBytes = 16U << 20U;
@@ -255,26 +267,6 @@ void TomlTable::AllowOnly(const std::vector<std::string>& keys) const {
 }
 
 bool TomlTable::Has(const std::string& key) const { return level_->Find(key) != nullptr; }
-
-namespace {
-
-/// The number, or the reason why there is none.
-struct NumberOrFault {
-  double number = 0.0;
-  std::string fault;
-};
-
-NumberOrFault NumberIn(const toml::node& node, const std::string& name, double low, double high) {
-  if (!node.is_number()) {
-    return {0.0, fmt::format("{} is {}; it must be a number in [{}, {}]", name, KindOf(node), low,
-                             high)};
-  }
-  const double number = *node.value<double>();
-  if (number >= low && number <= high) return {number, ""};  // written so that NaN is a fault
-  return {0.0, fmt::format("{} is {}; it must lie in [{}, {}]", name, number, low, high)};
-}
-
-}  // namespace
 
 std::optional<double> TomlTable::Number(const std::string& key, double low, double high) const {
   const toml::node* node = level_->Find(key);

@@ -52,25 +52,6 @@ std::vector<TrainedBands> ReadSets() {
   return sets;
 }
 
-}  // namespace
-
-const std::vector<TrainedBands>& TrainedBandSets() {
-  static const std::vector<TrainedBands> sets = ReadSets();
-  return sets;
-}
-
-const TrainedBands* FindTrainedBands(std::span<const double> wavelengths_nm) {
-  for (const TrainedBands& set : TrainedBandSets()) {
-    if (std::equal(set.wavelengths_nm.begin(), set.wavelengths_nm.end(), wavelengths_nm.begin(),
-                   wavelengths_nm.end())) {
-      return &set;
-    }
-  }
-  return nullptr;
-}
-
-namespace {
-
 using Triple = std::array<double, 3>;
 using Seen = std::array<double, 4>;  // X, Y, Z of the cones; scotopic luminance of the rods
 
@@ -300,6 +281,21 @@ Triple Product(std::span<const double> matrix, std::span<const double> bands) {
 }
 
 }  // namespace
+
+const std::vector<TrainedBands>& TrainedBandSets() {
+  static const std::vector<TrainedBands> sets = ReadSets();
+  return sets;
+}
+
+const TrainedBands* FindTrainedBands(std::span<const double> wavelengths_nm) {
+  for (const TrainedBands& set : TrainedBandSets()) {
+    if (std::equal(set.wavelengths_nm.begin(), set.wavelengths_nm.end(), wavelengths_nm.begin(),
+                   wavelengths_nm.end())) {
+      return &set;
+    }
+  }
+  return nullptr;
+}
 
 std::optional<std::string> FaultOfColours(std::span<const double> wavelengths_nm) {
   constexpr double kBlue_nm = 480.0, kRed_nm = 600.0, kWidestGap_nm = 300.0;

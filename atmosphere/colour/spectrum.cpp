@@ -41,123 +41,10 @@ std::vector<double> UniformSet(double first_nm, double step_nm, int count) {
   return wavelengths_nm;
 }
 
-}  // namespace
-
-SampledFunction::SampledFunction(std::vector<double> x, std::vector<double> y)
-    : x_(std::move(x)), y_(std::move(y)) {
-  ALPENGLOW_ENSURE(x_.size(), ==, y_.size());
-  ALPENGLOW_ENSURE(x_.size(), >, std::size_t{0});
-  for (std::size_t i = 1; i < x_.size(); ++i) ALPENGLOW_ENSURE(x_[i - 1], <, x_[i]);
-}
-
-double SampledFunction::operator()(double x) const {
-  const auto above = std::upper_bound(x_.begin(), x_.end(), x);
-  if (above == x_.begin()) return y_.front();
-  if (above == x_.end()) return y_.back();
-  const auto i = static_cast<std::size_t>(above - x_.begin());
-  const double share = (x - x_[i - 1]) / (x_[i] - x_[i - 1]);
-  return y_[i - 1] + share * (y_[i] - y_[i - 1]);
-}
-
-double SampledFunction::Mean(double low, double high) const {
-  ALPENGLOW_ENSURE(low, <, high);
-  double area = 0.0;
-  double from = low;
-  double value_from = (*this)(low);
-  for (auto next = std::upper_bound(x_.begin(), x_.end(), low); from < high; ++next) {
-    const double to = next == x_.end() ? high : std::min(*next, high);
-    const double value_to = (*this)(to);
-    area += 0.5 * (value_from + value_to) * (to - from);
-    from = to;
-    value_from = value_to;
-    if (next == x_.end()) break;
-  }
-  return area / (high - low);
-}
-
-std::vector<double> WavelengthSet(int bands) {
-  if (bands == 8) return UniformSet(400.0, 40.0, 8);
-  if (bands == 16) return UniformSet(390.0, 20.0, 16);
-  if (bands == 40) return UniformSet(380.0, 10.0, 40);
-  for (const TrainedBands& set : TrainedBandSets()) {
-    if (static_cast<int>(set.wavelengths_nm.size()) == bands) return set.wavelengths_nm;
-  }
-  throw InputError(fmt::format("bands is {}; it must be one of {}", bands,
-                               fmt::join(kWavelengthSetSizes, ", ")));
-}
-
-const SampledFunction& SolarTable() {
-  static const SampledFunction table = ReadTable(kSolarFile, 1);
-  return table;
-}
-
-double SolarIrradiance(double wavelength_nm) {
-  const SampledFunction& table = SolarTable();
-  const double centre = std::clamp(wavelength_nm, table.x().front(), table.x().back());
-  return table.Mean(centre - 5.0, centre + 5.0);
-}
-
-double RayleighScatteringAtSeaLevel(double wavelength_nm) {
-  RequireInRange(wavelength_nm, 250.0, 4000.0, "wavelength_nm");
-  constexpr double kMoleculesPerCubicMetre = 2.546899e25;  // 288.15 K, 1013.25 hPa
-  const double um2 = wavelength_nm * wavelength_nm * 1e-6;
-  const double cross_section_m2 = 1e-32 * (1.0455996 - 341.29061 / um2 - 0.90230850 * um2) /
-                                  (1.0 + 0.0027059889 / um2 - 85.968563 * um2);
-  return kMoleculesPerCubicMetre * cross_section_m2;
-}
-
-double OzoneCrossSection(double wavelength_nm) {
-  // The table holds means over [x, x + 10) nm, so their wavelength is x + 5.
-  static const SampledFunction table = ReadTable(kOzoneFile, 1, 5.0);
-  return ValueInside(table, 360.0, 840.0, wavelength_nm);
-}
-
-std::array<double, 3> ColourMatching(double wavelength_nm) {
-  static const std::array<SampledFunction, 3> tables{
-      ReadTable(kObserverFile, 1), ReadTable(kObserverFile, 2), ReadTable(kObserverFile, 3)};
-  std::array<double, 3> xyz{};
-  for (std::size_t i = 0; i < 3; ++i) xyz[i] = ValueInside(tables[i], 360.0, 830.0, wavelength_nm);
-  return xyz;
-}
-
-double ScotopicEfficiency(double wavelength_nm) {
-  static const SampledFunction table = ReadTable(kScotopicFile, 1);
-  return ValueInside(table, 380.0, 780.0, wavelength_nm);
-}
-
-double BlackBodyRadiance(double wavelength_nm, double temperature_k) {
-  constexpr double kC1_w_m2_per_sr = 1.191042972397188e-16;  // 2 h c^2
-  constexpr double kC2_m_k = 1.438776877503933e-2;           // h c / k
-  const double metres = 1e-9 * wavelength_nm;
-  const double per_metre =
-      kC1_w_m2_per_sr / std::pow(metres, 5.0) / std::expm1(kC2_m_k / (metres * temperature_k));
-  return 1e-9 * per_metre;
-}
-
-namespace {
-
 SampledFunction Column(int column) {
   auto columns = atmosphere::ReadColumns("atmosphere/data/water_and_ice_10nm.csv", {0, column});
   return {std::move(columns[0]), std::move(columns[1])};
 }
-
-}  // namespace
-
-double WaterAbsorption(double wavelength_nm) {
-  static const SampledFunction table = Column(1);
-  return table(wavelength_nm);
-}
-
-double SeaWaterScattering(double wavelength_nm) {
-  return 0.00288 * std::pow(wavelength_nm / 500.0, -4.32);
-}
-
-double IceAbsorption(double wavelength_nm) {
-  static const SampledFunction table = Column(2);
-  return 4.0 * kPi * table(wavelength_nm) / (1e-9 * wavelength_nm);
-}
-
-namespace {
 
 using Triple = std::array<double, 3>;
 
@@ -371,6 +258,111 @@ std::vector<Triple> AlbedoBasesAt(std::span<const double> wavelengths_nm) {
 }
 
 }  // namespace
+
+SampledFunction::SampledFunction(std::vector<double> x, std::vector<double> y)
+    : x_(std::move(x)), y_(std::move(y)) {
+  ALPENGLOW_ENSURE(x_.size(), ==, y_.size());
+  ALPENGLOW_ENSURE(x_.size(), >, std::size_t{0});
+  for (std::size_t i = 1; i < x_.size(); ++i) ALPENGLOW_ENSURE(x_[i - 1], <, x_[i]);
+}
+
+double SampledFunction::operator()(double x) const {
+  const auto above = std::upper_bound(x_.begin(), x_.end(), x);
+  if (above == x_.begin()) return y_.front();
+  if (above == x_.end()) return y_.back();
+  const auto i = static_cast<std::size_t>(above - x_.begin());
+  const double share = (x - x_[i - 1]) / (x_[i] - x_[i - 1]);
+  return y_[i - 1] + share * (y_[i] - y_[i - 1]);
+}
+
+double SampledFunction::Mean(double low, double high) const {
+  ALPENGLOW_ENSURE(low, <, high);
+  double area = 0.0;
+  double from = low;
+  double value_from = (*this)(low);
+  for (auto next = std::upper_bound(x_.begin(), x_.end(), low); from < high; ++next) {
+    const double to = next == x_.end() ? high : std::min(*next, high);
+    const double value_to = (*this)(to);
+    area += 0.5 * (value_from + value_to) * (to - from);
+    from = to;
+    value_from = value_to;
+    if (next == x_.end()) break;
+  }
+  return area / (high - low);
+}
+
+std::vector<double> WavelengthSet(int bands) {
+  if (bands == 8) return UniformSet(400.0, 40.0, 8);
+  if (bands == 16) return UniformSet(390.0, 20.0, 16);
+  if (bands == 40) return UniformSet(380.0, 10.0, 40);
+  for (const TrainedBands& set : TrainedBandSets()) {
+    if (static_cast<int>(set.wavelengths_nm.size()) == bands) return set.wavelengths_nm;
+  }
+  throw InputError(fmt::format("bands is {}; it must be one of {}", bands,
+                               fmt::join(kWavelengthSetSizes, ", ")));
+}
+
+const SampledFunction& SolarTable() {
+  static const SampledFunction table = ReadTable(kSolarFile, 1);
+  return table;
+}
+
+double SolarIrradiance(double wavelength_nm) {
+  const SampledFunction& table = SolarTable();
+  const double centre = std::clamp(wavelength_nm, table.x().front(), table.x().back());
+  return table.Mean(centre - 5.0, centre + 5.0);
+}
+
+double RayleighScatteringAtSeaLevel(double wavelength_nm) {
+  RequireInRange(wavelength_nm, 250.0, 4000.0, "wavelength_nm");
+  constexpr double kMoleculesPerCubicMetre = 2.546899e25;  // 288.15 K, 1013.25 hPa
+  const double um2 = wavelength_nm * wavelength_nm * 1e-6;
+  const double cross_section_m2 = 1e-32 * (1.0455996 - 341.29061 / um2 - 0.90230850 * um2) /
+                                  (1.0 + 0.0027059889 / um2 - 85.968563 * um2);
+  return kMoleculesPerCubicMetre * cross_section_m2;
+}
+
+double OzoneCrossSection(double wavelength_nm) {
+  // The table holds means over [x, x + 10) nm, so their wavelength is x + 5.
+  static const SampledFunction table = ReadTable(kOzoneFile, 1, 5.0);
+  return ValueInside(table, 360.0, 840.0, wavelength_nm);
+}
+
+std::array<double, 3> ColourMatching(double wavelength_nm) {
+  static const std::array<SampledFunction, 3> tables{
+      ReadTable(kObserverFile, 1), ReadTable(kObserverFile, 2), ReadTable(kObserverFile, 3)};
+  std::array<double, 3> xyz{};
+  for (std::size_t i = 0; i < 3; ++i) xyz[i] = ValueInside(tables[i], 360.0, 830.0, wavelength_nm);
+  return xyz;
+}
+
+double ScotopicEfficiency(double wavelength_nm) {
+  static const SampledFunction table = ReadTable(kScotopicFile, 1);
+  return ValueInside(table, 380.0, 780.0, wavelength_nm);
+}
+
+double BlackBodyRadiance(double wavelength_nm, double temperature_k) {
+  constexpr double kC1_w_m2_per_sr = 1.191042972397188e-16;  // 2 h c^2
+  constexpr double kC2_m_k = 1.438776877503933e-2;           // h c / k
+  const double metres = 1e-9 * wavelength_nm;
+  const double per_metre =
+      kC1_w_m2_per_sr / std::pow(metres, 5.0) / std::expm1(kC2_m_k / (metres * temperature_k));
+  return 1e-9 * per_metre;
+}
+
+double WaterAbsorption(double wavelength_nm) {
+  static const SampledFunction table = Column(1);
+  return table(wavelength_nm);
+}
+
+double SeaWaterScattering(double wavelength_nm) {
+  return 0.00288 * std::pow(wavelength_nm / 500.0, -4.32);
+}
+
+double IceAbsorption(double wavelength_nm) {
+  static const SampledFunction table = Column(2);
+  return 4.0 * kPi * table(wavelength_nm) / (1e-9 * wavelength_nm);
+}
 
 const Matrix3& XyzFromLinearSrgb() {
   static const Matrix3 matrix = DeriveXyzFromLinearSrgb();

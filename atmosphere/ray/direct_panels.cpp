@@ -151,31 +151,6 @@ double DepthAboveTop(const Medium& medium, const DirectAir& air) {
   return kLevel * kMetresPerKilometre * depth;
 }
 
-}  // namespace
-
-DirectAir DirectAirOf(const Medium& medium) {
-  DirectAir air{};
-  const Shell shell{Kilometres(medium.planet_radius_m), Kilometres(medium.atmosphere_height_m)};
-  const double share = medium.rayleigh_deficit.share;
-  air.radius = shell.radius;
-  air.top = shell.top;
-  air.has_deficit = share > 0.0;
-  air.is_tall = IsTall(shell.top, shell.radius);
-  air.deficit_share = static_cast<float>(share);
-  air.rayleigh = LayerOf(Kilometres(medium.rayleigh_scale_height_m), 1.0 + share, shell);
-  air.deficit = LayerOf(Kilometres(medium.rayleigh_deficit.scale_height_m), share, shell);
-  air.mie = LayerOf(Kilometres(medium.mie_scale_height_m), 1.0, shell);
-  const auto [lowest, highest] =
-      std::minmax({medium.rayleigh_scale_height_m, medium.mie_scale_height_m});
-  air.least_error = LeastError(highest, lowest, medium.planet_radius_m);
-  SetBands(medium, air);
-  SetOzone(medium.ozone, air);
-  air.reaches_top = DepthAboveTop(medium, air) > 1e-5;
-  return air;
-}
-
-namespace {
-
 /// A ray from its entry into the air [km].
 struct Entry {
   double altitude, mu, mu_s, nu;
@@ -331,6 +306,27 @@ void GroupPanels(DirectMode mode, DirectRay& ray) {
 }
 
 }  // namespace
+
+DirectAir DirectAirOf(const Medium& medium) {
+  DirectAir air{};
+  const Shell shell{Kilometres(medium.planet_radius_m), Kilometres(medium.atmosphere_height_m)};
+  const double share = medium.rayleigh_deficit.share;
+  air.radius = shell.radius;
+  air.top = shell.top;
+  air.has_deficit = share > 0.0;
+  air.is_tall = IsTall(shell.top, shell.radius);
+  air.deficit_share = static_cast<float>(share);
+  air.rayleigh = LayerOf(Kilometres(medium.rayleigh_scale_height_m), 1.0 + share, shell);
+  air.deficit = LayerOf(Kilometres(medium.rayleigh_deficit.scale_height_m), share, shell);
+  air.mie = LayerOf(Kilometres(medium.mie_scale_height_m), 1.0, shell);
+  const auto [lowest, highest] =
+      std::minmax({medium.rayleigh_scale_height_m, medium.mie_scale_height_m});
+  air.least_error = LeastError(highest, lowest, medium.planet_radius_m);
+  SetBands(medium, air);
+  SetOzone(medium.ozone, air);
+  air.reaches_top = DepthAboveTop(medium, air) > 1e-5;
+  return air;
+}
 
 float DirectPanel::AltitudeAt(float position) const {
   const float climb = position * (position + 2.0F * from_perigee) * inverse_radius;  // 2 r x

@@ -44,24 +44,6 @@ Crossings CrossAltitude(Extended h, Extended mu, Extended z, Extended radius) {
   return {true, std::min(far_side, other), std::max(far_side, other)};
 }
 
-}  // namespace
-
-ViewRay RayFromAngles(double altitude_m, double view_zenith_deg, double relative_azimuth_deg,
-                      double sun_zenith_deg) {
-  const double view = view_zenith_deg * kRadiansPerDegree;
-  const double sun = sun_zenith_deg * kRadiansPerDegree;
-  const double azimuth = relative_azimuth_deg * kRadiansPerDegree;
-  ViewRay ray;
-  ray.altitude_m = altitude_m;
-  ray.mu = std::cos(view);
-  ray.mu_s = std::cos(sun);
-  ray.nu =
-      std::clamp(ray.mu * ray.mu_s + std::sin(view) * std::sin(sun) * std::cos(azimuth), -1.0, 1.0);
-  return ray;
-}
-
-namespace {
-
 // Returns the lowest altitude of a ray of finite length.
 double LowestAltitude(const ViewRay& ray, double planet_radius_m) {
   const double perigee_m = -(planet_radius_m + ray.altitude_m) * ray.mu;
@@ -80,85 +62,11 @@ bool EndsWellInside(const ViewRay& ray, double planet_radius_m, double atmospher
          std::max(ray.altitude_m, end_m) < atmosphere_height_m - kMargin_m;
 }
 
-}  // namespace
-
-void RefuseBands(std::size_t bands) {
-  throw InputError(
-      fmt::format("spectrum.wavelengths_nm has {} values; it must have 1 to {}", bands, kMaxBands));
-}
-
-namespace {
-
 // Returns whether the ground does not end a ray: it is a segment, no part of which is too deep.
 bool IsSegmentOfAir(const ViewRay& ray, double planet_radius_m) {
   if (std::isinf(ray.length_m) || (ray.altitude_m >= 0.0 && !ray.passes_ground)) return false;
   return LowestAltitude(ray, planet_radius_m) >= -DeepestAir(planet_radius_m);
 }
-
-}  // namespace
-
-double StartAltitude(const ViewRay& ray, double planet_radius_m) {
-  const bool is_above = ray.altitude_m >= 0.0 || IsSegmentOfAir(ray, planet_radius_m);
-  return is_above ? ray.altitude_m : 0.0;
-}
-
-RayExtent ExtentOf(const ViewRay& ray, double planet_radius_m, double atmosphere_height_m) {
-  RequireFinite(ray, planet_radius_m);
-  if (EndsWellInside(ray, planet_radius_m, atmosphere_height_m))
-    return {0.0, ray.length_m, RayEnd::kLength};
-  const Extended h = StartAltitude(ray, planet_radius_m);
-  const Crossings top = CrossAltitude(h, ray.mu, atmosphere_height_m, planet_radius_m);
-  if (!top.exist || top.far <= 0) return {};
-  RayExtent extent;
-  extent.begin_m = static_cast<double>(std::max<Extended>(top.near, 0));
-  if (h <= atmosphere_height_m) extent.begin_m = 0.0;
-  extent.end_m = static_cast<double>(top.far);
-  if (ray.mu < 0.0 && !IsSegmentOfAir(ray, planet_radius_m)) {
-    if (const Crossings ground = CrossAltitude(h, ray.mu, 0, planet_radius_m); ground.exist) {
-      extent.end_m = static_cast<double>(std::max<Extended>(ground.near, 0));
-      extent.end = RayEnd::kGround;
-    }
-  }
-  if (ray.length_m < extent.end_m) {
-    extent.end_m = std::max(ray.length_m, extent.begin_m);
-    extent.end = RayEnd::kLength;
-  }
-  return extent;
-}
-
-bool BringsLightOfGround(const ViewRay& ray, const RayExtent& extent) {
-  return extent.end == RayEnd::kGround && std::isinf(ray.length_m);
-}
-
-SubmergedSpan SubmergedPart(const ViewRay& ray, const RayExtent& extent, double planet_radius_m) {
-  if (!IsSegmentOfAir(ray, planet_radius_m)) return {};
-  const Crossings ground = CrossAltitude(ray.altitude_m, ray.mu, 0, planet_radius_m);
-  if (!ground.exist) return {};
-  const Extended begin = std::clamp<Extended>(ground.near, extent.begin_m, extent.end_m);
-  const Extended end = std::clamp<Extended>(ground.far, extent.begin_m, extent.end_m);
-  return {static_cast<double>(begin), static_cast<double>(end),
-          static_cast<double>((ground.far - ground.near) / (2 * Extended(planet_radius_m)))};
-}
-
-ShadowSpan PlanetShadow(const ViewRay& ray, const RayExtent& extent, double planet_radius_m) {
-  // If the sun is above the plane through the planet's centre at both ends, there is no shadow in
-  // between.
-  const double altitude_m = StartAltitude(ray, planet_radius_m);
-  const double height_m = (planet_radius_m + altitude_m) * ray.mu_s;
-  if (height_m + extent.begin_m * ray.nu > 0.0 && height_m + extent.end_m * ray.nu > 0.0) return {};
-  const Extended h = altitude_m, mu = ray.mu, mu_s = ray.mu_s, nu = ray.nu;
-  const Extended a = (1 - nu) * (1 + nu);
-  const Extended radius = planet_radius_m;
-  if (shared::MeetsShadow(h, mu, mu_s, nu, a, radius) == 0) return {};
-  const Extended begin =
-      std::max<Extended>(extent.begin_m, shared::ShadowBegin(h, mu, mu_s, nu, a, radius));
-  const Extended end =
-      std::min<Extended>(extent.end_m, shared::ShadowEnd(h, mu, mu_s, nu, a, radius));
-  if (!(begin < end)) return {};
-  return {static_cast<double>(begin), static_cast<double>(end)};
-}
-
-namespace {
 
 /// Distances at which a ray is cut, in any order.
 class PanelEnds {
@@ -275,6 +183,86 @@ std::vector<double> Times(std::vector<double> values, double factor) {
 }
 
 }  // namespace
+
+ViewRay RayFromAngles(double altitude_m, double view_zenith_deg, double relative_azimuth_deg,
+                      double sun_zenith_deg) {
+  const double view = view_zenith_deg * kRadiansPerDegree;
+  const double sun = sun_zenith_deg * kRadiansPerDegree;
+  const double azimuth = relative_azimuth_deg * kRadiansPerDegree;
+  ViewRay ray;
+  ray.altitude_m = altitude_m;
+  ray.mu = std::cos(view);
+  ray.mu_s = std::cos(sun);
+  ray.nu =
+      std::clamp(ray.mu * ray.mu_s + std::sin(view) * std::sin(sun) * std::cos(azimuth), -1.0, 1.0);
+  return ray;
+}
+
+void RefuseBands(std::size_t bands) {
+  throw InputError(
+      fmt::format("spectrum.wavelengths_nm has {} values; it must have 1 to {}", bands, kMaxBands));
+}
+
+double StartAltitude(const ViewRay& ray, double planet_radius_m) {
+  const bool is_above = ray.altitude_m >= 0.0 || IsSegmentOfAir(ray, planet_radius_m);
+  return is_above ? ray.altitude_m : 0.0;
+}
+
+RayExtent ExtentOf(const ViewRay& ray, double planet_radius_m, double atmosphere_height_m) {
+  RequireFinite(ray, planet_radius_m);
+  if (EndsWellInside(ray, planet_radius_m, atmosphere_height_m))
+    return {0.0, ray.length_m, RayEnd::kLength};
+  const Extended h = StartAltitude(ray, planet_radius_m);
+  const Crossings top = CrossAltitude(h, ray.mu, atmosphere_height_m, planet_radius_m);
+  if (!top.exist || top.far <= 0) return {};
+  RayExtent extent;
+  extent.begin_m = static_cast<double>(std::max<Extended>(top.near, 0));
+  if (h <= atmosphere_height_m) extent.begin_m = 0.0;
+  extent.end_m = static_cast<double>(top.far);
+  if (ray.mu < 0.0 && !IsSegmentOfAir(ray, planet_radius_m)) {
+    if (const Crossings ground = CrossAltitude(h, ray.mu, 0, planet_radius_m); ground.exist) {
+      extent.end_m = static_cast<double>(std::max<Extended>(ground.near, 0));
+      extent.end = RayEnd::kGround;
+    }
+  }
+  if (ray.length_m < extent.end_m) {
+    extent.end_m = std::max(ray.length_m, extent.begin_m);
+    extent.end = RayEnd::kLength;
+  }
+  return extent;
+}
+
+bool BringsLightOfGround(const ViewRay& ray, const RayExtent& extent) {
+  return extent.end == RayEnd::kGround && std::isinf(ray.length_m);
+}
+
+SubmergedSpan SubmergedPart(const ViewRay& ray, const RayExtent& extent, double planet_radius_m) {
+  if (!IsSegmentOfAir(ray, planet_radius_m)) return {};
+  const Crossings ground = CrossAltitude(ray.altitude_m, ray.mu, 0, planet_radius_m);
+  if (!ground.exist) return {};
+  const Extended begin = std::clamp<Extended>(ground.near, extent.begin_m, extent.end_m);
+  const Extended end = std::clamp<Extended>(ground.far, extent.begin_m, extent.end_m);
+  return {static_cast<double>(begin), static_cast<double>(end),
+          static_cast<double>((ground.far - ground.near) / (2 * Extended(planet_radius_m)))};
+}
+
+ShadowSpan PlanetShadow(const ViewRay& ray, const RayExtent& extent, double planet_radius_m) {
+  // If the sun is above the plane through the planet's centre at both ends, there is no shadow in
+  // between.
+  const double altitude_m = StartAltitude(ray, planet_radius_m);
+  const double height_m = (planet_radius_m + altitude_m) * ray.mu_s;
+  if (height_m + extent.begin_m * ray.nu > 0.0 && height_m + extent.end_m * ray.nu > 0.0) return {};
+  const Extended h = altitude_m, mu = ray.mu, mu_s = ray.mu_s, nu = ray.nu;
+  const Extended a = (1 - nu) * (1 + nu);
+  const Extended radius = planet_radius_m;
+  if (shared::MeetsShadow(h, mu, mu_s, nu, a, radius) == 0) return {};
+  const Extended begin =
+      std::max<Extended>(extent.begin_m, shared::ShadowBegin(h, mu, mu_s, nu, a, radius));
+  const Extended end =
+      std::min<Extended>(extent.end_m, shared::ShadowEnd(h, mu, mu_s, nu, a, radius));
+  if (!(begin < end)) return {};
+  return {static_cast<double>(begin), static_cast<double>(end)};
+}
 
 double MapLengthsPerKm(const Medium& medium) {
   constexpr double kLeastShare = 0.05, kDeepAir_km = 6.4;

@@ -26,30 +26,6 @@ float PositionOf(double nu) {
   return std::cbrt(nu < 0.0 ? 1.0F - share : share) * static_cast<float>(PhaseTable::kNodes - 1);
 }
 
-}  // namespace
-
-PhaseNodes::PhaseNodes(const Medium& medium) : bands_(medium.wavelengths_nm.size()) {
-  value_.reserve(PhaseTable::kNodes * bands_);
-  for (std::size_t node = 0; node < PhaseTable::kNodes; ++node) {
-    for (std::size_t band = 0; band < bands_; ++band)
-      value_.push_back(static_cast<float>(MiePhase(medium, band).table->nodes()[node]));
-  }
-}
-
-Bands<float> PhaseNodes::At(double nu) const {
-  const float position = PositionOf(nu);
-  const auto cell = std::min(static_cast<std::size_t>(position), PhaseTable::kNodes - 2);
-  const float share = position - static_cast<float>(cell);
-  const float* low = &value_[cell * bands_];
-  Bands<float> values;
-  values.count = bands_;
-  for (std::size_t band = 0; band < bands_; ++band)
-    values[band] = low[band] + share * (low[bands_ + band] - low[band]);
-  return values;
-}
-
-namespace {
-
 std::size_t RoundUp(std::size_t count, std::size_t lanes) {
   return (count + lanes - 1) / lanes * lanes;
 }
@@ -278,6 +254,26 @@ ColumnSet<Real> SegmentColumns(const AirConstants<Real>& air, const Medium& medi
 }
 
 }  // namespace
+
+PhaseNodes::PhaseNodes(const Medium& medium) : bands_(medium.wavelengths_nm.size()) {
+  value_.reserve(PhaseTable::kNodes * bands_);
+  for (std::size_t node = 0; node < PhaseTable::kNodes; ++node) {
+    for (std::size_t band = 0; band < bands_; ++band)
+      value_.push_back(static_cast<float>(MiePhase(medium, band).table->nodes()[node]));
+  }
+}
+
+Bands<float> PhaseNodes::At(double nu) const {
+  const float position = PositionOf(nu);
+  const auto cell = std::min(static_cast<std::size_t>(position), PhaseTable::kNodes - 2);
+  const float share = position - static_cast<float>(cell);
+  const float* low = &value_[cell * bands_];
+  Bands<float> values;
+  values.count = bands_;
+  for (std::size_t band = 0; band < bands_; ++band)
+    values[band] = low[band] + share * (low[bands_ + band] - low[band]);
+  return values;
+}
 
 Sampling SamplingForError(double max_error) {
   RequireInRange(max_error, 0.0, 1.0, "max_error");

@@ -205,6 +205,12 @@ ShadowSpan DarkPart(const Line& line, const ViewRay& ray, const RayExtent& exten
   return {static_cast<double>(begin), static_cast<double>(end)};
 }
 
+using State = RayEquation::State;
+
+State Add(const State& a, double s, const State& b) {
+  return {a.x + s * b.x, a.y + s * b.y, a.p + s * b.p, a.q + s * b.q};
+}
+
 }  // namespace
 
 OpticalDepth OpticalDepthAlong(const Medium& medium, const ViewRay& ray) {
@@ -294,16 +300,6 @@ std::vector<double> SunIrradiance(const Medium& medium, double altitude_m, doubl
     irradiance[band] = mu_s * std::exp(-depth.tau[band]);
   return irradiance;
 }
-
-namespace {
-
-using State = RayEquation::State;
-
-State Add(const State& a, double s, const State& b) {
-  return {a.x + s * b.x, a.y + s * b.y, a.p + s * b.p, a.q + s * b.q};
-}
-
-}  // namespace
 
 double PeckAndReeder(double wavelength_nm) {
   const double square = std::pow(1000.0 / wavelength_nm, 2);

@@ -48,6 +48,55 @@ double RelativeDensity(const Medium& medium) {
   return medium.rayleigh_scattering_per_m[middle] / RayleighScatteringAtSeaLevel(wavelength_nm);
 }
 
+double LookRadius_m(const BendingAir& air, double height_m) {
+  const double height = std::max(height_m, 1.0);  // the result hardly changes for lower observers
+  const double dip = GrazingElevation(air, height);
+  const double sine = std::sin(0.5 * dip);
+  return height * std::cos(dip) / (2.0 * sine * sine);
+}
+
+// Returns the ratio of the curvature of most rays to distant land to the curvature at the ground,
+// fitted to the ray equation for observers from the ground to 36,000 km.
+double UsualShare(double height_m, double upper_m, double top_m) {
+  if (height_m > top_m) return 0.5 + 0.15 * std::exp(-(height_m - top_m) / (1.6 * upper_m));
+  return std::clamp(0.98 - 0.122 * height_m / upper_m, 0.65, 0.9);
+}
+
+constexpr int kHeights = 18, kElevations = 40;
+constexpr double kTop_m = 40e3;  // a beam that passes above it has met hardly any air
+/// Light near the horizon changes over this angle: 10 km of air at 1900 km have the same angular
+/// height.
+constexpr double kScale = 0.3 * kRadiansPerDegree;
+/// The last node is next to the zenith, where the cosine of the elevation is 0.
+constexpr double kHighest_rad = 89.9 * kRadiansPerDegree;
+
+double PlaceOf(double mu, double horizon_mu) {
+  const double over = std::max(mu - horizon_mu, 0.0);
+  return std::log1p(over / kScale) / std::log1p((1.0 - horizon_mu) / kScale);
+}
+
+double MuOf(double place, double horizon_mu) {
+  return horizon_mu + kScale * std::expm1(place * std::log1p((1.0 - horizon_mu) / kScale));
+}
+
+/// Returns the nodes between which a position in [0, 1] lies: the lower one, and the weight of the
+/// upper.
+std::pair<std::size_t, double> BetweenUniformNodes(double place, int nodes) {
+  const double at = place * (nodes - 1);
+  const int below = std::clamp(static_cast<int>(at), 0, nodes - 2);
+  return {static_cast<std::size_t>(below), std::clamp(at - below, 0.0, 1.0)};
+}
+
+/// Returns the logarithm of the apparent solid angle of a small disk at an elevation, divided by
+/// its true solid angle.
+double LogSpread(const BendingAir& air, double elevation_rad, double height_m) {
+  constexpr double kStep_rad = 1e-5;
+  const double refraction = RefractionSeenAt(air, elevation_rad, height_m);
+  const double slope =
+      (RefractionSeenAt(air, elevation_rad + kStep_rad, height_m) - refraction) / kStep_rad;
+  return std::log(std::cos(elevation_rad) / std::cos(elevation_rad - refraction) / (1.0 - slope));
+}
+
 }  // namespace
 
 BendingAir BendingAirOf(const Medium& medium, double wavelength_nm) {
@@ -177,24 +226,6 @@ std::optional<RefractedGroundRay> RefractedView::ToGround(double elevation_rad) 
   return RefractedGroundRay{-elevation_rad - at_ground + bending, at_ground};
 }
 
-namespace {
-
-double LookRadius_m(const BendingAir& air, double height_m) {
-  const double height = std::max(height_m, 1.0);  // the result hardly changes for lower observers
-  const double dip = GrazingElevation(air, height);
-  const double sine = std::sin(0.5 * dip);
-  return height * std::cos(dip) / (2.0 * sine * sine);
-}
-
-// Returns the ratio of the curvature of most rays to distant land to the curvature at the ground,
-// fitted to the ray equation for observers from the ground to 36,000 km.
-double UsualShare(double height_m, double upper_m, double top_m) {
-  if (height_m > top_m) return 0.5 + 0.15 * std::exp(-(height_m - top_m) / (1.6 * upper_m));
-  return std::clamp(0.98 - 0.122 * height_m / upper_m, 0.65, 0.9);
-}
-
-}  // namespace
-
 LandBend LandBendOf(const BendingAir& air, double height_m) {
   const double height = std::max(height_m, 0.0);
   const double upper_m = air.UpperScaleHeight();
@@ -229,45 +260,6 @@ double MostLiftOfPlanet(const LandBend& bend, double eye_m, double farthest_land
                              std::asin(shared::HorizonCosine(eye_km, bend.radius_km));
   return std::max(horizon_rad, LiftOfLand(bend, eye_m, 0.0, farthest_land_m));
 }
-
-namespace {
-
-constexpr int kHeights = 18, kElevations = 40;
-constexpr double kTop_m = 40e3;  // a beam that passes above it has met hardly any air
-/// Light near the horizon changes over this angle: 10 km of air at 1900 km have the same angular
-/// height.
-constexpr double kScale = 0.3 * kRadiansPerDegree;
-/// The last node is next to the zenith, where the cosine of the elevation is 0.
-constexpr double kHighest_rad = 89.9 * kRadiansPerDegree;
-
-double PlaceOf(double mu, double horizon_mu) {
-  const double over = std::max(mu - horizon_mu, 0.0);
-  return std::log1p(over / kScale) / std::log1p((1.0 - horizon_mu) / kScale);
-}
-
-double MuOf(double place, double horizon_mu) {
-  return horizon_mu + kScale * std::expm1(place * std::log1p((1.0 - horizon_mu) / kScale));
-}
-
-/// Returns the nodes between which a position in [0, 1] lies: the lower one, and the weight of the
-/// upper.
-std::pair<std::size_t, double> BetweenUniformNodes(double place, int nodes) {
-  const double at = place * (nodes - 1);
-  const int below = std::clamp(static_cast<int>(at), 0, nodes - 2);
-  return {static_cast<std::size_t>(below), std::clamp(at - below, 0.0, 1.0)};
-}
-
-/// Returns the logarithm of the apparent solid angle of a small disk at an elevation, divided by
-/// its true solid angle.
-double LogSpread(const BendingAir& air, double elevation_rad, double height_m) {
-  constexpr double kStep_rad = 1e-5;
-  const double refraction = RefractionSeenAt(air, elevation_rad, height_m);
-  const double slope =
-      (RefractionSeenAt(air, elevation_rad + kStep_rad, height_m) - refraction) / kStep_rad;
-  return std::log(std::cos(elevation_rad) / std::cos(elevation_rad - refraction) / (1.0 - slope));
-}
-
-}  // namespace
 
 RefractedBeam::RefractedBeam(const Medium& medium)
     : bands_(medium.wavelengths_nm.size()),

@@ -37,6 +37,51 @@ ValueAndSlope RefractivityAndSlopeAt(const BendingAir& air, double height_m) {
   return {air.refractivity * sum, -air.refractivity * slope_sum};
 }
 
+struct RefractionAndSlope {
+  double value, slope;
+};
+
+/// Returns refraction for air of 15 C and 1013.25 hPa:
+///
+///   A cos e / (sin e + b / (sin e + c / (sin e + d)))
+///
+/// This is the continued fraction of Marini (1972), Radio Science 7, 223-231, which is A cot e at
+/// high elevations and finite at the horizon. The four constants were fitted to RefractionOfRay
+/// from sea level: the difference is less than 0.04' from the horizon up; below it the function
+/// continues smoothly.
+RefractionAndSlope StandardRefraction(double elevation_rad) {
+  constexpr double kA = 2.78291862e-4;
+  constexpr double kB = 1.60741104e-3;
+  constexpr double kC = 5.59356459e-3;
+  constexpr double kD = 1.17198817e-1;
+  const double sine = std::sin(elevation_rad);
+  const double cosine = std::cos(elevation_rad);
+  const double inner = sine + kD;
+  const double middle = sine + kC / inner;
+  const double outer = sine + kB / middle;
+  const double middle_slope = 1.0 - kC / (inner * inner);
+  const double outer_slope = 1.0 - kB * middle_slope / (middle * middle);
+  return {kA * cosine / outer,
+          -kA * (sine / outer + cosine * cosine * outer_slope / (outer * outer))};
+}
+
+// Refraction is observable down to the last ray of the sun's lower limb over a sea horizon,
+// 34' + 32' below the horizontal; the closed form extends a little beyond this. Further down no ray
+// reaches the observer and refraction has no meaning, but the position of the sun in a picture must
+// remain continuous. The light of twilight comes from air high up, which is described by the
+// geometric direction: therefore the value fades to 0 until civil twilight ends.
+constexpr double kFadeBegins_rad = -1.0 * kRadiansPerDegree;
+constexpr double kFadeEnds_rad = -6.0 * kRadiansPerDegree;
+
+/// Returns the cubic that continues value and slope at kFadeBegins and is 0 with slope 0 at
+/// kFadeEnds.
+double FadedRefraction(double elevation_rad) {
+  static const RefractionAndSlope begin = StandardRefraction(kFadeBegins_rad);
+  constexpr double kWidth = kFadeBegins_rad - kFadeEnds_rad;
+  const double t = (elevation_rad - kFadeEnds_rad) / kWidth;
+  return t * t * ((3.0 - 2.0 * t) * begin.value + (t - 1.0) * kWidth * begin.slope);
+}
+
 }  // namespace
 
 double RefractivityAtSeaLevel(double wavelength_nm) {
@@ -141,55 +186,6 @@ std::optional<double> ApparentElevation(const BendingAir& air, double true_eleva
                                         double height_m) {
   return RefractionOfObserver(air, height_m).ApparentElevationOf(true_elevation_rad);
 }
-
-namespace {
-
-struct RefractionAndSlope {
-  double value, slope;
-};
-
-/// Returns refraction for air of 15 C and 1013.25 hPa:
-///
-///   A cos e / (sin e + b / (sin e + c / (sin e + d)))
-///
-/// This is the continued fraction of Marini (1972), Radio Science 7, 223-231, which is A cot e at
-/// high elevations and finite at the horizon. The four constants were fitted to RefractionOfRay
-/// from sea level: the difference is less than 0.04' from the horizon up; below it the function
-/// continues smoothly.
-RefractionAndSlope StandardRefraction(double elevation_rad) {
-  constexpr double kA = 2.78291862e-4;
-  constexpr double kB = 1.60741104e-3;
-  constexpr double kC = 5.59356459e-3;
-  constexpr double kD = 1.17198817e-1;
-  const double sine = std::sin(elevation_rad);
-  const double cosine = std::cos(elevation_rad);
-  const double inner = sine + kD;
-  const double middle = sine + kC / inner;
-  const double outer = sine + kB / middle;
-  const double middle_slope = 1.0 - kC / (inner * inner);
-  const double outer_slope = 1.0 - kB * middle_slope / (middle * middle);
-  return {kA * cosine / outer,
-          -kA * (sine / outer + cosine * cosine * outer_slope / (outer * outer))};
-}
-
-// Refraction is observable down to the last ray of the sun's lower limb over a sea horizon,
-// 34' + 32' below the horizontal; the closed form extends a little beyond this. Further down no ray
-// reaches the observer and refraction has no meaning, but the position of the sun in a picture must
-// remain continuous. The light of twilight comes from air high up, which is described by the
-// geometric direction: therefore the value fades to 0 until civil twilight ends.
-constexpr double kFadeBegins_rad = -1.0 * kRadiansPerDegree;
-constexpr double kFadeEnds_rad = -6.0 * kRadiansPerDegree;
-
-/// Returns the cubic that continues value and slope at kFadeBegins and is 0 with slope 0 at
-/// kFadeEnds.
-double FadedRefraction(double elevation_rad) {
-  static const RefractionAndSlope begin = StandardRefraction(kFadeBegins_rad);
-  constexpr double kWidth = kFadeBegins_rad - kFadeEnds_rad;
-  const double t = (elevation_rad - kFadeEnds_rad) / kWidth;
-  return t * t * ((3.0 - 2.0 * t) * begin.value + (t - 1.0) * kWidth * begin.slope);
-}
-
-}  // namespace
 
 BendingAir AlmanacAir(double earth_radius_m) {
   constexpr double kTop_m = 120e3;  // bending above it is 1e-8 of the whole

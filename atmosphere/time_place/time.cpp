@@ -202,6 +202,54 @@ std::string Formatted(const UtcInstant& instant, int decimals, const TimeZone* z
   return text + (zone == nullptr ? "Z" : OffsetText(offset));
 }
 
+constexpr int kFirstDayOfUtc = 36934;          // 1960-01-01
+constexpr int kFirstDayOfLeapSeconds = 41317;  // 1972-01-01
+constexpr int kFirstDayUnknown = 61406;        // 2027-01-01: ERFA reports later dates as dubious
+constexpr double kTtMinusTai_s = 32.184;       // IAU 1991 resolution A4
+
+/// Returns TT - UTC in [1960, 2027). UTC had its own rates until 1972, and has had steps of a
+/// second since.
+double TtMinusUtc(int modified_julian_day, double second_of_day) {
+  int year = 0;
+  int month = 0;
+  int day = 0;
+  double fraction = 0.0;
+  eraJd2cal(2400000.5, modified_julian_day, &year, &month, &day, &fraction);
+  double tai_minus_utc_s = 0.0;
+  const int status =
+      eraDat(year, month, day, std::min(second_of_day / kSecondsPerDay, 1.0), &tai_minus_utc_s);
+  ALPENGLOW_ENSURE(status, >=, 0);  // positive: dubious, but the best available result
+  return tai_minus_utc_s + kTtMinusTai_s;
+}
+
+/// Returns the polynomial for 1900 to 1961 and 2005 to 2150, held constant outside; the years
+/// between are not needed.
+double EspenakMeeus(double year) {
+  const double y = std::clamp(year, 1900.0, 2150.0);
+  if (y < 1920.0) {
+    const double t = y - 1900.0;
+    return -2.79 + t * (1.494119 + t * (-0.0598939 + t * (0.0061966 - t * 0.000197)));
+  }
+  if (y < 1941.0) {
+    const double t = y - 1920.0;
+    return 21.20 + t * (0.84493 + t * (-0.076100 + t * 0.0020936));
+  }
+  if (y < 1961.0) {
+    const double t = y - 1950.0;
+    return 29.07 + t * (0.407 + t * (-1.0 / 233.0 + t / 2547.0));
+  }
+  if (y < 2050.0) {
+    const double t = y - 2000.0;
+    return 62.92 + t * (0.32217 + t * 0.005589);
+  }
+  const double u = (y - 1820.0) / 100.0;
+  return -20.0 + 32.0 * u * u - 0.5628 * (2150.0 - y);
+}
+
+double JulianYear(int modified_julian_day, double second_of_day) {
+  return 2000.0 + (modified_julian_day - 51544.5 + second_of_day / kSecondsPerDay) / 365.25;
+}
+
 }  // namespace
 
 UtcInstant Now() {
@@ -296,58 +344,6 @@ double ParseDuration(std::string_view text) {
   }
   return negative ? -total_s : total_s;
 }
-
-namespace {
-
-constexpr int kFirstDayOfUtc = 36934;          // 1960-01-01
-constexpr int kFirstDayOfLeapSeconds = 41317;  // 1972-01-01
-constexpr int kFirstDayUnknown = 61406;        // 2027-01-01: ERFA reports later dates as dubious
-constexpr double kTtMinusTai_s = 32.184;       // IAU 1991 resolution A4
-
-/// Returns TT - UTC in [1960, 2027). UTC had its own rates until 1972, and has had steps of a
-/// second since.
-double TtMinusUtc(int modified_julian_day, double second_of_day) {
-  int year = 0;
-  int month = 0;
-  int day = 0;
-  double fraction = 0.0;
-  eraJd2cal(2400000.5, modified_julian_day, &year, &month, &day, &fraction);
-  double tai_minus_utc_s = 0.0;
-  const int status =
-      eraDat(year, month, day, std::min(second_of_day / kSecondsPerDay, 1.0), &tai_minus_utc_s);
-  ALPENGLOW_ENSURE(status, >=, 0);  // positive: dubious, but the best available result
-  return tai_minus_utc_s + kTtMinusTai_s;
-}
-
-/// Returns the polynomial for 1900 to 1961 and 2005 to 2150, held constant outside; the years
-/// between are not needed.
-double EspenakMeeus(double year) {
-  const double y = std::clamp(year, 1900.0, 2150.0);
-  if (y < 1920.0) {
-    const double t = y - 1900.0;
-    return -2.79 + t * (1.494119 + t * (-0.0598939 + t * (0.0061966 - t * 0.000197)));
-  }
-  if (y < 1941.0) {
-    const double t = y - 1920.0;
-    return 21.20 + t * (0.84493 + t * (-0.076100 + t * 0.0020936));
-  }
-  if (y < 1961.0) {
-    const double t = y - 1950.0;
-    return 29.07 + t * (0.407 + t * (-1.0 / 233.0 + t / 2547.0));
-  }
-  if (y < 2050.0) {
-    const double t = y - 2000.0;
-    return 62.92 + t * (0.32217 + t * 0.005589);
-  }
-  const double u = (y - 1820.0) / 100.0;
-  return -20.0 + 32.0 * u * u - 0.5628 * (2150.0 - y);
-}
-
-double JulianYear(int modified_julian_day, double second_of_day) {
-  return 2000.0 + (modified_julian_day - 51544.5 + second_of_day / kSecondsPerDay) / 365.25;
-}
-
-}  // namespace
 
 double DayLength(int modified_julian_day) {
   if (modified_julian_day < kFirstDayOfLeapSeconds || modified_julian_day >= kFirstDayUnknown) {

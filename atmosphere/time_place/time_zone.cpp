@@ -64,6 +64,34 @@ std::chrono::sys_seconds InstantOf(const YearlyChange& change, std::chrono::year
   return std::chrono::sys_seconds(day) + change.time - offset_before;
 }
 
+using std::chrono::seconds;
+using std::chrono::sys_seconds;
+
+const date::time_zone* Located(const std::string& name) {
+  try {
+    return date::locate_zone(name);
+  } catch (const std::runtime_error&) {
+    throw InputError(fmt::format(
+        "zone \"{}\" is not in the time zone database; it must be a name such as Europe/Zurich",
+        name));
+  }
+}
+
+/// Returns the last line of the zone's file. The date library reads only the table of changes,
+/// which ends in 2037, and would keep winter time ever after.
+std::optional<PosixZoneRule> LastRule(const std::string& name) {
+  // These are the folders in which the date library searches.
+  for (const char* folder : {"/usr/share/zoneinfo/", "/var/db/zoneinfo/"}) {
+    std::ifstream file(folder + name, std::ios::binary);
+    const std::string text{std::istreambuf_iterator<char>(file), {}};
+    if (text.size() < 2 || text.back() != '\n') continue;
+    const std::size_t line = text.rfind('\n', text.size() - 2);
+    if (line == std::string::npos) continue;
+    return ParsePosixZoneRule(std::string_view(text).substr(line + 1, text.size() - line - 2));
+  }
+  return std::nullopt;
+}
+
 }  // namespace
 
 std::optional<PosixZoneRule> ParsePosixZoneRule(std::string_view text) {
@@ -99,38 +127,6 @@ seconds OffsetAt(const PosixZoneRule& rule, std::chrono::sys_seconds instant) {
                                        : !(end <= instant && instant < start);  // southern summer
   return is_daylight ? rule.daylight->offset : rule.standard_offset;
 }
-
-namespace {
-
-using std::chrono::seconds;
-using std::chrono::sys_seconds;
-
-const date::time_zone* Located(const std::string& name) {
-  try {
-    return date::locate_zone(name);
-  } catch (const std::runtime_error&) {
-    throw InputError(fmt::format(
-        "zone \"{}\" is not in the time zone database; it must be a name such as Europe/Zurich",
-        name));
-  }
-}
-
-/// Returns the last line of the zone's file. The date library reads only the table of changes,
-/// which ends in 2037, and would keep winter time ever after.
-std::optional<PosixZoneRule> LastRule(const std::string& name) {
-  // These are the folders in which the date library searches.
-  for (const char* folder : {"/usr/share/zoneinfo/", "/var/db/zoneinfo/"}) {
-    std::ifstream file(folder + name, std::ios::binary);
-    const std::string text{std::istreambuf_iterator<char>(file), {}};
-    if (text.size() < 2 || text.back() != '\n') continue;
-    const std::size_t line = text.rfind('\n', text.size() - 2);
-    if (line == std::string::npos) continue;
-    return ParsePosixZoneRule(std::string_view(text).substr(line + 1, text.size() - line - 2));
-  }
-  return std::nullopt;
-}
-
-}  // namespace
 
 TimeZone::TimeZone(const std::string& name)
     : zone_(Located(name)), last_rule_(LastRule(zone_->name())) {}
