@@ -187,6 +187,22 @@ void AddFormats(CLI::App& build, BuildOptions& options) {
       ->check(CLI::IsMember({102, 120}));
 }
 
+struct ReportCommandOptions {
+  std::optional<std::string> atmosphere;
+  std::string out;
+  bool quick = false;
+};
+
+void WriteMeasuredReport(const ReportCommandOptions& options, const CommonOptions& common) {
+  const Report report = MeasureReport(
+      {.mediums = MediumsOfReport(options.atmosphere, options.quick),
+       .hard_mediums = options.atmosphere || options.quick ? std::vector<Medium>{} : HardMediums(),
+       .quick = options.quick,
+       .progress = common.progress_style()});
+  WriteReport(report, options.out);
+  if (!common.quiet) Print(SummaryOf(report));
+}
+
 }  // namespace
 
 Subcommand AddBuildCommand(CLI::App& app) {
@@ -210,26 +226,6 @@ Subcommand AddBuildCommand(CLI::App& app) {
       "          skylut build --out takram --layout takram");
   return [options](const CommonOptions& common) { Build(*options, common); };
 }
-
-namespace {
-
-struct ReportCommandOptions {
-  std::optional<std::string> atmosphere;
-  std::string out;
-  bool quick = false;
-};
-
-void WriteMeasuredReport(const ReportCommandOptions& options, const CommonOptions& common) {
-  const Report report = MeasureReport(
-      {.mediums = MediumsOfReport(options.atmosphere, options.quick),
-       .hard_mediums = options.atmosphere || options.quick ? std::vector<Medium>{} : HardMediums(),
-       .quick = options.quick,
-       .progress = common.progress_style()});
-  WriteReport(report, options.out);
-  if (!common.quiet) Print(SummaryOf(report));
-}
-
-}  // namespace
 
 Subcommand AddReportCommand(CLI::App& app) {
   const auto options = std::make_shared<ReportCommandOptions>();

@@ -27,54 +27,6 @@ AirRow RowAt(const AirMap& map, bool ground, double v, double range) {
   return {ground, zenith, std::cos(zenith), std::sin(zenith)};
 }
 
-}  // namespace
-
-glm::vec4 Vec4Of(const Bands<float>& bands) { return Vec4Of(bands.value, bands.count); }
-
-glm::vec4 Vec4Of(const std::array<float, kMaxBands>& per_band, std::size_t bands) {
-  glm::vec4 texel(0.0F);
-  for (std::size_t band = 0; band < bands; ++band)
-    texel[static_cast<glm::length_t>(band)] = per_band[band];
-  return texel;
-}
-
-std::vector<AirRow> RowsOf(const AirMap& map, int sky, double sky_range, int ground) {
-  std::vector<AirRow> rows;
-  for (int i = 0; i < sky; ++i) rows.push_back(RowAt(map, false, Unit(i, sky), sky_range));
-  for (int i = 0; i < ground; ++i)
-    rows.push_back(RowAt(map, true, Unit(i, ground), map.ground_range));
-  return rows;
-}
-
-std::vector<double> AzimuthsOf(int columns) {
-  std::vector<double> azimuths;
-  for (int i = 0; i < columns; ++i)
-    azimuths.push_back(4.0 * std::atan(shared::AirQuarterTangent<double>(Unit(i, columns))));
-  return azimuths;
-}
-
-double SunCosineOf(const AirRow& row, double mu_s, double azimuth) {
-  return std::clamp(row.mu * mu_s + row.sine * SineOf(mu_s) * std::cos(azimuth), -1.0, 1.0);
-}
-
-float AirPhases::OfMolecules(double nu) {
-  return static_cast<float>(shared::PhaseRayleigh<double>(nu));
-}
-
-glm::vec4 AirPhases::OfAerosol(double nu) const {
-  const double place = shared::PhaseNode<double>(0.5 - 0.5 * nu) * (nodes_.width - 1);
-  const int cell = std::min(static_cast<int>(place), nodes_.width - 2);
-  const auto t = static_cast<float>(place - cell);
-  return nodes_.At(cell, 0) + t * (nodes_.At(cell + 1, 0) - nodes_.At(cell, 0));
-}
-
-float TwilightAt(const AirMap& map, double mu_s, double nu, double distance_km) {
-  return static_cast<float>(shared::AirTwilight<double>(
-      map.altitude, mu_s, nu, distance_km, map.twilight_fall, map.twilight_reference, map.radius));
-}
-
-namespace {
-
 /// A row of rays [m from the eye]: the distance at which they enter the air, the one at which they
 /// may first meet land, and the one at which they may last meet it.
 struct Reach {
@@ -505,6 +457,50 @@ class WayBuilder {
 };
 
 }  // namespace
+
+glm::vec4 Vec4Of(const Bands<float>& bands) { return Vec4Of(bands.value, bands.count); }
+
+glm::vec4 Vec4Of(const std::array<float, kMaxBands>& per_band, std::size_t bands) {
+  glm::vec4 texel(0.0F);
+  for (std::size_t band = 0; band < bands; ++band)
+    texel[static_cast<glm::length_t>(band)] = per_band[band];
+  return texel;
+}
+
+std::vector<AirRow> RowsOf(const AirMap& map, int sky, double sky_range, int ground) {
+  std::vector<AirRow> rows;
+  for (int i = 0; i < sky; ++i) rows.push_back(RowAt(map, false, Unit(i, sky), sky_range));
+  for (int i = 0; i < ground; ++i)
+    rows.push_back(RowAt(map, true, Unit(i, ground), map.ground_range));
+  return rows;
+}
+
+std::vector<double> AzimuthsOf(int columns) {
+  std::vector<double> azimuths;
+  for (int i = 0; i < columns; ++i)
+    azimuths.push_back(4.0 * std::atan(shared::AirQuarterTangent<double>(Unit(i, columns))));
+  return azimuths;
+}
+
+double SunCosineOf(const AirRow& row, double mu_s, double azimuth) {
+  return std::clamp(row.mu * mu_s + row.sine * SineOf(mu_s) * std::cos(azimuth), -1.0, 1.0);
+}
+
+float AirPhases::OfMolecules(double nu) {
+  return static_cast<float>(shared::PhaseRayleigh<double>(nu));
+}
+
+glm::vec4 AirPhases::OfAerosol(double nu) const {
+  const double place = shared::PhaseNode<double>(0.5 - 0.5 * nu) * (nodes_.width - 1);
+  const int cell = std::min(static_cast<int>(place), nodes_.width - 2);
+  const auto t = static_cast<float>(place - cell);
+  return nodes_.At(cell, 0) + t * (nodes_.At(cell + 1, 0) - nodes_.At(cell, 0));
+}
+
+float TwilightAt(const AirMap& map, double mu_s, double nu, double distance_km) {
+  return static_cast<float>(shared::AirTwilight<double>(
+      map.altitude, mu_s, nu, distance_km, map.twilight_fall, map.twilight_reference, map.radius));
+}
 
 void FillWays(const SingleScattering<float>& air, const MultipleScattering& multiple_scattering,
               const AirPhases& once, AirTables& tables) {

@@ -57,12 +57,6 @@ void WriteError(std::string_view text) noexcept {
   std::fflush(stderr);
 }
 
-}  // namespace
-
-void Log(std::string_view text) noexcept { WriteError(Printable(text, "\n")); }
-
-namespace {
-
 constexpr const char* kNameOfLibrary = "alpenglow";
 
 /// The name before warnings.
@@ -81,7 +75,45 @@ NameOfProgram& WarningName() {
   return name;
 }
 
+using Clock = std::chrono::steady_clock;
+
+enum class Form { kBar, kLines, kJson, kNothing };
+
+Form FormOf(ProgressStyle style) {
+  switch (style) {
+    case ProgressStyle::kAuto:
+      return isatty(STDERR_FILENO) == 1 ? Form::kBar : Form::kLines;
+    case ProgressStyle::kPlain:
+      return Form::kLines;
+    case ProgressStyle::kJson:
+      return Form::kJson;
+    case ProgressStyle::kQuiet:
+      return Form::kNothing;
+  }
+  throw InternalError("unknown progress style");
+}
+
+/// Returns the bar and its text in fewer columns than the terminal has: in the last one some
+/// terminals begin a new line. The bar is the first to become shorter.
+/// @param complete  number of complete parts out of a number of parts.
+std::string BarLine(const std::string& label,
+                    const std::function<std::size_t(std::size_t)>& complete,
+                    const std::string& text) {
+  constexpr std::size_t kLongest = 30, kShortest = 5;
+  constexpr int kUsualColumns = 80;
+  const auto columns =
+      static_cast<std::size_t>(std::max(ColumnsOf(STDERR_FILENO, kUsualColumns), 2)) - 1;
+  const std::size_t others = label.size() + text.size() + 4;  // with brackets and spaces
+  const std::size_t width = std::min(kLongest, columns - std::min(columns, others));
+  const std::size_t filled = width < kShortest ? 0 : complete(width);
+  const std::string bar =
+      width < kShortest ? "" : fmt::format("[{:#<{}}{:.<{}}] ", "", filled, "", width - filled);
+  return fmt::format("{} {}{}", label, bar, text).substr(0, columns);
+}
+
 }  // namespace
+
+void Log(std::string_view text) noexcept { WriteError(Printable(text, "\n")); }
 
 void Warn(std::string_view text) noexcept {
   NameOfProgram& name = WarningName();
@@ -124,46 +156,6 @@ void OccupyStandardDescriptors() noexcept {
     static_cast<void>(open("/dev/null", O_RDONLY));
   }
 }
-
-namespace {
-
-using Clock = std::chrono::steady_clock;
-
-enum class Form { kBar, kLines, kJson, kNothing };
-
-Form FormOf(ProgressStyle style) {
-  switch (style) {
-    case ProgressStyle::kAuto:
-      return isatty(STDERR_FILENO) == 1 ? Form::kBar : Form::kLines;
-    case ProgressStyle::kPlain:
-      return Form::kLines;
-    case ProgressStyle::kJson:
-      return Form::kJson;
-    case ProgressStyle::kQuiet:
-      return Form::kNothing;
-  }
-  throw InternalError("unknown progress style");
-}
-
-/// Returns the bar and its text in fewer columns than the terminal has: in the last one some
-/// terminals begin a new line. The bar is the first to become shorter.
-/// @param complete  number of complete parts out of a number of parts.
-std::string BarLine(const std::string& label,
-                    const std::function<std::size_t(std::size_t)>& complete,
-                    const std::string& text) {
-  constexpr std::size_t kLongest = 30, kShortest = 5;
-  constexpr int kUsualColumns = 80;
-  const auto columns =
-      static_cast<std::size_t>(std::max(ColumnsOf(STDERR_FILENO, kUsualColumns), 2)) - 1;
-  const std::size_t others = label.size() + text.size() + 4;  // with brackets and spaces
-  const std::size_t width = std::min(kLongest, columns - std::min(columns, others));
-  const std::size_t filled = width < kShortest ? 0 : complete(width);
-  const std::string bar =
-      width < kShortest ? "" : fmt::format("[{:#<{}}{:.<{}}] ", "", filled, "", width - filled);
-  return fmt::format("{} {}{}", label, bar, text).substr(0, columns);
-}
-
-}  // namespace
 
 std::string DurationText(double seconds) {
   const long whole = std::lround(seconds);

@@ -50,41 +50,6 @@ std::vector<std::string> OptionsLike(const std::string& name,
   return like;
 }
 
-}  // namespace
-
-std::string FaultOfCommand(const std::string& word, const std::vector<std::string>& commands) {
-  std::error_code error;
-  const bool is_known = std::find(commands.begin(), commands.end(), word) != commands.end();
-  if (word.empty() || word.find_first_of("-./\\") != std::string::npos || is_known ||
-      std::filesystem::exists(word, error)) {
-    return "";
-  }
-  if (word == "help" || word == "version")
-    return fmt::format("unknown command {0}; did you mean --{0}?", word);
-  const std::optional<std::string> nearest = NearestName(word, commands);
-  return nearest ? fmt::format("unknown command {}; did you mean {}?", word, *nearest) : "";
-}
-
-std::string LongNameOf(const std::string& option) {
-  const std::string typed = option.substr(0, option.find('='));
-  return typed.substr(std::min(typed.find_first_not_of('-'), typed.size()));
-}
-
-std::string FaultOfOptionOfOthers(const std::string& option,
-                                  const std::vector<std::string>& commands) {
-  return fmt::format("{} is an option of {}, not of this command",
-                     option.substr(0, option.find('=')), fmt::join(commands, " and "));
-}
-
-std::string FaultOfUnknownOption(const std::string& option, const std::vector<std::string>& known) {
-  const std::string typed = option.substr(0, option.find('='));
-  const std::vector<std::string> like = OptionsLike(LongNameOf(option), known);
-  if (like.empty()) return fmt::format("unknown option {}", typed);
-  return fmt::format("unknown option {}; did you mean --{}?", typed, fmt::join(like, " or --"));
-}
-
-namespace {
-
 // A signal handler may only access a lock-free atomic.
 std::atomic<int> received_signal{0};
 static_assert(std::atomic<int>::is_always_lock_free);
@@ -181,7 +146,53 @@ std::string SimdText() {
   return fmt::format("{} (of {})", NameOf(CurrentInstructionSet()), available);
 }
 
+/// Returns how many of a number of threads can be started beside this one, by starting them.
+std::size_t StartableThreads(std::size_t wanted) {
+  std::latch release(1);
+  std::vector<std::thread> threads;
+  threads.reserve(wanted);
+  try {
+    while (threads.size() < wanted) threads.emplace_back([&] { release.wait(); });
+  } catch (const std::system_error&) {
+    // This is the limit.
+  }
+  release.count_down();
+  for (std::thread& thread : threads) thread.join();
+  return threads.size();
+}
+
 }  // namespace
+
+std::string FaultOfCommand(const std::string& word, const std::vector<std::string>& commands) {
+  std::error_code error;
+  const bool is_known = std::find(commands.begin(), commands.end(), word) != commands.end();
+  if (word.empty() || word.find_first_of("-./\\") != std::string::npos || is_known ||
+      std::filesystem::exists(word, error)) {
+    return "";
+  }
+  if (word == "help" || word == "version")
+    return fmt::format("unknown command {0}; did you mean --{0}?", word);
+  const std::optional<std::string> nearest = NearestName(word, commands);
+  return nearest ? fmt::format("unknown command {}; did you mean {}?", word, *nearest) : "";
+}
+
+std::string LongNameOf(const std::string& option) {
+  const std::string typed = option.substr(0, option.find('='));
+  return typed.substr(std::min(typed.find_first_not_of('-'), typed.size()));
+}
+
+std::string FaultOfOptionOfOthers(const std::string& option,
+                                  const std::vector<std::string>& commands) {
+  return fmt::format("{} is an option of {}, not of this command",
+                     option.substr(0, option.find('=')), fmt::join(commands, " and "));
+}
+
+std::string FaultOfUnknownOption(const std::string& option, const std::vector<std::string>& known) {
+  const std::string typed = option.substr(0, option.find('='));
+  const std::vector<std::string> like = OptionsLike(LongNameOf(option), known);
+  if (like.empty()) return fmt::format("unknown option {}", typed);
+  return fmt::format("unknown option {}; did you mean --{}?", typed, fmt::join(like, " or --"));
+}
 
 int RunProgram(const std::string& name, const std::function<int()>& body) {
   OccupyStandardDescriptors();
@@ -246,25 +257,6 @@ struct ThreadLimit::State {
   std::unique_ptr<tbb::global_control> control;
   bool must_stay = false;
 };
-
-namespace {
-
-/// Returns how many of a number of threads can be started beside this one, by starting them.
-std::size_t StartableThreads(std::size_t wanted) {
-  std::latch release(1);
-  std::vector<std::thread> threads;
-  threads.reserve(wanted);
-  try {
-    while (threads.size() < wanted) threads.emplace_back([&] { release.wait(); });
-  } catch (const std::system_error&) {
-    // This is the limit.
-  }
-  release.count_down();
-  for (std::thread& thread : threads) thread.join();
-  return threads.size();
-}
-
-}  // namespace
 
 ThreadLimit::ThreadLimit(int threads) : state_(std::make_unique<State>()) {
   if (threads < 0) {

@@ -44,47 +44,6 @@ constexpr EnumNames kQuantities{{
     {Quantity::kTransmittance, "transmittance"},
 }};
 
-}  // namespace
-
-void CaseIds::Add(const std::string& id, const CsvReader& lines) {
-  if (id.empty()) lines.Fail(lines.line(), "id is empty");
-  const auto [same, is_new] = line_of_.try_emplace(id, lines.line());
-  if (is_new) return;
-  lines.Fail(lines.line(),
-             fmt::format("id is \"{}\", as in line {}; ids must be different", id, same->second));
-}
-
-CaseReader::CaseReader(const std::filesystem::path& file) : lines_(file, kColumnNames) {}
-
-std::optional<Case> CaseReader::Next() {
-  if (!lines_.Next()) return std::nullopt;
-  Case result;
-  result.line = lines_.line();
-  result.id = lines_.Field(kId);
-  ids_.Add(result.id, lines_);
-  if (lines_.Field(kQuantity) == "airlight") {
-    Fail(result.line,
-         "quantity airlight has columns of its own; put such cases in a file of theirs");
-  }
-  const std::optional<Quantity> quantity = kQuantities.Find(lines_.Field(kQuantity));
-  if (!quantity) {
-    Fail(result.line, fmt::format("quantity is \"{}\"; it must be one of {}",
-                                  lines_.Field(kQuantity), fmt::join(kQuantities.All(), ", ")));
-  }
-  result.quantity = *quantity;
-  const double altitude_m = lines_.Number(kAltitude, -12000.0, 1e9);
-  const double view_deg = lines_.Number(kView, 0.0, 180.0);
-  result.relative_azimuth_deg = lines_.Number(kAzimuth, -360.0, 360.0);
-  result.ray = RayFromAngles(altitude_m, view_deg, result.relative_azimuth_deg,
-                             lines_.Number(kSun, 0.0, 180.0));
-  if (!lines_.Field(kDistance).empty()) {
-    result.ray.length_m = lines_.Number(kDistance, 0.0, 1e12);
-  }
-  return result;
-}
-
-namespace {
-
 std::string Lines(const Case& work, const Medium& medium, const Estimates& estimates) {
   std::string lines;
   for (std::size_t band = 0; band < estimates.size(); ++band) {
@@ -92,81 +51,6 @@ std::string Lines(const Case& work, const Medium& medium, const Estimates& estim
   }
   return lines;
 }
-
-}  // namespace
-
-std::optional<double> SunOnGround(const Medium& medium, const ViewRay& ray) {
-  const RayExtent extent = ExtentOf(ray, medium.planet_radius_m, medium.atmosphere_height_m);
-  if (!BringsLightOfGround(ray, extent)) return std::nullopt;
-  const double r = medium.planet_radius_m + std::max(ray.altitude_m, 0.0);
-  return std::clamp((r * ray.mu_s + extent.end_m * ray.nu) / medium.planet_radius_m, -1.0, 1.0);
-}
-
-std::optional<std::string> RefusalOfScalarLight(const Medium& medium) {
-  if (medium.polarised) return std::nullopt;
-  return "needs polarised light; the atmosphere has polarised = false";
-}
-
-Estimates StokesOf(const Case& work, const Estimates& q, const Estimates& u) {
-  constexpr double kVertical = 1e-12;  // limit of the squared sine
-  const double azimuth = work.relative_azimuth_deg * kRadiansPerDegree;
-  const double side = std::sin(azimuth) < 0.0 ? -1.0 : 1.0;
-  const bool vertical = (1.0 - work.ray.mu) * (1.0 + work.ray.mu) < kVertical;
-  // For a vertical view, treated as tilted towards the sun, U is 0 by symmetry, and Q rotates by
-  // the azimuth together with the picture, in one direction for upward and in the other for
-  // downward views.
-  const double turn = work.ray.mu > 0.0 ? 2.0 * azimuth : -2.0 * azimuth;
-  Estimates result(q.size());
-  for (std::size_t band = 0; band < q.size(); ++band) {
-    if (work.quantity == Quantity::kStokesQ) {
-      result[band] = q[band];
-      if (vertical) result[band].value *= std::cos(turn);
-    } else {
-      result[band] = {side * u[band].value, u[band].error};
-      if (vertical) result[band] = {q[band].value * std::sin(turn), q[band].error};
-    }
-  }
-  return result;
-}
-
-double ClosedFormError(const Medium& medium) {
-  const double height_m = std::max(medium.rayleigh_scale_height_m, medium.mie_scale_height_m);
-  const double columns = 0.3 * std::pow(height_m / medium.planet_radius_m, 2.0);
-  if (medium.ozone.shape == OzoneShape::kTent) return std::max(kClosedFormError, columns);
-  const double ozone = 4e-4 * std::pow(3.0 * medium.ozone.top_m / medium.planet_radius_m, 4.0);
-  return std::max(kClosedFormError, columns + ozone);
-}
-
-std::optional<double> RelativeErrorFromText(std::string_view text) {
-  const bool percent = text.ends_with('%');
-  if (percent) text.remove_suffix(1);
-  const std::optional<double> number = ParseNumber(text);
-  if (!number) return std::nullopt;
-  const double value = percent ? *number / 100.0 : *number;
-  return value >= kSmallestMaxError && value <= 1.0 ? std::optional(value) : std::nullopt;
-}
-
-std::string FaultOfRelativeError(const std::string& text) {
-  return RelativeErrorFromText(text) ? "" : "it must be 1e-8 to 1, or a percentage like 0.2%";
-}
-
-void EvaluateFile(const std::filesystem::path& cases, const std::filesystem::path& results,
-                  Evaluator& evaluator, ProgressStyle style) {
-  CaseReader reader(cases);
-  const auto prepare = [&](std::span<const Case> work) {
-    for (const Case& next : work) {
-      if (const auto refusal = evaluator.Refusal(next.quantity)) {
-        reader.Fail(next.line, "its quantity " + *refusal);
-      }
-    }
-    evaluator.Prepare(work);
-  };
-  WriteCaseResults(reader, results, style, prepare, [&](const Case& work) {
-    return Lines(work, evaluator.medium(), evaluator.Evaluate(work));
-  });
-}
-
-namespace {
 
 Estimates WithErrors(const std::vector<double>& values, const std::vector<double>& errors) {
   Estimates result(values.size());
@@ -242,15 +126,6 @@ class PathEvaluator final : public Evaluator {
   Medium black_ground_;
   reference::PathOptions paths_;
 };
-
-}  // namespace
-
-std::unique_ptr<Evaluator> MakePathTraceEvaluator(const Medium& medium,
-                                                  const PathTraceOptions& options) {
-  return std::make_unique<PathEvaluator>(medium, options);
-}
-
-namespace {
 
 class TableEvaluator final : public Evaluator {
  public:
@@ -341,6 +216,119 @@ class TableEvaluator final : public Evaluator {
 };
 
 }  // namespace
+
+void CaseIds::Add(const std::string& id, const CsvReader& lines) {
+  if (id.empty()) lines.Fail(lines.line(), "id is empty");
+  const auto [same, is_new] = line_of_.try_emplace(id, lines.line());
+  if (is_new) return;
+  lines.Fail(lines.line(),
+             fmt::format("id is \"{}\", as in line {}; ids must be different", id, same->second));
+}
+
+CaseReader::CaseReader(const std::filesystem::path& file) : lines_(file, kColumnNames) {}
+
+std::optional<Case> CaseReader::Next() {
+  if (!lines_.Next()) return std::nullopt;
+  Case result;
+  result.line = lines_.line();
+  result.id = lines_.Field(kId);
+  ids_.Add(result.id, lines_);
+  if (lines_.Field(kQuantity) == "airlight") {
+    Fail(result.line,
+         "quantity airlight has columns of its own; put such cases in a file of theirs");
+  }
+  const std::optional<Quantity> quantity = kQuantities.Find(lines_.Field(kQuantity));
+  if (!quantity) {
+    Fail(result.line, fmt::format("quantity is \"{}\"; it must be one of {}",
+                                  lines_.Field(kQuantity), fmt::join(kQuantities.All(), ", ")));
+  }
+  result.quantity = *quantity;
+  const double altitude_m = lines_.Number(kAltitude, -12000.0, 1e9);
+  const double view_deg = lines_.Number(kView, 0.0, 180.0);
+  result.relative_azimuth_deg = lines_.Number(kAzimuth, -360.0, 360.0);
+  result.ray = RayFromAngles(altitude_m, view_deg, result.relative_azimuth_deg,
+                             lines_.Number(kSun, 0.0, 180.0));
+  if (!lines_.Field(kDistance).empty()) {
+    result.ray.length_m = lines_.Number(kDistance, 0.0, 1e12);
+  }
+  return result;
+}
+
+std::optional<double> SunOnGround(const Medium& medium, const ViewRay& ray) {
+  const RayExtent extent = ExtentOf(ray, medium.planet_radius_m, medium.atmosphere_height_m);
+  if (!BringsLightOfGround(ray, extent)) return std::nullopt;
+  const double r = medium.planet_radius_m + std::max(ray.altitude_m, 0.0);
+  return std::clamp((r * ray.mu_s + extent.end_m * ray.nu) / medium.planet_radius_m, -1.0, 1.0);
+}
+
+std::optional<std::string> RefusalOfScalarLight(const Medium& medium) {
+  if (medium.polarised) return std::nullopt;
+  return "needs polarised light; the atmosphere has polarised = false";
+}
+
+Estimates StokesOf(const Case& work, const Estimates& q, const Estimates& u) {
+  constexpr double kVertical = 1e-12;  // limit of the squared sine
+  const double azimuth = work.relative_azimuth_deg * kRadiansPerDegree;
+  const double side = std::sin(azimuth) < 0.0 ? -1.0 : 1.0;
+  const bool vertical = (1.0 - work.ray.mu) * (1.0 + work.ray.mu) < kVertical;
+  // For a vertical view, treated as tilted towards the sun, U is 0 by symmetry, and Q rotates by
+  // the azimuth together with the picture, in one direction for upward and in the other for
+  // downward views.
+  const double turn = work.ray.mu > 0.0 ? 2.0 * azimuth : -2.0 * azimuth;
+  Estimates result(q.size());
+  for (std::size_t band = 0; band < q.size(); ++band) {
+    if (work.quantity == Quantity::kStokesQ) {
+      result[band] = q[band];
+      if (vertical) result[band].value *= std::cos(turn);
+    } else {
+      result[band] = {side * u[band].value, u[band].error};
+      if (vertical) result[band] = {q[band].value * std::sin(turn), q[band].error};
+    }
+  }
+  return result;
+}
+
+double ClosedFormError(const Medium& medium) {
+  const double height_m = std::max(medium.rayleigh_scale_height_m, medium.mie_scale_height_m);
+  const double columns = 0.3 * std::pow(height_m / medium.planet_radius_m, 2.0);
+  if (medium.ozone.shape == OzoneShape::kTent) return std::max(kClosedFormError, columns);
+  const double ozone = 4e-4 * std::pow(3.0 * medium.ozone.top_m / medium.planet_radius_m, 4.0);
+  return std::max(kClosedFormError, columns + ozone);
+}
+
+std::optional<double> RelativeErrorFromText(std::string_view text) {
+  const bool percent = text.ends_with('%');
+  if (percent) text.remove_suffix(1);
+  const std::optional<double> number = ParseNumber(text);
+  if (!number) return std::nullopt;
+  const double value = percent ? *number / 100.0 : *number;
+  return value >= kSmallestMaxError && value <= 1.0 ? std::optional(value) : std::nullopt;
+}
+
+std::string FaultOfRelativeError(const std::string& text) {
+  return RelativeErrorFromText(text) ? "" : "it must be 1e-8 to 1, or a percentage like 0.2%";
+}
+
+void EvaluateFile(const std::filesystem::path& cases, const std::filesystem::path& results,
+                  Evaluator& evaluator, ProgressStyle style) {
+  CaseReader reader(cases);
+  const auto prepare = [&](std::span<const Case> work) {
+    for (const Case& next : work) {
+      if (const auto refusal = evaluator.Refusal(next.quantity)) {
+        reader.Fail(next.line, "its quantity " + *refusal);
+      }
+    }
+    evaluator.Prepare(work);
+  };
+  WriteCaseResults(reader, results, style, prepare, [&](const Case& work) {
+    return Lines(work, evaluator.medium(), evaluator.Evaluate(work));
+  });
+}
+
+std::unique_ptr<Evaluator> MakePathTraceEvaluator(const Medium& medium,
+                                                  const PathTraceOptions& options) {
+  return std::make_unique<PathEvaluator>(medium, options);
+}
 
 std::unique_ptr<Evaluator> MakeTableEvaluator(TableFolder tables) {
   return std::make_unique<TableEvaluator>(std::move(tables));

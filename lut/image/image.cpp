@@ -30,6 +30,10 @@ std::optional<std::string> FaultOf(const Image& image, const Channel& layer) {
   return FaultAt(image, pixel, "layer " + layer.name, *fault);
 }
 
+constexpr EnumNames kStokesNames{{std::pair{StokesLayer::kQ, "stokes_q"},
+                                  {StokesLayer::kU, "stokes_u"},
+                                  {StokesLayer::kPolarisation, "polarisation"}}};
+
 }  // namespace
 
 Image::Image(int image_width, int image_height) : width(image_width), height(image_height) {
@@ -51,14 +55,6 @@ std::optional<std::string> FaultyValue(const Image& image) {
   }
   return std::nullopt;
 }
-
-namespace {
-
-constexpr EnumNames kStokesNames{{std::pair{StokesLayer::kQ, "stokes_q"},
-                                  {StokesLayer::kU, "stokes_u"},
-                                  {StokesLayer::kPolarisation, "polarisation"}}};
-
-}  // namespace
 
 std::string NameOf(StokesLayer layer) { return kStokesNames.Of(layer); }
 

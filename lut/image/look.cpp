@@ -22,6 +22,49 @@ namespace {
 
 constexpr char kLocal[] = "local";
 
+constexpr double kDayEv100 = 15.0;
+
+double LuminanceAt(double ev100) { return kMeterConstant / 100.0 * std::exp2(ev100); }
+
+/// Returns the exposure that shows the metered middle grey `stops` stops darker on the display than
+/// metered_ev100 does.
+double ShownDarker(double metered_ev100, double stops, const Look& look) {
+  const auto shown = [&](double darker) {
+    const double grey = LuminanceAt(-darker);
+    return DisplayLight<double>(look.curve, {grey, grey, grey}, ExposureScale(0.0), look.agx)[1];
+  };
+  const double wanted = shown(0.0) * std::exp2(-stops);
+  double low = 0.0, high = stops;  // below grey, curves have a slope of 1 or more
+  while (shown(high) > wanted) high *= 2.0;
+  for (int i = 0; i < 40; ++i) {
+    const double middle = 0.5 * (low + high);
+    (shown(middle) > wanted ? low : high) = middle;
+  }
+  return metered_ev100 + low;
+}
+
+/// Returns the key k(L); look.h gives the formula and its sources.
+double KeyOf(double luminance_cd_per_m2) {
+  constexpr double kRodsAlone_cd_per_m2 = 0.005;
+  const double key = 1.03 - 2.0 / (2.0 + std::log10(luminance_cd_per_m2 + 1.0));
+  return key / std::cbrt(1.0 + kRodsAlone_cd_per_m2 / luminance_cd_per_m2);
+}
+
+/// Returns the number; calls `refuse` unless the whole text is a number.
+template <typename Number, typename Refuse>
+Number NumberFromText(std::string_view text, const Refuse& refuse) {
+  Number number{};
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+  if (error != std::errc() || end != text.data() + text.size()) refuse();
+  return number;
+}
+
+constexpr EnumNames kToneCurves{{std::pair{ToneCurve::kAgx, "agx"},
+                                 {ToneCurve::kAces, "aces"},
+                                 {ToneCurve::kReinhard, "reinhard"},
+                                 {ToneCurve::kPbrNeutral, "pbr-neutral"},
+                                 {ToneCurve::kLinear, "linear"}}};
+
 }  // namespace
 
 Look LookFromName(const std::string& name) {
@@ -73,38 +116,6 @@ std::string NameOf(ExposureRule::Kind kind) {
       {std::pair{kMetered, "metered"}, {kIncident, "incident"}, {kFixed, "fixed"}, {kEye, "eye"}}};
   return kNames.Of(kind);
 }
-
-namespace {
-
-constexpr double kDayEv100 = 15.0;
-
-double LuminanceAt(double ev100) { return kMeterConstant / 100.0 * std::exp2(ev100); }
-
-/// Returns the exposure that shows the metered middle grey `stops` stops darker on the display than
-/// metered_ev100 does.
-double ShownDarker(double metered_ev100, double stops, const Look& look) {
-  const auto shown = [&](double darker) {
-    const double grey = LuminanceAt(-darker);
-    return DisplayLight<double>(look.curve, {grey, grey, grey}, ExposureScale(0.0), look.agx)[1];
-  };
-  const double wanted = shown(0.0) * std::exp2(-stops);
-  double low = 0.0, high = stops;  // below grey, curves have a slope of 1 or more
-  while (shown(high) > wanted) high *= 2.0;
-  for (int i = 0; i < 40; ++i) {
-    const double middle = 0.5 * (low + high);
-    (shown(middle) > wanted ? low : high) = middle;
-  }
-  return metered_ev100 + low;
-}
-
-/// Returns the key k(L); look.h gives the formula and its sources.
-double KeyOf(double luminance_cd_per_m2) {
-  constexpr double kRodsAlone_cd_per_m2 = 0.005;
-  const double key = 1.03 - 2.0 / (2.0 + std::log10(luminance_cd_per_m2 + 1.0));
-  return key / std::cbrt(1.0 + kRodsAlone_cd_per_m2 / luminance_cd_per_m2);
-}
-
-}  // namespace
 
 double EyeEv100(double metered_ev100, const Look& look) {
   constexpr double kBrightnessPower = 1.0 / 3.0, kMost_stops = 6.0;
@@ -167,19 +178,6 @@ double IncidentEv100(double illuminance_lux) {
                     kBrightestEv100);
 }
 
-namespace {
-
-/// Returns the number; calls `refuse` unless the whole text is a number.
-template <typename Number, typename Refuse>
-Number NumberFromText(std::string_view text, const Refuse& refuse) {
-  Number number{};
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
-  if (error != std::errc() || end != text.data() + text.size()) refuse();
-  return number;
-}
-
-}  // namespace
-
 ImageSize ImageSizeFromText(const std::string& text, int largest) {
   const auto refuse = [&] {
     throw InputError(
@@ -204,16 +202,6 @@ std::optional<double> Ev100FromText(const std::string& text) {
   });
   return RequireInRange(ev100, -30.0, 30.0, "exposure");
 }
-
-namespace {
-
-constexpr EnumNames kToneCurves{{std::pair{ToneCurve::kAgx, "agx"},
-                                 {ToneCurve::kAces, "aces"},
-                                 {ToneCurve::kReinhard, "reinhard"},
-                                 {ToneCurve::kPbrNeutral, "pbr-neutral"},
-                                 {ToneCurve::kLinear, "linear"}}};
-
-}  // namespace
 
 ToneCurve ToneCurveFromName(const std::string& name) {
   return kToneCurves.Named(name, "tone curve is \"{0}\"; it must be {2}");

@@ -30,26 +30,6 @@ double AdaptationOf(double mesopic) {
   return std::clamp(0.7670 + 0.3334 * std::log10(mesopic), 0.0, 1.0);
 }
 
-}  // namespace
-
-MesopicLight MesopicLightOf(double photopic_cd_per_m2, double scotopic_cd_per_m2) {
-  if (!(photopic_cd_per_m2 > 0.0 || scotopic_cd_per_m2 > 0.0)) return {0.0, 0.0};
-  // m - AdaptationOf(Mixed(m)) is <= 0 at 0 and >= 0 at 1.
-  double low = 0.0;
-  double high = 1.0;
-  for (int i = 0; i < 40; ++i) {
-    const double middle = 0.5 * (low + high);
-    const bool above = middle > AdaptationOf(Mixed(middle, photopic_cd_per_m2, scotopic_cd_per_m2));
-    (above ? high : low) = middle;
-  }
-  const double m = AdaptationOf(Mixed(high, photopic_cd_per_m2, scotopic_cd_per_m2));
-  const double cones = m * photopic_cd_per_m2;
-  const double rods = (1.0 - m) * scotopic_cd_per_m2 * kRodEfficiency;
-  return {Mixed(m, photopic_cd_per_m2, scotopic_cd_per_m2), cones / (cones + rods)};
-}
-
-namespace {
-
 std::array<float, 3> NightColour(const std::array<float, 3>& rgb, float scotopic) {
   const double photopic = std::max(shared::Luminance<double>(rgb[0], rgb[1], rgb[2]), 0.0);
   const MesopicLight light = MesopicLightOf(photopic, std::max<double>(scotopic, 0.0));
@@ -65,24 +45,6 @@ std::array<float, 3> NightColour(const std::array<float, 3>& rgb, float scotopic
   }
   return seen;
 }
-
-}  // namespace
-
-Image SeenByNight(Image image) {
-  const auto layer =
-      std::find_if(image.layers.begin(), image.layers.end(),
-                   [](const Channel& channel) { return channel.name == kScotopicChannel; });
-  if (layer == image.layers.end()) {
-    throw InputError(
-        fmt::format("the picture has no layer {}, which night vision needs", kScotopicChannel));
-  }
-  tbb::parallel_for(std::size_t{0}, image.rgb.size(), [&](std::size_t i) {
-    image.rgb[i] = NightColour(image.rgb[i], layer->values[i]);
-  });
-  return image;
-}
-
-namespace {
 
 using Plane = std::vector<std::array<float, 3>>;
 
@@ -144,6 +106,36 @@ double LevelOf(double sigma_px) {
 }
 
 }  // namespace
+
+MesopicLight MesopicLightOf(double photopic_cd_per_m2, double scotopic_cd_per_m2) {
+  if (!(photopic_cd_per_m2 > 0.0 || scotopic_cd_per_m2 > 0.0)) return {0.0, 0.0};
+  // m - AdaptationOf(Mixed(m)) is <= 0 at 0 and >= 0 at 1.
+  double low = 0.0;
+  double high = 1.0;
+  for (int i = 0; i < 40; ++i) {
+    const double middle = 0.5 * (low + high);
+    const bool above = middle > AdaptationOf(Mixed(middle, photopic_cd_per_m2, scotopic_cd_per_m2));
+    (above ? high : low) = middle;
+  }
+  const double m = AdaptationOf(Mixed(high, photopic_cd_per_m2, scotopic_cd_per_m2));
+  const double cones = m * photopic_cd_per_m2;
+  const double rods = (1.0 - m) * scotopic_cd_per_m2 * kRodEfficiency;
+  return {Mixed(m, photopic_cd_per_m2, scotopic_cd_per_m2), cones / (cones + rods)};
+}
+
+Image SeenByNight(Image image) {
+  const auto layer =
+      std::find_if(image.layers.begin(), image.layers.end(),
+                   [](const Channel& channel) { return channel.name == kScotopicChannel; });
+  if (layer == image.layers.end()) {
+    throw InputError(
+        fmt::format("the picture has no layer {}, which night vision needs", kScotopicChannel));
+  }
+  tbb::parallel_for(std::size_t{0}, image.rgb.size(), [&](std::size_t i) {
+    image.rgb[i] = NightColour(image.rgb[i], layer->values[i]);
+  });
+  return image;
+}
 
 double AcuityAt(double luminance_cd_per_m2) {
   const double log_l = std::log10(std::max(luminance_cd_per_m2, 1e-6));

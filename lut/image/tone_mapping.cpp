@@ -23,47 +23,6 @@ constexpr EnumNames kLooks{{std::pair{AgxLook::kPhoto, "photo"},
                             {AgxLook::kMedium, "medium"},
                             {AgxLook::kHigh, "high"}}};
 
-}  // namespace
-
-AgxGrade GradeOf(AgxLook look) {
-  switch (look) {
-    case AgxLook::kPhoto:
-      return {0.6, 1.8, true, 0.38, 1.0, 1.0, 0.35, true};
-    case AgxLook::kNone:
-      return {};
-    case AgxLook::kPunchy:
-      return {0.0, 1.0, false, 0.0, 1.3, 1.2, 0.0, false};
-    case AgxLook::kMedium:
-      return {0.0, 1.2, false, 0.0, 1.0, 1.0, 0.0, false};
-    case AgxLook::kHigh:
-      return {0.0, 1.4, false, 0.0, 1.0, 0.95, 0.0, false};
-  }
-  throw InternalError("unknown look");
-}
-
-AgxLook AgxLookFromName(const std::string& name) {
-  return kLooks.Named(name, "look is \"{}\"; it must be one of {}");
-}
-
-std::string NameOf(AgxLook look) { return kLooks.Of(look); }
-
-std::vector<std::string> AgxLookNames() { return kLooks.All(); }
-
-Image WithHighlightsRolledOff(Image image, double ev100) {
-  const auto grey = static_cast<float>(kMeterConstant / 100.0 * std::exp2(ev100));
-  tbb::parallel_for(std::size_t{0}, image.rgb.size(), [&](std::size_t i) {
-    std::array<float, 3>& rgb = image.rgb[i];
-    const float y = shared::Luminance(rgb[0], rgb[1], rgb[2]);
-    if (!(y > grey)) return;
-    const float stops = std::log2(y / grey);
-    const float gain = std::exp2(std::log1p(stops) - stops);
-    for (float& channel : rgb) channel *= gain;
-  });
-  return image;
-}
-
-namespace {
-
 // log2 luminance of every pixel. Pixels without light get the smallest value of the others, so that
 // the base is smooth.
 struct Stops {
@@ -213,6 +172,43 @@ float RangeOf(std::vector<float> values) {
 }
 
 }  // namespace
+
+AgxGrade GradeOf(AgxLook look) {
+  switch (look) {
+    case AgxLook::kPhoto:
+      return {0.6, 1.8, true, 0.38, 1.0, 1.0, 0.35, true};
+    case AgxLook::kNone:
+      return {};
+    case AgxLook::kPunchy:
+      return {0.0, 1.0, false, 0.0, 1.3, 1.2, 0.0, false};
+    case AgxLook::kMedium:
+      return {0.0, 1.2, false, 0.0, 1.0, 1.0, 0.0, false};
+    case AgxLook::kHigh:
+      return {0.0, 1.4, false, 0.0, 1.0, 0.95, 0.0, false};
+  }
+  throw InternalError("unknown look");
+}
+
+AgxLook AgxLookFromName(const std::string& name) {
+  return kLooks.Named(name, "look is \"{}\"; it must be one of {}");
+}
+
+std::string NameOf(AgxLook look) { return kLooks.Of(look); }
+
+std::vector<std::string> AgxLookNames() { return kLooks.All(); }
+
+Image WithHighlightsRolledOff(Image image, double ev100) {
+  const auto grey = static_cast<float>(kMeterConstant / 100.0 * std::exp2(ev100));
+  tbb::parallel_for(std::size_t{0}, image.rgb.size(), [&](std::size_t i) {
+    std::array<float, 3>& rgb = image.rgb[i];
+    const float y = shared::Luminance(rgb[0], rgb[1], rgb[2]);
+    if (!(y > grey)) return;
+    const float stops = std::log2(y / grey);
+    const float gain = std::exp2(std::log1p(stops) - stops);
+    for (float& channel : rgb) channel *= gain;
+  });
+  return image;
+}
 
 Image LocallyExposed(const Image& image, double ev100, const LocalExposureOptions& options) {
   RequireInRange(options.base_range_stops, 0.0, 100.0, "base_range_stops");

@@ -261,6 +261,56 @@ AngleTaps TapsOfAngle(double nu) {
            -0.5F * u * t * t}};
 }
 
+float GlowShare(std::size_t angle) {
+  const double end = AngleAt(kGlowAngles);
+  const double x = std::clamp((end - AngleAt(angle)) / (end - kGlowFades_rad), 0.0, 1.0);
+  return static_cast<float>(x * x * (3.0 - 2.0 * x));
+}
+
+PeakShape GlowOf(const PhaseFunction& phase, int degree) {
+  const std::vector<double> chi = LegendreCoefficients(phase, kLastGlowDegree);
+  PeakShape shape = ShapeAt({kGlowAngles, kGlowDepths, kDeepestGlow}, 1.0);
+  FillHigh(
+      chi.size(), kGlowAngles,
+      [&](std::size_t l, double y) {
+        return l <= static_cast<std::size_t>(degree) ? 0.0 : HigherOrders(chi[l], y, 1.0);
+      },
+      shape);
+  for (std::size_t angle = 0; angle < kGlowAngles; ++angle) {
+    for (std::size_t y = 0; y < kGlowDepths; ++y)
+      shape.high[angle * kGlowDepths + y] *= GlowShare(angle);
+  }
+  return shape;
+}
+
+// Returns the column [km] below a point of density `density` in the direction from the sun, down to
+// the ground, of a gas of this scale height; those of two gases are as their scale heights.
+float ColumnBelow(float density, float sun_column, float otherwise) {
+  constexpr float kLeastDensity = 1e-20F;  // quotients of smaller densities are not accurate
+  return density < kLeastDensity ? otherwise : std::max(sun_column * (1.0F / density - 1.0F), 0.0F);
+}
+
+// Highest degree of the estimate. OptionsFor (multiple_scattering.h) treats air separately whose
+// aerosol has much light in higher degrees.
+constexpr int kLastMissingDegree = 64;
+
+// Returns P_l(nu) for l = 0 ... kLastMissingDegree.
+std::vector<double> LegendreValues(double nu) {
+  std::vector<double> values{1.0, nu};
+  for (int l = 1; l < kLastMissingDegree; ++l) {
+    const auto i = static_cast<std::size_t>(l);
+    values.push_back(((2.0 * l + 1.0) * nu * values[i] - l * values[i - 1]) / (l + 1.0));
+  }
+  return values;
+}
+
+// Returns an upper bound of |P_l(cos theta)|: the smaller of 1 and sqrt(2 / (pi (l + 1/2) sin
+// theta)) (Bernstein).
+double Envelope(int l, double nu) {
+  const double sine = std::sqrt(std::max(1.0 - nu * nu, 1e-12));
+  return std::min(1.0, std::sqrt(2.0 / (kPi * (l + 0.5) * sine)));
+}
+
 }  // namespace
 
 DeltaScaledMedium WithoutPeak(const Medium& medium, int degree) {
@@ -286,32 +336,6 @@ DeltaScaledMedium WithoutPeak(const Medium& medium, int degree) {
   }
   return air;
 }
-
-namespace {
-
-float GlowShare(std::size_t angle) {
-  const double end = AngleAt(kGlowAngles);
-  const double x = std::clamp((end - AngleAt(angle)) / (end - kGlowFades_rad), 0.0, 1.0);
-  return static_cast<float>(x * x * (3.0 - 2.0 * x));
-}
-
-PeakShape GlowOf(const PhaseFunction& phase, int degree) {
-  const std::vector<double> chi = LegendreCoefficients(phase, kLastGlowDegree);
-  PeakShape shape = ShapeAt({kGlowAngles, kGlowDepths, kDeepestGlow}, 1.0);
-  FillHigh(
-      chi.size(), kGlowAngles,
-      [&](std::size_t l, double y) {
-        return l <= static_cast<std::size_t>(degree) ? 0.0 : HigherOrders(chi[l], y, 1.0);
-      },
-      shape);
-  for (std::size_t angle = 0; angle < kGlowAngles; ++angle) {
-    for (std::size_t y = 0; y < kGlowDepths; ++y)
-      shape.high[angle * kGlowDepths + y] *= GlowShare(angle);
-  }
-  return shape;
-}
-
-}  // namespace
 
 GlowAboutTheSun::GlowAboutTheSun(const Medium& medium, int degree) {
   for (const double per_m : medium.mie_scattering_per_m)
@@ -368,17 +392,6 @@ Bands<float> ScaledBeam::At(double height_m, double mu_s) const {
   }
   return beam;
 }
-
-namespace {
-
-// Returns the column [km] below a point of density `density` in the direction from the sun, down to
-// the ground, of a gas of this scale height; those of two gases are as their scale heights.
-float ColumnBelow(float density, float sun_column, float otherwise) {
-  constexpr float kLeastDensity = 1e-20F;  // quotients of smaller densities are not accurate
-  return density < kLeastDensity ? otherwise : std::max(sun_column * (1.0F / density - 1.0F), 0.0F);
-}
-
-}  // namespace
 
 float UpFromBelow(const AirConstants<float>& air, std::size_t band, float share,
                   const SunlitPoint& point) {
@@ -534,14 +547,6 @@ DeltaM::Way DeltaM::WayTo(const RaySamples<float>& samples) const {
   return way;
 }
 
-namespace {
-
-// Highest degree of the estimate. OptionsFor (multiple_scattering.h) treats air separately whose
-// aerosol has much light in higher degrees.
-constexpr int kLastMissingDegree = 64;
-
-}  // namespace
-
 double NarrowLobes(const Medium& medium) {
   constexpr std::size_t kFirst = kLastMissingDegree - 15;  // one can be small by chance
   const std::size_t bands = medium.wavelengths_nm.size();
@@ -555,27 +560,6 @@ double NarrowLobes(const Medium& medium) {
   return largest * medium.mie_scale_height_m *
          *std::max_element(medium.mie_scattering_per_m.begin(), medium.mie_scattering_per_m.end());
 }
-
-namespace {
-
-// Returns P_l(nu) for l = 0 ... kLastMissingDegree.
-std::vector<double> LegendreValues(double nu) {
-  std::vector<double> values{1.0, nu};
-  for (int l = 1; l < kLastMissingDegree; ++l) {
-    const auto i = static_cast<std::size_t>(l);
-    values.push_back(((2.0 * l + 1.0) * nu * values[i] - l * values[i - 1]) / (l + 1.0));
-  }
-  return values;
-}
-
-// Returns an upper bound of |P_l(cos theta)|: the smaller of 1 and sqrt(2 / (pi (l + 1/2) sin
-// theta)) (Bernstein).
-double Envelope(int l, double nu) {
-  const double sine = std::sqrt(std::max(1.0 - nu * nu, 1e-12));
-  return std::min(1.0, std::sqrt(2.0 / (kPi * (l + 0.5) * sine)));
-}
-
-}  // namespace
 
 TruncationError::TruncationError(const Medium& medium, int degree)
     : bands_(medium.wavelengths_nm.size()),

@@ -40,47 +40,6 @@ PolarisedLight Along(const SingleScattering<float>& air,
   return light;
 }
 
-}  // namespace
-
-PolarisedRow::PolarisedRow(const SingleScattering<float>& air,
-                           const MultipleScattering& multiple_scattering, double altitude_m,
-                           double mu_s, double zenith_angle_rad) {
-  const double mu = std::cos(zenith_angle_rad);
-  const double sines =
-      std::sin(zenith_angle_rad) * std::sqrt(std::max((1.0 - mu_s) * (1.0 + mu_s), 0.0));
-  for (int k = 0; k <= kSteps; ++k) {
-    const double nu = std::clamp(mu * mu_s + sines * std::cos(kPi * k / kSteps), -1.0, 1.0);
-    nodes_.push_back(Along(air, multiple_scattering, {std::max(altitude_m, 0.0), mu, mu_s, nu}));
-  }
-}
-
-// Interpolates with Lagrange's cubic through the four surrounding nodes.
-PolarisedLight PolarisedRow::At(double azimuth_rad) const {
-  const double turn = std::remainder(azimuth_rad, 2.0 * kPi) / kPi * kSteps;
-  const int first = static_cast<int>(std::floor(turn));
-  const double t = turn - first;
-  const std::array<double, 4> weight{
-      -t * (t - 1.0) * (t - 2.0) / 6.0, (t + 1.0) * (t - 1.0) * (t - 2.0) / 2.0,
-      -(t + 1.0) * t * (t - 2.0) / 2.0, (t + 1.0) * t * (t - 1.0) / 6.0};
-  const std::size_t bands = nodes_.front().q.count;
-  PolarisedLight light{Bands<float>(bands), Bands<float>(bands)};
-  for (int i = 0; i < 4; ++i) {
-    int k = first - 1 + i;
-    if (k > kSteps) k -= 2 * kSteps;  // the same azimuth
-    if (k < -kSteps) k += 2 * kSteps;
-    const PolarisedLight& node = nodes_[static_cast<std::size_t>(std::abs(k))];
-    const auto of_q = static_cast<float>(weight.at(static_cast<std::size_t>(i)));
-    const float of_u = k < 0 ? -of_q : of_q;
-    for (std::size_t band = 0; band < bands; ++band) {
-      light.q[band] += of_q * node.q[band];
-      light.u[band] += of_u * node.u[band];
-    }
-  }
-  return light;
-}
-
-namespace {
-
 constexpr EnumNames kOrientations{{
     std::pair{PanoramaOrientation::kNorth, "north"},
     {PanoramaOrientation::kBlender, "blender"},
@@ -316,6 +275,43 @@ SkyViewSize FineSize(const SkyViewSize& size) {
 }
 
 }  // namespace
+
+PolarisedRow::PolarisedRow(const SingleScattering<float>& air,
+                           const MultipleScattering& multiple_scattering, double altitude_m,
+                           double mu_s, double zenith_angle_rad) {
+  const double mu = std::cos(zenith_angle_rad);
+  const double sines =
+      std::sin(zenith_angle_rad) * std::sqrt(std::max((1.0 - mu_s) * (1.0 + mu_s), 0.0));
+  for (int k = 0; k <= kSteps; ++k) {
+    const double nu = std::clamp(mu * mu_s + sines * std::cos(kPi * k / kSteps), -1.0, 1.0);
+    nodes_.push_back(Along(air, multiple_scattering, {std::max(altitude_m, 0.0), mu, mu_s, nu}));
+  }
+}
+
+// Interpolates with Lagrange's cubic through the four surrounding nodes.
+PolarisedLight PolarisedRow::At(double azimuth_rad) const {
+  const double turn = std::remainder(azimuth_rad, 2.0 * kPi) / kPi * kSteps;
+  const int first = static_cast<int>(std::floor(turn));
+  const double t = turn - first;
+  const std::array<double, 4> weight{
+      -t * (t - 1.0) * (t - 2.0) / 6.0, (t + 1.0) * (t - 1.0) * (t - 2.0) / 2.0,
+      -(t + 1.0) * t * (t - 2.0) / 2.0, (t + 1.0) * t * (t - 1.0) / 6.0};
+  const std::size_t bands = nodes_.front().q.count;
+  PolarisedLight light{Bands<float>(bands), Bands<float>(bands)};
+  for (int i = 0; i < 4; ++i) {
+    int k = first - 1 + i;
+    if (k > kSteps) k -= 2 * kSteps;  // the same azimuth
+    if (k < -kSteps) k += 2 * kSteps;
+    const PolarisedLight& node = nodes_[static_cast<std::size_t>(std::abs(k))];
+    const auto of_q = static_cast<float>(weight.at(static_cast<std::size_t>(i)));
+    const float of_u = k < 0 ? -of_q : of_q;
+    for (std::size_t band = 0; band < bands; ++band) {
+      light.q[band] += of_q * node.q[band];
+      light.u[band] += of_u * node.u[band];
+    }
+  }
+  return light;
+}
 
 PanoramaOrientation PanoramaOrientationFromName(const std::string& name) {
   if (name == "geographic") return PanoramaOrientation::kNorth;

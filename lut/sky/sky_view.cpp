@@ -246,35 +246,6 @@ std::vector<std::vector<float>> PhaseTables(const SingleScattering<float>& air,
   return tables;
 }
 
-}  // namespace
-
-float GlowColumn_km(const SingleScattering<float>& air, double altitude_m, double mu_s) {
-  constexpr double kHair = 1e-6;  // small offset above the horizon
-  const Medium& medium = air.medium();
-  if (altitude_m >= medium.atmosphere_height_m) return 0.0F;
-  const double h = std::max(altitude_m, 0.0);
-  const double horizon = shared::HorizonCosine<double>(
-      h / kMetresPerKilometre, medium.planet_radius_m / kMetresPerKilometre);
-  return air.ColumnsToSpace(h, std::max(mu_s, horizon + kHair))[1] * 1e-3F;
-}
-
-// Returns the smallest size, of those tried for `skylut report`, that has the stated
-// error.
-SkyViewSize SkyViewSizeFor(const Medium& medium, double altitude_m, double mu_s) {
-  constexpr double kHigh_m = 15e3;
-  constexpr double kMidday = 0.15;  // sines of the sun's elevation
-  constexpr double kDay = 0.1;
-  if (altitude_m > medium.atmosphere_height_m) {
-    if (mu_s > kMidday) return {40, 28, 25, 14};
-    return altitude_m > 1e6 ? SkyViewSize{48, 48, 97, 14} : SkyViewSize{44, 36, 61, 14};
-  }
-  if (altitude_m > kHigh_m) return {38, 26, 25, 16};
-  if (mu_s > kDay) return {28, 16, 13, 12};
-  return altitude_m > 2000.0 ? SkyViewSize{36, 24, 25, 16} : SkyViewSize{32, 16, 21, 16};
-}
-
-namespace {
-
 /// Position of an azimuth between columns, with interpolation weights.
 struct AzimuthTap {
   std::int32_t cell;
@@ -288,20 +259,6 @@ AzimuthTap TapAt(const SkyViewMap& map, int columns, double azimuth_rad) {
   const double sine = std::sin(0.5 * half_turn);
   return {at.cell, SplineWeights(at.fraction), static_cast<float>(sine * sine)};
 }
-
-}  // namespace
-
-SkyAzimuths::SkyAzimuths(const SkyView& view, std::span<const double> azimuth_rad)
-    : columns_(view.size().azimuths) {
-  for (const double azimuth : azimuth_rad) {
-    const AzimuthTap tap = TapAt(view.map(), columns_, azimuth);
-    cell_.push_back(tap.cell);
-    weights_.insert(weights_.end(), tap.weights.begin(), tap.weights.end());
-    half_sine2_.push_back(tap.half_sine2);
-  }
-}
-
-namespace {
 
 /// Light reflected upwards by Lambertian ground [1/sr], over the sun's zenith cosines on the
 /// visible ground.
@@ -353,6 +310,41 @@ class GroundLight {
 };
 
 }  // namespace
+
+float GlowColumn_km(const SingleScattering<float>& air, double altitude_m, double mu_s) {
+  constexpr double kHair = 1e-6;  // small offset above the horizon
+  const Medium& medium = air.medium();
+  if (altitude_m >= medium.atmosphere_height_m) return 0.0F;
+  const double h = std::max(altitude_m, 0.0);
+  const double horizon = shared::HorizonCosine<double>(
+      h / kMetresPerKilometre, medium.planet_radius_m / kMetresPerKilometre);
+  return air.ColumnsToSpace(h, std::max(mu_s, horizon + kHair))[1] * 1e-3F;
+}
+
+// Returns the smallest size, of those tried for `skylut report`, that has the stated
+// error.
+SkyViewSize SkyViewSizeFor(const Medium& medium, double altitude_m, double mu_s) {
+  constexpr double kHigh_m = 15e3;
+  constexpr double kMidday = 0.15;  // sines of the sun's elevation
+  constexpr double kDay = 0.1;
+  if (altitude_m > medium.atmosphere_height_m) {
+    if (mu_s > kMidday) return {40, 28, 25, 14};
+    return altitude_m > 1e6 ? SkyViewSize{48, 48, 97, 14} : SkyViewSize{44, 36, 61, 14};
+  }
+  if (altitude_m > kHigh_m) return {38, 26, 25, 16};
+  if (mu_s > kDay) return {28, 16, 13, 12};
+  return altitude_m > 2000.0 ? SkyViewSize{36, 24, 25, 16} : SkyViewSize{32, 16, 21, 16};
+}
+
+SkyAzimuths::SkyAzimuths(const SkyView& view, std::span<const double> azimuth_rad)
+    : columns_(view.size().azimuths) {
+  for (const double azimuth : azimuth_rad) {
+    const AzimuthTap tap = TapAt(view.map(), columns_, azimuth);
+    cell_.push_back(tap.cell);
+    weights_.insert(weights_.end(), tap.weights.begin(), tap.weights.end());
+    half_sine2_.push_back(tap.half_sine2);
+  }
+}
 
 /// Evaluates the nodes of a sky view.
 class SkyView::Builder {
