@@ -45,33 +45,6 @@ void WriteMeasuredReport(const PictureReportOptions& options) {
   if (!options.common.quiet) Print(SummaryOf(report));
 }
 
-}  // namespace
-
-std::function<void()> AddPictureReportCommand(CLI::App& app) {
-  const auto options = std::make_shared<PictureReportOptions>();
-  CLI::App& report = *app.add_subcommand(
-      "report",
-      "Compare the air in front of mountains, shafts, lamps and whole pictures with slow reference "
-      "solutions, and plot error over time. The report has CSV files, SVG plots, summary.md and a "
-      "page, index.html.");
-  report.preparse_callback([&app](std::size_t) { app.get_option("--out")->required(false); });
-  BeginGroup(report, kAirGroup);
-  report.add_option("--atmosphere", options->atmosphere,
-                    "Atmosphere file (TOML) of the air in front of mountains (default: the presets "
-                    "earth and hazy)");
-  BeginGroup(report, kOutputGroup);
-  report.add_option("--out", options->out, "Folder for the report; it is created if necessary")
-      ->check(FaultOfFolderName)
-      ->required();
-  report.add_flag("--quick", options->quick,
-                  "Use few rays and small pictures, to test the report and not the methods");
-  AddCommonOptions(report, "skyseries", options->common);
-  report.footer("Example: skyseries report --out report");
-  return [options] { WriteMeasuredReport(*options); };
-}
-
-namespace {
-
 struct TimesOptions {
   CommonOptions common;
   std::optional<std::string> scene_file, place, zone, out;
@@ -172,6 +145,29 @@ void AddTimesOutput(CLI::App& times, TimesOptions& options) {
 }
 
 }  // namespace
+
+std::function<void()> AddPictureReportCommand(CLI::App& app) {
+  const auto options = std::make_shared<PictureReportOptions>();
+  CLI::App& report = *app.add_subcommand(
+      "report",
+      "Compare the air in front of mountains, shafts, lamps and whole pictures with slow reference "
+      "solutions, and plot error over time. The report has CSV files, SVG plots, summary.md and a "
+      "page, index.html.");
+  report.preparse_callback([&app](std::size_t) { app.get_option("--out")->required(false); });
+  BeginGroup(report, kAirGroup);
+  report.add_option("--atmosphere", options->atmosphere,
+                    "Atmosphere file (TOML) of the air in front of mountains (default: the presets "
+                    "earth and hazy)");
+  BeginGroup(report, kOutputGroup);
+  report.add_option("--out", options->out, "Folder for the report; it is created if necessary")
+      ->check(FaultOfFolderName)
+      ->required();
+  report.add_flag("--quick", options->quick,
+                  "Use few rays and small pictures, to test the report and not the methods");
+  AddCommonOptions(report, "skyseries", options->common);
+  report.footer("Example: skyseries report --out report");
+  return [options] { WriteMeasuredReport(*options); };
+}
 
 std::function<void()> AddTimesCommand(CLI::App& app) {
   const auto options = std::make_shared<TimesOptions>();

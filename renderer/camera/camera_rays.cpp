@@ -20,35 +20,6 @@ namespace {
 
 glm::dvec2 OnCircle(double angle) { return {std::cos(angle), std::sin(angle)}; }
 
-}  // namespace
-
-Iris::Iris(int blades, double rotation_rad)
-    : blades_(blades),
-      rotation_rad_(rotation_rad),
-      area_(blades == 0 ? kPi : 0.5 * blades * std::sin(2.0 * kPi / blades)) {}
-
-// A disk is sampled in polar coordinates. A polygon is sampled as triangles around the centre: the
-// first number selects a triangle and a position along its outer side.
-glm::dvec2 Iris::Point(std::array<double, 2> unit) const {
-  const double r = std::sqrt(unit[1]);
-  if (blades_ == 0) return r * OnCircle(2.0 * kPi * unit[0]);
-  const double side = unit[0] * blades_;
-  const double corner = std::min(std::floor(side), blades_ - 1.0);
-  const double step = 2.0 * kPi / blades_;
-  const double share = side - corner;
-  return r * ((1.0 - share) * OnCircle(rotation_rad_ + corner * step) +
-              share * OnCircle(rotation_rad_ + (corner + 1.0) * step));
-}
-
-double Iris::EdgeTowards(const glm::dvec2& direction) const {
-  if (blades_ == 0) return 1.0;
-  const double half = kPi / blades_;
-  const double turn = std::atan2(direction.y, direction.x) - rotation_rad_ - half;
-  return std::cos(half) / std::cos(std::remainder(turn, 2.0 * half));
-}
-
-namespace {
-
 constexpr double kGaussianRadius = 1.5;
 constexpr double kGaussianSigma = 0.5;
 constexpr double kBlackmanHarrisRadius = 1.5;
@@ -70,76 +41,9 @@ double RadiusOf(PixelFilter::Kind kind) {
 constexpr int kKnots = 513;       // of the inverse distribution, linear in between
 constexpr int kFilterSteps = 16;  // of the midpoint rule between two points of the distribution
 
-}  // namespace
-
-double PixelFilter::Shape(double x) const {
-  if (!(std::abs(x) < radius_)) return 0.0;
-  switch (kind_) {
-    case Kind::kBox:
-      return 1.0;
-    case Kind::kGaussian: {
-      constexpr double kTwice = 2.0 * kGaussianSigma * kGaussianSigma;
-      return std::exp(-x * x / kTwice) - std::exp(-radius_ * radius_ / kTwice);
-    }
-    case Kind::kBlackmanHarris: {
-      double sum = 0.0;
-      for (std::size_t k = 0; k < kBlackmanHarris.size(); ++k) {
-        sum += kBlackmanHarris[k] * std::cos(static_cast<double>(k) * kPi * x / radius_);
-      }
-      return sum;
-    }
-  }
-  throw InternalError("unknown kind of filter");
-}
-
-PixelFilter::PixelFilter(Kind kind) : kind_(kind), radius_(RadiusOf(kind)), integral_(1.0) {
-  // Tabulate the distribution over positive x, then invert it.
-  std::vector<double> below{0.0};
-  const double step = radius_ / (kKnots - 1);
-  for (int i = 1; i < kKnots; ++i) {
-    double area = 0.0;
-    for (int k = 0; k < kFilterSteps; ++k) area += Shape(step * (i - 1 + (k + 0.5) / kFilterSteps));
-    below.push_back(below.back() + area * step / kFilterSteps);
-  }
-  const double half = below.back();
-  integral_ = 2.0 * half;
-  for (int i = 0; i < kKnots; ++i) {
-    const double wanted = half * i / (kKnots - 1);
-    const auto above = std::clamp(std::upper_bound(below.begin(), below.end(), wanted),
-                                  below.begin() + 1, below.end() - 1);
-    const double low = *(above - 1), high = *above;
-    const double share = high > low ? std::clamp((wanted - low) / (high - low), 0.0, 1.0) : 0.0;
-    offsets_.push_back(step * (static_cast<double>(above - 1 - below.begin()) + share));
-  }
-}
-
-double PixelFilter::Offset(double u) const {
-  const double at = std::abs(2.0 * u - 1.0) * (kKnots - 1);
-  const auto i = std::min(static_cast<std::size_t>(at), static_cast<std::size_t>(kKnots - 2));
-  const double share = at - static_cast<double>(i);
-  const double offset = (1.0 - share) * offsets_[i] + share * offsets_[i + 1];
-  return u < 0.5 ? -offset : offset;
-}
-
-double PixelFilter::Weight(double x) const { return Shape(x) / integral_; }
-
-namespace {
-
 constexpr EnumNames kPixelFilters{{std::pair{PixelFilter::Kind::kBox, "box"},
                                    {PixelFilter::Kind::kGaussian, "gaussian"},
                                    {PixelFilter::Kind::kBlackmanHarris, "blackman-harris"}}};
-
-}  // namespace
-
-std::vector<std::string> PixelFilterNames() { return kPixelFilters.All(); }
-
-PixelFilter::Kind PixelFilterFromName(std::string_view name) {
-  return kPixelFilters.Named(name, "filter \"{}\" is not one of {}");
-}
-
-std::string NameOf(PixelFilter::Kind kind) { return kPixelFilters.Of(kind); }
-
-namespace {
 
 /// The finaliser of MurmurHash3 (Appleby): every bit of the result depends on every bit.
 std::uint32_t Mixed(std::uint32_t h) {
@@ -194,6 +98,90 @@ std::uint32_t SpreadBits(std::uint32_t x) {
 double InUnit(std::uint32_t bits) { return static_cast<double>(bits) / 4294967296.0; }
 
 }  // namespace
+
+Iris::Iris(int blades, double rotation_rad)
+    : blades_(blades),
+      rotation_rad_(rotation_rad),
+      area_(blades == 0 ? kPi : 0.5 * blades * std::sin(2.0 * kPi / blades)) {}
+
+// A disk is sampled in polar coordinates. A polygon is sampled as triangles around the centre: the
+// first number selects a triangle and a position along its outer side.
+glm::dvec2 Iris::Point(std::array<double, 2> unit) const {
+  const double r = std::sqrt(unit[1]);
+  if (blades_ == 0) return r * OnCircle(2.0 * kPi * unit[0]);
+  const double side = unit[0] * blades_;
+  const double corner = std::min(std::floor(side), blades_ - 1.0);
+  const double step = 2.0 * kPi / blades_;
+  const double share = side - corner;
+  return r * ((1.0 - share) * OnCircle(rotation_rad_ + corner * step) +
+              share * OnCircle(rotation_rad_ + (corner + 1.0) * step));
+}
+
+double Iris::EdgeTowards(const glm::dvec2& direction) const {
+  if (blades_ == 0) return 1.0;
+  const double half = kPi / blades_;
+  const double turn = std::atan2(direction.y, direction.x) - rotation_rad_ - half;
+  return std::cos(half) / std::cos(std::remainder(turn, 2.0 * half));
+}
+
+double PixelFilter::Shape(double x) const {
+  if (!(std::abs(x) < radius_)) return 0.0;
+  switch (kind_) {
+    case Kind::kBox:
+      return 1.0;
+    case Kind::kGaussian: {
+      constexpr double kTwice = 2.0 * kGaussianSigma * kGaussianSigma;
+      return std::exp(-x * x / kTwice) - std::exp(-radius_ * radius_ / kTwice);
+    }
+    case Kind::kBlackmanHarris: {
+      double sum = 0.0;
+      for (std::size_t k = 0; k < kBlackmanHarris.size(); ++k) {
+        sum += kBlackmanHarris[k] * std::cos(static_cast<double>(k) * kPi * x / radius_);
+      }
+      return sum;
+    }
+  }
+  throw InternalError("unknown kind of filter");
+}
+
+PixelFilter::PixelFilter(Kind kind) : kind_(kind), radius_(RadiusOf(kind)), integral_(1.0) {
+  // Tabulate the distribution over positive x, then invert it.
+  std::vector<double> below{0.0};
+  const double step = radius_ / (kKnots - 1);
+  for (int i = 1; i < kKnots; ++i) {
+    double area = 0.0;
+    for (int k = 0; k < kFilterSteps; ++k) area += Shape(step * (i - 1 + (k + 0.5) / kFilterSteps));
+    below.push_back(below.back() + area * step / kFilterSteps);
+  }
+  const double half = below.back();
+  integral_ = 2.0 * half;
+  for (int i = 0; i < kKnots; ++i) {
+    const double wanted = half * i / (kKnots - 1);
+    const auto above = std::clamp(std::upper_bound(below.begin(), below.end(), wanted),
+                                  below.begin() + 1, below.end() - 1);
+    const double low = *(above - 1), high = *above;
+    const double share = high > low ? std::clamp((wanted - low) / (high - low), 0.0, 1.0) : 0.0;
+    offsets_.push_back(step * (static_cast<double>(above - 1 - below.begin()) + share));
+  }
+}
+
+double PixelFilter::Offset(double u) const {
+  const double at = std::abs(2.0 * u - 1.0) * (kKnots - 1);
+  const auto i = std::min(static_cast<std::size_t>(at), static_cast<std::size_t>(kKnots - 2));
+  const double share = at - static_cast<double>(i);
+  const double offset = (1.0 - share) * offsets_[i] + share * offsets_[i + 1];
+  return u < 0.5 ? -offset : offset;
+}
+
+double PixelFilter::Weight(double x) const { return Shape(x) / integral_; }
+
+std::vector<std::string> PixelFilterNames() { return kPixelFilters.All(); }
+
+PixelFilter::Kind PixelFilterFromName(std::string_view name) {
+  return kPixelFilters.Named(name, "filter \"{}\" is not one of {}");
+}
+
+std::string NameOf(PixelFilter::Kind kind) { return kPixelFilters.Of(kind); }
 
 PixelSamples::PixelSamples(int x, int y, int samples_per_pixel) {
   ALPENGLOW_ENSURE(samples_per_pixel, <=, kMostSamples);

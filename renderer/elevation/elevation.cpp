@@ -52,32 +52,6 @@ std::string VerticalDatumOf(const OGRSpatialReference& crs) {
   return std::string(name).find("llipsoid") == std::string::npos ? name : "";
 }
 
-}  // namespace
-
-bool ElevationGrid::Covers(double latitude_rad, double longitude_rad) const {
-  return PlaceIn(*this, latitude_rad, longitude_rad).is_inside;
-}
-
-std::optional<double> ElevationGrid::HeightAt(double latitude_rad, double longitude_rad) const {
-  const auto [row, column, is_inside] = PlaceIn(*this, latitude_rad, longitude_rad);
-  if (!is_inside) return std::nullopt;
-  const int r = std::clamp(static_cast<int>(row), 0, rows - 2);
-  const int c =
-      std::clamp(static_cast<int>(column), 0, ClosesAroundTheEarth() ? columns - 1 : columns - 2);
-  const int next = (c + 1) % columns;
-  const double fr = std::clamp(row - r, 0.0, 1.0);
-  const double fc = std::clamp(column - c, 0.0, 1.0);
-  const double upper =
-      (1.0 - fc) * static_cast<double>(at(r, c)) + fc * static_cast<double>(at(r, next));
-  const double lower =
-      (1.0 - fc) * static_cast<double>(at(r + 1, c)) + fc * static_cast<double>(at(r + 1, next));
-  const double height = (1.0 - fr) * upper + fr * lower;
-  if (std::isnan(height)) return std::nullopt;
-  return height;
-}
-
-namespace {
-
 ElevationModel ModelOf(ElevationRaster raster, VoidPolicy voids, const std::string& file) {
   ElevationModel model;
   model.voids = raster.voids;
@@ -117,6 +91,28 @@ void Append(ElevationRaster& west, const ElevationRaster& east) {
 }
 
 }  // namespace
+
+bool ElevationGrid::Covers(double latitude_rad, double longitude_rad) const {
+  return PlaceIn(*this, latitude_rad, longitude_rad).is_inside;
+}
+
+std::optional<double> ElevationGrid::HeightAt(double latitude_rad, double longitude_rad) const {
+  const auto [row, column, is_inside] = PlaceIn(*this, latitude_rad, longitude_rad);
+  if (!is_inside) return std::nullopt;
+  const int r = std::clamp(static_cast<int>(row), 0, rows - 2);
+  const int c =
+      std::clamp(static_cast<int>(column), 0, ClosesAroundTheEarth() ? columns - 1 : columns - 2);
+  const int next = (c + 1) % columns;
+  const double fr = std::clamp(row - r, 0.0, 1.0);
+  const double fc = std::clamp(column - c, 0.0, 1.0);
+  const double upper =
+      (1.0 - fc) * static_cast<double>(at(r, c)) + fc * static_cast<double>(at(r, next));
+  const double lower =
+      (1.0 - fc) * static_cast<double>(at(r + 1, c)) + fc * static_cast<double>(at(r + 1, next));
+  const double height = (1.0 - fr) * upper + fr * lower;
+  if (std::isnan(height)) return std::nullopt;
+  return height;
+}
 
 ElevationModel ReadElevation(const std::filesystem::path& file, VoidPolicy voids) {
   const QuietGdal quiet;

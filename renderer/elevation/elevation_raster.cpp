@@ -311,39 +311,6 @@ ElevationRaster HeaderOf(const std::filesystem::path& file, GDALDataset& dataset
   return raster;
 }
 
-}  // namespace
-
-std::span<const char* const> ElevationExtensions() { return kElevationExtensions; }
-
-ElevationRaster ReadElevationHeader(const std::filesystem::path& file) {
-  const QuietGdal quiet;
-  const RasterFile dataset = Open(file);
-  return HeaderOf(file, *dataset);
-}
-
-ElevationRaster ReadElevationRaster(const std::filesystem::path& file,
-                                    const std::optional<PixelWindow>& window) {
-  const QuietGdal quiet;
-  const RasterFile dataset = Open(file);
-  ElevationRaster raster = HeaderOf(file, *dataset);
-  const PixelWindow wanted = window.value_or(PixelWindow{0, 0, raster.columns, raster.rows});
-  raster.geotransform[0] += wanted.column * raster.geotransform[1];
-  raster.geotransform[3] += wanted.row * raster.geotransform[5];
-  raster.columns = wanted.columns;
-  raster.rows = wanted.rows;
-  GDALRasterBand& band = *dataset->GetRasterBand(1);
-  const HeightUnit unit = UnitOf(file, band, raster.crs);
-  raster.unit_note = unit.note;
-  raster.height_m = ReadHeights(file, band, wanted, unit.metres);
-  raster.voids = static_cast<std::size_t>(std::count_if(
-      raster.height_m.begin(), raster.height_m.end(), [](float h) { return std::isnan(h); }));
-  if (!window && raster.voids == raster.height_m.size())
-    RefuseFile(file, "has no valid sample, only voids");
-  return raster;
-}
-
-namespace {
-
 constexpr int kSweeps = 40;
 constexpr double kOverRelaxation = 1.7;
 
@@ -449,6 +416,35 @@ bool HasVoids(const Level& level) {
 }
 
 }  // namespace
+
+std::span<const char* const> ElevationExtensions() { return kElevationExtensions; }
+
+ElevationRaster ReadElevationHeader(const std::filesystem::path& file) {
+  const QuietGdal quiet;
+  const RasterFile dataset = Open(file);
+  return HeaderOf(file, *dataset);
+}
+
+ElevationRaster ReadElevationRaster(const std::filesystem::path& file,
+                                    const std::optional<PixelWindow>& window) {
+  const QuietGdal quiet;
+  const RasterFile dataset = Open(file);
+  ElevationRaster raster = HeaderOf(file, *dataset);
+  const PixelWindow wanted = window.value_or(PixelWindow{0, 0, raster.columns, raster.rows});
+  raster.geotransform[0] += wanted.column * raster.geotransform[1];
+  raster.geotransform[3] += wanted.row * raster.geotransform[5];
+  raster.columns = wanted.columns;
+  raster.rows = wanted.rows;
+  GDALRasterBand& band = *dataset->GetRasterBand(1);
+  const HeightUnit unit = UnitOf(file, band, raster.crs);
+  raster.unit_note = unit.note;
+  raster.height_m = ReadHeights(file, band, wanted, unit.metres);
+  raster.voids = static_cast<std::size_t>(std::count_if(
+      raster.height_m.begin(), raster.height_m.end(), [](float h) { return std::isnan(h); }));
+  if (!window && raster.voids == raster.height_m.size())
+    RefuseFile(file, "has no valid sample, only voids");
+  return raster;
+}
 
 std::size_t FillVoids(std::vector<float>& height, int rows, int columns) {
   std::vector<Level> pyramid(1);

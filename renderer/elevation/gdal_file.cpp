@@ -59,63 +59,6 @@ std::string EnvironmentText(const char* name) {
   return fmt::format("{}={}", name, value == nullptr ? "" : value);
 }
 
-}  // namespace
-
-std::string LastGdalError() {
-  std::string text = CPLGetLastErrorMsg();
-  std::replace(text.begin(), text.end(), '\n', ' ');
-  return text.empty() ? "no reason given" : text;
-}
-
-RasterFile OpenRaster(const std::filesystem::path& file, const RasterFormats& formats) {
-  std::error_code ignored;
-  if (!std::filesystem::is_regular_file(file, ignored)) RefuseFile(file, "there is no such file");
-  RasterFile dataset(static_cast<GDALDataset*>(GDALOpenEx(
-      file.c_str(), GDAL_OF_RASTER | GDAL_OF_VERBOSE_ERROR, formats.drivers, nullptr, nullptr)));
-  if (dataset) return dataset;
-  const std::string reason = LastGdalError();
-  const std::optional<FileFormat> format = FormatOfFile(file);
-  const bool is_wanted =
-      GDALIdentifyDriverEx(file.c_str(), GDAL_OF_RASTER, formats.drivers, nullptr) != nullptr;
-  if (format && !is_wanted)
-    RefuseFormat(file, *format, fmt::format("{} are read as {}", formats.purpose, formats.names));
-  RefuseFile(file, fmt::format("not a readable {} ({})", formats.names, reason));
-}
-
-std::string FaultOfProj() {
-  CPLErrorReset();
-  constexpr int kWgs84 = 4326;
-  OGRSpatialReference known;
-  if (known.importFromEPSG(kWgs84) == OGRERR_NONE) return "";
-  return fmt::format("PROJ finds no usable proj.db ({}, {}): {}", EnvironmentText("PROJ_DATA"),
-                     EnvironmentText("PROJ_LIB"), LastGdalError());
-}
-
-OGRSpatialReference CrsOfTheEarth(const std::filesystem::path& file, GDALDataset& dataset) {
-  const OGRSpatialReference* stored = dataset.GetSpatialRef();
-  const bool is_known = stored != nullptr && (stored->IsGeographic() || stored->IsProjected());
-  if (!is_known) {
-    if (const std::string fault = FaultOfProj(); !fault.empty()) RefuseFile(file, fault);
-  }
-  if (stored == nullptr || stored->IsEmpty()) RefuseFile(file, "has no coordinate system");
-  if (!is_known)
-    RefuseFile(file, "has a coordinate system that is neither geographic nor projected");
-  const double equatorial = stored->GetSemiMajor();
-  const double polar = stored->GetSemiMinor();
-  const auto of_the_earth = [](double radius_m) { return radius_m > 6.35e6 && radius_m < 6.39e6; };
-  if (!of_the_earth(equatorial) || !of_the_earth(polar)) {
-    RefuseFile(file,
-               fmt::format("has the coordinate system of a body with radii {} and {} m; it must "
-                           "be of the earth",
-                           equatorial, polar));
-  }
-  OGRSpatialReference crs = *stored;
-  crs.SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
-  return crs;
-}
-
-namespace {
-
 bool ReportsScale(GDALRasterBand& band) {
   int has_scale = 0, has_offset = 0;
   band.GetScale(&has_scale);
@@ -175,6 +118,59 @@ bool DeclaresUnitScale(const std::filesystem::path& file, GDALRasterBand& band) 
 }
 
 }  // namespace
+
+std::string LastGdalError() {
+  std::string text = CPLGetLastErrorMsg();
+  std::replace(text.begin(), text.end(), '\n', ' ');
+  return text.empty() ? "no reason given" : text;
+}
+
+RasterFile OpenRaster(const std::filesystem::path& file, const RasterFormats& formats) {
+  std::error_code ignored;
+  if (!std::filesystem::is_regular_file(file, ignored)) RefuseFile(file, "there is no such file");
+  RasterFile dataset(static_cast<GDALDataset*>(GDALOpenEx(
+      file.c_str(), GDAL_OF_RASTER | GDAL_OF_VERBOSE_ERROR, formats.drivers, nullptr, nullptr)));
+  if (dataset) return dataset;
+  const std::string reason = LastGdalError();
+  const std::optional<FileFormat> format = FormatOfFile(file);
+  const bool is_wanted =
+      GDALIdentifyDriverEx(file.c_str(), GDAL_OF_RASTER, formats.drivers, nullptr) != nullptr;
+  if (format && !is_wanted)
+    RefuseFormat(file, *format, fmt::format("{} are read as {}", formats.purpose, formats.names));
+  RefuseFile(file, fmt::format("not a readable {} ({})", formats.names, reason));
+}
+
+std::string FaultOfProj() {
+  CPLErrorReset();
+  constexpr int kWgs84 = 4326;
+  OGRSpatialReference known;
+  if (known.importFromEPSG(kWgs84) == OGRERR_NONE) return "";
+  return fmt::format("PROJ finds no usable proj.db ({}, {}): {}", EnvironmentText("PROJ_DATA"),
+                     EnvironmentText("PROJ_LIB"), LastGdalError());
+}
+
+OGRSpatialReference CrsOfTheEarth(const std::filesystem::path& file, GDALDataset& dataset) {
+  const OGRSpatialReference* stored = dataset.GetSpatialRef();
+  const bool is_known = stored != nullptr && (stored->IsGeographic() || stored->IsProjected());
+  if (!is_known) {
+    if (const std::string fault = FaultOfProj(); !fault.empty()) RefuseFile(file, fault);
+  }
+  if (stored == nullptr || stored->IsEmpty()) RefuseFile(file, "has no coordinate system");
+  if (!is_known)
+    RefuseFile(file, "has a coordinate system that is neither geographic nor projected");
+  const double equatorial = stored->GetSemiMajor();
+  const double polar = stored->GetSemiMinor();
+  const auto of_the_earth = [](double radius_m) { return radius_m > 6.35e6 && radius_m < 6.39e6; };
+  if (!of_the_earth(equatorial) || !of_the_earth(polar)) {
+    RefuseFile(file,
+               fmt::format("has the coordinate system of a body with radii {} and {} m; it must "
+                           "be of the earth",
+                           equatorial, polar));
+  }
+  OGRSpatialReference crs = *stored;
+  crs.SetAxisMappingStrategy(OAMS_TRADITIONAL_GIS_ORDER);
+  return crs;
+}
 
 BandValues::BandValues(const std::filesystem::path& file, GDALRasterBand& band)
     : band_(band),

@@ -30,40 +30,6 @@ struct MeshFormat {
 // The first format is also that of files with an unknown extension.
 constexpr MeshFormat kMeshFormats[] = {{".obj", ReadObj}};
 
-}  // namespace
-
-MeshModel ReadMesh(const std::filesystem::path& file, UpAxis up) {
-  RefuseKnownFormats(file, "meshes are read as Wavefront OBJ");
-  const auto* const format =
-      std::find_if(std::begin(kMeshFormats), std::end(kMeshFormats),
-                   [&](const MeshFormat& known) { return HasExtension(file, known.extension); });
-  return (format == std::end(kMeshFormats) ? kMeshFormats[0] : *format).read(file, up);
-}
-
-std::vector<std::array<float, 3>> SmoothNormals(
-    const std::vector<glm::dvec3>& positions,
-    const std::vector<std::array<std::uint32_t, 3>>& triangles) {
-  std::vector<glm::dvec3> sums(positions.size(), glm::dvec3(0.0));
-  for (const auto& [a, b, c] : triangles) {
-    const glm::dvec3 twice_area =
-        glm::cross(positions[b] - positions[a], positions[c] - positions[a]);
-    sums[a] += twice_area;
-    sums[b] += twice_area;
-    sums[c] += twice_area;
-  }
-  std::vector<std::array<float, 3>> normals;
-  normals.reserve(sums.size());
-  for (const glm::dvec3& sum : sums) {
-    const double length = glm::length(sum);
-    const glm::dvec3 normal = length > 0.0 ? sum / length : glm::dvec3(0.0, 0.0, 1.0);
-    normals.push_back(
-        {static_cast<float>(normal.x), static_cast<float>(normal.y), static_cast<float>(normal.z)});
-  }
-  return normals;
-}
-
-namespace {
-
 constexpr std::uint32_t kNoVertex = std::numeric_limits<std::uint32_t>::max();
 
 class MeshBuilder {
@@ -209,16 +175,6 @@ class MeshBuilder {
   TriangleMesh mesh_;
 };
 
-}  // namespace
-
-TriangleMesh MeshFromElevation(const ElevationGrid& grid, const LocalFrame& frame) {
-  ALPENGLOW_ENSURE(grid.height_m.size(), ==,
-                   static_cast<std::size_t>(grid.rows) * static_cast<std::size_t>(grid.columns));
-  return MeshBuilder(grid, frame).Build();
-}
-
-namespace {
-
 struct Corner {
   double x, y, z;  // x and y in cells
 };
@@ -293,6 +249,42 @@ void Deposit(const std::array<Corner, 3>& corner, HeightRaster& raster) {
 }
 
 }  // namespace
+
+MeshModel ReadMesh(const std::filesystem::path& file, UpAxis up) {
+  RefuseKnownFormats(file, "meshes are read as Wavefront OBJ");
+  const auto* const format =
+      std::find_if(std::begin(kMeshFormats), std::end(kMeshFormats),
+                   [&](const MeshFormat& known) { return HasExtension(file, known.extension); });
+  return (format == std::end(kMeshFormats) ? kMeshFormats[0] : *format).read(file, up);
+}
+
+std::vector<std::array<float, 3>> SmoothNormals(
+    const std::vector<glm::dvec3>& positions,
+    const std::vector<std::array<std::uint32_t, 3>>& triangles) {
+  std::vector<glm::dvec3> sums(positions.size(), glm::dvec3(0.0));
+  for (const auto& [a, b, c] : triangles) {
+    const glm::dvec3 twice_area =
+        glm::cross(positions[b] - positions[a], positions[c] - positions[a]);
+    sums[a] += twice_area;
+    sums[b] += twice_area;
+    sums[c] += twice_area;
+  }
+  std::vector<std::array<float, 3>> normals;
+  normals.reserve(sums.size());
+  for (const glm::dvec3& sum : sums) {
+    const double length = glm::length(sum);
+    const glm::dvec3 normal = length > 0.0 ? sum / length : glm::dvec3(0.0, 0.0, 1.0);
+    normals.push_back(
+        {static_cast<float>(normal.x), static_cast<float>(normal.y), static_cast<float>(normal.z)});
+  }
+  return normals;
+}
+
+TriangleMesh MeshFromElevation(const ElevationGrid& grid, const LocalFrame& frame) {
+  ALPENGLOW_ENSURE(grid.height_m.size(), ==,
+                   static_cast<std::size_t>(grid.rows) * static_cast<std::size_t>(grid.columns));
+  return MeshBuilder(grid, frame).Build();
+}
 
 GridCell CellAt(const HeightRaster& raster, double x_m, double y_m) {
   const double x = std::clamp((x_m - raster.first_x_m) / raster.cell_m, 0.0,

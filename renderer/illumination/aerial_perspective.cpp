@@ -38,28 +38,6 @@ const LegendreAtNodes& LegendreAt(int nodes) {
   return kTables[static_cast<std::size_t>(nodes)];
 }
 
-}  // namespace
-
-ShaftNodes FactorsFromMoments(int nodes, const ShaftNodes& moments) {
-  const LegendreAtNodes& legendre = LegendreAt(nodes);
-  const auto count = static_cast<std::size_t>(nodes);
-  ShaftNodes light{};
-  for (std::size_t n = 0; n < count; ++n) {
-    for (std::size_t j = 0; j < count; ++j) light[j] += legendre[n][j] * moments[n];
-  }
-  return light;
-}
-
-SunlitPiece Clipped(const SunlitPiece& piece, double begin_m, double end_m) {
-  const double begin = std::clamp(begin_m, piece.begin_m, piece.end_m);
-  const double end = std::clamp(end_m, piece.begin_m, piece.end_m);
-  const double slope = (piece.end_x - piece.begin_x) / piece.length_m();
-  return {begin, end, piece.begin_x + slope * (begin - piece.begin_m),
-          piece.begin_x + slope * (end - piece.begin_m)};
-}
-
-namespace {
-
 // Beams that graze the planet light the end at its shadow much less than the other end.
 constexpr int kTwilightNodes = 7;
 
@@ -148,7 +126,51 @@ void SetEnd(const DirectRay& placed, const ColumnSet<float>& columns, RaySamples
   samples.view_ozone[end] = columns.ozone;
 }
 
+/// A stretch of the ray where the integrand is smooth and altitude monotone. Distances are from the
+/// eye [m]; v runs from 0 at the lower end to 1, by ray_map.glsl.
+struct Panel {
+  double begin_m, end_m;
+  bool up;  // altitude increases along the ray
+  double stretch, scale_m;
+  int nodes;
+
+  [[nodiscard]] double length_m() const { return end_m - begin_m; }
+  [[nodiscard]] double DistanceAt(double v) const { return NodeAt(v).distance_m; }
+  /// Returns a node whose weight is the derivative of the distance with respect to v.
+  [[nodiscard]] RayNode NodeAt(double v) const {
+    double t = length_m() * v, slope = length_m();
+    if (stretch > 0.0) {
+      const double growth = std::exp(stretch * v);
+      t = shared::StretchedDistance(scale_m, growth);
+      slope = shared::StretchedSlope(scale_m, stretch, growth);
+    }
+    return {up ? begin_m + t : end_m - t, slope};
+  }
+  [[nodiscard]] double CoordinateAt(double distance_m) const {
+    const double t = up ? distance_m - begin_m : end_m - distance_m;
+    return stretch > 0.0 ? std::asinh(t / scale_m) / stretch : t / length_m();
+  }
+};
+
 }  // namespace
+
+ShaftNodes FactorsFromMoments(int nodes, const ShaftNodes& moments) {
+  const LegendreAtNodes& legendre = LegendreAt(nodes);
+  const auto count = static_cast<std::size_t>(nodes);
+  ShaftNodes light{};
+  for (std::size_t n = 0; n < count; ++n) {
+    for (std::size_t j = 0; j < count; ++j) light[j] += legendre[n][j] * moments[n];
+  }
+  return light;
+}
+
+SunlitPiece Clipped(const SunlitPiece& piece, double begin_m, double end_m) {
+  const double begin = std::clamp(begin_m, piece.begin_m, piece.end_m);
+  const double end = std::clamp(end_m, piece.begin_m, piece.end_m);
+  const double slope = (piece.end_x - piece.begin_x) / piece.length_m();
+  return {begin, end, piece.begin_x + slope * (begin - piece.begin_m),
+          piece.begin_x + slope * (end - piece.begin_m)};
+}
 
 SegmentAir::SegmentAir(const SingleScattering<float>& air)
     : air_(air),
@@ -221,36 +243,6 @@ SampledLight SegmentAir::Sample(const ViewRay& ray, const DirectRay& placed,
   SetEnd(lit.placed, ColumnsAlong(ray, lit.placed), light.samples);
   return light;
 }
-
-namespace {
-
-/// A stretch of the ray where the integrand is smooth and altitude monotone. Distances are from the
-/// eye [m]; v runs from 0 at the lower end to 1, by ray_map.glsl.
-struct Panel {
-  double begin_m, end_m;
-  bool up;  // altitude increases along the ray
-  double stretch, scale_m;
-  int nodes;
-
-  [[nodiscard]] double length_m() const { return end_m - begin_m; }
-  [[nodiscard]] double DistanceAt(double v) const { return NodeAt(v).distance_m; }
-  /// Returns a node whose weight is the derivative of the distance with respect to v.
-  [[nodiscard]] RayNode NodeAt(double v) const {
-    double t = length_m() * v, slope = length_m();
-    if (stretch > 0.0) {
-      const double growth = std::exp(stretch * v);
-      t = shared::StretchedDistance(scale_m, growth);
-      slope = shared::StretchedSlope(scale_m, stretch, growth);
-    }
-    return {up ? begin_m + t : end_m - t, slope};
-  }
-  [[nodiscard]] double CoordinateAt(double distance_m) const {
-    const double t = up ? distance_m - begin_m : end_m - distance_m;
-    return stretch > 0.0 ? std::asinh(t / scale_m) / stretch : t / length_m();
-  }
-};
-
-}  // namespace
 
 AerialPerspective::AerialPerspective(const SingleScattering<float>& air,
                                      const MultipleScattering& multiple_scattering)

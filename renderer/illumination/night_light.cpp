@@ -38,23 +38,6 @@ bool Scatters(const Medium& medium) {
   return any(medium.rayleigh_scattering_per_m) || any(medium.mie_scattering_per_m);
 }
 
-}  // namespace
-
-BandLight Skyglow(double zenith, double ground_m, const SingleScattering<float>& air,
-                  const BandColour& colour) {
-  if (!Scatters(air.medium())) return BandLight(air.bands());
-  const double wanted = std::max(
-      LuminanceOfSurfaceBrightness(zenith) - LuminanceOfSurfaceBrightness(kNaturalZenith), 0.0);
-  const BandLight lamps = LampsOfUnitLuminance(colour);
-  const BandLight left = air.TransmittanceToSpace(ground_m, 1.0);
-  BandLight seen(lamps.count);
-  for (std::size_t band = 0; band < lamps.count; ++band)
-    seen[band] = (1.0F - left[band]) * lamps[band];
-  return static_cast<float>(wanted / colour.Xyz(InDouble(seen))[1]) * lamps;
-}
-
-namespace {
-
 glm::dvec3 Refracted(const glm::dvec3& enu, const RefractedView& view) {
   const double elevation = std::asin(std::clamp(enu.z, -1.0, 1.0));
   return DirectionFromAngles(view.LiftedElevationOf(elevation), std::atan2(enu.x, enu.y)).xyz;
@@ -77,42 +60,6 @@ glm::dvec3 After(const glm::dvec3& ecef, double seconds) {
   const double c = std::cos(turned), s = std::sin(turned);
   return {c * ecef.x - s * ecef.y, s * ecef.x + c * ecef.y, ecef.z};
 }
-
-}  // namespace
-
-OpenShutter OpenFor(double open_s, double pixel_angle_rad) {
-  // An arc of angle t deviates by t^2 / 8 from its chord.
-  const double step_rad = std::sqrt(8.0 * 0.1 * pixel_angle_rad);
-  const double turned_rad = kEarthRotation_rad_per_s * open_s;
-  return {open_s, static_cast<int>(std::ceil(turned_rad / step_rad))};
-}
-
-double FaintestStar(double lux, double pixel_angle_rad) {
-  constexpr double kUnseenStar = 1e-3;
-  return MagnitudeOf(kUnseenStar * pixel_angle_rad * pixel_angle_rad / kPi * lux);
-}
-
-std::vector<StarLight> StarLightsOver(const GeodeticPosition& eye, const UtcInstant& instant,
-                                      const RefractedView& view, const BandColour& colour,
-                                      double faintest, const OpenShutter& shutter) {
-  const LocalFrame local(kWgs84, eye);
-  std::vector<StarLight> lights;
-  const auto add = [&](const PointLight& point) {
-    if (point.magnitude > faintest) return;
-    const auto seen_after = [&](double seconds) {
-      const Vector<Ecef> ecef{After(point.direction.xyz, seconds)};
-      return Refracted(local.EnuFromEcef(ecef).xyz, view);
-    };
-    lights.push_back(LightOf(point, seen_after(0.0), colour));
-    for (int i = 0; shutter.steps > 0 && i <= shutter.steps; ++i)
-      lights.back().way.push_back(seen_after(shutter.open_s * (i / double(shutter.steps) - 0.5)));
-  };
-  for (const PointLight& planet : PlanetsAt(eye, instant)) add(planet);
-  for (const PointLight& star : StarsAt(instant, faintest)) add(star);
-  return lights;
-}
-
-namespace {
 
 /// Returns light of a spectrum, scaled to a luminance of 1 cd/m^2.
 template <typename Spectrum>
@@ -150,6 +97,51 @@ double AirglowSpectrum(double wavelength_nm) {
 }
 
 }  // namespace
+
+BandLight Skyglow(double zenith, double ground_m, const SingleScattering<float>& air,
+                  const BandColour& colour) {
+  if (!Scatters(air.medium())) return BandLight(air.bands());
+  const double wanted = std::max(
+      LuminanceOfSurfaceBrightness(zenith) - LuminanceOfSurfaceBrightness(kNaturalZenith), 0.0);
+  const BandLight lamps = LampsOfUnitLuminance(colour);
+  const BandLight left = air.TransmittanceToSpace(ground_m, 1.0);
+  BandLight seen(lamps.count);
+  for (std::size_t band = 0; band < lamps.count; ++band)
+    seen[band] = (1.0F - left[band]) * lamps[band];
+  return static_cast<float>(wanted / colour.Xyz(InDouble(seen))[1]) * lamps;
+}
+
+OpenShutter OpenFor(double open_s, double pixel_angle_rad) {
+  // An arc of angle t deviates by t^2 / 8 from its chord.
+  const double step_rad = std::sqrt(8.0 * 0.1 * pixel_angle_rad);
+  const double turned_rad = kEarthRotation_rad_per_s * open_s;
+  return {open_s, static_cast<int>(std::ceil(turned_rad / step_rad))};
+}
+
+double FaintestStar(double lux, double pixel_angle_rad) {
+  constexpr double kUnseenStar = 1e-3;
+  return MagnitudeOf(kUnseenStar * pixel_angle_rad * pixel_angle_rad / kPi * lux);
+}
+
+std::vector<StarLight> StarLightsOver(const GeodeticPosition& eye, const UtcInstant& instant,
+                                      const RefractedView& view, const BandColour& colour,
+                                      double faintest, const OpenShutter& shutter) {
+  const LocalFrame local(kWgs84, eye);
+  std::vector<StarLight> lights;
+  const auto add = [&](const PointLight& point) {
+    if (point.magnitude > faintest) return;
+    const auto seen_after = [&](double seconds) {
+      const Vector<Ecef> ecef{After(point.direction.xyz, seconds)};
+      return Refracted(local.EnuFromEcef(ecef).xyz, view);
+    };
+    lights.push_back(LightOf(point, seen_after(0.0), colour));
+    for (int i = 0; shutter.steps > 0 && i <= shutter.steps; ++i)
+      lights.back().way.push_back(seen_after(shutter.open_s * (i / double(shutter.steps) - 0.5)));
+  };
+  for (const PointLight& planet : PlanetsAt(eye, instant)) add(planet);
+  for (const PointLight& star : StarsAt(instant, faintest)) add(star);
+  return lights;
+}
 
 NightLight::NightLight(const NightSky& sky, const SingleScattering<float>& air,
                        const BandColour& colour, const glm::dvec3& up, double altitude_m,

@@ -151,23 +151,6 @@ LampTable SampledInTypeC(const MeasuredAngles& measured) {
   return table;
 }
 
-}  // namespace
-
-bool HasWholeTurn(PhotometricType type, const std::vector<double>& horizontal_deg) {
-  const double first = horizontal_deg.front(), last = horizontal_deg.back();
-  if (type == PhotometricType::kC) {
-    return (first == 0.0 && (last == 0.0 || last == 90.0 || last == 180.0 || last == 360.0)) ||
-           (first == 90.0 && last == 270.0);
-  }
-  return last > 0.0 && last <= 90.0 && (first == 0.0 || first == -last);
-}
-
-LampTable TableOf(const MeasuredAngles& measured) {
-  return measured.type == PhotometricType::kC ? TypeC(measured) : SampledInTypeC(measured);
-}
-
-namespace {
-
 constexpr std::size_t kMostAngles = 4096;
 constexpr char kEndOfDosFile = '\x1a';  // Ctrl-Z
 
@@ -373,6 +356,19 @@ MeasuredAngles MeasuredFrom(Numbers& numbers, const Sizes& sizes) {
 }
 
 }  // namespace
+
+bool HasWholeTurn(PhotometricType type, const std::vector<double>& horizontal_deg) {
+  const double first = horizontal_deg.front(), last = horizontal_deg.back();
+  if (type == PhotometricType::kC) {
+    return (first == 0.0 && (last == 0.0 || last == 90.0 || last == 180.0 || last == 360.0)) ||
+           (first == 90.0 && last == 270.0);
+  }
+  return last > 0.0 && last <= 90.0 && (first == 0.0 || first == -last);
+}
+
+LampTable TableOf(const MeasuredAngles& measured) {
+  return measured.type == PhotometricType::kC ? TypeC(measured) : SampledInTypeC(measured);
+}
 
 double LampTilt::FactorAt(double tilt_deg) const {
   if (angle_deg.empty()) return 1.0;

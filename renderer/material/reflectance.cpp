@@ -29,6 +29,106 @@ Axes AxesAround(const glm::dvec3& normal, const glm::dvec3& to_eye) {
   return {eyewards, glm::cross(normal, eyewards), normal};
 }
 
+// Lee, Carder, Arnone (2002), equations 2, 3 and table 2.
+Bands<float> LightFromUnderWater(std::span<const double> wavelengths_nm) {
+  Bands<float> reflectance(wavelengths_nm.size());
+  for (std::size_t band = 0; band < wavelengths_nm.size(); ++band) {
+    const double nm = wavelengths_nm[band];
+    const double absorption = WaterAbsorption(nm) + 0.02 * std::exp(-0.015 * (nm - 440.0));
+    const double backwards = 0.5 * SeaWaterScattering(nm) + 0.001 * 550.0 / nm;
+    const double u = backwards / (absorption + backwards);
+    const double under = (0.0895 + 0.1247 * u) * u;
+    reflectance[band] = static_cast<float>(kPi * 0.52 * under / (1.0 - 1.7 * under));
+  }
+  return reflectance;
+}
+
+double Transmitted(double mu) { return shared::WaterTransmitted(mu, Water::kRefractiveIndex); }
+
+/// Slopes across the line of sight: Gauss-Hermite nodes of weight exp(-x^2), normalised to 1
+/// (Abramowitz and Stegun, table 25.10).
+struct SlopeNode {
+  double x, weight;
+};
+constexpr std::array<SlopeNode, 3> kAcross{
+    {{-1.224744871391589, 1.0 / 6.0}, {0.0, 2.0 / 3.0}, {1.224744871391589, 1.0 / 6.0}}};
+
+// Returns the spread of a direction above the horizontal that represents those between two sines.
+Spread SpreadAbout(double sine, double lowest, double highest) {
+  const double range = std::max(highest - lowest, 1e-9);
+  return {std::max(sine - std::max(lowest, 0.0), 0.0), std::max(highest - sine, 0.0),
+          std::clamp(-lowest / range, 0.0, 1.0)};
+}
+
+double WithoutAbsorption(const ReflectionAngles& at) {
+  return shared::SnowWithoutAbsorption(at.mu_light, at.mu_eye, at.cos_between);
+}
+
+/// Factor of R0 for each of its two directions, such that snow without absorption reflects exactly
+/// the light that it receives, from any direction. It is found iteratively: both directions are
+/// scaled by the square root of the remaining error (Sinkhorn, Knopp 1967, Pacific J. Math. 21,
+/// 343). Nodes are at equal steps of the root of mu.
+class Balance {
+ public:
+  Balance() {
+    const GaussRule& rule = GaussLegendre(48);
+    std::array<std::array<double, 48>, kNodes> received;
+    for (std::size_t i = 0; i < kNodes; ++i) {
+      for (std::size_t j = 0; j < rule.node.size(); ++j) {
+        const double mu = rule.node[j] * rule.node[j];  // dense at the horizon
+        received[i][j] = MeanOverAzimuth(MuOf(i), mu) * 4.0 * mu * rule.node[j] * rule.weight[j];
+      }
+    }
+    factor_.fill(1.0);
+    for (int step = 0; step < 24; ++step) {
+      const Balance before = *this;
+      for (std::size_t i = 0; i < kNodes; ++i) {
+        double sent = 0.0;
+        for (std::size_t j = 0; j < rule.node.size(); ++j)
+          sent += received[i][j] * before.AtRoot(rule.node[j]);
+        factor_[i] = std::sqrt(before.factor_[i] / sent);
+      }
+    }
+  }
+
+  [[nodiscard]] double At(double mu) const { return AtRoot(std::sqrt(mu)); }
+  [[nodiscard]] const std::array<double, Snow::kBalanceNodes>& nodes() const { return factor_; }
+
+ private:
+  static constexpr std::size_t kNodes = Snow::kBalanceNodes;
+
+  static double MuOf(std::size_t node) {
+    const double root = static_cast<double>(node) / (kNodes - 1);
+    return std::max(root * root, 1e-4);
+  }
+
+  static double MeanOverAzimuth(double a, double b) {
+    constexpr int kAzimuths = 90;
+    const double sines = std::sqrt((1.0 - a * a) * (1.0 - b * b));
+    double sum = 0.0;
+    for (int k = 0; k < kAzimuths; ++k) {
+      const double azimuth = kPi * (k + 0.5) / kAzimuths;
+      sum += WithoutAbsorption({a, b, std::clamp(a * b + sines * std::cos(azimuth), -1.0, 1.0)});
+    }
+    return sum / kAzimuths;
+  }
+
+  [[nodiscard]] double AtRoot(double root) const {
+    const double at = root * (kNodes - 1);
+    const std::size_t node = std::min(static_cast<std::size_t>(at), kNodes - 2);
+    return factor_[node] + (at - static_cast<double>(node)) * (factor_[node + 1] - factor_[node]);
+  }
+
+  std::array<double, kNodes> factor_;
+};
+
+const Balance& TheBalance() {
+  static const Balance balance;
+  return balance;
+}
+
+double Balanced(double mu) { return TheBalance().At(mu); }
+
 }  // namespace
 
 ReflectionAngles AnglesBetween(const glm::dvec3& normal, const glm::dvec3& to_light,
@@ -151,34 +251,6 @@ MirroredRays Glossy::Mirrored(const glm::dvec3& normal, const glm::dvec3& to_eye
   return mirrored;
 }
 
-namespace {
-
-// Lee, Carder, Arnone (2002), equations 2, 3 and table 2.
-Bands<float> LightFromUnderWater(std::span<const double> wavelengths_nm) {
-  Bands<float> reflectance(wavelengths_nm.size());
-  for (std::size_t band = 0; band < wavelengths_nm.size(); ++band) {
-    const double nm = wavelengths_nm[band];
-    const double absorption = WaterAbsorption(nm) + 0.02 * std::exp(-0.015 * (nm - 440.0));
-    const double backwards = 0.5 * SeaWaterScattering(nm) + 0.001 * 550.0 / nm;
-    const double u = backwards / (absorption + backwards);
-    const double under = (0.0895 + 0.1247 * u) * u;
-    reflectance[band] = static_cast<float>(kPi * 0.52 * under / (1.0 - 1.7 * under));
-  }
-  return reflectance;
-}
-
-double Transmitted(double mu) { return shared::WaterTransmitted(mu, Water::kRefractiveIndex); }
-
-/// Slopes across the line of sight: Gauss-Hermite nodes of weight exp(-x^2), normalised to 1
-/// (Abramowitz and Stegun, table 25.10).
-struct SlopeNode {
-  double x, weight;
-};
-constexpr std::array<SlopeNode, 3> kAcross{
-    {{-1.224744871391589, 1.0 / 6.0}, {0.0, 2.0 / 3.0}, {1.224744871391589, 1.0 / 6.0}}};
-
-}  // namespace
-
 Water::Water(double wind_m_per_s, std::span<const double> wavelengths_nm)
     : variance_(0.003 + 0.00512 * RequireInRange(wind_m_per_s, 0.0, 20.0, "wind")),
       under_surface_(LightFromUnderWater(wavelengths_nm)) {}
@@ -206,17 +278,6 @@ Bands<float> Water::BodyAlbedo(double mu) const {
   for (std::size_t band = 0; band < sent.count; ++band) sent[band] = through * under_surface_[band];
   return sent;
 }
-
-namespace {
-
-// Returns the spread of a direction above the horizontal that represents those between two sines.
-Spread SpreadAbout(double sine, double lowest, double highest) {
-  const double range = std::max(highest - lowest, 1e-9);
-  return {std::max(sine - std::max(lowest, 0.0), 0.0), std::max(highest - sine, 0.0),
-          std::clamp(-lowest / range, 0.0, 1.0)};
-}
-
-}  // namespace
 
 // Wave facets are weighted by the probability of their slope times their area projected towards the
 // eye. Slopes along the line of sight are restricted to facets that face the eye.
@@ -261,79 +322,6 @@ MirroredRays Water::Mirrored(const glm::dvec3& normal, const glm::dvec3& to_eye)
   }
   return mirrored;
 }
-
-namespace {
-
-double WithoutAbsorption(const ReflectionAngles& at) {
-  return shared::SnowWithoutAbsorption(at.mu_light, at.mu_eye, at.cos_between);
-}
-
-/// Factor of R0 for each of its two directions, such that snow without absorption reflects exactly
-/// the light that it receives, from any direction. It is found iteratively: both directions are
-/// scaled by the square root of the remaining error (Sinkhorn, Knopp 1967, Pacific J. Math. 21,
-/// 343). Nodes are at equal steps of the root of mu.
-class Balance {
- public:
-  Balance() {
-    const GaussRule& rule = GaussLegendre(48);
-    std::array<std::array<double, 48>, kNodes> received;
-    for (std::size_t i = 0; i < kNodes; ++i) {
-      for (std::size_t j = 0; j < rule.node.size(); ++j) {
-        const double mu = rule.node[j] * rule.node[j];  // dense at the horizon
-        received[i][j] = MeanOverAzimuth(MuOf(i), mu) * 4.0 * mu * rule.node[j] * rule.weight[j];
-      }
-    }
-    factor_.fill(1.0);
-    for (int step = 0; step < 24; ++step) {
-      const Balance before = *this;
-      for (std::size_t i = 0; i < kNodes; ++i) {
-        double sent = 0.0;
-        for (std::size_t j = 0; j < rule.node.size(); ++j)
-          sent += received[i][j] * before.AtRoot(rule.node[j]);
-        factor_[i] = std::sqrt(before.factor_[i] / sent);
-      }
-    }
-  }
-
-  [[nodiscard]] double At(double mu) const { return AtRoot(std::sqrt(mu)); }
-  [[nodiscard]] const std::array<double, Snow::kBalanceNodes>& nodes() const { return factor_; }
-
- private:
-  static constexpr std::size_t kNodes = Snow::kBalanceNodes;
-
-  static double MuOf(std::size_t node) {
-    const double root = static_cast<double>(node) / (kNodes - 1);
-    return std::max(root * root, 1e-4);
-  }
-
-  static double MeanOverAzimuth(double a, double b) {
-    constexpr int kAzimuths = 90;
-    const double sines = std::sqrt((1.0 - a * a) * (1.0 - b * b));
-    double sum = 0.0;
-    for (int k = 0; k < kAzimuths; ++k) {
-      const double azimuth = kPi * (k + 0.5) / kAzimuths;
-      sum += WithoutAbsorption({a, b, std::clamp(a * b + sines * std::cos(azimuth), -1.0, 1.0)});
-    }
-    return sum / kAzimuths;
-  }
-
-  [[nodiscard]] double AtRoot(double root) const {
-    const double at = root * (kNodes - 1);
-    const std::size_t node = std::min(static_cast<std::size_t>(at), kNodes - 2);
-    return factor_[node] + (at - static_cast<double>(node)) * (factor_[node + 1] - factor_[node]);
-  }
-
-  std::array<double, kNodes> factor_;
-};
-
-const Balance& TheBalance() {
-  static const Balance balance;
-  return balance;
-}
-
-double Balanced(double mu) { return TheBalance().At(mu); }
-
-}  // namespace
 
 const std::array<double, Snow::kBalanceNodes>& Snow::BalanceNodes() { return TheBalance().nodes(); }
 

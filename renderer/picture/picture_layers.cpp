@@ -107,6 +107,42 @@ const std::vector<LayerKind>& LayerKinds() {
   return kKinds;
 }
 
+const std::vector<float>* FindLayer(const Image& image, std::string_view name) {
+  for (const Channel& channel : image.layers) {
+    if (channel.name == name) return &channel.values;
+  }
+  return nullptr;
+}
+
+const std::vector<float>& LayerOf(const Image& image, std::string_view name) {
+  if (const std::vector<float>* layer = FindLayer(image, name)) return *layer;
+  throw InternalError("the renderer's picture has no layer " + std::string(name));
+}
+
+/// Minimum and maximum of a layer in the neighbourhood of a pixel.
+struct LuminanceRange {
+  float least, most;
+};
+LuminanceRange RangeAround(const Image& image, const std::vector<float>& layer, int x, int y) {
+  LuminanceRange range{INFINITY, -INFINITY};
+  for (int row = std::max(y - 1, 0); row <= std::min(y + 1, image.height - 1); ++row) {
+    for (int column = std::max(x - 1, 0); column <= std::min(x + 1, image.width - 1); ++column) {
+      const float value = layer[static_cast<std::size_t>(row * image.width + column)];
+      range = {std::min(range.least, value), std::max(range.most, value)};
+    }
+  }
+  return range;
+}
+
+// Returns whether lamp light changes so much next to a pixel that an offset of a tenth of a pixel
+// changes it by a hundredth.
+bool IsEdgeOfLamps(const Image& image, const std::vector<float>& lamps, int x, int y,
+                   float floor_cd_per_m2) {
+  constexpr float kStep = 0.2F;
+  const LuminanceRange light = RangeAround(image, lamps, x, y);
+  return light.most - light.least > kStep * std::max(light.most, floor_cd_per_m2);
+}
+
 }  // namespace
 
 void PixelSum::Add(const Shaded& ray, bool with_parts) {
@@ -213,46 +249,6 @@ bool PixelWriter::AsksForMiddle() const {
 }
 
 Image PixelWriter::Take() { return std::move(image_); }
-
-namespace {
-
-const std::vector<float>* FindLayer(const Image& image, std::string_view name) {
-  for (const Channel& channel : image.layers) {
-    if (channel.name == name) return &channel.values;
-  }
-  return nullptr;
-}
-
-const std::vector<float>& LayerOf(const Image& image, std::string_view name) {
-  if (const std::vector<float>* layer = FindLayer(image, name)) return *layer;
-  throw InternalError("the renderer's picture has no layer " + std::string(name));
-}
-
-/// Minimum and maximum of a layer in the neighbourhood of a pixel.
-struct LuminanceRange {
-  float least, most;
-};
-LuminanceRange RangeAround(const Image& image, const std::vector<float>& layer, int x, int y) {
-  LuminanceRange range{INFINITY, -INFINITY};
-  for (int row = std::max(y - 1, 0); row <= std::min(y + 1, image.height - 1); ++row) {
-    for (int column = std::max(x - 1, 0); column <= std::min(x + 1, image.width - 1); ++column) {
-      const float value = layer[static_cast<std::size_t>(row * image.width + column)];
-      range = {std::min(range.least, value), std::max(range.most, value)};
-    }
-  }
-  return range;
-}
-
-// Returns whether lamp light changes so much next to a pixel that an offset of a tenth of a pixel
-// changes it by a hundredth.
-bool IsEdgeOfLamps(const Image& image, const std::vector<float>& lamps, int x, int y,
-                   float floor_cd_per_m2) {
-  constexpr float kStep = 0.2F;
-  const LuminanceRange light = RangeAround(image, lamps, x, y);
-  return light.most - light.least > kStep * std::max(light.most, floor_cd_per_m2);
-}
-
-}  // namespace
 
 std::vector<PictureLayer> LayersOfEdges() {
   return {PictureLayer::kDepth, PictureLayer::kSunVisibility, PictureLayer::kLamps};

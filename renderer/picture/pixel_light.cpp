@@ -62,6 +62,21 @@ std::optional<AirAlongRay> Reaching(AirAlongRay air, double ratio) {
   return air;
 }
 
+/// Returns an empty tile, for pictures without lamps.
+const LampTile& DarkTile() {
+  static const LampTile kDark;
+  return kDark;
+}
+
+CameraRay RayOf(const PixelSamples& samples, int sample, const glm::dvec2& at,
+                const FrameContext& frame) {
+  std::array<double, 2> lens{};
+  double time = 0.0;
+  if (frame.camera().HasLens()) lens = samples.Point(sample, SampleOf::kLens);
+  if (frame.moving().IsMoving()) time = samples.Point(sample, SampleOf::kTime)[0];
+  return frame.moving().Ray(at.x, at.y, lens, time);
+}
+
 }  // namespace
 
 AirInterpolationGrid::AirInterpolationGrid(const PixelShader& shader, int x0, int y0, int x1,
@@ -147,25 +162,6 @@ std::optional<AirAlongRay> AirInterpolationGrid::Before(const SharedSegmentAir& 
   if (!IsShared(column, row)) return std::nullopt;
   return Between(column, row, x, y, rays.kind, rays.length_m());
 }
-
-namespace {
-
-/// Returns an empty tile, for pictures without lamps.
-const LampTile& DarkTile() {
-  static const LampTile kDark;
-  return kDark;
-}
-
-CameraRay RayOf(const PixelSamples& samples, int sample, const glm::dvec2& at,
-                const FrameContext& frame) {
-  std::array<double, 2> lens{};
-  double time = 0.0;
-  if (frame.camera().HasLens()) lens = samples.Point(sample, SampleOf::kLens);
-  if (frame.moving().IsMoving()) time = samples.Point(sample, SampleOf::kTime)[0];
-  return frame.moving().Ray(at.x, at.y, lens, time);
-}
-
-}  // namespace
 
 PixelLight::PixelLight(const PixelShader& shader, int x, int y, int most_rays,
                        AirInterpolationGrid* around, double expected_m)

@@ -52,77 +52,6 @@ void ForInside(int size, const Visit& visit) {
   });
 }
 
-}  // namespace
-
-float CubicHeight(const Land& land, double row, double column) {
-  const int r = static_cast<int>(std::floor(row));
-  const int c = static_cast<int>(std::floor(column));
-  const auto row_weights = CubicWeights(row - r);
-  const auto column_weights = CubicWeights(column - c);
-  double sum = 0.0;
-  for (int i = 0; i < 4; ++i) {
-    const int at_row = std::clamp(r + i - 1, 0, land.size - 1);
-    double line = 0.0;
-    for (int j = 0; j < 4; ++j) {
-      const int at_column = std::clamp(c + j - 1, 0, land.size - 1);
-      line += column_weights[static_cast<std::size_t>(j)] *
-              static_cast<double>(land.at(at_row, at_column));
-    }
-    sum += row_weights[static_cast<std::size_t>(i)] * line;
-  }
-  return static_cast<float>(sum);
-}
-
-Land Refined(const Land& coarse, double roughness_m, std::uint32_t seed) {
-  Land fine{2 * coarse.size, 0.5 * coarse.spacing_m, {}};
-  fine.height_m.resize(4 * coarse.height_m.size(), 0.0F);
-  ForInside(fine.size, [&](int row, int column) {
-    fine.height_m[fine.index(row, column)] =
-        CubicHeight(coarse, 0.5 * row - 0.25, 0.5 * column - 0.25) +
-        static_cast<float>(roughness_m * (LatticeUniform(column, row, seed) - 0.5));
-  });
-  return fine;
-}
-
-Land WithRibs(const Land& land, double height_m, double wavelength_km, std::uint32_t seed) {
-  Land ribbed = land;
-  ForInside(land.size, [&](int row, int column) {
-    const double slope = Slope(land, row, column);
-    const double strength = height_m * std::min(1.0, slope * slope);
-    if (strength < 0.01 * height_m) return;
-    const auto [x, y] = land.PlaceOf(row, column);
-    const double ribs = RidgedNoise(x / wavelength_km, y / wavelength_km, 2, seed) - 0.5;
-    ribbed.height_m[land.index(row, column)] += static_cast<float>(strength * ribs);
-  });
-  return ribbed;
-}
-
-Land Softened(const Land& land, const std::vector<float>& weight) {
-  Land soft = land;
-  ForInside(land.size, [&](int row, int column) {
-    const std::size_t sample = land.index(row, column);
-    if (weight[sample] == 0.0F) return;
-    const auto mean = static_cast<float>(BinomialMean(land, row, column));
-    soft.height_m[sample] += weight[sample] * (mean - land.height_m[sample]);
-  });
-  return soft;
-}
-
-Land Bent(const Land& land, double samples, double wavelength_km, std::uint32_t seed) {
-  Land bent = land;
-  ForInside(land.size, [&](int row, int column) {
-    const auto [x, y] = land.PlaceOf(row, column);
-    const double u = x / wavelength_km;
-    const double v = y / wavelength_km;
-    bent.height_m[land.index(row, column)] =
-        CubicHeight(land, row + samples * FractalNoise(u, v, 3, seed),
-                    column + samples * FractalNoise(u, v, 3, seed + 10));
-  });
-  return bent;
-}
-
-namespace {
-
 // The chains strike east-north-east. `along` runs along them, `across` runs southwards across them.
 struct StrikeFrame {
   double along_km;
@@ -246,42 +175,6 @@ double UpliftOf(double x_km, double y_km, std::uint32_t seed) {
   return (foreland + mountains) * RimFade(x_km, y_km, 9.0);
 }
 
-}  // namespace
-
-double RelativeUplift(double x_km, double y_km, std::uint32_t seed) {
-  return OverForeland(y_km, seed, [&](std::uint32_t of) { return UpliftOf(x_km, y_km, of); });
-}
-
-double RelativeErodibility(double x_km, double y_km, std::uint32_t seed) {
-  return OverForeland(y_km, seed, [&](std::uint32_t of) {
-    return std::clamp(1.0 + 0.9 * FractalNoise(x_km / 6.0, y_km / 6.0, 4, of + 20), 0.5, 2.0);
-  });
-}
-
-double SteepestSlope(double x_km, double y_km, double relative_uplift, std::uint32_t seed) {
-  const double fresh = std::min(1.0, relative_uplift);
-  const double layers = OverForeland(y_km, seed, [&](std::uint32_t of) {
-    return FractalNoise(x_km / 2.3, y_km / 2.3, 4, of + 30);
-  });
-  return std::clamp(0.44 + 0.4 * fresh + 0.4 * layers, 0.35, 1.3);
-}
-
-double BaseHeight(double x_km, double y_km) { return 450.0 * RimFade(x_km, y_km, 10.0); }
-
-double Alpine(double x_km, double y_km, std::uint32_t seed) {
-  return RimFade(x_km, y_km, 9.0) *
-         OverForeland(y_km, seed, [&](std::uint32_t of) { return South(Warped(x_km, y_km, of)); });
-}
-
-double CrestUnderView(double x_km, double y_km) {
-  constexpr double kWhole_km = 0.3, kEnd_km = 6.0;
-  const double away_km =
-      std::hypot(x_km - 1e-3 * kRangeViewEast_m, y_km - 1e-3 * kRangeViewNorth_m);
-  return SmoothStep((kEnd_km - away_km) / (kEnd_km - kWhole_km));
-}
-
-namespace {
-
 namespace fs = std::filesystem;
 
 fs::path FileOf(const fs::path& folder, const WantedHeights& wanted) {
@@ -326,6 +219,105 @@ void Keep(const fs::path& file, const WantedHeights& wanted, const std::vector<f
 }
 
 }  // namespace
+
+float CubicHeight(const Land& land, double row, double column) {
+  const int r = static_cast<int>(std::floor(row));
+  const int c = static_cast<int>(std::floor(column));
+  const auto row_weights = CubicWeights(row - r);
+  const auto column_weights = CubicWeights(column - c);
+  double sum = 0.0;
+  for (int i = 0; i < 4; ++i) {
+    const int at_row = std::clamp(r + i - 1, 0, land.size - 1);
+    double line = 0.0;
+    for (int j = 0; j < 4; ++j) {
+      const int at_column = std::clamp(c + j - 1, 0, land.size - 1);
+      line += column_weights[static_cast<std::size_t>(j)] *
+              static_cast<double>(land.at(at_row, at_column));
+    }
+    sum += row_weights[static_cast<std::size_t>(i)] * line;
+  }
+  return static_cast<float>(sum);
+}
+
+Land Refined(const Land& coarse, double roughness_m, std::uint32_t seed) {
+  Land fine{2 * coarse.size, 0.5 * coarse.spacing_m, {}};
+  fine.height_m.resize(4 * coarse.height_m.size(), 0.0F);
+  ForInside(fine.size, [&](int row, int column) {
+    fine.height_m[fine.index(row, column)] =
+        CubicHeight(coarse, 0.5 * row - 0.25, 0.5 * column - 0.25) +
+        static_cast<float>(roughness_m * (LatticeUniform(column, row, seed) - 0.5));
+  });
+  return fine;
+}
+
+Land WithRibs(const Land& land, double height_m, double wavelength_km, std::uint32_t seed) {
+  Land ribbed = land;
+  ForInside(land.size, [&](int row, int column) {
+    const double slope = Slope(land, row, column);
+    const double strength = height_m * std::min(1.0, slope * slope);
+    if (strength < 0.01 * height_m) return;
+    const auto [x, y] = land.PlaceOf(row, column);
+    const double ribs = RidgedNoise(x / wavelength_km, y / wavelength_km, 2, seed) - 0.5;
+    ribbed.height_m[land.index(row, column)] += static_cast<float>(strength * ribs);
+  });
+  return ribbed;
+}
+
+Land Softened(const Land& land, const std::vector<float>& weight) {
+  Land soft = land;
+  ForInside(land.size, [&](int row, int column) {
+    const std::size_t sample = land.index(row, column);
+    if (weight[sample] == 0.0F) return;
+    const auto mean = static_cast<float>(BinomialMean(land, row, column));
+    soft.height_m[sample] += weight[sample] * (mean - land.height_m[sample]);
+  });
+  return soft;
+}
+
+Land Bent(const Land& land, double samples, double wavelength_km, std::uint32_t seed) {
+  Land bent = land;
+  ForInside(land.size, [&](int row, int column) {
+    const auto [x, y] = land.PlaceOf(row, column);
+    const double u = x / wavelength_km;
+    const double v = y / wavelength_km;
+    bent.height_m[land.index(row, column)] =
+        CubicHeight(land, row + samples * FractalNoise(u, v, 3, seed),
+                    column + samples * FractalNoise(u, v, 3, seed + 10));
+  });
+  return bent;
+}
+
+double RelativeUplift(double x_km, double y_km, std::uint32_t seed) {
+  return OverForeland(y_km, seed, [&](std::uint32_t of) { return UpliftOf(x_km, y_km, of); });
+}
+
+double RelativeErodibility(double x_km, double y_km, std::uint32_t seed) {
+  return OverForeland(y_km, seed, [&](std::uint32_t of) {
+    return std::clamp(1.0 + 0.9 * FractalNoise(x_km / 6.0, y_km / 6.0, 4, of + 20), 0.5, 2.0);
+  });
+}
+
+double SteepestSlope(double x_km, double y_km, double relative_uplift, std::uint32_t seed) {
+  const double fresh = std::min(1.0, relative_uplift);
+  const double layers = OverForeland(y_km, seed, [&](std::uint32_t of) {
+    return FractalNoise(x_km / 2.3, y_km / 2.3, 4, of + 30);
+  });
+  return std::clamp(0.44 + 0.4 * fresh + 0.4 * layers, 0.35, 1.3);
+}
+
+double BaseHeight(double x_km, double y_km) { return 450.0 * RimFade(x_km, y_km, 10.0); }
+
+double Alpine(double x_km, double y_km, std::uint32_t seed) {
+  return RimFade(x_km, y_km, 9.0) *
+         OverForeland(y_km, seed, [&](std::uint32_t of) { return South(Warped(x_km, y_km, of)); });
+}
+
+double CrestUnderView(double x_km, double y_km) {
+  constexpr double kWhole_km = 0.3, kEnd_km = 6.0;
+  const double away_km =
+      std::hypot(x_km - 1e-3 * kRangeViewEast_m, y_km - 1e-3 * kRangeViewNorth_m);
+  return SmoothStep((kEnd_km - away_km) / (kEnd_km - kWhole_km));
+}
 
 std::uint64_t FingerprintOf(const std::vector<float>& height_m) {
   Fnv1a hash;

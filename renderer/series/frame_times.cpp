@@ -41,6 +41,44 @@ Conversion ConversionAt(const std::string& pattern, std::size_t at) {
   return conversion;
 }
 
+struct Range {
+  int first, last;
+};
+
+int NumberIn(std::string_view text, std::string_view ranges) {
+  int number = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+  if (error != std::errc() || end != text.data() + text.size() || number < 0) {
+    throw InputError(fmt::format("frames \"{}\": \"{}\" is no frame; write A-B,C", ranges, text));
+  }
+  return number;
+}
+
+std::vector<Range> RangesFromText(std::string_view ranges) {
+  std::vector<Range> found;
+  for (std::size_t begin = 0; begin <= ranges.size();) {
+    const std::size_t end = std::min(ranges.find(',', begin), ranges.size());
+    const std::string_view part = ranges.substr(begin, end - begin);
+    const std::size_t dash = part.find('-');
+    const int first = NumberIn(part.substr(0, dash), ranges);
+    const int last =
+        dash == std::string_view::npos ? first : NumberIn(part.substr(dash + 1), ranges);
+    if (last < first) {
+      throw InputError(fmt::format("frames \"{}\": {} ends before it begins", ranges, part));
+    }
+    found.push_back({first, last});
+    begin = end + 1;
+  }
+  return found;
+}
+
+double Positive(double value, const std::string& name) {
+  if (!(value > 0.0 && std::isfinite(value))) {
+    throw InputError(fmt::format("{} is {}; it must be positive", name, value));
+  }
+  return value;
+}
+
 }  // namespace
 
 FrameName::FrameName(const std::string& pattern) {
@@ -91,41 +129,6 @@ std::filesystem::path FrameName::Folder() const {
   return std::filesystem::path(before_).parent_path();
 }
 
-namespace {
-
-struct Range {
-  int first, last;
-};
-
-int NumberIn(std::string_view text, std::string_view ranges) {
-  int number = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
-  if (error != std::errc() || end != text.data() + text.size() || number < 0) {
-    throw InputError(fmt::format("frames \"{}\": \"{}\" is no frame; write A-B,C", ranges, text));
-  }
-  return number;
-}
-
-std::vector<Range> RangesFromText(std::string_view ranges) {
-  std::vector<Range> found;
-  for (std::size_t begin = 0; begin <= ranges.size();) {
-    const std::size_t end = std::min(ranges.find(',', begin), ranges.size());
-    const std::string_view part = ranges.substr(begin, end - begin);
-    const std::size_t dash = part.find('-');
-    const int first = NumberIn(part.substr(0, dash), ranges);
-    const int last =
-        dash == std::string_view::npos ? first : NumberIn(part.substr(dash + 1), ranges);
-    if (last < first) {
-      throw InputError(fmt::format("frames \"{}\": {} ends before it begins", ranges, part));
-    }
-    found.push_back({first, last});
-    begin = end + 1;
-  }
-  return found;
-}
-
-}  // namespace
-
 std::vector<Frame> FramesFromTimes(const TimesText& times, const EventDay& day) {
   std::vector<Frame> frames;
   for (const UtcInstant& instant : InstantsFromTimes(times, day)) {
@@ -152,17 +155,6 @@ std::vector<Frame> SelectFrames(const std::vector<Frame>& frames, std::string_vi
   }
   return selected;
 }
-
-namespace {
-
-double Positive(double value, const std::string& name) {
-  if (!(value > 0.0 && std::isfinite(value))) {
-    throw InputError(fmt::format("{} is {}; it must be positive", name, value));
-  }
-  return value;
-}
-
-}  // namespace
 
 double FrameInterval(const CameraPath& path, const PathRate& rate) {
   if (rate.every) return Positive(ParseDuration(*rate.every), "--every");

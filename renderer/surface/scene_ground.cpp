@@ -36,43 +36,6 @@ std::optional<SurfaceUnder> SeenFrom(const Terrain& terrain, const glm::dvec3& p
   return SurfaceUnder{*hit, over_m - hit->distance_m};
 }
 
-}  // namespace
-
-std::optional<GroundHeights> GroundHeightsAlong(const Terrain& terrain, const glm::dvec3& point,
-                                                const glm::dvec3& up) {
-  const auto from_above = terrain.Intersect(point + kReach_m * up, -up, 2.0 * kReach_m);
-  if (!from_above) return std::nullopt;
-  const double highest_m = kReach_m - from_above->distance_m;
-  const auto from_below = terrain.Intersect(point - kReach_m * up, up, 2.0 * kReach_m);
-  // One ray may hit an edge that the other just misses; the surface that was hit exists.
-  const double lowest_m = from_below ? from_below->distance_m - kReach_m : highest_m;
-  return GroundHeights{std::min(lowest_m, highest_m), highest_m};
-}
-
-std::optional<GroundHeights> GroundHeightsAt(const Terrain& terrain, const LocalFrame& frame,
-                                             const GeodeticPosition& place) {
-  GeodeticPosition foot = place;
-  foot.height_m = 0.0;
-  return GroundHeightsAlong(terrain, frame.EnuFromGeodetic(foot).xyz, UpAt(frame, foot));
-}
-
-std::optional<SurfaceUnder> SurfaceUnderPoint(const Terrain& terrain, const glm::dvec3& point,
-                                              const glm::dvec3& up) {
-  constexpr double kRounding_m = 0.02;  // a point on a surface counts as above it
-  const auto below = SeenFrom(terrain, point, up, kRounding_m);
-  return below ? below : SeenFrom(terrain, point, up, kReach_m);
-}
-
-std::optional<double> GroundUnderEye(const Terrain& terrain, const LocalFrame& frame,
-                                     const GeodeticPosition& place) {
-  const auto surface =
-      SurfaceUnderPoint(terrain, frame.EnuFromGeodetic(place).xyz, UpAt(frame, place));
-  if (!surface) return std::nullopt;
-  return place.height_m + surface->height_m;
-}
-
-namespace {
-
 constexpr double kEarth_m = 6.371e6;
 
 // Returns the distance at which ground of any height may be visible [radians of the earth's curve].
@@ -128,22 +91,6 @@ double EyeHeight(const Scene& scene, const ElevationGrid& grid) {
          there.grid.HeightAt(scene.place.latitude_rad, scene.place.longitude_rad).value_or(0.0);
 }
 
-}  // namespace
-
-double HorizonDip(double height_m) {
-  return std::acos(kEarth_m / (kEarth_m + std::max(height_m, 0.0)));
-}
-
-GridWindow WindowAround(const ElevationGrid& grid, const GeodeticPosition& place,
-                        double distance_rad) {
-  const Span rows = Within((grid.north_rad - place.latitude_rad) / grid.step_lat_rad,
-                           distance_rad / grid.step_lat_rad, grid.rows);
-  const Span columns = ColumnsAround(grid, place, distance_rad);
-  return {columns.first, rows.first, columns.count, rows.count};
-}
-
-namespace {
-
 // Returns the grid of all models together, without heights.
 ElevationGrid OutlineOf(const LandLattice& lattice) {
   ElevationGrid extent;
@@ -183,35 +130,6 @@ ModelInSight ReadModelsInSight(const Scene& scene) {
   loaded.message = fmt::format("{}", fmt::join(notes, "; "));
   return loaded;
 }
-
-}  // namespace
-
-ModelInSight ReadModelInSight(const Scene& scene) {
-  if (scene.terrain.HasManyModels()) return ReadModelsInSight(scene);
-  constexpr double kManySamples = 1 << 25;
-  const std::filesystem::path& file = scene.terrain.file;
-  ElevationGrid all = ReadElevationExtent(file);
-  const double samples = static_cast<double>(all.columns) * static_cast<double>(all.rows);
-  if (samples <= kManySamples || !CanBeCut(file)) {
-    return {ReadElevation(file, scene.terrain.voids), std::move(all), ""};
-  }
-  const double sight = Sight(EyeHeight(scene, all));
-  const GridWindow window = WindowAround(all, scene.place, sight);
-  ModelInSight loaded{ReadElevation(file, scene.terrain.voids, window), all, ""};
-  if (loaded.model.voids == loaded.model.grid.height_m.size()) {
-    throw InputError(fmt::format("{}: has no valid sample within {:.0f} km of the camera",
-                                 file.string(), 1e-3 * kEarth_m * sight));
-  }
-  if (window.columns < all.columns || window.rows < all.rows) {
-    loaded.message = fmt::format(
-        "{}: of {} x {} samples {} x {} are read, those within {:.0f} km of "
-        "the camera",
-        file.string(), all.columns, all.rows, window.columns, window.rows, 1e-3 * kEarth_m * sight);
-  }
-  return loaded;
-}
-
-namespace {
 
 struct LoadedMesh {
   std::optional<TriangleMesh> mesh;
@@ -337,7 +255,103 @@ std::optional<GroundHeights> GroundAtFoot(const std::optional<Terrain>& terrain)
   return GroundHeightsAlong(*terrain, glm::dvec3(0.0), glm::dvec3(0.0, 0.0, 1.0));
 }
 
+std::string TextOf(const GeodeticPosition& place) {
+  return fmt::format("the eye at {:.6f}, {:.6f}", place.latitude_rad / kRadiansPerDegree,
+                     place.longitude_rad / kRadiansPerDegree);
+}
+
+/// Throws InputError if the place is too far from the scene's place.
+CameraStand StandOver(const SceneGround& ground, const GeodeticPosition& place) {
+  const LocalFrame there(ground.frame.ellipsoid(), place);
+  const auto in_frame = [&](const glm::dvec3& axis) {
+    return ground.frame.EnuFromEcef(there.EcefFromEnu(Vector<Enu>{axis})).xyz;
+  };
+  const CameraStand stand{
+      ground.frame.EnuFromGeodetic(place).xyz,
+      {in_frame({1.0, 0.0, 0.0}), in_frame({0.0, 1.0, 0.0}), in_frame({0.0, 0.0, 1.0})}};
+  constexpr double kFarthest_m = 500e3;
+  const double radius_m = ground.frame.ellipsoid().equatorial_radius_m;
+  const double along_m = radius_m * std::acos(std::min(stand.frame_from_enu[2].z, 1.0));
+  if (along_m > kFarthest_m) {
+    throw InputError(
+        fmt::format("{} is {:.0f} km from the scene's place; at most {:.0f} km can be "
+                    "shown from one frame",
+                    TextOf(place), 1e-3 * along_m, 1e-3 * kFarthest_m));
+  }
+  return stand;
+}
+
 }  // namespace
+
+std::optional<GroundHeights> GroundHeightsAlong(const Terrain& terrain, const glm::dvec3& point,
+                                                const glm::dvec3& up) {
+  const auto from_above = terrain.Intersect(point + kReach_m * up, -up, 2.0 * kReach_m);
+  if (!from_above) return std::nullopt;
+  const double highest_m = kReach_m - from_above->distance_m;
+  const auto from_below = terrain.Intersect(point - kReach_m * up, up, 2.0 * kReach_m);
+  // One ray may hit an edge that the other just misses; the surface that was hit exists.
+  const double lowest_m = from_below ? from_below->distance_m - kReach_m : highest_m;
+  return GroundHeights{std::min(lowest_m, highest_m), highest_m};
+}
+
+std::optional<GroundHeights> GroundHeightsAt(const Terrain& terrain, const LocalFrame& frame,
+                                             const GeodeticPosition& place) {
+  GeodeticPosition foot = place;
+  foot.height_m = 0.0;
+  return GroundHeightsAlong(terrain, frame.EnuFromGeodetic(foot).xyz, UpAt(frame, foot));
+}
+
+std::optional<SurfaceUnder> SurfaceUnderPoint(const Terrain& terrain, const glm::dvec3& point,
+                                              const glm::dvec3& up) {
+  constexpr double kRounding_m = 0.02;  // a point on a surface counts as above it
+  const auto below = SeenFrom(terrain, point, up, kRounding_m);
+  return below ? below : SeenFrom(terrain, point, up, kReach_m);
+}
+
+std::optional<double> GroundUnderEye(const Terrain& terrain, const LocalFrame& frame,
+                                     const GeodeticPosition& place) {
+  const auto surface =
+      SurfaceUnderPoint(terrain, frame.EnuFromGeodetic(place).xyz, UpAt(frame, place));
+  if (!surface) return std::nullopt;
+  return place.height_m + surface->height_m;
+}
+
+double HorizonDip(double height_m) {
+  return std::acos(kEarth_m / (kEarth_m + std::max(height_m, 0.0)));
+}
+
+GridWindow WindowAround(const ElevationGrid& grid, const GeodeticPosition& place,
+                        double distance_rad) {
+  const Span rows = Within((grid.north_rad - place.latitude_rad) / grid.step_lat_rad,
+                           distance_rad / grid.step_lat_rad, grid.rows);
+  const Span columns = ColumnsAround(grid, place, distance_rad);
+  return {columns.first, rows.first, columns.count, rows.count};
+}
+
+ModelInSight ReadModelInSight(const Scene& scene) {
+  if (scene.terrain.HasManyModels()) return ReadModelsInSight(scene);
+  constexpr double kManySamples = 1 << 25;
+  const std::filesystem::path& file = scene.terrain.file;
+  ElevationGrid all = ReadElevationExtent(file);
+  const double samples = static_cast<double>(all.columns) * static_cast<double>(all.rows);
+  if (samples <= kManySamples || !CanBeCut(file)) {
+    return {ReadElevation(file, scene.terrain.voids), std::move(all), ""};
+  }
+  const double sight = Sight(EyeHeight(scene, all));
+  const GridWindow window = WindowAround(all, scene.place, sight);
+  ModelInSight loaded{ReadElevation(file, scene.terrain.voids, window), all, ""};
+  if (loaded.model.voids == loaded.model.grid.height_m.size()) {
+    throw InputError(fmt::format("{}: has no valid sample within {:.0f} km of the camera",
+                                 file.string(), 1e-3 * kEarth_m * sight));
+  }
+  if (window.columns < all.columns || window.rows < all.rows) {
+    loaded.message = fmt::format(
+        "{}: of {} x {} samples {} x {} are read, those within {:.0f} km of "
+        "the camera",
+        file.string(), all.columns, all.rows, window.columns, window.rows, 1e-3 * kEarth_m * sight);
+  }
+  return loaded;
+}
 
 Ellipsoid EllipsoidOf(const Medium& medium) {
   return medium.follows_wgs84 ? kWgs84 : Ellipsoid{medium.planet_radius_m, 0.0};
@@ -375,36 +389,6 @@ SceneGround LoadGround(const Scene& scene, Progress* progress) {
           is_one_surface,
           loaded.is_whole && under_eye.has_value()};
 }
-
-namespace {
-
-std::string TextOf(const GeodeticPosition& place) {
-  return fmt::format("the eye at {:.6f}, {:.6f}", place.latitude_rad / kRadiansPerDegree,
-                     place.longitude_rad / kRadiansPerDegree);
-}
-
-/// Throws InputError if the place is too far from the scene's place.
-CameraStand StandOver(const SceneGround& ground, const GeodeticPosition& place) {
-  const LocalFrame there(ground.frame.ellipsoid(), place);
-  const auto in_frame = [&](const glm::dvec3& axis) {
-    return ground.frame.EnuFromEcef(there.EcefFromEnu(Vector<Enu>{axis})).xyz;
-  };
-  const CameraStand stand{
-      ground.frame.EnuFromGeodetic(place).xyz,
-      {in_frame({1.0, 0.0, 0.0}), in_frame({0.0, 1.0, 0.0}), in_frame({0.0, 0.0, 1.0})}};
-  constexpr double kFarthest_m = 500e3;
-  const double radius_m = ground.frame.ellipsoid().equatorial_radius_m;
-  const double along_m = radius_m * std::acos(std::min(stand.frame_from_enu[2].z, 1.0));
-  if (along_m > kFarthest_m) {
-    throw InputError(
-        fmt::format("{} is {:.0f} km from the scene's place; at most {:.0f} km can be "
-                    "shown from one frame",
-                    TextOf(place), 1e-3 * along_m, 1e-3 * kFarthest_m));
-  }
-  return stand;
-}
-
-}  // namespace
 
 CameraStand StandOfScene(const SceneGround& ground) {
   return {{0.0, 0.0, ground.eye_height_m}, glm::dmat3(1.0)};

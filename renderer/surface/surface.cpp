@@ -97,6 +97,11 @@ double DetailNoise(const GroundPoint& point, GroundNoise family) {
   return sum;
 }
 
+using Kind = GroundCover::Kind;
+
+// Elevation models store the sea level with a rounding error.
+constexpr double kWaterLine_m = 0.5;
+
 }  // namespace
 
 glm::dvec2 NoiseOctave::PlaceOf(const GroundPoint& point) const {
@@ -220,15 +225,6 @@ WavySurface WavesAt(const GroundPoint& point, double slope_variance) {
   });
   return waves;
 }
-
-namespace {
-
-using Kind = GroundCover::Kind;
-
-// Elevation models store the sea level with a rounding error.
-constexpr double kWaterLine_m = 0.5;
-
-}  // namespace
 
 GroundPatch::GroundPatch(const GroundMaterial& material, const GroundPoint& at)
     : material_(material),

@@ -73,6 +73,111 @@ std::vector<float> Coarser(const LatticeBox& box, int level, const std::vector<f
   return means;
 }
 
+constexpr double kPole = 0.5 * std::numbers::pi;
+
+// Returns the mean height of a row.
+float MeanOfRow(const ElevationGrid& grid, int row) {
+  double sum = 0.0;
+  for (int column = 0; column < grid.columns; ++column)
+    sum += static_cast<double>(grid.at(row, column));
+  return static_cast<float>(sum / grid.columns);
+}
+
+// Closes a grid that spans all longitudes: repeats its first column at the end and adds a row at a
+// pole that its rim surrounds. If the grid has heights, they are extended as well.
+ElevationGrid Closed(ElevationGrid grid) {
+  if (!grid.ClosesAroundTheEarth()) return grid;
+  const auto reaches = [&](int row, double pole) {
+    const double gap = std::abs(pole - grid.LatitudeOfRow(row));
+    return gap < 1.001 * grid.step_lat_rad && gap > 1e-12;
+  };
+  const bool north = reaches(0, kPole), south = reaches(grid.rows - 1, -kPole);
+  ElevationGrid closed = grid;
+  closed.columns = grid.columns + 1;
+  closed.rows = grid.rows + (north ? 1 : 0) + (south ? 1 : 0);
+  closed.north_rad = grid.north_rad + (north ? grid.step_lat_rad : 0.0);
+  closed.height_m.clear();
+  if (grid.height_m.empty()) return closed;
+  for (int row = north ? -1 : 0; row < grid.rows + (south ? 1 : 0); ++row) {
+    const int within = std::clamp(row, 0, grid.rows - 1);
+    const float pole_m = MeanOfRow(grid, within);
+    for (int column = 0; column < closed.columns; ++column)
+      closed.height_m.push_back(row == within ? grid.at(row, column % grid.columns) : pole_m);
+  }
+  return closed;
+}
+
+bool IsModel(const std::filesystem::path& file) {
+  const auto extensions = ElevationExtensions();
+  return std::any_of(extensions.begin(), extensions.end(),
+                     [&](const char* extension) { return HasExtension(file, extension); });
+}
+
+// Returns whether the samples of a grid coincide with those of its tile.
+bool IsTile(const LandLattice& lattice, const LandTile& tile, const ElevationGrid& grid) {
+  const auto like = [](double a, double b) { return std::abs(a - b) < 1e-2; };  // samples
+  return tile.level == 0 && tile.box.last_column - tile.box.first_column == grid.columns - 1 &&
+         tile.box.last_row - tile.box.first_row == grid.rows - 1 &&
+         like((grid.columns - 1) * grid.step_lon_rad / lattice.step_lon_rad, grid.columns - 1) &&
+         like((grid.rows - 1) * grid.step_lat_rad / lattice.step_lat_rad, grid.rows - 1) &&
+         like((lattice.north_rad - grid.north_rad) / lattice.step_lat_rad, tile.box.first_row) &&
+         like(std::remainder(
+                  grid.west_rad - lattice.west_rad - tile.box.first_column * lattice.step_lon_rad,
+                  2.0 * std::numbers::pi) /
+                  lattice.step_lon_rad,
+              0.0);
+}
+
+// Returns the heights of a grid at the lattice samples of a tile. Samples on the lattice are copied
+// without interpolation.
+std::vector<float> OnLattice(const LandLattice& lattice, const LandTile& tile, ElevationGrid grid) {
+  if (IsTile(lattice, tile, grid)) return std::move(grid.height_m);
+  const LevelAxis columns(tile.box.first_column, tile.box.last_column, tile.level);
+  const LevelAxis rows(tile.box.first_row, tile.box.last_row, tile.level);
+  const double lon_ratio = lattice.step_lon_rad / grid.step_lon_rad;
+  const double lat_ratio = lattice.step_lat_rad / grid.step_lat_rad;
+  const double west =
+      std::remainder(
+          lattice.west_rad + tile.box.first_column * lattice.step_lon_rad - grid.west_rad,
+          2.0 * std::numbers::pi) /
+      grid.step_lon_rad;
+  const double north = (grid.north_rad - lattice.north_rad) / grid.step_lat_rad;
+  struct Span {
+    int low;
+    double share;
+  };
+  // Picks the nearest sample if it is equal up to rounding of the steps, otherwise two to
+  // interpolate.
+  const auto span = [](double place, int count) {
+    const double nearest = std::round(place);
+    const double snapped = std::abs(place - nearest) < 1e-2 ? nearest : place;
+    // The tile may exceed the grid by the tolerance for samples that count as on the lattice.
+    const double inside = std::clamp(snapped, 0.0, count - 1.0);
+    const double low = std::floor(inside);
+    return Span{static_cast<int>(low), inside - low};
+  };
+  std::vector<float> heights;
+  heights.reserve(static_cast<std::size_t>(columns.count()) *
+                  static_cast<std::size_t>(rows.count()));
+  for (int j = 0; j < rows.count(); ++j) {
+    const Span y = span(north + rows.SampleOf(j) * lat_ratio, grid.rows);
+    for (int i = 0; i < columns.count(); ++i) {
+      const Span x =
+          span(west + (columns.SampleOf(i) - tile.box.first_column) * lon_ratio, grid.columns);
+      const auto along = [&](int row) {
+        if (x.share == 0.0) return static_cast<double>(grid.at(row, x.low));
+        return (1.0 - x.share) * static_cast<double>(grid.at(row, x.low)) +
+               x.share * static_cast<double>(grid.at(row, x.low + 1));
+      };
+      const double height = y.share == 0.0
+                                ? along(y.low)
+                                : (1.0 - y.share) * along(y.low) + y.share * along(y.low + 1);
+      heights.push_back(static_cast<float>(height));
+    }
+  }
+  return heights;
+}
+
 }  // namespace
 
 HeightSamples::HeightSamples(std::vector<float> height_m) {
@@ -162,50 +267,6 @@ std::size_t HeightPyramid::BytesOf(const LatticeBox& box, int level) {
   return static_cast<std::size_t>(4.0 / 3.0 * sizeof(float) * columns * rows *
                                   std::pow(0.25, level));
 }
-
-namespace {
-
-constexpr double kPole = 0.5 * std::numbers::pi;
-
-// Returns the mean height of a row.
-float MeanOfRow(const ElevationGrid& grid, int row) {
-  double sum = 0.0;
-  for (int column = 0; column < grid.columns; ++column)
-    sum += static_cast<double>(grid.at(row, column));
-  return static_cast<float>(sum / grid.columns);
-}
-
-// Closes a grid that spans all longitudes: repeats its first column at the end and adds a row at a
-// pole that its rim surrounds. If the grid has heights, they are extended as well.
-ElevationGrid Closed(ElevationGrid grid) {
-  if (!grid.ClosesAroundTheEarth()) return grid;
-  const auto reaches = [&](int row, double pole) {
-    const double gap = std::abs(pole - grid.LatitudeOfRow(row));
-    return gap < 1.001 * grid.step_lat_rad && gap > 1e-12;
-  };
-  const bool north = reaches(0, kPole), south = reaches(grid.rows - 1, -kPole);
-  ElevationGrid closed = grid;
-  closed.columns = grid.columns + 1;
-  closed.rows = grid.rows + (north ? 1 : 0) + (south ? 1 : 0);
-  closed.north_rad = grid.north_rad + (north ? grid.step_lat_rad : 0.0);
-  closed.height_m.clear();
-  if (grid.height_m.empty()) return closed;
-  for (int row = north ? -1 : 0; row < grid.rows + (south ? 1 : 0); ++row) {
-    const int within = std::clamp(row, 0, grid.rows - 1);
-    const float pole_m = MeanOfRow(grid, within);
-    for (int column = 0; column < closed.columns; ++column)
-      closed.height_m.push_back(row == within ? grid.at(row, column % grid.columns) : pole_m);
-  }
-  return closed;
-}
-
-bool IsModel(const std::filesystem::path& file) {
-  const auto extensions = ElevationExtensions();
-  return std::any_of(extensions.begin(), extensions.end(),
-                     [&](const char* extension) { return HasExtension(file, extension); });
-}
-
-}  // namespace
 
 LandTiles::LandTiles(const LandSource& source) : source_(source) {
   if (source.mesh) return;
@@ -355,75 +416,6 @@ std::vector<int> LandTiles::Touching(const LatticeBox& box) const {
     if (touches(tiles_[tile])) touching.push_back(static_cast<int>(tile));
   return touching;
 }
-
-namespace {
-
-// Returns whether the samples of a grid coincide with those of its tile.
-bool IsTile(const LandLattice& lattice, const LandTile& tile, const ElevationGrid& grid) {
-  const auto like = [](double a, double b) { return std::abs(a - b) < 1e-2; };  // samples
-  return tile.level == 0 && tile.box.last_column - tile.box.first_column == grid.columns - 1 &&
-         tile.box.last_row - tile.box.first_row == grid.rows - 1 &&
-         like((grid.columns - 1) * grid.step_lon_rad / lattice.step_lon_rad, grid.columns - 1) &&
-         like((grid.rows - 1) * grid.step_lat_rad / lattice.step_lat_rad, grid.rows - 1) &&
-         like((lattice.north_rad - grid.north_rad) / lattice.step_lat_rad, tile.box.first_row) &&
-         like(std::remainder(
-                  grid.west_rad - lattice.west_rad - tile.box.first_column * lattice.step_lon_rad,
-                  2.0 * std::numbers::pi) /
-                  lattice.step_lon_rad,
-              0.0);
-}
-
-// Returns the heights of a grid at the lattice samples of a tile. Samples on the lattice are copied
-// without interpolation.
-std::vector<float> OnLattice(const LandLattice& lattice, const LandTile& tile, ElevationGrid grid) {
-  if (IsTile(lattice, tile, grid)) return std::move(grid.height_m);
-  const LevelAxis columns(tile.box.first_column, tile.box.last_column, tile.level);
-  const LevelAxis rows(tile.box.first_row, tile.box.last_row, tile.level);
-  const double lon_ratio = lattice.step_lon_rad / grid.step_lon_rad;
-  const double lat_ratio = lattice.step_lat_rad / grid.step_lat_rad;
-  const double west =
-      std::remainder(
-          lattice.west_rad + tile.box.first_column * lattice.step_lon_rad - grid.west_rad,
-          2.0 * std::numbers::pi) /
-      grid.step_lon_rad;
-  const double north = (grid.north_rad - lattice.north_rad) / grid.step_lat_rad;
-  struct Span {
-    int low;
-    double share;
-  };
-  // Picks the nearest sample if it is equal up to rounding of the steps, otherwise two to
-  // interpolate.
-  const auto span = [](double place, int count) {
-    const double nearest = std::round(place);
-    const double snapped = std::abs(place - nearest) < 1e-2 ? nearest : place;
-    // The tile may exceed the grid by the tolerance for samples that count as on the lattice.
-    const double inside = std::clamp(snapped, 0.0, count - 1.0);
-    const double low = std::floor(inside);
-    return Span{static_cast<int>(low), inside - low};
-  };
-  std::vector<float> heights;
-  heights.reserve(static_cast<std::size_t>(columns.count()) *
-                  static_cast<std::size_t>(rows.count()));
-  for (int j = 0; j < rows.count(); ++j) {
-    const Span y = span(north + rows.SampleOf(j) * lat_ratio, grid.rows);
-    for (int i = 0; i < columns.count(); ++i) {
-      const Span x =
-          span(west + (columns.SampleOf(i) - tile.box.first_column) * lon_ratio, grid.columns);
-      const auto along = [&](int row) {
-        if (x.share == 0.0) return static_cast<double>(grid.at(row, x.low));
-        return (1.0 - x.share) * static_cast<double>(grid.at(row, x.low)) +
-               x.share * static_cast<double>(grid.at(row, x.low + 1));
-      };
-      const double height = y.share == 0.0
-                                ? along(y.low)
-                                : (1.0 - y.share) * along(y.low) + y.share * along(y.low + 1);
-      heights.push_back(static_cast<float>(height));
-    }
-  }
-  return heights;
-}
-
-}  // namespace
 
 ReadTile ReadLandTile(const LandTiles& tiles, int tile, int level) {
   const LandTile& wanted = tiles.tiles()[static_cast<std::size_t>(tile)];

@@ -24,6 +24,97 @@ double RangeOfLevel(int level, const LandEye& eye, double detail) {
   return detail * std::sqrt(eye.size.column_m * eye.size.row_m) * std::exp2(level);
 }
 
+class RangeDemand {
+ public:
+  RangeDemand(const ChunkTree& tree, const LandEye& eye, double detail,
+              const std::function<bool(const ChunkKey&)>& is_there)
+      : tree_(tree), eye_(eye), detail_(detail), is_there_(is_there) {
+    for (int level = 0; level <= tree.top(); ++level)
+      found_.reach_m.push_back(RangeOfLevel(level, eye, detail));
+    found_.reach_m.back() = std::numeric_limits<double>::infinity();
+  }
+
+  LandDemand Find() {
+    for (const ChunkKey& root : tree_.Roots(eye_)) {
+      found_.wanted.push_back({root, ChunkTree::Distance(root, eye_)});
+      if (is_there_(root)) Split(root);
+    }
+    return std::move(found_);
+  }
+
+ private:
+  // Children are wanted only when their parent is loaded: coarse land comes first.
+  void Split(const ChunkKey& parent) {
+    if (parent.level == 0) return;
+    const int level = parent.level - 1;
+    const double distance = ChunkTree::Distance(parent, eye_);
+    const double range = RangeOfLevel(level, eye_, detail_);
+    if (distance >= kAhead * range) return;
+    const double urgency = distance < range ? distance : 1e9 + distance;
+    bool all_there = true;
+    for (const ChunkKey& child : tree_.Children(parent)) {
+      found_.wanted.push_back({child, urgency});
+      if (is_there_(child)) {
+        Split(child);
+      } else {
+        all_there = false;
+      }
+    }
+    double& reach = found_.reach_m[static_cast<std::size_t>(level)];
+    if (!all_there) reach = std::min(reach, distance);
+  }
+
+  const ChunkTree& tree_;
+  const LandEye& eye_;
+  double detail_;
+  const std::function<bool(const ChunkKey&)>& is_there_;
+  LandDemand found_;
+};
+
+class Drawing {
+ public:
+  Drawing(const ChunkTree& tree, const LandEye& eye, const std::vector<LevelRange>& ranges)
+      : tree_(tree), eye_(eye), ranges_(ranges) {}
+
+  std::vector<DrawnChunk> Find(const std::function<bool(const ChunkKey&)>& is_there) {
+    for (const ChunkKey& root : tree_.Roots(eye_))
+      if (is_there(root)) Visit(root);
+    std::sort(drawn_.begin(), drawn_.end(),
+              [](const DrawnChunk& a, const DrawnChunk& b) { return a.beside_m < b.beside_m; });
+    return std::move(drawn_);
+  }
+
+ private:
+  [[nodiscard]] bool IsSplit(const ChunkKey& key) const {
+    if (key.level == 0) return false;
+    return ChunkTree::Distance(key, eye_) < ranges_[static_cast<std::size_t>(key.level) - 1].end_m;
+  }
+
+  void Visit(const ChunkKey& key) {
+    if (IsSplit(key)) {
+      for (const ChunkKey& child : tree_.Children(key)) Visit(child);
+    } else {
+      drawn_.push_back({key, ChunkTree::Beside(key, eye_), CoarseSides(key)});
+    }
+  }
+
+  // A neighbour of the same level is drawn if its parent is split.
+  [[nodiscard]] unsigned CoarseSides(const ChunkKey& key) const {
+    if (key.level == tree_.top()) return 0;
+    const auto side = [&](int columns, int rows, unsigned bit) {
+      const ChunkKey next = tree_.Neighbour(key, columns, rows).Parent();
+      return next != key.Parent() && tree_.Exists(next) && !IsSplit(next) ? bit : 0U;
+    };
+    return side(0, -1, kNorthSide) | side(1, 0, kEastSide) | side(0, 1, kSouthSide) |
+           side(-1, 0, kWestSide);
+  }
+
+  const ChunkTree& tree_;
+  const LandEye& eye_;
+  const std::vector<LevelRange>& ranges_;
+  std::vector<DrawnChunk> drawn_;
+};
+
 }  // namespace
 
 LandEye::LandEye(const LandLattice& lattice, const GeodeticPosition& place, double height_above_m,
@@ -161,101 +252,6 @@ std::vector<ChunkKey> ChunkTree::Children(const ChunkKey& key) const {
   }
   return children;
 }
-
-namespace {
-
-class RangeDemand {
- public:
-  RangeDemand(const ChunkTree& tree, const LandEye& eye, double detail,
-              const std::function<bool(const ChunkKey&)>& is_there)
-      : tree_(tree), eye_(eye), detail_(detail), is_there_(is_there) {
-    for (int level = 0; level <= tree.top(); ++level)
-      found_.reach_m.push_back(RangeOfLevel(level, eye, detail));
-    found_.reach_m.back() = std::numeric_limits<double>::infinity();
-  }
-
-  LandDemand Find() {
-    for (const ChunkKey& root : tree_.Roots(eye_)) {
-      found_.wanted.push_back({root, ChunkTree::Distance(root, eye_)});
-      if (is_there_(root)) Split(root);
-    }
-    return std::move(found_);
-  }
-
- private:
-  // Children are wanted only when their parent is loaded: coarse land comes first.
-  void Split(const ChunkKey& parent) {
-    if (parent.level == 0) return;
-    const int level = parent.level - 1;
-    const double distance = ChunkTree::Distance(parent, eye_);
-    const double range = RangeOfLevel(level, eye_, detail_);
-    if (distance >= kAhead * range) return;
-    const double urgency = distance < range ? distance : 1e9 + distance;
-    bool all_there = true;
-    for (const ChunkKey& child : tree_.Children(parent)) {
-      found_.wanted.push_back({child, urgency});
-      if (is_there_(child)) {
-        Split(child);
-      } else {
-        all_there = false;
-      }
-    }
-    double& reach = found_.reach_m[static_cast<std::size_t>(level)];
-    if (!all_there) reach = std::min(reach, distance);
-  }
-
-  const ChunkTree& tree_;
-  const LandEye& eye_;
-  double detail_;
-  const std::function<bool(const ChunkKey&)>& is_there_;
-  LandDemand found_;
-};
-
-class Drawing {
- public:
-  Drawing(const ChunkTree& tree, const LandEye& eye, const std::vector<LevelRange>& ranges)
-      : tree_(tree), eye_(eye), ranges_(ranges) {}
-
-  std::vector<DrawnChunk> Find(const std::function<bool(const ChunkKey&)>& is_there) {
-    for (const ChunkKey& root : tree_.Roots(eye_))
-      if (is_there(root)) Visit(root);
-    std::sort(drawn_.begin(), drawn_.end(),
-              [](const DrawnChunk& a, const DrawnChunk& b) { return a.beside_m < b.beside_m; });
-    return std::move(drawn_);
-  }
-
- private:
-  [[nodiscard]] bool IsSplit(const ChunkKey& key) const {
-    if (key.level == 0) return false;
-    return ChunkTree::Distance(key, eye_) < ranges_[static_cast<std::size_t>(key.level) - 1].end_m;
-  }
-
-  void Visit(const ChunkKey& key) {
-    if (IsSplit(key)) {
-      for (const ChunkKey& child : tree_.Children(key)) Visit(child);
-    } else {
-      drawn_.push_back({key, ChunkTree::Beside(key, eye_), CoarseSides(key)});
-    }
-  }
-
-  // A neighbour of the same level is drawn if its parent is split.
-  [[nodiscard]] unsigned CoarseSides(const ChunkKey& key) const {
-    if (key.level == tree_.top()) return 0;
-    const auto side = [&](int columns, int rows, unsigned bit) {
-      const ChunkKey next = tree_.Neighbour(key, columns, rows).Parent();
-      return next != key.Parent() && tree_.Exists(next) && !IsSplit(next) ? bit : 0U;
-    };
-    return side(0, -1, kNorthSide) | side(1, 0, kEastSide) | side(0, 1, kSouthSide) |
-           side(-1, 0, kWestSide);
-  }
-
-  const ChunkTree& tree_;
-  const LandEye& eye_;
-  const std::vector<LevelRange>& ranges_;
-  std::vector<DrawnChunk> drawn_;
-};
-
-}  // namespace
 
 LandDemand DemandOf(const ChunkTree& tree, const LandEye& eye, double detail,
                     const std::function<bool(const ChunkKey&)>& is_there) {

@@ -50,39 +50,6 @@ bool HasGap(const Range& before, const Range& after, double step) {
          std::floor(before.last + kOnLattice) + 1.0 < after.first - kOnLattice;
 }
 
-}  // namespace
-
-TilePads PadsOf(const LandLattice& lattice, const std::vector<ElevationGrid>& extents,
-                std::size_t index) {
-  const ElevationGrid& own = extents[index];
-  const Range columns = ColumnsOf(lattice, own, own.west_rad), rows = RowsOf(lattice, own);
-  TilePads pads;
-  for (std::size_t i = 0; i < extents.size(); ++i) {
-    if (i == index) continue;
-    const Range across = ColumnsOf(lattice, extents[i], own.west_rad);
-    const Range down = RowsOf(lattice, extents[i]);
-    if (!AreNear(columns, across) || !AreNear(rows, down)) continue;
-    pads.east = pads.east || HasGap(columns, across, columns.step);
-    pads.west = pads.west || HasGap(across, columns, columns.step);
-    pads.south = pads.south || HasGap(rows, down, rows.step);
-    pads.north = pads.north || HasGap(down, rows, rows.step);
-  }
-  return pads;
-}
-
-ElevationGrid PaddedExtent(const ElevationGrid& grid, const TilePads& pads) {
-  ElevationGrid padded;
-  padded.step_lon_rad = grid.step_lon_rad;
-  padded.step_lat_rad = grid.step_lat_rad;
-  padded.west_rad = grid.west_rad - (pads.west ? grid.step_lon_rad : 0.0);
-  padded.north_rad = grid.north_rad + (pads.north ? grid.step_lat_rad : 0.0);
-  padded.columns = grid.columns + (pads.west ? 1 : 0) + (pads.east ? 1 : 0);
-  padded.rows = grid.rows + (pads.north ? 1 : 0) + (pads.south ? 1 : 0);
-  return padded;
-}
-
-namespace {
-
 /// A position in rows and columns of a grid.
 struct TilePlace {
   double row, column;
@@ -183,47 +150,7 @@ class Rims {
   std::vector<Rim> rims_;
 };
 
-}  // namespace
-
-ElevationGrid WithPads(const LandTiles& tiles, int tile, const ElevationGrid& grid) {
-  const TilePads& pads = tiles.tiles()[static_cast<std::size_t>(tile)].pads;
-  ElevationGrid padded = PaddedExtent(grid, pads);
-  const Rims rims(tiles, tile, padded);
-  const int first_row = pads.north ? -1 : 0, first_column = pads.west ? -1 : 0;
-  for (int row = first_row; row < first_row + padded.rows; ++row) {
-    for (int column = first_column; column < first_column + padded.columns; ++column) {
-      const int own_row = std::clamp(row, 0, grid.rows - 1);
-      const int own_column = std::clamp(column, 0, grid.columns - 1);
-      float height = grid.at(own_row, own_column);
-      if (row != own_row || column != own_column) {
-        const auto other = rims.At(grid.LatitudeOfRow(row), grid.LongitudeOfColumn(column));
-        height = other ? static_cast<float>(*other) : height;
-      }
-      padded.height_m.push_back(height);
-    }
-  }
-  return padded;
-}
-
-namespace {
-
 constexpr float kNoHeight = std::numeric_limits<float>::quiet_NaN();
-
-}  // namespace
-
-SampleSize SampleSizeAt(const LandLattice& lattice, double latitude_rad) {
-  const double within = std::clamp(
-      latitude_rad, lattice.north_rad - lattice.last_row * lattice.step_lat_rad, lattice.north_rad);
-  const double e2 = kWgs84.flattening * (2.0 - kWgs84.flattening);
-  const double sine = std::sin(within);
-  const double w2 = 1.0 - e2 * sine * sine;
-  const double across = kWgs84.equatorial_radius_m / std::sqrt(w2);
-  // At a pole the step of a column vanishes. This lower bound keeps columns distinguishable.
-  const double cosine = std::max(std::cos(within), 0.01);
-  return {lattice.step_lon_rad * across * cosine, lattice.step_lat_rad * across * (1.0 - e2) / w2};
-}
-
-namespace {
 
 /// The vertices of one level in a part of the lattice.
 class LevelHeights {
@@ -277,46 +204,6 @@ class LevelHeights {
   int level_;
   std::vector<const HeightPyramid*> near_;
 };
-
-}  // namespace
-
-HeightBlock LoadedHeights::Block(int level, int first_i, int first_j, int columns, int rows) const {
-  const LandLattice& lattice = tiles_->lattice();
-  HeightBlock block{first_i, first_j, columns, rows, {}};
-  block.height_m.reserve(static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows));
-  const LevelHeights heights(
-      *tiles_, heights_, level,
-      {lattice.ColumnOf(first_i, level), lattice.RowOf(first_j, level),
-       lattice.ColumnOf(first_i + columns - 1, level), lattice.RowOf(first_j + rows - 1, level)});
-  for (int j = first_j; j < first_j + rows; ++j) {
-    const int row = lattice.RowOf(j, level);
-    for (int i = first_i; i < first_i + columns; ++i) {
-      const int column = lattice.ColumnOf(i, level);
-      const bool is_beyond = column < 0 || column > lattice.last_column;
-      block.height_m.push_back(is_beyond ? heights.Between(column, row) : heights.At(column, row));
-    }
-  }
-  return block;
-}
-
-std::optional<double> LoadedHeights::HeightUnder(double latitude_rad, double longitude_rad) const {
-  const LandLattice& lattice = tiles_->lattice();
-  const LatticePlace at = lattice.At(latitude_rad, longitude_rad);
-  constexpr double kRounding = 1e-6;  // samples; the rim itself is land
-  if (!(at.column >= -kRounding && at.column <= lattice.last_column + kRounding &&
-        at.row >= -kRounding && at.row <= lattice.last_row + kRounding))
-    return std::nullopt;
-  if (tiles_->tiles().empty()) return std::nullopt;
-  const int i = std::clamp(static_cast<int>(at.column), 0, lattice.last_column - 1);
-  const int j = std::clamp(static_cast<int>(at.row), 0, lattice.last_row - 1);
-  const HeightBlock block = Block(0, i - 1, j - 1, 4, 4);
-  CellHeights around{};
-  std::copy(block.height_m.begin(), block.height_m.end(), around.begin());
-  return HeightOnTriangles(around, std::clamp(at.column - i, 0.0, 1.0),
-                           std::clamp(at.row - j, 0.0, 1.0));
-}
-
-namespace {
 
 /// Vertices of one level of a lattice, both ends included.
 struct VertexSpan {
@@ -447,7 +334,123 @@ LatticeBox BoxAround(const LandLattice& lattice, const ElevationGrid& grid) {
           lattice.last_row};
 }
 
+/// The samples that SampledGrid needs, and their level.
+struct NeededSamples {
+  LatticeBox box;
+  int level;
+};
+
+std::optional<NeededSamples> SamplesAround(const LandLattice& lattice,
+                                           const GeodeticPosition& place, double half_width_m,
+                                           int most_samples) {
+  if (const auto over = GridOverSeam(lattice, place, half_width_m, most_samples))
+    return NeededSamples{BoxAround(lattice, over->grid), over->level};
+  const std::optional<VertexSpan> span = SpanAround(lattice, place, half_width_m, most_samples);
+  if (!span) return std::nullopt;
+  const int level = span->level;
+  return NeededSamples{{lattice.ColumnOf(span->first_i, level), lattice.RowOf(span->first_j, level),
+                        lattice.ColumnOf(span->last_i, level), lattice.RowOf(span->last_j, level)},
+                       level};
+}
+
 }  // namespace
+
+TilePads PadsOf(const LandLattice& lattice, const std::vector<ElevationGrid>& extents,
+                std::size_t index) {
+  const ElevationGrid& own = extents[index];
+  const Range columns = ColumnsOf(lattice, own, own.west_rad), rows = RowsOf(lattice, own);
+  TilePads pads;
+  for (std::size_t i = 0; i < extents.size(); ++i) {
+    if (i == index) continue;
+    const Range across = ColumnsOf(lattice, extents[i], own.west_rad);
+    const Range down = RowsOf(lattice, extents[i]);
+    if (!AreNear(columns, across) || !AreNear(rows, down)) continue;
+    pads.east = pads.east || HasGap(columns, across, columns.step);
+    pads.west = pads.west || HasGap(across, columns, columns.step);
+    pads.south = pads.south || HasGap(rows, down, rows.step);
+    pads.north = pads.north || HasGap(down, rows, rows.step);
+  }
+  return pads;
+}
+
+ElevationGrid PaddedExtent(const ElevationGrid& grid, const TilePads& pads) {
+  ElevationGrid padded;
+  padded.step_lon_rad = grid.step_lon_rad;
+  padded.step_lat_rad = grid.step_lat_rad;
+  padded.west_rad = grid.west_rad - (pads.west ? grid.step_lon_rad : 0.0);
+  padded.north_rad = grid.north_rad + (pads.north ? grid.step_lat_rad : 0.0);
+  padded.columns = grid.columns + (pads.west ? 1 : 0) + (pads.east ? 1 : 0);
+  padded.rows = grid.rows + (pads.north ? 1 : 0) + (pads.south ? 1 : 0);
+  return padded;
+}
+
+ElevationGrid WithPads(const LandTiles& tiles, int tile, const ElevationGrid& grid) {
+  const TilePads& pads = tiles.tiles()[static_cast<std::size_t>(tile)].pads;
+  ElevationGrid padded = PaddedExtent(grid, pads);
+  const Rims rims(tiles, tile, padded);
+  const int first_row = pads.north ? -1 : 0, first_column = pads.west ? -1 : 0;
+  for (int row = first_row; row < first_row + padded.rows; ++row) {
+    for (int column = first_column; column < first_column + padded.columns; ++column) {
+      const int own_row = std::clamp(row, 0, grid.rows - 1);
+      const int own_column = std::clamp(column, 0, grid.columns - 1);
+      float height = grid.at(own_row, own_column);
+      if (row != own_row || column != own_column) {
+        const auto other = rims.At(grid.LatitudeOfRow(row), grid.LongitudeOfColumn(column));
+        height = other ? static_cast<float>(*other) : height;
+      }
+      padded.height_m.push_back(height);
+    }
+  }
+  return padded;
+}
+
+SampleSize SampleSizeAt(const LandLattice& lattice, double latitude_rad) {
+  const double within = std::clamp(
+      latitude_rad, lattice.north_rad - lattice.last_row * lattice.step_lat_rad, lattice.north_rad);
+  const double e2 = kWgs84.flattening * (2.0 - kWgs84.flattening);
+  const double sine = std::sin(within);
+  const double w2 = 1.0 - e2 * sine * sine;
+  const double across = kWgs84.equatorial_radius_m / std::sqrt(w2);
+  // At a pole the step of a column vanishes. This lower bound keeps columns distinguishable.
+  const double cosine = std::max(std::cos(within), 0.01);
+  return {lattice.step_lon_rad * across * cosine, lattice.step_lat_rad * across * (1.0 - e2) / w2};
+}
+
+HeightBlock LoadedHeights::Block(int level, int first_i, int first_j, int columns, int rows) const {
+  const LandLattice& lattice = tiles_->lattice();
+  HeightBlock block{first_i, first_j, columns, rows, {}};
+  block.height_m.reserve(static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows));
+  const LevelHeights heights(
+      *tiles_, heights_, level,
+      {lattice.ColumnOf(first_i, level), lattice.RowOf(first_j, level),
+       lattice.ColumnOf(first_i + columns - 1, level), lattice.RowOf(first_j + rows - 1, level)});
+  for (int j = first_j; j < first_j + rows; ++j) {
+    const int row = lattice.RowOf(j, level);
+    for (int i = first_i; i < first_i + columns; ++i) {
+      const int column = lattice.ColumnOf(i, level);
+      const bool is_beyond = column < 0 || column > lattice.last_column;
+      block.height_m.push_back(is_beyond ? heights.Between(column, row) : heights.At(column, row));
+    }
+  }
+  return block;
+}
+
+std::optional<double> LoadedHeights::HeightUnder(double latitude_rad, double longitude_rad) const {
+  const LandLattice& lattice = tiles_->lattice();
+  const LatticePlace at = lattice.At(latitude_rad, longitude_rad);
+  constexpr double kRounding = 1e-6;  // samples; the rim itself is land
+  if (!(at.column >= -kRounding && at.column <= lattice.last_column + kRounding &&
+        at.row >= -kRounding && at.row <= lattice.last_row + kRounding))
+    return std::nullopt;
+  if (tiles_->tiles().empty()) return std::nullopt;
+  const int i = std::clamp(static_cast<int>(at.column), 0, lattice.last_column - 1);
+  const int j = std::clamp(static_cast<int>(at.row), 0, lattice.last_row - 1);
+  const HeightBlock block = Block(0, i - 1, j - 1, 4, 4);
+  CellHeights around{};
+  std::copy(block.height_m.begin(), block.height_m.end(), around.begin());
+  return HeightOnTriangles(around, std::clamp(at.column - i, 0.0, 1.0),
+                           std::clamp(at.row - j, 0.0, 1.0));
+}
 
 std::optional<ElevationGrid> LoadedHeights::SampledGrid(const GeodeticPosition& place,
                                                         double half_width_m,
@@ -481,29 +484,6 @@ std::optional<ElevationGrid> LoadedHeights::SampledGrid(const GeodeticPosition& 
   grid.height_m = Block(level, i0, j0, grid.columns, grid.rows).height_m;
   return grid;
 }
-
-namespace {
-
-/// The samples that SampledGrid needs, and their level.
-struct NeededSamples {
-  LatticeBox box;
-  int level;
-};
-
-std::optional<NeededSamples> SamplesAround(const LandLattice& lattice,
-                                           const GeodeticPosition& place, double half_width_m,
-                                           int most_samples) {
-  if (const auto over = GridOverSeam(lattice, place, half_width_m, most_samples))
-    return NeededSamples{BoxAround(lattice, over->grid), over->level};
-  const std::optional<VertexSpan> span = SpanAround(lattice, place, half_width_m, most_samples);
-  if (!span) return std::nullopt;
-  const int level = span->level;
-  return NeededSamples{{lattice.ColumnOf(span->first_i, level), lattice.RowOf(span->first_j, level),
-                        lattice.ColumnOf(span->last_i, level), lattice.RowOf(span->last_j, level)},
-                       level};
-}
-
-}  // namespace
 
 std::optional<ElevationGrid> ReadHeightsAround(const std::shared_ptr<const LandTiles>& tiles,
                                                const GeodeticPosition& place, double half_width_m,

@@ -37,101 +37,6 @@ Piece LeastOf(const LandSkyline::Between& a, const LandSkyline::Between& b) {
   return {near > 0.0 ? low / near : -1e30, far};
 }
 
-}  // namespace
-
-// Collects the bins that a line covers completely, while its azimuth is monotonic.
-class LandSkyline::CrestMaker {
- public:
-  void Add(double from, double to, const Piece& piece) {
-    const double low = std::min(from, to), high = std::max(from, to);
-    const int sense = to > from ? 1 : -1;
-    if (sense != sense_ || steps_.empty()) Begin(sense);
-    farthest_m_ = std::max(farthest_m_, piece.farthest_m);
-    const int first = static_cast<int>(std::floor(low)), last = static_cast<int>(std::floor(high));
-    for (int k = 0; k <= last - first; ++k) {
-      const int bin = sense > 0 ? first + k : last - k;
-      const double share = std::min(high, bin + 1.0) - std::max(low, static_cast<double>(bin));
-      if (steps_.empty() || steps_.back().bin != bin) {
-        steps_.push_back({bin, piece.tangent});
-        shares_.push_back(share);
-      } else {
-        steps_.back().tangent = std::min(steps_.back().tangent, piece.tangent);
-        shares_.back() += share;
-      }
-    }
-  }
-  std::vector<Crest> Finish() {
-    Begin(0);
-    return std::move(crests_);
-  }
-
- private:
-  void Begin(int sense) {
-    Crest crest{farthest_m_, {}};
-    constexpr double kWhole = 1.0 - 1e-9;
-    for (std::size_t i = 0; i < steps_.size(); ++i)
-      if (shares_[i] >= kWhole) crest.steps.push_back(steps_[i]);
-    if (!crest.steps.empty()) crests_.push_back(std::move(crest));
-    steps_.clear();
-    shares_.clear();
-    farthest_m_ = 0.0;
-    sense_ = sense;
-  }
-
-  int sense_ = 0;
-  double farthest_m_ = 0.0;
-  std::vector<Step> steps_;
-  std::vector<double> shares_;
-  std::vector<Crest> crests_;
-};
-
-void LandSkyline::Add(std::span<const Between> line) {
-  CrestMaker maker;
-  double from = BinOf(line.front().one, kBins);
-  for (std::size_t i = 1; i < line.size(); ++i) {
-    const double to = from + std::remainder(BinOf(line[i].one, kBins) - from, kBins);
-    // A nearby segment that spans a wide azimuth hides nothing. The line continues after it.
-    constexpr double kWidest = kBins / 8.0;
-    Piece piece = LeastOf(line[i - 1], line[i]);
-    if (std::abs(to - from) > kWidest) piece.tangent = -1e30;
-    maker.Add(from, to, piece);
-    from = to;
-  }
-  for (Crest& crest : maker.Finish()) waiting_.push(std::move(crest));
-}
-
-void LandSkyline::Raise(double up_to_m) {
-  while (!waiting_.empty() && waiting_.top().farthest_m <= up_to_m) {
-    for (const auto& [bin, tangent] : waiting_.top().steps) {
-      double& highest = tangent_[static_cast<std::size_t>(Wrapped(bin, kBins))];
-      highest = std::max(highest, tangent);
-    }
-    waiting_.pop();
-  }
-}
-
-double LandSkyline::NearestOf(const glm::dvec3& point, double radius_m) {
-  return Along(point) - radius_m;
-}
-
-bool LandSkyline::Hides(const glm::dvec3& point, double radius_m, double highest_m) {
-  const double distance = Along(point);
-  if (distance < 2.0 * radius_m) return false;
-  Raise(distance - radius_m);
-  const double tangent = highest_m / (highest_m > 0.0 ? distance - radius_m : distance + radius_m);
-  const double middle = BinOf(point, kBins);
-  const double half = std::asin(radius_m / distance) / kTurn * kBins;
-  const int first = static_cast<int>(std::floor(middle - half));
-  const int last = static_cast<int>(std::floor(middle + half));
-  constexpr double kRounding = 1e-6;
-  for (int bin = first; bin <= last; ++bin)
-    if (tangent_[static_cast<std::size_t>(Wrapped(bin, kBins))] <= tangent + kRounding)
-      return false;
-  return true;
-}
-
-namespace {
-
 /// Returns an upper bound for the apparent rise [m], by rays of this curvature, of land at a
 /// distance.
 double MostRise(double bends_per_m, double distance_m) {
@@ -241,6 +146,97 @@ std::vector<char> NotHidden(const std::vector<SeenChunk>& chunks, const FrameTra
 }
 
 }  // namespace
+
+// Collects the bins that a line covers completely, while its azimuth is monotonic.
+class LandSkyline::CrestMaker {
+ public:
+  void Add(double from, double to, const Piece& piece) {
+    const double low = std::min(from, to), high = std::max(from, to);
+    const int sense = to > from ? 1 : -1;
+    if (sense != sense_ || steps_.empty()) Begin(sense);
+    farthest_m_ = std::max(farthest_m_, piece.farthest_m);
+    const int first = static_cast<int>(std::floor(low)), last = static_cast<int>(std::floor(high));
+    for (int k = 0; k <= last - first; ++k) {
+      const int bin = sense > 0 ? first + k : last - k;
+      const double share = std::min(high, bin + 1.0) - std::max(low, static_cast<double>(bin));
+      if (steps_.empty() || steps_.back().bin != bin) {
+        steps_.push_back({bin, piece.tangent});
+        shares_.push_back(share);
+      } else {
+        steps_.back().tangent = std::min(steps_.back().tangent, piece.tangent);
+        shares_.back() += share;
+      }
+    }
+  }
+  std::vector<Crest> Finish() {
+    Begin(0);
+    return std::move(crests_);
+  }
+
+ private:
+  void Begin(int sense) {
+    Crest crest{farthest_m_, {}};
+    constexpr double kWhole = 1.0 - 1e-9;
+    for (std::size_t i = 0; i < steps_.size(); ++i)
+      if (shares_[i] >= kWhole) crest.steps.push_back(steps_[i]);
+    if (!crest.steps.empty()) crests_.push_back(std::move(crest));
+    steps_.clear();
+    shares_.clear();
+    farthest_m_ = 0.0;
+    sense_ = sense;
+  }
+
+  int sense_ = 0;
+  double farthest_m_ = 0.0;
+  std::vector<Step> steps_;
+  std::vector<double> shares_;
+  std::vector<Crest> crests_;
+};
+
+void LandSkyline::Add(std::span<const Between> line) {
+  CrestMaker maker;
+  double from = BinOf(line.front().one, kBins);
+  for (std::size_t i = 1; i < line.size(); ++i) {
+    const double to = from + std::remainder(BinOf(line[i].one, kBins) - from, kBins);
+    // A nearby segment that spans a wide azimuth hides nothing. The line continues after it.
+    constexpr double kWidest = kBins / 8.0;
+    Piece piece = LeastOf(line[i - 1], line[i]);
+    if (std::abs(to - from) > kWidest) piece.tangent = -1e30;
+    maker.Add(from, to, piece);
+    from = to;
+  }
+  for (Crest& crest : maker.Finish()) waiting_.push(std::move(crest));
+}
+
+void LandSkyline::Raise(double up_to_m) {
+  while (!waiting_.empty() && waiting_.top().farthest_m <= up_to_m) {
+    for (const auto& [bin, tangent] : waiting_.top().steps) {
+      double& highest = tangent_[static_cast<std::size_t>(Wrapped(bin, kBins))];
+      highest = std::max(highest, tangent);
+    }
+    waiting_.pop();
+  }
+}
+
+double LandSkyline::NearestOf(const glm::dvec3& point, double radius_m) {
+  return Along(point) - radius_m;
+}
+
+bool LandSkyline::Hides(const glm::dvec3& point, double radius_m, double highest_m) {
+  const double distance = Along(point);
+  if (distance < 2.0 * radius_m) return false;
+  Raise(distance - radius_m);
+  const double tangent = highest_m / (highest_m > 0.0 ? distance - radius_m : distance + radius_m);
+  const double middle = BinOf(point, kBins);
+  const double half = std::asin(radius_m / distance) / kTurn * kBins;
+  const int first = static_cast<int>(std::floor(middle - half));
+  const int last = static_cast<int>(std::floor(middle + half));
+  constexpr double kRounding = 1e-6;
+  for (int bin = first; bin <= last; ++bin)
+    if (tangent_[static_cast<std::size_t>(Wrapped(bin, kBins))] <= tangent + kRounding)
+      return false;
+  return true;
+}
 
 std::vector<SeenChunk> InView(std::vector<SeenChunk> chunks, const FrameTransform& eye,
                               const LandView& view) {
