@@ -41,31 +41,6 @@ glm::dvec3 Rock(double x, double y) {
   return faces_sun && y > 0.25 + 0.4 * (x - 0.45) ? kLit : kShade;
 }
 
-}  // namespace
-
-std::vector<std::uint8_t> WindowIcon(int side) {
-  constexpr int kSamples = 4;  // samples per side of a pixel
-  std::vector<std::uint8_t> bytes;
-  const double step = 1.0 / (kSamples * side);
-  for (int row = 0; row < side; ++row) {
-    for (int column = 0; column < side; ++column) {
-      glm::dvec3 sum(0.0);
-      for (int sample = 0; sample < kSamples * kSamples; ++sample) {
-        const double x = (kSamples * column + sample % kSamples + 0.5) * step;
-        const double y = 1.0 - (kSamples * row + sample / kSamples + 0.5) * step;
-        sum += y > Ridge(x) ? Sky(y) : Rock(x, y);
-      }
-      for (int channel = 0; channel < 3; ++channel) {
-        bytes.push_back(static_cast<std::uint8_t>(sum[channel] / (kSamples * kSamples)));
-      }
-      bytes.push_back(255);
-    }
-  }
-  return bytes;
-}
-
-namespace {
-
 constexpr double kWait_s = 0.1;  // wait for events while the window is not visible
 
 std::string LastGlfwError() {
@@ -178,6 +153,27 @@ void AppendUtf8(std::string& text, unsigned codepoint) {
 }
 
 }  // namespace
+
+std::vector<std::uint8_t> WindowIcon(int side) {
+  constexpr int kSamples = 4;  // samples per side of a pixel
+  std::vector<std::uint8_t> bytes;
+  const double step = 1.0 / (kSamples * side);
+  for (int row = 0; row < side; ++row) {
+    for (int column = 0; column < side; ++column) {
+      glm::dvec3 sum(0.0);
+      for (int sample = 0; sample < kSamples * kSamples; ++sample) {
+        const double x = (kSamples * column + sample % kSamples + 0.5) * step;
+        const double y = 1.0 - (kSamples * row + sample / kSamples + 0.5) * step;
+        sum += y > Ridge(x) ? Sky(y) : Rock(x, y);
+      }
+      for (int channel = 0; channel < 3; ++channel) {
+        bytes.push_back(static_cast<std::uint8_t>(sum[channel] / (kSamples * kSamples)));
+      }
+      bytes.push_back(255);
+    }
+  }
+  return bytes;
+}
 
 struct Window::State {
   Glfw glfw;

@@ -63,6 +63,15 @@ bool CanHappen(SunEvent event, const GeodeticPosition& place, const UtcInstant& 
   return highest_rad > wanted_rad - kMargin_rad && lowest_rad < wanted_rad + kMargin_rad;
 }
 
+FlightMode Stepped(FlightMode mode, int step) {
+  return static_cast<FlightMode>((static_cast<int>(mode) + step + 3) % 3);
+}
+
+std::string HeldText(const PilotedAircraft& aircraft) {
+  const std::string text = TextOf(aircraft.autopilot().targets());
+  return text.empty() ? "autopilot off" : text;
+}
+
 }  // namespace
 
 double SteppedTimeRate(double rate, int step) {
@@ -117,19 +126,6 @@ void SceneClock::Type(const std::string& text, const GeodeticPosition& place,
                       const std::string& zone) {
   Set(InstantFromText(text, {place, zone, now_}));
 }
-
-namespace {
-
-FlightMode Stepped(FlightMode mode, int step) {
-  return static_cast<FlightMode>((static_cast<int>(mode) + step + 3) % 3);
-}
-
-std::string HeldText(const PilotedAircraft& aircraft) {
-  const std::string text = TextOf(aircraft.autopilot().targets());
-  return text.empty() ? "autopilot off" : text;
-}
-
-}  // namespace
 
 void FlightController::Advance(const PilotControls& controls, double seconds) {
   const bool stands = clock_.paused() && pilot_.mode() != FlightMode::kFree;

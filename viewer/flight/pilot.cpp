@@ -37,6 +37,9 @@ double ClimbToward(double height_m, double from_m, double speed_m_per_s) {
   return std::clamp((height_m - from_m) / kTime_s, -most, most);
 }
 
+constexpr double kStep_s = 1.0 / 120.0;
+constexpr double kOnGround_m = 15.0;  // below this height a flight begins on the wheels
+
 }  // namespace
 
 bool AutopilotTargets::HoldsAnything() const {
@@ -138,13 +141,6 @@ Autopilot::Flown Autopilot::Fly(const AircraftState& state, const AircraftKind& 
   speed_before_m_per_s_ = now.speed_m_per_s;
   return flown;
 }
-
-namespace {
-
-constexpr double kStep_s = 1.0 / 120.0;
-constexpr double kOnGround_m = 15.0;  // below this height a flight begins on the wheels
-
-}  // namespace
 
 void PilotedAircraft::Begin(GeodeticPosition place, double heading_rad,
                             const GroundHeight& ground) {

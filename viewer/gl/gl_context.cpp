@@ -108,6 +108,41 @@ SoftwareDisplays& UsedBySoftware() {
   return displays;
 }
 
+// Returns whether the bound texture has storage of this size and format.
+bool HoldsTexels(GLenum target, const Texels& of) {
+  const auto is = [&](GLenum property, GLint wanted) {
+    GLint value = 0;
+    glGetTexLevelParameteriv(target, 0, property, &value);
+    return value == wanted;
+  };
+  return is(GL_TEXTURE_WIDTH, of.width) &&
+         is(GL_TEXTURE_INTERNAL_FORMAT, static_cast<GLint>(of.internal_format)) &&
+         (target == GL_TEXTURE_1D || is(GL_TEXTURE_HEIGHT, of.height)) &&
+         (target == GL_TEXTURE_1D || target == GL_TEXTURE_2D || is(GL_TEXTURE_DEPTH, of.depth));
+}
+
+void AllocateTexels(GLenum target, const Texels& of) {
+  const auto internal = static_cast<GLint>(of.internal_format);
+  if (target == GL_TEXTURE_1D) {
+    glTexImage1D(target, 0, internal, of.width, 0, of.format, of.type, of.data);
+  } else if (target == GL_TEXTURE_2D) {
+    glTexImage2D(target, 0, internal, of.width, of.height, 0, of.format, of.type, of.data);
+  } else {
+    glTexImage3D(target, 0, internal, of.width, of.height, of.depth, 0, of.format, of.type,
+                 of.data);
+  }
+}
+
+void OverwriteTexels(GLenum target, const Texels& of) {
+  if (target == GL_TEXTURE_1D) {
+    glTexSubImage1D(target, 0, 0, of.width, of.format, of.type, of.data);
+  } else if (target == GL_TEXTURE_2D) {
+    glTexSubImage2D(target, 0, 0, 0, of.width, of.height, of.format, of.type, of.data);
+  } else {
+    glTexSubImage3D(target, 0, 0, 0, 0, of.width, of.height, of.depth, of.format, of.type, of.data);
+  }
+}
+
 }  // namespace
 
 struct HeadlessContext::State {
@@ -221,45 +256,6 @@ void ClampAndFilter(GLenum target, bool linear) {
   glTexParameteri(target, GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
   glTexParameteri(target, GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
 }
-
-namespace {
-
-// Returns whether the bound texture has storage of this size and format.
-bool HoldsTexels(GLenum target, const Texels& of) {
-  const auto is = [&](GLenum property, GLint wanted) {
-    GLint value = 0;
-    glGetTexLevelParameteriv(target, 0, property, &value);
-    return value == wanted;
-  };
-  return is(GL_TEXTURE_WIDTH, of.width) &&
-         is(GL_TEXTURE_INTERNAL_FORMAT, static_cast<GLint>(of.internal_format)) &&
-         (target == GL_TEXTURE_1D || is(GL_TEXTURE_HEIGHT, of.height)) &&
-         (target == GL_TEXTURE_1D || target == GL_TEXTURE_2D || is(GL_TEXTURE_DEPTH, of.depth));
-}
-
-void AllocateTexels(GLenum target, const Texels& of) {
-  const auto internal = static_cast<GLint>(of.internal_format);
-  if (target == GL_TEXTURE_1D) {
-    glTexImage1D(target, 0, internal, of.width, 0, of.format, of.type, of.data);
-  } else if (target == GL_TEXTURE_2D) {
-    glTexImage2D(target, 0, internal, of.width, of.height, 0, of.format, of.type, of.data);
-  } else {
-    glTexImage3D(target, 0, internal, of.width, of.height, of.depth, 0, of.format, of.type,
-                 of.data);
-  }
-}
-
-void OverwriteTexels(GLenum target, const Texels& of) {
-  if (target == GL_TEXTURE_1D) {
-    glTexSubImage1D(target, 0, 0, of.width, of.format, of.type, of.data);
-  } else if (target == GL_TEXTURE_2D) {
-    glTexSubImage2D(target, 0, 0, 0, of.width, of.height, of.format, of.type, of.data);
-  } else {
-    glTexSubImage3D(target, 0, 0, 0, 0, of.width, of.height, of.depth, of.format, of.type, of.data);
-  }
-}
-
-}  // namespace
 
 // New storage costs more than its values: software drivers clear it, and its pages are new.
 void UploadTexture(GLenum target, const GlTexture& texture, const Texels& of) {

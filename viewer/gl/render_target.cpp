@@ -51,6 +51,59 @@ void TurnUpsideDown(std::vector<Pixel>& pixels, std::size_t row) {
   }
 }
 
+GLsizeiptr BytesOf(std::size_t pixels) {
+  return static_cast<GLsizeiptr>(pixels * sizeof(std::array<float, 3>));
+}
+
+int Parts(int whole, int part) { return (whole + part - 1) / part; }
+
+/// Returns the first pixel of each part of a side, and the end of the last part.
+std::vector<int> Cuts(int side, int largest) {
+  const int step = std::min(kTileStep, largest);
+  const int steps = Parts(side, step);
+  const int count = Parts(steps, largest / step);
+  std::vector<int> cuts;
+  for (int i = 0; i <= count; ++i) {
+    const auto whole_steps = static_cast<int>(static_cast<long long>(steps) * i / count);
+    cuts.push_back(std::min(step * whole_steps, side));
+  }
+  return cuts;
+}
+
+PictureTile WithRim(const PictureTile& tile, int rim, int width, int height) {
+  const int left = std::max(tile.left - rim, 0), top = std::max(tile.top - rim, 0);
+  return {left, top, std::min(tile.left + tile.width + rim, width) - left,
+          std::min(tile.top + tile.height + rim, height) - top};
+}
+
+/// Returns the memory that Linux reports as available without taking memory from other programs.
+std::optional<double> SpareBytes() {
+  std::ifstream meminfo("/proc/meminfo");
+  for (std::string line; std::getline(meminfo, line);) {
+    const std::vector<std::string_view> words = WordsOf(line);
+    if (words.size() < 2 || words[0] != "MemAvailable:") continue;
+    if (const std::optional<double> kilobytes = ParseNumber(words[1])) return 1024.0 * *kilobytes;
+  }
+  return std::nullopt;
+}
+
+// A driver may limit the bytes of a texture in addition to its sides.
+bool HoldsTexture(int width, int height) {
+  glTexImage2D(GL_PROXY_TEXTURE_2D, 0, GL_RGBA32F, width, height, 0, GL_RGBA, GL_FLOAT, nullptr);
+  GLint held = 0;
+  glGetTexLevelParameteriv(GL_PROXY_TEXTURE_2D, 0, GL_TEXTURE_WIDTH, &held);
+  return held == width;
+}
+
+int LongestSide() {
+  GLint texture = 0, renderbuffer = 0;
+  std::array<GLint, 2> viewport{};
+  glGetIntegerv(GL_MAX_TEXTURE_SIZE, &texture);
+  glGetIntegerv(GL_MAX_RENDERBUFFER_SIZE, &renderbuffer);
+  glGetIntegerv(GL_MAX_VIEWPORT_DIMS, viewport.data());
+  return std::min({texture, renderbuffer, viewport[0], viewport[1]});
+}
+
 }  // namespace
 
 RenderTarget::RenderTarget(int width, int height, const std::vector<PixelFormat>& formats,
@@ -133,14 +186,6 @@ DisplayImage RenderTarget::ReadBytes() const {
   return image;
 }
 
-namespace {
-
-GLsizeiptr BytesOf(std::size_t pixels) {
-  return static_cast<GLsizeiptr>(pixels * sizeof(std::array<float, 3>));
-}
-
-}  // namespace
-
 PixelReader::~PixelReader() { Forget(); }
 
 void PixelReader::Forget() {
@@ -171,59 +216,6 @@ std::optional<std::vector<std::array<float, 3>>> PixelReader::Poll() {
   glBindBuffer(GL_PIXEL_PACK_BUFFER, 0);
   return rgb;
 }
-
-namespace {
-
-int Parts(int whole, int part) { return (whole + part - 1) / part; }
-
-/// Returns the first pixel of each part of a side, and the end of the last part.
-std::vector<int> Cuts(int side, int largest) {
-  const int step = std::min(kTileStep, largest);
-  const int steps = Parts(side, step);
-  const int count = Parts(steps, largest / step);
-  std::vector<int> cuts;
-  for (int i = 0; i <= count; ++i) {
-    const auto whole_steps = static_cast<int>(static_cast<long long>(steps) * i / count);
-    cuts.push_back(std::min(step * whole_steps, side));
-  }
-  return cuts;
-}
-
-PictureTile WithRim(const PictureTile& tile, int rim, int width, int height) {
-  const int left = std::max(tile.left - rim, 0), top = std::max(tile.top - rim, 0);
-  return {left, top, std::min(tile.left + tile.width + rim, width) - left,
-          std::min(tile.top + tile.height + rim, height) - top};
-}
-
-/// Returns the memory that Linux reports as available without taking memory from other programs.
-std::optional<double> SpareBytes() {
-  std::ifstream meminfo("/proc/meminfo");
-  for (std::string line; std::getline(meminfo, line);) {
-    const std::vector<std::string_view> words = WordsOf(line);
-    if (words.size() < 2 || words[0] != "MemAvailable:") continue;
-    if (const std::optional<double> kilobytes = ParseNumber(words[1])) return 1024.0 * *kilobytes;
-  }
-  return std::nullopt;
-}
-
-// A driver may limit the bytes of a texture in addition to its sides.
-bool HoldsTexture(int width, int height) {
-  glTexImage2D(GL_PROXY_TEXTURE_2D, 0, GL_RGBA32F, width, height, 0, GL_RGBA, GL_FLOAT, nullptr);
-  GLint held = 0;
-  glGetTexLevelParameteriv(GL_PROXY_TEXTURE_2D, 0, GL_TEXTURE_WIDTH, &held);
-  return held == width;
-}
-
-int LongestSide() {
-  GLint texture = 0, renderbuffer = 0;
-  std::array<GLint, 2> viewport{};
-  glGetIntegerv(GL_MAX_TEXTURE_SIZE, &texture);
-  glGetIntegerv(GL_MAX_RENDERBUFFER_SIZE, &renderbuffer);
-  glGetIntegerv(GL_MAX_VIEWPORT_DIMS, viewport.data());
-  return std::min({texture, renderbuffer, viewport[0], viewport[1]});
-}
-
-}  // namespace
 
 std::vector<PictureTile> TilesOf(int width, int height, int largest_side) {
   const std::vector<int> columns = Cuts(width, largest_side), rows = Cuts(height, largest_side);

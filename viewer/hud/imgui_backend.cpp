@@ -44,29 +44,6 @@ void AddFile(ImFontAtlas& atlas, double scale, const std::filesystem::path& file
   }
 }
 
-}  // namespace
-
-std::optional<std::filesystem::path> InstalledFont() {
-  for (const char* folder : {"truetype/dejavu", "dejavu-sans-fonts", "TTF", "dejavu"}) {
-    const std::filesystem::path file =
-        std::filesystem::path("/usr/share/fonts") / folder / "DejaVuSans.ttf";
-    if (std::filesystem::is_regular_file(file)) return file;
-  }
-  return std::nullopt;
-}
-
-void LoadFont(ImFontAtlas& atlas, double scale, const std::optional<std::filesystem::path>& font) {
-  atlas.Clear();
-  if (font) {
-    AddFile(atlas, scale, *font);
-  } else {
-    AddBuiltIn(atlas, scale);
-  }
-  atlas.Build();
-}
-
-namespace {
-
 ImVec4 Vec4(const HudColour& colour) { return {colour[0], colour[1], colour[2], colour[3]}; }
 
 ImVec4 Dimmed(const HudColour& colour, float opacity) {
@@ -105,21 +82,6 @@ void ApplyColours(ImGuiStyle& style, const HudColours& colours) {
     style.Colors[part] = Dimmed(colours.quiet, 0.3F);
   }
 }
-
-}  // namespace
-
-void ApplyStyle(HudTheme theme, double scale) {
-  ImGuiStyle style;
-  style.WindowRounding = 4.0F;
-  style.FrameRounding = 3.0F;
-  style.GrabRounding = 3.0F;
-  style.FramePadding = {6.0F, 3.0F};
-  style.ScaleAllSizes(static_cast<float>(scale));
-  ApplyColours(style, ColoursOf(theme));
-  ImGui::GetStyle() = style;
-}
-
-namespace {
 
 /// Keys that edit text or navigate panels.
 constexpr std::pair<int, int> kPanelKeys[] = {{ImGuiKey_Tab, GLFW_KEY_TAB},
@@ -177,7 +139,62 @@ void FeedMouse(ImGuiIO& io, const WindowEvents& events) {
   io.MouseWheel = static_cast<float>(events.wheel);
 }
 
+constexpr GLuint kPlace = 0, kAtlasPlace = 1, kColour = 2;
+constexpr int kAtlasUnit = 0;
+
+const void* Offset(std::size_t bytes) { return reinterpret_cast<const void*>(bytes); }
+
+// Uploads data that are drawn once.
+template <typename Element>
+void Upload(GLenum target, const GlBuffer& buffer, const ImVector<Element>& elements) {
+  glBindBuffer(target, buffer.id());
+  glBufferData(target, static_cast<GLsizeiptr>(elements.size_in_bytes()), elements.Data,
+               GL_STREAM_DRAW);
+}
+
+// Sets the scissor to a rectangle given from the upper left corner; OpenGL counts from the lower
+// left one. Returns false if the rectangle is outside the picture.
+bool Clip(const ImVec4& rectangle, const ImVec2& size) {
+  const int left = std::max(static_cast<int>(rectangle.x), 0);
+  const int top = std::max(static_cast<int>(rectangle.y), 0);
+  const int right = std::min(static_cast<int>(rectangle.z), static_cast<int>(size.x));
+  const int bottom = std::min(static_cast<int>(rectangle.w), static_cast<int>(size.y));
+  if (right <= left || bottom <= top) return false;
+  glScissor(left, static_cast<int>(size.y) - bottom, right - left, bottom - top);
+  return true;
+}
+
 }  // namespace
+
+std::optional<std::filesystem::path> InstalledFont() {
+  for (const char* folder : {"truetype/dejavu", "dejavu-sans-fonts", "TTF", "dejavu"}) {
+    const std::filesystem::path file =
+        std::filesystem::path("/usr/share/fonts") / folder / "DejaVuSans.ttf";
+    if (std::filesystem::is_regular_file(file)) return file;
+  }
+  return std::nullopt;
+}
+
+void LoadFont(ImFontAtlas& atlas, double scale, const std::optional<std::filesystem::path>& font) {
+  atlas.Clear();
+  if (font) {
+    AddFile(atlas, scale, *font);
+  } else {
+    AddBuiltIn(atlas, scale);
+  }
+  atlas.Build();
+}
+
+void ApplyStyle(HudTheme theme, double scale) {
+  ImGuiStyle style;
+  style.WindowRounding = 4.0F;
+  style.FrameRounding = 3.0F;
+  style.GrabRounding = 3.0F;
+  style.FramePadding = {6.0F, 3.0F};
+  style.ScaleAllSizes(static_cast<float>(scale));
+  ApplyColours(style, ColoursOf(theme));
+  ImGui::GetStyle() = style;
+}
 
 void PanelKeys::Take(const WindowEvents& events) {
   pressed_.clear();
@@ -209,35 +226,6 @@ void FeedInput(ImGuiIO& io, const InputFrame& input, const PanelKeys& keys) {
   FeedKey(io, ImGuiKey_Enter, either(GLFW_KEY_ENTER, GLFW_KEY_KP_ENTER));
   io.AddInputCharactersUTF8(input.events.text.c_str());
 }
-
-namespace {
-
-constexpr GLuint kPlace = 0, kAtlasPlace = 1, kColour = 2;
-constexpr int kAtlasUnit = 0;
-
-const void* Offset(std::size_t bytes) { return reinterpret_cast<const void*>(bytes); }
-
-// Uploads data that are drawn once.
-template <typename Element>
-void Upload(GLenum target, const GlBuffer& buffer, const ImVector<Element>& elements) {
-  glBindBuffer(target, buffer.id());
-  glBufferData(target, static_cast<GLsizeiptr>(elements.size_in_bytes()), elements.Data,
-               GL_STREAM_DRAW);
-}
-
-// Sets the scissor to a rectangle given from the upper left corner; OpenGL counts from the lower
-// left one. Returns false if the rectangle is outside the picture.
-bool Clip(const ImVec4& rectangle, const ImVec2& size) {
-  const int left = std::max(static_cast<int>(rectangle.x), 0);
-  const int top = std::max(static_cast<int>(rectangle.y), 0);
-  const int right = std::min(static_cast<int>(rectangle.z), static_cast<int>(size.x));
-  const int bottom = std::min(static_cast<int>(rectangle.w), static_cast<int>(size.y));
-  if (right <= left || bottom <= top) return false;
-  glScissor(left, static_cast<int>(size.y) - bottom, right - left, bottom - top);
-  return true;
-}
-
-}  // namespace
 
 DrawListPainter::DrawListPainter()
     : program_({ViewerPiece("viewer/shaders/hud.vert.glsl")},

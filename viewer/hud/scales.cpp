@@ -164,75 +164,6 @@ void DrawHeldHeading(const Canvas& canvas, const HeadingTape& tape, double headi
 double ShownSpeed(const HudFlight& flight) {
   return flight.air_speed_m_per_s.value_or(flight.ground_speed_m_per_s);
 }
-}  // namespace
-
-double MarkStep(double value, double least) {
-  constexpr double kMarksFromZero = 40.0;
-  const double wanted = std::max(std::abs(value) / kMarksFromZero, least);
-  const double power = std::pow(10.0, std::floor(std::log10(wanted) + 1e-9));
-  for (const double factor : {1.0, 2.0, 5.0}) {
-    if (factor * power >= wanted * (1.0 - 1e-9)) return factor * power;
-  }
-  return 10.0 * power;
-}
-
-void DrawHeadingTape(const Canvas& canvas, const HudFrame& frame, const HudModel& model) {
-  const HeadingTape tape(canvas, frame, model.flight.heading_rad);
-  canvas.Plate({tape.left(), tape.top()}, {tape.right(), tape.bottom()});
-  {
-    const Canvas::Clip inside(canvas, {tape.left(), tape.top()}, {tape.right(), tape.bottom()});
-    DrawHeadingMarks(canvas, tape);
-    DrawSunAndMoon(canvas, tape, model.sky);
-  }
-  if (model.autopilot.heading_rad) DrawHeldHeading(canvas, tape, *model.autopilot.heading_rad);
-  DrawBoxed(canvas, {frame.middle().x, tape.bottom() + canvas.Pixels(4.0)},
-            HeadingText(model.flight.heading_rad), HudAlign::kMiddle);
-}
-
-void DrawHeadingNumber(const Canvas& canvas, const HudFrame& frame, const HudModel& model) {
-  DrawBoxed(canvas, {frame.middle().x, frame.top + canvas.Pixels(3.0)},
-            HeadingText(model.flight.heading_rad), HudAlign::kMiddle);
-}
-
-void DrawSpeedTape(const Canvas& canvas, const HudFrame& frame, const HudModel& model) {
-  const Quantity speed = SpeedText(ShownSpeed(model.flight), model.units);
-  const double value = ShownSpeed(model.flight) * speed.per_si;
-  DrawScale(canvas, frame,
-            {-1.0, kSpeedAt * frame.width, value, MarkStep(value, 5.0), speed.unit, std::nullopt},
-            speed.number);
-}
-
-void DrawHeightTape(const Canvas& canvas, const HudFrame& frame, const HudModel& model) {
-  const Quantity height = HeightText(model.flight.height_m, model.units);
-  const double value = model.flight.height_m * height.per_si;
-  const auto held = model.autopilot.height_m
-                        ? std::optional(*model.autopilot.height_m * height.per_si)
-                        : std::nullopt;
-  const double x = kHeightAt * frame.width;
-  DrawScale(canvas, frame, {1.0, x, value, MarkStep(value, 10.0), height.unit, held},
-            height.number);
-  const double below = frame.middle().y + HalfHeight(canvas, frame) + canvas.Pixels(3.0);
-  const glm::dvec2 at{x + 0.5 * canvas.Pixels(kTapeWidth), below};
-  canvas.Text(at, HudAlign::kMiddle, Joined(ClimbText(model.flight.climb_m_per_s, model.units)),
-              canvas.colours().text);
-  canvas.Text(at + glm::dvec2(0.0, canvas.LineHeight()), HudAlign::kMiddle,
-              "ground " + Joined(HeightText(model.flight.above_ground_m, model.units)),
-              canvas.colours().quiet);
-}
-
-void DrawSpeedAndHeightNumbers(const Canvas& canvas, const HudFrame& frame, const HudModel& model) {
-  const double edge = canvas.Pixels(4.0);
-  const double y = frame.middle().y - canvas.LineHeight();
-  canvas.Text({edge, y}, HudAlign::kLeft, Joined(SpeedText(ShownSpeed(model.flight), model.units)),
-              canvas.colours().text);
-  const double right = frame.width - edge;
-  canvas.Text({right, y}, HudAlign::kRight, Joined(HeightText(model.flight.height_m, model.units)),
-              canvas.colours().text);
-  canvas.Text({right, y + canvas.LineHeight()}, HudAlign::kRight,
-              Joined(ClimbText(model.flight.climb_m_per_s, model.units)), canvas.colours().quiet);
-}
-
-namespace {
 
 Camera CameraOf(const HudFlight& flight) {
   Camera camera;
@@ -242,23 +173,6 @@ Camera CameraOf(const HudFlight& flight) {
   camera.fov_rad = flight.fov_rad;
   return camera;
 }
-
-}  // namespace
-
-HorizonView::HorizonView(const HudFlight& flight, int width, int height)
-    : rays_(CameraOf(flight), width, height), middle_(0.5 * width, 0.5 * height) {}
-
-std::optional<glm::dvec2> HorizonView::PixelOf(const Course& direction) const {
-  const auto place =
-      rays_.PlaceOf(DirectionFromAngles(direction.climb_rad, direction.heading_rad).xyz);
-  if (!place) return std::nullopt;
-  constexpr double kFurthest = 8.0;  // half widths
-  const glm::dvec2 pixel((*place)[0], (*place)[1]);
-  if (glm::distance(pixel, middle_) > kFurthest * middle_.x) return std::nullopt;
-  return pixel;
-}
-
-namespace {
 
 // Lengths in units:
 constexpr double kGap = 38.0;      // from the middle of a rung to its start
@@ -379,6 +293,85 @@ void DrawWaterline(const Canvas& canvas, const HudFrame& frame) {
 }
 
 }  // namespace
+
+double MarkStep(double value, double least) {
+  constexpr double kMarksFromZero = 40.0;
+  const double wanted = std::max(std::abs(value) / kMarksFromZero, least);
+  const double power = std::pow(10.0, std::floor(std::log10(wanted) + 1e-9));
+  for (const double factor : {1.0, 2.0, 5.0}) {
+    if (factor * power >= wanted * (1.0 - 1e-9)) return factor * power;
+  }
+  return 10.0 * power;
+}
+
+void DrawHeadingTape(const Canvas& canvas, const HudFrame& frame, const HudModel& model) {
+  const HeadingTape tape(canvas, frame, model.flight.heading_rad);
+  canvas.Plate({tape.left(), tape.top()}, {tape.right(), tape.bottom()});
+  {
+    const Canvas::Clip inside(canvas, {tape.left(), tape.top()}, {tape.right(), tape.bottom()});
+    DrawHeadingMarks(canvas, tape);
+    DrawSunAndMoon(canvas, tape, model.sky);
+  }
+  if (model.autopilot.heading_rad) DrawHeldHeading(canvas, tape, *model.autopilot.heading_rad);
+  DrawBoxed(canvas, {frame.middle().x, tape.bottom() + canvas.Pixels(4.0)},
+            HeadingText(model.flight.heading_rad), HudAlign::kMiddle);
+}
+
+void DrawHeadingNumber(const Canvas& canvas, const HudFrame& frame, const HudModel& model) {
+  DrawBoxed(canvas, {frame.middle().x, frame.top + canvas.Pixels(3.0)},
+            HeadingText(model.flight.heading_rad), HudAlign::kMiddle);
+}
+
+void DrawSpeedTape(const Canvas& canvas, const HudFrame& frame, const HudModel& model) {
+  const Quantity speed = SpeedText(ShownSpeed(model.flight), model.units);
+  const double value = ShownSpeed(model.flight) * speed.per_si;
+  DrawScale(canvas, frame,
+            {-1.0, kSpeedAt * frame.width, value, MarkStep(value, 5.0), speed.unit, std::nullopt},
+            speed.number);
+}
+
+void DrawHeightTape(const Canvas& canvas, const HudFrame& frame, const HudModel& model) {
+  const Quantity height = HeightText(model.flight.height_m, model.units);
+  const double value = model.flight.height_m * height.per_si;
+  const auto held = model.autopilot.height_m
+                        ? std::optional(*model.autopilot.height_m * height.per_si)
+                        : std::nullopt;
+  const double x = kHeightAt * frame.width;
+  DrawScale(canvas, frame, {1.0, x, value, MarkStep(value, 10.0), height.unit, held},
+            height.number);
+  const double below = frame.middle().y + HalfHeight(canvas, frame) + canvas.Pixels(3.0);
+  const glm::dvec2 at{x + 0.5 * canvas.Pixels(kTapeWidth), below};
+  canvas.Text(at, HudAlign::kMiddle, Joined(ClimbText(model.flight.climb_m_per_s, model.units)),
+              canvas.colours().text);
+  canvas.Text(at + glm::dvec2(0.0, canvas.LineHeight()), HudAlign::kMiddle,
+              "ground " + Joined(HeightText(model.flight.above_ground_m, model.units)),
+              canvas.colours().quiet);
+}
+
+void DrawSpeedAndHeightNumbers(const Canvas& canvas, const HudFrame& frame, const HudModel& model) {
+  const double edge = canvas.Pixels(4.0);
+  const double y = frame.middle().y - canvas.LineHeight();
+  canvas.Text({edge, y}, HudAlign::kLeft, Joined(SpeedText(ShownSpeed(model.flight), model.units)),
+              canvas.colours().text);
+  const double right = frame.width - edge;
+  canvas.Text({right, y}, HudAlign::kRight, Joined(HeightText(model.flight.height_m, model.units)),
+              canvas.colours().text);
+  canvas.Text({right, y + canvas.LineHeight()}, HudAlign::kRight,
+              Joined(ClimbText(model.flight.climb_m_per_s, model.units)), canvas.colours().quiet);
+}
+
+HorizonView::HorizonView(const HudFlight& flight, int width, int height)
+    : rays_(CameraOf(flight), width, height), middle_(0.5 * width, 0.5 * height) {}
+
+std::optional<glm::dvec2> HorizonView::PixelOf(const Course& direction) const {
+  const auto place =
+      rays_.PlaceOf(DirectionFromAngles(direction.climb_rad, direction.heading_rad).xyz);
+  if (!place) return std::nullopt;
+  constexpr double kFurthest = 8.0;  // half widths
+  const glm::dvec2 pixel((*place)[0], (*place)[1]);
+  if (glm::distance(pixel, middle_) > kFurthest * middle_.x) return std::nullopt;
+  return pixel;
+}
 
 double RungStep_deg(double units_per_degree) {
   constexpr double kApart = 80.0;

@@ -51,6 +51,19 @@ void DescribeLight(const GlBuffer& buffer, GLuint first_location) {
   Attribute(first_location + 4, 2, GL_HALF_FLOAT, kStride, offsetof(ChunkLight, disk_x));
 }
 
+std::vector<ChunkLight> LightOf(const LandChunk& chunk, const ChunkOrder& order) {
+  if (chunk.triangles.empty()) return {};
+  return LightOfChunk(chunk, order.anchor.frame, order.light);
+}
+
+LitChunk Made(const ChunkKey& key, const ChunkOrder& order) {
+  LandChunk chunk = MakeChunk(*order.heights, key, order.top, order.anchor);
+  std::vector<ChunkLight> light = LightOf(chunk, order);
+  std::vector<ChunkVertex> vertices = std::exchange(chunk.vertices, {});  // needed on the GPU only
+  return {std::make_shared<const LandChunk>(std::move(chunk)), std::move(vertices),
+          std::move(light)};
+}
+
 }  // namespace
 
 ChunkBuffers::ChunkBuffers(int slots) {
@@ -137,23 +150,6 @@ std::size_t ChunkBuffers::bytes() const {
   return static_cast<std::size_t>(kWholeBytes +
                                   slots_ * (kVertexBytes + 2 * kLightBytes + kTriangleBytes));
 }
-
-namespace {
-
-std::vector<ChunkLight> LightOf(const LandChunk& chunk, const ChunkOrder& order) {
-  if (chunk.triangles.empty()) return {};
-  return LightOfChunk(chunk, order.anchor.frame, order.light);
-}
-
-LitChunk Made(const ChunkKey& key, const ChunkOrder& order) {
-  LandChunk chunk = MakeChunk(*order.heights, key, order.top, order.anchor);
-  std::vector<ChunkLight> light = LightOf(chunk, order);
-  std::vector<ChunkVertex> vertices = std::exchange(chunk.vertices, {});  // needed on the GPU only
-  return {std::make_shared<const LandChunk>(std::move(chunk)), std::move(vertices),
-          std::move(light)};
-}
-
-}  // namespace
 
 MadeChunks MakeChunks(const ChunkOrder& order) {
   using Clock = std::chrono::steady_clock;

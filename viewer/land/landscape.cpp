@@ -19,6 +19,8 @@ namespace {
 
 constexpr double kReachTime_s = 0.7;  // time for a new level to reach its full range
 
+constexpr double kAnchorReach_m = 100e3;
+
 }  // namespace
 
 Landscape::Landscape(const LandSource& source, const LandSize& size, const Ellipsoid& ellipsoid)
@@ -295,12 +297,6 @@ LandFigures Landscape::Figures() const {
   }
   return figures;
 }
-
-namespace {
-
-constexpr double kAnchorReach_m = 100e3;
-
-}  // namespace
 
 LandAnchor Landscape::AnchorAt(const GeodeticPosition& eye) const {
   const LandLattice& lattice = tiles_->lattice();

@@ -65,42 +65,6 @@ Extent ExtentOf(const Terrain& terrain, const LocalFrame& frame, const GeodeticP
   return extent;
 }
 
-}  // namespace
-
-std::optional<ElevationGrid> GridOverMesh(const Terrain& terrain, const LocalFrame& frame,
-                                          const GeodeticPosition& place, double half_width_m,
-                                          int most_samples) {
-  if (most_samples < 2 || terrain.mesh().triangles.empty()) return std::nullopt;
-  const SampleSize radian = MetresOfRadian(place.latitude_rad);
-  const Extent all = ExtentOf(terrain, frame, place, radian);
-  const Span east = all.east.Nearest(half_width_m), north = all.north.Nearest(half_width_m);
-  constexpr double kFinest_m = 0.01;
-  const double step_m =
-      std::max(std::max(east.width_m(), north.width_m()) / (most_samples - 1), kFinest_m);
-  const auto samples = [&](const Span& span) {
-    const double steps = std::ceil(span.width_m() / step_m - 1e-6);
-    return std::clamp(static_cast<int>(steps) + 1, 2, most_samples);
-  };
-  ElevationGrid grid;
-  grid.columns = samples(east);
-  grid.rows = samples(north);
-  grid.step_lon_rad = step_m / radian.column_m;
-  grid.step_lat_rad = step_m / radian.row_m;
-  grid.west_rad = place.longitude_rad + east.low_m / radian.column_m;
-  grid.north_rad = place.latitude_rad + north.high_m / radian.row_m;
-  for (int row = 0; row < grid.rows; ++row) {
-    for (int column = 0; column < grid.columns; ++column) {
-      const auto ground = GroundHeightsAt(
-          terrain, frame, {grid.LatitudeOfRow(row), grid.LongitudeOfColumn(column), 0.0});
-      grid.height_m.push_back(ground ? static_cast<float>(ground->highest_m)
-                                     : std::numeric_limits<float>::quiet_NaN());
-    }
-  }
-  return grid;
-}
-
-namespace {
-
 template <typename Row>
 void Upload(GLenum target, const GlBuffer& buffer, const std::vector<Row>& rows) {
   glBindBuffer(target, buffer.id());
@@ -137,6 +101,38 @@ std::vector<ChunkLight> LightOfMesh(const TriangleMesh& mesh, const LocalFrame& 
 }
 
 }  // namespace
+
+std::optional<ElevationGrid> GridOverMesh(const Terrain& terrain, const LocalFrame& frame,
+                                          const GeodeticPosition& place, double half_width_m,
+                                          int most_samples) {
+  if (most_samples < 2 || terrain.mesh().triangles.empty()) return std::nullopt;
+  const SampleSize radian = MetresOfRadian(place.latitude_rad);
+  const Extent all = ExtentOf(terrain, frame, place, radian);
+  const Span east = all.east.Nearest(half_width_m), north = all.north.Nearest(half_width_m);
+  constexpr double kFinest_m = 0.01;
+  const double step_m =
+      std::max(std::max(east.width_m(), north.width_m()) / (most_samples - 1), kFinest_m);
+  const auto samples = [&](const Span& span) {
+    const double steps = std::ceil(span.width_m() / step_m - 1e-6);
+    return std::clamp(static_cast<int>(steps) + 1, 2, most_samples);
+  };
+  ElevationGrid grid;
+  grid.columns = samples(east);
+  grid.rows = samples(north);
+  grid.step_lon_rad = step_m / radian.column_m;
+  grid.step_lat_rad = step_m / radian.row_m;
+  grid.west_rad = place.longitude_rad + east.low_m / radian.column_m;
+  grid.north_rad = place.latitude_rad + north.high_m / radian.row_m;
+  for (int row = 0; row < grid.rows; ++row) {
+    for (int column = 0; column < grid.columns; ++column) {
+      const auto ground = GroundHeightsAt(
+          terrain, frame, {grid.LatitudeOfRow(row), grid.LongitudeOfColumn(column), 0.0});
+      grid.height_m.push_back(ground ? static_cast<float>(ground->highest_m)
+                                     : std::numeric_limits<float>::quiet_NaN());
+    }
+  }
+  return grid;
+}
 
 MeshLand::MeshLand(const LandSource::Mesh& source, const Ellipsoid& ellipsoid)
     : frame_(ellipsoid, source.place),
