@@ -13,6 +13,8 @@
 #include "lut/cli/output_file.h"
 #include "lut/evaluate/eval.h"
 #include "lut/report/report.h"
+#include "lut/report/report_pages.h"
+#include "lut/report/report_scattering.h"
 #include "lut/table_io/exchange_tables.h"
 #include "lut/table_io/table_folder.h"
 #include "lut/table_search/table_search.h"

@@ -17,6 +17,7 @@
 #include "lut/cli/program.h"
 #include "lut/cli/terminal.h"
 #include "lut/image/look.h"
+#include "lut/report/report_pages.h"
 #include "renderer/picture/render.h"
 #include "renderer/report/report.h"
 #include "renderer/scene/places.h"

@@ -15,7 +15,9 @@
 #include "atmosphere/medium/medium_presets.h"
 #include "atmosphere/refraction/refracted_view.h"
 #include "lut/cli/program.h"
+#include "lut/report/report_panoramas.h"
 #include "lut/report/report_rays.h"
+#include "lut/report/report_scattering.h"
 #include "lut/version.h"
 
 namespace alpenglow::lut {

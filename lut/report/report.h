@@ -16,7 +16,6 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
-#include <filesystem>
 #include <functional>
 #include <optional>
 #include <string>
@@ -25,7 +24,6 @@
 #include "atmosphere/medium/medium.h"
 #include "lut/cli/messages.h"
 #include "lut/layer.h"
-#include "lut/report/svg_plot.h"
 
 namespace alpenglow::lut {
 
@@ -131,10 +129,6 @@ struct ReportOptions {
 [[nodiscard]] std::vector<Medium> MediumsOfReport(const std::optional<std::string>& atmosphere_file,
                                                   bool quick);
 
-/// Returns the dust of Mars, haze of optical depth 1 and molecules of optical depth 5. A report
-/// that is neither quick nor about an atmosphere file includes them.
-[[nodiscard]] std::vector<Medium> HardMediums();
-
 /// Description of the machine and of the program.
 struct ReportMaker {
   std::string machine, system, program, compiler, date;
@@ -163,24 +157,5 @@ using MeasureTopic = std::function<ReportTopic()>;
 /// Measures all topics, which takes some minutes. Stops between methods if the program is
 /// interrupted.
 [[nodiscard]] Report MeasureReport(const ReportOptions& options);
-
-/// Returns the plot of a topic's errors against cost, one panel per regime.
-[[nodiscard]] Plot PlotOfTopic(const ReportTopic& topic);
-
-/// Return the header line, and the rows of a topic as CSV, one per method and regime, without the
-/// header line.
-[[nodiscard]] std::string CsvHeader();
-[[nodiscard]] std::string CsvOfTopic(const ReportTopic& topic, const ReportMaker& maker);
-
-/// Returns the most important rows as tables in Markdown.
-[[nodiscard]] std::string SummaryOf(const Report& report);
-
-/// Returns the whole report as one self-contained page.
-[[nodiscard]] std::string PageOf(const Report& report);
-
-/// Writes into the folder, which is created if it is missing: index.html, summary.md, a CSV file
-/// per topic, an SVG file per plot. Every file is written atomically, index.html last. Throws
-/// OutputError.
-void WriteReport(const Report& report, const std::filesystem::path& folder);
 
 }  // namespace alpenglow::lut

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// This file writes the report as CSV, plots, Markdown and an HTML page.
+#include "lut/report/report_pages.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -12,7 +13,6 @@
 #include "atmosphere/base/parsing.h"
 #include "lut/cli/output_file.h"
 #include "lut/image/svg_elements.h"
-#include "lut/report/report.h"
 #include "lut_report/embedded_text.h"
 
 namespace alpenglow::lut {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// This file measures a topic of the report: the whole sphere around an observer under one sun.
+#include "lut/report/report_panoramas.h"
+
 #include <fmt/format.h>
 #include <oneapi/tbb/parallel_for.h>
 

@@ -90,15 +90,9 @@ class RayStudy : public ErrorStudy<ViewRay> {
   SingleScattering<float> air_;
 };
 
-/// Measure the topics, each for one medium.
+/// Measures the topic for one medium.
 [[nodiscard]] ReportTopic MeasureTransmittance(const Medium& medium, const ReportEffort& effort);
-[[nodiscard]] ReportTopic MeasureSingleScattering(const Medium& medium, const ReportEffort& effort);
-[[nodiscard]] ReportTopic MeasureAllOrders(const Medium& medium, const ReportEffort& effort);
-/// Measures light of all orders in difficult media, with fewer rays and methods, because paths are
-/// long there.
-[[nodiscard]] ReportTopic MeasureHardAir(const Medium& medium, const ReportEffort& effort);
 /// Measures refraction for one medium, because other media refract alike.
 [[nodiscard]] ReportTopic MeasureRefraction(const Medium& medium, const ReportEffort& effort);
-[[nodiscard]] ReportTopic MeasurePanoramas(const Medium& medium, const ReportEffort& effort);
 
 }  // namespace alpenglow::lut

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// This file measures two topics of the report: light scattered once along a view, and light of all
-// orders along a view.
+#include "lut/report/report_scattering.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>

@@ -16,6 +16,9 @@
 #include "lut/report/report_rays.h"
 #include "lut/tables/transmittance_table.h"
 #include "renderer/illumination/aerial_perspective.h"
+#include "renderer/report/report_lamps.h"
+#include "renderer/report/report_pictures.h"
+#include "renderer/report/report_shafts.h"
 
 namespace alpenglow::renderer {
 namespace {

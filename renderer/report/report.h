@@ -20,20 +20,6 @@ namespace alpenglow::renderer {
 [[nodiscard]] ReportTopic MeasureTransmittanceToTerrain(const Medium& medium,
                                                         const ReportEffort& effort);
 
-/// Measures single scattering in air that terrain shades in part.
-[[nodiscard]] ReportTopic MeasureShafts(const ReportEffort& effort);
-
-/// Measures the airlight of one lamp, and of many.
-[[nodiscard]] ReportTopic MeasureAirlight(const ReportEffort& effort);
-[[nodiscard]] ReportTopic MeasureManyLamps(const ReportEffort& effort);
-
-/// Measures whole pictures.
-[[nodiscard]] ReportTopic MeasurePictures(const ReportEffort& effort);
-
-/// Returns a runway at night in height fog, seen from 38 m over its approach: `lamps` lamps in two
-/// rows along it, and the landing lights of an aeroplane when `with_beam`.
-[[nodiscard]] Scene RunwayScene(int lamps, bool with_beam);
-
 /// Measures all topics, in one or two minutes; options.mediums apply to the air in front of
 /// terrain. Stops between methods when the program is interrupted.
 [[nodiscard]] Report MeasurePictureReport(const ReportOptions& options);

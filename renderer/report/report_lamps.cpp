@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// This file measures two topics of the report: the airlight of one lamp, and of many lamps.
+#include "renderer/report/report_lamps.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -14,7 +15,7 @@
 
 #include "renderer/lamps/lamp_light.h"
 #include "renderer/report/reference_methods.h"
-#include "renderer/report/report.h"
+#include "renderer/report/report_pictures.h"
 
 namespace alpenglow::renderer {
 namespace {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// This file measures a topic of the report: whole pictures, by samples of a pixel and nodes of the
-// air.
+#include "renderer/report/report_pictures.h"
+
 #include <fmt/format.h>
 
 #include <unistd.h>
@@ -18,7 +18,6 @@
 #include "lut/cli/program.h"
 #include "renderer/effects/effect_choice.h"
 #include "renderer/picture/render.h"
-#include "renderer/report/report.h"
 #include "renderer/scene/scene_options.h"
 #include "renderer/series/frame_times.h"
 

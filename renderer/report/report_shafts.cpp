@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: MIT
-// This file measures a topic of the report: single scattering in air that terrain shades in part.
+#include "renderer/report/report_shafts.h"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -12,7 +13,6 @@
 
 #include "renderer/illumination/aerial_perspective.h"
 #include "renderer/report/reference_methods.h"
-#include "renderer/report/report.h"
 #include "renderer/surface/scene_ground.h"
 #include "renderer/visibility/shadow_heights.h"
 #include "renderer/visibility/sunlit_path.h"

@@ -15,6 +15,7 @@
 #include "lut/image/svg_elements.h"
 #include "lut/multiple_scattering/multiple_scattering.h"
 #include "lut/report/report_baselines.h"
+#include "lut/report/report_pages.h"
 #include "lut/report/report_rays.h"
 #include "tests/fixtures/report_files.h"
 #include "tests/fixtures/report_rows.h"

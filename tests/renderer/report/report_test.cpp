@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "lut/image/svg_elements.h"
+#include "lut/report/report_pages.h"
 #include "tests/fixtures/bare_scene.h"
 #include "tests/fixtures/report_files.h"
 #include "tests/fixtures/report_rows.h"
