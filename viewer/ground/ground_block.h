@@ -5,7 +5,7 @@
 // terrain, resampled to a texture over a rectangle of the frame's plane.
 //
 // Provides SkyByPixel, the renderer's tables for the light on slopes between mountains
-// (OccludedSkyIrradiance, HorizonMap, TerrainInterreflection) on the GPU. shaders/sky_by_pixel.glsl
+// (OccludedSkyIrradiance, HorizonMap, TerrainInterreflection) on the GPU. shaders/sky_by_pixel.tables.glsl
 // evaluates them for every pixel. Light that is interpolated between vertices has errors of up to
 // 10 % at dusk, where a horizon hides the glow (tests/bench/README.md).
 //
@@ -136,7 +136,7 @@ class GroundTextures {
   std::array<GlTexture, kLightSources> gloss_mirrors_;
 };
 
-/// Mirrors the uniform block `SkyByPixel` of sky_by_pixel.glsl.
+/// Mirrors the uniform block `SkyByPixel` of sky_by_pixel.tables.glsl.
 struct SkyByPixelBlock {
   glm::vec4 horizon_u, horizon_v, slope_u, slope_v, sky_moment, sky_place, slope_unit;
   glm::vec4 other_sky_moment, other_sky_place, other_slope_unit;

@@ -4,7 +4,7 @@
 //
 // ExposureMeter reads back small copies of pictures without waiting for them. SpotMeter reads the
 // luminance under the pointer. DitherTexture holds the tile of dither noise for
-// shaders/display.glsl.
+// shaders/display.dither.glsl.
 //
 // ToneTable tabulates AgX in one of its looks as a 3D texture. One fetch replaces nine powers and
 // logarithms per pixel and the hue correction. It holds sRGB codes as a function of the exposed
@@ -15,7 +15,7 @@
 // ToneMapPass applies all steps to a linear picture, and DisplayPass shows it on a screen. If the
 // picture is smaller than the screen, it is tone-mapped at its own resolution and then upscaled by
 // Upscaler, which interpolates smooth areas and uses the edges of land at screen resolution
-// (shaders/display.glsl). The cost of lighting is that of the small picture, and edges stay sharp.
+// (shaders/display.upscale.frag.glsl). The cost of lighting is that of the small picture, and edges stay sharp.
 #pragma once
 
 #include <array>
@@ -181,7 +181,7 @@ class Upscaler {
   explicit Upscaler(Shows shows);
 
   /// Fills the framebuffer (0: the window), which has the size of the outline.
-  /// @param small      of any size, with the inverse depth of land (shaders/gbuffer.glsl) in
+  /// @param small      of any size, with the inverse depth of land (shaders/gbuffer.inverse_depth.glsl) in
   ///   its fourth component.
   /// @param half_view  tangents of half the horizontal and half the vertical field of view.
   void Upscale(const RenderTarget& small, const DepthPrepass& outline, const glm::dvec2& half_view,

@@ -5,7 +5,7 @@
 // visible. RefractedDisk describes the disk of the sun or moon near the horizon: refraction
 // flattens it, dispersion separates its colours, and extinction dims its lower limb. It has nodes
 // of elevation across the disk, computed with the renderer's refracted rays; shaders interpolate
-// between them (shaders/view.glsl).
+// between them (shaders/view.refracted_disks.glsl).
 #pragma once
 
 #include <array>

@@ -73,7 +73,7 @@ class SkyPainter {
   void Show(const Image& image);
 
   /// The linear picture. Its fourth component is the inverse depth of land
-  /// (shaders/gbuffer.glsl) if one ray per pixel was drawn.
+  /// (shaders/gbuffer.inverse_depth.glsl) if one ray per pixel was drawn.
   [[nodiscard]] const RenderTarget& picture() const { return *picture_; }
   /// Draws the depth of the land in that picture.
   void PaintOutline(const DepthPrepass& outline);

@@ -18,28 +18,10 @@
 
 namespace alpenglow::viewer {
 
-namespace {
-
-// Returns a part of a text. Empty lines take the place of the text before it, so that messages of
-// the driver have the lines of the file.
-std::string PartOf(std::string_view text, const std::string& name) {
-  const std::size_t begin = text.find("//// " + name + "\n");
-  if (begin == std::string_view::npos) throw InternalError("no part " + name);
-  const auto lines =
-      std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(begin), '\n');
-  const std::string_view part = text.substr(begin, text.find("\n////", begin) - begin);
-  return std::string(static_cast<std::size_t>(lines), '\n') + std::string(part) + "\n";
-}
-
-}  // namespace
-
 ShaderPiece ViewerPiece(const std::string& name) {
   if (name.starts_with("lut/")) return {name, std::string(lut::EmbeddedText(name))};
   if (name.starts_with("renderer/")) return {name, std::string(renderer::EmbeddedText(name))};
-  const std::string file = name.substr(0, name.find('.')) + ".glsl";
-  const std::string_view text = viewer::EmbeddedText(file);
-  if (name == file) return {name, std::string(text)};
-  return {file, PartOf(text, name.substr(name.rfind('/') + 1))};
+  return {name, std::string(viewer::EmbeddedText(name))};
 }
 
 std::vector<ShaderPiece> WithViewerPieces(std::vector<ShaderPiece> texts,

@@ -24,9 +24,8 @@
 
 namespace alpenglow::viewer {
 
-/// Returns a text that the library of its layer embeds, or a part of a text of the viewer:
-/// "viewer/shaders/land.vert.glsl" is the part of viewer/shaders/land.glsl that begins with the
-/// line "//// land.vert.glsl" and ends before the next part. Throws InternalError if there is none.
+/// Returns a text that the library of its layer embeds, by its path in the tree:
+/// "viewer/shaders/land.vert.glsl". Throws InternalError if there is none.
 [[nodiscard]] ShaderPiece ViewerPiece(const std::string& name);
 
 /// Returns the texts followed by those of these names.

@@ -1,7 +1,4 @@
 // SPDX-License-Identifier: MIT
-// The linear picture of land, sky and disks.
-
-//// picture.frag.glsl
 // The linear picture [cd/m^2, linear sRGB] lit by the lights of the sky, and the inverse depth of
 // land (gbuffer.inverse_depth.glsl). The passes are separated by the depth test against land,
 // because software drivers evaluate both sides of a branch. Defined before this text:
@@ -10,7 +7,7 @@
 //   TWO_LIGHTS    defined if there is a second light, which casts no shadows (frame_light.h)
 //   HAS_NIGHT     light of the night sky on land, air and sky
 //   HAS_SHADE, HAS_LAMPS, HAS_FOG
-//   SKY_BY_PIXEL  irradiance by the sky on land is computed here (sky_by_pixel.glsl), not by vertex
+//   SKY_BY_PIXEL  irradiance by the sky on land is computed here (sky_by_pixel.irradiance.glsl), not by vertex
 in vec2 screen;
 out vec4 picture;
 
@@ -307,31 +304,3 @@ void main() {
   picture = vec4(LinearSrgb(sun_irradiance * radiance), 0.0);
 }
 #endif
-
-//// picture.small_disk.frag.glsl
-// The light of a disk that is too small for the rays of a picture, from a picture of the disk alone
-// (small_disk_painter.h). Each texel is a point whose light falls on the pixels around it: its weights are
-// triangles of whole widths in pixels, so that they sum to 1 wherever the point is.
-in vec2 screen;
-out vec4 picture;
-
-uniform sampler2D disk_light;
-uniform vec4 disk_place;  // place of the lower left texel, and half widths of the triangles [pixels]
-uniform vec4 disk_steps;  // from texel to texel to the right, and upwards [pixels]
-uniform float texel_per_pixel;  // solid angle of a texel, over that of a pixel in the view's middle
-
-void main() {
-  ivec2 size = textureSize(disk_light, 0);
-  vec3 light = vec3(0.0);
-  for (int row = 0; row < size.y; ++row) {
-    for (int column = 0; column < size.x; ++column) {
-      vec2 place = disk_place.xy + float(column) * disk_steps.xy + float(row) * disk_steps.zw;
-      vec2 weight =
-          max(1.0 - abs(gl_FragCoord.xy - place) / disk_place.zw, 0.0) / disk_place.zw;
-      if (weight.x * weight.y > 0.0)
-        light += weight.x * weight.y * texelFetch(disk_light, ivec2(column, row), 0).rgb;
-    }
-  }
-  float along = dot(ViewDirection(screen), view_forward.xyz);
-  picture = vec4(texel_per_pixel / (along * along * along) * light, 0.0);
-}

@@ -1,7 +1,4 @@
 // SPDX-License-Identifier: MIT
-// Light in the fog of a scene.
-
-//// fog.light.glsl
 // Sunlight and skylight scattered by fog, from the map of fog.h, and the transmittance of fog:
 // FogBlock of fog.h. Frame: east, north, up at the eye. Lengths are in kilometres; light is per
 // unit solar irradiance. Fog is grey.
@@ -231,35 +228,3 @@ vec4 FogOnSurface(float h, float cos_up) {
   vec4 upright = TEXEL_OF_LIGHT(fog_surface_map, other_fog_surface_map, vec2(x, 0.75));
   return max(level + (1.0 - cos_up) * upright, vec4(0.0));
 }
-
-//// fog.none.glsl
-// Replaces fog.light.glsl in scenes without fog.
-#define FOG_STRETCHES 1
-
-const float kOutOfFog_km = 1e3;
-
-struct FogAlong {
-  vec4 transmittance;
-  vec4 radiance;
-};
-
-FogAlong FogTo(vec3 direction, float distance_km) { return FogAlong(vec4(1.0), vec4(0.0)); }
-
-vec4 FogSunTo(vec3 direction, float distance_km) { return vec4(0.0); }
-
-float FogTransmittance(vec3 direction, float distance_km) { return 1.0; }
-
-struct FogStretches {
-  vec4 distance_km;
-  vec4 weight;
-};
-
-FogStretches FogStretchesTo(vec3 direction, float distance_km) {
-  return FogStretches(vec4(distance_km), vec4(1.0, 0.0, 0.0, 0.0));
-}
-
-float FogSunLeft(float h, float mu_s) { return 1.0; }
-
-float FogSkyLeft(float h) { return 1.0; }
-
-vec4 FogOnSurface(float h, float cos_up) { return vec4(0.0); }

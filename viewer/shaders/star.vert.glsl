@@ -1,7 +1,4 @@
 // SPDX-License-Identifier: MIT
-// A star.
-
-//// star.vert.glsl
 // The square of pixels that a star covers, unless land hides its centre: StarPoint of
 // star_painter.h.
 in vec4 star_corner;
@@ -36,20 +33,4 @@ void main() {
   vec2 at = corner + 5.0 * vec2(gl_VertexID % 2, gl_VertexID / 2);
   vec2 screen = 2.0 * at / picture_size - 1.0;
   gl_Position = IsHidden() ? vec4(2.0, 2.0, 2.0, 1.0) : vec4(screen, -1.0, 1.0);  // depth 0
-}
-
-//// star.frag.glsl
-// The light of a star in a pixel, which is added to the picture.
-flat in vec3 light;
-flat in vec4 across;
-flat in vec4 up;
-flat in vec4 last;
-flat in vec2 corner;
-out vec4 picture;
-
-void main() {
-  ivec2 at = ivec2(floor(gl_FragCoord.xy - corner));
-  float columns[5] = float[5](across.x, across.y, across.z, across.w, last.x);
-  float rows[5] = float[5](up.x, up.y, up.z, up.w, last.y);
-  picture = vec4(columns[clamp(at.x, 0, 4)] * rows[clamp(at.y, 0, 4)] * light, 0.0);
 }

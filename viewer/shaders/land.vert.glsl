@@ -1,29 +1,4 @@
 // SPDX-License-Identifier: MIT
-// The passes of land: vertices, the visible land, and its depth alone.
-
-//// land.block.glsl
-// The eye relative to the vertices of land, which are in metres in the frame of an anchor. The
-// eye's position in that frame is split into two floats per coordinate, so that differences near
-// the eye are exact to a micrometre.
-layout(std140) uniform Land {
-  vec4 eye_high;  // position of the eye in the anchor's frame [m]
-  vec4 eye_low;   // remainder that a float cannot hold
-  vec4 east;      // axes of the eye's frame in the anchor's
-  vec4 north;
-  vec4 up;
-  vec4 eye_sample;  // column and row of the eye from the anchor's; radians per column and row
-  vec4 eye_above;   // height over all nearby ground [m]; weight of the new light; 1: reversed
-                    // depth; weight of horizon_sines in the shadow edges
-  vec4 pixel;       // width and height of a pixel, in a picture from (-1, -1) to (1, 1)
-  vec4 horizon_u;   // from (x, y, z, 1) in the anchor's frame to coordinates of horizon_sines
-  vec4 horizon_v;
-  vec4 risen;       // rise of the disk since the old and new shadow edges [its radii]
-  vec4 globe;       // sine and cosine of the eye's latitude; radius [m]; columns of a whole turn, 0
-                    // if the land does not close around the earth
-  vec4 turning[32];  // by level: start of the morph range [m], inverse of its length [1/m]
-};
-
-//// land.vert.glsl
 // Vertices of land relative to the eye, morphed between their own level of detail and the next
 // coarser one (see renderer/terrain/level_ranges.h). Defined before this text, because software drivers
 // evaluate both sides of every branch (LandProgramKind of land_pass.h):
@@ -133,48 +108,4 @@ void main() {
   vec2 seen = vec2(dot(from_eye_seen, view_right.xyz) / width,
                    dot(from_eye_seen, view_up.xyz) / height);
   gl_Position = vec4(seen - PICTURE_SHIFT * along_view, z, along_view);
-}
-
-//// land.seen.glsl
-// Inputs and distance of a fragment of land.
-in float sunk;  // [km]; positive: hidden by the planet
-
-// Returns the distance. gl_FragCoord.w gives the exact distance along the view axis; the remaining
-// factor depends on the position of the pixel's ray in the view.
-float Distance() {
-  vec2 at = pixel.xy * gl_FragCoord.xy - 1.0 + PICTURE_SHIFT;
-  vec2 aside = at * vec2(length(view_right.xyz), length(view_up.xyz));
-  return sqrt(1.0 + dot(aside, aside)) / gl_FragCoord.w;
-}
-
-//// land.frag.glsl
-// Writes the visible land to a GBuffer. MOONLIT as in land.vert.glsl.
-in vec3 facing;
-in vec4 sky_light;
-in float disk_height;
-// Outputs of GBuffer of land_pass.h. The normal points to the visible side.
-layout(location = 0) out vec4 surface;
-layout(location = 1) out vec4 sky_irradiance;
-#if MOONLIT
-in vec4 moon_sky_light;
-layout(location = 2) out vec4 moon_sky_irradiance;
-#endif
-
-void main() {
-  if (sunk > 0.0) discard;
-  float d = Distance();
-  vec3 n = gl_FrontFacing ? facing : -facing;
-  surface = vec4(OctahedralFromVector(n), disk_height, d);
-  sky_irradiance = sky_light;
-#if MOONLIT
-  moon_sky_irradiance = moon_sky_light;
-#endif
-  WriteDepth(d);
-}
-
-//// land.depth_prepass.frag.glsl
-// Writes only the depth of the visible land.
-void main() {
-  if (sunk > 0.0) discard;
-  WriteDepth(Distance());
 }
