@@ -216,6 +216,62 @@ void RequireTablesReach(std::string_view name, const std::vector<double>& wavele
   }
 }
 
+using Row = std::vector<double> Medium::*;
+
+constexpr std::array<Row, 6> kRows{
+    &Medium::solar_irradiance,          &Medium::ground_albedo,
+    &Medium::rayleigh_scattering_per_m, &Medium::mie_scattering_per_m,
+    &Medium::mie_extinction_per_m,      &Medium::ozone_absorption_per_m};
+
+/// Returns the preset named in a medium's name, if that preset has values at all wavelengths of the
+/// tables.
+std::optional<std::string> PresetOf(const Medium& medium) {
+  for (const std::string& preset : MediumPresetNames()) {
+    if (preset == "bruneton2017") continue;
+    if (medium.name == preset || medium.name == "custom (from " + preset + ")") return preset;
+  }
+  return std::nullopt;
+}
+
+/// Returns the ratios of a medium to its preset; std::nullopt if the preset is zero and the medium
+/// is not.
+std::optional<std::vector<double>> Factors(const std::vector<double>& medium,
+                                           const std::vector<double>& preset) {
+  std::vector<double> factors;
+  for (std::size_t i = 0; i < medium.size(); ++i) {
+    if (preset[i] == 0.0 && medium[i] != 0.0) return std::nullopt;
+    factors.push_back(preset[i] == 0.0 ? 1.0 : medium[i] / preset[i]);
+  }
+  return factors;
+}
+
+/// Returns the depolarisation of the preset's gas if the medium has it at its own wavelengths.
+std::vector<double> DepolarisationAt(const Medium& medium, const std::string& preset,
+                                     const std::vector<double>& wavelengths_nm) {
+  const std::vector<double>& here = medium.rayleigh_depolarisation;
+  if (here == GasDepolarisation(preset, medium.wavelengths_nm))
+    return GasDepolarisation(preset, wavelengths_nm);
+  const SampledFunction at(medium.wavelengths_nm, here);
+  std::vector<double> there;
+  for (const double nm : wavelengths_nm) there.push_back(at(nm));
+  return there;
+}
+
+bool LooksLikeFile(const std::string& text) {
+  return text.find_first_of("./\\") != std::string::npos;
+}
+
+constexpr double kMostAerosol = 1000.0;
+
+std::size_t BandOfGreen(const Medium& medium) {
+  constexpr double kGreen_nm = 550.0;
+  const auto& bands = medium.wavelengths_nm;
+  const auto nearest = std::min_element(bands.begin(), bands.end(), [](double a, double b) {
+    return std::abs(a - kGreen_nm) < std::abs(b - kGreen_nm);
+  });
+  return static_cast<std::size_t>(nearest - bands.begin());
+}
+
 }  // namespace
 
 double OzoneAbsorptionAtPeak(double column_dobson, const OzoneLayer& layer, double wavelength_nm) {
@@ -281,51 +337,6 @@ Medium MediumPreset(std::string_view name, const std::vector<double>& wavelength
   return medium;
 }
 
-namespace {
-
-using Row = std::vector<double> Medium::*;
-
-constexpr std::array<Row, 6> kRows{
-    &Medium::solar_irradiance,          &Medium::ground_albedo,
-    &Medium::rayleigh_scattering_per_m, &Medium::mie_scattering_per_m,
-    &Medium::mie_extinction_per_m,      &Medium::ozone_absorption_per_m};
-
-/// Returns the preset named in a medium's name, if that preset has values at all wavelengths of the
-/// tables.
-std::optional<std::string> PresetOf(const Medium& medium) {
-  for (const std::string& preset : MediumPresetNames()) {
-    if (preset == "bruneton2017") continue;
-    if (medium.name == preset || medium.name == "custom (from " + preset + ")") return preset;
-  }
-  return std::nullopt;
-}
-
-/// Returns the ratios of a medium to its preset; std::nullopt if the preset is zero and the medium
-/// is not.
-std::optional<std::vector<double>> Factors(const std::vector<double>& medium,
-                                           const std::vector<double>& preset) {
-  std::vector<double> factors;
-  for (std::size_t i = 0; i < medium.size(); ++i) {
-    if (preset[i] == 0.0 && medium[i] != 0.0) return std::nullopt;
-    factors.push_back(preset[i] == 0.0 ? 1.0 : medium[i] / preset[i]);
-  }
-  return factors;
-}
-
-/// Returns the depolarisation of the preset's gas if the medium has it at its own wavelengths.
-std::vector<double> DepolarisationAt(const Medium& medium, const std::string& preset,
-                                     const std::vector<double>& wavelengths_nm) {
-  const std::vector<double>& here = medium.rayleigh_depolarisation;
-  if (here == GasDepolarisation(preset, medium.wavelengths_nm))
-    return GasDepolarisation(preset, wavelengths_nm);
-  const SampledFunction at(medium.wavelengths_nm, here);
-  std::vector<double> there;
-  for (const double nm : wavelengths_nm) there.push_back(at(nm));
-  return there;
-}
-
-}  // namespace
-
 std::optional<Medium> OnBands(const Medium& medium, int bands) {
   const std::optional<std::string> name = PresetOf(medium);
   if (!name || medium.wavelengths_nm.front() < kFirstPresetWavelength_nm ||
@@ -352,14 +363,6 @@ std::optional<Medium> OnBands(const Medium& medium, int bands) {
   return result;
 }
 
-namespace {
-
-bool LooksLikeFile(const std::string& text) {
-  return text.find_first_of("./\\") != std::string::npos;
-}
-
-}  // namespace
-
 Medium MediumFromChoice(const std::string& preset_or_file, const MediumUse& use,
                         const std::filesystem::path& folder) {
   const std::vector<std::string> presets = MediumPresetNames();
@@ -375,21 +378,6 @@ Medium MediumFromChoice(const std::string& preset_or_file, const MediumUse& use,
                                nearest ? fmt::format("did you mean {}?", *nearest)
                                        : fmt::format("presets are {}", fmt::join(presets, ", "))));
 }
-
-namespace {
-
-constexpr double kMostAerosol = 1000.0;
-
-std::size_t BandOfGreen(const Medium& medium) {
-  constexpr double kGreen_nm = 550.0;
-  const auto& bands = medium.wavelengths_nm;
-  const auto nearest = std::min_element(bands.begin(), bands.end(), [](double a, double b) {
-    return std::abs(a - kGreen_nm) < std::abs(b - kGreen_nm);
-  });
-  return static_cast<std::size_t>(nearest - bands.begin());
-}
-
-}  // namespace
 
 Medium Changed(Medium medium, const AirChoice& choice) {
   RequireInRange(choice.aerosol, 0.0, kMostAerosol, "aerosol");

@@ -97,98 +97,6 @@ std::array<double, PhaseTable::kNodes> CurveAtNodes(const std::vector<double>& x
   return curve;
 }
 
-}  // namespace
-
-PhaseTable::PhaseTable(std::vector<double> angle_deg, std::vector<double> per_sr)
-    : angle_deg_(std::move(angle_deg)), per_sr_(std::move(per_sr)) {
-  RequireSamples(angle_deg_, per_sr_);
-  node_ = CurveAtNodes(angle_deg_, per_sr_);
-  const auto value = [this](double position) { return At(position); };
-  for (std::size_t cell = 0; cell + 1 < kNodes; ++cell) {
-    share_[cell + 1] = share_[cell] + IntegralOverCell(cell, 1.0, value);
-    mean_cosine_ += IntegralOverCell(
-        cell, 1.0, [&](double position) { return value(position) * std::cos(AngleAt(position)); });
-  }
-  integral_ = share_.back();
-  if (!(std::abs(integral_ - 1.0) <= kLargestDeviation)) {
-    throw InputError(
-        fmt::format("phase: the integral over the sphere is {:.4f}; it must be 1 "
-                    "within {}",
-                    integral_, kLargestDeviation));
-  }
-  for (double& node : node_) node /= integral_;
-  for (double& share : share_) share /= integral_;
-  mean_cosine_ /= integral_;
-}
-
-double PhaseTable::Position(double cos_scattering) {
-  const double angle = std::acos(std::clamp(cos_scattering, -1.0, 1.0));
-  return kLastNode * std::cbrt(angle * (1.0 / kPi));
-}
-
-double PhaseTable::At(double position) const {
-  const auto cell = std::min(static_cast<std::size_t>(position), kNodes - 2);
-  return node_[cell] + (position - static_cast<double>(cell)) * (node_[cell + 1] - node_[cell]);
-}
-
-double PhaseTable::Quantile(double u) const {
-  const double wanted = 1.0 - u;  // fraction of the light scattered by less than the angle
-  const auto above = std::upper_bound(share_.begin() + 1, share_.end() - 1, wanted);
-  const auto cell = static_cast<std::size_t>(above - share_.begin()) - 1;
-  const auto value = [this](double position) { return At(position); };
-  double low = 0.0;
-  double high = 1.0;
-  double share = (wanted - share_[cell]) / (share_[cell + 1] - share_[cell]);
-  for (int step = 0; step < 60; ++step) {
-    const double excess = share_[cell] + IntegralOverCell(cell, share, value) - wanted;
-    (excess > 0.0 ? high : low) = share;
-    const double position = static_cast<double>(cell) + share;
-    double next = share - excess / (value(position) * Measure(position));
-    if (!(next >= low && next <= high)) next = 0.5 * (low + high);
-    if (std::abs(next - share) < 1e-13) break;
-    share = next;
-  }
-  return std::cos(AngleAt(static_cast<double>(cell) + share));
-}
-
-std::uint64_t PhaseTable::hash() const {
-  Fnv1a fnv;
-  fnv.Add(angle_deg_);
-  fnv.Add(per_sr_);
-  return fnv.hash();
-}
-
-SpectralPhase SpectralPhaseFromRows(std::span<const double> wavelength_nm,
-                                    std::span<const double> angle_deg,
-                                    std::span<const double> per_sr) {
-  SpectralPhase phase;
-  for (std::size_t row = 0; row < per_sr.size(); ++row) {
-    if (phase.wavelength_nm.empty() || phase.wavelength_nm.back() != wavelength_nm[row]) {
-      phase.wavelength_nm.push_back(wavelength_nm[row]);
-      phase.per_sr.emplace_back();
-    }
-    if (phase.per_sr.size() == 1) phase.angle_deg.push_back(angle_deg[row]);
-    phase.per_sr.back().push_back(per_sr[row]);
-  }
-  return phase;
-}
-
-PhaseTable SpectralPhase::At(double wavelength) const {
-  const auto above = std::upper_bound(wavelength_nm.begin(), wavelength_nm.end(), wavelength);
-  const auto high = static_cast<std::size_t>(above - wavelength_nm.begin());
-  if (high == 0) return {angle_deg, per_sr.front()};
-  if (high == wavelength_nm.size()) return {angle_deg, per_sr.back()};
-  const double share =
-      (wavelength - wavelength_nm[high - 1]) / (wavelength_nm[high] - wavelength_nm[high - 1]);
-  std::vector<double> values;
-  for (std::size_t i = 0; i < angle_deg.size(); ++i) {
-    values.push_back((1.0 - share) * per_sr[high - 1][i] + share * per_sr[high][i]);
-  }
-  return {angle_deg, std::move(values)};
-}
-
-namespace {
-
 constexpr std::array<std::string_view, 3> kColumns{"wavelength_nm", "angle_deg", "phase_per_sr"};
 
 class PhaseFileReader {
@@ -287,6 +195,94 @@ class PhaseFileReader {
 };
 
 }  // namespace
+
+PhaseTable::PhaseTable(std::vector<double> angle_deg, std::vector<double> per_sr)
+    : angle_deg_(std::move(angle_deg)), per_sr_(std::move(per_sr)) {
+  RequireSamples(angle_deg_, per_sr_);
+  node_ = CurveAtNodes(angle_deg_, per_sr_);
+  const auto value = [this](double position) { return At(position); };
+  for (std::size_t cell = 0; cell + 1 < kNodes; ++cell) {
+    share_[cell + 1] = share_[cell] + IntegralOverCell(cell, 1.0, value);
+    mean_cosine_ += IntegralOverCell(
+        cell, 1.0, [&](double position) { return value(position) * std::cos(AngleAt(position)); });
+  }
+  integral_ = share_.back();
+  if (!(std::abs(integral_ - 1.0) <= kLargestDeviation)) {
+    throw InputError(
+        fmt::format("phase: the integral over the sphere is {:.4f}; it must be 1 "
+                    "within {}",
+                    integral_, kLargestDeviation));
+  }
+  for (double& node : node_) node /= integral_;
+  for (double& share : share_) share /= integral_;
+  mean_cosine_ /= integral_;
+}
+
+double PhaseTable::Position(double cos_scattering) {
+  const double angle = std::acos(std::clamp(cos_scattering, -1.0, 1.0));
+  return kLastNode * std::cbrt(angle * (1.0 / kPi));
+}
+
+double PhaseTable::At(double position) const {
+  const auto cell = std::min(static_cast<std::size_t>(position), kNodes - 2);
+  return node_[cell] + (position - static_cast<double>(cell)) * (node_[cell + 1] - node_[cell]);
+}
+
+double PhaseTable::Quantile(double u) const {
+  const double wanted = 1.0 - u;  // fraction of the light scattered by less than the angle
+  const auto above = std::upper_bound(share_.begin() + 1, share_.end() - 1, wanted);
+  const auto cell = static_cast<std::size_t>(above - share_.begin()) - 1;
+  const auto value = [this](double position) { return At(position); };
+  double low = 0.0;
+  double high = 1.0;
+  double share = (wanted - share_[cell]) / (share_[cell + 1] - share_[cell]);
+  for (int step = 0; step < 60; ++step) {
+    const double excess = share_[cell] + IntegralOverCell(cell, share, value) - wanted;
+    (excess > 0.0 ? high : low) = share;
+    const double position = static_cast<double>(cell) + share;
+    double next = share - excess / (value(position) * Measure(position));
+    if (!(next >= low && next <= high)) next = 0.5 * (low + high);
+    if (std::abs(next - share) < 1e-13) break;
+    share = next;
+  }
+  return std::cos(AngleAt(static_cast<double>(cell) + share));
+}
+
+std::uint64_t PhaseTable::hash() const {
+  Fnv1a fnv;
+  fnv.Add(angle_deg_);
+  fnv.Add(per_sr_);
+  return fnv.hash();
+}
+
+SpectralPhase SpectralPhaseFromRows(std::span<const double> wavelength_nm,
+                                    std::span<const double> angle_deg,
+                                    std::span<const double> per_sr) {
+  SpectralPhase phase;
+  for (std::size_t row = 0; row < per_sr.size(); ++row) {
+    if (phase.wavelength_nm.empty() || phase.wavelength_nm.back() != wavelength_nm[row]) {
+      phase.wavelength_nm.push_back(wavelength_nm[row]);
+      phase.per_sr.emplace_back();
+    }
+    if (phase.per_sr.size() == 1) phase.angle_deg.push_back(angle_deg[row]);
+    phase.per_sr.back().push_back(per_sr[row]);
+  }
+  return phase;
+}
+
+PhaseTable SpectralPhase::At(double wavelength) const {
+  const auto above = std::upper_bound(wavelength_nm.begin(), wavelength_nm.end(), wavelength);
+  const auto high = static_cast<std::size_t>(above - wavelength_nm.begin());
+  if (high == 0) return {angle_deg, per_sr.front()};
+  if (high == wavelength_nm.size()) return {angle_deg, per_sr.back()};
+  const double share =
+      (wavelength - wavelength_nm[high - 1]) / (wavelength_nm[high] - wavelength_nm[high - 1]);
+  std::vector<double> values;
+  for (std::size_t i = 0; i < angle_deg.size(); ++i) {
+    values.push_back((1.0 - share) * per_sr[high - 1][i] + share * per_sr[high][i]);
+  }
+  return {angle_deg, std::move(values)};
+}
 
 SpectralPhase ReadSpectralPhase(const std::filesystem::path& file) {
   return PhaseFileReader(file).Read();

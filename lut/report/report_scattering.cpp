@@ -57,43 +57,6 @@ void AddScatteringTables(RayStudy& study) {
   }
 }
 
-}  // namespace
-
-ReportTopic MeasureSingleScattering(const Medium& medium, const ReportEffort& effort) {
-  RayStudy study(
-      {.key = "single_scattering",
-       .title = "Single scattering: sunlight scattered once towards the observer",
-       .what = "Views of the sky and of the ground from 2 m, 1.5 km and 10 km. The methods "
-               "compute the radiance of sunlight that the air along the view scatters once.",
-       .error_unit = "fractions of the radiance",
-       .notes = "Direct integration is described in atmosphere/ray/direct_scattering.h. "
-                "The marches use this library's exact columns, its shadow of the planet and "
-                "its SIMD kernel: they differ only in the points at which they sample the air, so "
-                "that they are more accurate and faster here than as published. The table on "
-                "Bruneton's axes has his (2017) size, 32 x 128 x 32 x 8 (altitude, view, sun, "
-                "angle between view and sun), and a smaller one, filled exactly; his own 50 "
-                "trapezoids would add their error. Tables by azimuth are those of skylut build: "
-                "preview, standard, fine."},
-      medium, effort);
-  study.SolveSingleScattering(ViewNumber);
-  const DirectScattering direct(medium);
-  for (const int nodes : {4, 6, 8, 12, 16, 20})
-    AddGauss(study, nodes, false, nodes == 8 || nodes == 12 || nodes == 20);
-  for (const DirectMode mode : {DirectMode::kFast, DirectMode::kNormal})
-    AddDirect(study, direct, mode);
-  if (medium.ozone.shape == OzoneShape::kTent) {
-    for (const int nodes : {4, 6, 8, 12, 16, 20}) AddGauss(study, nodes, true, nodes == 16);
-  }
-  for (const int steps : {16, 32, 64, 128, 256, 512})
-    study.AddScatteringMarch(MarchRule::kMidpoint, steps, steps == 64);
-  for (const int steps : {16, 32, 64, 128, 256, 512})
-    study.AddScatteringMarch(MarchRule::kQuadratic, steps, steps == 32);
-  AddScatteringTables(study);
-  return std::move(study).Finished();
-}
-
-namespace {
-
 /// Adds a method for light of all orders.
 /// @param sample  function from a ray to the samples and the light scattered once: SampledLight.
 /// @param higher  function from samples and nu to light of orders two and up.
@@ -242,6 +205,39 @@ ReportTopic WordsOfAllOrders() {
 }
 
 }  // namespace
+
+ReportTopic MeasureSingleScattering(const Medium& medium, const ReportEffort& effort) {
+  RayStudy study(
+      {.key = "single_scattering",
+       .title = "Single scattering: sunlight scattered once towards the observer",
+       .what = "Views of the sky and of the ground from 2 m, 1.5 km and 10 km. The methods "
+               "compute the radiance of sunlight that the air along the view scatters once.",
+       .error_unit = "fractions of the radiance",
+       .notes = "Direct integration is described in atmosphere/ray/direct_scattering.h. "
+                "The marches use this library's exact columns, its shadow of the planet and "
+                "its SIMD kernel: they differ only in the points at which they sample the air, so "
+                "that they are more accurate and faster here than as published. The table on "
+                "Bruneton's axes has his (2017) size, 32 x 128 x 32 x 8 (altitude, view, sun, "
+                "angle between view and sun), and a smaller one, filled exactly; his own 50 "
+                "trapezoids would add their error. Tables by azimuth are those of skylut build: "
+                "preview, standard, fine."},
+      medium, effort);
+  study.SolveSingleScattering(ViewNumber);
+  const DirectScattering direct(medium);
+  for (const int nodes : {4, 6, 8, 12, 16, 20})
+    AddGauss(study, nodes, false, nodes == 8 || nodes == 12 || nodes == 20);
+  for (const DirectMode mode : {DirectMode::kFast, DirectMode::kNormal})
+    AddDirect(study, direct, mode);
+  if (medium.ozone.shape == OzoneShape::kTent) {
+    for (const int nodes : {4, 6, 8, 12, 16, 20}) AddGauss(study, nodes, true, nodes == 16);
+  }
+  for (const int steps : {16, 32, 64, 128, 256, 512})
+    study.AddScatteringMarch(MarchRule::kMidpoint, steps, steps == 64);
+  for (const int steps : {16, 32, 64, 128, 256, 512})
+    study.AddScatteringMarch(MarchRule::kQuadratic, steps, steps == 32);
+  AddScatteringTables(study);
+  return std::move(study).Finished();
+}
 
 ReportTopic MeasureAllOrders(const Medium& medium, const ReportEffort& effort) {
   RayStudy study(WordsOfAllOrders(), medium, effort);

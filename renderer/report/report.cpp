@@ -14,6 +14,7 @@
 #include "atmosphere/math/numerics.h"
 #include "lut/report/report_baselines.h"
 #include "lut/report/report_rays.h"
+#include "lut/report/svg_plot.h"
 #include "lut/tables/transmittance_table.h"
 #include "renderer/illumination/aerial_perspective.h"
 #include "renderer/report/report_lamps.h"
@@ -211,6 +212,27 @@ constexpr char kSegments[] =
     "lights "
     "the whole ray except for the shadow of the planet. ";
 
+ReportWords WordsOfReport() {
+  return {
+      .title = "Alpenglow: speed and accuracy of pictures",
+      .lead =
+          "The parts of a picture of terrain in real air are compared with slow reference "
+          "solutions: the air in front of mountains, shafts of light and shadow in it, lamps in "
+          "fog, and whole pictures. Methods of this library and of the literature are evaluated on "
+          "the same cases in one run.",
+      .minute =
+          "For each topic, this section names the fastest method whose errors are not visible in "
+          "any of its columns. An error of 1 % in radiance is about the smallest step between "
+          "adjacent areas that an observer sees.",
+      .reading =
+          "Every topic describes its cases and the values to which its errors are relative. "
+          "Columns "
+          "are elevations of the sun, kinds of fog, numbers of lamps or times of the day. Cells "
+          "are "
+          "empty if a method does not support a column. Methods of the literature use this "
+          "library's columns, geometry and kernels, so that the remaining errors are their own."};
+}
+
 }  // namespace
 
 ReportTopic MeasureAerialPerspective(const Medium& medium, const ReportEffort& effort) {
@@ -275,31 +297,6 @@ ReportTopic MeasureTransmittanceToTerrain(const Medium& medium, const ReportEffo
              });
   return std::move(study).Finished();
 }
-
-namespace {
-
-ReportWords WordsOfReport() {
-  return {
-      .title = "Alpenglow: speed and accuracy of pictures",
-      .lead =
-          "The parts of a picture of terrain in real air are compared with slow reference "
-          "solutions: the air in front of mountains, shafts of light and shadow in it, lamps in "
-          "fog, and whole pictures. Methods of this library and of the literature are evaluated on "
-          "the same cases in one run.",
-      .minute =
-          "For each topic, this section names the fastest method whose errors are not visible in "
-          "any of its columns. An error of 1 % in radiance is about the smallest step between "
-          "adjacent areas that an observer sees.",
-      .reading =
-          "Every topic describes its cases and the values to which its errors are relative. "
-          "Columns "
-          "are elevations of the sun, kinds of fog, numbers of lamps or times of the day. Cells "
-          "are "
-          "empty if a method does not support a column. Methods of the literature use this "
-          "library's columns, geometry and kernels, so that the remaining errors are their own."};
-}
-
-}  // namespace
 
 Report MeasurePictureReport(const ReportOptions& options) {
   const ReportEffort effort = options.quick ? ReportEffort::Quick() : ReportEffort{};

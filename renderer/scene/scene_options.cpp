@@ -27,50 +27,6 @@ std::filesystem::path DataOfGrid(const Volume& volume) {
   }
 }
 
-}  // namespace
-
-std::vector<std::filesystem::path> FilesOf(const Volume& volume) {
-  if (volume.grid.empty()) return {};
-  const std::filesystem::path data = DataOfGrid(volume);
-  if (data == volume.grid) return {data};
-  return {volume.grid, data};
-}
-
-std::vector<NamedFile> FilesOf(const Scene& scene) {
-  std::vector<NamedFile> files;
-  const auto add = [&](const char* name, const std::filesystem::path& file) {
-    if (!file.empty()) files.push_back({name, file});
-  };
-  add("the terrain", scene.terrain.file);
-  for (const std::filesystem::path& file : scene.terrain.more_files) add("the terrain", file);
-  add("terrain.colour", scene.terrain.colour);
-  add("terrain.land_cover", scene.terrain.land_cover);
-  for (const Light& light : scene.lights) {
-    if (light.ies) add("light.ies", *light.ies);
-  }
-  for (const Volume& volume : scene.volumes) {
-    for (const std::filesystem::path& file : FilesOf(volume)) add("volume.grid", file);
-  }
-  return files;
-}
-
-LandSource LandSourceOf(const Scene& scene) {
-  LandSource source;
-  source.voids = scene.terrain.voids;
-  if (scene.terrain.kind == TerrainSource::Kind::kElevationModel) {
-    source.files = scene.terrain.more_files;
-    source.files.insert(source.files.begin(), scene.terrain.file);
-  }
-  if (scene.terrain.kind == TerrainSource::Kind::kMesh)
-    source.mesh = LandSource::Mesh{scene.terrain.file, scene.place, scene.terrain.up};
-  if (scene.terrain.kind == TerrainSource::Kind::kProceduralMountains)
-    source.range_centre = scene.terrain.centre.value_or(scene.place);
-  source.range_seed = scene.terrain.range_seed;
-  return source;
-}
-
-namespace {
-
 struct View {
   GeodeticPosition place;
   Height height;
@@ -147,6 +103,46 @@ std::uint32_t SeedAt(const GeodeticPosition& place) {
 }
 
 }  // namespace
+
+std::vector<std::filesystem::path> FilesOf(const Volume& volume) {
+  if (volume.grid.empty()) return {};
+  const std::filesystem::path data = DataOfGrid(volume);
+  if (data == volume.grid) return {data};
+  return {volume.grid, data};
+}
+
+std::vector<NamedFile> FilesOf(const Scene& scene) {
+  std::vector<NamedFile> files;
+  const auto add = [&](const char* name, const std::filesystem::path& file) {
+    if (!file.empty()) files.push_back({name, file});
+  };
+  add("the terrain", scene.terrain.file);
+  for (const std::filesystem::path& file : scene.terrain.more_files) add("the terrain", file);
+  add("terrain.colour", scene.terrain.colour);
+  add("terrain.land_cover", scene.terrain.land_cover);
+  for (const Light& light : scene.lights) {
+    if (light.ies) add("light.ies", *light.ies);
+  }
+  for (const Volume& volume : scene.volumes) {
+    for (const std::filesystem::path& file : FilesOf(volume)) add("volume.grid", file);
+  }
+  return files;
+}
+
+LandSource LandSourceOf(const Scene& scene) {
+  LandSource source;
+  source.voids = scene.terrain.voids;
+  if (scene.terrain.kind == TerrainSource::Kind::kElevationModel) {
+    source.files = scene.terrain.more_files;
+    source.files.insert(source.files.begin(), scene.terrain.file);
+  }
+  if (scene.terrain.kind == TerrainSource::Kind::kMesh)
+    source.mesh = LandSource::Mesh{scene.terrain.file, scene.place, scene.terrain.up};
+  if (scene.terrain.kind == TerrainSource::Kind::kProceduralMountains)
+    source.range_centre = scene.terrain.centre.value_or(scene.place);
+  source.range_seed = scene.terrain.range_seed;
+  return source;
+}
 
 bool IsOnRangeAtHome(const GeodeticPosition& place) {
   return ProceduralMountainsExtent(Home()).Covers(place.latitude_rad, place.longitude_rad);

@@ -118,35 +118,6 @@ std::vector<float> Nodes(int side) {
   return nodes;
 }
 
-}  // namespace
-
-ToneTable::ToneTable(AgxLook look, int side) : side_(side) {
-  const std::vector<float> nodes = Nodes(side);
-  codes_.resize(nodes.size() * nodes.size() * nodes.size());
-  tbb::parallel_for(std::size_t{0}, nodes.size(), [&](std::size_t blue) {
-    auto code = codes_.begin() + static_cast<std::ptrdiff_t>(blue * nodes.size() * nodes.size());
-    for (const float green : nodes) {
-      for (const float red : nodes) {
-        const Rgb<float> light =
-            DisplayLight<float>(ToneCurve::kAgx, {red, green, nodes[blue]}, 1.0F, look);
-        *code++ = {shared::SrgbCode(light[0]), shared::SrgbCode(light[1]),
-                   shared::SrgbCode(light[2])};
-      }
-    }
-  });
-}
-
-std::shared_future<ToneTable> ToneTableOf(AgxLook look) {
-  static std::mutex mutex;
-  static std::map<AgxLook, std::shared_future<ToneTable>> tables;
-  const std::lock_guard lock(mutex);
-  std::shared_future<ToneTable>& table = tables[look];
-  if (!table.valid()) table = std::async(std::launch::async, [look] { return ToneTable(look); });
-  return table;
-}
-
-namespace {
-
 enum ToneMapPassUnit { kPicture, kDither, kTable };
 
 // Returns the macro that selects a tone curve in the shader: CURVE_PBR_NEUTRAL for "pbr-neutral".
@@ -174,7 +145,42 @@ void Upload(const GlTexture& texture, const ToneTable& table) {
   CheckGl("ToneMapPass");
 }
 
+enum UpscalerUnit { kSmall, kPrintDither, kOutline };
+
+ShaderProgram ProgramOf(Upscaler::Shows shows) {
+  ShaderProgram program = FullScreenProgram(WithViewerPieces(
+      UpscalerTexts(shows, LandPass::DepthText()), {"viewer/shaders/display.upscale.frag.glsl"}));
+  program.BindSampler("small_picture", kSmall);
+  program.BindSampler("outline", kOutline);
+  return program;
+}
+
 }  // namespace
+
+ToneTable::ToneTable(AgxLook look, int side) : side_(side) {
+  const std::vector<float> nodes = Nodes(side);
+  codes_.resize(nodes.size() * nodes.size() * nodes.size());
+  tbb::parallel_for(std::size_t{0}, nodes.size(), [&](std::size_t blue) {
+    auto code = codes_.begin() + static_cast<std::ptrdiff_t>(blue * nodes.size() * nodes.size());
+    for (const float green : nodes) {
+      for (const float red : nodes) {
+        const Rgb<float> light =
+            DisplayLight<float>(ToneCurve::kAgx, {red, green, nodes[blue]}, 1.0F, look);
+        *code++ = {shared::SrgbCode(light[0]), shared::SrgbCode(light[1]),
+                   shared::SrgbCode(light[2])};
+      }
+    }
+  });
+}
+
+std::shared_future<ToneTable> ToneTableOf(AgxLook look) {
+  static std::mutex mutex;
+  static std::map<AgxLook, std::shared_future<ToneTable>> tables;
+  const std::lock_guard lock(mutex);
+  std::shared_future<ToneTable>& table = tables[look];
+  if (!table.valid()) table = std::async(std::launch::async, [look] { return ToneTable(look); });
+  return table;
+}
 
 std::vector<ShaderPiece> ToneMapPassTexts(ToneCurve curve, bool dithers) {
   std::vector<ShaderPiece> texts = SharedTexts();
@@ -249,20 +255,6 @@ void ToneMapPass::DevelopSmall(const RenderTarget& picture, double ev100,
   Fill(small_program_, picture, ev100, {codes.framebuffer(), codes.width(), codes.height()},
        whole_);
 }
-
-namespace {
-
-enum UpscalerUnit { kSmall, kPrintDither, kOutline };
-
-ShaderProgram ProgramOf(Upscaler::Shows shows) {
-  ShaderProgram program = FullScreenProgram(WithViewerPieces(
-      UpscalerTexts(shows, LandPass::DepthText()), {"viewer/shaders/display.upscale.frag.glsl"}));
-  program.BindSampler("small_picture", kSmall);
-  program.BindSampler("outline", kOutline);
-  return program;
-}
-
-}  // namespace
 
 std::vector<ShaderPiece> UpscalerTexts(Upscaler::Shows shows, const ShaderPiece& depth) {
   const bool dithers = shows == Upscaler::Shows::kCodes;

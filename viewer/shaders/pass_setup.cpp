@@ -34,6 +34,44 @@ namespace {
 
 constexpr GLuint kSquare = 0;
 
+float Kilometres(double metres) { return static_cast<float>(metres / kMetresPerKilometre); }
+
+glm::vec4 PerKilometre(const std::vector<double>& per_m) {
+  std::vector<double> per_km(per_m);
+  for (double& value : per_km) value *= kMetresPerKilometre;
+  return GpuBandsOf(per_km);
+}
+
+// A position in an octave: the cell, and the fraction of it.
+struct PlaceInOctave {
+  glm::ivec4 cell;
+  glm::vec4 fraction;
+};
+
+PlaceInOctave PlaceIn(const NoiseOctave& octave, const GroundPoint& point) {
+  const glm::dvec2 at = octave.PlaceOf(point), cell = glm::floor(at), fraction = at - cell;
+  return {{glm::ivec2(cell), 0, 0}, {fraction.x, fraction.y, 0.0, 0.0}};
+}
+
+// Sets the eye's position in the longest octave of each family that leans, and in all waves.
+void SetOctaves(GroundBlock& block, const GroundPoint& eye) {
+  GroundPoint foot = eye;
+  foot.up_m = 0.0;
+  for (std::size_t family = 0; family < block.noise_cell.size(); ++family) {
+    const NoiseOctave& longest = OctavesOf(static_cast<GroundNoise>(family)).front();
+    const PlaceInOctave at = PlaceIn(longest, foot);
+    block.noise_cell[family] = at.cell;
+    block.noise_place[family] = at.fraction;
+    block.noise_place[family].z = static_cast<float>(eye.up_m / longest.wavelength_m);
+  }
+  const std::span<const NoiseOctave> waves = OctavesOf(GroundNoise::kWaves);
+  for (std::size_t i = 0; i < block.wave_cell.size(); ++i) {
+    const PlaceInOctave at = PlaceIn(waves[i], eye);
+    block.wave_cell[i] = at.cell;
+    block.wave_place[i] = at.fraction;
+  }
+}
+
 }  // namespace
 
 ShaderProgram FullScreenProgram(const std::vector<ShaderPiece>& fragment) {
@@ -75,48 +113,6 @@ void PassArea::Draw(const ShaderProgram& program) const {
   glBindVertexArray(layout_.id());
   glDrawArraysInstanced(GL_TRIANGLE_STRIP, 0, 4, *boxes_);
 }
-
-namespace {
-
-float Kilometres(double metres) { return static_cast<float>(metres / kMetresPerKilometre); }
-
-glm::vec4 PerKilometre(const std::vector<double>& per_m) {
-  std::vector<double> per_km(per_m);
-  for (double& value : per_km) value *= kMetresPerKilometre;
-  return GpuBandsOf(per_km);
-}
-
-// A position in an octave: the cell, and the fraction of it.
-struct PlaceInOctave {
-  glm::ivec4 cell;
-  glm::vec4 fraction;
-};
-
-PlaceInOctave PlaceIn(const NoiseOctave& octave, const GroundPoint& point) {
-  const glm::dvec2 at = octave.PlaceOf(point), cell = glm::floor(at), fraction = at - cell;
-  return {{glm::ivec2(cell), 0, 0}, {fraction.x, fraction.y, 0.0, 0.0}};
-}
-
-// Sets the eye's position in the longest octave of each family that leans, and in all waves.
-void SetOctaves(GroundBlock& block, const GroundPoint& eye) {
-  GroundPoint foot = eye;
-  foot.up_m = 0.0;
-  for (std::size_t family = 0; family < block.noise_cell.size(); ++family) {
-    const NoiseOctave& longest = OctavesOf(static_cast<GroundNoise>(family)).front();
-    const PlaceInOctave at = PlaceIn(longest, foot);
-    block.noise_cell[family] = at.cell;
-    block.noise_place[family] = at.fraction;
-    block.noise_place[family].z = static_cast<float>(eye.up_m / longest.wavelength_m);
-  }
-  const std::span<const NoiseOctave> waves = OctavesOf(GroundNoise::kWaves);
-  for (std::size_t i = 0; i < block.wave_cell.size(); ++i) {
-    const PlaceInOctave at = PlaceIn(waves[i], eye);
-    block.wave_cell[i] = at.cell;
-    block.wave_place[i] = at.fraction;
-  }
-}
-
-}  // namespace
 
 glm::vec4 GpuBandsOf(const std::vector<double>& per_band) {
   ALPENGLOW_ENSURE(per_band.size(), <=, kGpuBands);
