@@ -15,6 +15,9 @@ import statistics
 import subprocess
 import sys
 
+sys.dont_write_bytecode = True  # the tree stays as it is
+import source_rules  # noqa: E402
+
 TREE = pathlib.Path(__file__).resolve().parent.parent
 LAYERS = ("atmosphere", "lut", "renderer", "viewer")
 SOURCES = (".h", ".cpp", ".glsl")
@@ -27,6 +30,8 @@ LIMITS = {
 # or GLFW, or includes a header of viewer/gl/; these folders are the user's side of the window.
 OPEN_GL = re.compile(r'#include "viewer/gl/|\bgl[A-Z]\w*\(|\bGL_[A-Z]|\bGL[a-z]+\b|ImGui|\bIm[A-Z]\w+|GLFW|glfw')
 USER_SIDE = ("flight", "input", "hud")
+TYPE = re.compile(r"\b(?:class|struct|union|enum|enum class)\s+\w[\w:]*(?:\s+final)?(?:\s*:[^;{()]*)?\s*\{")
+FOG_FOLDER = "renderer/media/"
 # A sentence whose first word points at something that the reader must guess.
 FRAGMENT = re.compile(r"(Of|What|Which|Whose|Whether|Where|How|That|The same|As|Its|Those|Not|Nothing|Only) ")
 
@@ -126,6 +131,29 @@ def comment_blocks():
                 before = now
 
 
+def types_in(suffix):
+    """How many classes, structs, unions and enumerations the layers define, also within others."""
+    return sum(len(TYPE.findall(without_comments(text_of(file)))) for layer in LAYERS for file in files(layer, (suffix,)))
+
+
+def reopened_namespaces():
+    """How often a file opens an unnamed namespace that it has had before."""
+    return sum(max(len(re.findall(r"^namespace \{", text_of(file), re.MULTILINE)) - 1, 0)
+               for layer in LAYERS for file in files(layer))
+
+
+def missing_shaders():
+    """The shaders that a source names and that are not in the tree."""
+    missing = (fault.split(": ")[1].split()[0] for fault in source_rules.named_paths_that_are_missing())
+    return {name.rpartition("/")[2] for name in missing if name.endswith(".glsl")}
+
+
+def files_that_name_fog():
+    """The files outside the folder of media that name fog."""
+    return [file for layer in LAYERS for file in files(layer)
+            if not str(file.relative_to(TREE)).startswith(FOG_FOLDER) and re.search("fog", text_of(file), re.IGNORECASE)]
+
+
 def build_size(build):
     commands = subprocess.run(["ninja", "-C", build, "-t", "commands"], capture_output=True, text=True, check=True)
     lines = commands.stdout.splitlines()
@@ -151,6 +179,10 @@ def rows(build):
     fragments = sum(bool(FRAGMENT.match(block)) for block in blocks)
     shape["comment blocks"] = len(blocks)
     shape["comment blocks that start without a subject, %"] = round(100.0 * fragments / len(blocks), 1)
+    shape["types in headers / in sources"] = (types_in(".h"), types_in(".cpp"))
+    shape["unnamed namespaces opened again in one file"] = reopened_namespaces()
+    shape["shaders that are named and missing"] = len(missing_shaders())
+    shape[f"files outside {FOG_FOLDER} that name fog"] = len(files_that_name_fog())
     shape["installed headers"] = len(files("include"))
     if build:
         shape.update(build_size(build))

@@ -13,6 +13,10 @@
 - The top level of the repository has only the known entries.
 - Every file that begins with an interpreter can be run.
 - No source includes a header twice.
+- Every source of a layer has a header of its name, and includes it first. The headers of the folders api/ are the
+  public ones. A program (a source with main) has none.
+- Every path of a file named in a source or a build file exists: in the tree, or from the end of a path ("mesh.h").
+  A * stands for several names. documents.py checks the Markdown files.
 - Every function of a text of SharedTexts (viewer/gl/shader.cpp) has a case in tests/fixtures/shared_text_cases.cpp, or
   a function that calls it has one.
 - Programs write to standard output and error only through lut/cli/messages.h: fmt::print throws
@@ -22,6 +26,7 @@
 
 Every rule is also run on small examples that break it, so that a rule that finds nothing is noticed.
 """
+import fnmatch
 import os
 import pathlib
 import re
@@ -40,6 +45,13 @@ BY_LOCALE = re.compile(
     r"\b\w*(?:scanf|printf|strftime)\(|\b[io]?stringstream\b|\bstd::(?:setprecision|put_time|get_time|locale)\b|"
     r"\b(?:std::)?(?:is(?:alnum|alpha|digit|lower|print|punct|space|upper)|tolower|toupper)\(|\{[\w.:]*:[^{}]*L\}|"
     r"\b\w*(?:file|stream|text|line|info)\w* >> ")
+# A path of a file; and names that stand for any name: NAME_command.h, name_kernel.cpp, a.cpp.
+NAMED_FILE = re.compile(r"(?<![\w/.*<>-])((?:[\w*.-]+/)*[A-Za-z\d*][\w*.-]*\.(?:h|cpp|glsl|md|py|cmake))(?![\w/])")
+ANY_NAME = re.compile(r"(?:NAME|name|[a-z](?:\.[A-Z])?)(?:_[a-z]+)?\.[a-z]+")
+# Headers of other projects, files that the programs write, and names in examples of tests.
+FOREIGN_FILES = {"erfa.h", "ImfEnvmap.h", "locale/localeinfo.h", "summary.md", "broken.glsl",
+                 "ground.frag.glsl"}
+DECLARED_ELSEWHERE = {"renderer/media/media_march.cpp"}  # its functions stand in media_light.h
 INCLUDE = re.compile(r'^\s*#\s*include\s*["<](?:alpenglow/)?([^">]+)[">]')
 CASE = re.compile(r"ALPENGLOW_SHARED_CASE\((.*?)grid::", re.DOTALL)
 NAMESPACE = re.compile(r"^namespace alpenglow::(\w+)", re.MULTILINE)
@@ -111,6 +123,36 @@ def repeated_includes(path, text):
         yield f"{path}: {again} is included twice"
 
 
+def first_include(path, text, files):
+    """The fault of a source whose first include is not the header of its name."""
+    name = path.removesuffix(".cpp")
+    header = f"{name}.h"
+    if path.split("/")[1:2] == ["api"] and header not in files:
+        header = f"alpenglow/{name.rpartition('/')[2]}.h"
+    first = re.search(r'^#include ["<](.*)[">]', text, flags=re.MULTILINE)
+    has_none = path in DECLARED_ELSEWHERE or re.search(r"^int main\(", text, re.MULTILINE)
+    if not has_none and (not first or first[1] != header):
+        yield f"{path}: the first include is not {header}"
+
+
+def missing_files(path, text, ends):
+    """The files that a source names and that are not in the tree.
+    @param ends  the paths of all files, and all ends of them."""
+    for number, line in enumerate(text.splitlines(), 1):
+        if INCLUDE.match(line):
+            continue  # the compiler checks these
+        for named in NAMED_FILE.findall(line.replace("\\n", " ").replace("../", "")):
+            name = named.rpartition("/")[2]
+            exists = named in ends or "*" in named and any(fnmatch.fnmatchcase(end, named) for end in ends)
+            if not exists and not ANY_NAME.fullmatch(name) and {name, named}.isdisjoint({*FOREIGN_FILES, *LOWEST}):
+                yield f"{path}:{number}: {named} does not exist"
+
+
+def ends_of(paths):
+    """The paths and all ends of them: "a/b.h" and "b.h"."""
+    return {path.split("/", skipped)[-1] for path in paths for skipped in range(path.count("/") + 1)}
+
+
 def speech(path, text):
     return [f"{path}: {words} does not go through lut/cli/messages.h" for words in SPEECH if words in text]
 
@@ -173,6 +215,23 @@ def check_examples():
     assert not list(by_locale("a.cpp", 'fmt::format("{:.3f}", LowerCase(x));  // not std::stod(x)\ncustom(restore(x));\n'))
     assert list(repeated_includes("a.cpp", '#include <a>\n#include "b.h"\n#include "b.h"\n')) == [
         "a.cpp: b.h is included twice"]
+    for path, text, expected in (
+            ("lut/a.cpp", '#include "lut/a.h"\n#include "lut/b.h"\n', 0),
+            ("lut/a.cpp", '#include "lut/b.h"\n#include "lut/a.h"\n', 1),
+            ("lut/a.cpp", "int b() { return 0; }\n", 1),
+            ("lut/a.cpp", "#include <vector>\nint main() { return 0; }\n", 0),
+            ("lut/api/a.cpp", "#include <alpenglow/a.h>\n", 0),
+            ("lut/api/a.cpp", "#include <alpenglow/b.h>\n", 1),
+            ("lut/api/own.cpp", "#include <alpenglow/own.h>\n", 1)):
+        found = list(first_include(path, text, {"lut/api/own.h"}))
+        assert len(found) == expected, (path, text, found)
+    ends = ends_of(["lut/sky/panorama.h", "viewer/shaders/land.frag.glsl"])
+    for text, expected in (("// See panorama.h, sky/panorama.h and lut/sky/panorama.h.", 0), ("// lut/panorama.h", 1),
+                           ('Compile("viewer/shaders/land.frag.glsl");', 0), ('"shaders/land.vert.glsl"', 1),
+                           ("// sky/*.h or shaders/*.vert.glsl", 1), ("// NAME_command.h, a.cpp", 0),
+                           ('#include <ImfArray.h>', 0), ("// written by picture_list.py", 1)):
+        found = list(missing_files("a.h", text, ends))
+        assert len(found) == expected, (text, found)
     shared = "SHARED Number A(Number x) {\n  return B(x);  // C(x)\n}\nSHARED Number B(Number x) { return x; }\n"
     assert functions_without_case([shared, "SHARED Number C(Number x) { return x; }\n"],
                                   "ALPENGLOW_SHARED_CASE(A(a[0]), grid::Rays())\nC(1.0)\n") == ["C"]
@@ -185,15 +244,27 @@ def sources(layer):
     return [(str(file.relative_to(TREE)), file.read_text(encoding="utf-8")) for file in files]
 
 
+def named_paths_that_are_missing():
+    files = [file for file in files_of_the_repository() if "__pycache__" not in file.parts]
+    ends = ends_of(str(file.relative_to(TREE)) for file in files)
+    for file in files:
+        is_source = file.suffix in (".h", ".cpp", ".glsl", ".cmake") or file.name == "CMakeLists.txt"
+        if is_source:
+            yield from missing_files(str(file.relative_to(TREE)), file.read_text(encoding="utf-8"), ends)
+
+
 def broken_rules():
     order = {layer: folders_of((TREE / layer / "README.md").read_text(encoding="utf-8")) for layer in LAYERS}
     for layer in LAYERS:
         found = {entry.name for entry in (TREE / layer).iterdir() if entry.is_dir() and entry.name != "data"}
         for folder in sorted(found ^ set(order[layer])):
             yield f"{layer}/README.md: {folder}/ is listed or there, not both"
+        files = {path for path, _ in sources(layer)}
         for path, text in sources(layer):
             yield from includes_upwards(path, text, order)
             yield from includes_of_studies(path, text)
+            if path.endswith(".cpp"):
+                yield from first_include(path, text, files)
             if not path.endswith(".glsl"):
                 yield from foreign_namespaces(path, text)
                 yield from speech(path, text)
@@ -205,6 +276,7 @@ def broken_rules():
     assert len(shared) > 10, "the rule must have looked at the shared texts"
     for name in functions_without_case([(TREE / path).read_text(encoding="utf-8") for path in shared], cases):
         yield f"tests/fixtures/shared_text_cases.cpp: {name} of a shared text has no case"
+    yield from named_paths_that_are_missing()
     for entry in sorted(TREE.iterdir()):
         if entry.name[0] != "." and entry.name not in TOP_LEVEL:
             yield f"{entry.name}: the top level is closed"
