@@ -9,6 +9,7 @@
 
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -111,6 +112,8 @@ class Landscape {
   /// Draws the chunks that the last Update chose, with its view, into the bound GBuffer or
   /// DepthPrepass, which is cleared first. The uniform block View must be bound to `view_binding`.
   void Draw(LandDrawn what, GLuint view_binding, const LandLook& look = {});
+  /// Draws those of them that may be in another, narrower view, which the block View must have.
+  void DrawIn(const LandView& narrower, LandDrawn what, GLuint view_binding, const LandLook& look);
   /// Returns the programs that draw.
   [[nodiscard]] LandPass& pass() { return pass_; }
 
@@ -163,6 +166,8 @@ class Landscape {
   [[nodiscard]] std::vector<ChunkKey> Missing(const ChunkSet& set) const;
   /// Begins the choice of the chunks to draw. Set and tree must not be used until Choice().
   void Choose(double seconds);
+  void DrawOnly(std::span<const SeenChunk> chunks, LandDrawn what, GLuint view_binding,
+                const LandLook& look);
   /// Waits for the choice, and returns it.
   const LandChoice& Choice() const;
   void WaitForWork();
