@@ -132,10 +132,9 @@ std::optional<LandBend> BendOf(const PaintedView& view, const Medium& medium,
 
 namespace {
 
-/// The nodes extend to this many radii from the centre of the disk. The disk may move by the
-/// remainder.
-constexpr double kReach = 1.25;
-constexpr double kMostDiskTurn_rad = 1.0 / 60.0 * kRadiansPerDegree;
+/// The nodes extend to this many radii from the centre of the disk. The disk may move by most of
+/// the remainder.
+constexpr double kReach = 1.25, kMostDiskTurn_radii = 0.2;
 
 }  // namespace
 
@@ -183,9 +182,9 @@ const RefractedDisk* RefractedDiskFollower::Follow(const std::shared_ptr<const S
   if (elevation_rad > kLow_rad || elevation_rad < horizon_rad - 2.0 * radius_rad) return nullptr;
   // The horizon changes with the eye's height as well. The air is densest there.
   const double height_step_m = 0.002 * std::max(height_m, 1.0);
-  const bool suits = made_ && made_->air == air &&
-                     std::abs(made_->height_m - height_m) < height_step_m &&
-                     std::abs(made_->elevation_rad - elevation_rad) < kMostDiskTurn_rad;
+  const bool suits =
+      made_ && made_->air == air && std::abs(made_->height_m - height_m) < height_step_m &&
+      std::abs(made_->elevation_rad - elevation_rad) < kMostDiskTurn_radii * radius_rad;
   if (!suits)
     made_ = {air, height_m, elevation_rad,
              RefractedDiskOf(air->medium, height_m, elevation_rad, radius_rad)};

@@ -120,6 +120,23 @@ TEST(RefractedDisk, HighDisksAndWideViewsHaveRoundOnes) {
       << "its halves move by 3' against each other";
 }
 
+TEST(RefractedDisk, OneThatIsKeptCoversTheDiskThatHasMoved) {
+  const auto air = SolveAir(MediumPreset("earth"), AirSolution::kDraft);
+  constexpr double kRadius = 16.0 * kArcMinute, kElevation = 2.0 * 60.0 * kArcMinute;
+  RefractedDiskFollower follower;
+  const double first_rad = follower.Follow(air, 2.0, kElevation, kRadius, 0.0)->first_rad;
+  double moved = 0.0;
+  for (; moved < kRadius; moved += 0.01 * kRadius) {
+    const RefractedDisk* const disk = follower.Follow(air, 2.0, kElevation + moved, kRadius, 0.0);
+    if (disk->first_rad != first_rad) break;  // computed anew
+    const double last_rad = first_rad + (RefractedDisk::kNodes - 1) * disk->step_rad;
+    EXPECT_LE(disk->first_rad, kElevation + moved - kRadius);
+    EXPECT_GE(last_rad, kElevation + moved + kRadius);
+  }
+  EXPECT_GT(moved, 0.1 * kRadius);
+  EXPECT_LT(moved, 0.25 * kRadius) << "the nodes reach a quarter of the radius farther";
+}
+
 TEST(ViewBend, IsOffWhereNothingMovesByHalfAPixel) {
   const Medium medium = MediumPreset("earth");
   const UtcInstant noon = ParseInstant("2026-06-21T11:30:00Z");
