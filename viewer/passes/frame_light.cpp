@@ -208,6 +208,12 @@ const std::shared_ptr<const FrameSky>& FrameSkyFollower::At(
   return sky_;
 }
 
+// Towards the light, ground sees it higher by the angle between the ground and the eye.
+bool HasSetOnGround(const SkyLight& light, const GroundReach& reach) {
+  return light.disk.elevation_rad < kSetOnLand_rad - reach.land_rad &&
+         light.disk.elevation_rad < -light.disk.angular_radius_rad - reach.planet_rad;
+}
+
 const SkyLight* OfSource(const LightsOfSky& lights, LightSource source) {
   for (const SkyLight& light : lights)
     if (light.source() == source) return &light;

@@ -107,6 +107,15 @@ struct SkyLight {
 /// The lights of the sky, at least one. The first casts the shadows.
 using LightsOfSky = std::vector<SkyLight>;
 
+/// Distances of the farthest ground in view, as angles at the planet's centre [rad].
+struct GroundReach {
+  double land_rad;    // land of any height
+  double planet_rad;  // the planet without land, at height 0
+};
+
+/// Returns whether no part of a light's disk is above the horizon of any ground in view.
+[[nodiscard]] bool HasSetOnGround(const SkyLight& light, const GroundReach& reach);
+
 /// Returns the light of a source, or null if it is not in the list.
 [[nodiscard]] const SkyLight* OfSource(const LightsOfSky& lights, LightSource source);
 

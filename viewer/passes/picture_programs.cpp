@@ -52,6 +52,7 @@ std::vector<ShaderPiece> PictureTexts(const PictureKind& kind, const PictureStag
   std::vector<ShaderPiece> texts;
   const auto add = [&](std::vector<ShaderPiece> pieces) { Append(texts, std::move(pieces)); };
   if (stage.two_lights) texts.push_back({"lights", "#define TWO_LIGHTS\n"});
+  if (stage.other_has_set) texts.push_back({"set light", "#define OTHER_HAS_SET\n"});
   add(AirTexts());
   texts.push_back(DefinesOf(kind, stage));
   add(kind.fog ? FogTexts(*kind.fog) : NoFogTexts());

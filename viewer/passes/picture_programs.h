@@ -69,13 +69,16 @@ struct PictureStage {
   Pass pass;
   bool has_shade = false, has_lamps = false;
   bool two_lights = false, has_night = false;
-  bool sky_by_pixel = false;  // SkyByPixel, for land only
+  bool sky_by_pixel = false;   // SkyByPixel, for land only
+  bool other_has_set = false;  // the second light sends no beam to the ground (HasSetOnGround)
 
   /// Returns the stage of another pass, without properties that this pass does not have.
   [[nodiscard]] PictureStage In(Pass other) const {
     PictureStage stage = *this;
     stage.pass = other;
     stage.sky_by_pixel = sky_by_pixel && other == Pass::kLand;
+    stage.other_has_set =
+        other_has_set && two_lights && (other == Pass::kLand || other == Pass::kSky);
     return stage;
   }
 

@@ -228,10 +228,11 @@ std::vector<PictureStage> StagesAfter(const PictureStage& stage, const FrameSky&
   using enum PictureStage::Pass;
   // From this elevation on, the moon or the night sky may soon become lights.
   constexpr double kBeforeDusk_rad = 5.0 * kRadiansPerDegree;
-  std::vector<PictureStage> next(4, stage);
+  std::vector<PictureStage> next(5, stage);
   next[1].has_shade = !stage.has_shade;
   next[2].two_lights = !stage.two_lights;
   next[3].has_night = !stage.has_night;
+  next[4].other_has_set = !stage.other_has_set;
   if (!sky.moon || sky.sun.elevation_rad > kBeforeDusk_rad) next.resize(2);
   std::vector<PictureStage> stages;
   for (const PictureStage& one : next)
@@ -439,12 +440,22 @@ void SkyPainter::BindMaps(const PaintedView& view) {
              lights.back().disk);
 }
 
+// Refraction lets the planet be seen farther than its straight horizon, by less than a quarter.
+GroundReach SkyPainter::ReachOf(const PaintedView& view) const {
+  constexpr double kMostByRefraction = 1.25;
+  const double radius_km = RadiusUnder(view.eye, scene_.air().air()->medium);
+  const double altitude_km = std::max(view.eye.place.height_m, 0.0) / kMetresPerKilometre;
+  return {scene_.land().farthest_m() / (radius_km * kMetresPerKilometre),
+          kMostByRefraction * std::acos(radius_km / (radius_km + altitude_km))};
+}
+
 PictureStage SkyPainter::StageOf(const PaintedView& view) {
   const LightsOfSky& lights = SkyOf(view).lights;
   PictureStage stage{PictureStage::Pass::kLand};
   stage.has_shade = HasShade(view, lights.front());
   stage.has_lamps = HasLamps();
   stage.two_lights = lights.size() > 1;
+  stage.other_has_set = stage.two_lights && HasSetOnGround(lights.back(), ReachOf(view));
   stage.has_night = HasNightSkyMap() && night_sky_map_.HasAny();
   stage.sky_by_pixel = HasSkyByPixel(scene_, lights);
   return programs_.Fitting(stage);

@@ -129,6 +129,7 @@ class SkyPainter {
   [[nodiscard]] LightsOfView LightsOf(const PaintedView& view);
   void BindLights(const PaintedView& view, const PixelRay& ray);
   void BindMaps(const PaintedView& view);
+  [[nodiscard]] GroundReach ReachOf(const PaintedView& view) const;
   [[nodiscard]] PictureStage StageOf(const PaintedView& view);
   void PaintPicture(const PaintedView& view, double share);
   void MakeOneReady(const PaintedView& view, const PictureStage& stage);

@@ -44,10 +44,21 @@ vec2 DiskOver(GroundPlace at, vec3 to_sun) {
                          sun.w);
 }
 
+// Returns whether the current light is known to send no beam to any ground in view. It is a
+// constant, so that compilers remove what the beam would light.
+bool HasSet() {
+#ifdef OTHER_HAS_SET
+  return OF_LIGHT(false, true);
+#else
+  return false;
+#endif
+}
+
 // Returns the sun's irradiance on a plane perpendicular to its beams, attenuated by the air, for
 // the part of the disk above the planet's horizon, above terrain and above the local plane of the
 // mesh.
 vec4 SunAcross(GroundPlace at, vec3 mesh_normal, float sun_x) {
+  if (HasSet()) return vec4(0.0);
   vec2 disk = DiskOver(at, sun.xyz);
   float over_plane = dot(mesh_normal, sun.xyz) / sun.w;
   return disk.x * SunlightOverEdge(min(sun_x, over_plane)) * BeamOfSun(at.altitude, disk.y);
@@ -169,14 +180,19 @@ vec4 PlanetRadiance(vec3 point_m, vec3 to_eye) {
   return SentOn(seen, kNoEdge, SkyOnPlanet(seen), to_eye);
 }
 
+// Returns the irradiance by the sun of the level planet, by straight rays.
+vec4 StraightSunOn(GroundPlace at) {
+  if (HasSet()) return vec4(0.0);
+  float mu_s = dot(at.up, sun_for_air.xyz);
+  vec2 disk = DiskOver(at, sun_for_air.xyz);
+  return max(mu_s, 0.0) * disk.x * SunlightOverEdge(mu_s / sun.w) *
+         TransmittanceToSun(at.altitude, disk.y);
+}
+
 // Returns the planet's radiance minus that of uniform ground with the medium's albedo, which the
 // sky table contains.
 vec4 PlanetBeyondEven(SeenGround seen, vec3 to_eye) {
   vec4 sky = SkyOnPlanet(seen);
-  float mu_s = max(dot(seen.at.up, sun_for_air.xyz), 0.0);
-  vec2 disk = DiskOver(seen.at, sun_for_air.xyz);
-  vec4 across = disk.x * SunlightOverEdge(dot(seen.at.up, sun_for_air.xyz) / sun.w) *
-                TransmittanceToSun(seen.at.altitude, disk.y);
-  vec4 even = (mu_s * across + sky) * ground_albedo / 3.14159265359;
+  vec4 even = (StraightSunOn(seen.at) + sky) * ground_albedo / 3.14159265359;
   return SentOn(seen, kNoEdge, sky, to_eye) - even;
 }

@@ -284,6 +284,35 @@ TEST(LightsOfSky, OfTheSecondNoShadowIsSeenInAnyEveningOfAMonth) {
   EXPECT_LT(most, 0.004) << "the most in a year is 0.0033; seen from the equator it is 0.0032";
 }
 
+SkyLight LightAt(double elevation_rad) {
+  SunPosition disk{};
+  disk.elevation_rad = elevation_rad;
+  disk.angular_radius_rad = 0.27 * kRadiansPerDegree;
+  return {disk, glm::vec4(1.0F)};
+}
+
+// Ground is lit if the upper limb is above its horizon, which the height lowers.
+TEST(HasSetOnGround, OfALightOfWhichNoGroundInReachSeesTheLimb) {
+  constexpr double kEarth_m = 6.37e6, kSummit_m = 8849.0;
+  const auto dip = [](double height_m) { return std::acos(kEarth_m / (kEarth_m + height_m)); };
+  int set = 0, risen = 0;
+  for (double elevation_deg = -9.0; elevation_deg < 1.0; elevation_deg += 0.25) {
+    for (const double reach_deg : {0.0, 0.5, 2.0, 5.0}) {
+      const double elevation = elevation_deg * kRadiansPerDegree;
+      const double reach = reach_deg * kRadiansPerDegree;
+      const SkyLight light = LightAt(elevation);
+      const double limb = elevation + reach + light.disk.angular_radius_rad;
+      const bool is_lit_land = limb > -dip(kSummit_m), is_lit_planet = limb > 0.0;
+      EXPECT_FALSE(HasSetOnGround(light, {reach, 0.0}) && is_lit_land) << elevation_deg;
+      EXPECT_FALSE(HasSetOnGround(light, {0.0, reach}) && is_lit_planet) << elevation_deg;
+      set += HasSetOnGround(light, {reach, reach}) ? 1 : 0;
+      risen += is_lit_land || is_lit_planet ? 1 : 0;
+    }
+  }
+  EXPECT_GT(set, 40) << "of 160 cases, so that the omission is worth something";
+  EXPECT_GT(risen, 40);
+}
+
 TEST(LightsOfSky, WhenTheMoonIsFirstNoSummitIsLitByTheSun) {
   constexpr double kHighestSummit_m = 8849.0, kRadius_m = 6371e3;
   const double dip = std::acos(kRadius_m / (kRadius_m + kHighestSummit_m));

@@ -214,7 +214,8 @@ std::vector<PictureStage> StagesOfLights() {
           {.pass = kLand, .two_lights = true},
           {.pass = kLand, .has_night = true},
           {.pass = kLand, .sky_by_pixel = true},
-          {kLand, true, true, true, true, true}};
+          {.pass = kLand, .two_lights = true, .other_has_set = true},
+          {kLand, true, true, true, true, true, true}};
 }
 
 TEST_F(Glslang, AcceptsEveryStageOfThePicture) {
