@@ -88,82 +88,6 @@ Matrix3 DeriveXyzFromLinearSrgb() {
   return matrix;
 }
 
-struct Lab {
-  double l, a, b;
-};
-
-// Implements CIE 15:2018, with the exact constants (6/29)^3 and so on.
-double LabCompanding(double ratio) {
-  constexpr double kDelta = 6.0 / 29.0;
-  return ratio > kDelta * kDelta * kDelta ? std::cbrt(ratio)
-                                          : ratio / (3.0 * kDelta * kDelta) + 4.0 / 29.0;
-}
-
-Lab LabFromXyz(const Triple& xyz, const Triple& white) {
-  const double x = LabCompanding(xyz[0] / white[0]);
-  const double y = LabCompanding(xyz[1] / white[1]);
-  const double z = LabCompanding(xyz[2] / white[2]);
-  return {116.0 * y - 16.0, 500.0 * (x - y), 200.0 * (y - z)};
-}
-
-// Returns sqrt(C^7 / (C^7 + 25^7)).
-double ChromaShare(double chroma) {
-  constexpr double k25To7 = 6103515625.0;
-  const double power = std::pow(chroma, 7);
-  return std::sqrt(power / (power + k25To7));
-}
-
-double HueDegrees(double a, double b) {
-  if (a == 0.0 && b == 0.0) return 0.0;
-  const double degrees = std::atan2(b, a) / kRadiansPerDegree;
-  return degrees < 0.0 ? degrees + 360.0 : degrees;
-}
-
-struct HuePair {
-  double difference, mean;  // degrees
-};
-
-// Implements equations 10 and 14 of Sharma et al. (2005): the difference and mean along the shorter
-// arc.
-HuePair CompareHues(double hue_a, double hue_b, bool grey) {
-  if (grey) return {0.0, hue_a + hue_b};
-  const double difference = hue_b - hue_a;
-  if (std::abs(difference) <= 180.0) return {difference, 0.5 * (hue_a + hue_b)};
-  const double sum = hue_a + hue_b;
-  return {difference > 0.0 ? difference - 360.0 : difference + 360.0,
-          0.5 * (sum < 360.0 ? sum + 360.0 : sum - 360.0)};
-}
-
-double CosDegrees(double degrees) { return std::cos(degrees * kRadiansPerDegree); }
-double SinDegrees(double degrees) { return std::sin(degrees * kRadiansPerDegree); }
-
-// Implements Sharma, Wu and Dalal (2005), Color Res. Appl. 30, 21-30, equations 2 to 22, all
-// weights 1.
-double Ciede2000(const Lab& p, const Lab& q) {
-  const double stretch =
-      1.5 - 0.5 * ChromaShare(0.5 * (std::hypot(p.a, p.b) + std::hypot(q.a, q.b)));
-  const double chroma_p = std::hypot(stretch * p.a, p.b);
-  const double chroma_q = std::hypot(stretch * q.a, q.b);
-  const bool grey = chroma_p * chroma_q == 0.0;
-  const HuePair hue =
-      CompareHues(HueDegrees(stretch * p.a, p.b), HueDegrees(stretch * q.a, q.b), grey);
-  const double chroma = 0.5 * (chroma_p + chroma_q);
-  const double above_grey = 0.5 * (p.l + q.l) - 50.0;
-  const double t = 1.0 - 0.17 * CosDegrees(hue.mean - 30.0) + 0.24 * CosDegrees(2.0 * hue.mean) +
-                   0.32 * CosDegrees(3.0 * hue.mean + 6.0) -
-                   0.20 * CosDegrees(4.0 * hue.mean - 63.0);
-  const double lightness = (q.l - p.l) / (1.0 + 0.015 * above_grey * above_grey /
-                                                    std::sqrt(20.0 + above_grey * above_grey));
-  const double chromatic = (chroma_q - chroma_p) / (1.0 + 0.045 * chroma);
-  const double tint = 2.0 * std::sqrt(chroma_p * chroma_q) * SinDegrees(0.5 * hue.difference) /
-                      (1.0 + 0.015 * chroma * t);
-  const double from_blue = (hue.mean - 275.0) / 25.0;
-  const double rotation =
-      -2.0 * ChromaShare(chroma) * SinDegrees(60.0 * std::exp(-from_blue * from_blue));
-  return std::sqrt(std::max(0.0, lightness * lightness + chromatic * chromatic + tint * tint +
-                                     rotation * chromatic * tint));
-}
-
 double Step(double x) { return 1.0 / (1.0 + std::exp(-x)); }
 
 // Returns the reflectances of a red, a green and a blue surface that add up to 1: smooth steps at
@@ -394,11 +318,6 @@ std::vector<double> AlbedoFromLinearSrgb(const std::array<double, 3>& rgb,
         std::clamp(shares[0] * bases[0] + shares[1] * bases[1] + shares[2] * bases[2], 0.0, 1.0));
   }
   return albedo;
-}
-
-double Ciede2000(const std::array<double, 3>& xyz_a, const std::array<double, 3>& xyz_b,
-                 const std::array<double, 3>& white) {
-  return Ciede2000(LabFromXyz(xyz_a, white), LabFromXyz(xyz_b, white));
 }
 
 }  // namespace alpenglow::atmosphere

@@ -127,12 +127,6 @@ class BandColour {
 [[nodiscard]] std::vector<double> AlbedoFromLinearSrgb(const std::array<double, 3>& rgb,
                                                        std::span<const double> wavelengths_nm);
 
-/// Returns the colour difference CIEDE2000 of two XYZ colours relative to `white` (CIE 142-2001;
-/// Sharma et al. 2005).
-[[nodiscard]] double Ciede2000(const std::array<double, 3>& xyz_a,
-                               const std::array<double, 3>& xyz_b,
-                               const std::array<double, 3>& white);
-
 /// Returns the extraterrestrial solar spectrum of ASTM G173-03 [W m^-2 nm^-1], 300 to 900 nm in
 /// steps of 0.5 and 1 nm, for integrals that must resolve its lines.
 [[nodiscard]] const SampledFunction& SolarTable();

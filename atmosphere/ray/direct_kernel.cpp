@@ -69,21 +69,19 @@ T SunlightOn(const PanelLanes<T>& panel, const float* sunlight) {
   return sunlight == nullptr ? panel(&DirectPanel::lit) : LoadLanes<T>(sunlight + panel.first);
 }
 
-/// Sums over the nodes of a ray, lane by lane, for each block of four bands: molecules and aerosol
-/// and, with four rows, both again with the last polynomial.
-template <typename T, std::size_t rows>
-using LightLanes = std::array<std::array<std::array<T, kFour>, rows>, kMaxBands / kFour>;
+/// Sums over the nodes of a ray, lane by lane, for each block of four bands: molecules and aerosol.
+template <typename T>
+using LightLanes = std::array<std::array<std::array<T, kFour>, 2>, kMaxBands / kFour>;
 
 /// The factors whose products are summed to the light of a group.
-template <std::size_t count, std::size_t rows>
+template <std::size_t count>
 struct LitLanes {
   using T = LaneVector<count>;
   static constexpr std::size_t kVectors = Lanes<count>::kVectors;
   ColumnSet<T> columns[kVectors];  // from the sun to the observer
-  T weight[kVectors][rows];
+  T weight[kVectors][2];
 
-  LitLanes(const DirectRule& rule, const TwoPanels& panels, const float* sunlight,
-           const Lanes<count>& lanes) {
+  LitLanes(const TwoPanels& panels, const float* sunlight, const Lanes<count>& lanes) {
     for (std::size_t i = 0; i < kVectors; ++i) {
       const NodeAir<T>& node = lanes.air[i];
       columns[i] = {node.view.rayleigh + node.sun.rayleigh, node.view.mie + node.sun.mie,
@@ -92,25 +90,19 @@ struct LitLanes {
           lanes.place[i].weight * SunlightOn<T>(PanelLanes<T>{panels, i * kLanesOf<T>}, sunlight);
       weight[i][0] = lit * node.rayleigh_density;
       weight[i][1] = lit * node.mie_density;
-      if constexpr (rows == 4) {
-        const T last = LoadLanes<T>(rule.last_polynomial.data() + i * kLanesOf<T>);
-        weight[i][2] = last * weight[i][0];
-        weight[i][3] = last * weight[i][1];
-      }
     }
   }
   template <typename Block>
   void AddBand(const Extinction<T>& extinction, std::size_t band, Block& block) const {
     for (std::size_t i = 0; i < kVectors; ++i) {
       const T arriving = PowerOfTwo<T>(-OpticalDepthOf(extinction, columns[i]));
-      for (std::size_t row = 0; row < rows; ++row) block[row][band] += arriving * weight[i][row];
+      for (std::size_t row = 0; row < 2; ++row) block[row][band] += arriving * weight[i][row];
     }
   }
 };
 
-template <std::size_t count, std::size_t rows, typename T>
-void AddLight(const DirectAir& air, const LitLanes<count, rows>& lit, bool first,
-              LightLanes<T, rows>& light) {
+template <std::size_t count, typename T>
+void AddLight(const DirectAir& air, const LitLanes<count>& lit, bool first, LightLanes<T>& light) {
   for (std::size_t band = 0; band < air.bands; band += kFour) {
     auto& block = light[band / kFour];
     for (std::size_t i = 0; i < kFour; ++i) {
@@ -124,13 +116,12 @@ void AddLight(const DirectAir& air, const LitLanes<count, rows>& lit, bool first
   }
 }
 
-template <typename T, std::size_t rows>
-void StoreLight(const DirectAir& air, const LightLanes<T, rows>& light, std::size_t first_row,
-                ScatteredOnce<float>& scattered) {
+template <typename T>
+void StoreLight(const DirectAir& air, const LightLanes<T>& light, ScatteredOnce<float>& scattered) {
   for (std::size_t band = 0; band < air.bands; band += kFour) {
     const auto& block = light[band / kFour];
-    StoreSums(block[first_row].data(), &air.rayleigh_scattering[band], &scattered.rayleigh[band]);
-    StoreSums(block[first_row + 1].data(), &air.mie_scattering[band], &scattered.mie[band]);
+    StoreSums(block[0].data(), &air.rayleigh_scattering[band], &scattered.rayleigh[band]);
+    StoreSums(block[1].data(), &air.mie_scattering[band], &scattered.mie[band]);
   }
 }
 
@@ -147,19 +138,16 @@ TwoPanels PanelsOf(const DirectRay& ray, std::size_t i) {
   return {ray.panel[ray.group[i].first], ray.panel[ray.group[i].second]};
 }
 
-template <std::size_t count, std::size_t rows>
-[[gnu::flatten]] void ScatterLanes(const DirectWork& work, ScatteredOnce<float>& scattered,
-                                   ScatteredOnce<float>* last) {
-  LightLanes<LaneVector<count>, rows> light;
+template <std::size_t count>
+[[gnu::flatten]] void ScatterLanes(const DirectWork& work, ScatteredOnce<float>& scattered) {
+  LightLanes<LaneVector<count>> light;
   for (std::size_t i = 0; i < work.ray.groups; ++i) {
     Lanes<count> lanes;
     FillLanes<count>(work.air, RuleOf(work, i), PanelsOf(work.ray, i), work.ray.falls, lanes);
-    const LitLanes<count, rows> lit(RuleOf(work, i), PanelsOf(work.ray, i), SunlightOf(work, i),
-                                    lanes);
-    AddLight<count, rows>(work.air, lit, i == 0, light);
+    const LitLanes<count> lit(PanelsOf(work.ray, i), SunlightOf(work, i), lanes);
+    AddLight<count>(work.air, lit, i == 0, light);
   }
-  StoreLight<LaneVector<count>, rows>(work.air, light, 0, scattered);
-  if constexpr (rows == 4) StoreLight<LaneVector<count>, rows>(work.air, light, 2, *last);
+  StoreLight<LaneVector<count>>(work.air, light, scattered);
 }
 
 void SetDark(const DirectAir& air, ScatteredOnce<float>& scattered) {
@@ -167,24 +155,13 @@ void SetDark(const DirectAir& air, ScatteredOnce<float>& scattered) {
     scattered.rayleigh[band] = scattered.mie[band] = 0.0F;
 }
 
-template <std::size_t rows>
-void ScatterRows(const DirectWork& work, ScatteredOnce<float>& scattered,
-                 ScatteredOnce<float>* last) {
+void Scatter(const DirectWork& work, ScatteredOnce<float>& scattered) {
   if (work.ray.groups == 0) {
     SetDark(work.air, scattered);
-    if (last != nullptr) SetDark(work.air, *last);
   } else if (work.ray.narrow) {
-    ScatterLanes<kHalf, rows>(work, scattered, last);
+    ScatterLanes<kHalf>(work, scattered);
   } else {
-    ScatterLanes<kDirectLanes, rows>(work, scattered, last);
-  }
-}
-
-void Scatter(const DirectWork& work, ScatteredOnce<float>& scattered, ScatteredOnce<float>* last) {
-  if (last == nullptr) {
-    ScatterRows<2>(work, scattered, last);
-  } else {
-    ScatterRows<4>(work, scattered, last);
+    ScatterLanes<kDirectLanes>(work, scattered);
   }
 }
 
@@ -236,7 +213,7 @@ void StoreGroup(const TwoPanels& panels, const float* sunlight, const Lanes<coun
 template <std::size_t count>
 [[gnu::flatten]] void SampleLanes(const DirectWork& work, RaySamples<float>& samples,
                                   ScatteredOnce<float>* scattered) {
-  LightLanes<LaneVector<count>, 2> light;
+  LightLanes<LaneVector<count>> light;
   for (std::size_t i = 0; i < work.ray.groups; ++i) {
     const DirectRule& rule = RuleOf(work, i);
     const TwoPanels panels = PanelsOf(work.ray, i);
@@ -245,10 +222,9 @@ template <std::size_t count>
     FillLanes<count>(work.air, rule, panels, work.ray.falls, lanes);
     StoreGroup<count>(panels, sunlight, lanes, samples);
     if (scattered != nullptr)
-      AddLight<count, 2>(work.air, LitLanes<count, 2>(rule, panels, sunlight, lanes), i == 0,
-                         light);
+      AddLight<count>(work.air, LitLanes<count>(panels, sunlight, lanes), i == 0, light);
   }
-  if (scattered != nullptr) StoreLight<LaneVector<count>, 2>(work.air, light, 0, *scattered);
+  if (scattered != nullptr) StoreLight<LaneVector<count>>(work.air, light, *scattered);
 }
 
 void Sample(const DirectWork& work, RaySamples<float>& samples, ScatteredOnce<float>* scattered) {

@@ -11,10 +11,9 @@
 
 namespace alpenglow::atmosphere {
 
-/// A Gauss rule of n nodes over the lanes of a group, and at each node the Legendre polynomial
-/// P_(n-1). With this factor the rule gives 0 for polynomials of degree n - 2 and less.
+/// A Gauss rule of n nodes over the lanes of a group.
 struct DirectRule {
-  alignas(64) std::array<float, kDirectLanes> node, weight, last_polynomial;
+  alignas(64) std::array<float, kDirectLanes> node, weight;
 };
 
 struct DirectRules {
@@ -33,10 +32,8 @@ struct DirectWork {
 };
 
 struct DirectKernel {
-  /// Sums the light of all groups. With `last`, the sums are also computed with each weight times
-  /// the last polynomial.
-  void (*scatter)(const DirectWork& work, ScatteredOnce<float>& scattered,
-                  ScatteredOnce<float>* last);
+  /// Sums the light of all groups.
+  void (*scatter)(const DirectWork& work, ScatteredOnce<float>& scattered);
   /// Writes the nodes of all groups, including dark ones; the rest of each row is 0 up to a
   /// multiple of the SIMD lanes. Lanes 7 and 15 of a group have weight 0. With `scattered`, the
   /// light of `scatter` is computed too.

@@ -131,14 +131,6 @@ void SetBands(const Medium& medium, DirectAir& air) {
   }
 }
 
-// Returns the least error of a medium: 5e-4 on the planets of the presets. The error of columns is
-// twice the square of H/R; the rounding error of single precision grows with the radius in scale
-// heights to the power 3/2 (fitted to 3e7 and 8e7 m).
-double LeastError(double highest, double lowest, double radius) {
-  const double flatness = highest / radius;
-  return std::max({5e-4, 2.0 * flatness * flatness, 6e-10 * std::pow(radius / lowest, 1.5)});
-}
-
 // Returns the optical depth above the top for a horizontal ray at the top.
 double DepthAboveTop(const Medium& medium, const DirectAir& air) {
   constexpr double kLevel = 1.7724538509055159;  // sqrt(pi), from DirectColumnShape at y = 0
@@ -319,9 +311,6 @@ DirectAir DirectAirOf(const Medium& medium) {
   air.rayleigh = LayerOf(Kilometres(medium.rayleigh_scale_height_m), 1.0 + share, shell);
   air.deficit = LayerOf(Kilometres(medium.rayleigh_deficit.scale_height_m), share, shell);
   air.mie = LayerOf(Kilometres(medium.mie_scale_height_m), 1.0, shell);
-  const auto [lowest, highest] =
-      std::minmax({medium.rayleigh_scale_height_m, medium.mie_scale_height_m});
-  air.least_error = LeastError(highest, lowest, medium.planet_radius_m);
   SetBands(medium, air);
   SetOzone(medium.ozone, air);
   air.reaches_top = DepthAboveTop(medium, air) > 1e-5;

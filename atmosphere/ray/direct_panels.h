@@ -61,7 +61,6 @@ struct DirectAir {
   float ozone_bottom, ozone_peak, ozone_top;
   OzoneFit ozone_fit;
   float largest_extinction;  // of molecules and aerosol at altitude 0 [1/km]
-  double least_error;        // relative error of light by these columns in single precision
   std::size_t bands;
   std::array<float, kMaxBands> rayleigh_extinction, mie_extinction, ozone_extinction;  // log2(e)/km
   std::array<float, kMaxBands> rayleigh_scattering, mie_scattering;                    // 1/km

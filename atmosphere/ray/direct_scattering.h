@@ -13,15 +13,7 @@
 // tests/fixtures/direct_regimes.h, all presets:
 //
 //   fast     0.7 %     7 nodes a panel, 14 in a hard one (earth: 0.39 %)
-//   normal   0.07 %   14 nodes a panel
-//
-// The error of one ray is estimated from the last Legendre coefficient that its nodes can resolve:
-//
-//   error = e + c r / (1 + k r),   r = largest over bands of |light with P_(n-1)| / light
-//
-// with c = 1, k = 25 for fast and c = 2, k = 100 for normal, and e = 5e-4, more on planets of few
-// or very many scale heights (DirectAir::least_error). The estimate is an upper bound for 95 % of
-// rays.
+//   normal   0.07 %   14 nodes a panel; 2 (H/R)^2 or 6e-10 (R/H)^1.5 where these are larger
 #pragma once
 
 #include "atmosphere/medium/medium.h"
@@ -34,13 +26,6 @@ namespace alpenglow::atmosphere {
 struct DirectSampling {
   DirectMode mode = DirectMode::kNormal;
   bool dark_samples = false;  // also in the planet's shadow (for multiple scattering)
-};
-
-/// Light, and a bound of its relative error that holds for 95 % of such rays, in each band before
-/// phase functions.
-struct EstimatedLight {
-  ScatteredOnce<float> scattered;
-  double error = 0.0;
 };
 
 /// Nodes of a ray and the single scattering along them.
@@ -62,15 +47,6 @@ class DirectScattering {
 
   /// Returns the single scattering of direct sunlight along the ray.
   [[nodiscard]] ScatteredOnce<float> Scatter(const ViewRay& ray, DirectMode mode) const;
-
-  /// Returns the single scattering with an estimate of its error. The estimate takes a seventh more
-  /// time.
-  [[nodiscard]] EstimatedLight Estimate(const ViewRay& ray, DirectMode mode) const;
-
-  /// Returns the light of the first of fast, normal and reference() whose relative error is small
-  /// enough.
-  /// @param max_error  in [0, 1].
-  [[nodiscard]] EstimatedLight ScatterWithin(const ViewRay& ray, double max_error) const;
 
   /// Returns the nodes of a ray with their weights and columns, for light of any order
   /// (SingleScattering::Scatter of them equals Scatter). Lanes without a node have weight 0.

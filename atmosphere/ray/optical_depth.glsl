@@ -28,8 +28,6 @@ SHARED Number ColumnJ0Denominator(Number u) {
   return Number(1.0) + u * q;
 }
 
-SHARED Number ColumnJ0(Number u) { return u * ColumnJ0Numerator(u) / ColumnJ0Denominator(u); }
-
 // J2 = u P / Q, rational (3/3) in u: relative error 1.6e-4, which enters the column
 // divided by 2 X > 1000.
 SHARED Number ColumnJ2Numerator(Number u) {
@@ -43,8 +41,6 @@ SHARED Number ColumnJ2Denominator(Number u) {
   q = Number(2.1058187744751793) + u * q;
   return Number(1.0) + u * q;
 }
-
-SHARED Number ColumnJ2(Number u) { return u * ColumnJ2Numerator(u) / ColumnJ2Denominator(u); }
 
 // Returns Ch(X, mu) for mu >= 0: the column divided by the vertical column. J0 + J2 / 2X has one
 // common denominator, because divisions dominate the cost.

@@ -139,10 +139,6 @@ struct Sampling {
   bool dark_samples = false;  // also in the planet's shadow (for multiple scattering)
 };
 
-/// Returns the cheapest sampling whose relative error, root mean square over the rays of a sky, is
-/// below `max_error`, in [0, 1]; the error is not below 1e-6 with 20 nodes.
-[[nodiscard]] Sampling SamplingForError(double max_error);
-
 /// A point of a quadrature rule along a ray: distance from the observer and weight [m].
 struct RayNode {
   double distance_m, weight_m;

@@ -275,13 +275,6 @@ Bands<float> PhaseNodes::At(double nu) const {
   return values;
 }
 
-Sampling SamplingForError(double max_error) {
-  RequireInRange(max_error, 0.0, 1.0, "max_error");
-  const double digits = -std::log10(std::max(max_error, 1e-9));
-  const int nodes = std::clamp(static_cast<int>(std::ceil(8.0 + 4.0 * (digits - 3.0))), 6, 32);
-  return {.nodes = nodes, .split_ozone = max_error < 5e-3, .dark_samples = false};
-}
-
 template <typename Real>
 SingleScattering<Real>::SingleScattering(const Medium& medium) : medium_(medium), constants_{} {
   Validate(medium_, kForLight);

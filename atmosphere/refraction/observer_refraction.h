@@ -58,7 +58,8 @@ class ObserverRefraction {
   /// arcseconds on the earth, for any air that bends rays gently and at any height (asserted by
   /// refraction_test, against the integral over the elevation by RefractedRay).
   [[nodiscard]] double SeenAt(double apparent_elevation_rad) const;
-  /// Returns ApparentElevation of refraction.h, to 1e-10 rad.
+  /// Returns the apparent elevation [rad] of an object at a true elevation, to 1e-10 rad;
+  /// std::nullopt if it is behind the ground. It takes a microsecond above the horizontal.
   [[nodiscard]] std::optional<double> ApparentElevationOf(double true_elevation_rad) const;
   /// Returns RefractionFromHeight of refraction.h.
   [[nodiscard]] double AtTrue(double true_elevation_rad) const;

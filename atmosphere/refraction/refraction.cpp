@@ -37,51 +37,6 @@ ValueAndSlope RefractivityAndSlopeAt(const BendingAir& air, double height_m) {
   return {air.refractivity * sum, -air.refractivity * slope_sum};
 }
 
-struct RefractionAndSlope {
-  double value, slope;
-};
-
-/// Returns refraction for air of 15 C and 1013.25 hPa:
-///
-///   A cos e / (sin e + b / (sin e + c / (sin e + d)))
-///
-/// This is the continued fraction of Marini (1972), Radio Science 7, 223-231, which is A cot e at
-/// high elevations and finite at the horizon. The four constants were fitted to RefractionOfRay
-/// from sea level: the difference is less than 0.04' from the horizon up; below it the function
-/// continues smoothly.
-RefractionAndSlope StandardRefraction(double elevation_rad) {
-  constexpr double kA = 2.78291862e-4;
-  constexpr double kB = 1.60741104e-3;
-  constexpr double kC = 5.59356459e-3;
-  constexpr double kD = 1.17198817e-1;
-  const double sine = std::sin(elevation_rad);
-  const double cosine = std::cos(elevation_rad);
-  const double inner = sine + kD;
-  const double middle = sine + kC / inner;
-  const double outer = sine + kB / middle;
-  const double middle_slope = 1.0 - kC / (inner * inner);
-  const double outer_slope = 1.0 - kB * middle_slope / (middle * middle);
-  return {kA * cosine / outer,
-          -kA * (sine / outer + cosine * cosine * outer_slope / (outer * outer))};
-}
-
-// Refraction is observable down to the last ray of the sun's lower limb over a sea horizon,
-// 34' + 32' below the horizontal; the closed form extends a little beyond this. Further down no ray
-// reaches the observer and refraction has no meaning, but the position of the sun in a picture must
-// remain continuous. The light of twilight comes from air high up, which is described by the
-// geometric direction: therefore the value fades to 0 until civil twilight ends.
-constexpr double kFadeBegins_rad = -1.0 * kRadiansPerDegree;
-constexpr double kFadeEnds_rad = -6.0 * kRadiansPerDegree;
-
-/// Returns the cubic that continues value and slope at kFadeBegins and is 0 with slope 0 at
-/// kFadeEnds.
-double FadedRefraction(double elevation_rad) {
-  static const RefractionAndSlope begin = StandardRefraction(kFadeBegins_rad);
-  constexpr double kWidth = kFadeBegins_rad - kFadeEnds_rad;
-  const double t = (elevation_rad - kFadeEnds_rad) / kWidth;
-  return t * t * ((3.0 - 2.0 * t) * begin.value + (t - 1.0) * kWidth * begin.slope);
-}
-
 }  // namespace
 
 double RefractivityAtSeaLevel(double wavelength_nm) {
@@ -182,11 +137,6 @@ double RefractionSeenAt(const BendingAir& air, double apparent_elevation_rad, do
   return RefractionOfObserver(air, height_m).SeenAt(apparent_elevation_rad);
 }
 
-std::optional<double> ApparentElevation(const BendingAir& air, double true_elevation_rad,
-                                        double height_m) {
-  return RefractionOfObserver(air, height_m).ApparentElevationOf(true_elevation_rad);
-}
-
 BendingAir AlmanacAir(double earth_radius_m) {
   constexpr double kTop_m = 120e3;  // bending above it is 1e-8 of the whole
   return {.refractivity = RefractivityAtSeaLevel(kHorizonWavelength_nm),
@@ -204,10 +154,6 @@ SeaHorizon SeaHorizonFrom(double height_m, double earth_radius_m) {
   return {-grazing, grazing - RefractionOfRay(grazing, height_m, earth_radius_m)};
 }
 
-double RefractionFromHeight(double true_elevation_rad, double height_m, double earth_radius_m) {
-  return RefractionFromHeight(AlmanacAir(earth_radius_m), true_elevation_rad, height_m);
-}
-
 double RefractionFromHeight(const BendingAir& air, double true_elevation_rad, double height_m) {
   return RefractionOfObserver(air, height_m).AtTrue(true_elevation_rad);
 }
@@ -219,17 +165,6 @@ double LiftForAir(const BendingAir& air, double true_elevation_rad) {
   const double on_horizon = at_sea_level.SeenAt(0.0);
   return kShare *
          (true_elevation_rad > -on_horizon ? at_sea_level.AtTrue(true_elevation_rad) : on_horizon);
-}
-
-double Refraction(double true_elevation_rad, const AirAtObserver& air) {
-  RequireInRange(air.pressure_pa, 0.0, 2e5, "pressure_pa");
-  RequireInRange(air.temperature_k, 150.0, 400.0, "temperature_k");
-  const double relative_density = (air.pressure_pa / 101325.0) * (288.15 / air.temperature_k);
-  if (true_elevation_rad <= kFadeEnds_rad) return 0.0;
-  if (true_elevation_rad < kFadeBegins_rad) {
-    return relative_density * FadedRefraction(true_elevation_rad);
-  }
-  return relative_density * StandardRefraction(true_elevation_rad).value;
 }
 
 }  // namespace alpenglow::atmosphere

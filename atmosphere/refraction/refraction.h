@@ -21,13 +21,11 @@
 // sea level is lifted by the 34' of the almanacs. The model reproduces quantities that almanacs
 // tabulate separately: refraction at any elevation, the refracted dip of the sea horizon, and the
 // refraction of a body on the horizon. The air of the earth presets bends rays in the same way.
-// Refraction is a closed form for observers on the ground, for which this model is the reference.
 // Weather changes all of these values by minutes of arc near the horizon.
 #pragma once
 
 #include <array>
 #include <cmath>
-#include <optional>
 
 #include "atmosphere/math/constants.h"
 #include "atmosphere/math/numerics.h"
@@ -98,14 +96,6 @@ class RefractedRay {
   /// Returns the bending [rad] between two elevations of its rising part.
   [[nodiscard]] double Bending(double low_rad, double high_rad) const;
 
-  /// Returns the bending from the observer to the exit from the air, through the lowest point if
-  /// the ray descends first. The lowest point must not be below the ground.
-  [[nodiscard]] double BendingToSpace() const {
-    double sum = 0.0;
-    VisitParts([&](double low_rad, double high_rad) { sum += Bending(low_rad, high_rad); });
-    return sum;
-  }
-
   /// Returns the column on the path to space [m], for a relative density or for several: `density`
   /// is a function of height_m that returns a number or a vector. For molecules the column is
   /// within 2e-3 of that of the ray equation from the horizon to 6 degrees above it.
@@ -157,12 +147,6 @@ class RefractedRay {
 [[nodiscard]] double RefractionSeenAt(const BendingAir& air, double apparent_elevation_rad,
                                       double height_m);
 
-/// Returns the apparent elevation [rad] of an object at a true elevation; std::nullopt if it is
-/// behind the ground. The functions of refraction at a height use tables (observer_refraction.h):
-/// a call for the air and height of the call before it takes a microsecond above the horizontal.
-[[nodiscard]] std::optional<double> ApparentElevation(const BendingAir& air,
-                                                      double true_elevation_rad, double height_m);
-
 /// Returns the standard air of almanacs at kHorizonWavelength_nm.
 [[nodiscard]] BendingAir AlmanacAir(double earth_radius_m = kEarthMeanRadius_m);
 
@@ -183,13 +167,10 @@ struct SeaHorizon {
 [[nodiscard]] SeaHorizon SeaHorizonFrom(double height_m,
                                         double earth_radius_m = kEarthMeanRadius_m);
 
-/// Returns refraction [rad] as a function of the *true* elevation, seen from `height_m`: like
-/// atmosphere::Refraction, for an observer on a mountain, in an aeroplane or in orbit. Below the
-/// sea horizon, where only sunlit peaks indicate the position of the sun, the refraction at the
-/// horizon fades to 0 within 3 degrees.
-[[nodiscard]] double RefractionFromHeight(double true_elevation_rad, double height_m,
-                                          double earth_radius_m = kEarthMeanRadius_m);
-/// Returns the refraction in any air that bends rays gently.
+/// Returns apparent minus true elevation [rad] as a function of the *true* elevation, for an
+/// observer at sea level, on a mountain, in an aeroplane or in orbit, in any air that bends rays
+/// gently. Below the sea horizon, where only sunlit peaks indicate the position of the sun, the
+/// refraction at the horizon fades to 0 within 3 degrees.
 [[nodiscard]] double RefractionFromHeight(const BendingAir& air, double true_elevation_rad,
                                           double height_m);
 
@@ -206,18 +187,5 @@ struct SeaHorizon {
 /// sun that has set, where single scattering ends. tests/bench/refracted_twilight.cpp compares
 /// values of the lift.
 [[nodiscard]] double LiftForAir(const BendingAir& air, double true_elevation_rad);
-
-/// Air at the observer, for refraction.
-struct AirAtObserver {
-  double pressure_pa = 101325.0;
-  double temperature_k = 288.15;
-};
-
-/// Returns refraction [rad], apparent minus true elevation, as a function of the *true* elevation,
-/// for an observer on the ground; smooth and bounded for every elevation in [-pi/2, pi/2], 34' for
-/// a body seen at the horizontal, 0 from -6 degrees down. Model, source and error are in
-/// refraction.cpp; RefractionFromHeight is for observers high above the sea. Throws InputError if
-/// the pressure is not in [0, 2e5] Pa or the temperature not in [150, 400] K.
-[[nodiscard]] double Refraction(double true_elevation_rad, const AirAtObserver& air = {});
 
 }  // namespace alpenglow::atmosphere

@@ -60,10 +60,6 @@ void DevelopRow(const Image& image, int y, float scale, const Look& look, Displa
 
 }  // namespace
 
-DisplayImage Develop(const Image& image, double ev100, ToneCurve curve) {
-  return Develop(image, ev100, Look{.curve = curve});
-}
-
 DisplayImage Develop(const Image& seen, double ev100, const Look& look) {
   if (look.local_exposure) {
     Look rest = look;

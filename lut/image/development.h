@@ -9,10 +9,8 @@
 
 namespace alpenglow::lut {
 
-/// Develops an image from Seen(). Throws InternalError for a pixel that is not finite.
+/// Exposes, tone-maps and dithers an image from Seen(). Throws InternalError for a pixel that is not
+/// finite.
 [[nodiscard]] DisplayImage Develop(const Image& seen, double ev100, const Look& look);
-
-/// Exposes, tone-maps and dithers an image. Throws InternalError for a pixel that is not finite.
-[[nodiscard]] DisplayImage Develop(const Image& image, double ev100, ToneCurve curve);
 
 }  // namespace alpenglow::lut

@@ -17,6 +17,7 @@
 #include "atmosphere/base/error.h"
 #include "lut/image/development.h"
 #include "lut/image/exr.h"
+#include "lut/image/look.h"
 #include "lut/image/metering.h"
 #include "lut/image/png.h"
 #include "lut/image/tone_mapping.h"
@@ -84,14 +85,15 @@ void Run(const std::filesystem::path& folder, const RenderSettings& settings,
       continue;
     const std::filesystem::path file = folder / fmt::format("reference-{}.exr", number);
     const Image reference = ReferenceOf(view, settings, file);
-    WritePng(
-        folder / fmt::format("reference-{}.png", number),
-        Develop(reference, MeterEv100(reference, kSunDiskLuminance_cd_per_m2), ToneCurve::kAgx),
-        {});
+    WritePng(folder / fmt::format("reference-{}.png", number),
+             Develop(reference, MeterEv100(reference, kSunDiskLuminance_cd_per_m2),
+                     {.curve = ToneCurve::kAgx}),
+             {});
     const Image painted = PaintedOf(view, settings);
     WriteExr(folder / fmt::format("painted-{}.exr", number), painted, {});
     WritePng(folder / fmt::format("painted-{}.png", number),
-             Develop(painted, MeterEv100(reference, kSunDiskLuminance_cd_per_m2), ToneCurve::kAgx),
+             Develop(painted, MeterEv100(reference, kSunDiskLuminance_cd_per_m2),
+                     {.curve = ToneCurve::kAgx}),
              {});
     WritePng(folder / fmt::format("difference-{}.png", number),
              TenfoldGrey(DifferencePicture(reference, painted)), {});

@@ -81,7 +81,7 @@ TEST(Moon, RefractionLiftsItAsItLiftsTheSun) {
   const UtcInstant instant = ParseInstant("2026-06-21T20:00:00Z");
   const MoonPosition bare = MoonAt(place, instant), seen = ApparentMoonAt(place, instant);
   EXPECT_EQ(seen.elevation_rad,
-            bare.elevation_rad + RefractionFromHeight(bare.elevation_rad, 500.0));
+            bare.elevation_rad + RefractionFromHeight(AlmanacAir(), bare.elevation_rad, 500.0));
   EXPECT_EQ(seen.azimuth_rad, bare.azimuth_rad);
 }
 

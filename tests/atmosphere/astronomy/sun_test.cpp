@@ -51,7 +51,7 @@ TEST(Sun, ExampleOfTheNrelSolarPositionAlgorithm) {
       (60.0 * std::tan((elevation + 10.3 / (elevation + 5.11)) * kRadiansPerDegree));
   EXPECT_NEAR(90.0 - elevation - spa_refraction, 50.11162, 0.0003) << "SPA's own tolerance";
   const double ours =
-      Refraction(sun.elevation_rad, AirAtObserver{82000.0, 284.15}) / kRadiansPerDegree;
+      RefractionFromHeight(AlmanacAir(), sun.elevation_rad, 1830.14) / kRadiansPerDegree;
   EXPECT_NEAR(ours, spa_refraction, 0.001)
       << "Saemundsson's formula, which SPA uses, is 5 % (0.0008 degrees) high at 40 degrees";
 }
@@ -447,7 +447,7 @@ TEST(SunEvents, AtSunriseTheUpperLimbIsSeenOnTheSea) {
   const SunPosition sun = SunAt(place, sunrise);
   const double limb = sun.elevation_rad + sun.angular_radius_rad;
   const double radius_m = OsculatingRadius(kWgs84, place.latitude_rad);
-  EXPECT_NEAR(limb + RefractionFromHeight(limb, place.height_m, radius_m),
+  EXPECT_NEAR(limb + RefractionFromHeight(AlmanacAir(radius_m), limb, place.height_m),
               -SeaHorizonFrom(place.height_m, radius_m).dip_rad, 1e-6)
       << "0.01 s of the search are 7e-7";
 }

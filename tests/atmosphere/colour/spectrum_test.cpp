@@ -19,6 +19,7 @@
 #include "atmosphere/medium/medium.h"
 #include "atmosphere/reference/reference_solution.h"
 #include "tests/fixtures/bands_near.h"
+#include "tests/fixtures/ciede2000.h"
 #include "tests/fixtures/sanitized.h"
 
 namespace alpenglow::atmosphere {
@@ -243,9 +244,9 @@ TEST(Ciede2000, PublishedPairsHaveTheirDifferences) {
   for (const LabPair& pair : kPublishedPairs) {
     const Triple first = XyzFromLab(pair.l1, pair.a1, pair.b1, white);
     const Triple second = XyzFromLab(pair.l2, pair.a2, pair.b2, white);
-    EXPECT_NEAR(Ciede2000(first, second, white), pair.difference, 6e-5)
+    EXPECT_NEAR(tests::Ciede2000(first, second, white), pair.difference, 6e-5)
         << "four digits are published";
-    EXPECT_NEAR(Ciede2000(second, first, white), pair.difference, 6e-5) << "symmetric";
+    EXPECT_NEAR(tests::Ciede2000(second, first, white), pair.difference, 6e-5) << "symmetric";
   }
 }
 
@@ -344,7 +345,7 @@ std::vector<double> SortedErrors(const BandColour& colour) {
     }
     const double exposure = light.xyz[1] / sun[1] / 0.4;
     const Triple white{sun[0] * exposure, sun[1] * exposure, sun[2] * exposure};
-    errors.push_back(Ciede2000(colour.Xyz(bands), light.xyz, white));
+    errors.push_back(tests::Ciede2000(colour.Xyz(bands), light.xyz, white));
   }
   std::sort(errors.begin(), errors.end());
   return errors;

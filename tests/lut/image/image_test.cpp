@@ -192,7 +192,8 @@ Image Grey(int width, int height, float luminance) {
 
 TEST(Develop, LinearCurveReproducesTheSrgbCodeOnAverage) {
   // Light 0.2140 is code 127.5: half of the pixels 127, half 128, plus dither of one code.
-  const DisplayImage display = Develop(Grey(64, 64, 0.21404F), -std::log2(1.2), ToneCurve::kLinear);
+  const DisplayImage display =
+      Develop(Grey(64, 64, 0.21404F), -std::log2(1.2), {.curve = ToneCurve::kLinear});
   double sum = 0.0;
   for (const std::uint8_t code : display.rgb) sum += code;
   EXPECT_NEAR(sum / static_cast<double>(display.rgb.size()), 127.5, 0.02)
@@ -211,7 +212,7 @@ TEST(Develop, ASlowGradientHasNoBands) {
       image.at(x, y) = {light, light, light};
     }
   }
-  const DisplayImage display = Develop(image, -std::log2(1.2), ToneCurve::kLinear);
+  const DisplayImage display = Develop(image, -std::log2(1.2), {.curve = ToneCurve::kLinear});
   for (int block = 0; block < 4; ++block) {
     double sum = 0.0;
     for (int y = 0; y < 64; ++y) {
@@ -225,11 +226,11 @@ TEST(Develop, ASlowGradientHasNoBands) {
 }
 
 TEST(Develop, BlackStaysBlackAndAPixelThatIsNoNumberIsAFault) {
-  const DisplayImage display = Develop(Grey(64, 64, 0.0F), 10.0, ToneCurve::kAgx);
+  const DisplayImage display = Develop(Grey(64, 64, 0.0F), 10.0, {.curve = ToneCurve::kAgx});
   EXPECT_EQ(display.rgb, std::vector<std::uint8_t>(64 * 64 * 3, 0));
   Image image = Grey(4, 4, 1.0F);
   image.at(2, 1)[1] = std::numeric_limits<float>::quiet_NaN();
-  EXPECT_THROW((void)Develop(image, 0.0, ToneCurve::kAgx), InternalError);
+  EXPECT_THROW((void)Develop(image, 0.0, {.curve = ToneCurve::kAgx}), InternalError);
 }
 
 TEST(Dither, TileHoldsEveryRankOnce) {
@@ -401,7 +402,7 @@ TEST(ClippedEdge, ADarkLimbIsNoMissingCover) {
 
 TEST(ClippedEdge, ADisksEdgeIsSmoothOnTheDisplay) {
   const Image image = DiskBeforeSky(32, 7.5);
-  const DisplayImage shown = Develop(image, 15.0, ToneCurve::kAgx);
+  const DisplayImage shown = Develop(image, 15.0, {.curve = ToneCurve::kAgx});
   const auto blue_less_red = [&](int x, int y) {
     const std::size_t at = 3 * static_cast<std::size_t>(y * 32 + x);
     return static_cast<int>(shown.rgb[at + 2]) - static_cast<int>(shown.rgb[at]);
@@ -478,7 +479,7 @@ TEST(ClippedEdge, NothingJumpsWhileADiskGrowsDimmer) {
   const Image image = DiskBeforeSky(32, 7.5);
   int last = -1;
   for (double ev100 = 30.0; ev100 > 10.0; ev100 -= 0.125) {
-    const DisplayImage shown = Develop(image, ev100, ToneCurve::kAgx);
+    const DisplayImage shown = Develop(image, ev100, {.curve = ToneCurve::kAgx});
     const int here = shown.rgb[3 * (16 * 32 + 23) + 1];  // half of it covered
     if (last >= 0) {
       EXPECT_NEAR(here, last, 14) << ev100 << ": an eighth of a stop is 10 codes";

@@ -132,7 +132,7 @@ TEST(Look, DevelopsTheLocallyExposedPicture) {
     }
   }
   const DisplayImage local = Develop(image, 9.0, LookFromName("local"));
-  EXPECT_EQ(local.rgb, Develop(LocallyExposed(image, 9.0), 9.0, ToneCurve::kAgx).rgb);
+  EXPECT_EQ(local.rgb, Develop(LocallyExposed(image, 9.0), 9.0, {.curve = ToneCurve::kAgx}).rgb);
   EXPECT_GT(local.rgb.back(), Develop(image, 9.0, Look{}).rgb.back()) << "shadows are opened";
 }
 

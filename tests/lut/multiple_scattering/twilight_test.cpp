@@ -55,10 +55,13 @@ std::map<double, double> PublishedLux() { return Table("illuminance_vs_sun_altit
 /// Returns the relative density at 40 km of the U.S. Standard Atmosphere.
 double DensityAt40Km() { return Table("ussa76_profile.csv", 0, 6).at(40.0); }
 
-double TrueElevation(double apparent_rad) {
-  double elevation = apparent_rad;
-  for (int i = 0; i < 40; ++i) elevation = apparent_rad - Refraction(elevation);
-  return elevation;
+/// Returns the true elevation of an apparent one of the table. Refraction lifts a sun on the horizon
+/// by 34'; below, where no ray arrives, it is taken to fade to nothing until civil twilight ends.
+double TrueElevation(double apparent_deg) {
+  const std::map<double, double> refraction_minutes{{0.0, 34.0}, {-3.0, 27.0}};
+  const auto at = refraction_minutes.find(apparent_deg);
+  const double minutes = at == refraction_minutes.end() ? 0.0 : at->second;
+  return (apparent_deg - minutes / 60.0) * kRadiansPerDegree;
 }
 
 /// Computes illuminance [lx] of a horizontal plane on the ground.
@@ -87,8 +90,7 @@ Medium WithOneExponential(Medium medium, double height_m) {
 }
 
 double RatioToTable(const Daylight& daylight, double apparent_deg) {
-  return daylight.Lux(TrueElevation(apparent_deg * kRadiansPerDegree)) /
-         PublishedLux().at(apparent_deg);
+  return daylight.Lux(TrueElevation(apparent_deg)) / PublishedLux().at(apparent_deg);
 }
 
 TEST(Twilight, MoleculesThinOutAsInTheStandardAtmosphere) {

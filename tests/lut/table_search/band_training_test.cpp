@@ -14,6 +14,7 @@
 #include "atmosphere/math/constants.h"
 #include "atmosphere/math/numerics.h"
 #include "atmosphere/ray/ray.h"
+#include "tests/fixtures/ciede2000.h"
 #include "tests/fixtures/sanitized.h"
 
 namespace alpenglow::lut {
@@ -208,7 +209,7 @@ ColourErrors SurfaceErrors(int bands, const std::vector<double>& light) {
     for (std::size_t j = 0; j < set.size(); ++j) radiance[j] *= sun[j] * light_at(set[j]);
     Triple through = colour.Xyz(radiance);
     for (std::size_t c = 0; c < 3; ++c) through[c] /= white[c];
-    const double error = Ciede2000(through, RelativeXyz(exact), paper);
+    const double error = tests::Ciede2000(through, RelativeXyz(exact), paper);
     errors.mean += error / 27.0;
     errors.greatest = std::max(errors.greatest, error);
   }

@@ -14,6 +14,7 @@
 #include "atmosphere/math/constants.h"
 #include "lut/image/development.h"
 #include "lut/image/image.h"
+#include "lut/image/look.h"
 #include "lut/image/tone_mapping.h"
 #include "lut/sky/sky_view.h"
 #include "tests/fixtures/lit_air.h"
@@ -395,7 +396,7 @@ TEST(DayStrip, ColoursAreThoseOfTheSky) {
                         static_cast<float>(rgb[2])};
     }
     const double ev100 = 0.8 * std::log2(mean * 100.0 / 12.5) + 0.2 * 14.0;
-    const DisplayImage developed = Develop(sky, ev100, ToneCurve::kAgx);
+    const DisplayImage developed = Develop(sky, ev100, {.curve = ToneCurve::kAgx});
     for (int row = 0; row < strip.rows; ++row) {
       for (std::size_t c = 0; c < 3; ++c) {
         const std::size_t at = static_cast<std::size_t>(row) * 3 + c;

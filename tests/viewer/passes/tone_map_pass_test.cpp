@@ -55,7 +55,7 @@ TEST_F(ToneMapPassTest, EveryToneCurveIsThatOfTheRendererWithinOneCode) {
     const ToneCurve curve = ToneCurveFromName(name);
     tone_map.Use(Look{.curve = curve});
     tone_map.Develop(picture, ev100, {screen.framebuffer(), kFrameWidth, kFrameHeight});
-    const DisplayImage reference = Develop(image, ev100, curve);
+    const DisplayImage reference = Develop(image, ev100, {.curve = curve});
     const Image codes = screen.Read();
     int off_by_one = 0;
     for (std::size_t i = 0; i < codes.rgb.size(); ++i) {
@@ -77,7 +77,7 @@ TEST_F(ToneMapPassTest, ADraftIsAFewCodesOffAndThenExact) {
   const RenderTarget picture(kFrameWidth, kFrameHeight, RenderTarget::Depth::kNone);
   picture.Write(image);
   const RenderTarget screen(kFrameWidth, kFrameHeight, RenderTarget::Depth::kNone);
-  const DisplayImage reference = Develop(image, ev100, ToneCurve::kAgx);
+  const DisplayImage reference = Develop(image, ev100, {.curve = ToneCurve::kAgx});
   const ToneMapPass tone_map(Look{}, ToneMapPass::FirstPictures::kDraft);
   const auto most_off = [&] {
     tone_map.Develop(picture, ev100, {screen.framebuffer(), kFrameWidth, kFrameHeight});
@@ -124,7 +124,8 @@ TEST_F(ToneMapPassTest, APictureOfAnotherSizeFillsTheScreen) {
   ToneMapPass(Look{}).Develop(picture, 12.0, {screen.framebuffer(), kFrameWidth, kFrameHeight});
   Image even(kFrameWidth, kFrameHeight);
   for (auto& pixel : even.rgb) pixel = image.rgb[0];
-  const DisplayImage reference = Develop(even, 12.0, ToneCurve::kAgx), shown = screen.ReadBytes();
+  const DisplayImage reference = Develop(even, 12.0, {.curve = ToneCurve::kAgx}),
+                     shown = screen.ReadBytes();
   for (std::size_t i = 0; i < reference.rgb.size(); ++i)
     ASSERT_NEAR(shown.rgb[i], reference.rgb[i], 1) << "byte " << i;
 }
