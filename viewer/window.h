@@ -8,7 +8,7 @@
 #include <memory>
 #include <vector>
 
-#include "viewer/input/controls.h"
+#include "viewer/input/window_events.h"
 
 namespace alpenglow::viewer {
 
