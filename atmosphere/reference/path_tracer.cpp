@@ -10,6 +10,7 @@
 #include <glm/vec3.hpp>
 #include <limits>
 #include <numeric>
+#include <optional>
 #include <span>
 
 #include "atmosphere/base/error.h"
@@ -627,6 +628,44 @@ double MeanBy(const std::vector<double>& share, const std::vector<double>& value
          std::accumulate(share.begin(), share.end(), 0.0);
 }
 
+/// Sampling of the directions to which paths are guided.
+class Guide {
+ public:
+  /// @param share  of each band in the aerosol's scattering; must outlive the guide.
+  Guide(const Scene& scene, const Vector& from, const Guidance& weight,
+        const std::vector<double>& share)
+      : scene_(scene), weight_(weight), share_(share), glow_(from, scene.sun(), scene.planet_m()) {}
+
+  [[nodiscard]] double Unguided() const { return 1.0 - weight_.glow - weight_.aureole; }
+
+  /// Returns a direction; nullopt for the share Unguided() of choices.
+  [[nodiscard]] std::optional<Vector> Sample(double choice, double u, double v) const {
+    if (choice < weight_.glow) return glow_.Sample(u, v);
+    if (choice >= weight_.glow + weight_.aureole) return std::nullopt;
+    const double rest = (choice - weight_.glow) / weight_.aureole;
+    return FrameAround(scene_.sun())
+        .Direction(SampleAerosol(scene_.medium(), share_, rest, v), 2.0 * kPi * u);
+  }
+
+  /// Returns the density of all directions. @param unguided  density of the others, times
+  /// Unguided().
+  [[nodiscard]] double Density(double unguided, const Vector& direction) const {
+    double density = unguided;
+    if (weight_.glow > 0.0) density += weight_.glow * glow_.Density(direction);
+    if (weight_.aureole > 0.0) {
+      const double to_sun = std::clamp(glm::dot(direction, scene_.sun()), -1.0, 1.0);
+      density += weight_.aureole * MeanBy(share_, MiePhaseValues(scene_.medium(), to_sun));
+    }
+    return density;
+  }
+
+ private:
+  const Scene& scene_;
+  Guidance weight_;
+  const std::vector<double>& share_;
+  Glow glow_;
+};
+
 Vector Tracer::TurnInAir(const Piece& piece, const Point& point, const Vector& from, double choice,
                          double u, double v) {
   const Medium& medium = scene_.medium();
@@ -639,32 +678,22 @@ Vector Tracer::TurnInAir(const Piece& piece, const Point& point, const Vector& f
   }
   if (!(by_aerosol > 0.0)) std::fill(share.begin(), share.end(), 1.0);
   const Guidance guidance = GuidanceAt(scene_, from, order_);
-  const double plain = 1.0 - guidance.glow - guidance.aureole;
-  const double molecules = plain * by_molecules / (by_molecules + by_aerosol);
-  const double aerosol = plain - molecules;
-  const Glow glow(from, scene_.sun(), scene_.planet_m());
-  const double azimuth = 2.0 * kPi * u;
-  Vector direction;
-  if (choice < guidance.glow) {
-    direction = glow.Sample(u, v);
-  } else if (choice < guidance.glow + guidance.aureole) {
-    const double rest = (choice - guidance.glow) / guidance.aureole;
-    direction = FrameAround(scene_.sun()).Direction(SampleAerosol(medium, share, rest, v), azimuth);
-  } else {
+  const Guide guide(scene_, from, guidance, share);
+  const double molecules = guide.Unguided() * by_molecules / (by_molecules + by_aerosol);
+  const double aerosol = guide.Unguided() - molecules;
+  std::optional<Vector> guided = guide.Sample(choice, u, v);
+  if (!guided) {
     const double rest = choice - (guidance.glow + guidance.aureole + molecules);
     const double cosine =
         rest < 0.0 ? SampleCosine(kMolecules, v) : SampleAerosol(medium, share, rest / aerosol, v);
-    direction = FrameAround(piece.direction).Direction(cosine, azimuth);
+    guided = FrameAround(piece.direction).Direction(cosine, 2.0 * kPi * u);
   }
+  const Vector direction = *guided;
   const double cosine = std::clamp(glm::dot(direction, piece.direction), -1.0, 1.0);
   const std::vector<double> rayleigh_phase = RayleighPhaseValues(medium, cosine);
   const std::vector<double> mie_phase = MiePhaseValues(medium, cosine);
-  double density = molecules * Phase(kMolecules, cosine) + aerosol * MeanBy(share, mie_phase);
-  if (guidance.glow > 0.0) density += guidance.glow * glow.Density(direction);
-  if (guidance.aureole > 0.0) {
-    const double to_sun = std::clamp(glm::dot(direction, scene_.sun()), -1.0, 1.0);
-    density += guidance.aureole * MeanBy(share, MiePhaseValues(medium, to_sun));
-  }
+  const double density = guide.Density(
+      molecules * Phase(kMolecules, cosine) + aerosol * MeanBy(share, mie_phase), direction);
   PlaneTurn turn;
   if (polarised_ != nullptr) turn = TurnOf(piece.direction, reference_, direction);
   for (std::size_t band = 0; band < weight_.size(); ++band) {
@@ -714,26 +743,13 @@ PlaneDirection DirectionAbove(const Scene& scene, const Vector& from, const Vect
                               int order, double choice, double u, double v) {
   const bool faces_sky = glm::dot(from, normal) > 0.0;
   const Guidance guidance = faces_sky ? GuidanceAt(scene, from, order) : Guidance{0.0, 0.0};
-  const Glow glow(from, scene.sun(), scene.planet_m());
   const std::vector<double> share(scene.bands(), 1.0);
-  const double azimuth = 2.0 * kPi * u;
-  Vector direction;
-  if (choice < guidance.glow) {
-    direction = glow.Sample(u, v);
-  } else if (choice < guidance.glow + guidance.aureole) {
-    const double rest = (choice - guidance.glow) / guidance.aureole;
-    direction =
-        FrameAround(scene.sun()).Direction(SampleAerosol(scene.medium(), share, rest, v), azimuth);
-  } else {
-    direction = FrameAround(normal).Direction(std::sqrt(v), azimuth);
-  }
+  const Guide guide(scene, from, guidance, share);
+  const Vector direction =
+      guide.Sample(choice, u, v)
+          .value_or(FrameAround(normal).Direction(std::sqrt(v), 2.0 * kPi * u));
   const double cosine = std::max(glm::dot(direction, normal), 0.0);
-  double density = (1.0 - guidance.glow - guidance.aureole) * cosine / kPi;
-  if (guidance.glow > 0.0) density += guidance.glow * glow.Density(direction);
-  if (guidance.aureole > 0.0) {
-    const double to_sun = std::clamp(glm::dot(direction, scene.sun()), -1.0, 1.0);
-    density += guidance.aureole * MeanBy(share, MiePhaseValues(scene.medium(), to_sun));
-  }
+  const double density = guide.Density(guide.Unguided() * cosine / kPi, direction);
   return {direction, density > 0.0 ? cosine / density : 0.0};
 }
 

@@ -13,17 +13,16 @@
 #include "atmosphere/medium/phase_text.h"
 #include "lut/camera_tables/air_rows.h"
 #include "lut/sky/sky_view.h"
+#include "lut/sky/sky_view_map.h"
 #include "lut/tables/transmittance_table.h"
 
 namespace alpenglow::lut {
 namespace {
 
 // Returns the angle below the horizontal at which rays from altitude h are tangent to the sphere of
-// altitude z <= h.
-double DipTo(double z, double h, double radius) {
-  const double depth = std::max(h - z, 0.0);
-  const double r = radius + h;
-  return std::atan2(std::sqrt(depth * (2.0 * r - depth)), r - depth);
+// altitude z; 0 from below it.
+double DipToAltitude(double z, double h, double radius) {
+  return DipTo(std::max(h - z, 0.0), radius + h);
 }
 
 }  // namespace
@@ -33,10 +32,10 @@ AirMap::AirMap(const Medium& medium, double altitude_m, double ceiling_m, double
       ceiling(ceiling_m / kMetresPerKilometre),
       top(medium.atmosphere_height_m / kMetresPerKilometre),
       radius(medium.planet_radius_m / kMetresPerKilometre),
-      horizon_dip(DipTo(0.0, altitude, radius)),
-      sky_range(horizon_dip + (altitude > top ? -DipTo(top, altitude, radius) : 0.5 * kPi)),
+      horizon_dip(DipToAltitude(0.0, altitude, radius)),
+      sky_range(horizon_dip + (altitude > top ? -DipToAltitude(top, altitude, radius) : 0.5 * kPi)),
       air_sky_range(horizon_dip +
-                    (altitude > ceiling ? -DipTo(ceiling, altitude, radius) : 0.5 * kPi)),
+                    (altitude > ceiling ? -DipToAltitude(ceiling, altitude, radius) : 0.5 * kPi)),
       ground_range(0.5 * kPi - horizon_dip),
       twilight_fall(twilight_fall_),
       twilight_reference(altitude > ceiling ? radius : radius + altitude) {

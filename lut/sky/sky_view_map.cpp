@@ -9,11 +9,6 @@
 namespace alpenglow::lut {
 namespace {
 
-// Returns the angle from the horizontal down to the line that touches a sphere of radius r - depth.
-double DipTo(double depth_m, double r_m) {
-  return std::atan2(std::sqrt(depth_m * (2.0 * r_m - depth_m)), r_m - depth_m);
-}
-
 // Returns v for w = v + v^2 - v^3 in [0, 1], where w is monotone: Newton's method inside a
 // shrinking bracket.
 double CoordinateOfEdgedAir(double w) {
@@ -44,6 +39,10 @@ AzimuthCrowd CrowdAtTerminator(double dip, double mu_s) {
 }
 
 }  // namespace
+
+double DipTo(double depth, double r) {
+  return std::atan2(std::sqrt(depth * (2.0 * r - depth)), r - depth);
+}
 
 SkyViewMap::SkyViewMap(const Medium& medium, double altitude_m, double mu_s) {
   const double h = std::max(altitude_m, 0.0);
