@@ -26,8 +26,9 @@ double Seconds(std::chrono::steady_clock::duration duration) {
 }
 
 std::string LineOf(const std::string& name, const std::vector<double>& ms) {
-  const Percentiles of = PercentilesOf(ms);
-  return fmt::format("{} {:.3f} {:.3f} {:.3f}\n", name, of.median, of.p95, of.p99);
+  const ErrorStatistics of(ms);
+  return fmt::format("{} {:.3f} {:.3f} {:.3f}\n", name, of.Quantile(0.5), of.Quantile(0.95),
+                     of.Quantile(0.99));
 }
 
 constexpr int kSamples = 16;
@@ -129,9 +130,9 @@ Image ReferenceOf(const ReferenceScene& scene, const PaintedView& view) {
   return RendererOf(scene)->Render(view.now, settings);
 }
 
-std::string Row(const std::string& name, const ViewDifference& is, const std::string& time) {
-  return fmt::format("{:<26}{:>8.3f} %{:>9.3f} %{:>9.3f} %  {:>10}\n", name, 100.0 * is.mean,
-                     100.0 * is.at_99_percent, 100.0 * is.at_999_permille, time);
+std::string Row(const std::string& name, const ErrorStatistics& is, const std::string& time) {
+  return fmt::format("{:<26}{:>8.3f} %{:>9.3f} %{:>9.3f} %  {:>10}\n", name, 100.0 * is.mean(),
+                     100.0 * is.Quantile(0.99), 100.0 * is.Quantile(0.999), time);
 }
 
 // Compares a view that is painted at a fraction of its size and upscaled with the view at one ray
@@ -148,16 +149,6 @@ std::string FewerRays(SkyPainter& painter, const PaintedView& view,
 }
 
 }  // namespace
-
-Percentiles PercentilesOf(std::vector<double> values) {
-  ALPENGLOW_ENSURE(values.size(), >, 0U);
-  std::sort(values.begin(), values.end());
-  const auto at = [&](double share) {
-    const double rank = std::ceil(share * static_cast<double>(values.size()));
-    return values[static_cast<std::size_t>(std::max(rank, 1.0)) - 1];
-  };
-  return {at(0.5), at(0.95), at(0.99)};
-}
 
 Benchmark::Benchmark(double seconds, PassClock clock)
     : seconds_(seconds), warm_up_s_(std::min(1.0, 0.25 * seconds)), clock_(clock) {}
@@ -227,7 +218,8 @@ std::string Benchmark::Text() const {
 std::string Benchmark::WorstText() const {
   return fmt::format(
       "{} frames, the worst of them {:.1f} ms, {:.1f} times the median, after {:.1f} s",
-      frame_ms_.size(), worst_ms_, worst_ms_ / PercentilesOf(frame_ms_).median, worst_at_s_);
+      frame_ms_.size(), worst_ms_, worst_ms_ / ErrorStatistics(frame_ms_).Quantile(0.5),
+      worst_at_s_);
 }
 
 ReplayFrame BenchmarkFlight(const CameraPose& start, const UtcInstant& begin, double elapsed_s) {
@@ -253,12 +245,13 @@ std::string ExplainView(SkyPainter& painter, const ReferenceScene& scene, const 
                        NameOf(quality), view.width, view.height);
   }
   const TimedPicture painted = Paint(painter, view, sizes);
-  const ViewDifference all = DifferenceOf(by_renderer, painted.image);
+  const ErrorStatistics all = DifferenceOf(by_renderer, painted.image);
   std::string text = fmt::format(
       "quality {}, {}x{}, {} rays a pixel; {:.1f} % of pixels are edges and left out\n"
       "{:<26}{:>10}{:>11}{:>11}  {:>10}\n",
-      NameOf(quality), view.width, view.height, kSamples, 100.0 * all.edge_share, "off by", "mean",
-      "99 %", "99.9 %", "frame");
+      NameOf(quality), view.width, view.height, kSamples,
+      100.0 * (1.0 - static_cast<double>(all.count()) / static_cast<double>(edges.size())),
+      "off by", "mean", "99 %", "99.9 %", "frame");
   text += Row("picture, from renderer's", all, fmt::format("{:.1f} ms", painted.frame_ms));
   for (const Shortcut& shortcut : kShortcuts) {
     PaintSizes better = sizes;

@@ -25,14 +25,6 @@
 
 namespace alpenglow::viewer {
 
-/// Values that are not exceeded by 50 %, 95 % and 99 % of all values.
-struct Percentiles {
-  double median, p95, p99;
-};
-/// Returns the percentiles by nearest rank: each is the smallest value that is not exceeded by at
-/// least that fraction of all values. There must be at least one value.
-[[nodiscard]] Percentiles PercentilesOf(std::vector<double> values);
-
 /// Measures frame times. An OpenGL context must be current during its lifetime.
 class Benchmark {
  public:
@@ -91,7 +83,7 @@ class Benchmark {
                                           double elapsed_s);
 
 /// Returns a text table of errors: of the picture against the renderer's, and of each shortcut
-/// against its best setting. Its columns are the mean, 99 % and 99.9 % of pixels (ViewDifference)
+/// against its best setting. Its columns are the mean, 99 % and 99.9 % of pixels (DifferenceOf)
 /// and the frame time that the shortcut saves. Everything must be ready for the view
 /// (SkyPainter::WaitUntilReady).
 [[nodiscard]] std::string ExplainView(SkyPainter& painter, const ReferenceScene& scene,

@@ -18,6 +18,7 @@
 #include <utility>
 #include <vector>
 
+#include "atmosphere/math/error_statistics.h"
 #include "atmosphere/ray/ray.h"
 #include "lut/cli/program.h"
 #include "lut/report/report.h"
@@ -36,8 +37,8 @@ struct ReferenceValue {
 /// Rule by which the error of a value follows from the true value and the scale of the reference.
 struct ErrorRule {
   double (*error)(double value, double truth, double scale);
-  /// If true, errors relative to each value are computed, too. Otherwise the strict statistics are
-  /// equal to the others.
+  /// If true, errors relative to each value are computed, too. Otherwise the strict errors are the
+  /// same.
   bool has_strict;
 };
 inline constexpr ErrorRule kRelativeToScale{
@@ -45,16 +46,14 @@ inline constexpr ErrorRule kRelativeToScale{
 inline constexpr ErrorRule kRelativeToTruth{
     [](double value, double truth, double) { return std::abs(value / truth - 1.0); }, false};
 
-/// Returns the statistics of a method's values, by wavelength, for the cases of a regime. The noise
-/// of the reference is subtracted from the rms. If less than half of the noise is left, half of the
-/// noise is returned as a bound, because some dozen cases do not allow a lower one.
-[[nodiscard]] ErrorStatistics StatisticsOf(const std::vector<ReferenceValue>& references,
-                                           const std::vector<std::vector<double>>& answers,
-                                           const ErrorRule& rule = kRelativeToScale);
+/// Returns the errors of a method's values, by wavelength, for the cases of a regime.
+[[nodiscard]] ErrorStatistics ErrorsOf(const std::vector<ReferenceValue>& references,
+                                       const std::vector<std::vector<double>>& answers,
+                                       const ErrorRule& rule = kRelativeToScale);
 
-/// Returns the statistics of errors >= 0, which contain the noise of the reference. The strict
-/// statistics have equal values.
-[[nodiscard]] ErrorStatistics StatisticsOfErrors(std::vector<double> errors, double noise);
+/// Returns the errors relative to each true value above kDarkestValue.
+[[nodiscard]] ErrorStatistics StrictErrorsOf(const std::vector<ReferenceValue>& references,
+                                             const std::vector<std::vector<double>>& answers);
 
 /// Returns the rms of the reference's standard errors over cases and wavelengths, relative to their
 /// scales; 0 if there are none.
@@ -193,7 +192,7 @@ class ErrorStudy {
     const std::vector<Case>& cases = cases_[r];
     std::vector<std::vector<double>> answers(cases.size());
     ForEachCase(cases.size(), [&](std::size_t i) { answers[i] = ValuesOf(answer(cases[i])); });
-    result.error = ErrorsOf(r, answers);
+    Judge(r, answers, result);
     if constexpr (std::is_arithmetic_v<Samples>) {
       result.samples = samples;
     } else {
@@ -234,9 +233,11 @@ class ErrorStudy {
   /// Adds a row that was measured elsewhere.
   void AddMeasured(ReportRow row) { topic_.rows.push_back(std::move(row)); }
 
-  [[nodiscard]] ErrorStatistics ErrorsOf(std::size_t r,
-                                         const std::vector<std::vector<double>>& answers) const {
-    return StatisticsOf(references_[r], answers, rule_);
+  /// Sets the errors of a method on the cases of regime `r`.
+  void Judge(std::size_t r, const std::vector<std::vector<double>>& answers,
+             RegimeResult& result) const {
+    result.error = ErrorsOf(references_[r], answers, rule_);
+    result.strict = rule_.has_strict ? StrictErrorsOf(references_[r], answers) : result.error;
   }
 
   [[nodiscard]] std::size_t regimes() const { return topic_.regimes.size(); }

@@ -21,6 +21,7 @@
 #include <string>
 #include <vector>
 
+#include "atmosphere/math/error_statistics.h"
 #include "atmosphere/medium/medium.h"
 #include "lut/cli/messages.h"
 #include "lut/layer.h"
@@ -51,19 +52,11 @@ inline constexpr std::array<ReportRegime, kReportRegimes> kRegimes = {{
 }};
 inline constexpr double kSpaceAltitude_m = 400e3;
 
-/// Statistics of the errors of all rays and wavelengths of a regime.
-struct ErrorStatistics {
-  double median = 0.0, rms = 0.0, percentile_99 = 0.0, largest = 0.0;
-  /// The noise of the reference hides the error: rms is an approximate upper bound.
-  bool rms_is_bound = false;
-  /// Errors relative to each value itself, however dark, above kDarkestValue (error_study.h).
-  /// For rms and percentile_99, dark values count as brighter (DarkestRadiance).
-  double strict_rms = 0.0, strict_percentile_99 = 0.0;
-};
-
 /// Result of a method in one regime.
 struct RegimeResult {
-  ErrorStatistics error;
+  ErrorStatistics error;  // of all rays and wavelengths; dark values count as brighter
+  /// Errors relative to each value itself, however dark, above kDarkestValue (error_study.h).
+  ErrorStatistics strict;
   double time_s = 0.0;       // of one answer (a ray, all wavelengths), fastest pass over the rays
   double time_spread = 0.0;  // median pass over fastest pass, minus 1: noise of the machine
   double samples = 0.0;      // mean number of points of the air per answer; 0: a look-up

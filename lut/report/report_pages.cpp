@@ -75,7 +75,7 @@ std::vector<PlotPanel> PanelsOf(const ReportTopic& topic, const Cost& cost) {
       const double x = cost(row, regime);
       const ErrorStatistics& error = row.at[regime].error;
       if (x > 0.0 && row.at[regime].IsMeasured())
-        series->points.push_back({x, error.rms, error.percentile_99, row.parameter});
+        series->points.push_back({x, error.Rms(), error.Quantile(0.99), row.parameter});
     }
     panels.push_back({topic.regimes[regime].name, std::move(list), {}});
   }
@@ -134,10 +134,10 @@ std::string MemoryText(std::uint64_t bytes) {
 }
 
 /// Returns the rms and the percentile, and the strict rms if it differs.
-std::string ErrorText(const ErrorStatistics& error) {
-  return (error.rms_is_bound ? "< " : "") + ShareText(error.rms) + " / " +
-         ShareText(error.percentile_99) +
-         (error.strict_rms == error.rms ? "" : " / " + ShareText(error.strict_rms));
+std::string ErrorText(const RegimeResult& result) {
+  const double rms = result.error.Rms(), strict = result.strict.Rms();
+  return (result.error.RmsIsBound() ? "< " : "") + ShareText(rms) + " / " +
+         ShareText(result.error.Quantile(0.99)) + (strict == rms ? "" : " / " + ShareText(strict));
 }
 
 /// Returns the time of an answer in the slowest regime.
@@ -149,7 +149,8 @@ double SlowestAnswer(const ReportRow& row) {
 
 double LargestPercentile99(const ReportRow& row) {
   double largest = 0.0;
-  for (const RegimeResult& result : row.at) largest = std::max(largest, result.error.percentile_99);
+  for (const RegimeResult& result : row.at)
+    largest = std::max(largest, result.error.Quantile(0.99));
   return largest;
 }
 
@@ -185,7 +186,7 @@ std::string FindingOf(const ReportTopic& topic, MethodOrigin origin) {
   if (best == nullptr) return "No method was measured.";
   std::string parts;
   for (std::size_t r = 0; r < topic.regimes.size(); ++r)
-    parts += fmt::format("{}{} {}", r == 0 ? "" : ", ", ShareText(best->at[r].error.percentile_99),
+    parts += fmt::format("{}{} {}", r == 0 ? "" : ", ", ShareText(best->at[r].error.Quantile(0.99)),
                          topic.regimes[r].key);
   return fmt::format("No method has 99 of 100 errors below {} {}. The most accurate is {} ({}): {}",
                      ShareText(topic.wanted), topic.everywhere, best->Name(),
@@ -208,8 +209,8 @@ std::string RegimeCells(const RegimeResult& result) {
   if (!result.IsMeasured()) return "<td class=\"first\"></td><td></td><td></td><td></td><td></td>";
   const ErrorStatistics& error = result.error;
   return Cell(CsvNumber(result.time_s), TimeText(result.time_s), "first") +
-         ErrorCell(error.rms, error.rms_is_bound ? "< " : "") + ErrorCell(error.percentile_99) +
-         ErrorCell(error.largest) + ErrorCell(error.strict_rms);
+         ErrorCell(error.Rms(), error.RmsIsBound() ? "< " : "") + ErrorCell(error.Quantile(0.99)) +
+         ErrorCell(error.Largest()) + ErrorCell(result.strict.Rms());
 }
 
 std::string TableRow(const ReportRow& row) {
@@ -339,7 +340,7 @@ std::string SummaryRow(const ReportRow& row) {
                   row.memory_bytes == 0 ? "-" : MemoryText(row.memory_bytes),
                   row.build_s == 0.0 ? "-" : TimeText(row.build_s), TimeText(SlowestAnswer(row)));
   for (const RegimeResult& result : row.at) {
-    text += result.IsMeasured() ? fmt::format(" {} |", ErrorText(result.error)) : " |";
+    text += result.IsMeasured() ? fmt::format(" {} |", ErrorText(result)) : " |";
   }
   return text + "\n";
 }
@@ -359,7 +360,7 @@ Plot PlotOfTopic(const ReportTopic& topic) {
   for (std::size_t regime = 0; regime < topic.regimes.size(); ++regime) {
     for (const ReportRow& row : topic.rows) {
       if (row.at[regime].IsMeasured() && !(CostOf(topic, row, regime) > 0.0))
-        plot.panels[regime].levels.push_back({row.Name(), row.at[regime].error.rms});
+        plot.panels[regime].levels.push_back({row.Name(), row.at[regime].error.Rms()});
     }
   }
   return plot;
@@ -377,7 +378,7 @@ std::string CsvOfTopic(const ReportTopic& topic, const ReportMaker& maker) {
   std::string text;
   for (const ReportRow& row : topic.rows) {
     for (std::size_t r = 0; r < topic.regimes.size(); ++r) {
-      const auto& [error, time_s, time_spread, samples] = row.at[r];
+      const auto& [error, strict, time_s, time_spread, samples] = row.at[r];
       if (!row.at[r].IsMeasured()) continue;
       const std::optional<SunRange>& sun = topic.regimes[r].sun;
       const std::vector<std::string> method{
@@ -396,13 +397,13 @@ std::string CsvOfTopic(const ReportTopic& topic, const ReportMaker& maker) {
       const std::array<double, 11> numbers{samples,
                                            time_s,
                                            time_spread,
-                                           error.median,
-                                           error.rms,
-                                           error.rms_is_bound ? 1.0 : 0.0,
-                                           error.percentile_99,
-                                           error.largest,
-                                           error.strict_rms,
-                                           error.strict_percentile_99,
+                                           error.Quantile(0.5),
+                                           error.Rms(),
+                                           error.RmsIsBound() ? 1.0 : 0.0,
+                                           error.Quantile(0.99),
+                                           error.Largest(),
+                                           strict.Rms(),
+                                           strict.Quantile(0.99),
                                            topic.reference.noise[r]};
       text += fmt::format("{},{:.6g},{},{},{}\n", fmt::join(method, ","), fmt::join(numbers, ","),
                           CsvText(maker.machine), CsvText(maker.program), CsvText(maker.date));

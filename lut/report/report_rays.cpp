@@ -284,7 +284,7 @@ void AddClosedFormOfMany(RayStudy& study) {
     TimePasses(mu.size(), study.effort(), pass, row.at[r]);
     std::vector<std::vector<double>> values;
     for (const Bands<float>& one : answers) values.push_back(ValuesOf(one));
-    row.at[r].error = study.ErrorsOf(r, values);
+    study.Judge(r, values, row.at[r]);
   }
   study.AddMeasured(std::move(row));
 }

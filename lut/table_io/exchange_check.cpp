@@ -169,19 +169,14 @@ class Comparison {
  public:
   void Add(double value, double truth) { pairs_.push_back({value, truth}); }
 
-  [[nodiscard]] TexelErrors Errors() const {
+  [[nodiscard]] ErrorStatistics Errors() const {
     double largest = 0.0;
     for (const auto& [value, truth] : pairs_) largest = std::max(largest, truth);
     std::vector<double> errors;
     for (const auto& [value, truth] : pairs_) {
       if (truth > 1e-3 * largest) errors.push_back(std::abs(value / truth - 1.0));
     }
-    if (errors.empty()) return {};
-    std::sort(errors.begin(), errors.end());
-    const auto at = [&](double share) {
-      return errors[static_cast<std::size_t>(share * static_cast<double>(errors.size() - 1))];
-    };
-    return {errors.size(), at(0.5), at(0.9), at(1.0)};
+    return ErrorStatistics(std::move(errors));
   }
 
  private:
@@ -258,7 +253,7 @@ std::vector<CheckedTexel> CheckedTexels(const Medium& medium, double lowest_mu_s
   return texels;
 }
 
-TexelErrors TransmittanceErrors(const std::vector<float>& texels, const Medium& medium) {
+ErrorStatistics TransmittanceErrors(const std::vector<float>& texels, const Medium& medium) {
   const TransmittanceTable table(
       medium, {.mu = kTransmittanceShape.width, .altitudes = kTransmittanceShape.height});
   Comparison comparison;
@@ -268,8 +263,8 @@ TexelErrors TransmittanceErrors(const std::vector<float>& texels, const Medium& 
   return comparison.Errors();
 }
 
-TexelErrors IrradianceErrors(const std::vector<float>& texels, const MultipleScattering& light,
-                             const Medium& medium) {
+ErrorStatistics IrradianceErrors(const std::vector<float>& texels, const MultipleScattering& light,
+                                 const Medium& medium) {
   Comparison comparison;
   const auto unit = [](std::size_t i, std::size_t n) {
     return static_cast<double>(i) / static_cast<double>(n - 1);
@@ -285,16 +280,16 @@ TexelErrors IrradianceErrors(const std::vector<float>& texels, const MultipleSca
 }
 
 /// Returns the errors of alpha in scattering, which holds the red light that aerosol scatters once.
-TexelErrors AlphaErrors(const std::vector<float>& scattering,
-                        const std::vector<CheckedTexel>& checked) {
+ErrorStatistics AlphaErrors(const std::vector<float>& scattering,
+                            const std::vector<CheckedTexel>& checked) {
   Comparison comparison;
   for (const CheckedTexel& ours : checked)
     comparison.Add(scattering[4 * ours.texel + 3], ours.aerosol[0]);
   return comparison.Errors();
 }
 
-TexelErrors ScatteringErrors(std::string_view name, const std::vector<float>& texels,
-                             const std::vector<CheckedTexel>& checked) {
+ErrorStatistics ScatteringErrors(std::string_view name, const std::vector<float>& texels,
+                                 const std::vector<CheckedTexel>& checked) {
   Comparison comparison;
   for (const auto& [texel, molecules, aerosol, more] : checked) {
     for (std::size_t c = 0; c < 3; ++c) {
@@ -321,7 +316,7 @@ BestSun LowestSunIn(const std::vector<float>& scattering, const Medium& medium,
     ExchangeOptions tried = options;
     tried.lowest_sun_deg = angle_deg;
     std::vector<CheckedTexel> checked = CheckedTexels(medium, LowestSunOf(tried), light);
-    const double median = ScatteringErrors("scattering", scattering, checked).median;
+    const double median = ScatteringErrors("scattering", scattering, checked).Quantile(0.5);
     if (median >= least) continue;
     least = median;
     best = {angle_deg, std::move(checked)};
@@ -329,12 +324,12 @@ BestSun LowestSunIn(const std::vector<float>& scattering, const Medium& medium,
   return best;
 }
 
-void RequireAgreement(const fs::path& file, const TexelErrors& errors, const Medium& medium) {
-  if (!(errors.median > kLargestMedian)) return;
+void RequireAgreement(const fs::path& file, const ErrorStatistics& errors, const Medium& medium) {
+  if (!(errors.Quantile(0.5) > kLargestMedian)) return;
   RefuseFile(
       file, fmt::format("is not of the atmosphere {}: its texels differ from those of this program "
                         "by {:.2g} % in the median, and {:g} % are allowed",
-                        medium.name, 100.0 * errors.median, 100.0 * kLargestMedian));
+                        medium.name, 100.0 * errors.Quantile(0.5), 100.0 * kLargestMedian));
 }
 
 fs::path FileOf(const fs::path& folder, const TextureShape& shape, const ExchangeOptions& options) {
@@ -364,8 +359,8 @@ LoadedTexture Load(const fs::path& folder, const TextureShape& shape,
   return loaded;
 }
 
-TexelErrors ErrorsOf(const LoadedTexture& texture, const std::vector<CheckedTexel>& checked,
-                     const MultipleScattering& light, const Medium& medium) {
+ErrorStatistics ErrorsOf(const LoadedTexture& texture, const std::vector<CheckedTexel>& checked,
+                         const MultipleScattering& light, const Medium& medium) {
   const std::string_view name = texture.description.shape.name;
   if (name == kTransmittanceShape.name) return TransmittanceErrors(texture.texels, medium);
   if (name == kIrradianceShape.name) return IrradianceErrors(texture.texels, light, medium);
@@ -377,8 +372,9 @@ std::string LineOf(const ExchangeDescription::Texture& texture) {
       "  {:<12}{}\n              {} x {} x {} texels; from ours {:.2g} % (median), {:.2g} % (9th "
       "decile), {:.2g} % (largest) of {}\n",
       "texture", texture.file.filename().string(), texture.shape.width, texture.shape.height,
-      texture.shape.depth, 100.0 * texture.errors.median, 100.0 * texture.errors.ninth_decile,
-      100.0 * texture.errors.largest, texture.errors.texels);
+      texture.shape.depth, 100.0 * texture.errors.Quantile(0.5),
+      100.0 * texture.errors.Quantile(0.9), 100.0 * texture.errors.Largest(),
+      texture.errors.count());
   for (std::size_t c = 0; c < 4; ++c) {
     text += fmt::format("  channel     {} {:.6g} to {:.6g}\n", "RGBA"[c], texture.rgba[c].lowest,
                         texture.rgba[c].highest);

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "atmosphere/math/error_statistics.h"
 #include "atmosphere/medium/medium.h"
 #include "lut/table_io/exchange_tables.h"
 
@@ -20,13 +21,6 @@ namespace alpenglow::lut {
 [[nodiscard]] std::optional<std::filesystem::path> ExchangeFolderOf(
     const std::filesystem::path& file_or_folder);
 
-/// Relative differences between texels and the values that this program computes for them, over
-/// texels with more than a thousandth of the largest value.
-struct TexelErrors {
-  std::size_t texels = 0;
-  double median = 0.0, ninth_decile = 0.0, largest = 0.0;
-};
-
 struct ExchangeDescription {
   struct Channel {
     float lowest, highest;
@@ -35,7 +29,9 @@ struct ExchangeDescription {
     std::filesystem::path file;
     TextureShape shape{};
     std::array<Channel, 4> rgba{};
-    TexelErrors errors;  // for red, green and blue
+    /// Relative differences between red, green and blue and the values that this program computes,
+    /// over texels with more than a thousandth of the largest value.
+    ErrorStatistics errors;
   };
   ExchangeOptions options;  // type: from the first file
   Medium medium;

@@ -56,7 +56,7 @@ Verdict Assess(const ReferenceViews& views, const TableLookup& tables, const Bou
   // Start with the last kind: irradiance is cheap to look up and rules out most tables.
   for (std::size_t k = kViewKinds.size(); k-- > 0;) {
     // A sample of views may miss the few with large errors, and the bound applies to these, too.
-    const double error = views.ErrorsOf(tables, kViewKinds[k]).rms_at_most;
+    const double error = views.ErrorsOf(tables, kViewKinds[k]).RmsAtMost();
     if (error / bounds[k] > verdict.excess) verdict = {error / bounds[k], kViewKinds[k], error};
     if (verdict.excess > enough) return verdict;
   }
@@ -196,8 +196,8 @@ std::string MeasuredText(const TableChoice& choice) {
     text += fmt::format(
         "  {:<22} rms {:6.3f} % (at most {:.3f} %), 99th percentile {:6.3f} %; truth against paths "
         "{:.3f} % (noise {:.3f} %)\n",
-        NameOf(kind), 100.0 * errors.rms, 100.0 * errors.rms_at_most, 100.0 * errors.percentile_99,
-        100.0 * paths.rms, 100.0 * paths.noise);
+        NameOf(kind), 100.0 * errors.Rms(), 100.0 * errors.RmsAtMost(),
+        100.0 * errors.Quantile(0.99), 100.0 * paths.rms, 100.0 * paths.noise);
   }
   return text;
 }

@@ -32,7 +32,7 @@ struct TableSearch {
 struct TableChoice {
   struct Measured {
     ViewKind kind;
-    ViewErrors errors;
+    ErrorStatistics errors;
     ReferenceViews::PathCheck paths;  // check of the truth against path tracing
   };
   TableFolder tables;

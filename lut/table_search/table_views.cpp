@@ -78,10 +78,6 @@ std::vector<double> Values(const Bands<float>& bands) {
   return {bands.value.begin(), bands.value.begin() + static_cast<std::ptrdiff_t>(bands.count)};
 }
 
-double RmsOf(const std::vector<double>& values) {
-  return values.empty() ? 0.0 : Length(values) / std::sqrt(static_cast<double>(values.size()));
-}
-
 ReferenceView ViewReference(const Medium& medium, const SingleScattering<float>& air,
                             const MultipleScattering& finest, ViewKind kind, std::size_t i) {
   ReferenceView view{kind, RayOf(kind, i, medium), {}, {}};
@@ -154,20 +150,7 @@ ReferenceViews::ReferenceViews(const Medium& medium, const MultipleScattering& f
   ThrowIfInterrupted();
 }
 
-ViewErrors ErrorsOfViews(std::vector<double> errors) {
-  RequireFinite(errors, "errors of views");
-  std::sort(errors.begin(), errors.end());
-  const auto count = static_cast<double>(errors.size());
-  const double rms = RmsOf(errors), squares = rms * rms;
-  double fourths = 0.0;
-  for (const double error : errors) fourths += error * error * error * error / count;
-  const double standard_error = std::sqrt(std::max(fourths - squares * squares, 0.0) / count);
-  return {.rms = rms,
-          .rms_at_most = std::sqrt(squares + 3.0 * standard_error),
-          .percentile_99 = errors[static_cast<std::size_t>(std::ceil(0.99 * (count - 1.0)))]};
-}
-
-ViewErrors ReferenceViews::ErrorsOf(const TableLookup& tables, ViewKind kind) const {
+ErrorStatistics ReferenceViews::ErrorsOf(const TableLookup& tables, ViewKind kind) const {
   std::vector<const ReferenceView*> views;
   for (const ReferenceView& view : views_) {
     if (view.kind == kind) views.push_back(&view);
@@ -175,7 +158,7 @@ ViewErrors ReferenceViews::ErrorsOf(const TableLookup& tables, ViewKind kind) co
   std::vector<double> errors(views.size());
   tbb::parallel_for(std::size_t{0}, views.size(),
                     [&](std::size_t i) { errors[i] = ErrorOf(tables, *views[i]); });
-  return ErrorsOfViews(std::move(errors));
+  return ErrorStatistics(std::move(errors));
 }
 
 double ReferenceViews::PathCheck::Unexplained() const {

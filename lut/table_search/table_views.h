@@ -17,6 +17,7 @@
 #include <string_view>
 #include <vector>
 
+#include "atmosphere/math/error_statistics.h"
 #include "lut/multiple_scattering/multiple_scattering.h"
 #include "lut/table_io/table_folder.h"
 
@@ -38,18 +39,6 @@ struct ReferenceView {
   std::vector<double> transmittance;  // empty for irradiance
 };
 
-/// Errors of the views of one kind.
-struct ViewErrors {
-  double rms = 0.0;  // of these views
-  /// The root of the mean square plus three standard errors of it. For 160 errors, the rms of the
-  /// whole kind lies below this in 99 % of samples of a normal and 97 % of an exponential law.
-  double rms_at_most = 0.0;
-  double percentile_99 = 0.0;
-};
-/// Returns the statistics. @param errors  relative errors of single views, in any order; at least
-/// one.
-[[nodiscard]] ViewErrors ErrorsOfViews(std::vector<double> errors);
-
 /// True values for a set of views. They do not depend on the number of threads.
 class ReferenceViews {
  public:
@@ -59,7 +48,7 @@ class ReferenceViews {
                  std::size_t views_of_a_kind, std::size_t first);
 
   [[nodiscard]] const std::vector<ReferenceView>& views() const { return views_; }
-  [[nodiscard]] ViewErrors ErrorsOf(const TableLookup& tables, ViewKind kind) const;
+  [[nodiscard]] ErrorStatistics ErrorsOf(const TableLookup& tables, ViewKind kind) const;
 
   /// Comparison of the truth with path tracing, on views of a kind spread over the set.
   struct PathCheck {

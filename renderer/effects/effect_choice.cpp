@@ -22,11 +22,12 @@ double Norm(const std::array<float, 3>& rgb) {
   return std::sqrt(sum);
 }
 
-// Returns the quantile of sorted values: the value that the fraction `share` does not exceed.
-double Quantile(const std::vector<double>& sorted, double share) {
-  const double last = static_cast<double>(sorted.size()) - 1.0;
-  const double rank = std::ceil(share * static_cast<double>(sorted.size())) - 1.0;
-  return sorted[static_cast<std::size_t>(std::clamp(rank, 0.0, last))];
+/// Returns the largest value of any group.
+template <typename Value>
+double LargestOf(const std::vector<ErrorStatistics>& groups, const Value& value) {
+  double largest = 0.0;
+  for (const ErrorStatistics& group : groups) largest = std::max(largest, value(group));
+  return largest;
 }
 
 constexpr double kPercentileFactor = 4.0;  // 99th percentile allowed, in budgets
@@ -38,13 +39,9 @@ int PreviewSize(int width, int height) {
   return static_cast<int>(std::min(std::clamp(kShare * pixels, kLeast, kMost), pixels));
 }
 
-PictureChange Worse(const PictureChange& a, const PictureChange& b) {
-  return {std::max(a.rms, b.rms), std::max(a.at_99_percent, b.at_99_percent)};
-}
-
-bool IsWithin(const ChangeEstimate& change, double max_error) {
-  return change.at_most.rms <= max_error &&
-         change.at_most.at_99_percent <= kPercentileFactor * max_error;
+bool IsWithin(const PreviewChange& change, double max_error) {
+  return change.RmsAtMost() <= max_error &&
+         change.QuantileAtMost(0.99) <= kPercentileFactor * max_error;
 }
 
 /// Returns the first pixels of a preview's picture.
@@ -64,24 +61,20 @@ class EffectComparison {
         floor_(ChangeFloor(FirstPixels(everything_.image, preview.groups.front().size()))) {}
 
   struct Verdict {
-    ChangeEstimate change;  // the worst of the groups
-    ChangeEstimate whole;   // of the first group
+    PreviewChange change;
     double picture_s;
   };
 
   [[nodiscard]] Verdict On(EffectSet effects) const { return On(Render(effects)); }
   [[nodiscard]] Verdict On(const PreviewPicture& picture) const {
-    Verdict verdict{{}, {}, PictureSeconds(picture)};
+    Verdict verdict{{}, PictureSeconds(picture)};
     std::size_t at = 0;
     for (const auto& group : preview_.groups) {
       std::vector<double> changes;
       for (std::size_t i = 0; i < group.size(); ++i, ++at) {
         changes.push_back(PixelChange(everything_.image.rgb[at], picture.image.rgb[at], floor_));
       }
-      const ChangeEstimate change = ChangeEstimate::Of(std::move(changes));
-      if (&group == &preview_.groups.front()) verdict.whole = change;
-      verdict.change.seen = Worse(verdict.change.seen, change.seen);
-      verdict.change.at_most = Worse(verdict.change.at_most, change.at_most);
+      verdict.change.groups.emplace_back(std::move(changes));
     }
     return verdict;
   }
@@ -115,7 +108,7 @@ class Chooser {
       : comparison_(comparison),
         max_error_(max_error),
         effects_(wanted),
-        verdict_{{}, {}, comparison.everything_s()} {}
+        verdict_{{}, comparison.everything_s()} {}
 
   /// @param candidates  sorted by change, smallest first.
   void LeaveOut(const std::vector<EffectEstimate>& candidates) {
@@ -123,7 +116,7 @@ class Chooser {
     EffectSet fewer = effects_;
     double sum = 0.0;
     for (; tried < candidates.size(); ++tried) {  // while the sum stays within the budget
-      sum += candidates[tried].change.at_most.rms;
+      sum += candidates[tried].change.RmsAtMost();
       if (sum > max_error_) break;
       fewer = fewer.Without(candidates[tried].effect);
     }
@@ -168,11 +161,11 @@ std::string Percent(double value) {
                            : fmt::format("{:.1f} %", percent);
 }
 
-std::string Line(const std::string& name, const ChangeEstimate& change, double cost_s, double all_s,
+std::string Line(const std::string& name, const PreviewChange& change, double cost_s, double all_s,
                  const std::string& fate) {
   return fmt::format("{:<20}{:>11}{:>11}{:>11}{:>10.3f} s{:>8.1f} %  {}\n", name,
-                     Percent(change.seen.rms), Percent(change.at_most.rms),
-                     Percent(change.seen.at_99_percent), cost_s, 100.0 * cost_s / all_s, fate);
+                     Percent(change.Rms()), Percent(change.RmsAtMost()),
+                     Percent(change.Quantile(0.99)), cost_s, 100.0 * cost_s / all_s, fate);
 }
 
 }  // namespace
@@ -189,31 +182,31 @@ double ChangeFloor(const Image& reference) {
   return kMeterConstant / 100.0 * std::exp2(ev100 - kStepsBelowMiddleGrey);
 }
 
-PictureChange ChangeOf(const Image& reference, const Image& other) {
+ErrorStatistics ChangeOf(const Image& reference, const Image& other) {
   ALPENGLOW_ENSURE(reference.rgb.size(), ==, other.rgb.size());
   const double floor = ChangeFloor(reference);
   std::vector<double> changes;
   for (std::size_t i = 0; i < reference.rgb.size(); ++i) {
     changes.push_back(PixelChange(reference.rgb[i], other.rgb[i], floor));
   }
-  return ChangeEstimate::Of(std::move(changes)).seen;
+  return ErrorStatistics(std::move(changes));
 }
 
-ChangeEstimate ChangeEstimate::Of(std::vector<double> changes) {
-  constexpr double kStandardErrors = 3.0;
-  if (changes.empty()) return {};
-  std::sort(changes.begin(), changes.end());
-  const auto count = static_cast<double>(changes.size());
-  double squares = 0.0, fourths = 0.0;
-  for (const double d : changes) {
-    squares += d * d / count;
-    fourths += d * d * d * d / count;
-  }
-  const double error = std::sqrt(std::max(fourths - squares * squares, 0.0) / count);
-  const double rank_error = std::sqrt(0.99 * 0.01 / count);
-  return {{std::sqrt(squares), Quantile(changes, 0.99)},
-          {std::sqrt(squares + kStandardErrors * error),
-           Quantile(changes, 0.99 + kStandardErrors * rank_error)}};
+double PreviewChange::Rms() const {
+  return LargestOf(groups, [](const ErrorStatistics& group) { return group.Rms(); });
+}
+
+double PreviewChange::RmsAtMost() const {
+  return LargestOf(groups, [](const ErrorStatistics& group) { return group.RmsAtMost(); });
+}
+
+double PreviewChange::Quantile(double share) const {
+  return LargestOf(groups, [&](const ErrorStatistics& group) { return group.Quantile(share); });
+}
+
+double PreviewChange::QuantileAtMost(double share) const {
+  return LargestOf(groups,
+                   [&](const ErrorStatistics& group) { return group.QuantileAtMost(share); });
 }
 
 std::vector<PixelPlace> PreviewGrid(int width, int height, int count) {
@@ -285,7 +278,7 @@ EffectChoice ChooseEffects(const EffectPreview& preview, EffectSet wanted,
   choice.all_s = comparison.everything_s();
   std::vector<EffectEstimate> candidates;
   for (const Effect effect : wanted.List()) {
-    EffectEstimate estimate{effect, {}, {}};
+    EffectEstimate estimate{effect, {}};
     estimate.present = preview.present.Has(effect);
     if (TextOf(effect).is_free && !budget.explain) continue;
     if (estimate.present) {
@@ -293,7 +286,6 @@ EffectChoice ChooseEffects(const EffectPreview& preview, EffectSet wanted,
       const double preparation_s = preview.preparation_s(effect);
       choice.all_s += preparation_s;
       estimate.change = without.change;
-      estimate.whole = without.whole;
       estimate.cost_s = comparison.everything_s() - without.picture_s + preparation_s;
       if (!TextOf(effect).is_free && IsWithin(estimate.change, budget.max_error))
         candidates.push_back(estimate);
@@ -301,7 +293,7 @@ EffectChoice ChooseEffects(const EffectPreview& preview, EffectSet wanted,
     choice.estimates.push_back(estimate);
   }
   std::stable_sort(candidates.begin(), candidates.end(), [](const auto& a, const auto& b) {
-    return a.change.at_most.rms < b.change.at_most.rms;
+    return a.change.RmsAtMost() < b.change.RmsAtMost();
   });
   Chooser chooser(comparison, wanted, budget.max_error);
   if (budget.leave_out) chooser.LeaveOut(candidates);
@@ -321,14 +313,15 @@ EffectChoice ChooseEffects(const EffectPreview& preview, EffectSet wanted,
 Metadata NotesOn(const EffectChoice& choice) {
   std::vector<std::string> names;
   for (const Effect effect : choice.LeftOut().List()) names.emplace_back(TextOf(effect).name);
-  const auto change = [](const PictureChange& of) {
-    return fmt::format("rms {}, 99th percentile {}", Percent(of.rms), Percent(of.at_99_percent));
+  const auto change = [](double rms, double percentile_99) {
+    return fmt::format("rms {}, 99th percentile {}", Percent(rms), Percent(percentile_99));
   };
-  return {
-      {"alpenglow.note.effects_left_out",
-       names.empty() ? "none" : fmt::format("{}", fmt::join(names, ","))},
-      {"alpenglow.note.effects_change", fmt::format("{} (at most {})", change(choice.together.seen),
-                                                    change(choice.together.at_most))}};
+  const PreviewChange& together = choice.together;
+  return {{"alpenglow.note.effects_left_out",
+           names.empty() ? "none" : fmt::format("{}", fmt::join(names, ","))},
+          {"alpenglow.note.effects_change",
+           fmt::format("{} (at most {})", change(together.Rms(), together.Quantile(0.99)),
+                       change(together.RmsAtMost(), together.QuantileAtMost(0.99)))}};
 }
 
 std::string ExplainText(const EffectChoice& choice) {

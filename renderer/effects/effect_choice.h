@@ -41,17 +41,13 @@
 #include <string>
 #include <vector>
 
+#include "atmosphere/math/error_statistics.h"
 #include "lut/image/image.h"
 #include "renderer/camera/camera_rays.h"
 #include "renderer/effects/effects.h"
 #include "renderer/layer.h"
 
 namespace alpenglow::renderer {
-
-struct PictureChange {
-  double rms = 0.0;            // root mean square of d
-  double at_99_percent = 0.0;  // 99th percentile of d
-};
 
 /// Returns the change d of a pixel, in [0, 2].
 [[nodiscard]] double PixelChange(const std::array<float, 3>& a, const std::array<float, 3>& b,
@@ -60,16 +56,8 @@ struct PictureChange {
 /// Returns the floor of a picture [cd/m^2]; the sun's disk is excluded from metering.
 [[nodiscard]] double ChangeFloor(const Image& reference);
 
-/// Returns the change over all pixels. Throws InternalError for pictures of different sizes.
-[[nodiscard]] PictureChange ChangeOf(const Image& reference, const Image& other);
-
-/// Estimate of the change of the whole picture from a sample of its pixels.
-struct ChangeEstimate {
-  PictureChange seen;     // in the sample
-  PictureChange at_most;  // plus three standard errors
-
-  [[nodiscard]] static ChangeEstimate Of(std::vector<double> changes);
-};
+/// Returns the changes d of all pixels. Throws InternalError for pictures of different sizes.
+[[nodiscard]] ErrorStatistics ChangeOf(const Image& reference, const Image& other);
 
 struct PixelPlace {
   int x, y;
@@ -78,6 +66,16 @@ struct PixelPlace {
 /// Pixels of the preview: the first group represents the whole picture, each other group a small
 /// feature.
 using PreviewGroups = std::vector<std::vector<PixelPlace>>;
+
+/// Changes of the preview's pixels by group, and the largest value of any group.
+struct PreviewChange {
+  std::vector<ErrorStatistics> groups;
+
+  [[nodiscard]] double Rms() const;
+  [[nodiscard]] double RmsAtMost() const;
+  [[nodiscard]] double Quantile(double share) const;
+  [[nodiscard]] double QuantileAtMost(double share) const;
+};
 
 /// Returns one pixel in each cell of a grid of about `count` square cells.
 [[nodiscard]] std::vector<PixelPlace> PreviewGrid(int width, int height, int count);
@@ -131,9 +129,8 @@ struct EffectPreview {
 /// Estimate of an effect of a picture from the preview.
 struct EffectEstimate {
   Effect effect;
-  ChangeEstimate change;  // the worst of the groups
-  ChangeEstimate whole;   // in the picture as a whole
-  double cost_s = 0.0;    // of the picture, including preparation, summed over threads
+  PreviewChange change;
+  double cost_s = 0.0;  // of the picture, including preparation, summed over threads
   bool kept = true;
   bool present = true;  // false: inactive in this scene
 };
@@ -141,7 +138,7 @@ struct EffectEstimate {
 /// Estimate of a refinement's change and cost.
 struct RefinementEstimate {
   std::string name;
-  ChangeEstimate change;
+  PreviewChange change;
   double cost_s;
 };
 
@@ -157,7 +154,7 @@ struct EffectChoice {
   EffectSet effects;  // effects to render
   double max_error = 0.0;
   std::vector<EffectEstimate> estimates;  // of the requested effects, in the order of Effect
-  ChangeEstimate together;                // change from leaving out all of `LeftOut()`
+  PreviewChange together;                 // change from leaving out all of `LeftOut()`
   std::vector<RefinementEstimate> refinements;
   // Times, summed over threads: the picture with all effects, the picture as chosen, and the
   // preview.

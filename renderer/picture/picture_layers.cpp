@@ -276,7 +276,7 @@ std::vector<bool> EdgesOf(const Image& reference) {
   return edges;
 }
 
-ViewDifference DifferenceOf(const Image& reference, const Image& painted) {
+ErrorStatistics DifferenceOf(const Image& reference, const Image& painted) {
   ALPENGLOW_ENSURE(reference.rgb.size(), ==, painted.rgb.size());
   const std::vector<bool> edges = EdgesOf(reference);
   const double floor = ChangeFloor(reference);
@@ -285,15 +285,7 @@ ViewDifference DifferenceOf(const Image& reference, const Image& painted) {
     if (!edges[i]) changes.push_back(PixelChange(reference.rgb[i], painted.rgb[i], floor));
   }
   ALPENGLOW_ENSURE(changes.size(), >, 0U);
-  std::sort(changes.begin(), changes.end());
-  double sum = 0.0;
-  for (const double change : changes) sum += change;
-  const auto count = static_cast<double>(changes.size());
-  const auto quantile = [&](double share) {
-    return changes[static_cast<std::size_t>(share * (count - 1.0))];
-  };
-  return {sum / count, quantile(0.99), quantile(0.999), changes.back(),
-          1.0 - count / static_cast<double>(reference.rgb.size())};
+  return ErrorStatistics(std::move(changes));
 }
 
 }  // namespace alpenglow::renderer

@@ -2,7 +2,7 @@
 // Layers that a picture can have besides its colours: one table of their names, channels and
 // values, and the writer that turns the rays of a pixel into the picture and its layers.
 //
-// ViewDifference compares a picture with the renderer's, away from edges. The difference of a pixel
+// DifferenceOf compares a picture with the renderer's, away from edges. The difference of a pixel
 // is PixelChange (effect_choice.h), the relative difference of linear radiance above the floor of
 // ChangeFloor. Pixels at an edge are excluded, because there a hundredth of a pixel decides what is
 // visible: pixels with neighbours of another kind, a tenth farther or nearer, lit by more or less
@@ -18,6 +18,7 @@
 #include <vector>
 
 #include "atmosphere/colour/spectrum.h"
+#include "atmosphere/math/error_statistics.h"
 #include "lut/image/image.h"
 #include "renderer/material/band_light.h"
 #include "renderer/surface/scene_geometry.h"
@@ -142,14 +143,6 @@ class PixelWriter {
   std::atomic<std::uint64_t> rays_{0}, least_{~std::uint64_t{0}}, most_{0};
 };
 
-struct ViewDifference {
-  double mean = 0.0;
-  double at_99_percent = 0.0;
-  double at_999_permille = 0.0;
-  double worst = 0.0;
-  double edge_share = 0.0;  // fraction of excluded pixels
-};
-
 /// Returns the layers that the renderer's picture must have. The layer of lamps is optional;
 /// without it lamps cause no edges.
 [[nodiscard]] std::vector<PictureLayer> LayersOfEdges();
@@ -157,9 +150,10 @@ struct ViewDifference {
 /// Returns which pixels of the renderer's picture are at an edge, row by row.
 [[nodiscard]] std::vector<bool> EdgesOf(const Image& reference);
 
-/// Returns the differences of a drawn picture from the reference.
+/// Returns the differences of a drawn picture from the reference, of all pixels that are not at an
+/// edge.
 /// @param reference solution  the renderer's, with LayersOfEdges(). Throws InternalError if the
 ///   sizes differ or all pixels are at edges.
-[[nodiscard]] ViewDifference DifferenceOf(const Image& reference, const Image& painted);
+[[nodiscard]] ErrorStatistics DifferenceOf(const Image& reference, const Image& painted);
 
 }  // namespace alpenglow::renderer

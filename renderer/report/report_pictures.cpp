@@ -238,7 +238,7 @@ class PicturesTopic {
       const auto [image, taken] =
           Timed([&] { return scene.renderer->Render(scene.instant, settings); });
       seconds.push_back(taken);
-      result.error = StatisticsOfErrors(ChangesOf(scene.reference, image), 0.0);
+      result.error = result.strict = ErrorStatistics(ChangesOf(scene.reference, image));
       ThrowIfInterrupted();
     }
     std::sort(seconds.begin(), seconds.end());

@@ -42,14 +42,14 @@ void Measure(const EffectScene& scene, RenderSettings settings) {
   fmt::print("\n{} ({:.2f} s with everything)\n", scene.name, all.seconds);
   fmt::print("{:<22}{:>19}{:>19}{:>19}\n", "without", "rms said, is %", "99 % said, is %",
              "saves said, does s");
-  const auto hold = [&](const std::string& name, EffectSet effects, const ChangeEstimate& said,
+  const auto hold = [&](const std::string& name, EffectSet effects, const PreviewChange& said,
                         double saves_s) {
     settings.effects = effects;
     const Timed without = Render(renderer, scene, settings);
-    const PictureChange is = ChangeOf(all.image, without.image);
+    const ErrorStatistics is = ChangeOf(all.image, without.image);
     fmt::print("{:<22}{:>10.3f}{:>9.3f}{:>10.3f}{:>9.3f}{:>10.3f}{:>9.3f}\n", name,
-               100.0 * said.seen.rms, 100.0 * is.rms, 100.0 * said.seen.at_99_percent,
-               100.0 * is.at_99_percent, saves_s, all.seconds - without.seconds);
+               100.0 * said.Rms(), 100.0 * is.Rms(), 100.0 * said.Quantile(0.99),
+               100.0 * is.Quantile(0.99), saves_s, all.seconds - without.seconds);
   };
   for (const double budget : {0.01, 0.002}) {
     const EffectChoice choice =

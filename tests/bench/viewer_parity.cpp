@@ -97,11 +97,13 @@ void Run(const std::filesystem::path& folder, const RenderSettings& settings,
              {});
     WritePng(folder / fmt::format("difference-{}.png", number),
              TenfoldGrey(DifferencePicture(reference, painted)), {});
-    const ViewDifference is = DifferenceOf(reference, painted);
+    const ErrorStatistics is = DifferenceOf(reference, painted);
     fmt::print(
         "{:<24} mean {:6.3f} %  p99 {:6.3f} %  p99.9 {:6.3f} %  worst {:7.2f} %  edges {:4.1f} %\n",
-        view.name, 100.0 * is.mean, 100.0 * is.at_99_percent, 100.0 * is.at_999_permille,
-        100.0 * is.worst, 100.0 * is.edge_share);
+        view.name, 100.0 * is.mean(), 100.0 * is.Quantile(0.99), 100.0 * is.Quantile(0.999),
+        100.0 * is.Largest(),
+        100.0 -
+            100.0 * static_cast<double>(is.count()) / static_cast<double>(reference.rgb.size()));
   }
 }
 

@@ -8,7 +8,6 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
-#include <numeric>
 #include <set>
 #include <sstream>
 #include <thread>
@@ -423,20 +422,6 @@ TEST_F(NumberedNames, AFlightThatIsBeingRecordedHasItsNumber) {
 }
 
 // --- times of frames ---
-
-TEST(FrameTimes, PercentilesAreTimesThatWereMeasured) {
-  std::vector<double> hundred(100);
-  std::iota(hundred.begin(), hundred.end(), 1.0);
-  std::reverse(hundred.begin(), hundred.end());
-  const Percentiles of = PercentilesOf(hundred);
-  EXPECT_EQ(of.median, 50.0);
-  EXPECT_EQ(of.p95, 95.0);
-  EXPECT_EQ(of.p99, 99.0);
-  const Percentiles of_one = PercentilesOf({7.0});
-  EXPECT_EQ(of_one.median, 7.0);
-  EXPECT_EQ(of_one.p99, 7.0);
-  EXPECT_EQ(PercentilesOf({1.0, 2.0, 30.0}).p95, 30.0) << "the worst of few";
-}
 
 TEST(FrameTimes, TheFlightIsSteadyLevelAndTimeRunsSixtyfold) {
   const CameraPose start{PlaceFromDegrees(46.0, 8.0, 3000.0), 0.7};

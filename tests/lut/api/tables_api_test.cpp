@@ -47,8 +47,8 @@ TEST_F(Tables, AreWrittenForBrunetonsDemoWhoseLowestSunTexelsTell) {
   EXPECT_EQ(description.options.lowest_sun_deg, 102.0);
   ASSERT_EQ(description.textures.size(), 3U);
   // Tables in float have sixteen nodes, the description twenty-four.
-  EXPECT_LT(description.textures[2].errors.median, 1e-5);
-  EXPECT_LT(description.textures[2].errors.largest, 1e-2);
+  EXPECT_LT(description.textures[2].errors.Quantile(0.5), 1e-5);
+  EXPECT_LT(description.textures[2].errors.Largest(), 1e-2);
 }
 
 TEST(Panorama, IsThatOfTheLayerBelow) {

@@ -105,10 +105,10 @@ TEST_F(ChosenTables, SmallestAreUnderTheBoundOnUnseenViews) {
   EXPECT_EQ(stored.tables().ray_nodes, choice.tables.ray_nodes);
   EXPECT_FALSE(fs::exists(folder_ / kSingleScatteringFileName));
   for (const TableChoice::Measured& measured : choice.measured) {
-    EXPECT_LT(measured.errors.rms, kMaxError);
+    EXPECT_LT(measured.errors.Rms(), kMaxError);
     EXPECT_LT(measured.paths.Unexplained(), kMaxError);
-    const ViewErrors errors = Unseen().ErrorsOf(stored, measured.kind);
-    EXPECT_LT(std::hypot(errors.rms, measured.paths.Unexplained()), kSampling * kMaxError)
+    const ErrorStatistics errors = Unseen().ErrorsOf(stored, measured.kind);
+    EXPECT_LT(std::hypot(errors.Rms(), measured.paths.Unexplained()), kSampling * kMaxError)
         << NameOf(measured.kind) << ":\n"
         << ChoiceText(choice, kMaxError);
   }
@@ -121,7 +121,7 @@ TEST_F(ChosenTables, AllThreeTogetherAreUnderTheBoundOnUnseenViews) {
   ASSERT_TRUE(stored.tables().transmittance && stored.tables().single_scattering);
   EXPECT_EQ(stored.tables().single_scattering->texels(), choice.tables.single_scattering->texels());
   for (const ViewKind kind : kViewKinds) {
-    EXPECT_LT(Unseen().ErrorsOf(stored, kind).rms, kSampling * kMaxError)
+    EXPECT_LT(Unseen().ErrorsOf(stored, kind).Rms(), kSampling * kMaxError)
         << NameOf(kind) << ":\n"
         << ChoiceText(choice, kMaxError);
   }
@@ -140,40 +140,6 @@ TEST(TableSearch, ASmallerErrorTakesMoreMemory) {
   EXPECT_EQ(ChooseTables(Quick(), coarse).tables.multiple_scattering->values(),
             small.tables.multiple_scattering->values())
       << "the same search finds the same tables";
-}
-
-TEST(ErrorsOfViews, OfFourErrorsAreTheFormulas) {
-  const ViewErrors errors = ErrorsOfViews({0.03, 0.01, 0.01, 0.01});
-  const double square = 0.0012 / 4.0, fourth = (0.81e-6 + 0.03e-6) / 4.0;
-  const double standard_error = std::sqrt((fourth - square * square) / 4.0);
-  EXPECT_NEAR(errors.rms, std::sqrt(square), 1e-15);
-  EXPECT_NEAR(errors.rms_at_most, std::sqrt(square + 3.0 * standard_error), 1e-15);
-  EXPECT_EQ(errors.percentile_99, 0.03);
-}
-
-TEST(ErrorsOfViews, ThatAreNotFiniteAreNoErrorsOfZero) {
-  EXPECT_THROW(static_cast<void>(ErrorsOfViews({0.01, std::nan("")})), InternalError);
-}
-
-/// Returns the share of samples of 160 errors with the rms of the law below their `rms_at_most`.
-template <typename Law>
-double ShareUnderTheLimit(Law law, double rms) {
-  constexpr int kSamples = 4000;
-  std::mt19937 random(1);
-  int under = 0;
-  for (int sample = 0; sample < kSamples; ++sample) {
-    std::vector<double> errors(160);
-    for (double& error : errors) error = std::abs(law(random));
-    under += rms < ErrorsOfViews(std::move(errors)).rms_at_most ? 1 : 0;
-  }
-  return static_cast<double>(under) / kSamples;
-}
-
-// 4000 samples tell a share of 0.97 to 0.003.
-TEST(ErrorsOfViews, RmsOfALawIsUnderItsLimitAsOftenAsStated) {
-  EXPECT_NEAR(ShareUnderTheLimit(std::normal_distribution<double>(), 1.0), 0.99, 0.006);
-  EXPECT_NEAR(ShareUnderTheLimit(std::exponential_distribution<double>(), std::sqrt(2.0)), 0.972,
-              0.009);
 }
 
 }  // namespace

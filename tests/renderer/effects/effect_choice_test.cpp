@@ -51,14 +51,14 @@ TEST(EffectChoice, OnlySmallChangesAreLeftOut) {
   const EffectChoice choice = ChooseEffects(grey.preview, kThree, kOnePercent);
   EXPECT_EQ(choice.effects, EffectSet({Effect::kSky}));
   EXPECT_EQ(choice.LeftOut(), EffectSet({Effect::kShafts, Effect::kRelief}));
-  EXPECT_NEAR(choice.together.seen.rms, 0.007, 1e-4) << "both, as they add up";
+  EXPECT_NEAR(choice.together.Rms(), 0.007, 1e-4) << "both, as they add up";
 }
 
 TEST(EffectChoice, ChangesThatAreSmallOnlyAloneAreNotAllLeftOut) {
   GreyPreview grey({{Effect::kSky, 0.006}, {Effect::kShafts, 0.007}, {Effect::kRelief, 0.002}});
   const EffectChoice choice = ChooseEffects(grey.preview, kThree, kOnePercent);
   EXPECT_EQ(choice.LeftOut(), EffectSet({Effect::kSky, Effect::kRelief})) << "smallest first";
-  EXPECT_LE(choice.together.at_most.rms, 0.01);
+  EXPECT_LE(choice.together.RmsAtMost(), 0.01);
 }
 
 TEST(EffectChoice, ChangesThatCancelMayBeLeftOutTogether) {
@@ -98,8 +98,8 @@ TEST(EffectChoice, ASmallGroupCountsAlone) {
   };
   const EffectChoice choice = ChooseEffects(grey.preview, {Effect::kLights}, kOnePercent);
   EXPECT_TRUE(choice.effects.Has(Effect::kLights));
-  EXPECT_EQ(choice.estimates[0].whole.seen.rms, 0.0);
-  EXPECT_GT(choice.estimates[0].change.seen.rms, 0.05);
+  EXPECT_EQ(choice.estimates[0].change.groups.front().Rms(), 0.0);
+  EXPECT_GT(choice.estimates[0].change.Rms(), 0.05);
 }
 
 TEST(EffectChoice, FreeEffectsAreKeptAndAbsentOnesNotRendered) {
@@ -148,7 +148,7 @@ TEST(EffectChoice, RefinementsAreReportedAndNotApplied) {
   const EffectChoice choice =
       ChooseEffects(grey.preview, kThree, {.max_error = 0.01, .explain = true});
   ASSERT_EQ(choice.refinements.size(), 1U);
-  EXPECT_NEAR(choice.refinements[0].change.seen.rms, 0.01, 1e-4);
+  EXPECT_NEAR(choice.refinements[0].change.Rms(), 0.01, 1e-4);
   EXPECT_GT(choice.refinements[0].cost_s, 0.0);
   EXPECT_THAT(ExplainText(choice), HasSubstr("\nfiner "));
   EXPECT_TRUE(ChooseEffects(grey.preview, kThree, kOnePercent).refinements.empty());
@@ -222,10 +222,10 @@ Image Grey(float value) {
 }
 
 TEST(PictureChange, IsTheRelativeErrorOfSmallChanges) {
-  const PictureChange change = ChangeOf(Grey(100.0F), Grey(101.0F));
-  EXPECT_NEAR(change.rms, 0.01, 1e-4) << "against the mean of both";
-  EXPECT_NEAR(change.at_99_percent, 0.01, 1e-4);
-  EXPECT_EQ(ChangeOf(Grey(100.0F), Grey(100.0F)).rms, 0.0);
+  const ErrorStatistics change = ChangeOf(Grey(100.0F), Grey(101.0F));
+  EXPECT_NEAR(change.Rms(), 0.01, 1e-4) << "against the mean of both";
+  EXPECT_NEAR(change.Quantile(0.99), 0.01, 1e-4);
+  EXPECT_EQ(ChangeOf(Grey(100.0F), Grey(100.0F)).Rms(), 0.0);
 }
 
 TEST(PictureChange, IsSymmetricAndAtMostTwo) {
@@ -243,7 +243,7 @@ TEST(PictureChange, DarkPixelsCountLess) {
     other.rgb[i] = {0.2F, 0.2F, 0.2F};
   }
   EXPECT_NEAR(ChangeFloor(reference), 100.0 / 16.0, 0.5) << "four steps below what is metered";
-  EXPECT_LT(ChangeOf(reference, other).rms, 0.02);
+  EXPECT_LT(ChangeOf(reference, other).Rms(), 0.02);
 }
 
 TEST(PictureChange, ColourCountsAtEqualLuminance) {
@@ -259,10 +259,10 @@ TEST(PictureChange, ASampleBoundsTheWholePicture) {
   for (int start = 0; start < 1000; ++start) {
     std::vector<double> sample;
     for (int i = 0; i < 400; ++i) sample.push_back(0.01 * unit() * (unit() < 0.05 ? 10.0 : 1.0));
-    const ChangeEstimate estimate = ChangeEstimate::Of(sample);
-    bounded += estimate.at_most.rms >= std::sqrt(squares) ? 1 : 0;
-    EXPECT_GE(estimate.at_most.rms, estimate.seen.rms);
-    EXPECT_GE(estimate.at_most.at_99_percent, estimate.seen.at_99_percent);
+    const ErrorStatistics estimate(sample);
+    bounded += estimate.RmsAtMost() >= std::sqrt(squares) ? 1 : 0;
+    EXPECT_GE(estimate.RmsAtMost(), estimate.Rms());
+    EXPECT_GE(estimate.QuantileAtMost(0.99), estimate.Quantile(0.99));
   }
   EXPECT_GE(bounded, 970) << "three standard errors, of a few large changes";
 }

@@ -89,9 +89,9 @@ class SceneEffects : public LoadedScenes, public testing::WithParamInterface<con
 TEST_P(SceneEffects, PicturesOfTheChoiceStayWithinTheBudget) {
   for (const double budget : {0.01, 0.002}) {
     const ChosenPicture& chosen = scene_->Within(budget);
-    const PictureChange change = ChangeOf(scene_->WithAll(), chosen.image);
-    EXPECT_LE(change.rms, budget) << NameOf(chosen.choice.effects);
-    EXPECT_LE(change.at_99_percent, 4.0 * budget) << NameOf(chosen.choice.effects);
+    const ErrorStatistics change = ChangeOf(scene_->WithAll(), chosen.image);
+    EXPECT_LE(change.Rms(), budget) << NameOf(chosen.choice.effects);
+    EXPECT_LE(change.Quantile(0.99), 4.0 * budget) << NameOf(chosen.choice.effects);
     EXPECT_EQ(scene_->With(chosen.choice.effects).rgb, chosen.image.rgb)
         << "the choice says what was rendered";
   }
@@ -103,14 +103,15 @@ TEST_P(SceneEffects, ThePilotPredictsTheChangeByEachEffect) {
        explained ? scene_->Explained() : scene_->Within(0.01).choice.estimates) {
     if (!estimate.present) continue;
     const Image without = scene_->With(EffectSet::All().Without(estimate.effect));
-    const double is = ChangeOf(scene_->WithAll(), without).rms;
+    const double is = ChangeOf(scene_->WithAll(), without).Rms();
     const char* name = TextOf(estimate.effect).name;
-    EXPECT_LE(is, estimate.change.at_most.rms + 1e-3)
+    EXPECT_LE(is, estimate.change.RmsAtMost() + 1e-3)
         << name << ": three standard errors, and what falls between the preview's pixels";
-    const double seen = estimate.whole.seen.rms, at_most = estimate.whole.at_most.rms;
+    const ErrorStatistics& whole = estimate.change.groups.front();
+    const double seen = whole.Rms(), at_most = whole.RmsAtMost();
     EXPECT_GE(is * is, 2.0 * seen * seen - at_most * at_most) << name << ": as many below";
     EXPECT_LT(seen, 2.0 * is + 1e-3) << name;
-    EXPECT_LE(estimate.whole.seen.rms, estimate.change.seen.rms) << name;
+    EXPECT_LE(seen, estimate.change.Rms()) << name;
   }
 }
 
@@ -134,7 +135,7 @@ class SceneNeeds : public LoadedScenes {
   }
   [[nodiscard]] double ChangeBy(Effect effect, const std::string& scene) const {
     RenderedScene& of = SceneNamed(scene);
-    return ChangeOf(of.WithAll(), of.With(EffectSet::All().Without(effect))).rms;
+    return ChangeOf(of.WithAll(), of.With(EffectSet::All().Without(effect))).Rms();
   }
 };
 
@@ -178,7 +179,7 @@ TEST_F(SceneNeeds, OnlyFourBandsByDay) {
   const UtcInstant noon = ParseInstant("2026-06-21T11:30:00Z");
   const ChosenPicture chosen = renderer.RenderWithin(noon, kSmall, {.max_error = 0.05});
   EXPECT_TRUE(chosen.choice.LeftOut().Has(Effect::kFineSpectrum));
-  EXPECT_LE(ChangeOf(renderer.Render(noon, kSmall), chosen.image).rms, 0.05);
+  EXPECT_LE(ChangeOf(renderer.Render(noon, kSmall), chosen.image).Rms(), 0.05);
   scene.medium = MediumPreset("earth", WavelengthSet(4));
   RenderSettings settings = kSmall;
   settings.effects = chosen.choice.effects.With(Effect::kFineSpectrum);

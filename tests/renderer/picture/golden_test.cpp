@@ -114,7 +114,7 @@ TEST(GoldenTolerance, AShiftOfColourIsAnotherPicture) {
 TEST(GoldenTolerance, ASmallWrongPlaceIsAnotherPicture) {
   Image other = Gradient();
   for (std::size_t i = 0; i < 20; ++i) Scale(other.rgb[i], 1.012F);
-  EXPECT_LT(ChangeOf(Gradient(), other).rms, PictureTolerance{}.rms);
+  EXPECT_LT(ChangeOf(Gradient(), other).Rms(), PictureTolerance{}.rms);
   EXPECT_NE(FaultOfPicture(Gradient(), other), "") << "20 of 1296 pixels, by 1.2 %";
 }
 

@@ -103,11 +103,11 @@ class NoisyPicture : public TemporaryFolder {
 TEST_F(NoisyPicture, NoiseIsWithinTheLimitAndBelowThatOfEqualRays) {
   const Image& truth = Truth();
   const CountedPicture held = Ridges().RenderCounted(kEvening, Held(0.03));
-  const double noise = ChangeOf(truth, held.image).rms;
+  const double noise = ChangeOf(truth, held.image).Rms();
   const auto as_many = static_cast<int>(held.rays.rays / (32U * 18U)) + 1;
   const CountedPicture even = Ridges().RenderCounted(kEvening, Small(as_many));
   EXPECT_LT(noise, 0.03);
-  EXPECT_LT(noise, ChangeOf(truth, even.image).rms);
+  EXPECT_LT(noise, ChangeOf(truth, even.image).Rms());
   EXPECT_LT(held.rays.rays, even.rays.rays);
 }
 

@@ -62,14 +62,14 @@ TEST(ViewDifference, LandThatRecedesAndSkyAreNoEdges) {
 TEST(ViewDifference, OfAKnownDifferenceHasTheKnownNumbers) {
   const Image reference = EvenLand();
   Image painted = reference;
-  EXPECT_EQ(DifferenceOf(reference, painted).worst, 0.0);
+  EXPECT_EQ(DifferenceOf(reference, painted).Largest(), 0.0);
   for (int i = 0; i < 50; ++i) painted.rgb[static_cast<std::size_t>(i)] = {101.0F, 101.0F, 101.0F};
   const double one_percent = 1.0 / 100.5;
-  const ViewDifference half = DifferenceOf(reference, painted);
-  EXPECT_NEAR(half.mean, 0.5 * one_percent, 1e-7) << "half of the pixels; floats of 100";
-  EXPECT_NEAR(half.at_99_percent, one_percent, 1e-7);
-  EXPECT_NEAR(half.worst, one_percent, 1e-7);
-  EXPECT_EQ(half.edge_share, 0.0);
+  const ErrorStatistics half = DifferenceOf(reference, painted);
+  EXPECT_NEAR(half.mean(), 0.5 * one_percent, 1e-7) << "half of the pixels; floats of 100";
+  EXPECT_NEAR(half.Quantile(0.99), one_percent, 1e-7);
+  EXPECT_NEAR(half.Largest(), one_percent, 1e-7);
+  EXPECT_EQ(half.count(), reference.rgb.size());
 }
 
 TEST(ViewDifference, WhatIsOffBesideAnEdgeDoesNotCount) {
@@ -77,9 +77,9 @@ TEST(ViewDifference, WhatIsOffBesideAnEdgeDoesNotCount) {
   reference.layers[0].values[At(5, 5)] = INFINITY;
   Image painted = reference;
   painted.rgb[At(4, 6)] = {0.0F, 0.0F, 0.0F};
-  const ViewDifference is = DifferenceOf(reference, painted);
-  EXPECT_EQ(is.worst, 0.0);
-  EXPECT_NEAR(is.edge_share, 0.09, 1e-12) << "a pixel and its neighbours of a hundred";
+  const ErrorStatistics is = DifferenceOf(reference, painted);
+  EXPECT_EQ(is.Largest(), 0.0);
+  EXPECT_EQ(is.count(), 91U) << "a pixel and its neighbours of a hundred are left out";
 }
 
 TEST(ViewDifference, WithoutLayersPicturesCannotBeCompared) {
