@@ -19,7 +19,7 @@
 #include "atmosphere/medium/medium.h"
 #include "atmosphere/reference/reference_solution.h"
 #include "tests/fixtures/bands_near.h"
-#include "tests/fixtures/ciede2000.h"
+#include "tests/fixtures/colour_difference.h"
 #include "tests/fixtures/sanitized.h"
 
 namespace alpenglow::atmosphere {

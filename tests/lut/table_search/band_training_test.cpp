@@ -14,7 +14,7 @@
 #include "atmosphere/math/constants.h"
 #include "atmosphere/math/numerics.h"
 #include "atmosphere/ray/ray.h"
-#include "tests/fixtures/ciede2000.h"
+#include "tests/fixtures/colour_difference.h"
 #include "tests/fixtures/sanitized.h"
 
 namespace alpenglow::lut {
