@@ -206,31 +206,24 @@ LandBlock Landscape::Block() const {
   return block;
 }
 
-void Landscape::DrawOnly(std::span<const SeenChunk> chunks, LandDrawn what, GLuint view_binding,
-                         const LandLook& look) {
+std::vector<SeenChunk> Landscape::DrawnIn(LandView narrower) const {
+  narrower.bends_per_m = view_.bends_per_m;
+  const FrameTransform eye(set_->anchor().frame, LocalFrame(ellipsoid_, eye_place_));
+  return InView(Choice().drawn, eye, narrower);
+}
+
+void Landscape::Draw(LandDrawn what, GLuint view_binding, const LandLook& look,
+                     const std::optional<LandView>& narrower) {
   LandPass::Clear(what);
   if (mesh_) mesh_->Draw(pass_, what, look, eye_place_, view_binding);
-  if (chunks.empty()) return;
+  if (!set_) return;
+  const std::vector<SeenChunk> fewer = narrower ? DrawnIn(*narrower) : std::vector<SeenChunk>{};
+  const std::vector<SeenChunk>& drawn = narrower ? fewer : Choice().drawn;
+  if (drawn.empty()) return;
   pass_.Use(fade_.edges());
   // Seen from above the ground, back faces are always hidden, so they can be culled.
   pass_.Run(what, look, Block(), set_->anchor().frame, view_binding, over_ground_,
-            [&] { set_->Draw(chunks, fade_.from()); });
-}
-
-void Landscape::Draw(LandDrawn what, GLuint view_binding, const LandLook& look) {
-  const std::span<const SeenChunk> none;
-  DrawOnly(set_ ? Choice().drawn : none, what, view_binding, look);
-}
-
-void Landscape::DrawIn(const LandView& narrower, LandDrawn what, GLuint view_binding,
-                       const LandLook& look) {
-  LandView view = narrower;
-  view.bends_per_m = view_.bends_per_m;
-  std::vector<SeenChunk> chunks;
-  if (set_)
-    chunks = InView(Choice().drawn,
-                    FrameTransform(set_->anchor().frame, LocalFrame(ellipsoid_, eye_place_)), view);
-  DrawOnly(chunks, what, view_binding, look);
+            [&] { set_->Draw(drawn, fade_.from()); });
 }
 
 std::optional<double> LandGround::HeightUnder(const GeodeticPosition& place) const {

@@ -9,7 +9,6 @@
 
 #include <memory>
 #include <optional>
-#include <span>
 #include <string>
 #include <vector>
 
@@ -111,9 +110,9 @@ class Landscape {
   void AwaitGround(const GeodeticPosition& place);
   /// Draws the chunks that the last Update chose, with its view, into the bound GBuffer or
   /// DepthPrepass, which is cleared first. The uniform block View must be bound to `view_binding`.
-  void Draw(LandDrawn what, GLuint view_binding, const LandLook& look = {});
-  /// Draws those of them that may be in another, narrower view, which the block View must have.
-  void DrawIn(const LandView& narrower, LandDrawn what, GLuint view_binding, const LandLook& look);
+  /// @param narrower  another view, which that block has: only chunks that may be in it are drawn.
+  void Draw(LandDrawn what, GLuint view_binding, const LandLook& look = {},
+            const std::optional<LandView>& narrower = {});
   /// Returns the programs that draw.
   [[nodiscard]] LandPass& pass() { return pass_; }
 
@@ -166,8 +165,7 @@ class Landscape {
   [[nodiscard]] std::vector<ChunkKey> Missing(const ChunkSet& set) const;
   /// Begins the choice of the chunks to draw. Set and tree must not be used until Choice().
   void Choose(double seconds);
-  void DrawOnly(std::span<const SeenChunk> chunks, LandDrawn what, GLuint view_binding,
-                const LandLook& look);
+  [[nodiscard]] std::vector<SeenChunk> DrawnIn(LandView narrower) const;
   /// Waits for the choice, and returns it.
   const LandChoice& Choice() const;
   void WaitForWork();

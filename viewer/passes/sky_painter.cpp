@@ -361,8 +361,8 @@ void SkyPainter::PaintAlone(const SkyDisk& disk, double drawn_rad, const Painted
   if (scene_.AwaitsLand()) {
     LandPass::Clear(LandDrawn::kOutline);
   } else {
-    scene_.land().DrawIn(LandViewOf(alone), LandDrawn::kOutline, kViewBinding,
-                         {BendIn(alone).has_value(), false});
+    scene_.land().Draw(LandDrawn::kOutline, kViewBinding, {BendIn(alone).has_value(), false},
+                       LandViewOf(alone));
   }
   small_disk_painter_.light().Bind();
   glClearColor(0.0F, 0.0F, 0.0F, 0.0F);
