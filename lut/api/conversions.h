@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Conversions between values of the public headers and those of this layer, and the state of a sky
-// of the public headers. Of a ray,
+// Conversions between values of the public headers and those of this layer, and the contents of a
+// sky of the public headers. Of a ray,
 //
 //   altitude = z + (x^2 + y^2) / (r + R + z),     r = distance from the centre of the planet
 //
@@ -15,7 +15,6 @@
 #include <limits>
 
 #include "atmosphere/ray/ray.h"
-#include "atmosphere/ray/single_scattering.h"
 #include "lut/image/image.h"
 #include "lut/table_io/table_folder.h"
 
@@ -45,16 +44,10 @@ struct AltitudeAndZenith {
 /// Returns the image with its layers; the metadata is empty.
 [[nodiscard]] HdrImage HdrImageFrom(lut::Image image);
 
+/// The light of a sky is that of the look-ups. Their tables have multiple scattering, and belong to
+/// the medium of the atmosphere.
 struct Sky::State {
-  /// @param tables  with multiple scattering, of the medium of the atmosphere.
-  State(Atmosphere air_parameters, lut::TableFolder tables);
-
-  [[nodiscard]] const lut::MultipleScattering& multiple_scattering() const {
-    return *lookup.tables().multiple_scattering;
-  }
-
   Atmosphere parameters;
-  atmosphere::SingleScattering<float> air;
   lut::TableLookup lookup;
 };
 

@@ -60,8 +60,8 @@ HdrImage RenderPanorama(const Sky& sky, const PanoramaOptions& options) {
   settings.sun = SunOf(options.sun);
   settings.orientation = OrientationOf(options.centre);
   settings.sun_disk = options.draws_sun;
-  lut::Image image =
-      lut::RenderPanorama(sky.state().air, sky.state().multiple_scattering(), settings);
+  lut::Image image = lut::RenderPanorama(sky.state().lookup.single_scattering(),
+                                         sky.state().lookup.multiple_scattering(), settings);
   HdrImage panorama;
   panorama.width = image.width;
   panorama.height = image.height;
@@ -76,7 +76,8 @@ HdrImage RenderPanorama(const Sky& sky, const PanoramaOptions& options) {
 
 double HorizontalIlluminance(const Sky& sky, double altitude_m, const SunInSky& sun) {
   RequireVisible(sky, altitude_m);
-  return lut::HorizontalIlluminance(sky.state().air, sky.state().multiple_scattering(), altitude_m,
+  return lut::HorizontalIlluminance(sky.state().lookup.single_scattering(),
+                                    sky.state().lookup.multiple_scattering(), altitude_m,
                                     SunOf(sun));
 }
 

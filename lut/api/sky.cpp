@@ -101,12 +101,12 @@ class RaysFrom {
     const double length_m = glm::length(way);
     const glm::dvec3 view = length_m > 0.0 ? way / length_m : place_.up;
     const ViewRay ray = RayFrom(place_, view, to_sun_, length_m);
-    const atmosphere::SingleScattering<float>& air = sky_.air;
+    const atmosphere::SingleScattering<float>& air = sky_.lookup.single_scattering();
     const auto samples = air.Sample(
         ray, {.nodes = sky_.lookup.tables().ray_nodes, .split_ozone = false, .dark_samples = true});
     Bands<float> light = air.Inscatter(air.Scatter(samples), ray.nu);
     const Bands<float> more =
-        sky_.multiple_scattering().InscatterAlong(samples, ray.nu, lut::SegmentEnd::kOpaque);
+        sky_.lookup.multiple_scattering().InscatterAlong(samples, ray.nu, lut::SegmentEnd::kOpaque);
     for (std::size_t band = 0; band < light.count; ++band) light[band] += more[band];
     return {SpectrumOf(air.TransmittanceAlong(ray)), SpectrumOf(light)};
   }
@@ -120,11 +120,9 @@ class RaysFrom {
 
 }  // namespace
 
-Sky::State::State(Atmosphere air_parameters, lut::TableFolder tables)
-    : parameters(std::move(air_parameters)), air(parameters.medium()), lookup(std::move(tables)) {}
-
 Sky::Sky(const Atmosphere& atmosphere)
-    : Sky(std::make_shared<const State>(atmosphere, SolvedWithoutTables(atmosphere.medium()))) {}
+    : Sky(std::make_shared<const State>(
+          State{atmosphere, lut::TableLookup(SolvedWithoutTables(atmosphere.medium()))})) {}
 
 Sky::Sky(std::shared_ptr<const State> state) : state_(std::move(state)) {}
 

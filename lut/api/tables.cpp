@@ -49,7 +49,8 @@ Sky ReadTables(const std::filesystem::path& folder) {
     throw InputError(folder.string() + ": " + lut::kMultipleScatteringFileName + " is missing");
   }
   const Atmosphere atmosphere(tables.medium);
-  return Sky(std::make_shared<const Sky::State>(atmosphere, std::move(tables)));
+  return Sky(std::make_shared<const Sky::State>(
+      Sky::State{atmosphere, lut::TableLookup(std::move(tables))}));
 }
 
 Sky ReadTables(const std::filesystem::path& folder, const Atmosphere& expected) {

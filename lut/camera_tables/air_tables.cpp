@@ -207,10 +207,11 @@ AirTablesSize AirTablesSizeOf(AirQuality quality, double altitude_m) {
   return high;
 }
 
-AirTables MakeAirTables(const SingleScattering<float>& air,
-                        const MultipleScattering& multiple_scattering, const MediumTables& medium,
-                        const AirEye& eye, const AirTablesSize& size) {
-  RequireFourBands(air.medium());
+AirTables MakeAirTables(const SolvedAir& solved, const MediumTables& medium, const AirEye& eye,
+                        const AirTablesSize& size) {
+  RequireFourBands(solved.medium());
+  const SingleScattering<float>& air = solved.single_scattering();
+  const MultipleScattering& multiple_scattering = solved.multiple_scattering();
   const SkyView view = ViewOf(air, multiple_scattering, eye, size.sky_fineness);
   const AirMap map(air.medium(), eye.altitude_m, eye.ceiling_m,
                    static_cast<double>(multiple_scattering.grid().twilight_fall));
@@ -237,7 +238,7 @@ AirTables MakeAirTables(const SingleScattering<float>& air,
   return tables;
 }
 
-MediumTables MakeMediumTables(const SingleScattering<float>& air, const RefractedBeam& beam) {
+MediumTables MakeMediumTables(const SolvedAir& air) {
   using namespace shared;
   RequireFourBands(air.medium());
   MediumTables tables{AirTexels(kPhaseNodes, 1), AirTexels(kSunCosines, 2 * kSunAltitudes)};
@@ -255,27 +256,20 @@ MediumTables MakeMediumTables(const SingleScattering<float>& air, const Refracte
       const double mu = std::max(SkyCosineFromUnit<double>(Unit(x, kSunCosines), h, top, radius),
                                  HorizonCosine<double>(h, radius) + kHair);
       const double altitude_m = kMetresPerKilometre * h;
-      tables.to_sun.At(x, y) = Vec4Of(air.TransmittanceToSpace(altitude_m, mu));
-      tables.to_sun.At(x, kSunAltitudes + y) = Vec4Of(beam.Left(air, altitude_m, mu));
+      tables.to_sun.At(x, y) = Vec4Of(air.single_scattering().TransmittanceToSpace(altitude_m, mu));
+      tables.to_sun.At(x, kSunAltitudes + y) = Vec4Of(air.BeamLeft(altitude_m, mu));
     }
   }
   return tables;
 }
 
-std::shared_ptr<const SolvedAir> SolveAir(const Medium& medium, AirSolution solution) {
-  constexpr MultipleScatteringOptions kDraft{
-      .altitudes = 12, .sun_angles = 24, .zenith_nodes = 8, .azimuth_nodes = 5, .ray_nodes = 6};
-  const SingleScattering<float> air(medium);
+std::shared_ptr<const TabulatedAir> TabulateAir(const Medium& medium, AirSolution solution) {
+  RequireFourBands(medium);
   tbb::task_arena one_thread(1);
   return one_thread.execute([&] {
-    RefractedBeam beam(medium);
-    MediumTables tables = MakeMediumTables(air, beam);
-    return std::make_shared<const SolvedAir>(
-        SolvedAir{medium, solution, std::move(beam),
-                  MultipleScattering(medium, RaisedFor(medium, solution == AirSolution::kDraft
-                                                                   ? kDraft
-                                                                   : MultipleScatteringOptions{})),
-                  std::move(tables)});
+    SolvedAir air(medium, solution);
+    MediumTables tables = MakeMediumTables(air);
+    return std::make_shared<const TabulatedAir>(TabulatedAir{std::move(air), std::move(tables)});
   });
 }
 

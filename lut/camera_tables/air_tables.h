@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: MIT
-// Provides SolvedAir, a medium with all of its light, and the tables of the air for one eye and one
-// sun, which the GPU interpolates: the sky,
-// light scattered into a ray up to any distance along it, and transmittance. Light is per unit
+// Provides the tables of a solved medium for one eye and one sun, which the GPU interpolates: the
+// sky, light scattered into a ray up to any distance along it, and transmittance. Light is per unit
 // solar irradiance [1/sr]. Texels of four floats hold one value per band.
 //
 // The stored quantities vary little between texels. Light of the sky is divided by a mix of phase
@@ -36,10 +35,8 @@
 
 #include "atmosphere/medium/medium.h"
 #include "atmosphere/ray/shell.h"
-#include "atmosphere/ray/single_scattering.h"
-#include "atmosphere/refraction/refracted_view.h"
 #include "lut/layer.h"
-#include "lut/multiple_scattering/multiple_scattering.h"
+#include "lut/multiple_scattering/solved_air.h"
 
 namespace alpenglow::shared {
 // clang-format off
@@ -157,34 +154,23 @@ struct MediumTables {
   AirTexels to_sun;
 };
 
-/// @param beam  beam of the medium of `air`.
-[[nodiscard]] MediumTables MakeMediumTables(const SingleScattering<float>& air,
-                                            const RefractedBeam& beam);
+/// Throws InputError for a medium of more than four bands.
+[[nodiscard]] MediumTables MakeMediumTables(const SolvedAir& air);
 
-/// Computes the tables on the calling thread alone. `air`, `multiple_scattering` and `medium` must
-/// belong to one medium; no reference to them is kept. Throws InputError for a medium of more than
-/// four bands.
-[[nodiscard]] AirTables MakeAirTables(const SingleScattering<float>& air,
-                                      const MultipleScattering& multiple_scattering,
-                                      const MediumTables& medium, const AirEye& eye,
-                                      const AirTablesSize& size);
+/// Computes the tables on the calling thread alone. `air` and `medium` must belong to one medium;
+/// no reference to them is kept. Throws InputError for a medium of more than four bands.
+[[nodiscard]] AirTables MakeAirTables(const SolvedAir& air, const MediumTables& medium,
+                                      const AirEye& eye, const AirTablesSize& size);
 
-/// Accuracy of a solution. A draft takes a third of the time; irradiance from its sky is accurate
-/// to 3 % by day and 6 % in twilight.
-enum class AirSolution { kDraft, kFull };
-
-/// A solved medium. It is immutable and can be shared between threads.
-struct SolvedAir {
-  Medium medium;
-  AirSolution solution;
-  RefractedBeam beam;
-  MultipleScattering multiple_scattering;
+/// A solved medium with its tables for the GPU. It is immutable and can be shared between threads.
+struct TabulatedAir {
+  SolvedAir air;
   MediumTables tables;
 };
 
 /// Solves the medium on the calling thread alone, so that drawing keeps the other processors.
 /// Throws InputError for a medium that Validate rejects or that has more than four bands.
-[[nodiscard]] std::shared_ptr<const SolvedAir> SolveAir(const Medium& medium,
-                                                        AirSolution solution = AirSolution::kFull);
+[[nodiscard]] std::shared_ptr<const TabulatedAir> TabulateAir(
+    const Medium& medium, AirSolution solution = AirSolution::kFull);
 
 }  // namespace alpenglow::lut

@@ -73,6 +73,10 @@ class TableLookup {
 
   [[nodiscard]] const Medium& medium() const { return tables_.medium; }
   [[nodiscard]] const TableFolder& tables() const { return tables_; }
+  /// Returns the air that integrates what has no table.
+  [[nodiscard]] const SingleScattering<float>& single_scattering() const { return air_; }
+  /// Throws InternalError for tables of single scattering only.
+  [[nodiscard]] const MultipleScattering& multiple_scattering() const;
   [[nodiscard]] std::size_t bands() const { return air_.bands(); }
 
   /// Return transmittance and optical depth to the end of the ray.
@@ -90,7 +94,6 @@ class TableLookup {
   [[nodiscard]] Bands<float> SkyIrradiance(double altitude_m, double mu_s) const;
 
  private:
-  [[nodiscard]] const MultipleScattering& multiple_scattering() const;
   [[nodiscard]] bool HasTableFor(const ViewRay& ray) const;
   [[nodiscard]] bool HasTransmittanceFor(const ViewRay& ray) const;
 

@@ -41,21 +41,6 @@ inline constexpr std::size_t kLightSources = 2;
   return source == LightSource::kSun ? LightSource::kMoon : LightSource::kSun;
 }
 
-/// The air of one medium, through which ground, fog and volumes are lit. Refers to all three
-/// members.
-struct SunlitAir {
-  const SingleScattering<float>& air;
-  const RefractedBeam& beam;                      // direct light of sun and moon
-  const MultipleScattering& multiple_scattering;  // light of the sky
-
-  /// Returns the irradiance perpendicular to the beams of a disk whose irradiance above the air is
-  /// 1.
-  /// @param mu  see RefractedBeam::Left.
-  [[nodiscard]] Bands<float> BeamLeft(double altitude_m, double mu) const {
-    return beam.Left(air, altitude_m, mu);
-  }
-};
-
 /// Returns the unit direction (east, north, up of the eye) to the moon during a solar eclipse. It
 /// is lifted by the refraction of the sun's centre behind it, because the sun is drawn as a round
 /// disk and the moon's disk must be round too.

@@ -236,14 +236,14 @@ using Sums = std::array<glm::vec4, kQuantities>;
 
 class FogMarch {
  public:
-  FogMarch(const LocalMedium& fog, double bottom_m, const SunlitAir& air, const FogView& view)
+  FogMarch(const LocalMedium& fog, double bottom_m, const SolvedAir& air, const FogView& view)
       : fog_(fog),
         layer_(*fog.fog()),
         air_(air),
         view_(view),
-        radius_m_(air.air.medium().planet_radius_m),
+        radius_m_(air.medium().planet_radius_m),
         eye_(0.0, 0.0, std::max(view.altitude_m, 0.0)),
-        light_(fog, air.multiple_scattering,
+        light_(fog, air.multiple_scattering(),
                {view.to_sun, view.to_sun_for_air, SunInAir(Head(bottom_m))}, bottom_m) {}
 
   [[nodiscard]] const FogLight& light() const { return light_; }
@@ -298,7 +298,7 @@ class FogMarch {
     const double mu_s = std::clamp(glm::dot(up, view_.to_sun), -1.0, 1.0);
     const VisibleDisk disk =
         DiskOverHorizon(mu_s, shared::HorizonCosine(altitude, radius_m_), view_.sun_radius_rad);
-    if (disk.fraction <= 0.0) return BandLight(air_.air.bands());
+    if (disk.fraction <= 0.0) return BandLight(air_.bands());
     return static_cast<float>(disk.fraction) * air_.BeamLeft(altitude, disk.mu_s_effective);
   }
 
@@ -358,7 +358,7 @@ class FogMarch {
     ViewRay ray{eye_.z, direction.z, 0.0, 0.0};
     ray.length_m = step.middle_m;
     ray.passes_ground = true;
-    const BandLight left = scattered * air_.air.TransmittanceAlong(ray);
+    const BandLight left = scattered * air_.single_scattering().TransmittanceAlong(ray);
     return {InFloats(direct * (left * sun)),
             InFloats((light_.BeamLeft(slant) - direct) * (left * sun)),
             InFloats(left * glow.of_sun), InFloats(left * glow.of_sky)};
@@ -366,7 +366,7 @@ class FogMarch {
 
   const LocalMedium& fog_;
   const FogLayer& layer_;
-  SunlitAir air_;
+  SolvedAir air_;
   FogView view_;
   double radius_m_;
   glm::dvec3 eye_;
@@ -423,9 +423,9 @@ void AddSurfaces(const FogMarch& march, const FogLayer& layer, FogMap& map) {
 
 }  // namespace
 
-FogMap MakeFogMap(const LocalMedium& fog, double bottom_m, const SunlitAir& air,
+FogMap MakeFogMap(const LocalMedium& fog, double bottom_m, const SolvedAir& air,
                   const FogView& view, const FogMapSize& size) {
-  ALPENGLOW_ENSURE(air.air.bands(), <=, std::size_t{4});
+  ALPENGLOW_ENSURE(air.bands(), <=, std::size_t{4});
   const FogLayer& layer = *fog.fog();
   const FogMarch march(fog, bottom_m, air, view);
   const std::vector<double> chi = LegendreCoefficients(fog.optics.phase, 2);
@@ -435,8 +435,8 @@ FogMap MakeFogMap(const LocalMedium& fog, double bottom_m, const SunlitAir& air,
   map.extinction_per_m = fog.optics.extinction_per_m[0];
   map.scale_height_m = layer.scale_height_m();
   map.base_m = layer.base_m();
-  map.top_m = air.air.medium().atmosphere_height_m;
-  map.radius_m = air.air.medium().planet_radius_m;
+  map.top_m = air.medium().atmosphere_height_m;
+  map.radius_m = air.medium().planet_radius_m;
   map.depth = map.extinction_per_m * layer.ColumnAbove(bottom_m);
   map.peak_scale = -std::log(static_cast<double>(march.light().BeamLeft(1.0)));
   map.phase = fog.optics.phase;

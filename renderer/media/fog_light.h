@@ -54,6 +54,7 @@
 #include <glm/vec4.hpp>
 #include <vector>
 
+#include "lut/multiple_scattering/solved_air.h"
 #include "renderer/illumination/lighting.h"
 #include "renderer/illumination/occluded_sky.h"
 #include "renderer/media/local_media.h"
@@ -216,7 +217,7 @@ struct FogMap {
 /// @param fog  fog of LocalMedia; bottom_m: altitude of the ground below it.
 /// @param air  medium of at most four bands.
 /// tests/viewer/lamps/fog_map_test.cpp bounds the errors of rays against MediaLight.
-[[nodiscard]] FogMap MakeFogMap(const LocalMedium& fog, double bottom_m, const SunlitAir& air,
+[[nodiscard]] FogMap MakeFogMap(const LocalMedium& fog, double bottom_m, const SolvedAir& air,
                                 const FogView& view, const FogMapSize& size = {});
 
 /// Returns whether the map of one eye and sun is valid for others, to a few per cent: the eye is

@@ -89,15 +89,13 @@ void AddDepth(const MediumOptics& optics, double column, Bands<double>& depth) {
 struct MediaLight::State {
   LocalMedia media;
   const SceneGeometry& geometry;
-  const SingleScattering<float>& air;
-  const RefractedBeam& beam;
-  const MultipleScattering& multiple_scattering;
+  SolvedAir air;
   const LampLight* lamps;
   DistantLight sun;
   std::vector<LitVolume> volumes;
   std::optional<FogLight> fog;
 
-  State(LocalMedia of, const SceneGeometry& over, const SunlitAir& in, const Lighting& light,
+  State(LocalMedia of, const SceneGeometry& over, const SolvedAir& in, const Lighting& light,
         const LampLight* with);
 
   [[nodiscard]] std::size_t bands() const { return media.bands(); }
@@ -119,15 +117,9 @@ struct MediaLight::State {
                                                 const SkyMoments& sky) const;
 };
 
-MediaLight::State::State(LocalMedia of, const SceneGeometry& over, const SunlitAir& in,
+MediaLight::State::State(LocalMedia of, const SceneGeometry& over, const SolvedAir& in,
                          const Lighting& light, const LampLight* with)
-    : media(std::move(of)),
-      geometry(over),
-      air(in.air),
-      beam(in.beam),
-      multiple_scattering(in.multiple_scattering),
-      lamps(with),
-      sun(light.Sun()) {
+    : media(std::move(of)), geometry(over), air(in), lamps(with), sun(light.Sun()) {
   for (const LocalMedium& medium : media.all()) {
     if (medium.volume() != nullptr) volumes.push_back(Light(medium));
   }
@@ -135,7 +127,7 @@ MediaLight::State::State(LocalMedia of, const SceneGeometry& over, const SunlitA
   const double scale = fog_layer().scale_height_m();
   const double bottom = media.fog_bottom_m();
   const glm::dvec3 head(0.0, 0.0, bottom + (std::isinf(scale) ? 0.0 : scale));
-  fog.emplace(*media.fog(), multiple_scattering,
+  fog.emplace(*media.fog(), air.multiple_scattering(),
               FogSun{sun.to_light, sun.to_light_for_air, SunInAir(head)}, bottom);
 }
 
@@ -143,17 +135,18 @@ BandLight MediaLight::State::SunInAir(const glm::dvec3& point) const {
   const LocalSun here = LocalSunAt(geometry, point, sun);
   if (here.visible_fraction <= 0.0) return BandLight(bands());
   return static_cast<float>(here.visible_fraction) *
-         beam.Left(air, here.altitude_m, here.mu_s_effective);
+         air.BeamLeft(here.altitude_m, here.mu_s_effective);
 }
 
 LitVolume MediaLight::State::Light(const LocalMedium& medium) const {
   const LocalVolume& volume = *medium.volume();
   const double low = geometry.AltitudeOf(volume.FrameFromUnit({0.5, 0.5, 0.0}));
   const double high = geometry.AltitudeOf(volume.FrameFromUnit({0.5, 0.5, 1.0}));
-  const SkyMoments sky(multiple_scattering, geometry.UpAt(volume.Middle()), sun.to_light_for_air,
-                       {low, 0.5 * (low + high), high});
-  LitVolume lit{LegendreCoefficients(medium.optics.phase, multiple_scattering.options().degree),
-                sky, std::nullopt, SkyLeft(volume, sky), LampsOf(volume)};
+  const SkyMoments sky(air.multiple_scattering(), geometry.UpAt(volume.Middle()),
+                       sun.to_light_for_air, {low, 0.5 * (low + high), high});
+  LitVolume lit{
+      LegendreCoefficients(medium.optics.phase, air.multiple_scattering().options().degree), sky,
+      std::nullopt, SkyLeft(volume, sky), LampsOf(volume)};
   if (volume.grid() != nullptr) lit.sun_column.emplace(SunColumns(volume));
   return lit;
 }
@@ -220,8 +213,8 @@ std::vector<VolumeGrid> MediaLight::State::SkyLeft(const LocalVolume& volume,
                                                    const SkyMoments& sky) const {
   constexpr std::array<int, 3> kSize{8, 8, 8};
   const LebedevRule& rule = Lebedev();
-  const std::vector<double> all(static_cast<std::size_t>(multiple_scattering.options().degree) + 1,
-                                1.0);
+  const std::vector<double> all(
+      static_cast<std::size_t>(air.multiple_scattering().options().degree) + 1, 1.0);
   std::array<BandLight, 26> weight;
   BandLight sum(bands());
   for (std::size_t i = 0; i < weight.size(); ++i) {
@@ -323,7 +316,8 @@ class AirOnRay {
     ray.length_m = distance_m;
     ray.passes_ground = true;
     const BandLight none(light_.bands());
-    return {true, distance_m <= begin_m_ ? none : light_.air.OpticalDepthAlong(ray),
+    return {true,
+            distance_m <= begin_m_ ? none : light_.air.single_scattering().OpticalDepthAlong(ray),
             light_.SunInAir(origin_ + distance_m * direction_)};
   }
   const Knot& Known(std::size_t index) {
@@ -438,7 +432,7 @@ class Sources {
 
 }  // namespace
 
-MediaLight::MediaLight(LocalMedia media, const SceneGeometry& geometry, const SunlitAir& air,
+MediaLight::MediaLight(LocalMedia media, const SceneGeometry& geometry, const SolvedAir& air,
                        const Lighting& light, const LampLight* lamps)
     : state_(std::make_unique<State>(std::move(media), geometry, air, light, lamps)) {}
 MediaLight::~MediaLight() = default;

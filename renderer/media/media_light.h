@@ -36,6 +36,7 @@
 #include <span>
 #include <vector>
 
+#include "lut/multiple_scattering/solved_air.h"
 #include "renderer/illumination/lighting.h"
 #include "renderer/lamps/lamp_light.h"
 #include "renderer/material/band_light.h"
@@ -103,11 +104,11 @@ struct SkyThroughFog {
 };
 
 /// Light in local media for one position of the sun. Immutable, safe to use from many threads.
-/// Refers to geometry, air, multiply scattered light and lamps.
+/// Refers to geometry and lamps.
 class MediaLight {
  public:
   /// @param lamps  light volumes; null: none.
-  MediaLight(LocalMedia media, const SceneGeometry& geometry, const SunlitAir& air,
+  MediaLight(LocalMedia media, const SceneGeometry& geometry, const SolvedAir& air,
              const Lighting& light, const LampLight* lamps = nullptr);
   ~MediaLight();
 

@@ -298,7 +298,7 @@ FrameContext::FrameContext(const PreparedScene& scene, const CameraSample& camer
                            const RenderSettings& settings)
     : scene_(&scene),
       settings_(settings),
-      model_(&scene.models().With(settings.effects)),
+      over_ground_(&scene.air().With(settings.effects)),
       moving_(CameraOn(scene.ground(), scene.scene().camera, camera_sample.poses, settings.width,
                        settings.height)),
       filter_(settings.filter),
@@ -394,11 +394,11 @@ void FrameContext::LightMedia() {
   for (FrameLight& source : lights_) source.media = nullptr;
   if (here.IsNothing()) return;
   lights_.front().media =
-      std::make_shared<MediaLight>(std::move(here), geometry, model_->sunlit(), light(),
+      std::make_shared<MediaLight>(std::move(here), geometry, over_ground_->air, light(),
                                    Has(Effect::kLights) ? lamps_.get() : nullptr);
   for (std::size_t i = 1; i < lights_.size(); ++i) {
     lights_[i].media = std::make_shared<MediaLight>(media()->media().WithoutGlow(), geometry,
-                                                    model_->sunlit(), lights_[i].light);
+                                                    over_ground_->air, lights_[i].light);
   }
 }
 
@@ -408,7 +408,7 @@ void FrameContext::LightTerrain() {
   const Stopwatch watch;
   for (FrameLight& source : lights_) {
     if (source.light.shows)
-      source.light.on_terrain = model_->ground_light.OnTerrain(source.ground_sources());
+      source.light.on_terrain = over_ground_->ground_light.OnTerrain(source.ground_sources());
   }
   slopes_s_ = watch.seconds();
 }
@@ -450,7 +450,7 @@ FrameContext FrameContext::Reduced(EffectSet effects) const {
   };
   FrameContext frame = *this;
   frame.settings_.effects = effects;
-  frame.model_ = &scene_->models().With(effects);
+  frame.over_ground_ = &scene_->air().With(effects);
   if (!effects.Has(Effect::kNightSky)) frame.sky_lights_.night = nullptr;
   if (!effects.Has(Effect::kStars)) frame.sky_lights_.stars = nullptr;
   if (!effects.Has(Effect::kRefraction)) frame.refracted_ = nullptr;

@@ -125,7 +125,7 @@ class FrameContext {
   [[nodiscard]] const SceneGeometry& geometry() const {
     return scene_->GeometryWith(settings_.effects);
   }
-  [[nodiscard]] const AirModel& model() const { return *model_; }
+  [[nodiscard]] const AirOverGround& over_ground() const { return *over_ground_; }
   [[nodiscard]] const RenderSettings& settings() const { return settings_; }
   [[nodiscard]] bool Has(Effect effect) const { return settings_.effects.Has(effect); }
 
@@ -162,7 +162,7 @@ class FrameContext {
 
   const PreparedScene* scene_;
   RenderSettings settings_;
-  const AirModel* model_;
+  const AirOverGround* over_ground_;
   MovingCamera moving_;
   PixelFilter filter_;
   LimbView limb_;

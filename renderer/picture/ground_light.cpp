@@ -31,11 +31,8 @@ bool SeesTerrain(const Hit& hit, const Lighting& light) {
 
 }  // namespace
 
-GroundLight::GroundLight(const GroundParts& parts, const SunlitAir& air)
-    : parts_(parts),
-      air_(air.air),
-      beam_(air.beam),
-      multiple_scattering_(air.multiple_scattering) {}
+GroundLight::GroundLight(const GroundParts& parts, const SolvedAir& air)
+    : parts_(parts), air_(air) {}
 
 std::shared_ptr<const TerrainIrradiance> GroundLight::OnTerrain(const GroundSources& from) const {
   const Lighting& light = from.light;
@@ -43,8 +40,8 @@ std::shared_ptr<const TerrainIrradiance> GroundLight::OnTerrain(const GroundSour
   const std::shared_ptr<const TerrainHorizons> horizons =
       light.effects.Has(Effect::kHorizons) ? parts_.horizons.Get() : nullptr;
   if (!horizons && !parts_.material.HasGloss()) return nullptr;
-  auto on_terrain = std::make_shared<TerrainIrradiance>(horizons, air_, multiple_scattering_,
-                                                        light.to_sun_for_air);
+  auto on_terrain = std::make_shared<TerrainIrradiance>(
+      horizons, air_.single_scattering(), air_.multiple_scattering(), light.to_sun_for_air);
   if (horizons && light.effects.Has(Effect::kBounce)) {
     on_terrain->AddSlopes(
         air_.medium(),
@@ -103,11 +100,11 @@ BandLight GroundLight::SkyIrradiance(const Hit& hit, const GroundSources& from,
   const double lengths = glm::length(flat_sun) * glm::length(flat_normal);
   const double azimuth =
       lengths > 1e-9 ? std::clamp(glm::dot(flat_sun, flat_normal) / lengths, -1.0, 1.0) : 1.0;
-  const BandLight clear =
-      SeesTerrain(hit, light)
-          ? light.on_terrain->Irradiance(
-                {hit.smooth_point, hit.normal, sun.up, sun.altitude_m, sun.mu_s_for_air})
-          : multiple_scattering_.Irradiance(sun.altitude_m, sun.mu_s_for_air, normal_mu, azimuth);
+  const BandLight clear = SeesTerrain(hit, light)
+                              ? light.on_terrain->Irradiance({hit.smooth_point, hit.normal, sun.up,
+                                                              sun.altitude_m, sun.mu_s_for_air})
+                              : air_.multiple_scattering().Irradiance(
+                                    sun.altitude_m, sun.mu_s_for_air, normal_mu, azimuth);
   if (from.media == nullptr) return clear;
   const SkyThroughFog fog = from.media->SkyOnSurface(sun.altitude_m, normal_mu);
   return fog.left * clear + fog.added;
@@ -151,7 +148,7 @@ std::optional<BandLight> GroundLight::SunIrradiance(const Hit& hit, const Ground
   const double cosine = LitCosine(hit, from.light, sun, to_disk);
   if (cosine <= 0.0) return std::nullopt;
   const BandLight clear = static_cast<float>(sun.visible_fraction * cosine) *
-                          beam_.Left(air_, sun.altitude_m, sun.mu_s_effective);
+                          air_.BeamLeft(sun.altitude_m, sun.mu_s_effective);
   if (from.media == nullptr) return clear;
   return clear * from.media->SunLeft(hit.point, to_disk);
 }

@@ -8,6 +8,7 @@
 #include <memory>
 #include <optional>
 
+#include "lut/multiple_scattering/solved_air.h"
 #include "renderer/illumination/lighting.h"
 #include "renderer/illumination/terrain_irradiance.h"
 #include "renderer/lamps/lamp_light.h"
@@ -48,10 +49,10 @@ struct GroundSources {
   const MediaLight* media = nullptr;  // fog and volumes between sun, sky and ground; null: no media
 };
 
-/// Immutable, safe to share between threads. Refers to the objects that it was made from.
+/// Immutable, safe to share between threads. Refers to the parts of the ground.
 class GroundLight {
  public:
-  GroundLight(const GroundParts& parts, const SunlitAir& air);
+  GroundLight(const GroundParts& parts, const SolvedAir& air);
 
   /// Returns the light of sky and sun on terrain, computed as far as the effects of the light
   /// include it; null if terrain does not change that light.
@@ -110,9 +111,7 @@ class GroundLight {
                                  const LocalSun& sun) const;
 
   GroundParts parts_;
-  const SingleScattering<float>& air_;
-  const RefractedBeam& beam_;
-  const MultipleScattering& multiple_scattering_;
+  SolvedAir air_;
 };
 
 }  // namespace alpenglow::renderer

@@ -46,7 +46,7 @@ SceneGround GroundOf(const ElevationGrid& grid, const LocalFrame& frame) {
 }
 
 GroundSite::GroundSite(SceneGround ground, const GroundCover& cover,
-                       std::shared_ptr<const ColourDrape> drape, SiteAir air)
+                       std::shared_ptr<const ColourDrape> drape, SolvedAir air)
     : air_(std::move(air)),
       ground_(std::move(ground)),
       geometry_(ground_, medium(), true),
@@ -54,8 +54,7 @@ GroundSite::GroundSite(SceneGround ground, const GroundCover& cover,
       no_lamps_(NoLamps(ground_, medium())),
       horizons_(ground_, medium()),
       heights_(TerrainOf(ground_).mesh()),
-      light_({ground_, geometry_, no_lamps_, horizons_, material_},
-             {*air_.single_scattering, *air_.beam, *air_.multiple_scattering}) {
+      light_({ground_, geometry_, no_lamps_, horizons_, material_}, air_) {
   ALPENGLOW_ENSURE(ground_.is_one_surface, ==, true);
   OnThisThread([&] { (void)horizons_.Get(); });
 }
@@ -166,7 +165,7 @@ double OpenAltitude_m(const GroundSite& site) {
 }
 
 SkyIrradianceGradient UnoccludedSkyUnder(const GroundSite& site, const SunPosition& disk) {
-  return {*site.air().single_scattering, *site.air().multiple_scattering, OpenAltitude_m(site),
+  return {site.air().single_scattering(), site.air().multiple_scattering(), OpenAltitude_m(site),
           std::sin(SunForAir(disk).elevation_rad)};
 }
 
@@ -254,13 +253,12 @@ class GroundFollower::Maker {
   // @param over_land  sky of this source over the land, or null.
   [[nodiscard]] GlossMirror MirrorFor(const Request& request, const SunPosition& disk,
                                       const GroundSky* over_land) const {
-    const Medium medium = OnOsculatingSphere(request.air->medium, request.view.eye.latitude_rad);
-    const GroundMaterial material(cover_, drape_, medium.wavelengths_nm);
+    const GroundMaterial material(cover_, drape_, request.air->medium().wavelengths_nm);
     if (!material.HasGloss()) return {};
     const GlossMirror::Surfaces surfaces{
         material.HasWater() ? &material.water() : nullptr,
         cover_.kind == GroundCover::Kind::kBlinnPhong ? &material.glossy() : nullptr};
-    const MultipleScattering& multiple_scattering = request.air->multiple_scattering;
+    const MultipleScattering& multiple_scattering = request.air->multiple_scattering();
     if (over_land != nullptr) {
       const OccludedSkyIrradiance::Extent& extent = over_land->site().horizons()->extent();
       const double lowest_m = std::max(extent.lowest_m, 0.0);
@@ -271,9 +269,9 @@ class GroundFollower::Maker {
       return GlossMirror::Of(over_land->lighting().on_terrain->sky(), multiple_scattering, surfaces,
                              over_land->lighting().to_sun_for_air, lowest_m, highest_m);
     }
-    const SingleScattering<float> single_scattering(medium);
+    const SolvedAir here = request.air->OnSphereAt(request.view.eye.latitude_rad);
     const glm::dvec3 to_sun = Direction(SunForAir(disk));
-    const OccludedSkyIrradiance sky(single_scattering, multiple_scattering, to_sun,
+    const OccludedSkyIrradiance sky(here.single_scattering(), multiple_scattering, to_sun,
                                     OccludedSkyIrradiance::Extent{0.0, 1.0, 5e5});
     return GlossMirror::Of(sky, multiple_scattering, surfaces, to_sun, 0.0, 0.0);
   }
@@ -292,15 +290,12 @@ class GroundFollower::Maker {
     if (!grid) return nullptr;
     GeodeticPosition foot = request.view.eye;
     foot.height_m = 0.0;
-    const Medium medium = OnOsculatingSphere(request.air->medium, foot.latitude_rad);
-    const SiteAir air{
-        std::make_shared<const SingleScattering<float>>(medium),
-        std::shared_ptr<const RefractedBeam>(request.air, &request.air->beam),
-        std::shared_ptr<const MultipleScattering>(request.air, &request.air->multiple_scattering)};
-    SceneGround ground = GroundOf(*grid, LocalFrame(EllipsoidOf(medium), foot));
+    SolvedAir air = request.air->OnSphereAt(foot.latitude_rad);
+    SceneGround ground = GroundOf(*grid, LocalFrame(EllipsoidOf(air.medium()), foot));
     if (ground.terrain->mesh().triangles.empty()) return nullptr;  // no land is loaded there yet
     auto drape = drape_ ? drape_->In(ground.frame) : nullptr;
-    site_ = std::make_shared<const GroundSite>(std::move(ground), cover_, std::move(drape), air);
+    site_ = std::make_shared<const GroundSite>(std::move(ground), cover_, std::move(drape),
+                                               std::move(air));
     air_ = request.air;
     ground_ = request.ground;
     middle_ = foot;

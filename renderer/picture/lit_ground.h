@@ -28,7 +28,7 @@
 
 #include "atmosphere/base/async_value.h"
 #include "atmosphere/time_place/geodesy.h"
-#include "lut/camera_tables/air_tables.h"
+#include "lut/multiple_scattering/solved_air.h"
 #include "renderer/elevation/mesh.h"
 #include "renderer/illumination/lighting.h"
 #include "renderer/illumination/sky_on_ground.h"
@@ -45,13 +45,6 @@
 #include "renderer/visibility/shadow_heights.h"
 
 namespace alpenglow::renderer {
-
-/// Solved air over the land: all members belong to one medium on the sphere of the site.
-struct SiteAir {
-  std::shared_ptr<const SingleScattering<float>> single_scattering;
-  std::shared_ptr<const RefractedBeam> beam;
-  std::shared_ptr<const MultipleScattering> multiple_scattering;
-};
 
 /// Returns the ground of an elevation model around a place, without objects on it. Works on the
 /// calling thread alone.
@@ -74,17 +67,18 @@ class GroundSite {
   /// Works on the calling thread alone: a second for a thousand samples per side.
   /// @param ground  ground with terrain that is one surface.
   /// @param cover  material of the ground; drape: colours over it, or null.
+  /// @param air  on the sphere of the site.
   GroundSite(SceneGround ground, const GroundCover& cover, std::shared_ptr<const ColourDrape> drape,
-             SiteAir air);
+             SolvedAir air);
   GroundSite(const GroundSite&) = delete;
   GroundSite& operator=(const GroundSite&) = delete;
 
   [[nodiscard]] const SceneGround& ground() const { return ground_; }
   [[nodiscard]] const SceneGeometry& geometry() const { return geometry_; }
-  [[nodiscard]] const Medium& medium() const { return air_.single_scattering->medium(); }
+  [[nodiscard]] const Medium& medium() const { return air_.medium(); }
 
   [[nodiscard]] const GroundMaterial& material() const { return material_; }
-  [[nodiscard]] const SiteAir& air() const { return air_; }
+  [[nodiscard]] const SolvedAir& air() const { return air_; }
   [[nodiscard]] const GroundLight& light() const { return light_; }
 
   /// Returns the horizons; null if the ground is not one surface.
@@ -100,7 +94,7 @@ class GroundSite {
   [[nodiscard]] std::shared_ptr<const TerrainIrradiance> Under(const Lighting& light) const;
 
  private:
-  SiteAir air_;
+  SolvedAir air_;
   SceneGround ground_;
   SceneGeometry geometry_;
   GroundMaterial material_;

@@ -125,7 +125,7 @@ class AirTo {
   [[nodiscard]] const SunlitPath* sunlit() const { return sunlight_.IsBroken() ? &path_ : nullptr; }
 
   [[nodiscard]] AirAlongRay operator()(double length_m) const {
-    const AirModel& in = frame_.model();
+    const AirOverGround& in = frame_.over_ground();
     ViewRay ray = ray_;
     ray.length_m = std::min(ray.length_m, length_m);
     AirAlongRay none{BandLight(in.air.bands()), BandLight(in.air.bands())};
@@ -133,7 +133,7 @@ class AirTo {
     std::fill_n(none.transmittance.value.begin(), none.transmittance.count, 1.0F);
     if (kind_ != HitKind::kSky && !frame_.Has(Effect::kAerial)) return none;
     if (!is_lit_ || (kind_ == HitKind::kSky && !frame_.Has(Effect::kSky))) {
-      none.transmittance = in.air.TransmittanceAlong(ray);
+      none.transmittance = in.air.single_scattering().TransmittanceAlong(ray);
       return none;
     }
     const int nodes = frame_.settings().air_nodes;
@@ -457,7 +457,7 @@ BandLight PixelShader::DiskFrom(const glm::dvec3& direction, DiskBehind disk) co
 
 PolarisedLight PixelShader::PolarisedGround(const Hit& hit, const CameraRay& ray,
                                             std::array<double, 2> disk_sample) const {
-  const GroundLight& ground_light = frame_->model().ground_light;
+  const GroundLight& ground_light = frame_->over_ground().ground_light;
   const PictureAxes axes = frame_->camera().AxesAt(ray.through);
   const SeenGround seen = ground_light.SeenFrom(hit, -ray.direction, frame_->light());
   std::optional<PolarisedLight> sum;
@@ -541,7 +541,7 @@ Shaded PixelShader::WithoutPolariser(const Hit& hit, const SharedSegmentAir& thr
 
 void PixelShader::AddGround(const Hit& hit, const CameraRay& ray, const LampTile& near,
                             std::array<double, 2> disk_sample, Shaded& shaded) const {
-  const GroundLight& ground_light = frame_->model().ground_light;
+  const GroundLight& ground_light = frame_->over_ground().ground_light;
   const SeenGround seen = ground_light.SeenFrom(hit, -ray.direction, frame_->light());
   shaded.albedo = seen.albedo;
   BandLight natural(shaded.albedo.count);

@@ -45,13 +45,13 @@ Medium OnlyWith(Medium medium, EffectSet parts) {
 
 }  // namespace
 
-const AirModel& AirModels::With(EffectSet effects) const {
+const AirOverGround& AirByEffects::With(EffectSet effects) const {
   const EffectSet parts = effects.And(kParts);
   if (parts == kParts) return whole_;
   const std::lock_guard lock(mutex_);
-  std::unique_ptr<AirModel>& partial = partial_[parts];
+  std::unique_ptr<AirOverGround>& partial = partial_[parts];
   if (!partial) {
-    partial = std::make_unique<AirModel>(OnlyWith(whole_.air.medium(), parts), parts_);
+    partial = std::make_unique<AirOverGround>(OnlyWith(whole_.air.medium(), parts), parts_);
   }
   return *partial;
 }
@@ -59,10 +59,10 @@ const AirModel& AirModels::With(EffectSet effects) const {
 namespace {
 
 std::optional<BandLight> SkyglowOf(const Scene& scene, const SceneGround& ground,
-                                   const AirModels& models, const BandColour& colour) {
+                                   const AirByEffects& air, const BandColour& colour) {
   if (!scene.town_zenith) return std::nullopt;
   const double ground_m = std::max(GroundHeightUnder(ground, scene.place), 0.0);
-  return Skyglow(*scene.town_zenith, ground_m, models.whole().air, colour);
+  return Skyglow(*scene.town_zenith, ground_m, air.whole().air.single_scattering(), colour);
 }
 
 std::string MessageOf(const SceneGround& ground, const GroundMaterial& material) {
@@ -88,8 +88,8 @@ PreparedScene::PreparedScene(const Scene& scene, std::shared_ptr<const SceneGrou
       moonlight_(other ? other->moonlight_ : std::make_shared<RecentSunlight>(*ground_)),
       material_(scene_.ground, ColourDrape::Of(scene_, *ground_), medium_.wavelengths_nm),
       terrain_message_(MessageOf(*ground_, material_)),
-      models_(medium_, {*ground_, geometry_, lamps_, *horizons_, material_}),
-      towns_(SkyglowOf(scene_, *ground_, models_, colour_)),
+      air_(medium_, {*ground_, geometry_, lamps_, *horizons_, material_}),
+      towns_(SkyglowOf(scene_, *ground_, air_, colour_)),
       pattern_origin_(PatternOrigin(pattern_eye)) {}
 
 std::unique_ptr<PreparedScene> PreparedScene::OnOtherBands(int bands) const {
@@ -153,12 +153,12 @@ Observer ObserverOf(const PreparedScene& scene, const CameraSample& camera_sampl
 
 double IlluminanceBy(const PreparedScene& scene, const DistantLight& source, const glm::dvec3& eye,
                      const Lighting& light) {
-  const AirModel& air = scene.models().whole();
-  const LocalSun sun = air.ground_light.LocalSunAt(eye, light.By(source));
+  const AirOverGround& over_ground = scene.air().whole();
+  const LocalSun sun = over_ground.ground_light.LocalSunAt(eye, light.By(source));
   const auto direct = static_cast<float>(sun.visible_fraction * std::max(sun.mu_s_effective, 0.0));
   const BandLight irradiance =
-      direct * air.sunlit().BeamLeft(sun.altitude_m, sun.mu_s_effective) +
-      air.multiple_scattering.SkyIrradiance(sun.altitude_m, sun.mu_s_for_air);
+      direct * over_ground.air.BeamLeft(sun.altitude_m, sun.mu_s_effective) +
+      over_ground.air.multiple_scattering().SkyIrradiance(sun.altitude_m, sun.mu_s_for_air);
   return scene.colour().Xyz(InDouble(source.irradiance * irradiance))[1];
 }
 
@@ -194,7 +194,7 @@ void AddNight(const PreparedScene& scene, const Observer& observer, Lighting& li
   if (kNightSky_lux + towns_lux < kUnseenShare * sun_lux) return;
   light.night = std::make_shared<NightLight>(
       NightSky(observer.bodies.place, observer.bodies.instant).InFrame(stand.frame_from_enu),
-      scene.models().whole().air, scene.colour(), geometry.UpAt(stand.eye),
+      scene.air().whole().air.single_scattering(), scene.colour(), geometry.UpAt(stand.eye),
       geometry.AltitudeOf(stand.eye), towns);
 }
 

@@ -15,10 +15,8 @@
 
 #include "atmosphere/astronomy/sky_bodies.h"
 #include "atmosphere/colour/spectrum.h"
-#include "atmosphere/ray/single_scattering.h"
-#include "atmosphere/refraction/refracted_view.h"
 #include "lut/cli/messages.h"
-#include "lut/multiple_scattering/multiple_scattering.h"
+#include "lut/multiple_scattering/solved_air.h"
 #include "renderer/camera/camera_rays.h"
 #include "renderer/effects/effects.h"
 #include "renderer/illumination/aerial_perspective.h"
@@ -61,43 +59,36 @@ class RecentSunlight {
   std::deque<Kept> kept_;  // oldest first
 };
 
-/// Air with its single and multiple scattering, solved with the options for hazy and thick air
-/// (OptionsFor). Refers to the parts of the ground.
-struct AirModel {
-  AirModel(const Medium& medium, const GroundParts& parts)
+/// Solved air over the ground of a scene. Refers to the parts of the ground.
+struct AirOverGround {
+  AirOverGround(const Medium& medium, const GroundParts& parts)
       : air(medium),
-        beam(medium),
-        multiple_scattering(medium, OptionsFor(medium)),
-        aerial(air, multiple_scattering),
-        ground_light(parts, sunlit()) {}
-  AirModel(const AirModel&) = delete;
-  AirModel& operator=(const AirModel&) = delete;
+        aerial(air.single_scattering(), air.multiple_scattering()),
+        ground_light(parts, air) {}
+  AirOverGround(const AirOverGround&) = delete;
+  AirOverGround& operator=(const AirOverGround&) = delete;
 
-  [[nodiscard]] SunlitAir sunlit() const { return {air, beam, multiple_scattering}; }
-
-  SingleScattering<float> air;
-  RefractedBeam beam;
-  MultipleScattering multiple_scattering;
+  SolvedAir air;
   AerialPerspective aerial;
   GroundLight ground_light;
 };
 
-/// Safe to share between threads. Air that lacks a part is solved on first use. The air in front of
-/// lamps always has all parts.
-class AirModels {
+/// The air of a scene by its effects. Safe to share between threads. Air that lacks a part is
+/// solved on first use. The air in front of lamps always has all parts.
+class AirByEffects {
  public:
-  AirModels(const Medium& medium, const GroundParts& parts)
+  AirByEffects(const Medium& medium, const GroundParts& parts)
       : parts_(parts), whole_(medium, parts) {}
 
-  [[nodiscard]] const AirModel& whole() const { return whole_; }
+  [[nodiscard]] const AirOverGround& whole() const { return whole_; }
   /// Returns the air with only those of molecules, aerosol and ozone that are in `effects`.
-  [[nodiscard]] const AirModel& With(EffectSet effects) const;
+  [[nodiscard]] const AirOverGround& With(EffectSet effects) const;
 
  private:
   GroundParts parts_;
-  AirModel whole_;
+  AirOverGround whole_;
   mutable std::mutex mutex_;
-  mutable std::map<EffectSet, std::unique_ptr<AirModel>> partial_;
+  mutable std::map<EffectSet, std::unique_ptr<AirOverGround>> partial_;
 };
 
 /// A scene ready for pictures of any time. Immutable, safe to share between threads. The parts
@@ -128,7 +119,7 @@ class PreparedScene {
   [[nodiscard]] const SceneGeometry& GeometryWith(EffectSet effects) const {
     return effects.Has(Effect::kRelief) ? geometry_ : smooth_geometry_;
   }
-  [[nodiscard]] const AirModels& models() const { return models_; }
+  [[nodiscard]] const AirByEffects& air() const { return air_; }
   /// Returns the light of towns in the night sky (Skyglow); empty if there is none.
   [[nodiscard]] const std::optional<BandLight>& towns() const { return towns_; }
   /// Computes the horizons of the terrain unless they are known. Pictures compute them on demand.
@@ -166,7 +157,7 @@ class PreparedScene {
   std::shared_ptr<RecentSunlight> sunlight_, moonlight_;
   GroundMaterial material_;
   std::string terrain_message_;
-  AirModels models_;
+  AirByEffects air_;
   std::optional<BandLight> towns_;
   mutable std::once_flag few_bands_asked_;
   mutable std::unique_ptr<PreparedScene> few_bands_;

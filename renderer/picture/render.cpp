@@ -386,7 +386,7 @@ ChosenPicture SceneRenderer::RenderWithin(const CameraSample& camera_sample,
   refine("air of each ray", [](RenderSettings& finer) { finer.share_air = false; });
   const std::unique_ptr<PreparedScene> more_bands =
       budget.explain ? frame.scene().OnOtherBands(16) : nullptr;
-  if (more_bands && frame.model().air.bands() < 16) {
+  if (more_bands && frame.over_ground().air.bands() < 16) {
     preview.refinements.push_back({"16 bands", [&] {
                                      return timed({*more_bands, camera_sample, settings});
                                    }});

@@ -16,9 +16,8 @@ constexpr GeodeticPosition kPlace{47.0 * kRadiansPerDegree, 11.0 * kRadiansPerDe
 
 std::shared_ptr<const GroundSite> NewSite() {
   static const Medium kMedium = OnOsculatingSphere(MediumPreset("earth"), kPlace.latitude_rad);
-  static const SiteAir kAir{std::make_shared<const SingleScattering<float>>(kMedium),
-                            std::make_shared<const RefractedBeam>(kMedium),
-                            std::make_shared<const MultipleScattering>(kMedium)};
+  static const SolvedAir kAir(SingleScattering<float>(kMedium), RefractedBeam(kMedium),
+                              MultipleScattering(kMedium));
   static const ElevationGrid kRange = ProceduralMountains(kPlace);
   return std::make_shared<const GroundSite>(GroundOf(kRange, LocalFrame(kWgs84, kPlace)),
                                             GroundCover{}, nullptr, kAir);

@@ -11,7 +11,7 @@
 #include "atmosphere/medium/atmosphere_file.h"
 #include "atmosphere/medium/medium.h"
 #include "lut/camera_tables/air_tables.h"
-#include "tests/fixtures/lit_air.h"
+#include "tests/fixtures/solved_media.h"
 #include "viewer/air/air_follower.h"
 #include "viewer/gl/gl_context.h"
 #include "viewer/gl/render_target.h"
@@ -23,13 +23,12 @@ namespace {
 using tests::Earth;
 
 const MediumTables& Phases() {
-  static const MediumTables tables = MakeMediumTables(Earth().air, Earth().beam);
+  static const MediumTables tables = MakeMediumTables(Earth());
   return tables;
 }
 
 AirTables Tables(AirQuality quality, double altitude_m) {
-  return MakeAirTables(Earth().air, Earth().multiple_scattering, Phases(), {altitude_m, 0.3},
-                       AirTablesSizeOf(quality, altitude_m));
+  return MakeAirTables(Earth(), Phases(), {altitude_m, 0.3}, AirTablesSizeOf(quality, altitude_m));
 }
 
 void MakingOfAirTables(benchmark::State& state) {
@@ -57,12 +56,12 @@ BENCHMARK(UploadOfAirTables)->Arg(1500)->Arg(400000)->Unit(benchmark::kMilliseco
 
 void SolvingOfAir(benchmark::State& state) {
   const Medium medium = MediumPreset(state.range(0) == 0 ? "earth" : "hazy");
-  for (auto unused : state) benchmark::DoNotOptimize(SolveAir(medium));
+  for (auto unused : state) benchmark::DoNotOptimize(TabulateAir(medium));
 }
 BENCHMARK(SolvingOfAir)->Arg(0)->Arg(1)->Unit(benchmark::kMillisecond)->UseRealTime();
 
 void MakingOfMediumTables(benchmark::State& state) {
-  for (auto unused : state) benchmark::DoNotOptimize(MakeMediumTables(Earth().air, Earth().beam));
+  for (auto unused : state) benchmark::DoNotOptimize(MakeMediumTables(Earth()));
 }
 BENCHMARK(MakingOfMediumTables)->Unit(benchmark::kMillisecond);
 
@@ -77,7 +76,7 @@ BENCHMARK(MakingOfIntegrator)->Unit(benchmark::kMillisecond);
 void Pass(benchmark::State& state, const std::string& statement, int width, int height) {
   const HeadlessContext context;
   AirTextures textures;
-  textures.Upload(MakeMediumTables(Earth().air, Earth().beam));
+  textures.Upload(MakeMediumTables(Earth()));
   textures.Upload(Tables(static_cast<AirQuality>(state.range(0)), 1500.0));
   const glm::dvec3 sun(0.0, std::sqrt(1.0 - 0.09), 0.3);
   textures.SetView(1500.0, {sun, sun});

@@ -22,11 +22,11 @@ std::string TextOf(const alpenglow::tests::AirErrors& errors) {
                      100.0 * errors.Percentile(99.0), 100.0 * errors.Percentile(100.0));
 }
 
-void Study(const alpenglow::tests::LitAir& air, AirQuality quality, const AirEye& eye) {
-  const MediumTables medium = MakeMediumTables(air.air, air.beam);
+void Study(const SolvedAir& air, AirQuality quality, const AirEye& eye) {
+  const MediumTables medium = MakeMediumTables(air);
   const AirTablesSize size = AirTablesSizeOf(quality, eye.altitude_m);
   const auto start = std::chrono::steady_clock::now();
-  const AirTables tables = MakeAirTables(air.air, air.multiple_scattering, medium, eye, size);
+  const AirTables tables = MakeAirTables(air, medium, eye, size);
   const std::chrono::duration<double, std::milli> time = std::chrono::steady_clock::now() - start;
   const alpenglow::tests::AirReading reading(tables);
   const alpenglow::tests::AirReference reference(air, eye);
@@ -52,7 +52,8 @@ std::vector<double> NumbersOf(const char* text) {
 void alpenglow::tests::ViewerError(int argc, char** argv) {
   using namespace alpenglow::lut;
   const auto quality = static_cast<AirQuality>(argc > 1 ? std::atoi(argv[1]) : 3);
-  const alpenglow::tests::LitAir air(MediumPreset(argc > 4 ? argv[4] : "earth"));
+  const SolvedAir air =
+      alpenglow::tests::SolvedAsClearAir(MediumPreset(argc > 4 ? argv[4] : "earth"));
   fmt::print(
       "errors in %: rms, 99 %, largest\n{:>9} {:>6} {:>10} {:>7} | {:^20} | {:^20} | {:^20}\n",
       "eye m", "sun", "size", "ms", "sky", "ways", "transmittance");

@@ -152,9 +152,8 @@ AirEye EyeOf(const AirView& view) {
           elevation(view.sun.seen) - elevation(view.sun.for_air)};
 }
 
-AirTables TablesOf(const SolvedAir& air, const AirView& view, AirQuality quality) {
-  const SingleScattering<float> here(OnOsculatingSphere(air.medium, view.latitude_rad));
-  return MakeAirTables(here, air.multiple_scattering, air.tables, EyeOf(view),
+AirTables TablesOf(const TabulatedAir& tabulated, const AirView& view, AirQuality quality) {
+  return MakeAirTables(tabulated.air.OnSphereAt(view.latitude_rad), tabulated.tables, EyeOf(view),
                        AirTablesSizeOf(quality, view.altitude_m));
 }
 
@@ -176,14 +175,14 @@ AirFollower::Made AirFollower::Make(const Request& request) {
   return {request, TablesOf(*request.air, request.view, request.quality)};
 }
 
-AirFollower::AirFollower(std::shared_ptr<const SolvedAir> air, AirQuality quality,
+AirFollower::AirFollower(std::shared_ptr<const TabulatedAir> air, AirQuality quality,
                          const AirView& first, Drafts drafts)
     : air_(std::move(air)),
       quality_(quality),
       drafts_(drafts),
       eye_(EyeOf(first)),
       last_view_(first),
-      solver_([](const Solve& solve) { return SolveAir(solve.medium, solve.solution); }),
+      solver_([](const Solve& solve) { return TabulateAir(solve.medium, solve.solution); }),
       maker_(Make, std::equal_to<Request>()) {
   textures_.Upload(air_->tables);
   shown_ = air_;
@@ -218,12 +217,14 @@ void AirFollower::PollFinished() {
 // Wait before refining: while a slider moves, the medium changes every frame.
 void AirFollower::RefineDraft() {
   constexpr auto kPause = std::chrono::milliseconds(200);
-  if (drafts_ == Drafts::kKept || air_->solution == AirSolution::kFull || solver_.IsBusy()) return;
-  if (Clock::now() > replaced_at_ + kPause) solver_.Request({air_->medium, AirSolution::kFull});
+  if (drafts_ == Drafts::kKept || air_->air.solution() == AirSolution::kFull || solver_.IsBusy())
+    return;
+  if (Clock::now() > replaced_at_ + kPause)
+    solver_.Request({air_->air.medium(), AirSolution::kFull});
 }
 
 AirFollower::Request AirFollower::Wanted(const AirView& view) const {
-  const bool draft = air_->solution == AirSolution::kDraft;
+  const bool draft = air_->air.solution() == AirSolution::kDraft;
   return {air_, view, draft ? std::min(quality_, AirQuality::kLow) : quality_};
 }
 
@@ -274,8 +275,8 @@ void AirFollower::ShowSmall(const AirView& view) {
 void AirFollower::WaitUntilReady(const AirView& view) {
   solver_.Wait();
   PollFinished();
-  if (air_->solution == AirSolution::kDraft) {
-    solver_.Request({air_->medium, AirSolution::kFull});
+  if (air_->air.solution() == AirSolution::kDraft) {
+    solver_.Request({air_->air.medium(), AirSolution::kFull});
     solver_.Wait();
     PollFinished();
   }

@@ -95,7 +95,7 @@ class AirFollower {
   /// draft, because another follower solves it.
   enum class Drafts { kRefined, kKept };
   /// Computes small tables for the first frame before it returns, which takes some milliseconds.
-  AirFollower(std::shared_ptr<const SolvedAir> air, AirQuality quality, const AirView& first,
+  AirFollower(std::shared_ptr<const TabulatedAir> air, AirQuality quality, const AirView& first,
               Drafts drafts = Drafts::kRefined);
 
   /// Replaces the medium, which is solved beside drawing and displayed when it is ready: first as a
@@ -116,7 +116,9 @@ class AirFollower {
 
   /// Returns the displayed textures.
   [[nodiscard]] const AirTextures& textures() const { return textures_; }
-  [[nodiscard]] const std::shared_ptr<const SolvedAir>& air() const { return shown_; }
+  /// Returns the air of the displayed textures.
+  [[nodiscard]] const std::shared_ptr<const TabulatedAir>& tabulated() const { return shown_; }
+  [[nodiscard]] std::shared_ptr<const SolvedAir> air() const { return {shown_, &shown_->air}; }
   [[nodiscard]] const AirEye& eye() const { return eye_; }
   /// Returns the computation time of the displayed tables; 0 until the first tables from the other
   /// thread.
@@ -124,7 +126,7 @@ class AirFollower {
 
  private:
   struct Request {
-    std::shared_ptr<const SolvedAir> air;
+    std::shared_ptr<const TabulatedAir> air;
     AirView view;
     AirQuality quality;
     bool operator==(const Request&) const = default;
@@ -149,15 +151,15 @@ class AirFollower {
   [[nodiscard]] Request Wanted(const AirView& view) const;
   [[nodiscard]] bool IsDue(const Request& wanted) const;
 
-  std::shared_ptr<const SolvedAir> air_;  // displayed next
-  std::shared_ptr<const SolvedAir> shown_;
+  std::shared_ptr<const TabulatedAir> air_;  // displayed next
+  std::shared_ptr<const TabulatedAir> shown_;
   AirQuality quality_;
   Drafts drafts_;
   AirTextures textures_;
   AirEye eye_;
   AirView last_view_;
   Clock::time_point replaced_at_{};
-  AsyncValue<Solve, std::shared_ptr<const SolvedAir>> solver_;
+  AsyncValue<Solve, std::shared_ptr<const TabulatedAir>> solver_;
   AsyncValue<Request, Made> maker_;
 };
 

@@ -24,8 +24,7 @@ OpenSky AtNode(OpenSky sky, int node) {
 
 // Returns whether two skies differ in the elevation of the light only.
 bool IsSamePlace(const OpenSky& one, const OpenSky& other) {
-  return one.air == other.air && one.single_scattering == other.single_scattering &&
-         one.altitude_m == other.altitude_m;
+  return one.air == other.air && one.altitude_m == other.altitude_m;
 }
 
 float Between(float low, float high, float share) {
@@ -46,7 +45,7 @@ SkyIrradianceGradient Between(const SkyIrradianceGradient& low, const SkyIrradia
 }  // namespace
 
 SkyIrradianceGradient OpenSkyFollower::LightOf(const OpenSky& sky) {
-  return {*sky.single_scattering, sky.air->multiple_scattering, sky.altitude_m,
+  return {sky.air->single_scattering(), sky.air->multiple_scattering(), sky.altitude_m,
           std::sin(sky.elevation_rad)};
 }
 

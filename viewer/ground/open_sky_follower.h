@@ -22,7 +22,6 @@ namespace alpenglow::viewer {
 /// The values that the irradiance of an unoccluded sky depends on.
 struct OpenSky {
   std::shared_ptr<const SolvedAir> air;
-  std::shared_ptr<const SingleScattering<float>> single_scattering;  // of this air
   double altitude_m,
       elevation_rad;  // of the ground; of the light whose straight rays light the air
 

@@ -106,14 +106,11 @@ void SceneFog::SetSize(const FogMapSize& size) {
 // Uses one thread, so that drawing keeps the others.
 void SceneFog::BeginIn(const std::shared_ptr<const SolvedAir>& air, double latitude_rad) {
   air_ = air;
-  const auto make = [air, media = media_, size = size_, latitude_rad](const FogView& wanted) {
+  const auto make = [here = air->OnSphereAt(latitude_rad), media = media_,
+                     size = size_](const FogView& wanted) {
     tbb::task_arena alone(1);
-    return alone.execute([&] {
-      const SingleScattering<float> single_scattering(
-          OnOsculatingSphere(air->medium, latitude_rad));
-      return MakeFogMap(*media->fog(), media->fog_bottom_m(),
-                        {single_scattering, air->beam, air->multiple_scattering}, wanted, size);
-    });
+    return alone.execute(
+        [&] { return MakeFogMap(*media->fog(), media->fog_bottom_m(), here, wanted, size); });
   };
   const double scale_height_m = media_->fog()->fog()->scale_height_m();
   maps_.emplace(make, [scale_height_m](const FogView& made, const FogView& wanted) {

@@ -50,7 +50,7 @@ NightSkyMap NightSkyMapOver(const GeodeticPosition& eye, const UtcInstant& now,
 NightSkyMapFollower::NightSkyMapFollower(const SceneSkyglow& towns)
     : maker_(
           [towns](const Request& request) {
-            const Medium& medium = request.air->medium;
+            const Medium& medium = request.air->medium();
             return NightSkyMapOver(request.place, request.now, medium,
                                    BandColour(medium.wavelengths_nm), towns);
           },
@@ -106,11 +106,10 @@ std::size_t GreenBand(const std::vector<double>& wavelengths_nm) {
 // Returns the irradiance of a level surface by a light and the sky that it lights.
 BandLight LevelLight(const SkyLight& source, const AirOfSky& air, double altitude_m) {
   const double mu = std::sin(source.disk.elevation_rad);
-  BandLight light = air.air->multiple_scattering.SkyIrradiance(
+  BandLight light = air.air->multiple_scattering().SkyIrradiance(
       altitude_m, std::sin(SunForAir(source.disk).elevation_rad));
   if (mu > 0.0) {
-    light =
-        light + static_cast<float>(mu) * air.air->beam.Left(air.single_scattering, altitude_m, mu);
+    light = light + static_cast<float>(mu) * air.air->BeamLeft(altitude_m, mu);
   }
   for (std::size_t band = 0; band < light.count; ++band)
     light[band] *= source.irradiance[static_cast<glm::length_t>(band)];
@@ -163,7 +162,7 @@ LightsOfSky LightsOf(const SkyBodies& bodies, const SunPosition& sun, const Moon
   // A sky that contributes a ten-thousandth on a level surface contributes a five-hundredth near
   // the horizon below its light.
   constexpr double kUnseenShare = 1e-4;
-  const Medium& medium = air.air->medium;
+  const Medium& medium = air.air->medium();
   const SkyLight whole_sun = SunAsLight(sun, medium);
   const SkyLight by_sun = BesideMoon(whole_sun, bodies, medium);
   if (sun.elevation_rad > kMoonDoesNotCount_rad) return {by_sun};
@@ -183,13 +182,13 @@ FrameSky FrameSkyAt(const GeodeticPosition& eye, const UtcInstant& now, const Ai
   const SkyBodies bodies = SkyBodiesAt(eye, now);
   FrameSky sky{bodies, bodies.ApparentSun(air.refracting), std::nullopt, false, {}, 0.0};
   const double altitude_m = std::max(eye.height_m, 0.0);
-  if (air.air->medium.follows_wgs84) {
+  if (air.air->medium().follows_wgs84) {
     sky.moon = bodies.ApparentMoonDisk(air.refracting);
     sky.lights = LightsOf(bodies, sky.sun, *sky.moon, air, altitude_m);
     sky.is_eclipse = bodies.Eclipse().IsCovered();
     if (sky.is_eclipse) sky.moon->to_moon = ToMoonBefore(sky.sun, bodies);
   } else {
-    sky.lights = {SunAsLight(sky.sun, air.air->medium)};
+    sky.lights = {SunAsLight(sky.sun, air.air->medium())};
   }
   for (const SkyLight& light : sky.lights)
     sky.level_lux += LevelIlluminance(light, air, altitude_m);

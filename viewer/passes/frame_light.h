@@ -123,12 +123,10 @@ struct GroundReach {
 struct AirOfSky {
   explicit AirOfSky(std::shared_ptr<const SolvedAir> solved)
       : air(std::move(solved)),
-        single_scattering(air->medium),
-        colour(air->medium.wavelengths_nm),
-        refracting(GentleAirOf(air->medium)) {}
+        colour(air->medium().wavelengths_nm),
+        refracting(GentleAirOf(air->medium())) {}
 
   std::shared_ptr<const SolvedAir> air;
-  SingleScattering<float> single_scattering;
   BandColour colour;
   BendingAir refracting;
 };

@@ -129,7 +129,7 @@ class FrameRenderer {
   /// Returns the extinction by fog [1/m] at a height; 0 without fog.
   [[nodiscard]] double FogAt(double height_m) const;
   /// Returns the medium that is displayed.
-  [[nodiscard]] const std::shared_ptr<const SolvedAir>& air() const {
+  [[nodiscard]] std::shared_ptr<const SolvedAir> air() const {
     return painter_.scene().air().air();
   }
 

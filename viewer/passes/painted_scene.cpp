@@ -56,7 +56,9 @@ AirView AirViewOf(const CameraPose& eye, const SunPosition& sun) {
 
 }  // namespace
 
-FirstAir DraftOfAir(const Scene& scene) { return SolveAir(MediumAt(scene), AirSolution::kDraft); }
+FirstAir DraftOfAir(const Scene& scene) {
+  return TabulateAir(MediumAt(scene), AirSolution::kDraft);
+}
 
 FixedScene::FixedScene(const Scene& scene, bool has_land)
     : place(scene.place),
@@ -74,10 +76,10 @@ PaintedScene::PaintedScene(const Scene& scene, const LandSource& land, const Pai
       sizes_(sizes),
       sun_view_(AirViewOf(first.eye,
                           ApparentSunAt(first.eye.place, first.now, GentleAirOf(MediumAt(scene))))),
-      air_(first_air ? std::move(first_air) : SolveAir(MediumAt(scene)), sizes.air, sun_view_),
+      air_(first_air ? std::move(first_air) : TabulateAir(MediumAt(scene)), sizes.air, sun_view_),
       land_(std::make_unique<Landscape>(land, LandSizeOf(sizes), fixed_.ellipsoid)),
       ground_(scene.ground, fixed_.drape.colours, {}),
-      ground_textures_(air_.air()->multiple_scattering),
+      ground_textures_(air_.air()->multiple_scattering()),
       shade_(fixed_.ellipsoid),
       awaits_land_(!land.IsEmpty()) {
   if (!land.range_centre) land_->BeginReading(first.eye.place);
@@ -152,15 +154,15 @@ void PaintedScene::KeepUpAir(const PaintedView& view, const LightsOfSky& lights,
   keep_up(air_, sun_view_);
   if (known_air_ != air_.air()) {
     known_air_ = air_.air();
-    single_scattering_ = std::make_shared<const SingleScattering<float>>(
-        OnOsculatingSphere(known_air_->medium, view.eye.place.latitude_rad));
+    air_here_ =
+        std::make_shared<const SolvedAir>(known_air_->OnSphereAt(view.eye.place.latitude_rad));
     glActiveTexture(GL_TEXTURE0 + kUploadUnit);
-    ground_textures_.SetAir(known_air_->multiple_scattering);
+    ground_textures_.SetAir(known_air_->multiple_scattering());
   }
   if (moon == nullptr) return;
   const AirView seen = AirViewOf(view.eye, moon->disk);
   if (!moon_air_ || moon_air_of_ != air_.air()) {
-    moon_air_.emplace(air_.air(), sizes_.air, seen, AirFollower::Drafts::kKept);
+    moon_air_.emplace(air_.tabulated(), sizes_.air, seen, AirFollower::Drafts::kKept);
     moon_air_of_ = air_.air();
   }
   moon_air_->SetQuality(sizes_.air);
@@ -170,8 +172,7 @@ void PaintedScene::KeepUpAir(const PaintedView& view, const LightsOfSky& lights,
 void PaintedScene::KeepUpOpenSkies(const LightsOfSky& lights, Pace pace) {
   for (const SkyLight& light : lights) {
     OpenSkyFollower& follower = open_skies_[IndexOf(light.source())];
-    const OpenSky sky{known_air_, single_scattering_, ground_.open_altitude_m(),
-                      SunForAir(light.disk).elevation_rad};
+    const OpenSky sky{air_here_, ground_.open_altitude_m(), SunForAir(light.disk).elevation_rad};
     pace == Pace::kFollow ? follower.Follow(sky) : follower.WaitUntilReady(sky);
   }
 }
@@ -211,7 +212,7 @@ void PaintedScene::Update(const PaintedView& view, const LightsOfSky& lights, do
   std::erase_if(leaving_, [](const auto& land) { return !land->IsWorking(); });
   const SunPosition& casting = lights.front().disk;
   KeepUpAir(view, lights, Pace::kFollow, seconds);
-  land_->Update(view.eye.place, LandIn(view, air_.air()->medium), seconds);
+  land_->Update(view.eye.place, LandIn(view, air_.air()->medium()), seconds);
   awaits_land_ = awaits_land_ && !land_->HasCome();
   UpdateHeights();
   KeepUpEdges(view, lights.front(), seconds);
@@ -224,11 +225,11 @@ void PaintedScene::Update(const PaintedView& view, const LightsOfSky& lights, do
 
 void PaintedScene::WaitUntilReady(const PaintedView& view, const LightsOfSky& lights, int samples) {
   KeepUpAir(view, lights, Pace::kWait, 0.0);
-  land_->WaitUntilReady(view.eye.place, LandIn(view, air_.air()->medium, samples));
+  land_->WaitUntilReady(view.eye.place, LandIn(view, air_.air()->medium(), samples));
   UpdateHeights();
   if (ground_.WaitUntilReady(air_.air(), GroundViewOf(view, lights))) {
     UpdateLight();
-    land_->WaitUntilReady(view.eye.place, LandIn(view, air_.air()->medium, samples));
+    land_->WaitUntilReady(view.eye.place, LandIn(view, air_.air()->medium(), samples));
   }
   TakeSkyByPixel();
   KeepUpOpenSkies(lights, Pace::kWait);

@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "atmosphere/astronomy/sun.h"
-#include "atmosphere/ray/single_scattering.h"
 #include "renderer/illumination/sky_on_ground.h"
 #include "renderer/picture/lit_ground.h"
 #include "renderer/scene/scene.h"
@@ -29,11 +28,11 @@ namespace alpenglow::viewer {
 
 /// The solved medium of a scene, prepared before the PaintedScene: a draft for an early first frame,
 /// or a full solution that scenes share. Null: PaintedScene solves it at full accuracy.
-using FirstAir = std::shared_ptr<const SolvedAir>;
+using FirstAir = std::shared_ptr<const TabulatedAir>;
 /// Returns a draft solution. Throws for a medium as the constructor of PaintedScene does.
 [[nodiscard]] FirstAir DraftOfAir(const Scene& scene);
 [[nodiscard]] inline bool IsDraft(const FirstAir& air) {
-  return air && air->solution == AirSolution::kDraft;
+  return air && air->air.solution() == AirSolution::kDraft;
 }
 
 /// The parts of a scene that do not change during a flight.
@@ -135,7 +134,7 @@ class PaintedScene {
   AirView sun_view_;                            // the last view in which the sun was a light
   AirFollower air_;                             // at sun_view_
   std::shared_ptr<const SolvedAir> known_air_;  // the medium in ground_textures_
-  std::shared_ptr<const SingleScattering<float>> single_scattering_;  // of known_air_
+  std::shared_ptr<const SolvedAir> air_here_;   // known_air_ on the sphere of the eye
   std::array<OpenSkyFollower, kLightSources> open_skies_;
   std::optional<AirFollower> moon_air_;           // once the moon is a light
   std::shared_ptr<const SolvedAir> moon_air_of_;  // the medium of moon_air_

@@ -178,7 +178,7 @@ const RefractedDisk* RefractedDiskFollower::Follow(const std::shared_ptr<const S
                                                    double height_m, double elevation_rad,
                                                    double radius_rad, double half_pixel_rad) {
   constexpr double kLow_rad = 10.0 * kRadiansPerDegree;
-  const double horizon_rad = GrazingElevation(GentleAirOf(air->medium), height_m);
+  const double horizon_rad = GrazingElevation(GentleAirOf(air->medium()), height_m);
   if (elevation_rad > kLow_rad || elevation_rad < horizon_rad - 2.0 * radius_rad) return nullptr;
   // The horizon changes with the eye's height as well. The air is densest there.
   const double height_step_m = 0.002 * std::max(height_m, 1.0);
@@ -187,7 +187,7 @@ const RefractedDisk* RefractedDiskFollower::Follow(const std::shared_ptr<const S
       std::abs(made_->elevation_rad - elevation_rad) < kMostDiskTurn_radii * radius_rad;
   if (!suits)
     made_ = {air, height_m, elevation_rad,
-             RefractedDiskOf(air->medium, height_m, elevation_rad, radius_rad)};
+             RefractedDiskOf(air->medium(), height_m, elevation_rad, radius_rad)};
   return made_->disk.Change() > half_pixel_rad ? &made_->disk : nullptr;
 }
 

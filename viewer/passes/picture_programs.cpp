@@ -143,7 +143,7 @@ FittingStage Fitting(const PictureKind& kind, const PictureStage& stage, int uni
 namespace {
 
 GroundBlock GroundAround(const PaintedScene& scene, const PaintedView& view) {
-  const MountainSurface surface(scene.air().air()->medium.wavelengths_nm,
+  const MountainSurface surface(scene.air().air()->medium().wavelengths_nm,
                                 CoverInSeason(view.eye.place, view.now.modified_julian_day),
                                 scene.fixed().material.cover().wetness);
   const GroundPattern pattern(LocalFrame(scene.fixed().ellipsoid, view.eye.place));
@@ -194,17 +194,17 @@ void SetBend(ViewBlock& block, const std::optional<LandBend>& bend) {
 }  // namespace
 
 void PictureBlocks::UploadAir(const PaintedScene& scene, const CameraPose& eye) {
-  const std::shared_ptr<const SolvedAir>& air = scene.air().air();
-  if (known_air_ != air) air_block_ = AirBlockOf(air->medium);
+  const std::shared_ptr<const SolvedAir> air = scene.air().air();
+  if (known_air_ != air) air_block_ = AirBlockOf(air->medium());
   known_air_ = air;
-  air_block_.shell.x = static_cast<float>(RadiusUnder(eye, air->medium));
+  air_block_.shell.x = static_cast<float>(RadiusUnder(eye, air->medium()));
   UploadBlock(air_, kAirBinding, air_block_);
 }
 
 void PictureBlocks::UploadView(const PaintedScene& scene, const SeenRays& seen,
                                const LightsOfView& lights) const {
   const PaintedView& view = seen.view;
-  const Medium& medium = scene.air().air()->medium;
+  const Medium& medium = scene.air().air()->medium();
   const LandView axes = LandViewOf(view);
   const glm::dvec2 shift = ShiftOf(seen.ray, view);
   const glm::dvec2 moved(view.part.x * view.part.z + shift.x, view.part.y * view.part.w + shift.y);

@@ -107,7 +107,7 @@ void SkyPainter::PrepareLamps(const PaintedView& view) {
 }
 
 std::optional<LandBend> SkyPainter::BendIn(const PaintedView& view) const {
-  return BendOf(view, scene_.air().air()->medium, scene_.land().farthest_m());
+  return BendOf(view, scene_.air().air()->medium(), scene_.land().farthest_m());
 }
 
 LandLook SkyPainter::LookOfLand(const PaintedView& view) {
@@ -211,7 +211,8 @@ void SkyPainter::DescribeDisks(const DisksInAir& seen, const glm::dvec2& shares)
   glUniform4f(program.Uniform("moon_lit"), static_cast<float>(moon.to_sun.x),
               static_cast<float>(moon.to_sun.y), static_cast<float>(moon.to_sun.z),
               static_cast<float>(moon.radiance_per_irradiance));
-  const glm::vec4 colour = GpuBandsOf(MoonColour(moon, scene_.air().air()->medium.wavelengths_nm));
+  const glm::vec4 colour =
+      GpuBandsOf(MoonColour(moon, scene_.air().air()->medium().wavelengths_nm));
   glUniform4f(program.Uniform("moon_colour"), colour.x, colour.y, colour.z, colour.w);
   glUniform1f(program.Uniform("moon_earthshine"),
               static_cast<float>(moon.earthshine_per_irradiance));
@@ -255,7 +256,7 @@ void SkyPainter::MakeOneReady(const PaintedView& view, const PictureStage& stage
 // with the apparent radius.
 int SkyPainter::RowsUnderHorizon(const PaintedView& view) const {
   return RowsOfPlanet(
-      view, bend_ ? bend_->look_radius_km : RadiusUnder(view.eye, scene_.air().air()->medium));
+      view, bend_ ? bend_->look_radius_km : RadiusUnder(view.eye, scene_.air().air()->medium()));
 }
 
 // Returns the number of rows with the planet's ground. Before land is loaded, sky is drawn in its
@@ -320,7 +321,7 @@ std::vector<PixelBox> SkyPainter::BodiesSeen(const PaintedView& view) {
 // The sun's disk always uses sunlight, even if the moon lights the air.
 void SkyPainter::UploadDisks(const PaintedView& view, const DisksInAir& seen, const PixelRay& ray) {
   blocks_.UploadView(scene_, {view, BendIn(view), ray},
-                     {{SunAsLight(seen.sun, scene_.air().air()->medium)}});
+                     {{SunAsLight(seen.sun, scene_.air().air()->medium())}});
 }
 
 // Draws the disks that are large enough for the rays of the view.

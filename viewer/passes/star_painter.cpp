@@ -155,7 +155,7 @@ StarPainter::StarPainter()
     : maker_(
           [](const Request& request) {
             constexpr double kAll = std::numeric_limits<double>::infinity();
-            const RefractedView bent(request.air->medium, request.place.height_m);
+            const RefractedView bent(request.air->medium(), request.place.height_m);
             std::vector<StarLight> lights =
                 StarLightsOver(request.place, request.now, bent, *request.colour, kAll);
             std::stable_sort(lights.begin(), lights.end(),
@@ -167,12 +167,12 @@ StarPainter::StarPainter()
 bool StarPainter::IsNight(const FrameSky& sky, const std::shared_ptr<const SolvedAir>& air) {
   constexpr double kNightSky_lux = 1e-3;
   sky_lux_ = 0.0;
-  if (!air->medium.follows_wgs84) return false;  // stars are known for the Earth only
+  if (!air->medium().follows_wgs84) return false;  // stars are known for the Earth only
   const double lux = kNightSky_lux + sky.level_lux;
   if (lux > kDaylight_lux) return false;
   sky_lux_ = lux;
-  if (!colour_ || colour_->wavelengths_nm() != air->medium.wavelengths_nm)
-    colour_ = std::make_shared<const BandColour>(air->medium.wavelengths_nm);
+  if (!colour_ || colour_->wavelengths_nm() != air->medium().wavelengths_nm)
+    colour_ = std::make_shared<const BandColour>(air->medium().wavelengths_nm);
   return true;
 }
 

@@ -34,7 +34,8 @@ Sky CoarseSky(const Atmosphere& atmosphere) {
   lut::TableFolder tables;
   tables.medium = atmosphere.medium();
   tables.multiple_scattering.emplace(tables.medium, tests::kSmallLight);
-  return Sky(std::make_shared<const Sky::State>(atmosphere, std::move(tables)));
+  return Sky(std::make_shared<const Sky::State>(
+      Sky::State{atmosphere, lut::TableLookup(std::move(tables))}));
 }
 
 const Sky& Earth() {

@@ -94,13 +94,19 @@ Luminances RadianceOf(const Sky& sky, const Setting& at) {
   });
 }
 
+SolvedAir SolvedOf(const Sky& sky) {
+  const TableLookup& lookup = sky.state().lookup;
+  return {lookup.single_scattering(), RefractedBeam(lookup.medium()), lookup.multiple_scattering()};
+}
+
 /// All ways to the light of one atmosphere. Each returns the light of the pixels.
 class Ways {
  public:
   Ways(const Atmosphere& atmosphere, const std::filesystem::path& folder)
       : atmosphere_(atmosphere),
         sky_(atmosphere),
-        viewer_(MakeMediumTables(sky_.state().air, RefractedBeam(atmosphere.medium()))),
+        air_(SolvedOf(sky_)),
+        viewer_(MakeMediumTables(air_)),
         evaluator_(MakeIntegralEvaluator(atmosphere.medium())) {
     BakeTables(atmosphere, folder, BakeQuality::kPreview);
     baked_.emplace(ReadTables(folder, atmosphere));
@@ -150,8 +156,7 @@ class Ways {
   [[nodiscard]] Luminances Viewer(const Setting& at) const {
     const AirEye eye{at.eye_m, std::sin(at.sun_elevation_deg * kRadiansPerDegree)};
     const AirTables tables =
-        MakeAirTables(sky_.state().air, sky_.state().multiple_scattering(), viewer_, eye,
-                      AirTablesSizeOf(AirQuality::kLow, at.eye_m));
+        MakeAirTables(air_, viewer_, eye, AirTablesSizeOf(AirQuality::kLow, at.eye_m));
     const tests::AirReading reading(tables);
     return Over([&](const SkyPixel& pixel) {
       const double above_horizon =
@@ -167,7 +172,7 @@ class Ways {
     return Luminance(atmosphere_.ColourOf(light));
   }
   [[nodiscard]] double LuminanceOf(const std::function<double(std::size_t)>& band) const {
-    Spectrum light(sky_.state().air.bands());
+    Spectrum light(air_.bands());
     for (std::size_t i = 0; i < light.size(); ++i) light[i] = static_cast<float>(band(i));
     return LuminanceOf(light);
   }
@@ -178,6 +183,7 @@ class Ways {
 
   Atmosphere atmosphere_;
   Sky sky_;
+  SolvedAir air_;
   MediumTables viewer_;
   std::unique_ptr<Evaluator> evaluator_;
   std::optional<Sky> baked_;
@@ -295,11 +301,11 @@ Aureole AureoleOf(const Atmosphere& atmosphere, double sun_elevation_deg) {
   options.sun.azimuth_deg = 180.5;  // of the centre of a column
   options.centre = PanoramaCentre::kOpenExr;
   const HdrImage image = RenderPanorama(sky, options);
-  const SingleScattering<float>& air = sky.state().air;
-  const MediumTables medium = MakeMediumTables(air, RefractedBeam(atmosphere.medium()));
+  const SolvedAir air = SolvedOf(sky);
+  const MediumTables medium = MakeMediumTables(air);
   const AirEye eye{options.altitude_m, std::sin(sun_elevation_deg * kRadiansPerDegree)};
-  const AirTables tables = MakeAirTables(air, sky.state().multiple_scattering(), medium, eye,
-                                         AirTablesSizeOf(AirQuality::kLow, eye.altitude_m));
+  const AirTables tables =
+      MakeAirTables(air, medium, eye, AirTablesSizeOf(AirQuality::kLow, eye.altitude_m));
   const tests::AirReading reading(tables);
   Aureole aureole;
   for (int below = 1; below <= kDegrees; ++below) {

@@ -64,8 +64,8 @@ TEST(Panorama, IsThatOfTheLayerBelow) {
   settings.orientation = lut::PanoramaOrientation::kUnity;
   settings.sun = {45.0 * atmosphere::kRadiansPerDegree, 180.0 * atmosphere::kRadiansPerDegree, 1.0,
                   0.2666 * atmosphere::kRadiansPerDegree, 0.01 * atmosphere::kRadiansPerDegree};
-  const auto& air = sky.state().air;
-  const auto& light = sky.state().multiple_scattering();
+  const auto& air = sky.state().lookup.single_scattering();
+  const auto& light = sky.state().lookup.multiple_scattering();
   const HdrImage panorama = RenderPanorama(sky, options);
   EXPECT_EQ(panorama.rgb, lut::RenderPanorama(air, light, settings).rgb);
   EXPECT_TRUE(panorama.is_panorama);

@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "atmosphere/math/numerics.h"
-#include "tests/fixtures/lit_air.h"
 #include "tests/fixtures/sky_view_errors.h"
+#include "tests/fixtures/solved_media.h"
 #include "tests/lut/camera_tables/air_reading.h"
 
 namespace alpenglow::tests {
@@ -21,8 +21,8 @@ using AirErrors = SkyViewErrors;
 
 class AirReference {
  public:
-  AirReference(const LitAir& air, const AirEye& eye)
-      : exact_(air.medium), air_(air), sky_(air.medium, air.multiple_scattering), eye_(eye) {}
+  AirReference(const SolvedAir& air, const AirEye& eye)
+      : exact_(air.medium()), air_(air), sky_(air.medium(), air.multiple_scattering()), eye_(eye) {}
 
   /// Returns the light of the whole ray, in the band.
   [[nodiscard]] Bands<double> Sky(const AirMap& map, double angle, double azimuth) const {
@@ -38,8 +38,8 @@ class AirReference {
     const double nu_seen = SeenCosineOf(ray.mu, azimuth);
     const Bands<double> single = exact_.Inscatter(
         exact_.Scatter(exact_.Sample(ray, {.nodes = 32, .split_ozone = true})), nu_seen);
-    const Bands<float> multiple_scattering = air_.multiple_scattering.InscatterAlong(
-        air_.air.Sample(ray, {.nodes = 32, .dark_samples = true}), ray.nu, nu_seen,
+    const Bands<float> multiple_scattering = air_.multiple_scattering().InscatterAlong(
+        air_.single_scattering().Sample(ray, {.nodes = 32, .dark_samples = true}), ray.nu, nu_seen,
         SegmentEnd::kOpen);
     const Bands<double> left = exact_.TransmittanceAlong(ray);
     AirToPoint to{glm::dvec4(0.0), glm::dvec4(0.0), glm::dvec4(1.0)};
@@ -66,7 +66,7 @@ class AirReference {
   }
 
   SingleScattering<double> exact_;
-  const LitAir& air_;
+  const SolvedAir& air_;
   DirectSky sky_;
   AirEye eye_;
 };

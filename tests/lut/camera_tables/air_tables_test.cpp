@@ -23,8 +23,8 @@ constexpr int kRays = tests::ScaledDown(200, 60);
 /// preset without sanitizers, with 200 rays, asserts the bounds themselves.
 constexpr double kSampling = tests::ScaledDown(1.0, 1.5);
 
-const tests::LitAir& Hazy() {
-  static const tests::LitAir hazy(MediumPreset("hazy"));
+const SolvedAir& Hazy() {
+  static const SolvedAir hazy = tests::SolvedAsClearAir(MediumPreset("hazy"));
   return hazy;
 }
 
@@ -32,9 +32,8 @@ AirEye EyeUnder(double altitude_m, double elevation_deg) {
   return {altitude_m, std::sin(elevation_deg * kRadiansPerDegree)};
 }
 
-AirTables TablesOf(const tests::LitAir& air, const AirEye& eye, AirQuality quality) {
-  return MakeAirTables(air.air, air.multiple_scattering, MakeMediumTables(air.air, air.beam), eye,
-                       AirTablesSizeOf(quality, eye.altitude_m));
+AirTables TablesOf(const SolvedAir& air, const AirEye& eye, AirQuality quality) {
+  return MakeAirTables(air, MakeMediumTables(air), eye, AirTablesSizeOf(quality, eye.altitude_m));
 }
 
 /// Root mean square of relative errors; 99 % of rays and bands are below five times as much.
@@ -42,11 +41,11 @@ struct Bounds {
   double sky, ways, transmittance;
 };
 
-void ExpectErrorsBelow(const tests::LitAir& air, const AirEye& eye, AirQuality quality,
+void ExpectErrorsBelow(const SolvedAir& air, const AirEye& eye, AirQuality quality,
                        const Bounds& bounds) {
-  SCOPED_TRACE(fmt::format("{}, {} m, sine of the sun's elevation {}", air.medium.name,
+  SCOPED_TRACE(fmt::format("{}, {} m, sine of the sun's elevation {}", air.medium().name,
                            eye.altitude_m, eye.mu_s));
-  const MediumTables medium = MakeMediumTables(air.air, air.beam);
+  const MediumTables medium = MakeMediumTables(air);
   const AirTables tables = TablesOf(air, eye, quality);
   const tests::AirReading reading(tables);
   const tests::AirReference reference(air, eye);
@@ -81,7 +80,7 @@ TEST(AirTables, OfTheGroundAreThoseOfTheIntegratorFromNoonToDusk) {
 TEST(AirTables, HaveTheAureoleWhereTheSunIsSeen) {
   AirEye eye = EyeUnder(2500.0, -1.8);
   eye.lower_for_air_rad = 0.5 * kRadiansPerDegree;
-  const MediumTables medium = MakeMediumTables(tests::Earth().air, tests::Earth().beam);
+  const MediumTables medium = MakeMediumTables(tests::Earth());
   const tests::AirReference reference(tests::Earth(), eye);
   // Largest error of the sky within two degrees of the sun and of the horizon.
   const auto worst_of = [&](const AirTables& tables) {
@@ -134,9 +133,10 @@ TEST(AirTables, OfLowQualityAreGoodToAPercent) {
 // Dust's phase function rises a hundredfold within ten degrees of the sun. Of the largest error,
 // 0.9 %, the glow makes more than half: it is taken to be that of one column of aerosol.
 TEST(AirTables, HaveAnAureoleAsSharpAsThePhaseFunction) {
-  const tests::LitAir dusty(MediumFromToml("[aerosol]\nmixture = \"desert\"\n", "dusty"));
+  const SolvedAir dusty =
+      tests::SolvedAsClearAir(MediumFromToml("[aerosol]\nmixture = \"desert\"\n", "dusty"));
   const AirEye eye = EyeUnder(300.0, 20.0);
-  const MediumTables medium = MakeMediumTables(dusty.air, dusty.beam);
+  const MediumTables medium = MakeMediumTables(dusty);
   const AirTables tables = TablesOf(dusty, eye, AirQuality::kLow);
   const tests::AirReading reading(tables);
   const tests::AirReference reference(dusty, eye);
@@ -186,7 +186,7 @@ TEST(AirTables, AreFiniteAndNotNegativeForEveryEyeAndSun) {
 }
 
 TEST(AirTables, OfMarsAreFiniteAndNotNegative) {
-  const tests::LitAir mars(MediumPreset("mars"));
+  const SolvedAir mars = tests::SolvedAsClearAir(MediumPreset("mars"));
   for (const double altitude_m : {0.0, 30e3, 400e3}) {
     const AirTables tables = TablesOf(mars, EyeUnder(altitude_m, 0.1), AirQuality::kFirst);
     for (const AirTexels* texels :
@@ -218,7 +218,7 @@ TEST(AirTables, FarBelowTheHorizonTheSunLeavesNothingScatteredOnce) {
 }
 
 TEST(AirTables, OfThreeWavelengthsLeaveTheFourthBandDark) {
-  const tests::LitAir air(MediumPreset("bruneton2017"));
+  const SolvedAir air = tests::SolvedAsClearAir(MediumPreset("bruneton2017"));
   const AirTables tables = TablesOf(air, EyeUnder(2.0, 30.0), AirQuality::kFirst);
   for (const glm::vec4& texel : tables.sky.texel) ASSERT_EQ(texel.w, 0.0F);
   EXPECT_GT(tables.sky.At(0, 0).x, 0.0F);

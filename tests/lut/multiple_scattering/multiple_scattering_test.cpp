@@ -17,10 +17,10 @@
 #include "atmosphere/shared_glsl/instruction_set.h"
 #include "tests/fixtures/bands_near.h"
 #include "tests/fixtures/fault_of.h"
-#include "tests/fixtures/lit_air.h"
 #include "tests/fixtures/media.h"
 #include "tests/fixtures/sanitized.h"
 #include "tests/fixtures/small_light.h"
+#include "tests/fixtures/solved_media.h"
 #include "tests/fixtures/stored_cases.h"
 
 namespace alpenglow::lut {
@@ -360,7 +360,7 @@ TEST(MultipleScattering, HorizontalSurfacesAreLitAsByThePathTracer) {
     double altitude_m, sun_deg, up;
     std::array<double, 4> traced;
   };
-  const MultipleScattering& light = tests::Earth().multiple_scattering;
+  const MultipleScattering& light = tests::Earth().multiple_scattering();
   for (const Surface& surface :
        {Surface{0.0, 40.0, 1.0, {0.13789, 0.0900898, 0.0715137, 0.0553918}},
         {0.0, 3.0, 1.0, {0.0276428, 0.0234161, 0.0181633, 0.0184367}},

@@ -25,9 +25,9 @@
 #include "atmosphere/ray/single_scattering.h"
 #include "lut/sky/panorama.h"
 #include "lut/sky/sky_view.h"
-#include "tests/fixtures/lit_air.h"
 #include "tests/fixtures/places.h"
 #include "tests/fixtures/sanitized.h"
+#include "tests/fixtures/solved_media.h"
 
 namespace alpenglow::lut {
 namespace {
@@ -138,21 +138,21 @@ class MarsSky : public testing::Test {
   // Returns linear sRGB of the sky without the sun.
   // Angles in degrees: elevations, azimuth from the sun.
   static std::array<double, 3> Sky(double sun_deg, double elevation_deg, double azimuth_deg) {
-    const SkyView view(Mars().air, Mars().multiple_scattering, 2.0,
+    const SkyView view(Mars().single_scattering(), Mars().multiple_scattering(), 2.0,
                        std::sin(sun_deg * kRadiansPerDegree));
     const Bands<float> sky =
         view.Radiance((90.0 - elevation_deg) * kRadiansPerDegree, azimuth_deg * kRadiansPerDegree);
     std::vector<double> radiance;
     for (std::size_t band = 0; band < sky.count; ++band) {
-      radiance.push_back(static_cast<double>(sky[band]) * Mars().medium.solar_irradiance[band]);
+      radiance.push_back(static_cast<double>(sky[band]) * Mars().medium().solar_irradiance[band]);
     }
-    return BandColour(Mars().medium.wavelengths_nm).LinearSrgb(radiance);
+    return BandColour(Mars().medium().wavelengths_nm).LinearSrgb(radiance);
   }
   static double BlueOverRed(const std::array<double, 3>& colour) { return colour[2] / colour[0]; }
 
  private:
-  static const tests::LitAir& Mars() {
-    static const tests::LitAir mars(MediumPreset("mars"));
+  static const SolvedAir& Mars() {
+    static const SolvedAir mars = tests::SolvedAsClearAir(MediumPreset("mars"));
     return mars;
   }
 };

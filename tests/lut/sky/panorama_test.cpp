@@ -12,10 +12,10 @@
 #include "atmosphere/astronomy/sun.h"
 #include "atmosphere/base/error.h"
 #include "atmosphere/colour/spectrum.h"
-#include "tests/fixtures/lit_air.h"
 #include "tests/fixtures/luminance.h"
 #include "tests/fixtures/sanitized.h"
 #include "tests/fixtures/sky_view_errors.h"
+#include "tests/fixtures/solved_media.h"
 #include "tests/fixtures/thread_counts.h"
 
 namespace alpenglow::lut {
@@ -27,7 +27,7 @@ using tests::Earth;
 using tests::Luminance;
 
 Image Panorama(const PanoramaSettings& settings) {
-  return RenderPanorama(Earth().air, Earth().multiple_scattering, settings);
+  return RenderPanorama(Earth().single_scattering(), Earth().multiple_scattering(), settings);
 }
 
 PanoramaSettings SunAtDegrees(double elevation, double azimuth) {
@@ -152,17 +152,17 @@ double IlluminanceFromAbove(const Image& image) {
 /// Returns the luminance [cd/m^2] of light of the earth that is given relative to the sun's.
 template <typename Real>
 double LuminanceOf(const Bands<Real>& relative) {
-  static const BandColour colour(Earth().medium.wavelengths_nm);
+  static const BandColour colour(Earth().medium().wavelengths_nm);
   std::vector<double> light;
   for (std::size_t band = 0; band < relative.count; ++band)
-    light.push_back(double{relative[band]} * Earth().medium.solar_irradiance[band]);
+    light.push_back(double{relative[band]} * Earth().medium().solar_irradiance[band]);
   return colour.Xyz(light)[1];
 }
 
 TEST(Panorama, LightsAHorizontalPlaneAsTheSkyDoes) {
   for (const double elevation_deg : {50.0, 10.0, 0.0, -5.0, -9.0}) {
     const Image image = Panorama(SunAtDegrees(elevation_deg, 120.0));
-    const double expected = LuminanceOf(Earth().multiple_scattering.SkyIrradiance(
+    const double expected = LuminanceOf(Earth().multiple_scattering().SkyIrradiance(
         2.0, std::sin(elevation_deg * kRadiansPerDegree)));
     EXPECT_NEAR(IlluminanceFromAbove(image), expected, 0.02 * expected)
         << "sun at " << elevation_deg << ": the pixels of the aureole are 1.4 degrees wide, and "
@@ -171,7 +171,7 @@ TEST(Panorama, LightsAHorizontalPlaneAsTheSkyDoes) {
 }
 
 TEST(Panorama, PixelsAreTheLightOfTheirDirections) {
-  const DirectSky direct(Earth().medium, Earth().multiple_scattering);
+  const DirectSky direct(Earth().medium(), Earth().multiple_scattering());
   for (const double altitude_m : {2.0, 10e3, 400e3}) {
     for (const double elevation_deg : {60.0, 10.0, 1.0, -4.0, -10.0}) {
       PanoramaSettings settings = SunAtDegrees(elevation_deg, 10.0);
@@ -248,8 +248,8 @@ TEST(Panorama, TheSunsDiskBringsItsWholeLight) {
         light += solid_angle * (Luminance(with.at(x, y)) - Luminance(without.at(x, y)));
       }
     }
-    const double expected =
-        LuminanceOf(Earth().air.TransmittanceToSpace(2.0, std::sin(41.0 * kRadiansPerDegree)));
+    const double expected = LuminanceOf(
+        Earth().single_scattering().TransmittanceToSpace(2.0, std::sin(41.0 * kRadiansPerDegree)));
     EXPECT_NEAR(light, expected, 2e-3 * expected) << "the air's transmittance over half a degree";
   }
 }

@@ -13,46 +13,47 @@
 
 #include "atmosphere/math/constants.h"
 #include "atmosphere/math/numerics.h"
-#include "tests/fixtures/lit_air.h"
 #include "tests/fixtures/sanitized.h"
 #include "tests/fixtures/sky_view_errors.h"
+#include "tests/fixtures/solved_media.h"
 
 namespace alpenglow::lut {
 namespace {
 
-using tests::LitAir;
-
-RaySamples<float> SamplesOf(const LitAir& lit, const ViewRay& ray) {
-  return lit.air.Sample(ray, {.nodes = 24, .dark_samples = true});
+RaySamples<float> SamplesOf(const SolvedAir& lit, const ViewRay& ray) {
+  return lit.single_scattering().Sample(ray, {.nodes = 24, .dark_samples = true});
 }
 
-double RadianceOf(const LitAir& lit, const ViewRay& ray, std::size_t band) {
+double RadianceOf(const SolvedAir& lit, const ViewRay& ray, std::size_t band) {
   const RaySamples<float> samples = SamplesOf(lit, ray);
-  return double{lit.air.Inscatter(lit.air.Scatter(samples), ray.nu)[band]} +
-         double{lit.multiple_scattering.InscatterAlong(samples, ray.nu)[band]};
+  return double{lit.single_scattering().Inscatter(lit.single_scattering().Scatter(samples),
+                                                  ray.nu)[band]} +
+         double{lit.multiple_scattering().InscatterAlong(samples, ray.nu)[band]};
 }
 
 /// Returns Q or U of all orders, of a view to the right of the sun.
-double Evaluated(const LitAir& lit, const ViewRay& ray, std::size_t band,
+double Evaluated(const SolvedAir& lit, const ViewRay& ray, std::size_t band,
                  Bands<float> PolarisedLight::*part) {
   const RaySamples<float> samples = SamplesOf(lit, ray);
-  const PolarisedLight once = PolarisedOnce(lit.medium, lit.air.Scatter(samples), ray);
-  const PolarisedLight more = lit.multiple_scattering.PolarisationAlong(samples, ray.nu);
+  const PolarisedLight once =
+      PolarisedOnce(lit.medium(), lit.single_scattering().Scatter(samples), ray);
+  const PolarisedLight more = lit.multiple_scattering().PolarisationAlong(samples, ray.nu);
   return double{(once.*part)[band]} + double{(more.*part)[band]};
 }
 
 TEST(PolarisedRow, IsTheLightOfItsDirectionsOnBothSidesOfTheSun) {
-  const LitAir& lit = tests::Earth();
+  const SolvedAir& lit = tests::Earth();
   for (const double altitude_m : {2.0, 10e3}) {
     for (const double sun_deg : {60.0, 10.0, 0.0, -4.0}) {
       const double mu_s = std::sin(sun_deg * kRadiansPerDegree);
       double worst = 0.0;
       for (int i = 1; i <= tests::ScaledDown(24, 8); ++i) {
         const double zenith = kPi * Halton(i, 2), azimuth = kPi * Halton(i, 3);
-        const PolarisedRow row(lit.air, lit.multiple_scattering, altitude_m, mu_s, zenith);
+        const PolarisedRow row(lit.single_scattering(), lit.multiple_scattering(), altitude_m, mu_s,
+                               zenith);
         const ViewRay ray = SkyRay(altitude_m, zenith, mu_s, azimuth);
         const PolarisedLight right = row.At(azimuth), left = row.At(2.0 * kPi - azimuth);
-        for (const std::size_t band : {std::size_t{0}, lit.air.bands() - 1}) {
+        for (const std::size_t band : {std::size_t{0}, lit.single_scattering().bands() - 1}) {
           const double whole = RadianceOf(lit, ray, band);
           const double q = Evaluated(lit, ray, band, &PolarisedLight::q);
           const double u = Evaluated(lit, ray, band, &PolarisedLight::u);
@@ -68,16 +69,19 @@ TEST(PolarisedRow, IsTheLightOfItsDirectionsOnBothSidesOfTheSun) {
 }
 
 /// Returns the air of a preset in three bands, which is solved once.
-const LitAir& AirOf(std::string_view preset) {
-  static std::map<std::string, LitAir> airs;
+const SolvedAir& AirOf(std::string_view preset) {
+  static std::map<std::string, SolvedAir> airs;
   const std::string name(preset);
-  return airs.try_emplace(name, MediumPreset(name, {450.0, 550.0, 650.0})).first->second;
+  const auto known = airs.find(name);
+  if (known != airs.end()) return known->second;
+  return airs.emplace(name, tests::SolvedAsClearAir(MediumPreset(name, {450.0, 550.0, 650.0})))
+      .first->second;
 }
 
 /// The meridian of the sun, by degrees over the horizon under it: beyond 90 on the other side.
 class Meridian {
  public:
-  Meridian(const LitAir& lit, double sun_deg, std::size_t band) : sun_deg_(sun_deg) {
+  Meridian(const SolvedAir& lit, double sun_deg, std::size_t band) : sun_deg_(sun_deg) {
     const double mu_s = std::sin(sun_deg * kRadiansPerDegree);
     for (int degree = 1; degree < 180; ++degree) {
       const double zenith = std::abs(90.0 - degree) * kRadiansPerDegree;
@@ -115,7 +119,7 @@ class Meridian {
 // before.
 TEST(PolarisedSky, NeutralPointsStandWhereTheyAreObserved) {
   for (const char* air : {"clear-mountain", "hazy"}) {
-    const LitAir& lit = AirOf(air);
+    const SolvedAir& lit = AirOf(air);
     const auto points_at = [&](double sun_deg, std::size_t band) {
       return Meridian(lit, sun_deg, band).NeutralPoints();
     };
@@ -140,7 +144,7 @@ TEST(PolarisedSky, NeutralPointsStandWhereTheyAreObserved) {
 }
 
 TEST(PolarisedSky, IsMostPolarisedAtRightAnglesToTheSunAndLessInHaze) {
-  const LitAir &clear = AirOf("clear-mountain"), &hazy = AirOf("hazy");
+  const SolvedAir &clear = AirOf("clear-mountain"), &hazy = AirOf("hazy");
   for (const double sun_deg : {30.0, 10.0, 0.0, -4.0}) {
     const Meridian meridian(clear, sun_deg, 1);
     EXPECT_NEAR(meridian.StrongestAt(), 90.0, 2.0) << sun_deg;

@@ -12,10 +12,10 @@
 #include "atmosphere/colour/spectrum.h"
 #include "lut/sky/sky_row_kernel.h"
 #include "tests/fixtures/bands_near.h"
-#include "tests/fixtures/lit_air.h"
 #include "tests/fixtures/sanitized.h"
 #include "tests/fixtures/sky_view_errors.h"
 #include "tests/fixtures/small_light.h"
+#include "tests/fixtures/solved_media.h"
 
 namespace alpenglow::lut {
 namespace {
@@ -28,12 +28,12 @@ double Sine(double degrees) { return std::sin(Degrees(degrees)); }
 
 /// Returns the sky of the default atmosphere under a sun at an elevation.
 SkyView ViewOfEarth(double altitude_m, double elevation_deg) {
-  return SkyView(tests::Earth().air, tests::Earth().multiple_scattering, altitude_m,
-                 Sine(elevation_deg));
+  return SkyView(tests::Earth().single_scattering(), tests::Earth().multiple_scattering(),
+                 altitude_m, Sine(elevation_deg));
 }
 
 const DirectSky& DirectSkyOfEarth() {
-  static const DirectSky direct(tests::Earth().medium, tests::Earth().multiple_scattering);
+  static const DirectSky direct(tests::Earth().medium(), tests::Earth().multiple_scattering());
   return direct;
 }
 
@@ -260,7 +260,8 @@ TEST(SkyView, TwilightHasNoStepsFromMinuteToMinute) {
 // Hard case 38.
 TEST(SkyView, TooFewNodesAreRefused) {
   const auto refuse = [&](const SkyViewSize& size) {
-    const SkyView view(tests::Earth().air, tests::Earth().multiple_scattering, 0.0, 1.0, size);
+    const SkyView view(tests::Earth().single_scattering(), tests::Earth().multiple_scattering(),
+                       0.0, 1.0, size);
   };
   EXPECT_THROW(refuse({.sky_rows = 4}), InputError);
   EXPECT_THROW(refuse({.ground_rows = 4}), InputError);
@@ -269,7 +270,7 @@ TEST(SkyView, TooFewNodesAreRefused) {
 
 // Colours of an image may have a negative channel. The spectra behind them are those of light.
 TEST(SkyView, DeepTwilightHasNegativeRedAndNoNegativeLight) {
-  const Medium& medium = tests::Earth().medium;
+  const Medium& medium = tests::Earth().medium();
   const BandColour colour(medium.wavelengths_nm);
   int with_negative_red = 0;
   for (const double elevation_deg : {-24.0, -25.0, -26.0, -30.0}) {

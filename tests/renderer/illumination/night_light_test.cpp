@@ -17,9 +17,9 @@
 #include "renderer/illumination/lighting.h"
 #include "renderer/picture/render.h"
 #include "tests/fixtures/bare_scene.h"
-#include "tests/fixtures/lit_air.h"
 #include "tests/fixtures/luminance.h"
 #include "tests/fixtures/media.h"
+#include "tests/fixtures/solved_media.h"
 
 namespace alpenglow::renderer {
 namespace {
@@ -93,21 +93,21 @@ Medium AirOfMaunaKea() {
 }
 
 /// Returns the extinction of moonlight from the zenith [magnitudes].
-double ExtinctionOf(const tests::LitAir& air) {
-  const BandColour colour(air.medium.wavelengths_nm);
-  const BandLight left = air.air.TransmittanceToSpace(kMaunaKea_m, 1.0);
-  const BandLight moonlight = MoonlightOf(MoonAtPhase(0.0), air.medium);
+double ExtinctionOf(const SolvedAir& air) {
+  const BandColour colour(air.medium().wavelengths_nm);
+  const BandLight left = air.single_scattering().TransmittanceToSpace(kMaunaKea_m, 1.0);
+  const BandLight moonlight = MoonlightOf(MoonAtPhase(0.0), air.medium());
   return -2.5 *
          std::log10(colour.Xyz(InDouble(moonlight * left))[1] / colour.Xyz(InDouble(moonlight))[1]);
 }
 
 TEST(Moonlight, LightsTheSkyAsMeasuredOnMaunaKea) {
-  const tests::LitAir air(AirOfMaunaKea());
-  const BandColour colour(air.medium.wavelengths_nm);
-  const AerialPerspective aerial(air.air, air.multiple_scattering);
+  const SolvedAir air = tests::SolvedAsClearAir(AirOfMaunaKea());
+  const BandColour colour(air.medium().wavelengths_nm);
+  const AerialPerspective aerial(air.single_scattering(), air.multiple_scattering());
   ASSERT_NEAR(ExtinctionOf(air), kExtinction, 0.01);
   for (const double phase_deg : {20.0, 60.0, 90.0}) {
-    const BandLight moonlight = MoonlightOf(MoonAtPhase(phase_deg), air.medium);
+    const BandLight moonlight = MoonlightOf(MoonAtPhase(phase_deg), air.medium());
     for (const double moon_zenith_deg : {20.0, 45.0, 60.0}) {
       for (const double zenith_deg : {10.0, 40.0, 60.0}) {
         for (const double azimuth_deg : {60.0, 120.0, 180.0}) {
@@ -128,11 +128,11 @@ TEST(Moonlight, LightsTheSkyAsMeasuredOnMaunaKea) {
 }
 
 TEST(Moonlight, AFullMoonOverheadGivesAQuarterOfALux) {
-  const tests::LitAir& earth = tests::Earth();
-  const BandColour colour(earth.medium.wavelengths_nm);
-  const BandLight moonlight = MoonlightOf(MoonAtPhase(5.0), earth.medium);
-  const BandLight on_ground =
-      earth.air.TransmittanceToSpace(0.0, 1.0) + earth.multiple_scattering.SkyIrradiance(0.0, 1.0);
+  const SolvedAir& earth = tests::Earth();
+  const BandColour colour(earth.medium().wavelengths_nm);
+  const BandLight moonlight = MoonlightOf(MoonAtPhase(5.0), earth.medium());
+  const BandLight on_ground = earth.single_scattering().TransmittanceToSpace(0.0, 1.0) +
+                              earth.multiple_scattering().SkyIrradiance(0.0, 1.0);
   const double lux = colour.Xyz(InDouble(moonlight * on_ground))[1];
   EXPECT_GT(lux, 0.25);
   EXPECT_LT(lux, 0.32);
@@ -144,12 +144,14 @@ const glm::dvec3 kZenith(0.0, 0.0, 1.0);
 struct Night {
   Night(const NightSky& sky, double eye_m, std::optional<double> town_zenith = std::nullopt)
       : height_m(eye_m),
-        light(sky, tests::Earth().air, colour, kZenith, eye_m,
-              town_zenith ? Skyglow(*town_zenith, 0.0, tests::Earth().air, colour) : BandLight()) {}
+        light(sky, tests::Earth().single_scattering(), colour, kZenith, eye_m,
+              town_zenith ? Skyglow(*town_zenith, 0.0, tests::Earth().single_scattering(), colour)
+                          : BandLight()) {}
 
   /// Returns the luminance of the night sky in a direction, through the air [cd/m^2].
   [[nodiscard]] double Luminance(const glm::dvec3& direction) const {
-    const BandLight left = tests::Earth().air.TransmittanceToSpace(height_m, direction.z);
+    const BandLight left =
+        tests::Earth().single_scattering().TransmittanceToSpace(height_m, direction.z);
     BandLight seen = left * light.Above(direction);
     for (std::size_t band = 0; band < seen.count; ++band)
       seen[band] += (1.0F - left[band]) * light.scattered()[band];
@@ -159,7 +161,7 @@ struct Night {
   [[nodiscard]] double Lux() const { return colour.Xyz(InDouble(light.OnSurface(1.0)))[1]; }
 
   double height_m;
-  BandColour colour{tests::Earth().medium.wavelengths_nm};
+  BandColour colour{tests::Earth().medium().wavelengths_nm};
   NightLight light;
 };
 
@@ -171,7 +173,7 @@ NightSky SkyOfApril() {
 double Magnitudes(double cd_per_m2) { return -2.5 * std::log10(cd_per_m2 / 10.8e4); }
 
 TEST(Skyglow, IsDarkWithoutAir) {
-  const Medium airless = tests::WithoutAir(tests::Earth().medium);
+  const Medium airless = tests::WithoutAir(tests::Earth().medium());
   const SingleScattering<float> air(airless);
   const BandLight light = Skyglow(18.0, 0.0, air, BandColour(airless.wavelengths_nm));
   for (std::size_t band = 0; band < light.count; ++band) EXPECT_EQ(light[band], 0.0F);

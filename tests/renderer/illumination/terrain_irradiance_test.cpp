@@ -15,10 +15,10 @@
 #include "renderer/illumination/aerial_perspective.h"
 #include "renderer/material/reflectance.h"
 #include "renderer/terrain/terrain.h"
-#include "tests/fixtures/lit_air.h"
 #include "tests/fixtures/media.h"
 #include "tests/fixtures/rough_land.h"
 #include "tests/fixtures/sanitized.h"
+#include "tests/fixtures/solved_media.h"
 #include "tests/fixtures/thread_counts.h"
 
 namespace alpenglow::renderer {
@@ -44,14 +44,18 @@ glm::dvec3 Leaning(double degrees, double azimuth_degrees) {
 }
 
 OccludedSkyIrradiance OccludedSkyOf(const glm::dvec3& to_sun) {
-  return {ThreeBandAir().air, ThreeBandAir().multiple_scattering, to_sun, {0.0, 3000.0, 5e4}};
+  return {ThreeBandAir().single_scattering(),
+          ThreeBandAir().multiple_scattering(),
+          to_sun,
+          {0.0, 3000.0, 5e4}};
 }
 
 /// Returns the sky's irradiance by midpoints in azimuth and in the sine of the elevation.
 double IrradianceByQuadrature(const glm::dvec3& to_sun, double altitude_m, const glm::dvec3& normal,
                               double from_sine) {
   constexpr int kSines = 200, kAzimuths = 144;
-  const SkyView view(ThreeBandAir().air, ThreeBandAir().multiple_scattering, altitude_m, to_sun.z);
+  const SkyView view(ThreeBandAir().single_scattering(), ThreeBandAir().multiple_scattering(),
+                     altitude_m, to_sun.z);
   const double sun = std::atan2(to_sun.y, to_sun.x);
   double sum = 0.0;
   for (int i = 0; i < kSines; ++i) {
@@ -81,7 +85,7 @@ TEST(OccludedSkyIrradiance, OnAPlainIsTheIrradianceFromAbove) {
           << "behind a closed horizon";
     }
     const auto open = sky.Irradiance(0.0, to_sun.z, SectorsOf(kUp), OpenTo(0.0F));
-    const auto known = ThreeBandAir().multiple_scattering.SkyIrradiance(0.0, to_sun.z);
+    const auto known = ThreeBandAir().multiple_scattering().SkyIrradiance(0.0, to_sun.z);
     for (std::size_t band = 0; band < open.count; ++band) {
       EXPECT_NEAR(open[band] / known[band], 1.0F, 0.02F)
           << "sun at " << elevation << "; the two integrate in different nodes";
@@ -112,7 +116,8 @@ TEST(OccludedSkyIrradiance, OnSlopesIsTheIntegralOverTheVisibleSky) {
 TEST(OccludedSkyIrradiance, RadianceIsThatOfTheSky) {
   const glm::dvec3 to_sun = SunAtElevation(40.0);
   const OccludedSkyIrradiance sky = OccludedSkyOf(to_sun);
-  const SkyView view(ThreeBandAir().air, ThreeBandAir().multiple_scattering, 0.0, to_sun.z);
+  const SkyView view(ThreeBandAir().single_scattering(), ThreeBandAir().multiple_scattering(), 0.0,
+                     to_sun.z);
   for (const double sine : {0.05, 0.2, 0.5, 0.9}) {
     for (const double azimuth : {0.3, 1.4, 2.9}) {  // away from the aureole
       const double cosine = std::sqrt(1.0 - sine * sine);
@@ -148,12 +153,15 @@ class Mountains {
       : to_sun_(SunAtElevation(sun_degrees)),
         albedo_(albedo),
         terrain_(LandMesh(RoughLand, side, 60.0 * 128 / (side - 1))),
-        horizons_(std::make_shared<const TerrainHorizons>(terrain_.mesh(), ThreeBandAir().medium)),
-        light_(horizons_, ThreeBandAir().air, ThreeBandAir().multiple_scattering, to_sun_),
-        view_(ThreeBandAir().air, ThreeBandAir().multiple_scattering, 1500.0, to_sun_.z),
-        aerial_(ThreeBandAir().air, ThreeBandAir().multiple_scattering) {
+        horizons_(
+            std::make_shared<const TerrainHorizons>(terrain_.mesh(), ThreeBandAir().medium())),
+        light_(horizons_, ThreeBandAir().single_scattering(), ThreeBandAir().multiple_scattering(),
+               to_sun_),
+        view_(ThreeBandAir().single_scattering(), ThreeBandAir().multiple_scattering(), 1500.0,
+              to_sun_.z),
+        aerial_(ThreeBandAir().single_scattering(), ThreeBandAir().multiple_scattering()) {
     light_.AddSlopes(
-        ThreeBandAir().medium,
+        ThreeBandAir().medium(),
         [this](const SlopePlace& place) {
           const glm::dvec3 point = place.point + 2.0 * place.normal;
           return Sent(Direct(point, place.normal, place.normal) +
@@ -215,8 +223,9 @@ class Mountains {
     const double cosine = glm::dot(normal, to_sun_);
     if (cosine <= 0.0 ||
         terrain_.Occluded(point, geometric, to_sun_, std::numeric_limits<double>::infinity()))
-      return BandLight(ThreeBandAir().air.bands());
-    return static_cast<float>(cosine) * ThreeBandAir().air.TransmittanceToSpace(point.z, to_sun_.z);
+      return BandLight(ThreeBandAir().single_scattering().bands());
+    return static_cast<float>(cosine) *
+           ThreeBandAir().single_scattering().TransmittanceToSpace(point.z, to_sun_.z);
   }
   [[nodiscard]] BandLight Sent(const BandLight& irradiance) const {
     return static_cast<float>(static_cast<double>(albedo_) / kPi) * irradiance;
@@ -255,7 +264,7 @@ TEST(TerrainIrradiance, IsThatOfRaysToSkyAndSlopes) {
           glm::dot(glm::normalize(flat),
                    glm::normalize(glm::dvec3(mountains.to_sun().x, mountains.to_sun().y, 0.0)));
       const double plain =
-          static_cast<double>(ThreeBandAir().multiple_scattering.Irradiance(
+          static_cast<double>(ThreeBandAir().multiple_scattering().Irradiance(
               hit.smooth_point.z, mountains.to_sun().z, hit.normal.z, azimuth)[1]) /
               (rays.sky + rays.slopes) -
           1.0;
@@ -271,7 +280,7 @@ TEST(TerrainIrradiance, IsThatOfRaysToSkyAndSlopes) {
 
 // In such air the depth divided by the extinction is 0/0.
 TEST(TerrainIrradiance, SlopesLightEachOtherWithoutAir) {
-  const Medium medium = tests::WithoutAir(ThreeBandAir().medium);
+  const Medium medium = tests::WithoutAir(ThreeBandAir().medium());
   const SingleScattering<float> air(medium);
   const MultipleScattering multiple_scattering(medium,
                                                {.altitudes = 4, .sun_angles = 8, .degree = 2});
@@ -330,18 +339,19 @@ TEST(TerrainIrradiance, ASeaMirrorsAFarCoastWithoutEdges) {
   constexpr double kEye_m = 60.0;
   const Terrain terrain(LandMesh(SeaBeforeACoast, 129, 250.0));
   const auto horizons =
-      std::make_shared<const TerrainHorizons>(terrain.mesh(), ThreeBandAir().medium);
+      std::make_shared<const TerrainHorizons>(terrain.mesh(), ThreeBandAir().medium());
   const glm::dvec3 to_sun = SunAtElevation(30.0);
-  TerrainIrradiance light(horizons, ThreeBandAir().air, ThreeBandAir().multiple_scattering, to_sun);
+  TerrainIrradiance light(horizons, ThreeBandAir().single_scattering(),
+                          ThreeBandAir().multiple_scattering(), to_sun);
   light.AddSlopes(
-      ThreeBandAir().medium,
+      ThreeBandAir().medium(),
       [](const SlopePlace&) {
-        BandLight dark(ThreeBandAir().air.bands());
+        BandLight dark(ThreeBandAir().single_scattering().bands());
         std::fill_n(dark.value.begin(), dark.count, 0.002F);
         return dark;
       },
       to_sun.z);
-  const Water water(5.0, ThreeBandAir().medium.wavelengths_nm);
+  const Water water(5.0, ThreeBandAir().medium().wavelengths_nm);
   // Returns the light that the water mirrors, relative to that of a free sky.
   const auto share_of_sky = [&](double azimuth_deg, double distance_m) {
     const double azimuth = azimuth_deg * kRadiansPerDegree;

@@ -19,10 +19,10 @@
 #include "tests/fixtures/bare_scene.h"
 #include "tests/fixtures/fault_of.h"
 #include "tests/fixtures/lamp_site.h"
-#include "tests/fixtures/lit_air.h"
 #include "tests/fixtures/luminance.h"
 #include "tests/fixtures/media.h"
 #include "tests/fixtures/noise_grid.h"
+#include "tests/fixtures/solved_media.h"
 
 namespace alpenglow::renderer {
 namespace {
@@ -31,16 +31,12 @@ constexpr double kSunElevation = 0.5;  // about 29 degrees
 const glm::dvec3 kToSun(0.6 * std::cos(kSunElevation), 0.8 * std::cos(kSunElevation),
                         std::sin(kSunElevation));
 
-SunlitAir SunlitOf(const tests::LitAir& air) {
-  return {air.air, air.beam, air.multiple_scattering};
-}
-
 /// Air and ground around an eye over the bare ellipsoid, in three bands.
 struct MediaStage {
-  explicit MediaStage(const tests::LitAir& of) : lit_air(of) {}
+  explicit MediaStage(SolvedAir of) : air(std::move(of)) {}
 
-  const tests::LitAir& lit_air;
-  const Medium& medium = lit_air.medium;
+  SolvedAir air;
+  const Medium& medium = air.medium();
   Scene scene = [this] {
     Scene bare = QuickScene(50.0, 0.0, 0.0, 60.0);
     bare.medium = medium;
@@ -49,7 +45,6 @@ struct MediaStage {
   SceneGround ground = LoadGround(scene);
   BandColour colour{medium.wavelengths_nm};
   SceneGeometry geometry{ground, medium, false};
-  SunlitAir air = SunlitOf(lit_air);
   Lighting light = [this] {
     SunPosition sun;
     sun.distance_au = 1.0;
@@ -71,7 +66,7 @@ struct MediaStage {
     to.altitude_m = 50.0;
     to.mu = mu;
     to.length_m = 300.0;
-    return lit_air.air.TransmittanceAlong(to) * light.irradiance *
+    return air.single_scattering().TransmittanceAlong(to) * light.irradiance *
            air.BeamLeft(sun.altitude_m, sun.mu_s_effective);
   }
 };
@@ -114,12 +109,12 @@ TEST(MediaLight, ThinVolumeScattersSunAndSkyOnce) {
   to.altitude_m = 50.0;
   to.mu = 0.0;
   to.length_m = 300.0;
-  const BandLight view = stage.lit_air.air.TransmittanceAlong(to) * stage.light.irradiance;
-  const SkyMoments sky(stage.lit_air.multiple_scattering, stage.geometry.UpAt(there), kToSun,
-                       {50.0});
+  const BandLight view =
+      stage.air.single_scattering().TransmittanceAlong(to) * stage.light.irradiance;
+  const SkyMoments sky(stage.air.multiple_scattering(), stage.geometry.UpAt(there), kToSun, {50.0});
   const BandLight from_sky = sky.Towards(
       look,
-      LegendreCoefficients(optics.phase, stage.lit_air.multiple_scattering.options().degree))[0];
+      LegendreCoefficients(optics.phase, stage.air.multiple_scattering().options().degree))[0];
   for (std::size_t band = 0; band < 3; ++band) {
     const double expected =
         optics.scattering_per_m[band] * 20.0 *
@@ -132,7 +127,7 @@ TEST(MediaLight, ThinVolumeScattersSunAndSkyOnce) {
 
 TEST(SkyMoments, IsotropicScatteringIsTheSameInAllDirections) {
   const MediaStage& stage = TheStage();
-  const SkyMoments sky(stage.lit_air.multiple_scattering, {0.0, 0.0, 1.0}, kToSun, {0.0, 1000.0});
+  const SkyMoments sky(stage.air.multiple_scattering(), {0.0, 0.0, 1.0}, kToSun, {0.0, 1000.0});
   const std::vector<double> isotropic{1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0};
   const BandLight up = sky.Towards({0.0, 0.0, 1.0}, isotropic)[0];
   const BandLight along = sky.Towards({1.0, 0.0, 0.0}, isotropic)[0];
@@ -223,12 +218,12 @@ TEST(MediaLight, WhiteFogOverBlackGroundConservesEnergy) {
   // The light that leaves fog downwards and upwards is the light that entered it.
   Medium medium = MediumPreset("bruneton2017");
   medium.ground_albedo.assign(3, 0.0);
-  const tests::LitAir over_black(medium);
+  const SolvedAir over_black = tests::SolvedAsClearAir(medium);
   const MediaStage stage(over_black);
   const MediaLight lit = stage.Lit({FogMedium(0.02, 60.0)});
   const double mu_s = kToSun.z;
   const BandLight sun = stage.air.BeamLeft(60.0, mu_s);
-  const BandLight sky = over_black.multiple_scattering.SkyIrradiance(0.0, mu_s);
+  const BandLight sky = over_black.multiple_scattering().SkyIrradiance(0.0, mu_s);
   const SkyThroughFog below = lit.SkyOnSurface(0.0, 1.0);
   const SkyThroughFog above = lit.SkyOnSurface(5e4, -1.0);
   const BandLight beam = lit.SunLeft({0.0, 0.0, 0.0}, kToSun);
@@ -310,7 +305,7 @@ TEST(FogLight, IsNowhereNegative) {
     fog.optics.phase = LobeOf(g);
     BandLight sun(3);
     std::fill_n(sun.value.begin(), sun.count, 0.8F);
-    const FogLight lit(fog, stage.lit_air.multiple_scattering, {kToSun, kToSun, sun}, 0.0);
+    const FogLight lit(fog, stage.air.multiple_scattering(), {kToSun, kToSun, sun}, 0.0);
     for (const double height_m : {0.0, 10.0, 60.0, 200.0}) {
       for (const double z : {-1.0, -0.5, 0.0, 0.5, 1.0}) {
         const glm::dvec3 look(std::sqrt(1.0 - z * z), 0.0, z);

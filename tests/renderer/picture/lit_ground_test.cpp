@@ -209,8 +209,8 @@ TEST(LitGround, ReliefChangesTheSkysLightAsTheOpenSkys) {
     const glm::dvec3& to_sun = lit.lighting().to_sun;
     const glm::dvec3 sunward = glm::normalize(glm::dvec3(to_sun.x, to_sun.y, 0.0));
     const OccludedSkyIrradiance::Extent& extent = TheSite()->horizons()->extent();
-    const SkyIrradianceGradient tilt(*TheSite()->air().single_scattering,
-                                     *TheSite()->air().multiple_scattering,
+    const SkyIrradianceGradient tilt(TheSite()->air().single_scattering(),
+                                     TheSite()->air().multiple_scattering(),
                                      0.5 * (extent.lowest_m + extent.highest_m), to_sun.z);
     const auto open = [&](const glm::dvec3& n) {
       return static_cast<double>(tilt.On(n.z, glm::dot(n, sunward))[1]);

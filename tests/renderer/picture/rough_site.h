@@ -30,10 +30,8 @@ inline std::shared_ptr<const GroundSite> RoughSite(const GroundCover& cover = {}
                                                    const std::filesystem::path& colours = {},
                                                    const std::filesystem::path& land_cover = {}) {
   const Medium medium = OnOsculatingSphere(MediumPreset("earth"), kRoughPlace.latitude_rad);
-  SiteAir air;
-  air.single_scattering = std::make_shared<const SingleScattering<float>>(medium);
-  air.beam = std::make_shared<const RefractedBeam>(Unbending(medium));
-  air.multiple_scattering = std::make_shared<const MultipleScattering>(medium, kSmallLight);
+  SolvedAir air(SingleScattering<float>(medium), RefractedBeam(Unbending(medium)),
+                MultipleScattering(medium, kSmallLight));
   SceneGround ground{LocalFrame(kWgs84, kRoughPlace), Terrain(LandMesh(RoughLand, 129, 60.0)), 0.0,
                      "", true};
   Scene scene;

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "atmosphere/math/numerics.h"
-#include "tests/fixtures/lit_air.h"
+#include "tests/fixtures/solved_media.h"
 #include "tests/lut/camera_tables/air_reading.h"
 #include "tests/viewer/shaders/gpu_values.h"
 #include "tests/viewer/shaders/headless.h"
@@ -25,9 +25,9 @@ constexpr GLuint kBinding = 5;
 /// Tables on both processors, and an eye whose sun stands in the south west.
 struct BothTables {
   BothTables(double altitude_m, double mu_s)
-      : medium(MakeMediumTables(tests::Earth().air, tests::Earth().beam)),
-        tables(MakeAirTables(tests::Earth().air, tests::Earth().multiple_scattering, medium,
-                             {altitude_m, mu_s}, AirTablesSizeOf(AirQuality::kLow, altitude_m))),
+      : medium(MakeMediumTables(tests::Earth())),
+        tables(MakeAirTables(tests::Earth(), medium, {altitude_m, mu_s},
+                             AirTablesSizeOf(AirQuality::kLow, altitude_m))),
         reading(tables) {
     textures.Upload(medium);
     textures.Upload(tables);
@@ -191,7 +191,7 @@ TEST_F(AirTexturesOnGpu, AnEyeThatHasMovedSeesThemFromItsOwnHorizonUnderItsOwnSu
   const glm::dvec3 sun(-0.6 * sine, -0.8 * sine, moved.mu_s);
   both.textures.SetView(moved.altitude_m, {sun, sun});
   const tests::AirReading reading(both.tables, moved);
-  const AirMap map(tests::Earth().medium, moved.altitude_m, moved.ceiling_m,
+  const AirMap map(tests::Earth().medium(), moved.altitude_m, moved.ceiling_m,
                    both.tables.map.twilight_fall);
   std::vector<tests::Arguments<float>> points;
   const std::vector<ViewOfAir> looks = Looks(map, map.sky_range);
@@ -229,7 +229,7 @@ TEST_F(AirTexturesOnGpu, TransmittanceToTheSunIsThatOfTheIntegrator) {
   const auto points = PlacesUnderTheSun(both.tables.map.radius);
   const auto on_gpu = both.OnGpu("TransmittanceToSun(a[0], a[1]).y", points);
   for (std::size_t i = 0; i < points.size(); ++i) {
-    const Bands<float> exact = tests::Earth().air.TransmittanceToSpace(
+    const Bands<float> exact = tests::Earth().single_scattering().TransmittanceToSpace(
         1000.0 * static_cast<double>(points[i][0]), static_cast<double>(points[i][1]));
     EXPECT_NEAR(on_gpu[i], exact[1], 2e-3) << points[i][0] << " km, " << points[i][1];
   }
@@ -241,8 +241,9 @@ TEST_F(AirTexturesOnGpu, BeamOfTheSunIsThatOfRefractedBeam) {
   const auto on_gpu = both.OnGpu("BeamOfSun(a[0], a[1]).y", points);
   for (std::size_t i = 0; i < points.size(); ++i) {
     const auto& earth = tests::Earth();
-    const Bands<float> exact = earth.beam.Left(
-        earth.air, 1000.0 * static_cast<double>(points[i][0]), static_cast<double>(points[i][1]));
+    const Bands<float> exact =
+        earth.beam().Left(earth.single_scattering(), 1000.0 * static_cast<double>(points[i][0]),
+                          static_cast<double>(points[i][1]));
     EXPECT_NEAR(on_gpu[i], exact[1], 2e-3) << points[i][0] << " km, " << points[i][1];
   }
 }

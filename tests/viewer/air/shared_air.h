@@ -18,9 +18,9 @@ inline FirstAir SharedAirOf(const Scene& scene) {
   static std::vector<FirstAir> solved;
   const Medium medium = OnOsculatingSphere(scene.medium, scene.place.latitude_rad);
   for (const FirstAir& air : solved) {
-    if (air->medium == medium) return air;
+    if (air->air.medium() == medium) return air;
   }
-  return solved.emplace_back(SolveAir(medium));
+  return solved.emplace_back(TabulateAir(medium));
 }
 
 }  // namespace alpenglow::tests

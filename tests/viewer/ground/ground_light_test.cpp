@@ -50,21 +50,21 @@ void Bind(const ShaderProgram& program, const char* name, GLuint binding, const 
 }
 
 SkyIrradianceGradient UnoccludedSkyOver(const LitGround& lit) {
-  const SiteAir& air = lit.site().air();
-  return {*air.single_scattering, *air.multiple_scattering, 1000.0, lit.lighting().to_sun.z};
+  const SolvedAir& air = lit.site().air();
+  return {air.single_scattering(), air.multiple_scattering(), 1000.0, lit.lighting().to_sun.z};
 }
 
 /// The uniform blocks that shaders read for an eye over the origin of the site.
 class Blocks {
  public:
   Blocks(const LitGround& lit, const Lighting& light, double eye_m)
-      : lit_(lit), eye_m_(eye_m), textures_(*lit.site().air().multiple_scattering) {
+      : lit_(lit), eye_m_(eye_m), textures_(lit.site().air().multiple_scattering()) {
     if (const ColourDrape* drape = lit.site().material().drape())
       textures_.SetDrape(DrapeTexels(*drape, Picture(), 256));
     const GroundMaterial& material = lit.site().material();
     const OccludedSkyIrradiance::Extent& extent = lit.site().horizons()->extent();
     mirror_ = GlossMirror::Of(
-        light.on_terrain->sky(), *lit.site().air().multiple_scattering,
+        light.on_terrain->sky(), lit.site().air().multiple_scattering(),
         {material.HasWater() ? &material.water() : nullptr,
          material.cover().kind == GroundCover::Kind::kBlinnPhong ? &material.glossy() : nullptr},
         lit.lighting().to_sun, std::max(extent.lowest_m, 0.0), std::max(extent.highest_m, 0.0));
@@ -250,9 +250,9 @@ std::vector<double> DifferencesByPixel(const LitGround& lit) {
 /// Under the sky of a plain as wide as the view.
 std::vector<double> PlanetDifferences(const LitGround& lit, double eye_m) {
   Lighting light = lit.lighting();
-  const SiteAir& air = lit.site().air();
+  const SolvedAir& air = lit.site().air();
   light.on_terrain = std::make_shared<const TerrainIrradiance>(
-      nullptr, *air.single_scattering, *air.multiple_scattering, light.to_sun);
+      nullptr, air.single_scattering(), air.multiple_scattering(), light.to_sun);
   return Differences(lit, light, eye_m, PlanetPoints(lit, eye_m),
                      {"PlanetRadiance(" + kPoint + ", " + kToEye + ")",
                       [eye_m](const SeenPoint& c) { return PlaceOf(c, eye_m, {}); }});

@@ -17,10 +17,8 @@ namespace {
 
 OpenSky SkyOfEarth(double elevation_rad) {
   static const std::shared_ptr<const SolvedAir> air =
-      SolveAir(MediumPreset("bruneton2017"), AirSolution::kDraft);
-  static const auto single_scattering =
-      std::make_shared<const SingleScattering<float>>(air->medium);
-  return {air, single_scattering, 800.0, elevation_rad};
+      std::make_shared<const SolvedAir>(MediumPreset("bruneton2017"), AirSolution::kDraft);
+  return {air, 800.0, elevation_rad};
 }
 
 /// Makes tables, and counts those that the thread that draws had to make.

@@ -17,7 +17,7 @@
 #include "lut/image/look.h"
 #include "lut/image/tone_mapping.h"
 #include "lut/sky/sky_view.h"
-#include "tests/fixtures/lit_air.h"
+#include "tests/fixtures/solved_media.h"
 #include "tests/viewer/hud/hud_picture.h"
 #include "viewer/hud/day_strip.h"
 #include "viewer/hud/hud_model.h"
@@ -349,7 +349,7 @@ TEST(HudTheme, ADuskDoesNotFlicker) {
 DayStripRequest Alps() {
   // The light is not the request's own: it lasts as long as the tests.
   const std::shared_ptr<const MultipleScattering> light(std::shared_ptr<void>(),
-                                                        &tests::Earth().multiple_scattering);
+                                                        &tests::Earth().multiple_scattering());
   DayStripRequest request{light, PlaceFromDegrees(46.0, 8.0, 500.0), {}, 24};
   request.begin = ParseInstant("2026-03-19T23:28:00Z");  // midnight of the mean sun
   return request;
@@ -371,12 +371,12 @@ TEST(DayStrip, NoonIsBlueMidnightBlackAndDuskRedBelow) {
 TEST(DayStrip, ColoursAreThoseOfTheSky) {
   const DayStripRequest request = Alps();
   const DayStrip strip = MakeDayStrip(request);
-  const Medium& medium = tests::Earth().medium;
+  const Medium& medium = tests::Earth().medium();
   for (const int column : {7, 12, 18}) {
     const SunPosition sun =
         ApparentSunAt(request.place, AddSeconds(request.begin, 3600.0 * (column + 0.5)));
-    const SkyView view(tests::Earth().air, *request.multiple_scattering, request.place.height_m,
-                       std::sin(sun.elevation_rad));
+    const SkyView view(tests::Earth().single_scattering(), *request.multiple_scattering,
+                       request.place.height_m, std::sin(sun.elevation_rad));
     const double dip =
         std::acos(medium.planet_radius_m / (medium.planet_radius_m + request.place.height_m));
     Image sky(1, strip.rows);

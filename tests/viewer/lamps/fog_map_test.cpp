@@ -12,6 +12,7 @@
 #include "renderer/media/media_light.h"
 #include "tests/fixtures/bare_scene.h"
 #include "tests/fixtures/sanitized.h"
+#include "tests/fixtures/solved_media.h"
 #include "tests/viewer/shaders/gpu_values.h"
 #include "tests/viewer/shaders/headless.h"
 #include "viewer/lamps/fog.h"
@@ -36,11 +37,7 @@ struct Stage {
   }();
   SceneGround ground = LoadGround(scene);
   SceneGeometry geometry{ground, scene.medium, false};
-  SingleScattering<float> air{scene.medium};
-  RefractedBeam beam{scene.medium};
-  MultipleScattering multiple_scattering{scene.medium};
-
-  [[nodiscard]] SunlitAir sunlit() const { return {air, beam, multiple_scattering}; }
+  SolvedAir air = tests::SolvedAsClearAir(scene.medium);
 
   [[nodiscard]] Lighting Under(const glm::dvec3& to_sun) const {
     SunPosition sun;
@@ -72,8 +69,8 @@ struct BothFogs {
       : eye(0.0, 0.0, eye_m),
         media({fog}, 3),
         light(TheStage().Under(to_sun)),
-        renderer(media, TheStage().geometry, TheStage().sunlit(), light),
-        map(MakeFogMap(*media.fog(), media.fog_bottom_m(), TheStage().sunlit(),
+        renderer(media, TheStage().geometry, TheStage().air, light),
+        map(MakeFogMap(*media.fog(), media.fog_bottom_m(), TheStage().air,
                        {eye_m, to_sun, to_sun, kFogSunRadius_rad})),
         painter({}) {
     painter.Upload(map);

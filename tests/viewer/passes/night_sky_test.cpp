@@ -256,7 +256,7 @@ UtcInstant WhenTheSunIsAt(double elevation_rad, const GeodeticPosition& eye,
 // Returns the illuminance of a surface that faces a light, without the sky [lux].
 double BeamIlluminance(const SkyLight& light, const AirOfSky& air, double altitude_m) {
   const double mu = std::sin(light.disk.elevation_rad);
-  BandLight beam = air.air->beam.Left(air.single_scattering, altitude_m, mu);
+  BandLight beam = air.air->BeamLeft(altitude_m, mu);
   for (std::size_t band = 0; band < beam.count; ++band)
     beam[band] *= light.irradiance[static_cast<glm::length_t>(band)];
   return air.colour.Xyz(InDouble(beam))[1];
@@ -264,8 +264,8 @@ double BeamIlluminance(const SkyLight& light, const AirOfSky& air, double altitu
 
 TEST(LightsOfSky, OfTheSecondNoShadowIsSeenInAnyEveningOfAMonth) {
   const GeodeticPosition eye = PlaceFromDegrees(46.5, 8.0, 2000.0);
-  const AirOfSky air(
-      SolveAir(OnOsculatingSphere(MediumPreset("earth"), eye.latitude_rad), AirSolution::kDraft));
+  const AirOfSky air(std::make_shared<const SolvedAir>(
+      OnOsculatingSphere(MediumPreset("earth"), eye.latitude_rad), AirSolution::kDraft));
   double most = 0.0;
   int moonlit = 0;
   for (int day = 0; day < 30; ++day) {
@@ -317,7 +317,7 @@ TEST(LightsOfSky, WhenTheMoonIsFirstNoSummitIsLitByTheSun) {
   constexpr double kHighestSummit_m = 8849.0, kRadius_m = 6371e3;
   const double dip = std::acos(kRadius_m / (kRadius_m + kHighestSummit_m));
   const GeodeticPosition eye = PlaceFromDegrees(46.5, 8.0, 2000.0);
-  const AirOfSky air(SolveAir(MediumPreset("earth"), AirSolution::kDraft));
+  const AirOfSky air(std::make_shared<const SolvedAir>(MediumPreset("earth"), AirSolution::kDraft));
   // The moon is full on the 3rd of January 2026 and rises before the sun has set.
   const UtcInstant now = WhenTheSunIsAt(-3.51 * kRadiansPerDegree, eye, UtcInstant{61043, 41400.0});
   const LightsOfSky lights = FrameSkyAt(eye, now, air).lights;

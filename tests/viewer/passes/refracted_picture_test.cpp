@@ -111,7 +111,7 @@ TEST(RefractedDisk, BetweenNodesItIsThatOfTheRays) {
 }
 
 TEST(RefractedDisk, HighDisksAndWideViewsHaveRoundOnes) {
-  const auto air = SolveAir(MediumPreset("earth"), AirSolution::kDraft);
+  const auto air = std::make_shared<const SolvedAir>(MediumPreset("earth"), AirSolution::kDraft);
   constexpr double kRadius = 16.0 * kArcMinute;
   RefractedDiskFollower follower;
   EXPECT_EQ(follower.Follow(air, 2.0, 0.3, kRadius, 0.0), nullptr) << "17 degrees up";

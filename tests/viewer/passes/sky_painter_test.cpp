@@ -584,7 +584,7 @@ TEST_F(SkyPainterTest, ASunWithTheMoonBeforeItIsTheRenderers) {
   ExpectWithin(BothPrograms(scene, now).Difference(ViewOf(scene, 2.0, now)), {0.0031, 0.0041},
                "tables between nodes, within four degrees of the sun");
   const SunPosition sun = ApparentSunAt(scene.place, now);
-  const AirOfSky air(SolveAir(scene.medium, AirSolution::kDraft));
+  const AirOfSky air(std::make_shared<const SolvedAir>(scene.medium, AirSolution::kDraft));
   const double left = double{FrameSkyAt(scene.place, now, air).lights.front().irradiance[1]} /
                       double{SunAsLight(sun, scene.medium).irradiance[1]};
   const double covered = SkyBodiesAt(scene.place, now).CoveredLight();
@@ -603,19 +603,19 @@ TEST_F(SkyPainterTest, TheMoonOfTheEarthIsNotInTheSkyOfMars) {
     scene.medium = MediumPreset(planet);
     const PaintedView view = ViewOf(scene, 300.0, now);
     SkyPainter painter(scene, LandSourceOf(scene), view, SizesOf(Quality::kLow),
-                       SolveAir(scene.medium, AirSolution::kDraft));
+                       TabulateAir(scene.medium, AirSolution::kDraft));
     EXPECT_EQ(painter.BodiesSeen(view).empty(), scene.medium.name == "mars") << planet;
   }
 }
 
 TEST(FrameSky, OnMarsThereIsNeitherAMoonNorAnEclipseNorAnotherLight) {
-  const AirOfSky mars(SolveAir(MediumPreset("mars"), AirSolution::kDraft));
+  const AirOfSky mars(std::make_shared<const SolvedAir>(MediumPreset("mars"), AirSolution::kDraft));
   const GeodeticPosition burgos = PlaceFromDegrees(42.3439, -3.6969, 0.0);
   const FrameSky sky = FrameSkyAt(burgos, ParseInstant("2026-08-12T18:23:00Z"), mars);
   EXPECT_FALSE(sky.moon);
   EXPECT_FALSE(sky.is_eclipse);
   ASSERT_EQ(sky.lights.size(), 1U);
-  EXPECT_EQ(sky.lights[0].irradiance, SunAsLight(sky.sun, mars.air->medium).irradiance);
+  EXPECT_EQ(sky.lights[0].irradiance, SunAsLight(sky.sun, mars.air->medium()).irradiance);
 }
 
 struct MeanLuminance {
