@@ -362,7 +362,7 @@ HudSky SkyOf(const FrameSky& sky) {
   HudSky shown{sky.sun.azimuth_rad, sky.sun.elevation_rad};
   if (!sky.moon) return shown;
   shown.moon =
-      HudMoon{sky.bodies.moon.azimuth_rad, std::asin(std::clamp(sky.moon->to_moon.z, -1.0, 1.0)),
+      HudMoon{sky.bodies.moon.azimuth_rad, std::asin(std::clamp(sky.moon->direction.seen.z, -1.0, 1.0)),
               sky.bodies.moon.IlluminatedFraction()};
   return shown;
 }

@@ -192,6 +192,12 @@ MoonPosition ApparentMoonAt(const GeodeticPosition& place, const UtcInstant& ins
   return Refracted(MoonAt(place, instant), place.height_m, air);
 }
 
+LightDirection DirectionOf(const MoonPosition& apparent) {
+  const double for_air_rad = apparent.elevation_rad - apparent.lower_for_air_rad;
+  return {DirectionFromAngles(apparent.elevation_rad, apparent.azimuth_rad).xyz,
+          DirectionFromAngles(for_air_rad, apparent.azimuth_rad).xyz};
+}
+
 std::optional<UtcInstant> NextMoonrise(const GeodeticPosition& place, const UtcInstant& after) {
   return NextChange(place, after, true);
 }
@@ -267,19 +273,18 @@ double SunlightAt(const MoonPosition& moon, double earth_sun_au) {
 
 }  // namespace
 
-MoonDisk MoonDiskOf(const MoonPosition& moon, const glm::dvec3& to_moon, const glm::dvec3& to_sun,
-                    double earth_sun_au) {
+MoonDisk MoonDiskOf(const MoonPosition& moon, const LightDirection& direction,
+                    const glm::dvec3& to_sun, double earth_sun_au) {
   constexpr double kLastMeasured_rad = 150.0 * kRadiansPerDegree;
   const double angle_rad = std::min(moon.phase_angle_rad, kLastMeasured_rad);
   const double sunlight = SunlightAt(moon, earth_sun_au);
   const double seen = MoonReflectance(angle_rad, kWavelength_nm) / kPi;
   const double earthlit = MoonReflectance(0.0, kWavelength_nm) / kPi;
-  return {to_moon,
+  return {direction,
           to_sun,
           moon.angular_radius_rad,
           2.0 * sunlight * seen / SpherePhase(angle_rad),
-          sunlight * EarthIrradiance(moon) * earthlit,
-          to_moon};
+          sunlight * EarthIrradiance(moon) * earthlit};
 }
 
 double MoonIrradiance(const MoonPosition& moon, double earth_sun_au, double wavelength_nm) {
@@ -289,15 +294,16 @@ double MoonIrradiance(const MoonPosition& moon, double earth_sun_au, double wave
 }
 
 double MoonRadiance(const MoonDisk& moon, const glm::dvec3& direction) {
-  if (glm::dot(direction, moon.to_moon) <= 0.0) return 0.0;
+  const glm::dvec3& to_moon = moon.direction.seen;
+  if (glm::dot(direction, to_moon) <= 0.0) return 0.0;
   // Position on the disk, in radii; over half a degree, rays can be treated as parallel.
-  const glm::dvec3 beside = direction - moon.to_moon;
+  const glm::dvec3 beside = direction - to_moon;
   const glm::dvec3 at =
-      (beside - glm::dot(beside, moon.to_moon) * moon.to_moon) / std::sin(moon.radius_rad);
+      (beside - glm::dot(beside, to_moon) * to_moon) / std::sin(moon.radius_rad);
   const double squared = glm::dot(at, at);
   if (squared >= 1.0) return 0.0;
   const double mu_seen = std::sqrt(1.0 - squared);
-  const double mu_lit = glm::dot(at - mu_seen * moon.to_moon, moon.to_sun);
+  const double mu_lit = glm::dot(at - mu_seen * to_moon, moon.to_sun);
   return moon.radiance_per_irradiance * shared::LommelSeeliger(mu_lit, mu_seen) +
          moon.earthshine_per_irradiance;
 }

@@ -28,6 +28,7 @@
 #include <optional>
 #include <string_view>
 
+#include "atmosphere/astronomy/light_direction.h"
 #include "atmosphere/refraction/refraction.h"
 #include "atmosphere/time_place/geodesy.h"
 #include "atmosphere/time_place/time.h"
@@ -77,6 +78,9 @@ struct MoonPosition {
 [[nodiscard]] MoonPosition ApparentMoonAt(const GeodeticPosition& place, const UtcInstant& instant,
                                           const BendingAir& air);
 
+/// Returns the direction of an apparent moon in the frame east, north, up of the place.
+[[nodiscard]] LightDirection DirectionOf(const MoonPosition& apparent);
+
 /// Returns the next instant after `after` at which the upper limb, refracted, appears over the sea
 /// horizon seen from the place's height (dip), or vanishes below it; std::nullopt if this does not
 /// happen within 30 days: every month has days of moonrise everywhere except within half a degree
@@ -102,19 +106,18 @@ enum class MoonEvent { kMoonrise, kMoonset, kMoonTransit };
 
 /// The disk of the moon, with directions in any one frame.
 struct MoonDisk {
-  glm::dvec3 to_moon;  // unit vector to the disk's centre
-  glm::dvec3 to_sun;   // unit vector from the moon
-  double radius_rad;   // angular radius
+  LightDirection direction;  // of the disk's centre
+  glm::dvec3 to_sun;         // unit vector from the moon
+  double radius_rad;         // angular radius
   double
       radiance_per_irradiance;  // [1/sr], scales LommelSeeliger; per solar irradiance at the earth
   double earthshine_per_irradiance = 0.0;  // [1/sr], uniform over the whole disk
-  glm::dvec3 to_moon_for_air{0.0};         // unit vector of straight rays lighting the air (sun.h)
 };
 
 /// Returns the disk of the moon at 550 nm. For phase angles over 150 degrees, which were never
 /// measured, points of the disk are as bright as at 150.
 /// @param earth_sun_au  distance of the place from the sun, whose irradiance there is the unit.
-[[nodiscard]] MoonDisk MoonDiskOf(const MoonPosition& moon, const glm::dvec3& to_moon,
+[[nodiscard]] MoonDisk MoonDiskOf(const MoonPosition& moon, const LightDirection& direction,
                                   const glm::dvec3& to_sun, double earth_sun_au);
 
 /// Returns the radiance [1/sr] outside the air per unit of solar irradiance, in a direction; 0

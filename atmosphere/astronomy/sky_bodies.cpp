@@ -227,11 +227,7 @@ double SkyBodies::CoveredLight() const {
 MoonDisk SkyBodies::ApparentMoonDisk(const BendingAir& air) const {
   const MoonPosition seen = Refracted(moon, place.height_m, air);
   const LocalFrame frame(kWgs84, place);
-  MoonDisk disk = MoonDiskOf(seen, DirectionFromAngles(seen.elevation_rad, seen.azimuth_rad).xyz,
-                             frame.EnuFromEcef(seen.to_sun).xyz, sun.distance_au);
-  disk.to_moon_for_air =
-      DirectionFromAngles(seen.elevation_rad - seen.lower_for_air_rad, seen.azimuth_rad).xyz;
-  return disk;
+  return MoonDiskOf(seen, DirectionOf(seen), frame.EnuFromEcef(seen.to_sun).xyz, sun.distance_au);
 }
 
 SkyBodies SkyBodiesAt(const GeodeticPosition& place, const UtcInstant& instant) {

@@ -53,6 +53,12 @@ Vector<Enu> DirectionFromAngles(double elevation_rad, double azimuth_rad) {
            std::sin(elevation_rad)}};
 }
 
+LightDirection DirectionOf(const SunPosition& apparent) {
+  const SunPosition for_air = SunForAir(apparent);
+  return {DirectionFromAngles(apparent.elevation_rad, apparent.azimuth_rad).xyz,
+          DirectionFromAngles(for_air.elevation_rad, for_air.azimuth_rad).xyz};
+}
+
 VisibleDisk DiskOverHorizon(double mu_s, double horizon_mu, double radius_rad) {
   const double elevation = std::asin(std::clamp(mu_s, -1.0, 1.0));
   const double horizon = std::asin(std::clamp(horizon_mu, -1.0, 1.0));

@@ -6,6 +6,7 @@
 #include <optional>
 #include <string_view>
 
+#include "atmosphere/astronomy/light_direction.h"
 #include "atmosphere/refraction/refraction.h"
 #include "atmosphere/shared_glsl/shared_math.h"
 #include "atmosphere/time_place/geodesy.h"
@@ -58,6 +59,9 @@ struct SunPosition {
 
 /// Returns the unit vector of an elevation and azimuth.
 [[nodiscard]] Vector<Enu> DirectionFromAngles(double elevation_rad, double azimuth_rad);
+
+/// Returns the direction of an apparent sun in the frame east, north, up of the place.
+[[nodiscard]] LightDirection DirectionOf(const SunPosition& apparent);
 
 /// Events of the sun on a local solar day.
 enum class SunEvent {

@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: MIT
-// This header describes the lighting of a scene at one time: direction, irradiance and visible part
-// of the sun, the moon, eclipses, the seasonal cover of the ground, and the night sky. All lights
-// that are distant enough to be directions have one form (DistantLight). Tables, terrain and fog
-// serve each of them alike, because the radiance of air lit from a direction is linear in the
-// irradiance.
+// This header describes the lighting of a scene at one time: the sun or a single light in its place
+// (DistantLight), the visible moon, eclipses, the seasonal cover of the ground, and the night sky.
 #pragma once
 
 #include <glm/vec3.hpp>
@@ -21,6 +18,7 @@
 #include "atmosphere/time_place/time.h"
 #include "lut/multiple_scattering/multiple_scattering.h"
 #include "renderer/effects/effects.h"
+#include "renderer/illumination/distant_light.h"
 #include "renderer/illumination/night_light.h"
 #include "renderer/illumination/terrain_irradiance.h"
 #include "renderer/layer.h"
@@ -30,30 +28,10 @@
 
 namespace alpenglow::renderer {
 
-/// The distant sources of light.
-enum class LightSource : std::size_t { kSun, kMoon };
-inline constexpr std::size_t kLightSources = 2;
-
-[[nodiscard]] constexpr std::size_t IndexOf(LightSource source) {
-  return static_cast<std::size_t>(source);
-}
-[[nodiscard]] constexpr LightSource OtherThan(LightSource source) {
-  return source == LightSource::kSun ? LightSource::kMoon : LightSource::kSun;
-}
-
 /// Returns the unit direction (east, north, up of the eye) to the moon during a solar eclipse. It
 /// is lifted by the refraction of the sun's centre behind it, because the sun is drawn as a round
 /// disk and the moon's disk must be round too.
 [[nodiscard]] glm::dvec3 ToMoonBefore(const SunPosition& apparent_sun, const SkyBodies& bodies);
-
-/// A light so distant that it shines everywhere from one direction. Where refraction lifts it, it
-/// lights the air from another direction (SunForAir of sun.h).
-struct DistantLight {
-  glm::dvec3 to_light;          // unit, to the visible centre of its disk
-  glm::dvec3 to_light_for_air;  // unit
-  double radius_rad;            // of the disk
-  BandLight irradiance;         // above the air, W m^-2 nm^-1
-};
 
 /// The sun partly covered by the moon at Lighting::moon.
 struct EclipsedSun {
@@ -61,18 +39,15 @@ struct EclipsedSun {
   BandLight whole;  // irradiance without the moon
 };
 
-/// Light in the air and on surfaces for one position of the sun.
+/// Light in the air and on surfaces by one distant light, and what is visible beside it.
 struct Lighting {
-  glm::dvec3 to_sun;          // unit, to where it is visible
-  glm::dvec3 to_sun_for_air;  // unit, from which its straight rays light the air
-  double sun_radius_rad;
-  BandLight irradiance;                         // of the sun above the air, W m^-2 nm^-1
+  DistantLight source;  // the sun, uncovered by the moon; after By(), any single light
   MountainSurface surface;                      // with its seasonal cover
   double sea_s = 0.0;                           // time of the waves, see SeaTime
   std::optional<MoonDisk> moon = std::nullopt;  // visible disk
   BandLight moon_colour = {};                   // reflectance relative to that at 550 nm
   glm::dvec3 moon_turn{0.0};  // axis and angle [rad] of its motion while the shutter is open
-  std::optional<EclipsedSun> eclipse = std::nullopt;  // `irradiance` is then the uncovered part
+  std::optional<EclipsedSun> eclipse = std::nullopt;  // `source` is then the uncovered part
   /// The moon, if its light may be visible beside the sun's.
   std::optional<DistantLight> moonlight = std::nullopt;
   /// The night sky, if it may be visible beside the sun; null: it is not visible.
@@ -84,19 +59,17 @@ struct Lighting {
   std::shared_ptr<const TerrainIrradiance> on_terrain = nullptr;
 
   /// Returns the irradiance of the sun above the air without the moon in front of it.
-  [[nodiscard]] const BandLight& WholeSun() const { return eclipse ? eclipse->whole : irradiance; }
+  [[nodiscard]] const BandLight& WholeSun() const { return eclipse ? eclipse->whole : source.irradiance;
+  }
   /// Returns this lighting with the moon in front of the sun. Each band keeps the uncovered
   /// fraction, with limb darkening, but at least that of the corona, a millionth of the whole sun
   /// (Cox 2000, Allen's Astrophysical Quantities, 14.8: 0.6 to 1.5 over the solar cycle). In
   /// totality there is no other light: scattering from sunlit air outside the shadow is neglected.
   [[nodiscard]] Lighting EclipsedBy(const EclipsedDisk& disk,
                                     const std::vector<double>& wavelengths_nm) const;
-  [[nodiscard]] DistantLight Sun() const {
-    return {to_sun, to_sun_for_air, sun_radius_rad, irradiance};
-  }
   /// Returns sun and moon, each if it may be visible.
   [[nodiscard]] std::vector<DistantLight> Lights() const;
-  /// Returns the same scene with a single light in place of the sun.
+  /// Returns the same scene with a single light as its source.
   [[nodiscard]] Lighting By(const DistantLight& light) const;
 };
 
@@ -121,17 +94,5 @@ struct Lighting {
 /// @param sun  irradiance of the sun there.
 [[nodiscard]] DistantLight MoonlightOf(const MoonDisk& disk, const SkyBodies& bodies,
                                        const BandLight& colour, const BandLight& sun);
-
-/// The sun at a point, without shadows of terrain.
-struct LocalSun {
-  double altitude_m;
-  glm::dvec3 up;
-  double mu_s_for_air;      // of DistantLight::to_light_for_air: for skylight
-  double visible_fraction;  // of the disk above the planet's horizon
-  double mu_s_effective;    // of the visible part
-};
-
-[[nodiscard]] LocalSun LocalSunAt(const SceneGeometry& geometry, const glm::dvec3& point,
-                                  const DistantLight& sun);
 
 }  // namespace alpenglow::renderer

@@ -30,10 +30,10 @@ Moments OverLowerHalf(int degree) {
 }  // namespace
 
 SkyMoments::SkyMoments(const MultipleScattering& multiple_scattering, const glm::dvec3& up,
-                       const glm::dvec3& to_sun, std::vector<double> altitudes_m)
+                       const glm::dvec3& to_light, std::vector<double> altitudes_m)
     : up_(up),
-      to_sun_(to_sun),
-      mu_s_(std::clamp(glm::dot(up, to_sun), -1.0, 1.0)),
+      to_light_(to_light),
+      mu_s_(std::clamp(glm::dot(up, to_light), -1.0, 1.0)),
       degree_(multiple_scattering.options().degree),
       bands_(multiple_scattering.bands()),
       altitudes_m_(std::move(altitudes_m)) {
@@ -60,7 +60,7 @@ SkyMoments SkyMoments::WithoutGround(const BandLight& radiance) const {
 std::vector<BandLight> SkyMoments::Towards(const glm::dvec3& look,
                                            const std::vector<double>& chi) const {
   const auto mu = static_cast<float>(std::clamp(glm::dot(look, up_), -1.0, 1.0));
-  const auto nu = static_cast<float>(std::clamp(glm::dot(look, to_sun_), -1.0, 1.0));
+  const auto nu = static_cast<float>(std::clamp(glm::dot(look, to_light_), -1.0, 1.0));
   Moments factor =
       SphericalHarmonics(degree_, mu, AzimuthCosine(mu, static_cast<float>(mu_s_), nu));
   for (int l = 0; l <= degree_; ++l) {
@@ -186,7 +186,7 @@ Horizons GroundShares(const SurfaceSectors& surface, const Horizons& horizons) {
 
 OccludedSkyIrradiance::OccludedSkyIrradiance(const SingleScattering<float>& air,
                                              const MultipleScattering& multiple_scattering,
-                                             const glm::dvec3& to_sun, const Extent& extent)
+                                             const glm::dvec3& to_light, const Extent& extent)
     : bands_(air.bands()),
       stride_((air.bands() + 3) / 4 * 4),
       lowest_m_(std::max(extent.lowest_m, 0.0)),
@@ -194,7 +194,7 @@ OccludedSkyIrradiance::OccludedSkyIrradiance(const SingleScattering<float>& air,
       level_irradiance_(kLevels * kSuns * stride_, 0.0F),
       integral_(kLevels * level_floats()) {
   const double half = 1e-4 + extent.radius_m / air.medium().planet_radius_m;
-  first_mu_s_ = to_sun.z - half;
+  first_mu_s_ = to_light.z - half;
   mu_s_step_ = 2.0 * half / static_cast<double>(kSuns - 1);
   for (std::size_t i = 0; i < kLevels * kSuns; ++i) {
     const double level = static_cast<double>(i / kSuns) / static_cast<double>(kLevels - 1);
@@ -206,9 +206,9 @@ OccludedSkyIrradiance::OccludedSkyIrradiance(const SingleScattering<float>& air,
   // Compute three skies; the levels between them are interpolated linearly.
   const double middle_m = 0.5 * (lowest_m_ + highest_m_);
   const std::array<std::vector<float>, 3> table{
-      TableAt(air, multiple_scattering, lowest_m_, to_sun),
-      TableAt(air, multiple_scattering, middle_m, to_sun),
-      TableAt(air, multiple_scattering, highest_m_, to_sun)};
+      TableAt(air, multiple_scattering, lowest_m_, to_light),
+      TableAt(air, multiple_scattering, middle_m, to_light),
+      TableAt(air, multiple_scattering, highest_m_, to_light)};
   for (std::size_t level = 0; level < kLevels; ++level) {
     const float at = 2.0F * static_cast<float>(level) / static_cast<float>(kLevels - 1);
     const std::size_t first = at < 1.0F ? 0 : 1;
@@ -223,12 +223,12 @@ OccludedSkyIrradiance::OccludedSkyIrradiance(const SingleScattering<float>& air,
 std::vector<float> OccludedSkyIrradiance::TableAt(const SingleScattering<float>& air,
                                                   const MultipleScattering& multiple_scattering,
                                                   double altitude_m,
-                                                  const glm::dvec3& to_sun) const {
+                                                  const glm::dvec3& to_light) const {
   constexpr std::size_t kParts = 6;  // per sector
   constexpr std::array<double, 2> kGauss{0.2113248654051871, 0.7886751345948129};
-  const double mu_s = std::clamp(to_sun.z, -1.0, 1.0);
+  const double mu_s = std::clamp(to_light.z, -1.0, 1.0);
   const SkyView view(air, multiple_scattering, altitude_m, mu_s);
-  const double sun_azimuth = std::atan2(to_sun.y, to_sun.x);
+  const double sun_azimuth = std::atan2(to_light.y, to_light.x);
   std::vector<double> azimuths;
   for (std::size_t i = 0; i < kHorizonAzimuths; ++i) {
     for (std::size_t part = 0; part < kParts; ++part) {

@@ -38,9 +38,9 @@ namespace alpenglow::renderer {
 /// irradiance. Immutable.
 class SkyMoments {
  public:
-  /// @param up, to_sun  unit vectors. @param altitudes_m  ascending.
+  /// @param up, to_light  unit vectors. @param altitudes_m  ascending.
   SkyMoments(const MultipleScattering& multiple_scattering, const glm::dvec3& up,
-             const glm::dvec3& to_sun, std::vector<double> altitudes_m);
+             const glm::dvec3& to_light, std::vector<double> altitudes_m);
 
   [[nodiscard]] double mu_s() const { return mu_s_; }
 
@@ -57,7 +57,7 @@ class SkyMoments {
   [[nodiscard]] BandLight At(const std::vector<BandLight>& of_altitudes, double altitude_m) const;
 
  private:
-  glm::dvec3 up_, to_sun_;
+  glm::dvec3 up_, to_light_;
   double mu_s_;
   int degree_;
   std::size_t bands_;
@@ -93,9 +93,9 @@ class OccludedSkyIrradiance {
     double lowest_m, highest_m;  // altitudes
     double radius_m;             // greatest distance from the frame's origin
   };
-  /// @param to_sun  unit, in the frame of the horizons.
+  /// @param to_light  unit, in the frame of the horizons.
   OccludedSkyIrradiance(const SingleScattering<float>& air,
-                        const MultipleScattering& multiple_scattering, const glm::dvec3& to_sun,
+                        const MultipleScattering& multiple_scattering, const glm::dvec3& to_light,
                         const Extent& extent);
 
   /// Returns the irradiance per unit solar irradiance [1] from directions above the horizon, which
@@ -132,7 +132,7 @@ class OccludedSkyIrradiance {
  private:
   [[nodiscard]] std::vector<float> TableAt(const SingleScattering<float>& air,
                                            const MultipleScattering& multiple_scattering,
-                                           double altitude_m, const glm::dvec3& to_sun) const;
+                                           double altitude_m, const glm::dvec3& to_light) const;
   /// Returns the irradiance of a level plane.
   [[nodiscard]] Bands<float> LevelIrradiance(double altitude_m, double mu_s) const;
   void KeepRadiances();

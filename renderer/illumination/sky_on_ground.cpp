@@ -140,13 +140,13 @@ double GlossMirror::HorizonAt(double share) {
 
 GlossMirror GlossMirror::Of(const OccludedSkyIrradiance& sky,
                             const MultipleScattering& multiple_scattering, const Surfaces& surfaces,
-                            const glm::dvec3& to_sun, double lower_altitude_m,
+                            const glm::dvec3& to_light, double lower_altitude_m,
                             double higher_altitude_m) {
-  const double mu_s = std::clamp(to_sun.z, -1.0, 1.0);
+  const double mu_s = std::clamp(to_light.z, -1.0, 1.0);
   const BandLight level = multiple_scattering.SkyIrradiance(0.0, mu_s);
-  const double flat = std::hypot(to_sun.x, to_sun.y);
+  const double flat = std::hypot(to_light.x, to_light.y);
   const glm::dvec3 sunward =
-      flat > 1e-9 ? glm::dvec3(to_sun.x, to_sun.y, 0.0) / flat : glm::dvec3(1.0, 0.0, 0.0);
+      flat > 1e-9 ? glm::dvec3(to_light.x, to_light.y, 0.0) / flat : glm::dvec3(1.0, 0.0, 0.0);
   MirrorTable table(sky, level, mu_s, {lower_altitude_m, higher_altitude_m});
   GlossMirror mirror{{}, {}, lower_altitude_m, higher_altitude_m};
   if (surfaces.water != nullptr) mirror.waves = table.Of(WaveRays(*surfaces.water), sunward);

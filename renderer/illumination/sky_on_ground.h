@@ -84,7 +84,7 @@ struct GlossMirror {
   /// @param sky  sky of the same sun over these altitudes.
   [[nodiscard]] static GlossMirror Of(const OccludedSkyIrradiance& sky,
                                       const MultipleScattering& multiple_scattering,
-                                      const Surfaces& surfaces, const glm::dvec3& to_sun,
+                                      const Surfaces& surfaces, const glm::dvec3& to_light,
                                       double lower_altitude_m, double higher_altitude_m);
 };
 

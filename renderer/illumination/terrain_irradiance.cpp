@@ -329,9 +329,9 @@ TerrainHorizons::TerrainHorizons(const HeightRaster& heights, const TriangleMesh
 TerrainIrradiance::TerrainIrradiance(std::shared_ptr<const TerrainHorizons> horizons,
                                      const SingleScattering<float>& air,
                                      const MultipleScattering& multiple_scattering,
-                                     const glm::dvec3& to_sun)
+                                     const glm::dvec3& to_light)
     : horizons_(std::move(horizons)),
-      sky_(air, multiple_scattering, to_sun,
+      sky_(air, multiple_scattering, to_light,
            horizons_ ? horizons_->extent() : OccludedSkyIrradiance::Extent{0.0, 1.0, 5e5}) {}
 
 void TerrainIrradiance::AddSlopes(const Medium& medium,

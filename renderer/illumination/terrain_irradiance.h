@@ -175,7 +175,7 @@ class TerrainIrradiance {
   /// @param horizons  null: a plain.
   TerrainIrradiance(std::shared_ptr<const TerrainHorizons> horizons,
                     const SingleScattering<float>& air,
-                    const MultipleScattering& multiple_scattering, const glm::dvec3& to_sun);
+                    const MultipleScattering& multiple_scattering, const glm::dvec3& to_light);
 
   [[nodiscard]] const OccludedSkyIrradiance& sky() const { return sky_; }
   [[nodiscard]] const TerrainHorizons* horizons() const { return horizons_.get(); }

@@ -107,14 +107,14 @@ std::vector<double> AltitudesOver(double bottom_m, const FogLayer& layer) {
 
 }  // namespace
 
-FogLight::FogLight(const LocalMedium& fog, const MultipleScattering& diffuse, const FogSun& sun,
-                   double bottom_m)
+FogLight::FogLight(const LocalMedium& fog, const MultipleScattering& diffuse,
+                   const LightDirection& light, const BandLight& in_air, double bottom_m)
     : fog_(fog),
-      to_sun_(sun.to_light),
+      to_light_(light.seen),
       chi_(LegendreCoefficients(fog.optics.phase, diffuse.options().degree)),
       extinction_per_m_(fog.optics.extinction_per_m[0]),
       depth_(extinction_per_m_ * fog.fog()->ColumnAbove(bottom_m)),
-      sky_(diffuse, {0.0, 0.0, 1.0}, sun.to_light_for_air, AltitudesOver(bottom_m, *fog.fog())),
+      sky_(diffuse, {0.0, 0.0, 1.0}, light.for_air, AltitudesOver(bottom_m, *fog.fog())),
       ground_(diffuse.bands()) {
   const double albedo = fog.optics.scattering_per_m[0] / extinction_per_m_;
   peak_scale_ = 1.0 - albedo * ForwardPeak({albedo, chi_[1], chi_[2]});
@@ -124,15 +124,15 @@ FogLight::FogLight(const LocalMedium& fog, const MultipleScattering& diffuse, co
   const std::vector<double>& ground_albedo = diffuse.medium().ground_albedo;
   for (std::size_t band = 0; band < ground_.count; ++band) {
     ground_[band] = static_cast<float>(ground_albedo[band] / kPi) *
-                    (static_cast<float>(std::max(to_sun_.z, 0.0)) * sun.in_air[band] + sky[band]);
+                    (static_cast<float>(std::max(to_light_.z, 0.0)) * in_air[band] + sky[band]);
   }
   sky_ = sky_.WithoutGround(ground_);
   // This is the cosine for which the plane layer is as deep towards the sun as the layer over a
   // round planet.
   const FogLayer& layer = *fog.fog();
   const double slant =
-      layer.ColumnToSpace({0.0, 0.0, bottom_m}, to_sun_) / layer.ColumnAbove(bottom_m);
-  Solve(albedo, std::clamp(1.0 / slant, 1e-3, 1.0), sun.in_air, sky, ground_albedo);
+      layer.ColumnToSpace({0.0, 0.0, bottom_m}, to_light_) / layer.ColumnAbove(bottom_m);
+  Solve(albedo, std::clamp(1.0 / slant, 1e-3, 1.0), in_air, sky, ground_albedo);
 }
 
 void FogLight::Solve(double albedo, double mu0, const BandLight& sun, const BandLight& sky,
@@ -175,7 +175,7 @@ BandLight FogLight::At(const std::vector<BandLight>& nodes, const Place& place) 
 }
 
 FogLight::Look FogLight::LookAlong(const glm::dvec3& look) const {
-  const double cosine = glm::dot(look, to_sun_);
+  const double cosine = glm::dot(look, to_light_);
   return {Phase(fog_.optics.phase, cosine), Phase(broad_, cosine), look.z,
           sky_.Towards(look, chi_)};
 }
@@ -244,7 +244,7 @@ class FogMarch {
         radius_m_(air.medium().planet_radius_m),
         eye_(0.0, 0.0, std::max(view.altitude_m, 0.0)),
         light_(fog, air.multiple_scattering(),
-               {view.to_sun, view.to_sun_for_air, SunInAir(Head(bottom_m))}, bottom_m) {}
+               view.light, SunInAir(Head(bottom_m)), bottom_m) {}
 
   [[nodiscard]] const FogLight& light() const { return light_; }
 
@@ -295,9 +295,9 @@ class FogMarch {
   [[nodiscard]] BandLight SunInAir(const glm::dvec3& point) const {
     const double altitude = std::max(AltitudeOverSphere(point, radius_m_), 0.0);
     const glm::dvec3 up = glm::normalize(point + glm::dvec3(0.0, 0.0, radius_m_));
-    const double mu_s = std::clamp(glm::dot(up, view_.to_sun), -1.0, 1.0);
+    const double mu_s = std::clamp(glm::dot(up, view_.light.seen), -1.0, 1.0);
     const VisibleDisk disk =
-        DiskOverHorizon(mu_s, shared::HorizonCosine(altitude, radius_m_), view_.sun_radius_rad);
+        DiskOverHorizon(mu_s, shared::HorizonCosine(altitude, radius_m_), view_.radius_rad);
     if (disk.fraction <= 0.0) return BandLight(air_.bands());
     return static_cast<float>(disk.fraction) * air_.BeamLeft(altitude, disk.mu_s_effective);
   }
@@ -347,7 +347,7 @@ class FogMarch {
     const glm::dvec3 point = eye_ + step.middle_m * direction;
     const double altitude = AltitudeOverSphere(point, radius_m_);
     const double slant =
-        fog_.optics.extinction_per_m[0] * layer_.ColumnToSpace(point, view_.to_sun);
+        fog_.optics.extinction_per_m[0] * layer_.ColumnToSpace(point, view_.light.seen);
     const BandLight sun = SunInAir(point);
     BandLight all(sun.count), none(sun.count);
     std::fill_n(all.value.begin(), all.count, 1.0F);
@@ -382,7 +382,7 @@ double FogElevationSine(double unit) {
 
 void AddRays(const FogMarch& march, FogMap& map) {
   const FogMapSize& size = map.size;
-  const double sun_azimuth = std::atan2(map.view.to_sun.y, map.view.to_sun.x);
+  const double sun_azimuth = std::atan2(map.view.light.seen.y, map.view.light.seen.x);
   const auto at = [&](int quantity, int depth, int azimuth, int elevation) {
     return static_cast<std::size_t>(
         ((quantity * size.depths + depth) * size.azimuths + azimuth) * size.elevations + elevation);
@@ -450,7 +450,7 @@ bool Serves(const FogView& made, const FogView& wanted, double scale_height_m) {
   constexpr double kSun_rad = 0.1 * 3.14159265358979 / 180.0;
   const double step_m = 0.1 * std::min(scale_height_m, 1000.0);
   return std::abs(made.altitude_m - wanted.altitude_m) <= step_m &&
-         glm::length(made.to_sun - wanted.to_sun) <= kSun_rad;
+         glm::length(made.light.seen - wanted.light.seen) <= kSun_rad;
 }
 
 }  // namespace alpenglow::renderer

@@ -102,20 +102,15 @@ class EddingtonSlab {
   double falling_ = 0.0, rising_ = 0.0;  // factors of e^(-k tau) and e^(-k (depth - tau))
 };
 
-/// The sun above fog; directions are those of DistantLight (lighting.h).
-struct FogSun {
-  glm::dvec3 to_light, to_light_for_air;  // unit
-  BandLight in_air;  // transmittance of the air at the fog for sunlight above the horizon
-};
-
 /// Light scattered by fog for one position of the sun, per unit solar irradiance. Immutable. Refers
 /// to the fog.
 class FogLight {
  public:
   /// @param fog  a LocalMedium that is fog.
+  /// @param in_air  transmittance of the air at the fog for the light, while it is above the horizon.
   /// @param bottom_m  altitude of the ground below it.
-  FogLight(const LocalMedium& fog, const MultipleScattering& diffuse, const FogSun& sun,
-           double bottom_m);
+  FogLight(const LocalMedium& fog, const MultipleScattering& diffuse, const LightDirection& light,
+           const BandLight& in_air, double bottom_m);
 
   /// Precomputed values of a ray through the fog.
   struct Look {
@@ -163,7 +158,7 @@ class FogLight {
              const std::vector<double>& ground_albedo);
 
   const LocalMedium& fog_;
-  glm::dvec3 to_sun_;
+  glm::dvec3 to_light_;
   std::vector<double> chi_;
   PhaseFunction broad_;
   double extinction_per_m_, depth_;
@@ -186,13 +181,12 @@ struct FogMapSize {
 inline constexpr FogMapSize kCoarseFog{48, 12, 8};
 inline constexpr FogMapSize kFineFog{192, 24, 16};
 
-/// Sun and eye in the frame east, north, up at the eye, on the sphere of the air's medium.
+/// Eye of a map and the light over it, the sun or the moon, in the frame east, north, up at the eye,
+/// on the sphere of the air's medium.
 struct FogView {
   double altitude_m = 0.0;
-  glm::dvec3 to_sun{0.0, 0.0, 1.0};  // unit, to the sun as seen
-  glm::dvec3 to_sun_for_air{0.0, 0.0,
-                            1.0};  // unit, from where it illuminates the sky (SunForAir of sun.h)
-  double sun_radius_rad = 0.0046;
+  LightDirection light = Unrefracted({0.0, 0.0, 1.0});
+  double radius_rad = 0.0046;  // of its disk
 };
 
 /// Table of the light in fog. It is immutable and needs no GPU.

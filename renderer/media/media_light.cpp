@@ -91,7 +91,7 @@ struct MediaLight::State {
   const SceneGeometry& geometry;
   SolvedAir air;
   const LampLight* lamps;
-  DistantLight sun;
+  DistantLight sun;  // or the moon
   std::vector<LitVolume> volumes;
   std::optional<FogLight> fog;
 
@@ -106,7 +106,7 @@ struct MediaLight::State {
   [[nodiscard]] Bands<double> VolumesToSun(const glm::dvec3& point) const;
   /// Returns the optical depth of the fog between a point and the sun.
   [[nodiscard]] double FogToSun(const glm::dvec3& point) const {
-    return media.fog()->optics.extinction_per_m[0] * fog_layer().ColumnToSpace(point, sun.to_light);
+    return media.fog()->optics.extinction_per_m[0] * fog_layer().ColumnToSpace(point, sun.direction.seen);
   }
 
   [[nodiscard]] LitVolume Light(const LocalMedium& medium) const;
@@ -119,7 +119,7 @@ struct MediaLight::State {
 
 MediaLight::State::State(LocalMedia of, const SceneGeometry& over, const SolvedAir& in,
                          const Lighting& light, const LampLight* with)
-    : media(std::move(of)), geometry(over), air(in), lamps(with), sun(light.Sun()) {
+    : media(std::move(of)), geometry(over), air(in), lamps(with), sun(light.source) {
   for (const LocalMedium& medium : media.all()) {
     if (medium.volume() != nullptr) volumes.push_back(Light(medium));
   }
@@ -128,11 +128,11 @@ MediaLight::State::State(LocalMedia of, const SceneGeometry& over, const SolvedA
   const double bottom = media.fog_bottom_m();
   const glm::dvec3 head(0.0, 0.0, bottom + (std::isinf(scale) ? 0.0 : scale));
   fog.emplace(*media.fog(), air.multiple_scattering(),
-              FogSun{sun.to_light, sun.to_light_for_air, SunInAir(head)}, bottom);
+              sun.direction, SunInAir(head), bottom);
 }
 
 BandLight MediaLight::State::SunInAir(const glm::dvec3& point) const {
-  const LocalSun here = LocalSunAt(geometry, point, sun);
+  const LocalLight here = LocalLightAt(geometry, point, sun);
   if (here.visible_fraction <= 0.0) return BandLight(bands());
   return static_cast<float>(here.visible_fraction) *
          air.BeamLeft(here.altitude_m, here.mu_s_effective);
@@ -143,7 +143,7 @@ LitVolume MediaLight::State::Light(const LocalMedium& medium) const {
   const double low = geometry.AltitudeOf(volume.FrameFromUnit({0.5, 0.5, 0.0}));
   const double high = geometry.AltitudeOf(volume.FrameFromUnit({0.5, 0.5, 1.0}));
   const SkyMoments sky(air.multiple_scattering(), geometry.UpAt(volume.Middle()),
-                       sun.to_light_for_air, {low, 0.5 * (low + high), high});
+                       sun.direction.for_air, {low, 0.5 * (low + high), high});
   LitVolume lit{
       LegendreCoefficients(medium.optics.phase, air.multiple_scattering().options().degree), sky,
       std::nullopt, SkyLeft(volume, sky), LampsOf(volume)};
@@ -157,7 +157,7 @@ VolumeGrid MediaLight::State::SunColumns(const LocalVolume& volume) const {
   for (int& side : size) side = std::min(side, kMost);
   const auto column = [&](const glm::dvec3& unit) {
     Bands<double> of_all(1);
-    of_all[0] = volume.Column(volume.FrameFromUnit(unit), sun.to_light, kEndless);
+    of_all[0] = volume.Column(volume.FrameFromUnit(unit), sun.direction.seen, kEndless);
     return of_all;
   };
   return std::move(Tabulated(size, 1, column).front());
@@ -250,7 +250,7 @@ Bands<double> MediaLight::State::VolumesToSun(const glm::dvec3& point) const {
     const bool in_box = std::max({std::abs(off.x), std::abs(off.y), std::abs(off.z)}) <= 0.5;
     AddDepth(media.all()[m].optics,
              in_box && volumes[m].sun_column ? volumes[m].sun_column->At(off + 0.5)
-                                             : volume.Column(point, sun.to_light, kEndless),
+                                             : volume.Column(point, sun.direction.seen, kEndless),
              depth);
   }
   return depth;
@@ -339,7 +339,7 @@ class Sources {
   Sources(const MediaLight::State& light, const glm::dvec3& origin, const glm::dvec3& direction,
           const SunlitPath* sunlit)
       : light_(light), direction_(direction), air_(light, origin, direction), sunlit_(sunlit) {
-    const double cosine = glm::dot(direction, light.sun.to_light);
+    const double cosine = glm::dot(direction, light.sun.direction.seen);
     for (std::size_t m = 0; m < light.volumes.size(); ++m) {
       phase_.push_back(Phase(light.media.all()[m].optics.phase, cosine));
       sky_.push_back(light.volumes[m].sky.Towards(direction, light.volumes[m].chi));

@@ -176,8 +176,8 @@ std::shared_ptr<const RefractedViewRays> RefractedViewRaysOf(const FrameContext&
            in_picture(to_disk, 2.0 * radius_rad);
   };
   const Lighting& light = frame.light();
-  const bool may_see_sun = may_see(light.to_sun, light.sun_radius_rad);
-  const bool may_see_moon = light.moon && may_see(light.moon->to_moon, light.moon->radius_rad);
+  const bool may_see_sun = may_see(light.source.direction.seen, light.source.radius_rad);
+  const bool may_see_moon = light.moon && may_see(light.moon->direction.seen, light.moon->radius_rad);
   const bool may_see_sea =
       !geometry.HasTerrain() && MayMoveSea(frame.limb(), seen, geometric_rad, half_pixel);
   const bool moves_terrain = geometry.HasTerrain() && MostLift(frame, height_m) > half_pixel;
@@ -193,8 +193,8 @@ std::shared_ptr<const RefractedViewRays> RefractedViewRaysOf(const FrameContext&
     return ChangeOfDisk(bent->view, Elevation(to_disk, up), radius_rad,
                         medium.wavelengths_nm.size()) > half_pixel;
   };
-  const bool moves_disk = (may_see_sun && moves(light.to_sun, light.sun_radius_rad)) ||
-                          (may_see_moon && moves(light.moon->to_moon, light.moon->radius_rad));
+  const bool moves_disk = (may_see_sun && moves(light.source.direction.seen, light.source.radius_rad)) ||
+                          (may_see_moon && moves(light.moon->direction.seen, light.moon->radius_rad));
   const double horizon_rad = bent->view.horizon_rad();
   const bool moves_sea = may_see_sea && (seen.highest_rad > geometric_rad
                                              ? horizon_rad - geometric_rad
@@ -309,13 +309,13 @@ FrameContext::FrameContext(const PreparedScene& scene, const CameraSample& camer
   const Observer observer = ObserverOf(scene, camera_sample);
   Lighting sun = LightingAt(scene, observer);
   sun.effects = settings.effects;
-  BandLight by_sun(sun.irradiance.count);
+  BandLight by_sun(sun.source.irradiance.count);
   std::fill_n(by_sun.value.begin(), by_sun.count, 1.0F);
   lights_.push_back({std::move(sun), by_sun, std::make_shared<const TerrainSunlight>(), nullptr});
   if (Has(Effect::kRefraction)) refracted_ = RefractedViewRaysOf(*this, observer);
   if (Has(Effect::kShafts) && light().shows) {
     Prepare(settings.progress, "shadows");
-    const auto made = scene.sunlight().At(light().to_sun, light().sun_radius_rad);
+    const auto made = scene.sunlight().At(light().source.direction.seen, light().source.radius_rad);
     lights_.front().shadows = made.sunlight;
     shadows_s_ = made.made_in_s;
   }
@@ -359,12 +359,12 @@ void FrameContext::AddSmallDisks() {
     return shader.Trace(ray).kind == HitKind::kSky;
   };
   const auto small_sun =
-      made({light().to_sun, kRefracted * light().sun_radius_rad, glm::dvec3(0.0),
+      made({light().source.direction.seen, kRefracted * light().source.radius_rad, glm::dvec3(0.0),
             [&](const glm::dvec3& from) { return shader.SunFrom(from); }, is_open});
   std::shared_ptr<const SmallDisk> small_moon;
   if (light().moon)
     small_moon =
-        made({light().moon->to_moon, kRefracted * light().moon->radius_rad, light().moon_turn,
+        made({light().moon->direction.seen, kRefracted * light().moon->radius_rad, light().moon_turn,
               [&](const glm::dvec3& from) { return shader.MoonFrom(from); }, is_open});
   sky_lights_.small_sun = small_sun;
   sky_lights_.small_moon = small_moon;
@@ -373,12 +373,12 @@ void FrameContext::AddSmallDisks() {
 void FrameContext::LightNight() {
   if (Has(Effect::kNightSky)) sky_lights_.night = light().night;
   if (!Has(Effect::kMoonlight) || !light().moonlight) return;
-  FrameLight moon{light().By(*light().moonlight), BandLight(light().irradiance.count),
+  FrameLight moon{light().By(*light().moonlight), BandLight(light().source.irradiance.count),
                   std::make_shared<const TerrainSunlight>(), nullptr};
   for (std::size_t band = 0; band < moon.by_sun.count; ++band)
-    moon.by_sun[band] = moon.light.irradiance[band] / light().irradiance[band];
+    moon.by_sun[band] = moon.light.source.irradiance[band] / light().source.irradiance[band];
   if (Has(Effect::kShafts))
-    moon.shadows = scene_->moonlight().At(moon.light.to_sun, moon.light.sun_radius_rad).sunlight;
+    moon.shadows = scene_->moonlight().At(moon.light.source.direction.seen, moon.light.source.radius_rad).sunlight;
   lights_.push_back(std::move(moon));
 }
 
@@ -389,7 +389,7 @@ void FrameContext::LightMedia() {
   const bool has_volumes = Has(Effect::kVolumes) && scene_->media().HasVolumes();
   const bool is_lit = Has(Effect::kFogGlow) &&
                       (has_volumes || lights_.size() > 1 ||
-                       IlluminanceBy(*scene_, light().Sun(), camera().eye(), light()) > 1e-6);
+                       IlluminanceBy(*scene_, light().source, camera().eye(), light()) > 1e-6);
   LocalMedia here = scene_->media().Only(has_volumes, is_lit);
   for (FrameLight& source : lights_) source.media = nullptr;
   if (here.IsNothing()) return;
@@ -426,7 +426,7 @@ void FrameContext::AddStars(const Observer& observer) {
                                         OpenFor(scene_->scene().camera.shutter_s, pixel_rad))) {
     star.direction = frame_from_enu * star.direction;
     for (glm::dvec3& direction : star.way) direction = frame_from_enu * direction;
-    if (glm::length(star.direction - moon.to_moon) >= moon.radius_rad)
+    if (glm::length(star.direction - moon.direction.seen) >= moon.radius_rad)
       lights.push_back(std::move(star));
   }
   if (lights.empty()) return;

@@ -12,16 +12,17 @@
 namespace alpenglow::renderer {
 namespace {
 
-/// Returns a direction to a point of the sun's disk, drawn from the limb-darkened distribution of
+/// Returns a direction to a point of the light's disk, drawn from the limb-darkened distribution of
 /// its light.
-glm::dvec3 TowardsDisk(const Lighting& light, std::array<double, 2> sample) {
-  glm::dvec3 across = glm::cross(light.to_sun, glm::dvec3(0.3, -0.5, 0.8));
-  if (glm::dot(across, across) < 1e-6) across = glm::cross(light.to_sun, glm::dvec3(1.0, 0.0, 0.0));
+glm::dvec3 TowardsDisk(const DistantLight& light, std::array<double, 2> sample) {
+  const glm::dvec3& to_light = light.direction.seen;
+  glm::dvec3 across = glm::cross(to_light, glm::dvec3(0.3, -0.5, 0.8));
+  if (glm::dot(across, across) < 1e-6) across = glm::cross(to_light, glm::dvec3(1.0, 0.0, 0.0));
   const glm::dvec3 side = glm::normalize(across);
-  const double rho = light.sun_radius_rad * CircleOfLight(sample[0]);
+  const double rho = light.radius_rad * CircleOfLight(sample[0]);
   const double angle = 2.0 * kPi * sample[1];
-  return glm::normalize(light.to_sun + rho * (std::cos(angle) * side +
-                                              std::sin(angle) * glm::cross(light.to_sun, side)));
+  return glm::normalize(to_light + rho * (std::cos(angle) * side +
+                                          std::sin(angle) * glm::cross(to_light, side)));
 }
 
 // Returns whether terrain can stand between the ground at the hit and the sky.
@@ -41,12 +42,12 @@ std::shared_ptr<const TerrainIrradiance> GroundLight::OnTerrain(const GroundSour
       light.effects.Has(Effect::kHorizons) ? parts_.horizons.Get() : nullptr;
   if (!horizons && !parts_.material.HasGloss()) return nullptr;
   auto on_terrain = std::make_shared<TerrainIrradiance>(
-      horizons, air_.single_scattering(), air_.multiple_scattering(), light.to_sun_for_air);
+      horizons, air_.single_scattering(), air_.multiple_scattering(), light.source.direction.for_air);
   if (horizons && light.effects.Has(Effect::kBounce)) {
     on_terrain->AddSlopes(
         air_.medium(),
         [&](const SlopePlace& place) { return SentToSlopes(place, from, *on_terrain); },
-        light.to_sun_for_air.z);
+        light.source.direction.for_air.z);
   }
   return on_terrain;
 }
@@ -61,21 +62,21 @@ BandLight GroundLight::SentToSlopes(const SlopePlace& place, const GroundSources
   hit.point = hit.smooth_point =
       place.point + 0.01 * cell_m * place.normal;  // the nodes of the slopes lie inside the surface
   hit.footprint_m = cell_m;
-  const LocalSun sun = LocalSunAt(hit.point, light);
+  const LocalLight sun = LocalLightAt(hit.point, light);
   BandLight irradiance =
       sky.Irradiance({hit.point, hit.normal, sun.up, sun.altitude_m, sun.mu_s_for_air});
-  if (const auto direct = SunIrradiance(hit, from, sun, light.to_sun))
+  if (const auto direct = SunIrradiance(hit, from, sun, light.source.direction.seen))
     irradiance = irradiance + *direct;
   // The albedo for a view at 60 degrees stands for the mean over directions.
   return static_cast<float>(1.0 / kPi) *
          (PatchAt(hit, light, sun.up, 1.0).BodyAlbedo(0.5) * irradiance);
 }
 
-LocalSun GroundLight::LocalSunAt(const glm::dvec3& point, const Lighting& light) const {
-  return renderer::LocalSunAt(parts_.geometry, point, light.Sun());
+LocalLight GroundLight::LocalLightAt(const glm::dvec3& point, const Lighting& light) const {
+  return renderer::LocalLightAt(parts_.geometry, point, light.source);
 }
 
-double GroundLight::LitCosine(const Hit& hit, const Lighting& light, const LocalSun& sun,
+double GroundLight::LitCosine(const Hit& hit, const Lighting& light, const LocalLight& sun,
                               const glm::dvec3& to_disk) const {
   const double cosine = glm::dot(hit.normal, to_disk);
   // Test whether the smooth surface faces the sun. The geometric normal of the triangle does not
@@ -92,9 +93,9 @@ double GroundLight::LitCosine(const Hit& hit, const Lighting& light, const Local
 }
 
 BandLight GroundLight::SkyIrradiance(const Hit& hit, const GroundSources& from,
-                                     const LocalSun& sun) const {
+                                     const LocalLight& sun) const {
   const Lighting& light = from.light;
-  const glm::dvec3 flat_sun = light.to_sun_for_air - sun.mu_s_for_air * sun.up;
+  const glm::dvec3 flat_sun = light.source.direction.for_air - sun.mu_s_for_air * sun.up;
   const double normal_mu = std::clamp(glm::dot(hit.normal, sun.up), -1.0, 1.0);
   const glm::dvec3 flat_normal = hit.normal - normal_mu * sun.up;
   const double lengths = glm::length(flat_sun) * glm::length(flat_normal);
@@ -127,7 +128,7 @@ GroundPatch GroundLight::PatchAt(const Hit& hit, const Lighting& light, const gl
 }
 
 BandLight GroundLight::Mirrored(const GroundPatch& patch, const Hit& hit, const glm::dvec3& to_eye,
-                                const Lighting& light, const LocalSun& sun) const {
+                                const Lighting& light, const LocalLight& sun) const {
   BandLight sum(air_.bands());
   const auto rays = patch.Mirrored(hit.normal, to_eye);
   for (const MirroredRay& ray : rays.All())
@@ -136,14 +137,14 @@ BandLight GroundLight::Mirrored(const GroundPatch& patch, const Hit& hit, const 
 }
 
 BandLight GroundLight::SeenIn(const MirroredRay& ray, const Hit& hit, const Lighting& light,
-                              const LocalSun& sun) const {
+                              const LocalLight& sun) const {
   const SlopePoint at{hit.smooth_point, hit.normal, sun.up, sun.altitude_m, sun.mu_s_for_air};
   return SeesTerrain(hit, light) ? light.on_terrain->Radiance(at, ray.direction, ray.spread)
                                  : light.on_terrain->SkyRadiance(at, ray.direction);
 }
 
 std::optional<BandLight> GroundLight::SunIrradiance(const Hit& hit, const GroundSources& from,
-                                                    const LocalSun& sun,
+                                                    const LocalLight& sun,
                                                     const glm::dvec3& to_disk) const {
   const double cosine = LitCosine(hit, from.light, sun, to_disk);
   if (cosine <= 0.0) return std::nullopt;
@@ -170,9 +171,9 @@ SeenGround GroundLight::SeenFrom(const Hit& hit, const glm::dvec3& to_eye,
 NaturalRadiance GroundLight::Natural(const SeenGround& seen, const GroundSources& from,
                                      std::array<double, 2> disk_sample) const {
   const Lighting& light = from.light;
-  const LocalSun sun = LocalSunAt(seen.hit.point, light);
+  const LocalLight sun = LocalLightAt(seen.hit.point, light);
   NaturalRadiance sent{BandLight(air_.bands())};
-  const glm::dvec3 to_disk = TowardsDisk(light, disk_sample);
+  const glm::dvec3 to_disk = TowardsDisk(light.source, disk_sample);
   if (const auto direct = SunIrradiance(seen.hit, from, sun, to_disk)) {
     sent.radiance = seen.patch.Brdf(AnglesBetween(seen.hit.normal, to_disk, seen.to_eye)) * *direct;
     sent.disk_visibility = static_cast<float>(sun.visible_fraction);
@@ -183,7 +184,7 @@ NaturalRadiance GroundLight::Natural(const SeenGround& seen, const GroundSources
     if (seen.patch.IsGlossy() && light.on_terrain)
       sent.radiance = sent.radiance + Mirrored(seen.patch, seen.hit, seen.to_eye, light, sun);
   }
-  sent.radiance = light.irradiance * sent.radiance;
+  sent.radiance = light.source.irradiance * sent.radiance;
   return sent;
 }
 
@@ -201,7 +202,7 @@ PolarisedLight GroundLight::Polarised(const SeenGround& seen, const GroundSource
   const glm::dvec3& to_eye = seen.to_eye;
   PolarisedLight sum{BandLight(air_.bands()), BandLight(air_.bands())};
   if (!seen.patch.IsWater()) return sum;
-  const LocalSun sun = LocalSunAt(seen.hit.point, light);
+  const LocalLight sun = LocalLightAt(seen.hit.point, light);
   const auto add = [&](const glm::dvec3& to_light, const BandLight& mirrored) {
     const glm::dvec3 across = glm::cross(to_light, to_eye);
     const double sine = glm::length(across);
@@ -211,7 +212,7 @@ PolarisedLight GroundLight::Polarised(const SeenGround& seen, const GroundSource
     sum.q = sum.q + degree * analyser.q * mirrored;
     sum.u = sum.u + degree * analyser.u * mirrored;
   };
-  const glm::dvec3 to_disk = TowardsDisk(light, disk_sample);
+  const glm::dvec3 to_disk = TowardsDisk(light.source, disk_sample);
   if (const auto direct = SunIrradiance(seen.hit, from, sun, to_disk)) {
     const double glitter = seen.patch.Glitter(AnglesBetween(seen.hit.normal, to_disk, to_eye));
     add(to_disk, static_cast<float>(glitter) * *direct);
@@ -222,7 +223,7 @@ PolarisedLight GroundLight::Polarised(const SeenGround& seen, const GroundSource
       add(ray.direction, static_cast<float>(ray.weight) * SeenIn(ray, seen.hit, light, sun));
     }
   }
-  return light.irradiance * sum;
+  return light.source.irradiance * sum;
 }
 
 }  // namespace alpenglow::renderer

@@ -81,20 +81,20 @@ class GroundLight {
                                          const PictureAxes& axes,
                                          std::array<double, 2> disk_sample) const;
 
-  [[nodiscard]] LocalSun LocalSunAt(const glm::dvec3& point, const Lighting& light) const;
+  [[nodiscard]] LocalLight LocalLightAt(const glm::dvec3& point, const Lighting& light) const;
 
  private:
   /// Returns the cosine between the shading normal and the direction to a point of the disk; 0
   /// where terrain or the planet occludes that point.
-  [[nodiscard]] double LitCosine(const Hit& hit, const Lighting& light, const LocalSun& sun,
+  [[nodiscard]] double LitCosine(const Hit& hit, const Lighting& light, const LocalLight& sun,
                                  const glm::dvec3& to_disk) const;
   /// Returns the irradiance of the sun through the air, per unit solar irradiance [1]; no value in
   /// the shade.
   [[nodiscard]] std::optional<BandLight> SunIrradiance(const Hit& hit, const GroundSources& from,
-                                                       const LocalSun& sun,
+                                                       const LocalLight& sun,
                                                        const glm::dvec3& to_disk) const;
   [[nodiscard]] BandLight SkyIrradiance(const Hit& hit, const GroundSources& from,
-                                        const LocalSun& sun) const;
+                                        const LocalLight& sun) const;
   /// Returns the radiance that a slope sends to other slopes, per unit solar irradiance [1/sr].
   [[nodiscard]] BandLight SentToSlopes(const SlopePlace& place, const GroundSources& from,
                                        const TerrainIrradiance& sky) const;
@@ -105,10 +105,10 @@ class GroundLight {
   /// surface, per unit solar irradiance [1/sr].
   [[nodiscard]] BandLight Mirrored(const GroundPatch& patch, const Hit& hit,
                                    const glm::dvec3& to_eye, const Lighting& light,
-                                   const LocalSun& sun) const;
+                                   const LocalLight& sun) const;
   /// Returns the radiance that arrives along a mirrored ray, per unit solar irradiance [1/sr].
   [[nodiscard]] BandLight SeenIn(const MirroredRay& ray, const Hit& hit, const Lighting& light,
-                                 const LocalSun& sun) const;
+                                 const LocalLight& sun) const;
 
   GroundParts parts_;
   SolvedAir air_;

@@ -84,15 +84,15 @@ TerrainIrradiance::OnSlope GroundSky::On(const GroundVertex& vertex) const {
   const glm::dvec3 up = geometry.UpAt(point);
   const SlopePoint at{point, InDoubles(vertex.normal), up,
                       std::max(geometry.AltitudeOf(point), 0.0),
-                      std::clamp(glm::dot(up, light_.to_sun_for_air), -1.0, 1.0)};
+                      std::clamp(glm::dot(up, light_.source.direction.for_air), -1.0, 1.0)};
   return light_.on_terrain->On(at);
 }
 
 LitGround::LitGround(std::shared_ptr<const GroundSite> site, Lighting light,
                      const ShadowHeights::Options& shadow)
     : sky_(std::move(site), std::move(light)), shadow_(OnThisThread([&] {
-        return ShadowHeights(sky_.site().ground().terrain->mesh(), lighting().to_sun,
-                             lighting().sun_radius_rad, shadow);
+        return ShadowHeights(sky_.site().ground().terrain->mesh(), lighting().source.direction.seen,
+                             lighting().source.radius_rad, shadow);
       })) {}
 
 float LitGround::EdgeOver(const GroundVertex& vertex) const {
@@ -184,10 +184,10 @@ struct SharesOfUnoccludedSky {
 };
 SharesOfUnoccludedSky SharesAt(const GroundVertex& vertex, const GroundSky& sky,
                                const SkyIrradianceGradient& open) {
-  const glm::dvec3 normal = InDoubles(vertex.normal), to_sun = sky.lighting().to_sun;
+  const glm::dvec3 normal = InDoubles(vertex.normal), to_light = sky.lighting().source.direction.seen;
   const glm::dvec3 up = sky.site().geometry().UpAt(InDoubles(vertex.position_m));
-  const double flat = std::max(std::hypot(to_sun.x, to_sun.y), 1e-9);
-  const double towards = (normal.x * to_sun.x + normal.y * to_sun.y) / flat;
+  const double flat = std::max(std::hypot(to_light.x, to_light.y), 1e-9);
+  const double towards = (normal.x * to_light.x + normal.y * to_light.y) / flat;
   const std::array<float, 4> on_slope = open.On(glm::dot(normal, up), towards);
   const TerrainIrradiance::OnSlope on = sky.On(vertex);
   return {Over(InFourBands(on.sky + on.slopes), on_slope), Over(InFourBands(on.sky), on_slope)};
@@ -235,8 +235,9 @@ class GroundFollower::Maker {
     const LocalFrame here(site.ground().frame.ellipsoid(), view.eye);
     Lighting light =
         LightingOf(disk, view.now, view.eye, site.medium(), site.material().cover().wetness);
-    for (glm::dvec3* to_sun : {&light.to_sun, &light.to_sun_for_air})
-      *to_sun = site.ground().frame.EnuFromEcef(here.EcefFromEnu(Vector<Enu>{*to_sun})).xyz;
+    LightDirection& direction = light.source.direction;
+    for (glm::dvec3* to_light : {&direction.seen, &direction.for_air})
+      *to_light = site.ground().frame.EnuFromEcef(here.EcefFromEnu(Vector<Enu>{*to_light})).xyz;
     return light;
   }
 
@@ -267,13 +268,13 @@ class GroundFollower::Maker {
                                               : extent.highest_m,
                      lowest_m, std::max(extent.highest_m, lowest_m));
       return GlossMirror::Of(over_land->lighting().on_terrain->sky(), multiple_scattering, surfaces,
-                             over_land->lighting().to_sun_for_air, lowest_m, highest_m);
+                             over_land->lighting().source.direction.for_air, lowest_m, highest_m);
     }
     const SolvedAir here = request.air->OnSphereAt(request.view.eye.latitude_rad);
-    const glm::dvec3 to_sun = Direction(SunForAir(disk));
-    const OccludedSkyIrradiance sky(here.single_scattering(), multiple_scattering, to_sun,
+    const glm::dvec3 to_light = DirectionOf(disk).for_air;
+    const OccludedSkyIrradiance sky(here.single_scattering(), multiple_scattering, to_light,
                                     OccludedSkyIrradiance::Extent{0.0, 1.0, 5e5});
-    return GlossMirror::Of(sky, multiple_scattering, surfaces, to_sun, 0.0, 0.0);
+    return GlossMirror::Of(sky, multiple_scattering, surfaces, to_light, 0.0, 0.0);
   }
 
   std::shared_ptr<const GroundSite> SiteFor(const Request& request) {
@@ -402,7 +403,7 @@ std::optional<GroundFollower::SkyOfSource> GroundFollower::SkyOf(LightSource sou
 std::optional<LightOfVertices> GroundFollower::Light() const {
   if (!made_.lit) return std::nullopt;
   const Vector<Ecef> to_disk =
-      made_.lit->site().ground().frame.EcefFromEnu(Vector<Enu>{made_.lit->lighting().to_sun});
+      made_.lit->site().ground().frame.EcefFromEnu(Vector<Enu>{made_.lit->lighting().source.direction.seen});
   const auto at = [made = made_](const LocalFrame& anchor, std::span<const LandVertex> vertices) {
     std::vector<VertexLight> light;
     light.reserve(vertices.size());

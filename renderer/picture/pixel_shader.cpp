@@ -104,14 +104,14 @@ class AirTo {
         is_lit_(source.light.shows),
         kind_(kind),
         direction_(through.direction),
-        to_sun_(source.light.to_sun_for_air),
-        nu_seen_(std::clamp(glm::dot(direction_, source.light.to_sun), -1.0, 1.0)),
+        to_light_(source.light.source.direction.for_air),
+        nu_seen_(std::clamp(glm::dot(direction_, source.light.source.direction.seen), -1.0, 1.0)),
         up_(frame.limb().up()) {
     const SceneGeometry& geometry = frame.scene().geometry();
     const glm::dvec3& from = frame.camera().eye();
     ray_ = {geometry.AltitudeOf(from), std::clamp(glm::dot(direction_, up_), -1.0, 1.0),
-            std::clamp(glm::dot(to_sun_, up_), -1.0, 1.0),
-            std::clamp(glm::dot(direction_, to_sun_), -1.0, 1.0)};
+            std::clamp(glm::dot(to_light_, up_), -1.0, 1.0),
+            std::clamp(glm::dot(direction_, to_light_), -1.0, 1.0)};
     if (!through.ends_by_itself) {
       ray_.length_m = through.length_m;
       ray_.passes_ground = true;  // terrain may lie below altitude 0
@@ -146,7 +146,7 @@ class AirTo {
                                            : in.aerial.Along(ray, sampling);
     if (air.polarised) {
       air.polarised =
-          InAxes(*air.polarised, direction_, up_, to_sun_, frame_.camera().AxesAt(direction_));
+          InAxes(*air.polarised, direction_, up_, to_light_, frame_.camera().AxesAt(direction_));
     }
     return air;
   }
@@ -156,7 +156,7 @@ class AirTo {
   const TerrainSunlight& sunlight_;
   bool is_lit_;
   HitKind kind_;
-  glm::dvec3 direction_, to_sun_;
+  glm::dvec3 direction_, to_light_;
   double nu_seen_;
   glm::dvec3 up_;
   ViewRay ray_;
@@ -309,8 +309,8 @@ double AngleBetween(const glm::dvec3& a, const glm::dvec3& b) {
 std::optional<double> PlaceOnSun(const glm::dvec3& direction, const glm::dvec3& to_sun,
                                  const glm::dvec3& to_moon, const Lighting& light) {
   // A chord is never longer than its arc.
-  if (glm::length(direction - to_sun) >= light.sun_radius_rad) return std::nullopt;
-  const double rho = AngleBetween(direction, to_sun) / light.sun_radius_rad;
+  if (glm::length(direction - to_sun) >= light.source.radius_rad) return std::nullopt;
+  const double rho = AngleBetween(direction, to_sun) / light.source.radius_rad;
   if (rho >= 1.0) return std::nullopt;
   if (light.eclipse && AngleBetween(direction, to_moon) < light.moon->radius_rad)
     return std::nullopt;
@@ -322,11 +322,11 @@ std::optional<double> PlaceOnSun(const glm::dvec3& direction, const glm::dvec3& 
 BandLight RefractedSunDisk(const glm::dvec3& direction, const AirAlongRay& through,
                            const Lighting& light, const RefractedViewRays& bent,
                            const Medium& medium) {
-  BandLight disk(light.irradiance.count);
+  BandLight disk(light.source.irradiance.count);
   // The refracted disk is not wider than a circular one.
-  if (glm::length(direction - light.to_sun) > 2.0 * light.sun_radius_rad) return disk;
+  if (glm::length(direction - light.source.direction.seen) > 2.0 * light.source.radius_rad) return disk;
   const double elevation = bent.ElevationOf(direction);
-  const double per_sr = 1.0 / DiskSolidAngle(light.sun_radius_rad);
+  const double per_sr = 1.0 / DiskSolidAngle(light.source.radius_rad);
   for (std::size_t band = 0; band < disk.count; ++band) {
     const auto rho =
         PlaceOnSun(bent.TrueDirection(direction, band), bent.to_sun, bent.to_moon, light);
@@ -346,10 +346,10 @@ BandLight SunDiskRadiance(const FrameContext& frame, const glm::dvec3& direction
   const Medium& medium = frame.scene().medium();
   const Lighting& light = frame.light();
   if (frame.bent()) return RefractedSunDisk(direction, through, light, *frame.bent(), medium);
-  const glm::dvec3& to_moon = light.moon ? light.moon->to_moon : light.to_sun;
-  const auto rho = PlaceOnSun(direction, light.to_sun, to_moon, light);
-  if (!rho) return BandLight(light.irradiance.count);
-  BandLight disk = (1.0F / static_cast<float>(DiskSolidAngle(light.sun_radius_rad))) *
+  const glm::dvec3& to_moon = light.moon ? light.moon->direction.seen : light.source.direction.seen;
+  const auto rho = PlaceOnSun(direction, light.source.direction.seen, to_moon, light);
+  if (!rho) return BandLight(light.source.irradiance.count);
+  BandLight disk = (1.0F / static_cast<float>(DiskSolidAngle(light.source.radius_rad))) *
                    (light.WholeSun() * through.transmittance);
   for (std::size_t band = 0; band < disk.count; ++band) {
     disk[band] *= static_cast<float>(LimbDarkening(*rho, medium.wavelengths_nm[band]));
@@ -370,7 +370,7 @@ glm::dvec3 Turned(const glm::dvec3& direction, const glm::dvec3& turn) {
 double MeanMoonRadiance(const MoonDisk& moon, const glm::dvec3& turn, const glm::dvec3& direction) {
   const double angle = glm::length(turn);
   if (angle == 0.0) return MoonRadiance(moon, direction);
-  const double chord = glm::length(direction - moon.to_moon);
+  const double chord = glm::length(direction - moon.direction.seen);
   if (chord > 0.5 * angle + moon.radius_rad) return 0.0;
   // One step is a twentieth of the disk.
   const int steps = 1 + static_cast<int>(angle / (0.1 * moon.radius_rad));
@@ -383,19 +383,19 @@ double MeanMoonRadiance(const MoonDisk& moon, const glm::dvec3& turn, const glm:
 /// Returns the radiance of the refracted moon (see RefractedSunDisk).
 BandLight RefractedMoon(const glm::dvec3& direction, const AirAlongRay& through,
                         const Lighting& light, const RefractedViewRays& bent) {
-  BandLight seen(light.irradiance.count);
+  BandLight seen(light.source.irradiance.count);
   // Neither the refracted disk nor its trail is wider than the unrefracted one.
   const double widest = 2.0 * light.moon->radius_rad + glm::length(light.moon_turn);
-  if (glm::length(direction - light.moon->to_moon) > widest) return seen;
+  if (glm::length(direction - light.moon->direction.seen) > widest) return seen;
   MoonDisk moon = *light.moon;
-  moon.to_moon = bent.to_moon;
+  moon.direction.seen = bent.to_moon;
   const double elevation = bent.ElevationOf(direction);
   for (std::size_t band = 0; band < seen.count; ++band) {
     const double radiance =
         MeanMoonRadiance(moon, light.moon_turn, bent.TrueDirection(direction, band));
     const double left = std::exp(-bent.view.MoreOpticalDepth(elevation, band));
     seen[band] = static_cast<float>(radiance * left) * light.moon_colour[band] *
-                 light.irradiance[band] * through.transmittance[band];
+                 light.source.irradiance[band] * through.transmittance[band];
   }
   return seen;
 }
@@ -407,12 +407,12 @@ BandLight MoonDiskRadiance(const FrameContext& frame, const glm::dvec3& directio
   const Lighting& light = frame.light();
   // During an eclipse, the earthshine of the moon would stand out, because the renderer has no
   // corona.
-  if (!light.moon || light.eclipse) return BandLight(light.irradiance.count);
+  if (!light.moon || light.eclipse) return BandLight(light.source.irradiance.count);
   if (frame.bent()) return RefractedMoon(direction, through, light, *frame.bent());
   const double radiance = MeanMoonRadiance(*light.moon, light.moon_turn, direction);
-  if (radiance == 0.0) return BandLight(light.irradiance.count);
+  if (radiance == 0.0) return BandLight(light.source.irradiance.count);
   return static_cast<float>(radiance) *
-         (light.moon_colour * (light.irradiance * through.transmittance));
+         (light.moon_colour * (light.source.irradiance * through.transmittance));
 }
 
 }  // namespace
@@ -494,7 +494,7 @@ Shaded PixelShader::Shade(const Hit& hit, const SharedSegmentAir& through, const
   Shaded shaded = WithoutPolariser(hit, through, ray, near, disk_sample);
   if (!frame_->IsPolarised()) return shaded;
   const PolarisedLight inscatter =
-      (through.fog * frame_->light().irradiance) * *through.air.polarised;
+      (through.fog * frame_->light().source.irradiance) * *through.air.polarised;
   shaded.polarised = inscatter;
   if (hit.kind != HitKind::kSky) {
     shaded.polarised = inscatter + shaded.transmittance * PolarisedGround(hit, ray, disk_sample);
@@ -508,7 +508,7 @@ Shaded PixelShader::WithoutPolariser(const Hit& hit, const SharedSegmentAir& thr
   const FrameContext& frame = *frame_;
   const NightLight* night = frame.sky_lights().night.get();
   Shaded shaded;
-  shaded.inscatter = through.fog * (frame_->light().irradiance * through.air.inscatter);
+  shaded.inscatter = through.fog * (frame_->light().source.irradiance * through.air.inscatter);
   shaded.transmittance = through.fog * through.air.transmittance;
   const bool has_air = frame.Has(hit.kind == HitKind::kSky ? Effect::kSky : Effect::kAerial);
   if (night && has_air) {

@@ -17,16 +17,16 @@
 
 namespace alpenglow::renderer {
 
-RecentSunlight::Made RecentSunlight::At(const glm::dvec3& to_sun, double sun_radius_rad) {
+RecentSunlight::Made RecentSunlight::At(const glm::dvec3& to_light, double radius_rad) {
   constexpr std::size_t kMost = 2;
   const std::lock_guard lock(asking_);
   for (const Kept& kept : kept_) {
-    if (kept.to_sun == to_sun && kept.sun_radius_rad == sun_radius_rad) return kept.made;
+    if (kept.to_light == to_light && kept.radius_rad == radius_rad) return kept.made;
   }
   if (kept_.size() == kMost) kept_.pop_front();
   const Stopwatch watch;
-  auto sunlight = std::make_shared<const TerrainSunlight>(ground_, to_sun, sun_radius_rad);
-  kept_.push_back({to_sun, sun_radius_rad, {std::move(sunlight), watch.seconds()}});
+  auto sunlight = std::make_shared<const TerrainSunlight>(ground_, to_light, radius_rad);
+  kept_.push_back({to_light, radius_rad, {std::move(sunlight), watch.seconds()}});
   return kept_.back().made;
 }
 
@@ -154,7 +154,7 @@ Observer ObserverOf(const PreparedScene& scene, const CameraSample& camera_sampl
 double IlluminanceBy(const PreparedScene& scene, const DistantLight& source, const glm::dvec3& eye,
                      const Lighting& light) {
   const AirOverGround& over_ground = scene.air().whole();
-  const LocalSun sun = over_ground.ground_light.LocalSunAt(eye, light.By(source));
+  const LocalLight sun = over_ground.ground_light.LocalLightAt(eye, light.By(source));
   const auto direct = static_cast<float>(sun.visible_fraction * std::max(sun.mu_s_effective, 0.0));
   const BandLight irradiance =
       direct * over_ground.air.BeamLeft(sun.altitude_m, sun.mu_s_effective) +
@@ -183,7 +183,7 @@ void AddNight(const PreparedScene& scene, const Observer& observer, Lighting& li
   const double moon_lux = IlluminanceBy(scene, moonlight, stand.eye, light);
   if (moon_lux > kUnseenShare * (sun_lux + kNightSky_lux)) light.moonlight = moonlight;
   const double depression_rad =
-      -std::asin(glm::dot(light.to_sun_for_air, geometry.UpAt(stand.eye)));
+      -std::asin(glm::dot(light.source.direction.for_air, geometry.UpAt(stand.eye)));
   light.shows =
       sun_lux > kUnseenShare * (moon_lux + kNightSky_lux) ||
       depression_rad < DepressionOfDarkAir(geometry.AltitudeOf(stand.eye), geometry.radius_m(),
@@ -208,17 +208,15 @@ Lighting LightingAt(const PreparedScene& scene, const Observer& observer) {
   const SunPosition sun = bodies.ApparentSun(air);
   Lighting light =
       LightingOf(sun, bodies.instant, scene.scene().place, medium, scene.scene().ground.wetness);
-  light.to_sun = frame_from_enu * light.to_sun;
-  light.to_sun_for_air = frame_from_enu * light.to_sun_for_air;
+  light.source.direction = frame_from_enu * light.source.direction;
   if (!medium.follows_wgs84) return light;  // other planets have other moons
   light.moon = bodies.ApparentMoonDisk(air);
   const EclipsedDisk disk = bodies.Eclipse();
   if (disk.IsCovered()) {
     light = light.EclipsedBy(disk, medium.wavelengths_nm);
-    light.moon->to_moon = ToMoonBefore(sun, bodies);
+    light.moon->direction.seen = ToMoonBefore(sun, bodies);
   }
-  light.moon->to_moon = frame_from_enu * light.moon->to_moon;
-  light.moon->to_moon_for_air = frame_from_enu * light.moon->to_moon_for_air;
+  light.moon->direction = frame_from_enu * light.moon->direction;
   light.moon->to_sun = frame_from_enu * light.moon->to_sun;
   light.moon_turn =
       MoonTurn(scene.scene().camera.shutter_s, bodies.place.latitude_rad, observer.stand);

@@ -44,13 +44,13 @@ class RecentSunlight {
 
   /// Refers to the ground.
   explicit RecentSunlight(const SceneGround& ground) : ground_(ground) {}
-  /// @param to_sun  as for TerrainSunlight.
-  [[nodiscard]] Made At(const glm::dvec3& to_sun, double sun_radius_rad);
+  /// @param to_light, radius_rad  as for TerrainSunlight.
+  [[nodiscard]] Made At(const glm::dvec3& to_light, double radius_rad);
 
  private:
   struct Kept {
-    glm::dvec3 to_sun;
-    double sun_radius_rad;
+    glm::dvec3 to_light;
+    double radius_rad;
     Made made;
   };
 

@@ -454,9 +454,9 @@ bool UnoccludedSkyPixels::Has(int x, int y) const {
     return glm::length(middle - to_disk) < 2.0 * radius_rad + around_rad_;
   };
   const Lighting& light = frame_.light();
-  if (is_near(light.to_sun, light.sun_radius_rad)) return false;
+  if (is_near(light.source.direction.seen, light.source.radius_rad)) return false;
   if (light.moon &&
-      is_near(light.moon->to_moon, light.moon->radius_rad + glm::length(light.moon_turn)))
+      is_near(light.moon->direction.seen, light.moon->radius_rad + glm::length(light.moon_turn)))
     return false;
   return skyline_->IsBelow(middle, around_rad_);
 }

@@ -349,16 +349,16 @@ Hit SceneGeometry::Trace(const glm::dvec3& origin, const glm::dvec3& direction,
   return {HitKind::kPlanet, extent.end_m, up, up, up, point, point, extent.end_m * pixel_angle_rad};
 }
 
-TerrainSunlight::TerrainSunlight(const SceneGround& ground, const glm::dvec3& to_sun,
-                                 double sun_radius_rad) {
+TerrainSunlight::TerrainSunlight(const SceneGround& ground, const glm::dvec3& to_light,
+                                 double radius_rad) {
   // At -3 degrees a beam has touched the planet 330 km away, and passes 4 km above ground that is
   // 100 km nearer to the sun than the place it lights.
   constexpr double kLowestSun_rad = -3.0 * kRadiansPerDegree;
-  if (!ground.terrain || std::asin(to_sun.z) < kLowestSun_rad) return;
+  if (!ground.terrain || std::asin(to_light.z) < kLowestSun_rad) return;
   if (ground.is_one_surface) {
-    method_.emplace<ShadowHeights>(ground.terrain->mesh(), to_sun, sun_radius_rad);
+    method_.emplace<ShadowHeights>(ground.terrain->mesh(), to_light, radius_rad);
   } else {
-    method_.emplace<SunProbes>(*ground.terrain, to_sun, sun_radius_rad);
+    method_.emplace<SunProbes>(*ground.terrain, to_light, radius_rad);
   }
 }
 

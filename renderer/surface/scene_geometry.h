@@ -203,7 +203,7 @@ class TerrainSunlight {
   /// Creates unbroken light.
   TerrainSunlight() = default;
   /// Refers to the ground.
-  TerrainSunlight(const SceneGround& ground, const glm::dvec3& to_sun, double sun_radius_rad);
+  TerrainSunlight(const SceneGround& ground, const glm::dvec3& to_light, double radius_rad);
 
   /// Returns whether terrain can cast shadows.
   [[nodiscard]] bool IsBroken() const;

@@ -217,11 +217,11 @@ float LowestOf(const HeightRaster& heights) {
 }
 
 // Returns a map whose nodes cover the raster, without heights.
-SunShadowMap EmptyMap(const HeightRaster& heights, const glm::dvec3& to_sun, int most_side) {
+SunShadowMap EmptyMap(const HeightRaster& heights, const glm::dvec3& to_light, int most_side) {
   SunShadowMap map;
-  map.to_sun = to_sun;
-  const double flat = std::hypot(to_sun.x, to_sun.y);
-  map.sunwards = glm::dvec3(to_sun.x, to_sun.y, 0.0) / flat;
+  map.to_light = to_light;
+  const double flat = std::hypot(to_light.x, to_light.y);
+  map.sunwards = glm::dvec3(to_light.x, to_light.y, 0.0) / flat;
   map.across = {-map.sunwards.y, map.sunwards.x, 0.0};
   const double infinity = std::numeric_limits<double>::infinity();
   glm::dvec2 low(infinity), high(-infinity);
@@ -292,14 +292,14 @@ void GoOnBeyond(float lowest_m, SunShadowMap& map) {
 
 }  // namespace
 
-SunShadowMap SunShadowMapOf(const HeightRaster& heights, const glm::dvec3& to_sun,
+SunShadowMap SunShadowMapOf(const HeightRaster& heights, const glm::dvec3& to_light,
                             double radius_rad, int most_side) {
-  ALPENGLOW_ENSURE(std::abs(glm::length(to_sun) - 1.0), <, 1e-6);
+  ALPENGLOW_ENSURE(std::abs(glm::length(to_light) - 1.0), <, 1e-6);
   ALPENGLOW_ENSURE(most_side, >=, 2);
-  const double elevation = std::asin(std::clamp(to_sun.z, -1.0, 1.0));
+  const double elevation = std::asin(std::clamp(to_light.z, -1.0, 1.0));
   if (elevation < kLowestMappedSun_rad || elevation > kHighestMappedSun_rad || heights.z_m.empty())
     return {};
-  SunShadowMap map = EmptyMap(heights, to_sun, most_side);
+  SunShadowMap map = EmptyMap(heights, to_light, most_side);
   map.height.resize(static_cast<std::size_t>(map.columns) * static_cast<std::size_t>(map.lines));
   // At least two steps per cell of the map, and at least one per cell of the heights.
   const int steps = std::max(2, static_cast<int>(std::lround(map.cell_m / heights.cell_m)));

@@ -40,7 +40,7 @@ namespace alpenglow::renderer {
 /// Heights of the shadow of terrain for one direction of the sun. Immutable once made. Lengths in
 /// metres, in the frame of the heights, z up.
 struct SunShadowMap {
-  glm::dvec3 to_sun{0.0};                   // direction of the sun
+  glm::dvec3 to_light{0.0};                   // direction of the sun
   glm::dvec3 sunwards{0.0}, across{0.0};    // horizontal unit vectors of u and v
   double first_u_m = 0.0, first_v_m = 0.0;  // of node (0, 0)
   double cell_m = 0.0;
@@ -66,11 +66,11 @@ struct SunShadowMap {
 /// horizontal, whose beams pass high above any ground on this side of the planet's horizon, and for
 /// a sun at 80 degrees or more, where only cliffs shadow the air next to them. Beyond the heights,
 /// the ground is assumed to be as low as the lowest of them.
-/// @param to_sun      unit vector in the frame of the heights.
+/// @param to_light      unit vector in the frame of the heights.
 /// @param radius_rad  angular radius of the disk, >= 0.
 /// @param most_side   largest number of cells along the longer side. Cells are no smaller than
 ///   those of the heights.
-[[nodiscard]] SunShadowMap SunShadowMapOf(const HeightRaster& heights, const glm::dvec3& to_sun,
+[[nodiscard]] SunShadowMap SunShadowMapOf(const HeightRaster& heights, const glm::dvec3& to_light,
                                           double radius_rad, int most_side);
 
 }  // namespace alpenglow::renderer

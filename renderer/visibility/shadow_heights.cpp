@@ -69,15 +69,15 @@ ShadowCorner OnLine(const ShadowCorner& a, const ShadowCorner& b, double v) {
 
 }  // namespace
 
-ShadowHeights::ShadowHeights(const TriangleMesh& mesh, const glm::dvec3& to_sun,
-                             double sun_radius_rad, const Options& options) {
-  ALPENGLOW_ENSURE(std::abs(glm::length(to_sun) - 1.0), <, 1e-6);
-  const double flat = std::hypot(to_sun.x, to_sun.y);
-  sunwards_ = flat > 0.0 ? glm::dvec3(to_sun.x, to_sun.y, 0.0) / flat : glm::dvec3(1.0, 0.0, 0.0);
+ShadowHeights::ShadowHeights(const TriangleMesh& mesh, const glm::dvec3& to_light,
+                             double radius_rad, const Options& options) {
+  ALPENGLOW_ENSURE(std::abs(glm::length(to_light) - 1.0), <, 1e-6);
+  const double flat = std::hypot(to_light.x, to_light.y);
+  sunwards_ = flat > 0.0 ? glm::dvec3(to_light.x, to_light.y, 0.0) / flat : glm::dvec3(1.0, 0.0, 0.0);
   across_ = {-sunwards_.y, sunwards_.x, 0.0};
-  const double elevation = std::atan2(to_sun.z, flat);
+  const double elevation = std::atan2(to_light.z, flat);
   for (std::size_t beam = 0; beam < kBeams; ++beam) {
-    const double at = std::min(elevation - HeightOver(beam) * sun_radius_rad, 0.5 * kPi);
+    const double at = std::min(elevation - HeightOver(beam) * radius_rad, 0.5 * kPi);
     sine_[beam] = std::sin(at);
     cosine_[beam] = std::cos(at);
   }

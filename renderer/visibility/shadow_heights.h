@@ -63,12 +63,12 @@ class ShadowHeights {
   };
 
   /// The result does not depend on the number of threads.
-  /// @param to_sun  unit vector in the frame of the mesh, z up.
-  /// @param sun_radius_rad  angular radius of the disk, 0 for a point.
-  ShadowHeights(const TriangleMesh& mesh, const glm::dvec3& to_sun, double sun_radius_rad,
+  /// @param to_light  unit vector in the frame of the mesh, z up.
+  /// @param radius_rad  angular radius of the disk, 0 for a point.
+  ShadowHeights(const TriangleMesh& mesh, const glm::dvec3& to_light, double radius_rad,
                 const Options& options);
-  ShadowHeights(const TriangleMesh& mesh, const glm::dvec3& to_sun, double sun_radius_rad)
-      : ShadowHeights(mesh, to_sun, sun_radius_rad, Options{}) {}
+  ShadowHeights(const TriangleMesh& mesh, const glm::dvec3& to_light, double radius_rad)
+      : ShadowHeights(mesh, to_light, radius_rad, Options{}) {}
 
   /// Returns the sunlit stretches of a ray within [0, length_m]; length_m must be finite. Throws
   /// InternalError if Options::for_rays is false.

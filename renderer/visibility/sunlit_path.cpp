@@ -89,19 +89,19 @@ double Edge(double lit_m, double dark_m, const Lit& lit) {
 
 }  // namespace
 
-SunProbes::SunProbes(const Terrain& terrain, const glm::dvec3& to_sun, double sun_radius_rad,
+SunProbes::SunProbes(const Terrain& terrain, const glm::dvec3& to_light, double radius_rad,
                      int probes)
-    : terrain_(terrain), to_sun_(to_sun), probes_(probes) {
+    : terrain_(terrain), to_light_(to_light), probes_(probes) {
   ALPENGLOW_ENSURE(probes, >=, 2);
-  const double flat = std::hypot(to_sun.x, to_sun.y);
-  sunwards_ = flat > 0.0 ? glm::dvec3(to_sun.x, to_sun.y, 0.0) / flat : glm::dvec3(1.0, 0.0, 0.0);
+  const double flat = std::hypot(to_light.x, to_light.y);
+  sunwards_ = flat > 0.0 ? glm::dvec3(to_light.x, to_light.y, 0.0) / flat : glm::dvec3(1.0, 0.0, 0.0);
   across_ = {-sunwards_.y, sunwards_.x, 0.0};
-  upwards_ = glm::dvec3(0.0, 0.0, flat) - to_sun.z * sunwards_;
-  bottom_of_sun_ = glm::normalize(to_sun - std::tan(sun_radius_rad) * upwards_);
+  upwards_ = glm::dvec3(0.0, 0.0, flat) - to_light.z * sunwards_;
+  bottom_of_sun_ = glm::normalize(to_light - std::tan(radius_rad) * upwards_);
   highest_c_m_ = u_high_m_ = v_high_m_ = -std::numeric_limits<double>::infinity();
   v_low_m_ = std::numeric_limits<double>::infinity();
   const glm::dvec3 above_bottom =
-      glm::normalize(upwards_ + std::tan(sun_radius_rad) * to_sun);  // normal to the lowest beams
+      glm::normalize(upwards_ + std::tan(radius_rad) * to_light);  // normal to the lowest beams
   for (const auto& position : terrain.mesh().positions) {
     const glm::dvec3 p = ToDouble(position);
     highest_c_m_ = std::max(highest_c_m_, glm::dot(p, above_bottom));
@@ -143,7 +143,7 @@ SunlitPath SunProbes::Along(const glm::dvec3& origin, const glm::dvec3& unit,
     return !terrain_.Occluded(origin + distance_m * unit, to, to,
                               std::numeric_limits<double>::infinity());
   };
-  const auto lit = [&](double distance_m) { return sees(distance_m, to_sun_); };
+  const auto lit = [&](double distance_m) { return sees(distance_m, to_light_); };
   const auto free_of_edges = [&](double distance_m) { return sees(distance_m, bottom_of_sun_); };
   // Probes are dense near the eye, where air and shadows contribute most.
   const auto probe_m = [&](int i) {

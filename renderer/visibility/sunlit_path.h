@@ -66,9 +66,9 @@ class SunlitPathBuilder {
 /// Immutable; safe to use from many threads. Refers to the terrain.
 class SunProbes {
  public:
-  /// @param to_sun  unit vector in the frame of the terrain, z up.
+  /// @param to_light  unit vector in the frame of the terrain, z up.
   /// @param probes  number along the stretch of a ray that terrain can shade, at least 2.
-  SunProbes(const Terrain& terrain, const glm::dvec3& to_sun, double sun_radius_rad,
+  SunProbes(const Terrain& terrain, const glm::dvec3& to_light, double radius_rad,
             int probes = 32);
 
   /// Returns the sunlit stretches of a ray within [0, length_m]; length_m is finite.
@@ -83,7 +83,7 @@ class SunProbes {
                                                 double length_m) const;
 
   const Terrain& terrain_;
-  glm::dvec3 to_sun_, bottom_of_sun_;
+  glm::dvec3 to_light_, bottom_of_sun_;
   glm::dvec3 sunwards_, across_,
       upwards_;  // upwards_: normal to the sunbeams, in their vertical plane
   double highest_c_m_ = 0.0, u_high_m_ = 0.0, v_low_m_ = 0.0, v_high_m_ = 0.0;

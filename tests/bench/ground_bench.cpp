@@ -16,8 +16,8 @@ constexpr GeodeticPosition kPlace{47.0 * kRadiansPerDegree, 11.0 * kRadiansPerDe
 
 std::shared_ptr<const GroundSite> NewSite() {
   static const Medium kMedium = OnOsculatingSphere(MediumPreset("earth"), kPlace.latitude_rad);
-  static const SolvedAir kAir(SingleScattering<float>(kMedium), RefractedBeam(kMedium),
-                              MultipleScattering(kMedium));
+  static const SolvedAir kAir{SingleScattering<float>(kMedium), RefractedBeam(kMedium),
+                              MultipleScattering(kMedium)};
   static const ElevationGrid kRange = ProceduralMountains(kPlace);
   return std::make_shared<const GroundSite>(GroundOf(kRange, LocalFrame(kWgs84, kPlace)),
                                             GroundCover{}, nullptr, kAir);
@@ -67,8 +67,8 @@ void ShadowPrepared(benchmark::State& state) {
   ShadowHeights::Options options = LitGround::kShadowOfVertices;
   options.cell_m = static_cast<double>(state.range(0));
   for (auto unused : state) {
-    benchmark::DoNotOptimize(ShadowHeights(TheSite()->ground().terrain->mesh(), light.to_sun,
-                                           light.sun_radius_rad, options));
+    benchmark::DoNotOptimize(ShadowHeights(TheSite()->ground().terrain->mesh(), light.source.direction.seen,
+                                           light.source.radius_rad, options));
   }
 }
 BENCHMARK(ShadowPrepared)->Arg(0)->Arg(60)->Arg(90)->Arg(120)->Unit(benchmark::kMillisecond);

@@ -180,7 +180,7 @@ TEST_F(AirFollowerOnGpu, TablesOfASunThatRunsAreMadeForWhereItWillBe) {
     std::this_thread::sleep_for(std::chrono::milliseconds(5));
     follower.Follow(now, kFrame_s);
   }
-  EXPECT_LT(follower.eye().mu_s, now.sun.for_air.z) << "lower, for the sun sinks";
+  EXPECT_LT(follower.eye().mu_s, now.light.for_air.z) << "lower, for the sun sinks";
 }
 
 TEST_F(AirFollowerOnGpu, SettleShowsWhatWasAskedForLast) {
@@ -319,7 +319,7 @@ TEST(GroundFollower, OnTheRangeThereIsLightOfTheSunThatWasAskedFor) {
   follower.SetGround(RangeAround);
   EXPECT_TRUE(follower.WaitUntilReady(Air(), ViewFrom(kFollowedPlace, 30.0)));
   ASSERT_NE(follower.lit(), nullptr);
-  EXPECT_NEAR(follower.lit()->lighting().to_sun.z, 0.5, 1e-3) << "30 degrees high";
+  EXPECT_NEAR(follower.lit()->lighting().source.direction.seen.z, 0.5, 1e-3) << "30 degrees high";
   EXPECT_GT(follower.making_s(), 0.0);
   const std::optional<LightOfVertices> light = follower.Light();
   ASSERT_TRUE(light);
@@ -442,11 +442,11 @@ TEST_F(ShadeFollowerTest, GroundIsAskedForAnewOnlyWhenTheEyeHasLeftIt) {
   follower.SetGround(Mountain(requested_));
   follower.WaitUntilReady(Eye(0.0), SunAtDegrees(5.0), kShadeUnit);
   ASSERT_TRUE(follower.shade().Shades());
-  const glm::dvec3 first_sun = follower.shade().map().to_sun;
+  const glm::dvec3 first_sun = follower.shade().map().to_light;
   follower.WaitUntilReady(Eye(0.01), SunAtDegrees(5.0 + 0.04), kShadeUnit);
-  EXPECT_EQ(follower.shade().map().to_sun, first_sun) << "a sixth of the disk's radius";
+  EXPECT_EQ(follower.shade().map().to_light, first_sun) << "a sixth of the disk's radius";
   follower.WaitUntilReady(Eye(0.01), SunAtDegrees(4.0), kShadeUnit);
-  EXPECT_NEAR(follower.shade().map().to_sun.z, std::sin(4.0 * kRadiansPerDegree), 1e-3)
+  EXPECT_NEAR(follower.shade().map().to_light.z, std::sin(4.0 * kRadiansPerDegree), 1e-3)
       << "of another sun, in the frame of a kilometre away";
   EXPECT_EQ(requested_, 1);
   follower.WaitUntilReady(Eye(0.08), SunAtDegrees(4.0), kShadeUnit);
@@ -479,8 +479,8 @@ TEST_F(ShadeFollowerTest, ASunThatOutrunsTheMapsIsStillFollowed) {
   while (maps < 4) {
     elevation += elevation < 40.0 ? 0.06 : -38.0;  // more than a fifth of the radius every frame
     follower.Follow(Eye(0.0), SunAtDegrees(elevation), kShadeUnit);
-    if (follower.shade().Shades() && follower.shade().map().to_sun != last) {
-      last = follower.shade().map().to_sun;
+    if (follower.shade().Shades() && follower.shade().map().to_light != last) {
+      last = follower.shade().map().to_light;
       ++maps;
     }
     std::this_thread::yield();

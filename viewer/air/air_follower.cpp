@@ -105,14 +105,14 @@ void AirTextures::Upload(const AirTables& tables) {
   CheckGl("AirTextures::Upload");
 }
 
-void AirTextures::SetView(double altitude_m, const SkySun& sun) {
+void AirTextures::SetView(double altitude_m, const LightDirection& light) {
   const double h = std::max(altitude_m, 0.0) / 1000.0;
   const auto radius = static_cast<double>(values_.shell.w);
   const double horizon = shared::HorizonCosine<double>(h, radius);
-  const double flat = std::hypot(sun.for_air.x, sun.for_air.y);
-  const glm::dvec2 azimuth = flat > 1e-9 ? glm::dvec2(sun.for_air) / flat : glm::dvec2(0.0, 1.0);
-  values_.sun = {sun.for_air, 0.0};
-  values_.sun_seen = {sun.seen, 0.0};
+  const double flat = std::hypot(light.for_air.x, light.for_air.y);
+  const glm::dvec2 azimuth = flat > 1e-9 ? glm::dvec2(light.for_air) / flat : glm::dvec2(0.0, 1.0);
+  values_.sun = {light.for_air, 0.0};
+  values_.sun_seen = {light.seen, 0.0};
   values_.frame = {azimuth, -horizon, std::sqrt((1.0 - horizon) * (1.0 + horizon))};
 }
 
@@ -148,8 +148,8 @@ AirEye EyeOf(const AirView& view) {
   const auto elevation = [](const glm::dvec3& to) {
     return std::asin(std::clamp(to.z, -1.0, 1.0));
   };
-  return {view.altitude_m, view.sun.for_air.z, view.ceiling_m,
-          elevation(view.sun.seen) - elevation(view.sun.for_air)};
+  return {view.altitude_m, view.light.for_air.z, view.ceiling_m,
+          elevation(view.light.seen) - elevation(view.light.for_air)};
 }
 
 AirTables TablesOf(const TabulatedAir& tabulated, const AirView& view, AirQuality quality) {
@@ -187,7 +187,7 @@ AirFollower::AirFollower(std::shared_ptr<const TabulatedAir> air, AirQuality qua
   textures_.Upload(air_->tables);
   shown_ = air_;
   ShowSmall(first);
-  textures_.SetView(first.altitude_m, first.sun);
+  textures_.SetView(first.altitude_m, first.light);
 }
 
 void AirFollower::Replace(const Medium& medium) {
@@ -248,21 +248,21 @@ void AirFollower::Follow(const AirView& view, double seconds) {
   if (IsDue(wanted)) maker_.RequestIfNeeded(wanted);
   last_view_ = view;
   if (AirChange(eye_, EyeOf(view)) > kJump) ShowSmall(view);
-  textures_.SetView(view.altitude_m, view.sun);
+  textures_.SetView(view.altitude_m, view.light);
 }
 
 // Returns the view with the sun extrapolated to the middle of the period in which tables requested
 // now will be displayed.
 AirView AirFollower::Ahead(const AirView& view, double seconds) const {
   constexpr double kLongestFrame_s = 0.2, kShown = 1.2;
-  const bool runs = seconds > 0.0 && seconds < kLongestFrame_s && view.sun != last_view_.sun;
+  const bool runs = seconds > 0.0 && seconds < kLongestFrame_s && view.light != last_view_.light;
   if (!runs || AirChange(EyeOf(last_view_), EyeOf(view)) > kJump) return view;
   AirView ahead = view;
   const double frames = kShown * (making_s() + seconds) / seconds;
-  const auto gone_on = [&](glm::dvec3 SkySun::*to) {
-    return glm::normalize(view.sun.*to + frames * (view.sun.*to - last_view_.sun.*to));
+  const auto gone_on = [&](glm::dvec3 LightDirection::*to) {
+    return glm::normalize(view.light.*to + frames * (view.light.*to - last_view_.light.*to));
   };
-  ahead.sun = {gone_on(&SkySun::seen), gone_on(&SkySun::for_air)};
+  ahead.light = {gone_on(&LightDirection::seen), gone_on(&LightDirection::for_air)};
   return ahead;
 }
 

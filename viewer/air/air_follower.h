@@ -16,6 +16,7 @@
 #include <optional>
 #include <vector>
 
+#include "atmosphere/astronomy/light_direction.h"
 #include "atmosphere/base/async_value.h"
 #include "lut/camera_tables/air_tables.h"
 #include "viewer/gl/gl_context.h"
@@ -23,13 +24,6 @@
 #include "viewer/layer.h"
 
 namespace alpenglow::viewer {
-
-/// Direction of a sun as unit vectors in the frame of the eye (east, north, up): where it is seen,
-/// and the direction from which straight rays illuminate the air (SunForAir of sun.h).
-struct SkySun {
-  glm::dvec3 seen, for_air;
-  bool operator==(const SkySun&) const = default;
-};
 
 /// Mirrors the uniform block `AirTables` of air.tables.glsl.
 struct AirTablesBlock {
@@ -57,7 +51,7 @@ class AirTextures {
 
   /// Adapts the uploaded tables to an eye that has since moved by less than a request for new
   /// tables requires: rows start at the current horizon, azimuths at the current sun.
-  void SetView(double altitude_m, const SkySun& sun);
+  void SetView(double altitude_m, const LightDirection& light);
 
   /// Call once for each program: its samplers read from kUnits units, beginning with first_unit,
   /// its block from `binding`.
@@ -78,7 +72,7 @@ class AirTextures {
 struct AirView {
   double altitude_m;    // altitude of the eye over the sphere that osculates the ellipsoid below it
   double latitude_rad;  // latitude of the eye
-  SkySun sun;
+  LightDirection light;  // sun or moon in the frame east, north, up of the eye
   double ceiling_m = AirEye{}.ceiling_m;  // upper bound of the height of land
   bool operator==(const AirView&) const = default;
 };

@@ -97,11 +97,11 @@ void Upload(const GlTexture& texture, std::size_t columns, std::size_t rows,
 
 }  // namespace
 
-GroundLightBlock GroundLightBlockOf(const SkyIrradianceGradient& tilt, const glm::dvec3& to_sun,
+GroundLightBlock GroundLightBlockOf(const SkyIrradianceGradient& tilt, const glm::dvec3& to_light,
                                     double pixel_angle_rad) {
-  const double flat = std::max(std::hypot(to_sun.x, to_sun.y), 1e-9);
+  const double flat = std::max(std::hypot(to_light.x, to_light.y), 1e-9);
   GroundLightBlock block{
-      {to_sun.x / flat, to_sun.y / flat, 0.0, 0.0}, {pixel_angle_rad, 1.0, 0.0, 0.0}, {}};
+      {to_light.x / flat, to_light.y / flat, 0.0, 0.0}, {pixel_angle_rad, 1.0, 0.0, 0.0}, {}};
   for (std::size_t i = 0; i < tilt.nodes.size(); ++i)
     block.open_sky[i] = {tilt.nodes[i][0], tilt.nodes[i][1], tilt.nodes[i][2], tilt.nodes[i][3]};
   return block;
@@ -359,7 +359,7 @@ SkyByPixelBlock WithLights(const SkyByPixelBlock& first, const SkyByPixelBlock& 
 }
 
 SkyByPixelBlock SkyByPixel::BlockOf(LightSource source, const LocalFrame& eye,
-                                    const glm::dvec3& to_sun_for_air,
+                                    const glm::dvec3& to_light_for_air,
                                     const SkyIrradianceGradient& now) const {
   const OfSource& of = *of_source_[IndexOf(source)];
   const GroundSky& sky = *of.sky.sky;
@@ -373,8 +373,8 @@ SkyByPixelBlock SkyByPixel::BlockOf(LightSource source, const LocalFrame& eye,
     block.sky_moment[band] = light_then[i] > 0.0F ? light_now[i] / light_then[i] : 0.0F;
   }
   const OccludedSkyIrradiance::Tables tables = sky.lighting().on_terrain->sky().tables();
-  const double mu_s_now = site.EnuFromEcef(eye.EcefFromEnu(Vector<Enu>{to_sun_for_air})).xyz.z;
-  const double moved = sky.lighting().to_sun_for_air.z - mu_s_now;
+  const double mu_s_now = site.EnuFromEcef(eye.EcefFromEnu(Vector<Enu>{to_light_for_air})).xyz.z;
+  const double moved = sky.lighting().source.direction.for_air.z - mu_s_now;
   block.sky_place = {
       -tables.lowest_m / kMetresPerKilometre,
       kMetresPerKilometre / (tables.highest_m - tables.lowest_m), moved - tables.first_mu_s,

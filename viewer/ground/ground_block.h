@@ -74,10 +74,10 @@ struct GroundLightBlock {
 static_assert(sizeof(GroundLightBlock) == 47 * sizeof(glm::vec4));
 static_assert(offsetof(GroundLightBlock, ground_view) == sizeof(glm::vec4));
 
-/// @param to_sun  unit vector in the frame of the eye.
+/// @param to_light  unit vector in the frame of the eye.
 /// @param pixel_angle_rad  angle between neighbouring pixels; a larger angle gives coarser detail.
 [[nodiscard]] GroundLightBlock GroundLightBlockOf(const SkyIrradianceGradient& tilt,
-                                                  const glm::dvec3& to_sun, double pixel_angle_rad);
+                                                  const glm::dvec3& to_light, double pixel_angle_rad);
 
 /// Mirrors the uniform block `GroundSurface` of ground_surface.glsl.
 struct GroundSurfaceBlock {
@@ -166,10 +166,10 @@ class SkyByPixel {
   }
 
   /// Returns the block of a source, which must have tables. @param eye  frame of the pixels;
-  /// to_sun_for_air: direction to the source in this frame.
+  /// to_light_for_air: direction to the source in this frame.
   /// @param now  current light of the open sky, at the altitude of the one given to Use.
   [[nodiscard]] SkyByPixelBlock BlockOf(LightSource source, const LocalFrame& eye,
-                                        const glm::dvec3& to_sun_for_air,
+                                        const glm::dvec3& to_light_for_air,
                                         const SkyIrradianceGradient& now) const;
 
   /// Assigns the samplers of a program to kUnits units, beginning with `first_unit`.

@@ -30,7 +30,7 @@ FogBlock FogBlockOf(const FogMap& map, const FogView& now) {
                  map.top_m / kMetres};
   block.eye = {std::max(now.altitude_m, 0.0) / kMetres, map.radius_m / kMetres, map.depth,
                map.peak_scale};
-  block.sun = {glm::vec3(now.to_sun), map.broad_g};
+  block.sun = {glm::vec3(now.light.seen), map.broad_g};
   block.phase = ParametersOf(map.phase);
   block.map_size = {map.size.elevations, map.size.azimuths, map.size.depths, 0.0};
   return block;
@@ -86,10 +86,7 @@ void FogPainter::Bind(const FogMap& map, const FogView& now, const FogPainter& o
 namespace {
 
 FogView FogViewOf(const CameraPose& eye, const SunPosition& sun) {
-  const auto towards = [](const SunPosition& at) {
-    return DirectionFromAngles(at.elevation_rad, at.azimuth_rad).xyz;
-  };
-  return {eye.place.height_m, towards(sun), towards(SunForAir(sun)), sun.angular_radius_rad};
+  return {eye.place.height_m, DirectionOf(sun), sun.angular_radius_rad};
 }
 
 }  // namespace

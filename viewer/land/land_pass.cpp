@@ -49,11 +49,11 @@ void HorizonTexture::Upload(double azimuth_rad) {
   azimuth_rad_ = azimuth_rad;
 }
 
-void HorizonTexture::Bind(int unit, const Vector<Ecef>& to_sun) {
+void HorizonTexture::Bind(int unit, const Vector<Ecef>& to_light) {
   constexpr double kTurns_rad = 0.1 * kRadiansPerDegree;
   BindTexture(unit, GL_TEXTURE_2D, texture_);
   if (!horizon_) return;
-  const glm::dvec3 direction = horizon_->frame.EnuFromEcef(to_sun).xyz;
+  const glm::dvec3 direction = horizon_->frame.EnuFromEcef(to_light).xyz;
   const double azimuth_rad = std::atan2(direction.y, direction.x);
   if (!azimuth_rad_ ||
       std::abs(std::remainder(azimuth_rad - *azimuth_rad_, 2.0 * kPi)) > kTurns_rad)
@@ -174,7 +174,7 @@ void LandPass::Clear(LandDrawn drawn) {
 
 void LandPass::BindEdges(const ShaderProgram& program) {
   constexpr int kUnit = 0;
-  horizon_.Bind(kUnit, edges_.to_sun);
+  horizon_.Bind(kUnit, edges_.to_light);
   program.BindSampler("horizon_sines", kUnit);
 }
 
@@ -185,8 +185,8 @@ glm::vec4 LandPass::RisenSinceMade(const LocalFrame& anchor) const {
     return std::asin(std::clamp(anchor.EnuFromEcef(direction).xyz.z, -1.0, 1.0));
   };
   const auto risen = [&](const std::optional<Vector<Ecef>>& then) {
-    if (!then || !(edges_.sun_radius_rad > 0.0)) return 0.0;
-    return (elevation(edges_.to_sun) - elevation(*then)) / edges_.sun_radius_rad;
+    if (!then || !(edges_.radius_rad > 0.0)) return 0.0;
+    return (elevation(edges_.to_light) - elevation(*then)) / edges_.radius_rad;
   };
   return glm::vec4(
       glm::dvec4(risen(edges_of_vertices_.from), risen(edges_of_vertices_.to), 0.0, 0.0));

@@ -55,7 +55,7 @@ class HorizonTexture {
   [[nodiscard]] PlaceOnGrid PlaceIn(const LocalFrame& anchor) const;
 
   /// Binds the sines of the horizon towards a direction to a texture unit.
-  void Bind(int unit, const Vector<Ecef>& to_sun);
+  void Bind(int unit, const Vector<Ecef>& to_light);
 
  private:
   void Upload(double azimuth_rad);
@@ -115,8 +115,8 @@ static_assert(sizeof(LandBlock) == (12 + LandBlock::kMostLevels) * sizeof(glm::v
 /// Shadow edges of the current sun (HorizonTexture), which replace those stored in the vertices.
 struct MomentaryEdges {
   double share = 0.0;  // weight; 0: the vertices' shadow edges only
-  Vector<Ecef> to_sun{};
-  double sun_radius_rad = 0.0;
+  Vector<Ecef> to_light{};
+  double radius_rad = 0.0;
 };
 
 /// Target of a terrain pass: all outputs of a GBuffer, or only depth into a DepthPrepass.

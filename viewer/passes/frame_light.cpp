@@ -121,7 +121,7 @@ SkyLight BesideMoon(const SkyLight& sun, const SkyBodies& bodies, const Medium& 
   const EclipsedDisk disk = bodies.Eclipse();
   if (!disk.IsCovered()) return sun;
   const Lighting whole = LightingOf(sun.disk, bodies.instant, bodies.place, medium);
-  return {sun.disk, GpuBandsOf(whole.EclipsedBy(disk, medium.wavelengths_nm).irradiance)};
+  return {sun.disk, GpuBandsOf(whole.EclipsedBy(disk, medium.wavelengths_nm).source.irradiance)};
 }
 
 SunPosition AsPosition(const DistantLight& moon, double earth_sun_au) {
@@ -129,9 +129,9 @@ SunPosition AsPosition(const DistantLight& moon, double earth_sun_au) {
   const auto elevation = [](const glm::dvec3& to) {
     return std::asin(std::clamp(to.z, -1.0, 1.0));
   };
-  position.elevation_rad = elevation(moon.to_light);
-  position.lower_for_air_rad = position.elevation_rad - elevation(moon.to_light_for_air);
-  position.azimuth_rad = std::atan2(moon.to_light.x, moon.to_light.y);
+  position.elevation_rad = elevation(moon.direction.seen);
+  position.lower_for_air_rad = position.elevation_rad - elevation(moon.direction.for_air);
+  position.azimuth_rad = std::atan2(moon.direction.seen.x, moon.direction.seen.y);
   if (position.azimuth_rad < 0.0) position.azimuth_rad += 2.0 * kPi;
   position.distance_au = earth_sun_au;
   position.angular_radius_rad = moon.radius_rad;
@@ -186,7 +186,7 @@ FrameSky FrameSkyAt(const GeodeticPosition& eye, const UtcInstant& now, const Ai
     sky.moon = bodies.ApparentMoonDisk(air.refracting);
     sky.lights = LightsOf(bodies, sky.sun, *sky.moon, air, altitude_m);
     sky.is_eclipse = bodies.Eclipse().IsCovered();
-    if (sky.is_eclipse) sky.moon->to_moon = ToMoonBefore(sky.sun, bodies);
+    if (sky.is_eclipse) sky.moon->direction.seen = ToMoonBefore(sky.sun, bodies);
   } else {
     sky.lights = {SunAsLight(sky.sun, air.air->medium())};
   }

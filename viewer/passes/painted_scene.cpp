@@ -51,7 +51,7 @@ LandView LandIn(const PaintedView& view, const Medium& medium, int samples = 1) 
 AirView AirViewOf(const CameraPose& eye, const SunPosition& sun) {
   return {std::max(eye.place.height_m, 0.0),
           eye.place.latitude_rad,
-          {DirectionToSun(sun), DirectionToSun(SunForAir(sun))}};
+          DirectionOf(sun)};
 }
 
 }  // namespace

@@ -191,12 +191,12 @@ SkyPainter::DisksInAir SkyPainter::InAir(const FrameSky& sky, const PaintedView&
   DisksInAir seen{
       sky.sun, sky.moon.value_or(MoonDisk{}),
       follow(refracted_sun_, DirectionToSun(sky.sun), sky.sun.angular_radius_rad),
-      sky.moon ? follow(refracted_moon_, sky.moon->to_moon, sky.moon->radius_rad) : nullptr};
+      sky.moon ? follow(refracted_moon_, sky.moon->direction.seen, sky.moon->radius_rad) : nullptr};
   if (sky.is_eclipse) seen.refracted_moon = seen.refracted_sun;
   if (seen.refracted_sun != nullptr) seen.sun = sky.bodies.sun;
   const MoonPosition& moon = sky.bodies.moon;
   if (seen.refracted_moon != nullptr)
-    seen.moon.to_moon = DirectionFromAngles(moon.elevation_rad, moon.azimuth_rad).xyz;
+    seen.moon.direction.seen = DirectionFromAngles(moon.elevation_rad, moon.azimuth_rad).xyz;
   return seen;
 }
 
@@ -205,8 +205,8 @@ void SkyPainter::DescribeDisks(const DisksInAir& seen, const glm::dvec2& shares)
   const MoonDisk& moon = seen.moon;
   const ShaderProgram& program = programs_.Of({PictureStage::Pass::kDisks});
   program.Use();
-  glUniform4f(program.Uniform("moon"), static_cast<float>(moon.to_moon.x),
-              static_cast<float>(moon.to_moon.y), static_cast<float>(moon.to_moon.z),
+  glUniform4f(program.Uniform("moon"), static_cast<float>(moon.direction.seen.x),
+              static_cast<float>(moon.direction.seen.y), static_cast<float>(moon.direction.seen.z),
               static_cast<float>(moon.radius_rad));
   glUniform4f(program.Uniform("moon_lit"), static_cast<float>(moon.to_sun.x),
               static_cast<float>(moon.to_sun.y), static_cast<float>(moon.to_sun.z),
@@ -284,7 +284,7 @@ std::vector<SkyPainter::SkyDisk> SkyPainter::DisksSeen(const PaintedView& view) 
   const FrameSky& sky = SkyOf(view);
   std::vector<SkyDisk> disks{
       {LightSource::kSun, DirectionToSun(sky.sun), sky.sun.angular_radius_rad}};
-  if (sky.moon) disks.push_back({LightSource::kMoon, sky.moon->to_moon, sky.moon->radius_rad});
+  if (sky.moon) disks.push_back({LightSource::kMoon, sky.moon->direction.seen, sky.moon->radius_rad});
   std::erase_if(disks, [&](const SkyDisk& disk) {
     return !PixelsOfDisk(disk.towards, disk.radius_rad, view);
   });

@@ -253,7 +253,7 @@ std::vector<StarPoint> StarPainter::PointsIn(const PaintedView& view, const Fram
       TurnOfSky(view.eye.place.latitude_rad, SecondsBetween(made.request.now, view.now));
   const MoonDisk moon = sky.moon.value_or(MoonDisk{});
   return StarPointsIn(view,
-                      {made.lights, turn, faintest_lux, moon.to_moon, moon.radius_rad, &made.bent});
+                      {made.lights, turn, faintest_lux, moon.direction.seen, moon.radius_rad, &made.bent});
 }
 
 std::vector<PixelBox> StarPainter::Seen(const PaintedView& view, const FrameSky& sky) const {

@@ -155,12 +155,12 @@ class ShadeFollower::Maker {
   std::shared_ptr<const Made> operator()(const Request& request) {
     const auto begin = std::chrono::steady_clock::now();
     if (!IsKept(request)) Keep(request);
-    SunShadowMap map = heights_ ? SunShadowMapOf(*heights_, request.to_sun, request.sun_radius_rad,
+    SunShadowMap map = heights_ ? SunShadowMapOf(*heights_, request.to_light, request.radius_rad,
                                                  request.size.cells)
                                 : SunShadowMap{};
     const std::chrono::duration<double> took = std::chrono::steady_clock::now() - begin;
     return std::make_shared<const Made>(
-        Made{request.frame, request.to_sun, std::move(map), took.count()});
+        Made{request.frame, request.to_light, std::move(map), took.count()});
   }
 
  private:
@@ -200,16 +200,16 @@ ShadeFollower::Request ShadeFollower::RequestFor(const GeodeticPosition& eye,
   const std::optional<Request>& last = maker_.requested();
   if (last && DistanceBetween(last->frame, frame) < kPlaceStep * size_.half_width_m)
     frame = last->frame;
-  const Vector<Ecef> to_sun =
+  const Vector<Ecef> to_light =
       here.EcefFromEnu(DirectionFromAngles(sun.elevation_rad, sun.azimuth_rad));
-  return {ground_, size_, frame, glm::normalize(frame.EnuFromEcef(to_sun).xyz),
+  return {ground_, size_, frame, glm::normalize(frame.EnuFromEcef(to_light).xyz),
           sun.angular_radius_rad};
 }
 
 bool ShadeFollower::Suits(const Request& requested, const Request& wanted) {
   return requested.ground == wanted.ground && requested.size == wanted.size &&
          AreOne(requested.frame, wanted.frame) &&
-         glm::length(requested.to_sun - wanted.to_sun) < kSunStep * wanted.sun_radius_rad;
+         glm::length(requested.to_light - wanted.to_light) < kSunStep * wanted.radius_rad;
 }
 
 void ShadeFollower::PollFinished() {
@@ -241,9 +241,9 @@ bool ShadeFollower::IsOf(const GeodeticPosition& eye, const SunPosition& sun) co
   const double near = std::cos(3.0 * kRadiansPerDegree);
   if (!used_) return false;
   const LocalFrame here(ellipsoid_, eye);
-  const Vector<Ecef> to_sun =
+  const Vector<Ecef> to_light =
       here.EcefFromEnu(DirectionFromAngles(sun.elevation_rad, sun.azimuth_rad));
-  return glm::dot(glm::normalize(used_->frame.EnuFromEcef(to_sun).xyz), used_->to_sun) > near;
+  return glm::dot(glm::normalize(used_->frame.EnuFromEcef(to_light).xyz), used_->to_light) > near;
 }
 
 glm::dmat4 ShadeFollower::MapFromEye(const GeodeticPosition& eye) const {

@@ -165,12 +165,12 @@ class ShadeFollower {
     std::shared_ptr<const GroundSampler> ground;
     ShadeSize size;
     LocalFrame frame;
-    glm::dvec3 to_sun;  // in the frame
-    double sun_radius_rad;
+    glm::dvec3 to_light;  // in the frame
+    double radius_rad;
   };
   struct Made {
     LocalFrame frame;
-    glm::dvec3 to_sun;  // in the frame
+    glm::dvec3 to_light;  // in the frame
     SunShadowMap map;
     double making_s;
   };

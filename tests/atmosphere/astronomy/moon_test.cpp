@@ -215,7 +215,7 @@ MoonPosition PositionAtPhase(double phase_angle_rad, double sun_distance_au = 1.
 /// Returns the disk of a moon in the east.
 MoonDisk DiskOf(const MoonPosition& moon) {
   const double a = moon.phase_angle_rad;
-  return MoonDiskOf(moon, {1.0, 0.0, 0.0}, {-std::cos(a), 0.0, std::sin(a)}, 1.0);
+  return MoonDiskOf(moon, Unrefracted({1.0, 0.0, 0.0}), {-std::cos(a), 0.0, std::sin(a)}, 1.0);
 }
 
 MoonDisk AtPhase(double degrees) { return DiskOf(PositionAtPhase(degrees * kRadiansPerDegree)); }

@@ -49,8 +49,8 @@ struct MediaStage {
     SunPosition sun;
     sun.distance_au = 1.0;
     Lighting at = LightingOf(sun, UtcInstant{}, {.latitude_rad = 0.8}, medium);
-    at.to_sun = at.to_sun_for_air = kToSun;
-    at.sun_radius_rad = 0.00465;
+    at.source.direction = Unrefracted(kToSun);
+    at.source.radius_rad = 0.00465;
     return at;
   }();
 
@@ -61,12 +61,12 @@ struct MediaStage {
   /// Returns the sun's light, before scattering, at a point as an eye 50 m up sees it through 300 m
   /// of air.
   [[nodiscard]] BandLight SunSeen(const glm::dvec3& point, double mu) const {
-    const LocalSun sun = LocalSunAt(geometry, point, light.Sun());
+    const LocalLight sun = LocalLightAt(geometry, point, light.source);
     ViewRay to;
     to.altitude_m = 50.0;
     to.mu = mu;
     to.length_m = 300.0;
-    return air.single_scattering().TransmittanceAlong(to) * light.irradiance *
+    return air.single_scattering().TransmittanceAlong(to) * light.source.irradiance *
            air.BeamLeft(sun.altitude_m, sun.mu_s_effective);
   }
 };
@@ -110,7 +110,7 @@ TEST(MediaLight, ThinVolumeScattersSunAndSkyOnce) {
   to.mu = 0.0;
   to.length_m = 300.0;
   const BandLight view =
-      stage.air.single_scattering().TransmittanceAlong(to) * stage.light.irradiance;
+      stage.air.single_scattering().TransmittanceAlong(to) * stage.light.source.irradiance;
   const SkyMoments sky(stage.air.multiple_scattering(), stage.geometry.UpAt(there), kToSun, {50.0});
   const BandLight from_sky = sky.Towards(
       look,
@@ -240,7 +240,7 @@ TEST(MediaLight, LampsLightAVolumeLikeHomogeneousAir) {
   MediaStage stage(tests::ThreeBandAir());
   stage.scene.lights = {tests::LampNear(stage.scene.place, 60.0, 0.0, 52.0, 100.0)};
   const LampLight lamps(stage.scene, stage.ground, stage.medium, stage.colour);
-  stage.light.to_sun = stage.light.to_sun_for_air = {0.0, 0.6, -0.8};
+  stage.light.source.direction = Unrefracted({0.0, 0.6, -0.8});
   const MediumOptics optics = Optics(0.01, 0.8);
   const MediaLight lit =
       stage.Lit({Box({0.0, 0.0, -200.0}, {500.0, 500.0, 500.0}, optics)}, &lamps);
@@ -305,7 +305,7 @@ TEST(FogLight, IsNowhereNegative) {
     fog.optics.phase = LobeOf(g);
     BandLight sun(3);
     std::fill_n(sun.value.begin(), sun.count, 0.8F);
-    const FogLight lit(fog, stage.air.multiple_scattering(), {kToSun, kToSun, sun}, 0.0);
+    const FogLight lit(fog, stage.air.multiple_scattering(), Unrefracted(kToSun), sun, 0.0);
     for (const double height_m : {0.0, 10.0, 60.0, 200.0}) {
       for (const double z : {-1.0, -0.5, 0.0, 0.5, 1.0}) {
         const glm::dvec3 look(std::sqrt(1.0 - z * z), 0.0, z);

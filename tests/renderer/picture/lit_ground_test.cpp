@@ -65,14 +65,14 @@ TerrainHit GroundAt(double x, double y) {
 /// The share of the disk's light that reaches a place, by rays.
 double SunlightByRays(const LitGround& lit, const TerrainHit& at) {
   constexpr int kRays = 24;
-  const glm::dvec3& sun = lit.lighting().to_sun;
+  const glm::dvec3& sun = lit.lighting().source.direction.seen;
   const glm::dvec3 side = glm::normalize(glm::cross(sun, glm::dvec3(0.3, -0.5, 0.8)));
   const glm::dvec3 other = glm::cross(sun, side);
   double light = 0.0, all = 0.0;
   for (int i = 0; i < kRays; ++i) {
     const double rho = std::sqrt((i + 0.5) / kRays), angle = 2.0 * kPi * Halton(i + 1, 2);
     const glm::dvec3 d =
-        glm::normalize(sun + rho * lit.lighting().sun_radius_rad *
+        glm::normalize(sun + rho * lit.lighting().source.radius_rad *
                                  (std::cos(angle) * side + std::sin(angle) * other));
     all += LimbDarkening(rho);
     if (!TheSite()->ground().terrain->Occluded(at.smooth_point, at.geometric_normal, d,
@@ -89,7 +89,7 @@ TEST(LitGround, EdgesOfShadeLieWhereRaysFindThem) {
     double sum2 = 0.0;
     for (int i = 1; i <= 4000; ++i) {
       const Interpolated place = PlaceOfCase(lit, i);
-      const double incidence = glm::dot(place.normal, lit.lighting().to_sun);
+      const double incidence = glm::dot(place.normal, lit.lighting().source.direction.seen);
       if (incidence <= 0.0) continue;
       const double by_rays = SunlightByRays(lit, GroundAt(place.x, place.y));
       const double error = SunlightOverEdge(place.sun_x) - by_rays;
@@ -129,7 +129,7 @@ TEST(LitGround, MeshesOfAnotherDetailHaveTheSitesShadow) {
           TheSite()->Vertex(other.mesh().positions[vertex], other.mesh().normals[vertex]);
       const TerrainHit hit =
           GroundAt(static_cast<double>(at.position_m[0]), static_cast<double>(at.position_m[1]));
-      if (glm::dot(hit.normal, lit.lighting().to_sun) <= 0.0) continue;
+      if (glm::dot(hit.normal, lit.lighting().source.direction.seen) <= 0.0) continue;
       const double by_rays = SunlightByRays(lit, hit);
       ++places;
       if (by_rays < 0.5) ++shaded;
@@ -206,7 +206,7 @@ TEST(LitGround, SkyBetweenVerticesIsThatOfThePlace) {
 TEST(LitGround, ReliefChangesTheSkysLightAsTheOpenSkys) {
   for (const double elevation_deg : {40.0, 5.0, -3.0}) {
     const LitGround lit(TheSite(), tests::RoughSun(*TheSite(), elevation_deg));
-    const glm::dvec3& to_sun = lit.lighting().to_sun;
+    const glm::dvec3& to_sun = lit.lighting().source.direction.seen;
     const glm::dvec3 sunward = glm::normalize(glm::dvec3(to_sun.x, to_sun.y, 0.0));
     const OccludedSkyIrradiance::Extent& extent = TheSite()->horizons()->extent();
     const SkyIrradianceGradient tilt(TheSite()->air().single_scattering(),

@@ -51,7 +51,7 @@ void Bind(const ShaderProgram& program, const char* name, GLuint binding, const 
 
 SkyIrradianceGradient UnoccludedSkyOver(const LitGround& lit) {
   const SolvedAir& air = lit.site().air();
-  return {air.single_scattering(), air.multiple_scattering(), 1000.0, lit.lighting().to_sun.z};
+  return {air.single_scattering(), air.multiple_scattering(), 1000.0, lit.lighting().source.direction.seen.z};
 }
 
 /// The uniform blocks that shaders read for an eye over the origin of the site.
@@ -67,7 +67,7 @@ class Blocks {
         light.on_terrain->sky(), lit.site().air().multiple_scattering(),
         {material.HasWater() ? &material.water() : nullptr,
          material.cover().kind == GroundCover::Kind::kBlinnPhong ? &material.glossy() : nullptr},
-        lit.lighting().to_sun, std::max(extent.lowest_m, 0.0), std::max(extent.highest_m, 0.0));
+        lit.lighting().source.direction.seen, std::max(extent.lowest_m, 0.0), std::max(extent.highest_m, 0.0));
     textures_.SetGlossMirror(LightSource::kSun, mirror_);
   }
 
@@ -76,8 +76,8 @@ class Blocks {
     const Lighting& light = lit_.lighting();
     Bind(program, "Air", 0, air_, AirBlockOf(site.medium()));
     ViewBlock view{};
-    view.sun = {glm::vec3(light.to_sun), light.sun_radius_rad};
-    view.sun_for_air = {glm::vec3(light.to_sun_for_air), 0.0F};
+    view.sun = {glm::vec3(light.source.direction.seen), light.source.radius_rad};
+    view.sun_for_air = {glm::vec3(light.source.direction.for_air), 0.0F};
     view.eye = {eye_m_ / 1e3, 0.0, 0.0, 0.0};
     Bind(program, "View", 1, view_, view);
     const GroundPattern& pattern = site.geometry().pattern();
@@ -85,7 +85,7 @@ class Blocks {
     eye.sea_s = light.sea_s;
     Bind(program, "Ground", 2, ground_, WithAxesOf(pattern, GroundBlockOf(light.surface, eye)));
     Bind(program, "GroundLight", 3, light_,
-         GroundLightBlockOf(UnoccludedSkyOver(lit_), light.to_sun, kPixel_rad));
+         GroundLightBlockOf(UnoccludedSkyOver(lit_), light.source.direction.seen, kPixel_rad));
     Bind(program, "GroundSurface", 4, surface_,
          Draped(Mirrored(GroundSurfaceBlockOf(site.material()), mirror_), Picture(),
                 FrameTransform(site.ground().frame, site.ground().frame), pattern));
@@ -103,7 +103,7 @@ class Blocks {
     eye.height_m += eye_m_;
     const LocalFrame here(lit_.site().ground().frame.ellipsoid(), eye);
     Bind(program, "SkyByPixel", 5, sky_block_,
-         sky_.BlockOf(LightSource::kSun, here, lit_.lighting().to_sun, open));
+         sky_.BlockOf(LightSource::kSun, here, lit_.lighting().source.direction.seen, open));
     SkyByPixel::Connect(program, kUnit);
     sky_.Bind(kUnit, LightSource::kSun);
   }
@@ -150,7 +150,7 @@ std::vector<SeenPoint> LandPoints(const LitGround& lit) {
         c.hit.mesh_normal);
     c.light = lit.At(tests::VertexAt(lit.site(), c.hit.point, c.hit.mesh_normal));
     const double over_plane =
-        glm::dot(c.hit.mesh_normal, lit.lighting().to_sun) / lit.lighting().sun_radius_rad;
+        glm::dot(c.hit.mesh_normal, lit.lighting().source.direction.seen) / lit.lighting().source.radius_rad;
     if (std::abs(over_plane) > 1.0 && std::abs(c.light.sun_x) > 1.0F) cases.push_back(c);
   }
   return cases;
@@ -213,7 +213,7 @@ std::vector<double> Differences(const LitGround& lit, const Lighting& light, dou
     double sum = 0.0;
     for (const std::size_t band : {0U, 2U}) {
       sum += static_cast<double>(reference.radiance[band]) /
-             static_cast<double>(lit.lighting().irradiance[band]);
+             static_cast<double>(lit.lighting().source.irradiance[band]);
     }
     differences.push_back(std::abs(static_cast<double>(gpu[i]) / sum - 1.0));
   }
@@ -223,7 +223,7 @@ std::vector<double> Differences(const LitGround& lit, const Lighting& light, dou
 
 std::vector<double> LandDifferences(const LitGround& lit) {
   const SkyIrradianceGradient open = UnoccludedSkyOver(lit);
-  const glm::dvec3& to_sun = lit.lighting().to_sun;
+  const glm::dvec3& to_sun = lit.lighting().source.direction.seen;
   const glm::dvec3 sunward = glm::normalize(glm::dvec3(to_sun.x, to_sun.y, 0.0));
   const auto shares = [open, sunward, &lit](const SeenPoint& c) {
     const glm::dvec3& normal = c.hit.mesh_normal;
@@ -252,7 +252,7 @@ std::vector<double> PlanetDifferences(const LitGround& lit, double eye_m) {
   Lighting light = lit.lighting();
   const SolvedAir& air = lit.site().air();
   light.on_terrain = std::make_shared<const TerrainIrradiance>(
-      nullptr, air.single_scattering(), air.multiple_scattering(), light.to_sun);
+      nullptr, air.single_scattering(), air.multiple_scattering(), light.source.direction.seen);
   return Differences(lit, light, eye_m, PlanetPoints(lit, eye_m),
                      {"PlanetRadiance(" + kPoint + ", " + kToEye + ")",
                       [eye_m](const SeenPoint& c) { return PlaceOf(c, eye_m, {}); }});

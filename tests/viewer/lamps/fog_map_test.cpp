@@ -43,8 +43,8 @@ struct Stage {
     SunPosition sun;
     sun.distance_au = 1.0;
     Lighting at = LightingOf(sun, UtcInstant{}, {.latitude_rad = 0.8}, scene.medium);
-    at.to_sun = at.to_sun_for_air = to_sun;
-    at.sun_radius_rad = kFogSunRadius_rad;
+    at.source.direction = Unrefracted(to_sun);
+    at.source.radius_rad = kFogSunRadius_rad;
     return at;
   }
 };
@@ -71,7 +71,7 @@ struct BothFogs {
         light(TheStage().Under(to_sun)),
         renderer(media, TheStage().geometry, TheStage().air, light),
         map(MakeFogMap(*media.fog(), media.fog_bottom_m(), TheStage().air,
-                       {eye_m, to_sun, to_sun, kFogSunRadius_rad})),
+                       {eye_m, Unrefracted(to_sun), kFogSunRadius_rad})),
         painter({}) {
     painter.Upload(map);
   }
@@ -133,7 +133,7 @@ FogDeviation CompareFog(const BothFogs& both) {
     const double length = rays[i][3] > 1e5F ? kEndless : 1000.0 * double{rays[i][3]};
     const MarchedLight march = both.renderer.Along(both.eye, way, length, nullptr, 2e-4);
     largest = std::max(largest, std::abs(double{left[i]} - double{march.transmittance[1]}));
-    const double truth = double{march.radiance[1]} / double{both.light.irradiance[1]};
+    const double truth = double{march.radiance[1]} / double{both.light.source.irradiance[1]};
     if (march.transmittance[1] < 0.9F) {
       deviations.push_back(std::abs(double{gpu[i]} / truth - 1.0));
     }
@@ -182,7 +182,7 @@ TEST_F(FogOnTheCard, LeavesTheGroundWhatTheRendererDoes) {
     }
   }
   const std::vector<float> sun =
-      both.OnGpu("FogSunLeft(a[0], " + std::to_string(both.map.view.to_sun.z) + ")", points);
+      both.OnGpu("FogSunLeft(a[0], " + std::to_string(both.map.view.light.seen.z) + ")", points);
   const std::vector<float> sky = both.OnGpu("FogSkyLeft(a[0])", points);
   const std::vector<float> added = both.OnGpu("FogOnSurface(a[0], a[1])[1]", points);
   for (std::size_t i = 0; i < points.size(); ++i) {
@@ -196,9 +196,9 @@ TEST_F(FogOnTheCard, LeavesTheGroundWhatTheRendererDoes) {
 }
 
 TEST(FogMap, ServesWhileTheEyeStandsAndNotWhenItHasRisen) {
-  const FogView made{10.0, kToSun, kToSun, kFogSunRadius_rad};
-  EXPECT_TRUE(Serves(made, {12.0, kToSun, kToSun, kFogSunRadius_rad}, 60.0));
-  EXPECT_FALSE(Serves(made, {100.0, kToSun, kToSun, kFogSunRadius_rad}, 60.0));
+  const FogView made{10.0, Unrefracted(kToSun), kFogSunRadius_rad};
+  EXPECT_TRUE(Serves(made, {12.0, Unrefracted(kToSun), kFogSunRadius_rad}, 60.0));
+  EXPECT_FALSE(Serves(made, {100.0, Unrefracted(kToSun), kFogSunRadius_rad}, 60.0));
 }
 
 TEST_F(FogOnTheCard, ReachesADepthWhereItHasThatDepthForAnyEye) {

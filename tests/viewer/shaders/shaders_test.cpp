@@ -657,7 +657,7 @@ TEST_F(SunLight, TheDiskIsDarkenedAtItsLimbAsTheRenderersIs) {
 }
 
 TEST_F(SunLight, TheMoonIsThatOfTheRenderer) {
-  MoonDisk moon{{0.6, 0.0, 0.8}, {}, 0.0045, 0.05, 0.001};
+  MoonDisk moon{Unrefracted({0.6, 0.0, 0.8}), {}, 0.0045, 0.05, 0.001};
   moon.to_sun = glm::normalize(glm::dvec3(-0.2, 0.8, 0.1));
   const std::vector<ShaderPiece> pieces = WithViewerPieces(
       SharedTexts(), {"viewer/shaders/air.block.glsl", "viewer/shaders/view.block.glsl",
@@ -667,7 +667,7 @@ TEST_F(SunLight, TheMoonIsThatOfTheRenderer) {
   for (double right = -1.3; right <= 1.3; right += 0.1) {
     for (double up = -1.3; up <= 1.3; up += 0.1) {
       const glm::dvec3 beside = right * glm::dvec3(0.0, 1.0, 0.0) + up * glm::dvec3(-0.8, 0.0, 0.6);
-      const glm::dvec3 direction = glm::normalize(moon.to_moon + moon.radius_rad * beside);
+      const glm::dvec3 direction = glm::normalize(moon.direction.seen + moon.radius_rad * beside);
       if (std::abs(std::hypot(right, up) - 1.0) < 0.02) continue;  // partly covered
       points.push_back({static_cast<float>(direction.x), static_cast<float>(direction.y),
                         static_cast<float>(direction.z)});
