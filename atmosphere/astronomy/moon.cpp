@@ -13,6 +13,7 @@
 #include "atmosphere/astronomy/sun.h"
 #include "atmosphere/base/error.h"
 #include "atmosphere/base/parsing.h"
+#include "atmosphere/math/angles.h"
 #include "atmosphere/math/constants.h"
 #include "atmosphere/math/numerics.h"
 #include "atmosphere/refraction/refraction.h"
@@ -79,10 +80,6 @@ double PositionAngle(const glm::dvec3& of, const glm::dvec3& at) {
   const glm::dvec3 north = glm::cross(at, east);
   const double angle = std::atan2(glm::dot(of, east), glm::dot(of, north));
   return angle < 0.0 ? angle + 2.0 * kPi : angle;
-}
-
-double AngleBetween(const glm::dvec3& a, const glm::dvec3& b) {
-  return std::atan2(glm::length(glm::cross(a, b)), glm::dot(a, b));
 }
 
 constexpr double kStep_s = 1200.0;
@@ -280,9 +277,7 @@ MoonDisk MoonDiskOf(const MoonPosition& moon, const LightDirection& direction,
   const double sunlight = SunlightAt(moon, earth_sun_au);
   const double seen = MoonReflectance(angle_rad, kWavelength_nm) / kPi;
   const double earthlit = MoonReflectance(0.0, kWavelength_nm) / kPi;
-  return {direction,
-          to_sun,
-          moon.angular_radius_rad,
+  return {direction, to_sun, moon.angular_radius_rad,
           2.0 * sunlight * seen / SpherePhase(angle_rad),
           sunlight * EarthIrradiance(moon) * earthlit};
 }
@@ -298,8 +293,7 @@ double MoonRadiance(const MoonDisk& moon, const glm::dvec3& direction) {
   if (glm::dot(direction, to_moon) <= 0.0) return 0.0;
   // Position on the disk, in radii; over half a degree, rays can be treated as parallel.
   const glm::dvec3 beside = direction - to_moon;
-  const glm::dvec3 at =
-      (beside - glm::dot(beside, to_moon) * to_moon) / std::sin(moon.radius_rad);
+  const glm::dvec3 at = (beside - glm::dot(beside, to_moon) * to_moon) / std::sin(moon.radius_rad);
   const double squared = glm::dot(at, at);
   if (squared >= 1.0) return 0.0;
   const double mu_seen = std::sqrt(1.0 - squared);

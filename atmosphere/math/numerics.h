@@ -18,6 +18,7 @@
 #include <queue>
 #include <span>
 #include <string>
+#include <string_view>
 #include <type_traits>
 #include <vector>
 
@@ -202,12 +203,15 @@ template <typename Function>
   return value;
 }
 
+/// FNV-1a hash of 64 bits (Fowler, Noll, Vo).
 class Fnv1a {
  public:
+  /// Adds bytes without their number.
+  void AddBytes(std::string_view bytes) {
+    for (const char byte : bytes) AddByte(static_cast<unsigned char>(byte));
+  }
   void Add(std::uint64_t word) {
-    for (int byte = 0; byte < 8; ++byte, word >>= 8) {
-      hash_ = (hash_ ^ (word & 0xffU)) * 0x100000001b3U;
-    }
+    for (int byte = 0; byte < 8; ++byte, word >>= 8) AddByte(word & 0xffU);
   }
   void Add(double value) { Add(std::bit_cast<std::uint64_t>(value == 0.0 ? 0.0 : value)); }
   void Add(const std::vector<double>& values) {
@@ -222,6 +226,8 @@ class Fnv1a {
   [[nodiscard]] std::uint64_t hash() const { return hash_; }
 
  private:
+  void AddByte(std::uint64_t byte) { hash_ = (hash_ ^ byte) * 0x100000001b3U; }
+
   std::uint64_t hash_ = 0xcbf29ce484222325U;
 };
 

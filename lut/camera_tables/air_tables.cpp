@@ -9,11 +9,11 @@
 #include <utility>
 
 #include "atmosphere/base/error.h"
+#include "atmosphere/math/angles.h"
 #include "atmosphere/math/constants.h"
 #include "atmosphere/medium/phase_text.h"
 #include "lut/camera_tables/air_rows.h"
 #include "lut/sky/sky_view.h"
-#include "lut/sky/sky_view_map.h"
 #include "lut/tables/transmittance_table.h"
 
 namespace alpenglow::lut {
@@ -22,7 +22,7 @@ namespace {
 // Returns the angle below the horizontal at which rays from altitude h are tangent to the sphere of
 // altitude z; 0 from below it.
 double DipToAltitude(double z, double h, double radius) {
-  return DipTo(std::max(h - z, 0.0), radius + h);
+  return DipOfHorizon(std::max(h - z, 0.0), radius + h);
 }
 
 }  // namespace

@@ -109,7 +109,8 @@ struct AirTexels {
   }
 };
 
-/// Eye and sun of the tables.
+/// Eye and sun of the tables. The tables begin at the azimuth of the sun, so that the elevations of
+/// its LightDirection suffice.
 struct AirEye {
   double altitude_m = 0.0;         // values below 0 are treated as 0
   double mu_s = 1.0;               // zenith cosine at the eye of the sun that illuminates the air

@@ -23,6 +23,7 @@
 
 #include "atmosphere/base/error.h"
 #include "atmosphere/base/parsing.h"
+#include "atmosphere/math/numerics.h"
 #include "lut/cli/outputs.h"
 #include "lut/layer.h"
 
@@ -35,18 +36,13 @@ namespace fs = std::filesystem;
   throw OutputError(fmt::format("{}: {}", target.string(), fault));
 }
 
-// FNV-1a (Fowler, Noll and Vo): reduces names of machines, with any characters, to eight digits.
-std::uint32_t Hash(std::string_view text) {
-  std::uint32_t hash = 2166136261U;
-  for (const char c : text) hash = (hash ^ static_cast<unsigned char>(c)) * 16777619U;
-  return hash;
-}
-
 /// Returns the "machine" part of the names of temporaries.
 std::string MachineText() {
   std::array<char, 256> name{};
   gethostname(name.data(), name.size() - 1);
-  return fmt::format("{:08x}", Hash(name.data()));
+  Fnv1a hash;  // reduces names of machines, with any characters, to eight digits
+  hash.AddBytes(name.data());
+  return fmt::format("{:08x}", static_cast<std::uint32_t>(hash.hash()));
 }
 
 /// Returns a name in the target's folder that no other process or thread uses:

@@ -2,6 +2,7 @@
 #include "lut/multiple_scattering/azimuth_fan_kernel.h"
 
 #include "atmosphere/ray/batch.h"
+#include "lut/multiple_scattering/cubic_lanes.h"
 #include "lut/multiple_scattering/four_bands.h"
 #include "lut/multiple_scattering/polarised_scattering.h"
 
@@ -71,18 +72,16 @@ void Gather(const FanGathering& work) {
     cell = cell < 1 ? 1 : cell;
     cell = cell > work.suns - 3 ? work.suns - 3 : cell;
     const float t = x - static_cast<float>(cell);
-    const float w0 = 0.5F * t * (-1.0F + t * (2.0F - t));
-    const float w1 = 0.5F * (2.0F + t * t * (-5.0F + 3.0F * t));
-    const float w2 = 0.5F * t * (1.0F + t * (4.0F - 3.0F * t));
-    const float w3 = 0.5F * t * t * (t - 1.0F);
+    const Weights<float> weight = Cubic<float>(t);
     const float* row = work.rows + 4 * orders * static_cast<std::size_t>(cell - 1);
     const float cosine = work.cosine[k];
     const float sine = work.sun_sine == nullptr ? 1.0F : work.sun_sine[k];
     float before = cosine, now = 1.0F;  // cos((m - 1) phi), cos(m phi)
     Four sum = {};
     for (std::size_t m = 0; m < orders; ++m, row += 4) {
-      const Four there = w0 * LoadFour(row) + w1 * LoadFour(row + 4 * orders) +
-                         w2 * LoadFour(row + 8 * orders) + w3 * LoadFour(row + 12 * orders);
+      const Four there = weight.w0 * LoadFour(row) + weight.w1 * LoadFour(row + 4 * orders) +
+                         weight.w2 * LoadFour(row + 8 * orders) +
+                         weight.w3 * LoadFour(row + 12 * orders);
       sum += now * SinePower(m, sine) * there;
       const float next = 2.0F * cosine * now - before;
       before = now;

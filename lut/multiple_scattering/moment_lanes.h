@@ -9,6 +9,7 @@
 #include <type_traits>
 
 #include "atmosphere/ray/batch.h"
+#include "lut/multiple_scattering/cubic_lanes.h"
 #include "lut/multiple_scattering/moment_kernel.h"
 
 namespace alpenglow::lut {
@@ -85,26 +86,6 @@ Eight Pair(float a, float b) {
   return value;
 }
 #endif
-
-template <typename T>
-struct Weights {
-  T w0, w1, w2, w3;
-};
-
-namespace shared {
-using namespace atmosphere::shared;
-// clang-format off
-#include "atmosphere/shared_glsl/shared_begin.h"
-#include "lut/tables/cubic_taps.glsl"
-#include "atmosphere/shared_glsl/shared_end.h"
-// clang-format on
-}  // namespace shared
-
-template <typename T>
-Weights<T> Cubic(const T& t) {
-  using namespace shared;
-  return {CubicWeight0<T>(t), CubicWeight1<T>(t), CubicWeight2<T>(t), CubicWeight3<T>(t)};
-}
 
 template <typename T>
 T SunPosition(const MomentGrid& grid, const T& mu_s) {

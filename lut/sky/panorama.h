@@ -61,7 +61,7 @@ enum class PanoramaOrientation { kNorth, kBlender, kOpenExr, kThree, kUnity, kGo
 /// Returns the azimuth, from north over east [rad], of the centre of a picture.
 [[nodiscard]] double CentreAzimuth(PanoramaOrientation orientation);
 
-/// The sun as seen in the picture. Rays are straight.
+/// The sun that a user places in the picture, by angles and without an ephemeris. Rays are straight.
 struct PanoramaSun {
   double elevation_rad = 0.0;
   double azimuth_rad = kPi;  // from north over east

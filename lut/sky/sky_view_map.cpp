@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "atmosphere/math/angles.h"
 #include "atmosphere/math/constants.h"
 
 namespace alpenglow::lut {
@@ -40,17 +41,13 @@ AzimuthCrowd CrowdAtTerminator(double dip, double mu_s) {
 
 }  // namespace
 
-double DipTo(double depth, double r) {
-  return std::atan2(std::sqrt(depth * (2.0 * r - depth)), r - depth);
-}
-
 SkyViewMap::SkyViewMap(const Medium& medium, double altitude_m, double mu_s) {
   const double h = std::max(altitude_m, 0.0);
   const double r = medium.planet_radius_m + h;
-  const double dip = DipTo(h, r);
+  const double dip = DipOfHorizon(h, r);
   horizon_ = 0.5 * kPi + dip;
   outside_ = h > medium.atmosphere_height_m;
-  if (outside_) edge_ = 0.5 * kPi + DipTo(h - medium.atmosphere_height_m, r);
+  if (outside_) edge_ = 0.5 * kPi + DipOfHorizon(h - medium.atmosphere_height_m, r);
 
   const double layer = std::min(medium.mie_scale_height_m, medium.rayleigh_scale_height_m);
   // The perigee rises by r (cos(dip - e) - cos(dip)) above the horizon: this is solved for one

@@ -27,10 +27,6 @@
 
 namespace alpenglow::lut {
 
-/// Returns the angle [rad] from the horizontal down to the line that touches a sphere `depth` below an
-/// observer at a distance r from its centre. Both have one unit.
-[[nodiscard]] double DipTo(double depth, double r);
-
 /// Concentration of columns: strength A, azimuth p_t and width w [rad].
 struct AzimuthCrowd {
   double strength = 0.0, azimuth = 0.0, width = 1.0;

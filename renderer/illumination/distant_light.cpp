@@ -24,8 +24,7 @@ LocalLight LocalLightAt(const SceneGeometry& geometry, const glm::dvec3& point,
   const glm::dvec3 up = geometry.UpAt(point);
   const auto cosine = [&](const glm::dvec3& to) { return std::clamp(glm::dot(up, to), -1.0, 1.0); };
   const double horizon = -std::sqrt(altitude * (2.0 * r + altitude)) / (r + altitude);
-  const VisibleDisk disk =
-      DiskOverHorizon(cosine(light.direction.seen), horizon, light.radius_rad);
+  const VisibleDisk disk = DiskOverHorizon(cosine(light.direction.seen), horizon, light.radius_rad);
   return {altitude, up, cosine(light.direction.for_air), disk.fraction, disk.mu_s_effective};
 }
 

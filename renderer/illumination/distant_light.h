@@ -5,6 +5,7 @@
 //
 //   LocalLight   what one point receives of it, without shadows of terrain
 //   Lighting     one of them with the scene that it lights (lighting.h)
+//   EclipsedSun  what the moon leaves of the sun (lighting.h)
 //   FrameLight   one of them with its shadows and its light in media, for one picture
 //                (frame_context.h)
 //

@@ -7,6 +7,8 @@
 
 #include "atmosphere/astronomy/moon.h"
 #include "atmosphere/astronomy/sun.h"
+#include "atmosphere/math/angles.h"
+#include "atmosphere/math/constants.h"
 
 namespace alpenglow::renderer {
 
@@ -54,7 +56,8 @@ Lighting Lighting::By(const DistantLight& light) const {
 }
 
 BandLight MoonColour(const MoonDisk& moon, const std::vector<double>& wavelengths_nm) {
-  const double phase_rad = std::acos(std::clamp(-glm::dot(moon.direction.seen, moon.to_sun), -1.0, 1.0));
+  const double phase_rad =
+      std::acos(std::clamp(-glm::dot(moon.direction.seen, moon.to_sun), -1.0, 1.0));
   const double grey = MoonReflectance(phase_rad, 550.0);
   BandLight colour(wavelengths_nm.size());
   for (std::size_t band = 0; band < colour.count; ++band)
@@ -65,13 +68,13 @@ BandLight MoonColour(const MoonDisk& moon, const std::vector<double>& wavelength
 DistantLight MoonlightOf(const MoonDisk& disk, const SkyBodies& bodies, const BandLight& colour,
                          const BandLight& sun) {
   const double share = MoonIrradiance(bodies.moon, bodies.sun.distance_au, 550.0);
-  return {disk.direction, disk.radius_rad,
-          static_cast<float>(share) * (colour * sun)};
+  return {disk.direction, disk.radius_rad, static_cast<float>(share) * (colour * sun)};
 }
 
 double DepressionOfDarkAir(double altitude_m, double radius_m, double atmosphere_height_m) {
   const auto dip = [&](double height_m) {
-    return std::acos(radius_m / (radius_m + std::max(height_m, 0.0)));
+    const double over_m = std::max(height_m, 0.0);
+    return DipOfHorizon(over_m, radius_m + over_m);
   };
   return dip(altitude_m) + 2.0 * dip(atmosphere_height_m) + kRadiansPerDegree;
 }

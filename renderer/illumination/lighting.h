@@ -41,9 +41,9 @@ struct EclipsedSun {
 
 /// Light in the air and on surfaces by one distant light, and what is visible beside it.
 struct Lighting {
-  DistantLight source;  // the sun, uncovered by the moon; after By(), any single light
-  MountainSurface surface;                      // with its seasonal cover
-  double sea_s = 0.0;                           // time of the waves, see SeaTime
+  DistantLight source;      // the sun, uncovered by the moon; after By(), any single light
+  MountainSurface surface;  // with its seasonal cover
+  double sea_s = 0.0;       // time of the waves, see SeaTime
   std::optional<MoonDisk> moon = std::nullopt;  // visible disk
   BandLight moon_colour = {};                   // reflectance relative to that at 550 nm
   glm::dvec3 moon_turn{0.0};  // axis and angle [rad] of its motion while the shutter is open
@@ -59,7 +59,8 @@ struct Lighting {
   std::shared_ptr<const TerrainIrradiance> on_terrain = nullptr;
 
   /// Returns the irradiance of the sun above the air without the moon in front of it.
-  [[nodiscard]] const BandLight& WholeSun() const { return eclipse ? eclipse->whole : source.irradiance;
+  [[nodiscard]] const BandLight& WholeSun() const {
+    return eclipse ? eclipse->whole : source.irradiance;
   }
   /// Returns this lighting with the moon in front of the sun. Each band keeps the uncovered
   /// fraction, with limb darkening, but at least that of the corona, a millionth of the whole sun

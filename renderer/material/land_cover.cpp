@@ -5,8 +5,10 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <glm/vec3.hpp>
 #include <span>
 
+#include "atmosphere/math/angles.h"
 #include "atmosphere/math/constants.h"
 
 namespace alpenglow::renderer {
@@ -130,15 +132,10 @@ MountainClimate OfLatitude(double latitude) {
                (latitude - low.latitude) / (above->latitude - low.latitude));
 }
 
-// Returns the angle between two places on the sphere [rad]. Its rounding error is small against a
-// massif.
-double AngleBetween(const GeodeticPosition& place, const Massif& massif) {
-  const double latitude = massif.latitude * kRadiansPerDegree;
-  const double apart = place.longitude_rad - massif.longitude * kRadiansPerDegree;
-  return std::acos(
-      std::clamp(std::sin(place.latitude_rad) * std::sin(latitude) +
-                     std::cos(place.latitude_rad) * std::cos(latitude) * std::cos(apart),
-                 -1.0, 1.0));
+/// Returns the unit vector from the centre of the sphere to a place.
+glm::dvec3 OnUnitSphere(double latitude_rad, double longitude_rad) {
+  const double flat = std::cos(latitude_rad);
+  return {flat * std::cos(longitude_rad), flat * std::sin(longitude_rad), std::sin(latitude_rad)};
 }
 
 // Winter shares at the middles of the months of a northern year. Fresh snow descends quickly with
@@ -166,8 +163,11 @@ MountainClimate MountainClimateAt(const GeodeticPosition& place) {
   const MountainClimate zone = OfLatitude(place.latitude_rad / kRadiansPerDegree);
   double weights = kOfZone;
   MountainClimate sum{0.0, 0.0, 0.0};
+  const glm::dvec3 here = OnUnitSphere(place.latitude_rad, place.longitude_rad);
   for (const Massif& massif : kMassifs) {
-    const double away = AngleBetween(place, massif) / kReach;
+    const glm::dvec3 middle =
+        OnUnitSphere(massif.latitude * kRadiansPerDegree, massif.longitude * kRadiansPerDegree);
+    const double away = AngleBetween(here, middle) / kReach;
     const double weight = std::exp(-away * away);
     if (weight < 1e-4) continue;
     const MountainClimate there = OfLatitude(massif.latitude);

@@ -243,8 +243,7 @@ class FogMarch {
         view_(view),
         radius_m_(air.medium().planet_radius_m),
         eye_(0.0, 0.0, std::max(view.altitude_m, 0.0)),
-        light_(fog, air.multiple_scattering(),
-               view.light, SunInAir(Head(bottom_m)), bottom_m) {}
+        light_(fog, air.multiple_scattering(), view.light, SunInAir(Head(bottom_m)), bottom_m) {}
 
   [[nodiscard]] const FogLight& light() const { return light_; }
 

@@ -106,7 +106,8 @@ struct MediaLight::State {
   [[nodiscard]] Bands<double> VolumesToSun(const glm::dvec3& point) const;
   /// Returns the optical depth of the fog between a point and the sun.
   [[nodiscard]] double FogToSun(const glm::dvec3& point) const {
-    return media.fog()->optics.extinction_per_m[0] * fog_layer().ColumnToSpace(point, sun.direction.seen);
+    return media.fog()->optics.extinction_per_m[0] *
+           fog_layer().ColumnToSpace(point, sun.direction.seen);
   }
 
   [[nodiscard]] LitVolume Light(const LocalMedium& medium) const;
@@ -127,8 +128,7 @@ MediaLight::State::State(LocalMedia of, const SceneGeometry& over, const SolvedA
   const double scale = fog_layer().scale_height_m();
   const double bottom = media.fog_bottom_m();
   const glm::dvec3 head(0.0, 0.0, bottom + (std::isinf(scale) ? 0.0 : scale));
-  fog.emplace(*media.fog(), air.multiple_scattering(),
-              sun.direction, SunInAir(head), bottom);
+  fog.emplace(*media.fog(), air.multiple_scattering(), sun.direction, SunInAir(head), bottom);
 }
 
 BandLight MediaLight::State::SunInAir(const glm::dvec3& point) const {

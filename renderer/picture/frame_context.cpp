@@ -177,7 +177,8 @@ std::shared_ptr<const RefractedViewRays> RefractedViewRaysOf(const FrameContext&
   };
   const Lighting& light = frame.light();
   const bool may_see_sun = may_see(light.source.direction.seen, light.source.radius_rad);
-  const bool may_see_moon = light.moon && may_see(light.moon->direction.seen, light.moon->radius_rad);
+  const bool may_see_moon =
+      light.moon && may_see(light.moon->direction.seen, light.moon->radius_rad);
   const bool may_see_sea =
       !geometry.HasTerrain() && MayMoveSea(frame.limb(), seen, geometric_rad, half_pixel);
   const bool moves_terrain = geometry.HasTerrain() && MostLift(frame, height_m) > half_pixel;
@@ -193,8 +194,9 @@ std::shared_ptr<const RefractedViewRays> RefractedViewRaysOf(const FrameContext&
     return ChangeOfDisk(bent->view, Elevation(to_disk, up), radius_rad,
                         medium.wavelengths_nm.size()) > half_pixel;
   };
-  const bool moves_disk = (may_see_sun && moves(light.source.direction.seen, light.source.radius_rad)) ||
-                          (may_see_moon && moves(light.moon->direction.seen, light.moon->radius_rad));
+  const bool moves_disk =
+      (may_see_sun && moves(light.source.direction.seen, light.source.radius_rad)) ||
+      (may_see_moon && moves(light.moon->direction.seen, light.moon->radius_rad));
   const double horizon_rad = bent->view.horizon_rad();
   const bool moves_sea = may_see_sea && (seen.highest_rad > geometric_rad
                                              ? horizon_rad - geometric_rad
@@ -363,9 +365,9 @@ void FrameContext::AddSmallDisks() {
             [&](const glm::dvec3& from) { return shader.SunFrom(from); }, is_open});
   std::shared_ptr<const SmallDisk> small_moon;
   if (light().moon)
-    small_moon =
-        made({light().moon->direction.seen, kRefracted * light().moon->radius_rad, light().moon_turn,
-              [&](const glm::dvec3& from) { return shader.MoonFrom(from); }, is_open});
+    small_moon = made({light().moon->direction.seen, kRefracted * light().moon->radius_rad,
+                       light().moon_turn,
+                       [&](const glm::dvec3& from) { return shader.MoonFrom(from); }, is_open});
   sky_lights_.small_sun = small_sun;
   sky_lights_.small_moon = small_moon;
 }
@@ -378,7 +380,9 @@ void FrameContext::LightNight() {
   for (std::size_t band = 0; band < moon.by_sun.count; ++band)
     moon.by_sun[band] = moon.light.source.irradiance[band] / light().source.irradiance[band];
   if (Has(Effect::kShafts))
-    moon.shadows = scene_->moonlight().At(moon.light.source.direction.seen, moon.light.source.radius_rad).sunlight;
+    moon.shadows = scene_->moonlight()
+                       .At(moon.light.source.direction.seen, moon.light.source.radius_rad)
+                       .sunlight;
   lights_.push_back(std::move(moon));
 }
 

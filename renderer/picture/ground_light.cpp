@@ -21,8 +21,8 @@ glm::dvec3 TowardsDisk(const DistantLight& light, std::array<double, 2> sample) 
   const glm::dvec3 side = glm::normalize(across);
   const double rho = light.radius_rad * CircleOfLight(sample[0]);
   const double angle = 2.0 * kPi * sample[1];
-  return glm::normalize(to_light + rho * (std::cos(angle) * side +
-                                          std::sin(angle) * glm::cross(to_light, side)));
+  return glm::normalize(
+      to_light + rho * (std::cos(angle) * side + std::sin(angle) * glm::cross(to_light, side)));
 }
 
 // Returns whether terrain can stand between the ground at the hit and the sky.
@@ -41,8 +41,9 @@ std::shared_ptr<const TerrainIrradiance> GroundLight::OnTerrain(const GroundSour
   const std::shared_ptr<const TerrainHorizons> horizons =
       light.effects.Has(Effect::kHorizons) ? parts_.horizons.Get() : nullptr;
   if (!horizons && !parts_.material.HasGloss()) return nullptr;
-  auto on_terrain = std::make_shared<TerrainIrradiance>(
-      horizons, air_.single_scattering(), air_.multiple_scattering(), light.source.direction.for_air);
+  auto on_terrain = std::make_shared<TerrainIrradiance>(horizons, air_.single_scattering(),
+                                                        air_.multiple_scattering(),
+                                                        light.source.direction.for_air);
   if (horizons && light.effects.Has(Effect::kBounce)) {
     on_terrain->AddSlopes(
         air_.medium(),

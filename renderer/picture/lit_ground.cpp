@@ -11,6 +11,7 @@
 
 #include "atmosphere/base/error.h"
 #include "atmosphere/colour/spectrum.h"
+#include "atmosphere/math/angles.h"
 #include "atmosphere/ray/single_scattering.h"
 #include "atmosphere/time_place/geodesy.h"
 
@@ -80,10 +81,9 @@ GroundSky::GroundSky(std::shared_ptr<const GroundSite> site, Lighting light)
 
 TerrainIrradiance::OnSlope GroundSky::On(const GroundVertex& vertex) const {
   const SceneGeometry& geometry = site_->geometry();
-  const glm::dvec3 point = InDoubles(vertex.position_m);
+  const glm::dvec3 point = ToDouble(vertex.position_m);
   const glm::dvec3 up = geometry.UpAt(point);
-  const SlopePoint at{point, InDoubles(vertex.normal), up,
-                      std::max(geometry.AltitudeOf(point), 0.0),
+  const SlopePoint at{point, ToDouble(vertex.normal), up, std::max(geometry.AltitudeOf(point), 0.0),
                       std::clamp(glm::dot(up, light_.source.direction.for_air), -1.0, 1.0)};
   return light_.on_terrain->On(at);
 }
@@ -96,7 +96,7 @@ LitGround::LitGround(std::shared_ptr<const GroundSite> site, Lighting light,
       })) {}
 
 float LitGround::EdgeOver(const GroundVertex& vertex) const {
-  const glm::dvec3 point = InDoubles(vertex.position_m);
+  const glm::dvec3 point = ToDouble(vertex.position_m);
   return static_cast<float>(
       shadow_.Over({point.x, point.y, vertex.site_z_m}).Radii(LitVertex::kMostRadii));
 }
@@ -132,12 +132,8 @@ double DistanceOn(const Ellipsoid& ellipsoid, const GeodeticPosition& a,
   return DistanceBetween(LocalFrame(ellipsoid, foot_a), LocalFrame(ellipsoid, foot_b));
 }
 
-glm::dvec3 Direction(const SunPosition& sun) {
-  return DirectionFromAngles(sun.elevation_rad, sun.azimuth_rad).xyz;
-}
-
 double AngleBetweenDisks(const SunPosition& a, const SunPosition& b) {
-  return std::acos(std::clamp(glm::dot(Direction(a), Direction(b)), -1.0, 1.0));
+  return AngleBetween(DirectionOf(a).seen, DirectionOf(b).seen);
 }
 
 bool IsNear(const SunPosition& asked, const SunPosition& wanted) {
@@ -184,8 +180,9 @@ struct SharesOfUnoccludedSky {
 };
 SharesOfUnoccludedSky SharesAt(const GroundVertex& vertex, const GroundSky& sky,
                                const SkyIrradianceGradient& open) {
-  const glm::dvec3 normal = InDoubles(vertex.normal), to_light = sky.lighting().source.direction.seen;
-  const glm::dvec3 up = sky.site().geometry().UpAt(InDoubles(vertex.position_m));
+  const glm::dvec3 normal = ToDouble(vertex.normal),
+                   to_light = sky.lighting().source.direction.seen;
+  const glm::dvec3 up = sky.site().geometry().UpAt(ToDouble(vertex.position_m));
   const double flat = std::max(std::hypot(to_light.x, to_light.y), 1e-9);
   const double towards = (normal.x * to_light.x + normal.y * to_light.y) / flat;
   const std::array<float, 4> on_slope = open.On(glm::dot(normal, up), towards);
@@ -402,8 +399,8 @@ std::optional<GroundFollower::SkyOfSource> GroundFollower::SkyOf(LightSource sou
 
 std::optional<LightOfVertices> GroundFollower::Light() const {
   if (!made_.lit) return std::nullopt;
-  const Vector<Ecef> to_disk =
-      made_.lit->site().ground().frame.EcefFromEnu(Vector<Enu>{made_.lit->lighting().source.direction.seen});
+  const Vector<Ecef> to_disk = made_.lit->site().ground().frame.EcefFromEnu(
+      Vector<Enu>{made_.lit->lighting().source.direction.seen});
   const auto at = [made = made_](const LocalFrame& anchor, std::span<const LandVertex> vertices) {
     std::vector<VertexLight> light;
     light.reserve(vertices.size());

@@ -57,10 +57,6 @@ struct GroundVertex {
   float site_z_m;               // height of the site's ground at this place
 };
 
-[[nodiscard]] inline glm::dvec3 InDoubles(const std::array<float, 3>& v) {
-  return {static_cast<double>(v[0]), static_cast<double>(v[1]), static_cast<double>(v[2])};
-}
-
 /// Land around the eye. It is immutable and can be used by many threads.
 class GroundSite {
  public:

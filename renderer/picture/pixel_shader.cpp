@@ -8,6 +8,7 @@
 
 #include "atmosphere/astronomy/moon.h"
 #include "atmosphere/astronomy/sun.h"
+#include "atmosphere/math/angles.h"
 #include "atmosphere/math/constants.h"
 #include "renderer/material/band_light.h"
 #include "renderer/picture/frame_context.h"
@@ -298,12 +299,6 @@ void AddLamps(const FrameContext& frame, int x, int y, SharedSegmentAir& rays) {
 
 namespace {
 
-/// Returns the angle between unit vectors, computed from the chord: the arc cosine of a number near
-/// 1 loses all digits.
-double AngleBetween(const glm::dvec3& a, const glm::dvec3& b) {
-  return 2.0 * std::asin(std::min(0.5 * glm::length(a - b), 1.0));
-}
-
 /// Returns the angular distance of a direction from the centre of the sun, in solar radii; no value
 /// outside the disk and where the moon covers it.
 std::optional<double> PlaceOnSun(const glm::dvec3& direction, const glm::dvec3& to_sun,
@@ -324,7 +319,8 @@ BandLight RefractedSunDisk(const glm::dvec3& direction, const AirAlongRay& throu
                            const Medium& medium) {
   BandLight disk(light.source.irradiance.count);
   // The refracted disk is not wider than a circular one.
-  if (glm::length(direction - light.source.direction.seen) > 2.0 * light.source.radius_rad) return disk;
+  if (glm::length(direction - light.source.direction.seen) > 2.0 * light.source.radius_rad)
+    return disk;
   const double elevation = bent.ElevationOf(direction);
   const double per_sr = 1.0 / DiskSolidAngle(light.source.radius_rad);
   for (std::size_t band = 0; band < disk.count; ++band) {

@@ -361,8 +361,8 @@ ChosenPicture SceneRenderer::RenderWithin(const CameraSample& camera_sample,
     const auto& stars = known->directions();
     points.insert(points.end(), stars.begin(), stars.end());
   }
-  preview.groups =
-      PreviewPixels(frame.camera(), settings.width, settings.height, frame.light().source.direction.seen, points);
+  preview.groups = PreviewPixels(frame.camera(), settings.width, settings.height,
+                                 frame.light().source.direction.seen, points);
   std::vector<PixelPlace> places;
   for (const auto& group : preview.groups) places.insert(places.end(), group.begin(), group.end());
   const auto timed = [&](const FrameContext& of) {

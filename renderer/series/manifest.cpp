@@ -13,6 +13,7 @@
 #include "atmosphere/astronomy/sky_bodies.h"
 #include "atmosphere/base/error.h"
 #include "atmosphere/math/constants.h"
+#include "atmosphere/math/numerics.h"
 #include "lut/cli/messages.h"
 #include "lut/cli/program.h"
 #include "lut/cli/terminal.h"
@@ -23,32 +24,20 @@
 namespace alpenglow::renderer {
 namespace {
 
-/// FNV-1a hash of 64 bits (Fowler, Noll, Vo).
-class Hash {
- public:
-  void Add(std::string_view bytes) {
-    for (const char byte : bytes) {
-      value_ = (value_ ^ static_cast<unsigned char>(byte)) * 0x100000001b3U;
-    }
-  }
-  [[nodiscard]] std::string Text() const { return fmt::format("{:016x}", value_); }
-
- private:
-  std::uint64_t value_ = 0xcbf29ce484222325U;
-};
+std::string TextOf(const Fnv1a& hash) { return fmt::format("{:016x}", hash.hash()); }
 
 std::string HashOfFile(const std::filesystem::path& file, const std::stop_token& stop) {
   std::ifstream stream(file, std::ios::binary);
-  Hash hash;
+  Fnv1a hash;
   std::vector<char> block(1U << 20U);
   while (stream.read(block.data(), static_cast<std::streamsize>(block.size())) ||
          stream.gcount() > 0) {
-    hash.Add({block.data(), static_cast<std::size_t>(stream.gcount())});
+    hash.AddBytes({block.data(), static_cast<std::size_t>(stream.gcount())});
     if (stop.stop_requested())
       throw InputError(fmt::format("{}: is not read to its end", file.string()));
   }
   if (!stream.eof()) throw InputError(fmt::format("{}: cannot be read", file.string()));
-  return hash.Text();
+  return TextOf(hash);
 }
 
 std::string DegreesText(double radians) { return fmt::format("{}", radians / kRadiansPerDegree); }
@@ -307,14 +296,14 @@ Metadata NotesOn(const RayCount& rays, const RenderSettings& settings) {
 }
 
 std::string Fingerprint(const Metadata& metadata) {
-  Hash hash;
+  Fnv1a hash;
   for (const auto& [name, value] : metadata) {
-    hash.Add(name);
-    hash.Add({"\0", 1});
-    hash.Add(value);
-    hash.Add({"\0", 1});
+    hash.AddBytes(name);
+    hash.AddBytes({"\0", 1});
+    hash.AddBytes(value);
+    hash.AddBytes({"\0", 1});
   }
-  return hash.Text();
+  return TextOf(hash);
 }
 
 void FrameRecord::Set(std::string_view key, Value value) {

@@ -40,7 +40,7 @@ namespace alpenglow::renderer {
 /// Heights of the shadow of terrain for one direction of the sun. Immutable once made. Lengths in
 /// metres, in the frame of the heights, z up.
 struct SunShadowMap {
-  glm::dvec3 to_light{0.0};                   // direction of the sun
+  glm::dvec3 to_light{0.0};                 // direction of the sun
   glm::dvec3 sunwards{0.0}, across{0.0};    // horizontal unit vectors of u and v
   double first_u_m = 0.0, first_v_m = 0.0;  // of node (0, 0)
   double cell_m = 0.0;

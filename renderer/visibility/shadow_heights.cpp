@@ -73,7 +73,8 @@ ShadowHeights::ShadowHeights(const TriangleMesh& mesh, const glm::dvec3& to_ligh
                              double radius_rad, const Options& options) {
   ALPENGLOW_ENSURE(std::abs(glm::length(to_light) - 1.0), <, 1e-6);
   const double flat = std::hypot(to_light.x, to_light.y);
-  sunwards_ = flat > 0.0 ? glm::dvec3(to_light.x, to_light.y, 0.0) / flat : glm::dvec3(1.0, 0.0, 0.0);
+  sunwards_ =
+      flat > 0.0 ? glm::dvec3(to_light.x, to_light.y, 0.0) / flat : glm::dvec3(1.0, 0.0, 0.0);
   across_ = {-sunwards_.y, sunwards_.x, 0.0};
   const double elevation = std::atan2(to_light.z, flat);
   for (std::size_t beam = 0; beam < kBeams; ++beam) {

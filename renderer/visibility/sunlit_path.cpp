@@ -94,7 +94,8 @@ SunProbes::SunProbes(const Terrain& terrain, const glm::dvec3& to_light, double 
     : terrain_(terrain), to_light_(to_light), probes_(probes) {
   ALPENGLOW_ENSURE(probes, >=, 2);
   const double flat = std::hypot(to_light.x, to_light.y);
-  sunwards_ = flat > 0.0 ? glm::dvec3(to_light.x, to_light.y, 0.0) / flat : glm::dvec3(1.0, 0.0, 0.0);
+  sunwards_ =
+      flat > 0.0 ? glm::dvec3(to_light.x, to_light.y, 0.0) / flat : glm::dvec3(1.0, 0.0, 0.0);
   across_ = {-sunwards_.y, sunwards_.x, 0.0};
   upwards_ = glm::dvec3(0.0, 0.0, flat) - to_light.z * sunwards_;
   bottom_of_sun_ = glm::normalize(to_light - std::tan(radius_rad) * upwards_);

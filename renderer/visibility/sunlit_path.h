@@ -68,8 +68,7 @@ class SunProbes {
  public:
   /// @param to_light  unit vector in the frame of the terrain, z up.
   /// @param probes  number along the stretch of a ray that terrain can shade, at least 2.
-  SunProbes(const Terrain& terrain, const glm::dvec3& to_light, double radius_rad,
-            int probes = 32);
+  SunProbes(const Terrain& terrain, const glm::dvec3& to_light, double radius_rad, int probes = 32);
 
   /// Returns the sunlit stretches of a ray within [0, length_m]; length_m is finite.
   [[nodiscard]] SunlitPath Along(const glm::dvec3& origin, const glm::dvec3& unit,

@@ -67,8 +67,9 @@ void ShadowPrepared(benchmark::State& state) {
   ShadowHeights::Options options = LitGround::kShadowOfVertices;
   options.cell_m = static_cast<double>(state.range(0));
   for (auto unused : state) {
-    benchmark::DoNotOptimize(ShadowHeights(TheSite()->ground().terrain->mesh(), light.source.direction.seen,
-                                           light.source.radius_rad, options));
+    benchmark::DoNotOptimize(ShadowHeights(TheSite()->ground().terrain->mesh(),
+                                           light.source.direction.seen, light.source.radius_rad,
+                                           options));
   }
 }
 BENCHMARK(ShadowPrepared)->Arg(0)->Arg(60)->Arg(90)->Arg(120)->Unit(benchmark::kMillisecond);

@@ -72,7 +72,7 @@ class AirTextures {
 struct AirView {
   double altitude_m;    // altitude of the eye over the sphere that osculates the ellipsoid below it
   double latitude_rad;  // latitude of the eye
-  LightDirection light;  // sun or moon in the frame east, north, up of the eye
+  LightDirection light;                   // sun or moon in the frame east, north, up of the eye
   double ceiling_m = AirEye{}.ceiling_m;  // upper bound of the height of land
   bool operator==(const AirView&) const = default;
 };

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 
+#include "atmosphere/math/angles.h"
 #include "atmosphere/math/constants.h"
 #include "atmosphere/medium/standard_air.h"
 
@@ -244,7 +245,7 @@ AircraftState Pointed(const AircraftState& state, double step_s) {
   AircraftState next = state;
   const glm::dvec3 path = DirectionOf(state);
   if (glm::length(state.velocity.xyz) > kSlowest_m_per_s) {
-    const double apart = std::acos(std::clamp(glm::dot(state.ahead.xyz, path), -1.0, 1.0));
+    const double apart = AngleBetween(state.ahead.xyz, path);
     const glm::dvec3 toward = UnitAcross(path, state.ahead.xyz, state.up.xyz);
     const double turn = std::min(apart, kFastest_rad_per_s * step_s);
     const glm::dvec3 axis = glm::cross(state.ahead.xyz, toward);

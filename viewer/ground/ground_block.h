@@ -77,7 +77,8 @@ static_assert(offsetof(GroundLightBlock, ground_view) == sizeof(glm::vec4));
 /// @param to_light  unit vector in the frame of the eye.
 /// @param pixel_angle_rad  angle between neighbouring pixels; a larger angle gives coarser detail.
 [[nodiscard]] GroundLightBlock GroundLightBlockOf(const SkyIrradianceGradient& tilt,
-                                                  const glm::dvec3& to_light, double pixel_angle_rad);
+                                                  const glm::dvec3& to_light,
+                                                  double pixel_angle_rad);
 
 /// Mirrors the uniform block `GroundSurface` of ground_surface.glsl.
 struct GroundSurfaceBlock {

@@ -49,9 +49,7 @@ LandView LandIn(const PaintedView& view, const Medium& medium, int samples = 1) 
 }
 
 AirView AirViewOf(const CameraPose& eye, const SunPosition& sun) {
-  return {std::max(eye.place.height_m, 0.0),
-          eye.place.latitude_rad,
-          DirectionOf(sun)};
+  return {std::max(eye.place.height_m, 0.0), eye.place.latitude_rad, DirectionOf(sun)};
 }
 
 }  // namespace

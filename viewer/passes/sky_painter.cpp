@@ -284,7 +284,8 @@ std::vector<SkyPainter::SkyDisk> SkyPainter::DisksSeen(const PaintedView& view) 
   const FrameSky& sky = SkyOf(view);
   std::vector<SkyDisk> disks{
       {LightSource::kSun, DirectionToSun(sky.sun), sky.sun.angular_radius_rad}};
-  if (sky.moon) disks.push_back({LightSource::kMoon, sky.moon->direction.seen, sky.moon->radius_rad});
+  if (sky.moon)
+    disks.push_back({LightSource::kMoon, sky.moon->direction.seen, sky.moon->radius_rad});
   std::erase_if(disks, [&](const SkyDisk& disk) {
     return !PixelsOfDisk(disk.towards, disk.radius_rad, view);
   });

@@ -252,8 +252,8 @@ std::vector<StarPoint> StarPainter::PointsIn(const PaintedView& view, const Fram
   const glm::dmat3 turn =
       TurnOfSky(view.eye.place.latitude_rad, SecondsBetween(made.request.now, view.now));
   const MoonDisk moon = sky.moon.value_or(MoonDisk{});
-  return StarPointsIn(view,
-                      {made.lights, turn, faintest_lux, moon.direction.seen, moon.radius_rad, &made.bent});
+  return StarPointsIn(
+      view, {made.lights, turn, faintest_lux, moon.direction.seen, moon.radius_rad, &made.bent});
 }
 
 std::vector<PixelBox> StarPainter::Seen(const PaintedView& view, const FrameSky& sky) const {

@@ -156,8 +156,8 @@ TEST(LitGround, VerticesInAFrameFarAwayAreTheSameVertices) {
   std::vector<LitVertex> reference;
   for (std::size_t i = 0; i < mesh.positions.size(); i += 101) {
     reference.push_back(lit.At(TheSite()->Vertex(mesh.positions[i], mesh.normals[i])));
-    const Point<Ecef> point = here.EcefFromEnu(Point<Enu>{InDoubles(mesh.positions[i])});
-    const Vector<Ecef> normal = here.EcefFromEnu(Vector<Enu>{InDoubles(mesh.normals[i])});
+    const Point<Ecef> point = here.EcefFromEnu(Point<Enu>{ToDouble(mesh.positions[i])});
+    const Vector<Ecef> normal = here.EcefFromEnu(Vector<Enu>{ToDouble(mesh.normals[i])});
     framed.push_back({there.EnuFromEcef(point).xyz, there.EnuFromEcef(normal).xyz});
   }
   const std::vector<LitVertex> light = lit.LightIn<Framed>(there, framed);

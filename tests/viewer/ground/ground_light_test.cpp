@@ -51,7 +51,8 @@ void Bind(const ShaderProgram& program, const char* name, GLuint binding, const 
 
 SkyIrradianceGradient UnoccludedSkyOver(const LitGround& lit) {
   const SolvedAir& air = lit.site().air();
-  return {air.single_scattering(), air.multiple_scattering(), 1000.0, lit.lighting().source.direction.seen.z};
+  return {air.single_scattering(), air.multiple_scattering(), 1000.0,
+          lit.lighting().source.direction.seen.z};
 }
 
 /// The uniform blocks that shaders read for an eye over the origin of the site.
@@ -67,7 +68,8 @@ class Blocks {
         light.on_terrain->sky(), lit.site().air().multiple_scattering(),
         {material.HasWater() ? &material.water() : nullptr,
          material.cover().kind == GroundCover::Kind::kBlinnPhong ? &material.glossy() : nullptr},
-        lit.lighting().source.direction.seen, std::max(extent.lowest_m, 0.0), std::max(extent.highest_m, 0.0));
+        lit.lighting().source.direction.seen, std::max(extent.lowest_m, 0.0),
+        std::max(extent.highest_m, 0.0));
     textures_.SetGlossMirror(LightSource::kSun, mirror_);
   }
 
@@ -149,8 +151,8 @@ std::vector<SeenPoint> LandPoints(const LitGround& lit) {
                                        glm::dot(c.hit.mesh_normal, c.to_eye)),
         c.hit.mesh_normal);
     c.light = lit.At(tests::VertexAt(lit.site(), c.hit.point, c.hit.mesh_normal));
-    const double over_plane =
-        glm::dot(c.hit.mesh_normal, lit.lighting().source.direction.seen) / lit.lighting().source.radius_rad;
+    const double over_plane = glm::dot(c.hit.mesh_normal, lit.lighting().source.direction.seen) /
+                              lit.lighting().source.radius_rad;
     if (std::abs(over_plane) > 1.0 && std::abs(c.light.sun_x) > 1.0F) cases.push_back(c);
   }
   return cases;

@@ -263,7 +263,8 @@ TEST_F(SkyPainterTest, NoPixelGetsTheLightOfSunAndMoonTwice) {
   SkyPainter painter(scene, LandSourceOf(scene), view, SizesOf(Quality::kMedium),
                      tests::SharedAirOf(scene));
   const auto& moon = painter.SkyAt(view.eye.place, view.now)->moon;
-  ASSERT_TRUE(moon && PixelsOfDisk(moon->direction.seen, 0.0, view)) << "the moon is in the picture, too";
+  ASSERT_TRUE(moon && PixelsOfDisk(moon->direction.seen, 0.0, view))
+      << "the moon is in the picture, too";
   EXPECT_EQ(painter.BodiesSeen(view).size(), 1U) << "one box around both";
 }
 
@@ -390,8 +391,8 @@ TEST_F(DisksInTheSky, OfAFullMoonAndACrescentHaveTheirLight) {
     const double whole = light.Reference(moon.direction.seen, moon.radius_rad);
     ASSERT_GT(whole, 1e-3) << utc;
     for (const double fov : {12.0, 40.0, 150.0}) {
-      EXPECT_NEAR(light.In(light.Beside(moon.direction.seen, fov, 0.2 * fov, {64, 36}), 4) / whole, 1.0,
-                  0.05)
+      EXPECT_NEAR(light.In(light.Beside(moon.direction.seen, fov, 0.2 * fov, {64, 36}), 4) / whole,
+                  1.0, 0.05)
           << utc << ", field of view " << fov;
     }
   }
