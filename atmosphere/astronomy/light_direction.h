@@ -12,8 +12,12 @@
 // distances; DirectionOf turns them into vectors, which light everything.
 #pragma once
 
+#include <cmath>
+#include <glm/geometric.hpp>
 #include <glm/mat3x3.hpp>
 #include <glm/vec3.hpp>
+
+#include "atmosphere/math/angles.h"
 
 namespace alpenglow::atmosphere {
 
@@ -33,6 +37,21 @@ struct LightDirection {
 [[nodiscard]] inline LightDirection operator*(const glm::dmat3& to_from,
                                               const LightDirection& direction) {
   return {to_from * direction.seen, to_from * direction.for_air};
+}
+
+/// Returns the unit vector that a number of further steps on the great circle from `before` to `now`
+/// lead to.
+[[nodiscard]] inline glm::dvec3 MovedOn(double steps, const glm::dvec3& before,
+                                        const glm::dvec3& now) {
+  const glm::dvec3 axis = glm::cross(before, now);
+  const double sine = glm::length(axis);
+  if (sine == 0.0) return now;
+  const double turn = steps * AngleBetween(before, now);
+  return glm::normalize(std::cos(turn) * now + std::sin(turn) / sine * glm::cross(axis, now));
+}
+[[nodiscard]] inline LightDirection MovedOn(double steps, const LightDirection& before,
+                                            const LightDirection& now) {
+  return {MovedOn(steps, before.seen, now.seen), MovedOn(steps, before.for_air, now.for_air)};
 }
 
 }  // namespace alpenglow::atmosphere

@@ -32,11 +32,9 @@ inline constexpr std::size_t kLightSources = 2;
 [[nodiscard]] constexpr std::size_t IndexOf(LightSource source) {
   return static_cast<std::size_t>(source);
 }
-[[nodiscard]] constexpr LightSource OtherThan(LightSource source) {
-  return source == LightSource::kSun ? LightSource::kMoon : LightSource::kSun;
-}
 
 struct DistantLight {
+  LightSource body;
   LightDirection direction;  // of the visible centre of its disk
   double radius_rad;         // of the disk
   BandLight irradiance;      // above the air, W m^-2 nm^-1

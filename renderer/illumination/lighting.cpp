@@ -19,9 +19,13 @@ glm::dvec3 ToMoonBefore(const SunPosition& apparent_sun, const SkyBodies& bodies
 
 Lighting LightingOf(const SunPosition& sun, const UtcInstant& instant,
                     const GeodeticPosition& place, const Medium& medium, double wetness) {
+  return LightingOf(SunlightOf(sun, medium), instant, place, medium, wetness);
+}
+
+Lighting LightingOf(const DistantLight& light, const UtcInstant& instant,
+                    const GeodeticPosition& place, const Medium& medium, double wetness) {
   const MountainCover cover = CoverInSeason(place, instant.modified_julian_day);
-  return {SunlightOf(sun, medium), MountainSurface(medium.wavelengths_nm, cover, wetness),
-          SeaTime(instant)};
+  return {light, MountainSurface(medium.wavelengths_nm, cover, wetness), SeaTime(instant)};
 }
 
 Lighting Lighting::EclipsedBy(const EclipsedDisk& disk,
@@ -68,7 +72,8 @@ BandLight MoonColour(const MoonDisk& moon, const std::vector<double>& wavelength
 DistantLight MoonlightOf(const MoonDisk& disk, const SkyBodies& bodies, const BandLight& colour,
                          const BandLight& sun) {
   const double share = MoonIrradiance(bodies.moon, bodies.sun.distance_au, 550.0);
-  return {disk.direction, disk.radius_rad, static_cast<float>(share) * (colour * sun)};
+  return {LightSource::kMoon, disk.direction, disk.radius_rad,
+          static_cast<float>(share) * (colour * sun)};
 }
 
 double DepressionOfDarkAir(double altitude_m, double radius_m, double atmosphere_height_m) {

@@ -79,6 +79,10 @@ struct Lighting {
 [[nodiscard]] Lighting LightingOf(const SunPosition& sun, const UtcInstant& instant,
                                   const GeodeticPosition& place, const Medium& medium,
                                   double wetness = 0.0);
+/// Returns the lighting by any distant light.
+[[nodiscard]] Lighting LightingOf(const DistantLight& light, const UtcInstant& instant,
+                                  const GeodeticPosition& place, const Medium& medium,
+                                  double wetness = 0.0);
 
 /// Returns the moon's reflectance at the phase of the disk, relative to that at 550 nm.
 [[nodiscard]] BandLight MoonColour(const MoonDisk& moon, const std::vector<double>& wavelengths_nm);

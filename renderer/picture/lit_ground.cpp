@@ -132,27 +132,19 @@ double DistanceOn(const Ellipsoid& ellipsoid, const GeodeticPosition& a,
   return DistanceBetween(LocalFrame(ellipsoid, foot_a), LocalFrame(ellipsoid, foot_b));
 }
 
-double AngleBetweenDisks(const SunPosition& a, const SunPosition& b) {
-  return AngleBetween(DirectionOf(a).seen, DirectionOf(b).seen);
+double AngleBetweenDisks(const DistantLight& a, const DistantLight& b) {
+  return AngleBetween(a.direction.seen, b.direction.seen);
 }
 
-bool IsNear(const SunPosition& asked, const SunPosition& wanted) {
-  return AngleBetweenDisks(asked, wanted) < kSunMoves * wanted.angular_radius_rad;
+bool IsNear(const DistantLight& asked, const DistantLight& wanted) {
+  return AngleBetweenDisks(asked, wanted) < kSunMoves * wanted.radius_rad;
 }
 
 // Returns whether time has jumped. At 1000 times real time the sun moves by a tenth of this limit
 // per frame.
 bool IsAJump(const GroundFollower::View& before, const GroundFollower::View& now) {
   constexpr double kLargestStep_rad = 1.0 * kRadiansPerDegree;
-  return before.casts != now.casts || AngleBetweenDisks(before.by, now.by) > kLargestStep_rad;
-}
-
-SunPosition MovedOn(double steps, const SunPosition& before, const SunPosition& now) {
-  SunPosition after = now;
-  after.elevation_rad += steps * (now.elevation_rad - before.elevation_rad);
-  after.lower_for_air_rad += steps * (now.lower_for_air_rad - before.lower_for_air_rad);
-  after.azimuth_rad += steps * std::remainder(now.azimuth_rad - before.azimuth_rad, 2.0 * kPi);
-  return after;
+  return before.by.body != now.by.body || AngleBetweenDisks(before.by, now.by) > kLargestStep_rad;
 }
 
 double OpenAltitude_m(const GroundSite& site) {
@@ -160,9 +152,9 @@ double OpenAltitude_m(const GroundSite& site) {
   return std::max(0.5 * (extent.lowest_m + extent.highest_m), 0.0);
 }
 
-SkyIrradianceGradient UnoccludedSkyUnder(const GroundSite& site, const SunPosition& disk) {
+SkyIrradianceGradient UnoccludedSkyUnder(const GroundSite& site, const DistantLight& light) {
   return {site.air().single_scattering(), site.air().multiple_scattering(), OpenAltitude_m(site),
-          std::sin(SunForAir(disk).elevation_rad)};
+          light.direction.for_air.z};
 }
 
 std::array<float, 4> Over(const std::array<float, 4>& sky, const std::array<float, 4>& open) {
@@ -210,7 +202,7 @@ class GroundFollower::Maker {
     const auto begin = std::chrono::steady_clock::now();
     const View& view = request.view;
     Made made;
-    made.casts = view.casts;
+    made.casts = view.by.body;
     made.land = request.land;
     if (site) {
       made.lit = std::make_shared<const LitGround>(site, LightingBy(view.by, view, *site));
@@ -227,11 +219,11 @@ class GroundFollower::Maker {
   }
 
  private:
-  [[nodiscard]] static Lighting LightingBy(const SunPosition& disk, const View& view,
+  [[nodiscard]] static Lighting LightingBy(const DistantLight& from_eye, const View& view,
                                            const GroundSite& site) {
     const LocalFrame here(site.ground().frame.ellipsoid(), view.eye);
     Lighting light =
-        LightingOf(disk, view.now, view.eye, site.medium(), site.material().cover().wetness);
+        LightingOf(from_eye, view.now, view.eye, site.medium(), site.material().cover().wetness);
     LightDirection& direction = light.source.direction;
     for (glm::dvec3* to_light : {&direction.seen, &direction.for_air})
       *to_light = site.ground().frame.EnuFromEcef(here.EcefFromEnu(Vector<Enu>{*to_light})).xyz;
@@ -241,15 +233,15 @@ class GroundFollower::Maker {
   void AddMirrors(const Request& request, Made& made) const {
     const View& view = request.view;
     const GroundSky* const sky = made.lit ? &made.lit->sky() : nullptr;
-    made.gloss_mirrors[IndexOf(view.casts)] = MirrorFor(request, view.by, sky);
+    made.gloss_mirrors[IndexOf(view.by.body)] = MirrorFor(request, view.by, sky);
     if (view.other)
-      made.gloss_mirrors[IndexOf(OtherThan(view.casts))] =
+      made.gloss_mirrors[IndexOf(view.other->body)] =
           MirrorFor(request, *view.other, made.other.get());
   }
 
   // The mirror is also computed without land, because the sea mirrors the sky there too.
   // @param over_land  sky of this source over the land, or null.
-  [[nodiscard]] GlossMirror MirrorFor(const Request& request, const SunPosition& disk,
+  [[nodiscard]] GlossMirror MirrorFor(const Request& request, const DistantLight& light,
                                       const GroundSky* over_land) const {
     const GroundMaterial material(cover_, drape_, request.air->medium().wavelengths_nm);
     if (!material.HasGloss()) return {};
@@ -268,7 +260,7 @@ class GroundFollower::Maker {
                              over_land->lighting().source.direction.for_air, lowest_m, highest_m);
     }
     const SolvedAir here = request.air->OnSphereAt(request.view.eye.latitude_rad);
-    const glm::dvec3 to_light = DirectionOf(disk).for_air;
+    const glm::dvec3& to_light = light.direction.for_air;
     const OccludedSkyIrradiance sky(here.single_scattering(), multiple_scattering, to_light,
                                     OccludedSkyIrradiance::Extent{0.0, 1.0, 5e5});
     return GlossMirror::Of(sky, multiple_scattering, surfaces, to_light, 0.0, 0.0);
@@ -343,7 +335,8 @@ bool GroundFollower::Suits(const GroundExtent& extent, const Request& requested,
                            const Request& wanted) {
   if (requested.air != wanted.air || requested.ground != wanted.ground) return false;
   const View &before = requested.view, &now = wanted.view;
-  if (before.casts != now.casts || before.other.has_value() != now.other.has_value()) return false;
+  if (before.by.body != now.by.body || before.other.has_value() != now.other.has_value())
+    return false;
   const double width_m = extent.HalfWidthUnder(now.eye.height_m);
   return IsNear(before.by, now.by) && (!now.other || IsNear(*before.other, *now.other)) &&
          AreAlikeWide(extent, before.eye.height_m, now.eye.height_m) &&
@@ -365,8 +358,9 @@ GroundFollower::View Ahead(const GroundFollower::View& before, const GroundFollo
   if (step_rad == 0.0 || IsAJump(before, now)) return now;
   const double taken = std::min(steps, kFarthest_rad / step_rad);
   GroundFollower::View ahead = now;
-  ahead.by = MovedOn(taken, before.by, now.by);
-  if (now.other && before.other) ahead.other = MovedOn(taken, *before.other, *now.other);
+  ahead.by.direction = MovedOn(taken, before.by.direction, now.by.direction);
+  if (now.other && before.other)
+    ahead.other->direction = MovedOn(taken, before.other->direction, now.other->direction);
   return ahead;
 }
 

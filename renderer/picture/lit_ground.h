@@ -223,9 +223,8 @@ class GroundFollower {
   struct View {
     GeodeticPosition eye;
     UtcInstant now;
-    LightSource casts;                                // source that casts shadows
-    SunPosition by;                                   // its apparent position, seen from the eye
-    std::optional<SunPosition> other = std::nullopt;  // the other source, if it is significant
+    DistantLight by;  // that casts the shadows; in the frame east, north, up of the eye
+    std::optional<DistantLight> other = std::nullopt;  // if it is significant
   };
   /// Takes finished light and requests missing light. Call it once a frame. After each computation
   /// it pauses for four times the computation time to keep the CPU free for drawing. While the sun

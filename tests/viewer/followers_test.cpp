@@ -251,13 +251,18 @@ TEST_F(AirFollowerOnGpu, AMediumThatCannotBeShownIsRefusedAtOnce) {
 const GeodeticPosition kFollowedPlace = PlaceFromDegrees(46.5, 8.0, 0.0);
 constexpr GroundExtent kSmall{8e3, 128};
 
+DistantLight SunAt(double elevation_deg, double azimuth_rad) {
+  SunPosition sun{};
+  sun.elevation_rad = elevation_deg * kRadiansPerDegree;
+  sun.azimuth_rad = azimuth_rad;
+  sun.angular_radius_rad = 0.00465;
+  sun.distance_au = 1.0;
+  return SunlightOf(sun, MediumPreset("bruneton2017"));
+}
+
 GroundFollower::View ViewFrom(const GeodeticPosition& place, double elevation_deg) {
-  GroundFollower::View view{place, ParseInstant("2026-06-21T12:00:00Z"), LightSource::kSun, {}};
+  GroundFollower::View view{place, ParseInstant("2026-06-21T12:00:00Z"), SunAt(elevation_deg, 4.0)};
   view.eye.height_m = 1500.0;
-  view.by.elevation_rad = elevation_deg * kRadiansPerDegree;
-  view.by.azimuth_rad = 4.0;
-  view.by.angular_radius_rad = 0.00465;
-  view.by.distance_au = 1.0;
   return view;
 }
 
@@ -366,16 +371,17 @@ TEST(GroundFollower, LightIsMadeAnewForAnotherSunAndNotForTheSame) {
 }
 
 TEST(GroundFollower, ARunningSunIsMetWhereItWillStand) {
-  GroundFollower::View before = ViewFrom(kFollowedPlace, 5.0), now = ViewFrom(kFollowedPlace, 4.9);
-  before.by.azimuth_rad = 6.2831;
-  now.by.azimuth_rad = 1e-5;
-  const SunPosition ahead = Ahead(before, now, 20.0).by;
-  EXPECT_NEAR(ahead.elevation_rad / kRadiansPerDegree, 2.9, 1e-9);
-  const double step_rad = 2.0 * kPi + 1e-5 - 6.2831;
-  EXPECT_NEAR(ahead.azimuth_rad, 1e-5 + 20.0 * step_rad, 1e-9) << "over the north";
-  EXPECT_NEAR(Ahead(before, now, 1e4).by.elevation_rad / kRadiansPerDegree, -5.1, 0.1)
-      << "no further than ten degrees";
-  EXPECT_EQ(Ahead(ViewFrom(kFollowedPlace, 40.0), now, 20.0).by.elevation_rad, now.by.elevation_rad)
+  const GroundFollower::View before = ViewFrom(kFollowedPlace, 5.0),
+                             now = ViewFrom(kFollowedPlace, 4.9);
+  const auto elevation_deg = [](const GroundFollower::View& view) {
+    return std::asin(view.by.direction.seen.z) / kRadiansPerDegree;
+  };
+  const LightDirection ahead = Ahead(before, now, 20.0).by.direction;
+  EXPECT_NEAR(std::asin(ahead.seen.z) / kRadiansPerDegree, 2.9, 1e-9);
+  EXPECT_NEAR(std::asin(ahead.for_air.z) / kRadiansPerDegree, 2.9, 1e-9);
+  EXPECT_NEAR(std::atan2(ahead.seen.x, ahead.seen.y), 4.0 - 2.0 * kPi, 1e-9);
+  EXPECT_NEAR(elevation_deg(Ahead(before, now, 1e4)), -5.1, 0.1) << "no further than ten degrees";
+  EXPECT_EQ(Ahead(ViewFrom(kFollowedPlace, 40.0), now, 20.0).by.direction, now.by.direction)
       << "time has jumped";
 }
 
@@ -389,13 +395,7 @@ GeodeticPosition Eye(double degrees_north) {
           900.0};
 }
 
-SunPosition SunAtDegrees(double elevation) {
-  SunPosition sun{};
-  sun.elevation_rad = elevation * kRadiansPerDegree;
-  sun.azimuth_rad = 2.0;
-  sun.angular_radius_rad = 0.00465;
-  return sun;
-}
+DistantLight SunAtDegrees(double elevation) { return SunAt(elevation, 2.0); }
 
 /// A mountain at the place, whoever asks from near; counts how often it was asked.
 GroundSampler Mountain(std::atomic<int>& asked) {

@@ -46,7 +46,7 @@ double SkyDifferenceOf(const Image& image, const Image& expected) {
   const SunPosition sun =
       SunAt({kSkyLatitude_deg * kRadiansPerDegree, kSkyLongitude_deg * kRadiansPerDegree, 0.0},
             ParseInstant(kSkyInstant));
-  const glm::dvec3 to_sun = DirectionToSun(sun);
+  const glm::dvec3 to_sun = DirectionOf(sun).seen;
   double squares = 0.0, count = 0.0;
   for (int y = 0; y < kPanoramaHeight / 2 - 1; ++y) {
     for (int x = 0; x < kPanoramaWidth; ++x) {

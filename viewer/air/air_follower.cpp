@@ -259,10 +259,7 @@ AirView AirFollower::Ahead(const AirView& view, double seconds) const {
   if (!runs || AirChange(EyeOf(last_view_), EyeOf(view)) > kJump) return view;
   AirView ahead = view;
   const double frames = kShown * (making_s() + seconds) / seconds;
-  const auto gone_on = [&](glm::dvec3 LightDirection::*to) {
-    return glm::normalize(view.light.*to + frames * (view.light.*to - last_view_.light.*to));
-  };
-  ahead.light = {gone_on(&LightDirection::seen), gone_on(&LightDirection::for_air)};
+  ahead.light = MovedOn(frames, last_view_.light, view.light);
   return ahead;
 }
 

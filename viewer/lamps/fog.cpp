@@ -85,8 +85,8 @@ void FogPainter::Bind(const FogMap& map, const FogView& now, const FogPainter& o
 
 namespace {
 
-FogView FogViewOf(const CameraPose& eye, const SunPosition& sun) {
-  return {eye.place.height_m, DirectionOf(sun), sun.angular_radius_rad};
+FogView FogViewOf(const CameraPose& eye, const DistantLight& light) {
+  return {eye.place.height_m, light.direction, light.radius_rad};
 }
 
 }  // namespace
@@ -116,16 +116,16 @@ void SceneFog::BeginIn(const std::shared_ptr<const SolvedAir>& air, double latit
 }
 
 void SceneFog::Follow(const std::shared_ptr<const SolvedAir>& air, const CameraPose& eye,
-                      const SunPosition& sun) {
-  if (air_ != air) return WaitUntilReady(air, eye, sun);
+                      const DistantLight& light) {
+  if (air_ != air) return WaitUntilReady(air, eye, light);
   if (maps_->Update()) painter_.Upload(*maps_->value());
-  maps_->RequestWhenIdle(FogViewOf(eye, sun));
+  maps_->RequestWhenIdle(FogViewOf(eye, light));
 }
 
 void SceneFog::WaitUntilReady(const std::shared_ptr<const SolvedAir>& air, const CameraPose& eye,
-                              const SunPosition& sun) {
+                              const DistantLight& light) {
   if (air_ != air) BeginIn(air, eye.place.latitude_rad);
-  maps_->WaitUntilReady(FogViewOf(eye, sun));
+  maps_->WaitUntilReady(FogViewOf(eye, light));
   maps_->Update();
   painter_.Upload(*maps_->value());
 }
@@ -135,13 +135,14 @@ double SceneFog::ExtinctionAt(double altitude_m) const {
   return fog.optics.extinction_per_m[0] * fog.fog()->DensityAtAltitude(altitude_m);
 }
 
-void SceneFog::Bind(const CameraPose& eye, const SunPosition& sun) const {
-  painter_.Bind(*maps_->value(), FogViewOf(eye, sun));
+void SceneFog::Bind(const CameraPose& eye, const DistantLight& light) const {
+  painter_.Bind(*maps_->value(), FogViewOf(eye, light));
 }
 
-void SceneFog::Bind(const CameraPose& eye, const SunPosition& sun, const SceneFog& other,
-                    const SunPosition& other_sun) const {
-  painter_.Bind(*maps_->value(), FogViewOf(eye, sun), other.painter_, FogViewOf(eye, other_sun));
+void SceneFog::Bind(const CameraPose& eye, const DistantLight& light, const SceneFog& other,
+                    const DistantLight& other_light) const {
+  painter_.Bind(*maps_->value(), FogViewOf(eye, light), other.painter_,
+                FogViewOf(eye, other_light));
 }
 
 }  // namespace alpenglow::viewer

@@ -10,9 +10,9 @@
 #include <optional>
 #include <vector>
 
-#include "atmosphere/astronomy/sun.h"
 #include "atmosphere/base/async_value.h"
 #include "lut/camera_tables/air_tables.h"
+#include "renderer/illumination/distant_light.h"
 #include "renderer/media/fog_light.h"
 #include "renderer/media/local_media.h"
 #include "viewer/flight/flight.h"
@@ -73,12 +73,12 @@ class SceneFog {
 
   /// Takes a finished map and requests a missing one. Call it once a frame. It waits only for the
   /// first map in a medium.
-  /// @param sun  apparent position, seen from the eye.
+  /// @param light  in the frame east, north, up of the eye.
   void Follow(const std::shared_ptr<const SolvedAir>& air, const CameraPose& eye,
-              const SunPosition& sun);
+              const DistantLight& light);
   /// Waits for the map of the view.
   void WaitUntilReady(const std::shared_ptr<const SolvedAir>& air, const CameraPose& eye,
-                      const SunPosition& sun);
+                      const DistantLight& light);
 
   /// Returns the extinction of the fog at an altitude [1/m].
   [[nodiscard]] double ExtinctionAt(double altitude_m) const;
@@ -87,10 +87,10 @@ class SceneFog {
   void Connect(const ShaderProgram& program) const { painter_.Connect(program); }
   /// Binds everything for the next draw call of such a program. Call it after Follow or
   /// WaitUntilReady.
-  void Bind(const CameraPose& eye, const SunPosition& sun) const;
+  void Bind(const CameraPose& eye, const DistantLight& light) const;
   /// Binds the fog for a program with TWO_LIGHTS. @param other  the fog lit by the second light.
-  void Bind(const CameraPose& eye, const SunPosition& sun, const SceneFog& other,
-            const SunPosition& other_sun) const;
+  void Bind(const CameraPose& eye, const DistantLight& light, const SceneFog& other,
+            const DistantLight& other_light) const;
 
  private:
   void BeginIn(const std::shared_ptr<const SolvedAir>& air, double latitude_rad);

@@ -104,56 +104,22 @@ std::size_t GreenBand(const std::vector<double>& wavelengths_nm) {
 }
 
 // Returns the irradiance of a level surface by a light and the sky that it lights.
-BandLight LevelLight(const SkyLight& source, const AirOfSky& air, double altitude_m) {
-  const double mu = std::sin(source.disk.elevation_rad);
-  BandLight light = air.air->multiple_scattering().SkyIrradiance(
-      altitude_m, std::sin(SunForAir(source.disk).elevation_rad));
+BandLight LevelLight(const DistantLight& source, const AirOfSky& air, double altitude_m) {
+  const double mu = source.direction.seen.z;
+  BandLight light =
+      air.air->multiple_scattering().SkyIrradiance(altitude_m, source.direction.for_air.z);
   if (mu > 0.0) {
     light = light + static_cast<float>(mu) * air.air->BeamLeft(altitude_m, mu);
   }
-  for (std::size_t band = 0; band < light.count; ++band)
-    light[band] *= source.irradiance[static_cast<glm::length_t>(band)];
-  return light;
+  return light * source.irradiance;
 }
 
 // Returns the sunlight that the moon does not cover.
-SkyLight BesideMoon(const SkyLight& sun, const SkyBodies& bodies, const Medium& medium) {
+DistantLight BesideMoon(const DistantLight& sun, const SkyBodies& bodies, const Medium& medium) {
   const EclipsedDisk disk = bodies.Eclipse();
   if (!disk.IsCovered()) return sun;
-  const Lighting whole = LightingOf(sun.disk, bodies.instant, bodies.place, medium);
-  return {sun.disk, GpuBandsOf(whole.EclipsedBy(disk, medium.wavelengths_nm).source.irradiance)};
-}
-
-SunPosition AsPosition(const DistantLight& moon, double earth_sun_au) {
-  SunPosition position{};
-  const auto elevation = [](const glm::dvec3& to) {
-    return std::asin(std::clamp(to.z, -1.0, 1.0));
-  };
-  position.elevation_rad = elevation(moon.direction.seen);
-  position.lower_for_air_rad = position.elevation_rad - elevation(moon.direction.for_air);
-  position.azimuth_rad = std::atan2(moon.direction.seen.x, moon.direction.seen.y);
-  if (position.azimuth_rad < 0.0) position.azimuth_rad += 2.0 * kPi;
-  position.distance_au = earth_sun_au;
-  position.angular_radius_rad = moon.radius_rad;
-  return position;
-}
-
-}  // namespace
-
-SkyLight SunAsLight(const SunPosition& sun, const Medium& medium) {
-  const auto at_1_au = static_cast<float>(1.0 / (sun.distance_au * sun.distance_au));
-  return {sun, at_1_au * GpuBandsOf(medium.solar_irradiance)};
-}
-
-namespace {
-
-SkyLight MoonAsLight(const MoonDisk& disk, const SkyBodies& bodies, const SkyLight& whole_sun,
-                     const std::vector<double>& wavelengths_nm) {
-  BandLight solar(wavelengths_nm.size());
-  for (std::size_t band = 0; band < solar.count; ++band)
-    solar[band] = whole_sun.irradiance[static_cast<glm::length_t>(band)];
-  const DistantLight moon = MoonlightOf(disk, bodies, MoonColour(disk, wavelengths_nm), solar);
-  return {AsPosition(moon, whole_sun.disk.distance_au), GpuBandsOf(moon.irradiance), true};
+  const Lighting whole = LightingOf(sun, bodies.instant, bodies.place, medium);
+  return whole.EclipsedBy(disk, medium.wavelengths_nm).source;
 }
 
 // Returns the lights of a planet with a moon.
@@ -163,10 +129,11 @@ LightsOfSky LightsOf(const SkyBodies& bodies, const SunPosition& sun, const Moon
   // the horizon below its light.
   constexpr double kUnseenShare = 1e-4;
   const Medium& medium = air.air->medium();
-  const SkyLight whole_sun = SunAsLight(sun, medium);
-  const SkyLight by_sun = BesideMoon(whole_sun, bodies, medium);
+  const DistantLight whole_sun = SunlightOf(sun, medium);
+  const DistantLight by_sun = BesideMoon(whole_sun, bodies, medium);
   if (sun.elevation_rad > kMoonDoesNotCount_rad) return {by_sun};
-  const SkyLight by_moon = MoonAsLight(moon, bodies, whole_sun, medium.wavelengths_nm);
+  const DistantLight by_moon =
+      MoonlightOf(moon, bodies, MoonColour(moon, medium.wavelengths_nm), whole_sun.irradiance);
   const std::size_t green = GreenBand(medium.wavelengths_nm);
   const auto of_sun = double{LevelLight(by_sun, air, altitude_m)[green]};
   const auto of_moon = double{LevelLight(by_moon, air, altitude_m)[green]};
@@ -188,9 +155,9 @@ FrameSky FrameSkyAt(const GeodeticPosition& eye, const UtcInstant& now, const Ai
     sky.is_eclipse = bodies.Eclipse().IsCovered();
     if (sky.is_eclipse) sky.moon->direction.seen = ToMoonBefore(sky.sun, bodies);
   } else {
-    sky.lights = {SunAsLight(sky.sun, air.air->medium())};
+    sky.lights = {SunlightOf(sky.sun, air.air->medium())};
   }
-  for (const SkyLight& light : sky.lights)
+  for (const DistantLight& light : sky.lights)
     sky.level_lux += LevelIlluminance(light, air, altitude_m);
   return sky;
 }
@@ -208,18 +175,19 @@ const std::shared_ptr<const FrameSky>& FrameSkyFollower::At(
 }
 
 // Towards the light, ground sees it higher by the angle between the ground and the eye.
-bool HasSetOnGround(const SkyLight& light, const GroundReach& reach) {
-  return light.disk.elevation_rad < kSetOnLand_rad - reach.land_rad &&
-         light.disk.elevation_rad < -light.disk.angular_radius_rad - reach.planet_rad;
+bool HasSetOnGround(const DistantLight& light, const GroundReach& reach) {
+  const double elevation_rad = std::asin(std::clamp(light.direction.seen.z, -1.0, 1.0));
+  return elevation_rad < kSetOnLand_rad - reach.land_rad &&
+         elevation_rad < -light.radius_rad - reach.planet_rad;
 }
 
-const SkyLight* OfSource(const LightsOfSky& lights, LightSource source) {
-  for (const SkyLight& light : lights)
-    if (light.source() == source) return &light;
+const DistantLight* OfSource(const LightsOfSky& lights, LightSource source) {
+  for (const DistantLight& light : lights)
+    if (light.body == source) return &light;
   return nullptr;
 }
 
-double LevelIlluminance(const SkyLight& source, const AirOfSky& air, double altitude_m) {
+double LevelIlluminance(const DistantLight& source, const AirOfSky& air, double altitude_m) {
   return air.colour.Xyz(InDouble(LevelLight(source, air, altitude_m)))[1];
 }
 

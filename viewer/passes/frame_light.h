@@ -89,23 +89,9 @@ class NightSkyMapFollower {
   AsyncValue<Request, NightSkyMap> maker_;
 };
 
-/// The sun or the moon as a light.
-struct SkyLight {
-  SunPosition disk;      // apparent position from the eye, and radius
-  glm::vec4 irradiance;  // above the atmosphere, by band [W m^-2 nm^-1]
-  bool is_moon = false;
-
-  [[nodiscard]] LightSource source() const {
-    return is_moon ? LightSource::kMoon : LightSource::kSun;
-  }
-};
-
-/// Returns the sun as a light, not covered by the moon.
-/// @param sun  apparent.
-[[nodiscard]] SkyLight SunAsLight(const SunPosition& sun, const Medium& medium);
-
-/// The lights of the sky, at least one. The first casts the shadows.
-using LightsOfSky = std::vector<SkyLight>;
+/// The lights of the sky, at least one, in the frame east, north, up of the eye. The first casts the
+/// shadows.
+using LightsOfSky = std::vector<DistantLight>;
 
 /// Distances of the farthest ground in view, as angles at the planet's centre [rad].
 struct GroundReach {
@@ -114,10 +100,10 @@ struct GroundReach {
 };
 
 /// Returns whether no part of a light's disk is above the horizon of any ground in view.
-[[nodiscard]] bool HasSetOnGround(const SkyLight& light, const GroundReach& reach);
+[[nodiscard]] bool HasSetOnGround(const DistantLight& light, const GroundReach& reach);
 
 /// Returns the light of a source, or null if it is not in the list.
-[[nodiscard]] const SkyLight* OfSource(const LightsOfSky& lights, LightSource source);
+[[nodiscard]] const DistantLight* OfSource(const LightsOfSky& lights, LightSource source);
 
 /// A solved medium, with values of it that would take milliseconds in every frame.
 struct AirOfSky {
@@ -132,7 +118,7 @@ struct AirOfSky {
 };
 
 /// Returns the illuminance [lux] of a level surface by a light and the sky that it lights.
-[[nodiscard]] double LevelIlluminance(const SkyLight& source, const AirOfSky& air,
+[[nodiscard]] double LevelIlluminance(const DistantLight& source, const AirOfSky& air,
                                       double altitude_m);
 
 /// Sun, moon and their light, as one place sees them at one instant.

@@ -37,8 +37,8 @@ LandSize LandSizeOf(const PaintSizes& sizes) {
 }
 
 GroundFollower::View GroundViewOf(const PaintedView& view, const LightsOfSky& lights) {
-  GroundFollower::View seen{view.eye.place, view.now, lights.front().source(), lights.front().disk};
-  if (lights.size() > 1) seen.other = lights.back().disk;
+  GroundFollower::View seen{view.eye.place, view.now, lights.front()};
+  if (lights.size() > 1) seen.other = lights.back();
   return seen;
 }
 
@@ -48,8 +48,8 @@ LandView LandIn(const PaintedView& view, const Medium& medium, int samples = 1) 
   return seen;
 }
 
-AirView AirViewOf(const CameraPose& eye, const SunPosition& sun) {
-  return {std::max(eye.place.height_m, 0.0), eye.place.latitude_rad, DirectionOf(sun)};
+AirView AirViewOf(const CameraPose& eye, const LightDirection& light) {
+  return {std::max(eye.place.height_m, 0.0), eye.place.latitude_rad, light};
 }
 
 }  // namespace
@@ -72,8 +72,8 @@ PaintedScene::PaintedScene(const Scene& scene, const LandSource& land, const Pai
                            const PaintSizes& sizes, FirstAir first_air)
     : fixed_(scene, !land.IsEmpty()),
       sizes_(sizes),
-      sun_view_(AirViewOf(first.eye,
-                          ApparentSunAt(first.eye.place, first.now, GentleAirOf(MediumAt(scene))))),
+      sun_view_(AirViewOf(first.eye, DirectionOf(ApparentSunAt(first.eye.place, first.now,
+                                                               GentleAirOf(MediumAt(scene)))))),
       air_(first_air ? std::move(first_air) : TabulateAir(MediumAt(scene)), sizes.air, sun_view_),
       land_(std::make_unique<Landscape>(land, LandSizeOf(sizes), fixed_.ellipsoid)),
       ground_(scene.ground, fixed_.drape.colours, {}),
@@ -146,9 +146,9 @@ void PaintedScene::KeepUpAir(const PaintedView& view, const LightsOfSky& lights,
   const auto keep_up = [&](AirFollower& air, const AirView& seen) {
     pace == Pace::kFollow ? air.Follow(seen, seconds) : air.WaitUntilReady(seen);
   };
-  const SkyLight* moon = OfSource(lights, LightSource::kMoon);
-  if (const SkyLight* sun = OfSource(lights, LightSource::kSun))
-    sun_view_ = AirViewOf(view.eye, sun->disk);
+  const DistantLight* moon = OfSource(lights, LightSource::kMoon);
+  if (const DistantLight* sun = OfSource(lights, LightSource::kSun))
+    sun_view_ = AirViewOf(view.eye, sun->direction);
   keep_up(air_, sun_view_);
   if (known_air_ != air_.air()) {
     known_air_ = air_.air();
@@ -158,7 +158,7 @@ void PaintedScene::KeepUpAir(const PaintedView& view, const LightsOfSky& lights,
     ground_textures_.SetAir(known_air_->multiple_scattering());
   }
   if (moon == nullptr) return;
-  const AirView seen = AirViewOf(view.eye, moon->disk);
+  const AirView seen = AirViewOf(view.eye, moon->direction);
   if (!moon_air_ || moon_air_of_ != air_.air()) {
     moon_air_.emplace(air_.tabulated(), sizes_.air, seen, AirFollower::Drafts::kKept);
     moon_air_of_ = air_.air();
@@ -168,9 +168,9 @@ void PaintedScene::KeepUpAir(const PaintedView& view, const LightsOfSky& lights,
 }
 
 void PaintedScene::KeepUpOpenSkies(const LightsOfSky& lights, Pace pace) {
-  for (const SkyLight& light : lights) {
-    OpenSkyFollower& follower = open_skies_[IndexOf(light.source())];
-    const OpenSky sky{air_here_, ground_.open_altitude_m(), SunForAir(light.disk).elevation_rad};
+  for (const DistantLight& light : lights) {
+    OpenSkyFollower& follower = open_skies_[IndexOf(light.body)];
+    const OpenSky sky{air_here_, ground_.open_altitude_m(), std::asin(light.direction.for_air.z)};
     pace == Pace::kFollow ? follower.Follow(sky) : follower.WaitUntilReady(sky);
   }
 }
@@ -187,28 +187,27 @@ bool PaintedScene::HasEdgesNear(const Vector<Ecef>& to_light) const {
   return edges.to && is_near(*edges.to) && (!edges.from || is_near(*edges.from));
 }
 
-void PaintedScene::KeepUpEdges(const PaintedView& view, const SkyLight& key, double seconds) {
+void PaintedScene::KeepUpEdges(const PaintedView& view, const DistantLight& key, double seconds) {
   constexpr double kFades_s = 0.3;
-  casts_ = key.source();
-  const Vector<Ecef> to_light = LocalFrame(fixed_.ellipsoid, view.eye.place)
-                                    .EcefFromEnu(Vector<Enu>{DirectionToSun(key.disk)});
+  casts_ = key.body;
+  const Vector<Ecef> to_light =
+      LocalFrame(fixed_.ellipsoid, view.eye.place).EcefFromEnu(Vector<Enu>{key.direction.seen});
   has_edges_ = HasEdgesNear(to_light);
   momentary_edges_ = has_edges_ ? std::max(momentary_edges_ - seconds / kFades_s, 0.0) : 1.0;
-  land_->Use(MomentaryEdges{momentary_edges_, to_light, key.disk.angular_radius_rad});
+  land_->Use(MomentaryEdges{momentary_edges_, to_light, key.radius_rad});
 }
 
 void PaintedScene::KeepUpFog(const PaintedView& view, const LightsOfSky& lights, Pace pace) {
   if (!fog_) return;
-  for (const SkyLight& light : lights) {
-    SceneFog& fog = light.is_moon ? *moon_fog_ : *fog_;
-    pace == Pace::kFollow ? fog.Follow(air_.air(), view.eye, light.disk)
-                          : fog.WaitUntilReady(air_.air(), view.eye, light.disk);
+  for (const DistantLight& light : lights) {
+    SceneFog& fog = light.body == LightSource::kMoon ? *moon_fog_ : *fog_;
+    pace == Pace::kFollow ? fog.Follow(air_.air(), view.eye, light)
+                          : fog.WaitUntilReady(air_.air(), view.eye, light);
   }
 }
 
 void PaintedScene::Update(const PaintedView& view, const LightsOfSky& lights, double seconds) {
   std::erase_if(leaving_, [](const auto& land) { return !land->IsWorking(); });
-  const SunPosition& casting = lights.front().disk;
   KeepUpAir(view, lights, Pace::kFollow, seconds);
   land_->Update(view.eye.place, LandIn(view, air_.air()->medium()), seconds);
   awaits_land_ = awaits_land_ && !land_->HasCome();
@@ -217,7 +216,7 @@ void PaintedScene::Update(const PaintedView& view, const LightsOfSky& lights, do
   if (ground_.Follow(air_.air(), GroundViewOf(view, lights), seconds)) UpdateLight();
   TakeSkyByPixel();
   KeepUpOpenSkies(lights, Pace::kFollow);
-  if (sizes_.has_shafts) shade_.Follow(view.eye.place, casting, kShadeUnit);
+  if (sizes_.has_shafts) shade_.Follow(view.eye.place, lights.front(), kShadeUnit);
   KeepUpFog(view, lights, Pace::kFollow);
 }
 
@@ -232,13 +231,13 @@ void PaintedScene::WaitUntilReady(const PaintedView& view, const LightsOfSky& li
   TakeSkyByPixel();
   KeepUpOpenSkies(lights, Pace::kWait);
   KeepUpEdges(view, lights.front(), kLong_s);
-  if (sizes_.has_shafts) shade_.WaitUntilReady(view.eye.place, lights.front().disk, kShadeUnit);
+  if (sizes_.has_shafts) shade_.WaitUntilReady(view.eye.place, lights.front(), kShadeUnit);
   KeepUpFog(view, lights, Pace::kWait);
   awaits_land_ = false;
 }
 
 bool HasSkyByPixel(const PaintedScene& scene, const LightsOfSky& lights) {
-  return scene.sizes().sky_by_pixel && scene.sky_by_pixel(lights.front().source()) != nullptr;
+  return scene.sizes().sky_by_pixel && scene.sky_by_pixel(lights.front().body) != nullptr;
 }
 
 }  // namespace alpenglow::viewer

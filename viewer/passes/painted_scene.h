@@ -123,7 +123,7 @@ class PaintedScene {
   void KeepUpAir(const PaintedView& view, const LightsOfSky& lights, Pace pace, double seconds);
   void KeepUpOpenSkies(const LightsOfSky& lights, Pace pace);
   [[nodiscard]] bool HasEdgesNear(const Vector<Ecef>& to_light) const;
-  void KeepUpEdges(const PaintedView& view, const SkyLight& key, double seconds);
+  void KeepUpEdges(const PaintedView& view, const DistantLight& key, double seconds);
   void KeepUpFog(const PaintedView& view, const LightsOfSky& lights, Pace pace);
   void UpdateHeights();
   void UpdateLight();

@@ -115,10 +115,6 @@ int RowsOfPlanet(const PaintedView& view, double radius_km) {
   return std::min(static_cast<int>(0.5 * (over + 1.0) * view.height) + 2, view.height);
 }
 
-glm::dvec3 DirectionToSun(const SunPosition& sun) {
-  return DirectionFromAngles(sun.elevation_rad, sun.azimuth_rad).xyz;
-}
-
 std::optional<LandBend> BendOf(const PaintedView& view, const Medium& medium,
                                double farthest_land_m) {
   BendingAir air = GentleAirOf(medium);

@@ -75,9 +75,6 @@ struct PixelRay {
 /// horizon, plus one. Rows above them hold only sky.
 [[nodiscard]] int RowsOfPlanet(const PaintedView& view, double radius_km);
 
-/// Returns the unit vector to the sun: east, north, up at the observer.
-[[nodiscard]] glm::dvec3 DirectionToSun(const SunPosition& sun);
-
 /// Returns the refraction of the rays of a view. Empty if it moves neither the farthest land nor
 /// the planet's horizon by more than half a pixel.
 /// @param farthest_land_m  distance of the farthest land around the eye, regardless of the part of

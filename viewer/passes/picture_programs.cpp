@@ -155,10 +155,10 @@ GroundBlock GroundAround(const PaintedScene& scene, const PaintedView& view) {
 }
 
 GroundLightBlock LightAround(const PaintedScene& scene, const PaintedView& view,
-                             const SkyLight& light) {
-  GroundLightBlock block = GroundLightBlockOf(scene.UnoccludedSkyIrradiance(light.source()),
-                                              DirectionToSun(light.disk), PixelAngle(view));
-  block.ground_view.y = scene.HasEdgesOf(light.source()) ? 1.0F : 0.0F;
+                             const DistantLight& light) {
+  GroundLightBlock block = GroundLightBlockOf(scene.UnoccludedSkyIrradiance(light.body),
+                                              light.direction.seen, PixelAngle(view));
+  block.ground_view.y = scene.HasEdgesOf(light.body) ? 1.0F : 0.0F;
   return block;
 }
 
@@ -175,8 +175,8 @@ GroundSurfaceBlock SurfaceAround(const PaintedScene& scene, const CameraPose& ey
 }
 
 // Returns the direction and the angular radius of a light's disk.
-glm::vec4 ApparentDiskOf(const SkyLight& light) {
-  return {glm::vec3(DirectionToSun(light.disk)), light.disk.angular_radius_rad};
+glm::vec4 ApparentDiskOf(const DistantLight& light) {
+  return {glm::vec3(light.direction.seen), light.radius_rad};
 }
 
 // Sets the refraction of the view. Without refraction the planet appears with its true radius.
@@ -201,50 +201,49 @@ void PictureBlocks::UploadAir(const PaintedScene& scene, const CameraPose& eye) 
   UploadBlock(air_, kAirBinding, air_block_);
 }
 
-void PictureBlocks::UploadView(const PaintedScene& scene, const SeenRays& seen,
+void PictureBlocks::UploadView(const PaintedScene& scene, const Frame& frame, const PixelRay& ray,
                                const LightsOfView& lights) const {
-  const PaintedView& view = seen.view;
+  const PaintedView& view = frame.view;
   const Medium& medium = scene.air().air()->medium();
   const LandView axes = LandViewOf(view);
-  const glm::dvec2 shift = ShiftOf(seen.ray, view);
+  const glm::dvec2 shift = ShiftOf(ray, view);
   const glm::dvec2 moved(view.part.x * view.part.z + shift.x, view.part.y * view.part.w + shift.y);
   const double altitude_km = std::max(view.eye.place.height_m, 0.0) / kMetresPerKilometre;
   ViewBlock block{};
   block.view_right = {glm::vec3(axes.right), 0.0F};
   block.view_up = {glm::vec3(axes.up), 0.0F};
-  block.view_forward = {glm::vec3(axes.forward), PixelAngle(view) / std::sqrt(seen.ray.of)};
-  const SkyLight &first = lights.of_sky.front(), &other = lights.of_sky.back();
+  block.view_forward = {glm::vec3(axes.forward), PixelAngle(view) / std::sqrt(ray.of)};
+  const DistantLight &first = lights.of_sky.front(), &other = lights.of_sky.back();
   block.sun = ApparentDiskOf(first);
-  block.sun_for_air = {glm::vec3(DirectionToSun(SunForAir(first.disk))), 0.0F};
-  block.sun_irradiance = first.irradiance;
+  block.sun_for_air = {glm::vec3(first.direction.for_air), 0.0F};
+  block.sun_irradiance = GpuBandsOf(first.irradiance);
   block.other_sun = ApparentDiskOf(other);
-  block.other_sun_for_air = {glm::vec3(DirectionToSun(SunForAir(other.disk))), 0.0F};
-  block.other_sun_irradiance = other.irradiance;
+  block.other_sun_for_air = {glm::vec3(other.direction.for_air), 0.0F};
+  block.other_sun_irradiance = GpuBandsOf(other.irradiance);
   block.night_scattered = lights.night_scattered;
   block.night_level = lights.night_level;
   block.eye = {altitude_km, moved.x, moved.y, RadiusUnder(view.eye, medium)};
-  SetBend(block, seen.bend);
+  SetBend(block, frame.bend);
   UploadBlock(view_, kViewBinding, block);
 }
 
-void PictureBlocks::UploadGroundLight(const PaintedScene& scene, const PaintedView& view,
-                                      const LightsOfSky& lights) const {
-  UploadBlock(ground_light_, kGroundLightBinding, LightAround(scene, view, lights.front()));
+void PictureBlocks::UploadGroundLight(const PaintedScene& scene, const Frame& frame) const {
+  UploadBlock(ground_light_, kGroundLightBinding,
+              LightAround(scene, frame.view, frame.lights().front()));
   UploadBlock(other_ground_light_, kOtherGroundLightBinding,
-              LightAround(scene, view, lights.back()));
+              LightAround(scene, frame.view, frame.lights().back()));
 }
 
-void PictureBlocks::UploadSkyByPixel(const PaintedScene& scene, const PaintedView& view,
-                                     const LightsOfSky& lights) const {
-  const LocalFrame eye(scene.fixed().ellipsoid, view.eye.place);
-  const auto block_of = [&](const SkyLight& light) {
-    const SkyByPixel* sky = scene.sky_by_pixel(light.source());
+void PictureBlocks::UploadSkyByPixel(const PaintedScene& scene, const Frame& frame) const {
+  const LocalFrame eye(scene.fixed().ellipsoid, frame.view.eye.place);
+  const auto block_of = [&](const DistantLight& light) {
+    const SkyByPixel* sky = scene.sky_by_pixel(light.body);
     return sky == nullptr ? SkyByPixelBlock{}
-                          : sky->BlockOf(light.source(), eye, DirectionToSun(SunForAir(light.disk)),
-                                         scene.UnoccludedSkyIrradiance(light.source()));
+                          : sky->BlockOf(light.body, eye, light.direction.for_air,
+                                         scene.UnoccludedSkyIrradiance(light.body));
   };
   UploadBlock(sky_by_pixel_, kSkyByPixelBinding,
-              WithLights(block_of(lights.front()), block_of(lights.back())));
+              WithLights(block_of(frame.lights().front()), block_of(frame.lights().back())));
 }
 
 void PictureBlocks::UploadGround(const PaintedScene& scene, const PaintedView& view) const {

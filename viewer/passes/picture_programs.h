@@ -32,6 +32,7 @@
 #include "viewer/ground/ground_block.h"
 #include "viewer/lamps/fog.h"
 #include "viewer/lamps/lamp_painter.h"
+#include "viewer/passes/frame.h"
 #include "viewer/passes/frame_light.h"
 #include "viewer/passes/painted_scene.h"
 #include "viewer/passes/painted_view.h"
@@ -121,25 +122,17 @@ struct LightsOfView {
   glm::vec4 night_scattered{0.0F}, night_level{0.0F};  // NightSkyMap; 0 without it
 };
 
-/// The rays of a picture: one of each pixel.
-struct SeenRays {
-  const PaintedView& view;
-  const std::optional<LandBend>& bend;  // refraction of the view (BendOf)
-  PixelRay ray;
-};
-
 /// The uniform blocks of a picture. Each call fills blocks and binds them (PictureBinding).
 class PictureBlocks {
  public:
   void UploadAir(const PaintedScene& scene, const CameraPose& eye);
-  void UploadView(const PaintedScene& scene, const SeenRays& seen,
+  /// @param ray  one of each pixel. @param lights  may differ from those of the frame.
+  void UploadView(const PaintedScene& scene, const Frame& frame, const PixelRay& ray,
                   const LightsOfView& lights) const;
   void UploadGround(const PaintedScene& scene, const PaintedView& view) const;
-  void UploadGroundLight(const PaintedScene& scene, const PaintedView& view,
-                         const LightsOfSky& lights) const;
+  void UploadGroundLight(const PaintedScene& scene, const Frame& frame) const;
   /// For a light without tables the block says so.
-  void UploadSkyByPixel(const PaintedScene& scene, const PaintedView& view,
-                        const LightsOfSky& lights) const;
+  void UploadSkyByPixel(const PaintedScene& scene, const Frame& frame) const;
 
  private:
   GlBuffer air_, view_, ground_, ground_light_, other_ground_light_, ground_surface_, sky_by_pixel_;

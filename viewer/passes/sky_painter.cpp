@@ -83,18 +83,21 @@ void SkyPainter::Update(const PaintedView& view, double seconds) {
 }
 
 void SkyPainter::WaitUntilReady(const PaintedView& view, int samples) {
-  scene_.WaitUntilReady(view, SkyOf(view).lights, samples);
+  const std::shared_ptr<const FrameSky> before = SkyAt(view.eye.place, view.now);
+  scene_.WaitUntilReady(view, before->lights, samples);
   lamps_.WaitForPlans();
-  stars_.WaitUntilReady(view, SkyOf(view), scene_.air().air());
+  // The medium may be another one now.
+  const std::shared_ptr<const FrameSky> sky = SkyAt(view.eye.place, view.now);
+  stars_.WaitUntilReady(view, *sky, scene_.air().air());
   if (HasNightSkyMap()) night_sky_map_.Follow(view, scene_.air().air(), true);
 }
 
-void SkyPainter::PrepareLamps(const PaintedView& view) {
+void SkyPainter::PrepareLamps(const Frame& frame) {
   if (lamps_.IsDark()) return lamp_painter_.PutOut();
   // Lamps dimmer than this are invisible against other light.
   constexpr double kDimmest_cd_per_m2 = 1e-5;
   const LampView seen =
-      LampViewFrom(scene_.fixed().lamp_ground.frame, view.eye.place, PixelAngle(view));
+      LampViewFrom(scene_.fixed().lamp_ground.frame, frame.view.eye.place, PixelAngle(frame.view));
   const PaintSizes& sizes = scene_.sizes();
   const bool suits = lamp_painter_.Suits(sizes.lamps);
   if (suits) lamp_painter_.SetStep(sizes.lamps.step);
@@ -106,22 +109,23 @@ void SkyPainter::PrepareLamps(const PaintedView& view) {
   lamp_painter_.Prepare(lamps_, seen, kDimmest_cd_per_m2, sizes.most_lamps);
 }
 
-std::optional<LandBend> SkyPainter::BendIn(const PaintedView& view) const {
-  return BendOf(view, scene_.air().air()->medium(), scene_.land().farthest_m());
+Frame SkyPainter::FrameOf(const PaintedView& view) {
+  return viewer::FrameOf(view, SkyAt(view.eye.place, view.now),
+                         BendOf(view, scene_.air().air()->medium(), scene_.land().farthest_m()));
 }
 
-LandLook SkyPainter::LookOfLand(const PaintedView& view) {
-  return {bend_.has_value(), OfSource(SkyOf(view).lights, LightSource::kMoon) != nullptr};
+LandLook SkyPainter::LookOfLand(const Frame& frame) {
+  return {frame.bend.has_value(), OfSource(frame.lights(), LightSource::kMoon) != nullptr};
 }
 
-void SkyPainter::PaintLand(const PaintedView& view) {
+void SkyPainter::PaintLand(const Frame& frame) {
   Begin("land");
-  Fit(surface_, view.width, view.height);
+  Fit(surface_, frame.view.width, frame.view.height);
   surface_->Bind();
   if (scene_.AwaitsLand()) {
     LandPass::Clear(LandDrawn::kSurface);
   } else {
-    scene_.land().Draw(LandDrawn::kSurface, kViewBinding, LookOfLand(view));
+    scene_.land().Draw(LandDrawn::kSurface, kViewBinding, LookOfLand(frame));
     if (programs_.HasPainted()) scene_.land().pass().MakeOneReady();
   }
   surface_->BindTexture(kSurfaceUnit, GBuffer::kSurface);
@@ -131,27 +135,27 @@ void SkyPainter::PaintOutline(const DepthPrepass& outline) {
   Begin("outline");
   outline.Bind();
   if (scene_.AwaitsLand()) return LandPass::Clear(LandDrawn::kOutline);
-  scene_.land().Draw(LandDrawn::kOutline, kViewBinding, {bend_.has_value(), false});
+  scene_.land().Draw(LandDrawn::kOutline, kViewBinding, {painted_ && painted_->bend, false});
 }
 
-bool SkyPainter::HasShade(const PaintedView& view, const SkyLight& key) const {
+bool SkyPainter::HasShade(const Frame& frame) const {
   const ShadeFollower& shade = scene_.shade();
   return !scene_.AwaitsLand() && scene_.sizes().has_shafts && shade.shade().Shades() &&
-         shade.IsOf(view.eye.place, key.disk);
+         shade.IsOf(frame.view.eye.place, frame.key_light());
 }
 
-void SkyPainter::PaintShafts(const PaintedView& view) {
-  if (!HasShade(view, SkyOf(view).lights.front())) return;
+void SkyPainter::PaintShafts(const Frame& frame) {
+  if (!HasShade(frame)) return;
   Begin("shafts");
   const ShadeFollower& shade = scene_.shade();
-  shaft_pass_.Paint(shade.shade(), shade.MapFromEye(view.eye.place), view.width, view.height,
-                    kSurfaceUnit, kShadeUnit, scene_.sizes().shade.detail);
+  shaft_pass_.Paint(shade.shade(), shade.MapFromEye(frame.view.eye.place), frame.view.width,
+                    frame.view.height, kSurfaceUnit, kShadeUnit, scene_.sizes().shade.detail);
 }
 
-void SkyPainter::PaintLamps(const PaintedView& view) {
+void SkyPainter::PaintLamps(const Frame& frame) {
   if (!HasLamps()) return;
   Begin("lamps");
-  lamp_painter_.PaintGlow(view.width, view.height);
+  lamp_painter_.PaintGlow(frame.view.width, frame.view.height);
 }
 
 namespace {
@@ -180,7 +184,9 @@ void SendAir(const ShaderProgram& program, const RefractedDisk& sun, const Refra
 
 // If the moon covers part of the sun, both disks use the same refraction, so that their edges
 // match.
-SkyPainter::DisksInAir SkyPainter::InAir(const FrameSky& sky, const PaintedView& view) {
+SkyPainter::DisksInAir SkyPainter::InAir(const Frame& frame) {
+  const PaintedView& view = frame.view;
+  const FrameSky& sky = *frame.sky;
   const auto follow = [&](RefractedDiskFollower& follower, const glm::dvec3& apparent,
                           double radius) -> const RefractedDisk* {
     if (!PixelsOfDisk(apparent, radius, view)) return nullptr;
@@ -190,13 +196,11 @@ SkyPainter::DisksInAir SkyPainter::InAir(const FrameSky& sky, const PaintedView&
   };
   DisksInAir seen{
       sky.sun, sky.moon.value_or(MoonDisk{}),
-      follow(refracted_sun_, DirectionToSun(sky.sun), sky.sun.angular_radius_rad),
+      follow(refracted_sun_, DirectionOf(sky.sun).seen, sky.sun.angular_radius_rad),
       sky.moon ? follow(refracted_moon_, sky.moon->direction.seen, sky.moon->radius_rad) : nullptr};
   if (sky.is_eclipse) seen.refracted_moon = seen.refracted_sun;
   if (seen.refracted_sun != nullptr) seen.sun = sky.bodies.sun;
-  const MoonPosition& moon = sky.bodies.moon;
-  if (seen.refracted_moon != nullptr)
-    seen.moon.direction.seen = DirectionFromAngles(moon.elevation_rad, moon.azimuth_rad).xyz;
+  if (seen.refracted_moon != nullptr) seen.moon.direction.seen = DirectionOf(sky.bodies.moon).seen;
   return seen;
 }
 
@@ -246,30 +250,32 @@ std::vector<PictureStage> StagesAfter(const PictureStage& stage, const FrameSky&
 }  // namespace
 
 // Prepares one stage per frame, since each takes tenths of a second.
-void SkyPainter::MakeOneReady(const PaintedView& view, const PictureStage& stage) {
-  for (const PictureStage& next : StagesAfter(stage, SkyOf(view)))
+void SkyPainter::MakeOneReady(const Frame& frame, const PictureStage& stage) {
+  for (const PictureStage& next : StagesAfter(stage, *frame.sky))
     if (programs_.MakeReady(programs_.Fitting(next))) return;
-  stars_.MakeReady(view, scene_.fog(), scene_.fixed().fog_phase);
+  stars_.MakeReady(frame.view, scene_.fog(), scene_.fixed().fog_phase);
 }
 
 // Returns the number of rows below the horizon. The horizon is that of straight rays over a planet
 // with the apparent radius.
-int SkyPainter::RowsUnderHorizon(const PaintedView& view) const {
-  return RowsOfPlanet(
-      view, bend_ ? bend_->look_radius_km : RadiusUnder(view.eye, scene_.air().air()->medium()));
+int SkyPainter::RowsUnderHorizon(const Frame& frame) const {
+  return RowsOfPlanet(frame.view, frame.bend
+                                      ? frame.bend->look_radius_km
+                                      : RadiusUnder(frame.view.eye, scene_.air().air()->medium()));
 }
 
 // Returns the number of rows with the planet's ground. Before land is loaded, sky is drawn in its
 // place.
-int SkyPainter::RowsOfGround(const PaintedView& view) const {
-  return scene_.AwaitsLand() ? 0 : RowsUnderHorizon(view);
+int SkyPainter::RowsOfGround(const Frame& frame) const {
+  return scene_.AwaitsLand() ? 0 : RowsUnderHorizon(frame);
 }
 
 // Draws the sky in two parts, since software drivers evaluate the planet for every pixel of a
 // program that includes it.
-void SkyPainter::PaintSky(const PaintedView& view, const PictureStage& stage) {
+void SkyPainter::PaintSky(const Frame& frame, const PictureStage& stage) {
   using enum PictureStage::Pass;
-  const int rows = RowsOfGround(view);
+  const PaintedView& view = frame.view;
+  const int rows = RowsOfGround(frame);
   if (rows > 0) {
     const Scissor below({0, 0, view.width, rows});
     programs_.Paint(stage.In(kSky));
@@ -280,26 +286,13 @@ void SkyPainter::PaintSky(const PaintedView& view, const PictureStage& stage) {
   }
 }
 
-std::vector<SkyPainter::SkyDisk> SkyPainter::DisksSeen(const PaintedView& view) {
-  const FrameSky& sky = SkyOf(view);
-  std::vector<SkyDisk> disks{
-      {LightSource::kSun, DirectionToSun(sky.sun), sky.sun.angular_radius_rad}};
-  if (sky.moon)
-    disks.push_back({LightSource::kMoon, sky.moon->direction.seen, sky.moon->radius_rad});
-  std::erase_if(disks, [&](const SkyDisk& disk) {
-    return !PixelsOfDisk(disk.towards, disk.radius_rad, view);
-  });
-  return disks;
-}
-
 namespace {
 
 // Returns the boxes of disks, of which two that overlap become one: light is added in every box, so
 // a pixel must not lie in two.
-template <typename Disk>
-std::vector<PixelBox> BoxesAround(const std::vector<Disk>& disks, const PaintedView& view) {
+std::vector<PixelBox> BoxesAround(const std::vector<SkyDisk>& disks, const PaintedView& view) {
   std::vector<PixelBox> boxes;
-  for (const Disk& disk : disks) {
+  for (const SkyDisk& disk : disks) {
     const PixelBox box = *PixelsOfDisk(disk.towards, disk.radius_rad, view);
     if (!boxes.empty() && Overlap(boxes.back(), box)) {
       boxes.back() = Around(boxes.back(), box);
@@ -313,25 +306,26 @@ std::vector<PixelBox> BoxesAround(const std::vector<Disk>& disks, const PaintedV
 }  // namespace
 
 std::vector<PixelBox> SkyPainter::BodiesSeen(const PaintedView& view) {
-  std::vector<PixelBox> boxes = BoxesAround(DisksSeen(view), view);
-  const std::vector<PixelBox> stars = stars_.Seen(view, SkyOf(view));
+  const Frame frame = FrameOf(view);
+  std::vector<PixelBox> boxes = BoxesAround(frame.disks, view);
+  const std::vector<PixelBox> stars = stars_.Seen(view, *frame.sky);
   boxes.insert(boxes.end(), stars.begin(), stars.end());
   return boxes;
 }
 
 // The sun's disk always uses sunlight, even if the moon lights the air.
-void SkyPainter::UploadDisks(const PaintedView& view, const DisksInAir& seen, const PixelRay& ray) {
-  blocks_.UploadView(scene_, {view, BendIn(view), ray},
-                     {{SunAsLight(seen.sun, scene_.air().air()->medium())}});
+void SkyPainter::UploadDisks(const Frame& frame, const DisksInAir& seen, const PixelRay& ray) {
+  blocks_.UploadView(scene_, frame, ray, {{SunlightOf(seen.sun, scene_.air().air()->medium())}});
 }
 
 // Draws the disks that are large enough for the rays of the view.
-void SkyPainter::PaintDisks(const PaintedView& view, const PixelRay& ray) {
-  const DisksInAir seen = InAir(SkyOf(view), view);
-  UploadDisks(view, seen, ray);
-  std::vector<SkyDisk> disks = DisksSeen(view);
-  std::erase_if(
-      disks, [&](const SkyDisk& disk) { return IsSmallDisk(disk.towards, disk.radius_rad, view); });
+void SkyPainter::PaintDisks(const Frame& frame, const PixelRay& ray) {
+  const DisksInAir seen = InAir(frame);
+  UploadDisks(frame, seen, ray);
+  std::vector<SkyDisk> disks = frame.disks;
+  std::erase_if(disks, [&](const SkyDisk& disk) {
+    return IsSmallDisk(disk.towards, disk.radius_rad, frame.view);
+  });
   if (disks.empty()) return;
   const auto share = [&](LightSource of) {
     return std::any_of(disks.begin(), disks.end(),
@@ -342,15 +336,15 @@ void SkyPainter::PaintDisks(const PaintedView& view, const PixelRay& ray) {
   DescribeDisks(seen, {share(LightSource::kSun), share(LightSource::kMoon)});
   const BesideLand beside;
   const Adding adding(1.0 / ray.of);
-  for (const PixelBox& box : BoxesAround(disks, view)) {
+  for (const PixelBox& box : BoxesAround(disks, frame.view)) {
     const Scissor within(box);
     programs_.Paint({PictureStage::Pass::kDisks});
   }
 }
 
 // Draws one disk and the land before it in the view of this disk.
-void SkyPainter::PaintAlone(const SkyDisk& disk, double drawn_rad, const PaintedView& alone) {
-  DisksInAir seen = InAir(SkyOf(alone), alone);
+void SkyPainter::PaintAlone(const SkyDisk& disk, double drawn_rad, const Frame& alone) {
+  DisksInAir seen = InAir(alone);
   glm::dvec2 shares(1.0, 0.0);
   if (disk.of == LightSource::kSun) {
     seen.sun.angular_radius_rad = drawn_rad;  // the sun has its whole irradiance at any size
@@ -363,8 +357,8 @@ void SkyPainter::PaintAlone(const SkyDisk& disk, double drawn_rad, const Painted
   if (scene_.AwaitsLand()) {
     LandPass::Clear(LandDrawn::kOutline);
   } else {
-    scene_.land().Draw(LandDrawn::kOutline, kViewBinding, {BendIn(alone).has_value(), false},
-                       LandViewOf(alone));
+    scene_.land().Draw(LandDrawn::kOutline, kViewBinding, {alone.bend.has_value(), false},
+                       LandViewOf(alone.view));
   }
   small_disk_painter_.light().Bind();
   glClearColor(0.0F, 0.0F, 0.0F, 0.0F);
@@ -375,14 +369,15 @@ void SkyPainter::PaintAlone(const SkyDisk& disk, double drawn_rad, const Painted
 }
 
 // Adds the light of the other disks.
-void SkyPainter::PaintSmallDisks(const PaintedView& view, const RenderTarget& target) {
-  for (const SkyDisk& disk : DisksSeen(view)) {
+void SkyPainter::PaintSmallDisks(const Frame& frame, const RenderTarget& target) {
+  const PaintedView& view = frame.view;
+  for (const SkyDisk& disk : frame.disks) {
     if (!IsSmallDisk(disk.towards, disk.radius_rad, view)) continue;
     const double drawn_rad = std::max(disk.radius_rad, SmallDiskPainter::SmallestRadius(view));
     const PaintedView alone = SmallDiskPainter::ViewOf(disk.towards, drawn_rad, view);
-    PaintAlone(disk, drawn_rad, alone);
+    PaintAlone(disk, drawn_rad, FrameOf(alone));
     target.Bind();
-    UploadDisks(view, InAir(SkyOf(view), view), {});
+    UploadDisks(frame, InAir(frame), {});
     const Adding adding(1.0);
     const Scissor within(*PixelsOfDisk(disk.towards, drawn_rad, view));
     small_disk_painter_.AddTo(view, alone);
@@ -391,20 +386,21 @@ void SkyPainter::PaintSmallDisks(const PaintedView& view, const RenderTarget& ta
 
 void SkyPainter::PaintBodiesOver(const RenderTarget& target, const DepthPrepass& outline,
                                  const PaintedView& view) {
+  const Frame frame = FrameOf(view);
   target.Bind();
   target.UseDepthOf(outline);
-  PaintDisks(view, {});
-  PaintSmallDisks(view, target);
+  PaintDisks(frame, {});
+  PaintSmallDisks(frame, target);
   if (stars_.HasAny()) {
     const BesideLand beside;
-    stars_.Paint(view, SkyOf(view), StarPainter::Land::kByDepth, scene_.fog(),
+    stars_.Paint(view, *frame.sky, StarPainter::Land::kByDepth, scene_.fog(),
                  scene_.fixed().fog_phase);
   }
   CheckGl("SkyPainter::PaintBodiesOver");
 }
 
-LightsOfView SkyPainter::LightsOf(const PaintedView& view) {
-  LightsOfView lights{SkyOf(view).lights};
+LightsOfView SkyPainter::LightsOf(const Frame& frame) {
+  LightsOfView lights{frame.lights()};
   if (!HasNightSkyMap()) return lights;
   lights.night_scattered = night_sky_map_.scattered();
   lights.night_level = night_sky_map_.level();
@@ -412,58 +408,54 @@ LightsOfView SkyPainter::LightsOf(const PaintedView& view) {
 }
 
 // Binds the inputs that depend on the lights of the sky.
-void SkyPainter::BindLights(const PaintedView& view, const PixelRay& ray) {
-  const LightsOfView lights = LightsOf(view);
-  const SkyLight &first = lights.of_sky.front(), &other = lights.of_sky.back();
-  blocks_.UploadView(scene_, {view, bend_, ray}, lights);
-  blocks_.UploadGroundLight(scene_, view, lights.of_sky);
-  scene_.air_textures(first.source()).Bind(kAirUnit, kTablesBinding);
-  scene_.air_textures(other.source()).Bind(kOtherAirUnit, kOtherTablesBinding);
-  scene_.ground_textures().Bind(kGroundUnit, first.source(), other.source());
-  blocks_.UploadSkyByPixel(scene_, view, lights.of_sky);
-  if (const SkyByPixel* const sky = scene_.sky_by_pixel(first.source()))
-    sky->Bind(kSkyByPixelUnit, first.source());
-  if (const SkyByPixel* const sky = scene_.sky_by_pixel(other.source()))
-    sky->BindOther(kSkyByPixelUnit, other.source());
+void SkyPainter::BindLights(const Frame& frame, const PixelRay& ray) {
+  const LightSource first = frame.lights().front().body, other = frame.lights().back().body;
+  blocks_.UploadView(scene_, frame, ray, LightsOf(frame));
+  blocks_.UploadGroundLight(scene_, frame);
+  scene_.air_textures(first).Bind(kAirUnit, kTablesBinding);
+  scene_.air_textures(other).Bind(kOtherAirUnit, kOtherTablesBinding);
+  scene_.ground_textures().Bind(kGroundUnit, first, other);
+  blocks_.UploadSkyByPixel(scene_, frame);
+  if (const SkyByPixel* const sky = scene_.sky_by_pixel(first)) sky->Bind(kSkyByPixelUnit, first);
+  if (const SkyByPixel* const sky = scene_.sky_by_pixel(other))
+    sky->BindOther(kSkyByPixelUnit, other);
 }
 
 // Binds the inputs that are pictures of land or that passes before the picture may have replaced.
-void SkyPainter::BindMaps(const PaintedView& view) {
-  const LightsOfSky& lights = SkyOf(view).lights;
-  const auto sky_of = [](const SkyLight& light) {
-    return light.is_moon ? GBuffer::kMoonSky : GBuffer::kSky;
+void SkyPainter::BindMaps(const Frame& frame) {
+  const DistantLight &first = frame.lights().front(), &other = frame.lights().back();
+  const auto sky_of = [](const DistantLight& light) {
+    return light.body == LightSource::kMoon ? GBuffer::kMoonSky : GBuffer::kSky;
   };
-  surface_->BindTexture(kSkyOnSurfaceUnit, sky_of(lights.front()));
-  surface_->BindTexture(kOtherSkyOnSurfaceUnit, sky_of(lights.back()));
+  surface_->BindTexture(kSkyOnSurfaceUnit, sky_of(first));
+  surface_->BindTexture(kOtherSkyOnSurfaceUnit, sky_of(other));
   night_sky_map_.Bind(kNightUnit);
   if (scene_.fog() == nullptr) return;
-  scene_.fog(lights.front().source())
-      ->Bind(view.eye, lights.front().disk, *scene_.fog(lights.back().source()),
-             lights.back().disk);
+  scene_.fog(first.body)->Bind(frame.view.eye, first, *scene_.fog(other.body), other);
 }
 
 // Refraction lets the planet be seen farther than its straight horizon, by less than a quarter.
 GroundReach SkyPainter::ReachOf(const PaintedView& view) const {
   constexpr double kMostByRefraction = 1.25;
-  const double radius_km = RadiusUnder(view.eye, scene_.air().air()->medium);
+  const double radius_km = RadiusUnder(view.eye, scene_.air().air()->medium());
   const double altitude_km = std::max(view.eye.place.height_m, 0.0) / kMetresPerKilometre;
   return {scene_.land().farthest_m() / (radius_km * kMetresPerKilometre),
           kMostByRefraction * std::acos(radius_km / (radius_km + altitude_km))};
 }
 
-PictureStage SkyPainter::StageOf(const PaintedView& view) {
-  const LightsOfSky& lights = SkyOf(view).lights;
+PictureStage SkyPainter::StageOf(const Frame& frame) {
   PictureStage stage{PictureStage::Pass::kLand};
-  stage.has_shade = HasShade(view, lights.front());
+  stage.has_shade = HasShade(frame);
   stage.has_lamps = HasLamps();
-  stage.two_lights = lights.size() > 1;
-  stage.other_has_set = stage.two_lights && HasSetOnGround(lights.back(), ReachOf(view));
+  stage.two_lights = frame.lights().size() > 1;
+  stage.other_has_set =
+      stage.two_lights && HasSetOnGround(frame.lights().back(), ReachOf(frame.view));
   stage.has_night = HasNightSkyMap() && night_sky_map_.HasAny();
-  stage.sky_by_pixel = HasSkyByPixel(scene_, lights);
+  stage.sky_by_pixel = HasSkyByPixel(scene_, frame.lights());
   return programs_.Fitting(stage);
 }
 
-void SkyPainter::PaintPicture(const PaintedView& view, double share) {
+void SkyPainter::PaintPicture(const Frame& frame, double share) {
   Begin("picture");
   picture_->Bind();
   picture_->UseDepthOf(*surface_);
@@ -471,16 +463,16 @@ void SkyPainter::PaintPicture(const PaintedView& view, double share) {
   const BesideLand beside;
   std::optional<Adding> adding;
   if (share < 1.0) adding.emplace(share);
-  const PictureStage stage = StageOf(view);
-  if (share == 1.0 && programs_.HasPainted()) MakeOneReady(view, stage);
+  const PictureStage stage = StageOf(frame);
+  if (share == 1.0 && programs_.HasPainted()) MakeOneReady(frame, stage);
   if (!scene_.AwaitsLand()) programs_.Paint(stage);
-  PaintSky(view, stage);
+  PaintSky(frame, stage);
 }
 
-void SkyPainter::PaintLampsOver(const PaintedView& view) {
+void SkyPainter::PaintLampsOver(const Frame& frame) {
   if (!HasLamps()) return;
   Begin("lamps over");
-  lamp_painter_.PaintOver(PixelAngle(view));
+  lamp_painter_.PaintOver(PixelAngle(frame.view));
 }
 
 // In brighter light a thousandth of a lux is invisible, and so is light pollution.
@@ -489,40 +481,40 @@ bool SkyPainter::HasNightSkyMap() const {
   return stars_.sky_lux() > 0.0 && stars_.sky_lux() < (has_towns_ ? kMostOverTowns_lux : kMost_lux);
 }
 
-void SkyPainter::PaintStars(const PaintedView& view) {
+void SkyPainter::PaintStars(const Frame& frame) {
   if (!stars_.HasAny()) return;
   Begin("stars");
-  stars_.Paint(view, SkyOf(view), StarPainter::Land::kBySurface, scene_.fog(),
+  stars_.Paint(frame.view, *frame.sky, StarPainter::Land::kBySurface, scene_.fog(),
                scene_.fixed().fog_phase);
 }
 
-void SkyPainter::PaintSample(const PaintedView& view, Bodies bodies, const PixelRay& ray) {
-  BindLights(view, ray);
-  PaintLand(view);
-  BindMaps(view);
-  PaintShafts(view);
-  PaintLamps(view);
-  PaintPicture(view, 1.0 / ray.of);
-  if (bodies == Bodies::kAll) PaintDisks(view, ray);
+void SkyPainter::PaintSample(const Frame& frame, Bodies bodies, const PixelRay& ray) {
+  BindLights(frame, ray);
+  PaintLand(frame);
+  BindMaps(frame);
+  PaintShafts(frame);
+  PaintLamps(frame);
+  PaintPicture(frame, 1.0 / ray.of);
+  if (bodies == Bodies::kAll) PaintDisks(frame, ray);
 }
 
 void SkyPainter::Paint(const PaintedView& view, int samples, Bodies bodies,
                        const std::function<void(int)>& after_sample) {
-  bend_ = BendIn(view);
+  const Frame& frame = painted_.emplace(FrameOf(view));
   Fit(picture_, view.width, view.height);
   blocks_.UploadAir(scene_, view.eye);
   blocks_.UploadGround(scene_, view);
-  PrepareLamps(view);
+  PrepareLamps(frame);
   picture_->Bind();
   glClearColor(0.0F, 0.0F, 0.0F, 0.0F);
   if (samples > 1) glClear(GL_COLOR_BUFFER_BIT);
   for (int sample = 0; sample < samples; ++sample) {
-    PaintSample(view, bodies, {sample, samples});
+    PaintSample(frame, bodies, {sample, samples});
     if (after_sample) after_sample(sample + 1);
   }
-  if (bodies == Bodies::kAll) PaintSmallDisks(view, *picture_);
-  PaintLampsOver(view);
-  if (bodies != Bodies::kNone) PaintStars(view);
+  if (bodies == Bodies::kAll) PaintSmallDisks(frame, *picture_);
+  PaintLampsOver(frame);
+  if (bodies != Bodies::kNone) PaintStars(frame);
   if (timer_ != nullptr) timer_->End();
   CheckGl("SkyPainter::Paint");
 }

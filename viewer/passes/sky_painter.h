@@ -24,6 +24,7 @@
 #include "viewer/lamps/lamp_painter.h"
 #include "viewer/land/land_pass.h"
 #include "viewer/passes/auto_quality.h"
+#include "viewer/passes/frame.h"
 #include "viewer/passes/frame_light.h"
 #include "viewer/passes/painted_scene.h"
 #include "viewer/passes/painted_view.h"
@@ -104,45 +105,35 @@ class SkyPainter {
     MoonDisk moon;
     const RefractedDisk *refracted_sun, *refracted_moon;
   };
-  [[nodiscard]] const FrameSky& SkyOf(const PaintedView& view) {
-    return *SkyAt(view.eye.place, view.now);
-  }
-  /// A disk in the sky, at its apparent position.
-  struct SkyDisk {
-    LightSource of;
-    glm::dvec3 towards;
-    double radius_rad;
-  };
-  [[nodiscard]] std::vector<SkyDisk> DisksSeen(const PaintedView& view);
-  void PrepareLamps(const PaintedView& view);
-  [[nodiscard]] DisksInAir InAir(const FrameSky& sky, const PaintedView& view);
+  [[nodiscard]] Frame FrameOf(const PaintedView& view);
+  void PrepareLamps(const Frame& frame);
+  [[nodiscard]] DisksInAir InAir(const Frame& frame);
   void DescribeDisks(const DisksInAir& seen, const glm::dvec2& shares);
-  [[nodiscard]] int RowsUnderHorizon(const PaintedView& view) const;
-  void PaintSample(const PaintedView& view, Bodies bodies, const PixelRay& ray);
-  [[nodiscard]] std::optional<LandBend> BendIn(const PaintedView& view) const;
-  [[nodiscard]] LandLook LookOfLand(const PaintedView& view);
-  void PaintLand(const PaintedView& view);
+  [[nodiscard]] int RowsUnderHorizon(const Frame& frame) const;
+  void PaintSample(const Frame& frame, Bodies bodies, const PixelRay& ray);
+  [[nodiscard]] static LandLook LookOfLand(const Frame& frame);
+  void PaintLand(const Frame& frame);
   /// Returns whether terrain shadows the air from the key light, and that effect is drawn.
-  [[nodiscard]] bool HasShade(const PaintedView& view, const SkyLight& key) const;
-  void PaintShafts(const PaintedView& view);
-  void PaintLamps(const PaintedView& view);
-  [[nodiscard]] LightsOfView LightsOf(const PaintedView& view);
-  void BindLights(const PaintedView& view, const PixelRay& ray);
-  void BindMaps(const PaintedView& view);
+  [[nodiscard]] bool HasShade(const Frame& frame) const;
+  void PaintShafts(const Frame& frame);
+  void PaintLamps(const Frame& frame);
+  [[nodiscard]] LightsOfView LightsOf(const Frame& frame);
+  void BindLights(const Frame& frame, const PixelRay& ray);
+  void BindMaps(const Frame& frame);
   [[nodiscard]] GroundReach ReachOf(const PaintedView& view) const;
-  [[nodiscard]] PictureStage StageOf(const PaintedView& view);
-  void PaintPicture(const PaintedView& view, double share);
-  void MakeOneReady(const PaintedView& view, const PictureStage& stage);
-  void PaintSky(const PaintedView& view, const PictureStage& stage);
+  [[nodiscard]] PictureStage StageOf(const Frame& frame);
+  void PaintPicture(const Frame& frame, double share);
+  void MakeOneReady(const Frame& frame, const PictureStage& stage);
+  void PaintSky(const Frame& frame, const PictureStage& stage);
   [[nodiscard]] bool HasLamps() const { return !scene_.AwaitsLand() && !lamp_painter_.IsDark(); }
-  [[nodiscard]] int RowsOfGround(const PaintedView& view) const;
-  void UploadDisks(const PaintedView& view, const DisksInAir& seen, const PixelRay& ray);
-  void PaintDisks(const PaintedView& view, const PixelRay& ray);
-  void PaintAlone(const SkyDisk& disk, double drawn_rad, const PaintedView& alone);
-  void PaintSmallDisks(const PaintedView& view, const RenderTarget& target);
-  void PaintLampsOver(const PaintedView& view);
+  [[nodiscard]] int RowsOfGround(const Frame& frame) const;
+  void UploadDisks(const Frame& frame, const DisksInAir& seen, const PixelRay& ray);
+  void PaintDisks(const Frame& frame, const PixelRay& ray);
+  void PaintAlone(const SkyDisk& disk, double drawn_rad, const Frame& alone);
+  void PaintSmallDisks(const Frame& frame, const RenderTarget& target);
+  void PaintLampsOver(const Frame& frame);
   [[nodiscard]] bool HasNightSkyMap() const;
-  void PaintStars(const PaintedView& view);
+  void PaintStars(const Frame& frame);
   void Begin(const char* pass) const {
     if (timer_ != nullptr) timer_->Begin(pass);
   }
@@ -161,7 +152,7 @@ class SkyPainter {
   std::optional<GBuffer> surface_;
   std::optional<RenderTarget> picture_;
   FrameSkyFollower sky_;
-  std::optional<LandBend> bend_;  // refraction of the view that Paint draws
+  std::optional<Frame> painted_;  // by the last Paint
   PassTimer* timer_ = nullptr;
 };
 

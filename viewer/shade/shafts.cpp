@@ -193,17 +193,15 @@ void ShadeFollower::SetGround(GroundSampler sampler) {
 void ShadeFollower::SetSize(const ShadeSize& size) { size_ = size; }
 
 ShadeFollower::Request ShadeFollower::RequestFor(const GeodeticPosition& eye,
-                                                 const SunPosition& sun) const {
+                                                 const DistantLight& light) const {
   const LocalFrame here(ellipsoid_, eye);
   LocalFrame frame(ellipsoid_, {eye.latitude_rad, eye.longitude_rad, 0.0});
   // Heights are kept while the eye is near their centre.
   const std::optional<Request>& last = maker_.requested();
   if (last && DistanceBetween(last->frame, frame) < kPlaceStep * size_.half_width_m)
     frame = last->frame;
-  const Vector<Ecef> to_light =
-      here.EcefFromEnu(DirectionFromAngles(sun.elevation_rad, sun.azimuth_rad));
-  return {ground_, size_, frame, glm::normalize(frame.EnuFromEcef(to_light).xyz),
-          sun.angular_radius_rad};
+  const Vector<Ecef> to_light = here.EcefFromEnu(Vector<Enu>{light.direction.seen});
+  return {ground_, size_, frame, glm::normalize(frame.EnuFromEcef(to_light).xyz), light.radius_rad};
 }
 
 bool ShadeFollower::Suits(const Request& requested, const Request& wanted) {
@@ -224,25 +222,25 @@ void ShadeFollower::Upload(int lines, int unit) {
   if (texture_.Upload(lines, unit)) used_ = std::exchange(coming_, nullptr);
 }
 
-void ShadeFollower::Follow(const GeodeticPosition& eye, const SunPosition& sun, int unit) {
+void ShadeFollower::Follow(const GeodeticPosition& eye, const DistantLight& light, int unit) {
   // If the sun moves faster than maps are made, a finished map must still be shown.
-  if (!coming_) maker_.RequestWhenIdle(RequestFor(eye, sun));
+  if (!coming_) maker_.RequestWhenIdle(RequestFor(eye, light));
   if (!coming_) PollFinished();
   Upload(kLinesOfAFrame, unit);
 }
 
-void ShadeFollower::WaitUntilReady(const GeodeticPosition& eye, const SunPosition& sun, int unit) {
-  maker_.WaitUntilReady(RequestFor(eye, sun));
+void ShadeFollower::WaitUntilReady(const GeodeticPosition& eye, const DistantLight& light,
+                                   int unit) {
+  maker_.WaitUntilReady(RequestFor(eye, light));
   PollFinished();
   Upload(std::numeric_limits<int>::max(), unit);
 }
 
-bool ShadeFollower::IsOf(const GeodeticPosition& eye, const SunPosition& sun) const {
+bool ShadeFollower::IsOf(const GeodeticPosition& eye, const DistantLight& light) const {
   const double near = std::cos(3.0 * kRadiansPerDegree);
   if (!used_) return false;
   const LocalFrame here(ellipsoid_, eye);
-  const Vector<Ecef> to_light =
-      here.EcefFromEnu(DirectionFromAngles(sun.elevation_rad, sun.azimuth_rad));
+  const Vector<Ecef> to_light = here.EcefFromEnu(Vector<Enu>{light.direction.seen});
   return glm::dot(glm::normalize(used_->frame.EnuFromEcef(to_light).xyz), used_->to_light) > near;
 }
 

@@ -35,9 +35,9 @@
 #include <optional>
 #include <vector>
 
-#include "atmosphere/astronomy/sun.h"
 #include "atmosphere/base/async_value.h"
 #include "atmosphere/time_place/geodesy.h"
+#include "renderer/illumination/distant_light.h"
 #include "renderer/terrain/loaded_heights.h"
 #include "renderer/visibility/shade_map.h"
 #include "viewer/gl/gl_context.h"
@@ -144,16 +144,16 @@ class ShadeFollower {
 
   /// Uploads finished maps through a texture unit and requests a new map if needed. Call it once
   /// per frame, before drawing. Never waits.
-  /// @param sun  apparent, as seen from the eye.
-  void Follow(const GeodeticPosition& eye, const SunPosition& sun, int unit);
+  /// @param light  in the frame east, north, up of the eye.
+  void Follow(const GeodeticPosition& eye, const DistantLight& light, int unit);
   /// Waits for the final result of Follow. Used for pictures that are saved.
-  void WaitUntilReady(const GeodeticPosition& eye, const SunPosition& sun, int unit);
+  void WaitUntilReady(const GeodeticPosition& eye, const DistantLight& light, int unit);
 
   /// The map in use.
   [[nodiscard]] const ShadeTexture& shade() const { return texture_; }
   /// Returns whether the map in use is for a sun or moon within three degrees of this one. After a
   /// jump in time it differs for some frames.
-  [[nodiscard]] bool IsOf(const GeodeticPosition& eye, const SunPosition& sun) const;
+  [[nodiscard]] bool IsOf(const GeodeticPosition& eye, const DistantLight& light) const;
   /// Returns the transformation from metres in the frame (east, north, up) at an eye to metres in
   /// the map's frame. Requires shade().Shades().
   [[nodiscard]] glm::dmat4 MapFromEye(const GeodeticPosition& eye) const;
@@ -177,7 +177,7 @@ class ShadeFollower {
   /// Makes maps. It keeps the heights between maps of the same ground.
   class Maker;
 
-  [[nodiscard]] Request RequestFor(const GeodeticPosition& eye, const SunPosition& sun) const;
+  [[nodiscard]] Request RequestFor(const GeodeticPosition& eye, const DistantLight& light) const;
   [[nodiscard]] static bool Suits(const Request& requested, const Request& wanted);
   void PollFinished();
   void Upload(int lines, int unit);

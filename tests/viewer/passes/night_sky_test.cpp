@@ -254,12 +254,9 @@ UtcInstant WhenTheSunIsAt(double elevation_rad, const GeodeticPosition& eye,
 }
 
 // Returns the illuminance of a surface that faces a light, without the sky [lux].
-double BeamIlluminance(const SkyLight& light, const AirOfSky& air, double altitude_m) {
-  const double mu = std::sin(light.disk.elevation_rad);
-  BandLight beam = air.air->BeamLeft(altitude_m, mu);
-  for (std::size_t band = 0; band < beam.count; ++band)
-    beam[band] *= light.irradiance[static_cast<glm::length_t>(band)];
-  return air.colour.Xyz(InDouble(beam))[1];
+double BeamIlluminance(const DistantLight& light, const AirOfSky& air, double altitude_m) {
+  const double mu = light.direction.seen.z;
+  return air.colour.Xyz(InDouble(air.air->BeamLeft(altitude_m, mu) * light.irradiance))[1];
 }
 
 TEST(LightsOfSky, OfTheSecondNoShadowIsSeenInAnyEveningOfAMonth) {
@@ -273,7 +270,7 @@ TEST(LightsOfSky, OfTheSecondNoShadowIsSeenInAnyEveningOfAMonth) {
       const UtcInstant now =
           WhenTheSunIsAt(elevation_deg * kRadiansPerDegree, eye, UtcInstant{61058 + day, 41400.0});
       const LightsOfSky lights = FrameSkyAt(eye, now, air).lights;
-      ASSERT_FALSE(lights.front().is_moon) << day << ' ' << elevation_deg;
+      ASSERT_EQ(lights.front().body, LightSource::kSun) << day << ' ' << elevation_deg;
       if (lights.size() == 1) continue;
       ++moonlit;
       most = std::max(most, BeamIlluminance(lights.back(), air, eye.height_m) /
@@ -284,11 +281,9 @@ TEST(LightsOfSky, OfTheSecondNoShadowIsSeenInAnyEveningOfAMonth) {
   EXPECT_LT(most, 0.004) << "the most in a year is 0.0033; seen from the equator it is 0.0032";
 }
 
-SkyLight LightAt(double elevation_rad) {
-  SunPosition disk{};
-  disk.elevation_rad = elevation_rad;
-  disk.angular_radius_rad = 0.27 * kRadiansPerDegree;
-  return {disk, glm::vec4(1.0F)};
+DistantLight LightAt(double elevation_rad) {
+  return {LightSource::kSun, Unrefracted(DirectionFromAngles(elevation_rad, 0.0).xyz),
+          0.27 * kRadiansPerDegree, BandLight(4)};
 }
 
 // Ground is lit if the upper limb is above its horizon, which the height lowers.
@@ -300,8 +295,8 @@ TEST(HasSetOnGround, OfALightOfWhichNoGroundInReachSeesTheLimb) {
     for (const double reach_deg : {0.0, 0.5, 2.0, 5.0}) {
       const double elevation = elevation_deg * kRadiansPerDegree;
       const double reach = reach_deg * kRadiansPerDegree;
-      const SkyLight light = LightAt(elevation);
-      const double limb = elevation + reach + light.disk.angular_radius_rad;
+      const DistantLight light = LightAt(elevation);
+      const double limb = elevation + reach + light.radius_rad;
       const bool is_lit_land = limb > -dip(kSummit_m), is_lit_planet = limb > 0.0;
       EXPECT_FALSE(HasSetOnGround(light, {reach, 0.0}) && is_lit_land) << elevation_deg;
       EXPECT_FALSE(HasSetOnGround(light, {0.0, reach}) && is_lit_planet) << elevation_deg;
@@ -322,9 +317,9 @@ TEST(LightsOfSky, WhenTheMoonIsFirstNoSummitIsLitByTheSun) {
   const UtcInstant now = WhenTheSunIsAt(-3.51 * kRadiansPerDegree, eye, UtcInstant{61043, 41400.0});
   const LightsOfSky lights = FrameSkyAt(eye, now, air).lights;
   ASSERT_EQ(lights.size(), 2U);
-  EXPECT_TRUE(lights.front().is_moon);
-  const SunPosition& sun = lights.back().disk;
-  EXPECT_LT(sun.elevation_rad + sun.angular_radius_rad, -dip);
+  EXPECT_EQ(lights.front().body, LightSource::kMoon);
+  const DistantLight& sun = lights.back();
+  EXPECT_LT(std::asin(sun.direction.seen.z) + sun.radius_rad, -dip);
 }
 
 }  // namespace

@@ -343,7 +343,7 @@ using DisksInTheSky = tests::HeadlessSharing<BareNoon>;
 TEST_F(DisksInTheSky, HaveTheirLightInPicturesOfAnySize) {
   LightOfDisks light(shared().painter, shared().view);
   const SunPosition sun = light.sky().sun;
-  const glm::dvec3 to_sun = DirectionToSun(sun);
+  const glm::dvec3 to_sun = DirectionOf(sun).seen;
   const double whole = light.Reference(to_sun, sun.angular_radius_rad);
   PaintedView alone = light.Beside(to_sun, 1.0, 0.0, {64, 64});
   CameraSample camera_sample(alone.now);
@@ -368,7 +368,7 @@ TEST_F(DisksInTheSky, HaveTheirLightInPicturesOfAnySize) {
 TEST_F(DisksInTheSky, HaveTheirLightInPanoramas) {
   LightOfDisks light(shared().painter, shared().view);
   const SunPosition sun = light.sky().sun;
-  const glm::dvec3 to_sun = DirectionToSun(sun);
+  const glm::dvec3 to_sun = DirectionOf(sun).seen;
   const double whole = light.Reference(to_sun, sun.angular_radius_rad);
   for (const PictureSize& size : {PictureSize{16, 8}, {48, 24}}) {
     for (const double heading : {0.0, 20.0, 45.0}) {
@@ -405,7 +405,7 @@ TEST_F(DisksInTheSky, HaveTheLightOfTheirVisiblePartAtTheHorizon) {
     evening.now = AddSeconds(ParseInstant("2026-06-15T19:22:00Z"), seconds);
     LightOfDisks light(shared().painter, evening);
     const SunPosition sun = light.sky().sun;
-    const glm::dvec3 to_sun = DirectionToSun(sun);
+    const glm::dvec3 to_sun = DirectionOf(sun).seen;
     const double visible = light.Reference(to_sun, sun.angular_radius_rad);
     for (const double fov : {40.0, 150.0}) {
       EXPECT_NEAR(light.In(light.Beside(to_sun, fov, 7.0, {16, 9}), 1), visible,
@@ -423,7 +423,7 @@ TEST_F(LandPictures, DisksBehindLandHaveTheLightOfTheirVisiblePart) {
                                     AddSeconds(shared().first.instant, seconds));
     LightOfDisks light(shared().both.painter(), view);
     const SunPosition sun = light.sky().sun;
-    const glm::dvec3 to_sun = DirectionToSun(sun);
+    const glm::dvec3 to_sun = DirectionOf(sun).seen;
     last_lux = light.Reference(to_sun, sun.angular_radius_rad);
     for (const double fov : {40.0, 150.0}) {
       EXPECT_NEAR(light.In(light.Beside(to_sun, fov, 7.0, {16, 9}), 1), last_lux, 0.05 * last_lux)
@@ -587,7 +587,7 @@ TEST_F(SkyPainterTest, ASunWithTheMoonBeforeItIsTheRenderers) {
   const SunPosition sun = ApparentSunAt(scene.place, now);
   const AirOfSky air(std::make_shared<const SolvedAir>(scene.medium, AirSolution::kDraft));
   const double left = double{FrameSkyAt(scene.place, now, air).lights.front().irradiance[1]} /
-                      double{SunAsLight(sun, scene.medium).irradiance[1]};
+                      double{SunlightOf(sun, scene.medium).irradiance[1]};
   const double covered = SkyBodiesAt(scene.place, now).CoveredLight();
   EXPECT_NEAR(covered, 0.9, 0.02);
   EXPECT_NEAR(left / (1.0 - covered), 1.0, 0.02) << "of 550 nm and of the second band";
@@ -616,7 +616,7 @@ TEST(FrameSky, OnMarsThereIsNeitherAMoonNorAnEclipseNorAnotherLight) {
   EXPECT_FALSE(sky.moon);
   EXPECT_FALSE(sky.is_eclipse);
   ASSERT_EQ(sky.lights.size(), 1U);
-  EXPECT_EQ(sky.lights[0].irradiance, SunAsLight(sky.sun, mars.air->medium()).irradiance);
+  EXPECT_EQ(sky.lights[0].irradiance, SunlightOf(sky.sun, mars.air->medium()).irradiance);
 }
 
 struct MeanLuminance {
