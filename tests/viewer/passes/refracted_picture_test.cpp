@@ -121,7 +121,7 @@ TEST(RefractedDisk, HighDisksAndWideViewsHaveRoundOnes) {
 }
 
 TEST(RefractedDisk, OneThatIsKeptCoversTheDiskThatHasMoved) {
-  const auto air = SolveAir(MediumPreset("earth"), AirSolution::kDraft);
+  const auto air = std::make_shared<const SolvedAir>(MediumPreset("earth"), AirSolution::kDraft);
   constexpr double kRadius = 16.0 * kArcMinute, kElevation = 2.0 * 60.0 * kArcMinute;
   RefractedDiskFollower follower;
   const double first_rad = follower.Follow(air, 2.0, kElevation, kRadius, 0.0)->first_rad;
