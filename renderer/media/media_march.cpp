@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: MIT
-#include "renderer/media/media_light.h"
+#include "renderer/media/media_march.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <tuple>
 
 #include "atmosphere/math/numerics.h"
 
@@ -57,10 +56,16 @@ const KronrodRule& Rule() {
   return kRule;
 }
 
+/// Optical depths of all media, and of the bodies among them.
+struct MediaDepth {
+  Bands<double> all, bodies;
+};
+
 /// Contribution of a panel, as if it began at the eye.
 struct MarchPanel {
   double begin_m = 0.0, end_m = 0.0;
-  Bands<double> light, depth, volume_depth, mean, mean_past_volumes;
+  Bands<double> light, mean, mean_past_bodies;
+  MediaDepth depth;
   double light_error = 0.0;  // of the worst band, absolute
   double depth_error = 0.0;
   double most_light = 0.0, most_depth = 0.0;
@@ -78,15 +83,16 @@ class March {
         tolerance_(tolerance),
         bands_(media.bands()),
         passed_(bands_),
-        passed_volumes_(bands_),
+        passed_bodies_(bands_),
         light_(bands_) {
-    for (const LocalMedium& medium : media.all()) {
-      pieces_.push_back(medium.PiecesAlong(origin, direction, length_m));
+    for (const auto& medium : media.all()) {
+      pieces_.push_back(medium->PiecesAlong(origin, direction, length_m));
       double thickest = 0.0;
       for (std::size_t band = 0; band < bands_; ++band) {
-        thickest = std::max(thickest, medium.optics.extinction_per_m[band]);
+        thickest = std::max(thickest, medium->optics().extinction_per_m[band]);
       }
       thickest_per_m_.push_back(thickest);
+      is_body_.push_back(!medium->IsLayer());
       for (const DensePiece& piece : pieces_.back()) {
         cuts_.push_back(piece.begin_m);
         cuts_.push_back(piece.end_m);
@@ -150,18 +156,15 @@ class March {
     Take(middle, end_m, halvings + 1);
   }
 
-  // Returns an upper bound of the extinction in the thickest band. Outside grids, densities
-  // increase or decrease monotonically within a piece, so that the largest value is at an end.
+  // Returns an upper bound of the extinction in the thickest band.
   [[nodiscard]] double MostPerMetre(double begin_m, double end_m) const {
     const double inside = 1e-6 * (end_m - begin_m);
     double sum = 0.0;
     for (std::size_t m = 0; m < largest_.size(); ++m) {
-      const LocalMedium& medium = media_.all()[m];
-      double most = largest_[m];
-      if (most > 0.0 && (medium.volume() == nullptr || medium.volume()->grid() == nullptr)) {
-        most = std::max(medium.DensityAt(origin_ + (begin_m + inside) * direction_),
-                        medium.DensityAt(origin_ + (end_m - inside) * direction_));
-      }
+      if (largest_[m] == 0.0) continue;
+      const double most =
+          media_.all()[m]->LargestBetween(origin_ + (begin_m + inside) * direction_,
+                                          origin_ + (end_m - inside) * direction_, largest_[m]);
       sum += most * thickest_per_m_[m];
     }
     return sum;
@@ -185,57 +188,55 @@ class March {
     for (std::size_t i = 0; i < kNodes; ++i) {
       point[i] = origin_ + (begin_m + length * rule.node[i]) * direction_;
       for (std::size_t m = 0; m < count; ++m) {
-        if (largest_[m] > 0.0) densities_[i * count + m] = media_.all()[m].DensityAt(point[i]);
+        if (largest_[m] > 0.0) densities_[i * count + m] = media_.all()[m]->DensityAt(point[i]);
       }
     }
     MarchPanel panel;
     panel.begin_m = begin_m;
     panel.end_m = end_m;
-    panel.depth = panel.volume_depth = panel.light = Bands<double>(bands_);
-    panel.mean = panel.mean_past_volumes = Bands<double>(bands_);
+    panel.light = panel.mean = panel.mean_past_bodies = Bands<double>(bands_);
     Bands<double> gauss_light(bands_);
     for (std::size_t i = 0; i < kNodes; ++i) {
-      const auto [depth, volume_depth] = DepthUpto(rule.upto[i], length, count);
+      const MediaDepth depth = DepthUpto(rule.upto[i], length, count);
       const BandLight source = source_(begin_m + length * rule.node[i], point[i],
                                        std::span(densities_).subspan(i * count, count));
       ++nodes_;
       for (std::size_t band = 0; band < bands_; ++band) {
-        const double left = std::exp(-depth[band] - passed_[band]);
+        const double left = std::exp(-depth.all[band] - passed_[band]);
         const double light = length * left * static_cast<double>(source[band]);
         panel.light[band] += rule.weight[i] * light;
         gauss_light[band] += rule.gauss_weight[i] * light;
         panel.mean[band] += rule.weight[i] * left;
-        panel.mean_past_volumes[band] +=
-            rule.weight[i] * std::exp(-volume_depth[band] - passed_volumes_[band]);
+        panel.mean_past_bodies[band] +=
+            rule.weight[i] * std::exp(-depth.bodies[band] - passed_bodies_[band]);
       }
     }
-    std::tie(panel.depth, panel.volume_depth) = DepthUpto(rule.weight, length, count);
-    const Bands<double> gauss_depth = DepthUpto(rule.gauss_weight, length, count).first;
+    panel.depth = DepthUpto(rule.weight, length, count);
+    const MediaDepth gauss_depth = DepthUpto(rule.gauss_weight, length, count);
     for (std::size_t band = 0; band < bands_; ++band) {
       panel.light_error =
           std::max(panel.light_error, std::abs(panel.light[band] - gauss_light[band]));
       panel.depth_error =
-          std::max(panel.depth_error, std::abs(panel.depth[band] - gauss_depth[band]));
+          std::max(panel.depth_error, std::abs(panel.depth.all[band] - gauss_depth.all[band]));
       panel.most_light = std::max(panel.most_light, panel.light[band]);
-      panel.most_depth = std::max(panel.most_depth, panel.depth[band]);
+      panel.most_depth = std::max(panel.most_depth, panel.depth.all[band]);
     }
     return panel;
   }
 
-  // Returns the optical depths of all media and of volumes, with the weights of an integral over
-  // densities_.
-  [[nodiscard]] std::pair<Bands<double>, Bands<double>> DepthUpto(
-      const std::array<double, kNodes>& weights, double length, std::size_t count) const {
-    std::pair<Bands<double>, Bands<double>> depth{Bands<double>(bands_), Bands<double>(bands_)};
+  // Returns the optical depths with the weights of an integral over densities_.
+  [[nodiscard]] MediaDepth DepthUpto(const std::array<double, kNodes>& weights, double length,
+                                     std::size_t count) const {
+    MediaDepth depth{Bands<double>(bands_), Bands<double>(bands_)};
     for (std::size_t m = 0; m < count; ++m) {
       if (largest_[m] == 0.0) continue;
       double column = 0.0;
       for (std::size_t j = 0; j < kNodes; ++j) column += weights[j] * densities_[j * count + m];
-      const LocalMedium& medium = media_.all()[m];
+      const Bands<double>& extinction_per_m = media_.all()[m]->optics().extinction_per_m;
       for (std::size_t band = 0; band < bands_; ++band) {
-        const double of_this = length * column * medium.optics.extinction_per_m[band];
-        depth.first[band] += of_this;
-        if (medium.fog() == nullptr) depth.second[band] += of_this;
+        const double of_this = length * column * extinction_per_m[band];
+        depth.all[band] += of_this;
+        if (is_body_[m]) depth.bodies[band] += of_this;
       }
     }
     return depth;
@@ -246,12 +247,12 @@ class March {
                        BandLight(bands_), BandLight(bands_), BandLight(bands_)};
     for (std::size_t band = 0; band < bands_; ++band) {
       light_[band] += panel.light[band];
-      passed_[band] += panel.depth[band];
-      passed_volumes_[band] += panel.volume_depth[band];
+      passed_[band] += panel.depth.all[band];
+      passed_bodies_[band] += panel.depth.bodies[band];
       piece.transmittance[band] = static_cast<float>(std::exp(-passed_[band]));
-      piece.past_volumes[band] = static_cast<float>(std::exp(-passed_volumes_[band]));
+      piece.past_bodies[band] = static_cast<float>(std::exp(-passed_bodies_[band]));
       piece.mean_transmittance[band] = static_cast<float>(panel.mean[band]);
-      piece.mean_past_volumes[band] = static_cast<float>(panel.mean_past_volumes[band]);
+      piece.mean_past_bodies[band] = static_cast<float>(panel.mean_past_bodies[band]);
       most_light_ = std::max(most_light_, light_[band]);
     }
     error_ += panel.light_error;
@@ -276,12 +277,13 @@ class March {
   const MediaSource& source_;
   double tolerance_;
   std::size_t bands_;
-  std::vector<std::vector<DensePiece>> pieces_;  // of each body
+  std::vector<std::vector<DensePiece>> pieces_;  // of each medium
   std::vector<double> thickest_per_m_;
+  std::vector<bool> is_body_;
   std::vector<double> cuts_;
   std::vector<double> largest_;    // densities of the current piece; 0: not present
-  std::vector<double> densities_;  // [node][body]
-  Bands<double> passed_, passed_volumes_, light_;
+  std::vector<double> densities_;  // [node][medium]
+  Bands<double> passed_, passed_bodies_, light_;
   double whole_m_ = 0.0, most_light_ = 0.0, error_ = 0.0;
   std::size_t nodes_ = 0;
   std::vector<MarchedPiece> done_;
@@ -305,9 +307,9 @@ struct Stretch {
 
 void Extend(const MarchedPiece& piece, Behind behind, std::vector<Stretch>& stretches) {
   constexpr float kMostFall = 0.15F;
-  const bool without_fog = behind == Behind::kVolumes;
-  const BandLight& after = without_fog ? piece.past_volumes : piece.transmittance;
-  const BandLight& mean = without_fog ? piece.mean_past_volumes : piece.mean_transmittance;
+  const bool without_layers = behind == Behind::kBodies;
+  const BandLight& after = without_layers ? piece.past_bodies : piece.transmittance;
+  const BandLight& mean = without_layers ? piece.mean_past_bodies : piece.mean_transmittance;
   const auto length = static_cast<float>(piece.end_m - piece.begin_m);
   if (!stretches.empty()) {
     Stretch& open = stretches.back();
@@ -355,13 +357,13 @@ BandLight DimmedByMedia(const std::vector<MarchedPiece>& pieces,
   return sum;
 }
 
-BandLight LeftByVolumes(const std::vector<MarchedPiece>& pieces, double distance_m,
-                        std::size_t bands) {
+BandLight LeftByBodies(const std::vector<MarchedPiece>& pieces, double distance_m,
+                       std::size_t bands) {
   BandLight left(bands);
   std::fill_n(left.value.begin(), bands, 1.0F);
   for (const MarchedPiece& piece : pieces) {
     if (piece.begin_m >= distance_m) break;
-    left = piece.past_volumes;
+    left = piece.past_bodies;
   }
   return left;
 }

@@ -387,22 +387,22 @@ void FrameContext::LightNight() {
 }
 
 void FrameContext::LightMedia() {
-  // Below a millionth of a lux of sunlight, only lamps light fog, unless fog stands in front of a
-  // volume.
+  // Below a millionth of a lux of sunlight, only lamps light layers, unless there are bodies, which a
+  // layer can stand in front of.
   const SceneGeometry& geometry = scene_->geometry();
-  const bool has_volumes = Has(Effect::kVolumes) && scene_->media().HasVolumes();
+  const bool has_bodies = Has(Effect::kVolumes) && scene_->media().HasBodies();
   const bool is_lit = Has(Effect::kFogGlow) &&
-                      (has_volumes || lights_.size() > 1 ||
+                      (has_bodies || lights_.size() > 1 ||
                        IlluminanceBy(*scene_, light().source, camera().eye(), light()) > 1e-6);
-  LocalMedia here = scene_->media().Only(has_volumes, is_lit);
+  LocalMedia here = scene_->media().Only(has_bodies, is_lit);
   for (FrameLight& source : lights_) source.media = nullptr;
-  if (here.IsNothing()) return;
+  if (here.IsEmpty()) return;
   lights_.front().media =
       std::make_shared<MediaLight>(std::move(here), geometry, over_ground_->air, light(),
                                    Has(Effect::kLights) ? lamps_.get() : nullptr);
   for (std::size_t i = 1; i < lights_.size(); ++i) {
-    lights_[i].media = std::make_shared<MediaLight>(media()->media().WithoutGlow(), geometry,
-                                                    over_ground_->air, lights_[i].light);
+    lights_[i].media = std::make_shared<MediaLight>(media()->media(), geometry, over_ground_->air,
+                                                    lights_[i].light, nullptr, MediaEmission::kOff);
   }
 }
 

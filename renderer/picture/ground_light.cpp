@@ -108,8 +108,8 @@ BandLight GroundLight::SkyIrradiance(const Hit& hit, const GroundSources& from,
                               : air_.multiple_scattering().Irradiance(
                                     sun.altitude_m, sun.mu_s_for_air, normal_mu, azimuth);
   if (from.media == nullptr) return clear;
-  const SkyThroughFog fog = from.media->SkyOnSurface(sun.altitude_m, normal_mu);
-  return fog.left * clear + fog.added;
+  const SkyThroughMedia sky = from.media->SkyOnSurface(sun.altitude_m, normal_mu);
+  return sky.left * clear + sky.added;
 }
 
 GroundPatch GroundLight::PatchAt(const Hit& hit, const Lighting& light, const glm::dvec3& up,

@@ -280,7 +280,7 @@ void AddAir(const FrameContext& frame, SharedSegmentAir& rays) {
 }
 
 BandLight UnmarchedFog(const FrameContext& frame, const glm::dvec3& direction, double length_m) {
-  const bool is_marched = frame.media() && frame.media()->media().fog() != nullptr;
+  const bool is_marched = frame.media() && frame.media()->media().HasLayers();
   return frame.lamps().FogTransmittance(direction, is_marched ? 0.0 : length_m);
 }
 
@@ -294,7 +294,7 @@ void AddLamps(const FrameContext& frame, int x, int y, SharedSegmentAir& rays) {
                                {through.direction, std::min(length_m, through.length_m)},
                                frame.camera().PixelAngle(), frame.settings().lamps.nodes);
   };
-  rays.lamp_light = DimmedByMedia(rays.pieces, upto, upto(through.length_m), Behind::kVolumes);
+  rays.lamp_light = DimmedByMedia(rays.pieces, upto, upto(through.length_m), Behind::kBodies);
 }
 
 namespace {
@@ -514,7 +514,7 @@ Shaded PixelShader::WithoutPolariser(const Hit& hit, const SharedSegmentAir& thr
   }
   shaded.albedo = BandLight(frame.scene().medium().wavelengths_nm.size());
   const auto left = [&](double distance_m) {
-    return LeftByVolumes(through.pieces, distance_m, through.media.count);
+    return LeftByBodies(through.pieces, distance_m, through.media.count);
   };
   shaded.lamps =
       through.lamp_light + frame.lamps().Seen(near.seen, ray, frame_->camera().PixelAngle(), left);

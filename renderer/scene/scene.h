@@ -16,7 +16,7 @@
 #include "atmosphere/time_place/time.h"
 #include "renderer/elevation/elevation.h"
 #include "renderer/elevation/mesh.h"
-#include "renderer/scene/local_volume.h"
+#include "renderer/scene/volume_grid.h"
 
 namespace alpenglow::renderer {
 

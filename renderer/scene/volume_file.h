@@ -14,7 +14,7 @@
 #include <cstddef>
 #include <filesystem>
 
-#include "renderer/scene/local_volume.h"
+#include "renderer/scene/volume_grid.h"
 
 namespace alpenglow::renderer {
 

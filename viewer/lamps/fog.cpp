@@ -106,10 +106,9 @@ void SceneFog::BeginIn(const std::shared_ptr<const SolvedAir>& air, double latit
   const auto make = [here = air->OnSphereAt(latitude_rad), media = media_,
                      size = size_](const FogView& wanted) {
     tbb::task_arena alone(1);
-    return alone.execute(
-        [&] { return MakeFogMap(*media->fog(), media->fog_bottom_m(), here, wanted, size); });
+    return alone.execute([&] { return MakeFogMap(*media->layer(), here, wanted, size); });
   };
-  const double scale_height_m = media_->fog()->fog()->scale_height_m();
+  const double scale_height_m = media_->layer()->scale_height_m();
   maps_.emplace(make, [scale_height_m](const FogView& made, const FogView& wanted) {
     return Serves(made, wanted, scale_height_m);
   });
@@ -131,8 +130,8 @@ void SceneFog::WaitUntilReady(const std::shared_ptr<const SolvedAir>& air, const
 }
 
 double SceneFog::ExtinctionAt(double altitude_m) const {
-  const LocalMedium& fog = *media_->fog();
-  return fog.optics.extinction_per_m[0] * fog.fog()->DensityAtAltitude(altitude_m);
+  const ExponentialLayer& fog = *media_->layer();
+  return fog.optics().extinction_per_m[0] * fog.DensityAtAltitude(altitude_m);
 }
 
 void SceneFog::Bind(const CameraPose& eye, const DistantLight& light) const {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Provides the light of sun and sky in a scene's fog on the GPU: FogPainter, which uploads a FogMap
-// (renderer/media/fog_light.h) for fog.light.glsl, and SceneFog, which computes maps for a moving
+// (renderer/media/fog_map.h) for fog.light.glsl, and SceneFog, which computes maps for a moving
 // eye and sun beside drawing.
 #pragma once
 
@@ -13,7 +13,7 @@
 #include "atmosphere/base/async_value.h"
 #include "lut/camera_tables/air_tables.h"
 #include "renderer/illumination/distant_light.h"
-#include "renderer/media/fog_light.h"
+#include "renderer/media/fog_map.h"
 #include "renderer/media/local_media.h"
 #include "viewer/flight/flight.h"
 #include "viewer/gl/gl_context.h"
@@ -65,7 +65,7 @@ class FogPainter {
 
 class SceneFog {
  public:
-  /// @param media  media whose last one is fog.
+  /// @param media  media with a layer, the fog.
   SceneFog(LocalMedia media, const FogMapSize& size, const FogUnits& units);
 
   /// Sets the size of maps from the next Follow or WaitUntilReady on.

@@ -66,7 +66,7 @@ FixedScene::FixedScene(const Scene& scene, bool has_land)
       material(scene.ground, drape.colours, scene.medium.wavelengths_nm),
       land_kind{has_land, scene.terrain.HasFineRelief()},
       fog(LocalMedia(scene, lamp_ground, MediumAt(scene)).Only(false, true)),
-      fog_phase(fog.IsNothing() ? std::nullopt : std::optional(fog.fog()->optics.phase.kind)) {}
+      fog_phase(fog.IsEmpty() ? std::nullopt : std::optional(fog.layer()->optics().phase.kind)) {}
 
 PaintedScene::PaintedScene(const Scene& scene, const LandSource& land, const PaintedView& first,
                            const PaintSizes& sizes, FirstAir first_air)

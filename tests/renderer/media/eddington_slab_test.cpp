@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: MIT
-#include "renderer/media/fog_light.h"
+#include "renderer/media/eddington_slab.h"
 
 #include <gtest/gtest.h>
 

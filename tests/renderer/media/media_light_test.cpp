@@ -14,7 +14,8 @@
 #include "atmosphere/math/constants.h"
 #include "lut/multiple_scattering/spherical_harmonics.h"
 #include "renderer/illumination/occluded_sky.h"
-#include "renderer/media/fog_light.h"
+#include "renderer/media/layer_light.h"
+#include "renderer/media/local_volume.h"
 #include "renderer/picture/render.h"
 #include "tests/fixtures/bare_scene.h"
 #include "tests/fixtures/fault_of.h"
@@ -54,8 +55,7 @@ struct MediaStage {
     return at;
   }();
 
-  [[nodiscard]] MediaLight Lit(const std::vector<LocalMedium>& media,
-                               const LampLight* lamps = nullptr) const {
+  [[nodiscard]] MediaLight Lit(const MediaList& media, const LampLight* lamps = nullptr) const {
     return {LocalMedia(media, 3), geometry, air, light, lamps};
   }
   /// Returns the sun's light, before scattering, at a point as an eye 50 m up sees it through 300 m
@@ -88,12 +88,13 @@ MediumOptics Optics(double extinction, double albedo, double emission = 0.0) {
   return optics;
 }
 
-LocalMedium Box(const glm::dvec3& bottom, const glm::dvec3& size, const MediumOptics& optics,
-                std::shared_ptr<const VolumeGrid> grid = nullptr) {
+std::shared_ptr<const LocalVolume> Box(const glm::dvec3& bottom, const glm::dvec3& size,
+                                       const MediumOptics& optics,
+                                       std::shared_ptr<const VolumeGrid> grid = nullptr) {
   VolumePlacement placement;
   placement.bottom = bottom;
   placement.size_m = size;
-  return {LocalVolume(placement, std::nullopt, std::move(grid)), optics};
+  return std::make_shared<const LocalVolume>(placement, std::nullopt, std::move(grid), optics);
 }
 
 const glm::dvec3 kMediaEye(0.0, 0.0, 50.0);
@@ -137,9 +138,8 @@ TEST(SkyMoments, IsotropicScatteringIsTheSameInAllDirections) {
 }
 
 /// Returns single scattering of the sun in one gridded volume with its exact shadow.
-double ExactSun(const LocalMedium& medium, const glm::dvec3& look, std::size_t band) {
-  const LocalVolume& volume = *medium.volume();
-  const double k = medium.optics.extinction_per_m[band];
+double ExactSun(const LocalVolume& volume, const glm::dvec3& look, std::size_t band) {
+  const double k = volume.optics().extinction_per_m[band];
   constexpr int kSteps = 1500;
   constexpr double kFrom = 200.0, kTo = 420.0;
   double passed = 0.0, sum = 0.0;
@@ -158,8 +158,8 @@ double ExactSun(const LocalMedium& medium, const glm::dvec3& look, std::size_t b
 TEST(MediaLight, ShadowsWithinASmokeCloudAreThoseOfShadowRays) {
   const MediaStage& stage = TheStage();
   for (const double extinction : {0.01, 0.04}) {
-    const LocalMedium cloud = Box({0.0, 300.0, 0.0}, {120.0, 120.0, 100.0}, Optics(extinction, 0.9),
-                                  tests::NoiseGrid(40, 6.0, 0.3, 2));
+    const auto cloud = Box({0.0, 300.0, 0.0}, {120.0, 120.0, 100.0}, Optics(extinction, 0.9),
+                           tests::NoiseGrid(40, 6.0, 0.3, 2));
     const MediaLight lit = stage.Lit({cloud});
     for (int i = 0; i < 6; ++i) {
       const glm::dvec3 look = glm::normalize(glm::dvec3(0.03 * i - 0.08, 1.0, 0.02 * i - 0.06));
@@ -167,8 +167,8 @@ TEST(MediaLight, ShadowsWithinASmokeCloudAreThoseOfShadowRays) {
       const SunlitPath dark;
       const MarchedLight all = lit.Along(kMediaEye, look, 1e4, nullptr);
       const MarchedLight shaded = lit.Along(kMediaEye, look, 1e4, &dark);
-      const double expected = ExactSun(cloud, look, 1) * cloud.optics.scattering_per_m[1] *
-                              Phase(cloud.optics.phase, glm::dot(look, kToSun)) *
+      const double expected = ExactSun(*cloud, look, 1) * cloud->optics().scattering_per_m[1] *
+                              Phase(cloud->optics().phase, glm::dot(look, kToSun)) *
                               static_cast<double>(stage.SunSeen({0.0, 300.0, 50.0}, look.z)[1]);
       EXPECT_NEAR(static_cast<double>(all.radiance[1] - shaded.radiance[1]) / expected, 1.0, 0.02)
           << extinction << ": columns to the sun from a grid of 40 samples a side";
@@ -180,8 +180,8 @@ TEST(MediaLight, TwoVolumesDimLightOneAfterTheOther) {
   const auto box_at = [](double along_m, double extinction) {
     return Box(along_m * kToSun - glm::dvec3(0, 0, 10), glm::dvec3(20.0), Optics(extinction, 0.5));
   };
-  const LocalMedium low = box_at(60.0, 0.02), high = box_at(200.0, 0.03);
-  const auto left = [](const std::vector<LocalMedium>& media) {
+  const auto low = box_at(60.0, 0.02), high = box_at(200.0, 0.03);
+  const auto left = [](const MediaList& media) {
     return TheStage().Lit(media).SunLeft(glm::dvec3(0.0), kToSun);
   };
   const BandLight product = left({low}) * left({high});
@@ -193,19 +193,20 @@ TEST(MediaLight, TwoVolumesDimLightOneAfterTheOther) {
   }
 }
 
-LocalMedium FogMedium(double extinction, double scale_height) {
+std::shared_ptr<const ExponentialLayer> FogMedium(double extinction, double scale_height) {
   MediumOptics optics{Bands<double>(3), Bands<double>(3), Bands<double>(3), FogPhase(12.0)};
   for (std::size_t band = 0; band < 3; ++band) {
     optics.extinction_per_m[band] = optics.scattering_per_m[band] = extinction;
   }
-  return {FogLayer(0.0, scale_height, 6360e3, 60e3), optics};
+  return std::make_shared<const ExponentialLayer>(
+      LayerShape{0.0, scale_height, 6360e3, 60e3, std::nullopt}, optics);
 }
 
 TEST(MediaLight, ThinFogLeavesTheGroundItsLight) {
   const MediaStage& stage = TheStage();
   const MediaLight lit = stage.Lit({FogMedium(1e-7, 50.0)});
   for (const double cos_up : {1.0, 0.7, 0.0}) {
-    const SkyThroughFog sky = lit.SkyOnSurface(0.0, cos_up);
+    const SkyThroughMedia sky = lit.SkyOnSurface(0.0, cos_up);
     for (std::size_t band = 0; band < 3; ++band) {
       EXPECT_NEAR(static_cast<double>(sky.left[band]), 1.0, 1e-4);
       EXPECT_NEAR(static_cast<double>(sky.added[band]), 0.0, 1e-4) << cos_up;
@@ -224,8 +225,8 @@ TEST(MediaLight, WhiteFogOverBlackGroundConservesEnergy) {
   const double mu_s = kToSun.z;
   const BandLight sun = stage.air.BeamLeft(60.0, mu_s);
   const BandLight sky = over_black.multiple_scattering().SkyIrradiance(0.0, mu_s);
-  const SkyThroughFog below = lit.SkyOnSurface(0.0, 1.0);
-  const SkyThroughFog above = lit.SkyOnSurface(5e4, -1.0);
+  const SkyThroughMedia below = lit.SkyOnSurface(0.0, 1.0);
+  const SkyThroughMedia above = lit.SkyOnSurface(5e4, -1.0);
   const BandLight beam = lit.SunLeft({0.0, 0.0, 0.0}, kToSun);
   for (std::size_t band = 0; band < 3; ++band) {
     const double in = mu_s * static_cast<double>(sun[band]) + static_cast<double>(sky[band]);
@@ -297,20 +298,21 @@ PhaseFunction LobeOf(double g) {
   return phase;
 }
 
-TEST(FogLight, IsNowhereNegative) {
+TEST(LayerLight, IsNowhereNegative) {
   const MediaStage& stage = TheStage();
-  const FogLayer layer(0.0, 30.0, stage.medium.planet_radius_m, 120e3);
+  const LayerShape shape{0.0, 30.0, stage.medium.planet_radius_m, 120e3, std::nullopt};
   for (const double g : {-0.99, -0.9, -0.6, 0.0, 0.85, 0.99}) {
-    LocalMedium fog{layer, Optics(0.02, 1.0)};
-    fog.optics.phase = LobeOf(g);
+    MediumOptics optics = Optics(0.02, 1.0);
+    optics.phase = LobeOf(g);
+    const ExponentialLayer layer(shape, optics);
     BandLight sun(3);
     std::fill_n(sun.value.begin(), sun.count, 0.8F);
-    const FogLight lit(fog, stage.air.multiple_scattering(), Unrefracted(kToSun), sun, 0.0);
+    const LayerLight lit(layer, stage.air.multiple_scattering(), Unrefracted(kToSun), sun);
     for (const double height_m : {0.0, 10.0, 60.0, 200.0}) {
       for (const double z : {-1.0, -0.5, 0.0, 0.5, 1.0}) {
         const glm::dvec3 look(std::sqrt(1.0 - z * z), 0.0, z);
         // Sunlight behind an optically thick wall: only the glow is left.
-        const FogLight::Scattered light = lit.At(lit.LookAlong(look), height_m, sun, sun, 30.0);
+        const LayerLight::Scattered light = lit.At(lit.LookAlong(look), height_m, sun, sun, 30.0);
         const BandLight ground = lit.OnSurface(height_m, z);
         for (std::size_t band = 0; band < 3; ++band) {
           EXPECT_GE(light.of_sun[band], 0.0F) << g << " " << height_m << " " << z;
@@ -326,7 +328,8 @@ TEST(MediaLight, FogSeenFromSpaceIsThatSeenFromTheTopOfTheAir) {
   const MediaStage& stage = TheStage();
   const double radius_m = stage.medium.planet_radius_m;
   const double top_m = stage.medium.atmosphere_height_m;
-  const std::vector<LocalMedium> fog{{FogLayer(0.0, 200.0, radius_m, top_m), Optics(1e-3, 0.9)}};
+  const MediaList fog{std::make_shared<const ExponentialLayer>(
+      LayerShape{0.0, 200.0, radius_m, top_m, std::nullopt}, Optics(1e-3, 0.9))};
   const MediaLight lit = stage.Lit(fog);
   for (const double tilt : {0.0, 0.6, 1.2}) {  // of the ray at the ground, from the vertical
     const glm::dvec3 out(std::sin(tilt), 0.0, std::cos(tilt));
@@ -405,7 +408,7 @@ TEST(LocalMedia, FogBelowTheTerrainLiesOnThePlanetAroundIt) {
     scene.fog = FogIn(0.004, 25.0);
     scene.fog->base_height_m = base_m;
     const LocalMedia media(scene, ground, scene.medium);
-    return media.fog() != nullptr ? std::optional(media.fog_bottom_m()) : std::nullopt;
+    return media.HasLayers() ? std::optional(media.layer()->bottom_m()) : std::nullopt;
   };
   EXPECT_NEAR(bottom(700.0).value(), 800.0, 0.1) << "it reaches over the plateau";
   EXPECT_EQ(bottom(10.0), 10.0) << "it lies around the plateau";

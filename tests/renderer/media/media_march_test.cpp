@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: MIT
-#include "renderer/media/media_light.h"
+#include "renderer/media/media_march.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <memory>
 
+#include "renderer/media/local_volume.h"
 #include "tests/fixtures/noise_grid.h"
 
 namespace alpenglow::renderer {
@@ -14,22 +16,24 @@ namespace {
 using Shape = VolumePlacement::Shape;
 
 /// Returns a body in one band.
-LocalMedium Body(Shape shape, const glm::dvec3& bottom, const glm::dvec3& size, double extinction,
-                 std::optional<double> scale_height = std::nullopt,
-                 std::shared_ptr<const VolumeGrid> grid = nullptr) {
+std::shared_ptr<const LocalVolume> Body(Shape shape, const glm::dvec3& bottom,
+                                        const glm::dvec3& size, double extinction,
+                                        std::optional<double> scale_height = std::nullopt,
+                                        std::shared_ptr<const VolumeGrid> grid = nullptr) {
   VolumePlacement placement;
   placement.shape = shape;
   placement.bottom = bottom;
   placement.size_m = size;
   MediumOptics optics{Bands<double>(1), Bands<double>(1), Bands<double>(1), PhaseFunction{}};
   optics.extinction_per_m[0] = extinction;
-  return {LocalVolume(placement, scale_height, std::move(grid)), optics};
+  return std::make_shared<const LocalVolume>(placement, scale_height, std::move(grid), optics);
 }
 
-LocalMedium FogBody(double base, double scale_height, double extinction) {
+std::shared_ptr<const ExponentialLayer> Layer(double base, double scale_height, double extinction) {
   MediumOptics optics{Bands<double>(1), Bands<double>(1), Bands<double>(1), PhaseFunction{}};
   optics.extinction_per_m[0] = extinction;
-  return {FogLayer(base, scale_height, 6371e3, 120e3), optics};
+  return std::make_shared<const ExponentialLayer>(
+      LayerShape{base, scale_height, 6371e3, 120e3, std::nullopt}, optics);
 }
 
 /// Returns the source for which L = B (1 - T): extinction times B.
@@ -37,8 +41,8 @@ MediaSource Glowing(const LocalMedia& media, double radiance) {
   return [&media, radiance](double, const glm::dvec3&, std::span<const double> densities) {
     BandLight light(1);
     for (std::size_t m = 0; m < densities.size(); ++m) {
-      light[0] +=
-          static_cast<float>(densities[m] * radiance * media.all()[m].optics.extinction_per_m[0]);
+      light[0] += static_cast<float>(densities[m] * radiance *
+                                     media.all()[m]->optics().extinction_per_m[0]);
     }
     return light;
   };
@@ -60,7 +64,7 @@ TEST(MarchMedia, AnExponentialSlabShinesWithOneMinusTransmittance) {
     const LocalMedia slab({Body(Shape::kBox, {0.0, 0.0, 0.0}, {1e3, 1e3, 400.0}, k, 40.0)}, 1);
     for (const glm::dvec3& way : {glm::dvec3(0.0, 0.0, 1.0), glm::dvec3(0.6, 0.0, 0.8)}) {
       const glm::dvec3 from = -100.0 * way;
-      const double tau = k * slab.all()[0].volume()->Column(from, way, 1e5);
+      const double tau = k * slab.all()[0]->Column(from, way, 1e5);
       const MarchedLight light = MarchMedia(slab, from, way, 1e5, Glowing(slab, 2.0));
       EXPECT_NEAR(static_cast<double>(light.radiance[0]) / (2.0 * -std::expm1(-tau)), 1.0, 1e-3)
           << k;
@@ -81,7 +85,7 @@ TEST(MarchMedia, ThinBodyShinesAsItsSourceTimesItsLength) {
 }
 
 TEST(MarchMedia, FogToTheHorizonIsOneMinusItsTransmittance) {
-  const LocalMedia fog({FogBody(0.0, 30.0, 4e-3)}, 1);
+  const LocalMedia fog({Layer(0.0, 30.0, 4e-3)}, 1);
   for (const glm::dvec3& from : {glm::dvec3(0.0, 0.0, 2.0), glm::dvec3(0.0, 0.0, 500.0)}) {
     for (const double rise : {-0.01, -0.001, 0.0, 0.002, 0.1, 1.0}) {
       const glm::dvec3 way = glm::normalize(glm::dvec3(1.0, 0.0, rise));
@@ -105,8 +109,8 @@ SteppedLight StepThrough(const LocalMedia& media, const glm::dvec3& from, const 
   for (int i = 0; i < steps; ++i) {
     const glm::dvec3 point = from + (begin + (i + 0.5) * step) * way;
     double per_m = 0.0;
-    for (const LocalMedium& medium : media.all()) {
-      per_m += medium.DensityAt(point) * medium.optics.extinction_per_m[0];
+    for (const auto& medium : media.all()) {
+      per_m += medium->DensityAt(point) * medium->optics().extinction_per_m[0];
     }
     const double left = std::exp(-per_m * step);
     truth.radiance += truth.transmittance * (1.0 - left) * source(point);
@@ -126,13 +130,13 @@ TEST(MarchMedia, KeepsItsToleranceAgainstFineSteps) {
     const LocalMedia media(
         {Body(Shape::kBox, {0.0, 100.0, -30.0}, {60.0, 60.0, 60.0}, extinction, std::nullopt, grid),
          Body(Shape::kEllipsoid, {5.0, 80.0, -20.0}, {50.0, 40.0, 40.0}, 0.3 * extinction),
-         FogBody(-10.0, 25.0, 0.02 * extinction)},
+         Layer(-10.0, 25.0, 0.02 * extinction)},
         1);
     const MediaSource source = [&](double, const glm::dvec3& point, std::span<const double> rho) {
       BandLight light(1);
       for (std::size_t m = 0; m < rho.size(); ++m) {
-        light[0] +=
-            static_cast<float>(rho[m] * media.all()[m].optics.extinction_per_m[0] * Striped(point));
+        light[0] += static_cast<float>(rho[m] * media.all()[m]->optics().extinction_per_m[0] *
+                                       Striped(point));
       }
       return light;
     };
@@ -155,7 +159,7 @@ TEST(MarchMedia, SmallerToleranceCostsMoreAndErrsLess) {
                          1);
   const MediaSource source = Glowing(media, 1.0);
   const glm::dvec3 way = glm::normalize(glm::dvec3(0.05, 1.0, 0.07));
-  const double exact = -std::expm1(-0.1 * media.all()[0].volume()->Column({}, way, 1e3));
+  const double exact = -std::expm1(-0.1 * media.all()[0]->Column({}, way, 1e3));
   double last_error = 1.0;
   std::size_t last_nodes = 0;
   for (const double tolerance : {1e-1, 1e-3, 1e-5}) {
@@ -170,8 +174,8 @@ TEST(MarchMedia, SmallerToleranceCostsMoreAndErrsLess) {
 }
 
 TEST(MarchMedia, OrderOfOverlappingBodiesDoesNotMatter) {
-  const LocalMedium a = Body(Shape::kBox, {0.0, 60.0, -20.0}, glm::dvec3(40.0), 0.02);
-  const LocalMedium b = Body(Shape::kEllipsoid, {0.0, 80.0, -15.0}, glm::dvec3(50.0), 0.04);
+  const auto a = Body(Shape::kBox, {0.0, 60.0, -20.0}, glm::dvec3(40.0), 0.02);
+  const auto b = Body(Shape::kEllipsoid, {0.0, 80.0, -15.0}, glm::dvec3(50.0), 0.04);
   const LocalMedia one({a, b}, 1), other({b, a}, 1);
   const glm::dvec3 way = glm::normalize(glm::dvec3(0.1, 1.0, 0.05));
   const MarchedLight first = MarchMedia(one, {}, way, 500.0, Glowing(one, 1.0));
@@ -197,7 +201,7 @@ TEST(MarchMedia, AnEmptyGridIsNotSampled) {
 TEST(MarchMedia, FogFarBelowItsBaseTakesFewNodes) {
   // 2026-11-21: the density at the far end, e^15 of that at the base, once set the step of the
   // whole ray.
-  const LocalMedia fog({FogBody(900.0, 60.0, 0.02)}, 1);
+  const LocalMedia fog({Layer(900.0, 60.0, 0.02)}, 1);
   const glm::dvec3 way = glm::normalize(glm::dvec3(1.0, 0.0, -0.1));
   const MarchedLight light = MarchMedia(fog, {0.0, 0.0, 1900.0}, way, 18500.0, Glowing(fog, 1.0));
   EXPECT_LT(light.nodes, 500U);
@@ -206,8 +210,7 @@ TEST(MarchMedia, FogFarBelowItsBaseTakesFewNodes) {
 
 TEST(MarchMedia, PiecesHaveTheTransmittanceUpToThem) {
   const LocalMedia media(
-      {Body(Shape::kBox, {0.0, 60.0, -20.0}, glm::dvec3(40.0), 0.05), FogBody(0.0, 50.0, 0.002)},
-      1);
+      {Body(Shape::kBox, {0.0, 60.0, -20.0}, glm::dvec3(40.0), 0.05), Layer(0.0, 50.0, 0.002)}, 1);
   const glm::dvec3 from(0.0, 0.0, 5.0), way(0.0, 1.0, 0.0);
   const MarchedLight light = MarchMedia(media, from, way, 300.0, Glowing(media, 1.0));
   ASSERT_FALSE(light.pieces.empty());
@@ -216,7 +219,7 @@ TEST(MarchMedia, PiecesHaveTheTransmittanceUpToThem) {
     EXPECT_GE(piece.begin_m, at);
     at = piece.end_m;
     const double in_box = std::clamp(at - 40.0, 0.0, 40.0);
-    EXPECT_NEAR(static_cast<double>(piece.past_volumes[0]), std::exp(-0.05 * in_box), 1e-5);
+    EXPECT_NEAR(static_cast<double>(piece.past_bodies[0]), std::exp(-0.05 * in_box), 1e-5);
     EXPECT_LE(piece.transmittance[0], piece.mean_transmittance[0]);
   }
   EXPECT_EQ(light.pieces.back().transmittance[0], light.transmittance[0]);

@@ -19,7 +19,8 @@
 
 #include "atmosphere/colour/spectrum.h"
 #include "atmosphere/math/constants.h"
-#include "renderer/media/local_media.h"
+#include "renderer/media/exponential_layer.h"
+#include "renderer/media/local_volume.h"
 #include "renderer/procedural_mountains/lattice_noise.h"
 #include "renderer/scene/scene_options.h"
 #include "tests/fixtures/comma_locale.h"
@@ -59,7 +60,7 @@ VolumeGrid NoiseGrid(const std::array<int, 3>& size) {
   return {size, std::move(values)};
 }
 
-double MidpointColumn(const LocalVolume& volume, const glm::dvec3& origin,
+double MidpointColumn(const LocalMedium& volume, const glm::dvec3& origin,
                       const glm::dvec3& direction, double length_m, int steps) {
   double sum = 0.0;
   for (int i = 0; i < steps; ++i) {
@@ -161,9 +162,9 @@ TEST(LocalVolume, ExponentialColumnIsTheIntegralOfItsDensity) {
   }
 }
 
-TEST(FogLayer, ColumnToSpaceIsTheIntegralOfItsDensity) {
+TEST(ExponentialLayer, ColumnToSpaceIsTheIntegralOfItsDensity) {
   for (const double scale_height : {25.0, 400.0}) {
-    const FogLayer fog(300.0, scale_height, 6371e3, 120e3);
+    const ExponentialLayer fog({300.0, scale_height, 6371e3, 120e3, std::nullopt});
     for (const double mu : {1.0, 0.3, 0.02, 0.0, -0.002}) {
       const glm::dvec3 from(0.0, 0.0, 330.0), direction(std::sqrt(1.0 - mu * mu), 0.0, mu);
       double sum = 0.0;
@@ -177,8 +178,26 @@ TEST(FogLayer, ColumnToSpaceIsTheIntegralOfItsDensity) {
   }
 }
 
-TEST(FogLayer, WithoutScaleHeightReachesTheTopOfTheAir) {
-  const FogLayer fog(0.0, std::numeric_limits<double>::infinity(), 6371e3, 100e3);
+TEST(ExponentialLayer, ColumnOfALineIsTheIntegralOfItsDensity) {
+  const double endless = std::numeric_limits<double>::infinity();
+  for (const double scale_height : {25.0, 400.0, endless}) {
+    const ExponentialLayer layer({300.0, scale_height, 6371e3, 120e3, std::nullopt});
+    for (const double mu : {1.0, 0.3, 0.0, -0.002, -0.05, -1.0}) {
+      const glm::dvec3 from(0.0, 0.0, 330.0), direction(std::sqrt(1.0 - mu * mu), 0.0, mu);
+      for (const double length : {5.0, 300.0, 40e3}) {
+        if (length * -mu > 330.0) continue;  // below the sphere
+        EXPECT_NEAR(layer.Column(from, direction, length) /
+                        MidpointColumn(layer, from, direction, length, 100000),
+                    1.0, 1e-4)
+            << scale_height << " " << mu << " " << length;
+      }
+    }
+  }
+}
+
+TEST(ExponentialLayer, WithoutScaleHeightReachesTheTopOfTheAir) {
+  const ExponentialLayer fog(
+      {0.0, std::numeric_limits<double>::infinity(), 6371e3, 100e3, std::nullopt});
   EXPECT_NEAR(fog.ColumnToSpace({0.0, 0.0, 0.0}, {0.0, 0.0, 1.0}), 100e3, 1e-3);
   EXPECT_NEAR(fog.ColumnToSpace({0.0, 0.0, 0.0}, {1.0, 0.0, 0.0}),
               std::sqrt(100e3 * (2.0 * 6371e3 + 100e3)), 1e-3);

@@ -54,24 +54,27 @@ const Stage& TheStage() {
   return kStage;
 }
 
-LocalMedium FogOf(double per_m, double height_m, double base_m) {
+std::shared_ptr<const ExponentialLayer> FogOf(double per_m, double height_m, double base_m) {
   const Medium& medium = TheStage().scene.medium;
   MediumOptics optics{Bands<double>(3), Bands<double>(3), Bands<double>(3), FogPhase(14.0)};
   for (std::size_t band = 0; band < 3; ++band) {
     optics.extinction_per_m[band] = optics.scattering_per_m[band] = per_m;
   }
-  return {FogLayer(base_m, height_m, medium.planet_radius_m, medium.atmosphere_height_m), optics};
+  return std::make_shared<const ExponentialLayer>(
+      LayerShape{base_m, height_m, medium.planet_radius_m, medium.atmosphere_height_m,
+                 std::nullopt},
+      optics);
 }
 
 /// A fog before an eye, as the renderer has it and as the graphics card does.
 struct BothFogs {
-  BothFogs(const LocalMedium& fog, double eye_m, const glm::dvec3& to_sun = kToSun)
+  BothFogs(const std::shared_ptr<const ExponentialLayer>& fog, double eye_m,
+           const glm::dvec3& to_sun = kToSun)
       : eye(0.0, 0.0, eye_m),
         media({fog}, 3),
         light(TheStage().Under(to_sun)),
         renderer(media, TheStage().geometry, TheStage().air, light),
-        map(MakeFogMap(*media.fog(), media.fog_bottom_m(), TheStage().air,
-                       {eye_m, Unrefracted(to_sun), kFogSunRadius_rad})),
+        map(MakeFogMap(*fog, TheStage().air, {eye_m, Unrefracted(to_sun), kFogSunRadius_rad})),
         painter({}) {
     painter.Upload(map);
   }
@@ -150,7 +153,7 @@ using FogOnTheCard = tests::Headless;
 TEST_F(FogOnTheCard, IsThatOfTheRendererWhereverItLies) {
   struct Case {
     const char* where;
-    LocalMedium fog;
+    std::shared_ptr<const ExponentialLayer> fog;
     double eye_m;
   };
   for (const Case& c : {Case{"around the eye", FogOf(0.02, 60.0, 0.0), 10.0},
@@ -187,7 +190,7 @@ TEST_F(FogOnTheCard, LeavesTheGroundWhatTheRendererDoes) {
   const std::vector<float> added = both.OnGpu("FogOnSurface(a[0], a[1])[1]", points);
   for (std::size_t i = 0; i < points.size(); ++i) {
     const double altitude = 1000.0 * double{points[i][0]};
-    const SkyThroughFog truth = both.renderer.SkyOnSurface(altitude, double{points[i][1]});
+    const SkyThroughMedia truth = both.renderer.SkyOnSurface(altitude, double{points[i][1]});
     EXPECT_NEAR(double{sun[i]}, double{both.renderer.SunLeft({0.0, 0.0, altitude}, kToSun)[1]},
                 1e-3);
     EXPECT_NEAR(double{sky[i]}, double{truth.left[1]}, 1e-4);
@@ -238,7 +241,7 @@ std::string LightInFog() {
 }
 
 TEST_F(FogOnTheCard, StretchesDimALightThatRisesEvenlyAsTheFogDoes) {
-  for (const LocalMedium& fog :
+  for (const std::shared_ptr<const ExponentialLayer>& fog :
        {FogOf(0.002, 80.0, 0.0), FogOf(0.013, std::numeric_limits<double>::infinity(), 0.0)}) {
     const BothFogs both(fog, 10.0);
     const auto rays = Rays(both, tests::ScaledDown(60, 30));

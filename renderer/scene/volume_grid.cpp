@@ -1,18 +1,16 @@
 // SPDX-License-Identifier: MIT
-#include "renderer/scene/local_volume.h"
+#include "renderer/scene/volume_grid.h"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <glm/geometric.hpp>
 #include <limits>
 #include <string>
 #include <vector>
 
 #include "atmosphere/base/error.h"
-#include "atmosphere/lamp/lamp.h"
 #include "renderer/layer.h"
 
 namespace alpenglow::renderer {
@@ -170,130 +168,6 @@ double VolumeGrid::Column(const glm::dvec3& origin, const glm::dvec3& direction,
         });
   }
   return sum;
-}
-
-namespace {
-
-/// A line in the coordinates of the unit cube.
-struct UnitLine {
-  glm::dvec3 origin, direction;
-};
-
-UnitLine InUnits(const LocalVolume& volume, const glm::dvec3& origin, const glm::dvec3& direction) {
-  const VolumePlacement& p = volume.placement();
-  return {volume.UnitFromFrame(origin),
-          glm::dvec3(glm::dot(direction, p.across), glm::dot(direction, p.ahead),
-                     glm::dot(direction, p.up)) /
-              p.size_m};
-}
-
-std::optional<LineSpan> InUnitCube(const UnitLine& line, double length_m) {
-  double begin = 0.0, end = length_m;
-  for (int axis = 0; axis < 3; ++axis) {
-    if (line.direction[axis] == 0.0) {
-      if (!(line.origin[axis] >= 0.0 && line.origin[axis] <= 1.0)) return std::nullopt;
-      continue;
-    }
-    const double a = -line.origin[axis] / line.direction[axis];
-    const double b = (1.0 - line.origin[axis]) / line.direction[axis];
-    begin = std::max(begin, std::min(a, b));
-    end = std::min(end, std::max(a, b));
-  }
-  if (!(begin < end)) return std::nullopt;
-  return LineSpan{begin, end};
-}
-
-// Returns the part of a line in the sphere of radius 1/2 in the middle of the cube.
-std::optional<LineSpan> InUnitBall(const UnitLine& line, double length_m) {
-  const glm::dvec3 from = line.origin - 0.5;
-  const double a = glm::dot(line.direction, line.direction);
-  const double nearest = -glm::dot(from, line.direction) / a;
-  // Square the distance vector from the middle: b^2 - 4 a c would lose digits to cancellation.
-  const glm::dvec3 off = from + nearest * line.direction;
-  const double left = 0.25 - glm::dot(off, off);
-  if (left <= 0.0) return std::nullopt;
-  const double half = std::sqrt(left / a);
-  const LineSpan span{std::max(nearest - half, 0.0), std::min(nearest + half, length_m)};
-  if (!(span.begin_m < span.end_m)) return std::nullopt;
-  return span;
-}
-
-}  // namespace
-
-LocalVolume::LocalVolume(const VolumePlacement& placement, std::optional<double> scale_height_m,
-                         std::shared_ptr<const VolumeGrid> grid)
-    : placement_(placement), scale_height_m_(scale_height_m), grid_(std::move(grid)) {
-  for (int axis = 0; axis < 3; ++axis) ALPENGLOW_ENSURE(placement.size_m[axis], >, 0.0);
-  ALPENGLOW_ENSURE(int{scale_height_m.has_value()} + int{grid_ != nullptr}, <=, 1);
-}
-
-glm::dvec3 LocalVolume::Middle() const { return FrameFromUnit(glm::dvec3(0.5)); }
-
-glm::dvec3 LocalVolume::UnitFromFrame(const glm::dvec3& point) const {
-  const glm::dvec3 off = point - placement_.bottom;
-  return glm::dvec3(glm::dot(off, placement_.across) / placement_.size_m.x + 0.5,
-                    glm::dot(off, placement_.ahead) / placement_.size_m.y + 0.5,
-                    glm::dot(off, placement_.up) / placement_.size_m.z);
-}
-
-glm::dvec3 LocalVolume::FrameFromUnit(const glm::dvec3& unit) const {
-  return placement_.bottom + (unit.x - 0.5) * placement_.size_m.x * placement_.across +
-         (unit.y - 0.5) * placement_.size_m.y * placement_.ahead +
-         unit.z * placement_.size_m.z * placement_.up;
-}
-
-double LocalVolume::DensityIn(const glm::dvec3& unit) const {
-  if (grid_) return grid_->At(unit);
-  if (scale_height_m_) return std::exp(-unit.z * placement_.size_m.z / *scale_height_m_);
-  return 1.0;
-}
-
-double LocalVolume::DensityAt(const glm::dvec3& point) const {
-  const glm::dvec3 unit = UnitFromFrame(point);
-  const glm::dvec3 off = unit - 0.5;
-  const bool inside = placement_.shape == VolumePlacement::Shape::kBox
-                          ? std::max({std::abs(off.x), std::abs(off.y), std::abs(off.z)}) <= 0.5
-                          : glm::dot(off, off) <= 0.25;
-  return inside ? DensityIn(unit) : 0.0;
-}
-
-std::optional<LineSpan> LocalVolume::SpanAlong(const glm::dvec3& origin,
-                                               const glm::dvec3& direction, double length_m) const {
-  const UnitLine line = InUnits(*this, origin, direction);
-  return placement_.shape == VolumePlacement::Shape::kBox ? InUnitCube(line, length_m)
-                                                          : InUnitBall(line, length_m);
-}
-
-std::vector<DensePiece> LocalVolume::PiecesAlong(const glm::dvec3& origin,
-                                                 const glm::dvec3& direction,
-                                                 double length_m) const {
-  const std::optional<LineSpan> span = SpanAlong(origin, direction, length_m);
-  if (!span) return {};
-  const UnitLine line = InUnits(*this, origin, direction);
-  if (!grid_) {
-    const double most = std::max(DensityIn(line.origin + span->begin_m * line.direction),
-                                 DensityIn(line.origin + span->end_m * line.direction));
-    return {{span->begin_m, span->end_m, most}};
-  }
-  std::vector<DensePiece> pieces;
-  for (const auto& [begin, end, most] :
-       grid_->PiecesAlong(line.origin, line.direction, span->begin_m, span->end_m)) {
-    pieces.push_back({begin, end, most});
-  }
-  return pieces;
-}
-
-double LocalVolume::Column(const glm::dvec3& origin, const glm::dvec3& direction,
-                           double length_m) const {
-  const std::optional<LineSpan> span = SpanAlong(origin, direction, length_m);
-  if (!span) return 0.0;
-  const UnitLine line = InUnits(*this, origin, direction);
-  if (grid_) return grid_->Column(line.origin, line.direction, span->begin_m, span->end_m);
-  const double length = span->end_m - span->begin_m;
-  if (!scale_height_m_) return length;
-  const double rise = line.direction.z * length * placement_.size_m.z / *scale_height_m_;
-  return ExponentialColumn(length, DensityIn(line.origin + span->begin_m * line.direction),
-                           DensityIn(line.origin + span->end_m * line.direction), rise);
 }
 
 }  // namespace alpenglow::renderer

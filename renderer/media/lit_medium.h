@@ -1,0 +1,93 @@
+// SPDX-License-Identifier: MIT
+// The interface of the light in one medium: what its sources are (MediaSources), what it does to
+// the light of others, and the light that it sends along a ray (MediumOnRay).
+#pragma once
+
+#include <glm/vec3.hpp>
+#include <memory>
+#include <vector>
+
+#include "lut/multiple_scattering/solved_air.h"
+#include "renderer/illumination/lighting.h"
+#include "renderer/lamps/lamp_light.h"
+#include "renderer/material/band_light.h"
+#include "renderer/media/local_media.h"
+
+namespace alpenglow::renderer {
+
+/// Whether media send the light that they emit themselves.
+enum class MediaEmission { kOn, kOff };
+
+/// What lights the media of a scene, for one position of the sun. Refers to its parts.
+struct MediaSources {
+  const LocalMedia& media;
+  const SceneGeometry& geometry;
+  SolvedAir air;
+  DistantLight light;      // the sun or the moon
+  const LampLight* lamps;  // null: none
+  MediaEmission emission;
+
+  [[nodiscard]] std::size_t bands() const { return media.bands(); }
+  /// Returns the transmittance of the air for sunlight at a point.
+  [[nodiscard]] BandLight SunInAir(const glm::dvec3& point) const;
+};
+
+/// Light of sun and sky on its way to a point of a medium.
+struct LightOnPoint {
+  const glm::dvec3& point;
+  double altitude_m;
+  const BandLight& sun;  // transmittance of air, terrain and bodies for sunlight
+  const BandLight& lit;  // transmittance of terrain and bodies alone
+  float sun_left;        // transmittance of the other layers for sunlight
+  float sky_left;        // and for skylight
+};
+
+/// Light of a medium along one ray.
+class MediumOnRay {
+ public:
+  MediumOnRay() = default;
+  MediumOnRay(const MediumOnRay&) = delete;
+  MediumOnRay& operator=(const MediumOnRay&) = delete;
+  virtual ~MediumOnRay() = default;
+
+  /// Adds the light that the medium sends to the ray's origin [W m^-2 sr^-1 nm^-1 per metre],
+  /// without attenuation in between.
+  /// @param density  at the point, > 0.
+  virtual void AddSource(const LightOnPoint& light, double density, BandLight& sum) const = 0;
+};
+
+/// Light of the sky on a surface inside or above layers.
+struct SkyThroughMedia {
+  BandLight left;   // fraction of the irradiance from a clear sky
+  BandLight added;  // irradiance from the media, per unit solar irradiance [1]
+};
+
+/// The light in one medium for one position of the sun. Immutable; safe to use from many threads.
+class LitMedium {
+ public:
+  LitMedium() = default;
+  LitMedium(const LitMedium&) = delete;
+  LitMedium& operator=(const LitMedium&) = delete;
+  virtual ~LitMedium() = default;
+
+  [[nodiscard]] virtual std::unique_ptr<const MediumOnRay> OnRay(
+      const glm::dvec3& direction) const = 0;
+  /// Adds distances along a ray at which panels of the march must end.
+  virtual void AddCuts(const glm::dvec3& /*origin*/, const glm::dvec3& /*direction*/,
+                       std::vector<double>& /*cuts_m*/) const {}
+
+  /// Adds the optical depth of a body between a point and the sun.
+  virtual void AddDepthToSun(const glm::dvec3& /*point*/, Bands<double>& /*depth*/) const {}
+  /// Returns the transmittance of a layer for sunlight at a point. It includes the light in the
+  /// forward peak.
+  [[nodiscard]] virtual float SunLeft(const glm::dvec3& /*point*/) const { return 1.0F; }
+  /// Returns the transmittance of a layer for skylight from above to an altitude. It includes the
+  /// light in the forward peak.
+  [[nodiscard]] virtual float SkyLeft(double /*altitude_m*/) const { return 1.0F; }
+  /// Attenuates the light of the sky on a surface by a layer, and adds the light of the layer.
+  /// @param cos_up  between the surface's normal and the vertical.
+  virtual void ChangeSky(double /*altitude_m*/, double /*cos_up*/, SkyThroughMedia& /*sky*/) const {
+  }
+};
+
+}  // namespace alpenglow::renderer

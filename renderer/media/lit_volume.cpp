@@ -1,0 +1,270 @@
+// SPDX-License-Identifier: MIT
+#include "renderer/media/lit_volume.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+#include <limits>
+#include <utility>
+
+#include "lut/multiple_scattering/spherical_harmonics.h"
+
+namespace alpenglow::renderer {
+namespace {
+
+constexpr double kEndless = std::numeric_limits<double>::infinity();
+
+/// Directions of Lebedev's rule of degree 7 (1976), and their weights, which sum to 1.
+struct LebedevRule {
+  std::array<glm::dvec3, 26> direction{};
+  std::array<double, 26> weight{};
+};
+const LebedevRule& Lebedev() {
+  static const LebedevRule kRule = [] {
+    LebedevRule rule;
+    std::size_t count = 0;
+    for (int i = 0; i < 27; ++i) {
+      const glm::dvec3 corner(i % 3 - 1, i / 3 % 3 - 1, i / 9 - 1);
+      const double sides = glm::dot(corner, corner);
+      if (sides == 0.0) continue;
+      rule.direction[count] = glm::normalize(corner);
+      rule.weight[count++] = sides == 1.0 ? 1.0 / 21.0 : sides == 2.0 ? 4.0 / 105.0 : 9.0 / 280.0;
+    }
+    return rule;
+  }();
+  return kRule;
+}
+
+/// Tabulates the values of each band at the centres of cells of the unit cube.
+template <typename Values>
+std::vector<VolumeGrid> Tabulated(const std::array<int, 3>& size, std::size_t bands,
+                                  const Values& values_at) {
+  const int rows = size[1] * size[2];
+  const auto columns = static_cast<std::size_t>(size[0]);
+  std::vector<std::vector<float>> values(
+      bands, std::vector<float>(columns * static_cast<std::size_t>(rows)));
+  tbb::parallel_for(0, rows, [&](int row) {
+    for (std::size_t x = 0; x < columns; ++x) {
+      const glm::dvec3 unit((static_cast<double>(x) + 0.5) / size[0],
+                            (row % size[1] + 0.5) / size[1], (row / size[1] + 0.5) / size[2]);
+      const Bands<double> here = values_at(unit);
+      for (std::size_t band = 0; band < bands; ++band)
+        values[band][static_cast<std::size_t>(row) * columns + x] = static_cast<float>(here[band]);
+    }
+  });
+  std::vector<VolumeGrid> grids;
+  for (std::vector<float>& of_band : values) grids.emplace_back(size, std::move(of_band));
+  return grids;
+}
+
+void AddDepth(const LocalMedium& medium, double column, Bands<double>& depth) {
+  if (column == 0.0) return;
+  for (std::size_t band = 0; band < depth.count; ++band) {
+    depth[band] += column * medium.optics().extinction_per_m[band];
+  }
+}
+
+BandLight InFloats(const Bands<double>& values) {
+  BandLight light(values.count);
+  for (std::size_t band = 0; band < values.count; ++band)
+    light[band] = static_cast<float>(values[band]);
+  return light;
+}
+
+}  // namespace
+
+LitVolume::LitVolume(const LocalVolume& volume, const MediaSources& sources)
+    : volume_(volume),
+      sources_(sources),
+      scattering_per_m_(InFloats(volume.optics().scattering_per_m)),
+      emission_per_m_(sources.emission == MediaEmission::kOn
+                          ? InFloats(volume.optics().emission_per_m)
+                          : BandLight(sources.bands())),
+      chi_(LegendreCoefficients(volume.optics().phase,
+                                sources.air.multiple_scattering().options().degree)),
+      sky_(Sky()),
+      sun_column_(SunColumns()),
+      sky_left_(SkyLeft(sky_)),
+      lamps_(Lamps()) {}
+
+SkyMoments LitVolume::Sky() const {
+  const SceneGeometry& geometry = sources_.geometry;
+  const double low = geometry.AltitudeOf(volume_.FrameFromUnit({0.5, 0.5, 0.0}));
+  const double high = geometry.AltitudeOf(volume_.FrameFromUnit({0.5, 0.5, 1.0}));
+  return {sources_.air.multiple_scattering(),
+          geometry.UpAt(volume_.Middle()),
+          sources_.light.direction.for_air,
+          {low, 0.5 * (low + high), high}};
+}
+
+std::optional<VolumeGrid> LitVolume::SunColumns() const {
+  if (volume_.grid() == nullptr) return std::nullopt;
+  constexpr int kMost = 64;
+  std::array<int, 3> size = volume_.grid()->size();
+  for (int& side : size) side = std::min(side, kMost);
+  const auto column = [&](const glm::dvec3& unit) {
+    Bands<double> of_all(1);
+    of_all[0] =
+        volume_.Column(volume_.FrameFromUnit(unit), sources_.light.direction.seen, kEndless);
+    return of_all;
+  };
+  return std::move(Tabulated(size, 1, column).front());
+}
+
+std::vector<LitVolume::VolumeLamp> LitVolume::Lamps() const {
+  constexpr std::size_t kMost = 8;
+  constexpr double kDimmest = 1e-4;  // relative to the brightest
+  if (sources_.lamps == nullptr) return {};
+  const LampLight& lamps = *sources_.lamps;
+  std::vector<std::pair<double, std::uint32_t>> bright;
+  for (const std::uint32_t number : lamps.All()) {
+    const LampLight::SceneLamp lamp = lamps.At(number);
+    const glm::dvec3 nearest = volume_.FrameFromUnit(
+        glm::clamp(volume_.UnitFromFrame(lamp.lamp.position_m), glm::dvec3(0.0), glm::dvec3(1.0)));
+    const double distance = std::max(glm::length(nearest - lamp.lamp.position_m), 1.0);
+    bright.emplace_back(-lamp.candela / (distance * distance), number);
+  }
+  std::sort(bright.begin(), bright.end());
+  std::vector<VolumeLamp> chosen;
+  for (const auto& [minus_lux, number] : bright) {
+    if (chosen.size() == kMost || minus_lux > kDimmest * bright.front().first) break;
+    chosen.push_back(LampOf(number));
+  }
+  return chosen;
+}
+
+LitVolume::VolumeLamp LitVolume::LampOf(std::uint32_t number) const {
+  constexpr int kMost = 24, kPlain = 8;
+  constexpr double kDark = 60.0;
+  std::array<int, 3> size{kPlain, kPlain, kPlain};
+  if (volume_.grid() != nullptr) size = volume_.grid()->size();
+  for (int& side : size) side = std::min(side, kMost);
+  const glm::dvec3 lamp = sources_.lamps->At(number).lamp.position_m;
+  const auto depth_at = [&](const glm::dvec3& unit) {
+    const glm::dvec3 point = volume_.FrameFromUnit(unit);
+    const double distance = std::max(glm::length(lamp - point), 1e-9);
+    Bands<double> depth = sources_.lamps->DepthTo(number, point);
+    for (const auto& medium : sources_.media.all()) {
+      const bool is_exact = medium.get() == &volume_ && volume_.grid() == nullptr;
+      if (medium->IsLayer() || is_exact) continue;
+      AddDepth(*medium, medium->Column(point, (lamp - point) / distance, distance), depth);
+    }
+    for (std::size_t band = 0; band < depth.count; ++band)
+      depth[band] = std::min(depth[band], kDark);
+    return depth;
+  };
+  return {number, Tabulated(size, sources_.bands(), depth_at)};
+}
+
+// Returns the mean transmittance of the bodies over directions, weighted by the sky's radiance.
+std::vector<VolumeGrid> LitVolume::SkyLeft(const SkyMoments& sky) const {
+  constexpr std::array<int, 3> kSize{8, 8, 8};
+  const LebedevRule& rule = Lebedev();
+  const std::vector<double> all(
+      static_cast<std::size_t>(sources_.air.multiple_scattering().options().degree) + 1, 1.0);
+  std::array<BandLight, 26> weight;
+  BandLight sum(sources_.bands());
+  for (std::size_t i = 0; i < weight.size(); ++i) {
+    weight[i] = static_cast<float>(rule.weight[i]) * sky.Towards(rule.direction[i], all)[1];
+    sum = sum + weight[i];
+  }
+  const bool is_dark = sum == BandLight(sources_.bands());
+  return Tabulated(kSize, sources_.bands(), [&](const glm::dvec3& unit) {
+    Bands<double> mean(sources_.bands());
+    if (is_dark) return mean;
+    const glm::dvec3 point = volume_.FrameFromUnit(unit);
+    for (std::size_t i = 0; i < weight.size(); ++i) {
+      Bands<double> depth(sources_.bands());
+      for (const auto& medium : sources_.media.all()) {
+        if (medium->IsLayer()) continue;
+        AddDepth(*medium, medium->Column(point, rule.direction[i], kEndless), depth);
+      }
+      for (std::size_t band = 0; band < mean.count; ++band)
+        mean[band] += static_cast<double>(weight[i][band]) * std::exp(-depth[band]);
+    }
+    for (std::size_t band = 0; band < mean.count; ++band)
+      mean[band] = sum[band] > 0.0F ? mean[band] / static_cast<double>(sum[band]) : 0.0;
+    return mean;
+  });
+}
+
+void LitVolume::AddDepthToSun(const glm::dvec3& point, Bands<double>& depth) const {
+  if (sun_column_) {
+    const glm::dvec3 off = volume_.UnitFromFrame(point) - 0.5;
+    if (std::max({std::abs(off.x), std::abs(off.y), std::abs(off.z)}) <= 0.5)
+      return AddDepth(volume_, sun_column_->At(off + 0.5), depth);
+  }
+  AddDepth(volume_, volume_.Column(point, sources_.light.direction.seen, kEndless), depth);
+}
+
+void LitVolume::AddCuts(const glm::dvec3& origin, const glm::dvec3& direction,
+                        std::vector<double>& cuts_m) const {
+  for (const VolumeLamp& seen : lamps_) {
+    const Lamp& lamp = sources_.lamps->At(seen.number).lamp;
+    const double nearest = glm::dot(lamp.position_m - origin, direction);
+    const double across =
+        std::max(glm::length(lamp.position_m - origin - nearest * direction), lamp.radius_m);
+    for (const double step : {-4.0, -1.0, 0.0, 1.0, 4.0}) cuts_m.push_back(nearest + step * across);
+  }
+}
+
+void LitVolume::AddLamp(const VolumeLamp& seen, const glm::dvec3& point,
+                        const glm::dvec3& direction, double density, BandLight& sum) const {
+  const LampLight::SceneLamp lamp = sources_.lamps->At(seen.number);
+  const glm::dvec3 way = lamp.lamp.position_m - point;
+  const double distance = std::max({glm::length(way), lamp.lamp.radius_m, 1e-3});
+  const glm::dvec3 towards = way / distance;
+  const MediumOptics& optics = volume_.optics();
+  const double per_area = RelativeIntensity(lamp.lamp, -towards) / (distance * distance) * density *
+                          Phase(optics.phase, glm::dot(direction, towards));
+  if (per_area == 0.0) return;
+  const glm::dvec3 unit = volume_.UnitFromFrame(point);
+  const double own = volume_.grid() != nullptr ? 0.0 : volume_.Column(point, towards, distance);
+  for (std::size_t band = 0; band < sum.count; ++band) {
+    const double depth = own * optics.extinction_per_m[band] + seen.depth[band].At(unit);
+    sum[band] += lamp.intensity[band] *
+                 static_cast<float>(per_area * optics.scattering_per_m[band] * std::exp(-depth));
+  }
+}
+
+class LitVolume::OnOneRay final : public MediumOnRay {
+ public:
+  OnOneRay(const LitVolume& lit, const glm::dvec3& direction)
+      : lit_(lit),
+        direction_(direction),
+        phase_(static_cast<float>(Phase(lit.volume_.optics().phase,
+                                        glm::dot(direction, lit.sources_.light.direction.seen)))),
+        sky_(lit.sky_.Towards(direction, lit.chi_)) {}
+
+  void AddSource(const LightOnPoint& light, double density, BandLight& sum) const override {
+    const BandLight sky = lit_.sky_.At(sky_, light.altitude_m);
+    const glm::dvec3 unit = lit_.volume_.UnitFromFrame(light.point);
+    const BandLight& irradiance = lit_.sources_.light.irradiance;
+    for (std::size_t band = 0; band < sum.count; ++band) {
+      const float arriving =
+          phase_ * light.sun_left * light.sun[band] +
+          light.sky_left * sky[band] * static_cast<float>(lit_.sky_left_[band].At(unit));
+      sum[band] +=
+          static_cast<float>(density) *
+          (lit_.scattering_per_m_[band] * irradiance[band] * arriving + lit_.emission_per_m_[band]);
+    }
+    for (const VolumeLamp& lamp : lit_.lamps_)
+      lit_.AddLamp(lamp, light.point, direction_, density, sum);
+  }
+
+ private:
+  const LitVolume& lit_;
+  glm::dvec3 direction_;
+  float phase_;
+  std::vector<BandLight> sky_;
+};
+
+std::unique_ptr<const MediumOnRay> LitVolume::OnRay(const glm::dvec3& direction) const {
+  return std::make_unique<OnOneRay>(*this, direction);
+}
+
+}  // namespace alpenglow::renderer

@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: MIT
+// Integrates light along a ray through all media of a scene:
+//
+//   L = integral of  T(t) sum over media density(t) j(t)  dt,     T = exp(-sum of columns)
+//
+// The ray is divided into panels. A panel has the 7 nodes of Kronrod's rule, three of which are
+// Gauss nodes (Kronrod 1965; the numbers are those of QUADPACK, Piessens et al. 1983). Columns at
+// the nodes are integrals of the polynomial through the densities there, so that only densities and
+// sources need to be evaluated. The difference of the two rules is the error estimate; a panel
+// whose error exceeds its share is halved. No panel is initially deeper than 2 in optical depth or
+// longer than a block of a grid, so that none steps over unseen structure. Stretches without density
+// are skipped.
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <glm/vec3.hpp>
+#include <span>
+#include <vector>
+
+#include "renderer/material/band_light.h"
+#include "renderer/media/local_media.h"
+
+namespace alpenglow::renderer {
+
+/// A stretch of the ray. Pieces are in order and do not overlap; there are no media between them.
+struct MarchedPiece {
+  double begin_m, end_m;
+  // Transmittance for light from the end, and its mean over the piece:
+  BandLight transmittance, mean_transmittance;
+  // Transmittance of bodies alone, without layers, and its mean:
+  BandLight past_bodies, mean_past_bodies;
+};
+
+struct MarchedLight {
+  BandLight radiance;       // W m^-2 sr^-1 nm^-1
+  BandLight transmittance;  // of all media; values below 1e-6 in every band are not resolved
+  double error = 0.0;       // estimate, relative to the radiance of the brightest band
+  std::size_t nodes = 0;    // number of evaluations of the sources
+  std::vector<MarchedPiece> pieces;
+};
+
+/// Returns the light that media of these densities send towards the origin at a point [W m^-2
+/// sr^-1 nm^-1 per metre], without attenuation by media in between.
+using MediaSource = std::function<BandLight(double distance_m, const glm::dvec3& point,
+                                            std::span<const double> densities)>;
+
+inline constexpr double kMarchTolerance = 2e-3;
+
+/// Integrates the light along a ray.
+/// @param direction  unit.
+/// @param length_m  may be infinite.
+/// @param tolerance  of the result's relative error, in [1e-6, 0.1]. It is tested against midpoint
+///     sums a thousand times finer, over homogeneous, exponential and turbulent gridded bodies,
+///     with sources that are smooth or follow a shadow: tests/renderer/media/media_march_test.cpp.
+/// @param cuts_m  distances where panels must end: where the ray is nearest to a lamp.
+[[nodiscard]] MarchedLight MarchMedia(const LocalMedia& media, const glm::dvec3& origin,
+                                      const glm::dvec3& direction, double length_m,
+                                      const MediaSource& source, double tolerance = kMarchTolerance,
+                                      std::span<const double> cuts_m = {});
+
+/// Media that attenuate light from behind them.
+enum class Behind { kAll, kBodies };
+
+/// Returns the light of the air itself that arrives through media; it is scattered in front of
+/// them, inside and behind them. The result is exact in front of and behind media. Within stretches
+/// of media over which transmittance falls by 0.15 at most, light is assumed to increase linearly.
+/// @param upto  light of the air up to a distance, increasing.
+/// @param whole  of the whole ray.
+[[nodiscard]] BandLight DimmedByMedia(const std::vector<MarchedPiece>& pieces,
+                                      const std::function<BandLight(double)>& upto,
+                                      const BandLight& whole, Behind behind);
+
+/// Returns the transmittance of bodies over a distance, up to the ends of pieces.
+[[nodiscard]] BandLight LeftByBodies(const std::vector<MarchedPiece>& pieces, double distance_m,
+                                     std::size_t bands);
+
+}  // namespace alpenglow::renderer
