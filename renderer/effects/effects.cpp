@@ -28,7 +28,7 @@ constexpr std::array<EffectText, kEffects> kTexts{{
     {Effect::kRelief, "relief", "ground between samples of elevation is smooth", false, false},
     {Effect::kLights, "lights", "lamps are off", false, false},
     {Effect::kBeams, "beams", "air does not scatter the light of lamps to the eye", false, false},
-    {Effect::kFogGlow, "fog-glow", "fog scatters light of lamps alone", false, false},
+    {Effect::kLayerGlow, "fog-glow", "fog scatters light of lamps alone", false, false},
     {Effect::kVolumes, "volumes", "volumes of smoke and fog are not there", false, false},
     {Effect::kMoonlight, "moonlight", "the moon is seen and lights nothing", false, false},
     {Effect::kNightSky, "night-sky", "no airglow, zodiacal light and Milky Way", false, false},

@@ -28,7 +28,7 @@ enum class Effect : std::size_t {
   kRelief,
   kLights,
   kBeams,
-  kFogGlow,
+  kLayerGlow,
   kVolumes,
   kMoonlight,
   kNightSky,

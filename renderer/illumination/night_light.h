@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // This header provides the light of the night in the bands of a picture: light pollution of towns,
 // stars and planets, and the light of a moonless night sky above the air (night_sky.h) with its
-// scattering by air and fog.
+// scattering by air and media.
 //
 // Skyglow models light pollution by the brightness that it adds to the zenith. Endless lamps all
 // around emit the radiance L uniformly upwards, and air that scatters equally in all directions
@@ -20,7 +20,7 @@
 //
 // Airglow has the colours of a dark sky, U 22.28, B 22.64, V 21.61, R 20.87, I 19.71 (Patat 2003,
 // Astron. Astrophys. 400, 1183). Zodiacal light has the colour of the sun, and faint stars that of
-// a black body of 5000 K. Air and fog along a ray of transmittance T add (1 - T) J, where
+// a black body of 5000 K. Air and media along a ray of transmittance T add (1 - T) J, where
 //
 //   J = (mean radiance from above + what grey ground, a sixth, sends back) / 2
 //

@@ -80,8 +80,8 @@ Bands<double> LampLight::DepthTo(std::uint32_t number, const glm::dvec3& point) 
   return depth;
 }
 
-Bands<float> LampLight::FogTransmittance(const glm::dvec3& direction, double length_m) const {
-  return state_->stage.FogTransmittance(state_->eye.at, direction, length_m);
+Bands<float> LampLight::LayerTransmittance(const glm::dvec3& direction, double length_m) const {
+  return state_->stage.LayerTransmittance(state_->eye.at, direction, length_m);
 }
 
 Bands<float> LampLight::State::InAir(const LampNodes& lamps, const LampRayEnd& ray,

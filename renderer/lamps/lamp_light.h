@@ -8,7 +8,7 @@
 // of a beam
 //                            spread evenly over all directions (not shaded by terrain)
 //
-// The air around a lamp consists of the scene's molecules, aerosol and fog, with exponential
+// The air around a lamp consists of the scene's molecules, aerosol and layers, with exponential
 // density above the plane that touches the sphere halfway between eye and lamp.
 //
 // The cost of a pixel depends on the cut through the tree of lamps (lamp_tree.h, tile_cut.h), not
@@ -101,8 +101,8 @@ class LampLight {
   [[nodiscard]] LampPlan PlanFor(const MovingCamera& camera, int width, int height,
                                  const LampSettings& settings, const RayTrace& trace) const;
 
-  /// Returns the fog's transmittance over a distance along a ray.
-  [[nodiscard]] Bands<float> FogTransmittance(const glm::dvec3& direction, double length_m) const;
+  /// Returns the transmittance of the scene's layers over a distance along a ray.
+  [[nodiscard]] Bands<float> LayerTransmittance(const glm::dvec3& direction, double length_m) const;
 
   /// Returns the radiance that the air in front of the end of a ray through pixel (x, y) scatters
   /// from lamps [W m^-2 sr^-1 nm^-1]. If a lamp is closer to the ray than the width of a pixel, it
@@ -120,7 +120,7 @@ class LampLight {
   /// Returns the radiance of the lamps themselves. A lamp smaller than a pixel is drawn as a soft
   /// disk of a pixel's size with the same total light. A lens spreads it over the shape of its
   /// iris, except where terrain hides it.
-  /// @param left  transmittance over a distance due to media other than air and fog; null: 1.
+  /// @param left  transmittance over a distance due to media other than air and layers; null: 1.
   [[nodiscard]] Bands<float> Seen(const LampNodes& lamps, const CameraRay& ray,
                                   double pixel_angle_rad,
                                   const std::function<Bands<float>(double)>& left = nullptr) const;
@@ -132,7 +132,7 @@ class LampLight {
     double candela;
   };
   [[nodiscard]] SceneLamp At(std::uint32_t number) const;
-  /// Returns the optical depth of air and fog between a lamp and a point; infinite if terrain hides
+  /// Returns the optical depth of air and layers between a lamp and a point; infinite if terrain hides
   /// the lamp.
   [[nodiscard]] Bands<double> DepthTo(std::uint32_t number, const glm::dvec3& point) const;
 

@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <span>
 
 #include "atmosphere/base/error.h"
 #include "atmosphere/colour/spectrum.h"
@@ -32,20 +33,22 @@ double MoleculeHeight_m(const Medium& medium) {
   return -kHigh_m / std::log(MoleculeDensity(medium, kHigh_m));
 }
 
-LampLayer Drops(const Fog& fog, double base_m, std::size_t bands) {
+LampLayer Drops(const MediumLayer& layer, double base_m, std::size_t bands) {
   LampLayer drops;
-  drops.scale_height_m = fog.scale_height_m;
+  drops.scale_height_m = layer.scale_height_m;
   drops.base_m = base_m;
-  const std::vector<double> grey(bands, fog.extinction_per_m);
-  drops.scattering_per_m = ScaledBands(grey, fog.albedo);
+  const std::vector<double> grey(bands, layer.extinction_per_m);
+  drops.scattering_per_m = ScaledBands(grey, layer.albedo);
   drops.extinction_per_m = ScaledBands(grey, 1.0);
-  drops.phase = fog.phase;
+  drops.phase = layer.phase;
   return drops;
 }
 
-/// Returns the layers of molecules, aerosol and fog.
-std::vector<LampLayer> LayersOf(const Medium& medium, const std::optional<Fog>& fog,
-                                double fog_base_m) {
+/// The first layers are those of the air.
+constexpr std::size_t kAirLayers = 2;
+
+/// Returns the layers of molecules and aerosol.
+std::vector<LampLayer> LampLayersOf(const Medium& medium) {
   LampLayer molecules;
   molecules.scale_height_m = MoleculeHeight_m(medium);
   molecules.scattering_per_m = ScaledBands(medium.rayleigh_scattering_per_m, 1.0);
@@ -58,9 +61,7 @@ std::vector<LampLayer> LayersOf(const Medium& medium, const std::optional<Fog>& 
   // Paths from lamps are short, so their light is scattered with the phase function of the middle
   // wavelength.
   aerosol.phase = MiePhase(medium, medium.wavelengths_nm.size() / 2);
-  std::vector<LampLayer> layers{molecules, aerosol};
-  if (fog) layers.push_back(Drops(*fog, fog_base_m, medium.wavelengths_nm.size()));
-  return layers;
+  return {molecules, aerosol};
 }
 
 }  // namespace
@@ -68,11 +69,13 @@ std::vector<LampLayer> LayersOf(const Medium& medium, const std::optional<Fog>& 
 LampStage::LampStage(const Scene& scene, const SceneGround& ground, const Medium& medium)
     : ground_(&ground),
       planet_radius_m_(medium.planet_radius_m),
-      has_fog_(scene.fog.has_value() && scene.fog->extinction_per_m > 0.0),
+      layers_(LampLayersOf(medium)),
       bands_(medium.wavelengths_nm.size()) {
-  double fog_base_m = 0.0;
-  if (scene.fog) fog_base_m = scene.fog->base_height_m.value_or(TerrainUnder({0.0, 0.0, 0.0}, 0.0));
-  layers_ = LayersOf(medium, scene.fog, fog_base_m);
+  for (const MediumLayer& layer : scene.layers) {
+    const double base_m = layer.base_height_m.value_or(TerrainUnder({0.0, 0.0, 0.0}, 0.0));
+    layers_.push_back(Drops(layer, base_m, bands_));
+  }
+  ALPENGLOW_ENSURE(layers_.size(), <=, kMostLampLayers);
 }
 
 double LampStage::AltitudeOf(const glm::dvec3& point) const {
@@ -134,19 +137,21 @@ LampAir LampStage::AirAround(const glm::dvec3& middle) const {
   return air;
 }
 
-Bands<float> LampStage::FogTransmittance(const glm::dvec3& from, const glm::dvec3& direction,
-                                         double length_m) const {
-  Bands<float> left(bands_);
-  std::fill_n(left.value.begin(), left.count, 1.0F);
-  if (!has_fog_) return left;
-  const LampLayer& fog = layers_.back();
-  // Fog ends where it is 50 scale heights thin; homogeneous fog has no end.
+Bands<float> LampStage::LayerTransmittance(const glm::dvec3& from, const glm::dvec3& direction,
+                                           double length_m) const {
+  // A layer ends where it is 50 scale heights thin; a homogeneous layer has no end.
   const double length = std::isinf(length_m) ? 1e6 : length_m;
-  const double column =
-      fog.ColumnBetween(length, AltitudeOf(from), AltitudeOf(from + length * direction));
-  for (std::size_t band = 0; band < left.count; ++band) {
-    left[band] = static_cast<float>(std::exp(-fog.extinction_per_m[band] * column));
+  Bands<double> depth(bands_);
+  for (const LampLayer& layer : std::span(layers_).subspan(kAirLayers)) {
+    if (layer.extinction_per_m[0] <= 0.0) continue;
+    const double column =
+        layer.ColumnBetween(length, AltitudeOf(from), AltitudeOf(from + length * direction));
+    for (std::size_t band = 0; band < bands_; ++band)
+      depth[band] += layer.extinction_per_m[band] * column;
   }
+  Bands<float> left(bands_);
+  for (std::size_t band = 0; band < bands_; ++band)
+    left[band] = static_cast<float>(std::exp(-depth[band]));
   return left;
 }
 

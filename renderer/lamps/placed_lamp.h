@@ -28,7 +28,7 @@ class LampStage {
   LampStage(const Scene& scene, const SceneGround& ground, const Medium& medium);
 
   [[nodiscard]] const SceneGround& ground() const { return *ground_; }
-  /// Layers of molecules, aerosol and fog; fog is the last one.
+  /// Layers of molecules, of aerosol, and those of the scene (fog).
   [[nodiscard]] const std::vector<LampLayer>& layers() const { return layers_; }
   [[nodiscard]] std::size_t bands() const { return bands_; }
   [[nodiscard]] double planet_radius_m() const { return planet_radius_m_; }
@@ -55,9 +55,9 @@ class LampStage {
 
   /// Returns the layers above the plane that touches the sphere below a point.
   [[nodiscard]] LampAir AirAround(const glm::dvec3& middle) const;
-  /// Returns the transmittance of the fog alone.
-  [[nodiscard]] Bands<float> FogTransmittance(const glm::dvec3& from, const glm::dvec3& direction,
-                                              double length_m) const;
+  /// Returns the transmittance of the layers of the scene alone.
+  [[nodiscard]] Bands<float> LayerTransmittance(const glm::dvec3& from, const glm::dvec3& direction,
+                                                double length_m) const;
 
  private:
   /// Returns whether the planet lies between two points. Where terrain covers the planet, only
@@ -67,7 +67,6 @@ class LampStage {
   const SceneGround* ground_;
   double planet_radius_m_;
   std::vector<LampLayer> layers_;
-  bool has_fog_;
   std::size_t bands_;
 };
 

@@ -100,9 +100,10 @@ void PutAir(const std::vector<LampLayer>& layers, std::size_t bands, double refe
   block.dimming = FloatsOf(layers[1].extinction_per_m.value, bands);
   block.mie_phase = ParametersOf(layers[1].phase);
   if (layers.size() < 3) return;
-  const LampLayer& fog = layers[2];
-  block.fog = {fog.scattering_per_m[0], fog.extinction_per_m[0], 0.0, 0.0};
-  block.fog_phase = ParametersOf(fog.phase);
+  ALPENGLOW_ENSURE(layers.size(), ==, std::size_t{3});
+  const LampLayer& layer = layers[2];
+  block.layer = {layer.scattering_per_m[0], layer.extinction_per_m[0], 0.0, 0.0};
+  block.layer_phase = ParametersOf(layer.phase);
 }
 
 void PutColours(const BandColour& colour, LampsBlock& block) {

@@ -48,7 +48,7 @@ struct GpuLamp {
 
 /// Mirrors the uniform block `Lamps` of lamp_light.glsl.
 struct LampsBlock {
-  glm::vec4 count, planet, falls, bases, molecules, aerosol, dimming, fog, mie_phase, fog_phase;
+  glm::vec4 count, planet, falls, bases, molecules, aerosol, dimming, layer, mie_phase, layer_phase;
   glm::vec4 red, green, blue;
   std::array<glm::vec4, 3> ground;
   std::array<GpuLamp, kMostGpuLamps> lamps;
@@ -83,7 +83,7 @@ struct ChosenLamp {
   PlanLayers plan{};         // layers of the lit ground around it
 };
 
-/// @param layers  layers of LampStage: molecules, aerosol and optionally fog.
+/// @param layers  layers of LampStage: molecules, aerosol and at most one layer of the scene.
 /// @param core_rad  angles from a lamp at which its separately drawn core fades and ends; 0, 0 for
 ///     no core. Lamps that shine evenly come first in the block.
 [[nodiscard]] LampsBlock LampsBlockOf(std::vector<ChosenLamp> lamps,
@@ -146,7 +146,7 @@ class LampShadowFieldFollower {
 
 class SceneLamps {
  public:
-  /// Takes lights and fog of the scene and reads the IES files of lamps. `ground` must outlive this
+  /// Takes lights and layers of the scene and reads the IES files of lamps. `ground` must outlive this
   /// object. Throws InputError that names the lamp if it is below the ground, and errors of
   /// ReadIes.
   SceneLamps(const Scene& scene, const SceneGround& ground, const Medium& medium);
@@ -154,7 +154,7 @@ class SceneLamps {
   void SetLandingLight(const std::optional<LandingLight>& light) { landing_ = light; }
 
   [[nodiscard]] bool IsDark() const { return tree_.lamps() == 0 && !landing_; }
-  [[nodiscard]] bool HasFog() const { return stage_.layers().size() > 2; }
+  [[nodiscard]] bool HasLayer() const { return stage_.layers().size() > 2; }
   [[nodiscard]] const std::vector<LampLayer>& layers() const { return stage_.layers(); }
   [[nodiscard]] const Medium& medium() const { return medium_; }
   /// Returns the profiles of the measured lamps, in the order of ChosenLamp::table.

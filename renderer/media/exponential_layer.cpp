@@ -132,11 +132,12 @@ std::unique_ptr<const LitMedium> ExponentialLayer::LitBy(const MediaSources& sou
 
 namespace {
 
-MediumOptics OpticsOf(const Fog& fog, std::size_t bands) {
-  MediumOptics optics{Bands<double>(bands), Bands<double>(bands), Bands<double>(bands), fog.phase};
+MediumOptics OpticsOf(const MediumLayer& layer, std::size_t bands) {
+  MediumOptics optics{Bands<double>(bands), Bands<double>(bands), Bands<double>(bands),
+                      layer.phase};
   for (std::size_t band = 0; band < bands; ++band) {
-    optics.extinction_per_m[band] = fog.extinction_per_m;
-    optics.scattering_per_m[band] = fog.extinction_per_m * fog.albedo;
+    optics.extinction_per_m[band] = layer.extinction_per_m;
+    optics.scattering_per_m[band] = layer.extinction_per_m * layer.albedo;
   }
   return optics;
 }
@@ -160,20 +161,30 @@ std::optional<double> BottomOf(const ExponentialLayer& layer, const SceneGround&
   return std::nullopt;
 }
 
-}  // namespace
-
-MediaList LayersOf(const Scene& scene, const SceneGround& ground, const Medium& medium) {
-  if (!scene.fog || scene.fog->extinction_per_m <= 0.0) return {};
-  const Fog& fog = *scene.fog;
+/// Returns the altitudes of a layer; no value if it lies wholly below the ground.
+std::optional<LayerShape> ShapeOf(const MediumLayer& layer, const SceneGround& ground,
+                                  const Medium& medium) {
   LayerShape shape;
-  shape.base_m = fog.base_height_m.value_or(TerrainTop(ground, 0.0, 0.0).value_or(0.0));
-  shape.scale_height_m = fog.scale_height_m;
+  shape.base_m = layer.base_height_m.value_or(TerrainTop(ground, 0.0, 0.0).value_or(0.0));
+  shape.scale_height_m = layer.scale_height_m;
   shape.planet_radius_m = medium.planet_radius_m;
   shape.top_m = medium.atmosphere_height_m;
   shape.bottom_m = BottomOf(ExponentialLayer(shape), ground);
-  if (!shape.bottom_m) return {};
-  return {
-      std::make_shared<const ExponentialLayer>(shape, OpticsOf(fog, medium.wavelengths_nm.size()))};
+  return shape.bottom_m ? std::optional(shape) : std::nullopt;
+}
+
+}  // namespace
+
+MediaList LayersOf(const Scene& scene, const SceneGround& ground, const Medium& medium) {
+  MediaList layers;
+  for (const MediumLayer& layer : scene.layers) {
+    if (layer.extinction_per_m <= 0.0) continue;
+    if (const std::optional<LayerShape> shape = ShapeOf(layer, ground, medium)) {
+      layers.push_back(std::make_shared<const ExponentialLayer>(
+          *shape, OpticsOf(layer, medium.wavelengths_nm.size())));
+    }
+  }
+  return layers;
 }
 
 }  // namespace alpenglow::renderer

@@ -391,7 +391,7 @@ void FrameContext::LightMedia() {
   // layer can stand in front of.
   const SceneGeometry& geometry = scene_->geometry();
   const bool has_bodies = Has(Effect::kVolumes) && scene_->media().HasBodies();
-  const bool is_lit = Has(Effect::kFogGlow) &&
+  const bool is_lit = Has(Effect::kLayerGlow) &&
                       (has_bodies || lights_.size() > 1 ||
                        IlluminanceBy(*scene_, light().source, camera().eye(), light()) > 1e-6);
   LocalMedia here = scene_->media().Only(has_bodies, is_lit);
@@ -444,10 +444,10 @@ void FrameContext::AddStars(const Observer& observer) {
 }
 
 FrameContext FrameContext::Reduced(EffectSet effects) const {
-  constexpr EffectSet kThatLightTerrain{Effect::kHorizons,  Effect::kBounce,  Effect::kSkylight,
-                                        Effect::kShadows,   Effect::kFogGlow, Effect::kVolumes,
-                                        Effect::kMolecules, Effect::kAerosol, Effect::kOzone};
-  constexpr EffectSet kThatLightMedia{Effect::kFogGlow,   Effect::kVolumes, Effect::kLights,
+  constexpr EffectSet kThatLightTerrain{Effect::kHorizons,  Effect::kBounce,    Effect::kSkylight,
+                                        Effect::kShadows,   Effect::kLayerGlow, Effect::kVolumes,
+                                        Effect::kMolecules, Effect::kAerosol,   Effect::kOzone};
+  constexpr EffectSet kThatLightMedia{Effect::kLayerGlow, Effect::kVolumes, Effect::kLights,
                                       Effect::kMolecules, Effect::kAerosol, Effect::kOzone};
   const auto are_alike = [&](EffectSet those) {
     return settings_.effects.And(those) == effects.And(those);

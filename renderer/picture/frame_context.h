@@ -93,7 +93,7 @@ struct FrameLight {
   Lighting light;                                  // with this light as its sun
   BandLight by_sun;                                // irradiance relative to the sun's
   std::shared_ptr<const TerrainSunlight> shadows;  // in the air
-  std::shared_ptr<const MediaLight> media;         // null: no volumes, and only lamps light fog
+  std::shared_ptr<const MediaLight> media;         // null: no bodies, and only lamps light layers
 
   [[nodiscard]] GroundSources ground_sources() const { return {light, media.get()}; }
 };
@@ -140,7 +140,7 @@ class FrameContext {
   [[nodiscard]] const std::vector<FrameLight>& lights() const { return lights_; }
   /// Returns the lighting by the sun, with the visible disk of the moon.
   [[nodiscard]] const Lighting& light() const { return lights_.front().light; }
-  /// Returns fog and volumes in the light of the sun; null if there are none that it lights.
+  /// Returns the media in the light of the sun; null if there are none that it lights.
   [[nodiscard]] const MediaLight* media() const { return lights_.front().media.get(); }
   [[nodiscard]] const LampLight& lamps() const { return *lamps_; }
   [[nodiscard]] const LampPlan& plan() const { return *plan_; }

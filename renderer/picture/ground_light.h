@@ -46,7 +46,7 @@ struct GroundParts {
 /// Light sources of the ground.
 struct GroundSources {
   const Lighting& light;
-  const MediaLight* media = nullptr;  // fog and volumes between sun, sky and ground; null: no media
+  const MediaLight* media = nullptr;  // between sun, sky and ground; null: no media
 };
 
 /// Immutable, safe to share between threads. Refers to the parts of the ground.

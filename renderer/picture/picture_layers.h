@@ -32,10 +32,10 @@ enum class PictureLayer {
   kNormal,         // ENU, unit, with relief; zero in the sky
   kAlbedo,         // 0 to 1, colour under the sun above the air
   kInscatter,      // light of sun and sky scattered by air [cd/m^2]
-  kTransmittance,  // of air, fog and volumes, 0 to 1, colour under the sun above the air
+  kTransmittance,  // of air and media, 0 to 1, colour under the sun above the air
   kSunVisibility,  // 0 to 1
   kLamps,          // all light that comes from lamps [cd/m^2]
-  kVolumes,        // light scattered by fog and volumes, and their emission [cd/m^2]
+  kVolumes,        // light scattered by media, and their emission [cd/m^2]
   kScotopic,       // luminance for the rods of the eye [scotopic cd/m^2]
   kRays,           // number of rays of the pixel
   // Stokes layers of the mean radiance of the pixel's rays (image.h); with a polariser, of the
@@ -60,7 +60,7 @@ struct Shaded {
   BandLight radiance;  // W m^-2 sr^-1 nm^-1
   BandLight inscatter, transmittance, albedo;
   BandLight lamps;    // part of `radiance` that comes from lamps
-  BandLight volumes;  // part of `radiance` that fog and volumes scatter from sun and sky, or emit
+  BandLight volumes;  // part of `radiance` that media scatter from sun and sky, or emit
   /// Q and U of `radiance` in the axes of the picture; empty unless requested.
   std::optional<PolarisedLight> polarised = std::nullopt;
   float sun_visibility = 0.0F;

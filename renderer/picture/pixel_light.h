@@ -19,7 +19,7 @@
 // bound of I. Ground in a shared cell uses the shared air where |r - 1| (1 - T) <= 4e-3: an error
 // of the uniformity along the last stretch of air is then less than 4e-3 of the radiance of air of
 // infinite depth. All other air is computed for each pixel, and so is all air in a picture with a
-// fixed number of rays, and in fog and volumes.
+// fixed number of rays, and in media.
 #pragma once
 
 #include <glm/vec2.hpp>

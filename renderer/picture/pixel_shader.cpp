@@ -279,14 +279,14 @@ void AddAir(const FrameContext& frame, SharedSegmentAir& rays) {
   }
 }
 
-BandLight UnmarchedFog(const FrameContext& frame, const glm::dvec3& direction, double length_m) {
+BandLight UnmarchedLayers(const FrameContext& frame, const glm::dvec3& direction, double length_m) {
   const bool is_marched = frame.media() && frame.media()->media().HasLayers();
-  return frame.lamps().FogTransmittance(direction, is_marched ? 0.0 : length_m);
+  return frame.lamps().LayerTransmittance(direction, is_marched ? 0.0 : length_m);
 }
 
 void AddLamps(const FrameContext& frame, int x, int y, SharedSegmentAir& rays) {
   const AirRay through = AirRayOf(frame, rays);
-  rays.fog = UnmarchedFog(frame, through.direction, through.length_m);
+  rays.layers_left = UnmarchedLayers(frame, through.direction, through.length_m);
   rays.lamp_light = BandLight(rays.media.count);
   if (frame.plan().tiles.empty() || !frame.Has(Effect::kBeams)) return;
   const auto upto = [&](double length_m) {
@@ -425,7 +425,8 @@ std::optional<BandLight> PixelShader::LeftOfSpace(double x, double y) const {
   if (hit.kind != HitKind::kSky) return std::nullopt;
   SharedSegmentAir air = SharedSegmentAir::Of(hit, ray.through, *frame_);
   AddAir(*frame_, air);
-  const BandLight left = UnmarchedFog(*frame_, ray.through, air.length_m()) * air.air.transmittance;
+  const BandLight left =
+      UnmarchedLayers(*frame_, ray.through, air.length_m()) * air.air.transmittance;
   return frame_->camera().HasPolariser() ? 0.5F * left : left;
 }
 
@@ -447,7 +448,7 @@ BandLight PixelShader::DiskFrom(const glm::dvec3& direction, DiskBehind disk) co
     return none;
   SharedSegmentAir air = SharedSegmentAir::Of(Hit{}, direction, *frame_);
   AddAir(*frame_, air);
-  const BandLight left = UnmarchedFog(*frame_, direction, air.length_m()) * bare;
+  const BandLight left = UnmarchedLayers(*frame_, direction, air.length_m()) * bare;
   return (frame_->camera().HasPolariser() ? 0.5F : 1.0F) * (air.air.transmittance * left);
 }
 
@@ -490,7 +491,7 @@ Shaded PixelShader::Shade(const Hit& hit, const SharedSegmentAir& through, const
   Shaded shaded = WithoutPolariser(hit, through, ray, near, disk_sample);
   if (!frame_->IsPolarised()) return shaded;
   const PolarisedLight inscatter =
-      (through.fog * frame_->light().source.irradiance) * *through.air.polarised;
+      (through.layers_left * frame_->light().source.irradiance) * *through.air.polarised;
   shaded.polarised = inscatter;
   if (hit.kind != HitKind::kSky) {
     shaded.polarised = inscatter + shaded.transmittance * PolarisedGround(hit, ray, disk_sample);
@@ -504,8 +505,8 @@ Shaded PixelShader::WithoutPolariser(const Hit& hit, const SharedSegmentAir& thr
   const FrameContext& frame = *frame_;
   const NightLight* night = frame.sky_lights().night.get();
   Shaded shaded;
-  shaded.inscatter = through.fog * (frame_->light().source.irradiance * through.air.inscatter);
-  shaded.transmittance = through.fog * through.air.transmittance;
+  shaded.inscatter = through.layers_left * (frame_->light().source.irradiance * through.air.inscatter);
+  shaded.transmittance = through.layers_left * through.air.transmittance;
   const bool has_air = frame.Has(hit.kind == HitKind::kSky ? Effect::kSky : Effect::kAerial);
   if (night && has_air) {
     const BandLight& scattered = night->scattered();
@@ -522,11 +523,11 @@ Shaded PixelShader::WithoutPolariser(const Hit& hit, const SharedSegmentAir& thr
   shaded.radiance = shaded.inscatter + shaded.lamps + shaded.volumes;
   if (hit.kind == HitKind::kSky) {
     if (!frame.sky_lights().small_sun)
-      shaded.radiance =
-          shaded.radiance + through.fog * SunDiskRadiance(frame, ray.direction, through.air);
+      shaded.radiance = shaded.radiance +
+                        through.layers_left * SunDiskRadiance(frame, ray.direction, through.air);
     if (!frame.sky_lights().small_moon)
-      shaded.radiance =
-          shaded.radiance + through.fog * MoonDiskRadiance(frame, ray.direction, through.air);
+      shaded.radiance = shaded.radiance +
+                        through.layers_left * MoonDiskRadiance(frame, ray.direction, through.air);
     if (night)
       shaded.radiance = shaded.radiance + shaded.transmittance * night->Above(ray.direction);
   } else {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The radiance of single rays of a picture: what a ray meets, the air and the media in front of it
-// (light of sun and sky, fog, volumes, and the airlight of lamps), and the light that arrives along
+// (light of sun and sky, and the airlight of lamps), and the light that arrives along
 // it.
 #pragma once
 
@@ -33,10 +33,11 @@ struct SharedSegmentAir {
   double distance_sum_m;
   int rays;
   // Values along the mean direction of the rays, to their mean distance:
-  AirAlongRay air{};       // Q and U in the axes of the picture
-  BandLight fog{};         // fog transmittance of light from the end, unless `air` includes it
+  AirAlongRay air{};  // Q and U in the axes of the picture
+  /// Transmittance of the layers that only lamps light; `air` includes that of other media.
+  BandLight layers_left{};
   BandLight lamp_light{};  // airlight of lamps, W m^-2 sr^-1 nm^-1
-  BandLight media{};       // light of sun and sky scattered by volumes and fog, W m^-2 sr^-1 nm^-1
+  BandLight media{};       // light of sun and sky scattered by media, W m^-2 sr^-1 nm^-1
   std::vector<MarchedPiece> pieces{};  // pieces of media along the ray
 
   [[nodiscard]] double length_m() const {
@@ -67,11 +68,11 @@ struct SharedSegmentAir {
 /// transmittance.
 void AddAir(const FrameContext& frame, SharedSegmentAir& rays);
 
-/// Returns the transmittance of fog along a ray, unless the light of the air includes it already.
-[[nodiscard]] BandLight UnmarchedFog(const FrameContext& frame, const glm::dvec3& direction,
-                                     double length_m);
+/// Returns the transmittance of layers along a ray, unless the light of the air includes it.
+[[nodiscard]] BandLight UnmarchedLayers(const FrameContext& frame, const glm::dvec3& direction,
+                                        double length_m);
 
-/// Computes the airlight of lamps for pixel (x, y), and the transmittance of fog that only lamps
+/// Computes the airlight of lamps for pixel (x, y), and the transmittance of layers that only lamps
 /// light. Call after AddAir.
 void AddLamps(const FrameContext& frame, int x, int y, SharedSegmentAir& rays);
 
@@ -87,7 +88,7 @@ class PixelShader {
   /// @param near  lamps that can light the pixel. @param disk_sample  see GroundLight::Natural.
   [[nodiscard]] Shaded Shade(const Hit& hit, const SharedSegmentAir& through, const CameraRay& ray,
                              const LampTile& near, std::array<double, 2> disk_sample) const;
-  /// Returns the fraction of light from space that air, fog and a polariser let through at a place
+  /// Returns the fraction of light from space that air, media and a polariser let through at a place
   /// of the picture; no value where ground is in front.
   [[nodiscard]] std::optional<BandLight> LeftOfSpace(double x, double y) const;
   /// Returns the light of the disk of the sun, or of the moon, that arrives from a direction if no

@@ -279,7 +279,7 @@ EffectSet Present(const FrameContext& frame) {
       any_light([](const FrameLight& of) { return of.light.on_terrain != nullptr; });
   present = without(present, is_terrain_lit, {Effect::kHorizons, Effect::kBounce});
   present = without(present, scene.media().HasBodies(), {Effect::kVolumes});
-  present = without(present, scene.media().HasLayers(), {Effect::kFogGlow});
+  present = without(present, scene.media().HasLayers(), {Effect::kLayerGlow});
   present = without(present, frame.lights().size() > 1, {Effect::kMoonlight});
   present = without(present, frame.sky_lights().night != nullptr, {Effect::kNightSky});
   present = without(present, frame.sky_lights().stars != nullptr, {Effect::kStars});

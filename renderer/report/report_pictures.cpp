@@ -290,10 +290,10 @@ Scene RunwayScene(int lamps, bool with_beam) {
   scene.medium = MediumPreset("earth");
   scene.terrain.kind = TerrainSource::Kind::kNone;
   scene.camera = CameraFromDegrees({kEye_m, false}, 90.0, -4.0, 0.0, 50.0);
-  scene.fog = Fog{.extinction_per_m = kOpticalDepthOfVisibility / kVisibility_m,
-                  .scale_height_m = 25.0,
-                  .base_height_m = 0.0,
-                  .phase = {.kind = PhaseKind::kHenyeyGreenstein, .g = 0.8}};
+  scene.layers = {MediumLayer{.extinction_per_m = kOpticalDepthOfVisibility / kVisibility_m,
+                              .scale_height_m = 25.0,
+                              .base_height_m = 0.0,
+                              .phase = {.kind = PhaseKind::kHenyeyGreenstein, .g = 0.8}}};
   for (int i = 0; i < lamps; ++i) {
     const double along = kLength_m * (i / 2) / std::max(1, lamps / 2);
     scene.lights.push_back(RunwayLamp(threshold, kApproach_m + along,

@@ -326,20 +326,20 @@ PhaseFunction DropletPhaseOf(const TomlSection& table) {
   return phase;
 }
 
-std::optional<Fog> FogOf(const TomlTable& document) {
+std::vector<MediumLayer> LayersOfFog(const TomlTable& document) {
   const std::optional<TomlSection> table = SectionOf(document, FogFields());
-  if (!table) return std::nullopt;
+  if (!table) return {};
   const std::optional<double> visibility = table->Number("visibility_m");
   const std::optional<double> extinction = table->Number("extinction_per_m");
   if (visibility.has_value() == extinction.has_value()) {
     table->Fail("visibility_m", "give one of fog.visibility_m and fog.extinction_per_m");
   }
-  Fog fog;
-  fog.extinction_per_m = extinction ? *extinction : kOpticalDepthOfVisibility / *visibility;
-  fog.scale_height_m = std::numeric_limits<double>::infinity();
-  FogFields().Read(*table, fog);
-  fog.phase = DropletPhaseOf(*table);
-  return fog;
+  MediumLayer layer;
+  layer.extinction_per_m = extinction ? *extinction : kOpticalDepthOfVisibility / *visibility;
+  layer.scale_height_m = std::numeric_limits<double>::infinity();
+  FogFields().Read(*table, layer);
+  layer.phase = DropletPhaseOf(*table);
+  return {layer};
 }
 
 /// Refuses a list that has neither one value nor one per wavelength.
@@ -460,7 +460,7 @@ Scene SceneFromToml(std::string_view text, const std::string& origin, const fs::
   for (const TomlTable& light : document.Tables("light")) {
     scene.lights.push_back(LightOf(light, folder));
   }
-  scene.fog = FogOf(document);
+  scene.layers = LayersOfFog(document);
   scene.town_zenith = TownZenithOf(document);
   for (const TomlTable& volume : document.Tables("volume")) {
     scene.volumes.push_back(VolumeOf(volume, folder, scene.medium.wavelengths_nm.size()));

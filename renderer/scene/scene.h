@@ -134,9 +134,9 @@ struct Light {
   double outer_rad = 0.0;
 };
 
-/// Fog of exponential density over the ellipsoid. Light of lamps is scattered once in it, light of
-/// sun and sky to all orders (FogLight).
-struct Fog {
+/// A scattering layer of exponential density over the ellipsoid, such as fog (ExponentialLayer).
+/// Light of lamps is scattered once in it, light of sun and sky to all orders (LayerLight).
+struct MediumLayer {
   double extinction_per_m = 0.0;        // at base_height_m
   double scale_height_m = 0.0;          // may be infinite
   std::optional<double> base_height_m;  // over the ellipsoid; empty: the ground under the eye
@@ -144,7 +144,7 @@ struct Fog {
   PhaseFunction phase;
 };
 
-/// A local participating medium, see LocalVolume: smoke, a fog bank, a glowing gas. Lists hold one
+/// A local participating medium, see LocalVolume: smoke, a bank of droplets, a glowing gas. Lists hold one
 /// value, or one per wavelength of the medium.
 struct Volume {
   VolumePlacement::Shape shape = VolumePlacement::Shape::kBox;
@@ -172,7 +172,7 @@ struct Scene {
   TerrainSource terrain;
   GroundCover ground;
   std::vector<Light> lights;
-  std::optional<Fog> fog;
+  std::vector<MediumLayer> layers;  // of [fog]: at most one
   std::vector<Volume> volumes;
   /// Brightness of the zenith on a moonless night with light pollution [V magnitudes per square
   /// arcsecond]; empty: no light pollution.

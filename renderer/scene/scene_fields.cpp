@@ -196,20 +196,20 @@ const TomlFields<Light>& LightFields() {
   return fields;
 }
 
-const TomlFields<Fog>& FogFields() {
-  static const TomlFields<Fog> fields{
+const TomlFields<MediumLayer>& FogFields() {
+  static const TomlFields<MediumLayer> fields{
       "fog",
-      {{"visibility_m", Number<Fog>({1.0, 1e6}), "m", "", "", "900.0"},
-       {"extinction_per_m", ReadApart(Number(&Fog::extinction_per_m, {0.0, 10.0})), "1/m", "",
-        "instead of visibility_m", "# 0.004"},
-       {"scale_height_m", Number(&Fog::scale_height_m, {1.0, 1e5}), "m", "",
+      {{"visibility_m", Number<MediumLayer>({1.0, 1e6}), "m", "", "", "900.0"},
+       {"extinction_per_m", ReadApart(Number(&MediumLayer::extinction_per_m, {0.0, 10.0})), "1/m",
+        "", "instead of visibility_m", "# 0.004"},
+       {"scale_height_m", Number(&MediumLayer::scale_height_m, {1.0, 1e5}), "m", "",
         "without the key the density is the same at every height", "25.0"},
-       {"base_height_m", Number(&Fog::base_height_m, {kDeepestPlace_m, 1e5}), "m", "",
+       {"base_height_m", Number(&MediumLayer::base_height_m, {kDeepestPlace_m, 1e5}), "m", "",
         "above the ellipsoid; default: the ground under the camera", "400.0"},
-       {"albedo", Number(&Fog::albedo, {0.0, 1.0}), "", "", "", "1.0"},
-       {"droplet_diameter_um", Number<Fog>({kSmallestDroplet_um, kLargestDroplet_um}),
+       {"albedo", Number(&MediumLayer::albedo, {0.0, 1.0}), "", "", "", "1.0"},
+       {"droplet_diameter_um", Number<MediumLayer>({kSmallestDroplet_um, kLargestDroplet_um}),
         "micrometres", "", "", "15.0"},
-       {"g", Number<Fog>({-0.99, 0.99}), "", "",
+       {"g", Number<MediumLayer>({-0.99, 0.99}), "", "",
         "of Henyey and Greenstein, instead of droplet_diameter_um", "# 0.85"}}};
   return fields;
 }

@@ -19,7 +19,7 @@ namespace alpenglow::renderer {
 [[nodiscard]] const TomlFields<TerrainSource>& TerrainFields();
 [[nodiscard]] const TomlFields<GroundCover>& GroundFields();
 [[nodiscard]] const TomlFields<Light>& LightFields();
-[[nodiscard]] const TomlFields<Fog>& FogFields();
+[[nodiscard]] const TomlFields<MediumLayer>& FogFields();
 [[nodiscard]] const TomlFields<Scene>& NightFields();
 [[nodiscard]] const TomlFields<Volume>& VolumeFields();
 

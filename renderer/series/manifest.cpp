@@ -154,11 +154,11 @@ std::string PhaseText(const PhaseFunction& phase) {
   return fmt::format("{} g {}", NameOf(phase.kind), phase.g);
 }
 
-std::string FogText(const Fog& fog) {
+std::string LayerText(const MediumLayer& layer) {
   return fmt::format("extinction {} per m at {}, scale height {} m, albedo {}, {}",
-                     fog.extinction_per_m,
-                     fog.base_height_m ? fmt::format("{} m", *fog.base_height_m) : "the ground",
-                     fog.scale_height_m, fog.albedo, PhaseText(fog.phase));
+                     layer.extinction_per_m,
+                     layer.base_height_m ? fmt::format("{} m", *layer.base_height_m) : "the ground",
+                     layer.scale_height_m, layer.albedo, PhaseText(layer.phase));
 }
 
 /// Returns every value of [ground].
@@ -190,8 +190,8 @@ void AddAirOf(const Scene& scene, const FileHashes& hashes, Metadata& metadata) 
       medium.refraction == RefractionBy::kAlmanacs ? "almanacs" : "molecules";
   if (scene.town_zenith)
     metadata["alpenglow.town_zenith_mag_per_arcsec2"] = fmt::format("{}", *scene.town_zenith);
-  if (scene.fog)
-    metadata["alpenglow.fog"] = FogText(*scene.fog) + NamedText(FogFields(), *scene.fog);
+  for (const MediumLayer& layer : scene.layers)
+    metadata["alpenglow.fog"] = LayerText(layer) + NamedText(FogFields(), layer);
   for (std::size_t i = 0; i < scene.volumes.size(); ++i) {
     metadata[fmt::format("alpenglow.volume_{}_hash", i)] =
         Fingerprint(KeysOf(scene.volumes[i], hashes.grids.at(i)));

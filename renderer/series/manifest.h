@@ -34,7 +34,7 @@ struct FileHashes {
 /// requested.
 [[nodiscard]] FileHashes HashFilesOf(const Scene& scene, const std::stop_token& stop = {});
 
-/// Returns program, place, camera, air, fog, volumes, terrain, ground and lamps of a scene, except
+/// Returns program, place, camera, air, media, terrain, ground and lamps of a scene, except
 /// its time and zone: any other change of the scene that changes the picture changes a value.
 /// Numbers are written so that they read back exactly, or hashed.
 /// @param hashes  of the files of this scene, taken when the scene was loaded.

@@ -56,10 +56,10 @@ std::string DefinesOf(const SceneLamps& shape, const LampQuality& quality) {
   // In clear air less than one per cent of a lamp's light reaches the surrounding ground by
   // scattering.
   const bool is_fine = quality.step == 1;
-  if (!shape.glows().empty() && (is_fine || shape.HasFog())) text += "#define LAMP_GLOW_MAP\n";
+  if (!shape.glows().empty() && (is_fine || shape.HasLayer())) text += "#define LAMP_GLOW_MAP\n";
   if (is_fine) text += "#define LAMP_GLOW_OF_SLOPES\n";
   if (layers[1].phase.kind == PhaseKind::kTable) text += "#define LAMP_MIE_TABLE\n";
-  if (shape.HasFog()) {
+  if (shape.HasLayer()) {
     text += fmt::format("#define LAMP_FOG\n#define LAMP_PHASE_FOG(c, p) {}\n",
                         FormOf(layers[2].phase.kind).expression);
   }

@@ -19,7 +19,7 @@ constexpr double kLong_s = 1e3;  // time after which all fades have ended
 // Returns the ground for lamps and fog, which must exist before the first picture. A landing light
 // does not need it.
 SceneGround LampGroundOf(const Scene& scene) {
-  if (!scene.lights.empty() || scene.fog || scene.town_zenith) return LoadGround(scene);
+  if (!scene.lights.empty() || !scene.layers.empty() || scene.town_zenith) return LoadGround(scene);
   GeodeticPosition foot = scene.place;
   foot.height_m = 0.0;
   return {LocalFrame(EllipsoidOf(scene.medium), foot), std::nullopt, 0.0, "", true};

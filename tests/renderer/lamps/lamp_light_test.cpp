@@ -70,15 +70,15 @@ TEST(LampLight, ACandelaIsACandelaInEveryColour) {
 
 TEST(LampLight, LightInFogIsThatOfTheReference) {
   Scene scene = NightScene();
-  scene.fog = FogOver(0.0, 0.01, 30.0);
+  scene.layers = {FogOver(0.0, 0.01, 30.0)};
   scene.lights = {LightAt(300.0, 10.0, 5.0, 1000.0)};
   const LampSite site(scene);
   const glm::dvec3 place = site.Place(scene.lights[0]);
   for (const glm::dvec3& towards :
        {glm::dvec3(0.0, 1.0, -0.1), glm::dvec3(0.1, 1.0, 0.0), glm::dvec3(0.0, 1.0, -0.2)}) {
     const glm::dvec3 unit = glm::normalize(towards);
-    const double expected =
-        tests::FogByQuadrature(*scene.fog, scene.lights[0], place, {kLampEye, unit, 0.0, 350.0});
+    const double expected = tests::FogByQuadrature(scene.layers[0], scene.lights[0], place,
+                                                   {kLampEye, unit, 0.0, 350.0});
     EXPECT_NEAR(site.InAir(unit, 350.0, 16) / expected, 1.0, 0.02)
         << "molecules and aerosol, which the quadrature omits, add and take 1 %";
   }
@@ -86,7 +86,7 @@ TEST(LampLight, LightInFogIsThatOfTheReference) {
 
 TEST(LampLight, ABeamLightsOnlyTheAirInIt) {
   Scene scene = NightScene();
-  scene.fog = FogOver(0.0, 0.01, 1000.0);
+  scene.layers = {FogOver(0.0, 0.01, 1000.0)};
   scene.lights = {SpotOf(LightAt(100.0, -50.0, kLampEye_m, 1e5), 0.02, 0.05)};
   scene.lights[0].heading_rad = 0.5 * kPi;  // across the view, 100 m ahead
   const LampSite site(scene);
@@ -120,7 +120,7 @@ TEST(LampLight, AnEyeInsideALampSeesItsLuminanceAllAround) {
 // Hard case 42.
 TEST(LampLight, AHeadlampLightsTheAirAheadAndIsNotSeen) {
   Scene scene = NightScene();
-  scene.fog = FogOver(0.0, 0.01, 1000.0);
+  scene.layers = {FogOver(0.0, 0.01, 1000.0)};
   scene.lights = {LightAt(0.0, 0.0, kLampEye_m, 1000.0)};
   const LampSite around(scene);
   scene.lights = {SpotOf(scene.lights[0], 0.3, 0.6)};  // to the north
@@ -182,7 +182,7 @@ TEST(LampLight, PicturesKeepTheIntensityAlsoThroughALens) {
 
 TEST_F(LampShadows, AWallShadesTheGroundAndTheAirBehindIt) {
   Scene scene = WallScene();
-  scene.fog = FogOver(0.0, 0.005, std::numeric_limits<double>::infinity());
+  scene.layers = {FogOver(0.0, 0.005, std::numeric_limits<double>::infinity())};
   // The lamp is behind the wall and 80 m to the right, level with the middle of the wall.
   scene.lights = {LightAt(130.0, 80.0, 20.0, 1000.0)};
   const LampSite site(scene);
@@ -197,7 +197,7 @@ TEST_F(LampShadows, AWallShadesTheGroundAndTheAirBehindIt) {
   Lamp lamp;
   lamp.position_m = site.Place(scene.lights[0]);
   lamp.radius_m = 0.05;
-  const LampAir air = HomogeneousAir(0.005, 0.005, scene.fog->phase);
+  const LampAir air = HomogeneousAir(0.005, 0.005, scene.layers[0].phase);
   double lit = 0.0, whole = 0.0;
   constexpr int kPieces = 4000;
   for (int i = 0; i < kPieces; ++i) {
@@ -231,12 +231,12 @@ TEST_F(LampShadows, LampsAreHiddenByAWallAndRefusedBelowTheGround) {
 
 TEST(LampLight, FogDimsLightBehindIt) {
   Scene scene = NightScene();
-  scene.fog = FogOver(0.0, 0.01, 50.0);
+  scene.layers = {FogOver(0.0, 0.01, 50.0)};
   const LampSite site(scene);
-  const Bands<float> level = site.light.FogTransmittance(kNorth, 100.0);
+  const Bands<float> level = site.light.LayerTransmittance(kNorth, 100.0);
   EXPECT_NEAR(static_cast<double>(level[0]), std::exp(-std::exp(-0.8)), 1e-4)
       << "a kilometre of fog at 40 m, which the sphere's curvature hardly changes";
-  const Bands<float> down = site.light.FogTransmittance({0.0, 0.0, -1.0}, 40.0);
+  const Bands<float> down = site.light.LayerTransmittance({0.0, 0.0, -1.0}, 40.0);
   EXPECT_NEAR(static_cast<double>(down[0]), std::exp(-0.01 * 50.0 * (1.0 - std::exp(-0.8))), 1e-4);
 }
 
@@ -304,7 +304,7 @@ TEST_F(LampsAtTheEye, GivePicturesOfFiniteNumbers) {
   scene = With(point_);
   for (const double north_m : {5.0, -5.0})  // the middle of these lamps is at the eye
     scene.lights.push_back(LightAt(north_m, 0.0, kLampEye_m, 1000.0));
-  scene.fog = FogOver(0.0, 0.02, 100.0);
+  scene.layers = {FogOver(0.0, 0.02, 100.0)};
   ExpectNumbers(scene, {night_, day_});  // the sun lights the fog too
 }
 
@@ -330,7 +330,7 @@ TEST_F(LampsAtTheEye, AMeasuredLampIsTiltedByItsPitch) {
 Scene FoggyNight(double scale_height_m = 30.0, double base_m = 0.0) {
   Scene scene = NightScene();
   scene.medium = tests::WithoutAir(MediumPreset("bruneton2017"));
-  scene.fog = FogOver(base_m, 0.01, scale_height_m);
+  scene.layers = {FogOver(base_m, 0.01, scale_height_m)};
   return scene;
 }
 
@@ -378,7 +378,7 @@ TEST(LampExtremes, ALampWithoutIntensityChangesNoByte) {
 }
 
 double FogOf(const LampSite& site, const glm::dvec3& direction) {
-  return tests::FogByQuadrature(*site.scene.fog, site.scene.lights[0],
+  return tests::FogByQuadrature(site.scene.layers[0], site.scene.lights[0],
                                 site.Place(site.scene.lights[0]),
                                 {kLampEye, direction, 0.0, 100.0});
 }
@@ -424,8 +424,8 @@ TEST(LampExtremes, FogOverAHighBaseIsLitAsFogOverTheGround) {
   const glm::dvec3 place = site.Place(high.lights[0]) - glm::dvec3(0.0, 0.0, kBase_m);
   for (const double fall : {-0.8, -0.2, 0.0}) {
     const glm::dvec3 direction = glm::normalize(glm::dvec3(0.1, 1.0, fall));
-    const double truth =
-        tests::FogByQuadrature(*high.fog, high.lights[0], place, {kLampEye, direction, 0.0, 50.0});
+    const double truth = tests::FogByQuadrature(high.layers[0], high.lights[0], place,
+                                                {kLampEye, direction, 0.0, 50.0});
     EXPECT_NEAR(site.InAir(direction, 50.0, 32) / truth, 1.0, 5e-3) << fall;
   }
 }

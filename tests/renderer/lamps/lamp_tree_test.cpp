@@ -144,7 +144,7 @@ TEST_F(LampPlans, ARowOfLampsAcrossTheEndOfTheWallIsNotOneLamp) {
   for (int i = -20; i < 40; ++i) scene.lights.push_back(LightAt(130.0, i, 10.0, 100.0));
   EXPECT_LT(OnSurfaces(scene).Worst(), 0.03) << "also where two of sixty lamps shine";
   scene = WallScene(-0.3);
-  scene.fog = FogOver(0.0, 0.002, kEndless);
+  scene.layers = {FogOver(0.0, 0.002, kEndless)};
   for (int i = 0; i < 8; ++i) scene.lights.push_back(LightAt(130.0, 24.0 + 2.0 * i, 10.0, 100.0));
   EXPECT_LT(InTheAir(scene).Worst(0.01), 0.05)
       << "edges of shade are found to 1/768 of a ray's angle; dim light counts from a hundredth of "
@@ -189,7 +189,7 @@ TEST_F(LampPlans, ALampNearARayIsNotLostAmongFarLamps) {
   // lie on both sides of rays that pass near some of them.
   constexpr double kGround_m = kLampEye_m - 6.0;
   Scene scene = NightScene();
-  scene.fog = FogOver(kGround_m, 0.0043, 25.0);
+  scene.layers = {FogOver(kGround_m, 0.0043, 25.0)};
   const auto add = [&](double along_m, double left_m, double candela) {
     scene.lights.push_back(LightAt(left_m + 75.0, along_m - 620.0, kGround_m + 0.35, candela));
   };

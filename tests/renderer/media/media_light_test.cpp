@@ -359,7 +359,7 @@ Scene WithoutVolume() {
   scene.medium = MediumPreset("bruneton2017");
   return scene;
 }
-Fog FogIn(double extinction_per_m, double scale_height_m, double albedo = 1.0) {
+MediumLayer FogIn(double extinction_per_m, double scale_height_m, double albedo = 1.0) {
   return {extinction_per_m, scale_height_m, 0.0, albedo, FogPhase(12.0)};
 }
 Image Rendered(const Scene& scene, const UtcInstant& instant,
@@ -391,8 +391,8 @@ TEST(RenderMedia, EmptyVolumesChangeNoByte) {
 
 TEST(RenderMedia, FogWhollyBelowTheGroundChangesNoByte) {
   Scene scene = WithoutVolume();
-  scene.fog = FogIn(0.004, 25.0);
-  scene.fog->base_height_m = -1000.0;
+  scene.layers = {FogIn(0.004, 25.0)};
+  scene.layers[0].base_height_m = -1000.0;
   EXPECT_EQ(Rendered(scene, kMediaNoon).rgb, ClearNoon().rgb);
 }
 
@@ -405,8 +405,8 @@ TEST(LocalMedia, FogBelowTheTerrainLiesOnThePlanetAroundIt) {
   plateau.triangles = {{0, 1, 2}};
   ground.terrain.emplace(std::move(plateau));
   const auto bottom = [&](double base_m) -> std::optional<double> {
-    scene.fog = FogIn(0.004, 25.0);
-    scene.fog->base_height_m = base_m;
+    scene.layers = {FogIn(0.004, 25.0)};
+    scene.layers[0].base_height_m = base_m;
     const LocalMedia media(scene, ground, scene.medium);
     return media.HasLayers() ? std::optional(media.layer()->bottom_m()) : std::nullopt;
   };
@@ -449,7 +449,7 @@ TEST(RenderMedia, GlowingVolumeIsDimmedByTheFogBeforeIt) {
   Scene scene = WithVolume(0.01, 0.0);
   scene.volumes[0].temperature_k = 2000.0;
   const Image clear = Rendered(scene, kMediaNight);
-  scene.fog = FogIn(0.005, 1e5);
+  scene.layers = {FogIn(0.005, 1e5)};
   const Image foggy = Rendered(scene, kMediaNight);
   const double left = static_cast<double>(foggy.at(12, 7)[0] / clear.at(12, 7)[0]);
   EXPECT_GT(left, std::exp(-0.005 * 431.0)) << "all of it at its far side";
@@ -458,18 +458,18 @@ TEST(RenderMedia, GlowingVolumeIsDimmedByTheFogBeforeIt) {
 
 TEST(RenderMedia, FogAtNightHasOnlyTheLightOfLamps) {
   Scene scene = WithoutVolume();
-  scene.fog = FogIn(0.01, 30.0);
+  scene.layers = {FogIn(0.01, 30.0)};
   scene.lights = {tests::LampNear(scene.place, 100.0, 0.0, 40.0, 1000.0)};
   const SceneRenderer renderer(scene);
   RenderSettings without = kSmallMedia;
-  without.effects = EffectSet::All().Without(Effect::kFogGlow);
+  without.effects = EffectSet::All().Without(Effect::kLayerGlow);
   EXPECT_EQ(renderer.Render(kMediaNight, kSmallMedia).rgb,
             renderer.Render(kMediaNight, without).rgb);
 }
 
 TEST(RenderMedia, FogAndSmokeAreFiniteFromNoonToNight) {
   Scene scene = WithVolume(0.05, 0.9);
-  scene.fog = FogIn(0.02, 40.0, 0.95);
+  scene.layers = {FogIn(0.02, 40.0, 0.95)};
   const SceneRenderer renderer(scene);
   double last = 1e9;
   for (const char* time : {"2026-03-20T12:00:00Z", "2026-03-20T16:30:00Z", "2026-03-20T17:32:00Z",
@@ -497,7 +497,7 @@ TEST(RenderMedia, AMissingGridIsNamed) {
 TEST(RenderMedia, FogGrowsOutOfClearAirWithoutAStep) {
   Scene scene = WithoutVolume();
   const Image& a = ClearNoon();
-  scene.fog = FogIn(1e-8, 30.0);
+  scene.layers = {FogIn(1e-8, 30.0)};
   const Image b = Rendered(scene, kMediaNoon);
   for (std::size_t i = 0; i < a.rgb.size(); ++i) {
     for (std::size_t c = 0; c < 3; ++c)

@@ -164,10 +164,11 @@ ies = "lamp.ies"
 heading = 10.0
 radius_m = 0.2
 )");
-  ASSERT_TRUE(scene.fog.has_value());
-  EXPECT_DOUBLE_EQ(scene.fog->extinction_per_m, 0.01) << "3.912 optical depths are the visibility";
-  EXPECT_DOUBLE_EQ(scene.fog->scale_height_m, 30.0);
-  EXPECT_EQ(scene.fog->phase, FogPhase(10.0));
+  ASSERT_EQ(scene.layers.size(), 1U);
+  EXPECT_DOUBLE_EQ(scene.layers[0].extinction_per_m, 0.01)
+      << "3.912 optical depths are the visibility";
+  EXPECT_DOUBLE_EQ(scene.layers[0].scale_height_m, 30.0);
+  EXPECT_EQ(scene.layers[0].phase, FogPhase(10.0));
   ASSERT_EQ(scene.lights.size(), 1U);
   EXPECT_EQ(scene.lights[0].ies, "folder/lamp.ies");
   EXPECT_EQ(scene.lights[0].intensity_cd, std::nullopt) << "the file says it";

@@ -55,12 +55,12 @@ Scene Night(double eye_height_m, double fog_per_m, double fog_height_m) {
                   LightAt(2500.0, 900.0, 40.0, 20000.0),
                   Spot(LightAt(400.0, -60.0, 30.0, 50000.0), 2.0, -0.2, 0.3)};
   if (fog_per_m > 0.0) {
-    Fog fog;
+    MediumLayer fog;
     fog.extinction_per_m = fog_per_m;
     fog.scale_height_m = fog_height_m;
     fog.base_height_m = 0.0;
     fog.phase = FogPhase(12.0);
-    scene.fog = fog;
+    scene.layers = {fog};
   }
   return scene;
 }
@@ -177,7 +177,7 @@ TEST_F(LampsOnTheCard, GlowInFogAroundAndUnderTheEyeAsTheRenderer) {
   constexpr double kBase_m = 18000.0;  // 720 scale heights up
   Scene high = Night(kBase_m + 6.0, 0.004, 25.0);
   for (Light& light : high.lights) light.height.value_m += kBase_m;
-  high.fog->base_height_m = kBase_m;
+  high.layers[0].base_height_m = kBase_m;
   for (const auto& [where, scene] : {std::pair{"around", Night(6.0, 0.004, 25.0)},
                                      {"under", Night(300.0, 0.004, 25.0)},
                                      {"over a high base", high}}) {
@@ -189,7 +189,7 @@ TEST_F(LampsOnTheCard, GlowInFogAroundAndUnderTheEyeAsTheRenderer) {
 
 TEST_F(LampsOnTheCard, FogFarBelowItsBaseIsAWallWithoutLight) {
   Scene scene = Night(6.0, 0.004, 7.0);
-  scene.fog->base_height_m = 5000.0;
+  scene.layers[0].base_height_m = 5000.0;
   const BothLamps both(scene);
   const auto rays = Rays(both, 100);
   for (const float glow :
@@ -518,12 +518,12 @@ Scene Runway() {
     light.intensity_cd = 600.0;
     scene.lights.push_back(light);
   }
-  Fog fog;
+  MediumLayer fog;
   fog.extinction_per_m = 0.004;
   fog.scale_height_m = 25.0;
   fog.base_height_m = 0.0;
   fog.phase = FogPhase(12.0);
-  scene.fog = fog;
+  scene.layers = {fog};
   return scene;
 }
 

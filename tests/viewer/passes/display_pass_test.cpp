@@ -140,9 +140,9 @@ TEST_F(SmallPictures, StarsAreAsSharpAsTheScreen) {
 TEST_F(SmallPictures, ALandingLightInFogHasNoSteps) {
   Window window{BareScene(60.0, 200.0, -5.0, 60.0), ParseInstant("2026-12-09T23:30:00Z"), 3.0,
                 true};
-  window.scene.fog.emplace();
-  window.scene.fog->extinction_per_m = 3.0 / 900.0;
-  window.scene.fog->scale_height_m = 400.0;
+  window.scene.layers.emplace_back();
+  window.scene.layers[0].extinction_per_m = 3.0 / 900.0;
+  window.scene.layers[0].scale_height_m = 400.0;
   const DisplayImage full = Shown(window, {Quality::kHigh, 1.0});
   const DisplayImage small = Shown(window, {Quality::kLow, 0.25, Saving::kNearLand});
   std::vector<int> off;
@@ -164,9 +164,9 @@ TEST_F(SmallPictures, TheSunInFogIsAsBrightAsOnTheScreen) {
   Window window{SceneOverTile(tests::PlaceOfSample(225.0, 215.0, 0.0),
                               CameraFromDegrees(eye, 0.0, 0.0, 0.0, 40.0)),
                 ParseInstant("2026-06-21T16:00:00Z"), 20.0};
-  window.scene.fog.emplace();
-  window.scene.fog->extinction_per_m = 0.002;
-  window.scene.fog->scale_height_m = 1500.0;
+  window.scene.layers.emplace_back();
+  window.scene.layers[0].extinction_per_m = 0.002;
+  window.scene.layers[0].scale_height_m = 1500.0;
   const SunPosition sun = tests::SunSeenIn(window.scene, window.now);
   window.scene.camera = CameraFromDegrees(eye, sun.azimuth_rad / kRadiansPerDegree,
                                           sun.elevation_rad / kRadiansPerDegree - 8.0, 0.0, 40.0);

@@ -518,9 +518,9 @@ TEST_F(SkyPainterTest, FogUnderAnyEyeIsTheRenderers) {
   for (const double eye_m : {2e4, 4e5, 3.6e7}) {
     Scene scene = BareScene(eye_m, 0.0, eye_m == 4e5 ? -50.0 : -90.0, eye_m > 1e6 ? 2.0 : 20.0);
     scene.medium = MediumPreset("bruneton2017");
-    scene.fog.emplace();
-    scene.fog->extinction_per_m = 3.0 / 900.0;
-    scene.fog->scale_height_m = 100.0;
+    scene.layers.emplace_back();
+    scene.layers[0].extinction_per_m = 3.0 / 900.0;
+    scene.layers[0].scale_height_m = 100.0;
     const PaintedView view = ViewOf(scene, eye_m, ParseInstant("2026-06-21T10:00:00Z"), {8, 6});
     SkyPainter painter(scene, LandSourceOf(scene), view, SizesOf(Quality::kHigh),
                        tests::SharedAirOf(scene));
@@ -554,11 +554,11 @@ TEST_F(SkyPainterTest, FogIsTheRenderersAndShadedByMountains) {
   cases.resize(tests::ScaledDown(cases.size(), std::size_t{1}));
   for (const Case& c : cases) {
     ParityView view = tile.View({60.0, true}, c.heading, -3.0, c.utc);
-    view.scene.fog.emplace();
-    view.scene.fog->extinction_per_m = 3.0 / c.visibility_m;
-    view.scene.fog->scale_height_m = c.scale_height_m;
-    view.scene.fog->base_height_m = c.base_height_m;
-    view.scene.fog->phase = FogPhase(14.0);
+    view.scene.layers.emplace_back();
+    view.scene.layers[0].extinction_per_m = 3.0 / c.visibility_m;
+    view.scene.layers[0].scale_height_m = c.scale_height_m;
+    view.scene.layers[0].base_height_m = c.base_height_m;
+    view.scene.layers[0].phase = FogPhase(14.0);
     const int samples = tests::ScaledDown(kPictureSamples, 16);
     ExpectWithin(BothPrograms(view.scene, view.instant, samples).Difference(view), c.bounds,
                  "light of the fog and its shade are maps, and light of the air before it is "
@@ -833,11 +833,11 @@ TEST_F(BarePlanet, IsSeenThroughFogAsTheRenderersIs) {
     SCOPED_TRACE(scale_height_m);
     Scene scene = QuickScene(100.0, -2.0, 60.0);
     scene.camera.height = {5.0, false};
-    Fog fog;
+    MediumLayer fog;
     fog.extinction_per_m = 3.912 / 300.0;
     fog.scale_height_m = scale_height_m;
     fog.phase = FogPhase(12.0);
-    scene.fog = fog;
+    scene.layers = {fog};
     ExpectTheRenderers(scene, {"2026-06-21T06:30:00Z"});
   }
 }

@@ -177,10 +177,10 @@ Scene LampScene(bool with_fog) {
   scene.lights.back().height = {5.0, false};
   scene.lights.back().intensity_cd = 1000.0;
   if (!with_fog) return scene;
-  scene.fog.emplace();
-  scene.fog->extinction_per_m = 0.01;
-  scene.fog->scale_height_m = 30.0;
-  scene.fog->base_height_m = 0.0;
+  scene.layers.emplace_back();
+  scene.layers[0].extinction_per_m = 0.01;
+  scene.layers[0].scale_height_m = 30.0;
+  scene.layers[0].base_height_m = 0.0;
   return scene;
 }
 
